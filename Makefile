@@ -1,0 +1,109 @@
+# petves: targets are listed by `make help`.
+.DEFAULT_GOAL := all
+SHELL := /bin/bash
+PREFIX ?= /usr/local
+RANKS ?= 2
+BUILD := build$(if $(SANITIZE),-sanitize)
+BIN := bin$(if $(SANITIZE),-sanitize)
+LIBDIR := lib$(if $(SANITIZE),-sanitize)
+PYTHON := /usr/bin/python3
+
+# Debian packages: to build and run, then to test.
+PACKAGES := gcc libc6-dev make pkg-config libpetsc-real-dev libfftw3-dev libfftw3-mpi-dev libhdf5-openmpi-dev openmpi-bin libopenblas0-serial \
+  python3-petsc4py python3-h5py python3-numpy python3-matplotlib
+TEST_PACKAGES := python3-pytest python3-scipy valgrind clang-format black
+
+# With PETSC_DIR (and PETSC_ARCH) another PETSc than Debian's.
+PKG := $(if $(PETSC_DIR),PKG_CONFIG_PATH=$(PETSC_DIR)/$(PETSC_ARCH)/lib/pkgconfig) pkg-config
+CC := mpicc
+OPTIMISE := $(if $(SANITIZE),-O1 -g -fsanitize=address$(COMMA)undefined -fno-omit-frame-pointer,-O3 -g -march=x86-64-v3)
+COMMA := ,
+CFLAGS = -std=gnu11 -Wall -Wextra -Werror -Wno-unused-parameter -Wno-missing-field-initializers $(OPTIMISE) -fPIC -Iinclude -Isrc \
+  $(shell $(PKG) --cflags PETSc hdf5-openmpi fftw3) -DPETVES_COMMIT='"$(shell git describe --always --dirty 2>/dev/null || echo unknown)"'
+LIBS = $(shell $(PKG) --libs PETSc hdf5-openmpi fftw3) -lfftw3_mpi -lm
+
+SOURCES := $(filter-out src/main.c,$(wildcard src/*.c src/*/*.c))
+OBJECTS := $(SOURCES:src/%.c=$(BUILD)/%.o)
+LIBRARY := $(LIBDIR)/libpetves.so
+TESTS := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/test_*.c))
+
+# Open MPI: run as root, and on more ranks than cores.
+export OMPI_ALLOW_RUN_AS_ROOT := 1
+export OMPI_ALLOW_RUN_AS_ROOT_CONFIRM := 1
+export OMPI_MCA_rmaps_base_oversubscribe := 1
+export OMPI_MCA_mpi_yield_when_idle := 1
+export OMPI_MCA_btl_vader_single_copy_mechanism := none
+export OMP_NUM_THREADS := 1
+
+.PHONY: all help deps test-deps run test reproduce install format check-format clean tests
+all: $(BIN)/petves ## build bin/petves and lib/libpetves.so
+
+help: ## list the targets
+	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*##/\t/' | expand -t 18
+
+$(BUILD)/%.o: src/%.c
+	@mkdir -p $(@D)
+	$(CC) $(CFLAGS) -MMD -MP -c $< -o $@
+
+$(LIBRARY): $(OBJECTS)
+	@mkdir -p $(@D)
+	$(CC) $(OPTIMISE) -shared -o $@ $^ $(LIBS)
+
+$(BIN)/petves: $(BUILD)/main.o $(LIBRARY)
+	@mkdir -p $(@D)
+	$(CC) $(OPTIMISE) -o $@ $< -L$(LIBDIR) -lpetves -Wl,-rpath,'$$ORIGIN/../$(LIBDIR)' $(LIBS)
+
+$(BUILD)/tests/%: tests/%.c tests/check.h $(LIBRARY)
+	@mkdir -p $(@D)
+	$(CC) $(CFLAGS) -Itests -o $@ $< -L$(LIBDIR) -lpetves -Wl,-rpath,$(CURDIR)/$(LIBDIR) $(LIBS)
+
+tests: $(TESTS)
+
+define install_packages
+	@missing=$$(for p in $(1); do dpkg-query -W -f '$${Status}' $$p 2>/dev/null | grep -q 'install ok installed' || echo $$p; done); \
+	if [ -n "$$missing" ]; then \
+	  echo "installing" $$missing; sudo=$$([ "$$(id -u)" = 0 ] || echo sudo); \
+	  $$sudo apt-get update -q && $$sudo env DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends $$missing; \
+	fi
+endef
+
+deps: ## install the Debian packages that are missing
+	$(call install_packages,$(PACKAGES))
+
+test-deps:
+	$(call install_packages,$(PACKAGES) $(TEST_PACKAGES))
+
+run: deps ## run the default scene on 2 ranks and draw it
+	@$(MAKE) --no-print-directory all
+	mpirun -n $(RANKS) $(BIN)/petves -options_file runs/default.opts
+	PYTHONPATH=python $(PYTHON) -m petves plot out/default
+
+test: test-deps ## run every test; ends with "N passed, N failed"
+	@$(MAKE) --no-print-directory all tests
+	PETVES=$(CURDIR)/$(BIN)/petves PETVES_TESTS=$(CURDIR)/$(BUILD)/tests PYTHONPATH=python SANITIZE=$(SANITIZE) \
+	  $(PYTHON) -m pytest -p no:cacheprovider -q tests $(TESTFLAGS)
+
+reproduce: deps ## the longer studies, into docs/reproduction (about an hour)
+	@$(MAKE) --no-print-directory all
+	PETVES=$(CURDIR)/$(BIN)/petves PYTHONPATH=python $(PYTHON) -m petves reproduce docs/reproduction
+
+install: all ## install under PREFIX (/usr/local)
+	install -d $(PREFIX)/bin $(PREFIX)/lib $(PREFIX)/include $(PREFIX)/share/petves
+	install $(BIN)/petves $(PREFIX)/bin/
+	install -m 644 $(LIBRARY) $(PREFIX)/lib/
+	install -m 644 include/petves.h $(PREFIX)/include/
+	cp -r runs python $(PREFIX)/share/petves/
+
+C_FILES = $(wildcard src/*.c src/*/*.c src/*/*.h include/*.h tests/*.c tests/*.h)
+format: test-deps ## format C and Python
+	clang-format -i $(C_FILES)
+	black -q -l 120 python tests
+
+check-format: test-deps ## fail when a file is not formatted
+	clang-format --dry-run --Werror $(C_FILES)
+	black -q --check -l 120 python tests
+
+clean: ## remove what was built
+	rm -rf build build-sanitize bin bin-sanitize lib lib-sanitize
+
+-include $(OBJECTS:.o=.d) $(BUILD)/main.d

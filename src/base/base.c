@@ -1,0 +1,88 @@
+#include "base/base.h"
+
+/* Program-wide logging and error state: the one place where it lives, as PETSc's own logging is program-wide too. */
+static struct {
+  PetscBool one_line;
+  PetscBool registered;
+  PetscLogStage stage[PHASE_COUNT];
+  PetscReal seconds[PHASE_COUNT];
+  Phase stack[16];
+  PetscInt depth;
+  PetscLogDouble since;
+  PetscClassId classid;
+} base;
+
+const char *const PhaseNames[PHASE_COUNT] = {"setup", "step", "fast_solve", "output"};
+
+PetscErrorCode PetvesErrorHandler(MPI_Comm comm, int line, const char *function, const char *file, PetscErrorCode code,
+                                  PetscErrorType type, const char *message, void *ctx) {
+  PetscMPIInt rank = 0;
+  if (code != PETSC_ERR_USER_INPUT && !base.one_line)
+    return PetscTraceBackErrorHandler(comm, line, function, file, code, type, message, ctx);
+  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  if (type == PETSC_ERROR_INITIAL && !rank) {
+    char text[PETVES_MAX_MESSAGE];
+    size_t n = 0;
+    for (const char *c = message ? message : "unknown error"; *c && n < sizeof(text) - 1; c++)
+      text[n++] = *c == '\n' ? ' ' : *c;
+    text[n] = 0;
+    fprintf(stderr, "petves: error: %s\n", text);
+    fflush(stderr);
+  }
+  return code;
+}
+
+PetscErrorCode PetvesSetupErrors(PetscBool on) {
+  PetscFunctionBeginUser;
+  base.one_line = on;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode RegisterStages(void) {
+  PetscFunctionBeginUser;
+  for (int p = 0; p < PHASE_COUNT; p++) {
+    char name[64];
+    PetscCall(PetscSNPrintf(name, sizeof(name), "petves %s", PhaseNames[p]));
+    PetscCall(PetscLogStageRegister(name, &base.stage[p]));
+  }
+  PetscCall(PetscClassIdRegister("petves", &base.classid));
+  base.registered = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static void Charge(void) {
+  PetscLogDouble now;
+  (void)PetscTime(&now);
+  if (base.depth > 0) base.seconds[base.stack[base.depth - 1]] += now - base.since;
+  base.since = now;
+}
+
+PetscErrorCode PhaseBegin(Phase phase) {
+  PetscFunctionBeginUser;
+  if (!base.registered) PetscCall(RegisterStages());
+  PetscCheck(base.depth < 16, PETSC_COMM_SELF, PETSC_ERR_PLIB, "phases nested too deep");
+  Charge();
+  base.stack[base.depth++] = phase;
+  PetscCall(PetscLogStagePush(base.stage[phase]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode PhaseEnd(void) {
+  PetscFunctionBeginUser;
+  PetscCheck(base.depth > 0, PETSC_COMM_SELF, PETSC_ERR_PLIB, "PhaseEnd without PhaseBegin");
+  Charge();
+  base.depth--;
+  PetscCall(PetscLogStagePop());
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscReal PhaseSeconds(Phase phase) {
+  return base.seconds[phase];
+}
+
+PetscErrorCode PetvesEvent(const char name[], PetscLogEvent *event) {
+  PetscFunctionBeginUser;
+  if (!base.registered) PetscCall(RegisterStages());
+  PetscCall(PetscLogEventRegister(name, base.classid, event));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,41 @@
+/* What every folder needs: PETSc, version shims, the way a user's mistake is reported, log stages and timers. */
+#pragma once
+#include <petscdmcomposite.h>
+#include <petscdmda.h>
+#include <petscksp.h>
+#include "petves.h"
+
+#if defined(PETSC_USE_COMPLEX) || !defined(PETSC_USE_REAL_DOUBLE)
+#error "petves needs a PETSc built with real double-precision scalars"
+#endif
+
+#define PETVES_VERSION "0.1.0"
+#define PETVES_MAX_MESSAGE 512
+
+/* PetvesCheck - a user's mistake: when cond is false, every rank returns PETSC_ERR_USER_INPUT and one line is printed.
+   Say the option or file, the value and what is allowed. Collective: all ranks must agree on cond. */
+#define PetvesCheck(cond, comm, ...) PetscCheck((cond), (comm), PETSC_ERR_USER_INPUT, __VA_ARGS__)
+
+/* PetvesErrorHandler - PETSc error handler of the program: one line on stderr for a user's mistake, PETSc's own
+   traceback for anything else. Install with PetscPushErrorHandler(PetvesErrorHandler, NULL). */
+PETSC_EXTERN PetscErrorCode PetvesErrorHandler(MPI_Comm, int, const char *, const char *, PetscErrorCode,
+                                               PetscErrorType, const char *, void *);
+
+/* PetvesSetupErrors - while on, every error prints one line: a solver option with a bad value (-tension_ksp_type foo)
+   is the user's mistake too, and PETSc reports it with its own codes. */
+PETSC_EXTERN PetscErrorCode PetvesSetupErrors(PetscBool);
+
+/* Phases of a run: one -log_view stage each, and the wall seconds of summary.json. Time in a nested phase belongs to
+   the inner one only. */
+typedef enum { PHASE_SETUP, PHASE_STEP, PHASE_FAST_SOLVE, PHASE_OUTPUT, PHASE_COUNT } Phase;
+
+/* PhaseBegin, PhaseEnd - enter and leave a phase; calls nest. Not collective. */
+PETSC_EXTERN PetscErrorCode PhaseBegin(Phase);
+PETSC_EXTERN PetscErrorCode PhaseEnd(void);
+
+/* PhaseSeconds - wall seconds spent so far in a phase itself, nested phases excluded. */
+PETSC_EXTERN PetscReal PhaseSeconds(Phase);
+PETSC_EXTERN const char *const PhaseNames[PHASE_COUNT];
+
+/* PetvesEvent - id of a -log_view event of the given name, registered on first use. */
+PETSC_EXTERN PetscErrorCode PetvesEvent(const char name[], PetscLogEvent *event);

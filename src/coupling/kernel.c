@@ -1,0 +1,60 @@
+#include "coupling/kernel.h"
+
+/* Six-point C^3 kernel of Bao, Kaye and Peskin, J. Comput. Phys. 316 (2016): formulas of DESIGN section 4. */
+static PetscInt IB6(PetscReal x, PetscInt *first, PetscReal w[KERNEL_MAX_POINTS]) {
+  const PetscReal K = 59.0 / 60 - PetscSqrtReal(29.0) / 20, below = PetscFloorReal(x);
+  /* the formulas give phi at r-3 .. r+2; point j sees phi(x - j), so the first point (x - j = r + 2) is last */
+  const PetscReal r = x - below, r2 = r * r, r3 = r2 * r;
+  const PetscReal beta = 9.0 / 4 - 1.5 * (K + r2) + (22.0 / 3 - 7 * K) * r - 7.0 / 3 * r3;
+  const PetscReal gamma = 0.25 * (0.5 * (161.0 / 36 - 59.0 / 6 * K + 5 * K * K) * r2 +
+                                  1.0 / 3 * (5 * K - 109.0 / 24) * r2 * r2 + 5.0 / 18 * r3 * r3);
+  const PetscReal p = (-beta + PetscSqrtReal(beta * beta - 112 * gamma)) / 56;
+  *first = (PetscInt)below - 2;
+  w[5] = p;
+  w[4] = -3 * p - 1.0 / 16 + (K + r2) / 8 + (3 * K - 1) * r / 12 + r3 / 12;
+  w[3] = 2 * p + 0.25 + (4 - 3 * K) * r / 6 - r3 / 6;
+  w[2] = 2 * p + 5.0 / 8 - (K + r2) / 4;
+  w[1] = -3 * p + 0.25 - (4 - 3 * K) * r / 6 + r3 / 6;
+  w[0] = p - 1.0 / 16 + (K + r2) / 8 - (3 * K - 1) * r / 12 - r3 / 12;
+  return 6;
+}
+
+/* Cardinal B-spline with n support points (degree n - 1), centred on x, by the Cox-de Boor recursion. */
+static PetscInt BSpline(PetscInt n, PetscReal x, PetscInt *first, PetscReal w[KERNEL_MAX_POINTS]) {
+  const PetscReal left = x - 0.5 * (PetscReal)n, below = PetscFloorReal(left), f = left - below;
+  PetscReal M[KERNEL_MAX_POINTS] = {1};
+  for (PetscInt m = 2; m <= n; m++)
+    for (PetscInt i = m - 1; i >= 0; i--)
+      M[i] = ((i < m - 1 ? (f + i) * M[i] : 0) + (i > 0 ? (m - f - i) * M[i - 1] : 0)) / (m - 1);
+  *first = (PetscInt)below + 1;
+  for (PetscInt k = 0; k < n; k++) w[k] = M[n - 1 - k];
+  return n;
+}
+
+static PetscInt BSpline2(PetscReal x, PetscInt *first, PetscReal w[]) {
+  return BSpline(2, x, first, w);
+}
+static PetscInt BSpline3(PetscReal x, PetscInt *first, PetscReal w[]) {
+  return BSpline(3, x, first, w);
+}
+static PetscInt BSpline4(PetscReal x, PetscInt *first, PetscReal w[]) {
+  return BSpline(4, x, first, w);
+}
+static PetscInt BSpline5(PetscReal x, PetscInt *first, PetscReal w[]) {
+  return BSpline(5, x, first, w);
+}
+static PetscInt BSpline6(PetscReal x, PetscInt *first, PetscReal w[]) {
+  return BSpline(6, x, first, w);
+}
+
+static const Kernel kernels[] = {{"ib6", IB6, IB6, 1.75, 1.25},
+                                 {"cbs32", BSpline3, BSpline2, 1.25, 1.0},
+                                 {"cbs43", BSpline4, BSpline3, 1.5, 1.0},
+                                 {"cbs54", BSpline5, BSpline4, 1.5, 1.0},
+                                 {"cbs65", BSpline6, BSpline5, 1.5, 1.0}};
+
+const Kernel *KernelFind(const char name[]) {
+  for (size_t i = 0; i < sizeof(kernels) / sizeof(kernels[0]); i++)
+    if (!strcmp(kernels[i].name, name)) return &kernels[i];
+  return NULL;
+}

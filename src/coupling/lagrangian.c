@@ -1,0 +1,145 @@
+#include "coupling/lagrangian.h"
+
+/* y = (S^T S + S^T G L^-1 G^T S) x */
+static PetscErrorCode MultTension(Mat A, Vec x, Vec y) {
+  LagrangianSolver s;
+  PetscFunctionBeginUser;
+  PetscCall(MatShellGetContext(A, &s));
+  PetscCall(VecSet(s->w, 0));
+  PetscCall(CouplingSpreadAdd(s->coupling, 1, s->coupling->S, x, s->w));
+  PetscCall(MatMultTranspose(s->fluid->G, s->w, s->q));
+  PetscCall(FluidSolvePoisson(s->fluid, s->q, s->q));
+  PetscCall(GridGradient(s->fluid->grid, 1, s->q, PETSC_TRUE, s->w));
+  PetscCall(CouplingInterpolate(s->coupling, s->coupling->S, s->w, y));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* y = x + E H^-1 B x / a0 */
+static PetscErrorCode MultBending(Mat A, Vec x, Vec y) {
+  LagrangianSolver s;
+  PetscFunctionBeginUser;
+  PetscCall(MatShellGetContext(A, &s));
+  PetscCall(VecSet(s->w, 0));
+  PetscCall(CouplingSpreadAdd(s->coupling, 1, s->coupling->B, x, s->w));
+  PetscCall(FluidSolveHelmholtz(s->fluid, s->w, s->w2));
+  PetscCall(CouplingInterpolate(s->coupling, s->coupling->E, s->w2, y));
+  PetscCall(VecAYPX(y, 1 / s->fluid->a0, x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Create(Fluid fluid, Coupling coupling, const char prefix[], PetscInt n,
+                             PetscErrorCode (*mult)(Mat, Vec, Vec), LagrangianSolver *out) {
+  LagrangianSolver s;
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&s));
+  *out = s;
+  s->fluid = fluid;
+  s->coupling = coupling;
+  s->prefix = prefix;
+  PetscCall(DMCreateGlobalVector(fluid->grid->velocity, &s->w));
+  PetscCall(MatCreateShell(PETSC_COMM_SELF, n, n, n, n, s, &s->A));
+  PetscCall(MatShellSetOperation(s->A, MATOP_MULT, (void (*)(void))mult));
+  PetscCall(KSPCreate(PETSC_COMM_SELF, &s->ksp));
+  PetscCall(KSPSetOptionsPrefix(s->ksp, prefix));
+  PetscCall(KSPSetType(s->ksp, KSPGMRES));
+  PetscCall(KSPGMRESSetRestart(s->ksp, 200));
+  PetscCall(KSPSetTolerances(s->ksp, PetscSqr(fluid->grid->h), PETSC_DEFAULT, PETSC_DEFAULT, 1000));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Every rank runs the same iteration, one prints. */
+static PetscErrorCode FinishOptions(LagrangianSolver s) {
+  PetscFunctionBeginUser;
+  PetscCall(KSPSetFromOptions(s->ksp));
+  if (s->fluid->grid->rank) {
+    PetscCall(KSPMonitorCancel(s->ksp));
+    PetscCall(KSPResetViewers(s->ksp));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode TensionSolverCreate(Fluid fluid, Coupling coupling, LagrangianSolver *s) {
+  PC pc;
+  PetscFunctionBeginUser;
+  PetscCall(Create(fluid, coupling, "tension_", coupling->membrane->M, MultTension, s));
+  PetscCall(DMCreateGlobalVector(fluid->grid->da[FIELD_P], &(*s)->q));
+  PetscCall(KSPGetPC((*s)->ksp, &pc));
+  PetscCall(PCSetType(pc, PCILU));
+  PetscCall(FinishOptions(*s));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode BendingSolverCreate(Fluid fluid, Coupling coupling, LagrangianSolver *s) {
+  PC pc;
+  PetscFunctionBeginUser;
+  PetscCall(Create(fluid, coupling, "bending_", 2 * coupling->membrane->M, MultBending, s));
+  PetscCall(VecDuplicate((*s)->w, &(*s)->w2));
+  PetscCall(KSPGetPC((*s)->ksp, &pc));
+  PetscCall(PCSetType(pc, PCNONE));
+  PetscCall(FinishOptions(*s));
+  PetscCall(KSPSetOperators((*s)->ksp, (*s)->A, (*s)->A));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode LagrangianSolverDestroy(LagrangianSolver *solver) {
+  LagrangianSolver s = *solver;
+  PetscFunctionBeginUser;
+  if (!s) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(KSPDestroy(&s->ksp));
+  PetscCall(MatDestroy(&s->A));
+  PetscCall(MatDestroy(&s->Chat));
+  PetscCall(VecDestroy(&s->w));
+  PetscCall(VecDestroy(&s->w2));
+  PetscCall(VecDestroy(&s->q));
+  PetscCall(PetscFree(*solver));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode LagrangianSolverSetUp(LagrangianSolver s) {
+  PetscFunctionBeginUser;
+  if (s->q) { /* the tension problem: its preconditioner follows the markers */
+    PC pc;
+    PetscBool none;
+    PetscCall(KSPGetPC(s->ksp, &pc));
+    PetscCall(PetscObjectTypeCompare((PetscObject)pc, PCNONE, &none));
+    PetscCall(MatDestroy(&s->Chat));
+    if (!none) PetscCall(TensionAssemble(s->coupling, &s->Chat));
+    PetscCall(KSPSetOperators(s->ksp, s->A, none ? s->A : s->Chat));
+  }
+  PetscCall(KSPSetUp(s->ksp));
+  PetscCall(KSPSetUpOnBlocks(s->ksp));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode LagrangianSolverSolve(LagrangianSolver s, Vec b, Vec x) {
+  PetscFunctionBeginUser;
+  PetscCall(KSPSolve(s->ksp, b, x));
+  PetscCall(KSPGetIterationNumber(s->ksp, &s->its));
+  PetscCall(KSPGetConvergedReason(s->ksp, &s->why));
+  PetscCall(KSPGetResidualNorm(s->ksp, &s->residual));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode LagrangianSolverWriteOptions(LagrangianSolver s, FILE *file) {
+  KSPType ksp;
+  PCType pc_type;
+  PC pc;
+  PetscReal rtol, atol, dtol;
+  PetscInt max_it;
+  PetscBool ilu;
+  PetscFunctionBeginUser;
+  PetscCall(KSPGetType(s->ksp, &ksp));
+  PetscCall(KSPGetTolerances(s->ksp, &rtol, &atol, &dtol, &max_it));
+  PetscCall(KSPGetPC(s->ksp, &pc));
+  PetscCall(PCGetType(pc, &pc_type));
+  fprintf(file,
+          "-%sksp_type %s\n-%sksp_rtol %.17g\n-%sksp_atol %.17g\n-%sksp_max_it %" PetscInt_FMT "\n-%spc_type %s\n",
+          s->prefix, ksp, s->prefix, (double)rtol, s->prefix, (double)atol, s->prefix, max_it, s->prefix, pc_type);
+  PetscCall(PetscObjectTypeCompare((PetscObject)pc, PCILU, &ilu));
+  if (ilu) {
+    PetscInt levels;
+    PetscCall(PCFactorGetLevels(pc, &levels));
+    fprintf(file, "-%spc_factor_levels %" PetscInt_FMT "\n", s->prefix, levels);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,181 @@
+#include "fluid/fluid.h"
+
+/* x = A^-1 b on one field's part of the vectors. */
+static PetscErrorCode SolveField(FastSolver solver, PetscInt start, Vec b, Vec x) {
+  const PetscScalar *ba;
+  PetscScalar *xa;
+  PetscFunctionBeginUser;
+  PetscCall(VecGetArray(x, &xa));
+  if (b == x)
+    PetscCall(FastSolverSolve(solver, xa + start, xa + start));
+  else {
+    PetscCall(VecGetArrayRead(b, &ba));
+    PetscCall(FastSolverSolve(solver, ba + start, xa + start));
+    PetscCall(VecRestoreArrayRead(b, &ba));
+  }
+  PetscCall(VecRestoreArray(x, &xa));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode FluidSolveHelmholtz(Fluid f, Vec b, Vec w) {
+  PetscFunctionBeginUser;
+  PetscCall(SolveField(f->solver[FIELD_U], 0, b, w));
+  PetscCall(SolveField(f->solver[FIELD_V], GridLocalU(f->grid), b, w));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode FluidSolvePoisson(Fluid f, Vec q, Vec p) {
+  PetscFunctionBeginUser;
+  PetscCall(SolveField(f->solver[FIELD_P], 0, q, p));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ApplyHelmholtzInverse(PC pc, Vec b, Vec w) {
+  Fluid f;
+  PetscFunctionBeginUser;
+  PetscCall(PCShellGetContext(pc, &f));
+  PetscCall(FluidSolveHelmholtz(f, b, w));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode MultHelmholtz(Mat H, Vec w, Vec y) {
+  Fluid f;
+  PetscFunctionBeginUser;
+  PetscCall(MatShellGetContext(H, &f));
+  PetscCall(GridHelmholtz(f->grid, f->a0, f->nu, w, y));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CreateHelmholtz(Fluid f, const char type[]) {
+  const Grid g = f->grid;
+  const PetscInt n = GridLocalU(g) + g->columns[FIELD_V] * g->rows[FIELD_V];
+  PetscFunctionBeginUser;
+  PetscCall(MatCreateShell(g->comm, n, n, PETSC_DETERMINE, PETSC_DETERMINE, f, &f->H));
+  PetscCall(MatShellSetOperation(f->H, MATOP_MULT, (void (*)(void))MultHelmholtz));
+  PetscCall(PCCreate(g->comm, &f->Hinv));
+  PetscCall(PCSetType(f->Hinv, PCSHELL));
+  PetscCall(PCSetOperators(f->Hinv, f->H, f->H));
+  PetscCall(PCShellSetContext(f->Hinv, f));
+  PetscCall(PCShellSetApply(f->Hinv, ApplyHelmholtzInverse));
+  PetscCall(PCShellSetName(f->Hinv, type));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* bc1 and u_inf of one component on this rank's faces (DESIGN section 2). */
+static void WallMomentum(Scene scene, Fluid f, int c, PetscScalar bc1[], PetscScalar background[]) {
+  Grid g = f->grid;
+  const PetscInt n = g->columns[c], size[2] = {n, g->all_rows[c]};
+  const PetscReal wall = f->nu / PetscSqr(g->h);
+  PetscReal gradient[2], X[2], u[2];
+  FlowPressureGradient(&scene->flow, f->nu, gradient);
+  for (PetscInt j = 0; j < g->rows[c]; j++)
+    for (PetscInt i = 0; i < n; i++) {
+      const PetscInt index[2] = {i, j + g->first};
+      PetscScalar value = -gradient[c];
+      GridPosition(g, (Field)c, index[0], index[1], X);
+      FlowVelocity(&scene->flow, X[0], X[1], u);
+      background[j * n + i] = u[c];
+      for (int dir = 0; dir < 2; dir++)
+        for (int side = 0; side < 2; side++) {
+          PetscReal W[2] = {X[0], X[1]};
+          if (!g->wall[dir] || index[dir] != (side ? size[dir] - 1 : 0)) continue;
+          W[dir] = side ? g->hi[dir] : g->lo[dir];
+          FlowVelocity(&scene->flow, W[0], W[1], u);
+          value += (c == dir ? 1 : 2) * wall * u[c]; /* wall on a face, or half a cell off */
+        }
+      bc1[j * n + i] = value;
+    }
+}
+
+/* bc2 = minus the wall faces' part of the divergence. */
+static void WallDivergence(Scene scene, Grid g, PetscScalar bc2[]) {
+  PetscReal X[2], u[2];
+  const PetscInt n = g->columns[FIELD_P];
+  for (PetscInt j = 0; j < g->rows[FIELD_P]; j++)
+    for (PetscInt i = 0; i < n; i++) {
+      const PetscInt index[2] = {i, j + g->first};
+      PetscScalar value = 0;
+      for (int dir = 0; dir < 2; dir++)
+        for (int side = 0; side < 2; side++) {
+          if (!g->wall[dir] || index[dir] != (side ? g->n[dir] - 1 : 0)) continue;
+          GridPosition(g, FIELD_P, index[0], index[1], X);
+          X[dir] = side ? g->hi[dir] : g->lo[dir];
+          FlowVelocity(&scene->flow, X[0], X[1], u);
+          value -= (side ? u[dir] : -u[dir]) / g->h;
+        }
+      bc2[j * n + i] = value;
+    }
+}
+
+static PetscErrorCode CreateWallData(Scene scene, Fluid f) {
+  PetscScalar *a, *b;
+  PetscFunctionBeginUser;
+  PetscCall(DMCreateGlobalVector(f->grid->velocity, &f->bc1));
+  PetscCall(DMCreateGlobalVector(f->grid->velocity, &f->background));
+  PetscCall(DMCreateGlobalVector(f->grid->da[FIELD_P], &f->bc2));
+  PetscCall(VecGetArray(f->bc1, &a));
+  PetscCall(VecGetArray(f->background, &b));
+  for (int c = 0; c < 2; c++) {
+    const PetscInt start = c ? GridLocalU(f->grid) : 0;
+    WallMomentum(scene, f, c, a + start, b + start);
+  }
+  PetscCall(VecRestoreArray(f->background, &b));
+  PetscCall(VecRestoreArray(f->bc1, &a));
+  PetscCall(VecGetArray(f->bc2, &a));
+  WallDivergence(scene, f->grid, a);
+  PetscCall(VecRestoreArray(f->bc2, &a));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode FluidCreate(Scene scene, Fluid *out) {
+  Fluid f;
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&f));
+  *out = f;
+  PetscCall(GridCreate(scene, &f->grid));
+  f->nu = scene->viscosity;
+  PetscCall(GridCreateG(f->grid, &f->G));
+  PetscCall(GridCreateD(f->grid, &f->D));
+  PetscCall(GridCreateL(f->grid, &f->L));
+  for (int k = FIELD_U; k <= FIELD_P; k++)
+    PetscCall(FastSolverCreate(f->grid, (Field)k, k == FIELD_P ? scene->poisson : scene->helmholtz, scene->fftw_plan,
+                               &f->solver[k]));
+  PetscCall(FastSolverSetCoefficients(f->solver[FIELD_P], 0, -1));
+  PetscCall(FastSolverGetPC(f->solver[FIELD_P], &f->Linv));
+  PetscCall(PetscObjectReference((PetscObject)f->Linv));
+  PetscCall(CreateHelmholtz(f, scene->helmholtz));
+  PetscCall(FluidSetTimeCoefficient(f, 1 / scene->dt));
+  f->total = scene->flow.form == FORM_TOTAL ? PETSC_TRUE : PETSC_FALSE;
+  if (f->total) PetscCall(CreateWallData(scene, f));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode FluidDestroy(Fluid *fluid) {
+  Fluid f = *fluid;
+  PetscFunctionBeginUser;
+  if (!f) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(MatDestroy(&f->G));
+  PetscCall(MatDestroy(&f->D));
+  PetscCall(MatDestroy(&f->L));
+  PetscCall(MatDestroy(&f->H));
+  PetscCall(PCDestroy(&f->Hinv));
+  PetscCall(PCDestroy(&f->Linv));
+  for (int k = FIELD_U; k <= FIELD_P; k++) PetscCall(FastSolverDestroy(&f->solver[k]));
+  PetscCall(VecDestroy(&f->background));
+  PetscCall(VecDestroy(&f->bc1));
+  PetscCall(VecDestroy(&f->bc2));
+  PetscCall(GridDestroy(&f->grid));
+  PetscCall(PetscFree(*fluid));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode FluidSetTimeCoefficient(Fluid f, PetscReal a0) {
+  PetscFunctionBeginUser;
+  f->a0 = a0;
+  for (int k = FIELD_U; k <= FIELD_V; k++) PetscCall(FastSolverSetCoefficients(f->solver[k], a0, f->nu));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscInt FluidCountSolves(Fluid f) {
+  return f->solver[FIELD_U]->solves + f->solver[FIELD_V]->solves + f->solver[FIELD_P]->solves;
+}

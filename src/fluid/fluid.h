@@ -1,0 +1,33 @@
+/* The fluid: grid, operators as PETSc objects, fast solves, and the data of moving walls. */
+#pragma once
+#include "fluid/fastsolver.h"
+
+typedef struct _p_Fluid *Fluid;
+struct _p_Fluid {
+  Grid grid;
+  PetscReal nu;         /* viscosity */
+  PetscReal a0;         /* leading coefficient in H = a0 I - nu L_u */
+  Mat G, D, L, H;       /* gradient, divergence, pressure Laplacian, velocity Helmholtz operator (MatShells) */
+  PC Hinv, Linv;        /* fast solves of H (two scalar solves) and of L (one), PCSHELLs */
+  FastSolver solver[3]; /* behind them, one a field */
+  PetscBool total;      /* total form: walls move with the background flow */
+  Vec background;       /* u_inf on the faces; NULL unless total */
+  Vec bc1;              /* what moving walls add to the momentum's right-hand side, and the driving -grad p_inf */
+  Vec bc2;              /* D u = bc2: minus the wall faces' part of the divergence */
+};
+
+/* FluidCreate - the scene's fluid at rest or, in the total form, with walls moving with u_inf. Collective. */
+PETSC_EXTERN PetscErrorCode FluidCreate(Scene scene, Fluid *fluid);
+PETSC_EXTERN PetscErrorCode FluidDestroy(Fluid *fluid);
+
+/* FluidSetTimeCoefficient - a0 of H = a0 I - nu L_u (1/time): 1/dt for backward Euler. */
+PETSC_EXTERN PetscErrorCode FluidSetTimeCoefficient(Fluid fluid, PetscReal a0);
+
+/* FluidSolveHelmholtz - w = H^-1 b, two scalar solves; w may be b. Collective. */
+PETSC_EXTERN PetscErrorCode FluidSolveHelmholtz(Fluid fluid, Vec b, Vec w);
+
+/* FluidSolvePoisson - p = L^-1 q with zero mean, one scalar solve; p may be q. Collective. */
+PETSC_EXTERN PetscErrorCode FluidSolvePoisson(Fluid fluid, Vec q, Vec p);
+
+/* FluidCountSolves - scalar fast solves so far. */
+PETSC_EXTERN PetscInt FluidCountSolves(Fluid fluid);

@@ -1,0 +1,90 @@
+/* The staggered (marker-and-cell) grid in slabs, and its stencils.
+
+   Fields: p at cell centres; u on vertical faces, entry (i,j) the RIGHT face of cell (i,j); v on horizontal faces,
+   entry (i,j) the TOP face of cell (i,j). With walls in x the last column of u is the wall, which is no unknown: u has
+   n_x - 1 columns; likewise v has n_y - 1 rows with walls in y. Every rank holds whole rows, the same rows of all three
+   fields.
+
+   Vectors: p is a vector of da[FIELD_P]; a velocity w is a vector of the composite `velocity`, whose local part is the
+   rank's rows of u followed by its rows of v, x fastest. */
+#pragma once
+#include "base/base.h"
+#include "scene/scene.h"
+
+typedef enum { FIELD_U = 0, FIELD_V = 1, FIELD_P = 2 } Field;
+
+typedef struct _p_Grid *Grid;
+struct _p_Grid {
+  MPI_Comm comm;
+  PetscMPIInt rank, size;
+  PetscReal lo[2], hi[2], h; /* box (length) and cell size */
+  PetscInt n[2];             /* cells */
+  PetscBool wall[2];         /* wall (or periodic) in x, y */
+  PetscInt columns[3];       /* columns of each field */
+  PetscInt all_rows[3];      /* rows of each field, all ranks */
+  PetscInt rows[3];          /* rows of each field on this rank */
+  PetscInt first;            /* first row of this rank */
+  PetscInt block;            /* rows of every rank but the last: ceil(n_y/ranks), FFTW's layout */
+  DM da[3];
+  DM velocity;
+  PetscMPIInt below, above; /* neighbours, MPI_PROC_NULL at a wall */
+  PetscScalar *ghost[3][2]; /* row below and row above, per field */
+};
+
+/* GridCreate - the scene's grid over the ranks of comm. Collective. Stops with the user's message when the rank count
+   leaves a rank without rows. */
+PETSC_EXTERN PetscErrorCode GridCreate(Scene scene, Grid *grid);
+PETSC_EXTERN PetscErrorCode GridDestroy(Grid *grid);
+
+/* GridPosition - position X[2] of entry (i, j) of a field, j a global row. */
+PETSC_EXTERN void GridPosition(Grid grid, Field field, PetscInt i, PetscInt j, PetscReal X[2]);
+
+/* Number of this rank's entries of u, which come first in a velocity's local array. */
+static inline PetscInt GridLocalU(Grid grid) {
+  return grid->columns[FIELD_U] * grid->rows[FIELD_U];
+}
+
+/* A field's local rows with the row below and the row above them. */
+typedef struct {
+  const PetscScalar *a, *below, *above;
+  PetscInt columns, rows;
+} Rows;
+static inline const PetscScalar *RowAt(const Rows *r, PetscInt j) {
+  if (j < 0) return r->below;
+  return j < r->rows ? r->a + j * r->columns : r->above;
+}
+
+/* GridRows - exchange the ghost rows of a field whose local array is a. At a wall the ghost row is what makes the
+   field's homogeneous condition: minus the first row for u (Dirichlet, half a cell off), zero for v (on the wall), the
+   same row for p (Neumann). Collective. */
+PETSC_EXTERN PetscErrorCode GridRows(Grid grid, Field field, const PetscScalar a[], Rows *rows);
+
+/* GridGradient - w = alpha G p (add false) or w += alpha G p (add true). */
+PETSC_EXTERN PetscErrorCode GridGradient(Grid grid, PetscReal alpha, Vec p, PetscBool add, Vec w);
+
+/* GridGradientTranspose - q = alpha G^T w, so that the divergence is D w = -G^T w (walls at rest). */
+PETSC_EXTERN PetscErrorCode GridGradientTranspose(Grid grid, PetscReal alpha, Vec w, Vec q);
+
+/* GridHelmholtzField - y = a0 w - nu (second differences of w) for one field's local arrays, homogeneous walls; y must
+   not be w. With FIELD_P, a0 = 0 and nu = -1 this is L. */
+PETSC_EXTERN PetscErrorCode GridHelmholtzField(Grid grid, Field field, PetscReal a0, PetscReal nu,
+                                               const PetscScalar w[], PetscScalar y[]);
+
+/* GridHelmholtz - y = a0 w - nu L_u w for a velocity, homogeneous walls. */
+PETSC_EXTERN PetscErrorCode GridHelmholtz(Grid grid, PetscReal a0, PetscReal nu, Vec w, Vec y);
+
+/* GridCreateG, GridCreateD, GridCreateL - MatShells: G (pressure to velocity), D = -G^T, L = -G^T G. */
+PETSC_EXTERN PetscErrorCode GridCreateG(Grid grid, Mat *G);
+PETSC_EXTERN PetscErrorCode GridCreateD(Grid grid, Mat *D);
+PETSC_EXTERN PetscErrorCode GridCreateL(Grid grid, Mat *L);
+
+/* GridAssemble - assembled a0 I - nu (second differences) of one field; for FIELD_P with a0 = 0, nu = -1 this is L. */
+PETSC_EXTERN PetscErrorCode GridAssemble(Grid grid, Field field, PetscReal a0, PetscReal nu, Mat *A);
+
+/* GridWallFactor - what the field's second difference in direction dir (0 x, 1 y) does at a wall: the factor c of
+   the missing neighbour's value as c times the entry itself (-1 Dirichlet half a cell off, 0 Dirichlet on the wall, 1
+   Neumann). */
+static inline PetscReal GridWallFactor(Field field, int dir) {
+  if (field == FIELD_P) return 1;
+  return (int)field == dir ? 0 : -1;
+}

@@ -1,0 +1,182 @@
+/* G, G^T, H on local arrays, row by row, and their MatShells. */
+#include "fluid/grid.h"
+
+PetscErrorCode GridGradient(Grid g, PetscReal alpha, Vec p, PetscBool add, Vec w) {
+  const PetscReal c = alpha / g->h;
+  const PetscInt n = g->columns[FIELD_P], nu = g->columns[FIELD_U];
+  const PetscScalar *pa;
+  PetscScalar *wa, *va;
+  Rows rows;
+  PetscFunctionBeginUser;
+  PetscCall(VecGetArrayRead(p, &pa));
+  PetscCall(VecGetArray(w, &wa));
+  va = wa + GridLocalU(g);
+  PetscCall(GridRows(g, FIELD_P, pa, &rows));
+  if (!add) PetscCall(PetscArrayzero(wa, GridLocalU(g) + n * g->rows[FIELD_V]));
+  for (PetscInt j = 0; j < g->rows[FIELD_P]; j++) {
+    const PetscScalar *here = RowAt(&rows, j), *up = RowAt(&rows, j + 1);
+    PetscScalar *u = wa + j * nu, *v = va + j * n;
+    for (PetscInt i = 0; i < n - 1; i++) u[i] += c * (here[i + 1] - here[i]);
+    if (nu == n) u[n - 1] += c * (here[0] - here[n - 1]);
+    if (j < g->rows[FIELD_V])
+      for (PetscInt i = 0; i < n; i++) v[i] += c * (up[i] - here[i]);
+  }
+  PetscCall(VecRestoreArray(w, &wa));
+  PetscCall(VecRestoreArrayRead(p, &pa));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode GridGradientTranspose(Grid g, PetscReal alpha, Vec w, Vec q) {
+  const PetscReal c = alpha / g->h;
+  const PetscInt n = g->columns[FIELD_P], nu = g->columns[FIELD_U];
+  const PetscScalar *wa;
+  PetscScalar *qa;
+  Rows rows;
+  PetscFunctionBeginUser;
+  PetscCall(VecGetArrayRead(w, &wa));
+  PetscCall(VecGetArray(q, &qa));
+  PetscCall(GridRows(g, FIELD_V, wa + GridLocalU(g), &rows));
+  for (PetscInt j = 0; j < g->rows[FIELD_P]; j++) {
+    const PetscScalar *u = wa + j * nu, *down = RowAt(&rows, j - 1), *up = RowAt(&rows, j);
+    PetscScalar *out = qa + j * n;
+    const PetscScalar left = nu == n ? u[n - 1] : 0, right = nu == n ? u[n - 1] : 0;
+    out[0] = c * (left - u[0] + down[0] - up[0]);
+    for (PetscInt i = 1; i < n - 1; i++) out[i] = c * (u[i - 1] - u[i] + down[i] - up[i]);
+    out[n - 1] = c * (u[n - 2] - right + down[n - 1] - up[n - 1]);
+  }
+  PetscCall(VecRestoreArray(q, &qa));
+  PetscCall(VecRestoreArrayRead(w, &wa));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* out = a0 here - nu (second differences) for one row; a missing neighbour in x is `factor` times the entry itself, or
+   the row's other end where x is periodic. */
+static void HelmholtzRow(PetscInt n, PetscBool wall, PetscReal factor, PetscReal diagonal, PetscReal off,
+                         const PetscScalar down[], const PetscScalar here[], const PetscScalar up[],
+                         PetscScalar out[]) {
+  const PetscScalar left = wall ? factor * here[0] : here[n - 1], right = wall ? factor * here[n - 1] : here[0];
+  out[0] = diagonal * here[0] - off * (left + here[1] + down[0] + up[0]);
+  for (PetscInt i = 1; i < n - 1; i++)
+    out[i] = diagonal * here[i] - off * (here[i - 1] + here[i + 1] + down[i] + up[i]);
+  out[n - 1] = diagonal * here[n - 1] - off * (here[n - 2] + right + down[n - 1] + up[n - 1]);
+}
+
+PetscErrorCode GridHelmholtzField(Grid g, Field f, PetscReal a0, PetscReal nu, const PetscScalar w[], PetscScalar y[]) {
+  const PetscReal off = nu / PetscSqr(g->h), diagonal = a0 + 4 * off;
+  Rows rows;
+  PetscFunctionBeginUser;
+  PetscCall(GridRows(g, f, w, &rows));
+  for (PetscInt j = 0; j < g->rows[f]; j++)
+    HelmholtzRow(g->columns[f], g->wall[0], GridWallFactor(f, 0), diagonal, off, RowAt(&rows, j - 1), RowAt(&rows, j),
+                 RowAt(&rows, j + 1), y + j * g->columns[f]);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode GridHelmholtz(Grid g, PetscReal a0, PetscReal nu, Vec w, Vec y) {
+  const PetscInt v = GridLocalU(g);
+  const PetscScalar *wa;
+  PetscScalar *ya;
+  PetscFunctionBeginUser;
+  PetscCall(VecGetArrayRead(w, &wa));
+  PetscCall(VecGetArray(y, &ya));
+  PetscCall(GridHelmholtzField(g, FIELD_U, a0, nu, wa, ya));
+  PetscCall(GridHelmholtzField(g, FIELD_V, a0, nu, wa + v, ya + v));
+  PetscCall(VecRestoreArray(y, &ya));
+  PetscCall(VecRestoreArrayRead(w, &wa));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode MultG(Mat A, Vec p, Vec w) {
+  Grid g;
+  PetscFunctionBeginUser;
+  PetscCall(MatShellGetContext(A, &g));
+  PetscCall(GridGradient(g, 1, p, PETSC_FALSE, w));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode MultTransposeG(Mat A, Vec w, Vec q) {
+  Grid g;
+  PetscFunctionBeginUser;
+  PetscCall(MatShellGetContext(A, &g));
+  PetscCall(GridGradientTranspose(g, 1, w, q));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode MultD(Mat A, Vec w, Vec q) {
+  Grid g;
+  PetscFunctionBeginUser;
+  PetscCall(MatShellGetContext(A, &g));
+  PetscCall(GridGradientTranspose(g, -1, w, q));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode MultTransposeD(Mat A, Vec p, Vec w) {
+  Grid g;
+  PetscFunctionBeginUser;
+  PetscCall(MatShellGetContext(A, &g));
+  PetscCall(GridGradient(g, -1, p, PETSC_FALSE, w));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode MultL(Mat A, Vec p, Vec q) {
+  Grid g;
+  Vec w;
+  PetscFunctionBeginUser;
+  PetscCall(MatShellGetContext(A, &g));
+  PetscCall(DMGetGlobalVector(g->velocity, &w));
+  PetscCall(GridGradient(g, 1, p, PETSC_FALSE, w));
+  PetscCall(GridGradientTranspose(g, -1, w, q));
+  PetscCall(DMRestoreGlobalVector(g->velocity, &w));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CreateShell(Grid g, PetscBool from_velocity, PetscBool to_velocity,
+                                  PetscErrorCode (*mult)(Mat, Vec, Vec), PetscErrorCode (*transpose)(Mat, Vec, Vec),
+                                  Mat *A) {
+  const PetscInt n_p = g->columns[FIELD_P] * g->rows[FIELD_P];
+  const PetscInt n_w = GridLocalU(g) + g->columns[FIELD_V] * g->rows[FIELD_V];
+  PetscFunctionBeginUser;
+  PetscCall(MatCreateShell(g->comm, to_velocity ? n_w : n_p, from_velocity ? n_w : n_p, PETSC_DETERMINE,
+                           PETSC_DETERMINE, g, A));
+  PetscCall(MatShellSetOperation(*A, MATOP_MULT, (void (*)(void))mult));
+  PetscCall(MatShellSetOperation(*A, MATOP_MULT_TRANSPOSE, (void (*)(void))transpose));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode GridCreateG(Grid g, Mat *G) {
+  return CreateShell(g, PETSC_FALSE, PETSC_TRUE, MultG, MultTransposeG, G);
+}
+PetscErrorCode GridCreateD(Grid g, Mat *D) {
+  return CreateShell(g, PETSC_TRUE, PETSC_FALSE, MultD, MultTransposeD, D);
+}
+PetscErrorCode GridCreateL(Grid g, Mat *L) {
+  return CreateShell(g, PETSC_FALSE, PETSC_FALSE, MultL, MultL, L);
+}
+
+PetscErrorCode GridAssemble(Grid g, Field f, PetscReal a0, PetscReal nu, Mat *A) {
+  const PetscInt n = g->columns[f], rows = g->rows[f], all = g->all_rows[f];
+  const PetscReal off = nu / PetscSqr(g->h);
+  PetscFunctionBeginUser;
+  PetscCall(MatCreateAIJ(g->comm, n * rows, n * rows, PETSC_DETERMINE, PETSC_DETERMINE, 5, NULL, 2, NULL, A));
+  for (PetscInt j = g->first; j < g->first + rows; j++)
+    for (PetscInt i = 0; i < n; i++) {
+      const PetscInt row = j * n + i, di[4] = {-1, 1, 0, 0}, dj[4] = {0, 0, -1, 1};
+      PetscReal diagonal = a0 + 4 * off;
+      for (int k = 0; k < 4; k++) {
+        const int dir = k / 2;
+        PetscInt c = i + di[k], r = j + dj[k];
+        const PetscBool outside = c < 0 || c >= n || r < 0 || r >= all ? PETSC_TRUE : PETSC_FALSE;
+        if (outside && g->wall[dir]) {
+          diagonal -= off * GridWallFactor(f, dir);
+          continue;
+        }
+        c = (c + n) % n;
+        r = (r + all) % all;
+        PetscCall(MatSetValue(*A, row, r * n + c, -off, ADD_VALUES));
+      }
+      PetscCall(MatSetValue(*A, row, row, diagonal, ADD_VALUES));
+    }
+  PetscCall(MatAssemblyBegin(*A, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(*A, MAT_FINAL_ASSEMBLY));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

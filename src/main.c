@@ -1,0 +1,22 @@
+/* petves: initialise, build from options, run, report. Exit status: 0 finished, 1 bad input, 2 a step failed. */
+#include "petves.h"
+
+static PetscErrorCode Run(PetscBool *good) {
+  Simulation simulation = NULL;
+  PetscBool only_help;
+  PetscFunctionBeginUser;
+  PetscCall(PetscOptionsHasHelp(NULL, &only_help));
+  PetscCall(SimulationCreate(PETSC_COMM_WORLD, &simulation));
+  if (!only_help) PetscCall(SimulationRun(simulation, good));
+  PetscCall(SimulationDestroy(&simulation));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+int main(int argc, char **argv) {
+  PetscBool good = PETSC_TRUE;
+  PetscErrorCode error = PetvesInitialize(&argc, &argv);
+  if (error) return 1;
+  error = Run(&good);
+  if (PetvesFinalize() || error) return 1;
+  return good ? 0 : 2;
+}

@@ -1,0 +1,66 @@
+/* Membranes: markers, edges, bending, energies and the measures of DESIGN section 9.
+
+   Marker vectors are sequential vectors that every rank holds in full, x0,y0,x1,y1,... of all vesicles one after
+   another; tensions are one number an edge, edge k running from marker k-1 to marker k of the same vesicle. */
+#pragma once
+#include "base/base.h"
+#include "scene/scene.h"
+
+typedef struct _p_Membrane *Membrane;
+struct _p_Membrane {
+  PetscInt vesicles;
+  PetscInt *start;    /* [vesicles+1] first marker of each vesicle */
+  PetscInt M;         /* markers in all */
+  PetscReal *ds;      /* [vesicles] fixed material spacing: mean chord of the initial polygon (length) */
+  PetscReal *A0, *L0; /* [vesicles] initial area and length */
+  PetscReal bending;  /* c_b */
+  PetscInt *previous; /* [M] the marker before k on the same vesicle */
+  PetscInt *next;     /* [M] the marker after k */
+  PetscReal *spacing; /* [M] ds of the vesicle that marker k is on */
+};
+
+/* MembraneCreate - membranes at rest in the given shape (copied). */
+PETSC_EXTERN PetscErrorCode MembraneCreate(const Shape *shape, PetscReal bending, Membrane *membrane);
+PETSC_EXTERN PetscErrorCode MembraneDestroy(Membrane *membrane);
+
+/* MembraneCreateMarkerVec, MembraneCreateTensionVec - zero sequential vectors of length 2M and M. */
+PETSC_EXTERN PetscErrorCode MembraneCreateMarkerVec(Membrane membrane, Vec *X);
+PETSC_EXTERN PetscErrorCode MembraneCreateTensionVec(Membrane membrane, Vec *sigma);
+
+/* MembraneTangents - tau_k = (X_k - X_{k-1})/ds, tau[2M]. */
+PETSC_EXTERN void MembraneTangents(Membrane membrane, const PetscScalar X[], PetscReal tau[]);
+
+/* MembraneStretching - d_k = tau_k . (U_k - U_{k-1}): Dm U, the edges' stretching rate times ds. d[M], U[2M]. */
+PETSC_EXTERN void MembraneStretching(Membrane membrane, const PetscReal tau[], const PetscScalar U[], PetscScalar d[]);
+
+/* MembraneStretchingTranspose - F += alpha Dm^T sigma, F[2M], sigma[M]. */
+PETSC_EXTERN void MembraneStretchingTranspose(Membrane membrane, const PetscReal tau[], PetscReal alpha,
+                                              const PetscScalar sigma[], PetscScalar F[]);
+
+/* MembraneSecondDifference - C = D+D- X with the fixed spacing ds, C[2M]; C and X must differ. */
+PETSC_EXTERN void MembraneSecondDifference(Membrane membrane, const PetscScalar X[], PetscScalar C[]);
+
+/* MembraneBending - F += alpha D4 (ds X), D4 = (D+D-)(D+D-), each marker weighted by its ds; work[2M]. Symmetric. */
+PETSC_EXTERN void MembraneBending(Membrane membrane, PetscReal alpha, const PetscScalar X[], PetscScalar work[],
+                                  PetscScalar F[]);
+
+/* MembraneBendingEnergy - E_B = c_b/2 SUM |D+D- X|^2 ds (37) of one vesicle. */
+PETSC_EXTERN PetscReal MembraneBendingEnergy(Membrane membrane, PetscInt vesicle, const PetscScalar X[]);
+
+/* Measures of one vesicle. */
+typedef struct {
+  PetscReal area;        /* of the polygon, positive: markers run counter-clockwise */
+  PetscReal length;      /* sum of edges */
+  PetscReal edge_ratio;  /* longest over shortest edge */
+  PetscReal center[2];   /* centroid of the enclosed area */
+  PetscReal inclination; /* of the long axis of the area's second moments, radians in (-pi/2, pi/2] */
+} Measures;
+PETSC_EXTERN void MembraneMeasure(Membrane membrane, PetscInt vesicle, const PetscScalar X[], Measures *measures);
+
+/* MembraneFrequency - tank-treading frequency 2 pi/|CLOSED INT dl/(u.tau)| (radians a time), u relative to the markers'
+   mean velocity, by spectral derivatives of X; NaN unless u.tau has one sign all round. */
+PETSC_EXTERN PetscErrorCode MembraneFrequency(Membrane membrane, PetscInt vesicle, const PetscScalar X[],
+                                              const PetscScalar U[], PetscReal *frequency);
+
+/* MembraneNormalSpeed - max over the markers of |u.n|, n the normal of the chord from X_{k-1} to X_{k+1}. */
+PETSC_EXTERN PetscReal MembraneNormalSpeed(Membrane membrane, const PetscScalar X[], const PetscScalar U[]);

@@ -1,0 +1,265 @@
+/* Closed curves: ellipses and periodic cubic splines, and equal chords along them. */
+#include "scene/scene.h"
+#include <errno.h>
+
+/* Quadrature points for the length of a curve: the trapezoidal sum converges geometrically for an ellipse. */
+#define CURVE_SAMPLES 4000
+
+void CurveEvaluate(const Curve *c, PetscReal t, PetscReal X[2]) {
+  t -= PetscFloorReal(t);
+  if (!c->n) {
+    X[0] = c->axes[0] * PetscCosReal(2 * PETSC_PI * t);
+    X[1] = c->axes[1] * PetscSinReal(2 * PETSC_PI * t);
+    return;
+  }
+  PetscInt lo = 0, hi = c->n;
+  while (hi - lo > 1) {
+    const PetscInt mid = (lo + hi) / 2;
+    if (c->t[mid] <= t)
+      lo = mid;
+    else
+      hi = mid;
+  }
+  const PetscReal d = c->t[hi] - c->t[lo], a = (c->t[hi] - t) / d, b = 1 - a;
+  for (int k = 0; k < 2; k++)
+    X[k] = a * c->x[k][lo] + b * c->x[k][hi] +
+           ((a * a * a - a) * c->m[k][lo] + (b * b * b - b) * c->m[k][hi]) * d * d / 6;
+}
+
+PetscReal CurveLength(const Curve *c) {
+  /* Richardson on chord sums: error h^4 for a smooth curve */
+  PetscReal sum[2] = {0, 0};
+  for (int level = 0; level < 2; level++) {
+    const PetscInt n = CURVE_SAMPLES << level;
+    PetscReal last[2], X[2];
+    CurveEvaluate(c, 0, last);
+    for (PetscInt i = 1; i <= n; i++) {
+      CurveEvaluate(c, (PetscReal)i / n, X);
+      sum[level] += PetscSqrtReal(PetscSqr(X[0] - last[0]) + PetscSqr(X[1] - last[1]));
+      last[0] = X[0];
+      last[1] = X[1];
+    }
+  }
+  return (4 * sum[1] - sum[0]) / 3;
+}
+
+/* Cumulative chord length at the points of parameters t[0..M]; returns the total. */
+static PetscReal Chords(const Curve *c, PetscInt M, const PetscReal t[], PetscReal s[], PetscReal X[]) {
+  s[0] = 0;
+  for (PetscInt k = 0; k <= M; k++) CurveEvaluate(c, t[k], &X[2 * k]);
+  for (PetscInt k = 1; k <= M; k++)
+    s[k] = s[k - 1] + PetscSqrtReal(PetscSqr(X[2 * k] - X[2 * k - 2]) + PetscSqr(X[2 * k + 1] - X[2 * k - 1]));
+  return s[M];
+}
+
+/* Parameters at which the piecewise linear s(t) takes equal steps. */
+static void EqualSteps(PetscInt n, const PetscReal t[], const PetscReal s[], PetscInt M, PetscReal out[]) {
+  PetscInt i = 0;
+  for (PetscInt k = 0; k < M; k++) {
+    const PetscReal want = s[n] * k / M;
+    while (i < n - 1 && s[i + 1] < want) i++;
+    out[k] = t[i] + (t[i + 1] - t[i]) * (want - s[i]) / (s[i + 1] - s[i]);
+  }
+  out[M] = 1;
+}
+
+PetscErrorCode CurveEqualChords(const Curve *c, PetscInt M, PetscReal X[]) {
+  PetscReal *t, *s, *next, *points;
+  const PetscInt n = PetscMax(CURVE_SAMPLES, 20 * M);
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc4(n + 1, &t, n + 1, &s, M + 1, &next, 2 * n + 2, &points));
+  for (PetscInt i = 0; i <= n; i++) t[i] = (PetscReal)i / n;
+  (void)Chords(c, n, t, s, points);
+  EqualSteps(n, t, s, M, next);
+  PetscCall(PetscArraycpy(t, next, M + 1));
+  for (int it = 0; it < 500; it++) {
+    PetscReal change = 0;
+    (void)Chords(c, M, t, s, points);
+    EqualSteps(M, t, s, M, next);
+    for (PetscInt k = 0; k <= M; k++) {
+      change = PetscMax(change, PetscAbsReal(next[k] - t[k]));
+      t[k] = next[k];
+    }
+    if (change < 1e-15) break;
+  }
+  for (PetscInt k = 0; k < M; k++) CurveEvaluate(c, t[k], &X[2 * k]);
+  PetscCall(PetscFree4(t, s, next, points));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode EllipseAxes(PetscReal area, PetscReal reduced_area, PetscReal axes[2]) {
+  /* the reduced area rises with b/a from 0 to 1: bisection */
+  PetscReal lo = 1e-4, hi = 1;
+  Curve c = {0};
+  PetscFunctionBeginUser;
+  for (int it = 0; it < 60; it++) {
+    const PetscReal ratio = 0.5 * (lo + hi);
+    c.axes[0] = 1;
+    c.axes[1] = ratio;
+    const PetscReal length = CurveLength(&c);
+    if (4 * PETSC_PI * PETSC_PI * ratio / PetscSqr(length) < reduced_area)
+      lo = ratio;
+    else
+      hi = ratio;
+  }
+  axes[0] = PetscSqrtReal(area / (PETSC_PI * hi));
+  axes[1] = axes[0] * hi;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Second derivatives of the periodic cubic spline by two passes of the cyclic Thomas algorithm (Sherman-Morrison). */
+static PetscErrorCode SplineSetUp(Curve *c) {
+  const PetscInt n = c->n;
+  PetscReal *diag, *low, *up, *rhs, *z;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc5(n, &diag, n, &low, n, &up, n, &rhs, n, &z));
+  for (int k = 0; k < 2; k++) {
+    PetscReal corner_low, corner_up, gamma;
+    for (PetscInt i = 0; i < n; i++) {
+      const PetscInt p = (i + n - 1) % n;
+      const PetscReal dm = c->t[p + 1] - c->t[p], dp = c->t[i + 1] - c->t[i];
+      low[i] = dm / 6;
+      diag[i] = (dm + dp) / 3;
+      up[i] = dp / 6;
+      rhs[i] = (c->x[k][i + 1] - c->x[k][i]) / dp - (c->x[k][i] - c->x[k][p]) / dm;
+    }
+    corner_low = low[0];
+    corner_up = up[n - 1];
+    gamma = -diag[0];
+    diag[0] -= gamma;
+    diag[n - 1] -= corner_low * corner_up / gamma;
+    for (PetscInt i = 0; i < n; i++) z[i] = i == 0 ? gamma : (i == n - 1 ? corner_up : 0);
+    for (PetscInt i = 1; i < n; i++) {
+      const PetscReal f = low[i] / diag[i - 1];
+      diag[i] -= f * up[i - 1];
+      rhs[i] -= f * rhs[i - 1];
+      z[i] -= f * z[i - 1];
+    }
+    for (PetscInt i = n - 1; i >= 0; i--) {
+      rhs[i] = (rhs[i] - (i < n - 1 ? up[i] * rhs[i + 1] : 0)) / diag[i];
+      z[i] = (z[i] - (i < n - 1 ? up[i] * z[i + 1] : 0)) / diag[i];
+    }
+    const PetscReal f = (rhs[0] + corner_low * rhs[n - 1] / gamma) / (1 + z[0] + corner_low * z[n - 1] / gamma);
+    for (PetscInt i = 0; i < n; i++) c->m[k][i] = rhs[i] - f * z[i];
+    c->m[k][n] = c->m[k][0];
+  }
+  PetscCall(PetscFree5(diag, low, up, rhs, z));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CurveDestroy(Curve *c) {
+  PetscFunctionBeginUser;
+  if (c->n) PetscCall(PetscFree5(c->t, c->x[0], c->x[1], c->m[0], c->m[1]));
+  c->n = 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+typedef struct {
+  PetscInt n;
+  PetscReal *xy;
+  char error[PETVES_MAX_MESSAGE];
+} Points;
+
+/* Read "x y" lines on one rank; what is wrong goes into points->error. */
+static PetscErrorCode ReadPoints(const char file[], Points *points) {
+  FILE *f = fopen(file, "r");
+  char line[1024];
+  PetscInt number = 0, capacity = 0;
+  PetscFunctionBeginUser;
+  if (!f) {
+    PetscCall(PetscSNPrintf(points->error, sizeof(points->error),
+                            "-vesicle_file %s: cannot be opened (%s); allowed: a readable text file", file,
+                            strerror(errno)));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  while (fgets(line, sizeof(line), f) && !*points->error) {
+    double x, y;
+    char rest[8];
+    number++;
+    line[strcspn(line, "#\r\n")] = 0;
+    if (line[strspn(line, " \t,")] == 0) continue;
+    for (char *p = line; *p; p++)
+      if (*p == ',') *p = ' ';
+    if (sscanf(line, "%lf %lf %7s", &x, &y, rest) != 2 || PetscIsInfOrNanReal(x) || PetscIsInfOrNanReal(y)) {
+      PetscCall(PetscSNPrintf(points->error, sizeof(points->error),
+                              "-vesicle_file %s: line %" PetscInt_FMT " is \"%.60s\"; allowed: two finite numbers, x y",
+                              file, number, line));
+      break;
+    }
+    if (points->n == capacity) {
+      capacity = capacity ? 2 * capacity : 256;
+      PetscCall(PetscRealloc(2 * capacity * sizeof(PetscReal), &points->xy));
+    }
+    points->xy[2 * points->n] = x;
+    points->xy[2 * points->n++ + 1] = y;
+  }
+  fclose(f);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Drop a repeated last point, turn counter-clockwise, and look for what makes a curve unusable. */
+static PetscErrorCode CleanPoints(const char file[], Points *p) {
+  PetscReal area = 0, length = 0;
+  PetscFunctionBeginUser;
+  if (*p->error) PetscFunctionReturn(PETSC_SUCCESS);
+  if (p->n > 1 && p->xy[0] == p->xy[2 * p->n - 2] && p->xy[1] == p->xy[2 * p->n - 1]) p->n--;
+  if (p->n < 8) {
+    PetscCall(PetscSNPrintf(p->error, sizeof(p->error),
+                            "-vesicle_file %s: %" PetscInt_FMT " points; allowed: at least 8", file, p->n));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  for (PetscInt i = 0; i < p->n; i++) {
+    const PetscReal *a = &p->xy[2 * i], *b = &p->xy[2 * ((i + 1) % p->n)];
+    const PetscReal d = PetscSqrtReal(PetscSqr(b[0] - a[0]) + PetscSqr(b[1] - a[1]));
+    if (d == 0) {
+      PetscCall(PetscSNPrintf(p->error, sizeof(p->error),
+                              "-vesicle_file %s: point %" PetscInt_FMT
+                              " (%g %g) is given twice; allowed: distinct points",
+                              file, i + 1, (double)a[0], (double)a[1]));
+      PetscFunctionReturn(PETSC_SUCCESS);
+    }
+    area += 0.5 * (a[0] * b[1] - b[0] * a[1]);
+    length += d;
+  }
+  if (PetscAbsReal(area) < 1e-6 * length * length)
+    PetscCall(PetscSNPrintf(p->error, sizeof(p->error),
+                            "-vesicle_file %s: the curve encloses an area of %g; allowed: a closed simple curve", file,
+                            (double)area));
+  for (PetscInt i = 1, k = p->n - 1; area < 0 && i < k; i++, k--)
+    for (int c = 0; c < 2; c++) {
+      const PetscReal swap = p->xy[2 * i + c];
+      p->xy[2 * i + c] = p->xy[2 * k + c];
+      p->xy[2 * k + c] = swap;
+    }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CurveFromFile(MPI_Comm comm, const char file[], Curve *c) {
+  Points p = {0};
+  PetscMPIInt rank;
+  PetscReal length = 0;
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  if (!rank) {
+    PetscCall(ReadPoints(file, &p));
+    PetscCall(CleanPoints(file, &p));
+  }
+  PetscCallMPI(MPI_Bcast(p.error, sizeof(p.error), MPI_CHAR, 0, comm));
+  PetscCallMPI(MPI_Bcast(&p.n, 1, MPIU_INT, 0, comm));
+  PetscCheck(!*p.error, comm, PETSC_ERR_USER_INPUT, "%s", p.error);
+  if (rank) PetscCall(PetscMalloc1(2 * p.n, &p.xy));
+  PetscCallMPI(MPI_Bcast(p.xy, (PetscMPIInt)(2 * p.n), MPIU_REAL, 0, comm));
+  c->n = p.n;
+  PetscCall(PetscMalloc5(p.n + 1, &c->t, p.n + 1, &c->x[0], p.n + 1, &c->x[1], p.n + 1, &c->m[0], p.n + 1, &c->m[1]));
+  for (PetscInt i = 0; i <= p.n; i++) {
+    const PetscInt k = i % p.n;
+    c->x[0][i] = p.xy[2 * k];
+    c->x[1][i] = p.xy[2 * k + 1];
+    if (i) length += PetscSqrtReal(PetscSqr(c->x[0][i] - c->x[0][i - 1]) + PetscSqr(c->x[1][i] - c->x[1][i - 1]));
+    c->t[i] = length;
+  }
+  for (PetscInt i = 0; i <= p.n; i++) c->t[i] /= length;
+  PetscCall(PetscFree(p.xy));
+  PetscCall(SplineSetUp(c));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,130 @@
+/* A scene: what is simulated, as the user's options say it. Nothing in here knows how it is computed. */
+#pragma once
+#include "base/base.h"
+
+#define SCENE_MAX_LIST 32
+#define SCENE_MAX_NAME 32
+
+typedef struct {
+  PetscInt n;
+  PetscReal v[SCENE_MAX_LIST];
+} RealList;
+
+typedef struct {
+  PetscInt n;
+  PetscInt v[SCENE_MAX_LIST];
+} IntList;
+
+typedef enum { BC_WALL, BC_PERIODIC } BoundaryType;
+typedef enum { FLOW_QUIESCENT, FLOW_SHEAR, FLOW_POISEUILLE, FLOW_EXTENSION } FlowType;
+typedef enum { FORM_DISTURBANCE, FORM_TOTAL } FlowForm;
+typedef enum { SHAPE_ELLIPSE, SHAPE_FILE, SHAPE_NONE } ShapeType;
+
+/* Background flow u_inf, an exact steady solution of the Stokes equations (DESIGN section 2). Lengths and times are in
+   the user's units. */
+typedef struct {
+  PetscInt type; /* FlowType */
+  PetscInt form; /* FlowForm */
+  PetscReal rate, peak, half_width, center[2];
+} Flow;
+
+/* Closed curves as equal-edge markers, counter-clockwise. X holds x0,y0,x1,y1,... of all vesicles one after another;
+   vesicle v owns markers start[v] .. start[v+1]-1. */
+typedef struct {
+  PetscInt vesicles;
+  PetscInt *start; /* [vesicles+1] */
+  PetscReal *X;    /* [2*start[vesicles]] */
+} Shape;
+
+typedef struct _p_Scene *Scene;
+struct _p_Scene {
+  MPI_Comm comm;
+  PetscBool *given;                    /* one flag per row of the option table */
+  RealList box;                        /* x_min, x_max, y_min, y_max */
+  IntList cells;                       /* cells in x and y */
+  PetscInt bc[2];                      /* BoundaryType in x and y */
+  Flow flow;                           /* background flow */
+  PetscReal viscosity;                 /* nu (density is 1) */
+  PetscInt inertia;                    /* index in -fluid_inertia's list */
+  PetscInt shape;                      /* ShapeType */
+  RealList axes, center, angle;        /* semi-axes, centre, angle in degrees */
+  PetscReal area, reduced_area;        /* of the ellipse, instead of semi-axes */
+  char file[PETSC_MAX_PATH_LEN];       /* curve file */
+  PetscReal bending;                   /* c_b */
+  PetscReal spacing;                   /* ds/h; 0: by kernel */
+  PetscInt markers;                    /* 0: from spacing */
+  PetscBool allow_close_markers;       /* accept spacings where the tension problem is near singular */
+  char delta[SCENE_MAX_NAME];          /* kernel */
+  char scheme[SCENE_MAX_NAME];         /* time-stepping scheme */
+  PetscInt order;                      /* order in time */
+  PetscReal dt, t_end, steady_tol;     /* time step, end time, stop when max |u.n| falls below steady_tol */
+  char helmholtz[SCENE_MAX_NAME];      /* back end of the Helmholtz solves */
+  char poisson[SCENE_MAX_NAME];        /* back end of the Poisson solves */
+  PetscInt fftw_plan;                  /* 0 estimate, 1 measure, 2 patient */
+  char output_dir[PETSC_MAX_PATH_LEN]; /* every output file goes here */
+  PetscReal output_every;              /* time between saved fields */
+  PetscInt checkpoint_every;           /* steps between checkpoints; 0: only at the end */
+  PetscBool view, allow_unused;
+};
+
+/* SceneCreate - read and check every option of the options database. Collective. An option with a bad value ends with
+   PETSC_ERR_USER_INPUT after one line that names it. Also fills in -help. */
+PETSC_EXTERN PetscErrorCode SceneCreate(MPI_Comm comm, Scene *scene);
+PETSC_EXTERN PetscErrorCode SceneDestroy(Scene *scene);
+
+/* SceneGiven - whether the user gave this option ("-name"). */
+PETSC_EXTERN PetscBool SceneGiven(Scene scene, const char name[]);
+
+/* SceneCheckUnused - stop when the options database holds an option that nothing has read, naming it and the nearest
+   known option. Call when all solvers are set up. Collective. */
+PETSC_EXTERN PetscErrorCode SceneCheckUnused(Scene scene);
+
+/* SceneWriteOptions - write every option of the table in force, defaults included, one "-name value" a line. */
+PETSC_EXTERN PetscErrorCode SceneWriteOptions(Scene scene, FILE *file);
+
+/* SceneOptionName, SceneOptionValue - name and value in force (as text) of the i-th option of the table; name is NULL
+   past the last one. */
+PETSC_EXTERN const char *SceneOptionName(PetscInt i);
+PETSC_EXTERN PetscErrorCode SceneOptionValue(Scene scene, PetscInt i, char value[], size_t length);
+
+/* SceneValidate - checks that involve more than one option. Called by SceneCreate. */
+PETSC_EXTERN PetscErrorCode SceneValidate(Scene scene);
+
+/* SceneView - print the model in force: which parts are on, and their numbers. Collective. */
+PETSC_EXTERN PetscErrorCode SceneView(Scene scene, const Shape *shape, PetscViewer viewer);
+
+/* SceneCellSize - h, the edge of the square cells. */
+PETSC_EXTERN PetscReal SceneCellSize(Scene scene);
+
+/* FlowVelocity - u_inf[2] at (x, y). */
+PETSC_EXTERN void FlowVelocity(const Flow *flow, PetscReal x, PetscReal y, PetscReal u[2]);
+
+/* FlowPressureGradient - grad p_inf[2] at any point (uniform for the flows offered) for viscosity nu. */
+PETSC_EXTERN void FlowPressureGradient(const Flow *flow, PetscReal nu, PetscReal g[2]);
+
+/* ShapeCreate - the initial markers of the scene's vesicles, all edges of a vesicle equal to 1e-12. Every rank gets
+   all markers. Collective; stops with the user's message on a bad file, spacing or position.
+   default_spacing and least_spacing: ds/h that the kernel wants, and below which it is refused. */
+PETSC_EXTERN PetscErrorCode ShapeCreate(Scene scene, PetscReal default_spacing, PetscReal least_spacing, Shape *shape);
+PETSC_EXTERN PetscErrorCode ShapeDestroy(Shape *shape);
+
+/* Closed curves (curve.c): X(t), t in [0,1), with X(t+1) = X(t). */
+typedef struct {
+  PetscInt n;          /* 0: ellipse; else number of spline knots */
+  PetscReal axes[2];   /* ellipse */
+  PetscReal *t, *x[2]; /* knots [n+1], values [n+1] */
+  PetscReal *m[2];     /* second derivatives [n+1] */
+} Curve;
+PETSC_EXTERN void CurveEvaluate(const Curve *curve, PetscReal t, PetscReal X[2]);
+PETSC_EXTERN PetscReal CurveLength(const Curve *curve);
+
+/* CurveEqualChords - place M points on the curve so that all M chords are equal; X[2M], first point at t = 0. */
+PETSC_EXTERN PetscErrorCode CurveEqualChords(const Curve *curve, PetscInt M, PetscReal X[]);
+
+/* CurveFromFile - closed periodic cubic spline through the points of a text file ("x y" a line, # starts a comment),
+   turned counter-clockwise. Collective: rank 0 reads. */
+PETSC_EXTERN PetscErrorCode CurveFromFile(MPI_Comm comm, const char file[], Curve *curve);
+PETSC_EXTERN PetscErrorCode CurveDestroy(Curve *curve);
+
+/* EllipseAxes - semi-axes a >= b of the ellipse with the given area and reduced area V = 4 pi area / perimeter^2. */
+PETSC_EXTERN PetscErrorCode EllipseAxes(PetscReal area, PetscReal reduced_area, PetscReal axes[2]);

@@ -1,0 +1,66 @@
+/* Misspelt and unused options: found, named, and the nearest known option suggested. */
+#include "scene/scene.h"
+
+/* Options that PETSc itself reads only while it finalises. */
+static const char *const late[] = {"options_left",    "objects_dump", "malloc_dump",    "malloc_view",
+                                   "memory_view",     "log_view",     "log_trace",      "log_summary",
+                                   "log_view_memory", "mpi_finalize", "on_error_abort", "options_view"};
+
+/* Solver options that users write most, as candidates for a suggestion. */
+static const char *const solvers[] = {
+    "-tension_ksp_type", "-tension_ksp_rtol", "-tension_ksp_atol", "-tension_ksp_max_it",       "-tension_ksp_monitor",
+    "-tension_pc_type",  "-bending_ksp_type", "-bending_ksp_rtol", "-bending_ksp_atol",         "-bending_ksp_max_it",
+    "-bending_pc_type",  "-options_file",     "-log_view",         "-tension_pc_factor_levels", "-bending_ksp_monitor"};
+
+/* Edit distance of two short words (Levenshtein). */
+static PetscInt Distance(const char *a, const char *b) {
+  PetscInt row[128];
+  const PetscInt n = (PetscInt)PetscMin(strlen(b), (size_t)127);
+  for (PetscInt j = 0; j <= n; j++) row[j] = j;
+  for (PetscInt i = 1; a[i - 1]; i++) {
+    PetscInt corner = row[0];
+    row[0] = i;
+    for (PetscInt j = 1; j <= n; j++) {
+      const PetscInt change = corner + (a[i - 1] != b[j - 1]);
+      corner = row[j];
+      row[j] = PetscMin(change, 1 + PetscMin(row[j], row[j - 1]));
+    }
+  }
+  return row[n];
+}
+
+static const char *Nearest(const char *name) {
+  const char *best = "", *candidate;
+  PetscInt least = PETSC_MAX_INT;
+  const PetscInt extra = (PetscInt)(sizeof(solvers) / sizeof(solvers[0]));
+  for (PetscInt i = 0;; i++) {
+    candidate = SceneOptionName(i);
+    if (!candidate) break;
+    if (Distance(name, candidate) < least) least = Distance(name, candidate), best = candidate;
+  }
+  for (PetscInt i = 0; i < extra; i++)
+    if (Distance(name, solvers[i]) < least) least = Distance(name, solvers[i]), best = solvers[i];
+  return best;
+}
+
+PetscErrorCode SceneCheckUnused(Scene scene) {
+  PetscInt n = 0;
+  char **names, **values, unused[PETSC_MAX_PATH_LEN] = "", value[PETSC_MAX_PATH_LEN] = "";
+  const PetscInt late_count = (PetscInt)(sizeof(late) / sizeof(late[0]));
+  PetscFunctionBeginUser;
+  if (scene->allow_unused) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscOptionsLeftGet(NULL, &n, &names, &values));
+  for (PetscInt i = 0; i < n && !*unused; i++) {
+    PetscBool known = PETSC_FALSE;
+    for (PetscInt k = 0; k < late_count && !known; k++) PetscCall(PetscStrcmp(names[i], late[k], &known));
+    if (known) continue;
+    PetscCall(PetscSNPrintf(unused, sizeof(unused), "-%s", names[i]));
+    if (values[i]) PetscCall(PetscStrncpy(value, values[i], sizeof(value)));
+  }
+  PetscCall(PetscOptionsLeftRestore(NULL, &n, &names, &values));
+  PetscCheck(!*unused, scene->comm, PETSC_ERR_USER_INPUT,
+             "%s %s: misspelt, or not used by this scene's solvers; nearest known option: %s "
+             "(-allow_unused_options goes on)",
+             unused, value, Nearest(unused));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

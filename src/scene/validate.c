@@ -1,0 +1,106 @@
+/* Checks that involve more than one option, and -view. */
+#include "scene/scene.h"
+
+PetscReal SceneCellSize(Scene scene) {
+  return (scene->box.v[1] - scene->box.v[0]) / scene->cells.v[0];
+}
+
+static PetscErrorCode CheckDomain(Scene scene) {
+  const PetscReal *b = scene->box.v;
+  const PetscInt *n = scene->cells.v;
+  PetscReal hx, hy;
+  PetscFunctionBeginUser;
+  PetscCheck(scene->box.n == 4, scene->comm, PETSC_ERR_USER_INPUT,
+             "-domain_box: %" PetscInt_FMT " numbers given; allowed: x_min,x_max,y_min,y_max", scene->box.n);
+  PetscCheck(scene->cells.n == 2, scene->comm, PETSC_ERR_USER_INPUT,
+             "-domain_cells: %" PetscInt_FMT " numbers given; allowed: two, cells in x and in y", scene->cells.n);
+  PetscCheck(b[0] < b[1] && b[2] < b[3], scene->comm, PETSC_ERR_USER_INPUT,
+             "-domain_box %g,%g,%g,%g: empty; allowed: x_min < x_max and y_min < y_max", (double)b[0], (double)b[1],
+             (double)b[2], (double)b[3]);
+  hx = (b[1] - b[0]) / n[0];
+  hy = (b[3] - b[2]) / n[1];
+  PetscCheck(PetscAbsReal(hx - hy) <= 1e-10 * hx, scene->comm, PETSC_ERR_USER_INPUT,
+             "-domain_cells %" PetscInt_FMT ",%" PetscInt_FMT
+             ": cells of %g x %g; allowed: square cells, for this -domain_box %g cells in y",
+             n[0], n[1], (double)hx, (double)hy, (double)((b[3] - b[2]) / hx));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CheckFlow(Scene scene) {
+  const PetscBool x_periodic = scene->bc[0] == BC_PERIODIC, y_periodic = scene->bc[1] == BC_PERIODIC;
+  const PetscInt type = scene->flow.type;
+  PetscFunctionBeginUser;
+  if (scene->flow.form != FORM_TOTAL || type == FLOW_QUIESCENT) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCheck(!y_periodic, scene->comm, PETSC_ERR_USER_INPUT,
+             "-flow_form total: the background flow is not periodic in y; allowed: -domain_bc_y wall or -flow_form "
+             "disturbance");
+  PetscCheck(type != FLOW_EXTENSION || !x_periodic, scene->comm, PETSC_ERR_USER_INPUT,
+             "-flow_form total: extension is not periodic in x; allowed: -domain_bc_x wall or -flow_form disturbance");
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CheckVesicle(Scene scene) {
+  const PetscBool by_area = SceneGiven(scene, "-vesicle_area") || SceneGiven(scene, "-vesicle_reduced_area");
+  PetscFunctionBeginUser;
+  PetscCheck(!(by_area && SceneGiven(scene, "-vesicle_semi_axes")), scene->comm, PETSC_ERR_USER_INPUT,
+             "-vesicle_semi_axes: given together with -vesicle_area or -vesicle_reduced_area; allowed: one description "
+             "of the ellipse");
+  PetscCheck(scene->axes.n == 2, scene->comm, PETSC_ERR_USER_INPUT,
+             "-vesicle_semi_axes: %" PetscInt_FMT " numbers given; allowed: two", scene->axes.n);
+  PetscCheck(scene->center.n == 2, scene->comm, PETSC_ERR_USER_INPUT,
+             "-vesicle_center: %" PetscInt_FMT " numbers given; allowed: two, x and y", scene->center.n);
+  PetscCheck(scene->angle.n == 1, scene->comm, PETSC_ERR_USER_INPUT,
+             "-vesicle_angle: %" PetscInt_FMT " numbers given; allowed: one", scene->angle.n);
+  PetscCheck(scene->shape != SHAPE_FILE || *scene->file, scene->comm, PETSC_ERR_USER_INPUT,
+             "-vesicle_shape file: no -vesicle_file given; allowed: a text file with x y a line");
+  PetscCheck(!*scene->file || scene->shape == SHAPE_FILE, scene->comm, PETSC_ERR_USER_INPUT,
+             "-vesicle_file %s: not read; allowed: with -vesicle_shape file only", scene->file);
+  PetscCheck(scene->shape == SHAPE_NONE || !scene->markers || scene->markers >= 8, scene->comm, PETSC_ERR_USER_INPUT,
+             "-vesicle_markers %" PetscInt_FMT ": too few; allowed: at least 8", scene->markers);
+  PetscCheck(!(scene->markers && scene->spacing > 0), scene->comm, PETSC_ERR_USER_INPUT,
+             "-vesicle_markers %" PetscInt_FMT ": given together with -vesicle_spacing; allowed: one of them",
+             scene->markers);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SceneValidate(Scene scene) {
+  PetscFunctionBeginUser;
+  PetscCall(CheckDomain(scene));
+  PetscCall(CheckFlow(scene));
+  PetscCall(CheckVesicle(scene));
+  PetscCheck(scene->t_end / scene->dt < 1e9, scene->comm, PETSC_ERR_USER_INPUT,
+             "-time_step %g: more than 1e9 steps to -time_end %g; allowed: a larger step", (double)scene->dt,
+             (double)scene->t_end);
+  PetscCheck(*scene->output_dir, scene->comm, PETSC_ERR_USER_INPUT, "-output_dir: empty; allowed: a folder's name");
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SceneView(Scene scene, const Shape *shape, PetscViewer v) {
+  static const char *const bc[] = {"wall", "periodic"};
+  static const char *const flows[] = {"quiescent", "shear", "poiseuille", "extension"};
+  static const char *const forms[] = {"disturbance of the background flow", "total velocity with moving walls"};
+  const PetscReal *b = scene->box.v, h = SceneCellSize(scene);
+  PetscFunctionBeginUser;
+  PetscCall(PetscViewerASCIIPrintf(v, "Model in force\n"));
+  PetscCall(PetscViewerASCIIPushTab(v));
+  PetscCall(PetscViewerASCIIPrintf(
+      v, "domain: [%g,%g] x [%g,%g], %" PetscInt_FMT " x %" PetscInt_FMT " cells, h = %g, %s in x, %s in y\n",
+      (double)b[0], (double)b[1], (double)b[2], (double)b[3], scene->cells.v[0], scene->cells.v[1], (double)h,
+      bc[scene->bc[0]], bc[scene->bc[1]]));
+  PetscCall(PetscViewerASCIIPrintf(v, "fluid: unsteady Stokes, nu = %g, solved for the %s\n", (double)scene->viscosity,
+                                   forms[scene->flow.form]));
+  PetscCall(PetscViewerASCIIPrintf(v, "background flow: %s\n", flows[scene->flow.type]));
+  if (!shape->vesicles) PetscCall(PetscViewerASCIIPrintf(v, "vesicle: none (no tension solve, no bending solve)\n"));
+  for (PetscInt k = 0; k < shape->vesicles; k++)
+    PetscCall(PetscViewerASCIIPrintf(v, "vesicle %" PetscInt_FMT ": %" PetscInt_FMT " markers, tension on, bending %s",
+                                     k + 1, shape->start[k + 1] - shape->start[k],
+                                     scene->bending > 0 ? "on" : "off (no bending solve)\n"));
+  if (shape->vesicles && scene->bending > 0)
+    PetscCall(PetscViewerASCIIPrintf(v, ", c_b = %g\n", (double)scene->bending));
+  PetscCall(PetscViewerASCIIPrintf(v, "kernel: %s\n", shape->vesicles ? scene->delta : "not used"));
+  PetscCall(PetscViewerASCIIPrintf(v, "scheme: %s, order %" PetscInt_FMT ", dt = %g to t = %g\n", scene->scheme,
+                                   scene->order, (double)scene->dt, (double)scene->t_end));
+  PetscCall(PetscViewerASCIIPrintf(v, "fast solves: helmholtz %s, poisson %s\n", scene->helmholtz, scene->poisson));
+  PetscCall(PetscViewerASCIIPopTab(v));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,184 @@
+#include "scheme/scheme.h"
+
+static PetscFunctionList schemes;
+
+PetscErrorCode SchemeRegister(const char type[], PetscErrorCode (*create)(Scheme)) {
+  PetscFunctionBeginUser;
+  PetscCall(PetscFunctionListAdd(&schemes, type, create));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ForgetSchemes(void) {
+  PetscFunctionBeginUser;
+  PetscCall(PetscFunctionListDestroy(&schemes));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CreateState(Scheme s, const PetscReal X[]) {
+  State *q = &s->state;
+  const PetscBool any = s->membrane->vesicles > 0 ? PETSC_TRUE : PETSC_FALSE;
+  PetscBool placed;
+  PetscScalar *x;
+  PetscFunctionBeginUser;
+  q->dt = s->scene->dt;
+  PetscCall(DMCreateGlobalVector(s->fluid->grid->velocity, &q->w));
+  PetscCall(DMCreateGlobalVector(s->fluid->grid->da[FIELD_P], &q->p));
+  PetscCall(VecDuplicate(q->p, &s->work_pressure));
+  if (s->fluid->total) PetscCall(VecCopy(s->fluid->background, q->w));
+  PetscCall(MembraneCreateMarkerVec(s->membrane, &q->X));
+  PetscCall(VecDuplicate(q->X, &q->U));
+  PetscCall(VecDuplicate(q->X, &s->background));
+  PetscCall(MembraneCreateTensionVec(s->membrane, &q->sigma));
+  PetscCall(VecDuplicate(q->sigma, &s->g));
+  PetscCall(VecDuplicate(q->sigma, &s->work_tension));
+  if (!any) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecGetArray(q->X, &x));
+  PetscCall(PetscArraycpy(x, X, 2 * s->membrane->M));
+  PetscCall(VecRestoreArray(q->X, &x));
+  PetscCall(SchemePlaceMarkers(s, q->X, &placed));
+  PetscCheck(placed, s->scene->comm, PETSC_ERR_USER_INPUT,
+             "-vesicle_center %g,%g: %s; allowed: a vesicle inside -domain_box, 3 cells from its walls",
+             (double)s->scene->center.v[0], (double)s->scene->center.v[1], s->report.failure);
+  PetscCall(SchemeMarkerVelocity(s, q->w, q->U));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SchemeCreate(Scene scene, Fluid fluid, Membrane membrane, Coupling coupling, const PetscReal X[],
+                            Scheme *out) {
+  Scheme s;
+  PetscErrorCode (*create)(Scheme);
+  PetscFunctionBeginUser;
+  if (!schemes) {
+    PetscCall(SchemeRegister("split", SchemeCreate_Split));
+    PetscCall(PetscRegisterFinalize(ForgetSchemes));
+  }
+  PetscCall(PetscFunctionListFind(schemes, scene->scheme, &create));
+  PetscCheck(create, scene->comm, PETSC_ERR_USER_INPUT, "-scheme_type %s: not registered", scene->scheme);
+  PetscCall(PetscNew(&s));
+  *out = s;
+  PetscCall(PetscStrncpy(s->type, scene->scheme, sizeof(s->type)));
+  s->scene = scene;
+  s->fluid = fluid;
+  s->membrane = membrane;
+  s->coupling = coupling;
+  PetscCall(CreateState(s, X));
+  PetscCall(create(s));
+  PetscCall(s->setup(s));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SchemeDestroy(Scheme *scheme) {
+  Scheme s = *scheme;
+  PetscFunctionBeginUser;
+  if (!s) PetscFunctionReturn(PETSC_SUCCESS);
+  if (s->destroy) PetscCall(s->destroy(s));
+  PetscCall(VecDestroy(&s->state.w));
+  PetscCall(VecDestroy(&s->state.p));
+  PetscCall(VecDestroy(&s->state.sigma));
+  PetscCall(VecDestroy(&s->state.X));
+  PetscCall(VecDestroy(&s->state.U));
+  PetscCall(VecDestroy(&s->background));
+  PetscCall(VecDestroy(&s->g));
+  PetscCall(VecDestroy(&s->work_tension));
+  PetscCall(VecDestroy(&s->work_pressure));
+  PetscCall(PetscFree(*scheme));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SchemeStep(Scheme s, PetscReal dt) {
+  const PetscInt solves = FluidCountSolves(s->fluid);
+  PetscLogDouble start, end;
+  PetscFunctionBeginUser;
+  PetscCall(PetscTime(&start));
+  PetscCall(PhaseBegin(PHASE_STEP));
+  PetscCall(PetscMemzero(&s->report, sizeof(s->report)));
+  s->state.dt = dt;
+  PetscCall(s->step(s));
+  s->report.solves = FluidCountSolves(s->fluid) - solves;
+  if (!*s->report.failure) {
+    s->state.t += dt;
+    s->state.step++;
+  }
+  PetscCall(PhaseEnd());
+  PetscCall(PetscTime(&end));
+  s->report.seconds = end - start;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SchemeView(Scheme s, PetscViewer viewer) {
+  PetscFunctionBeginUser;
+  if (s->view) PetscCall(s->view(s, viewer));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SchemePlaceMarkers(Scheme s, Vec X, PetscBool *placed) {
+  const PetscScalar *x;
+  PetscScalar *u, *g;
+  PetscFunctionBeginUser;
+  PetscCall(VecGetArrayRead(X, &x));
+  PetscCall(CouplingCheckMarkers(s->coupling, x, s->report.failure, sizeof(s->report.failure)));
+  *placed = *s->report.failure ? PETSC_FALSE : PETSC_TRUE;
+  PetscCall(VecRestoreArrayRead(X, &x));
+  if (!*placed) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(CouplingSetMarkers(s->coupling, X));
+  if (s->fluid->total) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecGetArrayRead(X, &x));
+  PetscCall(VecGetArray(s->background, &u));
+  PetscCall(VecGetArray(s->g, &g));
+  for (PetscInt k = 0; k < s->membrane->M; k++) FlowVelocity(&s->scene->flow, x[2 * k], x[2 * k + 1], &u[2 * k]);
+  MembraneStretching(s->membrane, s->coupling->tau, u, g);
+  PetscCall(VecRestoreArray(s->g, &g));
+  PetscCall(VecRestoreArray(s->background, &u));
+  PetscCall(VecRestoreArrayRead(X, &x));
+  PetscCall(VecScale(s->g, -1 / PetscSqr(s->fluid->grid->h)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SchemeMarkerVelocity(Scheme s, Vec w, Vec U) {
+  PetscFunctionBeginUser;
+  PetscCall(CouplingInterpolate(s->coupling, s->coupling->E, w, U));
+  PetscCall(VecAXPY(U, 1, s->background));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SchemeMeasureConstraints(Scheme s, Vec w) {
+  const PetscReal h2 = PetscSqr(s->fluid->grid->h);
+  const PetscScalar *d;
+  PetscFunctionBeginUser;
+  PetscCall(MatMultTranspose(s->fluid->G, w, s->work_pressure));
+  if (s->fluid->bc2) PetscCall(VecAXPY(s->work_pressure, 1, s->fluid->bc2));
+  PetscCall(VecNorm(s->work_pressure, NORM_INFINITY, &s->report.div_max));
+  if (!s->coupling) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(CouplingInterpolate(s->coupling, s->coupling->S, w, s->work_tension));
+  PetscCall(VecAXPY(s->work_tension, -1, s->g));
+  PetscCall(VecGetArrayRead(s->work_tension, &d));
+  for (PetscInt k = 0; k < s->membrane->M; k++)
+    s->report.surface_div_max = PetscMax(s->report.surface_div_max, h2 * PetscAbsReal(d[k]) / s->membrane->spacing[k]);
+  PetscCall(VecRestoreArrayRead(s->work_tension, &d));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SchemeSolverFailed(Scheme s, LagrangianSolver solver) {
+  PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(s->report.failure, sizeof(s->report.failure),
+                          "the solve with prefix %s failed in step %" PetscInt_FMT
+                          " at time %g: %s after %" PetscInt_FMT " iterations, residual %g",
+                          solver->prefix, s->state.step + 1, (double)(s->state.t + s->state.dt),
+                          KSPConvergedReasons[solver->why], solver->its, (double)solver->residual));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SchemeKineticEnergy(Scheme s, PetscReal *energy) {
+  PetscReal norm;
+  PetscFunctionBeginUser;
+  if (s->fluid->total) {
+    Vec difference;
+    PetscCall(DMGetGlobalVector(s->fluid->grid->velocity, &difference));
+    PetscCall(VecWAXPY(difference, -1, s->fluid->background, s->state.w));
+    PetscCall(VecNorm(difference, NORM_2, &norm));
+    PetscCall(DMRestoreGlobalVector(s->fluid->grid->velocity, &difference));
+  } else
+    PetscCall(VecNorm(s->state.w, NORM_2, &norm));
+  *energy = 0.5 * PetscSqr(norm * s->fluid->grid->h);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

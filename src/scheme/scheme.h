@@ -1,0 +1,76 @@
+/* Time-stepping schemes: the state that they advance, and the interface behind which they stand. */
+#pragma once
+#include "coupling/lagrangian.h"
+
+/* Everything that moves in time. Marker vectors are sequential and the same on every rank. */
+typedef struct {
+  PetscInt step;
+  PetscReal t, dt;
+  Vec w;     /* velocity on the faces: the disturbance, or the whole in the total form */
+  Vec p;     /* pressure, zero mean */
+  Vec sigma; /* tension, one an edge */
+  Vec X;     /* markers */
+  Vec U;     /* markers' velocity, background included */
+} State;
+
+/* What the last step did. */
+typedef struct {
+  PetscInt tension_its, bending_its, coupled_its;
+  PetscInt solves;                  /* scalar fast solves */
+  PetscReal div_max;                /* max |G^T u + bc2|, what the solver left of the divergence */
+  PetscReal surface_div_max;        /* max |h^2 (S^T u - g)/ds| */
+  PetscReal seconds;                /* wall, output excluded */
+  char failure[PETVES_MAX_MESSAGE]; /* why the step could not be taken; empty when it was */
+} StepReport;
+
+typedef struct _p_Scheme *Scheme;
+struct _p_Scheme {
+  char type[SCENE_MAX_NAME];
+  Scene scene;       /* borrowed */
+  Fluid fluid;       /* borrowed */
+  Membrane membrane; /* borrowed; no vesicles when the scene has none */
+  Coupling coupling; /* borrowed; NULL when the scene has no vesicle */
+  State state;
+  StepReport report;
+  Vec background; /* [2M] u_inf at the markers; zero in the total form */
+  Vec g;          /* [M] S^T u = g: minus the background's stretching, Dm u_inf/h^2 */
+  Vec work_tension, work_pressure;
+  void *data; /* the scheme's own */
+  PetscErrorCode (*setup)(Scheme);
+  PetscErrorCode (*step)(Scheme); /* advance the state, or fill in report.failure and leave it */
+  PetscErrorCode (*view)(Scheme, PetscViewer);
+  PetscErrorCode (*options)(Scheme, FILE *); /* write the solvers' settings in force as options */
+  PetscErrorCode (*destroy)(Scheme);
+};
+
+/* SchemeRegister - add a scheme under a name of -scheme_type. */
+PETSC_EXTERN PetscErrorCode SchemeRegister(const char type[], PetscErrorCode (*create)(Scheme));
+
+/* SchemeCreate - the scene's scheme with the initial state: sigma = 0, p = 0, no disturbance (u_inf in the total form),
+   markers X[2M]. Collective. */
+PETSC_EXTERN PetscErrorCode SchemeCreate(Scene scene, Fluid fluid, Membrane membrane, Coupling coupling,
+                                         const PetscReal X[], Scheme *scheme);
+PETSC_EXTERN PetscErrorCode SchemeDestroy(Scheme *scheme);
+
+/* SchemeStep - one time step of size dt. Afterwards scheme->report says what was done; when report.failure is not empty
+   the step could not be taken and the state is the last good one. Collective. */
+PETSC_EXTERN PetscErrorCode SchemeStep(Scheme scheme, PetscReal dt);
+PETSC_EXTERN PetscErrorCode SchemeView(Scheme scheme, PetscViewer viewer);
+
+/* SchemePlaceMarkers - put the coupling and the background data (background, g) at the markers X; false with
+   report.failure when a marker is too close to a wall. For use inside schemes. */
+PETSC_EXTERN PetscErrorCode SchemePlaceMarkers(Scheme scheme, Vec X, PetscBool *placed);
+
+/* SchemeMarkerVelocity - U = u_inf + E w at the coupling's markers. */
+PETSC_EXTERN PetscErrorCode SchemeMarkerVelocity(Scheme scheme, Vec w, Vec U);
+
+/* SchemeMeasureConstraints - fill in report.div_max and surface_div_max of a solved velocity. */
+PETSC_EXTERN PetscErrorCode SchemeMeasureConstraints(Scheme scheme, Vec w);
+
+/* SchemeSolverFailed - record a failed Lagrangian solve: prefix, step, time, residual. */
+PETSC_EXTERN PetscErrorCode SchemeSolverFailed(Scheme scheme, LagrangianSolver solver);
+
+/* SchemeKineticEnergy - E_K = 1/2 SUM u^2 h^2 of the total velocity minus the background. Collective. */
+PETSC_EXTERN PetscErrorCode SchemeKineticEnergy(Scheme scheme, PetscReal *energy);
+
+PETSC_EXTERN PetscErrorCode SchemeCreate_Split(Scheme);

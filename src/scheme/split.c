@@ -1,0 +1,172 @@
+/* Scheme "split": the immersed boundary projection method of Ong and Lai, J. Comput. Phys. 408 (2020) 109277,
+   sections 4.1 (no bending) and 4.2. First order in time. */
+#include "scheme/scheme.h"
+
+typedef struct {
+  LagrangianSolver tension, bending; /* NULL where the scene has no such part */
+  Vec r, u2, dp, q;                  /* momentum's right-hand side, velocity, pressures */
+  Vec dsigma, rhs_sigma;             /* tension increment and right-hand side */
+  Vec z, rhs_z, Xhat;                /* bending unknown, its right-hand side, X + dt u_inf */
+} Split;
+
+/* 1  H u3 = r - G p - S sigma - B X + bc1, where r = u/dt and B acts on X + dt u_inf */
+static PetscErrorCode PredictVelocity(Scheme s, Split *d) {
+  const State *q = &s->state;
+  Fluid f = s->fluid;
+  Coupling c = s->coupling;
+  PetscFunctionBeginUser;
+  PetscCall(VecCopy(q->w, d->r));
+  PetscCall(VecScale(d->r, 1 / q->dt));
+  PetscCall(GridGradient(f->grid, -1, q->p, PETSC_TRUE, d->r));
+  if (f->bc1) PetscCall(VecAXPY(d->r, 1, f->bc1));
+  if (c) PetscCall(CouplingSpreadAdd(c, -1, c->S, q->sigma, d->r));
+  if (d->bending) {
+    PetscCall(VecWAXPY(d->Xhat, q->dt, s->background, q->X));
+    PetscCall(CouplingSpreadAdd(c, -1, c->B, d->Xhat, d->r));
+  }
+  PetscCall(FluidSolveHelmholtz(f, d->r, d->u2));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* 2  u2 = u3 + H^-1 B z, (I + dt E H^-1 B) z = -dt E u3 */
+static PetscErrorCode ImplicitBending(Scheme s, Split *d) {
+  Coupling c = s->coupling;
+  PetscFunctionBeginUser;
+  PetscCall(CouplingInterpolate(c, c->E, d->u2, d->rhs_z));
+  PetscCall(VecScale(d->rhs_z, -s->state.dt));
+  PetscCall(LagrangianSolverSolve(d->bending, d->rhs_z, d->z));
+  s->report.bending_its = d->bending->its;
+  if (d->bending->why < 0) {
+    PetscCall(SchemeSolverFailed(s, d->bending));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(VecSet(d->r, 0));
+  PetscCall(CouplingSpreadAdd(c, 1, c->B, d->z, d->r));
+  PetscCall(FluidSolveHelmholtz(s->fluid, d->r, d->r));
+  PetscCall(VecAXPY(d->u2, 1, d->r));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* 4  (S^T S + S^T G L^-1 G^T S) dsigma = (1/dt)(S^T u2 - g) - S^T G dp*
+   5  dp = dp* + L^-1 G^T S dsigma */
+static PetscErrorCode SolveTension(Scheme s, Split *d) {
+  Fluid f = s->fluid;
+  Coupling c = s->coupling;
+  PetscFunctionBeginUser;
+  PetscCall(VecCopy(d->u2, d->r)); /* (1/dt) S^T u2 - S^T G dp* = (1/dt) S^T (u2 - dt G dp*) */
+  PetscCall(GridGradient(f->grid, -s->state.dt, d->dp, PETSC_TRUE, d->r));
+  PetscCall(CouplingInterpolate(c, c->S, d->r, d->rhs_sigma));
+  PetscCall(VecAXPY(d->rhs_sigma, -1, s->g));
+  PetscCall(VecScale(d->rhs_sigma, 1 / s->state.dt));
+  PetscCall(LagrangianSolverSolve(d->tension, d->rhs_sigma, d->dsigma));
+  s->report.tension_its = d->tension->its;
+  if (d->tension->why < 0) {
+    PetscCall(SchemeSolverFailed(s, d->tension));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(VecSet(d->r, 0));
+  PetscCall(CouplingSpreadAdd(c, 1, c->S, d->dsigma, d->r));
+  PetscCall(MatMultTranspose(f->G, d->r, d->q));
+  PetscCall(FluidSolvePoisson(f, d->q, d->q));
+  PetscCall(VecAXPY(d->dp, 1, d->q));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Step_Split(Scheme s) {
+  Split *d = (Split *)s->data;
+  State *q = &s->state;
+  Fluid f = s->fluid;
+  Coupling c = s->coupling;
+  PetscBool placed = PETSC_TRUE;
+  PetscFunctionBeginUser;
+  PetscCall(FluidSetTimeCoefficient(f, 1 / q->dt));
+  if (c) PetscCall(SchemePlaceMarkers(s, q->X, &placed));
+  if (!placed) PetscFunctionReturn(PETSC_SUCCESS);
+  if (c) PetscCall(LagrangianSolverSetUp(d->tension));
+  PetscCall(PredictVelocity(s, d));                 /* step 1 */
+  if (d->bending) PetscCall(ImplicitBending(s, d)); /* step 2 */
+  if (*s->report.failure) PetscFunctionReturn(PETSC_SUCCESS);
+  /* 3  L dp* = -(1/dt)(G^T u2 + bc2) */
+  PetscCall(GridGradientTranspose(f->grid, -1 / q->dt, d->u2, d->dp));
+  if (f->bc2) PetscCall(VecAXPY(d->dp, -1 / q->dt, f->bc2));
+  PetscCall(FluidSolvePoisson(f, d->dp, d->dp));
+  if (c) PetscCall(SolveTension(s, d)); /* steps 4 and 5 */
+  if (*s->report.failure) PetscFunctionReturn(PETSC_SUCCESS);
+  /* 6  u = u2 - dt (G dp + S dsigma) */
+  PetscCall(VecCopy(d->u2, q->w));
+  PetscCall(GridGradient(f->grid, -q->dt, d->dp, PETSC_TRUE, q->w));
+  if (c) PetscCall(CouplingSpreadAdd(c, -q->dt, c->S, d->dsigma, q->w));
+  PetscCall(SchemeMeasureConstraints(s, q->w));
+  /* 7  X += dt (u_inf + E u),  p += dp,  sigma += dsigma */
+  PetscCall(VecAXPY(q->p, 1, d->dp));
+  if (!c) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(SchemeMarkerVelocity(s, q->w, q->U));
+  PetscCall(VecAXPY(q->X, q->dt, q->U));
+  PetscCall(VecAXPY(q->sigma, 1, d->dsigma));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode SetUp_Split(Scheme s) {
+  Split *d = (Split *)s->data;
+  const State *q = &s->state;
+  PetscFunctionBeginUser;
+  PetscCall(VecDuplicate(q->w, &d->r));
+  PetscCall(VecDuplicate(q->w, &d->u2));
+  PetscCall(VecDuplicate(q->p, &d->dp));
+  PetscCall(VecDuplicate(q->p, &d->q));
+  PetscCall(VecDuplicate(q->sigma, &d->dsigma));
+  PetscCall(VecDuplicate(q->sigma, &d->rhs_sigma));
+  PetscCall(VecDuplicate(q->X, &d->z));
+  PetscCall(VecDuplicate(q->X, &d->rhs_z));
+  PetscCall(VecDuplicate(q->X, &d->Xhat));
+  if (!s->coupling) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(TensionSolverCreate(s->fluid, s->coupling, &d->tension));
+  PetscCall(LagrangianSolverSetUp(d->tension));
+  if (s->membrane->bending > 0) {
+    PetscCall(BendingSolverCreate(s->fluid, s->coupling, &d->bending));
+    PetscCall(LagrangianSolverSetUp(d->bending));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode View_Split(Scheme s, PetscViewer viewer) {
+  Split *d = (Split *)s->data;
+  LagrangianSolver solvers[2] = {d->tension, d->bending};
+  PetscFunctionBeginUser;
+  for (int k = 0; k < 2 && !s->fluid->grid->rank; k++)
+    if (solvers[k]) PetscCall(KSPView(solvers[k]->ksp, PETSC_VIEWER_STDOUT_SELF));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Destroy_Split(Scheme s) {
+  Split *d = (Split *)s->data;
+  Vec *all[] = {&d->r, &d->u2, &d->dp, &d->q, &d->dsigma, &d->rhs_sigma, &d->z, &d->rhs_z, &d->Xhat};
+  PetscFunctionBeginUser;
+  PetscCall(LagrangianSolverDestroy(&d->tension));
+  PetscCall(LagrangianSolverDestroy(&d->bending));
+  for (size_t i = 0; i < sizeof(all) / sizeof(all[0]); i++) PetscCall(VecDestroy(all[i]));
+  PetscCall(PetscFree(s->data));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Options_Split(Scheme s, FILE *file) {
+  Split *d = (Split *)s->data;
+  LagrangianSolver solvers[2] = {d->tension, d->bending};
+  PetscFunctionBeginUser;
+  for (int k = 0; k < 2; k++)
+    if (solvers[k]) PetscCall(LagrangianSolverWriteOptions(solvers[k], file));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SchemeCreate_Split(Scheme s) {
+  Split *d;
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&d));
+  s->data = d;
+  s->setup = SetUp_Split;
+  s->step = Step_Split;
+  s->view = View_Split;
+  s->options = Options_Split;
+  s->destroy = Destroy_Split;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,161 @@
+/* A whole run: build everything from the options, step, write. */
+#include "output/output.h"
+#include "petves.h"
+
+struct _p_Simulation {
+  Scene scene;
+  Shape shape;
+  Fluid fluid;
+  Membrane membrane;
+  Coupling coupling;
+  Scheme scheme;
+  Output output;
+  PetscReal next_output;
+};
+
+static const char help[] = "petves: inextensible vesicles in two-dimensional viscous flow.\n"
+                           "usage: mpirun -n RANKS petves -options_file scene.opts [-option value ...]\n\n";
+
+PetscErrorCode PetvesInitialize(int *argc, char ***argv) {
+  PetscFunctionBeginUser;
+  PetscCall(PetscInitialize(argc, argv, NULL, help));
+  PetscCall(PetscPushErrorHandler(PetvesErrorHandler, NULL));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode PetvesFinalize(void) {
+  return PetscFinalize();
+}
+
+static PetscErrorCode Build(MPI_Comm comm, Simulation s) {
+  const Kernel *kernel;
+  PetscFunctionBeginUser;
+  PetscCall(SceneCreate(comm, &s->scene));
+  kernel = KernelFind(s->scene->delta);
+  PetscCall(ShapeCreate(s->scene, kernel->default_spacing, kernel->least_spacing, &s->shape));
+  PetscCall(FluidCreate(s->scene, &s->fluid));
+  PetscCall(MembraneCreate(&s->shape, s->scene->bending, &s->membrane));
+  if (s->shape.vesicles) PetscCall(CouplingCreate(s->fluid->grid, s->membrane, s->scene->delta, &s->coupling));
+  PetscCall(SchemeCreate(s->scene, s->fluid, s->membrane, s->coupling, s->shape.X, &s->scheme));
+  PetscCall(SceneCheckUnused(s->scene));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SimulationCreate(MPI_Comm comm, Simulation *out) {
+  Simulation s;
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&s));
+  *out = s;
+  PetscCall(PhaseBegin(PHASE_SETUP));
+  PetscCall(PetvesSetupErrors(PETSC_TRUE));
+  PetscCall(Build(comm, s));
+  if (s->scene->view) PetscCall(SimulationView(s, PETSC_VIEWER_STDOUT_(comm)));
+  PetscCall(OutputCreate(s->scene, s->scheme, &s->output));
+  PetscCall(PetvesSetupErrors(PETSC_FALSE));
+  PetscCall(PhaseEnd());
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SimulationDestroy(Simulation *simulation) {
+  Simulation s = *simulation;
+  PetscFunctionBeginUser;
+  if (!s) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(OutputDestroy(&s->output));
+  PetscCall(SchemeDestroy(&s->scheme));
+  PetscCall(CouplingDestroy(&s->coupling));
+  PetscCall(MembraneDestroy(&s->membrane));
+  PetscCall(FluidDestroy(&s->fluid));
+  PetscCall(ShapeDestroy(&s->shape));
+  PetscCall(SceneDestroy(&s->scene));
+  PetscCall(PetscFree(*simulation));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SimulationView(Simulation s, PetscViewer viewer) {
+  PetscFunctionBeginUser;
+  PetscCall(SceneView(s->scene, &s->shape, viewer));
+  PetscCall(SchemeView(s->scheme, viewer));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SimulationGetTime(Simulation s, PetscInt *step, PetscReal *time) {
+  PetscFunctionBeginUser;
+  if (step) *step = s->scheme->state.step;
+  if (time) *time = s->scheme->state.t;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SimulationGetState(Simulation s, Vec *w, Vec *p, Vec *sigma, Vec *X, Vec *U) {
+  PetscFunctionBeginUser;
+  if (w) *w = s->scheme->state.w;
+  if (p) *p = s->scheme->state.p;
+  if (sigma) *sigma = s->scheme->state.sigma;
+  if (X) *X = s->scheme->state.X;
+  if (U) *U = s->scheme->state.U;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SimulationStep(Simulation s, const char **failure) {
+  const StepReport *report = &s->scheme->report;
+  PetscFunctionBeginUser;
+  PetscCall(SchemeStep(s->scheme, s->scene->dt));
+  *failure = *report->failure ? report->failure : NULL;
+  if (!*failure) PetscCall(OutputSeries(s->output));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Files that are due after a good step. */
+static PetscErrorCode WriteDue(Simulation s) {
+  const State *q = &s->scheme->state;
+  const PetscInt every = s->scene->checkpoint_every;
+  PetscFunctionBeginUser;
+  if (q->t >= s->next_output - 1e-9 * q->dt) {
+    PetscCall(OutputFields(s->output));
+    while (s->next_output <= q->t + 1e-9 * q->dt) s->next_output += s->scene->output_every;
+  }
+  if (every && q->step % every == 0) PetscCall(OutputCheckpoint(s->output));
+  PetscCall(OutputProgress(s->output, PETSC_FALSE));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode IsSteady(Simulation s, PetscBool *steady) {
+  const State *q = &s->scheme->state;
+  const PetscScalar *X, *U;
+  PetscFunctionBeginUser;
+  *steady = PETSC_FALSE;
+  if (s->scene->steady_tol <= 0 || !s->membrane->vesicles) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecGetArrayRead(q->X, &X));
+  PetscCall(VecGetArrayRead(q->U, &U));
+  *steady = MembraneNormalSpeed(s->membrane, X, U) < s->scene->steady_tol ? PETSC_TRUE : PETSC_FALSE;
+  PetscCall(VecRestoreArrayRead(q->U, &U));
+  PetscCall(VecRestoreArrayRead(q->X, &X));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SimulationRun(Simulation s, PetscBool *good) {
+  const State *q = &s->scheme->state;
+  const char *failure = NULL, *reason = "finished";
+  PetscBool steady = PETSC_FALSE;
+  PetscFunctionBeginUser;
+  PetscCall(OutputSeries(s->output));
+  PetscCall(OutputFields(s->output));
+  s->next_output = s->scene->output_every;
+  while (!failure && !steady && q->t < s->scene->t_end - 0.5 * s->scene->dt) {
+    PetscCall(SimulationStep(s, &failure));
+    if (failure) break;
+    PetscCall(WriteDue(s));
+    PetscCall(IsSteady(s, &steady));
+  }
+  if (steady) reason = "steady";
+  if (failure) reason = failure;
+  if (s->output->frames && s->output->last[COLUMN_TIME] > s->next_output - s->scene->output_every + 1e-9 * q->dt)
+    PetscCall(OutputFields(s->output)); /* the end state, when no saved time fell on it */
+  PetscCall(OutputCheckpoint(s->output));
+  PetscCall(OutputSummary(s->output, reason));
+  PetscCall(OutputProgress(s->output, PETSC_TRUE));
+  PetscCall(OutputFinalTable(s->output, failure ? "stopped" : reason));
+  *good = failure ? PETSC_FALSE : PETSC_TRUE;
+  if (failure && !s->fluid->grid->rank)
+    fprintf(stderr, "petves: error: %s; the last good state is in %s/checkpoint.h5\n", failure, s->output->folder);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
