@@ -98,7 +98,7 @@ PetscErrorCode SimulationGetState(Simulation s, Vec *w, Vec *p, Vec *sigma, Vec 
 PetscErrorCode SimulationStep(Simulation s, const char **failure) {
   const StepReport *report = &s->scheme->report;
   PetscFunctionBeginUser;
-  PetscCall(SchemeStep(s->scheme, s->scene->dt));
+  PetscCall(SchemeStep(s->scheme, s->scene->adapt ? s->scene->t_end - s->scheme->state.t : s->scene->dt));
   *failure = *report->failure ? report->failure : NULL;
   if (!*failure) PetscCall(OutputSeries(s->output));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -140,7 +140,7 @@ PetscErrorCode SimulationRun(Simulation s, PetscBool *good) {
   PetscCall(OutputSeries(s->output));
   PetscCall(OutputFields(s->output));
   s->next_output = s->scene->output_every;
-  while (!failure && !steady && q->t < s->scene->t_end - 0.5 * s->scene->dt) {
+  while (!failure && !steady && q->t < s->scene->t_end - (s->scene->adapt ? 1e-9 : 0.5) * s->scene->dt) {
     PetscCall(SimulationStep(s, &failure));
     if (failure) break;
     PetscCall(WriteDue(s));

@@ -120,26 +120,27 @@ PetscErrorCode LagrangianSolverSolve(LagrangianSolver s, Vec b, Vec x) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode LagrangianSolverWriteOptions(LagrangianSolver s, FILE *file) {
-  KSPType ksp;
+PetscErrorCode KSPWriteOptions(KSP ksp, const char prefix[], FILE *file) {
+  KSPType type;
   PCType pc_type;
   PC pc;
   PetscReal rtol, atol, dtol;
   PetscInt max_it;
-  PetscBool ilu;
+  PetscBool ilu, shell;
   PetscFunctionBeginUser;
-  PetscCall(KSPGetType(s->ksp, &ksp));
-  PetscCall(KSPGetTolerances(s->ksp, &rtol, &atol, &dtol, &max_it));
-  PetscCall(KSPGetPC(s->ksp, &pc));
+  PetscCall(KSPGetType(ksp, &type));
+  PetscCall(KSPGetTolerances(ksp, &rtol, &atol, &dtol, &max_it));
+  PetscCall(KSPGetPC(ksp, &pc));
   PetscCall(PCGetType(pc, &pc_type));
-  fprintf(file,
-          "-%sksp_type %s\n-%sksp_rtol %.17g\n-%sksp_atol %.17g\n-%sksp_max_it %" PetscInt_FMT "\n-%spc_type %s\n",
-          s->prefix, ksp, s->prefix, (double)rtol, s->prefix, (double)atol, s->prefix, max_it, s->prefix, pc_type);
+  fprintf(file, "-%sksp_type %s\n-%sksp_rtol %.17g\n-%sksp_atol %.17g\n-%sksp_max_it %" PetscInt_FMT "\n", prefix, type,
+          prefix, (double)rtol, prefix, (double)atol, prefix, max_it);
+  PetscCall(PetscObjectTypeCompare((PetscObject)pc, PCSHELL, &shell));
+  if (!shell) fprintf(file, "-%spc_type %s\n", prefix, pc_type);
   PetscCall(PetscObjectTypeCompare((PetscObject)pc, PCILU, &ilu));
   if (ilu) {
     PetscInt levels;
     PetscCall(PCFactorGetLevels(pc, &levels));
-    fprintf(file, "-%spc_factor_levels %" PetscInt_FMT "\n", s->prefix, levels);
+    fprintf(file, "-%spc_factor_levels %" PetscInt_FMT "\n", prefix, levels);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -37,5 +37,5 @@ PETSC_EXTERN PetscErrorCode LagrangianSolverSolve(LagrangianSolver solver, Vec b
 /* TensionAssemble - Chat for the coupling's markers, assembled by every rank alike. */
 PETSC_EXTERN PetscErrorCode TensionAssemble(Coupling coupling, Mat *Chat);
 
-/* LagrangianSolverWriteOptions - the solver's settings in force as options, one a line. */
-PETSC_EXTERN PetscErrorCode LagrangianSolverWriteOptions(LagrangianSolver solver, FILE *file);
+/* KSPWriteOptions - a KSP's settings in force as options with this prefix, one a line. */
+PETSC_EXTERN PetscErrorCode KSPWriteOptions(KSP ksp, const char prefix[], FILE *file);

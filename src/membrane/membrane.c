@@ -69,20 +69,26 @@ void MembraneStretchingTranspose(Membrane m, const PetscReal tau[], PetscReal al
   }
 }
 
-void MembraneSecondDifference(Membrane m, const PetscScalar X[], PetscScalar C[]) {
-  for (PetscInt k = 0; k < m->M; k++) {
-    const PetscReal w = 1 / PetscSqr(m->spacing[k]);
-    for (int c = 0; c < 2; c++)
-      C[2 * k + c] = w * (X[2 * m->previous[k] + c] - 2 * X[2 * k + c] + X[2 * m->next[k] + c]);
+/* Y += w (second difference of X) around a closed curve of n points. */
+static void AddSecondDifference(PetscInt n, PetscReal w, const PetscScalar X[], PetscScalar Y[]) {
+  for (PetscInt k = 0; k < n; k++) {
+    const PetscInt p = k ? k - 1 : n - 1, q = k < n - 1 ? k + 1 : 0;
+    for (int c = 0; c < 2; c++) Y[2 * k + c] += w * (X[2 * p + c] - 2 * X[2 * k + c] + X[2 * q + c]);
   }
 }
 
+void MembraneBendingVesicle(Membrane m, PetscInt v, PetscReal alpha, const PetscScalar X[], PetscScalar work[],
+                            PetscScalar F[]) {
+  const PetscInt n = m->start[v + 1] - m->start[v];
+  (void)PetscArrayzero(work, 2 * n);
+  AddSecondDifference(n, 1 / PetscSqr(m->ds[v]), X, work);
+  AddSecondDifference(n, alpha / m->ds[v], work, F); /* ds/ds^2 */
+}
+
 void MembraneBending(Membrane m, PetscReal alpha, const PetscScalar X[], PetscScalar work[], PetscScalar F[]) {
-  MembraneSecondDifference(m, X, work);
-  for (PetscInt k = 0; k < m->M; k++) {
-    const PetscReal w = alpha / m->spacing[k]; /* ds/ds^2 */
-    for (int c = 0; c < 2; c++)
-      F[2 * k + c] += w * (work[2 * m->previous[k] + c] - 2 * work[2 * k + c] + work[2 * m->next[k] + c]);
+  for (PetscInt v = 0; v < m->vesicles; v++) {
+    const PetscInt first = 2 * m->start[v];
+    MembraneBendingVesicle(m, v, alpha, X + first, work + first, F + first);
   }
 }
 

@@ -37,10 +37,12 @@ PETSC_EXTERN void MembraneStretching(Membrane membrane, const PetscReal tau[], c
 PETSC_EXTERN void MembraneStretchingTranspose(Membrane membrane, const PetscReal tau[], PetscReal alpha,
                                               const PetscScalar sigma[], PetscScalar F[]);
 
-/* MembraneSecondDifference - C = D+D- X with the fixed spacing ds, C[2M]; C and X must differ. */
-PETSC_EXTERN void MembraneSecondDifference(Membrane membrane, const PetscScalar X[], PetscScalar C[]);
+/* MembraneBendingVesicle - F += alpha ds D4 X on one vesicle's own arrays [2n], D4 = (D+D-)(D+D-) with the fixed
+   spacing ds; work[2n]. Symmetric. */
+PETSC_EXTERN void MembraneBendingVesicle(Membrane membrane, PetscInt vesicle, PetscReal alpha, const PetscScalar X[],
+                                         PetscScalar work[], PetscScalar F[]);
 
-/* MembraneBending - F += alpha D4 (ds X), D4 = (D+D-)(D+D-), each marker weighted by its ds; work[2M]. Symmetric. */
+/* MembraneBending - the same for all vesicles, arrays [2M]. */
 PETSC_EXTERN void MembraneBending(Membrane membrane, PetscReal alpha, const PetscScalar X[], PetscScalar work[],
                                   PetscScalar F[]);
 

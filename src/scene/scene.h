@@ -18,6 +18,8 @@ typedef struct {
 typedef enum { BC_WALL, BC_PERIODIC } BoundaryType;
 typedef enum { FLOW_QUIESCENT, FLOW_SHEAR, FLOW_POISEUILLE, FLOW_EXTENSION } FlowType;
 typedef enum { FORM_DISTURBANCE, FORM_TOTAL } FlowForm;
+typedef enum { ADAPT_NONE, ADAPT_ERROR } AdaptType;
+typedef enum { STARTUP_EULER, STARTUP_GRADED } StartUp;
 typedef enum { SHAPE_ELLIPSE, SHAPE_FILE, SHAPE_NONE } ShapeType;
 
 /* Background flow u_inf, an exact steady solution of the Stokes equations (DESIGN section 2). Lengths and times are in
@@ -57,6 +59,11 @@ struct _p_Scene {
   char delta[SCENE_MAX_NAME];          /* kernel */
   char scheme[SCENE_MAX_NAME];         /* time-stepping scheme */
   PetscInt order;                      /* order in time */
+  PetscBool length_target;             /* coupled: new edges get the length ds */
+  PetscInt startup;                    /* StartUp */
+  PetscInt mobility;                   /* index in -mobility_type's list */
+  PetscInt adapt;                      /* AdaptType */
+  PetscReal adapt_tol, adapt_max_move; /* error a step over R0; cells a marker may move in a step */
   PetscReal dt, t_end, steady_tol;     /* time step, end time, stop when max |u.n| falls below steady_tol */
   char helmholtz[SCENE_MAX_NAME];      /* back end of the Helmholtz solves */
   char poisson[SCENE_MAX_NAME];        /* back end of the Poisson solves */

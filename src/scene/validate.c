@@ -63,8 +63,25 @@ static PetscErrorCode CheckVesicle(Scene scene) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* split has one order and one step size; its order option is not an error when it was not given. */
+static PetscErrorCode CheckScheme(Scene scene) {
+  PetscBool split;
+  PetscFunctionBeginUser;
+  PetscCall(PetscStrcmp(scene->scheme, "split", &split));
+  PetscCheck(!split || scene->order == 1 || !SceneGiven(scene, "-scheme_order"), scene->comm, PETSC_ERR_USER_INPUT,
+             "-scheme_order %" PetscInt_FMT ": the splitting error of -scheme_type split is of first order; allowed: 1",
+             scene->order);
+  if (split) scene->order = 1;
+  PetscCheck(scene->adapt == ADAPT_NONE || scene->order == 2, scene->comm, PETSC_ERR_USER_INPUT,
+             "-time_adapt error: with -scheme_type %s of order %" PetscInt_FMT
+             "; allowed: coupled or direct with -scheme_order 2",
+             scene->scheme, scene->order);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode SceneValidate(Scene scene) {
   PetscFunctionBeginUser;
+  PetscCall(CheckScheme(scene));
   PetscCall(CheckDomain(scene));
   PetscCall(CheckFlow(scene));
   PetscCall(CheckVesicle(scene));

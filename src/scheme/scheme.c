@@ -50,6 +50,8 @@ PetscErrorCode SchemeCreate(Scene scene, Fluid fluid, Membrane membrane, Couplin
   PetscFunctionBeginUser;
   if (!schemes) {
     PetscCall(SchemeRegister("split", SchemeCreate_Split));
+    PetscCall(SchemeRegister("coupled", SchemeCreate_Coupled));
+    PetscCall(SchemeRegister("direct", SchemeCreate_Coupled));
     PetscCall(PetscRegisterFinalize(ForgetSchemes));
   }
   PetscCall(PetscFunctionListFind(schemes, scene->scheme, &create));
@@ -96,7 +98,8 @@ PetscErrorCode SchemeStep(Scheme s, PetscReal dt) {
   PetscCall(s->step(s));
   s->report.solves = FluidCountSolves(s->fluid) - solves;
   if (!*s->report.failure) {
-    s->state.t += dt;
+    s->state.t += s->state.dt; /* step-size control may have taken less than dt */
+    s->state.dt_last = s->state.dt_last > 0 ? s->state.dt_last : s->state.dt;
     s->state.step++;
   }
   PetscCall(PhaseEnd());
@@ -158,13 +161,14 @@ PetscErrorCode SchemeMeasureConstraints(Scheme s, Vec w) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SchemeSolverFailed(Scheme s, LagrangianSolver solver) {
+PetscErrorCode SchemeSolverFailed(Scheme s, const char prefix[], KSPConvergedReason why, PetscInt its,
+                                  PetscReal residual) {
   PetscFunctionBeginUser;
   PetscCall(PetscSNPrintf(s->report.failure, sizeof(s->report.failure),
                           "the solve with prefix %s failed in step %" PetscInt_FMT
                           " at time %g: %s after %" PetscInt_FMT " iterations, residual %g",
-                          solver->prefix, s->state.step + 1, (double)(s->state.t + s->state.dt),
-                          KSPConvergedReasons[solver->why], solver->its, (double)solver->residual));
+                          prefix, s->state.step + 1, (double)(s->state.t + s->state.dt), KSPConvergedReasons[why], its,
+                          (double)residual));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

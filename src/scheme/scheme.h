@@ -6,11 +6,12 @@
 typedef struct {
   PetscInt step;
   PetscReal t, dt;
-  Vec w;     /* velocity on the faces: the disturbance, or the whole in the total form */
-  Vec p;     /* pressure, zero mean */
-  Vec sigma; /* tension, one an edge */
-  Vec X;     /* markers */
-  Vec U;     /* markers' velocity, background included */
+  PetscReal dt_last; /* the step that led here; 0 at the start */
+  Vec w;             /* velocity on the faces: the disturbance, or the whole in the total form */
+  Vec p;             /* pressure, zero mean */
+  Vec sigma;         /* tension, one an edge */
+  Vec X;             /* markers */
+  Vec U;             /* markers' velocity, background included */
 } State;
 
 /* What the last step did. */
@@ -67,10 +68,12 @@ PETSC_EXTERN PetscErrorCode SchemeMarkerVelocity(Scheme scheme, Vec w, Vec U);
 /* SchemeMeasureConstraints - fill in report.div_max and surface_div_max of a solved velocity. */
 PETSC_EXTERN PetscErrorCode SchemeMeasureConstraints(Scheme scheme, Vec w);
 
-/* SchemeSolverFailed - record a failed Lagrangian solve: prefix, step, time, residual. */
-PETSC_EXTERN PetscErrorCode SchemeSolverFailed(Scheme scheme, LagrangianSolver solver);
+/* SchemeSolverFailed - record a failed solve: prefix, step, time, residual. */
+PETSC_EXTERN PetscErrorCode SchemeSolverFailed(Scheme scheme, const char prefix[], KSPConvergedReason why, PetscInt its,
+                                               PetscReal residual);
 
 /* SchemeKineticEnergy - E_K = 1/2 SUM u^2 h^2 of the total velocity minus the background. Collective. */
 PETSC_EXTERN PetscErrorCode SchemeKineticEnergy(Scheme scheme, PetscReal *energy);
 
 PETSC_EXTERN PetscErrorCode SchemeCreate_Split(Scheme);
+PETSC_EXTERN PetscErrorCode SchemeCreate_Coupled(Scheme);

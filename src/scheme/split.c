@@ -9,6 +9,10 @@ typedef struct {
   Vec z, rhs_z, Xhat;                /* bending unknown, its right-hand side, X + dt u_inf */
 } Split;
 
+static PetscErrorCode SolverFailed(Scheme s, LagrangianSolver solver) {
+  return SchemeSolverFailed(s, solver->prefix, solver->why, solver->its, solver->residual);
+}
+
 /* 1  H u3 = r - G p - S sigma - B X + bc1, where r = u/dt and B acts on X + dt u_inf */
 static PetscErrorCode PredictVelocity(Scheme s, Split *d) {
   const State *q = &s->state;
@@ -37,7 +41,7 @@ static PetscErrorCode ImplicitBending(Scheme s, Split *d) {
   PetscCall(LagrangianSolverSolve(d->bending, d->rhs_z, d->z));
   s->report.bending_its = d->bending->its;
   if (d->bending->why < 0) {
-    PetscCall(SchemeSolverFailed(s, d->bending));
+    PetscCall(SolverFailed(s, d->bending));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(VecSet(d->r, 0));
@@ -61,7 +65,7 @@ static PetscErrorCode SolveTension(Scheme s, Split *d) {
   PetscCall(LagrangianSolverSolve(d->tension, d->rhs_sigma, d->dsigma));
   s->report.tension_its = d->tension->its;
   if (d->tension->why < 0) {
-    PetscCall(SchemeSolverFailed(s, d->tension));
+    PetscCall(SolverFailed(s, d->tension));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(VecSet(d->r, 0));
@@ -154,7 +158,7 @@ static PetscErrorCode Options_Split(Scheme s, FILE *file) {
   LagrangianSolver solvers[2] = {d->tension, d->bending};
   PetscFunctionBeginUser;
   for (int k = 0; k < 2; k++)
-    if (solvers[k]) PetscCall(LagrangianSolverWriteOptions(solvers[k], file));
+    if (solvers[k]) PetscCall(KSPWriteOptions(solvers[k]->ksp, solvers[k]->prefix, file));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -1,0 +1,19 @@
+/* The small Lagrangian problem inside the coupled preconditioner, one dense block a vesicle (DESIGN section 7):
+       N = I + (c_b ds/(h^2 a0)) Mob D4,   C = Dm N^-1 Mob Dm^T/h^4,   sigma = C^-1 (Dm U1/h^2 - r_s),
+       U3 = U1 - N^-1 Mob Dm^T sigma/h^2,  U1 = N^-1 U. */
+#pragma once
+#include "coupling/mobility.h"
+
+typedef struct _p_DenseBlocks *DenseBlocks;
+
+PETSC_EXTERN PetscErrorCode DenseBlocksCreate(Coupling coupling, DenseBlocks *blocks);
+PETSC_EXTERN PetscErrorCode DenseBlocksDestroy(DenseBlocks *blocks);
+
+/* DenseBlocksFactor - assemble Mob from the table at the coupling's markers X[2M], factor N and C for a0. Every rank
+   does the same. */
+PETSC_EXTERN PetscErrorCode DenseBlocksFactor(DenseBlocks blocks, Mobility mobility, const GreenTable *table,
+                                              PetscReal a0, const PetscScalar X[]);
+
+/* DenseBlocksSolve - from U[2M] = E w1 and r_s[M]: sigma[M], and U overwritten by U3. */
+PETSC_EXTERN PetscErrorCode DenseBlocksSolve(DenseBlocks blocks, PetscScalar U[], const PetscScalar r_s[],
+                                             PetscScalar sigma[]);

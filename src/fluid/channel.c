@@ -1,0 +1,174 @@
+/* A channel, periodic in x with walls in y: the exact Stokes solve from the projection.
+
+   The projection leaves H u + G p = r_u + kappa g on the rows of u next to the walls, kappa = -2 nu/(a0 h^2) and g =
+   G_x phi there: L_u mirrors with a minus at a wall, the gradient of a Neumann potential with a plus. A force delta on
+   those rows, projected too, cancels it when (I + kappa M) delta = -kappa g, M delta being the g of delta's own
+   projection. In x modes this is a 2 x 2 system, and the projection of a unit force on the bottom row is three real
+   profiles in y: w = (a0 + nu lambda - nu d_yy)^-1 e_0,  phi = a0 (d_yy - lambda)^-1 w, u = w + lambda phi/a0,   v =
+   conj(s) G_y phi/a0,   p = -conj(s) (phi - nu w), s = (e^{i theta} - 1)/h the symbol of G_x, lambda = |s|^2. The top
+   wall's are their mirror images. */
+#include "fluid/stokes.h"
+#include <complex.h>
+#include <fftw3.h>
+
+typedef double complex Complex;
+
+struct _p_Channel {
+  Fluid fluid;
+  PetscReal a0;       /* coefficient the profiles are for */
+  PetscInt modes;     /* n_x/2 + 1 */
+  PetscReal *profile; /* [3][2][rows][modes]: u, v, p; bottom, top wall; this rank's rows */
+  PetscReal *inverse; /* [2][modes] diagonal and off-diagonal entry of -kappa (I + kappa M)^-1 */
+  Complex *delta;     /* [2][modes] force on the bottom and top rows */
+  Complex *symbol;    /* [modes] of G_x */
+  Complex *line;      /* [modes] */
+  double *row;        /* [n_x] */
+  fftw_plan forward, backward;
+};
+
+PetscErrorCode ChannelCreate(Fluid fluid, Channel *out) {
+  const Grid g = fluid->grid;
+  const size_t n = (size_t)g->n[0];
+  Channel c;
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&c));
+  *out = c;
+  c->fluid = fluid;
+  c->a0 = -1;
+  c->modes = g->n[0] / 2 + 1;
+  PetscCall(PetscMalloc4(6 * g->rows[FIELD_P] * c->modes, &c->profile, 2 * c->modes, &c->inverse, 2 * c->modes,
+                         &c->delta, c->modes, &c->symbol));
+  for (PetscInt k = 0; k < c->modes; k++) c->symbol[k] = (cexp(I * 2 * PETSC_PI * k / (double)n) - 1) / g->h;
+  c->line = (Complex *)fftw_alloc_real(2 * (size_t)c->modes);
+  c->row = fftw_alloc_real(n);
+  c->forward = fftw_plan_dft_r2c_1d((int)n, c->row, (fftw_complex *)c->line, FFTW_ESTIMATE);
+  c->backward = fftw_plan_dft_c2r_1d((int)n, (fftw_complex *)c->line, c->row, FFTW_ESTIMATE);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ChannelDestroy(Channel *channel) {
+  Channel c = *channel;
+  PetscFunctionBeginUser;
+  if (!c) PetscFunctionReturn(PETSC_SUCCESS);
+  fftw_destroy_plan(c->forward);
+  fftw_destroy_plan(c->backward);
+  fftw_free(c->line);
+  fftw_free(c->row);
+  PetscCall(PetscFree4(c->profile, c->inverse, c->delta, c->symbol));
+  PetscCall(PetscFree(*channel));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* x = (d I - e d_yy h^2)^-1 b for a constant tridiagonal matrix (-e, d, -e) whose first and last diagonals are `end`.
+ */
+static void Tridiagonal(PetscInt n, PetscReal d, PetscReal e, PetscReal end, const PetscReal b[], PetscReal work[],
+                        PetscReal x[]) {
+  PetscReal pivot = end;
+  x[0] = b[0] / pivot;
+  for (PetscInt j = 1; j < n; j++) {
+    work[j] = -e / pivot;
+    pivot = (j == n - 1 ? end : d) + e * work[j];
+    x[j] = (b[j] + e * x[j - 1]) / pivot;
+  }
+  for (PetscInt j = n - 2; j >= 0; j--) x[j] -= work[j + 1] * x[j + 1];
+}
+
+/* Row j (v: the face above it) of the profiles of wall `top`, from the bottom wall's. */
+static void StoreRow(Channel c, PetscInt k, PetscInt j, PetscReal lambda, const PetscReal w[], const PetscReal phi[]) {
+  const Grid g = c->fluid->grid;
+  const PetscInt n = g->n[1], rows = g->rows[FIELD_P];
+  const PetscReal a0 = c->fluid->a0, nu = c->fluid->nu;
+  for (int top = 0; top < 2; top++) {
+    const PetscInt m = top ? n - 1 - j : j, next = top ? m - 1 : m + 1; /* mirrored row, and the row above it */
+    const PetscReal v = next >= 0 && next < n ? (phi[next] - phi[m]) / (g->h * a0) : 0;
+    const PetscReal value[3] = {w[m] + lambda * phi[m] / a0, v, phi[m] - nu * w[m]};
+    for (int f = 0; f < 3; f++) c->profile[((f * 2 + top) * rows + j - g->first) * c->modes + k] = value[f];
+  }
+}
+
+static PetscErrorCode SetUp(Channel c) {
+  const Grid g = c->fluid->grid;
+  const PetscInt n = g->n[1];
+  const PetscReal a0 = c->fluid->a0, nu = c->fluid->nu, h2 = PetscSqr(g->h), kappa = -2 * nu / (a0 * h2);
+  PetscReal *w, *phi, *work, *unit;
+  PetscFunctionBeginUser;
+  if (c->a0 == a0) PetscFunctionReturn(PETSC_SUCCESS);
+  c->a0 = a0;
+  PetscCall(PetscMalloc4(n, &w, n, &phi, n, &work, n, &unit));
+  PetscCall(PetscArrayzero(unit, n));
+  unit[0] = 1;
+  c->inverse[0] = c->inverse[c->modes] = 0;
+  PetscCall(PetscArrayzero(c->profile, 6 * g->rows[FIELD_P] * c->modes));
+  for (PetscInt k = 1; k < c->modes; k++) { /* mode 0 has no slip: G_x phi = 0 */
+    const PetscReal lambda = 4 / h2 * PetscSqr(PetscSinReal(PETSC_PI * k / g->n[0])), e = nu / h2;
+    const PetscReal d = a0 + nu * lambda + 2 * e;
+    Tridiagonal(n, d, e, d + e, unit, work, w);
+    for (PetscInt j = 0; j < n; j++) phi[j] = -a0 * w[j];
+    Tridiagonal(n, lambda + 2 / h2, 1 / h2, lambda + 1 / h2, phi, work, phi);
+    const PetscReal own = 1 - kappa * lambda * phi[0], other = -kappa * lambda * phi[n - 1];
+    const PetscReal determinant = PetscSqr(own) - PetscSqr(other);
+    c->inverse[k] = -kappa * own / determinant;
+    c->inverse[c->modes + k] = kappa * other / determinant;
+    for (PetscInt j = g->first; j < g->first + g->rows[FIELD_P]; j++) StoreRow(c, k, j, lambda, w, phi);
+  }
+  PetscCall(PetscFree4(w, phi, work, unit));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* delta: the force on the two wall rows, known to all ranks. */
+static PetscErrorCode WallForces(Channel c, const PetscScalar phi[]) {
+  const Grid g = c->fluid->grid;
+  const PetscInt n = g->n[0], last = g->rows[FIELD_P] - 1;
+  PetscFunctionBeginUser;
+  for (int top = 0; top < 2; top++) {
+    const PetscMPIInt owner = top ? g->size - 1 : 0;
+    Complex *slip = c->delta + top * c->modes;
+    if (g->rank == owner) {
+      const PetscScalar *p = phi + (top ? last : 0) * n;
+      for (PetscInt i = 0; i < n; i++) c->row[i] = (p[i + 1 < n ? i + 1 : 0] - p[i]) / g->h;
+      fftw_execute(c->forward);
+      PetscCall(PetscMemcpy(slip, c->line, (size_t)c->modes * sizeof(Complex)));
+    }
+    PetscCallMPI(MPI_Bcast(slip, (PetscMPIInt)(2 * c->modes), MPI_DOUBLE, owner, g->comm));
+  }
+  for (PetscInt k = 0; k < c->modes; k++) {
+    const Complex b = c->delta[k], t = c->delta[c->modes + k];
+    const PetscReal own = c->inverse[k], other = c->inverse[c->modes + k];
+    c->delta[k] = (own * b + other * t) / n; /* 1/n: FFTW's transforms are not normalised */
+    c->delta[c->modes + k] = (other * b + own * t) / n;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Add a field's correction to its local rows. */
+static void AddField(Channel c, int f, PetscScalar a[]) {
+  const Grid g = c->fluid->grid;
+  const PetscInt n = g->n[0], rows = g->rows[FIELD_P];
+  for (PetscInt j = 0; j < g->rows[f]; j++) {
+    const PetscReal *bottom = c->profile + (f * 2 * rows + j) * c->modes, *top = bottom + rows * c->modes;
+    for (PetscInt k = 0; k < c->modes; k++) {
+      const Complex value = c->delta[k] * bottom[k] + c->delta[c->modes + k] * top[k];
+      c->line[k] = f == FIELD_U ? value : (f == FIELD_V ? 1 : -1) * conj(c->symbol[k]) * value;
+    }
+    fftw_execute(c->backward);
+    for (PetscInt i = 0; i < n; i++) a[j * n + i] += c->row[i];
+  }
+}
+
+PetscErrorCode ChannelCorrect(Channel c, Vec phi, Vec u, Vec p) {
+  const PetscScalar *phia;
+  PetscScalar *a;
+  PetscFunctionBeginUser;
+  PetscCall(SetUp(c));
+  PetscCall(VecGetArrayRead(phi, &phia));
+  PetscCall(WallForces(c, phia));
+  PetscCall(VecRestoreArrayRead(phi, &phia));
+  PetscCall(VecGetArray(u, &a));
+  AddField(c, FIELD_U, a);
+  AddField(c, FIELD_V, a + GridLocalU(c->fluid->grid));
+  PetscCall(VecRestoreArray(u, &a));
+  PetscCall(VecGetArray(p, &a));
+  AddField(c, FIELD_P, a);
+  PetscCall(VecRestoreArray(p, &a));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,226 @@
+/* Schemes "coupled" and "direct": the unsplit step, first or second order, unconditionally stable (DESIGN section 7).
+   `coupled` solves it by preconditioned FGMRES, `direct` by a sparse LU factorisation. */
+#include "scheme/coupled.h"
+
+/* S^T u = g: the new edges get the length ds, linearised at the extrapolated edge e*:
+   e*.(dU)_k = a0 [(ds^2 - |e*|^2)/2 - e*.(ehat - e*)], the background's own stretching taken off (already in g). */
+static PetscErrorCode LengthTarget(Scheme s, const Coupled *d, PetscReal a0) {
+  const Membrane m = s->membrane;
+  const PetscReal h2 = PetscSqr(s->fluid->grid->h);
+  const PetscScalar *xs, *xh;
+  PetscScalar *g;
+  PetscFunctionBeginUser;
+  PetscCall(VecGetArrayRead(d->Xstar, &xs));
+  PetscCall(VecGetArrayRead(d->Xhat, &xh));
+  PetscCall(VecGetArray(s->g, &g));
+  for (PetscInt k = 0; k < m->M; k++) {
+    const PetscInt p = m->previous[k];
+    const PetscReal ds = m->spacing[k];
+    PetscReal star2 = 0, gap = 0;
+    for (int c = 0; c < 2; c++) {
+      const PetscReal star = xs[2 * k + c] - xs[2 * p + c], hat = xh[2 * k + c] - xh[2 * p + c];
+      star2 += star * star;
+      gap += star * (hat - star);
+    }
+    g[k] += a0 * (0.5 * (ds * ds - star2) - gap) / (ds * h2);
+  }
+  PetscCall(VecRestoreArray(s->g, &g));
+  PetscCall(VecRestoreArrayRead(d->Xhat, &xh));
+  PetscCall(VecRestoreArrayRead(d->Xstar, &xs));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* y = (1 + r) x - r x_old, the extrapolation; x itself in a first step. */
+static PetscErrorCode Extrapolate(PetscReal r, Vec x, Vec x_old, Vec y) {
+  PetscFunctionBeginUser;
+  PetscCall(VecCopy(x, y));
+  if (r > 0) PetscCall(VecAXPBY(y, -r, 1 + r, x_old));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* y = scale (current x + old x_old) */
+static PetscErrorCode History(const BDF *b, PetscReal scale, Vec x, Vec x_old, Vec y) {
+  PetscFunctionBeginUser;
+  PetscCall(VecCopy(x, y));
+  PetscCall(VecScale(y, scale * b->current));
+  if (b->old != 0) PetscCall(VecAXPY(y, scale * b->old, x_old));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* f = uhat - B (Xhat + u_inf/a0) + bc1 */
+static PetscErrorCode MomentumRightHandSide(Scheme s, Coupled *d, const BDF *b) {
+  PetscFunctionBeginUser;
+  PetscCall(History(b, 1, s->state.w, d->old.w, d->f));
+  if (s->fluid->bc1) PetscCall(VecAXPY(d->f, 1, s->fluid->bc1));
+  if (!s->coupling || s->membrane->bending == 0) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecWAXPY(d->Y, 1 / b->a0, s->background, d->Xhat));
+  PetscCall(CouplingSpreadAdd(s->coupling, -1, s->coupling->B, d->Y, d->f));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode SolveStep(Scheme s, Coupled *d) {
+  State *n = &d->next;
+  PetscFunctionBeginUser;
+  if (d->direct) {
+    PetscCall(DirectSolverSolve(d->direct, d->f, s->g, n->w, n->p, n->sigma));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(SaddleSetUp(d->saddle, d->Xstar));
+  PetscCall(SaddleSolve(d->saddle, d->f, s->g, n->w, n->p, n->sigma));
+  s->report.coupled_its += d->saddle->its;
+  if (d->saddle->why < 0)
+    PetscCall(SchemeSolverFailed(s, "coupled_", d->saddle->why, d->saddle->its, d->saddle->residual));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CoupledAttempt(Scheme s, PetscReal dt, PetscBool *solved) {
+  Coupled *d = (Coupled *)s->data;
+  State *q = &s->state, *n = &d->next;
+  const BDF b = BDFCoefficients(d->has_old ? d->order : 1, dt, d->has_old ? q->dt_last : dt);
+  PetscFunctionBeginUser;
+  *solved = PETSC_TRUE;
+  q->dt = dt;
+  PetscCall(FluidSetTimeCoefficient(s->fluid, b.a0));
+  if (s->coupling) { /* operators at X*, history Xhat of the markers, constraint g */
+    PetscCall(Extrapolate(b.ratio, q->X, d->old.X, d->Xstar));
+    PetscCall(History(&b, 1 / b.a0, q->X, d->old.X, d->Xhat));
+    PetscCall(SchemePlaceMarkers(s, d->Xstar, solved));
+    if (!*solved) PetscFunctionReturn(PETSC_SUCCESS);
+    if (d->length_target) PetscCall(LengthTarget(s, d, b.a0));
+  }
+  PetscCall(MomentumRightHandSide(s, d, &b));
+  /* initial guess: the solution extrapolated; on the first step the present one */
+  const PetscReal r = d->has_old ? dt / q->dt_last : 0;
+  PetscCall(Extrapolate(r, q->w, d->old.w, n->w));
+  PetscCall(Extrapolate(r, q->p, d->old.p, n->p));
+  PetscCall(Extrapolate(r, q->sigma, d->old.sigma, n->sigma));
+  PetscCall(SolveStep(s, d));
+  *solved = *s->report.failure ? PETSC_FALSE : PETSC_TRUE;
+  if (!*solved) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(SchemeMeasureConstraints(s, n->w));
+  if (!s->coupling) PetscFunctionReturn(PETSC_SUCCESS);
+  /* U = u_inf(X*) + E u,  X = Xhat + U/a0 */
+  PetscCall(SchemeMarkerVelocity(s, n->w, n->U));
+  PetscCall(VecWAXPY(n->X, 1 / b.a0, n->U, d->Xhat));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* state -> old, next -> state; the vectors change places. */
+static void Advance(Scheme s, Coupled *d, PetscReal dt) {
+  State *q = &s->state, spare = d->old;
+  const State next = d->next;
+  d->old = *q;
+  d->next = spare;
+  q->w = next.w;
+  q->p = next.p;
+  q->sigma = next.sigma;
+  q->X = next.X;
+  q->U = next.U;
+  q->dt_last = dt;
+  d->has_old = PETSC_TRUE;
+}
+
+/* Start-up: backward Euler on a sixteenth of the step, then BDF2 with doubling steps up to the whole of it. */
+static PetscErrorCode GradedStart(Scheme s, Coupled *d, PetscReal dt, PetscBool *solved) {
+  const PetscReal parts[] = {1. / 16, 1. / 16, 1. / 8, 1. / 4, 1. / 2};
+  PetscFunctionBeginUser;
+  for (int k = 0; k < 5; k++) {
+    PetscCall(CoupledAttempt(s, parts[k] * dt, solved));
+    if (!*solved) PetscFunctionReturn(PETSC_SUCCESS);
+    Advance(s, d, parts[k] * dt);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Step_Coupled(Scheme s) {
+  Coupled *d = (Coupled *)s->data;
+  const PetscReal dt = s->state.dt;
+  PetscBool solved;
+  PetscFunctionBeginUser;
+  if (d->control.on) {
+    PetscReal used = dt;
+    PetscCall(StepControlStep(s, &d->control, d->Xstar, &d->next, &used, &solved));
+    if (solved) Advance(s, d, used);
+    s->state.dt = used;
+  } else if (!d->has_old && d->order > 1 && s->scene->startup == STARTUP_GRADED) {
+    PetscCall(GradedStart(s, d, dt, &solved));
+    s->state.dt = dt;
+  } else {
+    PetscCall(CoupledAttempt(s, dt, &solved));
+    if (solved) Advance(s, d, dt);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode DuplicateState(const State *q, State *copy) {
+  PetscFunctionBeginUser;
+  PetscCall(VecDuplicate(q->w, &copy->w));
+  PetscCall(VecDuplicate(q->p, &copy->p));
+  PetscCall(VecDuplicate(q->sigma, &copy->sigma));
+  PetscCall(VecDuplicate(q->X, &copy->X));
+  PetscCall(VecDuplicate(q->U, &copy->U));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode SetUp_Coupled(Scheme s) {
+  Coupled *d = (Coupled *)s->data;
+  const State *q = &s->state;
+  PetscFunctionBeginUser;
+  d->order = s->scene->order;
+  d->length_target = s->scene->length_target;
+  PetscCall(DuplicateState(q, &d->old));
+  PetscCall(DuplicateState(q, &d->next));
+  PetscCall(VecDuplicate(q->w, &d->f));
+  PetscCall(VecDuplicate(q->X, &d->Xstar));
+  PetscCall(VecDuplicate(q->X, &d->Xhat));
+  PetscCall(VecDuplicate(q->X, &d->Y));
+  PetscCall(StepControlCreate(s->scene, s->membrane, &d->control));
+  if (!strcmp(s->type, "direct"))
+    PetscCall(DirectSolverCreate(s->fluid, s->coupling, &d->direct));
+  else
+    PetscCall(SaddleCreate(s->scene, s->fluid, s->coupling, &d->saddle));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode View_Coupled(Scheme s, PetscViewer viewer) {
+  Coupled *d = (Coupled *)s->data;
+  PetscFunctionBeginUser;
+  if (d->saddle) PetscCall(KSPView(d->saddle->ksp, viewer));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Options_Coupled(Scheme s, FILE *file) {
+  Coupled *d = (Coupled *)s->data;
+  PetscFunctionBeginUser;
+  if (d->saddle) PetscCall(KSPWriteOptions(d->saddle->ksp, "coupled_", file));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Destroy_Coupled(Scheme s) {
+  Coupled *d = (Coupled *)s->data;
+  State *states[2] = {&d->old, &d->next};
+  Vec *others[] = {&d->f, &d->Xstar, &d->Xhat, &d->Y};
+  PetscFunctionBeginUser;
+  PetscCall(SaddleDestroy(&d->saddle));
+  PetscCall(DirectSolverDestroy(&d->direct));
+  for (int k = 0; k < 2; k++) {
+    Vec *all[] = {&states[k]->w, &states[k]->p, &states[k]->sigma, &states[k]->X, &states[k]->U};
+    for (int i = 0; i < 5; i++) PetscCall(VecDestroy(all[i]));
+  }
+  for (int i = 0; i < 4; i++) PetscCall(VecDestroy(others[i]));
+  PetscCall(PetscFree(s->data));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SchemeCreate_Coupled(Scheme s) {
+  Coupled *d;
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&d));
+  s->data = d;
+  s->setup = SetUp_Coupled;
+  s->step = Step_Coupled;
+  s->view = View_Coupled;
+  s->options = Options_Coupled;
+  s->destroy = Destroy_Coupled;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

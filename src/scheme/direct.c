@@ -1,0 +1,215 @@
+#include "scheme/direct.h"
+
+struct _p_DirectSolver {
+  Fluid fluid;
+  Coupling coupling;
+  PetscInt M;
+  PetscInt *start; /* [ranks+1] first global index of each rank; sigma and U come last, on the last rank */
+  KSP ksp;
+  Vec x, b;
+};
+
+/* Rank that holds a global row of a field. */
+static PetscInt Owner(Grid g, PetscInt j) {
+  return PetscMin(j / g->block, g->size - 1);
+}
+
+static PetscInt RowsOf(Grid g, PetscInt rank, int f) {
+  return rank < g->size - 1 ? g->block : g->all_rows[f] - (g->size - 1) * g->block;
+}
+
+/* Global index of entry (i, j) of a field. */
+static PetscInt Index(DirectSolver d, int f, PetscInt i, PetscInt j) {
+  const Grid g = d->fluid->grid;
+  const PetscInt rank = Owner(g, j);
+  PetscInt index = d->start[rank] + (j - rank * g->block) * g->columns[f] + i;
+  for (int k = 0; k < f; k++) index += g->columns[k] * RowsOf(g, rank, k);
+  return index;
+}
+
+PetscErrorCode DirectSolverCreate(Fluid fluid, Coupling coupling, DirectSolver *out) {
+  const Grid g = fluid->grid;
+  DirectSolver d;
+  PC pc;
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&d));
+  *out = d;
+  d->fluid = fluid;
+  d->coupling = coupling;
+  d->M = coupling ? coupling->membrane->M : 0;
+  PetscCall(PetscCalloc1(g->size + 1, &d->start));
+  for (PetscInt r = 0; r < g->size; r++) {
+    d->start[r + 1] = d->start[r] + (r == g->size - 1 ? 3 * d->M : 0);
+    for (int f = 0; f < 3; f++) d->start[r + 1] += g->columns[f] * RowsOf(g, r, f);
+  }
+  PetscCall(VecCreateMPI(g->comm, d->start[g->rank + 1] - d->start[g->rank], PETSC_DETERMINE, &d->x));
+  PetscCall(VecDuplicate(d->x, &d->b));
+  PetscCall(KSPCreate(g->comm, &d->ksp));
+  PetscCall(KSPSetOptionsPrefix(d->ksp, "direct_"));
+  PetscCall(KSPSetType(d->ksp, KSPPREONLY));
+  PetscCall(KSPGetPC(d->ksp, &pc));
+  PetscCall(PCSetType(pc, PCLU));
+  PetscCall(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
+  PetscCall(KSPSetFromOptions(d->ksp));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode DirectSolverDestroy(DirectSolver *solver) {
+  PetscFunctionBeginUser;
+  if (!*solver) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscFree((*solver)->start));
+  PetscCall(KSPDestroy(&(*solver)->ksp));
+  PetscCall(VecDestroy(&(*solver)->x));
+  PetscCall(VecDestroy(&(*solver)->b));
+  PetscCall(PetscFree(*solver));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* H and G, G^T: each rank its own rows. */
+static PetscErrorCode AddFluid(DirectSolver d, Mat A) {
+  const Grid g = d->fluid->grid;
+  const PetscReal off = d->fluid->nu / PetscSqr(g->h), h = g->h;
+  PetscFunctionBeginUser;
+  for (int f = FIELD_U; f <= FIELD_V; f++)
+    for (PetscInt j = g->first; j < g->first + g->rows[f]; j++)
+      for (PetscInt i = 0; i < g->columns[f]; i++) {
+        const PetscInt row = Index(d, f, i, j), di[4] = {-1, 1, 0, 0}, dj[4] = {0, 0, -1, 1};
+        const PetscInt ahead = f == FIELD_U ? Index(d, FIELD_P, (i + 1) % g->n[0], j)
+                                            : Index(d, FIELD_P, i, (j + 1) % g->n[1]);
+        const PetscInt here = Index(d, FIELD_P, i, j);
+        PetscReal diagonal = d->fluid->a0 + 4 * off;
+        for (int k = 0; k < 4; k++) {
+          PetscInt c = i + di[k], r = j + dj[k];
+          const PetscBool outside = c < 0 || c >= g->columns[f] || r < 0 || r >= g->all_rows[f] ? PETSC_TRUE
+                                                                                                : PETSC_FALSE;
+          if (outside && g->wall[k / 2]) {
+            diagonal -= off * GridWallFactor((Field)f, k / 2);
+            continue;
+          }
+          c = (c + g->columns[f]) % g->columns[f];
+          r = (r + g->all_rows[f]) % g->all_rows[f];
+          PetscCall(MatSetValue(A, row, Index(d, f, c, r), -off, ADD_VALUES));
+        }
+        PetscCall(MatSetValue(A, row, row, diagonal, ADD_VALUES));
+        PetscCall(MatSetValue(A, row, ahead, 1 / h, ADD_VALUES));
+        PetscCall(MatSetValue(A, row, here, -1 / h, ADD_VALUES));
+        PetscCall(MatSetValue(A, ahead, row, 1 / h, ADD_VALUES));
+        PetscCall(MatSetValue(A, here, row, -1 / h, ADD_VALUES));
+      }
+  if (!g->rank)
+    PetscCall(MatSetValue(A, Index(d, FIELD_P, 0, 0), Index(d, FIELD_P, 0, 0), -1, ADD_VALUES)); /* p_0 = 0 */
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Everything with E in it: U - E w = 0, and minus the spread force of sigma and U in the momentum. The last rank, which
+   owns sigma and U, adds it all. */
+static PetscErrorCode AddMembrane(DirectSolver d, Mat A) {
+  const Grid g = d->fluid->grid;
+  const Membrane m = d->coupling->membrane;
+  const PetscInt sigma = d->start[g->size] - 3 * d->M, U = sigma + d->M;
+  const PetscReal h2 = PetscSqr(g->h), *tau = d->coupling->tau;
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < d->M; k++) {
+    const PetscInt p = m->previous[k], n = m->next[k], at[5] = {m->previous[p], p, k, n, m->next[n]};
+    const PetscReal ds = m->spacing[k], fourth[5] = {1, -4, 6, -4, 1};
+    for (int c = 0; c < 2; c++) {
+      const Stencil *s = &d->coupling->stencil[2 * k + c];
+      PetscCall(MatSetValue(A, U + 2 * k + c, U + 2 * k + c, 1, ADD_VALUES));
+      for (PetscInt b = 0; b < s->n[1]; b++)
+        for (PetscInt a = 0; a < s->n[0]; a++) {
+          const PetscReal weight = s->weight[1][b] * s->weight[0][a];
+          PetscInt i = s->first[0] + a, j = s->first[1] + b;
+          if (!g->wall[0]) i %= g->n[0];
+          if (!g->wall[1]) j %= g->n[1];
+          if (i < 0 || j < 0 || i >= g->columns[c] || j >= g->all_rows[c]) continue;
+          const PetscInt face = Index(d, c, i, j);
+          PetscCall(MatSetValue(A, U + 2 * k + c, face, -weight, ADD_VALUES));
+          PetscCall(MatSetValue(A, face, sigma + k, weight * tau[2 * k + c] / h2, ADD_VALUES));
+          PetscCall(MatSetValue(A, face, sigma + n, -weight * tau[2 * n + c] / h2, ADD_VALUES));
+          for (int q = 0; q < 5 && m->bending > 0; q++)
+            PetscCall(MatSetValue(A, face, U + 2 * at[q] + c,
+                                  weight * m->bending * fourth[q] / (h2 * ds * ds * ds * d->fluid->a0), ADD_VALUES));
+        }
+      /* S^T u = Dm U/h^2 */
+      PetscCall(MatSetValue(A, sigma + k, U + 2 * k + c, tau[2 * k + c] / h2, ADD_VALUES));
+      PetscCall(MatSetValue(A, sigma + k, U + 2 * p + c, -tau[2 * k + c] / h2, ADD_VALUES));
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Assemble(DirectSolver d, Mat *A) {
+  const Grid g = d->fluid->grid;
+  const PetscInt n = d->start[g->rank + 1] - d->start[g->rank];
+  PetscFunctionBeginUser;
+  PetscCall(MatCreateAIJ(g->comm, n, n, PETSC_DETERMINE, PETSC_DETERMINE, 24, NULL, 24, NULL, A));
+  PetscCall(MatSetOption(*A, MAT_NEW_NONZERO_ALLOCATION_ERR, PETSC_FALSE));
+  PetscCall(AddFluid(d, *A));
+  if (d->coupling && g->rank == g->size - 1) PetscCall(AddMembrane(d, *A));
+  PetscCall(MatAssemblyBegin(*A, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(*A, MAT_FINAL_ASSEMBLY));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode RightHandSide(DirectSolver d, Vec f, Vec g_s) {
+  const Grid g = d->fluid->grid;
+  const PetscInt nw = GridLocalU(g) + g->columns[FIELD_V] * g->rows[FIELD_V],
+                 np = g->columns[FIELD_P] * g->rows[FIELD_P];
+  const PetscScalar *a;
+  PetscScalar *b;
+  PetscFunctionBeginUser;
+  PetscCall(VecSet(d->b, 0));
+  PetscCall(VecGetArray(d->b, &b));
+  PetscCall(VecGetArrayRead(f, &a));
+  PetscCall(PetscArraycpy(b, a, nw));
+  PetscCall(VecRestoreArrayRead(f, &a));
+  if (d->fluid->bc2) {
+    PetscCall(VecGetArrayRead(d->fluid->bc2, &a));
+    for (PetscInt k = 0; k < np; k++) b[nw + k] = -a[k];
+    PetscCall(VecRestoreArrayRead(d->fluid->bc2, &a));
+  }
+  if (d->M && g->rank == g->size - 1) {
+    PetscCall(VecGetArrayRead(g_s, &a));
+    PetscCall(PetscArraycpy(b + nw + np, a, d->M));
+    PetscCall(VecRestoreArrayRead(g_s, &a));
+  }
+  PetscCall(VecRestoreArray(d->b, &b));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CopyPart(Vec to, const PetscScalar from[], PetscInt n) {
+  PetscScalar *a;
+  PetscFunctionBeginUser;
+  PetscCall(VecGetArray(to, &a));
+  PetscCall(PetscArraycpy(a, from, n));
+  PetscCall(VecRestoreArray(to, &a));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode DirectSolverSolve(DirectSolver d, Vec f, Vec g_s, Vec w, Vec p, Vec sigma) {
+  const Grid g = d->fluid->grid;
+  const PetscInt nw = GridLocalU(g) + g->columns[FIELD_V] * g->rows[FIELD_V],
+                 np = g->columns[FIELD_P] * g->rows[FIELD_P];
+  const PetscScalar *x;
+  PetscScalar *s, mean;
+  Mat A;
+  PetscFunctionBeginUser;
+  PetscCall(Assemble(d, &A));
+  PetscCall(KSPSetOperators(d->ksp, A, A));
+  PetscCall(MatDestroy(&A)); /* the KSP keeps it */
+  PetscCall(RightHandSide(d, f, g_s));
+  PetscCall(KSPSolve(d->ksp, d->b, d->x));
+  PetscCall(VecGetArrayRead(d->x, &x));
+  PetscCall(CopyPart(w, x, nw));
+  PetscCall(CopyPart(p, x + nw, np));
+  PetscCall(VecSum(p, &mean));
+  PetscCall(VecShift(p, -mean / ((PetscReal)g->n[0] * g->n[1])));
+  if (d->M) {
+    PetscCall(VecGetArray(sigma, &s));
+    if (g->rank == g->size - 1) PetscCall(PetscArraycpy(s, x + nw + np, d->M));
+    PetscCallMPI(MPI_Bcast(s, (PetscMPIInt)d->M, MPIU_SCALAR, g->size - 1, g->comm));
+    PetscCall(VecRestoreArray(sigma, &s));
+  }
+  PetscCall(VecRestoreArrayRead(d->x, &x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
