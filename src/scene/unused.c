@@ -12,6 +12,14 @@ static const char *const solvers[] = {
     "-tension_pc_type",  "-bending_ksp_type", "-bending_ksp_rtol", "-bending_ksp_atol",         "-bending_ksp_max_it",
     "-bending_pc_type",  "-options_file",     "-log_view",         "-tension_pc_factor_levels", "-bending_ksp_monitor"};
 
+/* Solver options that PETSc reads only when it solves, after the check. */
+static PetscBool ReadWhileSolving(const char *name) {
+  const char *const parts[] = {"_ksp_view", "_ksp_converged_reason", "_ksp_converged_rate", "_mat_mumps_", "_mat_view"};
+  for (size_t i = 0; i < sizeof(parts) / sizeof(parts[0]); i++)
+    if (strstr(name, parts[i])) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
 /* Edit distance of two short words (Levenshtein). */
 static PetscInt Distance(const char *a, const char *b) {
   PetscInt row[128];
@@ -51,7 +59,7 @@ PetscErrorCode SceneCheckUnused(Scene scene) {
   if (scene->allow_unused) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscOptionsLeftGet(NULL, &n, &names, &values));
   for (PetscInt i = 0; i < n && !*unused; i++) {
-    PetscBool known = PETSC_FALSE;
+    PetscBool known = ReadWhileSolving(names[i]);
     for (PetscInt k = 0; k < late_count && !known; k++) PetscCall(PetscStrcmp(names[i], late[k], &known));
     if (known) continue;
     PetscCall(PetscSNPrintf(unused, sizeof(unused), "-%s", names[i]));

@@ -63,6 +63,7 @@ static PetscErrorCode SolveStep(Scheme s, Coupled *d) {
   PetscFunctionBeginUser;
   if (d->direct) {
     PetscCall(DirectSolverSolve(d->direct, d->f, s->g, n->w, n->p, n->sigma));
+    if (d->direct->why < 0) PetscCall(SchemeSolverFailed(s, "direct_", d->direct->why, 0, NAN));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(SaddleSetUp(d->saddle, d->Xstar));

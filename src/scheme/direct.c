@@ -1,14 +1,5 @@
 #include "scheme/direct.h"
 
-struct _p_DirectSolver {
-  Fluid fluid;
-  Coupling coupling;
-  PetscInt M;
-  PetscInt *start; /* [ranks+1] first global index of each rank; sigma and U come last, on the last rank */
-  KSP ksp;
-  Vec x, b;
-};
-
 /* Rank that holds a global row of a field. */
 static PetscInt Owner(Grid g, PetscInt j) {
   return PetscMin(j / g->block, g->size - 1);
@@ -186,6 +177,21 @@ static PetscErrorCode CopyPart(Vec to, const PetscScalar from[], PetscInt n) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Pivoting in a saddle-point matrix needs more room than MUMPS expects: four times, ICNTL(14) in per cent. */
+static PetscErrorCode SetUpFactor(DirectSolver d) {
+  PC pc;
+  Mat F;
+  PetscBool lu;
+  PetscFunctionBeginUser;
+  PetscCall(KSPGetPC(d->ksp, &pc));
+  PetscCall(PetscObjectTypeCompare((PetscObject)pc, PCLU, &lu));
+  if (!lu) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PCFactorSetUpMatSolverType(pc));
+  PetscCall(PCFactorGetMatrix(pc, &F));
+  PetscCall(MatMumpsSetIcntl(F, 14, 300));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode DirectSolverSolve(DirectSolver d, Vec f, Vec g_s, Vec w, Vec p, Vec sigma) {
   const Grid g = d->fluid->grid;
   const PetscInt nw = GridLocalU(g) + g->columns[FIELD_V] * g->rows[FIELD_V],
@@ -195,10 +201,14 @@ PetscErrorCode DirectSolverSolve(DirectSolver d, Vec f, Vec g_s, Vec w, Vec p, V
   Mat A;
   PetscFunctionBeginUser;
   PetscCall(Assemble(d, &A));
+  PetscCall(KSPReset(d->ksp)); /* a new factor, which keeps the settings made on it below */
   PetscCall(KSPSetOperators(d->ksp, A, A));
   PetscCall(MatDestroy(&A)); /* the KSP keeps it */
+  PetscCall(SetUpFactor(d));
   PetscCall(RightHandSide(d, f, g_s));
   PetscCall(KSPSolve(d->ksp, d->b, d->x));
+  PetscCall(KSPGetConvergedReason(d->ksp, &d->why));
+  if (d->why < 0) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecGetArrayRead(d->x, &x));
   PetscCall(CopyPart(w, x, nw));
   PetscCall(CopyPart(p, x + nw, np));
