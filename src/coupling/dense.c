@@ -107,8 +107,7 @@ static PetscErrorCode FactorBlock(DenseBlocks b, PetscInt v, PetscReal a0, const
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode DenseBlocksFactor(DenseBlocks b, Mobility mobility, const GreenTable *table, PetscReal a0,
-                                 const PetscScalar X[]) {
+PetscErrorCode DenseBlocksFactor(DenseBlocks b, Mobility mobility, const GreenTable *table, PetscReal a0) {
   PetscLogEvent event;
   PetscFunctionBeginUser;
   PetscCall(PetvesEvent("FactorMobility", &event));
@@ -117,7 +116,7 @@ PetscErrorCode DenseBlocksFactor(DenseBlocks b, Mobility mobility, const GreenTa
     const PetscInt n = b->block[v].n;
     PetscReal *Mob;
     PetscCall(PetscMalloc1(4 * n * n, &Mob));
-    PetscCall(MobilityAssemble(mobility, table, X, v, Mob));
+    PetscCall(MobilityAssemble(mobility, table, v, Mob));
     PetscCall(FactorBlock(b, v, a0, Mob));
     PetscCall(PetscFree(Mob));
   }

@@ -1,10 +1,8 @@
-/* The grid's periodic Green's function and its average over kernel positions. */
+/* The grid's periodic Green's function, and the mobility of markers made from it. */
 #include "coupling/mobility.h"
 #include "fluid/stokes.h"
 
-/* Sub-cell positions that the table's kernels are averaged over, per direction. */
-#define POSITIONS 32
-#define LAGS (2 * KERNEL_MAX_POINTS + 1)
+#define LAGS (2 * KERNEL_MAX_POINTS - 1)
 
 PetscErrorCode MobilityCreate(Scene scene, Coupling coupling, Mobility *out) {
   const Grid g = coupling->grid;
@@ -19,17 +17,14 @@ PetscErrorCode MobilityCreate(Scene scene, Coupling coupling, Mobility *out) {
   m->scene.flow.form = FORM_DISTURBANCE;
   PetscCall(FluidCreate(&m->scene, &m->periodic));
   for (PetscInt v = 0; v < coupling->membrane->vesicles; v++) reach = PetscMax(reach, coupling->membrane->L0[v] / 2);
-  for (int d = 0; d < 2; d++) /* two markers are at most half a contour apart; room for kernels, interpolation, drift */
-    m->size[d] = PetscMin(g->n[d] / 2 + 1, (PetscInt)(1.1 * reach / g->h) + 2 * LAGS);
+  for (int d = 0; d < 2; d++) /* two markers are at most half a contour apart; room for drift and kernels */
+    m->size[d] = PetscMin(g->n[d] / 2, (PetscInt)(1.1 * reach / g->h) + 4) + 2 * KERNEL_MAX_POINTS;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode FreeTable(GreenTable *t) {
   PetscFunctionBeginUser;
-  for (int b = 0; b < GREEN_COUNT; b++) {
-    PetscCall(PetscFree(t->grid[b]));
-    PetscCall(PetscFree(t->table[b]));
-  }
+  for (int b = 0; b < GREEN_COUNT; b++) PetscCall(PetscFree(t->grid[b]));
   t->a0 = 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -43,35 +38,23 @@ PetscErrorCode MobilityDestroy(Mobility *mobility) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A quarter of a field's rows, known to all ranks. */
-static PetscErrorCode Gather(Mobility m, Field f, const PetscScalar a[], PetscReal quarter[]) {
+static PetscInt Modulo(PetscInt i, PetscInt n) {
+  return ((i % n) + n) % n;
+}
+
+/* A field's window of offsets, known to all ranks. */
+static PetscErrorCode Gather(Mobility m, Field f, const PetscScalar a[], PetscReal window[]) {
   const Grid g = m->periodic->grid;
-  const PetscInt nx = m->size[0] + 1, ny = m->size[1] + 1;
+  const PetscInt sx = m->size[0], sy = m->size[1], nx = 2 * sx + 1, ny = 2 * sy + 1;
   PetscFunctionBeginUser;
-  PetscCall(PetscArrayzero(quarter, nx * ny));
-  for (PetscInt j = 0; j < g->rows[f] && j + g->first < ny; j++)
-    for (PetscInt i = 0; i < nx && i < g->n[0]; i++) quarter[(j + g->first) * nx + i] = a[j * g->columns[f] + i];
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, quarter, (PetscMPIInt)(nx * ny), MPIU_REAL, MPI_SUM, g->comm));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Offset folded into the quarter, -1 in *sign where an odd function changes sign. A vu offset i stands for the
-   displacement i - 1/2 in x and i + 1/2 in y (shift). */
-static PetscInt Fold(PetscInt i, PetscInt n, PetscInt shift, PetscBool odd, PetscReal *sign) {
-  const PetscInt low = shift > 0 ? -(n / 2) : (shift < 0 ? 1 - n / 2 : -(n / 2)); /* first offset of a period */
-  i = ((i - low) % n + n) % n + low;
-  *sign = 1;
-  if (shift ? (shift < 0 ? i < 1 : i < 0) : i < 0) {
-    i = -i - shift;
-    if (odd) *sign = -1;
+  PetscCall(PetscArrayzero(window, nx * ny));
+  for (PetscInt j = -sy; j <= sy; j++) {
+    const PetscInt row = Modulo(j, g->n[1]) - g->first;
+    if (row < 0 || row >= g->rows[f]) continue;
+    for (PetscInt i = -sx; i <= sx; i++) window[(j + sy) * nx + i + sx] = a[row * g->columns[f] + Modulo(i, g->n[0])];
   }
-  return i;
-}
-
-static void FoldBlock(const Mobility m, GreenBlock b, int dir, PetscInt i, PetscInt *index, PetscReal *sign) {
-  const PetscInt shift = b == GREEN_VU ? (dir ? 1 : -1) : 0;
-  *index = PetscMin(Fold(i, m->coupling->grid->n[dir], shift, b == GREEN_VU ? PETSC_TRUE : PETSC_FALSE, sign),
-                    m->size[dir]);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, window, (PetscMPIInt)(nx * ny), MPIU_REAL, MPI_SUM, g->comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode UnitResponse(Mobility m, Stokes stokes, int source, Vec r, Vec u, Vec p, GreenTable *t) {
@@ -94,54 +77,12 @@ static PetscErrorCode UnitResponse(Mobility m, Stokes stokes, int source, Vec r,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Mean correlation of two kernels' weights over sub-cell positions: lag[q + KERNEL_MAX_POINTS] for indices q apart. */
-static void Correlation(const Kernel *kernel, int a, int b, int dir, PetscReal lag[LAGS]) {
-  for (int q = 0; q < LAGS; q++) lag[q] = 0;
-  for (int s = 0; s < POSITIONS; s++) {
-    const PetscReal x = (s + 0.5) / POSITIONS;
-    PetscReal wa[KERNEL_MAX_POINTS], wb[KERNEL_MAX_POINTS];
-    PetscInt fa, fb;
-    const PetscInt na = (a == dir ? kernel->along : kernel->across)(x - (a == dir ? 1.0 : 0.5), &fa, wa);
-    const PetscInt nb = (b == dir ? kernel->along : kernel->across)(x - (b == dir ? 1.0 : 0.5), &fb, wb);
-    for (PetscInt i = 0; i < na; i++)
-      for (PetscInt j = 0; j < nb; j++) lag[fa + i - fb - j + KERNEL_MAX_POINTS] += wa[i] * wb[j] / POSITIONS;
-  }
-}
-
-/* table(d) = SUM lag_x lag_y grid(d + lag), one direction after the other. */
-static PetscErrorCode Average(Mobility m, GreenBlock b, const PetscReal in[], PetscReal out[]) {
-  const int response = b == GREEN_UU ? 0 : 1, source = b == GREEN_VV ? 1 : 0;
-  const PetscInt nx = m->size[0] + 1, ny = m->size[1] + 1;
-  PetscReal lag[LAGS], *half, sign;
-  PetscInt i;
-  PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(nx * ny, &half));
-  PetscCall(PetscArrayzero(out, nx * ny));
-  Correlation(m->coupling->kernel, response, source, 0, lag);
-  for (PetscInt d = 0; d < nx; d++)
-    for (int q = 0; q < LAGS; q++) {
-      FoldBlock(m, b, 0, d + q - KERNEL_MAX_POINTS, &i, &sign);
-      for (PetscInt j = 0; j < ny; j++) half[j * nx + d] += sign * lag[q] * in[j * nx + i];
-    }
-  Correlation(m->coupling->kernel, response, source, 1, lag);
-  for (PetscInt d = 0; d < ny; d++)
-    for (int q = 0; q < LAGS; q++) {
-      FoldBlock(m, b, 1, d + q - KERNEL_MAX_POINTS, &i, &sign);
-      for (PetscInt k = 0; k < nx; k++) out[d * nx + k] += sign * lag[q] * half[i * nx + k];
-    }
-  PetscCall(PetscFree(half));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 static PetscErrorCode BuildTable(Mobility m, PetscReal a0, GreenTable *t) {
-  const PetscInt size = (m->size[0] + 1) * (m->size[1] + 1);
+  const PetscInt size = (2 * m->size[0] + 1) * (2 * m->size[1] + 1);
   Stokes stokes;
   Vec r, u, p;
   PetscFunctionBeginUser;
-  for (int b = 0; b < GREEN_COUNT; b++) {
-    PetscCall(PetscMalloc1(size, &t->grid[b]));
-    PetscCall(PetscMalloc1(size, &t->table[b]));
-  }
+  for (int b = 0; b < GREEN_COUNT; b++) PetscCall(PetscMalloc1(size, &t->grid[b]));
   t->a0 = a0;
   PetscCall(FluidSetTimeCoefficient(m->periodic, a0));
   PetscCall(StokesCreate(m->periodic, &stokes));
@@ -153,7 +94,6 @@ static PetscErrorCode BuildTable(Mobility m, PetscReal a0, GreenTable *t) {
   PetscCall(VecDestroy(&u));
   PetscCall(VecDestroy(&p));
   PetscCall(StokesDestroy(&stokes));
-  for (int b = 0; b < GREEN_COUNT; b++) PetscCall(Average(m, (GreenBlock)b, t->grid[b], t->table[b]));
   m->built++;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -175,88 +115,48 @@ PetscErrorCode MobilityGetTable(Mobility m, PetscReal a0, const GreenTable **tab
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Correlation of two stencils in one direction, with the folded offsets: index, weight (sign included); returns the
- * count. */
-static PetscInt Correlate(Mobility m, GreenBlock b, int dir, const Stencil *response, const Stencil *source,
-                          PetscInt index[], PetscReal weight[]) {
-  const PetscInt na = response->n[dir], nb = source->n[dir], n = na + nb - 1;
-  for (PetscInt q = 0; q < n; q++) {
-    PetscReal sum = 0, sign;
-    for (PetscInt i = PetscMax(0, q - nb + 1); i < PetscMin(na, q + 1); i++)
-      sum += response->weight[dir][i] * source->weight[dir][i - q + nb - 1];
-    FoldBlock(m, b, dir, response->first[dir] - source->first[dir] + q - nb + 1, &index[q], &sign);
-    weight[q] = sign * sum;
-  }
-  return n;
+/* Correlation of two stencils in one direction: weight[q] for offsets first + q; returns their number. Offsets go to
+   the nearest image, inside the window. */
+static PetscInt Correlate(Mobility m, int dir, const Stencil *response, const Stencil *source, PetscInt *first,
+                          PetscReal weight[LAGS]) {
+  const PetscInt na = response->n[dir], nb = source->n[dir], count = na + nb - 1, n = m->coupling->grid->n[dir];
+  const PetscInt low = response->first[dir] - source->first[dir] - nb + 1, middle = low + count / 2;
+  for (PetscInt q = 0; q < count; q++) weight[q] = 0;
+  for (PetscInt i = 0; i < na; i++)
+    for (PetscInt j = 0; j < nb; j++) weight[i - j + nb - 1] += response->weight[dir][i] * source->weight[dir][j];
+  *first = low - n * (PetscInt)PetscFloorReal((PetscReal)middle / (PetscReal)n + 0.5);
+  *first = PetscMax(-m->size[dir], PetscMin(*first, m->size[dir] - count + 1));
+  return count;
 }
 
-static PetscReal NearPair(Mobility m, const GreenTable *t, GreenBlock b, PetscInt k, PetscInt l) {
+/* SUM SUM phi(response) Green phi(source) of one component at marker k and one at marker l. */
+static PetscReal Pair(Mobility m, const GreenTable *t, GreenBlock b, PetscInt k, PetscInt l) {
   const Stencil *response = &m->coupling->stencil[2 * k + (b == GREEN_UU ? 0 : 1)];
   const Stencil *source = &m->coupling->stencil[2 * l + (b == GREEN_VV ? 1 : 0)];
-  PetscInt ix[LAGS], iy[LAGS];
+  const PetscInt width = 2 * m->size[0] + 1;
+  PetscInt i0, j0;
   PetscReal wx[LAGS], wy[LAGS], sum = 0;
-  const PetscInt nx = Correlate(m, b, 0, response, source, ix, wx), ny = Correlate(m, b, 1, response, source, iy, wy);
-  for (PetscInt j = 0; j < ny; j++) {
-    const PetscReal *row = t->grid[b] + iy[j] * (m->size[0] + 1);
+  const PetscInt nx = Correlate(m, 0, response, source, &i0, wx), ny = Correlate(m, 1, response, source, &j0, wy);
+  const PetscReal *row = t->grid[b] + (j0 + m->size[1]) * width + i0 + m->size[0];
+  for (PetscInt j = 0; j < ny; j++, row += width) {
     PetscReal line = 0;
-    for (PetscInt i = 0; i < nx; i++) line += wx[i] * row[ix[i]];
+    for (PetscInt i = 0; i < nx; i++) line += wx[i] * row[i];
     sum += wy[j] * line;
   }
   return sum;
 }
 
-/* Cubic Lagrange weights at x in [0,1) for the points -1, 0, 1, 2. */
-static void Cubic(PetscReal x, PetscReal w[4]) {
-  w[0] = -x * (x - 1) * (x - 2) / 6;
-  w[1] = (x + 1) * (x - 1) * (x - 2) / 2;
-  w[2] = -(x + 1) * x * (x - 2) / 2;
-  w[3] = (x + 1) * x * (x - 1) / 6;
-}
-
-/* Table index of the displacement i in whole cells: even, or odd about zero. */
-static PetscInt FoldTable(Mobility m, GreenBlock b, int dir, PetscInt i, PetscReal *sign) {
-  return PetscMin(Fold(i, m->coupling->grid->n[dir], 0, b == GREEN_VU ? PETSC_TRUE : PETSC_FALSE, sign), m->size[dir]);
-}
-
-static PetscReal FarPair(Mobility m, const GreenTable *t, GreenBlock b, const PetscReal d[2]) {
-  PetscInt index[2][4];
-  PetscReal weight[2][4], sum = 0;
-  for (int dir = 0; dir < 2; dir++) {
-    const PetscInt below = (PetscInt)PetscFloorReal(d[dir]);
-    Cubic(d[dir] - below, weight[dir]);
-    for (int q = 0; q < 4; q++) {
-      PetscReal sign;
-      index[dir][q] = FoldTable(m, b, dir, below - 1 + q, &sign);
-      weight[dir][q] *= sign;
-    }
-  }
-  for (int j = 0; j < 4; j++)
-    for (int i = 0; i < 4; i++)
-      sum += weight[1][j] * weight[0][i] * t->table[b][index[1][j] * (m->size[0] + 1) + index[0][i]];
-  return sum;
-}
-
-PetscErrorCode MobilityAssemble(Mobility m, const GreenTable *t, const PetscScalar X[], PetscInt v, PetscReal Mob[]) {
-  const Grid g = m->coupling->grid;
+PetscErrorCode MobilityAssemble(Mobility m, const GreenTable *t, PetscInt v, PetscReal Mob[]) {
   const PetscInt first = m->coupling->membrane->start[v], n = m->coupling->membrane->start[v + 1] - first;
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < n; k++)
     for (PetscInt l = 0; l < n; l++) {
-      PetscReal d[2], distance2 = 0, value[GREEN_COUNT];
-      for (int dir = 0; dir < 2; dir++) {
-        d[dir] = (X[2 * (first + k) + dir] - X[2 * (first + l) + dir]) / g->h;
-        distance2 += PetscSqr(d[dir] - g->n[dir] * PetscFloorReal(d[dir] / g->n[dir] + 0.5)); /* nearest image */
+      PetscReal *block = Mob + 2 * k * 2 * n + 2 * l, *mirror = Mob + 2 * l * 2 * n + 2 * k;
+      if (l >= k) { /* symmetric */
+        block[0] = mirror[0] = Pair(m, t, GREEN_UU, first + k, first + l);
+        block[2 * n + 1] = mirror[2 * n + 1] = Pair(m, t, GREEN_VV, first + k, first + l);
       }
-      for (int b = 0; b < GREEN_COUNT; b++) {
-        if (b != GREEN_VU && l < k) continue; /* symmetric */
-        value[b] = distance2 < PetscSqr(MOBILITY_NEAR) ? NearPair(m, t, (GreenBlock)b, first + k, first + l)
-                                                       : FarPair(m, t, (GreenBlock)b, d);
-      }
-      if (l >= k) {
-        Mob[2 * k * 2 * n + 2 * l] = Mob[2 * l * 2 * n + 2 * k] = value[GREEN_UU];
-        Mob[(2 * k + 1) * 2 * n + 2 * l + 1] = Mob[(2 * l + 1) * 2 * n + 2 * k + 1] = value[GREEN_VV];
-      }
-      Mob[(2 * k + 1) * 2 * n + 2 * l] = Mob[2 * l * 2 * n + 2 * k + 1] = value[GREEN_VU];
+      block[2 * n] = mirror[1] = Pair(m, t, GREEN_VU, first + k, first + l);
     }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

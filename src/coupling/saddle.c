@@ -118,6 +118,7 @@ PetscErrorCode SaddleCreate(Scene scene, Fluid fluid, Coupling coupling, Saddle 
   s->coupling = coupling;
   s->type = (MobilityType)scene->mobility;
   s->fresh_its = -1;
+  s->life = 1000;
   PetscCall(StokesCreate(fluid, &s->stokes));
   PetscCall(VecCreateMPI(g->comm, n, PETSC_DETERMINE, &s->x));
   PetscCall(VecDuplicate(s->x, &s->b));
@@ -166,8 +167,20 @@ PetscErrorCode SaddleDestroy(Saddle *saddle) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SaddleSetUp(Saddle s, Vec X) {
-  const PetscReal a0 = s->fluid->a0;
+/* Make the dense blocks for the present markers. */
+static PetscErrorCode Refresh(Saddle s) {
+  const GreenTable *table;
+  PetscFunctionBeginUser;
+  PetscCall(MobilityGetTable(s->mobility, s->fluid->a0, &table));
+  PetscCall(DenseBlocksFactor(s->blocks, s->mobility, table, s->fluid->a0));
+  s->factored_a0 = s->fluid->a0;
+  s->fresh_its = -1;
+  s->age = 0;
+  if (++s->refreshed % 16 == 0) s->life++; /* try a longer life now and then */
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SaddleSetUp(Saddle s) {
   PetscFunctionBeginUser;
   if (!s->coupling) PetscFunctionReturn(PETSC_SUCCESS);
   if (s->type == MOBILITY_ILU) {
@@ -177,17 +190,42 @@ PetscErrorCode SaddleSetUp(Saddle s, Vec X) {
     PetscCall(PCSetUp(s->ilu));
   }
   if (s->type != MOBILITY_TABLE) PetscFunctionReturn(PETSC_SUCCESS);
-  const PetscBool worse = s->fresh_its >= 0 && s->its >= s->fresh_its + 2 ? PETSC_TRUE : PETSC_FALSE;
-  if (worse || !(PetscAbsReal(s->factored_a0 / a0 - 1) < 0.1)) {
-    const GreenTable *table;
-    const PetscScalar *x;
-    PetscCall(MobilityGetTable(s->mobility, a0, &table));
-    PetscCall(VecGetArrayRead(X, &x));
-    PetscCall(DenseBlocksFactor(s->blocks, s->mobility, table, a0, x));
-    PetscCall(VecRestoreArrayRead(X, &x));
-    s->factored_a0 = a0;
-    s->fresh_its = -1;
+  if (s->age >= s->life || !(PetscAbsReal(s->factored_a0 / s->fluid->a0 - 1) < 0.1)) PetscCall(Refresh(s));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* KSPSolve with old dense blocks for as many iterations as they are good for, then with new ones from there on. */
+static PetscErrorCode Iterate(Saddle s) {
+  const PetscBool old = s->type == MOBILITY_TABLE && s->coupling && s->age > 0 ? PETSC_TRUE : PETSC_FALSE;
+  PetscReal rtol, atol, dtol;
+  PetscInt max_it;
+  PetscFunctionBeginUser;
+  PetscCall(KSPGetTolerances(s->ksp, &rtol, &atol, &dtol, &max_it));
+  if (old) PetscCall(KSPSetTolerances(s->ksp, rtol, atol, dtol, PetscMin(max_it, s->fresh_its + 2)));
+  PetscCall(KSPSolve(s->ksp, s->b, s->x));
+  PetscCall(KSPGetIterationNumber(s->ksp, &s->its));
+  PetscCall(KSPGetConvergedReason(s->ksp, &s->why));
+  if (old) PetscCall(KSPSetTolerances(s->ksp, rtol, atol, dtol, max_it));
+  if (!old || s->its < s->fresh_its + 2)
+    s->life = PetscMax(s->life, s->age + 2); /* good so far */
+  else {
+    s->life = PetscMax(1, s->age); /* next time they are made anew before this happens */
+    if (s->why == KSP_DIVERGED_ITS && s->its < max_it) {
+      PetscBool nonzero;
+      const PetscInt before = s->its;
+      PetscCall(Refresh(s));
+      PetscCall(KSPGetInitialGuessNonzero(s->ksp, &nonzero));
+      PetscCall(KSPSetInitialGuessNonzero(s->ksp, PETSC_TRUE));
+      PetscCall(KSPSolve(s->ksp, s->b, s->x));
+      PetscCall(KSPSetInitialGuessNonzero(s->ksp, nonzero));
+      PetscCall(KSPGetIterationNumber(s->ksp, &s->its));
+      PetscCall(KSPGetConvergedReason(s->ksp, &s->why));
+      s->its += before;
+    }
   }
+  if (s->age == 0 && s->fresh_its < 0) s->fresh_its = s->its;
+  s->age++;
+  PetscCall(KSPGetResidualNorm(s->ksp, &s->residual));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -219,11 +257,7 @@ PetscErrorCode SaddleSolve(Saddle s, Vec f, Vec g, Vec w, Vec p, Vec sigma) {
   PetscCall(VecCopy(p, s->p[0]));
   PetscCall(SaddleJoin(s, 0, a, sigma));
   PetscCall(VecRestoreArray(s->x, &a));
-  PetscCall(KSPSolve(s->ksp, s->b, s->x));
-  PetscCall(KSPGetIterationNumber(s->ksp, &s->its));
-  PetscCall(KSPGetConvergedReason(s->ksp, &s->why));
-  PetscCall(KSPGetResidualNorm(s->ksp, &s->residual));
-  if (s->fresh_its < 0) s->fresh_its = s->its;
+  PetscCall(Iterate(s));
   if (s->why < 0) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecGetArray(s->x, &a));
   PetscCall(SaddleSplit(s, 0, a, sigma));

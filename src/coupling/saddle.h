@@ -29,6 +29,8 @@ struct _p_Saddle {
   Vec U, F, sigma, r_s;  /* work on markers and tensions */
   PetscReal factored_a0; /* of the dense blocks; 0: none yet */
   PetscInt fresh_its;    /* iterations right after they were made; -1: not known yet */
+  PetscInt age, life;    /* solves that they have served, and will at most */
+  PetscInt refreshed;    /* times that they were made */
   PetscInt its;
   KSPConvergedReason why;
   PetscReal residual;
@@ -38,9 +40,10 @@ struct _p_Saddle {
 PETSC_EXTERN PetscErrorCode SaddleCreate(Scene scene, Fluid fluid, Coupling coupling, Saddle *saddle);
 PETSC_EXTERN PetscErrorCode SaddleDestroy(Saddle *saddle);
 
-/* SaddleSetUp - follow the fluid's a0 and the coupling's markers X[2M]; the dense blocks are made again when a0 has
-   moved by more than 10 % or the iterations have risen by 2. Collective. */
-PETSC_EXTERN PetscErrorCode SaddleSetUp(Saddle saddle, Vec X);
+/* SaddleSetUp - follow the fluid's a0 and the coupling's markers. The dense blocks are kept while a0 moves by less than
+   10 % and iterations stay low: a solve that takes 2 more than the first one did makes them again and goes on from
+   where it is. Collective. */
+PETSC_EXTERN PetscErrorCode SaddleSetUp(Saddle saddle);
 
 /* SaddleSolve - solve for w, p, sigma, which hold the initial guess; f and g the right-hand sides. its, why, residual
    say how it went. Collective. */

@@ -66,7 +66,7 @@ static PetscErrorCode SolveStep(Scheme s, Coupled *d) {
     if (d->direct->why < 0) PetscCall(SchemeSolverFailed(s, "direct_", d->direct->why, 0, NAN));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  PetscCall(SaddleSetUp(d->saddle, d->Xstar));
+  PetscCall(SaddleSetUp(d->saddle));
   PetscCall(SaddleSolve(d->saddle, d->f, s->g, n->w, n->p, n->sigma));
   s->report.coupled_its += d->saddle->its;
   if (d->saddle->why < 0)
