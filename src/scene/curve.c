@@ -1,6 +1,5 @@
 /* Closed curves: ellipses and periodic cubic splines, and equal chords along them. */
 #include "scene/scene.h"
-#include <errno.h>
 
 /* Quadrature points for the length of a curve: the trapezoidal sum converges geometrically for an ellipse. */
 #define CURVE_SAMPLES 4000
@@ -154,112 +153,19 @@ PetscErrorCode CurveDestroy(Curve *c) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-typedef struct {
-  PetscInt n;
-  PetscReal *xy;
-  char error[PETVES_MAX_MESSAGE];
-} Points;
-
-/* Read "x y" lines on one rank; what is wrong goes into points->error. */
-static PetscErrorCode ReadPoints(const char file[], Points *points) {
-  FILE *f = fopen(file, "r");
-  char line[1024];
-  PetscInt number = 0, capacity = 0;
-  PetscFunctionBeginUser;
-  if (!f) {
-    PetscCall(PetscSNPrintf(points->error, sizeof(points->error),
-                            "-vesicle_file %s: cannot be opened (%s); allowed: a readable text file", file,
-                            strerror(errno)));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  while (fgets(line, sizeof(line), f) && !*points->error) {
-    double x, y;
-    char rest[8];
-    number++;
-    line[strcspn(line, "#\r\n")] = 0;
-    if (line[strspn(line, " \t,")] == 0) continue;
-    for (char *p = line; *p; p++)
-      if (*p == ',') *p = ' ';
-    if (sscanf(line, "%lf %lf %7s", &x, &y, rest) != 2 || PetscIsInfOrNanReal(x) || PetscIsInfOrNanReal(y)) {
-      PetscCall(PetscSNPrintf(points->error, sizeof(points->error),
-                              "-vesicle_file %s: line %" PetscInt_FMT " is \"%.60s\"; allowed: two finite numbers, x y",
-                              file, number, line));
-      break;
-    }
-    if (points->n == capacity) {
-      capacity = capacity ? 2 * capacity : 256;
-      PetscCall(PetscRealloc(2 * capacity * sizeof(PetscReal), &points->xy));
-    }
-    points->xy[2 * points->n] = x;
-    points->xy[2 * points->n++ + 1] = y;
-  }
-  fclose(f);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Drop a repeated last point, turn counter-clockwise, and look for what makes a curve unusable. */
-static PetscErrorCode CleanPoints(const char file[], Points *p) {
-  PetscReal area = 0, length = 0;
-  PetscFunctionBeginUser;
-  if (*p->error) PetscFunctionReturn(PETSC_SUCCESS);
-  if (p->n > 1 && p->xy[0] == p->xy[2 * p->n - 2] && p->xy[1] == p->xy[2 * p->n - 1]) p->n--;
-  if (p->n < 8) {
-    PetscCall(PetscSNPrintf(p->error, sizeof(p->error),
-                            "-vesicle_file %s: %" PetscInt_FMT " points; allowed: at least 8", file, p->n));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  for (PetscInt i = 0; i < p->n; i++) {
-    const PetscReal *a = &p->xy[2 * i], *b = &p->xy[2 * ((i + 1) % p->n)];
-    const PetscReal d = PetscSqrtReal(PetscSqr(b[0] - a[0]) + PetscSqr(b[1] - a[1]));
-    if (d == 0) {
-      PetscCall(PetscSNPrintf(p->error, sizeof(p->error),
-                              "-vesicle_file %s: point %" PetscInt_FMT
-                              " (%g %g) is given twice; allowed: distinct points",
-                              file, i + 1, (double)a[0], (double)a[1]));
-      PetscFunctionReturn(PETSC_SUCCESS);
-    }
-    area += 0.5 * (a[0] * b[1] - b[0] * a[1]);
-    length += d;
-  }
-  if (PetscAbsReal(area) < 1e-6 * length * length)
-    PetscCall(PetscSNPrintf(p->error, sizeof(p->error),
-                            "-vesicle_file %s: the curve encloses an area of %g; allowed: a closed simple curve", file,
-                            (double)area));
-  for (PetscInt i = 1, k = p->n - 1; area < 0 && i < k; i++, k--)
-    for (int c = 0; c < 2; c++) {
-      const PetscReal swap = p->xy[2 * i + c];
-      p->xy[2 * i + c] = p->xy[2 * k + c];
-      p->xy[2 * k + c] = swap;
-    }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode CurveFromFile(MPI_Comm comm, const char file[], Curve *c) {
-  Points p = {0};
-  PetscMPIInt rank;
+PetscErrorCode CurveFromPoints(PetscInt n, const PetscReal xy[], Curve *c) {
   PetscReal length = 0;
   PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_rank(comm, &rank));
-  if (!rank) {
-    PetscCall(ReadPoints(file, &p));
-    PetscCall(CleanPoints(file, &p));
-  }
-  PetscCallMPI(MPI_Bcast(p.error, sizeof(p.error), MPI_CHAR, 0, comm));
-  PetscCallMPI(MPI_Bcast(&p.n, 1, MPIU_INT, 0, comm));
-  PetscCheck(!*p.error, comm, PETSC_ERR_USER_INPUT, "%s", p.error);
-  if (rank) PetscCall(PetscMalloc1(2 * p.n, &p.xy));
-  PetscCallMPI(MPI_Bcast(p.xy, (PetscMPIInt)(2 * p.n), MPIU_REAL, 0, comm));
-  c->n = p.n;
-  PetscCall(PetscMalloc5(p.n + 1, &c->t, p.n + 1, &c->x[0], p.n + 1, &c->x[1], p.n + 1, &c->m[0], p.n + 1, &c->m[1]));
-  for (PetscInt i = 0; i <= p.n; i++) {
-    const PetscInt k = i % p.n;
-    c->x[0][i] = p.xy[2 * k];
-    c->x[1][i] = p.xy[2 * k + 1];
+  c->n = n;
+  PetscCall(PetscMalloc5(n + 1, &c->t, n + 1, &c->x[0], n + 1, &c->x[1], n + 1, &c->m[0], n + 1, &c->m[1]));
+  for (PetscInt i = 0; i <= n; i++) {
+    const PetscInt k = i % n;
+    c->x[0][i] = xy[2 * k];
+    c->x[1][i] = xy[2 * k + 1];
     if (i) length += PetscSqrtReal(PetscSqr(c->x[0][i] - c->x[0][i - 1]) + PetscSqr(c->x[1][i] - c->x[1][i - 1]));
     c->t[i] = length;
   }
-  for (PetscInt i = 0; i <= p.n; i++) c->t[i] /= length;
-  PetscCall(PetscFree(p.xy));
+  for (PetscInt i = 0; i <= n; i++) c->t[i] /= length;
   PetscCall(SplineSetUp(c));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -49,8 +49,9 @@ struct _p_Scene {
   PetscReal viscosity;                 /* nu (density is 1) */
   PetscInt inertia;                    /* index in -fluid_inertia's list */
   PetscInt shape;                      /* ShapeType */
-  RealList axes, center, angle;        /* semi-axes, centre, angle in degrees */
-  PetscReal area, reduced_area;        /* of the ellipse, instead of semi-axes */
+  PetscInt count;                      /* vesicles */
+  RealList axes, center, angle;        /* semi-axes, centre, angle in degrees; one entry for all, or one a vesicle */
+  RealList area, reduced_area;         /* of the ellipses, instead of semi-axes */
   char file[PETSC_MAX_PATH_LEN];       /* curve file */
   PetscReal bending;                   /* c_b */
   PetscReal spacing;                   /* ds/h; 0: by kernel */
@@ -128,9 +129,13 @@ PETSC_EXTERN PetscReal CurveLength(const Curve *curve);
 /* CurveEqualChords - place M points on the curve so that all M chords are equal; X[2M], first point at t = 0. */
 PETSC_EXTERN PetscErrorCode CurveEqualChords(const Curve *curve, PetscInt M, PetscReal X[]);
 
-/* CurveFromFile - closed periodic cubic spline through the points of a text file ("x y" a line, # starts a comment),
+/* CurveFromPoints - closed periodic cubic spline through n points xy[2n], by chord length. */
+PETSC_EXTERN PetscErrorCode CurveFromPoints(PetscInt n, const PetscReal xy[], Curve *curve);
+
+/* CurvesFromFile - the closed curves of a text file ("x y" a line, # starts a comment, an empty line ends a curve),
    turned counter-clockwise. Collective: rank 0 reads. */
-PETSC_EXTERN PetscErrorCode CurveFromFile(MPI_Comm comm, const char file[], Curve *curve);
+PETSC_EXTERN PetscErrorCode CurvesFromFile(MPI_Comm comm, const char file[], PetscInt *curves,
+                                           Curve curve[SCENE_MAX_LIST]);
 PETSC_EXTERN PetscErrorCode CurveDestroy(Curve *curve);
 
 /* EllipseAxes - semi-axes a >= b of the ellipse with the given area and reduced area V = 4 pi area / perimeter^2. */

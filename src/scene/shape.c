@@ -23,31 +23,93 @@ static PetscErrorCode MarkerCount(Scene scene, PetscReal length, PetscReal spaci
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode ShapeCreate(Scene scene, PetscReal default_spacing, PetscReal least_spacing, Shape *shape) {
-  Curve curve = {0};
-  PetscInt M;
-  const PetscReal turn = scene->angle.v[0] * PETSC_PI / 180, c = PetscCosReal(turn), s = PetscSinReal(turn);
+/* Entry k of a list that has one entry for all or one a vesicle. */
+static PetscReal Entry(const RealList *list, PetscInt each, PetscInt vesicle, PetscInt component) {
+  return list->v[list->n > each ? each * vesicle + component : component];
+}
+
+/* The scene's curves about the origin. */
+static PetscErrorCode MakeCurves(Scene scene, PetscInt *count, Curve curve[]) {
+  const PetscBool by_area = SceneGiven(scene, "-vesicle_area") || SceneGiven(scene, "-vesicle_reduced_area");
   PetscFunctionBeginUser;
-  shape->vesicles = scene->shape == SHAPE_NONE ? 0 : 1;
-  PetscCall(PetscCalloc1(shape->vesicles + 1, &shape->start));
-  shape->X = NULL;
-  if (!shape->vesicles) PetscFunctionReturn(PETSC_SUCCESS);
-  if (scene->shape == SHAPE_FILE)
-    PetscCall(CurveFromFile(scene->comm, scene->file, &curve));
-  else if (SceneGiven(scene, "-vesicle_area") || SceneGiven(scene, "-vesicle_reduced_area"))
-    PetscCall(EllipseAxes(scene->area, scene->reduced_area, curve.axes));
-  else
-    PetscCall(PetscArraycpy(curve.axes, scene->axes.v, 2));
-  PetscCall(MarkerCount(scene, CurveLength(&curve), default_spacing, least_spacing, &M));
-  shape->start[1] = M;
-  PetscCall(PetscMalloc1(2 * M, &shape->X));
-  PetscCall(CurveEqualChords(&curve, M, shape->X));
-  PetscCall(CurveDestroy(&curve));
-  for (PetscInt k = 0; k < M; k++) {
-    const PetscReal x = shape->X[2 * k], y = shape->X[2 * k + 1];
-    shape->X[2 * k] = scene->center.v[0] + c * x - s * y;
-    shape->X[2 * k + 1] = scene->center.v[1] + s * x + c * y;
+  *count = scene->shape == SHAPE_NONE ? 0 : scene->count;
+  for (PetscInt k = 0; k < *count && scene->shape == SHAPE_ELLIPSE; k++) {
+    curve[k].n = 0;
+    if (by_area)
+      PetscCall(EllipseAxes(Entry(&scene->area, 1, k, 0), Entry(&scene->reduced_area, 1, k, 0), curve[k].axes));
+    else
+      for (int c = 0; c < 2; c++) curve[k].axes[c] = Entry(&scene->axes, 2, k, c);
   }
+  if (scene->shape != SHAPE_FILE) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(CurvesFromFile(scene->comm, scene->file, count, curve));
+  PetscCheck(!SceneGiven(scene, "-vesicle_count") || scene->count == *count, scene->comm, PETSC_ERR_USER_INPUT,
+             "-vesicle_count %" PetscInt_FMT ": -vesicle_file %s has %" PetscInt_FMT
+             " curves; allowed: the same number",
+             scene->count, scene->file, *count);
+  PetscCheck(scene->center.n == 2 || scene->center.n == 2 * *count, scene->comm, PETSC_ERR_USER_INPUT,
+             "-vesicle_center: %" PetscInt_FMT " numbers given for %" PetscInt_FMT
+             " curves; allowed: two for all or two a curve",
+             scene->center.n, *count);
+  PetscCheck(scene->angle.n == 1 || scene->angle.n == *count, scene->comm, PETSC_ERR_USER_INPUT,
+             "-vesicle_angle: %" PetscInt_FMT " numbers given for %" PetscInt_FMT
+             " curves; allowed: one for all or one a curve",
+             scene->angle.n, *count);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Turn and move markers of vesicle v. */
+static void Place(Scene scene, PetscInt v, PetscInt M, PetscReal X[]) {
+  const PetscReal turn = Entry(&scene->angle, 1, v, 0) * PETSC_PI / 180, c = PetscCosReal(turn), s = PetscSinReal(turn);
+  for (PetscInt k = 0; k < M; k++) {
+    const PetscReal x = X[2 * k], y = X[2 * k + 1];
+    X[2 * k] = Entry(&scene->center, 2, v, 0) + c * x - s * y;
+    X[2 * k + 1] = Entry(&scene->center, 2, v, 1) + s * x + c * y;
+  }
+}
+
+/* Whether (x, y) is inside the polygon X[2M]: crossings of a ray. */
+static PetscBool Inside(PetscInt M, const PetscReal X[], PetscReal x, PetscReal y) {
+  PetscBool inside = PETSC_FALSE;
+  for (PetscInt k = 0, p = M - 1; k < M; p = k++)
+    if ((X[2 * k + 1] > y) != (X[2 * p + 1] > y) &&
+        x < (X[2 * p] - X[2 * k]) * (y - X[2 * k + 1]) / (X[2 * p + 1] - X[2 * k + 1]) + X[2 * k])
+      inside = !inside;
+  return inside;
+}
+
+static PetscErrorCode CheckOverlap(Scene scene, const Shape *s) {
+  PetscFunctionBeginUser;
+  for (PetscInt a = 0; a < s->vesicles; a++)
+    for (PetscInt b = 0; b < s->vesicles; b++)
+      for (PetscInt k = s->start[b]; k < s->start[b + 1] && a != b; k++)
+        PetscCheck(!Inside(s->start[a + 1] - s->start[a], s->X + 2 * s->start[a], s->X[2 * k], s->X[2 * k + 1]),
+                   scene->comm, PETSC_ERR_USER_INPUT,
+                   "-vesicle_center: vesicles %" PetscInt_FMT " and %" PetscInt_FMT
+                   " overlap at (%g, %g); allowed: vesicles apart from one another",
+                   a + 1, b + 1, (double)s->X[2 * k], (double)s->X[2 * k + 1]);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ShapeCreate(Scene scene, PetscReal default_spacing, PetscReal least_spacing, Shape *shape) {
+  Curve curve[SCENE_MAX_LIST] = {0};
+  PetscFunctionBeginUser;
+  shape->X = NULL;
+  PetscCall(MakeCurves(scene, &shape->vesicles, curve));
+  PetscCall(PetscCalloc1(shape->vesicles + 1, &shape->start));
+  for (PetscInt v = 0; v < shape->vesicles; v++) {
+    PetscInt M;
+    PetscCall(MarkerCount(scene, CurveLength(&curve[v]), default_spacing, least_spacing, &M));
+    shape->start[v + 1] = shape->start[v] + M;
+  }
+  PetscCall(PetscMalloc1(2 * shape->start[shape->vesicles], &shape->X));
+  for (PetscInt v = 0; v < shape->vesicles; v++) {
+    PetscReal *X = shape->X + 2 * shape->start[v];
+    const PetscInt M = shape->start[v + 1] - shape->start[v];
+    PetscCall(CurveEqualChords(&curve[v], M, X));
+    PetscCall(CurveDestroy(&curve[v]));
+    Place(scene, v, M, X);
+  }
+  PetscCall(CheckOverlap(scene, shape));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -39,18 +39,29 @@ static PetscErrorCode CheckFlow(Scene scene) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* A list has `each` numbers a vesicle, or (shared) `each` for all of them. */
+static PetscErrorCode CheckList(Scene scene, const char name[], PetscInt n, PetscInt each, PetscBool shared) {
+  PetscFunctionBeginUser;
+  PetscCheck(n == each * scene->count || (shared && n == each), scene->comm, PETSC_ERR_USER_INPUT,
+             "%s: %" PetscInt_FMT " numbers given; allowed: %" PetscInt_FMT " for each of -vesicle_count %" PetscInt_FMT
+             " vesicles%s",
+             name, n, each, scene->count, shared ? ", or once for all" : "");
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode CheckVesicle(Scene scene) {
   const PetscBool by_area = SceneGiven(scene, "-vesicle_area") || SceneGiven(scene, "-vesicle_reduced_area");
   PetscFunctionBeginUser;
   PetscCheck(!(by_area && SceneGiven(scene, "-vesicle_semi_axes")), scene->comm, PETSC_ERR_USER_INPUT,
              "-vesicle_semi_axes: given together with -vesicle_area or -vesicle_reduced_area; allowed: one description "
              "of the ellipse");
-  PetscCheck(scene->axes.n == 2, scene->comm, PETSC_ERR_USER_INPUT,
-             "-vesicle_semi_axes: %" PetscInt_FMT " numbers given; allowed: two", scene->axes.n);
-  PetscCheck(scene->center.n == 2, scene->comm, PETSC_ERR_USER_INPUT,
-             "-vesicle_center: %" PetscInt_FMT " numbers given; allowed: two, x and y", scene->center.n);
-  PetscCheck(scene->angle.n == 1, scene->comm, PETSC_ERR_USER_INPUT,
-             "-vesicle_angle: %" PetscInt_FMT " numbers given; allowed: one", scene->angle.n);
+  PetscCall(CheckList(scene, "-vesicle_semi_axes", scene->axes.n, 2, PETSC_TRUE));
+  PetscCall(CheckList(scene, "-vesicle_area", scene->area.n, 1, PETSC_TRUE));
+  PetscCall(CheckList(scene, "-vesicle_reduced_area", scene->reduced_area.n, 1, PETSC_TRUE));
+  if (scene->shape != SHAPE_FILE) { /* the number of curves is known later */
+    PetscCall(CheckList(scene, "-vesicle_center", scene->center.n, 2, PETSC_FALSE));
+    PetscCall(CheckList(scene, "-vesicle_angle", scene->angle.n, 1, PETSC_TRUE));
+  }
   PetscCheck(scene->shape != SHAPE_FILE || *scene->file, scene->comm, PETSC_ERR_USER_INPUT,
              "-vesicle_shape file: no -vesicle_file given; allowed: a text file with x y a line");
   PetscCheck(!*scene->file || scene->shape == SHAPE_FILE, scene->comm, PETSC_ERR_USER_INPUT,
@@ -109,11 +120,12 @@ PetscErrorCode SceneView(Scene scene, const Shape *shape, PetscViewer v) {
   PetscCall(PetscViewerASCIIPrintf(v, "background flow: %s\n", flows[scene->flow.type]));
   if (!shape->vesicles) PetscCall(PetscViewerASCIIPrintf(v, "vesicle: none (no tension solve, no bending solve)\n"));
   for (PetscInt k = 0; k < shape->vesicles; k++)
-    PetscCall(PetscViewerASCIIPrintf(v, "vesicle %" PetscInt_FMT ": %" PetscInt_FMT " markers, tension on, bending %s",
-                                     k + 1, shape->start[k + 1] - shape->start[k],
-                                     scene->bending > 0 ? "on" : "off (no bending solve)\n"));
+    PetscCall(PetscViewerASCIIPrintf(v, "vesicle %" PetscInt_FMT ": %" PetscInt_FMT " markers, tension on\n", k + 1,
+                                     shape->start[k + 1] - shape->start[k]));
   if (shape->vesicles && scene->bending > 0)
-    PetscCall(PetscViewerASCIIPrintf(v, ", c_b = %g\n", (double)scene->bending));
+    PetscCall(PetscViewerASCIIPrintf(v, "bending: on, c_b = %g\n", (double)scene->bending));
+  else
+    PetscCall(PetscViewerASCIIPrintf(v, "bending: off\n"));
   PetscCall(PetscViewerASCIIPrintf(v, "kernel: %s\n", shape->vesicles ? scene->delta : "not used"));
   PetscCall(PetscViewerASCIIPrintf(v, "scheme: %s, order %" PetscInt_FMT ", dt = %g to t = %g\n", scene->scheme,
                                    scene->order, (double)scene->dt, (double)scene->t_end));
