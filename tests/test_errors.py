@@ -86,17 +86,7 @@ def stops_with(run, needles):
 def test_mistake_is_named(name, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     options, ranks, needles = MISTAKES[name]
-    # the mistake comes last, after the folder where it concerns the folder
-    scene = f"{SMALL} -output_dir {tmp_path / 'out'} {options}"
-    stops_with(run_last(tmp_path, scene, ranks), needles)
-
-
-def run_last(folder, options, ranks):
-    """run_petves puts -output_dir at the end; here the options have the last word."""
-    from conftest import PETVES, Run, mpirun, without_mpirun
-
-    done = mpirun([PETVES, *options.split()], ranks, timeout=60)
-    return Run(folder / "out", done.returncode, done.stdout, without_mpirun(done.stderr))
+    stops_with(run_petves(tmp_path / "out", f"{SMALL} {options}", ranks, good=False, timeout=60), needles)
 
 
 def circle(n: int) -> list[str]:

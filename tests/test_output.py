@@ -138,7 +138,8 @@ def test_summary_agrees_with_series(run):
 
 def test_resolved_options_repeat_the_run(run, tmp_path):
     """The same bits in every column but wall, and the same resolved options but the folder."""
-    again = run_petves(tmp_path / "again", f"-options_file {run.folder / 'resolved.opts'}", ranks=2)
+    folder = tmp_path / "again"
+    again = run_petves(folder, f"-options_file {run.folder / 'resolved.opts'} -output_dir {folder}", ranks=2)
     one, two = run.series, read_series(again.folder / "series.csv")
     for name in COLUMNS[:-1]:
         np.testing.assert_array_equal(two[name], one[name], err_msg=name)

@@ -32,6 +32,29 @@ def test_ranks_agree(scene, cached_run):
             np.testing.assert_allclose(other[name], one[name], rtol=0, atol=tolerance, err_msg=f"{name}, {ranks} ranks")
 
 
+@pytest.mark.parametrize("ranks", [3, 5, 8])
+def test_odd_grid_runs_on_many_ranks(ranks, cached_run):
+    """45 x 47 cells: slabs of unequal height, the last one the lowest."""
+    options = f"-domain_box -0.9,0.9,-0.94,0.94 -domain_cells 45,47 -time_step 0.01 -time_end 0.05 {TIGHT}"
+    one, many = cached_run(options, 1).series, cached_run(options, ranks).series
+    for name in set(COLUMNS) - {"wall", "inclination"}:  # the long axis lies along y, where the angle jumps by pi
+        np.testing.assert_allclose(many[name], one[name], rtol=0, atol=1e-10, err_msg=name)
+
+
+@pytest.mark.parametrize("center", ["1,0", "0,0.96875", "1,-0.96875"])
+def test_seams_do_not_matter(center, cached_run):
+    """A periodic box: the vesicle moved by whole cells, across one seam or two, does the same."""
+    options = (
+        f"-domain_cells 64,64 -domain_bc_x periodic -domain_bc_y periodic -vesicle_angle 20 -time_step 0.01 {TIGHT}"
+    )
+    middle = cached_run(f"{options} -time_end 0.1 -vesicle_center 0,0", 1).series
+    moved = cached_run(f"{options} -time_end 0.1 -vesicle_center {center}", 2).series
+    for i, name in enumerate(("center_x", "center_y")):
+        np.testing.assert_allclose(moved[name], middle[name] + float(center.split(",")[i]), rtol=0, atol=1e-10)
+    for name in set(COLUMNS) - {"wall", "center_x", "center_y"}:
+        np.testing.assert_allclose(moved[name], middle[name], rtol=0, atol=1e-10, err_msg=name)
+
+
 @pytest.mark.parametrize("scene", SCENES)
 def test_velocity_is_divergence_free(scene, cached_run):
     for ranks in (1, 2, 4):
@@ -39,47 +62,53 @@ def test_velocity_is_divergence_free(scene, cached_run):
         assert series["div_max"].max() < 1e-11
 
 
-#: Scenes by cell size, and the relative tolerance h^2 that is the tension solve's default.
-TOLERANCES = [
-    (SHEAR + " -vesicle_markers 50 -time_end 5", (1 / 32) ** 2),
-    ("-domain_cells 128,128 -flow_type shear -time_step 0.00390625 -vesicle_markers 98 -time_end 5", (1 / 64) ** 2),
-    ("-domain_cells 128,128 -time_step 0.015625 -time_end 1", (1 / 64) ** 2),
-    ("-domain_cells 256,256 -flow_type shear -time_step 0.001953125 -time_end 0.01953125", (1 / 128) ** 2),
-    (SCENES["walls"] + " " + TIGHT, 1e-12),
-    (SCENES["channel"] + " " + TIGHT, 1e-12),
-    (SCENES["shear"] + " " + TIGHT, 1e-12),
-]
+#: Table 7 by 1/h: options and rank count.
+TABLE_7 = {
+    "32": (SHEAR + " -vesicle_markers 50 -time_end 5", 1),
+    "64": ("-domain_cells 128,128 -flow_type shear -time_step 0.00390625 -vesicle_markers 98 -time_end 5", 2),
+}
+
+#: Options, rank count and relative tolerance of the tension solve, h^2 by default.
+CONSTRAINED = {
+    "table_7_h_1/32": (*TABLE_7["32"], (1 / 32) ** 2),
+    "table_7_h_1/64": (*TABLE_7["64"], (1 / 64) ** 2),
+    "relaxation_h_1/64": ("-domain_cells 128,128 -time_step 0.015625 -time_end 1.5", 2, (1 / 64) ** 2),
+    "shear_h_1/128": (
+        "-domain_cells 256,256 -flow_type shear -time_step 0.001953125 -time_end 0.01953125",
+        2,
+        (1 / 128) ** 2,
+    ),
+} | {f"{name}_tight": (f"{options} {TIGHT}", 1, 1e-12) for name, options in SCENES.items()}
 
 
-@pytest.mark.parametrize("options,tolerance", TOLERANCES)
-def test_surface_divergence_is_within_tolerance(options, tolerance, cached_run):
+@pytest.mark.parametrize("name", CONSTRAINED)
+def test_surface_divergence_is_within_tolerance(name, cached_run):
     """Below 10 times the relative tolerance of the tension solve, at every step.
 
     The tolerance is on |S^T u - g| over its size before the solve, so strictly the bound scales with the flow; in
-    these scenes that size is of order one. The largest ratio falls on the first steps, where the tension, which starts
-    at zero, is found.
+    these scenes that size is of order one. The largest ratio (1 to 3) falls on the first steps, where the tension,
+    which starts at zero, is found.
     """
-    ranks = 2 if "256" in options or "128,128" in options else 1
+    options, ranks, tolerance = CONSTRAINED[name]
     series = cached_run(options, ranks).series
     assert series["surface_div_max"][1:].max() < 10 * tolerance
     assert series["div_max"].max() < 1e-11
     assert series["surface_div_max"][1:].min() > 0, "a zero would mean that nothing is measured"
 
 
-@pytest.mark.parametrize("cells,markers,index", [(64, 50, 0), (128, 98, 1)])
-def test_table_7_is_reproduced(cells, markers, index, cached_run):
+@pytest.mark.parametrize("cells_a_length", TABLE_7)
+def test_table_7_is_reproduced(cells_a_length, cached_run):
     """Area and length errors of the paper's shear table within 2 %, default tolerances."""
-    series = cached_run(TOLERANCES[index][0], index + 1).series
-    table, row = REFERENCES["table7"], str(cells // 2)
+    series = cached_run(*TABLE_7[cells_a_length]).series
+    table = REFERENCES["table7"]
     assert series["time"][-1] == pytest.approx(5)
-    assert f"-vesicle_markers {markers}" in TOLERANCES[index][0]
-    assert abs(series["area_error"][-1]) == pytest.approx(table["area"][row], rel=0.02)
-    assert abs(series["length_error"][-1]) == pytest.approx(table["length"][row], rel=0.02)
+    assert abs(series["area_error"][-1]) == pytest.approx(table["area"][cells_a_length], rel=0.02)
+    assert abs(series["length_error"][-1]) == pytest.approx(table["length"][cells_a_length], rel=0.02)
 
 
 def test_table_7_agrees_with_the_prototype(cached_run):
     """Both GMRES tolerances 1e-12: the prototype's area and length errors to its four digits."""
-    series = cached_run(f"{TOLERANCES[0][0]} {TIGHT}", 1).series
+    series = cached_run(f"{TABLE_7['32'][0]} {TIGHT}", 1).series
     want = REFERENCES["table7_tight"]
     assert abs(series["area_error"][-1]) == pytest.approx(want["area"], abs=0.51e-6)
     assert abs(series["length_error"][-1]) == pytest.approx(want["length"], abs=0.51e-6)
@@ -142,10 +171,10 @@ def test_no_vesicle_is_a_plain_projection_step(tmp_path):
 
 @pytest.mark.parametrize("kernel", ["cbs32", "cbs43", "cbs54", "cbs65"])
 def test_kernels_agree(kernel, cached_run):
-    """One unit of shear: angle within KERNEL_ANGLE of ib6's, area kept as well as h = 1/32 allows."""
+    """One unit of shear: angle within 1 % of ib6's (measured 0.7 %); area drift of the order of the step's, as ib6's."""
     options = SHEAR + " -time_end 1 -delta_type "
     ib6, other = (cached_run(options + name, 1).series for name in ("ib6", kernel))
-    assert other["inclination"][-1] == pytest.approx(ib6["inclination"][-1], rel=0.02)
+    assert other["inclination"][-1] == pytest.approx(ib6["inclination"][-1], rel=0.01)
     assert other["inclination"][-1] != ib6["inclination"][-1]
     assert np.abs(other["area_error"]).max() < 3e-3
 
