@@ -115,6 +115,16 @@ def test_bad_curve_file_is_named(name, tmp_path):
     stops_with(run_petves(tmp_path / "out", options, ranks=2, good=False), ["-vesicle_file", str(path), *needles])
 
 
+@pytest.mark.parametrize("name", ["series.csv", "run.h5", "run.xmf", "resolved.opts", "checkpoint.h5", "summary.json"])
+def test_file_that_cannot_be_written_is_named(name, tmp_path):
+    """A folder is in the file's place; every rank stops."""
+    (tmp_path / "out" / name / "in the way").mkdir(parents=True)
+    run = run_petves(tmp_path / "out", SMALL, ranks=2, good=False, timeout=60)
+    assert run.status == 1
+    assert len(run.errors) == 1 and run.errors[0].startswith("petves: error: "), "\n".join(run.errors)
+    assert name in run.errors[0] and "cannot be written" in run.errors[0] and "allowed" in run.errors[0]
+
+
 def test_close_markers_go_on_when_allowed(tmp_path):
     run = run_petves(tmp_path / "out", f"{SMALL} -vesicle_spacing 1.2 -vesicle_allow_close_markers -time_end 0.01")
     assert len(run.series["step"]) == 2
