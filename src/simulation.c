@@ -51,7 +51,8 @@ PetscErrorCode PetvesInitialize(int *argc, char ***argv) {
 }
 
 PetscErrorCode PetvesFinalize(void) {
-  const PetscErrorCode error = PetscFinalize();
+  PetscErrorCode error = PetscPopErrorHandler();
+  if (!error) error = PetscFinalize();
   if (began_mpi && MPI_Finalize()) return PETSC_ERR_MPI;
   return error;
 }
