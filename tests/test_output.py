@@ -174,3 +174,11 @@ def test_view_prints_the_model_in_force(tmp_path):
     for text in ("Model in force", "32 x 32 cells", "nu = 1", "c_b = 0.01", "ib6", "tension_", "bending_", "split"):
         assert text in run.stdout, text
     assert len(run.series["step"]) == 1
+
+
+def test_no_memory_is_left(tmp_path):
+    """PETSc's own account: every PetscMalloc freed and every object destroyed at the end."""
+    options = "-domain_cells 32,32 -flow_type shear -flow_form total -time_step 0.01 -time_end 0.03 -output_every 0.01"
+    run = run_petves(tmp_path / "out", options + " -malloc_debug -malloc_dump", ranks=2)
+    assert not [line for line in run.stdout.splitlines() if " bytes " in line]
+    assert not run.errors
