@@ -16,8 +16,8 @@ TEST_PACKAGES := python3-pytest python3-scipy valgrind clang-format black
 # With PETSC_DIR (and PETSC_ARCH) another PETSc than Debian's.
 PKG := $(if $(PETSC_DIR),PKG_CONFIG_PATH=$(PETSC_DIR)/$(PETSC_ARCH)/lib/pkgconfig) pkg-config
 CC := mpicc
-OPTIMISE := $(if $(SANITIZE),-O1 -g -fsanitize=address$(COMMA)undefined -fno-omit-frame-pointer,-O3 -g -march=x86-64-v3)
 COMMA := ,
+OPTIMISE := $(if $(SANITIZE),-O1 -g -fsanitize=address$(COMMA)undefined -fno-omit-frame-pointer,-O3 -g -march=x86-64-v3)
 CFLAGS = -std=gnu11 -Wall -Wextra -Werror -Wno-unused-parameter -Wno-missing-field-initializers $(OPTIMISE) -fPIC -Iinclude -Isrc \
   $(shell $(PKG) --cflags PETSc hdf5-openmpi fftw3) -DPETVES_COMMIT='"$(shell git describe --always --dirty 2>/dev/null || echo unknown)"'
 LIBS = $(shell $(PKG) --libs PETSc hdf5-openmpi fftw3) -lfftw3_mpi -lm

@@ -1,6 +1,8 @@
 /* A whole run: build everything from the options, step, write. */
 #include "output/output.h"
 #include "petves.h"
+#include <errno.h>
+#include <unistd.h>
 
 struct _p_Simulation {
   Scene scene;
@@ -16,7 +18,32 @@ struct _p_Simulation {
 static const char help[] = "petves: inextensible vesicles in two-dimensional viscous flow.\n"
                            "usage: mpirun -n RANKS petves -options_file scene.opts [-option value ...]\n\n";
 
+/* MPI is started here and not by PETSc, so that a missing -options_file gets its one line: PETSc reads it while it
+   starts and would print a traceback. */
+static PetscBool began_mpi = PETSC_FALSE;
+
+static const char *MissingOptionsFile(int argc, char **argv) {
+  for (int i = 1; i + 1 < argc; i++)
+    if (!strcmp(argv[i], "-options_file") && access(argv[i + 1], R_OK)) return argv[i + 1];
+  return NULL;
+}
+
 PetscErrorCode PetvesInitialize(int *argc, char ***argv) {
+  int running, provided, missing = 0, rank;
+  if (MPI_Initialized(&running)) return PETSC_ERR_MPI;
+  began_mpi = running ? PETSC_FALSE : PETSC_TRUE;
+  if (began_mpi && MPI_Init_thread(argc, argv, PETSC_MPI_THREAD_REQUIRED, &provided)) return PETSC_ERR_MPI;
+  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  if (!rank && MissingOptionsFile(*argc, *argv)) {
+    fprintf(stderr, "petves: error: -options_file %s: cannot be opened (%s); allowed: a readable file of options\n",
+            MissingOptionsFile(*argc, *argv), strerror(errno));
+    missing = 1;
+  }
+  if (MPI_Bcast(&missing, 1, MPI_INT, 0, MPI_COMM_WORLD)) return PETSC_ERR_MPI;
+  if (missing) {
+    if (began_mpi) MPI_Finalize();
+    return PETSC_ERR_FILE_OPEN;
+  }
   PetscFunctionBeginUser;
   PetscCall(PetscInitialize(argc, argv, NULL, help));
   PetscCall(PetscPushErrorHandler(PetvesErrorHandler, NULL));
@@ -24,7 +51,10 @@ PetscErrorCode PetvesInitialize(int *argc, char ***argv) {
 }
 
 PetscErrorCode PetvesFinalize(void) {
-  return PetscFinalize();
+  PetscErrorCode error = PetscPopErrorHandler();
+  if (!error) error = PetscFinalize();
+  if (began_mpi && MPI_Finalize()) return PETSC_ERR_MPI;
+  return error;
 }
 
 static PetscErrorCode Build(MPI_Comm comm, Simulation s) {

@@ -1,4 +1,5 @@
 #include "base/base.h"
+#include <ctype.h>
 
 /* Program-wide logging and error state: the one place where it lives, as PETSc's own logging is program-wide too. */
 static struct {
@@ -14,6 +15,21 @@ static struct {
 
 const char *const PhaseNames[PHASE_COUNT] = {"setup", "step", "fast_solve", "output"};
 
+/* PETSc's own messages about a solver option name its value only: the first solver option of the database whose value
+   is a word of the message, as "-name value: ", else nothing. */
+static void NameOption(const char *message, char name[], size_t length) {
+  char *all = NULL, *word, *last = NULL, *end = NULL;
+  name[0] = 0;
+  if (PetscOptionsGetAll(NULL, &all)) return;
+  for (word = strtok_r(all, " \n", &end); word && !*name; last = word, word = strtok_r(NULL, " \n", &end)) {
+    const char *found = last && (strstr(last, "_ksp_") || strstr(last, "_pc_")) ? strstr(message, word) : NULL;
+    if (!found || (found > message && !isspace((unsigned char)found[-1]))) continue;
+    const char after = found[strlen(word)];
+    if (!after || isspace((unsigned char)after)) (void)PetscSNPrintf(name, length, "%s %s: ", last, word);
+  }
+  (void)PetscFree(all);
+}
+
 PetscErrorCode PetvesErrorHandler(MPI_Comm comm, int line, const char *function, const char *file, PetscErrorCode code,
                                   PetscErrorType type, const char *message, void *ctx) {
   PetscMPIInt rank = 0;
@@ -21,12 +37,13 @@ PetscErrorCode PetvesErrorHandler(MPI_Comm comm, int line, const char *function,
     return PetscTraceBackErrorHandler(comm, line, function, file, code, type, message, ctx);
   MPI_Comm_rank(MPI_COMM_WORLD, &rank);
   if (type == PETSC_ERROR_INITIAL && !rank) {
-    char text[PETVES_MAX_MESSAGE];
+    char text[PETVES_MAX_MESSAGE], name[PETVES_MAX_MESSAGE] = "";
     size_t n = 0;
+    if (code != PETSC_ERR_USER_INPUT && message) NameOption(message, name, sizeof(name));
     for (const char *c = message ? message : "unknown error"; *c && n < sizeof(text) - 1; c++)
       text[n++] = *c == '\n' ? ' ' : *c;
     text[n] = 0;
-    fprintf(stderr, "petves: error: %s\n", text);
+    fprintf(stderr, "petves: error: %s%s\n", name, text);
     fflush(stderr);
   }
   return code;

@@ -167,14 +167,7 @@ static void XdmfVesicle(Output o, FILE *f, PetscInt t, PetscInt v) {
   fprintf(f, "</Attribute></Grid>\n");
 }
 
-PetscErrorCode OutputXdmf(Output o) {
-  char path[PETSC_MAX_PATH_LEN];
-  FILE *f;
-  PetscFunctionBeginUser;
-  if (o->rank) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(OutputPath(o, "run.xmf", path));
-  f = fopen(path, "w");
-  PetscCheck(f, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "%s: cannot be written", path);
+static void WriteXdmf(Output o, FILE *f) {
   fprintf(f, "<?xml version=\"1.0\"?>\n<Xdmf Version=\"2.0\"><Domain>\n<Grid Name=\"run\" GridType=\"Collection\" "
              "CollectionType=\"Temporal\">\n");
   for (PetscInt t = 0; t < o->frames; t++) {
@@ -185,6 +178,15 @@ PetscErrorCode OutputXdmf(Output o) {
     fprintf(f, "</Grid>\n");
   }
   fprintf(f, "</Grid>\n</Domain></Xdmf>\n");
-  fclose(f);
+}
+
+PetscErrorCode OutputXdmf(Output o) {
+  char path[PETSC_MAX_PATH_LEN];
+  FILE *f = NULL;
+  PetscFunctionBeginUser;
+  PetscCall(OutputPath(o, "run.xmf", path));
+  if (!o->rank) f = fopen(path, "w");
+  if (f) WriteXdmf(o, f);
+  PetscCall(OutputCheckFile(o, f, path));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -9,6 +9,16 @@ PetscErrorCode OutputPath(Output o, const char file[], char path[PETSC_MAX_PATH_
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode OutputCheckFile(Output o, FILE *f, const char path[]) {
+  PetscMPIInt failed = 0;
+  PetscFunctionBeginUser;
+  if (!o->rank) failed = !f || fclose(f);
+  PetscCallMPI(MPI_Bcast(&failed, 1, MPI_INT, 0, o->comm));
+  PetscCheck(!failed, o->comm, PETSC_ERR_USER_INPUT,
+             "%s: cannot be written; allowed: a folder with space that can be written", path);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* mkdir -p on rank 0. */
 static PetscErrorCode MakeFolder(Output o) {
   PetscMPIInt error = 0;
@@ -99,18 +109,22 @@ static PetscErrorCode WriteOthers(FILE *f) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode OutputResolvedOptions(Output o) {
-  char path[PETSC_MAX_PATH_LEN];
-  FILE *f;
+static PetscErrorCode WriteResolved(Output o, FILE *f) {
   PetscFunctionBeginUser;
-  if (o->rank) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(OutputPath(o, "resolved.opts", path));
-  f = fopen(path, "w");
-  PetscCheck(f, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "%s: cannot be written", path);
   fprintf(f, "# every option in force: mpirun -n RANKS petves -options_file resolved.opts repeats the run\n");
   PetscCall(SceneWriteOptions(o->scene, f));
   if (o->scheme->options) PetscCall(o->scheme->options(o->scheme, f));
   PetscCall(WriteOthers(f));
-  fclose(f);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode OutputResolvedOptions(Output o) {
+  char path[PETSC_MAX_PATH_LEN];
+  FILE *f = NULL;
+  PetscFunctionBeginUser;
+  PetscCall(OutputPath(o, "resolved.opts", path));
+  if (!o->rank) f = fopen(path, "w");
+  if (f) PetscCall(WriteResolved(o, f));
+  PetscCall(OutputCheckFile(o, f, path));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

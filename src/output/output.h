@@ -29,6 +29,10 @@ PETSC_EXTERN PetscErrorCode OutputDestroy(Output *output);
 /* OutputPath - name of a file in the folder. */
 PETSC_EXTERN PetscErrorCode OutputPath(Output output, const char file[], char path[PETSC_MAX_PATH_LEN]);
 
+/* OutputCheckFile - stop every rank with one line when rank 0 could not write a file (f NULL or closing it fails, as on
+   a full disk). Collective; the other ranks pass NULL. */
+PETSC_EXTERN PetscErrorCode OutputCheckFile(Output output, FILE *f, const char path[]);
+
 /* OutputSeries - add the scheme's state and last step to series.csv. Collective. */
 PETSC_EXTERN PetscErrorCode OutputSeries(Output output);
 

@@ -35,21 +35,10 @@ static void PrintVersions(FILE *f) {
           release);
 }
 
-PetscErrorCode OutputSummary(Output o, const char reason[]) {
-  char path[PETSC_MAX_PATH_LEN], temporary[PETSC_MAX_PATH_LEN];
+static void WriteSummary(Output o, FILE *f, const char reason[], PetscMPIInt ranks) {
   PetscLogDouble now;
   struct rusage usage;
-  PetscMPIInt ranks;
-  FILE *f;
-  PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_size(o->comm, &ranks));
-  if (o->rank) PetscFunctionReturn(PETSC_SUCCESS);
-  if (o->series) fflush(o->series);
-  PetscCall(OutputPath(o, "summary.json", path));
-  PetscCall(OutputPath(o, "summary.json.tmp", temporary));
-  f = fopen(temporary, "w");
-  PetscCheck(f, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "%s: cannot be written", temporary);
-  PetscCall(PetscTime(&now));
+  (void)PetscTime(&now);
   fprintf(f, "{\n  \"reason\": ");
   PrintString(f, reason);
   fprintf(f, ",\n  \"last\": {");
@@ -73,7 +62,23 @@ PetscErrorCode OutputSummary(Output o, const char reason[]) {
           (int)o->scene->cells.v[0], (int)o->scene->cells.v[1], ranks);
   PrintVersions(f);
   fprintf(f, "  \"git_commit\": \"%s\"\n}\n", PETVES_COMMIT);
-  PetscCheck(!fclose(f) && !rename(temporary, path), PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "%s: cannot be written",
+}
+
+PetscErrorCode OutputSummary(Output o, const char reason[]) {
+  char path[PETSC_MAX_PATH_LEN], temporary[PETSC_MAX_PATH_LEN];
+  PetscMPIInt ranks, failed;
+  FILE *f = NULL;
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_size(o->comm, &ranks));
+  PetscCall(OutputPath(o, "summary.json", path));
+  PetscCall(OutputPath(o, "summary.json.tmp", temporary));
+  if (o->series) fflush(o->series);
+  if (!o->rank) f = fopen(temporary, "w");
+  if (f) WriteSummary(o, f, reason, ranks);
+  PetscCall(OutputCheckFile(o, f, temporary));
+  failed = !o->rank && rename(temporary, path);
+  PetscCallMPI(MPI_Bcast(&failed, 1, MPI_INT, 0, o->comm));
+  PetscCheck(!failed, o->comm, PETSC_ERR_USER_INPUT, "%s: cannot be written; allowed: a folder that can be written",
              path);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

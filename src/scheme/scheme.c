@@ -122,6 +122,11 @@ PetscErrorCode SchemePlaceMarkers(Scheme s, Vec X, PetscBool *placed) {
   PetscCall(CouplingCheckMarkers(s->coupling, x, s->report.failure, sizeof(s->report.failure)));
   *placed = *s->report.failure ? PETSC_FALSE : PETSC_TRUE;
   PetscCall(VecRestoreArrayRead(X, &x));
+  if (!*placed && s->state.step) {
+    const size_t used = strlen(s->report.failure);
+    PetscCall(PetscSNPrintf(s->report.failure + used, sizeof(s->report.failure) - used,
+                            "; after step %" PetscInt_FMT ", time %g", s->state.step, (double)s->state.t));
+  }
   if (!*placed) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(CouplingSetMarkers(s->coupling, X));
   if (s->fluid->total) PetscFunctionReturn(PETSC_SUCCESS);

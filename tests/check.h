@@ -1,0 +1,102 @@
+/* What every C test needs: a program that states facts, one line each ("ok ..." or "not ok ..."), and fails when one
+   does not hold. Each test_*.c is one MPI program, run by test_programs.py on several rank counts. */
+#pragma once
+#include "scheme/scheme.h"
+#include "petves.h"
+
+static int check_failed;
+
+/* CHECK - state a fact; collective: it holds when it holds on every rank. */
+#define CHECK(condition, ...) PetscCall(CheckFact((condition) ? PETSC_TRUE : PETSC_FALSE, __VA_ARGS__))
+
+static inline PetscErrorCode PETSC_ATTRIBUTE_FORMAT(2, 3) CheckFact(PetscBool holds, const char format[], ...) {
+  char text[1024];
+  int here = holds ? 1 : 0, everywhere;
+  va_list arguments;
+  PetscFunctionBeginUser;
+  va_start(arguments, format);
+  vsnprintf(text, sizeof(text), format, arguments);
+  va_end(arguments);
+  PetscCallMPI(MPI_Allreduce(&here, &everywhere, 1, MPI_INT, MPI_MIN, PETSC_COMM_WORLD));
+  if (!everywhere) check_failed++;
+  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "%s %s\n", everywhere ? "ok" : "not ok", text));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* CheckMain - main() of a test program. */
+static inline int CheckMain(int argc, char **argv, PetscErrorCode (*facts)(void)) {
+  if (PetvesInitialize(&argc, &argv)) return 1;
+  const PetscErrorCode error = facts();
+  if (PetvesFinalize() || error) return 1;
+  return check_failed ? 1 : 0;
+}
+
+/* TestScene - the scene of an options text, which replaces what earlier scenes of the same program set. */
+static inline PetscErrorCode TestScene(const char options[], Scene *scene) {
+  PetscFunctionBeginUser;
+  PetscCall(PetscOptionsClear(NULL));
+  PetscCall(PetscOptionsInsertString(NULL, options));
+  PetscCall(SceneCreate(PETSC_COMM_WORLD, scene));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* TestRandom - reproducible numbers in (-1, 1), the same on every rank and in every run. */
+static inline PetscReal TestRandom(unsigned *state) {
+  *state = *state * 1664525u + 1013904223u;
+  return 2 * ((*state >> 8) + 0.5) / (1 << 24) - 1;
+}
+
+/* TestRandomVec - random entries, the same on every rank for a sequential vector, different ones on each rank for a
+   distributed one. */
+static inline PetscErrorCode TestRandomVec(unsigned seed, Vec x) {
+  PetscScalar *a;
+  PetscInt n, first;
+  unsigned state;
+  PetscFunctionBeginUser;
+  PetscCall(VecGetLocalSize(x, &n));
+  PetscCall(VecGetOwnershipRange(x, &first, NULL));
+  state = seed + 7919u * (unsigned)first;
+  PetscCall(VecGetArray(x, &a));
+  for (PetscInt i = 0; i < n; i++) a[i] = TestRandom(&state);
+  PetscCall(VecRestoreArray(x, &a));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A fluid and a membrane in it, from options; no scheme, no files. */
+typedef struct {
+  Scene scene;
+  Fluid fluid;
+  Shape shape;
+  Membrane membrane;
+  Coupling coupling;
+  Vec X;
+} TestWorld;
+
+static inline PetscErrorCode TestWorldCreate(const char options[], TestWorld *w) {
+  PetscScalar *x;
+  const Kernel *kernel;
+  PetscFunctionBeginUser;
+  PetscCall(TestScene(options, &w->scene));
+  PetscCall(FluidCreate(w->scene, &w->fluid));
+  kernel = KernelFind(w->scene->delta);
+  PetscCall(ShapeCreate(w->scene, kernel->default_spacing, kernel->least_spacing, &w->shape));
+  PetscCall(MembraneCreate(&w->shape, w->scene->bending, &w->membrane));
+  PetscCall(CouplingCreate(w->fluid->grid, w->membrane, w->scene->delta, &w->coupling));
+  PetscCall(MembraneCreateMarkerVec(w->membrane, &w->X));
+  PetscCall(VecGetArray(w->X, &x));
+  PetscCall(PetscArraycpy(x, w->shape.X, 2 * w->membrane->M));
+  PetscCall(VecRestoreArray(w->X, &x));
+  PetscCall(CouplingSetMarkers(w->coupling, w->X));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static inline PetscErrorCode TestWorldDestroy(TestWorld *w) {
+  PetscFunctionBeginUser;
+  PetscCall(VecDestroy(&w->X));
+  PetscCall(CouplingDestroy(&w->coupling));
+  PetscCall(MembraneDestroy(&w->membrane));
+  PetscCall(ShapeDestroy(&w->shape));
+  PetscCall(FluidDestroy(&w->fluid));
+  PetscCall(SceneDestroy(&w->scene));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,120 @@
+"""Helpers of the tests: run petves under mpirun, read what it leaves, and end with one plain line of counts."""
+
+import csv
+import os
+import subprocess
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+ROOT = Path(__file__).resolve().parent.parent
+PETVES = os.environ.get("PETVES", str(ROOT / "bin" / "petves"))
+PROGRAMS = Path(os.environ.get("PETVES_TESTS", str(ROOT / "build" / "tests")))
+SANITIZE = bool(os.environ.get("SANITIZE"))
+
+#: What Open MPI needs as root and on few cores, and what the sanitizers need: MPI and PETSc leak by themselves.
+ENVIRONMENT = {
+    "OMPI_ALLOW_RUN_AS_ROOT": "1",
+    "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+    "OMPI_MCA_rmaps_base_oversubscribe": "1",
+    "OMPI_MCA_mpi_yield_when_idle": "1",
+    "OMPI_MCA_btl_vader_single_copy_mechanism": "none",
+    "OMP_NUM_THREADS": "1",
+    "ASAN_OPTIONS": "detect_leaks=0",
+    "UBSAN_OPTIONS": "halt_on_error=1:print_stacktrace=1",
+}
+
+COLUMNS = (
+    "step,time,dt,energy_kinetic,energy_bending,area,length,area_error,length_error,edge_ratio,div_max,"
+    "surface_div_max,center_x,center_y,inclination,frequency,tension_its,bending_its,coupled_its,nsolve,wall"
+).split(",")
+
+
+def mpirun(command: list[str], ranks: int, timeout: float = 300, wrapper: tuple[str, ...] = (), **environment: str):
+    """Run a command on `ranks` ranks; returns the CompletedProcess with text streams."""
+    return subprocess.run(
+        ["mpirun", "-n", str(ranks), *wrapper, *command],
+        env={**os.environ, **ENVIRONMENT, **environment},
+        capture_output=True,
+        text=True,
+        timeout=timeout,
+    )
+
+
+def without_mpirun(text: str) -> list[str]:
+    """Lines of standard error that are not mpirun's own report, which it frames in dashes."""
+    lines, inside = [], False
+    for line in text.splitlines():
+        if line.startswith("-----"):
+            inside = not inside
+        elif not inside and line.strip():
+            lines.append(line)
+    return lines
+
+
+def read_series(path: Path) -> dict[str, np.ndarray]:
+    """Columns of a series.csv by name; an empty entry is NaN."""
+    with open(path, newline="") as file:
+        rows = list(csv.reader(file))
+    values = np.array([[float(x) if x else np.nan for x in row] for row in rows[1:]])
+    return {name: values[:, i] for i, name in enumerate(rows[0])}
+
+
+@dataclass
+class Run:
+    """A finished run: its folder, exit status, output and standard error without mpirun's lines."""
+
+    folder: Path
+    status: int
+    stdout: str
+    errors: list[str]
+
+    @property
+    def series(self) -> dict[str, np.ndarray]:
+        return read_series(self.folder / "series.csv")
+
+
+def run_petves(folder: Path, options: str, ranks: int = 1, good: bool = True, timeout: float = 300) -> Run:
+    """Run petves with its output in `folder`, unless the options say another; with `good` the run must end well."""
+    done = mpirun([PETVES, "-output_dir", str(folder), *options.split()], ranks, timeout)
+    run = Run(folder, done.returncode, done.stdout, without_mpirun(done.stderr))
+    if good:
+        assert run.status == 0, f"petves {options}\n{done.stdout}\n{done.stderr}"
+    return run
+
+
+@pytest.fixture(scope="session")
+def cached_run(tmp_path_factory):
+    """run_petves for runs that several tests look at: each is made once."""
+    runs: dict[tuple[str, int], Run] = {}
+
+    def get(options: str, ranks: int = 1) -> Run:
+        if (options, ranks) not in runs:
+            runs[options, ranks] = run_petves(tmp_path_factory.mktemp("run"), options, ranks)
+        return runs[options, ranks]
+
+    return get
+
+
+_passed: set[str] = set()
+_failed: set[str] = set()
+
+
+def pytest_runtest_logreport(report):
+    if report.failed:
+        _failed.add(report.nodeid)
+    elif report.when == "call" and report.passed:
+        _passed.add(report.nodeid)
+
+
+def pytest_collectreport(report):
+    if report.failed:
+        _failed.add(report.nodeid)
+
+
+def pytest_unconfigure(config):
+    """The last line of all; errors of set-up or collection count as failures."""
+    if not config.option.collectonly:
+        print(f"{len(_passed - _failed)} passed, {len(_failed)} failed", flush=True)

@@ -1,0 +1,214 @@
+/* Operator pairs are exact transposes, on random data, for every boundary pair, with markers across periodic seams and
+   slab borders; shells equal the assembled operators. */
+#include "check.h"
+
+#define TOLERANCE 1e-13 /* relative: round-off of sums of some thousand terms */
+
+/* |<A x, y> - <x, A^T y>| over the size of the terms in the sums, for a MatShell between distributed vectors. */
+static PetscErrorCode PairError(Mat A, Vec x, Vec y, PetscReal *error) {
+  Vec Ax, Aty;
+  PetscReal one, two, size[4];
+  PetscFunctionBeginUser;
+  PetscCall(VecDuplicate(y, &Ax));
+  PetscCall(VecDuplicate(x, &Aty));
+  PetscCall(MatMult(A, x, Ax));
+  PetscCall(MatMultTranspose(A, y, Aty));
+  PetscCall(VecDot(Ax, y, &one));
+  PetscCall(VecDot(x, Aty, &two));
+  PetscCall(VecNorm(Ax, NORM_2, &size[0]));
+  PetscCall(VecNorm(y, NORM_2, &size[1]));
+  PetscCall(VecNorm(Aty, NORM_2, &size[2]));
+  PetscCall(VecNorm(x, NORM_2, &size[3]));
+  *error = PetscAbsReal(one - two) / PetscMax(size[0] * size[1], size[2] * size[3]);
+  PetscCall(VecDestroy(&Ax));
+  PetscCall(VecDestroy(&Aty));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The same for spreading and interpolation: x on the markers, w a velocity; spread w = A x, interpolate x = A^T w. */
+static PetscErrorCode SpreadError(TestWorld *t, Mat A, Vec x, Vec w, PetscReal *error) {
+  Vec spread, back;
+  PetscReal one, two, size[4];
+  PetscFunctionBeginUser;
+  PetscCall(VecDuplicate(w, &spread));
+  PetscCall(VecDuplicate(x, &back));
+  PetscCall(VecSet(spread, 0));
+  PetscCall(CouplingSpreadAdd(t->coupling, 1, A, x, spread));
+  PetscCall(CouplingInterpolate(t->coupling, A, w, back));
+  PetscCall(VecDot(spread, w, &one));
+  PetscCall(VecDot(x, back, &two));
+  PetscCall(VecNorm(spread, NORM_2, &size[0]));
+  PetscCall(VecNorm(w, NORM_2, &size[1]));
+  PetscCall(VecNorm(back, NORM_2, &size[2]));
+  PetscCall(VecNorm(x, NORM_2, &size[3]));
+  *error = PetscAbsReal(one - two) / PetscMax(size[0] * size[1], size[2] * size[3]);
+  CHECK(size[0] > 0 && size[2] > 0, "   spreading and interpolation give something: %.3e %.3e", size[0], size[2]);
+  PetscCall(VecDestroy(&spread));
+  PetscCall(VecDestroy(&back));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* |A x - B x| / |A x| on a vector of the shell's domain. */
+static PetscErrorCode Difference(Mat A, Mat B, Vec x, PetscReal *error) {
+  Vec a, b;
+  PetscReal size;
+  PetscFunctionBeginUser;
+  PetscCall(VecDuplicate(x, &a));
+  PetscCall(VecDuplicate(x, &b));
+  PetscCall(MatMult(A, x, a));
+  PetscCall(MatMult(B, x, b));
+  PetscCall(VecNorm(a, NORM_2, &size));
+  PetscCall(VecAXPY(a, -1, b));
+  PetscCall(VecNorm(a, NORM_2, error));
+  *error /= size;
+  PetscCall(VecDestroy(&a));
+  PetscCall(VecDestroy(&b));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* One component's part of a velocity as a vector of its own DMDA, for the assembled operator. */
+static PetscErrorCode HelmholtzFieldError(Grid g, Field f, PetscReal a0, PetscReal nu, Vec w, Vec Hw,
+                                          PetscReal *error) {
+  const PetscInt n = g->columns[f] * g->rows[f], start = f == FIELD_V ? GridLocalU(g) : 0;
+  const PetscScalar *wa;
+  PetscScalar *xa;
+  PetscReal size;
+  Mat A;
+  Vec x, y, Ax;
+  PetscFunctionBeginUser;
+  PetscCall(GridAssemble(g, f, a0, nu, &A));
+  PetscCall(DMCreateGlobalVector(g->da[f], &x));
+  PetscCall(VecDuplicate(x, &y));
+  PetscCall(VecDuplicate(x, &Ax));
+  for (int k = 0; k < 2; k++) {
+    PetscCall(VecGetArrayRead(k ? Hw : w, &wa));
+    PetscCall(VecGetArray(k ? y : x, &xa));
+    PetscCall(PetscArraycpy(xa, wa + start, n));
+    PetscCall(VecRestoreArray(k ? y : x, &xa));
+    PetscCall(VecRestoreArrayRead(k ? Hw : w, &wa));
+  }
+  PetscCall(MatMult(A, x, Ax));
+  PetscCall(VecNorm(Ax, NORM_2, &size));
+  PetscCall(VecAXPY(Ax, -1, y));
+  PetscCall(VecNorm(Ax, NORM_2, error));
+  *error /= size;
+  PetscCall(VecDestroy(&x));
+  PetscCall(VecDestroy(&y));
+  PetscCall(VecDestroy(&Ax));
+  PetscCall(MatDestroy(&A));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CheckFluid(const char name[], Fluid f) {
+  const Grid g = f->grid;
+  Vec w, Hw, p;
+  Mat A;
+  PetscReal error;
+  PetscFunctionBeginUser;
+  PetscCall(DMCreateGlobalVector(g->velocity, &w));
+  PetscCall(DMCreateGlobalVector(g->da[FIELD_P], &p));
+  PetscCall(VecDuplicate(w, &Hw));
+  PetscCall(TestRandomVec(1, w));
+  PetscCall(TestRandomVec(2, p));
+  PetscCall(PairError(f->G, p, w, &error));
+  CHECK(error < TOLERANCE, "%s: G and G^T adjoint, error %.1e", name, error);
+  PetscCall(PairError(f->D, w, p, &error));
+  CHECK(error < TOLERANCE, "%s: D and D^T adjoint, error %.1e", name, error);
+  PetscCall(GridAssemble(g, FIELD_P, 0, -1, &A));
+  PetscCall(Difference(f->L, A, p, &error));
+  CHECK(error < TOLERANCE, "%s: L = -G^T G is the assembled Laplacian, error %.1e", name, error);
+  PetscCall(MatDestroy(&A));
+  PetscCall(MatMult(f->H, w, Hw));
+  for (int c = 0; c < 2; c++) {
+    PetscCall(HelmholtzFieldError(g, (Field)c, f->a0, f->nu, w, Hw, &error));
+    CHECK(error < TOLERANCE, "%s: H is the assembled Helmholtz operator of %c, error %.1e", name, c ? 'v' : 'u', error);
+  }
+  PetscCall(VecDestroy(&w));
+  PetscCall(VecDestroy(&Hw));
+  PetscCall(VecDestroy(&p));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CheckCoupling(const char name[], TestWorld *t) {
+  Vec w, x, sigma;
+  PetscReal error;
+  PetscFunctionBeginUser;
+  PetscCall(DMCreateGlobalVector(t->fluid->grid->velocity, &w));
+  PetscCall(MembraneCreateMarkerVec(t->membrane, &x));
+  PetscCall(MembraneCreateTensionVec(t->membrane, &sigma));
+  PetscCall(TestRandomVec(3, w));
+  PetscCall(TestRandomVec(4, x));
+  PetscCall(TestRandomVec(5, sigma));
+  PetscCall(SpreadError(t, t->coupling->E, x, w, &error));
+  CHECK(error < TOLERANCE, "%s: E and E^T adjoint, error %.1e", name, error);
+  PetscCall(SpreadError(t, t->coupling->S, sigma, w, &error));
+  CHECK(error < TOLERANCE, "%s: S and S^T adjoint, error %.1e", name, error);
+  PetscCall(SpreadError(t, t->coupling->B, x, w, &error));
+  CHECK(error < TOLERANCE, "%s: B and B^T adjoint, error %.1e", name, error);
+  PetscCall(VecDestroy(&w));
+  PetscCall(VecDestroy(&x));
+  PetscCall(VecDestroy(&sigma));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A constant velocity is interpolated as it is (the weights sum to 1), and a spread force keeps its sum: h^2 E^T F/h^2.
+   Walls: w = 1 on the faces next to a marker is all that matters. */
+static PetscErrorCode CheckSums(const char name[], TestWorld *t) {
+  Vec w, x;
+  const PetscScalar *a;
+  PetscReal error = 0, sum, want;
+  PetscFunctionBeginUser;
+  PetscCall(DMCreateGlobalVector(t->fluid->grid->velocity, &w));
+  PetscCall(MembraneCreateMarkerVec(t->membrane, &x));
+  PetscCall(VecSet(w, 1));
+  PetscCall(CouplingInterpolate(t->coupling, t->coupling->E, w, x));
+  PetscCall(VecGetArrayRead(x, &a));
+  for (PetscInt k = 0; k < 2 * t->membrane->M; k++) error = PetscMax(error, PetscAbsReal(a[k] - 1));
+  PetscCall(VecRestoreArrayRead(x, &a));
+  CHECK(error < 1e-13, "%s: a constant velocity is interpolated exactly, error %.1e", name, error);
+  PetscCall(TestRandomVec(6, x));
+  PetscCall(VecSum(x, &want));
+  PetscCall(VecSet(w, 0));
+  PetscCall(CouplingSpreadAdd(t->coupling, 2, t->coupling->E, x, w));
+  PetscCall(VecSum(w, &sum));
+  error = PetscAbsReal(sum - 2 * want) / t->membrane->M;
+  CHECK(error < TOLERANCE, "%s: spreading keeps the sum of the force, error %.1e", name, error);
+  PetscCall(VecDestroy(&w));
+  PetscCall(VecDestroy(&x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CheckCase(const char grid[], const char bc[], const char vesicle[], const char delta[]) {
+  TestWorld t;
+  char options[1024], name[256];
+  PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(options, sizeof(options), "%s %s %s -delta_type %s", grid, bc, vesicle, delta));
+  PetscCall(PetscSNPrintf(name, sizeof(name), "%s %s %s", strstr(grid, "-domain_cells") + 14, bc, delta));
+  PetscCall(TestWorldCreate(options, &t));
+  PetscCall(CheckFluid(name, t.fluid));
+  PetscCall(CheckCoupling(name, &t));
+  PetscCall(CheckSums(name, &t));
+  PetscCall(TestWorldDestroy(&t));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Facts(void) {
+  static const char *const bc[] = {"-domain_bc_x wall -domain_bc_y wall", "-domain_bc_x wall -domain_bc_y periodic",
+                                   "-domain_bc_x periodic -domain_bc_y wall",
+                                   "-domain_bc_x periodic -domain_bc_y periodic"};
+  /* the vesicle is tall enough to cross every slab border of 8 ranks, and lies across a seam where there is one */
+  static const char *const vesicle[] = {"-vesicle_center 0.1,0", "-vesicle_center 0.1,0.9", "-vesicle_center 0.95,0.05",
+                                        "-vesicle_center -0.97,0.93"};
+  static const char *const grids[] = {"-domain_box -1,1,-1,1 -domain_cells 48,48",
+                                      "-domain_box -1,1,-1,1.1860465116279069 -domain_cells 43,47",
+                                      "-domain_box -1,1,-1,0.95918367346938771 -domain_cells 49,48"};
+  static const char *const kernels[] = {"ib6", "cbs32", "cbs43", "cbs54", "cbs65"};
+  PetscFunctionBeginUser;
+  for (int b = 0; b < 4; b++)
+    for (int g = 0; g < 3; g++) PetscCall(CheckCase(grids[g], bc[b], vesicle[b], kernels[(b + 2 * g) % 5]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+int main(int argc, char **argv) {
+  return CheckMain(argc, argv, Facts);
+}

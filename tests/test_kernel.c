@@ -1,0 +1,119 @@
+/* Kernels: values and moments of DESIGN section 4, at many positions of a marker in its cell. */
+#include "check.h"
+
+#define POSITIONS 997
+
+/* phi(x): the weight at grid point 0 of a marker at x. */
+static PetscReal Phi(KernelWeights weights, PetscReal x) {
+  PetscReal w[KERNEL_MAX_POINTS];
+  PetscInt first;
+  const PetscInt n = weights(x, &first, w);
+  return first <= 0 && -first < n ? w[-first] : 0;
+}
+
+/* Largest deviations of the moments SUM (x - j)^m phi(x - j) from `want`; even: over even j only. */
+static PetscReal Moment(KernelWeights weights, int m, PetscBool even, PetscReal want) {
+  PetscReal worst = 0;
+  for (int k = 0; k < POSITIONS; k++) {
+    const PetscReal x = -7.3 + 11.0 * k / POSITIONS;
+    PetscReal w[KERNEL_MAX_POINTS], sum = 0;
+    PetscInt first;
+    const PetscInt n = weights(x, &first, w);
+    for (PetscInt i = 0; i < n; i++)
+      if (!even || (first + i) % 2 == 0) sum += w[i] * PetscPowRealInt(x - first - i, m);
+    worst = PetscMax(worst, PetscAbsReal(sum - want));
+  }
+  return worst;
+}
+
+/* A moment stated as a fact: `tolerance` is round-off of a sum of six terms of size up to 3^m. */
+static PetscErrorCode CheckMoment(const char name[], KernelWeights weights, int m, PetscBool even, PetscReal want) {
+  const PetscReal error = Moment(weights, m, even, want), tolerance = m ? 1e-13 : 1e-14;
+  PetscFunctionBeginUser;
+  CHECK(error < tolerance, "%s: moment %d%s is %.10f, error %.1e", name, m, even ? " over even points" : "", want,
+        error);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CheckIB6(void) {
+  const PetscReal K = 59.0 / 60 - PetscSqrtReal(29.0) / 20;
+  const PetscReal x[] = {0, 0.5, 1, 2}, value[] = {.4464812268, .3885397215, .25, .0267593866};
+  const Kernel *ib6 = KernelFind("ib6");
+  PetscReal error;
+  PetscFunctionBeginUser;
+  CHECK(ib6 != NULL && ib6->along == ib6->across, "ib6 has the same weights along and across");
+  for (int i = 0; i < 4; i++) {
+    error = PetscMax(PetscAbsReal(Phi(ib6->along, x[i]) - value[i]), PetscAbsReal(Phi(ib6->along, -x[i]) - value[i]));
+    CHECK(error < 1e-10, "ib6 phi(+-%g) = %.10f, error %.1e", x[i], value[i], error);
+  }
+  error = PetscAbsReal(Phi(ib6->along, 3));
+  CHECK(error < 1e-15, "ib6 phi(3) = 0, error %.1e", error);
+  PetscCall(CheckMoment("ib6", ib6->along, 0, PETSC_FALSE, 1));
+  PetscCall(CheckMoment("ib6", ib6->along, 0, PETSC_TRUE, 0.5)); /* so the odd sum is 1/2 too */
+  PetscCall(CheckMoment("ib6", ib6->along, 1, PETSC_FALSE, 0));
+  PetscCall(CheckMoment("ib6", ib6->along, 2, PETSC_FALSE, K));
+  PetscCall(CheckMoment("ib6", ib6->along, 3, PETSC_FALSE, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Spline with n points: sum 1, first moment 0, variance n/12 (n > 2; 2 points reproduce no quadratics). */
+static PetscErrorCode CheckSpline(const char name[], KernelWeights weights, PetscInt n) {
+  PetscReal w[KERNEL_MAX_POINTS];
+  PetscInt first;
+  PetscFunctionBeginUser;
+  CHECK(weights(0.3, &first, w) == n, "%s: %d points", name, (int)n);
+  PetscCall(CheckMoment(name, weights, 0, PETSC_FALSE, 1));
+  PetscCall(CheckMoment(name, weights, 1, PETSC_FALSE, 0));
+  if (n > 2) PetscCall(CheckMoment(name, weights, 2, PETSC_FALSE, n / 12.0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* d/dx along(x) = across(x + 1/2) - across(x - 1/2): the interpolated velocity is continuously divergence free. The
+   derivative by central differences of step e: error e^2 and round-off 1e-16/e. Skips the knots of the splines. */
+static PetscReal DivergenceError(const Kernel *k) {
+  const PetscReal e = 1e-5;
+  PetscReal worst = 0;
+  for (int i = 0; i < POSITIONS; i++) {
+    const PetscReal x = -3.5 + 7 * (i + 0.37) / POSITIONS;
+    const PetscReal slope = (Phi(k->along, x + e) - Phi(k->along, x - e)) / (2 * e);
+    if (PetscAbsReal(2 * x - PetscFloorReal(2 * x + 0.5)) < 4 * e) continue;
+    worst = PetscMax(worst, PetscAbsReal(slope - Phi(k->across, x + 0.5) + Phi(k->across, x - 0.5)));
+  }
+  return worst;
+}
+
+static PetscErrorCode CheckComposite(void) {
+  static const char *const names[] = {"cbs32", "cbs43", "cbs54", "cbs65"};
+  /* cardinal B-splines of 2 .. 6 points at 0: 1, 3/4, 2/3, 115/192, 11/20; at 1: 0, 1/8, 1/6, 19/96, 13/60 */
+  const PetscReal at0[] = {1, 3.0 / 4, 2.0 / 3, 115.0 / 192, 11.0 / 20};
+  const PetscReal at1[] = {0, 1.0 / 8, 1.0 / 6, 19.0 / 96, 13.0 / 60};
+  PetscFunctionBeginUser;
+  for (int i = 0; i < 4; i++) {
+    const Kernel *k = KernelFind(names[i]);
+    PetscReal error = 0;
+    PetscCall(CheckSpline(names[i], k->along, i + 3));
+    PetscCall(CheckSpline(names[i], k->across, i + 2));
+    error = PetscMax(error, PetscAbsReal(Phi(k->along, 0) - at0[i + 1]));
+    error = PetscMax(error, PetscAbsReal(Phi(k->across, 0) - at0[i]));
+    for (int sign = -1; sign <= 1; sign += 2) {
+      error = PetscMax(error, PetscAbsReal(Phi(k->along, sign) - at1[i + 1]));
+      error = PetscMax(error, PetscAbsReal(Phi(k->across, sign) - at1[i]));
+    }
+    CHECK(error < 1e-14, "%s: values at 0, 1 and -1, error %.1e", names[i], error);
+    error = DivergenceError(k);
+    CHECK(error < 1e-8, "%s: slope along = difference across (divergence free), error %.1e", names[i], error);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Facts(void) {
+  PetscFunctionBeginUser;
+  PetscCall(CheckIB6());
+  PetscCall(CheckComposite());
+  CHECK(!KernelFind("ib4"), "an unknown kernel is not found");
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+int main(int argc, char **argv) {
+  return CheckMain(argc, argv, Facts);
+}
