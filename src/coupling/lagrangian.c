@@ -1,5 +1,10 @@
 #include "coupling/lagrangian.h"
 
+/* Levels of PCILU at which its fill is complete, with nested dissection, up to a few hundred markers: markers numbered
+   along a curve make Chat a cyclic band, whose fill runs along the whole curve. Only a complete one has the paper's
+   iterations (docs/tension_iterations.md). */
+#define COMPLETE_FILL 200
+
 /* y = (S^T S + S^T G L^-1 G^T S) x */
 static PetscErrorCode MultTension(Mat A, Vec x, Vec y) {
   LagrangianSolver s;
@@ -78,6 +83,8 @@ PetscErrorCode TensionSolverCreate(Fluid fluid, Coupling coupling, LagrangianSol
   PetscCall(DMCreateGlobalVector(fluid->grid->da[FIELD_P], &(*s)->q));
   PetscCall(KSPGetPC((*s)->ksp, &pc));
   PetscCall(PCSetType(pc, PCILU));
+  PetscCall(PCFactorSetLevels(pc, COMPLETE_FILL));
+  PetscCall(PCFactorSetMatOrderingType(pc, MATORDERINGND));
   PetscCall(FinishOptions(*s));
   PetscCall(PreferRight((*s)->ksp));
   PetscFunctionReturn(PETSC_SUCCESS);
