@@ -18,7 +18,7 @@ OUTLINES = 7  # outlines in shapes.png
 FLOOR = 1e-16  # smallest value on a logarithmic axis
 
 
-def _figure(width: float, height: float, columns: int = 1) -> tuple[Figure, np.ndarray]:
+def new_figure(width: float, height: float, columns: int = 1) -> tuple[Figure, np.ndarray]:
     """Return a figure that needs no display, and its row of axes."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
@@ -29,7 +29,8 @@ def _figure(width: float, height: float, columns: int = 1) -> tuple[Figure, np.n
     return figure, axes
 
 
-def _save(figure: Figure, path: Path) -> Path:
+def save_figure(figure: Figure, path: Path) -> Path:
+    """Write a PNG file; return its path."""
     figure.savefig(path, dpi=120)
     return path
 
@@ -56,7 +57,7 @@ def plot_run(folder: str | Path) -> list[Path]:
 
 def plot_energy(run: Run) -> Path:
     """Draw kinetic, bending and total energy over the initial total energy (or over the largest, if that is 0)."""
-    figure, (axes,) = _figure(6, 4)
+    figure, (axes,) = new_figure(6, 4)
     time = run.series["time"]
     kinetic, bending = run.series["energy_kinetic"], run.series["energy_bending"]
     total = kinetic + bending
@@ -72,12 +73,12 @@ def plot_energy(run: Run) -> Path:
     axes.set(xlabel="time $t$", ylabel=f"$E/{name}$" if name != "1" else "$E$ (length$^4$/time$^2$)")
     axes.grid(alpha=0.3)
     axes.legend(frameon=False)
-    return _save(figure, run.folder / "energy.png")
+    return save_figure(figure, run.folder / "energy.png")
 
 
 def plot_conservation(run: Run) -> Path:
     """Draw the relative errors of area and length against time, on a logarithmic axis."""
-    figure, (axes,) = _figure(6, 4)
+    figure, (axes,) = new_figure(6, 4)
     time = run.series["time"][1:]
     for column, style, label in (
         ("area_error", "-", "area, $|A - A_0|/A_0$"),
@@ -87,7 +88,7 @@ def plot_conservation(run: Run) -> Path:
     axes.set(xlabel="time $t$", ylabel="relative error")
     axes.grid(alpha=0.3)
     axes.legend(frameon=False)
-    return _save(figure, run.folder / "conservation.png")
+    return save_figure(figure, run.folder / "conservation.png")
 
 
 def _membrane(axes: Axes, run: Run, frame: int, limits: tuple[float, float], color: str) -> object:
@@ -116,7 +117,7 @@ def plot_field(run: Run, frame: int = -1) -> Path:
     x, y = run.cell_centers()
     sides = run.box[1] - run.box[0], run.box[3] - run.box[2]
     tall = min(max(4.7 * sides[1] / sides[0], 1.6), 9.0)
-    figure, axes = _figure(12.4, tall + 1.6, columns=2)
+    figure, axes = new_figure(12.4, tall + 1.6, columns=2)
     tension = run.tension[frame]
     limits = (tension.min(), tension.max()) if run.vesicles else (0.0, 1.0)
     largest = np.max(np.abs(p)) or 1.0
@@ -136,12 +137,12 @@ def plot_field(run: Run, frame: int = -1) -> Path:
     if lines is not None:
         figure.colorbar(lines, ax=list(axes), label=r"tension $\sigma$ (length$^3$/time$^2$)", shrink=0.7, aspect=30)
     figure.suptitle(f"$t$ = {run.time[frame]:g}")
-    return _save(figure, run.folder / "field.png")
+    return save_figure(figure, run.folder / "field.png")
 
 
 def plot_tension(run: Run, frame: int = -1) -> Path:
     """Draw the tension against the phase angle about the centroid, at a saved time."""
-    figure, (axes,) = _figure(6, 4)
+    figure, (axes,) = new_figure(6, 4)
     for vesicle in range(run.vesicles):
         angle = run.phase_angle(frame, vesicle) / np.pi
         order = np.argsort(angle)
@@ -152,14 +153,14 @@ def plot_tension(run: Run, frame: int = -1) -> Path:
     axes.grid(alpha=0.3)
     if run.vesicles > 1:
         axes.legend(frameon=False)
-    return _save(figure, run.folder / "tension.png")
+    return save_figure(figure, run.folder / "tension.png")
 
 
 def plot_shapes(run: Run) -> Path:
     """Draw outlines at evenly spread saved times, with marker 0 as a dot."""
     import matplotlib
 
-    figure, (axes,) = _figure(6, 5.2)
+    figure, (axes,) = new_figure(6, 5.2)
     frames = np.unique(np.linspace(0, len(run.time) - 1, min(OUTLINES, len(run.time))).round().astype(int))
     colors = matplotlib.colormaps["viridis"](np.linspace(0, 0.9, len(frames)))
     for frame, color in zip(frames, colors):
@@ -172,4 +173,4 @@ def plot_shapes(run: Run) -> Path:
     axes.margins(0.08)
     axes.grid(alpha=0.3)
     axes.legend(title="time $t$", frameon=False, loc="center left", bbox_to_anchor=(1.0, 0.5))
-    return _save(figure, run.folder / "shapes.png")
+    return save_figure(figure, run.folder / "shapes.png")
