@@ -61,8 +61,7 @@ def _head(quick: bool, ranks: int) -> str:
         "# The paper's studies, repeated\n\n"
         "Ong and Lai, J. Comput. Phys. 408 (2020) 109277, beside petves, `-scheme_type split`. Ellipse with semi-axes\n"
         "0.2 and 0.5 in [-1,1]^2 with walls, nu = 1, c_b = 0.01, kernel ib6, disturbance form, start with sigma = 0.\n"
-        f"Written by `{command}` on {ranks} ranks; results.json holds every run's options. 
-PCILU: 200 levels, ordering nd.\n"
+        f"Written by `{command}` on {ranks} ranks; results.json holds every run's options.\nPCILU: 200 levels, ordering nd.\n"
     )
 
 

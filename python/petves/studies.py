@@ -50,6 +50,8 @@ def scene(kind: str, n: int, markers: int, dt: float) -> dict[str, str]:
         "-time_end": {"energy": "3", "relax": "1", "shear": "5"}[kind],
         "-output_every": "1000",
         "-checkpoint_every": "0",
+        "-scheme_type": "split",
+        "-scheme_order": "1",
     }
     if kind == "shear":
         options |= {"-flow_type": "shear", "-flow_rate": "1"}
