@@ -1,4 +1,7 @@
-"""Check that README.md names every option of ``petves -help`` with its default; print what is missing, exit 1."""
+"""Check that README.md names every option of ``petves -help`` with its default; print what is missing, exit 1.
+
+With ``--table``, print the README's table of options instead.
+"""
 
 from __future__ import annotations
 
@@ -11,10 +14,28 @@ from pathlib import Path
 README = Path(__file__).resolve().parent.parent / "README.md"
 
 
+LINE = re.compile(
+    r"^  (-\w+) <now (.*?) : formerly .*?>: (.*?)(?: \[(\[[^\]\n]*\]|[^\]\n]*)\])? \(README\.md\)$", re.MULTILINE
+)
+
+
+def described(binary: str) -> list[tuple[str, str, str, str]]:
+    """Return name, default, description and allowed values of petves' own options, from its help."""
+    return LINE.findall(subprocess.run([binary, "-help"], capture_output=True, text=True, check=True).stdout)
+
+
 def options(binary: str) -> dict[str, str]:
-    """Return petves' own options and their defaults, from its help."""
-    text = subprocess.run([binary, "-help"], capture_output=True, text=True, check=True).stdout
-    return dict(re.findall(r"^  (-\w+) <now (.*?) : formerly .*\(README\.md\)$", text, re.MULTILINE))
+    """Return petves' own options and their defaults."""
+    return {name: default for name, default, _, _ in described(binary)}
+
+
+def table(binary: str) -> str:
+    """Return the README's rows of options."""
+    rows = []
+    for name, default, what, allowed in described(binary):
+        shown = f"`{default}`" if default.strip() else ""
+        rows.append(f"| `{name}` | {shown} | {allowed.replace('|', ', ')} | {what.replace('|', chr(92) + '|')} |")
+    return "\n".join(rows)
 
 
 def missing(binary: str, readme: str) -> list[str]:
@@ -32,7 +53,11 @@ def missing(binary: str, readme: str) -> list[str]:
 
 def main() -> int:
     """Check; return the exit status."""
-    lines = missing(os.environ.get("PETVES", "bin/petves"), README.read_text())
+    binary = os.environ.get("PETVES", "bin/petves")
+    if "--table" in sys.argv[1:]:
+        print(table(binary))
+        return 0
+    lines = missing(binary, README.read_text())
     print("\n".join(lines) or "README.md names every option")
     return 1 if lines else 0
 
