@@ -1,0 +1,5 @@
+"""Reading, drawing and reproducing petves runs."""
+
+from petves.run import Run, RunError
+
+__all__ = ["Run", "RunError"]

@@ -1,0 +1,164 @@
+"""The files that a run leaves in its output folder, as arrays."""
+
+from __future__ import annotations
+
+import csv
+import json
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+
+
+class RunError(Exception):
+    """A folder or file of a run is missing or cannot be read; the message is one line."""
+
+
+@dataclass
+class Run:
+    """One run of petves.
+
+    Attributes
+    ----------
+    folder : Path
+        The run's ``-output_dir``.
+    series : dict of str to ndarray
+        Columns of series.csv, one value a step (step 0 first); an empty entry is NaN.
+    box : ndarray, shape (4,)
+        x_min, x_max, y_min, y_max (length).
+    h, nu, c_b : float
+        Cell size (length), viscosity (length^2/time), bending stiffness.
+    time : ndarray, shape (T,)
+        Saved times.
+    markers, velocity : ndarray, shape (T, M, 2)
+        Markers (length) and their velocity (length/time); M = 0 without a vesicle.
+    tension : ndarray, shape (T, M)
+        Tension; entry k is on the edge from marker k-1 to marker k.
+    start : ndarray, shape (vesicles + 1,)
+        First marker of each vesicle, and the number of markers.
+    summary : dict
+        summary.json; empty while the run has not ended.
+    """
+
+    folder: Path
+    series: dict[str, np.ndarray]
+    box: np.ndarray
+    h: float
+    nu: float
+    c_b: float
+    time: np.ndarray
+    markers: np.ndarray
+    velocity: np.ndarray
+    tension: np.ndarray
+    start: np.ndarray
+    summary: dict[str, Any] = field(default_factory=dict)
+
+    @classmethod
+    def read(cls, folder: str | Path) -> Run:
+        """Read a run's folder; fluid fields are left on disk, see `fields`.
+
+        Raises
+        ------
+        RunError
+            When the folder or one of its files is missing or broken.
+        """
+        folder = Path(folder)
+        if not folder.is_dir():
+            raise RunError(f"{folder}: no such folder; give the -output_dir of a run")
+        summary = folder / "summary.json"
+        with _open(folder / "run.h5") as file:
+            try:
+                none = np.zeros((len(file["time"]), 0, 2))
+                return cls(
+                    folder=folder,
+                    series=read_series(folder / "series.csv"),
+                    box=np.asarray(file.attrs["box"], float),
+                    h=_number(file, "h"),
+                    nu=_number(file, "nu"),
+                    c_b=_number(file, "c_b"),
+                    time=file["time"][:],
+                    markers=file["vesicle/markers"][:] if "vesicle" in file else none,
+                    velocity=file["vesicle/velocity"][:] if "vesicle" in file else none,
+                    tension=file["vesicle/tension"][:] if "vesicle" in file else none[:, :, 0],
+                    start=np.atleast_1d(file.attrs["vesicle_start"]).astype(int),
+                    summary=json.loads(summary.read_text()) if summary.is_file() else {},
+                )
+            except KeyError as error:
+                raise RunError(f"{folder / 'run.h5'}: {error.args[0]} is missing; was the run stopped?") from None
+
+    @property
+    def vesicles(self) -> int:
+        """Number of vesicles."""
+        return len(self.start) - 1
+
+    def fields(self, frame: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return u, v, p at cell centres at a saved time, each of shape (ny, nx)."""
+        with _open(self.folder / "run.h5") as file:
+            u, v, p = (file["fluid"][name][frame] for name in "uvp")
+        return u, v, p
+
+    def cell_centers(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return x, shape (nx,), and y, shape (ny,), of the cell centres."""
+        return tuple(
+            self.box[2 * d] + self.h * (0.5 + np.arange(round((self.box[2 * d + 1] - self.box[2 * d]) / self.h)))
+            for d in range(2)
+        )
+
+    def outline(self, frame: int, vesicle: int = 0) -> np.ndarray:
+        """Return one vesicle's markers at a saved time, the first repeated at the end, shape (n + 1, 2)."""
+        points = self.markers[frame, self.start[vesicle] : self.start[vesicle + 1]]
+        return np.vstack([points, points[:1]])
+
+    def phase_angle(self, frame: int, vesicle: int = 0) -> np.ndarray:
+        """Return the phase angle of each edge's midpoint about the centroid of the area, in (-pi, pi]."""
+        middle = self.edge_midpoints(frame, vesicle) - centroid(self.outline(frame, vesicle))
+        return np.arctan2(middle[:, 1], middle[:, 0])
+
+    def edge_midpoints(self, frame: int, vesicle: int = 0) -> np.ndarray:
+        """Return the midpoints of the edges, where the tension lives, shape (n, 2)."""
+        points = self.outline(frame, vesicle)[:-1]
+        return 0.5 * (points + np.roll(points, 1, axis=0))
+
+    def edge_tension(self, frame: int, vesicle: int = 0) -> np.ndarray:
+        """Return the tension of one vesicle's edges at a saved time."""
+        return self.tension[frame, self.start[vesicle] : self.start[vesicle + 1]]
+
+
+def centroid(outline: np.ndarray) -> np.ndarray:
+    """Return the centroid of the area inside a closed polygon, shape (n + 1, 2) with the first point repeated."""
+    shifted = outline - outline[0]
+    x, y = shifted[:-1].T
+    xn, yn = shifted[1:].T
+    cross = x * yn - xn * y
+    return outline[0] + np.array([np.sum(cross * (x + xn)), np.sum(cross * (y + yn))]) / (3 * np.sum(cross))
+
+
+def read_series(path: str | Path) -> dict[str, np.ndarray]:
+    """Read series.csv into one array a column; an empty entry is NaN."""
+    path = Path(path)
+    if not path.is_file():
+        raise RunError(f"{path}: no such file")
+    with path.open(newline="") as file:
+        rows = list(csv.reader(file))
+    if len(rows) < 2:
+        raise RunError(f"{path}: no steps in it")
+    try:
+        table = np.array([[float(x) if x else np.nan for x in row] for row in rows[1:]])
+    except ValueError as error:
+        raise RunError(f"{path}: {error}") from None
+    return {name: table[:, k] for k, name in enumerate(rows[0])}
+
+
+def _open(path: Path) -> h5py.File:
+    if not path.is_file():
+        raise RunError(f"{path}: no such file")
+    try:
+        return h5py.File(path, "r")
+    except OSError as error:
+        raise RunError(f"{path}: not a readable HDF5 file ({str(error).splitlines()[0]})") from None
+
+
+def _number(file: h5py.File, name: str) -> float:
+    return float(np.ravel(file.attrs[name])[0])

@@ -1,0 +1,170 @@
+"""The runs that repeat the paper's studies: their options, and running them once."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from petves.paper import CELLS
+from petves.run import RunError, read_series
+
+MARKERS_TABLE_7 = {32: 50, 64: 98, 128: 196, 256: 392}  # 1.5 h apart
+LENGTH = 2.3013  # of the ellipse (0.2, 0.5)
+TIGHT = "1e-12"
+NEVER = "1e-50"  # relative tolerance that only an absolute test can meet first
+ILU = {"-tension_pc_type": "ilu", "-tension_pc_factor_levels": "200", "-tension_pc_factor_mat_ordering_type": "nd"}
+NONE = {"-tension_pc_type": "none"}
+ENERGY_ROWS = 240  # rows kept of an energy curve
+OPEN_MPI = {
+    "OMPI_ALLOW_RUN_AS_ROOT": "1",
+    "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+    "OMPI_MCA_rmaps_base_oversubscribe": "1",
+    "OMPI_MCA_mpi_yield_when_idle": "1",
+    "OMP_NUM_THREADS": "1",
+}
+
+
+@dataclass
+class Case:
+    """One run: its name and its options."""
+
+    name: str
+    options: dict[str, str]
+
+
+def scene(kind: str, n: int, markers: int, dt: float) -> dict[str, str]:
+    """Return the options of section 5.1 (energy), 5.2 (relax) or 5.3 (shear) with h = 1/n."""
+    options = {
+        "-domain_box": "-1,1,-1,1",
+        "-domain_cells": f"{2 * n},{2 * n}",
+        "-vesicle_semi_axes": "0.2,0.5",
+        "-vesicle_bending": "0.01",
+        "-vesicle_markers": str(markers),
+        "-time_step": repr(dt),
+        "-time_end": {"energy": "3", "relax": "1", "shear": "5"}[kind],
+        "-output_every": "1000",
+        "-checkpoint_every": "0",
+        "-scheme_type": "split",
+        "-scheme_order": "1",
+    }
+    if kind == "shear":
+        options |= {"-flow_type": "shear", "-flow_rate": "1"}
+    return options
+
+
+def table_7(n: int) -> Case:
+    """Return the shear run of Table 7, both GMRES solves at 1e-12."""
+    tight = {"-tension_ksp_rtol": TIGHT, "-bending_ksp_rtol": TIGHT}
+    return Case(f"table7_{n}", scene("shear", n, MARKERS_TABLE_7[n], 0.25 / n) | ILU | tight)
+
+
+def iterations(kind: str, n: int) -> dict[str, Case]:
+    """Return the runs behind one line of Table 4 (relax) or 8 (shear): our stopping tests by name."""
+    dt = (0.5 if kind == "relax" else 0.25) / n
+    base = scene(kind, n, n, dt)
+    ds, h2 = LENGTH / n, 1 / n**2
+    # an l2 norm over edges times sqrt(ds) is the L2 norm along the membrane; a residual r leaves the surface
+    # divergence h^2 dt r/ds
+    tension, residual = h2 / ds**0.5, h2 / ds**0.5 * ds / (h2 * dt)
+    tests = {
+        "none": NONE | {"-tension_ksp_rtol": repr(h2)},
+        "ilu": ILU | {"-tension_ksp_rtol": repr(h2)},
+        "tight": ILU | {"-tension_ksp_rtol": TIGHT},
+        "none_absolute": NONE | {"-tension_ksp_rtol": NEVER, "-tension_ksp_atol": repr(residual)},
+        "ilu_absolute": ILU | {"-tension_ksp_rtol": NEVER, "-tension_ksp_atol": repr(tension)},
+    }
+    return {name: Case(f"{kind}_{n}_{name}", base | options) for name, options in tests.items()}
+
+
+def energy(n: int) -> dict[str, Case]:
+    """Return the runs of section 5.1 by time step; markers 1.75 h apart."""
+    markers = 2 * round(LENGTH * n / 3.5)
+    steps = {"h": 1 / n, "h/2": 0.5 / n, "h^2": 1 / n**2}
+    tight = {"-tension_ksp_rtol": TIGHT, "-bending_ksp_rtol": TIGHT}
+    return {
+        name: Case(f"energy_{n}_{name.replace('/', '_')}", scene("energy", n, markers, dt) | ILU | tight)
+        for name, dt in steps.items()
+    }
+
+
+def sizes(quick: bool) -> tuple[int, ...]:
+    """Return the values of 1/h."""
+    return CELLS[:2] if quick else CELLS
+
+
+def _measure(series: dict[str, np.ndarray], kind: str) -> dict[str, object]:
+    """Return what the tables and pictures need of one run."""
+    found: dict[str, object] = {
+        "steps": len(series["time"]) - 1,
+        "area_error": series["area_error"][-1],
+        "length_error": series["length_error"][-1],
+        "tension_its": series["tension_its"][1:].mean(),
+        "bending_its": series["bending_its"][1:].mean(),
+        "div_max": series["div_max"].max(),
+        "surface_div_max": series["surface_div_max"].max(),
+        "step_seconds": series["wall"].sum(),
+    }
+    if kind == "energy":
+        total = series["energy_kinetic"] + series["energy_bending"]
+        rise = np.diff(total / total[0])
+        every = max(1, len(total) // ENERGY_ROWS)
+        found["rise_first_two"] = list(rise[:2])
+        found["rise_later"] = rise[2:].max()
+        found["time"] = [round(t, 6) for t in series["time"][::every]]
+        found["energy"] = [round(e, 6) for e in (total / total[0])[::every]]
+    return found
+
+
+def _launch(case: Case, ranks: int, folder: str) -> None:
+    binary = os.environ.get("PETVES", "bin/petves")
+    if not Path(binary).is_file():
+        raise RunError(f"{binary}: no such program; build it with make, or set PETVES")
+    words = [word for pair in case.options.items() for word in pair]
+    command = ["mpirun", "-n", str(ranks), binary, *words, "-output_dir", folder]
+    try:
+        done = subprocess.run(
+            command, env=OPEN_MPI | os.environ, capture_output=True, text=True, stdin=subprocess.DEVNULL
+        )
+    except FileNotFoundError:
+        raise RunError("mpirun: no such program; install openmpi-bin") from None
+    if done.returncode:
+        lines = (done.stderr or done.stdout).strip().splitlines() or ["no message"]
+        line = next((text for text in lines if "petves: error" in text), lines[-1])
+        raise RunError(f"{case.name}: exit status {done.returncode}: {line}")
+
+
+class Results:
+    """Measures of finished cases, kept in one JSON file so that an interrupted study goes on where it stopped."""
+
+    def __init__(self, path: Path, ranks: int) -> None:
+        self.path = path
+        self.ranks = ranks
+        try:
+            self.cases = json.loads(path.read_text()) if path.is_file() else {}
+        except json.JSONDecodeError as error:
+            raise RunError(f"{path}: not JSON ({error}); remove it to start afresh") from None
+
+    def get(self, case: Case) -> dict:
+        """Return the measures of a case; run it first unless they are there for the same options and ranks."""
+        known = self.cases.get(case.name)
+        if known and known["options"] == case.options and known["ranks"] == self.ranks:
+            return known["measures"]
+        print(f"running {case.name}", flush=True)
+        with tempfile.TemporaryDirectory() as folder:
+            _launch(case, self.ranks, folder)
+            measures = _measure(read_series(Path(folder) / "series.csv"), case.name.split("_")[0])
+            commit = json.loads((Path(folder) / "summary.json").read_text())["git_commit"]
+        entry = {"options": case.options, "ranks": self.ranks, "commit": commit, "measures": measures}
+        self.cases[case.name] = entry
+        temporary = self.path.with_suffix(".tmp")
+        temporary.write_text(
+            "{\n" + ",\n".join(f"{json.dumps(k)}: {json.dumps(v)}" for k, v in self.cases.items()) + "\n}\n"
+        )
+        temporary.replace(self.path)
+        return measures
