@@ -78,8 +78,12 @@ class Run:
 
 
 def run_petves(folder: Path, options: str, ranks: int = 1, good: bool = True, timeout: float = 300) -> Run:
-    """Run petves with its output in `folder`, unless the options say another; with `good` the run must end well."""
-    done = mpirun([PETVES, "-output_dir", str(folder), *options.split()], ranks, timeout)
+    """Run petves with its output in `folder`, unless the options say another; with `good` the run must end well.
+
+    The scheme is split unless the options name one.
+    """
+    scheme = [] if "-scheme_type" in options else ["-scheme_type", "split"]
+    done = mpirun([PETVES, "-output_dir", str(folder), *scheme, *options.split()], ranks, timeout)
     run = Run(folder, done.returncode, done.stdout, without_mpirun(done.stderr))
     if good:
         assert run.status == 0, f"petves {options}\n{done.stdout}\n{done.stderr}"

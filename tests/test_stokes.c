@@ -88,10 +88,11 @@ static PetscErrorCode CheckDecay(const char name[], const char bc[], Exact exact
   Vec want;
   PetscReal error, size, pressure;
   PetscFunctionBeginUser;
-  PetscCall(PetscSNPrintf(options, sizeof(options),
-                          "-domain_box 0,1,0,1 -domain_cells 24,24 %s -vesicle_shape none -fluid_viscosity 0.4 "
-                          "-time_step 0.03",
-                          bc));
+  PetscCall(PetscSNPrintf(
+      options, sizeof(options),
+      "-domain_box 0,1,0,1 -domain_cells 24,24 %s -scheme_type split -vesicle_shape none -fluid_viscosity 0.4 "
+      "-time_step 0.03",
+      bc));
   PetscCall(FlowCreate(options, &f));
   PetscCall(VecDuplicate(f.scheme->state.w, &want));
   PetscCall(Fill(f.fluid->grid, exact, 0, NULL, PETSC_FALSE, f.scheme->state.w));
@@ -151,11 +152,12 @@ static PetscErrorCode RunManufactured(PetscInt n, PetscInt steps, Manufactured *
   const PetscReal dt = 0.2 / steps;
   Grid g;
   PetscFunctionBeginUser;
-  PetscCall(PetscSNPrintf(options, sizeof(options),
-                          "-domain_box 0,1,0,0.75 -domain_cells %d,%d -domain_bc_x %s -domain_bc_y %s -vesicle_shape "
-                          "none -fluid_viscosity %.17g -time_step %.17g",
-                          (int)n, (int)(3 * n / 4), m->wall[0] ? "wall" : "periodic", m->wall[1] ? "wall" : "periodic",
-                          (double)m->nu, (double)dt));
+  PetscCall(PetscSNPrintf(
+      options, sizeof(options),
+      "-domain_box 0,1,0,0.75 -domain_cells %d,%d -domain_bc_x %s -domain_bc_y %s -scheme_type split -vesicle_shape "
+      "none -fluid_viscosity %.17g -time_step %.17g",
+      (int)n, (int)(3 * n / 4), m->wall[0] ? "wall" : "periodic", m->wall[1] ? "wall" : "periodic", (double)m->nu,
+      (double)dt));
   PetscCall(FlowCreate(options, f));
   g = f->fluid->grid;
   PetscCall(VecDuplicate(f->scheme->state.w, &f->fluid->bc1)); /* the fluid destroys it */

@@ -52,11 +52,14 @@ static PetscErrorCode Create(Fluid fluid, Coupling coupling, const char prefix[]
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Every rank runs the same iteration, one prints. */
+/* Every rank runs the same iteration, one prints; but a monitor that applies the operator, which is collective, must
+   stay on all of them. */
 static PetscErrorCode FinishOptions(LagrangianSolver s) {
+  PetscBool true_residual;
   PetscFunctionBeginUser;
   PetscCall(KSPSetFromOptions(s->ksp));
-  if (s->fluid->grid->rank) {
+  PetscCall(PetscOptionsHasName(NULL, s->prefix, "-ksp_monitor_true_residual", &true_residual));
+  if (s->fluid->grid->rank && !true_residual) {
     PetscCall(KSPMonitorCancel(s->ksp));
     PetscCall(KSPResetViewers(s->ksp));
   }

@@ -29,7 +29,8 @@ void MembraneMeasure(Membrane m, PetscInt v, const PetscScalar X[], Measures *ou
   for (int c = 0; c < 2; c++) out->center[c] = origin[c] + first[c] / area;
   PolygonMoments(m, v, X, out->center, &area, first, second);
   out->inclination = 0.5 * PetscAtan2Real(2 * second[1], second[0] - second[2]);
-  if (out->inclination <= -PETSC_PI / 2) out->inclination += PETSC_PI;
+  if (out->inclination < -PETSC_PI / 2 + 1e-9)
+    out->inclination += PETSC_PI; /* an upright axis must not flip by round-off */
   out->length = 0;
   for (PetscInt k = k0; k < m->start[v + 1]; k++) {
     const PetscInt p = m->previous[k];
