@@ -125,7 +125,7 @@ PetscErrorCode SceneView(Scene scene, const Shape *shape, PetscViewer v) {
   if (shape->vesicles && scene->bending > 0)
     PetscCall(PetscViewerASCIIPrintf(v, "bending: on, c_b = %g\n", (double)scene->bending));
   else
-    PetscCall(PetscViewerASCIIPrintf(v, "bending: off\n"));
+    PetscCall(PetscViewerASCIIPrintf(v, "bending: off (no bending solve)\n"));
   PetscCall(PetscViewerASCIIPrintf(v, "kernel: %s\n", shape->vesicles ? scene->delta : "not used"));
   PetscCall(PetscViewerASCIIPrintf(v, "scheme: %s, order %" PetscInt_FMT ", dt = %g to t = %g\n", scene->scheme,
                                    scene->order, (double)scene->dt, (double)scene->t_end));
