@@ -119,6 +119,7 @@ static void Advance(Scheme s, Coupled *d, PetscReal dt) {
   q->U = next.U;
   q->dt_last = dt;
   d->has_old = PETSC_TRUE;
+  s->old = &d->old;
 }
 
 /* Start-up: backward Euler on a sixteenth of the step, then BDF2 with doubling steps up to the whole of it. */

@@ -32,6 +32,7 @@ struct _p_Scheme {
   Membrane membrane; /* borrowed; no vesicles when the scene has none */
   Coupling coupling; /* borrowed; NULL when the scene has no vesicle */
   State state;
+  const State *old; /* the state one step before, for schemes that go on from two; NULL when there is none */
   StepReport report;
   Vec background; /* [2M] u_inf at the markers; zero in the total form */
   Vec g;          /* [M] S^T u = g: minus the background's stretching, Dm u_inf/h^2 */
