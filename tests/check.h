@@ -80,7 +80,7 @@ static inline PetscErrorCode TestWorldCreate(const char options[], TestWorld *w)
   PetscCall(FluidCreate(w->scene, &w->fluid));
   kernel = KernelFind(w->scene->delta);
   PetscCall(ShapeCreate(w->scene, kernel->default_spacing, kernel->least_spacing, &w->shape));
-  PetscCall(MembraneCreate(&w->shape, w->scene->bending, &w->membrane));
+  PetscCall(MembraneCreate(&w->shape, w->scene->bending, (DerivativeType)w->scene->derivative, &w->membrane));
   PetscCall(CouplingCreate(w->fluid->grid, w->membrane, w->scene->delta, &w->coupling));
   PetscCall(MembraneCreateMarkerVec(w->membrane, &w->X));
   PetscCall(VecGetArray(w->X, &x));

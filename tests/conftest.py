@@ -29,7 +29,7 @@ ENVIRONMENT = {
 
 COLUMNS = (
     "step,time,dt,energy_kinetic,energy_bending,area,length,area_error,length_error,edge_ratio,div_max,"
-    "surface_div_max,center_x,center_y,inclination,frequency,tension_its,bending_its,coupled_its,nsolve,wall"
+    "surface_div_max,center_x,center_y,inclination,frequency,tension_its,bending_its,coupled_its,nsolve,wall,area_shift"
 ).split(",")
 
 

@@ -82,6 +82,11 @@ static PetscErrorCode CheckScheme(Scene scene) {
   PetscCheck(!split || scene->order == 1 || !SceneGiven(scene, "-scheme_order"), scene->comm, PETSC_ERR_USER_INPUT,
              "-scheme_order %" PetscInt_FMT ": the splitting error of -scheme_type split is of first order; allowed: 1",
              scene->order);
+  PetscCheck(!split || scene->self_mobility == SELF_NONE, scene->comm, PETSC_ERR_USER_INPUT,
+             "-coupling_self_mobility: not with -scheme_type split; allowed: none, or -scheme_type coupled or direct");
+  PetscCheck(
+      !split || !scene->area_target, scene->comm, PETSC_ERR_USER_INPUT,
+      "-scheme_area_target true: not with -scheme_type split; allowed: false, or -scheme_type coupled or direct");
   if (split) scene->order = 1;
   PetscCheck(scene->adapt == ADAPT_NONE || scene->order == 2, scene->comm, PETSC_ERR_USER_INPUT,
              "-time_adapt error: with -scheme_type %s of order %" PetscInt_FMT
