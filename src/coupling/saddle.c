@@ -213,9 +213,9 @@ static PetscErrorCode Iterate(Saddle s) {
   PetscCall(KSPGetIterationNumber(s->ksp, &s->its));
   PetscCall(KSPGetConvergedReason(s->ksp, &s->why));
   if (old) PetscCall(KSPSetTolerances(s->ksp, rtol, atol, dtol, max_it));
-  if (!old || s->its < s->fresh_its + 2)
+  if (old && s->its < s->fresh_its + 2)
     s->life = PetscMax(s->life, s->age + 2); /* good so far */
-  else {
+  else if (old) {
     s->life = PetscMax(1, s->age); /* next time they are made anew before this happens */
     if (s->why == KSP_DIVERGED_ITS && s->its < max_it) {
       PetscBool nonzero;
