@@ -86,6 +86,10 @@ static PetscErrorCode CheckSplit(Scene scene) {
   PetscCheck(scene->order == 1, scene->comm, PETSC_ERR_USER_INPUT,
              "-scheme_order %" PetscInt_FMT ": the splitting error of -scheme_type split is of first order; allowed: 1",
              scene->order);
+  PetscCheck(scene->derivative != DERIVATIVE_SPECTRAL, scene->comm, PETSC_ERR_USER_INPUT,
+             "-membrane_derivative spectral: not with -scheme_type split, whose preconditioner knows chords only; "
+             "allowed: fd, "
+             "bending, or -scheme_type coupled or direct");
   PetscCheck(scene->self_mobility == SELF_NONE, scene->comm, PETSC_ERR_USER_INPUT,
              "-coupling_self_mobility: not with -scheme_type split; allowed: none, or -scheme_type coupled or direct");
   PetscCheck(
