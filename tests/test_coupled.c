@@ -14,7 +14,7 @@ static PetscErrorCode ProblemCreate(const char options[], PetscReal a0, Problem 
   PetscFunctionBeginUser;
   PetscCall(TestWorldCreate(options, &p->t));
   PetscCall(FluidSetTimeCoefficient(p->t.fluid, a0));
-  PetscCall(SaddleCreate(p->t.scene, p->t.fluid, p->t.coupling, &p->s));
+  PetscCall(SaddleCreate(p->t.scene, p->t.fluid, p->t.coupling, NULL, &p->s));
   PetscCall(SaddleSetUp(p->s));
   for (int k = 0; k < 2; k++) {
     PetscCall(VecDuplicate(p->s->x, &p->x[k]));

@@ -26,7 +26,7 @@ static PetscErrorCode RunCreate(const char options[], Run *r) {
   kernel = KernelFind(r->scene->delta);
   PetscCall(ShapeCreate(r->scene, kernel->default_spacing, kernel->least_spacing, &r->shape));
   PetscCall(FluidCreate(r->scene, &r->fluid));
-  PetscCall(MembraneCreate(&r->shape, r->scene->bending, &r->membrane));
+  PetscCall(MembraneCreate(&r->shape, r->scene->bending, (DerivativeType)r->scene->derivative, &r->membrane));
   PetscCall(CouplingCreate(r->fluid->grid, r->membrane, r->scene->delta, &r->coupling));
   PetscCall(SchemeCreate(r->scene, r->fluid, r->membrane, r->coupling, r->shape.X, &r->scheme));
   PetscFunctionReturn(PETSC_SUCCESS);
