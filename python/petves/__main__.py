@@ -9,13 +9,14 @@ import sys
 
 def parser() -> argparse.ArgumentParser:
     """Return the parser of the command line."""
-    top = argparse.ArgumentParser(prog="petves", description="Draw petves runs, and repeat the paper's studies.")
+    top = argparse.ArgumentParser(prog="petves", description="Draw petves runs, and repeat the studies.")
     commands = top.add_subparsers(dest="command", required=True)
     plot = commands.add_parser("plot", help="draw a run's folder into PNG files in that folder")
     plot.add_argument("folder", metavar="DIR", help="the run's -output_dir")
-    again = commands.add_parser("reproduce", help="run the paper's studies and compare with its tables")
+    again = commands.add_parser("reproduce", help="run the studies: the paper's tables and the coupled scheme's")
     again.add_argument("folder", metavar="DIR", help="where the tables and pictures go")
     again.add_argument("--quick", action="store_true", help="h = 1/32 and 1/64 only (also QUICK=1)")
+    again.add_argument("--only", choices=("paper", "coupled"), help="the paper's studies, or the coupled scheme's")
     again.add_argument("--ranks", type=int, default=2, help="MPI ranks of every run (2)")
     return top
 
@@ -46,7 +47,8 @@ def main(arguments: list[str] | None = None) -> int:
             from petves.reproduce import reproduce
 
             quick = options.quick or os.environ.get("QUICK", "") not in ("", "0")
-            print(reproduce(options.folder, quick=quick, ranks=options.ranks))
+            for path in reproduce(options.folder, quick=quick, ranks=options.ranks, only=options.only):
+                print(path)
     except RunError as error:
         print(f"petves: error: {error}", file=sys.stderr)
         return 1

@@ -117,7 +117,8 @@ def plot_field(run: Run, frame: int = -1) -> Path:
     x, y = run.cell_centers()
     sides = run.box[1] - run.box[0], run.box[3] - run.box[2]
     tall = min(max(4.7 * sides[1] / sides[0], 1.6), 9.0)
-    figure, axes = new_figure(12.4, tall + 1.6, columns=2)
+    figure, axes = new_figure(12.4, tall + 1.9, columns=2)
+    figure.set_layout_engine("compressed")  # the layout for axes of equal scales
     tension = run.tension[frame]
     limits = (tension.min(), tension.max()) if run.vesicles else (0.0, 1.0)
     largest = np.max(np.abs(p)) or 1.0
@@ -161,6 +162,7 @@ def plot_shapes(run: Run) -> Path:
     import matplotlib
 
     figure, (axes,) = new_figure(6, 5.2)
+    figure.set_layout_engine("compressed")
     frames = np.unique(np.linspace(0, len(run.time) - 1, min(OUTLINES, len(run.time))).round().astype(int))
     colors = matplotlib.colormaps["viridis"](np.linspace(0, 0.9, len(frames)))
     for frame, color in zip(frames, colors):

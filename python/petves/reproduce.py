@@ -1,14 +1,15 @@
-"""Run the paper's studies and write what came out beside what it printed."""
+"""Run the studies; the paper's are written beside what it printed."""
 
 from __future__ import annotations
 
-import csv
 from pathlib import Path
 
+from petves.coupled_report import coupled_results
 from petves.paper import CELLS, ITERATIONS, TABLE_7
 from petves.plot import new_figure, save_figure
 from petves.run import RunError
 from petves.studies import Results, energy, iterations, sizes, table_7
+from petves.tables import table, write_csv
 
 TESTS = {
     "none": ("none", "none, relative h^2"),
@@ -23,28 +24,40 @@ ENERGY_CELLS = {True: 32, False: 64}
 """1/h of the energy study, in quick mode or not: dt = h^2 takes 3/h^2 steps."""
 
 
-def reproduce(folder: str | Path, quick: bool = False, ranks: int = 2) -> Path:
-    """Run what is not there yet, then write the tables and the picture.
+def reproduce(folder: str | Path, quick: bool = False, ranks: int = 2, only: str | None = None) -> list[Path]:
+    """Run what is not there yet, then write the tables and the pictures.
 
     Parameters
     ----------
     folder : str or Path
-        Where results.json, the CSV tables, the picture and reproduction.md go.
+        Where results.json, coupled.json, the CSV tables, pictures, reproduction.md and coupled.md go.
     quick : bool
-        Only h = 1/32 and 1/64.
+        Coarse grids only: minutes, not hours.
     ranks : int
-        MPI ranks of every run.
+        MPI ranks of the paper's studies.
+    only : "paper" or "coupled", optional
+        One of the two groups of studies.
 
     Returns
     -------
-    Path
-        reproduction.md.
+    list of Path
+        reproduction.md, coupled.md.
     """
     folder = Path(folder)
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise RunError(f"{folder}: cannot be made ({error.strerror})") from None
+    written = []
+    if only != "coupled":
+        written.append(_paper(folder, quick, ranks))
+    if only != "paper":
+        written.append(coupled_results(folder, quick, ranks))
+    return written
+
+
+def _paper(folder: Path, quick: bool, ranks: int) -> Path:
+    """Run the paper's studies; return reproduction.md."""
     results = Results(folder / "results.json", ranks)
     text = [_head(quick, ranks)]
     for kind in ("relax", "shear"):
@@ -66,19 +79,6 @@ def _head(quick: bool, ranks: int) -> str:
     )
 
 
-def _table(header: list[str], rows: list[list[str]]) -> list[str]:
-    """Return a Markdown table."""
-    lines = [header, ["---"] * len(header), *rows]
-    return ["| " + " | ".join(line) + " |" for line in lines] + [""]
-
-
-def _write_csv(path: Path, header: list[str], rows: list[list[object]]) -> None:
-    with path.open("w", newline="") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(header)
-        writer.writerows(rows)
-
-
 def _conservation(results: Results, folder: Path, quick: bool) -> list[str]:
     """Table 7: shear, dt = h/4, t = 5."""
     rows, shown = [], []
@@ -90,12 +90,12 @@ def _conservation(results: Results, folder: Path, quick: bool) -> list[str]:
         text = [f"{area:.4e}", f"{paper[0]:.3e}", f"{100 * (area / paper[0] - 1):+.1f} %"]
         text += [f"{length:.4e}", f"{paper[1]:.3e}", f"{100 * (length / paper[1] - 1):+.1f} %"]
         shown.append([f"1/{n}", *text])
-    _write_csv(folder / "table7.csv", ["h", "area_error", "area_paper", "length_error", "length_paper"], rows)
+    write_csv(folder / "table7.csv", ["h", "area_error", "area_paper", "length_error", "length_paper"], rows)
     about = (
         "Shear rate 1, dt = h/4, t = 5, markers 1.5 h apart (50, 98, 196, 392), both GMRES solves to 1e-12, relative.\n"
     )
     header = ["h", "area error", "paper", "difference", "length error", "paper", "difference"]
-    return ["## Table 7: area and length\n", about, *_table(header, shown)]
+    return ["## Table 7: area and length\n", about, *table(header, shown)]
 
 
 def _iterations(results: Results, folder: Path, kind: str, quick: bool) -> list[str]:
@@ -108,16 +108,16 @@ def _iterations(results: Results, folder: Path, kind: str, quick: bool) -> list[
         paper = [ITERATIONS[kind][column][CELLS.index(n)] for n in sizes(quick)]
         rows += [[f"1/{n}", test, x, y] for n, x, y in zip(sizes(quick), found, paper)]
         shown.append([label, *(f"{x:.1f} ({y})" for x, y in zip(found, paper))])
-    _write_csv(folder / f"table{number}.csv", ["h", "stopping_test", "tension_its", "paper"], rows)
+    write_csv(folder / f"table{number}.csv", ["h", "stopping_test", "tension_its", "paper"], rows)
     about = (
         f"{how}, 1/h markers (2.3 h apart). Mean iterations of a tension solve; in brackets the paper's column that the\n"
         "line stands beside. Relative and absolute: of the residual that GMRES sees, preconditioned from the left. L2 norm:\n"
-        "(SUM a_k^2 ds)^(1/2) over the edges.\n"
+        "(SUM a_k^2 ds)^(1/2) over the edges. These runs say `-tension_ksp_pc_side left`; the program's default is right.\n"
     )
     return [
         f"## Table {number}: tension iterations\n",
         about,
-        *_table(["", *(f"h = 1/{n}" for n in sizes(quick))], shown),
+        *table(["", *(f"h = 1/{n}" for n in sizes(quick))], shown),
     ]
 
 
@@ -135,10 +135,10 @@ def _energy(results: Results, folder: Path, n: int) -> list[str]:
     axes.grid(alpha=0.3)
     axes.legend(frameon=False)
     save_figure(figure, folder / "energy_decay.png")
-    _write_csv(folder / "energy_decay.csv", ["dt", "time", "energy_over_initial"], rows)
+    write_csv(folder / "energy_decay.csv", ["dt", "time", "energy_over_initial"], rows)
     about = (
         f"Fluid at rest, h = 1/{n}, t = 3, both GMRES solves to 1e-12. Change of E/E_0 in a step; the first two\n"
         "steps start from sigma = 0, which is not the tension of the initial shape.\n"
     )
-    table = _table(["dt", "step 1", "step 2", "largest later"], shown)
-    return ["## Figure 2: energy\n", about, *table, "![E/E_0 against time](energy_decay.png)\n"]
+    lines = table(["dt", "step 1", "step 2", "largest later"], shown)
+    return ["## Figure 2: energy\n", about, *lines, "![E/E_0 against time](energy_decay.png)\n"]
