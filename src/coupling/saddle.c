@@ -55,7 +55,7 @@ static PetscErrorCode MultMembrane(Saddle s, Vec w, Vec sigma, Vec yw, Vec ysigm
   if (s->self) { /* U = R (E u - Theta Dm^T sigma) */
     PetscScalar *ua;
     PetscCall(VecGetArray(s->U, &ua));
-    PetscCall(SelfMobilityApply(s->self, ua, sa));
+    PetscCall(SelfMobilityApply(s->self, sa, NULL, ua));
     PetscCall(VecRestoreArray(s->U, &ua));
   }
   PetscCall(VecGetArrayRead(s->U, &U));

@@ -148,22 +148,13 @@ static PetscErrorCode Subtract(SelfMobility s, PetscInt v, PetscScalar U[], cons
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SelfMobilityApply(SelfMobility s, PetscScalar U[], const PetscScalar sigma[]) {
+PetscErrorCode SelfMobilityApply(SelfMobility s, const PetscScalar sigma[], const PetscScalar Xhat[], PetscScalar U[]) {
   const Membrane m = s->coupling->membrane;
   PetscScalar *F = s->coupling->work;
   PetscFunctionBeginUser;
   PetscCall(PetscArrayzero(F, 2 * m->M));
   if (sigma) MembraneStretchingTranspose(m, s->coupling->tau, 1, sigma, F);
-  for (PetscInt v = 0; v < m->vesicles; v++) PetscCall(Subtract(s, v, U + 2 * m->start[v], F + 2 * m->start[v]));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode SelfMobilityHistory(SelfMobility s, PetscScalar U[], const PetscScalar Xhat[]) {
-  const Membrane m = s->coupling->membrane;
-  PetscScalar *F = s->coupling->work;
-  PetscFunctionBeginUser;
-  PetscCall(PetscArrayzero(F, 2 * m->M));
-  MembraneBending(m, m->bending, Xhat, s->coupling->force, F);
+  if (Xhat) MembraneBending(m, m->bending, Xhat, s->coupling->force, F);
   for (PetscInt v = 0; v < m->vesicles; v++) PetscCall(Subtract(s, v, U + 2 * m->start[v], F + 2 * m->start[v]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

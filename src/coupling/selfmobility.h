@@ -19,12 +19,11 @@ PETSC_EXTERN PetscErrorCode SelfMobilityDestroy(SelfMobility *self);
    R = (I + (c_b ds/a0) Theta D4)^-1. Every rank does the same. */
 PETSC_EXTERN PetscErrorCode SelfMobilitySetMarkers(SelfMobility self, PetscReal a0, const PetscScalar X[]);
 
-/* SelfMobilityApply - U := R (U - Theta Dm^T sigma), U[2M], sigma[M] or NULL for zero. */
-PETSC_EXTERN PetscErrorCode SelfMobilityApply(SelfMobility self, PetscScalar U[], const PetscScalar sigma[]);
-
-/* SelfMobilityHistory - U := R (U - c_b ds Theta D4 Xhat): the part of the marker velocity that is known before the
- * solve. */
-PETSC_EXTERN PetscErrorCode SelfMobilityHistory(SelfMobility self, PetscScalar U[], const PetscScalar Xhat[]);
+/* SelfMobilityApply - U := R (U - Theta (Dm^T sigma + c_b ds D4 Xhat)), U[2M]; sigma[M] and Xhat[2M] may be NULL. With
+   sigma, U = E u becomes the solved part of the markers' velocity; with Xhat, U = u_inf becomes the part known before.
+ */
+PETSC_EXTERN PetscErrorCode SelfMobilityApply(SelfMobility self, const PetscScalar sigma[], const PetscScalar Xhat[],
+                                              PetscScalar U[]);
 
 /* SelfMobilityBlock - Theta of one vesicle of n markers, symmetric [2n][2n]; borrowed. */
 PETSC_EXTERN const PetscReal *SelfMobilityBlock(SelfMobility self, PetscInt vesicle);

@@ -39,7 +39,7 @@ static PetscErrorCode SelfMobilityPart(Scheme s, Coupled *d, PetscReal a0) {
   if (s->fluid->total) PetscCall(VecSet(s->background, 0));
   PetscCall(VecGetArray(s->background, &u));
   PetscCall(SelfMobilitySetMarkers(s->self, a0, xs));
-  PetscCall(SelfMobilityHistory(s->self, u, xh));
+  PetscCall(SelfMobilityApply(s->self, NULL, xh, u));
   PetscCall(VecRestoreArray(s->background, &u));
   PetscCall(VecRestoreArrayRead(d->Xhat, &xh));
   PetscCall(VecRestoreArrayRead(d->Xstar, &xs));

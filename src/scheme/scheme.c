@@ -163,7 +163,7 @@ PetscErrorCode SchemeMarkerVelocity(Scheme s, Vec w, Vec sigma, Vec U) {
   PetscCall(VecGetArrayRead(s->g, &g));
   PetscCall(VecGetArray(U, &u));
   PetscCall(VecGetArray(s->work_tension, &d));
-  if (s->self) PetscCall(SelfMobilityApply(s->self, u, sa));
+  if (s->self) PetscCall(SelfMobilityApply(s->self, sa, NULL, u));
   MembraneStretching(s->membrane, s->coupling->tau, u, d);
   s->report.surface_div_max = 0;
   for (PetscInt k = 0; k < s->membrane->M; k++)
