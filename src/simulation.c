@@ -73,6 +73,7 @@ static PetscErrorCode Build(MPI_Comm comm, Simulation s) {
 
 PetscErrorCode SimulationCreate(MPI_Comm comm, Simulation *out) {
   Simulation s;
+  PetscBool only_help;
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&s));
   *out = s;
@@ -80,7 +81,8 @@ PetscErrorCode SimulationCreate(MPI_Comm comm, Simulation *out) {
   PetscCall(PetvesSetupErrors(PETSC_TRUE));
   PetscCall(Build(comm, s));
   if (s->scene->view) PetscCall(SimulationView(s, PETSC_VIEWER_STDOUT_(comm)));
-  PetscCall(OutputCreate(s->scene, s->scheme, &s->output));
+  PetscCall(PetscOptionsHasHelp(NULL, &only_help));
+  if (!only_help) PetscCall(OutputCreate(s->scene, s->scheme, &s->output)); /* -help leaves no files */
   PetscCall(PetvesSetupErrors(PETSC_FALSE));
   PetscCall(PhaseEnd());
   PetscFunctionReturn(PETSC_SUCCESS);
