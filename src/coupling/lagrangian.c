@@ -5,6 +5,35 @@
    iterations (docs/tension_iterations.md). */
 #define COMPLETE_FILL 200
 
+/* U := R (U - Theta Dm^T sigma), sigma or NULL */
+static PetscErrorCode ApplySelfMobility(LagrangianSolver s, const PetscScalar sigma[], Vec U) {
+  PetscScalar *u;
+  PetscFunctionBeginUser;
+  PetscCall(VecGetArray(U, &u));
+  PetscCall(SelfMobilityApply(s->self, sigma, NULL, u));
+  PetscCall(VecRestoreArray(U, &u));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* y = Dm R (E w - alpha Theta Dm^T x)/h^2, what self-mobility makes of S^T w. */
+static PetscErrorCode CorrectedStretching(LagrangianSolver s, Vec w, Vec x, PetscReal alpha, Vec y) {
+  const Coupling c = s->coupling;
+  const PetscScalar *u;
+  PetscScalar *ya;
+  PetscFunctionBeginUser;
+  PetscCall(CouplingInterpolate(c, c->E, w, s->U));
+  PetscCall(VecCopy(x, y));
+  PetscCall(VecScale(y, alpha));
+  PetscCall(VecGetArray(y, &ya));
+  PetscCall(ApplySelfMobility(s, ya, s->U));
+  PetscCall(VecGetArrayRead(s->U, &u));
+  MembraneStretching(c->membrane, c->tau, u, ya);
+  PetscCall(VecRestoreArrayRead(s->U, &u));
+  PetscCall(VecRestoreArray(y, &ya));
+  PetscCall(VecScale(y, 1 / PetscSqr(c->grid->h)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* y = (S^T S + S^T G L^-1 G^T S) x */
 static PetscErrorCode MultTension(Mat A, Vec x, Vec y) {
   LagrangianSolver s;
@@ -15,7 +44,10 @@ static PetscErrorCode MultTension(Mat A, Vec x, Vec y) {
   PetscCall(MatMultTranspose(s->fluid->G, s->w, s->q));
   PetscCall(FluidSolvePoisson(s->fluid, s->q, s->q));
   PetscCall(GridGradient(s->fluid->grid, 1, s->q, PETSC_TRUE, s->w));
-  PetscCall(CouplingInterpolate(s->coupling, s->coupling->S, s->w, y));
+  if (s->self)
+    PetscCall(CorrectedStretching(s, s->w, x, -s->fluid->a0, y));
+  else
+    PetscCall(CouplingInterpolate(s->coupling, s->coupling->S, s->w, y));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -28,11 +60,12 @@ static PetscErrorCode MultBending(Mat A, Vec x, Vec y) {
   PetscCall(CouplingSpreadAdd(s->coupling, 1, s->coupling->B, x, s->w));
   PetscCall(FluidSolveHelmholtz(s->fluid, s->w, s->w2));
   PetscCall(CouplingInterpolate(s->coupling, s->coupling->E, s->w2, y));
+  if (s->self) PetscCall(ApplySelfMobility(s, NULL, y));
   PetscCall(VecAYPX(y, 1 / s->fluid->a0, x));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Create(Fluid fluid, Coupling coupling, const char prefix[], PetscInt n,
+static PetscErrorCode Create(Fluid fluid, Coupling coupling, SelfMobility self, const char prefix[], PetscInt n,
                              PetscErrorCode (*mult)(Mat, Vec, Vec), LagrangianSolver *out) {
   LagrangianSolver s;
   PetscFunctionBeginUser;
@@ -40,8 +73,10 @@ static PetscErrorCode Create(Fluid fluid, Coupling coupling, const char prefix[]
   *out = s;
   s->fluid = fluid;
   s->coupling = coupling;
+  s->self = self;
   s->prefix = prefix;
   PetscCall(DMCreateGlobalVector(fluid->grid->velocity, &s->w));
+  PetscCall(MembraneCreateMarkerVec(coupling->membrane, &s->U));
   PetscCall(MatCreateShell(PETSC_COMM_SELF, n, n, n, n, s, &s->A));
   PetscCall(MatShellSetOperation(s->A, MATOP_MULT, (void (*)(void))mult));
   PetscCall(KSPCreate(PETSC_COMM_SELF, &s->ksp));
@@ -79,10 +114,10 @@ static PetscErrorCode PreferRight(KSP ksp) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode TensionSolverCreate(Fluid fluid, Coupling coupling, LagrangianSolver *s) {
+PetscErrorCode TensionSolverCreate(Fluid fluid, Coupling coupling, SelfMobility self, LagrangianSolver *s) {
   PC pc;
   PetscFunctionBeginUser;
-  PetscCall(Create(fluid, coupling, "tension_", coupling->membrane->M, MultTension, s));
+  PetscCall(Create(fluid, coupling, self, "tension_", coupling->membrane->M, MultTension, s));
   PetscCall(DMCreateGlobalVector(fluid->grid->da[FIELD_P], &(*s)->q));
   PetscCall(KSPGetPC((*s)->ksp, &pc));
   PetscCall(PCSetType(pc, PCILU));
@@ -93,10 +128,10 @@ PetscErrorCode TensionSolverCreate(Fluid fluid, Coupling coupling, LagrangianSol
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode BendingSolverCreate(Fluid fluid, Coupling coupling, LagrangianSolver *s) {
+PetscErrorCode BendingSolverCreate(Fluid fluid, Coupling coupling, SelfMobility self, LagrangianSolver *s) {
   PC pc;
   PetscFunctionBeginUser;
-  PetscCall(Create(fluid, coupling, "bending_", 2 * coupling->membrane->M, MultBending, s));
+  PetscCall(Create(fluid, coupling, self, "bending_", 2 * coupling->membrane->M, MultBending, s));
   PetscCall(VecDuplicate((*s)->w, &(*s)->w2));
   PetscCall(KSPGetPC((*s)->ksp, &pc));
   PetscCall(PCSetType(pc, PCNONE));
@@ -115,7 +150,35 @@ PetscErrorCode LagrangianSolverDestroy(LagrangianSolver *solver) {
   PetscCall(VecDestroy(&s->w));
   PetscCall(VecDestroy(&s->w2));
   PetscCall(VecDestroy(&s->q));
+  PetscCall(VecDestroy(&s->U));
   PetscCall(PetscFree(*solver));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Chat += (a0/h^2) Dm Theta Dm^T for one-block vesicles: self-mobility is the larger part of the corrected operator. */
+static PetscErrorCode AddSelfMobility(LagrangianSolver s) {
+  const Membrane m = s->coupling->membrane;
+  const PetscReal scale = s->fluid->a0 / PetscSqr(s->coupling->grid->h);
+  PetscScalar *unit, *F, *d;
+  Mat sum;
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc3(m->M, &unit, 2 * m->M, &F, m->M, &d));
+  PetscCall(MatConvert(s->Chat, MATSEQDENSE, MAT_INITIAL_MATRIX, &sum));
+  for (PetscInt k = 0; k < m->M; k++) {
+    unit[k] = 1;
+    PetscCall(PetscArrayzero(F, 2 * m->M));
+    MembraneStretchingTranspose(m, s->coupling->tau, 1, unit, F);
+    PetscCall(SelfMobilityMultTheta(s->self, F));
+    MembraneStretching(m, s->coupling->tau, F, d);
+    for (PetscInt l = 0; l < m->M; l++) PetscCall(MatSetValue(sum, l, k, scale * d[l], ADD_VALUES));
+    unit[k] = 0;
+  }
+  PetscCall(MatAssemblyBegin(sum, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(sum, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatDestroy(&s->Chat));
+  PetscCall(MatConvert(sum, MATSEQAIJ, MAT_INITIAL_MATRIX, &s->Chat));
+  PetscCall(MatDestroy(&sum));
+  PetscCall(PetscFree3(unit, F, d));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -128,6 +191,7 @@ PetscErrorCode LagrangianSolverSetUp(LagrangianSolver s) {
     PetscCall(PetscObjectTypeCompare((PetscObject)pc, PCNONE, &none));
     PetscCall(MatDestroy(&s->Chat));
     if (!none) PetscCall(TensionAssemble(s->coupling, &s->Chat));
+    if (!none && s->self) PetscCall(AddSelfMobility(s));
     PetscCall(KSPSetOperators(s->ksp, s->A, none ? s->A : s->Chat));
   }
   PetscCall(KSPSetUp(s->ksp));

@@ -2,17 +2,19 @@
    iteration, the operators inside are collective. So PETSc's sequential PCILU works on any number of ranks, and
    iteration counts do not depend on it. Any KSP or PC option works under the prefixes tension_ and bending_. */
 #pragma once
-#include "coupling/coupling.h"
+#include "coupling/selfmobility.h"
 
 typedef struct _p_LagrangianSolver *LagrangianSolver;
 struct _p_LagrangianSolver {
   Fluid fluid;       /* borrowed */
   Coupling coupling; /* borrowed */
+  SelfMobility self; /* borrowed; NULL without: U = R (E u - Theta Dm^T dsigma) in place of E u */
   const char *prefix;
   KSP ksp;
   Mat A;                  /* the operator, a shell */
   Mat Chat;               /* assembled approximation for the preconditioner; NULL when there is none */
   Vec w, w2, q;           /* work: two velocities, one pressure */
+  Vec U;                  /* work: a marker vector */
   PetscInt its;           /* iterations of the last solve */
   KSPConvergedReason why; /* how it ended */
   PetscReal residual;     /* its last residual norm, as KSP measures it */
@@ -20,11 +22,13 @@ struct _p_LagrangianSolver {
 
 /* TensionSolverCreate - C = S^T S + S^T G L^-1 G^T S (M x M), prefix tension_, GMRES with PCILU on the assembled
    Chat = S^T S + S^T G diag(L)^-1 G^T S, relative tolerance h^2. One scalar solve an iteration. */
-PETSC_EXTERN PetscErrorCode TensionSolverCreate(Fluid fluid, Coupling coupling, LagrangianSolver *solver);
+PETSC_EXTERN PetscErrorCode TensionSolverCreate(Fluid fluid, Coupling coupling, SelfMobility self,
+                                                LagrangianSolver *solver);
 
 /* BendingSolverCreate - I + E H^-1 B/a0 (2M x 2M), prefix bending_, GMRES, relative tolerance h^2. Two scalar solves an
    iteration. */
-PETSC_EXTERN PetscErrorCode BendingSolverCreate(Fluid fluid, Coupling coupling, LagrangianSolver *solver);
+PETSC_EXTERN PetscErrorCode BendingSolverCreate(Fluid fluid, Coupling coupling, SelfMobility self,
+                                                LagrangianSolver *solver);
 PETSC_EXTERN PetscErrorCode LagrangianSolverDestroy(LagrangianSolver *solver);
 
 /* LagrangianSolverSetUp - follow the coupling's new markers: assemble Chat where the preconditioner wants it. */

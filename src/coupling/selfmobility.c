@@ -158,3 +158,16 @@ PetscErrorCode SelfMobilityApply(SelfMobility s, const PetscScalar sigma[], cons
   for (PetscInt v = 0; v < m->vesicles; v++) PetscCall(Subtract(s, v, U + 2 * m->start[v], F + 2 * m->start[v]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+PetscErrorCode SelfMobilityMultTheta(SelfMobility s, PetscScalar F[]) {
+  const Membrane m = s->coupling->membrane;
+  PetscFunctionBeginUser;
+  for (PetscInt v = 0; v < m->vesicles; v++) {
+    Block *b = &s->block[v];
+    PetscScalar *own = F + 2 * m->start[v];
+    PetscCall(PetscArraycpy(b->work, own, 2 * b->n));
+    PetscCall(PetscArrayzero(own, 2 * b->n));
+    PetscCall(DenseMultAdd(2 * b->n, 2 * b->n, 1, b->Theta, b->work, own));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -25,6 +25,9 @@ PETSC_EXTERN PetscErrorCode SelfMobilitySetMarkers(SelfMobility self, PetscReal 
 PETSC_EXTERN PetscErrorCode SelfMobilityApply(SelfMobility self, const PetscScalar sigma[], const PetscScalar Xhat[],
                                               PetscScalar U[]);
 
+/* SelfMobilityMultTheta - F := Theta F, F[2M]. */
+PETSC_EXTERN PetscErrorCode SelfMobilityMultTheta(SelfMobility self, PetscScalar F[]);
+
 /* SelfMobilityBlock - Theta of one vesicle of n markers, symmetric [2n][2n]; borrowed. */
 PETSC_EXTERN const PetscReal *SelfMobilityBlock(SelfMobility self, PetscInt vesicle);
 

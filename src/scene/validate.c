@@ -90,8 +90,6 @@ static PetscErrorCode CheckSplit(Scene scene) {
              "-membrane_derivative spectral: not with -scheme_type split, whose preconditioner knows chords only; "
              "allowed: fd, "
              "bending, or -scheme_type coupled or direct");
-  PetscCheck(scene->self_mobility == SELF_NONE, scene->comm, PETSC_ERR_USER_INPUT,
-             "-coupling_self_mobility: not with -scheme_type split; allowed: none, or -scheme_type coupled or direct");
   PetscCheck(
       !scene->area_target, scene->comm, PETSC_ERR_USER_INPUT,
       "-scheme_area_target true: not with -scheme_type split; allowed: false, or -scheme_type coupled or direct");

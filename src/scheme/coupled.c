@@ -28,25 +28,6 @@ static PetscErrorCode LengthTarget(Scheme s, const Coupled *d, PetscReal a0) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* With self-mobility the velocity known before the solve is R (u_inf - c_b ds Theta D4 Xhat): it takes u_inf's place.
- */
-static PetscErrorCode SelfMobilityPart(Scheme s, Coupled *d, PetscReal a0) {
-  const PetscScalar *xs, *xh;
-  PetscScalar *u;
-  PetscFunctionBeginUser;
-  PetscCall(VecGetArrayRead(d->Xstar, &xs));
-  PetscCall(VecGetArrayRead(d->Xhat, &xh));
-  if (s->fluid->total) PetscCall(VecSet(s->background, 0));
-  PetscCall(VecGetArray(s->background, &u));
-  PetscCall(SelfMobilitySetMarkers(s->self, a0, xs));
-  PetscCall(SelfMobilityApply(s->self, NULL, xh, u));
-  PetscCall(VecRestoreArray(s->background, &u));
-  PetscCall(VecRestoreArrayRead(d->Xhat, &xh));
-  PetscCall(VecRestoreArrayRead(d->Xstar, &xs));
-  PetscCall(SchemeBackgroundConstraint(s));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* y = (1 + r) x - r x_old, the extrapolation; x itself in a first step. */
 static PetscErrorCode Extrapolate(PetscReal r, Vec x, Vec x_old, Vec y) {
   PetscFunctionBeginUser;
@@ -104,7 +85,7 @@ PetscErrorCode CoupledAttempt(Scheme s, PetscReal dt, PetscBool *solved) {
     PetscCall(History(&b, 1 / b.a0, q->X, d->old.X, d->Xhat));
     PetscCall(SchemePlaceMarkers(s, d->Xstar, solved));
     if (!*solved) PetscFunctionReturn(PETSC_SUCCESS);
-    if (s->self) PetscCall(SelfMobilityPart(s, d, b.a0));
+    if (s->self) PetscCall(SchemeSetSelfMobility(s, b.a0, d->Xstar, NULL, d->Xhat));
     if (d->length_target) PetscCall(LengthTarget(s, d, b.a0));
   }
   PetscCall(MomentumRightHandSide(s, d, &b));
@@ -207,8 +188,6 @@ static PetscErrorCode SetUp_Coupled(Scheme s) {
   d->order = s->scene->order;
   d->length_target = s->scene->length_target;
   d->area_target = s->scene->area_target;
-  if (s->scene->self_mobility != SELF_NONE && s->coupling)
-    PetscCall(SelfMobilityCreate(s->coupling, s->fluid->nu, (SelfMobilityType)s->scene->self_mobility, &s->self));
   PetscCall(DuplicateState(q, &d->old));
   PetscCall(DuplicateState(q, &d->next));
   PetscCall(VecDuplicate(q->w, &d->f));
@@ -242,7 +221,6 @@ static PetscErrorCode Destroy_Coupled(Scheme s) {
   State *states[2] = {&d->old, &d->next};
   Vec *others[] = {&d->f, &d->Xstar, &d->Xhat, &d->Y};
   PetscFunctionBeginUser;
-  PetscCall(SelfMobilityDestroy(&s->self));
   PetscCall(SaddleDestroy(&d->saddle));
   PetscCall(DirectSolverDestroy(&d->direct));
   for (int k = 0; k < 2; k++) {

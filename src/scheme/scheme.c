@@ -28,6 +28,7 @@ static PetscErrorCode CreateState(Scheme s, const PetscReal X[]) {
   PetscCall(MembraneCreateMarkerVec(s->membrane, &q->X));
   PetscCall(VecDuplicate(q->X, &q->U));
   PetscCall(VecDuplicate(q->X, &s->background));
+  PetscCall(VecDuplicate(q->X, &s->work_markers));
   PetscCall(MembraneCreateTensionVec(s->membrane, &q->sigma));
   PetscCall(VecDuplicate(q->sigma, &s->g));
   PetscCall(VecDuplicate(q->sigma, &s->work_tension));
@@ -65,6 +66,8 @@ PetscErrorCode SchemeCreate(Scene scene, Fluid fluid, Membrane membrane, Couplin
   s->membrane = membrane;
   s->coupling = coupling;
   PetscCall(CreateState(s, X));
+  if (coupling && scene->self_mobility != SELF_NONE)
+    PetscCall(SelfMobilityCreate(coupling, fluid->nu, (SelfMobilityType)scene->self_mobility, &s->self));
   PetscCall(create(s));
   PetscCall(s->setup(s));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -75,6 +78,7 @@ PetscErrorCode SchemeDestroy(Scheme *scheme) {
   PetscFunctionBeginUser;
   if (!s) PetscFunctionReturn(PETSC_SUCCESS);
   if (s->destroy) PetscCall(s->destroy(s));
+  PetscCall(SelfMobilityDestroy(&s->self));
   PetscCall(VecDestroy(&s->state.w));
   PetscCall(VecDestroy(&s->state.p));
   PetscCall(VecDestroy(&s->state.sigma));
@@ -83,6 +87,7 @@ PetscErrorCode SchemeDestroy(Scheme *scheme) {
   PetscCall(VecDestroy(&s->background));
   PetscCall(VecDestroy(&s->g));
   PetscCall(VecDestroy(&s->work_tension));
+  PetscCall(VecDestroy(&s->work_markers));
   PetscCall(VecDestroy(&s->work_pressure));
   PetscCall(PetscFree(*scheme));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -153,26 +158,70 @@ PetscErrorCode SchemeBackgroundConstraint(Scheme s) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SchemeMarkerVelocity(Scheme s, Vec w, Vec sigma, Vec U) {
-  const PetscReal h2 = PetscSqr(s->fluid->grid->h);
-  const PetscScalar *sa, *g;
-  PetscScalar *u, *d;
+PetscErrorCode SchemeSetSelfMobility(Scheme s, PetscReal a0, Vec X, Vec sigma, Vec Xhat) {
+  const PetscScalar *x, *xh, *sa = NULL;
+  PetscScalar *u;
+  PetscFunctionBeginUser;
+  if (s->fluid->total) PetscCall(VecSet(s->background, 0)); /* u_inf is in w there */
+  PetscCall(VecGetArrayRead(X, &x));
+  PetscCall(VecGetArrayRead(Xhat, &xh));
+  if (sigma) PetscCall(VecGetArrayRead(sigma, &sa));
+  PetscCall(VecGetArray(s->background, &u));
+  PetscCall(SelfMobilitySetMarkers(s->self, a0, x));
+  PetscCall(SelfMobilityApply(s->self, sa, xh, u));
+  PetscCall(VecRestoreArray(s->background, &u));
+  if (sigma) PetscCall(VecRestoreArrayRead(sigma, &sa));
+  PetscCall(VecRestoreArrayRead(Xhat, &xh));
+  PetscCall(VecRestoreArrayRead(X, &x));
+  PetscCall(SchemeBackgroundConstraint(s));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SchemeSolvedVelocity(Scheme s, Vec w, Vec sigma, Vec U) {
+  const PetscScalar *sa = NULL;
+  PetscScalar *u;
   PetscFunctionBeginUser;
   PetscCall(CouplingInterpolate(s->coupling, s->coupling->E, w, U));
-  PetscCall(VecGetArrayRead(sigma, &sa));
-  PetscCall(VecGetArrayRead(s->g, &g));
+  if (!s->self) PetscFunctionReturn(PETSC_SUCCESS);
+  if (sigma) PetscCall(VecGetArrayRead(sigma, &sa));
   PetscCall(VecGetArray(U, &u));
+  PetscCall(SelfMobilityApply(s->self, sa, NULL, u));
+  PetscCall(VecRestoreArray(U, &u));
+  if (sigma) PetscCall(VecRestoreArrayRead(sigma, &sa));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SchemeSurfaceDivergence(Scheme s, Vec w, Vec d) {
+  const PetscScalar *u;
+  PetscScalar *da;
+  PetscFunctionBeginUser;
+  PetscCall(SchemeSolvedVelocity(s, w, NULL, s->work_markers));
+  PetscCall(VecGetArrayRead(s->work_markers, &u));
+  PetscCall(VecGetArray(d, &da));
+  MembraneStretching(s->membrane, s->coupling->tau, u, da);
+  PetscCall(VecRestoreArray(d, &da));
+  PetscCall(VecRestoreArrayRead(s->work_markers, &u));
+  PetscCall(VecScale(d, 1 / PetscSqr(s->fluid->grid->h)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SchemeMarkerVelocity(Scheme s, Vec w, Vec sigma, Vec U) {
+  const PetscReal h2 = PetscSqr(s->fluid->grid->h);
+  const PetscScalar *g, *u;
+  PetscScalar *d;
+  PetscFunctionBeginUser;
+  PetscCall(SchemeSolvedVelocity(s, w, sigma, U));
+  PetscCall(VecGetArrayRead(s->g, &g));
+  PetscCall(VecGetArrayRead(U, &u));
   PetscCall(VecGetArray(s->work_tension, &d));
-  if (s->self) PetscCall(SelfMobilityApply(s->self, sa, NULL, u));
   MembraneStretching(s->membrane, s->coupling->tau, u, d);
   s->report.surface_div_max = 0;
   for (PetscInt k = 0; k < s->membrane->M; k++)
     s->report.surface_div_max = PetscMax(s->report.surface_div_max,
                                          PetscAbsReal(d[k] - h2 * g[k]) / s->membrane->spacing[k]);
   PetscCall(VecRestoreArray(s->work_tension, &d));
-  PetscCall(VecRestoreArray(U, &u));
+  PetscCall(VecRestoreArrayRead(U, &u));
   PetscCall(VecRestoreArrayRead(s->g, &g));
-  PetscCall(VecRestoreArrayRead(sigma, &sa));
   PetscCall(VecAXPY(U, 1, s->background));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -36,10 +36,10 @@ struct _p_Scheme {
   State state;
   const State *old; /* the state one step before, for schemes that go on from two; NULL when there is none */
   StepReport report;
-  SelfMobility self; /* the scheme's own; NULL without */
+  SelfMobility self; /* NULL without */
   Vec background;    /* [2M] what the markers' velocity has besides the solved part: u_inf, zero in the total form */
   Vec g;             /* [M] S^T u = g: minus the background's stretching, Dm u_inf/h^2 */
-  Vec work_tension, work_pressure;
+  Vec work_tension, work_pressure, work_markers;
   void *data; /* the scheme's own */
   PetscErrorCode (*setup)(Scheme);
   PetscErrorCode (*step)(Scheme); /* advance the state, or fill in report.failure and leave it */
@@ -68,6 +68,16 @@ PETSC_EXTERN PetscErrorCode SchemePlaceMarkers(Scheme scheme, Vec X, PetscBool *
 
 /* SchemeBackgroundConstraint - g = -Dm background/h^2. */
 PETSC_EXTERN PetscErrorCode SchemeBackgroundConstraint(Scheme scheme);
+
+/* SchemeSetSelfMobility - Theta and R at the markers X for a0, and what is known of the markers' velocity before the
+   solve, R (u_inf - Theta (Dm^T sigma + c_b ds D4 Xhat)), in u_inf's place in background and g. sigma may be NULL. */
+PETSC_EXTERN PetscErrorCode SchemeSetSelfMobility(Scheme scheme, PetscReal a0, Vec X, Vec sigma, Vec Xhat);
+
+/* SchemeSolvedVelocity - U = E w, or R (E w - Theta Dm^T sigma) with self-mobility; sigma may be NULL. */
+PETSC_EXTERN PetscErrorCode SchemeSolvedVelocity(Scheme scheme, Vec w, Vec sigma, Vec U);
+
+/* SchemeSurfaceDivergence - d = S^T w, or Dm R E w/h^2 with self-mobility. */
+PETSC_EXTERN PetscErrorCode SchemeSurfaceDivergence(Scheme scheme, Vec w, Vec d);
 
 /* SchemeMarkerVelocity - U = background + E w (+ self-mobility of sigma) at the coupling's markers; measures
    report.surface_div_max on the way. */

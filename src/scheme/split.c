@@ -36,7 +36,7 @@ static PetscErrorCode PredictVelocity(Scheme s, Split *d) {
 static PetscErrorCode ImplicitBending(Scheme s, Split *d) {
   Coupling c = s->coupling;
   PetscFunctionBeginUser;
-  PetscCall(CouplingInterpolate(c, c->E, d->u2, d->rhs_z));
+  PetscCall(SchemeSolvedVelocity(s, d->u2, NULL, d->rhs_z));
   PetscCall(VecScale(d->rhs_z, -s->state.dt));
   PetscCall(LagrangianSolverSolve(d->bending, d->rhs_z, d->z));
   s->report.bending_its = d->bending->its;
@@ -59,7 +59,7 @@ static PetscErrorCode SolveTension(Scheme s, Split *d) {
   PetscFunctionBeginUser;
   PetscCall(VecCopy(d->u2, d->r)); /* (1/dt) S^T u2 - S^T G dp* = (1/dt) S^T (u2 - dt G dp*) */
   PetscCall(GridGradient(f->grid, -s->state.dt, d->dp, PETSC_TRUE, d->r));
-  PetscCall(CouplingInterpolate(c, c->S, d->r, d->rhs_sigma));
+  PetscCall(SchemeSurfaceDivergence(s, d->r, d->rhs_sigma));
   PetscCall(VecAXPY(d->rhs_sigma, -1, s->g));
   PetscCall(VecScale(d->rhs_sigma, 1 / s->state.dt));
   PetscCall(LagrangianSolverSolve(d->tension, d->rhs_sigma, d->dsigma));
@@ -86,6 +86,7 @@ static PetscErrorCode Step_Split(Scheme s) {
   PetscCall(FluidSetTimeCoefficient(f, 1 / q->dt));
   if (c) PetscCall(SchemePlaceMarkers(s, q->X, &placed));
   if (!placed) PetscFunctionReturn(PETSC_SUCCESS);
+  if (s->self) PetscCall(SchemeSetSelfMobility(s, 1 / q->dt, q->X, q->sigma, q->X));
   if (c) PetscCall(LagrangianSolverSetUp(d->tension));
   PetscCall(PredictVelocity(s, d));                 /* step 1 */
   if (d->bending) PetscCall(ImplicitBending(s, d)); /* step 2 */
@@ -104,7 +105,7 @@ static PetscErrorCode Step_Split(Scheme s) {
   /* 7  X += dt (u_inf + E u),  p += dp,  sigma += dsigma */
   PetscCall(VecAXPY(q->p, 1, d->dp));
   if (!c) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(SchemeMarkerVelocity(s, q->w, q->sigma, q->U));
+  PetscCall(SchemeMarkerVelocity(s, q->w, d->dsigma, q->U));
   PetscCall(VecAXPY(q->X, q->dt, q->U));
   PetscCall(VecAXPY(q->sigma, 1, d->dsigma));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -124,10 +125,11 @@ static PetscErrorCode SetUp_Split(Scheme s) {
   PetscCall(VecDuplicate(q->X, &d->rhs_z));
   PetscCall(VecDuplicate(q->X, &d->Xhat));
   if (!s->coupling) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(TensionSolverCreate(s->fluid, s->coupling, &d->tension));
+  if (s->self) PetscCall(SchemeSetSelfMobility(s, 1 / q->dt, q->X, q->sigma, q->X));
+  PetscCall(TensionSolverCreate(s->fluid, s->coupling, s->self, &d->tension));
   PetscCall(LagrangianSolverSetUp(d->tension));
   if (s->membrane->bending > 0) {
-    PetscCall(BendingSolverCreate(s->fluid, s->coupling, &d->bending));
+    PetscCall(BendingSolverCreate(s->fluid, s->coupling, s->self, &d->bending));
     PetscCall(LagrangianSolverSetUp(d->bending));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
