@@ -137,24 +137,19 @@ static PetscErrorCode CheckLaw(const char scheme[], PetscReal bending, PetscReal
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Order 2 with the length target has no law for E_K + E_B, whose rise is reported (NumPy prototype: up to 4e-3). The
-   bound is that it stays below where it began. */
+/* Order 2 with the length target has no law for E_K + E_B, whose rise is reported (prototype, and with -scheme_startup
+   euler here: up to 4e-3; 2e-2 with the graded start, at c_b = 1, dt = 1/32). The bound is that it stays below where it
+   began. */
 static PetscErrorCode ReportLengthTarget(PetscReal bending, PetscReal dt) {
-  static const char *const start[] = {"euler", "graded"};
+  Law law = {0};
   PetscFunctionBeginUser;
-  for (int k = 0; k < 2; k++) {
-    Law law = {0};
-    char scheme[64];
-    PetscCall(PetscSNPrintf(scheme, sizeof(scheme), "-scheme_order 2 -scheme_startup %s", start[k]));
-    PetscCall(Sweep(scheme, bending, dt, &law));
-    CHECK(law.most < 1, "c_b = %g, dt = %g, %s: E_K + E_B rises by %.1e, G-norm by %.1e, ends at %.4f", bending, dt,
-          scheme, law.plain_rise, law.rise, law.last);
-  }
+  PetscCall(Sweep("-scheme_order 2", bending, dt, &law));
+  CHECK(law.most < 1,
+        "c_b = %g, dt = %g, order 2, length target: E_K + E_B rises by %.1e, G-norm by %.1e, ends at %.4f", bending, dt,
+        law.plain_rise, law.rise, law.last);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What coupled is for. `gain` is what the split scheme is known to reach in 24 steps, as a factor of E_0; 0: unknown.
- */
 static PetscErrorCode CheckSplitFails(PetscReal bending, PetscReal dt, PetscReal gain) {
   Law law = {0};
   PetscFunctionBeginUser;
