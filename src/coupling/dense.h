@@ -1,6 +1,6 @@
-/* The small Lagrangian problem inside the coupled preconditioner, one dense block a vesicle (DESIGN section 7):
-       N = I + (c_b ds/(h^2 a0)) Mob D4,   C = Dm N^-1 Mob Dm^T/h^4,   sigma = C^-1 (Dm U1/h^2 - r_s),
-       U3 = U1 - N^-1 Mob Dm^T sigma/h^2,  U1 = N^-1 U. */
+/* The small Lagrangian problem inside the coupled preconditioner (DESIGN section 7), one dense block for all vesicles
+   or, when their markers are many, one a vesicle: N = I + (c_b ds/(h^2 a0)) Mob D4,   C = Dm N^-1 Mob Dm^T/h^4,   sigma
+   = C^-1 (Dm U1/h^2 - r_s), U3 = U1 - N^-1 Mob Dm^T sigma/h^2,  U1 = N^-1 U. */
 #pragma once
 #include "coupling/mobility.h"
 #include "coupling/selfmobility.h"

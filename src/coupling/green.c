@@ -17,6 +17,7 @@ PetscErrorCode MobilityCreate(Scene scene, Coupling coupling, Mobility *out) {
   m->scene.flow.form = FORM_DISTURBANCE;
   PetscCall(FluidCreate(&m->scene, &m->periodic));
   for (PetscInt v = 0; v < coupling->membrane->vesicles; v++) reach = PetscMax(reach, coupling->membrane->L0[v] / 2);
+  if (coupling->membrane->vesicles > 1) reach = PETSC_MAX_INT / 4 * g->h; /* vesicles may be anywhere: the whole box */
   for (int d = 0; d < 2; d++) /* two markers are at most half a contour apart; room for drift and kernels */
     m->size[d] = PetscMin(g->n[d] / 2, (PetscInt)(1.1 * reach / g->h) + 4) + 2 * KERNEL_MAX_POINTS;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -146,8 +147,7 @@ static PetscReal Pair(Mobility m, const GreenTable *t, GreenBlock b, PetscInt k,
   return sum;
 }
 
-PetscErrorCode MobilityAssemble(Mobility m, const GreenTable *t, PetscInt v, PetscReal Mob[]) {
-  const PetscInt first = m->coupling->membrane->start[v], n = m->coupling->membrane->start[v + 1] - first;
+PetscErrorCode MobilityAssemble(Mobility m, const GreenTable *t, PetscInt first, PetscInt n, PetscReal Mob[]) {
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < n; k++)
     for (PetscInt l = 0; l < n; l++) {

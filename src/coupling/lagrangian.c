@@ -1,10 +1,5 @@
 #include "coupling/lagrangian.h"
 
-/* Levels of PCILU at which its fill is complete, with nested dissection, up to a few hundred markers: markers numbered
-   along a curve make Chat a cyclic band, whose fill runs along the whole curve. Only a complete one has the paper's
-   iterations (docs/tension_iterations.md). */
-#define COMPLETE_FILL 200
-
 /* U := R (U - Theta Dm^T sigma), sigma or NULL */
 static PetscErrorCode ApplySelfMobility(LagrangianSolver s, const PetscScalar sigma[], Vec U) {
   PetscScalar *u;

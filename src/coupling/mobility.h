@@ -34,7 +34,7 @@ PETSC_EXTERN PetscErrorCode MobilityDestroy(Mobility *mobility);
    Collective; borrowed. */
 PETSC_EXTERN PetscErrorCode MobilityGetTable(Mobility mobility, PetscReal a0, const GreenTable **table);
 
-/* MobilityAssemble - Mob of one vesicle of n markers at the coupling's markers: symmetric matrix [2n][2n], entries
-   interlaced x, y. Not collective. */
-PETSC_EXTERN PetscErrorCode MobilityAssemble(Mobility mobility, const GreenTable *table, PetscInt vesicle,
+/* MobilityAssemble - Mob of the n markers from `first` on, at the coupling's markers: symmetric matrix [2n][2n],
+   entries interlaced x, y. Not collective. */
+PETSC_EXTERN PetscErrorCode MobilityAssemble(Mobility mobility, const GreenTable *table, PetscInt first, PetscInt n,
                                              PetscReal Mob[]);

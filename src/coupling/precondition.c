@@ -57,13 +57,12 @@ static PetscErrorCode MembraneForce(Saddle s, Vec r_u, Vec sigma, Vec U, Vec r) 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The residual's third row is scaled by h^2/ds: undo it. */
+/* The residual's third row is scaled: undo it. */
 static PetscErrorCode UnscaleThirdRow(Saddle s, Vec r_s) {
-  const PetscReal h2 = PetscSqr(s->fluid->grid->h);
   PetscScalar *a;
   PetscFunctionBeginUser;
   PetscCall(VecGetArray(r_s, &a));
-  for (PetscInt k = 0; k < s->coupling->membrane->M; k++) a[k] *= s->coupling->membrane->spacing[k] / h2;
+  for (PetscInt k = 0; k < s->coupling->membrane->M; k++) a[k] /= SaddleScale(s, k);
   PetscCall(VecRestoreArray(r_s, &a));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -35,10 +35,16 @@ PetscErrorCode SaddleJoin(Saddle s, int slot, PetscScalar block[], Vec sigma) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Third row, scaled: h^2/ds times S^T u = Dm U/h^2. */
-static void ScaledStretching(Coupling c, const PetscScalar U[], PetscScalar y[]) {
+PetscReal SaddleScale(Saddle s, PetscInt k) {
+  const PetscReal h = s->fluid->grid->h;
+  return PetscSqr(h) / s->coupling->membrane->spacing[k] * h * (s->fluid->a0 + s->fluid->nu / PetscSqr(h));
+}
+
+/* Third row, scaled: S^T u = Dm U/h^2. */
+static void ScaledStretching(Saddle s, const PetscScalar U[], PetscScalar y[]) {
+  const Coupling c = s->coupling;
   MembraneStretching(c->membrane, c->tau, U, y);
-  for (PetscInt k = 0; k < c->membrane->M; k++) y[k] /= c->membrane->spacing[k];
+  for (PetscInt k = 0; k < c->membrane->M; k++) y[k] *= SaddleScale(s, k) / PetscSqr(c->grid->h);
 }
 
 /* The membrane's part of A x: forces from sigma and from U = E u, and the third row; one interpolation, one spreading.
@@ -63,7 +69,7 @@ static PetscErrorCode MultMembrane(Saddle s, Vec w, Vec sigma, Vec yw, Vec ysigm
   PetscCall(VecGetArray(ysigma, &y));
   MembraneStretchingTranspose(c->membrane, c->tau, 1 / h2, sa, F);
   if (c->membrane->bending > 0) MembraneBending(c->membrane, c->membrane->bending / (h2 * s->fluid->a0), U, c->work, F);
-  ScaledStretching(c, U, y);
+  ScaledStretching(s, U, y);
   PetscCall(VecRestoreArray(ysigma, &y));
   PetscCall(VecRestoreArray(s->F, &F));
   PetscCall(VecRestoreArrayRead(sigma, &sa));
@@ -106,6 +112,8 @@ static PetscErrorCode CreateMembranePart(Scene scene, Saddle s) {
     PetscCall(PCCreate(PETSC_COMM_SELF, &s->ilu));
     PetscCall(PCSetOptionsPrefix(s->ilu, "coupled_mobility_"));
     PetscCall(PCSetType(s->ilu, PCILU));
+    PetscCall(PCFactorSetLevels(s->ilu, COMPLETE_FILL));
+    PetscCall(PCFactorSetMatOrderingType(s->ilu, MATORDERINGND));
     PetscCall(PCSetFromOptions(s->ilu));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -237,7 +245,6 @@ static PetscErrorCode Iterate(Saddle s) {
 }
 
 PetscErrorCode SaddleSolve(Saddle s, Vec f, Vec g, Vec w, Vec p, Vec sigma) {
-  const PetscReal h2 = PetscSqr(s->fluid->grid->h);
   PetscScalar *a;
   PetscFunctionBeginUser;
   PetscCall(VecGetArray(s->b, &a));
@@ -252,7 +259,7 @@ PetscErrorCode SaddleSolve(Saddle s, Vec f, Vec g, Vec w, Vec p, Vec sigma) {
     PetscScalar *ra;
     PetscCall(VecGetArrayRead(g, &ga));
     PetscCall(VecGetArray(s->r_s, &ra));
-    for (PetscInt k = 0; k < s->coupling->membrane->M; k++) ra[k] = ga[k] * h2 / s->coupling->membrane->spacing[k];
+    for (PetscInt k = 0; k < s->coupling->membrane->M; k++) ra[k] = ga[k] * SaddleScale(s, k);
     PetscCall(VecRestoreArray(s->r_s, &ra));
     PetscCall(VecRestoreArrayRead(g, &ga));
   }

@@ -2,7 +2,7 @@
        [ H + B E/a0   G   S ] [u]       [ f  ]
        [ G^T          0   0 ] [p]     = [ -bc2 ]
        [ S^T          0   0 ] [sigma]   [ g  ]
-   FGMRES under the prefix coupled_, the third row scaled by h^2/ds so that it reads as a surface divergence. The
+   FGMRES under the prefix coupled_, row k of the third block scaled by SaddleScale. The
    preconditioner is two Stokes solves around a small Lagrangian solve. */
 #pragma once
 #include "coupling/dense.h"
@@ -51,7 +51,11 @@ PETSC_EXTERN PetscErrorCode SaddleSetUp(Saddle saddle);
    say how it went. Collective. */
 PETSC_EXTERN PetscErrorCode SaddleSolve(Saddle saddle, Vec f, Vec g, Vec w, Vec p, Vec sigma);
 
-/* SaddlePreconditioner (precondition.c) - PCSHELL's apply. */
+/* SaddleScale - factor of the third block's row k: h^2/ds makes it a surface divergence, h (a0 + nu/h^2) the momentum
+   that goes with it, so that the residual norm weighs both alike. */
+PETSC_EXTERN PetscReal SaddleScale(Saddle saddle, PetscInt k);
+
+/* SaddlePrecondition (precondition.c) - PCSHELL's apply. */
 PETSC_EXTERN PetscErrorCode SaddlePrecondition(PC pc, Vec r, Vec z);
 
 /* A block vector taken apart: velocity and pressure share its memory, the tension is a copy that all ranks hold. */

@@ -116,8 +116,12 @@ PetscErrorCode OutputFinalTable(Output o, const char reason[]) {
     PetscCall(PetscPrintf(o->comm, "  inclination (radians)         %.6f\n", (double)r[COLUMN_INCLINATION]));
     if (!PetscIsNanReal(r[COLUMN_FREQUENCY]))
       PetscCall(PetscPrintf(o->comm, "  tank-treading frequency       %.6f\n", (double)r[COLUMN_FREQUENCY]));
-    PetscCall(PetscPrintf(o->comm, "  iterations a step             tension %.1f, bending %.1f\n",
-                          (double)o->total_tension / (double)steps, (double)o->total_bending / (double)steps));
+    PetscCall(PetscPrintf(o->comm, "  iterations a step             "));
+    if (o->total_coupled)
+      PetscCall(PetscPrintf(o->comm, "coupled %.1f\n", (double)o->total_coupled / (double)steps));
+    else
+      PetscCall(PetscPrintf(o->comm, "tension %.1f, bending %.1f\n", (double)o->total_tension / (double)steps,
+                            (double)o->total_bending / (double)steps));
   }
   PetscCall(PetscPrintf(o->comm, "  max |div u|                   %.3e\n", (double)r[COLUMN_DIV]));
   PetscCall(PetscPrintf(o->comm, "  fast solves a step            %.1f\n", (double)o->total_solves / (double)steps));

@@ -142,11 +142,16 @@ static PetscErrorCode Advance(Scheme s, Coupled *d, PetscReal dt) {
 /* Start-up: backward Euler on a sixteenth of the step, then BDF2 with doubling steps up to the whole of it. */
 static PetscErrorCode GradedStart(Scheme s, Coupled *d, PetscReal dt, PetscBool *solved) {
   const PetscReal parts[] = {1. / 16, 1. / 16, 1. / 8, 1. / 4, 1. / 2};
+  PetscReal done = 0;
   PetscFunctionBeginUser;
   for (int k = 0; k < 5; k++) {
     PetscCall(CoupledAttempt(s, parts[k] * dt, solved));
-    if (!*solved) PetscFunctionReturn(PETSC_SUCCESS);
+    if (!*solved) { /* the parts done are a good state, at its own time */
+      s->state.t += done * dt;
+      PetscFunctionReturn(PETSC_SUCCESS);
+    }
     PetscCall(Advance(s, d, parts[k] * dt));
+    done += parts[k];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
