@@ -3,6 +3,7 @@
 SHELL := /bin/bash
 PREFIX ?= /usr/local
 RANKS ?= 2
+SCENE ?= runs/default.opts
 BUILD := build$(if $(SANITIZE),-sanitize)
 BIN := bin$(if $(SANITIZE),-sanitize)
 LIBDIR := lib$(if $(SANITIZE),-sanitize)
@@ -73,10 +74,10 @@ deps: ## install the Debian packages that are missing
 test-deps:
 	$(call install_packages,$(PACKAGES) $(TEST_PACKAGES))
 
-run: deps ## run the default scene on 2 ranks and draw it
+run: deps ## run the default scene (or SCENE=file.opts) on 2 ranks and draw it
 	@$(MAKE) --no-print-directory all
-	mpirun -n $(RANKS) $(BIN)/petves -options_file runs/default.opts
-	PYTHONPATH=python $(PYTHON) -m petves plot out/default
+	mpirun -n $(RANKS) $(BIN)/petves -options_file $(SCENE)
+	PYTHONPATH=python $(PYTHON) -m petves plot $$(awk '$$1 == "-output_dir" {print $$2}' $(SCENE))
 
 test: test-deps ## run every test; ends with "N passed, N failed"
 	@$(MAKE) --no-print-directory all tests

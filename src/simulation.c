@@ -64,7 +64,7 @@ static PetscErrorCode Build(MPI_Comm comm, Simulation s) {
   kernel = KernelFind(s->scene->delta);
   PetscCall(ShapeCreate(s->scene, kernel->default_spacing, kernel->least_spacing, &s->shape));
   PetscCall(FluidCreate(s->scene, &s->fluid));
-  PetscCall(MembraneCreate(&s->shape, s->scene->bending, &s->membrane));
+  PetscCall(MembraneCreate(&s->shape, s->scene->bending, (DerivativeType)s->scene->derivative, &s->membrane));
   if (s->shape.vesicles) PetscCall(CouplingCreate(s->fluid->grid, s->membrane, s->scene->delta, &s->coupling));
   PetscCall(SchemeCreate(s->scene, s->fluid, s->membrane, s->coupling, s->shape.X, &s->scheme));
   PetscCall(SceneCheckUnused(s->scene));

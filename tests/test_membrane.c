@@ -12,7 +12,7 @@ static PetscErrorCode Ellipse(PetscInt M, PetscReal a, PetscReal b, PetscReal de
                           (double)a, (double)b, (double)degrees, (int)M));
   PetscCall(TestScene(options, scene));
   PetscCall(ShapeCreate(*scene, 1, 0, shape));
-  PetscCall(MembraneCreate(shape, (*scene)->bending, m));
+  PetscCall(MembraneCreate(shape, (*scene)->bending, DERIVATIVE_FD, m));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -161,7 +161,7 @@ static PetscErrorCode CheckFile(void) {
   PetscCall(PetscSNPrintf(options, sizeof(options), "-vesicle_shape file -vesicle_file %s -vesicle_markers 64", path));
   PetscCall(TestScene(options, &scene));
   PetscCall(ShapeCreate(scene, 1, 0, &shape));
-  PetscCall(MembraneCreate(&shape, 1, &m));
+  PetscCall(MembraneCreate(&shape, 1, DERIVATIVE_FD, &m));
   MembraneMeasure(m, 0, shape.X, &got);
   for (PetscInt k = 0; k < m->M; k++)
     off = PetscMax(off, PetscAbsReal(PetscSqr(shape.X[2 * k] / a) + PetscSqr(shape.X[2 * k + 1] / b) - 1));

@@ -19,7 +19,7 @@ static PetscErrorCode FlowCreate(const char options[], Flow2 *f) {
   PetscCall(TestScene(options, &f->scene));
   PetscCall(ShapeCreate(f->scene, 1, 1, &f->shape));
   PetscCall(FluidCreate(f->scene, &f->fluid));
-  PetscCall(MembraneCreate(&f->shape, 0, &f->membrane));
+  PetscCall(MembraneCreate(&f->shape, 0, DERIVATIVE_FD, &f->membrane));
   PetscCall(SchemeCreate(f->scene, f->fluid, f->membrane, NULL, NULL, &f->scheme));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -3,16 +3,17 @@
        U3 = U1 - N^-1 Mob Dm^T sigma/h^2,  U1 = N^-1 U. */
 #pragma once
 #include "coupling/mobility.h"
+#include "coupling/selfmobility.h"
 
 typedef struct _p_DenseBlocks *DenseBlocks;
 
 PETSC_EXTERN PetscErrorCode DenseBlocksCreate(Coupling coupling, DenseBlocks *blocks);
 PETSC_EXTERN PetscErrorCode DenseBlocksDestroy(DenseBlocks *blocks);
 
-/* DenseBlocksFactor - assemble Mob from the table at the coupling's markers, factor N and C for a0. Every rank does the
-   same. */
+/* DenseBlocksFactor - assemble Mob from the table at the coupling's markers, factor N and C for a0. self adds
+   h^2 Theta to Mob, NULL nothing. Every rank does the same. */
 PETSC_EXTERN PetscErrorCode DenseBlocksFactor(DenseBlocks blocks, Mobility mobility, const GreenTable *table,
-                                              PetscReal a0);
+                                              SelfMobility self, PetscReal a0);
 
 /* DenseBlocksSolve - from U[2M] = E w1 and r_s[M]: sigma[M], and U overwritten by U3. */
 PETSC_EXTERN PetscErrorCode DenseBlocksSolve(DenseBlocks blocks, PetscScalar U[], const PetscScalar r_s[],

@@ -51,8 +51,14 @@ static PetscErrorCode MultMembrane(Saddle s, Vec w, Vec sigma, Vec yw, Vec ysigm
   PetscFunctionBeginUser;
   PetscCall(CouplingInterpolate(c, c->E, w, s->U));
   PetscCall(VecSet(s->F, 0));
-  PetscCall(VecGetArrayRead(s->U, &U));
   PetscCall(VecGetArrayRead(sigma, &sa));
+  if (s->self) { /* U = R (E u - Theta Dm^T sigma) */
+    PetscScalar *ua;
+    PetscCall(VecGetArray(s->U, &ua));
+    PetscCall(SelfMobilityApply(s->self, ua, sa));
+    PetscCall(VecRestoreArray(s->U, &ua));
+  }
+  PetscCall(VecGetArrayRead(s->U, &U));
   PetscCall(VecGetArray(s->F, &F));
   PetscCall(VecGetArray(ysigma, &y));
   MembraneStretchingTranspose(c->membrane, c->tau, 1 / h2, sa, F);
@@ -105,7 +111,7 @@ static PetscErrorCode CreateMembranePart(Scene scene, Saddle s) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SaddleCreate(Scene scene, Fluid fluid, Coupling coupling, Saddle *out) {
+PetscErrorCode SaddleCreate(Scene scene, Fluid fluid, Coupling coupling, SelfMobility self, Saddle *out) {
   const Grid g = fluid->grid;
   const PetscInt nw = VelocitySize(g), np = PressureSize(g),
                  n = nw + np + (coupling && !g->rank ? coupling->membrane->M : 0);
@@ -116,6 +122,7 @@ PetscErrorCode SaddleCreate(Scene scene, Fluid fluid, Coupling coupling, Saddle 
   *out = s;
   s->fluid = fluid;
   s->coupling = coupling;
+  s->self = self;
   s->type = (MobilityType)scene->mobility;
   s->fresh_its = -1;
   s->life = 1000;
@@ -172,7 +179,7 @@ static PetscErrorCode Refresh(Saddle s) {
   const GreenTable *table;
   PetscFunctionBeginUser;
   PetscCall(MobilityGetTable(s->mobility, s->fluid->a0, &table));
-  PetscCall(DenseBlocksFactor(s->blocks, s->mobility, table, s->fluid->a0));
+  PetscCall(DenseBlocksFactor(s->blocks, s->mobility, table, s->self, s->fluid->a0));
   s->factored_a0 = s->fluid->a0;
   s->fresh_its = -1;
   s->age = 0;
@@ -206,9 +213,9 @@ static PetscErrorCode Iterate(Saddle s) {
   PetscCall(KSPGetIterationNumber(s->ksp, &s->its));
   PetscCall(KSPGetConvergedReason(s->ksp, &s->why));
   if (old) PetscCall(KSPSetTolerances(s->ksp, rtol, atol, dtol, max_it));
-  if (!old || s->its < s->fresh_its + 2)
+  if (old && s->its < s->fresh_its + 2)
     s->life = PetscMax(s->life, s->age + 2); /* good so far */
-  else {
+  else if (old) {
     s->life = PetscMax(1, s->age); /* next time they are made anew before this happens */
     if (s->why == KSP_DIVERGED_ITS && s->its < max_it) {
       PetscBool nonzero;

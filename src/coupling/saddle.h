@@ -19,6 +19,7 @@ struct _p_Saddle {
   MobilityType type;
   Mobility mobility;  /* table */
   DenseBlocks blocks; /* table */
+  SelfMobility self;  /* borrowed; NULL without */
   PC ilu;             /* ilu: of the assembled Chat */
   Mat Chat;
   Mat A;
@@ -36,8 +37,9 @@ struct _p_Saddle {
   PetscReal residual;
 };
 
-/* SaddleCreate - for the scene's mobility type. Collective. */
-PETSC_EXTERN PetscErrorCode SaddleCreate(Scene scene, Fluid fluid, Coupling coupling, Saddle *saddle);
+/* SaddleCreate - for the scene's mobility type; self (NULL: none) corrects the markers' velocity. Collective. */
+PETSC_EXTERN PetscErrorCode SaddleCreate(Scene scene, Fluid fluid, Coupling coupling, SelfMobility self,
+                                         Saddle *saddle);
 PETSC_EXTERN PetscErrorCode SaddleDestroy(Saddle *saddle);
 
 /* SaddleSetUp - follow the fluid's a0 and the coupling's markers. The dense blocks are kept while a0 moves by less than

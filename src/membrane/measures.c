@@ -1,6 +1,5 @@
 /* Measures of a vesicle (DESIGN section 9). */
 #include "membrane/membrane.h"
-#include <fftw3.h>
 
 /* Area, first and second moments of the polygon about `about`, by Green's theorem over its edges. */
 static void PolygonMoments(Membrane m, PetscInt v, const PetscScalar X[], const PetscReal about[2], PetscReal *area,
@@ -20,53 +19,76 @@ static void PolygonMoments(Membrane m, PetscInt v, const PetscScalar X[], const 
   }
 }
 
+/* The same moments of the spectral curve, by the trapezoidal rule on x dy - y dx and its like: spectrally accurate. */
+static void SpectralMoments(Membrane m, PetscInt v, const PetscScalar X[], const PetscScalar e[],
+                            const PetscReal about[2], PetscReal *area, PetscReal first[2], PetscReal second[3]) {
+  *area = first[0] = first[1] = second[0] = second[1] = second[2] = 0;
+  for (PetscInt k = 0; k < m->start[v + 1] - m->start[v]; k++) {
+    const PetscReal *p = &X[2 * (m->start[v] + k)], x = p[0] - about[0], y = p[1] - about[1];
+    const PetscReal dx = e[2 * k], dy = e[2 * k + 1];
+    *area += 0.5 * (x * dy - y * dx);
+    first[0] += 0.5 * x * x * dy;
+    first[1] -= 0.5 * y * y * dx;
+    second[0] += x * x * x * dy / 3;
+    second[1] += 0.25 * (x * x * y * dy - x * y * y * dx);
+    second[2] -= y * y * y * dx / 3;
+  }
+}
+
 void MembraneMeasure(Membrane m, PetscInt v, const PetscScalar X[], Measures *out) {
-  const PetscInt k0 = m->start[v];
-  const PetscReal origin[2] = {X[2 * k0], X[2 * k0 + 1]};
-  PetscReal area, first[2], second[3], shortest = PETSC_MAX_REAL, longest = 0;
-  PolygonMoments(m, v, X, origin, &area, first, second);
+  const PetscInt k0 = m->start[v], n = m->start[v + 1] - k0;
+  PetscReal about[2] = {X[2 * k0], X[2 * k0 + 1]}, area = 0, first[2], second[3], shortest = PETSC_MAX_REAL,
+            longest = 0;
+  PetscScalar *e = m->work;
+  MembraneEdges(m, v, X + 2 * k0, e);
+  for (int pass = 0; pass < 2; pass++) { /* about a marker, then about the centroid */
+    if (m->derivative == DERIVATIVE_SPECTRAL)
+      SpectralMoments(m, v, X, e, about, &area, first, second);
+    else
+      PolygonMoments(m, v, X, about, &area, first, second);
+    for (int c = 0; c < 2; c++) about[c] += pass ? 0 : first[c] / area;
+  }
   out->area = area;
-  for (int c = 0; c < 2; c++) out->center[c] = origin[c] + first[c] / area;
-  PolygonMoments(m, v, X, out->center, &area, first, second);
+  for (int c = 0; c < 2; c++) out->center[c] = about[c];
   out->inclination = 0.5 * PetscAtan2Real(2 * second[1], second[0] - second[2]);
   if (out->inclination < -PETSC_PI / 2 + 1e-9)
     out->inclination += PETSC_PI; /* an upright axis must not flip by round-off */
   out->length = 0;
-  for (PetscInt k = k0; k < m->start[v + 1]; k++) {
-    const PetscInt p = m->previous[k];
-    const PetscReal e = PetscSqrtReal(PetscSqr(X[2 * k] - X[2 * p]) + PetscSqr(X[2 * k + 1] - X[2 * p + 1]));
-    out->length += e;
-    shortest = PetscMin(shortest, e);
-    longest = PetscMax(longest, e);
+  for (PetscInt k = 0; k < n; k++) {
+    const PetscReal edge = PetscSqrtReal(PetscSqr(e[2 * k]) + PetscSqr(e[2 * k + 1]));
+    out->length += edge;
+    shortest = PetscMin(shortest, edge);
+    longest = PetscMax(longest, edge);
   }
   out->edge_ratio = shortest > 0 ? longest / shortest : PETSC_MAX_REAL;
 }
 
-/* Spectral derivative of X with respect to the marker index times M/(2 pi); T[2n]. The Nyquist mode is dropped. */
-static PetscErrorCode SpectralDerivative(PetscInt n, const PetscScalar X[], PetscReal T[]) {
-  double *line, *hat; /* hat: real and imaginary parts in turn */
-  fftw_plan forward, backward;
-  PetscFunctionBeginUser;
-  hat = fftw_alloc_real(2 * (size_t)(n / 2 + 1));
-  line = fftw_alloc_real((size_t)n);
-  forward = fftw_plan_dft_r2c_1d((int)n, line, (fftw_complex *)hat, FFTW_ESTIMATE);
-  backward = fftw_plan_dft_c2r_1d((int)n, (fftw_complex *)hat, line, FFTW_ESTIMATE);
-  for (int c = 0; c < 2; c++) {
-    for (PetscInt k = 0; k < n; k++) line[k] = X[2 * k + c];
-    fftw_execute(forward);
-    for (PetscInt q = 0; q <= n / 2; q++) {
-      const double factor = 2 * q == n ? 0 : (double)q / n, re = hat[2 * q];
-      hat[2 * q] = -factor * hat[2 * q + 1];
-      hat[2 * q + 1] = factor * re;
+PetscReal MembraneRestoreArea(Membrane m, PetscInt v, PetscScalar X[], PetscScalar X_old[]) {
+  const PetscInt k0 = m->start[v], n = m->start[v + 1] - k0;
+  PetscScalar *e = m->work;
+  PetscReal shift = 0;
+  for (int it = 0; it < 6; it++) {
+    PetscReal size = 0, d;
+    Measures measures;
+    MembraneMeasure(m, v, X, &measures);
+    if (PetscAbsReal(measures.area / m->A0[v] - 1) < 1e-13) break;
+    MembraneEdges(m, v, X + 2 * k0, e);
+    if (m->derivative != DERIVATIVE_SPECTRAL) /* half the chord from k-1 to k+1: the mean of two edges */
+      for (PetscInt k = 0; k < n; k++)
+        for (int c = 0; c < 2; c++) e[2 * k + c] = 0.5 * (X[2 * m->next[k0 + k] + c] - X[2 * m->previous[k0 + k] + c]);
+    for (PetscInt k = 0; k < n; k++) size += PetscSqrtReal(PetscSqr(e[2 * k]) + PetscSqr(e[2 * k + 1]));
+    d = (m->A0[v] - measures.area) / size; /* dA/dshift = SUM |e| */
+    for (PetscInt k = 0; k < n; k++) {
+      const PetscReal length = PetscSqrtReal(PetscSqr(e[2 * k]) + PetscSqr(e[2 * k + 1]));
+      const PetscReal normal[2] = {e[2 * k + 1] / length, -e[2 * k] / length};
+      for (int c = 0; c < 2; c++) {
+        X[2 * (k0 + k) + c] += d * normal[c];
+        X_old[2 * (k0 + k) + c] += d * normal[c];
+      }
     }
-    fftw_execute(backward);
-    for (PetscInt k = 0; k < n; k++) T[2 * k + c] = line[k];
+    shift += d;
   }
-  fftw_destroy_plan(forward);
-  fftw_destroy_plan(backward);
-  fftw_free(hat);
-  fftw_free(line);
-  PetscFunctionReturn(PETSC_SUCCESS);
+  return shift;
 }
 
 PetscErrorCode MembraneFrequency(Membrane m, PetscInt v, const PetscScalar X[], const PetscScalar U[], PetscReal *f) {
@@ -74,8 +96,8 @@ PetscErrorCode MembraneFrequency(Membrane m, PetscInt v, const PetscScalar X[], 
   PetscReal mean[2] = {0, 0}, *T, sum = 0;
   PetscInt positive = 0, negative = 0;
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(2 * n, &T));
-  PetscCall(SpectralDerivative(n, X + 2 * first, T));
+  PetscCall(PetscCalloc1(2 * n, &T));
+  SpectralDerivative(m->spectral[v], 1, n / (2 * PETSC_PI), X + 2 * first, T);
   for (PetscInt k = 0; k < n; k++)
     for (int c = 0; c < 2; c++) mean[c] += U[2 * (first + k) + c] / n;
   for (PetscInt k = 0; k < n; k++) {

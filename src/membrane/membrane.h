@@ -4,6 +4,7 @@
    another; tensions are one number an edge, edge k running from marker k-1 to marker k of the same vesicle. */
 #pragma once
 #include "base/base.h"
+#include "membrane/spectral.h"
 #include "scene/scene.h"
 
 typedef struct _p_Membrane *Membrane;
@@ -11,26 +12,39 @@ struct _p_Membrane {
   PetscInt vesicles;
   PetscInt *start;    /* [vesicles+1] first marker of each vesicle */
   PetscInt M;         /* markers in all */
-  PetscReal *ds;      /* [vesicles] fixed material spacing: mean chord of the initial polygon (length) */
+  PetscReal *ds;      /* [vesicles] fixed material spacing: mean initial edge (length) */
   PetscReal *A0, *L0; /* [vesicles] initial area and length */
   PetscReal bending;  /* c_b */
+  DerivativeType derivative;
+  Spectral *spectral; /* [vesicles] */
+  PetscReal *arc;     /* [vesicles] initial arc length, spectrally accurate */
+  PetscScalar *work;  /* [2M] for use inside this folder */
   PetscInt *previous; /* [M] the marker before k on the same vesicle */
   PetscInt *next;     /* [M] the marker after k */
   PetscReal *spacing; /* [M] ds of the vesicle that marker k is on */
 };
 
 /* MembraneCreate - membranes at rest in the given shape (copied). */
-PETSC_EXTERN PetscErrorCode MembraneCreate(const Shape *shape, PetscReal bending, Membrane *membrane);
+PETSC_EXTERN PetscErrorCode MembraneCreate(const Shape *shape, PetscReal bending, DerivativeType derivative,
+                                           Membrane *membrane);
 PETSC_EXTERN PetscErrorCode MembraneDestroy(Membrane *membrane);
 
 /* MembraneCreateMarkerVec, MembraneCreateTensionVec - zero sequential vectors of length 2M and M. */
 PETSC_EXTERN PetscErrorCode MembraneCreateMarkerVec(Membrane membrane, Vec *X);
 PETSC_EXTERN PetscErrorCode MembraneCreateTensionVec(Membrane membrane, Vec *sigma);
 
-/* MembraneTangents - tau_k = (X_k - X_{k-1})/ds, tau[2M]. */
+/* MembraneEdges - e = difference of X along one vesicle, its own arrays [2n]: chords e_k = X_k - X_{k-1}, or spectral
+   derivatives dX/dk. */
+PETSC_EXTERN void MembraneEdges(Membrane membrane, PetscInt vesicle, const PetscScalar X[], PetscScalar e[]);
+
+/* MembraneEdgesTranspose - Y += alpha (the transpose of MembraneEdges) F. */
+PETSC_EXTERN void MembraneEdgesTranspose(Membrane membrane, PetscInt vesicle, PetscReal alpha, const PetscScalar F[],
+                                         PetscScalar Y[]);
+
+/* MembraneTangents - tau = e/ds, tau[2M]. */
 PETSC_EXTERN void MembraneTangents(Membrane membrane, const PetscScalar X[], PetscReal tau[]);
 
-/* MembraneStretching - d_k = tau_k . (U_k - U_{k-1}): Dm U, the edges' stretching rate times ds. d[M], U[2M]. */
+/* MembraneStretching - d_k = tau_k . (edge of U)_k: Dm U, the edges' stretching rate times ds. d[M], U[2M]. */
 PETSC_EXTERN void MembraneStretching(Membrane membrane, const PetscReal tau[], const PetscScalar U[], PetscScalar d[]);
 
 /* MembraneStretchingTranspose - F += alpha Dm^T sigma, F[2M], sigma[M]. */
@@ -51,7 +65,7 @@ PETSC_EXTERN PetscReal MembraneBendingEnergy(Membrane membrane, PetscInt vesicle
 
 /* Measures of one vesicle. */
 typedef struct {
-  PetscReal area;        /* of the polygon, positive: markers run counter-clockwise */
+  PetscReal area;        /* of the polygon or of the spectral curve, positive: markers run counter-clockwise */
   PetscReal length;      /* sum of edges */
   PetscReal edge_ratio;  /* longest over shortest edge */
   PetscReal center[2];   /* centroid of the enclosed area */
@@ -66,3 +80,8 @@ PETSC_EXTERN PetscErrorCode MembraneFrequency(Membrane membrane, PetscInt vesicl
 
 /* MembraneNormalSpeed - max over the markers of |u.n|, n the normal of the chord from X_{k-1} to X_{k+1}. */
 PETSC_EXTERN PetscReal MembraneNormalSpeed(Membrane membrane, const PetscScalar X[], const PetscScalar U[]);
+
+/* MembraneRestoreArea - shift one vesicle's markers by a uniform distance along the vertex normals (of the chord from
+   X_{k-1} to X_{k+1}, or of the spectral edge) until its area is A0: Newton on the area. The old markers move alike.
+   Returns the shift (length). X, X_old: all markers [2M]. */
+PETSC_EXTERN PetscReal MembraneRestoreArea(Membrane membrane, PetscInt vesicle, PetscScalar X[], PetscScalar X_old[]);

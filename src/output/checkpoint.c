@@ -25,39 +25,54 @@ static PetscErrorCode WriteMarkers(Output o, hid_t file, const char name[], int 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The vectors of one state into the groups <prefix>/fluid and <prefix>/vesicle. */
+static PetscErrorCode WriteVectors(Output o, hid_t file, const char prefix[], const State *q) {
+  static const char *const fluid[3] = {"u", "v", "p"}, *const vesicle[3] = {"markers", "velocity", "tension"};
+  const Grid g = o->scheme->fluid->grid;
+  const Vec marker[3] = {q->X, q->U, q->sigma};
+  char name[64];
+  const PetscScalar *a[3];
+  PetscFunctionBeginUser;
+  PetscCall(VecGetArrayRead(q->w, &a[0]));
+  a[1] = a[0] + GridLocalU(g);
+  PetscCall(VecGetArrayRead(q->p, &a[2]));
+  for (int f = 0; f < 3; f++) {
+    PetscCall(PetscSNPrintf(name, sizeof(name), "%s/fluid/%s", prefix, fluid[f]));
+    PetscCall(WriteField(o, file, name, (Field)f, a[f]));
+  }
+  PetscCall(VecRestoreArrayRead(q->p, &a[2]));
+  PetscCall(VecRestoreArrayRead(q->w, &a[0]));
+  for (int k = 0; k < 3 && o->scheme->membrane->vesicles; k++) {
+    PetscCall(PetscSNPrintf(name, sizeof(name), "%s/vesicle/%s", prefix, vesicle[k]));
+    PetscCall(WriteMarkers(o, file, name, k < 2 ? 2 : 1, marker[k]));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode WriteState(Output o, hid_t file) {
   const State *q = &o->scheme->state;
-  const Grid g = o->scheme->fluid->grid;
   const Membrane m = o->scheme->membrane;
   const PetscInt format = CHECKPOINT_FORMAT;
-  const PetscScalar *a;
   char value[PETSC_MAX_PATH_LEN];
   PetscFunctionBeginUser;
   PetscCall(H5PutInts(file, "format", 1, &format));
   PetscCall(H5PutInts(file, "step", 1, &q->step));
   PetscCall(H5PutReals(file, "time", 1, &q->t));
   PetscCall(H5PutReals(file, "dt", 1, &q->dt));
+  PetscCall(H5PutReals(file, "dt_last", 1, &q->dt_last));
   PetscCall(H5PutString(file, "version", PETVES_VERSION));
   for (PetscInt i = 0; SceneOptionName(i); i++) {
     PetscCall(SceneOptionValue(o->scene, i, value, sizeof(value)));
     PetscCall(H5PutString(file, SceneOptionName(i), value));
   }
-  PetscCall(VecGetArrayRead(q->w, &a));
-  PetscCall(WriteField(o, file, "/fluid/u", FIELD_U, a));
-  PetscCall(WriteField(o, file, "/fluid/v", FIELD_V, a + GridLocalU(g)));
-  PetscCall(VecRestoreArrayRead(q->w, &a));
-  PetscCall(VecGetArrayRead(q->p, &a));
-  PetscCall(WriteField(o, file, "/fluid/p", FIELD_P, a));
-  PetscCall(VecRestoreArrayRead(q->p, &a));
   if (m->vesicles) {
     PetscCall(H5PutInts(file, "vesicle_start", m->vesicles + 1, m->start));
     PetscCall(H5PutReals(file, "vesicle_ds", m->vesicles, m->ds));
     PetscCall(H5PutReals(file, "vesicle_area", m->vesicles, m->A0));
     PetscCall(H5PutReals(file, "vesicle_length", m->vesicles, m->L0));
-    PetscCall(WriteMarkers(o, file, "/vesicle/markers", 2, q->X));
-    PetscCall(WriteMarkers(o, file, "/vesicle/velocity", 2, q->U));
-    PetscCall(WriteMarkers(o, file, "/vesicle/tension", 1, q->sigma));
   }
+  PetscCall(WriteVectors(o, file, "", q));
+  if (o->scheme->old) PetscCall(WriteVectors(o, file, "/previous", o->scheme->old));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

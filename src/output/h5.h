@@ -6,7 +6,7 @@
 /* H5Check - stop with one line naming the file when an HDF5 call fails (full disk, vanished folder). */
 #define H5Check(call, comm, path)                                                                                      \
   PetscCheck((call) >= 0, comm, PETSC_ERR_USER_INPUT,                                                                  \
-             "%s: cannot be written (%s); allowed: a folder with space that can be written", path, #call)
+             "%s: cannot be written; allowed: a folder with space that can be written", path)
 
 /* H5Create - new file, truncated, open on all ranks. H5Close flushes it. Collective. */
 PETSC_EXTERN PetscErrorCode H5Create(MPI_Comm comm, const char path[], hid_t *file);

@@ -1,11 +1,12 @@
 /* series.csv: a row a step. */
 #include "output/output.h"
 
-const char *const SeriesColumns[] = {
-    "step",        "time",         "dt",          "energy_kinetic", "energy_bending",  "area",     "length",
-    "area_error",  "length_error", "edge_ratio",  "div_max",        "surface_div_max", "center_x", "center_y",
-    "inclination", "frequency",    "tension_its", "bending_its",    "coupled_its",     "nsolve",   "wall",
-    NULL};
+const char *const SeriesColumns[] = {"step",           "time",        "dt",          "energy_kinetic",
+                                     "energy_bending", "area",        "length",      "area_error",
+                                     "length_error",   "edge_ratio",  "div_max",     "surface_div_max",
+                                     "center_x",       "center_y",    "inclination", "frequency",
+                                     "tension_its",    "bending_its", "coupled_its", "nsolve",
+                                     "wall",           "area_shift",  NULL};
 
 /* Columns that repeat with a suffix when there are several vesicles. */
 static const int per_vesicle[] = {COLUMN_BENDING,      COLUMN_AREA,       COLUMN_LENGTH,   COLUMN_AREA_ERROR,
@@ -92,6 +93,7 @@ PetscErrorCode OutputSeries(Output o) {
   row[COLUMN_COUPLED_ITS] = r->coupled_its;
   row[COLUMN_NSOLVE] = r->solves;
   row[COLUMN_WALL] = r->seconds;
+  row[COLUMN_AREA_SHIFT] = r->area_shift;
   PetscCall(PetscCalloc1((vesicles + 1) * COLUMN_COUNT, &each));
   PetscCall(VecGetArrayRead(s->state.X, &X));
   PetscCall(VecGetArrayRead(s->state.U, &U));

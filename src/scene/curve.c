@@ -86,6 +86,19 @@ PetscErrorCode CurveEqualChords(const Curve *c, PetscInt M, PetscReal X[]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode CurveEqualArcs(const Curve *c, PetscInt M, PetscReal X[]) {
+  const PetscInt n = 50 * CURVE_SAMPLES; /* chords of 5e-6 of the length: their arcs differ by 1e-12 of it */
+  PetscReal *t, *s, *at, *points;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc4(n + 1, &t, n + 1, &s, M + 1, &at, 2 * n + 2, &points));
+  for (PetscInt i = 0; i <= n; i++) t[i] = (PetscReal)i / n;
+  (void)Chords(c, n, t, s, points);
+  EqualSteps(n, t, s, M, at);
+  for (PetscInt k = 0; k < M; k++) CurveEvaluate(c, at[k], &X[2 * k]);
+  PetscCall(PetscFree4(t, s, at, points));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode EllipseAxes(PetscReal area, PetscReal reduced_area, PetscReal axes[2]) {
   /* the reduced area rises with b/a from 0 to 1: bisection */
   PetscReal lo = 1e-4, hi = 1;

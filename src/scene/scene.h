@@ -18,6 +18,8 @@ typedef struct {
 typedef enum { BC_WALL, BC_PERIODIC } BoundaryType;
 typedef enum { FLOW_QUIESCENT, FLOW_SHEAR, FLOW_POISEUILLE, FLOW_EXTENSION } FlowType;
 typedef enum { FORM_DISTURBANCE, FORM_TOTAL } FlowForm;
+typedef enum { DERIVATIVE_FD, DERIVATIVE_BENDING, DERIVATIVE_SPECTRAL } DerivativeType;
+typedef enum { SELF_NONE, SELF_LOCAL, SELF_SYMBOL } SelfMobilityType;
 typedef enum { ADAPT_NONE, ADAPT_ERROR } AdaptType;
 typedef enum { STARTUP_EULER, STARTUP_GRADED } StartUp;
 typedef enum { SHAPE_ELLIPSE, SHAPE_FILE, SHAPE_NONE } ShapeType;
@@ -61,6 +63,9 @@ struct _p_Scene {
   char scheme[SCENE_MAX_NAME];         /* time-stepping scheme */
   PetscInt order;                      /* order in time */
   PetscBool length_target;             /* coupled: new edges get the length ds */
+  PetscBool area_target;               /* coupled: markers shifted to their first area after each step */
+  PetscInt self_mobility;              /* SelfMobilityType */
+  PetscInt derivative;                 /* DerivativeType */
   PetscInt startup;                    /* StartUp */
   PetscInt mobility;                   /* index in -mobility_type's list */
   PetscInt adapt;                      /* AdaptType */
@@ -128,6 +133,9 @@ PETSC_EXTERN PetscReal CurveLength(const Curve *curve);
 
 /* CurveEqualChords - place M points on the curve so that all M chords are equal; X[2M], first point at t = 0. */
 PETSC_EXTERN PetscErrorCode CurveEqualChords(const Curve *curve, PetscInt M, PetscReal X[]);
+
+/* CurveEqualArcs - the same with M equal arcs: the edges of the spectral derivative. */
+PETSC_EXTERN PetscErrorCode CurveEqualArcs(const Curve *curve, PetscInt M, PetscReal X[]);
 
 /* CurveFromPoints - closed periodic cubic spline through n points xy[2n], by chord length. */
 PETSC_EXTERN PetscErrorCode CurveFromPoints(PetscInt n, const PetscReal xy[], Curve *curve);

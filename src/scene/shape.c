@@ -1,13 +1,16 @@
 /* The initial markers of a scene: equal edges on an ellipse or on a curve from a file. */
 #include "scene/scene.h"
 
-/* Number of markers of a curve: the even number nearest to length/(spacing h), or the user's own. */
+/* Number of markers of a curve: the even (for spectral edges odd) number nearest to length/(spacing h), or the user's
+ * own. */
 static PetscErrorCode MarkerCount(Scene scene, PetscReal length, PetscReal spacing, PetscReal least, PetscInt *M) {
   const PetscReal h = SceneCellSize(scene);
   PetscReal s;
   PetscFunctionBeginUser;
   if (scene->spacing > 0) spacing = scene->spacing;
   *M = scene->markers ? scene->markers : 2 * (PetscInt)PetscFloorReal(length / (2 * spacing * h) + 0.5);
+  if (!scene->markers && scene->derivative == DERIVATIVE_SPECTRAL) /* odd: no Nyquist mode */
+    *M = 2 * (PetscInt)PetscFloorReal(length / (2 * spacing * h)) + 1;
   PetscCheck(*M >= 8, scene->comm, PETSC_ERR_USER_INPUT,
              "-vesicle_spacing %g: %" PetscInt_FMT
              " markers on a membrane of length %g at h = %g; allowed: at least 8, so a finer -domain_cells",
@@ -105,7 +108,10 @@ PetscErrorCode ShapeCreate(Scene scene, PetscReal default_spacing, PetscReal lea
   for (PetscInt v = 0; v < shape->vesicles; v++) {
     PetscReal *X = shape->X + 2 * shape->start[v];
     const PetscInt M = shape->start[v + 1] - shape->start[v];
-    PetscCall(CurveEqualChords(&curve[v], M, X));
+    if (scene->derivative == DERIVATIVE_SPECTRAL)
+      PetscCall(CurveEqualArcs(&curve[v], M, X));
+    else
+      PetscCall(CurveEqualChords(&curve[v], M, X));
     PetscCall(CurveDestroy(&curve[v]));
     Place(scene, v, M, X);
   }

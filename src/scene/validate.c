@@ -74,15 +74,35 @@ static PetscErrorCode CheckVesicle(Scene scene) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* split has one order and one step size; its order option is not an error when it was not given. */
+/* split is the paper's method: one order, its kernel and differences, none of the corrections of the coupled scheme.
+   Options that were not given follow; given ones that it does not have are mistakes. */
+static PetscErrorCode CheckSplit(Scene scene) {
+  PetscFunctionBeginUser;
+  if (!SceneGiven(scene, "-scheme_order")) scene->order = 1;
+  if (!SceneGiven(scene, "-delta_type")) PetscCall(PetscStrncpy(scene->delta, "ib6", sizeof(scene->delta)));
+  if (!SceneGiven(scene, "-membrane_derivative")) scene->derivative = DERIVATIVE_FD;
+  if (!SceneGiven(scene, "-coupling_self_mobility")) scene->self_mobility = SELF_NONE;
+  if (!SceneGiven(scene, "-scheme_area_target")) scene->area_target = PETSC_FALSE;
+  PetscCheck(scene->order == 1, scene->comm, PETSC_ERR_USER_INPUT,
+             "-scheme_order %" PetscInt_FMT ": the splitting error of -scheme_type split is of first order; allowed: 1",
+             scene->order);
+  PetscCheck(scene->derivative != DERIVATIVE_SPECTRAL, scene->comm, PETSC_ERR_USER_INPUT,
+             "-membrane_derivative spectral: not with -scheme_type split, whose preconditioner knows chords only; "
+             "allowed: fd, "
+             "bending, or -scheme_type coupled or direct");
+  PetscCheck(scene->self_mobility == SELF_NONE, scene->comm, PETSC_ERR_USER_INPUT,
+             "-coupling_self_mobility: not with -scheme_type split; allowed: none, or -scheme_type coupled or direct");
+  PetscCheck(
+      !scene->area_target, scene->comm, PETSC_ERR_USER_INPUT,
+      "-scheme_area_target true: not with -scheme_type split; allowed: false, or -scheme_type coupled or direct");
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode CheckScheme(Scene scene) {
   PetscBool split;
   PetscFunctionBeginUser;
   PetscCall(PetscStrcmp(scene->scheme, "split", &split));
-  PetscCheck(!split || scene->order == 1 || !SceneGiven(scene, "-scheme_order"), scene->comm, PETSC_ERR_USER_INPUT,
-             "-scheme_order %" PetscInt_FMT ": the splitting error of -scheme_type split is of first order; allowed: 1",
-             scene->order);
-  if (split) scene->order = 1;
+  if (split) PetscCall(CheckSplit(scene));
   PetscCheck(scene->adapt == ADAPT_NONE || scene->order == 2, scene->comm, PETSC_ERR_USER_INPUT,
              "-time_adapt error: with -scheme_type %s of order %" PetscInt_FMT
              "; allowed: coupled or direct with -scheme_order 2",
@@ -104,6 +124,8 @@ PetscErrorCode SceneValidate(Scene scene) {
 }
 
 PetscErrorCode SceneView(Scene scene, const Shape *shape, PetscViewer v) {
+  static const char *const derivatives[] = {"finite differences", "spectral bending", "spectral bending and edges"};
+  static const char *const self[] = {"none", "local", "symbol"};
   static const char *const bc[] = {"wall", "periodic"};
   static const char *const flows[] = {"quiescent", "shear", "poiseuille", "extension"};
   static const char *const forms[] = {"disturbance of the background flow", "total velocity with moving walls"};
@@ -126,7 +148,10 @@ PetscErrorCode SceneView(Scene scene, const Shape *shape, PetscViewer v) {
     PetscCall(PetscViewerASCIIPrintf(v, "bending: on, c_b = %g\n", (double)scene->bending));
   else
     PetscCall(PetscViewerASCIIPrintf(v, "bending: off (no bending solve)\n"));
-  PetscCall(PetscViewerASCIIPrintf(v, "kernel: %s\n", shape->vesicles ? scene->delta : "not used"));
+  if (shape->vesicles)
+    PetscCall(PetscViewerASCIIPrintf(v, "membrane: kernel %s, %s, self-mobility %s, area target %s\n", scene->delta,
+                                     derivatives[scene->derivative], self[scene->self_mobility],
+                                     scene->area_target ? "on" : "off"));
   PetscCall(PetscViewerASCIIPrintf(v, "scheme: %s, order %" PetscInt_FMT ", dt = %g to t = %g\n", scene->scheme,
                                    scene->order, (double)scene->dt, (double)scene->t_end));
   PetscCall(PetscViewerASCIIPrintf(v, "fast solves: helmholtz %s, poisson %s\n", scene->helmholtz, scene->poisson));

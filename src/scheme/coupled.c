@@ -6,27 +6,44 @@
    e*.(dU)_k = a0 [(ds^2 - |e*|^2)/2 - e*.(ehat - e*)], the background's own stretching taken off (already in g). */
 static PetscErrorCode LengthTarget(Scheme s, const Coupled *d, PetscReal a0) {
   const Membrane m = s->membrane;
-  const PetscReal h2 = PetscSqr(s->fluid->grid->h);
-  const PetscScalar *xs, *xh;
-  PetscScalar *g;
+  const PetscReal h2 = PetscSqr(s->fluid->grid->h), *tau = s->coupling->tau;
+  const PetscScalar *xh;
+  PetscScalar *g, *hat = s->coupling->work;
   PetscFunctionBeginUser;
-  PetscCall(VecGetArrayRead(d->Xstar, &xs));
   PetscCall(VecGetArrayRead(d->Xhat, &xh));
   PetscCall(VecGetArray(s->g, &g));
+  for (PetscInt v = 0; v < m->vesicles; v++) MembraneEdges(m, v, xh + 2 * m->start[v], hat + 2 * m->start[v]);
   for (PetscInt k = 0; k < m->M; k++) {
-    const PetscInt p = m->previous[k];
     const PetscReal ds = m->spacing[k];
     PetscReal star2 = 0, gap = 0;
     for (int c = 0; c < 2; c++) {
-      const PetscReal star = xs[2 * k + c] - xs[2 * p + c], hat = xh[2 * k + c] - xh[2 * p + c];
-      star2 += star * star;
-      gap += star * (hat - star);
+      const PetscReal e = ds * tau[2 * k + c]; /* the extrapolated edge */
+      star2 += e * e;
+      gap += e * (hat[2 * k + c] - e);
     }
     g[k] += a0 * (0.5 * (ds * ds - star2) - gap) / (ds * h2);
   }
   PetscCall(VecRestoreArray(s->g, &g));
   PetscCall(VecRestoreArrayRead(d->Xhat, &xh));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* With self-mobility the velocity known before the solve is R (u_inf - c_b ds Theta D4 Xhat): it takes u_inf's place.
+ */
+static PetscErrorCode SelfMobilityPart(Scheme s, Coupled *d, PetscReal a0) {
+  const PetscScalar *xs, *xh;
+  PetscScalar *u;
+  PetscFunctionBeginUser;
+  PetscCall(VecGetArrayRead(d->Xstar, &xs));
+  PetscCall(VecGetArrayRead(d->Xhat, &xh));
+  if (s->fluid->total) PetscCall(VecSet(s->background, 0));
+  PetscCall(VecGetArray(s->background, &u));
+  PetscCall(SelfMobilitySetMarkers(s->self, a0, xs));
+  PetscCall(SelfMobilityHistory(s->self, u, xh));
+  PetscCall(VecRestoreArray(s->background, &u));
+  PetscCall(VecRestoreArrayRead(d->Xhat, &xh));
   PetscCall(VecRestoreArrayRead(d->Xstar, &xs));
+  PetscCall(SchemeBackgroundConstraint(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -87,6 +104,7 @@ PetscErrorCode CoupledAttempt(Scheme s, PetscReal dt, PetscBool *solved) {
     PetscCall(History(&b, 1 / b.a0, q->X, d->old.X, d->Xhat));
     PetscCall(SchemePlaceMarkers(s, d->Xstar, solved));
     if (!*solved) PetscFunctionReturn(PETSC_SUCCESS);
+    if (s->self) PetscCall(SelfMobilityPart(s, d, b.a0));
     if (d->length_target) PetscCall(LengthTarget(s, d, b.a0));
   }
   PetscCall(MomentumRightHandSide(s, d, &b));
@@ -98,18 +116,34 @@ PetscErrorCode CoupledAttempt(Scheme s, PetscReal dt, PetscBool *solved) {
   PetscCall(SolveStep(s, d));
   *solved = *s->report.failure ? PETSC_FALSE : PETSC_TRUE;
   if (!*solved) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(SchemeMeasureConstraints(s, n->w));
+  PetscCall(SchemeMeasureDivergence(s, n->w));
   if (!s->coupling) PetscFunctionReturn(PETSC_SUCCESS);
   /* U = u_inf(X*) + E u,  X = Xhat + U/a0 */
-  PetscCall(SchemeMarkerVelocity(s, n->w, n->U));
+  PetscCall(SchemeMarkerVelocity(s, n->w, n->sigma, n->U));
   PetscCall(VecWAXPY(n->X, 1 / b.a0, n->U, d->Xhat));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The area target: a uniform normal shift of the markers, old ones alike. */
+static PetscErrorCode RestoreArea(Scheme s, Coupled *d) {
+  PetscScalar *X, *X_old;
+  PetscFunctionBeginUser;
+  PetscCall(VecGetArray(s->state.X, &X));
+  PetscCall(VecGetArray(d->old.X, &X_old));
+  for (PetscInt v = 0; v < s->membrane->vesicles; v++) {
+    const PetscReal shift = MembraneRestoreArea(s->membrane, v, X, X_old);
+    if (PetscAbsReal(shift) > PetscAbsReal(s->report.area_shift)) s->report.area_shift = shift;
+  }
+  PetscCall(VecRestoreArray(d->old.X, &X_old));
+  PetscCall(VecRestoreArray(s->state.X, &X));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* state -> old, next -> state; the vectors change places. */
-static void Advance(Scheme s, Coupled *d, PetscReal dt) {
+static PetscErrorCode Advance(Scheme s, Coupled *d, PetscReal dt) {
   State *q = &s->state, spare = d->old;
   const State next = d->next;
+  PetscFunctionBeginUser;
   d->old = *q;
   d->next = spare;
   q->w = next.w;
@@ -119,6 +153,9 @@ static void Advance(Scheme s, Coupled *d, PetscReal dt) {
   q->U = next.U;
   q->dt_last = dt;
   d->has_old = PETSC_TRUE;
+  s->old = &d->old;
+  if (d->area_target && s->coupling) PetscCall(RestoreArea(s, d));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Start-up: backward Euler on a sixteenth of the step, then BDF2 with doubling steps up to the whole of it. */
@@ -128,7 +165,7 @@ static PetscErrorCode GradedStart(Scheme s, Coupled *d, PetscReal dt, PetscBool 
   for (int k = 0; k < 5; k++) {
     PetscCall(CoupledAttempt(s, parts[k] * dt, solved));
     if (!*solved) PetscFunctionReturn(PETSC_SUCCESS);
-    Advance(s, d, parts[k] * dt);
+    PetscCall(Advance(s, d, parts[k] * dt));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -141,14 +178,14 @@ static PetscErrorCode Step_Coupled(Scheme s) {
   if (d->control.on) {
     PetscReal used = dt;
     PetscCall(StepControlStep(s, &d->control, d->Xstar, &d->next, &used, &solved));
-    if (solved) Advance(s, d, used);
+    if (solved) PetscCall(Advance(s, d, used));
     s->state.dt = used;
   } else if (!d->has_old && d->order > 1 && s->scene->startup == STARTUP_GRADED) {
     PetscCall(GradedStart(s, d, dt, &solved));
     s->state.dt = dt;
   } else {
     PetscCall(CoupledAttempt(s, dt, &solved));
-    if (solved) Advance(s, d, dt);
+    if (solved) PetscCall(Advance(s, d, dt));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -169,6 +206,9 @@ static PetscErrorCode SetUp_Coupled(Scheme s) {
   PetscFunctionBeginUser;
   d->order = s->scene->order;
   d->length_target = s->scene->length_target;
+  d->area_target = s->scene->area_target;
+  if (s->scene->self_mobility != SELF_NONE && s->coupling)
+    PetscCall(SelfMobilityCreate(s->coupling, s->fluid->nu, (SelfMobilityType)s->scene->self_mobility, &s->self));
   PetscCall(DuplicateState(q, &d->old));
   PetscCall(DuplicateState(q, &d->next));
   PetscCall(VecDuplicate(q->w, &d->f));
@@ -177,9 +217,9 @@ static PetscErrorCode SetUp_Coupled(Scheme s) {
   PetscCall(VecDuplicate(q->X, &d->Y));
   PetscCall(StepControlCreate(s->scene, s->membrane, &d->control));
   if (!strcmp(s->type, "direct"))
-    PetscCall(DirectSolverCreate(s->fluid, s->coupling, &d->direct));
+    PetscCall(DirectSolverCreate(s->fluid, s->coupling, s->self, &d->direct));
   else
-    PetscCall(SaddleCreate(s->scene, s->fluid, s->coupling, &d->saddle));
+    PetscCall(SaddleCreate(s->scene, s->fluid, s->coupling, s->self, &d->saddle));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -202,6 +242,7 @@ static PetscErrorCode Destroy_Coupled(Scheme s) {
   State *states[2] = {&d->old, &d->next};
   Vec *others[] = {&d->f, &d->Xstar, &d->Xhat, &d->Y};
   PetscFunctionBeginUser;
+  PetscCall(SelfMobilityDestroy(&s->self));
   PetscCall(SaddleDestroy(&d->saddle));
   PetscCall(DirectSolverDestroy(&d->direct));
   for (int k = 0; k < 2; k++) {

@@ -12,7 +12,7 @@ typedef struct {
   State old, next;     /* the state before, the one being made */
   PetscBool has_old;
   PetscInt order;
-  PetscBool length_target;
+  PetscBool length_target, area_target;
   StepControl control;
   Vec f;              /* momentum's right-hand side */
   Vec Xstar, Xhat, Y; /* extrapolated markers, BDF history of the markers, Xhat + u_inf/a0 */

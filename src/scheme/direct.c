@@ -18,7 +18,7 @@ static PetscInt Index(DirectSolver d, int f, PetscInt i, PetscInt j) {
   return index;
 }
 
-PetscErrorCode DirectSolverCreate(Fluid fluid, Coupling coupling, DirectSolver *out) {
+PetscErrorCode DirectSolverCreate(Fluid fluid, Coupling coupling, SelfMobility self, DirectSolver *out) {
   const Grid g = fluid->grid;
   DirectSolver d;
   PC pc;
@@ -27,10 +27,11 @@ PetscErrorCode DirectSolverCreate(Fluid fluid, Coupling coupling, DirectSolver *
   *out = d;
   d->fluid = fluid;
   d->coupling = coupling;
+  d->self = self;
   d->M = coupling ? coupling->membrane->M : 0;
   PetscCall(PetscCalloc1(g->size + 1, &d->start));
   for (PetscInt r = 0; r < g->size; r++) {
-    d->start[r + 1] = d->start[r] + (r == g->size - 1 ? 3 * d->M : 0);
+    d->start[r + 1] = d->start[r] + (r == g->size - 1 ? 5 * d->M : 0);
     for (int f = 0; f < 3; f++) d->start[r + 1] += g->columns[f] * RowsOf(g, r, f);
   }
   PetscCall(VecCreateMPI(g->comm, d->start[g->rank + 1] - d->start[g->rank], PETSC_DETERMINE, &d->x));
@@ -92,40 +93,71 @@ static PetscErrorCode AddFluid(DirectSolver d, Mat A) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Everything with E in it: U - E w = 0, and minus the spread force of sigma and U in the momentum. The last rank, which
-   owns sigma and U, adds it all. */
-static PetscErrorCode AddMembrane(DirectSolver d, Mat A) {
+/* E: -E w in the rows of U, E^T F in the momentum. */
+static PetscErrorCode AddInterpolation(DirectSolver d, Mat A, PetscInt U, PetscInt F) {
   const Grid g = d->fluid->grid;
-  const Membrane m = d->coupling->membrane;
-  const PetscInt sigma = d->start[g->size] - 3 * d->M, U = sigma + d->M;
-  const PetscReal h2 = PetscSqr(g->h), *tau = d->coupling->tau;
   PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < d->M; k++) {
-    const PetscInt p = m->previous[k], n = m->next[k], at[5] = {m->previous[p], p, k, n, m->next[n]};
-    const PetscReal ds = m->spacing[k], fourth[5] = {1, -4, 6, -4, 1};
-    for (int c = 0; c < 2; c++) {
-      const Stencil *s = &d->coupling->stencil[2 * k + c];
-      PetscCall(MatSetValue(A, U + 2 * k + c, U + 2 * k + c, 1, ADD_VALUES));
-      for (PetscInt b = 0; b < s->n[1]; b++)
-        for (PetscInt a = 0; a < s->n[0]; a++) {
-          const PetscReal weight = s->weight[1][b] * s->weight[0][a];
-          PetscInt i = s->first[0] + a, j = s->first[1] + b;
-          if (!g->wall[0]) i %= g->n[0];
-          if (!g->wall[1]) j %= g->n[1];
-          if (i < 0 || j < 0 || i >= g->columns[c] || j >= g->all_rows[c]) continue;
-          const PetscInt face = Index(d, c, i, j);
-          PetscCall(MatSetValue(A, U + 2 * k + c, face, -weight, ADD_VALUES));
-          PetscCall(MatSetValue(A, face, sigma + k, weight * tau[2 * k + c] / h2, ADD_VALUES));
-          PetscCall(MatSetValue(A, face, sigma + n, -weight * tau[2 * n + c] / h2, ADD_VALUES));
-          for (int q = 0; q < 5 && m->bending > 0; q++)
-            PetscCall(MatSetValue(A, face, U + 2 * at[q] + c,
-                                  weight * m->bending * fourth[q] / (h2 * ds * ds * ds * d->fluid->a0), ADD_VALUES));
-        }
-      /* S^T u = Dm U/h^2 */
-      PetscCall(MatSetValue(A, sigma + k, U + 2 * k + c, tau[2 * k + c] / h2, ADD_VALUES));
-      PetscCall(MatSetValue(A, sigma + k, U + 2 * p + c, -tau[2 * k + c] / h2, ADD_VALUES));
-    }
+  for (PetscInt q = 0; q < 2 * d->M; q++) {
+    const Stencil *s = &d->coupling->stencil[q];
+    const int c = q % 2;
+    for (PetscInt b = 0; b < s->n[1]; b++)
+      for (PetscInt a = 0; a < s->n[0]; a++) {
+        const PetscReal weight = s->weight[1][b] * s->weight[0][a];
+        PetscInt i = s->first[0] + a, j = s->first[1] + b;
+        if (!g->wall[0]) i %= g->n[0];
+        if (!g->wall[1]) j %= g->n[1];
+        if (i < 0 || j < 0 || i >= g->columns[c] || j >= g->all_rows[c]) continue;
+        PetscCall(MatSetValue(A, U + q, Index(d, c, i, j), -weight, ADD_VALUES));
+        PetscCall(MatSetValue(A, Index(d, c, i, j), F + q, weight, ADD_VALUES));
+      }
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AddNonzero(Mat A, PetscInt row, PetscInt column, PetscReal value) {
+  PetscFunctionBeginUser;
+  if (value != 0) PetscCall(MatSetValue(A, row, column, value, ADD_VALUES));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* One vesicle's rows between sigma, U and F, a column at a time by unit vectors:
+   U - E w + h^2 Theta F = 0,  F - Dm^T sigma/h^2 - (c_b ds/(h^2 a0)) D4 U = 0,  Dm U/h^2 = g. */
+static PetscErrorCode AddVesicle(DirectSolver d, Mat A, PetscInt v, PetscInt sigma, PetscInt U, PetscInt F) {
+  const Membrane m = d->coupling->membrane;
+  const PetscInt first = m->start[v], n = m->start[v + 1] - first;
+  const PetscReal h2 = PetscSqr(d->fluid->grid->h), *tau = d->coupling->tau + 2 * first;
+  const PetscReal *Theta = d->self ? SelfMobilityBlock(d->self, v) : NULL;
+  PetscReal *unit, *work, *out;
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc3(2 * n, &unit, 2 * n, &work, 2 * n, &out));
+  for (PetscInt c = 0; c < 2 * n; c++) {
+    const PetscInt column = 2 * first + c;
+    unit[c] = 1;
+    PetscCall(MatSetValue(A, U + column, U + column, 1, ADD_VALUES));
+    PetscCall(MatSetValue(A, F + column, F + column, 1, ADD_VALUES));
+    for (PetscInt r = 0; r < 2 * n && Theta; r++)
+      PetscCall(AddNonzero(A, U + 2 * first + r, F + column, h2 * Theta[r * 2 * n + c]));
+    MembraneEdges(m, v, unit, work);
+    for (PetscInt k = 0; k < n; k++) {
+      const PetscReal value = (tau[2 * k] * work[2 * k] + tau[2 * k + 1] * work[2 * k + 1]) / h2;
+      PetscCall(AddNonzero(A, sigma + first + k, U + column, value));
+      PetscCall(AddNonzero(A, F + column, sigma + first + k, -value));
+    }
+    PetscCall(PetscArrayzero(out, 2 * n));
+    if (m->bending > 0) MembraneBendingVesicle(m, v, -m->bending / (h2 * d->fluid->a0), unit, work, out);
+    for (PetscInt r = 0; r < 2 * n; r++) PetscCall(AddNonzero(A, F + 2 * first + r, U + column, out[r]));
+    unit[c] = 0;
+  }
+  PetscCall(PetscFree3(unit, work, out));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The last rank, which owns sigma, U and F, adds everything of the membranes. */
+static PetscErrorCode AddMembrane(DirectSolver d, Mat A) {
+  const PetscInt sigma = d->start[d->fluid->grid->size] - 5 * d->M, U = sigma + d->M, F = U + 2 * d->M;
+  PetscFunctionBeginUser;
+  PetscCall(AddInterpolation(d, A, U, F));
+  for (PetscInt v = 0; v < d->coupling->membrane->vesicles; v++) PetscCall(AddVesicle(d, A, v, sigma, U, F));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

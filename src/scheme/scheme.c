@@ -39,7 +39,8 @@ static PetscErrorCode CreateState(Scheme s, const PetscReal X[]) {
   PetscCheck(placed, s->scene->comm, PETSC_ERR_USER_INPUT,
              "-vesicle_center %g,%g: %s; allowed: a vesicle inside -domain_box, 3 cells from its walls",
              (double)s->scene->center.v[0], (double)s->scene->center.v[1], s->report.failure);
-  PetscCall(SchemeMarkerVelocity(s, q->w, q->U));
+  PetscCall(SchemeMarkerVelocity(s, q->w, q->sigma, q->U));
+  s->report.surface_div_max = 0; /* nothing has been solved yet */
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -116,7 +117,7 @@ PetscErrorCode SchemeView(Scheme s, PetscViewer viewer) {
 
 PetscErrorCode SchemePlaceMarkers(Scheme s, Vec X, PetscBool *placed) {
   const PetscScalar *x;
-  PetscScalar *u, *g;
+  PetscScalar *u;
   PetscFunctionBeginUser;
   PetscCall(VecGetArrayRead(X, &x));
   PetscCall(CouplingCheckMarkers(s->coupling, x, s->report.failure, sizeof(s->report.failure)));
@@ -132,37 +133,55 @@ PetscErrorCode SchemePlaceMarkers(Scheme s, Vec X, PetscBool *placed) {
   if (s->fluid->total) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecGetArrayRead(X, &x));
   PetscCall(VecGetArray(s->background, &u));
-  PetscCall(VecGetArray(s->g, &g));
   for (PetscInt k = 0; k < s->membrane->M; k++) FlowVelocity(&s->scene->flow, x[2 * k], x[2 * k + 1], &u[2 * k]);
-  MembraneStretching(s->membrane, s->coupling->tau, u, g);
-  PetscCall(VecRestoreArray(s->g, &g));
   PetscCall(VecRestoreArray(s->background, &u));
   PetscCall(VecRestoreArrayRead(X, &x));
+  PetscCall(SchemeBackgroundConstraint(s));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SchemeBackgroundConstraint(Scheme s) {
+  const PetscScalar *u;
+  PetscScalar *g;
+  PetscFunctionBeginUser;
+  PetscCall(VecGetArrayRead(s->background, &u));
+  PetscCall(VecGetArray(s->g, &g));
+  MembraneStretching(s->membrane, s->coupling->tau, u, g);
+  PetscCall(VecRestoreArray(s->g, &g));
+  PetscCall(VecRestoreArrayRead(s->background, &u));
   PetscCall(VecScale(s->g, -1 / PetscSqr(s->fluid->grid->h)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SchemeMarkerVelocity(Scheme s, Vec w, Vec U) {
+PetscErrorCode SchemeMarkerVelocity(Scheme s, Vec w, Vec sigma, Vec U) {
+  const PetscReal h2 = PetscSqr(s->fluid->grid->h);
+  const PetscScalar *sa, *g;
+  PetscScalar *u, *d;
   PetscFunctionBeginUser;
   PetscCall(CouplingInterpolate(s->coupling, s->coupling->E, w, U));
+  PetscCall(VecGetArrayRead(sigma, &sa));
+  PetscCall(VecGetArrayRead(s->g, &g));
+  PetscCall(VecGetArray(U, &u));
+  PetscCall(VecGetArray(s->work_tension, &d));
+  if (s->self) PetscCall(SelfMobilityApply(s->self, u, sa));
+  MembraneStretching(s->membrane, s->coupling->tau, u, d);
+  s->report.surface_div_max = 0;
+  for (PetscInt k = 0; k < s->membrane->M; k++)
+    s->report.surface_div_max = PetscMax(s->report.surface_div_max,
+                                         PetscAbsReal(d[k] - h2 * g[k]) / s->membrane->spacing[k]);
+  PetscCall(VecRestoreArray(s->work_tension, &d));
+  PetscCall(VecRestoreArray(U, &u));
+  PetscCall(VecRestoreArrayRead(s->g, &g));
+  PetscCall(VecRestoreArrayRead(sigma, &sa));
   PetscCall(VecAXPY(U, 1, s->background));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SchemeMeasureConstraints(Scheme s, Vec w) {
-  const PetscReal h2 = PetscSqr(s->fluid->grid->h);
-  const PetscScalar *d;
+PetscErrorCode SchemeMeasureDivergence(Scheme s, Vec w) {
   PetscFunctionBeginUser;
   PetscCall(MatMultTranspose(s->fluid->G, w, s->work_pressure));
   if (s->fluid->bc2) PetscCall(VecAXPY(s->work_pressure, 1, s->fluid->bc2));
   PetscCall(VecNorm(s->work_pressure, NORM_INFINITY, &s->report.div_max));
-  if (!s->coupling) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(CouplingInterpolate(s->coupling, s->coupling->S, w, s->work_tension));
-  PetscCall(VecAXPY(s->work_tension, -1, s->g));
-  PetscCall(VecGetArrayRead(s->work_tension, &d));
-  for (PetscInt k = 0; k < s->membrane->M; k++)
-    s->report.surface_div_max = PetscMax(s->report.surface_div_max, h2 * PetscAbsReal(d[k]) / s->membrane->spacing[k]);
-  PetscCall(VecRestoreArrayRead(s->work_tension, &d));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -1,6 +1,7 @@
 /* Time-stepping schemes: the state that they advance, and the interface behind which they stand. */
 #pragma once
 #include "coupling/lagrangian.h"
+#include "coupling/selfmobility.h"
 
 /* Everything that moves in time. Marker vectors are sequential and the same on every rank. */
 typedef struct {
@@ -19,7 +20,8 @@ typedef struct {
   PetscInt tension_its, bending_its, coupled_its;
   PetscInt solves;                  /* scalar fast solves */
   PetscReal div_max;                /* max |G^T u + bc2|, what the solver left of the divergence */
-  PetscReal surface_div_max;        /* max |h^2 (S^T u - g)/ds| */
+  PetscReal surface_div_max;        /* max |h^2 (S^T u - g)/ds|, self-mobility included */
+  PetscReal area_shift;             /* largest shift that restored a vesicle\'s area (length) */
   PetscReal seconds;                /* wall, output excluded */
   char failure[PETVES_MAX_MESSAGE]; /* why the step could not be taken; empty when it was */
 } StepReport;
@@ -32,9 +34,11 @@ struct _p_Scheme {
   Membrane membrane; /* borrowed; no vesicles when the scene has none */
   Coupling coupling; /* borrowed; NULL when the scene has no vesicle */
   State state;
+  const State *old; /* the state one step before, for schemes that go on from two; NULL when there is none */
   StepReport report;
-  Vec background; /* [2M] u_inf at the markers; zero in the total form */
-  Vec g;          /* [M] S^T u = g: minus the background's stretching, Dm u_inf/h^2 */
+  SelfMobility self; /* the scheme's own; NULL without */
+  Vec background;    /* [2M] what the markers' velocity has besides the solved part: u_inf, zero in the total form */
+  Vec g;             /* [M] S^T u = g: minus the background's stretching, Dm u_inf/h^2 */
   Vec work_tension, work_pressure;
   void *data; /* the scheme's own */
   PetscErrorCode (*setup)(Scheme);
@@ -62,11 +66,15 @@ PETSC_EXTERN PetscErrorCode SchemeView(Scheme scheme, PetscViewer viewer);
    report.failure when a marker is too close to a wall. For use inside schemes. */
 PETSC_EXTERN PetscErrorCode SchemePlaceMarkers(Scheme scheme, Vec X, PetscBool *placed);
 
-/* SchemeMarkerVelocity - U = u_inf + E w at the coupling's markers. */
-PETSC_EXTERN PetscErrorCode SchemeMarkerVelocity(Scheme scheme, Vec w, Vec U);
+/* SchemeBackgroundConstraint - g = -Dm background/h^2. */
+PETSC_EXTERN PetscErrorCode SchemeBackgroundConstraint(Scheme scheme);
 
-/* SchemeMeasureConstraints - fill in report.div_max and surface_div_max of a solved velocity. */
-PETSC_EXTERN PetscErrorCode SchemeMeasureConstraints(Scheme scheme, Vec w);
+/* SchemeMarkerVelocity - U = background + E w (+ self-mobility of sigma) at the coupling's markers; measures
+   report.surface_div_max on the way. */
+PETSC_EXTERN PetscErrorCode SchemeMarkerVelocity(Scheme scheme, Vec w, Vec sigma, Vec U);
+
+/* SchemeMeasureDivergence - fill in report.div_max of a solved velocity. */
+PETSC_EXTERN PetscErrorCode SchemeMeasureDivergence(Scheme scheme, Vec w);
 
 /* SchemeSolverFailed - record a failed solve: prefix, step, time, residual. */
 PETSC_EXTERN PetscErrorCode SchemeSolverFailed(Scheme scheme, const char prefix[], KSPConvergedReason why, PetscInt its,

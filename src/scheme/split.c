@@ -100,11 +100,11 @@ static PetscErrorCode Step_Split(Scheme s) {
   PetscCall(VecCopy(d->u2, q->w));
   PetscCall(GridGradient(f->grid, -q->dt, d->dp, PETSC_TRUE, q->w));
   if (c) PetscCall(CouplingSpreadAdd(c, -q->dt, c->S, d->dsigma, q->w));
-  PetscCall(SchemeMeasureConstraints(s, q->w));
+  PetscCall(SchemeMeasureDivergence(s, q->w));
   /* 7  X += dt (u_inf + E u),  p += dp,  sigma += dsigma */
   PetscCall(VecAXPY(q->p, 1, d->dp));
   if (!c) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(SchemeMarkerVelocity(s, q->w, q->U));
+  PetscCall(SchemeMarkerVelocity(s, q->w, q->sigma, q->U));
   PetscCall(VecAXPY(q->X, q->dt, q->U));
   PetscCall(VecAXPY(q->sigma, 1, d->dsigma));
   PetscFunctionReturn(PETSC_SUCCESS);

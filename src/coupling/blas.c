@@ -1,0 +1,33 @@
+#include "coupling/blas.h"
+
+PetscErrorCode DenseFactor(PetscInt n, PetscReal A[], PetscBLASInt pivot[]) {
+  PetscBLASInt size, info;
+  PetscFunctionBeginUser;
+  PetscCall(PetscBLASIntCast(n, &size));
+  PetscCallBLAS("LAPACKgetrf", LAPACKgetrf_(&size, &size, A, &size, pivot, &info));
+  PetscCheck(!info, PETSC_COMM_SELF, PETSC_ERR_MAT_LU_ZRPVT, "singular Lagrangian block, pivot %d", (int)info);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode DenseSolve(PetscInt n, const PetscReal A[], const PetscBLASInt pivot[], PetscBool transpose,
+                          PetscInt nrhs, PetscReal X[]) {
+  PetscBLASInt size, columns, info;
+  PetscFunctionBeginUser;
+  PetscCall(PetscBLASIntCast(n, &size));
+  PetscCall(PetscBLASIntCast(nrhs, &columns));
+  PetscCallBLAS("LAPACKgetrs", LAPACKgetrs_(transpose ? "T" : "N", &size, &columns, (PetscReal *)A, &size,
+                                            (PetscBLASInt *)pivot, X, &size, &info));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode DenseMultAdd(PetscInt m, PetscInt n, PetscReal alpha, const PetscReal A[], const PetscReal x[],
+                            PetscReal y[]) {
+  PetscBLASInt rows, columns;
+  const PetscBLASInt step = 1;
+  const PetscReal one = 1;
+  PetscFunctionBeginUser;
+  PetscCall(PetscBLASIntCast(m, &rows));
+  PetscCall(PetscBLASIntCast(n, &columns));
+  PetscCallBLAS("BLASgemv", BLASgemv_("N", &rows, &columns, &alpha, A, &rows, x, &step, &one, y, &step));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,15 @@
+/* Small dense matrices, columns contiguous, by LAPACK and BLAS. */
+#pragma once
+#include "base/base.h"
+#include <petscblaslapack.h>
+
+/* DenseFactor - LU factors of A (n x n) in place. */
+PETSC_EXTERN PetscErrorCode DenseFactor(PetscInt n, PetscReal A[], PetscBLASInt pivot[]);
+
+/* DenseSolve - X := A^-1 X or (transpose) A^-T X for the factored A, X of nrhs columns. */
+PETSC_EXTERN PetscErrorCode DenseSolve(PetscInt n, const PetscReal A[], const PetscBLASInt pivot[], PetscBool transpose,
+                                       PetscInt nrhs, PetscReal X[]);
+
+/* DenseMultAdd - y += alpha A x, A (m x n). */
+PETSC_EXTERN PetscErrorCode DenseMultAdd(PetscInt m, PetscInt n, PetscReal alpha, const PetscReal A[],
+                                         const PetscReal x[], PetscReal y[]);

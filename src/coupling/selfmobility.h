@@ -1,0 +1,38 @@
+/* Self-mobility (DESIGN section 8): the marker velocity that the kernel's smoothing takes away is given back,
+       U = E u + Theta (f ds),   f ds = -(Dm^T sigma) - c_b ds D4 X_new,
+   Theta symmetric and non-negative, a full block a vesicle:
+       local:   Theta = (h c1/(nu ds)) t t^T
+       symbol:  Theta = F^T diag(circ dT, circ dN) F/ds, F the rotation into (tangent, normal) frames, dT and dN the
+   mobility of tangential and normal force waves on a plane membrane, exact minus gridded. */
+#pragma once
+#include "coupling/coupling.h"
+
+typedef struct _p_SelfMobility *SelfMobility;
+
+/* SelfMobilityCreate - of the given type (SELF_LOCAL, SELF_SYMBOL) for a coupling's membranes in a fluid of viscosity
+ * nu. */
+PETSC_EXTERN PetscErrorCode SelfMobilityCreate(Coupling coupling, PetscReal nu, SelfMobilityType type,
+                                               SelfMobility *self);
+PETSC_EXTERN PetscErrorCode SelfMobilityDestroy(SelfMobility *self);
+
+/* SelfMobilitySetMarkers - Theta for the coupling's markers X[2M] and a0, and the factors of
+   R = (I + (c_b ds/a0) Theta D4)^-1. Every rank does the same. */
+PETSC_EXTERN PetscErrorCode SelfMobilitySetMarkers(SelfMobility self, PetscReal a0, const PetscScalar X[]);
+
+/* SelfMobilityApply - U := R (U - Theta Dm^T sigma), U[2M], sigma[M] or NULL for zero. */
+PETSC_EXTERN PetscErrorCode SelfMobilityApply(SelfMobility self, PetscScalar U[], const PetscScalar sigma[]);
+
+/* SelfMobilityHistory - U := R (U - c_b ds Theta D4 Xhat): the part of the marker velocity that is known before the
+ * solve. */
+PETSC_EXTERN PetscErrorCode SelfMobilityHistory(SelfMobility self, PetscScalar U[], const PetscScalar Xhat[]);
+
+/* SelfMobilityBlock - Theta of one vesicle of n markers, symmetric [2n][2n]; borrowed. */
+PETSC_EXTERN const PetscReal *SelfMobilityBlock(SelfMobility self, PetscInt vesicle);
+
+/* SmoothingConstant - c1 = 1/2 INT |r| (phi*phi)(r) dr, mean over the kernel's two 1-D weights, by quadrature. */
+PETSC_EXTERN PetscErrorCode SmoothingConstant(const Kernel *kernel, PetscReal *c1);
+
+/* PlaneSymbols - dT[n], dN[n] for the wave numbers 2 pi q/L, q = 0 .. n/2 and mirrored, of n markers on the length L,
+   at cell size h (1/(length^-2/time ...): velocity per force density). */
+PETSC_EXTERN PetscErrorCode PlaneSymbols(const Kernel *kernel, PetscReal h, PetscReal a0, PetscReal nu, PetscInt n,
+                                         PetscReal L, PetscReal dT[], PetscReal dN[]);
