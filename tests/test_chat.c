@@ -61,7 +61,7 @@ static PetscErrorCode CheckSymmetry(const char name[], TestWorld *t) {
   Vec x, y, Cx, Cy;
   PetscReal one, two, nx, ny, self;
   PetscFunctionBeginUser;
-  PetscCall(TensionSolverCreate(t->fluid, t->coupling, &s));
+  PetscCall(TensionSolverCreate(t->fluid, t->coupling, NULL, &s));
   PetscCall(LagrangianSolverSetUp(s));
   PetscCall(MembraneCreateTensionVec(t->membrane, &x));
   PetscCall(VecDuplicate(x, &y));

@@ -57,7 +57,6 @@ static PetscErrorCode Fill(Problem *q, unsigned seed, PetscBool velocity, PetscB
 
 /* <x, y> with the third rows of y unscaled: ds/h^2 of each. */
 static PetscErrorCode Product(Problem *q, Vec x, Vec y, PetscReal *product) {
-  const PetscReal h2 = PetscSqr(q->t.fluid->grid->h);
   const PetscScalar *a, *b;
   PetscReal third = 0, scaled = 0;
   PetscInt n;
@@ -70,7 +69,7 @@ static PetscErrorCode Product(Problem *q, Vec x, Vec y, PetscReal *product) {
     PetscCall(VecGetArrayRead(y, &b));
     for (PetscInt k = 0; k < M; k++) {
       third += a[n - M + k] * b[n - M + k];
-      scaled += a[n - M + k] * b[n - M + k] * q->t.membrane->spacing[k] / h2;
+      scaled += a[n - M + k] * b[n - M + k] / SaddleScale(q->s, k);
     }
     PetscCall(VecRestoreArrayRead(y, &b));
     PetscCall(VecRestoreArrayRead(x, &a));
@@ -120,7 +119,6 @@ static PetscErrorCode CheckStructure(const char name[], Problem *q) {
 static PetscErrorCode CheckOperator(const char name[], Problem *q) {
   const Fluid f = q->t.fluid;
   const Coupling c = q->t.coupling;
-  const PetscReal h2 = PetscSqr(f->grid->h);
   const PetscScalar *xa, *ya, *stretching, *got;
   PetscReal size[3], error[3] = {0, 0, 0}, work[2], most = 0;
   Vec w, other, p, U, V;
@@ -152,7 +150,7 @@ static PetscErrorCode CheckOperator(const char name[], Problem *q) {
   PetscCall(VecGetArrayRead(q->sigma[0], &stretching));
   PetscCall(VecGetArrayRead(q->sigma[1], &got));
   for (PetscInt k = 0; k < q->t.membrane->M; k++) {
-    const PetscReal want = stretching[k] * h2 / q->t.membrane->spacing[k];
+    const PetscReal want = stretching[k] * SaddleScale(q->s, k);
     error[2] = PetscMax(error[2], PetscAbsReal(got[k] - want));
     most = PetscMax(most, PetscAbsReal(want));
   }
@@ -199,7 +197,7 @@ static PetscErrorCode CheckMobility(const char name[], Problem *q, PetscInt v) {
   PetscCall(MobilityGetTable(q->s->mobility, q->t.fluid->a0, &table));
   CHECK(table->a0 == q->t.fluid->a0, "%s: the table is for a0 = %g", name, (double)q->t.fluid->a0);
   PetscCall(PetscMalloc1(n * n, &Mob));
-  PetscCall(MobilityAssemble(q->s->mobility, table, v, Mob));
+  PetscCall(MobilityAssemble(q->s->mobility, table, first, n / 2, Mob));
   PetscCall(StokesCreate(q->t.fluid, &stokes));
   PetscCall(VecDuplicate(q->t.X, &F));
   PetscCall(VecDuplicate(q->s->r, &r));

@@ -37,7 +37,7 @@ PetscErrorCode SaddleJoin(Saddle s, int slot, PetscScalar block[], Vec sigma) {
 
 PetscReal SaddleScale(Saddle s, PetscInt k) {
   const PetscReal h = s->fluid->grid->h;
-  return PetscSqr(h) / s->coupling->membrane->spacing[k] * h * (s->fluid->a0 + s->fluid->nu / PetscSqr(h));
+  return PetscSqr(h) / s->coupling->membrane->spacing[k] * (1 + h * s->fluid->a0);
 }
 
 /* Third row, scaled: S^T u = Dm U/h^2. */
