@@ -66,7 +66,9 @@ def _measure_shear(series: dict[str, np.ndarray], folder: Path) -> dict[str, obj
         "length": np.abs(series["length_error"][later]).max(),
         "shift": np.abs(np.nan_to_num(series["area_shift"][later])).max(),
         "its": series["coupled_its"][-50:].mean(),
+        "its_all": series["coupled_its"][3:].mean(),
         "seconds": float(np.median(series["wall"][5:])),
+        "seconds_least": float(np.quantile(series["wall"][5:], 0.1)),  # what other programs on the machine leave alone
     }
 
 
