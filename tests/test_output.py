@@ -141,7 +141,7 @@ def test_resolved_options_repeat_the_run(run, tmp_path):
     folder = tmp_path / "again"
     again = run_petves(folder, f"-options_file {run.folder / 'resolved.opts'} -output_dir {folder}", ranks=2)
     one, two = run.series, read_series(again.folder / "series.csv")
-    for name in COLUMNS[:-1]:
+    for name in set(COLUMNS) - {"wall"}:
         np.testing.assert_array_equal(two[name], one[name], err_msg=name)
 
     def options(folder):

@@ -27,7 +27,7 @@ def test_ranks_agree(scene, cached_run):
     assert len(one["step"]) == 51
     for ranks in (2, 4):
         other = cached_run(f"{SCENES[scene]} {TIGHT}", ranks).series
-        for name in COLUMNS[:-1]:
+        for name in set(COLUMNS) - {"wall"}:
             tolerance = 0 if name in ("step", "tension_its", "bending_its", "coupled_its", "nsolve") else 1e-10
             np.testing.assert_allclose(other[name], one[name], rtol=0, atol=tolerance, err_msg=f"{name}, {ranks} ranks")
 

@@ -1,4 +1,4 @@
-"""Command line: ``python3 -m petves plot DIR`` and ``python3 -m petves reproduce DIR``."""
+"""Command line: ``python3 -m petves plot|reproduce|accuracy DIR``."""
 
 from __future__ import annotations
 
@@ -18,6 +18,9 @@ def parser() -> argparse.ArgumentParser:
     again.add_argument("--quick", action="store_true", help="h = 1/32 and 1/64 only (also QUICK=1)")
     again.add_argument("--only", choices=("paper", "coupled"), help="the paper's studies, or the coupled scheme's")
     again.add_argument("--ranks", type=int, default=2, help="MPI ranks of every run (2)")
+    cells = commands.add_parser("accuracy", help="run the study of accuracy per cell: docs/accuracy.md's tables")
+    cells.add_argument("folder", metavar="DIR", help="where the tables and the picture go")
+    cells.add_argument("--quick", action="store_true", help="leave out 256^2")
     return top
 
 
@@ -42,6 +45,11 @@ def main(arguments: list[str] | None = None) -> int:
             from petves.plot import plot_run
 
             for path in plot_run(options.folder):
+                print(path)
+        elif options.command == "accuracy":
+            from petves.accuracy import accuracy
+
+            for path in accuracy(options.folder, quick=options.quick):
                 print(path)
         else:
             from petves.reproduce import reproduce

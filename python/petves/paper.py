@@ -1,4 +1,4 @@
-"""Numbers printed by Ong and Lai, J. Comput. Phys. 408 (2020) 109277, for comparison."""
+"""Numbers printed by Ong and Lai, J. Comput. Phys. 408 (2020) 109277, for comparison, and targets of other methods."""
 
 from __future__ import annotations
 
@@ -17,3 +17,34 @@ ITERATIONS = {
 }
 """Tables 4 (section 5.2) and 8 (section 5.3): mean GMRES iterations of a tension solve, without preconditioner at h^2,
 with incomplete LU at h^2, and with it at 1e-12."""
+
+SHEAR = {
+    "box": {
+        (0.5, 10): (0.08984, 0.23074),
+        (0.7, 10): (0.12559, 0.31938),
+        (0.9, 10): (0.17441, 0.42761),
+        (0.5, 1): (0.08894, 0.23035),
+        (0.7, 1): (0.12556, 0.32195),
+        (0.9, 1): (0.17438, 0.42836),
+    },
+    "channel": {
+        (0.5, 10): (0.08696, 0.22895),
+        (0.7, 10): (0.12343, 0.31665),
+        (0.9, 10): (0.17302, 0.42331),
+        (0.5, 1): (0.08549, 0.22833),
+        (0.7, 1): (0.12324, 0.31901),
+        (0.9, 1): (0.17297, 0.42399),
+    },
+}
+"""Steady tank-treading of unit area by (V, chi): inclination over pi and frequency over the shear rate. Box: velocity
+(rate y, 0) on all sides of 8 x 8; channel: walls 8 apart. Spectral boundary integrals, uncertainty 2e-5."""
+
+REST = {
+    0.5: (8.69552, 2.731, 0.4466),
+    0.6: (7.42166, 2.7019, 0.6534),
+    0.7: (6.24184, 2.652, 0.8737),
+    0.8: (5.14219, 2.5723, 1.1172),
+    0.9: (4.11172, 2.4392, 1.4083),
+}
+"""Equilibrium in fluid at rest by V: E_B R0/c_b (circle: pi), width and mid height over R0. Spectral boundary
+integral."""

@@ -1,0 +1,250 @@
+/* Self-mobility (DESIGN section 8): the constants and symbols are the kernels', Theta only dissipates; spectral
+   derivatives, spectral edges with their exact transposes, and the area target. */
+#include "check.h"
+#include "coupling/selfmobility.h"
+
+#define BOX "-domain_cells 64,64 -domain_box -1,1,-1,1 -vesicle_semi_axes 0.25,0.45 -vesicle_angle 25 "
+#define NU 0.7
+
+static const struct {
+  const char *name;
+  PetscReal c1;
+} kernels[] = {{"ib6", .4806}, {"cbs32", .2589}, {"cbs43", .3062}, {"cbs54", .3469}, {"cbs65", .3833}};
+
+static PetscErrorCode CheckConstants(void) {
+  PetscFunctionBeginUser;
+  for (int k = 0; k < 5; k++) {
+    PetscReal c1;
+    PetscCall(SmoothingConstant(KernelFind(kernels[k].name), &c1));
+    CHECK(PetscAbsReal(c1 - kernels[k].c1) < 6e-5, "%s: c1 = %.5f, known %.4f", kernels[k].name, c1, kernels[k].c1);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What a plane membrane of long waves loses on the grid: 1/2 SUM |i - j| w_i w_j, mean over positions and the two
+   weights. By Euler and Maclaurin it is c1 minus SUM w_i^2/12, near enough. */
+static PetscReal GridConstant(const Kernel *kernel, PetscReal *squares) {
+  PetscReal c = 0;
+  *squares = 0;
+  for (int s = 0; s < 400; s++) {
+    PetscReal w[KERNEL_MAX_POINTS];
+    PetscInt first;
+    const PetscInt n = (s % 2 ? kernel->along : kernel->across)((s / 2 + 0.5) / 200, &first, w);
+    for (PetscInt i = 0; i < n; i++) {
+      *squares += w[i] * w[i] / 400;
+      for (PetscInt j = 0; j < n; j++) c += 0.5 * PetscAbsInt(i - j) * w[i] * w[j] / 400;
+    }
+  }
+  return c;
+}
+
+/* Long waves and little inertia: dT = h c/nu, dN = 0 to first order in h, at any h and nu. */
+static PetscErrorCode CheckLongWaves(void) {
+  const PetscReal h = 0.03, small[] = {0.08, 0.02};
+  PetscFunctionBeginUser;
+  for (int k = 0; k < 5; k++) {
+    const Kernel *kernel = KernelFind(kernels[k].name);
+    PetscReal error[2] = {0, 0}, dT[64], dN[64], squares;
+    const PetscReal c = GridConstant(kernel, &squares), limit = h * c / NU;
+    CHECK(PetscAbsReal(c + squares / 12 - kernels[k].c1) < 0.009, "%s: on the grid c1 is %.4f, with SUM w^2/12 %.4f",
+          kernels[k].name, c, c + squares / 12);
+    for (int s = 0; s < 2; s++) { /* k h and (a0 h^2/nu)^(1/2) */
+      PetscCall(PlaneSymbols(kernel, h, NU * PetscSqr(small[s] / h), NU, 64, 2 * PETSC_PI * h / small[s], dT, dN));
+      error[s] = PetscMax(PetscAbsReal(dT[1] / limit - 1), dN[1] / limit);
+    }
+    CHECK(error[1] < 0.05 && error[1] < 0.4 * error[0],
+          "%s: dT to h c/nu and dN to 0 for long waves: apart by %.1e at k h = %g, %.1e at %g", kernels[k].name,
+          error[0], small[0], error[1], small[1]);
+    error[0] = error[1] = 0;
+    for (int q = 0; q < 64; q++) {
+      error[0] = PetscMax(error[0], PetscMax(-dT[q], -dN[q]));
+      if (q) error[1] = PetscMax(error[1], PetscAbsReal(dT[q] - dT[64 - q]) + PetscAbsReal(dN[q] - dN[64 - q]));
+    }
+    CHECK(error[0] <= 0 && error[1] == 0, "%s: symbols are even and nowhere negative", kernels[k].name);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Theta = Theta^T, and x^T Theta x >= 0. */
+static PetscErrorCode CheckTheta(SelfMobilityType type, const char *derivative, const char *kernel, PetscReal a0) {
+  const char *name = type == SELF_LOCAL ? "local" : "symbol";
+  char options[512];
+  TestWorld w;
+  SelfMobility self;
+  const PetscScalar *X;
+  const PetscReal *Theta;
+  PetscReal asymmetry = 0, largest = 0, least = PETSC_MAX_REAL;
+  PetscInt n;
+  unsigned seed = 11;
+  PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(options, sizeof(options), BOX "-delta_type %s -membrane_derivative %s", kernel, derivative));
+  PetscCall(TestWorldCreate(options, &w));
+  PetscCall(SelfMobilityCreate(w.coupling, NU, type, &self));
+  PetscCall(VecGetArrayRead(w.X, &X));
+  PetscCall(SelfMobilitySetMarkers(self, a0, X));
+  PetscCall(VecRestoreArrayRead(w.X, &X));
+  Theta = SelfMobilityBlock(self, 0);
+  n = 2 * w.membrane->M;
+  for (PetscInt i = 0; i < n; i++)
+    for (PetscInt j = 0; j < n; j++) {
+      largest = PetscMax(largest, PetscAbsReal(Theta[i * n + j]));
+      asymmetry = PetscMax(asymmetry, PetscAbsReal(Theta[i * n + j] - Theta[j * n + i]));
+    }
+  for (int trial = 0; trial < 50; trial++) {
+    PetscReal *x, product = 0, square = 0;
+    PetscCall(PetscMalloc1(n, &x));
+    for (PetscInt i = 0; i < n; i++) {
+      x[i] = TestRandom(&seed);
+      if (trial % 2) x[i] += (i > 1 ? x[i - 2] : 0); /* smooth ones too */
+    }
+    for (PetscInt i = 0; i < n; i++) {
+      square += PetscSqr(x[i]);
+      for (PetscInt j = 0; j < n; j++) product += x[i] * Theta[i * n + j] * x[j];
+    }
+    least = PetscMin(least, product / (square * largest));
+    PetscCall(PetscFree(x));
+  }
+  CHECK(asymmetry < 1e-14 * largest, "%s, %s, %s, a0 = %g: Theta is symmetric to %.1e", name, kernel, derivative, a0,
+        asymmetry / largest);
+  CHECK(least > 0, "%s, %s, %s, a0 = %g: x^T Theta x >= %.2e |x|^2 max|Theta|", name, kernel, derivative, a0, least);
+  PetscCall(SelfMobilityDestroy(&self));
+  PetscCall(TestWorldDestroy(&w));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscReal Dot(PetscInt n, const PetscReal a[], const PetscReal b[]) {
+  PetscReal sum = 0;
+  for (PetscInt i = 0; i < n; i++) sum += a[i] * b[i];
+  return sum;
+}
+
+/* Exact on trigonometric curves; the first derivative antisymmetric, the fourth symmetric. */
+static PetscErrorCode CheckDerivatives(PetscInt n) {
+  static const int powers[] = {1, 2, 4};
+  Spectral s;
+  PetscReal *x, *y, *a, *b, *c, *d;
+  unsigned seed = 3;
+  PetscFunctionBeginUser;
+  PetscCall(SpectralCreate(n, &s));
+  PetscCall(PetscCalloc6(2 * n, &x, 2 * n, &y, 2 * n, &a, 2 * n, &b, 2 * n, &c, 2 * n, &d));
+  for (int p = 0; p < 3; p++) {
+    PetscReal error = 0, size = 0;
+    for (PetscInt q = 0; q <= (n - 1) / 2; q++) {
+      const PetscReal wave = 2 * PETSC_PI * q / n, factor = PetscPowRealInt(wave, powers[p]);
+      for (PetscInt k = 0; k < n; k++) {
+        x[2 * k] = PetscCosReal(wave * k + 0.3);
+        x[2 * k + 1] = PetscSinReal(wave * k + 1.1);
+        a[2 * k] = a[2 * k + 1] = 0.5; /* adds to what is there */
+      }
+      SpectralDerivative(s, powers[p], 2, x, a);
+      for (PetscInt k = 0; k < n; k++)
+        for (int i = 0; i < 2; i++) {
+          const PetscReal phase = wave * k + (i ? 1.1 - PETSC_PI / 2 : 0.3) + powers[p] * PETSC_PI / 2;
+          error = PetscMax(error, PetscAbsReal(a[2 * k + i] - 0.5 - 2 * factor * PetscCosReal(phase)));
+          size = PetscMax(size, factor);
+        }
+    }
+    CHECK(error < 1e-13 * size, "%d markers: derivative %d exact on %d waves, error %.1e of %.1e", (int)n, powers[p],
+          (int)((n + 1) / 2), error, size);
+  }
+  for (PetscInt i = 0; i < 2 * n; i++) {
+    x[i] = TestRandom(&seed);
+    y[i] = TestRandom(&seed);
+    a[i] = b[i] = c[i] = d[i] = 0;
+  }
+  SpectralDerivative(s, 1, 1, x, a);
+  SpectralDerivative(s, 1, 1, y, b);
+  SpectralDerivative(s, 4, 1, x, c);
+  SpectralDerivative(s, 4, 1, y, d);
+  const PetscReal odd = Dot(2 * n, y, a) + Dot(2 * n, x, b), even = Dot(2 * n, y, c) - Dot(2 * n, x, d);
+  CHECK(PetscAbsReal(odd) < 1e-12 * n, "%d markers: y.Dx + x.Dy = %.1e for random x, y", (int)n, odd);
+  CHECK(PetscAbsReal(even) < 1e-11 * n, "%d markers: y.D4x - x.D4y = %.1e for random x, y", (int)n, even);
+  PetscCall(PetscFree6(x, y, a, b, c, d));
+  PetscCall(SpectralDestroy(&s));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Dm and Dm^T; bending force and bending energy; the area target. */
+static PetscErrorCode CheckMembrane(const char *derivative) {
+  char options[512];
+  TestWorld w;
+  Membrane m;
+  PetscReal *tau, *U, *d, *sigma, *F, *X, *old, *work, rate, slope;
+  PetscInt M;
+  unsigned seed = 5;
+  PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(options, sizeof(options), BOX "-vesicle_bending 0.3 -membrane_derivative %s", derivative));
+  PetscCall(TestWorldCreate(options, &w));
+  m = w.membrane;
+  M = m->M;
+  PetscCall(PetscCalloc4(2 * M, &tau, 2 * M, &U, M, &d, M, &sigma));
+  PetscCall(PetscCalloc4(2 * M, &F, 2 * M, &X, 2 * M, &old, 2 * M, &work));
+  for (PetscInt k = 0; k < 2 * M; k++) {
+    U[k] = TestRandom(&seed);
+    X[k] = w.shape.X[k] + 0.02 * m->ds[0] * TestRandom(&seed);
+    sigma[k / 2] = TestRandom(&seed);
+  }
+  MembraneTangents(m, X, tau);
+  MembraneStretching(m, tau, U, d);
+  MembraneStretchingTranspose(m, tau, 1, sigma, F);
+  rate = Dot(M, sigma, d) - Dot(2 * M, U, F);
+  CHECK(PetscAbsReal(rate) < 1e-13 * M, "%s: sigma.(Dm U) - (Dm^T sigma).U = %.1e", derivative, rate);
+
+  /* half the squared edges' rate of change along U is ds SUM d */
+  const PetscReal step = 1e-4;
+  PetscReal half[2] = {0, 0}, energy[2];
+  for (int side = 0; side < 2; side++) {
+    for (PetscInt k = 0; k < 2 * M; k++) old[k] = X[k] + (side ? step : -step) * U[k];
+    MembraneEdges(m, 0, old, work);
+    half[side] = 0.5 * Dot(2 * M, work, work);
+    energy[side] = MembraneBendingEnergy(m, 0, old);
+  }
+  rate = 0;
+  for (PetscInt k = 0; k < M; k++) rate += m->ds[0] * d[k];
+  slope = (half[1] - half[0]) / (2 * step);
+  CHECK(PetscAbsReal(slope - rate) < 1e-9 * M, "%s: Dm is the rate of the squared edges, %.10f against %.10f",
+        derivative, rate, slope);
+  PetscCall(PetscArrayzero(F, 2 * M));
+  MembraneBending(m, -m->bending, X, work, F); /* the force, per marker */
+  rate = Dot(2 * M, F, U);
+  slope = (energy[1] - energy[0]) / (2 * step);
+  CHECK(PetscAbsReal(slope + rate) < 1e-8 * PetscAbsReal(rate),
+        "%s: bending force is minus the gradient of the energy, %.8e against %.8e", derivative, rate, -slope);
+
+  for (PetscInt k = 0; k < 2 * M; k++) X[k] = old[k] = 1.004 * w.shape.X[k];
+  for (PetscInt k = 0; k < M; k++) old[2 * k] += 0.1;
+  const PetscReal shift = MembraneRestoreArea(m, 0, X, old);
+  Measures measures;
+  PetscReal apart = 0;
+  MembraneMeasure(m, 0, X, &measures);
+  for (PetscInt k = 0; k < M; k++)
+    apart = PetscMax(apart, PetscAbsReal(old[2 * k] - X[2 * k] - 0.1) + PetscAbsReal(old[2 * k + 1] - X[2 * k + 1]));
+  CHECK(PetscAbsReal(measures.area / m->A0[0] - 1) < 1e-12, "%s: area restored to %.1e", derivative,
+        measures.area / m->A0[0] - 1);
+  CHECK(shift < 0 && PetscAbsReal(shift * m->L0[0] / m->A0[0] + 0.008) < 1e-3 && apart < 1e-15,
+        "%s: shift %.5f, old markers moved alike to %.1e", derivative, shift, apart);
+  PetscCall(PetscFree4(tau, U, d, sigma));
+  PetscCall(PetscFree4(F, X, old, work));
+  PetscCall(TestWorldDestroy(&w));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Facts(void) {
+  static const char *const derivatives[] = {"fd", "bending", "spectral"};
+  PetscFunctionBeginUser;
+  PetscCall(CheckConstants());
+  PetscCall(CheckLongWaves());
+  for (int k = 0; k < 3; k++)
+    for (int a = 0; a < 2; a++) {
+      PetscCall(CheckTheta(SELF_LOCAL, derivatives[k], "cbs54", a ? 5000 : 20));
+      PetscCall(CheckTheta(SELF_SYMBOL, derivatives[k], a ? "cbs54" : "ib6", a ? 5000 : 20));
+    }
+  PetscCall(CheckDerivatives(35));
+  PetscCall(CheckDerivatives(48));
+  for (int k = 0; k < 3; k++) PetscCall(CheckMembrane(derivatives[k]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+int main(int argc, char **argv) {
+  return CheckMain(argc, argv, Facts);
+}
