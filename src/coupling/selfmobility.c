@@ -1,6 +1,9 @@
 #include "coupling/selfmobility.h"
 #include "coupling/blas.h"
 
+/* a0 h^2/nu that stands for steady flow: small, and resolved by the quadrature of the symbols. */
+#define STEADY 1e-4
+
 typedef struct {
   PetscInt n;
   PetscReal *T, *N; /* [n] circulants of dT and dN by index difference */
@@ -13,10 +16,37 @@ typedef struct {
 struct _p_SelfMobility {
   Coupling coupling;
   SelfMobilityType type;
-  PetscReal nu, a0; /* a0 that the circulants are for */
+  PetscReal nu;
   PetscReal c1;
   Block *block;
 };
+
+/* Circulants of one vesicle: inverse transforms of the symbols, which are even. The symbols are those of steady flow
+   (a0 far below nu/h^2) whatever the step: what a slowly varying force loses over all steps, not in one. With the
+   step's own a0 the correction fades as dt falls (docs/accuracy.md). */
+static PetscErrorCode Circulants(SelfMobility s, PetscInt v) {
+  Block *b = &s->block[v];
+  const Membrane m = s->coupling->membrane;
+  const PetscReal h = s->coupling->grid->h, a0 = STEADY * s->nu / PetscSqr(h);
+  PetscReal *dT, *dN;
+  PetscFunctionBeginUser;
+  if (s->type == SELF_LOCAL) {
+    b->T[0] = h * s->c1 / s->nu;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(PetscMalloc2(b->n, &dT, b->n, &dN));
+  PetscCall(PlaneSymbols(s->coupling->kernel, h, a0, s->nu, b->n, m->ds[v] * b->n, dT, dN));
+  for (PetscInt k = 0; k < b->n; k++) {
+    b->T[k] = b->N[k] = 0;
+    for (PetscInt q = 0; q < b->n; q++) {
+      const PetscReal wave = PetscCosReal(2 * PETSC_PI * ((k * q) % b->n) / b->n) / b->n;
+      b->T[k] += dT[q] * wave;
+      b->N[k] += dN[q] * wave;
+    }
+  }
+  PetscCall(PetscFree2(dT, dN));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
 
 PetscErrorCode SelfMobilityCreate(Coupling coupling, PetscReal nu, SelfMobilityType type, SelfMobility *out) {
   const Membrane m = coupling->membrane;
@@ -27,7 +57,6 @@ PetscErrorCode SelfMobilityCreate(Coupling coupling, PetscReal nu, SelfMobilityT
   s->coupling = coupling;
   s->type = type;
   s->nu = nu;
-  s->a0 = -1;
   PetscCall(SmoothingConstant(coupling->kernel, &s->c1));
   PetscCall(PetscCalloc1(m->vesicles, &s->block));
   for (PetscInt v = 0; v < m->vesicles; v++) {
@@ -35,6 +64,7 @@ PetscErrorCode SelfMobilityCreate(Coupling coupling, PetscReal nu, SelfMobilityT
     const PetscInt n = b->n = m->start[v + 1] - m->start[v];
     PetscCall(PetscCalloc7(n, &b->T, n, &b->N, 4 * n * n, &b->Theta, 4 * n * n, &b->R, 2 * n, &b->work, 2 * n,
                            &b->product, 2 * n, &b->pivot));
+    PetscCall(Circulants(s, v));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -54,31 +84,6 @@ PetscErrorCode SelfMobilityDestroy(SelfMobility *self) {
 
 const PetscReal *SelfMobilityBlock(SelfMobility s, PetscInt v) {
   return s->block[v].Theta;
-}
-
-/* Circulants of one vesicle: inverse transforms of the symbols, which are even. */
-static PetscErrorCode Circulants(SelfMobility s, PetscInt v, PetscReal a0) {
-  Block *b = &s->block[v];
-  const Membrane m = s->coupling->membrane;
-  const PetscReal h = s->coupling->grid->h;
-  PetscReal *dT, *dN;
-  PetscFunctionBeginUser;
-  if (s->type == SELF_LOCAL) {
-    b->T[0] = h * s->c1 / s->nu;
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  PetscCall(PetscMalloc2(b->n, &dT, b->n, &dN));
-  PetscCall(PlaneSymbols(s->coupling->kernel, h, a0, s->nu, b->n, m->ds[v] * b->n, dT, dN));
-  for (PetscInt k = 0; k < b->n; k++) {
-    b->T[k] = b->N[k] = 0;
-    for (PetscInt q = 0; q < b->n; q++) {
-      const PetscReal wave = PetscCosReal(2 * PETSC_PI * ((k * q) % b->n) / b->n) / b->n;
-      b->T[k] += dT[q] * wave;
-      b->N[k] += dN[q] * wave;
-    }
-  }
-  PetscCall(PetscFree2(dT, dN));
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Unit tangents: of the spectral edges, or by fourth-order differences (with chords the area would drift ten times
@@ -123,7 +128,6 @@ PetscErrorCode SelfMobilitySetMarkers(SelfMobility s, PetscReal a0, const PetscS
   for (PetscInt v = 0; v < m->vesicles; v++) {
     Block *b = &s->block[v];
     const PetscInt n = b->n;
-    if (s->a0 != a0) PetscCall(Circulants(s, v, a0));
     Tangents(s, v, X, b->product);
     FillTheta(s, v, b->product);
     if (m->bending == 0) continue;
@@ -135,7 +139,6 @@ PetscErrorCode SelfMobilitySetMarkers(SelfMobility s, PetscReal a0, const PetscS
     }
     PetscCall(DenseFactor(2 * n, b->R, b->pivot));
   }
-  s->a0 = a0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

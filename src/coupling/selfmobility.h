@@ -3,7 +3,7 @@
    Theta symmetric and non-negative, a full block a vesicle:
        local:   Theta = (h c1/(nu ds)) t t^T
        symbol:  Theta = F^T diag(circ dT, circ dN) F/ds, F the rotation into (tangent, normal) frames, dT and dN the
-   mobility of tangential and normal force waves on a plane membrane, exact minus gridded. */
+   mobility of tangential and normal force waves on a plane membrane in steady flow, exact minus gridded. */
 #pragma once
 #include "coupling/coupling.h"
 
