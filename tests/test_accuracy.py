@@ -42,7 +42,7 @@ def test_finer_grid_is_closer(cached_run):
     """128^2: the issue asks for 0.5 % and 0.6 %; measured 0.16 % and 0.07 %, both below the 64^2 grid's."""
     _, *coarse = tank_treading(cached_run, "box", 64, 0.7, 10)
     _, *fine = tank_treading(cached_run, "box", 128, 0.7, 10)
-    assert abs(fine[0]) < 0.002 and abs(fine[1]) < 0.004
+    assert abs(fine[0]) < 0.002 and abs(fine[1]) < 0.0015
     assert all(abs(a) < abs(b) for a, b in zip(fine, coarse))
 
 

@@ -58,6 +58,20 @@ def test_coupled_is_the_direct_solution(box, flow, tmp_path):
             same_state(want, got, 1e-9)
 
 
+@pytest.mark.parametrize(
+    "membrane", ["", "-delta_type cbs54 -membrane_derivative spectral -coupling_self_mobility symbol"]
+)
+def test_total_form_is_the_disturbance_form(membrane, tmp_path):
+    """Shear with moving walls against u - u_inf, 20 steps with the length target: every column but wall to 1e-8."""
+    options = f"-scheme_type coupled {membrane} -domain_cells 48,48 -vesicle_angle 25 -flow_type shear {TIGHT} "
+    options += "-time_step 0.02 -time_end 0.4"
+    one = run_petves(tmp_path / "disturbance", f"{options} -flow_form disturbance").series
+    two = run_petves(tmp_path / "total", f"{options} -flow_form total").series
+    for name in set(one) - {"wall", "coupled_its", "nsolve"}:
+        np.testing.assert_allclose(two[name], one[name], rtol=0, atol=1e-8, err_msg=name)
+    assert abs(two["length_error"][-1]) < 1e-5
+
+
 def test_direct_on_two_ranks(tmp_path):
     """The distributed LU, two vesicles, moving walls (-flow_form total)."""
     options = f"-domain_cells 49,48 -domain_box -1,1,-1,0.95918367346938771 {TWO} -vesicle_center -0.35,0,0.45,0.1 "

@@ -135,12 +135,14 @@ PetscErrorCode SchemePlaceMarkers(Scheme s, Vec X, PetscBool *placed) {
   }
   if (!*placed) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(CouplingSetMarkers(s->coupling, X));
-  if (s->fluid->total) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(VecGetArrayRead(X, &x));
-  PetscCall(VecGetArray(s->background, &u));
-  for (PetscInt k = 0; k < s->membrane->M; k++) FlowVelocity(&s->scene->flow, x[2 * k], x[2 * k + 1], &u[2 * k]);
-  PetscCall(VecRestoreArray(s->background, &u));
-  PetscCall(VecRestoreArrayRead(X, &x));
+  PetscCall(VecSet(s->background, 0)); /* in the total form u_inf is in w */
+  if (!s->fluid->total) {
+    PetscCall(VecGetArrayRead(X, &x));
+    PetscCall(VecGetArray(s->background, &u));
+    for (PetscInt k = 0; k < s->membrane->M; k++) FlowVelocity(&s->scene->flow, x[2 * k], x[2 * k + 1], &u[2 * k]);
+    PetscCall(VecRestoreArray(s->background, &u));
+    PetscCall(VecRestoreArrayRead(X, &x));
+  }
   PetscCall(SchemeBackgroundConstraint(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -162,7 +164,6 @@ PetscErrorCode SchemeSetSelfMobility(Scheme s, PetscReal a0, Vec X, Vec sigma, V
   const PetscScalar *x, *xh, *sa = NULL;
   PetscScalar *u;
   PetscFunctionBeginUser;
-  if (s->fluid->total) PetscCall(VecSet(s->background, 0)); /* u_inf is in w there */
   PetscCall(VecGetArrayRead(X, &x));
   PetscCall(VecGetArrayRead(Xhat, &xh));
   if (sigma) PetscCall(VecGetArrayRead(sigma, &sa));
