@@ -1,12 +1,12 @@
 /* A channel, periodic in x with walls in y: the exact Stokes solve from the projection.
 
-   The projection leaves H u + G p = r_u + kappa g on the rows of u next to the walls, kappa = -2 nu/(a0 h^2) and g =
-   G_x phi there: L_u mirrors with a minus at a wall, the gradient of a Neumann potential with a plus. A force delta on
+   The projection leaves H u + G p = r_u + kappa g on the rows of u next to the walls, kappa = -2 nu/h^2 and g =
+   G_x psi there: L_u mirrors with a minus at a wall, the gradient of a Neumann potential with a plus. A force delta on
    those rows, projected too, cancels it when (I + kappa M) delta = -kappa g, M delta being the g of delta's own
    projection. In x modes this is a 2 x 2 system, and the projection of a unit force on the bottom row is three real
-   profiles in y: w = (a0 + nu lambda - nu d_yy)^-1 e_0,  phi = a0 (d_yy - lambda)^-1 w, u = w + lambda phi/a0,   v =
-   conj(s) G_y phi/a0,   p = -conj(s) (phi - nu w), s = (e^{i theta} - 1)/h the symbol of G_x, lambda = |s|^2. The top
-   wall's are their mirror images. */
+   profiles in y: w = (alpha + nu lambda - nu d_yy)^-1 e_0,  psi = (d_yy - lambda)^-1 w, u = w + lambda psi,   v =
+   conj(s) G_y psi,   p = -conj(s) (alpha psi - nu w), s = (e^{i theta} - 1)/h the symbol of G_x, lambda = |s|^2. The
+   top wall's are their mirror images. */
 #include "fluid/stokes.h"
 #include <complex.h>
 #include <fftw3.h>
@@ -15,7 +15,7 @@ typedef double complex Complex;
 
 struct _p_Channel {
   Fluid fluid;
-  PetscReal a0;       /* coefficient the profiles are for */
+  PetscReal alpha;    /* coefficient the profiles are for */
   PetscInt modes;     /* n_x/2 + 1 */
   PetscReal *profile; /* [3][2][rows][modes]: u, v, p; bottom, top wall; this rank's rows */
   PetscReal *inverse; /* [2][modes] diagonal and off-diagonal entry of -kappa (I + kappa M)^-1 */
@@ -34,7 +34,7 @@ PetscErrorCode ChannelCreate(Fluid fluid, Channel *out) {
   PetscCall(PetscNew(&c));
   *out = c;
   c->fluid = fluid;
-  c->a0 = -1;
+  c->alpha = -1;
   c->modes = g->n[0] / 2 + 1;
   PetscCall(PetscMalloc4(6 * g->rows[FIELD_P] * c->modes, &c->profile, 2 * c->modes, &c->inverse, 2 * c->modes,
                          &c->delta, c->modes, &c->symbol));
@@ -74,14 +74,14 @@ static void Tridiagonal(PetscInt n, PetscReal d, PetscReal e, PetscReal end, con
 }
 
 /* Row j (v: the face above it) of the profiles of wall `top`, from the bottom wall's. */
-static void StoreRow(Channel c, PetscInt k, PetscInt j, PetscReal lambda, const PetscReal w[], const PetscReal phi[]) {
+static void StoreRow(Channel c, PetscInt k, PetscInt j, PetscReal lambda, const PetscReal w[], const PetscReal psi[]) {
   const Grid g = c->fluid->grid;
   const PetscInt n = g->n[1], rows = g->rows[FIELD_P];
-  const PetscReal a0 = c->fluid->a0, nu = c->fluid->nu;
+  const PetscReal alpha = c->fluid->alpha, nu = c->fluid->nu;
   for (int top = 0; top < 2; top++) {
     const PetscInt m = top ? n - 1 - j : j, next = top ? m - 1 : m + 1; /* mirrored row, and the row above it */
-    const PetscReal v = next >= 0 && next < n ? (phi[next] - phi[m]) / (g->h * a0) : 0;
-    const PetscReal value[3] = {w[m] + lambda * phi[m] / a0, v, phi[m] - nu * w[m]};
+    const PetscReal v = next >= 0 && next < n ? (psi[next] - psi[m]) / g->h : 0;
+    const PetscReal value[3] = {w[m] + lambda * psi[m], v, alpha * psi[m] - nu * w[m]};
     for (int f = 0; f < 3; f++) c->profile[((f * 2 + top) * rows + j - g->first) * c->modes + k] = value[f];
   }
 }
@@ -89,34 +89,34 @@ static void StoreRow(Channel c, PetscInt k, PetscInt j, PetscReal lambda, const 
 static PetscErrorCode SetUp(Channel c) {
   const Grid g = c->fluid->grid;
   const PetscInt n = g->n[1];
-  const PetscReal a0 = c->fluid->a0, nu = c->fluid->nu, h2 = PetscSqr(g->h), kappa = -2 * nu / (a0 * h2);
-  PetscReal *w, *phi, *work, *unit;
+  const PetscReal alpha = c->fluid->alpha, nu = c->fluid->nu, h2 = PetscSqr(g->h), kappa = -2 * nu / h2;
+  PetscReal *w, *psi, *work, *unit;
   PetscFunctionBeginUser;
-  if (c->a0 == a0) PetscFunctionReturn(PETSC_SUCCESS);
-  c->a0 = a0;
-  PetscCall(PetscMalloc4(n, &w, n, &phi, n, &work, n, &unit));
+  if (c->alpha == alpha) PetscFunctionReturn(PETSC_SUCCESS);
+  c->alpha = alpha;
+  PetscCall(PetscMalloc4(n, &w, n, &psi, n, &work, n, &unit));
   PetscCall(PetscArrayzero(unit, n));
   unit[0] = 1;
   c->inverse[0] = c->inverse[c->modes] = 0;
   PetscCall(PetscArrayzero(c->profile, 6 * g->rows[FIELD_P] * c->modes));
-  for (PetscInt k = 1; k < c->modes; k++) { /* mode 0 has no slip: G_x phi = 0 */
+  for (PetscInt k = 1; k < c->modes; k++) { /* mode 0 has no slip: G_x psi = 0 */
     const PetscReal lambda = 4 / h2 * PetscSqr(PetscSinReal(PETSC_PI * k / g->n[0])), e = nu / h2;
-    const PetscReal d = a0 + nu * lambda + 2 * e;
+    const PetscReal d = alpha + nu * lambda + 2 * e;
     Tridiagonal(n, d, e, d + e, unit, work, w);
-    for (PetscInt j = 0; j < n; j++) phi[j] = -a0 * w[j];
-    Tridiagonal(n, lambda + 2 / h2, 1 / h2, lambda + 1 / h2, phi, work, phi);
-    const PetscReal own = 1 - kappa * lambda * phi[0], other = -kappa * lambda * phi[n - 1];
+    for (PetscInt j = 0; j < n; j++) psi[j] = -w[j];
+    Tridiagonal(n, lambda + 2 / h2, 1 / h2, lambda + 1 / h2, psi, work, psi);
+    const PetscReal own = 1 - kappa * lambda * psi[0], other = -kappa * lambda * psi[n - 1];
     const PetscReal determinant = PetscSqr(own) - PetscSqr(other);
     c->inverse[k] = -kappa * own / determinant;
     c->inverse[c->modes + k] = kappa * other / determinant;
-    for (PetscInt j = g->first; j < g->first + g->rows[FIELD_P]; j++) StoreRow(c, k, j, lambda, w, phi);
+    for (PetscInt j = g->first; j < g->first + g->rows[FIELD_P]; j++) StoreRow(c, k, j, lambda, w, psi);
   }
-  PetscCall(PetscFree4(w, phi, work, unit));
+  PetscCall(PetscFree4(w, psi, work, unit));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* delta: the force on the two wall rows, known to all ranks. */
-static PetscErrorCode WallForces(Channel c, const PetscScalar phi[]) {
+static PetscErrorCode WallForces(Channel c, const PetscScalar psi[]) {
   const Grid g = c->fluid->grid;
   const PetscInt n = g->n[0], last = g->rows[FIELD_P] - 1;
   PetscFunctionBeginUser;
@@ -124,7 +124,7 @@ static PetscErrorCode WallForces(Channel c, const PetscScalar phi[]) {
     const PetscMPIInt owner = top ? g->size - 1 : 0;
     Complex *slip = c->delta + top * c->modes;
     if (g->rank == owner) {
-      const PetscScalar *p = phi + (top ? last : 0) * n;
+      const PetscScalar *p = psi + (top ? last : 0) * n;
       for (PetscInt i = 0; i < n; i++) c->row[i] = (p[i + 1 < n ? i + 1 : 0] - p[i]) / g->h;
       fftw_execute(c->forward);
       PetscCall(PetscMemcpy(slip, c->line, (size_t)c->modes * sizeof(Complex)));
@@ -155,14 +155,14 @@ static void AddField(Channel c, int f, PetscScalar a[]) {
   }
 }
 
-PetscErrorCode ChannelCorrect(Channel c, Vec phi, Vec u, Vec p) {
-  const PetscScalar *phia;
+PetscErrorCode ChannelCorrect(Channel c, Vec psi, Vec u, Vec p) {
+  const PetscScalar *psia;
   PetscScalar *a;
   PetscFunctionBeginUser;
   PetscCall(SetUp(c));
-  PetscCall(VecGetArrayRead(phi, &phia));
-  PetscCall(WallForces(c, phia));
-  PetscCall(VecRestoreArrayRead(phi, &phia));
+  PetscCall(VecGetArrayRead(psi, &psia));
+  PetscCall(WallForces(c, psia));
+  PetscCall(VecRestoreArrayRead(psi, &psia));
   PetscCall(VecGetArray(u, &a));
   AddField(c, FIELD_U, a);
   AddField(c, FIELD_V, a + GridLocalU(c->fluid->grid));

@@ -42,7 +42,7 @@ static PetscErrorCode MultHelmholtz(Mat H, Vec w, Vec y) {
   Fluid f;
   PetscFunctionBeginUser;
   PetscCall(MatShellGetContext(H, &f));
-  PetscCall(GridHelmholtz(f->grid, f->a0, f->nu, w, y));
+  PetscCall(GridHelmholtz(f->grid, f->alpha, f->nu, w, y));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -171,8 +171,8 @@ PetscErrorCode FluidDestroy(Fluid *fluid) {
 
 PetscErrorCode FluidSetTimeCoefficient(Fluid f, PetscReal a0) {
   PetscFunctionBeginUser;
-  f->a0 = a0;
-  for (int k = FIELD_U; k <= FIELD_V; k++) PetscCall(FastSolverSetCoefficients(f->solver[k], a0, f->nu));
+  f->a0 = f->alpha = a0;
+  for (int k = FIELD_U; k <= FIELD_V; k++) PetscCall(FastSolverSetCoefficients(f->solver[k], f->alpha, f->nu));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -6,7 +6,8 @@ typedef struct _p_Fluid *Fluid;
 struct _p_Fluid {
   Grid grid;
   PetscReal nu;         /* viscosity */
-  PetscReal a0;         /* leading coefficient in H = a0 I - nu L_u */
+  PetscReal a0;         /* coefficient of the markers' time difference: X_new = Xhat + U/a0 */
+  PetscReal alpha;      /* leading coefficient in H = alpha I - nu L_u: a0 (0 in quasi-steady flow) */
   Mat G, D, L, H;       /* gradient, divergence, pressure Laplacian, velocity Helmholtz operator (MatShells) */
   PC Hinv, Linv;        /* fast solves of H (two scalar solves) and of L (one), PCSHELLs */
   FastSolver solver[3]; /* behind them, one a field */
@@ -20,7 +21,7 @@ struct _p_Fluid {
 PETSC_EXTERN PetscErrorCode FluidCreate(Scene scene, Fluid *fluid);
 PETSC_EXTERN PetscErrorCode FluidDestroy(Fluid *fluid);
 
-/* FluidSetTimeCoefficient - a0 of H = a0 I - nu L_u (1/time): 1/dt for backward Euler. */
+/* FluidSetTimeCoefficient - a0 (1/time), 1/dt for backward Euler, and with it alpha of H = alpha I - nu L_u. */
 PETSC_EXTERN PetscErrorCode FluidSetTimeCoefficient(Fluid fluid, PetscReal a0);
 
 /* FluidSolveHelmholtz - w = H^-1 b, two scalar solves; w may be b. Collective. */

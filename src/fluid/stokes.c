@@ -3,7 +3,7 @@
 struct _p_Stokes {
   Fluid fluid;
   Channel channel; /* NULL unless x is periodic and y has walls */
-  Vec q, phi;
+  Vec q, psi;
 };
 
 PetscErrorCode StokesCreate(Fluid fluid, Stokes *out) {
@@ -13,7 +13,7 @@ PetscErrorCode StokesCreate(Fluid fluid, Stokes *out) {
   *out = s;
   s->fluid = fluid;
   PetscCall(DMCreateGlobalVector(fluid->grid->da[FIELD_P], &s->q));
-  PetscCall(VecDuplicate(s->q, &s->phi));
+  PetscCall(VecDuplicate(s->q, &s->psi));
   if (!fluid->grid->wall[0] && fluid->grid->wall[1]) PetscCall(ChannelCreate(fluid, &s->channel));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -23,23 +23,22 @@ PetscErrorCode StokesDestroy(Stokes *stokes) {
   if (!*stokes) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ChannelDestroy(&(*stokes)->channel));
   PetscCall(VecDestroy(&(*stokes)->q));
-  PetscCall(VecDestroy(&(*stokes)->phi));
+  PetscCall(VecDestroy(&(*stokes)->psi));
   PetscCall(PetscFree(*stokes));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode StokesSolve(Stokes s, Vec r_u, Vec r_p, Vec u, Vec p) {
   Fluid f = s->fluid;
-  const PetscReal a0 = f->a0;
   PetscFunctionBeginUser;
-  /* w = H^-1 r_u;  q = a0 (r_p - G^T w) */
+  /* w = H^-1 r_u;  q = r_p - G^T w */
   PetscCall(FluidSolveHelmholtz(f, r_u, u));
-  PetscCall(GridGradientTranspose(f->grid, -a0, u, s->q));
-  if (r_p) PetscCall(VecAXPY(s->q, a0, r_p));
-  /* phi = L^-1 q;  u = w - G phi/a0;  p = phi - (nu/a0) q */
-  PetscCall(FluidSolvePoisson(f, s->q, s->phi));
-  PetscCall(GridGradient(f->grid, -1 / a0, s->phi, PETSC_TRUE, u));
-  PetscCall(VecWAXPY(p, -f->nu / a0, s->q, s->phi));
-  if (s->channel) PetscCall(ChannelCorrect(s->channel, s->phi, u, p));
+  PetscCall(GridGradientTranspose(f->grid, -1, u, s->q));
+  if (r_p) PetscCall(VecAXPY(s->q, 1, r_p));
+  /* psi = L^-1 q, the potential over alpha;  u = w - G psi;  p = alpha psi - nu q */
+  PetscCall(FluidSolvePoisson(f, s->q, s->psi));
+  PetscCall(GridGradient(f->grid, -1, s->psi, PETSC_TRUE, u));
+  PetscCall(VecAXPBYPCZ(p, f->alpha, -f->nu, 0, s->psi, s->q));
+  if (s->channel) PetscCall(ChannelCorrect(s->channel, s->psi, u, p));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
