@@ -15,7 +15,7 @@ PETSC_EXTERN PetscErrorCode SelfMobilityCreate(Coupling coupling, PetscReal nu, 
                                                SelfMobility *self);
 PETSC_EXTERN PetscErrorCode SelfMobilityDestroy(SelfMobility *self);
 
-/* SelfMobilitySetMarkers - Theta for the coupling's markers X[2M] and a0, and the factors of
+/* SelfMobilitySetMarkers - Theta for the coupling's markers X[2M] and a0, and a Cholesky factor for
    R = (I + (c_b ds/a0) Theta D4)^-1. Every rank does the same. */
 PETSC_EXTERN PetscErrorCode SelfMobilitySetMarkers(SelfMobility self, PetscReal a0, const PetscScalar X[]);
 
