@@ -1,7 +1,7 @@
 /* Self-mobility (DESIGN section 8): the marker velocity that the kernel's smoothing takes away is given back,
        U = E u + Theta (f ds),   f ds = -(Dm^T sigma) - c_b ds D4 X_new,
    Theta symmetric and non-negative, a full block a vesicle:
-       local:   Theta = (h c1/(nu ds)) t t^T
+       local:   Theta = (h c/(nu ds)) t t^T
        symbol:  Theta = F^T diag(circ dT, circ dN) F/ds, F the rotation into (tangent, normal) frames, dT and dN the
    mobility of tangential and normal force waves on a plane membrane in steady flow, exact minus gridded. */
 #pragma once
@@ -31,8 +31,10 @@ PETSC_EXTERN PetscErrorCode SelfMobilityMultTheta(SelfMobility self, PetscScalar
 /* SelfMobilityBlock - Theta of one vesicle of n markers, symmetric [2n][2n]; borrowed. */
 PETSC_EXTERN const PetscReal *SelfMobilityBlock(SelfMobility self, PetscInt vesicle);
 
-/* SmoothingConstant - c1 = 1/2 INT |r| (phi*phi)(r) dr, mean over the kernel's two 1-D weights, by quadrature. */
-PETSC_EXTERN PetscErrorCode SmoothingConstant(const Kernel *kernel, PetscReal *c1);
+/* SmoothingConstant - c = 1/2 SUM SUM |i - j| w_i w_j, mean over sub-cell positions and the kernel's two 1-D weights:
+   h c/nu is what long waves along the membrane lose. The integral in place of the sum, DESIGN's c1, is too large by
+   about SUM w_i^2/12: the grid's own Green's function in one dimension, -|i - j| h/2, is exact at its points. */
+PETSC_EXTERN PetscErrorCode SmoothingConstant(const Kernel *kernel, PetscReal *c);
 
 /* PlaneSymbols - dT[n], dN[n] for the wave numbers 2 pi q/L, q = 0 .. n/2 and mirrored, of n markers on the length L,
    at cell size h (1/(length^-2/time ...): velocity per force density). */

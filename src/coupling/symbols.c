@@ -1,37 +1,22 @@
 /* What a kernel takes from a plane membrane's mobility, by quadrature of its weights (DESIGN section 8). */
 #include "coupling/selfmobility.h"
 
-#define SAMPLES 800  /* of a kernel's cell, for c1 */
-#define POSITIONS 32 /* sub-cell positions that the transforms are averaged over */
-#define WAVES 4000   /* midpoints of the wave numbers across the membrane, up to pi/h */
+#define CONSTANT_POSITIONS 1000 /* sub-cell positions that the constant is averaged over */
+#define POSITIONS 32            /* those that the transforms are averaged over */
+#define WAVES 4000              /* midpoints of the wave numbers across the membrane, up to pi/h */
 
-/* Samples of one 1-D weight, phi at spacing 1/SAMPLES over its support from -3 to 3. */
-static PetscReal OneConstant(KernelWeights weights, PetscReal phi[]) {
-  const PetscInt n = 2 * 3 * SAMPLES;
-  PetscReal sum = 0, c1 = 0;
-  for (PetscInt i = 0; i < n; i++) phi[i] = 0;
-  for (PetscInt s = 0; s < SAMPLES; s++) {
-    PetscReal w[KERNEL_MAX_POINTS];
-    PetscInt first;
-    const PetscInt count = weights((s + 0.5) / SAMPLES, &first, w);
-    for (PetscInt k = 0; k < count; k++) { /* phi(x - j) at x = (s + 1/2)/SAMPLES */
-      const PetscInt at = s - (first + k) * SAMPLES + 3 * SAMPLES;
-      if (at >= 0 && at < n) phi[at] = w[k];
-    }
-  }
-  for (PetscInt i = 0; i < n; i++) sum += phi[i];
-  /* 1/2 INT INT |r - s| phi(r) phi(s) = INT F (1 - F), F the cumulative integral of phi */
-  for (PetscInt i = 0; i < n; i++) phi[i] = (i ? phi[i - 1] : 0) + phi[i] / sum;
-  for (PetscInt i = 0; i < n; i++) c1 += phi[i] * (1 - phi[i]) / SAMPLES;
-  return c1;
-}
-
-PetscErrorCode SmoothingConstant(const Kernel *kernel, PetscReal *c1) {
-  PetscReal *phi;
+PetscErrorCode SmoothingConstant(const Kernel *kernel, PetscReal *c) {
+  const KernelWeights both[] = {kernel->along, kernel->across};
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(2 * 3 * SAMPLES, &phi));
-  *c1 = 0.5 * (OneConstant(kernel->along, phi) + OneConstant(kernel->across, phi));
-  PetscCall(PetscFree(phi));
+  *c = 0;
+  for (int side = 0; side < 2; side++)
+    for (int s = 0; s < CONSTANT_POSITIONS; s++) {
+      PetscReal w[KERNEL_MAX_POINTS];
+      PetscInt first;
+      const PetscInt n = both[side]((s + 0.5) / CONSTANT_POSITIONS, &first, w);
+      for (PetscInt i = 0; i < n; i++)
+        for (PetscInt j = 0; j < n; j++) *c += PetscAbsInt(i - j) * w[i] * w[j] / (4 * CONSTANT_POSITIONS);
+    }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
