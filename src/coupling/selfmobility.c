@@ -10,10 +10,11 @@
 
 typedef struct {
   PetscInt n;
-  PetscReal *T, *N; /* [n] circulants of dT and dN over ds, by index difference */
-  PetscReal *K;     /* [n] circulant of ds D4, inverse where it is not zero; its mean stands for the zero */
-  PetscReal *Theta; /* [2n][2n] */
-  PetscReal *force; /* [2n][2n] Cholesky factor of Theta + (a0/c_b) (ds D4)^-1 on the forces of mean zero */
+  PetscReal *T[3], *N[3]; /* [n] circulants over ds by index difference: common to all angles, more along diagonals
+                             (times sin 2 alpha left and right), more along grid lines (times cos 2 alpha) */
+  PetscReal *K;           /* [n] circulant of ds D4, inverse where it is not zero; its mean stands for the zero */
+  PetscReal *Theta;       /* [2n][2n] */
+  PetscReal *force;       /* [2n][2n] Cholesky factor of Theta + (a0/c_b) (ds D4)^-1 on the forces of mean zero */
   PetscReal *work, *second, *given, *change; /* [2n] */
 } Block;
 
@@ -21,6 +22,7 @@ struct _p_SelfMobility {
   Coupling coupling;
   SelfMobilityType type;
   PetscReal nu, a0;
+  PetscReal c; /* long waves' constant along grid lines, mean over sub-cell positions */
   Block *block;
 };
 
@@ -32,27 +34,42 @@ static void Circulant(PetscInt n, const PetscReal symbol[], PetscReal circulant[
   }
 }
 
+/* Circulants of a symbol over ds that goes from line[n] to diagonal[n] like sin^2 2 alpha: what both have and what
+   either has more, none of them negative. */
+static void ByAngle(PetscInt n, PetscReal ds, const PetscReal line[], const PetscReal diagonal[], PetscReal part[],
+                    PetscReal *const circulant[3]) {
+  for (int p = 0; p < 3; p++) {
+    for (PetscInt q = 0; q < n; q++) {
+      const PetscReal common = PetscMin(line[q], diagonal[q]);
+      part[q] = (p == 0 ? common : (p == 1 ? diagonal[q] : line[q]) - common) / ds;
+    }
+    Circulant(n, part, circulant[p]);
+  }
+}
+
 /* T and N of one vesicle. The symbols are those of steady flow (a0 far below nu/h^2) whatever the step: what a slowly
    varying force loses over all steps, not in one. With the step's own a0 the correction fades as dt falls
    (docs/accuracy.md). */
 static PetscErrorCode MobilityCirculants(SelfMobility s, PetscInt v) {
   Block *b = &s->block[v];
-  const Membrane m = s->coupling->membrane;
-  const PetscReal h = s->coupling->grid->h, a0 = STEADY * s->nu / PetscSqr(h);
-  PetscReal *dT = b->work, *dN = b->given, c;
+  const Kernel *kernel = s->coupling->kernel;
+  const PetscInt n = b->n;
+  const PetscReal h = s->coupling->grid->h, a0 = STEADY * s->nu / PetscSqr(h), ds = s->coupling->membrane->ds[v];
+  PetscReal *dT[2], *dN[2], *part, c[2];
   PetscFunctionBeginUser;
+  PetscCall(SmoothingConstants(kernel, c));
+  s->c = c[0];
   if (s->type == SELF_LOCAL) {
-    PetscCall(SmoothingConstant(s->coupling->kernel, &c));
-    b->T[0] = h * c / s->nu / m->ds[v];
+    b->T[0][0] = PetscMin(c[0], c[1]) * h / (s->nu * ds);
+    b->T[1][0] = PetscMax(c[1] - c[0], 0) * h / (s->nu * ds);
+    b->T[2][0] = PetscMax(c[0] - c[1], 0) * h / (s->nu * ds);
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  PetscCall(PlaneSymbols(s->coupling->kernel, h, a0, s->nu, b->n, m->ds[v] * b->n, dT, dN));
-  for (PetscInt q = 0; q < b->n; q++) {
-    dT[q] /= m->ds[v];
-    dN[q] /= m->ds[v];
-  }
-  Circulant(b->n, dT, b->T);
-  Circulant(b->n, dN, b->N);
+  PetscCall(PetscMalloc5(n, &dT[0], n, &dT[1], n, &dN[0], n, &dN[1], n, &part));
+  for (int d = 0; d < 2; d++) PetscCall(PlaneSymbols(kernel, h, a0, s->nu, d * PETSC_PI / 4, n, ds * n, dT[d], dN[d]));
+  ByAngle(n, ds, dT[0], dT[1], part, b->T);
+  ByAngle(n, ds, dN[0], dN[1], part, b->N);
+  PetscCall(PetscFree5(dT[0], dT[1], dN[0], dN[1], part));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -88,7 +105,8 @@ PetscErrorCode SelfMobilityCreate(Coupling coupling, PetscReal nu, SelfMobilityT
   for (PetscInt v = 0; v < m->vesicles; v++) {
     Block *b = &s->block[v];
     const PetscInt n = b->n = m->start[v + 1] - m->start[v];
-    PetscCall(PetscCalloc5(n, &b->T, n, &b->N, n, &b->K, 4 * n * n, &b->Theta, 4 * n * n, &b->force));
+    for (int p = 0; p < 3; p++) PetscCall(PetscCalloc2(n, &b->T[p], n, &b->N[p]));
+    PetscCall(PetscCalloc3(n, &b->K, 4 * n * n, &b->Theta, 4 * n * n, &b->force));
     PetscCall(PetscCalloc4(2 * n, &b->work, 2 * n, &b->second, 2 * n, &b->given, 2 * n, &b->change));
     PetscCall(MobilityCirculants(s, v));
     if (m->bending > 0) BendingCirculant(s, v);
@@ -102,7 +120,8 @@ PetscErrorCode SelfMobilityDestroy(SelfMobility *self) {
   if (!s) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt v = 0; v < s->coupling->membrane->vesicles; v++) {
     Block *b = &s->block[v];
-    PetscCall(PetscFree5(b->T, b->N, b->K, b->Theta, b->force));
+    for (int p = 0; p < 3; p++) PetscCall(PetscFree2(b->T[p], b->N[p]));
+    PetscCall(PetscFree3(b->K, b->Theta, b->force));
     PetscCall(PetscFree4(b->work, b->second, b->given, b->change));
   }
   PetscCall(PetscFree(s->block));
@@ -133,15 +152,35 @@ static void Tangents(SelfMobility s, PetscInt v, const PetscScalar X[], PetscRea
   }
 }
 
-static void FillTheta(SelfMobility s, PetscInt v, const PetscReal t[]) {
+/* Root of c where a marker is in its cells over the mean c. Where the membrane follows a grid line, all markers of a
+   stretch are at one place across it; elsewhere the places change from marker to marker and this averages out. */
+static PetscReal SubCell(SelfMobility s, PetscInt marker, const PetscReal t[2]) {
+  PetscReal sum = 0;
+  for (int comp = 0; comp < 2; comp++) { /* along x the membrane moves u and lies across y */
+    const Stencil *at = &s->coupling->stencil[2 * marker + comp];
+    sum += PetscSqr(PetscSqr(t[comp])) * (SmoothingSum(at->n[1 - comp], at->weight[1 - comp]) / s->c - 1);
+  }
+  return PetscSqrtReal(1 + sum);
+}
+
+static void FillTheta(SelfMobility s, PetscInt v, const PetscReal t[], PetscReal turn[]) {
   Block *b = &s->block[v];
   const PetscInt n = b->n;
+  PetscReal *root = b->change;
+  for (PetscInt k = 0; k < n; k++) root[k] = SubCell(s, s->coupling->membrane->start[v] + k, t + 2 * k);
+  for (PetscInt k = 0; k < n; k++) { /* sin and cos of twice the angle */
+    turn[2 * k] = 2 * t[2 * k] * t[2 * k + 1];
+    turn[2 * k + 1] = PetscSqr(t[2 * k]) - PetscSqr(t[2 * k + 1]);
+  }
   for (PetscInt k = 0; k < n; k++)
     for (PetscInt l = 0; l < n; l++) {
-      const PetscInt d = k >= l ? k - l : k - l + n;
-      const PetscReal T = b->T[d], N = b->N[d], *tk = t + 2 * k, *tl = t + 2 * l;
-      PetscReal *block = b->Theta + 2 * k * 2 * n + 2 * l;
       if (s->type == SELF_LOCAL && k != l) continue;
+      const PetscInt d = k >= l ? k - l : k - l + n;
+      const PetscReal *tk = t + 2 * k, *tl = t + 2 * l;
+      const PetscReal diagonal = turn[2 * k] * turn[2 * l], line = turn[2 * k + 1] * turn[2 * l + 1];
+      const PetscReal T = root[k] * root[l] * (b->T[0][d] + diagonal * b->T[1][d] + line * b->T[2][d]);
+      const PetscReal N = b->N[0][d] + diagonal * b->N[1][d] + line * b->N[2][d];
+      PetscReal *block = b->Theta + 2 * k * 2 * n + 2 * l;
       block[0] = T * tk[0] * tl[0] + N * tk[1] * tl[1];
       block[1] = T * tk[0] * tl[1] - N * tk[1] * tl[0];
       block[2 * n] = T * tk[1] * tl[0] - N * tk[0] * tl[1];
@@ -184,7 +223,7 @@ PetscErrorCode SelfMobilitySetMarkers(SelfMobility s, PetscReal a0, const PetscS
   s->a0 = a0;
   for (PetscInt v = 0; v < m->vesicles; v++) {
     Tangents(s, v, X, s->block[v].work);
-    FillTheta(s, v, s->block[v].work);
+    FillTheta(s, v, s->block[v].work, s->block[v].second);
     if (m->bending > 0) PetscCall(FactorForce(s, v));
   }
   PetscCall(PetscLogEventEnd(event, 0, 0, 0, 0));

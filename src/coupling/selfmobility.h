@@ -3,7 +3,9 @@
    Theta symmetric and non-negative, a full block a vesicle:
        local:   Theta = (h c/(nu ds)) t t^T
        symbol:  Theta = F^T diag(circ dT, circ dN) F/ds, F the rotation into (tangent, normal) frames, dT and dN the
-   mobility of tangential and normal force waves on a plane membrane in steady flow, exact minus gridded. */
+   mobility of tangential and normal force waves on a plane membrane in steady flow, exact minus gridded. c, dT and dN
+   depend on the membrane's angle alpha to the grid like c(0) + (c(pi/4) - c(0)) sin^2 2 alpha, nearly: a composite
+   kernel is narrower across a membrane along a grid line than across a diagonal. */
 #pragma once
 #include "coupling/coupling.h"
 
@@ -31,12 +33,17 @@ PETSC_EXTERN PetscErrorCode SelfMobilityMultTheta(SelfMobility self, PetscScalar
 /* SelfMobilityBlock - Theta of one vesicle of n markers, symmetric [2n][2n]; borrowed. */
 PETSC_EXTERN const PetscReal *SelfMobilityBlock(SelfMobility self, PetscInt vesicle);
 
-/* SmoothingConstant - c = 1/2 SUM SUM |i - j| w_i w_j, mean over sub-cell positions and the kernel's two 1-D weights:
-   h c/nu is what long waves along the membrane lose. The integral in place of the sum, DESIGN's c1, is too large by
-   about SUM w_i^2/12: the grid's own Green's function in one dimension, -|i - j| h/2, is exact at its points. */
-PETSC_EXTERN PetscErrorCode SmoothingConstant(const Kernel *kernel, PetscReal *c);
+/* SmoothingSum - 1/2 SUM SUM |i - j| w_i w_j of n weights. */
+PETSC_EXTERN PetscReal SmoothingSum(PetscInt n, const PetscReal w[]);
 
-/* PlaneSymbols - dT[n], dN[n] for the wave numbers 2 pi q/L, q = 0 .. n/2 and mirrored, of n markers on the length L,
-   at cell size h (1/(length^-2/time ...): velocity per force density). */
-PETSC_EXTERN PetscErrorCode PlaneSymbols(const Kernel *kernel, PetscReal h, PetscReal a0, PetscReal nu, PetscInt n,
-                                         PetscReal L, PetscReal dT[], PetscReal dN[]);
+/* SmoothingConstants - c = 1/2 SUM SUM |i - j| w_i w_j, mean over sub-cell positions, w the weights summed along the
+   membrane: h c/nu is what long waves along it lose. c[0]: along a grid line (the across weights), c[1]: along a
+   diagonal, where sums lie h/sqrt(2) apart. The sum and not the integral (DESIGN's c1), because the grid's own Green's
+   function in one dimension, -|i - j| h/2, is exact at its points. */
+PETSC_EXTERN PetscErrorCode SmoothingConstants(const Kernel *kernel, PetscReal c[2]);
+
+/* PlaneSymbols - dT[n], dN[n] of a membrane at an angle (0 .. pi/4) to the grid for the wave numbers 2 pi q/L,
+   q = 0 .. n/2 and mirrored, of n markers on the length L, at cell size h (1/(length^-2/time ...): velocity per force
+   density). */
+PETSC_EXTERN PetscErrorCode PlaneSymbols(const Kernel *kernel, PetscReal h, PetscReal a0, PetscReal nu, PetscReal angle,
+                                         PetscInt n, PetscReal L, PetscReal dT[], PetscReal dN[]);
