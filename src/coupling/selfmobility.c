@@ -12,6 +12,7 @@ typedef struct {
   PetscInt n;
   PetscReal *T[3], *N[3]; /* [n] circulants over ds by index difference: common to all angles, more along diagonals
                              (times sin 2 alpha left and right), more along grid lines (times cos 2 alpha) */
+  PetscReal *X;           /* [n] the same of dX, times sin 4 alpha */
   PetscReal *K;           /* [n] circulant of ds D4, inverse where it is not zero; its mean stands for the zero */
   PetscReal *Theta;       /* [2n][2n] */
   PetscReal *force;       /* [2n][2n] Cholesky factor of Theta + (a0/c_b) (ds D4)^-1 on the forces of mean zero */
@@ -55,7 +56,7 @@ static PetscErrorCode MobilityCirculants(SelfMobility s, PetscInt v) {
   const Kernel *kernel = s->coupling->kernel;
   const PetscInt n = b->n;
   const PetscReal h = s->coupling->grid->h, a0 = STEADY * s->nu / PetscSqr(h), ds = s->coupling->membrane->ds[v];
-  PetscReal *dT[2], *dN[2], *part, c[2];
+  PetscReal *dT[3], *dN[3], *dX[3], *part, c[2], least = PETSC_MAX_REAL;
   PetscFunctionBeginUser;
   PetscCall(SmoothingConstants(kernel, c));
   s->c = c[0];
@@ -65,11 +66,23 @@ static PetscErrorCode MobilityCirculants(SelfMobility s, PetscInt v) {
     b->T[2][0] = PetscMax(c[0] - c[1], 0) * h / (s->nu * ds);
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  PetscCall(PetscMalloc5(n, &dT[0], n, &dT[1], n, &dN[0], n, &dN[1], n, &part));
-  for (int d = 0; d < 2; d++) PetscCall(PlaneSymbols(kernel, h, a0, s->nu, d * PETSC_PI / 4, n, ds * n, dT[d], dN[d]));
+  PetscCall(PetscMalloc1(n, &part));
+  for (int d = 0; d < 3; d++) { /* angles 0, pi/4, pi/8 */
+    static const PetscReal angle[3] = {0, PETSC_PI / 4, PETSC_PI / 8};
+    PetscCall(PetscMalloc3(n, &dT[d], n, &dN[d], n, &dX[d]));
+    PetscCall(PlaneSymbols(kernel, h, a0, s->nu, angle[d], n, ds * n, dT[d], dN[d], dX[d]));
+  }
   ByAngle(n, ds, dT[0], dT[1], part, b->T);
   ByAngle(n, ds, dN[0], dN[1], part, b->N);
-  PetscCall(PetscFree5(dT[0], dT[1], dN[0], dN[1], part));
+  /* kept so small beside dT and dN that Theta stays non-negative: only next to wave 0 does it matter */
+  for (PetscInt q = 0; q < n; q++) least = PetscMin(least, PetscMin(dT[0][q], dT[1][q]));
+  for (PetscInt q = 0; q < n; q++) {
+    const PetscReal most = 0.5 * PetscSqrtReal(least * PetscMin(dN[0][q], dN[1][q]));
+    part[q] = PetscMax(-most, PetscMin(most, dX[2][q])) / ds;
+  }
+  Circulant(n, part, b->X);
+  for (int d = 0; d < 3; d++) PetscCall(PetscFree3(dT[d], dN[d], dX[d]));
+  PetscCall(PetscFree(part));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -106,7 +119,7 @@ PetscErrorCode SelfMobilityCreate(Coupling coupling, PetscReal nu, SelfMobilityT
     Block *b = &s->block[v];
     const PetscInt n = b->n = m->start[v + 1] - m->start[v];
     for (int p = 0; p < 3; p++) PetscCall(PetscCalloc2(n, &b->T[p], n, &b->N[p]));
-    PetscCall(PetscCalloc3(n, &b->K, 4 * n * n, &b->Theta, 4 * n * n, &b->force));
+    PetscCall(PetscCalloc4(n, &b->X, n, &b->K, 4 * n * n, &b->Theta, 4 * n * n, &b->force));
     PetscCall(PetscCalloc4(2 * n, &b->work, 2 * n, &b->second, 2 * n, &b->given, 2 * n, &b->change));
     PetscCall(MobilityCirculants(s, v));
     if (m->bending > 0) BendingCirculant(s, v);
@@ -121,7 +134,7 @@ PetscErrorCode SelfMobilityDestroy(SelfMobility *self) {
   for (PetscInt v = 0; v < s->coupling->membrane->vesicles; v++) {
     Block *b = &s->block[v];
     for (int p = 0; p < 3; p++) PetscCall(PetscFree2(b->T[p], b->N[p]));
-    PetscCall(PetscFree3(b->K, b->Theta, b->force));
+    PetscCall(PetscFree4(b->X, b->K, b->Theta, b->force));
     PetscCall(PetscFree4(b->work, b->second, b->given, b->change));
   }
   PetscCall(PetscFree(s->block));
@@ -163,6 +176,11 @@ static PetscReal SubCell(SelfMobility s, PetscInt marker, const PetscReal t[2]) 
   return PetscSqrtReal(1 + sum);
 }
 
+/* sin 4 alpha from sin 2 alpha and cos 2 alpha. */
+static PetscReal SinFour(const PetscReal turn[2]) {
+  return 2 * turn[0] * turn[1];
+}
+
 static void FillTheta(SelfMobility s, PetscInt v, const PetscReal t[], PetscReal turn[]) {
   Block *b = &s->block[v];
   const PetscInt n = b->n;
@@ -181,10 +199,12 @@ static void FillTheta(SelfMobility s, PetscInt v, const PetscReal t[], PetscReal
       const PetscReal T = root[k] * root[l] * (b->T[0][d] + diagonal * b->T[1][d] + line * b->T[2][d]);
       const PetscReal N = b->N[0][d] + diagonal * b->N[1][d] + line * b->N[2][d];
       PetscReal *block = b->Theta + 2 * k * 2 * n + 2 * l;
-      block[0] = T * tk[0] * tl[0] + N * tk[1] * tl[1];
-      block[1] = T * tk[0] * tl[1] - N * tk[1] * tl[0];
-      block[2 * n] = T * tk[1] * tl[0] - N * tk[0] * tl[1];
-      block[2 * n + 1] = T * tk[1] * tl[1] + N * tk[0] * tl[0];
+      /* velocity along the tangent at k from a force along the normal at l, and the other way round */
+      const PetscReal tn = SinFour(turn + 2 * k) * b->X[d], nt = SinFour(turn + 2 * l) * b->X[d];
+      block[0] = T * tk[0] * tl[0] + N * tk[1] * tl[1] - tn * tk[0] * tl[1] - nt * tk[1] * tl[0];
+      block[1] = T * tk[0] * tl[1] - N * tk[1] * tl[0] + tn * tk[0] * tl[0] - nt * tk[1] * tl[1];
+      block[2 * n] = T * tk[1] * tl[0] - N * tk[0] * tl[1] - tn * tk[1] * tl[1] + nt * tk[0] * tl[0];
+      block[2 * n + 1] = T * tk[1] * tl[1] + N * tk[0] * tl[0] + tn * tk[1] * tl[0] + nt * tk[0] * tl[1];
     }
 }
 

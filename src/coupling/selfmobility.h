@@ -2,10 +2,11 @@
        U = E u + Theta (f ds),   f ds = -(Dm^T sigma) - c_b ds D4 X_new,
    Theta symmetric and non-negative, a full block a vesicle:
        local:   Theta = (h c/(nu ds)) t t^T
-       symbol:  Theta = F^T diag(circ dT, circ dN) F/ds, F the rotation into (tangent, normal) frames, dT and dN the
-   mobility of tangential and normal force waves on a plane membrane in steady flow, exact minus gridded. c, dT and dN
-   depend on the membrane's angle alpha to the grid like c(0) + (c(pi/4) - c(0)) sin^2 2 alpha, nearly: a composite
-   kernel is narrower across a membrane along a grid line than across a diagonal. */
+       symbol:  Theta = F^T [circ dT, circ dX; circ dX, circ dN] F/ds, F the rotation into (tangent, normal) frames, dT
+   and dN the mobility of tangential and normal force waves on a plane membrane in steady flow, exact minus gridded. c,
+   dT and dN depend on the membrane's angle alpha to the grid like c(0) + (c(pi/4) - c(0)) sin^2 2 alpha, nearly: a
+   composite kernel is narrower across a membrane along a grid line than across a diagonal; and at an angle it moves a
+   membrane across the force, dX like sin 4 alpha. c and dT also go with the markers' places in their cells. */
 #pragma once
 #include "coupling/coupling.h"
 
@@ -42,8 +43,9 @@ PETSC_EXTERN PetscReal SmoothingSum(PetscInt n, const PetscReal w[]);
    function in one dimension, -|i - j| h/2, is exact at its points. */
 PETSC_EXTERN PetscErrorCode SmoothingConstants(const Kernel *kernel, PetscReal c[2]);
 
-/* PlaneSymbols - dT[n], dN[n] of a membrane at an angle (0 .. pi/4) to the grid for the wave numbers 2 pi q/L,
+/* PlaneSymbols - dT[n], dN[n] and dX[n] (velocity along the normal of a tangential force, and the other way round) of
+   a membrane at an angle (0 .. pi/4) to the grid for the wave numbers 2 pi q/L,
    q = 0 .. n/2 and mirrored, of n markers on the length L, at cell size h (1/(length^-2/time ...): velocity per force
    density). */
 PETSC_EXTERN PetscErrorCode PlaneSymbols(const Kernel *kernel, PetscReal h, PetscReal a0, PetscReal nu, PetscReal angle,
-                                         PetscInt n, PetscReal L, PetscReal dT[], PetscReal dN[]);
+                                         PetscInt n, PetscReal L, PetscReal dT[], PetscReal dN[], PetscReal dX[]);

@@ -54,29 +54,30 @@ static PetscReal Look(const PetscReal table[], PetscReal theta) {
   return table[i] + (at - i) * (table[i + 1] - table[i]);
 }
 
-/* T_grid and N_grid of the wave number k: twice the integral over q > 0, over 2 pi, of d.W A W d with d the tangent or
-   the normal, A = (I - K~ K~^T/|K~|^2)/(a0 + nu |K~|^2) and W the kernel's transforms of the two components. */
+/* T_grid, N_grid and X_grid of the wave number k: the integral over q, over 2 pi, of d.W A W d' with d, d' the tangent,
+   the normal, one of each; A = (I - K~ K~^T/|K~|^2)/(a0 + nu |K~|^2), W the kernel's transforms of the two components.
+ */
 static void GridMobility(PetscReal *const table[2], PetscReal h, PetscReal a0, PetscReal nu, PetscReal angle,
-                         PetscReal k, PetscReal mobility[2]) {
+                         PetscReal k, PetscReal mobility[3]) {
   const PetscReal c = PetscCosReal(angle), s = PetscSinReal(angle);
   const PetscReal reach = (PETSC_PI / h - k * s) / c,
                   dq = reach / WAVES; /* K stays within pi/h for angles up to pi/4 */
-  const PetscReal direction[2][2] = {{c, s}, {-s, c}};
-  mobility[0] = mobility[1] = 0;
-  for (PetscInt i = 0; i < WAVES; i++) {
+  mobility[0] = mobility[1] = mobility[2] = 0;
+  for (PetscInt i = -WAVES; i < WAVES; i++) {
     const PetscReal q = (i + 0.5) * dq, Kx = h * (k * c - q * s), Ky = h * (k * s + q * c);
     const PetscReal kx = 2 / h * PetscSinReal(Kx / 2), ky = 2 / h * PetscSinReal(Ky / 2), k2 = kx * kx + ky * ky;
     const PetscReal Wx = Look(table[0], Kx) * Look(table[1], Ky), Wy = Look(table[1], Kx) * Look(table[0], Ky);
-    for (int d = 0; d < 2; d++) {
-      const PetscReal fx = Wx * direction[d][0], fy = Wy * direction[d][1];
-      const PetscReal curl = fx * ky - fy * kx; /* f.(I - K~ K~^T/k2) f = curl^2/k2 */
-      mobility[d] += curl * curl / (k2 * (a0 + nu * k2)) * dq / PETSC_PI;
-    }
+    /* f.(I - K~ K~^T/k2) f' = (f x K~)(f' x K~)/k2 */
+    const PetscReal tangent = Wx * c * ky - Wy * s * kx, normal = -Wx * s * ky - Wy * c * kx;
+    const PetscReal r = dq / (2 * PETSC_PI * k2 * (a0 + nu * k2));
+    mobility[0] += tangent * tangent * r;
+    mobility[1] += normal * normal * r;
+    mobility[2] += tangent * normal * r;
   }
 }
 
 PetscErrorCode PlaneSymbols(const Kernel *kernel, PetscReal h, PetscReal a0, PetscReal nu, PetscReal angle, PetscInt n,
-                            PetscReal L, PetscReal dT[], PetscReal dN[]) {
+                            PetscReal L, PetscReal dT[], PetscReal dN[], PetscReal dX[]) {
   PetscReal *table[2];
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(TABLE + 1, &table[0], TABLE + 1, &table[1]));
@@ -86,13 +87,15 @@ PetscErrorCode PlaneSymbols(const Kernel *kernel, PetscReal h, PetscReal a0, Pet
   }
   for (PetscInt m = 0; m <= n / 2; m++) {
     const PetscReal k = 2 * PETSC_PI * m / L, kappa = PetscSqrtReal(k * k + a0 / nu);
-    PetscReal grid[2];
+    PetscReal grid[3];
     GridMobility(table, h, a0, nu, angle, k, grid);
     dT[m] = PetscMax(1 / (2 * nu * (kappa + k)) - grid[0], 0);
     dN[m] = PetscMax(k / (2 * nu * kappa * (kappa + k)) - grid[1], 0);
+    dX[m] = -grid[2];
     if (m) {
       dT[n - m] = dT[m];
       dN[n - m] = dN[m];
+      dX[n - m] = dX[m];
     }
   }
   PetscCall(PetscFree2(table[0], table[1]));

@@ -51,7 +51,7 @@ PetscErrorCode CurveFitSpectral(PetscInt M, PetscReal length, PetscReal area, Pe
     Gradient(M, d, e, C);
     PetscCallBLAS("BLASgemm",
                   BLASgemm_("T", "N", &rows, &rows, &columns, &plus, C, &columns, C, &columns, &zero, CC, &rows));
-    PetscCallBLAS("LAPACKposv", LAPACKpotrf_("L", &rows, CC, &rows, &info));
+    PetscCallBLAS("LAPACKpotrf", LAPACKpotrf_("L", &rows, CC, &rows, &info));
     if (info) break; /* a circle has no freedom left: it stays as it is */
     PetscCallBLAS("LAPACKpotrs", LAPACKpotrs_("L", &rows, &one, CC, &rows, r, &rows, &info));
     PetscCallBLAS("BLASgemv", BLASgemv_("N", &columns, &rows, &minus, C, &columns, r, &one, &plus, X, &one));
