@@ -3,7 +3,7 @@
 #include "coupling/selfmobility.h"
 
 #define POSITIONS 32 /* sub-cell positions that products of weights are averaged over, in each direction */
-#define TABLE 2000   /* intervals of the transforms' tables, 0 to pi */
+#define TABLE 500    /* intervals of the transforms' tables, 0 to pi */
 #define WAVES 4000   /* midpoints of the wave numbers across the membrane, as far as the grid has them */
 #define MOST_DIAGONALS (2 * KERNEL_MAX_POINTS)
 
