@@ -76,7 +76,7 @@ test-deps:
 
 run: deps ## run the default scene (or SCENE=file.opts) on 2 ranks and draw it
 	@$(MAKE) --no-print-directory all
-	mpirun -n $(RANKS) $(BIN)/petves -options_file $(SCENE)
+	mpirun -n $(RANKS) $(BIN)/petves -options_file $(SCENE) -output_overwrite
 	PYTHONPATH=python $(PYTHON) -m petves plot $$(awk '$$1 == "-output_dir" {print $$2}' $(SCENE))
 
 test: test-deps ## run every test; ends with "N passed, N failed"

@@ -119,7 +119,7 @@ def test_bad_curve_file_is_named(name, tmp_path):
 def test_file_that_cannot_be_written_is_named(name, tmp_path):
     """A folder is in the file's place; every rank stops."""
     (tmp_path / "out" / name / "in the way").mkdir(parents=True)
-    run = run_petves(tmp_path / "out", SMALL, ranks=2, good=False, timeout=60)
+    run = run_petves(tmp_path / "out", f"{SMALL} -output_overwrite", ranks=2, good=False, timeout=60)
     assert run.status == 1
     assert len(run.errors) == 1 and run.errors[0].startswith("petves: error: "), "\n".join(run.errors)
     assert name in run.errors[0] and "cannot be written" in run.errors[0] and "allowed" in run.errors[0]
@@ -165,8 +165,9 @@ def test_vesicle_carried_into_a_wall_stops_the_run(tmp_path):
     """Extension carries the vesicle away from the centre of the flow, to the wall at x_max."""
     options = "-domain_cells 48,48 -flow_type extension -vesicle_center 0.4,0 -time_step 0.02 -time_end 5"
     run = run_petves(tmp_path / "out", options, ranks=2, good=False)
-    summary, series = leaves_files(run, r"vesicle 1.*wall x_max = 1.*needs 3; after step \d+, time [\d.]+")
-    assert float(summary["reason"].split()[-1]) == pytest.approx(series["time"][-1], rel=1e-5)
+    summary, series = leaves_files(run, r"vesicle 1.*wall x_max = 1.*needs 3 after step \d+, time [\d.]+; try a larger -domain_box")
+    step, time = re.search(r"after step (\d+), time ([\d.]+);", summary["reason"]).groups()
+    assert int(step) == series["step"][-1] + 1 and float(time) == pytest.approx(series["time"][-1] + 0.02, rel=1e-5)
     assert 2 <= series["step"][-1] < 100
     with h5py.File(run.folder / "checkpoint.h5") as file:
-        assert 2 < (1 - file["vesicle/markers"][0, :, 0].max()) / (2 / 48) < 3, "found in the step after"
+        assert 3 <= (1 - file["vesicle/markers"][0, :, 0].max()) / (2 / 48) < 4, "the state before is the good one"

@@ -39,3 +39,10 @@ PETSC_EXTERN const char *const PhaseNames[PHASE_COUNT];
 
 /* PetvesEvent - id of a -log_view event of the given name, registered on first use. */
 PETSC_EXTERN PetscErrorCode PetvesEvent(const char name[], PetscLogEvent *event);
+
+/* StopClock - the wall time of -time_wall_limit starts here. */
+PETSC_EXTERN void StopClock(void);
+
+/* StopRequested - whether a rank has caught SIGTERM or SIGUSR1 (PetvesCatchSignals), or less than `reserve` seconds are
+   left of `limit` (0: no limit) on rank 0's clock: its name, else NULL. The same on every rank. Collective. */
+PETSC_EXTERN PetscErrorCode StopRequested(MPI_Comm comm, PetscReal limit, PetscReal reserve, const char **why);

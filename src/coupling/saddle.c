@@ -119,6 +119,16 @@ static PetscErrorCode CreateMembranePart(Scene scene, Saddle s) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode SaddleForget(Saddle s) {
+  PetscFunctionBeginUser;
+  s->factored_a0 = 0;
+  s->fresh_its = -1;
+  s->age = s->refreshed = 0;
+  s->life = 1000;
+  if (s->mobility) PetscCall(MobilityForget(s->mobility));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode SaddleCreate(Scene scene, Fluid fluid, Coupling coupling, SelfMobility self, Saddle *out) {
   const Grid g = fluid->grid;
   const PetscInt nw = VelocitySize(g), np = PressureSize(g),
@@ -132,8 +142,7 @@ PetscErrorCode SaddleCreate(Scene scene, Fluid fluid, Coupling coupling, SelfMob
   s->coupling = coupling;
   s->self = self;
   s->type = (MobilityType)scene->mobility;
-  s->fresh_its = -1;
-  s->life = 1000;
+  PetscCall(SaddleForget(s));
   PetscCall(StokesCreate(fluid, &s->stokes));
   PetscCall(VecCreateMPI(g->comm, n, PETSC_DETERMINE, &s->x));
   PetscCall(VecDuplicate(s->x, &s->b));

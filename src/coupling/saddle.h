@@ -47,6 +47,9 @@ PETSC_EXTERN PetscErrorCode SaddleDestroy(Saddle *saddle);
    where it is. Collective. */
 PETSC_EXTERN PetscErrorCode SaddleSetUp(Saddle saddle);
 
+/* SaddleForget - drop what earlier solves have left: the next one depends on its arguments alone. */
+PETSC_EXTERN PetscErrorCode SaddleForget(Saddle saddle);
+
 /* SaddleSolve - solve for w, p, sigma, which hold the initial guess; f and g the right-hand sides. its, why, residual
    say how it went. Collective. */
 PETSC_EXTERN PetscErrorCode SaddleSolve(Saddle saddle, Vec f, Vec g, Vec w, Vec p, Vec sigma);

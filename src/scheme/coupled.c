@@ -75,7 +75,7 @@ static PetscErrorCode SolveStep(Scheme s, Coupled *d) {
 PetscErrorCode CoupledAttempt(Scheme s, PetscReal dt, PetscBool *solved) {
   Coupled *d = (Coupled *)s->data;
   State *q = &s->state, *n = &d->next;
-  const BDF b = BDFCoefficients(d->has_old ? d->order : 1, dt, d->has_old ? q->dt_last : dt);
+  const BDF b = BDFCoefficients(s->has_old ? d->order : 1, dt, s->has_old ? q->dt_last : dt);
   PetscFunctionBeginUser;
   *solved = PETSC_TRUE;
   q->dt = dt;
@@ -90,7 +90,7 @@ PetscErrorCode CoupledAttempt(Scheme s, PetscReal dt, PetscBool *solved) {
   }
   PetscCall(MomentumRightHandSide(s, d, &b));
   /* initial guess: the solution extrapolated; on the first step the present one */
-  const PetscReal r = d->has_old ? dt / q->dt_last : 0;
+  const PetscReal r = s->has_old ? dt / q->dt_last : 0;
   PetscCall(Extrapolate(r, q->w, d->old.w, n->w));
   PetscCall(Extrapolate(r, q->p, d->old.p, n->p));
   PetscCall(Extrapolate(r, q->sigma, d->old.sigma, n->sigma));
@@ -133,8 +133,7 @@ static PetscErrorCode Advance(Scheme s, Coupled *d, PetscReal dt) {
   q->X = next.X;
   q->U = next.U;
   q->dt_last = dt;
-  d->has_old = PETSC_TRUE;
-  s->old = &d->old;
+  s->has_old = PETSC_TRUE;
   if (d->area_target && s->coupling) PetscCall(RestoreArea(s, d));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -142,16 +141,11 @@ static PetscErrorCode Advance(Scheme s, Coupled *d, PetscReal dt) {
 /* Start-up: backward Euler on a sixteenth of the step, then BDF2 with doubling steps up to the whole of it. */
 static PetscErrorCode GradedStart(Scheme s, Coupled *d, PetscReal dt, PetscBool *solved) {
   const PetscReal parts[] = {1. / 16, 1. / 16, 1. / 8, 1. / 4, 1. / 2};
-  PetscReal done = 0;
   PetscFunctionBeginUser;
   for (int k = 0; k < 5; k++) {
     PetscCall(CoupledAttempt(s, parts[k] * dt, solved));
-    if (!*solved) { /* the parts done are a good state, at its own time */
-      s->state.t += done * dt;
-      PetscFunctionReturn(PETSC_SUCCESS);
-    }
+    if (!*solved) PetscFunctionReturn(PETSC_SUCCESS);
     PetscCall(Advance(s, d, parts[k] * dt));
-    done += parts[k];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -166,7 +160,7 @@ static PetscErrorCode Step_Coupled(Scheme s) {
     PetscCall(StepControlStep(s, &d->control, d->Xstar, &d->next, &used, &solved));
     if (solved) PetscCall(Advance(s, d, used));
     s->state.dt = used;
-  } else if (!d->has_old && d->order > 1 && s->scene->startup == STARTUP_GRADED) {
+  } else if (!s->has_old && d->order > 1 && s->scene->startup == STARTUP_GRADED) {
     PetscCall(GradedStart(s, d, dt, &solved));
     s->state.dt = dt;
   } else {
@@ -199,11 +193,20 @@ static PetscErrorCode SetUp_Coupled(Scheme s) {
   PetscCall(VecDuplicate(q->X, &d->Xstar));
   PetscCall(VecDuplicate(q->X, &d->Xhat));
   PetscCall(VecDuplicate(q->X, &d->Y));
+  s->old = &d->old;
   PetscCall(StepControlCreate(s->scene, s->membrane, &d->control));
+  if (d->control.on) s->level = &d->control.level;
   if (!strcmp(s->type, "direct"))
     PetscCall(DirectSolverCreate(s->fluid, s->coupling, s->self, &d->direct));
   else
     PetscCall(SaddleCreate(s->scene, s->fluid, s->coupling, s->self, &d->saddle));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Forget_Coupled(Scheme s) {
+  Coupled *d = (Coupled *)s->data;
+  PetscFunctionBeginUser;
+  if (d->saddle) PetscCall(SaddleForget(d->saddle));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -244,6 +247,7 @@ PetscErrorCode SchemeCreate_Coupled(Scheme s) {
   s->data = d;
   s->setup = SetUp_Coupled;
   s->step = Step_Coupled;
+  s->forget = Forget_Coupled;
   s->view = View_Coupled;
   s->options = Options_Coupled;
   s->destroy = Destroy_Coupled;

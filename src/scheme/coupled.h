@@ -10,7 +10,6 @@ typedef struct {
   Saddle saddle;       /* scheme coupled: FGMRES */
   DirectSolver direct; /* scheme direct: sparse LU */
   State old, next;     /* the state before, the one being made */
-  PetscBool has_old;
   PetscInt order;
   PetscBool length_target, area_target;
   StepControl control;
