@@ -165,7 +165,9 @@ def test_vesicle_carried_into_a_wall_stops_the_run(tmp_path):
     """Extension carries the vesicle away from the centre of the flow, to the wall at x_max."""
     options = "-domain_cells 48,48 -flow_type extension -vesicle_center 0.4,0 -time_step 0.02 -time_end 5"
     run = run_petves(tmp_path / "out", options, ranks=2, good=False)
-    summary, series = leaves_files(run, r"vesicle 1.*wall x_max = 1.*needs 3 after step \d+, time [\d.]+; try a larger -domain_box")
+    summary, series = leaves_files(
+        run, r"vesicle 1.*wall x_max = 1.*needs 3 after step \d+, time [\d.]+; try a larger -domain_box"
+    )
     step, time = re.search(r"after step (\d+), time ([\d.]+);", summary["reason"]).groups()
     assert int(step) == series["step"][-1] + 1 and float(time) == pytest.approx(series["time"][-1] + 0.02, rel=1e-5)
     assert 2 <= series["step"][-1] < 100

@@ -1,4 +1,7 @@
+#define _GNU_SOURCE /* memfd_create */
 #include "output/h5.h"
+#include <sys/mman.h>
+#include <unistd.h>
 
 /* A call on rank 0's file, once all before it were good. */
 #define Try(file, call)                                                                                                \
@@ -17,17 +20,33 @@ static PetscErrorCode Start(MPI_Comm comm, const char path[], H5File *f) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* No cache of chunks: a write that fails does so in H5Dwrite, not when the dataset is closed, which HDF5 cannot undo.
+ */
+static hid_t Access(void) {
+  const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
+  (void)H5Pset_cache(access, 0, 0, 0, 0);
+  return access;
+}
+
 PetscErrorCode H5FileCreate(MPI_Comm comm, const char path[], H5File *f) {
   PetscFunctionBeginUser;
   PetscCall(Start(comm, path, f));
-  if (!f->rank) Try(f, f->id = H5Fcreate(path, H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT));
+  if (!f->rank) {
+    const hid_t access = Access();
+    Try(f, f->id = H5Fcreate(path, H5F_ACC_TRUNC, H5P_DEFAULT, access));
+    (void)H5Pclose(access);
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode H5FileOpen(MPI_Comm comm, const char path[], PetscBool write, H5File *f) {
   PetscFunctionBeginUser;
   PetscCall(Start(comm, path, f));
-  if (!f->rank) Try(f, f->id = H5Fopen(path, write ? H5F_ACC_RDWR : H5F_ACC_RDONLY, H5P_DEFAULT));
+  if (!f->rank) {
+    const hid_t access = Access();
+    Try(f, f->id = H5Fopen(path, write ? H5F_ACC_RDWR : H5F_ACC_RDONLY, access));
+    (void)H5Pclose(access);
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -37,9 +56,21 @@ PetscErrorCode H5FileFlush(H5File *f) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* HDF5 cannot give up a file whose disk is full: closing it fails, and the library crashes at the end. So what it still
+   wants to write to a failed file goes into memory instead. */
+static void Redirect(hid_t file) {
+  void *handle;
+  const int memory = memfd_create("petves", 0);
+  if (memory >= 0 && H5Fget_vfd_handle(file, H5P_DEFAULT, &handle) >= 0) (void)dup2(memory, *(int *)handle);
+  if (memory >= 0) (void)close(memory);
+}
+
 PetscErrorCode H5FileClose(H5File *f) {
   PetscFunctionBeginUser;
-  if (f->id >= 0 && H5Fclose(f->id) < 0) f->failed = PETSC_TRUE;
+  if (f->id < 0) PetscFunctionReturn(PETSC_SUCCESS);
+  if (H5Fflush(f->id, H5F_SCOPE_GLOBAL) < 0) f->failed = PETSC_TRUE;
+  if (f->failed) Redirect(f->id);
+  if (H5Fclose(f->id) < 0) f->failed = PETSC_TRUE;
   f->id = -1;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -52,10 +83,11 @@ PetscErrorCode H5FileFailed(const H5File *f, PetscBool *failed) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode H5FileCheck(const H5File *f) {
+PetscErrorCode H5FileCheck(H5File *f) {
   PetscBool failed;
   PetscFunctionBeginUser;
   PetscCall(H5FileFailed(f, &failed));
+  if (failed) PetscCall(H5FileClose(f));
   PetscCheck(!failed, f->comm, PETSC_ERR_USER_INPUT,
              "%s: cannot be written; allowed: a folder with space that can be written", f->path);
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -22,10 +22,10 @@ PETSC_EXTERN PetscErrorCode H5FileOpen(MPI_Comm comm, const char path[], PetscBo
 PETSC_EXTERN PetscErrorCode H5FileFlush(H5File *file);
 PETSC_EXTERN PetscErrorCode H5FileClose(H5File *file);
 
-/* H5FileFailed - whether any call so far has failed; the same on every rank. H5FileCheck - stop with one line that the
-   file cannot be written. Collective. */
+/* H5FileFailed - whether any call so far has failed; the same on every rank. H5FileCheck - close the
+   file and stop with one line that it cannot be written. Collective. */
 PETSC_EXTERN PetscErrorCode H5FileFailed(const H5File *file, PetscBool *failed);
-PETSC_EXTERN PetscErrorCode H5FileCheck(const H5File *file);
+PETSC_EXTERN PetscErrorCode H5FileCheck(H5File *file);
 
 /* Attributes of the root group: rank 0's values are written; what is read goes to every rank. A string that is not
    there is left empty. Reading is collective. */

@@ -3,31 +3,6 @@
 #include <errno.h>
 #include <unistd.h>
 
-/* What is wrong with the file as such, found on rank 0 and told to all. The checksum covers every byte, so that HDF5
-   is only given files that it wrote itself. */
-static PetscErrorCode CheckFile(Output o) {
-  const char *path = o->scene->restart;
-  char message[PETVES_MAX_MESSAGE] = "", tail[CHECKPOINT_TAIL_LENGTH + 1] = "";
-  unsigned crc = 0, stored = 0;
-  PetscFunctionBeginUser;
-  if (!o->rank && access(path, R_OK))
-    PetscCall(PetscSNPrintf(message, sizeof(message), "cannot be opened (%s)", strerror(errno)));
-  else if (!o->rank) {
-    const PetscBool read = ChecksumOfFile(path, CHECKPOINT_TAIL_LENGTH, &crc, tail);
-    if (!read || sscanf(tail, CHECKPOINT_TAIL, &stored) != 1)
-      PetscCall(
-          PetscSNPrintf(message, sizeof(message), "no checkpoint, or cut off: the checksum at its end is missing"));
-    else if (crc != stored)
-      PetscCall(
-          PetscSNPrintf(message, sizeof(message), "damaged: its checksum is %08x, its bytes have %08x", stored, crc));
-  }
-  PetscCallMPI(MPI_Bcast(message, sizeof(message), MPI_CHAR, 0, o->comm));
-  PetscCheck(!*message, o->comm, PETSC_ERR_USER_INPUT,
-             "-restart %s: %s; allowed: a checkpoint.h5 of petves, or the one before it, checkpoint_1.h5", path,
-             message);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 static PetscErrorCode CheckFormat(Output o) {
   H5File file;
   PetscInt format = 0;
@@ -40,6 +15,35 @@ static PetscErrorCode CheckFormat(Output o) {
   PetscCheck(failed || format == CHECKPOINT_FORMAT, o->comm, PETSC_ERR_USER_INPUT,
              "-restart %s: its format is %" PetscInt_FMT "; allowed: %d, which petves %s writes", o->scene->restart,
              format, CHECKPOINT_FORMAT, PETVES_VERSION);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What is wrong with the file as such, found on rank 0 and told to all. The checksum covers every byte, so that HDF5
+   reads what it wrote. Without one the file may be of a format that has none, or has it elsewhere. */
+static PetscErrorCode CheckFile(Output o) {
+  const char *path = o->scene->restart;
+  char message[PETVES_MAX_MESSAGE] = "", tail[CHECKPOINT_TAIL_LENGTH + 1] = "";
+  unsigned crc = 0, stored = 0;
+  PetscMPIInt sealed = 1;
+  PetscFunctionBeginUser;
+  if (!o->rank && access(path, R_OK))
+    PetscCall(PetscSNPrintf(message, sizeof(message), "cannot be opened (%s)", strerror(errno)));
+  else if (!o->rank) {
+    const PetscBool read = ChecksumOfFile(path, CHECKPOINT_TAIL_LENGTH, &crc, tail);
+    sealed = read && sscanf(tail, CHECKPOINT_TAIL, &stored) == 1;
+    if (!sealed)
+      PetscCall(
+          PetscSNPrintf(message, sizeof(message), "no checkpoint, or cut off: the checksum at its end is missing"));
+    else if (crc != stored)
+      PetscCall(
+          PetscSNPrintf(message, sizeof(message), "damaged: its checksum is %08x, its bytes have %08x", stored, crc));
+  }
+  PetscCallMPI(MPI_Bcast(&sealed, 1, MPI_INT, 0, o->comm));
+  PetscCallMPI(MPI_Bcast(message, sizeof(message), MPI_CHAR, 0, o->comm));
+  if (!sealed || !*message) PetscCall(CheckFormat(o));
+  PetscCheck(!*message, o->comm, PETSC_ERR_USER_INPUT,
+             "-restart %s: %s; allowed: a checkpoint.h5 of petves, or the one before it, checkpoint_1.h5", path,
+             message);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -146,7 +150,6 @@ PetscErrorCode RestartRead(Output o) {
   H5File file;
   PetscFunctionBeginUser;
   PetscCall(CheckFile(o));
-  PetscCall(CheckFormat(o));
   PetscCall(H5FileOpen(o->comm, o->scene->restart, PETSC_FALSE, &file));
   PetscCall(CompareOptions(o, &file));
   PetscCall(CompareVesicles(o, &file));
