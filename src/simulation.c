@@ -147,10 +147,7 @@ static PetscErrorCode WriteDue(Simulation s) {
     PetscCall(OutputFields(s->output, PETSC_TRUE));
     s->next_output = OutputNextTime(s->output);
   }
-  if (every && q->step % every == 0) {
-    PetscCall(OutputCheckpoint(s->output));
-    PetscCall(SchemeForget(s->scheme)); /* as a run that is restarted from here */
-  }
+  if (every && q->step % every == 0) PetscCall(OutputCheckpoint(s->output));
   PetscCall(OutputProgress(s->output, PETSC_FALSE));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

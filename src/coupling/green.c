@@ -30,16 +30,10 @@ static PetscErrorCode FreeTable(GreenTable *t) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode MobilityForget(Mobility m) {
-  PetscFunctionBeginUser;
-  for (int i = 0; i < MOBILITY_CACHE; i++) PetscCall(FreeTable(&m->cache[i]));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode MobilityDestroy(Mobility *mobility) {
   PetscFunctionBeginUser;
   if (!*mobility) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(MobilityForget(*mobility));
+  for (int i = 0; i < MOBILITY_CACHE; i++) PetscCall(FreeTable(&(*mobility)->cache[i]));
   PetscCall(FluidDestroy(&(*mobility)->periodic));
   PetscCall(PetscFree(*mobility));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -102,6 +96,15 @@ static PetscErrorCode BuildTable(Mobility m, PetscReal a0, GreenTable *t) {
   PetscCall(VecDestroy(&p));
   PetscCall(StokesDestroy(&stokes));
   m->built++;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode MobilitySetTables(Mobility m, const PetscReal a0[MOBILITY_CACHE]) {
+  PetscFunctionBeginUser;
+  for (int i = 0; i < MOBILITY_CACHE; i++) {
+    PetscCall(FreeTable(&m->cache[i]));
+    if (a0[i] > 0) PetscCall(BuildTable(m, a0[i], &m->cache[i]));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -119,16 +119,6 @@ static PetscErrorCode CreateMembranePart(Scene scene, Saddle s) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SaddleForget(Saddle s) {
-  PetscFunctionBeginUser;
-  s->factored_a0 = 0;
-  s->fresh_its = -1;
-  s->age = s->refreshed = 0;
-  s->life = 1000;
-  if (s->mobility) PetscCall(MobilityForget(s->mobility));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode SaddleCreate(Scene scene, Fluid fluid, Coupling coupling, SelfMobility self, Saddle *out) {
   const Grid g = fluid->grid;
   const PetscInt nw = VelocitySize(g), np = PressureSize(g),
@@ -142,7 +132,8 @@ PetscErrorCode SaddleCreate(Scene scene, Fluid fluid, Coupling coupling, SelfMob
   s->coupling = coupling;
   s->self = self;
   s->type = (MobilityType)scene->mobility;
-  PetscCall(SaddleForget(s));
+  s->fresh_its = -1;
+  s->life = 1000;
   PetscCall(StokesCreate(fluid, &s->stokes));
   PetscCall(VecCreateMPI(g->comm, n, PETSC_DETERMINE, &s->x));
   PetscCall(VecDuplicate(s->x, &s->b));
@@ -191,12 +182,39 @@ PetscErrorCode SaddleDestroy(Saddle *saddle) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Make the dense blocks for the present markers. */
-static PetscErrorCode Refresh(Saddle s) {
+static PetscErrorCode MakeBlocks(Saddle s) {
   const GreenTable *table;
   PetscFunctionBeginUser;
   PetscCall(MobilityGetTable(s->mobility, s->fluid->a0, &table));
   PetscCall(DenseBlocksFactor(s->blocks, s->mobility, table, s->self, s->fluid->a0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SaddleGetMemory(Saddle s, PetscReal memory[SADDLE_MEMORY]) {
+  const PetscReal own[] = {s->factored_a0, s->fresh_its, s->age, s->life, s->refreshed};
+  PetscFunctionBeginUser;
+  for (int k = 0; k < 5; k++) memory[k] = own[k];
+  for (int k = 0; k < MOBILITY_CACHE; k++) memory[5 + k] = s->mobility ? s->mobility->cache[k].a0 : 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SaddleSetMemory(Saddle s, const PetscReal memory[SADDLE_MEMORY]) {
+  PetscFunctionBeginUser;
+  if (!s->mobility || memory[0] == 0) PetscFunctionReturn(PETSC_SUCCESS);
+  s->factored_a0 = memory[0];
+  s->fresh_its = (PetscInt)memory[1];
+  s->age = (PetscInt)memory[2];
+  s->life = (PetscInt)memory[3];
+  s->refreshed = (PetscInt)memory[4];
+  PetscCall(MobilitySetTables(s->mobility, memory + 5));
+  PetscCall(MakeBlocks(s));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Make the dense blocks for the present markers. */
+static PetscErrorCode Refresh(Saddle s) {
+  PetscFunctionBeginUser;
+  PetscCall(MakeBlocks(s));
   s->factored_a0 = s->fluid->a0;
   s->fresh_its = -1;
   s->age = 0;

@@ -47,8 +47,13 @@ PETSC_EXTERN PetscErrorCode SaddleDestroy(Saddle *saddle);
    where it is. Collective. */
 PETSC_EXTERN PetscErrorCode SaddleSetUp(Saddle saddle);
 
-/* SaddleForget - drop what earlier solves have left: the next one depends on its arguments alone. */
-PETSC_EXTERN PetscErrorCode SaddleForget(Saddle saddle);
+/* SaddleGetMemory, SaddleSetMemory - all that earlier solves have left for later ones, as numbers that a checkpoint can
+   hold, and made again from them, with the coupling's markers and `self` where they were when the dense blocks were
+   made and the fluid's a0 that of the blocks (memory[0]; 0: there were none). Whatever a saddle keeps belongs in here,
+   or a restarted run would not have the bits of one that went on. Set is collective. */
+#define SADDLE_MEMORY (5 + MOBILITY_CACHE)
+PETSC_EXTERN PetscErrorCode SaddleGetMemory(Saddle saddle, PetscReal memory[SADDLE_MEMORY]);
+PETSC_EXTERN PetscErrorCode SaddleSetMemory(Saddle saddle, const PetscReal memory[SADDLE_MEMORY]);
 
 /* SaddleSolve - solve for w, p, sigma, which hold the initial guess; f and g the right-hand sides. its, why, residual
    say how it went. Collective. */

@@ -66,6 +66,8 @@ static PetscErrorCode WriteState(Output o, H5File *file) {
   const Membrane m = s->membrane;
   const PetscInt format = CHECKPOINT_FORMAT, has_old = s->has_old, level = s->level ? *s->level : 0;
   const PetscInt totals[4] = {o->total_solves, o->total_tension, o->total_bending, o->total_coupled};
+  const PetscInt numbers = SchemeMemorySize(s);
+  PetscReal *memory;
   char value[PETSC_MAX_PATH_LEN];
   PetscFunctionBeginUser;
   PetscCall(H5PutInts(file, "format", 1, &format));
@@ -92,6 +94,11 @@ static PetscErrorCode WriteState(Output o, H5File *file) {
   }
   PetscCall(WriteVectors(o, file, "", q));
   if (s->has_old) PetscCall(WriteVectors(o, file, "/previous", s->old));
+  PetscCall(PetscMalloc1(numbers, &memory));
+  PetscCall(SchemeRemember(s, memory));
+  PetscCall(H5CreateSeries(file, "/solver", 1, &numbers));
+  PetscCall(H5WriteArray(file, "/solver", 0, numbers, memory));
+  PetscCall(PetscFree(memory));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

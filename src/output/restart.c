@@ -146,6 +146,7 @@ PetscErrorCode RestartRead(Output o) {
   const Scheme s = o->scheme;
   State *q = &s->state;
   PetscInt has_old = 0, totals[4] = {0};
+  PetscReal *memory;
   PetscBool failed;
   H5File file;
   PetscFunctionBeginUser;
@@ -165,6 +166,8 @@ PetscErrorCode RestartRead(Output o) {
   PetscCall(ReadVectors(o, &file, "", q));
   s->has_old = has_old && s->old ? PETSC_TRUE : PETSC_FALSE;
   if (s->has_old) PetscCall(ReadVectors(o, &file, "/previous", s->old));
+  PetscCall(PetscMalloc1(SchemeMemorySize(s), &memory));
+  PetscCall(H5ReadArray(&file, "/solver", 0, SchemeMemorySize(s), memory));
   PetscCall(H5FileFailed(&file, &failed));
   PetscCall(H5FileClose(&file));
   PetscCheck(!failed, o->comm, PETSC_ERR_USER_INPUT,
@@ -174,6 +177,7 @@ PetscErrorCode RestartRead(Output o) {
   o->total_tension = totals[1];
   o->total_bending = totals[2];
   o->total_coupled = totals[3];
-  PetscCall(SchemeForget(s));
+  PetscCall(SchemeRecall(s, memory));
+  PetscCall(PetscFree(memory));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

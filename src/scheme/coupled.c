@@ -67,6 +67,8 @@ static PetscErrorCode SolveStep(Scheme s, Coupled *d) {
   PetscCall(SaddleSetUp(d->saddle));
   PetscCall(SaddleSolve(d->saddle, d->f, s->g, n->w, n->p, n->sigma));
   s->report.coupled_its += d->saddle->its;
+  if (d->saddle->refreshed != d->refreshed) PetscCall(VecCopy(d->Xstar, d->made_at));
+  d->refreshed = d->saddle->refreshed;
   if (d->saddle->why < 0)
     PetscCall(SchemeSolverFailed(s, "coupled_", d->saddle->why, d->saddle->its, d->saddle->residual));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -193,6 +195,7 @@ static PetscErrorCode SetUp_Coupled(Scheme s) {
   PetscCall(VecDuplicate(q->X, &d->Xstar));
   PetscCall(VecDuplicate(q->X, &d->Xhat));
   PetscCall(VecDuplicate(q->X, &d->Y));
+  PetscCall(VecDuplicate(q->X, &d->made_at));
   s->old = &d->old;
   PetscCall(StepControlCreate(s->scene, s->membrane, &d->control));
   if (d->control.on) s->level = &d->control.level;
@@ -203,10 +206,33 @@ static PetscErrorCode SetUp_Coupled(Scheme s) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Forget_Coupled(Scheme s) {
+static PetscErrorCode Remember_Coupled(Scheme s, PetscReal memory[]) {
   Coupled *d = (Coupled *)s->data;
+  const PetscScalar *X;
   PetscFunctionBeginUser;
-  if (d->saddle) PetscCall(SaddleForget(d->saddle));
+  if (!d->saddle) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(SaddleGetMemory(d->saddle, memory));
+  PetscCall(VecGetArrayRead(d->made_at, &X));
+  PetscCall(PetscArraycpy(memory + SADDLE_MEMORY, X, 2 * s->membrane->M));
+  PetscCall(VecRestoreArrayRead(d->made_at, &X));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Recall_Coupled(Scheme s, const PetscReal memory[]) {
+  Coupled *d = (Coupled *)s->data;
+  const PetscReal a0 = memory[0];
+  PetscScalar *X;
+  PetscBool placed;
+  PetscFunctionBeginUser;
+  if (!d->saddle || !s->coupling || a0 == 0) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecGetArray(d->made_at, &X));
+  PetscCall(PetscArraycpy(X, memory + SADDLE_MEMORY, 2 * s->membrane->M));
+  PetscCall(VecRestoreArray(d->made_at, &X));
+  PetscCall(FluidSetTimeCoefficient(s->fluid, a0));
+  PetscCall(SchemePlaceMarkers(s, d->made_at, &placed));
+  if (s->self) PetscCall(SchemeSetSelfMobility(s, a0, d->made_at, NULL, d->made_at));
+  PetscCall(SaddleSetMemory(d->saddle, memory));
+  d->refreshed = d->saddle->refreshed;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -227,7 +253,7 @@ static PetscErrorCode Options_Coupled(Scheme s, FILE *file) {
 static PetscErrorCode Destroy_Coupled(Scheme s) {
   Coupled *d = (Coupled *)s->data;
   State *states[2] = {&d->old, &d->next};
-  Vec *others[] = {&d->f, &d->Xstar, &d->Xhat, &d->Y};
+  Vec *others[] = {&d->f, &d->Xstar, &d->Xhat, &d->Y, &d->made_at};
   PetscFunctionBeginUser;
   PetscCall(SaddleDestroy(&d->saddle));
   PetscCall(DirectSolverDestroy(&d->direct));
@@ -235,7 +261,7 @@ static PetscErrorCode Destroy_Coupled(Scheme s) {
     Vec *all[] = {&states[k]->w, &states[k]->p, &states[k]->sigma, &states[k]->X, &states[k]->U};
     for (int i = 0; i < 5; i++) PetscCall(VecDestroy(all[i]));
   }
-  for (int i = 0; i < 4; i++) PetscCall(VecDestroy(others[i]));
+  for (int i = 0; i < 5; i++) PetscCall(VecDestroy(others[i]));
   PetscCall(PetscFree(s->data));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -247,7 +273,8 @@ PetscErrorCode SchemeCreate_Coupled(Scheme s) {
   s->data = d;
   s->setup = SetUp_Coupled;
   s->step = Step_Coupled;
-  s->forget = Forget_Coupled;
+  s->remember = Remember_Coupled;
+  s->recall = Recall_Coupled;
   s->view = View_Coupled;
   s->options = Options_Coupled;
   s->destroy = Destroy_Coupled;

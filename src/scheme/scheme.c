@@ -118,9 +118,16 @@ PetscErrorCode SchemeStep(Scheme s, PetscReal dt) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SchemeForget(Scheme s) {
+PetscErrorCode SchemeRemember(Scheme s, PetscReal memory[]) {
   PetscFunctionBeginUser;
-  if (s->forget) PetscCall(s->forget(s));
+  PetscCall(PetscArrayzero(memory, SchemeMemorySize(s)));
+  if (s->remember) PetscCall(s->remember(s, memory));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SchemeRecall(Scheme s, const PetscReal memory[]) {
+  PetscFunctionBeginUser;
+  if (s->recall) PetscCall(s->recall(s, memory));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

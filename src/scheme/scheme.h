@@ -1,6 +1,7 @@
 /* Time-stepping schemes: the state that they advance, and the interface behind which they stand. */
 #pragma once
 #include "coupling/lagrangian.h"
+#include "coupling/saddle.h"
 #include "coupling/selfmobility.h"
 
 /* Everything that moves in time. Marker vectors are sequential and the same on every rank. */
@@ -53,8 +54,11 @@ struct _p_Scheme {
   Vec work_tension, work_pressure, work_markers;
   void *data; /* the scheme's own */
   PetscErrorCode (*setup)(Scheme);
-  PetscErrorCode (*step)(Scheme);   /* advance the state, or fill in report.failure and leave it */
-  PetscErrorCode (*forget)(Scheme); /* drop what solvers keep from step to step; NULL: they keep nothing */
+  PetscErrorCode (*step)(Scheme); /* advance the state, or fill in report.failure and leave it */
+  /* what solvers keep from step to step, as SchemeMemorySize numbers, and made again from them; NULL: they keep nothing
+   */
+  PetscErrorCode (*remember)(Scheme, PetscReal memory[]);
+  PetscErrorCode (*recall)(Scheme, const PetscReal memory[]);
   PetscErrorCode (*view)(Scheme, PetscViewer);
   PetscErrorCode (*options)(Scheme, FILE *); /* write the solvers' settings in force as options */
   PetscErrorCode (*destroy)(Scheme);
@@ -74,9 +78,11 @@ PETSC_EXTERN PetscErrorCode SchemeDestroy(Scheme *scheme);
    Collective. */
 PETSC_EXTERN PetscErrorCode SchemeStep(Scheme scheme, PetscReal dt);
 
-/* SchemeForget - drop what the solvers have kept from earlier steps, so that the next step depends on the state alone:
-   after reading a checkpoint, and after writing one. */
-PETSC_EXTERN PetscErrorCode SchemeForget(Scheme scheme);
+/* SchemeRemember, SchemeRecall - what the solvers have kept from earlier steps (when their blocks were made, and where
+   the markers were), as SchemeMemorySize numbers for a checkpoint, and made again from them. Collective. */
+#define SchemeMemorySize(scheme) (SADDLE_MEMORY + 2 * (scheme)->membrane->M)
+PETSC_EXTERN PetscErrorCode SchemeRemember(Scheme scheme, PetscReal memory[]);
+PETSC_EXTERN PetscErrorCode SchemeRecall(Scheme scheme, const PetscReal memory[]);
 
 /* SchemeKeep, SchemeReturn (watch.c) - copy the state into scheme->before, and put it back. SchemeFreeSnapshot frees
    the copies. */
