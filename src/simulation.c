@@ -33,7 +33,9 @@ PetscErrorCode PetvesInitialize(int *argc, char ***argv) {
   int running, provided, missing = 0, rank;
   if (MPI_Initialized(&running)) return PETSC_ERR_MPI;
   began_mpi = running ? PETSC_FALSE : PETSC_TRUE;
-  if (began_mpi && MPI_Init_thread(argc, argv, PETSC_MPI_THREAD_REQUIRED, &provided)) return PETSC_ERR_MPI;
+  /* newer PETSc leaves the level to decide (negative) until it starts MPI itself */
+  const int level = PETSC_MPI_THREAD_REQUIRED < 0 ? MPI_THREAD_FUNNELED : (int)PETSC_MPI_THREAD_REQUIRED;
+  if (began_mpi && MPI_Init_thread(argc, argv, level, &provided)) return PETSC_ERR_MPI;
   MPI_Comm_rank(MPI_COMM_WORLD, &rank);
   if (!rank && MissingOptionsFile(*argc, *argv)) {
     fprintf(stderr, "petves: error: -options_file %s: cannot be opened (%s); allowed: a readable file of options\n",

@@ -9,6 +9,13 @@
 #error "petves needs a PETSc built with real double-precision scalars"
 #endif
 
+/* Names that PETSc has changed since 3.18 (PETSC_SUCCESS is in petves.h). */
+#if PETSC_VERSION_GE(3, 26, 0)
+#undef KSP_GMRES_CGS_REFINE_IFNEEDED
+#define KSP_GMRES_CGS_REFINE_IFNEEDED KSP_ORTHOGONALIZATION_CGS_REFINE_IFNEEDED
+#define KSPGMRESSetCGSRefinementType KSPOrthogonalizationSetCGSRefinementType
+#endif
+
 #define PETVES_VERSION "0.1.0"
 #define PETVES_MAX_MESSAGE 512
 
