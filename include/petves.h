@@ -16,8 +16,8 @@ typedef struct _p_Simulation *Simulation;
 PETSC_EXTERN PetscErrorCode PetvesInitialize(int *argc, char ***argv);
 PETSC_EXTERN PetscErrorCode PetvesFinalize(void);
 
-/* PetvesCatchSignals - from now on SIGTERM and SIGUSR1 end SimulationRun after the step under way, with a checkpoint.
-   Not collective. */
+/* PetvesCatchSignals - from now on SIGTERM and SIGUSR1 end SimulationRun after the step under way, with a checkpoint,
+   and a closed standard output does not end the program. Not collective. */
 PETSC_EXTERN PetscErrorCode PetvesCatchSignals(void);
 
 /* SimulationCreate - the simulation that the options database describes, at its initial state or (-restart) at a

@@ -56,6 +56,10 @@ PetscErrorCode PetvesInitialize(int *argc, char ***argv) {
 
 PetscErrorCode PetvesFinalize(void) {
   PetscErrorCode error = PetscPopErrorHandler();
+  PetscBool given = PETSC_FALSE;
+  /* unused options have been reported in one line; newer PETSc would list them again */
+  if (!PetscOptionsHasName(NULL, NULL, "-options_left", &given) && !given)
+    (void)PetscOptionsSetValue(NULL, "-options_left", "no");
   if (!error) error = PetscFinalize();
   if (began_mpi && MPI_Finalize()) return PETSC_ERR_MPI;
   return error;

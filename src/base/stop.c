@@ -18,6 +18,7 @@ PetscErrorCode PetvesCatchSignals(void) {
   struct sigaction action = {.sa_handler = Catch, .sa_flags = SA_RESTART};
   PetscFunctionBeginUser;
   sigemptyset(&action.sa_mask);
+  PetscCheck(signal(SIGPIPE, SIG_IGN) != SIG_ERR, PETSC_COMM_SELF, PETSC_ERR_SYS, "SIGPIPE cannot be ignored");
   for (int k = 0; k < 2; k++)
     PetscCheck(!sigaction(signals[k], &action, NULL), PETSC_COMM_SELF, PETSC_ERR_SYS, "no handler for signal %d",
                signals[k]);
