@@ -38,6 +38,7 @@ static PetscErrorCode WriteVectors(Output o, H5File *file, const char prefix[], 
   const Vec marker[3] = {q->X, q->U, q->sigma};
   char name[64];
   const PetscScalar *a[3], *x;
+  PetscInt walls = 0;
   PetscFunctionBeginUser;
   PetscCall(VecGetArrayRead(q->w, &a[0]));
   a[1] = a[0] + GridLocalU(g);
@@ -57,6 +58,13 @@ static PetscErrorCode WriteVectors(Output o, H5File *file, const char prefix[], 
     PetscCall(H5WriteArray(file, name, 0, k < 2 ? 2 * M : M, x));
     PetscCall(VecRestoreArrayRead(marker[k], &x));
   }
+  if (q->walls) PetscCall(VecGetSize(q->walls, &walls));
+  if (!walls) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscSNPrintf(name, sizeof(name), "%s/fluid/walls", prefix));
+  PetscCall(H5CreateSeries(file, name, 1, &walls));
+  PetscCall(VecGetArrayRead(q->walls, &x));
+  PetscCall(H5WriteArray(file, name, 0, walls, x));
+  PetscCall(VecRestoreArrayRead(q->walls, &x));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -67,6 +75,7 @@ static PetscErrorCode WriteState(Output o, H5File *file) {
   const PetscInt format = CHECKPOINT_FORMAT, has_old = s->has_old, level = s->level ? *s->level : 0;
   const PetscInt totals[4] = {o->total_solves, o->total_tension, o->total_bending, o->total_coupled};
   const PetscInt numbers = SchemeMemorySize(s);
+  PetscInt walls = 0;
   PetscReal *memory;
   char value[PETSC_MAX_PATH_LEN];
   PetscFunctionBeginUser;
@@ -77,6 +86,8 @@ static PetscErrorCode WriteState(Output o, H5File *file) {
   PetscCall(H5PutReals(file, "dt_last", 1, &q->dt_last));
   PetscCall(H5PutInts(file, "has_previous", 1, &has_old));
   PetscCall(H5PutInts(file, "step_level", 1, &level));
+  if (q->walls) PetscCall(VecGetSize(q->walls, &walls));
+  PetscCall(H5PutInts(file, "walls", 1, &walls));
   PetscCall(H5PutInts(file, "frames", 1, &o->scheduled));
   PetscCall(H5PutInts(file, "totals", 4, totals));
   PetscCall(H5PutString(file, "series_row", o->row ? o->row : ""));

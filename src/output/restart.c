@@ -88,6 +88,23 @@ static PetscErrorCode CompareVesicles(Output o, H5File *file) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Wall forces are a guess that the next step starts from. Other back ends may have none, or others: zero then. */
+static PetscErrorCode ReadWalls(H5File *file, const char prefix[], Vec walls) {
+  PetscInt n, there = 0;
+  PetscScalar *x;
+  char name[64];
+  PetscFunctionBeginUser;
+  if (!walls) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecGetSize(walls, &n));
+  PetscCall(H5GetInts(file, "walls", 1, &there));
+  if (!n || n != there) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscSNPrintf(name, sizeof(name), "%s/fluid/walls", prefix));
+  PetscCall(VecGetArray(walls, &x));
+  PetscCall(H5ReadArray(file, name, 0, n, x));
+  PetscCall(VecRestoreArray(walls, &x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode ReadVectors(Output o, H5File *file, const char prefix[], State *q) {
   static const char *const fluid[3] = {"u", "v", "p"}, *const vesicle[3] = {"markers", "velocity", "tension"};
   const Grid g = o->scheme->fluid->grid;
@@ -111,6 +128,7 @@ static PetscErrorCode ReadVectors(Output o, H5File *file, const char prefix[], S
     PetscCall(H5ReadArray(file, name, 0, k < 2 ? 2 * M : M, x));
     PetscCall(VecRestoreArray(marker[k], &x));
   }
+  PetscCall(ReadWalls(file, prefix, q->walls));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -85,6 +85,7 @@ PetscErrorCode SchemeDestroy(Scheme *scheme) {
   PetscCall(VecDestroy(&s->state.sigma));
   PetscCall(VecDestroy(&s->state.X));
   PetscCall(VecDestroy(&s->state.U));
+  PetscCall(VecDestroy(&s->state.walls));
   PetscCall(VecDestroy(&s->background));
   PetscCall(VecDestroy(&s->g));
   PetscCall(VecDestroy(&s->work_tension));
@@ -145,7 +146,7 @@ PetscErrorCode SchemePlaceMarkers(Scheme s, Vec X, PetscBool *placed) {
   PetscCall(CouplingCheckMarkers(s->coupling, x, s->report.failure, sizeof(s->report.failure)));
   *placed = *s->report.failure ? PETSC_FALSE : PETSC_TRUE;
   PetscCall(VecRestoreArrayRead(X, &x));
-  if (!*placed && s->state.step) {
+  if (!*placed && s->step) { /* not the initial markers, which have a message of their own */
     const size_t used = strlen(s->report.failure);
     PetscCall(PetscSNPrintf(s->report.failure + used, sizeof(s->report.failure) - used,
                             " after step %" PetscInt_FMT

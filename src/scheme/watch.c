@@ -4,10 +4,10 @@
 #define CONTACT 2 /* cells between membranes below which a warning is due */
 
 static PetscErrorCode CopyState(const State *from, State *to) {
-  const Vec source[] = {from->w, from->p, from->sigma, from->X, from->U};
-  Vec *target[] = {&to->w, &to->p, &to->sigma, &to->X, &to->U};
+  const Vec source[] = {from->w, from->p, from->sigma, from->X, from->U, from->walls};
+  Vec *target[] = {&to->w, &to->p, &to->sigma, &to->X, &to->U, &to->walls};
   PetscFunctionBeginUser;
-  for (int k = 0; k < 5; k++) {
+  for (int k = 0; k < 6 && source[k]; k++) {
     if (!*target[k]) PetscCall(VecDuplicate(source[k], target[k]));
     PetscCall(VecCopy(source[k], *target[k]));
   }
@@ -42,8 +42,8 @@ PetscErrorCode SchemeFreeSnapshot(Scheme s) {
   State *both[2] = {&s->before.state, &s->before.old};
   PetscFunctionBeginUser;
   for (int i = 0; i < 2; i++) {
-    Vec *all[] = {&both[i]->w, &both[i]->p, &both[i]->sigma, &both[i]->X, &both[i]->U};
-    for (int k = 0; k < 5; k++) PetscCall(VecDestroy(all[k]));
+    Vec *all[] = {&both[i]->w, &both[i]->p, &both[i]->sigma, &both[i]->X, &both[i]->U, &both[i]->walls};
+    for (int k = 0; k < 6; k++) PetscCall(VecDestroy(all[k]));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
