@@ -23,13 +23,13 @@
    Say the option or file, the value and what is allowed. Collective: all ranks must agree on cond. */
 #define PetvesCheck(cond, comm, ...) PetscCheck((cond), (comm), PETSC_ERR_USER_INPUT, __VA_ARGS__)
 
-/* PetvesErrorHandler - PETSc error handler of the program: one line on stderr for a user's mistake, PETSc's own
-   traceback for anything else. Install with PetscPushErrorHandler(PetvesErrorHandler, NULL). */
+/* PetvesErrorHandler - PETSc error handler of the program: one line on stderr, for anything but a user's mistake with
+   the place in the source. Install with PetscPushErrorHandler(PetvesErrorHandler, NULL). */
 PETSC_EXTERN PetscErrorCode PetvesErrorHandler(MPI_Comm, int, const char *, const char *, PetscErrorCode,
                                                PetscErrorType, const char *, void *);
 
-/* PetvesSetupErrors - while on, every error prints one line: a solver option with a bad value (-tension_ksp_type foo)
-   is the user's mistake too, and PETSc reports it with its own codes. */
+/* PetvesSetupErrors - while on, every error counts as a user's mistake: a solver option with a bad value
+   (-tension_ksp_type foo) is one, and PETSc reports it with its own codes. */
 PETSC_EXTERN PetscErrorCode PetvesSetupErrors(PetscBool);
 
 /* Phases of a run: one -log_view stage each, and the wall seconds of summary.json. Time in a nested phase belongs to
