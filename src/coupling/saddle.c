@@ -37,7 +37,7 @@ PetscErrorCode SaddleJoin(Saddle s, int slot, PetscScalar block[], Vec sigma) {
 
 PetscReal SaddleScale(Saddle s, PetscInt k) {
   const PetscReal h = s->fluid->grid->h;
-  return PetscSqr(h) / s->coupling->membrane->spacing[k] * (1 + h * s->fluid->a0);
+  return PetscSqr(h) / s->coupling->membrane->spacing[k] * (1 + h * s->fluid->alpha);
 }
 
 /* Third row, scaled: S^T u = Dm U/h^2. */
@@ -186,7 +186,7 @@ PetscErrorCode SaddleDestroy(Saddle *saddle) {
 static PetscErrorCode Refresh(Saddle s) {
   const GreenTable *table;
   PetscFunctionBeginUser;
-  PetscCall(MobilityGetTable(s->mobility, s->fluid->a0, &table));
+  PetscCall(MobilityGetTable(s->mobility, s->fluid->alpha, &table));
   PetscCall(DenseBlocksFactor(s->blocks, s->mobility, table, s->self, s->fluid->a0));
   s->factored_a0 = s->fluid->a0;
   s->fresh_its = -1;

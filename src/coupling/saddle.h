@@ -51,8 +51,8 @@ PETSC_EXTERN PetscErrorCode SaddleSetUp(Saddle saddle);
    say how it went. Collective. */
 PETSC_EXTERN PetscErrorCode SaddleSolve(Saddle saddle, Vec f, Vec g, Vec w, Vec p, Vec sigma);
 
-/* SaddleScale - factor of the third block's row k: h^2/ds makes it a surface divergence; 1 + h a0 weighs short steps,
-   where the momentum's right-hand side u a0 would hide it. */
+/* SaddleScale - factor of the third block's row k: h^2/ds makes it a surface divergence; 1 + h alpha weighs short
+   steps, where the momentum's right-hand side u alpha would hide it. */
 PETSC_EXTERN PetscReal SaddleScale(Saddle saddle, PetscInt k);
 
 /* SaddlePrecondition (precondition.c) - PCSHELL's apply. */

@@ -134,6 +134,7 @@ PetscErrorCode FluidCreate(Scene scene, Fluid *out) {
   *out = f;
   PetscCall(GridCreate(scene, &f->grid));
   f->nu = scene->viscosity;
+  f->steady = scene->inertia == INERTIA_NONE ? PETSC_TRUE : PETSC_FALSE;
   PetscCall(GridCreateG(f->grid, &f->G));
   PetscCall(GridCreateD(f->grid, &f->D));
   PetscCall(GridCreateL(f->grid, &f->L));
@@ -171,7 +172,8 @@ PetscErrorCode FluidDestroy(Fluid *fluid) {
 
 PetscErrorCode FluidSetTimeCoefficient(Fluid f, PetscReal a0) {
   PetscFunctionBeginUser;
-  f->a0 = f->alpha = a0;
+  f->a0 = a0;
+  f->alpha = f->steady ? 0 : a0;
   for (int k = FIELD_U; k <= FIELD_V; k++) PetscCall(FastSolverSetCoefficients(f->solver[k], f->alpha, f->nu));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -8,6 +8,7 @@ struct _p_Fluid {
   PetscReal nu;         /* viscosity */
   PetscReal a0;         /* coefficient of the markers' time difference: X_new = Xhat + U/a0 */
   PetscReal alpha;      /* leading coefficient in H = alpha I - nu L_u: a0 (0 in quasi-steady flow) */
+  PetscBool steady;     /* quasi-steady flow, -fluid_inertia none */
   Mat G, D, L, H;       /* gradient, divergence, pressure Laplacian, velocity Helmholtz operator (MatShells) */
   PC Hinv, Linv;        /* fast solves of H (two scalar solves) and of L (one), PCSHELLs */
   FastSolver solver[3]; /* behind them, one a field */

@@ -29,7 +29,7 @@ static const Option table[] = {
   {"-flow_center_y", OPT_REAL, AT(flow.center[1]), "0", "any", "y_c of the background flow (length)"},
   {"-flow_form", OPT_ENUM, AT(flow.form), "disturbance", "disturbance|total", "solve for u - u_inf, or for u with moving walls as the paper"},
   {"-fluid_viscosity", OPT_REAL, AT(viscosity), "1", ">0", "nu (length^2/time; density is 1)"},
-  {"-fluid_inertia", OPT_ENUM, AT(inertia), "unsteady", "unsteady", "inertia of the fluid: unsteady Stokes"},
+  {"-fluid_inertia", OPT_ENUM, AT(inertia), "unsteady", "auto|none|unsteady|convective", "inertia of the fluid: quasi-steady Stokes, unsteady Stokes, Navier-Stokes"},
   {"-vesicle_shape", OPT_ENUM, AT(shape), "ellipse", "ellipse|file|none", "initial shape"},
   {"-vesicle_count", OPT_INT, AT(count), "1", "[1,16]", "number of ellipses; a file has its own number of curves"},
   {"-vesicle_semi_axes", OPT_REALS, AT(axes), "0.2,0.5", ">0", "semi-axes of the ellipse, two for all or two a vesicle (length)"},

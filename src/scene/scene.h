@@ -18,6 +18,7 @@ typedef struct {
 typedef enum { BC_WALL, BC_PERIODIC } BoundaryType;
 typedef enum { FLOW_QUIESCENT, FLOW_SHEAR, FLOW_POISEUILLE, FLOW_EXTENSION } FlowType;
 typedef enum { FORM_DISTURBANCE, FORM_TOTAL } FlowForm;
+typedef enum { INERTIA_AUTO, INERTIA_NONE, INERTIA_UNSTEADY, INERTIA_CONVECTIVE } InertiaType;
 typedef enum { DERIVATIVE_FD, DERIVATIVE_BENDING, DERIVATIVE_SPECTRAL } DerivativeType;
 typedef enum { SELF_NONE, SELF_LOCAL, SELF_SYMBOL } SelfMobilityType;
 typedef enum { ADAPT_NONE, ADAPT_ERROR } AdaptType;
@@ -49,7 +50,7 @@ struct _p_Scene {
   PetscInt bc[2];                      /* BoundaryType in x and y */
   Flow flow;                           /* background flow */
   PetscReal viscosity;                 /* nu (density is 1) */
-  PetscInt inertia;                    /* index in -fluid_inertia's list */
+  PetscInt inertia;                    /* InertiaType */
   PetscInt shape;                      /* ShapeType */
   PetscInt count;                      /* vesicles */
   RealList axes, center, angle;        /* semi-axes, centre, angle in degrees; one entry for all, or one a vesicle */

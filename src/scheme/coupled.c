@@ -45,10 +45,13 @@ static PetscErrorCode History(const BDF *b, PetscReal scale, Vec x, Vec x_old, V
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* f = uhat - B (Xhat + u_inf/a0) + bc1 */
+/* f = uhat - B (Xhat + u_inf/a0) + bc1; no uhat in quasi-steady flow */
 static PetscErrorCode MomentumRightHandSide(Scheme s, Coupled *d, const BDF *b) {
   PetscFunctionBeginUser;
-  PetscCall(History(b, 1, s->state.w, d->old.w, d->f));
+  if (s->fluid->steady)
+    PetscCall(VecSet(d->f, 0));
+  else
+    PetscCall(History(b, 1, s->state.w, d->old.w, d->f));
   if (s->fluid->bc1) PetscCall(VecAXPY(d->f, 1, s->fluid->bc1));
   if (!s->coupling || s->membrane->bending == 0) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecWAXPY(d->Y, 1 / b->a0, s->background, d->Xhat));

@@ -69,7 +69,7 @@ static PetscErrorCode AddFluid(DirectSolver d, Mat A) {
         const PetscInt ahead = f == FIELD_U ? Index(d, FIELD_P, (i + 1) % g->n[0], j)
                                             : Index(d, FIELD_P, i, (j + 1) % g->n[1]);
         const PetscInt here = Index(d, FIELD_P, i, j);
-        PetscReal diagonal = d->fluid->a0 + 4 * off;
+        PetscReal diagonal = d->fluid->alpha + 4 * off;
         for (int k = 0; k < 4; k++) {
           PetscInt c = i + di[k], r = j + dj[k];
           const PetscBool outside = c < 0 || c >= g->columns[f] || r < 0 || r >= g->all_rows[f] ? PETSC_TRUE
