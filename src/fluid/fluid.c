@@ -178,6 +178,19 @@ PetscErrorCode FluidSetTimeCoefficient(Fluid f, PetscReal a0) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode FluidRemoveMean(Fluid f, Vec w) {
+  const Grid g = f->grid;
+  const PetscInt n = GridLocalU(g); /* as many of v: the box is periodic */
+  PetscScalar *a, sum[2] = {0, 0};
+  PetscFunctionBeginUser;
+  PetscCall(VecGetArray(w, &a));
+  for (PetscInt k = 0; k < 2 * n; k++) sum[k / n] += a[k];
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPIU_SCALAR, MPI_SUM, g->comm));
+  for (PetscInt k = 0; k < 2 * n; k++) a[k] -= sum[k / n] / ((PetscReal)g->n[0] * g->n[1]);
+  PetscCall(VecRestoreArray(w, &a));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscInt FluidCountSolves(Fluid f) {
   return f->solver[FIELD_U]->solves + f->solver[FIELD_V]->solves + f->solver[FIELD_P]->solves;
 }

@@ -31,5 +31,8 @@ PETSC_EXTERN PetscErrorCode FluidSolveHelmholtz(Fluid fluid, Vec b, Vec w);
 /* FluidSolvePoisson - p = L^-1 q with zero mean, one scalar solve; p may be q. Collective. */
 PETSC_EXTERN PetscErrorCode FluidSolvePoisson(Fluid fluid, Vec q, Vec p);
 
+/* FluidRemoveMean - take the mean of each component off a velocity of a periodic box. Collective. */
+PETSC_EXTERN PetscErrorCode FluidRemoveMean(Fluid fluid, Vec w);
+
 /* FluidCountSolves - scalar fast solves so far. */
 PETSC_EXTERN PetscInt FluidCountSolves(Fluid fluid);
