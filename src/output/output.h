@@ -18,6 +18,7 @@ struct _p_Output {
   PetscReal last[24];            /* the last row of series.csv, in the order of SeriesColumns */
   PetscLogDouble start, printed; /* wall time at the start, at the last progress line */
   PetscInt total_solves, total_tension, total_bending, total_coupled;
+  PetscReal cfl_max; /* largest of a step */
 };
 
 /* OutputCreate - make the folder, open series.csv and run.h5, write resolved.opts. Collective. */

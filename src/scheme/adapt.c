@@ -65,10 +65,23 @@ static PetscErrorCode Watch(Membrane m, const State *next, PetscReal *speed, Pet
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Convection is explicit: its CFL number bounds the step. */
+static PetscErrorCode LimitByCourant(Scheme s, StepControl *c) {
+  PetscReal speed;
+  PetscFunctionBeginUser;
+  PetscCall(CoupledSpeed(s, &speed));
+  if (speed > 0) {
+    const PetscReal most = s->scene->cfl_limit * s->fluid->grid->h / speed;
+    c->level = PetscMin(c->level, (PetscInt)PetscFloorReal(2 * PetscLog2Real(most / c->base)));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode StepControlStep(Scheme s, StepControl *c, Vec Xstar, const State *next, PetscReal *dt,
                                PetscBool *solved) {
   const PetscReal most = *dt, h = s->fluid->grid->h;
   PetscFunctionBeginUser;
+  PetscCall(LimitByCourant(s, c));
   for (;;) {
     const PetscBool first = s->state.dt_last == 0 ? PETSC_TRUE : PETSC_FALSE;
     PetscReal error, speed, edge_ratio, factor;
