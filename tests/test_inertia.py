@@ -148,6 +148,15 @@ def test_adaptive_steps_respect_the_cfl_limit(tmp_path):
     assert run.series["dt"][1:].max() <= 0.4 * (2 / 48) / 1.9
 
 
+@pytest.mark.parametrize("inertia", ["none", "unsteady"])
+def test_adaptive_steps_start_on_a_coarse_grid(inertia, tmp_path):
+    """The first steps put edges right that are off from the start, by more than the tolerance whatever the step."""
+    options = f"{PERIODIC} {CORRECTED} -domain_box -2,2,-2,2 -domain_cells 64,64 -time_step 0.01 -time_end 0.05 "
+    run = run_petves(tmp_path, f"{options} -time_adapt error -time_adapt_tol 3e-5 -fluid_inertia {inertia}")
+    assert run.series["time"][-1] == pytest.approx(0.05)
+    assert abs(run.series["length_error"][-1] - run.series["length_error"][3]) < 1e-5
+
+
 MISTAKES = {
     "split_none": ("-scheme_type split -fluid_inertia none", ["-fluid_inertia none", "split", "unsteady"]),
     "split_convective": ("-scheme_type split -fluid_inertia convective", ["-fluid_inertia convective", "split"]),
