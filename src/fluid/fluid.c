@@ -139,6 +139,8 @@ PetscErrorCode FluidCreate(Scene scene, Fluid *out) {
   PetscCall(GridCreate(scene, &f->grid));
   f->nu = scene->viscosity;
   f->steady = scene->inertia == INERTIA_NONE ? PETSC_TRUE : PETSC_FALSE;
+  f->plan = scene->fftw_plan;
+  f->tridiagonal = !strcmp(scene->helmholtz, "fftw_tridiagonal") && !strcmp(scene->poisson, "fftw_tridiagonal");
   PetscCall(GridCreateG(f->grid, &f->G));
   PetscCall(GridCreateD(f->grid, &f->D));
   PetscCall(GridCreateL(f->grid, &f->L));
