@@ -148,7 +148,7 @@ def moving_and_resting(n: int, inertia: str) -> dict[str, dict[str, str]]:
 
 
 def galilean(n: int, inertia: str, name: str) -> Case:
-    """Return one run of moving_and_resting; kept: shape, tension and velocity about their means at the saved times."""
+    """Return one run of moving_and_resting, or the resting one shifted by half a cell in x; kept: shape, tension and velocity about their means at the saved times."""
 
     def measure(series: dict[str, np.ndarray], folder: Path) -> dict[str, object]:
         run = Run.read(folder)
@@ -158,7 +158,9 @@ def galilean(n: int, inertia: str, name: str) -> Case:
             for key, value in kept.items()
         }
 
-    options = moving_and_resting(n, inertia)[name] | {"-checkpoint_every": "0"}
+    options = moving_and_resting(n, inertia)["rest" if name == "shifted" else name] | {"-checkpoint_every": "0"}
+    if name == "shifted":
+        options |= {"-vesicle_center": f"{1 / n!r},{0.3 / n!r}"}
     return Case(f"galilean_{n}_{inertia}_{name}", options, measure, ranks=1)
 
 
