@@ -114,7 +114,7 @@ def _galilean(results: Results, folder: Path) -> list[str]:
     axes[0].legend(frameon=False, fontsize=8)
     save_figure(figure, folder / "galilean.png")
     write_csv(folder / "inertia_galilean.csv", ["vesicle", "cells", *keys], rows)
-    title = "### A vesicle in a stream, Re = 1, against one at rest: rms over markers and t = 0.125 to 0.5\n"
+    title = "### A vesicle in a stream, Re = 1, against one at rest: rms over markers at t = 0.125, 0.3125, 0.5\n"
     return [title, *table(["", "h", "shape/R0", "velocity", "tension"], shown)]
 
 

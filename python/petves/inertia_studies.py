@@ -148,15 +148,16 @@ def moving_and_resting(n: int, inertia: str) -> dict[str, dict[str, str]]:
 
 
 def galilean(n: int, inertia: str, name: str) -> Case:
-    """Return one run of moving_and_resting, or the resting one shifted by half a cell in x; kept: shape, tension and velocity about their means at the saved times."""
+    """Return one run of moving_and_resting, or the resting one shifted by half a cell in x.
+
+    Kept at three times: tension, and markers and velocity about their means.
+    """
 
     def measure(series: dict[str, np.ndarray], folder: Path) -> dict[str, object]:
         run = Run.read(folder)
-        kept = {"shape": run.markers, "velocity": run.velocity, "tension": run.tension[:, :, None]}
-        return {
-            key: list(np.ravel((value - (value.mean(axis=1, keepdims=True) if key != "tension" else 0))[2:]))
-            for key, value in kept.items()
-        }
+        kept = {"tension": run.tension}
+        kept["shape"], kept["velocity"] = [x - x.mean(axis=1, keepdims=True) for x in (run.markers, run.velocity)]
+        return {key: [round(float(x), 9) for x in np.ravel(value[2::3])] for key, value in kept.items()}
 
     options = moving_and_resting(n, inertia)["rest" if name == "shifted" else name] | {"-checkpoint_every": "0"}
     if name == "shifted":
