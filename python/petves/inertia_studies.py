@@ -89,8 +89,8 @@ def _run_name(window: float, height: float, cells: int, dt: float) -> str:
     return f"{window:g}_{height:g}_{cells}_{dt:g}"
 
 
-def migration_free(window: float, height: float, cells: int, dt: float, adapt: bool = False) -> Case:
-    """Return the migrating vesicle, to t = 6; adapt: steps from an error estimate of 1e-3, dt the first of them."""
+def migration_free(window: float, height: float, cells: int, dt: float) -> Case:
+    """Return the migrating vesicle, to t = 6."""
 
     def measure(series: dict[str, np.ndarray], folder: Path) -> dict[str, object]:
         height = {f"{t:g}": np.interp(t, series["time"], series["center_y"]) for t in (0.5, 1, 2, 4, 6)}
@@ -98,10 +98,7 @@ def migration_free(window: float, height: float, cells: int, dt: float, adapt: b
         return {"height": height, "steps": len(series["time"]) - 1, "its": its.mean(), "most": its.max()}
 
     options = poiseuille_options(window, height, cells, dt, 6) | {"-checkpoint_every": "0"}
-    if adapt:
-        options |= {"-time_adapt": "error", "-time_adapt_tol": "1e-3"}
-    name = f"free_{_run_name(window, height, cells, dt)}" + ("_adapt" if adapt else "")
-    return Case(name, options, measure, ranks=1)
+    return Case(f"free_{_run_name(window, height, cells, dt)}", options, measure, ranks=1)
 
 
 def aspect(points: np.ndarray) -> float:
