@@ -72,7 +72,7 @@ static PetscErrorCode CreateKSP(Saddle s, PetscInt n) {
   PetscCall(PCShellSetContext(pc, s));
   PetscCall(PCShellSetApply(pc, SaddlePrecondition));
   PetscCall(PCShellSetName(pc, "mobility of the markers, slip of the walls"));
-  PetscCall(KSPSetFromOptions(s->ksp));
+  PetscCall(KSPReplicatedSetFromOptions(s->ksp, s->fluid->grid->rank));
   PetscCall(KSPSetConvergenceTest(s->ksp, Converged, s, NULL));
   PetscCall(PetscObjectTypeCompare((PetscObject)s->ksp, KSPFGMRES, &s->flexible));
   PetscFunctionReturn(PETSC_SUCCESS);
