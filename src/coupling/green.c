@@ -169,8 +169,10 @@ static PetscReal Pair(Mobility m, const GreenTable *t, GreenBlock b, PetscInt k,
 }
 
 PetscErrorCode MobilityAssemble(Mobility m, const GreenTable *t, PetscInt first, PetscInt n, PetscReal Mob[]) {
+  const Grid g = m->coupling->grid;
   PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < n; k++)
+  if (g->size > 1) PetscCall(PetscArrayzero(Mob, 4 * n * n));
+  for (PetscInt k = g->rank; k < n; k += g->size) /* each entry by one rank */
     for (PetscInt l = 0; l < n; l++) {
       PetscReal *block = Mob + 2 * k * 2 * n + 2 * l, *mirror = Mob + 2 * l * 2 * n + 2 * k;
       if (l >= k) { /* symmetric */
@@ -179,5 +181,7 @@ PetscErrorCode MobilityAssemble(Mobility m, const GreenTable *t, PetscInt first,
       }
       block[2 * n] = mirror[1] = Pair(m, t, GREEN_VU, first + k, first + l);
     }
+  if (g->size > 1)
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, Mob, (PetscMPIInt)(4 * n * n), MPIU_REAL, MPI_SUM, g->comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
