@@ -1,19 +1,7 @@
 /* A whole run: build everything from the options, step, write. */
-#include "output/output.h"
-#include "petves.h"
+#include "simulation.h"
 #include <errno.h>
 #include <unistd.h>
-
-struct _p_Simulation {
-  Scene scene;
-  Shape shape;
-  Fluid fluid;
-  Membrane membrane;
-  Coupling coupling;
-  Scheme scheme;
-  Output output;
-  PetscReal next_output;
-};
 
 static const char help[] = "petves: inextensible vesicles in two-dimensional viscous flow.\n"
                            "usage: mpirun -n RANKS petves -options_file scene.opts [-option value ...]\n\n";
@@ -57,10 +45,14 @@ PetscErrorCode PetvesFinalize(void) {
   return error;
 }
 
-static PetscErrorCode Build(MPI_Comm comm, Simulation s) {
+static PetscErrorCode Build(MPI_Comm comm, PetvesFlow flow, void *ctx, Simulation s) {
   const Kernel *kernel;
   PetscFunctionBeginUser;
   PetscCall(SceneCreate(comm, &s->scene));
+  PetscCheck(flow || s->scene->flow.type != FLOW_CUSTOM, comm, PETSC_ERR_USER_INPUT,
+             "-flow_type custom: no function given; allowed: from Python (flow=) or C (SimulationCreateWithFlow) only");
+  s->scene->flow.function = flow;
+  s->scene->flow.ctx = ctx;
   kernel = KernelFind(s->scene->delta);
   PetscCall(ShapeCreate(s->scene, kernel->default_spacing, kernel->least_spacing, &s->shape));
   PetscCall(FluidCreate(s->scene, &s->fluid));
@@ -72,6 +64,12 @@ static PetscErrorCode Build(MPI_Comm comm, Simulation s) {
 }
 
 PetscErrorCode SimulationCreate(MPI_Comm comm, Simulation *out) {
+  PetscFunctionBeginUser;
+  PetscCall(SimulationCreateWithFlow(comm, NULL, NULL, out));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SimulationCreateWithFlow(MPI_Comm comm, PetvesFlow flow, void *ctx, Simulation *out) {
   Simulation s;
   PetscBool only_help;
   PetscFunctionBeginUser;
@@ -79,7 +77,7 @@ PetscErrorCode SimulationCreate(MPI_Comm comm, Simulation *out) {
   *out = s;
   PetscCall(PhaseBegin(PHASE_SETUP));
   PetscCall(PetvesSetupErrors(PETSC_TRUE));
-  PetscCall(Build(comm, s));
+  PetscCall(Build(comm, flow, ctx, s));
   if (s->scene->view) PetscCall(SimulationView(s, PETSC_VIEWER_STDOUT_(comm)));
   PetscCall(PetscOptionsHasHelp(NULL, &only_help));
   if (!only_help) PetscCall(OutputCreate(s->scene, s->scheme, &s->output)); /* -help leaves no files */
@@ -107,32 +105,6 @@ PetscErrorCode SimulationView(Simulation s, PetscViewer viewer) {
   PetscFunctionBeginUser;
   PetscCall(SceneView(s->scene, &s->shape, viewer));
   PetscCall(SchemeView(s->scheme, viewer));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode SimulationGetTime(Simulation s, PetscInt *step, PetscReal *time) {
-  PetscFunctionBeginUser;
-  if (step) *step = s->scheme->state.step;
-  if (time) *time = s->scheme->state.t;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode SimulationGetState(Simulation s, Vec *w, Vec *p, Vec *sigma, Vec *X, Vec *U) {
-  PetscFunctionBeginUser;
-  if (w) *w = s->scheme->state.w;
-  if (p) *p = s->scheme->state.p;
-  if (sigma) *sigma = s->scheme->state.sigma;
-  if (X) *X = s->scheme->state.X;
-  if (U) *U = s->scheme->state.U;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode SimulationStep(Simulation s, const char **failure) {
-  const StepReport *report = &s->scheme->report;
-  PetscFunctionBeginUser;
-  PetscCall(SchemeStep(s->scheme, s->scene->adapt ? s->scene->t_end - s->scheme->state.t : s->scene->dt));
-  *failure = *report->failure ? report->failure : NULL;
-  if (!*failure) PetscCall(OutputSeries(s->output));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -164,28 +136,67 @@ static PetscErrorCode IsSteady(Simulation s, PetscBool *steady) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SimulationRun(Simulation s, PetscBool *good) {
-  const State *q = &s->scheme->state;
-  const char *failure = NULL, *reason = "finished";
-  PetscBool steady = PETSC_FALSE;
+/* One step of at most `most` (with -time_adapt), its row of series.csv and the files that are due. */
+static PetscErrorCode TakeStep(Simulation s, PetscReal most, const char **failure) {
+  const StepReport *report = &s->scheme->report;
   PetscFunctionBeginUser;
+  PetscCall(SimulationBegin(s));
+  PetscCall(SchemeStep(s->scheme, s->scene->adapt ? most : s->scene->dt));
+  *failure = *report->failure ? report->failure : NULL;
+  if (*failure) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(OutputSeries(s->output));
+  PetscCall(WriteDue(s));
+  PetscCall(IsSteady(s, &s->steady));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SimulationBegin(Simulation s) {
+  PetscFunctionBeginUser;
+  if (s->begun) PetscFunctionReturn(PETSC_SUCCESS);
+  s->begun = PETSC_TRUE;
   PetscCall(OutputSeries(s->output));
   PetscCall(OutputFields(s->output));
   s->next_output = s->scene->output_every;
-  while (!failure && !steady && q->t < s->scene->t_end - (s->scene->adapt ? 1e-9 : 0.5) * s->scene->dt) {
-    PetscCall(SimulationStep(s, &failure));
-    if (failure) break;
-    PetscCall(WriteDue(s));
-    PetscCall(IsSteady(s, &steady));
-  }
-  if (steady) reason = "steady";
-  if (failure) reason = failure;
-  if (s->output->frames && s->output->last[COLUMN_TIME] > s->next_output - s->scene->output_every + 1e-9 * q->dt)
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SimulationStep(Simulation s, const char **failure) {
+  const PetscReal left = s->scene->t_end - s->scheme->state.t;
+  PetscFunctionBeginUser;
+  PetscCall(TakeStep(s, left > 0 ? left : PETSC_MAX_REAL, failure));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SimulationAdvance(Simulation s, PetscReal until, PetscBool *stepped, const char **failure) {
+  const State *q = &s->scheme->state;
+  PetscFunctionBeginUser;
+  *failure = NULL;
+  *stepped = !s->steady && q->t < until - (s->scene->adapt ? 1e-9 : 0.5) * s->scene->dt ? PETSC_TRUE : PETSC_FALSE;
+  if (*stepped) PetscCall(TakeStep(s, until - q->t, failure));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SimulationEnd(Simulation s, const char *failure) {
+  const State *q = &s->scheme->state;
+  const char *reason = s->steady ? "steady" : "finished";
+  PetscFunctionBeginUser;
+  PetscCall(SimulationBegin(s));
+  if (s->output->last[COLUMN_TIME] > s->next_output - s->scene->output_every + 1e-9 * q->dt)
     PetscCall(OutputFields(s->output)); /* the end state, when no saved time fell on it */
   PetscCall(OutputCheckpoint(s->output));
-  PetscCall(OutputSummary(s->output, reason));
+  PetscCall(OutputSummary(s->output, failure ? failure : reason));
   PetscCall(OutputProgress(s->output, PETSC_TRUE));
   PetscCall(OutputFinalTable(s->output, failure ? "stopped" : reason));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SimulationRun(Simulation s, PetscBool *good) {
+  const char *failure = NULL;
+  PetscBool stepped = PETSC_TRUE;
+  PetscFunctionBeginUser;
+  PetscCall(SimulationBegin(s));
+  while (stepped && !failure) PetscCall(SimulationAdvance(s, s->scene->t_end, &stepped, &failure));
+  PetscCall(SimulationEnd(s, failure));
   *good = failure ? PETSC_FALSE : PETSC_TRUE;
   if (failure && !s->fluid->grid->rank)
     fprintf(stderr, "petves: error: %s; the last good state is in %s/checkpoint.h5\n", failure, s->output->folder);

@@ -30,20 +30,34 @@ static void NameOption(const char *message, char name[], size_t length) {
   (void)PetscFree(all);
 }
 
+/* One line of text: the message, after the option at fault or, for an error inside PETSc, the function. */
+static void OneLine(const char *function, PetscErrorCode code, const char *message, char text[PETVES_MAX_MESSAGE]) {
+  char before[PETVES_MAX_MESSAGE / 2] = "";
+  size_t n;
+  if (code != PETSC_ERR_USER_INPUT && message) NameOption(message, before, sizeof(before));
+  if (code != PETSC_ERR_USER_INPUT && !base.one_line) (void)PetscSNPrintf(before, sizeof(before), "%s(): ", function);
+  (void)PetscStrncpy(text, before, PETVES_MAX_MESSAGE);
+  n = strlen(text);
+  for (const char *c = message ? message : "unknown error"; *c && n < PETVES_MAX_MESSAGE - 1; c++)
+    text[n++] = *c == '\n' ? ' ' : *c;
+  text[n] = 0;
+}
+
 PetscErrorCode PetvesErrorHandler(MPI_Comm comm, int line, const char *function, const char *file, PetscErrorCode code,
                                   PetscErrorType type, const char *message, void *ctx) {
+  char text[PETVES_MAX_MESSAGE], *kept = (char *)ctx;
   PetscMPIInt rank = 0;
-  if (code != PETSC_ERR_USER_INPUT && !base.one_line)
+  if (!kept && code != PETSC_ERR_USER_INPUT && !base.one_line)
     return PetscTraceBackErrorHandler(comm, line, function, file, code, type, message, ctx);
+  if (type != PETSC_ERROR_INITIAL) return code;
+  OneLine(function, code, message, text);
+  if (kept) {
+    if (!*kept) (void)PetscStrncpy(kept, text, PETVES_MAX_MESSAGE);
+    return code;
+  }
   MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-  if (type == PETSC_ERROR_INITIAL && !rank) {
-    char text[PETVES_MAX_MESSAGE], name[PETVES_MAX_MESSAGE] = "";
-    size_t n = 0;
-    if (code != PETSC_ERR_USER_INPUT && message) NameOption(message, name, sizeof(name));
-    for (const char *c = message ? message : "unknown error"; *c && n < sizeof(text) - 1; c++)
-      text[n++] = *c == '\n' ? ' ' : *c;
-    text[n] = 0;
-    fprintf(stderr, "petves: error: %s%s\n", name, text);
+  if (!rank) {
+    fprintf(stderr, "petves: error: %s\n", text);
     fflush(stderr);
   }
   return code;
@@ -91,6 +105,10 @@ PetscErrorCode PhaseEnd(void) {
   base.depth--;
   PetscCall(PetscLogStagePop());
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscInt PhaseDepth(void) {
+  return base.depth;
 }
 
 PetscReal PhaseSeconds(Phase phase) {

@@ -41,19 +41,21 @@ static PetscScalar WallValue(Output o, int c, PetscInt i, PetscInt j, PetscReal 
   return u[c];
 }
 
-/* Component c of the velocity at cell centres: mean of the cell's two faces, plus the background. */
-static PetscErrorCode VelocityAtCells(Output o, int c, const PetscScalar w[]) {
+PetscErrorCode OutputVelocityAtCells(Output o, int c, const PetscScalar w[], PetscScalar cells[]) {
   const Grid g = o->scheme->fluid->grid;
   const PetscInt columns = g->columns[c], nx = g->n[0];
   const PetscScalar *a = w + (c ? GridLocalU(g) : 0);
   Rows rows;
+  PetscReal *X, *u;
   PetscFunctionBeginUser;
   PetscCall(GridRows(g, (Field)c, a, &rows));
-  for (PetscInt j = 0; j < g->rows[FIELD_P]; j++)
+  PetscCall(PetscCalloc2(2 * nx, &X, 2 * nx, &u));
+  for (PetscInt j = 0; j < g->rows[FIELD_P]; j++) {
+    for (PetscInt i = 0; i < nx; i++) GridPosition(g, FIELD_P, i, j + g->first, X + 2 * i);
+    if (!o->scheme->fluid->total) PetscCall(FlowVelocities(&o->scene->flow, nx, X, u));
     for (PetscInt i = 0; i < nx; i++) {
       const PetscInt index[2] = {i, j + g->first};
       PetscScalar face[2];
-      PetscReal X[2], u[2] = {0, 0};
       for (int side = 0; side < 2; side++) {
         const PetscInt k = index[c] - 1 + side, n = g->n[c];
         if (g->wall[c] && (k < 0 || k == n - 1))
@@ -63,10 +65,10 @@ static PetscErrorCode VelocityAtCells(Output o, int c, const PetscScalar w[]) {
         else
           face[side] = RowAt(&rows, j - 1 + side)[i];
       }
-      GridPosition(g, FIELD_P, index[0], index[1], X);
-      if (!o->scheme->fluid->total) FlowVelocity(&o->scene->flow, X[0], X[1], u);
-      o->cells[j * nx + i] = 0.5 * (face[0] + face[1]) + u[c];
+      cells[j * nx + i] = 0.5 * (face[0] + face[1]) + u[2 * i + c];
     }
+  }
+  PetscCall(PetscFree2(X, u));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -88,9 +90,10 @@ PetscErrorCode OutputFields(Output o) {
   PetscCall(PhaseBegin(PHASE_OUTPUT));
   PetscCall(OutputPath(o, "run.h5", path));
   PetscCall(H5AppendArray(o->comm, o->fields, "/time", o->frames, &q->t));
+  o->scene->flow.time = q->t;
   PetscCall(VecGetArrayRead(q->w, &a));
   for (int c = 0; c < 2; c++) {
-    PetscCall(VelocityAtCells(o, c, a));
+    PetscCall(OutputVelocityAtCells(o, c, a, o->cells));
     PetscCall(H5AppendRows(o->fields, fluid_names[c], o->frames, g->first, g->rows[FIELD_P], o->cells));
   }
   PetscCall(VecRestoreArrayRead(q->w, &a));

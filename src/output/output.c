@@ -76,6 +76,7 @@ PetscErrorCode OutputDestroy(Output *output) {
   }
   PetscCall(PetscFree(o->times));
   PetscCall(PetscFree(o->cells));
+  PetscCall(PetscFree(o->each));
   PetscCall(PetscFree(*output));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -16,6 +16,8 @@ struct _p_Output {
   PetscReal *times;              /* of the saved frames, rank 0 */
   PetscScalar *cells;            /* one cell-centred field, this rank's rows */
   PetscReal last[24];            /* the last row of series.csv, in the order of SeriesColumns */
+  PetscReal *each;               /* [vesicles][COLUMN_COUNT] the vesicles' own columns of it */
+  PetscBool quiet;               /* nothing on the terminal */
   PetscLogDouble start, printed; /* wall time at the start, at the last progress line */
   PetscInt total_solves, total_tension, total_bending, total_coupled;
 };
@@ -38,6 +40,10 @@ PETSC_EXTERN PetscErrorCode OutputSeries(Output output);
 
 /* OutputFields - add the present fields and markers to run.h5 and run.xmf. Collective. */
 PETSC_EXTERN PetscErrorCode OutputFields(Output output);
+
+/* OutputVelocityAtCells - component c of the velocity w (local array) at this rank's cell centres: mean of the cell's
+   two faces, plus the background at the flow's time; cells[rows][nx]. Collective. */
+PETSC_EXTERN PetscErrorCode OutputVelocityAtCells(Output output, int c, const PetscScalar w[], PetscScalar cells[]);
 
 /* OutputCheckpoint - write checkpoint.h5: to a temporary name, then renamed. Collective. */
 PETSC_EXTERN PetscErrorCode OutputCheckpoint(Output output);

@@ -19,6 +19,7 @@ PetscErrorCode SeriesCreate(Output o) {
   const PetscInt vesicles = o->scheme->membrane->vesicles;
   PetscMPIInt failed = 0;
   PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(vesicles * COLUMN_COUNT, &o->each));
   PetscCall(OutputPath(o, "series.csv", path));
   if (!o->rank) {
     o->series = fopen(path, "w");
@@ -77,7 +78,7 @@ PetscErrorCode OutputSeries(Output o) {
   Scheme s = o->scheme;
   const StepReport *r = &s->report;
   const PetscInt vesicles = s->membrane->vesicles;
-  PetscReal *row = o->last, *each;
+  PetscReal *row = o->last, *each = o->each;
   const PetscScalar *X, *U;
   PetscFunctionBeginUser;
   PetscCall(PhaseBegin(PHASE_OUTPUT));
@@ -94,12 +95,11 @@ PetscErrorCode OutputSeries(Output o) {
   row[COLUMN_NSOLVE] = r->solves;
   row[COLUMN_WALL] = r->seconds;
   row[COLUMN_AREA_SHIFT] = r->area_shift;
-  PetscCall(PetscCalloc1((vesicles + 1) * COLUMN_COUNT, &each));
   PetscCall(VecGetArrayRead(s->state.X, &X));
   PetscCall(VecGetArrayRead(s->state.U, &U));
   for (PetscInt v = 0; v < vesicles; v++) PetscCall(VesicleRow(o, v, X, U, each + v * COLUMN_COUNT));
   for (PetscInt v = 0; v < vesicles; v++) Combine(vesicles, each + v * COLUMN_COUNT, row);
-  row[COLUMN_INCLINATION] = each[COLUMN_INCLINATION];
+  row[COLUMN_INCLINATION] = vesicles ? each[COLUMN_INCLINATION] : 0;
   row[COLUMN_FREQUENCY] = vesicles ? each[COLUMN_FREQUENCY] : NAN;
   PetscCall(VecRestoreArrayRead(s->state.U, &U));
   PetscCall(VecRestoreArrayRead(s->state.X, &X));
@@ -107,7 +107,6 @@ PetscErrorCode OutputSeries(Output o) {
   for (PetscInt v = 0; v < vesicles && vesicles > 1 && o->series; v++)
     for (int c = 0; c < PER_VESICLE; c++) PrintNumber(o->series, each[v * COLUMN_COUNT + per_vesicle[c]], PETSC_FALSE);
   if (o->series) fprintf(o->series, "\n");
-  PetscCall(PetscFree(each));
   o->total_solves += r->solves;
   o->total_tension += r->tension_its;
   o->total_bending += r->bending_its;

@@ -83,7 +83,7 @@ PetscErrorCode CoupledAttempt(Scheme s, PetscReal dt, PetscBool *solved) {
   if (s->coupling) { /* operators at X*, history Xhat of the markers, constraint g */
     PetscCall(Extrapolate(b.ratio, q->X, d->old.X, d->Xstar));
     PetscCall(History(&b, 1 / b.a0, q->X, d->old.X, d->Xhat));
-    PetscCall(SchemePlaceMarkers(s, d->Xstar, solved));
+    PetscCall(SchemePlaceMarkers(s, d->Xstar, q->t + d->done + dt, solved));
     if (!*solved) PetscFunctionReturn(PETSC_SUCCESS);
     if (s->self) PetscCall(SchemeSetSelfMobility(s, b.a0, d->Xstar, NULL, d->Xhat));
     if (d->length_target) PetscCall(LengthTarget(s, d, b.a0));
@@ -142,17 +142,19 @@ static PetscErrorCode Advance(Scheme s, Coupled *d, PetscReal dt) {
 /* Start-up: backward Euler on a sixteenth of the step, then BDF2 with doubling steps up to the whole of it. */
 static PetscErrorCode GradedStart(Scheme s, Coupled *d, PetscReal dt, PetscBool *solved) {
   const PetscReal parts[] = {1. / 16, 1. / 16, 1. / 8, 1. / 4, 1. / 2};
-  PetscReal done = 0;
   PetscFunctionBeginUser;
+  d->done = 0;
   for (int k = 0; k < 5; k++) {
     PetscCall(CoupledAttempt(s, parts[k] * dt, solved));
     if (!*solved) { /* the parts done are a good state, at its own time */
-      s->state.t += done * dt;
+      s->state.t += d->done;
+      d->done = 0;
       PetscFunctionReturn(PETSC_SUCCESS);
     }
     PetscCall(Advance(s, d, parts[k] * dt));
-    done += parts[k];
+    d->done += parts[k] * dt;
   }
+  d->done = 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -221,6 +223,15 @@ static PetscErrorCode Options_Coupled(Scheme s, FILE *file) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static PetscErrorCode KSP_Coupled(Scheme s, const char prefix[], KSP *ksp) {
+  Coupled *d = (Coupled *)s->data;
+  PetscFunctionBeginUser;
+  *ksp = NULL;
+  if (d->saddle && !strcmp(prefix, "coupled_")) *ksp = d->saddle->ksp;
+  if (d->direct && !strcmp(prefix, "direct_")) *ksp = d->direct->ksp;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode Destroy_Coupled(Scheme s) {
   Coupled *d = (Coupled *)s->data;
   State *states[2] = {&d->old, &d->next};
@@ -246,6 +257,7 @@ PetscErrorCode SchemeCreate_Coupled(Scheme s) {
   s->step = Step_Coupled;
   s->view = View_Coupled;
   s->options = Options_Coupled;
+  s->ksp = KSP_Coupled;
   s->destroy = Destroy_Coupled;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

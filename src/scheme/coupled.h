@@ -11,6 +11,7 @@ typedef struct {
   DirectSolver direct; /* scheme direct: sparse LU */
   State old, next;     /* the state before, the one being made */
   PetscBool has_old;
+  PetscReal done; /* of the step under way: parts of a graded start (time) */
   PetscInt order;
   PetscBool length_target, area_target;
   StepControl control;

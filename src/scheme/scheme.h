@@ -44,7 +44,8 @@ struct _p_Scheme {
   PetscErrorCode (*setup)(Scheme);
   PetscErrorCode (*step)(Scheme); /* advance the state, or fill in report.failure and leave it */
   PetscErrorCode (*view)(Scheme, PetscViewer);
-  PetscErrorCode (*options)(Scheme, FILE *); /* write the solvers' settings in force as options */
+  PetscErrorCode (*options)(Scheme, FILE *);                 /* write the solvers' settings in force as options */
+  PetscErrorCode (*ksp)(Scheme, const char prefix[], KSP *); /* borrowed; NULL when there is none of this prefix */
   PetscErrorCode (*destroy)(Scheme);
 };
 
@@ -62,9 +63,9 @@ PETSC_EXTERN PetscErrorCode SchemeDestroy(Scheme *scheme);
 PETSC_EXTERN PetscErrorCode SchemeStep(Scheme scheme, PetscReal dt);
 PETSC_EXTERN PetscErrorCode SchemeView(Scheme scheme, PetscViewer viewer);
 
-/* SchemePlaceMarkers - put the coupling and the background data (background, g) at the markers X; false with
+/* SchemePlaceMarkers - put the coupling and the background data (background, g) of time t at the markers X; false with
    report.failure when a marker is too close to a wall. For use inside schemes. */
-PETSC_EXTERN PetscErrorCode SchemePlaceMarkers(Scheme scheme, Vec X, PetscBool *placed);
+PETSC_EXTERN PetscErrorCode SchemePlaceMarkers(Scheme scheme, Vec X, PetscReal t, PetscBool *placed);
 
 /* SchemeBackgroundConstraint - g = -Dm background/h^2. */
 PETSC_EXTERN PetscErrorCode SchemeBackgroundConstraint(Scheme scheme);
