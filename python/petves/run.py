@@ -11,8 +11,10 @@ from typing import Any
 import h5py
 import numpy as np
 
+from petves.errors import Error
 
-class RunError(Exception):
+
+class RunError(Error):
     """A folder or file of a run is missing or cannot be read; the message is one line."""
 
 
