@@ -117,11 +117,11 @@ PetscErrorCode OutputFields(Output o) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* One slab [start of frame t] of a series as an XDMF item. */
+/* Rows first .. first + n - 1 of entry t of a series [frames,all,m] as an XDMF item of dimensions before,n,m. */
 static void HyperSlab(FILE *f, PetscInt t, PetscInt frames, const char name[], PetscInt first, PetscInt n, PetscInt all,
-                      PetscInt m) {
-  fprintf(f, "<DataItem ItemType=\"HyperSlab\" Dimensions=\"%d %d\"><DataItem Dimensions=\"3 3\" Format=\"XML\">",
-          (int)n, (int)m);
+                      PetscInt m, const char before[]) {
+  fprintf(f, "<DataItem ItemType=\"HyperSlab\" Dimensions=\"%s%d %d\"><DataItem Dimensions=\"3 3\" Format=\"XML\">",
+          before, (int)n, (int)m);
   fprintf(f, "%d %d 0 1 1 1 1 %d %d</DataItem>", (int)t, (int)first, (int)n, (int)m);
   fprintf(f,
           "<DataItem Dimensions=\"%d %d %d\" NumberType=\"Float\" Precision=\"8\" "
@@ -129,21 +129,24 @@ static void HyperSlab(FILE *f, PetscInt t, PetscInt frames, const char name[], P
           (int)frames, (int)all, (int)m, name);
 }
 
+/* Values at cell centres are the nodes of a grid of one layer: readers put a two-dimensional grid into the y-z plane.
+ */
 static void XdmfFluid(Output o, FILE *f, PetscInt t) {
   const Grid g = o->scheme->fluid->grid;
   const int nx = (int)g->n[0], ny = (int)g->n[1];
-  fprintf(f,
-          "<Grid Name=\"fluid\" GridType=\"Uniform\"><Topology TopologyType=\"2DCoRectMesh\" Dimensions=\"%d %d\"/>\n",
-          ny + 1, nx + 1);
-  fprintf(f, "<Geometry GeometryType=\"ORIGIN_DXDY\"><DataItem Dimensions=\"2\">%.17g %.17g</DataItem>",
-          (double)g->lo[1], (double)g->lo[0]);
-  fprintf(f, "<DataItem Dimensions=\"2\">%.17g %.17g</DataItem></Geometry>\n", (double)g->h, (double)g->h);
-  fprintf(f, "<Attribute Name=\"pressure\" AttributeType=\"Scalar\" Center=\"Cell\">\n");
-  HyperSlab(f, t, o->frames, "/fluid/p", 0, ny, ny, nx);
-  fprintf(f, "</Attribute>\n<Attribute Name=\"velocity\" AttributeType=\"Vector\" Center=\"Cell\">\n");
-  fprintf(f, "<DataItem ItemType=\"Function\" Function=\"JOIN($0, $1, 0*$0)\" Dimensions=\"%d %d 3\">\n", ny, nx);
-  HyperSlab(f, t, o->frames, "/fluid/u", 0, ny, ny, nx);
-  HyperSlab(f, t, o->frames, "/fluid/v", 0, ny, ny, nx);
+  fprintf(
+      f, "<Grid Name=\"fluid\" GridType=\"Uniform\"><Topology TopologyType=\"3DCoRectMesh\" Dimensions=\"1 %d %d\"/>\n",
+      ny, nx);
+  fprintf(f, "<Geometry GeometryType=\"ORIGIN_DXDYDZ\"><DataItem Dimensions=\"3\">0 %.17g %.17g</DataItem>",
+          (double)(g->lo[1] + g->h / 2), (double)(g->lo[0] + g->h / 2));
+  fprintf(f, "<DataItem Dimensions=\"3\">%.17g %.17g %.17g</DataItem></Geometry>\n", (double)g->h, (double)g->h,
+          (double)g->h);
+  fprintf(f, "<Attribute Name=\"pressure\" AttributeType=\"Scalar\" Center=\"Node\">\n");
+  HyperSlab(f, t, o->frames, "/fluid/p", 0, ny, ny, nx, "1 ");
+  fprintf(f, "</Attribute>\n<Attribute Name=\"velocity\" AttributeType=\"Vector\" Center=\"Node\">\n");
+  fprintf(f, "<DataItem ItemType=\"Function\" Function=\"JOIN($0, $1, 0*$0)\" Dimensions=\"1 %d %d 3\">\n", ny, nx);
+  HyperSlab(f, t, o->frames, "/fluid/u", 0, ny, ny, nx, "1 ");
+  HyperSlab(f, t, o->frames, "/fluid/v", 0, ny, ny, nx, "1 ");
   fprintf(f, "</DataItem></Attribute></Grid>\n");
 }
 
@@ -157,7 +160,7 @@ static void XdmfVesicle(Output o, FILE *f, PetscInt t, PetscInt v) {
           (int)n + 1, (int)n + 1);
   for (PetscInt k = 0; k <= n; k++) fprintf(f, "%d ", (int)(k % n));
   fprintf(f, "</DataItem></Topology>\n<Geometry GeometryType=\"XY\">\n");
-  HyperSlab(f, t, o->frames, "/vesicle/markers", first, n, m->M, 2);
+  HyperSlab(f, t, o->frames, "/vesicle/markers", first, n, m->M, 2, "");
   fprintf(f, "</Geometry>\n<Attribute Name=\"tension\" AttributeType=\"Scalar\" Center=\"Node\">\n");
   fprintf(f,
           "<DataItem ItemType=\"HyperSlab\" Dimensions=\"%d\"><DataItem Dimensions=\"3 2\" Format=\"XML\">%d %d 1 1 1 "
