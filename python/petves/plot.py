@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Callable
 
 import numpy as np
 
 from petves.run import Run
 
 if TYPE_CHECKING:
+    from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
@@ -91,21 +93,46 @@ def plot_conservation(run: Run) -> Path:
     return save_figure(figure, run.folder / "conservation.png")
 
 
-def _membrane(axes: Axes, run: Run, frame: int, limits: tuple[float, float], color: str) -> object:
-    """Draw the vesicles' edges coloured by tension over a wider line of one colour; return what a colour bar needs."""
+@dataclass
+class FieldKind:
+    """How a field is drawn: its values from u, v, p, its colours, and the colour of what lies on it."""
+
+    values: Callable[[np.ndarray, np.ndarray, np.ndarray], np.ndarray]
+    label: str
+    cmap: str
+    line: str
+    signed: bool
+
+
+FIELDS = {
+    "pressure": FieldKind(lambda u, v, p: p, "pressure $p$ (length$^2$/time$^2$)", "RdBu_r", "black", True),
+    "speed": FieldKind(
+        lambda u, v, p: np.hypot(u, v), r"speed $|\mathbf{u}|$ (length/time)", "viridis", "white", False
+    ),
+}
+
+
+def draw_membranes(axes: Axes, run: Run, frame: int, limits: tuple[float, float], color: str) -> list[Artist]:
+    """Draw the vesicles' edges coloured by tension over a wider line of one colour, the first outline dotted.
+
+    Returns
+    -------
+    list of Artist
+        What was drawn; the last one is what a colour bar of the tension needs.
+    """
     from matplotlib.collections import LineCollection
 
-    lines = None
+    drawn: list[Artist] = []
     for vesicle in range(run.vesicles):
         initial, points = run.outline(0, vesicle), run.outline(frame, vesicle)
-        axes.plot(*initial.T, ":", color=color, lw=1)
-        axes.plot(*points.T, "-", color=color, lw=4, solid_joinstyle="round")
+        drawn += axes.plot(*initial.T, ":", color=color, lw=1)
+        drawn += axes.plot(*points.T, "-", color=color, lw=4, solid_joinstyle="round")
         edges = np.stack([np.roll(points[:-1], 1, axis=0), points[:-1]], axis=1)
         lines = LineCollection(edges, cmap="plasma", lw=2.4, capstyle="round")
         lines.set_array(run.edge_tension(frame, vesicle))
         lines.set_clim(*limits)
-        axes.add_collection(lines)
-    return lines
+        drawn.append(axes.add_collection(lines))
+    return drawn
 
 
 def plot_field(run: Run, frame: int = -1) -> Path:
@@ -119,24 +146,25 @@ def plot_field(run: Run, frame: int = -1) -> Path:
     tall = min(max(4.7 * sides[1] / sides[0], 1.6), 9.0)
     figure, axes = new_figure(12.4, tall + 1.9, columns=2)
     figure.set_layout_engine("compressed")  # the layout for axes of equal scales
-    tension = run.tension[frame]
+    tension, drawn = run.tension[frame], []
     limits = (tension.min(), tension.max()) if run.vesicles else (0.0, 1.0)
-    largest = np.max(np.abs(p)) or 1.0
-    speed = np.hypot(u, v)
-    pictures = (
-        (p, "RdBu_r", -largest, largest, "pressure $p$ (length$^2$/time$^2$)", "black"),
-        (speed, "viridis", 0.0, speed.max() or 1.0, r"speed $|\mathbf{u}|$ (length/time)", "white"),
-    )
-    for panel, (values, cmap, low, high, label, color) in zip(axes, pictures):
-        image = panel.imshow(values, origin="lower", extent=run.box, cmap=cmap, vmin=low, vmax=high, aspect="equal")
-        figure.colorbar(image, ax=panel, label=label, location="bottom", shrink=0.8, pad=0.02)
-        lines = _membrane(panel, run, frame, limits, color)
+    for panel, kind in zip(axes, FIELDS.values()):
+        values = kind.values(u, v, p)
+        high = np.max(np.abs(values)) or 1.0
+        low = -high if kind.signed else 0.0
+        image = panel.imshow(
+            values, origin="lower", extent=run.box, cmap=kind.cmap, vmin=low, vmax=high, aspect="equal"
+        )
+        figure.colorbar(image, ax=panel, label=kind.label, location="bottom", shrink=0.8, pad=0.02)
+        drawn = draw_membranes(panel, run, frame, limits, kind.line)
         panel.set(xlabel="$x$ (length)", ylabel="$y$ (length)", xlim=run.box[:2], ylim=run.box[2:])
     every = max(1, round(max(len(x), len(y)) / ARROWS))
     cut = np.s_[every // 2 :: every]
     axes[1].quiver(x[cut], y[cut], u[cut, cut], v[cut, cut], color="white", alpha=0.8, pivot="mid", width=0.003)
-    if lines is not None:
-        figure.colorbar(lines, ax=list(axes), label=r"tension $\sigma$ (length$^3$/time$^2$)", shrink=0.7, aspect=30)
+    if drawn:
+        figure.colorbar(
+            drawn[-1], ax=list(axes), label=r"tension $\sigma$ (length$^3$/time$^2$)", shrink=0.7, aspect=30
+        )
     figure.suptitle(f"$t$ = {run.time[frame]:g}")
     return save_figure(figure, run.folder / "field.png")
 

@@ -157,7 +157,7 @@ def _open(path: Path) -> h5py.File:
     if not path.is_file():
         raise RunError(f"{path}: no such file")
     try:
-        return h5py.File(path, "r")
+        return h5py.File(path, "r", locking=False)  # the run may be going on
     except OSError as error:
         raise RunError(f"{path}: not a readable HDF5 file ({str(error).splitlines()[0]})") from None
 
