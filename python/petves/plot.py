@@ -135,6 +135,35 @@ def draw_membranes(axes: Axes, run: Run, frame: int, limits: tuple[float, float]
     return drawn
 
 
+def plot_motion(run: Run) -> Path:
+    """Draw the inclination and the tank-treading frequency against time."""
+    figure, (axes,) = new_figure(6, 4)
+    time = run.series["time"]
+    for vesicle in range(run.vesicles):
+        suffix = f"_{vesicle + 1}" if run.vesicles > 1 else ""
+        angle = np.unwrap(run.series["inclination" + suffix], period=np.pi) / np.pi
+        name = f" of vesicle {vesicle + 1}" if run.vesicles > 1 else ""
+        axes.plot(time, angle, color=f"C{vesicle}", label=rf"inclination $\theta/\pi${name}")
+    other = axes.twinx()
+    for vesicle in range(run.vesicles):
+        suffix = f"_{vesicle + 1}" if run.vesicles > 1 else ""
+        other.plot(time, run.series["frequency" + suffix], "--", color=f"C{vesicle}", label="frequency")
+    axes.set(xlabel="time $t$", ylabel=r"inclination $\theta/\pi$")
+    other.set(ylabel=r"frequency (radians/time), dashed")
+    axes.grid(alpha=0.3)
+    if run.vesicles > 1:
+        axes.legend(frameon=False)
+    return save_figure(figure, run.folder / "motion.png")
+
+
+def draw_outlines(axes: Axes, run: Run, frame: int, color: object, style: str, label: str | None = None) -> None:
+    """Draw the vesicles' outlines at a saved time, marker 0 as a dot."""
+    for vesicle in range(run.vesicles):
+        points = run.outline(frame, vesicle)
+        axes.plot(*points.T, style, color=color, lw=1.5, label=label if vesicle == 0 else None)
+        axes.plot(*points[0], "o", color=color, ms=4)
+
+
 def plot_field(run: Run, frame: int = -1) -> Path:
     """Draw the membrane, coloured by tension, over pressure and over speed with arrows, at a saved time.
 
@@ -194,11 +223,7 @@ def plot_shapes(run: Run) -> Path:
     frames = np.unique(np.linspace(0, len(run.time) - 1, min(OUTLINES, len(run.time))).round().astype(int))
     colors = matplotlib.colormaps["viridis"](np.linspace(0, 0.9, len(frames)))
     for frame, color in zip(frames, colors):
-        for vesicle in range(run.vesicles):
-            points = run.outline(frame, vesicle)
-            label = f"{run.time[frame]:.4g}" if vesicle == 0 else None
-            axes.plot(*points.T, "-", color=color, lw=1.5, label=label)
-            axes.plot(*points[0], "o", color=color, ms=4)
+        draw_outlines(axes, run, frame, color, "-", label=f"{run.time[frame]:.4g}")
     axes.set(xlabel="$x$ (length)", ylabel="$y$ (length)", aspect="equal")
     axes.margins(0.08)
     axes.grid(alpha=0.3)
