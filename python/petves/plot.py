@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
 ARROWS = 20  # arrows across the longer side of a velocity picture
 OUTLINES = 7  # outlines in shapes.png
+LEAST_SPAN = 0.02  # of an axis of angles over pi
 FLOOR = 1e-16  # smallest value on a logarithmic axis
 
 
@@ -144,12 +145,14 @@ def plot_motion(run: Run) -> Path:
         angle = np.unwrap(run.series["inclination" + suffix], period=np.pi) / np.pi
         name = f" of vesicle {vesicle + 1}" if run.vesicles > 1 else ""
         axes.plot(time, angle, color=f"C{vesicle}", label=rf"inclination $\theta/\pi${name}")
-    other = axes.twinx()
-    for vesicle in range(run.vesicles):
-        suffix = f"_{vesicle + 1}" if run.vesicles > 1 else ""
-        other.plot(time, run.series["frequency" + suffix], "--", color=f"C{vesicle}", label="frequency")
-    axes.set(xlabel="time $t$", ylabel=r"inclination $\theta/\pi$")
-    other.set(ylabel=r"frequency (radians/time), dashed")
+    if any(np.isfinite(run.series[name]).any() for name in run.series if name.startswith("frequency")):
+        other = axes.twinx()
+        other.set(ylabel="frequency (radians/time), dashed")
+        for vesicle in range(run.vesicles):
+            suffix = f"_{vesicle + 1}" if run.vesicles > 1 else ""
+            other.plot(time, run.series["frequency" + suffix], "--", color=f"C{vesicle}")
+    middle, half = np.mean(axes.get_ylim()), max(np.ptp(axes.get_ylim()) / 2, LEAST_SPAN / 2)
+    axes.set(xlabel="time $t$", ylabel=r"inclination $\theta/\pi$", ylim=(middle - half, middle + half))
     axes.grid(alpha=0.3)
     if run.vesicles > 1:
         axes.legend(frameon=False)

@@ -94,7 +94,6 @@ def _data(run: Run) -> dict[str, Any]:
     raw = [run.fields(frame) for frame in frames]
     speed = np.stack([coarsen(np.hypot(u, v)) for u, v, _ in raw])
     pressure = np.stack([coarsen(p) for _, _, p in raw])
-    largest = np.abs(pressure).max() or 1.0
     tension = run.tension[frames]
     return {
         "box": [float(x) for x in run.box],
@@ -104,8 +103,8 @@ def _data(run: Run) -> dict[str, Any]:
         "tension": [[float(f"{x:.4g}") for x in row] for row in tension],
         "tension_limits": [float(tension[1:].min()), float(tension[1:].max())] if tension[1:].size else [0.0, 1.0],
         "fields": {
-            "speed": _field(speed, 0.0, float(speed.max()) or 1.0, "viridis", "speed (length/time)"),
-            "pressure": _field(pressure, -largest, largest, "RdBu_r", "pressure (length²/time²)"),
+            "speed": _field(speed, False, "viridis", "speed (length/time)"),
+            "pressure": _field(pressure, True, "RdBu_r", "pressure (length²/time²)"),
         },
         "colours": {name: _colours(name) for name in ("viridis", "RdBu_r", "plasma")},
     }
@@ -119,12 +118,20 @@ def coarsen(values: np.ndarray) -> np.ndarray:
     return padded.reshape(ny, block, nx, block).mean(axis=(1, 3))
 
 
-def _field(values: np.ndarray, low: float, high: float, colours: str, label: str) -> dict[str, Any]:
-    """Return a field of all frames in eight bits."""
-    scaled = np.clip(np.round(255 * (values - low) / (high - low)), 0, 255).astype(np.uint8)
+def _field(values: np.ndarray, signed: bool, colours: str, label: str) -> dict[str, Any]:
+    """Return a field of all frames in eight bits, each frame over its own range, from minus to plus if `signed`."""
+    high = np.abs(values).max(axis=(1, 2))
+    high[high == 0] = 1.0
+    low = -high if signed else 0 * high
+    share = (values - low[:, None, None]) / (high - low)[:, None, None]
+    scaled = np.clip(np.round(255 * share), 0, 255).astype(np.uint8)
     text = base64.b64encode(scaled.tobytes()).decode()
     shape = [int(n) for n in values.shape[1:]]
-    return {"values": text, "shape": shape, "low": low, "high": high, "colours": colours, "label": label}
+    return {"values": text, "shape": shape, **_ends(low, high), "colours": colours, "label": label}
+
+
+def _ends(low: np.ndarray, high: np.ndarray) -> dict[str, list[float]]:
+    return {name: [float(f"{x:.4g}") for x in values] for name, values in (("low", low), ("high", high))}
 
 
 def _colours(name: str) -> str:

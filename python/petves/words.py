@@ -7,7 +7,7 @@ import numpy as np
 from petves.run import Run
 
 FLOWS = {
-    "quiescent": "The fluid is at rest far from the membrane",
+    "quiescent": "There is no background flow",
     "shear": "The background is a shear flow of rate {flow_rate}",
     "poiseuille": "The background is a Poiseuille flow of peak velocity {flow_peak_velocity} and half width {flow_half_width}",
     "extension": "The background is an extension of rate {flow_rate}",
@@ -18,7 +18,6 @@ INERTIA = {
     "unsteady": "unsteady Stokes flow",
     "convective": "Navier-Stokes flow, with convection",
 }
-BOUNDARY = {"wall": "walls", "periodic": "periodic"}
 
 
 def scene_in_words(run: Run) -> list[str]:
@@ -26,9 +25,8 @@ def scene_in_words(run: Run) -> list[str]:
     o = {name: _short(value) for name, value in run.options().items()}
     x, y = ([f"{c:g}" for c in run.box[k : k + 2]] for k in (0, 2))
     fluid = (
-        f"A box [{x[0]}, {x[1]}] x [{y[0]}, {y[1]}] of {o['domain_cells'].replace(',', ' x ')} cells (h = {run.h:g}) with "
-        f"{BOUNDARY.get(o['domain_bc_x'])} in x and {BOUNDARY.get(o['domain_bc_y'])} in y holds a fluid of viscosity "
-        f"{run.nu:g}: {INERTIA.get(o['fluid_inertia'], o['fluid_inertia'])}. {FLOWS[o['flow_type']].format(**o)}."
+        f"A box [{x[0]}, {x[1]}] x [{y[0]}, {y[1]}] of {o['domain_cells'].replace(',', ' x ')} cells (h = {run.h:g}), "
+        f"{_boundaries(o['domain_bc_x'], o['domain_bc_y'])}, holds a fluid of viscosity {run.nu:g}: {INERTIA.get(o['fluid_inertia'], o['fluid_inertia'])}. {FLOWS[o['flow_type']].format(**o)}."
     )
     return [fluid, _vesicles(run, o), _method(run, o)]
 
@@ -39,6 +37,11 @@ def _short(value: str) -> str:
         return ",".join(f"{float(item):g}" for item in value.split(","))
     except ValueError:
         return value
+
+
+def _boundaries(x: str, y: str) -> str:
+    names = {"wall": "walls", "periodic": "periodic"}
+    return f"{names[x]} in x and y" if x == y else f"{names[x]} in x, {names[y]} in y"
 
 
 def _vesicles(run: Run, o: dict[str, str]) -> str:
