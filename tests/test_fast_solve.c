@@ -66,7 +66,10 @@ static PetscErrorCode Difference(FastSolver one, FastSolver two, PetscReal *erro
 static const struct {
   const char *name;
   PetscReal a0, nu;
-} problems[] = {{"Helmholtz dt = 1/128", 128, 1}, {"Helmholtz dt = 10", 0.1, 3}, {"Poisson", 0, -1}};
+} problems[] = {{"Helmholtz dt = 1/128", 128, 1},
+                {"Helmholtz dt = 10", 0.1, 3},
+                {"Helmholtz without a0", 0, 2},
+                {"Poisson", 0, -1}};
 
 static PetscErrorCode CheckGrid(const Size *size, const char bc[], PetscBool hypre) {
   static const char fields[] = "uvp";
@@ -79,15 +82,23 @@ static PetscErrorCode CheckGrid(const Size *size, const char bc[], PetscBool hyp
   PetscCall(TestScene(options, &scene));
   PetscCall(GridCreate(scene, &grid));
   for (int f = 0; f < 3; f++) {
-    FastSolver fftw, other;
+    FastSolver fftw, tridiagonal, other;
     PetscCall(FastSolverCreate(grid, (Field)f, "fftw", 0, &fftw));
+    PetscCall(FastSolverCreate(grid, (Field)f, "fftw_tridiagonal", 0, &tridiagonal));
     if (hypre) PetscCall(FastSolverCreate(grid, (Field)f, "hypre", 0, &other));
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < 4; k++) {
       PetscReal error, mean;
       PetscCall(FastSolverSetCoefficients(fftw, problems[k].a0, problems[k].nu));
       PetscCall(Residual(fftw, &error, &mean));
       CHECK(error < 1e-12, "%s %s, %c, %s: residual %.1e", size->cells, bc, fields[f], problems[k].name, error);
       if (fftw->singular) CHECK(mean < 1e-14, "   the solution's mean is zero: %.1e", mean);
+      PetscCall(FastSolverSetCoefficients(tridiagonal, problems[k].a0, problems[k].nu));
+      PetscCall(Residual(tridiagonal, &error, &mean));
+      CHECK(error < 1e-12, "%s %s, %c, %s: fftw_tridiagonal's residual %.1e", size->cells, bc, fields[f],
+            problems[k].name, error);
+      if (tridiagonal->singular) CHECK(mean < 1e-14, "   the solution's mean is zero: %.1e", mean);
+      PetscCall(Difference(fftw, tridiagonal, &error));
+      CHECK(error < 1e-11, "   fftw_tridiagonal against fftw %.1e", error);
       if (!hypre) continue;
       PetscCall(FastSolverSetCoefficients(other, problems[k].a0, problems[k].nu));
       PetscCall(Difference(fftw, other, &error));
@@ -95,6 +106,7 @@ static PetscErrorCode CheckGrid(const Size *size, const char bc[], PetscBool hyp
             error);
     }
     PetscCall(FastSolverDestroy(&fftw));
+    PetscCall(FastSolverDestroy(&tridiagonal));
     if (hypre) PetscCall(FastSolverDestroy(&other));
   }
   PetscCall(GridDestroy(&grid));

@@ -1,110 +1,26 @@
 #include "coupling/saddle.h"
 
-static PetscInt VelocitySize(Grid g) {
-  return GridLocalU(g) + g->columns[FIELD_V] * g->rows[FIELD_V];
-}
-static PetscInt PressureSize(Grid g) {
-  return g->columns[FIELD_P] * g->rows[FIELD_P];
-}
-
-PetscErrorCode SaddleSplit(Saddle s, int slot, PetscScalar block[], Vec sigma) {
-  const Grid g = s->fluid->grid;
-  PetscScalar *a;
-  PetscFunctionBeginUser;
-  PetscCall(VecPlaceArray(s->w[slot], block));
-  PetscCall(VecPlaceArray(s->p[slot], block + VelocitySize(g)));
-  if (!s->coupling || !sigma) PetscFunctionReturn(PETSC_SUCCESS);
-  const PetscInt M = s->coupling->membrane->M;
-  PetscCall(VecGetArray(sigma, &a));
-  if (!g->rank) PetscCall(PetscArraycpy(a, block + VelocitySize(g) + PressureSize(g), M));
-  PetscCallMPI(MPI_Bcast(a, (PetscMPIInt)M, MPIU_SCALAR, 0, g->comm));
-  PetscCall(VecRestoreArray(sigma, &a));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode SaddleJoin(Saddle s, int slot, PetscScalar block[], Vec sigma) {
-  const Grid g = s->fluid->grid;
-  const PetscScalar *a;
-  PetscFunctionBeginUser;
-  PetscCall(VecResetArray(s->w[slot]));
-  PetscCall(VecResetArray(s->p[slot]));
-  if (!s->coupling || !sigma || g->rank) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(VecGetArrayRead(sigma, &a));
-  PetscCall(PetscArraycpy(block + VelocitySize(g) + PressureSize(g), a, s->coupling->membrane->M));
-  PetscCall(VecRestoreArrayRead(sigma, &a));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
+#define MOST_ROUNDS 4
 
 PetscReal SaddleScale(Saddle s, PetscInt k) {
   const PetscReal h = s->fluid->grid->h;
   return PetscSqr(h) / s->coupling->membrane->spacing[k] * (1 + h * s->fluid->a0);
 }
 
-/* Third row, scaled: S^T u = Dm U/h^2. */
-static void ScaledStretching(Saddle s, const PetscScalar U[], PetscScalar y[]) {
-  const Coupling c = s->coupling;
-  MembraneStretching(c->membrane, c->tau, U, y);
-  for (PetscInt k = 0; k < c->membrane->M; k++) y[k] *= SaddleScale(s, k) / PetscSqr(c->grid->h);
-}
-
-/* The membrane's part of A x: forces from sigma and from U = E u, and the third row; one interpolation, one spreading.
- */
-static PetscErrorCode MultMembrane(Saddle s, Vec w, Vec sigma, Vec yw, Vec ysigma) {
-  Coupling c = s->coupling;
-  const PetscReal h2 = PetscSqr(c->grid->h);
-  const PetscScalar *U, *sa;
-  PetscScalar *F, *y;
-  PetscFunctionBeginUser;
-  PetscCall(CouplingInterpolate(c, c->E, w, s->U));
-  PetscCall(VecSet(s->F, 0));
-  PetscCall(VecGetArrayRead(sigma, &sa));
-  if (s->self) { /* U = R (E u - Theta Dm^T sigma) */
-    PetscScalar *ua;
-    PetscCall(VecGetArray(s->U, &ua));
-    PetscCall(SelfMobilityApply(s->self, sa, NULL, ua));
-    PetscCall(VecRestoreArray(s->U, &ua));
-  }
-  PetscCall(VecGetArrayRead(s->U, &U));
-  PetscCall(VecGetArray(s->F, &F));
-  PetscCall(VecGetArray(ysigma, &y));
-  MembraneStretchingTranspose(c->membrane, c->tau, 1 / h2, sa, F);
-  if (c->membrane->bending > 0) MembraneBending(c->membrane, c->membrane->bending / (h2 * s->fluid->a0), U, c->work, F);
-  ScaledStretching(s, U, y);
-  PetscCall(VecRestoreArray(ysigma, &y));
-  PetscCall(VecRestoreArray(s->F, &F));
-  PetscCall(VecRestoreArrayRead(sigma, &sa));
-  PetscCall(VecRestoreArrayRead(s->U, &U));
-  PetscCall(CouplingSpreadAdd(c, 1, c->E, s->F, yw));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode MultSaddle(Mat A, Vec x, Vec y) {
-  Saddle s;
-  PetscScalar *xa, *ya;
-  PetscFunctionBeginUser;
-  PetscCall(MatShellGetContext(A, &s));
-  Fluid f = s->fluid;
-  PetscCall(VecGetArrayRead(x, (const PetscScalar **)&xa));
-  PetscCall(VecGetArray(y, &ya));
-  PetscCall(SaddleSplit(s, 0, xa, s->sigma));
-  PetscCall(SaddleSplit(s, 1, ya, NULL));
-  PetscCall(MatMult(f->H, s->w[0], s->w[1]));
-  PetscCall(GridGradient(f->grid, 1, s->p[0], PETSC_TRUE, s->w[1]));
-  PetscCall(GridGradientTranspose(f->grid, 1, s->w[0], s->p[1]));
-  if (s->coupling) PetscCall(MultMembrane(s, s->w[0], s->sigma, s->w[1], s->r_s));
-  PetscCall(SaddleJoin(s, 0, xa, NULL));
-  PetscCall(SaddleJoin(s, 1, ya, s->r_s));
-  PetscCall(VecRestoreArray(y, &ya));
-  PetscCall(VecRestoreArrayRead(x, (const PetscScalar **)&xa));
-  PetscFunctionReturn(PETSC_SUCCESS);
+PetscReal SaddleVelocityScale(Saddle s, PetscInt k) {
+  const Membrane m = s->coupling->membrane;
+  const PetscReal stiffness = m->bending / (s->fluid->a0 * s->fluid->nu * PetscPowRealInt(m->spacing[k], 3));
+  return SaddleScale(s, k) / PetscSqr(s->fluid->grid->h) * PetscSqrtReal(1 + stiffness);
 }
 
 static PetscErrorCode CreateMembranePart(Scene scene, Saddle s) {
+  const Membrane m = s->coupling->membrane;
   PetscFunctionBeginUser;
-  PetscCall(MembraneCreateMarkerVec(s->coupling->membrane, &s->U));
+  s->n_tension = m->M;
+  s->n_velocity = 2 * m->M;
+  PetscCall(MembraneCreateMarkerVec(m, &s->U));
   PetscCall(VecDuplicate(s->U, &s->F));
-  PetscCall(MembraneCreateTensionVec(s->coupling->membrane, &s->sigma));
-  PetscCall(VecDuplicate(s->sigma, &s->r_s));
+  PetscCall(PetscMalloc1(m->M, &s->tension));
   if (s->type == MOBILITY_TABLE) {
     PetscCall(MobilityCreate(scene, s->coupling, &s->mobility));
     PetscCall(DenseBlocksCreate(s->coupling, &s->blocks));
@@ -119,12 +35,51 @@ static PetscErrorCode CreateMembranePart(Scene scene, Saddle s) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SaddleCreate(Scene scene, Fluid fluid, Coupling coupling, SelfMobility self, Saddle *out) {
-  const Grid g = fluid->grid;
-  const PetscInt nw = VelocitySize(g), np = PressureSize(g),
-                 n = nw + np + (coupling && !g->rank ? coupling->membrane->M : 0);
-  Saddle s;
+/* -coupled_ksp_rtol is relative to the norm of the block system's right-hand side, not to what the initial guess left
+   of it. */
+static PetscErrorCode Converged(KSP ksp, PetscInt it, PetscReal norm, KSPConvergedReason *reason, void *ctx) {
+  const Saddle s = (Saddle)ctx;
+  PetscReal rtol, atol, dtol;
+  PetscFunctionBeginUser;
+  PetscCall(KSPGetTolerances(ksp, &rtol, &atol, &dtol, NULL));
+  *reason = KSP_CONVERGED_ITERATING;
+  if (!it) s->start = norm;
+  if (PetscIsInfOrNanReal(norm))
+    *reason = KSP_DIVERGED_NANORINF;
+  else if (norm <= atol)
+    *reason = KSP_CONVERGED_ATOL;
+  else if (norm <= rtol * s->reference)
+    *reason = KSP_CONVERGED_RTOL;
+  else if (it > 0 && norm >= dtol * PetscMax(s->reference, s->start))
+    *reason = KSP_DIVERGED_DTOL;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CreateKSP(Saddle s, PetscInt n) {
   PC pc;
+  PetscFunctionBeginUser;
+  PetscCall(MatCreateShell(PETSC_COMM_SELF, n, n, n, n, s, &s->A));
+  PetscCall(MatShellSetOperation(s->A, MATOP_MULT, (void (*)(void))SaddleMult));
+  PetscCall(KSPCreate(PETSC_COMM_SELF, &s->ksp));
+  PetscCall(KSPSetOptionsPrefix(s->ksp, "coupled_"));
+  PetscCall(KSPSetType(s->ksp, KSPFGMRES));
+  PetscCall(KSPGMRESSetRestart(s->ksp, 60));
+  PetscCall(KSPGMRESSetCGSRefinementType(s->ksp, KSP_GMRES_CGS_REFINE_IFNEEDED));
+  PetscCall(KSPSetTolerances(s->ksp, 1e-6, 0, PETSC_DEFAULT, 200));
+  PetscCall(KSPSetOperators(s->ksp, s->A, s->A));
+  PetscCall(KSPGetPC(s->ksp, &pc));
+  PetscCall(PCSetType(pc, PCSHELL));
+  PetscCall(PCShellSetContext(pc, s));
+  PetscCall(PCShellSetApply(pc, SaddlePrecondition));
+  PetscCall(PCShellSetName(pc, "mobility of the markers, slip of the walls"));
+  PetscCall(KSPSetFromOptions(s->ksp));
+  PetscCall(KSPSetConvergenceTest(s->ksp, Converged, s, NULL));
+  PetscCall(PetscObjectTypeCompare((PetscObject)s->ksp, KSPFGMRES, &s->flexible));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SaddleCreate(Scene scene, Fluid fluid, Coupling coupling, SelfMobility self, Saddle *out) {
+  Saddle s;
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&s));
   *out = s;
@@ -135,32 +90,13 @@ PetscErrorCode SaddleCreate(Scene scene, Fluid fluid, Coupling coupling, SelfMob
   s->fresh_its = -1;
   s->life = 1000;
   PetscCall(StokesCreate(fluid, &s->stokes));
-  PetscCall(VecCreateMPI(g->comm, n, PETSC_DETERMINE, &s->x));
-  PetscCall(VecDuplicate(s->x, &s->b));
-  for (int k = 0; k < 2; k++) {
-    PetscCall(VecCreateMPIWithArray(g->comm, 1, nw, PETSC_DETERMINE, NULL, &s->w[k]));
-    PetscCall(VecCreateMPIWithArray(g->comm, 1, np, PETSC_DETERMINE, NULL, &s->p[k]));
-  }
-  PetscCall(VecCreateMPI(g->comm, nw, PETSC_DETERMINE, &s->r));
-  PetscCall(VecDuplicate(s->r, &s->u1));
-  PetscCall(VecCreateMPI(g->comm, np, PETSC_DETERMINE, &s->p1));
+  PetscCall(WallsCreate(fluid, &s->walls));
+  PetscCall(DMCreateGlobalVector(fluid->grid->velocity, &s->r));
   if (coupling) PetscCall(CreateMembranePart(scene, s));
-  PetscCall(MatCreateShell(g->comm, n, n, PETSC_DETERMINE, PETSC_DETERMINE, s, &s->A));
-  PetscCall(MatShellSetOperation(s->A, MATOP_MULT, (void (*)(void))MultSaddle));
-  PetscCall(KSPCreate(g->comm, &s->ksp));
-  PetscCall(KSPSetOptionsPrefix(s->ksp, "coupled_"));
-  PetscCall(KSPSetType(s->ksp, KSPFGMRES));
-  PetscCall(KSPGMRESSetRestart(s->ksp, 60));
-  PetscCall(KSPGMRESSetCGSRefinementType(s->ksp, KSP_GMRES_CGS_REFINE_IFNEEDED));
-  PetscCall(KSPSetTolerances(s->ksp, 1e-6, PETSC_DEFAULT, PETSC_DEFAULT, 200));
-  PetscCall(KSPSetInitialGuessNonzero(s->ksp, PETSC_TRUE));
-  PetscCall(KSPSetOperators(s->ksp, s->A, s->A));
-  PetscCall(KSPGetPC(s->ksp, &pc));
-  PetscCall(PCSetType(pc, PCSHELL));
-  PetscCall(PCShellSetContext(pc, s));
-  PetscCall(PCShellSetApply(pc, SaddlePrecondition));
-  PetscCall(PCShellSetName(pc, "Stokes solves around the Lagrangian problem"));
-  PetscCall(KSPSetFromOptions(s->ksp));
+  const PetscInt n = s->n_velocity + s->n_tension + s->walls->n;
+  PetscCall(VecCreateSeq(PETSC_COMM_SELF, n, &s->x));
+  PetscCall(VecDuplicate(s->x, &s->b));
+  PetscCall(CreateKSP(s, n));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -168,9 +104,20 @@ PetscErrorCode SaddleDestroy(Saddle *saddle) {
   Saddle s = *saddle;
   PetscFunctionBeginUser;
   if (!s) PetscFunctionReturn(PETSC_SUCCESS);
-  Vec *vectors[] = {&s->x,  &s->b,  &s->w[0], &s->w[1], &s->p[0],  &s->p[1], &s->r,
-                    &s->u1, &s->p1, &s->U,    &s->F,    &s->sigma, &s->r_s};
-  for (size_t i = 0; i < sizeof(vectors) / sizeof(vectors[0]); i++) PetscCall(VecDestroy(vectors[i]));
+  for (int k = 0; k <= SADDLE_KEPT; k++) {
+    PetscCall(VecDestroy(&s->w[k]));
+    PetscCall(VecDestroy(&s->p[k]));
+    if (k == SADDLE_KEPT) break;
+    PetscCall(VecDestroy(&s->z[k]));
+    PetscCall(VecDestroy(&s->Az[k]));
+  }
+  PetscCall(VecDestroy(&s->x));
+  PetscCall(VecDestroy(&s->b));
+  PetscCall(VecDestroy(&s->r));
+  PetscCall(VecDestroy(&s->U));
+  PetscCall(VecDestroy(&s->F));
+  PetscCall(PetscFree(s->tension));
+  PetscCall(WallsDestroy(&s->walls));
   PetscCall(StokesDestroy(&s->stokes));
   PetscCall(DenseBlocksDestroy(&s->blocks));
   PetscCall(MobilityDestroy(&s->mobility));
@@ -182,8 +129,13 @@ PetscErrorCode SaddleDestroy(Saddle *saddle) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Make the dense blocks for the present markers. */
-static PetscErrorCode Refresh(Saddle s) {
+PetscErrorCode SaddleCreateWallVec(Saddle s, Vec *d) {
+  PetscFunctionBeginUser;
+  PetscCall(VecCreateSeq(PETSC_COMM_SELF, s->walls->n, d));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SaddleRefresh(Saddle s) {
   const GreenTable *table;
   PetscFunctionBeginUser;
   PetscCall(MobilityGetTable(s->mobility, s->fluid->a0, &table));
@@ -205,79 +157,114 @@ PetscErrorCode SaddleSetUp(Saddle s) {
     PetscCall(PCSetUp(s->ilu));
   }
   if (s->type != MOBILITY_TABLE) PetscFunctionReturn(PETSC_SUCCESS);
-  if (s->age >= s->life || !(PetscAbsReal(s->factored_a0 / s->fluid->a0 - 1) < 0.1)) PetscCall(Refresh(s));
+  if (s->age >= s->life || !(PetscAbsReal(s->factored_a0 / s->fluid->a0 - 1) < 0.1)) PetscCall(SaddleRefresh(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* KSPSolve with old dense blocks for as many iterations as they are good for, then with new ones from there on. */
-static PetscErrorCode Iterate(Saddle s) {
-  const PetscBool old = s->type == MOBILITY_TABLE && s->coupling && s->age > 0 ? PETSC_TRUE : PETSC_FALSE;
-  PetscReal rtol, atol, dtol;
-  PetscInt max_it;
+/* x = (V, sigma, d) of the guess, V = R (E w - Theta Dm^T sigma). */
+static PetscErrorCode Guess(Saddle s, Vec w, Vec sigma, Vec d) {
+  const PetscScalar *a, *U;
+  PetscScalar *x;
   PetscFunctionBeginUser;
-  PetscCall(KSPGetTolerances(s->ksp, &rtol, &atol, &dtol, &max_it));
-  if (old) PetscCall(KSPSetTolerances(s->ksp, rtol, atol, dtol, PetscMin(max_it, s->fresh_its + 2)));
-  PetscCall(KSPSolve(s->ksp, s->b, s->x));
-  PetscCall(KSPGetIterationNumber(s->ksp, &s->its));
-  PetscCall(KSPGetConvergedReason(s->ksp, &s->why));
-  if (old) PetscCall(KSPSetTolerances(s->ksp, rtol, atol, dtol, max_it));
-  if (old && s->its < s->fresh_its + 2)
-    s->life = PetscMax(s->life, s->age + 2); /* good so far */
-  else if (old) {
-    s->life = PetscMax(1, s->age); /* next time they are made anew before this happens */
-    if (s->why == KSP_DIVERGED_ITS && s->its < max_it) {
-      PetscBool nonzero;
-      const PetscInt before = s->its;
-      PetscCall(Refresh(s));
-      PetscCall(KSPGetInitialGuessNonzero(s->ksp, &nonzero));
-      PetscCall(KSPSetInitialGuessNonzero(s->ksp, PETSC_TRUE));
-      PetscCall(KSPSolve(s->ksp, s->b, s->x));
-      PetscCall(KSPSetInitialGuessNonzero(s->ksp, nonzero));
-      PetscCall(KSPGetIterationNumber(s->ksp, &s->its));
-      PetscCall(KSPGetConvergedReason(s->ksp, &s->why));
-      s->its += before;
-    }
+  PetscCall(VecGetArray(s->x, &x));
+  if (s->coupling) {
+    PetscCall(VecGetArrayRead(sigma, &a));
+    PetscCall(PetscArraycpy(x + s->n_velocity, a, s->n_tension));
+    PetscCall(VecRestoreArrayRead(sigma, &a));
+    PetscCall(CouplingInterpolate(s->coupling, s->coupling->E, w, s->U));
+    PetscCall(VecGetArrayRead(s->U, &U));
+    PetscCall(PetscArraycpy(x, U, s->n_velocity));
+    PetscCall(VecRestoreArrayRead(s->U, &U));
+    if (s->self) PetscCall(SelfMobilityApply(s->self, x + s->n_velocity, NULL, x));
   }
-  if (s->age == 0 && s->fresh_its < 0) s->fresh_its = s->its;
-  s->age++;
-  PetscCall(KSPGetResidualNorm(s->ksp, &s->residual));
+  PetscCall(VecGetArrayRead(d, &a));
+  PetscCall(PetscArraycpy(x + s->n_velocity + s->n_tension, a, s->walls->n));
+  PetscCall(VecRestoreArrayRead(d, &a));
+  PetscCall(VecRestoreArray(s->x, &x));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SaddleSolve(Saddle s, Vec f, Vec g, Vec w, Vec p, Vec sigma) {
+static PetscErrorCode TakeSolution(Saddle s, Vec sigma, Vec d, Vec V) {
+  const PetscScalar *x;
   PetscScalar *a;
   PetscFunctionBeginUser;
-  PetscCall(VecGetArray(s->b, &a));
-  PetscCall(SaddleSplit(s, 0, a, NULL));
-  PetscCall(VecCopy(f, s->w[0]));
-  if (s->fluid->bc2)
-    PetscCall(VecAXPBY(s->p[0], -1, 0, s->fluid->bc2));
-  else
-    PetscCall(VecSet(s->p[0], 0));
+  PetscCall(VecGetArrayRead(s->x, &x));
   if (s->coupling) {
-    const PetscScalar *ga;
-    PetscScalar *ra;
-    PetscCall(VecGetArrayRead(g, &ga));
-    PetscCall(VecGetArray(s->r_s, &ra));
-    for (PetscInt k = 0; k < s->coupling->membrane->M; k++) ra[k] = ga[k] * SaddleScale(s, k);
-    PetscCall(VecRestoreArray(s->r_s, &ra));
-    PetscCall(VecRestoreArrayRead(g, &ga));
+    PetscCall(VecGetArray(sigma, &a));
+    PetscCall(PetscArraycpy(a, x + s->n_velocity, s->n_tension));
+    PetscCall(VecRestoreArray(sigma, &a));
+    PetscCall(VecGetArray(V, &a));
+    PetscCall(PetscArraycpy(a, x, s->n_velocity));
+    PetscCall(VecRestoreArray(V, &a));
   }
-  PetscCall(SaddleJoin(s, 0, a, s->r_s));
-  PetscCall(VecRestoreArray(s->b, &a));
-  PetscCall(VecGetArray(s->x, &a));
-  PetscCall(SaddleSplit(s, 0, a, NULL));
-  PetscCall(VecCopy(w, s->w[0]));
-  PetscCall(VecCopy(p, s->p[0]));
-  PetscCall(SaddleJoin(s, 0, a, sigma));
-  PetscCall(VecRestoreArray(s->x, &a));
-  PetscCall(Iterate(s));
-  if (s->why < 0) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(VecGetArray(s->x, &a));
-  PetscCall(SaddleSplit(s, 0, a, sigma));
-  PetscCall(VecCopy(s->w[0], w));
-  PetscCall(VecCopy(s->p[0], p));
-  PetscCall(SaddleJoin(s, 0, a, NULL));
-  PetscCall(VecRestoreArray(s->x, &a));
+  PetscCall(VecGetArray(d, &a));
+  PetscCall(PetscArraycpy(a, x + s->n_velocity + s->n_tension, s->walls->n));
+  PetscCall(VecRestoreArray(d, &a));
+  PetscCall(VecRestoreArrayRead(s->x, &x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Norm of (f, bc2, scaled g). */
+static PetscErrorCode Reference(Saddle s, Vec f, Vec g) {
+  PetscReal norm, sum;
+  PetscFunctionBeginUser;
+  PetscCall(VecNorm(f, NORM_2, &norm));
+  sum = PetscSqr(norm);
+  if (s->fluid->bc2) {
+    PetscCall(VecNorm(s->fluid->bc2, NORM_2, &norm));
+    sum += PetscSqr(norm);
+  }
+  if (s->coupling) {
+    const PetscScalar *a;
+    PetscCall(VecGetArrayRead(g, &a));
+    for (PetscInt k = 0; k < s->n_tension; k++) sum += PetscSqr(a[k] * SaddleScale(s, k));
+    PetscCall(VecRestoreArrayRead(g, &a));
+  }
+  s->reference = PetscSqrtReal(sum);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* One KSPSolve for the residual b, whose change is added to x, w, p; b becomes the residual that is left. */
+static PetscErrorCode Correct(Saddle s, Vec f, Vec g, Vec w, Vec p) {
+  PetscBool combined;
+  PetscInt its;
+  Vec change;
+  PetscFunctionBeginUser;
+  s->products = 0;
+  PetscCall(VecDuplicate(s->x, &change));
+  PetscCall(KSPSolve(s->ksp, s->b, change));
+  PetscCall(KSPGetIterationNumber(s->ksp, &its));
+  PetscCall(KSPGetConvergedReason(s->ksp, &s->why));
+  PetscCall(KSPGetResidualNorm(s->ksp, &s->residual));
+  s->its += its;
+  if (getenv("DBG"))
+    printf("round its %d why %d res %g ref %g products %d\n", (int)its, s->why, s->residual / s->reference,
+           s->reference, (int)s->products);
+  if (s->why >= 0) {
+    PetscCall(SaddleCombine(s, change, w, p, s->b, &combined));
+    PetscCall(VecAXPY(s->x, 1, change));
+    if (!combined) PetscCall(SaddleResidual(s, f, g, s->x, w, p, s->b));
+    PetscCall(VecNorm(s->b, NORM_2, &s->residual));
+  }
+  PetscCall(VecDestroy(&change));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SaddleSolve(Saddle s, Vec f, Vec g, Vec w, Vec p, Vec sigma, Vec d, Vec V) {
+  PetscReal rtol, atol;
+  PetscFunctionBeginUser;
+  PetscCall(Reference(s, f, g));
+  PetscCall(Guess(s, w, sigma, d));
+  PetscCall(SaddleResidual(s, f, g, s->x, w, p, s->b));
+  PetscCall(KSPGetTolerances(s->ksp, &rtol, &atol, NULL, NULL));
+  s->applied = s->its = 0;
+  for (int round = 0; round < MOST_ROUNDS; round++) { /* rounding may spoil GMRES's own residual in stiff cases */
+    PetscCall(Correct(s, f, g, w, p));
+    if (s->why < 0 || s->residual <= 2 * PetscMax(rtol * s->reference, atol)) break;
+  }
+  if (s->age > 0 && s->its < s->fresh_its + 2) s->life = PetscMax(s->life, s->age + 2); /* good so far */
+  if (s->age == 0 && s->fresh_its < 0) s->fresh_its = s->its;
+  s->age++;
+  if (s->why >= 0) PetscCall(TakeSolution(s, sigma, d, V));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -59,20 +59,6 @@ PetscErrorCode ChannelDestroy(Channel *channel) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* x = (d I - e d_yy h^2)^-1 b for a constant tridiagonal matrix (-e, d, -e) whose first and last diagonals are `end`.
- */
-static void Tridiagonal(PetscInt n, PetscReal d, PetscReal e, PetscReal end, const PetscReal b[], PetscReal work[],
-                        PetscReal x[]) {
-  PetscReal pivot = end;
-  x[0] = b[0] / pivot;
-  for (PetscInt j = 1; j < n; j++) {
-    work[j] = -e / pivot;
-    pivot = (j == n - 1 ? end : d) + e * work[j];
-    x[j] = (b[j] + e * x[j - 1]) / pivot;
-  }
-  for (PetscInt j = n - 2; j >= 0; j--) x[j] -= work[j + 1] * x[j + 1];
-}
-
 /* Row j (v: the face above it) of the profiles of wall `top`, from the bottom wall's. */
 static void StoreRow(Channel c, PetscInt k, PetscInt j, PetscReal lambda, const PetscReal w[], const PetscReal psi[]) {
   const Grid g = c->fluid->grid;
@@ -89,29 +75,24 @@ static void StoreRow(Channel c, PetscInt k, PetscInt j, PetscReal lambda, const 
 static PetscErrorCode SetUp(Channel c) {
   const Grid g = c->fluid->grid;
   const PetscInt n = g->n[1];
-  const PetscReal alpha = c->fluid->alpha, nu = c->fluid->nu, h2 = PetscSqr(g->h), kappa = -2 * nu / h2;
-  PetscReal *w, *psi, *work, *unit;
+  const PetscReal alpha = c->fluid->alpha, h2 = PetscSqr(g->h), kappa = -2 * c->fluid->nu / h2;
+  PetscReal *w, *psi, *work;
   PetscFunctionBeginUser;
   if (c->alpha == alpha) PetscFunctionReturn(PETSC_SUCCESS);
   c->alpha = alpha;
-  PetscCall(PetscMalloc4(n, &w, n, &psi, n, &work, n, &unit));
-  PetscCall(PetscArrayzero(unit, n));
-  unit[0] = 1;
+  PetscCall(PetscMalloc3(n, &w, n, &psi, n, &work));
   c->inverse[0] = c->inverse[c->modes] = 0;
   PetscCall(PetscArrayzero(c->profile, 6 * g->rows[FIELD_P] * c->modes));
   for (PetscInt k = 1; k < c->modes; k++) { /* mode 0 has no slip: G_x psi = 0 */
-    const PetscReal lambda = 4 / h2 * PetscSqr(PetscSinReal(PETSC_PI * k / g->n[0])), e = nu / h2;
-    const PetscReal d = alpha + nu * lambda + 2 * e;
-    Tridiagonal(n, d, e, d + e, unit, work, w);
-    for (PetscInt j = 0; j < n; j++) psi[j] = -w[j];
-    Tridiagonal(n, lambda + 2 / h2, 1 / h2, lambda + 1 / h2, psi, work, psi);
+    const PetscReal lambda = 4 / h2 * PetscSqr(PetscSinReal(PETSC_PI * k / g->n[0]));
+    WallProfile(c->fluid, n, lambda, work, w, psi);
     const PetscReal own = 1 - kappa * lambda * psi[0], other = -kappa * lambda * psi[n - 1];
     const PetscReal determinant = PetscSqr(own) - PetscSqr(other);
     c->inverse[k] = -kappa * own / determinant;
     c->inverse[c->modes + k] = kappa * other / determinant;
     for (PetscInt j = g->first; j < g->first + g->rows[FIELD_P]; j++) StoreRow(c, k, j, lambda, w, psi);
   }
-  PetscCall(PetscFree4(w, psi, work, unit));
+  PetscCall(PetscFree3(w, psi, work));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -48,6 +48,7 @@ PetscErrorCode FastSolverCreate(Grid grid, Field field, const char type[], Petsc
   PetscFunctionBeginUser;
   if (!back_ends) {
     PetscCall(FastSolverRegister("fftw", FastSolverCreate_FFTW));
+    PetscCall(FastSolverRegister("fftw_tridiagonal", FastSolverCreate_Tridiagonal));
     PetscCall(FastSolverRegister("hypre", FastSolverCreate_Hypre));
     PetscCall(PetscRegisterFinalize(ForgetBackEnds));
   }
@@ -91,12 +92,28 @@ PetscErrorCode FastSolverSetCoefficients(FastSolver s, PetscReal a0, PetscReal n
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode FastSolverSolve(FastSolver s, const PetscScalar b[], PetscScalar x[]) {
+PetscErrorCode FastSolverBegin(FastSolver s, const PetscScalar b[]) {
   PetscFunctionBeginUser;
   PetscCall(PhaseBegin(PHASE_FAST_SOLVE));
-  PetscCall(s->apply(s, b, x));
+  s->b = b;
+  if (s->begin) PetscCall(s->begin(s, b));
+  PetscCall(PhaseEnd());
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode FastSolverEnd(FastSolver s, PetscScalar x[]) {
+  PetscFunctionBeginUser;
+  PetscCall(PhaseBegin(PHASE_FAST_SOLVE));
+  PetscCall(s->end ? s->end(s, x) : s->apply(s, s->b, x));
   s->solves++;
   PetscCall(PhaseEnd());
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode FastSolverSolve(FastSolver s, const PetscScalar b[], PetscScalar x[]) {
+  PetscFunctionBeginUser;
+  PetscCall(FastSolverBegin(s, b));
+  PetscCall(FastSolverEnd(s, x));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

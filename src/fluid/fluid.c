@@ -1,32 +1,36 @@
 #include "fluid/fluid.h"
 
-/* x = A^-1 b on one field's part of the vectors. */
-static PetscErrorCode SolveField(FastSolver solver, PetscInt start, Vec b, Vec x) {
-  const PetscScalar *ba;
-  PetscScalar *xa;
-  PetscFunctionBeginUser;
-  PetscCall(VecGetArray(x, &xa));
-  if (b == x)
-    PetscCall(FastSolverSolve(solver, xa + start, xa + start));
-  else {
-    PetscCall(VecGetArrayRead(b, &ba));
-    PetscCall(FastSolverSolve(solver, ba + start, xa + start));
-    PetscCall(VecRestoreArrayRead(b, &ba));
-  }
-  PetscCall(VecRestoreArray(x, &xa));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode FluidSolveHelmholtz(Fluid f, Vec b, Vec w) {
+  const PetscInt v = GridLocalU(f->grid);
+  const PetscScalar *ba;
+  PetscScalar *wa;
   PetscFunctionBeginUser;
-  PetscCall(SolveField(f->solver[FIELD_U], 0, b, w));
-  PetscCall(SolveField(f->solver[FIELD_V], GridLocalU(f->grid), b, w));
+  PetscCall(VecGetArray(w, &wa));
+  if (b == w)
+    ba = wa;
+  else
+    PetscCall(VecGetArrayRead(b, &ba));
+  PetscCall(FastSolverBegin(f->solver[FIELD_U], ba));
+  PetscCall(FastSolverBegin(f->solver[FIELD_V], ba + v));
+  PetscCall(FastSolverEnd(f->solver[FIELD_U], wa));
+  PetscCall(FastSolverEnd(f->solver[FIELD_V], wa + v));
+  if (b != w) PetscCall(VecRestoreArrayRead(b, &ba));
+  PetscCall(VecRestoreArray(w, &wa));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode FluidSolvePoisson(Fluid f, Vec q, Vec p) {
+  const PetscScalar *qa;
+  PetscScalar *pa;
   PetscFunctionBeginUser;
-  PetscCall(SolveField(f->solver[FIELD_P], 0, q, p));
+  PetscCall(VecGetArray(p, &pa));
+  if (q == p)
+    qa = pa;
+  else
+    PetscCall(VecGetArrayRead(q, &qa));
+  PetscCall(FastSolverSolve(f->solver[FIELD_P], qa, pa));
+  if (q != p) PetscCall(VecRestoreArrayRead(q, &qa));
+  PetscCall(VecRestoreArray(p, &pa));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

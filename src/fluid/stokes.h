@@ -14,6 +14,17 @@ PETSC_EXTERN PetscErrorCode StokesDestroy(Stokes *stokes);
    Collective. */
 PETSC_EXTERN PetscErrorCode StokesSolve(Stokes stokes, Vec r_u, Vec r_p, Vec u, Vec p);
 
+/* StokesIsExact - whether StokesSolve is: x is periodic. Not collective. */
+PETSC_EXTERN PetscBool StokesIsExact(Fluid fluid);
+
+/* StokesPotential - psi of the last solve, u = w - G psi; borrowed. Not collective. */
+PETSC_EXTERN Vec StokesPotential(Stokes stokes);
+
+/* WallProfile - the projection of a unit force wave on the first of n rows between two walls, lambda minus the
+   eigenvalue of its second difference along them: w[n] = H^-1 of it and the potential psi[n]; work[n]. */
+PETSC_EXTERN void WallProfile(Fluid fluid, PetscInt n, PetscReal lambda, PetscReal work[], PetscReal w[],
+                              PetscReal psi[]);
+
 /* The wall correction of a channel (channel.c). */
 typedef struct _p_Channel *Channel;
 PETSC_EXTERN PetscErrorCode ChannelCreate(Fluid fluid, Channel *channel);

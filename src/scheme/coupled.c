@@ -65,7 +65,7 @@ static PetscErrorCode SolveStep(Scheme s, Coupled *d) {
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(SaddleSetUp(d->saddle));
-  PetscCall(SaddleSolve(d->saddle, d->f, s->g, n->w, n->p, n->sigma));
+  PetscCall(SaddleSolve(d->saddle, d->f, s->g, n->w, n->p, n->sigma, n->walls, d->Y));
   s->report.coupled_its += d->saddle->its;
   if (d->saddle->why < 0)
     PetscCall(SchemeSolverFailed(s, "coupled_", d->saddle->why, d->saddle->its, d->saddle->residual));
@@ -94,6 +94,7 @@ PetscErrorCode CoupledAttempt(Scheme s, PetscReal dt, PetscBool *solved) {
   PetscCall(Extrapolate(r, q->w, d->old.w, n->w));
   PetscCall(Extrapolate(r, q->p, d->old.p, n->p));
   PetscCall(Extrapolate(r, q->sigma, d->old.sigma, n->sigma));
+  if (q->walls) PetscCall(Extrapolate(r, q->walls, d->old.walls, n->walls));
   PetscCall(SolveStep(s, d));
   *solved = *s->report.failure ? PETSC_FALSE : PETSC_TRUE;
   if (!*solved) PetscFunctionReturn(PETSC_SUCCESS);
@@ -101,6 +102,7 @@ PetscErrorCode CoupledAttempt(Scheme s, PetscReal dt, PetscBool *solved) {
   if (!s->coupling) PetscFunctionReturn(PETSC_SUCCESS);
   /* U = u_inf(X*) + E u,  X = Xhat + U/a0 */
   PetscCall(SchemeMarkerVelocity(s, n->w, n->sigma, n->U));
+  if (d->saddle) PetscCall(VecWAXPY(n->U, 1, s->background, d->Y)); /* the velocity whose bending force was used */
   PetscCall(VecWAXPY(n->X, 1 / b.a0, n->U, d->Xhat));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -132,6 +134,7 @@ static PetscErrorCode Advance(Scheme s, Coupled *d, PetscReal dt) {
   q->sigma = next.sigma;
   q->X = next.X;
   q->U = next.U;
+  q->walls = next.walls;
   q->dt_last = dt;
   d->has_old = PETSC_TRUE;
   s->old = &d->old;
@@ -185,16 +188,23 @@ static PetscErrorCode DuplicateState(const State *q, State *copy) {
   PetscCall(VecDuplicate(q->sigma, &copy->sigma));
   PetscCall(VecDuplicate(q->X, &copy->X));
   PetscCall(VecDuplicate(q->U, &copy->U));
+  if (q->walls) PetscCall(VecDuplicate(q->walls, &copy->walls));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode SetUp_Coupled(Scheme s) {
   Coupled *d = (Coupled *)s->data;
-  const State *q = &s->state;
+  State *q = &s->state;
   PetscFunctionBeginUser;
   d->order = s->scene->order;
   d->length_target = s->scene->length_target;
   d->area_target = s->scene->area_target;
+  if (!strcmp(s->type, "direct"))
+    PetscCall(DirectSolverCreate(s->fluid, s->coupling, s->self, &d->direct));
+  else {
+    PetscCall(SaddleCreate(s->scene, s->fluid, s->coupling, s->self, &d->saddle));
+    PetscCall(SaddleCreateWallVec(d->saddle, &q->walls));
+  }
   PetscCall(DuplicateState(q, &d->old));
   PetscCall(DuplicateState(q, &d->next));
   PetscCall(VecDuplicate(q->w, &d->f));
@@ -202,17 +212,13 @@ static PetscErrorCode SetUp_Coupled(Scheme s) {
   PetscCall(VecDuplicate(q->X, &d->Xhat));
   PetscCall(VecDuplicate(q->X, &d->Y));
   PetscCall(StepControlCreate(s->scene, s->membrane, &d->control));
-  if (!strcmp(s->type, "direct"))
-    PetscCall(DirectSolverCreate(s->fluid, s->coupling, s->self, &d->direct));
-  else
-    PetscCall(SaddleCreate(s->scene, s->fluid, s->coupling, s->self, &d->saddle));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode View_Coupled(Scheme s, PetscViewer viewer) {
   Coupled *d = (Coupled *)s->data;
   PetscFunctionBeginUser;
-  if (d->saddle) PetscCall(KSPView(d->saddle->ksp, viewer));
+  if (d->saddle && !s->fluid->grid->rank) PetscCall(KSPView(d->saddle->ksp, PETSC_VIEWER_STDOUT_SELF));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -240,8 +246,8 @@ static PetscErrorCode Destroy_Coupled(Scheme s) {
   PetscCall(SaddleDestroy(&d->saddle));
   PetscCall(DirectSolverDestroy(&d->direct));
   for (int k = 0; k < 2; k++) {
-    Vec *all[] = {&states[k]->w, &states[k]->p, &states[k]->sigma, &states[k]->X, &states[k]->U};
-    for (int i = 0; i < 5; i++) PetscCall(VecDestroy(all[i]));
+    Vec *all[] = {&states[k]->w, &states[k]->p, &states[k]->sigma, &states[k]->X, &states[k]->U, &states[k]->walls};
+    for (int i = 0; i < 6; i++) PetscCall(VecDestroy(all[i]));
   }
   for (int i = 0; i < 4; i++) PetscCall(VecDestroy(others[i]));
   PetscCall(PetscFree(s->data));

@@ -84,6 +84,7 @@ PetscErrorCode SchemeDestroy(Scheme *scheme) {
   PetscCall(VecDestroy(&s->state.sigma));
   PetscCall(VecDestroy(&s->state.X));
   PetscCall(VecDestroy(&s->state.U));
+  PetscCall(VecDestroy(&s->state.walls));
   PetscCall(VecDestroy(&s->background));
   PetscCall(VecDestroy(&s->g));
   PetscCall(VecDestroy(&s->work_tension));

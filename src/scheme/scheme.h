@@ -13,6 +13,7 @@ typedef struct {
   Vec sigma;         /* tension, one an edge */
   Vec X;             /* markers */
   Vec U;             /* markers' velocity, background included */
+  Vec walls;         /* scheme coupled's wall forces, the same on every rank; else NULL */
 } State;
 
 /* What the last step did. */

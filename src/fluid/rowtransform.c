@@ -1,0 +1,218 @@
+#include "fluid/rowtransform.h"
+
+/* One real Fourier transform of length n between real[n] and complex[n/2 + 1], twisted or not. */
+static PetscErrorCode FourierCreate(PetscInt n, PetscBool twisted, double *real, double *modes, unsigned plan,
+                                    Fourier *f) {
+  PetscFunctionBeginUser;
+  f->n = n;
+  f->half = n / 2 + 1;
+  f->forward = fftw_plan_dft_r2c_1d((int)n, real, (fftw_complex *)modes, plan);
+  f->backward = fftw_plan_dft_c2r_1d((int)n, (fftw_complex *)modes, real, plan);
+  PetscCheck(f->forward && f->backward, PETSC_COMM_SELF, PETSC_ERR_LIB, "FFTW could not plan a transform");
+  if (!twisted) PetscFunctionReturn(PETSC_SUCCESS);
+  f->twist = fftw_alloc_real(2 * (size_t)f->half);
+  for (PetscInt k = 0; k < f->half; k++) {
+    f->twist[2 * k] = PetscCosReal(PETSC_PI * k / (2.0 * n));
+    f->twist[2 * k + 1] = -PetscSinReal(PETSC_PI * k / (2.0 * n));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* w := w e^{-i pi k/2n}, or back. */
+static inline void Twist(const Fourier *f, double *restrict w) {
+  for (PetscInt k = 0; k < 2 * f->half; k += 2) {
+    const double c = f->twist[k], s = f->twist[k + 1], re = w[k], im = w[k + 1];
+    w[k] = re * c - im * s;
+    w[k + 1] = re * s + im * c;
+  }
+}
+static inline void Untwist(const Fourier *f, double *restrict w) {
+  for (PetscInt k = 0; k < 2 * f->half; k += 2) {
+    const double c = f->twist[k], s = f->twist[k + 1], re = w[k], im = w[k + 1];
+    w[k] = re * c + im * s;
+    w[k + 1] = im * c - re * s;
+  }
+}
+
+/* Half samples: after the twist entry 2k is cosine k and entry 2k + 1 is minus cosine n - k; with the odd entries'
+   sign turned they are sines n - k and k. */
+static void HalfSampleForward(RowTransform t, const PetscScalar x[]) {
+  const PetscInt n = t->n;
+  const PetscReal sign = t->sign;
+  for (PetscInt i = 0; 2 * i < n; i++) t->line[i] = x[2 * i];
+  for (PetscInt i = 0; 2 * i + 1 < n; i++) t->line[n - 1 - i] = sign * x[2 * i + 1];
+  fftw_execute(t->f[0].forward);
+  Twist(&t->f[0], t->modes);
+}
+
+static void HalfSampleBackward(RowTransform t, PetscScalar x[]) {
+  const PetscInt n = t->n;
+  const PetscReal sign = t->sign;
+  Untwist(&t->f[0], t->modes);
+  fftw_execute(t->f[0].backward);
+  for (PetscInt i = 0; 2 * i < n; i++) x[2 * i] = t->line[i];
+  for (PetscInt i = 0; 2 * i + 1 < n; i++) x[2 * i + 1] = sign * t->line[n - 1 - i];
+}
+
+/* Sines on the entries x_1 .. x_{N-1}, N = 2 half: the sums e_j = x_j + x_{N-j}, e_half = x_half give the odd wave
+   numbers, entry k of the twisted transform being (e_{half-k}, -e_k); the differences go on. A level's Fourier
+   transform runs between its segment of modes and `line`. */
+static void SumsUntwisted(const Fourier *f, PetscInt half, const double *restrict rest, double *restrict w) {
+  const double *restrict twist = f->twist, *from_end = rest + 2 * half - 2;
+  w[0] = 2 * rest[half - 1];
+  w[1] = 0;
+  for (PetscInt k = 1; k < f->half; k++) {
+    const double c = twist[2 * k], s = twist[2 * k + 1];
+    const double re = rest[half - k - 1] + rest[half + k - 1], im = -(rest[k - 1] + from_end[1 - k]);
+    w[2 * k] = re * c + im * s;
+    w[2 * k + 1] = im * c - re * s;
+  }
+}
+
+static void SineForward(RowTransform t, const PetscScalar x[]) {
+  double *rest = t->rest;
+  PetscInt N = t->n + 1;
+  memcpy(rest, x, (size_t)t->n * sizeof(double));
+  for (PetscInt l = 0; l < t->levels; l++, N /= 2) {
+    SumsUntwisted(&t->f[l], N / 2, rest, t->line);
+    fftw_execute(t->f[l].backward);
+    for (PetscInt j = 1; j < N / 2; j++) rest[j - 1] -= rest[N - j - 1];
+  }
+  if (t->base > 1) fftw_execute(t->base_forward);
+}
+
+/* rest[2 half - 1] from the differences in its first half - 1 entries and the sums in w, not twisted yet. */
+static void Unfold(const Fourier *f, PetscInt half, const double *restrict w, double *restrict rest) {
+  const double *restrict twist = f->twist;
+  double *from_end = rest + 2 * half - 2;
+  rest[half - 1] = w[0];
+  for (PetscInt k = 1; 2 * k <= half; k++) {
+    const double c = twist[2 * k], s = twist[2 * k + 1];
+    const double e = w[2 * k] * c - w[2 * k + 1] * s, e_k = -(w[2 * k] * s + w[2 * k + 1] * c);
+    const double o_k = rest[k - 1], o = rest[half - k - 1];
+    rest[k - 1] = e_k + o_k;
+    from_end[1 - k] = e_k - o_k;
+    rest[half - k - 1] = e + o;
+    rest[half + k - 1] = e - o;
+  }
+}
+
+static void SineBackward(RowTransform t, PetscScalar x[]) {
+  if (t->base > 1) fftw_execute(t->base_backward);
+  for (PetscInt l = t->levels - 1; l >= 0; l--) {
+    fftw_execute(t->f[l].forward);
+    Unfold(&t->f[l], t->f[l].n, t->line, t->rest);
+  }
+  memcpy(x, t->rest, (size_t)t->n * sizeof(double));
+}
+
+void RowTransformForward(RowTransform t, const PetscScalar x[]) {
+  if (t->base)
+    SineForward(t, x);
+  else if (t->sign != 0)
+    HalfSampleForward(t, x);
+  else {
+    memcpy(t->line, x, (size_t)t->n * sizeof(double));
+    fftw_execute(t->f[0].forward);
+  }
+}
+
+void RowTransformBackward(RowTransform t, PetscScalar x[]) {
+  if (t->base)
+    SineBackward(t, x);
+  else if (t->sign != 0)
+    HalfSampleBackward(t, x);
+  else {
+    fftw_execute(t->f[0].backward);
+    memcpy(x, t->line, (size_t)t->n * sizeof(double));
+  }
+}
+
+static PetscReal Eigenvalue(PetscReal argument) {
+  return 4 * PetscSqr(PetscSinReal(argument));
+}
+
+/* Periodic, and walls half a cell off. */
+static PetscErrorCode CreateWhole(RowTransform t, PetscBool periodic, unsigned plan) {
+  const PetscInt n = t->n;
+  PetscFunctionBeginUser;
+  t->width = 2 * (n / 2 + 1);
+  t->modes = fftw_alloc_real((size_t)t->width);
+  t->line = fftw_alloc_real((size_t)n);
+  PetscCall(PetscMalloc2(t->width, &t->lambda, t->width, &t->scale));
+  PetscCall(FourierCreate(n, periodic ? PETSC_FALSE : PETSC_TRUE, t->line, t->modes, plan, &t->f[0]));
+  for (PetscInt k = 0; k < t->width; k++) {
+    const PetscInt mode = k / 2, wave = k % 2 ? n - mode : mode; /* cosine number, of 0 .. n - 1 */
+    t->lambda[k] = Eigenvalue(periodic ? PETSC_PI * mode / n : PETSC_PI * (t->sign > 0 ? wave : n - wave) / (2.0 * n));
+    if (k == 1) t->lambda[k] = 4; /* no mode: zero, whatever is done to it */
+    t->scale[k] = 1.0 / n;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Walls on the entries next to the row's ends. */
+static PetscErrorCode CreateSines(RowTransform t, unsigned plan) {
+  const PetscInt cells = t->n + 1;
+  PetscInt N = cells, start = 0;
+  PetscFunctionBeginUser;
+  t->width = t->n;
+  t->modes = fftw_alloc_real((size_t)t->width);
+  t->line = fftw_alloc_real((size_t)cells + 4);
+  t->rest = fftw_alloc_real((size_t)t->n);
+  PetscCall(PetscMalloc2(t->width, &t->lambda, t->width, &t->scale));
+  for (; N % 2 == 0 && N > 4; N /= 2) {
+    const PetscInt half = N / 2;
+    PetscCall(FourierCreate(half, PETSC_TRUE, t->modes + start, t->line, plan, &t->f[t->levels++]));
+    for (PetscInt i = 0; i < half; i++) { /* wave numbers 1, 3, 5 .. in Makhoul's order */
+      const PetscInt m = 2 * i < half ? 2 * i : 2 * (half - 1 - i) + 1;
+      t->lambda[start + i] = Eigenvalue(PETSC_PI * (2 * m + 1) / (2.0 * N));
+      t->scale[start + i] = 1.0 / cells;
+    }
+    start += half;
+  }
+  t->base = N;
+  for (PetscInt k = 1; k < N; k++) {
+    t->lambda[start + k - 1] = Eigenvalue(PETSC_PI * k / (2.0 * N));
+    t->scale[start + k - 1] = 1.0 / (2 * cells);
+  }
+  if (N == 1) PetscFunctionReturn(PETSC_SUCCESS);
+  t->base_forward = fftw_plan_r2r_1d((int)N - 1, t->rest, t->modes + start, FFTW_RODFT00, plan);
+  t->base_backward = fftw_plan_r2r_1d((int)N - 1, t->modes + start, t->rest, FFTW_RODFT00, plan);
+  PetscCheck(t->base_forward && t->base_backward, PETSC_COMM_SELF, PETSC_ERR_LIB, "FFTW could not plan a transform");
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode RowTransformCreate(Grid g, Field field, unsigned plan, RowTransform *out) {
+  const PetscReal c = GridWallFactor(field, 0);
+  RowTransform t;
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&t));
+  *out = t;
+  t->n = g->columns[field];
+  if (g->wall[0] && c == 0)
+    PetscCall(CreateSines(t, plan));
+  else {
+    t->sign = g->wall[0] ? c : 0;
+    PetscCall(CreateWhole(t, g->wall[0] ? PETSC_FALSE : PETSC_TRUE, plan));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode RowTransformDestroy(RowTransform *transform) {
+  RowTransform t = *transform;
+  PetscFunctionBeginUser;
+  if (!t) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt l = 0; l < ROW_LEVELS; l++) {
+    if (t->f[l].forward) fftw_destroy_plan(t->f[l].forward);
+    if (t->f[l].backward) fftw_destroy_plan(t->f[l].backward);
+    fftw_free(t->f[l].twist);
+  }
+  if (t->base_forward) fftw_destroy_plan(t->base_forward);
+  if (t->base_backward) fftw_destroy_plan(t->base_backward);
+  fftw_free(t->modes);
+  fftw_free(t->line);
+  fftw_free(t->rest);
+  PetscCall(PetscFree2(t->lambda, t->scale));
+  PetscCall(PetscFree(*transform));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
