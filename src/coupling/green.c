@@ -30,10 +30,16 @@ static PetscErrorCode FreeTable(GreenTable *t) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode MobilityForget(Mobility m) {
+  PetscFunctionBeginUser;
+  for (int i = 0; i < MOBILITY_CACHE; i++) PetscCall(FreeTable(&m->cache[i]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode MobilityDestroy(Mobility *mobility) {
   PetscFunctionBeginUser;
   if (!*mobility) PetscFunctionReturn(PETSC_SUCCESS);
-  for (int i = 0; i < MOBILITY_CACHE; i++) PetscCall(FreeTable(&(*mobility)->cache[i]));
+  PetscCall(MobilityForget(*mobility));
   PetscCall(FluidDestroy(&(*mobility)->periodic));
   PetscCall(PetscFree(*mobility));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -30,6 +30,9 @@ struct _p_Mobility {
 PETSC_EXTERN PetscErrorCode MobilityCreate(Scene scene, Coupling coupling, Mobility *mobility);
 PETSC_EXTERN PetscErrorCode MobilityDestroy(Mobility *mobility);
 
+/* MobilityForget - drop all tables. Not collective. */
+PETSC_EXTERN PetscErrorCode MobilityForget(Mobility mobility);
+
 /* MobilityGetTable - the table for a0, made if no cached one is within 10 %: six scalar solves in the periodic box.
    Collective; borrowed. */
 PETSC_EXTERN PetscErrorCode MobilityGetTable(Mobility mobility, PetscReal a0, const GreenTable **table);

@@ -87,8 +87,6 @@ PetscErrorCode SaddleCreate(Scene scene, Fluid fluid, Coupling coupling, SelfMob
   s->coupling = coupling;
   s->self = self;
   s->type = (MobilityType)scene->mobility;
-  s->fresh_its = -1;
-  s->life = 1000;
   PetscCall(StokesCreate(fluid, &s->stokes));
   PetscCall(WallsCreate(fluid, &s->walls));
   PetscCall(DMCreateGlobalVector(fluid->grid->velocity, &s->r));
@@ -96,7 +94,9 @@ PetscErrorCode SaddleCreate(Scene scene, Fluid fluid, Coupling coupling, SelfMob
   const PetscInt n = s->n_velocity + s->n_tension + s->walls->n;
   PetscCall(VecCreateSeq(PETSC_COMM_SELF, n, &s->x));
   PetscCall(VecDuplicate(s->x, &s->b));
+  PetscCall(VecDuplicate(s->x, &s->change));
   PetscCall(CreateKSP(s, n));
+  PetscCall(SaddleForget(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -113,6 +113,7 @@ PetscErrorCode SaddleDestroy(Saddle *saddle) {
   }
   PetscCall(VecDestroy(&s->x));
   PetscCall(VecDestroy(&s->b));
+  PetscCall(VecDestroy(&s->change));
   PetscCall(VecDestroy(&s->r));
   PetscCall(VecDestroy(&s->U));
   PetscCall(VecDestroy(&s->F));
@@ -132,6 +133,16 @@ PetscErrorCode SaddleDestroy(Saddle *saddle) {
 PetscErrorCode SaddleCreateWallVec(Saddle s, Vec *d) {
   PetscFunctionBeginUser;
   PetscCall(VecCreateSeq(PETSC_COMM_SELF, s->walls->n, d));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SaddleForget(Saddle s) {
+  PetscFunctionBeginUser;
+  s->factored_a0 = 0;
+  s->fresh_its = -1;
+  s->age = s->refreshed = 0;
+  s->life = 1000;
+  if (s->mobility) PetscCall(MobilityForget(s->mobility));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -226,27 +237,22 @@ static PetscErrorCode Reference(Saddle s, Vec f, Vec g) {
 
 /* One KSPSolve for the residual b, whose change is added to x, w, p; b becomes the residual that is left. */
 static PetscErrorCode Correct(Saddle s, Vec f, Vec g, Vec w, Vec p) {
+  const Vec change = s->change;
   PetscBool combined;
   PetscInt its;
-  Vec change;
   PetscFunctionBeginUser;
   s->products = 0;
-  PetscCall(VecDuplicate(s->x, &change));
   PetscCall(KSPSolve(s->ksp, s->b, change));
   PetscCall(KSPGetIterationNumber(s->ksp, &its));
   PetscCall(KSPGetConvergedReason(s->ksp, &s->why));
   PetscCall(KSPGetResidualNorm(s->ksp, &s->residual));
   s->its += its;
-  if (getenv("DBG"))
-    printf("round its %d why %d res %g ref %g products %d\n", (int)its, s->why, s->residual / s->reference,
-           s->reference, (int)s->products);
   if (s->why >= 0) {
     PetscCall(SaddleCombine(s, change, w, p, s->b, &combined));
     PetscCall(VecAXPY(s->x, 1, change));
     if (!combined) PetscCall(SaddleResidual(s, f, g, s->x, w, p, s->b));
     PetscCall(VecNorm(s->b, NORM_2, &s->residual));
   }
-  PetscCall(VecDestroy(&change));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

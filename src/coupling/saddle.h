@@ -33,7 +33,7 @@ struct _p_Saddle {
   PetscInt n_velocity, n_tension; /* unknowns V, sigma; d follows */
   Mat A;                          /* the residuals' derivative, scaled; one Stokes solve */
   KSP ksp;
-  Vec x, b;                            /* [n] the same on every rank */
+  Vec x, b, change;                    /* [n] unknowns, residual, work; the same on every rank */
   Vec r;                               /* a force on the grid */
   Vec w[SADDLE_KEPT + 1];              /* velocities and pressures of kept products, the last for one that is not */
   Vec p[SADDLE_KEPT + 1];              /* made when first needed */
@@ -70,6 +70,10 @@ PETSC_EXTERN PetscErrorCode SaddleSetUp(Saddle saddle);
 /* SaddleSolve - solve for w, p, sigma and the wall forces d, which hold the initial guess (p's is not used); f and g
    the right-hand sides. its, why, residual say how it went. Collective. */
 PETSC_EXTERN PetscErrorCode SaddleSolve(Saddle saddle, Vec f, Vec g, Vec w, Vec p, Vec sigma, Vec d, Vec V);
+
+/* SaddleForget - drop all that is kept from step to step, so that what follows depends on the state alone. Not
+   collective. */
+PETSC_EXTERN PetscErrorCode SaddleForget(Saddle saddle);
 
 /* SaddleScale - factor of the residual of Dm V/h^2 = g in row k: h^2/ds makes it a surface divergence; 1 + h a0 weighs
    short steps, where the momentum's right-hand side u a0 would hide it. */

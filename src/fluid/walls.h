@@ -29,5 +29,5 @@ PETSC_EXTERN PetscErrorCode WallsAdd(Walls walls, const PetscScalar d[], Vec r);
 PETSC_EXTERN PetscErrorCode WallsSlip(Walls walls, Vec psi, PetscScalar y[]);
 
 /* WallsPrecondition - d := approximate inverse of d -> d + slip of the projected force d: exact for one pair of
-   opposite walls; each pair is taken for itself. Not collective. */
+   opposite walls, for two pairs by sweeps of block Gauss-Seidel. Not collective. */
 PETSC_EXTERN PetscErrorCode WallsPrecondition(Walls walls, PetscScalar d[]);
