@@ -22,7 +22,12 @@ typedef PetscErrorCode (*PetvesFlow)(PetscReal time, PetscInt n, const PetscReal
 PETSC_EXTERN PetscErrorCode PetvesInitialize(int *argc, char ***argv);
 PETSC_EXTERN PetscErrorCode PetvesFinalize(void);
 
-/* SimulationCreate - the simulation that the options database describes, at its initial state, output files open. */
+/* PetvesCatchSignals - from now on SIGTERM and SIGUSR1 end SimulationRun after the step under way, with a checkpoint,
+   and a closed standard output does not end the program. Not collective. */
+PETSC_EXTERN PetscErrorCode PetvesCatchSignals(void);
+
+/* SimulationCreate - the simulation that the options database describes, at its initial state or (-restart) at a
+   checkpoint's, output files open. */
 PETSC_EXTERN PetscErrorCode SimulationCreate(MPI_Comm comm, Simulation *simulation);
 
 /* SimulationCreateWithFlow - the same with a function for -flow_type custom (docs/method.md says what it must satisfy).
@@ -40,8 +45,8 @@ PETSC_EXTERN PetscErrorCode SimulationBegin(Simulation simulation);
    the step could not be taken (the state is then the last good one). The text lives until the next step. */
 PETSC_EXTERN PetscErrorCode SimulationStep(Simulation simulation, const char **failure);
 
-/* SimulationAdvance - SimulationStep, unless time `until` or the steady state has been reached: then stepped is false.
-   Steps of -time_adapt end at `until`. */
+/* SimulationAdvance - SimulationStep, unless time `until` or the steady state has been reached, or a signal or
+   -time_wall_limit asks to stop: then stepped is false. Steps of -time_adapt end at `until`. */
 PETSC_EXTERN PetscErrorCode SimulationAdvance(Simulation simulation, PetscReal until, PetscBool *stepped,
                                               const char **failure);
 
@@ -49,8 +54,12 @@ PETSC_EXTERN PetscErrorCode SimulationAdvance(Simulation simulation, PetscReal u
    not have to. */
 PETSC_EXTERN PetscErrorCode SimulationEnd(Simulation simulation, const char *failure);
 
-/* SimulationRun - begin, step to -time_end or the steady state, end. good is false when a step could not be taken:
-   a checkpoint and summary.json are on disk then, and one line on standard error has said why. */
+/* SimulationGetReason - why SimulationAdvance did not step: "finished", "steady" or "stopped". Not collective. */
+PETSC_EXTERN PetscErrorCode SimulationGetReason(Simulation simulation, const char **reason);
+
+/* SimulationRun - begin, step to -time_end or the steady state, or until a signal or -time_wall_limit stops it, end.
+   good is false when a step could not be taken: a checkpoint and summary.json are on disk then, and one line on
+   standard error has said why. */
 PETSC_EXTERN PetscErrorCode SimulationRun(Simulation simulation, PetscBool *good);
 
 /* SimulationCheckpoint - write checkpoint.h5 now. */

@@ -105,6 +105,12 @@ PetscErrorCode SimulationGetCellVelocity(Simulation s, PetscReal u[], PetscReal 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode SimulationGetReason(Simulation s, const char **reason) {
+  PetscFunctionBeginUser;
+  *reason = s->reason;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode SimulationCheckpoint(Simulation s) {
   PetscFunctionBeginUser;
   PetscCall(OutputCheckpoint(s->output));

@@ -20,7 +20,9 @@ PetscErrorCode PetvesInitialize(int *argc, char ***argv) {
   int running, provided, missing = 0, rank;
   if (MPI_Initialized(&running)) return PETSC_ERR_MPI;
   began_mpi = running ? PETSC_FALSE : PETSC_TRUE;
-  if (began_mpi && MPI_Init_thread(argc, argv, PETSC_MPI_THREAD_REQUIRED, &provided)) return PETSC_ERR_MPI;
+  /* newer PETSc leaves the level to decide (negative) until it starts MPI itself */
+  const int level = PETSC_MPI_THREAD_REQUIRED < 0 ? MPI_THREAD_FUNNELED : (int)PETSC_MPI_THREAD_REQUIRED;
+  if (began_mpi && MPI_Init_thread(argc, argv, level, &provided)) return PETSC_ERR_MPI;
   MPI_Comm_rank(MPI_COMM_WORLD, &rank);
   if (!rank && MissingOptionsFile(*argc, *argv)) {
     fprintf(stderr, "petves: error: -options_file %s: cannot be opened (%s); allowed: a readable file of options\n",
@@ -32,6 +34,7 @@ PetscErrorCode PetvesInitialize(int *argc, char ***argv) {
     if (began_mpi) MPI_Finalize();
     return PETSC_ERR_FILE_OPEN;
   }
+  StopClock();
   PetscFunctionBeginUser;
   PetscCall(PetscInitialize(argc, argv, NULL, help));
   PetscCall(PetscPushErrorHandler(PetvesErrorHandler, NULL));
@@ -40,6 +43,10 @@ PetscErrorCode PetvesInitialize(int *argc, char ***argv) {
 
 PetscErrorCode PetvesFinalize(void) {
   PetscErrorCode error = PetscPopErrorHandler();
+  PetscBool given = PETSC_FALSE;
+  /* unused options have been reported in one line; newer PETSc would list them again */
+  if (!PetscOptionsHasName(NULL, NULL, "-options_left", &given) && !given)
+    (void)PetscOptionsSetValue(NULL, "-options_left", "no");
   if (!error) error = PetscFinalize();
   if (began_mpi && MPI_Finalize()) return PETSC_ERR_MPI;
   return error;
@@ -114,8 +121,8 @@ static PetscErrorCode WriteDue(Simulation s) {
   const PetscInt every = s->scene->checkpoint_every;
   PetscFunctionBeginUser;
   if (q->t >= s->next_output - 1e-9 * q->dt) {
-    PetscCall(OutputFields(s->output));
-    while (s->next_output <= q->t + 1e-9 * q->dt) s->next_output += s->scene->output_every;
+    PetscCall(OutputFields(s->output, PETSC_TRUE));
+    s->next_output = OutputNextTime(s->output);
   }
   if (every && q->step % every == 0) PetscCall(OutputCheckpoint(s->output));
   PetscCall(OutputProgress(s->output, PETSC_FALSE));
@@ -139,24 +146,35 @@ static PetscErrorCode IsSteady(Simulation s, PetscBool *steady) {
 /* One step of at most `most` (with -time_adapt), its row of series.csv and the files that are due. */
 static PetscErrorCode TakeStep(Simulation s, PetscReal most, const char **failure) {
   const StepReport *report = &s->scheme->report;
+  Output o = s->output;
+  PetscLogDouble start, end;
   PetscFunctionBeginUser;
   PetscCall(SimulationBegin(s));
+  PetscCall(PetscTime(&start));
+  o->frames = PetscMin(o->frames, o->scheduled); /* an end that was not the end */
   PetscCall(SchemeStep(s->scheme, s->scene->adapt ? most : s->scene->dt));
   *failure = *report->failure ? report->failure : NULL;
   if (*failure) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(OutputSeries(s->output));
   PetscCall(WriteDue(s));
   PetscCall(IsSteady(s, &s->steady));
+  PetscCall(PetscTime(&end));
+  s->longest_step = PetscMax(s->longest_step, end - start);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The first row and frame; those of a checkpoint are there already, or (in a new folder) its row is. */
 PetscErrorCode SimulationBegin(Simulation s) {
   PetscFunctionBeginUser;
   if (s->begun) PetscFunctionReturn(PETSC_SUCCESS);
   s->begun = PETSC_TRUE;
-  PetscCall(OutputSeries(s->output));
-  PetscCall(OutputFields(s->output));
-  s->next_output = s->scene->output_every;
+  s->reason = "finished";
+  if (!*s->scene->restart)
+    PetscCall(OutputSeries(s->output));
+  else /* the checkpoint's row is there already */
+    PetscCall(OutputMeasureVesicles(s->output));
+  if (!s->output->go_on) PetscCall(OutputFields(s->output, PETSC_TRUE));
+  s->next_output = OutputNextTime(s->output);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -169,24 +187,35 @@ PetscErrorCode SimulationStep(Simulation s, const char **failure) {
 
 PetscErrorCode SimulationAdvance(Simulation s, PetscReal until, PetscBool *stepped, const char **failure) {
   const State *q = &s->scheme->state;
+  const char *why = NULL;
   PetscFunctionBeginUser;
   *failure = NULL;
-  *stepped = !s->steady && q->t < until - (s->scene->adapt ? 1e-9 : 0.5) * s->scene->dt ? PETSC_TRUE : PETSC_FALSE;
-  if (*stepped) PetscCall(TakeStep(s, until - q->t, failure));
+  *stepped = PETSC_FALSE;
+  PetscCall(SimulationBegin(s));
+  s->reason = s->steady ? "steady" : "finished";
+  if (s->steady || q->t >= until - (s->scene->adapt ? 1e-9 : 0.5) * s->scene->dt) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(StopRequested(s->scene->comm, s->scene->wall_limit,
+                          1 + 1.5 * (s->longest_step + s->output->checkpoint_seconds), &why));
+  if (why) {
+    s->reason = "stopped";
+    if (!s->output->quiet)
+      PetscCall(PetscPrintf(s->scene->comm, "petves: stopping after step %" PetscInt_FMT ": %s\n", q->step, why));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  *stepped = PETSC_TRUE;
+  PetscCall(TakeStep(s, until - q->t, failure));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode SimulationEnd(Simulation s, const char *failure) {
-  const State *q = &s->scheme->state;
-  const char *reason = s->steady ? "steady" : "finished";
   PetscFunctionBeginUser;
   PetscCall(SimulationBegin(s));
-  if (s->output->last[COLUMN_TIME] > s->next_output - s->scene->output_every + 1e-9 * q->dt)
-    PetscCall(OutputFields(s->output)); /* the end state, when no saved time fell on it */
+  if (s->scheme->state.t > s->output->times[s->output->frames - 1])
+    PetscCall(OutputFields(s->output, PETSC_FALSE)); /* the end state, when no saved time fell on it */
   PetscCall(OutputCheckpoint(s->output));
-  PetscCall(OutputSummary(s->output, failure ? failure : reason));
+  PetscCall(OutputSummary(s->output, failure ? failure : s->reason));
   PetscCall(OutputProgress(s->output, PETSC_TRUE));
-  PetscCall(OutputFinalTable(s->output, failure ? "stopped" : reason));
+  PetscCall(OutputFinalTable(s->output, failure ? "stopped" : s->reason));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

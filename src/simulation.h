@@ -13,4 +13,6 @@ struct _p_Simulation {
   PetscReal next_output;
   PetscBool begun;  /* the initial state has been written */
   PetscBool steady; /* after the last step */
+  PetscReal longest_step; /* wall seconds, with its output */
+  const char *reason; /* why SimulationAdvance did not step */
 };

@@ -22,6 +22,7 @@ ENVIRONMENT = {
     "OMPI_MCA_mpi_yield_when_idle": "1",
     "OMPI_MCA_btl_vader_single_copy_mechanism": "none",
     "OMPI_MCA_odls_base_sigkill_timeout": "0",  # else mpirun sleeps two seconds after a non-zero exit
+    "OMPI_MCA_ess_singleton_isolated": "1",  # one rank without mpirun starts no daemon
     "OMP_NUM_THREADS": "1",
     "ASAN_OPTIONS": "detect_leaks=0",
     "UBSAN_OPTIONS": "halt_on_error=1:print_stacktrace=1",
@@ -39,9 +40,9 @@ COLUMNS = (
 
 
 def mpirun(command: list[str], ranks: int, timeout: float = 300, wrapper: tuple[str, ...] = (), **environment: str):
-    """Run a command on `ranks` ranks; returns the CompletedProcess with text streams."""
+    """Run a command on `ranks` ranks, one of them without mpirun; returns the CompletedProcess with text streams."""
     return subprocess.run(
-        ["mpirun", "-n", str(ranks), *wrapper, *command],
+        [*(["mpirun", "-n", str(ranks)] if ranks > 1 else []), *wrapper, *command],
         env={**os.environ, **ENVIRONMENT, **environment},
         capture_output=True,
         text=True,

@@ -33,7 +33,15 @@ def polygon_area(points: np.ndarray) -> float:
 
 def test_folder_holds_every_file(run):
     names = {path.name for path in run.folder.iterdir()}
-    assert names == {"series.csv", "run.h5", "run.xmf", "checkpoint.h5", "resolved.opts", "summary.json"}
+    assert names == {
+        "series.csv",
+        "run.h5",
+        "run.xmf",
+        "checkpoint.h5",
+        "checkpoint_1.h5",
+        "resolved.opts",
+        "summary.json",
+    }
 
 
 def test_series_has_its_columns(run):

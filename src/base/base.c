@@ -30,12 +30,11 @@ static void NameOption(const char *message, char name[], size_t length) {
   (void)PetscFree(all);
 }
 
-/* One line of text: the message, after the option at fault or, for an error inside PETSc, the function. */
-static void OneLine(const char *function, PetscErrorCode code, const char *message, char text[PETVES_MAX_MESSAGE]) {
+/* One line of text: the message, after the option at fault. */
+static void OneLine(PetscErrorCode code, const char *message, char text[PETVES_MAX_MESSAGE]) {
   char before[PETVES_MAX_MESSAGE / 2] = "";
   size_t n;
   if (code != PETSC_ERR_USER_INPUT && message) NameOption(message, before, sizeof(before));
-  if (code != PETSC_ERR_USER_INPUT && !base.one_line) (void)PetscSNPrintf(before, sizeof(before), "%s(): ", function);
   (void)PetscStrncpy(text, before, PETVES_MAX_MESSAGE);
   n = strlen(text);
   for (const char *c = message ? message : "unknown error"; *c && n < PETVES_MAX_MESSAGE - 1; c++)
@@ -47,19 +46,20 @@ PetscErrorCode PetvesErrorHandler(MPI_Comm comm, int line, const char *function,
                                   PetscErrorType type, const char *message, void *ctx) {
   char text[PETVES_MAX_MESSAGE], *kept = (char *)ctx;
   PetscMPIInt rank = 0;
-  if (!kept && code != PETSC_ERR_USER_INPUT && !base.one_line)
-    return PetscTraceBackErrorHandler(comm, line, function, file, code, type, message, ctx);
-  if (type != PETSC_ERROR_INITIAL) return code;
-  OneLine(function, code, message, text);
-  if (kept) {
-    if (!*kept) (void)PetscStrncpy(kept, text, PETVES_MAX_MESSAGE);
-    return code;
-  }
   MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-  if (!rank) {
-    fprintf(stderr, "petves: error: %s\n", text);
-    fflush(stderr);
+  if (type != PETSC_ERROR_INITIAL) return code;
+  if (rank && code == PETSC_ERR_USER_INPUT && !kept) return code; /* rank 0 says it */
+  OneLine(code, message, text);
+  if (code != PETSC_ERR_USER_INPUT && !base.one_line) { /* no user's mistake: say where */
+    const size_t used = strlen(text);
+    (void)PetscSNPrintf(text + used, sizeof(text) - used, " (%s() in %s, line %d, rank %d)", function, file, line,
+                        rank);
   }
+  if (kept && !*kept)
+    (void)PetscStrncpy(kept, text, PETVES_MAX_MESSAGE);
+  else if (!kept && (code == PETSC_ERR_USER_INPUT || !rank || !(base.one_line || comm == MPI_COMM_WORLD)))
+    fprintf(stderr, "petves: error: %s\n", text);
+  fflush(stderr);
   return code;
 }
 

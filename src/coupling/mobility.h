@@ -33,6 +33,9 @@ PETSC_EXTERN PetscErrorCode MobilityDestroy(Mobility *mobility);
 /* MobilityForget - drop all tables. Not collective. */
 PETSC_EXTERN PetscErrorCode MobilityForget(Mobility mobility);
 
+/* MobilitySetTables - fill the cache with the tables for these coefficients, 0: none. Collective. */
+PETSC_EXTERN PetscErrorCode MobilitySetTables(Mobility mobility, const PetscReal a0[MOBILITY_CACHE]);
+
 /* MobilityGetTable - the table for a0, made if no cached one is within 10 %: six scalar solves in the periodic box.
    Collective; borrowed. */
 PETSC_EXTERN PetscErrorCode MobilityGetTable(Mobility mobility, PetscReal a0, const GreenTable **table);

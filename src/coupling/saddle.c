@@ -146,11 +146,38 @@ PetscErrorCode SaddleForget(Saddle s) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SaddleRefresh(Saddle s) {
+static PetscErrorCode MakeBlocks(Saddle s) {
   const GreenTable *table;
   PetscFunctionBeginUser;
   PetscCall(MobilityGetTable(s->mobility, s->fluid->a0, &table));
   PetscCall(DenseBlocksFactor(s->blocks, s->mobility, table, s->self, s->fluid->a0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SaddleGetMemory(Saddle s, PetscReal memory[SADDLE_MEMORY]) {
+  const PetscReal own[] = {s->factored_a0, s->fresh_its, s->age, s->life, s->refreshed};
+  PetscFunctionBeginUser;
+  for (int k = 0; k < 5; k++) memory[k] = own[k];
+  for (int k = 0; k < MOBILITY_CACHE; k++) memory[5 + k] = s->mobility ? s->mobility->cache[k].a0 : 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SaddleSetMemory(Saddle s, const PetscReal memory[SADDLE_MEMORY]) {
+  PetscFunctionBeginUser;
+  if (!s->mobility || memory[0] == 0) PetscFunctionReturn(PETSC_SUCCESS);
+  s->factored_a0 = memory[0];
+  s->fresh_its = (PetscInt)memory[1];
+  s->age = (PetscInt)memory[2];
+  s->life = (PetscInt)memory[3];
+  s->refreshed = (PetscInt)memory[4];
+  PetscCall(MobilitySetTables(s->mobility, memory + 5));
+  PetscCall(MakeBlocks(s));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SaddleRefresh(Saddle s) {
+  PetscFunctionBeginUser;
+  PetscCall(MakeBlocks(s));
   s->factored_a0 = s->fluid->a0;
   s->fresh_its = -1;
   s->age = 0;

@@ -67,6 +67,14 @@ PETSC_EXTERN PetscErrorCode SaddleCreateWallVec(Saddle saddle, Vec *d);
    Collective. */
 PETSC_EXTERN PetscErrorCode SaddleSetUp(Saddle saddle);
 
+/* SaddleGetMemory, SaddleSetMemory - all that earlier solves have left for later ones, as numbers that a checkpoint can
+   hold, and made again from them, with the coupling's markers and `self` where they were when the dense blocks were
+   made and the fluid's a0 that of the blocks (memory[0]; 0: there were none). Whatever a saddle keeps belongs in here,
+   or a restarted run would not have the bits of one that went on. Set is collective. */
+#define SADDLE_MEMORY (5 + MOBILITY_CACHE)
+PETSC_EXTERN PetscErrorCode SaddleGetMemory(Saddle saddle, PetscReal memory[SADDLE_MEMORY]);
+PETSC_EXTERN PetscErrorCode SaddleSetMemory(Saddle saddle, const PetscReal memory[SADDLE_MEMORY]);
+
 /* SaddleSolve - solve for w, p, sigma and the wall forces d, which hold the initial guess (p's is not used); f and g
    the right-hand sides. its, why, residual say how it went. Collective. */
 PETSC_EXTERN PetscErrorCode SaddleSolve(Saddle saddle, Vec f, Vec g, Vec w, Vec p, Vec sigma, Vec d, Vec V);

@@ -80,7 +80,11 @@ struct _p_Scene {
   char output_dir[PETSC_MAX_PATH_LEN]; /* every output file goes here */
   PetscReal output_every;              /* time between saved fields */
   PetscInt checkpoint_every;           /* steps between checkpoints; 0: only at the end */
-  PetscBool view, allow_unused;
+  PetscInt checkpoint_keep;            /* checkpoints kept, the newest included */
+  char restart[PETSC_MAX_PATH_LEN];    /* checkpoint to go on from; empty: none */
+  PetscReal wall_limit;                /* seconds after which to stop; 0: never */
+  PetscReal limit_edge_ratio, limit_area_error, limit_length_error; /* stop above; 0: no limit */
+  PetscBool overwrite, view, allow_unused;
 };
 
 /* SceneCreate - read and check every option of the options database. Collective. An option with a bad value ends with
@@ -102,6 +106,10 @@ PETSC_EXTERN PetscErrorCode SceneWriteOptions(Scene scene, FILE *file);
    past the last one. */
 PETSC_EXTERN const char *SceneOptionName(PetscInt i);
 PETSC_EXTERN PetscErrorCode SceneOptionValue(Scene scene, PetscInt i, char value[], size_t length);
+
+/* SceneOptionMayChange - whether a restart may have another value of this option than its checkpoint: the end,
+   tolerances, output, limits and back ends may change; the grid, the fluid, the vesicles and the scheme may not. */
+PETSC_EXTERN PetscBool SceneOptionMayChange(const char name[]);
 
 /* SceneValidate - checks that involve more than one option. Called by SceneCreate. */
 PETSC_EXTERN PetscErrorCode SceneValidate(Scene scene);
