@@ -11,6 +11,7 @@ LIBRARY = str(Path(PETVES).parent.parent / "lib" / "libpetves.so")
 FACTS = [
     ("interface", ["state", "measures", "running", "solvers", "several"], 1),
     ("interface", ["state", "measures", "running", "several"], 2),
+    ("interface", ["restarting"], 1),
     ("interface", ["memory"], 1),
     ("flow", ["same_as_built_in", "right_time", "failures"], 1),
     ("flow", ["same_as_built_in"], 2),

@@ -19,6 +19,7 @@ options = dict(
     time_end=0.5 if chosen.short else 8,
     output_every=0.25,
     output_dir=folder,
+    output_overwrite=True,
 )
 print_once = PETSc.Sys.Print  # by the first rank only
 

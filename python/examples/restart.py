@@ -24,5 +24,5 @@ with petves.Simulation.restart(checkpoint, time_end=end) as sim:  # options from
     print(f"largest difference of the markers: {np.abs(sim.markers - straight).max():g}")
     assert np.array_equal(sim.markers, straight)
 
-series = petves.load(chosen.folder / "halves").series
+series = petves.load(chosen.folder / "halves", "numpy").series
 print(f"one series of {len(series['time'])} rows from t = {series['time'][0]:g} to {series['time'][-1]:g}")

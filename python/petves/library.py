@@ -50,6 +50,7 @@ SIGNATURES = {
     "SimulationStep": (Handle, _pointer(_text)),
     "SimulationAdvance": (Handle, _double, _pointer(ctypes.c_int), _pointer(_text)),
     "SimulationEnd": (Handle, _text),
+    "SimulationGetReason": (Handle, _pointer(_text)),
     "SimulationCheckpoint": (Handle,),
     "SimulationSetQuiet": (Handle, ctypes.c_int),
     "SimulationGetTime": (Handle, _pointer(Int), _pointer(_double)),

@@ -237,7 +237,7 @@ class Simulation(Measures):
         Returns
         -------
         str
-            Why it stopped: "finished", "steady" or "callback".
+            Why it stopped: "finished", "steady", "stopped" (``time_wall_limit``) or "callback".
 
         Raises
         ------
@@ -245,12 +245,13 @@ class Simulation(Measures):
             When a step cannot be taken; checkpoint.h5 then holds the last good state.
         """
         end = float(self._in_force["time_end"]) if until is None else until
-        stepped, failure = ctypes.c_int(), ctypes.c_char_p()
-        reason = "finished"
+        stepped, failure, word = ctypes.c_int(), ctypes.c_char_p(), ctypes.c_char_p()
         with progress_bar(end, self.time, progress if self._comm.getRank() == 0 else False) as bar:
             while True:
                 self._call("SimulationAdvance", self._open(), end, ctypes.byref(stepped), ctypes.byref(failure))
                 if not stepped.value:
+                    self._lib.SimulationGetReason(self._handle, ctypes.byref(word))
+                    reason = word.value.decode()
                     break
                 self._ended = False
                 self._stop_on(failure)
@@ -260,8 +261,6 @@ class Simulation(Measures):
                     reason = "callback"
                     break
 
-        if reason == "finished" and self.time < end - 0.5 * self.dt:
-            reason = "steady"
         if until is None and reason != "callback":
             self._end(None)
         return reason

@@ -86,9 +86,41 @@ def running():
         assert sim.run() == "steady" and sim.steps == 1
         temporary = sim.folder
         assert temporary.is_dir()
+    with petves.Simulation(time_wall_limit=0.001, **SMALL) as sim:
+        assert sim.run() == "stopped" and sim.steps == 0
     PETSc.COMM_WORLD.barrier()
     assert not temporary.exists(), "a temporary folder goes with its simulation"
     refused("closed", sim.step)
+
+
+def restarting():
+    """Half a run and its restart have the bits of a straight run; measures and series go on; another scene is refused."""
+    flow = lambda x, y, t: (np.cos(t) * y, 0 * x)
+    scene = {**SMALL, "time_step": 0.005, "flow_type": None, "flow": flow}
+    with petves.Simulation(output_dir=FOLDER / "straight", **scene) as straight:
+        straight.run()
+        markers, tension, series = straight.markers.copy(), straight.tension.copy(), straight.history
+    with petves.Simulation(output_dir=FOLDER / "halves", **{**scene, "time_end": 0.015}) as half:
+        half.run()
+        half.step()  # past the checkpoint
+        checkpoint = FOLDER / "halves/checkpoint_1.h5"
+        half.checkpoint()
+    with petves.Simulation.restart(checkpoint, time_end=0.03, flow=flow) as again:
+        assert again.steps == 3 and again.inclination == series["inclination"][3] == again.each("inclination")[0]
+        again.run()
+        assert np.array_equal(again.markers, markers) and np.array_equal(again.tension, tension)
+        for name, values in again.history.items():
+            assert name == "wall" or np.array_equal(values, series[name][3:], equal_nan=True), name
+    PETSc.COMM_WORLD.barrier()
+    rows = [(FOLDER / name / "series.csv").read_text().splitlines() for name in ("straight", "halves")]
+    assert [row.split(",")[:20] for row in rows[0]] == [row.split(",")[:20] for row in rows[1]]
+    for name in ("straight", "halves"):
+        assert len(petves.Run.read(FOLDER / name).time) == 2
+    refused(
+        "-domain_cells 48,48: the checkpoint",
+        lambda: petves.Simulation.restart(checkpoint, domain_cells=(48, 48), flow=flow),
+    )
+    refused("output_overwrite", lambda: petves.Simulation(output_dir=FOLDER / "straight", **SMALL))
 
 
 def solvers():
@@ -182,7 +214,7 @@ def memory():
     assert resident() - before < 2e6, f"{resident() - before} bytes in 12 runs"  # a simulation has about 1e6
 
 
-for fact in (state, measures, running, solvers, several, memory, mistakes):
+for fact in (state, measures, running, restarting, solvers, several, memory, mistakes):
     if fact.__name__ in FACTS:
         fact()
         gc.collect()
