@@ -80,7 +80,7 @@ deps: ## install the Debian packages that are missing
 test-deps:
 	$(call install_packages,$(PACKAGES) $(TEST_PACKAGES))
 
-$(BUILD)/site/.$(VTK):
+$(BUILD)/site/.vtk:
 	$(PYTHON) -m pip install -q --no-deps --root-user-action=ignore --target $(@D) --upgrade $(VTK)
 	touch $@
 
@@ -90,7 +90,7 @@ run: deps ## run the default scene (or SCENE=file.opts) on 2 ranks and draw it
 	PYTHONPATH=python $(PYTHON) -m petves plot $$(awk '$$1 == "-output_dir" {print $$2}' $(SCENE))
 
 test: test-deps ## run every test; ends with "N passed, N failed"
-	@$(MAKE) --no-print-directory all tests $(BUILD)/site/.$(VTK)
+	@$(MAKE) --no-print-directory all tests $(BUILD)/site/.vtk
 	PETVES=$(CURDIR)/$(BIN)/petves PETVES_TESTS=$(CURDIR)/$(BUILD)/tests PYTHONPATH=python SANITIZE=$(SANITIZE) \
 	  $(PYTHON) -m pytest -p no:cacheprovider -q tests $(TESTFLAGS)
 
