@@ -49,6 +49,15 @@ if not SANITIZE:  # a sanitized library cannot be loaded into Python
         done = run_python(SCRIPTS / "overhead.py", [])
         assert done.returncode == 0 and float(done.stdout) < 0.02, done.stdout + done.stderr
 
+    def test_progress_bar_where_one_is_asked_for(tmp_path):
+        script = tmp_path / "script.py"
+        script.write_text(
+            "import petves\nwith petves.Simulation(domain_cells=(24, 24), vesicle_semi_axes=(0.4, 0.5)) as sim:\n"
+            "    sim.run(until=0.03, progress=True)\n    sim.run(until=0.05)\n"
+        )
+        done = run_python(script, [], 2)
+        assert done.returncode == 0 and "100%" in done.stderr and done.stderr.count("0.03/0.03") == 1
+
     @pytest.mark.parametrize("scene,ranks", [*((scene, 1) for scene in SCENES), ("default", 2), ("adaptive", 2)])
     def test_same_bits_as_the_command_line(scene, ranks, tmp_path):
         options = SCENES[scene]

@@ -119,11 +119,13 @@ def test_sweep_runs_each_once_and_goes_on(tmp_path):
         assert float(row["energy_bending"]) == series["energy_bending"][-1] and float(row["time"]) == 0.02
     before = {path: path.stat().st_mtime_ns for path in (tmp_path / "grid").glob("*/series.csv")}
     interrupted = tmp_path / "grid" / rows[0]["folder"]
-    (interrupted / "status.json").unlink()  # as after a kill
+    (interrupted / "status.json").unlink()  # as after a kill: its checkpoint is there
+    rows_before = (interrupted / "series.csv").read_text()
     tool(*words, 1, 2, 3, "--vary", "time_step", "0.01", "0")
     after = {path: path.stat().st_mtime_ns for path in (tmp_path / "grid").glob("*/series.csv")}
     again = {path.parent.name for path in after if after[path] != before.get(path)}
     assert again == {rows[0]["folder"], "fluid_viscosity=3,time_step=0.01"}
+    assert (interrupted / "series.csv").read_text() == rows_before, "it went on from its checkpoint"
     assert len((tmp_path / "grid" / "sweep.csv").read_text().splitlines()) == 7
     shared.write_text("-domain_cells 32,32\n")
     assert "holds a sweep with other shared options" in tool(*words, 1, good=False)[0]

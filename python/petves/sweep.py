@@ -13,6 +13,7 @@ from petves.errors import Error
 from petves.program import program, run_program
 from petves.progress import progress_bar
 
+GOOD = ("finished", "steady")
 FORBIDDEN = ("output_dir", "restart", "options_file")
 
 
@@ -31,8 +32,8 @@ def sweep(
     folder : str or Path
         Where the runs go, a folder each, and sweep.csv: a row a run with the varied options, `folder`, `status` ("done",
         "stopped" when a step could not be taken, "refused" when the options were) and `message`, then the last row of the
-        run's series.csv. A finished run is not run again, so that an interrupted sweep goes on where it stopped, and a
-        larger grid adds to it.
+        run's series.csv. A finished run is not run again and an interrupted one goes on from its checkpoint, so that a
+        sweep goes on where it stopped, and a larger grid adds to it.
     grid : dict of str to list of str
         Values of each option, named without the dash.
     options_file : str or Path, optional
@@ -97,13 +98,18 @@ def _run_point(folder: Path, point: dict[str, str], ranks: int) -> None:
     home = folder / _name(point)
     if (home / "status.json").is_file():
         return
-    shutil.rmtree(home, ignore_errors=True)  # what an interrupted run has left
     words = [word for name, value in point.items() for word in (f"-{name}", value)]
-    status, message = run_program(
-        ["-options_file", str(folder / "shared.opts"), *words, "-output_dir", str(home)], ranks
-    )
+    words = ["-options_file", str(folder / "shared.opts"), *words, "-output_dir", str(home)]
+    status, message = 1, ""
+    if (home / "checkpoint.h5").is_file():  # of an interrupted run
+        status, message = run_program([*words, "-restart", str(home / "checkpoint.h5")], ranks)
+    if status == 1:
+        shutil.rmtree(home, ignore_errors=True)
+        status, message = run_program(words, ranks)
     if status < 0 or status > 2:
         raise Error(f"{home}: the program ended with status {status}: {message}")
+    if status == 0 and json.loads((home / "summary.json").read_text())["reason"] not in GOOD:
+        return  # asked to stop: the next call goes on
     home.mkdir(exist_ok=True)
     kind = ("done", "refused", "stopped")[status]
     temporary = home / "status.json.tmp"
