@@ -7,7 +7,14 @@ import subprocess
 from pathlib import Path
 
 from petves.run import RunError
-from petves.studies import OPEN_MPI
+
+OPEN_MPI = {
+    "OMPI_ALLOW_RUN_AS_ROOT": "1",
+    "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+    "OMPI_MCA_rmaps_base_oversubscribe": "1",
+    "OMPI_MCA_mpi_yield_when_idle": "1",
+    "OMP_NUM_THREADS": "1",
+}
 
 
 def program() -> Path:
