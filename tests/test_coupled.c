@@ -83,8 +83,9 @@ static PetscErrorCode CheckSolution(const char name[], Problem *q, PetscBool ran
   reference = PetscSqrtReal(reference);
   row[2] = PetscSqrtReal(row[2]);
   CHECK(q->s->why > 0, "%s: converged in %d iterations", name, (int)q->s->its);
-  for (int k = 0; k < 3; k++)
-    CHECK(row[k] < 3e-12 * reference, "%s: row %d of the solution put back, %.1e", name, k + 1, row[k] / reference);
+  for (int k = 0; k < 3; k++) /* the solver's residual is V - E u; in row 1 it counts with the bending's stiffness */
+    CHECK(row[k] < (k ? 3e-12 : 2e-11) * reference, "%s: row %d of the solution put back, %.1e", name, k + 1,
+          row[k] / reference);
   PetscCall(VecDestroy(&r));
   PetscCall(VecDestroy(&div));
   PetscCall(VecDestroy(&U));
@@ -157,10 +158,7 @@ static PetscErrorCode CheckWalls(const char options[], const char name[], PetscR
   PetscCall(VecRestoreArray(y, &ya));
   PetscCall(VecRestoreArray(d, &da));
   CHECK(off > 0.1 * size, "%s: the projection slips, by %.2f of the force", name, off / size);
-  if (pair)
-    CHECK(error < 1e-11 * size, "%s: the walls' inverse is exact, %.1e", name, error / size);
-  else
-    CHECK(error < off, "%s: the walls' inverse leaves %.2f of the slip", name, error / off);
+  CHECK(error < (pair ? 1e-11 : 1e-3) * size, "%s: the walls' inverse, %.1e", name, error / size);
   PetscCall(VecDestroy(&r));
   PetscCall(VecDestroy(&p));
   PetscCall(VecDestroy(&d));

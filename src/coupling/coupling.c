@@ -43,6 +43,7 @@ PetscErrorCode CouplingSetMarkers(Coupling c, Vec X) {
         s->n[dir] = (comp == dir ? c->kernel->along : c->kernel->across)(r, &s->first[dir], s->weight[dir]);
         if (!g->wall[dir]) s->first[dir] = ((s->first[dir] % g->n[dir]) + g->n[dir]) % g->n[dir];
       }
+  PetscCall(PetscArraycpy(c->X, x, 2 * c->membrane->M));
   MembraneTangents(c->membrane, x, c->tau);
   PetscCall(VecRestoreArrayRead(X, &x));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -215,8 +216,8 @@ PetscErrorCode CouplingCreate(Grid g, Membrane m, const char kernel[], Coupling 
   c->alpha = 1;
   c->kernel = KernelFind(kernel);
   PetscCheck(c->kernel, g->comm, PETSC_ERR_USER_INPUT, "-delta_type %s: unknown kernel", kernel);
-  PetscCall(PetscMalloc5(2 * m->M, &c->stencil, 2 * m->M, &c->tau, 2 * m->M, &c->force, 2 * m->M, &c->work, 2 * m->M,
-                         &c->sum));
+  PetscCall(PetscMalloc6(2 * m->M, &c->X, 2 * m->M, &c->stencil, 2 * m->M, &c->tau, 2 * m->M, &c->force, 2 * m->M,
+                         &c->work, 2 * m->M, &c->sum));
   PetscCall(VecCreateSeqWithArray(PETSC_COMM_SELF, 1, slab, NULL, &c->slab));
   PetscCall(CreateShell(c, slab, 2 * m->M, PETSC_TRUE, Spread_E, SpreadAdd_E, Interpolate_E, &c->E));
   PetscCall(CreateShell(c, slab, m->M, PETSC_FALSE, Spread_S, SpreadAdd_S, Interpolate_S, &c->S));
@@ -230,7 +231,7 @@ PetscErrorCode CouplingDestroy(Coupling *coupling) {
   Coupling c = *coupling;
   PetscFunctionBeginUser;
   if (!c) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscFree5(c->stencil, c->tau, c->force, c->work, c->sum));
+  PetscCall(PetscFree6(c->X, c->stencil, c->tau, c->force, c->work, c->sum));
   PetscCall(VecDestroy(&c->slab));
   PetscCall(MatDestroy(&c->E));
   PetscCall(MatDestroy(&c->S));

@@ -21,7 +21,8 @@ struct _p_Coupling {
   Membrane membrane; /* borrowed */
   const Kernel *kernel;
   Stencil *stencil; /* [2M]: component c of marker k at 2k + c */
-  PetscReal *tau;   /* [2M] tangents at the coupling's markers */
+  PetscReal *X;     /* [2M] the coupling's markers */
+  PetscReal *tau;   /* [2M] tangents there */
   PetscScalar *force, *work, *sum;
   PetscReal alpha; /* factor of the spreading under way */
   Vec slab;        /* sequential vector without memory, for a velocity's local part */

@@ -2,7 +2,7 @@
 #include "coupling/mobility.h"
 #include "fluid/stokes.h"
 
-#define LAGS (2 * KERNEL_MAX_POINTS - 1)
+#define LAGS (2 * KERNEL_MAX_POINTS) /* of two kernels, one spare: whole vectors */
 
 PetscErrorCode MobilityCreate(Scene scene, Coupling coupling, Mobility *out) {
   const Grid g = coupling->grid;
@@ -131,18 +131,21 @@ PetscErrorCode MobilityGetTable(Mobility m, PetscReal a0, const GreenTable **tab
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Correlation of two stencils in one direction: weight[q] for offsets first + q; returns their number. Offsets go to
-   the nearest image, inside the window. */
-static PetscInt Correlate(Mobility m, int dir, const Stencil *response, const Stencil *source, PetscInt *first,
-                          PetscReal weight[LAGS]) {
+/* Correlation of two stencils in one direction: weight[q] for offsets first + q, LAGS of them, zero past the last.
+   Offsets go to the nearest image, inside the window. */
+static inline void Correlate(Mobility m, int dir, const Stencil *response, const Stencil *source, PetscInt *first,
+                             PetscReal weight[restrict LAGS]) {
   const PetscInt na = response->n[dir], nb = source->n[dir], count = na + nb - 1, n = m->coupling->grid->n[dir];
   const PetscInt low = response->first[dir] - source->first[dir] - nb + 1, middle = low + count / 2;
-  for (PetscInt q = 0; q < count; q++) weight[q] = 0;
-  for (PetscInt i = 0; i < na; i++)
-    for (PetscInt j = 0; j < nb; j++) weight[i - j + nb - 1] += response->weight[dir][i] * source->weight[dir][j];
-  *first = low - n * (PetscInt)PetscFloorReal((PetscReal)middle / (PetscReal)n + 0.5);
-  *first = PetscMax(-m->size[dir], PetscMin(*first, m->size[dir] - count + 1));
-  return count;
+  PetscReal a[KERNEL_MAX_POINTS] = {0};
+  for (PetscInt i = 0; i < na; i++) a[i] = response->weight[dir][i];
+  for (int q = 0; q < LAGS; q++) weight[q] = 0;
+  for (PetscInt j = 0; j < nb; j++)
+    for (int i = 0; i < KERNEL_MAX_POINTS; i++) weight[i - j + nb - 1] += a[i] * source->weight[dir][j];
+  *first = low;
+  if (middle >= n / 2 || middle < -n / 2)
+    *first -= n * (PetscInt)PetscFloorReal((PetscReal)middle / (PetscReal)n + 0.5);
+  *first = PetscMax(-m->size[dir], PetscMin(*first, m->size[dir] - LAGS + 1));
 }
 
 /* SUM SUM phi(response) Green phi(source) of one component at marker k and one at marker l. */
@@ -151,14 +154,13 @@ static PetscReal Pair(Mobility m, const GreenTable *t, GreenBlock b, PetscInt k,
   const Stencil *source = &m->coupling->stencil[2 * l + (b == GREEN_VV ? 1 : 0)];
   const PetscInt width = 2 * m->size[0] + 1;
   PetscInt i0, j0;
-  PetscReal wx[LAGS], wy[LAGS], sum = 0;
-  const PetscInt nx = Correlate(m, 0, response, source, &i0, wx), ny = Correlate(m, 1, response, source, &j0, wy);
+  PetscReal wx[LAGS], wy[LAGS], line[LAGS] = {0}, sum = 0;
+  Correlate(m, 0, response, source, &i0, wx);
+  Correlate(m, 1, response, source, &j0, wy);
   const PetscReal *row = t->grid[b] + (j0 + m->size[1]) * width + i0 + m->size[0];
-  for (PetscInt j = 0; j < ny; j++, row += width) {
-    PetscReal line = 0;
-    for (PetscInt i = 0; i < nx; i++) line += wx[i] * row[i];
-    sum += wy[j] * line;
-  }
+  for (int j = 0; j < LAGS; j++, row += width) /* weights past the last are zero */
+    for (int i = 0; i < LAGS; i++) line[i] += wy[j] * row[i];
+  for (int i = 0; i < LAGS; i++) sum += wx[i] * line[i];
   return sum;
 }
 

@@ -39,15 +39,16 @@ PetscErrorCode SaddlePrecondition(PC pc, Vec r, Vec z) {
   s->applied++;
   PetscCall(VecCopy(r, z));
   PetscCall(VecGetArray(z, &za));
+  PetscCall(WallsPrecondition(s->walls, za + s->n_velocity + s->n_tension));
   if (s->coupling) { /* the residuals are scaled */
     for (PetscInt k = 0; k < s->n_velocity; k++) za[k] /= SaddleVelocityScale(s, k / 2);
     for (PetscInt k = 0; k < s->n_tension; k++) za[s->n_velocity + k] /= SaddleScale(s, k);
+    PetscCall(WallsMarkerVelocity(s->walls, 1, za)); /* block triangular: the walls' flow moves the markers */
     if (s->type == MOBILITY_TABLE) PetscCall(SolveTable(s, za, za + s->n_velocity));
     if (s->type == MOBILITY_ILU) PetscCall(SolveChat(s, za, za + s->n_velocity));
     if (s->type == MOBILITY_NONE)
       for (PetscInt k = 0; k < s->n_tension; k++) za[s->n_velocity + k] *= -1;
   }
-  PetscCall(WallsPrecondition(s->walls, za + s->n_velocity + s->n_tension));
   PetscCall(VecRestoreArray(z, &za));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -188,6 +188,7 @@ PetscErrorCode SaddleRefresh(Saddle s) {
 PetscErrorCode SaddleSetUp(Saddle s) {
   PetscFunctionBeginUser;
   if (!s->coupling) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(WallsSetMarkers(s->walls, s->coupling->membrane->M, s->coupling->X));
   if (s->type == MOBILITY_ILU) {
     PetscCall(MatDestroy(&s->Chat));
     PetscCall(TensionAssemble(s->coupling, &s->Chat));

@@ -16,7 +16,7 @@
 typedef enum { MOBILITY_TABLE, MOBILITY_ILU, MOBILITY_NONE } MobilityType;
 
 /* Stokes solves of a step that are kept, to be combined instead of solved for once more. */
-#define SADDLE_KEPT 4
+#define SADDLE_KEPT 6
 
 typedef struct _p_Saddle *Saddle;
 struct _p_Saddle {

@@ -13,7 +13,15 @@ struct _p_Walls {
   PetscInt start[2];      /* of the first wall's line, the other one follows */
   PetscReal alpha;        /* coefficient that the inverse is for; -1 none yet */
   PetscReal *own, *other; /* [n/2] inverse of a pair of walls, mode by mode */
-  double *line[2][2];     /* [wall in x or y][side]: work */
+  PetscReal *cross[2];    /* modes of the walls in x (in y) to slip along the walls in y (in x), a row a face */
+  PetscInt *row[2];       /* where a row starts: modes that do not reach its face are left out */
+  PetscReal *profile[2];  /* [modes][2][n] flow of a mode by the distance from its wall: along it, away from it */
+  PetscInt modes[2];      /* of it that are kept: what reaches far */
+  double *low[2][2];      /* [modes] sine amplitudes of the forces last found */
+  PetscInt markers;
+  PetscReal *flow;    /* [modes of all walls][2 markers] velocity of each mode */
+  PetscReal *slip;    /* [n] work */
+  double *line[2][2]; /* [wall in x or y][side]: work */
   fftw_plan forward[2][2], backward[2][2];
 };
 
@@ -31,3 +39,11 @@ PETSC_EXTERN PetscErrorCode WallsSlip(Walls walls, Vec psi, PetscScalar y[]);
 /* WallsPrecondition - d := approximate inverse of d -> d + slip of the projected force d: exact for one pair of
    opposite walls, for two pairs by sweeps of block Gauss-Seidel. Not collective. */
 PETSC_EXTERN PetscErrorCode WallsPrecondition(Walls walls, PetscScalar d[]);
+
+/* WallsSetMarkers - the flow of the wall forces' long waves at markers X[2M], for WallsMarkerVelocity. Where only one
+   direction has walls there is none. Not collective. */
+PETSC_EXTERN PetscErrorCode WallsSetMarkers(Walls walls, PetscInt M, const PetscScalar X[]);
+
+/* WallsMarkerVelocity - U[2M] += alpha times the velocity at the markers of the forces that WallsPrecondition found
+   last. Not collective. */
+PETSC_EXTERN PetscErrorCode WallsMarkerVelocity(Walls walls, PetscReal alpha, PetscScalar U[]);
