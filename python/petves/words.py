@@ -24,9 +24,10 @@ def scene_in_words(run: Run) -> list[str]:
     """Return paragraphs that say what was simulated, and how."""
     o = {name: _short(value) for name, value in run.options().items()}
     x, y = ([f"{c:g}" for c in run.box[k : k + 2]] for k in (0, 2))
+    inertia = run.summary.get("inertia", o["fluid_inertia"])  # the model that -fluid_inertia auto has chosen
     fluid = (
         f"A box [{x[0]}, {x[1]}] x [{y[0]}, {y[1]}] of {o['domain_cells'].replace(',', ' x ')} cells (h = {run.h:g}), "
-        f"{_boundaries(o['domain_bc_x'], o['domain_bc_y'])}, holds a fluid of viscosity {run.nu:g}: {INERTIA.get(o['fluid_inertia'], o['fluid_inertia'])}. {FLOWS[o['flow_type']].format(**o)}."
+        f"{_boundaries(o['domain_bc_x'], o['domain_bc_y'])}, holds a fluid of viscosity {run.nu:g}: {INERTIA.get(inertia, inertia)}. {FLOWS[o['flow_type']].format(**o)}."
     )
     return [fluid, _vesicles(run, o), _method(run, o)]
 
@@ -81,6 +82,8 @@ def key_numbers(run: Run) -> list[tuple[str, str]]:
     rows.append(("iterations a step", ", ".join(_iterations(s)) or "none"))
     rows.append(("fast solves a step", f"{s['nsolve'][1:].mean():.0f}" if len(s["nsolve"]) > 1 else "none"))
     rows.append(("seconds in steps", f"{s['wall'].sum():.3g}"))
+    if "reynolds" in run.summary:
+        rows.append(("Reynolds number", f"{run.summary['reynolds']:.3g}"))
     if run.summary:
         versions = run.summary.get("versions", {})
         rows.append(("ranks", f"{run.summary.get('ranks', '')}"))
