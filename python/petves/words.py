@@ -25,9 +25,10 @@ def scene_in_words(run: Run) -> list[str]:
     o = {name: _short(value) for name, value in run.options().items()}
     x, y = ([f"{c:g}" for c in run.box[k : k + 2]] for k in (0, 2))
     inertia = run.summary.get("inertia", o["fluid_inertia"])  # the model that -fluid_inertia auto has chosen
+    cells, walls = o["domain_cells"].replace(",", " x "), _boundaries(o["domain_bc_x"], o["domain_bc_y"])
     fluid = (
-        f"A box [{x[0]}, {x[1]}] x [{y[0]}, {y[1]}] of {o['domain_cells'].replace(',', ' x ')} cells (h = {run.h:g}), "
-        f"{_boundaries(o['domain_bc_x'], o['domain_bc_y'])}, holds a fluid of viscosity {run.nu:g}: {INERTIA.get(inertia, inertia)}. {FLOWS[o['flow_type']].format(**o)}."
+        f"A box [{x[0]}, {x[1]}] x [{y[0]}, {y[1]}] of {cells} cells (h = {run.h:g}), {walls}, holds a fluid of "
+        f"viscosity {run.nu:g}: {INERTIA.get(inertia, inertia)}. {FLOWS[o['flow_type']].format(**o)}."
     )
     return [fluid, _vesicles(run, o), _method(run, o)]
 
