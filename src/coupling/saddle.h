@@ -45,8 +45,8 @@ struct _p_Saddle {
   PetscReal start;                     /* residual norm of the initial guess */
   PetscReal factored_a0;               /* of the dense blocks; 0: none yet */
   PetscInt fresh_its;                  /* iterations right after they were made; -1: not known yet */
-  PetscInt age, life;                  /* solves that they have served, and will at most */
-  PetscInt refreshed;                  /* times that they were made */
+  PetscInt age;                        /* solves that they have served */
+  PetscReal waste;                     /* iterations that their age has cost */
   PetscBool flexible;                  /* the KSP allows them to be made anew under way */
   PetscInt applied;                    /* times that they were applied in this solve */
   PetscInt its;
@@ -63,8 +63,8 @@ PETSC_EXTERN PetscErrorCode SaddleDestroy(Saddle *saddle);
 PETSC_EXTERN PetscErrorCode SaddleCreateWallVec(Saddle saddle, Vec *d);
 
 /* SaddleSetUp - follow the fluid's a0 and the coupling's markers. The dense blocks are kept while a0 moves by less than
-   10 % and iterations stay low: a solve that takes 2 more than the first one did makes them anew and goes on.
-   Collective. */
+   10 % and until the iterations beyond those that they took when new have cost as much as new ones would; a solve that
+   suffers badly makes them anew and goes on. Collective. */
 PETSC_EXTERN PetscErrorCode SaddleSetUp(Saddle saddle);
 
 /* SaddleGetMemory, SaddleSetMemory - all that earlier solves have left for later ones, as numbers that a checkpoint can

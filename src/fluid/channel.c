@@ -13,6 +13,8 @@
 
 typedef double complex Complex;
 
+#define DECAY 40 /* e^-40 = 4e-18 is not felt */
+
 struct _p_Channel {
   Fluid fluid;
   PetscReal alpha;    /* coefficient the profiles are for */
@@ -21,6 +23,7 @@ struct _p_Channel {
   PetscReal *inverse; /* [2][modes] diagonal and off-diagonal entry of -kappa (I + kappa M)^-1 */
   Complex *delta;     /* [2][modes] force on the bottom and top rows */
   Complex *symbol;    /* [modes] of G_x */
+  PetscInt *reach;    /* [rows of all] modes that are felt at a distance from a wall */
   Complex *line;      /* [modes] */
   double *row;        /* [n_x] */
   fftw_plan forward, backward;
@@ -39,6 +42,11 @@ PetscErrorCode ChannelCreate(Fluid fluid, Channel *out) {
   PetscCall(PetscMalloc4(6 * g->rows[FIELD_P] * c->modes, &c->profile, 2 * c->modes, &c->inverse, 2 * c->modes,
                          &c->delta, c->modes, &c->symbol));
   for (PetscInt k = 0; k < c->modes; k++) c->symbol[k] = (cexp(I * 2 * PETSC_PI * k / (double)n) - 1) / g->h;
+  PetscCall(PetscMalloc1(g->n[1], &c->reach));
+  for (PetscInt j = 0, reach = c->modes; j < g->n[1]; j++) { /* e^{-sqrt(lambda) y} */
+    while (reach > 1 && 2 * PetscSinReal(PETSC_PI * (reach - 1) / (PetscReal)n) * j > DECAY) reach--;
+    c->reach[j] = reach;
+  }
   c->line = (Complex *)fftw_alloc_real(2 * (size_t)c->modes);
   c->row = fftw_alloc_real(n);
   c->forward = fftw_plan_dft_r2c_1d((int)n, c->row, (fftw_complex *)c->line, FFTW_ESTIMATE);
@@ -54,6 +62,7 @@ PetscErrorCode ChannelDestroy(Channel *channel) {
   fftw_destroy_plan(c->backward);
   fftw_free(c->line);
   fftw_free(c->row);
+  PetscCall(PetscFree(c->reach));
   PetscCall(PetscFree4(c->profile, c->inverse, c->delta, c->symbol));
   PetscCall(PetscFree(*channel));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -72,7 +81,7 @@ static void StoreRow(Channel c, PetscInt k, PetscInt j, PetscReal lambda, const 
   }
 }
 
-static PetscErrorCode SetUp(Channel c) {
+PetscErrorCode ChannelSetUp(Channel c) {
   const Grid g = c->fluid->grid;
   const PetscInt n = g->n[1];
   const PetscReal alpha = c->fluid->alpha, h2 = PetscSqr(g->h), kappa = -2 * c->fluid->nu / h2;
@@ -96,41 +105,65 @@ static PetscErrorCode SetUp(Channel c) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* delta: the force on the two wall rows, known to all ranks. */
-static PetscErrorCode WallForces(Channel c, const PetscScalar psi[]) {
+void ChannelForces(Channel c, const PetscReal bottom[], const PetscReal top[]) {
+  const Complex *b = (const Complex *)bottom, *t = (const Complex *)top;
+  for (PetscInt k = 0; k < c->modes; k++) {
+    const PetscReal own = c->inverse[k], other = c->inverse[c->modes + k];
+    const Complex one = c->symbol[k] * b[k], two = c->symbol[k] * t[k]; /* slips */
+    c->delta[k] = own * one + other * two;
+    c->delta[c->modes + k] = other * one + own * two;
+  }
+}
+
+/* Add wall `top`'s share to a row's modes, of those that reach it: delta profile, with -(+) conj(symbol) for p (v). */
+static void AddWall(Channel c, int f, int top, PetscInt j, Complex line[]) {
+  const PetscInt rows = c->fluid->grid->rows[FIELD_P], global = j + c->fluid->grid->first;
+  const PetscInt distance = top ? c->fluid->grid->n[1] - 2 - global : global;
+  const PetscInt reach = PetscMin(c->modes, c->reach[PetscMax(distance, 0)]);
+  const PetscReal *restrict profile = c->profile + ((f * 2 + top) * rows + j) * c->modes;
+  const PetscReal *restrict delta = (const PetscReal *)(c->delta + top * c->modes);
+  const PetscReal *restrict symbol = (const PetscReal *)c->symbol;
+  const PetscReal sign = f == FIELD_V ? 1 : -1;
+  PetscReal *restrict out = (PetscReal *)line;
+  if (f == FIELD_U)
+    for (PetscInt k = 0; k < reach; k++) {
+      out[2 * k] += profile[k] * delta[2 * k];
+      out[2 * k + 1] += profile[k] * delta[2 * k + 1];
+    }
+  else
+    for (PetscInt k = 0; k < reach; k++) {
+      const PetscReal weight = sign * profile[k];
+      out[2 * k] += weight * (symbol[2 * k] * delta[2 * k] + symbol[2 * k + 1] * delta[2 * k + 1]);
+      out[2 * k + 1] += weight * (symbol[2 * k] * delta[2 * k + 1] - symbol[2 * k + 1] * delta[2 * k]);
+    }
+}
+
+void ChannelAddRow(Channel c, Field f, PetscInt j, PetscReal line[]) {
+  for (int top = 0; top < 2; top++) AddWall(c, f, top, j, (Complex *)line);
+}
+
+/* Modes of the potential in a wall row, known to all ranks; normalised. */
+static PetscErrorCode WallRow(Channel c, const PetscScalar psi[], int top, PetscReal modes[]) {
   const Grid g = c->fluid->grid;
   const PetscInt n = g->n[0], last = g->rows[FIELD_P] - 1;
+  const PetscMPIInt owner = top ? g->size - 1 : 0;
   PetscFunctionBeginUser;
-  for (int top = 0; top < 2; top++) {
-    const PetscMPIInt owner = top ? g->size - 1 : 0;
-    Complex *slip = c->delta + top * c->modes;
-    if (g->rank == owner) {
-      const PetscScalar *p = psi + (top ? last : 0) * n;
-      for (PetscInt i = 0; i < n; i++) c->row[i] = (p[i + 1 < n ? i + 1 : 0] - p[i]) / g->h;
-      fftw_execute(c->forward);
-      PetscCall(PetscMemcpy(slip, c->line, (size_t)c->modes * sizeof(Complex)));
-    }
-    PetscCallMPI(MPI_Bcast(slip, (PetscMPIInt)(2 * c->modes), MPI_DOUBLE, owner, g->comm));
+  if (g->rank == owner) {
+    for (PetscInt i = 0; i < n; i++) c->row[i] = psi[(top ? last : 0) * n + i] / (PetscReal)n;
+    fftw_execute(c->forward);
+    PetscCall(PetscMemcpy(modes, c->line, (size_t)c->modes * sizeof(Complex)));
   }
-  for (PetscInt k = 0; k < c->modes; k++) {
-    const Complex b = c->delta[k], t = c->delta[c->modes + k];
-    const PetscReal own = c->inverse[k], other = c->inverse[c->modes + k];
-    c->delta[k] = (own * b + other * t) / n; /* 1/n: FFTW's transforms are not normalised */
-    c->delta[c->modes + k] = (other * b + own * t) / n;
-  }
+  PetscCallMPI(MPI_Bcast(modes, (PetscMPIInt)(2 * c->modes), MPI_DOUBLE, owner, g->comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Add a field's correction to its local rows. */
-static void AddField(Channel c, int f, PetscScalar a[]) {
+static void AddField(Channel c, Field f, PetscScalar a[]) {
   const Grid g = c->fluid->grid;
-  const PetscInt n = g->n[0], rows = g->rows[FIELD_P];
+  const PetscInt n = g->n[0];
   for (PetscInt j = 0; j < g->rows[f]; j++) {
-    const PetscReal *bottom = c->profile + (f * 2 * rows + j) * c->modes, *top = bottom + rows * c->modes;
-    for (PetscInt k = 0; k < c->modes; k++) {
-      const Complex value = c->delta[k] * bottom[k] + c->delta[c->modes + k] * top[k];
-      c->line[k] = f == FIELD_U ? value : (f == FIELD_V ? 1 : -1) * conj(c->symbol[k]) * value;
-    }
+    for (PetscInt k = 0; k < c->modes; k++) c->line[k] = 0;
+    ChannelAddRow(c, f, j, (PetscReal *)c->line);
     fftw_execute(c->backward);
     for (PetscInt i = 0; i < n; i++) a[j * n + i] += c->row[i];
   }
@@ -139,10 +172,14 @@ static void AddField(Channel c, int f, PetscScalar a[]) {
 PetscErrorCode ChannelCorrect(Channel c, Vec psi, Vec u, Vec p) {
   const PetscScalar *psia;
   PetscScalar *a;
+  PetscReal *walls;
   PetscFunctionBeginUser;
-  PetscCall(SetUp(c));
+  PetscCall(ChannelSetUp(c));
   PetscCall(VecGetArrayRead(psi, &psia));
-  PetscCall(WallForces(c, psia));
+  PetscCall(PetscMalloc1(4 * c->modes, &walls));
+  for (int top = 0; top < 2; top++) PetscCall(WallRow(c, psia, top, walls + top * 2 * c->modes));
+  ChannelForces(c, walls, walls + 2 * c->modes);
+  PetscCall(PetscFree(walls));
   PetscCall(VecRestoreArrayRead(psi, &psia));
   PetscCall(VecGetArray(u, &a));
   AddField(c, FIELD_U, a);

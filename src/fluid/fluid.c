@@ -138,6 +138,8 @@ PetscErrorCode FluidCreate(Scene scene, Fluid *out) {
   *out = f;
   PetscCall(GridCreate(scene, &f->grid));
   f->nu = scene->viscosity;
+  f->plan = scene->fftw_plan;
+  f->tridiagonal = !strcmp(scene->helmholtz, "fftw_tridiagonal") && !strcmp(scene->poisson, "fftw_tridiagonal");
   PetscCall(GridCreateG(f->grid, &f->G));
   PetscCall(GridCreateD(f->grid, &f->D));
   PetscCall(GridCreateL(f->grid, &f->L));

@@ -5,16 +5,18 @@
 typedef struct _p_Fluid *Fluid;
 struct _p_Fluid {
   Grid grid;
-  PetscReal nu;         /* viscosity */
-  PetscReal a0;         /* coefficient of the markers' time difference: X_new = Xhat + U/a0 */
-  PetscReal alpha;      /* leading coefficient in H = alpha I - nu L_u: a0 (0 in quasi-steady flow) */
-  Mat G, D, L, H;       /* gradient, divergence, pressure Laplacian, velocity Helmholtz operator (MatShells) */
-  PC Hinv, Linv;        /* fast solves of H (two scalar solves) and of L (one), PCSHELLs */
-  FastSolver solver[3]; /* behind them, one a field */
-  PetscBool total;      /* total form: walls move with the background flow */
-  Vec background;       /* u_inf on the faces; NULL unless total */
-  Vec bc1;              /* what moving walls add to the momentum's right-hand side, and the driving -grad p_inf */
-  Vec bc2;              /* D u = bc2: minus the wall faces' part of the divergence */
+  PetscReal nu;          /* viscosity */
+  PetscReal a0;          /* coefficient of the markers' time difference: X_new = Xhat + U/a0 */
+  PetscReal alpha;       /* leading coefficient in H = alpha I - nu L_u: a0 (0 in quasi-steady flow) */
+  Mat G, D, L, H;        /* gradient, divergence, pressure Laplacian, velocity Helmholtz operator (MatShells) */
+  PC Hinv, Linv;         /* fast solves of H (two scalar solves) and of L (one), PCSHELLs */
+  FastSolver solver[3];  /* behind them, one a field */
+  PetscBool tridiagonal; /* all of them by fftw_tridiagonal */
+  PetscInt plan;         /* FFTW's effort: 0 estimate, 1 measure, 2 patient */
+  PetscBool total;       /* total form: walls move with the background flow */
+  Vec background;        /* u_inf on the faces; NULL unless total */
+  Vec bc1;               /* what moving walls add to the momentum's right-hand side, and the driving -grad p_inf */
+  Vec bc2;               /* D u = bc2: minus the wall faces' part of the divergence */
 };
 
 /* FluidCreate - the scene's fluid at rest or, in the total form, with walls moving with u_inf. Collective. */

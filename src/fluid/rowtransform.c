@@ -106,11 +106,22 @@ static void SineBackward(RowTransform t, PetscScalar x[]) {
   memcpy(x, t->rest, (size_t)t->n * sizeof(double));
 }
 
+/* Forces of a membrane are zero in most rows. */
+static PetscBool IsZero(PetscInt n, const PetscScalar x[]) {
+  for (PetscInt i = 0; i < n; i++)
+    if (x[i] != 0) return PETSC_FALSE;
+  return PETSC_TRUE;
+}
+
 void RowTransformForward(RowTransform t, const PetscScalar x[]) {
-  if (t->base)
+  if (IsZero(t->n, x))
+    memset(t->modes, 0, (size_t)t->width * sizeof(double));
+  else if (t->base)
     SineForward(t, x);
   else if (t->sign != 0)
     HalfSampleForward(t, x);
+  else if (fftw_alignment_of((double *)x) == fftw_alignment_of(t->line))
+    fftw_execute_dft_r2c(t->f[0].forward, (double *)x, (fftw_complex *)t->modes);
   else {
     memcpy(t->line, x, (size_t)t->n * sizeof(double));
     fftw_execute(t->f[0].forward);
@@ -122,6 +133,8 @@ void RowTransformBackward(RowTransform t, PetscScalar x[]) {
     SineBackward(t, x);
   else if (t->sign != 0)
     HalfSampleBackward(t, x);
+  else if (fftw_alignment_of(x) == fftw_alignment_of(t->line))
+    fftw_execute_dft_c2r(t->f[0].backward, (fftw_complex *)t->modes, x);
   else {
     fftw_execute(t->f[0].backward);
     memcpy(x, t->line, (size_t)t->n * sizeof(double));

@@ -2,7 +2,8 @@
 
 struct _p_Stokes {
   Fluid fluid;
-  Channel channel; /* NULL unless x is periodic and y has walls */
+  Channel channel;     /* NULL unless x is periodic and y has walls */
+  BandedStokes banded; /* NULL unless x is periodic and both fast solves are fftw_tridiagonal's */
   Vec q, psi;
 };
 
@@ -46,12 +47,14 @@ PetscErrorCode StokesCreate(Fluid fluid, Stokes *out) {
   PetscCall(DMCreateGlobalVector(fluid->grid->da[FIELD_P], &s->q));
   PetscCall(VecDuplicate(s->q, &s->psi));
   if (!fluid->grid->wall[0] && fluid->grid->wall[1]) PetscCall(ChannelCreate(fluid, &s->channel));
+  if (!fluid->grid->wall[0] && fluid->tridiagonal) PetscCall(BandedStokesCreate(fluid, s->channel, &s->banded));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode StokesDestroy(Stokes *stokes) {
   PetscFunctionBeginUser;
   if (!*stokes) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(BandedStokesDestroy(&(*stokes)->banded));
   PetscCall(ChannelDestroy(&(*stokes)->channel));
   PetscCall(VecDestroy(&(*stokes)->q));
   PetscCall(VecDestroy(&(*stokes)->psi));
@@ -62,6 +65,10 @@ PetscErrorCode StokesDestroy(Stokes *stokes) {
 PetscErrorCode StokesSolve(Stokes s, Vec r_u, Vec r_p, Vec u, Vec p) {
   Fluid f = s->fluid;
   PetscFunctionBeginUser;
+  if (s->banded) {
+    PetscCall(BandedStokesSolve(s->banded, r_u, r_p, u, p));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   /* w = H^-1 r_u;  q = r_p - G^T w */
   PetscCall(FluidSolveHelmholtz(f, r_u, u));
   PetscCall(GridGradientTranspose(f->grid, -1, u, s->q));

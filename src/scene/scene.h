@@ -145,12 +145,18 @@ typedef struct {
 } Curve;
 PETSC_EXTERN void CurveEvaluate(const Curve *curve, PetscReal t, PetscReal X[2]);
 PETSC_EXTERN PetscReal CurveLength(const Curve *curve);
+PETSC_EXTERN PetscReal CurveArea(const Curve *curve);
 
 /* CurveEqualChords - place M points on the curve so that all M chords are equal; X[2M], first point at t = 0. */
 PETSC_EXTERN PetscErrorCode CurveEqualChords(const Curve *curve, PetscInt M, PetscReal X[]);
 
 /* CurveEqualArcs - the same with M equal arcs: the edges of the spectral derivative. */
 PETSC_EXTERN PetscErrorCode CurveEqualArcs(const Curve *curve, PetscInt M, PetscReal X[]);
+
+/* CurveFitSpectral - move M markers X[2M] as little as possible (least squares) until all their spectral edges dX/dk
+   are length/M long and their spectral curve encloses the area: what M markers sample of a curve with sharper tips than
+   they resolve has neither its length nor its area (equalarcs.c). A circle, which has no freedom left, stays. */
+PETSC_EXTERN PetscErrorCode CurveFitSpectral(PetscInt M, PetscReal length, PetscReal area, PetscReal X[]);
 
 /* CurveFromPoints - closed periodic cubic spline through n points xy[2n], by chord length. */
 PETSC_EXTERN PetscErrorCode CurveFromPoints(PetscInt n, const PetscReal xy[], Curve *curve);

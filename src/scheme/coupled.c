@@ -91,10 +91,9 @@ PetscErrorCode CoupledAttempt(Scheme s, PetscReal dt, PetscBool *solved) {
     if (d->length_target) PetscCall(LengthTarget(s, d, b.a0));
   }
   PetscCall(MomentumRightHandSide(s, d, &b));
-  /* initial guess: the solution extrapolated; on the first step the present one */
+  /* initial guess: the solution extrapolated; on the first step the present one; none of the pressure is needed */
   const PetscReal r = s->has_old ? dt / q->dt_last : 0;
   PetscCall(Extrapolate(r, q->w, d->old.w, n->w));
-  PetscCall(Extrapolate(r, q->p, d->old.p, n->p));
   PetscCall(Extrapolate(r, q->sigma, d->old.sigma, n->sigma));
   if (q->walls) PetscCall(Extrapolate(r, q->walls, d->old.walls, n->walls));
   PetscCall(SolveStep(s, d));
