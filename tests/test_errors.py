@@ -52,6 +52,17 @@ def matches(pattern: str, line: str) -> bool:
     return re.fullmatch(".*".join(re.escape(part) for part in pattern.split("...")), line) is not None
 
 
+def stops_with(run, needles):
+    """One line on standard error, with every needle; exit status 1; no step taken."""
+    assert run.status == 1, run.stdout
+    assert len(run.errors) == 1, "\n".join(run.errors)
+    assert run.errors[0].startswith("petves: error: ")
+    for needle in needles:
+        assert needle in run.errors[0]
+    assert not (run.folder / "series.csv").exists() or len(run.series["step"]) <= 1
+    assert "step 1 " not in run.stdout
+
+
 @pytest.mark.parametrize("group, options, ranks, message", rows(), ids=lambda value: str(value)[:40])
 def test_mistake_is_named(group, options, ranks, message, tmp_path, monkeypatch):
     """A row of docs/errors.md: this line and no other; bad input before any step, a failed step with the last good
@@ -62,14 +73,11 @@ def test_mistake_is_named(group, options, ranks, message, tmp_path, monkeypatch)
         path.write_text("\n".join(lines) + "\n")
         options = options.replace(f"{{curve: {name}}}", str(path))
     run = run_petves(tmp_path / "out", f"{SMALL} {options}", ranks, good=False, timeout=60)
-    assert len(run.errors) == 1, "\n".join(run.errors)
-    assert matches(f"petves: error: {message}", run.errors[0]), run.errors[0]
+    assert matches(f"petves: error: {message}", "\n".join(run.errors)), run.errors
     if group == "Steps":
         leaves_files(run, "")
-        return
-    assert run.status == 1, run.stdout
-    assert not (run.folder / "series.csv").exists() or len(run.series["step"]) <= 1
-    assert "step 1 " not in run.stdout
+    else:
+        stops_with(run, [])
 
 
 def test_page_has_rows_of_every_kind():

@@ -30,11 +30,11 @@ struct _p_Mobility {
 PETSC_EXTERN PetscErrorCode MobilityCreate(Scene scene, Coupling coupling, Mobility *mobility);
 PETSC_EXTERN PetscErrorCode MobilityDestroy(Mobility *mobility);
 
-/* MobilityForget - drop all tables. Not collective. */
-PETSC_EXTERN PetscErrorCode MobilityForget(Mobility mobility);
-
 /* MobilitySetTables - fill the cache with the tables for these coefficients, 0: none. Collective. */
 PETSC_EXTERN PetscErrorCode MobilitySetTables(Mobility mobility, const PetscReal a0[MOBILITY_CACHE]);
+
+/* MobilityForget - drop all tables. Not collective. */
+PETSC_EXTERN PetscErrorCode MobilityForget(Mobility mobility);
 
 /* MobilityGetTable - the table for a0, made if no cached one is within 10 %: six scalar solves in the periodic box.
    Collective; borrowed. */
