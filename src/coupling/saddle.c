@@ -155,10 +155,10 @@ static PetscErrorCode MakeBlocks(Saddle s) {
 }
 
 PetscErrorCode SaddleGetMemory(Saddle s, PetscReal memory[SADDLE_MEMORY]) {
-  const PetscReal own[] = {s->factored_a0, s->fresh_its, s->age, s->life, s->refreshed};
+  const PetscReal own[] = {s->factored_a0, s->fresh_its, s->age, s->waste};
   PetscFunctionBeginUser;
-  for (int k = 0; k < 5; k++) memory[k] = own[k];
-  for (int k = 0; k < MOBILITY_CACHE; k++) memory[5 + k] = s->mobility ? s->mobility->cache[k].a0 : 0;
+  for (int k = 0; k < 4; k++) memory[k] = own[k];
+  for (int k = 0; k < MOBILITY_CACHE; k++) memory[4 + k] = s->mobility ? s->mobility->cache[k].a0 : 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -168,9 +168,8 @@ PetscErrorCode SaddleSetMemory(Saddle s, const PetscReal memory[SADDLE_MEMORY]) 
   s->factored_a0 = memory[0];
   s->fresh_its = (PetscInt)memory[1];
   s->age = (PetscInt)memory[2];
-  s->life = (PetscInt)memory[3];
-  s->refreshed = (PetscInt)memory[4];
-  PetscCall(MobilitySetTables(s->mobility, memory + 5));
+  s->waste = memory[3];
+  PetscCall(MobilitySetTables(s->mobility, memory + 4));
   PetscCall(MakeBlocks(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -71,7 +71,7 @@ PETSC_EXTERN PetscErrorCode SaddleSetUp(Saddle saddle);
    hold, and made again from them, with the coupling's markers and `self` where they were when the dense blocks were
    made and the fluid's a0 that of the blocks (memory[0]; 0: there were none). Whatever a saddle keeps belongs in here,
    or a restarted run would not have the bits of one that went on. Set is collective. */
-#define SADDLE_MEMORY (5 + MOBILITY_CACHE)
+#define SADDLE_MEMORY (4 + MOBILITY_CACHE)
 PETSC_EXTERN PetscErrorCode SaddleGetMemory(Saddle saddle, PetscReal memory[SADDLE_MEMORY]);
 PETSC_EXTERN PetscErrorCode SaddleSetMemory(Saddle saddle, const PetscReal memory[SADDLE_MEMORY]);
 

@@ -67,8 +67,7 @@ static PetscErrorCode SolveStep(Scheme s, Coupled *d) {
   PetscCall(SaddleSetUp(d->saddle));
   PetscCall(SaddleSolve(d->saddle, d->f, s->g, n->w, n->p, n->sigma, n->walls, d->Y));
   s->report.coupled_its += d->saddle->its;
-  if (d->saddle->refreshed != d->refreshed) PetscCall(VecCopy(d->Xstar, d->made_at));
-  d->refreshed = d->saddle->refreshed;
+  if (d->saddle->age == 1) PetscCall(VecCopy(d->Xstar, d->made_at)); /* the dense blocks are new */
   if (d->saddle->why < 0)
     PetscCall(SchemeSolverFailed(s, "coupled_", d->saddle->why, d->saddle->its, d->saddle->residual));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -240,7 +239,6 @@ static PetscErrorCode Recall_Coupled(Scheme s, const PetscReal memory[]) {
   PetscCall(SchemePlaceMarkers(s, d->made_at, s->state.t, &placed));
   if (s->self) PetscCall(SchemeSetSelfMobility(s, a0, d->made_at, NULL, d->made_at));
   PetscCall(SaddleSetMemory(d->saddle, memory));
-  d->refreshed = d->saddle->refreshed;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -14,7 +14,6 @@ typedef struct {
   PetscInt order;
   PetscBool length_target, area_target;
   StepControl control;
-  PetscInt refreshed; /* the saddle's count when made_at was copied */
   Vec made_at;        /* markers at which the saddle's dense blocks were made */
   Vec f;              /* momentum's right-hand side */
   Vec Xstar, Xhat, Y; /* extrapolated markers, BDF history of the markers, Xhat + u_inf/a0 */
