@@ -27,9 +27,10 @@ if not SANITIZE:  # the sanitizers and valgrind do not go together
         assert done.returncode == status, done.stdout + done.stderr
         found = sorted(reports.glob("*.xml"))
         assert len(found) >= ranks
-        ours = [
-            describe(error) for report in found for error in ET.parse(report).getroot().iter("error") if is_ours(error)
-        ]
+        errors = [error for report in found for error in ET.parse(report).getroot().iter("error") if is_ours(error)]
+        if status == 1:  # a refused run ends as it is
+            errors = [error for error in errors if not error.findtext("kind", "").startswith("Leak_")]
+        ours = [describe(error) for error in errors]
         assert not ours, "\n\n".join(ours)
 
     @pytest.mark.parametrize("form", ["disturbance", "total"])

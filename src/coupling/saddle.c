@@ -72,7 +72,7 @@ static PetscErrorCode CreateKSP(Saddle s, PetscInt n) {
   PetscCall(PCShellSetContext(pc, s));
   PetscCall(PCShellSetApply(pc, SaddlePrecondition));
   PetscCall(PCShellSetName(pc, "mobility of the markers, slip of the walls"));
-  PetscCall(KSPSetFromOptions(s->ksp));
+  PetscCall(KSPReplicatedSetFromOptions(s->ksp, s->fluid->grid->rank));
   PetscCall(KSPSetConvergenceTest(s->ksp, Converged, s, NULL));
   PetscCall(PetscObjectTypeCompare((PetscObject)s->ksp, KSPFGMRES, &s->flexible));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -190,7 +190,7 @@ static PetscReal RefreshCost(Saddle s) {
   const Membrane m = s->coupling->membrane;
   const PetscReal n = m->M <= DENSE_TOGETHER ? m->M : (PetscReal)m->M / m->vesicles, blocks = m->M / n;
   const PetscReal cells = (PetscReal)s->fluid->grid->n[0] * s->fluid->grid->n[1];
-  return blocks * (2e-8 * n * n * n + 2.5e-7 * n * n) / (1.5e-8 * cells);
+  return blocks * (4e-9 * n * n * n + 6e-7 * n * n) / (1.5e-8 * cells);
 }
 
 PetscErrorCode SaddleSetUp(Saddle s) {

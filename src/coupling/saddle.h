@@ -34,7 +34,8 @@ struct _p_Saddle {
   Mat A;                          /* the residuals' derivative, scaled; one Stokes solve */
   KSP ksp;
   Vec x, b, change;                    /* [n] unknowns, residual, work; the same on every rank */
-  Vec r;                               /* a force on the grid */
+  Vec r;                               /* a force on the grid, */
+  PetscInt dirty[2];                   /* zero but for these rows */
   Vec w[SADDLE_KEPT + 1];              /* velocities and pressures of kept products, the last for one that is not */
   Vec p[SADDLE_KEPT + 1];              /* made when first needed */
   Vec z[SADDLE_KEPT], Az[SADDLE_KEPT]; /* their unknowns, and what A makes of them */

@@ -31,17 +31,20 @@ static PetscErrorCode LengthTarget(Scheme s, const Coupled *d, PetscReal a0) {
 /* y = (1 + r) x - r x_old, the extrapolation; x itself in a first step. */
 static PetscErrorCode Extrapolate(PetscReal r, Vec x, Vec x_old, Vec y) {
   PetscFunctionBeginUser;
-  PetscCall(VecCopy(x, y));
-  if (r > 0) PetscCall(VecAXPBY(y, -r, 1 + r, x_old));
+  if (r > 0)
+    PetscCall(VecAXPBYPCZ(y, 1 + r, -r, 0, x, x_old));
+  else
+    PetscCall(VecCopy(x, y));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* y = scale (current x + old x_old) */
 static PetscErrorCode History(const BDF *b, PetscReal scale, Vec x, Vec x_old, Vec y) {
   PetscFunctionBeginUser;
-  PetscCall(VecCopy(x, y));
-  PetscCall(VecScale(y, scale * b->current));
-  if (b->old != 0) PetscCall(VecAXPY(y, scale * b->old, x_old));
+  if (b->old != 0)
+    PetscCall(VecAXPBYPCZ(y, scale * b->current, scale * b->old, 0, x, x_old));
+  else
+    PetscCall(VecAXPBY(y, scale * b->current, 0, x));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -67,7 +70,7 @@ static PetscErrorCode SolveStep(Scheme s, Coupled *d) {
   PetscCall(SaddleSetUp(d->saddle));
   PetscCall(SaddleSolve(d->saddle, d->f, s->g, n->w, n->p, n->sigma, n->walls, d->Y));
   s->report.coupled_its += d->saddle->its;
-  if (d->saddle->age == 1) PetscCall(VecCopy(d->Xstar, d->made_at)); /* the dense blocks are new */
+  if (d->saddle->age == 1) PetscCall(VecCopy(d->Xstar, d->made_at)); /* the blocks are this solve's */
   if (d->saddle->why < 0)
     PetscCall(SchemeSolverFailed(s, "coupled_", d->saddle->why, d->saddle->its, d->saddle->residual));
   PetscFunctionReturn(PETSC_SUCCESS);
