@@ -1,4 +1,4 @@
-"""Command line: ``python3 -m petves plot|movie|compare|sweep|report|reproduce|accuracy ...``."""
+"""Command line: ``python3 -m petves plot|movie|compare|sweep|report|reproduce|accuracy|inertia ...``."""
 
 from __future__ import annotations
 
@@ -60,6 +60,9 @@ def _add_studies(commands: argparse._SubParsersAction) -> None:
     cells = commands.add_parser("accuracy", help="run the study of accuracy per cell: docs/accuracy.md's tables")
     cells.add_argument("folder", metavar="DIR", help="where the tables and the picture go")
     cells.add_argument("--quick", action="store_true", help="leave out 256^2")
+    inertia = commands.add_parser("inertia", help="run the study of the fluid's inertia: docs/inertia.md's tables")
+    inertia.add_argument("folder", metavar="DIR", help="where the tables and the pictures go")
+    inertia.add_argument("--quick", action="store_true", help="leave out the channels")
 
 
 def _run(options: argparse.Namespace) -> Iterable[object]:
@@ -90,6 +93,10 @@ def _run(options: argparse.Namespace) -> Iterable[object]:
         from petves.accuracy import accuracy
 
         return accuracy(options.folder, quick=options.quick)
+    if options.command == "inertia":
+        from petves.inertia import inertia
+
+        return inertia(options.folder, quick=options.quick)
     from petves.reproduce import reproduce
 
     quick = options.quick or os.environ.get("QUICK", "") not in ("", "0")
