@@ -62,7 +62,8 @@ struct _p_Scheme {
   PetscErrorCode (*remember)(Scheme, PetscReal memory[]);
   PetscErrorCode (*recall)(Scheme, const PetscReal memory[]);
   PetscErrorCode (*view)(Scheme, PetscViewer);
-  PetscErrorCode (*options)(Scheme, FILE *); /* write the solvers' settings in force as options */
+  PetscErrorCode (*options)(Scheme, FILE *);                 /* write the solvers' settings in force as options */
+  PetscErrorCode (*ksp)(Scheme, const char prefix[], KSP *); /* borrowed; NULL when there is none of this prefix */
   PetscErrorCode (*destroy)(Scheme);
 };
 
@@ -98,9 +99,9 @@ PETSC_EXTERN PetscErrorCode SchemeFreeSnapshot(Scheme scheme);
 PETSC_EXTERN PetscErrorCode SchemeCheck(Scheme scheme);
 PETSC_EXTERN PetscErrorCode SchemeView(Scheme scheme, PetscViewer viewer);
 
-/* SchemePlaceMarkers - put the coupling and the background data (background, g) at the markers X; false with
+/* SchemePlaceMarkers - put the coupling and the background data (background, g) of time t at the markers X; false with
    report.failure when a marker is too close to a wall. For use inside schemes. */
-PETSC_EXTERN PetscErrorCode SchemePlaceMarkers(Scheme scheme, Vec X, PetscBool *placed);
+PETSC_EXTERN PetscErrorCode SchemePlaceMarkers(Scheme scheme, Vec X, PetscReal t, PetscBool *placed);
 
 /* SchemeBackgroundConstraint - g = -Dm background/h^2. */
 PETSC_EXTERN PetscErrorCode SchemeBackgroundConstraint(Scheme scheme);
