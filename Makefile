@@ -81,8 +81,9 @@ test-deps:
 	$(call install_packages,$(PACKAGES) $(TEST_PACKAGES))
 
 $(BUILD)/site/.vtk:
-	$(PYTHON) -m pip install -q --no-deps --root-user-action=ignore --target $(@D) --upgrade $(VTK)
-	touch $@
+	@mkdir -p $(@D)
+	$(PYTHON) -m pip install -q --no-deps --root-user-action=ignore --target $(@D) --upgrade $(VTK) && touch $@ || \
+	  echo "$(VTK) is not to be had: the test that reads run.xmf with it is skipped"
 
 run: deps ## run the default scene (or SCENE=file.opts) on 2 ranks and draw it
 	@$(MAKE) --no-print-directory all
