@@ -148,6 +148,17 @@ static PetscErrorCode Advance(Scheme s, Coupled *d, PetscReal dt) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* state -> next, old -> state, next -> old: Advance undone, as long as nothing has been solved since. */
+static PetscErrorCode Undo_Coupled(Scheme s) {
+  Coupled *d = (Coupled *)s->data;
+  const State now = s->state;
+  PetscFunctionBeginUser;
+  s->state = d->old;
+  d->old = d->next;
+  d->next = now;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Start-up: backward Euler on a sixteenth of the step, then BDF2 with doubling steps up to the whole of it. */
 static PetscErrorCode GradedStart(Scheme s, Coupled *d, PetscReal dt, PetscBool *solved) {
   const PetscReal parts[] = {1. / 16, 1. / 16, 1. / 8, 1. / 4, 1. / 2};
@@ -329,6 +340,7 @@ PetscErrorCode SchemeCreate_Coupled(Scheme s) {
   s->data = d;
   s->setup = SetUp_Coupled;
   s->step = Step_Coupled;
+  s->undo = Undo_Coupled;
   s->remember = Remember_Coupled;
   s->recall = Recall_Coupled;
   s->view = View_Coupled;

@@ -34,6 +34,7 @@ typedef struct {
   State state, old; /* old without vectors where the scheme has none */
   PetscBool has_old;
   PetscInt level;
+  PetscBool fields; /* velocities and pressures too; without, the scheme's undo brings them back */
 } Snapshot;
 
 typedef struct _p_Scheme *Scheme;
@@ -57,6 +58,9 @@ struct _p_Scheme {
   void *data; /* the scheme's own */
   PetscErrorCode (*setup)(Scheme);
   PetscErrorCode (*step)(Scheme); /* advance the state, or fill in report.failure and leave it */
+  /* put back the velocities and pressures of state and old that a step with has_old has changed; NULL: they are copied
+     before each step */
+  PetscErrorCode (*undo)(Scheme);
   /* what solvers keep from step to step, as SchemeMemorySize numbers, and made again from them; NULL: they keep nothing
    */
   PetscErrorCode (*remember)(Scheme, PetscReal memory[]);
