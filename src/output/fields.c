@@ -54,7 +54,12 @@ static PetscErrorCode OldFields(Output o, const char path[]) {
   PetscCall(H5FileFlush(f));
   PetscCall(PetscMalloc1(o->frames, &o->times));
   for (PetscInt t = 0; t < o->frames; t++) PetscCall(H5ReadArray(f, "/time", t, 1, &o->times[t]));
-  PetscCall(H5FileCheck(f));
+  PetscCall(H5FileFailed(f, &failed));
+  if (failed) PetscCall(H5FileClose(f));
+  PetscCheck(!failed, o->comm, PETSC_ERR_USER_INPUT,
+             "-restart %s: %s cannot be cut to the %" PetscInt_FMT
+             " readable frames that the checkpoint counts; allowed: run.h5 as the run left it, or a new -output_dir",
+             o->scene->restart, path, o->scheduled);
   PetscCall(OutputXdmf(o));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
