@@ -1,4 +1,5 @@
 /* A whole run: build everything from the options, step, write. */
+#include "fluid/wisdom.h"
 #include "output/output.h"
 #include "petves.h"
 #include <errno.h>
@@ -63,6 +64,7 @@ static PetscErrorCode Build(MPI_Comm comm, Simulation s) {
   PetscCall(SceneCreate(comm, &s->scene));
   kernel = KernelFind(s->scene->delta);
   PetscCall(ShapeCreate(s->scene, kernel->default_spacing, kernel->least_spacing, &s->shape));
+  PetscCall(WisdomRead(s->scene));
   PetscCall(FluidCreate(s->scene, &s->fluid));
   PetscCall(MembraneCreate(&s->shape, s->scene->bending, (DerivativeType)s->scene->derivative, &s->membrane));
   if (s->shape.vesicles) PetscCall(CouplingCreate(s->fluid->grid, s->membrane, s->scene->delta, &s->coupling));
@@ -82,7 +84,10 @@ PetscErrorCode SimulationCreate(MPI_Comm comm, Simulation *out) {
   PetscCall(Build(comm, s));
   if (s->scene->view) PetscCall(SimulationView(s, PETSC_VIEWER_STDOUT_(comm)));
   PetscCall(PetscOptionsHasHelp(NULL, &only_help));
-  if (!only_help) PetscCall(OutputCreate(s->scene, s->scheme, &s->output)); /* -help leaves no files */
+  if (!only_help) { /* -help leaves no files */
+    PetscCall(WisdomWrite(s->scene));
+    PetscCall(OutputCreate(s->scene, s->scheme, &s->output));
+  }
   PetscCall(PetvesSetupErrors(PETSC_FALSE));
   PetscCall(PhaseEnd());
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -70,6 +70,21 @@ MISTAKES = {
 }
 
 
+@pytest.mark.parametrize("text", ["no wisdom\n", "", "(fftw-3.3.10 fftw_wisdom #x0 #x0 #x0 #x0\n)\n"])
+def test_bad_wisdom_is_named(text, tmp_path):
+    path = tmp_path / "wisdom"
+    path.write_text(text)
+    run = run_petves(tmp_path / "out", f"{SMALL} -fftw_wisdom {path}", 2, good=False, timeout=60)
+    stops_with(run, [f"-fftw_wisdom {path}", "not wisdom", "allowed"])
+    assert path.read_text() == text
+
+
+def test_wisdom_that_cannot_be_written_is_named(tmp_path):
+    path = tmp_path / "none" / "wisdom"
+    run = run_petves(tmp_path / "out", f"{SMALL} -fftw_wisdom {path}", 2, good=False, timeout=60)
+    stops_with(run, [f"-fftw_wisdom {path}", "cannot be written", "allowed"])
+
+
 def stops_with(run, needles):
     """One line on standard error, with every needle; exit status 1; no step taken."""
     assert run.status == 1, run.stdout
