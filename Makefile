@@ -4,9 +4,11 @@ SHELL := /bin/bash
 PREFIX ?= /usr/local
 RANKS ?= 2
 SCENE ?= runs/default.opts
-BUILD := build$(if $(SANITIZE),-sanitize)
-BIN := bin$(if $(SANITIZE),-sanitize)
-LIBDIR := lib$(if $(SANITIZE),-sanitize)
+# With PETSC_DIR (and PETSC_ARCH) another PETSc than Debian's; each kind of build has folders of its own.
+KIND := $(if $(SANITIZE),-sanitize)$(if $(COVERAGE),-coverage)$(if $(PETSC_DIR),-petsc)
+BUILD := build$(KIND)
+BIN := bin$(KIND)
+LIBDIR := lib$(KIND)
 PYTHON := /usr/bin/python3
 
 # Debian packages: to build and run, then to test.
@@ -14,14 +16,13 @@ PACKAGES := gcc libc6-dev make pkg-config libpetsc-real-dev libfftw3-dev libfftw
   python3-petsc4py python3-h5py python3-numpy python3-matplotlib
 TEST_PACKAGES := python3-pytest python3-scipy valgrind clang-format black
 
-# With PETSC_DIR (and PETSC_ARCH) another PETSc than Debian's.
 PKG := $(if $(PETSC_DIR),PKG_CONFIG_PATH=$(PETSC_DIR)/$(PETSC_ARCH)/lib/pkgconfig) pkg-config
 CC := mpicc
 COMMA := ,
-OPTIMISE := $(if $(SANITIZE),-O1 -g -fsanitize=address$(COMMA)undefined -fno-omit-frame-pointer,-O3 -g -march=x86-64-v3)
+OPTIMISE := $(if $(SANITIZE),-O1 -g -fsanitize=address$(COMMA)undefined -fno-omit-frame-pointer,$(if $(COVERAGE),-O1 -g --coverage -fprofile-update=atomic,-O3 -g -march=x86-64-v3))
 CFLAGS = -std=gnu11 -Wall -Wextra -Werror -Wno-unused-parameter -Wno-missing-field-initializers $(OPTIMISE) -fPIC -Iinclude -Isrc \
   $(shell $(PKG) --cflags PETSc hdf5-openmpi fftw3) -DPETVES_COMMIT='"$(shell git describe --always --dirty 2>/dev/null || echo unknown)"'
-LIBS = $(shell $(PKG) --libs PETSc hdf5-openmpi fftw3) -lfftw3_mpi -lm
+LIBS = $(shell $(PKG) --libs PETSc hdf5-openmpi fftw3) -lfftw3_mpi -lm $(if $(PETSC_DIR),-Wl$(COMMA)-rpath$(COMMA)$(PETSC_DIR)/$(PETSC_ARCH)/lib)
 
 SOURCES := $(filter-out src/main.c,$(wildcard src/*.c src/*/*.c))
 OBJECTS := $(SOURCES:src/%.c=$(BUILD)/%.o)
@@ -37,7 +38,7 @@ export OMPI_MCA_mpi_yield_when_idle := 1
 export OMPI_MCA_btl_vader_single_copy_mechanism := none
 export OMP_NUM_THREADS := 1
 
-.PHONY: all help deps test-deps run test reproduce bench install format check-format clean tests benches
+.PHONY: all help deps test-deps run test coverage reproduce bench install format check-format clean tests benches
 all: $(BIN)/petves ## build bin/petves and lib/libpetves.so
 
 help: ## list the targets
@@ -82,7 +83,7 @@ test-deps:
 
 run: deps ## run the default scene (or SCENE=file.opts) on 2 ranks and draw it
 	@$(MAKE) --no-print-directory all
-	mpirun -n $(RANKS) $(BIN)/petves -options_file $(SCENE)
+	mpirun -n $(RANKS) $(BIN)/petves -options_file $(SCENE) -output_overwrite
 	PYTHONPATH=python $(PYTHON) -m petves plot $$(awk '$$1 == "-output_dir" {print $$2}' $(SCENE))
 
 test: test-deps ## run every test; ends with "N passed, N failed"
@@ -93,6 +94,12 @@ test: test-deps ## run every test; ends with "N passed, N failed"
 bench: deps ## speed on this machine, into bench/results and docs/performance (12 minutes; QUICK=1: 2, into out/bench)
 	@$(MAKE) --no-print-directory all benches
 	PETVES=$(CURDIR)/$(BIN)/petves PETVES_BENCH=$(CURDIR)/$(BUILD)/bench CC="$(CC)" PYTHONPATH=python $(PYTHON) bench/bench.py
+
+coverage: ## line coverage of src/ by the tests (needs gcovr)
+	@command -v gcovr >/dev/null || { echo "gcovr is missing: apt-get install gcovr"; exit 1; }
+	find build-coverage -name '*.gcda' -delete 2>/dev/null || true
+	@$(MAKE) --no-print-directory test COVERAGE=1
+	gcovr --root . --filter src/ --exclude-unreachable-branches build-coverage
 
 reproduce: deps ## the longer studies, into docs/reproduction (about an hour)
 	@$(MAKE) --no-print-directory all
@@ -115,6 +122,6 @@ check-format: test-deps ## fail when a file is not formatted
 	black -q --check -l 120 python tests bench
 
 clean: ## remove what was built
-	rm -rf build build-sanitize bin bin-sanitize lib lib-sanitize
+	rm -rf build build-* bin bin-* lib lib-*
 
 -include $(OBJECTS:.o=.d) $(BUILD)/main.d

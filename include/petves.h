@@ -16,7 +16,12 @@ typedef struct _p_Simulation *Simulation;
 PETSC_EXTERN PetscErrorCode PetvesInitialize(int *argc, char ***argv);
 PETSC_EXTERN PetscErrorCode PetvesFinalize(void);
 
-/* SimulationCreate - the simulation that the options database describes, at its initial state, output files open. */
+/* PetvesCatchSignals - from now on SIGTERM and SIGUSR1 end SimulationRun after the step under way, with a checkpoint,
+   and a closed standard output does not end the program. Not collective. */
+PETSC_EXTERN PetscErrorCode PetvesCatchSignals(void);
+
+/* SimulationCreate - the simulation that the options database describes, at its initial state or (-restart) at a
+   checkpoint's, output files open. */
 PETSC_EXTERN PetscErrorCode SimulationCreate(MPI_Comm comm, Simulation *simulation);
 PETSC_EXTERN PetscErrorCode SimulationDestroy(Simulation *simulation);
 
@@ -27,8 +32,9 @@ PETSC_EXTERN PetscErrorCode SimulationView(Simulation simulation, PetscViewer vi
    (the state is then the last good one). The text lives until the next step. */
 PETSC_EXTERN PetscErrorCode SimulationStep(Simulation simulation, const char **failure);
 
-/* SimulationRun - step to -time_end or the steady state, with all output. good is false when a step could not be taken:
-   a checkpoint and summary.json are on disk then, and one line on standard error has said why. */
+/* SimulationRun - step to -time_end or the steady state, or until a signal or -time_wall_limit stops it, with all
+   output. good is false when a step could not be taken: a checkpoint and summary.json are on disk then, and one line on
+   standard error has said why. */
 PETSC_EXTERN PetscErrorCode SimulationRun(Simulation simulation, PetscBool *good);
 
 /* SimulationGetTime - steps taken and time reached. Not collective. */

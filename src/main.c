@@ -1,10 +1,12 @@
-/* petves: initialise, build from options, run, report. Exit status: 0 finished, 1 bad input, 2 a step failed. */
+/* petves: initialise, build from options, run, report. Exit status: 0 finished or stopped, 1 bad input or a file that
+   cannot be written, 2 a step failed. */
 #include "petves.h"
 
 static PetscErrorCode Run(PetscBool *good) {
   Simulation simulation = NULL;
   PetscBool only_help;
   PetscFunctionBeginUser;
+  PetscCall(PetvesCatchSignals());
   PetscCall(PetscOptionsHasHelp(NULL, &only_help));
   PetscCall(SimulationCreate(PETSC_COMM_WORLD, &simulation));
   if (!only_help) PetscCall(SimulationRun(simulation, good));

@@ -14,6 +14,7 @@ struct _p_Simulation {
   Scheme scheme;
   Output output;
   PetscReal next_output;
+  PetscReal longest_step; /* wall seconds, with its output */
 };
 
 static const char help[] = "petves: inextensible vesicles in two-dimensional viscous flow.\n"
@@ -33,7 +34,9 @@ PetscErrorCode PetvesInitialize(int *argc, char ***argv) {
   int running, provided, missing = 0, rank;
   if (MPI_Initialized(&running)) return PETSC_ERR_MPI;
   began_mpi = running ? PETSC_FALSE : PETSC_TRUE;
-  if (began_mpi && MPI_Init_thread(argc, argv, PETSC_MPI_THREAD_REQUIRED, &provided)) return PETSC_ERR_MPI;
+  /* newer PETSc leaves the level to decide (negative) until it starts MPI itself */
+  const int level = PETSC_MPI_THREAD_REQUIRED < 0 ? MPI_THREAD_FUNNELED : (int)PETSC_MPI_THREAD_REQUIRED;
+  if (began_mpi && MPI_Init_thread(argc, argv, level, &provided)) return PETSC_ERR_MPI;
   MPI_Comm_rank(MPI_COMM_WORLD, &rank);
   if (!rank && MissingOptionsFile(*argc, *argv)) {
     fprintf(stderr, "petves: error: -options_file %s: cannot be opened (%s); allowed: a readable file of options\n",
@@ -45,6 +48,7 @@ PetscErrorCode PetvesInitialize(int *argc, char ***argv) {
     if (began_mpi) MPI_Finalize();
     return PETSC_ERR_FILE_OPEN;
   }
+  StopClock();
   PetscFunctionBeginUser;
   PetscCall(PetscInitialize(argc, argv, NULL, help));
   PetscCall(PetscPushErrorHandler(PetvesErrorHandler, NULL));
@@ -53,6 +57,10 @@ PetscErrorCode PetvesInitialize(int *argc, char ***argv) {
 
 PetscErrorCode PetvesFinalize(void) {
   PetscErrorCode error = PetscPopErrorHandler();
+  PetscBool given = PETSC_FALSE;
+  /* unused options have been reported in one line; newer PETSc would list them again */
+  if (!PetscOptionsHasName(NULL, NULL, "-options_left", &given) && !given)
+    (void)PetscOptionsSetValue(NULL, "-options_left", "no");
   if (!error) error = PetscFinalize();
   if (began_mpi && MPI_Finalize()) return PETSC_ERR_MPI;
   return error;
@@ -147,8 +155,8 @@ static PetscErrorCode WriteDue(Simulation s) {
   const PetscInt every = s->scene->checkpoint_every;
   PetscFunctionBeginUser;
   if (q->t >= s->next_output - 1e-9 * q->dt) {
-    PetscCall(OutputFields(s->output));
-    while (s->next_output <= q->t + 1e-9 * q->dt) s->next_output += s->scene->output_every;
+    PetscCall(OutputFields(s->output, PETSC_TRUE));
+    s->next_output = OutputNextTime(s->output);
   }
   if (every && q->step % every == 0) PetscCall(OutputCheckpoint(s->output));
   PetscCall(OutputProgress(s->output, PETSC_FALSE));
@@ -169,24 +177,53 @@ static PetscErrorCode IsSteady(Simulation s, PetscBool *steady) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SimulationRun(Simulation s, PetscBool *good) {
+/* The first row and frame; those of a checkpoint are there already, or (in a new folder) its row is. */
+static PetscErrorCode WriteFirst(Simulation s) {
+  PetscFunctionBeginUser;
+  if (!*s->scene->restart) PetscCall(OutputSeries(s->output));
+  if (!s->output->go_on) PetscCall(OutputFields(s->output, PETSC_TRUE));
+  s->next_output = OutputNextTime(s->output);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Steps and their files, until something ends the run: its reason, and the failure if it is one. */
+static PetscErrorCode StepToEnd(Simulation s, const char **reason, const char **failure) {
   const State *q = &s->scheme->state;
-  const char *failure = NULL, *reason = "finished";
+  const char *why = NULL;
   PetscBool steady = PETSC_FALSE;
   PetscFunctionBeginUser;
-  PetscCall(OutputSeries(s->output));
-  PetscCall(OutputFields(s->output));
-  s->next_output = s->scene->output_every;
-  while (!failure && !steady && q->t < s->scene->t_end - (s->scene->adapt ? 1e-9 : 0.5) * s->scene->dt) {
-    PetscCall(SimulationStep(s, &failure));
-    if (failure) break;
+  *failure = NULL;
+  while (!steady && q->t < s->scene->t_end - (s->scene->adapt ? 1e-9 : 0.5) * s->scene->dt) {
+    PetscLogDouble start, end;
+    const PetscReal reserve = 1 + 1.5 * (s->longest_step + s->output->checkpoint_seconds);
+    PetscCall(StopRequested(s->scene->comm, s->scene->wall_limit, reserve, &why));
+    if (why) {
+      PetscCall(PetscPrintf(s->scene->comm, "petves: stopping after step %" PetscInt_FMT ": %s\n", q->step, why));
+      *reason = "stopped";
+      PetscFunctionReturn(PETSC_SUCCESS);
+    }
+    PetscCall(PetscTime(&start));
+    PetscCall(SimulationStep(s, failure));
+    if (*failure) {
+      *reason = *failure;
+      PetscFunctionReturn(PETSC_SUCCESS);
+    }
     PetscCall(WriteDue(s));
     PetscCall(IsSteady(s, &steady));
+    PetscCall(PetscTime(&end));
+    s->longest_step = PetscMax(s->longest_step, end - start);
   }
-  if (steady) reason = "steady";
-  if (failure) reason = failure;
-  if (s->output->frames && s->output->last[COLUMN_TIME] > s->next_output - s->scene->output_every + 1e-9 * q->dt)
-    PetscCall(OutputFields(s->output)); /* the end state, when no saved time fell on it */
+  *reason = steady ? "steady" : "finished";
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SimulationRun(Simulation s, PetscBool *good) {
+  const char *failure = NULL, *reason = NULL;
+  PetscFunctionBeginUser;
+  PetscCall(WriteFirst(s));
+  PetscCall(StepToEnd(s, &reason, &failure));
+  if (s->scheme->state.t > s->output->times[s->output->frames - 1])
+    PetscCall(OutputFields(s->output, PETSC_FALSE)); /* the end state, when no saved time fell on it */
   PetscCall(OutputCheckpoint(s->output));
   PetscCall(OutputSummary(s->output, reason));
   PetscCall(OutputProgress(s->output, PETSC_TRUE));

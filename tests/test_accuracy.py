@@ -33,16 +33,16 @@ def tank_treading(cached_run, box: str, n: int, reduced_area: float, chi: float)
 @pytest.mark.parametrize("box", BOXES)
 @pytest.mark.parametrize("reduced_area,chi", [(0.7, 10), (0.5, 1)])
 def test_coarse_grid_finds_the_steady_state(box, reduced_area, chi, cached_run):
-    """64^2: the issue asks for 1.5 % and 2 %; measured 0.27 % and 0.09 % (V = .7, chi = 10), 0.6 % and 0.64 %."""
+    """64^2: the issue asks for 1.5 % and 2 %; measured 0.27 % and 0.17 % (V = .7, chi = 10), 0.2 % and 0.15 %."""
     _, angle, frequency = tank_treading(cached_run, box, 64, reduced_area, chi)
-    assert abs(angle) < 0.008 and abs(frequency) < 0.01
+    assert abs(angle) < 0.004 and abs(frequency) < 0.004
 
 
 def test_finer_grid_is_closer(cached_run):
-    """128^2: the issue asks for 0.5 % and 0.6 %; measured 0.16 % and 0.07 %, both below the 64^2 grid's."""
+    """128^2: the issue asks for 0.5 % and 0.6 %; measured 0.04 % and 0.13 %, both below the 64^2 grid's."""
     _, *coarse = tank_treading(cached_run, "box", 64, 0.7, 10)
     _, *fine = tank_treading(cached_run, "box", 128, 0.7, 10)
-    assert abs(fine[0]) < 0.002 and abs(fine[1]) < 0.0015
+    assert abs(fine[0]) < 0.001 and abs(fine[1]) < 0.0015
     assert all(abs(a) < abs(b) for a, b in zip(fine, coarse))
 
 
@@ -59,7 +59,7 @@ def test_area_and_length_are_kept(n, length, cached_run):
 
 
 def half_width(run) -> float:
-    return float(trigonometric(last_markers(run.folder))[:, 0].max())
+    return float(np.ptp(trigonometric(last_markers(run.folder))[:, 0])) / 2
 
 
 def relaxed(cached_run, n: int, options: str = "") -> float:

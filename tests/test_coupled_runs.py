@@ -127,7 +127,10 @@ def test_two_vesicles_are_two(tmp_path):
         file = f"-vesicle_shape file -vesicle_file {tmp_path}/two.txt -vesicle_center -0.375,0,0.375,0"
         same = run_petves(tmp_path / f"file{scheme[-5:]}", f"{options} {file} {scheme}", 2)
         same_state(state, last_state(same.folder), 1e-4, ("vesicle/markers",))
-        assert "vesicle 2" in run_petves(tmp_path / "view", f"{options} {file} {scheme} -view -time_end 0", 1).stdout
+        assert (
+            "vesicle 2"
+            in run_petves(tmp_path / "view", f"{options} {file} {scheme} -view -time_end 0 -output_overwrite", 1).stdout
+        )
 
 
 def test_far_vesicles_do_as_one(tmp_path):

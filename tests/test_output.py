@@ -33,7 +33,15 @@ def polygon_area(points: np.ndarray) -> float:
 
 def test_folder_holds_every_file(run):
     names = {path.name for path in run.folder.iterdir()}
-    assert names == {"series.csv", "run.h5", "run.xmf", "checkpoint.h5", "resolved.opts", "summary.json"}
+    assert names == {
+        "series.csv",
+        "run.h5",
+        "run.xmf",
+        "checkpoint.h5",
+        "checkpoint_1.h5",
+        "resolved.opts",
+        "summary.json",
+    }
 
 
 def test_series_has_its_columns(run):
@@ -176,9 +184,16 @@ def test_view_prints_the_model_in_force(tmp_path):
     assert len(run.series["step"]) == 1
 
 
-def test_no_memory_is_left(tmp_path):
-    """PETSc's own account: every PetscMalloc freed and every object destroyed at the end."""
-    options = "-domain_cells 32,32 -flow_type shear -flow_form total -time_step 0.01 -time_end 0.03 -output_every 0.01"
-    run = run_petves(tmp_path / "out", options + " -malloc_debug -malloc_dump", ranks=2)
-    assert not [line for line in run.stdout.splitlines() if " bytes " in line]
-    assert not run.errors
+@pytest.mark.parametrize("scheme", ["split", "coupled", "direct"])
+def test_no_memory_is_left(scheme, tmp_path):
+    """PETSc's own account, of a run and of its restart: every PetscMalloc freed and every object destroyed."""
+    options = (
+        f"-domain_cells 32,32 -flow_type shear -flow_form total -time_step 0.01 -output_every 0.01 -scheme_type {scheme} "
+        "-malloc_debug -malloc_dump -objects_dump"
+    )
+    first = run_petves(tmp_path / "out", options + " -time_end 0.03", ranks=2)
+    second = run_petves(tmp_path / "out", f"{options} -time_end 0.04 -restart {tmp_path}/out/checkpoint.h5", ranks=2)
+    for run in (first, second):
+        assert not [line for line in run.stdout.splitlines() if " bytes " in line]
+        assert "never freed" not in run.stdout
+        assert not run.errors

@@ -3,8 +3,10 @@
 import pytest
 from conftest import run_petves
 from test_coupled_runs import last_state
+from test_errors import stops_with
 
 SCENE = "-scheme_type coupled -domain_cells 40,40 -time_step 0.01 -time_end 0.03 -fftw_plan measure"
+SMALL = "-domain_cells 32,32 -time_step 0.01 -time_end 0.05"
 
 
 @pytest.mark.parametrize("solver", ["fftw_tridiagonal", "fftw"])
@@ -33,3 +35,18 @@ def test_file_grows_with_other_transforms(tmp_path):
     first = set(path.read_text().splitlines())
     run_petves(tmp_path / "1", f"{SCENE} -domain_cells 48,48 -fftw_wisdom {path}")
     assert first < set(path.read_text().splitlines())
+
+
+@pytest.mark.parametrize("text", ["no wisdom\n", "", "(fftw-3.3.10 fftw_wisdom #x0 #x0 #x0 #x0\n)\n"])
+def test_bad_wisdom_is_named(text, tmp_path):
+    path = tmp_path / "wisdom"
+    path.write_text(text)
+    run = run_petves(tmp_path / "out", f"{SMALL} -fftw_wisdom {path}", 2, good=False, timeout=60)
+    stops_with(run, [f"-fftw_wisdom {path}", "not wisdom", "allowed"])
+    assert path.read_text() == text
+
+
+def test_wisdom_that_cannot_be_written_is_named(tmp_path):
+    path = tmp_path / "none" / "wisdom"
+    run = run_petves(tmp_path / "out", f"{SMALL} -fftw_wisdom {path}", 2, good=False, timeout=60)
+    stops_with(run, [f"-fftw_wisdom {path}", "cannot be written", "allowed"])

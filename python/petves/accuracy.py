@@ -60,20 +60,26 @@ def _percent(errors: tuple[float, float]) -> str:
 
 def _steady(results: Results, folder: Path, cells: tuple[int, ...]) -> list[str]:
     """The default combination in both boxes."""
-    rows, shown = [], []
+    rows, shown, every = [], [], []
     for box, v, chi in product(SHEAR, study.REDUCED_AREAS, study.CHIS):
-        errors = [_errors(results.get(study.shear("default", box, n, v, chi)), box, v, chi) for n in cells]
+        errors = [_errors(results.get(study.steady(box, n, v, chi)), box, v, chi) for n in cells]
         rows += [["default", box, v, chi, n, *e] for n, e in zip(cells, errors)]
-        orders = [np.log2(abs(a / b)) for a, b in zip(errors[0], errors[1])]
-        shown.append([box, f"{v}", f"{chi}", *map(_percent, errors), ", ".join(f"{q:.1f}" for q in orders)])
+        shown.append([box, f"{v}", f"{chi}", *map(_percent, errors)])
+        every.append(errors)
     write_csv(folder / "accuracy_steady.csv", ["combination", "box", "V", "chi", "cells", "angle", "frequency"], rows)
-    kept = [results.get(study.shear("default", b, n, v, c)) for b, n, v, c in _all(cells[:2])]
+    every = 100 * np.array(every)  # scenes, grids, angle and frequency
+    norms = {"root mean square": np.sqrt((every**2).mean(axis=0)), "largest": np.abs(every).max(axis=0)}
+    for name, norm in norms.items():
+        shown.append([name, "", "", *(f"{a:.3f}, {b:.3f}" for a, b in norm)])
+        orders = np.log2(norm[:-1] / norm[1:])
+        shown.append(["its order", "", "", "", *(f"{a:.1f}, {b:.1f}" for a, b in orders)])
+    kept = [results.get(study.steady(b, n, v, c)) for b, n, v, c in _all(cells[:2])]
     worst = {key: max(one[key] for one in kept) for key in ("area", "length", "shift")}
     note = (
         f"Worst of the 64^2 and 128^2 runs from t = 1 on: area {worst['area']:.0e}, length {worst['length']:.0e}, "
         f"shift {worst['shift']:.0e} a step (length units; R0 is 0.6 to 0.8).\n"
     )
-    header = ["box", "V", "chi", *(f"{n}^2" for n in cells), "order 64 to 128"]
+    header = ["box", "V", "chi", *(f"{n}^2" for n in cells)]
     return ["### Default combination: errors of angle, frequency in percent\n", *table(header, shown), note]
 
 
@@ -171,10 +177,11 @@ def _cost(results: Results, folder: Path) -> list[str]:
 
 
 def _fields(results: Results, folder: Path) -> list[str]:
-    """Velocity outside the membrane and tension, against the default at 256^2."""
+    """Velocity, pressure outside the membrane and tension, against the default at 256^2."""
     reference = results.get(study.fields("default", 256, None))
-    rows, shown = [], []
+    rows = []
     scale = np.sqrt(2 * np.mean(np.square(reference[f"velocity_{study.DISTANCES[0]}"])))
+    pressure_range = np.ptp(reference[f"pressure_{study.DISTANCES[0]}"])
     for n, name in product((64, 128), ("uncorrected", "cbs54, none", "default")):
         one = results.get(study.fields(name, n, reference))
         line = [f"{n}^2", name]
@@ -182,18 +189,21 @@ def _fields(results: Results, folder: Path) -> list[str]:
             key = f"velocity_{distance}"
             apart = np.reshape(np.subtract(one[key], reference[key]), (2, -1))
             line.append(f"{100 * np.sqrt((apart**2).sum(0).mean()) / scale:.2f}")
+        for distance in study.DISTANCES:  # pressure is known up to a constant
+            apart = np.subtract(one[f"pressure_{distance}"], reference[f"pressure_{distance}"])
+            line.append(f"{100 * np.std(apart) / pressure_range:.2f}")
         tension = _tension(one, name) - _tension(reference, "default")
         line.append(f"{100 * np.sqrt(np.mean(tension**2)) / np.ptp(_tension(reference, 'default')):.2f}")
         rows.append(line)
-        shown.append(line)
-    columns = [f"distance {d:g}" for d in study.DISTANCES]
+    columns = [f"{what} {d:g}" for what in ("velocity", "pressure") for d in study.DISTANCES]
     write_csv(folder / "accuracy_fields.csv", ["cells", "combination", *columns, "tension"], rows)
     title = (
-        "### Velocity outside the membrane and tension: V = 0.7, chi = 10, box, t = 10, percent\n\n"
-        "Root mean square difference from the default at 256^2, in percent of the velocity's root mean square at 0.125 and of\n"
-        "the range of the tension. h = 0.125 at 64^2: 0.125, 0.25 and 0.5 are 1, 2 and 4 h there, 2, 4 and 8 h at 128^2.\n"
+        "### Velocity and pressure outside the membrane and tension: V = 0.7, chi = 10, box, t = 10, percent\n\n"
+        "Root mean square difference from the default at 256^2 at three distances, in percent of the velocity's root mean\n"
+        "square at 0.125, of the pressure's range at 0.125 and of the range of the tension. h = 0.125 at 64^2: 0.125, 0.25\n"
+        "and 0.5 are 1, 2 and 4 h there, 2, 4 and 8 h at 128^2.\n"
     )
-    return [title, *table(["", "", *columns, "tension"], shown)]
+    return [title, *table(["", "", *columns, "tension"], rows)]
 
 
 def _tension(one: dict, name: str) -> np.ndarray:

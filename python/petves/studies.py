@@ -152,7 +152,17 @@ def _launch(case: Case, ranks: int, folder: str) -> str:
     if not Path(binary).is_file():
         raise RunError(f"{binary}: no such program; build it with make, or set PETVES")
     words = [word for pair in case.options.items() for word in pair]
-    command = ["mpirun", "-n", str(ranks), binary, *words, "-output_dir", folder]
+    limits = [word for name in ("edge_ratio", "area_error", "length_error") for word in (f"-limit_{name}", "0")]
+    command = [
+        "mpirun",
+        "-n",
+        str(ranks),
+        binary,
+        *limits,
+        *words,
+        "-output_dir",
+        folder,
+    ]  # a study measures bad answers too
     try:
         done = subprocess.run(
             command, env=OPEN_MPI | os.environ, capture_output=True, text=True, stdin=subprocess.DEVNULL

@@ -33,19 +33,20 @@ static void NameOption(const char *message, char name[], size_t length) {
 PetscErrorCode PetvesErrorHandler(MPI_Comm comm, int line, const char *function, const char *file, PetscErrorCode code,
                                   PetscErrorType type, const char *message, void *ctx) {
   PetscMPIInt rank = 0;
-  if (code != PETSC_ERR_USER_INPUT && !base.one_line)
-    return PetscTraceBackErrorHandler(comm, line, function, file, code, type, message, ctx);
+  char text[PETVES_MAX_MESSAGE], name[PETVES_MAX_MESSAGE] = "";
+  size_t n = 0;
+  if (type != PETSC_ERROR_INITIAL) return code;
   MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-  if (type == PETSC_ERROR_INITIAL && !rank) {
-    char text[PETVES_MAX_MESSAGE], name[PETVES_MAX_MESSAGE] = "";
-    size_t n = 0;
-    if (code != PETSC_ERR_USER_INPUT && message) NameOption(message, name, sizeof(name));
-    for (const char *c = message ? message : "unknown error"; *c && n < sizeof(text) - 1; c++)
-      text[n++] = *c == '\n' ? ' ' : *c;
-    text[n] = 0;
+  if (rank && code == PETSC_ERR_USER_INPUT) return code; /* rank 0 says it */
+  if (code != PETSC_ERR_USER_INPUT && message) NameOption(message, name, sizeof(name));
+  for (const char *c = message ? message : "unknown error"; *c && n < sizeof(text) - 1; c++)
+    text[n++] = *c == '\n' ? ' ' : *c;
+  text[n] = 0;
+  if (code == PETSC_ERR_USER_INPUT || (base.one_line && !rank))
     fprintf(stderr, "petves: error: %s%s\n", name, text);
-    fflush(stderr);
-  }
+  else if (!base.one_line && !(rank && comm == MPI_COMM_WORLD)) /* no user's mistake: say where */
+    fprintf(stderr, "petves: error: %s%s (%s() in %s, line %d, rank %d)\n", name, text, function, file, line, rank);
+  fflush(stderr);
   return code;
 }
 

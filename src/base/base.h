@@ -9,6 +9,13 @@
 #error "petves needs a PETSc built with real double-precision scalars"
 #endif
 
+/* Names that PETSc has changed since 3.18 (PETSC_SUCCESS is in petves.h). */
+#if PETSC_VERSION_GE(3, 26, 0)
+#undef KSP_GMRES_CGS_REFINE_IFNEEDED
+#define KSP_GMRES_CGS_REFINE_IFNEEDED KSP_ORTHOGONALIZATION_CGS_REFINE_IFNEEDED
+#define KSPGMRESSetCGSRefinementType KSPOrthogonalizationSetCGSRefinementType
+#endif
+
 #define PETVES_VERSION "0.1.0"
 #define PETVES_MAX_MESSAGE 512
 
@@ -16,13 +23,13 @@
    Say the option or file, the value and what is allowed. Collective: all ranks must agree on cond. */
 #define PetvesCheck(cond, comm, ...) PetscCheck((cond), (comm), PETSC_ERR_USER_INPUT, __VA_ARGS__)
 
-/* PetvesErrorHandler - PETSc error handler of the program: one line on stderr for a user's mistake, PETSc's own
-   traceback for anything else. Install with PetscPushErrorHandler(PetvesErrorHandler, NULL). */
+/* PetvesErrorHandler - PETSc error handler of the program: one line on stderr, for anything but a user's mistake with
+   the place in the source. Install with PetscPushErrorHandler(PetvesErrorHandler, NULL). */
 PETSC_EXTERN PetscErrorCode PetvesErrorHandler(MPI_Comm, int, const char *, const char *, PetscErrorCode,
                                                PetscErrorType, const char *, void *);
 
-/* PetvesSetupErrors - while on, every error prints one line: a solver option with a bad value (-tension_ksp_type foo)
-   is the user's mistake too, and PETSc reports it with its own codes. */
+/* PetvesSetupErrors - while on, every error counts as a user's mistake: a solver option with a bad value
+   (-tension_ksp_type foo) is one, and PETSc reports it with its own codes. */
 PETSC_EXTERN PetscErrorCode PetvesSetupErrors(PetscBool);
 
 /* Phases of a run: one -log_view stage each, and the wall seconds of summary.json. Time in a nested phase belongs to
@@ -39,3 +46,10 @@ PETSC_EXTERN const char *const PhaseNames[PHASE_COUNT];
 
 /* PetvesEvent - id of a -log_view event of the given name, registered on first use. */
 PETSC_EXTERN PetscErrorCode PetvesEvent(const char name[], PetscLogEvent *event);
+
+/* StopClock - the wall time of -time_wall_limit starts here. */
+PETSC_EXTERN void StopClock(void);
+
+/* StopRequested - whether a rank has caught SIGTERM or SIGUSR1 (PetvesCatchSignals), or less than `reserve` seconds are
+   left of `limit` (0: no limit) on rank 0's clock: its name, else NULL. The same on every rank. Collective. */
+PETSC_EXTERN PetscErrorCode StopRequested(MPI_Comm comm, PetscReal limit, PetscReal reserve, const char **why);

@@ -20,6 +20,25 @@ PetscErrorCode DenseSolve(PetscInt n, const PetscReal A[], const PetscBLASInt pi
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode DenseFactorSymmetric(PetscInt n, PetscReal A[]) {
+  PetscBLASInt size, info;
+  PetscFunctionBeginUser;
+  PetscCall(PetscBLASIntCast(n, &size));
+  PetscCallBLAS("LAPACKpotrf", LAPACKpotrf_("L", &size, A, &size, &info));
+  PetscCheck(!info, PETSC_COMM_SELF, PETSC_ERR_MAT_CH_ZRPVT, "Lagrangian block not positive definite, pivot %d",
+             (int)info);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode DenseSolveSymmetric(PetscInt n, const PetscReal A[], PetscReal x[]) {
+  PetscBLASInt size, info;
+  const PetscBLASInt one = 1;
+  PetscFunctionBeginUser;
+  PetscCall(PetscBLASIntCast(n, &size));
+  PetscCallBLAS("LAPACKpotrs", LAPACKpotrs_("L", &size, &one, (PetscReal *)A, &size, x, &size, &info));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode DenseMultAdd(PetscInt m, PetscInt n, PetscReal alpha, const PetscReal A[], const PetscReal x[],
                             PetscReal y[]) {
   PetscBLASInt rows, columns;

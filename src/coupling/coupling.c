@@ -29,6 +29,22 @@ PetscErrorCode CouplingCheckMarkers(Coupling c, const PetscScalar X[], char mess
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* This rank's rows under the stencils, one more on either side for G and G^T; all of them across a seam. */
+static void SetWindow(Coupling c) {
+  const Grid g = c->grid;
+  const PetscInt rows = g->rows[FIELD_P];
+  PetscInt low = PETSC_MAX_INT, high = -1;
+  for (PetscInt k = 0; k < 2 * c->membrane->M; k++) {
+    low = PetscMin(low, c->stencil[k].first[1]);
+    high = PetscMax(high, c->stencil[k].first[1] + c->stencil[k].n[1]);
+  }
+  low -= 2 + g->first;
+  high += 2 - g->first;
+  const PetscBool seam = !g->wall[1] && (low + g->first < 0 || high + g->first > g->n[1]) ? PETSC_TRUE : PETSC_FALSE;
+  c->window[0] = seam ? 0 : PetscMin(PetscMax(low, 0), rows);
+  c->window[1] = seam ? rows : PetscMax(PetscMin(high, rows), c->window[0]);
+}
+
 PetscErrorCode CouplingSetMarkers(Coupling c, Vec X) {
   const Grid g = c->grid;
   const PetscScalar *x;
@@ -45,6 +61,7 @@ PetscErrorCode CouplingSetMarkers(Coupling c, Vec X) {
       }
   PetscCall(PetscArraycpy(c->X, x, 2 * c->membrane->M));
   MembraneTangents(c->membrane, x, c->tau);
+  SetWindow(c);
   PetscCall(VecRestoreArrayRead(X, &x));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -261,5 +278,12 @@ PetscErrorCode CouplingInterpolate(Coupling c, Mat A, Vec w, Vec y) {
   else
     PetscCall(MatMultTranspose(A, c->slab, y));
   PetscCall(VecRestoreLocalVectorRead(w, c->slab));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CouplingClear(Coupling c, Vec w, PetscInt dirty[2]) {
+  PetscFunctionBeginUser;
+  PetscCall(GridClearRows(c->grid, dirty, w));
+  for (int k = 0; k < 2; k++) dirty[k] = c->window[k];
   PetscFunctionReturn(PETSC_SUCCESS);
 }

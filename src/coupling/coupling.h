@@ -20,9 +20,10 @@ struct _p_Coupling {
   Grid grid;         /* borrowed */
   Membrane membrane; /* borrowed */
   const Kernel *kernel;
-  Stencil *stencil; /* [2M]: component c of marker k at 2k + c */
-  PetscReal *X;     /* [2M] the coupling's markers */
-  PetscReal *tau;   /* [2M] tangents there */
+  Stencil *stencil;   /* [2M]: component c of marker k at 2k + c */
+  PetscReal *X;       /* [2M] the coupling's markers */
+  PetscReal *tau;     /* [2M] tangents there */
+  PetscInt window[2]; /* this rank's rows that hold all stencils, with the rows next to them */
   PetscScalar *force, *work, *sum;
   PetscReal alpha; /* factor of the spreading under way */
   Vec slab;        /* sequential vector without memory, for a velocity's local part */
@@ -43,6 +44,10 @@ PETSC_EXTERN PetscErrorCode CouplingCheckMarkers(Coupling coupling, const PetscS
 
 /* CouplingSetMarkers - place E, S, B at the markers X (checked by CouplingCheckMarkers before). */
 PETSC_EXTERN PetscErrorCode CouplingSetMarkers(Coupling coupling, Vec X);
+
+/* CouplingClear - w (a velocity or a pressure) is zero but for rows dirty[2], which are zeroed; dirty becomes the
+   coupling's window, where the caller may write. Not collective. */
+PETSC_EXTERN PetscErrorCode CouplingClear(Coupling coupling, Vec w, PetscInt dirty[2]);
 
 /* CouplingSpreadAdd - w += alpha A x for A one of S and B, or w += alpha E^T x for E; x a marker or tension vector. */
 PETSC_EXTERN PetscErrorCode CouplingSpreadAdd(Coupling coupling, PetscReal alpha, Mat A, Vec x, Vec w);

@@ -1,9 +1,6 @@
 #include "coupling/dense.h"
 #include "coupling/blas.h"
 
-/* Vesicles whose markers together are at most this many share one block, which knows how they move one another. */
-#define MOST_TOGETHER 800
-
 typedef struct {
   PetscInt vesicle, end; /* its vesicles: vesicle .. end - 1 */
   PetscInt first, n;     /* its markers */
@@ -20,7 +17,7 @@ struct _p_DenseBlocks {
 
 PetscErrorCode DenseBlocksCreate(Coupling coupling, DenseBlocks *out) {
   const Membrane m = coupling->membrane;
-  const PetscBool together = m->M <= MOST_TOGETHER ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool together = m->M <= DENSE_TOGETHER ? PETSC_TRUE : PETSC_FALSE;
   DenseBlocks b;
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&b));

@@ -5,6 +5,9 @@
 #include "coupling/mobility.h"
 #include "coupling/selfmobility.h"
 
+/* Vesicles whose markers together are at most this many share one block, which knows how they move one another. */
+#define DENSE_TOGETHER 800
+
 typedef struct _p_DenseBlocks *DenseBlocks;
 
 PETSC_EXTERN PetscErrorCode DenseBlocksCreate(Coupling coupling, DenseBlocks *blocks);

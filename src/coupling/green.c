@@ -105,6 +105,15 @@ static PetscErrorCode BuildTable(Mobility m, PetscReal a0, GreenTable *t) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode MobilitySetTables(Mobility m, const PetscReal a0[MOBILITY_CACHE]) {
+  PetscFunctionBeginUser;
+  for (int i = 0; i < MOBILITY_CACHE; i++) {
+    PetscCall(FreeTable(&m->cache[i]));
+    if (a0[i] > 0) PetscCall(BuildTable(m, a0[i], &m->cache[i]));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode MobilityGetTable(Mobility m, PetscReal a0, const GreenTable **table) {
   GreenTable found = {0};
   PetscInt i = 0;

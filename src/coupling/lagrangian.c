@@ -34,11 +34,12 @@ static PetscErrorCode MultTension(Mat A, Vec x, Vec y) {
   LagrangianSolver s;
   PetscFunctionBeginUser;
   PetscCall(MatShellGetContext(A, &s));
-  PetscCall(VecSet(s->w, 0));
+  PetscCall(CouplingClear(s->coupling, s->w, s->dirty_w));
+  PetscCall(CouplingClear(s->coupling, s->q, s->dirty_q));
   PetscCall(CouplingSpreadAdd(s->coupling, 1, s->coupling->S, x, s->w));
-  PetscCall(MatMultTranspose(s->fluid->G, s->w, s->q));
-  PetscCall(FluidSolvePoisson(s->fluid, s->q, s->q));
-  PetscCall(GridGradient(s->fluid->grid, 1, s->q, PETSC_TRUE, s->w));
+  PetscCall(GridGradientTransposeRows(s->fluid->grid, 1, s->w, s->coupling->window, s->q));
+  PetscCall(FluidSolvePoisson(s->fluid, s->q, s->q2));
+  PetscCall(GridGradientRows(s->fluid->grid, 1, s->q2, PETSC_TRUE, s->coupling->window, s->w));
   if (s->self)
     PetscCall(CorrectedStretching(s, s->w, x, -s->fluid->a0, y));
   else
@@ -51,7 +52,7 @@ static PetscErrorCode MultBending(Mat A, Vec x, Vec y) {
   LagrangianSolver s;
   PetscFunctionBeginUser;
   PetscCall(MatShellGetContext(A, &s));
-  PetscCall(VecSet(s->w, 0));
+  PetscCall(CouplingClear(s->coupling, s->w, s->dirty_w));
   PetscCall(CouplingSpreadAdd(s->coupling, 1, s->coupling->B, x, s->w));
   PetscCall(FluidSolveHelmholtz(s->fluid, s->w, s->w2));
   PetscCall(CouplingInterpolate(s->coupling, s->coupling->E, s->w2, y));
@@ -84,14 +85,16 @@ static PetscErrorCode Create(Fluid fluid, Coupling coupling, SelfMobility self, 
 
 /* Every rank runs the same iteration, one prints; but a monitor that applies the operator, which is collective, must
    stay on all of them. */
-static PetscErrorCode FinishOptions(LagrangianSolver s) {
+PetscErrorCode KSPReplicatedSetFromOptions(KSP ksp, PetscMPIInt rank) {
+  const char *prefix;
   PetscBool true_residual;
   PetscFunctionBeginUser;
-  PetscCall(KSPSetFromOptions(s->ksp));
-  PetscCall(PetscOptionsHasName(NULL, s->prefix, "-ksp_monitor_true_residual", &true_residual));
-  if (s->fluid->grid->rank && !true_residual) {
-    PetscCall(KSPMonitorCancel(s->ksp));
-    PetscCall(KSPResetViewers(s->ksp));
+  PetscCall(KSPSetFromOptions(ksp));
+  PetscCall(KSPGetOptionsPrefix(ksp, &prefix));
+  PetscCall(PetscOptionsHasName(NULL, prefix, "-ksp_monitor_true_residual", &true_residual));
+  if (rank && !true_residual) {
+    PetscCall(KSPMonitorCancel(ksp));
+    PetscCall(KSPResetViewers(ksp));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -114,11 +117,12 @@ PetscErrorCode TensionSolverCreate(Fluid fluid, Coupling coupling, SelfMobility 
   PetscFunctionBeginUser;
   PetscCall(Create(fluid, coupling, self, "tension_", coupling->membrane->M, MultTension, s));
   PetscCall(DMCreateGlobalVector(fluid->grid->da[FIELD_P], &(*s)->q));
+  PetscCall(VecDuplicate((*s)->q, &(*s)->q2));
   PetscCall(KSPGetPC((*s)->ksp, &pc));
   PetscCall(PCSetType(pc, PCILU));
   PetscCall(PCFactorSetLevels(pc, COMPLETE_FILL));
   PetscCall(PCFactorSetMatOrderingType(pc, MATORDERINGND));
-  PetscCall(FinishOptions(*s));
+  PetscCall(KSPReplicatedSetFromOptions((*s)->ksp, fluid->grid->rank));
   PetscCall(PreferRight((*s)->ksp));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -130,7 +134,7 @@ PetscErrorCode BendingSolverCreate(Fluid fluid, Coupling coupling, SelfMobility 
   PetscCall(VecDuplicate((*s)->w, &(*s)->w2));
   PetscCall(KSPGetPC((*s)->ksp, &pc));
   PetscCall(PCSetType(pc, PCNONE));
-  PetscCall(FinishOptions(*s));
+  PetscCall(KSPReplicatedSetFromOptions((*s)->ksp, fluid->grid->rank));
   PetscCall(KSPSetOperators((*s)->ksp, (*s)->A, (*s)->A));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -145,6 +149,7 @@ PetscErrorCode LagrangianSolverDestroy(LagrangianSolver *solver) {
   PetscCall(VecDestroy(&s->w));
   PetscCall(VecDestroy(&s->w2));
   PetscCall(VecDestroy(&s->q));
+  PetscCall(VecDestroy(&s->q2));
   PetscCall(VecDestroy(&s->U));
   PetscCall(PetscFree(*solver));
   PetscFunctionReturn(PETSC_SUCCESS);

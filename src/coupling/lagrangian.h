@@ -16,9 +16,10 @@ struct _p_LagrangianSolver {
   SelfMobility self; /* borrowed; NULL without: U = R (E u - Theta Dm^T dsigma) in place of E u */
   const char *prefix;
   KSP ksp;
-  Mat A;                  /* the operator, a shell */
-  Mat Chat;               /* assembled approximation for the preconditioner; NULL when there is none */
-  Vec w, w2, q;           /* work: two velocities, one pressure */
+  Mat A;            /* the operator, a shell */
+  Mat Chat;         /* assembled approximation for the preconditioner; NULL when there is none */
+  Vec w, w2, q, q2; /* work: two velocities, two pressures; w and q are zero but for their dirty rows */
+  PetscInt dirty_w[2], dirty_q[2];
   Vec U;                  /* work: a marker vector */
   PetscInt its;           /* iterations of the last solve */
   KSPConvergedReason why; /* how it ended */
@@ -45,6 +46,10 @@ PETSC_EXTERN PetscErrorCode LagrangianSolverSolve(LagrangianSolver solver, Vec b
 
 /* TensionAssemble - Chat for the coupling's markers, assembled by every rank alike. */
 PETSC_EXTERN PetscErrorCode TensionAssemble(Coupling coupling, Mat *Chat);
+
+/* KSPReplicatedSetFromOptions - options of a solver that every rank runs alike: only rank 0 prints. Collective over the
+   ranks that run it. */
+PETSC_EXTERN PetscErrorCode KSPReplicatedSetFromOptions(KSP ksp, PetscMPIInt rank);
 
 /* KSPWriteOptions - a KSP's settings in force as options with this prefix, one a line. */
 PETSC_EXTERN PetscErrorCode KSPWriteOptions(KSP ksp, const char prefix[], FILE *file);

@@ -30,6 +30,9 @@ struct _p_Mobility {
 PETSC_EXTERN PetscErrorCode MobilityCreate(Scene scene, Coupling coupling, Mobility *mobility);
 PETSC_EXTERN PetscErrorCode MobilityDestroy(Mobility *mobility);
 
+/* MobilitySetTables - fill the cache with the tables for these coefficients, 0: none. Collective. */
+PETSC_EXTERN PetscErrorCode MobilitySetTables(Mobility mobility, const PetscReal a0[MOBILITY_CACHE]);
+
 /* MobilityForget - drop all tables. Not collective. */
 PETSC_EXTERN PetscErrorCode MobilityForget(Mobility mobility);
 

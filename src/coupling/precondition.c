@@ -2,6 +2,8 @@
    periodic box or by Chat, and of each pair of walls by itself. */
 #include "coupling/saddle.h"
 
+#define MOST_WASTE 5
+
 /* N V + (Mob + h^2 Theta) Dm^T sigma/h^2 = r_V,  Dm V/h^2 = r_s. */
 static PetscErrorCode SolveTable(Saddle s, PetscScalar V[], PetscScalar tension[]) {
   PetscFunctionBeginUser;
@@ -31,11 +33,9 @@ PetscErrorCode SaddlePrecondition(PC pc, Vec r, Vec z) {
   PetscScalar *za;
   PetscFunctionBeginUser;
   PetscCall(PCShellGetContext(pc, &s));
-  /* old dense blocks have had their iterations: new ones from here on */
-  if (s->flexible && s->type == MOBILITY_TABLE && s->coupling && s->age > 0 && s->applied == s->fresh_its + 2) {
-    s->life = PetscMax(1, s->age); /* next time before this happens */
+  /* dense blocks far too old: new ones from here on */
+  if (s->flexible && s->type == MOBILITY_TABLE && s->coupling && s->age > 0 && s->applied == s->fresh_its + MOST_WASTE)
     PetscCall(SaddleRefresh(s));
-  }
   s->applied++;
   PetscCall(VecCopy(r, z));
   PetscCall(VecGetArray(z, &za));

@@ -71,7 +71,10 @@ PetscErrorCode SaddleMult(Mat A, Vec x, Vec y) {
   if (slot < SADDLE_KEPT) PetscCall(VecCopy(x, s->z[slot]));
   s->products++;
   PetscCall(VecGetArrayRead(x, &xa));
-  PetscCall(VecSet(s->r, 0));
+  if (s->coupling && !s->walls->n)
+    PetscCall(CouplingClear(s->coupling, s->r, s->dirty));
+  else /* wall forces are everywhere */
+    PetscCall(VecSet(s->r, 0));
   PetscCall(AddForces(s, xa, s->r));
   PetscCall(StokesSolve(s->stokes, s->r, NULL, s->w[slot], s->p[slot]));
   PetscCall(VecGetArray(y, &ya));
@@ -88,6 +91,8 @@ PetscErrorCode SaddleResidual(Saddle s, Vec f, Vec g, Vec x, Vec w, Vec p, Vec r
   PetscFunctionBeginUser;
   PetscCall(VecGetArrayRead(x, &xa));
   PetscCall(VecCopy(f, s->r));
+  s->dirty[0] = 0;
+  s->dirty[1] = s->fluid->grid->rows[FIELD_P];
   PetscCall(AddForces(s, xa, s->r));
   if (s->fluid->bc2) { /* p holds the right-hand side, then the solution */
     PetscCall(VecAXPBY(p, -1, 0, s->fluid->bc2));

@@ -72,7 +72,7 @@ static PetscErrorCode CreateKSP(Saddle s, PetscInt n) {
   PetscCall(PCShellSetContext(pc, s));
   PetscCall(PCShellSetApply(pc, SaddlePrecondition));
   PetscCall(PCShellSetName(pc, "mobility of the markers, slip of the walls"));
-  PetscCall(KSPSetFromOptions(s->ksp));
+  PetscCall(KSPReplicatedSetFromOptions(s->ksp, s->fluid->grid->rank));
   PetscCall(KSPSetConvergenceTest(s->ksp, Converged, s, NULL));
   PetscCall(PetscObjectTypeCompare((PetscObject)s->ksp, KSPFGMRES, &s->flexible));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -140,22 +140,57 @@ PetscErrorCode SaddleForget(Saddle s) {
   PetscFunctionBeginUser;
   s->factored_a0 = 0;
   s->fresh_its = -1;
-  s->age = s->refreshed = 0;
-  s->life = 1000;
+  s->age = 0;
+  s->waste = 0;
   if (s->mobility) PetscCall(MobilityForget(s->mobility));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SaddleRefresh(Saddle s) {
+static PetscErrorCode MakeBlocks(Saddle s) {
   const GreenTable *table;
   PetscFunctionBeginUser;
   PetscCall(MobilityGetTable(s->mobility, s->fluid->a0, &table));
   PetscCall(DenseBlocksFactor(s->blocks, s->mobility, table, s->self, s->fluid->a0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SaddleGetMemory(Saddle s, PetscReal memory[SADDLE_MEMORY]) {
+  const PetscReal own[] = {s->factored_a0, s->fresh_its, s->age, s->waste};
+  PetscFunctionBeginUser;
+  for (int k = 0; k < 4; k++) memory[k] = own[k];
+  for (int k = 0; k < MOBILITY_CACHE; k++) memory[4 + k] = s->mobility ? s->mobility->cache[k].a0 : 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SaddleSetMemory(Saddle s, const PetscReal memory[SADDLE_MEMORY]) {
+  PetscFunctionBeginUser;
+  if (!s->mobility || memory[0] == 0) PetscFunctionReturn(PETSC_SUCCESS);
+  s->factored_a0 = memory[0];
+  s->fresh_its = (PetscInt)memory[1];
+  s->age = (PetscInt)memory[2];
+  s->waste = memory[3];
+  PetscCall(MobilitySetTables(s->mobility, memory + 4));
+  PetscCall(MakeBlocks(s));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SaddleRefresh(Saddle s) {
+  PetscFunctionBeginUser;
+  PetscCall(MakeBlocks(s));
   s->factored_a0 = s->fluid->a0;
   s->fresh_its = -1;
   s->age = 0;
-  if (++s->refreshed % 16 == 0) s->life++; /* try a longer life now and then */
+  s->waste = 0;
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Cost of new dense blocks in iterations, from the operation counts and the speeds of one core; a number of the problem
+   alone, so that iterations do not depend on the machine or its load. */
+static PetscReal RefreshCost(Saddle s) {
+  const Membrane m = s->coupling->membrane;
+  const PetscReal n = m->M <= DENSE_TOGETHER ? m->M : (PetscReal)m->M / m->vesicles, blocks = m->M / n;
+  const PetscReal cells = (PetscReal)s->fluid->grid->n[0] * s->fluid->grid->n[1];
+  return blocks * (4e-9 * n * n * n + 6e-7 * n * n) / (1.5e-8 * cells);
 }
 
 PetscErrorCode SaddleSetUp(Saddle s) {
@@ -169,7 +204,8 @@ PetscErrorCode SaddleSetUp(Saddle s) {
     PetscCall(PCSetUp(s->ilu));
   }
   if (s->type != MOBILITY_TABLE) PetscFunctionReturn(PETSC_SUCCESS);
-  if (s->age >= s->life || !(PetscAbsReal(s->factored_a0 / s->fluid->a0 - 1) < 0.1)) PetscCall(SaddleRefresh(s));
+  if (s->waste > RefreshCost(s) || !(PetscAbsReal(s->factored_a0 / s->fluid->a0 - 1) < 0.1))
+    PetscCall(SaddleRefresh(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -269,7 +305,7 @@ PetscErrorCode SaddleSolve(Saddle s, Vec f, Vec g, Vec w, Vec p, Vec sigma, Vec 
     PetscCall(Correct(s, f, g, w, p));
     if (s->why < 0 || s->residual <= 2 * PetscMax(rtol * s->reference, atol)) break;
   }
-  if (s->age > 0 && s->its < s->fresh_its + 2) s->life = PetscMax(s->life, s->age + 2); /* good so far */
+  if (s->age > 0) s->waste += PetscMax(s->its - s->fresh_its, 0);
   if (s->age == 0 && s->fresh_its < 0) s->fresh_its = s->its;
   s->age++;
   if (s->why >= 0) PetscCall(TakeSolution(s, sigma, d, V));

@@ -34,7 +34,8 @@ struct _p_Saddle {
   Mat A;                          /* the residuals' derivative, scaled; one Stokes solve */
   KSP ksp;
   Vec x, b, change;                    /* [n] unknowns, residual, work; the same on every rank */
-  Vec r;                               /* a force on the grid */
+  Vec r;                               /* a force on the grid, */
+  PetscInt dirty[2];                   /* zero but for these rows */
   Vec w[SADDLE_KEPT + 1];              /* velocities and pressures of kept products, the last for one that is not */
   Vec p[SADDLE_KEPT + 1];              /* made when first needed */
   Vec z[SADDLE_KEPT], Az[SADDLE_KEPT]; /* their unknowns, and what A makes of them */
@@ -45,8 +46,8 @@ struct _p_Saddle {
   PetscReal start;                     /* residual norm of the initial guess */
   PetscReal factored_a0;               /* of the dense blocks; 0: none yet */
   PetscInt fresh_its;                  /* iterations right after they were made; -1: not known yet */
-  PetscInt age, life;                  /* solves that they have served, and will at most */
-  PetscInt refreshed;                  /* times that they were made */
+  PetscInt age;                        /* solves that they have served */
+  PetscReal waste;                     /* iterations that their age has cost */
   PetscBool flexible;                  /* the KSP allows them to be made anew under way */
   PetscInt applied;                    /* times that they were applied in this solve */
   PetscInt its;
@@ -63,9 +64,17 @@ PETSC_EXTERN PetscErrorCode SaddleDestroy(Saddle *saddle);
 PETSC_EXTERN PetscErrorCode SaddleCreateWallVec(Saddle saddle, Vec *d);
 
 /* SaddleSetUp - follow the fluid's a0 and the coupling's markers. The dense blocks are kept while a0 moves by less than
-   10 % and iterations stay low: a solve that takes 2 more than the first one did makes them anew and goes on.
-   Collective. */
+   10 % and until the iterations beyond those that they took when new have cost as much as new ones would; a solve that
+   suffers badly makes them anew and goes on. Collective. */
 PETSC_EXTERN PetscErrorCode SaddleSetUp(Saddle saddle);
+
+/* SaddleGetMemory, SaddleSetMemory - all that earlier solves have left for later ones, as numbers that a checkpoint can
+   hold, and made again from them, with the coupling's markers and `self` where they were when the dense blocks were
+   made and the fluid's a0 that of the blocks (memory[0]; 0: there were none). Whatever a saddle keeps belongs in here,
+   or a restarted run would not have the bits of one that went on. Set is collective. */
+#define SADDLE_MEMORY (4 + MOBILITY_CACHE)
+PETSC_EXTERN PetscErrorCode SaddleGetMemory(Saddle saddle, PetscReal memory[SADDLE_MEMORY]);
+PETSC_EXTERN PetscErrorCode SaddleSetMemory(Saddle saddle, const PetscReal memory[SADDLE_MEMORY]);
 
 /* SaddleSolve - solve for w, p, sigma and the wall forces d, which hold the initial guess (p's is not used); f and g
    the right-hand sides. its, why, residual say how it went. Collective. */

@@ -1,9 +1,12 @@
 /* Self-mobility (DESIGN section 8): the marker velocity that the kernel's smoothing takes away is given back,
        U = E u + Theta (f ds),   f ds = -(Dm^T sigma) - c_b ds D4 X_new,
    Theta symmetric and non-negative, a full block a vesicle:
-       local:   Theta = (h c1/(nu ds)) t t^T
-       symbol:  Theta = F^T diag(circ dT, circ dN) F/ds, F the rotation into (tangent, normal) frames, dT and dN the
-   mobility of tangential and normal force waves on a plane membrane in steady flow, exact minus gridded. */
+       local:   Theta = (h c/(nu ds)) t t^T
+       symbol:  Theta = F^T [circ dT, circ dX; circ dX, circ dN] F/ds, F the rotation into (tangent, normal) frames, dT
+   and dN the mobility of tangential and normal force waves on a plane membrane in steady flow, exact minus gridded. c,
+   dT and dN depend on the membrane's angle alpha to the grid like c(0) + (c(pi/4) - c(0)) sin^2 2 alpha, nearly: a
+   composite kernel is narrower across a membrane along a grid line than across a diagonal; and at an angle it moves a
+   membrane across the force, dX like sin 4 alpha. c and dT also go with the markers' places in their cells. */
 #pragma once
 #include "coupling/coupling.h"
 
@@ -15,7 +18,7 @@ PETSC_EXTERN PetscErrorCode SelfMobilityCreate(Coupling coupling, PetscReal nu, 
                                                SelfMobility *self);
 PETSC_EXTERN PetscErrorCode SelfMobilityDestroy(SelfMobility *self);
 
-/* SelfMobilitySetMarkers - Theta for the coupling's markers X[2M] and a0, and the factors of
+/* SelfMobilitySetMarkers - Theta for the coupling's markers X[2M] and a0, and a Cholesky factor for
    R = (I + (c_b ds/a0) Theta D4)^-1. Every rank does the same. */
 PETSC_EXTERN PetscErrorCode SelfMobilitySetMarkers(SelfMobility self, PetscReal a0, const PetscScalar X[]);
 
@@ -31,10 +34,18 @@ PETSC_EXTERN PetscErrorCode SelfMobilityMultTheta(SelfMobility self, PetscScalar
 /* SelfMobilityBlock - Theta of one vesicle of n markers, symmetric [2n][2n]; borrowed. */
 PETSC_EXTERN const PetscReal *SelfMobilityBlock(SelfMobility self, PetscInt vesicle);
 
-/* SmoothingConstant - c1 = 1/2 INT |r| (phi*phi)(r) dr, mean over the kernel's two 1-D weights, by quadrature. */
-PETSC_EXTERN PetscErrorCode SmoothingConstant(const Kernel *kernel, PetscReal *c1);
+/* SmoothingSum - 1/2 SUM SUM |i - j| w_i w_j of n weights. */
+PETSC_EXTERN PetscReal SmoothingSum(PetscInt n, const PetscReal w[]);
 
-/* PlaneSymbols - dT[n], dN[n] for the wave numbers 2 pi q/L, q = 0 .. n/2 and mirrored, of n markers on the length L,
-   at cell size h (1/(length^-2/time ...): velocity per force density). */
-PETSC_EXTERN PetscErrorCode PlaneSymbols(const Kernel *kernel, PetscReal h, PetscReal a0, PetscReal nu, PetscInt n,
-                                         PetscReal L, PetscReal dT[], PetscReal dN[]);
+/* SmoothingConstants - c = 1/2 SUM SUM |i - j| w_i w_j, mean over sub-cell positions, w the weights summed along the
+   membrane: h c/nu is what long waves along it lose. c[0]: along a grid line (the across weights), c[1]: along a
+   diagonal, where sums lie h/sqrt(2) apart. The sum and not the integral (DESIGN's c1), because the grid's own Green's
+   function in one dimension, -|i - j| h/2, is exact at its points. */
+PETSC_EXTERN PetscErrorCode SmoothingConstants(const Kernel *kernel, PetscReal c[2]);
+
+/* PlaneSymbols - dT[n], dN[n] and dX[n] (velocity along the normal of a tangential force, and the other way round) of
+   a membrane at an angle (0 .. pi/4) to the grid for the wave numbers 2 pi q/L,
+   q = 0 .. n/2 and mirrored, of n markers on the length L, at cell size h (1/(length^-2/time ...): velocity per force
+   density). */
+PETSC_EXTERN PetscErrorCode PlaneSymbols(const Kernel *kernel, PetscReal h, PetscReal a0, PetscReal nu, PetscReal angle,
+                                         PetscInt n, PetscReal L, PetscReal dT[], PetscReal dN[], PetscReal dX[]);

@@ -1,42 +1,38 @@
-/* What a kernel takes from a plane membrane's mobility, by quadrature of its weights (DESIGN section 8). */
+/* What a kernel takes from a plane membrane's mobility, by sums over its weights (docs/accuracy.md; DESIGN section 8
+   has the mean over directions). */
 #include "coupling/selfmobility.h"
 
-#define SAMPLES 800  /* of a kernel's cell, for c1 */
-#define POSITIONS 32 /* sub-cell positions that the transforms are averaged over */
-#define WAVES 4000   /* midpoints of the wave numbers across the membrane, up to pi/h */
+#define POSITIONS 32 /* sub-cell positions that products of weights are averaged over, in each direction */
+#define TABLE 500    /* intervals of the transforms' tables, 0 to pi */
+#define WAVES 4000   /* midpoints of the wave numbers across the membrane, as far as the grid has them */
+#define MOST_DIAGONALS (2 * KERNEL_MAX_POINTS)
 
-/* Samples of one 1-D weight, phi at spacing 1/SAMPLES over its support from -3 to 3. */
-static PetscReal OneConstant(KernelWeights weights, PetscReal phi[]) {
-  const PetscInt n = 2 * 3 * SAMPLES;
-  PetscReal sum = 0, c1 = 0;
-  for (PetscInt i = 0; i < n; i++) phi[i] = 0;
-  for (PetscInt s = 0; s < SAMPLES; s++) {
-    PetscReal w[KERNEL_MAX_POINTS];
-    PetscInt first;
-    const PetscInt count = weights((s + 0.5) / SAMPLES, &first, w);
-    for (PetscInt k = 0; k < count; k++) { /* phi(x - j) at x = (s + 1/2)/SAMPLES */
-      const PetscInt at = s - (first + k) * SAMPLES + 3 * SAMPLES;
-      if (at >= 0 && at < n) phi[at] = w[k];
-    }
-  }
-  for (PetscInt i = 0; i < n; i++) sum += phi[i];
-  /* 1/2 INT INT |r - s| phi(r) phi(s) = INT F (1 - F), F the cumulative integral of phi */
-  for (PetscInt i = 0; i < n; i++) phi[i] = (i ? phi[i - 1] : 0) + phi[i] / sum;
-  for (PetscInt i = 0; i < n; i++) c1 += phi[i] * (1 - phi[i]) / SAMPLES;
-  return c1;
+PetscReal SmoothingSum(PetscInt n, const PetscReal w[]) {
+  PetscReal c = 0;
+  for (PetscInt i = 0; i < n; i++)
+    for (PetscInt j = 0; j < i; j++) c += (i - j) * w[i] * w[j];
+  return c;
 }
 
-PetscErrorCode SmoothingConstant(const Kernel *kernel, PetscReal *c1) {
-  PetscReal *phi;
+PetscErrorCode SmoothingConstants(const Kernel *kernel, PetscReal c[2]) {
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(2 * 3 * SAMPLES, &phi));
-  *c1 = 0.5 * (OneConstant(kernel->along, phi) + OneConstant(kernel->across, phi));
-  PetscCall(PetscFree(phi));
+  c[0] = c[1] = 0;
+  for (int s = 0; s < POSITIONS; s++)
+    for (int r = 0; r < POSITIONS; r++) {
+      PetscReal x[KERNEL_MAX_POINTS], y[KERNEL_MAX_POINTS], diagonal[MOST_DIAGONALS] = {0};
+      PetscInt first;
+      const PetscInt nx = kernel->along((s + 0.5) / POSITIONS, &first, x);
+      const PetscInt ny = kernel->across((r + 0.5) / POSITIONS, &first, y);
+      for (PetscInt i = 0; i < nx; i++) /* points of one diagonal are alike for a membrane along it */
+        for (PetscInt j = 0; j < ny; j++) diagonal[j - i + nx - 1] += x[i] * y[j];
+      c[0] += SmoothingSum(ny, y) / PetscSqr(POSITIONS);
+      c[1] += SmoothingSum(nx + ny - 1, diagonal) / (PETSC_SQRT2 * PetscSqr(POSITIONS)); /* h/sqrt(2) apart */
+    }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* |transform of the weights|^2 at theta = wave number times h, mean over sub-cell positions. */
-static PetscReal Power(KernelWeights weights, PetscReal theta) {
+/* |transform of the weights| at theta = wave number times h, root of the mean square over sub-cell positions. */
+static PetscReal Transform(KernelWeights weights, PetscReal theta) {
   PetscReal sum = 0;
   for (int s = 0; s < POSITIONS; s++) {
     PetscReal w[KERNEL_MAX_POINTS], re = 0, im = 0;
@@ -48,37 +44,60 @@ static PetscReal Power(KernelWeights weights, PetscReal theta) {
     }
     sum += re * re + im * im;
   }
-  return sum / POSITIONS;
+  return PetscSqrtReal(sum / POSITIONS);
 }
 
-PetscErrorCode PlaneSymbols(const Kernel *kernel, PetscReal h, PetscReal a0, PetscReal nu, PetscInt n, PetscReal L,
-                            PetscReal dT[], PetscReal dN[]) {
-  PetscReal *along, *across;
-  const PetscReal dq = PETSC_PI / (h * WAVES);
+/* The table's value at theta in [-pi, pi]. */
+static PetscReal Look(const PetscReal table[], PetscReal theta) {
+  const PetscReal at = PetscAbsReal(theta) / PETSC_PI * TABLE;
+  const PetscInt i = PetscMin((PetscInt)at, TABLE - 1);
+  return table[i] + (at - i) * (table[i + 1] - table[i]);
+}
+
+/* T_grid, N_grid and X_grid of the wave number k: the integral over q, over 2 pi, of d.W A W d' with d, d' the tangent,
+   the normal, one of each; A = (I - K~ K~^T/|K~|^2)/(a0 + nu |K~|^2), W the kernel's transforms of the two components.
+ */
+static void GridMobility(PetscReal *const table[2], PetscReal h, PetscReal a0, PetscReal nu, PetscReal angle,
+                         PetscReal k, PetscReal mobility[3]) {
+  const PetscReal c = PetscCosReal(angle), s = PetscSinReal(angle);
+  const PetscReal reach = (PETSC_PI / h - k * s) / c,
+                  dq = reach / WAVES; /* K stays within pi/h for angles up to pi/4 */
+  mobility[0] = mobility[1] = mobility[2] = 0;
+  for (PetscInt i = -WAVES; i < WAVES; i++) {
+    const PetscReal q = (i + 0.5) * dq, Kx = h * (k * c - q * s), Ky = h * (k * s + q * c);
+    const PetscReal kx = 2 / h * PetscSinReal(Kx / 2), ky = 2 / h * PetscSinReal(Ky / 2), k2 = kx * kx + ky * ky;
+    const PetscReal Wx = Look(table[0], Kx) * Look(table[1], Ky), Wy = Look(table[1], Kx) * Look(table[0], Ky);
+    /* f.(I - K~ K~^T/k2) f' = (f x K~)(f' x K~)/k2 */
+    const PetscReal tangent = Wx * c * ky - Wy * s * kx, normal = -Wx * s * ky - Wy * c * kx;
+    const PetscReal r = dq / (2 * PETSC_PI * k2 * (a0 + nu * k2));
+    mobility[0] += tangent * tangent * r;
+    mobility[1] += normal * normal * r;
+    mobility[2] += tangent * normal * r;
+  }
+}
+
+PetscErrorCode PlaneSymbols(const Kernel *kernel, PetscReal h, PetscReal a0, PetscReal nu, PetscReal angle, PetscInt n,
+                            PetscReal L, PetscReal dT[], PetscReal dN[], PetscReal dX[]) {
+  PetscReal *table[2];
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(WAVES, &along, WAVES, &across));
-  for (PetscInt i = 0; i < WAVES; i++) {
-    along[i] = Power(kernel->along, (i + 0.5) * dq * h);
-    across[i] = Power(kernel->across, (i + 0.5) * dq * h);
+  PetscCall(PetscMalloc2(TABLE + 1, &table[0], TABLE + 1, &table[1]));
+  for (PetscInt i = 0; i <= TABLE; i++) {
+    table[0][i] = Transform(kernel->along, PETSC_PI * i / TABLE);
+    table[1][i] = Transform(kernel->across, PETSC_PI * i / TABLE);
   }
   for (PetscInt m = 0; m <= n / 2; m++) {
     const PetscReal k = 2 * PETSC_PI * m / L, kappa = PetscSqrtReal(k * k + a0 / nu);
-    const PetscReal k2 = PetscSqr(2 / h * PetscSinReal(k * h / 2));
-    const PetscReal k_along = Power(kernel->along, k * h), k_across = Power(kernel->across, k * h);
-    PetscReal T = 1 / (2 * nu * (kappa + k)), N = k / (2 * nu * kappa * (kappa + k));
-    for (PetscInt i = 0; i < WAVES; i++) { /* twice the integral over q > 0, over 2 pi */
-      const PetscReal q2 = PetscSqr(2 / h * PetscSinReal((i + 0.5) * dq * h / 2)), d = k2 + q2;
-      const PetscReal r = 0.5 * (k_along * across[i] + k_across * along[i]) / (d * (a0 + nu * d)) * dq / PETSC_PI;
-      T -= r * q2;
-      N -= r * k2;
-    }
-    dT[m] = PetscMax(T, 0);
-    dN[m] = PetscMax(N, 0);
+    PetscReal grid[3];
+    GridMobility(table, h, a0, nu, angle, k, grid);
+    dT[m] = PetscMax(1 / (2 * nu * (kappa + k)) - grid[0], 0);
+    dN[m] = PetscMax(k / (2 * nu * kappa * (kappa + k)) - grid[1], 0);
+    dX[m] = -grid[2];
     if (m) {
       dT[n - m] = dT[m];
       dN[n - m] = dN[m];
+      dX[n - m] = dX[m];
     }
   }
-  PetscCall(PetscFree2(along, across));
+  PetscCall(PetscFree2(table[0], table[1]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -65,6 +65,15 @@ PETSC_EXTERN PetscErrorCode GridGradient(Grid grid, PetscReal alpha, Vec p, Pets
 /* GridGradientTranspose - q = alpha G^T w, so that the divergence is D w = -G^T w (walls at rest). */
 PETSC_EXTERN PetscErrorCode GridGradientTranspose(Grid grid, PetscReal alpha, Vec w, Vec q);
 
+/* The same two on local rows window[0] .. window[1] - 1 only; other rows are left as they are. */
+PETSC_EXTERN PetscErrorCode GridGradientRows(Grid grid, PetscReal alpha, Vec p, PetscBool add, const PetscInt window[2],
+                                             Vec w);
+PETSC_EXTERN PetscErrorCode GridGradientTransposeRows(Grid grid, PetscReal alpha, Vec w, const PetscInt window[2],
+                                                      Vec q);
+
+/* GridClearRows - zero in these rows of a velocity or a pressure. Not collective. */
+PETSC_EXTERN PetscErrorCode GridClearRows(Grid grid, const PetscInt window[2], Vec x);
+
 /* GridHelmholtzField - y = a0 w - nu (second differences of w) for one field's local arrays, homogeneous walls; y must
    not be w. With FIELD_P, a0 = 0 and nu = -1 this is L. */
 PETSC_EXTERN PetscErrorCode GridHelmholtzField(Grid grid, Field field, PetscReal a0, PetscReal nu,

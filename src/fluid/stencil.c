@@ -1,7 +1,7 @@
 /* G, G^T, H on local arrays, row by row, and their MatShells. */
 #include "fluid/grid.h"
 
-PetscErrorCode GridGradient(Grid g, PetscReal alpha, Vec p, PetscBool add, Vec w) {
+PetscErrorCode GridGradientRows(Grid g, PetscReal alpha, Vec p, PetscBool add, const PetscInt window[2], Vec w) {
   const PetscReal c = alpha / g->h;
   const PetscInt n = g->columns[FIELD_P], nu = g->columns[FIELD_U];
   const PetscScalar *pa;
@@ -12,10 +12,13 @@ PetscErrorCode GridGradient(Grid g, PetscReal alpha, Vec p, PetscBool add, Vec w
   PetscCall(VecGetArray(w, &wa));
   va = wa + GridLocalU(g);
   PetscCall(GridRows(g, FIELD_P, pa, &rows));
-  if (!add) PetscCall(PetscArrayzero(wa, GridLocalU(g) + n * g->rows[FIELD_V]));
-  for (PetscInt j = 0; j < g->rows[FIELD_P]; j++) {
+  for (PetscInt j = window[0]; j < PetscMin(window[1], g->rows[FIELD_P]); j++) {
     const PetscScalar *here = RowAt(&rows, j), *up = RowAt(&rows, j + 1);
     PetscScalar *u = wa + j * nu, *v = va + j * n;
+    if (!add) {
+      PetscCall(PetscArrayzero(u, nu));
+      if (j < g->rows[FIELD_V]) PetscCall(PetscArrayzero(v, n));
+    }
     for (PetscInt i = 0; i < n - 1; i++) u[i] += c * (here[i + 1] - here[i]);
     if (nu == n) u[n - 1] += c * (here[0] - here[n - 1]);
     if (j < g->rows[FIELD_V])
@@ -26,7 +29,14 @@ PetscErrorCode GridGradient(Grid g, PetscReal alpha, Vec p, PetscBool add, Vec w
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode GridGradientTranspose(Grid g, PetscReal alpha, Vec w, Vec q) {
+PetscErrorCode GridGradient(Grid g, PetscReal alpha, Vec p, PetscBool add, Vec w) {
+  const PetscInt all[2] = {0, g->rows[FIELD_P]};
+  PetscFunctionBeginUser;
+  PetscCall(GridGradientRows(g, alpha, p, add, all, w));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode GridGradientTransposeRows(Grid g, PetscReal alpha, Vec w, const PetscInt window[2], Vec q) {
   const PetscReal c = alpha / g->h;
   const PetscInt n = g->columns[FIELD_P], nu = g->columns[FIELD_U];
   const PetscScalar *wa;
@@ -36,7 +46,7 @@ PetscErrorCode GridGradientTranspose(Grid g, PetscReal alpha, Vec w, Vec q) {
   PetscCall(VecGetArrayRead(w, &wa));
   PetscCall(VecGetArray(q, &qa));
   PetscCall(GridRows(g, FIELD_V, wa + GridLocalU(g), &rows));
-  for (PetscInt j = 0; j < g->rows[FIELD_P]; j++) {
+  for (PetscInt j = window[0]; j < PetscMin(window[1], g->rows[FIELD_P]); j++) {
     const PetscScalar *u = wa + j * nu, *down = RowAt(&rows, j - 1), *up = RowAt(&rows, j);
     PetscScalar *out = qa + j * n;
     const PetscScalar left = nu == n ? u[n - 1] : 0, right = nu == n ? u[n - 1] : 0;
@@ -46,6 +56,29 @@ PetscErrorCode GridGradientTranspose(Grid g, PetscReal alpha, Vec w, Vec q) {
   }
   PetscCall(VecRestoreArray(q, &qa));
   PetscCall(VecRestoreArrayRead(w, &wa));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode GridGradientTranspose(Grid g, PetscReal alpha, Vec w, Vec q) {
+  const PetscInt all[2] = {0, g->rows[FIELD_P]};
+  PetscFunctionBeginUser;
+  PetscCall(GridGradientTransposeRows(g, alpha, w, all, q));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode GridClearRows(Grid g, const PetscInt window[2], Vec w) {
+  const PetscInt start[3] = {0, GridLocalU(g), 0};
+  PetscScalar *a;
+  PetscInt size;
+  PetscFunctionBeginUser;
+  PetscCall(VecGetLocalSize(w, &size));
+  PetscCall(VecGetArray(w, &a));
+  const PetscBool pressure = size == g->columns[FIELD_P] * g->rows[FIELD_P] ? PETSC_TRUE : PETSC_FALSE;
+  for (int f = pressure ? FIELD_P : FIELD_U; f <= (pressure ? FIELD_P : FIELD_V); f++) {
+    const PetscInt end = PetscMin(window[1], g->rows[f]), first = PetscMin(window[0], end);
+    PetscCall(PetscArrayzero(a + start[f] + first * g->columns[f], (end - first) * g->columns[f]));
+  }
+  PetscCall(VecRestoreArray(w, &a));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

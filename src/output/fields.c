@@ -3,30 +3,68 @@
 
 static const char *const fluid_names[3] = {"/fluid/u", "/fluid/v", "/fluid/p"};
 
+static const char *const vesicle_names[3] = {"/vesicle/markers", "/vesicle/velocity", "/vesicle/tension"};
+
+static PetscErrorCode NewFields(Output o, const char path[]) {
+  const Grid g = o->scheme->fluid->grid;
+  const Membrane m = o->scheme->membrane;
+  const Scene scene = o->scene;
+  const PetscInt cells[2] = {g->n[1], g->n[0]}, markers[2] = {m->M, 2};
+  H5File *f = &o->fields;
+  PetscFunctionBeginUser;
+  PetscCall(H5FileCreate(o->comm, path, f));
+  PetscCall(H5PutReals(f, "box", 4, scene->box.v));
+  PetscCall(H5PutInts(f, "cells", 2, g->n));
+  PetscCall(H5PutReals(f, "h", 1, &g->h));
+  PetscCall(H5PutReals(f, "nu", 1, &scene->viscosity));
+  PetscCall(H5PutReals(f, "c_b", 1, &scene->bending));
+  PetscCall(H5PutInts(f, "vesicle_start", m->vesicles + 1, m->start));
+  PetscCall(H5PutString(f, "about",
+                        "u, v: velocity (background included) at cell centres; p: pressure at cell centres, of the "
+                        "disturbance unless -flow_form total; tension k on the edge from marker k-1 to marker k"));
+  PetscCall(H5CreateSeries(f, "/time", 0, NULL));
+  for (int k = 0; k < 3; k++) PetscCall(H5CreateSeries(f, fluid_names[k], 2, cells));
+  for (int k = 0; k < 3 && m->M; k++) PetscCall(H5CreateSeries(f, vesicle_names[k], k < 2 ? 2 : 1, markers));
+  PetscCall(H5FileFlush(f));
+  PetscCall(H5FileCheck(f));
+  o->fields_open = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* run.h5 of an earlier run, cut to the frames that the checkpoint counts. A frame that was saved only because that run
+   ended goes: the run goes on. */
+static PetscErrorCode OldFields(Output o, const char path[]) {
+  H5File *f = &o->fields;
+  PetscBool failed;
+  PetscInt length;
+  PetscFunctionBeginUser;
+  PetscCall(H5FileOpen(o->comm, path, PETSC_TRUE, f));
+  PetscCall(H5FileFailed(f, &failed));
+  o->fields_open = PETSC_TRUE;
+  PetscCall(H5SeriesLength(f, "/time", &length));
+  PetscCheck(!failed && length >= o->scheduled, o->comm, PETSC_ERR_USER_INPUT,
+             "-restart %s: %s has %" PetscInt_FMT " readable frames, the checkpoint counts %" PetscInt_FMT
+             "; allowed: run.h5 as the run left it, or a new -output_dir",
+             o->scene->restart, path, length, o->scheduled);
+  o->frames = o->scheduled;
+  PetscCall(H5TruncateSeries(f, "/time", o->frames)); /* the readers' count of frames goes first */
+  PetscCall(H5FileFlush(f));
+  for (int k = 0; k < 3; k++) PetscCall(H5TruncateSeries(f, fluid_names[k], o->frames));
+  for (int k = 0; k < 3 && o->scheme->membrane->M; k++) PetscCall(H5TruncateSeries(f, vesicle_names[k], o->frames));
+  PetscCall(H5FileFlush(f));
+  PetscCall(PetscMalloc1(o->frames, &o->times));
+  for (PetscInt t = 0; t < o->frames; t++) PetscCall(H5ReadArray(f, "/time", t, 1, &o->times[t]));
+  PetscCall(H5FileCheck(f));
+  PetscCall(OutputXdmf(o));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode FieldsCreate(Output o) {
   char path[PETSC_MAX_PATH_LEN];
   const Grid g = o->scheme->fluid->grid;
-  const Scene scene = o->scene;
-  const PetscInt cells[2] = {g->n[1], g->n[0]}, markers[2] = {o->scheme->membrane->M, 2};
   PetscFunctionBeginUser;
   PetscCall(OutputPath(o, "run.h5", path));
-  PetscCall(H5Create(o->comm, path, &o->fields));
-  PetscCall(H5PutReals(o->fields, "box", 4, scene->box.v));
-  PetscCall(H5PutInts(o->fields, "cells", 2, g->n));
-  PetscCall(H5PutReals(o->fields, "h", 1, &g->h));
-  PetscCall(H5PutReals(o->fields, "nu", 1, &scene->viscosity));
-  PetscCall(H5PutReals(o->fields, "c_b", 1, &scene->bending));
-  PetscCall(H5PutInts(o->fields, "vesicle_start", o->scheme->membrane->vesicles + 1, o->scheme->membrane->start));
-  PetscCall(H5PutString(o->fields, "about",
-                        "u, v: velocity (background included) at cell centres; p: pressure at cell centres, of the "
-                        "disturbance unless -flow_form total; tension k on the edge from marker k-1 to marker k"));
-  PetscCall(H5CreateSeries(o->fields, "/time", 0, NULL, 0));
-  for (int f = 0; f < 3; f++) PetscCall(H5CreateSeries(o->fields, fluid_names[f], 2, cells, g->block));
-  if (markers[0]) {
-    PetscCall(H5CreateSeries(o->fields, "/vesicle/markers", 2, markers, 0));
-    PetscCall(H5CreateSeries(o->fields, "/vesicle/velocity", 2, markers, 0));
-    PetscCall(H5CreateSeries(o->fields, "/vesicle/tension", 1, markers, 0));
-  }
+  PetscCall(o->go_on ? OldFields(o, path) : NewFields(o, path));
   PetscCall(PetscMalloc1(g->n[0] * g->rows[FIELD_P], &o->cells));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -70,45 +108,44 @@ static PetscErrorCode VelocityAtCells(Output o, int c, const PetscScalar w[]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode WriteMarkers(Output o, const char name[], Vec x) {
-  const PetscScalar *a;
-  PetscFunctionBeginUser;
-  PetscCall(VecGetArrayRead(x, &a));
-  PetscCall(H5AppendArray(o->comm, o->fields, name, o->frames, a));
-  PetscCall(VecRestoreArrayRead(x, &a));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode OutputFields(Output o) {
+static PetscErrorCode WriteFrame(Output o) {
   const State *q = &o->scheme->state;
   const Grid g = o->scheme->fluid->grid;
+  const PetscInt M = o->scheme->membrane->M;
+  const Vec marker[3] = {q->X, q->U, q->sigma};
+  H5File *f = &o->fields;
   const PetscScalar *a;
-  char path[PETSC_MAX_PATH_LEN];
   PetscFunctionBeginUser;
-  PetscCall(PhaseBegin(PHASE_OUTPUT));
-  PetscCall(OutputPath(o, "run.h5", path));
-  PetscCall(H5AppendArray(o->comm, o->fields, "/time", o->frames, &q->t));
   PetscCall(VecGetArrayRead(q->w, &a));
   for (int c = 0; c < 2; c++) {
     PetscCall(VelocityAtCells(o, c, a));
-    PetscCall(H5AppendRows(o->fields, fluid_names[c], o->frames, g->first, g->rows[FIELD_P], o->cells));
+    PetscCall(H5WriteField(f, fluid_names[c], o->frames, g, FIELD_P, o->cells));
   }
   PetscCall(VecRestoreArrayRead(q->w, &a));
   PetscCall(VecGetArrayRead(q->p, &a));
-  PetscCall(H5AppendRows(o->fields, fluid_names[2], o->frames, g->first, g->rows[FIELD_P], a));
+  PetscCall(H5WriteField(f, fluid_names[2], o->frames, g, FIELD_P, a));
   PetscCall(VecRestoreArrayRead(q->p, &a));
-  if (o->scheme->membrane->M) {
-    PetscCall(WriteMarkers(o, "/vesicle/markers", q->X));
-    PetscCall(WriteMarkers(o, "/vesicle/velocity", q->U));
-    PetscCall(WriteMarkers(o, "/vesicle/tension", q->sigma));
+  for (int k = 0; k < 3 && M; k++) {
+    PetscCall(VecGetArrayRead(marker[k], &a));
+    PetscCall(H5WriteArray(f, vesicle_names[k], o->frames, k < 2 ? 2 * M : M, a));
+    PetscCall(VecRestoreArrayRead(marker[k], &a));
   }
-  H5Check(H5Fflush(o->fields, H5F_SCOPE_GLOBAL), o->comm, path);
+  PetscCall(H5FileFlush(f));
+  PetscCall(H5WriteArray(f, "/time", o->frames, 1, &q->t)); /* last: readers count the frames by it */
+  PetscCall(H5FileFlush(f));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode OutputFields(Output o, PetscBool scheduled) {
+  PetscFunctionBeginUser;
+  PetscCall(PhaseBegin(PHASE_OUTPUT));
+  PetscCall(WriteFrame(o));
+  PetscCall(H5FileCheck(&o->fields));
   o->frames++;
-  if (!o->rank) {
-    PetscCall(PetscRealloc((size_t)o->frames * sizeof(PetscReal), &o->times));
-    o->times[o->frames - 1] = q->t;
-    if (o->series) fflush(o->series);
-  }
+  if (scheduled) o->scheduled = o->frames;
+  PetscCall(PetscRealloc((size_t)o->frames * sizeof(PetscReal), &o->times));
+  o->times[o->frames - 1] = o->scheme->state.t;
+  if (o->series) fflush(o->series);
   PetscCall(OutputXdmf(o));
   PetscCall(PhaseEnd());
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -167,7 +204,8 @@ static void XdmfVesicle(Output o, FILE *f, PetscInt t, PetscInt v) {
   fprintf(f, "</Attribute></Grid>\n");
 }
 
-static void WriteXdmf(Output o, FILE *f) {
+static PetscErrorCode WriteXdmf(Output o, FILE *f) {
+  PetscFunctionBeginUser;
   fprintf(f, "<?xml version=\"1.0\"?>\n<Xdmf Version=\"2.0\"><Domain>\n<Grid Name=\"run\" GridType=\"Collection\" "
              "CollectionType=\"Temporal\">\n");
   for (PetscInt t = 0; t < o->frames; t++) {
@@ -178,15 +216,11 @@ static void WriteXdmf(Output o, FILE *f) {
     fprintf(f, "</Grid>\n");
   }
   fprintf(f, "</Grid>\n</Domain></Xdmf>\n");
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode OutputXdmf(Output o) {
-  char path[PETSC_MAX_PATH_LEN];
-  FILE *f = NULL;
   PetscFunctionBeginUser;
-  PetscCall(OutputPath(o, "run.xmf", path));
-  if (!o->rank) f = fopen(path, "w");
-  if (f) WriteXdmf(o, f);
-  PetscCall(OutputCheckFile(o, f, path));
+  PetscCall(OutputWriteText(o, "run.xmf", WriteXdmf));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

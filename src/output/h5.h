@@ -1,31 +1,57 @@
-/* Small layer over parallel HDF5: files that all ranks open, arrays that one rank writes, fields that all write. */
+/* Small layer over HDF5: rank 0 owns every file, the others send it their rows. So a full disk or a broken file is one
+   rank's to find, and no rank waits for another that has failed.
+
+   An error is kept in the file's `failed` and makes every later call on it do nothing: H5FileCheck tells all ranks. */
 #pragma once
 #include "fluid/grid.h"
 #include <hdf5.h>
 
-/* H5Check - stop with one line naming the file when an HDF5 call fails (full disk, vanished folder). */
-#define H5Check(call, comm, path)                                                                                      \
-  PetscCheck((call) >= 0, comm, PETSC_ERR_USER_INPUT,                                                                  \
-             "%s: cannot be written; allowed: a folder with space that can be written", path)
+typedef struct {
+  MPI_Comm comm;
+  PetscMPIInt rank;
+  hid_t id;         /* rank 0; -1 elsewhere and when not open */
+  PetscBool failed; /* rank 0 */
+  char path[PETSC_MAX_PATH_LEN];
+} H5File;
 
-/* H5Create - new file, truncated, open on all ranks. H5Close flushes it. Collective. */
-PETSC_EXTERN PetscErrorCode H5Create(MPI_Comm comm, const char path[], hid_t *file);
-PETSC_EXTERN PetscErrorCode H5Close(MPI_Comm comm, const char path[], hid_t *file);
+/* H5FileCreate - new file, truncated. H5FileOpen - existing one, to read or to write on. Collective. */
+PETSC_EXTERN PetscErrorCode H5FileCreate(MPI_Comm comm, const char path[], H5File *file);
+PETSC_EXTERN PetscErrorCode H5FileOpen(MPI_Comm comm, const char path[], PetscBool write, H5File *file);
 
-/* Attributes of the root group. Collective. */
-PETSC_EXTERN PetscErrorCode H5PutReals(hid_t file, const char name[], PetscInt n, const PetscReal values[]);
-PETSC_EXTERN PetscErrorCode H5PutInts(hid_t file, const char name[], PetscInt n, const PetscInt values[]);
-PETSC_EXTERN PetscErrorCode H5PutString(hid_t file, const char name[], const char value[]);
+/* H5FileFlush - hand everything to the system. H5FileClose - the same, and close; also after a failure. */
+PETSC_EXTERN PetscErrorCode H5FileFlush(H5File *file);
+PETSC_EXTERN PetscErrorCode H5FileClose(H5File *file);
 
-/* H5CreateSeries - dataset [0.., dims...] that grows along its first index; ndims <= 2 further ones. chunk_rows: rows
-   of a chunk along dims[0] (0: all). */
-PETSC_EXTERN PetscErrorCode H5CreateSeries(hid_t file, const char name[], int ndims, const PetscInt dims[],
-                                           PetscInt chunk_rows);
+/* H5FileFailed - whether any call so far has failed; the same on every rank. H5FileCheck - close the
+   file and stop with one line that it cannot be written. Collective. */
+PETSC_EXTERN PetscErrorCode H5FileFailed(const H5File *file, PetscBool *failed);
+PETSC_EXTERN PetscErrorCode H5FileCheck(H5File *file);
 
-/* H5AppendArray - write entry `index` of a series from rank 0's array (the whole entry). Collective. */
-PETSC_EXTERN PetscErrorCode H5AppendArray(MPI_Comm comm, hid_t file, const char name[], PetscInt index,
-                                          const PetscReal values[]);
+/* Attributes of the root group: rank 0's values are written; what is read goes to every rank. A string that is not
+   there is left empty. Reading is collective. */
+PETSC_EXTERN PetscErrorCode H5PutReals(H5File *file, const char name[], PetscInt n, const PetscReal values[]);
+PETSC_EXTERN PetscErrorCode H5PutInts(H5File *file, const char name[], PetscInt n, const PetscInt values[]);
+PETSC_EXTERN PetscErrorCode H5PutString(H5File *file, const char name[], const char value[]);
+PETSC_EXTERN PetscErrorCode H5GetReals(H5File *file, const char name[], PetscInt n, PetscReal values[]);
+PETSC_EXTERN PetscErrorCode H5GetInts(H5File *file, const char name[], PetscInt n, PetscInt values[]);
+PETSC_EXTERN PetscErrorCode H5GetString(H5File *file, const char name[], size_t length, char value[]);
 
-/* H5AppendRows - write entry `index` of a series [T,rows,columns], each rank its rows first .. first + rows - 1. */
-PETSC_EXTERN PetscErrorCode H5AppendRows(hid_t file, const char name[], PetscInt index, PetscInt first, PetscInt rows,
+/* H5CreateSeries - dataset [0.., dims...] that grows along its first index; ndims <= 2 further ones. */
+PETSC_EXTERN PetscErrorCode H5CreateSeries(H5File *file, const char name[], int ndims, const PetscInt dims[]);
+
+/* H5SeriesLength - entries of a series. H5TruncateSeries - drop the entries from `length` on. */
+PETSC_EXTERN PetscErrorCode H5SeriesLength(H5File *file, const char name[], PetscInt *length);
+PETSC_EXTERN PetscErrorCode H5TruncateSeries(H5File *file, const char name[], PetscInt length);
+
+/* H5WriteArray, H5ReadArray - entry `index` of a series, n values: rank 0's array is written; every rank gets what is
+   read. Writing entry `length` makes the series longer. */
+PETSC_EXTERN PetscErrorCode H5WriteArray(H5File *file, const char name[], PetscInt index, PetscInt n,
                                          const PetscReal values[]);
+PETSC_EXTERN PetscErrorCode H5ReadArray(H5File *file, const char name[], PetscInt index, PetscInt n,
+                                        PetscReal values[]);
+
+/* H5WriteField, H5ReadField - the same for a field of the grid, each rank its own rows of it. Collective. */
+PETSC_EXTERN PetscErrorCode H5WriteField(H5File *file, const char name[], PetscInt index, Grid grid, Field field,
+                                         const PetscScalar values[]);
+PETSC_EXTERN PetscErrorCode H5ReadField(H5File *file, const char name[], PetscInt index, Grid grid, Field field,
+                                        PetscScalar values[]);

@@ -11,16 +11,25 @@ struct _p_Output {
   Scheme scheme; /* borrowed */
   char folder[PETSC_MAX_PATH_LEN];
   FILE *series;                  /* rank 0 */
-  hid_t fields;                  /* run.h5 */
+  H5File fields;                 /* run.h5 */
+  PetscBool fields_open;         /* on every rank */
+  PetscBool go_on;               /* both files go on after the checkpoint of -restart */
   PetscInt frames;               /* saved times so far */
-  PetscReal *times;              /* of the saved frames, rank 0 */
+  PetscInt scheduled;            /* of them those at multiples of -output_every, the first included */
+  PetscReal *times;              /* of the saved frames */
   PetscScalar *cells;            /* one cell-centred field, this rank's rows */
   PetscReal last[24];            /* the last row of series.csv, in the order of SeriesColumns */
+  char *row;                     /* the same with all columns, as text */
+  const char *reason;            /* why the run ended */
+  PetscInt saved_step;           /* of the newest checkpoint.h5 that this run wrote or started from; -1 none */
+  PetscReal checkpoint_seconds;  /* longest that writing one has taken */
   PetscLogDouble start, printed; /* wall time at the start, at the last progress line */
   PetscInt total_solves, total_tension, total_bending, total_coupled;
 };
 
-/* OutputCreate - make the folder, open series.csv and run.h5, write resolved.opts. Collective. */
+/* OutputCreate - make the folder, open series.csv and run.h5, write resolved.opts. The folder may hold results already
+   with -output_overwrite only, or when -restart names a checkpoint in it: then (after RestartRead) both files go on
+   after the checkpoint's step. Collective. */
 PETSC_EXTERN PetscErrorCode OutputCreate(Scene scene, Scheme scheme, Output *output);
 
 /* OutputDestroy - close every file. Collective. */
@@ -29,20 +38,33 @@ PETSC_EXTERN PetscErrorCode OutputDestroy(Output *output);
 /* OutputPath - name of a file in the folder. */
 PETSC_EXTERN PetscErrorCode OutputPath(Output output, const char file[], char path[PETSC_MAX_PATH_LEN]);
 
-/* OutputCheckFile - stop every rank with one line when rank 0 could not write a file (f NULL or closing it fails, as on
-   a full disk). Collective; the other ranks pass NULL. */
-PETSC_EXTERN PetscErrorCode OutputCheckFile(Output output, FILE *f, const char path[]);
+/* OutputWriteText - write a text file on rank 0 under a temporary name and rename it; stops every rank with one line
+   when that fails. Collective. */
+PETSC_EXTERN PetscErrorCode OutputWriteText(Output output, const char file[], PetscErrorCode (*write)(Output, FILE *));
+
+/* OutputCheck - stop every rank with one line when rank 0 could not write a file. Collective. */
+PETSC_EXTERN PetscErrorCode OutputCheck(Output output, PetscBool written, const char path[]);
+
+/* OutputSync - 0 when all of a file is on the disk. Rank 0's. */
+PETSC_EXTERN int OutputSync(const char path[]);
 
 /* OutputSeries - add the scheme's state and last step to series.csv. Collective. */
 PETSC_EXTERN PetscErrorCode OutputSeries(Output output);
 
-/* OutputFields - add the present fields and markers to run.h5 and run.xmf. Collective. */
-PETSC_EXTERN PetscErrorCode OutputFields(Output output);
+/* OutputFields - add the present fields and markers to run.h5 and run.xmf; scheduled: a saved time of -output_every,
+   not only the end of this run. Collective. */
+PETSC_EXTERN PetscErrorCode OutputFields(Output output, PetscBool scheduled);
 
-/* OutputCheckpoint - write checkpoint.h5: to a temporary name, then renamed. Collective. */
+/* OutputNextTime - the first multiple of -output_every after the present time. */
+PETSC_EXTERN PetscReal OutputNextTime(Output output);
+
+/* OutputCheckpoint - write checkpoint.h5: to a temporary name, with a checksum at its end, all of it and of series.csv
+   and run.h5 on the disk, then renamed. The ones before it become checkpoint_1.h5 and so on. Does nothing when the
+   present step has its checkpoint. Collective. */
 PETSC_EXTERN PetscErrorCode OutputCheckpoint(Output output);
 
-/* OutputSummary - write summary.json; reason: why the run ended ("finished", "steady", or the failure). Collective. */
+/* OutputSummary - write summary.json; reason: why the run ended ("finished", "steady", "stopped", or the failure).
+   Collective. */
 PETSC_EXTERN PetscErrorCode OutputSummary(Output output, const char reason[]);
 
 /* OutputProgress - a line with step, time, percent and expected time left, at most every few seconds unless `force`. */
@@ -51,11 +73,31 @@ PETSC_EXTERN PetscErrorCode OutputProgress(Output output, PetscBool force);
 /* OutputFinalTable - the summary that a run ends with, on the terminal. */
 PETSC_EXTERN PetscErrorCode OutputFinalTable(Output output, const char reason[]);
 
-/* Parts of OutputCreate, one a file. */
-PETSC_EXTERN PetscErrorCode SeriesCreate(Output output);
+/* Parts of OutputCreate. SeriesPrepare - the new series.csv, or the rows up to the checkpoint's step, under a temporary
+   name. FieldsCreate - run.h5, new or cut to the checkpoint's frames. SeriesOpen - series.csv takes its name. So
+   nothing of an earlier run is changed before all of it has been found good. */
+PETSC_EXTERN PetscErrorCode SeriesPrepare(Output output);
 PETSC_EXTERN PetscErrorCode FieldsCreate(Output output);
-PETSC_EXTERN PetscErrorCode OutputResolvedOptions(Output output);
+PETSC_EXTERN PetscErrorCode SeriesOpen(Output output);
 PETSC_EXTERN PetscErrorCode OutputXdmf(Output output);
+
+/* CheckpointAdopt - the checkpoint that -restart names in the folder becomes its newest: later ones belong to steps
+   that are taken anew. */
+PETSC_EXTERN PetscErrorCode CheckpointAdopt(Output output);
+
+/* RestartRead - put the scheme into the state of -restart's checkpoint, and output's counts to where they were. Stops
+   with one line when the checkpoint is missing, damaged, of another format or of another scene. Collective. */
+PETSC_EXTERN PetscErrorCode RestartRead(Output output);
+
+/* ChecksumOfFile - CRC-32 of the file up to its last `tail` bytes, which are copied to `end`; false when it cannot be
+   read or is shorter. Rank 0's. */
+#define CHECKPOINT_FORMAT 2
+#define CHECKPOINT_TAIL "petves checkpoint, crc32 %08x\n"
+#define CHECKPOINT_TAIL_LENGTH 34
+PETSC_EXTERN PetscBool ChecksumOfFile(const char path[], long tail, unsigned *crc, char *end);
+
+/* Room for a row of series.csv: 32 vesicles, 24 characters a number. */
+#define SERIES_ROW_LENGTH 16384
 
 /* Columns of series.csv, in order; NULL past the last. */
 PETSC_EXTERN const char *const SeriesColumns[];

@@ -14,23 +14,79 @@ static const int per_vesicle[] = {COLUMN_BENDING,      COLUMN_AREA,       COLUMN
                                   COLUMN_INCLINATION,  COLUMN_FREQUENCY};
 #define PER_VESICLE ((int)(sizeof(per_vesicle) / sizeof(per_vesicle[0])))
 
-PetscErrorCode SeriesCreate(Output o) {
-  char path[PETSC_MAX_PATH_LEN];
+static PetscErrorCode Header(Output o, char line[], size_t length) {
   const PetscInt vesicles = o->scheme->membrane->vesicles;
-  PetscMPIInt failed = 0;
+  size_t used = 0;
+  PetscFunctionBeginUser;
+  for (int c = 0; c < COLUMN_COUNT; c++, used = strlen(line))
+    PetscCall(PetscSNPrintf(line + used, length - used, "%s%s", c ? "," : "", SeriesColumns[c]));
+  for (PetscInt v = 1; v <= vesicles && vesicles > 1; v++)
+    for (int c = 0; c < PER_VESICLE; c++, used = strlen(line))
+      PetscCall(PetscSNPrintf(line + used, length - used, ",%s_%" PetscInt_FMT, SeriesColumns[per_vesicle[c]], v));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* series.csv of an earlier run up to the row of `step`, under a temporary name; what is wrong with it, or NULL. */
+static const char *CopyRows(const char path[], const char temporary[], const char header[], PetscInt step) {
+  FILE *in = fopen(path, "r"), *out = in ? fopen(temporary, "w") : NULL;
+  char *line = NULL;
+  const char *wrong = !in ? "cannot be read" : (!out ? "cannot be written" : NULL);
+  size_t room = 0;
+  PetscInt last = -1;
+  for (PetscInt n = 0; !wrong && last < step; n++) {
+    const ssize_t length = getline(&line, &room, in);
+    if (length <= 0 || line[length - 1] != '\n')
+      wrong = "ends before the checkpoint's step";
+    else if (!n && (strncmp(line, header, strlen(header)) || (size_t)length != strlen(header) + 1))
+      wrong = "has other columns";
+    else if (n && atol(line) > step)
+      wrong = "lacks the checkpoint's step";
+    else if (fputs(line, out) < 0)
+      wrong = "cannot be written";
+    if (n) last = wrong ? last : (PetscInt)atol(line);
+  }
+  free(line);
+  if (in) fclose(in);
+  if (out && fclose(out) && !wrong) wrong = "cannot be written";
+  if (!wrong && OutputSync(temporary)) wrong = "cannot be written";
+  if (wrong) (void)remove(temporary);
+  return wrong;
+}
+
+PetscErrorCode SeriesPrepare(Output o) {
+  char path[PETSC_MAX_PATH_LEN], temporary[PETSC_MAX_PATH_LEN], wrong[64] = "", *header;
+  const PetscBool row = *o->scene->restart && !o->go_on ? PETSC_TRUE : PETSC_FALSE;
+  PetscBool written = PETSC_TRUE;
   PetscFunctionBeginUser;
   PetscCall(OutputPath(o, "series.csv", path));
-  if (!o->rank) {
-    o->series = fopen(path, "w");
-    failed = !o->series;
-    for (int c = 0; c < COLUMN_COUNT && !failed; c++) fprintf(o->series, "%s%s", c ? "," : "", SeriesColumns[c]);
-    for (PetscInt v = 1; v <= vesicles && vesicles > 1 && !failed; v++)
-      for (int c = 0; c < PER_VESICLE; c++) fprintf(o->series, ",%s_%" PetscInt_FMT, SeriesColumns[per_vesicle[c]], v);
-    if (!failed) fprintf(o->series, "\n");
+  PetscCall(OutputPath(o, "series.csv.tmp", temporary));
+  if (!o->row) PetscCall(PetscCalloc1(SERIES_ROW_LENGTH, &o->row));
+  PetscCall(PetscCalloc1(SERIES_ROW_LENGTH, &header));
+  PetscCall(Header(o, header, SERIES_ROW_LENGTH));
+  if (!o->rank && o->go_on) {
+    const char *text = CopyRows(path, temporary, header, o->scheme->state.step);
+    if (text) PetscCall(PetscStrncpy(wrong, text, sizeof(wrong)));
+  } else if (!o->rank) {
+    FILE *f = fopen(temporary, "w");
+    if (f) fprintf(f, row ? "%s\n%s\n" : "%s\n", header, o->row);
+    written = f && !fclose(f) ? PETSC_TRUE : PETSC_FALSE;
   }
-  PetscCallMPI(MPI_Bcast(&failed, 1, MPI_INT, 0, o->comm));
-  PetscCheck(!failed, o->comm, PETSC_ERR_USER_INPUT,
-             "-output_dir %s: series.csv cannot be written; allowed: a folder that can be written", o->folder);
+  PetscCall(PetscFree(header));
+  PetscCallMPI(MPI_Bcast(wrong, sizeof(wrong), MPI_CHAR, 0, o->comm));
+  PetscCheck(!*wrong, o->comm, PETSC_ERR_USER_INPUT,
+             "-restart %s: %s %s (step %" PetscInt_FMT "); allowed: the file as the run left it, or a new -output_dir",
+             o->scene->restart, path, wrong, o->scheme->state.step);
+  PetscCall(OutputCheck(o, written, path));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SeriesOpen(Output o) {
+  char path[PETSC_MAX_PATH_LEN], temporary[PETSC_MAX_PATH_LEN];
+  PetscFunctionBeginUser;
+  PetscCall(OutputPath(o, "series.csv", path));
+  PetscCall(OutputPath(o, "series.csv.tmp", temporary));
+  if (!o->rank && !rename(temporary, path)) o->series = fopen(path, "a");
+  PetscCall(OutputCheck(o, o->series ? PETSC_TRUE : PETSC_FALSE, path));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -66,11 +122,15 @@ static void Combine(PetscInt vesicles, const PetscReal one[], PetscReal all[]) {
   for (int c = 0; c < 2; c++) all[mean[c]] += one[mean[c]] / vesicles;
 }
 
-static void PrintNumber(FILE *file, PetscReal x, PetscBool first) {
+static PetscErrorCode AddNumber(char line[], size_t *used, PetscReal x) {
+  const char *comma = *used ? "," : "";
+  PetscFunctionBeginUser;
   if (PetscIsNanReal(x))
-    fprintf(file, "%s", first ? "" : ",");
+    *used += (size_t)snprintf(line + *used, SERIES_ROW_LENGTH - *used, "%s", comma);
   else
-    fprintf(file, "%s%.17g", first ? "" : ",", (double)x);
+    *used += (size_t)snprintf(line + *used, SERIES_ROW_LENGTH - *used, "%s%.17g", comma, (double)x);
+  PetscCheck(*used < SERIES_ROW_LENGTH, PETSC_COMM_SELF, PETSC_ERR_PLIB, "a row of series.csv is too long");
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode OutputSeries(Output o) {
@@ -78,6 +138,7 @@ PetscErrorCode OutputSeries(Output o) {
   const StepReport *r = &s->report;
   const PetscInt vesicles = s->membrane->vesicles;
   PetscReal *row = o->last, *each;
+  size_t used = 0;
   const PetscScalar *X, *U;
   PetscFunctionBeginUser;
   PetscCall(PhaseBegin(PHASE_OUTPUT));
@@ -103,10 +164,10 @@ PetscErrorCode OutputSeries(Output o) {
   row[COLUMN_FREQUENCY] = vesicles ? each[COLUMN_FREQUENCY] : NAN;
   PetscCall(VecRestoreArrayRead(s->state.U, &U));
   PetscCall(VecRestoreArrayRead(s->state.X, &X));
-  for (int c = 0; c < COLUMN_COUNT && o->series; c++) PrintNumber(o->series, row[c], !c ? PETSC_TRUE : PETSC_FALSE);
-  for (PetscInt v = 0; v < vesicles && vesicles > 1 && o->series; v++)
-    for (int c = 0; c < PER_VESICLE; c++) PrintNumber(o->series, each[v * COLUMN_COUNT + per_vesicle[c]], PETSC_FALSE);
-  if (o->series) fprintf(o->series, "\n");
+  for (int c = 0; c < COLUMN_COUNT; c++) PetscCall(AddNumber(o->row, &used, row[c]));
+  for (PetscInt v = 0; v < vesicles && vesicles > 1; v++)
+    for (int c = 0; c < PER_VESICLE; c++) PetscCall(AddNumber(o->row, &used, each[v * COLUMN_COUNT + per_vesicle[c]]));
+  if (o->series) fprintf(o->series, "%s\n", o->row);
   PetscCall(PetscFree(each));
   o->total_solves += r->solves;
   o->total_tension += r->tension_its;

@@ -35,12 +35,15 @@ static void PrintVersions(FILE *f) {
           release);
 }
 
-static void WriteSummary(Output o, FILE *f, const char reason[], PetscMPIInt ranks) {
+static PetscErrorCode WriteSummary(Output o, FILE *f) {
+  PetscMPIInt ranks;
   PetscLogDouble now;
   struct rusage usage;
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_size(o->comm, &ranks));
   (void)PetscTime(&now);
   fprintf(f, "{\n  \"reason\": ");
-  PrintString(f, reason);
+  PrintString(f, o->reason);
   fprintf(f, ",\n  \"last\": {");
   for (int c = 0; c < COLUMN_COUNT; c++) {
     fprintf(f, "%s\"%s\": ", c ? ", " : "", SeriesColumns[c]);
@@ -62,24 +65,14 @@ static void WriteSummary(Output o, FILE *f, const char reason[], PetscMPIInt ran
           (int)o->scene->cells.v[0], (int)o->scene->cells.v[1], ranks);
   PrintVersions(f);
   fprintf(f, "  \"git_commit\": \"%s\"\n}\n", PETVES_COMMIT);
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode OutputSummary(Output o, const char reason[]) {
-  char path[PETSC_MAX_PATH_LEN], temporary[PETSC_MAX_PATH_LEN];
-  PetscMPIInt ranks, failed;
-  FILE *f = NULL;
   PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_size(o->comm, &ranks));
-  PetscCall(OutputPath(o, "summary.json", path));
-  PetscCall(OutputPath(o, "summary.json.tmp", temporary));
   if (o->series) fflush(o->series);
-  if (!o->rank) f = fopen(temporary, "w");
-  if (f) WriteSummary(o, f, reason, ranks);
-  PetscCall(OutputCheckFile(o, f, temporary));
-  failed = !o->rank && rename(temporary, path);
-  PetscCallMPI(MPI_Bcast(&failed, 1, MPI_INT, 0, o->comm));
-  PetscCheck(!failed, o->comm, PETSC_ERR_USER_INPUT, "%s: cannot be written; allowed: a folder that can be written",
-             path);
+  o->reason = reason;
+  PetscCall(OutputWriteText(o, "summary.json", WriteSummary));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -42,6 +42,24 @@ PetscReal CurveLength(const Curve *c) {
   return (4 * sum[1] - sum[0]) / 3;
 }
 
+PetscReal CurveArea(const Curve *c) {
+  /* Richardson on polygons, error h^4; about the first point */
+  PetscReal sum[2] = {0, 0};
+  for (int level = 0; level < 2; level++) {
+    const PetscInt n = CURVE_SAMPLES << level;
+    PetscReal about[2], last[2], X[2];
+    CurveEvaluate(c, 0, about);
+    CurveEvaluate(c, 0, last);
+    for (PetscInt i = 1; i <= n; i++) {
+      CurveEvaluate(c, (PetscReal)i / n, X);
+      sum[level] += 0.5 * ((last[0] - about[0]) * (X[1] - about[1]) - (X[0] - about[0]) * (last[1] - about[1]));
+      last[0] = X[0];
+      last[1] = X[1];
+    }
+  }
+  return (4 * sum[1] - sum[0]) / 3;
+}
+
 /* Cumulative chord length at the points of parameters t[0..M]; returns the total. */
 static PetscReal Chords(const Curve *c, PetscInt M, const PetscReal t[], PetscReal s[], PetscReal X[]) {
   s[0] = 0;

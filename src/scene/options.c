@@ -62,8 +62,15 @@ static const Option table[] = {
   {"-fftw_plan", OPT_ENUM, AT(fftw_plan), "estimate", "estimate|measure|patient", "effort that FFTW spends on planning; estimate gives the same bits every run"},
   {"-fftw_wisdom", OPT_PATH, AT(fftw_wisdom), "", "", "file of FFTW's measurements: read if it is there, written when a run adds to it"},
   {"-output_dir", OPT_PATH, AT(output_dir), "out/run", "", "folder of every output file"},
+  {"-output_overwrite", OPT_BOOL, AT(overwrite), "false", "true|false", "replace the results that -output_dir holds already"},
   {"-output_every", OPT_REAL, AT(output_every), "0.1", ">0", "time between saved fields"},
   {"-checkpoint_every", OPT_INT, AT(checkpoint_every), "100", ">=0", "steps between checkpoints; 0 writes one at the end only"},
+  {"-checkpoint_keep", OPT_INT, AT(checkpoint_keep), "2", "[1,100]", "checkpoints kept: checkpoint.h5, the one before it checkpoint_1.h5, and so on"},
+  {"-restart", OPT_PATH, AT(restart), "", "", "go on from this checkpoint, in its folder or in a new -output_dir"},
+  {"-time_wall_limit", OPT_REAL, AT(wall_limit), "0", ">=0", "stop with a checkpoint before this much wall time has passed; 0 never (seconds)"},
+  {"-limit_edge_ratio", OPT_REAL, AT(limit_edge_ratio), "5", ">=0", "stop when a vesicle's longest edge is more than this many times its shortest; 0 no limit"},
+  {"-limit_area_error", OPT_REAL, AT(limit_area_error), "0.2", ">=0", "stop when a vesicle's area is off by more than this part of its first; 0 no limit"},
+  {"-limit_length_error", OPT_REAL, AT(limit_length_error), "0.2", ">=0", "stop when a vesicle's length is off by more than this part of its first; 0 no limit"},
   {"-view", OPT_BOOL, AT(view), "false", "true|false", "print the model in force and the solvers"},
   {"-allow_unused_options", OPT_BOOL, AT(allow_unused), "false", "true|false", "go on when an option is misspelt or unused"},
 };
@@ -225,6 +232,30 @@ const char *SceneOptionName(PetscInt i) {
   return i < TABLE_SIZE ? table[i].name : NULL;
 }
 
+PetscBool SceneOptionMayChange(const char name[]) {
+  const char *const free[] = {"-time_end",
+                              "-time_step",
+                              "-time_adapt_tol",
+                              "-time_adapt_max_move",
+                              "-time_steady_tol",
+                              "-time_wall_limit",
+                              "-helmholtz_type",
+                              "-poisson_type",
+                              "-fftw_plan",
+                              "-mobility_type",
+                              "-vesicle_file",
+                              "-vesicle_allow_close_markers",
+                              "-restart",
+                              "-view",
+                              "-allow_unused_options"};
+  const char *const groups[] = {"-output_", "-checkpoint_", "-limit_"};
+  for (size_t i = 0; i < sizeof(free) / sizeof(free[0]); i++)
+    if (!strcmp(name, free[i])) return PETSC_TRUE;
+  for (size_t i = 0; i < sizeof(groups) / sizeof(groups[0]); i++)
+    if (!strncmp(name, groups[i], strlen(groups[i]))) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
 PetscErrorCode SceneOptionValue(Scene scene, PetscInt i, char value[], size_t length) {
   const Option *o = &table[i];
   const void *member = Member(scene, o);
@@ -276,6 +307,8 @@ PetscErrorCode SceneWriteOptions(Scene scene, FILE *file) {
     if (!strcmp(table[i].name, "-vesicle_semi_axes") && by_area) continue;
     if ((!strcmp(table[i].name, "-vesicle_area") || !strcmp(table[i].name, "-vesicle_reduced_area")) && !by_area)
       continue;
+    /* what one launch was asked to do with an earlier run's files is no part of the run */
+    if (!strcmp(table[i].name, "-restart") || !strcmp(table[i].name, "-output_overwrite")) continue;
     PetscCall(SceneOptionValue(scene, i, value, sizeof(value)));
     if (*value) fprintf(file, "%s %s\n", table[i].name, value);
   }

@@ -78,7 +78,11 @@ struct _p_Scene {
   char output_dir[PETSC_MAX_PATH_LEN];  /* every output file goes here */
   PetscReal output_every;               /* time between saved fields */
   PetscInt checkpoint_every;            /* steps between checkpoints; 0: only at the end */
-  PetscBool view, allow_unused;
+  PetscInt checkpoint_keep;             /* checkpoints kept, the newest included */
+  char restart[PETSC_MAX_PATH_LEN];     /* checkpoint to go on from; empty: none */
+  PetscReal wall_limit;                 /* seconds after which to stop; 0: never */
+  PetscReal limit_edge_ratio, limit_area_error, limit_length_error; /* stop above; 0: no limit */
+  PetscBool overwrite, view, allow_unused;
 };
 
 /* SceneCreate - read and check every option of the options database. Collective. An option with a bad value ends with
@@ -100,6 +104,10 @@ PETSC_EXTERN PetscErrorCode SceneWriteOptions(Scene scene, FILE *file);
    past the last one. */
 PETSC_EXTERN const char *SceneOptionName(PetscInt i);
 PETSC_EXTERN PetscErrorCode SceneOptionValue(Scene scene, PetscInt i, char value[], size_t length);
+
+/* SceneOptionMayChange - whether a restart may have another value of this option than its checkpoint: the end,
+   tolerances, output, limits and back ends may change; the grid, the fluid, the vesicles and the scheme may not. */
+PETSC_EXTERN PetscBool SceneOptionMayChange(const char name[]);
 
 /* SceneValidate - checks that involve more than one option. Called by SceneCreate. */
 PETSC_EXTERN PetscErrorCode SceneValidate(Scene scene);
@@ -131,12 +139,18 @@ typedef struct {
 } Curve;
 PETSC_EXTERN void CurveEvaluate(const Curve *curve, PetscReal t, PetscReal X[2]);
 PETSC_EXTERN PetscReal CurveLength(const Curve *curve);
+PETSC_EXTERN PetscReal CurveArea(const Curve *curve);
 
 /* CurveEqualChords - place M points on the curve so that all M chords are equal; X[2M], first point at t = 0. */
 PETSC_EXTERN PetscErrorCode CurveEqualChords(const Curve *curve, PetscInt M, PetscReal X[]);
 
 /* CurveEqualArcs - the same with M equal arcs: the edges of the spectral derivative. */
 PETSC_EXTERN PetscErrorCode CurveEqualArcs(const Curve *curve, PetscInt M, PetscReal X[]);
+
+/* CurveFitSpectral - move M markers X[2M] as little as possible (least squares) until all their spectral edges dX/dk
+   are length/M long and their spectral curve encloses the area: what M markers sample of a curve with sharper tips than
+   they resolve has neither its length nor its area (equalarcs.c). A circle, which has no freedom left, stays. */
+PETSC_EXTERN PetscErrorCode CurveFitSpectral(PetscInt M, PetscReal length, PetscReal area, PetscReal X[]);
 
 /* CurveFromPoints - closed periodic cubic spline through n points xy[2n], by chord length. */
 PETSC_EXTERN PetscErrorCode CurveFromPoints(PetscInt n, const PetscReal xy[], Curve *curve);

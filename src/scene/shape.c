@@ -108,9 +108,10 @@ PetscErrorCode ShapeCreate(Scene scene, PetscReal default_spacing, PetscReal lea
   for (PetscInt v = 0; v < shape->vesicles; v++) {
     PetscReal *X = shape->X + 2 * shape->start[v];
     const PetscInt M = shape->start[v + 1] - shape->start[v];
-    if (scene->derivative == DERIVATIVE_SPECTRAL)
+    if (scene->derivative == DERIVATIVE_SPECTRAL) {
       PetscCall(CurveEqualArcs(&curve[v], M, X));
-    else
+      PetscCall(CurveFitSpectral(M, CurveLength(&curve[v]), CurveArea(&curve[v]), X));
+    } else
       PetscCall(CurveEqualChords(&curve[v], M, X));
     PetscCall(CurveDestroy(&curve[v]));
     Place(scene, v, M, X);

@@ -10,7 +10,8 @@ static const char *const late[] = {"options_left",    "objects_dump", "malloc_du
 static const char *const solvers[] = {
     "-tension_ksp_type", "-tension_ksp_rtol", "-tension_ksp_atol", "-tension_ksp_max_it",       "-tension_ksp_monitor",
     "-tension_pc_type",  "-bending_ksp_type", "-bending_ksp_rtol", "-bending_ksp_atol",         "-bending_ksp_max_it",
-    "-bending_pc_type",  "-options_file",     "-log_view",         "-tension_pc_factor_levels", "-bending_ksp_monitor"};
+    "-bending_pc_type",  "-options_file",     "-log_view",         "-tension_pc_factor_levels", "-bending_ksp_monitor",
+    "-coupled_ksp_type", "-coupled_ksp_rtol", "-coupled_ksp_atol", "-coupled_ksp_max_it",       "-coupled_ksp_monitor"};
 
 /* Solver options that PETSc reads only when it solves, after the check. */
 static PetscBool ReadWhileSolving(const char *name) {

@@ -31,17 +31,20 @@ static PetscErrorCode LengthTarget(Scheme s, const Coupled *d, PetscReal a0) {
 /* y = (1 + r) x - r x_old, the extrapolation; x itself in a first step. */
 static PetscErrorCode Extrapolate(PetscReal r, Vec x, Vec x_old, Vec y) {
   PetscFunctionBeginUser;
-  PetscCall(VecCopy(x, y));
-  if (r > 0) PetscCall(VecAXPBY(y, -r, 1 + r, x_old));
+  if (r > 0)
+    PetscCall(VecAXPBYPCZ(y, 1 + r, -r, 0, x, x_old));
+  else
+    PetscCall(VecCopy(x, y));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* y = scale (current x + old x_old) */
 static PetscErrorCode History(const BDF *b, PetscReal scale, Vec x, Vec x_old, Vec y) {
   PetscFunctionBeginUser;
-  PetscCall(VecCopy(x, y));
-  PetscCall(VecScale(y, scale * b->current));
-  if (b->old != 0) PetscCall(VecAXPY(y, scale * b->old, x_old));
+  if (b->old != 0)
+    PetscCall(VecAXPBYPCZ(y, scale * b->current, scale * b->old, 0, x, x_old));
+  else
+    PetscCall(VecAXPBY(y, scale * b->current, 0, x));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -67,6 +70,7 @@ static PetscErrorCode SolveStep(Scheme s, Coupled *d) {
   PetscCall(SaddleSetUp(d->saddle));
   PetscCall(SaddleSolve(d->saddle, d->f, s->g, n->w, n->p, n->sigma, n->walls, d->Y));
   s->report.coupled_its += d->saddle->its;
+  if (d->saddle->age == 1) PetscCall(VecCopy(d->Xstar, d->made_at)); /* the blocks are this solve's */
   if (d->saddle->why < 0)
     PetscCall(SchemeSolverFailed(s, "coupled_", d->saddle->why, d->saddle->its, d->saddle->residual));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -75,7 +79,7 @@ static PetscErrorCode SolveStep(Scheme s, Coupled *d) {
 PetscErrorCode CoupledAttempt(Scheme s, PetscReal dt, PetscBool *solved) {
   Coupled *d = (Coupled *)s->data;
   State *q = &s->state, *n = &d->next;
-  const BDF b = BDFCoefficients(d->has_old ? d->order : 1, dt, d->has_old ? q->dt_last : dt);
+  const BDF b = BDFCoefficients(s->has_old ? d->order : 1, dt, s->has_old ? q->dt_last : dt);
   PetscFunctionBeginUser;
   *solved = PETSC_TRUE;
   q->dt = dt;
@@ -90,7 +94,7 @@ PetscErrorCode CoupledAttempt(Scheme s, PetscReal dt, PetscBool *solved) {
   }
   PetscCall(MomentumRightHandSide(s, d, &b));
   /* initial guess: the solution extrapolated; on the first step the present one; none of the pressure is needed */
-  const PetscReal r = d->has_old ? dt / q->dt_last : 0;
+  const PetscReal r = s->has_old ? dt / q->dt_last : 0;
   PetscCall(Extrapolate(r, q->w, d->old.w, n->w));
   PetscCall(Extrapolate(r, q->sigma, d->old.sigma, n->sigma));
   if (q->walls) PetscCall(Extrapolate(r, q->walls, d->old.walls, n->walls));
@@ -135,8 +139,7 @@ static PetscErrorCode Advance(Scheme s, Coupled *d, PetscReal dt) {
   q->U = next.U;
   q->walls = next.walls;
   q->dt_last = dt;
-  d->has_old = PETSC_TRUE;
-  s->old = &d->old;
+  s->has_old = PETSC_TRUE;
   if (d->area_target && s->coupling) PetscCall(RestoreArea(s, d));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -144,16 +147,11 @@ static PetscErrorCode Advance(Scheme s, Coupled *d, PetscReal dt) {
 /* Start-up: backward Euler on a sixteenth of the step, then BDF2 with doubling steps up to the whole of it. */
 static PetscErrorCode GradedStart(Scheme s, Coupled *d, PetscReal dt, PetscBool *solved) {
   const PetscReal parts[] = {1. / 16, 1. / 16, 1. / 8, 1. / 4, 1. / 2};
-  PetscReal done = 0;
   PetscFunctionBeginUser;
   for (int k = 0; k < 5; k++) {
     PetscCall(CoupledAttempt(s, parts[k] * dt, solved));
-    if (!*solved) { /* the parts done are a good state, at its own time */
-      s->state.t += done * dt;
-      PetscFunctionReturn(PETSC_SUCCESS);
-    }
+    if (!*solved) PetscFunctionReturn(PETSC_SUCCESS);
     PetscCall(Advance(s, d, parts[k] * dt));
-    done += parts[k];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -168,7 +166,7 @@ static PetscErrorCode Step_Coupled(Scheme s) {
     PetscCall(StepControlStep(s, &d->control, d->Xstar, &d->next, &used, &solved));
     if (solved) PetscCall(Advance(s, d, used));
     s->state.dt = used;
-  } else if (!d->has_old && d->order > 1 && s->scene->startup == STARTUP_GRADED) {
+  } else if (!s->has_old && d->order > 1 && s->scene->startup == STARTUP_GRADED) {
     PetscCall(GradedStart(s, d, dt, &solved));
     s->state.dt = dt;
   } else {
@@ -208,7 +206,39 @@ static PetscErrorCode SetUp_Coupled(Scheme s) {
   PetscCall(VecDuplicate(q->X, &d->Xstar));
   PetscCall(VecDuplicate(q->X, &d->Xhat));
   PetscCall(VecDuplicate(q->X, &d->Y));
+  PetscCall(VecDuplicate(q->X, &d->made_at));
+  s->old = &d->old;
   PetscCall(StepControlCreate(s->scene, s->membrane, &d->control));
+  if (d->control.on) s->level = &d->control.level;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Remember_Coupled(Scheme s, PetscReal memory[]) {
+  Coupled *d = (Coupled *)s->data;
+  const PetscScalar *X;
+  PetscFunctionBeginUser;
+  if (!d->saddle) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(SaddleGetMemory(d->saddle, memory));
+  PetscCall(VecGetArrayRead(d->made_at, &X));
+  PetscCall(PetscArraycpy(memory + SADDLE_MEMORY, X, 2 * s->membrane->M));
+  PetscCall(VecRestoreArrayRead(d->made_at, &X));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Recall_Coupled(Scheme s, const PetscReal memory[]) {
+  Coupled *d = (Coupled *)s->data;
+  const PetscReal a0 = memory[0];
+  PetscScalar *X;
+  PetscBool placed;
+  PetscFunctionBeginUser;
+  if (!d->saddle || !s->coupling || a0 == 0) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecGetArray(d->made_at, &X));
+  PetscCall(PetscArraycpy(X, memory + SADDLE_MEMORY, 2 * s->membrane->M));
+  PetscCall(VecRestoreArray(d->made_at, &X));
+  PetscCall(FluidSetTimeCoefficient(s->fluid, a0));
+  PetscCall(SchemePlaceMarkers(s, d->made_at, &placed));
+  if (s->self) PetscCall(SchemeSetSelfMobility(s, a0, d->made_at, NULL, d->made_at));
+  PetscCall(SaddleSetMemory(d->saddle, memory));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -229,7 +259,7 @@ static PetscErrorCode Options_Coupled(Scheme s, FILE *file) {
 static PetscErrorCode Destroy_Coupled(Scheme s) {
   Coupled *d = (Coupled *)s->data;
   State *states[2] = {&d->old, &d->next};
-  Vec *others[] = {&d->f, &d->Xstar, &d->Xhat, &d->Y};
+  Vec *others[] = {&d->f, &d->Xstar, &d->Xhat, &d->Y, &d->made_at};
   PetscFunctionBeginUser;
   PetscCall(SaddleDestroy(&d->saddle));
   PetscCall(DirectSolverDestroy(&d->direct));
@@ -237,7 +267,7 @@ static PetscErrorCode Destroy_Coupled(Scheme s) {
     Vec *all[] = {&states[k]->w, &states[k]->p, &states[k]->sigma, &states[k]->X, &states[k]->U, &states[k]->walls};
     for (int i = 0; i < 6; i++) PetscCall(VecDestroy(all[i]));
   }
-  for (int i = 0; i < 4; i++) PetscCall(VecDestroy(others[i]));
+  for (int i = 0; i < 5; i++) PetscCall(VecDestroy(others[i]));
   PetscCall(PetscFree(s->data));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -249,6 +279,8 @@ PetscErrorCode SchemeCreate_Coupled(Scheme s) {
   s->data = d;
   s->setup = SetUp_Coupled;
   s->step = Step_Coupled;
+  s->remember = Remember_Coupled;
+  s->recall = Recall_Coupled;
   s->view = View_Coupled;
   s->options = Options_Coupled;
   s->destroy = Destroy_Coupled;

@@ -10,10 +10,10 @@ typedef struct {
   Saddle saddle;       /* scheme coupled: FGMRES */
   DirectSolver direct; /* scheme direct: sparse LU */
   State old, next;     /* the state before, the one being made */
-  PetscBool has_old;
   PetscInt order;
   PetscBool length_target, area_target;
   StepControl control;
+  Vec made_at;        /* markers at which the saddle's dense blocks were made */
   Vec f;              /* momentum's right-hand side */
   Vec Xstar, Xhat, Y; /* extrapolated markers, BDF history of the markers, Xhat + u_inf/a0 */
 } Coupled;

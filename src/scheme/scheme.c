@@ -78,6 +78,7 @@ PetscErrorCode SchemeDestroy(Scheme *scheme) {
   PetscFunctionBeginUser;
   if (!s) PetscFunctionReturn(PETSC_SUCCESS);
   if (s->destroy) PetscCall(s->destroy(s));
+  PetscCall(SchemeFreeSnapshot(s));
   PetscCall(SelfMobilityDestroy(&s->self));
   PetscCall(VecDestroy(&s->state.w));
   PetscCall(VecDestroy(&s->state.p));
@@ -101,6 +102,7 @@ PetscErrorCode SchemeStep(Scheme s, PetscReal dt) {
   PetscCall(PetscTime(&start));
   PetscCall(PhaseBegin(PHASE_STEP));
   PetscCall(PetscMemzero(&s->report, sizeof(s->report)));
+  PetscCall(SchemeKeep(s));
   s->state.dt = dt;
   PetscCall(s->step(s));
   s->report.solves = FluidCountSolves(s->fluid) - solves;
@@ -108,10 +110,25 @@ PetscErrorCode SchemeStep(Scheme s, PetscReal dt) {
     s->state.t += s->state.dt; /* step-size control may have taken less than dt */
     s->state.dt_last = s->state.dt_last > 0 ? s->state.dt_last : s->state.dt;
     s->state.step++;
+    PetscCall(SchemeCheck(s));
   }
+  if (*s->report.failure) PetscCall(SchemeReturn(s));
   PetscCall(PhaseEnd());
   PetscCall(PetscTime(&end));
   s->report.seconds = end - start;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SchemeRemember(Scheme s, PetscReal memory[]) {
+  PetscFunctionBeginUser;
+  PetscCall(PetscArrayzero(memory, SchemeMemorySize(s)));
+  if (s->remember) PetscCall(s->remember(s, memory));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SchemeRecall(Scheme s, const PetscReal memory[]) {
+  PetscFunctionBeginUser;
+  if (s->recall) PetscCall(s->recall(s, memory));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -129,10 +146,13 @@ PetscErrorCode SchemePlaceMarkers(Scheme s, Vec X, PetscBool *placed) {
   PetscCall(CouplingCheckMarkers(s->coupling, x, s->report.failure, sizeof(s->report.failure)));
   *placed = *s->report.failure ? PETSC_FALSE : PETSC_TRUE;
   PetscCall(VecRestoreArrayRead(X, &x));
-  if (!*placed && s->state.step) {
+  if (!*placed && s->step) { /* not the initial markers, which have a message of their own */
     const size_t used = strlen(s->report.failure);
     PetscCall(PetscSNPrintf(s->report.failure + used, sizeof(s->report.failure) - used,
-                            "; after step %" PetscInt_FMT ", time %g", s->state.step, (double)s->state.t));
+                            " after step %" PetscInt_FMT
+                            ", time %g; try a larger -domain_box, or a smaller -time_step if it "
+                            "should not have come there",
+                            s->state.step, (double)s->state.t));
   }
   if (!*placed) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(CouplingSetMarkers(s->coupling, X));
@@ -241,9 +261,10 @@ PetscErrorCode SchemeSolverFailed(Scheme s, const char prefix[], KSPConvergedRea
   PetscFunctionBeginUser;
   PetscCall(PetscSNPrintf(s->report.failure, sizeof(s->report.failure),
                           "the solve with prefix %s failed in step %" PetscInt_FMT
-                          " at time %g: %s after %" PetscInt_FMT " iterations, residual %g",
+                          " at time %g: %s after %" PetscInt_FMT " iterations, residual %g; try a smaller -time_step, "
+                          "more iterations (-%sksp_max_it) or finer -domain_cells",
                           prefix, s->state.step + 1, (double)(s->state.t + s->state.dt), KSPConvergedReasons[why], its,
-                          (double)residual));
+                          (double)residual, prefix));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

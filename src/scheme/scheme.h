@@ -1,6 +1,7 @@
 /* Time-stepping schemes: the state that they advance, and the interface behind which they stand. */
 #pragma once
 #include "coupling/lagrangian.h"
+#include "coupling/saddle.h"
 #include "coupling/selfmobility.h"
 
 /* Everything that moves in time. Marker vectors are sequential and the same on every rank. */
@@ -27,6 +28,13 @@ typedef struct {
   char failure[PETVES_MAX_MESSAGE]; /* why the step could not be taken; empty when it was */
 } StepReport;
 
+/* All that a step changes and the next one needs; State and this are what a checkpoint holds. */
+typedef struct {
+  State state, old; /* old without vectors where the scheme has none */
+  PetscBool has_old;
+  PetscInt level;
+} Snapshot;
+
 typedef struct _p_Scheme *Scheme;
 struct _p_Scheme {
   char type[SCENE_MAX_NAME];
@@ -35,7 +43,11 @@ struct _p_Scheme {
   Membrane membrane; /* borrowed; no vesicles when the scene has none */
   Coupling coupling; /* borrowed; NULL when the scene has no vesicle */
   State state;
-  const State *old; /* the state one step before, for schemes that go on from two; NULL when there is none */
+  State *old;        /* the state one step before, for schemes that go on from two; else NULL */
+  PetscBool has_old; /* whether there was a step before */
+  PetscInt *level;   /* of step-size control's next step; NULL without */
+  Snapshot before;   /* what SchemeStep goes back to when a step fails */
+  PetscBool contact; /* whether parts of membranes are close, as last warned of */
   StepReport report;
   SelfMobility self; /* NULL without */
   Vec background;    /* [2M] what the markers' velocity has besides the solved part: u_inf, zero in the total form */
@@ -44,6 +56,10 @@ struct _p_Scheme {
   void *data; /* the scheme's own */
   PetscErrorCode (*setup)(Scheme);
   PetscErrorCode (*step)(Scheme); /* advance the state, or fill in report.failure and leave it */
+  /* what solvers keep from step to step, as SchemeMemorySize numbers, and made again from them; NULL: they keep nothing
+   */
+  PetscErrorCode (*remember)(Scheme, PetscReal memory[]);
+  PetscErrorCode (*recall)(Scheme, const PetscReal memory[]);
   PetscErrorCode (*view)(Scheme, PetscViewer);
   PetscErrorCode (*options)(Scheme, FILE *); /* write the solvers' settings in force as options */
   PetscErrorCode (*destroy)(Scheme);
@@ -59,8 +75,26 @@ PETSC_EXTERN PetscErrorCode SchemeCreate(Scene scene, Fluid fluid, Membrane memb
 PETSC_EXTERN PetscErrorCode SchemeDestroy(Scheme *scheme);
 
 /* SchemeStep - one time step of size dt. Afterwards scheme->report says what was done; when report.failure is not empty
-   the step could not be taken and the state is the last good one. Collective. */
+   the step could not be taken, or led to a state that SchemeCheck refuses, and the state is the last good one.
+   Collective. */
 PETSC_EXTERN PetscErrorCode SchemeStep(Scheme scheme, PetscReal dt);
+
+/* SchemeRemember, SchemeRecall - what the solvers have kept from earlier steps (when their blocks were made, and where
+   the markers were), as SchemeMemorySize numbers for a checkpoint, and made again from them. Collective. */
+#define SchemeMemorySize(scheme) (SADDLE_MEMORY + 2 * (scheme)->membrane->M)
+PETSC_EXTERN PetscErrorCode SchemeRemember(Scheme scheme, PetscReal memory[]);
+PETSC_EXTERN PetscErrorCode SchemeRecall(Scheme scheme, const PetscReal memory[]);
+
+/* SchemeKeep, SchemeReturn (watch.c) - copy the state into scheme->before, and put it back. SchemeFreeSnapshot frees
+   the copies. */
+PETSC_EXTERN PetscErrorCode SchemeKeep(Scheme scheme);
+PETSC_EXTERN PetscErrorCode SchemeReturn(Scheme scheme);
+PETSC_EXTERN PetscErrorCode SchemeFreeSnapshot(Scheme scheme);
+
+/* SchemeCheck (watch.c) - after a step: finite values, markers away from walls, edge ratio, area and length within
+   -limit_*; what is wrong and what to try goes into report.failure. Warns when membranes come closer than 2 h.
+   Collective. */
+PETSC_EXTERN PetscErrorCode SchemeCheck(Scheme scheme);
 PETSC_EXTERN PetscErrorCode SchemeView(Scheme scheme, PetscViewer viewer);
 
 /* SchemePlaceMarkers - put the coupling and the background data (background, g) at the markers X; false with
