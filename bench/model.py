@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import combinations
 
 import numpy as np
 
@@ -16,12 +15,13 @@ BYTES = 8
 
 @dataclass
 class Scene:
-    """A step to predict: n x n cells, M markers, Stokes solves and iterations a step."""
+    """A step to predict: n x n cells, vesicles of so many markers each, Stokes solves and iterations a step."""
 
     n: int
     markers: float
-    stokes: float = 5.0
-    its: float = 4.0
+    stokes: float = 3.0
+    its: float = 2.0
+    vesicles: float = 1.0
 
 
 @dataclass
@@ -51,39 +51,32 @@ def step_bytes(s: Scene) -> float:
 def dense_flops(s: Scene) -> float:
     """Flops on the markers: the factors of R every step, those of N and C every REFRESH steps, their use."""
     m, log = s.markers, np.log2(max(s.markers, 2))
-    return m**3 * (16 / 3 + 14 / REFRESH) + m**2 * (20 * log + (600 + 40 * log) / REFRESH + 22 * (s.its + 1))
+    each = m**3 * (16 / 3 + 14 / REFRESH) + m**2 * (20 * log + (600 + 40 * log) / REFRESH + 22 * (s.its + 1))
+    return s.vesicles * each
 
 
-def fit(measured: list[tuple[Scene, float, float]]) -> tuple[Rates, float]:
-    """Return the rates, none negative, that come closest to seconds of fast solves and of the rest; largest deviation.
+def fit(measured: list[tuple[Scene, float, float]], byte: float) -> tuple[Rates, float]:
+    """Return the rates that come closest to the seconds of fast solves and of the rest, and the largest deviation.
 
     Parameters
     ----------
     measured : list of (Scene, float, float)
         Seconds a step of the fast solves and of the rest, on one rank.
+    byte : float
+        Seconds a byte, from copies of an array.
     """
-    rows, values = [], []
-    for s, fast, rest in measured:
-        c = s.n**2
-        rows += [
-            [s.stokes * c * solve_flops(s), s.stokes * c * solve_bytes(s), 0],
-            [0, c * step_bytes(s), dense_flops(s)],
-        ]
-        values += [fast, rest]
-    a = np.array(rows) / np.array(values)[:, None]
-    best = None
-    for count in (1, 2, 3):
-        for columns in combinations(range(3), count):
-            x = np.zeros(3)
-            x[list(columns)] = np.linalg.lstsq(a[:, columns], np.ones(len(values)), rcond=None)[0]
-            error = np.sum((a @ x - 1) ** 2)
-            if x.min() >= 0 and (best is None or error < best[0]):
-                best = error, x
-    return Rates(*best[1]), float(np.abs(a @ best[1] - 1).max())
+    fast = np.array([[s.stokes * s.n**2 * f(s) for f in (solve_flops, solve_bytes)] for s, _, _ in measured])
+    rest = np.array([[dense_flops(s), s.n**2 * step_bytes(s)] for s, _, _ in measured])
+    rates, deviation = [], 0.0
+    for work, seconds in ((fast, [m[1] for m in measured]), (rest, [m[2] for m in measured])):
+        a, b = work[:, 0] / seconds, 1 - work[:, 1] * byte / seconds  # relative
+        rates.append(max(float(a @ b / (a @ a)), 0.0))
+        deviation = max(deviation, np.abs(a * rates[-1] - b).max())
+    return Rates(rates[0], byte, rates[1]), float(deviation)
 
 
 def parts(s: Scene, r: Rates, ranks: int, layout: str) -> dict[str, float]:
-    """Return the seconds a step by cause.
+    """Return the seconds a step by cause: the grid's work, the markers', the closing of the slabs' chain, messages.
 
     Parameters
     ----------
@@ -92,19 +85,20 @@ def parts(s: Scene, r: Rates, ranks: int, layout: str) -> dict[str, float]:
     ranks : int
         MPI ranks.
     layout : str
-        "slab": as it is. "doubling": slabs, their chain closed by recursive doubling, marker work shared by the ranks.
-        "pencil": rows transposed to columns and back, marker work shared.
+        "slab": as it is. "shared": slabs, the work on markers shared by the ranks. "doubling": and the chain of slabs
+        closed by recursive doubling. "pencil": shared, rows transposed to columns and back.
     """
     c, w, log = s.n**2 / ranks, s.n + 2, np.log2(max(ranks, 2))
     alone = ranks == 1
     work = c * (s.stokes * (r.flop * solve_flops(s) + r.byte * solve_bytes(s)) + r.byte * step_bytes(s))
-    reductions = (s.its + 7) * 2 * log * (LATENCY + 2 * BYTES * s.markers / BANDWIDTH)
+    whole = s.vesicles if layout == "slab" else max(1, s.vesicles / ranks)  # vesicles that a rank hears of
+    reductions = (s.its + 7) * 2 * log * (LATENCY + 2 * BYTES * whole * s.markers / BANDWIDTH)
     found = {"grid": work, "markers": r.dense * dense_flops(s), "chain": 0.0, "messages": 0.0 if alone else reductions}
     if layout != "slab":
         found["markers"] /= ranks
     if alone:
         return found
-    if layout == "slab":
+    if layout in ("slab", "shared"):
         found["chain"] = (
             s.stokes * r.byte * 60 * BYTES * ranks * w
         )  # two numbers a mode and rank, each rank all of them
@@ -123,22 +117,19 @@ def seconds(s: Scene, r: Rates, ranks: int, layout: str) -> float:
     return sum(parts(s, r, ranks, layout).values())
 
 
-def scene(n: int) -> Scene:
-    """Return the bench's scene on n x n cells."""
+def finer(n: int) -> Scene:
+    """Return the bench's vesicle in its box on n x n cells."""
     return Scene(n, MARKERS * n)
 
 
-def last_efficient(n: int, r: Rates, layout: str, shared: bool) -> int:
-    """Return the largest power of two of ranks at which the grid's part alone is half of the step or more.
+def more(n: int) -> Scene:
+    """Return a box of n x n cells that grows, with as many vesicles an area, each as on 512 x 512 cells."""
+    return Scene(n, MARKERS * 512, vesicles=(n / 512) ** 2)
 
-    shared: leave out the work on markers.
-    """
-    ranks = 1
-    while 2 * ranks <= n:
-        p = parts(scene(n), r, 2 * ranks, layout)
-        if shared:
-            p["markers"] = 0.0
-        if p["grid"] < 0.5 * sum(p.values()):
-            break
+
+def last_useful(n: int, r: Rates, layout: str) -> int:
+    """Return the ranks, 64 doubled as long as twice as many are 1.4 times faster, n at most."""
+    ranks = 64
+    while 2 * ranks <= n and seconds(more(n), r, ranks, layout) > 1.4 * seconds(more(n), r, 2 * ranks, layout):
         ranks *= 2
     return ranks
