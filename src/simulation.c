@@ -73,6 +73,8 @@ static PetscErrorCode Build(MPI_Comm comm, Simulation s) {
   kernel = KernelFind(s->scene->delta);
   PetscCall(ShapeCreate(s->scene, kernel->default_spacing, kernel->least_spacing, &s->shape));
   PetscCall(WisdomRead(s->scene));
+  PetscCall(SceneSetInertia(s->scene, &s->shape));
+  if (*s->scene->warning) PetscCall(PetscPrintf(comm, "petves: warning: %s\n", s->scene->warning));
   PetscCall(FluidCreate(s->scene, &s->fluid));
   PetscCall(MembraneCreate(&s->shape, s->scene->bending, (DerivativeType)s->scene->derivative, &s->membrane));
   if (s->shape.vesicles) PetscCall(CouplingCreate(s->fluid->grid, s->membrane, s->scene->delta, &s->coupling));

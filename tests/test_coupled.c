@@ -180,8 +180,8 @@ static PetscErrorCode CheckMobility(const char name[], Problem *q, PetscInt v) {
   Stokes stokes;
   Vec F, r;
   PetscFunctionBeginUser;
-  PetscCall(MobilityGetTable(q->s->mobility, q->t.fluid->a0, &table));
-  CHECK(table->a0 == q->t.fluid->a0, "%s: the table is for a0 = %g", name, (double)q->t.fluid->a0);
+  PetscCall(MobilityGetTable(q->s->mobility, q->t.fluid->alpha, &table));
+  CHECK(table->alpha == q->t.fluid->alpha, "%s: the table is for alpha = %g", name, (double)q->t.fluid->alpha);
   PetscCall(PetscMalloc1(n * n, &Mob));
   PetscCall(MobilityAssemble(q->s->mobility, table, first, n / 2, Mob));
   PetscCall(StokesCreate(q->t.fluid, &stokes));

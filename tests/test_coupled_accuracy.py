@@ -138,13 +138,13 @@ def test_membranes_keep_their_edges_tank_treading(cached_run):
 WALLS = {
     "periodic": ("-domain_bc_x periodic -domain_bc_y periodic", 4),
     "channel": ("-domain_bc_x periodic", 4),
-    "walls": ("", 12),
+    "walls": ("", 7),
 }
 COLD = "-coupled_ksp_initial_guess_nonzero false -scheme_startup euler"
 
 
 def cold_iterations(cached_run, options: str, dt: float, bending: float, steps: int = 8) -> np.ndarray:
-    """FGMRES iterations a step to 1e-6 from nothing."""
+    """FGMRES iterations a step to 1e-6 from nothing; one Stokes solve each."""
     options += f" -vesicle_bending {bending} -time_step {dt} -time_end {steps * dt}"
     return cached_run(f"{BASE} {COLD} {options}").series["coupled_its"][1:]
 
@@ -154,15 +154,15 @@ def cold_iterations(cached_run, options: str, dt: float, bending: float, steps: 
 def test_iterations_are_few(cells, box, cached_run):
     """Spacing 1.75 h: the easy case dt = h, c_b = 0.01 and the stiff one dt = 1/4, c_b = 1.
 
-    Steps 1 and 2 (new a0) have new dense blocks. One step later on may find its blocks too old and gives them up: the
-    iterations lost, 2 more than with new ones, are counted in its number. The bound is on all others.
+    Steps 1 and 2 (new a0) have new dense blocks. Later ones are kept until they have cost as many iterations as new ones
+    are worth; a step never spends more than 6 with old ones before it makes new ones.
     """
     bc, bound = WALLS[box]
     for dt, bending in ((2 / cells, 0.01), (0.25, 1)):
         its = cold_iterations(cached_run, f"-domain_cells {cells},{cells} {bc} -vesicle_spacing 1.75", dt, bending)
         print(f"{box}, {cells}^2, dt = {dt:g}, c_b = {bending:g}: {its.astype(int)}")
         assert its.min() >= 1 and its[:2].max() <= bound
-        assert (its > bound).sum() <= 1 and its.max() <= 2 * bound + 2
+        assert its.max() <= 6 + 2 * bound and its.mean() <= 6 + bound
 
 
 @pytest.mark.parametrize(

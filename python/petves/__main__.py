@@ -1,4 +1,4 @@
-"""Command line: ``python3 -m petves plot|reproduce|accuracy DIR``."""
+"""Command line: ``python3 -m petves plot|reproduce|accuracy|inertia DIR``."""
 
 from __future__ import annotations
 
@@ -21,6 +21,9 @@ def parser() -> argparse.ArgumentParser:
     cells = commands.add_parser("accuracy", help="run the study of accuracy per cell: docs/accuracy.md's tables")
     cells.add_argument("folder", metavar="DIR", help="where the tables and the picture go")
     cells.add_argument("--quick", action="store_true", help="leave out 256^2")
+    inertia = commands.add_parser("inertia", help="run the study of the fluid's inertia: docs/inertia.md's tables")
+    inertia.add_argument("folder", metavar="DIR", help="where the tables and the pictures go")
+    inertia.add_argument("--quick", action="store_true", help="leave out the channels")
     return top
 
 
@@ -50,6 +53,11 @@ def main(arguments: list[str] | None = None) -> int:
             from petves.accuracy import accuracy
 
             for path in accuracy(options.folder, quick=options.quick):
+                print(path)
+        elif options.command == "inertia":
+            from petves.inertia import inertia
+
+            for path in inertia(options.folder, quick=options.quick):
                 print(path)
         else:
             from petves.reproduce import reproduce

@@ -48,3 +48,20 @@ REST = {
 }
 """Equilibrium in fluid at rest by V: E_B R0/c_b (circle: pi), width and mid height over R0. Spectral boundary
 integral."""
+
+RELAXATION = {
+    0.25: (0.16394623726346955, 0.19269986244461246, 0.4900953401805742),
+    0.5: (0.15918000327362275, 0.18736232689959337, 0.4863058205145576),
+    1: (0.15685202410037752, 0.18381877207760294, 0.48228658550843395),
+    2: (0.15653076264858798, 0.18440784348750042, 0.4801598322791011),
+    3: (0.15652623858506232, 0.18452296051379943, 0.4798971309848963),
+}
+"""Ellipse (0.2, 0.5), c_b = 0.01, nu = 1 in unbounded quasi-steady Stokes flow, by time: bending energy, half extents
+in x and y. Spectral boundary integral."""
+
+POISEUILLE = {0.5: 0.9133, 1: 0.83414, 2: 0.67334, 4: 0.3431, 6: 0.0997}
+"""Unbounded quasi-steady Poiseuille flow, Ca = nu u_max R0^4/(c_b L_y^2) = 10, V = 0.7: height of the centroid over R0
+by time over nu R0^3/c_b, of an ellipse along the flow released at R0. Two boundary integrals agree to 2e-3."""
+
+PARACHUTE = (1.42892, -5.68062)
+"""The same flow, centred, steady: aspect of the second moments, mean velocity minus u_max over c_b/(nu R0^2)."""

@@ -26,7 +26,6 @@ PetscErrorCode MobilityCreate(Scene scene, Coupling coupling, Mobility *out) {
 static PetscErrorCode FreeTable(GreenTable *t) {
   PetscFunctionBeginUser;
   for (int b = 0; b < GREEN_COUNT; b++) PetscCall(PetscFree(t->grid[b]));
-  t->a0 = 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -84,14 +83,14 @@ static PetscErrorCode UnitResponse(Mobility m, Stokes stokes, int source, Vec r,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode BuildTable(Mobility m, PetscReal a0, GreenTable *t) {
+static PetscErrorCode BuildTable(Mobility m, PetscReal alpha, GreenTable *t) {
   const PetscInt size = (2 * m->size[0] + 1) * (2 * m->size[1] + 1);
   Stokes stokes;
   Vec r, u, p;
   PetscFunctionBeginUser;
   for (int b = 0; b < GREEN_COUNT; b++) PetscCall(PetscMalloc1(size, &t->grid[b]));
-  t->a0 = a0;
-  PetscCall(FluidSetTimeCoefficient(m->periodic, a0));
+  t->alpha = alpha;
+  PetscCall(FluidSetTimeCoefficient(m->periodic, alpha));
   PetscCall(StokesCreate(m->periodic, &stokes));
   PetscCall(DMCreateGlobalVector(m->periodic->grid->velocity, &r));
   PetscCall(VecDuplicate(r, &u));
@@ -105,25 +104,30 @@ static PetscErrorCode BuildTable(Mobility m, PetscReal a0, GreenTable *t) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode MobilitySetTables(Mobility m, const PetscReal a0[MOBILITY_CACHE]) {
+PetscErrorCode MobilitySetTables(Mobility m, const PetscReal alpha[MOBILITY_CACHE]) {
   PetscFunctionBeginUser;
   for (int i = 0; i < MOBILITY_CACHE; i++) {
     PetscCall(FreeTable(&m->cache[i]));
-    if (a0[i] > 0) PetscCall(BuildTable(m, a0[i], &m->cache[i]));
+    if (alpha[i] >= 0) PetscCall(BuildTable(m, alpha[i], &m->cache[i]));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode MobilityGetTable(Mobility m, PetscReal a0, const GreenTable **table) {
+/* Made, and for a coefficient near enough. */
+static PetscBool Serves(const GreenTable *t, PetscReal alpha) {
+  return t->grid[0] && PetscAbsReal(t->alpha - alpha) <= 0.1 * alpha ? PETSC_TRUE : PETSC_FALSE;
+}
+
+PetscErrorCode MobilityGetTable(Mobility m, PetscReal alpha, const GreenTable **table) {
   GreenTable found = {0};
   PetscInt i = 0;
   PetscFunctionBeginUser;
-  while (i < MOBILITY_CACHE - 1 && !(m->cache[i].a0 > 0 && PetscAbsReal(m->cache[i].a0 / a0 - 1) < 0.1)) i++;
-  if (m->cache[i].a0 > 0 && PetscAbsReal(m->cache[i].a0 / a0 - 1) < 0.1)
+  while (i < MOBILITY_CACHE - 1 && !Serves(&m->cache[i], alpha)) i++;
+  if (Serves(&m->cache[i], alpha))
     found = m->cache[i];
   else {
     PetscCall(FreeTable(&m->cache[i])); /* the oldest */
-    PetscCall(BuildTable(m, a0, &found));
+    PetscCall(BuildTable(m, alpha, &found));
   }
   for (; i > 0; i--) m->cache[i] = m->cache[i - 1];
   m->cache[0] = found;

@@ -1,8 +1,8 @@
 /* Mob, the membranes' mobility: an approximation of E A^-1 E^T, A^-1 the unsteady Stokes solution operator of the grid
    (DESIGN section 7). Every pair of markers is exact for a periodic box of the same cells: the two kernels' weights are
-   summed against the grid's Green's function, which is tabulated once per a0. (Averaging over sub-cell positions, even
-   for far pairs only, leaves noise from marker to marker that a stiff membrane's fourth derivative blows up.) Blocks
-   between different vesicles are left out. */
+   summed against the grid's Green's function, which is tabulated once per alpha of H = alpha I - nu L_u (once for all
+   in quasi-steady flow). (Averaging over sub-cell positions, even for far pairs only, leaves noise from marker to
+   marker that a stiff membrane's fourth derivative blows up.) Blocks between different vesicles are left out. */
 #pragma once
 #include "coupling/coupling.h"
 
@@ -12,8 +12,8 @@
    size[0]], x fastest: response u to a source u, v to v, v to u. */
 typedef enum { GREEN_UU, GREEN_VV, GREEN_VU, GREEN_COUNT } GreenBlock;
 typedef struct {
-  PetscReal a0; /* coefficient that it was made for; 0: empty */
-  PetscReal *grid[GREEN_COUNT];
+  PetscReal alpha;              /* coefficient that it was made for */
+  PetscReal *grid[GREEN_COUNT]; /* NULL: empty */
 } GreenTable;
 
 typedef struct _p_Mobility *Mobility;
@@ -30,15 +30,19 @@ struct _p_Mobility {
 PETSC_EXTERN PetscErrorCode MobilityCreate(Scene scene, Coupling coupling, Mobility *mobility);
 PETSC_EXTERN PetscErrorCode MobilityDestroy(Mobility *mobility);
 
-/* MobilitySetTables - fill the cache with the tables for these coefficients, 0: none. Collective. */
-PETSC_EXTERN PetscErrorCode MobilitySetTables(Mobility mobility, const PetscReal a0[MOBILITY_CACHE]);
+/* MobilitySetTables - fill the cache with the tables for these coefficients, negative: none. Collective.
+   MobilityCoefficient - the coefficient of table k, negative without one. */
+PETSC_EXTERN PetscErrorCode MobilitySetTables(Mobility mobility, const PetscReal alpha[MOBILITY_CACHE]);
+static inline PetscReal MobilityCoefficient(Mobility mobility, PetscInt k) {
+  return mobility->cache[k].grid[0] ? mobility->cache[k].alpha : -1;
+}
 
 /* MobilityForget - drop all tables. Not collective. */
 PETSC_EXTERN PetscErrorCode MobilityForget(Mobility mobility);
 
-/* MobilityGetTable - the table for a0, made if no cached one is within 10 %: six scalar solves in the periodic box.
+/* MobilityGetTable - the table for alpha, made if no cached one is within 10 %: six scalar solves in the periodic box.
    Collective; borrowed. */
-PETSC_EXTERN PetscErrorCode MobilityGetTable(Mobility mobility, PetscReal a0, const GreenTable **table);
+PETSC_EXTERN PetscErrorCode MobilityGetTable(Mobility mobility, PetscReal alpha, const GreenTable **table);
 
 /* MobilityAssemble - Mob of the n markers from `first` on, at the coupling's markers: symmetric matrix [2n][2n],
    entries interlaced x, y. Not collective. */

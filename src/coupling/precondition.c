@@ -34,8 +34,12 @@ PetscErrorCode SaddlePrecondition(PC pc, Vec r, Vec z) {
   PetscFunctionBeginUser;
   PetscCall(PCShellGetContext(pc, &s));
   /* dense blocks far too old: new ones from here on */
-  if (s->flexible && s->type == MOBILITY_TABLE && s->coupling && s->age > 0 && s->applied == s->fresh_its + MOST_WASTE)
+  if (s->flexible && s->type == MOBILITY_TABLE && s->coupling && s->age > 0 &&
+      s->applied == s->fresh_its + MOST_WASTE) {
+    s->life = s->age; /* next time before this happens */
     PetscCall(SaddleRefresh(s));
+    s->renewed = s->applied;
+  }
   s->applied++;
   PetscCall(VecCopy(r, z));
   PetscCall(VecGetArray(z, &za));

@@ -1,10 +1,12 @@
 #include "coupling/saddle.h"
 
 #define MOST_ROUNDS 4
+#define OWN_MEMORY (SADDLE_MEMORY - MOBILITY_CACHE)
+#define LONG_LIFE 1000
 
 PetscReal SaddleScale(Saddle s, PetscInt k) {
   const PetscReal h = s->fluid->grid->h;
-  return PetscSqr(h) / s->coupling->membrane->spacing[k] * (1 + h * s->fluid->a0);
+  return PetscSqr(h) / s->coupling->membrane->spacing[k] * (1 + h * s->fluid->alpha);
 }
 
 PetscReal SaddleVelocityScale(Saddle s, PetscInt k) {
@@ -72,7 +74,10 @@ static PetscErrorCode CreateKSP(Saddle s, PetscInt n) {
   PetscCall(PCShellSetContext(pc, s));
   PetscCall(PCShellSetApply(pc, SaddlePrecondition));
   PetscCall(PCShellSetName(pc, "mobility of the markers, slip of the walls"));
+  PetscCall(KSPSetInitialGuessNonzero(s->ksp, PETSC_TRUE));
   PetscCall(KSPReplicatedSetFromOptions(s->ksp, s->fluid->grid->rank));
+  PetscCall(KSPGetInitialGuessNonzero(s->ksp, &s->guess)); /* KSP itself solves for the change */
+  PetscCall(KSPSetInitialGuessNonzero(s->ksp, PETSC_FALSE));
   PetscCall(KSPSetConvergenceTest(s->ksp, Converged, s, NULL));
   PetscCall(PetscObjectTypeCompare((PetscObject)s->ksp, KSPFGMRES, &s->flexible));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -140,7 +145,8 @@ PetscErrorCode SaddleForget(Saddle s) {
   PetscFunctionBeginUser;
   s->factored_a0 = 0;
   s->fresh_its = -1;
-  s->age = 0;
+  s->age = s->refreshed = 0;
+  s->life = LONG_LIFE;
   s->waste = 0;
   if (s->mobility) PetscCall(MobilityForget(s->mobility));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -149,16 +155,17 @@ PetscErrorCode SaddleForget(Saddle s) {
 static PetscErrorCode MakeBlocks(Saddle s) {
   const GreenTable *table;
   PetscFunctionBeginUser;
-  PetscCall(MobilityGetTable(s->mobility, s->fluid->a0, &table));
+  PetscCall(MobilityGetTable(s->mobility, s->fluid->alpha, &table));
   PetscCall(DenseBlocksFactor(s->blocks, s->mobility, table, s->self, s->fluid->a0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode SaddleGetMemory(Saddle s, PetscReal memory[SADDLE_MEMORY]) {
-  const PetscReal own[] = {s->factored_a0, s->fresh_its, s->age, s->waste};
+  const PetscReal own[] = {s->factored_a0, s->fresh_its, s->age, s->waste, s->life, s->refreshed};
   PetscFunctionBeginUser;
-  for (int k = 0; k < 4; k++) memory[k] = own[k];
-  for (int k = 0; k < MOBILITY_CACHE; k++) memory[4 + k] = s->mobility ? s->mobility->cache[k].a0 : 0;
+  for (int k = 0; k < OWN_MEMORY; k++) memory[k] = own[k];
+  for (int k = 0; k < MOBILITY_CACHE; k++)
+    memory[OWN_MEMORY + k] = s->mobility ? MobilityCoefficient(s->mobility, k) : -1;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -169,7 +176,9 @@ PetscErrorCode SaddleSetMemory(Saddle s, const PetscReal memory[SADDLE_MEMORY]) 
   s->fresh_its = (PetscInt)memory[1];
   s->age = (PetscInt)memory[2];
   s->waste = memory[3];
-  PetscCall(MobilitySetTables(s->mobility, memory + 4));
+  s->life = (PetscInt)memory[4];
+  s->refreshed = (PetscInt)memory[5];
+  PetscCall(MobilitySetTables(s->mobility, memory + OWN_MEMORY));
   PetscCall(MakeBlocks(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -181,6 +190,7 @@ PetscErrorCode SaddleRefresh(Saddle s) {
   s->fresh_its = -1;
   s->age = 0;
   s->waste = 0;
+  if (++s->refreshed % 16 == 0) s->life++; /* try a longer life now and then */
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -190,7 +200,7 @@ static PetscReal RefreshCost(Saddle s) {
   const Membrane m = s->coupling->membrane;
   const PetscReal n = m->M <= DENSE_TOGETHER ? m->M : (PetscReal)m->M / m->vesicles, blocks = m->M / n;
   const PetscReal cells = (PetscReal)s->fluid->grid->n[0] * s->fluid->grid->n[1];
-  return blocks * (4e-9 * n * n * n + 6e-7 * n * n) / (1.5e-8 * cells);
+  return blocks * (4e-9 * n * n * n + 6e-7 * n * n) / (1.5e-8 * cells + blocks * 1e-8 * n * n + 5e-5);
 }
 
 PetscErrorCode SaddleSetUp(Saddle s) {
@@ -204,7 +214,7 @@ PetscErrorCode SaddleSetUp(Saddle s) {
     PetscCall(PCSetUp(s->ilu));
   }
   if (s->type != MOBILITY_TABLE) PetscFunctionReturn(PETSC_SUCCESS);
-  if (s->waste > RefreshCost(s) || !(PetscAbsReal(s->factored_a0 / s->fluid->a0 - 1) < 0.1))
+  if (s->waste > RefreshCost(s) || s->age >= s->life || !(PetscAbsReal(s->factored_a0 / s->fluid->a0 - 1) < 0.1))
     PetscCall(SaddleRefresh(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -297,16 +307,19 @@ PetscErrorCode SaddleSolve(Saddle s, Vec f, Vec g, Vec w, Vec p, Vec sigma, Vec 
   PetscReal rtol, atol;
   PetscFunctionBeginUser;
   PetscCall(Reference(s, f, g));
-  PetscCall(Guess(s, w, sigma, d));
+  if (s->guess)
+    PetscCall(Guess(s, w, sigma, d));
+  else
+    PetscCall(VecSet(s->x, 0));
   PetscCall(SaddleResidual(s, f, g, s->x, w, p, s->b));
   PetscCall(KSPGetTolerances(s->ksp, &rtol, &atol, NULL, NULL));
-  s->applied = s->its = 0;
+  s->applied = s->renewed = s->its = 0;
   for (int round = 0; round < MOST_ROUNDS; round++) { /* rounding may spoil GMRES's own residual in stiff cases */
     PetscCall(Correct(s, f, g, w, p));
     if (s->why < 0 || s->residual <= 2 * PetscMax(rtol * s->reference, atol)) break;
   }
   if (s->age > 0) s->waste += PetscMax(s->its - s->fresh_its, 0);
-  if (s->age == 0 && s->fresh_its < 0) s->fresh_its = s->its;
+  if (s->age == 0 && s->fresh_its < 0) s->fresh_its = s->its - s->renewed;
   s->age++;
   if (s->why >= 0) PetscCall(TakeSolution(s, sigma, d, V));
   PetscFunctionReturn(PETSC_SUCCESS);

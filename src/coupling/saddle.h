@@ -48,8 +48,11 @@ struct _p_Saddle {
   PetscInt fresh_its;                  /* iterations right after they were made; -1: not known yet */
   PetscInt age;                        /* solves that they have served */
   PetscReal waste;                     /* iterations that their age has cost */
+  PetscInt life, refreshed;            /* solves that they may serve at most; times that they were made */
   PetscBool flexible;                  /* the KSP allows them to be made anew under way */
   PetscInt applied;                    /* times that they were applied in this solve */
+  PetscInt renewed;                    /* and when they were made anew; 0: not */
+  PetscBool guess;                     /* -coupled_ksp_initial_guess_nonzero: start from the guess */
   PetscInt its;
   KSPConvergedReason why;
   PetscReal residual;
@@ -72,7 +75,7 @@ PETSC_EXTERN PetscErrorCode SaddleSetUp(Saddle saddle);
    hold, and made again from them, with the coupling's markers and `self` where they were when the dense blocks were
    made and the fluid's a0 that of the blocks (memory[0]; 0: there were none). Whatever a saddle keeps belongs in here,
    or a restarted run would not have the bits of one that went on. Set is collective. */
-#define SADDLE_MEMORY (4 + MOBILITY_CACHE)
+#define SADDLE_MEMORY (6 + MOBILITY_CACHE)
 PETSC_EXTERN PetscErrorCode SaddleGetMemory(Saddle saddle, PetscReal memory[SADDLE_MEMORY]);
 PETSC_EXTERN PetscErrorCode SaddleSetMemory(Saddle saddle, const PetscReal memory[SADDLE_MEMORY]);
 
@@ -84,8 +87,8 @@ PETSC_EXTERN PetscErrorCode SaddleSolve(Saddle saddle, Vec f, Vec g, Vec w, Vec 
    collective. */
 PETSC_EXTERN PetscErrorCode SaddleForget(Saddle saddle);
 
-/* SaddleScale - factor of the residual of Dm V/h^2 = g in row k: h^2/ds makes it a surface divergence; 1 + h a0 weighs
-   short steps, where the momentum's right-hand side u a0 would hide it. */
+/* SaddleScale - factor of the residual of Dm V/h^2 = g in row k: h^2/ds makes it a surface divergence; 1 + h alpha
+   weighs short steps, where the momentum's right-hand side u alpha would hide it. */
 PETSC_EXTERN PetscReal SaddleScale(Saddle saddle, PetscInt k);
 
 /* SaddleVelocityScale - factor of V's residual at marker k: over an edge it is a surface divergence, times the root of

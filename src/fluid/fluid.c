@@ -138,6 +138,7 @@ PetscErrorCode FluidCreate(Scene scene, Fluid *out) {
   *out = f;
   PetscCall(GridCreate(scene, &f->grid));
   f->nu = scene->viscosity;
+  f->steady = scene->inertia == INERTIA_NONE ? PETSC_TRUE : PETSC_FALSE;
   f->plan = scene->fftw_plan;
   f->tridiagonal = !strcmp(scene->helmholtz, "fftw_tridiagonal") && !strcmp(scene->poisson, "fftw_tridiagonal");
   PetscCall(GridCreateG(f->grid, &f->G));
@@ -177,8 +178,22 @@ PetscErrorCode FluidDestroy(Fluid *fluid) {
 
 PetscErrorCode FluidSetTimeCoefficient(Fluid f, PetscReal a0) {
   PetscFunctionBeginUser;
-  f->a0 = f->alpha = a0;
+  f->a0 = a0;
+  f->alpha = f->steady ? 0 : a0;
   for (int k = FIELD_U; k <= FIELD_V; k++) PetscCall(FastSolverSetCoefficients(f->solver[k], f->alpha, f->nu));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode FluidRemoveMean(Fluid f, Vec w) {
+  const Grid g = f->grid;
+  const PetscInt n = GridLocalU(g); /* as many of v: the box is periodic */
+  PetscScalar *a, sum[2] = {0, 0};
+  PetscFunctionBeginUser;
+  PetscCall(VecGetArray(w, &a));
+  for (PetscInt k = 0; k < 2 * n; k++) sum[k / n] += a[k];
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPIU_SCALAR, MPI_SUM, g->comm));
+  for (PetscInt k = 0; k < 2 * n; k++) a[k] -= sum[k / n] / ((PetscReal)g->n[0] * g->n[1]);
+  PetscCall(VecRestoreArray(w, &a));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -8,6 +8,7 @@ struct _p_Fluid {
   PetscReal nu;          /* viscosity */
   PetscReal a0;          /* coefficient of the markers' time difference: X_new = Xhat + U/a0 */
   PetscReal alpha;       /* leading coefficient in H = alpha I - nu L_u: a0 (0 in quasi-steady flow) */
+  PetscBool steady;      /* quasi-steady flow, -fluid_inertia none */
   Mat G, D, L, H;        /* gradient, divergence, pressure Laplacian, velocity Helmholtz operator (MatShells) */
   PC Hinv, Linv;         /* fast solves of H (two scalar solves) and of L (one), PCSHELLs */
   FastSolver solver[3];  /* behind them, one a field */
@@ -31,6 +32,9 @@ PETSC_EXTERN PetscErrorCode FluidSolveHelmholtz(Fluid fluid, Vec b, Vec w);
 
 /* FluidSolvePoisson - p = L^-1 q with zero mean, one scalar solve; p may be q. Collective. */
 PETSC_EXTERN PetscErrorCode FluidSolvePoisson(Fluid fluid, Vec q, Vec p);
+
+/* FluidRemoveMean - take the mean of each component off a velocity of a periodic box. Collective. */
+PETSC_EXTERN PetscErrorCode FluidRemoveMean(Fluid fluid, Vec w);
 
 /* FluidCountSolves - scalar fast solves so far. */
 PETSC_EXTERN PetscInt FluidCountSolves(Fluid fluid);

@@ -25,6 +25,7 @@ struct _p_Output {
   PetscReal checkpoint_seconds;  /* longest that writing one has taken */
   PetscLogDouble start, printed; /* wall time at the start, at the last progress line */
   PetscInt total_solves, total_tension, total_bending, total_coupled;
+  PetscReal cfl_max; /* largest of a step */
 };
 
 /* OutputCreate - make the folder, open series.csv and run.h5, write resolved.opts. The folder may hold results already

@@ -173,6 +173,7 @@ PetscErrorCode OutputSeries(Output o) {
   o->total_tension += r->tension_its;
   o->total_bending += r->bending_its;
   o->total_coupled += r->coupled_its;
+  o->cfl_max = PetscMax(o->cfl_max, r->cfl);
   PetscCall(PhaseEnd());
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -35,6 +35,15 @@ static void PrintVersions(FILE *f) {
           release);
 }
 
+/* The model of the fluid, how much inertia there is, the largest CFL number of a step (0 without convection). */
+static void WriteInertia(Output o, FILE *f) {
+  static const char *const names[] = {"unsteady", "none", "unsteady", "convective"};
+  fprintf(f, "  \"inertia\": \"%s\",\n  \"reynolds\": %.6g,\n  \"cfl_max\": %.6g,\n  \"warning\": ",
+          names[o->scene->inertia], (double)o->scene->reynolds, (double)o->cfl_max);
+  PrintString(f, o->scene->warning);
+  fprintf(f, ",\n");
+}
+
 static PetscErrorCode WriteSummary(Output o, FILE *f) {
   PetscMPIInt ranks;
   PetscLogDouble now;
@@ -63,6 +72,7 @@ static PetscErrorCode WriteSummary(Output o, FILE *f) {
   fprintf(f, "},\n  \"memory_mib_rank_0\": %.1f,\n", (double)usage.ru_maxrss / 1024);
   fprintf(f, "  \"markers\": %d,\n  \"cells\": [%d, %d],\n  \"ranks\": %d,\n", (int)o->scheme->membrane->M,
           (int)o->scene->cells.v[0], (int)o->scene->cells.v[1], ranks);
+  WriteInertia(o, f);
   PrintVersions(f);
   fprintf(f, "  \"git_commit\": \"%s\"\n}\n", PETVES_COMMIT);
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -18,6 +18,7 @@ typedef struct {
 typedef enum { BC_WALL, BC_PERIODIC } BoundaryType;
 typedef enum { FLOW_QUIESCENT, FLOW_SHEAR, FLOW_POISEUILLE, FLOW_EXTENSION } FlowType;
 typedef enum { FORM_DISTURBANCE, FORM_TOTAL } FlowForm;
+typedef enum { INERTIA_AUTO, INERTIA_NONE, INERTIA_UNSTEADY, INERTIA_CONVECTIVE } InertiaType;
 typedef enum { DERIVATIVE_FD, DERIVATIVE_BENDING, DERIVATIVE_SPECTRAL } DerivativeType;
 typedef enum { SELF_NONE, SELF_LOCAL, SELF_SYMBOL } SelfMobilityType;
 typedef enum { ADAPT_NONE, ADAPT_ERROR } AdaptType;
@@ -49,7 +50,7 @@ struct _p_Scene {
   PetscInt bc[2];                       /* BoundaryType in x and y */
   Flow flow;                            /* background flow */
   PetscReal viscosity;                  /* nu (density is 1) */
-  PetscInt inertia;                     /* index in -fluid_inertia's list */
+  PetscInt inertia;                     /* InertiaType */
   PetscInt shape;                       /* ShapeType */
   PetscInt count;                       /* vesicles */
   RealList axes, center, angle;         /* semi-axes, centre, angle in degrees; one entry for all, or one a vesicle */
@@ -70,6 +71,7 @@ struct _p_Scene {
   PetscInt mobility;                    /* index in -mobility_type's list */
   PetscInt adapt;                       /* AdaptType */
   PetscReal adapt_tol, adapt_max_move;  /* error a step over R0; cells a marker may move in a step */
+  PetscReal cfl_limit;                  /* convective: largest dt max(|u| + |v|)/h */
   PetscReal dt, t_end, steady_tol;      /* time step, end time, stop when max |u.n| falls below steady_tol */
   char helmholtz[SCENE_MAX_NAME];       /* back end of the Helmholtz solves */
   char poisson[SCENE_MAX_NAME];         /* back end of the Poisson solves */
@@ -83,6 +85,8 @@ struct _p_Scene {
   PetscReal wall_limit;                 /* seconds after which to stop; 0: never */
   PetscReal limit_edge_ratio, limit_area_error, limit_length_error; /* stop above; 0: no limit */
   PetscBool overwrite, view, allow_unused;
+  PetscReal reynolds;               /* set by SceneSetInertia */
+  char warning[PETVES_MAX_MESSAGE]; /* of the model chosen; empty when there is none */
 };
 
 /* SceneCreate - read and check every option of the options database. Collective. An option with a bad value ends with
@@ -123,6 +127,17 @@ PETSC_EXTERN void FlowVelocity(const Flow *flow, PetscReal x, PetscReal y, Petsc
 
 /* FlowPressureGradient - grad p_inf[2] at any point (uniform for the flows offered) for viscosity nu. */
 PETSC_EXTERN void FlowPressureGradient(const Flow *flow, PetscReal nu, PetscReal g[2]);
+
+/* FlowGradient - gradient[a][b] = d(u_inf)_a/dx_b at (x, y). */
+PETSC_EXTERN void FlowGradient(const Flow *flow, PetscReal x, PetscReal y, PetscReal gradient[2][2]);
+
+/* SceneReynolds - speed R0/nu with R0 of the largest vesicle and the speed of the scene: rate R0 of shear and
+   extension, u_max of poiseuille, c_b/(nu R0^2) of a quiescent fluid. 0 without vesicles. */
+PETSC_EXTERN PetscReal SceneReynolds(Scene scene, const Shape *shape);
+
+/* SceneSetInertia - the Reynolds number, the model that -fluid_inertia auto stands for, and the warning that goes with
+   it. Stops with the user's message when the model does not fit the scene. Collective. */
+PETSC_EXTERN PetscErrorCode SceneSetInertia(Scene scene, const Shape *shape);
 
 /* ShapeCreate - the initial markers of the scene's vesicles, all edges of a vesicle equal to 1e-12. Every rank gets
    all markers. Collective; stops with the user's message on a bad file, spacing or position.

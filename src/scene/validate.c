@@ -93,6 +93,13 @@ static PetscErrorCode CheckSplit(Scene scene) {
   PetscCheck(
       !scene->area_target, scene->comm, PETSC_ERR_USER_INPUT,
       "-scheme_area_target true: not with -scheme_type split; allowed: false, or -scheme_type coupled or direct");
+  PetscCheck(
+      scene->inertia != INERTIA_NONE, scene->comm, PETSC_ERR_USER_INPUT,
+      "-fluid_inertia none: not with -scheme_type split, whose projection stands on the inertia: it puts dt I in "
+      "place of H^-1; allowed: unsteady, or -scheme_type coupled or direct");
+  PetscCheck(scene->inertia != INERTIA_CONVECTIVE, scene->comm, PETSC_ERR_USER_INPUT,
+             "-fluid_inertia convective: not with -scheme_type split, the paper's method for unsteady Stokes flow; "
+             "allowed: unsteady, or -scheme_type coupled or direct");
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -105,6 +112,10 @@ static PetscErrorCode CheckScheme(Scene scene) {
              "-time_adapt error: with -scheme_type %s of order %" PetscInt_FMT
              "; allowed: coupled or direct with -scheme_order 2",
              scene->scheme, scene->order);
+  PetscCheck(scene->inertia != INERTIA_CONVECTIVE || scene->order == 2, scene->comm, PETSC_ERR_USER_INPUT,
+             "-fluid_inertia convective: with -scheme_order %" PetscInt_FMT
+             " an explicit convection is unstable at any step that is not tiny; allowed: -scheme_order 2",
+             scene->order);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -121,12 +132,28 @@ PetscErrorCode SceneValidate(Scene scene) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static PetscErrorCode ViewFluid(Scene scene, PetscViewer v) {
+  static const char *const forms[] = {"disturbance of the background flow", "total velocity with moving walls"};
+  static const char *const inertia[] = {"unsteady Stokes", "quasi-steady Stokes", "unsteady Stokes",
+                                        "Navier-Stokes, convection explicit"};
+  const PetscBool no_mean = scene->inertia == INERTIA_NONE && scene->bc[0] == BC_PERIODIC && scene->bc[1] == BC_PERIODIC
+                                ? PETSC_TRUE
+                                : PETSC_FALSE;
+  PetscFunctionBeginUser;
+  PetscCall(PetscViewerASCIIPrintf(v, "fluid: %s%s, nu = %g, solved for the %s\n", inertia[scene->inertia],
+                                   SceneGiven(scene, "-fluid_inertia") ? "" : " (default for this scene)",
+                                   (double)scene->viscosity, forms[scene->flow.form]));
+  PetscCall(PetscViewerASCIIPrintf(v, "Reynolds number: %.4g\n", (double)scene->reynolds));
+  if (no_mean) PetscCall(PetscViewerASCIIPrintf(v, "periodic box: the disturbance has no mean flow\n"));
+  if (*scene->warning) PetscCall(PetscViewerASCIIPrintf(v, "warning: %s\n", scene->warning));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode SceneView(Scene scene, const Shape *shape, PetscViewer v) {
   static const char *const derivatives[] = {"finite differences", "spectral bending", "spectral bending and edges"};
   static const char *const self[] = {"none", "local", "symbol"};
   static const char *const bc[] = {"wall", "periodic"};
   static const char *const flows[] = {"quiescent", "shear", "poiseuille", "extension"};
-  static const char *const forms[] = {"disturbance of the background flow", "total velocity with moving walls"};
   const PetscReal *b = scene->box.v, h = SceneCellSize(scene);
   PetscFunctionBeginUser;
   PetscCall(PetscViewerASCIIPrintf(v, "Model in force\n"));
@@ -135,8 +162,7 @@ PetscErrorCode SceneView(Scene scene, const Shape *shape, PetscViewer v) {
       v, "domain: [%g,%g] x [%g,%g], %" PetscInt_FMT " x %" PetscInt_FMT " cells, h = %g, %s in x, %s in y\n",
       (double)b[0], (double)b[1], (double)b[2], (double)b[3], scene->cells.v[0], scene->cells.v[1], (double)h,
       bc[scene->bc[0]], bc[scene->bc[1]]));
-  PetscCall(PetscViewerASCIIPrintf(v, "fluid: unsteady Stokes, nu = %g, solved for the %s\n", (double)scene->viscosity,
-                                   forms[scene->flow.form]));
+  PetscCall(ViewFluid(scene, v));
   PetscCall(PetscViewerASCIIPrintf(v, "background flow: %s\n", flows[scene->flow.type]));
   if (!shape->vesicles) PetscCall(PetscViewerASCIIPrintf(v, "vesicle: none (no tension solve, no bending solve)\n"));
   for (PetscInt k = 0; k < shape->vesicles; k++)

@@ -65,10 +65,24 @@ static PetscErrorCode Watch(Membrane m, const State *next, PetscReal *speed, Pet
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Convection is explicit: its CFL number bounds the step. */
+static PetscErrorCode LimitByCourant(Scheme s, StepControl *c) {
+  PetscReal speed;
+  PetscFunctionBeginUser;
+  PetscCall(CoupledSpeed(s, &speed));
+  if (speed > 0) {
+    const PetscReal most = s->scene->cfl_limit * s->fluid->grid->h / speed;
+    c->level = PetscMin(c->level, (PetscInt)PetscFloorReal(2 * PetscLog2Real(most / c->base)));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode StepControlStep(Scheme s, StepControl *c, Vec Xstar, const State *next, PetscReal *dt,
                                PetscBool *solved) {
   const PetscReal most = *dt, h = s->fluid->grid->h;
   PetscFunctionBeginUser;
+  PetscReal before = PETSC_MAX_REAL; /* estimate of the attempt rejected last */
+  PetscCall(LimitByCourant(s, c));
   for (;;) {
     const PetscBool first = s->state.dt_last == 0 ? PETSC_TRUE : PETSC_FALSE;
     PetscReal error, speed, edge_ratio, factor;
@@ -80,8 +94,10 @@ PetscErrorCode StepControlStep(Scheme s, StepControl *c, Vec Xstar, const State 
     /* X - X* is of second order; in a backward Euler step X* = X, so there it is the whole movement */
     factor = SAFETY * (first ? 1 : PetscSqrtReal(c->tolerance / PetscMax(error, 1e-30)));
     const PetscBool too_far = c->max_move > 0 && speed * *dt > c->max_move * h ? PETSC_TRUE : PETSC_FALSE;
-    const PetscBool bad = (!first && !(error <= c->tolerance)) || too_far || !(edge_ratio <= 2) ? PETSC_TRUE
-                                                                                                : PETSC_FALSE;
+    /* not of the step: what the length target puts right in the first steps, or the solver's tolerance */
+    const PetscBool fixed = error > 0.9 * before ? PETSC_TRUE : PETSC_FALSE;
+    const PetscBool inexact = !first && !fixed && !(error <= c->tolerance) ? PETSC_TRUE : PETSC_FALSE;
+    const PetscBool bad = inexact || too_far || !(edge_ratio <= 2) ? PETSC_TRUE : PETSC_FALSE;
     if (too_far) factor = PetscMin(factor, SAFETY * c->max_move * h / (speed * *dt));
     if (!(edge_ratio <= 2) || PetscIsNanReal(error)) factor = 0.25;
     const PetscInt wanted = (PetscInt)PetscFloorReal(2 * PetscLog2Real(factor * *dt / c->base));
@@ -90,10 +106,11 @@ PetscErrorCode StepControlStep(Scheme s, StepControl *c, Vec Xstar, const State 
       if (c->max_move > 0 && speed > 0)
         limit = PetscMin(limit,
                          (PetscInt)PetscFloorReal(2 * PetscLog2Real(SAFETY * c->max_move * h / (speed * c->base))));
-      if (!first && *dt >= StepOfLevel(c, c->level) * (1 - 1e-12))
+      if (!first && !fixed && *dt >= StepOfLevel(c, c->level) * (1 - 1e-12))
         c->level = PetscMin(PetscMin(wanted, limit), MOST_LEVEL);
       PetscFunctionReturn(PETSC_SUCCESS);
     }
+    before = error;
     c->rejected++;
     c->level = PetscMin(c->level - 1, wanted);
     if (c->level < LEAST_LEVEL) {

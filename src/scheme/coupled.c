@@ -48,10 +48,13 @@ static PetscErrorCode History(const BDF *b, PetscReal scale, Vec x, Vec x_old, V
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* f = uhat - B (Xhat + u_inf/a0) + bc1 */
+/* f = uhat - B (Xhat + u_inf/a0) + bc1; no uhat in quasi-steady flow */
 static PetscErrorCode MomentumRightHandSide(Scheme s, Coupled *d, const BDF *b) {
   PetscFunctionBeginUser;
-  PetscCall(History(b, 1, s->state.w, d->old.w, d->f));
+  if (s->fluid->steady)
+    PetscCall(VecSet(d->f, 0));
+  else
+    PetscCall(History(b, 1, s->state.w, d->old.w, d->f));
   if (s->fluid->bc1) PetscCall(VecAXPY(d->f, 1, s->fluid->bc1));
   if (!s->coupling || s->membrane->bending == 0) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecWAXPY(d->Y, 1 / b->a0, s->background, d->Xhat));
@@ -92,12 +95,13 @@ PetscErrorCode CoupledAttempt(Scheme s, PetscReal dt, PetscBool *solved) {
     if (s->self) PetscCall(SchemeSetSelfMobility(s, b.a0, d->Xstar, NULL, d->Xhat));
     if (d->length_target) PetscCall(LengthTarget(s, d, b.a0));
   }
-  PetscCall(MomentumRightHandSide(s, d, &b));
   /* initial guess: the solution extrapolated; on the first step the present one; none of the pressure is needed */
   const PetscReal r = s->has_old ? dt / q->dt_last : 0;
   PetscCall(Extrapolate(r, q->w, d->old.w, n->w));
   PetscCall(Extrapolate(r, q->sigma, d->old.sigma, n->sigma));
   if (q->walls) PetscCall(Extrapolate(r, q->walls, d->old.walls, n->walls));
+  PetscCall(MomentumRightHandSide(s, d, &b));
+  if (d->convection) PetscCall(ConvectionAdd(d->convection, -1, n->w, d->f)); /* N(w*), w* being the guess */
   PetscCall(SolveStep(s, d));
   *solved = *s->report.failure ? PETSC_FALSE : PETSC_TRUE;
   if (!*solved) PetscFunctionReturn(PETSC_SUCCESS);
@@ -156,11 +160,36 @@ static PetscErrorCode GradedStart(Scheme s, Coupled *d, PetscReal dt, PetscBool 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode CoupledSpeed(Scheme s, PetscReal *speed) {
+  Coupled *d = (Coupled *)s->data;
+  PetscFunctionBeginUser;
+  *speed = 0;
+  if (d->convection) PetscCall(ConvectionSpeed(d->convection, s->state.w, speed));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A fixed step that convection does not allow: report.failure says so. */
+static PetscErrorCode CheckCourant(Scheme s, PetscReal dt, PetscReal speed) {
+  const PetscReal h = s->fluid->grid->h, limit = s->scene->cfl_limit;
+  PetscFunctionBeginUser;
+  if (dt * speed <= limit * h) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscSNPrintf(s->report.failure, sizeof(s->report.failure),
+                          "-time_step %g: the convective term is explicit, and its CFL number %.3g at time %g is above "
+                          "-time_cfl_limit %g; allowed: a step of at most %.3g, or -time_adapt error",
+                          (double)dt, (double)(dt * speed / h), (double)s->state.t, (double)limit,
+                          (double)(limit * h / speed)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode Step_Coupled(Scheme s) {
   Coupled *d = (Coupled *)s->data;
   const PetscReal dt = s->state.dt;
+  PetscReal speed;
   PetscBool solved;
   PetscFunctionBeginUser;
+  PetscCall(CoupledSpeed(s, &speed));
+  if (!d->control.on) PetscCall(CheckCourant(s, dt, speed));
+  if (*s->report.failure) PetscFunctionReturn(PETSC_SUCCESS);
   if (d->control.on) {
     PetscReal used = dt;
     PetscCall(StepControlStep(s, &d->control, d->Xstar, &d->next, &used, &solved));
@@ -173,6 +202,7 @@ static PetscErrorCode Step_Coupled(Scheme s) {
     PetscCall(CoupledAttempt(s, dt, &solved));
     if (solved) PetscCall(Advance(s, d, dt));
   }
+  s->report.cfl = s->state.dt * speed / s->fluid->grid->h;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -210,6 +240,13 @@ static PetscErrorCode SetUp_Coupled(Scheme s) {
   s->old = &d->old;
   PetscCall(StepControlCreate(s->scene, s->membrane, &d->control));
   if (d->control.on) s->level = &d->control.level;
+  if (s->scene->inertia == INERTIA_CONVECTIVE) {
+    PetscReal speed;
+    PetscCall(ConvectionCreate(s->scene, s->fluid, &d->convection));
+    PetscCall(CoupledSpeed(s, &speed));
+    if (!d->control.on) PetscCall(CheckCourant(s, s->scene->dt, speed));
+    PetscCheck(!*s->report.failure, s->scene->comm, PETSC_ERR_USER_INPUT, "%s", s->report.failure);
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -263,6 +300,7 @@ static PetscErrorCode Destroy_Coupled(Scheme s) {
   PetscFunctionBeginUser;
   PetscCall(SaddleDestroy(&d->saddle));
   PetscCall(DirectSolverDestroy(&d->direct));
+  PetscCall(ConvectionDestroy(&d->convection));
   for (int k = 0; k < 2; k++) {
     Vec *all[] = {&states[k]->w, &states[k]->p, &states[k]->sigma, &states[k]->X, &states[k]->U, &states[k]->walls};
     for (int i = 0; i < 6; i++) PetscCall(VecDestroy(all[i]));

@@ -1,15 +1,17 @@
 /* What schemes coupled and direct share: one unsplit step of backward Euler or BDF2 (DESIGN section 7). */
 #pragma once
 #include "coupling/saddle.h"
+#include "fluid/convection.h"
 #include "scheme/adapt.h"
 #include "scheme/bdf.h"
 #include "scheme/direct.h"
 #include "scheme/scheme.h"
 
 typedef struct {
-  Saddle saddle;       /* scheme coupled: FGMRES */
-  DirectSolver direct; /* scheme direct: sparse LU */
-  State old, next;     /* the state before, the one being made */
+  Saddle saddle;         /* scheme coupled: FGMRES */
+  DirectSolver direct;   /* scheme direct: sparse LU */
+  Convection convection; /* NULL unless the fluid has it */
+  State old, next;       /* the state before, the one being made */
   PetscInt order;
   PetscBool length_target, area_target;
   StepControl control;
@@ -17,6 +19,10 @@ typedef struct {
   Vec f;              /* momentum's right-hand side */
   Vec Xstar, Xhat, Y; /* extrapolated markers, BDF history of the markers, Xhat + u_inf/a0 */
 } Coupled;
+
+/* CoupledSpeed - max(|u| + |v|) of the state's flow, which bounds the step by -time_cfl_limit h over it; 0 without
+   convection. */
+PETSC_EXTERN PetscErrorCode CoupledSpeed(Scheme scheme, PetscReal *speed);
 
 /* CoupledAttempt - solve one step of size dt from the state into next; false with report.failure when it cannot be. */
 PETSC_EXTERN PetscErrorCode CoupledAttempt(Scheme scheme, PetscReal dt, PetscBool *solved);

@@ -57,6 +57,12 @@ PetscErrorCode DirectSolverDestroy(DirectSolver *solver) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Quasi-steady flow in a periodic box: the forces add up to zero and leave the mean velocity free. */
+static PetscBool NoMean(DirectSolver d) {
+  const Grid g = d->fluid->grid;
+  return d->fluid->alpha == 0 && !g->wall[0] && !g->wall[1] ? PETSC_TRUE : PETSC_FALSE;
+}
+
 /* H and G, G^T: each rank its own rows. */
 static PetscErrorCode AddFluid(DirectSolver d, Mat A) {
   const Grid g = d->fluid->grid;
@@ -69,7 +75,7 @@ static PetscErrorCode AddFluid(DirectSolver d, Mat A) {
         const PetscInt ahead = f == FIELD_U ? Index(d, FIELD_P, (i + 1) % g->n[0], j)
                                             : Index(d, FIELD_P, i, (j + 1) % g->n[1]);
         const PetscInt here = Index(d, FIELD_P, i, j);
-        PetscReal diagonal = d->fluid->a0 + 4 * off;
+        PetscReal diagonal = d->fluid->alpha + 4 * off;
         for (int k = 0; k < 4; k++) {
           PetscInt c = i + di[k], r = j + dj[k];
           const PetscBool outside = c < 0 || c >= g->columns[f] || r < 0 || r >= g->all_rows[f] ? PETSC_TRUE
@@ -90,6 +96,8 @@ static PetscErrorCode AddFluid(DirectSolver d, Mat A) {
       }
   if (!g->rank)
     PetscCall(MatSetValue(A, Index(d, FIELD_P, 0, 0), Index(d, FIELD_P, 0, 0), -1, ADD_VALUES)); /* p_0 = 0 */
+  for (int f = FIELD_U; f <= FIELD_V && NoMean(d) && !g->rank; f++)
+    PetscCall(MatSetValue(A, Index(d, f, 0, 0), Index(d, f, 0, 0), off, ADD_VALUES)); /* u_0 = v_0 = 0 */
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -246,6 +254,7 @@ PetscErrorCode DirectSolverSolve(DirectSolver d, Vec f, Vec g_s, Vec w, Vec p, V
   PetscCall(CopyPart(p, x + nw, np));
   PetscCall(VecSum(p, &mean));
   PetscCall(VecShift(p, -mean / ((PetscReal)g->n[0] * g->n[1])));
+  if (NoMean(d)) PetscCall(FluidRemoveMean(d->fluid, w));
   if (d->M) {
     PetscCall(VecGetArray(sigma, &s));
     if (g->rank == g->size - 1) PetscCall(PetscArraycpy(s, x + nw + np, d->M));

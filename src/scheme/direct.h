@@ -19,7 +19,7 @@ PETSC_EXTERN PetscErrorCode DirectSolverCreate(Fluid fluid, Coupling coupling, S
 PETSC_EXTERN PetscErrorCode DirectSolverDestroy(DirectSolver *solver);
 
 /* DirectSolverSolve - [H + B E/a0, G, S; G^T; S^T] (w, p, sigma) = (f, -bc2, g) at the coupling's markers, p of zero
-   mean. The markers' velocity U
+   mean (and w in a periodic box with alpha = 0). The markers' velocity U
    and the force F = Dm^T sigma/h^2 + (c_b ds/(h^2 a0)) D4 U on them are unknowns of their own, so that the matrix stays
    sparse. Afterwards solver->why
    says how it went. Collective. */

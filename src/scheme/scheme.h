@@ -24,6 +24,7 @@ typedef struct {
   PetscReal div_max;                /* max |G^T u + bc2|, what the solver left of the divergence */
   PetscReal surface_div_max;        /* max |h^2 (S^T u - g)/ds|, self-mobility included */
   PetscReal area_shift;             /* largest shift that restored a vesicle\'s area (length) */
+  PetscReal cfl;                    /* dt max(|u| + |v|)/h; 0 without convection */
   PetscReal seconds;                /* wall, output excluded */
   char failure[PETVES_MAX_MESSAGE]; /* why the step could not be taken; empty when it was */
 } StepReport;

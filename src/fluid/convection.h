@@ -1,0 +1,29 @@
+/* Convection of the disturbance u' = u - u_inf, explicit in time:
+       N(u') = (u' + u_inf).grad u' + u'.grad u_inf
+   The first part is skew-symmetric on the staggered grid, so it keeps the energy h^2/2 SUM |u'|^2 to rounding, whatever
+   the divergence of the carrying flow; u_inf.grad u_inf, a gradient for the flows offered, is left to the pressure. */
+#pragma once
+#include "fluid/fluid.h"
+
+typedef struct _p_Convection *Convection;
+struct _p_Convection {
+  Fluid fluid; /* borrowed */
+  Flow flow;
+  PetscInt width, height;   /* of the padded arrays: a face more on every side than cells */
+  PetscReal *background[2]; /* u_inf on the padded faces */
+  PetscReal *own[2];        /* u' there */
+  PetscReal *carrier[2];    /* u' + u_inf there */
+};
+
+/* ConvectionCreate - for the scene's background flow, whose values must be the same across periodic boundaries (checked
+   by SceneSetInertia). Collective. */
+PETSC_EXTERN PetscErrorCode ConvectionCreate(Scene scene, Fluid fluid, Convection *convection);
+PETSC_EXTERN PetscErrorCode ConvectionDestroy(Convection *convection);
+
+/* ConvectionAdd - r += alpha N, from the solved velocity w (u', or u' + u_inf in the total form); r must not be w.
+   Collective. */
+PETSC_EXTERN PetscErrorCode ConvectionAdd(Convection convection, PetscReal alpha, Vec w, Vec r);
+
+/* ConvectionSpeed - max over cells of |u| + |v| of the whole velocity u' + u_inf, which times dt/h is the CFL number.
+   Collective. */
+PETSC_EXTERN PetscErrorCode ConvectionSpeed(Convection convection, Vec w, PetscReal *speed);

@@ -1,0 +1,340 @@
+/* Convection: its discrete form keeps energy and momentum and is of second order; Navier-Stokes flow against a vortex
+   carried by a stream, and against manufactured solutions. Quasi-steady flow: the limit of a slow step. */
+#include "check.h"
+#include "fluid/stokes.h"
+#include "fluid/convection.h"
+
+#define NU 0.05
+
+typedef void (*Exact)(PetscReal x, PetscReal y, PetscReal t, PetscReal value[3]); /* u', v', p */
+
+/* u' and p of a stream function psi = amplitude P(x) Q(y) that is odd about walls after one derivative. */
+static void Flow2(PetscReal amplitude, const PetscReal P[2], const PetscReal Q[2], PetscReal value[3]) {
+  value[0] = amplitude * P[0] * Q[1];
+  value[1] = -amplitude * P[1] * Q[0];
+}
+
+static void InChannel(PetscReal x, PetscReal y, PetscReal t, PetscReal value[3]) {
+  const PetscReal phase = PETSC_PI * x - t, half = PETSC_PI * (y + 1) / 2;
+  const PetscReal P[2] = {PetscSinReal(phase), PETSC_PI * PetscCosReal(phase)};
+  const PetscReal Q[2] = {PetscSqr(PetscSinReal(half)), PETSC_PI / 2 * PetscSinReal(2 * half)};
+  Flow2(0.3 * (1 + 0.5 * PetscSinReal(2 * t)), P, Q, value);
+  value[2] = PetscCosReal(PETSC_PI * x) * PetscCosReal(PETSC_PI * y);
+}
+
+static void InBox(PetscReal x, PetscReal y, PetscReal t, PetscReal value[3]) {
+  const PetscReal halves[2] = {PETSC_PI * (x + 1) / 2, PETSC_PI * (y + 1) / 2};
+  PetscReal F[2][2];
+  for (int d = 0; d < 2; d++) {
+    F[d][0] = PetscSqr(PetscSinReal(halves[d]));
+    F[d][1] = PETSC_PI / 2 * PetscSinReal(2 * halves[d]);
+  }
+  Flow2(0.4 * (1 + 0.5 * PetscSinReal(2 * t)), F[0], F[1], value);
+  value[2] = PetscCosReal(PETSC_PI * x) * PetscCosReal(PETSC_PI * y);
+}
+
+/* Vortices of wave number pi, carried by a stream (1, 0) and decaying: an exact solution of Navier-Stokes. */
+static void Carried(PetscReal x, PetscReal y, PetscReal t, PetscReal value[3]) {
+  const PetscReal a = PETSC_PI * (x - t), b = PETSC_PI * y, decay = PetscExpReal(-2 * NU * PETSC_PI * PETSC_PI * t);
+  value[0] = decay * PetscSinReal(a) * PetscCosReal(b);
+  value[1] = -decay * PetscCosReal(a) * PetscSinReal(b);
+  value[2] = decay * decay * (PetscCosReal(2 * a) + PetscCosReal(2 * b)) / 4;
+}
+
+/* Derivative of component c: axis 0 x, 1 y, 2 t; by differences of fourth order. */
+static PetscReal First(Exact f, int c, int axis, const PetscReal at[3]) {
+  const PetscReal d = 1e-3, weight[2] = {8, -1};
+  PetscReal sum = 0, value[3];
+  for (int k = 1; k <= 2; k++)
+    for (int side = -1; side <= 1; side += 2) {
+      PetscReal q[3] = {at[0], at[1], at[2]};
+      q[axis] += side * k * d;
+      f(q[0], q[1], q[2], value);
+      sum += side * weight[k - 1] * value[c] / (12 * d);
+    }
+  return sum;
+}
+
+static PetscReal Laplacian(Exact f, int c, const PetscReal at[3]) {
+  const PetscReal d = 2e-3, weight[2] = {16, -1};
+  PetscReal sum = 0, value[3];
+  f(at[0], at[1], at[2], value);
+  sum = -60 * value[c];
+  for (int axis = 0; axis < 2; axis++)
+    for (int k = 1; k <= 2; k++)
+      for (int side = -1; side <= 1; side += 2) {
+        PetscReal q[3] = {at[0], at[1], at[2]};
+        q[axis] += side * k * d;
+        f(q[0], q[1], q[2], value);
+        sum += weight[k - 1] * value[c];
+      }
+  return sum / (12 * d * d);
+}
+
+/* N of the exact flow at a point. */
+static PetscReal ExactConvection(const Flow *flow, Exact f, int c, const PetscReal at[3]) {
+  PetscReal value[3], background[2], gradient[2][2], sum = 0;
+  f(at[0], at[1], at[2], value);
+  FlowVelocity(flow, at[0], at[1], background);
+  FlowGradient(flow, at[0], at[1], gradient);
+  for (int b = 0; b < 2; b++) sum += (value[b] + background[b]) * First(f, c, b, at) + value[b] * gradient[c][b];
+  return sum;
+}
+
+typedef enum { VALUE, CONVECTION, FORCE } What;
+
+/* A velocity vector of the exact flow's values, convection, or the force that upholds it. */
+static PetscErrorCode Sample(Scene scene, Grid g, Exact f, PetscReal t, What what, Vec w) {
+  PetscScalar *a;
+  PetscReal at[3] = {0, 0, t}, value[3];
+  PetscFunctionBeginUser;
+  PetscCall(VecGetArray(w, &a));
+  for (int c = 0; c < 2; c++)
+    for (PetscInt j = 0; j < g->rows[c]; j++)
+      for (PetscInt i = 0; i < g->columns[c]; i++) {
+        PetscScalar *entry = a + (c ? GridLocalU(g) : 0) + j * g->columns[c] + i;
+        GridPosition(g, (Field)c, i, j + g->first, at);
+        f(at[0], at[1], t, value);
+        *entry = value[c];
+        if (what != VALUE) *entry = ExactConvection(&scene->flow, f, c, at);
+        if (what == FORCE) *entry += First(f, c, 2, at) + First(f, 2, c, at) - scene->viscosity * Laplacian(f, c, at);
+      }
+  PetscCall(VecRestoreArray(w, &a));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A scheme without vesicles, of n cells across, options after the common ones. */
+typedef struct {
+  Scene scene;
+  Shape shape;
+  Fluid fluid;
+  Membrane membrane;
+  Scheme scheme;
+} Run;
+
+static PetscErrorCode RunCreate(const char options[], PetscInt n, PetscReal dt, Run *r) {
+  char all[1024];
+  PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(all, sizeof(all),
+                          "-vesicle_shape none -scheme_startup euler -coupled_ksp_rtol 1e-11 -fluid_viscosity %.17g "
+                          "-fluid_inertia convective -domain_cells %" PetscInt_FMT ",%" PetscInt_FMT
+                          " -time_step %.17g %s",
+                          NU, n, n, (double)dt, options));
+  PetscCall(TestScene(all, &r->scene));
+  PetscCall(ShapeCreate(r->scene, 1.5, 1, &r->shape));
+  PetscCall(FluidCreate(r->scene, &r->fluid));
+  PetscCall(MembraneCreate(&r->shape, 0, DERIVATIVE_FD, &r->membrane));
+  PetscCall(SchemeCreate(r->scene, r->fluid, r->membrane, NULL, r->shape.X, &r->scheme));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode RunDestroy(Run *r) {
+  PetscFunctionBeginUser;
+  PetscCall(SchemeDestroy(&r->scheme));
+  PetscCall(MembraneDestroy(&r->membrane));
+  PetscCall(FluidDestroy(&r->fluid));
+  PetscCall(ShapeDestroy(&r->shape));
+  PetscCall(SceneDestroy(&r->scene));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Root mean square velocity error at time t_end, from the exact start; forced: with the force that upholds f. w: copy
+   of the end state, or NULL. */
+static PetscErrorCode Error(const char options[], Exact f, PetscBool forced, PetscInt n, PetscInt steps,
+                            PetscReal t_end, PetscReal *error, Vec *w) {
+  const PetscReal dt = t_end / steps;
+  Run r;
+  Vec exact;
+  PetscFunctionBeginUser;
+  PetscCall(RunCreate(options, n, dt, &r));
+  PetscCall(VecDuplicate(r.scheme->state.w, &exact));
+  PetscCall(Sample(r.scene, r.fluid->grid, f, 0, VALUE, r.scheme->state.w));
+  if (forced) PetscCall(VecDuplicate(exact, &r.fluid->bc1)); /* momentum's right-hand side takes it as it is */
+  for (PetscInt k = 1; k <= steps; k++) {
+    if (forced) PetscCall(Sample(r.scene, r.fluid->grid, f, k * dt, FORCE, r.fluid->bc1));
+    PetscCall(SchemeStep(r.scheme, dt));
+    PetscCheck(!*r.scheme->report.failure, PETSC_COMM_WORLD, PETSC_ERR_LIB, "%s", r.scheme->report.failure);
+  }
+  PetscCall(Sample(r.scene, r.fluid->grid, f, t_end, VALUE, exact));
+  PetscCall(VecAYPX(exact, -1, r.scheme->state.w));
+  PetscCall(VecNorm(exact, NORM_2, error));
+  *error *= r.fluid->grid->h / 2; /* the box is 2 x 2 */
+  if (w) {
+    PetscCall(VecDuplicate(exact, w));
+    PetscCall(VecCopy(r.scheme->state.w, *w));
+  }
+  PetscCall(VecDestroy(&exact));
+  PetscCall(RunDestroy(&r));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+#define PERIODIC "-domain_bc_x periodic -domain_bc_y periodic "
+#define STREAM "-flow_type poiseuille -flow_half_width 1e7 "
+#define CHANNEL "-domain_bc_x periodic -flow_type poiseuille -flow_half_width 1 "
+
+/* u.N(u) = 0 to rounding for any velocity, divergence or not, on any carrying stream that walls do not cut; and for a
+   divergence-free one in a periodic box N adds up to zero. */
+static PetscErrorCode CheckConservation(const char name[], const char options[]) {
+  Run r;
+  Convection c;
+  Stokes stokes;
+  Vec w, N;
+  PetscReal product, size[2];
+  PetscScalar sum;
+  PetscFunctionBeginUser;
+  PetscCall(RunCreate(options, 24, 1e-6, &r));
+  PetscCall(ConvectionCreate(r.scene, r.fluid, &c));
+  PetscCall(VecDuplicate(r.scheme->state.w, &w));
+  PetscCall(VecDuplicate(w, &N));
+  PetscCall(TestRandomVec(3, w));
+  for (int free = 0; free < 2; free++) {
+    if (free) {
+      PetscCall(StokesCreate(r.fluid, &stokes));
+      PetscCall(StokesSolve(stokes, w, NULL, w, r.scheme->state.p));
+      PetscCall(StokesDestroy(&stokes));
+    }
+    PetscCall(VecSet(N, 0));
+    PetscCall(ConvectionAdd(c, 1, w, N));
+    PetscCall(VecDot(w, N, &product));
+    PetscCall(VecNorm(w, NORM_2, &size[0]));
+    PetscCall(VecNorm(N, NORM_2, &size[1]));
+    CHECK(PetscAbsReal(product) <= 1e-12 * size[0] * size[1] && size[1] > 0,
+          "%s, %s velocity: convection keeps the energy, u.N over |u| |N| = %.1e", name,
+          free ? "divergence-free" : "random", (double)(product / (size[0] * size[1])));
+  }
+  PetscCall(VecSum(N, &sum));
+  if (!r.fluid->grid->wall[0] && !r.fluid->grid->wall[1])
+    CHECK(PetscAbsReal(sum) <= 1e-11 * size[1] * 24, "%s: convection keeps the momentum, sum of N over its size %.1e",
+          name, (double)(sum / (size[1] * 24)));
+  PetscCall(VecDestroy(&w));
+  PetscCall(VecDestroy(&N));
+  PetscCall(ConvectionDestroy(&c));
+  PetscCall(RunDestroy(&r));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* N against its formula, second order. */
+static PetscErrorCode CheckConsistency(const char name[], const char options[], Exact f) {
+  PetscReal error[2];
+  PetscFunctionBeginUser;
+  for (int k = 0; k < 2; k++) {
+    Run r;
+    Convection c;
+    Vec w, N;
+    PetscCall(RunCreate(options, 24 << k, 1e-6, &r));
+    PetscCall(ConvectionCreate(r.scene, r.fluid, &c));
+    PetscCall(VecDuplicate(r.scheme->state.w, &w));
+    PetscCall(VecDuplicate(w, &N));
+    PetscCall(Sample(r.scene, r.fluid->grid, f, 0.3, VALUE, w));
+    PetscCall(Sample(r.scene, r.fluid->grid, f, 0.3, CONVECTION, N));
+    if (r.fluid->total) PetscCall(VecAXPY(w, 1, r.fluid->background));
+    PetscCall(ConvectionAdd(c, -1, w, N));
+    PetscCall(VecNorm(N, NORM_2, &error[k]));
+    error[k] *= r.fluid->grid->h / 2;
+    PetscCall(VecDestroy(&w));
+    PetscCall(VecDestroy(&N));
+    PetscCall(ConvectionDestroy(&c));
+    PetscCall(RunDestroy(&r));
+  }
+  CHECK(error[0] / error[1] > 3.6 && error[0] < 0.1, "%s: convection is of second order, error %.1e and %.1e", name,
+        (double)error[0], (double)error[1]);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Second order when h and dt go down together, and in dt alone at fixed h. */
+static PetscErrorCode CheckOrder(const char name[], const char options[], Exact f, PetscBool forced) {
+  PetscReal error[3], apart[2];
+  Vec w[3];
+  PetscFunctionBeginUser;
+  for (int k = 0; k < 2; k++) PetscCall(Error(options, f, forced, 16 << k, 16 << k, 0.4, &error[k], NULL));
+  CHECK(error[0] / error[1] > 3.4 && error[0] < 0.05, "%s: second order in h and dt, error %.1e and %.1e", name,
+        (double)error[0], (double)error[1]);
+  for (int k = 0; k < 3; k++) PetscCall(Error(options, f, forced, 16, 16 << k, 0.4, &error[k], &w[k]));
+  for (int k = 0; k < 2; k++) {
+    PetscCall(VecAXPY(w[k], -1, w[k + 1]));
+    PetscCall(VecNorm(w[k], NORM_2, &apart[k]));
+  }
+  CHECK(apart[0] / apart[1] > 3.4 && apart[1] > 0, "%s: second order in dt, differences %.1e and %.1e", name,
+        (double)apart[0], (double)apart[1]);
+  for (int k = 0; k < 3; k++) PetscCall(VecDestroy(&w[k]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Galilean invariance of the fluid alone: unsteady Stokes flow leaves the vortices where they were. */
+static PetscErrorCode CheckUnsteady(void) {
+  PetscReal with, without;
+  PetscFunctionBeginUser;
+  PetscCall(Error(PERIODIC STREAM, Carried, PETSC_FALSE, 32, 64, 0.4, &with, NULL));
+  PetscCall(Error(PERIODIC STREAM "-fluid_inertia unsteady", Carried, PETSC_FALSE, 32, 64, 0.4, &without, NULL));
+  CHECK(with < 0.01 && without > 30 * with, "vortices in a stream: error %.1e with convection, %.1e without",
+        (double)with, (double)without);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Stokes() at alpha = 0 is the limit of small alpha, and in a periodic box has no mean. */
+static PetscErrorCode CheckQuasiSteady(const char name[], const char options[]) {
+  const char *const inertia[] = {"-fluid_inertia none", "-fluid_inertia unsteady"};
+  Vec w[2], p[2], force;
+  PetscReal apart, size;
+  PetscScalar mean;
+  PetscFunctionBeginUser;
+  for (int k = 0; k < 2; k++) {
+    char all[256];
+    Run r;
+    Stokes stokes;
+    PetscCall(PetscSNPrintf(all, sizeof(all), "%s %s", options, inertia[k]));
+    PetscCall(RunCreate(all, 24, 1, &r));
+    PetscCall(FluidSetTimeCoefficient(r.fluid, 1e-7));
+    if (!k) CHECK(r.fluid->alpha == 0 && r.fluid->a0 > 0, "%s: no inertia in quasi-steady flow", name);
+    PetscCall(VecDuplicate(r.scheme->state.w, &force));
+    PetscCall(VecDuplicate(force, &w[k]));
+    PetscCall(VecDuplicate(r.scheme->state.p, &p[k]));
+    PetscCall(Sample(r.scene, r.fluid->grid, InBox, 0, FORCE, force));
+    if (!r.fluid->grid->wall[0] && !r.fluid->grid->wall[1]) PetscCall(FluidRemoveMean(r.fluid, force));
+    PetscCall(StokesCreate(r.fluid, &stokes));
+    PetscCall(StokesSolve(stokes, force, NULL, w[k], p[k]));
+    PetscCall(StokesDestroy(&stokes));
+    PetscCall(VecDestroy(&force));
+    PetscCall(RunDestroy(&r));
+  }
+  PetscCall(VecSum(w[0], &mean));
+  PetscCall(VecNorm(w[0], NORM_2, &size));
+  if (strstr(options, "bc_y")) CHECK(PetscAbsReal(mean) <= 1e-10 * size, "%s: no mean flow", name);
+  PetscCall(VecAXPY(w[1], -1, w[0]));
+  PetscCall(VecNorm(w[1], NORM_2, &apart));
+  CHECK(apart <= 1e-4 * size && apart > 0, "%s: velocity is the limit of small inertia, %.1e apart", name,
+        (double)(apart / size));
+  PetscCall(VecNorm(p[0], NORM_2, &size));
+  PetscCall(VecAXPY(p[1], -1, p[0]));
+  PetscCall(VecNorm(p[1], NORM_2, &apart));
+  CHECK(apart <= 1e-4 * size, "%s: pressure is the limit of small inertia, %.1e apart", name, (double)(apart / size));
+  for (int k = 0; k < 2; k++) {
+    PetscCall(VecDestroy(&w[k]));
+    PetscCall(VecDestroy(&p[k]));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Facts(void) {
+  PetscFunctionBeginUser;
+  PetscCall(CheckConservation("periodic", PERIODIC));
+  PetscCall(CheckConservation("periodic with a stream", PERIODIC STREAM));
+  PetscCall(CheckConservation("channel", "-domain_bc_x periodic"));
+  PetscCall(CheckConservation("walls", ""));
+  PetscCall(CheckConsistency("poiseuille in a channel", CHANNEL, InChannel));
+  PetscCall(CheckConsistency("poiseuille in a channel, total form", CHANNEL "-flow_form total", InChannel));
+  PetscCall(CheckConsistency("shear between walls", "-flow_type shear", InBox));
+  PetscCall(CheckConsistency("extension between walls", "-flow_type extension", InBox));
+  PetscCall(CheckOrder("vortices in a stream", PERIODIC STREAM, Carried, PETSC_FALSE));
+  PetscCall(CheckOrder("manufactured, poiseuille in a channel", CHANNEL, InChannel, PETSC_TRUE));
+  PetscCall(CheckOrder("manufactured, shear between walls", "-flow_type shear", InBox, PETSC_TRUE));
+  PetscCall(CheckUnsteady());
+  PetscCall(CheckQuasiSteady("periodic box", PERIODIC));
+  PetscCall(CheckQuasiSteady("channel", "-domain_bc_x periodic"));
+  PetscCall(CheckQuasiSteady("walls", ""));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+int main(int argc, char **argv) {
+  return CheckMain(argc, argv, Facts);
+}
