@@ -23,6 +23,7 @@ static PetscErrorCode Create(World *w) {
   PetscCall(SceneCreate(PETSC_COMM_WORLD, &w->scene));
   const Kernel *kernel = KernelFind(w->scene->delta);
   PetscCall(ShapeCreate(w->scene, kernel->default_spacing, kernel->least_spacing, &w->shape));
+  PetscCall(SceneSetInertia(w->scene, &w->shape));
   PetscCall(WisdomRead(w->scene));
   PetscCall(FluidCreate(w->scene, &w->fluid));
   PetscCall(MembraneCreate(&w->shape, w->scene->bending, (DerivativeType)w->scene->derivative, &w->membrane));
