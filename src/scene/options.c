@@ -21,7 +21,7 @@ static const Option table[] = {
   {"-domain_cells", OPT_INTS, AT(cells), "128,128", ">=8", "cells in x and y; cells must be square"},
   {"-domain_bc_x", OPT_ENUM, AT(bc[0]), "wall", "wall|periodic", "boundaries at x_min and x_max"},
   {"-domain_bc_y", OPT_ENUM, AT(bc[1]), "wall", "wall|periodic", "boundaries at y_min and y_max"},
-  {"-flow_type", OPT_ENUM, AT(flow.type), "quiescent", "quiescent|shear|poiseuille|extension", "background flow"},
+  {"-flow_type", OPT_ENUM, AT(flow.type), "quiescent", "quiescent|shear|poiseuille|extension|custom", "background flow; custom: a function given from Python or C"},
   {"-flow_rate", OPT_REAL, AT(flow.rate), "1", "any", "rate of shear or extension (1/time)"},
   {"-flow_peak_velocity", OPT_REAL, AT(flow.peak), "1", "any", "u_max of poiseuille (length/time)"},
   {"-flow_half_width", OPT_REAL, AT(flow.half_width), "3", ">0", "L_y of poiseuille: half the channel's height (length)"},

@@ -16,7 +16,7 @@ typedef struct {
 } IntList;
 
 typedef enum { BC_WALL, BC_PERIODIC } BoundaryType;
-typedef enum { FLOW_QUIESCENT, FLOW_SHEAR, FLOW_POISEUILLE, FLOW_EXTENSION } FlowType;
+typedef enum { FLOW_QUIESCENT, FLOW_SHEAR, FLOW_POISEUILLE, FLOW_EXTENSION, FLOW_CUSTOM } FlowType;
 typedef enum { FORM_DISTURBANCE, FORM_TOTAL } FlowForm;
 typedef enum { INERTIA_AUTO, INERTIA_NONE, INERTIA_UNSTEADY, INERTIA_CONVECTIVE } InertiaType;
 typedef enum { DERIVATIVE_FD, DERIVATIVE_BENDING, DERIVATIVE_SPECTRAL } DerivativeType;
@@ -25,12 +25,15 @@ typedef enum { ADAPT_NONE, ADAPT_ERROR } AdaptType;
 typedef enum { STARTUP_EULER, STARTUP_GRADED } StartUp;
 typedef enum { SHAPE_ELLIPSE, SHAPE_FILE, SHAPE_NONE } ShapeType;
 
-/* Background flow u_inf, an exact steady solution of the Stokes equations (DESIGN section 2). Lengths and times are in
-   the user's units. */
+/* Background flow u_inf, an exact solution of the Stokes equations (DESIGN section 2), or of a caller's own. Lengths
+   and times are in the user's units. */
 typedef struct {
   PetscInt type; /* FlowType */
   PetscInt form; /* FlowForm */
   PetscReal rate, peak, half_width, center[2];
+  PetvesFlow function; /* FLOW_CUSTOM: the caller's, with its context */
+  void *ctx;
+  PetscReal time; /* at which u_inf is asked, for FLOW_CUSTOM: whoever asks sets it */
 } Flow;
 
 /* Closed curves as equal-edge markers, counter-clockwise. X holds x0,y0,x1,y1,... of all vesicles one after another;
@@ -122,8 +125,12 @@ PETSC_EXTERN PetscErrorCode SceneView(Scene scene, const Shape *shape, PetscView
 /* SceneCellSize - h, the edge of the square cells. */
 PETSC_EXTERN PetscReal SceneCellSize(Scene scene);
 
-/* FlowVelocity - u_inf[2] at (x, y). */
+/* FlowVelocity - u_inf[2] at (x, y) and flow->time; NaN when a custom flow's function fails. */
 PETSC_EXTERN void FlowVelocity(const Flow *flow, PetscReal x, PetscReal y, PetscReal u[2]);
+
+/* FlowVelocities - u_inf at n points X[2n] and flow->time, u[2n]: one call of a custom flow's function, whose error is
+   returned; a value that is not finite is the user's mistake. */
+PETSC_EXTERN PetscErrorCode FlowVelocities(const Flow *flow, PetscInt n, const PetscReal X[], PetscReal u[]);
 
 /* FlowPressureGradient - grad p_inf[2] at any point (uniform for the flows offered) for viscosity nu. */
 PETSC_EXTERN void FlowPressureGradient(const Flow *flow, PetscReal nu, PetscReal g[2]);
