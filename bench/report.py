@@ -254,9 +254,12 @@ def _draw_solves(results: Path, folder: Path) -> Path:
                 if points:
                     panel.loglog(*zip(*points), style, color=colour, ms=4, lw=1, label=f"{name}, {what}")
         panel.axhline(25, color="k", lw=0.8, ls=":")
+        cells = sorted({one["cells"] for one in lines})
         panel.set(xlabel="cells a direction", ylabel="time over a copy of the array", title=box)
+        panel.set_xticks(cells, [str(n) for n in cells])
+        panel.minorticks_off()
         panel.grid(alpha=0.3)
-    axes[0].legend(frameon=False, fontsize=6)
+    axes[1].legend(frameon=False, fontsize=6, loc="upper left", bbox_to_anchor=(1.0, 1.0))
     return save_figure(figure, folder / "solves.png")
 
 
