@@ -32,6 +32,7 @@ LIBS = $(shell $(PKG) --libs PETSc hdf5-openmpi fftw3) -lfftw3_mpi -lm $(if $(PE
 SOURCES := $(filter-out src/main.c,$(wildcard src/*.c src/*/*.c))
 OBJECTS := $(SOURCES:src/%.c=$(BUILD)/%.o)
 LIBRARY := $(LIBDIR)/libpetves.so
+BENCHES := $(patsubst bench/%.c,$(BUILD)/bench/%,$(wildcard bench/bench_*.c))
 TESTS := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/test_*.c))
 
 # Open MPI: run as root, and on more ranks than cores.
@@ -42,7 +43,7 @@ export OMPI_MCA_mpi_yield_when_idle := 1
 export OMPI_MCA_btl_vader_single_copy_mechanism := none
 export OMP_NUM_THREADS := 1
 
-.PHONY: all help deps test-deps run test coverage reproduce install format check-format clean tests
+.PHONY: all help deps test-deps run test coverage reproduce bench install format check-format clean tests benches
 all: $(BIN)/petves ## build bin/petves and lib/libpetves.so
 
 help: ## list the targets
@@ -64,7 +65,12 @@ $(BUILD)/tests/%: tests/%.c tests/check.h $(LIBRARY)
 	@mkdir -p $(@D)
 	$(CC) $(CFLAGS) -Itests -o $@ $< -L$(LIBDIR) -lpetves -Wl,-rpath,$(CURDIR)/$(LIBDIR) $(LIBS)
 
-tests: $(TESTS)
+$(BUILD)/bench/%: bench/%.c bench/bench.h tests/check.h $(LIBRARY)
+	@mkdir -p $(@D)
+	$(CC) $(CFLAGS) -Itests -Ibench -o $@ $< -L$(LIBDIR) -lpetves -Wl,-rpath,$(CURDIR)/$(LIBDIR) $(LIBS)
+
+tests: $(TESTS) $(BENCHES)
+benches: $(BENCHES)
 
 define install_packages
 	@missing=$$(for p in $(1); do dpkg-query -W -f '$${Status}' $$p 2>/dev/null | grep -q 'install ok installed' || echo $$p; done); \
@@ -95,6 +101,10 @@ test: test-deps ## run every test; ends with "N passed, N failed"
 	PETVES=$(CURDIR)/$(BIN)/petves PETVES_TESTS=$(CURDIR)/$(BUILD)/tests PYTHONPATH=python SANITIZE=$(SANITIZE) \
 	  $(PYTHON) -m pytest -p no:cacheprovider -q tests $(TESTFLAGS)
 
+bench: deps ## speed on this machine, into bench/results and docs/performance (12 minutes; QUICK=1: 2, into out/bench)
+	@$(MAKE) --no-print-directory all benches
+	PETVES=$(CURDIR)/$(BIN)/petves PETVES_BENCH=$(CURDIR)/$(BUILD)/bench CC="$(CC)" PYTHONPATH=python $(PYTHON) bench/bench.py
+
 coverage: ## line coverage of src/ by the tests (needs gcovr)
 	@command -v gcovr >/dev/null || { echo "gcovr is missing: apt-get install gcovr"; exit 1; }
 	find build-coverage -name '*.gcda' -delete 2>/dev/null || true
@@ -113,14 +123,14 @@ install: all ## install under PREFIX (/usr/local)
 	cp -r runs python/examples $(PREFIX)/share/petves/
 	install -m 644 python/petves/*.py python/petves/*.html $(PYTHON_DIR)/petves/
 
-C_FILES = $(wildcard src/*.c src/*/*.c src/*/*.h include/*.h tests/*.c tests/*.h)
+C_FILES = $(wildcard src/*.c src/*/*.c src/*/*.h include/*.h tests/*.c tests/*.h bench/*.c bench/*.h)
 format: test-deps ## format C and Python
 	clang-format -i $(C_FILES)
-	black -q -l 120 python tests
+	black -q -l 120 python tests bench
 
 check-format: test-deps ## fail when a file is not formatted
 	clang-format --dry-run --Werror $(C_FILES)
-	black -q --check -l 120 python tests
+	black -q --check -l 120 python tests bench
 
 clean: ## remove what was built
 	rm -rf build build-* bin bin-* lib lib-*

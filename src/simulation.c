@@ -1,5 +1,6 @@
 /* A whole run: build everything from the options, step, write. */
 #include "simulation.h"
+#include "fluid/wisdom.h"
 #include <errno.h>
 #include <unistd.h>
 
@@ -64,6 +65,7 @@ static PetscErrorCode Build(MPI_Comm comm, PetvesFlow flow, void *ctx, Simulatio
   PetscCall(ShapeCreate(s->scene, kernel->default_spacing, kernel->least_spacing, &s->shape));
   PetscCall(SceneSetInertia(s->scene, &s->shape));
   if (*s->scene->warning) PetscCall(PetscPrintf(comm, "petves: warning: %s\n", s->scene->warning));
+  PetscCall(WisdomRead(s->scene));
   PetscCall(FluidCreate(s->scene, &s->fluid));
   PetscCall(MembraneCreate(&s->shape, s->scene->bending, (DerivativeType)s->scene->derivative, &s->membrane));
   if (s->shape.vesicles) PetscCall(CouplingCreate(s->fluid->grid, s->membrane, s->scene->delta, &s->coupling));
@@ -89,7 +91,10 @@ PetscErrorCode SimulationCreateWithFlow(MPI_Comm comm, PetvesFlow flow, void *ct
   PetscCall(Build(comm, flow, ctx, s));
   if (s->scene->view) PetscCall(SimulationView(s, PETSC_VIEWER_STDOUT_(comm)));
   PetscCall(PetscOptionsHasHelp(NULL, &only_help));
-  if (!only_help) PetscCall(OutputCreate(s->scene, s->scheme, &s->output)); /* -help leaves no files */
+  if (!only_help) { /* -help leaves no files */
+    PetscCall(WisdomWrite(s->scene));
+    PetscCall(OutputCreate(s->scene, s->scheme, &s->output));
+  }
   PetscCall(PetvesSetupErrors(PETSC_FALSE));
   PetscCall(PhaseEnd());
   PetscFunctionReturn(PETSC_SUCCESS);

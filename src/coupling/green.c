@@ -63,16 +63,17 @@ static PetscErrorCode Gather(Mobility m, Field f, const PetscScalar a[], PetscRe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode UnitResponse(Mobility m, Stokes stokes, int source, Vec r, Vec u, Vec p, GreenTable *t) {
+/* u: room for the force, then the velocity. */
+static PetscErrorCode UnitResponse(Mobility m, Stokes stokes, int source, Vec u, Vec p, GreenTable *t) {
   const PetscScalar *a;
   PetscScalar *ra;
   const Grid g = m->periodic->grid;
   PetscFunctionBeginUser;
-  PetscCall(VecSet(r, 0));
-  PetscCall(VecGetArray(r, &ra));
+  PetscCall(VecSet(u, 0));
+  PetscCall(VecGetArray(u, &ra));
   if (!g->rank) ra[source ? GridLocalU(g) : 0] = 1;
-  PetscCall(VecRestoreArray(r, &ra));
-  PetscCall(StokesSolve(stokes, r, NULL, u, p));
+  PetscCall(VecRestoreArray(u, &ra));
+  PetscCall(StokesSolve(stokes, u, NULL, u, p));
   PetscCall(VecGetArrayRead(u, &a));
   if (!source) {
     PetscCall(Gather(m, FIELD_U, a, t->grid[GREEN_UU]));
@@ -86,17 +87,15 @@ static PetscErrorCode UnitResponse(Mobility m, Stokes stokes, int source, Vec r,
 static PetscErrorCode BuildTable(Mobility m, PetscReal alpha, GreenTable *t) {
   const PetscInt size = (2 * m->size[0] + 1) * (2 * m->size[1] + 1);
   Stokes stokes;
-  Vec r, u, p;
+  Vec u, p;
   PetscFunctionBeginUser;
   for (int b = 0; b < GREEN_COUNT; b++) PetscCall(PetscMalloc1(size, &t->grid[b]));
   t->alpha = alpha;
   PetscCall(FluidSetTimeCoefficient(m->periodic, alpha));
   PetscCall(StokesCreate(m->periodic, &stokes));
-  PetscCall(DMCreateGlobalVector(m->periodic->grid->velocity, &r));
-  PetscCall(VecDuplicate(r, &u));
+  PetscCall(DMCreateGlobalVector(m->periodic->grid->velocity, &u));
   PetscCall(DMCreateGlobalVector(m->periodic->grid->da[FIELD_P], &p));
-  for (int source = 0; source < 2; source++) PetscCall(UnitResponse(m, stokes, source, r, u, p, t));
-  PetscCall(VecDestroy(&r));
+  for (int source = 0; source < 2; source++) PetscCall(UnitResponse(m, stokes, source, u, p, t));
   PetscCall(VecDestroy(&u));
   PetscCall(VecDestroy(&p));
   PetscCall(StokesDestroy(&stokes));

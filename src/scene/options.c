@@ -61,6 +61,7 @@ static const Option table[] = {
   {"-helmholtz_type", OPT_NAME, AT(helmholtz), "fftw_tridiagonal", "fftw_tridiagonal|fftw|hypre", "fast solver of the velocity Helmholtz problems"},
   {"-poisson_type", OPT_NAME, AT(poisson), "fftw_tridiagonal", "fftw_tridiagonal|fftw|hypre", "fast solver of the pressure Poisson problems"},
   {"-fftw_plan", OPT_ENUM, AT(fftw_plan), "estimate", "estimate|measure|patient", "effort that FFTW spends on planning; estimate gives the same bits every run"},
+  {"-fftw_wisdom", OPT_PATH, AT(fftw_wisdom), "", "", "file of FFTW's measurements: read if it is there, written when a run adds to it"},
   {"-output_dir", OPT_PATH, AT(output_dir), "out/run", "", "folder of every output file"},
   {"-output_overwrite", OPT_BOOL, AT(overwrite), "false", "true|false", "replace the results that -output_dir holds already"},
   {"-output_every", OPT_REAL, AT(output_every), "0.1", ">0", "time between saved fields"},

@@ -47,44 +47,45 @@ typedef struct {
 typedef struct _p_Scene *Scene;
 struct _p_Scene {
   MPI_Comm comm;
-  PetscBool *given;                    /* one flag per row of the option table */
-  RealList box;                        /* x_min, x_max, y_min, y_max */
-  IntList cells;                       /* cells in x and y */
-  PetscInt bc[2];                      /* BoundaryType in x and y */
-  Flow flow;                           /* background flow */
-  PetscReal viscosity;                 /* nu (density is 1) */
-  PetscInt inertia;                    /* InertiaType */
-  PetscInt shape;                      /* ShapeType */
-  PetscInt count;                      /* vesicles */
-  RealList axes, center, angle;        /* semi-axes, centre, angle in degrees; one entry for all, or one a vesicle */
-  RealList area, reduced_area;         /* of the ellipses, instead of semi-axes */
-  char file[PETSC_MAX_PATH_LEN];       /* curve file */
-  PetscReal bending;                   /* c_b */
-  PetscReal spacing;                   /* ds/h; 0: by kernel */
-  PetscInt markers;                    /* 0: from spacing */
-  PetscBool allow_close_markers;       /* accept spacings where the tension problem is near singular */
-  char delta[SCENE_MAX_NAME];          /* kernel */
-  char scheme[SCENE_MAX_NAME];         /* time-stepping scheme */
-  PetscInt order;                      /* order in time */
-  PetscBool length_target;             /* coupled: new edges get the length ds */
-  PetscBool area_target;               /* coupled: markers shifted to their first area after each step */
-  PetscInt self_mobility;              /* SelfMobilityType */
-  PetscInt derivative;                 /* DerivativeType */
-  PetscInt startup;                    /* StartUp */
-  PetscInt mobility;                   /* index in -mobility_type's list */
-  PetscInt adapt;                      /* AdaptType */
-  PetscReal adapt_tol, adapt_max_move; /* error a step over R0; cells a marker may move in a step */
-  PetscReal cfl_limit;                 /* convective: largest dt max(|u| + |v|)/h */
-  PetscReal dt, t_end, steady_tol;     /* time step, end time, stop when max |u.n| falls below steady_tol */
-  char helmholtz[SCENE_MAX_NAME];      /* back end of the Helmholtz solves */
-  char poisson[SCENE_MAX_NAME];        /* back end of the Poisson solves */
-  PetscInt fftw_plan;                  /* 0 estimate, 1 measure, 2 patient */
-  char output_dir[PETSC_MAX_PATH_LEN]; /* every output file goes here */
-  PetscReal output_every;              /* time between saved fields */
-  PetscInt checkpoint_every;           /* steps between checkpoints; 0: only at the end */
-  PetscInt checkpoint_keep;            /* checkpoints kept, the newest included */
-  char restart[PETSC_MAX_PATH_LEN];    /* checkpoint to go on from; empty: none */
-  PetscReal wall_limit;                /* seconds after which to stop; 0: never */
+  PetscBool *given;                     /* one flag per row of the option table */
+  RealList box;                         /* x_min, x_max, y_min, y_max */
+  IntList cells;                        /* cells in x and y */
+  PetscInt bc[2];                       /* BoundaryType in x and y */
+  Flow flow;                            /* background flow */
+  PetscReal viscosity;                  /* nu (density is 1) */
+  PetscInt inertia;                     /* InertiaType */
+  PetscInt shape;                       /* ShapeType */
+  PetscInt count;                       /* vesicles */
+  RealList axes, center, angle;         /* semi-axes, centre, angle in degrees; one entry for all, or one a vesicle */
+  RealList area, reduced_area;          /* of the ellipses, instead of semi-axes */
+  char file[PETSC_MAX_PATH_LEN];        /* curve file */
+  PetscReal bending;                    /* c_b */
+  PetscReal spacing;                    /* ds/h; 0: by kernel */
+  PetscInt markers;                     /* 0: from spacing */
+  PetscBool allow_close_markers;        /* accept spacings where the tension problem is near singular */
+  char delta[SCENE_MAX_NAME];           /* kernel */
+  char scheme[SCENE_MAX_NAME];          /* time-stepping scheme */
+  PetscInt order;                       /* order in time */
+  PetscBool length_target;              /* coupled: new edges get the length ds */
+  PetscBool area_target;                /* coupled: markers shifted to their first area after each step */
+  PetscInt self_mobility;               /* SelfMobilityType */
+  PetscInt derivative;                  /* DerivativeType */
+  PetscInt startup;                     /* StartUp */
+  PetscInt mobility;                    /* index in -mobility_type's list */
+  PetscInt adapt;                       /* AdaptType */
+  PetscReal adapt_tol, adapt_max_move;  /* error a step over R0; cells a marker may move in a step */
+  PetscReal cfl_limit;                  /* convective: largest dt max(|u| + |v|)/h */
+  PetscReal dt, t_end, steady_tol;      /* time step, end time, stop when max |u.n| falls below steady_tol */
+  char helmholtz[SCENE_MAX_NAME];       /* back end of the Helmholtz solves */
+  char poisson[SCENE_MAX_NAME];         /* back end of the Poisson solves */
+  PetscInt fftw_plan;                   /* 0 estimate, 1 measure, 2 patient */
+  char fftw_wisdom[PETSC_MAX_PATH_LEN]; /* file of FFTW's wisdom; empty: none */
+  char output_dir[PETSC_MAX_PATH_LEN];  /* every output file goes here */
+  PetscReal output_every;               /* time between saved fields */
+  PetscInt checkpoint_every;            /* steps between checkpoints; 0: only at the end */
+  PetscInt checkpoint_keep;             /* checkpoints kept, the newest included */
+  char restart[PETSC_MAX_PATH_LEN];     /* checkpoint to go on from; empty: none */
+  PetscReal wall_limit;                 /* seconds after which to stop; 0: never */
   PetscReal limit_edge_ratio, limit_area_error, limit_length_error; /* stop above; 0: no limit */
   PetscBool overwrite, view, allow_unused;
   PetscReal reynolds;               /* set by SceneSetInertia */

@@ -1,5 +1,5 @@
 /* Schemes "coupled" and "direct": the unsplit step, first or second order, unconditionally stable (DESIGN section 7).
-   `coupled` solves it by preconditioned FGMRES, `direct` by a sparse LU factorisation. */
+   `coupled` solves it by preconditioned FGMRES on its forces, `direct` by a sparse LU factorisation. */
 #include "scheme/coupled.h"
 
 /* S^T u = g: the new edges get the length ds, linearised at the extrapolated edge e*:
