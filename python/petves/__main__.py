@@ -1,4 +1,4 @@
-"""Command line: ``python3 -m petves plot|reproduce|accuracy|inertia DIR``."""
+"""Command line: ``python3 -m petves plot|reproduce|accuracy|inertia|stability DIR``."""
 
 from __future__ import annotations
 
@@ -24,6 +24,9 @@ def parser() -> argparse.ArgumentParser:
     inertia = commands.add_parser("inertia", help="run the study of the fluid's inertia: docs/inertia.md's tables")
     inertia.add_argument("folder", metavar="DIR", help="where the tables and the pictures go")
     inertia.add_argument("--quick", action="store_true", help="leave out the channels")
+    maps = commands.add_parser("stability", help="run the stability maps: docs/stability.md's tables and pictures")
+    maps.add_argument("folder", metavar="DIR", help="where the tables and the pictures go")
+    maps.add_argument("--quick", action="store_true", help="only the corners of each map (also QUICK=1)")
     return top
 
 
@@ -58,6 +61,11 @@ def main(arguments: list[str] | None = None) -> int:
             from petves.inertia import inertia
 
             for path in inertia(options.folder, quick=options.quick):
+                print(path)
+        elif options.command == "stability":
+            from petves.stability import stability
+
+            for path in stability(options.folder, quick=options.quick or os.environ.get("QUICK", "") not in ("", "0")):
                 print(path)
         else:
             from petves.reproduce import reproduce
