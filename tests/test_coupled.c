@@ -1,5 +1,5 @@
-/* The coupled problem's parts: its solution put back into the block system, Mob against E A^-1 E^T column by column,
-   the wall forces' preconditioner as an inverse. */
+/* The coupled problem's parts: its solution put back into the equations of the step, Mob against E A^-1 E^T column by
+   column, the wall forces' preconditioner as an inverse. */
 #include "check.h"
 #include "coupling/saddle.h"
 

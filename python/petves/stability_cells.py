@@ -12,8 +12,8 @@ from typing import Callable
 
 import numpy as np
 
-from petves.run import RunError, read_series
-from petves.studies import OPEN_MPI
+from petves.program import OPEN_MPI, program
+from petves.run import read_series
 
 SCHEMES = ("penalty", "split", "coupled")
 MARKS = (
@@ -206,12 +206,9 @@ def run_cell(scheme: str, stages: tuple[str, ...]) -> dict[str, object]:
 
 def _launch(options: str, folder: Path, tries: int = 3) -> tuple[int, str]:
     """Run petves on one rank; return its status (-1: killed or not one line) and its line."""
-    binary = os.environ.get("PETVES", "bin/petves")
-    if not Path(binary).is_file():
-        raise RunError(f"{binary}: no such program; build it with make, or set PETVES")
     try:
         done = subprocess.run(
-            [binary, *options.split(), "-output_dir", str(folder)],
+            [str(program()), *options.split(), "-output_dir", str(folder)],
             env=OPEN_MPI | {"OMPI_MCA_ess_singleton_isolated": "1"} | os.environ,
             capture_output=True,
             text=True,

@@ -37,8 +37,8 @@ static PetscErrorCode CreateMembranePart(Scene scene, Saddle s) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* -coupled_ksp_rtol is relative to the norm of the block system's right-hand side, not to what the initial guess left
-   of it. */
+/* -coupled_ksp_rtol is relative to the norm of the step's right-hand side (f, bc2, g), not to what the initial guess
+   left of it. */
 static PetscErrorCode Converged(KSP ksp, PetscInt it, PetscReal norm, KSPConvergedReason *reason, void *ctx) {
   const Saddle s = (Saddle)ctx;
   PetscReal rtol, atol, dtol;

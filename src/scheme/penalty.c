@@ -63,7 +63,7 @@ static PetscErrorCode Step_Penalty(Scheme s) {
   PetscBool placed = PETSC_TRUE;
   PetscFunctionBeginUser;
   PetscCall(FluidSetTimeCoefficient(s->fluid, 1 / q->dt));
-  if (s->coupling) PetscCall(SchemePlaceMarkers(s, q->X, &placed));
+  if (s->coupling) PetscCall(SchemePlaceMarkers(s, q->X, q->t, &placed));
   if (!placed) PetscFunctionReturn(PETSC_SUCCESS);
   /* 1  forces of springs and bending at X^n */
   PetscCall(Momentum(s, d));

@@ -36,7 +36,7 @@ static PetscErrorCode CreateState(Scheme s, const PetscReal X[]) {
   PetscCall(VecGetArray(q->X, &x));
   PetscCall(PetscArraycpy(x, X, 2 * s->membrane->M));
   PetscCall(VecRestoreArray(q->X, &x));
-  PetscCall(SchemePlaceMarkers(s, q->X, &placed));
+  PetscCall(SchemePlaceMarkers(s, q->X, q->t, &placed));
   PetscCheck(placed, s->scene->comm, PETSC_ERR_USER_INPUT,
              "-vesicle_center %g,%g: %s; allowed: a vesicle inside -domain_box, 3 cells from its walls",
              (double)s->scene->center.v[0], (double)s->scene->center.v[1], s->report.failure);
@@ -139,7 +139,7 @@ PetscErrorCode SchemeView(Scheme s, PetscViewer viewer) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SchemePlaceMarkers(Scheme s, Vec X, PetscBool *placed) {
+PetscErrorCode SchemePlaceMarkers(Scheme s, Vec X, PetscReal t, PetscBool *placed) {
   const PetscScalar *x;
   PetscScalar *u;
   PetscFunctionBeginUser;
@@ -161,7 +161,8 @@ PetscErrorCode SchemePlaceMarkers(Scheme s, Vec X, PetscBool *placed) {
   if (!s->fluid->total) {
     PetscCall(VecGetArrayRead(X, &x));
     PetscCall(VecGetArray(s->background, &u));
-    for (PetscInt k = 0; k < s->membrane->M; k++) FlowVelocity(&s->scene->flow, x[2 * k], x[2 * k + 1], &u[2 * k]);
+    s->scene->flow.time = t;
+    PetscCall(FlowVelocities(&s->scene->flow, s->membrane->M, x, u));
     PetscCall(VecRestoreArray(s->background, &u));
     PetscCall(VecRestoreArrayRead(X, &x));
   }

@@ -3,11 +3,12 @@
 
 #define CONTACT 2 /* cells between membranes below which a warning is due */
 
-static PetscErrorCode CopyState(const State *from, State *to) {
+/* Copy a state; without `fields` the velocity and the pressure stay where they are. */
+static PetscErrorCode CopyState(const State *from, State *to, PetscBool fields) {
   const Vec source[] = {from->w, from->p, from->sigma, from->X, from->U, from->walls};
   Vec *target[] = {&to->w, &to->p, &to->sigma, &to->X, &to->U, &to->walls};
   PetscFunctionBeginUser;
-  for (int k = 0; k < 6 && source[k]; k++) {
+  for (int k = fields ? 0 : 2; k < 6 && source[k]; k++) {
     if (!*target[k]) PetscCall(VecDuplicate(source[k], target[k]));
     PetscCall(VecCopy(source[k], *target[k]));
   }
@@ -21,8 +22,9 @@ static PetscErrorCode CopyState(const State *from, State *to) {
 PetscErrorCode SchemeKeep(Scheme s) {
   Snapshot *b = &s->before;
   PetscFunctionBeginUser;
-  PetscCall(CopyState(&s->state, &b->state));
-  if (s->has_old) PetscCall(CopyState(s->old, &b->old));
+  b->fields = s->undo && s->has_old ? PETSC_FALSE : PETSC_TRUE;
+  PetscCall(CopyState(&s->state, &b->state, b->fields));
+  if (s->has_old) PetscCall(CopyState(s->old, &b->old, b->fields));
   b->has_old = s->has_old;
   if (s->level) b->level = *s->level;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -31,8 +33,9 @@ PetscErrorCode SchemeKeep(Scheme s) {
 PetscErrorCode SchemeReturn(Scheme s) {
   const Snapshot *b = &s->before;
   PetscFunctionBeginUser;
-  PetscCall(CopyState(&b->state, &s->state));
-  if (b->has_old) PetscCall(CopyState(&b->old, s->old));
+  if (!b->fields && s->state.step > b->state.step) PetscCall(s->undo(s));
+  PetscCall(CopyState(&b->state, &s->state, b->fields));
+  if (b->has_old) PetscCall(CopyState(&b->old, s->old, b->fields));
   s->has_old = b->has_old;
   if (s->level) *s->level = b->level;
   PetscFunctionReturn(PETSC_SUCCESS);
