@@ -62,6 +62,22 @@ static PetscErrorCode MomentumRightHandSide(Scheme s, Coupled *d, const BDF *b) 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The solution extrapolated, the present one in a first step: tension, wall forces, and Y = E w of the velocity. */
+static PetscErrorCode InitialGuess(Scheme s, Coupled *d, PetscReal r) {
+  const State *q = &s->state;
+  State *n = &d->next;
+  PetscFunctionBeginUser;
+  if (!d->saddle) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(Extrapolate(r, q->walls, d->old.walls, n->walls));
+  if (!s->coupling) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(Extrapolate(r, q->sigma, d->old.sigma, n->sigma));
+  PetscCall(CouplingInterpolate(s->coupling, s->coupling->E, q->w, d->Y));
+  if (r == 0) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(CouplingInterpolate(s->coupling, s->coupling->E, d->old.w, s->work_markers));
+  PetscCall(VecAXPBY(d->Y, -r, 1 + r, s->work_markers));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode SolveStep(Scheme s, Coupled *d) {
   State *n = &d->next;
   PetscFunctionBeginUser;
@@ -95,13 +111,13 @@ PetscErrorCode CoupledAttempt(Scheme s, PetscReal dt, PetscBool *solved) {
     if (s->self) PetscCall(SchemeSetSelfMobility(s, b.a0, d->Xstar, NULL, d->Xhat));
     if (d->length_target) PetscCall(LengthTarget(s, d, b.a0));
   }
-  /* initial guess: the solution extrapolated; on the first step the present one; none of the pressure is needed */
   const PetscReal r = s->has_old ? dt / q->dt_last : 0;
-  PetscCall(Extrapolate(r, q->w, d->old.w, n->w));
-  PetscCall(Extrapolate(r, q->sigma, d->old.sigma, n->sigma));
-  if (q->walls) PetscCall(Extrapolate(r, q->walls, d->old.walls, n->walls));
   PetscCall(MomentumRightHandSide(s, d, &b));
-  if (d->convection) PetscCall(ConvectionAdd(d->convection, -1, n->w, d->f)); /* N(w*), w* being the guess */
+  if (d->convection) { /* N(w*) */
+    PetscCall(Extrapolate(r, q->w, d->old.w, n->w));
+    PetscCall(ConvectionAdd(d->convection, -1, n->w, d->f));
+  }
+  PetscCall(InitialGuess(s, d, r));
   PetscCall(SolveStep(s, d));
   *solved = *s->report.failure ? PETSC_FALSE : PETSC_TRUE;
   if (!*solved) PetscFunctionReturn(PETSC_SUCCESS);

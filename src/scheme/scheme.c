@@ -23,7 +23,6 @@ static PetscErrorCode CreateState(Scheme s, const PetscReal X[]) {
   q->dt = s->scene->dt;
   PetscCall(DMCreateGlobalVector(s->fluid->grid->velocity, &q->w));
   PetscCall(DMCreateGlobalVector(s->fluid->grid->da[FIELD_P], &q->p));
-  PetscCall(VecDuplicate(q->p, &s->work_pressure));
   if (s->fluid->total) PetscCall(VecCopy(s->fluid->background, q->w));
   PetscCall(MembraneCreateMarkerVec(s->membrane, &q->X));
   PetscCall(VecDuplicate(q->X, &q->U));
@@ -91,7 +90,6 @@ PetscErrorCode SchemeDestroy(Scheme *scheme) {
   PetscCall(VecDestroy(&s->g));
   PetscCall(VecDestroy(&s->work_tension));
   PetscCall(VecDestroy(&s->work_markers));
-  PetscCall(VecDestroy(&s->work_pressure));
   PetscCall(PetscFree(*scheme));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -252,9 +250,7 @@ PetscErrorCode SchemeMarkerVelocity(Scheme s, Vec w, Vec sigma, Vec U) {
 
 PetscErrorCode SchemeMeasureDivergence(Scheme s, Vec w) {
   PetscFunctionBeginUser;
-  PetscCall(MatMultTranspose(s->fluid->G, w, s->work_pressure));
-  if (s->fluid->bc2) PetscCall(VecAXPY(s->work_pressure, 1, s->fluid->bc2));
-  PetscCall(VecNorm(s->work_pressure, NORM_INFINITY, &s->report.div_max));
+  PetscCall(GridLargestDivergence(s->fluid->grid, w, s->fluid->bc2, &s->report.div_max));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

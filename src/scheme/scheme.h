@@ -54,7 +54,7 @@ struct _p_Scheme {
   SelfMobility self; /* NULL without */
   Vec background;    /* [2M] what the markers' velocity has besides the solved part: u_inf, zero in the total form */
   Vec g;             /* [M] S^T u = g: minus the background's stretching, Dm u_inf/h^2 */
-  Vec work_tension, work_pressure, work_markers;
+  Vec work_tension, work_markers;
   void *data; /* the scheme's own */
   PetscErrorCode (*setup)(Scheme);
   PetscErrorCode (*step)(Scheme); /* advance the state, or fill in report.failure and leave it */
