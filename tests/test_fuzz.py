@@ -51,7 +51,7 @@ def draw_options(draw: random.Random, table: list, places: dict[str, str]) -> li
     """A small scene and up to six options."""
     options = ["-domain_cells", "16,16", "-time_step", "0.01", "-time_end", "0.03", "-time_wall_limit", "3"]
     if draw.random() < 0.5:
-        options += ["-scheme_type", draw.choice(["split", "coupled", "direct"])]
+        options += ["-scheme_type", draw.choice(["split", "penalty", "coupled", "direct"])]
     for name, default, _, allowed in draw.sample(table, draw.randint(0, 6)):
         values = OWN.get(name, [])
         if values is not None:

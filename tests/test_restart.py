@@ -23,6 +23,7 @@ TWO = (
 )
 SCHEMES = {
     "split": f"{BASE} -scheme_type split",
+    "penalty": f"{BASE} -scheme_type penalty",
     "order_1": f"{BASE} -scheme_type coupled -scheme_order 1",
     "order_2": f"{BASE} -scheme_type coupled {DEFAULTS}",
     "adaptive": f"{BASE} -scheme_type coupled {DEFAULTS} -time_adapt error -time_adapt_tol 1e-3",
@@ -99,7 +100,7 @@ def test_restart_gives_the_same_bits(name, straight, tmp_path):
 
 
 @pytest.mark.parametrize(
-    "name, ranks", [("split", 4), ("order_1", 1), ("order_2", 4), ("adaptive", 1), ("two_vesicles", 4)]
+    "name, ranks", [("split", 4), ("penalty", 4), ("order_1", 1), ("order_2", 4), ("adaptive", 1), ("two_vesicles", 4)]
 )
 def test_restart_on_other_ranks(name, ranks, straight, tmp_path):
     """In a new folder, which begins with the checkpoint's state."""

@@ -1,4 +1,4 @@
-"""Command line: ``python3 -m petves plot|movie|compare|sweep|report|reproduce|accuracy|inertia ...``."""
+"""Command line: ``python3 -m petves plot|movie|compare|sweep|report|reproduce|accuracy|inertia|stability ...``."""
 
 from __future__ import annotations
 
@@ -63,6 +63,9 @@ def _add_studies(commands: argparse._SubParsersAction) -> None:
     inertia = commands.add_parser("inertia", help="run the study of the fluid's inertia: docs/inertia.md's tables")
     inertia.add_argument("folder", metavar="DIR", help="where the tables and the pictures go")
     inertia.add_argument("--quick", action="store_true", help="leave out the channels")
+    maps = commands.add_parser("stability", help="run the stability maps: docs/stability.md's tables and pictures")
+    maps.add_argument("folder", metavar="DIR", help="where the tables and the pictures go")
+    maps.add_argument("--quick", action="store_true", help="only the corners of each map (also QUICK=1)")
 
 
 def _run(options: argparse.Namespace) -> Iterable[object]:
@@ -97,9 +100,13 @@ def _run(options: argparse.Namespace) -> Iterable[object]:
         from petves.inertia import inertia
 
         return inertia(options.folder, quick=options.quick)
+    quick = options.quick or os.environ.get("QUICK", "") not in ("", "0")
+    if options.command == "stability":
+        from petves.stability import stability
+
+        return stability(options.folder, quick=quick)
     from petves.reproduce import reproduce
 
-    quick = options.quick or os.environ.get("QUICK", "") not in ("", "0")
     return reproduce(options.folder, quick=quick, ranks=options.ranks, only=options.only)
 
 

@@ -71,10 +71,10 @@ static PetscBool Seamless(Scene scene, int *dir) {
 
 PetscErrorCode SceneSetInertia(Scene scene, const Shape *shape) {
   const PetscReal carried = CarriedReynolds(scene, shape);
-  PetscBool split, seamless;
+  const PetscBool baseline = SceneIsProjection(scene);
+  PetscBool seamless;
   int dir;
   PetscFunctionBeginUser;
-  PetscCall(PetscStrcmp(scene->scheme, "split", &split));
   seamless = Seamless(scene, &dir);
   scene->reynolds = SceneReynolds(scene, shape);
   if (scene->inertia == INERTIA_AUTO) {
@@ -85,7 +85,7 @@ PetscErrorCode SceneSetInertia(Scene scene, const Shape *shape) {
                                 ? PETSC_TRUE
                                 : PETSC_FALSE;
     scene->inertia = INERTIA_UNSTEADY;
-    if (!split && shape->vesicles && !paper) {
+    if (!baseline && shape->vesicles && !paper) {
       if (scene->reynolds < SMALL_REYNOLDS)
         scene->inertia = INERTIA_NONE;
       else if (scene->order == 2 && seamless)
@@ -105,6 +105,6 @@ PetscErrorCode SceneSetInertia(Scene scene, const Shape *shape) {
                             "-fluid_inertia unsteady at Re = %.3g with a vesicle that the flow carries along: without "
                             "convection the flow is not Galilean invariant, the vesicle drags the fluid that it "
                             "displaces behind it and may drift the wrong way; use convective%s",
-                            (double)scene->reynolds, split ? " with -scheme_type coupled" : ""));
+                            (double)scene->reynolds, baseline ? " with -scheme_type coupled" : ""));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

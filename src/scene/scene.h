@@ -21,6 +21,7 @@ typedef enum { FORM_DISTURBANCE, FORM_TOTAL } FlowForm;
 typedef enum { INERTIA_AUTO, INERTIA_NONE, INERTIA_UNSTEADY, INERTIA_CONVECTIVE } InertiaType;
 typedef enum { DERIVATIVE_FD, DERIVATIVE_BENDING, DERIVATIVE_SPECTRAL } DerivativeType;
 typedef enum { SELF_NONE, SELF_LOCAL, SELF_SYMBOL } SelfMobilityType;
+typedef enum { BENDING_IMPLICIT, BENDING_EXPLICIT } BendingType;
 typedef enum { ADAPT_NONE, ADAPT_ERROR } AdaptType;
 typedef enum { STARTUP_EULER, STARTUP_GRADED } StartUp;
 typedef enum { SHAPE_ELLIPSE, SHAPE_FILE, SHAPE_NONE } ShapeType;
@@ -66,6 +67,8 @@ struct _p_Scene {
   char delta[SCENE_MAX_NAME];           /* kernel */
   char scheme[SCENE_MAX_NAME];          /* time-stepping scheme */
   PetscInt order;                       /* order in time */
+  PetscInt bending_at;                  /* BendingType */
+  PetscReal stiffness;                  /* penalty: sigma_0 of the springs; 0 until the scheme chooses it */
   PetscBool length_target;              /* coupled: new edges get the length ds */
   PetscBool area_target;                /* coupled: markers shifted to their first area after each step */
   PetscInt self_mobility;               /* SelfMobilityType */
@@ -121,6 +124,10 @@ PETSC_EXTERN PetscErrorCode SceneValidate(Scene scene);
 
 /* SceneView - print the model in force: which parts are on, and their numbers. Collective. */
 PETSC_EXTERN PetscErrorCode SceneView(Scene scene, const Shape *shape, PetscViewer viewer);
+
+/* SceneIsProjection - whether the scheme is one of the baselines, split or penalty, which stand on a projection step.
+ */
+PETSC_EXTERN PetscBool SceneIsProjection(Scene scene);
 
 /* SceneCellSize - h, the edge of the square cells. */
 PETSC_EXTERN PetscReal SceneCellSize(Scene scene);

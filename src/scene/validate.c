@@ -76,9 +76,15 @@ static PetscErrorCode CheckVesicle(Scene scene) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* split is the paper's method: one order, its kernel and differences, none of the corrections of the coupled scheme.
-   Options that were not given follow; given ones that it does not have are mistakes. */
-static PetscErrorCode CheckSplit(Scene scene) {
+PetscBool SceneIsProjection(Scene scene) {
+  return !strcmp(scene->scheme, "split") || !strcmp(scene->scheme, "penalty") ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* split and penalty are their papers' methods: one order, kernel ib6 and differences, none of the corrections of the
+   coupled scheme. Options that were not given follow; given ones that they do not have are mistakes. */
+static PetscErrorCode CheckProjection(Scene scene) {
+  const char *const name = scene->scheme;
+  const PetscBool split = !strcmp(name, "split") ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionBeginUser;
   if (!SceneGiven(scene, "-scheme_order")) scene->order = 1;
   if (!SceneGiven(scene, "-delta_type")) PetscCall(PetscStrncpy(scene->delta, "ib6", sizeof(scene->delta)));
@@ -86,22 +92,47 @@ static PetscErrorCode CheckSplit(Scene scene) {
   if (!SceneGiven(scene, "-coupling_self_mobility")) scene->self_mobility = SELF_NONE;
   if (!SceneGiven(scene, "-scheme_area_target")) scene->area_target = PETSC_FALSE;
   PetscCheck(scene->order == 1, scene->comm, PETSC_ERR_USER_INPUT,
-             "-scheme_order %" PetscInt_FMT ": the splitting error of -scheme_type split is of first order; allowed: 1",
-             scene->order);
+             "-scheme_order %" PetscInt_FMT ": the %s of -scheme_type %s is of first order; allowed: 1", scene->order,
+             split ? "splitting error" : "forward step of the markers", name);
   PetscCheck(scene->derivative != DERIVATIVE_SPECTRAL, scene->comm, PETSC_ERR_USER_INPUT,
-             "-membrane_derivative spectral: not with -scheme_type split, whose preconditioner knows chords only; "
-             "allowed: fd, "
-             "bending, or -scheme_type coupled or direct");
-  PetscCheck(
-      !scene->area_target, scene->comm, PETSC_ERR_USER_INPUT,
-      "-scheme_area_target true: not with -scheme_type split; allowed: false, or -scheme_type coupled or direct");
-  PetscCheck(
-      scene->inertia != INERTIA_NONE, scene->comm, PETSC_ERR_USER_INPUT,
-      "-fluid_inertia none: not with -scheme_type split, whose projection stands on the inertia: it puts dt I in "
-      "place of H^-1; allowed: unsteady, or -scheme_type coupled or direct");
+             "-membrane_derivative spectral: not with -scheme_type %s, whose %s; allowed: fd, bending, or -scheme_type "
+             "coupled or direct",
+             name, split ? "preconditioner knows chords only" : "springs are chords");
+  PetscCheck(!scene->area_target, scene->comm, PETSC_ERR_USER_INPUT,
+             "-scheme_area_target true: not with -scheme_type %s; allowed: false, or -scheme_type coupled or direct",
+             name);
+  PetscCheck(scene->inertia != INERTIA_NONE, scene->comm, PETSC_ERR_USER_INPUT,
+             "-fluid_inertia none: not with -scheme_type %s, %s; allowed: unsteady, or -scheme_type coupled or direct",
+             name,
+             split ? "whose projection stands on the inertia: it puts dt I in place of H^-1"
+                   : "whose projection step starts from the velocity before it");
   PetscCheck(scene->inertia != INERTIA_CONVECTIVE, scene->comm, PETSC_ERR_USER_INPUT,
-             "-fluid_inertia convective: not with -scheme_type split, the paper's method for unsteady Stokes flow; "
-             "allowed: unsteady, or -scheme_type coupled or direct");
+             "-fluid_inertia convective: not with -scheme_type %s, %s for unsteady Stokes flow; allowed: unsteady, or "
+             "-scheme_type coupled or direct",
+             name, split ? "the paper's method" : "here");
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What penalty alone has or lacks. */
+static PetscErrorCode CheckPenalty(Scene scene, PetscBool split) {
+  PetscBool penalty;
+  PetscFunctionBeginUser;
+  PetscCall(PetscStrcmp(scene->scheme, "penalty", &penalty));
+  if (penalty && !SceneGiven(scene, "-scheme_bending")) scene->bending_at = BENDING_EXPLICIT;
+  PetscCheck(!penalty || scene->bending_at == BENDING_EXPLICIT, scene->comm, PETSC_ERR_USER_INPUT,
+             "-scheme_bending implicit: -scheme_type penalty has all membrane forces at the old markers; allowed: "
+             "explicit, or -scheme_type split, coupled or direct");
+  PetscCheck(penalty || split || scene->bending_at == BENDING_IMPLICIT, scene->comm, PETSC_ERR_USER_INPUT,
+             "-scheme_bending explicit: not with -scheme_type %s, whose stability stands on implicit bending; allowed: "
+             "implicit, or -scheme_type split or penalty",
+             scene->scheme);
+  PetscCheck(!penalty || scene->self_mobility == SELF_NONE, scene->comm, PETSC_ERR_USER_INPUT,
+             "-coupling_self_mobility: not with -scheme_type penalty, whose forces are explicit; allowed: none, or "
+             "-scheme_type coupled or direct");
+  PetscCheck(penalty || scene->stiffness == 0, scene->comm, PETSC_ERR_USER_INPUT,
+             "-penalty_stiffness %g: -scheme_type %s has no springs, its length is a constraint; allowed: 0, or "
+             "-scheme_type penalty",
+             (double)scene->stiffness, scene->scheme);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -109,7 +140,8 @@ static PetscErrorCode CheckScheme(Scene scene) {
   PetscBool split;
   PetscFunctionBeginUser;
   PetscCall(PetscStrcmp(scene->scheme, "split", &split));
-  if (split) PetscCall(CheckSplit(scene));
+  if (SceneIsProjection(scene)) PetscCall(CheckProjection(scene));
+  PetscCall(CheckPenalty(scene, split));
   PetscCheck(scene->adapt == ADAPT_NONE || scene->order == 2, scene->comm, PETSC_ERR_USER_INPUT,
              "-time_adapt error: with -scheme_type %s of order %" PetscInt_FMT
              "; allowed: coupled or direct with -scheme_order 2",

@@ -51,6 +51,7 @@ PetscErrorCode SchemeCreate(Scene scene, Fluid fluid, Membrane membrane, Couplin
   PetscFunctionBeginUser;
   if (!schemes) {
     PetscCall(SchemeRegister("split", SchemeCreate_Split));
+    PetscCall(SchemeRegister("penalty", SchemeCreate_Penalty));
     PetscCall(SchemeRegister("coupled", SchemeCreate_Coupled));
     PetscCall(SchemeRegister("direct", SchemeCreate_Coupled));
     PetscCall(PetscRegisterFinalize(ForgetSchemes));

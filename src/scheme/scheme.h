@@ -135,4 +135,5 @@ PETSC_EXTERN PetscErrorCode SchemeSolverFailed(Scheme scheme, const char prefix[
 PETSC_EXTERN PetscErrorCode SchemeKineticEnergy(Scheme scheme, PetscReal *energy);
 
 PETSC_EXTERN PetscErrorCode SchemeCreate_Split(Scheme);
+PETSC_EXTERN PetscErrorCode SchemeCreate_Penalty(Scheme);
 PETSC_EXTERN PetscErrorCode SchemeCreate_Coupled(Scheme);

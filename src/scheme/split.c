@@ -3,7 +3,7 @@
 #include "scheme/scheme.h"
 
 typedef struct {
-  LagrangianSolver tension, bending; /* NULL where the scene has no such part */
+  LagrangianSolver tension, bending; /* NULL where the scene has no such part; bending: or is explicit */
   Vec r, u2, dp, q;                  /* momentum's right-hand side, velocity, pressures */
   Vec dsigma, rhs_sigma;             /* tension increment and right-hand side */
   Vec z, rhs_z, Xhat;                /* bending unknown, its right-hand side, X + dt u_inf */
@@ -13,7 +13,8 @@ static PetscErrorCode SolverFailed(Scheme s, LagrangianSolver solver) {
   return SchemeSolverFailed(s, solver->prefix, solver->why, solver->its, solver->residual);
 }
 
-/* 1  H u3 = r - G p - S sigma - B X + bc1, where r = u/dt and B acts on X + dt u_inf */
+/* 1  H u3 = r - G p - S sigma - B X + bc1, where r = u/dt and B acts on X + dt u_inf, or on X when bending is explicit
+ */
 static PetscErrorCode PredictVelocity(Scheme s, Split *d) {
   const State *q = &s->state;
   Fluid f = s->fluid;
@@ -24,8 +25,8 @@ static PetscErrorCode PredictVelocity(Scheme s, Split *d) {
   PetscCall(GridGradient(f->grid, -1, q->p, PETSC_TRUE, d->r));
   if (f->bc1) PetscCall(VecAXPY(d->r, 1, f->bc1));
   if (c) PetscCall(CouplingSpreadAdd(c, -1, c->S, q->sigma, d->r));
-  if (d->bending) {
-    PetscCall(VecWAXPY(d->Xhat, q->dt, s->background, q->X));
+  if (c && s->membrane->bending > 0) {
+    PetscCall(VecWAXPY(d->Xhat, d->bending ? q->dt : 0, s->background, q->X));
     PetscCall(CouplingSpreadAdd(c, -1, c->B, d->Xhat, d->r));
   }
   PetscCall(FluidSolveHelmholtz(f, d->r, d->u2));
@@ -128,7 +129,7 @@ static PetscErrorCode SetUp_Split(Scheme s) {
   if (s->self) PetscCall(SchemeSetSelfMobility(s, 1 / q->dt, q->X, q->sigma, q->X));
   PetscCall(TensionSolverCreate(s->fluid, s->coupling, s->self, &d->tension));
   PetscCall(LagrangianSolverSetUp(d->tension));
-  if (s->membrane->bending > 0) {
+  if (s->membrane->bending > 0 && s->scene->bending_at == BENDING_IMPLICIT) {
     PetscCall(BendingSolverCreate(s->fluid, s->coupling, s->self, &d->bending));
     PetscCall(LagrangianSolverSetUp(d->bending));
   }

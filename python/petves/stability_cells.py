@@ -1,0 +1,274 @@
+"""The cells of the stability maps: what each runs, and what its mark is."""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Callable
+
+import numpy as np
+
+from petves.program import OPEN_MPI, program
+from petves.run import read_series
+
+SCHEMES = ("penalty", "split", "coupled")
+MARKS = (
+    "ok",
+    "refused",
+    "drift above 1 %",
+    "energy rises",
+    "edge ratio above 2",
+    "left the box",
+    "solver failed",
+    "NaN",
+    "too slow",
+    "no clean stop",
+)
+"""Marks of a cell; the last one is a defect of the program."""
+STEPS = 60
+SECONDS = 40
+DRIFT = 0.01  # of area or length at the end: a step that overshoots and is taken back has not drifted
+RISE = 0.01  # of the first energy: BDF2's plain energy may rise by a few thousandths in a quiescent fluid
+COMMON = f"-output_every 1e9 -checkpoint_every 0 -time_wall_limit {SECONDS} " "-limit_edge_ratio 2"
+RELAX = "-vesicle_semi_axes 0.2,0.5"
+SHEAR = "-domain_box -2.4,2.4,-2.4,2.4 -flow_type shear -vesicle_area 1"
+KERNELS = ("ib6", "cbs32", "cbs43", "cbs54", "cbs65")
+
+
+@dataclass(frozen=True)
+class Map:
+    """A map of cells.
+
+    Attributes
+    ----------
+    name, title : str
+        Name in the CSV file, and what the picture says.
+    x_label, y_label : str
+        Axes.
+    xs, ys : tuple
+        Values along them.
+    options : callable
+        Takes x and y, returns the options of one run, or of two of which the second goes on from the first's end.
+    """
+
+    name: str
+    title: str
+    x_label: str
+    xs: tuple
+    y_label: str
+    ys: tuple
+    options: Callable[[object, object], tuple[str, ...]]
+
+    def cells(self) -> list[tuple[str, object, object]]:
+        """Return scheme, x, y of every cell."""
+        return [(scheme, x, y) for scheme in SCHEMES for y in self.ys for x in self.xs]
+
+    def quick(self) -> Map:
+        """Return the map's corners."""
+        ends = lambda values: tuple(dict.fromkeys((values[0], values[-1])))  # noqa: E731
+        return Map(self.name, self.title, self.x_label, ends(self.xs), self.y_label, ends(self.ys), self.options)
+
+
+def _times(dt: float, steps: int = STEPS) -> str:
+    return f"-time_step {dt!r} -time_end {steps * dt!r}"
+
+
+def relax(dt: float, c_b: float, cells: int = 32, steps: int = STEPS) -> str:
+    """Return the options of an ellipse in fluid at rest, [-1,1]^2."""
+    return f"{RELAX} -domain_cells {cells},{cells} -vesicle_bending {c_b} {_times(dt, steps)}"
+
+
+def shear(dt: float, reduced_area: float, chi: float, cells: int = 64) -> str:
+    """Return the options of a vesicle of unit area in shear of rate 1, nu = 1, [-2.4,2.4]^2."""
+    radius = (1 / (np.pi * reduced_area)) ** 0.5
+    return (
+        f"{SHEAR} -domain_cells {cells},{cells} -vesicle_reduced_area {reduced_area} "
+        f"-vesicle_bending {float(radius**3 / chi)!r} {_times(dt)}"
+    )
+
+
+def thin(dt: float, reduced_area: float) -> str:
+    """Return the options of a thin vesicle of unit area in fluid at rest."""
+    return (
+        "-domain_box -2.4,2.4,-2.4,2.4 -domain_cells 64,64 -vesicle_area 1 "
+        f"-vesicle_reduced_area {reduced_area} -vesicle_bending 0.1 {_times(dt)}"
+    )
+
+
+def change(dt: float, factor: float) -> tuple[str, str]:
+    """Return the options of 20 steps of an ellipse, and of STEPS more with another step."""
+    scene = f"{RELAX} -domain_cells 32,32 -vesicle_bending 0.1"
+    after = dt * factor
+    return (
+        f"{scene} {_times(dt, 20)}",
+        f"{scene} -time_step {after!r} -time_end {20 * dt + STEPS * after!r}",
+    )
+
+
+STEP_MAP = Map(
+    "dt_h",
+    "ellipse at rest, $c_b = 1$",
+    "cells across the box",
+    (24, 32, 48, 64, 96),
+    "$dt$",
+    tuple(2.0**-k for k in range(3, 15)),
+    lambda n, dt: (relax(dt, 1, n, 4 * STEPS),),  # a slow growth counts too
+)
+MAPS = (
+    Map(
+        "dt_cb",
+        "ellipse at rest, $32^2$",
+        "$c_b$",
+        (1e-4, 1e-2, 1.0, 100.0),
+        "$dt$",
+        tuple(2.0**-k for k in (3, 5, 7, 9, 11, 13)),
+        lambda c_b, dt: (relax(dt, c_b),),
+    ),
+    Map(
+        "dt_chi",
+        "shear, V = 0.7, $64^2$",
+        r"$\chi$",
+        (0.1, 1.0, 10.0, 100.0, 1000.0),
+        "$dt$ (over 1/rate)",
+        tuple(2.0**-k for k in (2, 4, 6, 8, 10)),
+        lambda chi, dt: (shear(dt, 0.7, chi),),
+    ),
+    STEP_MAP,
+    Map(
+        "V_chi",
+        "shear, $dt$ = 1/64, $64^2$",
+        r"$\chi$",
+        (1.0, 10.0, 100.0, 1000.0),
+        "V",
+        (0.2, 0.3, 0.5, 0.7, 0.9),
+        lambda chi, v: (shear(1 / 64, v, chi),),
+    ),
+    Map(
+        "spacing_kernel",
+        r"shear, V = 0.7, $\chi = 10$, $dt$ = 1/256, $64^2$",
+        "kernel",
+        KERNELS,
+        "ds/h",
+        (0.75, 1.1, 1.3, 1.5, 2.0, 2.5),
+        lambda kernel, spacing: (f"{shear(1 / 256, 0.7, 10)} -delta_type {kernel} -vesicle_spacing {spacing}",),
+    ),
+    Map(
+        "dt_change",
+        "ellipse at rest, $c_b = 0.1$, $32^2$: dt changes after 20 steps",
+        "new $dt$ over old",
+        (1 / 64, 1 / 8, 8.0, 64.0),
+        "first $dt$",
+        (1 / 64, 1 / 512, 1 / 4096),
+        lambda factor, dt: change(dt, factor),
+    ),
+    Map(
+        "thin",
+        "thin ellipse at rest, $c_b = 0.1$, $64^2$",
+        "V",
+        (0.2, 0.3, 0.4),
+        "$dt$",
+        tuple(2.0**-k for k in (4, 6, 8, 10)),
+        lambda v, dt: (thin(dt, v),),
+    ),
+    Map(
+        "strong",
+        r"shear, V = 0.7, $\chi = 1000$",
+        "cells across the box",
+        (32, 48, 64),
+        "$dt$ (over 1/rate)",
+        tuple(2.0**-k for k in (2, 4, 6, 8)),
+        lambda n, dt: (shear(dt, 0.7, 1000, n),),
+    ),
+)
+
+
+def run_cell(scheme: str, stages: tuple[str, ...]) -> dict[str, object]:
+    """Run one cell; return its mark, the message of the run that stopped, and measures of its last run."""
+    with tempfile.TemporaryDirectory() as folder:
+        extra = ""
+        for number, options in enumerate(stages):
+            here = Path(folder) / str(number)
+            if number:
+                last = here.parent / str(number - 1)
+                extra = f" -restart {last / 'checkpoint.h5'}"
+                if scheme == "penalty":  # springs do not change when the step does
+                    found = re.search(r"-penalty_stiffness (\S+)", (last / "resolved.opts").read_text())
+                    extra += f" -penalty_stiffness {found[1]}"
+            status, message = _launch(f"-scheme_type {scheme} {options} {COMMON}{extra}", here)
+            if status:
+                break
+        return _measure(here, status, message, quiescent="-flow_type" not in options)
+
+
+def _launch(options: str, folder: Path, tries: int = 3) -> tuple[int, str]:
+    """Run petves on one rank; return its status (-1: killed or not one line) and its line."""
+    try:
+        done = subprocess.run(
+            [str(program()), *options.split(), "-output_dir", str(folder)],
+            env=OPEN_MPI | {"OMPI_MCA_ess_singleton_isolated": "1"} | os.environ,
+            capture_output=True,
+            text=True,
+            errors="replace",
+            stdin=subprocess.DEVNULL,
+            timeout=3 * SECONDS,
+        )
+    except subprocess.TimeoutExpired:
+        return -1, f"no end after {3 * SECONDS} seconds"
+    if "An error occurred in MPI_Init" in done.stderr and tries > 1:  # of two that start in the same moment
+        return _launch(options, folder, tries - 1)
+    lines = done.stderr.strip().splitlines()
+    if not done.returncode:
+        return 0, next((line for line in done.stdout.splitlines() if "petves: stopping" in line), "")
+    if done.returncode in (1, 2) and len(lines) == 1 and lines[0].startswith("petves: error: "):
+        return done.returncode, lines[0].removeprefix("petves: error: ").split("; the last good state")[0]
+    return -1, f"status {done.returncode}: {' '.join(lines)[-300:]}"
+
+
+def _measure(folder: Path, status: int, message: str, quiescent: bool) -> dict[str, object]:
+    """Return mark, message and measures."""
+    found = {"mark": mark(status, message), "message": message, "steps": 0}
+    found |= {key: float("nan") for key in ("energy_rise", "area_error", "length_error", "drift", "edge_ratio", "its")}
+    if status == 1 or not (folder / "series.csv").is_file():
+        return found
+    series = read_series(folder / "series.csv")
+    energy = series["energy_kinetic"] + series["energy_bending"]
+    found |= {
+        "steps": len(energy) - 1,
+        "energy_rise": (energy - np.minimum.accumulate(energy)).max() / energy[0] if quiescent else float("nan"),
+        "area_error": np.abs(series["area_error"]).max(),
+        "length_error": np.abs(series["length_error"]).max(),
+        "drift": max(abs(series["area_error"][-1]), abs(series["length_error"][-1])),
+        "edge_ratio": series["edge_ratio"].max(),
+        "its": series["coupled_its"][1:].mean() if len(energy) > 1 else float("nan"),
+    }
+    if found["drift"] > DRIFT and found["mark"] == "ok":
+        found["mark"] = "drift above 1 %"
+    if found["energy_rise"] > RISE and found["mark"] in ("ok", "drift above 1 %", "edge ratio above 2"):
+        found["mark"] = "energy rises"
+    return found
+
+
+def mark(status: int, message: str) -> str:
+    """Return the mark that the end of a run alone stands for."""
+    if status < 0:
+        return "no clean stop"
+    if status == 1:
+        return "refused"
+    if not status:
+        return "too slow" if message else "ok"
+    for needle, name in (
+        ("NANORINF", "NaN"),
+        ("not finite", "NaN"),
+        ("the solve with prefix", "solver failed"),
+        ("-limit_edge_ratio", "edge ratio above 2"),
+        ("-limit_area_error", "drift above 1 %"),
+        ("-limit_length_error", "drift above 1 %"),
+        ("cells from the wall", "left the box"),
+    ):
+        if needle in message:
+            return name
+    return "no clean stop"

@@ -1,0 +1,132 @@
+/* Scheme "penalty": the penalty immersed boundary method of Kim and Lai, J. Comput. Phys. 229 (2010) 4840. Stiff
+   springs in place of the constraint, explicit forces, a projection step of the fluid. First order in time. */
+#include "fluid/stokes.h"
+#include "scheme/scheme.h"
+
+/* The step bears springs up to sigma_0 = viscous nu h/dt + inertial h^3/dt^2, measured (docs/method.md): ib6 smooths
+   the markers' own motion more than the other kernels, of which cbs32 bears least. */
+typedef struct {
+  const char *kernel; /* the last row is any kernel's */
+  PetscReal viscous, inertial;
+} SpringBound;
+static const SpringBound bounds[] = {{"ib6", 50, 100}, {"", 19, 12}};
+
+typedef struct {
+  Stokes stokes;
+  Vec r, dp;      /* momentum's right-hand side, change of pressure */
+  Vec constraint; /* -bc2, the divergence of moving walls; NULL without */
+  Vec force;      /* [M] sigma/|X_s|: S takes X_s where the spring pulls along X_s/|X_s| */
+} Penalty;
+
+/* sigma = sigma_0 (|X_s| - 1) at the markers X; force may be NULL */
+static PetscErrorCode SpringTension(Scheme s, Vec X, Vec sigma, Vec force) {
+  const PetscScalar *x;
+  PetscScalar *tension, *f = NULL;
+  PetscReal *tau;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(2 * s->membrane->M, &tau));
+  PetscCall(VecGetArrayRead(X, &x));
+  PetscCall(VecGetArray(sigma, &tension));
+  if (force) PetscCall(VecGetArray(force, &f));
+  MembraneTangents(s->membrane, x, tau);
+  for (PetscInt k = 0; k < s->membrane->M; k++) {
+    const PetscReal stretch = PetscSqrtReal(PetscSqr(tau[2 * k]) + PetscSqr(tau[2 * k + 1])); /* |X_s| */
+    tension[k] = s->scene->stiffness * (stretch - 1);
+    if (f) f[k] = tension[k] / stretch;
+  }
+  if (force) PetscCall(VecRestoreArray(force, &f));
+  PetscCall(VecRestoreArray(sigma, &tension));
+  PetscCall(VecRestoreArrayRead(X, &x));
+  PetscCall(PetscFree(tau));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* r = u/dt - G p + bc1 - S (sigma/|X_s|) - B X */
+static PetscErrorCode Momentum(Scheme s, Penalty *d) {
+  State *q = &s->state;
+  Coupling c = s->coupling;
+  PetscFunctionBeginUser;
+  PetscCall(VecCopy(q->w, d->r));
+  PetscCall(VecScale(d->r, 1 / q->dt));
+  PetscCall(GridGradient(s->fluid->grid, -1, q->p, PETSC_TRUE, d->r));
+  if (s->fluid->bc1) PetscCall(VecAXPY(d->r, 1, s->fluid->bc1));
+  if (!c) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(SpringTension(s, q->X, q->sigma, d->force));
+  PetscCall(CouplingSpreadAdd(c, -1, c->S, d->force, d->r));
+  if (s->membrane->bending > 0) PetscCall(CouplingSpreadAdd(c, -1, c->B, q->X, d->r));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Step_Penalty(Scheme s) {
+  Penalty *d = (Penalty *)s->data;
+  State *q = &s->state;
+  PetscBool placed = PETSC_TRUE;
+  PetscFunctionBeginUser;
+  PetscCall(FluidSetTimeCoefficient(s->fluid, 1 / q->dt));
+  if (s->coupling) PetscCall(SchemePlaceMarkers(s, q->X, q->t, &placed));
+  if (!placed) PetscFunctionReturn(PETSC_SUCCESS);
+  /* 1  forces of springs and bending at X^n */
+  PetscCall(Momentum(s, d));
+  /* 2  H u* = r,  L psi = -(G^T u* + bc2),  u = u* - G psi,  dp = psi/dt + nu (G^T u* + bc2) */
+  PetscCall(StokesSolve(d->stokes, d->r, d->constraint, q->w, d->dp));
+  PetscCall(VecAXPY(q->p, 1, d->dp));
+  PetscCall(SchemeMeasureDivergence(s, q->w));
+  if (!s->coupling) PetscFunctionReturn(PETSC_SUCCESS);
+  /* 3  X += dt (u_inf + E u), and the tension that goes with it */
+  PetscCall(SchemeMarkerVelocity(s, q->w, NULL, q->U));
+  PetscCall(VecAXPY(q->X, q->dt, q->U));
+  PetscCall(SpringTension(s, q->X, q->sigma, NULL));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode SetUp_Penalty(Scheme s) {
+  Penalty *d = (Penalty *)s->data;
+  const State *q = &s->state;
+  const PetscReal h = s->fluid->grid->h;
+  const SpringBound *bound = bounds;
+  PetscFunctionBeginUser;
+  PetscCall(StokesCreate(s->fluid, &d->stokes));
+  PetscCall(VecDuplicate(q->w, &d->r));
+  PetscCall(VecDuplicate(q->p, &d->dp));
+  PetscCall(VecDuplicate(q->sigma, &d->force));
+  if (s->fluid->bc2) {
+    PetscCall(VecDuplicate(q->p, &d->constraint));
+    PetscCall(VecAXPBY(d->constraint, -1, 0, s->fluid->bc2));
+  }
+  while (*bound->kernel && strcmp(bound->kernel, s->scene->delta)) bound++;
+  if (s->scene->stiffness == 0) /* half of the bound; resolved.opts and checkpoints hold the value */
+    s->scene->stiffness = 0.5 * (bound->viscous * s->fluid->nu * h / q->dt + bound->inertial * h * PetscSqr(h / q->dt));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode View_Penalty(Scheme s, PetscViewer viewer) {
+  PetscFunctionBeginUser;
+  if (s->coupling)
+    PetscCall(PetscViewerASCIIPrintf(viewer, "springs: sigma = sigma_0 (|X_s| - 1), sigma_0 = %g\n",
+                                     (double)s->scene->stiffness));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Destroy_Penalty(Scheme s) {
+  Penalty *d = (Penalty *)s->data;
+  PetscFunctionBeginUser;
+  PetscCall(StokesDestroy(&d->stokes));
+  PetscCall(VecDestroy(&d->r));
+  PetscCall(VecDestroy(&d->dp));
+  PetscCall(VecDestroy(&d->constraint));
+  PetscCall(VecDestroy(&d->force));
+  PetscCall(PetscFree(s->data));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SchemeCreate_Penalty(Scheme s) {
+  Penalty *d;
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&d));
+  s->data = d;
+  s->setup = SetUp_Penalty;
+  s->step = Step_Penalty;
+  s->view = View_Penalty;
+  s->destroy = Destroy_Penalty;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

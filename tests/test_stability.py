@@ -1,0 +1,131 @@
+"""The stability maps: marks, resuming, the largest step and its power, and what a handful of cells must show."""
+
+import csv
+import sys
+
+import pytest
+from conftest import PETVES, ROOT
+
+sys.path.insert(0, str(ROOT / "python"))
+from petves import stability as report  # noqa: E402
+from petves import stability_cells as study  # noqa: E402
+from petves.run import RunError  # noqa: E402
+
+DT_CB, CHANGE = (next(one for one in study.MAPS if one.name == name) for name in ("dt_cb", "dt_change"))
+SPACING = next(one for one in study.MAPS if one.name == "spacing_kernel")
+
+
+def some(one: study.Map, xs: tuple, ys: tuple) -> study.Map:
+    return study.Map(one.name, one.title, one.x_label, xs, one.y_label, ys, one.options)
+
+
+def read(folder) -> dict[tuple[str, str, float, float], dict[str, str]]:
+    with open(folder / "stability.csv", newline="") as file:
+        return {(row["map"], row["scheme"], row["x"], row["y"]): row for row in csv.DictReader(file)}
+
+
+@pytest.mark.parametrize(
+    "status, message, want",
+    [
+        (0, "", "ok"),
+        (0, "petves: stopping after step 3: -time_wall_limit 40", "too slow"),
+        (1, "-vesicle_spacing 0.75: markers 0.743329 h apart", "refused"),
+        (2, "vesicle 1: edge ratio 2.3 beyond -limit_edge_ratio 2 after step 4", "edge ratio above 2"),
+        (2, "vesicle 1: area error 0.3 beyond -limit_area_error 0.2 after step 4", "drift above 1 %"),
+        (
+            2,
+            "the solve with prefix bending_ failed in step 1 at time 1: DIVERGED_ITS after 9 iterations",
+            "solver failed",
+        ),
+        (2, "the solve with prefix bending_ failed in step 1 at time 1: DIVERGED_NANORINF after 0", "NaN"),
+        (2, "the tension is not finite after step 1", "NaN"),
+        (2, "vesicle 1: a marker at (7,0) is -9 cells from the wall x_max = 1", "left the box"),
+        (2, "something else", "no clean stop"),
+        (-1, "status 139: ", "no clean stop"),
+    ],
+)
+def test_ends_have_marks(status, message, want):
+    assert study.mark(status, message) == want
+
+
+def test_powers_are_fitted():
+    points = [(h, 7 * h**2.5) for h in (0.1, 0.05, 0.02)]
+    assert abs(report.fitted_power(points) - 2.5) < 1e-12
+    assert report.fitted_power(points[:2]) != report.fitted_power(points[:2])  # two points fit any power
+
+
+def test_largest_step_is_bisected(tmp_path, monkeypatch):
+    """A bound of h^3: found to the eighth of an octave, and its power; no bound, no bisection."""
+    one = study.STEP_MAP
+
+    def run_cell(scheme, stages):
+        n, dt = map(float, stages[0].split())
+        good = scheme == "coupled" or dt <= 300 / n**3
+        return {name: 0.0 for name in report.COLUMNS[5:12]} | {"mark": "ok" if good else "energy rises", "message": ""}
+
+    monkeypatch.setattr(report, "run_cell", run_cell)
+    one = study.Map(one.name, "", "", one.xs, "", one.ys, lambda n, dt: (f"{n} {dt!r}",))
+    cells = report.Cells(tmp_path / "stability.csv")
+    cells.run(one, one.cells())
+    found = []
+    for n in one.xs:
+        dt, bounded = report.largest_step(cells, one, "split", n)
+        assert bounded and dt <= 300 / n**3 < dt * 2 ** (1 / 2**report.HALVINGS) * (1 + 1e-5)
+        found.append((2 / n, dt))
+        assert report.largest_step(cells, one, "coupled", n) == (max(one.ys), False)
+    assert abs(report.fitted_power(found) - 3) < 0.2
+
+
+def test_quick_is_the_corners():
+    for one in study.MAPS:
+        cells = one.quick().cells()
+        assert len(cells) == 12 and set(cells) <= set(one.cells())
+
+
+def test_a_handful_of_cells(tmp_path, monkeypatch):
+    """Stiff membrane, large step: penalty and split fail, coupled does not; a small step is good for all; a changed
+    step; a refused spacing. What has run is not run again, unless its options have changed."""
+    monkeypatch.setenv("PETVES", PETVES)
+    maps = (
+        some(DT_CB, (1.0,), (2**-5, 2**-13)),
+        some(CHANGE, (1 / 64, 64.0), (1 / 512,)),
+        some(SPACING, ("ib6",), (0.75,)),
+    )
+    paths = report.stability(tmp_path, maps=maps)
+    assert {p.name for p in paths} == {"stability.csv", "tables.md", "dt_cb.png", "dt_change.png", "spacing_kernel.png"}
+    assert all(p.stat().st_size for p in paths)
+    rows = read(tmp_path)
+    marks = {key: row["mark"] for key, row in rows.items()}
+    assert len(marks) == 15 and set(marks.values()) <= set(study.MARKS) - {"no clean stop", "too slow"}
+    for scheme in study.SCHEMES:
+        assert (marks["dt_cb", scheme, "1", "0.03125"] == "ok") == (scheme == "coupled")
+        assert marks["dt_cb", scheme, "1", "0.00012207"] == "ok"
+        assert marks["dt_change", scheme, "0.015625", "0.00195312"] == "ok"
+        assert marks["spacing_kernel", scheme, "ib6", "0.75"] == "refused"
+    assert marks["dt_change", "coupled", "64", "0.00195312"] == "ok"
+    assert all(bool(row["message"]) == (int(row["steps"]) < study.STEPS) for row in rows.values())
+    assert all(int(row["steps"]) == study.STEPS for row in rows.values() if row["mark"] == "ok")
+    text = (tmp_path / "tables.md").read_text()
+    assert "| dt_cb | ellipse at rest, $32^2$ | 1 of 2 | 1 of 2 | 2 of 2 |" in text
+
+    ran = []
+    monkeypatch.setattr(report, "run_cell", lambda scheme, stages: ran.append(stages) or study.run_cell(scheme, stages))
+    report.stability(tmp_path, maps=maps)
+    assert not ran and read(tmp_path) == rows
+    text = (tmp_path / "stability.csv").read_text()
+    (tmp_path / "stability.csv").write_text(text.replace("-vesicle_bending 1.0 -time_step 0.03125", "other", 1))
+    report.stability(tmp_path, maps=maps)
+    assert len(ran) == 1 and read(tmp_path) == rows
+
+
+def test_time_ends_the_maps_and_says_so(tmp_path, monkeypatch):
+    monkeypatch.setattr(report, "MINUTES", 0)
+    monkeypatch.setattr(report.Cells.__init__, "__defaults__", (0,))
+    report.stability(tmp_path, maps=(some(DT_CB, (1.0,), (2**-5,)),))
+    assert "3 cells did not run" in (tmp_path / "tables.md").read_text()
+
+
+def test_other_columns_are_refused(tmp_path):
+    (tmp_path / "stability.csv").write_text("a,b\n1,2\n")
+    with pytest.raises(RunError, match="stability.csv: other columns"):
+        report.stability(tmp_path, maps=())
