@@ -189,12 +189,16 @@ class Results:
         except json.JSONDecodeError as error:
             raise RunError(f"{path}: not JSON ({error}); remove it to start afresh") from None
 
+    def has(self, case: Case) -> bool:
+        """Return whether the measures of a case are there, for the same options and ranks."""
+        known = self.cases.get(case.name)
+        return bool(known) and known["options"] == case.options and known["ranks"] == (case.ranks or self.ranks)
+
     def get(self, case: Case) -> dict:
         """Return the measures of a case; run it first unless they are there for the same options and ranks."""
         ranks = case.ranks or self.ranks
-        known = self.cases.get(case.name)
-        if known and known["options"] == case.options and known["ranks"] == ranks:
-            return known["measures"]
+        if self.has(case):
+            return self.cases[case.name]["measures"]
         print(f"running {case.name}", flush=True)
         with tempfile.TemporaryDirectory() as folder:
             failure = _launch(case, ranks, folder)
