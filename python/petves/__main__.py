@@ -15,7 +15,7 @@ def parser() -> argparse.ArgumentParser:
     plot.add_argument("folder", metavar="DIR", help="the run's -output_dir")
     again = commands.add_parser("reproduce", help="run the studies: the paper's tables and the coupled scheme's")
     again.add_argument("folder", metavar="DIR", help="where the tables and pictures go")
-    again.add_argument("--quick", action="store_true", help="h = 1/32 and 1/64 only (also QUICK=1)")
+    again.add_argument("--quick", action="store_true", help="coarse grids only (also QUICK=1)")
     again.add_argument("--only", choices=("paper", "coupled"), help="the paper's studies, or the coupled scheme's")
     again.add_argument("--ranks", type=int, default=2, help="MPI ranks of every run (2)")
     cells = commands.add_parser("accuracy", help="run the study of accuracy per cell: docs/accuracy.md's tables")

@@ -66,10 +66,11 @@ def differences(coarse: State, fine: State, h: float) -> dict[str, float]:
     tension = pairs[1][:, 0] - at(pairs[0], edges)[:, 0]
     for name, values in zip(LAGRANGIAN, (*position.T, tension)):
         found[name] = np.sqrt((values**2).mean() * length)
-    return found | {"omega": abs(float(coarse["omega"] - fine["omega"]))}
+    omega = abs(float(coarse["omega"] - fine["omega"]))
+    return found | ({} if np.isnan(omega) else {"omega": omega})
 
 
-def reference(results: Results, name: str, options: dict[str, str], ranks: int) -> State:
+def reference(results: Results, name: str, options: dict[str, str]) -> State:
     """Return the state of a reference run, kept in the folder fields/ beside the results; run it when it is not there."""
     path = results.path.parent / "fields" / f"{name}.npz"
 
@@ -80,7 +81,7 @@ def reference(results: Results, name: str, options: dict[str, str], ranks: int) 
 
     if not path.is_file():
         results.cases.pop(name, None)
-    results.get(Case(name, options, measure, ranks))
+    results.get(Case(name, options, measure, ranks=1))
     return dict(np.load(path))
 
 
@@ -89,13 +90,13 @@ def split_case(results: Results, kind: str, n: int, finer: int) -> Case:
 
     def measure(series: dict[str, np.ndarray], folder: Path) -> dict[str, object]:
         own = state(series, folder)
-        itself = reference(results, f"finest_{kind}_{finer}", split_options(kind, finer), 2)
+        itself = reference(results, f"finest_{kind}_{finer}", split_options(kind, finer))
         found = {"itself": differences(own, itself, 1 / n), "steps": len(series["time"]) - 1}
-        found["truth"] = differences(own, reference(results, f"truth_{kind}", fine_options(kind), 2), 1 / n)
+        found["truth"] = differences(own, reference(results, f"truth_{kind}", fine_options(kind)), 1 / n)
         ends = {key: abs(series[key][-1]) for key in ("area_error", "length_error")}
         return found | ends | {"step_seconds": series["wall"].sum()}
 
-    return Case(f"convergence_{kind}_{n}_{finer}", split_options(kind, n), measure)
+    return Case(f"convergence_{kind}_{n}_{finer}", split_options(kind, n), measure, ranks=1)
 
 
 def ours(results: Results, kind: str, options: dict[str, str], name: str) -> Case:
@@ -103,7 +104,7 @@ def ours(results: Results, kind: str, options: dict[str, str], name: str) -> Cas
 
     def measure(series: dict[str, np.ndarray], folder: Path) -> dict[str, object]:
         run, own = Run.read(folder), state(series, folder)
-        truth = differences(own, reference(results, f"truth_{kind}", fine_options(kind), 2), run.h)
+        truth = differences(own, reference(results, f"truth_{kind}", fine_options(kind)), run.h)
         ends = {key: abs(series[key][-1]) for key in ("area_error", "length_error")}
         return {"truth": truth, "steps": len(series["time"]) - 1} | ends | {"step_seconds": series["wall"].sum()}
 

@@ -77,12 +77,6 @@ def scene(kind: str, n: int, markers: int, dt: float) -> dict[str, str]:
     return options
 
 
-def table_7(n: int) -> Case:
-    """Return the shear run of Table 7, both GMRES solves at 1e-12."""
-    tight = {"-tension_ksp_rtol": TIGHT, "-bending_ksp_rtol": TIGHT}
-    return Case(f"table7_{n}", scene("shear", n, MARKERS_TABLE_7[n], 0.25 / n) | ILU | tight, _measure)
-
-
 def iterations(kind: str, n: int) -> dict[str, Case]:
     """Return the runs behind one line of Table 4 (relax) or 8 (shear): our stopping tests by name."""
     dt = (0.5 if kind == "relax" else 0.25) / n
@@ -107,9 +101,7 @@ def energy(n: int) -> dict[str, Case]:
     steps = {"h": 1 / n, "h/2": 0.5 / n, "h^2": 1 / n**2}
     tight = {"-tension_ksp_rtol": TIGHT, "-bending_ksp_rtol": TIGHT}
     return {
-        name: Case(
-            f"energy_{n}_{name.replace('/', '_')}", scene("energy", n, markers, dt) | ILU | tight, _measure_decay
-        )
+        name: Case(f"energy_{n}_{name.replace('/', '_')}", scene("energy", n, markers, dt) | ILU | tight, decay)
         for name, dt in steps.items()
     }
 
@@ -133,7 +125,7 @@ def _measure(series: dict[str, np.ndarray], folder: Path) -> dict[str, object]:
     }
 
 
-def _measure_decay(series: dict[str, np.ndarray], folder: Path) -> dict[str, object]:
+def decay(series: dict[str, np.ndarray], folder: Path) -> dict[str, object]:
     """Return _measure, and the energy against time."""
     total = series["energy_kinetic"] + series["energy_bending"]
     rise = np.diff(total / total[0])
