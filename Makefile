@@ -10,11 +10,16 @@ BUILD := build$(KIND)
 BIN := bin$(KIND)
 LIBDIR := lib$(KIND)
 PYTHON := /usr/bin/python3
+# Where make install puts the Python package: with PREFIX /usr/local, where Debian's Python finds it.
+PYTHON_DIR ?= $(PREFIX)/lib/python$(shell $(PYTHON) -c 'import sys; print("%d.%d" % sys.version_info[:2])')/dist-packages
 
 # Debian packages: to build and run, then to test.
 PACKAGES := gcc libc6-dev make pkg-config libpetsc-real-dev libfftw3-dev libfftw3-mpi-dev libhdf5-openmpi-dev openmpi-bin libopenblas0-serial \
-  python3-petsc4py python3-h5py python3-numpy python3-matplotlib
-TEST_PACKAGES := python3-pytest python3-scipy valgrind clang-format black
+  python3-petsc4py python3-h5py python3-numpy python3-matplotlib python3-tqdm
+TEST_PACKAGES := python3-pytest python3-scipy python3-xarray python3-nbclient python3-ipykernel python3-pip python3-setuptools python3-wheel \
+  ffmpeg chromium-headless-shell valgrind clang-format black
+# VTK with its XDMF reader, which Debian's lacks: from PyPI, into build/, for one test.
+VTK := vtk==9.3.1
 
 PKG := $(if $(PETSC_DIR),PKG_CONFIG_PATH=$(PETSC_DIR)/$(PETSC_ARCH)/lib/pkgconfig) pkg-config
 CC := mpicc
@@ -27,6 +32,7 @@ LIBS = $(shell $(PKG) --libs PETSc hdf5-openmpi fftw3) -lfftw3_mpi -lm $(if $(PE
 SOURCES := $(filter-out src/main.c,$(wildcard src/*.c src/*/*.c))
 OBJECTS := $(SOURCES:src/%.c=$(BUILD)/%.o)
 LIBRARY := $(LIBDIR)/libpetves.so
+BENCHES := $(patsubst bench/%.c,$(BUILD)/bench/%,$(wildcard bench/bench_*.c))
 TESTS := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/test_*.c))
 
 # Open MPI: run as root, and on more ranks than cores.
@@ -37,7 +43,7 @@ export OMPI_MCA_mpi_yield_when_idle := 1
 export OMPI_MCA_btl_vader_single_copy_mechanism := none
 export OMP_NUM_THREADS := 1
 
-.PHONY: all help deps test-deps run test coverage reproduce install format check-format clean tests
+.PHONY: all help deps test-deps run test coverage reproduce bench install format check-format clean tests benches
 all: $(BIN)/petves ## build bin/petves and lib/libpetves.so
 
 help: ## list the targets
@@ -59,7 +65,12 @@ $(BUILD)/tests/%: tests/%.c tests/check.h $(LIBRARY)
 	@mkdir -p $(@D)
 	$(CC) $(CFLAGS) -Itests -o $@ $< -L$(LIBDIR) -lpetves -Wl,-rpath,$(CURDIR)/$(LIBDIR) $(LIBS)
 
-tests: $(TESTS)
+$(BUILD)/bench/%: bench/%.c bench/bench.h tests/check.h $(LIBRARY)
+	@mkdir -p $(@D)
+	$(CC) $(CFLAGS) -Itests -Ibench -o $@ $< -L$(LIBDIR) -lpetves -Wl,-rpath,$(CURDIR)/$(LIBDIR) $(LIBS)
+
+tests: $(TESTS) $(BENCHES)
+benches: $(BENCHES)
 
 define install_packages
 	@missing=$$(for p in $(1); do dpkg-query -W -f '$${Status}' $$p 2>/dev/null | grep -q 'install ok installed' || echo $$p; done); \
@@ -75,15 +86,24 @@ deps: ## install the Debian packages that are missing
 test-deps:
 	$(call install_packages,$(PACKAGES) $(TEST_PACKAGES))
 
+$(BUILD)/site/.vtk:
+	@mkdir -p $(@D)
+	$(PYTHON) -m pip install -q --no-deps --root-user-action=ignore --target $(@D) --upgrade $(VTK) && touch $@ || \
+	  echo "$(VTK) is not to be had: the test that reads run.xmf with it is skipped"
+
 run: deps ## run the default scene (or SCENE=file.opts) on 2 ranks and draw it
 	@$(MAKE) --no-print-directory all
 	mpirun -n $(RANKS) $(BIN)/petves -options_file $(SCENE) -output_overwrite
 	PYTHONPATH=python $(PYTHON) -m petves plot $$(awk '$$1 == "-output_dir" {print $$2}' $(SCENE))
 
 test: test-deps ## run every test; ends with "N passed, N failed"
-	@$(MAKE) --no-print-directory all tests
+	@$(MAKE) --no-print-directory all tests $(BUILD)/site/.vtk
 	PETVES=$(CURDIR)/$(BIN)/petves PETVES_TESTS=$(CURDIR)/$(BUILD)/tests PYTHONPATH=python SANITIZE=$(SANITIZE) \
 	  $(PYTHON) -m pytest -p no:cacheprovider -q tests $(TESTFLAGS)
+
+bench: deps ## speed on this machine, into bench/results and docs/performance (12 minutes; QUICK=1: 2, into out/bench)
+	@$(MAKE) --no-print-directory all benches
+	PETVES=$(CURDIR)/$(BIN)/petves PETVES_BENCH=$(CURDIR)/$(BUILD)/bench CC="$(CC)" PYTHONPATH=python $(PYTHON) bench/bench.py
 
 coverage: ## line coverage of src/ by the tests (needs gcovr)
 	@command -v gcovr >/dev/null || { echo "gcovr is missing: apt-get install gcovr"; exit 1; }
@@ -96,20 +116,21 @@ reproduce: deps ## the paper's scenes, tables and figures: docs/reproduction.md 
 	PETVES=$(CURDIR)/$(BIN)/petves PYTHONPATH=python $(PYTHON) -m petves reproduce docs/reproduction
 
 install: all ## install under PREFIX (/usr/local)
-	install -d $(PREFIX)/bin $(PREFIX)/lib $(PREFIX)/include $(PREFIX)/share/petves
+	install -d $(PREFIX)/bin $(PREFIX)/lib $(PREFIX)/include $(PREFIX)/share/petves $(PYTHON_DIR)/petves
 	install $(BIN)/petves $(PREFIX)/bin/
 	install -m 644 $(LIBRARY) $(PREFIX)/lib/
 	install -m 644 include/petves.h $(PREFIX)/include/
-	cp -r runs python $(PREFIX)/share/petves/
+	cp -r runs python/examples $(PREFIX)/share/petves/
+	install -m 644 python/petves/*.py python/petves/*.html $(PYTHON_DIR)/petves/
 
-C_FILES = $(wildcard src/*.c src/*/*.c src/*/*.h include/*.h tests/*.c tests/*.h)
+C_FILES = $(wildcard src/*.c src/*/*.c src/*/*.h include/*.h tests/*.c tests/*.h bench/*.c bench/*.h)
 format: test-deps ## format C and Python
 	clang-format -i $(C_FILES)
-	black -q -l 120 python tests
+	black -q -l 120 python tests bench
 
 check-format: test-deps ## fail when a file is not formatted
 	clang-format --dry-run --Werror $(C_FILES)
-	black -q --check -l 120 python tests
+	black -q --check -l 120 python tests bench
 
 clean: ## remove what was built
 	rm -rf build build-* bin bin-* lib lib-*

@@ -10,7 +10,13 @@
 #define PETSC_SUCCESS 0
 #endif
 
+#define PETVES_MAX_MESSAGE 512
+
 typedef struct _p_Simulation *Simulation;
+
+/* A background flow of the caller's: u_inf at n points X[2n] (x0,y0,x1,y1,...) and a time, into u[2n]; non-zero return
+   stops the run. Every rank calls it, for other points and other numbers of times. */
+typedef PetscErrorCode (*PetvesFlow)(PetscReal time, PetscInt n, const PetscReal X[], PetscReal u[], void *ctx);
 
 /* PetvesInitialize - start PETSc with petves' help text and error handler; reads -options_file. */
 PETSC_EXTERN PetscErrorCode PetvesInitialize(int *argc, char ***argv);
@@ -23,19 +29,44 @@ PETSC_EXTERN PetscErrorCode PetvesCatchSignals(void);
 /* SimulationCreate - the simulation that the options database describes, at its initial state or (-restart) at a
    checkpoint's, output files open. */
 PETSC_EXTERN PetscErrorCode SimulationCreate(MPI_Comm comm, Simulation *simulation);
+
+/* SimulationCreateWithFlow - the same with a function for -flow_type custom (docs/method.md says what it must satisfy).
+ */
+PETSC_EXTERN PetscErrorCode SimulationCreateWithFlow(MPI_Comm comm, PetvesFlow flow, void *ctx, Simulation *simulation);
 PETSC_EXTERN PetscErrorCode SimulationDestroy(Simulation *simulation);
 
 /* SimulationView - the model in force and the solvers, as -view prints them. */
 PETSC_EXTERN PetscErrorCode SimulationView(Simulation simulation, PetscViewer viewer);
 
-/* SimulationStep - one time step, with its row of series.csv; failure is NULL or says why the step could not be taken
-   (the state is then the last good one). The text lives until the next step. */
+/* SimulationBegin - write the initial state (row 0 of series.csv, the first saved time); later calls do nothing. */
+PETSC_EXTERN PetscErrorCode SimulationBegin(Simulation simulation);
+
+/* SimulationStep - one time step, with its row of series.csv and the files that are due; failure is NULL or says why
+   the step could not be taken (the state is then the last good one). The text lives until the next step. */
 PETSC_EXTERN PetscErrorCode SimulationStep(Simulation simulation, const char **failure);
 
-/* SimulationRun - step to -time_end or the steady state, or until a signal or -time_wall_limit stops it, with all
-   output. good is false when a step could not be taken: a checkpoint and summary.json are on disk then, and one line on
+/* SimulationAdvance - SimulationStep, unless time `until` or the steady state has been reached, or a signal or
+   -time_wall_limit asks to stop: then stepped is false. Steps of -time_adapt end at `until`. */
+PETSC_EXTERN PetscErrorCode SimulationAdvance(Simulation simulation, PetscReal until, PetscBool *stepped,
+                                              const char **failure);
+
+/* SimulationEnd - write the end state, checkpoint.h5 and summary.json; failure: why the run stopped, NULL when it did
+   not have to. */
+PETSC_EXTERN PetscErrorCode SimulationEnd(Simulation simulation, const char *failure);
+
+/* SimulationGetReason - why SimulationAdvance did not step: "finished", "steady" or "stopped". Not collective. */
+PETSC_EXTERN PetscErrorCode SimulationGetReason(Simulation simulation, const char **reason);
+
+/* SimulationRun - begin, step to -time_end or the steady state, or until a signal or -time_wall_limit stops it, end.
+   good is false when a step could not be taken: a checkpoint and summary.json are on disk then, and one line on
    standard error has said why. */
 PETSC_EXTERN PetscErrorCode SimulationRun(Simulation simulation, PetscBool *good);
+
+/* SimulationCheckpoint - write checkpoint.h5 now. */
+PETSC_EXTERN PetscErrorCode SimulationCheckpoint(Simulation simulation);
+
+/* SimulationSetQuiet - print neither progress nor the final table. Not collective. */
+PETSC_EXTERN PetscErrorCode SimulationSetQuiet(Simulation simulation, PetscBool quiet);
 
 /* SimulationGetTime - steps taken and time reached. Not collective. */
 PETSC_EXTERN PetscErrorCode SimulationGetTime(Simulation simulation, PetscInt *step, PetscReal *time);
@@ -45,3 +76,39 @@ PETSC_EXTERN PetscErrorCode SimulationGetTime(Simulation simulation, PetscInt *s
    Not collective. */
 PETSC_EXTERN PetscErrorCode SimulationGetState(Simulation simulation, Vec *velocity, Vec *pressure, Vec *tension,
                                                Vec *markers, Vec *marker_velocity);
+
+/* SimulationGetObject - borrowed PETSc object by name, NULL when the simulation has none of that name: Vecs velocity,
+   pressure, tension, markers, marker_velocity; DMs dm_velocity, dm_u, dm_v, dm_pressure; Mats mat_G, mat_D, mat_L,
+   mat_H, mat_E, mat_S, mat_B (docs/method.md); PCs pc_helmholtz, pc_poisson (fast solves); KSPs coupled_, direct_,
+   tension_, bending_. Vecs change places from step to step: ask again after each. Not collective. */
+PETSC_EXTERN PetscErrorCode SimulationGetObject(Simulation simulation, const char name[], PetscObject *object);
+
+/* SimulationGetSizes - number of vesicles; start[vesicles+1], first marker of each (may be NULL); sizes: this rank's
+   first row, then rows and columns of its part of u, v and p. Not collective. */
+PETSC_EXTERN PetscErrorCode SimulationGetSizes(Simulation simulation, PetscInt *vesicles, PetscInt start[],
+                                               PetscInt sizes[7]);
+
+/* SimulationGetOption - name ("-time_step") and value in force of the i-th option; name NULL past the last. Not
+   collective. */
+PETSC_EXTERN PetscErrorCode SimulationGetOption(Simulation simulation, PetscInt i, const char **name, char value[],
+                                                size_t length);
+
+/* SimulationGetColumn - name of the i-th column of series.csv; NULL past the last. Not collective. */
+PETSC_EXTERN PetscErrorCode SimulationGetColumn(Simulation simulation, PetscInt i, const char **name);
+
+/* SimulationGetRow - the last row of series.csv; vesicle -1: totals and worst values, else the vesicle's own columns
+   (the others are 0). Not collective. */
+PETSC_EXTERN PetscErrorCode SimulationGetRow(Simulation simulation, PetscInt vesicle, PetscReal row[]);
+
+/* SimulationGetCellVelocity - velocity, background included, at this rank's cell centres: u, v[rows of p][cells in x].
+ */
+PETSC_EXTERN PetscErrorCode SimulationGetCellVelocity(Simulation simulation, PetscReal u[], PetscReal v[]);
+
+/* PetvesTemporaryFolder - make a folder in TMPDIR, path[PETSC_MAX_PATH_LEN]; all ranks get its name. */
+PETSC_EXTERN PetscErrorCode PetvesTemporaryFolder(MPI_Comm comm, char path[]);
+
+/* PetvesEnter, PetvesLeave - around calls of a program that has started PETSc itself and handles errors itself: between
+   them an error's first message goes to message[PETVES_MAX_MESSAGE], nothing is printed, and `options` is the options
+   database. PetvesLeave takes the depth that PetvesEnter gave and leaves the log stages that an error has left open. */
+PETSC_EXTERN PetscErrorCode PetvesEnter(PetscOptions options, char message[], PetscInt *depth);
+PETSC_EXTERN PetscErrorCode PetvesLeave(PetscInt depth);

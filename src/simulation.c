@@ -1,20 +1,8 @@
 /* A whole run: build everything from the options, step, write. */
-#include "output/output.h"
-#include "petves.h"
+#include "simulation.h"
+#include "fluid/wisdom.h"
 #include <errno.h>
 #include <unistd.h>
-
-struct _p_Simulation {
-  Scene scene;
-  Shape shape;
-  Fluid fluid;
-  Membrane membrane;
-  Coupling coupling;
-  Scheme scheme;
-  Output output;
-  PetscReal next_output;
-  PetscReal longest_step; /* wall seconds, with its output */
-};
 
 static const char help[] = "petves: inextensible vesicles in two-dimensional viscous flow.\n"
                            "usage: mpirun -n RANKS petves -options_file scene.opts [-option value ...]\n\n";
@@ -65,14 +53,19 @@ PetscErrorCode PetvesFinalize(void) {
   return error;
 }
 
-static PetscErrorCode Build(MPI_Comm comm, Simulation s) {
+static PetscErrorCode Build(MPI_Comm comm, PetvesFlow flow, void *ctx, Simulation s) {
   const Kernel *kernel;
   PetscFunctionBeginUser;
   PetscCall(SceneCreate(comm, &s->scene));
+  PetscCheck(flow || s->scene->flow.type != FLOW_CUSTOM, comm, PETSC_ERR_USER_INPUT,
+             "-flow_type custom: no function given; allowed: from Python (flow=) or C (SimulationCreateWithFlow) only");
+  s->scene->flow.function = flow;
+  s->scene->flow.ctx = ctx;
   kernel = KernelFind(s->scene->delta);
   PetscCall(ShapeCreate(s->scene, kernel->default_spacing, kernel->least_spacing, &s->shape));
   PetscCall(SceneSetInertia(s->scene, &s->shape));
   if (*s->scene->warning) PetscCall(PetscPrintf(comm, "petves: warning: %s\n", s->scene->warning));
+  PetscCall(WisdomRead(s->scene));
   PetscCall(FluidCreate(s->scene, &s->fluid));
   PetscCall(MembraneCreate(&s->shape, s->scene->bending, (DerivativeType)s->scene->derivative, &s->membrane));
   if (s->shape.vesicles) PetscCall(CouplingCreate(s->fluid->grid, s->membrane, s->scene->delta, &s->coupling));
@@ -82,6 +75,12 @@ static PetscErrorCode Build(MPI_Comm comm, Simulation s) {
 }
 
 PetscErrorCode SimulationCreate(MPI_Comm comm, Simulation *out) {
+  PetscFunctionBeginUser;
+  PetscCall(SimulationCreateWithFlow(comm, NULL, NULL, out));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SimulationCreateWithFlow(MPI_Comm comm, PetvesFlow flow, void *ctx, Simulation *out) {
   Simulation s;
   PetscBool only_help;
   PetscFunctionBeginUser;
@@ -89,10 +88,13 @@ PetscErrorCode SimulationCreate(MPI_Comm comm, Simulation *out) {
   *out = s;
   PetscCall(PhaseBegin(PHASE_SETUP));
   PetscCall(PetvesSetupErrors(PETSC_TRUE));
-  PetscCall(Build(comm, s));
+  PetscCall(Build(comm, flow, ctx, s));
   if (s->scene->view) PetscCall(SimulationView(s, PETSC_VIEWER_STDOUT_(comm)));
   PetscCall(PetscOptionsHasHelp(NULL, &only_help));
-  if (!only_help) PetscCall(OutputCreate(s->scene, s->scheme, &s->output)); /* -help leaves no files */
+  if (!only_help) { /* -help leaves no files */
+    PetscCall(WisdomWrite(s->scene));
+    PetscCall(OutputCreate(s->scene, s->scheme, &s->output));
+  }
   PetscCall(PetvesSetupErrors(PETSC_FALSE));
   PetscCall(PhaseEnd());
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -117,32 +119,6 @@ PetscErrorCode SimulationView(Simulation s, PetscViewer viewer) {
   PetscFunctionBeginUser;
   PetscCall(SceneView(s->scene, &s->shape, viewer));
   PetscCall(SchemeView(s->scheme, viewer));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode SimulationGetTime(Simulation s, PetscInt *step, PetscReal *time) {
-  PetscFunctionBeginUser;
-  if (step) *step = s->scheme->state.step;
-  if (time) *time = s->scheme->state.t;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode SimulationGetState(Simulation s, Vec *w, Vec *p, Vec *sigma, Vec *X, Vec *U) {
-  PetscFunctionBeginUser;
-  if (w) *w = s->scheme->state.w;
-  if (p) *p = s->scheme->state.p;
-  if (sigma) *sigma = s->scheme->state.sigma;
-  if (X) *X = s->scheme->state.X;
-  if (U) *U = s->scheme->state.U;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode SimulationStep(Simulation s, const char **failure) {
-  const StepReport *report = &s->scheme->report;
-  PetscFunctionBeginUser;
-  PetscCall(SchemeStep(s->scheme, s->scene->adapt ? s->scene->t_end - s->scheme->state.t : s->scene->dt));
-  *failure = *report->failure ? report->failure : NULL;
-  if (!*failure) PetscCall(OutputSeries(s->output));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -174,57 +150,89 @@ static PetscErrorCode IsSteady(Simulation s, PetscBool *steady) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The first row and frame; those of a checkpoint are there already, or (in a new folder) its row is. */
-static PetscErrorCode WriteFirst(Simulation s) {
+/* One step of at most `most` (with -time_adapt), its row of series.csv and the files that are due. */
+static PetscErrorCode TakeStep(Simulation s, PetscReal most, const char **failure) {
+  const StepReport *report = &s->scheme->report;
+  Output o = s->output;
+  PetscLogDouble start, end;
   PetscFunctionBeginUser;
-  if (!*s->scene->restart) PetscCall(OutputSeries(s->output));
+  PetscCall(SimulationBegin(s));
+  PetscCall(PetscTime(&start));
+  o->frames = PetscMin(o->frames, o->scheduled); /* an end that was not the end */
+  PetscCall(SchemeStep(s->scheme, s->scene->adapt ? most : s->scene->dt));
+  *failure = *report->failure ? report->failure : NULL;
+  if (*failure) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(OutputSeries(s->output));
+  PetscCall(WriteDue(s));
+  PetscCall(IsSteady(s, &s->steady));
+  PetscCall(PetscTime(&end));
+  s->longest_step = PetscMax(s->longest_step, end - start);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The first row and frame; those of a checkpoint are there already, or (in a new folder) its row is. */
+PetscErrorCode SimulationBegin(Simulation s) {
+  PetscFunctionBeginUser;
+  if (s->begun) PetscFunctionReturn(PETSC_SUCCESS);
+  s->begun = PETSC_TRUE;
+  s->reason = "finished";
+  if (!*s->scene->restart)
+    PetscCall(OutputSeries(s->output));
+  else /* the checkpoint's row is there already */
+    PetscCall(OutputMeasureVesicles(s->output));
   if (!s->output->go_on) PetscCall(OutputFields(s->output, PETSC_TRUE));
   s->next_output = OutputNextTime(s->output);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Steps and their files, until something ends the run: its reason, and the failure if it is one. */
-static PetscErrorCode StepToEnd(Simulation s, const char **reason, const char **failure) {
+PetscErrorCode SimulationStep(Simulation s, const char **failure) {
+  const PetscReal left = s->scene->t_end - s->scheme->state.t;
+  PetscFunctionBeginUser;
+  PetscCall(TakeStep(s, left > 0 ? left : PETSC_MAX_REAL, failure));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SimulationAdvance(Simulation s, PetscReal until, PetscBool *stepped, const char **failure) {
   const State *q = &s->scheme->state;
   const char *why = NULL;
-  PetscBool steady = PETSC_FALSE;
   PetscFunctionBeginUser;
   *failure = NULL;
-  while (!steady && q->t < s->scene->t_end - (s->scene->adapt ? 1e-9 : 0.5) * s->scene->dt) {
-    PetscLogDouble start, end;
-    const PetscReal reserve = 1 + 1.5 * (s->longest_step + s->output->checkpoint_seconds);
-    PetscCall(StopRequested(s->scene->comm, s->scene->wall_limit, reserve, &why));
-    if (why) {
+  *stepped = PETSC_FALSE;
+  PetscCall(SimulationBegin(s));
+  s->reason = s->steady ? "steady" : "finished";
+  if (s->steady || q->t >= until - (s->scene->adapt ? 1e-9 : 0.5) * s->scene->dt) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(StopRequested(s->scene->comm, s->scene->wall_limit,
+                          1 + 1.5 * (s->longest_step + s->output->checkpoint_seconds), &why));
+  if (why) {
+    s->reason = "stopped";
+    if (!s->output->quiet)
       PetscCall(PetscPrintf(s->scene->comm, "petves: stopping after step %" PetscInt_FMT ": %s\n", q->step, why));
-      *reason = "stopped";
-      PetscFunctionReturn(PETSC_SUCCESS);
-    }
-    PetscCall(PetscTime(&start));
-    PetscCall(SimulationStep(s, failure));
-    if (*failure) {
-      *reason = *failure;
-      PetscFunctionReturn(PETSC_SUCCESS);
-    }
-    PetscCall(WriteDue(s));
-    PetscCall(IsSteady(s, &steady));
-    PetscCall(PetscTime(&end));
-    s->longest_step = PetscMax(s->longest_step, end - start);
+    PetscFunctionReturn(PETSC_SUCCESS);
   }
-  *reason = steady ? "steady" : "finished";
+  *stepped = PETSC_TRUE;
+  PetscCall(TakeStep(s, until - q->t, failure));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SimulationEnd(Simulation s, const char *failure) {
+  PetscFunctionBeginUser;
+  PetscCall(SimulationBegin(s));
+  if (s->scheme->state.t > s->output->times[s->output->frames - 1])
+    PetscCall(OutputFields(s->output, PETSC_FALSE)); /* the end state, when no saved time fell on it */
+  PetscCall(OutputCheckpoint(s->output));
+  PetscCall(OutputSummary(s->output, failure ? failure : s->reason));
+  PetscCall(OutputProgress(s->output, PETSC_TRUE));
+  PetscCall(OutputFinalTable(s->output, failure ? "stopped" : s->reason));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode SimulationRun(Simulation s, PetscBool *good) {
-  const char *failure = NULL, *reason = NULL;
+  const char *failure = NULL;
+  PetscBool stepped = PETSC_TRUE;
   PetscFunctionBeginUser;
-  PetscCall(WriteFirst(s));
-  PetscCall(StepToEnd(s, &reason, &failure));
-  if (s->scheme->state.t > s->output->times[s->output->frames - 1])
-    PetscCall(OutputFields(s->output, PETSC_FALSE)); /* the end state, when no saved time fell on it */
-  PetscCall(OutputCheckpoint(s->output));
-  PetscCall(OutputSummary(s->output, reason));
-  PetscCall(OutputProgress(s->output, PETSC_TRUE));
-  PetscCall(OutputFinalTable(s->output, failure ? "stopped" : reason));
+  PetscCall(SimulationBegin(s));
+  while (stepped && !failure) PetscCall(SimulationAdvance(s, s->scene->t_end, &stepped, &failure));
+  PetscCall(SimulationEnd(s, failure));
   *good = failure ? PETSC_FALSE : PETSC_TRUE;
   if (failure && !s->fluid->grid->rank)
     fprintf(stderr, "petves: error: %s; the last good state is in %s/checkpoint.h5\n", failure, s->output->folder);

@@ -1,5 +1,5 @@
-/* The coupled problem's parts: its solution put back into the block system, Mob against E A^-1 E^T column by column,
-   the wall forces' preconditioner as an inverse. */
+/* The coupled problem's parts: its solution put back into the equations of the step, Mob against E A^-1 E^T column by
+   column, the wall forces' preconditioner as an inverse. */
 #include "check.h"
 #include "coupling/saddle.h"
 
@@ -58,7 +58,9 @@ static PetscErrorCode CheckSolution(const char name[], Problem *q, PetscBool ran
     PetscCall(VecScale(q->w, 0.01)); /* a guess far larger than the solution would leave its rounding */
     PetscCall(VecScale(q->sigma, 0.01));
   }
-  PetscCall(SaddleSolve(q->s, q->f, q->g, q->w, q->p, q->sigma, q->d, U));
+  PetscCall(CouplingInterpolate(c, c->E, q->w, U));
+  PetscCall(VecCopy(q->f, r));
+  PetscCall(SaddleSolve(q->s, r, q->g, q->w, q->p, q->sigma, q->d, U));
   PetscCall(MatMult(f->H, q->w, r));
   PetscCall(CouplingInterpolate(c, c->E, q->w, U));
   PetscCall(CouplingSpreadAdd(c, 1 / f->a0, c->B, U, r));

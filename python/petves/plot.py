@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Callable
 
 import numpy as np
 
 from petves.run import Run
 
 if TYPE_CHECKING:
+    from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 ARROWS = 20  # arrows across the longer side of a velocity picture
 OUTLINES = 7  # outlines in shapes.png
+LEAST_SPAN = 0.02  # of an axis of angles over pi
 FLOOR = 1e-16  # smallest value on a logarithmic axis
 
 
@@ -91,21 +94,77 @@ def plot_conservation(run: Run) -> Path:
     return save_figure(figure, run.folder / "conservation.png")
 
 
-def _membrane(axes: Axes, run: Run, frame: int, limits: tuple[float, float], color: str) -> object:
-    """Draw the vesicles' edges coloured by tension over a wider line of one colour; return what a colour bar needs."""
+@dataclass
+class FieldKind:
+    """How a field is drawn: its values from u, v, p, its colours, and the colour of what lies on it."""
+
+    values: Callable[[np.ndarray, np.ndarray, np.ndarray], np.ndarray]
+    label: str
+    cmap: str
+    line: str
+    signed: bool
+
+
+FIELDS = {
+    "pressure": FieldKind(lambda u, v, p: p, "pressure $p$ (length$^2$/time$^2$)", "RdBu_r", "black", True),
+    "speed": FieldKind(
+        lambda u, v, p: np.hypot(u, v), r"speed $|\mathbf{u}|$ (length/time)", "viridis", "white", False
+    ),
+}
+
+
+def draw_membranes(axes: Axes, run: Run, frame: int, limits: tuple[float, float], color: str) -> list[Artist]:
+    """Draw the vesicles' edges coloured by tension over a wider line of one colour, the first outline dotted.
+
+    Returns
+    -------
+    list of Artist
+        What was drawn; the last one is what a colour bar of the tension needs.
+    """
     from matplotlib.collections import LineCollection
 
-    lines = None
+    drawn: list[Artist] = []
     for vesicle in range(run.vesicles):
         initial, points = run.outline(0, vesicle), run.outline(frame, vesicle)
-        axes.plot(*initial.T, ":", color=color, lw=1)
-        axes.plot(*points.T, "-", color=color, lw=4, solid_joinstyle="round")
+        drawn += axes.plot(*initial.T, ":", color=color, lw=1)
+        drawn += axes.plot(*points.T, "-", color=color, lw=4, solid_joinstyle="round")
         edges = np.stack([np.roll(points[:-1], 1, axis=0), points[:-1]], axis=1)
         lines = LineCollection(edges, cmap="plasma", lw=2.4, capstyle="round")
         lines.set_array(run.edge_tension(frame, vesicle))
         lines.set_clim(*limits)
-        axes.add_collection(lines)
-    return lines
+        drawn.append(axes.add_collection(lines))
+    return drawn
+
+
+def plot_motion(run: Run) -> Path:
+    """Draw the inclination and the tank-treading frequency against time."""
+    figure, (axes,) = new_figure(6, 4)
+    time = run.series["time"]
+    for vesicle in range(run.vesicles):
+        suffix = f"_{vesicle + 1}" if run.vesicles > 1 else ""
+        angle = np.unwrap(run.series["inclination" + suffix], period=np.pi) / np.pi
+        name = f" of vesicle {vesicle + 1}" if run.vesicles > 1 else ""
+        axes.plot(time, angle, color=f"C{vesicle}", label=rf"inclination $\theta/\pi${name}")
+    if any(np.isfinite(run.series[name]).any() for name in run.series if name.startswith("frequency")):
+        other = axes.twinx()
+        other.set(ylabel="frequency (radians/time), dashed")
+        for vesicle in range(run.vesicles):
+            suffix = f"_{vesicle + 1}" if run.vesicles > 1 else ""
+            other.plot(time, run.series["frequency" + suffix], "--", color=f"C{vesicle}")
+    middle, half = np.mean(axes.get_ylim()), max(np.ptp(axes.get_ylim()) / 2, LEAST_SPAN / 2)
+    axes.set(xlabel="time $t$", ylabel=r"inclination $\theta/\pi$", ylim=(middle - half, middle + half))
+    axes.grid(alpha=0.3)
+    if run.vesicles > 1:
+        axes.legend(frameon=False)
+    return save_figure(figure, run.folder / "motion.png")
+
+
+def draw_outlines(axes: Axes, run: Run, frame: int, color: object, style: str, label: str | None = None) -> None:
+    """Draw the vesicles' outlines at a saved time, marker 0 as a dot."""
+    for vesicle in range(run.vesicles):
+        points = run.outline(frame, vesicle)
+        axes.plot(*points.T, style, color=color, lw=1.5, label=label if vesicle == 0 else None)
+        axes.plot(*points[0], "o", color=color, ms=4)
 
 
 def plot_field(run: Run, frame: int = -1) -> Path:
@@ -119,24 +178,25 @@ def plot_field(run: Run, frame: int = -1) -> Path:
     tall = min(max(4.7 * sides[1] / sides[0], 1.6), 9.0)
     figure, axes = new_figure(12.4, tall + 1.9, columns=2)
     figure.set_layout_engine("compressed")  # the layout for axes of equal scales
-    tension = run.tension[frame]
+    tension, drawn = run.tension[frame], []
     limits = (tension.min(), tension.max()) if run.vesicles else (0.0, 1.0)
-    largest = np.max(np.abs(p)) or 1.0
-    speed = np.hypot(u, v)
-    pictures = (
-        (p, "RdBu_r", -largest, largest, "pressure $p$ (length$^2$/time$^2$)", "black"),
-        (speed, "viridis", 0.0, speed.max() or 1.0, r"speed $|\mathbf{u}|$ (length/time)", "white"),
-    )
-    for panel, (values, cmap, low, high, label, color) in zip(axes, pictures):
-        image = panel.imshow(values, origin="lower", extent=run.box, cmap=cmap, vmin=low, vmax=high, aspect="equal")
-        figure.colorbar(image, ax=panel, label=label, location="bottom", shrink=0.8, pad=0.02)
-        lines = _membrane(panel, run, frame, limits, color)
+    for panel, kind in zip(axes, FIELDS.values()):
+        values = kind.values(u, v, p)
+        high = np.max(np.abs(values)) or 1.0
+        low = -high if kind.signed else 0.0
+        image = panel.imshow(
+            values, origin="lower", extent=run.box, cmap=kind.cmap, vmin=low, vmax=high, aspect="equal"
+        )
+        figure.colorbar(image, ax=panel, label=kind.label, location="bottom", shrink=0.8, pad=0.02)
+        drawn = draw_membranes(panel, run, frame, limits, kind.line)
         panel.set(xlabel="$x$ (length)", ylabel="$y$ (length)", xlim=run.box[:2], ylim=run.box[2:])
     every = max(1, round(max(len(x), len(y)) / ARROWS))
     cut = np.s_[every // 2 :: every]
     axes[1].quiver(x[cut], y[cut], u[cut, cut], v[cut, cut], color="white", alpha=0.8, pivot="mid", width=0.003)
-    if lines is not None:
-        figure.colorbar(lines, ax=list(axes), label=r"tension $\sigma$ (length$^3$/time$^2$)", shrink=0.7, aspect=30)
+    if drawn:
+        figure.colorbar(
+            drawn[-1], ax=list(axes), label=r"tension $\sigma$ (length$^3$/time$^2$)", shrink=0.7, aspect=30
+        )
     figure.suptitle(f"$t$ = {run.time[frame]:g}")
     return save_figure(figure, run.folder / "field.png")
 
@@ -166,11 +226,7 @@ def plot_shapes(run: Run) -> Path:
     frames = np.unique(np.linspace(0, len(run.time) - 1, min(OUTLINES, len(run.time))).round().astype(int))
     colors = matplotlib.colormaps["viridis"](np.linspace(0, 0.9, len(frames)))
     for frame, color in zip(frames, colors):
-        for vesicle in range(run.vesicles):
-            points = run.outline(frame, vesicle)
-            label = f"{run.time[frame]:.4g}" if vesicle == 0 else None
-            axes.plot(*points.T, "-", color=color, lw=1.5, label=label)
-            axes.plot(*points[0], "o", color=color, ms=4)
+        draw_outlines(axes, run, frame, color, "-", label=f"{run.time[frame]:.4g}")
     axes.set(xlabel="$x$ (length)", ylabel="$y$ (length)", aspect="equal")
     axes.margins(0.08)
     axes.grid(alpha=0.3)

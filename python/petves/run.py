@@ -11,8 +11,10 @@ from typing import Any
 import h5py
 import numpy as np
 
+from petves.errors import Error
 
-class RunError(Exception):
+
+class RunError(Error):
     """A folder or file of a run is missing or cannot be read; the message is one line."""
 
 
@@ -93,6 +95,18 @@ class Run:
         """Number of vesicles."""
         return len(self.start) - 1
 
+    def options(self) -> dict[str, str]:
+        """Return the options in force (resolved.opts), without the dash; empty when the file is missing."""
+        path = self.folder / "resolved.opts"
+        lines = path.read_text().splitlines() if path.is_file() else []
+        words = [line[1:].split(maxsplit=1) for line in lines if line.startswith("-")]
+        return {word[0]: word[1] if len(word) > 1 else "" for word in words}
+
+    def first_measures(self, vesicle: int = 0) -> tuple[float, float]:
+        """Return a vesicle's initial area and length."""
+        suffix = f"_{vesicle + 1}" if self.vesicles > 1 else ""
+        return tuple(float(self.series[name + suffix][0]) for name in ("area", "length"))
+
     def fields(self, frame: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return u, v, p at cell centres at a saved time, each of shape (ny, nx)."""
         with _open(self.folder / "run.h5") as file:
@@ -155,7 +169,7 @@ def _open(path: Path) -> h5py.File:
     if not path.is_file():
         raise RunError(f"{path}: no such file")
     try:
-        return h5py.File(path, "r")
+        return h5py.File(path, "r", locking=False)  # the run may be going on
     except OSError as error:
         raise RunError(f"{path}: not a readable HDF5 file ({str(error).splitlines()[0]})") from None
 

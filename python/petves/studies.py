@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
-import subprocess
 import tempfile
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,6 +11,7 @@ from typing import Callable
 import numpy as np
 
 from petves.paper import CELLS
+from petves.program import run_program
 from petves.run import RunError, read_series
 
 MARKERS_TABLE_7 = {32: 50, 64: 98, 128: 196, 256: 392}  # 1.5 h apart
@@ -23,13 +22,6 @@ ILU = {"-tension_pc_type": "ilu", "-tension_pc_factor_levels": "200", "-tension_
 NONE = {"-tension_pc_type": "none"}
 LEFT = {"-tension_ksp_pc_side": "left"}  # PETSc's default test, which the paper's iterations are compared with
 ENERGY_ROWS = 240  # rows kept of an energy curve
-OPEN_MPI = {
-    "OMPI_ALLOW_RUN_AS_ROOT": "1",
-    "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
-    "OMPI_MCA_rmaps_base_oversubscribe": "1",
-    "OMPI_MCA_mpi_yield_when_idle": "1",
-    "OMP_NUM_THREADS": "1",
-}
 
 
 @dataclass
@@ -140,34 +132,14 @@ def decay(series: dict[str, np.ndarray], folder: Path) -> dict[str, object]:
 
 def _launch(case: Case, ranks: int, folder: str) -> str:
     """Run a case; return "", or the line that says why a case that may fail has stopped."""
-    binary = os.environ.get("PETVES", "bin/petves")
-    if not Path(binary).is_file():
-        raise RunError(f"{binary}: no such program; build it with make, or set PETVES")
     words = [word for pair in case.options.items() for word in pair]
     limits = [word for name in ("edge_ratio", "area_error", "length_error") for word in (f"-limit_{name}", "0")]
-    command = [
-        "mpirun",
-        "-n",
-        str(ranks),
-        binary,
-        *limits,
-        *words,
-        "-output_dir",
-        folder,
-    ]  # a study measures bad answers too
-    try:
-        done = subprocess.run(
-            command, env=OPEN_MPI | os.environ, capture_output=True, text=True, stdin=subprocess.DEVNULL
-        )
-    except FileNotFoundError:
-        raise RunError("mpirun: no such program; install openmpi-bin") from None
-    if not done.returncode:
+    status, line = run_program([*limits, *words, "-output_dir", folder], ranks)  # a study measures bad answers too
+    if not status:
         return ""
-    lines = (done.stderr or done.stdout).strip().splitlines() or ["no message"]
-    line = next((text for text in lines if "petves: error" in text), lines[-1])
-    if case.may_fail and done.returncode == 2:
+    if case.may_fail and status == 2:
         return line
-    raise RunError(f"{case.name}: exit status {done.returncode}: {line}")
+    raise RunError(f"{case.name}: exit status {status}: {line}")
 
 
 class Results:

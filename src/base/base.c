@@ -30,22 +30,35 @@ static void NameOption(const char *message, char name[], size_t length) {
   (void)PetscFree(all);
 }
 
-PetscErrorCode PetvesErrorHandler(MPI_Comm comm, int line, const char *function, const char *file, PetscErrorCode code,
-                                  PetscErrorType type, const char *message, void *ctx) {
-  PetscMPIInt rank = 0;
-  char text[PETVES_MAX_MESSAGE], name[PETVES_MAX_MESSAGE] = "";
-  size_t n = 0;
-  if (type != PETSC_ERROR_INITIAL) return code;
-  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-  if (rank && code == PETSC_ERR_USER_INPUT) return code; /* rank 0 says it */
-  if (code != PETSC_ERR_USER_INPUT && message) NameOption(message, name, sizeof(name));
-  for (const char *c = message ? message : "unknown error"; *c && n < sizeof(text) - 1; c++)
+/* One line of text: the message, after the option at fault. */
+static void OneLine(PetscErrorCode code, const char *message, char text[PETVES_MAX_MESSAGE]) {
+  char before[PETVES_MAX_MESSAGE / 2] = "";
+  size_t n;
+  if (code != PETSC_ERR_USER_INPUT && message) NameOption(message, before, sizeof(before));
+  (void)PetscStrncpy(text, before, PETVES_MAX_MESSAGE);
+  n = strlen(text);
+  for (const char *c = message ? message : "unknown error"; *c && n < PETVES_MAX_MESSAGE - 1; c++)
     text[n++] = *c == '\n' ? ' ' : *c;
   text[n] = 0;
-  if (code == PETSC_ERR_USER_INPUT || (base.one_line && !rank))
-    fprintf(stderr, "petves: error: %s%s\n", name, text);
-  else if (!base.one_line && !(rank && comm == MPI_COMM_WORLD)) /* no user's mistake: say where */
-    fprintf(stderr, "petves: error: %s%s (%s() in %s, line %d, rank %d)\n", name, text, function, file, line, rank);
+}
+
+PetscErrorCode PetvesErrorHandler(MPI_Comm comm, int line, const char *function, const char *file, PetscErrorCode code,
+                                  PetscErrorType type, const char *message, void *ctx) {
+  char text[PETVES_MAX_MESSAGE], *kept = (char *)ctx;
+  PetscMPIInt rank = 0;
+  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  if (type != PETSC_ERROR_INITIAL) return code;
+  if (rank && code == PETSC_ERR_USER_INPUT && !kept) return code; /* rank 0 says it */
+  OneLine(code, message, text);
+  if (code != PETSC_ERR_USER_INPUT && !base.one_line) { /* no user's mistake: say where */
+    const size_t used = strlen(text);
+    (void)PetscSNPrintf(text + used, sizeof(text) - used, " (%s() in %s, line %d, rank %d)", function, file, line,
+                        rank);
+  }
+  if (kept && !*kept)
+    (void)PetscStrncpy(kept, text, PETVES_MAX_MESSAGE);
+  else if (!kept && (code == PETSC_ERR_USER_INPUT || !rank || !(base.one_line || comm == MPI_COMM_WORLD)))
+    fprintf(stderr, "petves: error: %s\n", text);
   fflush(stderr);
   return code;
 }
@@ -92,6 +105,10 @@ PetscErrorCode PhaseEnd(void) {
   base.depth--;
   PetscCall(PetscLogStagePop());
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscInt PhaseDepth(void) {
+  return base.depth;
 }
 
 PetscReal PhaseSeconds(Phase phase) {

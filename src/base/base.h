@@ -17,14 +17,14 @@
 #endif
 
 #define PETVES_VERSION "0.1.0"
-#define PETVES_MAX_MESSAGE 512
 
 /* PetvesCheck - a user's mistake: when cond is false, every rank returns PETSC_ERR_USER_INPUT and one line is printed.
    Say the option or file, the value and what is allowed. Collective: all ranks must agree on cond. */
 #define PetvesCheck(cond, comm, ...) PetscCheck((cond), (comm), PETSC_ERR_USER_INPUT, __VA_ARGS__)
 
 /* PetvesErrorHandler - PETSc error handler of the program: one line on stderr, for anything but a user's mistake with
-   the place in the source. Install with PetscPushErrorHandler(PetvesErrorHandler, NULL). */
+   the place in the source. Install with PetscPushErrorHandler(PetvesErrorHandler, NULL). With a context
+   char[PETVES_MAX_MESSAGE] nothing is printed: the context gets the first message. */
 PETSC_EXTERN PetscErrorCode PetvesErrorHandler(MPI_Comm, int, const char *, const char *, PetscErrorCode,
                                                PetscErrorType, const char *, void *);
 
@@ -39,6 +39,9 @@ typedef enum { PHASE_SETUP, PHASE_STEP, PHASE_FAST_SOLVE, PHASE_OUTPUT, PHASE_CO
 /* PhaseBegin, PhaseEnd - enter and leave a phase; calls nest. Not collective. */
 PETSC_EXTERN PetscErrorCode PhaseBegin(Phase);
 PETSC_EXTERN PetscErrorCode PhaseEnd(void);
+
+/* PhaseDepth - phases entered and not left. */
+PETSC_EXTERN PetscInt PhaseDepth(void);
 
 /* PhaseSeconds - wall seconds spent so far in a phase itself, nested phases excluded. */
 PETSC_EXTERN PetscReal PhaseSeconds(Phase);

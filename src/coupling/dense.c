@@ -70,34 +70,71 @@ static void Bending(DenseBlocks b, const Block *q, PetscReal alpha, const PetscR
   }
 }
 
-static PetscErrorCode FactorBlock(DenseBlocks b, Block *q, PetscReal a0, const PetscReal Mob[]) {
-  const PetscReal h2 = PetscSqr(b->coupling->grid->h), c_b = b->coupling->membrane->bending;
-  const PetscInt n = q->n;
-  PetscReal *work, *d, trace = 0;
+/* Columns that this rank works out, of `count`. */
+static PetscInt FirstColumn(Grid g, PetscMPIInt rank, PetscInt count) {
+  return (PetscInt)((PetscInt64)count * rank / g->size);
+}
+
+/* Everybody's columns (of length rows) to everybody: the same bits on every rank. Collective. */
+static PetscErrorCode ShareColumns(Grid g, PetscInt rows, PetscInt count, PetscReal A[]) {
+  PetscMPIInt *counts, *starts;
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(2 * n, &work, n, &d));
-  /* N^T = I + (c_b ds/(h^2 a0)) D4 Mob, column by column */
-  PetscCall(PetscArrayzero(q->N, 4 * n * n));
-  for (PetscInt c = 0; c < 2 * n; c++) {
-    if (c_b > 0) Bending(b, q, c_b / (h2 * a0), Mob + c * 2 * n, work, q->N + c * 2 * n);
-    q->N[c * 2 * n + c] += 1;
+  if (g->size == 1) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMalloc2(g->size, &counts, g->size, &starts));
+  for (PetscMPIInt r = 0; r < g->size; r++) {
+    starts[r] = (PetscMPIInt)(rows * FirstColumn(g, r, count));
+    counts[r] = (PetscMPIInt)(rows * FirstColumn(g, r + 1, count)) - starts[r];
   }
+  PetscCallMPI(MPI_Allgatherv(MPI_IN_PLACE, 0, MPIU_REAL, A, counts, starts, MPIU_REAL, g->comm));
+  PetscCall(PetscFree2(counts, starts));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* N^T = I + (c_b ds/(h^2 a0)) D4 Mob, column by column, and D = Dm Mob/h^2 (n x 2n). */
+static PetscErrorCode AssembleBlock(DenseBlocks b, Block *q, PetscReal a0, const PetscReal Mob[], PetscReal work[],
+                                    PetscReal D[]) {
+  const Grid g = b->coupling->grid;
+  const PetscReal h2 = PetscSqr(g->h), c_b = b->coupling->membrane->bending;
+  const PetscInt n = q->n;
+  PetscFunctionBeginUser;
+  for (PetscInt c = FirstColumn(g, g->rank, 2 * n); c < FirstColumn(g, g->rank + 1, 2 * n); c++) {
+    PetscReal *column = q->N + c * 2 * n;
+    PetscCall(PetscArrayzero(column, 2 * n));
+    if (c_b > 0) Bending(b, q, c_b / (h2 * a0), Mob + c * 2 * n, work, column);
+    column[c] += 1;
+    Stretching(b, q, Mob + c * 2 * n, work, D + c * n);
+    for (PetscInt k = 0; k < n; k++) D[c * n + k] /= h2;
+  }
+  PetscCall(ShareColumns(g, 2 * n, 2 * n, q->N));
+  PetscCall(ShareColumns(g, n, 2 * n, D));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Factors of N and C. Columns are shared out among the ranks, the factorisations are every rank's own. */
+static PetscErrorCode FactorBlock(DenseBlocks b, Block *q, PetscReal a0, const PetscReal Mob[]) {
+  const Grid g = b->coupling->grid;
+  const PetscReal h2 = PetscSqr(g->h);
+  const PetscInt n = q->n, first = FirstColumn(g, g->rank, n), last = FirstColumn(g, g->rank + 1, n);
+  PetscReal *work, *D, trace = 0;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(2 * n, &work, 2 * n * n, &D));
+  PetscCall(AssembleBlock(b, q, a0, Mob, work, D));
   PetscCall(DenseFactor(2 * n, q->N, q->pivot_N));
-  /* K = N^-1 Mob Dm^T/h^2; Mob is symmetric, so a row of Mob Dm^T is Dm times a column of Mob */
-  for (PetscInt c = 0; c < 2 * n; c++) {
-    Stretching(b, q, Mob + c * 2 * n, work, d);
-    for (PetscInt k = 0; k < n; k++) q->K[k * 2 * n + c] = d[k] / h2;
-  }
-  PetscCall(DenseSolve(2 * n, q->N, q->pivot_N, PETSC_TRUE, n, q->K));
+  /* K = N^-1 Mob Dm^T/h^2; Mob is symmetric, so Mob Dm^T is D^T */
+  for (PetscInt k = first; k < last; k++)
+    for (PetscInt c = 0; c < 2 * n; c++) q->K[k * 2 * n + c] = D[c * n + k];
+  PetscCall(DenseSolve(2 * n, q->N, q->pivot_N, PETSC_TRUE, last - first, q->K + first * 2 * n));
   /* C = Dm K/h^2, nearly singular for near circles: constant tension is pressure there */
-  for (PetscInt k = 0; k < n; k++) {
+  for (PetscInt k = first; k < last; k++) {
     Stretching(b, q, q->K + k * 2 * n, work, q->C + k * n);
     for (PetscInt r = 0; r < n; r++) q->C[k * n + r] /= h2;
-    trace += q->C[k * n + k];
   }
+  PetscCall(ShareColumns(g, 2 * n, n, q->K));
+  PetscCall(ShareColumns(g, n, n, q->C));
+  for (PetscInt k = 0; k < n; k++) trace += q->C[k * n + k];
   for (PetscInt k = 0; k < n; k++) q->C[k * n + k] += 1e-9 * trace / n;
   PetscCall(DenseFactor(n, q->C, q->pivot_C));
-  PetscCall(PetscFree2(work, d));
+  PetscCall(PetscFree2(work, D));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

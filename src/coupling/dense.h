@@ -14,7 +14,7 @@ PETSC_EXTERN PetscErrorCode DenseBlocksCreate(Coupling coupling, DenseBlocks *bl
 PETSC_EXTERN PetscErrorCode DenseBlocksDestroy(DenseBlocks *blocks);
 
 /* DenseBlocksFactor - assemble Mob from the table at the coupling's markers, factor N and C for a0. self adds
-   h^2 Theta to Mob, NULL nothing. Every rank does the same. */
+   h^2 Theta to Mob, NULL nothing. Ranks share the work; the result has the same bits on all. Collective. */
 PETSC_EXTERN PetscErrorCode DenseBlocksFactor(DenseBlocks blocks, Mobility mobility, const GreenTable *table,
                                               SelfMobility self, PetscReal a0);
 

@@ -63,16 +63,17 @@ static PetscErrorCode Gather(Mobility m, Field f, const PetscScalar a[], PetscRe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode UnitResponse(Mobility m, Stokes stokes, int source, Vec r, Vec u, Vec p, GreenTable *t) {
+/* u: room for the force, then the velocity. */
+static PetscErrorCode UnitResponse(Mobility m, Stokes stokes, int source, Vec u, Vec p, GreenTable *t) {
   const PetscScalar *a;
   PetscScalar *ra;
   const Grid g = m->periodic->grid;
   PetscFunctionBeginUser;
-  PetscCall(VecSet(r, 0));
-  PetscCall(VecGetArray(r, &ra));
+  PetscCall(VecSet(u, 0));
+  PetscCall(VecGetArray(u, &ra));
   if (!g->rank) ra[source ? GridLocalU(g) : 0] = 1;
-  PetscCall(VecRestoreArray(r, &ra));
-  PetscCall(StokesSolve(stokes, r, NULL, u, p));
+  PetscCall(VecRestoreArray(u, &ra));
+  PetscCall(StokesSolve(stokes, u, NULL, u, p));
   PetscCall(VecGetArrayRead(u, &a));
   if (!source) {
     PetscCall(Gather(m, FIELD_U, a, t->grid[GREEN_UU]));
@@ -86,17 +87,15 @@ static PetscErrorCode UnitResponse(Mobility m, Stokes stokes, int source, Vec r,
 static PetscErrorCode BuildTable(Mobility m, PetscReal alpha, GreenTable *t) {
   const PetscInt size = (2 * m->size[0] + 1) * (2 * m->size[1] + 1);
   Stokes stokes;
-  Vec r, u, p;
+  Vec u, p;
   PetscFunctionBeginUser;
   for (int b = 0; b < GREEN_COUNT; b++) PetscCall(PetscMalloc1(size, &t->grid[b]));
   t->alpha = alpha;
   PetscCall(FluidSetTimeCoefficient(m->periodic, alpha));
   PetscCall(StokesCreate(m->periodic, &stokes));
-  PetscCall(DMCreateGlobalVector(m->periodic->grid->velocity, &r));
-  PetscCall(VecDuplicate(r, &u));
+  PetscCall(DMCreateGlobalVector(m->periodic->grid->velocity, &u));
   PetscCall(DMCreateGlobalVector(m->periodic->grid->da[FIELD_P], &p));
-  for (int source = 0; source < 2; source++) PetscCall(UnitResponse(m, stokes, source, r, u, p, t));
-  PetscCall(VecDestroy(&r));
+  for (int source = 0; source < 2; source++) PetscCall(UnitResponse(m, stokes, source, u, p, t));
   PetscCall(VecDestroy(&u));
   PetscCall(VecDestroy(&p));
   PetscCall(StokesDestroy(&stokes));
@@ -135,49 +134,68 @@ PetscErrorCode MobilityGetTable(Mobility m, PetscReal alpha, const GreenTable **
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Correlation of two stencils in one direction: weight[q] for offsets first + q, LAGS of them, zero past the last.
-   Offsets go to the nearest image, inside the window. */
-static inline void Correlate(Mobility m, int dir, const Stencil *response, const Stencil *source, PetscInt *first,
-                             PetscReal weight[restrict LAGS]) {
-  const PetscInt na = response->n[dir], nb = source->n[dir], count = na + nb - 1, n = m->coupling->grid->n[dir];
-  const PetscInt low = response->first[dir] - source->first[dir] - nb + 1, middle = low + count / 2;
-  PetscReal a[KERNEL_MAX_POINTS] = {0};
-  for (PetscInt i = 0; i < na; i++) a[i] = response->weight[dir][i];
-  for (int q = 0; q < LAGS; q++) weight[q] = 0;
-  for (PetscInt j = 0; j < nb; j++)
-    for (int i = 0; i < KERNEL_MAX_POINTS; i++) weight[i - j + nb - 1] += a[i] * source->weight[dir][j];
-  *first = low;
-  if (middle >= n / 2 || middle < -n / 2)
-    *first -= n * (PetscInt)PetscFloorReal((PetscReal)middle / (PetscReal)n + 0.5);
-  *first = PetscMax(-m->size[dir], PetscMin(*first, m->size[dir] - LAGS + 1));
+/* A stencil's weights in one direction between zeros, so that correlations run over whole vectors. */
+typedef struct {
+  PetscReal weight[2][3 * KERNEL_MAX_POINTS];
+  PetscInt first[2];
+} Padded;
+
+static void Pad(const Stencil *s, Padded *p) {
+  for (int dir = 0; dir < 2; dir++) {
+    for (int i = 0; i < 3 * KERNEL_MAX_POINTS; i++) p->weight[dir][i] = 0;
+    for (PetscInt i = 0; i < s->n[dir]; i++) p->weight[dir][KERNEL_MAX_POINTS + i] = s->weight[dir][i];
+    p->first[dir] = s->first[dir];
+  }
 }
 
-/* SUM SUM phi(response) Green phi(source) of one component at marker k and one at marker l. */
-static PetscReal Pair(Mobility m, const GreenTable *t, GreenBlock b, PetscInt k, PetscInt l) {
-  const Stencil *response = &m->coupling->stencil[2 * k + (b == GREEN_UU ? 0 : 1)];
-  const Stencil *source = &m->coupling->stencil[2 * l + (b == GREEN_VV ? 1 : 0)];
+/* Correlation of two stencils in one direction: weight[q] for offsets first + q, LAGS of them. Offsets go to the
+   nearest image, inside the window. */
+static inline PetscInt Correlate(Mobility m, int dir, const Padded *response, const Padded *source,
+                                 PetscReal weight[restrict LAGS]) {
+  const PetscReal *restrict a = response->weight[dir] + 1, *restrict b = source->weight[dir] + KERNEL_MAX_POINTS;
+  const PetscInt n = m->coupling->grid->n[dir];
+  PetscInt first = response->first[dir] - source->first[dir] - (KERNEL_MAX_POINTS - 1);
+  const PetscInt middle = first + LAGS / 2;
+  for (int q = 0; q < LAGS; q++) {
+    PetscReal sum = 0;
+    for (int j = 0; j < KERNEL_MAX_POINTS; j++) sum += a[q + j] * b[j];
+    weight[q] = sum;
+  }
+  if (middle >= n / 2 || middle < -n / 2) first -= n * (PetscInt)PetscFloorReal((PetscReal)middle / (PetscReal)n + 0.5);
+  return PetscMax(-m->size[dir], PetscMin(first, m->size[dir] - LAGS + 1));
+}
+
+/* SUM SUM phi(response) Green phi(source). */
+static inline PetscReal Pair(Mobility m, const GreenTable *t, GreenBlock b, const Padded *response,
+                             const Padded *source) {
   const PetscInt width = 2 * m->size[0] + 1;
-  PetscInt i0, j0;
   PetscReal wx[LAGS], wy[LAGS], line[LAGS] = {0}, sum = 0;
-  Correlate(m, 0, response, source, &i0, wx);
-  Correlate(m, 1, response, source, &j0, wy);
+  const PetscInt i0 = Correlate(m, 0, response, source, wx), j0 = Correlate(m, 1, response, source, wy);
   const PetscReal *row = t->grid[b] + (j0 + m->size[1]) * width + i0 + m->size[0];
-  for (int j = 0; j < LAGS; j++, row += width) /* weights past the last are zero */
+  for (int j = 0; j < LAGS; j++, row += width)
     for (int i = 0; i < LAGS; i++) line[i] += wy[j] * row[i];
   for (int i = 0; i < LAGS; i++) sum += wx[i] * line[i];
   return sum;
 }
 
 PetscErrorCode MobilityAssemble(Mobility m, const GreenTable *t, PetscInt first, PetscInt n, PetscReal Mob[]) {
+  const Grid g = m->coupling->grid;
+  Padded *p; /* component c of marker k at 2k + c */
   PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < n; k++)
+  PetscCall(PetscMalloc1(2 * n, &p));
+  for (PetscInt k = 0; k < 2 * n; k++) Pad(&m->coupling->stencil[2 * first + k], &p[k]);
+  if (g->size > 1) PetscCall(PetscArrayzero(Mob, 4 * n * n));
+  for (PetscInt k = g->rank; k < n; k += g->size) /* each entry by one rank */
     for (PetscInt l = 0; l < n; l++) {
       PetscReal *block = Mob + 2 * k * 2 * n + 2 * l, *mirror = Mob + 2 * l * 2 * n + 2 * k;
       if (l >= k) { /* symmetric */
-        block[0] = mirror[0] = Pair(m, t, GREEN_UU, first + k, first + l);
-        block[2 * n + 1] = mirror[2 * n + 1] = Pair(m, t, GREEN_VV, first + k, first + l);
+        block[0] = mirror[0] = Pair(m, t, GREEN_UU, &p[2 * k], &p[2 * l]);
+        block[2 * n + 1] = mirror[2 * n + 1] = Pair(m, t, GREEN_VV, &p[2 * k + 1], &p[2 * l + 1]);
       }
-      block[2 * n] = mirror[1] = Pair(m, t, GREEN_VU, first + k, first + l);
+      block[2 * n] = mirror[1] = Pair(m, t, GREEN_VU, &p[2 * k + 1], &p[2 * l]);
     }
+  PetscCall(PetscFree(p));
+  if (g->size > 1)
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, Mob, (PetscMPIInt)(4 * n * n), MPIU_REAL, MPI_SUM, g->comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

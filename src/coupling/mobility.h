@@ -45,6 +45,6 @@ PETSC_EXTERN PetscErrorCode MobilityForget(Mobility mobility);
 PETSC_EXTERN PetscErrorCode MobilityGetTable(Mobility mobility, PetscReal alpha, const GreenTable **table);
 
 /* MobilityAssemble - Mob of the n markers from `first` on, at the coupling's markers: symmetric matrix [2n][2n],
-   entries interlaced x, y. Not collective. */
+   entries interlaced x, y. Ranks share the work; the result has the same bits on all. Collective. */
 PETSC_EXTERN PetscErrorCode MobilityAssemble(Mobility mobility, const GreenTable *table, PetscInt first, PetscInt n,
                                              PetscReal Mob[]);

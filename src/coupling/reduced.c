@@ -85,20 +85,20 @@ PetscErrorCode SaddleMult(Mat A, Vec x, Vec y) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SaddleResidual(Saddle s, Vec f, Vec g, Vec x, Vec w, Vec p, Vec residual) {
+PetscErrorCode SaddleResidual(Saddle s, Vec added, Vec f, Vec g, Vec x, Vec w, Vec p, Vec residual) {
   const PetscScalar *xa, *ga;
   PetscScalar *ra;
   PetscFunctionBeginUser;
+  PetscCall(VecGetArrayRead(added, &xa));
+  PetscCall(AddForces(s, xa, f));
+  PetscCall(VecRestoreArrayRead(added, &xa));
   PetscCall(VecGetArrayRead(x, &xa));
-  PetscCall(VecCopy(f, s->r));
-  s->dirty[0] = 0;
-  s->dirty[1] = s->fluid->grid->rows[FIELD_P];
-  PetscCall(AddForces(s, xa, s->r));
+  if (s->coupling && added != x) PetscCall(Force(s, xa, s->F));
   if (s->fluid->bc2) { /* p holds the right-hand side, then the solution */
     PetscCall(VecAXPBY(p, -1, 0, s->fluid->bc2));
-    PetscCall(StokesSolve(s->stokes, s->r, p, w, p));
+    PetscCall(StokesSolve(s->stokes, f, p, w, p));
   } else
-    PetscCall(StokesSolve(s->stokes, s->r, NULL, w, p));
+    PetscCall(StokesSolve(s->stokes, f, NULL, w, p));
   PetscCall(VecGetArray(residual, &ra));
   PetscCall(Conditions(s, xa, w, ra));
   PetscCall(VecRestoreArrayRead(x, &xa));

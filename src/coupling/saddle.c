@@ -37,8 +37,8 @@ static PetscErrorCode CreateMembranePart(Scene scene, Saddle s) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* -coupled_ksp_rtol is relative to the norm of the block system's right-hand side, not to what the initial guess left
-   of it. */
+/* -coupled_ksp_rtol is relative to the norm of the step's right-hand side (f, bc2, g), not to what the initial guess
+   left of it. */
 static PetscErrorCode Converged(KSP ksp, PetscInt it, PetscReal norm, KSPConvergedReason *reason, void *ctx) {
   const Saddle s = (Saddle)ctx;
   PetscReal rtol, atol, dtol;
@@ -100,6 +100,7 @@ PetscErrorCode SaddleCreate(Scene scene, Fluid fluid, Coupling coupling, SelfMob
   PetscCall(VecCreateSeq(PETSC_COMM_SELF, n, &s->x));
   PetscCall(VecDuplicate(s->x, &s->b));
   PetscCall(VecDuplicate(s->x, &s->change));
+  PetscCall(VecDuplicate(s->x, &s->pending));
   PetscCall(CreateKSP(s, n));
   PetscCall(SaddleForget(s));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -119,6 +120,7 @@ PetscErrorCode SaddleDestroy(Saddle *saddle) {
   PetscCall(VecDestroy(&s->x));
   PetscCall(VecDestroy(&s->b));
   PetscCall(VecDestroy(&s->change));
+  PetscCall(VecDestroy(&s->pending));
   PetscCall(VecDestroy(&s->r));
   PetscCall(VecDestroy(&s->U));
   PetscCall(VecDestroy(&s->F));
@@ -219,8 +221,8 @@ PetscErrorCode SaddleSetUp(Saddle s) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* x = (V, sigma, d) of the guess, V = R (E w - Theta Dm^T sigma). */
-static PetscErrorCode Guess(Saddle s, Vec w, Vec sigma, Vec d) {
+/* x = (V, sigma, d) of the guess, V = R (U - Theta Dm^T sigma), U = E w. */
+static PetscErrorCode Guess(Saddle s, Vec Ew, Vec sigma, Vec d) {
   const PetscScalar *a, *U;
   PetscScalar *x;
   PetscFunctionBeginUser;
@@ -229,10 +231,9 @@ static PetscErrorCode Guess(Saddle s, Vec w, Vec sigma, Vec d) {
     PetscCall(VecGetArrayRead(sigma, &a));
     PetscCall(PetscArraycpy(x + s->n_velocity, a, s->n_tension));
     PetscCall(VecRestoreArrayRead(sigma, &a));
-    PetscCall(CouplingInterpolate(s->coupling, s->coupling->E, w, s->U));
-    PetscCall(VecGetArrayRead(s->U, &U));
+    PetscCall(VecGetArrayRead(Ew, &U));
     PetscCall(PetscArraycpy(x, U, s->n_velocity));
-    PetscCall(VecRestoreArrayRead(s->U, &U));
+    PetscCall(VecRestoreArrayRead(Ew, &U));
     if (s->self) PetscCall(SelfMobilityApply(s->self, x + s->n_velocity, NULL, x));
   }
   PetscCall(VecGetArrayRead(d, &a));
@@ -297,7 +298,11 @@ static PetscErrorCode Correct(Saddle s, Vec f, Vec g, Vec w, Vec p) {
   if (s->why >= 0) {
     PetscCall(SaddleCombine(s, change, w, p, s->b, &combined));
     PetscCall(VecAXPY(s->x, 1, change));
-    if (!combined) PetscCall(SaddleResidual(s, f, g, s->x, w, p, s->b));
+    PetscCall(VecAXPY(s->pending, 1, change));
+    if (!combined) {
+      PetscCall(SaddleResidual(s, s->pending, f, g, s->x, w, p, s->b));
+      PetscCall(VecSet(s->pending, 0));
+    }
     PetscCall(VecNorm(s->b, NORM_2, &s->residual));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -308,11 +313,12 @@ PetscErrorCode SaddleSolve(Saddle s, Vec f, Vec g, Vec w, Vec p, Vec sigma, Vec 
   PetscFunctionBeginUser;
   PetscCall(Reference(s, f, g));
   if (s->guess)
-    PetscCall(Guess(s, w, sigma, d));
+    PetscCall(Guess(s, V, sigma, d));
   else
     PetscCall(VecSet(s->x, 0));
-  PetscCall(SaddleResidual(s, f, g, s->x, w, p, s->b));
+  PetscCall(SaddleResidual(s, s->x, f, g, s->x, w, p, s->b));
   PetscCall(KSPGetTolerances(s->ksp, &rtol, &atol, NULL, NULL));
+  PetscCall(VecSet(s->pending, 0));
   s->applied = s->renewed = s->its = 0;
   for (int round = 0; round < MOST_ROUNDS; round++) { /* rounding may spoil GMRES's own residual in stiff cases */
     PetscCall(Correct(s, f, g, w, p));

@@ -34,6 +34,7 @@ struct _p_Saddle {
   Mat A;                          /* the residuals' derivative, scaled; one Stokes solve */
   KSP ksp;
   Vec x, b, change;                    /* [n] unknowns, residual, work; the same on every rank */
+  Vec pending;                         /* part of x whose forces are not in the right-hand side f yet */
   Vec r;                               /* a force on the grid, */
   PetscInt dirty[2];                   /* zero but for these rows */
   Vec w[SADDLE_KEPT + 1];              /* velocities and pressures of kept products, the last for one that is not */
@@ -79,8 +80,9 @@ PETSC_EXTERN PetscErrorCode SaddleSetUp(Saddle saddle);
 PETSC_EXTERN PetscErrorCode SaddleGetMemory(Saddle saddle, PetscReal memory[SADDLE_MEMORY]);
 PETSC_EXTERN PetscErrorCode SaddleSetMemory(Saddle saddle, const PetscReal memory[SADDLE_MEMORY]);
 
-/* SaddleSolve - solve for w, p, sigma and the wall forces d, which hold the initial guess (p's is not used); f and g
-   the right-hand sides. its, why, residual say how it went. Collective. */
+/* SaddleSolve - solve for w, p, sigma, the wall forces d and the markers' V; sigma, d and V (as E w) hold the initial
+   guess; f and g are the right-hand sides, and the membrane's and the walls' forces are added to f. its, why, residual
+   say how it went. Collective. */
 PETSC_EXTERN PetscErrorCode SaddleSolve(Saddle saddle, Vec f, Vec g, Vec w, Vec p, Vec sigma, Vec d, Vec V);
 
 /* SaddleForget - drop all that is kept from step to step, so that what follows depends on the state alone. Not
@@ -101,10 +103,11 @@ PETSC_EXTERN PetscErrorCode SaddleRefresh(Saddle saddle);
 /* SaddlePrecondition (precondition.c) - PCSHELL's apply. */
 PETSC_EXTERN PetscErrorCode SaddlePrecondition(PC pc, Vec r, Vec z);
 
-/* SaddleMult (reduced.c) - product with A. SaddleResidual - minus the scaled residuals at x with u, p = w, p, by one
-   Stokes solve with the right-hand sides f, g. SaddleCombine - the change of w, p and the residual that goes with a
-   change of x made of the solve's products, added; x := what it is made of. False when they were too many to be kept.
+/* SaddleMult (reduced.c) - product with A. SaddleResidual - the forces of `added` go
+   into f; minus the scaled residuals at x with u, p = w, p by one Stokes solve of f, f holding the forces of x.
+   SaddleCombine - the change of w, p and the residual that goes with a change of x made of the solve's products, added;
+   x := what it is made of. False when they were too many to be kept.
  */
 PETSC_EXTERN PetscErrorCode SaddleMult(Mat A, Vec x, Vec y);
-PETSC_EXTERN PetscErrorCode SaddleResidual(Saddle saddle, Vec f, Vec g, Vec x, Vec w, Vec p, Vec residual);
+PETSC_EXTERN PetscErrorCode SaddleResidual(Saddle saddle, Vec added, Vec f, Vec g, Vec x, Vec w, Vec p, Vec residual);
 PETSC_EXTERN PetscErrorCode SaddleCombine(Saddle saddle, Vec x, Vec w, Vec p, Vec residual, PetscBool *combined);

@@ -94,6 +94,7 @@ static PetscErrorCode Helmholtz(BandedStokes b, const PetscScalar r[]) {
   const Grid g = b->fluid->grid;
   const PetscScalar *start[2] = {r, r + GridLocalU(g)};
   PetscFunctionBeginUser;
+  for (int f = 0; f < 3; f++) PetscCall(TridiagonalReserve(b->d[f]));
   for (int f = 0; f < 2; f++) {
     for (PetscInt j = 0; j < g->rows[f]; j++) {
       RowTransformForward(b->t, start[f] + j * g->columns[f]);

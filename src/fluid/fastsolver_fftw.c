@@ -1,6 +1,7 @@
 /* Back end "fftw": a two-dimensional real-to-real transform diagonalises the second differences (DESIGN section 2's
    table), FFTW-MPI moves the data. The transposed output is divided by the eigenvalues and transformed back. */
 #include "fluid/fastsolver.h"
+#include "fluid/wisdom.h"
 #include <fftw3-mpi.h>
 
 typedef struct {
@@ -88,22 +89,6 @@ static PetscErrorCode Destroy_FFTW(FastSolver s) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode CleanUpFFTW(void) {
-  fftw_mpi_cleanup();
-  return PETSC_SUCCESS;
-}
-
-static PetscErrorCode InitialiseFFTW(void) {
-  static PetscBool done = PETSC_FALSE;
-  PetscFunctionBeginUser;
-  if (!done) {
-    fftw_mpi_init();
-    PetscCall(PetscRegisterFinalize(CleanUpFFTW));
-    done = PETSC_TRUE;
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode FastSolverCreate_FFTW(FastSolver s, PetscInt plan) {
   const unsigned efforts[] = {FFTW_ESTIMATE, FFTW_MEASURE, FFTW_PATIENT};
   Grid g = s->grid;
@@ -114,7 +99,7 @@ PetscErrorCode FastSolverCreate_FFTW(FastSolver s, PetscInt plan) {
   fftw_r2r_kind forward[2], backward[2];
   PetscReal logical[2];
   PetscFunctionBeginUser;
-  PetscCall(InitialiseFFTW());
+  PetscCall(WisdomInitialise());
   PetscCall(PetscNew(&t));
   s->data = t;
   s->apply = Apply_FFTW;

@@ -18,6 +18,7 @@ static PetscErrorCode SetCoefficients_Tridiagonal(FastSolver s) {
 static PetscErrorCode Begin_Tridiagonal(FastSolver s, const PetscScalar b[]) {
   Solver *q = (Solver *)s->data;
   PetscFunctionBeginUser;
+  PetscCall(TridiagonalReserve(q->d));
   for (PetscInt j = 0; j < s->grid->rows[s->field]; j++) {
     RowTransformForward(q->t, b + j * s->grid->columns[s->field]);
     TridiagonalUp(q->d, j, q->t->modes);

@@ -36,7 +36,7 @@ static PetscErrorCode CreateFields(Grid g) {
     for (PetscInt r = 0; r < g->size; r++)
       ly[r] = r < g->size - 1 ? g->block : g->all_rows[f] - (g->size - 1) * g->block;
     g->rows[f] = ly[g->rank];
-    PetscCall(DMDACreate2d(g->comm, bx, by, DMDA_STENCIL_STAR, g->columns[f], g->all_rows[f], 1, g->size, 1, 1, NULL,
+    PetscCall(DMDACreate2d(g->comm, bx, by, DMDA_STENCIL_STAR, g->columns[f], g->all_rows[f], 1, g->size, 1, 0, NULL,
                            ly, &g->da[f]));
     PetscCall(DMSetUp(g->da[f]));
     for (int side = 0; side < 2; side++) PetscCall(PetscCalloc1(g->columns[f], &g->ghost[f][side]));
@@ -46,6 +46,10 @@ static PetscErrorCode CreateFields(Grid g) {
   PetscCall(DMCompositeAddDM(g->velocity, g->da[FIELD_U]));
   PetscCall(DMCompositeAddDM(g->velocity, g->da[FIELD_V]));
   PetscCall(DMSetUp(g->velocity));
+  for (int f = FIELD_U; f <= FIELD_V; f++) { /* vectors that the composite asked for once */
+    PetscCall(DMClearGlobalVectors(g->da[f]));
+    PetscCall(DMClearLocalVectors(g->da[f]));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

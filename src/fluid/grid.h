@@ -74,6 +74,11 @@ PETSC_EXTERN PetscErrorCode GridGradientTransposeRows(Grid grid, PetscReal alpha
 /* GridClearRows - zero in these rows of a velocity or a pressure. Not collective. */
 PETSC_EXTERN PetscErrorCode GridClearRows(Grid grid, const PetscInt window[2], Vec x);
 
+/* GridLargestDivergence - max |G^T w + bc2| over all cells, bc2 NULL for walls at rest; NaN when an entry is.
+ * Collective.
+ */
+PETSC_EXTERN PetscErrorCode GridLargestDivergence(Grid grid, Vec w, Vec bc2, PetscReal *largest);
+
 /* GridHelmholtzField - y = a0 w - nu (second differences of w) for one field's local arrays, homogeneous walls; y must
    not be w. With FIELD_P, a0 = 0 and nu = -1 this is L. */
 PETSC_EXTERN PetscErrorCode GridHelmholtzField(Grid grid, Field field, PetscReal a0, PetscReal nu,

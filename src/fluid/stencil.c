@@ -36,9 +36,17 @@ PetscErrorCode GridGradient(Grid g, PetscReal alpha, Vec p, PetscBool add, Vec w
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode GridGradientTransposeRows(Grid g, PetscReal alpha, Vec w, const PetscInt window[2], Vec q) {
-  const PetscReal c = alpha / g->h;
+/* out = c G^T w in row j of the cells. */
+static void DivergenceRow(Grid g, PetscReal c, const PetscScalar w[], const Rows *rows, PetscInt j, PetscScalar out[]) {
   const PetscInt n = g->columns[FIELD_P], nu = g->columns[FIELD_U];
+  const PetscScalar *u = w + j * nu, *down = RowAt(rows, j - 1), *up = RowAt(rows, j);
+  const PetscScalar left = nu == n ? u[n - 1] : 0, right = nu == n ? u[n - 1] : 0;
+  out[0] = c * (left - u[0] + down[0] - up[0]);
+  for (PetscInt i = 1; i < n - 1; i++) out[i] = c * (u[i - 1] - u[i] + down[i] - up[i]);
+  out[n - 1] = c * (u[n - 2] - right + down[n - 1] - up[n - 1]);
+}
+
+PetscErrorCode GridGradientTransposeRows(Grid g, PetscReal alpha, Vec w, const PetscInt window[2], Vec q) {
   const PetscScalar *wa;
   PetscScalar *qa;
   Rows rows;
@@ -46,16 +54,41 @@ PetscErrorCode GridGradientTransposeRows(Grid g, PetscReal alpha, Vec w, const P
   PetscCall(VecGetArrayRead(w, &wa));
   PetscCall(VecGetArray(q, &qa));
   PetscCall(GridRows(g, FIELD_V, wa + GridLocalU(g), &rows));
-  for (PetscInt j = window[0]; j < PetscMin(window[1], g->rows[FIELD_P]); j++) {
-    const PetscScalar *u = wa + j * nu, *down = RowAt(&rows, j - 1), *up = RowAt(&rows, j);
-    PetscScalar *out = qa + j * n;
-    const PetscScalar left = nu == n ? u[n - 1] : 0, right = nu == n ? u[n - 1] : 0;
-    out[0] = c * (left - u[0] + down[0] - up[0]);
-    for (PetscInt i = 1; i < n - 1; i++) out[i] = c * (u[i - 1] - u[i] + down[i] - up[i]);
-    out[n - 1] = c * (u[n - 2] - right + down[n - 1] - up[n - 1]);
-  }
+  for (PetscInt j = window[0]; j < PetscMin(window[1], g->rows[FIELD_P]); j++)
+    DivergenceRow(g, alpha / g->h, wa, &rows, j, qa + j * g->columns[FIELD_P]);
   PetscCall(VecRestoreArray(q, &qa));
   PetscCall(VecRestoreArrayRead(w, &wa));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode GridLargestDivergence(Grid g, Vec w, Vec bc2, PetscReal *largest) {
+  const PetscInt n = g->columns[FIELD_P];
+  const PetscScalar *wa, *b = NULL;
+  PetscScalar *row;
+  PetscReal most = 0;
+  PetscMPIInt bad = 0;
+  Rows rows;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(n, &row));
+  PetscCall(VecGetArrayRead(w, &wa));
+  if (bc2) PetscCall(VecGetArrayRead(bc2, &b));
+  PetscCall(GridRows(g, FIELD_V, wa + GridLocalU(g), &rows));
+  for (PetscInt j = 0; j < g->rows[FIELD_P]; j++) {
+    PetscReal sum = 0;
+    DivergenceRow(g, 1 / g->h, wa, &rows, j, row);
+    for (PetscInt i = 0; i < n && b; i++) row[i] += b[j * n + i];
+    for (PetscInt i = 0; i < n; i++) {
+      most = PetscMax(most, PetscAbsReal(row[i]));
+      sum += row[i];
+    }
+    if (PetscIsInfOrNanReal(sum)) bad = 1;
+  }
+  if (bc2) PetscCall(VecRestoreArrayRead(bc2, &b));
+  PetscCall(VecRestoreArrayRead(w, &wa));
+  PetscCall(PetscFree(row));
+  if (bad) most = INFINITY;
+  PetscCallMPI(MPI_Allreduce(&most, largest, 1, MPIU_REAL, MPI_MAX, g->comm));
+  if (PetscIsInfOrNanReal(*largest)) *largest = NAN;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

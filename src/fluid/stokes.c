@@ -4,7 +4,7 @@ struct _p_Stokes {
   Fluid fluid;
   Channel channel;     /* NULL unless x is periodic and y has walls */
   BandedStokes banded; /* NULL unless x is periodic and both fast solves are fftw_tridiagonal's */
-  Vec q, psi;
+  Vec q, psi;          /* of the solve by parts */
 };
 
 /* x = (d I - e d_yy h^2)^-1 b for a constant tridiagonal matrix (-e, d, -e) whose first and last diagonals are `end`.
@@ -44,10 +44,11 @@ PetscErrorCode StokesCreate(Fluid fluid, Stokes *out) {
   PetscCall(PetscNew(&s));
   *out = s;
   s->fluid = fluid;
-  PetscCall(DMCreateGlobalVector(fluid->grid->da[FIELD_P], &s->q));
-  PetscCall(VecDuplicate(s->q, &s->psi));
   if (!fluid->grid->wall[0] && fluid->grid->wall[1]) PetscCall(ChannelCreate(fluid, &s->channel));
   if (!fluid->grid->wall[0] && fluid->tridiagonal) PetscCall(BandedStokesCreate(fluid, s->channel, &s->banded));
+  if (s->banded) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(DMCreateGlobalVector(fluid->grid->da[FIELD_P], &s->q));
+  PetscCall(VecDuplicate(s->q, &s->psi));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -51,6 +51,12 @@ PetscErrorCode TridiagonalSetCoefficients(Tridiagonal d, PetscReal a0, PetscReal
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode TridiagonalReserve(Tridiagonal d) {
+  PetscFunctionBeginUser;
+  if (!d->y) PetscCall(PetscCalloc1(PetscMax(d->grid->rows[d->field], 1) * d->width, &d->y));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 void TridiagonalUp(Tridiagonal d, PetscInt j, const PetscReal b[]) {
   const PetscReal *restrict r = d->r, *restrict from = b;
   PetscReal *restrict y = d->y + j * d->width;
@@ -219,7 +225,6 @@ PetscErrorCode TridiagonalCreate(Grid g, Field field, PetscInt modes, PetscReal 
   d->lambda = lambda;
   d->scale = scale;
   d->message = 2 * w + g->block;
-  PetscCall(PetscCalloc1(PetscMax(g->rows[field], 1) * w, &d->y));
   PetscCall(PetscCalloc4(w, &d->r, w, &d->factor, w, &d->top, w, &d->bottom));
   PetscCall(PetscCalloc4(2 * w, &d->gain, 2 * w, &d->power, w, &d->last_y, w, &d->first_z));
   PetscCall(PetscCalloc4(w / BLOCK, &d->reach, g->size * w, &d->below, g->size * w, &d->above, g->all_rows[field],

@@ -9,7 +9,7 @@
 
    The zero mode of a singular problem has r = 1 and no decay; its column is gathered and solved whole.
 
-   A solve: Up for rows 0, 1, .., Begin, End, Down for the last row, the one below it, .. */
+   A solve: Reserve, Up for rows 0, 1, .., Begin, End, Down for the last row, the one below it, .. */
 #pragma once
 #include "fluid/grid.h"
 
@@ -21,7 +21,7 @@ struct _p_Tridiagonal {
   PetscBool singular;
   PetscInt modes, width;     /* used, and rounded up to blocks */
   PetscReal *lambda, *scale; /* [modes] borrowed */
-  PetscReal *y;              /* [rows][width], of the caller between End and the next Up */
+  PetscReal *y;              /* [rows][width], of the caller between End and the next Up; NULL before Reserve */
   PetscReal *r;              /* [width] */
   PetscReal *factor;         /* [width] of z, with the transform's normalisation */
   PetscReal *gain;   /* [2][width] first z of an empty slab per y below it: of a full block, of the last rank's rows */
@@ -46,6 +46,9 @@ PETSC_EXTERN PetscErrorCode TridiagonalDestroy(Tridiagonal *d);
 /* TridiagonalSetCoefficients - a0 and nu of one sign; singular: mode 0 has no inverse, the mean of its solution is set
    to zero. */
 PETSC_EXTERN PetscErrorCode TridiagonalSetCoefficients(Tridiagonal d, PetscReal a0, PetscReal nu, PetscBool singular);
+
+/* TridiagonalReserve - make the rows of y, once, before the first Up: a solver that is never used has none. */
+PETSC_EXTERN PetscErrorCode TridiagonalReserve(Tridiagonal d);
 
 /* TridiagonalUp - row j's right-hand side b[modes], rows in order. TridiagonalDown - row j's solution x[modes], rows in
    reverse; x may be the row of y. Not collective. */

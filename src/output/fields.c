@@ -54,7 +54,12 @@ static PetscErrorCode OldFields(Output o, const char path[]) {
   PetscCall(H5FileFlush(f));
   PetscCall(PetscMalloc1(o->frames, &o->times));
   for (PetscInt t = 0; t < o->frames; t++) PetscCall(H5ReadArray(f, "/time", t, 1, &o->times[t]));
-  PetscCall(H5FileCheck(f));
+  PetscCall(H5FileFailed(f, &failed));
+  if (failed) PetscCall(H5FileClose(f));
+  PetscCheck(!failed, o->comm, PETSC_ERR_USER_INPUT,
+             "-restart %s: %s cannot be cut to the %" PetscInt_FMT
+             " readable frames that the checkpoint counts; allowed: run.h5 as the run left it, or a new -output_dir",
+             o->scene->restart, path, o->scheduled);
   PetscCall(OutputXdmf(o));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -79,19 +84,21 @@ static PetscScalar WallValue(Output o, int c, PetscInt i, PetscInt j, PetscReal 
   return u[c];
 }
 
-/* Component c of the velocity at cell centres: mean of the cell's two faces, plus the background. */
-static PetscErrorCode VelocityAtCells(Output o, int c, const PetscScalar w[]) {
+PetscErrorCode OutputVelocityAtCells(Output o, int c, const PetscScalar w[], PetscScalar cells[]) {
   const Grid g = o->scheme->fluid->grid;
   const PetscInt columns = g->columns[c], nx = g->n[0];
   const PetscScalar *a = w + (c ? GridLocalU(g) : 0);
   Rows rows;
+  PetscReal *X, *u;
   PetscFunctionBeginUser;
   PetscCall(GridRows(g, (Field)c, a, &rows));
-  for (PetscInt j = 0; j < g->rows[FIELD_P]; j++)
+  PetscCall(PetscCalloc2(2 * nx, &X, 2 * nx, &u));
+  for (PetscInt j = 0; j < g->rows[FIELD_P]; j++) {
+    for (PetscInt i = 0; i < nx; i++) GridPosition(g, FIELD_P, i, j + g->first, X + 2 * i);
+    if (!o->scheme->fluid->total) PetscCall(FlowVelocities(&o->scene->flow, nx, X, u));
     for (PetscInt i = 0; i < nx; i++) {
       const PetscInt index[2] = {i, j + g->first};
       PetscScalar face[2];
-      PetscReal X[2], u[2] = {0, 0};
       for (int side = 0; side < 2; side++) {
         const PetscInt k = index[c] - 1 + side, n = g->n[c];
         if (g->wall[c] && (k < 0 || k == n - 1))
@@ -101,10 +108,10 @@ static PetscErrorCode VelocityAtCells(Output o, int c, const PetscScalar w[]) {
         else
           face[side] = RowAt(&rows, j - 1 + side)[i];
       }
-      GridPosition(g, FIELD_P, index[0], index[1], X);
-      if (!o->scheme->fluid->total) FlowVelocity(&o->scene->flow, X[0], X[1], u);
-      o->cells[j * nx + i] = 0.5 * (face[0] + face[1]) + u[c];
+      cells[j * nx + i] = 0.5 * (face[0] + face[1]) + u[2 * i + c];
     }
+  }
+  PetscCall(PetscFree2(X, u));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -116,9 +123,10 @@ static PetscErrorCode WriteFrame(Output o) {
   H5File *f = &o->fields;
   const PetscScalar *a;
   PetscFunctionBeginUser;
+  o->scene->flow.time = q->t;
   PetscCall(VecGetArrayRead(q->w, &a));
   for (int c = 0; c < 2; c++) {
-    PetscCall(VelocityAtCells(o, c, a));
+    PetscCall(OutputVelocityAtCells(o, c, a, o->cells));
     PetscCall(H5WriteField(f, fluid_names[c], o->frames, g, FIELD_P, o->cells));
   }
   PetscCall(VecRestoreArrayRead(q->w, &a));
@@ -151,11 +159,11 @@ PetscErrorCode OutputFields(Output o, PetscBool scheduled) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* One slab [start of frame t] of a series as an XDMF item. */
+/* Rows first .. first + n - 1 of entry t of a series [frames,all,m] as an XDMF item of dimensions before,n,m. */
 static void HyperSlab(FILE *f, PetscInt t, PetscInt frames, const char name[], PetscInt first, PetscInt n, PetscInt all,
-                      PetscInt m) {
-  fprintf(f, "<DataItem ItemType=\"HyperSlab\" Dimensions=\"%d %d\"><DataItem Dimensions=\"3 3\" Format=\"XML\">",
-          (int)n, (int)m);
+                      PetscInt m, const char before[]) {
+  fprintf(f, "<DataItem ItemType=\"HyperSlab\" Dimensions=\"%s%d %d\"><DataItem Dimensions=\"3 3\" Format=\"XML\">",
+          before, (int)n, (int)m);
   fprintf(f, "%d %d 0 1 1 1 1 %d %d</DataItem>", (int)t, (int)first, (int)n, (int)m);
   fprintf(f,
           "<DataItem Dimensions=\"%d %d %d\" NumberType=\"Float\" Precision=\"8\" "
@@ -163,21 +171,24 @@ static void HyperSlab(FILE *f, PetscInt t, PetscInt frames, const char name[], P
           (int)frames, (int)all, (int)m, name);
 }
 
+/* Values at cell centres are the nodes of a grid of one layer: readers put a two-dimensional grid into the y-z plane.
+ */
 static void XdmfFluid(Output o, FILE *f, PetscInt t) {
   const Grid g = o->scheme->fluid->grid;
   const int nx = (int)g->n[0], ny = (int)g->n[1];
-  fprintf(f,
-          "<Grid Name=\"fluid\" GridType=\"Uniform\"><Topology TopologyType=\"2DCoRectMesh\" Dimensions=\"%d %d\"/>\n",
-          ny + 1, nx + 1);
-  fprintf(f, "<Geometry GeometryType=\"ORIGIN_DXDY\"><DataItem Dimensions=\"2\">%.17g %.17g</DataItem>",
-          (double)g->lo[1], (double)g->lo[0]);
-  fprintf(f, "<DataItem Dimensions=\"2\">%.17g %.17g</DataItem></Geometry>\n", (double)g->h, (double)g->h);
-  fprintf(f, "<Attribute Name=\"pressure\" AttributeType=\"Scalar\" Center=\"Cell\">\n");
-  HyperSlab(f, t, o->frames, "/fluid/p", 0, ny, ny, nx);
-  fprintf(f, "</Attribute>\n<Attribute Name=\"velocity\" AttributeType=\"Vector\" Center=\"Cell\">\n");
-  fprintf(f, "<DataItem ItemType=\"Function\" Function=\"JOIN($0, $1, 0*$0)\" Dimensions=\"%d %d 3\">\n", ny, nx);
-  HyperSlab(f, t, o->frames, "/fluid/u", 0, ny, ny, nx);
-  HyperSlab(f, t, o->frames, "/fluid/v", 0, ny, ny, nx);
+  fprintf(
+      f, "<Grid Name=\"fluid\" GridType=\"Uniform\"><Topology TopologyType=\"3DCoRectMesh\" Dimensions=\"1 %d %d\"/>\n",
+      ny, nx);
+  fprintf(f, "<Geometry GeometryType=\"ORIGIN_DXDYDZ\"><DataItem Dimensions=\"3\">0 %.17g %.17g</DataItem>",
+          (double)(g->lo[1] + g->h / 2), (double)(g->lo[0] + g->h / 2));
+  fprintf(f, "<DataItem Dimensions=\"3\">%.17g %.17g %.17g</DataItem></Geometry>\n", (double)g->h, (double)g->h,
+          (double)g->h);
+  fprintf(f, "<Attribute Name=\"pressure\" AttributeType=\"Scalar\" Center=\"Node\">\n");
+  HyperSlab(f, t, o->frames, "/fluid/p", 0, ny, ny, nx, "1 ");
+  fprintf(f, "</Attribute>\n<Attribute Name=\"velocity\" AttributeType=\"Vector\" Center=\"Node\">\n");
+  fprintf(f, "<DataItem ItemType=\"Function\" Function=\"JOIN($0, $1, 0*$0)\" Dimensions=\"1 %d %d 3\">\n", ny, nx);
+  HyperSlab(f, t, o->frames, "/fluid/u", 0, ny, ny, nx, "1 ");
+  HyperSlab(f, t, o->frames, "/fluid/v", 0, ny, ny, nx, "1 ");
   fprintf(f, "</DataItem></Attribute></Grid>\n");
 }
 
@@ -191,7 +202,7 @@ static void XdmfVesicle(Output o, FILE *f, PetscInt t, PetscInt v) {
           (int)n + 1, (int)n + 1);
   for (PetscInt k = 0; k <= n; k++) fprintf(f, "%d ", (int)(k % n));
   fprintf(f, "</DataItem></Topology>\n<Geometry GeometryType=\"XY\">\n");
-  HyperSlab(f, t, o->frames, "/vesicle/markers", first, n, m->M, 2);
+  HyperSlab(f, t, o->frames, "/vesicle/markers", first, n, m->M, 2, "");
   fprintf(f, "</Geometry>\n<Attribute Name=\"tension\" AttributeType=\"Scalar\" Center=\"Node\">\n");
   fprintf(f,
           "<DataItem ItemType=\"HyperSlab\" Dimensions=\"%d\"><DataItem Dimensions=\"3 2\" Format=\"XML\">%d %d 1 1 1 "

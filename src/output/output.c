@@ -170,6 +170,7 @@ PetscErrorCode OutputDestroy(Output *output) {
   }
   PetscCall(PetscFree(o->times));
   PetscCall(PetscFree(o->cells));
+  PetscCall(PetscFree(o->each));
   PetscCall(PetscFree(o->row));
   PetscCall(PetscFree(*output));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -19,6 +19,8 @@ struct _p_Output {
   PetscReal *times;              /* of the saved frames */
   PetscScalar *cells;            /* one cell-centred field, this rank's rows */
   PetscReal last[24];            /* the last row of series.csv, in the order of SeriesColumns */
+  PetscReal *each;               /* [vesicles][COLUMN_COUNT] the vesicles' own columns of it */
+  PetscBool quiet;               /* nothing on the terminal */
   char *row;                     /* the same with all columns, as text */
   const char *reason;            /* why the run ended */
   PetscInt saved_step;           /* of the newest checkpoint.h5 that this run wrote or started from; -1 none */
@@ -52,9 +54,16 @@ PETSC_EXTERN int OutputSync(const char path[]);
 /* OutputSeries - add the scheme's state and last step to series.csv. Collective. */
 PETSC_EXTERN PetscErrorCode OutputSeries(Output output);
 
+/* OutputMeasureVesicles - the vesicles' own columns of the present state, into `each`. Collective. */
+PETSC_EXTERN PetscErrorCode OutputMeasureVesicles(Output output);
+
 /* OutputFields - add the present fields and markers to run.h5 and run.xmf; scheduled: a saved time of -output_every,
    not only the end of this run. Collective. */
 PETSC_EXTERN PetscErrorCode OutputFields(Output output, PetscBool scheduled);
+
+/* OutputVelocityAtCells - component c of the velocity w (local array) at this rank's cell centres: mean of the cell's
+   two faces, plus the background at the flow's time; cells[rows][nx]. Collective. */
+PETSC_EXTERN PetscErrorCode OutputVelocityAtCells(Output output, int c, const PetscScalar w[], PetscScalar cells[]);
 
 /* OutputNextTime - the first multiple of -output_every after the present time. */
 PETSC_EXTERN PetscReal OutputNextTime(Output output);

@@ -58,6 +58,7 @@ PetscErrorCode SeriesPrepare(Output o) {
   const PetscBool row = *o->scene->restart && !o->go_on ? PETSC_TRUE : PETSC_FALSE;
   PetscBool written = PETSC_TRUE;
   PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(o->scheme->membrane->vesicles * COLUMN_COUNT, &o->each));
   PetscCall(OutputPath(o, "series.csv", path));
   PetscCall(OutputPath(o, "series.csv.tmp", temporary));
   if (!o->row) PetscCall(PetscCalloc1(SERIES_ROW_LENGTH, &o->row));
@@ -133,13 +134,25 @@ static PetscErrorCode AddNumber(char line[], size_t *used, PetscReal x) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode OutputMeasureVesicles(Output o) {
+  const State *q = &o->scheme->state;
+  const PetscScalar *X, *U;
+  PetscFunctionBeginUser;
+  PetscCall(VecGetArrayRead(q->X, &X));
+  PetscCall(VecGetArrayRead(q->U, &U));
+  for (PetscInt v = 0; v < o->scheme->membrane->vesicles; v++)
+    PetscCall(VesicleRow(o, v, X, U, o->each + v * COLUMN_COUNT));
+  PetscCall(VecRestoreArrayRead(q->U, &U));
+  PetscCall(VecRestoreArrayRead(q->X, &X));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode OutputSeries(Output o) {
   Scheme s = o->scheme;
   const StepReport *r = &s->report;
   const PetscInt vesicles = s->membrane->vesicles;
-  PetscReal *row = o->last, *each;
+  PetscReal *row = o->last;
   size_t used = 0;
-  const PetscScalar *X, *U;
   PetscFunctionBeginUser;
   PetscCall(PhaseBegin(PHASE_OUTPUT));
   for (int c = 0; c < COLUMN_COUNT; c++) row[c] = 0;
@@ -155,20 +168,15 @@ PetscErrorCode OutputSeries(Output o) {
   row[COLUMN_NSOLVE] = r->solves;
   row[COLUMN_WALL] = r->seconds;
   row[COLUMN_AREA_SHIFT] = r->area_shift;
-  PetscCall(PetscCalloc1((vesicles + 1) * COLUMN_COUNT, &each));
-  PetscCall(VecGetArrayRead(s->state.X, &X));
-  PetscCall(VecGetArrayRead(s->state.U, &U));
-  for (PetscInt v = 0; v < vesicles; v++) PetscCall(VesicleRow(o, v, X, U, each + v * COLUMN_COUNT));
-  for (PetscInt v = 0; v < vesicles; v++) Combine(vesicles, each + v * COLUMN_COUNT, row);
-  row[COLUMN_INCLINATION] = each[COLUMN_INCLINATION];
-  row[COLUMN_FREQUENCY] = vesicles ? each[COLUMN_FREQUENCY] : NAN;
-  PetscCall(VecRestoreArrayRead(s->state.U, &U));
-  PetscCall(VecRestoreArrayRead(s->state.X, &X));
+  PetscCall(OutputMeasureVesicles(o));
+  for (PetscInt v = 0; v < vesicles; v++) Combine(vesicles, o->each + v * COLUMN_COUNT, row);
+  row[COLUMN_INCLINATION] = vesicles ? o->each[COLUMN_INCLINATION] : 0;
+  row[COLUMN_FREQUENCY] = vesicles ? o->each[COLUMN_FREQUENCY] : NAN;
   for (int c = 0; c < COLUMN_COUNT; c++) PetscCall(AddNumber(o->row, &used, row[c]));
   for (PetscInt v = 0; v < vesicles && vesicles > 1; v++)
-    for (int c = 0; c < PER_VESICLE; c++) PetscCall(AddNumber(o->row, &used, each[v * COLUMN_COUNT + per_vesicle[c]]));
+    for (int c = 0; c < PER_VESICLE; c++)
+      PetscCall(AddNumber(o->row, &used, o->each[v * COLUMN_COUNT + per_vesicle[c]]));
   if (o->series) fprintf(o->series, "%s\n", o->row);
-  PetscCall(PetscFree(each));
   o->total_solves += r->solves;
   o->total_tension += r->tension_its;
   o->total_bending += r->bending_its;

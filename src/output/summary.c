@@ -91,7 +91,7 @@ PetscErrorCode OutputProgress(Output o, PetscBool force) {
   PetscLogDouble now;
   PetscReal share, left;
   PetscFunctionBeginUser;
-  if (o->rank) PetscFunctionReturn(PETSC_SUCCESS);
+  if (o->rank || o->quiet) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscTime(&now));
   if (!force && now - o->printed < PROGRESS_SECONDS) PetscFunctionReturn(PETSC_SUCCESS);
   o->printed = now;
@@ -108,6 +108,7 @@ PetscErrorCode OutputFinalTable(Output o, const char reason[]) {
   const PetscInt steps = PetscMax(o->scheme->state.step, 1);
   PetscLogDouble now;
   PetscFunctionBeginUser;
+  if (o->quiet) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscTime(&now));
   PetscCall(PetscPrintf(o->comm, "\n%s at time %g after %" PetscInt_FMT " steps, %.2f s\n", reason,
                         (double)r[COLUMN_TIME], o->scheme->state.step, now - o->start));

@@ -1,4 +1,4 @@
-/* Background flows: exact steady Stokes flows without a vesicle (DESIGN section 2). */
+/* Background flows: exact steady Stokes flows without a vesicle (DESIGN section 2), or a function of the caller. */
 #include "scene/scene.h"
 
 void FlowVelocity(const Flow *flow, PetscReal x, PetscReal y, PetscReal u[2]) {
@@ -15,9 +15,29 @@ void FlowVelocity(const Flow *flow, PetscReal x, PetscReal y, PetscReal u[2]) {
     u[0] = flow->rate * dx;
     u[1] = -flow->rate * dy;
     break;
+  case FLOW_CUSTOM: {
+    const PetscReal X[2] = {x, y};
+    if (flow->function(flow->time, 1, X, u, flow->ctx)) u[0] = u[1] = NAN;
+    break;
+  }
   default:
     break;
   }
+}
+
+PetscErrorCode FlowVelocities(const Flow *flow, PetscInt n, const PetscReal X[], PetscReal u[]) {
+  PetscFunctionBeginUser;
+  if (flow->type != FLOW_CUSTOM) {
+    for (PetscInt k = 0; k < n; k++) FlowVelocity(flow, X[2 * k], X[2 * k + 1], &u[2 * k]);
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(flow->function(flow->time, n, X, u, flow->ctx));
+  for (PetscInt k = 0; k < n; k++)
+    PetscCheck(!PetscIsInfOrNanReal(u[2 * k]) && !PetscIsInfOrNanReal(u[2 * k + 1]), PETSC_COMM_SELF,
+               PETSC_ERR_USER_INPUT,
+               "-flow_type custom: u_inf is (%g, %g) at (%g, %g), time %g; allowed: finite numbers", (double)u[2 * k],
+               (double)u[2 * k + 1], (double)X[2 * k], (double)X[2 * k + 1], (double)flow->time);
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 void FlowGradient(const Flow *flow, PetscReal x, PetscReal y, PetscReal gradient[2][2]) {

@@ -80,8 +80,10 @@ PetscErrorCode SceneSetInertia(Scene scene, const Shape *shape) {
   if (scene->inertia == INERTIA_AUTO) {
     /* at rest, or steady in the end: scenes of the paper, whose model does them no harm (a vesicle off the middle of
        a shear flow gets the warning) */
-    const PetscBool paper = scene->flow.type == FLOW_QUIESCENT || scene->flow.type == FLOW_SHEAR ? PETSC_TRUE
-                                                                                                 : PETSC_FALSE;
+    const PetscBool paper = scene->flow.type == FLOW_QUIESCENT || scene->flow.type == FLOW_SHEAR ||
+                                    scene->flow.type == FLOW_CUSTOM
+                                ? PETSC_TRUE
+                                : PETSC_FALSE;
     scene->inertia = INERTIA_UNSTEADY;
     if (!split && shape->vesicles && !paper) {
       if (scene->reynolds < SMALL_REYNOLDS)
@@ -94,6 +96,9 @@ PetscErrorCode SceneSetInertia(Scene scene, const Shape *shape) {
              "-fluid_inertia convective: the background flow is not periodic in %c, so it cannot carry the disturbance "
              "across that boundary; allowed: -domain_bc_%c wall, or -fluid_inertia none or unsteady",
              dir ? 'y' : 'x', dir ? 'y' : 'x');
+  PetscCheck(
+      scene->inertia != INERTIA_CONVECTIVE || scene->flow.type != FLOW_CUSTOM, scene->comm, PETSC_ERR_USER_INPUT,
+      "-fluid_inertia convective: not with -flow_type custom, whose gradient is not known; allowed: none, unsteady");
   *scene->warning = 0;
   if (scene->inertia == INERTIA_UNSTEADY && scene->reynolds > CARRIED_REYNOLDS && carried > CARRIED_REYNOLDS)
     PetscCall(PetscSNPrintf(scene->warning, sizeof(scene->warning),

@@ -16,7 +16,7 @@ typedef struct {
 } IntList;
 
 typedef enum { BC_WALL, BC_PERIODIC } BoundaryType;
-typedef enum { FLOW_QUIESCENT, FLOW_SHEAR, FLOW_POISEUILLE, FLOW_EXTENSION } FlowType;
+typedef enum { FLOW_QUIESCENT, FLOW_SHEAR, FLOW_POISEUILLE, FLOW_EXTENSION, FLOW_CUSTOM } FlowType;
 typedef enum { FORM_DISTURBANCE, FORM_TOTAL } FlowForm;
 typedef enum { INERTIA_AUTO, INERTIA_NONE, INERTIA_UNSTEADY, INERTIA_CONVECTIVE } InertiaType;
 typedef enum { DERIVATIVE_FD, DERIVATIVE_BENDING, DERIVATIVE_SPECTRAL } DerivativeType;
@@ -25,12 +25,15 @@ typedef enum { ADAPT_NONE, ADAPT_ERROR } AdaptType;
 typedef enum { STARTUP_EULER, STARTUP_GRADED } StartUp;
 typedef enum { SHAPE_ELLIPSE, SHAPE_FILE, SHAPE_NONE } ShapeType;
 
-/* Background flow u_inf, an exact steady solution of the Stokes equations (DESIGN section 2). Lengths and times are in
-   the user's units. */
+/* Background flow u_inf, an exact solution of the Stokes equations (DESIGN section 2), or of a caller's own. Lengths
+   and times are in the user's units. */
 typedef struct {
   PetscInt type; /* FlowType */
   PetscInt form; /* FlowForm */
   PetscReal rate, peak, half_width, center[2];
+  PetvesFlow function; /* FLOW_CUSTOM: the caller's, with its context */
+  void *ctx;
+  PetscReal time; /* at which u_inf is asked, for FLOW_CUSTOM: whoever asks sets it */
 } Flow;
 
 /* Closed curves as equal-edge markers, counter-clockwise. X holds x0,y0,x1,y1,... of all vesicles one after another;
@@ -44,44 +47,45 @@ typedef struct {
 typedef struct _p_Scene *Scene;
 struct _p_Scene {
   MPI_Comm comm;
-  PetscBool *given;                    /* one flag per row of the option table */
-  RealList box;                        /* x_min, x_max, y_min, y_max */
-  IntList cells;                       /* cells in x and y */
-  PetscInt bc[2];                      /* BoundaryType in x and y */
-  Flow flow;                           /* background flow */
-  PetscReal viscosity;                 /* nu (density is 1) */
-  PetscInt inertia;                    /* InertiaType */
-  PetscInt shape;                      /* ShapeType */
-  PetscInt count;                      /* vesicles */
-  RealList axes, center, angle;        /* semi-axes, centre, angle in degrees; one entry for all, or one a vesicle */
-  RealList area, reduced_area;         /* of the ellipses, instead of semi-axes */
-  char file[PETSC_MAX_PATH_LEN];       /* curve file */
-  PetscReal bending;                   /* c_b */
-  PetscReal spacing;                   /* ds/h; 0: by kernel */
-  PetscInt markers;                    /* 0: from spacing */
-  PetscBool allow_close_markers;       /* accept spacings where the tension problem is near singular */
-  char delta[SCENE_MAX_NAME];          /* kernel */
-  char scheme[SCENE_MAX_NAME];         /* time-stepping scheme */
-  PetscInt order;                      /* order in time */
-  PetscBool length_target;             /* coupled: new edges get the length ds */
-  PetscBool area_target;               /* coupled: markers shifted to their first area after each step */
-  PetscInt self_mobility;              /* SelfMobilityType */
-  PetscInt derivative;                 /* DerivativeType */
-  PetscInt startup;                    /* StartUp */
-  PetscInt mobility;                   /* index in -mobility_type's list */
-  PetscInt adapt;                      /* AdaptType */
-  PetscReal adapt_tol, adapt_max_move; /* error a step over R0; cells a marker may move in a step */
-  PetscReal cfl_limit;                 /* convective: largest dt max(|u| + |v|)/h */
-  PetscReal dt, t_end, steady_tol;     /* time step, end time, stop when max |u.n| falls below steady_tol */
-  char helmholtz[SCENE_MAX_NAME];      /* back end of the Helmholtz solves */
-  char poisson[SCENE_MAX_NAME];        /* back end of the Poisson solves */
-  PetscInt fftw_plan;                  /* 0 estimate, 1 measure, 2 patient */
-  char output_dir[PETSC_MAX_PATH_LEN]; /* every output file goes here */
-  PetscReal output_every;              /* time between saved fields */
-  PetscInt checkpoint_every;           /* steps between checkpoints; 0: only at the end */
-  PetscInt checkpoint_keep;            /* checkpoints kept, the newest included */
-  char restart[PETSC_MAX_PATH_LEN];    /* checkpoint to go on from; empty: none */
-  PetscReal wall_limit;                /* seconds after which to stop; 0: never */
+  PetscBool *given;                     /* one flag per row of the option table */
+  RealList box;                         /* x_min, x_max, y_min, y_max */
+  IntList cells;                        /* cells in x and y */
+  PetscInt bc[2];                       /* BoundaryType in x and y */
+  Flow flow;                            /* background flow */
+  PetscReal viscosity;                  /* nu (density is 1) */
+  PetscInt inertia;                     /* InertiaType */
+  PetscInt shape;                       /* ShapeType */
+  PetscInt count;                       /* vesicles */
+  RealList axes, center, angle;         /* semi-axes, centre, angle in degrees; one entry for all, or one a vesicle */
+  RealList area, reduced_area;          /* of the ellipses, instead of semi-axes */
+  char file[PETSC_MAX_PATH_LEN];        /* curve file */
+  PetscReal bending;                    /* c_b */
+  PetscReal spacing;                    /* ds/h; 0: by kernel */
+  PetscInt markers;                     /* 0: from spacing */
+  PetscBool allow_close_markers;        /* accept spacings where the tension problem is near singular */
+  char delta[SCENE_MAX_NAME];           /* kernel */
+  char scheme[SCENE_MAX_NAME];          /* time-stepping scheme */
+  PetscInt order;                       /* order in time */
+  PetscBool length_target;              /* coupled: new edges get the length ds */
+  PetscBool area_target;                /* coupled: markers shifted to their first area after each step */
+  PetscInt self_mobility;               /* SelfMobilityType */
+  PetscInt derivative;                  /* DerivativeType */
+  PetscInt startup;                     /* StartUp */
+  PetscInt mobility;                    /* index in -mobility_type's list */
+  PetscInt adapt;                       /* AdaptType */
+  PetscReal adapt_tol, adapt_max_move;  /* error a step over R0; cells a marker may move in a step */
+  PetscReal cfl_limit;                  /* convective: largest dt max(|u| + |v|)/h */
+  PetscReal dt, t_end, steady_tol;      /* time step, end time, stop when max |u.n| falls below steady_tol */
+  char helmholtz[SCENE_MAX_NAME];       /* back end of the Helmholtz solves */
+  char poisson[SCENE_MAX_NAME];         /* back end of the Poisson solves */
+  PetscInt fftw_plan;                   /* 0 estimate, 1 measure, 2 patient */
+  char fftw_wisdom[PETSC_MAX_PATH_LEN]; /* file of FFTW's wisdom; empty: none */
+  char output_dir[PETSC_MAX_PATH_LEN];  /* every output file goes here */
+  PetscReal output_every;               /* time between saved fields */
+  PetscInt checkpoint_every;            /* steps between checkpoints; 0: only at the end */
+  PetscInt checkpoint_keep;             /* checkpoints kept, the newest included */
+  char restart[PETSC_MAX_PATH_LEN];     /* checkpoint to go on from; empty: none */
+  PetscReal wall_limit;                 /* seconds after which to stop; 0: never */
   PetscReal limit_edge_ratio, limit_area_error, limit_length_error; /* stop above; 0: no limit */
   PetscBool overwrite, view, allow_unused;
   PetscReal reynolds;               /* set by SceneSetInertia */
@@ -121,8 +125,12 @@ PETSC_EXTERN PetscErrorCode SceneView(Scene scene, const Shape *shape, PetscView
 /* SceneCellSize - h, the edge of the square cells. */
 PETSC_EXTERN PetscReal SceneCellSize(Scene scene);
 
-/* FlowVelocity - u_inf[2] at (x, y). */
+/* FlowVelocity - u_inf[2] at (x, y) and flow->time; NaN when a custom flow's function fails. */
 PETSC_EXTERN void FlowVelocity(const Flow *flow, PetscReal x, PetscReal y, PetscReal u[2]);
+
+/* FlowVelocities - u_inf at n points X[2n] and flow->time, u[2n]: one call of a custom flow's function, whose error is
+   returned; a value that is not finite is the user's mistake. */
+PETSC_EXTERN PetscErrorCode FlowVelocities(const Flow *flow, PetscInt n, const PetscReal X[], PetscReal u[]);
 
 /* FlowPressureGradient - grad p_inf[2] at any point (uniform for the flows offered) for viscosity nu. */
 PETSC_EXTERN void FlowPressureGradient(const Flow *flow, PetscReal nu, PetscReal g[2]);

@@ -1,6 +1,21 @@
 /* The initial markers of a scene: equal edges on an ellipse or on a curve from a file. */
 #include "scene/scene.h"
 
+#define MANY 100    /* markers, from which on it matters that Fourier transforms of them are fast */
+#define LEEWAY 0.04 /* by which their number may differ for it */
+
+/* The odd number with prime factors up to 13 that is nearest to M, if one is near. */
+static PetscInt FastOdd(PetscInt M) {
+  for (PetscInt away = 0; away <= LEEWAY * M; away += 2)
+    for (int side = -1; side <= 1; side += 2) {
+      PetscInt left = M + side * away;
+      for (PetscInt p = 3; p <= 13; p += 2)
+        while (left % p == 0) left /= p;
+      if (left == 1) return M + side * away;
+    }
+  return M;
+}
+
 /* Number of markers of a curve: the even (for spectral edges odd) number nearest to length/(spacing h), or the user's
  * own. */
 static PetscErrorCode MarkerCount(Scene scene, PetscReal length, PetscReal spacing, PetscReal least, PetscInt *M) {
@@ -11,6 +26,7 @@ static PetscErrorCode MarkerCount(Scene scene, PetscReal length, PetscReal spaci
   *M = scene->markers ? scene->markers : 2 * (PetscInt)PetscFloorReal(length / (2 * spacing * h) + 0.5);
   if (!scene->markers && scene->derivative == DERIVATIVE_SPECTRAL) /* odd: no Nyquist mode */
     *M = 2 * (PetscInt)PetscFloorReal(length / (2 * spacing * h)) + 1;
+  if (!scene->markers && scene->derivative == DERIVATIVE_SPECTRAL && *M > MANY) *M = FastOdd(*M);
   PetscCheck(*M >= 8, scene->comm, PETSC_ERR_USER_INPUT,
              "-vesicle_spacing %g: %" PetscInt_FMT
              " markers on a membrane of length %g at h = %g; allowed: at least 8, so a finer -domain_cells",

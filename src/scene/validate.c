@@ -31,6 +31,8 @@ static PetscErrorCode CheckFlow(Scene scene) {
   const PetscInt type = scene->flow.type;
   PetscFunctionBeginUser;
   if (scene->flow.form != FORM_TOTAL || type == FLOW_QUIESCENT) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCheck(type != FLOW_CUSTOM, scene->comm, PETSC_ERR_USER_INPUT,
+             "-flow_form total: not with -flow_type custom; allowed: -flow_form disturbance");
   PetscCheck(!y_periodic, scene->comm, PETSC_ERR_USER_INPUT,
              "-flow_form total: the background flow is not periodic in y; allowed: -domain_bc_y wall or -flow_form "
              "disturbance");
@@ -153,7 +155,7 @@ PetscErrorCode SceneView(Scene scene, const Shape *shape, PetscViewer v) {
   static const char *const derivatives[] = {"finite differences", "spectral bending", "spectral bending and edges"};
   static const char *const self[] = {"none", "local", "symbol"};
   static const char *const bc[] = {"wall", "periodic"};
-  static const char *const flows[] = {"quiescent", "shear", "poiseuille", "extension"};
+  static const char *const flows[] = {"quiescent", "shear", "poiseuille", "extension", "custom"};
   const PetscReal *b = scene->box.v, h = SceneCellSize(scene);
   PetscFunctionBeginUser;
   PetscCall(PetscViewerASCIIPrintf(v, "Model in force\n"));

@@ -1,5 +1,5 @@
 /* Schemes "coupled" and "direct": the unsplit step, first or second order, unconditionally stable (DESIGN section 7).
-   `coupled` solves it by preconditioned FGMRES, `direct` by a sparse LU factorisation. */
+   `coupled` solves it by preconditioned FGMRES on its forces, `direct` by a sparse LU factorisation. */
 #include "scheme/coupled.h"
 
 /* S^T u = g: the new edges get the length ds, linearised at the extrapolated edge e*:
@@ -62,6 +62,22 @@ static PetscErrorCode MomentumRightHandSide(Scheme s, Coupled *d, const BDF *b) 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The solution extrapolated, the present one in a first step: tension, wall forces, and Y = E w of the velocity. */
+static PetscErrorCode InitialGuess(Scheme s, Coupled *d, PetscReal r) {
+  const State *q = &s->state;
+  State *n = &d->next;
+  PetscFunctionBeginUser;
+  if (!d->saddle) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(Extrapolate(r, q->walls, d->old.walls, n->walls));
+  if (!s->coupling) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(Extrapolate(r, q->sigma, d->old.sigma, n->sigma));
+  PetscCall(CouplingInterpolate(s->coupling, s->coupling->E, q->w, d->Y));
+  if (r == 0) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(CouplingInterpolate(s->coupling, s->coupling->E, d->old.w, s->work_markers));
+  PetscCall(VecAXPBY(d->Y, -r, 1 + r, s->work_markers));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode SolveStep(Scheme s, Coupled *d) {
   State *n = &d->next;
   PetscFunctionBeginUser;
@@ -90,18 +106,18 @@ PetscErrorCode CoupledAttempt(Scheme s, PetscReal dt, PetscBool *solved) {
   if (s->coupling) { /* operators at X*, history Xhat of the markers, constraint g */
     PetscCall(Extrapolate(b.ratio, q->X, d->old.X, d->Xstar));
     PetscCall(History(&b, 1 / b.a0, q->X, d->old.X, d->Xhat));
-    PetscCall(SchemePlaceMarkers(s, d->Xstar, solved));
+    PetscCall(SchemePlaceMarkers(s, d->Xstar, q->t + d->done + dt, solved));
     if (!*solved) PetscFunctionReturn(PETSC_SUCCESS);
     if (s->self) PetscCall(SchemeSetSelfMobility(s, b.a0, d->Xstar, NULL, d->Xhat));
     if (d->length_target) PetscCall(LengthTarget(s, d, b.a0));
   }
-  /* initial guess: the solution extrapolated; on the first step the present one; none of the pressure is needed */
   const PetscReal r = s->has_old ? dt / q->dt_last : 0;
-  PetscCall(Extrapolate(r, q->w, d->old.w, n->w));
-  PetscCall(Extrapolate(r, q->sigma, d->old.sigma, n->sigma));
-  if (q->walls) PetscCall(Extrapolate(r, q->walls, d->old.walls, n->walls));
   PetscCall(MomentumRightHandSide(s, d, &b));
-  if (d->convection) PetscCall(ConvectionAdd(d->convection, -1, n->w, d->f)); /* N(w*), w* being the guess */
+  if (d->convection) { /* N(w*) */
+    PetscCall(Extrapolate(r, q->w, d->old.w, n->w));
+    PetscCall(ConvectionAdd(d->convection, -1, n->w, d->f));
+  }
+  PetscCall(InitialGuess(s, d, r));
   PetscCall(SolveStep(s, d));
   *solved = *s->report.failure ? PETSC_FALSE : PETSC_TRUE;
   if (!*solved) PetscFunctionReturn(PETSC_SUCCESS);
@@ -148,15 +164,29 @@ static PetscErrorCode Advance(Scheme s, Coupled *d, PetscReal dt) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* state -> next, old -> state, next -> old: Advance undone, as long as nothing has been solved since. */
+static PetscErrorCode Undo_Coupled(Scheme s) {
+  Coupled *d = (Coupled *)s->data;
+  const State now = s->state;
+  PetscFunctionBeginUser;
+  s->state = d->old;
+  d->old = d->next;
+  d->next = now;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Start-up: backward Euler on a sixteenth of the step, then BDF2 with doubling steps up to the whole of it. */
 static PetscErrorCode GradedStart(Scheme s, Coupled *d, PetscReal dt, PetscBool *solved) {
   const PetscReal parts[] = {1. / 16, 1. / 16, 1. / 8, 1. / 4, 1. / 2};
   PetscFunctionBeginUser;
+  d->done = 0;
   for (int k = 0; k < 5; k++) {
     PetscCall(CoupledAttempt(s, parts[k] * dt, solved));
-    if (!*solved) PetscFunctionReturn(PETSC_SUCCESS);
+    if (!*solved) break;
     PetscCall(Advance(s, d, parts[k] * dt));
+    d->done += parts[k] * dt;
   }
+  d->done = 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -273,7 +303,7 @@ static PetscErrorCode Recall_Coupled(Scheme s, const PetscReal memory[]) {
   PetscCall(PetscArraycpy(X, memory + SADDLE_MEMORY, 2 * s->membrane->M));
   PetscCall(VecRestoreArray(d->made_at, &X));
   PetscCall(FluidSetTimeCoefficient(s->fluid, a0));
-  PetscCall(SchemePlaceMarkers(s, d->made_at, &placed));
+  PetscCall(SchemePlaceMarkers(s, d->made_at, s->state.t, &placed));
   if (s->self) PetscCall(SchemeSetSelfMobility(s, a0, d->made_at, NULL, d->made_at));
   PetscCall(SaddleSetMemory(d->saddle, memory));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -290,6 +320,15 @@ static PetscErrorCode Options_Coupled(Scheme s, FILE *file) {
   Coupled *d = (Coupled *)s->data;
   PetscFunctionBeginUser;
   if (d->saddle) PetscCall(KSPWriteOptions(d->saddle->ksp, "coupled_", file));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode KSP_Coupled(Scheme s, const char prefix[], KSP *ksp) {
+  Coupled *d = (Coupled *)s->data;
+  PetscFunctionBeginUser;
+  *ksp = NULL;
+  if (d->saddle && !strcmp(prefix, "coupled_")) *ksp = d->saddle->ksp;
+  if (d->direct && !strcmp(prefix, "direct_")) *ksp = d->direct->ksp;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -317,10 +356,12 @@ PetscErrorCode SchemeCreate_Coupled(Scheme s) {
   s->data = d;
   s->setup = SetUp_Coupled;
   s->step = Step_Coupled;
+  s->undo = Undo_Coupled;
   s->remember = Remember_Coupled;
   s->recall = Recall_Coupled;
   s->view = View_Coupled;
   s->options = Options_Coupled;
+  s->ksp = KSP_Coupled;
   s->destroy = Destroy_Coupled;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

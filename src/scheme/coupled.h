@@ -12,6 +12,7 @@ typedef struct {
   DirectSolver direct;   /* scheme direct: sparse LU */
   Convection convection; /* NULL unless the fluid has it */
   State old, next;       /* the state before, the one being made */
+  PetscReal done;        /* of the step under way: parts of a graded start (time) */
   PetscInt order;
   PetscBool length_target, area_target;
   StepControl control;

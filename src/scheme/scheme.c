@@ -23,7 +23,6 @@ static PetscErrorCode CreateState(Scheme s, const PetscReal X[]) {
   q->dt = s->scene->dt;
   PetscCall(DMCreateGlobalVector(s->fluid->grid->velocity, &q->w));
   PetscCall(DMCreateGlobalVector(s->fluid->grid->da[FIELD_P], &q->p));
-  PetscCall(VecDuplicate(q->p, &s->work_pressure));
   if (s->fluid->total) PetscCall(VecCopy(s->fluid->background, q->w));
   PetscCall(MembraneCreateMarkerVec(s->membrane, &q->X));
   PetscCall(VecDuplicate(q->X, &q->U));
@@ -36,7 +35,7 @@ static PetscErrorCode CreateState(Scheme s, const PetscReal X[]) {
   PetscCall(VecGetArray(q->X, &x));
   PetscCall(PetscArraycpy(x, X, 2 * s->membrane->M));
   PetscCall(VecRestoreArray(q->X, &x));
-  PetscCall(SchemePlaceMarkers(s, q->X, &placed));
+  PetscCall(SchemePlaceMarkers(s, q->X, q->t, &placed));
   PetscCheck(placed, s->scene->comm, PETSC_ERR_USER_INPUT,
              "-vesicle_center %g,%g: %s; allowed: a vesicle inside -domain_box, 3 cells from its walls",
              (double)s->scene->center.v[0], (double)s->scene->center.v[1], s->report.failure);
@@ -90,7 +89,6 @@ PetscErrorCode SchemeDestroy(Scheme *scheme) {
   PetscCall(VecDestroy(&s->g));
   PetscCall(VecDestroy(&s->work_tension));
   PetscCall(VecDestroy(&s->work_markers));
-  PetscCall(VecDestroy(&s->work_pressure));
   PetscCall(PetscFree(*scheme));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -138,7 +136,7 @@ PetscErrorCode SchemeView(Scheme s, PetscViewer viewer) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SchemePlaceMarkers(Scheme s, Vec X, PetscBool *placed) {
+PetscErrorCode SchemePlaceMarkers(Scheme s, Vec X, PetscReal t, PetscBool *placed) {
   const PetscScalar *x;
   PetscScalar *u;
   PetscFunctionBeginUser;
@@ -160,7 +158,8 @@ PetscErrorCode SchemePlaceMarkers(Scheme s, Vec X, PetscBool *placed) {
   if (!s->fluid->total) {
     PetscCall(VecGetArrayRead(X, &x));
     PetscCall(VecGetArray(s->background, &u));
-    for (PetscInt k = 0; k < s->membrane->M; k++) FlowVelocity(&s->scene->flow, x[2 * k], x[2 * k + 1], &u[2 * k]);
+    s->scene->flow.time = t;
+    PetscCall(FlowVelocities(&s->scene->flow, s->membrane->M, x, u));
     PetscCall(VecRestoreArray(s->background, &u));
     PetscCall(VecRestoreArrayRead(X, &x));
   }
@@ -250,9 +249,7 @@ PetscErrorCode SchemeMarkerVelocity(Scheme s, Vec w, Vec sigma, Vec U) {
 
 PetscErrorCode SchemeMeasureDivergence(Scheme s, Vec w) {
   PetscFunctionBeginUser;
-  PetscCall(MatMultTranspose(s->fluid->G, w, s->work_pressure));
-  if (s->fluid->bc2) PetscCall(VecAXPY(s->work_pressure, 1, s->fluid->bc2));
-  PetscCall(VecNorm(s->work_pressure, NORM_INFINITY, &s->report.div_max));
+  PetscCall(GridLargestDivergence(s->fluid->grid, w, s->fluid->bc2, &s->report.div_max));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

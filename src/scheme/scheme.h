@@ -34,6 +34,7 @@ typedef struct {
   State state, old; /* old without vectors where the scheme has none */
   PetscBool has_old;
   PetscInt level;
+  PetscBool fields; /* velocities and pressures too; without, the scheme's undo brings them back */
 } Snapshot;
 
 typedef struct _p_Scheme *Scheme;
@@ -53,16 +54,20 @@ struct _p_Scheme {
   SelfMobility self; /* NULL without */
   Vec background;    /* [2M] what the markers' velocity has besides the solved part: u_inf, zero in the total form */
   Vec g;             /* [M] S^T u = g: minus the background's stretching, Dm u_inf/h^2 */
-  Vec work_tension, work_pressure, work_markers;
+  Vec work_tension, work_markers;
   void *data; /* the scheme's own */
   PetscErrorCode (*setup)(Scheme);
   PetscErrorCode (*step)(Scheme); /* advance the state, or fill in report.failure and leave it */
+  /* put back the velocities and pressures of state and old that a step with has_old has changed; NULL: they are copied
+     before each step */
+  PetscErrorCode (*undo)(Scheme);
   /* what solvers keep from step to step, as SchemeMemorySize numbers, and made again from them; NULL: they keep nothing
    */
   PetscErrorCode (*remember)(Scheme, PetscReal memory[]);
   PetscErrorCode (*recall)(Scheme, const PetscReal memory[]);
   PetscErrorCode (*view)(Scheme, PetscViewer);
-  PetscErrorCode (*options)(Scheme, FILE *); /* write the solvers' settings in force as options */
+  PetscErrorCode (*options)(Scheme, FILE *);                 /* write the solvers' settings in force as options */
+  PetscErrorCode (*ksp)(Scheme, const char prefix[], KSP *); /* borrowed; NULL when there is none of this prefix */
   PetscErrorCode (*destroy)(Scheme);
 };
 
@@ -98,9 +103,9 @@ PETSC_EXTERN PetscErrorCode SchemeFreeSnapshot(Scheme scheme);
 PETSC_EXTERN PetscErrorCode SchemeCheck(Scheme scheme);
 PETSC_EXTERN PetscErrorCode SchemeView(Scheme scheme, PetscViewer viewer);
 
-/* SchemePlaceMarkers - put the coupling and the background data (background, g) at the markers X; false with
+/* SchemePlaceMarkers - put the coupling and the background data (background, g) of time t at the markers X; false with
    report.failure when a marker is too close to a wall. For use inside schemes. */
-PETSC_EXTERN PetscErrorCode SchemePlaceMarkers(Scheme scheme, Vec X, PetscBool *placed);
+PETSC_EXTERN PetscErrorCode SchemePlaceMarkers(Scheme scheme, Vec X, PetscReal t, PetscBool *placed);
 
 /* SchemeBackgroundConstraint - g = -Dm background/h^2. */
 PETSC_EXTERN PetscErrorCode SchemeBackgroundConstraint(Scheme scheme);

@@ -84,7 +84,7 @@ static PetscErrorCode Step_Split(Scheme s) {
   PetscBool placed = PETSC_TRUE;
   PetscFunctionBeginUser;
   PetscCall(FluidSetTimeCoefficient(f, 1 / q->dt));
-  if (c) PetscCall(SchemePlaceMarkers(s, q->X, &placed));
+  if (c) PetscCall(SchemePlaceMarkers(s, q->X, q->t, &placed));
   if (!placed) PetscFunctionReturn(PETSC_SUCCESS);
   if (s->self) PetscCall(SchemeSetSelfMobility(s, 1 / q->dt, q->X, q->sigma, q->X));
   if (c) PetscCall(LagrangianSolverSetUp(d->tension));
@@ -164,6 +164,16 @@ static PetscErrorCode Options_Split(Scheme s, FILE *file) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static PetscErrorCode KSP_Split(Scheme s, const char prefix[], KSP *ksp) {
+  Split *d = (Split *)s->data;
+  LagrangianSolver solvers[2] = {d->tension, d->bending};
+  PetscFunctionBeginUser;
+  *ksp = NULL;
+  for (int k = 0; k < 2; k++)
+    if (solvers[k] && !strcmp(prefix, solvers[k]->prefix)) *ksp = solvers[k]->ksp;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode SchemeCreate_Split(Scheme s) {
   Split *d;
   PetscFunctionBeginUser;
@@ -173,6 +183,7 @@ PetscErrorCode SchemeCreate_Split(Scheme s) {
   s->step = Step_Split;
   s->view = View_Split;
   s->options = Options_Split;
+  s->ksp = KSP_Split;
   s->destroy = Destroy_Split;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -3,11 +3,12 @@
 
 #define CONTACT 2 /* cells between membranes below which a warning is due */
 
-static PetscErrorCode CopyState(const State *from, State *to) {
+/* Copy a state; without `fields` the velocity and the pressure stay where they are. */
+static PetscErrorCode CopyState(const State *from, State *to, PetscBool fields) {
   const Vec source[] = {from->w, from->p, from->sigma, from->X, from->U, from->walls};
   Vec *target[] = {&to->w, &to->p, &to->sigma, &to->X, &to->U, &to->walls};
   PetscFunctionBeginUser;
-  for (int k = 0; k < 6 && source[k]; k++) {
+  for (int k = fields ? 0 : 2; k < 6 && source[k]; k++) {
     if (!*target[k]) PetscCall(VecDuplicate(source[k], target[k]));
     PetscCall(VecCopy(source[k], *target[k]));
   }
@@ -21,8 +22,9 @@ static PetscErrorCode CopyState(const State *from, State *to) {
 PetscErrorCode SchemeKeep(Scheme s) {
   Snapshot *b = &s->before;
   PetscFunctionBeginUser;
-  PetscCall(CopyState(&s->state, &b->state));
-  if (s->has_old) PetscCall(CopyState(s->old, &b->old));
+  b->fields = s->undo && s->has_old ? PETSC_FALSE : PETSC_TRUE;
+  PetscCall(CopyState(&s->state, &b->state, b->fields));
+  if (s->has_old) PetscCall(CopyState(s->old, &b->old, b->fields));
   b->has_old = s->has_old;
   if (s->level) b->level = *s->level;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -31,8 +33,9 @@ PetscErrorCode SchemeKeep(Scheme s) {
 PetscErrorCode SchemeReturn(Scheme s) {
   const Snapshot *b = &s->before;
   PetscFunctionBeginUser;
-  PetscCall(CopyState(&b->state, &s->state));
-  if (b->has_old) PetscCall(CopyState(&b->old, s->old));
+  if (!b->fields && s->state.step > b->state.step) PetscCall(s->undo(s));
+  PetscCall(CopyState(&b->state, &s->state, b->fields));
+  if (b->has_old) PetscCall(CopyState(&b->old, s->old, b->fields));
   s->has_old = b->has_old;
   if (s->level) *s->level = b->level;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -60,11 +63,11 @@ static PetscErrorCode Advise(Scheme s, const char advice[]) {
 
 static PetscErrorCode CheckFinite(Scheme s) {
   static const char *const names[] = {"velocity", "pressure", "tension", "marker velocity"};
-  const Vec all[] = {s->state.w, s->state.p, s->state.sigma, s->state.U};
+  const Vec all[] = {NULL, s->state.p, s->state.sigma, s->state.U};
   PetscFunctionBeginUser;
   for (int k = 0; k < (s->coupling ? 4 : 2); k++) {
-    PetscReal norm;
-    PetscCall(VecNorm(all[k], NORM_2, &norm));
+    PetscReal norm = s->report.div_max; /* of the velocity */
+    if (k) PetscCall(VecNorm(all[k], NORM_2, &norm));
     if (!PetscIsInfOrNanReal(norm)) continue;
     PetscCall(PetscSNPrintf(s->report.failure, sizeof(s->report.failure), "the %s is not finite", names[k]));
     PetscCall(Advise(s, "a smaller -time_step, or tighter solver tolerances"));

@@ -1,0 +1,117 @@
+/* Time steps of a scene, one by one, after a warm-up; no output files.
+     bench_step -bench_warmup W -bench_steps N [options of petves]     one JSON object: seconds of each step, of its
+   fast solves and of the rest, iterations, scalar solves; seconds of the set-up and of the first step; peak memory. */
+#include "bench.h"
+#include "fluid/wisdom.h"
+#include <sys/resource.h>
+
+#define MOST_STEPS 4096
+enum { WALL, FAST, REST, SOLVES, COUPLED, TENSION, BENDING, LISTS };
+static const char *const names[LISTS] = {"step", "fast", "rest", "nsolve", "coupled_its", "tension_its", "bending_its"};
+
+typedef struct {
+  Scene scene;
+  Shape shape;
+  Fluid fluid;
+  Membrane membrane;
+  Coupling coupling;
+  Scheme scheme;
+} World;
+
+static PetscErrorCode Create(World *w) {
+  PetscFunctionBeginUser;
+  PetscCall(SceneCreate(PETSC_COMM_WORLD, &w->scene));
+  const Kernel *kernel = KernelFind(w->scene->delta);
+  PetscCall(ShapeCreate(w->scene, kernel->default_spacing, kernel->least_spacing, &w->shape));
+  PetscCall(SceneSetInertia(w->scene, &w->shape));
+  PetscCall(WisdomRead(w->scene));
+  PetscCall(FluidCreate(w->scene, &w->fluid));
+  PetscCall(MembraneCreate(&w->shape, w->scene->bending, (DerivativeType)w->scene->derivative, &w->membrane));
+  if (w->shape.vesicles) PetscCall(CouplingCreate(w->fluid->grid, w->membrane, w->scene->delta, &w->coupling));
+  PetscCall(SchemeCreate(w->scene, w->fluid, w->membrane, w->coupling, w->shape.X, &w->scheme));
+  PetscCall(SceneCheckUnused(w->scene));
+  PetscCall(WisdomWrite(w->scene));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Destroy(World *w) {
+  PetscFunctionBeginUser;
+  PetscCall(SchemeDestroy(&w->scheme));
+  PetscCall(CouplingDestroy(&w->coupling));
+  PetscCall(MembraneDestroy(&w->membrane));
+  PetscCall(FluidDestroy(&w->fluid));
+  PetscCall(ShapeDestroy(&w->shape));
+  PetscCall(SceneDestroy(&w->scene));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Peak memory of all ranks (bytes). */
+static PetscErrorCode PeakMemory(PetscReal *bytes) {
+  struct rusage usage;
+  PetscFunctionBeginUser;
+  (void)getrusage(RUSAGE_SELF, &usage);
+  *bytes = 1024. * (PetscReal)usage.ru_maxrss;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, bytes, 1, MPIU_REAL, MPI_SUM, PETSC_COMM_WORLD));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Step(World *w, PetscReal at[LISTS]) {
+  const PetscReal fast = PhaseSeconds(PHASE_FAST_SOLVE), rest = PhaseSeconds(PHASE_STEP);
+  const StepReport *report = &w->scheme->report;
+  PetscLogDouble start = 0;
+  PetscFunctionBeginUser;
+  PetscCall(Begin(&start));
+  PetscCall(SchemeStep(w->scheme, w->scene->dt));
+  PetscCall(Elapsed(start, &at[WALL]));
+  PetscCheck(!*report->failure, PETSC_COMM_WORLD, PETSC_ERR_USER_INPUT, "%s", report->failure);
+  at[FAST] = PhaseSeconds(PHASE_FAST_SOLVE) - fast;
+  at[REST] = PhaseSeconds(PHASE_STEP) - rest;
+  at[SOLVES] = report->solves;
+  at[COUPLED] = report->coupled_its;
+  at[TENSION] = report->tension_its;
+  at[BENDING] = report->bending_its;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static void Print(const World *w, PetscReal setup, PetscReal first, PetscReal memory, PetscInt steps,
+                  const PetscReal *lists) {
+  printf("{\"cells\": %d, \"markers\": %d, \"ranks\": %d, \"setup\": %.6g, \"first\": %.6g, \"memory\": %.0f",
+         (int)w->scene->cells.v[0], (int)w->membrane->M, w->fluid->grid->size, (double)setup, (double)first,
+         (double)memory);
+  for (int k = 0; k < LISTS; k++) {
+    printf(", ");
+    PrintList(names[k], steps, lists + k * steps);
+  }
+  printf("}\n");
+}
+
+static PetscErrorCode Bench(void) {
+  PetscInt warmup = 20, steps = 10;
+  PetscReal setup, first = 0, memory, at[LISTS], *lists;
+  PetscLogDouble start = 0;
+  World w = {0};
+  PetscFunctionBeginUser;
+  PetscCall(PetscOptionsGetInt(NULL, NULL, "-bench_warmup", &warmup, NULL));
+  PetscCall(PetscOptionsGetInt(NULL, NULL, "-bench_steps", &steps, NULL));
+  PetscCheck(warmup > 0 && steps > 0 && steps <= MOST_STEPS, PETSC_COMM_WORLD, PETSC_ERR_USER_INPUT,
+             "-bench_warmup %" PetscInt_FMT ", -bench_steps %" PetscInt_FMT ": allowed: at least 1, at most %d steps",
+             warmup, steps, MOST_STEPS);
+  PetscCall(PetscMalloc1(LISTS * steps, &lists));
+  PetscCall(Begin(&start));
+  PetscCall(Create(&w));
+  PetscCall(Elapsed(start, &setup));
+  for (PetscInt i = 0; i < warmup + steps; i++) {
+    PetscCall(Step(&w, at));
+    if (!i) first = at[WALL];
+    for (int k = 0; k < LISTS && i >= warmup; k++) lists[k * steps + i - warmup] = at[k];
+  }
+  PetscCall(PeakMemory(&memory));
+  if (!w.fluid->grid->rank) Print(&w, setup, first, memory, steps, lists);
+  PetscCall(PetscFree(lists));
+  PetscCall(Destroy(&w));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+int main(int argc, char **argv) {
+  return CheckMain(argc, argv, Bench);
+}

@@ -1,0 +1,117 @@
+"""Reading a run's folder with units: into xarray, or into NumPy arrays."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from petves.run import Run, RunError
+
+if TYPE_CHECKING:
+    import xarray
+
+#: Units of what a run has, in the user's lengths and times; "1" is a number, "" not a physical quantity.
+UNITS = {
+    "step": "1",
+    "time": "time",
+    "dt": "time",
+    "energy_kinetic": "length^4/time^2",
+    "energy_bending": "length^4/time^2",
+    "area": "length^2",
+    "length": "length",
+    "area_error": "1",
+    "length_error": "1",
+    "edge_ratio": "1",
+    "div_max": "1/time",
+    "surface_div_max": "1/time",
+    "center_x": "length",
+    "center_y": "length",
+    "inclination": "radian",
+    "frequency": "radian/time",
+    "tension_its": "1",
+    "bending_its": "1",
+    "coupled_its": "1",
+    "nsolve": "1",
+    "wall": "s",
+    "area_shift": "length",
+    "u": "length/time",
+    "v": "length/time",
+    "p": "length^2/time^2",
+    "markers": "length",
+    "velocity": "length/time",
+    "tension": "length^3/time^2",
+    "x": "length",
+    "y": "length",
+    "h": "length",
+    "nu": "length^2/time",
+    "c_b": "length^5/time^2",
+}
+
+
+def unit(name: str) -> str:
+    """Return the unit of a column or field; columns of single vesicles (``area_1``) have their column's."""
+    return UNITS.get(re.sub(r"_\d+$", "", name), "")
+
+
+def load(folder: str | Path, kind: str = "auto") -> Run | xarray.Dataset:
+    """Read a run's folder.
+
+    Parameters
+    ----------
+    folder : str or Path
+        The run's ``-output_dir``; the run may still be going on.
+    kind : str
+        "xarray"; "numpy", a `petves.Run`; or "auto", xarray where it is installed.
+
+    Returns
+    -------
+    xarray.Dataset or Run
+        Dataset: variables of the steps (dimension step) are the columns of series.csv, with the coordinate step_time;
+        variables of the saved times (dimension time) are u, v, p (time, y, x), markers and
+        velocity (time, marker, xy) and tension (time, marker), with the coordinate vesicle of each marker. Every variable
+        has ``attrs["units"]``; the dataset's attributes are h, nu, c_b and the run's summary. Run: see there, and `unit`.
+
+    Raises
+    ------
+    RunError
+        When the folder or one of its files is missing or broken.
+    """
+    if kind not in ("auto", "xarray", "numpy"):
+        raise RunError(f"kind {kind}: unknown; allowed: auto, xarray, numpy")
+    try:
+        import xarray
+    except ImportError:
+        if kind == "xarray":
+            raise RunError("xarray is not installed; install python3-xarray, or use kind='numpy'") from None
+        kind = "numpy"
+    run = Run.read(folder)
+    return run if kind == "numpy" else _dataset(run, xarray)
+
+
+def _dataset(run: Run, xarray: Any) -> xarray.Dataset:
+    x, y = run.cell_centers()
+    fields = [np.array(values) for values in zip(*(run.fields(frame) for frame in range(len(run.time))))]
+    vesicle = np.repeat(np.arange(run.vesicles), np.diff(run.start))
+    variables = {name: ("step", values) for name, values in run.series.items() if name not in ("step", "time")}
+    variables |= {name: (("time", "y", "x"), values) for name, values in zip("uvp", fields)}
+    variables |= {
+        "markers": (("time", "marker", "xy"), run.markers),
+        "velocity": (("time", "marker", "xy"), run.velocity),
+        "tension": (("time", "marker"), run.tension),
+    }
+    coordinates = {
+        "step": run.series["step"].astype(int),
+        "step_time": ("step", run.series["time"], {"units": "time"}),
+        "time": ("time", run.time, {"units": "time"}),
+        "x": ("x", x, {"units": "length"}),
+        "y": ("y", y, {"units": "length"}),
+        "xy": ["x", "y"],
+        "vesicle": ("marker", vesicle),
+    }
+    attributes = {"h": run.h, "nu": run.nu, "c_b": run.c_b, "box": run.box, "folder": str(run.folder)}
+    attributes |= {"reason": run.summary.get("reason", "")}
+    data = xarray.Dataset({k: (*v, {"units": unit(k)}) for k, v in variables.items()}, coordinates, attributes)
+    return data

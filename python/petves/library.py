@@ -1,0 +1,134 @@
+"""libpetves.so: where it is, what its functions take, and PETSc handles as petsc4py objects.
+
+Errors come back as codes; `Simulation` turns them into `petves.Error` with the program's message. petsc4py starts
+PETSc, and its objects and petves' are made by the same PETSc library.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import functools
+import os
+from pathlib import Path
+
+import numpy as np
+from petsc4py import PETSc
+
+from petves.errors import Error
+
+MAX_MESSAGE = 512  # PETVES_MAX_MESSAGE
+MAX_PATH = 4096  # PETSC_MAX_PATH_LEN
+NAME = "libpetves.so"
+
+Int = ctypes.c_int64 if np.dtype(PETSc.IntType).itemsize == 8 else ctypes.c_int32
+Handle = ctypes.c_void_p
+
+#: int flow(time, n, X[2n], u[2n], context): petves' PetvesFlow.
+Flow = ctypes.CFUNCTYPE(
+    ctypes.c_int,
+    ctypes.c_double,
+    Int,
+    ctypes.POINTER(ctypes.c_double),
+    ctypes.POINTER(ctypes.c_double),
+    ctypes.c_void_p,
+)
+
+_pointer = ctypes.POINTER
+_double = ctypes.c_double
+_text = ctypes.c_char_p
+# An MPI communicator is passed as the eight bytes where petsc4py keeps it: a pointer (Open MPI) or an int (MPICH).
+_communicator = ctypes.c_void_p
+
+SIGNATURES = {
+    "PetvesEnter": (Handle, _text, _pointer(Int)),
+    "PetvesLeave": (Int,),
+    "PetvesTemporaryFolder": (_communicator, _text),
+    "SimulationCreateWithFlow": (_communicator, ctypes.c_void_p, ctypes.c_void_p, _pointer(Handle)),
+    "SimulationDestroy": (_pointer(Handle),),
+    "SimulationView": (Handle, Handle),
+    "SimulationBegin": (Handle,),
+    "SimulationStep": (Handle, _pointer(_text)),
+    "SimulationAdvance": (Handle, _double, _pointer(ctypes.c_int), _pointer(_text)),
+    "SimulationEnd": (Handle, _text),
+    "SimulationGetReason": (Handle, _pointer(_text)),
+    "SimulationCheckpoint": (Handle,),
+    "SimulationSetQuiet": (Handle, ctypes.c_int),
+    "SimulationGetTime": (Handle, _pointer(Int), _pointer(_double)),
+    "SimulationGetObject": (Handle, _text, _pointer(Handle)),
+    "SimulationGetSizes": (Handle, _pointer(Int), _pointer(Int), _pointer(Int)),
+    "SimulationGetOption": (Handle, Int, _pointer(_text), _text, ctypes.c_size_t),
+    "SimulationGetColumn": (Handle, Int, _pointer(_text)),
+    "SimulationGetRow": (Handle, Int, _pointer(_double)),
+    "SimulationGetCellVelocity": (Handle, _pointer(_double), _pointer(_double)),
+    "PetscOptionsCreate": (_pointer(Handle),),
+    "PetscOptionsDestroy": (_pointer(Handle),),
+    "PetscOptionsInsertFile": (_communicator, Handle, _text, ctypes.c_int),
+    "PetscOptionsSetValue": (Handle, _text, _text),
+    "PetscOptionsHasName": (Handle, _text, _text, _pointer(ctypes.c_int)),
+}
+
+
+def candidates() -> list[Path]:
+    """Return where libpetves.so is looked for, in this order.
+
+    ``PETVES_LIBRARY``; the package itself (pip); ``lib`` of the repository; ``lib`` of the prefix of ``make install``.
+    """
+    if os.environ.get("PETVES_LIBRARY"):
+        return [Path(os.environ["PETVES_LIBRARY"])]
+    package = Path(__file__).resolve().parent
+    prefixes = [*package.parents[1:6], Path("/usr/local")]
+    return [package / NAME, *(prefix / "lib" / NAME for prefix in prefixes)]
+
+
+@functools.lru_cache(maxsize=None)
+def library() -> ctypes.CDLL:
+    """Return libpetves.so, loaded once.
+
+    Raises
+    ------
+    Error
+        When it is not there, or cannot be loaded.
+    """
+    found = next((path for path in candidates() if path.is_file()), None)
+    if found is None:
+        raise Error(
+            f"{NAME}: not found in {', '.join(str(p.parent) for p in candidates())}; run make, or set PETVES_LIBRARY"
+        )
+    try:
+        lib = ctypes.CDLL(str(found))
+        for name, arguments in SIGNATURES.items():
+            getattr(lib, name).argtypes = arguments
+    except (OSError, AttributeError) as error:
+        raise Error(f"{found}: cannot be used ({error})") from None
+    return lib
+
+
+@functools.lru_cache(maxsize=None)
+def _petsc4py(name: str, result: type, *arguments: type):
+    """Return a function of petsc4py's C interface."""
+    api = ctypes.pythonapi
+    api.PyCapsule_GetName.restype = ctypes.c_char_p
+    api.PyCapsule_GetName.argtypes = [ctypes.py_object]
+    api.PyCapsule_GetPointer.restype = ctypes.c_void_p
+    api.PyCapsule_GetPointer.argtypes = [ctypes.py_object, ctypes.c_char_p]
+    capsule = PETSc.__pyx_capi__[name]
+    pointer = api.PyCapsule_GetPointer(capsule, api.PyCapsule_GetName(capsule))
+    return ctypes.PYFUNCTYPE(result, *arguments)(pointer)
+
+
+def wrap(kind: str, handle: int) -> PETSc.Object:
+    """Return the petsc4py object of a PETSc handle; it shares ownership.
+
+    Parameters
+    ----------
+    kind : str
+        petsc4py's class: Vec, DM, KSP, PC, Mat.
+    handle : int
+        The PETSc object's address.
+    """
+    return _petsc4py(f"PyPetsc{kind}_New", ctypes.py_object, ctypes.c_void_p)(handle)
+
+
+def communicator(comm: PETSc.Comm) -> int:
+    """Return a petsc4py communicator as C functions take it."""
+    return ctypes.c_void_p.from_address(_petsc4py("PyPetscComm_GetPtr", ctypes.c_void_p, ctypes.py_object)(comm)).value

@@ -1,0 +1,474 @@
+"""`Simulation`: petves driven from Python."""
+
+from __future__ import annotations
+
+import atexit
+import ctypes
+import os
+import shutil
+import sys
+import weakref
+from pathlib import Path
+from typing import Any, Callable
+
+import numpy as np
+from petsc4py import PETSc
+
+from petves.errors import Error
+from petves.library import MAX_MESSAGE, MAX_PATH, Flow, Handle, Int, communicator, library, wrap
+from petves.measures import Measures
+from petves.progress import progress_bar
+
+Callback = Callable[["Simulation"], Any]
+FlowFunction = Callable[[np.ndarray, np.ndarray, float], "tuple[Any, Any]"]
+
+KSP_NAMES = ("coupled", "direct", "tension", "bending")
+DM_NAMES = {"velocity": "dm_velocity", "u": "dm_u", "v": "dm_v", "pressure": "dm_pressure"}
+PETSC_ERR_USER = 83
+
+_alive: dict[int, weakref.ref] = {}  # in the order of creation, which is the same on every rank
+
+
+class Simulation(Measures):
+    """One simulation of vesicles in a viscous fluid.
+
+    Options are the program's, without the dash: ``Simulation(domain_cells=(64, 64), flow_type="shear")``. Lists and
+    tuples become comma-separated, True gives an option without value, None leaves it out. Unknown and unused options
+    are errors, as on the command line. Every simulation has its own options: those of ``petsc4py.init`` do not count.
+
+    Making, stepping, running, writing and closing are collective over ``comm``; so is the garbage collection of a
+    simulation that was not closed: under ``mpirun``, use ``with`` or `close`.
+
+    Parameters
+    ----------
+    options_file : str or Path, optional
+        A file of options, as ``-options_file``; keyword options win over it.
+    comm : petsc4py.PETSc.Comm, optional
+        The ranks that work on it, default ``PETSc.COMM_WORLD``.
+    flow : callable, optional
+        Background flow ``flow(x, y, t) -> (u, v)`` of arrays x, y, shape (n,), and a time. It stands in place of
+        ``flow_type`` and is called on every rank, for other points and other numbers of times, so it must not
+        communicate; nor may it use the simulation. A part of it that is no Stokes flow for this viscosity (du/dt -
+        nu Lap u + grad p not zero for any p) acts as if a body force held it; its divergence must be zero.
+    quiet : bool, optional
+        Print neither progress lines nor the final table (default).
+    **options
+        The program's options. Without ``output_dir`` the files go to a temporary folder that `close` removes.
+
+    Raises
+    ------
+    Error
+        With the program's one-line message.
+
+    Examples
+    --------
+    >>> with petves.Simulation(domain_cells=(64, 64), flow_type="shear", time_end=0.5) as sim:
+    ...     sim.run()
+    ...     print(sim.inclination, sim.markers.shape)
+    """
+
+    def __init__(
+        self,
+        options_file: str | Path | None = None,
+        *,
+        comm: PETSc.Comm | None = None,
+        flow: FlowFunction | None = None,
+        quiet: bool = True,
+        **options: Any,
+    ) -> None:
+        self._lib = library()
+        self._handle = Handle()
+        self._options = Handle()
+        self._message = ctypes.create_string_buffer(MAX_MESSAGE)
+        self._inside = False
+        self._ended = True  # nothing to write yet
+        self._temporary = False
+        self._failed: list[BaseException] = []  # by the flow
+        self._rows: list[np.ndarray] = []
+        self._comm = comm or PETSc.COMM_WORLD
+        self._flow = Flow(0) if flow is None else _flow_function(flow, self._failed)
+        if flow is not None:
+            options["flow_type"] = "custom"
+        try:
+            self._lib.PetscOptionsCreate(ctypes.byref(self._options))
+            self._set_options(options_file, options)
+            self._call(
+                "SimulationCreateWithFlow", communicator(self._comm), self._flow, None, ctypes.byref(self._handle)
+            )
+            self._lib.SimulationSetQuiet(self._handle, int(quiet))
+            self._learn()
+            self._call("SimulationBegin", self._handle)
+        except BaseException:
+            self._free()
+            raise
+        self._record()
+        self._ended = False
+        _alive[id(self)] = weakref.ref(self)
+
+    @classmethod
+    def restart(cls, path: str | Path, **options: Any) -> Simulation:
+        """Return a simulation that goes on from a checkpoint.
+
+        Parameters
+        ----------
+        path : str or Path
+            A run's checkpoint.h5. The run's options are those of resolved.opts beside it, when it is there; the series
+            and the saved fields go on in the run's folder unless ``output_dir`` says another.
+        **options
+            As of `Simulation`: what changes, such as ``time_end``, and ``flow`` when the run had one.
+
+        Raises
+        ------
+        Error
+            When the checkpoint cannot be read or belongs to another scene.
+        """
+        beside = Path(path).parent / "resolved.opts"
+        if "options_file" not in options and beside.is_file():
+            options["options_file"] = beside
+        return cls(restart=path, **options)
+
+    def _set_options(self, options_file: str | Path | None, options: dict[str, Any]) -> None:
+        """Fill the simulation's own options database."""
+        comm = communicator(self._comm)
+        if options_file is not None:
+            if not os.access(options_file, os.R_OK) or not os.path.isfile(options_file):
+                raise Error(f"-options_file {options_file}: cannot be opened; allowed: a readable file of options")
+            self._call("PetscOptionsInsertFile", comm, self._options, os.fsencode(options_file), 1)
+        for name, value in options.items():
+            if value is not None:
+                self._call("PetscOptionsSetValue", self._options, f"-{name}".encode(), option_text(value))
+        has = ctypes.c_int()
+        self._call("PetscOptionsHasName", self._options, None, b"-output_dir", ctypes.byref(has))
+        if not has.value:
+            path = ctypes.create_string_buffer(MAX_PATH)
+            self._call("PetvesTemporaryFolder", comm, path)
+            self._temporary_folder = Path(os.fsdecode(path.value))
+            self._temporary = True
+            self._call("PetscOptionsSetValue", self._options, b"-output_dir", path.value)
+
+    def _learn(self) -> None:
+        """Ask the simulation what does not change: sizes, options in force, columns."""
+        count, sizes, name = Int(), (Int * 7)(), ctypes.c_char_p()
+        self._lib.SimulationGetSizes(self._handle, ctypes.byref(count), None, sizes)
+        start = (Int * (count.value + 1))()
+        self._lib.SimulationGetSizes(self._handle, ctypes.byref(count), start, sizes)
+        self._start = np.array(start)
+        self._sizes = list(sizes)
+        value = ctypes.create_string_buffer(MAX_PATH)
+        self._in_force: dict[str, str] = {}
+        while (
+            not self._lib.SimulationGetOption(self._handle, len(self._in_force), ctypes.byref(name), value, MAX_PATH)
+            and name.value
+        ):
+            self._in_force[name.value.decode()[1:]] = os.fsdecode(value.value)
+        self._columns: dict[str, int] = {}
+        while not self._lib.SimulationGetColumn(self._handle, len(self._columns), ctypes.byref(name)) and name.value:
+            self._columns[name.value.decode()] = len(self._columns)
+
+    def _call(self, function: str, *arguments: Any) -> None:
+        """Call a C function with this simulation's options database; raise what went wrong."""
+        if self._inside:
+            raise Error("a simulation cannot be used inside its own step; copy what the flow needs beforehand")
+        depth, code, cause = Int(), 0, None
+        self._lib.PetvesEnter(self._options, self._message, ctypes.byref(depth))
+        self._inside = True
+        try:
+            code = getattr(self._lib, function)(*arguments)
+        except SystemError as error:  # an exception in a Python callback of petsc4py, a KSP monitor for instance
+            cause = error.__cause__ or error
+        finally:
+            self._inside = False
+            self._lib.PetvesLeave(depth)
+        if self._failed:
+            cause = self._failed.pop()
+            self._failed.clear()
+        if cause is not None or code:
+            self._ended = True  # the state is not to be trusted: no files are written from it
+        if cause is not None:
+            raise cause
+        if code:
+            raise Error(self._message.value.decode(errors="replace") or f"PETSc error {code} in {function}")
+
+    def _open(self) -> Handle:
+        if not self._handle:
+            raise Error("the simulation is closed")
+        return self._handle
+
+    def _record(self) -> None:
+        row = np.empty(len(self._columns))
+        self._lib.SimulationGetRow(self._handle, -1, row.ctypes.data_as(ctypes.POINTER(ctypes.c_double)))
+        self._rows.append(row)
+
+    # -- stepping ------------------------------------------------------------------------------------------------------
+
+    def step(self, steps: int = 1) -> None:
+        """Take time steps, with their rows of series.csv and the files that are due.
+
+        Parameters
+        ----------
+        steps : int
+            How many.
+
+        Raises
+        ------
+        Error
+            When a step cannot be taken; checkpoint.h5 then holds the last good state.
+        """
+        failure = ctypes.c_char_p()
+        for _ in range(steps):
+            self._ended = False
+            self._call("SimulationStep", self._open(), ctypes.byref(failure))
+            self._stop_on(failure)
+            self._record()
+
+    def run(self, until: float | None = None, callback: Callback | None = None, progress: bool | None = None) -> str:
+        """Step to a time, the steady state of ``time_steady_tol``, or where the callback says so.
+
+        Parameters
+        ----------
+        until : float, optional
+            Time; the option ``time_end`` when left out, and then the run ends as the program's does: with the end state,
+            checkpoint.h5 and summary.json on disk. With `until` they are written by `close`.
+        callback : callable, optional
+            ``callback(simulation)`` after every step; the run stops when it returns True.
+        progress : bool, optional
+            Show a progress bar; when left out, if standard error is a terminal.
+
+        Returns
+        -------
+        str
+            Why it stopped: "finished", "steady", "stopped" (``time_wall_limit``) or "callback".
+
+        Raises
+        ------
+        Error
+            When a step cannot be taken; checkpoint.h5 then holds the last good state.
+        """
+        end = float(self._in_force["time_end"]) if until is None else until
+        stepped, failure, word = ctypes.c_int(), ctypes.c_char_p(), ctypes.c_char_p()
+        with progress_bar(end, self.time, progress if self._comm.getRank() == 0 else False) as bar:
+            while True:
+                self._call("SimulationAdvance", self._open(), end, ctypes.byref(stepped), ctypes.byref(failure))
+                if not stepped.value:
+                    self._lib.SimulationGetReason(self._handle, ctypes.byref(word))
+                    reason = word.value.decode()
+                    break
+                self._ended = False
+                self._stop_on(failure)
+                self._record()
+                bar(self.time)
+                if callback is not None and callback(self) is True:
+                    reason = "callback"
+                    break
+
+        if until is None and reason != "callback":
+            self._end(None)
+        return reason
+
+    def _end(self, failure: bytes | None) -> None:
+        self._call("SimulationEnd", self._open(), failure)
+        self._ended = True
+
+    def _stop_on(self, failure: ctypes.c_char_p) -> None:
+        if failure.value is None:
+            return
+        text = failure.value
+        self._end(text)
+        raise Error(f"{text.decode(errors='replace')}; the last good state is in {self.folder}/checkpoint.h5")
+
+    def checkpoint(self) -> Path:
+        """Write checkpoint.h5; return its path."""
+        self._call("SimulationCheckpoint", self._open())
+        return self.folder / "checkpoint.h5"
+
+    def view(self) -> None:
+        """Print the model in force and the solvers, as ``-view``."""
+        self._call("SimulationView", self._open(), PETSc.Viewer.STDOUT(self._comm).handle)
+
+    def close(self) -> None:
+        """Write the end state and summary.json if that has not been done, free everything. Calls after the first do
+        nothing."""
+        if not self._handle:
+            return
+        try:
+            if not self._ended:
+                self._end(None)
+        finally:
+            self._free()
+
+    def _free(self) -> None:
+        if self._handle:
+            self._call("SimulationDestroy", ctypes.byref(self._handle))
+            self._handle = Handle()
+        if self._options:
+            self._lib.PetscOptionsDestroy(ctypes.byref(self._options))
+        if self._temporary and self._comm.getRank() == 0:
+            shutil.rmtree(self._temporary_folder, ignore_errors=True)
+        _alive.pop(id(self), None)
+
+    def __enter__(self) -> Simulation:
+        return self
+
+    def __exit__(self, kind: type | None, error: BaseException | None, trace: object) -> None:
+        if error is not None:
+            self._ended = True
+        self.close()
+
+    def __del__(self) -> None:
+        if getattr(self, "_handle", None) and not sys.is_finalizing():
+            self.close()
+
+    # -- state ---------------------------------------------------------------------------------------------------------
+
+    @property
+    def folder(self) -> Path:
+        """The run's output folder."""
+        return Path(self._in_force["output_dir"])
+
+    @property
+    def options(self) -> dict[str, str]:
+        """Every option of the program in force, as text, without the dash."""
+        return dict(self._in_force)
+
+    @property
+    def vesicles(self) -> int:
+        """Number of vesicles."""
+        return len(self._start) - 1
+
+    @property
+    def start(self) -> np.ndarray:
+        """First marker of each vesicle, then the number of markers M; shape (vesicles + 1,)."""
+        return self._start
+
+    @property
+    def markers(self) -> np.ndarray:
+        """Markers of all vesicles (length), shape (M, 2), the same on every rank.
+
+        A read-only view without copy: after the next step ask again, and copy what is to be kept. So are the other
+        arrays.
+        """
+        return self._array("markers").reshape(-1, 2)
+
+    @property
+    def marker_velocity(self) -> np.ndarray:
+        """Velocity of the markers, background included (length/time), shape (M, 2), the same on every rank; a view."""
+        return self._array("marker_velocity").reshape(-1, 2)
+
+    @property
+    def tension(self) -> np.ndarray:
+        """Tension (length^3/time^2), shape (M,), entry k on the edge from marker k-1 to marker k; a view."""
+        return self._array("tension")
+
+    @property
+    def pressure(self) -> np.ndarray:
+        """Pressure of this rank's rows at cell centres (length^2/time^2), shape (rows, cells in x); a view.
+
+        Of the disturbance unless ``flow_form`` is total.
+        """
+        return self._array("pressure").reshape(self._sizes[5:7])
+
+    @property
+    def velocity(self) -> tuple[np.ndarray, np.ndarray]:
+        """The solved velocity of this rank's faces (length/time): u on vertical faces, v on horizontal ones; views.
+
+        u has shape (rows, cells in x), one column less with walls in x; v (rows, cells in x), one row less in all with
+        walls in y. Entry (j, i) lies on the right (u) or top (v) face of cell (j, i). It is the disturbance of the
+        background flow unless ``flow_form`` is total; `cell_velocity` has the whole.
+        """
+        values, (_, rows, columns, *_) = self._array("velocity"), self._sizes
+        cut = rows * columns
+        return values[:cut].reshape(rows, columns), values[cut:].reshape(self._sizes[3:5])
+
+    def cell_velocity(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return the velocity, background included, at this rank's cell centres: u and v, new arrays (rows, cells in
+        x). Collective."""
+        u, v = (np.empty(self._sizes[5:7]) for _ in range(2))
+        pointers = [a.ctypes.data_as(ctypes.POINTER(ctypes.c_double)) for a in (u, v)]
+        self._call("SimulationGetCellVelocity", self._open(), *pointers)
+        return u, v
+
+    def cell_centers(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return x, shape (cells in x,), and y, shape (rows,), of this rank's cell centres."""
+        box = [float(x) for x in self._in_force["domain_box"].split(",")]
+        first, rows, columns = self._sizes[0], *self._sizes[5:7]
+        h = (box[1] - box[0]) / columns
+        return box[0] + h * (0.5 + np.arange(columns)), box[2] + h * (0.5 + first + np.arange(rows))
+
+    # -- PETSc objects -------------------------------------------------------------------------------------------------
+
+    def vec(self, name: str) -> PETSc.Vec:
+        """Return the state's vector: velocity, pressure (over the ranks), markers, marker_velocity, tension (whole on
+        every rank). After the next step ask again: the vectors change places."""
+        return self._object("Vec", name, name)
+
+    def dm(self, name: str) -> PETSc.DM:
+        """Return the grid's DM: velocity (a DMComposite of u and v), u, v, pressure (DMDAs)."""
+        return self._object("DM", name, DM_NAMES.get(name, ""))
+
+    def mat(self, name: str) -> PETSc.Mat:
+        """Return an operator of docs/method.md: G, D, L, H on the grid; E, S, B between grid and markers (as shells)."""
+        return self._object("Mat", name, f"mat_{name}")
+
+    def pc(self, name: str) -> PETSc.PC:
+        """Return a fast solver: helmholtz, the inverse of H, or poisson, of L."""
+        return self._object("PC", name, f"pc_{name}")
+
+    @property
+    def ksp(self) -> dict[str, PETSc.KSP]:
+        """The scheme's solvers by name: coupled; or direct; or tension and bending. They may be configured."""
+        handles = {name: self._find(f"{name}_") for name in KSP_NAMES}
+        return {name: wrap("KSP", handle) for name, handle in handles.items() if handle}
+
+    def _find(self, name: str) -> int | None:
+        found = Handle()
+        self._lib.SimulationGetObject(self._open(), name.encode(), ctypes.byref(found))
+        return found.value
+
+    def _object(self, kind: str, asked: str, name: str) -> PETSc.Object:
+        handle = self._find(name)
+        if not handle:
+            raise Error(f"{kind} {asked}: this simulation has none of that name")
+        return wrap(kind, handle)
+
+    def _array(self, name: str) -> np.ndarray:
+        return self.vec(name).array_r
+
+
+def option_text(value: Any) -> bytes | None:
+    """Return a Python value as the program reads it: None stands for no value."""
+    if value is True:
+        return None
+    if value is False:
+        return b"false"
+    if isinstance(value, (list, tuple, np.ndarray)):
+        return b",".join(option_text(item) or b"true" for item in np.ravel(np.asarray(value, dtype=object)))
+    if isinstance(value, (float, np.floating)):
+        return repr(float(value)).encode()
+    return os.fsencode(value) if isinstance(value, os.PathLike) else str(value).encode()
+
+
+def _flow_function(flow: FlowFunction, failed: list[BaseException]) -> Flow:
+    """Return a Python flow as C calls it; an exception is kept for the caller of the step."""
+
+    def call(time: float, n: int, positions: Any, velocities: Any, _context: Any) -> int:
+        try:
+            points = np.ctypeslib.as_array(positions, (n, 2))
+            out = np.ctypeslib.as_array(velocities, (n, 2))
+            out[:, 0], out[:, 1] = flow(points[:, 0].copy(), points[:, 1].copy(), time)
+        except BaseException as error:
+            failed.append(error)
+            return PETSC_ERR_USER
+        return 0
+
+    return Flow(call)
+
+
+@atexit.register
+def _close_all() -> None:
+    """Close what is still open before petsc4py ends PETSc; after an error without writing."""
+    for reference in list(_alive.values()):
+        simulation = reference()
+        if simulation is not None:
+            if hasattr(sys, "last_value"):
+                simulation._ended = True
+            simulation.close()

@@ -1,0 +1,35 @@
+"""Lines that simulations are drawn against."""
+
+from __future__ import annotations
+
+import numpy as np
+
+
+def ellipse_axes(reduced_area: float) -> tuple[float, float]:
+    """Return semi-axes a > b = 1/a of the ellipse of area pi with this reduced area V = 4 pi area/perimeter^2."""
+    angle = np.linspace(0, 2 * np.pi, 512, endpoint=False)
+
+    def reduced(a: float) -> float:
+        perimeter = np.mean(np.hypot(a * np.sin(angle), np.cos(angle) / a)) * 2 * np.pi
+        return 4 * np.pi**2 / perimeter**2
+
+    low, high = 1.0, 2.0
+    while reduced(high) > reduced_area:
+        high *= 2
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if reduced(middle) > reduced_area else (low, middle)
+    return low, 1 / low
+
+
+def keller_skalak_angle(a: float, b: float) -> float:
+    """Return the steady inclination (radians) of a tank-treading ellipse in shear, the fluids alike.
+
+    Keller and Skalak, J. Fluid Mech. 120 (1982) 27, in two dimensions. The angle turns at
+
+        d theta/dt = -rate/2 - 2 a b/(a^2 + b^2) omega + rate/2 (a^2 - b^2)/(a^2 + b^2) cos(2 theta)
+
+    where omega, the membrane's own rate, follows from the balance of work and dissipation; with equal viscosities
+    omega = -rate a b/(a^2 - b^2) cos(2 theta). Steady: cos(2 theta) = (a^2 - b^2)/(a^2 + b^2).
+    """
+    return 0.5 * np.arccos((a * a - b * b) / (a * a + b * b))

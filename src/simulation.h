@@ -1,0 +1,18 @@
+/* What a simulation is made of: for simulation.c, which runs it, and api.c, which answers questions about it. */
+#pragma once
+#include "output/output.h"
+
+struct _p_Simulation {
+  Scene scene;
+  Shape shape;
+  Fluid fluid;
+  Membrane membrane;
+  Coupling coupling;
+  Scheme scheme;
+  Output output;
+  PetscReal next_output;
+  PetscBool begun;  /* the initial state has been written */
+  PetscBool steady; /* after the last step */
+  PetscReal longest_step; /* wall seconds, with its output */
+  const char *reason; /* why SimulationAdvance did not step */
+};

@@ -1,0 +1,222 @@
+"""Facts of petves.Simulation, on any number of ranks: state, measures, PETSc objects, life and death."""
+
+import gc
+import sys
+from pathlib import Path
+
+import numpy as np
+import petsc4py
+
+petsc4py.init(["interface", "-malloc_debug", "-objects_dump", "-malloc_dump"])  # prints what is not freed at the end
+from petsc4py import PETSc
+
+import petves
+
+FOLDER, FACTS = Path(sys.argv[1]), sys.argv[2:]
+SMALL = dict(domain_cells=(32, 32), vesicle_semi_axes=(0.35, 0.5), time_step=0.01, time_end=0.03, flow_type="shear")
+RANKS, RANK = PETSc.COMM_WORLD.getSize(), PETSc.COMM_WORLD.getRank()
+
+
+def refused(text, make):
+    """The call raises petves.Error with this text, in one line."""
+    try:
+        make()
+    except petves.Error as error:
+        assert text in str(error) and "\n" not in str(error), str(error)
+    else:
+        raise AssertionError(f"no error with {text!r}")
+
+
+def state():
+    """Arrays have the shapes documented, are views, and say the same as the Vecs and DMs."""
+    with petves.Simulation(**SMALL) as sim:
+        M = sim.start[-1]
+        assert sim.vesicles == 1 and sim.markers.shape == (M, 2) == sim.marker_velocity.shape
+        assert sim.tension.shape == (M,) and not sim.markers.flags.writeable
+        assert np.shares_memory(sim.markers, sim.markers) and np.shares_memory(
+            sim.pressure, sim.vec("pressure").array_r
+        )
+        for name, form in (("pressure", (32, 32)), ("u", (31, 32)), ("v", (32, 31))):
+            assert sim.dm(name).sizes == form, name
+        u, v = sim.velocity
+        assert u.shape[1] == 31 and v.shape[1] == 32 and u.size + v.size == sim.vec("velocity").getLocalSize()
+        assert sim.vec("velocity").size == 2 * 31 * 32 and sim.dm("velocity").getType() == "composite"
+        rows = sim.pressure.shape[0]
+        x, y = sim.cell_centers()
+        assert len(y) == rows and len(x) == 32 and np.isclose(x[0], -1 + 1 / 32)
+        U, V = sim.cell_velocity()  # at rest, but for the background
+        assert np.allclose(U, y[:, None]) and not V.any() and U.shape == sim.pressure.shape
+        before = sim.markers.copy()
+        sim.step()
+        assert sim.steps == 1 and np.isclose(sim.time, 0.01) and not np.array_equal(sim.markers, before)
+        Lp, p = sim.vec("pressure").duplicate(), sim.vec("pressure").copy()
+        p.shift(-p.sum() / p.size)
+        sim.mat("L").mult(p, Lp)
+        back = Lp.duplicate()
+        sim.pc("poisson").apply(Lp, back)
+        assert (back - p).norm() <= 1e-10 * p.norm(), "the fast solver inverts L"
+        refused("Mat Q", lambda: sim.mat("Q"))
+        kept = sim.tension
+    assert np.isfinite(kept).all(), "a view outlives its simulation"
+
+
+def measures():
+    """Properties are the series' columns; energies add up; of several vesicles each has its own."""
+    two = dict(SMALL, vesicle_count=2, vesicle_center=(-0.45, 0.1, 0.45, -0.1), vesicle_semi_axes=(0.15, 0.3))
+    with petves.Simulation(**two) as sim:
+        sim.run()
+        assert sim.energy == sim.energy_bending + sim.energy_kinetic
+        assert np.isclose(sim.each("area").sum(), sim.area) and len(sim.each("inclination")) == 2
+        assert sim.inclination == sim.each("inclination")[0] and np.allclose(sim.center, 0, atol=0.05)
+        assert np.allclose(sim.history["time"], [0, 0.01, 0.02, 0.03]) and 0 < sim.reduced_area < 1
+        assert sim.iterations["coupled"] > 0 and sim.options["vesicle_count"] == "2"
+
+
+def running():
+    """run stops at `until`, at the callback's wish, and at time_end; the files say so."""
+    with petves.Simulation(output_dir=FOLDER / "running", **SMALL) as sim:
+        seen = []
+        assert sim.run(until=0.02, callback=lambda s: seen.append(s.time)) == "finished"
+        assert np.allclose(seen, [0.01, 0.02])
+        assert sim.run(callback=lambda s: True) == "callback" and sim.steps == 3
+        assert not (FOLDER / "running/summary.json").exists() or RANKS > 1
+        sim.run()
+        assert sim.checkpoint() == FOLDER / "running/checkpoint.h5"
+    with petves.Simulation(time_steady_tol=1e3, **SMALL) as sim:
+        assert sim.run() == "steady" and sim.steps == 1
+        temporary = sim.folder
+        assert temporary.is_dir()
+    with petves.Simulation(time_wall_limit=0.001, **SMALL) as sim:
+        assert sim.run() == "stopped" and sim.steps == 0
+    PETSc.COMM_WORLD.barrier()
+    assert not temporary.exists(), "a temporary folder goes with its simulation"
+    refused("closed", sim.step)
+
+
+def restarting():
+    """Half a run and its restart have the bits of a straight run; measures and series go on; another scene is refused."""
+    flow = lambda x, y, t: (np.cos(t) * y, 0 * x)
+    scene = {**SMALL, "time_step": 0.005, "flow_type": None, "flow": flow}
+    with petves.Simulation(output_dir=FOLDER / "straight", **scene) as straight:
+        straight.run()
+        markers, tension, series = straight.markers.copy(), straight.tension.copy(), straight.history
+    with petves.Simulation(output_dir=FOLDER / "halves", **{**scene, "time_end": 0.015}) as half:
+        half.run()
+        half.step()  # past the checkpoint
+        checkpoint = FOLDER / "halves/checkpoint_1.h5"
+        half.checkpoint()
+    with petves.Simulation.restart(checkpoint, time_end=0.03, flow=flow) as again:
+        assert again.steps == 3 and again.inclination == series["inclination"][3] == again.each("inclination")[0]
+        again.run()
+        assert np.array_equal(again.markers, markers) and np.array_equal(again.tension, tension)
+        for name, values in again.history.items():
+            assert name == "wall" or np.array_equal(values, series[name][3:], equal_nan=True), name
+    PETSc.COMM_WORLD.barrier()
+    rows = [(FOLDER / name / "series.csv").read_text().splitlines() for name in ("straight", "halves")]
+    assert [row.split(",")[:20] for row in rows[0]] == [row.split(",")[:20] for row in rows[1]]
+    for name in ("straight", "halves"):
+        assert len(petves.Run.read(FOLDER / name).time) == 2
+    refused(
+        "-domain_cells 48,48: the checkpoint",
+        lambda: petves.Simulation.restart(checkpoint, domain_cells=(48, 48), flow=flow),
+    )
+    refused("output_overwrite", lambda: petves.Simulation(output_dir=FOLDER / "straight", **SMALL))
+
+
+def solvers():
+    """The KSPs may be configured, and what they are told holds."""
+    with petves.Simulation(**SMALL) as sim, petves.Simulation(coupled_ksp_rtol=1e-11, **SMALL) as sharp:
+        assert list(sim.ksp) == ["coupled"]
+        residuals = []
+        sim.ksp["coupled"].setTolerances(rtol=1e-11)
+        sim.ksp["coupled"].setMonitor(lambda ksp, its, norm: residuals.append(norm))
+        sim.run(), sharp.run()
+        assert len(residuals) > 3 and np.array_equal(sim.markers, sharp.markers)
+    with petves.Simulation(scheme_type="split", tension_ksp_type="bcgs", **SMALL) as sim:
+        assert set(sim.ksp) == {"tension", "bending"} and sim.ksp["tension"].getType() == "bcgs"
+
+
+def several():
+    """Simulations live side by side, each with its own options, and give the same bits as alone."""
+    with petves.Simulation(**SMALL) as alone:
+        alone.run()
+        expected = alone.markers.copy()
+    a, b = petves.Simulation(**SMALL), petves.Simulation(fluid_viscosity=2, **SMALL)
+    for _ in range(3):
+        b.step()
+        a.step()
+    assert np.array_equal(a.markers, expected) and not np.array_equal(b.markers, expected)
+    assert b.options["fluid_viscosity"] == "2" and a.options["fluid_viscosity"] == "1"
+    if RANK == 0:
+        with petves.Simulation(comm=PETSc.COMM_SELF, **SMALL) as own:
+            own.run()
+            assert np.allclose(own.markers, expected, rtol=0, atol=1e-7)  # other rank count: to the solver's tolerance
+    a.close(), b.close()
+    a.close()
+
+
+def mistakes():
+    """Every mistake is a petves.Error with the program's line; a monitor's exception comes through."""
+    bad = [
+        (
+            "-flow_rat 1: misspelt, or not used by this scene's solvers; nearest known option: -flow_rate",
+            dict(flow_rat=1),
+        ),
+        ("square cells", dict(domain_cells=(32, 33))),
+        ("-coupled_ksp_type foo: Unable to find", dict(coupled_ksp_type="foo")),
+        ("from the wall", dict(vesicle_center=(0.9, 0))),
+        ("-output_dir /proc/no: cannot be made", dict(output_dir="/proc/no")),
+        ("-flow_type custom: no function given", dict(flow_type="custom")),
+        ("-time_step 0: out of range", dict(time_step=0)),
+        ("-vesicle_file /none: cannot be opened", dict(vesicle_shape="file", vesicle_file="/none")),
+    ]
+    for text, options in bad:
+        refused(text, lambda: petves.Simulation(**{**SMALL, **options}))
+    refused("-options_file /none: cannot be opened", lambda: petves.Simulation("/none"))
+    with petves.Simulation(time_adapt="error", time_adapt_tol=1e-14, **SMALL) as sim:
+        refused("the last good state is in", lambda: sim.run(until=1))
+        assert sim.time < 1
+    with petves.Simulation(coupled_ksp_max_it=1, **SMALL) as sim:
+        refused("the solve with prefix coupled_ failed in step", sim.run)
+        assert sim.steps == 0 and np.isfinite(sim.markers).all()
+    with petves.Simulation(**SMALL) as sim:
+
+        def stumble(ksp, its, norm):
+            raise ZeroDivisionError("monitor")
+
+        sim.ksp["coupled"].setMonitor(stumble)
+        try:
+            sim.step()
+        except ZeroDivisionError as error:
+            assert str(error) == "monitor"
+        else:
+            raise AssertionError("a monitor's exception is lost")
+
+
+def memory():
+    """Making, running and freeing 12 simulations takes no memory that is not given back."""
+
+    def once():
+        with petves.Simulation(scheme_startup="euler", **SMALL) as sim:
+            sim.step()
+            sim.ksp["coupled"].setMonitor(lambda ksp, its, norm: None)
+            return sim.markers[0, 0]
+
+    def resident():
+        gc.collect()
+        return int(Path("/proc/self/statm").read_text().split()[1]) * 4096
+
+    for _ in range(3):
+        once()
+    before = resident()
+    for _ in range(12):
+        once()
+    assert resident() - before < 2e6, f"{resident() - before} bytes in 12 runs"  # a simulation has about 1e6
+
+
+for fact in (state, measures, running, restarting, solvers, several, memory, mistakes):
+    if fact.__name__ in FACTS:
+        fact()
+        gc.collect()
+if RANK == 0:
+    print("facts hold")

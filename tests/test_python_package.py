@@ -1,0 +1,113 @@
+"""The Python package installed, its examples, its notebook and its reference."""
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from conftest import ENVIRONMENT, PETVES, ROOT, SANITIZE, mpirun, without_mpirun
+
+EXAMPLES = sorted(path.stem for path in (ROOT / "python" / "examples").glob("*.py") if path.stem != "common")
+LIBRARY = Path(PETVES).parent.parent / "lib" / "libpetves.so"
+LEFT = {
+    "quick_start": "quick_start/shapes.png",
+    "restart": "halves/series.csv",
+}
+RUN = (
+    "import petves\n"
+    "with petves.Simulation(domain_cells=(24, 24), vesicle_semi_axes=(0.4, 0.5), time_end=0.01) as sim:\n"
+    "    sim.run()\n"
+    "print(petves.__file__, petves.library.library()._name)\n"
+)
+
+
+def python(words: list[str], **environment: str) -> subprocess.CompletedProcess:
+    """Run Debian's Python without this test's own settings of where petves is."""
+    kept = {k: v for k, v in os.environ.items() if k not in ("PYTHONPATH", "PETVES", "PETVES_LIBRARY")}
+    environment = {**kept, **ENVIRONMENT, **environment}
+    return subprocess.run([sys.executable, *words], env=environment, capture_output=True, text=True, timeout=300)
+
+
+if not SANITIZE:  # a sanitized library cannot be loaded into Python
+
+    @pytest.mark.parametrize("name", EXAMPLES)
+    def test_example_runs(name, tmp_path):
+        ranks = 2 if name == "quick_start" else 1
+        script = str(ROOT / "python" / "examples" / f"{name}.py")
+        paths = dict(PYTHONPATH=str(ROOT / "python"), PETVES_LIBRARY=str(LIBRARY))
+        done = mpirun([sys.executable, script, str(tmp_path), "--short"], ranks, **paths)
+        assert done.returncode == 0, done.stdout + done.stderr
+        assert not without_mpirun(done.stderr)
+        assert (tmp_path / LEFT.get(name, f"{name}.png")).stat().st_size > 1000
+
+    def test_six_examples():
+        assert len(EXAMPLES) == 6
+
+    def test_pip_installs_a_package_that_runs(tmp_path):
+        shutil.copytree(ROOT / "python", tmp_path / "tree" / "python", ignore=shutil.ignore_patterns("__pycache__"))
+        (tmp_path / "tree" / "lib").mkdir()
+        shutil.copy(LIBRARY, tmp_path / "tree" / "lib")
+        words = [
+            "-m",
+            "pip",
+            "install",
+            "-q",
+            "--no-build-isolation",
+            "--no-deps",
+            "--no-index",
+            "--root-user-action=ignore",
+        ]
+        done = python([*words, "--target", str(tmp_path / "site"), str(tmp_path / "tree" / "python")])
+        assert done.returncode == 0, done.stdout + done.stderr
+        shutil.rmtree(tmp_path / "tree")
+        done = python(["-c", RUN], PYTHONPATH=str(tmp_path / "site"))
+        assert done.returncode == 0, done.stderr
+        home = tmp_path / "site" / "petves"
+        assert done.stdout.split() == [str(home / "__init__.py"), str(home / "libpetves.so")]
+        assert (home / "report.html").is_file()
+
+    def test_make_install_installs_a_package_that_runs(tmp_path):
+        words = ["make", "-C", str(ROOT), "install", f"PREFIX={tmp_path}", "BIN=bin", "LIBDIR=lib"]
+        done = subprocess.run(words, capture_output=True, text=True, timeout=300)
+        assert done.returncode == 0, done.stderr
+        (site,) = tmp_path.glob("lib/python3*/dist-packages")
+        done = python(["-c", RUN], PYTHONPATH=str(site))
+        assert done.returncode == 0, done.stderr
+        assert done.stdout.split() == [str(site / "petves" / "__init__.py"), str(tmp_path / "lib" / "libpetves.so")]
+        again = python(["-m", "petves", "sweep", str(tmp_path / "s"), "--vary", "time_end", "0"], PYTHONPATH=str(site))
+        assert again.returncode == 0, "the tools find bin/petves under the prefix\n" + again.stderr
+
+    def test_notebook_runs(tmp_path, monkeypatch):
+        import nbformat
+        from nbclient import NotebookClient
+
+        monkeypatch.setenv("PYTHONPATH", str(ROOT / "python"))
+        monkeypatch.setenv("PETVES_LIBRARY", str(LIBRARY))
+        for name, value in ENVIRONMENT.items():
+            monkeypatch.setenv(name, value)
+        notebook = nbformat.read(ROOT / "docs" / "tutorial.ipynb", as_version=4)
+        kept = [bool(cell.get("outputs")) for cell in notebook.cells]
+        for cell in notebook.cells:
+            cell.pop("outputs", None) if cell.cell_type != "code" else cell.update(outputs=[])
+        NotebookClient(notebook, timeout=120, resources={"metadata": {"path": str(tmp_path)}}).execute()
+        assert [
+            bool(cell.get("outputs")) for cell in notebook.cells
+        ] == kept, "the outputs shown are those of its cells"
+        assert sum(kept) >= 5
+
+    def test_reference_is_in_step_with_the_docstrings():
+        done = python(
+            [str(ROOT / "python" / "make_api.py")], PYTHONPATH=str(ROOT / "python"), PETVES_LIBRARY=str(LIBRARY)
+        )
+        assert done.returncode == 0, done.stderr
+        assert done.stdout == (ROOT / "docs" / "api.md").read_text(), "python/make_api.py > docs/api.md writes it anew"
+
+    def test_missing_library_is_one_line():
+        done = python(
+            ["-c", "import petves\ntry:\n    petves.Simulation()\nexcept petves.Error as error:\n    print(error)"],
+            PYTHONPATH=str(ROOT / "python"),
+            PETVES_LIBRARY="/nowhere/libpetves.so",
+        )
+        assert done.stdout == "libpetves.so: not found in /nowhere; run make, or set PETVES_LIBRARY\n", done.stderr
