@@ -142,12 +142,17 @@ def _launch(case: Case, ranks: int, folder: str) -> str:
     raise RunError(f"{case.name}: exit status {status}: {line}")
 
 
+class NotRun(RunError):
+    """A case is not among the results, and none is to be run."""
+
+
 class Results:
     """Measures of finished cases, kept in one JSON file so that an interrupted study goes on where it stopped."""
 
-    def __init__(self, path: Path, ranks: int) -> None:
+    def __init__(self, path: Path, ranks: int, run: bool = True) -> None:
         self.path = path
         self.ranks = ranks
+        self.run = run
         try:
             self.cases = json.loads(path.read_text()) if path.is_file() else {}
         except json.JSONDecodeError as error:
@@ -163,6 +168,8 @@ class Results:
         ranks = case.ranks or self.ranks
         if self.has(case):
             return self.cases[case.name]["measures"]
+        if not self.run:
+            raise NotRun(case.name)
         print(f"running {case.name}", flush=True)
         with tempfile.TemporaryDirectory() as folder:
             failure = _launch(case, ranks, folder)
