@@ -95,7 +95,7 @@ def _step(results: Path) -> list[str]:
         its = [median(one[k + "_its"]) for k in ("tension", "bending", "coupled")]
         shown = f"{its[0]:.0f}, {its[1]:.0f}" if scheme == "split" else f"{its[2]:.0f}"
         rows.append(
-            [scheme, f"{cells}^2", box, ranks, f"{1e3 * median(one['step']):.0f}", f"{100 * share(one):.0f} %", f"{median(one['nsolve']):.0f}", shown]  # fmt: skip
+            [scheme, f"{cells}^2", box, ranks, f"{1e3 * median(one['step']):.3g}", f"{100 * share(one):.0f} %", f"{median(one['nsolve']):.0f}", shown]  # fmt: skip
         )
     header = ["scheme", "cells", "box", "ranks", "ms a step", "besides fast solves", "scalar solves", "iterations"]
     return table(header, rows)
@@ -169,7 +169,7 @@ def _solvers(results: Path) -> list[str]:
         back_end, cells, box, ranks = name.split()
         base = median(found[f"fftw_tridiagonal {cells} {box} {ranks}"]["step"])
         what = "MUMPS" if back_end == "direct" else back_end
-        rows.append([f"{cells}^2", what, f"{1e3 * median(one['step']):.0f}", f"{median(one['step']) / base:.1f}", f"{median(one['nsolve']):.0f}"])  # fmt: skip
+        rows.append([f"{cells}^2", what, f"{1e3 * median(one['step']):.3g}", f"{median(one['step']) / base:.1f}", f"{median(one['nsolve']):.0f}"])  # fmt: skip
     return table(["cells", "", "ms a step", "over fftw_tridiagonal", "scalar solves"], rows)
 
 
