@@ -54,8 +54,11 @@ def _add_tables(commands: argparse._SubParsersAction) -> None:
 def _add_studies(commands: argparse._SubParsersAction) -> None:
     again = commands.add_parser("reproduce", help="run the studies: the paper's tables and the coupled scheme's")
     again.add_argument("folder", metavar="DIR", help="where the tables and pictures go")
-    again.add_argument("--quick", action="store_true", help="h = 1/32 and 1/64 only (also QUICK=1)")
+    again.add_argument("--quick", action="store_true", help="coarse grids only (also QUICK=1)")
     again.add_argument("--only", choices=("paper", "coupled"), help="the paper's studies, or the coupled scheme's")
+    again.add_argument(
+        "--write-only", action="store_true", help="with --only paper: the page from the runs that are there"
+    )
     again.add_argument("--ranks", type=int, default=2, help="MPI ranks of every run (2)")
     cells = commands.add_parser("accuracy", help="run the study of accuracy per cell: docs/accuracy.md's tables")
     cells.add_argument("folder", metavar="DIR", help="where the tables and the picture go")
@@ -107,7 +110,7 @@ def _run(options: argparse.Namespace) -> Iterable[object]:
         return stability(options.folder, quick=quick)
     from petves.reproduce import reproduce
 
-    return reproduce(options.folder, quick=quick, ranks=options.ranks, only=options.only)
+    return reproduce(options.folder, quick=quick, ranks=options.ranks, only=options.only, run=not options.write_only)
 
 
 def main(arguments: list[str] | None = None) -> int:

@@ -69,12 +69,6 @@ def scene(kind: str, n: int, markers: int, dt: float) -> dict[str, str]:
     return options
 
 
-def table_7(n: int) -> Case:
-    """Return the shear run of Table 7, both GMRES solves at 1e-12."""
-    tight = {"-tension_ksp_rtol": TIGHT, "-bending_ksp_rtol": TIGHT}
-    return Case(f"table7_{n}", scene("shear", n, MARKERS_TABLE_7[n], 0.25 / n) | ILU | tight, _measure)
-
-
 def iterations(kind: str, n: int) -> dict[str, Case]:
     """Return the runs behind one line of Table 4 (relax) or 8 (shear): our stopping tests by name."""
     dt = (0.5 if kind == "relax" else 0.25) / n
@@ -99,9 +93,7 @@ def energy(n: int) -> dict[str, Case]:
     steps = {"h": 1 / n, "h/2": 0.5 / n, "h^2": 1 / n**2}
     tight = {"-tension_ksp_rtol": TIGHT, "-bending_ksp_rtol": TIGHT}
     return {
-        name: Case(
-            f"energy_{n}_{name.replace('/', '_')}", scene("energy", n, markers, dt) | ILU | tight, _measure_decay
-        )
+        name: Case(f"energy_{n}_{name.replace('/', '_')}", scene("energy", n, markers, dt) | ILU | tight, decay)
         for name, dt in steps.items()
     }
 
@@ -125,7 +117,7 @@ def _measure(series: dict[str, np.ndarray], folder: Path) -> dict[str, object]:
     }
 
 
-def _measure_decay(series: dict[str, np.ndarray], folder: Path) -> dict[str, object]:
+def decay(series: dict[str, np.ndarray], folder: Path) -> dict[str, object]:
     """Return _measure, and the energy against time."""
     total = series["energy_kinetic"] + series["energy_bending"]
     rise = np.diff(total / total[0])
@@ -150,23 +142,34 @@ def _launch(case: Case, ranks: int, folder: str) -> str:
     raise RunError(f"{case.name}: exit status {status}: {line}")
 
 
+class NotRun(RunError):
+    """A case is not among the results, and none is to be run."""
+
+
 class Results:
     """Measures of finished cases, kept in one JSON file so that an interrupted study goes on where it stopped."""
 
-    def __init__(self, path: Path, ranks: int) -> None:
+    def __init__(self, path: Path, ranks: int, run: bool = True) -> None:
         self.path = path
         self.ranks = ranks
+        self.run = run
         try:
             self.cases = json.loads(path.read_text()) if path.is_file() else {}
         except json.JSONDecodeError as error:
             raise RunError(f"{path}: not JSON ({error}); remove it to start afresh") from None
 
+    def has(self, case: Case) -> bool:
+        """Return whether the measures of a case are there, for the same options and ranks."""
+        known = self.cases.get(case.name)
+        return bool(known) and known["options"] == case.options and known["ranks"] == (case.ranks or self.ranks)
+
     def get(self, case: Case) -> dict:
         """Return the measures of a case; run it first unless they are there for the same options and ranks."""
         ranks = case.ranks or self.ranks
-        known = self.cases.get(case.name)
-        if known and known["options"] == case.options and known["ranks"] == ranks:
-            return known["measures"]
+        if self.has(case):
+            return self.cases[case.name]["measures"]
+        if not self.run:
+            raise NotRun(case.name)
         print(f"running {case.name}", flush=True)
         with tempfile.TemporaryDirectory() as folder:
             failure = _launch(case, ranks, folder)

@@ -1,0 +1,173 @@
+"""The scenes of sections 5.4 to 5.6: runs of the option files in runs/, and what is kept of each."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from petves.accuracy_studies import _measure_rest, trigonometric
+from petves.inertia_studies import aspect
+from petves.run import Run, RunError
+from petves.studies import ILU, Case
+
+HOMES = [Path(__file__).resolve().parents[k] / name for k, name in ((2, "runs"), (4, "share/petves/runs"))]
+"""Where the option files are: in the repository, and after make install."""
+BENDING = 0.01
+REDUCED_AREAS, CHIS = (0.5, 0.6, 0.7, 0.8, 0.9), (1, 10, 100)
+WINDOWS = (6, 12, 24, 48, 384)
+PEAK, CHANNEL_V = 1.319456, 0.7
+QUIET = {"-checkpoint_every": "0"}
+
+
+def option_file(name: str) -> dict[str, str]:
+    """Return the options of runs/NAME.opts and their values, without -output_dir."""
+    path = next((home / f"{name}.opts" for home in HOMES if (home / f"{name}.opts").is_file()), None)
+    if path is None:
+        raise RunError(f"{name}.opts: not in {HOMES[0]} nor in {HOMES[1]}")
+    lines = [line.split("#")[0].split() for line in path.read_text().splitlines()]
+    return {words[0]: " ".join(words[1:]) for words in lines if words and words[0] != "-output_dir"}
+
+
+def radius(reduced_area: float) -> float:
+    """Return R0 of unit area."""
+    return float((1 / (np.pi * reduced_area)) ** 0.5)
+
+
+def frames(run: Run, times: list[float]) -> dict[str, list]:
+    """Return markers and sigma R0^2/c_b, both rounded, at the saved times nearest to those given."""
+    at = [int(np.abs(run.time - t).argmin()) for t in times]
+    scale = (run.series["length"][0] / (2 * np.pi)) ** 2 / run.c_b
+    return {
+        "time": [round(float(run.time[k]), 6) for k in at],
+        "markers": [np.round(run.markers[k], 5).tolist() for k in at],
+        "tension": [np.round(run.edge_tension(k) * scale, 4).tolist() for k in at],
+    }
+
+
+def _cost(series: dict[str, np.ndarray]) -> dict[str, object]:
+    return {"steps": len(series["time"]) - 1, "step_seconds": series["wall"].sum()}
+
+
+def _equilibrium(series: dict[str, np.ndarray], folder: Path) -> dict[str, object]:
+    run = Run.read(folder)
+    r0 = series["length"][0] / (2 * np.pi)
+    found = _measure_rest(series, folder)
+    scaled = {"energy": found["energy"] * r0 / run.c_b, "drift": found["drift"]}
+    scaled |= {key: found[key] / r0 for key in ("width", "mid_height")}
+    ends = {"area_error": series["area_error"][-1], "length_error": series["length_error"][-1]}
+    return scaled | ends | {"frames": frames(run, [0, run.time[-1]])} | _cost(series)
+
+
+def equilibrium(reduced_area: float) -> Case:
+    """Return section 5.4 with the default scheme."""
+    options = option_file("equilibrium") | QUIET | {"-vesicle_reduced_area": repr(reduced_area)}
+    return Case(f"equilibrium_{reduced_area}", options, _equilibrium, ranks=1)
+
+
+def equilibrium_paper(reduced_area: float, n: int) -> Case:
+    """Return section 5.4 with the paper's method on h = 1/n, dt = h/4, to t = 100: about 3 nu R0^3/c_b."""
+    options = option_file("paper/equilibrium") | QUIET | ILU
+    options |= {"-domain_cells": f"{4 * n},{4 * n}", "-time_step": repr(0.25 / n), "-time_end": "100"}
+    options |= {"-vesicle_reduced_area": repr(reduced_area), "-output_every": "50", "-vesicle_angle": "90"}
+    del options["-time_steady_tol"]
+    return Case(f"equilibrium_paper_{n}_{reduced_area}", options, _equilibrium, ranks=1, may_fail=True)
+
+
+def _channel(series: dict[str, np.ndarray], folder: Path) -> dict[str, object]:
+    run = Run.read(folder)
+    r0 = radius(CHANNEL_V)
+    time = np.linspace(0, series["time"][-1], 61)
+    center = np.stack([np.interp(time, series["time"], series[f"center_{x}"]) for x in "xy"])
+    speed = run.velocity.mean(axis=1)
+    shapes = [trigonometric(x) for x in run.markers]
+    return {
+        "time": list(time),
+        "travel": list((center[0] - center[0, 0]) / r0),
+        "height": list((center[1] - 3) / r0),
+        "saved": list(run.time),
+        "slip": list((speed[:, 0] - PEAK) * r0**2 / BENDING),
+        "aspect": [aspect(x) for x in shapes],
+        "extent": [list(np.ptp(x, axis=0) / r0) for x in shapes],
+        "frames": frames(run, list(np.linspace(0, 96, 9)) + [run.time[-1]]),
+        "area_error": series["area_error"][-1],
+    } | _cost(series)
+
+
+def channel(
+    offset: int, window: int = 12, inertia: str = "none", cells: int = 8, time_end: float = 96, dt: float = 0.12
+) -> Case:
+    """Return section 5.5 with the default scheme: c_0 = offset R0, window length, cells a unit of length."""
+    options = option_file("poiseuille") | QUIET | {"-fluid_inertia": inertia, "-time_end": f"{time_end:g}"}
+    options |= {"-domain_box": f"0,{window},0,6", "-domain_cells": f"{window * cells},{6 * cells}"}
+    options |= {"-vesicle_center": f"{min(window, 12) / 2:g},{3 + offset * radius(CHANNEL_V)!r}"}
+    options |= {"-time_step": repr(dt), "-output_every": "400" if window > 100 else "4"}
+    return Case(f"channel_{offset}_{window}_{inertia}_{cells}_{time_end:g}", options, _channel, ranks=1, may_fail=True)
+
+
+def channel_models(model: str) -> Case:
+    """Return c_0 = R0 with a step short enough for convection (CFL 0.45), the same for each model."""
+    case = channel(1, inertia=model, dt=0.04)
+    case.name = f"channel_model_{model}"
+    return case
+
+
+def channel_paper(offset: int, n: int, window: int, time_end: float) -> Case:
+    """Return section 5.5 with the paper's method on h = 1/n: dt = h/(8 u_max), unsteady, window of the length given."""
+    options = option_file("paper/poiseuille") | QUIET | ILU
+    options |= {"-domain_box": f"0,{window},0,6", "-domain_cells": f"{window * n},{6 * n}"}
+    options |= {"-vesicle_center": f"6,{3 + offset * radius(CHANNEL_V)!r}"}
+    options |= {"-time_step": repr(1 / (8 * n * PEAK)), "-time_end": f"{time_end:g}", "-output_every": "4"}
+    return Case(f"channel_paper_{offset}_{n}_{window}_{time_end:g}", options, _channel, ranks=1, may_fail=True)
+
+
+def _tank_treading(series: dict[str, np.ndarray], folder: Path) -> dict[str, object]:
+    run = Run.read(folder)
+    summary = {
+        "theta": series["inclination"][-1] / np.pi,
+        "omega": series["frequency"][-1],
+        "drift": abs(np.interp(0.9 * series["time"][-1], series["time"], series["inclination"]) / np.pi),
+        "area_error": series["area_error"][-1],
+        "length_error": series["length_error"][-1],
+    }
+    return summary | {"frames": frames(run, [0, run.time[-1]])} | _cost(series)
+
+
+def tank_treading(reduced_area: float, chi: float, n: int = 64) -> Case:
+    """Return section 5.6 with the default scheme on n^2 cells: rate dt = 0.05, to rate t = 12."""
+    rate = chi * BENDING / radius(reduced_area) ** 3
+    options = option_file("shear") | QUIET | {"-vesicle_reduced_area": repr(reduced_area), "-flow_rate": repr(rate)}
+    options |= {"-domain_cells": f"{n},{n}", "-time_step": repr(0.05 / rate), "-time_end": repr(12 / rate)}
+    options |= {"-output_every": repr(4 / rate)}
+    return Case(f"tank_treading_{n}_{reduced_area}_{chi}", options, _tank_treading, ranks=1)
+
+
+def tank_treading_paper(reduced_area: float, chi: float, n: int) -> Case:
+    """Return section 5.6 with the paper's method on h = 1/n: rate dt = h/8, to rate t = 12."""
+    rate = chi * BENDING / radius(reduced_area) ** 3
+    options = option_file("paper/shear") | QUIET | ILU | {"-vesicle_angle": "20", "-flow_rate": repr(rate)}
+    options |= {"-vesicle_reduced_area": repr(reduced_area), "-domain_cells": f"{8 * n},{8 * n}"}
+    options |= {"-time_step": repr(0.125 / n / rate), "-time_end": repr(12 / rate), "-output_every": repr(4 / rate)}
+    del options["-time_steady_tol"]
+    return Case(f"tank_treading_paper_{n}_{reduced_area}_{chi}", options, _tank_treading, ranks=1, may_fail=True)
+
+
+def _transient(series: dict[str, np.ndarray], folder: Path) -> dict[str, object]:
+    run = Run.read(folder)
+    angles = [np.round(run.phase_angle(k) / np.pi, 4).tolist() for k in range(len(run.time))]
+    every = np.linspace(0, len(series["time"]) - 1, 121).round().astype(int)
+    inclination = np.unwrap(2 * series["inclination"][every]) / 2 / np.pi
+    return {
+        "frames": frames(run, list(run.time)),
+        "phase": angles,
+        "time": list(series["time"][every]),
+        "theta": list(inclination),
+    } | _cost(series)
+
+
+def transient() -> Case:
+    """Return Fig 9: V = 0.5, chi = 1, released across the flow, to rate t = 40."""
+    rate = BENDING / radius(0.5) ** 3
+    case = tank_treading(0.5, 1)
+    options = case.options | {"-vesicle_angle": "90", "-time_end": repr(40 / rate), "-output_every": repr(2 / rate)}
+    return Case("transient", options, _transient, ranks=1)
