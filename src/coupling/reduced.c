@@ -114,17 +114,14 @@ PetscErrorCode SaddleResidual(Saddle s, Vec added, Vec f, Vec g, Vec x, Vec w, V
 
 PetscErrorCode SaddleCombine(Saddle s, Vec x, Vec w, Vec p, Vec residual, PetscBool *combined) {
   const PetscInt n = s->products;
+  const Vec rest = s->rest, *q = s->z;
   PetscReal upper[SADDLE_KEPT][SADDLE_KEPT], y[SADDLE_KEPT];
-  Vec q[SADDLE_KEPT], rest;
   PetscFunctionBeginUser;
   *combined = n <= SADDLE_KEPT ? PETSC_TRUE : PETSC_FALSE;
   if (!*combined) PetscFunctionReturn(PETSC_SUCCESS);
-  /* x = SUM y_j z_j: least squares by modified Gram-Schmidt */
-  PetscCall(VecDuplicate(x, &rest));
+  /* x = SUM y_j z_j + rest: least squares by modified Gram-Schmidt, in z's place */
   PetscCall(VecCopy(x, rest));
   for (PetscInt j = 0; j < n; j++) {
-    PetscCall(VecDuplicate(x, &q[j]));
-    PetscCall(VecCopy(s->z[j], q[j]));
     for (PetscInt i = 0; i < j; i++) {
       PetscCall(VecDot(q[j], q[i], &upper[i][j]));
       PetscCall(VecAXPY(q[j], -upper[i][j], q[i]));
@@ -137,12 +134,9 @@ PetscErrorCode SaddleCombine(Saddle s, Vec x, Vec w, Vec p, Vec residual, PetscB
     for (PetscInt i = j + 1; i < n; i++) y[j] -= upper[j][i] * y[i];
     y[j] = upper[j][j] > 0 ? y[j] / upper[j][j] : 0;
   }
-  PetscCall(VecSet(x, 0));
-  PetscCall(VecMAXPY(x, n, y, s->z));
+  PetscCall(VecAXPY(x, -1, rest));
   PetscCall(VecMAXPY(w, n, y, s->w));
   PetscCall(VecMAXPY(p, n, y, s->p));
   for (PetscInt j = 0; j < n; j++) PetscCall(VecAXPY(residual, -y[j], s->Az[j]));
-  for (PetscInt j = 0; j < n; j++) PetscCall(VecDestroy(&q[j]));
-  PetscCall(VecDestroy(&rest));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -100,6 +100,7 @@ PetscErrorCode SaddleCreate(Scene scene, Fluid fluid, Coupling coupling, SelfMob
   PetscCall(VecCreateSeq(PETSC_COMM_SELF, n, &s->x));
   PetscCall(VecDuplicate(s->x, &s->b));
   PetscCall(VecDuplicate(s->x, &s->change));
+  PetscCall(VecDuplicate(s->x, &s->rest));
   PetscCall(VecDuplicate(s->x, &s->pending));
   PetscCall(CreateKSP(s, n));
   PetscCall(SaddleForget(s));
@@ -120,6 +121,7 @@ PetscErrorCode SaddleDestroy(Saddle *saddle) {
   PetscCall(VecDestroy(&s->x));
   PetscCall(VecDestroy(&s->b));
   PetscCall(VecDestroy(&s->change));
+  PetscCall(VecDestroy(&s->rest));
   PetscCall(VecDestroy(&s->pending));
   PetscCall(VecDestroy(&s->r));
   PetscCall(VecDestroy(&s->U));

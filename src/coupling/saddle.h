@@ -33,7 +33,7 @@ struct _p_Saddle {
   PetscInt n_velocity, n_tension; /* unknowns V, sigma; d follows */
   Mat A;                          /* the residuals' derivative, scaled; one Stokes solve */
   KSP ksp;
-  Vec x, b, change;                    /* [n] unknowns, residual, work; the same on every rank */
+  Vec x, b, change, rest;              /* [n] unknowns, residual, work; the same on every rank */
   Vec pending;                         /* part of x whose forces are not in the right-hand side f yet */
   Vec r;                               /* a force on the grid, */
   PetscInt dirty[2];                   /* zero but for these rows */
