@@ -43,7 +43,7 @@ export OMPI_MCA_mpi_yield_when_idle := 1
 export OMPI_MCA_btl_vader_single_copy_mechanism := none
 export OMP_NUM_THREADS := 1
 
-.PHONY: all help deps test-deps run test coverage reproduce stability bench install format check-format clean tests benches
+.PHONY: all help deps test-deps run test coverage reproduce stability chart bench install format check-format clean tests benches
 all: $(BIN)/petves ## build bin/petves and lib/libpetves.so
 
 help: ## list the targets
@@ -118,6 +118,10 @@ reproduce: deps ## the paper's scenes, tables and figures: docs/reproduction.md 
 stability: deps ## the maps of where each scheme fails, into docs/stability (at most half an hour; QUICK=1: two minutes)
 	@$(MAKE) --no-print-directory all
 	PETVES=$(CURDIR)/$(BIN)/petves PYTHONPATH=python $(PYTHON) -m petves stability $(if $(QUICK),out/stability,docs/stability)
+
+chart: deps ## error against CPU time of every scheme, into docs/speed_accuracy (an hour; QUICK=1: two minutes)
+	@$(MAKE) --no-print-directory all
+	PETVES=$(CURDIR)/$(BIN)/petves PYTHONPATH=python $(PYTHON) -m petves chart $(if $(QUICK),out/chart,docs/speed_accuracy)
 
 install: all ## install under PREFIX (/usr/local)
 	install -d $(PREFIX)/bin $(PREFIX)/lib $(PREFIX)/include $(PREFIX)/share/petves $(PYTHON_DIR)/petves

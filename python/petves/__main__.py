@@ -1,4 +1,4 @@
-"""Command line: ``python3 -m petves plot|movie|compare|sweep|report|reproduce|accuracy|inertia|stability ...``."""
+"""Command line: ``python3 -m petves plot|movie|compare|sweep|report|reproduce|accuracy|inertia|stability|chart ...``."""
 
 from __future__ import annotations
 
@@ -69,6 +69,9 @@ def _add_studies(commands: argparse._SubParsersAction) -> None:
     maps = commands.add_parser("stability", help="run the stability maps: docs/stability.md's tables and pictures")
     maps.add_argument("folder", metavar="DIR", help="where the tables and the pictures go")
     maps.add_argument("--quick", action="store_true", help="only the corners of each map (also QUICK=1)")
+    speed = commands.add_parser("chart", help="run the work-precision diagrams: docs/speed_accuracy.md's pictures")
+    speed.add_argument("folder", metavar="DIR", help="where the tables and the pictures go")
+    speed.add_argument("--quick", action="store_true", help="only points of little work (also QUICK=1)")
 
 
 def _run(options: argparse.Namespace) -> Iterable[object]:
@@ -108,6 +111,10 @@ def _run(options: argparse.Namespace) -> Iterable[object]:
         from petves.stability import stability
 
         return stability(options.folder, quick=quick)
+    if options.command == "chart":
+        from petves.chart import chart
+
+        return chart(options.folder, quick=quick)
     from petves.reproduce import reproduce
 
     return reproduce(options.folder, quick=quick, ranks=options.ranks, only=options.only, run=not options.write_only)

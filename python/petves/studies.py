@@ -186,7 +186,13 @@ class Results:
                 {"failed": failure} if failure else case.measure(read_series(Path(folder) / "series.csv"), Path(folder))
             )
             commit = json.loads((Path(folder) / "summary.json").read_text())["git_commit"]
-        entry = {"options": case.options, "ranks": ranks, "commit": commit, "cpu_seconds": seconds, "measures": measures}
+        entry = {
+            "options": case.options,
+            "ranks": ranks,
+            "commit": commit,
+            "cpu_seconds": seconds,
+            "measures": measures,
+        }
         self.cases[case.name] = entry
         temporary = self.path.with_suffix(".tmp")
         temporary.write_text(

@@ -1,0 +1,172 @@
+"""Run the work-precision diagrams, resumably, and write their CSV files, tables and pictures."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from petves.chart_claim import claim
+from petves.chart_pictures import picture
+from petves.chart_studies import BEST, ERRORS, SCENES, SCHEMES, Point, Scene
+from petves.run import RunError
+from petves.studies import Case, Results
+from petves.tables import table, write_csv
+
+ROUNDS = 3  # runs of a point, one of each in a round; the best counts
+ONCE = 120.0  # CPU seconds above which a point runs once
+QUICK_WORK = 3e5  # cells times steps of the largest run of a quick call
+LEVELS = (1e-2, 1e-3, 1e-4)
+COLUMNS = "scene scheme cells h dt tolerance".split() + list(ERRORS) + "cpu_seconds solves steps runs message".split()
+
+Row = dict[str, object]
+
+
+def chart(
+    folder: str | Path, quick: bool = False, scenes: tuple[Scene, ...] = SCENES, finest: int | None = None
+) -> list[Path]:
+    """Run what is not there yet; write chart.csv, recommended.csv, tables.md and the pictures.
+
+    Parameters
+    ----------
+    folder : str or Path
+        Where the files go; chart.json and claim.json keep every run's options, commit, CPU seconds and errors.
+    quick : bool
+        Only the points of little work, once each.
+    scenes : tuple of Scene
+        These in place of all.
+    finest : int, optional
+        1/h of the paper's settings that the last section compares with; 256, quick 64.
+
+    Returns
+    -------
+    list of Path
+        The files.
+    """
+    folder = Path(folder)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise RunError(f"{folder}: cannot be made ({error.strerror})") from None
+    results = Results(folder / "chart.json", 1)
+    points = {one.name: tuple(p for p in one.points if not quick or one.work(p) < QUICK_WORK) for one in scenes}
+    for repeat in range(1 if quick else ROUNDS):  # all scenes once before any is run again
+        for one in scenes:
+            run_points(results, one, points[one.name], repeat)
+            write_rows(folder / "chart.csv", results, scenes, points)
+    paths, text = [folder / "chart.csv", folder / "recommended.csv"], []
+    best: list[Row] = []
+    for one in scenes:
+        floor, rows = converged(results, one, quick), rows_of(results, one, points[one.name])
+        start = start_seconds(results, one)
+        paths += [picture(folder, one, rows, cost, floor, start) for cost in ("cpu_seconds", "solves")]
+        text += _lines(one, rows, floor, start)
+        best += [row | {"level": level} for level in LEVELS if (row := cheapest(rows, one, BEST, level))]
+    names = ["level", *COLUMNS[:-1]]
+    write_csv(paths[1], names, [[row[name] for name in names] for row in best])
+    text += claim(Results(folder / "claim.json", 1), folder, finest or (64 if quick else 256))
+    tables = folder / "tables.md"
+    tables.write_text("\n".join(text))
+    return [*paths, folder / "claim.csv", tables]
+
+
+def write_rows(path: Path, results: Results, scenes: tuple[Scene, ...], points: dict[str, tuple[Point, ...]]) -> None:
+    """Write what has run."""
+    rows = [row for one in scenes for row in rows_of(results, one, points[one.name])]
+    write_csv(path, [*COLUMNS, "options"], [[row[name] for name in (*COLUMNS, "options")] for row in rows])
+
+
+def start_seconds(results: Results, one: Scene) -> float:
+    """Return the CPU seconds of the program's start: the least of three runs of the scene that take no step."""
+    point = Point(BEST, min(p.cells for p in one.points), dt=0.02)
+    taken = []
+    for repeat in range(3):
+        case = one.case(point, repeat, {})
+        still = Case(f"{one.name}_start_{repeat}", case.options | {"-time_end": "0"}, lambda series, folder: {}, 1)
+        results.get(still)
+        taken.append(results.cases[still.name]["cpu_seconds"])
+    return min(taken)
+
+
+def converged(results: Results, one: Scene, quick: bool) -> dict[str, float]:
+    """Return the errors of the reference against a finer run; quick, or without reference: nothing."""
+    if quick or not one.reference or not one.finer:
+        return {}
+    return one.errors(results.get(one.fine()), results.get(one.fine(finer=True)))
+
+
+def run_points(results: Results, one: Scene, points: tuple[Point, ...], repeat: int) -> None:
+    """Run the points of a scene in one round."""
+    fine = results.get(one.fine()) if one.reference else {}
+    for point in points:
+        if not repeat or results.cases[one.case(point, 0, fine).name]["cpu_seconds"] <= ONCE:
+            results.get(one.case(point, repeat, fine))
+
+
+def rows_of(results: Results, one: Scene, points: tuple[Point, ...]) -> list[Row]:
+    """Return a row for each point that has run."""
+    return [_row(results, one, point) for point in points if results.has(one.case(point, 0, {}))]
+
+
+def _row(results: Results, one: Scene, point: Point) -> Row:
+    """Return what chart.csv says of a point, with the least CPU seconds of its runs."""
+    cases = [one.case(point, repeat, {}) for repeat in range(ROUNDS)]
+    runs = [results.cases[case.name] for case in cases if results.has(case)]
+    found = runs[0]["measures"]
+    row: Row = {"scene": one.name, "scheme": point.scheme, "cells": point.cells, "h": f"{one.width / point.cells:.6g}"}
+    row |= {"dt": f"{point.dt:.6g}", "tolerance": f"{point.tolerance:.6g}"}
+    row |= {name: found.get("errors", {}).get(name, "") for name in ERRORS}
+    row |= {name: found.get(name, "") for name in ("solves", "steps")}
+    row |= {"cpu_seconds": min(run["cpu_seconds"] for run in runs), "runs": len(runs)}
+    row["message"] = found.get("failed", "").split("; the last good state")[0]
+    return row | {"options": " ".join(f"{name} {value}" for name, value in runs[0]["options"].items())}
+
+
+def reaches(row: Row, one: Scene, level: float) -> bool:
+    """Return whether a run has ended with all wanted errors at most that."""
+    return not row["message"] and all(row[name] <= level for name in one.wanted)
+
+
+def cheapest(rows: list[Row], one: Scene, scheme: str, level: float) -> Row | None:
+    """Return the row of a scheme that reaches a level of all wanted errors in the least CPU time, None if none does."""
+    good = [row for row in rows if row["scheme"] == scheme and reaches(row, one, level)]
+    return min(good, key=lambda row: (row["cpu_seconds"], row["solves"]), default=None)
+
+
+def _percent(value: object) -> str:
+    return f"{100 * value:.2g}" if value != "" else ""
+
+
+def _lines(one: Scene, rows: list[Row], floor: dict[str, float], start: float) -> list[str]:
+    """Return a scene's tables: seconds for a level by scheme, settings for a level, failures."""
+    text = [f"## {one.name}: {one.title}\n"]
+    if floor:
+        shown = ", ".join(f"{name} {floor[name]:.1e}" for name in one.shown)
+        text.append(f"The reference differs from a finer run by: {shown}.\n")
+    text.append(f"The program's start takes {start:.2f} CPU seconds of those below.\n")
+    text.append("### CPU seconds (scalar solves) for a level of every error\n")
+    lines = []
+    for scheme in SCHEMES:
+        ran = [row for row in rows if row["scheme"] == scheme]
+        line = [scheme]
+        for level in LEVELS:
+            row = cheapest(rows, one, scheme, level)
+            line.append(f"{row['cpu_seconds']:.2f} ({row['solves']:.0f})" if row else "not reached")
+        worst = [max(row[name] for name in one.wanted) for row in ran if not row["message"]]
+        lines.append([*line, f"{_percent(min(worst))} %" if worst else "none ran"])
+    text += table(["scheme", *(f"{100 * level:g} %" for level in LEVELS), "least error of all points"], lines)
+    text.append(f"### Settings of {BEST}\n")
+    lines = []
+    for level in LEVELS:
+        row = cheapest(rows, one, BEST, level)
+        if not row:
+            lines.append([f"{100 * level:g} %", "not reached", *[""] * (4 + len(one.wanted))])
+            continue
+        step = f"tolerance {row['tolerance']}" if row["tolerance"] != "0" else f"dt {row['dt']}"
+        costs = [str(row["steps"]), f"{row['solves']:.0f}", f"{row['cpu_seconds']:.2f}"]
+        errors = [_percent(row[name]) for name in one.wanted]
+        lines.append([f"{100 * level:g} %", f"{row['cells']}, h = {row['h']}", step, *costs, *errors])
+    names = [f"{name}, %" for name in one.wanted]
+    text += table(["error", "cells", "step", "steps", "scalar solves", "CPU seconds", *names], lines)
+    failed = [row for row in rows if row["message"]]
+    text.append(f"### Failed: {len(failed)} of {len(rows)} points\n")
+    shown = [[row["scheme"], str(row["cells"]), row["dt"], row["message"]] for row in failed]
+    return text + (table(["scheme", "cells", "dt", "message"], shown) if failed else [])

@@ -1,0 +1,301 @@
+"""The runs behind the work-precision diagrams: scenes, schemes, points, and the errors that are kept of each."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Callable
+
+import numpy as np
+
+from petves.accuracy_studies import last_markers, tank_treading, trigonometric
+from petves.convergence import at, fine_options
+from petves.coupled_studies import PAPER_MEMBRANE
+from petves.paper import SHEAR
+from petves.scenes import CHANNEL_V, PEAK, option_file, radius
+from petves.studies import Case, scene
+
+QUIET = {"-output_every": "1e9", "-checkpoint_every": "0"}
+LIMITS = {"-limit_edge_ratio": "5", "-limit_area_error": "0.2", "-limit_length_error": "0.2"}  # the program's own
+SCHEMES = {
+    "penalty": {"-scheme_type": "penalty"},
+    "split, explicit bending": {"-scheme_type": "split", "-scheme_bending": "explicit"},
+    "split": {"-scheme_type": "split"},
+    "coupled 1, uncorrected": {"-scheme_type": "coupled", "-scheme_order": "1"} | PAPER_MEMBRANE,
+    "coupled 2, uncorrected": {"-scheme_type": "coupled", "-scheme_order": "2"} | PAPER_MEMBRANE,
+    "coupled 2, corrected": {"-scheme_type": "coupled", "-scheme_order": "2"},
+    "direct, corrected": {"-scheme_type": "direct", "-scheme_order": "2"},
+}
+BEST = "coupled 2, corrected"
+FIRST = tuple(SCHEMES)[:3]  # those of the paper and before, whose points are chosen by dt/h
+ERRORS = ("shape", "energy", "angle", "frequency", "velocity", "area", "length")
+ADAPTIVE_STEPS = 60  # for the estimate of work
+
+
+@dataclass(frozen=True)
+class Point:
+    """One point: a scheme on one grid with one step, or one tolerance of the step's control.
+
+    Attributes
+    ----------
+    scheme : str
+        Key of SCHEMES.
+    cells : int
+        Of the scene's measure: across the box, or a unit of length (channel).
+    dt, tolerance : float
+        Time step, or -time_adapt_tol; the other is 0.
+    """
+
+    scheme: str
+    cells: int
+    dt: float = 0.0
+    tolerance: float = 0.0
+
+    def step(self) -> dict[str, str]:
+        """Return the options of the step."""
+        if self.tolerance:
+            return {"-time_step": "0.02", "-time_adapt": "error", "-time_adapt_tol": repr(self.tolerance)}
+        return {"-time_step": repr(self.dt)}
+
+    def label(self) -> str:
+        """Return a name for the file of results."""
+        step = f"tol_{self.tolerance:g}" if self.tolerance else f"dt_{self.dt:g}"
+        return f"{self.scheme.replace(', ', '_').replace(' ', '_')}_{self.cells}_{step}"
+
+
+@dataclass(frozen=True)
+class Scene:
+    """A scene of the chart.
+
+    Attributes
+    ----------
+    name, title : str
+        Key in the files, and what the picture says.
+    options : callable
+        Takes a point; returns the options of its run but those of the scheme and the step.
+    width : float
+        h times Point.cells.
+    time_end : float
+        End of the run.
+    reference : dict
+        Options of the fine run; empty: the errors are against boundary integrals.
+    finer : dict
+        Options of a finer run than that, which shows how far it has converged.
+    errors : callable
+        Takes the measures of a run and of the reference; returns errors by name (of ERRORS).
+    shown, wanted : tuple of str
+        Errors drawn; errors that a recommendation must keep.
+    points : tuple of Point
+        What is run.
+    """
+
+    name: str
+    title: str
+    options: Callable[[Point], dict[str, str]]
+    width: float
+    time_end: float
+    errors: Callable[[dict, dict], dict[str, float]]
+    shown: tuple[str, ...]
+    wanted: tuple[str, ...]
+    points: tuple[Point, ...]
+    reference: dict[str, str] = field(default_factory=dict)
+    finer: dict[str, str] = field(default_factory=dict)
+
+    def case(self, point: Point, repeat: int, fine: dict) -> Case:
+        """Return the run of a point; fine: the measures of the reference."""
+
+        def measure(series: dict[str, np.ndarray], folder: Path) -> dict[str, object]:
+            return self.kept(_measure(series, folder), fine)
+
+        options = self.options(point) | QUIET | LIMITS | SCHEMES[point.scheme] | point.step()
+        return Case(f"{self.name}_{point.label()}_{repeat}", options, measure, ranks=1, may_fail=True)
+
+    def kept(self, found: dict, fine: dict) -> dict[str, object]:
+        """Return costs and errors of a run."""
+        return {key: found[key] for key in ("steps", "solves")} | {"errors": self.errors(found, fine)}
+
+    def fine(self, finer: bool = False) -> Case:
+        """Return the reference run, or the finer one."""
+        options = self.reference | (self.finer if finer else {}) | QUIET
+        return Case(f"{self.name}_{'finer' if finer else 'reference'}", options, _measure, ranks=1)
+
+    def work(self, point: Point) -> float:
+        """Return an estimate of the work of a point: cells times steps."""
+        steps = self.time_end / point.dt if point.dt else ADAPTIVE_STEPS * (1e-3 / point.tolerance) ** 0.5
+        return point.cells**2 * steps * (30 if point.scheme.startswith("direct") else 1)
+
+
+def _measure(series: dict[str, np.ndarray], folder: Path) -> dict[str, object]:
+    """Return what the errors of every scene need of a run."""
+    markers = last_markers(folder)
+    return {
+        "steps": len(series["time"]) - 1,
+        "solves": float(series["nsolve"].sum()),
+        "energy": series["energy_bending"][-1],
+        "angle": series["inclination"][-1] / np.pi,
+        "frequency": series["frequency"][-1],
+        "area": abs(series["area_error"][-1]),
+        "length": abs(series["length_error"][-1]),
+        "rise": series["center_y"][-1] - series["center_y"][0],
+        "radius": series["length"][0] / (2 * np.pi),
+        "markers": np.round(markers, 9).ravel().tolist(),
+    }
+
+
+def _markers(found: dict) -> np.ndarray:
+    return np.reshape(found["markers"], (-1, 2))
+
+
+def _drift(found: dict) -> dict[str, float]:
+    return {key: found[key] for key in ("area", "length")}
+
+
+def material_distance(markers: np.ndarray, exact: np.ndarray) -> float:
+    """Return the root mean square distance of markers from a fine run's at equal material points."""
+    apart = markers - at(exact, np.arange(len(markers)) / len(markers))
+    return float((apart**2).sum(axis=1).mean() ** 0.5)
+
+
+def outline_distance(markers: np.ndarray, exact: np.ndarray) -> float:
+    """Return the root mean square distance of a run's outline from a fine run's, both about their centroids."""
+    curve, fine = (trigonometric(x, n) for x, n in ((markers, 256), (exact, 4096)))
+    curve, fine = curve - _centroid(curve), fine - _centroid(fine)
+    apart = np.abs((curve @ [1, 1j])[:, None] - (fine @ [1, 1j])[None, :]).min(axis=1)
+    return float((apart**2).mean() ** 0.5)
+
+
+def _centroid(points: np.ndarray) -> np.ndarray:
+    """Return the centroid of the area inside a closed curve."""
+    x, y = points.T
+    x1, y1 = np.roll(x, -1), np.roll(y, -1)
+    c = x * y1 - x1 * y
+    return np.array([((x + x1) * c).sum(), ((y + y1) * c).sum()]) / (3 * c.sum())
+
+
+def _relax_errors(found: dict, fine: dict) -> dict[str, float]:
+    shape = material_distance(_markers(found), _markers(fine)) / fine["radius"]
+    return {"shape": shape, "energy": abs(found["energy"] / fine["energy"] - 1)} | _drift(found)
+
+
+def _shear_errors(found: dict, fine: dict) -> dict[str, float]:
+    angle, frequency = SHEAR["box"][0.7, 10]
+    return {
+        "angle": abs(found["angle"] / angle - 1),
+        "frequency": abs(found["frequency"] / frequency - 1),
+    } | _drift(found)
+
+
+def _channel_errors(found: dict, fine: dict) -> dict[str, float]:
+    shape = outline_distance(_markers(found), _markers(fine)) / fine["radius"]
+    return {"velocity": abs(found["rise"] / fine["rise"] - 1), "shape": shape} | _drift(found)
+
+
+def relax_options(point: Point) -> dict[str, str]:
+    """Return section 5.2's ellipse; split and penalty with the paper's 1/h markers."""
+    options = scene("relax", 1, point.cells // 2, 1) | {"-domain_cells": f"{point.cells},{point.cells}"}
+    for name in ("-scheme_type", "-scheme_order", *(() if point.scheme in FIRST else ("-vesicle_markers",))):
+        del options[name]
+    return options | {"-fluid_inertia": "unsteady"}
+
+
+def channel_options(point: Point) -> dict[str, str]:
+    """Return section 5.5's vesicle, c_0 = R0, in a window of 12."""
+    return option_file("poiseuille") | {
+        "-fluid_inertia": "unsteady",
+        "-vesicle_center": f"6,{3 + radius(CHANNEL_V)!r}",
+        "-domain_cells": f"{12 * point.cells},{6 * point.cells}",
+        "-time_end": "24",
+    }
+
+
+def grid(scheme: str, cells: tuple[int, ...], dts: tuple[float, ...] = (), tolerances: tuple[float, ...] = ()) -> list:
+    """Return the points of a scheme on some grids with some steps, or some tolerances."""
+    fixed = [Point(scheme, n, dt=dt) for n in cells for dt in dts]
+    return fixed + [Point(scheme, n, tolerance=tolerance) for n in cells for tolerance in tolerances]
+
+
+def over_h(scheme: str, width: float, cells: tuple[int, ...], parts: tuple[float, ...]) -> list[Point]:
+    """Return points with dt = h/part for each part."""
+    return [Point(scheme, n, dt=width / n / part) for n in cells for part in parts]
+
+
+def _relax_points() -> list[Point]:
+    points = over_h("penalty", 2, (64, 128), (2, 8, 32, 128)) + over_h("penalty", 2, (256,), (8, 32))
+    points += over_h("split, explicit bending", 2, (64, 128), (2, 8, 32)) + over_h(FIRST[1], 2, (256,), (2, 8))
+    points += (
+        over_h("split", 2, (64, 128), (2, 8, 32))
+        + over_h("split", 2, (256,), (2, 8))
+        + over_h("split", 2, (512,), (2,))
+    )
+    points += grid("coupled 1, uncorrected", (32, 64, 128, 256), dts=(1 / 16, 1 / 64, 1 / 256))
+    points += grid("coupled 2, uncorrected", (32, 64, 128, 256), tolerances=(1e-2, 1e-3, 1e-4))
+    points += grid(BEST, (16, 20, 24, 28, 32), tolerances=(1e-2, 1e-3, 1e-4))
+    points += grid(BEST, (40, 48, 64, 96, 128), tolerances=(1e-3, 1e-4, 1e-5))
+    return points + grid("direct, corrected", (24, 32, 48), tolerances=(1e-3,))
+
+
+def _shear_points() -> list[Point]:
+    points = over_h("penalty", 8, (64, 128), (8, 32, 128))
+    points += over_h("split, explicit bending", 8, (64, 128), (2, 8, 32))
+    points += over_h("split", 8, (64, 128), (2, 8, 32)) + over_h("split", 8, (256,), (2, 8))
+    for name in ("coupled 1, uncorrected", "coupled 2, uncorrected"):
+        points += grid(name, (48, 64, 128), dts=(0.1, 0.05, 0.0125)) + grid(name, (256,), dts=(0.05,))
+    points += grid(BEST, (32, 40, 48, 64, 96, 128), dts=(0.1, 0.05, 0.025, 0.0125))
+    points += grid(BEST, (192, 256), dts=(0.05, 0.025))
+    return points + grid("direct, corrected", (48, 64), dts=(0.1,))
+
+
+def _channel_points() -> list[Point]:
+    points = over_h("penalty", 1 / PEAK, (8, 16), (2, 8, 32))
+    points += over_h("split, explicit bending", 1 / PEAK, (8, 16), (2, 8, 32))
+    points += over_h("split", 1 / PEAK, (8, 16), (2, 8, 32)) + over_h("split", 1 / PEAK, (32,), (2,))
+    for name in ("coupled 1, uncorrected", "coupled 2, uncorrected"):
+        points += grid(name, (8, 16), dts=(0.12, 0.03, 0.0075)) + grid(name, (32,), dts=(0.03,))
+    points += grid(BEST, (5, 6, 8, 12), dts=(0.12, 0.06, 0.03, 0.015, 0.0075)) + grid(BEST, (16,), dts=(0.03, 0.0075))
+    return points + grid("direct, corrected", (6,), dts=(0.12,))
+
+
+def channel_reference() -> dict[str, str]:
+    """Return the fine run of the channel."""
+    return channel_options(Point(BEST, 20)) | SCHEMES[BEST] | {"-time_step": "0.00375"}
+
+
+SCENES = (
+    Scene(
+        "relax",
+        "relaxing ellipse, section 5.2, $t = 1$",
+        relax_options,
+        2,
+        1,
+        _relax_errors,
+        ("shape", "energy"),
+        ("shape", "energy"),
+        tuple(_relax_points()),
+        fine_options("relax"),
+        {"-domain_cells": "384,384", "-time_adapt_tol": "3e-7"},
+    ),
+    Scene(
+        "shear",
+        r"tank-treading in shear, $V = 0.7$, $\chi = 10$, box 8 x 8, $t = 12$",
+        lambda point: tank_treading("box", point.cells, 0.7, 10),
+        8,
+        12,
+        _shear_errors,
+        ("angle", "frequency", "area", "length"),
+        ("angle", "frequency", "area", "length"),
+        tuple(_shear_points()),
+    ),
+    Scene(
+        "channel",
+        "migration in a channel, section 5.5, window 12 x 6, $t = 24$",
+        channel_options,
+        1,
+        24,
+        _channel_errors,
+        ("velocity", "shape"),
+        ("velocity", "shape"),
+        tuple(_channel_points()),
+        channel_reference(),
+        {"-domain_cells": "336,168", "-time_step": "0.0025"},
+    ),
+)
