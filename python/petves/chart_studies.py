@@ -160,8 +160,10 @@ def outline_distance(markers: np.ndarray, exact: np.ndarray) -> float:
     """Return the root mean square distance of a run's outline from a fine run's, both about their centroids."""
     curve, fine = (trigonometric(x, n) for x, n in ((markers, 256), (exact, 4096)))
     curve, fine = curve - _centroid(curve), fine - _centroid(fine)
-    apart = np.abs((curve @ [1, 1j])[:, None] - (fine @ [1, 1j])[None, :]).min(axis=1)
-    return float((apart**2).mean() ** 0.5)
+    nearest = np.abs((curve @ [1, 1j])[:, None] - (fine @ [1, 1j])[None, :]).argmin(axis=1)
+    tangent = np.roll(fine, -1, axis=0) - np.roll(fine, 1, axis=0)
+    normal = (tangent / np.hypot(*tangent.T)[:, None])[nearest] @ [[0, -1], [1, 0]]
+    return float((((curve - fine[nearest]) * normal).sum(axis=1) ** 2).mean() ** 0.5)
 
 
 def _centroid(points: np.ndarray) -> np.ndarray:

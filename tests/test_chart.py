@@ -1,0 +1,108 @@
+"""The work-precision diagrams: distances, envelopes, recommendations, resuming, and what a handful of points must show."""
+
+import csv
+import sys
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from conftest import PETVES, ROOT
+
+sys.path.insert(0, str(ROOT / "python"))
+from petves import chart as report  # noqa: E402
+from petves import chart_claim  # noqa: E402
+from petves import chart_studies as study  # noqa: E402
+from petves.chart_pictures import envelope  # noqa: E402
+from petves.studies import Results  # noqa: E402
+
+RELAX = next(one for one in study.SCENES if one.name == "relax")
+
+
+def ellipse(n: int, turn: float = 0.0) -> np.ndarray:
+    angle = 2 * np.pi * (np.arange(n) + turn) / n
+    return np.stack([0.2 * np.cos(angle), 0.5 * np.sin(angle)], axis=1)
+
+
+def test_distances():
+    """The outline's distance knows neither where markers are on it nor where it is; the material one knows both."""
+    fine = ellipse(101)
+    assert study.material_distance(ellipse(31), fine) < 1e-5
+    assert study.material_distance(ellipse(31) + [3e-3, 4e-3], fine) == pytest.approx(5e-3, rel=1e-2)
+    moved = ellipse(31, turn=0.3)
+    assert study.material_distance(moved, fine) > 1e-2
+    assert study.outline_distance(moved + [3, 4], fine) < 1e-6
+    circle = np.stack([np.cos(a := np.arange(65) * 2 * np.pi / 65), np.sin(a)], axis=1)
+    assert study.outline_distance(1.02 * circle, circle) == pytest.approx(0.02, rel=1e-3)
+
+
+def test_envelope_is_what_no_cheaper_point_equals():
+    costs, errors = np.array([3.0, 1, 2, 4, 5]), np.array([1e-2, 1e-1, 2e-1, 1e-2, 1e-3])
+    assert envelope(costs, errors).tolist() == [1, 0, 4]
+
+
+def test_recommended_is_the_cheapest_that_keeps_every_error():
+    row = {"scheme": study.BEST, "message": "", "solves": 1.0}
+    rows = [
+        row | {"cpu_seconds": 3.0, "shape": 1e-3, "energy": 1e-3},
+        row | {"cpu_seconds": 2.0, "shape": 5e-3, "energy": 1e-3},
+        row | {"cpu_seconds": 1.0, "shape": 1e-4, "energy": 5e-2},
+        row | {"cpu_seconds": 0.5, "shape": "", "energy": "", "message": "not finite"},
+    ]
+    assert report.cheapest(rows, RELAX, study.BEST, 1e-2) is rows[1]
+    assert report.cheapest(rows, RELAX, study.BEST, 1e-3) is rows[0]
+    assert report.cheapest(rows, RELAX, study.BEST, 1e-4) is None
+
+
+def test_points_are_distinct_and_every_scheme_is_there():
+    for one in study.SCENES:
+        names = [one.case(point, 0, {}).name for point in one.points]
+        assert len(set(names)) == len(names)
+        assert {point.scheme for point in one.points} == set(study.SCHEMES)
+
+
+def test_a_handful_of_points(tmp_path, monkeypatch):
+    """Coupled with corrections on 24^2 cells beats split on 64^2 in error and work; penalty with explicit bending and a
+    large step stops and is listed; what has run is not run again."""
+    monkeypatch.setenv("PETVES", PETVES)
+    monkeypatch.setattr(report, "ROUNDS", 2)
+    monkeypatch.setattr(chart_claim, "REPEATS", 1)
+    whole = chart_claim.candidates
+    monkeypatch.setattr(
+        chart_claim, "candidates", lambda kind: [c for c in whole(kind) if "_24_0.003_0.0001_0" in c.name]
+    )
+    fine = chart_claim.fine_options
+    coarse = {"-domain_cells": "64,64", "-time_adapt_tol": "1e-4"}
+    monkeypatch.setattr(chart_claim, "fine_options", lambda kind: fine(kind) | coarse)
+    points = (
+        study.Point(study.BEST, 24, tolerance=1e-3),
+        study.Point("split", 64, dt=1 / 64),
+        study.Point("penalty", 64, dt=1 / 4),
+    )
+    stiff = lambda point: study.relax_options(point) | (
+        {"-vesicle_bending": "1"} if point.dt == 1 / 4 else {}
+    )  # noqa: E731
+    scene = replace(RELAX, points=points, reference=RELAX.reference | coarse, finer={}, options=stiff)
+    paths = report.chart(tmp_path, scenes=(scene,), finest=32)
+    assert {p.name for p in paths} == {
+        *("chart.csv", "recommended.csv", "tables.md", "claim.csv", "relax_seconds.png", "relax_solves.png"),
+    }
+    assert all(p.stat().st_size for p in paths)
+    with (tmp_path / "chart.csv").open(newline="") as file:
+        ours, split, penalty = csv.DictReader(file)
+    assert all(row["runs"] == "2" and float(row["cpu_seconds"]) > 0 for row in (ours, split, penalty))
+    assert 10 * float(ours["shape"]) < float(split["shape"]) < 0.02
+    assert 2 * float(ours["solves"]) < float(split["solves"])
+    assert penalty["message"] and not penalty["shape"] and not split["message"]
+    assert penalty["message"] in (tmp_path / "tables.md").read_text()
+    with (tmp_path / "recommended.csv").open(newline="") as file:
+        assert [(row["level"], row["cells"]) for row in csv.DictReader(file)] == [("0.01", "24"), ("0.001", "24")]
+    with (tmp_path / "claim.csv").open(newline="") as file:
+        for mine, theirs, tight in zip(*[iter(csv.DictReader(file))] * 3):
+            assert float(mine["error"]) <= float(theirs["error"]) and 1 < float(theirs["ratio"]) < float(tight["ratio"])
+
+    monkeypatch.setattr("petves.studies._launch", lambda *words: pytest.fail("run again"))
+    kept = (tmp_path / "chart.csv").read_text()
+    report.chart(tmp_path, scenes=(scene,), finest=32)
+    assert (tmp_path / "chart.csv").read_text() == kept
+    results = Results(tmp_path / "chart.json", 1)
+    assert all(entry["commit"] and entry["cpu_seconds"] > 0 for entry in results.cases.values())
