@@ -43,14 +43,14 @@ def test_envelope_is_what_no_cheaper_point_equals():
 def test_recommended_is_the_cheapest_that_keeps_every_error():
     row = {"scheme": study.BEST, "message": "", "solves": 1.0}
     rows = [
-        row | {"cpu_seconds": 3.0, "shape": 1e-3, "energy": 1e-3},
-        row | {"cpu_seconds": 2.0, "shape": 5e-3, "energy": 1e-3},
-        row | {"cpu_seconds": 1.0, "shape": 1e-4, "energy": 5e-2},
-        row | {"cpu_seconds": 0.5, "shape": "", "energy": "", "message": "not finite"},
+        row | {"cpu_seconds": 3.0, "largest": 1e-3},
+        row | {"cpu_seconds": 2.0, "largest": 5e-3},
+        row | {"cpu_seconds": 1.0, "largest": 5e-2},
+        row | {"cpu_seconds": 0.5, "largest": "", "message": "not finite"},
     ]
-    assert report.cheapest(rows, RELAX, study.BEST, 1e-2) is rows[1]
-    assert report.cheapest(rows, RELAX, study.BEST, 1e-3) is rows[0]
-    assert report.cheapest(rows, RELAX, study.BEST, 1e-4) is None
+    assert report.cheapest(rows, study.BEST, 1e-2) is rows[1]
+    assert report.cheapest(rows, study.BEST, 1e-3) is rows[0]
+    assert report.cheapest(rows, study.BEST, 1e-4) is None
 
 
 def test_points_are_distinct_and_every_scheme_is_there():
@@ -90,6 +90,7 @@ def test_a_handful_of_points(tmp_path, monkeypatch):
     with (tmp_path / "chart.csv").open(newline="") as file:
         ours, split, penalty = csv.DictReader(file)
     assert all(row["runs"] == "2" and float(row["cpu_seconds"]) > 0 for row in (ours, split, penalty))
+    assert all(float(row["largest"]) == max(float(row["shape"]), float(row["energy"])) for row in (ours, split))
     assert 10 * float(ours["shape"]) < float(split["shape"]) < 0.02
     assert 2 * float(ours["solves"]) < float(split["solves"])
     assert penalty["message"] and not penalty["shape"] and not split["message"]

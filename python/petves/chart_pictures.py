@@ -15,10 +15,11 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 STYLES = dict(
-    zip(SCHEMES, zip("v^sDPoX", "#999999 #56b4e9 #0072b2 #cc79a7 #e69f00 #000000 #009e73".split()))
+    zip(SCHEMES, zip("v^sDPopX", "#999999 #56b4e9 #0072b2 #cc79a7 #e69f00 #000000 #d55e00 #009e73".split()))
 )  # the colours of Okabe and Ito: told apart without red and green
-LABELS = {"cpu_seconds": "CPU seconds, one rank, best of 3", "solves": "scalar fast solves"}
+LABELS = {"cpu_seconds": "CPU seconds, one rank", "solves": "scalar fast solves"}
 NAMES = {
+    "largest": "largest of these errors",
     "shape": "shape: distance of markers over $R_0$",
     "energy": "bending energy, relative",
     "angle": "inclination, relative",
@@ -61,8 +62,12 @@ def picture(folder: Path, one: Scene, rows: list[dict], cost: str, floor: dict[s
     Path
         The PNG file.
     """
-    figure, axes = new_figure(4.1 * len(one.shown) + 2.4, 4.4, columns=len(one.shown))
-    for panel, name in zip(axes, one.shown):
+    names = ("largest", *one.wanted)
+    columns = (len(names) + 2) // 2
+    figure, axes = new_figure(4.2 * columns, 7.6, columns=columns, rows=2)
+    for panel in axes[len(names) :]:
+        panel.axis("off")
+    for panel, name in zip(axes, names):
         for scheme, (marker, color) in STYLES.items():
             ran = [row for row in rows if row["scheme"] == scheme and not row["message"]]
             costs = np.array([row[cost] for row in ran], float)
@@ -83,9 +88,7 @@ def picture(folder: Path, one: Scene, rows: list[dict], cost: str, floor: dict[s
         panel.grid(alpha=0.25)
         _decades(panel)
     handles = {label: h for p in axes for h, label in zip(*p.get_legend_handles_labels())}
-    axes[-1].legend(
-        handles.values(), handles.keys(), loc="upper left", bbox_to_anchor=(1.01, 1), frameon=False, fontsize=8
-    )
+    axes[len(names)].legend(handles.values(), handles.keys(), loc="center left", frameon=False, fontsize=9)
     figure.suptitle(one.title, fontsize=10)
     return save_figure(figure, folder / f"{one.name}_{'seconds' if cost == 'cpu_seconds' else cost}.png")
 
@@ -106,7 +109,7 @@ def _codes(panel: Axes, name: str) -> None:
     for (code, values), marker in zip(BOUNDARY_INTEGRAL_CODES.items(), "*p<"):
         if column and values[column]:
             label = f"{code},\n  boundary integral, unbounded"
-            panel.loglog(values[0], values[column], marker, color="#d55e00", ms=9, ls="", label=label)
+            panel.loglog(values[0], values[column], marker, mfc="white", mec="black", ms=9, ls="", label=label)
 
 
 def _floor(panel: Axes, one: Scene, name: str, floor: dict[str, float]) -> None:

@@ -21,14 +21,14 @@ LEAST_SPAN = 0.02  # of an axis of angles over pi
 FLOOR = 1e-16  # smallest value on a logarithmic axis
 
 
-def new_figure(width: float, height: float, columns: int = 1) -> tuple[Figure, np.ndarray]:
-    """Return a figure that needs no display, and its row of axes."""
+def new_figure(width: float, height: float, columns: int = 1, rows: int = 1) -> tuple[Figure, np.ndarray]:
+    """Return a figure that needs no display, and its axes, row by row."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(width, height), layout="constrained")
     FigureCanvasAgg(figure)
-    axes = figure.subplots(1, columns, squeeze=False)[0]
+    axes = figure.subplots(rows, columns, squeeze=False).ravel()
     return figure, axes
 
 

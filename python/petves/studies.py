@@ -146,7 +146,7 @@ def _launch(case: Case, ranks: int, folder: str) -> str:
 def _cpu_seconds() -> float:
     """Return user and system time of every process that was started and has ended."""
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return round(used.ru_utime + used.ru_stime, 3)
+    return used.ru_utime + used.ru_stime
 
 
 class NotRun(RunError):
@@ -181,7 +181,7 @@ class Results:
         with tempfile.TemporaryDirectory() as folder:
             before = _cpu_seconds()
             failure = _launch(case, ranks, folder)
-            seconds = _cpu_seconds() - before
+            seconds = round(_cpu_seconds() - before, 3)
             measures = (
                 {"failed": failure} if failure else case.measure(read_series(Path(folder) / "series.csv"), Path(folder))
             )
