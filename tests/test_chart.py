@@ -1,4 +1,4 @@
-"""The work-precision diagrams: distances, envelopes, recommendations, resuming, and what a handful of points must show."""
+"""The work-precision diagrams: distances, envelopes, recommendations, resuming, what a handful of points must show."""
 
 import csv
 import sys
@@ -41,16 +41,26 @@ def test_envelope_is_what_no_cheaper_point_equals():
 
 
 def test_recommended_is_the_cheapest_that_keeps_every_error():
-    row = {"scheme": study.BEST, "message": "", "solves": 1.0}
+    """A point whose errors cancel, so that a finer one is worse, does not count."""
+
+    def row(cells: int, dt: float, seconds: float, largest: float, **other: object) -> dict:
+        found = {"scheme": study.BEST, "message": "", "solves": 1.0, "cells": cells, "dt": f"{dt}", "tolerance": "0"}
+        return found | {"cpu_seconds": seconds, "largest": largest} | other
+
     rows = [
-        row | {"cpu_seconds": 3.0, "largest": 1e-3},
-        row | {"cpu_seconds": 2.0, "largest": 5e-3},
-        row | {"cpu_seconds": 1.0, "largest": 5e-2},
-        row | {"cpu_seconds": 0.5, "largest": "", "message": "not finite"},
+        row(64, 0.1, 2.0, 5e-3),
+        row(64, 0.05, 3.0, 8e-4),
+        row(32, 0.1, 0.7, 2e-4),  # by chance
+        row(32, 0.05, 0.8, 5e-2),
+        row(96, 0.1, 4.0, 4e-3),
+        row(96, 0.05, 5.0, 9e-4),
+        row(16, 0.1, 0.5, "", scheme="split", message="not finite"),
+        row(32, 0.1, 0.6, 1e-4, scheme="split"),
     ]
-    assert report.cheapest(rows, study.BEST, 1e-2) is rows[1]
-    assert report.cheapest(rows, study.BEST, 1e-3) is rows[0]
-    assert report.cheapest(rows, study.BEST, 1e-4) is None
+    assert report.cheapest(rows, study.CORRECTED, 1e-2) is rows[0]
+    assert report.cheapest(rows, study.CORRECTED, 1e-3) is rows[1]
+    assert report.cheapest(rows, study.CORRECTED, 1e-4) is None
+    assert report.cheapest(rows, ("split",), 1e-2) is rows[7]
 
 
 def test_points_are_distinct_and_every_scheme_is_there():

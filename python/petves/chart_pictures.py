@@ -20,7 +20,7 @@ STYLES = dict(
 LABELS = {"cpu_seconds": "CPU seconds, one rank", "solves": "scalar fast solves"}
 NAMES = {
     "largest": "largest of these errors",
-    "shape": "shape: distance of markers over $R_0$",
+    "shape": "shape: root mean square distance over $R_0$",
     "energy": "bending energy, relative",
     "angle": "inclination, relative",
     "frequency": "frequency, relative",

@@ -29,6 +29,7 @@ SCHEMES = {
     "direct, corrected": {"-scheme_type": "direct", "-scheme_order": "2"},
 }
 BEST, WIDE = "coupled 2, corrected", "coupled 2, corrected, ib6"
+CORRECTED = (BEST, WIDE)
 FIRST = tuple(SCHEMES)[:3]  # those of the paper and before, whose points are chosen by dt/h
 ERRORS = ("largest", "shape", "energy", "angle", "frequency", "velocity", "area", "length")
 ADAPTIVE_STEPS = 60  # for the estimate of work
