@@ -267,7 +267,7 @@ def _channel_points() -> list[Point]:
 
 def channel_reference() -> dict[str, str]:
     """Return the fine run of the channel."""
-    return channel_options(Point(BEST, 20)) | SCHEMES[BEST] | {"-time_step": "0.00375"}
+    return channel_options(Point(BEST, 40)) | SCHEMES[BEST] | {"-time_step": "0.0025"}
 
 
 SCENES = (
@@ -303,6 +303,6 @@ SCENES = (
         ("velocity", "shape"),
         tuple(_channel_points()),
         channel_reference(),
-        {"-domain_cells": "336,168", "-time_step": "0.0025"},
+        {"-domain_cells": "672,336"},
     ),
 )
