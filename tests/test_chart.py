@@ -91,7 +91,7 @@ def test_a_handful_of_points(tmp_path, monkeypatch):
     stiff = lambda point: study.relax_options(point) | (
         {"-vesicle_bending": "1"} if point.dt == 1 / 4 else {}
     )  # noqa: E731
-    scene = replace(RELAX, points=points, reference=RELAX.reference | coarse, finer={}, options=stiff)
+    scene = replace(RELAX, points=points, reference=RELAX.reference | coarse, other={}, options=stiff)
     paths = report.chart(tmp_path, scenes=(scene,), finest=32)
     assert {p.name for p in paths} == {
         *("chart.csv", "recommended.csv", "tables.md", "claim.csv", "relax_seconds.png", "relax_solves.png"),

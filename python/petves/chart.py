@@ -87,10 +87,10 @@ def start_seconds(results: Results, one: Scene) -> float:
 
 
 def converged(results: Results, one: Scene, quick: bool) -> dict[str, float]:
-    """Return the errors of the reference against a finer run; quick, or without reference: nothing."""
-    if quick or not one.reference or not one.finer:
+    """Return the errors of the reference against another fine run; quick, or without reference: nothing."""
+    if quick or not one.reference or not one.other:
         return {}
-    errors = one.errors(results.get(one.fine()), results.get(one.fine(finer=True)))
+    errors = one.errors(results.get(one.fine()), results.get(one.fine(other=True)))
     return errors | {"largest": one.largest(errors)}
 
 
@@ -150,7 +150,7 @@ def _lines(one: Scene, rows: list[Row], floor: dict[str, float], start: float) -
     text = [f"## {one.name}: {one.title}\n"]
     if floor:
         shown = ", ".join(f"{name} {floor[name]:.1e}" for name in one.wanted)
-        text.append(f"The reference differs from a finer run by: {shown}.\n")
+        text.append(f"The reference differs from another fine run by: {shown}.\n")
     text.append(f"The program's start takes {start:.2f} CPU seconds of those below.\n")
     return text + _seconds(rows) + _settings(one, rows) + _failures(rows)
 

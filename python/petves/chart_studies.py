@@ -82,8 +82,8 @@ class Scene:
         End of the run.
     reference : dict
         Options of the fine run; empty: the errors are against boundary integrals.
-    finer : dict
-        Options of a finer run than that, which shows how far it has converged.
+    other : dict
+        What another fine run has other options for, which shows how far the reference has converged.
     errors : callable
         Takes the measures of a run and of the reference; returns errors by name (of ERRORS).
     wanted : tuple of str
@@ -101,7 +101,7 @@ class Scene:
     wanted: tuple[str, ...]
     points: tuple[Point, ...]
     reference: dict[str, str] = field(default_factory=dict)
-    finer: dict[str, str] = field(default_factory=dict)
+    other: dict[str, str] = field(default_factory=dict)
 
     def case(self, point: Point, repeat: int, fine: dict) -> Case:
         """Return the run of a point; fine: the measures of the reference."""
@@ -120,10 +120,10 @@ class Scene:
         """Return the largest of the wanted errors."""
         return max(errors[name] for name in self.wanted)
 
-    def fine(self, finer: bool = False) -> Case:
-        """Return the reference run, or the finer one."""
-        options = self.reference | (self.finer if finer else {}) | QUIET
-        return Case(f"{self.name}_{'finer' if finer else 'reference'}", options, _measure, ranks=1)
+    def fine(self, other: bool = False) -> Case:
+        """Return the reference run, or the other fine one."""
+        options = self.reference | (self.other if other else {}) | QUIET
+        return Case(f"{self.name}_{'other' if other else 'reference'}", options, _measure, ranks=1)
 
     def work(self, point: Point) -> float:
         """Return an estimate of the work of a point: cells times steps."""
@@ -267,7 +267,7 @@ def _channel_points() -> list[Point]:
 
 def channel_reference() -> dict[str, str]:
     """Return the fine run of the channel."""
-    return channel_options(Point(BEST, 40)) | SCHEMES[BEST] | {"-time_step": "0.0025"}
+    return channel_options(Point(BEST, 56)) | SCHEMES[BEST] | {"-time_step": "0.0025"}
 
 
 SCENES = (
@@ -303,6 +303,6 @@ SCENES = (
         ("velocity", "shape"),
         tuple(_channel_points()),
         channel_reference(),
-        {"-domain_cells": "672,336"},
+        {"-domain_cells": "480,240"},
     ),
 )
