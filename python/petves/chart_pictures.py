@@ -94,11 +94,11 @@ def picture(folder: Path, one: Scene, rows: list[dict], cost: str, floor: dict[s
 
 
 def _decades(panel: Axes) -> None:
-    """Show at least a decade of costs, and number powers of ten only."""
+    """Show two powers of ten of costs at least, and number powers of ten only."""
     from matplotlib.ticker import NullFormatter
 
     low, high = panel.get_xlim()
-    panel.set_xlim(min(low, 0.3 * (low * high) ** 0.5), max(high, 3.4 * (low * high) ** 0.5))
+    panel.set_xlim(min(low, 0.9 * 10.0 ** (np.floor(np.log10(high)) - 1)), high)
     panel.xaxis.set_minor_formatter(NullFormatter())
     panel.yaxis.set_minor_formatter(NullFormatter())
 
