@@ -1,4 +1,5 @@
-/* Markers of a closed curve moved as little as possible until their edges and their area are what they should be. */
+/* The markers of a closed curve moved as little as possible until their edges and their area are what they should be.
+ */
 #include "scene/scene.h"
 #include <petscblaslapack.h>
 
@@ -45,7 +46,7 @@ static PetscReal Residual(PetscInt M, const PetscReal X[], PetscReal ds, PetscRe
     r[M] += X[2 * k] * a[2 * k + 1] - X[2 * k + 1] * a[2 * k];
     worst = PetscMax(worst, PetscAbsReal(r[k]) / (ds * ds));
   }
-  return area > 0 ? PetscMax(worst, PetscAbsReal(r[M]) / (2 * area)) : worst;
+  return PetscMax(worst, PetscAbsReal(r[M]) / (2 * area));
 }
 
 /* The rows' gradient C[M+1][2M]: 2 e_k . D, and 2 (a_y, -a_x) because the derivative of a is antisymmetric. */
@@ -59,29 +60,29 @@ static void Gradient(PetscInt M, const PetscReal d[], const PetscReal e[], const
 }
 
 /* X -= C^T (C C^T)^-1 r, the least change; false when the rows do not determine it. */
-static PetscErrorCode LeastChange(PetscInt M, PetscInt rows, const PetscReal C[], PetscReal CC[], PetscReal r[],
-                                  PetscReal X[], PetscBool *solved) {
-  const PetscBLASInt n = (PetscBLASInt)rows, columns = 2 * (PetscBLASInt)M, one = 1;
+static PetscErrorCode LeastChange(PetscInt M, const PetscReal C[], PetscReal CC[], PetscReal r[], PetscReal X[],
+                                  PetscBool *solved) {
+  const PetscBLASInt rows = (PetscBLASInt)M + 1, columns = 2 * (PetscBLASInt)M, one = 1;
   const PetscReal plus = 1, minus = -1, zero = 0;
   PetscBLASInt info;
   PetscFunctionBeginUser;
-  PetscCallBLAS("BLASgemm", BLASgemm_("T", "N", &n, &n, &columns, &plus, C, &columns, C, &columns, &zero, CC, &n));
-  PetscCallBLAS("LAPACKpotrf", LAPACKpotrf_("L", &n, CC, &n, &info));
+  PetscCallBLAS("BLASgemm",
+                BLASgemm_("T", "N", &rows, &rows, &columns, &plus, C, &columns, C, &columns, &zero, CC, &rows));
+  PetscCallBLAS("LAPACKpotrf", LAPACKpotrf_("L", &rows, CC, &rows, &info));
   *solved = info ? PETSC_FALSE : PETSC_TRUE;
   if (info) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCallBLAS("LAPACKpotrs", LAPACKpotrs_("L", &n, &one, CC, &n, r, &n, &info));
-  PetscCallBLAS("BLASgemv", BLASgemv_("N", &columns, &n, &minus, C, &columns, r, &one, &plus, X, &one));
+  PetscCallBLAS("LAPACKpotrs", LAPACKpotrs_("L", &rows, &one, CC, &rows, r, &rows, &info));
+  PetscCallBLAS("BLASgemv", BLASgemv_("N", &columns, &rows, &minus, C, &columns, r, &one, &plus, X, &one));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode CurveFit(PetscInt M, PetscBool spectral, PetscReal length, PetscReal area, PetscReal X[], PetscInt most,
                         PetscReal *left) {
-  const PetscInt rows = area > 0 ? M + 1 : M;
   PetscReal *memory[2], *e, *a, *r, *C, *CC;
   IndexDerivative edge, central;
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc7(2 * M, &memory[0], 2 * M, &memory[1], 2 * M, &e, 2 * M, &a, M + 1, &r, (M + 1) * 2 * M, &C,
-                         rows * rows, &CC));
+                         (M + 1) * (M + 1), &CC));
   edge = memory[0] + M - 1;
   central = memory[1] + M - 1;
   if (spectral) {
@@ -98,7 +99,7 @@ PetscErrorCode CurveFit(PetscInt M, PetscBool spectral, PetscReal length, PetscR
     *left = Residual(M, X, length / M, area, e, a, r);
     if (it == most || *left < CONVERGED) break;
     Gradient(M, edge, e, a, C);
-    PetscCall(LeastChange(M, rows, C, CC, r, X, &solved));
+    PetscCall(LeastChange(M, C, CC, r, X, &solved));
     if (!solved) break; /* a circle has no freedom left: it stays as it is */
   }
   PetscCall(PetscFree7(memory[0], memory[1], e, a, r, C, CC));

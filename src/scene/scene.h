@@ -177,8 +177,8 @@ PETSC_EXTERN PetscErrorCode CurveEqualChords(const Curve *curve, PetscInt M, Pet
 PETSC_EXTERN PetscErrorCode CurveEqualArcs(const Curve *curve, PetscInt M, PetscReal X[]);
 
 /* CurveFit - move M markers X[2M] as little as possible (least squares) until all their edges, chords or spectral ones
-   dX/dk, are length/M long and the polygon or the spectral curve encloses the area (0: any): Newton, at most `most`
-   steps. left: the largest relative error of squared edges and area. A circle, which has no freedom left, stays. */
+   dX/dk, are length/M long and the polygon or the spectral curve encloses the area: Newton, at most `most` steps. left:
+   the largest relative error of squared edges and area. A circle, which has no freedom left, stays. */
 PETSC_EXTERN PetscErrorCode CurveFit(PetscInt M, PetscBool spectral, PetscReal length, PetscReal area, PetscReal X[],
                                      PetscInt most, PetscReal *left);
 

@@ -2,9 +2,8 @@
 #include "scene/scene.h"
 
 #define MAX_NEWTON 20 /* of the first markers; four are usual */
-
-#define MANY 100    /* markers, from which on it matters that Fourier transforms of them are fast */
-#define LEEWAY 0.04 /* by which their number may differ for it */
+#define MANY 100      /* markers, from which on it matters that Fourier transforms of them are fast */
+#define LEEWAY 0.04   /* by which their number may differ for it */
 
 /* The odd number with prime factors up to 13 that is nearest to M, if one is near. */
 static PetscInt FastOdd(PetscInt M) {
