@@ -77,6 +77,7 @@ struct _p_Scene {
   PetscInt mobility;                    /* index in -mobility_type's list */
   PetscInt adapt;                       /* AdaptType */
   PetscReal adapt_tol, adapt_max_move;  /* error a step over R0; cells a marker may move in a step */
+  PetscReal adapt_max_step;             /* largest step of -time_adapt error; 0: none */
   PetscReal cfl_limit;                  /* convective: largest dt max(|u| + |v|)/h */
   PetscReal dt, t_end, steady_tol;      /* time step, end time, stop when max |u.n| falls below steady_tol */
   char helmholtz[SCENE_MAX_NAME];       /* back end of the Helmholtz solves */
