@@ -208,8 +208,8 @@ static void FillTheta(SelfMobility s, PetscInt v, const PetscReal t[], PetscReal
     }
 }
 
-/* Theta := P Theta P, P = I - n n^T/M for the normals n: no flux through the membrane. Each symbol has none (dN is zero
-   for wave 0), but going with the angle between two of them lets one in, and a stiff membrane's pressure drives it. */
+/* Theta := P Theta P, P = I - n n^T/M for the normals n: no flux through the membrane. A symbol has none (dN is zero for
+   wave 0), but going between two of them with the angle lets one in, and a stiff membrane's pressure drives it. */
 static void TakeOffFlux(Block *b, const PetscReal t[], PetscReal normal[], PetscReal moved[]) {
   const PetscInt n = 2 * b->n;
   PetscReal mean = 0;
@@ -263,7 +263,7 @@ PetscErrorCode SelfMobilitySetMarkers(SelfMobility s, PetscReal a0, const PetscS
   for (PetscInt v = 0; v < m->vesicles; v++) {
     Tangents(s, v, X, s->block[v].work);
     FillTheta(s, v, s->block[v].work, s->block[v].second);
-    TakeOffFlux(&s->block[v], s->block[v].work, s->block[v].second, s->block[v].change);
+    if (s->type == SELF_SYMBOL) TakeOffFlux(&s->block[v], s->block[v].work, s->block[v].second, s->block[v].change);
     if (m->bending > 0) PetscCall(FactorForce(s, v));
   }
   PetscCall(PetscLogEventEnd(event, 0, 0, 0, 0));

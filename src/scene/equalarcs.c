@@ -46,6 +46,7 @@ static PetscReal Residual(PetscInt M, const PetscReal X[], PetscReal ds, PetscRe
     r[M] += X[2 * k] * a[2 * k + 1] - X[2 * k + 1] * a[2 * k];
     worst = PetscMax(worst, PetscAbsReal(r[k]) / (ds * ds));
   }
+  if (PetscIsInfOrNanReal(r[M])) return PETSC_MAX_REAL;
   return PetscMax(worst, PetscAbsReal(r[M]) / (2 * area));
 }
 
