@@ -208,8 +208,8 @@ static void FillTheta(SelfMobility s, PetscInt v, const PetscReal t[], PetscReal
     }
 }
 
-/* Theta := P Theta P, P = I - n n^T/M for the normals n: no flux through the membrane. A symbol has none (dN is zero for
-   wave 0), but going between two of them with the angle lets one in, and a stiff membrane's pressure drives it. */
+/* Theta := P Theta P, P = I - n n^T/M for the normals n: no flux through the membrane. A symbol has none (dN is zero
+   for wave 0), but going between two of them with the angle lets one in, and a stiff membrane's pressure drives it. */
 static void TakeOffFlux(Block *b, const PetscReal t[], PetscReal normal[], PetscReal moved[]) {
   const PetscInt n = 2 * b->n;
   PetscReal mean = 0;
