@@ -6,18 +6,10 @@
 /* Above it unsteady Stokes flow sends a vesicle that is carried along astray. */
 #define CARRIED_REYNOLDS 0.05
 
-/* Radius of the largest vesicle, L/(2 pi); 0 without vesicles. */
+/* Radius of the largest vesicle; 0 without vesicles. */
 static PetscReal LargestRadius(const Shape *shape) {
   PetscReal largest = 0;
-  for (PetscInt v = 0; v < shape->vesicles; v++) {
-    const PetscInt first = shape->start[v], n = shape->start[v + 1] - first;
-    PetscReal length = 0;
-    for (PetscInt k = 0; k < n; k++) {
-      const PetscReal *a = shape->X + 2 * (first + k), *b = shape->X + 2 * (first + (k + 1) % n);
-      length += PetscSqrtReal(PetscSqr(b[0] - a[0]) + PetscSqr(b[1] - a[1]));
-    }
-    largest = PetscMax(largest, length / (2 * PETSC_PI));
-  }
+  for (PetscInt v = 0; v < shape->vesicles; v++) largest = PetscMax(largest, ShapeRadius(shape, v));
   return largest;
 }
 
@@ -96,9 +88,6 @@ PetscErrorCode SceneSetInertia(Scene scene, const Shape *shape) {
              "-fluid_inertia convective: the background flow is not periodic in %c, so it cannot carry the disturbance "
              "across that boundary; allowed: -domain_bc_%c wall, or -fluid_inertia none or unsteady",
              dir ? 'y' : 'x', dir ? 'y' : 'x');
-  PetscCheck(
-      scene->inertia != INERTIA_CONVECTIVE || scene->flow.type != FLOW_CUSTOM, scene->comm, PETSC_ERR_USER_INPUT,
-      "-fluid_inertia convective: not with -flow_type custom, whose gradient is not known; allowed: none, unsteady");
   *scene->warning = 0;
   if (scene->inertia == INERTIA_UNSTEADY && scene->reynolds > CARRIED_REYNOLDS && carried > CARRIED_REYNOLDS)
     PetscCall(PetscSNPrintf(scene->warning, sizeof(scene->warning),

@@ -67,6 +67,8 @@ struct _p_Scene {
   char delta[SCENE_MAX_NAME];           /* kernel */
   char scheme[SCENE_MAX_NAME];          /* time-stepping scheme */
   PetscInt order;                       /* order in time */
+  PetscReal wanted;                     /* -scheme_auto: relative error; 0: off */
+  PetscReal ksp_rtol;                   /* default of -coupled_ksp_rtol */
   PetscInt bending_at;                  /* BendingType */
   PetscReal stiffness;                  /* penalty: sigma_0 of the springs; 0 until the scheme chooses it */
   PetscBool length_target;              /* coupled: new edges get the length ds */
@@ -126,6 +128,15 @@ PETSC_EXTERN PetscErrorCode SceneValidate(Scene scene);
 /* SceneView - print the model in force: which parts are on, and their numbers. Collective. */
 PETSC_EXTERN PetscErrorCode SceneView(Scene scene, const Shape *shape, PetscViewer viewer);
 
+/* SceneChoose - give an option of the table a value that the user has not given: what was given stays. */
+PETSC_EXTERN PetscErrorCode SceneChoose(Scene scene, const char name[], const char value[]);
+
+/* SceneAuto - with -scheme_auto: scheme, order, tolerances, kernel and spacing for the error wanted. SceneAutoSteps -
+   what depends on the vesicles: the steps; and print all that was chosen, and why. What the user gives stays.
+   Collective. Errors: PETSC_ERR_USER_INPUT outside of what was measured, and for schemes that have no error control. */
+PETSC_EXTERN PetscErrorCode SceneAuto(Scene scene);
+PETSC_EXTERN PetscErrorCode SceneAutoSteps(Scene scene, const Shape *shape);
+
 /* SceneIsProjection - whether the scheme is one of the baselines, split or penalty, which stand on a projection step.
  */
 PETSC_EXTERN PetscBool SceneIsProjection(Scene scene);
@@ -160,6 +171,9 @@ PETSC_EXTERN PetscErrorCode SceneSetInertia(Scene scene, const Shape *shape);
 PETSC_EXTERN PetscErrorCode ShapeCreate(Scene scene, PetscReal default_spacing, PetscReal least_spacing, Shape *shape);
 PETSC_EXTERN PetscErrorCode ShapeDestroy(Shape *shape);
 
+/* ShapeRadius - R0 of vesicle v, its length over 2 pi. */
+PETSC_EXTERN PetscReal ShapeRadius(const Shape *shape, PetscInt v);
+
 /* Closed curves (curve.c): X(t), t in [0,1), with X(t+1) = X(t). */
 typedef struct {
   PetscInt n;          /* 0: ellipse; else number of spline knots */
@@ -177,10 +191,11 @@ PETSC_EXTERN PetscErrorCode CurveEqualChords(const Curve *curve, PetscInt M, Pet
 /* CurveEqualArcs - the same with M equal arcs: the edges of the spectral derivative. */
 PETSC_EXTERN PetscErrorCode CurveEqualArcs(const Curve *curve, PetscInt M, PetscReal X[]);
 
-/* CurveFitSpectral - move M markers X[2M] as little as possible (least squares) until all their spectral edges dX/dk
-   are length/M long and their spectral curve encloses the area: what M markers sample of a curve with sharper tips than
-   they resolve has neither its length nor its area (equalarcs.c). A circle, which has no freedom left, stays. */
-PETSC_EXTERN PetscErrorCode CurveFitSpectral(PetscInt M, PetscReal length, PetscReal area, PetscReal X[]);
+/* CurveFit - move M markers X[2M] as little as possible (least squares) until all their edges, chords or spectral ones
+   dX/dk, are length/M long and the polygon or the spectral curve encloses the area: Newton, at most `most` steps. left:
+   the largest relative error of squared edges and area. A circle, which has no freedom left, stays. */
+PETSC_EXTERN PetscErrorCode CurveFit(PetscInt M, PetscBool spectral, PetscReal length, PetscReal area, PetscReal X[],
+                                     PetscInt most, PetscReal *left);
 
 /* CurveFromPoints - closed periodic cubic spline through n points xy[2n], by chord length. */
 PETSC_EXTERN PetscErrorCode CurveFromPoints(PetscInt n, const PetscReal xy[], Curve *curve);
