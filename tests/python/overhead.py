@@ -42,7 +42,7 @@ simulation.library = lambda: Library(loaded)
 with petves.Simulation(domain_cells=(256, 256), flow_type="shear", time_step=0.005, output_every=10) as sim:
     sim.run(until=0.025)
     shares = []
-    for block in range(4):
+    for block in range(16):
         seconds, begin = 0.0, time.process_time()
         sim.run(until=sim.time + 0.025, callback=look)
         shares.append((time.process_time() - begin - seconds) / seconds)
