@@ -84,6 +84,8 @@ class Scene:
         Options of the fine run; empty: the errors are against boundary integrals.
     other : dict
         What another fine run has other options for, which shows how far the reference has converged.
+    quick : dict
+        What the reference of a quick call has other options for.
     errors : callable
         Takes the measures of a run and of the reference; returns errors by name (of ERRORS).
     wanted : tuple of str
@@ -102,6 +104,7 @@ class Scene:
     points: tuple[Point, ...]
     reference: dict[str, str] = field(default_factory=dict)
     other: dict[str, str] = field(default_factory=dict)
+    quick: dict[str, str] = field(default_factory=dict)
 
     def case(self, point: Point, repeat: int, fine: dict) -> Case:
         """Return the run of a point; fine: the measures of the reference."""
@@ -282,6 +285,7 @@ SCENES = (
         tuple(_relax_points()),
         fine_options("relax"),
         {"-domain_cells": "384,384", "-time_adapt_tol": "3e-7"},
+        {"-domain_cells": "192,192", "-time_adapt_tol": "1e-5"},
     ),
     Scene(
         "shear",
@@ -304,5 +308,6 @@ SCENES = (
         tuple(_channel_points()),
         channel_reference(),
         {"-domain_cells": "480,240"},
+        {"-domain_cells": "240,120", "-time_step": "0.00375"},
     ),
 )
