@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from petves.convergence_report import convergence, race
+from petves.convergence_report import convergence
 from petves.coupled_report import coupled_results
 from petves.paper import CELLS, ITERATIONS
 from petves.plot import new_figure, save_figure
+from petves.race import race
 from petves.run import RunError
 from petves.scene_report import channel, equilibrium, tank_treading
 from petves.scenes import QUIET, option_file
@@ -67,7 +68,7 @@ def _paper(folder: Path, quick: bool, ranks: int, run: bool) -> Path:
     """Run the paper's studies; return the page, FOLDER.md beside the folder."""
     results = Results(folder / "results.json", ranks, run)
     sections = [
-        ("Less error in less time", lambda: _compared(results, quick)),
+        ("Less error in less time", lambda: race(results, folder, quick)),
         ("Figure 2", lambda: _energy(results, folder, ENERGY_CELLS[quick])),
         ("Tables 1 to 3", lambda: convergence(results, folder, "relax", quick)),
         ("Table 4", lambda: _iterations(results, folder, "relax", quick)),
@@ -99,17 +100,6 @@ def _head(quick: bool, ranks: int, name: str) -> str:
         f"commit. Longer runs than the command makes are shown where results.json has them. {name}/coupled.md: the\n"
         "coupled scheme by itself, also where split fails.\n"
     )
-
-
-def _compared(results: Results, quick: bool) -> list[str]:
-    """Return the comparison of both settings: less error in less time."""
-    header = ["scene", "the paper's h", "steps", "our steps", "its error", "our error", "error ratio", "time ratio"]
-    about = (
-        "Error: L2 norm along the membrane of the markers' distance from a fine coupled run at the end (h = 1/128, steps to\n"
-        "1e-6, relaxing; h = 1/96, 1e-5, in shear), at equal material points. Both programs on one rank, three runs each in turn; ratios are the\n"
-        "paper's method over ours, times the median of three.\n"
-    )
-    return ["## Less error in less time\n", about, *table(header, race(results, quick))]
 
 
 def _cells(results: Results, kind: str, quick: bool) -> list[int]:

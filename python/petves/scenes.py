@@ -49,7 +49,7 @@ def _cost(series: dict[str, np.ndarray]) -> dict[str, object]:
     return {"steps": len(series["time"]) - 1, "step_seconds": series["wall"].sum()}
 
 
-def _equilibrium(series: dict[str, np.ndarray], folder: Path) -> dict[str, object]:
+def measure_rest(series: dict[str, np.ndarray], folder: Path) -> dict[str, object]:
     run = Run.read(folder)
     r0 = series["length"][0] / (2 * np.pi)
     found = _measure_rest(series, folder)
@@ -62,7 +62,7 @@ def _equilibrium(series: dict[str, np.ndarray], folder: Path) -> dict[str, objec
 def equilibrium(reduced_area: float) -> Case:
     """Return section 5.4 with the default scheme."""
     options = option_file("equilibrium") | QUIET | {"-vesicle_reduced_area": repr(reduced_area)}
-    return Case(f"equilibrium_{reduced_area}", options, _equilibrium, ranks=1)
+    return Case(f"equilibrium_{reduced_area}", options, measure_rest, ranks=1)
 
 
 def equilibrium_paper(reduced_area: float, n: int) -> Case:
@@ -71,7 +71,7 @@ def equilibrium_paper(reduced_area: float, n: int) -> Case:
     options |= {"-domain_cells": f"{4 * n},{4 * n}", "-time_step": repr(0.25 / n), "-time_end": "100"}
     options |= {"-vesicle_reduced_area": repr(reduced_area), "-output_every": "50", "-vesicle_angle": "90"}
     del options["-time_steady_tol"]
-    return Case(f"equilibrium_paper_{n}_{reduced_area}", options, _equilibrium, ranks=1, may_fail=True)
+    return Case(f"equilibrium_paper_{n}_{reduced_area}", options, measure_rest, ranks=1, may_fail=True)
 
 
 def _channel(series: dict[str, np.ndarray], folder: Path) -> dict[str, object]:

@@ -177,11 +177,22 @@ class Results:
                 {"failed": failure} if failure else case.measure(read_series(Path(folder) / "series.csv"), Path(folder))
             )
             commit = json.loads((Path(folder) / "summary.json").read_text())["git_commit"]
-        entry = {"options": case.options, "ranks": ranks, "commit": commit, "measures": measures}
-        self.cases[case.name] = entry
+        self.cases[case.name] = {"options": case.options, "ranks": ranks, "commit": commit, "measures": measures}
+        self._write()
+        return measures
+
+    def derive(self, name: str, options: dict[str, str], measure: Callable[[], dict[str, object]]) -> dict:
+        """Return what is computed from other cases; compute it first unless it is there for the same options."""
+        if self.cases.get(name, {}).get("options") != options:
+            if not self.run:
+                raise NotRun(name)
+            self.cases[name] = {"options": options, "ranks": 0, "measures": measure()}
+            self._write()
+        return self.cases[name]["measures"]
+
+    def _write(self) -> None:
         temporary = self.path.with_suffix(".tmp")
         temporary.write_text(
             "{\n" + ",\n".join(f"{json.dumps(k)}: {json.dumps(v)}" for k, v in self.cases.items()) + "\n}\n"
         )
         temporary.replace(self.path)
-        return measures
