@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from petves.convergence_figures import cost, end_figure
 from petves.convergence_report import convergence
 from petves.coupled_report import coupled_results
 from petves.paper import CELLS, ITERATIONS
@@ -70,10 +71,11 @@ def _paper(folder: Path, quick: bool, ranks: int, run: bool) -> Path:
     sections = [
         ("Less error in less time", lambda: race(results, folder, quick)),
         ("Figure 2", lambda: _energy(results, folder, ENERGY_CELLS[quick])),
-        ("Tables 1 to 3", lambda: convergence(results, folder, "relax", quick)),
+        ("Tables 1 to 3", lambda: _convergence(results, folder, "relax", quick)),
         ("Table 4", lambda: _iterations(results, folder, "relax", quick)),
-        ("Tables 5 to 7", lambda: convergence(results, folder, "shear", quick)),
+        ("Tables 5 to 7", lambda: _convergence(results, folder, "shear", quick)),
         ("Table 8", lambda: _iterations(results, folder, "shear", quick)),
+        ("Figure 5", lambda: cost(results, folder, quick)),
         ("Section 5.4", lambda: equilibrium(results, folder, quick)),
         ("Section 5.5", lambda: channel(results, folder, quick)),
         ("Section 5.6", lambda: tank_treading(results, folder, quick)),
@@ -100,6 +102,11 @@ def _head(quick: bool, ranks: int, name: str) -> str:
         f"commit. Longer runs than the command makes are shown where results.json has them. {name}/coupled.md: the\n"
         "coupled scheme by itself, also where split fails.\n"
     )
+
+
+def _convergence(results: Results, folder: Path, kind: str, quick: bool) -> list[str]:
+    """Return Tables 1 to 3 and Fig 3, or Tables 5 to 7 and Fig 4."""
+    return convergence(results, folder, kind, quick) + end_figure(results, folder, kind, quick)
 
 
 def _cells(results: Results, kind: str, quick: bool) -> list[int]:

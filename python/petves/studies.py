@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import resource
 import tempfile
 from dataclasses import dataclass
 from pathlib import Path
@@ -142,6 +143,12 @@ def _launch(case: Case, ranks: int, folder: str) -> str:
     raise RunError(f"{case.name}: exit status {status}: {line}")
 
 
+def _cpu_seconds() -> float:
+    """Return the processor time of the programs run so far, all ranks, start and output included."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
 class NotRun(RunError):
     """A case is not among the results, and none is to be run."""
 
@@ -172,11 +179,14 @@ class Results:
             raise NotRun(case.name)
         print(f"running {case.name}", flush=True)
         with tempfile.TemporaryDirectory() as folder:
+            before = _cpu_seconds()
             failure = _launch(case, ranks, folder)
+            spent = _cpu_seconds() - before
             measures = (
                 {"failed": failure} if failure else case.measure(read_series(Path(folder) / "series.csv"), Path(folder))
             )
             commit = json.loads((Path(folder) / "summary.json").read_text())["git_commit"]
+        measures |= {"cpu_seconds": round(spent, 3)}
         self.cases[case.name] = {"options": case.options, "ranks": ranks, "commit": commit, "measures": measures}
         self._write()
         return measures
