@@ -74,9 +74,8 @@ def equilibrium_paper(reduced_area: float, n: int) -> Case:
     return Case(f"equilibrium_paper_{n}_{reduced_area}", options, measure_rest, ranks=1, may_fail=True)
 
 
-def _channel(series: dict[str, np.ndarray], folder: Path) -> dict[str, object]:
+def _channel(series: dict[str, np.ndarray], folder: Path, r0: float = radius(CHANNEL_V)) -> dict[str, object]:
     run = Run.read(folder)
-    r0 = radius(CHANNEL_V)
     time = np.linspace(0, series["time"][-1], 61)
     center = np.stack([np.interp(time, series["time"], series[f"center_{x}"]) for x in "xy"])
     speed = run.velocity.mean(axis=1)
@@ -103,6 +102,22 @@ def channel(
     options |= {"-vesicle_center": f"{min(window, 12) / 2:g},{3 + offset * radius(CHANNEL_V)!r}"}
     options |= {"-time_step": repr(dt), "-output_every": "400" if window > 100 else "4"}
     return Case(f"channel_{offset}_{window}_{inertia}_{cells}_{time_end:g}", options, _channel, ranks=1, may_fail=True)
+
+
+def channel_end(offset: int, cells: int, reduced_area: float, time_end: float) -> Case:
+    """Return section 5.5 on its way to an end state: window 12, none, u_max dt/h = 1.3; any reduced area."""
+    case = channel(offset, cells=cells, time_end=time_end, dt=0.96 / cells)
+    r0 = radius(reduced_area)
+    case.options |= {"-vesicle_reduced_area": repr(reduced_area), "-vesicle_center": f"6,{3 + offset * r0!r}"}
+    case.options |= {"-output_every": repr(time_end / 60)}
+
+    def measure(series: dict[str, np.ndarray], folder: Path) -> dict[str, object]:
+        found = _channel(series, folder, r0)
+        return {key: found[key] for key in ("time", "height", "saved", "slip", "aspect", "area_error", "steps")}
+
+    return Case(
+        f"channel_end_{offset}_{cells}_{reduced_area}_{time_end:g}", case.options, measure, ranks=1, may_fail=True
+    )
 
 
 def channel_models(model: str) -> Case:
