@@ -27,7 +27,7 @@ def end_figure(results: Results, folder: Path, kind: str, quick: bool) -> list[s
     theirs = results.derive(name, split_options(kind, n), lambda: _kept(split_state(results, kind, n)))
     ours = results.get(Case(f"figure_{kind}_ours", option_file(SETTINGS[kind]) | QUIET, _ours, ranks=1))
     number = {"relax": 3, "shear": 4}[kind]
-    figure, ((left, right),) = grid_figure(11, 4.6, 1, 2, equal=False)
+    figure, ((left, right),) = grid_figure(11, 4.6, 1, 2, equal=kind == "shear")
     if kind == "shear":
         edges = np.linspace(-1, 1, BLOCKS + 1)
         pressure = np.asarray(theirs["p"])

@@ -90,6 +90,10 @@ def _rates(values: list[float]) -> str:
 
 
 def _expected(finer: int, cells: list[int]) -> str:
-    """Say what a coarser reference does to an error of first order."""
-    shares = ", ".join(f"{(1 / n - 1 / finer) / (1 / n - 1 / 512):.2f}" for n in cells)
-    return f"By an error in proportion to h, this coarser reference would show {shares} of the paper's difference."
+    """Say what a finer reference would add to the differences."""
+    factors = [[(1 - (n / 512) ** p) / (1 - (n / finer) ** p) for n in cells] for p in (1, 2)]
+    first, second = (", ".join(f"{x:.2f}" for x in row) for row in factors)
+    return (
+        f"From a run on 1/512 the differences would be larger by the factors {first} where the error is of first order,\n"
+        f"{second} where it is of second."
+    )
