@@ -99,6 +99,19 @@ def energy(n: int) -> dict[str, Case]:
     }
 
 
+def energy_start(n: int, name: str) -> Case:
+    """Return the first t = 1/8 of a run of section 5.1, dt = h or h/2."""
+
+    def measure(series: dict[str, np.ndarray], folder: Path) -> dict[str, object]:
+        total = series["energy_kinetic"] + series["energy_bending"]
+        rise = np.diff(total / total[0])
+        found = {"rise": list(rise[:3]), "largest": rise.max(), "step": int(rise.argmax()) + 1}
+        return found | {"peak": (total / total[0]).max(), "end": total[-1] / total[0]}
+
+    options = energy(n)[name].options | {"-time_end": "0.125"}
+    return Case(f"energy_start_{n}_{name.replace('/', '_')}", options, measure, ranks=1)
+
+
 def sizes(quick: bool) -> tuple[int, ...]:
     """Return the values of 1/h."""
     return CELLS[:2] if quick else CELLS
