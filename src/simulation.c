@@ -63,6 +63,7 @@ static PetscErrorCode Build(MPI_Comm comm, PetvesFlow flow, void *ctx, Simulatio
   s->scene->flow.ctx = ctx;
   kernel = KernelFind(s->scene->delta);
   PetscCall(ShapeCreate(s->scene, kernel->default_spacing, kernel->least_spacing, &s->shape));
+  PetscCall(SceneAutoSteps(s->scene, &s->shape));
   PetscCall(SceneSetInertia(s->scene, &s->shape));
   if (*s->scene->warning) PetscCall(PetscPrintf(comm, "petves: warning: %s\n", s->scene->warning));
   PetscCall(WisdomRead(s->scene));

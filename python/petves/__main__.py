@@ -66,6 +66,8 @@ def _add_studies(commands: argparse._SubParsersAction) -> None:
     inertia = commands.add_parser("inertia", help="run the study of the fluid's inertia: docs/inertia.md's tables")
     inertia.add_argument("folder", metavar="DIR", help="where the tables and the pictures go")
     inertia.add_argument("--quick", action="store_true", help="leave out the channels")
+    automatic = commands.add_parser("calibrate", help="measure what -scheme_auto chooses by: calibration.csv")
+    automatic.add_argument("folder", metavar="DIR", help="where the table goes")
     maps = commands.add_parser("stability", help="run the stability maps: docs/stability.md's tables and pictures")
     maps.add_argument("folder", metavar="DIR", help="where the tables and the pictures go")
     maps.add_argument("--quick", action="store_true", help="only the corners of each map (also QUICK=1)")
@@ -103,6 +105,10 @@ def _run(options: argparse.Namespace) -> Iterable[object]:
         from petves.inertia import inertia
 
         return inertia(options.folder, quick=options.quick)
+    if options.command == "calibrate":
+        from petves.calibration import calibrate
+
+        return calibrate(options.folder)
     quick = options.quick or os.environ.get("QUICK", "") not in ("", "0")
     if options.command == "stability":
         from petves.stability import stability

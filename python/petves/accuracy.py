@@ -14,7 +14,7 @@ from petves.run import RunError
 from petves.studies import Results
 from petves.tables import table, write_csv
 
-CELLS, PICTURE_CELLS = (64, 128, 256), (48, 64, 96, 128, 192)
+CELLS, PICTURE_CELLS, FINE_CELLS = (64, 128, 256), (48, 64, 96, 128, 192), (64, 128, 256, 512, 1024)
 PICTURE = ("uncorrected", "cbs54, none", "local", "chords", "ib6, symbol", "default")
 
 
@@ -42,7 +42,7 @@ def accuracy(folder: str | Path, quick: bool = False) -> list[Path]:
     text = _steady(results, folder, CELLS[:2] if quick else CELLS) + _others(results, folder)
     text += _kernels(results, folder) + _chords(results, folder) + _rest(results, folder)
     if not quick:
-        text += _cost(results, folder) + _fields(results, folder)
+        text += _fine(results, folder) + _cost(results, folder) + _fields(results, folder)
     text_path = folder / "tables.md"
     text_path.write_text("\n".join(text))
     return [text_path, _picture(results, folder, quick)]
@@ -81,6 +81,23 @@ def _steady(results: Results, folder: Path, cells: tuple[int, ...]) -> list[str]
     )
     header = ["box", "V", "chi", *(f"{n}^2" for n in cells)]
     return ["### Default combination: errors of angle, frequency in percent\n", *table(header, shown), note]
+
+
+def _fine(results: Results, folder: Path) -> list[str]:
+    """The default combination in the box up to 1024^2, rate dt = 0.05, and the order seen over the last two doublings."""
+    rows, shown, every = [], [], []
+    for v, chi in product(study.REDUCED_AREAS, study.CHIS):
+        errors = [_errors(results.get(study.shear("default", "box", n, v, chi)), "box", v, chi) for n in FINE_CELLS]
+        rows += [[v, chi, n, *e] for n, e in zip(FINE_CELLS, errors)]
+        shown.append([f"{v}", f"{chi}", *(", ".join(f"{100 * e:+.3f}" for e in pair) for pair in errors)])
+        every.append(errors)
+    write_csv(folder / "accuracy_fine.csv", ["V", "chi", "cells", "angle", "frequency"], rows)
+    norm = 100 * np.sqrt((np.array(every) ** 2).mean(axis=0))
+    shown.append(["root mean square", "", *(f"{a:.3f}, {b:.3f}" for a, b in norm)])
+    orders = np.log2(norm[:-1] / norm[1:])
+    shown.append(["its order", "", "", *(f"{a:.1f}, {b:.1f}" for a, b in orders)])
+    header = ["V", "chi", *(f"{n}^2" for n in FINE_CELLS)]
+    return ["### Finer grids: errors of angle, frequency in percent, box, rate dt = 0.05\n", *table(header, shown)]
 
 
 def _all(cells: tuple[int, ...]) -> product:

@@ -57,7 +57,7 @@ static PetscErrorCode Converged(KSP ksp, PetscInt it, PetscReal norm, KSPConverg
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode CreateKSP(Saddle s, PetscInt n) {
+static PetscErrorCode CreateKSP(Saddle s, PetscReal rtol, PetscInt n) {
   PC pc;
   PetscFunctionBeginUser;
   PetscCall(MatCreateShell(PETSC_COMM_SELF, n, n, n, n, s, &s->A));
@@ -67,7 +67,7 @@ static PetscErrorCode CreateKSP(Saddle s, PetscInt n) {
   PetscCall(KSPSetType(s->ksp, KSPFGMRES));
   PetscCall(KSPGMRESSetRestart(s->ksp, 60));
   PetscCall(KSPGMRESSetCGSRefinementType(s->ksp, KSP_GMRES_CGS_REFINE_IFNEEDED));
-  PetscCall(KSPSetTolerances(s->ksp, 1e-6, 0, PETSC_DEFAULT, 200));
+  PetscCall(KSPSetTolerances(s->ksp, rtol, 0, PETSC_DEFAULT, 200));
   PetscCall(KSPSetOperators(s->ksp, s->A, s->A));
   PetscCall(KSPGetPC(s->ksp, &pc));
   PetscCall(PCSetType(pc, PCSHELL));
@@ -102,7 +102,7 @@ PetscErrorCode SaddleCreate(Scene scene, Fluid fluid, Coupling coupling, SelfMob
   PetscCall(VecDuplicate(s->x, &s->change));
   PetscCall(VecDuplicate(s->x, &s->rest));
   PetscCall(VecDuplicate(s->x, &s->pending));
-  PetscCall(CreateKSP(s, n));
+  PetscCall(CreateKSP(s, scene->ksp_rtol, n));
   PetscCall(SaddleForget(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -182,7 +182,7 @@ static PetscErrorCode SyncOthers(Output o) {
   PetscCall(OutputCheck(o, !o->series || (!fflush(o->series) && !fsync(fileno(o->series))), path));
   PetscCall(H5FileFlush(&o->fields));
   PetscCall(H5FileCheck(&o->fields));
-  PetscCall(OutputCheck(o, o->rank || !OutputSync(o->fields.path), o->fields.path));
+  PetscCall(OutputCheck(o, o->rank || (!OutputSync(o->fields.path) && !FramesSync(o)), o->fields.path));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -1,16 +1,11 @@
 /* run.h5 and run.xmf: fields at cell centres and markers, per saved time. */
 #include "output/output.h"
 
-static const char *const fluid_names[3] = {"/fluid/u", "/fluid/v", "/fluid/p"};
-
-static const char *const vesicle_names[3] = {"/vesicle/markers", "/vesicle/velocity", "/vesicle/tension"};
-
-static PetscErrorCode NewFields(Output o, const char path[]) {
+PetscErrorCode FieldsCreateFile(Output o, const char path[], H5File *f) {
   const Grid g = o->scheme->fluid->grid;
   const Membrane m = o->scheme->membrane;
   const Scene scene = o->scene;
   const PetscInt cells[2] = {g->n[1], g->n[0]}, markers[2] = {m->M, 2};
-  H5File *f = &o->fields;
   PetscFunctionBeginUser;
   PetscCall(H5FileCreate(o->comm, path, f));
   PetscCall(H5PutReals(f, "box", 4, scene->box.v));
@@ -23,10 +18,16 @@ static PetscErrorCode NewFields(Output o, const char path[]) {
                         "u, v: velocity (background included) at cell centres; p: pressure at cell centres, of the "
                         "disturbance unless -flow_form total; tension k on the edge from marker k-1 to marker k"));
   PetscCall(H5CreateSeries(f, "/time", 0, NULL));
-  for (int k = 0; k < 3; k++) PetscCall(H5CreateSeries(f, fluid_names[k], 2, cells));
-  for (int k = 0; k < 3 && m->M; k++) PetscCall(H5CreateSeries(f, vesicle_names[k], k < 2 ? 2 : 1, markers));
+  for (int k = 0; k < FrameSeriesCount(o); k++)
+    PetscCall(H5CreateSeries(f, FrameSeries[k], k < 5 ? 2 : 1, k < 3 ? cells : markers));
   PetscCall(H5FileFlush(f));
-  PetscCall(H5FileCheck(f));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode NewFields(Output o, const char path[]) {
+  PetscFunctionBeginUser;
+  PetscCall(FieldsCreateFile(o, path, &o->fields));
+  PetscCall(H5FileCheck(&o->fields));
   o->fields_open = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -38,6 +39,7 @@ static PetscErrorCode OldFields(Output o, const char path[]) {
   PetscBool failed;
   PetscInt length;
   PetscFunctionBeginUser;
+  PetscCall(FramesRepair(o, path));
   PetscCall(H5FileOpen(o->comm, path, PETSC_TRUE, f));
   PetscCall(H5FileFailed(f, &failed));
   o->fields_open = PETSC_TRUE;
@@ -47,13 +49,13 @@ static PetscErrorCode OldFields(Output o, const char path[]) {
              "; allowed: run.h5 as the run left it, or a new -output_dir",
              o->scene->restart, path, length, o->scheduled);
   o->frames = o->scheduled;
-  PetscCall(H5TruncateSeries(f, "/time", o->frames)); /* the readers' count of frames goes first */
-  PetscCall(H5FileFlush(f));
-  for (int k = 0; k < 3; k++) PetscCall(H5TruncateSeries(f, fluid_names[k], o->frames));
-  for (int k = 0; k < 3 && o->scheme->membrane->M; k++) PetscCall(H5TruncateSeries(f, vesicle_names[k], o->frames));
-  PetscCall(H5FileFlush(f));
   PetscCall(PetscMalloc1(o->frames, &o->times));
   for (PetscInt t = 0; t < o->frames; t++) PetscCall(H5ReadArray(f, "/time", t, 1, &o->times[t]));
+  PetscCall(FramesOpen(o));                           /* before anything is changed */
+  PetscCall(H5TruncateSeries(f, "/time", o->frames)); /* the readers' count of frames goes first */
+  PetscCall(H5FileFlush(f));
+  for (int k = 0; k < FrameSeriesCount(o); k++) PetscCall(H5TruncateSeries(f, FrameSeries[k], o->frames));
+  PetscCall(H5FileFlush(f));
   PetscCall(H5FileFailed(f, &failed));
   if (failed) PetscCall(H5FileClose(f));
   PetscCheck(!failed, o->comm, PETSC_ERR_USER_INPUT,
@@ -70,6 +72,7 @@ PetscErrorCode FieldsCreate(Output o) {
   PetscFunctionBeginUser;
   PetscCall(OutputPath(o, "run.h5", path));
   PetscCall(o->go_on ? OldFields(o, path) : NewFields(o, path));
+  if (!o->go_on) PetscCall(FramesOpen(o));
   PetscCall(PetscMalloc1(g->n[0] * g->rows[FIELD_P], &o->cells));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -127,18 +130,19 @@ static PetscErrorCode WriteFrame(Output o) {
   PetscCall(VecGetArrayRead(q->w, &a));
   for (int c = 0; c < 2; c++) {
     PetscCall(OutputVelocityAtCells(o, c, a, o->cells));
-    PetscCall(H5WriteField(f, fluid_names[c], o->frames, g, FIELD_P, o->cells));
+    PetscCall(H5WriteField(f, FrameSeries[c], o->frames, g, FIELD_P, o->cells));
   }
   PetscCall(VecRestoreArrayRead(q->w, &a));
   PetscCall(VecGetArrayRead(q->p, &a));
-  PetscCall(H5WriteField(f, fluid_names[2], o->frames, g, FIELD_P, a));
+  PetscCall(H5WriteField(f, FrameSeries[2], o->frames, g, FIELD_P, a));
   PetscCall(VecRestoreArrayRead(q->p, &a));
   for (int k = 0; k < 3 && M; k++) {
     PetscCall(VecGetArrayRead(marker[k], &a));
-    PetscCall(H5WriteArray(f, vesicle_names[k], o->frames, k < 2 ? 2 * M : M, a));
+    PetscCall(H5WriteArray(f, FrameSeries[3 + k], o->frames, k < 2 ? 2 * M : M, a));
     PetscCall(VecRestoreArrayRead(marker[k], &a));
   }
   PetscCall(H5FileFlush(f));
+  PetscCall(FramesAppend(o, o->frames, q->t));
   PetscCall(H5WriteArray(f, "/time", o->frames, 1, &q->t)); /* last: readers count the frames by it */
   PetscCall(H5FileFlush(f));
   PetscFunctionReturn(PETSC_SUCCESS);

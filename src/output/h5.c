@@ -228,6 +228,20 @@ PetscErrorCode H5TruncateSeries(H5File *f, const char name[], PetscInt length) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+unsigned long long H5FramePlace(H5File *f, const char name[], PetscInt index) {
+  hsize_t size[3], start[3] = {(hsize_t)index, 0, 0}, bytes = 0;
+  haddr_t place = HADDR_UNDEF;
+  unsigned filters;
+  int ndims;
+  if (f->failed) return 0;
+  const hid_t set = OpenSeries(f, name, &ndims, size);
+  if (set < 0) return 0;
+  Try(f, H5Dget_chunk_info_by_coord(set, start, &filters, &place, &bytes));
+  Try(f, place == HADDR_UNDEF ? -1 : 0);
+  Try(f, H5Dclose(set));
+  return f->failed ? 0 : (unsigned long long)place;
+}
+
 /* Rows first .. first + rows - 1 of entry `index`, n values in all, to or from rank 0's array; rows 0: the whole entry.
    A series whose rows have another size is an error. */
 static void Transfer(H5File *f, PetscBool write, const char name[], PetscInt index, PetscInt first, PetscInt rows,

@@ -43,6 +43,10 @@ PETSC_EXTERN PetscErrorCode H5CreateSeries(H5File *file, const char name[], int 
 PETSC_EXTERN PetscErrorCode H5SeriesLength(H5File *file, const char name[], PetscInt *length);
 PETSC_EXTERN PetscErrorCode H5TruncateSeries(H5File *file, const char name[], PetscInt length);
 
+/* H5FramePlace - byte of the file where entry `index` of a series begins, whose entries are chunks; 0 when there is
+   none. Rank 0's. */
+PETSC_EXTERN unsigned long long H5FramePlace(H5File *file, const char name[], PetscInt index);
+
 /* H5WriteArray, H5ReadArray - entry `index` of a series, n values: rank 0's array is written; every rank gets what is
    read. Writing entry `length` makes the series longer. */
 PETSC_EXTERN PetscErrorCode H5WriteArray(H5File *file, const char name[], PetscInt index, PetscInt n,

@@ -117,6 +117,8 @@ static PetscErrorCode ClearFolder(Output o) {
   if (o->rank) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(OutputPath(o, "summary.json", path));
   (void)unlink(path);
+  PetscCall(OutputPath(o, "run.h5.new", path));
+  if (!o->go_on) (void)unlink(path);
   for (PetscInt k = 1; !o->go_on && k < 100; k++) {
     PetscCall(OutputPath(o, old, path));
     (void)unlink(path);
@@ -166,6 +168,7 @@ PetscErrorCode OutputDestroy(Output *output) {
   }
   if (o->fields_open) {
     PetscCall(H5FileClose(&o->fields));
+    PetscCall(FramesClose(o, o->fields.failed ? PETSC_FALSE : PETSC_TRUE));
     PetscCall(H5FileCheck(&o->fields));
   }
   PetscCall(PetscFree(o->times));

@@ -13,6 +13,7 @@ struct _p_Output {
   FILE *series;                  /* rank 0 */
   H5File fields;                 /* run.h5 */
   PetscBool fields_open;         /* on every rank */
+  FILE *index;                   /* rank 0: run.h5.index */
   PetscBool go_on;               /* both files go on after the checkpoint of -restart */
   PetscInt frames;               /* saved times so far */
   PetscInt scheduled;            /* of them those at multiples of -output_every, the first included */
@@ -90,6 +91,26 @@ PETSC_EXTERN PetscErrorCode SeriesPrepare(Output output);
 PETSC_EXTERN PetscErrorCode FieldsCreate(Output output);
 PETSC_EXTERN PetscErrorCode SeriesOpen(Output output);
 PETSC_EXTERN PetscErrorCode OutputXdmf(Output output);
+
+/* FieldsCreateFile - a file with the attributes and the empty series of run.h5. Collective. */
+PETSC_EXTERN PetscErrorCode FieldsCreateFile(Output output, const char path[], H5File *file);
+
+/* The series of a frame, and how many a run has (without vesicles the fluid's three). */
+#define FRAME_SERIES 6
+PETSC_EXTERN const char *const FrameSeries[FRAME_SERIES];
+PETSC_EXTERN PetscInt FrameSeriesCount(Output output);
+
+/* FramesOpen - write run.h5.index for the frames so far, and go on with it. FramesAppend - a further frame, whose
+   values are in run.h5. Collective. FramesSync - 0 when all of it is on the disk. FramesClose - the end of it; closed:
+   run.h5 is closed and whole, so that the index goes. Rank 0's. */
+PETSC_EXTERN PetscErrorCode FramesOpen(Output output);
+PETSC_EXTERN PetscErrorCode FramesAppend(Output output, PetscInt frame, PetscReal time);
+PETSC_EXTERN int FramesSync(Output output);
+PETSC_EXTERN PetscErrorCode FramesClose(Output output, PetscBool closed);
+
+/* FramesRepair - where a run was killed (its index is there): run.h5 anew, of the frames that the checkpoint counts.
+   Stops with one line when that cannot be written; frames that cannot be read leave run.h5 as it is. Collective. */
+PETSC_EXTERN PetscErrorCode FramesRepair(Output output, const char path[]);
 
 /* CheckpointAdopt - the checkpoint that -restart names in the folder becomes its newest: later ones belong to steps
    that are taken anew. */

@@ -6,18 +6,10 @@
 /* Above it unsteady Stokes flow sends a vesicle that is carried along astray. */
 #define CARRIED_REYNOLDS 0.05
 
-/* Radius of the largest vesicle, L/(2 pi); 0 without vesicles. */
+/* Radius of the largest vesicle; 0 without vesicles. */
 static PetscReal LargestRadius(const Shape *shape) {
   PetscReal largest = 0;
-  for (PetscInt v = 0; v < shape->vesicles; v++) {
-    const PetscInt first = shape->start[v], n = shape->start[v + 1] - first;
-    PetscReal length = 0;
-    for (PetscInt k = 0; k < n; k++) {
-      const PetscReal *a = shape->X + 2 * (first + k), *b = shape->X + 2 * (first + (k + 1) % n);
-      length += PetscSqrtReal(PetscSqr(b[0] - a[0]) + PetscSqr(b[1] - a[1]));
-    }
-    largest = PetscMax(largest, length / (2 * PETSC_PI));
-  }
+  for (PetscInt v = 0; v < shape->vesicles; v++) largest = PetscMax(largest, ShapeRadius(shape, v));
   return largest;
 }
 

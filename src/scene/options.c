@@ -45,6 +45,7 @@ static const Option table[] = {
   {"-delta_type", OPT_NAME, AT(delta), "cbs54", "ib6|cbs32|cbs43|cbs54|cbs65", "kernel between grid and markers; split, penalty: ib6"},
   {"-scheme_type", OPT_NAME, AT(scheme), "coupled", "split|penalty|coupled|direct", "time-stepping scheme: the paper's, stiff springs, unsplit, unsplit by sparse LU"},
   {"-scheme_order", OPT_INT, AT(order), "2", "[1,2]", "order in time: backward Euler or BDF2; split and penalty are of order 1"},
+  {"-scheme_auto", OPT_REAL, AT(wanted), "0", ">=0", "relative error wanted, 1e-4 to 0.1: order, steps, tolerances, spacing and kernel by what was measured; 0 off"},
   {"-scheme_bending", OPT_ENUM, AT(bending_at), "implicit", "implicit|explicit", "bending at the new markers, or (split only) at the old ones; penalty: explicit"},
   {"-penalty_stiffness", OPT_REAL, AT(stiffness), "0", ">=0", "penalty: sigma_0 of the springs sigma = sigma_0 (|X_s| - 1) (length^3/time^2); 0 takes half of what the step bears"},
   {"-scheme_length_target", OPT_BOOL, AT(length_target), "true", "true|false", "coupled, direct: new edges get their first length"},
@@ -58,6 +59,7 @@ static const Option table[] = {
   {"-time_adapt", OPT_ENUM, AT(adapt), "none", "none|error", "step size: fixed, or from an error estimate (coupled, direct of order 2)"},
   {"-time_adapt_tol", OPT_REAL, AT(adapt_tol), "1e-4", ">0", "error estimate accepted a step, in units of R0"},
   {"-time_adapt_max_move", OPT_REAL, AT(adapt_max_move), "1", ">=0", "cells that a marker may move in a step relative to its vesicle; 0 no limit"},
+  {"-time_adapt_max_step", OPT_REAL, AT(adapt_max_step), "0", ">=0", "largest step that -time_adapt error takes; 0 no limit (time)"},
   {"-time_cfl_limit", OPT_REAL, AT(cfl_limit), "0.5", ">0", "convective: largest dt max(|u| + |v|)/h; -time_adapt error stays below it, a fixed step above it stops the run"},
   {"-time_steady_tol", OPT_REAL, AT(steady_tol), "0", ">=0", "stop when max |u.n| on the membrane falls below it; 0 never (length/time)"},
   {"-helmholtz_type", OPT_NAME, AT(helmholtz), "fftw_tridiagonal", "fftw_tridiagonal|fftw|hypre", "fast solver of the velocity Helmholtz problems"},
@@ -213,6 +215,8 @@ PetscErrorCode SceneCreate(MPI_Comm comm, Scene *out) {
     PetscCall(ParseOption(scene, o, scene->given[i] ? text : o->value));
   }
   PetscOptionsEnd();
+  scene->ksp_rtol = 1e-6;
+  PetscCall(SceneAuto(scene));
   PetscCall(SceneValidate(scene));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -231,15 +235,24 @@ PetscBool SceneGiven(Scene scene, const char name[]) {
   return PETSC_FALSE;
 }
 
+PetscErrorCode SceneChoose(Scene scene, const char name[], const char value[]) {
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < TABLE_SIZE; i++)
+    if (!strcmp(table[i].name, name) && !scene->given[i]) PetscCall(ParseOption(scene, &table[i], value));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 const char *SceneOptionName(PetscInt i) {
   return i < TABLE_SIZE ? table[i].name : NULL;
 }
 
 PetscBool SceneOptionMayChange(const char name[]) {
-  const char *const free[] = {"-time_end",
+  const char *const free[] = {"-scheme_auto",
+                              "-time_end",
                               "-time_step",
                               "-time_adapt_tol",
                               "-time_adapt_max_move",
+                              "-time_adapt_max_step",
                               "-time_steady_tol",
                               "-time_wall_limit",
                               "-helmholtz_type",

@@ -67,6 +67,8 @@ struct _p_Scene {
   char delta[SCENE_MAX_NAME];           /* kernel */
   char scheme[SCENE_MAX_NAME];          /* time-stepping scheme */
   PetscInt order;                       /* order in time */
+  PetscReal wanted;                     /* -scheme_auto: relative error; 0: off */
+  PetscReal ksp_rtol;                   /* default of -coupled_ksp_rtol */
   PetscInt bending_at;                  /* BendingType */
   PetscReal stiffness;                  /* penalty: sigma_0 of the springs; 0 until the scheme chooses it */
   PetscBool length_target;              /* coupled: new edges get the length ds */
@@ -77,6 +79,7 @@ struct _p_Scene {
   PetscInt mobility;                    /* index in -mobility_type's list */
   PetscInt adapt;                       /* AdaptType */
   PetscReal adapt_tol, adapt_max_move;  /* error a step over R0; cells a marker may move in a step */
+  PetscReal adapt_max_step;             /* largest step of -time_adapt error; 0: none */
   PetscReal cfl_limit;                  /* convective: largest dt max(|u| + |v|)/h */
   PetscReal dt, t_end, steady_tol;      /* time step, end time, stop when max |u.n| falls below steady_tol */
   char helmholtz[SCENE_MAX_NAME];       /* back end of the Helmholtz solves */
@@ -125,6 +128,15 @@ PETSC_EXTERN PetscErrorCode SceneValidate(Scene scene);
 /* SceneView - print the model in force: which parts are on, and their numbers. Collective. */
 PETSC_EXTERN PetscErrorCode SceneView(Scene scene, const Shape *shape, PetscViewer viewer);
 
+/* SceneChoose - give an option of the table a value that the user has not given: what was given stays. */
+PETSC_EXTERN PetscErrorCode SceneChoose(Scene scene, const char name[], const char value[]);
+
+/* SceneAuto - with -scheme_auto: scheme, order, tolerances, kernel and spacing for the error wanted. SceneAutoSteps -
+   what depends on the vesicles: the steps; and print all that was chosen, and why. What the user gives stays.
+   Collective. Errors: PETSC_ERR_USER_INPUT outside of what was measured, and for schemes that have no error control. */
+PETSC_EXTERN PetscErrorCode SceneAuto(Scene scene);
+PETSC_EXTERN PetscErrorCode SceneAutoSteps(Scene scene, const Shape *shape);
+
 /* SceneIsProjection - whether the scheme is one of the baselines, split or penalty, which stand on a projection step.
  */
 PETSC_EXTERN PetscBool SceneIsProjection(Scene scene);
@@ -158,6 +170,9 @@ PETSC_EXTERN PetscErrorCode SceneSetInertia(Scene scene, const Shape *shape);
    default_spacing and least_spacing: ds/h that the kernel wants, and below which it is refused. */
 PETSC_EXTERN PetscErrorCode ShapeCreate(Scene scene, PetscReal default_spacing, PetscReal least_spacing, Shape *shape);
 PETSC_EXTERN PetscErrorCode ShapeDestroy(Shape *shape);
+
+/* ShapeRadius - R0 of vesicle v, its length over 2 pi. */
+PETSC_EXTERN PetscReal ShapeRadius(const Shape *shape, PetscInt v);
 
 /* Closed curves (curve.c): X(t), t in [0,1), with X(t+1) = X(t). */
 typedef struct {

@@ -13,9 +13,21 @@ PetscErrorCode StepControlCreate(Scene scene, Membrane m, StepControl *c) {
   c->tolerance = scene->adapt_tol;
   c->base = scene->dt;
   c->max_move = scene->adapt_max_move;
+  c->max_step = scene->adapt_max_step;
   c->level = -LEVELS_OF_START;
   c->R0 = PETSC_MAX_REAL;
   for (PetscInt v = 0; v < m->vesicles; v++) c->R0 = PetscMin(c->R0, m->L0[v] / (2 * PETSC_PI));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Convection is explicit: its CFL number bounds the step. So does -time_adapt_max_step. */
+static PetscErrorCode LimitLevel(Scheme s, StepControl *c) {
+  PetscReal speed, most = c->max_step > 0 ? c->max_step : PETSC_MAX_REAL;
+  PetscFunctionBeginUser;
+  PetscCall(CoupledSpeed(s, &speed));
+  if (speed > 0) most = PetscMin(most, s->scene->cfl_limit * s->fluid->grid->h / speed);
+  if (most < PETSC_MAX_REAL)
+    c->level = PetscMin(c->level, (PetscInt)PetscFloorReal(2 * PetscLog2Real(most / c->base) + 1e-9));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -65,16 +77,11 @@ static PetscErrorCode Watch(Membrane m, const State *next, PetscReal *speed, Pet
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Convection is explicit: its CFL number bounds the step. */
-static PetscErrorCode LimitByCourant(Scheme s, StepControl *c) {
-  PetscReal speed;
-  PetscFunctionBeginUser;
-  PetscCall(CoupledSpeed(s, &speed));
-  if (speed > 0) {
-    const PetscReal most = s->scene->cfl_limit * s->fluid->grid->h / speed;
-    c->level = PetscMin(c->level, (PetscInt)PetscFloorReal(2 * PetscLog2Real(most / c->base)));
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
+/* Towards the end two equal steps: a last one that is far shorter than the one before it leaves noise in the velocity,
+   which is a difference over the step, and in the tension. */
+static PetscReal StepBefore(PetscReal dt, PetscReal most) {
+  if (most <= dt * (1 + 1e-12)) return most;
+  return most < 2 * dt ? most / 2 : dt;
 }
 
 PetscErrorCode StepControlStep(Scheme s, StepControl *c, Vec Xstar, const State *next, PetscReal *dt,
@@ -82,11 +89,11 @@ PetscErrorCode StepControlStep(Scheme s, StepControl *c, Vec Xstar, const State 
   const PetscReal most = *dt, h = s->fluid->grid->h;
   PetscFunctionBeginUser;
   PetscReal before = PETSC_MAX_REAL; /* estimate of the attempt rejected last */
-  PetscCall(LimitByCourant(s, c));
+  PetscCall(LimitLevel(s, c));
   for (;;) {
     const PetscBool first = s->state.dt_last == 0 ? PETSC_TRUE : PETSC_FALSE;
     PetscReal error, speed, edge_ratio, factor;
-    *dt = PetscMin(StepOfLevel(c, c->level), most);
+    *dt = StepBefore(StepOfLevel(c, c->level), most);
     PetscCall(CoupledAttempt(s, *dt, solved));
     if (!*solved) PetscFunctionReturn(PETSC_SUCCESS);
     PetscCall(Estimate(c, Xstar, next->X, &error));

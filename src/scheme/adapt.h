@@ -7,6 +7,7 @@ typedef struct {
   PetscReal tolerance; /* largest accepted error estimate, in units of R0 */
   PetscReal base;      /* steps are base times powers of sqrt(2), so that a0 and its tables come back */
   PetscReal max_move;  /* cells that a marker may move in a step relative to the vesicle's mean velocity; 0 no limit */
+  PetscReal max_step;  /* no step is larger; 0 no limit */
   PetscInt level;      /* of the next step */
   PetscInt rejected;   /* steps tried again so far */
   PetscReal R0;        /* smallest vesicle's L/(2 pi) */

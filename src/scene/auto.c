@@ -1,0 +1,142 @@
+/* -scheme_auto: the settings that reach a wanted error, by what was measured (docs/speed_accuracy/calibration.csv). */
+#include "scene/scene.h"
+
+/* By wanted error: the settings, and the worst error that each of them leaves by itself over the scenes of the
+   calibration (tests/test_auto.py compares with the table). */
+static const struct {
+  PetscReal wanted;
+  const char *adapt_tol;
+  PetscReal of_steps; /* 14 scenes: tank-treading, turning, relaxing, a channel, a pair */
+  const char *ksp_rtol;
+  PetscReal of_solver; /* the same */
+  PetscReal max_step;  /* over nu R0^3/c_b */
+  PetscReal of_rest;   /* energy of shapes at rest */
+} settings[] = {
+    {1e-1, "1e-2", 1.7e-2, "1e-4", 6.0e-4, 2, 2.3e-3},       {1e-2, "3e-3", 3.0e-3, "1e-4", 6.0e-4, 1, 1.0e-3},
+    {1e-3, "1e-3", 2.9e-4, "1e-5", 5.0e-5, 0.25, 2.9e-4},    {3e-4, "3e-4", 1.4e-4, "1e-6", 5.4e-6, 0.0625, 7.0e-5},
+    {1e-4, "1e-4", 4.1e-5, "1e-6", 5.4e-6, 0.03125, 4.0e-5},
+};
+
+/* Worst error of angle and frequency in steady tank-treading (V = 0.5 to 0.9, chi = 1 and 10), by R0/h and finer. */
+static const struct {
+  PetscReal cells, error;
+} grids[] = {{21, 7.7e-4}, {16, 1.0e-3}, {10.8, 1.3e-3}, {8, 1.8e-3}, {5.3, 2.8e-3}, {4.7, 1.3e-2}, {4, 5.0e-2}};
+
+static PetscInt Row(Scene scene) {
+  const PetscInt last = (PetscInt)(sizeof(settings) / sizeof(settings[0])) - 1;
+  PetscInt row = 0;
+  while (row < last && settings[row].wanted > scene->wanted * (1 + 1e-9)) row++;
+  return row;
+}
+
+PetscErrorCode SceneAuto(Scene scene) {
+  PetscBool coupled, direct;
+  PetscFunctionBeginUser;
+  if (scene->wanted == 0) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCheck(scene->wanted >= 1e-4 && scene->wanted <= 0.1, scene->comm, PETSC_ERR_USER_INPUT,
+             "-scheme_auto %g: outside of what was measured; allowed: 0, or 1e-4 to 0.1", (double)scene->wanted);
+  PetscCall(PetscStrcmp(scene->scheme, "coupled", &coupled));
+  PetscCall(PetscStrcmp(scene->scheme, "direct", &direct));
+  PetscCheck(coupled || direct, scene->comm, PETSC_ERR_USER_INPUT,
+             "-scheme_auto %g: with -scheme_type %s; allowed: coupled or direct", (double)scene->wanted, scene->scheme);
+  PetscCall(SceneChoose(scene, "-scheme_order", "2"));
+  PetscCall(SceneChoose(scene, "-time_adapt", "error"));
+  PetscCall(SceneChoose(scene, "-time_adapt_tol", settings[Row(scene)].adapt_tol));
+  PetscCall(SceneChoose(scene, "-delta_type", "cbs54"));
+  if (!scene->markers) PetscCall(SceneChoose(scene, "-vesicle_spacing", "1.5"));
+  scene->ksp_rtol = strtod(settings[Row(scene)].ksp_rtol, NULL);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The fastest rate at which the flow shears a vesicle. */
+static PetscReal Rate(Scene scene) {
+  const Flow *flow = &scene->flow;
+  if (flow->type == FLOW_SHEAR || flow->type == FLOW_EXTENSION) return PetscAbsReal(flow->rate);
+  if (flow->type == FLOW_POISEUILLE) return 2 * PetscAbsReal(flow->peak) / flow->half_width;
+  return 0;
+}
+
+/* One setting: its name, value, and why, or that it is the user's. */
+static PetscErrorCode PrintSetting(Scene scene, const char name[], const char why[]) {
+  char value[64] = "";
+  PetscBool given = SceneGiven(scene, name);
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; SceneOptionName(i); i++)
+    if (!strcmp(SceneOptionName(i), name)) PetscCall(SceneOptionValue(scene, i, value, sizeof(value)));
+  if (!strcmp(name, "-coupled_ksp_rtol")) {
+    PetscCall(PetscSNPrintf(value, sizeof(value), "%.0e", (double)scene->ksp_rtol));
+    PetscCall(PetscOptionsGetString(NULL, NULL, name, value, sizeof(value), &given));
+  }
+  if (strlen(value) > 10 && strchr(value, '.'))
+    PetscCall(PetscSNPrintf(value, sizeof(value), "%g", strtod(value, NULL)));
+  PetscCall(PetscPrintf(scene->comm, "  %-20s %-8s %s\n", name, value, given ? "yours" : why));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What the grid leaves, and what it would take. */
+static PetscErrorCode PrintGrid(Scene scene, PetscReal cells) {
+  const PetscInt n = (PetscInt)(sizeof(grids) / sizeof(grids[0]));
+  PetscInt here = 0, enough = n - 1;
+  PetscFunctionBeginUser;
+  while (here < n && cells < grids[here].cells) here++;
+  while (enough >= 0 && grids[enough].error > scene->wanted * (1 + 1e-9)) enough--;
+  PetscCall(PetscPrintf(scene->comm, "  grid: R0/h = %.3g", (double)cells));
+  if (here < n)
+    PetscCall(PetscPrintf(scene->comm, ", which leaves up to %.2g in steady tank-treading", (double)grids[here].error));
+  else
+    PetscCall(PetscPrintf(scene->comm, ", coarser than any that was measured"));
+  if (here < n && grids[here].error <= scene->wanted * (1 + 1e-9))
+    PetscCall(PetscPrintf(scene->comm, ": enough\n"));
+  else if (enough >= 0)
+    PetscCall(PetscPrintf(scene->comm, ": TOO COARSE for %g, take R0/h = %g (-domain_cells)\n", (double)scene->wanted,
+                          (double)grids[enough].cells));
+  else
+    PetscCall(PetscPrintf(scene->comm, ": no grid up to R0/h = 21 reached %g\n", (double)scene->wanted));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode PrintChoice(Scene scene, PetscInt row) {
+  char why[128];
+  PetscFunctionBeginUser;
+  PetscCall(PetscPrintf(scene->comm, "petves: -scheme_auto %g, by the worst errors measured (docs/speed_accuracy.md)\n",
+                        (double)scene->wanted));
+  PetscCall(PrintSetting(scene, "-scheme_type", "the membrane and the fluid in one solve"));
+  PetscCall(PrintSetting(scene, "-scheme_order", "order 1 leaves percents at any step of use"));
+  PetscCall(PrintSetting(scene, "-time_adapt", "finds the step of any scene"));
+  PetscCall(PrintSetting(scene, "-time_step", "a twentieth of the fastest time of the scene"));
+  if (scene->adapt == ADAPT_ERROR) {
+    PetscCall(PetscSNPrintf(why, sizeof(why), "steps leave up to %.1e", (double)settings[row].of_steps));
+    PetscCall(PrintSetting(scene, "-time_adapt_tol", why));
+    PetscCall(PetscSNPrintf(why, sizeof(why), "%g nu R0^3/c_b: leaves up to %.1e of the energy at rest",
+                            (double)settings[row].max_step, (double)settings[row].of_rest));
+    PetscCall(PrintSetting(scene, "-time_adapt_max_step", why));
+  }
+  PetscCall(PetscSNPrintf(why, sizeof(why), "the solver leaves up to %.1e", (double)settings[row].of_solver));
+  if (!strcmp(scene->scheme, "coupled")) PetscCall(PrintSetting(scene, "-coupled_ksp_rtol", why));
+  PetscCall(PrintSetting(scene, "-delta_type", "least error a second"));
+  if (!scene->markers) PetscCall(PrintSetting(scene, "-vesicle_spacing", "2 h saves 5 % and may cost 0.5 %"));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SceneAutoSteps(Scene scene, const Shape *shape) {
+  const PetscInt row = Row(scene);
+  const PetscReal rate = Rate(scene);
+  PetscReal R0 = PETSC_MAX_REAL, slow = PETSC_MAX_REAL, fast;
+  char value[64];
+  PetscFunctionBeginUser;
+  if (scene->wanted == 0 || !shape->vesicles) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt v = 0; v < shape->vesicles; v++) R0 = PetscMin(R0, ShapeRadius(shape, v));
+  if (scene->bending > 0) slow = scene->viscosity * R0 * R0 * R0 / scene->bending;
+  fast = rate > 0 ? PetscMin(slow, 1 / rate) : slow;
+  if (slow < PETSC_MAX_REAL) {
+    PetscCall(PetscSNPrintf(value, sizeof(value), "%.6g", (double)(settings[row].max_step * slow)));
+    PetscCall(SceneChoose(scene, "-time_adapt_max_step", value));
+  }
+  if (fast < PETSC_MAX_REAL) {
+    PetscCall(PetscSNPrintf(value, sizeof(value), "%.6g", (double)(0.05 * fast)));
+    PetscCall(SceneChoose(scene, "-time_step", value));
+  }
+  PetscCall(PrintChoice(scene, row));
+  PetscCall(PrintGrid(scene, R0 / SceneCellSize(scene)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,136 @@
+"""-scheme_auto: what it chooses, that it is what was measured, and that a run with it has the error asked for."""
+
+import csv
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import PETVES, ROOT, Run, mpirun
+from petves import paper
+
+CALIBRATION = ROOT / "docs" / "speed_accuracy" / "calibration.csv"
+WANTED = (0.1, 1e-2, 1e-3, 1e-4)
+BOX = "-domain_box 0,8,0,8 -flow_type shear -flow_center_y 4 -vesicle_center 4,4 -vesicle_angle 20 -fluid_inertia none"
+REST = (
+    "-domain_box -1.5,1.5,-1.5,1.5 -domain_cells 48,48 -domain_bc_x periodic -domain_bc_y periodic -fluid_inertia none"
+)
+QUIET = "-output_every 1000 -checkpoint_every 0"
+
+
+def run_plain(folder: Path, options: str) -> Run:
+    """A run with the program's own defaults, on one rank."""
+    done = mpirun([PETVES, "-output_dir", str(folder), *options.split()], 1)
+    assert done.returncode == 0, done.stderr
+    return Run(folder, done.returncode, done.stdout, [])
+
+
+def radius(reduced_area: float) -> float:
+    """R0 of unit area."""
+    return (1 / (np.pi * reduced_area)) ** 0.5
+
+
+def measured(table: str, value: str) -> float:
+    """Worst error of a table of the calibration at a value."""
+    with CALIBRATION.open() as file:
+        errors = [
+            float(row["error"])
+            for row in csv.DictReader(file)
+            if row["table"] == table and float(row["value"]) == float(value)
+        ]
+    assert errors, (table, value)
+    return max(errors)
+
+
+def settings(text: str) -> dict[str, tuple[str, str]]:
+    """Value and reason of each line that -scheme_auto prints."""
+    return {name: (value, why) for name, value, why in re.findall(r"^  (-\S+) +(\S+) +(.*)$", text, re.M)}
+
+
+@pytest.mark.parametrize("wanted", WANTED)
+def test_choice_is_what_was_measured(wanted, tmp_path):
+    """Each printed error is the table's worst at the value chosen; those of steps and solver leave room for the grid's."""
+    run = run_plain(tmp_path, f"{REST} {QUIET} -vesicle_area 1 -scheme_auto {wanted} -time_end 0")
+    chosen = settings(run.stdout)
+    relaxation = radius(0.7) ** 3 / 0.01
+    for name, table, scale in (
+        ("-time_adapt_tol", "adapt_tol", 1),
+        ("-coupled_ksp_rtol", "ksp_rtol", 1),
+        ("-time_adapt_max_step", "max_step", relaxation),
+    ):
+        value, why = chosen[name]
+        printed = float(re.search(r"leaves? up to (\S+)", why)[1])
+        if scale == 1:
+            worst = measured(table, value)
+        else:  # of an ellipse of 1e-3 shorter edges: the printed multiple of nu R0^3/c_b
+            multiple = float(why.split()[0])
+            assert float(value) == pytest.approx(multiple * relaxation, rel=0.02)
+            worst = measured(table, str(multiple))
+        assert printed == pytest.approx(worst, rel=0.06), name
+        assert worst <= wanted / 2, name
+    assert chosen["-scheme_order"][0] == "2" and chosen["-time_adapt"][0] == "error"
+    assert chosen["-delta_type"][0] == "cbs54" and chosen["-vesicle_spacing"][0] == "1.5"
+
+
+@pytest.mark.parametrize(
+    "wanted, cells, reduced_area, chi",
+    [(0.1, 40, 0.7, 10), (1e-2, 64, 0.5, 1), (1e-2, 64, 0.7, 10), (1e-2, 72, 0.9, 10), (1e-3, 192, 0.7, 10)],
+)
+def test_tank_treading_within_the_wanted_error(wanted, cells, reduced_area, chi, tmp_path):
+    """Angle and frequency in the 8 x 8 box against the boundary integral, on a grid that the program calls enough."""
+    bending = radius(reduced_area) ** 3 / chi
+    options = f"{BOX} {QUIET} -domain_cells {cells},{cells} -vesicle_reduced_area {reduced_area} -time_end 12"
+    run = run_plain(tmp_path, f"{options} -vesicle_bending {bending!r} -scheme_auto {wanted}")
+    assert wanted == 0.1 or ": enough\n" in run.stdout
+    angle, frequency = paper.SHEAR["box"][reduced_area, chi]
+    found = run.series["inclination"][-1] / np.pi, run.series["frequency"][-1]
+    print(f"{found[0] / angle - 1:+.2e} {found[1] / frequency - 1:+.2e} in {len(run.series['step']) - 1} steps")
+    np.testing.assert_allclose(found, (angle, frequency), rtol=wanted)
+
+
+@pytest.mark.parametrize("wanted", (1e-2, 1e-3))
+def test_shape_at_rest_within_the_wanted_error(wanted, tmp_path):
+    """Energy of the shape at rest, V = 0.7, against the boundary integral's."""
+    end = 20 * radius(0.7) ** 3 / 0.01
+    run = run_plain(tmp_path, f"{REST} {QUIET} -vesicle_area 1 -vesicle_angle 90 -time_end {end} -scheme_auto {wanted}")
+    found = run.series["energy_bending"][-1] * radius(0.7) / 0.01
+    print(f"{found / paper.REST[0.7][0] - 1:+.2e} in {len(run.series['step']) - 1} steps")
+    assert found == pytest.approx(paper.REST[0.7][0], rel=wanted)
+
+
+def test_what_is_given_stays(tmp_path):
+    """Options that the user gives win and are called theirs; the resolved options repeat the run."""
+    given = "-time_adapt_tol 0.02 -coupled_ksp_rtol 1e-7 -vesicle_spacing 1.25"
+    base = f"{REST} {QUIET} -vesicle_area 1 -time_end 3"
+    run = run_plain(tmp_path / "a", f"{base} {given} -scheme_auto 1e-2")
+    chosen = settings(run.stdout)
+    for name, value in zip(given.split()[::2], given.split()[1::2]):
+        assert float(chosen[name][0]) == float(value) and chosen[name][1] == "yours"
+    again = run_plain(tmp_path / "b", f"-options_file {run.folder}/resolved.opts -output_dir {tmp_path}/b")
+    lines = [set((folder / "resolved.opts").read_text().split("\n")) for folder in (run.folder, again.folder)]
+    assert {line.split()[0] for line in lines[0] ^ lines[1]} == {"-output_dir"}
+    for name in ("time", "energy_bending", "nsolve"):
+        np.testing.assert_array_equal(run.series[name], again.series[name])
+
+
+def test_coarse_grid_is_called_so(tmp_path):
+    """32 cells in a box of 8 are too coarse for 1 percent: the cells a radius that it takes are named."""
+    options = f"{BOX} {QUIET} -vesicle_area 1 -time_end 0 -scheme_auto 1e-2"
+    run = run_plain(tmp_path / "coarse", f"{options} -domain_cells 32,32")
+    needs = float(re.search(r"TOO COARSE for 0.01, take R0/h = (\S+)", run.stdout)[1])
+    cells = 8 * int(np.ceil(needs * 8 / radius(0.7) / 8))
+    fine = run_plain(tmp_path / "fine", f"{options} -domain_cells {cells},{cells}")
+    assert ": enough\n" in fine.stdout
+
+
+def test_last_steps_are_of_one_size(tmp_path):
+    """-time_adapt error does not end with a sliver of a step, and -time_adapt_max_step is kept."""
+    for end in (0.1, 0.1234, 0.131):
+        run = run_plain(
+            tmp_path / f"{end}",
+            f"-domain_cells 32,32 {QUIET} -time_adapt error -time_adapt_max_step 0.01 -time_end {end}",
+        )
+        dt = run.series["dt"]
+        assert run.series["time"][-1] == pytest.approx(end, abs=1e-14)
+        assert dt.max() <= 0.01 * (1 + 1e-12) and dt.max() > 0.005, "steps are -time_step times powers of sqrt(2)"
+        assert dt[-1] > 0.49 * dt[-3], dt[-4:]
