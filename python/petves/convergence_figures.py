@@ -27,13 +27,13 @@ def end_figure(results: Results, folder: Path, kind: str, quick: bool) -> list[s
     theirs = results.derive(name, split_options(kind, n), lambda: _kept(split_state(results, kind, n)))
     ours = results.get(Case(f"figure_{kind}_ours", option_file(SETTINGS[kind]) | QUIET, _ours, ranks=1))
     number = {"relax": 3, "shear": 4}[kind]
-    figure, ((left, right),) = grid_figure(11, 4.6, 1, 2, equal=kind == "shear")
+    figure, ((left, right),) = grid_figure(12, 5.2 if kind == "shear" else 4.6, 1, 2, equal=False)
     if kind == "shear":
         edges = np.linspace(-1, 1, BLOCKS + 1)
         pressure = np.asarray(theirs["p"])
         high = np.abs(pressure).max()
         mesh = left.pcolormesh(edges, edges, pressure, cmap="RdBu_r", vmin=-high, vmax=high, rasterized=True)
-        figure.colorbar(mesh, ax=left, label="pressure $p$")
+        figure.colorbar(mesh, ax=left, label="pressure $p$", location="bottom", shrink=0.6)
         at = (np.arange(ARROWS) + 0.5) * 2 / ARROWS - 1
         left.quiver(at, at, theirs["u"], theirs["v"], scale=14, width=0.003)
     lines = membrane(left, theirs["markers"], theirs["tension"], before=0.5)
@@ -97,7 +97,7 @@ def cost(results: Results, folder: Path, quick: bool) -> list[str]:
     rows = [[LABELS[k].replace("$", ""), *(f"{s:.4f}, {count:.0f}" for s, count in row)] for k, row in found.items()]
     write_csv(folder / "fig5_cost.csv", ["cells", *step], [[a, *b] for a, b in zip(size, zip(*step.values()))])
     about = (
-        "Section 5.3 with 1/h markers, one rank. Processor seconds, and scalar fast solves, of a step near the start (a late one has fewer:\n"
+        "Section 5.3 with 1/h markers, one rank, a shared machine. Processor seconds, and scalar fast solves, of a step near the start (a late one has fewer:\n"
         "the bending solve has less to do): of a longer run less a shorter one. In all: times 5/dt, so N^(3/2) log N where a step\n"
         "costs N log N; the paper calls both linearithmic. A step costs more than that by the solves that it needs.\n"
     )
