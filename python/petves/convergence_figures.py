@@ -97,9 +97,9 @@ def cost(results: Results, folder: Path, quick: bool) -> list[str]:
     rows = [[LABELS[k].replace("$", ""), *(f"{s:.4f}, {count:.0f}" for s, count in row)] for k, row in found.items()]
     write_csv(folder / "fig5_cost.csv", ["cells", *step], [[a, *b] for a, b in zip(size, zip(*step.values()))])
     about = (
-        "Section 5.3 with 1/h markers, one rank, a shared machine. Processor seconds, and scalar fast solves, of a step near the start (a late one has fewer:\n"
-        "the bending solve has less to do): of a longer run less a shorter one. In all: times 5/dt, so N^(3/2) log N where a step\n"
-        "costs N log N; the paper calls both linearithmic. A step costs more than that by the solves that it needs.\n"
+        "Section 5.3 with 1/h markers, one rank, a shared machine. Processor seconds, and scalar fast solves, of a step near the start (a\n"
+        "late one has fewer: the bending solve has less to do): of a longer run less a shorter one. In all: times 5/dt, so N^(3/2) log N\n"
+        "where a step costs N log N; the paper calls both linearithmic. A step costs more than that by the solves that it needs.\n"
     )
     head = ["", *(f"{2 * n}^2" for n in cells)]
     return [
