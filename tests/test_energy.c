@@ -140,9 +140,8 @@ static PetscErrorCode CheckLaw(const char scheme[], PetscReal bending, PetscReal
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Order 2 with the length target has no law for E_K + E_B, whose rise is reported (prototype, and with -scheme_startup
-   euler here: up to 4e-3; 2e-2 with the graded start, at c_b = 1, dt = 1/32). The bound is that it stays below where it
-   began. */
+/* Order 2 with the length target has no law for E_K + E_B, whose rise is reported (up to 6e-3 in a step, at c_b = 1, dt
+   = 1/32). The bound is that it stays below where it began. */
 static PetscErrorCode ReportLengthTarget(PetscReal bending, PetscReal dt) {
   Law law = {0};
   PetscFunctionBeginUser;

@@ -62,7 +62,26 @@ static PetscErrorCode CheckLongWaves(void) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Theta = Theta^T, and x^T Theta x >= 0. */
+/* max |n^T Theta| over max |Theta|, n the normals: of spectral edges, or of fourth-order differences. */
+static PetscReal Flux(Membrane m, const PetscScalar X[], const PetscReal Theta[], PetscReal largest) {
+  const PetscInt M = m->M;
+  PetscReal worst = 0, *e = m->work;
+  MembraneEdges(m, 0, X, e);
+  for (PetscInt k = 0; k < M && m->derivative != DERIVATIVE_SPECTRAL; k++)
+    for (PetscInt c = 0; c < 2; c++)
+      e[2 * k + c] = 8 * (X[2 * ((k + 1) % M) + c] - X[2 * ((k + M - 1) % M) + c]) -
+                     (X[2 * ((k + 2) % M) + c] - X[2 * ((k + M - 2) % M) + c]);
+  for (PetscInt j = 0; j < 2 * M; j++) {
+    PetscReal flux = 0;
+    for (PetscInt k = 0; k < M; k++)
+      flux += (e[2 * k + 1] * Theta[2 * k * 2 * M + j] - e[2 * k] * Theta[(2 * k + 1) * 2 * M + j]) /
+              PetscSqrtReal(PetscSqr(e[2 * k]) + PetscSqr(e[2 * k + 1]));
+    worst = PetscMax(worst, PetscAbsReal(flux) / largest);
+  }
+  return worst;
+}
+
+/* Theta = Theta^T, x^T Theta x >= 0, and no flux through the membrane. */
 static PetscErrorCode CheckTheta(SelfMobilityType type, const char *derivative, const char *kernel, PetscReal a0) {
   const char *name = type == SELF_LOCAL ? "local" : "symbol";
   char options[512];
@@ -87,6 +106,10 @@ static PetscErrorCode CheckTheta(SelfMobilityType type, const char *derivative, 
       largest = PetscMax(largest, PetscAbsReal(Theta[i * n + j]));
       asymmetry = PetscMax(asymmetry, PetscAbsReal(Theta[i * n + j] - Theta[j * n + i]));
     }
+  PetscCall(VecGetArrayRead(w.X, &X));
+  const PetscReal flux = Flux(w.membrane, X, Theta, largest);
+  PetscCall(VecRestoreArrayRead(w.X, &X));
+  CHECK(flux < 1e-13, "%s, %s, %s, a0 = %g: no flux through the membrane, %.1e", name, kernel, derivative, a0, flux);
   for (int trial = 0; trial < 50; trial++) {
     PetscReal *x, product = 0, square = 0;
     PetscCall(PetscMalloc1(n, &x));

@@ -3,8 +3,9 @@
 import csv
 import sys
 
+import numpy as np
 import pytest
-from conftest import PETVES, ROOT
+from conftest import PETVES, ROOT, run_petves
 
 sys.path.insert(0, str(ROOT / "python"))
 from petves import stability as report  # noqa: E402
@@ -116,6 +117,32 @@ def test_a_handful_of_cells(tmp_path, monkeypatch):
     (tmp_path / "stability.csv").write_text(text.replace("-vesicle_bending 1.0 -time_step 0.03125", "other", 1))
     report.stability(tmp_path, maps=maps)
     assert len(ran) == 1 and read(tmp_path) == rows
+
+
+@pytest.mark.parametrize("dt", [1 / 8, 1 / 32])
+def test_stiff_membranes_keep_area_length_and_shape(dt, tmp_path):
+    """c_b = 100, 250 and 60 times the membrane's own time a step: area and edges stay, energy rises by 2e-3 at most (the
+    length target has no energy law) and the shape at the end is that of c_b = 1, its energy to 1e-3; the user is told.
+    """
+    membrane = "-scheme_type coupled -delta_type cbs54 -membrane_derivative spectral -coupling_self_mobility symbol"
+    scene = f"{membrane} -scheme_area_target true -vesicle_semi_axes 0.2,0.5 -domain_cells 32,32 -vesicle_bending"
+    run = run_petves(tmp_path / "stiff", f"{scene} 100 -time_step {dt} -time_end {60 * dt}")
+    series = run.series
+    assert abs(series["area_error"]).max() < 1e-12 and abs(series["length_error"]).max() < 1e-12
+    energy = series["energy_bending"] + series["energy_kinetic"]
+    assert (energy - np.minimum.accumulate(energy)).max() < 2e-3 * energy[0]
+    soft = run_petves(tmp_path / "soft", f"{scene} 1 -time_step {1 / 64} -time_end 4").series
+    assert abs(series["energy_bending"][-1] / (100 * soft["energy_bending"][-1]) - 1) < 1e-3
+    warnings = [line for line in run.stdout.splitlines() if "has been put right" in line]
+    assert len(warnings) == 1, run.stdout
+
+
+def test_strong_shear_at_a_quarter_of_the_rate(monkeypatch):
+    """chi = 1000, a strain of 1/4 a step, once stopped by the limit of the length."""
+    monkeypatch.setenv("PETVES", PETVES)
+    cell = study.run_cell("coupled", (study.shear(1 / 4, 0.7, 1000),))
+    assert cell["mark"] == "ok" and cell["steps"] == study.STEPS
+    assert cell["drift"] < 1e-12 and cell["length_error"] < 2e-3  # 1e-3 is what is left alone
 
 
 def test_time_ends_the_maps_and_says_so(tmp_path, monkeypatch):

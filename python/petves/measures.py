@@ -10,12 +10,12 @@ import numpy as np
 class Measures:
     """Measures after the last step; with several vesicles totals, worst values or means, and `each` for one by one."""
 
-    _rows: list[np.ndarray]
+    _rows: list[tuple[float, ...]]
     _columns: dict[str, int]
 
     def measure(self, name: str) -> float:
         """Return the value of a column of series.csv after the last step."""
-        return float(self._rows[-1][self._columns[name]])
+        return self._rows[-1][self._columns[name]]
 
     def each(self, name: str) -> np.ndarray:
         """Return a vesicle column's values of the single vesicles, shape (vesicles,)."""

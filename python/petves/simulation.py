@@ -84,7 +84,7 @@ class Simulation(Measures):
         self._ended = True  # nothing to write yet
         self._temporary = False
         self._failed: list[BaseException] = []  # by the flow
-        self._rows: list[np.ndarray] = []
+        self._rows: list[tuple[float, ...]] = []
         self._comm = comm or PETSc.COMM_WORLD
         self._flow = Flow(0) if flow is None else _flow_function(flow, self._failed)
         if flow is not None:
@@ -164,6 +164,7 @@ class Simulation(Measures):
         self._columns: dict[str, int] = {}
         while not self._lib.SimulationGetColumn(self._handle, len(self._columns), ctypes.byref(name)) and name.value:
             self._columns[name.value.decode()] = len(self._columns)
+        self._row = (ctypes.c_double * len(self._columns))()
 
     def _call(self, function: str, *arguments: Any) -> None:
         """Call a C function with this simulation's options database; raise what went wrong."""
@@ -195,9 +196,8 @@ class Simulation(Measures):
         return self._handle
 
     def _record(self) -> None:
-        row = np.empty(len(self._columns))
-        self._lib.SimulationGetRow(self._handle, -1, row.ctypes.data_as(ctypes.POINTER(ctypes.c_double)))
-        self._rows.append(row)
+        self._lib.SimulationGetRow(self._handle, -1, self._row)
+        self._rows.append(tuple(self._row))
 
     # -- stepping ------------------------------------------------------------------------------------------------------
 

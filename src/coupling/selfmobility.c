@@ -208,6 +208,25 @@ static void FillTheta(SelfMobility s, PetscInt v, const PetscReal t[], PetscReal
     }
 }
 
+/* Theta := P Theta P, P = I - n n^T/M for the normals n: no flux through the membrane. A symbol has none (dN is zero
+   for wave 0), but going between two of them with the angle lets one in, and a stiff membrane's pressure drives it. */
+static void TakeOffFlux(Block *b, const PetscReal t[], PetscReal normal[], PetscReal moved[]) {
+  const PetscInt n = 2 * b->n;
+  PetscReal mean = 0;
+  for (PetscInt k = 0; k < n; k += 2) {
+    normal[k] = t[k + 1] / PetscSqrtReal(b->n);
+    normal[k + 1] = -t[k] / PetscSqrtReal(b->n);
+  }
+  for (PetscInt k = 0; k < n; k++) {
+    moved[k] = 0;
+    for (PetscInt l = 0; l < n; l++) moved[k] += b->Theta[k * n + l] * normal[l];
+    mean += normal[k] * moved[k];
+  }
+  for (PetscInt k = 0; k < n; k++) moved[k] -= 0.5 * mean * normal[k];
+  for (PetscInt k = 0; k < n; k++)
+    for (PetscInt l = 0; l < n; l++) b->Theta[k * n + l] -= moved[k] * normal[l] + normal[k] * moved[l];
+}
+
 /* x := x without its mean over the markers, step by step through pairs. */
 static void TakeOffMean(PetscInt n, PetscInt stride, PetscReal x[]) {
   for (int c = 0; c < 2; c++) {
@@ -244,6 +263,7 @@ PetscErrorCode SelfMobilitySetMarkers(SelfMobility s, PetscReal a0, const PetscS
   for (PetscInt v = 0; v < m->vesicles; v++) {
     Tangents(s, v, X, s->block[v].work);
     FillTheta(s, v, s->block[v].work, s->block[v].second);
+    if (s->type == SELF_SYMBOL) TakeOffFlux(&s->block[v], s->block[v].work, s->block[v].second, s->block[v].change);
     if (m->bending > 0) PetscCall(FactorForce(s, v));
   }
   PetscCall(PetscLogEventEnd(event, 0, 0, 0, 0));

@@ -63,34 +63,6 @@ void MembraneMeasure(Membrane m, PetscInt v, const PetscScalar X[], Measures *ou
   out->edge_ratio = shortest > 0 ? longest / shortest : PETSC_MAX_REAL;
 }
 
-PetscReal MembraneRestoreArea(Membrane m, PetscInt v, PetscScalar X[], PetscScalar X_old[]) {
-  const PetscInt k0 = m->start[v], n = m->start[v + 1] - k0;
-  PetscScalar *e = m->work;
-  PetscReal shift = 0;
-  for (int it = 0; it < 6; it++) {
-    PetscReal size = 0, d;
-    Measures measures;
-    MembraneMeasure(m, v, X, &measures);
-    if (PetscAbsReal(measures.area / m->A0[v] - 1) < 1e-13) break;
-    MembraneEdges(m, v, X + 2 * k0, e);
-    if (m->derivative != DERIVATIVE_SPECTRAL) /* half the chord from k-1 to k+1: the mean of two edges */
-      for (PetscInt k = 0; k < n; k++)
-        for (int c = 0; c < 2; c++) e[2 * k + c] = 0.5 * (X[2 * m->next[k0 + k] + c] - X[2 * m->previous[k0 + k] + c]);
-    for (PetscInt k = 0; k < n; k++) size += PetscSqrtReal(PetscSqr(e[2 * k]) + PetscSqr(e[2 * k + 1]));
-    d = (m->A0[v] - measures.area) / size; /* dA/dshift = SUM |e| */
-    for (PetscInt k = 0; k < n; k++) {
-      const PetscReal length = PetscSqrtReal(PetscSqr(e[2 * k]) + PetscSqr(e[2 * k + 1]));
-      const PetscReal normal[2] = {e[2 * k + 1] / length, -e[2 * k] / length};
-      for (int c = 0; c < 2; c++) {
-        X[2 * (k0 + k) + c] += d * normal[c];
-        X_old[2 * (k0 + k) + c] += d * normal[c];
-      }
-    }
-    shift += d;
-  }
-  return shift;
-}
-
 PetscErrorCode MembraneFrequency(Membrane m, PetscInt v, const PetscScalar X[], const PetscScalar U[], PetscReal *f) {
   const PetscInt first = m->start[v], n = m->start[v + 1] - first;
   PetscReal mean[2] = {0, 0}, *T, sum = 0;

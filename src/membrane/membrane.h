@@ -81,6 +81,13 @@ PETSC_EXTERN PetscErrorCode MembraneFrequency(Membrane membrane, PetscInt vesicl
 /* MembraneNormalSpeed - max over the markers of |u.n|, n the normal of the chord from X_{k-1} to X_{k+1}. */
 PETSC_EXTERN PetscReal MembraneNormalSpeed(Membrane membrane, const PetscScalar X[], const PetscScalar U[]);
 
+/* MembraneRestoreEdges - where an edge of one vesicle is off by more than tolerance (relative), move its markers as
+   little as possible until all edges have the length ds and the area is what it was: Newton (CurveFit). Nothing moves
+   where that does not converge, as on a circle, which has no freedom. error: the largest one put right, 0 when nothing
+   has moved. X: all markers [2M]. */
+PETSC_EXTERN PetscErrorCode MembraneRestoreEdges(Membrane membrane, PetscInt vesicle, PetscReal tolerance,
+                                                 PetscScalar X[], PetscReal *error);
+
 /* MembraneRestoreArea - shift one vesicle's markers by a uniform distance along the vertex normals (of the chord from
    X_{k-1} to X_{k+1}, or of the spectral edge) until its area is A0: Newton on the area. The old markers move alike.
    Returns the shift (length). X, X_old: all markers [2M]. */

@@ -88,9 +88,6 @@ PetscErrorCode SceneSetInertia(Scene scene, const Shape *shape) {
              "-fluid_inertia convective: the background flow is not periodic in %c, so it cannot carry the disturbance "
              "across that boundary; allowed: -domain_bc_%c wall, or -fluid_inertia none or unsteady",
              dir ? 'y' : 'x', dir ? 'y' : 'x');
-  PetscCheck(
-      scene->inertia != INERTIA_CONVECTIVE || scene->flow.type != FLOW_CUSTOM, scene->comm, PETSC_ERR_USER_INPUT,
-      "-fluid_inertia convective: not with -flow_type custom, whose gradient is not known; allowed: none, unsteady");
   *scene->warning = 0;
   if (scene->inertia == INERTIA_UNSTEADY && scene->reynolds > CARRIED_REYNOLDS && carried > CARRIED_REYNOLDS)
     PetscCall(PetscSNPrintf(scene->warning, sizeof(scene->warning),

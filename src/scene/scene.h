@@ -191,10 +191,11 @@ PETSC_EXTERN PetscErrorCode CurveEqualChords(const Curve *curve, PetscInt M, Pet
 /* CurveEqualArcs - the same with M equal arcs: the edges of the spectral derivative. */
 PETSC_EXTERN PetscErrorCode CurveEqualArcs(const Curve *curve, PetscInt M, PetscReal X[]);
 
-/* CurveFitSpectral - move M markers X[2M] as little as possible (least squares) until all their spectral edges dX/dk
-   are length/M long and their spectral curve encloses the area: what M markers sample of a curve with sharper tips than
-   they resolve has neither its length nor its area (equalarcs.c). A circle, which has no freedom left, stays. */
-PETSC_EXTERN PetscErrorCode CurveFitSpectral(PetscInt M, PetscReal length, PetscReal area, PetscReal X[]);
+/* CurveFit - move M markers X[2M] as little as possible (least squares) until all their edges, chords or spectral ones
+   dX/dk, are length/M long and the polygon or the spectral curve encloses the area: Newton, at most `most` steps. left:
+   the largest relative error of squared edges and area. A circle, which has no freedom left, stays. */
+PETSC_EXTERN PetscErrorCode CurveFit(PetscInt M, PetscBool spectral, PetscReal length, PetscReal area, PetscReal X[],
+                                     PetscInt most, PetscReal *left);
 
 /* CurveFromPoints - closed periodic cubic spline through n points xy[2n], by chord length. */
 PETSC_EXTERN PetscErrorCode CurveFromPoints(PetscInt n, const PetscReal xy[], Curve *curve);

@@ -1,8 +1,9 @@
 /* The initial markers of a scene: equal edges on an ellipse or on a curve from a file. */
 #include "scene/scene.h"
 
-#define MANY 100    /* markers, from which on it matters that Fourier transforms of them are fast */
-#define LEEWAY 0.04 /* by which their number may differ for it */
+#define MAX_NEWTON 20 /* of the first markers; four are usual */
+#define MANY 100      /* markers, from which on it matters that Fourier transforms of them are fast */
+#define LEEWAY 0.04   /* by which their number may differ for it */
 
 /* The odd number with prime factors up to 13 that is nearest to M, if one is near. */
 static PetscInt FastOdd(PetscInt M) {
@@ -122,11 +123,12 @@ PetscErrorCode ShapeCreate(Scene scene, PetscReal default_spacing, PetscReal lea
   }
   PetscCall(PetscMalloc1(2 * shape->start[shape->vesicles], &shape->X));
   for (PetscInt v = 0; v < shape->vesicles; v++) {
-    PetscReal *X = shape->X + 2 * shape->start[v];
+    PetscReal *X = shape->X + 2 * shape->start[v], left;
     const PetscInt M = shape->start[v + 1] - shape->start[v];
     if (scene->derivative == DERIVATIVE_SPECTRAL) {
       PetscCall(CurveEqualArcs(&curve[v], M, X));
-      PetscCall(CurveFitSpectral(M, CurveLength(&curve[v]), CurveArea(&curve[v]), X));
+      /* what M markers sample of a curve with sharper tips than they resolve has neither its length nor its area */
+      PetscCall(CurveFit(M, PETSC_TRUE, CurveLength(&curve[v]), CurveArea(&curve[v]), X, MAX_NEWTON, &left));
     } else
       PetscCall(CurveEqualChords(&curve[v], M, X));
     PetscCall(CurveDestroy(&curve[v]));

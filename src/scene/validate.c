@@ -30,6 +30,9 @@ static PetscErrorCode CheckFlow(Scene scene) {
   const PetscBool x_periodic = scene->bc[0] == BC_PERIODIC, y_periodic = scene->bc[1] == BC_PERIODIC;
   const PetscInt type = scene->flow.type;
   PetscFunctionBeginUser;
+  PetscCheck(
+      scene->inertia != INERTIA_CONVECTIVE || type != FLOW_CUSTOM, scene->comm, PETSC_ERR_USER_INPUT,
+      "-fluid_inertia convective: not with -flow_type custom, whose gradient is not known; allowed: none, unsteady");
   if (scene->flow.form != FORM_TOTAL || type == FLOW_QUIESCENT) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCheck(type != FLOW_CUSTOM, scene->comm, PETSC_ERR_USER_INPUT,
              "-flow_form total: not with -flow_type custom; allowed: -flow_form disturbance");

@@ -2,6 +2,10 @@
    `coupled` solves it by preconditioned FGMRES on its forces, `direct` by a sparse LU factorisation. */
 #include "scheme/coupled.h"
 
+/* Relative errors of an edge above which all are put right after a step, and above which that is worth a warning. */
+#define EDGE_TOLERANCE 1e-3
+#define EDGE_WARNING 0.01
+
 /* S^T u = g: the new edges get the length ds, linearised at the extrapolated edge e*:
    e*.(dU)_k = a0 [(ds^2 - |e*|^2)/2 - e*.(ehat - e*)], the background's own stretching taken off (already in g). */
 static PetscErrorCode LengthTarget(Scheme s, const Coupled *d, PetscReal a0) {
@@ -130,16 +134,40 @@ PetscErrorCode CoupledAttempt(Scheme s, PetscReal dt, PetscBool *solved) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The area target: a uniform normal shift of the markers, old ones alike. */
-static PetscErrorCode RestoreArea(Scheme s, Coupled *d) {
-  PetscScalar *X, *X_old;
+/* Once a run: edges as wrong as this mean a step too large for what it follows. */
+static PetscErrorCode WarnOfEdges(Scheme s, Coupled *d, PetscInt v, PetscReal error) {
   PetscFunctionBeginUser;
+  if (d->warned || error < EDGE_WARNING) PetscFunctionReturn(PETSC_SUCCESS);
+  d->warned = PETSC_TRUE;
+  PetscCall(PetscPrintf(s->scene->comm,
+                        "petves: warning: vesicle %" PetscInt_FMT ": an edge was off by %.2g of its length after step "
+                        "%" PetscInt_FMT " and has been put right; try a smaller -time_step\n",
+                        v + 1, (double)error, s->state.step + 1));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The area target, a uniform normal shift of the markers, old ones alike; and what the length target leaves of large
+   steps. There the old markers stay: X* and Xhat then go along the constraints and do not carry on what was put right.
+   A shift by half an edge has lost the shape, and putting edges right would find another one. */
+static PetscErrorCode RestoreMarkers(Scheme s, Coupled *d) {
+  const Membrane m = s->membrane;
+  PetscScalar *X, *X_old, *unmoved;
+  PetscFunctionBeginUser;
+  PetscCall(VecCopy(d->old.X, s->work_markers));
   PetscCall(VecGetArray(s->state.X, &X));
   PetscCall(VecGetArray(d->old.X, &X_old));
-  for (PetscInt v = 0; v < s->membrane->vesicles; v++) {
-    const PetscReal shift = MembraneRestoreArea(s->membrane, v, X, X_old);
+  PetscCall(VecGetArray(s->work_markers, &unmoved));
+  for (PetscInt v = 0; v < m->vesicles; v++) {
+    const PetscInt first = 2 * m->start[v], last = 2 * m->start[v + 1];
+    const PetscReal shift = d->area_target ? MembraneRestoreArea(m, v, X, X_old) : 0;
+    PetscReal error;
     if (PetscAbsReal(shift) > PetscAbsReal(s->report.area_shift)) s->report.area_shift = shift;
+    if (!d->length_target || PetscAbsReal(shift) > 0.5 * m->ds[v]) continue;
+    PetscCall(MembraneRestoreEdges(m, v, EDGE_TOLERANCE, X, &error));
+    if (error > 0) PetscCall(PetscArraycpy(X_old + first, unmoved + first, last - first));
+    PetscCall(WarnOfEdges(s, d, v, error));
   }
+  PetscCall(VecRestoreArray(s->work_markers, &unmoved));
   PetscCall(VecRestoreArray(d->old.X, &X_old));
   PetscCall(VecRestoreArray(s->state.X, &X));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -160,7 +188,7 @@ static PetscErrorCode Advance(Scheme s, Coupled *d, PetscReal dt) {
   q->walls = next.walls;
   q->dt_last = dt;
   s->has_old = PETSC_TRUE;
-  if (d->area_target && s->coupling) PetscCall(RestoreArea(s, d));
+  if (s->coupling) PetscCall(RestoreMarkers(s, d));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -15,6 +15,7 @@ typedef struct {
   PetscReal done;        /* of the step under way: parts of a graded start (time) */
   PetscInt order;
   PetscBool length_target, area_target;
+  PetscBool warned; /* of edges put right */
   StepControl control;
   Vec made_at;        /* markers at which the saddle's dense blocks were made */
   Vec f;              /* momentum's right-hand side */
