@@ -111,7 +111,7 @@ coverage: ## line coverage of src/ by the tests (needs gcovr)
 	@$(MAKE) --no-print-directory test COVERAGE=1
 	gcovr --root . --filter src/ --exclude-unreachable-branches build-coverage
 
-reproduce: deps ## the paper's scenes, tables and figures: docs/reproduction.md (a day; QUICK=1: minutes)
+reproduce: deps ## the paper's scenes, tables and figures: docs/reproduction.md (a day; QUICK=1: 10 minutes)
 	@$(MAKE) --no-print-directory all
 	PETVES=$(CURDIR)/$(BIN)/petves PYTHONPATH=python $(PYTHON) -m petves reproduce docs/reproduction
 

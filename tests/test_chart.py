@@ -120,4 +120,4 @@ def test_a_handful_of_points(tmp_path, monkeypatch):
     report.chart(tmp_path, scenes=(scene,), finest=32)
     assert (tmp_path / "chart.csv").read_text() == kept
     results = Results(tmp_path / "chart.json", 1)
-    assert all(entry["commit"] and entry["cpu_seconds"] > 0 for entry in results.cases.values())
+    assert all(entry["commit"] and entry["measures"]["cpu_seconds"] > 0 for entry in results.cases.values())

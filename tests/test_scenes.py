@@ -7,6 +7,7 @@ import pytest
 from conftest import PETVES, ROOT, Run, mpirun
 
 from petves.convergence import at, differences
+from petves.run import Run as Files
 from petves.scene_figures import keller_skalak
 from petves.scenes import option_file, radius
 
@@ -58,6 +59,16 @@ def test_poiseuille_migrates_inwards(sign, tmp_path):
     assert height[[0, -1]] * sign == pytest.approx([1, 0.505], abs=0.05)
 
 
+@pytest.mark.parametrize("derivative", ["spectral", "fd"])
+def test_tension_is_where_it_is_said_to_be(derivative, tmp_path):
+    """The relaxing ellipse is its own mirror image, so tension against the phase angle is even; half an edge off it is not."""
+    run_file("relax.opts", tmp_path, f"-membrane_derivative {derivative}")
+    run = Files.read(tmp_path)
+    angle, tension = run.phase_angle(-1), run.tension[-1]
+    there = np.interp(-angle, angle, tension, period=2 * np.pi)
+    assert np.abs(there - tension).max() < 0.02 * np.ptp(tension)
+
+
 def test_option_files_are_read():
     """Comments and the output folder are left out; values keep their text."""
     options = option_file("shear")
@@ -82,7 +93,7 @@ def _state(cells, markers, shift=0.0):
     turn = 2 * np.pi * np.arange(markers) / markers
     curve = np.stack([0.2 * np.cos(turn) + shift, 0.5 * np.sin(turn)], axis=1)
     tension = np.cos(turn - np.pi / markers)  # at the edges' midpoints
-    return {"u": field, "v": field, "p": field, "markers": curve, "tension": tension, "omega": np.nan}
+    return {"u": field, "v": field, "p": field, "dp": field, "markers": curve, "tension": tension, "omega": np.nan}
 
 
 def test_differences_of_one_function_on_two_grids():
@@ -91,6 +102,8 @@ def test_differences_of_one_function_on_two_grids():
     errors = [differences(_state(n, n), fine, 2 / n) for n in (16, 32)]
     assert errors[0]["u"] < 2 * (np.pi / 128) ** 2 / 4 * 2 and errors[0]["u"] == pytest.approx(errors[1]["u"], rel=0.05)
     assert max(errors[0][name] for name in ("X", "Y", "sigma")) < 1e-6
+    slope = 0.5 * 2 * np.pi / 16 / 2**0.5 * 2.3**0.5  # of cos(turn), half an edge, in the L2 norm
+    assert errors[0]["sigma_half"] == pytest.approx(slope, rel=0.03)
     moved = differences(_state(32, 33, 0.01), fine, 1 / 16)
     perimeter = np.hypot(
         *np.diff(np.vstack([_state(32, 33)["markers"], _state(32, 33)["markers"][:1]]), axis=0).T

@@ -84,8 +84,7 @@ def start_seconds(results: Results, one: Scene) -> float:
     for repeat in range(3):
         case = one.case(point, repeat, {})
         still = Case(f"{one.name}_start_{repeat}", case.options | {"-time_end": "0"}, lambda series, folder: {}, 1)
-        results.get(still)
-        taken.append(results.cases[still.name]["cpu_seconds"])
+        taken.append(results.get(still)["cpu_seconds"])
     return min(taken)
 
 
@@ -101,7 +100,7 @@ def run_points(results: Results, one: Scene, points: tuple[Point, ...], repeat: 
     """Run the points of a scene in one round."""
     fine = results.get(one.fine()) if one.reference else {}
     for point in points:
-        if not repeat or results.cases[one.case(point, 0, fine).name]["cpu_seconds"] <= ONCE:
+        if not repeat or results.get(one.case(point, 0, fine))["cpu_seconds"] <= ONCE:
             results.get(one.case(point, repeat, fine))
 
 
@@ -113,8 +112,9 @@ def rows_of(results: Results, one: Scene, points: tuple[Point, ...]) -> list[Row
 def _row(results: Results, one: Scene, point: Point) -> Row:
     """Return what chart.csv says of a point, with the least CPU seconds of its runs."""
     cases = [one.case(point, repeat, {}) for repeat in range(ROUNDS)]
-    runs = [results.cases[case.name] for case in cases if results.has(case)]
-    found = runs[0]["measures"]
+    ran = [case for case in cases if results.has(case)]
+    runs = [results.get(case) for case in ran]
+    found = runs[0]
     row: Row = {"scene": one.name, "scheme": point.scheme, "cells": point.cells, "h": f"{one.width / point.cells:.6g}"}
     row |= {"dt": f"{point.dt:.6g}", "tolerance": f"{point.tolerance:.6g}"}
     errors = found.get("errors", {})
@@ -122,7 +122,7 @@ def _row(results: Results, one: Scene, point: Point) -> Row:
     row |= {name: found.get(name, "") for name in ("solves", "steps")}
     row |= {"cpu_seconds": min(run["cpu_seconds"] for run in runs), "runs": len(runs)}
     row["message"] = found.get("failed", "").split("; the last good state")[0]
-    return row | {"options": " ".join(f"{name} {value}" for name, value in runs[0]["options"].items())}
+    return row | {"options": " ".join(f"{name} {value}" for name, value in ran[0].options.items())}
 
 
 def finer(row: Row, other: Row) -> bool:

@@ -10,9 +10,9 @@ import numpy as np
 from petves.accuracy_studies import trigonometric
 from petves.paper import CELLS
 from petves.run import Run
-from petves.studies import ILU, MARKERS_TABLE_7, TIGHT, Case, Results, scene
+from petves.studies import ILU, MARKERS_TABLE_7, Case, Results, scene
 
-EULERIAN, LAGRANGIAN = ("u", "v", "p"), ("X", "Y", "sigma")
+EULERIAN, LAGRANGIAN = ("u", "v", "p", "dp"), ("X", "Y", "sigma", "sigma_half")
 QUICK_REFERENCE = {"relax": 256, "shear": 128}
 """1/h of the finer run in quick mode; 512 otherwise, as in the paper."""
 
@@ -20,10 +20,13 @@ State = dict[str, np.ndarray]
 
 
 def split_options(kind: str, n: int) -> dict[str, str]:
-    """Return section 5.2's run (relax, 1/h markers, dt = h/2) or 5.3's (shear, 1.5 h apart, dt = h/4) on h = 1/n."""
+    """Return section 5.2's run (relax, 1/h markers, dt = h/2) or 5.3's (shear, 1.5 h apart, dt = h/4) on h = 1/n.
+
+    GMRES stops at h^2, split's default. The state before the last step is saved too.
+    """
     markers = n if kind == "relax" else MARKERS_TABLE_7.get(n, 2 * MARKERS_TABLE_7[256])
-    tight = {"-tension_ksp_rtol": TIGHT, "-bending_ksp_rtol": TIGHT}
-    return scene(kind, n, markers, (0.5 if kind == "relax" else 0.25) / n) | ILU | tight
+    dt, end = (0.5, 1) if kind == "relax" else (0.25, 5)
+    return scene(kind, n, markers, dt / n) | ILU | {"-output_every": repr(end - dt / n)}
 
 
 def fine_options(kind: str) -> dict[str, str]:
@@ -36,10 +39,12 @@ def fine_options(kind: str) -> dict[str, str]:
 
 
 def state(series: dict[str, np.ndarray], folder: Path) -> State:
-    """Return the fields at cell centres, markers, tension and frequency at the end of a run."""
+    """Return what a run ends with: fields at cell centres, dp of the last two saved times, markers, tension, frequency."""
     run = Run.read(folder)
     u, v, p = run.fields(-1)
     last = {"markers": run.markers[-1], "tension": run.tension[-1], "omega": series["frequency"][-1]}
+    last["dp"] = p - run.fields(-2)[2]
+    last["dp"] -= last["dp"].mean()
     return {"u": u, "v": v, "p": p - p.mean()} | {key: np.asarray(value) for key, value in last.items()}
 
 
@@ -51,7 +56,10 @@ def at(values: np.ndarray, place: np.ndarray) -> np.ndarray:
 
 
 def differences(coarse: State, fine: State, h: float) -> dict[str, float]:
-    """Return L2 norms over the box (u, v, p) and along the membrane (X, Y, sigma), and |omega - omega_ref|."""
+    """Return L2 norms over the box (EULERIAN) and along the membrane (LAGRANGIAN), and |omega - omega_ref|.
+
+    sigma_half: tension of edges beside the finer run's half an edge further on.
+    """
     found = {}
     for name in EULERIAN:
         ratio, half = len(fine[name]) // len(coarse[name]), len(fine[name]) // len(coarse[name]) // 2
@@ -63,21 +71,22 @@ def differences(coarse: State, fine: State, h: float) -> dict[str, float]:
     position = coarse["markers"] - at(fine["markers"], np.arange(n) / n)
     edges = (np.arange(n) - 0.5) / n + 0.5 / m  # edge k lies before marker k
     pairs = [np.stack([x, 0 * x], axis=1) for x in (fine["tension"], coarse["tension"])]
-    tension = pairs[1][:, 0] - at(pairs[0], edges)[:, 0]
-    for name, values in zip(LAGRANGIAN, (*position.T, tension)):
+    tension = [pairs[1][:, 0] - at(pairs[0], edges + shift / n)[:, 0] for shift in (0, 0.5)]
+    for name, values in zip(LAGRANGIAN, (*position.T, *tension)):
         found[name] = np.sqrt((values**2).mean() * length)
     omega = abs(float(coarse["omega"] - fine["omega"]))
     return found | ({} if np.isnan(omega) else {"omega": omega})
 
 
-def reference(results: Results, name: str, options: dict[str, str]) -> State:
-    """Return the state of a reference run, kept in the folder fields/ beside the results; run it when it is not there."""
+def reference(results: Results, name: str, options: dict[str, str], keep: Callable = state) -> State:
+    """Return what `keep` takes of a reference run, from fields/ beside the results; run it when it is not there."""
     path = results.path.parent / "fields" / f"{name}.npz"
 
     def measure(series: dict[str, np.ndarray], folder: Path) -> dict[str, object]:
         path.parent.mkdir(exist_ok=True)
-        np.savez(path, **state(series, folder))
-        return {"steps": len(series["time"]) - 1, "step_seconds": series["wall"].sum()}
+        np.savez(path, **keep(series, folder))
+        ends = {key: abs(series[key][-1]) for key in ("area_error", "length_error")}
+        return {"steps": len(series["time"]) - 1} | ends | {"step_seconds": series["wall"].sum()}
 
     if not path.is_file():
         results.cases.pop(name, None)
@@ -85,36 +94,29 @@ def reference(results: Results, name: str, options: dict[str, str]) -> State:
     return dict(np.load(path))
 
 
-def split_case(results: Results, kind: str, n: int, finer: int) -> Case:
-    """Return the run on h = 1/n, measured against the same method on h = 1/finer and against the fine coupled run."""
-
-    def measure(series: dict[str, np.ndarray], folder: Path) -> dict[str, object]:
-        own = state(series, folder)
-        itself = reference(results, f"finest_{kind}_{finer}", split_options(kind, finer))
-        found = {"itself": differences(own, itself, 1 / n), "steps": len(series["time"]) - 1}
-        found["truth"] = differences(own, reference(results, f"truth_{kind}", fine_options(kind)), 1 / n)
-        ends = {key: abs(series[key][-1]) for key in ("area_error", "length_error")}
-        return found | ends | {"step_seconds": series["wall"].sum()}
-
-    return Case(f"convergence_{kind}_{n}_{finer}", split_options(kind, n), measure, ranks=1)
+def split_state(results: Results, kind: str, n: int) -> State:
+    """Return the end of the paper's run on h = 1/n."""
+    return reference(results, f"split_{kind}_{n}", split_options(kind, n))
 
 
-def ours(results: Results, kind: str, options: dict[str, str], name: str) -> Case:
-    """Return a run of the default scheme, measured against the fine coupled run."""
+def truth(results: Results, kind: str) -> State:
+    """Return the end of the fine coupled run."""
+    return reference(results, f"truth_{kind}", fine_options(kind))
 
-    def measure(series: dict[str, np.ndarray], folder: Path) -> dict[str, object]:
-        run, own = Run.read(folder), state(series, folder)
-        truth = differences(own, reference(results, f"truth_{kind}", fine_options(kind)), run.h)
-        ends = {key: abs(series[key][-1]) for key in ("area_error", "length_error")}
-        return {"truth": truth, "steps": len(series["time"]) - 1} | ends | {"step_seconds": series["wall"].sum()}
 
-    return Case(f"ours_{kind}_{name}", options, measure, ranks=1)
+def itself(results: Results, kind: str, n: int, finer: int) -> dict[str, object]:
+    """Return the run on h = 1/n against the same method on h = 1/finer: differences, errors of area and length."""
+
+    def measure() -> dict[str, object]:
+        own, fine = (split_state(results, kind, cells) for cells in (n, finer))
+        return {"itself": differences(own, fine, 1 / n)}
+
+    options = split_options(kind, n)
+    found = results.derive(f"convergence_{kind}_{n}_{finer}", options | {"finer": str(finer)}, measure)
+    return found | results.cases[f"split_{kind}_{n}"]["measures"]
 
 
 def finest(results: Results, kind: str, quick: bool) -> int:
-    """Return 1/h of the finer run: 512; in quick mode the finest whose comparisons are there, or QUICK_REFERENCE."""
-    if not quick:
-        return 512
-    case: Callable[[int, int], Case] = lambda n, finer: split_case(results, kind, n, finer)
-    whole = [finer for finer in (512, 256) if all(results.has(case(n, finer)) for n in CELLS if n < finer)]
-    return max([*whole, QUICK_REFERENCE[kind]])
+    """Return 1/h of the finer run: 512; in quick mode the finest that is there, QUICK_REFERENCE at least."""
+    there = [n for n in (512, 256) if f"split_{kind}_{n}" in results.cases] if quick else [512]
+    return max([*there, QUICK_REFERENCE[kind]])

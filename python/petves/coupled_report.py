@@ -64,7 +64,7 @@ def coupled_results(folder: Path, quick: bool, ranks: int) -> Path:
     text += _energy(results, folder)
     text += _temporal(results, folder)
     text += _iterations(results, folder, (32, 64, 128) if quick else (32, 64, 128, 256))
-    text += _work(results, folder, (64, 128, 256))
+    text += _work(results, folder, (64, 128, 256), 64 if quick else 128)
     text += _start(results, folder)
     path = folder / "coupled.md"
     path.write_text("\n".join(text))
@@ -236,14 +236,16 @@ def _iterations(results: Results, folder: Path, sizes: tuple[int, ...]) -> list[
     return ["## Iterations\n", about, *lines]
 
 
-def _work(results: Results, folder: Path, sizes: tuple[int, ...]) -> list[str]:
+def _work(results: Results, folder: Path, sizes: tuple[int, ...], direct: int) -> list[str]:
+    """Return the cost of a step; scheme direct up to 1/h = `direct`, and what is there."""
     rows, shown = [], []
     for n, ranks in product(sizes, (1, 2)):
         split = results.get(study.work("split", n, ranks))
         for scheme in ("split", "coupled", "direct"):
-            if scheme == "direct" and n > 128:
+            case = study.work(scheme, n, ranks)
+            if scheme == "direct" and n > direct and not results.has(case):
                 continue
-            one = split if scheme == "split" else results.get(study.work(scheme, n, ranks))
+            one = results.get(case)
             if "failed" in one:
                 shown.append([f"{2 * n}^2", str(ranks), scheme, "stopped", "", ""])
                 continue

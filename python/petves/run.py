@@ -37,7 +37,7 @@ class Run:
     markers, velocity : ndarray, shape (T, M, 2)
         Markers (length) and their velocity (length/time); M = 0 without a vesicle.
     tension : ndarray, shape (T, M)
-        Tension; entry k is on the edge from marker k-1 to marker k.
+        Tension; entry k is on the edge from marker k-1 to marker k, or at marker k with spectral edges.
     start : ndarray, shape (vesicles + 1,)
         First marker of each vesicle, and the number of markers.
     summary : dict
@@ -126,13 +126,15 @@ class Run:
         return np.vstack([points, points[:1]])
 
     def phase_angle(self, frame: int, vesicle: int = 0) -> np.ndarray:
-        """Return the phase angle of each edge's midpoint about the centroid of the area, in (-pi, pi]."""
-        middle = self.edge_midpoints(frame, vesicle) - centroid(self.outline(frame, vesicle))
+        """Return the phase angle of where each tension is about the centroid of the area, in (-pi, pi]."""
+        middle = self.tension_points(frame, vesicle) - centroid(self.outline(frame, vesicle))
         return np.arctan2(middle[:, 1], middle[:, 0])
 
-    def edge_midpoints(self, frame: int, vesicle: int = 0) -> np.ndarray:
-        """Return the midpoints of the edges, where the tension lives, shape (n, 2)."""
+    def tension_points(self, frame: int, vesicle: int = 0) -> np.ndarray:
+        """Return where the tension lives, shape (n, 2): the midpoints of the edges, or the markers with spectral edges."""
         points = self.outline(frame, vesicle)[:-1]
+        if self.options().get("membrane_derivative") == "spectral":
+            return points
         return 0.5 * (points + np.roll(points, 1, axis=0))
 
     def edge_tension(self, frame: int, vesicle: int = 0) -> np.ndarray:

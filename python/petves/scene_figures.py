@@ -28,15 +28,22 @@ def grid_figure(width: float, height: float, rows: int, columns: int, equal: boo
     return figure, figure.subplots(rows, columns, squeeze=False)
 
 
-def membrane(axes: Axes, markers: list, tension: list, limits: tuple[float, float] | None = None, shift: float = 0.0):
-    """Draw a smooth closed curve coloured by tension; return the lines, for a colour bar."""
+def membrane(
+    axes: Axes,
+    markers: list,
+    tension: list,
+    limits: tuple[float, float] | None = None,
+    shift: float = 0.0,
+    before: float = 0.0,
+):
+    """Draw a smooth closed curve coloured by tension, which lives `before` edges before the markers; return the lines."""
     from matplotlib.collections import LineCollection
 
     points = np.asarray(markers)
     n = len(points)
     curve = trigonometric(points, 1024) + [shift, 0]
     where = np.arange(1024) / 1024
-    along = np.interp(where, (np.arange(-1, n + 2) - 0.5) / n, np.take(tension, np.arange(-1, n + 2), mode="wrap"))
+    along = np.interp(where, (np.arange(-1, n + 2) - before) / n, np.take(tension, np.arange(-1, n + 2), mode="wrap"))
     lines = LineCollection(np.stack([curve, np.roll(curve, -1, axis=0)], axis=1), cmap="coolwarm", lw=2.5)
     lines.set_array(along)
     lines.set_clim(*(limits or (min(tension), max(tension))))

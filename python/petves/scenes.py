@@ -49,7 +49,7 @@ def _cost(series: dict[str, np.ndarray]) -> dict[str, object]:
     return {"steps": len(series["time"]) - 1, "step_seconds": series["wall"].sum()}
 
 
-def _equilibrium(series: dict[str, np.ndarray], folder: Path) -> dict[str, object]:
+def measure_rest(series: dict[str, np.ndarray], folder: Path) -> dict[str, object]:
     run = Run.read(folder)
     r0 = series["length"][0] / (2 * np.pi)
     found = _measure_rest(series, folder)
@@ -62,7 +62,7 @@ def _equilibrium(series: dict[str, np.ndarray], folder: Path) -> dict[str, objec
 def equilibrium(reduced_area: float) -> Case:
     """Return section 5.4 with the default scheme."""
     options = option_file("equilibrium") | QUIET | {"-vesicle_reduced_area": repr(reduced_area)}
-    return Case(f"equilibrium_{reduced_area}", options, _equilibrium, ranks=1)
+    return Case(f"equilibrium_{reduced_area}", options, measure_rest, ranks=1)
 
 
 def equilibrium_paper(reduced_area: float, n: int) -> Case:
@@ -71,12 +71,11 @@ def equilibrium_paper(reduced_area: float, n: int) -> Case:
     options |= {"-domain_cells": f"{4 * n},{4 * n}", "-time_step": repr(0.25 / n), "-time_end": "100"}
     options |= {"-vesicle_reduced_area": repr(reduced_area), "-output_every": "50", "-vesicle_angle": "90"}
     del options["-time_steady_tol"]
-    return Case(f"equilibrium_paper_{n}_{reduced_area}", options, _equilibrium, ranks=1, may_fail=True)
+    return Case(f"equilibrium_paper_{n}_{reduced_area}", options, measure_rest, ranks=1, may_fail=True)
 
 
-def _channel(series: dict[str, np.ndarray], folder: Path) -> dict[str, object]:
+def _channel(series: dict[str, np.ndarray], folder: Path, r0: float = radius(CHANNEL_V)) -> dict[str, object]:
     run = Run.read(folder)
-    r0 = radius(CHANNEL_V)
     time = np.linspace(0, series["time"][-1], 61)
     center = np.stack([np.interp(time, series["time"], series[f"center_{x}"]) for x in "xy"])
     speed = run.velocity.mean(axis=1)
@@ -103,6 +102,22 @@ def channel(
     options |= {"-vesicle_center": f"{min(window, 12) / 2:g},{3 + offset * radius(CHANNEL_V)!r}"}
     options |= {"-time_step": repr(dt), "-output_every": "400" if window > 100 else "4"}
     return Case(f"channel_{offset}_{window}_{inertia}_{cells}_{time_end:g}", options, _channel, ranks=1, may_fail=True)
+
+
+def channel_end(offset: int, cells: int, reduced_area: float, time_end: float) -> Case:
+    """Return section 5.5 on its way to an end state: window 12, none, u_max dt/h = 1.3; any reduced area."""
+    case = channel(offset, cells=cells, time_end=time_end, dt=0.96 / cells)
+    r0 = radius(reduced_area)
+    case.options |= {"-vesicle_reduced_area": repr(reduced_area), "-vesicle_center": f"6,{3 + offset * r0!r}"}
+    case.options |= {"-output_every": repr(time_end / 60)}
+
+    def measure(series: dict[str, np.ndarray], folder: Path) -> dict[str, object]:
+        found = _channel(series, folder, r0)
+        return {key: found[key] for key in ("time", "height", "saved", "slip", "aspect", "area_error", "steps")}
+
+    return Case(
+        f"channel_end_{offset}_{cells}_{reduced_area}_{time_end:g}", case.options, measure, ranks=1, may_fail=True
+    )
 
 
 def channel_models(model: str) -> Case:

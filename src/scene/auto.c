@@ -12,15 +12,16 @@ static const struct {
   PetscReal max_step;  /* over nu R0^3/c_b */
   PetscReal of_rest;   /* energy of shapes at rest */
 } settings[] = {
-    {1e-1, "1e-2", 1.7e-2, "1e-4", 6.0e-4, 2, 2.3e-3},       {1e-2, "3e-3", 3.0e-3, "1e-4", 6.0e-4, 1, 1.0e-3},
-    {1e-3, "1e-3", 2.9e-4, "1e-5", 5.0e-5, 0.25, 2.9e-4},    {3e-4, "3e-4", 1.4e-4, "1e-6", 5.4e-6, 0.0625, 7.0e-5},
-    {1e-4, "1e-4", 4.1e-5, "1e-6", 5.4e-6, 0.03125, 4.0e-5},
+    {1e-1, "1e-2", 1.7e-2, "1e-4", 7.9e-4, 4, 1.2e-3},      {1e-2, "3e-3", 1.7e-3, "1e-4", 7.9e-4, 2, 7.1e-4},
+    {1e-3, "1e-3", 3.0e-4, "1e-5", 5.3e-5, 0.5, 1.2e-4},    {3e-4, "3e-4", 1.0e-4, "1e-6", 4.9e-6, 0.125, 4.3e-5},
+    {1e-4, "1e-4", 3.1e-5, "1e-6", 4.9e-6, 0.0625, 2.0e-5},
 };
 
 /* Worst error of angle and frequency in steady tank-treading (V = 0.5 to 0.9, chi = 1 and 10), by R0/h and finer. */
 static const struct {
   PetscReal cells, error;
-} grids[] = {{21, 7.7e-4}, {16, 1.0e-3}, {10.8, 1.3e-3}, {8, 1.8e-3}, {5.3, 2.8e-3}, {4.7, 1.3e-2}, {4, 5.0e-2}};
+} grids[] = {{50, 4.4e-4}, {25, 5.8e-4},  {21, 7.1e-4},  {16, 9.9e-4}, {10.7, 1.3e-3},
+             {8, 1.9e-3},  {5.3, 2.8e-3}, {4.7, 1.3e-2}, {3.9, 5.0e-2}};
 
 static PetscInt Row(Scene scene) {
   const PetscInt last = (PetscInt)(sizeof(settings) / sizeof(settings[0])) - 1;
@@ -91,7 +92,7 @@ static PetscErrorCode PrintGrid(Scene scene, PetscReal cells) {
     PetscCall(PetscPrintf(scene->comm, ": TOO COARSE for %g, take R0/h = %g (-domain_cells)\n", (double)scene->wanted,
                           (double)grids[enough].cells));
   else
-    PetscCall(PetscPrintf(scene->comm, ": no grid up to R0/h = 21 reached %g\n", (double)scene->wanted));
+    PetscCall(PetscPrintf(scene->comm, ": no grid up to R0/h = 50 reached %g\n", (double)scene->wanted));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
