@@ -14,7 +14,7 @@ from petves.run import RunError
 from petves.studies import Results
 from petves.tables import table, write_csv
 
-CELLS, PICTURE_CELLS, FINE_CELLS = (64, 128, 256), (48, 64, 96, 128, 192), (64, 128, 256, 512, 1024)
+CELLS, PICTURE_CELLS, FINE_CELLS = (64, 128, 256), (48, 64, 96, 128, 192), (64, 128, 256, 512)
 PICTURE = ("uncorrected", "cbs54, none", "local", "chords", "ib6, symbol", "default")
 
 
@@ -84,10 +84,10 @@ def _steady(results: Results, folder: Path, cells: tuple[int, ...]) -> list[str]
 
 
 def _fine(results: Results, folder: Path) -> list[str]:
-    """The default combination in the box up to 1024^2, rate dt = 0.05, and the order seen over the last two doublings."""
+    """The default combination in the box up to 512^2, rate dt = 0.0125, and the order between the grids."""
     rows, shown, every = [], [], []
     for v, chi in product(study.REDUCED_AREAS, study.CHIS):
-        errors = [_errors(results.get(study.shear("default", "box", n, v, chi)), "box", v, chi) for n in FINE_CELLS]
+        errors = [_errors(results.get(study.fine(n, v, chi)), "box", v, chi) for n in FINE_CELLS]
         rows += [[v, chi, n, *e] for n, e in zip(FINE_CELLS, errors)]
         shown.append([f"{v}", f"{chi}", *(", ".join(f"{100 * e:+.3f}" for e in pair) for pair in errors)])
         every.append(errors)
@@ -97,7 +97,7 @@ def _fine(results: Results, folder: Path) -> list[str]:
     orders = np.log2(norm[:-1] / norm[1:])
     shown.append(["its order", "", "", *(f"{a:.1f}, {b:.1f}" for a, b in orders)])
     header = ["V", "chi", *(f"{n}^2" for n in FINE_CELLS)]
-    return ["### Finer grids: errors of angle, frequency in percent, box, rate dt = 0.05\n", *table(header, shown)]
+    return ["### Finer grids: errors of angle, frequency in percent, box, rate dt = 0.0125\n", *table(header, shown)]
 
 
 def _all(cells: tuple[int, ...]) -> product:

@@ -90,6 +90,13 @@ def steady(box: str, n: int, reduced_area: float, chi: float) -> Case:
     )
 
 
+def fine(n: int, reduced_area: float, chi: float) -> Case:
+    """Return the run of `steady` in the box with rate dt = 0.0125 on any grid."""
+    case = steady("box", n, reduced_area, chi)
+    name = case.name if n < 256 else case.name.replace("steady", "fine")
+    return replace(case, name=name, options=case.options | {"-time_step": "0.0125"})
+
+
 def kernel_and_spacing(kernel: str, spacing: float, n: int) -> Case:
     """Return a timed run with V = 0.7, chi = 10 in the box, all corrections on."""
     options = combination("default") | {"-delta_type": kernel, "-vesicle_spacing": repr(spacing)}
