@@ -43,7 +43,7 @@ export OMPI_MCA_mpi_yield_when_idle := 1
 export OMPI_MCA_btl_vader_single_copy_mechanism := none
 export OMP_NUM_THREADS := 1
 
-.PHONY: all help deps test-deps run test coverage reproduce stability chart bench install format check-format clean tests benches
+.PHONY: all help deps test-deps run test coverage reproduce stability chart calibrate bench install format check-format clean tests benches
 all: $(BIN)/petves ## build bin/petves and lib/libpetves.so
 
 help: ## list the targets
@@ -122,6 +122,10 @@ stability: deps ## the maps of where each scheme fails, into docs/stability (at 
 chart: deps ## error against CPU time of every scheme, into docs/speed_accuracy (an hour; QUICK=1: two minutes)
 	@$(MAKE) --no-print-directory all
 	PETVES=$(CURDIR)/$(BIN)/petves PYTHONPATH=python $(PYTHON) -m petves chart $(if $(QUICK),out/chart,docs/speed_accuracy)
+
+calibrate: deps ## what -scheme_auto chooses by: docs/speed_accuracy/calibration.csv (ten minutes)
+	@$(MAKE) --no-print-directory all
+	PETVES=$(CURDIR)/$(BIN)/petves PYTHONPATH=python $(PYTHON) -m petves calibrate docs/speed_accuracy
 
 install: all ## install under PREFIX (/usr/local)
 	install -d $(PREFIX)/bin $(PREFIX)/lib $(PREFIX)/include $(PREFIX)/share/petves $(PYTHON_DIR)/petves

@@ -10,8 +10,7 @@ import numpy as np
 from petves import accuracy_studies as study
 from petves.paper import REST, SHEAR
 from petves.plot import new_figure, save_figure
-from petves.run import RunError
-from petves.studies import Results
+from petves.studies import Results, study_folder
 from petves.tables import table, write_csv
 
 CELLS, PICTURE_CELLS, FINE_CELLS = (64, 128, 256), (48, 64, 96, 128, 192), (64, 128, 256, 512)
@@ -33,11 +32,7 @@ def accuracy(folder: str | Path, quick: bool = False) -> list[Path]:
     list of Path
         tables.md, accuracy.png.
     """
-    folder = Path(folder)
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise RunError(f"{folder}: cannot be made ({error.strerror})") from None
+    folder = study_folder(folder)
     results = Results(folder / "accuracy.json", 1)
     text = _steady(results, folder, CELLS[:2] if quick else CELLS) + _others(results, folder)
     text += _kernels(results, folder) + _chords(results, folder) + _rest(results, folder)

@@ -9,8 +9,8 @@ import numpy as np
 
 from petves.accuracy_studies import KERNELS, tank_treading
 from petves import paper
-from petves.run import Run, RunError
-from petves.studies import Case, Results
+from petves.run import Run
+from petves.studies import Case, Results, study_folder
 from petves.tables import write_csv
 
 TOLERANCES = ("1e-1", "3e-2", "1e-2", "3e-3", "1e-3", "3e-4", "1e-4", "3e-5")
@@ -188,11 +188,7 @@ def calibrate(folder: str | Path) -> list[Path]:
     list of Path
         calibration.csv: table, scene, value of what the table varies, error, steps and scalar solves.
     """
-    folder = Path(folder)
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise RunError(f"{folder}: cannot be made ({error.strerror})") from None
+    folder = study_folder(folder)
     results = Results(folder / "calibration.json", 1)
     rows = _times(results) + _grids(results) + _rest(results)
     path = folder / "calibration.csv"

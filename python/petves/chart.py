@@ -8,8 +8,7 @@ from pathlib import Path
 from petves.chart_claim import claim
 from petves.chart_pictures import picture
 from petves.chart_studies import BEST, CORRECTED, ERRORS, SCENES, SCHEMES, WIDE, Point, Scene
-from petves.run import RunError
-from petves.studies import Case, Results
+from petves.studies import Case, Results, study_folder
 from petves.tables import table, write_csv
 
 ROUNDS = 3  # runs of a point, one of each in a round; the best counts
@@ -42,11 +41,7 @@ def chart(
     list of Path
         The files.
     """
-    folder = Path(folder)
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise RunError(f"{folder}: cannot be made ({error.strerror})") from None
+    folder = study_folder(folder)
     results = Results(folder / "chart.json", 1)
     if quick:
         scenes = tuple(replace(one, reference=one.reference | one.quick) for one in scenes)

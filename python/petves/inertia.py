@@ -10,8 +10,7 @@ import numpy as np
 from petves import inertia_studies as study
 from petves.paper import PARACHUTE, POISEUILLE, RELAXATION
 from petves.plot import new_figure, save_figure
-from petves.run import RunError
-from petves.studies import Results
+from petves.studies import Results, study_folder
 from petves.tables import table, write_csv
 
 RELAXATIONS = (
@@ -50,11 +49,7 @@ def inertia(folder: str | Path, quick: bool = False) -> list[Path]:
     list of Path
         tables.md, galilean.png and, unless quick, migration.png.
     """
-    folder = Path(folder)
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise RunError(f"{folder}: cannot be made ({error.strerror})") from None
+    folder = study_folder(folder)
     results = Results(folder / "inertia.json", 1)
     text = _relaxation(results, folder) + _galilean(results, folder) + _iterations(results, folder)
     pictures = [folder / "galilean.png"]

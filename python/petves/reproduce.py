@@ -10,10 +10,9 @@ from petves.coupled_report import coupled_results
 from petves.paper import CELLS, ITERATIONS
 from petves.plot import new_figure, save_figure
 from petves.race import race
-from petves.run import RunError
 from petves.scene_report import channel, equilibrium, tank_treading
 from petves.scenes import QUIET, option_file
-from petves.studies import Case, NotRun, Results, decay, energy, energy_start, iterations, sizes
+from petves.studies import Case, NotRun, Results, decay, energy, energy_start, iterations, sizes, study_folder
 from petves.tables import table, write_csv
 
 TESTS = {
@@ -52,11 +51,7 @@ def reproduce(
     list of Path
         The pages: of the paper, of the coupled scheme.
     """
-    folder = Path(folder)
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise RunError(f"{folder}: cannot be made ({error.strerror})") from None
+    folder = study_folder(folder)
     written = []
     if only != "coupled":
         written.append(_paper(folder, quick, ranks, run))

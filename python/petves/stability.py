@@ -12,6 +12,7 @@ import numpy as np
 
 from petves.plot import new_figure, save_figure
 from petves.run import RunError
+from petves.studies import study_folder
 from petves.stability_cells import MAPS, MARKS, SCHEMES, STEP_MAP, Map, run_cell
 from petves.tables import table, write_csv
 
@@ -100,11 +101,7 @@ def stability(folder: str | Path, quick: bool = False, maps: tuple[Map, ...] | N
     list of Path
         The files.
     """
-    folder = Path(folder)
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise RunError(f"{folder}: cannot be made ({error.strerror})") from None
+    folder = study_folder(folder)
     maps = MAPS if maps is None else maps
     maps = tuple(one.quick() for one in maps) if quick else maps
     cells = Cells(folder / "stability.csv")

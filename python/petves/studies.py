@@ -152,7 +152,7 @@ def _launch(case: Case, ranks: int, folder: str) -> str:
     if not status:
         return ""
     if case.may_fail and status == 2:
-        return line
+        return line.partition("; the last good state is in")[0]
     raise RunError(f"{case.name}: exit status {status}: {line}")
 
 
@@ -160,6 +160,16 @@ def _cpu_seconds() -> float:
     """Return the processor time of the programs run so far, all ranks, start and output included."""
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
     return used.ru_utime + used.ru_stime
+
+
+def study_folder(folder: str | Path) -> Path:
+    """Return the folder of a study's files, made if need be."""
+    folder = Path(folder)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise RunError(f"{folder}: cannot be made ({error.strerror})") from None
+    return folder
 
 
 class NotRun(RunError):
