@@ -13,7 +13,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
-from conftest import COLUMNS, ENVIRONMENT, PAPER, PETVES, read_series, run_petves
+from conftest import COLUMNS, ENVIRONMENT, PAPER, PETVES, ROOT, SANITIZE, mpirun, read_series, run_petves
 
 BASE = "-domain_cells 32,32 -vesicle_semi_axes 0.3,0.5 -flow_type shear -time_step 0.02 -output_every 0.05"
 DEFAULTS = "-delta_type cbs54 -membrane_derivative spectral -coupling_self_mobility symbol -scheme_area_target true"
@@ -334,6 +334,25 @@ def test_killed_at_any_moment(tmp_path):
         np.testing.assert_array_equal(ours[key], theirs[key], err_msg=key)
 
 
+def break_tables(folder: Path) -> int:
+    """Overwrite everything in the run.h5 of a killed run but the frames that its checkpoint counts; its last step."""
+    with h5py.File(folder / "checkpoint.h5") as file:
+        last, saved = int(file.attrs["step"]), int(file.attrs["frames"])
+        bytes_of = [8 * file[name].size for name in ("fluid/p",) * 3 + ("vesicle/markers",) * 2 + ("vesicle/tension",)]
+    kept = [
+        (int(x), n)
+        for row in (folder / "run.h5.index").read_text().splitlines()
+        if int(row.split()[0]) < saved
+        for x, n in zip(row.split()[2:], bytes_of)
+    ]
+    good = (folder / "run.h5").read_bytes()
+    bad = bytearray(len(good))
+    for place, size in kept:
+        bad[place : place + size] = good[place : place + size]
+    (folder / "run.h5").write_bytes(bad)
+    return last
+
+
 @pytest.mark.parametrize("ranks", [1, 2])
 def test_killed_run_with_broken_tables(ranks, tmp_path):
     """Everything in run.h5 but its frames is overwritten: with the index of a killed run it is made anew."""
@@ -343,19 +362,7 @@ def test_killed_run_with_broken_tables(ranks, tmp_path):
         wait_for_rows(folder, 6)
         process.kill()
     assert process.wait() == -signal.SIGKILL, (tmp_path / "errors").read_text()
-    with h5py.File(folder / "checkpoint.h5") as file:
-        last, saved = int(file.attrs["step"]), int(file.attrs["frames"])
-        bytes_of = [8 * file[name].size for name in ("fluid/p",) * 3 + ("vesicle/markers",) * 2 + ("vesicle/tension",)]
-    kept = [
-        (int(x), n)
-        for row in (folder / "run.h5.index").read_text().split("\n")[:saved]
-        for x, n in zip(row.split()[1:], bytes_of)
-    ]
-    good = (folder / "run.h5").read_bytes()
-    bad = bytearray(len(good))
-    for place, size in kept:
-        bad[place : place + size] = good[place : place + size]
-    (folder / "run.h5").write_bytes(bad)
+    last = break_tables(folder)
     end = f"-time_end {0.02 * (last + 5)}"
     run_petves(folder, f"{KILLED} {end} -restart {folder}/checkpoint.h5", ranks)
     whole = run_petves(tmp_path / "whole", f"{KILLED} {end}")
@@ -363,6 +370,29 @@ def test_killed_run_with_broken_tables(ranks, tmp_path):
     ours, theirs = frames(folder), frames(whole.folder)
     for key in theirs:
         np.testing.assert_allclose(ours[key], theirs[key], rtol=0, atol=0 if ranks == 1 else 1e-9, err_msg=key)
+
+
+@pytest.mark.skipif(SANITIZE, reason="Python is not built with the sanitizers")
+def test_broken_tables_after_an_end_that_was_not_the_end(tmp_path):
+    """From Python a run goes on after its end: the frame of that end, at no saved time, is written over. Then it is
+    killed."""
+    options = f"{PAPER} {BASE} -scheme_type split -domain_cells 24,24 -output_every 0.04 -checkpoint_every 1".split()
+    words = dict(zip(options[::2], options[1::2])) | {"-time_end": "0.06", "-output_dir": str(tmp_path / "run")}
+    call = ", ".join(f"{name[1:]}={value!r}" for name, value in words.items())
+    (tmp_path / "script.py").write_text(
+        f"import os, petves\nsim = petves.Simulation({call})\nsim.run()\nsim.run(until=0.22)\nos.kill(os.getpid(), 9)\n"
+    )
+    library = str(Path(PETVES).parent.parent / "lib" / "libpetves.so")
+    python = {"PETVES_LIBRARY": library, "PYTHONPATH": str(ROOT / "python")}
+    done = mpirun(["/usr/bin/python3", str(tmp_path / "script.py")], 1, **python)
+    assert done.returncode == -signal.SIGKILL, done.stderr
+    assert break_tables(tmp_path / "run") == 11
+    run_plainly = f"{BASE} -scheme_type split -domain_cells 24,24 -output_every 0.04 -time_end 0.4"
+    run_petves(tmp_path / "run", f"{run_plainly} -checkpoint_every 1 -restart {tmp_path}/run/checkpoint.h5")
+    whole = run_petves(tmp_path / "whole", run_plainly)
+    ours, theirs = frames(tmp_path / "run"), frames(whole.folder)
+    for key in theirs:
+        np.testing.assert_array_equal(ours[key], theirs[key], err_msg=key)
 
 
 @pytest.fixture

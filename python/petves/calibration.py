@@ -18,6 +18,7 @@ RTOLS = ("1e-3", "1e-4", "1e-5", "1e-6", "1e-7")
 FINE_TOLERANCE, FINE_RTOL = "3e-6", "1e-10"
 SPACINGS = (1.25, 1.5, 2.0)
 GRIDS = (40, 48, 64, 96, 128, 192, 256, 512)
+KERNEL_GRIDS = (64, 96, 128, 192)
 MAX_STEPS = (4, 2, 1, 0.5, 0.25, 0.125, 0.0625, 0.03125)
 """Largest step over nu R0^3/c_b."""
 
@@ -150,6 +151,10 @@ def _grids(results: Results) -> list[dict[str, object]]:
         for cells in GRIDS:
             row = {"table": "cells_a_radius", "scene": scene, "value": f"{radius * cells / 8:.3g}"}
             rows.append(row | _against_targets(results, cells, reduced_area, chi))
+        for cells in KERNEL_GRIDS:
+            extra = {"-delta_type": "ib6", "-vesicle_spacing": "1.5"}
+            row = {"table": "ib6_cells_a_radius", "scene": scene, "value": f"{radius * cells / 8:.3g}"}
+            rows.append(row | _against_targets(results, cells, reduced_area, chi, **extra))
     for cells, kernel, spacing in product((64, 128), KERNELS, SPACINGS):
         extra = {"-delta_type": kernel, "-vesicle_spacing": f"{spacing:g}"}
         scene = f"shear V=0.7 chi=10, {cells}^2, {kernel}"

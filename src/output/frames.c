@@ -26,7 +26,7 @@ PetscErrorCode FramesAppend(Output o, PetscInt frame, PetscReal t) {
   char path[PETSC_MAX_PATH_LEN];
   PetscFunctionBeginUser;
   if (!o->rank && o->index) {
-    fprintf(o->index, "%.17g", (double)t);
+    fprintf(o->index, "%d %.17g", (int)frame, (double)t);
     for (PetscInt k = 0; k < FrameSeriesCount(o); k++)
       fprintf(o->index, " %llu", (unsigned long long)H5FramePlace(&o->fields, FrameSeries[k], frame));
     fprintf(o->index, "\n");
@@ -69,10 +69,11 @@ PetscErrorCode FramesClose(Output o, PetscBool closed) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* One line of the index: the frame's time and places. */
-static PetscBool ReadPlaces(FILE *index, PetscInt n, PetscReal *t, unsigned long long place[]) {
+/* One line of the index: the frame, its time and places. */
+static PetscBool ReadPlaces(FILE *index, PetscInt n, PetscInt *frame, PetscReal *t, unsigned long long place[]) {
   char line[512], *p = line;
   if (!fgets(line, sizeof(line), index) || !strchr(line, '\n')) return PETSC_FALSE;
+  *frame = (PetscInt)strtol(p, &p, 10);
   *t = strtod(p, &p);
   for (PetscInt k = 0; k < n; k++) {
     char *end;
@@ -83,25 +84,29 @@ static PetscBool ReadPlaces(FILE *index, PetscInt n, PetscReal *t, unsigned long
   return PETSC_TRUE;
 }
 
-/* Copy the frames that the checkpoint counts into the new file `f`; the number that could be read. */
+/* Copy the frames that the checkpoint counts into the new file `f`; the number that could be read. A frame may have
+   several lines, where a run went on after its end: the last one holds. */
 static PetscErrorCode CopyFrames(Output o, FILE *index, int old, H5File *f, PetscInt *copied) {
   const PetscInt series = FrameSeriesCount(o);
   PetscReal *values, t;
-  PetscInt most = 0;
+  PetscInt most = 0, frame;
   unsigned long long place[FRAME_SERIES];
-  PetscBool good = PETSC_TRUE;
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < series; k++) most = PetscMax(most, Entries(o, k));
   PetscCall(PetscMalloc1(most, &values));
-  for (*copied = 0; good && *copied < o->scheduled; *copied += good) {
-    good = ReadPlaces(index, series, &t, place);
+  *copied = 0;
+  while (ReadPlaces(index, series, &frame, &t, place) && frame <= *copied) {
+    PetscBool good = PETSC_TRUE;
+    if (frame >= o->scheduled) continue;
     for (PetscInt k = 0; good && k < series; k++) {
       const PetscInt n = Entries(o, k);
       const ssize_t bytes = (ssize_t)((size_t)n * sizeof(*values));
       good = pread(old, values, (size_t)bytes, (off_t)place[k]) == bytes ? PETSC_TRUE : PETSC_FALSE;
-      if (good) PetscCall(H5WriteArray(f, FrameSeries[k], *copied, n, values));
+      if (good) PetscCall(H5WriteArray(f, FrameSeries[k], frame, n, values));
     }
-    if (good) PetscCall(H5WriteArray(f, "/time", *copied, 1, &t));
+    if (!good) break;
+    PetscCall(H5WriteArray(f, "/time", frame, 1, &t));
+    *copied = frame + 1;
   }
   PetscCall(PetscFree(values));
   PetscFunctionReturn(PETSC_SUCCESS);

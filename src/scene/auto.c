@@ -96,21 +96,21 @@ static PetscErrorCode PrintGrid(Scene scene, PetscReal cells) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode PrintChoice(Scene scene, PetscInt row) {
+static PetscErrorCode PrintChoice(Scene scene, PetscInt row, PetscBool timed) {
   char why[128];
   PetscFunctionBeginUser;
   PetscCall(PetscPrintf(scene->comm, "petves: -scheme_auto %g, by the worst errors measured (docs/speed_accuracy.md)\n",
                         (double)scene->wanted));
   PetscCall(PrintSetting(scene, "-scheme_type", "the membrane and the fluid in one solve"));
-  PetscCall(PrintSetting(scene, "-scheme_order", "order 1 leaves percents at any step of use"));
+  PetscCall(PrintSetting(scene, "-scheme_order", "order 1 leaves 1 % of the frequency at rate dt = 0.0125"));
   PetscCall(PrintSetting(scene, "-time_adapt", "finds the step of any scene"));
-  PetscCall(PrintSetting(scene, "-time_step", "a twentieth of the fastest time of the scene"));
+  PetscCall(PrintSetting(scene, "-time_step", timed ? "a twentieth of the fastest time of the scene" : "the default"));
   if (scene->adapt == ADAPT_ERROR) {
     PetscCall(PetscSNPrintf(why, sizeof(why), "steps leave up to %.1e", (double)settings[row].of_steps));
     PetscCall(PrintSetting(scene, "-time_adapt_tol", why));
     PetscCall(PetscSNPrintf(why, sizeof(why), "%g nu R0^3/c_b: leaves up to %.1e of the energy at rest",
                             (double)settings[row].max_step, (double)settings[row].of_rest));
-    PetscCall(PrintSetting(scene, "-time_adapt_max_step", why));
+    if (scene->bending > 0) PetscCall(PrintSetting(scene, "-time_adapt_max_step", why));
   }
   PetscCall(PetscSNPrintf(why, sizeof(why), "the solver leaves up to %.1e", (double)settings[row].of_solver));
   if (!strcmp(scene->scheme, "coupled")) PetscCall(PrintSetting(scene, "-coupled_ksp_rtol", why));
@@ -137,7 +137,7 @@ PetscErrorCode SceneAutoSteps(Scene scene, const Shape *shape) {
     PetscCall(PetscSNPrintf(value, sizeof(value), "%.6g", (double)(0.05 * fast)));
     PetscCall(SceneChoose(scene, "-time_step", value));
   }
-  PetscCall(PrintChoice(scene, row));
+  PetscCall(PrintChoice(scene, row, fast < PETSC_MAX_REAL ? PETSC_TRUE : PETSC_FALSE));
   PetscCall(PrintGrid(scene, R0 / SceneCellSize(scene)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
