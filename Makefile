@@ -119,7 +119,7 @@ stability: deps ## the maps of where each scheme fails, into docs/stability (at 
 	@$(MAKE) --no-print-directory all
 	PETVES=$(CURDIR)/$(BIN)/petves PYTHONPATH=python $(PYTHON) -m petves stability $(if $(QUICK),out/stability,docs/stability)
 
-chart: deps ## error against CPU time of every scheme, into docs/speed_accuracy (an hour; QUICK=1: two minutes)
+chart: deps ## error against CPU time of every scheme, into docs/speed_accuracy (40 minutes; QUICK=1: two minutes)
 	@$(MAKE) --no-print-directory all
 	PETVES=$(CURDIR)/$(BIN)/petves PYTHONPATH=python $(PYTHON) -m petves chart $(if $(QUICK),out/chart,docs/speed_accuracy)
 
