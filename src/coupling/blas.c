@@ -1,11 +1,11 @@
 #include "coupling/blas.h"
 
-PetscErrorCode DenseFactor(PetscInt n, PetscReal A[], PetscBLASInt pivot[]) {
+PetscErrorCode DenseFactor(PetscInt n, PetscReal A[], PetscBLASInt pivot[], PetscBool *factored) {
   PetscBLASInt size, info;
   PetscFunctionBeginUser;
   PetscCall(PetscBLASIntCast(n, &size));
   PetscCallBLAS("LAPACKgetrf", LAPACKgetrf_(&size, &size, A, &size, pivot, &info));
-  PetscCheck(!info, PETSC_COMM_SELF, PETSC_ERR_MAT_LU_ZRPVT, "singular Lagrangian block, pivot %d", (int)info);
+  *factored = info ? PETSC_FALSE : PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -20,13 +20,12 @@ PetscErrorCode DenseSolve(PetscInt n, const PetscReal A[], const PetscBLASInt pi
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode DenseFactorSymmetric(PetscInt n, PetscReal A[]) {
+PetscErrorCode DenseFactorSymmetric(PetscInt n, PetscReal A[], PetscBool *factored) {
   PetscBLASInt size, info;
   PetscFunctionBeginUser;
   PetscCall(PetscBLASIntCast(n, &size));
   PetscCallBLAS("LAPACKpotrf", LAPACKpotrf_("L", &size, A, &size, &info));
-  PetscCheck(!info, PETSC_COMM_SELF, PETSC_ERR_MAT_CH_ZRPVT, "Lagrangian block not positive definite, pivot %d",
-             (int)info);
+  *factored = info ? PETSC_FALSE : PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

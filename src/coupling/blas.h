@@ -3,16 +3,16 @@
 #include "base/base.h"
 #include <petscblaslapack.h>
 
-/* DenseFactor - LU factors of A (n x n) in place. */
-PETSC_EXTERN PetscErrorCode DenseFactor(PetscInt n, PetscReal A[], PetscBLASInt pivot[]);
+/* DenseFactor - LU factors of A (n x n) in place; factored is false when A is singular. */
+PETSC_EXTERN PetscErrorCode DenseFactor(PetscInt n, PetscReal A[], PetscBLASInt pivot[], PetscBool *factored);
 
 /* DenseSolve - X := A^-1 X or (transpose) A^-T X for the factored A, X of nrhs columns. */
 PETSC_EXTERN PetscErrorCode DenseSolve(PetscInt n, const PetscReal A[], const PetscBLASInt pivot[], PetscBool transpose,
                                        PetscInt nrhs, PetscReal X[]);
 
 /* DenseFactorSymmetric, DenseSolveSymmetric - Cholesky factor of the positive definite A (n x n) in place, x := A^-1 x
-   for it. */
-PETSC_EXTERN PetscErrorCode DenseFactorSymmetric(PetscInt n, PetscReal A[]);
+   for it; factored is false when A is not positive definite. */
+PETSC_EXTERN PetscErrorCode DenseFactorSymmetric(PetscInt n, PetscReal A[], PetscBool *factored);
 PETSC_EXTERN PetscErrorCode DenseSolveSymmetric(PetscInt n, const PetscReal A[], PetscReal x[]);
 
 /* DenseMultAdd - y += alpha A x, A (m x n). */

@@ -5,6 +5,8 @@
 typedef struct {
   PetscInt n[2];     /* cells of a window, the same for all edges */
   PetscInt *origin;  /* [2M] first cell of each window */
+  PetscInt *previous; /* [M] the marker before k on the same vesicle */
+  PetscReal *tau;     /* [2M] tangents of all vesicles */
   PetscReal *values; /* [M][3][n1][n0]: u faces, v faces and scaled cells of G^T S */
 } Windows;
 
@@ -22,36 +24,42 @@ static PetscInt Unwrap(Grid g, int dir, PetscInt first, PetscInt near) {
 }
 
 static PetscErrorCode PlaceWindows(Coupling c, Windows *w) {
-  const Membrane m = c->membrane;
+  const Layout l = c->membrane->layout;
+  const PetscInt M = l->M;
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(2 * m->M, &w->origin));
+  PetscCall(PetscMalloc3(2 * M, &w->origin, M, &w->previous, 2 * M, &w->tau));
+  for (PetscInt v = 0; v < l->bodies; v++) {
+    MembraneVesicleTangents(c->membrane, v, c->markers->X + 2 * l->start[v], w->tau + 2 * l->start[v]);
+    for (PetscInt k = l->start[v]; k < l->start[v + 1]; k++)
+      w->previous[k] = (k > l->start[v] ? k : l->start[v + 1]) - 1;
+  }
   w->n[0] = w->n[1] = 0;
-  for (PetscInt k = 0; k < m->M; k++)
+  for (PetscInt k = 0; k < M; k++)
     for (int dir = 0; dir < 2; dir++) {
-      const PetscInt near = c->stencil[2 * k].first[dir];
+      const PetscInt near = c->markers->stencil[2 * k].first[dir];
       PetscInt lo = PETSC_MAX_INT, hi = PETSC_MIN_INT;
       for (int e = 0; e < 4; e++) {
-        const Stencil *s = &c->stencil[2 * (e / 2 ? m->previous[k] : k) + e % 2];
-        const PetscInt first = Unwrap(c->grid, dir, s->first[dir], near);
+        const Stencil *s = &c->markers->stencil[2 * (e / 2 ? w->previous[k] : k) + e % 2];
+        const PetscInt first = Unwrap(c->fluid->grid, dir, s->first[dir], near);
         lo = PetscMin(lo, first);
         hi = PetscMax(hi, first + s->n[dir]);
       }
       w->origin[2 * k + dir] = lo;
       w->n[dir] = PetscMax(w->n[dir], hi - lo + 1); /* one more cell: the divergence reaches right and up */
     }
-  PetscCall(PetscCalloc1(3 * m->M * w->n[0] * w->n[1], &w->values));
+  PetscCall(PetscCalloc1(3 * M * w->n[0] * w->n[1], &w->values));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Column k of S in its window: tau_k (E_k - E_{k-1})^T / h^2. */
 static void FillFaces(Coupling c, Windows *w, PetscInt k) {
-  const PetscReal h2 = PetscSqr(c->grid->h);
+  const PetscReal h2 = PetscSqr(c->fluid->grid->h);
   for (int end = 0; end < 2; end++)
     for (int comp = 0; comp < 2; comp++) {
-      const Stencil *s = &c->stencil[2 * (end ? c->membrane->previous[k] : k) + comp];
-      const PetscReal f = (end ? -1 : 1) * c->tau[2 * k + comp] / h2;
-      const PetscInt i0 = Unwrap(c->grid, 0, s->first[0], w->origin[2 * k]) - w->origin[2 * k];
-      const PetscInt j0 = Unwrap(c->grid, 1, s->first[1], w->origin[2 * k + 1]) - w->origin[2 * k + 1];
+      const Stencil *s = &c->markers->stencil[2 * (end ? w->previous[k] : k) + comp];
+      const PetscReal f = (end ? -1 : 1) * w->tau[2 * k + comp] / h2;
+      const PetscInt i0 = Unwrap(c->fluid->grid, 0, s->first[0], w->origin[2 * k]) - w->origin[2 * k];
+      const PetscInt j0 = Unwrap(c->fluid->grid, 1, s->first[1], w->origin[2 * k + 1]) - w->origin[2 * k + 1];
       PetscReal *a = Layer(w, k, comp);
       for (PetscInt j = 0; j < s->n[1]; j++)
         for (PetscInt i = 0; i < s->n[0]; i++) a[(j0 + j) * w->n[0] + i0 + i] += f * s->weight[1][j] * s->weight[0][i];
@@ -60,7 +68,7 @@ static void FillFaces(Coupling c, Windows *w, PetscInt k) {
 
 /* G^T S in the window, times sqrt(-1/diag(L)). */
 static void FillCells(Coupling c, Windows *w, PetscInt k) {
-  const Grid g = c->grid;
+  const Grid g = c->fluid->grid;
   const PetscInt nx = w->n[0];
   const PetscReal *u = Layer(w, k, FIELD_U), *v = Layer(w, k, FIELD_V);
   PetscReal *q = Layer(w, k, FIELD_P);
@@ -98,12 +106,14 @@ static PetscReal Product(const Windows *w, PetscInt k, PetscInt l, const PetscIn
   return sum;
 }
 
-PetscErrorCode TensionAssemble(Coupling c, Mat *Chat) {
-  const PetscInt M = c->membrane->M;
+PetscErrorCode TensionAssemble(Coupling c, PetscMPIInt root, Mat *Chat) {
+  const PetscInt M = c->membrane->layout->M;
   Windows w;
   PetscInt *row, d[2];
   PetscLogEvent event;
   PetscFunctionBeginUser;
+  *Chat = NULL;
+  if (c->membrane->layout->rank != root) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetvesEvent("AssembleChat", &event));
   PetscCall(PetscLogEventBegin(event, 0, 0, 0, 0));
   PetscCall(PlaceWindows(c, &w));
@@ -113,11 +123,11 @@ PetscErrorCode TensionAssemble(Coupling c, Mat *Chat) {
   }
   PetscCall(PetscCalloc1(M, &row));
   for (PetscInt k = 0; k < M; k++)
-    for (PetscInt l = 0; l < M; l++) row[k] += Offset(c->grid, &w, k, l, d);
+    for (PetscInt l = 0; l < M; l++) row[k] += Offset(c->fluid->grid, &w, k, l, d);
   PetscCall(MatCreateSeqAIJ(PETSC_COMM_SELF, M, M, 0, row, Chat));
   for (PetscInt k = 0; k < M; k++)
     for (PetscInt l = k; l < M; l++) {
-      if (!Offset(c->grid, &w, k, l, d)) continue;
+      if (!Offset(c->fluid->grid, &w, k, l, d)) continue;
       const PetscReal value = Product(&w, k, l, d);
       PetscCall(MatSetValue(*Chat, k, l, value, INSERT_VALUES));
       if (l != k) PetscCall(MatSetValue(*Chat, l, k, value, INSERT_VALUES));
@@ -125,7 +135,7 @@ PetscErrorCode TensionAssemble(Coupling c, Mat *Chat) {
   PetscCall(MatAssemblyBegin(*Chat, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(*Chat, MAT_FINAL_ASSEMBLY));
   PetscCall(PetscFree(row));
-  PetscCall(PetscFree(w.origin));
+  PetscCall(PetscFree3(w.origin, w.previous, w.tau));
   PetscCall(PetscFree(w.values));
   PetscCall(PetscLogEventEnd(event, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -1,56 +1,51 @@
-/* Grid and membrane joined: interpolation E, spreading E^T, and the operators S and B of the momentum equation.
-
-   Markers are few, so every rank holds all marker vectors (sequential vectors), spreads onto its own slab only, and an
-   interpolation ends in one reduction and one broadcast, so that its result has the same bits on every rank. The
-   MatShells below are therefore sequential, between marker vectors and the rank's local part of a velocity ("slab"),
-   but applying E, S^T or B^T is collective over the grid's ranks. */
+/* Fluid and membranes joined: where the membranes are in a step, their tangents, what gives back the kernel's smoothing,
+   and the operators S and B of the momentum equation. */
 #pragma once
-#include "coupling/kernel.h"
+#include "coupling/selfmobility.h"
 #include "fluid/fluid.h"
-#include "membrane/membrane.h"
-
-/* Where a marker sees one component: rows y.first.., columns x.first.., with their weights. */
-typedef struct {
-  PetscInt first[2], n[2]; /* x, y; first wrapped into the grid where periodic */
-  PetscReal weight[2][KERNEL_MAX_POINTS];
-} Stencil;
 
 typedef struct _p_Coupling *Coupling;
 struct _p_Coupling {
-  Grid grid;         /* borrowed */
-  Membrane membrane; /* borrowed */
-  const Kernel *kernel;
-  Stencil *stencil;   /* [2M]: component c of marker k at 2k + c */
-  PetscReal *X;       /* [2M] the coupling's markers */
-  PetscReal *tau;     /* [2M] tangents there */
-  PetscInt window[2]; /* this rank's rows that hold all stencils, with the rows next to them */
-  PetscScalar *force, *work, *sum;
-  PetscReal alpha; /* factor of the spreading under way */
-  Vec slab;        /* sequential vector without memory, for a velocity's local part */
-  Mat E;           /* (2M x slab) U_k = SUM u(x) phi phi; E^T spreads */
-  Mat S;           /* (slab x M) S = E^T Dm^T/h^2: minus the spread tension force */
-  Mat B;           /* (slab x 2M) B = E^T (c_b ds/h^2) D4: minus the spread bending force */
-  PetscLogEvent spread, interpolate;
+  Fluid fluid;       /* borrowed */
+  Membrane membrane; /* borrowed; of no vesicle when the scene has none */
+  Markers markers;
+  SelfMobility self; /* NULL without */
+  PetscReal *tau;    /* [2n] tangents of the own vesicles */
+  Vec force;         /* marker vector, work */
+  Vec velocity;      /* marker vector, work */
+  Mat S;             /* (velocity x tension) S = E^T Dm^T/h^2: minus the spread tension force */
+  Mat B;             /* (velocity x marker vector) B = E^T (c_b ds/h^2) D4: minus the spread bending force */
 };
 
-/* CouplingCreate - for a membrane over a grid with the named kernel; markers are not set yet. */
-PETSC_EXTERN PetscErrorCode CouplingCreate(Grid grid, Membrane membrane, const char kernel[], Coupling *coupling);
+/* CouplingCreate - of a fluid and membranes with the named kernel and self-mobility; not placed yet. Collective. */
+PETSC_EXTERN PetscErrorCode CouplingCreate(Fluid fluid, Membrane membrane, const char kernel[], SelfMobilityType self,
+                                           Coupling *coupling);
 PETSC_EXTERN PetscErrorCode CouplingDestroy(Coupling *coupling);
 
-/* CouplingCheckMarkers - message is empty when every marker of X[2M] is finite and at least three cells from every
-   wall, else it names the vesicle and the wall; length: size of message. Not collective. */
-PETSC_EXTERN PetscErrorCode CouplingCheckMarkers(Coupling coupling, const PetscScalar X[], char message[],
-                                                 size_t length);
+/* CouplingPlace - everything that a solve stands on, in one call: the time coefficient a0 (1/time) in the fluid's H; E, S,
+   B and the tangents at the markers X; Theta and R there. message[PETVES_MAX_MESSAGE] is empty, or says why it cannot be:
+   a marker near a wall, or a matrix without factor; the same on every rank. Collective. */
+PETSC_EXTERN PetscErrorCode CouplingPlace(Coupling coupling, PetscReal a0, Vec X, char message[PETVES_MAX_MESSAGE]);
 
-/* CouplingSetMarkers - place E, S, B at the markers X (checked by CouplingCheckMarkers before). */
-PETSC_EXTERN PetscErrorCode CouplingSetMarkers(Coupling coupling, Vec X);
+/* CouplingHasMembrane - whether there is a vesicle. CouplingBending - c_b, 0 without a vesicle. Not collective. */
+static inline PetscBool CouplingHasMembrane(Coupling coupling) {
+  return coupling->membrane->layout->bodies > 0 ? PETSC_TRUE : PETSC_FALSE;
+}
+static inline PetscReal CouplingBending(Coupling coupling) {
+  return CouplingHasMembrane(coupling) ? coupling->membrane->bending : 0;
+}
 
-/* CouplingClear - w (a velocity or a pressure) is zero but for rows dirty[2], which are zeroed; dirty becomes the
-   coupling's window, where the caller may write. Not collective. */
-PETSC_EXTERN PetscErrorCode CouplingClear(Coupling coupling, Vec w, PetscInt dirty[2]);
+/* CouplingSpreadTension - w += alpha S sigma. CouplingSpreadBending - w += alpha B X. Collective. */
+PETSC_EXTERN PetscErrorCode CouplingSpreadTension(Coupling coupling, PetscReal alpha, Vec sigma, Vec w);
+PETSC_EXTERN PetscErrorCode CouplingSpreadBending(Coupling coupling, PetscReal alpha, Vec X, Vec w);
 
-/* CouplingSpreadAdd - w += alpha A x for A one of S and B, or w += alpha E^T x for E; x a marker or tension vector. */
-PETSC_EXTERN PetscErrorCode CouplingSpreadAdd(Coupling coupling, PetscReal alpha, Mat A, Vec x, Vec w);
+/* CouplingStretching - d = Dm U/h^2. d and U are an edge vector and a marker vector. Not collective. */
+PETSC_EXTERN PetscErrorCode CouplingStretching(Coupling coupling, Vec U, Vec d);
 
-/* CouplingInterpolate - y = E w, or y = S^T w; w a velocity. Collective. */
-PETSC_EXTERN PetscErrorCode CouplingInterpolate(Coupling coupling, Mat A, Vec w, Vec y);
+/* CouplingVelocity - U = E w, or R (E w - Theta Dm^T sigma) with self-mobility; sigma may be NULL. Collective. */
+PETSC_EXTERN PetscErrorCode CouplingVelocity(Coupling coupling, Vec w, Vec sigma, Vec U);
+
+/* CouplingSelfMobility - U := R (U - Theta (Dm^T sigma + c_b ds D4 Xhat)); without self-mobility U stays. sigma and Xhat
+   may be NULL. From U = E w and sigma it makes the velocity that a solve finds, from U = u_inf and Xhat the part that is
+   known before. Not collective. */
+PETSC_EXTERN PetscErrorCode CouplingSelfMobility(Coupling coupling, Vec sigma, Vec Xhat, Vec U);

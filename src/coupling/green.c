@@ -5,7 +5,8 @@
 #define LAGS (2 * KERNEL_MAX_POINTS) /* of two kernels, one spare: whole vectors */
 
 PetscErrorCode MobilityCreate(Scene scene, Coupling coupling, Mobility *out) {
-  const Grid g = coupling->grid;
+  const Grid g = coupling->fluid->grid;
+  const Layout l = coupling->membrane->layout;
   Mobility m;
   PetscReal reach = 0;
   PetscFunctionBeginUser;
@@ -16,8 +17,8 @@ PetscErrorCode MobilityCreate(Scene scene, Coupling coupling, Mobility *out) {
   m->scene.bc[0] = m->scene.bc[1] = BC_PERIODIC;
   m->scene.flow.form = FORM_DISTURBANCE;
   PetscCall(FluidCreate(&m->scene, &m->periodic));
-  for (PetscInt v = 0; v < coupling->membrane->vesicles; v++) reach = PetscMax(reach, coupling->membrane->L0[v] / 2);
-  if (coupling->membrane->vesicles > 1) reach = PETSC_MAX_INT / 4 * g->h; /* vesicles may be anywhere: the whole box */
+  for (PetscInt v = 0; v < l->bodies; v++) reach = PetscMax(reach, coupling->membrane->L0[v] / 2);
+  if (l->bodies > 1) reach = PETSC_MAX_INT / 4 * g->h; /* vesicles may be anywhere: the whole box */
   for (int d = 0; d < 2; d++) /* two markers are at most half a contour apart; room for drift and kernels */
     m->size[d] = PetscMin(g->n[d] / 2, (PetscInt)(1.1 * reach / g->h) + 4) + 2 * KERNEL_MAX_POINTS;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -153,7 +154,7 @@ static void Pad(const Stencil *s, Padded *p) {
 static inline PetscInt Correlate(Mobility m, int dir, const Padded *response, const Padded *source,
                                  PetscReal weight[restrict LAGS]) {
   const PetscReal *restrict a = response->weight[dir] + 1, *restrict b = source->weight[dir] + KERNEL_MAX_POINTS;
-  const PetscInt n = m->coupling->grid->n[dir];
+  const PetscInt n = m->coupling->fluid->grid->n[dir];
   PetscInt first = response->first[dir] - source->first[dir] - (KERNEL_MAX_POINTS - 1);
   const PetscInt middle = first + LAGS / 2;
   for (int q = 0; q < LAGS; q++) {
@@ -178,14 +179,14 @@ static inline PetscReal Pair(Mobility m, const GreenTable *t, GreenBlock b, cons
   return sum;
 }
 
-PetscErrorCode MobilityAssemble(Mobility m, const GreenTable *t, PetscInt first, PetscInt n, PetscReal Mob[]) {
-  const Grid g = m->coupling->grid;
+PetscErrorCode MobilityAssemble(Mobility m, const GreenTable *t, PetscInt first, PetscInt n, PetscInt part,
+                                PetscInt parts, PetscReal Mob[]) {
   Padded *p; /* component c of marker k at 2k + c */
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(2 * n, &p));
-  for (PetscInt k = 0; k < 2 * n; k++) Pad(&m->coupling->stencil[2 * first + k], &p[k]);
-  if (g->size > 1) PetscCall(PetscArrayzero(Mob, 4 * n * n));
-  for (PetscInt k = g->rank; k < n; k += g->size) /* each entry by one rank */
+  for (PetscInt k = 0; k < 2 * n; k++) Pad(&m->coupling->markers->stencil[2 * first + k], &p[k]);
+  if (parts > 1) PetscCall(PetscArrayzero(Mob, 4 * n * n));
+  for (PetscInt k = part; k < n; k += parts)
     for (PetscInt l = 0; l < n; l++) {
       PetscReal *block = Mob + 2 * k * 2 * n + 2 * l, *mirror = Mob + 2 * l * 2 * n + 2 * k;
       if (l >= k) { /* symmetric */
@@ -195,7 +196,5 @@ PetscErrorCode MobilityAssemble(Mobility m, const GreenTable *t, PetscInt first,
       block[2 * n] = mirror[1] = Pair(m, t, GREEN_VU, &p[2 * k + 1], &p[2 * l]);
     }
   PetscCall(PetscFree(p));
-  if (g->size > 1)
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, Mob, (PetscMPIInt)(4 * n * n), MPIU_REAL, MPI_SUM, g->comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,31 +1,11 @@
 #include "coupling/lagrangian.h"
 
-/* U := R (U - Theta Dm^T sigma), sigma or NULL */
-static PetscErrorCode ApplySelfMobility(LagrangianSolver s, const PetscScalar sigma[], Vec U) {
-  PetscScalar *u;
+/* y = S^T w, or Dm R (E w - alpha Theta Dm^T x)/h^2 with self-mobility. */
+static PetscErrorCode Stretching(LagrangianSolver s, Vec w, Vec x, PetscReal alpha, Vec y) {
   PetscFunctionBeginUser;
-  PetscCall(VecGetArray(U, &u));
-  PetscCall(SelfMobilityApply(s->self, sigma, NULL, u));
-  PetscCall(VecRestoreArray(U, &u));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* y = Dm R (E w - alpha Theta Dm^T x)/h^2, what self-mobility makes of S^T w. */
-static PetscErrorCode CorrectedStretching(LagrangianSolver s, Vec w, Vec x, PetscReal alpha, Vec y) {
-  const Coupling c = s->coupling;
-  const PetscScalar *u;
-  PetscScalar *ya;
-  PetscFunctionBeginUser;
-  PetscCall(CouplingInterpolate(c, c->E, w, s->U));
-  PetscCall(VecCopy(x, y));
-  PetscCall(VecScale(y, alpha));
-  PetscCall(VecGetArray(y, &ya));
-  PetscCall(ApplySelfMobility(s, ya, s->U));
-  PetscCall(VecGetArrayRead(s->U, &u));
-  MembraneStretching(c->membrane, c->tau, u, ya);
-  PetscCall(VecRestoreArrayRead(s->U, &u));
-  PetscCall(VecRestoreArray(y, &ya));
-  PetscCall(VecScale(y, 1 / PetscSqr(c->grid->h)));
+  if (s->coupling->self) PetscCall(VecAXPBY(s->F, alpha, 0, x));
+  PetscCall(CouplingVelocity(s->coupling, w, s->coupling->self ? s->F : NULL, s->U));
+  PetscCall(CouplingStretching(s->coupling, s->U, y));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -34,16 +14,15 @@ static PetscErrorCode MultTension(Mat A, Vec x, Vec y) {
   LagrangianSolver s;
   PetscFunctionBeginUser;
   PetscCall(MatShellGetContext(A, &s));
-  PetscCall(CouplingClear(s->coupling, s->w, s->dirty_w));
-  PetscCall(CouplingClear(s->coupling, s->q, s->dirty_q));
-  PetscCall(CouplingSpreadAdd(s->coupling, 1, s->coupling->S, x, s->w));
-  PetscCall(GridGradientTransposeRows(s->fluid->grid, 1, s->w, s->coupling->window, s->q));
-  PetscCall(FluidSolvePoisson(s->fluid, s->q, s->q2));
-  PetscCall(GridGradientRows(s->fluid->grid, 1, s->q2, PETSC_TRUE, s->coupling->window, s->w));
-  if (s->self)
-    PetscCall(CorrectedStretching(s, s->w, x, -s->fluid->a0, y));
-  else
-    PetscCall(CouplingInterpolate(s->coupling, s->coupling->S, s->w, y));
+  const Coupling c = s->coupling;
+  const Markers m = c->markers;
+  PetscCall(MarkersClear(m, s->w, s->dirty_w));
+  PetscCall(MarkersClear(m, s->q, s->dirty_q));
+  PetscCall(CouplingSpreadTension(c, 1, x, s->w));
+  PetscCall(GridGradientTransposeRows(c->fluid->grid, 1, s->w, m->window, s->q));
+  PetscCall(FluidSolvePoisson(c->fluid, s->q, s->q2));
+  PetscCall(GridGradientRows(c->fluid->grid, 1, s->q2, PETSC_TRUE, m->window, s->w));
+  PetscCall(Stretching(s, s->w, x, -c->fluid->a0, y));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -52,50 +31,43 @@ static PetscErrorCode MultBending(Mat A, Vec x, Vec y) {
   LagrangianSolver s;
   PetscFunctionBeginUser;
   PetscCall(MatShellGetContext(A, &s));
-  PetscCall(CouplingClear(s->coupling, s->w, s->dirty_w));
-  PetscCall(CouplingSpreadAdd(s->coupling, 1, s->coupling->B, x, s->w));
-  PetscCall(FluidSolveHelmholtz(s->fluid, s->w, s->w2));
-  PetscCall(CouplingInterpolate(s->coupling, s->coupling->E, s->w2, y));
-  if (s->self) PetscCall(ApplySelfMobility(s, NULL, y));
-  PetscCall(VecAYPX(y, 1 / s->fluid->a0, x));
+  PetscCall(MarkersClear(s->coupling->markers, s->w, s->dirty_w));
+  PetscCall(CouplingSpreadBending(s->coupling, 1, x, s->w));
+  PetscCall(FluidSolveHelmholtz(s->coupling->fluid, s->w, s->w2));
+  PetscCall(CouplingVelocity(s->coupling, s->w2, NULL, y));
+  PetscCall(VecAYPX(y, 1 / s->coupling->fluid->a0, x));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Create(Fluid fluid, Coupling coupling, SelfMobility self, const char prefix[], PetscInt n,
-                             PetscErrorCode (*mult)(Mat, Vec, Vec), LagrangianSolver *out) {
+static PetscErrorCode ApplyChat(PC pc, Vec x, Vec y) {
+  LagrangianSolver s;
+  PetscFunctionBeginUser;
+  PetscCall(PCShellGetContext(pc, &s));
+  PetscCall(RootPCApply(s->chat, x, y));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Create(Coupling coupling, const char prefix[], int each, PetscErrorCode (*mult)(Mat, Vec, Vec),
+                             LagrangianSolver *out) {
+  const Grid g = coupling->fluid->grid;
+  const Layout l = coupling->membrane->layout;
   LagrangianSolver s;
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&s));
   *out = s;
-  s->fluid = fluid;
   s->coupling = coupling;
-  s->self = self;
   s->prefix = prefix;
-  PetscCall(DMCreateGlobalVector(fluid->grid->velocity, &s->w));
-  PetscCall(MembraneCreateMarkerVec(coupling->membrane, &s->U));
-  PetscCall(MatCreateShell(PETSC_COMM_SELF, n, n, n, n, s, &s->A));
+  PetscCall(DMCreateGlobalVector(g->velocity, &s->w));
+  PetscCall(LayoutCreateVec(l, 2, &s->U));
+  PetscCall(LayoutCreateVec(l, each, &s->F));
+  PetscCall(MatCreateShell(g->comm, each * l->n, each * l->n, each * l->M, each * l->M, s, &s->A));
   PetscCall(MatShellSetOperation(s->A, MATOP_MULT, (void (*)(void))mult));
-  PetscCall(KSPCreate(PETSC_COMM_SELF, &s->ksp));
+  PetscCall(KSPCreate(g->comm, &s->ksp));
   PetscCall(KSPSetOptionsPrefix(s->ksp, prefix));
   PetscCall(KSPSetType(s->ksp, KSPGMRES));
   PetscCall(KSPGMRESSetRestart(s->ksp, 200));
-  PetscCall(KSPSetTolerances(s->ksp, PetscSqr(fluid->grid->h), PETSC_DEFAULT, PETSC_DEFAULT, 1000));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Every rank runs the same iteration, one prints; but a monitor that applies the operator, which is collective, must
-   stay on all of them. */
-PetscErrorCode KSPReplicatedSetFromOptions(KSP ksp, PetscMPIInt rank) {
-  const char *prefix;
-  PetscBool true_residual;
-  PetscFunctionBeginUser;
-  PetscCall(KSPSetFromOptions(ksp));
-  PetscCall(KSPGetOptionsPrefix(ksp, &prefix));
-  PetscCall(PetscOptionsHasName(NULL, prefix, "-ksp_monitor_true_residual", &true_residual));
-  if (rank && !true_residual) {
-    PetscCall(KSPMonitorCancel(ksp));
-    PetscCall(KSPResetViewers(ksp));
-  }
+  PetscCall(KSPSetTolerances(s->ksp, PetscSqr(g->h), PETSC_DEFAULT, PETSC_DEFAULT, 1000));
+  PetscCall(KSPSetOperators(s->ksp, s->A, s->A));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -112,30 +84,38 @@ static PetscErrorCode PreferRight(KSP ksp) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode TensionSolverCreate(Fluid fluid, Coupling coupling, SelfMobility self, LagrangianSolver *s) {
+PetscErrorCode TensionSolverCreate(Coupling coupling, LagrangianSolver *out) {
+  LagrangianSolver s;
+  PetscBool none;
   PC pc;
   PetscFunctionBeginUser;
-  PetscCall(Create(fluid, coupling, self, "tension_", coupling->membrane->M, MultTension, s));
-  PetscCall(DMCreateGlobalVector(fluid->grid->da[FIELD_P], &(*s)->q));
-  PetscCall(VecDuplicate((*s)->q, &(*s)->q2));
-  PetscCall(KSPGetPC((*s)->ksp, &pc));
-  PetscCall(PCSetType(pc, PCILU));
-  PetscCall(PCFactorSetLevels(pc, COMPLETE_FILL));
-  PetscCall(PCFactorSetMatOrderingType(pc, MATORDERINGND));
-  PetscCall(KSPReplicatedSetFromOptions((*s)->ksp, fluid->grid->rank));
-  PetscCall(PreferRight((*s)->ksp));
+  PetscCall(Create(coupling, "tension_", 1, MultTension, out));
+  s = *out;
+  PetscCall(DMCreateGlobalVector(coupling->fluid->grid->da[FIELD_P], &s->q));
+  PetscCall(VecDuplicate(s->q, &s->q2));
+  PetscCall(RootPCCreate(coupling->membrane->layout, s->prefix, COMPLETE_FILL, &s->chat));
+  PetscCall(RootPCIsNone(s->chat, &none));
+  PetscCall(KSPGetPC(s->ksp, &pc));
+  PetscCall(PCSetOptionsPrefix(pc, "tension_shell_")); /* -tension_pc_ options are those of the PC inside */
+  PetscCall(PCSetType(pc, none ? PCNONE : PCSHELL));
+  if (!none) {
+    PetscCall(PCShellSetContext(pc, s));
+    PetscCall(PCShellSetApply(pc, ApplyChat));
+    PetscCall(PCShellSetName(pc, "of the assembled Chat, on one rank"));
+  }
+  PetscCall(KSPSetFromOptions(s->ksp));
+  PetscCall(PreferRight(s->ksp));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode BendingSolverCreate(Fluid fluid, Coupling coupling, SelfMobility self, LagrangianSolver *s) {
+PetscErrorCode BendingSolverCreate(Coupling coupling, LagrangianSolver *s) {
   PC pc;
   PetscFunctionBeginUser;
-  PetscCall(Create(fluid, coupling, self, "bending_", 2 * coupling->membrane->M, MultBending, s));
+  PetscCall(Create(coupling, "bending_", 2, MultBending, s));
   PetscCall(VecDuplicate((*s)->w, &(*s)->w2));
   PetscCall(KSPGetPC((*s)->ksp, &pc));
   PetscCall(PCSetType(pc, PCNONE));
-  PetscCall(KSPReplicatedSetFromOptions((*s)->ksp, fluid->grid->rank));
-  PetscCall(KSPSetOperators((*s)->ksp, (*s)->A, (*s)->A));
+  PetscCall(KSPSetFromOptions((*s)->ksp));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -144,63 +124,81 @@ PetscErrorCode LagrangianSolverDestroy(LagrangianSolver *solver) {
   PetscFunctionBeginUser;
   if (!s) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(KSPDestroy(&s->ksp));
+  PetscCall(RootPCDestroy(&s->chat));
   PetscCall(MatDestroy(&s->A));
-  PetscCall(MatDestroy(&s->Chat));
   PetscCall(VecDestroy(&s->w));
   PetscCall(VecDestroy(&s->w2));
   PetscCall(VecDestroy(&s->q));
   PetscCall(VecDestroy(&s->q2));
   PetscCall(VecDestroy(&s->U));
+  PetscCall(VecDestroy(&s->F));
   PetscCall(PetscFree(*solver));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Chat += (a0/h^2) Dm Theta Dm^T for one-block vesicles: self-mobility is the larger part of the corrected operator. */
-static PetscErrorCode AddSelfMobility(LagrangianSolver s) {
-  const Membrane m = s->coupling->membrane;
-  const PetscReal scale = s->fluid->a0 / PetscSqr(s->coupling->grid->h);
-  PetscScalar *unit, *F, *d;
-  Mat sum;
+/* Chat += (a0/h^2) Dm Theta Dm^T, a block a vesicle: self-mobility is the larger part of the corrected operator. Each
+   owner makes its own blocks, column by column, and root has the sum. */
+static PetscErrorCode AddSelfMobility(LagrangianSolver s, Mat *Chat) {
+  const Coupling c = s->coupling;
+  const Layout l = c->membrane->layout;
+  const PetscReal scale = c->fluid->a0 / PetscSqr(c->fluid->grid->h);
+  PetscScalar *unit, *F, *d, *all;
+  PetscMPIInt size;
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc3(m->M, &unit, 2 * m->M, &F, m->M, &d));
-  PetscCall(MatConvert(s->Chat, MATSEQDENSE, MAT_INITIAL_MATRIX, &sum));
-  for (PetscInt k = 0; k < m->M; k++) {
+  PetscCall(PetscMPIIntCast(l->M * l->M, &size));
+  PetscCall(PetscCalloc4(l->n, &unit, 2 * l->n, &F, l->n, &d, size, &all)); /* all: row k is column k, symmetric */
+  for (PetscInt k = 0; k < l->n; k++) {
     unit[k] = 1;
-    PetscCall(PetscArrayzero(F, 2 * m->M));
-    MembraneStretchingTranspose(m, s->coupling->tau, 1, unit, F);
-    PetscCall(SelfMobilityMultTheta(s->self, F));
-    MembraneStretching(m, s->coupling->tau, F, d);
-    for (PetscInt l = 0; l < m->M; l++) PetscCall(MatSetValue(sum, l, k, scale * d[l], ADD_VALUES));
+    PetscCall(PetscArrayzero(F, 2 * l->n));
+    MembraneStretchingTranspose(c->membrane, c->tau, 1, unit, F);
+    PetscCall(SelfMobilityMultTheta(c->self, F));
+    MembraneStretching(c->membrane, c->tau, F, d);
+    for (PetscInt r = 0; r < l->n; r++) all[(l->first + k) * l->M + l->first + r] = scale * d[r];
     unit[k] = 0;
   }
-  PetscCall(MatAssemblyBegin(sum, MAT_FINAL_ASSEMBLY));
-  PetscCall(MatAssemblyEnd(sum, MAT_FINAL_ASSEMBLY));
-  PetscCall(MatDestroy(&s->Chat));
-  PetscCall(MatConvert(sum, MATSEQAIJ, MAT_INITIAL_MATRIX, &s->Chat));
-  PetscCall(MatDestroy(&sum));
-  PetscCall(PetscFree3(unit, F, d));
+  if (l->size > 1)
+    PetscCallMPI(MPI_Reduce(l->rank == s->chat->root ? MPI_IN_PLACE : all, all, size, MPIU_SCALAR, MPI_SUM,
+                            s->chat->root, l->comm));
+  if (*Chat) {
+    Mat sum;
+    PetscCall(MatConvert(*Chat, MATSEQDENSE, MAT_INITIAL_MATRIX, &sum));
+    for (PetscInt k = 0; k < l->M; k++)
+      for (PetscInt r = 0; r < l->M; r++) PetscCall(MatSetValue(sum, r, k, all[k * l->M + r], ADD_VALUES));
+    PetscCall(MatAssemblyBegin(sum, MAT_FINAL_ASSEMBLY));
+    PetscCall(MatAssemblyEnd(sum, MAT_FINAL_ASSEMBLY));
+    PetscCall(MatDestroy(Chat));
+    PetscCall(MatConvert(sum, MATSEQAIJ, MAT_INITIAL_MATRIX, Chat));
+    PetscCall(MatDestroy(&sum));
+  }
+  PetscCall(PetscFree4(unit, F, d, all));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode LagrangianSolverSetUp(LagrangianSolver s) {
+/* The tension problem's preconditioner follows the markers. */
+static PetscErrorCode SetUpChat(LagrangianSolver s) {
+  PetscBool none;
+  Mat Chat;
   PetscFunctionBeginUser;
-  if (s->q) { /* the tension problem: its preconditioner follows the markers */
-    PC pc;
-    PetscBool none;
-    PetscCall(KSPGetPC(s->ksp, &pc));
-    PetscCall(PetscObjectTypeCompare((PetscObject)pc, PCNONE, &none));
-    PetscCall(MatDestroy(&s->Chat));
-    if (!none) PetscCall(TensionAssemble(s->coupling, &s->Chat));
-    if (!none && s->self) PetscCall(AddSelfMobility(s));
-    PetscCall(KSPSetOperators(s->ksp, s->A, none ? s->A : s->Chat));
-  }
-  PetscCall(KSPSetUp(s->ksp));
-  PetscCall(KSPSetUpOnBlocks(s->ksp));
+  s->failed = PETSC_FALSE;
+  if (!s->chat) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(RootPCIsNone(s->chat, &none));
+  if (none) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(TensionAssemble(s->coupling, s->chat->root, &Chat));
+  if (s->coupling->self) PetscCall(AddSelfMobility(s, &Chat));
+  PetscCall(RootPCSetMatrix(s->chat, Chat, &s->failed));
+  PetscCall(MatDestroy(&Chat));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode LagrangianSolverSolve(LagrangianSolver s, Vec b, Vec x) {
   PetscFunctionBeginUser;
+  PetscCall(SetUpChat(s));
+  if (s->failed) {
+    s->its = 0;
+    s->why = KSP_DIVERGED_PC_FAILED;
+    s->residual = NAN;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(KSPSolve(s->ksp, b, x));
   PetscCall(KSPGetIterationNumber(s->ksp, &s->its));
   PetscCall(KSPGetConvergedReason(s->ksp, &s->why));
@@ -208,17 +206,16 @@ PetscErrorCode LagrangianSolverSolve(LagrangianSolver s, Vec b, Vec x) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode KSPWriteOptions(KSP ksp, const char prefix[], FILE *file) {
+PetscErrorCode KSPWriteOptions(KSP ksp, PC pc, const char prefix[], FILE *file) {
   KSPType type;
   PCType pc_type;
-  PC pc;
   PetscReal rtol, atol, dtol;
   PetscInt max_it;
   PetscBool ilu, shell;
   PetscFunctionBeginUser;
   PetscCall(KSPGetType(ksp, &type));
   PetscCall(KSPGetTolerances(ksp, &rtol, &atol, &dtol, &max_it));
-  PetscCall(KSPGetPC(ksp, &pc));
+  if (!pc) PetscCall(KSPGetPC(ksp, &pc));
   PetscCall(PCGetType(pc, &pc_type));
   fprintf(file, "-%sksp_type %s\n-%sksp_rtol %.17g\n-%sksp_atol %.17g\n-%sksp_max_it %" PetscInt_FMT "\n", prefix, type,
           prefix, (double)rtol, prefix, (double)atol, prefix, max_it);

@@ -1,8 +1,8 @@
-/* The two Lagrangian solves of the split scheme, on marker vectors that every rank holds: each rank runs the same
-   iteration, the operators inside are collective. So PETSc's sequential PCILU works on any number of ranks, and
-   iteration counts do not depend on it. Any KSP or PC option works under the prefixes tension_ and bending_. */
+/* The two Lagrangian solves of the split scheme, on marker and edge vectors. Any KSP or PC option works under the prefixes
+   tension_ and bending_. */
 #pragma once
-#include "coupling/selfmobility.h"
+#include "coupling/coupling.h"
+#include "coupling/rootpc.h"
 
 /* Levels of PCILU at which its fill is complete, with nested dissection, up to a few hundred markers: markers numbered
    along a curve make Chat a cyclic band, whose fill runs along the whole curve. Only a complete one has the paper's
@@ -11,45 +11,36 @@
 
 typedef struct _p_LagrangianSolver *LagrangianSolver;
 struct _p_LagrangianSolver {
-  Fluid fluid;       /* borrowed */
-  Coupling coupling; /* borrowed */
-  SelfMobility self; /* borrowed; NULL without: U = R (E u - Theta Dm^T dsigma) in place of E u */
+  Coupling coupling; /* borrowed; with self-mobility U = R (E u - Theta Dm^T dsigma) stands in place of E u */
   const char *prefix;
   KSP ksp;
   Mat A;            /* the operator, a shell */
-  Mat Chat;         /* assembled approximation for the preconditioner; NULL when there is none */
+  RootPC chat;      /* tension: preconditioner of the assembled approximation; NULL for bending */
   Vec w, w2, q, q2; /* work: two velocities, two pressures; w and q are zero but for their dirty rows */
   PetscInt dirty_w[2], dirty_q[2];
-  Vec U;                  /* work: a marker vector */
+  Vec U, F;               /* work: a marker vector, and the solution scaled */
+  PetscBool failed;       /* the preconditioner could not be factored */
   PetscInt its;           /* iterations of the last solve */
   KSPConvergedReason why; /* how it ended */
   PetscReal residual;     /* its last residual norm, as KSP measures it */
 };
 
 /* TensionSolverCreate - C = S^T S + S^T G L^-1 G^T S (M x M), prefix tension_, GMRES with PCILU on the assembled
-   Chat = S^T S + S^T G diag(L)^-1 G^T S, relative tolerance h^2. One scalar solve an iteration. */
-PETSC_EXTERN PetscErrorCode TensionSolverCreate(Fluid fluid, Coupling coupling, SelfMobility self,
-                                                LagrangianSolver *solver);
+   Chat = S^T S + S^T G diag(L)^-1 G^T S, relative tolerance h^2. One scalar solve an iteration. Collective. */
+PETSC_EXTERN PetscErrorCode TensionSolverCreate(Coupling coupling, LagrangianSolver *solver);
 
 /* BendingSolverCreate - I + E H^-1 B/a0 (2M x 2M), prefix bending_, GMRES, relative tolerance h^2. Two scalar solves an
-   iteration. */
-PETSC_EXTERN PetscErrorCode BendingSolverCreate(Fluid fluid, Coupling coupling, SelfMobility self,
-                                                LagrangianSolver *solver);
+   iteration. Collective. */
+PETSC_EXTERN PetscErrorCode BendingSolverCreate(Coupling coupling, LagrangianSolver *solver);
 PETSC_EXTERN PetscErrorCode LagrangianSolverDestroy(LagrangianSolver *solver);
 
-/* LagrangianSolverSetUp - follow the coupling's new markers: assemble Chat where the preconditioner wants it. */
-PETSC_EXTERN PetscErrorCode LagrangianSolverSetUp(LagrangianSolver solver);
-
-/* LagrangianSolverSolve - A x = b from a zero guess; its, why and residual say how it went (why < 0: failed).
- * Collective. */
+/* LagrangianSolverSolve - A x = b from a zero guess, where the coupling has been placed; its, why and residual say how it
+   went (why < 0: failed). A tension solve assembles Chat first, where the preconditioner wants it. Collective. */
 PETSC_EXTERN PetscErrorCode LagrangianSolverSolve(LagrangianSolver solver, Vec b, Vec x);
 
-/* TensionAssemble - Chat for the coupling's markers, assembled by every rank alike. */
-PETSC_EXTERN PetscErrorCode TensionAssemble(Coupling coupling, Mat *Chat);
+/* TensionAssemble - Chat at the coupling's markers, a sequential matrix on rank root, NULL elsewhere. Not collective. */
+PETSC_EXTERN PetscErrorCode TensionAssemble(Coupling coupling, PetscMPIInt root, Mat *Chat);
 
-/* KSPReplicatedSetFromOptions - options of a solver that every rank runs alike: only rank 0 prints. Collective over the
-   ranks that run it. */
-PETSC_EXTERN PetscErrorCode KSPReplicatedSetFromOptions(KSP ksp, PetscMPIInt rank);
-
-/* KSPWriteOptions - a KSP's settings in force as options with this prefix, one a line. */
-PETSC_EXTERN PetscErrorCode KSPWriteOptions(KSP ksp, const char prefix[], FILE *file);
+/* KSPWriteOptions - a KSP's settings in force as options with this prefix, one a line; pc: its preconditioner where the
+   KSP's own is a shell around it, else NULL. */
+PETSC_EXTERN PetscErrorCode KSPWriteOptions(KSP ksp, PC pc, const char prefix[], FILE *file);

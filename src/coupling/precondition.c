@@ -1,58 +1,202 @@
-/* The preconditioner of the reduced coupled problem: of the markers' mobility among themselves, by a dense table of a
-   periodic box or by Chat, and of each pair of walls by itself. */
-#include "coupling/saddle.h"
+#include "coupling/precondition.h"
+#include "coupling/lagrangian.h"
 
-#define MOST_WASTE 5
+#define MOST_EXCESS 5 /* iterations more than with new blocks, in one solve */
+#define NO_LIMIT 1000 /* solves that blocks may serve */
+#define OWN_MEMORY (PRECONDITIONER_MEMORY - MOBILITY_CACHE)
 
-/* N V + (Mob + h^2 Theta) Dm^T sigma/h^2 = r_V,  Dm V/h^2 = r_s. */
-static PetscErrorCode SolveTable(Saddle s, PetscScalar V[], PetscScalar tension[]) {
+PetscErrorCode PreconditionerCreate(Scene scene, Unknowns u, Preconditioner *out) {
+  const Coupling c = u->coupling;
+  Preconditioner p;
   PetscFunctionBeginUser;
-  PetscCall(PetscArraycpy(s->tension, tension, s->n_tension));
-  PetscCall(DenseBlocksSolve(s->blocks, V, s->tension, tension));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* E A^-1 E^T ~ (1/a0) E (I + G diag(L)^-1 G^T) E^T, no bending: sigma = a0 Chat^-1 (Dm r_V/h^2 - r_s), V = r_V. */
-static PetscErrorCode SolveChat(Saddle s, PetscScalar V[], PetscScalar tension[]) {
-  const Coupling c = s->coupling;
-  const PetscInt M = s->n_tension;
-  Vec rhs, sigma;
-  PetscFunctionBeginUser;
-  MembraneStretching(c->membrane, c->tau, V, s->tension);
-  for (PetscInt k = 0; k < M; k++) s->tension[k] = s->fluid->a0 * (s->tension[k] / PetscSqr(c->grid->h) - tension[k]);
-  PetscCall(VecCreateSeqWithArray(PETSC_COMM_SELF, 1, M, s->tension, &rhs));
-  PetscCall(VecCreateSeqWithArray(PETSC_COMM_SELF, 1, M, tension, &sigma));
-  PetscCall(PCApply(s->ilu, rhs, sigma));
-  PetscCall(VecDestroy(&rhs));
-  PetscCall(VecDestroy(&sigma));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode SaddlePrecondition(PC pc, Vec r, Vec z) {
-  Saddle s;
-  PetscScalar *za;
-  PetscFunctionBeginUser;
-  PetscCall(PCShellGetContext(pc, &s));
-  /* dense blocks far too old: new ones from here on */
-  if (s->flexible && s->type == MOBILITY_TABLE && s->coupling && s->age > 0 &&
-      s->applied == s->fresh_its + MOST_WASTE) {
-    s->life = s->age; /* next time before this happens */
-    PetscCall(SaddleRefresh(s));
-    s->renewed = s->applied;
+  PetscCall(PetscNew(&p));
+  *out = p;
+  p->unknowns = u;
+  p->type = CouplingHasMembrane(c) ? (MobilityType)scene->mobility : MOBILITY_NONE;
+  PetscCall(PetscMalloc1(u->walls->n, &p->d));
+  if (p->type == MOBILITY_TABLE) {
+    PetscCall(MobilityCreate(scene, c, &p->mobility));
+    PetscCall(DenseBlocksCreate(c, &p->blocks));
   }
-  s->applied++;
+  if (p->type == MOBILITY_ILU) {
+    PetscCall(RootPCCreate(c->membrane->layout, "coupled_mobility_", COMPLETE_FILL, &p->ilu));
+    PetscCall(LayoutCreateVec(c->membrane->layout, 1, &p->rhs));
+    PetscCall(VecDuplicate(p->rhs, &p->sigma));
+  }
+  PetscCall(PreconditionerForget(p));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode PreconditionerDestroy(Preconditioner *preconditioner) {
+  Preconditioner p = *preconditioner;
+  PetscFunctionBeginUser;
+  if (!p) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(DenseBlocksDestroy(&p->blocks));
+  PetscCall(MobilityDestroy(&p->mobility));
+  PetscCall(RootPCDestroy(&p->ilu));
+  PetscCall(VecDestroy(&p->rhs));
+  PetscCall(VecDestroy(&p->sigma));
+  PetscCall(PetscFree(p->d));
+  PetscCall(PetscFree(*preconditioner));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode PreconditionerForget(Preconditioner p) {
+  PetscFunctionBeginUser;
+  p->age = (Ageing){.fresh_its = -1, .most = NO_LIMIT};
+  if (p->mobility) PetscCall(MobilityForget(p->mobility));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode MakeBlocks(Preconditioner p) {
+  const Fluid f = p->unknowns->coupling->fluid;
+  const GreenTable *table;
+  PetscBool factored;
+  PetscFunctionBeginUser;
+  PetscCall(MobilityGetTable(p->mobility, f->alpha, &table));
+  PetscCall(DenseBlocksFactor(p->blocks, p->mobility, table, f->a0, &factored));
+  p->failed = factored ? PETSC_FALSE : PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode PreconditionerGetMemory(Preconditioner p, PetscReal memory[PRECONDITIONER_MEMORY]) {
+  const Ageing *a = &p->age;
+  const PetscReal own[] = {a->a0, a->fresh_its, a->solves, a->excess, a->most, a->made};
+  PetscFunctionBeginUser;
+  for (int k = 0; k < OWN_MEMORY; k++) memory[k] = own[k];
+  for (int k = 0; k < MOBILITY_CACHE; k++)
+    memory[OWN_MEMORY + k] = p->mobility ? MobilityCoefficient(p->mobility, k) : -1;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode PreconditionerSetMemory(Preconditioner p, const PetscReal memory[PRECONDITIONER_MEMORY]) {
+  PetscFunctionBeginUser;
+  if (!p->mobility || memory[0] == 0) PetscFunctionReturn(PETSC_SUCCESS);
+  p->age = (Ageing){.a0 = memory[0],
+                    .fresh_its = (PetscInt)memory[1],
+                    .solves = (PetscInt)memory[2],
+                    .excess = memory[3],
+                    .most = (PetscInt)memory[4],
+                    .made = (PetscInt)memory[5]};
+  PetscCall(MobilitySetTables(p->mobility, memory + OWN_MEMORY));
+  DenseBlocksPlace(p->blocks);
+  PetscCall(MakeBlocks(p));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Renew(Preconditioner p) {
+  Ageing *a = &p->age;
+  PetscFunctionBeginUser;
+  PetscCall(MakeBlocks(p));
+  a->a0 = p->unknowns->coupling->fluid->a0;
+  a->fresh_its = -1;
+  a->solves = 0;
+  a->excess = 0;
+  if (++a->made % 16 == 0) a->most++; /* now and then let blocks serve longer again */
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Cost of new dense blocks in iterations, from the operation counts and the speeds of one core; a number of the problem
+   alone, so that iterations do not depend on the machine or its load. */
+static PetscReal RenewalCost(Preconditioner p) {
+  const Coupling c = p->unknowns->coupling;
+  const Layout l = c->membrane->layout;
+  const PetscReal n = l->M <= DENSE_TOGETHER ? l->M : (PetscReal)l->M / l->bodies, blocks = l->M / n;
+  const PetscReal cells = (PetscReal)c->fluid->grid->n[0] * c->fluid->grid->n[1];
+  return blocks * (4e-9 * n * n * n + 6e-7 * n * n) / (1.5e-8 * cells + blocks * 1e-8 * n * n + 5e-5);
+}
+
+static PetscErrorCode SetUpChat(Preconditioner p) {
+  Mat Chat;
+  PetscFunctionBeginUser;
+  PetscCall(TensionAssemble(p->unknowns->coupling, p->ilu->root, &Chat));
+  PetscCall(RootPCSetMatrix(p->ilu, Chat, &p->failed));
+  PetscCall(MatDestroy(&Chat));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode PreconditionerSetUp(Preconditioner p) {
+  const Coupling c = p->unknowns->coupling;
+  const Ageing *a = &p->age;
+  PetscFunctionBeginUser;
+  p->now = (Application){0};
+  p->failed = PETSC_FALSE;
+  if (!CouplingHasMembrane(c)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(WallsSetMarkers(p->unknowns->walls, c->membrane->layout->n,
+                            c->markers->X + 2 * c->membrane->layout->first));
+  if (p->type == MOBILITY_ILU) PetscCall(SetUpChat(p));
+  if (p->type != MOBILITY_TABLE) PetscFunctionReturn(PETSC_SUCCESS);
+  DenseBlocksPlace(p->blocks);
+  if (a->excess > RenewalCost(p) || a->solves >= a->most || !(PetscAbsReal(a->a0 / c->fluid->a0 - 1) < 0.1))
+    PetscCall(Renew(p));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+void PreconditionerSolved(Preconditioner p, PetscInt its) {
+  Ageing *a = &p->age;
+  if (a->solves > 0)
+    a->excess += PetscMax(its - a->fresh_its, 0);
+  else if (a->fresh_its < 0)
+    a->fresh_its = its - p->now.renewed;
+  a->solves++;
+}
+
+PetscBool PreconditionerIsNew(Preconditioner p) {
+  return p->age.solves == 1 ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* E A^-1 E^T ~ (1/a0) E (I + G diag(L)^-1 G^T) E^T, no bending: sigma = a0 Chat^-1 (Dm V/h^2 - r_s), V as it is. */
+static PetscErrorCode SolveChat(Preconditioner p, const PetscScalar V[], PetscScalar sigma[]) {
+  const Coupling c = p->unknowns->coupling;
+  const PetscInt n = p->unknowns->tension;
+  const PetscScalar *found;
+  PetscScalar *r;
+  PetscFunctionBeginUser;
+  PetscCall(VecGetArray(p->rhs, &r));
+  MembraneStretching(c->membrane, c->tau, V, r);
+  for (PetscInt k = 0; k < n; k++) r[k] = c->fluid->a0 * (r[k] / PetscSqr(c->fluid->grid->h) - sigma[k]);
+  PetscCall(VecRestoreArray(p->rhs, &r));
+  PetscCall(RootPCApply(p->ilu, p->rhs, p->sigma));
+  PetscCall(VecGetArrayRead(p->sigma, &found));
+  PetscCall(PetscArraycpy(sigma, found, n));
+  PetscCall(VecRestoreArrayRead(p->sigma, &found));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Dense blocks far too old: new ones from here on, and the next time before this happens. */
+static PetscErrorCode RenewUnderWay(Preconditioner p) {
+  Ageing *a = &p->age;
+  PetscFunctionBeginUser;
+  if (!p->flexible || p->type != MOBILITY_TABLE || a->solves == 0 || p->now.applied != a->fresh_its + MOST_EXCESS)
+    PetscFunctionReturn(PETSC_SUCCESS);
+  a->most = a->solves;
+  PetscCall(Renew(p));
+  p->now.renewed = p->now.applied;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode PreconditionerApply(Preconditioner p, Vec r, Vec z) {
+  const Unknowns u = p->unknowns;
+  PetscScalar *V, *sigma, *d;
+  PetscFunctionBeginUser;
+  PetscCall(RenewUnderWay(p));
+  p->now.applied++;
   PetscCall(VecCopy(r, z));
-  PetscCall(VecGetArray(z, &za));
-  PetscCall(WallsPrecondition(s->walls, za + s->n_velocity + s->n_tension));
-  if (s->coupling) { /* the residuals are scaled */
-    for (PetscInt k = 0; k < s->n_velocity; k++) za[k] /= SaddleVelocityScale(s, k / 2);
-    for (PetscInt k = 0; k < s->n_tension; k++) za[s->n_velocity + k] /= SaddleScale(s, k);
-    PetscCall(WallsMarkerVelocity(s->walls, 1, za)); /* block triangular: the walls' flow moves the markers */
-    if (s->type == MOBILITY_TABLE) PetscCall(SolveTable(s, za, za + s->n_velocity));
-    if (s->type == MOBILITY_ILU) PetscCall(SolveChat(s, za, za + s->n_velocity));
-    if (s->type == MOBILITY_NONE)
-      for (PetscInt k = 0; k < s->n_tension; k++) za[s->n_velocity + k] *= -1;
+  PetscCall(VecGetArray(z, &V));
+  sigma = V + u->velocity;
+  d = sigma + u->tension;
+  PetscCall(UnknownsGatherWalls(u, d, p->d));
+  PetscCall(WallsPrecondition(u->walls, p->d));
+  PetscCall(PetscArraycpy(d, p->d + u->first_wall, u->wall));
+  if (CouplingHasMembrane(u->coupling)) {
+    UnknownsScale(u, PETSC_TRUE, V);
+    PetscCall(WallsMarkerVelocity(u->walls, 1, V)); /* block triangular: the walls' flow moves the markers */
+    if (p->type == MOBILITY_TABLE) PetscCall(DenseBlocksSolve(p->blocks, V, sigma));
+    if (p->type == MOBILITY_ILU) PetscCall(SolveChat(p, V, sigma));
+    if (p->type == MOBILITY_NONE)
+      for (PetscInt k = 0; k < u->tension; k++) sigma[k] *= -1;
   }
-  PetscCall(VecRestoreArray(z, &za));
+  PetscCall(VecRestoreArray(z, &V));
+  if (p->failed) PetscCall(VecSet(z, NAN)); /* the solve ends as diverged */
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,142 +1,221 @@
-/* The coupled problem reduced to its forces: residuals, products, and the velocity put together from the products. */
-#include "coupling/saddle.h"
+#include "coupling/reduced.h"
 
-/* F[2M] = Dm^T sigma + (c_b ds/a0) D4 V, minus h^2 times the force on the markers. */
-static PetscErrorCode Force(Saddle s, const PetscScalar x[], Vec F) {
-  const Membrane m = s->coupling->membrane;
+/* F = Dm^T sigma + (c_b ds/a0) D4 V, minus h^2 times the force on the markers. */
+static PetscErrorCode Force(Reduced s, const PetscScalar x[], Vec F) {
+  const Coupling c = s->unknowns->coupling;
+  const Membrane m = c->membrane;
   PetscScalar *f;
   PetscFunctionBeginUser;
   PetscCall(VecSet(F, 0));
   PetscCall(VecGetArray(F, &f));
-  if (m->bending > 0) MembraneBending(m, m->bending / s->fluid->a0, x, s->coupling->work, f);
-  MembraneStretchingTranspose(m, s->coupling->tau, 1, x + s->n_velocity, f);
+  if (m->bending > 0) MembraneBending(m, m->bending / c->fluid->a0, x, f);
+  MembraneStretchingTranspose(m, c->tau, 1, x + s->unknowns->velocity, f);
   PetscCall(VecRestoreArray(F, &f));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* r += -E^T F/h^2 + d; leaves F. */
-static PetscErrorCode AddForces(Saddle s, const PetscScalar x[], Vec r) {
+static PetscErrorCode AddForces(Reduced s, const PetscScalar x[], Vec r) {
+  const Unknowns u = s->unknowns;
+  const Coupling c = u->coupling;
   PetscFunctionBeginUser;
-  if (s->coupling) {
+  if (CouplingHasMembrane(c)) {
     PetscCall(Force(s, x, s->F));
-    PetscCall(CouplingSpreadAdd(s->coupling, -1 / PetscSqr(s->fluid->grid->h), s->coupling->E, s->F, r));
+    PetscCall(MarkersSpread(c->markers, -1 / PetscSqr(c->fluid->grid->h), s->F, r));
   }
-  PetscCall(WallsAdd(s->walls, x + s->n_velocity + s->n_tension, r));
+  PetscCall(UnknownsGatherWalls(u, x + u->velocity + u->tension, s->d));
+  PetscCall(WallsAdd(u->walls, s->d, r));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* y = scaled (V - E w + Theta F, Dm V/h^2, d + slip) of x and the velocity w that its forces F gave. Collective. */
-static PetscErrorCode Conditions(Saddle s, const PetscScalar x[], Vec w, PetscScalar y[]) {
-  const PetscInt n = s->n_velocity, walls = n + s->n_tension;
+/* y = (V - E w + Theta F, Dm V/h^2) of x, s->F holding F; not scaled yet. */
+static PetscErrorCode MembraneConditions(Reduced s, const PetscScalar x[], Vec w, PetscScalar y[]) {
+  const Coupling c = s->unknowns->coupling;
+  const PetscInt n = s->unknowns->velocity;
+  const PetscReal h2 = PetscSqr(c->fluid->grid->h);
+  const PetscScalar *U;
+  PetscScalar *F;
   PetscFunctionBeginUser;
-  if (s->coupling) {
-    const Coupling c = s->coupling;
-    const PetscReal h2 = PetscSqr(c->grid->h);
-    const PetscScalar *U;
-    PetscScalar *F;
-    PetscCall(CouplingInterpolate(c, c->E, w, s->U));
-    PetscCall(VecGetArrayRead(s->U, &U));
-    PetscCall(VecGetArray(s->F, &F));
-    if (s->self)
-      PetscCall(SelfMobilityMultTheta(s->self, F));
-    else
-      PetscCall(PetscArrayzero(F, n));
-    for (PetscInt k = 0; k < n; k++) y[k] = SaddleVelocityScale(s, k / 2) * (x[k] - U[k] + F[k]);
-    PetscCall(VecRestoreArray(s->F, &F));
-    PetscCall(VecRestoreArrayRead(s->U, &U));
-    MembraneStretching(c->membrane, c->tau, x, y + n);
-    for (PetscInt k = 0; k < s->n_tension; k++) y[n + k] *= SaddleScale(s, k) / h2;
-  }
-  if (!s->walls->n) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(WallsSlip(s->walls, StokesPotential(s->stokes), y + walls));
-  for (PetscInt k = 0; k < s->walls->n; k++) y[walls + k] += x[walls + k];
+  PetscCall(MarkersInterpolate(c->markers, w, s->U));
+  PetscCall(VecGetArrayRead(s->U, &U));
+  PetscCall(VecGetArray(s->F, &F));
+  if (c->self)
+    PetscCall(SelfMobilityMultTheta(c->self, F));
+  else
+    PetscCall(PetscArrayzero(F, n));
+  for (PetscInt k = 0; k < n; k++) y[k] = x[k] - U[k] + F[k];
+  PetscCall(VecRestoreArray(s->F, &F));
+  PetscCall(VecRestoreArrayRead(s->U, &U));
+  MembraneStretching(c->membrane, c->tau, x, y + n);
+  for (PetscInt k = 0; k < s->unknowns->tension; k++) y[n + k] /= h2;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SaddleMult(Mat A, Vec x, Vec y) {
-  Saddle s;
+/* y = scaled (V - E w + Theta F, Dm V/h^2, d + slip) of x and the velocity w that its forces F gave; g, if any, comes off
+   Dm V/h^2. Collective. */
+static PetscErrorCode Conditions(Reduced s, const PetscScalar x[], Vec w, Vec g, PetscScalar y[]) {
+  const Unknowns u = s->unknowns;
+  const PetscInt tension = u->velocity, wall = tension + u->tension;
+  PetscFunctionBeginUser;
+  if (CouplingHasMembrane(u->coupling)) PetscCall(MembraneConditions(s, x, w, y));
+  if (g) {
+    const PetscScalar *ga;
+    PetscCall(VecGetArrayRead(g, &ga));
+    for (PetscInt k = 0; k < u->tension; k++) y[tension + k] -= ga[k];
+    PetscCall(VecRestoreArrayRead(g, &ga));
+  }
+  UnknownsScale(u, PETSC_FALSE, y);
+  if (!u->walls->n) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(WallsSlip(u->walls, StokesPotential(s->stokes), s->slip));
+  for (PetscInt k = 0; k < u->wall; k++) y[wall + k] = s->slip[u->first_wall + k] + x[wall + k];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Room for the product to come; the last place is used again and again. */
+static PetscErrorCode NextPlace(Reduced s, PetscInt *place) {
+  Products *q = &s->kept;
+  PetscFunctionBeginUser;
+  *place = PetscMin(q->count, REDUCED_KEPT);
+  q->count++;
+  if (q->w[*place]) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecDuplicate(s->r, &q->w[*place]));
+  PetscCall(DMCreateGlobalVector(s->unknowns->coupling->fluid->grid->da[FIELD_P], &q->p[*place]));
+  if (*place == REDUCED_KEPT) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecDuplicate(s->rest, &q->z[*place]));
+  PetscCall(VecDuplicate(s->rest, &q->Az[*place]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Mult(Mat A, Vec x, Vec y) {
+  Reduced s;
   const PetscScalar *xa;
   PetscScalar *ya;
+  PetscInt place;
   PetscFunctionBeginUser;
   PetscCall(MatShellGetContext(A, &s));
-  const PetscInt slot = PetscMin(s->products, SADDLE_KEPT);
-  if (!s->w[slot]) {
-    PetscCall(VecDuplicate(s->r, &s->w[slot]));
-    PetscCall(DMCreateGlobalVector(s->fluid->grid->da[FIELD_P], &s->p[slot]));
-    if (slot < SADDLE_KEPT) {
-      PetscCall(VecDuplicate(s->x, &s->z[slot]));
-      PetscCall(VecDuplicate(s->x, &s->Az[slot]));
-    }
-  }
-  if (slot < SADDLE_KEPT) PetscCall(VecCopy(x, s->z[slot]));
-  s->products++;
+  PetscCall(NextPlace(s, &place));
+  if (place < REDUCED_KEPT) PetscCall(VecCopy(x, s->kept.z[place]));
   PetscCall(VecGetArrayRead(x, &xa));
-  if (s->coupling && !s->walls->n)
-    PetscCall(CouplingClear(s->coupling, s->r, s->dirty));
-  else /* wall forces are everywhere */
+  if (s->unknowns->walls->n) /* wall forces are everywhere */
     PetscCall(VecSet(s->r, 0));
+  else
+    PetscCall(MarkersClear(s->unknowns->coupling->markers, s->r, s->dirty));
   PetscCall(AddForces(s, xa, s->r));
-  PetscCall(StokesSolve(s->stokes, s->r, NULL, s->w[slot], s->p[slot]));
+  PetscCall(StokesSolve(s->stokes, s->r, NULL, s->kept.w[place], s->kept.p[place]));
   PetscCall(VecGetArray(y, &ya));
-  PetscCall(Conditions(s, xa, s->w[slot], ya));
+  PetscCall(Conditions(s, xa, s->kept.w[place], NULL, ya));
   PetscCall(VecRestoreArray(y, &ya));
   PetscCall(VecRestoreArrayRead(x, &xa));
-  if (slot < SADDLE_KEPT) PetscCall(VecCopy(y, s->Az[slot]));
+  if (place < REDUCED_KEPT) PetscCall(VecCopy(y, s->kept.Az[place]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SaddleResidual(Saddle s, Vec added, Vec f, Vec g, Vec x, Vec w, Vec p, Vec residual) {
-  const PetscScalar *xa, *ga;
+PetscErrorCode ReducedResidual(Reduced s, Vec added, Vec f, Vec g, Vec x, Vec w, Vec p, Vec residual) {
+  const Coupling c = s->unknowns->coupling;
+  const PetscScalar *xa;
   PetscScalar *ra;
   PetscFunctionBeginUser;
   PetscCall(VecGetArrayRead(added, &xa));
   PetscCall(AddForces(s, xa, f));
   PetscCall(VecRestoreArrayRead(added, &xa));
   PetscCall(VecGetArrayRead(x, &xa));
-  if (s->coupling && added != x) PetscCall(Force(s, xa, s->F));
-  if (s->fluid->bc2) { /* p holds the right-hand side, then the solution */
-    PetscCall(VecAXPBY(p, -1, 0, s->fluid->bc2));
+  if (CouplingHasMembrane(c) && added != x) PetscCall(Force(s, xa, s->F));
+  if (c->fluid->bc2) { /* p holds the right-hand side, then the solution */
+    PetscCall(VecAXPBY(p, -1, 0, c->fluid->bc2));
     PetscCall(StokesSolve(s->stokes, f, p, w, p));
   } else
     PetscCall(StokesSolve(s->stokes, f, NULL, w, p));
   PetscCall(VecGetArray(residual, &ra));
-  PetscCall(Conditions(s, xa, w, ra));
-  PetscCall(VecRestoreArrayRead(x, &xa));
-  if (s->coupling) {
-    PetscCall(VecGetArrayRead(g, &ga));
-    for (PetscInt k = 0; k < s->n_tension; k++) ra[s->n_velocity + k] -= ga[k] * SaddleScale(s, k);
-    PetscCall(VecRestoreArrayRead(g, &ga));
-  }
+  PetscCall(Conditions(s, xa, w, g, ra));
   PetscCall(VecRestoreArray(residual, &ra));
+  PetscCall(VecRestoreArrayRead(x, &xa));
   PetscCall(VecScale(residual, -1));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SaddleCombine(Saddle s, Vec x, Vec w, Vec p, Vec residual, PetscBool *combined) {
-  const PetscInt n = s->products;
-  const Vec rest = s->rest, *q = s->z;
-  PetscReal upper[SADDLE_KEPT][SADDLE_KEPT], y[SADDLE_KEPT];
+PetscErrorCode ReducedForgetProducts(Reduced s) {
   PetscFunctionBeginUser;
-  *combined = n <= SADDLE_KEPT ? PETSC_TRUE : PETSC_FALSE;
-  if (!*combined) PetscFunctionReturn(PETSC_SUCCESS);
-  /* x = SUM y_j z_j + rest: least squares by modified Gram-Schmidt, in z's place */
-  PetscCall(VecCopy(x, rest));
+  s->kept.count = 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Least squares by modified Gram-Schmidt: x = SUM y_j z_j + rest, rest orthogonal to every z. The z are overwritten by an
+   orthonormal basis q of them, z_j = SUM_{i <= j} upper_ij q_i. */
+static PetscErrorCode Expand(PetscInt n, Vec z[], Vec rest, PetscReal y[]) {
+  PetscReal upper[REDUCED_KEPT][REDUCED_KEPT];
+  PetscFunctionBeginUser;
   for (PetscInt j = 0; j < n; j++) {
     for (PetscInt i = 0; i < j; i++) {
-      PetscCall(VecDot(q[j], q[i], &upper[i][j]));
-      PetscCall(VecAXPY(q[j], -upper[i][j], q[i]));
+      PetscCall(VecDot(z[j], z[i], &upper[i][j]));
+      PetscCall(VecAXPY(z[j], -upper[i][j], z[i]));
     }
-    PetscCall(VecNormalize(q[j], &upper[j][j]));
-    PetscCall(VecDot(rest, q[j], &y[j]));
-    PetscCall(VecAXPY(rest, -y[j], q[j]));
+    PetscCall(VecNormalize(z[j], &upper[j][j]));
+    PetscCall(VecDot(rest, z[j], &y[j]));
+    PetscCall(VecAXPY(rest, -y[j], z[j]));
   }
-  for (PetscInt j = n - 1; j >= 0; j--) {
+  for (PetscInt j = n - 1; j >= 0; j--) { /* y := upper^-1 y */
     for (PetscInt i = j + 1; i < n; i++) y[j] -= upper[j][i] * y[i];
     y[j] = upper[j][j] > 0 ? y[j] / upper[j][j] : 0;
   }
-  PetscCall(VecAXPY(x, -1, rest));
-  PetscCall(VecMAXPY(w, n, y, s->w));
-  PetscCall(VecMAXPY(p, n, y, s->p));
-  for (PetscInt j = 0; j < n; j++) PetscCall(VecAXPY(residual, -y[j], s->Az[j]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The change x is a sum of the vectors z_j whose products have left their velocities and pressures behind: the same sum
+   of those is what it changes on the grid, without a further Stokes solve. */
+PetscErrorCode ReducedCombine(Reduced s, Vec x, Vec w, Vec p, Vec residual, PetscBool *combined) {
+  Products *q = &s->kept;
+  PetscReal y[REDUCED_KEPT];
+  PetscFunctionBeginUser;
+  *combined = q->count <= REDUCED_KEPT ? PETSC_TRUE : PETSC_FALSE;
+  if (!*combined) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecCopy(x, s->rest));
+  PetscCall(Expand(q->count, q->z, s->rest, y));
+  PetscCall(VecAXPY(x, -1, s->rest));
+  PetscCall(VecMAXPY(w, q->count, y, q->w));
+  PetscCall(VecMAXPY(p, q->count, y, q->p));
+  for (PetscInt j = 0; j < q->count; j++) PetscCall(VecAXPY(residual, -y[j], q->Az[j]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ReducedCreate(Unknowns u, Reduced *out) {
+  const Coupling c = u->coupling;
+  PetscInt n, N;
+  Reduced s;
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&s));
+  *out = s;
+  s->unknowns = u;
+  PetscCall(StokesCreate(c->fluid, &s->stokes));
+  PetscCall(DMCreateGlobalVector(c->fluid->grid->velocity, &s->r));
+  PetscCall(LayoutCreateVec(c->membrane->layout, 2, &s->F));
+  PetscCall(VecDuplicate(s->F, &s->U));
+  PetscCall(UnknownsCreateVec(u, &s->rest));
+  PetscCall(PetscMalloc2(u->walls->n, &s->d, u->walls->n, &s->slip));
+  PetscCall(VecGetLocalSize(s->rest, &n));
+  PetscCall(VecGetSize(s->rest, &N));
+  PetscCall(MatCreateShell(c->fluid->grid->comm, n, n, N, N, s, &s->A));
+  PetscCall(MatShellSetOperation(s->A, MATOP_MULT, (void (*)(void))Mult));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ReducedDestroy(Reduced *reduced) {
+  Reduced s = *reduced;
+  PetscFunctionBeginUser;
+  if (!s) PetscFunctionReturn(PETSC_SUCCESS);
+  for (int k = 0; k <= REDUCED_KEPT; k++) {
+    PetscCall(VecDestroy(&s->kept.w[k]));
+    PetscCall(VecDestroy(&s->kept.p[k]));
+    if (k == REDUCED_KEPT) break;
+    PetscCall(VecDestroy(&s->kept.z[k]));
+    PetscCall(VecDestroy(&s->kept.Az[k]));
+  }
+  PetscCall(VecDestroy(&s->r));
+  PetscCall(VecDestroy(&s->F));
+  PetscCall(VecDestroy(&s->U));
+  PetscCall(VecDestroy(&s->rest));
+  PetscCall(PetscFree2(s->d, s->slip));
+  PetscCall(MatDestroy(&s->A));
+  PetscCall(StokesDestroy(&s->stokes));
+  PetscCall(PetscFree(*reduced));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

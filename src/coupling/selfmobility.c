@@ -20,12 +20,18 @@ typedef struct {
 } Block;
 
 struct _p_SelfMobility {
-  Coupling coupling;
+  Markers markers;
+  Membrane membrane;
   SelfMobilityType type;
   PetscReal nu, a0;
-  PetscReal c; /* long waves' constant along grid lines, mean over sub-cell positions */
-  Block *block;
+  PetscReal c;        /* long waves' constant along grid lines, mean over sub-cell positions */
+  Block *block;       /* [own vesicles] */
+  PetscScalar *force; /* [2 own markers] work */
 };
+
+static Block *OwnBlock(SelfMobility s, PetscInt v) {
+  return &s->block[v - s->membrane->layout->own];
+}
 
 /* Circulant of the even symbol[n]: its inverse transform. */
 static void Circulant(PetscInt n, const PetscReal symbol[], PetscReal circulant[]) {
@@ -52,10 +58,10 @@ static void ByAngle(PetscInt n, PetscReal ds, const PetscReal line[], const Pets
    varying force loses over all steps, not in one. With the step's own a0 the correction fades as dt falls
    (docs/accuracy.md). */
 static PetscErrorCode MobilityCirculants(SelfMobility s, PetscInt v) {
-  Block *b = &s->block[v];
-  const Kernel *kernel = s->coupling->kernel;
+  Block *b = OwnBlock(s, v);
+  const Kernel *kernel = s->markers->kernel;
   const PetscInt n = b->n;
-  const PetscReal h = s->coupling->grid->h, a0 = STEADY * s->nu / PetscSqr(h), ds = s->coupling->membrane->ds[v];
+  const PetscReal h = s->markers->grid->h, a0 = STEADY * s->nu / PetscSqr(h), ds = s->membrane->ds[v];
   PetscReal *dT[3], *dN[3], *dX[3], *part, c[2], least = PETSC_MAX_REAL;
   PetscFunctionBeginUser;
   PetscCall(SmoothingConstants(kernel, c));
@@ -89,13 +95,13 @@ static PetscErrorCode MobilityCirculants(SelfMobility s, PetscInt v) {
 /* K of one vesicle: the symbol of ds D4 from its action on one marker; the mean, which it takes to zero, gets the
    inverse of the longest wave. */
 static void BendingCirculant(SelfMobility s, PetscInt v) {
-  Block *b = &s->block[v];
+  Block *b = OwnBlock(s, v);
   const PetscInt n = b->n;
   PetscReal *impulse = b->given, *column = b->change;
   (void)PetscArrayzero(impulse, 2 * n);
   (void)PetscArrayzero(column, 2 * n);
   impulse[0] = 1;
-  MembraneBendingVesicle(s->coupling->membrane, v, 1, impulse, b->second, column);
+  MembraneVesicleBending(s->membrane, v, 1, impulse, column);
   for (PetscInt q = 0; q < n; q++) { /* n times the column's transform */
     impulse[q] = 0;
     for (PetscInt k = 0; k < n; k++) impulse[q] += column[2 * k] * PetscCosReal(2 * PETSC_PI * ((k * q) % n) / n);
@@ -105,19 +111,22 @@ static void BendingCirculant(SelfMobility s, PetscInt v) {
   Circulant(n, impulse, b->K);
 }
 
-PetscErrorCode SelfMobilityCreate(Coupling coupling, PetscReal nu, SelfMobilityType type, SelfMobility *out) {
-  const Membrane m = coupling->membrane;
+PetscErrorCode SelfMobilityCreate(Markers markers, Membrane m, PetscReal nu, SelfMobilityType type,
+                                  SelfMobility *out) {
+  const Layout l = m->layout;
   SelfMobility s;
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&s));
   *out = s;
-  s->coupling = coupling;
+  s->markers = markers;
+  s->membrane = m;
   s->type = type;
   s->nu = nu;
-  PetscCall(PetscCalloc1(m->vesicles, &s->block));
-  for (PetscInt v = 0; v < m->vesicles; v++) {
-    Block *b = &s->block[v];
-    const PetscInt n = b->n = m->start[v + 1] - m->start[v];
+  PetscCall(PetscCalloc1(l->end - l->own, &s->block));
+  PetscCall(PetscMalloc1(2 * l->n, &s->force));
+  for (PetscInt v = l->own; v < l->end; v++) {
+    Block *b = OwnBlock(s, v);
+    const PetscInt n = b->n = LayoutCount(l, v);
     for (int p = 0; p < 3; p++) PetscCall(PetscCalloc2(n, &b->T[p], n, &b->N[p]));
     PetscCall(PetscCalloc4(n, &b->X, n, &b->K, 4 * n * n, &b->Theta, 4 * n * n, &b->force));
     PetscCall(PetscCalloc4(2 * n, &b->work, 2 * n, &b->second, 2 * n, &b->given, 2 * n, &b->change));
@@ -131,27 +140,27 @@ PetscErrorCode SelfMobilityDestroy(SelfMobility *self) {
   SelfMobility s = *self;
   PetscFunctionBeginUser;
   if (!s) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt v = 0; v < s->coupling->membrane->vesicles; v++) {
-    Block *b = &s->block[v];
+  for (PetscInt v = s->membrane->layout->own; v < s->membrane->layout->end; v++) {
+    Block *b = OwnBlock(s, v);
     for (int p = 0; p < 3; p++) PetscCall(PetscFree2(b->T[p], b->N[p]));
     PetscCall(PetscFree4(b->X, b->K, b->Theta, b->force));
     PetscCall(PetscFree4(b->work, b->second, b->given, b->change));
   }
   PetscCall(PetscFree(s->block));
+  PetscCall(PetscFree(s->force));
   PetscCall(PetscFree(*self));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 const PetscReal *SelfMobilityBlock(SelfMobility s, PetscInt v) {
-  return s->block[v].Theta;
+  return OwnBlock(s, v)->Theta;
 }
 
 /* Unit tangents: of the spectral edges, or by fourth-order differences (with chords the area would drift ten times
  * faster). */
-static void Tangents(SelfMobility s, PetscInt v, const PetscScalar X[], PetscReal t[]) {
-  const Membrane m = s->coupling->membrane;
-  const PetscInt n = s->block[v].n;
-  const PetscScalar *x = X + 2 * m->start[v];
+static void Tangents(SelfMobility s, PetscInt v, const PetscScalar x[], PetscReal t[]) {
+  const Membrane m = s->membrane;
+  const PetscInt n = LayoutCount(m->layout, v);
   if (m->derivative == DERIVATIVE_SPECTRAL) MembraneEdges(m, v, x, t);
   for (PetscInt k = 0; k < n; k++) {
     PetscReal *tk = t + 2 * k, length;
@@ -170,7 +179,7 @@ static void Tangents(SelfMobility s, PetscInt v, const PetscScalar X[], PetscRea
 static PetscReal SubCell(SelfMobility s, PetscInt marker, const PetscReal t[2]) {
   PetscReal sum = 0;
   for (int comp = 0; comp < 2; comp++) { /* along x the membrane moves u and lies across y */
-    const Stencil *at = &s->coupling->stencil[2 * marker + comp];
+    const Stencil *at = &s->markers->stencil[2 * marker + comp];
     sum += PetscSqr(PetscSqr(t[comp])) * (SmoothingSum(at->n[1 - comp], at->weight[1 - comp]) / s->c - 1);
   }
   return PetscSqrtReal(1 + sum);
@@ -182,10 +191,10 @@ static PetscReal SinFour(const PetscReal turn[2]) {
 }
 
 static void FillTheta(SelfMobility s, PetscInt v, const PetscReal t[], PetscReal turn[]) {
-  Block *b = &s->block[v];
+  Block *b = OwnBlock(s, v);
   const PetscInt n = b->n;
   PetscReal *root = b->change;
-  for (PetscInt k = 0; k < n; k++) root[k] = SubCell(s, s->coupling->membrane->start[v] + k, t + 2 * k);
+  for (PetscInt k = 0; k < n; k++) root[k] = SubCell(s, s->membrane->layout->start[v] + k, t + 2 * k);
   for (PetscInt k = 0; k < n; k++) { /* sin and cos of twice the angle */
     turn[2 * k] = 2 * t[2 * k] * t[2 * k + 1];
     turn[2 * k + 1] = PetscSqr(t[2 * k]) - PetscSqr(t[2 * k + 1]);
@@ -238,10 +247,10 @@ static void TakeOffMean(PetscInt n, PetscInt stride, PetscReal x[]) {
 
 /* R = (I + Theta K)^-1, K = (c_b/a0) ds D4, by way of the bending force w = K U, which has mean zero:
    (K^-1 + Theta) w = given there. Its matrix is symmetric and is made without a derivative. */
-static PetscErrorCode FactorForce(SelfMobility s, PetscInt v) {
-  Block *b = &s->block[v];
+static PetscErrorCode FactorForce(SelfMobility s, PetscInt v, PetscBool *factored) {
+  Block *b = OwnBlock(s, v);
   const PetscInt n = b->n;
-  const PetscReal scale = s->a0 / s->coupling->membrane->bending;
+  const PetscReal scale = s->a0 / s->membrane->bending;
   PetscFunctionBeginUser;
   PetscCall(PetscArraycpy(b->force, b->Theta, 4 * n * n));
   for (PetscInt r = 0; r < 2 * n; r++) TakeOffMean(n, 1, b->force + r * 2 * n);
@@ -249,22 +258,26 @@ static PetscErrorCode FactorForce(SelfMobility s, PetscInt v) {
   for (PetscInt k = 0; k < n; k++)
     for (PetscInt l = 0; l < n; l++)
       for (int c = 0; c < 2; c++) b->force[(2 * k + c) * 2 * n + 2 * l + c] += scale * b->K[k >= l ? k - l : k - l + n];
-  PetscCall(DenseFactorSymmetric(2 * n, b->force));
+  PetscCall(DenseFactorSymmetric(2 * n, b->force, factored));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SelfMobilitySetMarkers(SelfMobility s, PetscReal a0, const PetscScalar X[]) {
-  const Membrane m = s->coupling->membrane;
+PetscErrorCode SelfMobilityPlace(SelfMobility s, PetscReal a0, const PetscScalar X[], PetscBool *factored) {
+  const Membrane m = s->membrane;
   PetscLogEvent event;
   PetscFunctionBeginUser;
   PetscCall(PetvesEvent("SelfMobility", &event));
   PetscCall(PetscLogEventBegin(event, 0, 0, 0, 0));
   s->a0 = a0;
-  for (PetscInt v = 0; v < m->vesicles; v++) {
-    Tangents(s, v, X, s->block[v].work);
-    FillTheta(s, v, s->block[v].work, s->block[v].second);
-    if (s->type == SELF_SYMBOL) TakeOffFlux(&s->block[v], s->block[v].work, s->block[v].second, s->block[v].change);
-    if (m->bending > 0) PetscCall(FactorForce(s, v));
+  *factored = PETSC_TRUE;
+  for (PetscInt v = m->layout->own; v < m->layout->end; v++) {
+    Block *b = OwnBlock(s, v);
+    PetscBool good = PETSC_TRUE;
+    Tangents(s, v, X + 2 * LayoutOffset(m->layout, v), b->work);
+    FillTheta(s, v, b->work, b->second);
+    if (s->type == SELF_SYMBOL) TakeOffFlux(b, b->work, b->second, b->change);
+    if (m->bending > 0) PetscCall(FactorForce(s, v, &good));
+    if (!good) *factored = PETSC_FALSE;
   }
   PetscCall(PetscLogEventEnd(event, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -278,8 +291,8 @@ static PetscReal Largest(PetscInt n, const PetscReal x[]) {
 
 /* U := R U of one vesicle: U = given - Theta w with refinement, because K^-1 spans many decades. */
 static PetscErrorCode SolveR(SelfMobility s, PetscInt v, PetscScalar U[]) {
-  Block *b = &s->block[v];
-  const Membrane m = s->coupling->membrane;
+  Block *b = OwnBlock(s, v);
+  const Membrane m = s->membrane;
   const PetscInt n = 2 * b->n;
   PetscReal last = 0;
   PetscFunctionBeginUser;
@@ -298,7 +311,7 @@ static PetscErrorCode SolveR(SelfMobility s, PetscInt v, PetscScalar U[]) {
     last = change;
     PetscCall(PetscArraycpy(b->change, b->given, n)); /* change := given - U - Theta K U */
     PetscCall(PetscArrayzero(b->work, n));
-    MembraneBendingVesicle(m, v, m->bending / s->a0, U, b->second, b->work);
+    MembraneVesicleBending(m, v, m->bending / s->a0, U, b->work);
     for (PetscInt k = 0; k < n; k++) b->change[k] -= U[k];
     PetscCall(DenseMultAdd(n, n, -1, b->Theta, b->work, b->change));
   }
@@ -307,30 +320,33 @@ static PetscErrorCode SolveR(SelfMobility s, PetscInt v, PetscScalar U[]) {
 
 /* U := R (U - Theta F) of one vesicle. */
 static PetscErrorCode Subtract(SelfMobility s, PetscInt v, PetscScalar U[], const PetscScalar F[]) {
-  const Block *b = &s->block[v];
+  const Block *b = OwnBlock(s, v);
   PetscFunctionBeginUser;
   PetscCall(DenseMultAdd(2 * b->n, 2 * b->n, -1, b->Theta, F, U));
-  if (s->coupling->membrane->bending > 0) PetscCall(SolveR(s, v, U));
+  if (s->membrane->bending > 0) PetscCall(SolveR(s, v, U));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SelfMobilityApply(SelfMobility s, const PetscScalar sigma[], const PetscScalar Xhat[], PetscScalar U[]) {
-  const Membrane m = s->coupling->membrane;
-  PetscScalar *F = s->coupling->work;
+PetscErrorCode SelfMobilityApply(SelfMobility s, const PetscReal tau[], const PetscScalar sigma[],
+                                 const PetscScalar Xhat[], PetscScalar U[]) {
+  const Membrane m = s->membrane;
+  const Layout l = m->layout;
+  PetscScalar *F = s->force;
   PetscFunctionBeginUser;
-  PetscCall(PetscArrayzero(F, 2 * m->M));
-  if (sigma) MembraneStretchingTranspose(m, s->coupling->tau, 1, sigma, F);
-  if (Xhat) MembraneBending(m, m->bending, Xhat, s->coupling->force, F);
-  for (PetscInt v = 0; v < m->vesicles; v++) PetscCall(Subtract(s, v, U + 2 * m->start[v], F + 2 * m->start[v]));
+  PetscCall(PetscArrayzero(F, 2 * l->n));
+  if (sigma) MembraneStretchingTranspose(m, tau, 1, sigma, F);
+  if (Xhat) MembraneBending(m, m->bending, Xhat, F);
+  for (PetscInt v = l->own; v < l->end; v++)
+    PetscCall(Subtract(s, v, U + 2 * LayoutOffset(l, v), F + 2 * LayoutOffset(l, v)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode SelfMobilityMultTheta(SelfMobility s, PetscScalar F[]) {
-  const Membrane m = s->coupling->membrane;
+  const Layout l = s->membrane->layout;
   PetscFunctionBeginUser;
-  for (PetscInt v = 0; v < m->vesicles; v++) {
-    Block *b = &s->block[v];
-    PetscScalar *own = F + 2 * m->start[v];
+  for (PetscInt v = l->own; v < l->end; v++) {
+    Block *b = OwnBlock(s, v);
+    PetscScalar *own = F + 2 * LayoutOffset(l, v);
     PetscCall(PetscArraycpy(b->work, own, 2 * b->n));
     PetscCall(PetscArrayzero(own, 2 * b->n));
     PetscCall(DenseMultAdd(2 * b->n, 2 * b->n, 1, b->Theta, b->work, own));

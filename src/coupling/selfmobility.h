@@ -1,6 +1,6 @@
-/* Self-mobility (DESIGN section 8): the marker velocity that the kernel's smoothing takes away is given back,
+/* Self-mobility: the marker velocity that the kernel's smoothing takes away is given back (docs/accuracy.md),
        U = E u + Theta (f ds),   f ds = -(Dm^T sigma) - c_b ds D4 X_new,
-   Theta symmetric and non-negative, a full block a vesicle:
+   Theta symmetric and non-negative, a full block a vesicle, which its owner holds:
        local:   Theta = (h c/(nu ds)) t t^T
        symbol:  Theta = F^T [circ dT, circ dX; circ dX, circ dN] F/ds, F the rotation into (tangent, normal) frames, dT
    and dN the mobility of tangential and normal force waves on a plane membrane in steady flow, exact minus gridded. c,
@@ -8,30 +8,32 @@
    composite kernel is narrower across a membrane along a grid line than across a diagonal; and at an angle it moves a
    membrane across the force, dX like sin 4 alpha. c and dT also go with the markers' places in their cells. */
 #pragma once
-#include "coupling/coupling.h"
+#include "membrane/membrane.h"
 
 typedef struct _p_SelfMobility *SelfMobility;
 
-/* SelfMobilityCreate - of the given type (SELF_LOCAL, SELF_SYMBOL) for a coupling's membranes in a fluid of viscosity
- * nu. */
-PETSC_EXTERN PetscErrorCode SelfMobilityCreate(Coupling coupling, PetscReal nu, SelfMobilityType type,
+/* SelfMobilityCreate - of the given type (SELF_LOCAL, SELF_SYMBOL) for membranes whose markers are on a grid, in a fluid
+   of viscosity nu. Not collective. */
+PETSC_EXTERN PetscErrorCode SelfMobilityCreate(Markers markers, Membrane membrane, PetscReal nu, SelfMobilityType type,
                                                SelfMobility *self);
 PETSC_EXTERN PetscErrorCode SelfMobilityDestroy(SelfMobility *self);
 
-/* SelfMobilitySetMarkers - Theta for the coupling's markers X[2M] and a0, and a Cholesky factor for
-   R = (I + (c_b ds/a0) Theta D4)^-1. Every rank does the same. */
-PETSC_EXTERN PetscErrorCode SelfMobilitySetMarkers(SelfMobility self, PetscReal a0, const PetscScalar X[]);
+/* SelfMobilityPlace - Theta of the own vesicles at the markers X[2n], where the grid's markers have been placed before,
+   and for a0 a Cholesky factor for R = (I + (c_b ds/a0) Theta D4)^-1. factored is false when one of this rank's cannot
+   be made. Not collective. */
+PETSC_EXTERN PetscErrorCode SelfMobilityPlace(SelfMobility self, PetscReal a0, const PetscScalar X[],
+                                              PetscBool *factored);
 
-/* SelfMobilityApply - U := R (U - Theta (Dm^T sigma + c_b ds D4 Xhat)), U[2M]; sigma[M] and Xhat[2M] may be NULL. With
-   sigma, U = E u becomes the solved part of the markers' velocity; with Xhat, U = u_inf becomes the part known before.
- */
-PETSC_EXTERN PetscErrorCode SelfMobilityApply(SelfMobility self, const PetscScalar sigma[], const PetscScalar Xhat[],
-                                              PetscScalar U[]);
+/* SelfMobilityApply - U := R (U - Theta (Dm^T sigma + c_b ds D4 Xhat)) of all own vesicles, U[2n], tangents tau[2n];
+   sigma[n] and Xhat[2n] may be NULL. With sigma, U = E u becomes the solved part of the markers' velocity; with Xhat, U =
+   u_inf becomes the part known before. Not collective. */
+PETSC_EXTERN PetscErrorCode SelfMobilityApply(SelfMobility self, const PetscReal tau[], const PetscScalar sigma[],
+                                              const PetscScalar Xhat[], PetscScalar U[]);
 
-/* SelfMobilityMultTheta - F := Theta F, F[2M]. */
+/* SelfMobilityMultTheta - F := Theta F of all own vesicles, F[2n]. Not collective. */
 PETSC_EXTERN PetscErrorCode SelfMobilityMultTheta(SelfMobility self, PetscScalar F[]);
 
-/* SelfMobilityBlock - Theta of one vesicle of n markers, symmetric [2n][2n]; borrowed. */
+/* SelfMobilityBlock - Theta of one own vesicle of n markers, symmetric [2n][2n]; borrowed. */
 PETSC_EXTERN const PetscReal *SelfMobilityBlock(SelfMobility self, PetscInt vesicle);
 
 /* SmoothingSum - 1/2 SUM SUM |i - j| w_i w_j of n weights. */
@@ -39,7 +41,7 @@ PETSC_EXTERN PetscReal SmoothingSum(PetscInt n, const PetscReal w[]);
 
 /* SmoothingConstants - c = 1/2 SUM SUM |i - j| w_i w_j, mean over sub-cell positions, w the weights summed along the
    membrane: h c/nu is what long waves along it lose. c[0]: along a grid line (the across weights), c[1]: along a
-   diagonal, where sums lie h/sqrt(2) apart. The sum and not the integral (DESIGN's c1), because the grid's own Green's
+   diagonal, where sums lie h/sqrt(2) apart. The sum and not the integral because the grid's own Green's
    function in one dimension, -|i - j| h/2, is exact at its points. */
 PETSC_EXTERN PetscErrorCode SmoothingConstants(const Kernel *kernel, PetscReal c[2]);
 

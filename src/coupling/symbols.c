@@ -1,5 +1,4 @@
-/* What a kernel takes from a plane membrane's mobility, by sums over its weights (docs/accuracy.md; DESIGN section 8
-   has the mean over directions). */
+/* What a kernel takes from a plane membrane's mobility, by sums over its weights (docs/accuracy.md). */
 #include "coupling/selfmobility.h"
 
 #define POSITIONS 32 /* sub-cell positions that products of weights are averaged over, in each direction */

@@ -1,30 +1,29 @@
-/* What schemes coupled and direct share: one unsplit step of backward Euler or BDF2 (DESIGN section 7). */
+/* What schemes coupled and direct share: the parts of one unsplit step of backward Euler or BDF2 (docs/method.md). */
 #pragma once
-#include "coupling/saddle.h"
+#include "coupling/solver.h"
 #include "fluid/convection.h"
-#include "scheme/adapt.h"
 #include "scheme/bdf.h"
 #include "scheme/direct.h"
-#include "scheme/scheme.h"
+#include "scheme/parts.h"
 
 typedef struct {
-  Saddle saddle;         /* scheme coupled: FGMRES */
+  CoupledSolver solver;  /* scheme coupled: FGMRES */
   DirectSolver direct;   /* scheme direct: sparse LU */
   Convection convection; /* NULL unless the fluid has it */
   State old, next;       /* the state before, the one being made */
   PetscReal done;        /* of the step under way: parts of a graded start (time) */
-  PetscInt order;
-  PetscBool length_target, area_target;
-  PetscBool warned; /* of edges put right */
-  StepControl control;
-  Vec made_at;        /* markers at which the saddle's dense blocks were made */
-  Vec f;              /* momentum's right-hand side */
-  Vec Xstar, Xhat, Y; /* extrapolated markers, BDF history of the markers, Xhat + u_inf/a0 */
+  PetscBool warned;      /* of edges that were off */
+  Vec made_at;           /* markers at which the preconditioner's dense blocks were made */
+  Vec f;                 /* momentum's right-hand side */
+  Vec Xstar, Xhat;       /* extrapolated markers, BDF history of the markers */
+  Vec V, Y;              /* solved part of the markers' velocity; marker vector, work */
+  PetscScalar *edges;    /* [2n] work */
 } Coupled;
 
-/* CoupledSpeed - max(|u| + |v|) of the state's flow, which bounds the step by -time_cfl_limit h over it; 0 without
-   convection. */
-PETSC_EXTERN PetscErrorCode CoupledSpeed(Scheme scheme, PetscReal *speed);
-
-/* CoupledAttempt - solve one step of size dt from the state into next; false with report.failure when it cannot be. */
+/* CoupledAttempt - solve one step of size dt from the state into next; false with report.failure when it cannot be.
+   Collective. */
 PETSC_EXTERN PetscErrorCode CoupledAttempt(Scheme scheme, PetscReal dt, PetscBool *solved);
+
+/* CoupledAdvance - next becomes the state and the state the old one; then the markers are moved to their area and edges.
+   Collective. */
+PETSC_EXTERN PetscErrorCode CoupledAdvance(Scheme scheme, PetscReal dt);

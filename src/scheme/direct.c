@@ -18,17 +18,17 @@ static PetscInt Index(DirectSolver d, int f, PetscInt i, PetscInt j) {
   return index;
 }
 
-PetscErrorCode DirectSolverCreate(Fluid fluid, Coupling coupling, SelfMobility self, DirectSolver *out) {
-  const Grid g = fluid->grid;
+PetscErrorCode DirectSolverCreate(Coupling coupling, DirectSolver *out) {
+  const Grid g = coupling->fluid->grid;
   DirectSolver d;
   PC pc;
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&d));
   *out = d;
-  d->fluid = fluid;
+  d->fluid = coupling->fluid;
   d->coupling = coupling;
-  d->self = self;
-  d->M = coupling ? coupling->membrane->M : 0;
+  d->M = coupling->membrane->layout->M;
+  PetscCall(PetscMalloc1(d->M, &d->all));
   PetscCall(PetscCalloc1(g->size + 1, &d->start));
   for (PetscInt r = 0; r < g->size; r++) {
     d->start[r + 1] = d->start[r] + (r == g->size - 1 ? 5 * d->M : 0);
@@ -50,6 +50,7 @@ PetscErrorCode DirectSolverDestroy(DirectSolver *solver) {
   PetscFunctionBeginUser;
   if (!*solver) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscFree((*solver)->start));
+  PetscCall(PetscFree((*solver)->all));
   PetscCall(KSPDestroy(&(*solver)->ksp));
   PetscCall(VecDestroy(&(*solver)->x));
   PetscCall(VecDestroy(&(*solver)->b));
@@ -106,7 +107,7 @@ static PetscErrorCode AddInterpolation(DirectSolver d, Mat A, PetscInt U, PetscI
   const Grid g = d->fluid->grid;
   PetscFunctionBeginUser;
   for (PetscInt q = 0; q < 2 * d->M; q++) {
-    const Stencil *s = &d->coupling->stencil[q];
+    const Stencil *s = &d->coupling->markers->stencil[q];
     const int c = q % 2;
     for (PetscInt b = 0; b < s->n[1]; b++)
       for (PetscInt a = 0; a < s->n[0]; a++) {
@@ -132,12 +133,12 @@ static PetscErrorCode AddNonzero(Mat A, PetscInt row, PetscInt column, PetscReal
    U - E w + h^2 Theta F = 0,  F - Dm^T sigma/h^2 - (c_b ds/(h^2 a0)) D4 U = 0,  Dm U/h^2 = g. */
 static PetscErrorCode AddVesicle(DirectSolver d, Mat A, PetscInt v, PetscInt sigma, PetscInt U, PetscInt F) {
   const Membrane m = d->coupling->membrane;
-  const PetscInt first = m->start[v], n = m->start[v + 1] - first;
-  const PetscReal h2 = PetscSqr(d->fluid->grid->h), *tau = d->coupling->tau + 2 * first;
-  const PetscReal *Theta = d->self ? SelfMobilityBlock(d->self, v) : NULL;
-  PetscReal *unit, *work, *out;
+  const PetscInt first = m->layout->start[v], n = LayoutCount(m->layout, v);
+  const PetscReal h2 = PetscSqr(d->fluid->grid->h), *tau = d->coupling->tau + 2 * LayoutOffset(m->layout, v);
+  const PetscReal *Theta = d->coupling->self ? SelfMobilityBlock(d->coupling->self, v) : NULL;
+  PetscReal *unit, *stretching, *out;
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc3(2 * n, &unit, 2 * n, &work, 2 * n, &out));
+  PetscCall(PetscCalloc3(2 * n, &unit, n, &stretching, 2 * n, &out));
   for (PetscInt c = 0; c < 2 * n; c++) {
     const PetscInt column = 2 * first + c;
     unit[c] = 1;
@@ -145,27 +146,28 @@ static PetscErrorCode AddVesicle(DirectSolver d, Mat A, PetscInt v, PetscInt sig
     PetscCall(MatSetValue(A, F + column, F + column, 1, ADD_VALUES));
     for (PetscInt r = 0; r < 2 * n && Theta; r++)
       PetscCall(AddNonzero(A, U + 2 * first + r, F + column, h2 * Theta[r * 2 * n + c]));
-    MembraneEdges(m, v, unit, work);
+    MembraneVesicleStretching(m, v, tau, unit, stretching);
     for (PetscInt k = 0; k < n; k++) {
-      const PetscReal value = (tau[2 * k] * work[2 * k] + tau[2 * k + 1] * work[2 * k + 1]) / h2;
-      PetscCall(AddNonzero(A, sigma + first + k, U + column, value));
-      PetscCall(AddNonzero(A, F + column, sigma + first + k, -value));
+      PetscCall(AddNonzero(A, sigma + first + k, U + column, stretching[k] / h2));
+      PetscCall(AddNonzero(A, F + column, sigma + first + k, -stretching[k] / h2));
     }
     PetscCall(PetscArrayzero(out, 2 * n));
-    if (m->bending > 0) MembraneBendingVesicle(m, v, -m->bending / (h2 * d->fluid->a0), unit, work, out);
+    if (m->bending > 0) MembraneVesicleBending(m, v, -m->bending / (h2 * d->fluid->a0), unit, out);
     for (PetscInt r = 0; r < 2 * n; r++) PetscCall(AddNonzero(A, F + 2 * first + r, U + column, out[r]));
     unit[c] = 0;
   }
-  PetscCall(PetscFree3(unit, work, out));
+  PetscCall(PetscFree3(unit, stretching, out));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The last rank, which owns sigma, U and F, adds everything of the membranes. */
-static PetscErrorCode AddMembrane(DirectSolver d, Mat A) {
+/* sigma, U and F are the last rank's rows: it adds E, and every owner its vesicles. */
+static PetscErrorCode AddMembranes(DirectSolver d, Mat A) {
+  const Grid g = d->fluid->grid;
+  const Layout l = d->coupling->membrane->layout;
   const PetscInt sigma = d->start[d->fluid->grid->size] - 5 * d->M, U = sigma + d->M, F = U + 2 * d->M;
   PetscFunctionBeginUser;
-  PetscCall(AddInterpolation(d, A, U, F));
-  for (PetscInt v = 0; v < d->coupling->membrane->vesicles; v++) PetscCall(AddVesicle(d, A, v, sigma, U, F));
+  if (g->rank == g->size - 1) PetscCall(AddInterpolation(d, A, U, F));
+  for (PetscInt v = l->own; v < l->end; v++) PetscCall(AddVesicle(d, A, v, sigma, U, F));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -176,7 +178,7 @@ static PetscErrorCode Assemble(DirectSolver d, Mat *A) {
   PetscCall(MatCreateAIJ(g->comm, n, n, PETSC_DETERMINE, PETSC_DETERMINE, 24, NULL, 24, NULL, A));
   PetscCall(MatSetOption(*A, MAT_NEW_NONZERO_ALLOCATION_ERR, PETSC_FALSE));
   PetscCall(AddFluid(d, *A));
-  if (d->coupling && g->rank == g->size - 1) PetscCall(AddMembrane(d, *A));
+  PetscCall(AddMembranes(d, *A));
   PetscCall(MatAssemblyBegin(*A, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(*A, MAT_FINAL_ASSEMBLY));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -199,11 +201,8 @@ static PetscErrorCode RightHandSide(DirectSolver d, Vec f, Vec g_s) {
     for (PetscInt k = 0; k < np; k++) b[nw + k] = -a[k];
     PetscCall(VecRestoreArrayRead(d->fluid->bc2, &a));
   }
-  if (d->M && g->rank == g->size - 1) {
-    PetscCall(VecGetArrayRead(g_s, &a));
-    PetscCall(PetscArraycpy(b + nw + np, a, d->M));
-    PetscCall(VecRestoreArrayRead(g_s, &a));
-  }
+  PetscCall(LayoutGatherVec(d->coupling->membrane->layout, g_s, d->all));
+  if (g->rank == g->size - 1) PetscCall(PetscArraycpy(b + nw + np, d->all, d->M));
   PetscCall(VecRestoreArray(d->b, &b));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -255,12 +254,10 @@ PetscErrorCode DirectSolverSolve(DirectSolver d, Vec f, Vec g_s, Vec w, Vec p, V
   PetscCall(VecSum(p, &mean));
   PetscCall(VecShift(p, -mean / ((PetscReal)g->n[0] * g->n[1])));
   if (NoMean(d)) PetscCall(FluidRemoveMean(d->fluid, w));
-  if (d->M) {
-    PetscCall(VecGetArray(sigma, &s));
-    if (g->rank == g->size - 1) PetscCall(PetscArraycpy(s, x + nw + np, d->M));
-    PetscCallMPI(MPI_Bcast(s, (PetscMPIInt)d->M, MPIU_SCALAR, g->size - 1, g->comm));
-    PetscCall(VecRestoreArray(sigma, &s));
-  }
+  if (g->rank == g->size - 1) PetscCall(PetscArraycpy(d->all, x + nw + np, d->M));
   PetscCall(VecRestoreArrayRead(d->x, &x));
+  PetscCall(VecGetArray(sigma, &s));
+  PetscCall(LayoutFromRank(d->coupling->membrane->layout, g->size - 1, 1, d->all, s));
+  PetscCall(VecRestoreArray(sigma, &s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,21 +1,21 @@
 /* Sparse direct solution of the coupled problem: the ground truth for small grids. */
 #pragma once
-#include "coupling/selfmobility.h"
+#include "coupling/coupling.h"
 
 typedef struct _p_DirectSolver *DirectSolver;
 struct _p_DirectSolver {
-  Fluid fluid;       /* borrowed */
-  Coupling coupling; /* borrowed; NULL without vesicles */
+  Coupling coupling; /* borrowed, and its fluid: */
+  Fluid fluid;
   PetscInt M;
-  SelfMobility self; /* borrowed; NULL without */
   PetscInt *start;   /* [ranks+1] first global index of each rank; sigma, U and F come last, on the last rank */
   KSP ksp;
   Vec x, b;
+  PetscScalar *all; /* [M] tension or g of all edges, work */
   KSPConvergedReason why; /* how the last solve ended; < 0: failed */
 };
 
 /* DirectSolverCreate - MUMPS through PETSc; the factor is made anew for every solve. Prefix direct_. Collective. */
-PETSC_EXTERN PetscErrorCode DirectSolverCreate(Fluid fluid, Coupling coupling, SelfMobility self, DirectSolver *solver);
+PETSC_EXTERN PetscErrorCode DirectSolverCreate(Coupling coupling, DirectSolver *solver);
 PETSC_EXTERN PetscErrorCode DirectSolverDestroy(DirectSolver *solver);
 
 /* DirectSolverSolve - [H + B E/a0, G, S; G^T; S^T] (w, p, sigma) = (f, -bc2, g) at the coupling's markers, p of zero

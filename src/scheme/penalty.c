@@ -1,7 +1,7 @@
 /* Scheme "penalty": the penalty immersed boundary method of Kim and Lai, J. Comput. Phys. 229 (2010) 4840. Stiff
    springs in place of the constraint, explicit forces, a projection step of the fluid. First order in time. */
 #include "fluid/stokes.h"
-#include "scheme/scheme.h"
+#include "scheme/parts.h"
 
 /* The step bears springs up to sigma_0 = viscous nu h/dt + inertial h^3/dt^2, measured (docs/method.md): ib6 smooths
    the markers' own motion more than the other kernels, of which cbs32 bears least. */
@@ -15,29 +15,27 @@ typedef struct {
   Stokes stokes;
   Vec r, dp;      /* momentum's right-hand side, change of pressure */
   Vec constraint; /* -bc2, the divergence of moving walls; NULL without */
-  Vec force;      /* [M] sigma/|X_s|: S takes X_s where the spring pulls along X_s/|X_s| */
+  Vec force;      /* edge vector, sigma/|X_s|: S takes X_s where the spring pulls along X_s/|X_s| */
+  PetscReal *tau; /* [2n] X_s of the own vesicles */
 } Penalty;
 
 /* sigma = sigma_0 (|X_s| - 1) at the markers X; force may be NULL */
-static PetscErrorCode SpringTension(Scheme s, Vec X, Vec sigma, Vec force) {
+static PetscErrorCode SpringTension(Scheme s, Penalty *d, Vec X, Vec sigma, Vec force) {
   const PetscScalar *x;
   PetscScalar *tension, *f = NULL;
-  PetscReal *tau;
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(2 * s->membrane->M, &tau));
   PetscCall(VecGetArrayRead(X, &x));
   PetscCall(VecGetArray(sigma, &tension));
   if (force) PetscCall(VecGetArray(force, &f));
-  MembraneTangents(s->membrane, x, tau);
-  for (PetscInt k = 0; k < s->membrane->M; k++) {
-    const PetscReal stretch = PetscSqrtReal(PetscSqr(tau[2 * k]) + PetscSqr(tau[2 * k + 1])); /* |X_s| */
+  MembraneTangents(s->membrane, x, d->tau);
+  for (PetscInt k = 0; k < s->membrane->layout->n; k++) {
+    const PetscReal stretch = PetscSqrtReal(PetscSqr(d->tau[2 * k]) + PetscSqr(d->tau[2 * k + 1])); /* |X_s| */
     tension[k] = s->scene->stiffness * (stretch - 1);
     if (f) f[k] = tension[k] / stretch;
   }
   if (force) PetscCall(VecRestoreArray(force, &f));
   PetscCall(VecRestoreArray(sigma, &tension));
   PetscCall(VecRestoreArrayRead(X, &x));
-  PetscCall(PetscFree(tau));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -50,20 +48,19 @@ static PetscErrorCode Momentum(Scheme s, Penalty *d) {
   PetscCall(VecScale(d->r, 1 / q->dt));
   PetscCall(GridGradient(s->fluid->grid, -1, q->p, PETSC_TRUE, d->r));
   if (s->fluid->bc1) PetscCall(VecAXPY(d->r, 1, s->fluid->bc1));
-  if (!c) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(SpringTension(s, q->X, q->sigma, d->force));
-  PetscCall(CouplingSpreadAdd(c, -1, c->S, d->force, d->r));
-  if (s->membrane->bending > 0) PetscCall(CouplingSpreadAdd(c, -1, c->B, q->X, d->r));
+  if (!CouplingHasMembrane(c)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(SpringTension(s, d, q->X, q->sigma, d->force));
+  PetscCall(CouplingSpreadTension(c, -1, d->force, d->r));
+  if (s->membrane->bending > 0) PetscCall(CouplingSpreadBending(c, -1, q->X, d->r));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Step_Penalty(Scheme s) {
+static PetscErrorCode Step_Penalty(Scheme s, PetscReal most) {
   Penalty *d = (Penalty *)s->data;
   State *q = &s->state;
-  PetscBool placed = PETSC_TRUE;
+  PetscBool placed;
   PetscFunctionBeginUser;
-  PetscCall(FluidSetTimeCoefficient(s->fluid, 1 / q->dt));
-  if (s->coupling) PetscCall(SchemePlaceMarkers(s, q->X, q->t, &placed));
+  PetscCall(SchemePlace(s, 1 / q->dt, q->X, NULL, q->X, q->t, &placed));
   if (!placed) PetscFunctionReturn(PETSC_SUCCESS);
   /* 1  forces of springs and bending at X^n */
   PetscCall(Momentum(s, d));
@@ -71,11 +68,11 @@ static PetscErrorCode Step_Penalty(Scheme s) {
   PetscCall(StokesSolve(d->stokes, d->r, d->constraint, q->w, d->dp));
   PetscCall(VecAXPY(q->p, 1, d->dp));
   PetscCall(SchemeMeasureDivergence(s, q->w));
-  if (!s->coupling) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!CouplingHasMembrane(s->coupling)) PetscFunctionReturn(PETSC_SUCCESS);
   /* 3  X += dt (u_inf + E u), and the tension that goes with it */
   PetscCall(SchemeMarkerVelocity(s, q->w, NULL, q->U));
   PetscCall(VecAXPY(q->X, q->dt, q->U));
-  PetscCall(SpringTension(s, q->X, q->sigma, NULL));
+  PetscCall(SpringTension(s, d, q->X, q->sigma, NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -89,6 +86,7 @@ static PetscErrorCode SetUp_Penalty(Scheme s) {
   PetscCall(VecDuplicate(q->w, &d->r));
   PetscCall(VecDuplicate(q->p, &d->dp));
   PetscCall(VecDuplicate(q->sigma, &d->force));
+  PetscCall(PetscMalloc1(2 * s->membrane->layout->n, &d->tau));
   if (s->fluid->bc2) {
     PetscCall(VecDuplicate(q->p, &d->constraint));
     PetscCall(VecAXPBY(d->constraint, -1, 0, s->fluid->bc2));
@@ -101,7 +99,7 @@ static PetscErrorCode SetUp_Penalty(Scheme s) {
 
 static PetscErrorCode View_Penalty(Scheme s, PetscViewer viewer) {
   PetscFunctionBeginUser;
-  if (s->coupling)
+  if (CouplingHasMembrane(s->coupling))
     PetscCall(PetscViewerASCIIPrintf(viewer, "springs: sigma = sigma_0 (|X_s| - 1), sigma_0 = %g\n",
                                      (double)s->scene->stiffness));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -115,6 +113,7 @@ static PetscErrorCode Destroy_Penalty(Scheme s) {
   PetscCall(VecDestroy(&d->dp));
   PetscCall(VecDestroy(&d->constraint));
   PetscCall(VecDestroy(&d->force));
+  PetscCall(PetscFree(d->tau));
   PetscCall(PetscFree(s->data));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -124,9 +123,7 @@ PetscErrorCode SchemeCreate_Penalty(Scheme s) {
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&d));
   s->data = d;
-  s->setup = SetUp_Penalty;
-  s->step = Step_Penalty;
-  s->view = View_Penalty;
-  s->destroy = Destroy_Penalty;
+  s->ops = (SchemeOps){
+      .setup = SetUp_Penalty, .step = Step_Penalty, .view = View_Penalty, .destroy = Destroy_Penalty};
   PetscFunctionReturn(PETSC_SUCCESS);
 }

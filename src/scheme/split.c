@@ -1,12 +1,14 @@
 /* Scheme "split": the immersed boundary projection method of Ong and Lai, J. Comput. Phys. 408 (2020) 109277,
    sections 4.1 (no bending) and 4.2. First order in time. */
-#include "scheme/scheme.h"
+#include "coupling/lagrangian.h"
+#include "scheme/parts.h"
 
 typedef struct {
   LagrangianSolver tension, bending; /* NULL where the scene has no such part; bending: or is explicit */
   Vec r, u2, dp, q;                  /* momentum's right-hand side, velocity, pressures */
   Vec dsigma, rhs_sigma;             /* tension increment and right-hand side */
   Vec z, rhs_z, Xhat;                /* bending unknown, its right-hand side, X + dt u_inf */
+  Vec U;                             /* marker vector, work */
 } Split;
 
 static PetscErrorCode SolverFailed(Scheme s, LagrangianSolver solver) {
@@ -24,10 +26,10 @@ static PetscErrorCode PredictVelocity(Scheme s, Split *d) {
   PetscCall(VecScale(d->r, 1 / q->dt));
   PetscCall(GridGradient(f->grid, -1, q->p, PETSC_TRUE, d->r));
   if (f->bc1) PetscCall(VecAXPY(d->r, 1, f->bc1));
-  if (c) PetscCall(CouplingSpreadAdd(c, -1, c->S, q->sigma, d->r));
-  if (c && s->membrane->bending > 0) {
+  if (CouplingHasMembrane(c)) PetscCall(CouplingSpreadTension(c, -1, q->sigma, d->r));
+  if (CouplingBending(c) > 0) {
     PetscCall(VecWAXPY(d->Xhat, d->bending ? q->dt : 0, s->background, q->X));
-    PetscCall(CouplingSpreadAdd(c, -1, c->B, d->Xhat, d->r));
+    PetscCall(CouplingSpreadBending(c, -1, d->Xhat, d->r));
   }
   PetscCall(FluidSolveHelmholtz(f, d->r, d->u2));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -37,7 +39,7 @@ static PetscErrorCode PredictVelocity(Scheme s, Split *d) {
 static PetscErrorCode ImplicitBending(Scheme s, Split *d) {
   Coupling c = s->coupling;
   PetscFunctionBeginUser;
-  PetscCall(SchemeSolvedVelocity(s, d->u2, NULL, d->rhs_z));
+  PetscCall(CouplingVelocity(c, d->u2, NULL, d->rhs_z));
   PetscCall(VecScale(d->rhs_z, -s->state.dt));
   PetscCall(LagrangianSolverSolve(d->bending, d->rhs_z, d->z));
   s->report.bending_its = d->bending->its;
@@ -46,7 +48,7 @@ static PetscErrorCode ImplicitBending(Scheme s, Split *d) {
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(VecSet(d->r, 0));
-  PetscCall(CouplingSpreadAdd(c, 1, c->B, d->z, d->r));
+  PetscCall(CouplingSpreadBending(c, 1, d->z, d->r));
   PetscCall(FluidSolveHelmholtz(s->fluid, d->r, d->r));
   PetscCall(VecAXPY(d->u2, 1, d->r));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -60,7 +62,8 @@ static PetscErrorCode SolveTension(Scheme s, Split *d) {
   PetscFunctionBeginUser;
   PetscCall(VecCopy(d->u2, d->r)); /* (1/dt) S^T u2 - S^T G dp* = (1/dt) S^T (u2 - dt G dp*) */
   PetscCall(GridGradient(f->grid, -s->state.dt, d->dp, PETSC_TRUE, d->r));
-  PetscCall(SchemeSurfaceDivergence(s, d->r, d->rhs_sigma));
+  PetscCall(CouplingVelocity(c, d->r, NULL, d->U));
+  PetscCall(CouplingStretching(c, d->U, d->rhs_sigma));
   PetscCall(VecAXPY(d->rhs_sigma, -1, s->g));
   PetscCall(VecScale(d->rhs_sigma, 1 / s->state.dt));
   PetscCall(LagrangianSolverSolve(d->tension, d->rhs_sigma, d->dsigma));
@@ -70,25 +73,23 @@ static PetscErrorCode SolveTension(Scheme s, Split *d) {
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(VecSet(d->r, 0));
-  PetscCall(CouplingSpreadAdd(c, 1, c->S, d->dsigma, d->r));
+  PetscCall(CouplingSpreadTension(c, 1, d->dsigma, d->r));
   PetscCall(MatMultTranspose(f->G, d->r, d->q));
   PetscCall(FluidSolvePoisson(f, d->q, d->q));
   PetscCall(VecAXPY(d->dp, 1, d->q));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Step_Split(Scheme s) {
+static PetscErrorCode Step_Split(Scheme s, PetscReal most) {
   Split *d = (Split *)s->data;
   State *q = &s->state;
   Fluid f = s->fluid;
   Coupling c = s->coupling;
-  PetscBool placed = PETSC_TRUE;
+  const PetscBool any = CouplingHasMembrane(c);
+  PetscBool placed;
   PetscFunctionBeginUser;
-  PetscCall(FluidSetTimeCoefficient(f, 1 / q->dt));
-  if (c) PetscCall(SchemePlaceMarkers(s, q->X, q->t, &placed));
+  PetscCall(SchemePlace(s, 1 / q->dt, q->X, q->sigma, q->X, q->t, &placed));
   if (!placed) PetscFunctionReturn(PETSC_SUCCESS);
-  if (s->self) PetscCall(SchemeSetSelfMobility(s, 1 / q->dt, q->X, q->sigma, q->X));
-  if (c) PetscCall(LagrangianSolverSetUp(d->tension));
   PetscCall(PredictVelocity(s, d));                 /* step 1 */
   if (d->bending) PetscCall(ImplicitBending(s, d)); /* step 2 */
   if (*s->report.failure) PetscFunctionReturn(PETSC_SUCCESS);
@@ -96,16 +97,16 @@ static PetscErrorCode Step_Split(Scheme s) {
   PetscCall(GridGradientTranspose(f->grid, -1 / q->dt, d->u2, d->dp));
   if (f->bc2) PetscCall(VecAXPY(d->dp, -1 / q->dt, f->bc2));
   PetscCall(FluidSolvePoisson(f, d->dp, d->dp));
-  if (c) PetscCall(SolveTension(s, d)); /* steps 4 and 5 */
+  if (any) PetscCall(SolveTension(s, d)); /* steps 4 and 5 */
   if (*s->report.failure) PetscFunctionReturn(PETSC_SUCCESS);
   /* 6  u = u2 - dt (G dp + S dsigma) */
   PetscCall(VecCopy(d->u2, q->w));
   PetscCall(GridGradient(f->grid, -q->dt, d->dp, PETSC_TRUE, q->w));
-  if (c) PetscCall(CouplingSpreadAdd(c, -q->dt, c->S, d->dsigma, q->w));
+  if (any) PetscCall(CouplingSpreadTension(c, -q->dt, d->dsigma, q->w));
   PetscCall(SchemeMeasureDivergence(s, q->w));
   /* 7  X += dt (u_inf + E u),  p += dp,  sigma += dsigma */
   PetscCall(VecAXPY(q->p, 1, d->dp));
-  if (!c) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!any) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SchemeMarkerVelocity(s, q->w, d->dsigma, q->U));
   PetscCall(VecAXPY(q->X, q->dt, q->U));
   PetscCall(VecAXPY(q->sigma, 1, d->dsigma));
@@ -125,14 +126,11 @@ static PetscErrorCode SetUp_Split(Scheme s) {
   PetscCall(VecDuplicate(q->X, &d->z));
   PetscCall(VecDuplicate(q->X, &d->rhs_z));
   PetscCall(VecDuplicate(q->X, &d->Xhat));
-  if (!s->coupling) PetscFunctionReturn(PETSC_SUCCESS);
-  if (s->self) PetscCall(SchemeSetSelfMobility(s, 1 / q->dt, q->X, q->sigma, q->X));
-  PetscCall(TensionSolverCreate(s->fluid, s->coupling, s->self, &d->tension));
-  PetscCall(LagrangianSolverSetUp(d->tension));
-  if (s->membrane->bending > 0 && s->scene->bending_at == BENDING_IMPLICIT) {
-    PetscCall(BendingSolverCreate(s->fluid, s->coupling, s->self, &d->bending));
-    PetscCall(LagrangianSolverSetUp(d->bending));
-  }
+  PetscCall(VecDuplicate(q->X, &d->U));
+  if (!CouplingHasMembrane(s->coupling)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(TensionSolverCreate(s->coupling, &d->tension));
+  if (CouplingBending(s->coupling) > 0 && s->scene->bending_at == BENDING_IMPLICIT)
+    PetscCall(BendingSolverCreate(s->coupling, &d->bending));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -140,14 +138,14 @@ static PetscErrorCode View_Split(Scheme s, PetscViewer viewer) {
   Split *d = (Split *)s->data;
   LagrangianSolver solvers[2] = {d->tension, d->bending};
   PetscFunctionBeginUser;
-  for (int k = 0; k < 2 && !s->fluid->grid->rank; k++)
-    if (solvers[k]) PetscCall(KSPView(solvers[k]->ksp, PETSC_VIEWER_STDOUT_SELF));
+  for (int k = 0; k < 2; k++)
+    if (solvers[k]) PetscCall(KSPView(solvers[k]->ksp, viewer));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode Destroy_Split(Scheme s) {
   Split *d = (Split *)s->data;
-  Vec *all[] = {&d->r, &d->u2, &d->dp, &d->q, &d->dsigma, &d->rhs_sigma, &d->z, &d->rhs_z, &d->Xhat};
+  Vec *all[] = {&d->r, &d->u2, &d->dp, &d->q, &d->dsigma, &d->rhs_sigma, &d->z, &d->rhs_z, &d->Xhat, &d->U};
   PetscFunctionBeginUser;
   PetscCall(LagrangianSolverDestroy(&d->tension));
   PetscCall(LagrangianSolverDestroy(&d->bending));
@@ -161,7 +159,8 @@ static PetscErrorCode Options_Split(Scheme s, FILE *file) {
   LagrangianSolver solvers[2] = {d->tension, d->bending};
   PetscFunctionBeginUser;
   for (int k = 0; k < 2; k++)
-    if (solvers[k]) PetscCall(KSPWriteOptions(solvers[k]->ksp, solvers[k]->prefix, file));
+    if (solvers[k])
+      PetscCall(KSPWriteOptions(solvers[k]->ksp, solvers[k]->chat ? solvers[k]->chat->pc : NULL, solvers[k]->prefix, file));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -180,11 +179,11 @@ PetscErrorCode SchemeCreate_Split(Scheme s) {
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&d));
   s->data = d;
-  s->setup = SetUp_Split;
-  s->step = Step_Split;
-  s->view = View_Split;
-  s->options = Options_Split;
-  s->ksp = KSP_Split;
-  s->destroy = Destroy_Split;
+  s->ops = (SchemeOps){.setup = SetUp_Split,
+                       .step = Step_Split,
+                       .view = View_Split,
+                       .options = Options_Split,
+                       .ksp = KSP_Split,
+                       .destroy = Destroy_Split};
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,6 +1,6 @@
-#include "coupling/kernel.h"
+#include "kernel/kernel.h"
 
-/* Six-point C^3 kernel of Bao, Kaye and Peskin, J. Comput. Phys. 316 (2016): formulas of DESIGN section 4. */
+/* Six-point C^3 kernel of Bao, Kaye and Peskin, J. Comput. Phys. 316 (2016). */
 static PetscInt IB6(PetscReal x, PetscInt *first, PetscReal w[KERNEL_MAX_POINTS]) {
   const PetscReal K = 59.0 / 60 - PetscSqrtReal(29.0) / 20, below = PetscFloorReal(x);
   /* the formulas give phi at r-3 .. r+2; point j sees phi(x - j), so the first point (x - j = r + 2) is last */

@@ -1,5 +1,5 @@
 /* Regularised delta functions: tensor products of 1-D weights, one along a component's own direction, one across
-   (DESIGN section 4). */
+   (docs/method.md, Kernels). */
 #pragma once
 #include "base/base.h"
 

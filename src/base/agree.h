@@ -1,0 +1,10 @@
+/* What ranks must hold alike: an error or a message of one becomes everybody's before the next collective call. */
+#pragma once
+#include "base/base.h"
+
+/* AgreeFlag - whether `mine` is true on any rank. Collective. */
+PETSC_EXTERN PetscErrorCode AgreeFlag(MPI_Comm comm, PetscBool mine, PetscBool *any);
+
+/* AgreeMessage - the message of the lowest rank that has one; empty when none has. message[PETVES_MAX_MESSAGE].
+   Collective. */
+PETSC_EXTERN PetscErrorCode AgreeMessage(MPI_Comm comm, char message[PETVES_MAX_MESSAGE]);

@@ -1,0 +1,73 @@
+/* The preconditioner of the reduced coupled problem, and the decision how long its dense blocks serve
+   (docs/method.md, Preconditioner): of the markers' mobility among themselves, by a dense table of a periodic box or by
+   Chat, and of each pair of walls by itself. */
+#pragma once
+#include "coupling/dense.h"
+#include "coupling/rootpc.h"
+#include "coupling/unknowns.h"
+#include "scene/scene.h"
+
+typedef enum { MOBILITY_TABLE, MOBILITY_ILU, MOBILITY_NONE } MobilityType;
+
+/* How the dense blocks age. Iterations, not seconds, so that a run does not depend on the machine. */
+typedef struct {
+  PetscReal a0;       /* that they were made for; 0: none yet */
+  PetscInt fresh_its; /* iterations of the first solve with them; -1: not known yet */
+  PetscInt solves;    /* that they have served */
+  PetscReal excess;   /* iterations above fresh_its in all of these */
+  PetscInt most;      /* solves that they may serve */
+  PetscInt made;      /* times that blocks have been made */
+} Ageing;
+
+/* Of the solve under way. */
+typedef struct {
+  PetscInt applied; /* times that the preconditioner has been applied */
+  PetscInt renewed; /* of them before the blocks were made anew; 0: they were not */
+} Application;
+
+typedef struct _p_Preconditioner *Preconditioner;
+struct _p_Preconditioner {
+  Unknowns unknowns; /* borrowed */
+  MobilityType type;
+  Mobility mobility;  /* table */
+  DenseBlocks blocks; /* table */
+  RootPC ilu;         /* ilu: of the assembled Chat, prefix coupled_mobility_ */
+  Ageing age;
+  Application now;
+  PetscBool flexible; /* blocks may be made anew under way: the KSP allows a changing preconditioner */
+  PetscBool failed;   /* a block could not be factored */
+  Vec rhs, sigma;     /* ilu: edge vectors, work */
+  PetscScalar *d;     /* [walls->n] all wall forces, work */
+};
+
+/* PreconditionerCreate - for the scene's type. Collective. */
+PETSC_EXTERN PetscErrorCode PreconditionerCreate(Scene scene, Unknowns unknowns, Preconditioner *preconditioner);
+PETSC_EXTERN PetscErrorCode PreconditionerDestroy(Preconditioner *preconditioner);
+
+/* PreconditionerSetUp - follow the coupling's a0 and markers; a solve begins. The dense blocks are kept while a0 moves by
+   less than 10 % and until the iterations beyond those of the first solve with them have cost as much as new ones would;
+   a solve that suffers badly makes them anew and goes on. Collective. */
+PETSC_EXTERN PetscErrorCode PreconditionerSetUp(Preconditioner preconditioner);
+
+/* PreconditionerApply - z ~ A^-1 r, of residuals and unknowns. Collective. */
+PETSC_EXTERN PetscErrorCode PreconditionerApply(Preconditioner preconditioner, Vec r, Vec z);
+
+/* PreconditionerSolved - the solve has ended after `its` iterations. Not collective. */
+PETSC_EXTERN void PreconditionerSolved(Preconditioner preconditioner, PetscInt its);
+
+/* PreconditionerIsNew - whether the blocks were made for the last solve or in it. Not collective. */
+PETSC_EXTERN PetscBool PreconditionerIsNew(Preconditioner preconditioner);
+
+/* PreconditionerGetMemory, PreconditionerSetMemory - all that earlier solves have left for later ones, as numbers that a
+   checkpoint can hold, and made again from them, with the coupling placed where and for the a0 (memory[0]; 0: no blocks)
+   for which the dense blocks were made. Whatever is kept from solve to solve belongs in here, or a restarted run would not
+   have the bits of one that went on. Set is collective. */
+#define PRECONDITIONER_MEMORY (6 + MOBILITY_CACHE)
+PETSC_EXTERN PetscErrorCode PreconditionerGetMemory(Preconditioner preconditioner,
+                                                    PetscReal memory[PRECONDITIONER_MEMORY]);
+PETSC_EXTERN PetscErrorCode PreconditionerSetMemory(Preconditioner preconditioner,
+                                                    const PetscReal memory[PRECONDITIONER_MEMORY]);
+
+/* PreconditionerForget - drop all that is kept from solve to solve, so that what follows depends on the state alone. Not
+   collective. */
+PETSC_EXTERN PetscErrorCode PreconditionerForget(Preconditioner preconditioner);

@@ -1,0 +1,52 @@
+/* The coupled problem of one time step, for velocity, pressure and tension together (docs/method.md),
+       [ H + B R E/a0   G   S ] [u]       [ f    ]
+       [ G^T            0   0 ] [p]     = [ -bc2 ]       V = R (E u - Theta Dm^T sigma), R = 1, Theta = 0 without
+       [                      ]           [      ]       self-mobility;  S^T u = g reads Dm V/h^2 = g
+   reduced to its forces. A Stokes solve gives u and p for any force, so the unknowns are V, sigma, and forces d on the
+   faces next to walls, where the Stokes solve is not exact: with F = Dm^T sigma + (c_b ds/a0) D4 V
+       (u, p) = Stokes(f - E^T F/h^2 + d, -bc2)
+       V - E u + Theta F = 0,    Dm V/h^2 = g,    d + (what the Stokes solve leaves at the walls) = 0
+   A product costs one Stokes solve. */
+#pragma once
+#include "coupling/unknowns.h"
+#include "fluid/stokes.h"
+
+/* Products of a solve that are kept, to be combined into its velocity instead of a further Stokes solve. */
+#define REDUCED_KEPT 6
+
+typedef struct {
+  Vec w[REDUCED_KEPT + 1];                /* velocities and pressures of the products, the last for one not kept */
+  Vec p[REDUCED_KEPT + 1];                /* made when first needed */
+  Vec z[REDUCED_KEPT], Az[REDUCED_KEPT];  /* their unknowns, and what A makes of them */
+  PetscInt count;                         /* products since ReducedForgetProducts */
+} Products;
+
+typedef struct _p_Reduced *Reduced;
+struct _p_Reduced {
+  Unknowns unknowns; /* borrowed */
+  Stokes stokes;
+  Mat A;             /* the residuals' derivative, scaled */
+  Products kept;
+  Vec r;             /* a force on the grid, */
+  PetscInt dirty[2]; /* zero but for these rows */
+  Vec F, U;          /* marker vectors, work */
+  Vec rest;          /* unknowns, work */
+  PetscScalar *d;    /* [walls->n] all wall forces, work */
+  PetscScalar *slip; /* [walls->n] work */
+};
+
+/* ReducedCreate - the problem for these unknowns. Collective. */
+PETSC_EXTERN PetscErrorCode ReducedCreate(Unknowns unknowns, Reduced *reduced);
+PETSC_EXTERN PetscErrorCode ReducedDestroy(Reduced *reduced);
+
+/* ReducedResidual - the forces of `added` go into f; minus the scaled residuals at x, with u, p = w, p by one Stokes solve
+   of f, f holding the forces of x. g: an edge vector. Collective. */
+PETSC_EXTERN PetscErrorCode ReducedResidual(Reduced reduced, Vec added, Vec f, Vec g, Vec x, Vec w, Vec p,
+                                            Vec residual);
+
+/* ReducedForgetProducts - a solve begins: products with A are kept from here on. Not collective. */
+PETSC_EXTERN PetscErrorCode ReducedForgetProducts(Reduced reduced);
+
+/* ReducedCombine - the change of w, p and the residual that goes with a change of x made of the kept products, added; x :=
+   what it is made of. combined is false when they were too many to be kept, and nothing has changed. Collective. */
+PETSC_EXTERN PetscErrorCode ReducedCombine(Reduced reduced, Vec x, Vec w, Vec p, Vec residual, PetscBool *combined);

@@ -1,0 +1,171 @@
+#include "coupling/solver.h"
+
+#define MOST_ROUNDS 4
+
+/* -coupled_ksp_rtol is relative to the norm of the step's right-hand side (f, bc2, g), not to what the initial guess
+   left of it. */
+static PetscErrorCode Converged(KSP ksp, PetscInt it, PetscReal norm, KSPConvergedReason *reason, void *ctx) {
+  const CoupledSolver s = (CoupledSolver)ctx;
+  PetscReal rtol, atol, dtol;
+  PetscFunctionBeginUser;
+  PetscCall(KSPGetTolerances(ksp, &rtol, &atol, &dtol, NULL));
+  *reason = KSP_CONVERGED_ITERATING;
+  if (!it) s->start = norm;
+  if (PetscIsInfOrNanReal(norm))
+    *reason = KSP_DIVERGED_NANORINF;
+  else if (norm <= atol)
+    *reason = KSP_CONVERGED_ATOL;
+  else if (norm <= rtol * s->reference)
+    *reason = KSP_CONVERGED_RTOL;
+  else if (it > 0 && norm >= dtol * PetscMax(s->reference, s->start))
+    *reason = KSP_DIVERGED_DTOL;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Apply(PC pc, Vec r, Vec z) {
+  Preconditioner p;
+  PetscFunctionBeginUser;
+  PetscCall(PCShellGetContext(pc, &p));
+  PetscCall(PreconditionerApply(p, r, z));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CreateKSP(CoupledSolver s, PetscReal rtol) {
+  PC pc;
+  PetscFunctionBeginUser;
+  PetscCall(KSPCreate(s->coupling->fluid->grid->comm, &s->ksp));
+  PetscCall(KSPSetOptionsPrefix(s->ksp, "coupled_"));
+  PetscCall(KSPSetType(s->ksp, KSPFGMRES));
+  PetscCall(KSPGMRESSetRestart(s->ksp, 60));
+  PetscCall(KSPGMRESSetCGSRefinementType(s->ksp, KSP_GMRES_CGS_REFINE_IFNEEDED));
+  PetscCall(KSPSetTolerances(s->ksp, rtol, 0, PETSC_DEFAULT, 200));
+  PetscCall(KSPSetOperators(s->ksp, s->reduced->A, s->reduced->A));
+  PetscCall(KSPGetPC(s->ksp, &pc));
+  PetscCall(PCSetType(pc, PCSHELL));
+  PetscCall(PCShellSetContext(pc, s->preconditioner));
+  PetscCall(PCShellSetApply(pc, Apply));
+  PetscCall(PCShellSetName(pc, "mobility of the markers, slip of the walls"));
+  PetscCall(KSPSetInitialGuessNonzero(s->ksp, PETSC_TRUE));
+  PetscCall(KSPSetFromOptions(s->ksp));
+  PetscCall(KSPGetInitialGuessNonzero(s->ksp, &s->guess)); /* KSP itself solves for the change */
+  PetscCall(KSPSetInitialGuessNonzero(s->ksp, PETSC_FALSE));
+  PetscCall(KSPSetConvergenceTest(s->ksp, Converged, s, NULL));
+  PetscCall(PetscObjectTypeCompare((PetscObject)s->ksp, KSPFGMRES, &s->preconditioner->flexible));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CoupledSolverCreate(Scene scene, Coupling coupling, CoupledSolver *out) {
+  CoupledSolver s;
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&s));
+  *out = s;
+  s->coupling = coupling;
+  PetscCall(WallsCreate(coupling->fluid, &s->walls));
+  PetscCall(UnknownsCreate(coupling, s->walls, &s->unknowns));
+  PetscCall(ReducedCreate(s->unknowns, &s->reduced));
+  PetscCall(PreconditionerCreate(scene, s->unknowns, &s->preconditioner));
+  PetscCall(UnknownsCreateVec(s->unknowns, &s->x));
+  PetscCall(VecDuplicate(s->x, &s->b));
+  PetscCall(VecDuplicate(s->x, &s->change));
+  PetscCall(VecDuplicate(s->x, &s->pending));
+  PetscCall(CreateKSP(s, scene->ksp_rtol));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CoupledSolverDestroy(CoupledSolver *solver) {
+  CoupledSolver s = *solver;
+  PetscFunctionBeginUser;
+  if (!s) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(KSPDestroy(&s->ksp));
+  PetscCall(VecDestroy(&s->x));
+  PetscCall(VecDestroy(&s->b));
+  PetscCall(VecDestroy(&s->change));
+  PetscCall(VecDestroy(&s->pending));
+  PetscCall(PreconditionerDestroy(&s->preconditioner));
+  PetscCall(ReducedDestroy(&s->reduced));
+  PetscCall(UnknownsDestroy(&s->unknowns));
+  PetscCall(WallsDestroy(&s->walls));
+  PetscCall(PetscFree(*solver));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* x = (V, sigma, d) of the guess, V = R (E w - Theta Dm^T sigma). */
+static PetscErrorCode Guess(CoupledSolver s, const CoupledProblem *q) {
+  PetscFunctionBeginUser;
+  if (!s->guess) {
+    PetscCall(VecSet(s->x, 0));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(CouplingSelfMobility(s->coupling, q->sigma, NULL, q->V));
+  PetscCall(UnknownsPack(s->unknowns, q->V, q->sigma, q->d, s->x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Norm of (f, bc2, g with its factor). */
+static PetscErrorCode Reference(CoupledSolver s, Vec f, Vec g) {
+  const Layout l = s->coupling->membrane->layout;
+  const PetscScalar *a;
+  PetscReal norm, sum = 0;
+  PetscFunctionBeginUser;
+  PetscCall(VecGetArrayRead(g, &a));
+  for (PetscInt v = l->own; v < l->end; v++)
+    for (PetscInt k = 0; k < LayoutCount(l, v); k++)
+      sum += PetscSqr(a[LayoutOffset(l, v) + k] * UnknownsTensionScale(s->unknowns, v));
+  PetscCall(VecRestoreArrayRead(g, &a));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPIU_REAL, MPI_SUM, l->comm));
+  PetscCall(VecNorm(f, NORM_2, &norm));
+  sum += PetscSqr(norm);
+  if (s->coupling->fluid->bc2) {
+    PetscCall(VecNorm(s->coupling->fluid->bc2, NORM_2, &norm));
+    sum += PetscSqr(norm);
+  }
+  s->reference = PetscSqrtReal(sum);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* One KSPSolve for the residual b, whose change is added to x, w, p; b becomes the residual that is left. */
+static PetscErrorCode Correct(CoupledSolver s, const CoupledProblem *q, SolveReport *report) {
+  PetscBool combined;
+  PetscInt its;
+  PetscFunctionBeginUser;
+  PetscCall(ReducedForgetProducts(s->reduced));
+  PetscCall(KSPSolve(s->ksp, s->b, s->change));
+  PetscCall(KSPGetIterationNumber(s->ksp, &its));
+  PetscCall(KSPGetConvergedReason(s->ksp, &report->why));
+  PetscCall(KSPGetResidualNorm(s->ksp, &report->residual));
+  report->its += its;
+  if (report->why < 0) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ReducedCombine(s->reduced, s->change, q->w, q->p, s->b, &combined));
+  PetscCall(VecAXPY(s->x, 1, s->change));
+  PetscCall(VecAXPY(s->pending, 1, s->change));
+  if (!combined) {
+    PetscCall(ReducedResidual(s->reduced, s->pending, q->f, q->g, s->x, q->w, q->p, s->b));
+    PetscCall(VecSet(s->pending, 0));
+  }
+  PetscCall(VecNorm(s->b, NORM_2, &report->residual));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CoupledSolverSolve(CoupledSolver s, const CoupledProblem *q, SolveReport *report) {
+  PetscReal rtol, atol;
+  PetscFunctionBeginUser;
+  *report = (SolveReport){0};
+  PetscCall(PreconditionerSetUp(s->preconditioner));
+  if (s->preconditioner->failed) {
+    report->why = KSP_DIVERGED_PC_FAILED;
+    report->residual = NAN;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(Reference(s, q->f, q->g));
+  PetscCall(Guess(s, q));
+  PetscCall(ReducedResidual(s->reduced, s->x, q->f, q->g, s->x, q->w, q->p, s->b));
+  PetscCall(KSPGetTolerances(s->ksp, &rtol, &atol, NULL, NULL));
+  PetscCall(VecSet(s->pending, 0));
+  for (int round = 0; round < MOST_ROUNDS; round++) { /* rounding may spoil GMRES's own residual in stiff cases */
+    PetscCall(Correct(s, q, report));
+    if (report->why < 0 || report->residual <= 2 * PetscMax(rtol * s->reference, atol)) break;
+  }
+  PreconditionerSolved(s->preconditioner, report->its);
+  if (report->why >= 0) PetscCall(UnknownsUnpack(s->unknowns, s->x, q->V, q->sigma, q->d));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

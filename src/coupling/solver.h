@@ -1,0 +1,41 @@
+/* The coupled solve of one step: FGMRES, prefix coupled_, on the reduced problem (docs/method.md, Reduced unknowns). */
+#pragma once
+#include "coupling/precondition.h"
+#include "coupling/reduced.h"
+
+/* What a step asks for, and the vectors that its answer goes to. */
+typedef struct {
+  Vec f, g;            /* right-hand sides: a velocity (the forces of the solution are added to it) and an edge vector */
+  Vec w, p, sigma, d, V; /* solution; sigma, d and V = E w hold the first guess */
+} CoupledProblem;
+
+/* How a solve went. */
+typedef struct {
+  PetscInt its;
+  KSPConvergedReason why; /* < 0: failed */
+  PetscReal residual;
+} SolveReport;
+
+typedef struct _p_CoupledSolver *CoupledSolver;
+struct _p_CoupledSolver {
+  Coupling coupling; /* borrowed */
+  Walls walls;
+  Unknowns unknowns;
+  Reduced reduced;
+  Preconditioner preconditioner;
+  KSP ksp;
+  PetscBool guess; /* -coupled_ksp_initial_guess_nonzero: start from the guess */
+  Vec x, b;        /* unknowns, residual */
+  Vec change;      /* of one KSPSolve */
+  Vec pending;     /* part of x whose forces are not in the right-hand side f yet */
+  PetscReal reference; /* norm of the step's right-hand side, which the tolerance is relative to */
+  PetscReal start;     /* residual norm that a KSPSolve starts from */
+};
+
+/* CoupledSolverCreate - for the scene's preconditioner and tolerance. Collective. */
+PETSC_EXTERN PetscErrorCode CoupledSolverCreate(Scene scene, Coupling coupling, CoupledSolver *solver);
+PETSC_EXTERN PetscErrorCode CoupledSolverDestroy(CoupledSolver *solver);
+
+/* CoupledSolverSolve - solve where the coupling has been placed (CouplingPlace). Collective. */
+PETSC_EXTERN PetscErrorCode CoupledSolverSolve(CoupledSolver solver, const CoupledProblem *problem,
+                                               SolveReport *report);

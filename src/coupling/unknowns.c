@@ -1,0 +1,113 @@
+#include "coupling/unknowns.h"
+
+PetscErrorCode UnknownsCreate(Coupling coupling, Walls walls, Unknowns *out) {
+  const Grid g = coupling->fluid->grid;
+  Unknowns u;
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&u));
+  *out = u;
+  u->coupling = coupling;
+  u->walls = walls;
+  u->velocity = 2 * coupling->membrane->layout->n;
+  u->tension = coupling->membrane->layout->n;
+  PetscCall(PetscMalloc2(g->size, &u->count, g->size, &u->at));
+  for (PetscMPIInt r = 0; r < g->size; r++) {
+    u->at[r] = (PetscMPIInt)((PetscInt64)walls->n * r / g->size);
+    u->count[r] = (PetscMPIInt)((PetscInt64)walls->n * (r + 1) / g->size) - u->at[r];
+  }
+  u->first_wall = u->at[g->rank];
+  u->wall = u->count[g->rank];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode UnknownsDestroy(Unknowns *unknowns) {
+  PetscFunctionBeginUser;
+  if (!*unknowns) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscFree2((*unknowns)->count, (*unknowns)->at));
+  PetscCall(PetscFree(*unknowns));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CreateVec(Unknowns u, PetscInt n, PetscInt N, Vec *x) {
+  PetscFunctionBeginUser;
+  PetscCall(VecCreate(u->coupling->fluid->grid->comm, x));
+  PetscCall(VecSetSizes(*x, n, N));
+  PetscCall(VecSetType(*x, VECSTANDARD));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode UnknownsCreateVec(Unknowns u, Vec *x) {
+  PetscFunctionBeginUser;
+  PetscCall(CreateVec(u, u->velocity + u->tension + u->wall, 3 * u->coupling->membrane->layout->M + u->walls->n, x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode UnknownsCreateWallVec(Unknowns u, Vec *d) {
+  PetscFunctionBeginUser;
+  PetscCall(CreateVec(u, u->wall, u->walls->n, d));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode UnknownsPack(Unknowns u, Vec V, Vec sigma, Vec d, Vec x) {
+  const Vec part[3] = {V, sigma, d};
+  const PetscInt n[3] = {u->velocity, u->tension, u->wall};
+  PetscScalar *to;
+  PetscFunctionBeginUser;
+  PetscCall(VecGetArrayWrite(x, &to));
+  for (PetscInt k = 0, at = 0; k < 3; at += n[k++]) {
+    const PetscScalar *from;
+    PetscCall(VecGetArrayRead(part[k], &from));
+    PetscCall(PetscArraycpy(to + at, from, n[k]));
+    PetscCall(VecRestoreArrayRead(part[k], &from));
+  }
+  PetscCall(VecRestoreArrayWrite(x, &to));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode UnknownsUnpack(Unknowns u, Vec x, Vec V, Vec sigma, Vec d) {
+  const Vec part[3] = {V, sigma, d};
+  const PetscInt n[3] = {u->velocity, u->tension, u->wall};
+  const PetscScalar *from;
+  PetscFunctionBeginUser;
+  PetscCall(VecGetArrayRead(x, &from));
+  for (PetscInt k = 0, at = 0; k < 3; at += n[k++]) {
+    PetscScalar *to;
+    PetscCall(VecGetArrayWrite(part[k], &to));
+    PetscCall(PetscArraycpy(to, from + at, n[k]));
+    PetscCall(VecRestoreArrayWrite(part[k], &to));
+  }
+  PetscCall(VecRestoreArrayRead(x, &from));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode UnknownsGatherWalls(Unknowns u, const PetscScalar own[], PetscScalar all[]) {
+  const Grid g = u->coupling->fluid->grid;
+  PetscFunctionBeginUser;
+  if (!u->walls->n) PetscFunctionReturn(PETSC_SUCCESS);
+  if (g->size == 1)
+    PetscCall(PetscArraycpy(all, own, u->wall));
+  else
+    PetscCallMPI(MPI_Allgatherv(own, u->count[g->rank], MPIU_SCALAR, all, u->count, u->at, MPIU_SCALAR, g->comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscReal UnknownsTensionScale(Unknowns u, PetscInt v) {
+  const Fluid f = u->coupling->fluid;
+  const PetscReal h = f->grid->h;
+  return PetscSqr(h) / u->coupling->membrane->ds[v] * (1 + h * f->alpha);
+}
+
+void UnknownsScale(Unknowns u, PetscBool inverse, PetscScalar y[]) {
+  const Membrane m = u->coupling->membrane;
+  const Layout l = m->layout;
+  const Fluid f = u->coupling->fluid;
+  for (PetscInt v = l->own; v < l->end; v++) {
+    const PetscReal stiffness = m->bending / (f->a0 * f->nu * PetscPowRealInt(m->ds[v], 3));
+    const PetscReal tension = UnknownsTensionScale(u, v);
+    const PetscReal velocity = tension / PetscSqr(f->grid->h) * PetscSqrtReal(1 + stiffness);
+    const PetscInt at = LayoutOffset(l, v), n = LayoutCount(l, v);
+    PetscScalar *V = y + 2 * at, *sigma = y + u->velocity + at;
+    for (PetscInt k = 0; k < 2 * n; k++) V[k] = inverse ? V[k] / velocity : V[k] * velocity;
+    for (PetscInt k = 0; k < n; k++) sigma[k] = inverse ? sigma[k] / tension : sigma[k] * tension;
+  }
+}

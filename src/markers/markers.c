@@ -1,0 +1,230 @@
+#include "markers/markers.h"
+#include "base/agree.h"
+
+/* What is wrong with the own body b's markers X[2n], if anything. */
+static PetscErrorCode CheckBody(Markers m, PetscInt b, const PetscScalar X[], char message[PETVES_MAX_MESSAGE]) {
+  static const char *const names[2][2] = {{"x_min", "x_max"}, {"y_min", "y_max"}};
+  const Grid g = m->grid;
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < LayoutCount(m->layout, b); k++)
+    for (int dir = 0; dir < 2; dir++) {
+      const PetscReal x = X[2 * k + dir];
+      if (PetscIsInfOrNanReal(x)) {
+        PetscCall(PetscSNPrintf(message, PETVES_MAX_MESSAGE,
+                                "vesicle %" PetscInt_FMT ": marker positions are not finite", b + 1));
+        PetscFunctionReturn(PETSC_SUCCESS);
+      }
+      for (int side = 0; side < 2 && g->wall[dir]; side++) {
+        const PetscReal distance = side ? g->hi[dir] - x : x - g->lo[dir];
+        if (distance >= 3 * g->h * (1 - 1e-12)) continue;
+        PetscCall(PetscSNPrintf(message, PETVES_MAX_MESSAGE,
+                                "vesicle %" PetscInt_FMT ": a marker at (%g, %g) is %g cells from the wall %s = %g; "
+                                "the kernel needs 3",
+                                b + 1, (double)X[2 * k], (double)X[2 * k + 1], (double)(distance / g->h),
+                                names[dir][side], (double)(side ? g->hi[dir] : g->lo[dir])));
+        PetscFunctionReturn(PETSC_SUCCESS);
+      }
+    }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode MarkersCheck(Markers m, Vec X, char message[PETVES_MAX_MESSAGE]) {
+  const PetscScalar *x;
+  PetscFunctionBeginUser;
+  message[0] = 0;
+  PetscCall(VecGetArrayRead(X, &x));
+  for (PetscInt b = m->layout->own; b < m->layout->end && !*message; b++)
+    PetscCall(CheckBody(m, b, x + 2 * LayoutOffset(m->layout, b), message));
+  PetscCall(VecRestoreArrayRead(X, &x));
+  PetscCall(AgreeMessage(m->layout->comm, message));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* This rank's rows under the stencils, one more on either side for G and G^T; all of them across a seam. */
+static void SetWindow(Markers m) {
+  const Grid g = m->grid;
+  const PetscInt rows = g->rows[FIELD_P];
+  PetscInt low = PETSC_MAX_INT / 2, high = -1;
+  for (PetscInt k = 0; k < 2 * m->layout->M; k++) {
+    low = PetscMin(low, m->stencil[k].first[1]);
+    high = PetscMax(high, m->stencil[k].first[1] + m->stencil[k].n[1]);
+  }
+  low -= 2 + g->first;
+  high += 2 - g->first;
+  const PetscBool seam = !g->wall[1] && (low + g->first < 0 || high + g->first > g->n[1]) ? PETSC_TRUE : PETSC_FALSE;
+  m->window[0] = seam ? 0 : PetscMin(PetscMax(low, 0), rows);
+  m->window[1] = seam ? rows : PetscMax(PetscMin(high, rows), m->window[0]);
+}
+
+/* Local row of a component that is entry b of a stencil, or -1 when another rank holds it. Beyond a wall only zero
+   weights can fall, as markers keep three cells away. */
+static inline PetscInt LocalRow(const Grid g, int comp, const Stencil *s, PetscInt b) {
+  PetscInt j = s->first[1] + b;
+  if (!g->wall[1] && j >= g->n[1]) j -= g->n[1];
+  j -= g->first;
+  return j >= 0 && j < g->rows[comp] ? j : -1;
+}
+
+/* The stencils with a row on this rank. */
+static void ListTouching(Markers m) {
+  m->touched = 0;
+  for (PetscInt k = 0; k < 2 * m->layout->M; k++) {
+    const Stencil *s = &m->stencil[k];
+    PetscInt b = 0;
+    while (b < s->n[1] && LocalRow(m->grid, k % 2, s, b) < 0) b++;
+    if (b < s->n[1]) m->touching[m->touched++] = k;
+  }
+}
+
+PetscErrorCode MarkersPlace(Markers m, Vec X) {
+  const Grid g = m->grid;
+  PetscFunctionBeginUser;
+  PetscCall(LayoutGatherVec(m->layout, X, m->X));
+  for (PetscInt k = 0; k < m->layout->M; k++)
+    for (int comp = 0; comp < 2; comp++)
+      for (int dir = 0; dir < 2; dir++) {
+        Stencil *s = &m->stencil[2 * k + comp];
+        /* entry 0 of a component sits on the first right (top) face along its direction, in a cell's middle across */
+        const PetscReal r = (m->X[2 * k + dir] - g->lo[dir]) / g->h - (comp == dir ? 1.0 : 0.5);
+        s->n[dir] = (comp == dir ? m->kernel->along : m->kernel->across)(r, &s->first[dir], s->weight[dir]);
+        if (!g->wall[dir]) s->first[dir] = ((s->first[dir] % g->n[dir]) + g->n[dir]) % g->n[dir];
+      }
+  SetWindow(m);
+  ListTouching(m);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* w += alpha E^T F on this rank's rows w of u, then v. */
+static void Spread(Markers m, PetscReal alpha, const PetscScalar F[], PetscScalar w[]) {
+  const Grid g = m->grid;
+  for (PetscInt q = 0; q < m->touched; q++) {
+    const PetscInt k = m->touching[q];
+    const int comp = k % 2;
+    const Stencil *s = &m->stencil[k];
+    const PetscInt columns = g->columns[comp], i0 = s->first[0], n = s->n[0];
+    const PetscBool inside = i0 >= 0 && i0 + n <= columns ? PETSC_TRUE : PETSC_FALSE;
+    for (PetscInt b = 0; b < s->n[1]; b++) {
+      const PetscInt j = LocalRow(g, comp, s, b);
+      if (j < 0) continue;
+      PetscScalar *row = w + (comp ? GridLocalU(g) : 0) + j * columns;
+      const PetscScalar f = alpha * F[k] * s->weight[1][b];
+      if (inside)
+        for (PetscInt a = 0; a < n; a++) row[i0 + a] += f * s->weight[0][a];
+      else
+        for (PetscInt a = 0; a < n; a++) {
+          const PetscInt i = g->wall[0] ? i0 + a : (i0 + a) % columns;
+          if (i >= 0 && i < columns) row[i] += f * s->weight[0][a];
+        }
+    }
+  }
+}
+
+/* U = E w of this rank's rows; zero where a stencil reaches none of them. */
+static void Interpolate(Markers m, const PetscScalar w[], PetscScalar U[]) {
+  const Grid g = m->grid;
+  if (m->touched < 2 * m->layout->M) (void)PetscArrayzero(U, 2 * m->layout->M);
+  for (PetscInt q = 0; q < m->touched; q++) {
+    const PetscInt k = m->touching[q];
+    const int comp = k % 2;
+    const Stencil *s = &m->stencil[k];
+    const PetscInt columns = g->columns[comp], i0 = s->first[0], n = s->n[0];
+    const PetscBool inside = i0 >= 0 && i0 + n <= columns ? PETSC_TRUE : PETSC_FALSE;
+    PetscScalar sum = 0;
+    for (PetscInt b = 0; b < s->n[1]; b++) {
+      const PetscInt j = LocalRow(g, comp, s, b);
+      if (j < 0) continue;
+      const PetscScalar *row = w + (comp ? GridLocalU(g) : 0) + j * columns;
+      PetscScalar line = 0;
+      if (inside)
+        for (PetscInt a = 0; a < n; a++) line += row[i0 + a] * s->weight[0][a];
+      else
+        for (PetscInt a = 0; a < n; a++) {
+          const PetscInt i = g->wall[0] ? i0 + a : (i0 + a) % columns;
+          if (i >= 0 && i < columns) line += row[i] * s->weight[0][a];
+        }
+      sum += line * s->weight[1][b];
+    }
+    U[k] = sum;
+  }
+}
+
+PetscErrorCode MarkersSpread(Markers m, PetscReal alpha, Vec F, Vec w) {
+  PetscScalar *wa;
+  PetscFunctionBeginUser;
+  PetscCall(PetscLogEventBegin(m->spread, 0, 0, 0, 0));
+  PetscCall(LayoutGatherVec(m->layout, F, m->force));
+  PetscCall(VecGetArray(w, &wa));
+  Spread(m, alpha, m->force, wa);
+  PetscCall(VecRestoreArray(w, &wa));
+  PetscCall(PetscLogEventEnd(m->spread, 0, 0, 0, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode MarkersInterpolate(Markers m, Vec w, Vec U) {
+  const PetscScalar *wa;
+  PetscScalar *own;
+  PetscFunctionBeginUser;
+  PetscCall(PetscLogEventBegin(m->interpolate, 0, 0, 0, 0));
+  PetscCall(VecGetArrayRead(w, &wa));
+  Interpolate(m, wa, m->part);
+  PetscCall(VecRestoreArrayRead(w, &wa));
+  PetscCall(VecGetArray(U, &own));
+  PetscCall(LayoutSum(m->layout, 2, m->part, own));
+  PetscCall(VecRestoreArray(U, &own));
+  PetscCall(PetscLogEventEnd(m->interpolate, 0, 0, 0, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode MarkersClear(Markers m, Vec w, PetscInt dirty[2]) {
+  PetscFunctionBeginUser;
+  PetscCall(GridClearRows(m->grid, dirty, w));
+  for (int k = 0; k < 2; k++) dirty[k] = m->window[k];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Mult_E(Mat E, Vec w, Vec U) {
+  Markers m;
+  PetscFunctionBeginUser;
+  PetscCall(MatShellGetContext(E, &m));
+  PetscCall(MarkersInterpolate(m, w, U));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode MultTranspose_E(Mat E, Vec F, Vec w) {
+  Markers m;
+  PetscFunctionBeginUser;
+  PetscCall(MatShellGetContext(E, &m));
+  PetscCall(VecSet(w, 0));
+  PetscCall(MarkersSpread(m, 1, F, w));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode MarkersCreate(Grid g, Layout l, const char kernel[], Markers *out) {
+  Markers m;
+  const PetscInt slab = GridLocalU(g) + g->columns[FIELD_V] * g->rows[FIELD_V];
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&m));
+  *out = m;
+  m->grid = g;
+  m->layout = l;
+  m->kernel = KernelFind(kernel);
+  PetscCheck(m->kernel, g->comm, PETSC_ERR_USER_INPUT, "-delta_type %s: unknown kernel", kernel);
+  PetscCall(PetscMalloc5(2 * l->M, &m->X, 2 * l->M, &m->stencil, 2 * l->M, &m->touching, 2 * l->M, &m->force,
+                         2 * l->M, &m->part));
+  PetscCall(MatCreateShell(g->comm, 2 * l->n, slab, 2 * l->M, PETSC_DETERMINE, m, &m->E));
+  PetscCall(MatShellSetOperation(m->E, MATOP_MULT, (void (*)(void))Mult_E));
+  PetscCall(MatShellSetOperation(m->E, MATOP_MULT_TRANSPOSE, (void (*)(void))MultTranspose_E));
+  PetscCall(PetvesEvent("Spread", &m->spread));
+  PetscCall(PetvesEvent("Interpolate", &m->interpolate));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode MarkersDestroy(Markers *markers) {
+  Markers m = *markers;
+  PetscFunctionBeginUser;
+  if (!m) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscFree5(m->X, m->stencil, m->touching, m->force, m->part));
+  PetscCall(MatDestroy(&m->E));
+  PetscCall(PetscFree(*markers));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,50 @@
+/* The markers of all bodies on the grid: where they are, which faces their kernels reach, and the interpolation E.
+
+   Markers are few beside the grid's faces: every rank knows the positions of all of them and spreads onto its own rows
+   only. So a spreading begins with one gather of the forces, and an interpolation ends with one sum of the ranks' parts
+   that goes to the bodies' owners. */
+#pragma once
+#include "fluid/grid.h"
+#include "kernel/kernel.h"
+#include "markers/layout.h"
+
+/* Where a marker sees one component: rows y.first.., columns x.first.., with their weights. */
+typedef struct {
+  PetscInt first[2], n[2]; /* x, y; first wrapped into the grid where periodic */
+  PetscReal weight[2][KERNEL_MAX_POINTS];
+} Stencil;
+
+typedef struct _p_Markers *Markers;
+struct _p_Markers {
+  Grid grid;     /* borrowed */
+  Layout layout; /* borrowed */
+  const Kernel *kernel;
+  PetscReal *X;       /* [2M] positions of all markers */
+  Stencil *stencil;   /* [2M]: component c of marker k at 2k + c */
+  PetscInt *touching; /* the stencils that reach a row of this rank, in order */
+  PetscInt touched;   /* how many */
+  PetscInt window[2]; /* this rank's rows that hold all stencils, with the rows next to them */
+  PetscScalar *force; /* [2M] work: all forces */
+  PetscScalar *part;  /* [2M] work: this rank's part of all velocities */
+  Mat E;              /* (marker vector x velocity) U_k = SUM u(x) phi phi; E^T spreads */
+  PetscLogEvent spread, interpolate;
+};
+
+/* MarkersCreate - for the bodies of a layout over a grid with the named kernel; not placed yet. Collective. */
+PETSC_EXTERN PetscErrorCode MarkersCreate(Grid grid, Layout layout, const char kernel[], Markers *markers);
+PETSC_EXTERN PetscErrorCode MarkersDestroy(Markers *markers);
+
+/* MarkersCheck - message[PETVES_MAX_MESSAGE] is empty when every marker of X is finite and at least three cells from
+   every wall, else it names the vesicle and the wall; the same on every rank. Collective. */
+PETSC_EXTERN PetscErrorCode MarkersCheck(Markers markers, Vec X, char message[PETVES_MAX_MESSAGE]);
+
+/* MarkersPlace - put E at the markers X (checked by MarkersCheck before). Collective. */
+PETSC_EXTERN PetscErrorCode MarkersPlace(Markers markers, Vec X);
+
+/* MarkersClear - w (a velocity or a pressure) is zero but for rows dirty[2], which are zeroed; dirty becomes the
+   window, where the caller may write. Not collective. */
+PETSC_EXTERN PetscErrorCode MarkersClear(Markers markers, Vec w, PetscInt dirty[2]);
+
+/* MarkersSpread - w += alpha E^T F; F a marker vector, w a velocity. MarkersInterpolate - U = E w. Collective. */
+PETSC_EXTERN PetscErrorCode MarkersSpread(Markers markers, PetscReal alpha, Vec F, Vec w);
+PETSC_EXTERN PetscErrorCode MarkersInterpolate(Markers markers, Vec w, Vec U);

@@ -1,0 +1,88 @@
+/* After an unsplit step: the new state takes its place, and its markers are moved to their area and edge lengths. */
+#include "base/agree.h"
+#include "scheme/coupled.h"
+
+/* Relative errors of an edge above which all are corrected after a step, and above which that is worth a warning. */
+#define EDGE_TOLERANCE 1e-3
+#define EDGE_WARNING 0.01
+
+/* What happened to the vesicles; `who` has the largest error of an edge. */
+typedef struct {
+  PetscReal most, least; /* shift that restored an area (length) */
+  PetscReal error;       /* of an edge that was corrected */
+  PetscInt who;
+} Restored;
+
+/* Once a run: edges as wrong as this mean a step too large for what it follows. */
+static PetscErrorCode WarnOfEdges(Scheme s, Coupled *d, const Restored *r) {
+  char message[PETVES_MAX_MESSAGE] = "";
+  PetscFunctionBeginUser;
+  if (r->error >= EDGE_WARNING)
+    PetscCall(PetscSNPrintf(message, sizeof(message),
+                            "vesicle %" PetscInt_FMT ": an edge was off by %.2g of its length after step "
+                            "%" PetscInt_FMT " and has been put right; try a smaller -time_step",
+                            r->who + 1, (double)r->error, s->state.step + 1));
+  PetscCall(AgreeMessage(s->membrane->layout->comm, message));
+  PetscCall(PetscPrintf(s->scene->comm, "petves: warning: %s\n", message));
+  d->warned = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The area target, a uniform normal shift of the markers X and of the old ones X_old alike; and what the length target
+   leaves of large steps. There the old markers stay: X* and Xhat then go along the constraints and do not carry on what
+   was corrected. A shift by half an edge has lost the shape, and correcting edges would find another one. */
+static PetscErrorCode RestoreVesicle(Scheme s, PetscInt v, PetscScalar X[], PetscScalar X_old[], PetscScalar unmoved[],
+                                     Restored *r) {
+  const Membrane m = s->membrane;
+  const PetscInt n2 = 2 * LayoutCount(m->layout, v);
+  PetscReal error, shift = 0;
+  PetscFunctionBeginUser;
+  PetscCall(PetscArraycpy(unmoved, X_old, n2));
+  if (s->scene->area_target) shift = MembraneRestoreArea(m, v, X, X_old);
+  r->most = PetscMax(r->most, shift);
+  r->least = PetscMin(r->least, shift);
+  if (!s->scene->length_target || PetscAbsReal(shift) > 0.5 * m->ds[v]) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(MembraneRestoreEdges(m, v, EDGE_TOLERANCE, X, &error));
+  if (error > 0) PetscCall(PetscArraycpy(X_old, unmoved, n2));
+  if (error > r->error) {
+    r->error = error;
+    r->who = v;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Each owner its vesicles. */
+static PetscErrorCode RestoreMarkers(Scheme s, Coupled *d) {
+  const Layout l = s->membrane->layout;
+  PetscScalar *X, *X_old;
+  PetscReal largest[3];
+  Restored r = {0};
+  PetscFunctionBeginUser;
+  PetscCall(VecGetArray(s->state.X, &X));
+  PetscCall(VecGetArray(d->old.X, &X_old));
+  for (PetscInt v = l->own; v < l->end; v++) {
+    const PetscInt at = 2 * LayoutOffset(l, v);
+    PetscCall(RestoreVesicle(s, v, X + at, X_old + at, d->edges, &r));
+  }
+  PetscCall(VecRestoreArray(d->old.X, &X_old));
+  PetscCall(VecRestoreArray(s->state.X, &X));
+  largest[0] = r.most;
+  largest[1] = -r.least;
+  largest[2] = r.error;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, largest, 3, MPIU_REAL, MPI_MAX, l->comm));
+  const PetscReal shift = largest[0] >= largest[1] ? largest[0] : -largest[1];
+  if (PetscAbsReal(shift) > PetscAbsReal(s->report.area_shift)) s->report.area_shift = shift;
+  if (largest[2] >= EDGE_WARNING && !d->warned) PetscCall(WarnOfEdges(s, d, &r));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CoupledAdvance(Scheme s, PetscReal dt) {
+  Coupled *d = (Coupled *)s->data;
+  PetscFunctionBeginUser;
+  StateSwap(&s->state, &d->old);
+  StateSwap(&s->state, &d->next);
+  s->state.dt_last = dt;
+  s->has_old = PETSC_TRUE;
+  if (CouplingHasMembrane(s->coupling)) PetscCall(RestoreMarkers(s, d));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,73 @@
+#include "scheme/judge.h"
+
+#define FIRST_LEVEL (-10) /* the first step is base/32 */
+#define LEAST_LEVEL (-80)
+#define MOST_LEVEL 40
+#define SAFETY 0.9
+#define GROWTH 2 /* levels a step, a factor of 2 */
+#define HALF 2   /* levels of a factor of 2 */
+
+StepPolicy StepPolicyCreate(Scene scene, PetscInt vesicles) {
+  return (StepPolicy){.adaptive = scene->adapt == ADAPT_ERROR && vesicles ? PETSC_TRUE : PETSC_FALSE,
+                      .base = scene->dt,
+                      .tolerance = scene->adapt_tol,
+                      .max_move = scene->adapt_max_move * SceneCellSize(scene),
+                      .max_step = scene->adapt_max_step};
+}
+
+PetscInt StepFirstLevel(void) {
+  return FIRST_LEVEL;
+}
+
+PetscBool StepFinished(const StepPolicy *p, PetscReal t, PetscReal until) {
+  return t >= until - (p->adaptive ? 1e-9 : 0.5) * p->base ? PETSC_TRUE : PETSC_FALSE;
+}
+
+static PetscReal SizeOfLevel(const StepPolicy *p, PetscInt level) {
+  return p->base * PetscPowReal(2, 0.5 * (PetscReal)level);
+}
+
+/* Largest level with a step of at most dt, or at most a rounding above it. */
+static PetscInt LevelOfSize(const StepPolicy *p, PetscReal dt, PetscReal above) {
+  return (PetscInt)PetscFloorReal(2 * PetscLog2Real(dt / p->base) + above);
+}
+
+PetscReal StepSize(const StepPolicy *p, StepPlan *plan, PetscReal courant, PetscReal most) {
+  const PetscReal limit = PetscMin(courant, p->max_step > 0 ? p->max_step : PETSC_MAX_REAL);
+  PetscReal dt;
+  if (limit < PETSC_MAX_REAL) plan->level = PetscMin(plan->level, LevelOfSize(p, limit, 1e-9));
+  dt = SizeOfLevel(p, plan->level);
+  if (most <= dt * (1 + 1e-12)) return most;
+  /* a last step far shorter than the one before leaves noise in the velocity, a difference over the step */
+  return most < 2 * dt ? most / 2 : dt;
+}
+
+/* The error X - X* is of second order in dt; in a first step X* = X, and it is the whole movement, so not tested. An error
+   that a smaller step has not lowered is not the step's, but what the length target corrects at the start, or the
+   solver's tolerance. */
+StepVerdict StepJudge(const StepPolicy *p, const StepTrial *t, StepPlan *plan) {
+  const PetscBool fixed = t->error > 0.9 * plan->before ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool inexact = !t->first && !fixed && !(t->error <= p->tolerance) ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool too_far = p->max_move > 0 && t->speed * t->dt > p->max_move ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool uneven = t->ratio <= 2 ? PETSC_FALSE : PETSC_TRUE; /* or not a number */
+  PetscReal factor = SAFETY * (t->first ? 1 : PetscSqrtReal(p->tolerance / PetscMax(t->error, 1e-30)));
+  PetscInt wanted;
+  if (!t->solved) {
+    plan->level -= HALF;
+    return plan->level < LEAST_LEVEL ? STEP_GIVE_UP : STEP_REPEAT;
+  }
+  if (too_far) factor = PetscMin(factor, SAFETY * p->max_move / (t->speed * t->dt));
+  if (uneven || PetscIsNanReal(t->error)) factor = 0.25;
+  wanted = LevelOfSize(p, factor * t->dt, 0);
+  if (inexact || too_far || uneven) {
+    plan->before = t->error;
+    plan->level = PetscMin(plan->level - 1, wanted);
+    return plan->level < LEAST_LEVEL ? STEP_GIVE_UP : STEP_REPEAT;
+  }
+  const PetscBool whole = t->dt >= SizeOfLevel(p, plan->level) * (1 - 1e-12) ? PETSC_TRUE : PETSC_FALSE;
+  if (t->first || fixed || !whole) return STEP_ACCEPT; /* says nothing of a larger step */
+  wanted = PetscMin(PetscMin(wanted, plan->level + GROWTH), MOST_LEVEL);
+  if (p->max_move > 0 && t->speed > 0) wanted = PetscMin(wanted, LevelOfSize(p, SAFETY * p->max_move / t->speed, 0));
+  plan->level = wanted;
+  return STEP_ACCEPT;
+}

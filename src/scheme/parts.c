@@ -1,0 +1,89 @@
+#include "scheme/parts.h"
+#include "base/agree.h"
+
+/* What to try goes behind what is wrong. */
+static PetscErrorCode Advise(Scheme s) {
+  char *text = s->report.failure;
+  const size_t used = strlen(text);
+  PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(text + used, sizeof(s->report.failure) - used,
+                          " after step %" PetscInt_FMT
+                          ", time %g; try a larger -domain_box, or a smaller -time_step if it "
+                          "should not have come there",
+                          s->state.step, (double)s->state.t));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SchemeBackground(Scheme s, Vec X, PetscReal t) {
+  const PetscScalar *x;
+  PetscScalar *u;
+  PetscFunctionBeginUser;
+  PetscCall(VecSet(s->background, 0));
+  if (s->fluid->total) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecGetArrayRead(X, &x));
+  PetscCall(VecGetArray(s->background, &u));
+  s->scene->flow.time = t;
+  PetscCall(FlowVelocities(&s->scene->flow, s->membrane->layout->n, x, u));
+  PetscCall(VecRestoreArray(s->background, &u));
+  PetscCall(VecRestoreArrayRead(X, &x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SchemePlace(Scheme s, PetscReal a0, Vec X, Vec sigma, Vec Xhat, PetscReal t, PetscBool *placed) {
+  PetscFunctionBeginUser;
+  PetscCall(CouplingPlace(s->coupling, a0, X, s->report.failure));
+  *placed = *s->report.failure ? PETSC_FALSE : PETSC_TRUE;
+  if (!*placed) PetscCall(Advise(s));
+  if (!*placed || !CouplingHasMembrane(s->coupling)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(SchemeBackground(s, X, t));
+  *placed = *s->report.failure ? PETSC_FALSE : PETSC_TRUE;
+  if (!*placed) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(CouplingSelfMobility(s->coupling, sigma, Xhat, s->background));
+  PetscCall(CouplingStretching(s->coupling, s->background, s->g));
+  PetscCall(VecScale(s->g, -1));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* max |h^2 (Dm U/h^2 - g)/ds| */
+static PetscErrorCode MeasureSurfaceDivergence(Scheme s, Vec U) {
+  const Layout l = s->membrane->layout;
+  const PetscReal h2 = PetscSqr(s->fluid->grid->h);
+  const PetscScalar *d;
+  PetscReal largest = 0;
+  PetscFunctionBeginUser;
+  PetscCall(CouplingStretching(s->coupling, U, s->work_tension));
+  PetscCall(VecAXPY(s->work_tension, -1, s->g));
+  PetscCall(VecGetArrayRead(s->work_tension, &d));
+  for (PetscInt v = l->own; v < l->end; v++)
+    for (PetscInt k = 0; k < LayoutCount(l, v); k++)
+      largest = PetscMax(largest, h2 * PetscAbsReal(d[LayoutOffset(l, v) + k]) / s->membrane->ds[v]);
+  PetscCall(VecRestoreArrayRead(s->work_tension, &d));
+  PetscCallMPI(MPI_Allreduce(&largest, &s->report.surface_div_max, 1, MPIU_REAL, MPI_MAX, l->comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SchemeMarkerVelocity(Scheme s, Vec w, Vec sigma, Vec U) {
+  PetscFunctionBeginUser;
+  PetscCall(CouplingVelocity(s->coupling, w, sigma, U));
+  PetscCall(MeasureSurfaceDivergence(s, U));
+  PetscCall(VecAXPY(U, 1, s->background));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SchemeMeasureDivergence(Scheme s, Vec w) {
+  PetscFunctionBeginUser;
+  PetscCall(GridLargestDivergence(s->fluid->grid, w, s->fluid->bc2, &s->report.div_max));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SchemeSolverFailed(Scheme s, const char prefix[], KSPConvergedReason why, PetscInt its,
+                                  PetscReal residual) {
+  PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(s->report.failure, sizeof(s->report.failure),
+                          "the solve with prefix %s failed in step %" PetscInt_FMT
+                          " at time %g: %s after %" PetscInt_FMT " iterations, residual %g; try a smaller -time_step, "
+                          "more iterations (-%sksp_max_it) or finer -domain_cells",
+                          prefix, s->state.step + 1, (double)(s->state.t + s->state.dt), KSPConvergedReasons[why], its,
+                          (double)residual, prefix));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,72 @@
+#include "scheme/state.h"
+
+#define VECTORS 6
+
+static void List(State *q, Vec *all[VECTORS]) {
+  all[0] = &q->w;
+  all[1] = &q->p;
+  all[2] = &q->sigma;
+  all[3] = &q->X;
+  all[4] = &q->U;
+  all[5] = &q->walls;
+}
+
+PetscErrorCode StateCreate(Coupling c, State *q) {
+  const Grid g = c->fluid->grid;
+  const Layout l = c->membrane->layout;
+  PetscFunctionBeginUser;
+  PetscCall(DMCreateGlobalVector(g->velocity, &q->w));
+  PetscCall(DMCreateGlobalVector(g->da[FIELD_P], &q->p));
+  PetscCall(LayoutCreateVec(l, 2, &q->X));
+  PetscCall(VecDuplicate(q->X, &q->U));
+  PetscCall(LayoutCreateVec(l, 1, &q->sigma));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode StateDuplicate(const State *q, State *copy) {
+  State source = *q;
+  Vec *from[VECTORS], *to[VECTORS];
+  PetscFunctionBeginUser;
+  List(&source, from);
+  List(copy, to);
+  for (int k = 0; k < VECTORS; k++)
+    if (*from[k]) PetscCall(VecDuplicate(*from[k], to[k]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode StateDestroy(State *q) {
+  Vec *all[VECTORS];
+  PetscFunctionBeginUser;
+  List(q, all);
+  for (int k = 0; k < VECTORS; k++) PetscCall(VecDestroy(all[k]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode StateCopy(const State *q, State *copy, PetscBool fields) {
+  State source = *q;
+  Vec *from[VECTORS], *to[VECTORS];
+  PetscFunctionBeginUser;
+  List(&source, from);
+  List(copy, to);
+  for (int k = fields ? 0 : 2; k < VECTORS; k++) {
+    if (!*from[k]) continue;
+    if (!*to[k]) PetscCall(VecDuplicate(*from[k], to[k]));
+    PetscCall(VecCopy(*from[k], *to[k]));
+  }
+  copy->step = q->step;
+  copy->t = q->t;
+  copy->dt = q->dt;
+  copy->dt_last = q->dt_last;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+void StateSwap(State *a, State *b) {
+  Vec *one[VECTORS], *other[VECTORS];
+  List(a, one);
+  List(b, other);
+  for (int k = 0; k < VECTORS; k++) {
+    const Vec v = *one[k];
+    *one[k] = *other[k];
+    *other[k] = v;
+  }
+}

@@ -1,0 +1,29 @@
+/* What a scheme advances in time. */
+#pragma once
+#include "coupling/coupling.h"
+
+/* Everything that moves in time. */
+typedef struct {
+  PetscInt step;
+  PetscReal t, dt;
+  PetscReal dt_last; /* the step that led here; 0 at the start */
+  Vec w;             /* velocity on the faces: the disturbance, or the whole in the total form */
+  Vec p;             /* pressure, zero mean */
+  Vec sigma;         /* tension, an edge vector */
+  Vec X;             /* markers, a marker vector */
+  Vec U;             /* markers' velocity, background included */
+  Vec walls;         /* scheme coupled's wall forces; else NULL */
+} State;
+
+/* StateCreate - at rest: zero vectors, without wall forces. StateDuplicate - zero vectors of the same kinds, times not
+   copied. Collective. */
+PETSC_EXTERN PetscErrorCode StateCreate(Coupling coupling, State *state);
+PETSC_EXTERN PetscErrorCode StateDuplicate(const State *state, State *copy);
+PETSC_EXTERN PetscErrorCode StateDestroy(State *state);
+
+/* StateCopy - times and vectors; the target's missing vectors are made. fields: the velocity and the pressure too, else
+   they stay. Collective. */
+PETSC_EXTERN PetscErrorCode StateCopy(const State *from, State *to, PetscBool fields);
+
+/* StateSwap - the vectors of two states change places; times stay. Not collective. */
+PETSC_EXTERN void StateSwap(State *a, State *b);
