@@ -2,8 +2,8 @@
      w = H^-1 r_u;  q = r_p - G^T w;  psi = L^-1 q;  u = w - G psi;  p = alpha psi - nu q
    and a channel's wall correction, all on modes. Neighbouring slabs' rows that G and G^T want come out of the
    tridiagonal solves, so that two messages a solve are all. */
+#include "fluid/banded.h"
 #include "fluid/rowtransform.h"
-#include "fluid/stokes.h"
 #include "fluid/tridiagonal.h"
 
 struct _p_BandedStokes {

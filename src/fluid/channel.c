@@ -7,7 +7,8 @@
    profiles in y: w = (alpha + nu lambda - nu d_yy)^-1 e_0,  psi = (d_yy - lambda)^-1 w, u = w + lambda psi,   v =
    conj(s) G_y psi,   p = -conj(s) (alpha psi - nu w), s = (e^{i theta} - 1)/h the symbol of G_x, lambda = |s|^2. The
    top wall's are their mirror images. */
-#include "fluid/stokes.h"
+#include "fluid/channel.h"
+#include "fluid/wallprofile.h"
 #include <complex.h>
 #include <fftw3.h>
 

@@ -1,4 +1,5 @@
 #include "fluid/walls.h"
+#include "fluid/wallprofile.h"
 
 #define DECAY 20 /* e^-20 is not felt */
 #define SWEEPS 5
