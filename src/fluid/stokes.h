@@ -10,9 +10,9 @@ PETSC_EXTERN PetscErrorCode StokesDestroy(Stokes *stokes);
 
 /* StokesSolve - velocity u and pressure p (zero mean). Three scalar solves, or (x periodic, fast solves by
    fftw_tridiagonal) one banded solve that counts as three. Exact in a periodic box and in a channel (periodic in x,
-   walls in y), where a correction of two unknowns per x mode removes the projection's slip at the walls. Elsewhere it is
-   a projection, whose momentum is off next to the walls by nu (L_u G - G L) psi. r_p may be NULL (zero); u may be r_u, p
-   may be r_p. Collective. Errors: a scalar solve that does not converge, see FluidFailure. */
+   walls in y), where a correction of two unknowns per x mode removes the projection's slip at the walls. Elsewhere it
+   is a projection, whose momentum is off next to the walls by nu (L_u G - G L) psi. r_p may be NULL (zero); u may be
+   r_u, p may be r_p. Collective. Errors: a scalar solve that does not converge, see FluidFailure. */
 PETSC_EXTERN PetscErrorCode StokesSolve(Stokes stokes, Vec r_u, Vec r_p, Vec u, Vec p);
 
 /* StokesIsExact - whether StokesSolve is: x is periodic. Not collective. */

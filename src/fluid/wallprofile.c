@@ -1,9 +1,9 @@
 #include "fluid/wallprofile.h"
 
-/* Solve T x = b by elimination. T is tridiagonal with -e beside the diagonal d, and `end` as its first and last diagonal
-   entry. x may be b. */
-static void SolveTridiagonal(PetscInt n, PetscReal d, PetscReal e, PetscReal end, const PetscReal b[],
-                             PetscReal work[], PetscReal x[]) {
+/* Solve T x = b by elimination. T is tridiagonal with -e beside the diagonal d, and `end` as its first and last
+   diagonal entry. x may be b. */
+static void SolveTridiagonal(PetscInt n, PetscReal d, PetscReal e, PetscReal end, const PetscReal b[], PetscReal work[],
+                             PetscReal x[]) {
   PetscReal pivot = end;
   x[0] = b[0] / pivot;
   for (PetscInt j = 1; j < n; j++) {
