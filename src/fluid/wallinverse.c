@@ -136,8 +136,8 @@ PetscErrorCode WallsPrecondition(Walls w, PetscScalar d[]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A profile a[n], entry j being (j + offset) cells from the wall, at eta cells from it: linear in between, the first
-   entry's value closer to the wall. */
+/* A profile a[n], whose entry j is j + offset cells from the wall, at eta cells from it: linear between the entries and
+   beyond the last, constant closer to the wall than the first. */
 static PetscReal Interpolated(PetscInt n, const PetscReal a[], PetscReal offset, PetscReal eta) {
   const PetscReal at = PetscMax(eta - offset, 0);
   const PetscInt j = PetscMin((PetscInt)at, n - 2);

@@ -102,6 +102,7 @@ PetscErrorCode SchemeStep(Scheme s, PetscReal dt) {
   PetscCall(PhaseBegin(PHASE_STEP));
   PetscCall(PetscMemzero(&s->report, sizeof(s->report)));
   PetscCall(SchemeKeep(s));
+  FluidClearFailure(s->fluid);
   s->state.dt = dt;
   PetscCall(s->step(s));
   s->report.solves = FluidCountSolves(s->fluid) - solves;
@@ -111,7 +112,11 @@ PetscErrorCode SchemeStep(Scheme s, PetscReal dt) {
     s->state.step++;
     PetscCall(SchemeCheck(s));
   }
-  if (*s->report.failure) PetscCall(SchemeReturn(s));
+  if (*s->report.failure) {
+    const SolveFailure *cause = FluidFailure(s->fluid); /* of whatever else went wrong */
+    if (cause) PetscCall(SchemeSolverFailed(s, cause->prefix, cause->why, cause->its, cause->residual));
+    PetscCall(SchemeReturn(s));
+  }
   PetscCall(PhaseEnd());
   PetscCall(PetscTime(&end));
   s->report.seconds = end - start;
@@ -261,8 +266,8 @@ PetscErrorCode SchemeSolverFailed(Scheme s, const char prefix[], KSPConvergedRea
                           "the solve with prefix %s failed in step %" PetscInt_FMT
                           " at time %g: %s after %" PetscInt_FMT " iterations, residual %g; try a smaller -time_step, "
                           "more iterations (-%sksp_max_it) or finer -domain_cells",
-                          prefix, s->state.step + 1, (double)(s->state.t + s->state.dt), KSPConvergedReasons[why], its,
-                          (double)residual, prefix));
+                          prefix, s->before.state.step + 1, (double)(s->before.state.t + s->state.dt),
+                          KSPConvergedReasons[why], its, (double)residual, prefix));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
