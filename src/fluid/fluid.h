@@ -1,4 +1,5 @@
-/* The fluid: grid, operators as PETSc objects, fast solves, and the data of moving walls. */
+/* The fluid: grid, operators as PETSc objects, fast solves, and the data of moving walls. docs/method.md has the
+   symbols. */
 #pragma once
 #include "fluid/fastsolver.h"
 
@@ -34,7 +35,7 @@ PETSC_EXTERN PetscErrorCode FluidSolveHelmholtz(Fluid fluid, Vec b, Vec w);
 /* FluidSolvePoisson - p = L^-1 q with zero mean, one scalar solve; p may be q. Collective. Errors: see FluidFailure. */
 PETSC_EXTERN PetscErrorCode FluidSolvePoisson(Fluid fluid, Vec q, Vec p);
 
-/* FluidRemoveMean - take the mean of each component off a velocity of a periodic box. Collective. */
+/* FluidRemoveMean - take the mean of each component off a velocity; the box must be periodic in x and y. Collective. */
 PETSC_EXTERN PetscErrorCode FluidRemoveMean(Fluid fluid, Vec w);
 
 /* FluidCountSolves - scalar fast solves so far. Not collective. */
