@@ -1,7 +1,8 @@
 #include "base/base.h"
 #include <ctype.h>
 
-/* Program-wide logging and error state: the one place where it lives, as PETSc's own logging is program-wide too. */
+/* Logging and error state of the whole program. It lives here and nowhere else; PETSc's logging, which it feeds, is
+   program-wide too. */
 static struct {
   PetscBool one_line;
   PetscBool registered;
@@ -15,8 +16,8 @@ static struct {
 
 const char *const PhaseNames[PHASE_COUNT] = {"setup", "step", "fast_solve", "output"};
 
-/* PETSc's own messages about a solver option name its value only: the first solver option of the database whose value
-   is a word of the message, as "-name value: ", else nothing. */
+/* PETSc's messages about a bad solver option (-tension_ksp_type foo) name the value but not the option. So look for the
+   first solver option whose value is a word of the message: "-name value: ", or nothing. */
 static void NameOption(const char *message, char name[], size_t length) {
   char *all = NULL, *word, *last = NULL, *end = NULL;
   name[0] = 0;
@@ -81,6 +82,7 @@ static PetscErrorCode RegisterStages(void) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Add the time since the last call to the phase that was in force. */
 static void Charge(void) {
   PetscLogDouble now;
   (void)PetscTime(&now);

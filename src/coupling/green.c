@@ -16,6 +16,9 @@ PetscErrorCode MobilityCreate(Scene scene, Coupling coupling, Mobility *out) {
   m->scene = *scene;
   m->scene.bc[0] = m->scene.bc[1] = BC_PERIODIC;
   m->scene.flow.form = FORM_DISTURBANCE;
+  /* the table is for a preconditioner: by the default solver, which cannot fail, whatever solves the steps */
+  PetscCall(PetscStrncpy(m->scene.helmholtz, "fftw_tridiagonal", sizeof(m->scene.helmholtz)));
+  PetscCall(PetscStrncpy(m->scene.poisson, "fftw_tridiagonal", sizeof(m->scene.poisson)));
   PetscCall(FluidCreate(&m->scene, &m->periodic));
   for (PetscInt v = 0; v < l->bodies; v++) reach = PetscMax(reach, coupling->membrane->L0[v] / 2);
   if (l->bodies > 1) reach = PETSC_MAX_INT / 4 * g->h; /* vesicles may be anywhere: the whole box */

@@ -1,19 +1,20 @@
-/* Stokes in a box that is periodic in x, whole: Fourier modes along the rows, in which H, G, G^T and L are banded in y.
+/* The Stokes solve in a box that is periodic in x:
      w = H^-1 r_u;  q = r_p - G^T w;  psi = L^-1 q;  u = w - G psi;  p = alpha psi - nu q
-   and a channel's wall correction, all on modes. Neighbouring slabs' rows that G and G^T want come out of the
-   tridiagonal solves, so that two messages a solve are all. */
+   and a channel's wall correction. In Fourier modes along the rows H, G, G^T and L couple neighbouring rows only, so
+   everything between the first transforms and the last is done on modes, row by row. G^T and G need one row of the
+   neighbouring slabs; the tridiagonal solves know it, so that their two messages are all that a solve sends. */
+#include "fluid/banded.h"
 #include "fluid/rowtransform.h"
-#include "fluid/stokes.h"
 #include "fluid/tridiagonal.h"
 
 struct _p_BandedStokes {
   Fluid fluid;
-  Channel channel; /* borrowed; NULL when y is periodic */
-  RowTransform t;  /* of every field: columns are the same where x is periodic */
-  Tridiagonal d[3];
-  PetscReal *one;                /* [width] */
+  Channel channel;               /* borrowed; NULL when y is periodic */
+  RowTransform t;                /* of every field: columns are the same where x is periodic */
+  Tridiagonal d[3];              /* of each field; their rows y hold w and psi */
+  PetscReal *one;                /* [width] ones: the scale of L's solver, whose right-hand side is normalised */
   PetscReal *symbol;             /* [width] (e^{i theta} - 1)/h of G_x, complex */
-  PetscReal *line, *near, *ends; /* [width], [width], [2][width] work */
+  PetscReal *line, *near, *ends; /* [width] a row; [width] v below the slab; [2][width] psi in the wall rows */
   PetscReal alpha;               /* coefficient in force; -1 none yet */
 };
 
@@ -110,7 +111,7 @@ static PetscErrorCode Helmholtz(BandedStokes b, const PetscScalar r[]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* q = r_p - G^T w in row j; transforms are not normalised, w is. */
+/* q = r_p - G^T w in row j. Transforms are not normalised, w is. */
 static void RightHandSide(BandedStokes b, PetscInt j, const PetscScalar r_p[], PetscReal q[]) {
   const PetscInt columns = b->fluid->grid->columns[FIELD_P];
   for (PetscInt k = 0; k < b->t->width; k++) q[k] = 0;
@@ -121,7 +122,7 @@ static void RightHandSide(BandedStokes b, PetscInt j, const PetscScalar r_p[], P
   AddDivergence(b, j, Below(b, j), q);
 }
 
-/* psi = L^-1 q, first half. */
+/* psi = L^-1 q, as far as the message; Project makes its rows. */
 static PetscErrorCode Poisson(BandedStokes b, const PetscScalar r_p[]) {
   const Grid g = b->fluid->grid;
   PetscFunctionBeginUser;
@@ -138,34 +139,51 @@ static PetscErrorCode Poisson(BandedStokes b, const PetscScalar r_p[]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Transform a row back, the channel's correction added. */
+/* Row j of a field from its modes, the channel's correction added. */
 static void Finish(BandedStokes b, Field f, PetscInt j, PetscScalar x[]) {
   if (b->channel) ChannelAddRow(b->channel, f, j, b->t->modes);
   RowTransformBackward(b->t, x + j * b->fluid->grid->columns[f]);
 }
 
-/* u = w - G psi, p = alpha psi - nu q, from the last row down; psi_above holds the potential one row up. */
+/* One row's modes: out = alpha psi - nu q. */
+static void Pressure(PetscInt width, PetscReal alpha, PetscReal nu, const PetscReal *restrict psi,
+                     const PetscReal *restrict q, PetscReal *restrict out) {
+  for (PetscInt k = 0; k < width; k++) out[k] = alpha * psi[k] - nu * q[k];
+}
+
+/* One row's modes: out = w - G_x psi, G_x being a product with its symbol s. */
+static void ProjectU(PetscInt width, const PetscReal *restrict s, const PetscReal *restrict w,
+                     const PetscReal *restrict psi, PetscReal *restrict out) {
+  for (PetscInt k = 0; k < width; k += 2) {
+    out[k] = w[k] - (s[k] * psi[k] - s[k + 1] * psi[k + 1]);
+    out[k + 1] = w[k + 1] - (s[k] * psi[k + 1] + s[k + 1] * psi[k]);
+  }
+}
+
+/* One row's modes: out = w - G_y psi, a difference to the row above. */
+static void ProjectV(PetscInt width, PetscReal h, const PetscReal *restrict w, const PetscReal *restrict psi,
+                     const PetscReal *restrict above, PetscReal *restrict out) {
+  const PetscReal c = 1 / h;
+  for (PetscInt k = 0; k < width; k++) out[k] = w[k] - c * (above[k] - psi[k]);
+}
+
+/* u = w - G psi, p = alpha psi - nu q, in the pass down the rows that also makes psi: each row needs psi of its own and
+   of the row above, which the slab above tells at the start. */
 static void Project(BandedStokes b, const PetscScalar r_p[], PetscScalar u[], PetscScalar v[], PetscScalar p[]) {
   const Grid g = b->fluid->grid;
-  const PetscReal alpha = b->fluid->alpha, nu = b->fluid->nu, c = 1 / g->h;
   const PetscInt width = b->t->width;
-  PetscReal *restrict modes = b->t->modes, *restrict q = b->line, *restrict above = b->ends, *restrict s = b->symbol;
+  PetscReal *modes = b->t->modes, *q = b->line, *above = b->ends;
   TridiagonalAbove(b->d[FIELD_P], above);
   for (PetscInt j = g->rows[FIELD_P] - 1; j >= 0; j--) {
-    PetscReal *restrict psi = RowOf(b, FIELD_P, j);
-    const PetscReal *restrict w = RowOf(b, FIELD_U, j);
+    PetscReal *psi = RowOf(b, FIELD_P, j);
     TridiagonalDown(b->d[FIELD_P], j, psi);
     RightHandSide(b, j, r_p, q);
-    for (PetscInt k = 0; k < width; k++) modes[k] = alpha * psi[k] - nu * q[k];
+    Pressure(width, b->fluid->alpha, b->fluid->nu, psi, q, modes);
     Finish(b, FIELD_P, j, p);
-    for (PetscInt k = 0; k < width; k += 2) {
-      modes[k] = w[k] - (s[k] * psi[k] - s[k + 1] * psi[k + 1]);
-      modes[k + 1] = w[k + 1] - (s[k] * psi[k + 1] + s[k + 1] * psi[k]);
-    }
+    ProjectU(width, b->symbol, RowOf(b, FIELD_U, j), psi, modes);
     Finish(b, FIELD_U, j, u);
-    if (j < g->rows[FIELD_V]) {
-      w = RowOf(b, FIELD_V, j);
-      for (PetscInt k = 0; k < width; k++) modes[k] = w[k] - c * (above[k] - psi[k]);
+    if (j < g->rows[FIELD_V]) { /* no row of v on the upper wall */
+      ProjectV(width, g->h, RowOf(b, FIELD_V, j), psi, above, modes);
       Finish(b, FIELD_V, j, v);
     }
     for (PetscInt k = 0; k < width; k++) above[k] = psi[k];

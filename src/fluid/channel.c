@@ -1,32 +1,38 @@
 /* A channel, periodic in x with walls in y: the exact Stokes solve from the projection.
 
-   The projection leaves H u + G p = r_u + kappa g on the rows of u next to the walls, kappa = -2 nu/h^2 and g =
-   G_x psi there: L_u mirrors with a minus at a wall, the gradient of a Neumann potential with a plus. A force delta on
-   those rows, projected too, cancels it when (I + kappa M) delta = -kappa g, M delta being the g of delta's own
-   projection. In x modes this is a 2 x 2 system, and the projection of a unit force on the bottom row is three real
-   profiles in y: w = (alpha + nu lambda - nu d_yy)^-1 e_0,  psi = (d_yy - lambda)^-1 w, u = w + lambda psi,   v =
-   conj(s) G_y psi,   p = -conj(s) (alpha psi - nu w), s = (e^{i theta} - 1)/h the symbol of G_x, lambda = |s|^2. The
-   top wall's are their mirror images. */
-#include "fluid/stokes.h"
+   At a wall L_u continues u with a minus, G continues the potential with a plus. So they do not commute there, and the
+   projection leaves
+       H u + G p = r_u + kappa g,      kappa = -2 nu/h^2,  g = G_x psi,
+   on the rows of u next to the walls, and nothing elsewhere. A force delta on those rows is projected too and leaves
+   kappa M delta of its own, M delta being the g of its projection. It cancels the rest when
+       (I + kappa M) delta = -kappa g.
+   In Fourier modes along x this is a 2 x 2 system, one unknown a wall. With s = (e^{i theta} - 1)/h the symbol of G_x
+   and lambda = |s|^2, the projection of a unit force on the bottom row is, with the real profiles w and psi of
+   WallProfile, u = w + lambda psi,      v = conj(s) G_y psi,      p = -conj(s) (alpha psi - nu w). The top wall's
+   profiles are their mirror images, and M's entries are -lambda psi in the first and in the last row. */
+#include "fluid/channel.h"
+#include "fluid/wallprofile.h"
 #include <complex.h>
 #include <fftw3.h>
 
 typedef double complex Complex;
 
-#define DECAY 40 /* e^-40 = 4e-18 is not felt */
+#define DECAY 40 /* e^-40 = 4e-18: a mode that has decayed so far is not felt */
 
 struct _p_Channel {
   Fluid fluid;
-  PetscReal alpha;    /* coefficient the profiles are for */
-  PetscInt modes;     /* n_x/2 + 1 */
-  PetscReal *profile; /* [3][2][rows][modes]: u, v, p; bottom, top wall; this rank's rows */
-  PetscReal *inverse; /* [2][modes] diagonal and off-diagonal entry of -kappa (I + kappa M)^-1 */
-  Complex *delta;     /* [2][modes] force on the bottom and top rows */
-  Complex *symbol;    /* [modes] of G_x */
-  PetscInt *reach;    /* [rows of all] modes that are felt at a distance from a wall */
-  Complex *line;      /* [modes] */
-  double *row;        /* [n_x] */
-  fftw_plan forward, backward;
+  PetscReal alpha;             /* coefficient that the profiles are for; -1 none yet */
+  PetscInt modes;              /* n_x/2 + 1 */
+  PetscReal *profile;          /* [3][2][rows][modes]: u, v, p; bottom, top wall; this rank's rows */
+  PetscReal *inverse;          /* [2][modes] diagonal and off-diagonal entry of -kappa (I + kappa M)^-1 */
+  Complex *delta;              /* [2][modes] force on the bottom and top rows */
+  Complex *symbol;             /* [modes] of G_x */
+  PetscInt *reach;             /* [rows of all] modes that are felt this many rows from a wall */
+  PetscReal *walls;            /* [2][modes] complex: the potential in the bottom and the top row */
+  PetscReal *work[3];          /* [n_y] */
+  Complex *line;               /* [modes] */
+  double *row;                 /* [n_x] */
+  fftw_plan forward, backward; /* between row and line */
 };
 
 PetscErrorCode ChannelCreate(Fluid fluid, Channel *out) {
@@ -42,7 +48,8 @@ PetscErrorCode ChannelCreate(Fluid fluid, Channel *out) {
   PetscCall(PetscMalloc4(6 * g->rows[FIELD_P] * c->modes, &c->profile, 2 * c->modes, &c->inverse, 2 * c->modes,
                          &c->delta, c->modes, &c->symbol));
   for (PetscInt k = 0; k < c->modes; k++) c->symbol[k] = (cexp(I * 2 * PETSC_PI * k / (double)n) - 1) / g->h;
-  PetscCall(PetscMalloc1(g->n[1], &c->reach));
+  PetscCall(PetscMalloc5(g->n[1], &c->reach, 4 * c->modes, &c->walls, g->n[1], &c->work[0], g->n[1], &c->work[1],
+                         g->n[1], &c->work[2]));
   for (PetscInt j = 0, reach = c->modes; j < g->n[1]; j++) { /* e^{-sqrt(lambda) y} */
     while (reach > 1 && 2 * PetscSinReal(PETSC_PI * (reach - 1) / (PetscReal)n) * j > DECAY) reach--;
     c->reach[j] = reach;
@@ -62,13 +69,13 @@ PetscErrorCode ChannelDestroy(Channel *channel) {
   fftw_destroy_plan(c->backward);
   fftw_free(c->line);
   fftw_free(c->row);
-  PetscCall(PetscFree(c->reach));
+  PetscCall(PetscFree5(c->reach, c->walls, c->work[0], c->work[1], c->work[2]));
   PetscCall(PetscFree4(c->profile, c->inverse, c->delta, c->symbol));
   PetscCall(PetscFree(*channel));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Row j (v: the face above it) of the profiles of wall `top`, from the bottom wall's. */
+/* Row j (v: the face above it) of the profiles of both walls in mode k, from the bottom wall's w and psi. */
 static void StoreRow(Channel c, PetscInt k, PetscInt j, PetscReal lambda, const PetscReal w[], const PetscReal psi[]) {
   const Grid g = c->fluid->grid;
   const PetscInt n = g->n[1], rows = g->rows[FIELD_P];
@@ -85,23 +92,21 @@ PetscErrorCode ChannelSetUp(Channel c) {
   const Grid g = c->fluid->grid;
   const PetscInt n = g->n[1];
   const PetscReal alpha = c->fluid->alpha, h2 = PetscSqr(g->h), kappa = -2 * c->fluid->nu / h2;
-  PetscReal *w, *psi, *work;
+  PetscReal *w = c->work[0], *psi = c->work[1];
   PetscFunctionBeginUser;
   if (c->alpha == alpha) PetscFunctionReturn(PETSC_SUCCESS);
   c->alpha = alpha;
-  PetscCall(PetscMalloc3(n, &w, n, &psi, n, &work));
   c->inverse[0] = c->inverse[c->modes] = 0;
   PetscCall(PetscArrayzero(c->profile, 6 * g->rows[FIELD_P] * c->modes));
   for (PetscInt k = 1; k < c->modes; k++) { /* mode 0 has no slip: G_x psi = 0 */
     const PetscReal lambda = 4 / h2 * PetscSqr(PetscSinReal(PETSC_PI * k / g->n[0]));
-    WallProfile(c->fluid, n, lambda, work, w, psi);
+    WallProfile(c->fluid, n, lambda, c->work[2], w, psi);
     const PetscReal own = 1 - kappa * lambda * psi[0], other = -kappa * lambda * psi[n - 1];
     const PetscReal determinant = PetscSqr(own) - PetscSqr(other);
     c->inverse[k] = -kappa * own / determinant;
     c->inverse[c->modes + k] = kappa * other / determinant;
     for (PetscInt j = g->first; j < g->first + g->rows[FIELD_P]; j++) StoreRow(c, k, j, lambda, w, psi);
   }
-  PetscCall(PetscFree3(w, psi, work));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -115,7 +120,8 @@ void ChannelForces(Channel c, const PetscReal bottom[], const PetscReal top[]) {
   }
 }
 
-/* Add wall `top`'s share to a row's modes, of those that reach it: delta profile, with -(+) conj(symbol) for p (v). */
+/* Add to the modes of local row j what the force on one wall does there, delta times its profile: as it is for u, with
+   conj(symbol) for v and -conj(symbol) for p. Modes that do not reach the row are left out. */
 static void AddWall(Channel c, int f, int top, PetscInt j, Complex line[]) {
   const PetscInt rows = c->fluid->grid->rows[FIELD_P], global = j + c->fluid->grid->first;
   const PetscInt distance = top ? c->fluid->grid->n[1] - 2 - global : global;
@@ -142,7 +148,7 @@ void ChannelAddRow(Channel c, Field f, PetscInt j, PetscReal line[]) {
   for (int top = 0; top < 2; top++) AddWall(c, f, top, j, (Complex *)line);
 }
 
-/* Modes of the potential in a wall row, known to all ranks; normalised. */
+/* Modes of the potential in a wall row, normalised: its rank transforms it and tells the others. */
 static PetscErrorCode WallRow(Channel c, const PetscScalar psi[], int top, PetscReal modes[]) {
   const Grid g = c->fluid->grid;
   const PetscInt n = g->n[0], last = g->rows[FIELD_P] - 1;
@@ -172,14 +178,13 @@ static void AddField(Channel c, Field f, PetscScalar a[]) {
 PetscErrorCode ChannelCorrect(Channel c, Vec psi, Vec u, Vec p) {
   const PetscScalar *psia;
   PetscScalar *a;
-  PetscReal *walls;
+  PetscReal *bottom = c->walls, *top = c->walls + 2 * c->modes;
   PetscFunctionBeginUser;
   PetscCall(ChannelSetUp(c));
   PetscCall(VecGetArrayRead(psi, &psia));
-  PetscCall(PetscMalloc1(4 * c->modes, &walls));
-  for (int top = 0; top < 2; top++) PetscCall(WallRow(c, psia, top, walls + top * 2 * c->modes));
-  ChannelForces(c, walls, walls + 2 * c->modes);
-  PetscCall(PetscFree(walls));
+  PetscCall(WallRow(c, psia, 0, bottom));
+  PetscCall(WallRow(c, psia, 1, top));
+  ChannelForces(c, bottom, top);
   PetscCall(VecRestoreArrayRead(psi, &psia));
   PetscCall(VecGetArray(u, &a));
   AddField(c, FIELD_U, a);

@@ -1,7 +1,8 @@
-/* Local arrays are copied into padded ones, with the ghost faces that walls, seams and neighbouring ranks call for:
-   face (i, j) of cell (i, j), i and j from -1 (a local row), at (j + 1) width + i + 1. */
+/* Velocities are copied into padded arrays, which have the ghost faces that stand for walls, periodic seams and the
+   neighbouring ranks' rows. So one formula serves all faces. */
 #include "fluid/convection.h"
 
+/* Place in a padded array of face (i, j), j a local row; both begin at -1. */
 static PetscInt At(const Convection c, PetscInt i, PetscInt j) {
   return (j + 1) * c->width + i + 1;
 }
@@ -39,7 +40,7 @@ PetscErrorCode ConvectionDestroy(Convection *convection) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* One row of a component with its ghosts in x; `row` NULL: a row of zeros. */
+/* One row of a component with its ghosts in x; `row` NULL, beyond the wall that v lies on: zeros. */
 static void PadRow(Convection c, int f, const PetscScalar row[], PetscReal padded[]) {
   const Grid g = c->fluid->grid;
   const PetscInt n = g->columns[f];
@@ -118,16 +119,19 @@ PetscErrorCode ConvectionAdd(Convection c, PetscReal alpha, Vec w, Vec r) {
 
 PetscErrorCode ConvectionSpeed(Convection c, Vec w, PetscReal *speed) {
   const Grid g = c->fluid->grid;
+  PetscReal most = 0;
   PetscFunctionBeginUser;
   PetscCall(Pad(c, w));
-  *speed = 0;
   for (PetscInt j = 0; j < g->rows[FIELD_P]; j++)
     for (PetscInt i = 0; i < g->n[0]; i++) {
       const PetscInt k = At(c, i, j);
       const PetscReal u = PetscMax(PetscAbsReal(c->carrier[0][k]), PetscAbsReal(c->carrier[0][k - 1]));
       const PetscReal v = PetscMax(PetscAbsReal(c->carrier[1][k]), PetscAbsReal(c->carrier[1][k - c->width]));
-      *speed = u + v > *speed || PetscIsNanReal(u + v) ? u + v : *speed;
+      if (PetscIsNanReal(c->carrier[0][k] + c->carrier[1][k]))
+        most = INFINITY; /* a NaN may get lost in MPI_MAX, on some ranks only */
+      most = PetscMax(most, u + v);
     }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, speed, 1, MPIU_REAL, MPI_MAX, g->comm));
+  PetscCallMPI(MPI_Allreduce(&most, speed, 1, MPIU_REAL, MPI_MAX, g->comm));
+  if (PetscIsInfOrNanReal(*speed)) *speed = NAN;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,7 +1,8 @@
 /* Convection of the disturbance u' = u - u_inf, explicit in time:
        N(u') = (u' + u_inf).grad u' + u'.grad u_inf
-   The first part is skew-symmetric on the staggered grid, so it keeps the energy h^2/2 SUM |u'|^2 to rounding, whatever
-   the divergence of the carrying flow; u_inf.grad u_inf, a gradient for the flows offered, is left to the pressure. */
+   The first part is skew-symmetric on the staggered grid: it keeps the energy h^2/2 SUM |u'|^2 to rounding, even where
+   the carrying flow has a divergence. u_inf.grad u_inf is a gradient for the flows offered; the pressure takes it up.
+ */
 #pragma once
 #include "fluid/fluid.h"
 
@@ -20,10 +21,10 @@ struct _p_Convection {
 PETSC_EXTERN PetscErrorCode ConvectionCreate(Scene scene, Fluid fluid, Convection *convection);
 PETSC_EXTERN PetscErrorCode ConvectionDestroy(Convection *convection);
 
-/* ConvectionAdd - r += alpha N, from the solved velocity w (u', or u' + u_inf in the total form); r must not be w.
-   Collective. */
+/* ConvectionAdd - r += alpha N (length/time^2), from the solved velocity w (u', or u' + u_inf in the total form); r
+   must not be w. Collective. */
 PETSC_EXTERN PetscErrorCode ConvectionAdd(Convection convection, PetscReal alpha, Vec w, Vec r);
 
-/* ConvectionSpeed - max over cells of |u| + |v| of the whole velocity u' + u_inf, which times dt/h is the CFL number.
-   Collective. */
+/* ConvectionSpeed - max over cells of |u| + |v| of the whole velocity u' + u_inf, which times dt/h is the CFL number;
+   NaN when a velocity is not finite. The same on every rank. Collective. */
 PETSC_EXTERN PetscErrorCode ConvectionSpeed(Convection convection, Vec w, PetscReal *speed);

@@ -14,6 +14,7 @@ static PetscErrorCode ForgetBackEnds(void) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The solver as a PETSc preconditioner. */
 static PetscErrorCode ApplyShell(PC pc, Vec b, Vec x) {
   FastSolver s;
   const PetscScalar *ba;
@@ -28,6 +29,7 @@ static PetscErrorCode ApplyShell(PC pc, Vec b, Vec x) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The operator that it inverts. */
 static PetscErrorCode MultOperator(Mat A, Vec x, Vec y) {
   FastSolver s;
   const PetscScalar *xa;

@@ -1,35 +1,50 @@
 /* Fast scalar solves: (a0 I - nu second differences) x = b for one field of the grid. Back ends are registered by name
-   and stand behind one interface; each is a PETSc PCSHELL. */
+   and stand behind one interface, which is a PETSc PCSHELL too.
+
+   A back end that iterates may fail. Then the solution is set to infinity on every rank, and `failure` says why. What
+   iterates on this solve, an outer Krylov method or a step, stops at once at a number that is not finite, on all ranks
+   alike; whoever reports the failed step asks for the reason. */
 #pragma once
 #include "fluid/grid.h"
+
+/* A solve that did not converge; the same on every rank. */
+typedef struct {
+  const char *prefix;     /* of its options */
+  KSPConvergedReason why; /* negative; 0: all solves have converged */
+  PetscInt its;
+  PetscReal residual; /* 2-norm */
+} SolveFailure;
 
 typedef struct _p_FastSolver *FastSolver;
 struct _p_FastSolver {
   Grid grid;
   Field field;
-  PetscReal a0, nu;   /* operator in force */
-  PetscBool singular; /* constants are in the null space: the mean of the solution is set to zero */
-  Mat A;              /* the operator, a MatShell on vectors of the field's DMDA */
-  PC pc;              /* its inverse, a PCSHELL */
-  PetscInt solves;    /* solves so far */
-  void *data;         /* the back end's own */
+  PetscReal a0, nu;     /* operator in force */
+  PetscBool singular;   /* constants are in the null space: the mean of the solution is set to zero */
+  Mat A;                /* the operator, a MatShell on vectors of the field's DMDA */
+  PC pc;                /* its inverse, a PCSHELL */
+  PetscInt solves;      /* solves so far */
+  SolveFailure failure; /* the first one since it was last cleared */
+  void *data;           /* the back end's own */
   PetscErrorCode (*setcoefficients)(FastSolver);
   PetscErrorCode (*apply)(FastSolver, const PetscScalar b[], PetscScalar x[]); /* local arrays; x may be b */
   PetscErrorCode (*begin)(FastSolver, const PetscScalar b[]);                  /* or in two halves */
   PetscErrorCode (*end)(FastSolver, PetscScalar x[]);
-  const PetscScalar *b; /* under way, for a back end of one half */
+  const PetscScalar *b; /* of a solve under way, for a back end that has no halves */
   PetscErrorCode (*destroy)(FastSolver);
 };
 
 /* FastSolverCreate - solver of one field by the back end `type` ("fftw_tridiagonal", "fftw", "hypre"); plan: FFTW's
-   effort (0 estimate, 1 measure, 2 patient). Collective. */
+   effort (0 estimate, 1 measure, 2 patient). Collective. Errors: a type that is not registered. */
 PETSC_EXTERN PetscErrorCode FastSolverCreate(Grid grid, Field field, const char type[], PetscInt plan, FastSolver *s);
 PETSC_EXTERN PetscErrorCode FastSolverDestroy(FastSolver *s);
 
-/* FastSolverSetCoefficients - choose a0 and nu; for L (FIELD_P) a0 = 0, nu = -1. Cheap when they do not change. */
+/* FastSolverSetCoefficients - choose a0 (1/time) and nu (length^2/time), the same bits on every rank; for L (FIELD_P)
+   a0 = 0, nu = -1. Cheap when they do not change. Collective. */
 PETSC_EXTERN PetscErrorCode FastSolverSetCoefficients(FastSolver s, PetscReal a0, PetscReal nu);
 
-/* FastSolverSolve - one scalar solve on local arrays of the field (columns x rows); x may be b. Collective; counted. */
+/* FastSolverSolve - one scalar solve on local arrays of the field (columns x rows); x may be b. Counted.
+   Collective. Errors: see `failure` above. */
 PETSC_EXTERN PetscErrorCode FastSolverSolve(FastSolver s, const PetscScalar b[], PetscScalar x[]);
 
 /* FastSolverBegin, FastSolverEnd - the same in two halves, so that messages of one field travel while the next is at

@@ -1,5 +1,11 @@
-/* Back end "fftw": a two-dimensional real-to-real transform diagonalises the second differences (DESIGN section 2's
-   table), FFTW-MPI moves the data. The transposed output is divided by the eigenvalues and transformed back. */
+/* Back end "fftw": a two-dimensional real-to-real transform diagonalises the second differences. FFTW's MPI part moves
+   the data: its forward transform leaves columns on each rank where there were rows, which are divided by the
+   eigenvalues and transformed back. The kinds of transform follow from the field's condition at the walls:
+
+     periodic                         Fourier (half-complex)
+     wall half a cell off, Neumann    cosines of half samples   REDFT10, REDFT01     p
+     wall half a cell off, Dirichlet  sines of half samples     RODFT10, RODFT01     u in y, v in x
+     wall on an entry, Dirichlet      sines                     RODFT00              u in x, v in y */
 #include "fluid/fastsolver.h"
 #include "fluid/wisdom.h"
 #include <fftw3-mpi.h>
@@ -12,7 +18,7 @@ typedef struct {
   PetscReal scale;      /* of a forward and a backward transform */
 } Transform;
 
-/* Kinds of transform in one direction, and the logical size that normalises them. */
+/* Kinds of transform in one direction, and the size that a forward and a backward one multiply by. */
 static void Kinds(Grid g, Field f, int dir, fftw_r2r_kind *forward, fftw_r2r_kind *backward, PetscReal *size) {
   const PetscReal c = GridWallFactor(f, dir);
   *size = 2.0 * g->n[dir];
@@ -38,6 +44,7 @@ static void Eigenvalues(Grid g, Field f, int dir, PetscInt n, PetscReal lambda[]
   }
 }
 
+/* Sine transforms of N - 1 entries are as slow as N has large prime factors. */
 static PetscErrorCode WarnSlow(Grid g, Field f, int dir) {
   PetscInt n = 2 * g->n[dir], largest = 1;
   PetscFunctionBeginUser;

@@ -65,7 +65,9 @@ static PetscErrorCode CreateHelmholtz(Fluid f, const char type[]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* bc1 and u_inf of one component on this rank's faces (DESIGN section 2). */
+/* bc1 and u_inf of one component on this rank's faces. The stencil of nu L_u takes the wall's value u_w as the
+   neighbour where the wall is on a face: nu u_w/h^2 more. Half a cell off, the neighbour is 2 u_w minus the entry: 2 nu
+   u_w/h^2. */
 static void WallMomentum(Scene scene, Fluid f, int c, PetscScalar bc1[], PetscScalar background[]) {
   Grid g = f->grid;
   const PetscInt n = g->columns[c], size[2] = {n, g->all_rows[c]};
@@ -199,4 +201,14 @@ PetscErrorCode FluidRemoveMean(Fluid f, Vec w) {
 
 PetscInt FluidCountSolves(Fluid f) {
   return f->solver[FIELD_U]->solves + f->solver[FIELD_V]->solves + f->solver[FIELD_P]->solves;
+}
+
+const SolveFailure *FluidFailure(Fluid f) {
+  for (int k = FIELD_U; k <= FIELD_P; k++)
+    if (f->solver[k]->failure.why < 0) return &f->solver[k]->failure;
+  return NULL;
+}
+
+void FluidClearFailure(Fluid f) {
+  for (int k = FIELD_U; k <= FIELD_P; k++) f->solver[k]->failure.why = KSP_CONVERGED_ITERATING;
 }

@@ -1,4 +1,5 @@
-/* The fluid: grid, operators as PETSc objects, fast solves, and the data of moving walls. */
+/* The fluid: grid, operators as PETSc objects, fast solves, and the data of moving walls. docs/method.md has the
+   symbols. */
 #pragma once
 #include "fluid/fastsolver.h"
 
@@ -24,17 +25,23 @@ struct _p_Fluid {
 PETSC_EXTERN PetscErrorCode FluidCreate(Scene scene, Fluid *fluid);
 PETSC_EXTERN PetscErrorCode FluidDestroy(Fluid *fluid);
 
-/* FluidSetTimeCoefficient - a0 (1/time), 1/dt for backward Euler, and with it alpha of H = alpha I - nu L_u. */
+/* FluidSetTimeCoefficient - a0 (1/time), 1/dt for backward Euler, and with it alpha of H = alpha I - nu L_u. All ranks
+   give the same bits. Collective. */
 PETSC_EXTERN PetscErrorCode FluidSetTimeCoefficient(Fluid fluid, PetscReal a0);
 
-/* FluidSolveHelmholtz - w = H^-1 b, two scalar solves; w may be b. Collective. */
+/* FluidSolveHelmholtz - w = H^-1 b, two scalar solves; w may be b. Collective. Errors: see FluidFailure. */
 PETSC_EXTERN PetscErrorCode FluidSolveHelmholtz(Fluid fluid, Vec b, Vec w);
 
-/* FluidSolvePoisson - p = L^-1 q with zero mean, one scalar solve; p may be q. Collective. */
+/* FluidSolvePoisson - p = L^-1 q with zero mean, one scalar solve; p may be q. Collective. Errors: see FluidFailure. */
 PETSC_EXTERN PetscErrorCode FluidSolvePoisson(Fluid fluid, Vec q, Vec p);
 
-/* FluidRemoveMean - take the mean of each component off a velocity of a periodic box. Collective. */
+/* FluidRemoveMean - take the mean of each component off a velocity; the box must be periodic in x and y. Collective. */
 PETSC_EXTERN PetscErrorCode FluidRemoveMean(Fluid fluid, Vec w);
 
-/* FluidCountSolves - scalar fast solves so far. */
+/* FluidCountSolves - scalar fast solves so far. Not collective. */
 PETSC_EXTERN PetscInt FluidCountSolves(Fluid fluid);
+
+/* FluidFailure - the first scalar solve since FluidClearFailure that did not converge, borrowed; NULL when all did. Its
+   solution was set to infinity (fastsolver.h). The same on every rank. Not collective. */
+PETSC_EXTERN const SolveFailure *FluidFailure(Fluid fluid);
+PETSC_EXTERN void FluidClearFailure(Fluid fluid);

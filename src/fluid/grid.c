@@ -8,6 +8,7 @@ static PetscInt LastRows(PetscInt n, PetscInt ranks) {
   return n - (ranks - 1) * block;
 }
 
+/* All ranks but the last have block rows; stop where the last one then has too few, and say what works. */
 static PetscErrorCode CheckRanks(Grid g) {
   char works[PETVES_MAX_MESSAGE] = "1";
   PetscFunctionBeginUser;
@@ -46,7 +47,7 @@ static PetscErrorCode CreateFields(Grid g) {
   PetscCall(DMCompositeAddDM(g->velocity, g->da[FIELD_U]));
   PetscCall(DMCompositeAddDM(g->velocity, g->da[FIELD_V]));
   PetscCall(DMSetUp(g->velocity));
-  for (int f = FIELD_U; f <= FIELD_V; f++) { /* vectors that the composite asked for once */
+  for (int f = FIELD_U; f <= FIELD_V; f++) { /* the composite has left vectors in their pools */
     PetscCall(DMClearGlobalVectors(g->da[f]));
     PetscCall(DMClearLocalVectors(g->da[f]));
   }
@@ -73,6 +74,7 @@ PetscErrorCode GridCreate(Scene scene, Grid *grid) {
   PetscCall(CheckRanks(g));
   g->below = g->rank > 0 ? g->rank - 1 : (g->wall[1] ? MPI_PROC_NULL : g->size - 1);
   g->above = g->rank < g->size - 1 ? g->rank + 1 : (g->wall[1] ? MPI_PROC_NULL : 0);
+  PetscCall(PetscMalloc1(g->n[0], &g->row));
   PetscCall(CreateFields(g));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -85,6 +87,7 @@ PetscErrorCode GridDestroy(Grid *grid) {
     PetscCall(DMDestroy(&g->da[f]));
     for (int side = 0; side < 2; side++) PetscCall(PetscFree(g->ghost[f][side]));
   }
+  PetscCall(PetscFree(g->row));
   PetscCall(DMDestroy(&g->velocity));
   PetscCall(PetscFree(*grid));
   PetscFunctionReturn(PETSC_SUCCESS);

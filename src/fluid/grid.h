@@ -1,4 +1,4 @@
-/* The staggered (marker-and-cell) grid in slabs, and its stencils.
+/* The staggered (marker-and-cell) grid, divided among the ranks in slabs of rows, and its stencils.
 
    Fields: p at cell centres; u on vertical faces, entry (i,j) the RIGHT face of cell (i,j); v on horizontal faces,
    entry (i,j) the TOP face of cell (i,j). With walls in x the last column of u is the wall, which is no unknown: u has
@@ -29,14 +29,16 @@ struct _p_Grid {
   DM velocity;
   PetscMPIInt below, above; /* neighbours, MPI_PROC_NULL at a wall */
   PetscScalar *ghost[3][2]; /* row below and row above, per field */
+  PetscScalar *row;         /* [n_x] work */
 };
 
-/* GridCreate - the scene's grid over the ranks of comm. Collective. Stops with the user's message when the rank count
-   leaves a rank without rows. */
+/* GridCreate - the scene's grid over the ranks of its communicator. Collective. Errors: a number of ranks that leaves
+   one without rows. */
 PETSC_EXTERN PetscErrorCode GridCreate(Scene scene, Grid *grid);
 PETSC_EXTERN PetscErrorCode GridDestroy(Grid *grid);
 
-/* GridPosition - position X[2] of entry (i, j) of a field, j a global row. */
+/* GridPosition - position X[2] (length) of entry (i, j) of a field, j counting the rows of all ranks. Not collective.
+ */
 PETSC_EXTERN void GridPosition(Grid grid, Field field, PetscInt i, PetscInt j, PetscReal X[2]);
 
 /* Number of this rank's entries of u, which come first in a velocity's local array. */
@@ -59,13 +61,14 @@ static inline const PetscScalar *RowAt(const Rows *r, PetscInt j) {
    same row for p (Neumann). Collective. */
 PETSC_EXTERN PetscErrorCode GridRows(Grid grid, Field field, const PetscScalar a[], Rows *rows);
 
-/* GridGradient - w = alpha G p (add false) or w += alpha G p (add true). */
+/* GridGradient - w = alpha G p (add false) or w += alpha G p (add true). Collective. */
 PETSC_EXTERN PetscErrorCode GridGradient(Grid grid, PetscReal alpha, Vec p, PetscBool add, Vec w);
 
-/* GridGradientTranspose - q = alpha G^T w, so that the divergence is D w = -G^T w (walls at rest). */
+/* GridGradientTranspose - q = alpha G^T w, so that the divergence is D w = -G^T w (walls at rest). Collective. */
 PETSC_EXTERN PetscErrorCode GridGradientTranspose(Grid grid, PetscReal alpha, Vec w, Vec q);
 
-/* The same two on local rows window[0] .. window[1] - 1 only; other rows are left as they are. */
+/* GridGradientRows, GridGradientTransposeRows - the same two on local rows window[0] .. window[1] - 1 only; other rows
+   are left as they are. Collective. */
 PETSC_EXTERN PetscErrorCode GridGradientRows(Grid grid, PetscReal alpha, Vec p, PetscBool add, const PetscInt window[2],
                                              Vec w);
 PETSC_EXTERN PetscErrorCode GridGradientTransposeRows(Grid grid, PetscReal alpha, Vec w, const PetscInt window[2],
@@ -74,25 +77,25 @@ PETSC_EXTERN PetscErrorCode GridGradientTransposeRows(Grid grid, PetscReal alpha
 /* GridClearRows - zero in these rows of a velocity or a pressure. Not collective. */
 PETSC_EXTERN PetscErrorCode GridClearRows(Grid grid, const PetscInt window[2], Vec x);
 
-/* GridLargestDivergence - max |G^T w + bc2| over all cells, bc2 NULL for walls at rest; NaN when an entry is.
- * Collective.
- */
+/* GridLargestDivergence - max |G^T w + bc2| (1/time) over all cells, bc2 NULL for walls at rest; NaN when an entry is
+   not finite. The same on every rank. Collective. */
 PETSC_EXTERN PetscErrorCode GridLargestDivergence(Grid grid, Vec w, Vec bc2, PetscReal *largest);
 
 /* GridHelmholtzField - y = a0 w - nu (second differences of w) for one field's local arrays, homogeneous walls; y must
-   not be w. With FIELD_P, a0 = 0 and nu = -1 this is L. */
+   not be w. With FIELD_P, a0 = 0 and nu = -1 this is L. Collective. */
 PETSC_EXTERN PetscErrorCode GridHelmholtzField(Grid grid, Field field, PetscReal a0, PetscReal nu,
                                                const PetscScalar w[], PetscScalar y[]);
 
-/* GridHelmholtz - y = a0 w - nu L_u w for a velocity, homogeneous walls. */
+/* GridHelmholtz - y = a0 w - nu L_u w for a velocity, homogeneous walls. Collective. */
 PETSC_EXTERN PetscErrorCode GridHelmholtz(Grid grid, PetscReal a0, PetscReal nu, Vec w, Vec y);
 
-/* GridCreateG, GridCreateD, GridCreateL - MatShells: G (pressure to velocity), D = -G^T, L = -G^T G. */
+/* GridCreateG, GridCreateD, GridCreateL - MatShells: G (pressure to velocity), D = -G^T, L = -G^T G. Collective. */
 PETSC_EXTERN PetscErrorCode GridCreateG(Grid grid, Mat *G);
 PETSC_EXTERN PetscErrorCode GridCreateD(Grid grid, Mat *D);
 PETSC_EXTERN PetscErrorCode GridCreateL(Grid grid, Mat *L);
 
-/* GridAssemble - assembled a0 I - nu (second differences) of one field; for FIELD_P with a0 = 0, nu = -1 this is L. */
+/* GridAssemble - assembled a0 I - nu (second differences) of one field; for FIELD_P with a0 = 0, nu = -1 this is L.
+   Collective. */
 PETSC_EXTERN PetscErrorCode GridAssemble(Grid grid, Field field, PetscReal a0, PetscReal nu, Mat *A);
 
 /* GridWallFactor - what the field's second difference in direction dir (0 x, 1 y) does at a wall: the factor c of

@@ -18,7 +18,7 @@ static PetscErrorCode FourierCreate(PetscInt n, PetscBool twisted, double *real,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* w := w e^{-i pi k/2n}, or back. */
+/* Twist: mode k of w times e^{-i pi k/2n}. Untwist takes it back. */
 static inline void Twist(const Fourier *f, double *restrict w) {
   for (PetscInt k = 0; k < 2 * f->half; k += 2) {
     const double c = f->twist[k], s = f->twist[k + 1], re = w[k], im = w[k + 1];
@@ -34,8 +34,9 @@ static inline void Untwist(const Fourier *f, double *restrict w) {
   }
 }
 
-/* Half samples: after the twist entry 2k is cosine k and entry 2k + 1 is minus cosine n - k; with the odd entries'
-   sign turned they are sines n - k and k. */
+/* Walls half a cell off (Makhoul's reordering): the even entries upwards, then the odd ones downwards, are a row whose
+   twisted Fourier modes have cosine k as their real and minus cosine n - k as their imaginary part. With the sign of
+   the odd entries turned they are sine n - k and minus sine k. */
 static void HalfSampleForward(RowTransform t, const PetscScalar x[]) {
   const PetscInt n = t->n;
   const PetscReal sign = t->sign;
@@ -54,18 +55,28 @@ static void HalfSampleBackward(RowTransform t, PetscScalar x[]) {
   for (PetscInt i = 0; 2 * i + 1 < n; i++) x[2 * i + 1] = sign * t->line[n - 1 - i];
 }
 
-/* Sines on the entries x_1 .. x_{N-1}, N = 2 half: the sums e_j = x_j + x_{N-j}, e_half = x_half give the odd wave
-   numbers, entry k of the twisted transform being (e_{half-k}, -e_k); the differences go on. A level's Fourier
-   transform runs between its segment of modes and `line`. */
-static void SumsUntwisted(const Fourier *f, PetscInt half, const double *restrict rest, double *restrict w) {
-  const double *restrict twist = f->twist, *from_end = rest + 2 * half - 2;
-  w[0] = 2 * rest[half - 1];
-  w[1] = 0;
+/* Walls on the entries: the sines of x_1 .. x_{N-1}, N = 2 n. With sin(pi m (N - j)/N) = -(-1)^m sin(pi m j/N),
+
+     odd m    SUM e_j sin(pi m j/N),          j = 1 .. n,       e_j = x_j + x_{N-j},  e_n = x_n
+     even m   SUM o_j sin(pi (m/2) j/n),      j = 1 .. n - 1,   o_j = x_j - x_{N-j}
+
+   The even ones are the same problem at half the length, and are taken apart in the next level. The odd ones are the
+   transpose of a sine transform of half samples: what HalfSampleBackward does with modes, without its reordering, which
+   lambda stands for. There the complex mode k holds sine n - k and minus sine k, so it is (e_{n-k}, -e_k) here.
+
+   A level's Fourier transform runs between its segment of `modes` and `line`. The arrays x below hold x_j at j - 1. */
+
+/* The modes (e_{n-k}, -e_k) of x, untwisted. Both steps are one loop, since each would read all of memory. */
+static void FoldAndUntwist(const Fourier *f, const double *restrict x, double *restrict modes) {
+  const PetscInt n = f->n;
+  const double *restrict twist = f->twist, *middle = x + n - 1, *end = x + 2 * n - 1; /* x_n, x_N */
+  modes[0] = 2 * *middle; /* (e_n, 0): other entries count twice, as modes k and -k */
+  modes[1] = 0;
   for (PetscInt k = 1; k < f->half; k++) {
     const double c = twist[2 * k], s = twist[2 * k + 1];
-    const double re = rest[half - k - 1] + rest[half + k - 1], im = -(rest[k - 1] + from_end[1 - k]);
-    w[2 * k] = re * c + im * s;
-    w[2 * k + 1] = im * c - re * s;
+    const double re = middle[-k] + middle[k], im = -(x[k - 1] + end[-k]);
+    modes[2 * k] = re * c + im * s;
+    modes[2 * k + 1] = im * c - re * s;
   }
 }
 
@@ -74,26 +85,30 @@ static void SineForward(RowTransform t, const PetscScalar x[]) {
   PetscInt N = t->n + 1;
   memcpy(rest, x, (size_t)t->n * sizeof(double));
   for (PetscInt l = 0; l < t->levels; l++, N /= 2) {
-    SumsUntwisted(&t->f[l], N / 2, rest, t->line);
+    FoldAndUntwist(&t->f[l], rest, t->line);
     fftw_execute(t->f[l].backward);
-    for (PetscInt j = 1; j < N / 2; j++) rest[j - 1] -= rest[N - j - 1];
+    for (PetscInt j = 1; j < N / 2; j++) rest[j - 1] -= rest[N - j - 1]; /* o_j */
   }
   if (t->base > 1) fftw_execute(t->base_forward);
 }
 
-/* rest[2 half - 1] from the differences in its first half - 1 entries and the sums in w, not twisted yet. */
-static void Unfold(const Fourier *f, PetscInt half, const double *restrict w, double *restrict rest) {
+/* The way back: x_j = e_j + o_j and x_{N-j} = e_j - o_j (their halves are in `scale`), in place of the o_j in
+   x_1 .. x_{n-1}. The modes come from the Fourier transform and still want their twist. j = k and j = n - k are put
+   right together, as one mode has both e_k and e_{n-k}. */
+static void TwistAndUnfold(const Fourier *f, const double *restrict modes, double *restrict x) {
+  const PetscInt n = f->n;
   const double *restrict twist = f->twist;
-  double *from_end = rest + 2 * half - 2;
-  rest[half - 1] = w[0];
-  for (PetscInt k = 1; 2 * k <= half; k++) {
+  double *middle = x + n - 1, *end = x + 2 * n - 1; /* x_n, x_N */
+  *middle = modes[0];
+  for (PetscInt k = 1; 2 * k <= n; k++) {
     const double c = twist[2 * k], s = twist[2 * k + 1];
-    const double e = w[2 * k] * c - w[2 * k + 1] * s, e_k = -(w[2 * k] * s + w[2 * k + 1] * c);
-    const double o_k = rest[k - 1], o = rest[half - k - 1];
-    rest[k - 1] = e_k + o_k;
-    from_end[1 - k] = e_k - o_k;
-    rest[half - k - 1] = e + o;
-    rest[half + k - 1] = e - o;
+    const double e_far = modes[2 * k] * c - modes[2 * k + 1] * s;     /* e_{n-k} */
+    const double e_near = -(modes[2 * k] * s + modes[2 * k + 1] * c); /* e_k */
+    const double o_near = x[k - 1], o_far = middle[-k];
+    x[k - 1] = e_near + o_near;
+    end[-k] = e_near - o_near;
+    middle[-k] = e_far + o_far;
+    middle[k] = e_far - o_far;
   }
 }
 
@@ -101,12 +116,12 @@ static void SineBackward(RowTransform t, PetscScalar x[]) {
   if (t->base > 1) fftw_execute(t->base_backward);
   for (PetscInt l = t->levels - 1; l >= 0; l--) {
     fftw_execute(t->f[l].forward);
-    Unfold(&t->f[l], t->f[l].n, t->line, t->rest);
+    TwistAndUnfold(&t->f[l], t->line, t->rest);
   }
   memcpy(x, t->rest, (size_t)t->n * sizeof(double));
 }
 
-/* Forces of a membrane are zero in most rows. */
+/* A row of zeros needs no transform: forces of a membrane are zero in most rows. */
 static PetscBool IsZero(PetscInt n, const PetscScalar x[]) {
   for (PetscInt i = 0; i < n; i++)
     if (x[i] != 0) return PETSC_FALSE;
@@ -141,6 +156,7 @@ void RowTransformBackward(RowTransform t, PetscScalar x[]) {
   }
 }
 
+/* -h^2 times the second difference's eigenvalue for a wave of phase 2 argument per entry. */
 static PetscReal Eigenvalue(PetscReal argument) {
   return 4 * PetscSqr(PetscSinReal(argument));
 }

@@ -1,22 +1,23 @@
-/* Real transforms along one grid row that diagonalise the second difference in x, by FFTW's vectorised
-   real-to-complex transforms of the row's own length or shorter (its real-to-real ones are scalar code).
+/* Real transforms along one grid row that diagonalise the second difference in x. All are made of FFTW's
+   real-to-complex transforms, of the row's own length or shorter, because those use vector instructions and FFTW's sine
+   and cosine transforms do not.
 
      periodic                 real Fourier transform
-     wall half a cell off     cosines (c = 1) or sines (c = -1) of half samples, by Makhoul's reordering: even entries
-                              up, odd entries down again, a Fourier transform, a twist by e^{-i pi k/2n}
-     wall on an entry (c = 0) sines: odd wave numbers are the transpose of a half-sample sine transform of half the
-                              length, even ones a transform of the same kind and half the length, and so on down
+     wall half a cell off     cosines (p) or sines (v): the row reordered, a Fourier transform, each mode times a phase
+     wall on an entry (u)     sines: the odd wave numbers by a half-sample sine transform of half the length, the even
+                              ones by a transform of the same kind and half the length, and so on down
 
-   Modes come in an order of the transform's own, which lambda follows. */
+   Modes come in an order of the transform's own, and lambda is in that order. rowtransform.c has the formulas. */
 #pragma once
 #include "fluid/grid.h"
 #include <fftw3.h>
 
-#define ROW_LEVELS 24
+#define ROW_LEVELS 24 /* halvings of a row, at most: 4 2^24 cells */
 
+/* One real-to-complex transform and its inverse. */
 typedef struct {
-  PetscInt n, half; /* length, and complex modes of its Fourier transform */
-  double *twist;    /* [2 half] e^{-i pi k/2n}; NULL without */
+  PetscInt n, half; /* length, and number of complex modes, n/2 + 1 */
+  double *twist;    /* [2 half] e^{-i pi k/2n}; NULL where modes are used as they are */
   fftw_plan forward, backward;
 } Fourier;
 
@@ -25,13 +26,13 @@ struct _p_RowTransform {
   PetscInt n, width; /* entries of a row, and of its transform */
   PetscReal *lambda; /* [width] minus the eigenvalues of the second difference times h^2: 4 sin^2 */
   PetscReal *scale;  /* [width] what makes backward(scale forward) the identity */
-  double *modes;     /* [width] where a transform comes from or goes to */
-  double *line;      /* work */
+  double *modes;     /* [width] what Forward makes and Backward takes */
+  double *line;      /* work, the other end of the Fourier transforms */
   PetscReal sign;    /* 1 cosines, -1 sines of half samples, 0 others */
   PetscInt levels;   /* sines on the entries: halvings */
   Fourier f[ROW_LEVELS];
-  PetscInt base; /* cells left after them, base - 1 entries; 0: not this kind */
-  double *rest;  /* [n] work */
+  PetscInt base; /* sines on the entries: cells left after the halvings, base - 1 entries; 0: another kind */
+  double *rest;  /* [n] work: the row, then what the halvings leave of it */
   fftw_plan base_forward, base_backward;
 };
 
@@ -39,6 +40,7 @@ struct _p_RowTransform {
 PETSC_EXTERN PetscErrorCode RowTransformCreate(Grid grid, Field field, unsigned plan, RowTransform *t);
 PETSC_EXTERN PetscErrorCode RowTransformDestroy(RowTransform *t);
 
-/* RowTransformForward - modes[width] of x[n]. RowTransformBackward - x[n] from modes[width], which are destroyed. */
+/* RowTransformForward - modes[width] of x[n]. RowTransformBackward - x[n] from modes[width], which are destroyed. Not
+   collective. */
 PETSC_EXTERN void RowTransformForward(RowTransform t, const PetscScalar x[]);
 PETSC_EXTERN void RowTransformBackward(RowTransform t, PetscScalar x[]);

@@ -1,4 +1,4 @@
-/* G, G^T, H on local arrays, row by row, and their MatShells. */
+/* The operators G, G^T and H on local arrays, row by row, and their MatShells. */
 #include "fluid/grid.h"
 
 PetscErrorCode GridGradientRows(Grid g, PetscReal alpha, Vec p, PetscBool add, const PetscInt window[2], Vec w) {
@@ -64,12 +64,11 @@ PetscErrorCode GridGradientTransposeRows(Grid g, PetscReal alpha, Vec w, const P
 PetscErrorCode GridLargestDivergence(Grid g, Vec w, Vec bc2, PetscReal *largest) {
   const PetscInt n = g->columns[FIELD_P];
   const PetscScalar *wa, *b = NULL;
-  PetscScalar *row;
+  PetscScalar *row = g->row;
   PetscReal most = 0;
   PetscMPIInt bad = 0;
   Rows rows;
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(n, &row));
   PetscCall(VecGetArrayRead(w, &wa));
   if (bc2) PetscCall(VecGetArrayRead(bc2, &b));
   PetscCall(GridRows(g, FIELD_V, wa + GridLocalU(g), &rows));
@@ -85,8 +84,7 @@ PetscErrorCode GridLargestDivergence(Grid g, Vec w, Vec bc2, PetscReal *largest)
   }
   if (bc2) PetscCall(VecRestoreArrayRead(bc2, &b));
   PetscCall(VecRestoreArrayRead(w, &wa));
-  PetscCall(PetscFree(row));
-  if (bad) most = INFINITY;
+  if (bad) most = INFINITY; /* a NaN may get lost in MPI_MAX, on some ranks only */
   PetscCallMPI(MPI_Allreduce(&most, largest, 1, MPIU_REAL, MPI_MAX, g->comm));
   if (PetscIsInfOrNanReal(*largest)) *largest = NAN;
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -1,4 +1,5 @@
 #include "fluid/stokes.h"
+#include "fluid/banded.h"
 
 struct _p_Stokes {
   Fluid fluid;
@@ -6,29 +7,6 @@ struct _p_Stokes {
   BandedStokes banded; /* NULL unless x is periodic and both fast solves are fftw_tridiagonal's */
   Vec q, psi;          /* of the solve by parts */
 };
-
-/* x = (d I - e d_yy h^2)^-1 b for a constant tridiagonal matrix (-e, d, -e) whose first and last diagonals are `end`.
- */
-static void Tridiagonal(PetscInt n, PetscReal d, PetscReal e, PetscReal end, const PetscReal b[], PetscReal work[],
-                        PetscReal x[]) {
-  PetscReal pivot = end;
-  x[0] = b[0] / pivot;
-  for (PetscInt j = 1; j < n; j++) {
-    work[j] = -e / pivot;
-    pivot = (j == n - 1 ? end : d) + e * work[j];
-    x[j] = (b[j] + e * x[j - 1]) / pivot;
-  }
-  for (PetscInt j = n - 2; j >= 0; j--) x[j] -= work[j + 1] * x[j + 1];
-}
-
-void WallProfile(Fluid f, PetscInt n, PetscReal lambda, PetscReal work[], PetscReal w[], PetscReal psi[]) {
-  const PetscReal h2 = PetscSqr(f->grid->h), e = f->nu / h2, d = f->alpha + f->nu * lambda + 2 * e;
-  for (PetscInt j = 0; j < n; j++) w[j] = 0;
-  w[0] = 1;
-  Tridiagonal(n, d, e, d + e, w, work, w);
-  for (PetscInt j = 0; j < n; j++) psi[j] = -w[j];
-  Tridiagonal(n, lambda + 2 / h2, 1 / h2, lambda + 1 / h2, psi, work, psi);
-}
 
 PetscBool StokesIsExact(Fluid f) {
   return f->grid->wall[0] ? PETSC_FALSE : PETSC_TRUE;

@@ -1,31 +1,49 @@
-/* Wall forces: tangential forces on the faces next to the walls that make the projection exact (channel.c tells why).
-   One unknown a face, in one array that all ranks hold: the rows of u along the bottom and the top wall, then the
-   columns of v along the left and the right wall. */
+/* Wall forces: tangential forces on the faces next to the walls that make the projection exact, where StokesSolve is
+   not (channel.c tells why, docs/method.md, "Wall forces", how they are found). One unknown a face, in one array that
+   all ranks hold: the rows of u along the bottom and the top wall, then the columns of v along the left and the right
+   wall. Unit: a force per volume, length/time^2. */
 #pragma once
 #include "fluid/stokes.h"
 #include <fftw3.h>
 
+/* Slip that the forces of one pair of walls leave along the walls of the other pair: a matrix from modes to faces,
+   which keeps of each face the modes that reach it. Empty where only one pair exists. */
+typedef struct {
+  PetscReal *value; /* row by row */
+  PetscInt *row;    /* [faces + 1] where a face's row starts */
+} CrossSlip;
+
+/* Flow that the longest waves of a pair's forces drive inside the box. None where only one pair exists. */
+typedef struct {
+  PetscInt modes;       /* that are kept */
+  PetscReal *profile;   /* [modes][2][n] velocity by the distance from the wall: along it, away from it */
+  double *amplitude[2]; /* [side][modes] sine amplitudes of the forces last found */
+} LongWaves;
+
+/* Two walls that face one another: a line is one number for each face next to one of them. */
+typedef struct {
+  PetscInt length;        /* of a line; 0: no such walls */
+  PetscInt start;         /* of the first wall's line among the unknowns; the other one's follows */
+  PetscReal *own, *other; /* [length] a mode's force per residual on the same wall, and on the facing one */
+  double *line[2];        /* [side][length] residuals, then the modes of the forces that cancel them */
+  fftw_plan forward[2], backward[2];
+  CrossSlip cross;
+  LongWaves waves;
+} WallPair;
+
 typedef struct _p_Walls *Walls;
 struct _p_Walls {
-  Fluid fluid;            /* borrowed */
-  PetscInt n;             /* unknowns */
-  PetscInt length[2];     /* of one wall's line, for the walls in x and in y; 0 without such walls */
-  PetscInt start[2];      /* of the first wall's line, the other one follows */
-  PetscReal alpha;        /* coefficient that the inverse is for; -1 none yet */
-  PetscReal *own, *other; /* [n/2] inverse of a pair of walls, mode by mode */
-  PetscReal *cross[2];    /* modes of the walls in x (in y) to slip along the walls in y (in x), a row a face */
-  PetscInt *row[2];       /* where a row starts: modes that do not reach its face are left out */
-  PetscReal *profile[2];  /* [modes][2][n] flow of a mode by the distance from its wall: along it, away from it */
-  PetscInt modes[2];      /* of it that are kept: what reaches far */
-  double *low[2][2];      /* [modes] sine amplitudes of the forces last found */
-  PetscInt markers;
-  PetscReal *flow;    /* [modes of all walls][2 markers] velocity of each mode */
+  Fluid fluid;        /* borrowed */
+  PetscInt n;         /* unknowns */
+  PetscReal alpha;    /* coefficient that the inverse is for; -1 none yet */
+  WallPair pair[2];   /* walls in x (left and right), walls in y (bottom and top) */
   PetscReal *slip;    /* [n] work */
-  double *line[2][2]; /* [wall in x or y][side]: work */
-  fftw_plan forward[2][2], backward[2][2];
+  PetscReal *work[3]; /* [n_x or n_y, the larger one] */
+  PetscInt markers;
+  PetscReal *flow; /* [modes of all walls][2 markers] velocity of each long wave at the markers */
 };
 
-/* WallsCreate - the unknowns of a fluid: none where the Stokes solve is exact (StokesIsExact). Collective. */
+/* WallsCreate - the unknowns of a fluid: none where the Stokes solve is exact (StokesIsExact). Not collective. */
 PETSC_EXTERN PetscErrorCode WallsCreate(Fluid fluid, Walls *walls);
 PETSC_EXTERN PetscErrorCode WallsDestroy(Walls *walls);
 
@@ -33,11 +51,11 @@ PETSC_EXTERN PetscErrorCode WallsDestroy(Walls *walls);
 PETSC_EXTERN PetscErrorCode WallsAdd(Walls walls, const PetscScalar d[], Vec r);
 
 /* WallsSlip - y[n] = -2 nu/h^2 times the slope of the potential psi along the walls: the momentum that the projection
-   leaves there. Collective. */
+   leaves there. The same bits on every rank. Collective. */
 PETSC_EXTERN PetscErrorCode WallsSlip(Walls walls, Vec psi, PetscScalar y[]);
 
-/* WallsPrecondition - d := approximate inverse of d -> d + slip of the projected force d: exact for one pair of
-   opposite walls, for two pairs by sweeps of block Gauss-Seidel. Not collective. */
+/* WallsPrecondition - d := approximate inverse of d -> d + slip of the projected force d: exact for one pair of walls,
+   for two pairs by sweeps of block Gauss-Seidel. Every rank computes the whole. Not collective. */
 PETSC_EXTERN PetscErrorCode WallsPrecondition(Walls walls, PetscScalar d[]);
 
 /* WallsSetMarkers - the flow of the wall forces' long waves at markers X[2M], for WallsMarkerVelocity. Where only one

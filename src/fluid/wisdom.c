@@ -19,29 +19,30 @@ PetscErrorCode WisdomInitialise(void) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The file's text, to be freed; NULL with errno when it cannot be read. */
-static char *ReadText(const char path[]) {
+/* The file's text, to be freed; NULL where it cannot be read or, with `missing`, where there is no file. */
+static char *ReadText(const char path[], PetscBool *missing) {
   FILE *f = fopen(path, "r");
-  char *text = NULL, *more;
+  char *text = NULL;
   size_t used = 0, room = 0, n = 1;
+  *missing = !f && errno == ENOENT ? PETSC_TRUE : PETSC_FALSE;
   if (!f) return NULL;
   while (n > 0) {
     if (used + 1 >= room) {
-      room = 2 * room + 65536;
-      more = (char *)realloc(text, room);
+      char *more = (char *)realloc(text, room = 2 * room + 65536);
       if (!more) break;
       text = more;
     }
     n = fread(text + used, 1, room - used - 1, f);
     used += n;
   }
-  if (text) text[used] = 0;
-  if (ferror(f)) {
-    free(text);
-    text = NULL;
-  }
+  const PetscBool whole = n == 0 && !ferror(f) ? PETSC_TRUE : PETSC_FALSE;
   fclose(f);
-  return text;
+  if (whole) {
+    text[used] = 0;
+    return text;
+  }
+  free(text);
+  return NULL;
 }
 
 PetscErrorCode WisdomRead(Scene scene) {
@@ -52,11 +53,12 @@ PetscErrorCode WisdomRead(Scene scene) {
   PetscCall(WisdomInitialise());
   PetscCallMPI(MPI_Comm_rank(scene->comm, &rank));
   if (!rank) {
-    char *text = ReadText(path);
+    PetscBool missing;
+    char *text = ReadText(path, &missing);
     if (text)
       failed = fftw_import_wisdom_from_string(text) ? 0 : 1;
     else
-      failed = errno == ENOENT ? 0 : 2;
+      failed = missing ? 0 : 2;
     free(text);
   }
   PetscCallMPI(MPI_Bcast(&failed, 1, MPI_INT, 0, scene->comm));
@@ -79,11 +81,11 @@ static PetscBool HasMore(const char *text, const char *file) {
   return PETSC_FALSE;
 }
 
-/* Rank 0's part: false when the file cannot be written. */
+/* Rank 0's part of WisdomWrite; false when the file cannot be written. */
 static PetscBool Save(const char path[]) {
   char temporary[PETSC_MAX_PATH_LEN + 32];
-  char *file = ReadText(path), *text;
-  PetscBool good = PETSC_TRUE;
+  PetscBool good = PETSC_TRUE, missing;
+  char *file = ReadText(path, &missing), *text;
   if (file) (void)fftw_import_wisdom_from_string(file); /* another run may have added to it */
   text = fftw_export_wisdom_to_string();
   if (text && (!file || HasMore(text, file))) {

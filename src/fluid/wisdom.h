@@ -2,13 +2,14 @@
 #pragma once
 #include "scene/scene.h"
 
-/* WisdomInitialise - FFTW's MPI part, once: wisdom is read and planned with it alone. */
+/* WisdomInitialise - start FFTW's MPI part, on the first call only. It adds algorithms of its own to FFTW's, and wisdom
+   that was made with them can be read only with them. Not collective. */
 PETSC_EXTERN PetscErrorCode WisdomInitialise(void);
 
-/* WisdomRead - the scene's file on rank 0, if there is one, told to all ranks; before any plan is made. A file that is
-   not wisdom of this FFTW is a user's mistake. Collective. */
+/* WisdomRead - rank 0 reads the scene's file, if there is one, and tells all ranks; before any plan is made.
+   Collective. Errors, agreed on by all ranks: a file that cannot be read, or that is not wisdom of this FFTW. */
 PETSC_EXTERN PetscErrorCode WisdomRead(Scene scene);
 
-/* WisdomWrite - all ranks' wisdom into the file, through a temporary name, when the file lacks some of it; after all
-   plans are made. Collective. */
+/* WisdomWrite - rank 0 collects all ranks' wisdom and writes the file, through a temporary name, when the file lacks
+   some of it; after all plans are made. Collective. Errors, agreed on by all ranks: a file that cannot be written. */
 PETSC_EXTERN PetscErrorCode WisdomWrite(Scene scene);

@@ -1,6 +1,7 @@
 /* Schemes "coupled" and "direct": the unsplit step, first or second order, unconditionally stable. `coupled` solves it by
    preconditioned FGMRES on its forces, `direct` by a sparse LU factorisation. Here: which steps are taken. */
 #include "scheme/coupled.h"
+#include "coupling/lagrangian.h"
 
 /* Start-up: backward Euler on a sixteenth of the step, then BDF2 with doubling steps up to the whole of it. */
 static PetscErrorCode GradedStart(Scheme s, Coupled *d, PetscReal dt) {
@@ -111,6 +112,7 @@ static PetscErrorCode JudgedStep(Scheme s, Coupled *d, PetscReal speed, PetscRea
   do {
     trial = (StepTrial){.first = s->state.dt_last == 0 ? PETSC_TRUE : PETSC_FALSE};
     s->report.failure[0] = 0;
+    FluidClearFailure(s->fluid);
     PetscCall(DecideSize(s, speed, most, &trial.dt));
     PetscCall(CoupledAttempt(s, trial.dt, &trial.solved));
     if (trial.solved) PetscCall(Look(s, d, &trial));

@@ -83,7 +83,7 @@ PetscErrorCode SchemeSolverFailed(Scheme s, const char prefix[], KSPConvergedRea
                           "the solve with prefix %s failed in step %" PetscInt_FMT
                           " at time %g: %s after %" PetscInt_FMT " iterations, residual %g; try a smaller -time_step, "
                           "more iterations (-%sksp_max_it) or finer -domain_cells",
-                          prefix, s->state.step + 1, (double)(s->state.t + s->state.dt), KSPConvergedReasons[why], its,
-                          (double)residual, prefix));
+                          prefix, s->before.state.step + 1, (double)(s->before.state.t + s->state.dt),
+                          KSPConvergedReasons[why], its, (double)residual, prefix));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -134,6 +134,7 @@ PetscErrorCode SchemeStep(Scheme s, PetscReal most) {
   PetscCall(PhaseBegin(PHASE_STEP));
   PetscCall(PetscMemzero(&s->report, sizeof(s->report)));
   PetscCall(Keep(s));
+  FluidClearFailure(s->fluid);
   s->state.dt = s->policy.base;
   PetscCall(s->ops.step(s, most));
   s->report.solves = FluidCountSolves(s->fluid) - solves;
@@ -143,7 +144,11 @@ PetscErrorCode SchemeStep(Scheme s, PetscReal most) {
     s->state.step++;
     PetscCall(SchemeCheck(s));
   }
-  if (*s->report.failure) PetscCall(Return(s));
+  if (*s->report.failure) {
+    const SolveFailure *cause = FluidFailure(s->fluid); /* of whatever else went wrong */
+    if (cause) PetscCall(SchemeSolverFailed(s, cause->prefix, cause->why, cause->its, cause->residual));
+    PetscCall(Return(s));
+  }
   PetscCall(PhaseEnd());
   PetscCall(PetscTime(&end));
   s->report.seconds = end - start;

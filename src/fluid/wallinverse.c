@@ -1,0 +1,187 @@
+/* The inverse of d -> d + slip(d) for wall forces d, mode by mode along the walls.
+
+   One pair of walls: a force wave of eigenvalue -lambda on one wall leaves the slip kappa G psi, kappa = -2 nu/h^2, on
+   both. With the potential's profile psi[0] .. psi[n-1] across the box (WallProfile) that is, in units of the force,
+   -kappa lambda psi[0] on its own wall and -kappa lambda psi[n-1] on the facing one. So the modes of the two walls obey
+       (1 - kappa lambda psi[0]) d_own - kappa lambda psi[n-1] d_other = r_own,
+   and the same with the walls exchanged: a 2 x 2 system a mode.
+
+   Two pairs: the forces of each also leave slip along the other pair's walls (CrossSlip). Gauss-Seidel sweeps take
+   turns: invert one pair for what the other one has left. */
+#include "fluid/walls.h"
+#include "fluid/wallprofile.h"
+
+#define SWEEPS 5
+
+/* Mode k of pair dir: its share in the slip along the other pair's walls. A force sin(pi (k + 1) x/L) has the potential
+   sqrt(lambda) psi(y) cos(pi (k + 1) x/L), to be taken half a cell from the wall in x. */
+static void FillCross(Walls w, int dir, PetscInt k, PetscReal lambda, const PetscReal psi[]) {
+  const Grid g = w->fluid->grid;
+  const CrossSlip *cross = &w->pair[dir].cross;
+  const PetscReal c = -2 * w->fluid->nu / PetscSqr(g->h) / g->h * PetscSqrtReal(lambda) *
+                      PetscCosReal(PETSC_PI * (k + 1) / (2.0 * g->n[1 - dir]));
+  for (PetscInt j = 0; j < w->pair[1 - dir].length; j++)
+    if (k < cross->row[j + 1] - cross->row[j]) cross->value[cross->row[j] + k] = c * (psi[j + 1] - psi[j]);
+}
+
+/* Flow of mode k of pair dir by the distance from its wall: along it (force + lambda psi) sin, half a cell off the
+   wall, away from it -sqrt(lambda) psi' cos, on the rows' edges. */
+static void FillProfile(Walls w, int dir, PetscInt k, PetscReal lambda, const PetscReal force[],
+                        const PetscReal psi[]) {
+  const PetscInt n = w->fluid->grid->n[dir];
+  PetscReal *along = w->pair[dir].waves.profile + 2 * k * n, *away = along + n;
+  for (PetscInt j = 0; j < n; j++) {
+    along[j] = force[j] + lambda * psi[j];
+    away[j] = j + 1 < n ? -PetscSqrtReal(lambda) * (psi[j + 1] - psi[j]) / w->fluid->grid->h : 0;
+  }
+}
+
+/* All of pair dir that depends on alpha: the inverse 2 x 2 matrices, divided by the size of FFTW's transforms there and
+   back, and what the modes do elsewhere. */
+static void SetUpPair(Walls w, int dir) {
+  const Grid g = w->fluid->grid;
+  const PetscReal h2 = PetscSqr(g->h), kappa = -2 * w->fluid->nu / h2;
+  const PetscInt m = w->pair[dir].length, n = g->n[dir], cells = g->n[1 - dir];
+  const PetscReal size = g->wall[1 - dir] ? 2.0 * cells : m;
+  WallPair *p = &w->pair[dir];
+  PetscReal *force = w->work[0], *psi = w->work[1];
+  for (PetscInt k = 0; k < m; k++) {
+    const PetscReal argument = g->wall[1 - dir] ? PETSC_PI * (k + 1) / (2.0 * cells)
+                                                : PETSC_PI * PetscMin(k, m - k) / m; /* R2HC's order */
+    const PetscReal lambda = 4 / h2 * PetscSqr(PetscSinReal(argument));
+    if (lambda == 0) { /* a uniform force has no slip */
+      p->own[k] = 1 / size;
+      p->other[k] = 0;
+      continue;
+    }
+    WallProfile(w->fluid, n, lambda, w->work[2], force, psi);
+    const PetscReal own = 1 - kappa * lambda * psi[0], other = -kappa * lambda * psi[n - 1];
+    const PetscReal determinant = PetscSqr(own) - PetscSqr(other);
+    p->own[k] = own / determinant / size;
+    p->other[k] = -other / determinant / size;
+    if (p->cross.value) FillCross(w, dir, k, lambda, psi);
+    if (k < p->waves.modes) FillProfile(w, dir, k, lambda, force, psi);
+  }
+}
+
+static void SetUp(Walls w) {
+  if (w->alpha == w->fluid->alpha) return;
+  w->alpha = w->fluid->alpha;
+  for (int dir = 0; dir < 2; dir++) SetUpPair(w, dir);
+}
+
+/* The lines of a pair: from residuals to the modes of the forces that cancel them, not transformed back yet. */
+static void Invert(WallPair *p) {
+  for (int side = 0; side < 2; side++) fftw_execute(p->forward[side]);
+  for (PetscInt k = 0; k < p->length; k++) {
+    const PetscReal one = p->line[0][k], two = p->line[1][k];
+    p->line[0][k] = p->own[k] * one + p->other[k] * two;
+    p->line[1][k] = p->other[k] * one + p->own[k] * two;
+  }
+}
+
+/* slip[2 n]: what the forces whose modes are in the lines of `pair` leave on the n faces of the other pair's first
+   wall, then on those of its second wall. Take forces on the bottom wall, and slip along the left and the right one.
+   The potential of wave number m is a cosine along the bottom wall, the same on the left and the right for even m,
+   opposite for odd m. So the sums over even and over odd m are taken once and give both. Forces on the top wall are
+   those on the bottom mirrored: face j changes place with n - 1 - j, and the slope along the wall its sign. */
+static void SlipAcross(const WallPair *pair, PetscInt n, PetscScalar slip[]) {
+  for (PetscInt j = 0; j < n; j++) slip[j] = slip[n + j] = 0;
+  for (PetscInt j = 0; j < n; j++) {
+    const PetscReal *row = pair->cross.value + pair->cross.row[j];
+    const PetscInt reach = pair->cross.row[j + 1] - pair->cross.row[j];
+    for (int side = 0; side < 2; side++) {
+      const double *force = pair->line[side];
+      PetscReal odd = 0, even = 0; /* entry k has wave number k + 1 */
+      for (PetscInt k = 0; k < reach; k += 2) odd += row[k] * force[k];
+      for (PetscInt k = 1; k < reach; k += 2) even += row[k] * force[k];
+      const PetscInt face = side ? n - 1 - j : j;
+      const PetscReal sign = side ? -2 : 2; /* 2: FFTW's sine transforms are twice the sum */
+      slip[face] += sign * (even + odd);
+      slip[n + face] += sign * (even - odd);
+    }
+  }
+}
+
+/* Forces from the modes in the lines of pair dir, into d; the long waves' amplitudes are kept. */
+static void TakeForces(Walls w, int dir, PetscScalar d[]) {
+  const WallPair *p = &w->pair[dir];
+  for (int side = 0; side < 2 && p->length; side++) {
+    PetscScalar *to = d + p->start + side * p->length;
+    for (PetscInt k = 0; k < p->waves.modes; k++) p->waves.amplitude[side][k] = 2 * p->line[side][k];
+    fftw_execute(p->backward[side]);
+    for (PetscInt i = 0; i < p->length; i++) to[i] = p->line[side][i];
+  }
+}
+
+PetscErrorCode WallsPrecondition(Walls w, PetscScalar d[]) {
+  const PetscBool two = w->pair[0].cross.value ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionBeginUser;
+  if (!w->n) PetscFunctionReturn(PETSC_SUCCESS);
+  SetUp(w);
+  PetscCall(PetscArrayzero(w->slip, w->n));
+  for (int sweep = 0; sweep < (two ? SWEEPS : 1); sweep++)
+    for (int dir = 1; dir >= 0; dir--) {
+      WallPair *p = &w->pair[dir];
+      if (!p->length) continue;
+      for (int side = 0; side < 2; side++)
+        for (PetscInt i = 0; i < p->length; i++) {
+          const PetscInt k = p->start + side * p->length + i;
+          p->line[side][i] = d[k] - w->slip[k];
+        }
+      Invert(p);
+      if (two) SlipAcross(p, w->pair[1 - dir].length, w->slip + w->pair[1 - dir].start);
+    }
+  for (int dir = 0; dir < 2; dir++) TakeForces(w, dir, d);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A profile a[n], whose entry j is j + offset cells from the wall, at eta cells from it: linear between the entries and
+   beyond the last, constant closer to the wall than the first. */
+static PetscReal Interpolated(PetscInt n, const PetscReal a[], PetscReal offset, PetscReal eta) {
+  const PetscReal at = PetscMax(eta - offset, 0);
+  const PetscInt j = PetscMin((PetscInt)at, n - 2);
+  return a[j] + (at - j) * (a[j + 1] - a[j]);
+}
+
+/* Velocity of wave k on a wall of pair dir at the markers X[2M], for the amplitude 1. */
+static void WaveAtMarkers(Walls w, int dir, int side, PetscInt k, PetscInt M, const PetscScalar X[], PetscReal U[]) {
+  const Grid g = w->fluid->grid;
+  const PetscInt n = g->n[dir];
+  const PetscReal *along = w->pair[dir].waves.profile + 2 * k * n, *away = along + n;
+  const PetscReal wave = PETSC_PI * (k + 1) / (g->hi[1 - dir] - g->lo[1 - dir]);
+  for (PetscInt m = 0; m < M; m++) {
+    const PetscReal x = wave * (X[2 * m + 1 - dir] - g->lo[1 - dir]);
+    const PetscReal eta = (side ? g->hi[dir] - X[2 * m + dir] : X[2 * m + dir] - g->lo[dir]) / g->h;
+    U[2 * m + 1 - dir] = PetscSinReal(x) * Interpolated(n, along, 0.5, eta);
+    U[2 * m + dir] = (side ? -1 : 1) * PetscCosReal(x) * Interpolated(n, away, 1, eta);
+  }
+}
+
+PetscErrorCode WallsSetMarkers(Walls w, PetscInt M, const PetscScalar X[]) {
+  const PetscInt modes[2] = {w->pair[0].waves.modes, w->pair[1].waves.modes};
+  PetscReal *column;
+  PetscFunctionBeginUser;
+  if (!modes[0]) PetscFunctionReturn(PETSC_SUCCESS);
+  SetUp(w);
+  if (w->markers != M) PetscCall(PetscFree(w->flow));
+  if (!w->flow) PetscCall(PetscMalloc1(4 * (modes[0] + modes[1]) * M, &w->flow));
+  w->markers = M;
+  column = w->flow;
+  for (int dir = 0; dir < 2; dir++)
+    for (int side = 0; side < 2; side++)
+      for (PetscInt k = 0; k < modes[dir]; k++, column += 2 * M) WaveAtMarkers(w, dir, side, k, M, X, column);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode WallsMarkerVelocity(Walls w, PetscReal alpha, PetscScalar U[]) {
+  const PetscReal *column = w->flow;
+  PetscFunctionBeginUser;
+  for (int dir = 0; dir < 2; dir++)
+    for (int side = 0; side < 2; side++) {
+      const LongWaves *waves = &w->pair[dir].waves;
+      for (PetscInt k = 0; k < waves->modes; k++, column += 2 * w->markers)
+        for (PetscInt i = 0; i < 2 * w->markers; i++) U[i] += alpha * waves->amplitude[side][k] * column[i];
+    }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
