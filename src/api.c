@@ -97,7 +97,6 @@ PetscErrorCode SimulationGetRow(Simulation s, PetscInt vesicle, PetscReal row[])
 PetscErrorCode SimulationGetCellVelocity(Simulation s, PetscReal u[], PetscReal v[]) {
   const PetscScalar *w;
   PetscFunctionBeginUser;
-  s->scene->flow.time = s->scheme->state.t;
   PetscCall(VecGetArrayRead(s->scheme->state.w, &w));
   PetscCall(OutputVelocityAtCells(s->output, 0, w, u));
   PetscCall(OutputVelocityAtCells(s->output, 1, w, v));

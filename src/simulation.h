@@ -4,7 +4,6 @@
 
 struct _p_Simulation {
   Scene scene;
-  Shape shape;
   Fluid fluid;
   Membrane membrane;
   Coupling coupling;

@@ -5,7 +5,7 @@
    MatShells below are therefore sequential, between marker vectors and the rank's local part of a velocity ("slab"),
    but applying E, S^T or B^T is collective over the grid's ranks. */
 #pragma once
-#include "coupling/kernel.h"
+#include "kernel/kernel.h"
 #include "fluid/fluid.h"
 #include "membrane/membrane.h"
 

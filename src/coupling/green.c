@@ -4,18 +4,18 @@
 
 #define LAGS (2 * KERNEL_MAX_POINTS) /* of two kernels, one spare: whole vectors */
 
-PetscErrorCode MobilityCreate(Scene scene, Coupling coupling, Mobility *out) {
+PetscErrorCode MobilityCreate(const FluidSpec *spec, Coupling coupling, Mobility *out) {
   const Grid g = coupling->grid;
   Mobility m;
+  FluidSpec box = *spec;
   PetscReal reach = 0;
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&m));
   *out = m;
   m->coupling = coupling;
-  m->scene = *scene;
-  m->scene.bc[0] = m->scene.bc[1] = BC_PERIODIC;
-  m->scene.flow.form = FORM_DISTURBANCE;
-  PetscCall(FluidCreate(&m->scene, &m->periodic));
+  box.bc[0] = box.bc[1] = BC_PERIODIC;
+  box.form = FORM_DISTURBANCE;
+  PetscCall(FluidCreate(&box, &m->periodic));
   for (PetscInt v = 0; v < coupling->membrane->vesicles; v++) reach = PetscMax(reach, coupling->membrane->L0[v] / 2);
   if (coupling->membrane->vesicles > 1) reach = PETSC_MAX_INT / 4 * g->h; /* vesicles may be anywhere: the whole box */
   for (int d = 0; d < 2; d++) /* two markers are at most half a contour apart; room for drift and kernels */

@@ -24,7 +24,7 @@ static PetscErrorCode CreateMembranePart(Scene scene, Saddle s) {
   PetscCall(VecDuplicate(s->U, &s->F));
   PetscCall(PetscMalloc1(m->M, &s->tension));
   if (s->type == MOBILITY_TABLE) {
-    PetscCall(MobilityCreate(scene, s->coupling, &s->mobility));
+    PetscCall(MobilityCreate(&scene->fluid, s->coupling, &s->mobility));
     PetscCall(DenseBlocksCreate(s->coupling, &s->blocks));
   } else if (s->type == MOBILITY_ILU) {
     PetscCall(PCCreate(PETSC_COMM_SELF, &s->ilu));
@@ -91,7 +91,7 @@ PetscErrorCode SaddleCreate(Scene scene, Fluid fluid, Coupling coupling, SelfMob
   s->fluid = fluid;
   s->coupling = coupling;
   s->self = self;
-  s->type = (MobilityType)scene->mobility;
+  s->type = (MobilityType)scene->coupling.mobility;
   PetscCall(StokesCreate(fluid, &s->stokes));
   PetscCall(WallsCreate(fluid, &s->walls));
   PetscCall(DMCreateGlobalVector(fluid->grid->velocity, &s->r));
@@ -102,7 +102,7 @@ PetscErrorCode SaddleCreate(Scene scene, Fluid fluid, Coupling coupling, SelfMob
   PetscCall(VecDuplicate(s->x, &s->change));
   PetscCall(VecDuplicate(s->x, &s->rest));
   PetscCall(VecDuplicate(s->x, &s->pending));
-  PetscCall(CreateKSP(s, scene->ksp_rtol, n));
+  PetscCall(CreateKSP(s, scene->coupling.ksp_rtol, n));
   PetscCall(SaddleForget(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

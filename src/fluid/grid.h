@@ -9,7 +9,7 @@
    rank's rows of u followed by its rows of v, x fastest. */
 #pragma once
 #include "base/base.h"
-#include "scene/scene.h"
+#include "scene/fluidspec.h"
 
 typedef enum { FIELD_U = 0, FIELD_V = 1, FIELD_P = 2 } Field;
 
@@ -31,9 +31,9 @@ struct _p_Grid {
   PetscScalar *ghost[3][2]; /* row below and row above, per field */
 };
 
-/* GridCreate - the scene's grid over the ranks of comm. Collective. Stops with the user's message when the rank count
-   leaves a rank without rows. */
-PETSC_EXTERN PetscErrorCode GridCreate(Scene scene, Grid *grid);
+/* GridCreate - the fluid's grid over the ranks of its comm. Collective. Stops with the user's message when the rank
+   count leaves a rank without rows. */
+PETSC_EXTERN PetscErrorCode GridCreate(const FluidSpec *spec, Grid *grid);
 PETSC_EXTERN PetscErrorCode GridDestroy(Grid *grid);
 
 /* GridPosition - position X[2] of entry (i, j) of a field, j a global row. */

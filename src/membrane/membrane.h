@@ -4,7 +4,7 @@
    another; tensions are one number an edge, edge k running from marker k-1 to marker k of the same vesicle. */
 #pragma once
 #include "base/base.h"
-#include "membrane/spectral.h"
+#include "curve/spectral.h"
 #include "scene/scene.h"
 
 typedef struct _p_Membrane *Membrane;

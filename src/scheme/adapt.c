@@ -9,11 +9,11 @@
 
 PetscErrorCode StepControlCreate(Scene scene, Membrane m, StepControl *c) {
   PetscFunctionBeginUser;
-  c->on = scene->adapt == ADAPT_ERROR && m->vesicles ? PETSC_TRUE : PETSC_FALSE;
-  c->tolerance = scene->adapt_tol;
-  c->base = scene->dt;
-  c->max_move = scene->adapt_max_move;
-  c->max_step = scene->adapt_max_step;
+  c->on = scene->time.adapt == ADAPT_ERROR && m->vesicles ? PETSC_TRUE : PETSC_FALSE;
+  c->tolerance = scene->time.adapt_tol;
+  c->base = scene->time.dt;
+  c->max_move = scene->time.adapt_max_move;
+  c->max_step = scene->time.adapt_max_step;
   c->level = -LEVELS_OF_START;
   c->R0 = PETSC_MAX_REAL;
   for (PetscInt v = 0; v < m->vesicles; v++) c->R0 = PetscMin(c->R0, m->L0[v] / (2 * PETSC_PI));
@@ -25,7 +25,7 @@ static PetscErrorCode LimitLevel(Scheme s, StepControl *c) {
   PetscReal speed, most = c->max_step > 0 ? c->max_step : PETSC_MAX_REAL;
   PetscFunctionBeginUser;
   PetscCall(CoupledSpeed(s, &speed));
-  if (speed > 0) most = PetscMin(most, s->scene->cfl_limit * s->fluid->grid->h / speed);
+  if (speed > 0) most = PetscMin(most, s->scene->time.cfl_limit * s->fluid->grid->h / speed);
   if (most < PETSC_MAX_REAL)
     c->level = PetscMin(c->level, (PetscInt)PetscFloorReal(2 * PetscLog2Real(most / c->base) + 1e-9));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -228,7 +228,7 @@ PetscErrorCode CoupledSpeed(Scheme s, PetscReal *speed) {
 
 /* A fixed step that convection does not allow: report.failure says so. */
 static PetscErrorCode CheckCourant(Scheme s, PetscReal dt, PetscReal speed) {
-  const PetscReal h = s->fluid->grid->h, limit = s->scene->cfl_limit;
+  const PetscReal h = s->fluid->grid->h, limit = s->scene->time.cfl_limit;
   PetscFunctionBeginUser;
   if (dt * speed <= limit * h) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscSNPrintf(s->report.failure, sizeof(s->report.failure),
@@ -253,7 +253,7 @@ static PetscErrorCode Step_Coupled(Scheme s) {
     PetscCall(StepControlStep(s, &d->control, d->Xstar, &d->next, &used, &solved));
     if (solved) PetscCall(Advance(s, d, used));
     s->state.dt = used;
-  } else if (!s->has_old && d->order > 1 && s->scene->startup == STARTUP_GRADED) {
+  } else if (!s->has_old && d->order > 1 && s->scene->scheme.startup == STARTUP_GRADED) {
     PetscCall(GradedStart(s, d, dt, &solved));
     s->state.dt = dt;
   } else {
@@ -279,9 +279,9 @@ static PetscErrorCode SetUp_Coupled(Scheme s) {
   Coupled *d = (Coupled *)s->data;
   State *q = &s->state;
   PetscFunctionBeginUser;
-  d->order = s->scene->order;
-  d->length_target = s->scene->length_target;
-  d->area_target = s->scene->area_target;
+  d->order = s->scene->scheme.order;
+  d->length_target = s->scene->scheme.length_target;
+  d->area_target = s->scene->scheme.area_target;
   if (!strcmp(s->type, "direct"))
     PetscCall(DirectSolverCreate(s->fluid, s->coupling, s->self, &d->direct));
   else {
@@ -298,11 +298,11 @@ static PetscErrorCode SetUp_Coupled(Scheme s) {
   s->old = &d->old;
   PetscCall(StepControlCreate(s->scene, s->membrane, &d->control));
   if (d->control.on) s->level = &d->control.level;
-  if (s->scene->inertia == INERTIA_CONVECTIVE) {
+  if (s->scene->fluid.inertia == INERTIA_CONVECTIVE) {
     PetscReal speed;
-    PetscCall(ConvectionCreate(s->scene, s->fluid, &d->convection));
+    PetscCall(ConvectionCreate(&s->scene->flow, s->fluid, &d->convection));
     PetscCall(CoupledSpeed(s, &speed));
-    if (!d->control.on) PetscCall(CheckCourant(s, s->scene->dt, speed));
+    if (!d->control.on) PetscCall(CheckCourant(s, s->scene->time.dt, speed));
     PetscCheck(!*s->report.failure, s->scene->comm, PETSC_ERR_USER_INPUT, "%s", s->report.failure);
   }
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -20,7 +20,7 @@ static PetscErrorCode CreateState(Scheme s, const PetscReal X[]) {
   PetscBool placed;
   PetscScalar *x;
   PetscFunctionBeginUser;
-  q->dt = s->scene->dt;
+  q->dt = s->scene->time.dt;
   PetscCall(DMCreateGlobalVector(s->fluid->grid->velocity, &q->w));
   PetscCall(DMCreateGlobalVector(s->fluid->grid->da[FIELD_P], &q->p));
   if (s->fluid->total) PetscCall(VecCopy(s->fluid->background, q->w));
@@ -38,7 +38,7 @@ static PetscErrorCode CreateState(Scheme s, const PetscReal X[]) {
   PetscCall(SchemePlaceMarkers(s, q->X, q->t, &placed));
   PetscCheck(placed, s->scene->comm, PETSC_ERR_USER_INPUT,
              "-vesicle_center %g,%g: %s; allowed: a vesicle inside -domain_box, 3 cells from its walls",
-             (double)s->scene->center.v[0], (double)s->scene->center.v[1], s->report.failure);
+             (double)s->scene->vesicles.center.v[0], (double)s->scene->vesicles.center.v[1], s->report.failure);
   PetscCall(SchemeMarkerVelocity(s, q->w, q->sigma, q->U));
   s->report.surface_div_max = 0; /* nothing has been solved yet */
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -56,18 +56,18 @@ PetscErrorCode SchemeCreate(Scene scene, Fluid fluid, Membrane membrane, Couplin
     PetscCall(SchemeRegister("direct", SchemeCreate_Coupled));
     PetscCall(PetscRegisterFinalize(ForgetSchemes));
   }
-  PetscCall(PetscFunctionListFind(schemes, scene->scheme, &create));
-  PetscCheck(create, scene->comm, PETSC_ERR_USER_INPUT, "-scheme_type %s: not registered", scene->scheme);
+  PetscCall(PetscFunctionListFind(schemes, scene->scheme.type, &create));
+  PetscCheck(create, scene->comm, PETSC_ERR_USER_INPUT, "-scheme_type %s: not registered", scene->scheme.type);
   PetscCall(PetscNew(&s));
   *out = s;
-  PetscCall(PetscStrncpy(s->type, scene->scheme, sizeof(s->type)));
+  PetscCall(PetscStrncpy(s->type, scene->scheme.type, sizeof(s->type)));
   s->scene = scene;
   s->fluid = fluid;
   s->membrane = membrane;
   s->coupling = coupling;
   PetscCall(CreateState(s, X));
-  if (coupling && scene->self_mobility != SELF_NONE)
-    PetscCall(SelfMobilityCreate(coupling, fluid->nu, (SelfMobilityType)scene->self_mobility, &s->self));
+  if (coupling && scene->coupling.self_mobility != SELF_NONE)
+    PetscCall(SelfMobilityCreate(coupling, fluid->nu, (SelfMobilityType)scene->coupling.self_mobility, &s->self));
   PetscCall(create(s));
   PetscCall(s->setup(s));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -159,8 +159,7 @@ PetscErrorCode SchemePlaceMarkers(Scheme s, Vec X, PetscReal t, PetscBool *place
   if (!s->fluid->total) {
     PetscCall(VecGetArrayRead(X, &x));
     PetscCall(VecGetArray(s->background, &u));
-    s->scene->flow.time = t;
-    PetscCall(FlowVelocities(&s->scene->flow, s->membrane->M, x, u));
+    PetscCall(FlowVelocities(&s->scene->flow, t, s->membrane->M, x, u));
     PetscCall(VecRestoreArray(s->background, &u));
     PetscCall(VecRestoreArrayRead(X, &x));
   }

@@ -39,7 +39,7 @@ typedef struct {
 
 typedef struct _p_Scheme *Scheme;
 struct _p_Scheme {
-  char type[SCENE_MAX_NAME];
+  char type[OPTION_MAX_NAME];
   Scene scene;       /* borrowed */
   Fluid fluid;       /* borrowed */
   Membrane membrane; /* borrowed; no vesicles when the scene has none */

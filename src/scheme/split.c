@@ -129,7 +129,7 @@ static PetscErrorCode SetUp_Split(Scheme s) {
   if (s->self) PetscCall(SchemeSetSelfMobility(s, 1 / q->dt, q->X, q->sigma, q->X));
   PetscCall(TensionSolverCreate(s->fluid, s->coupling, s->self, &d->tension));
   PetscCall(LagrangianSolverSetUp(d->tension));
-  if (s->membrane->bending > 0 && s->scene->bending_at == BENDING_IMPLICIT) {
+  if (s->membrane->bending > 0 && s->scene->scheme.bending_at == BENDING_IMPLICIT) {
     PetscCall(BendingSolverCreate(s->fluid, s->coupling, s->self, &d->bending));
     PetscCall(LagrangianSolverSetUp(d->bending));
   }
