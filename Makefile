@@ -61,11 +61,11 @@ $(BIN)/petves: $(BUILD)/main.o $(LIBRARY)
 	@mkdir -p $(@D)
 	$(CC) $(OPTIMISE) -o $@ $< -L$(LIBDIR) -lpetves -Wl,-rpath,'$$ORIGIN/../$(LIBDIR)' $(LIBS)
 
-$(BUILD)/tests/%: tests/%.c tests/check.h $(LIBRARY)
+$(BUILD)/tests/%: tests/%.c $(wildcard tests/*.h) $(LIBRARY)
 	@mkdir -p $(@D)
 	$(CC) $(CFLAGS) -Itests -o $@ $< -L$(LIBDIR) -lpetves -Wl,-rpath,$(CURDIR)/$(LIBDIR) $(LIBS)
 
-$(BUILD)/bench/%: bench/%.c bench/bench.h tests/check.h $(LIBRARY)
+$(BUILD)/bench/%: bench/%.c bench/bench.h $(wildcard tests/*.h) $(LIBRARY)
 	@mkdir -p $(@D)
 	$(CC) $(CFLAGS) -Itests -Ibench -o $@ $< -L$(LIBDIR) -lpetves -Wl,-rpath,$(CURDIR)/$(LIBDIR) $(LIBS)
 

@@ -1,6 +1,6 @@
 /* What the bench programs share: numbers printed as one JSON object a line. */
 #pragma once
-#include "check.h"
+#include "world.h"
 
 /* "name": [values], */
 static inline void PrintList(const char name[], PetscInt n, const PetscReal values[]) {

@@ -103,7 +103,7 @@ static PetscErrorCode BenchStokes(Scene scene, const char box[], PetscInt repeat
   Stokes stokes;
   Vec r, u, p, q;
   PetscFunctionBeginUser;
-  PetscCall(FluidCreate(scene, &fluid));
+  PetscCall(FluidCreate(&scene->fluid, &fluid));
   PetscCall(FluidSetTimeCoefficient(fluid, 1.5 / fluid->grid->h));
   PetscCall(StokesCreate(fluid, &stokes));
   PetscCall(DMCreateGlobalVector(fluid->grid->velocity, &r));
@@ -153,7 +153,7 @@ static PetscErrorCode Bench(void) {
     PetscCall(PetscSNPrintf(options, sizeof(options), "-domain_cells %d,%d %s -vesicle_shape none", (int)cells,
                             (int)cells, boxes[k].options));
     PetscCall(TestScene(options, &scene));
-    PetscCall(GridCreate(scene, &grid));
+    PetscCall(GridCreate(&scene->fluid, &grid));
     for (int f = 0; f < 3; f++) PetscCall(BenchField(grid, boxes[k].name, (Field)f, repeats, hypre));
     PetscCall(GridDestroy(&grid));
     PetscCall(BenchStokes(scene, boxes[k].name, repeats));

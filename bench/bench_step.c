@@ -9,39 +9,14 @@
 enum { WALL, FAST, REST, SOLVES, COUPLED, TENSION, BENDING, LISTS };
 static const char *const names[LISTS] = {"step", "fast", "rest", "nsolve", "coupled_its", "tension_its", "bending_its"};
 
-typedef struct {
-  Scene scene;
-  Shape shape;
-  Fluid fluid;
-  Membrane membrane;
-  Coupling coupling;
-  Scheme scheme;
-} World;
-
-static PetscErrorCode Create(World *w) {
+static PetscErrorCode Create(TestWorld *w) {
   PetscFunctionBeginUser;
-  PetscCall(SceneCreate(PETSC_COMM_WORLD, &w->scene));
-  const Kernel *kernel = KernelFind(w->scene->delta);
-  PetscCall(ShapeCreate(w->scene, kernel->default_spacing, kernel->least_spacing, &w->shape));
-  PetscCall(SceneSetInertia(w->scene, &w->shape));
-  PetscCall(WisdomRead(w->scene));
-  PetscCall(FluidCreate(w->scene, &w->fluid));
-  PetscCall(MembraneCreate(&w->shape, w->scene->bending, (DerivativeType)w->scene->derivative, &w->membrane));
-  if (w->shape.vesicles) PetscCall(CouplingCreate(w->fluid->grid, w->membrane, w->scene->delta, &w->coupling));
-  PetscCall(SchemeCreate(w->scene, w->fluid, w->membrane, w->coupling, w->shape.X, &w->scheme));
+  PetscCall(SceneCreate(PETSC_COMM_WORLD, NULL, NULL, &w->scene));
+  PetscCall(WisdomRead(PETSC_COMM_WORLD, w->scene->wisdom));
+  PetscCall(TestWorldBuild(w));
+  PetscCall(TestWorldScheme(w));
   PetscCall(SceneCheckUnused(w->scene));
-  PetscCall(WisdomWrite(w->scene));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode Destroy(World *w) {
-  PetscFunctionBeginUser;
-  PetscCall(SchemeDestroy(&w->scheme));
-  PetscCall(CouplingDestroy(&w->coupling));
-  PetscCall(MembraneDestroy(&w->membrane));
-  PetscCall(FluidDestroy(&w->fluid));
-  PetscCall(ShapeDestroy(&w->shape));
-  PetscCall(SceneDestroy(&w->scene));
+  PetscCall(WisdomWrite(PETSC_COMM_WORLD, w->scene->wisdom));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -55,13 +30,13 @@ static PetscErrorCode PeakMemory(PetscReal *bytes) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Step(World *w, PetscReal at[LISTS]) {
+static PetscErrorCode Step(TestWorld *w, PetscReal at[LISTS]) {
   const PetscReal fast = PhaseSeconds(PHASE_FAST_SOLVE), rest = PhaseSeconds(PHASE_STEP);
   const StepReport *report = &w->scheme->report;
   PetscLogDouble start = 0;
   PetscFunctionBeginUser;
   PetscCall(Begin(&start));
-  PetscCall(SchemeStep(w->scheme, w->scene->dt));
+  PetscCall(SchemeStep(w->scheme, w->scene->time.dt));
   PetscCall(Elapsed(start, &at[WALL]));
   PetscCheck(!*report->failure, PETSC_COMM_WORLD, PETSC_ERR_USER_INPUT, "%s", report->failure);
   at[FAST] = PhaseSeconds(PHASE_FAST_SOLVE) - fast;
@@ -73,10 +48,10 @@ static PetscErrorCode Step(World *w, PetscReal at[LISTS]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static void Print(const World *w, PetscReal setup, PetscReal first, PetscReal memory, PetscInt steps,
+static void Print(const TestWorld *w, PetscReal setup, PetscReal first, PetscReal memory, PetscInt steps,
                   const PetscReal *lists) {
   printf("{\"cells\": %d, \"markers\": %d, \"ranks\": %d, \"setup\": %.6g, \"first\": %.6g, \"memory\": %.0f",
-         (int)w->scene->cells.v[0], (int)w->membrane->M, w->fluid->grid->size, (double)setup, (double)first,
+         (int)w->scene->fluid.cells[0], (int)w->membrane->M, w->fluid->grid->size, (double)setup, (double)first,
          (double)memory);
   for (int k = 0; k < LISTS; k++) {
     printf(", ");
@@ -89,7 +64,7 @@ static PetscErrorCode Bench(void) {
   PetscInt warmup = 20, steps = 10;
   PetscReal setup, first = 0, memory, at[LISTS], *lists;
   PetscLogDouble start = 0;
-  World w = {0};
+  TestWorld w = {0};
   PetscFunctionBeginUser;
   PetscCall(PetscOptionsGetInt(NULL, NULL, "-bench_warmup", &warmup, NULL));
   PetscCall(PetscOptionsGetInt(NULL, NULL, "-bench_steps", &steps, NULL));
@@ -108,7 +83,7 @@ static PetscErrorCode Bench(void) {
   PetscCall(PeakMemory(&memory));
   if (!w.fluid->grid->rank) Print(&w, setup, first, memory, steps, lists);
   PetscCall(PetscFree(lists));
-  PetscCall(Destroy(&w));
+  PetscCall(TestWorldDestroy(&w));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -43,9 +43,9 @@ static PetscObject FindObject(Simulation s, const char name[]) {
              {"mat_D", f->D},
              {"mat_L", f->L},
              {"mat_H", f->H},
-             {"mat_E", c ? c->E : NULL},
-             {"mat_S", c ? c->S : NULL},
-             {"mat_B", c ? c->B : NULL}};
+             {"mat_E", c->markers->E},
+             {"mat_S", c->S},
+             {"mat_B", c->B}};
   for (size_t i = 0; i < sizeof(all) / sizeof(all[0]); i++)
     if (!strcmp(name, all[i].name)) return (PetscObject)all[i].object;
   return NULL;
@@ -54,15 +54,15 @@ static PetscObject FindObject(Simulation s, const char name[]) {
 PetscErrorCode SimulationGetObject(Simulation s, const char name[], PetscObject *object) {
   PetscFunctionBeginUser;
   *object = FindObject(s, name);
-  if (!*object && s->scheme->ksp) PetscCall(s->scheme->ksp(s->scheme, name, (KSP *)object));
+  if (!*object && s->scheme->ops.ksp) PetscCall(s->scheme->ops.ksp(s->scheme, name, (KSP *)object));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode SimulationGetSizes(Simulation s, PetscInt *vesicles, PetscInt start[], PetscInt sizes[7]) {
   const Grid g = s->fluid->grid;
   PetscFunctionBeginUser;
-  *vesicles = s->membrane->vesicles;
-  for (PetscInt v = 0; start && v <= s->membrane->vesicles; v++) start[v] = s->membrane->start[v];
+  *vesicles = s->layout->bodies;
+  for (PetscInt v = 0; start && v <= s->layout->bodies; v++) start[v] = s->layout->start[v];
   sizes[0] = g->first;
   for (int f = FIELD_U; f <= FIELD_P; f++) {
     sizes[1 + 2 * f] = g->rows[f];
@@ -87,9 +87,9 @@ PetscErrorCode SimulationGetColumn(Simulation s, PetscInt i, const char **name) 
 PetscErrorCode SimulationGetRow(Simulation s, PetscInt vesicle, PetscReal row[]) {
   const Output o = s->output;
   PetscFunctionBeginUser;
-  PetscCheck(vesicle >= -1 && vesicle < s->membrane->vesicles, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+  PetscCheck(vesicle >= -1 && vesicle < s->layout->bodies, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "vesicle %" PetscInt_FMT ": out of range; allowed: 0 to %" PetscInt_FMT, vesicle,
-             s->membrane->vesicles - 1);
+             s->layout->bodies - 1);
   PetscCall(PetscArraycpy(row, vesicle < 0 ? o->last : o->each + vesicle * COLUMN_COUNT, COLUMN_COUNT));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -97,7 +97,6 @@ PetscErrorCode SimulationGetRow(Simulation s, PetscInt vesicle, PetscReal row[])
 PetscErrorCode SimulationGetCellVelocity(Simulation s, PetscReal u[], PetscReal v[]) {
   const PetscScalar *w;
   PetscFunctionBeginUser;
-  s->scene->flow.time = s->scheme->state.t;
   PetscCall(VecGetArrayRead(s->scheme->state.w, &w));
   PetscCall(OutputVelocityAtCells(s->output, 0, w, u));
   PetscCall(OutputVelocityAtCells(s->output, 1, w, v));

@@ -54,24 +54,20 @@ PetscErrorCode PetvesFinalize(void) {
 }
 
 static PetscErrorCode Build(MPI_Comm comm, PetvesFlow flow, void *ctx, Simulation s) {
-  const Kernel *kernel;
+  Scene scene;
   PetscFunctionBeginUser;
-  PetscCall(SceneCreate(comm, &s->scene));
-  PetscCheck(flow || s->scene->flow.type != FLOW_CUSTOM, comm, PETSC_ERR_USER_INPUT,
-             "-flow_type custom: no function given; allowed: from Python (flow=) or C (SimulationCreateWithFlow) only");
-  s->scene->flow.function = flow;
-  s->scene->flow.ctx = ctx;
-  kernel = KernelFind(s->scene->delta);
-  PetscCall(ShapeCreate(s->scene, kernel->default_spacing, kernel->least_spacing, &s->shape));
-  PetscCall(SceneAutoSteps(s->scene, &s->shape));
-  PetscCall(SceneSetInertia(s->scene, &s->shape));
-  if (*s->scene->warning) PetscCall(PetscPrintf(comm, "petves: warning: %s\n", s->scene->warning));
-  PetscCall(WisdomRead(s->scene));
-  PetscCall(FluidCreate(s->scene, &s->fluid));
-  PetscCall(MembraneCreate(&s->shape, s->scene->bending, (DerivativeType)s->scene->derivative, &s->membrane));
-  if (s->shape.vesicles) PetscCall(CouplingCreate(s->fluid->grid, s->membrane, s->scene->delta, &s->coupling));
-  PetscCall(SchemeCreate(s->scene, s->fluid, s->membrane, s->coupling, s->shape.X, &s->scheme));
-  PetscCall(SceneCheckUnused(s->scene));
+  PetscCall(SceneCreate(comm, flow, ctx, &s->scene));
+  scene = s->scene;
+  PetscCall(SceneReport(scene));
+  PetscCall(WisdomRead(comm, scene->wisdom));
+  PetscCall(FluidCreate(&scene->fluid, &s->fluid));
+  PetscCall(LayoutCreate(comm, scene->shape.vesicles, scene->shape.start, &s->layout));
+  PetscCall(MembraneCreate(s->layout, scene->shape.X, scene->membrane.bending,
+                           (DerivativeType)scene->membrane.derivative, &s->membrane));
+  PetscCall(CouplingCreate(s->fluid, s->membrane, scene->coupling.kernel,
+                           (SelfMobilityType)scene->coupling.self_mobility, &s->coupling));
+  PetscCall(SchemeCreate(scene, s->coupling, scene->shape.X, &s->scheme));
+  PetscCall(SceneCheckUnused(scene));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -93,7 +89,7 @@ PetscErrorCode SimulationCreateWithFlow(MPI_Comm comm, PetvesFlow flow, void *ct
   if (s->scene->view) PetscCall(SimulationView(s, PETSC_VIEWER_STDOUT_(comm)));
   PetscCall(PetscOptionsHasHelp(NULL, &only_help));
   if (!only_help) { /* -help leaves no files */
-    PetscCall(WisdomWrite(s->scene));
+    PetscCall(WisdomWrite(comm, s->scene->wisdom));
     PetscCall(OutputCreate(s->scene, s->scheme, &s->output));
   }
   PetscCall(PetvesSetupErrors(PETSC_FALSE));
@@ -109,8 +105,8 @@ PetscErrorCode SimulationDestroy(Simulation *simulation) {
   PetscCall(SchemeDestroy(&s->scheme));
   PetscCall(CouplingDestroy(&s->coupling));
   PetscCall(MembraneDestroy(&s->membrane));
+  PetscCall(LayoutDestroy(&s->layout));
   PetscCall(FluidDestroy(&s->fluid));
-  PetscCall(ShapeDestroy(&s->shape));
   PetscCall(SceneDestroy(&s->scene));
   PetscCall(PetscFree(*simulation));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -118,7 +114,7 @@ PetscErrorCode SimulationDestroy(Simulation *simulation) {
 
 PetscErrorCode SimulationView(Simulation s, PetscViewer viewer) {
   PetscFunctionBeginUser;
-  PetscCall(SceneView(s->scene, &s->shape, viewer));
+  PetscCall(SceneView(s->scene, viewer));
   PetscCall(SchemeView(s->scheme, viewer));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -126,7 +122,7 @@ PetscErrorCode SimulationView(Simulation s, PetscViewer viewer) {
 /* Files that are due after a good step. */
 static PetscErrorCode WriteDue(Simulation s) {
   const State *q = &s->scheme->state;
-  const PetscInt every = s->scene->checkpoint_every;
+  const PetscInt every = s->scene->output.checkpoint_every;
   PetscFunctionBeginUser;
   if (q->t >= s->next_output - 1e-9 * q->dt) {
     PetscCall(OutputFields(s->output, PETSC_TRUE));
@@ -139,19 +135,17 @@ static PetscErrorCode WriteDue(Simulation s) {
 
 static PetscErrorCode IsSteady(Simulation s, PetscBool *steady) {
   const State *q = &s->scheme->state;
-  const PetscScalar *X, *U;
+  const PetscReal tolerance = s->scene->time.steady_tol;
+  PetscReal speed;
   PetscFunctionBeginUser;
   *steady = PETSC_FALSE;
-  if (s->scene->steady_tol <= 0 || !s->membrane->vesicles) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(VecGetArrayRead(q->X, &X));
-  PetscCall(VecGetArrayRead(q->U, &U));
-  *steady = MembraneNormalSpeed(s->membrane, X, U) < s->scene->steady_tol ? PETSC_TRUE : PETSC_FALSE;
-  PetscCall(VecRestoreArrayRead(q->U, &U));
-  PetscCall(VecRestoreArrayRead(q->X, &X));
+  if (tolerance <= 0 || !s->layout->bodies) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(MembraneNormalSpeed(s->membrane, q->X, q->U, &speed));
+  *steady = speed < tolerance ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* One step of at most `most` (with -time_adapt), its row of series.csv and the files that are due. */
+/* One step, of at most `most` where step sizes are judged, its row of series.csv and the files that are due. */
 static PetscErrorCode TakeStep(Simulation s, PetscReal most, const char **failure) {
   const StepReport *report = &s->scheme->report;
   Output o = s->output;
@@ -160,7 +154,7 @@ static PetscErrorCode TakeStep(Simulation s, PetscReal most, const char **failur
   PetscCall(SimulationBegin(s));
   PetscCall(PetscTime(&start));
   o->frames = PetscMin(o->frames, o->scheduled); /* an end that was not the end */
-  PetscCall(SchemeStep(s->scheme, s->scene->adapt ? most : s->scene->dt));
+  PetscCall(SchemeStep(s->scheme, most));
   *failure = *report->failure ? report->failure : NULL;
   if (*failure) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(OutputSeries(s->output));
@@ -177,7 +171,7 @@ PetscErrorCode SimulationBegin(Simulation s) {
   if (s->begun) PetscFunctionReturn(PETSC_SUCCESS);
   s->begun = PETSC_TRUE;
   s->reason = "finished";
-  if (!*s->scene->restart)
+  if (!*s->scene->output.restart)
     PetscCall(OutputSeries(s->output));
   else /* the checkpoint's row is there already */
     PetscCall(OutputMeasureVesicles(s->output));
@@ -187,7 +181,7 @@ PetscErrorCode SimulationBegin(Simulation s) {
 }
 
 PetscErrorCode SimulationStep(Simulation s, const char **failure) {
-  const PetscReal left = s->scene->t_end - s->scheme->state.t;
+  const PetscReal left = s->scene->time.end - s->scheme->state.t;
   PetscFunctionBeginUser;
   PetscCall(TakeStep(s, left > 0 ? left : PETSC_MAX_REAL, failure));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -201,8 +195,8 @@ PetscErrorCode SimulationAdvance(Simulation s, PetscReal until, PetscBool *stepp
   *stepped = PETSC_FALSE;
   PetscCall(SimulationBegin(s));
   s->reason = s->steady ? "steady" : "finished";
-  if (s->steady || q->t >= until - (s->scene->adapt ? 1e-9 : 0.5) * s->scene->dt) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(StopRequested(s->scene->comm, s->scene->wall_limit,
+  if (s->steady || StepFinished(&s->scheme->policy, q->t, until)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(StopRequested(s->scene->comm, s->scene->time.wall_limit,
                           1 + 1.5 * (s->longest_step + s->output->checkpoint_seconds), &why));
   if (why) {
     s->reason = "stopped";
@@ -232,7 +226,7 @@ PetscErrorCode SimulationRun(Simulation s, PetscBool *good) {
   PetscBool stepped = PETSC_TRUE;
   PetscFunctionBeginUser;
   PetscCall(SimulationBegin(s));
-  while (stepped && !failure) PetscCall(SimulationAdvance(s, s->scene->t_end, &stepped, &failure));
+  while (stepped && !failure) PetscCall(SimulationAdvance(s, s->scene->time.end, &stepped, &failure));
   PetscCall(SimulationEnd(s, failure));
   *good = failure ? PETSC_FALSE : PETSC_TRUE;
   if (failure && !s->fluid->grid->rank)

@@ -4,8 +4,8 @@
 
 struct _p_Simulation {
   Scene scene;
-  Shape shape;
   Fluid fluid;
+  Layout layout;
   Membrane membrane;
   Coupling coupling;
   Scheme scheme;

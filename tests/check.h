@@ -1,8 +1,7 @@
 /* What every C test needs: a program that states facts, one line each ("ok ..." or "not ok ..."), and fails when one
    does not hold. Each test_*.c is one MPI program, run by test_programs.py on several rank counts. */
 #pragma once
-#include "scheme/scheme.h"
-#include "petves.h"
+#include "base/base.h"
 
 static int check_failed;
 
@@ -31,20 +30,6 @@ static inline int CheckMain(int argc, char **argv, PetscErrorCode (*facts)(void)
   return check_failed ? 1 : 0;
 }
 
-/* The paper's discretisation of the membrane, which tests start from: options given after it win. */
-#define PAPER_MEMBRANE "-delta_type ib6 -membrane_derivative fd -coupling_self_mobility none -scheme_area_target false "
-
-/* TestScene - the scene of PAPER_MEMBRANE and an options text, which replaces what earlier scenes of the same program
- * set. */
-static inline PetscErrorCode TestScene(const char options[], Scene *scene) {
-  PetscFunctionBeginUser;
-  PetscCall(PetscOptionsClear(NULL));
-  PetscCall(PetscOptionsInsertString(NULL, PAPER_MEMBRANE));
-  PetscCall(PetscOptionsInsertString(NULL, options));
-  PetscCall(SceneCreate(PETSC_COMM_WORLD, scene));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* TestRandom - reproducible numbers in (-1, 1), the same on every rank and in every run. */
 static inline PetscReal TestRandom(unsigned *state) {
   *state = *state * 1664525u + 1013904223u;
@@ -64,44 +49,5 @@ static inline PetscErrorCode TestRandomVec(unsigned seed, Vec x) {
   PetscCall(VecGetArray(x, &a));
   for (PetscInt i = 0; i < n; i++) a[i] = TestRandom(&state);
   PetscCall(VecRestoreArray(x, &a));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* A fluid and a membrane in it, from options; no scheme, no files. */
-typedef struct {
-  Scene scene;
-  Fluid fluid;
-  Shape shape;
-  Membrane membrane;
-  Coupling coupling;
-  Vec X;
-} TestWorld;
-
-static inline PetscErrorCode TestWorldCreate(const char options[], TestWorld *w) {
-  PetscScalar *x;
-  const Kernel *kernel;
-  PetscFunctionBeginUser;
-  PetscCall(TestScene(options, &w->scene));
-  PetscCall(FluidCreate(w->scene, &w->fluid));
-  kernel = KernelFind(w->scene->delta);
-  PetscCall(ShapeCreate(w->scene, kernel->default_spacing, kernel->least_spacing, &w->shape));
-  PetscCall(MembraneCreate(&w->shape, w->scene->bending, (DerivativeType)w->scene->derivative, &w->membrane));
-  PetscCall(CouplingCreate(w->fluid->grid, w->membrane, w->scene->delta, &w->coupling));
-  PetscCall(MembraneCreateMarkerVec(w->membrane, &w->X));
-  PetscCall(VecGetArray(w->X, &x));
-  PetscCall(PetscArraycpy(x, w->shape.X, 2 * w->membrane->M));
-  PetscCall(VecRestoreArray(w->X, &x));
-  PetscCall(CouplingSetMarkers(w->coupling, w->X));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static inline PetscErrorCode TestWorldDestroy(TestWorld *w) {
-  PetscFunctionBeginUser;
-  PetscCall(VecDestroy(&w->X));
-  PetscCall(CouplingDestroy(&w->coupling));
-  PetscCall(MembraneDestroy(&w->membrane));
-  PetscCall(ShapeDestroy(&w->shape));
-  PetscCall(FluidDestroy(&w->fluid));
-  PetscCall(SceneDestroy(&w->scene));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,6 +1,6 @@
 /* Operator pairs are exact transposes, on random data, for every boundary pair, with markers across periodic seams and
    slab borders; shells equal the assembled operators. */
-#include "check.h"
+#include "world.h"
 
 #define TOLERANCE 1e-13 /* relative: round-off of sums of some thousand terms */
 

@@ -1,5 +1,5 @@
 /* The tension problem: the assembled Chat is S^T S + S^T G diag(L)^-1 G^T S, and the operator is symmetric positive. */
-#include "check.h"
+#include "world.h"
 
 /* 1/diag(L), from the assembled L. */
 static PetscErrorCode InverseDiagonal(Grid g, Vec *d) {

@@ -1,6 +1,6 @@
 /* The coupled problem's parts: its solution put back into the equations of the step, Mob against E A^-1 E^T column by
    column, the wall forces' preconditioner as an inverse. */
-#include "check.h"
+#include "world.h"
 #include "coupling/saddle.h"
 
 typedef struct {
@@ -135,7 +135,7 @@ static PetscErrorCode CheckWalls(const char options[], const char name[], PetscR
   PetscReal error = 0, off = 0, size;
   PetscFunctionBeginUser;
   PetscCall(TestScene(options, &scene));
-  PetscCall(FluidCreate(scene, &fluid));
+  PetscCall(FluidCreate(&scene->fluid, &fluid));
   PetscCall(FluidSetTimeCoefficient(fluid, a0));
   PetscCall(StokesCreate(fluid, &stokes));
   PetscCall(WallsCreate(fluid, &walls));

@@ -169,7 +169,7 @@ MISTAKES = {
         1,
         ["-vesicle_area", "2 numbers", "-vesicle_count 3"],
     ),
-    "no_vesicles": ("-vesicle_count 0", 1, ["-vesicle_count 0", "[1,16]"]),
+    "no_vesicles": ("-vesicle_count 0", 1, ["-vesicle_count 0", ">=1"]),
     "overlap": (f"{TWO} -vesicle_center -0.1,0,0.1,0", 2, ["-vesicle_center", "vesicles 1 and 2", "overlap"]),
     "inside": ("-vesicle_count 2 -vesicle_center 0,0,0,0 -vesicle_semi_axes .5,.5,.2,.2", 1, ["overlap"]),
     "second_near_wall": (f"{TWO} -vesicle_center -0.4,0,0.7,0", 1, ["vesicle 2", "wall x_max", "needs 3"]),

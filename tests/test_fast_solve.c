@@ -1,6 +1,6 @@
 /* Fast solves: the stencil applied to the solution gives the right-hand side back, for every boundary pair, field and
    grid shape; FFTW and hypre agree. */
-#include "check.h"
+#include "world.h"
 
 typedef struct {
   const char *box, *cells;
@@ -80,7 +80,7 @@ static PetscErrorCode CheckGrid(const Size *size, const char bc[], PetscBool hyp
   PetscCall(PetscSNPrintf(options, sizeof(options), "-domain_box %s -domain_cells %s %s -vesicle_shape none", size->box,
                           size->cells, bc));
   PetscCall(TestScene(options, &scene));
-  PetscCall(GridCreate(scene, &grid));
+  PetscCall(GridCreate(&scene->fluid, &grid));
   for (int f = 0; f < 3; f++) {
     FastSolver fftw, tridiagonal, other;
     PetscCall(FastSolverCreate(grid, (Field)f, "fftw", 0, &fftw));

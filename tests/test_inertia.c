@@ -1,6 +1,6 @@
 /* Convection: its discrete form keeps energy and momentum and is of second order; Navier-Stokes flow against a vortex
    carried by a stream, and against manufactured solutions. Quasi-steady flow: the limit of a slow step. */
-#include "check.h"
+#include "world.h"
 #include "fluid/stokes.h"
 #include "fluid/convection.h"
 
@@ -75,8 +75,8 @@ static PetscReal Laplacian(Exact f, int c, const PetscReal at[3]) {
 static PetscReal ExactConvection(const Flow *flow, Exact f, int c, const PetscReal at[3]) {
   PetscReal value[3], background[2], gradient[2][2], sum = 0;
   f(at[0], at[1], at[2], value);
-  FlowVelocity(flow, at[0], at[1], background);
-  FlowGradient(flow, at[0], at[1], gradient);
+  FlowVelocity(flow, 0, at[0], at[1], background);
+  FlowGradient(flow, 0, at[0], at[1], gradient);
   for (int b = 0; b < 2; b++) sum += (value[b] + background[b]) * First(f, c, b, at) + value[b] * gradient[c][b];
   return sum;
 }
@@ -97,22 +97,14 @@ static PetscErrorCode Sample(Scene scene, Grid g, Exact f, PetscReal t, What wha
         f(at[0], at[1], t, value);
         *entry = value[c];
         if (what != VALUE) *entry = ExactConvection(&scene->flow, f, c, at);
-        if (what == FORCE) *entry += First(f, c, 2, at) + First(f, 2, c, at) - scene->viscosity * Laplacian(f, c, at);
+        if (what == FORCE) *entry += First(f, c, 2, at) + First(f, 2, c, at) - scene->fluid.nu * Laplacian(f, c, at);
       }
   PetscCall(VecRestoreArray(w, &a));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* A scheme without vesicles, of n cells across, options after the common ones. */
-typedef struct {
-  Scene scene;
-  Shape shape;
-  Fluid fluid;
-  Membrane membrane;
-  Scheme scheme;
-} Run;
-
-static PetscErrorCode RunCreate(const char options[], PetscInt n, PetscReal dt, Run *r) {
+static PetscErrorCode RunCreate(const char options[], PetscInt n, PetscReal dt, TestWorld *r) {
   char all[1024];
   PetscFunctionBeginUser;
   PetscCall(PetscSNPrintf(all, sizeof(all),
@@ -120,21 +112,7 @@ static PetscErrorCode RunCreate(const char options[], PetscInt n, PetscReal dt, 
                           "-fluid_inertia convective -domain_cells %" PetscInt_FMT ",%" PetscInt_FMT
                           " -time_step %.17g %s",
                           NU, n, n, (double)dt, options));
-  PetscCall(TestScene(all, &r->scene));
-  PetscCall(ShapeCreate(r->scene, 1.5, 1, &r->shape));
-  PetscCall(FluidCreate(r->scene, &r->fluid));
-  PetscCall(MembraneCreate(&r->shape, 0, DERIVATIVE_FD, &r->membrane));
-  PetscCall(SchemeCreate(r->scene, r->fluid, r->membrane, NULL, r->shape.X, &r->scheme));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode RunDestroy(Run *r) {
-  PetscFunctionBeginUser;
-  PetscCall(SchemeDestroy(&r->scheme));
-  PetscCall(MembraneDestroy(&r->membrane));
-  PetscCall(FluidDestroy(&r->fluid));
-  PetscCall(ShapeDestroy(&r->shape));
-  PetscCall(SceneDestroy(&r->scene));
+  PetscCall(TestRunCreate(all, r));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -143,7 +121,7 @@ static PetscErrorCode RunDestroy(Run *r) {
 static PetscErrorCode Error(const char options[], Exact f, PetscBool forced, PetscInt n, PetscInt steps,
                             PetscReal t_end, PetscReal *error, Vec *w) {
   const PetscReal dt = t_end / steps;
-  Run r;
+  TestWorld r;
   Vec exact;
   PetscFunctionBeginUser;
   PetscCall(RunCreate(options, n, dt, &r));
@@ -164,7 +142,7 @@ static PetscErrorCode Error(const char options[], Exact f, PetscBool forced, Pet
     PetscCall(VecCopy(r.scheme->state.w, *w));
   }
   PetscCall(VecDestroy(&exact));
-  PetscCall(RunDestroy(&r));
+  PetscCall(TestWorldDestroy(&r));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -175,7 +153,7 @@ static PetscErrorCode Error(const char options[], Exact f, PetscBool forced, Pet
 /* u.N(u) = 0 to rounding for any velocity, divergence or not, on any carrying stream that walls do not cut; and for a
    divergence-free one in a periodic box N adds up to zero. */
 static PetscErrorCode CheckConservation(const char name[], const char options[]) {
-  Run r;
+  TestWorld r;
   Convection c;
   Stokes stokes;
   Vec w, N;
@@ -183,7 +161,7 @@ static PetscErrorCode CheckConservation(const char name[], const char options[])
   PetscScalar sum;
   PetscFunctionBeginUser;
   PetscCall(RunCreate(options, 24, 1e-6, &r));
-  PetscCall(ConvectionCreate(r.scene, r.fluid, &c));
+  PetscCall(ConvectionCreate(&r.scene->flow, r.fluid, &c));
   PetscCall(VecDuplicate(r.scheme->state.w, &w));
   PetscCall(VecDuplicate(w, &N));
   PetscCall(TestRandomVec(3, w));
@@ -209,7 +187,7 @@ static PetscErrorCode CheckConservation(const char name[], const char options[])
   PetscCall(VecDestroy(&w));
   PetscCall(VecDestroy(&N));
   PetscCall(ConvectionDestroy(&c));
-  PetscCall(RunDestroy(&r));
+  PetscCall(TestWorldDestroy(&r));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -218,11 +196,11 @@ static PetscErrorCode CheckConsistency(const char name[], const char options[], 
   PetscReal error[2];
   PetscFunctionBeginUser;
   for (int k = 0; k < 2; k++) {
-    Run r;
+    TestWorld r;
     Convection c;
     Vec w, N;
     PetscCall(RunCreate(options, 24 << k, 1e-6, &r));
-    PetscCall(ConvectionCreate(r.scene, r.fluid, &c));
+    PetscCall(ConvectionCreate(&r.scene->flow, r.fluid, &c));
     PetscCall(VecDuplicate(r.scheme->state.w, &w));
     PetscCall(VecDuplicate(w, &N));
     PetscCall(Sample(r.scene, r.fluid->grid, f, 0.3, VALUE, w));
@@ -234,7 +212,7 @@ static PetscErrorCode CheckConsistency(const char name[], const char options[], 
     PetscCall(VecDestroy(&w));
     PetscCall(VecDestroy(&N));
     PetscCall(ConvectionDestroy(&c));
-    PetscCall(RunDestroy(&r));
+    PetscCall(TestWorldDestroy(&r));
   }
   CHECK(error[0] / error[1] > 3.6 && error[0] < 0.1, "%s: convection is of second order, error %.1e and %.1e", name,
         (double)error[0], (double)error[1]);
@@ -280,7 +258,7 @@ static PetscErrorCode CheckQuasiSteady(const char name[], const char options[]) 
   PetscFunctionBeginUser;
   for (int k = 0; k < 2; k++) {
     char all[256];
-    Run r;
+    TestWorld r;
     Stokes stokes;
     PetscCall(PetscSNPrintf(all, sizeof(all), "%s %s", options, inertia[k]));
     PetscCall(RunCreate(all, 24, 1, &r));
@@ -295,7 +273,7 @@ static PetscErrorCode CheckQuasiSteady(const char name[], const char options[]) 
     PetscCall(StokesSolve(stokes, force, NULL, w[k], p[k]));
     PetscCall(StokesDestroy(&stokes));
     PetscCall(VecDestroy(&force));
-    PetscCall(RunDestroy(&r));
+    PetscCall(TestWorldDestroy(&r));
   }
   PetscCall(VecSum(w[0], &mean));
   PetscCall(VecNorm(w[0], NORM_2, &size));

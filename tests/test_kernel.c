@@ -1,5 +1,5 @@
-/* Kernels: values and moments of DESIGN section 4, at many positions of a marker in its cell. */
-#include "check.h"
+/* Kernels: values and moments (docs/method.md, Kernels), at many positions of a marker in its cell. */
+#include "world.h"
 
 #define POSITIONS 997
 

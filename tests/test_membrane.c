@@ -1,25 +1,30 @@
 /* Membranes: initial shapes with equal edges, measures of exact shapes, bending and stretching operators. */
-#include "check.h"
+#include "world.h"
+
+/* The membrane of an options text. */
+static PetscErrorCode FromOptions(const char options[], Scene *scene, Membrane *m) {
+  PetscFunctionBeginUser;
+  PetscCall(TestScene(options, scene));
+  PetscCall(MembraneCreate(&(*scene)->shape, (*scene)->membrane.bending, DERIVATIVE_FD, m));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
 
 /* Membrane of M markers on an ellipse, turned and moved. */
-static PetscErrorCode Ellipse(PetscInt M, PetscReal a, PetscReal b, PetscReal degrees, Scene *scene, Shape *shape,
-                              Membrane *m) {
+static PetscErrorCode Ellipse(PetscInt M, PetscReal a, PetscReal b, PetscReal degrees, Scene *scene, Membrane *m) {
   char options[512];
   PetscFunctionBeginUser;
   PetscCall(PetscSNPrintf(options, sizeof(options),
                           "-domain_box -8,8,-8,8 -domain_cells 800,800 -vesicle_semi_axes %.17g,%.17g -vesicle_angle "
-                          "%.17g -vesicle_center 1.25,-0.5 -vesicle_markers %d -vesicle_bending 0.3",
+                          "%.17g -vesicle_center 1.25,-0.5 -vesicle_markers %d -vesicle_bending 0.3 "
+                          "-vesicle_allow_close_markers",
                           (double)a, (double)b, (double)degrees, (int)M));
-  PetscCall(TestScene(options, scene));
-  PetscCall(ShapeCreate(*scene, 1, 0, shape));
-  PetscCall(MembraneCreate(shape, (*scene)->bending, DERIVATIVE_FD, m));
+  PetscCall(FromOptions(options, scene, m));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Destroy(Scene *scene, Shape *shape, Membrane *m) {
+static PetscErrorCode Destroy(Scene *scene, Membrane *m) {
   PetscFunctionBeginUser;
   PetscCall(MembraneDestroy(m));
-  PetscCall(ShapeDestroy(shape));
   PetscCall(SceneDestroy(scene));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -40,13 +45,12 @@ static PetscErrorCode CheckCircle(void) {
   const PetscReal R = 0.7, half = PETSC_PI / M, omega = 0.83, edge = 2 * R * PetscSinReal(half);
   const PetscReal energy = 0.5 * 0.3 * M * edge * PetscSqr(2 * PetscSinReal(half) / edge);
   Scene scene;
-  Shape shape;
   Membrane m;
   Measures got;
   PetscReal error, frequency, *U;
   PetscFunctionBeginUser;
-  PetscCall(Ellipse(M, R, R, 30, &scene, &shape, &m));
-  MembraneMeasure(m, 0, shape.X, &got);
+  PetscCall(Ellipse(M, R, R, 30, &scene, &m));
+  MembraneMeasure(m, 0, scene->shape.X, &got);
   error = PetscAbsReal(got.area / (0.5 * M * R * R * PetscSinReal(2 * half)) - 1);
   CHECK(error < 1e-13, "circle: area of the regular polygon, error %.1e", error);
   error = PetscAbsReal(got.length / (M * edge) - 1);
@@ -54,26 +58,26 @@ static PetscErrorCode CheckCircle(void) {
   CHECK(got.edge_ratio - 1 < 1e-12, "circle: equal edges, ratio - 1 = %.1e", got.edge_ratio - 1);
   error = PetscAbsReal(got.center[0] - 1.25) + PetscAbsReal(got.center[1] + 0.5);
   CHECK(error < 1e-13, "circle: centroid, error %.1e", error);
-  error = PetscAbsReal(MembraneBendingEnergy(m, 0, shape.X) / energy - 1);
+  error = PetscAbsReal(MembraneBendingEnergy(m, 0, scene->shape.X) / energy - 1);
   CHECK(error < 1e-10, "circle: bending energy of the regular polygon, error %.1e", error);
   PetscCall(PetscMalloc1(2 * M, &U));
   for (PetscInt k = 0; k < M; k++) {
-    U[2 * k] = 0.4 - omega * (shape.X[2 * k + 1] + 0.5); /* rotation and translation */
-    U[2 * k + 1] = -0.2 + omega * (shape.X[2 * k] - 1.25);
+    U[2 * k] = 0.4 - omega * (scene->shape.X[2 * k + 1] + 0.5); /* rotation and translation */
+    U[2 * k + 1] = -0.2 + omega * (scene->shape.X[2 * k] - 1.25);
   }
-  PetscCall(MembraneFrequency(m, 0, shape.X, U, &frequency));
+  PetscCall(MembraneFrequency(m, 0, scene->shape.X, U, &frequency));
   CHECK(PetscAbsReal(frequency / omega - 1) < 1e-12, "circle: rigid rotation has frequency omega, error %.1e",
         PetscAbsReal(frequency / omega - 1));
-  error = MembraneNormalSpeed(m, shape.X, U);
+  error = MembraneNormalSpeed(m, scene->shape.X, U);
   CHECK(error > 0.4, "circle: normal speed sees the translation, %.3f", error);
   for (PetscInt k = 0; k < 2 * M; k++) U[k] -= k % 2 ? -0.2 : 0.4;
-  error = MembraneNormalSpeed(m, shape.X, U);
+  error = MembraneNormalSpeed(m, scene->shape.X, U);
   CHECK(error < 1e-13, "circle: pure rotation has no normal speed, %.1e", error);
   for (PetscInt k = 0; k < M; k++) U[2 * k + 1] = 0;
-  PetscCall(MembraneFrequency(m, 0, shape.X, U, &frequency));
+  PetscCall(MembraneFrequency(m, 0, scene->shape.X, U, &frequency));
   CHECK(PetscIsNanReal(frequency), "circle: no frequency where the membrane does not rotate in one sense");
   PetscCall(PetscFree(U));
-  PetscCall(Destroy(&scene, &shape, &m));
+  PetscCall(Destroy(&scene, &m));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -86,18 +90,17 @@ static PetscErrorCode CheckEllipse(PetscReal degrees) {
   for (int level = 0; level < 2; level++) {
     const PetscInt M = level ? 192 : 96;
     Scene scene;
-    Shape shape;
     Membrane m;
     Measures got;
-    PetscCall(Ellipse(M, a, b, degrees, &scene, &shape, &m));
-    MembraneMeasure(m, 0, shape.X, &got);
+    PetscCall(Ellipse(M, a, b, degrees, &scene, &m));
+    MembraneMeasure(m, 0, scene->shape.X, &got);
     CHECK(got.edge_ratio - 1 < 1e-12, "ellipse at %g degrees: %d equal edges, ratio - 1 = %.1e", degrees, (int)M,
           got.edge_ratio - 1);
     for (PetscInt k = 0; k < M; k++) {
-      const PetscReal x = shape.X[2 * k] - 1.25, y = shape.X[2 * k + 1] + 0.5;
+      const PetscReal x = scene->shape.X[2 * k] - 1.25, y = scene->shape.X[2 * k + 1] + 0.5;
       off = PetscMax(off, PetscAbsReal(PetscSqr((c * x + s * y) / a) + PetscSqr((c * y - s * x) / b) - 1));
     }
-    off = PetscMax(off, PetscAbsReal(shape.X[0] - 1.25 - a * c) + PetscAbsReal(shape.X[1] + 0.5 - a * s));
+    off = PetscMax(off, PetscAbsReal(scene->shape.X[0] - 1.25 - a * c) + PetscAbsReal(scene->shape.X[1] + 0.5 - a * s));
     CHECK(off < 1e-13, "ellipse at %g degrees: markers on it, marker 0 on the first semi-axis, error %.1e", degrees,
           off);
     off = PetscAbsReal(PetscSinReal(got.inclination - angle));
@@ -109,7 +112,7 @@ static PetscErrorCode CheckEllipse(PetscReal degrees) {
     CHECK(off < 1e-14, "ellipse at %g degrees: ds is the mean chord, A0 the polygon's area, error %.1e", degrees, off);
     error[level][0] = area / got.area - 1;
     error[level][1] = length / got.length - 1;
-    PetscCall(Destroy(&scene, &shape, &m));
+    PetscCall(Destroy(&scene, &m));
   }
   for (int k = 0; k < 2; k++) {
     const PetscReal order = PetscLog2Real(error[0][k] / error[1][k]);
@@ -139,7 +142,6 @@ static PetscErrorCode CheckFile(void) {
   const PetscReal a = 0.5, b = 0.3;
   PetscMPIInt rank;
   Scene scene;
-  Shape shape;
   Membrane m;
   Measures got;
   PetscReal off = 0;
@@ -159,38 +161,36 @@ static PetscErrorCode CheckFile(void) {
   }
   PetscCallMPI(MPI_Barrier(PETSC_COMM_WORLD));
   PetscCall(PetscSNPrintf(options, sizeof(options), "-vesicle_shape file -vesicle_file %s -vesicle_markers 64", path));
-  PetscCall(TestScene(options, &scene));
-  PetscCall(ShapeCreate(scene, 1, 0, &shape));
-  PetscCall(MembraneCreate(&shape, 1, DERIVATIVE_FD, &m));
-  MembraneMeasure(m, 0, shape.X, &got);
+  PetscCall(FromOptions(options, &scene, &m));
+  MembraneMeasure(m, 0, scene->shape.X, &got);
   for (PetscInt k = 0; k < m->M; k++)
-    off = PetscMax(off, PetscAbsReal(PetscSqr(shape.X[2 * k] / a) + PetscSqr(shape.X[2 * k + 1] / b) - 1));
+    off = PetscMax(off,
+                   PetscAbsReal(PetscSqr(scene->shape.X[2 * k] / a) + PetscSqr(scene->shape.X[2 * k + 1] / b) - 1));
   CHECK(m->M == 64 && off < 2e-4, "curve file: 64 markers on the ellipse, error %.1e", off);
   CHECK(got.edge_ratio - 1 < 1e-12, "curve file: equal edges, ratio - 1 = %.1e", got.edge_ratio - 1);
   CHECK(got.area > 0, "curve file: turned counter-clockwise, area %.4f", got.area);
-  PetscCall(Destroy(&scene, &shape, &m));
+  PetscCall(Destroy(&scene, &m));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* E(X + e V) - E(X - e V) = 2 e <c_b ds D4 X, V>, exactly, as the energy is quadratic; and D4 is symmetric. */
 static PetscErrorCode CheckOperators(void) {
   Scene scene;
-  Shape shape;
   Membrane m;
   PetscInt n;
   PetscReal *F, *V, *W, *work, *tau, slope, product = 0, swapped = 0, error, e = 1e-2, size = 0;
   unsigned state = 5;
   PetscFunctionBeginUser;
-  PetscCall(Ellipse(48, 0.6, 0.25, 17, &scene, &shape, &m));
+  PetscCall(Ellipse(48, 0.6, 0.25, 17, &scene, &m));
   n = 2 * m->M;
   PetscCall(PetscMalloc5(n, &F, n, &V, n, &W, n, &work, n, &tau));
   for (PetscInt k = 0; k < n; k++) V[k] = TestRandom(&state);
-  for (PetscInt k = 0; k < n; k++) W[k] = shape.X[k] + e * V[k];
+  for (PetscInt k = 0; k < n; k++) W[k] = scene->shape.X[k] + e * V[k];
   slope = MembraneBendingEnergy(m, 0, W);
-  for (PetscInt k = 0; k < n; k++) W[k] = shape.X[k] - e * V[k];
+  for (PetscInt k = 0; k < n; k++) W[k] = scene->shape.X[k] - e * V[k];
   slope = (slope - MembraneBendingEnergy(m, 0, W)) / (2 * e);
   PetscCall(PetscArrayzero(F, n));
-  MembraneBending(m, m->bending, shape.X, work, F);
+  MembraneBending(m, m->bending, scene->shape.X, work, F);
   for (PetscInt k = 0; k < n; k++) product += F[k] * V[k], size += PetscAbsReal(F[k] * V[k]);
   error = PetscAbsReal(product - slope) / size;
   CHECK(error < 1e-10, "bending is the gradient of the energy, error %.1e", error);
@@ -204,7 +204,7 @@ static PetscErrorCode CheckOperators(void) {
   for (PetscInt k = 0; k < n; k++) swapped += F[k] * W[k];
   CHECK(PetscAbsReal(product - swapped) < 1e-13 * size, "bending is symmetric, error %.1e",
         PetscAbsReal(product - swapped) / size);
-  MembraneTangents(m, shape.X, tau);
+  MembraneTangents(m, scene->shape.X, tau);
   MembraneStretching(m, tau, V, work);
   product = swapped = size = 0;
   for (PetscInt k = 0; k < m->M; k++) product += work[k] * W[k], size += PetscAbsReal(work[k] * W[k]);
@@ -213,13 +213,14 @@ static PetscErrorCode CheckOperators(void) {
   for (PetscInt k = 0; k < n; k++) swapped += F[k] * V[k];
   CHECK(PetscAbsReal(product - swapped) < 1e-13 * size, "Dm and Dm^T adjoint, error %.1e",
         PetscAbsReal(product - swapped) / size);
-  for (PetscInt k = 0; k < m->M; k++) V[2 * k] = 3 - 2 * shape.X[2 * k + 1], V[2 * k + 1] = 1 + 2 * shape.X[2 * k];
+  for (PetscInt k = 0; k < m->M; k++)
+    V[2 * k] = 3 - 2 * scene->shape.X[2 * k + 1], V[2 * k + 1] = 1 + 2 * scene->shape.X[2 * k];
   MembraneStretching(m, tau, V, work);
   error = 0;
   for (PetscInt k = 0; k < m->M; k++) error = PetscMax(error, PetscAbsReal(work[k]));
   CHECK(error < 1e-14, "a rigid motion stretches no edge, error %.1e", error);
   PetscCall(PetscFree5(F, V, W, work, tau));
-  PetscCall(Destroy(&scene, &shape, &m));
+  PetscCall(Destroy(&scene, &m));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -1,6 +1,6 @@
 /* Edges put right after a step (src/membrane/restore.c): exact on known shapes, Newton's quadratic convergence, the
    least displacement, and nothing where nothing is wrong or no freedom is left. */
-#include "check.h"
+#include "world.h"
 
 static const char *const derivatives[] = {"fd", "bending", "spectral"};
 
@@ -43,7 +43,7 @@ static PetscErrorCode CheckRestored(int derivative, PetscReal epsilon) {
   PetscCall(PetscMalloc2(2 * M, &X, 2 * M, &before));
   for (int q = 0; q < 8; q++) wave[q] = TestRandom(&seed);
   for (PetscInt k = 0; k < 2 * M; k++) {
-    X[k] = w.shape.X[k] + 0.2 * epsilon * w.membrane->ds[0] * TestRandom(&seed);
+    X[k] = w.scene->shape.X[k] + 0.2 * epsilon * w.membrane->ds[0] * TestRandom(&seed);
     for (int q = 0; q < 4; q++)
       X[k] += epsilon * 0.1 * wave[2 * q + k % 2] * PetscCosReal(2 * PETSC_PI * (q + 1) * (k / 2) / M) / (q + 1);
     before[k] = X[k];
@@ -80,7 +80,7 @@ static PetscErrorCode CheckNearest(int derivative) {
     for (int c = 0; c < 2; c++) {
       for (int side = 0; side < 2; side++) {
         Measures measures;
-        PetscCall(PetscArraycpy(X, w.shape.X, n));
+        PetscCall(PetscArraycpy(X, w.scene->shape.X, n));
         X[k + c] += side ? step : -step;
         MembraneMeasure(m, 0, X, &measures);
         change[side] = measures.area;
@@ -88,7 +88,7 @@ static PetscErrorCode CheckNearest(int derivative) {
       normal[k + c] = (change[1] - change[0]) / (2 * step);
     }
   }
-  MembraneEdges(m, 0, w.shape.X, e);
+  MembraneEdges(m, 0, w.scene->shape.X, e);
   for (PetscInt k = 0; k < n; k += 2) {
     const PetscReal lambda = 0.5 + PetscCosReal(3 * PETSC_PI * k / m->M + 0.4);
     for (int c = 0; c < 2; c++) e[k + c] *= lambda;
@@ -105,9 +105,9 @@ static PetscErrorCode CheckNearest(int derivative) {
   }
   for (int t = 0; t < 2; t++) {
     PetscReal found;
-    for (PetscInt k = 0; k < n; k++) X[k] = w.shape.X[k] + (t ? 0.005 : 0.01) * m->ds[0] / largest * across[k];
+    for (PetscInt k = 0; k < n; k++) X[k] = w.scene->shape.X[k] + (t ? 0.005 : 0.01) * m->ds[0] / largest * across[k];
     PetscCall(MembraneRestoreEdges(m, 0, 1e-6, X, &found));
-    for (PetscInt k = 0; k < n; k++) off[t] = PetscMax(off[t], PetscAbsReal(X[k] - w.shape.X[k]));
+    for (PetscInt k = 0; k < n; k++) off[t] = PetscMax(off[t], PetscAbsReal(X[k] - w.scene->shape.X[k]));
   }
   CHECK(off[0] / off[1] > 3.6 && off[0] / off[1] < 4.4 && off[0] < 0.001 * m->ds[0],
         "%s: back to the nearest shape but for second order, %.1e and %.1e from half as far", derivatives[derivative],
@@ -129,7 +129,7 @@ static PetscErrorCode CheckQuadratic(int derivative) {
   for (PetscInt most = 0; most < 4; most++) {
     for (PetscInt k = 0; k < 2 * M; k++) {
       const PetscReal t = 2 * PETSC_PI * (k / 2) / M;
-      X[k] = w.shape.X[k] - (k % 2 ? 0.05 : 4.1) + 0.01 * PetscCosReal(3 * t + k % 2);
+      X[k] = w.scene->shape.X[k] - (k % 2 ? 0.05 : 4.1) + 0.01 * PetscCosReal(3 * t + k % 2);
     }
     PetscCall(CurveFit(M, spectral, M * w.membrane->ds[0], w.membrane->A0[0], X, most, &left[most]));
   }
@@ -154,7 +154,7 @@ static PetscErrorCode CheckNothingMoves(int derivative) {
     PetscCall(Create(derivative, axes[circle], 35, &w));
     const PetscInt M = w.membrane->M;
     PetscCall(PetscMalloc2(2 * M, &X, 2 * M, &before));
-    for (PetscInt k = 0; k < 2 * M; k++) X[k] = before[k] = (circle ? 1.01 : 1.0009) * w.shape.X[k];
+    for (PetscInt k = 0; k < 2 * M; k++) X[k] = before[k] = (circle ? 1.01 : 1.0009) * w.scene->shape.X[k];
     PetscCall(MembraneRestoreEdges(w.membrane, 0, 1e-3, X, &found));
     PetscCall(PetscArraycmp(X, before, 2 * M, &same));
     CHECK(same && found == 0, "%s: %s moves nothing", derivatives[derivative],

@@ -1,6 +1,6 @@
-/* Self-mobility (DESIGN section 8): the constants and symbols are the kernels', Theta only dissipates; spectral
+/* Self-mobility: the constants and symbols are the kernels', Theta only dissipates; spectral
    derivatives, spectral edges with their exact transposes, and the area target. */
-#include "check.h"
+#include "world.h"
 #include "coupling/blas.h"
 #include "coupling/selfmobility.h"
 
@@ -245,7 +245,7 @@ static PetscErrorCode CheckMembrane(const char *derivative) {
   PetscCall(PetscCalloc4(2 * M, &F, 2 * M, &X, 2 * M, &old, 2 * M, &work));
   for (PetscInt k = 0; k < 2 * M; k++) {
     U[k] = TestRandom(&seed);
-    X[k] = w.shape.X[k] + 0.02 * m->ds[0] * TestRandom(&seed);
+    X[k] = w.scene->shape.X[k] + 0.02 * m->ds[0] * TestRandom(&seed);
     sigma[k / 2] = TestRandom(&seed);
   }
   MembraneTangents(m, X, tau);
@@ -275,7 +275,7 @@ static PetscErrorCode CheckMembrane(const char *derivative) {
   CHECK(PetscAbsReal(slope + rate) < 1e-8 * PetscAbsReal(rate),
         "%s: bending force is minus the gradient of the energy, %.8e against %.8e", derivative, rate, -slope);
 
-  for (PetscInt k = 0; k < 2 * M; k++) X[k] = old[k] = 1.004 * w.shape.X[k];
+  for (PetscInt k = 0; k < 2 * M; k++) X[k] = old[k] = 1.004 * w.scene->shape.X[k];
   for (PetscInt k = 0; k < M; k++) old[2 * k] += 0.1;
   const PetscReal shift = MembraneRestoreArea(m, 0, X, old);
   Measures measures;
@@ -308,9 +308,9 @@ static PetscErrorCode CheckStart(const char *cells) {
                           cells));
   PetscCall(TestWorldCreate(options, &w));
   const PetscInt M = w.membrane->M;
-  MembraneMeasure(w.membrane, 0, w.shape.X, &measures);
+  MembraneMeasure(w.membrane, 0, w.scene->shape.X, &measures);
   for (PetscInt k = 1; k < M; k++) {
-    const PetscReal *a = &w.shape.X[2 * k], *b = &w.shape.X[2 * (M - k)];
+    const PetscReal *a = &w.scene->shape.X[2 * k], *b = &w.scene->shape.X[2 * (M - k)];
     asymmetry = PetscMax(asymmetry, PetscAbsReal(a[0] - b[0]) + PetscAbsReal(a[1] + b[1]));
   }
   CHECK(PetscAbsReal(measures.length / CurveLength(&curve) - 1) < 1e-12 && measures.edge_ratio - 1 < 1e-12 &&

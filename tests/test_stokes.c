@@ -4,35 +4,7 @@
    - A manufactured flow with walls on all four sides or in a channel, both components and a pressure with slope at the
      walls, driven through Fluid->bc1, which the step adds to the momentum's right-hand side: second order in h, first
      in dt. */
-#include "check.h"
-
-typedef struct {
-  Scene scene;
-  Shape shape;
-  Fluid fluid;
-  Membrane membrane;
-  Scheme scheme;
-} Flow2;
-
-static PetscErrorCode FlowCreate(const char options[], Flow2 *f) {
-  PetscFunctionBeginUser;
-  PetscCall(TestScene(options, &f->scene));
-  PetscCall(ShapeCreate(f->scene, 1, 1, &f->shape));
-  PetscCall(FluidCreate(f->scene, &f->fluid));
-  PetscCall(MembraneCreate(&f->shape, 0, DERIVATIVE_FD, &f->membrane));
-  PetscCall(SchemeCreate(f->scene, f->fluid, f->membrane, NULL, NULL, &f->scheme));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode FlowDestroy(Flow2 *f) {
-  PetscFunctionBeginUser;
-  PetscCall(SchemeDestroy(&f->scheme));
-  PetscCall(MembraneDestroy(&f->membrane));
-  PetscCall(FluidDestroy(&f->fluid));
-  PetscCall(ShapeDestroy(&f->shape));
-  PetscCall(SceneDestroy(&f->scene));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
+#include "world.h"
 
 /* Value of one field at a point and a time. */
 typedef PetscReal (*Exact)(Field field, const PetscReal X[2], PetscReal t, void *ctx);
@@ -84,7 +56,7 @@ static PetscErrorCode CheckDecay(const char name[], const char bc[], Exact exact
   const PetscReal dt = 0.03, nu = 0.4, h = 1.0 / 24;
   const PetscReal lambda = directions * 4 / (h * h) * PetscSqr(PetscSinReal(wave * h / 2));
   char options[512];
-  Flow2 f;
+  TestWorld f;
   Vec want;
   PetscReal error, size, pressure;
   PetscFunctionBeginUser;
@@ -93,7 +65,7 @@ static PetscErrorCode CheckDecay(const char name[], const char bc[], Exact exact
       "-domain_box 0,1,0,1 -domain_cells 24,24 %s -scheme_type split -vesicle_shape none -fluid_viscosity 0.4 "
       "-time_step 0.03",
       bc));
-  PetscCall(FlowCreate(options, &f));
+  PetscCall(TestRunCreate(options, &f));
   PetscCall(VecDuplicate(f.scheme->state.w, &want));
   PetscCall(Fill(f.fluid->grid, exact, 0, NULL, PETSC_FALSE, f.scheme->state.w));
   PetscCall(VecCopy(f.scheme->state.w, want));
@@ -107,7 +79,7 @@ static PetscErrorCode CheckDecay(const char name[], const char bc[], Exact exact
   CHECK(pressure < 1e-12, "%s makes no pressure, %.1e", name, pressure);
   CHECK(f.scheme->report.solves == 3, "%s: 3 scalar solves a step", name);
   PetscCall(VecDestroy(&want));
-  PetscCall(FlowDestroy(&f));
+  PetscCall(TestWorldDestroy(&f));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -147,7 +119,7 @@ static PetscReal ManufacturedField(Field f, const PetscReal X[2], PetscReal t, v
 }
 
 /* Run to t = 0.2 from the exact start; velocity and pressure at the end, the caller destroys them and the flow. */
-static PetscErrorCode RunManufactured(PetscInt n, PetscInt steps, Manufactured *m, Flow2 *f, PetscReal *div) {
+static PetscErrorCode RunManufactured(PetscInt n, PetscInt steps, Manufactured *m, TestWorld *f, PetscReal *div) {
   char options[512];
   const PetscReal dt = 0.2 / steps;
   Grid g;
@@ -158,7 +130,7 @@ static PetscErrorCode RunManufactured(PetscInt n, PetscInt steps, Manufactured *
       "none -fluid_viscosity %.17g -time_step %.17g",
       (int)n, (int)(3 * n / 4), m->wall[0] ? "wall" : "periodic", m->wall[1] ? "wall" : "periodic", (double)m->nu,
       (double)dt));
-  PetscCall(FlowCreate(options, f));
+  PetscCall(TestRunCreate(options, f));
   g = f->fluid->grid;
   PetscCall(VecDuplicate(f->scheme->state.w, &f->fluid->bc1)); /* the fluid destroys it */
   m->forcing = PETSC_FALSE;
@@ -181,7 +153,7 @@ static PetscErrorCode CheckSpaceOrder(const char name[], Manufactured *m) {
   PetscFunctionBeginUser;
   for (int level = 0; level < 3; level++) {
     const PetscInt n = 16 << level;
-    Flow2 f;
+    TestWorld f;
     Vec w, p;
     PetscCall(RunManufactured(n, n * n / 4, m, &f, &div));
     PetscCall(VecDuplicate(f.scheme->state.w, &w));
@@ -193,7 +165,7 @@ static PetscErrorCode CheckSpaceOrder(const char name[], Manufactured *m) {
     CHECK(div < 1e-11, "%s, %d cells: max |div u| %.1e", name, (int)n, div);
     PetscCall(VecDestroy(&w));
     PetscCall(VecDestroy(&p));
-    PetscCall(FlowDestroy(&f));
+    PetscCall(TestWorldDestroy(&f));
   }
   for (int level = 1; level < 3; level++)
     for (int k = 0; k < 2; k++) {
@@ -206,18 +178,18 @@ static PetscErrorCode CheckSpaceOrder(const char name[], Manufactured *m) {
 
 /* On one grid, against a small step. */
 static PetscErrorCode CheckTimeOrder(const char name[], Manufactured *m) {
-  Flow2 fine;
+  TestWorld fine;
   PetscReal last[2] = {0, 0}, div;
   PetscFunctionBeginUser;
   PetscCall(RunManufactured(32, 1280, m, &fine, &div));
   for (int level = 0; level < 3; level++) {
     const PetscInt steps = 20 << level;
-    Flow2 f;
+    TestWorld f;
     PetscReal error[2];
     PetscCall(RunManufactured(32, steps, m, &f, &div));
     PetscCall(Distance(f.fluid->grid, f.scheme->state.w, fine.scheme->state.w, PETSC_FALSE, &error[0]));
     PetscCall(Distance(f.fluid->grid, f.scheme->state.p, fine.scheme->state.p, PETSC_TRUE, &error[1]));
-    PetscCall(FlowDestroy(&f));
+    PetscCall(TestWorldDestroy(&f));
     for (int k = 0; k < 2; k++) {
       const PetscReal order = level ? PetscLog2Real(last[k] / error[k]) : 1;
       last[k] = error[k];
@@ -225,7 +197,7 @@ static PetscErrorCode CheckTimeOrder(const char name[], Manufactured *m) {
             k ? "pressure" : "velocity", order, error[k]);
     }
   }
-  PetscCall(FlowDestroy(&fine));
+  PetscCall(TestWorldDestroy(&fine));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

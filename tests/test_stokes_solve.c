@@ -1,7 +1,7 @@
 /* StokesSolve: H u + G p = r_u, G^T u = r_p for random data with a consistent r_p. Exact in periodic boxes and in
    channels along x; elsewhere the divergence is met and what is left of the momentum lies on the faces next to the
    walls that run along the velocity component: rows of u under walls in y, columns of v beside walls in x. */
-#include "check.h"
+#include "world.h"
 #include "fluid/stokes.h"
 
 #define TOLERANCE 1e-11
@@ -114,7 +114,7 @@ static PetscErrorCode CheckBox(const char grid[], const char bc[], PetscBool exa
   PetscFunctionBeginUser;
   PetscCall(PetscSNPrintf(options, sizeof(options), "%s %s -vesicle_shape none -fluid_viscosity 0.7", grid, bc));
   PetscCall(TestScene(options, &scene));
-  PetscCall(FluidCreate(scene, &fluid));
+  PetscCall(FluidCreate(&scene->fluid, &fluid));
   PetscCall(StokesCreate(fluid, &stokes));
   PetscCall(FieldsCreate(fluid, &x));
   for (int k = 0; k < 3; k++) { /* there and back: nothing of an earlier a0 may stay */

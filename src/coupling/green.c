@@ -4,22 +4,22 @@
 
 #define LAGS (2 * KERNEL_MAX_POINTS) /* of two kernels, one spare: whole vectors */
 
-PetscErrorCode MobilityCreate(Scene scene, Coupling coupling, Mobility *out) {
+PetscErrorCode MobilityCreate(const FluidSpec *spec, Coupling coupling, Mobility *out) {
   const Grid g = coupling->fluid->grid;
   const Layout l = coupling->membrane->layout;
+  FluidSpec box = *spec;
   Mobility m;
   PetscReal reach = 0;
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&m));
   *out = m;
   m->coupling = coupling;
-  m->scene = *scene;
-  m->scene.bc[0] = m->scene.bc[1] = BC_PERIODIC;
-  m->scene.flow.form = FORM_DISTURBANCE;
+  box.bc[0] = box.bc[1] = BC_PERIODIC;
+  box.form = FORM_DISTURBANCE;
   /* the table is for a preconditioner: by the default solver, which cannot fail, whatever solves the steps */
-  PetscCall(PetscStrncpy(m->scene.helmholtz, "fftw_tridiagonal", sizeof(m->scene.helmholtz)));
-  PetscCall(PetscStrncpy(m->scene.poisson, "fftw_tridiagonal", sizeof(m->scene.poisson)));
-  PetscCall(FluidCreate(&m->scene, &m->periodic));
+  PetscCall(PetscStrncpy(box.helmholtz, "fftw_tridiagonal", sizeof(box.helmholtz)));
+  PetscCall(PetscStrncpy(box.poisson, "fftw_tridiagonal", sizeof(box.poisson)));
+  PetscCall(FluidCreate(&box, &m->periodic));
   for (PetscInt v = 0; v < l->bodies; v++) reach = PetscMax(reach, coupling->membrane->L0[v] / 2);
   if (l->bodies > 1) reach = PETSC_MAX_INT / 4 * g->h; /* vesicles may be anywhere: the whole box */
   for (int d = 0; d < 2; d++) /* two markers are at most half a contour apart; room for drift and kernels */

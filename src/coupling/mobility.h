@@ -18,16 +18,15 @@ typedef struct {
 
 typedef struct _p_Mobility *Mobility;
 struct _p_Mobility {
-  Coupling coupling; /* borrowed */
-  Fluid periodic;    /* a periodic box of the same cells */
-  struct _p_Scene scene;
+  Coupling coupling;                /* borrowed */
+  Fluid periodic;                   /* a periodic box of the same cells */
   PetscInt size[2];                 /* half widths of the window of offsets */
   GreenTable cache[MOBILITY_CACHE]; /* most recent first */
   PetscInt built;                   /* tables made so far */
 };
 
-/* MobilityCreate - for the scene's grid and the coupling's membranes and kernel. Collective. */
-PETSC_EXTERN PetscErrorCode MobilityCreate(Scene scene, Coupling coupling, Mobility *mobility);
+/* MobilityCreate - for the fluid's grid and the coupling's membranes and kernel. Collective. */
+PETSC_EXTERN PetscErrorCode MobilityCreate(const FluidSpec *spec, Coupling coupling, Mobility *mobility);
 PETSC_EXTERN PetscErrorCode MobilityDestroy(Mobility *mobility);
 
 /* MobilitySetTables - fill the cache with the tables for these coefficients, negative: none. Collective.

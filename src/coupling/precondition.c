@@ -12,10 +12,10 @@ PetscErrorCode PreconditionerCreate(Scene scene, Unknowns u, Preconditioner *out
   PetscCall(PetscNew(&p));
   *out = p;
   p->unknowns = u;
-  p->type = CouplingHasMembrane(c) ? (MobilityType)scene->mobility : MOBILITY_NONE;
+  p->type = CouplingHasMembrane(c) ? (MobilityType)scene->coupling.mobility : MOBILITY_NONE;
   PetscCall(PetscMalloc1(u->walls->n, &p->d));
   if (p->type == MOBILITY_TABLE) {
-    PetscCall(MobilityCreate(scene, c, &p->mobility));
+    PetscCall(MobilityCreate(&scene->fluid, c, &p->mobility));
     PetscCall(DenseBlocksCreate(c, &p->blocks));
   }
   if (p->type == MOBILITY_ILU) {

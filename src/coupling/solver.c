@@ -68,7 +68,7 @@ PetscErrorCode CoupledSolverCreate(Scene scene, Coupling coupling, CoupledSolver
   PetscCall(VecDuplicate(s->x, &s->b));
   PetscCall(VecDuplicate(s->x, &s->change));
   PetscCall(VecDuplicate(s->x, &s->pending));
-  PetscCall(CreateKSP(s, scene->ksp_rtol));
+  PetscCall(CreateKSP(s, scene->coupling.ksp_rtol));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -7,7 +7,7 @@ static PetscInt At(const Convection c, PetscInt i, PetscInt j) {
   return (j + 1) * c->width + i + 1;
 }
 
-PetscErrorCode ConvectionCreate(Scene scene, Fluid fluid, Convection *out) {
+PetscErrorCode ConvectionCreate(const Flow *flow, Fluid fluid, Convection *out) {
   const Grid g = fluid->grid;
   Convection c;
   PetscReal X[2], u[2];
@@ -15,7 +15,7 @@ PetscErrorCode ConvectionCreate(Scene scene, Fluid fluid, Convection *out) {
   PetscCall(PetscNew(&c));
   *out = c;
   c->fluid = fluid;
-  c->flow = scene->flow;
+  c->flow = *flow;
   c->width = g->n[0] + 2;
   c->height = g->rows[FIELD_P] + 2;
   for (int f = 0; f < 2; f++) {
@@ -24,7 +24,7 @@ PetscErrorCode ConvectionCreate(Scene scene, Fluid fluid, Convection *out) {
     for (PetscInt j = -1; j < c->height - 1; j++)
       for (PetscInt i = -1; i < c->width - 1; i++) {
         GridPosition(g, (Field)f, i, j + g->first, X);
-        FlowVelocity(&c->flow, X[0], X[1], u);
+        FlowVelocity(&c->flow, 0, X[0], X[1], u);
         c->background[f][At(c, i, j)] = u[f];
       }
   }
@@ -93,7 +93,7 @@ static PetscReal Sheared(const Convection c, int f, PetscInt k, const PetscReal 
   const PetscReal *other = c->own[1 - f];
   const PetscReal mean = (other[k] + other[k + along] + other[k - across] + other[k - across + along]) / 4;
   PetscReal gradient[2][2];
-  FlowGradient(&c->flow, X[0], X[1], gradient);
+  FlowGradient(&c->flow, 0, X[0], X[1], gradient);
   return c->own[f][k] * gradient[f][f] + mean * gradient[f][1 - f];
 }
 

@@ -16,9 +16,9 @@ struct _p_Convection {
   PetscReal *carrier[2];    /* u' + u_inf there */
 };
 
-/* ConvectionCreate - for the scene's background flow, whose values must be the same across periodic boundaries (checked
-   by SceneSetInertia). Collective. */
-PETSC_EXTERN PetscErrorCode ConvectionCreate(Scene scene, Fluid fluid, Convection *convection);
+/* ConvectionCreate - for a background flow, whose values must be the same across periodic boundaries (checked
+   by SceneCreate). Collective. */
+PETSC_EXTERN PetscErrorCode ConvectionCreate(const Flow *flow, Fluid fluid, Convection *convection);
 PETSC_EXTERN PetscErrorCode ConvectionDestroy(Convection *convection);
 
 /* ConvectionAdd - r += alpha N (length/time^2), from the solved velocity w (u', or u' + u_inf in the total form); r

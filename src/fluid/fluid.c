@@ -68,25 +68,25 @@ static PetscErrorCode CreateHelmholtz(Fluid f, const char type[]) {
 /* bc1 and u_inf of one component on this rank's faces. The stencil of nu L_u takes the wall's value u_w as the
    neighbour where the wall is on a face: nu u_w/h^2 more. Half a cell off, the neighbour is 2 u_w minus the entry: 2 nu
    u_w/h^2. */
-static void WallMomentum(Scene scene, Fluid f, int c, PetscScalar bc1[], PetscScalar background[]) {
+static void WallMomentum(const FluidSpec *spec, Fluid f, int c, PetscScalar bc1[], PetscScalar background[]) {
   Grid g = f->grid;
   const PetscInt n = g->columns[c], size[2] = {n, g->all_rows[c]};
   const PetscReal wall = f->nu / PetscSqr(g->h);
   PetscReal gradient[2], X[2], u[2];
-  FlowPressureGradient(&scene->flow, f->nu, gradient);
+  FlowPressureGradient(spec->flow, f->nu, gradient);
   for (PetscInt j = 0; j < g->rows[c]; j++)
     for (PetscInt i = 0; i < n; i++) {
       const PetscInt index[2] = {i, j + g->first};
       PetscScalar value = -gradient[c];
       GridPosition(g, (Field)c, index[0], index[1], X);
-      FlowVelocity(&scene->flow, X[0], X[1], u);
+      FlowVelocity(spec->flow, 0, X[0], X[1], u);
       background[j * n + i] = u[c];
       for (int dir = 0; dir < 2; dir++)
         for (int side = 0; side < 2; side++) {
           PetscReal W[2] = {X[0], X[1]};
           if (!g->wall[dir] || index[dir] != (side ? size[dir] - 1 : 0)) continue;
           W[dir] = side ? g->hi[dir] : g->lo[dir];
-          FlowVelocity(&scene->flow, W[0], W[1], u);
+          FlowVelocity(spec->flow, 0, W[0], W[1], u);
           value += (c == dir ? 1 : 2) * wall * u[c]; /* wall on a face, or half a cell off */
         }
       bc1[j * n + i] = value;
@@ -94,7 +94,7 @@ static void WallMomentum(Scene scene, Fluid f, int c, PetscScalar bc1[], PetscSc
 }
 
 /* bc2 = minus the wall faces' part of the divergence. */
-static void WallDivergence(Scene scene, Grid g, PetscScalar bc2[]) {
+static void WallDivergence(const FluidSpec *spec, Grid g, PetscScalar bc2[]) {
   PetscReal X[2], u[2];
   const PetscInt n = g->columns[FIELD_P];
   for (PetscInt j = 0; j < g->rows[FIELD_P]; j++)
@@ -106,14 +106,14 @@ static void WallDivergence(Scene scene, Grid g, PetscScalar bc2[]) {
           if (!g->wall[dir] || index[dir] != (side ? g->n[dir] - 1 : 0)) continue;
           GridPosition(g, FIELD_P, index[0], index[1], X);
           X[dir] = side ? g->hi[dir] : g->lo[dir];
-          FlowVelocity(&scene->flow, X[0], X[1], u);
+          FlowVelocity(spec->flow, 0, X[0], X[1], u);
           value -= (side ? u[dir] : -u[dir]) / g->h;
         }
       bc2[j * n + i] = value;
     }
 }
 
-static PetscErrorCode CreateWallData(Scene scene, Fluid f) {
+static PetscErrorCode CreateWallData(const FluidSpec *spec, Fluid f) {
   PetscScalar *a, *b;
   PetscFunctionBeginUser;
   PetscCall(DMCreateGlobalVector(f->grid->velocity, &f->bc1));
@@ -123,39 +123,39 @@ static PetscErrorCode CreateWallData(Scene scene, Fluid f) {
   PetscCall(VecGetArray(f->background, &b));
   for (int c = 0; c < 2; c++) {
     const PetscInt start = c ? GridLocalU(f->grid) : 0;
-    WallMomentum(scene, f, c, a + start, b + start);
+    WallMomentum(spec, f, c, a + start, b + start);
   }
   PetscCall(VecRestoreArray(f->background, &b));
   PetscCall(VecRestoreArray(f->bc1, &a));
   PetscCall(VecGetArray(f->bc2, &a));
-  WallDivergence(scene, f->grid, a);
+  WallDivergence(spec, f->grid, a);
   PetscCall(VecRestoreArray(f->bc2, &a));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode FluidCreate(Scene scene, Fluid *out) {
+PetscErrorCode FluidCreate(const FluidSpec *spec, Fluid *out) {
   Fluid f;
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&f));
   *out = f;
-  PetscCall(GridCreate(scene, &f->grid));
-  f->nu = scene->viscosity;
-  f->steady = scene->inertia == INERTIA_NONE ? PETSC_TRUE : PETSC_FALSE;
-  f->plan = scene->fftw_plan;
-  f->tridiagonal = !strcmp(scene->helmholtz, "fftw_tridiagonal") && !strcmp(scene->poisson, "fftw_tridiagonal");
+  PetscCall(GridCreate(spec, &f->grid));
+  f->nu = spec->nu;
+  f->steady = spec->inertia == INERTIA_NONE ? PETSC_TRUE : PETSC_FALSE;
+  f->plan = spec->plan;
+  f->tridiagonal = !strcmp(spec->helmholtz, "fftw_tridiagonal") && !strcmp(spec->poisson, "fftw_tridiagonal");
   PetscCall(GridCreateG(f->grid, &f->G));
   PetscCall(GridCreateD(f->grid, &f->D));
   PetscCall(GridCreateL(f->grid, &f->L));
   for (int k = FIELD_U; k <= FIELD_P; k++)
-    PetscCall(FastSolverCreate(f->grid, (Field)k, k == FIELD_P ? scene->poisson : scene->helmholtz, scene->fftw_plan,
-                               &f->solver[k]));
+    PetscCall(
+        FastSolverCreate(f->grid, (Field)k, k == FIELD_P ? spec->poisson : spec->helmholtz, spec->plan, &f->solver[k]));
   PetscCall(FastSolverSetCoefficients(f->solver[FIELD_P], 0, -1));
   PetscCall(FastSolverGetPC(f->solver[FIELD_P], &f->Linv));
   PetscCall(PetscObjectReference((PetscObject)f->Linv));
-  PetscCall(CreateHelmholtz(f, scene->helmholtz));
-  PetscCall(FluidSetTimeCoefficient(f, 1 / scene->dt));
-  f->total = scene->flow.form == FORM_TOTAL ? PETSC_TRUE : PETSC_FALSE;
-  if (f->total) PetscCall(CreateWallData(scene, f));
+  PetscCall(CreateHelmholtz(f, spec->helmholtz));
+  PetscCall(FluidSetTimeCoefficient(f, 1 / spec->dt));
+  f->total = spec->form == FORM_TOTAL ? PETSC_TRUE : PETSC_FALSE;
+  if (f->total) PetscCall(CreateWallData(spec, f));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

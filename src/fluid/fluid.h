@@ -21,8 +21,8 @@ struct _p_Fluid {
   Vec bc2;               /* D u = bc2: minus the wall faces' part of the divergence */
 };
 
-/* FluidCreate - the scene's fluid at rest or, in the total form, with walls moving with u_inf. Collective. */
-PETSC_EXTERN PetscErrorCode FluidCreate(Scene scene, Fluid *fluid);
+/* FluidCreate - a fluid at rest or, in the total form, with walls moving with u_inf. Collective. */
+PETSC_EXTERN PetscErrorCode FluidCreate(const FluidSpec *spec, Fluid *fluid);
 PETSC_EXTERN PetscErrorCode FluidDestroy(Fluid *fluid);
 
 /* FluidSetTimeCoefficient - a0 (1/time), 1/dt for backward Euler, and with it alpha of H = alpha I - nu L_u. All ranks

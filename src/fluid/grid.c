@@ -54,21 +54,21 @@ static PetscErrorCode CreateFields(Grid g) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode GridCreate(Scene scene, Grid *grid) {
+PetscErrorCode GridCreate(const FluidSpec *spec, Grid *grid) {
   Grid g;
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&g));
   *grid = g;
-  g->comm = scene->comm;
+  g->comm = spec->comm;
   PetscCallMPI(MPI_Comm_rank(g->comm, &g->rank));
   PetscCallMPI(MPI_Comm_size(g->comm, &g->size));
   for (int d = 0; d < 2; d++) {
-    g->lo[d] = scene->box.v[2 * d];
-    g->hi[d] = scene->box.v[2 * d + 1];
-    g->n[d] = scene->cells.v[d];
-    g->wall[d] = scene->bc[d] == BC_WALL ? PETSC_TRUE : PETSC_FALSE;
+    g->lo[d] = spec->box[2 * d];
+    g->hi[d] = spec->box[2 * d + 1];
+    g->n[d] = spec->cells[d];
+    g->wall[d] = spec->bc[d] == BC_WALL ? PETSC_TRUE : PETSC_FALSE;
   }
-  g->h = SceneCellSize(scene);
+  g->h = FluidSpecCellSize(spec);
   g->block = (g->n[1] + g->size - 1) / g->size;
   g->first = g->rank * g->block;
   PetscCall(CheckRanks(g));

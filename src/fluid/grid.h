@@ -9,7 +9,7 @@
    rank's rows of u followed by its rows of v, x fastest. */
 #pragma once
 #include "base/base.h"
-#include "scene/scene.h"
+#include "scene/fluidspec.h"
 
 typedef enum { FIELD_U = 0, FIELD_V = 1, FIELD_P = 2 } Field;
 
@@ -32,9 +32,9 @@ struct _p_Grid {
   PetscScalar *row;         /* [n_x] work */
 };
 
-/* GridCreate - the scene's grid over the ranks of its communicator. Collective. Errors: a number of ranks that leaves
+/* GridCreate - the fluid's grid over the ranks of its communicator. Collective. Errors: a number of ranks that leaves
    one without rows. */
-PETSC_EXTERN PetscErrorCode GridCreate(Scene scene, Grid *grid);
+PETSC_EXTERN PetscErrorCode GridCreate(const FluidSpec *spec, Grid *grid);
 PETSC_EXTERN PetscErrorCode GridDestroy(Grid *grid);
 
 /* GridPosition - position X[2] (length) of entry (i, j) of a field, j counting the rows of all ranks. Not collective.

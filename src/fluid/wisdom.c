@@ -45,13 +45,13 @@ static char *ReadText(const char path[], PetscBool *missing) {
   return NULL;
 }
 
-PetscErrorCode WisdomRead(Scene scene) {
-  const char *path = scene->fftw_wisdom, *wrong[] = {NULL, "not wisdom of this FFTW", "cannot be read"};
+PetscErrorCode WisdomRead(MPI_Comm comm, const char path[]) {
+  const char *wrong[] = {NULL, "not wisdom of this FFTW", "cannot be read"};
   PetscMPIInt rank, failed = 0;
   PetscFunctionBeginUser;
   if (!*path) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(WisdomInitialise());
-  PetscCallMPI(MPI_Comm_rank(scene->comm, &rank));
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
   if (!rank) {
     PetscBool missing;
     char *text = ReadText(path, &missing);
@@ -61,10 +61,10 @@ PetscErrorCode WisdomRead(Scene scene) {
       failed = missing ? 0 : 2;
     free(text);
   }
-  PetscCallMPI(MPI_Bcast(&failed, 1, MPI_INT, 0, scene->comm));
-  PetscCheck(!failed, scene->comm, PETSC_ERR_USER_INPUT,
+  PetscCallMPI(MPI_Bcast(&failed, 1, MPI_INT, 0, comm));
+  PetscCheck(!failed, comm, PETSC_ERR_USER_INPUT,
              "-fftw_wisdom %s: %s; allowed: a file that an earlier run wrote, or a new name", path, wrong[failed]);
-  fftw_mpi_broadcast_wisdom(scene->comm);
+  fftw_mpi_broadcast_wisdom(comm);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -101,16 +101,15 @@ static PetscBool Save(const char path[]) {
   return good;
 }
 
-PetscErrorCode WisdomWrite(Scene scene) {
-  const char *path = scene->fftw_wisdom;
+PetscErrorCode WisdomWrite(MPI_Comm comm, const char path[]) {
   PetscMPIInt rank, good = 1;
   PetscFunctionBeginUser;
   if (!*path) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCallMPI(MPI_Comm_rank(scene->comm, &rank));
-  fftw_mpi_gather_wisdom(scene->comm);
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  fftw_mpi_gather_wisdom(comm);
   if (!rank) good = Save(path);
-  PetscCallMPI(MPI_Bcast(&good, 1, MPI_INT, 0, scene->comm));
-  PetscCheck(good, scene->comm, PETSC_ERR_USER_INPUT,
+  PetscCallMPI(MPI_Bcast(&good, 1, MPI_INT, 0, comm));
+  PetscCheck(good, comm, PETSC_ERR_USER_INPUT,
              "-fftw_wisdom %s: cannot be written; allowed: a file in a folder that can be written", path);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

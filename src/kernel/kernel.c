@@ -47,11 +47,14 @@ static PetscInt BSpline6(PetscReal x, PetscInt *first, PetscReal w[]) {
   return BSpline(6, x, first, w);
 }
 
-static const Kernel kernels[] = {{"ib6", IB6, IB6, 1.75, 1.25},
-                                 {"cbs32", BSpline3, BSpline2, 1.25, 1.0},
-                                 {"cbs43", BSpline4, BSpline3, 1.5, 1.0},
-                                 {"cbs54", BSpline5, BSpline4, 1.5, 1.0},
-                                 {"cbs65", BSpline6, BSpline5, 1.5, 1.0}};
+#define COMMA ,
+#define KERNEL_ROW(name, along, across, spacing, least, a, b)                                                          \
+  {                                                                                                                    \
+#name, along, across, spacing, least, {                                                                            \
+      a, b                                                                                                             \
+    }                                                                                                                  \
+  }
+static const Kernel kernels[] = {KERNELS(KERNEL_ROW, COMMA)};
 
 const Kernel *KernelFind(const char name[]) {
   for (size_t i = 0; i < sizeof(kernels) / sizeof(kernels[0]); i++)

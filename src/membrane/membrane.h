@@ -5,7 +5,7 @@
    and work for any vesicle on any rank. Edge k runs from marker k-1 to marker k of the same vesicle. */
 #pragma once
 #include "markers/markers.h"
-#include "membrane/spectral.h"
+#include "curve/spectral.h"
 #include "scene/scene.h"
 
 /* Work space of [2 M], each for one purpose: what calls one another does not share. */

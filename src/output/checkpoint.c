@@ -128,7 +128,7 @@ static PetscErrorCode Rotate(Output o, const char temporary[], PetscBool *done) 
   char from[PETSC_MAX_PATH_LEN], to[PETSC_MAX_PATH_LEN];
   struct stat what;
   PetscFunctionBeginUser;
-  for (PetscInt k = o->scene->checkpoint_keep - 1; k > 0; k--) {
+  for (PetscInt k = o->scene->output.checkpoint_keep - 1; k > 0; k--) {
     PetscCall(Name(o, k - 1, from));
     PetscCall(Name(o, k, to));
     if (stat(from, &what) || !S_ISREG(what.st_mode)) continue;
@@ -145,7 +145,7 @@ PetscErrorCode CheckpointAdopt(Output o) {
   struct stat chosen, other;
   PetscInt k = 0;
   PetscFunctionBeginUser;
-  if (o->rank || stat(o->scene->restart, &chosen)) PetscFunctionReturn(PETSC_SUCCESS);
+  if (o->rank || stat(o->scene->output.restart, &chosen)) PetscFunctionReturn(PETSC_SUCCESS);
   for (; k < 100; k++) { /* which one it is */
     PetscCall(Name(o, k, path));
     if (!stat(path, &other) && other.st_ino == chosen.st_ino) break;
@@ -154,7 +154,7 @@ PetscErrorCode CheckpointAdopt(Output o) {
   PetscCall(OutputPath(o, "checkpoint.h5.tmp", temporary));
   PetscCall(Name(o, 0, path));
   (void)unlink(temporary);
-  if (link(o->scene->restart, temporary) || rename(temporary, path)) PetscFunctionReturn(PETSC_SUCCESS);
+  if (link(o->scene->output.restart, temporary) || rename(temporary, path)) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt j = 1; j < k; j++) {
     PetscCall(Name(o, j, path));
     (void)unlink(path);

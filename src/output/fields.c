@@ -8,11 +8,11 @@ PetscErrorCode FieldsCreateFile(Output o, const char path[], H5File *f) {
   const PetscInt cells[2] = {g->n[1], g->n[0]}, markers[2] = {m->M, 2};
   PetscFunctionBeginUser;
   PetscCall(H5FileCreate(o->comm, path, f));
-  PetscCall(H5PutReals(f, "box", 4, scene->box.v));
+  PetscCall(H5PutReals(f, "box", 4, scene->fluid.box));
   PetscCall(H5PutInts(f, "cells", 2, g->n));
   PetscCall(H5PutReals(f, "h", 1, &g->h));
-  PetscCall(H5PutReals(f, "nu", 1, &scene->viscosity));
-  PetscCall(H5PutReals(f, "c_b", 1, &scene->bending));
+  PetscCall(H5PutReals(f, "nu", 1, &scene->fluid.nu));
+  PetscCall(H5PutReals(f, "c_b", 1, &scene->membrane.bending));
   PetscCall(H5PutInts(f, "vesicle_start", m->vesicles + 1, m->start));
   PetscCall(H5PutString(f, "about",
                         "u, v: velocity (background included) at cell centres; p: pressure at cell centres, of the "
@@ -47,7 +47,7 @@ static PetscErrorCode OldFields(Output o, const char path[]) {
   PetscCheck(!failed && length >= o->scheduled, o->comm, PETSC_ERR_USER_INPUT,
              "-restart %s: %s has %" PetscInt_FMT " readable frames, the checkpoint counts %" PetscInt_FMT
              "; allowed: run.h5 as the run left it, or a new -output_dir",
-             o->scene->restart, path, length, o->scheduled);
+             o->scene->output.restart, path, length, o->scheduled);
   o->frames = o->scheduled;
   PetscCall(PetscMalloc1(o->frames, &o->times));
   for (PetscInt t = 0; t < o->frames; t++) PetscCall(H5ReadArray(f, "/time", t, 1, &o->times[t]));
@@ -61,7 +61,7 @@ static PetscErrorCode OldFields(Output o, const char path[]) {
   PetscCheck(!failed, o->comm, PETSC_ERR_USER_INPUT,
              "-restart %s: %s cannot be cut to the %" PetscInt_FMT
              " readable frames that the checkpoint counts; allowed: run.h5 as the run left it, or a new -output_dir",
-             o->scene->restart, path, o->scheduled);
+             o->scene->output.restart, path, o->scheduled);
   PetscCall(OutputXdmf(o));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -83,7 +83,7 @@ static PetscScalar WallValue(Output o, int c, PetscInt i, PetscInt j, PetscReal 
   if (!o->scheme->fluid->total) return 0;
   GridPosition(o->scheme->fluid->grid, FIELD_P, i, j, X);
   X[c] = wall;
-  FlowVelocity(&o->scene->flow, X[0], X[1], u);
+  FlowVelocity(&o->scene->flow, o->scheme->state.t, X[0], X[1], u);
   return u[c];
 }
 
@@ -98,7 +98,7 @@ PetscErrorCode OutputVelocityAtCells(Output o, int c, const PetscScalar w[], Pet
   PetscCall(PetscCalloc2(2 * nx, &X, 2 * nx, &u));
   for (PetscInt j = 0; j < g->rows[FIELD_P]; j++) {
     for (PetscInt i = 0; i < nx; i++) GridPosition(g, FIELD_P, i, j + g->first, X + 2 * i);
-    if (!o->scheme->fluid->total) PetscCall(FlowVelocities(&o->scene->flow, nx, X, u));
+    if (!o->scheme->fluid->total) PetscCall(FlowVelocities(&o->scene->flow, o->scheme->state.t, nx, X, u));
     for (PetscInt i = 0; i < nx; i++) {
       const PetscInt index[2] = {i, j + g->first};
       PetscScalar face[2];
@@ -126,7 +126,6 @@ static PetscErrorCode WriteFrame(Output o) {
   H5File *f = &o->fields;
   const PetscScalar *a;
   PetscFunctionBeginUser;
-  o->scene->flow.time = q->t;
   PetscCall(VecGetArrayRead(q->w, &a));
   for (int c = 0; c < 2; c++) {
     PetscCall(OutputVelocityAtCells(o, c, a, o->cells));

@@ -7,7 +7,7 @@
 
 PetscReal OutputNextTime(Output o) {
   const State *q = &o->scheme->state;
-  const PetscReal every = o->scene->output_every;
+  const PetscReal every = o->scene->output.every;
   return every * (PetscFloorReal((q->t + 1e-9 * q->dt) / every) + 1);
 }
 
@@ -79,8 +79,8 @@ static PetscErrorCode MakeFolder(Output o) {
 static PetscBool RestartsHere(Output o) {
   char folder[PETSC_MAX_PATH_LEN], *slash;
   struct stat here, there;
-  if (!*o->scene->restart) return PETSC_FALSE;
-  (void)PetscStrncpy(folder, o->scene->restart, sizeof(folder));
+  if (!*o->scene->output.restart) return PETSC_FALSE;
+  (void)PetscStrncpy(folder, o->scene->output.restart, sizeof(folder));
   slash = strrchr(folder, '/');
   if (slash) slash[slash == folder] = 0;
   if (stat(slash ? folder : ".", &there) || stat(o->folder, &here)) return PETSC_FALSE;
@@ -95,7 +95,7 @@ static PetscErrorCode ClaimFolder(Output o) {
   PetscFunctionBeginUser;
   if (!o->rank) {
     here = RestartsHere(o);
-    for (int k = 0; k < 3 && !here && !o->scene->overwrite; k++) {
+    for (int k = 0; k < 3 && !here && !o->scene->output.overwrite; k++) {
       PetscCall(OutputPath(o, results[k], path));
       if (!access(path, F_OK)) PetscCall(PetscStrncpy(found, results[k], sizeof(found)));
     }
@@ -139,8 +139,8 @@ PetscErrorCode OutputCreate(Scene scene, Scheme scheme, Output *out) {
   o->scheme = scheme;
   o->saved_step = -1;
   PetscCallMPI(MPI_Comm_rank(o->comm, &o->rank));
-  PetscCall(PetscStrncpy(o->folder, scene->output_dir, sizeof(o->folder)));
-  if (*scene->restart) PetscCall(RestartRead(o));
+  PetscCall(PetscStrncpy(o->folder, scene->output.dir, sizeof(o->folder)));
+  if (*scene->output.restart) PetscCall(RestartRead(o));
   PetscCall(MakeFolder(o));
   PetscCall(ClaimFolder(o));
   if (!o->go_on) o->scheduled = 0;

@@ -8,20 +8,20 @@ static PetscErrorCode CheckFormat(Output o) {
   PetscInt format = 0;
   PetscBool failed;
   PetscFunctionBeginUser;
-  PetscCall(H5FileOpen(o->comm, o->scene->restart, PETSC_FALSE, &file));
+  PetscCall(H5FileOpen(o->comm, o->scene->output.restart, PETSC_FALSE, &file));
   PetscCall(H5GetInts(&file, "format", 1, &format));
   PetscCall(H5FileFailed(&file, &failed));
   PetscCall(H5FileClose(&file));
   PetscCheck(failed || format == CHECKPOINT_FORMAT, o->comm, PETSC_ERR_USER_INPUT,
-             "-restart %s: its format is %" PetscInt_FMT "; allowed: %d, which petves %s writes", o->scene->restart,
-             format, CHECKPOINT_FORMAT, PETVES_VERSION);
+             "-restart %s: its format is %" PetscInt_FMT "; allowed: %d, which petves %s writes",
+             o->scene->output.restart, format, CHECKPOINT_FORMAT, PETVES_VERSION);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* What is wrong with the file as such, found on rank 0 and told to all. The checksum covers every byte, so that HDF5
    reads what it wrote. Without one the file may be of a format that has none, or has it elsewhere. */
 static PetscErrorCode CheckFile(Output o) {
-  const char *path = o->scene->restart;
+  const char *path = o->scene->output.restart;
   char message[PETVES_MAX_MESSAGE] = "", tail[CHECKPOINT_TAIL_LENGTH + 1] = "";
   unsigned crc = 0, stored = 0;
   PetscMPIInt sealed = 1;
@@ -56,8 +56,8 @@ static PetscErrorCode CompareOptions(Output o, H5File *file) {
     PetscCall(SceneOptionValue(o->scene, i, here, sizeof(here)));
     PetscCall(H5GetString(file, name, sizeof(there), there));
     PetscCheck(!*there || !strcmp(here, there), o->comm, PETSC_ERR_USER_INPUT,
-               "%s %s: the checkpoint of -restart %s has %s; allowed: the same value", name, here, o->scene->restart,
-               there);
+               "%s %s: the checkpoint of -restart %s has %s; allowed: the same value", name, here,
+               o->scene->output.restart, there);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -73,7 +73,7 @@ static PetscErrorCode CompareVesicles(Output o, H5File *file) {
   PetscCheck(vesicles == m->vesicles, o->comm, PETSC_ERR_USER_INPUT,
              "-vesicle_file %s: %" PetscInt_FMT " curves, the checkpoint of -restart %s has %" PetscInt_FMT
              " vesicles; allowed: the same curves",
-             o->scene->file, m->vesicles, o->scene->restart, vesicles);
+             o->scene->vesicles.file, m->vesicles, o->scene->output.restart, vesicles);
   PetscCall(PetscCalloc2(vesicles + 1, &start, vesicles, &length));
   PetscCall(H5GetInts(file, "vesicle_start", vesicles + 1, start));
   PetscCall(H5GetReals(file, "vesicle_length", vesicles, length));
@@ -82,7 +82,7 @@ static PetscErrorCode CompareVesicles(Output o, H5File *file) {
     PetscCheck(n == have && PetscAbsReal(length[v] / m->L0[v] - 1) < 1e-10, o->comm, PETSC_ERR_USER_INPUT,
                "vesicle %" PetscInt_FMT " has %" PetscInt_FMT " markers and the length %.12g, the checkpoint of "
                "-restart %s %" PetscInt_FMT " and %.12g; allowed: the same vesicles",
-               v + 1, have, (double)m->L0[v], o->scene->restart, n, (double)length[v]);
+               v + 1, have, (double)m->L0[v], o->scene->output.restart, n, (double)length[v]);
   }
   PetscCall(PetscFree2(start, length));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -139,7 +139,8 @@ static PetscErrorCode ReadLevel(Output o, H5File *file) {
   PetscFunctionBeginUser;
   PetscCall(H5GetInts(file, "step_level", 1, &level));
   PetscCall(H5GetString(file, "-time_step", sizeof(base), base));
-  if (*base) level += (PetscInt)PetscFloorReal(2 * PetscLog2Real((PetscReal)strtod(base, NULL) / o->scene->dt) + 1e-9);
+  if (*base)
+    level += (PetscInt)PetscFloorReal(2 * PetscLog2Real((PetscReal)strtod(base, NULL) / o->scene->time.dt) + 1e-9);
   if (o->scheme->level) *o->scheme->level = level;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -169,7 +170,7 @@ PetscErrorCode RestartRead(Output o) {
   H5File file;
   PetscFunctionBeginUser;
   PetscCall(CheckFile(o));
-  PetscCall(H5FileOpen(o->comm, o->scene->restart, PETSC_FALSE, &file));
+  PetscCall(H5FileOpen(o->comm, o->scene->output.restart, PETSC_FALSE, &file));
   PetscCall(CompareOptions(o, &file));
   PetscCall(CompareVesicles(o, &file));
   PetscCall(H5GetInts(&file, "step", 1, &q->step));
@@ -190,7 +191,7 @@ PetscErrorCode RestartRead(Output o) {
   PetscCall(H5FileClose(&file));
   PetscCheck(!failed, o->comm, PETSC_ERR_USER_INPUT,
              "-restart %s: entries are missing or have another size; allowed: a checkpoint.h5 of petves",
-             o->scene->restart);
+             o->scene->output.restart);
   o->total_solves = totals[0];
   o->total_tension = totals[1];
   o->total_bending = totals[2];

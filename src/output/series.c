@@ -55,7 +55,7 @@ static const char *CopyRows(const char path[], const char temporary[], const cha
 
 PetscErrorCode SeriesPrepare(Output o) {
   char path[PETSC_MAX_PATH_LEN], temporary[PETSC_MAX_PATH_LEN], wrong[64] = "", *header;
-  const PetscBool row = *o->scene->restart && !o->go_on ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool row = *o->scene->output.restart && !o->go_on ? PETSC_TRUE : PETSC_FALSE;
   PetscBool written = PETSC_TRUE;
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(o->scheme->membrane->vesicles * COLUMN_COUNT, &o->each));
@@ -76,7 +76,7 @@ PetscErrorCode SeriesPrepare(Output o) {
   PetscCallMPI(MPI_Bcast(wrong, sizeof(wrong), MPI_CHAR, 0, o->comm));
   PetscCheck(!*wrong, o->comm, PETSC_ERR_USER_INPUT,
              "-restart %s: %s %s (step %" PetscInt_FMT "); allowed: the file as the run left it, or a new -output_dir",
-             o->scene->restart, path, wrong, o->scheme->state.step);
+             o->scene->output.restart, path, wrong, o->scheme->state.step);
   PetscCall(OutputCheck(o, written, path));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -39,7 +39,7 @@ static void PrintVersions(FILE *f) {
 static void WriteInertia(Output o, FILE *f) {
   static const char *const names[] = {"unsteady", "none", "unsteady", "convective"};
   fprintf(f, "  \"inertia\": \"%s\",\n  \"reynolds\": %.6g,\n  \"cfl_max\": %.6g,\n  \"warning\": ",
-          names[o->scene->inertia], (double)o->scene->reynolds, (double)o->cfl_max);
+          names[o->scene->fluid.inertia], (double)o->scene->reynolds, (double)o->cfl_max);
   PrintString(f, o->scene->warning);
   fprintf(f, ",\n");
 }
@@ -71,7 +71,7 @@ static PetscErrorCode WriteSummary(Output o, FILE *f) {
   (void)getrusage(RUSAGE_SELF, &usage);
   fprintf(f, "},\n  \"memory_mib_rank_0\": %.1f,\n", (double)usage.ru_maxrss / 1024);
   fprintf(f, "  \"markers\": %d,\n  \"cells\": [%d, %d],\n  \"ranks\": %d,\n", (int)o->scheme->membrane->M,
-          (int)o->scene->cells.v[0], (int)o->scene->cells.v[1], ranks);
+          (int)o->scene->fluid.cells[0], (int)o->scene->fluid.cells[1], ranks);
   WriteInertia(o, f);
   PrintVersions(f);
   fprintf(f, "  \"git_commit\": \"%s\"\n}\n", PETVES_COMMIT);
@@ -95,7 +95,7 @@ PetscErrorCode OutputProgress(Output o, PetscBool force) {
   PetscCall(PetscTime(&now));
   if (!force && now - o->printed < PROGRESS_SECONDS) PetscFunctionReturn(PETSC_SUCCESS);
   o->printed = now;
-  share = o->scene->t_end > 0 ? PetscMin(1, q->t / o->scene->t_end) : 1;
+  share = o->scene->time.end > 0 ? PetscMin(1, q->t / o->scene->time.end) : 1;
   left = share > 0 ? (now - o->start) * (1 - share) / share : 0;
   printf("step %" PetscInt_FMT "  time %.6g  %3.0f %%  %.0f s left\n", q->step, (double)q->t, 100 * (double)share,
          left);

@@ -1,5 +1,5 @@
 /* -scheme_auto: the settings that reach a wanted error, by what was measured (docs/speed_accuracy/calibration.csv). */
-#include "scene/scene.h"
+#include "scene/resolve.h"
 
 /* By wanted error: the settings, and the worst error that each of them leaves by itself over the scenes of the
    calibration (tests/test_auto.py compares with the table). */
@@ -26,26 +26,27 @@ static const struct {
 static PetscInt Row(Scene scene) {
   const PetscInt last = (PetscInt)(sizeof(settings) / sizeof(settings[0])) - 1;
   PetscInt row = 0;
-  while (row < last && settings[row].wanted > scene->wanted * (1 + 1e-9)) row++;
+  while (row < last && settings[row].wanted > scene->scheme.wanted * (1 + 1e-9)) row++;
   return row;
 }
 
-PetscErrorCode SceneAuto(Scene scene) {
+PetscErrorCode SceneChooseByError(Draft scene) {
   PetscBool coupled, direct;
   PetscFunctionBeginUser;
-  if (scene->wanted == 0) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCheck(scene->wanted >= 1e-4 && scene->wanted <= 0.1, scene->comm, PETSC_ERR_USER_INPUT,
-             "-scheme_auto %g: outside of what was measured; allowed: 0, or 1e-4 to 0.1", (double)scene->wanted);
-  PetscCall(PetscStrcmp(scene->scheme, "coupled", &coupled));
-  PetscCall(PetscStrcmp(scene->scheme, "direct", &direct));
+  if (scene->scheme.wanted == 0) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCheck(scene->scheme.wanted >= 1e-4 && scene->scheme.wanted <= 0.1, scene->comm, PETSC_ERR_USER_INPUT,
+             "-scheme_auto %g: outside of what was measured; allowed: 0, or 1e-4 to 0.1", (double)scene->scheme.wanted);
+  PetscCall(PetscStrcmp(scene->scheme.type, "coupled", &coupled));
+  PetscCall(PetscStrcmp(scene->scheme.type, "direct", &direct));
   PetscCheck(coupled || direct, scene->comm, PETSC_ERR_USER_INPUT,
-             "-scheme_auto %g: with -scheme_type %s; allowed: coupled or direct", (double)scene->wanted, scene->scheme);
+             "-scheme_auto %g: with -scheme_type %s; allowed: coupled or direct", (double)scene->scheme.wanted,
+             scene->scheme.type);
   PetscCall(SceneChoose(scene, "-scheme_order", "2"));
   PetscCall(SceneChoose(scene, "-time_adapt", "error"));
   PetscCall(SceneChoose(scene, "-time_adapt_tol", settings[Row(scene)].adapt_tol));
   PetscCall(SceneChoose(scene, "-delta_type", "cbs54"));
-  if (!scene->markers) PetscCall(SceneChoose(scene, "-vesicle_spacing", "1.5"));
-  scene->ksp_rtol = strtod(settings[Row(scene)].ksp_rtol, NULL);
+  if (!scene->vesicles.markers) PetscCall(SceneChoose(scene, "-vesicle_spacing", "1.5"));
+  scene->coupling.ksp_rtol = strtod(settings[Row(scene)].ksp_rtol, NULL);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -57,15 +58,47 @@ static PetscReal Rate(Scene scene) {
   return 0;
 }
 
+/* Of the smallest vesicle. */
+static PetscReal SmallestRadius(Scene scene) {
+  PetscReal R0 = PETSC_MAX_REAL;
+  for (PetscInt v = 0; v < scene->shape.vesicles; v++) R0 = PetscMin(R0, ShapeRadius(&scene->shape, v));
+  return R0;
+}
+
+/* The slowest and the fastest time of the scene: nu R0^3/c_b, and the least of it and the flow's; PETSC_MAX_REAL: none.
+ */
+static void Times(Scene scene, PetscReal *slow, PetscReal *fast) {
+  const PetscReal rate = Rate(scene), R0 = SmallestRadius(scene);
+  *slow = scene->membrane.bending > 0 ? scene->fluid.nu * R0 * R0 * R0 / scene->membrane.bending : PETSC_MAX_REAL;
+  *fast = rate > 0 ? PetscMin(*slow, 1 / rate) : *slow;
+}
+
+PetscErrorCode SceneChooseSteps(Draft scene) {
+  PetscReal slow, fast;
+  char value[64];
+  PetscFunctionBeginUser;
+  if (scene->scheme.wanted == 0 || !scene->shape.vesicles) PetscFunctionReturn(PETSC_SUCCESS);
+  Times(scene, &slow, &fast);
+  if (slow < PETSC_MAX_REAL) {
+    PetscCall(PetscSNPrintf(value, sizeof(value), "%.6g", (double)(settings[Row(scene)].max_step * slow)));
+    PetscCall(SceneChoose(scene, "-time_adapt_max_step", value));
+  }
+  if (fast < PETSC_MAX_REAL) {
+    PetscCall(PetscSNPrintf(value, sizeof(value), "%.6g", (double)(0.05 * fast)));
+    PetscCall(SceneChoose(scene, "-time_step", value));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* One setting: its name, value, and why, or that it is the user's. */
 static PetscErrorCode PrintSetting(Scene scene, const char name[], const char why[]) {
   char value[64] = "";
   PetscBool given = SceneGiven(scene, name);
+  const PetscInt i = OptionFind(&scene->options, name);
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; SceneOptionName(i); i++)
-    if (!strcmp(SceneOptionName(i), name)) PetscCall(SceneOptionValue(scene, i, value, sizeof(value)));
+  if (i >= 0) PetscCall(SceneOptionValue(scene, i, value, sizeof(value)));
   if (!strcmp(name, "-coupled_ksp_rtol")) {
-    PetscCall(PetscSNPrintf(value, sizeof(value), "%.0e", (double)scene->ksp_rtol));
+    PetscCall(PetscSNPrintf(value, sizeof(value), "%.0e", (double)scene->coupling.ksp_rtol));
     PetscCall(PetscOptionsGetString(NULL, NULL, name, value, sizeof(value), &given));
   }
   if (strlen(value) > 10 && strchr(value, '.'))
@@ -80,19 +113,19 @@ static PetscErrorCode PrintGrid(Scene scene, PetscReal cells) {
   PetscInt here = 0, enough = n - 1;
   PetscFunctionBeginUser;
   while (here < n && cells < grids[here].cells) here++;
-  while (enough >= 0 && grids[enough].error > scene->wanted * (1 + 1e-9)) enough--;
+  while (enough >= 0 && grids[enough].error > scene->scheme.wanted * (1 + 1e-9)) enough--;
   PetscCall(PetscPrintf(scene->comm, "  grid: R0/h = %.3g", (double)cells));
   if (here < n)
     PetscCall(PetscPrintf(scene->comm, ", which leaves up to %.2g in steady tank-treading", (double)grids[here].error));
   else
     PetscCall(PetscPrintf(scene->comm, ", coarser than any that was measured"));
-  if (here < n && grids[here].error <= scene->wanted * (1 + 1e-9))
+  if (here < n && grids[here].error <= scene->scheme.wanted * (1 + 1e-9))
     PetscCall(PetscPrintf(scene->comm, ": enough\n"));
   else if (enough >= 0)
-    PetscCall(PetscPrintf(scene->comm, ": TOO COARSE for %g, take R0/h = %g (-domain_cells)\n", (double)scene->wanted,
-                          (double)grids[enough].cells));
+    PetscCall(PetscPrintf(scene->comm, ": TOO COARSE for %g, take R0/h = %g (-domain_cells)\n",
+                          (double)scene->scheme.wanted, (double)grids[enough].cells));
   else
-    PetscCall(PetscPrintf(scene->comm, ": no grid up to R0/h = 50 reached %g\n", (double)scene->wanted));
+    PetscCall(PetscPrintf(scene->comm, ": no grid up to R0/h = 50 reached %g\n", (double)scene->scheme.wanted));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -100,44 +133,33 @@ static PetscErrorCode PrintChoice(Scene scene, PetscInt row, PetscBool timed) {
   char why[128];
   PetscFunctionBeginUser;
   PetscCall(PetscPrintf(scene->comm, "petves: -scheme_auto %g, by the worst errors measured (docs/speed_accuracy.md)\n",
-                        (double)scene->wanted));
+                        (double)scene->scheme.wanted));
   PetscCall(PrintSetting(scene, "-scheme_type", "the membrane and the fluid in one solve"));
   PetscCall(PrintSetting(scene, "-scheme_order", "order 1 leaves 1 % of the frequency at rate dt = 0.0125"));
   PetscCall(PrintSetting(scene, "-time_adapt", "finds the step of any scene"));
   PetscCall(PrintSetting(scene, "-time_step", timed ? "a twentieth of the fastest time of the scene" : "the default"));
-  if (scene->adapt == ADAPT_ERROR) {
+  if (scene->time.adapt == ADAPT_ERROR) {
     PetscCall(PetscSNPrintf(why, sizeof(why), "steps leave up to %.1e", (double)settings[row].of_steps));
     PetscCall(PrintSetting(scene, "-time_adapt_tol", why));
     PetscCall(PetscSNPrintf(why, sizeof(why), "%g nu R0^3/c_b: leaves up to %.1e of the energy at rest",
                             (double)settings[row].max_step, (double)settings[row].of_rest));
-    if (scene->bending > 0) PetscCall(PrintSetting(scene, "-time_adapt_max_step", why));
+    if (scene->membrane.bending > 0) PetscCall(PrintSetting(scene, "-time_adapt_max_step", why));
   }
   PetscCall(PetscSNPrintf(why, sizeof(why), "the solver leaves up to %.1e", (double)settings[row].of_solver));
-  if (!strcmp(scene->scheme, "coupled")) PetscCall(PrintSetting(scene, "-coupled_ksp_rtol", why));
+  if (!strcmp(scene->scheme.type, "coupled")) PetscCall(PrintSetting(scene, "-coupled_ksp_rtol", why));
   PetscCall(PrintSetting(scene, "-delta_type", "least error a second"));
-  if (!scene->markers) PetscCall(PrintSetting(scene, "-vesicle_spacing", "2 h saves 5 % and may cost 0.5 %"));
+  if (!scene->vesicles.markers) PetscCall(PrintSetting(scene, "-vesicle_spacing", "2 h saves 5 % and may cost 0.5 %"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SceneAutoSteps(Scene scene, const Shape *shape) {
-  const PetscInt row = Row(scene);
-  const PetscReal rate = Rate(scene);
-  PetscReal R0 = PETSC_MAX_REAL, slow = PETSC_MAX_REAL, fast;
-  char value[64];
+PetscErrorCode SceneReport(Scene scene) {
+  PetscReal slow, fast;
   PetscFunctionBeginUser;
-  if (scene->wanted == 0 || !shape->vesicles) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt v = 0; v < shape->vesicles; v++) R0 = PetscMin(R0, ShapeRadius(shape, v));
-  if (scene->bending > 0) slow = scene->viscosity * R0 * R0 * R0 / scene->bending;
-  fast = rate > 0 ? PetscMin(slow, 1 / rate) : slow;
-  if (slow < PETSC_MAX_REAL) {
-    PetscCall(PetscSNPrintf(value, sizeof(value), "%.6g", (double)(settings[row].max_step * slow)));
-    PetscCall(SceneChoose(scene, "-time_adapt_max_step", value));
+  if (scene->scheme.wanted > 0 && scene->shape.vesicles) {
+    Times(scene, &slow, &fast);
+    PetscCall(PrintChoice(scene, Row(scene), fast < PETSC_MAX_REAL ? PETSC_TRUE : PETSC_FALSE));
+    PetscCall(PrintGrid(scene, SmallestRadius(scene) / FluidSpecCellSize(&scene->fluid)));
   }
-  if (fast < PETSC_MAX_REAL) {
-    PetscCall(PetscSNPrintf(value, sizeof(value), "%.6g", (double)(0.05 * fast)));
-    PetscCall(SceneChoose(scene, "-time_step", value));
-  }
-  PetscCall(PrintChoice(scene, row, fast < PETSC_MAX_REAL ? PETSC_TRUE : PETSC_FALSE));
-  PetscCall(PrintGrid(scene, R0 / SceneCellSize(scene)));
+  if (*scene->warning) PetscCall(PetscPrintf(scene->comm, "petves: warning: %s\n", scene->warning));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

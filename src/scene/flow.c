@@ -1,7 +1,7 @@
-/* Background flows: exact steady Stokes flows without a vesicle (DESIGN section 2), or a function of the caller. */
-#include "scene/scene.h"
+/* Background flows: exact steady Stokes flows without a vesicle, or a function of the caller. */
+#include "scene/flow.h"
 
-void FlowVelocity(const Flow *flow, PetscReal x, PetscReal y, PetscReal u[2]) {
+void FlowVelocity(const Flow *flow, PetscReal t, PetscReal x, PetscReal y, PetscReal u[2]) {
   const PetscReal dx = x - flow->center[0], dy = y - flow->center[1];
   u[0] = u[1] = 0;
   switch (flow->type) {
@@ -17,7 +17,7 @@ void FlowVelocity(const Flow *flow, PetscReal x, PetscReal y, PetscReal u[2]) {
     break;
   case FLOW_CUSTOM: {
     const PetscReal X[2] = {x, y};
-    if (flow->function(flow->time, 1, X, u, flow->ctx)) u[0] = u[1] = NAN;
+    if (flow->function(t, 1, X, u, flow->ctx)) u[0] = u[1] = NAN;
     break;
   }
   default:
@@ -25,22 +25,22 @@ void FlowVelocity(const Flow *flow, PetscReal x, PetscReal y, PetscReal u[2]) {
   }
 }
 
-PetscErrorCode FlowVelocities(const Flow *flow, PetscInt n, const PetscReal X[], PetscReal u[]) {
+PetscErrorCode FlowVelocities(const Flow *flow, PetscReal t, PetscInt n, const PetscReal X[], PetscReal u[]) {
   PetscFunctionBeginUser;
   if (flow->type != FLOW_CUSTOM) {
-    for (PetscInt k = 0; k < n; k++) FlowVelocity(flow, X[2 * k], X[2 * k + 1], &u[2 * k]);
+    for (PetscInt k = 0; k < n; k++) FlowVelocity(flow, t, X[2 * k], X[2 * k + 1], &u[2 * k]);
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  PetscCall(flow->function(flow->time, n, X, u, flow->ctx));
+  PetscCall(flow->function(t, n, X, u, flow->ctx));
   for (PetscInt k = 0; k < n; k++)
     PetscCheck(!PetscIsInfOrNanReal(u[2 * k]) && !PetscIsInfOrNanReal(u[2 * k + 1]), PETSC_COMM_SELF,
                PETSC_ERR_USER_INPUT,
                "-flow_type custom: u_inf is (%g, %g) at (%g, %g), time %g; allowed: finite numbers", (double)u[2 * k],
-               (double)u[2 * k + 1], (double)X[2 * k], (double)X[2 * k + 1], (double)flow->time);
+               (double)u[2 * k + 1], (double)X[2 * k], (double)X[2 * k + 1], (double)t);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-void FlowGradient(const Flow *flow, PetscReal x, PetscReal y, PetscReal gradient[2][2]) {
+void FlowGradient(const Flow *flow, PetscReal t, PetscReal x, PetscReal y, PetscReal gradient[2][2]) {
   const PetscReal dy = y - flow->center[1];
   gradient[0][0] = gradient[0][1] = gradient[1][0] = gradient[1][1] = 0;
   switch (flow->type) {

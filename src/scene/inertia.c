@@ -1,5 +1,5 @@
 /* How much inertia a scene has, and which model of the fluid goes with it. */
-#include "scene/scene.h"
+#include "scene/resolve.h"
 
 /* Below it a channel or a strain flow is quasi-steady by default. */
 #define SMALL_REYNOLDS 0.01
@@ -13,44 +13,45 @@ static PetscReal LargestRadius(const Shape *shape) {
   return largest;
 }
 
-PetscReal SceneReynolds(Scene scene, const Shape *shape) {
+static PetscReal Reynolds(Scene scene) {
   const Flow *flow = &scene->flow;
-  const PetscReal R0 = LargestRadius(shape);
+  const PetscReal R0 = LargestRadius(&scene->shape);
   PetscReal speed = 0;
   if (R0 == 0) return 0;
   if (flow->type == FLOW_SHEAR || flow->type == FLOW_EXTENSION) speed = PetscAbsReal(flow->rate) * R0;
   if (flow->type == FLOW_POISEUILLE) speed = PetscAbsReal(flow->peak);
-  if (flow->type == FLOW_QUIESCENT) speed = scene->bending / (scene->viscosity * PetscSqr(R0));
-  return speed * R0 / scene->viscosity;
+  if (flow->type == FLOW_QUIESCENT) speed = scene->membrane.bending / (scene->fluid.nu * PetscSqr(R0));
+  return speed * R0 / scene->fluid.nu;
 }
 
 /* Largest Reynolds number of a vesicle's own way through the fluid: |u_inf| at its centre, times R0/nu. */
-static PetscReal CarriedReynolds(Scene scene, const Shape *shape) {
+static PetscReal CarriedReynolds(Scene scene) {
+  const Shape *shape = &scene->shape;
   PetscReal most = 0;
   for (PetscInt v = 0; v < shape->vesicles; v++) {
     const PetscInt first = shape->start[v], n = shape->start[v + 1] - first;
     PetscReal X[2] = {0, 0}, u[2];
     for (PetscInt k = first; k < first + n; k++)
       for (int c = 0; c < 2; c++) X[c] += shape->X[2 * k + c] / n;
-    FlowVelocity(&scene->flow, X[0], X[1], u);
+    FlowVelocity(&scene->flow, 0, X[0], X[1], u);
     most = PetscMax(most, PetscSqrtReal(PetscSqr(u[0]) + PetscSqr(u[1])));
   }
-  return most * LargestRadius(shape) / scene->viscosity;
+  return most * LargestRadius(shape) / scene->fluid.nu;
 }
 
 /* Whether u_inf takes up again across the periodic boundaries; dir: the first where it does not. */
 static PetscBool Seamless(Scene scene, int *dir) {
-  const PetscReal *b = scene->box.v, d = SceneCellSize(scene);
+  const PetscReal *b = scene->fluid.box, d = FluidSpecCellSize(&scene->fluid);
   PetscReal jump = 0, most = 0, u[2], v[2];
   for (*dir = 0; *dir < 2; (*dir)++) {
-    for (int k = 0; k < 4 && scene->bc[*dir] == BC_PERIODIC; k++) {
+    for (int k = 0; k < 4 && scene->fluid.bc[*dir] == BC_PERIODIC; k++) {
       PetscReal X[2] = {b[0], b[2]}, Y[2];
       X[1 - *dir] = b[2 * (1 - *dir) + k % 2];
       X[*dir] += k / 2 ? d : -d;
       Y[0] = X[0], Y[1] = X[1];
       Y[*dir] += b[2 * *dir + 1] - b[2 * *dir];
-      FlowVelocity(&scene->flow, X[0], X[1], u);
-      FlowVelocity(&scene->flow, Y[0], Y[1], v);
+      FlowVelocity(&scene->flow, 0, X[0], X[1], u);
+      FlowVelocity(&scene->flow, 0, Y[0], Y[1], v);
       for (int c = 0; c < 2; c++) {
         jump = PetscMax(jump, PetscAbsReal(u[c] - v[c]));
         most = PetscMax(most, PetscAbsReal(u[c]));
@@ -61,35 +62,35 @@ static PetscBool Seamless(Scene scene, int *dir) {
   return PETSC_TRUE;
 }
 
-PetscErrorCode SceneSetInertia(Scene scene, const Shape *shape) {
-  const PetscReal carried = CarriedReynolds(scene, shape);
+PetscErrorCode SceneChooseInertia(Draft scene) {
+  const PetscReal carried = CarriedReynolds(scene);
   const PetscBool baseline = SceneIsProjection(scene);
   PetscBool seamless;
   int dir;
   PetscFunctionBeginUser;
   seamless = Seamless(scene, &dir);
-  scene->reynolds = SceneReynolds(scene, shape);
-  if (scene->inertia == INERTIA_AUTO) {
+  scene->reynolds = Reynolds(scene);
+  if (scene->fluid.inertia == INERTIA_AUTO) {
     /* at rest, or steady in the end: scenes of the paper, whose model does them no harm (a vesicle off the middle of
        a shear flow gets the warning) */
     const PetscBool paper = scene->flow.type == FLOW_QUIESCENT || scene->flow.type == FLOW_SHEAR ||
                                     scene->flow.type == FLOW_CUSTOM
                                 ? PETSC_TRUE
                                 : PETSC_FALSE;
-    scene->inertia = INERTIA_UNSTEADY;
-    if (!baseline && shape->vesicles && !paper) {
+    scene->fluid.inertia = INERTIA_UNSTEADY;
+    if (!baseline && scene->shape.vesicles && !paper) {
       if (scene->reynolds < SMALL_REYNOLDS)
-        scene->inertia = INERTIA_NONE;
-      else if (scene->order == 2 && seamless)
-        scene->inertia = INERTIA_CONVECTIVE;
+        scene->fluid.inertia = INERTIA_NONE;
+      else if (scene->scheme.order == 2 && seamless)
+        scene->fluid.inertia = INERTIA_CONVECTIVE;
     }
   }
-  PetscCheck(scene->inertia != INERTIA_CONVECTIVE || seamless, scene->comm, PETSC_ERR_USER_INPUT,
+  PetscCheck(scene->fluid.inertia != INERTIA_CONVECTIVE || seamless, scene->comm, PETSC_ERR_USER_INPUT,
              "-fluid_inertia convective: the background flow is not periodic in %c, so it cannot carry the disturbance "
              "across that boundary; allowed: -domain_bc_%c wall, or -fluid_inertia none or unsteady",
              dir ? 'y' : 'x', dir ? 'y' : 'x');
   *scene->warning = 0;
-  if (scene->inertia == INERTIA_UNSTEADY && scene->reynolds > CARRIED_REYNOLDS && carried > CARRIED_REYNOLDS)
+  if (scene->fluid.inertia == INERTIA_UNSTEADY && scene->reynolds > CARRIED_REYNOLDS && carried > CARRIED_REYNOLDS)
     PetscCall(PetscSNPrintf(scene->warning, sizeof(scene->warning),
                             "-fluid_inertia unsteady at Re = %.3g with a vesicle that the flow carries along: without "
                             "convection the flow is not Galilean invariant, the vesicle drags the fluid that it "

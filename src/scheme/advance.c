@@ -38,10 +38,10 @@ static PetscErrorCode RestoreVesicle(Scheme s, PetscInt v, PetscScalar X[], Pets
   PetscReal error, shift = 0;
   PetscFunctionBeginUser;
   PetscCall(PetscArraycpy(unmoved, X_old, n2));
-  if (s->scene->area_target) shift = MembraneRestoreArea(m, v, X, X_old);
+  if (s->scene->scheme.area_target) shift = MembraneRestoreArea(m, v, X, X_old);
   r->most = PetscMax(r->most, shift);
   r->least = PetscMin(r->least, shift);
-  if (!s->scene->length_target || PetscAbsReal(shift) > 0.5 * m->ds[v]) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!s->scene->scheme.length_target || PetscAbsReal(shift) > 0.5 * m->ds[v]) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(MembraneRestoreEdges(m, v, EDGE_TOLERANCE, X, &error));
   if (error > 0) PetscCall(PetscArraycpy(X_old, unmoved, n2));
   if (error > r->error) {

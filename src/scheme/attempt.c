@@ -120,14 +120,14 @@ PetscErrorCode CoupledAttempt(Scheme s, PetscReal dt, PetscBool *solved) {
   Coupled *d = (Coupled *)s->data;
   State *q = &s->state;
   const PetscReal r = s->has_old ? dt / q->dt_last : 0;
-  const BDF b = BDFCoefficients(s->has_old ? s->scene->order : 1, dt, s->has_old ? q->dt_last : dt);
+  const BDF b = BDFCoefficients(s->has_old ? s->scene->scheme.order : 1, dt, s->has_old ? q->dt_last : dt);
   PetscFunctionBeginUser;
   q->dt = dt;
   PetscCall(Extrapolate(b.ratio, q->X, d->old.X, d->Xstar));
   PetscCall(History(&b, 1 / b.a0, q->X, d->old.X, d->Xhat));
   PetscCall(SchemePlace(s, b.a0, d->Xstar, NULL, d->Xhat, q->t + d->done + dt, solved));
   if (!*solved) PetscFunctionReturn(PETSC_SUCCESS);
-  if (s->scene->length_target) PetscCall(LengthTarget(s, d, b.a0));
+  if (s->scene->scheme.length_target) PetscCall(LengthTarget(s, d, b.a0));
   PetscCall(MomentumRightHandSide(s, d, &b, r));
   PetscCall(InitialGuess(s, d, r));
   PetscCall(Solve(s, d));

@@ -23,7 +23,7 @@ static PetscErrorCode GradedStart(Scheme s, Coupled *d, PetscReal dt) {
 static PetscErrorCode FixedStep(Scheme s, Coupled *d, PetscReal dt) {
   PetscBool solved;
   PetscFunctionBeginUser;
-  if (!s->has_old && s->scene->order > 1 && s->scene->startup == STARTUP_GRADED) {
+  if (!s->has_old && s->scene->scheme.order > 1 && s->scene->scheme.startup == STARTUP_GRADED) {
     PetscCall(GradedStart(s, d, dt));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
@@ -84,7 +84,7 @@ static PetscErrorCode Look(Scheme s, Coupled *d, StepTrial *trial) {
 
 /* Size of the next attempt; verdict on the last one. Rank 0 decides, for all. */
 static PetscErrorCode DecideSize(Scheme s, PetscReal speed, PetscReal most, PetscReal *dt) {
-  const PetscReal limit = s->scene->cfl_limit * s->fluid->grid->h;
+  const PetscReal limit = s->scene->time.cfl_limit * s->fluid->grid->h;
   PetscFunctionBeginUser;
   *dt = StepSize(&s->policy, &s->plan, speed > 0 ? limit / speed : PETSC_MAX_REAL, most);
   PetscCallMPI(MPI_Bcast(dt, 1, MPIU_REAL, 0, s->scene->comm));
@@ -131,7 +131,7 @@ static PetscErrorCode JudgedStep(Scheme s, Coupled *d, PetscReal speed, PetscRea
 
 /* A fixed step that convection does not allow: report.failure says so. */
 static PetscErrorCode CheckCourant(Scheme s, PetscReal dt, PetscReal speed) {
-  const PetscReal h = s->fluid->grid->h, limit = s->scene->cfl_limit;
+  const PetscReal h = s->fluid->grid->h, limit = s->scene->time.cfl_limit;
   PetscFunctionBeginUser;
   if (dt * speed <= limit * h) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscSNPrintf(s->report.failure, sizeof(s->report.failure),
@@ -170,10 +170,10 @@ static PetscErrorCode Undo_Coupled(Scheme s) {
 static PetscErrorCode SetUpConvection(Scheme s, Coupled *d) {
   PetscReal speed;
   PetscFunctionBeginUser;
-  if (s->scene->inertia != INERTIA_CONVECTIVE) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(ConvectionCreate(s->scene, s->fluid, &d->convection));
+  if (s->scene->fluid.inertia != INERTIA_CONVECTIVE) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ConvectionCreate(&s->scene->flow, s->fluid, &d->convection));
   PetscCall(ConvectionSpeed(d->convection, s->state.w, &speed));
-  if (!s->policy.adaptive) PetscCall(CheckCourant(s, s->scene->dt, speed));
+  if (!s->policy.adaptive) PetscCall(CheckCourant(s, s->scene->time.dt, speed));
   PetscCheck(!*s->report.failure, s->scene->comm, PETSC_ERR_USER_INPUT, "%s", s->report.failure);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -224,7 +224,7 @@ static PetscErrorCode Recall_Coupled(Scheme s, const PetscReal memory[]) {
   PetscCall(VecRestoreArray(d->made_at, &X));
   PetscCall(CouplingPlace(s->coupling, a0, d->made_at, message));
   PetscCheck(!*message, s->scene->comm, PETSC_ERR_USER_INPUT, "-restart %s: %s; allowed: a checkpoint of this scene",
-             s->scene->restart, message);
+             s->scene->output.restart, message);
   PetscCall(PreconditionerSetMemory(d->solver->preconditioner, memory));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -8,11 +8,11 @@
 #define HALF 2   /* levels of a factor of 2 */
 
 StepPolicy StepPolicyCreate(Scene scene, PetscInt vesicles) {
-  return (StepPolicy){.adaptive = scene->adapt == ADAPT_ERROR && vesicles ? PETSC_TRUE : PETSC_FALSE,
-                      .base = scene->dt,
-                      .tolerance = scene->adapt_tol,
-                      .max_move = scene->adapt_max_move * SceneCellSize(scene),
-                      .max_step = scene->adapt_max_step};
+  return (StepPolicy){.adaptive = scene->time.adapt == ADAPT_ERROR && vesicles ? PETSC_TRUE : PETSC_FALSE,
+                      .base = scene->time.dt,
+                      .tolerance = scene->time.adapt_tol,
+                      .max_move = scene->time.adapt_max_move * FluidSpecCellSize(&scene->fluid),
+                      .max_step = scene->time.adapt_max_step};
 }
 
 PetscInt StepFirstLevel(void) {

@@ -22,8 +22,7 @@ PetscErrorCode SchemeBackground(Scheme s, Vec X, PetscReal t) {
   if (s->fluid->total) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecGetArrayRead(X, &x));
   PetscCall(VecGetArray(s->background, &u));
-  s->scene->flow.time = t;
-  PetscCall(FlowVelocities(&s->scene->flow, s->membrane->layout->n, x, u));
+  PetscCall(FlowVelocities(&s->scene->flow, t, s->membrane->layout->n, x, u));
   PetscCall(VecRestoreArray(s->background, &u));
   PetscCall(VecRestoreArrayRead(X, &x));
   PetscFunctionReturn(PETSC_SUCCESS);

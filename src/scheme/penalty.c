@@ -3,14 +3,6 @@
 #include "fluid/stokes.h"
 #include "scheme/parts.h"
 
-/* The step bears springs up to sigma_0 = viscous nu h/dt + inertial h^3/dt^2, measured (docs/method.md): ib6 smooths
-   the markers' own motion more than the other kernels, of which cbs32 bears least. */
-typedef struct {
-  const char *kernel; /* the last row is any kernel's */
-  PetscReal viscous, inertial;
-} SpringBound;
-static const SpringBound bounds[] = {{"ib6", 50, 100}, {"", 19, 12}};
-
 typedef struct {
   Stokes stokes;
   Vec r, dp;      /* momentum's right-hand side, change of pressure */
@@ -30,7 +22,7 @@ static PetscErrorCode SpringTension(Scheme s, Penalty *d, Vec X, Vec sigma, Vec 
   MembraneTangents(s->membrane, x, d->tau);
   for (PetscInt k = 0; k < s->membrane->layout->n; k++) {
     const PetscReal stretch = PetscSqrtReal(PetscSqr(d->tau[2 * k]) + PetscSqr(d->tau[2 * k + 1])); /* |X_s| */
-    tension[k] = s->scene->stiffness * (stretch - 1);
+    tension[k] = s->scene->scheme.stiffness * (stretch - 1);
     if (f) f[k] = tension[k] / stretch;
   }
   if (force) PetscCall(VecRestoreArray(force, &f));
@@ -79,8 +71,6 @@ static PetscErrorCode Step_Penalty(Scheme s, PetscReal most) {
 static PetscErrorCode SetUp_Penalty(Scheme s) {
   Penalty *d = (Penalty *)s->data;
   const State *q = &s->state;
-  const PetscReal h = s->fluid->grid->h;
-  const SpringBound *bound = bounds;
   PetscFunctionBeginUser;
   PetscCall(StokesCreate(s->fluid, &d->stokes));
   PetscCall(VecDuplicate(q->w, &d->r));
@@ -91,9 +81,6 @@ static PetscErrorCode SetUp_Penalty(Scheme s) {
     PetscCall(VecDuplicate(q->p, &d->constraint));
     PetscCall(VecAXPBY(d->constraint, -1, 0, s->fluid->bc2));
   }
-  while (*bound->kernel && strcmp(bound->kernel, s->scene->delta)) bound++;
-  if (s->scene->stiffness == 0) /* half of the bound; resolved.opts and checkpoints hold the value */
-    s->scene->stiffness = 0.5 * (bound->viscous * s->fluid->nu * h / q->dt + bound->inertial * h * PetscSqr(h / q->dt));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -101,7 +88,7 @@ static PetscErrorCode View_Penalty(Scheme s, PetscViewer viewer) {
   PetscFunctionBeginUser;
   if (CouplingHasMembrane(s->coupling))
     PetscCall(PetscViewerASCIIPrintf(viewer, "springs: sigma = sigma_0 (|X_s| - 1), sigma_0 = %g\n",
-                                     (double)s->scene->stiffness));
+                                     (double)s->scene->scheme.stiffness));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -41,7 +41,7 @@ static PetscErrorCode PlaceFirst(Scheme s, const PetscReal X[]) {
   PetscCall(MarkersCheck(s->coupling->markers, q->X, message));
   PetscCheck(!*message, s->scene->comm, PETSC_ERR_USER_INPUT,
              "-vesicle_center %g,%g: %s; allowed: a vesicle inside -domain_box, 3 cells from its walls",
-             (double)s->scene->center.v[0], (double)s->scene->center.v[1], message);
+             (double)s->scene->vesicles.center.v[0], (double)s->scene->vesicles.center.v[1], message);
   PetscCall(MarkersPlace(s->coupling->markers, q->X));
   PetscCall(MarkersInterpolate(s->coupling->markers, q->w, q->U));
   PetscCall(SchemeBackground(s, q->X, q->t));
@@ -54,7 +54,7 @@ static PetscErrorCode CreateState(Scheme s, const PetscReal X[]) {
   State *q = &s->state;
   PetscFunctionBeginUser;
   PetscCall(StateCreate(s->coupling, q));
-  q->dt = s->scene->dt;
+  q->dt = s->scene->time.dt;
   if (s->fluid->total) PetscCall(VecCopy(s->fluid->background, q->w));
   PetscCall(VecDuplicate(q->X, &s->background));
   PetscCall(VecDuplicate(q->sigma, &s->g));
@@ -69,11 +69,11 @@ PetscErrorCode SchemeCreate(Scene scene, Coupling coupling, const PetscReal X[],
   PetscErrorCode (*create)(Scheme);
   PetscFunctionBeginUser;
   PetscCall(RegisterSchemes());
-  PetscCall(PetscFunctionListFind(schemes, scene->scheme, &create));
-  PetscCheck(create, scene->comm, PETSC_ERR_USER_INPUT, "-scheme_type %s: not registered", scene->scheme);
+  PetscCall(PetscFunctionListFind(schemes, scene->scheme.type, &create));
+  PetscCheck(create, scene->comm, PETSC_ERR_USER_INPUT, "-scheme_type %s: not registered", scene->scheme.type);
   PetscCall(PetscNew(&s));
   *out = s;
-  PetscCall(PetscStrncpy(s->type, scene->scheme, sizeof(s->type)));
+  PetscCall(PetscStrncpy(s->type, scene->scheme.type, sizeof(s->type)));
   s->scene = scene;
   s->coupling = coupling;
   s->fluid = coupling->fluid;

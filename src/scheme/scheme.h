@@ -43,7 +43,7 @@ typedef struct {
 } SchemeOps;
 
 struct _p_Scheme {
-  char type[SCENE_MAX_NAME];
+  char type[OPTION_MAX_NAME];
   Scene scene;       /* borrowed */
   Coupling coupling; /* borrowed; what is below is its own */
   Fluid fluid;

@@ -129,7 +129,7 @@ static PetscErrorCode SetUp_Split(Scheme s) {
   PetscCall(VecDuplicate(q->X, &d->U));
   if (!CouplingHasMembrane(s->coupling)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(TensionSolverCreate(s->coupling, &d->tension));
-  if (CouplingBending(s->coupling) > 0 && s->scene->bending_at == BENDING_IMPLICIT)
+  if (CouplingBending(s->coupling) > 0 && s->scene->scheme.bending_at == BENDING_IMPLICIT)
     PetscCall(BendingSolverCreate(s->coupling, &d->bending));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

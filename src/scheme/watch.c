@@ -38,7 +38,7 @@ static PetscErrorCode CheckLimits(Scheme s, PetscInt v, const PetscScalar X[]) {
       "a smaller -time_step, more markers (-vesicle_spacing, with finer -domain_cells) or a larger limit",
       "a smaller -time_step, finer -domain_cells or a larger limit",
       "a smaller -time_step, finer -domain_cells with more markers, -scheme_type coupled or a larger limit"};
-  const PetscReal limit[] = {scene->limit_edge_ratio, scene->limit_area_error, scene->limit_length_error};
+  const PetscReal limit[] = {scene->limits.edge_ratio, scene->limits.area_error, scene->limits.length_error};
   Measures measures;
   PetscFunctionBeginUser;
   MembraneMeasure(m, v, X, &measures);

@@ -1,17 +1,10 @@
 /* Misspelt and unused options: found, named, and the nearest known option suggested. */
-#include "scene/scene.h"
+#include "options/options.h"
 
 /* Options that PETSc itself reads only while it finalises. */
 static const char *const late[] = {"options_left",    "objects_dump", "malloc_dump",    "malloc_view",
                                    "memory_view",     "log_view",     "log_trace",      "log_summary",
                                    "log_view_memory", "mpi_finalize", "on_error_abort", "options_view"};
-
-/* Solver options that users write most, as candidates for a suggestion. */
-static const char *const solvers[] = {
-    "-tension_ksp_type", "-tension_ksp_rtol", "-tension_ksp_atol", "-tension_ksp_max_it",       "-tension_ksp_monitor",
-    "-tension_pc_type",  "-bending_ksp_type", "-bending_ksp_rtol", "-bending_ksp_atol",         "-bending_ksp_max_it",
-    "-bending_pc_type",  "-options_file",     "-log_view",         "-tension_pc_factor_levels", "-bending_ksp_monitor",
-    "-coupled_ksp_type", "-coupled_ksp_rtol", "-coupled_ksp_atol", "-coupled_ksp_max_it",       "-coupled_ksp_monitor"};
 
 /* Solver options that PETSc reads only when it solves, after the check. */
 static PetscBool ReadWhileSolving(const char *name) {
@@ -38,26 +31,21 @@ static PetscInt Distance(const char *a, const char *b) {
   return row[n];
 }
 
-static const char *Nearest(const char *name) {
-  const char *best = "", *candidate;
+static const char *Nearest(const OptionTable *t, const char *const others[], const char *name) {
+  const char *best = "";
   PetscInt least = PETSC_MAX_INT;
-  const PetscInt extra = (PetscInt)(sizeof(solvers) / sizeof(solvers[0]));
-  for (PetscInt i = 0;; i++) {
-    candidate = SceneOptionName(i);
-    if (!candidate) break;
-    if (Distance(name, candidate) < least) least = Distance(name, candidate), best = candidate;
-  }
-  for (PetscInt i = 0; i < extra; i++)
-    if (Distance(name, solvers[i]) < least) least = Distance(name, solvers[i]), best = solvers[i];
+  for (PetscInt i = 0; i < t->n; i++)
+    if (Distance(name, t->row[i].name) < least) least = Distance(name, t->row[i].name), best = t->row[i].name;
+  for (PetscInt i = 0; others[i]; i++)
+    if (Distance(name, others[i]) < least) least = Distance(name, others[i]), best = others[i];
   return best;
 }
 
-PetscErrorCode SceneCheckUnused(Scene scene) {
+PetscErrorCode OptionsCheckUnused(const OptionTable *t, const char *const others[]) {
   PetscInt n = 0;
   char **names, **values, unused[PETSC_MAX_PATH_LEN] = "", value[PETSC_MAX_PATH_LEN] = "";
   const PetscInt late_count = (PetscInt)(sizeof(late) / sizeof(late[0]));
   PetscFunctionBeginUser;
-  if (scene->allow_unused) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscOptionsLeftGet(NULL, &n, &names, &values));
   for (PetscInt i = 0; i < n && !*unused; i++) {
     PetscBool known = ReadWhileSolving(names[i]);
@@ -67,9 +55,9 @@ PetscErrorCode SceneCheckUnused(Scene scene) {
     if (values[i]) PetscCall(PetscStrncpy(value, values[i], sizeof(value)));
   }
   PetscCall(PetscOptionsLeftRestore(NULL, &n, &names, &values));
-  PetscCheck(!*unused, scene->comm, PETSC_ERR_USER_INPUT,
+  PetscCheck(!*unused, t->comm, PETSC_ERR_USER_INPUT,
              "%s %s: misspelt, or not used by this scene's solvers; nearest known option: %s "
              "(-allow_unused_options goes on)",
-             unused, value, Nearest(unused));
+             unused, value, Nearest(t, others, unused));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

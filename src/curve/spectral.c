@@ -1,4 +1,4 @@
-#include "membrane/spectral.h"
+#include "curve/spectral.h"
 #include <fftw3.h>
 
 struct _p_Spectral {

@@ -1,23 +1,20 @@
 /* Closed curves from a text file: "x y" a line, # starts a comment, an empty line ends a curve. */
-#include "scene/scene.h"
+#include "curve/curve.h"
 #include <errno.h>
 
 typedef struct {
   PetscInt n, curves;
-  PetscInt end[SCENE_MAX_LIST]; /* points up to the end of each curve */
+  PetscInt *end; /* points up to the end of each curve */
   PetscReal *xy;
   char error[PETVES_MAX_MESSAGE];
 } Points;
 
-static PetscErrorCode EndCurve(const char file[], Points *p) {
+static PetscErrorCode EndCurve(Points *p) {
   const PetscInt last = p->curves ? p->end[p->curves - 1] : 0;
   PetscFunctionBeginUser;
   if (p->n == last) PetscFunctionReturn(PETSC_SUCCESS);
-  if (p->curves == SCENE_MAX_LIST)
-    PetscCall(PetscSNPrintf(p->error, sizeof(p->error), "-vesicle_file %s: too many curves; allowed: at most %d", file,
-                            SCENE_MAX_LIST));
-  else
-    p->end[p->curves++] = p->n;
+  PetscCall(PetscRealloc((size_t)(p->curves + 1) * sizeof(PetscInt), &p->end));
+  p->end[p->curves++] = p->n;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -40,7 +37,7 @@ static PetscErrorCode ReadPoints(const char file[], Points *points) {
     number++;
     line[strcspn(line, "#\r\n")] = 0;
     if (line[strspn(line, " \t,")] == 0) {
-      if (!comment) PetscCall(EndCurve(file, points));
+      if (!comment) PetscCall(EndCurve(points));
       continue;
     }
     for (char *p = line; *p; p++)
@@ -59,7 +56,7 @@ static PetscErrorCode ReadPoints(const char file[], Points *points) {
     points->xy[2 * points->n++ + 1] = y;
   }
   fclose(f);
-  PetscCall(EndCurve(file, points));
+  PetscCall(EndCurve(points));
   if (!points->curves && !*points->error)
     PetscCall(PetscSNPrintf(points->error, sizeof(points->error),
                             "-vesicle_file %s: 0 points; allowed: at least 8 a curve", file));
@@ -103,7 +100,7 @@ static PetscErrorCode CleanCurve(const char file[], PetscInt *n, PetscReal xy[],
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode CurvesFromFile(MPI_Comm comm, const char file[], PetscInt *curves, Curve c[SCENE_MAX_LIST]) {
+PetscErrorCode CurvesFromFile(MPI_Comm comm, const char file[], PetscInt *curves, Curve **curve) {
   Points p = {0};
   PetscMPIInt rank;
   PetscFunctionBeginUser;
@@ -112,18 +109,21 @@ PetscErrorCode CurvesFromFile(MPI_Comm comm, const char file[], PetscInt *curves
   PetscCallMPI(MPI_Bcast(p.error, sizeof(p.error), MPI_CHAR, 0, comm));
   PetscCallMPI(MPI_Bcast(&p.n, 1, MPIU_INT, 0, comm));
   PetscCallMPI(MPI_Bcast(&p.curves, 1, MPIU_INT, 0, comm));
-  PetscCallMPI(MPI_Bcast(p.end, SCENE_MAX_LIST, MPIU_INT, 0, comm));
   PetscCheck(!*p.error, comm, PETSC_ERR_USER_INPUT, "%s", p.error);
-  if (rank) PetscCall(PetscMalloc1(2 * p.n, &p.xy));
+  if (rank) PetscCall(PetscRealloc((size_t)p.curves * sizeof(PetscInt), &p.end));
+  if (rank) PetscCall(PetscRealloc(2 * (size_t)p.n * sizeof(PetscReal), &p.xy));
+  PetscCallMPI(MPI_Bcast(p.end, (PetscMPIInt)p.curves, MPIU_INT, 0, comm));
   PetscCallMPI(MPI_Bcast(p.xy, (PetscMPIInt)(2 * p.n), MPIU_REAL, 0, comm));
   *curves = p.curves;
+  PetscCall(PetscCalloc1(p.curves, curve));
   for (PetscInt k = 0; k < p.curves; k++) {
     const PetscInt first = k ? p.end[k - 1] : 0;
     PetscInt n = p.end[k] - first;
     PetscCall(CleanCurve(file, &n, p.xy + 2 * first, p.error, sizeof(p.error)));
     PetscCheck(!*p.error, comm, PETSC_ERR_USER_INPUT, "%s", p.error);
-    PetscCall(CurveFromPoints(n, p.xy + 2 * first, &c[k]));
+    PetscCall(CurveFromPoints(n, p.xy + 2 * first, *curve + k));
   }
+  PetscCall(PetscFree(p.end));
   PetscCall(PetscFree(p.xy));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

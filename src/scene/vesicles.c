@@ -1,5 +1,6 @@
 /* The initial markers of a scene: equal edges on an ellipse or on a curve from a file. */
-#include "scene/scene.h"
+#include "kernel/kernel.h"
+#include "scene/resolve.h"
 
 #define MAX_NEWTON 20 /* of the first markers; four are usual */
 #define MANY 100      /* markers, from which on it matters that Fourier transforms of them are fast */
@@ -19,27 +20,30 @@ static PetscInt FastOdd(PetscInt M) {
 
 /* Number of markers of a curve: the even (for spectral edges odd) number nearest to length/(spacing h), or the user's
  * own. */
-static PetscErrorCode MarkerCount(Scene scene, PetscReal length, PetscReal spacing, PetscReal least, PetscInt *M) {
-  const PetscReal h = SceneCellSize(scene);
+static PetscErrorCode MarkerCount(Scene scene, PetscReal length, PetscInt *M) {
+  const Kernel *kernel = KernelFind(scene->coupling.kernel);
+  const PetscReal spacing = scene->vesicles.spacing > 0 ? scene->vesicles.spacing : kernel->default_spacing;
+  const PetscReal h = FluidSpecCellSize(&scene->fluid), least = kernel->least_spacing;
   PetscReal s;
   PetscFunctionBeginUser;
-  if (scene->spacing > 0) spacing = scene->spacing;
-  *M = scene->markers ? scene->markers : 2 * (PetscInt)PetscFloorReal(length / (2 * spacing * h) + 0.5);
-  if (!scene->markers && scene->derivative == DERIVATIVE_SPECTRAL) /* odd: no Nyquist mode */
+  *M = scene->vesicles.markers ? scene->vesicles.markers
+                               : 2 * (PetscInt)PetscFloorReal(length / (2 * spacing * h) + 0.5);
+  if (!scene->vesicles.markers && scene->membrane.derivative == DERIVATIVE_SPECTRAL) /* odd: no Nyquist mode */
     *M = 2 * (PetscInt)PetscFloorReal(length / (2 * spacing * h)) + 1;
-  if (!scene->markers && scene->derivative == DERIVATIVE_SPECTRAL && *M > MANY) *M = FastOdd(*M);
+  if (!scene->vesicles.markers && scene->membrane.derivative == DERIVATIVE_SPECTRAL && *M > MANY) *M = FastOdd(*M);
   PetscCheck(*M >= 8, scene->comm, PETSC_ERR_USER_INPUT,
              "-vesicle_spacing %g: %" PetscInt_FMT
              " markers on a membrane of length %g at h = %g; allowed: at least 8, so a finer -domain_cells",
              (double)spacing, *M, (double)length, (double)h);
   s = length / (*M * h);
   /* rounding to an even number of markers may go one marker below the limit that the user asked for */
-  PetscCheck(scene->allow_close_markers || (scene->markers ? s : spacing) >= least * (1 - 1e-12), scene->comm,
-             PETSC_ERR_USER_INPUT,
+  PetscCheck(scene->vesicles.allow_close_markers || (scene->vesicles.markers ? s : spacing) >= least * (1 - 1e-12),
+             scene->comm, PETSC_ERR_USER_INPUT,
              "-vesicle_%s %g: markers %g h apart with -delta_type %s; allowed: at least %g h "
              "(-vesicle_allow_close_markers goes on)",
-             scene->markers ? "markers" : "spacing", scene->markers ? (double)scene->markers : (double)spacing,
-             (double)s, scene->delta, (double)least);
+             scene->vesicles.markers ? "markers" : "spacing",
+             scene->vesicles.markers ? (double)scene->vesicles.markers : (double)spacing, (double)s,
+             scene->coupling.kernel, (double)least);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -49,41 +53,44 @@ static PetscReal Entry(const RealList *list, PetscInt each, PetscInt vesicle, Pe
 }
 
 /* The scene's curves about the origin. */
-static PetscErrorCode MakeCurves(Scene scene, PetscInt *count, Curve curve[]) {
-  const PetscBool by_area = SceneGiven(scene, "-vesicle_area") || SceneGiven(scene, "-vesicle_reduced_area");
+static PetscErrorCode MakeCurves(Scene scene, PetscInt *count, Curve **out) {
+  Curve *curve;
   PetscFunctionBeginUser;
-  *count = scene->shape == SHAPE_NONE ? 0 : scene->count;
-  for (PetscInt k = 0; k < *count && scene->shape == SHAPE_ELLIPSE; k++) {
-    curve[k].n = 0;
-    if (by_area)
-      PetscCall(EllipseAxes(Entry(&scene->area, 1, k, 0), Entry(&scene->reduced_area, 1, k, 0), curve[k].axes));
+  *count = scene->vesicles.shape == SHAPE_ELLIPSE ? scene->vesicles.count : 0;
+  PetscCall(PetscCalloc1(*count, &curve));
+  *out = curve;
+  for (PetscInt k = 0; k < *count; k++) {
+    if (SceneByArea(scene))
+      PetscCall(EllipseAxes(Entry(&scene->vesicles.area, 1, k, 0), Entry(&scene->vesicles.reduced_area, 1, k, 0),
+                            curve[k].axes));
     else
-      for (int c = 0; c < 2; c++) curve[k].axes[c] = Entry(&scene->axes, 2, k, c);
+      for (int c = 0; c < 2; c++) curve[k].axes[c] = Entry(&scene->vesicles.axes, 2, k, c);
   }
-  if (scene->shape != SHAPE_FILE) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(CurvesFromFile(scene->comm, scene->file, count, curve));
-  PetscCheck(!SceneGiven(scene, "-vesicle_count") || scene->count == *count, scene->comm, PETSC_ERR_USER_INPUT,
+  if (scene->vesicles.shape != SHAPE_FILE) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(CurvesFromFile(scene->comm, scene->vesicles.file, count, out));
+  PetscCheck(!SceneGiven(scene, "-vesicle_count") || scene->vesicles.count == *count, scene->comm, PETSC_ERR_USER_INPUT,
              "-vesicle_count %" PetscInt_FMT ": -vesicle_file %s has %" PetscInt_FMT
              " curves; allowed: the same number",
-             scene->count, scene->file, *count);
-  PetscCheck(scene->center.n == 2 || scene->center.n == 2 * *count, scene->comm, PETSC_ERR_USER_INPUT,
+             scene->vesicles.count, scene->vesicles.file, *count);
+  PetscCheck(scene->vesicles.center.n == 2 || scene->vesicles.center.n == 2 * *count, scene->comm, PETSC_ERR_USER_INPUT,
              "-vesicle_center: %" PetscInt_FMT " numbers given for %" PetscInt_FMT
              " curves; allowed: two for all or two a curve",
-             scene->center.n, *count);
-  PetscCheck(scene->angle.n == 1 || scene->angle.n == *count, scene->comm, PETSC_ERR_USER_INPUT,
+             scene->vesicles.center.n, *count);
+  PetscCheck(scene->vesicles.angle.n == 1 || scene->vesicles.angle.n == *count, scene->comm, PETSC_ERR_USER_INPUT,
              "-vesicle_angle: %" PetscInt_FMT " numbers given for %" PetscInt_FMT
              " curves; allowed: one for all or one a curve",
-             scene->angle.n, *count);
+             scene->vesicles.angle.n, *count);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Turn and move markers of vesicle v. */
 static void Place(Scene scene, PetscInt v, PetscInt M, PetscReal X[]) {
-  const PetscReal turn = Entry(&scene->angle, 1, v, 0) * PETSC_PI / 180, c = PetscCosReal(turn), s = PetscSinReal(turn);
+  const PetscReal turn = Entry(&scene->vesicles.angle, 1, v, 0) * PETSC_PI / 180, c = PetscCosReal(turn),
+                  s = PetscSinReal(turn);
   for (PetscInt k = 0; k < M; k++) {
     const PetscReal x = X[2 * k], y = X[2 * k + 1];
-    X[2 * k] = Entry(&scene->center, 2, v, 0) + c * x - s * y;
-    X[2 * k + 1] = Entry(&scene->center, 2, v, 1) + s * x + c * y;
+    X[2 * k] = Entry(&scene->vesicles.center, 2, v, 0) + c * x - s * y;
+    X[2 * k + 1] = Entry(&scene->vesicles.center, 2, v, 1) + s * x + c * y;
   }
 }
 
@@ -110,22 +117,22 @@ static PetscErrorCode CheckOverlap(Scene scene, const Shape *s) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode ShapeCreate(Scene scene, PetscReal default_spacing, PetscReal least_spacing, Shape *shape) {
-  Curve curve[SCENE_MAX_LIST] = {0};
+PetscErrorCode SceneMakeShape(Scene scene, Shape *shape) {
+  Curve *curve;
   PetscFunctionBeginUser;
   shape->X = NULL;
-  PetscCall(MakeCurves(scene, &shape->vesicles, curve));
+  PetscCall(MakeCurves(scene, &shape->vesicles, &curve));
   PetscCall(PetscCalloc1(shape->vesicles + 1, &shape->start));
   for (PetscInt v = 0; v < shape->vesicles; v++) {
     PetscInt M;
-    PetscCall(MarkerCount(scene, CurveLength(&curve[v]), default_spacing, least_spacing, &M));
+    PetscCall(MarkerCount(scene, CurveLength(&curve[v]), &M));
     shape->start[v + 1] = shape->start[v] + M;
   }
   PetscCall(PetscMalloc1(2 * shape->start[shape->vesicles], &shape->X));
   for (PetscInt v = 0; v < shape->vesicles; v++) {
     PetscReal *X = shape->X + 2 * shape->start[v], left;
     const PetscInt M = shape->start[v + 1] - shape->start[v];
-    if (scene->derivative == DERIVATIVE_SPECTRAL) {
+    if (scene->membrane.derivative == DERIVATIVE_SPECTRAL) {
       PetscCall(CurveEqualArcs(&curve[v], M, X));
       /* what M markers sample of a curve with sharper tips than they resolve has neither its length nor its area */
       PetscCall(CurveFit(M, PETSC_TRUE, CurveLength(&curve[v]), CurveArea(&curve[v]), X, MAX_NEWTON, &left));
@@ -134,24 +141,7 @@ PetscErrorCode ShapeCreate(Scene scene, PetscReal default_spacing, PetscReal lea
     PetscCall(CurveDestroy(&curve[v]));
     Place(scene, v, M, X);
   }
+  PetscCall(PetscFree(curve));
   PetscCall(CheckOverlap(scene, shape));
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode ShapeDestroy(Shape *shape) {
-  PetscFunctionBeginUser;
-  PetscCall(PetscFree(shape->start));
-  PetscCall(PetscFree(shape->X));
-  shape->vesicles = 0;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscReal ShapeRadius(const Shape *shape, PetscInt v) {
-  const PetscInt first = shape->start[v], n = shape->start[v + 1] - first;
-  PetscReal length = 0;
-  for (PetscInt k = 0; k < n; k++) {
-    const PetscReal *a = shape->X + 2 * (first + k), *b = shape->X + 2 * (first + (k + 1) % n);
-    length += PetscSqrtReal(PetscSqr(b[0] - a[0]) + PetscSqr(b[1] - a[1]));
-  }
-  return length / (2 * PETSC_PI);
 }

@@ -1,5 +1,5 @@
 /* Closed curves: ellipses and periodic cubic splines, and equal chords along them. */
-#include "scene/scene.h"
+#include "curve/curve.h"
 
 /* Quadrature points for the length of a curve: the trapezoidal sum converges geometrically for an ellipse. */
 #define CURVE_SAMPLES 4000

@@ -1,6 +1,6 @@
 /* The markers of a closed curve moved as little as possible until their edges and their area are what they should be.
  */
-#include "scene/scene.h"
+#include "curve/curve.h"
 #include <petscblaslapack.h>
 
 #define CONVERGED 1e-13 /* squared edges and area, relative */

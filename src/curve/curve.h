@@ -1,0 +1,50 @@
+/* Closed curves in the plane: ellipses, splines through points, curves of a file, markers at equal distances on them.
+   What a scene and a membrane both need. Markers are interlaced, x0,y0,x1,y1,...; lengths are in the user's units. */
+#pragma once
+#include "base/base.h"
+
+/* Closed curves as equal-edge markers, counter-clockwise. X holds x0,y0,x1,y1,... of all vesicles one after another;
+   vesicle v owns markers start[v] .. start[v+1]-1. */
+typedef struct {
+  PetscInt vesicles;
+  PetscInt *start; /* [vesicles+1] */
+  PetscReal *X;    /* [2*start[vesicles]] */
+} Shape;
+PETSC_EXTERN PetscErrorCode ShapeDestroy(Shape *shape);
+
+/* ShapeRadius - R0 of vesicle v, its length over 2 pi. */
+PETSC_EXTERN PetscReal ShapeRadius(const Shape *shape, PetscInt v);
+
+/* A closed curve X(t), t in [0,1), with X(t+1) = X(t). */
+typedef struct {
+  PetscInt n;          /* 0: ellipse; else number of spline knots */
+  PetscReal axes[2];   /* ellipse */
+  PetscReal *t, *x[2]; /* knots [n+1], values [n+1] */
+  PetscReal *m[2];     /* second derivatives [n+1] */
+} Curve;
+PETSC_EXTERN void CurveEvaluate(const Curve *curve, PetscReal t, PetscReal X[2]);
+PETSC_EXTERN PetscReal CurveLength(const Curve *curve);
+PETSC_EXTERN PetscReal CurveArea(const Curve *curve);
+
+/* CurveEqualChords - place M points on the curve so that all M chords are equal; X[2M], first point at t = 0. */
+PETSC_EXTERN PetscErrorCode CurveEqualChords(const Curve *curve, PetscInt M, PetscReal X[]);
+
+/* CurveEqualArcs - the same with M equal arcs: the edges of the spectral derivative. */
+PETSC_EXTERN PetscErrorCode CurveEqualArcs(const Curve *curve, PetscInt M, PetscReal X[]);
+
+/* CurveFit - move M markers X[2M] as little as possible (least squares) until all their edges, chords or spectral ones
+   dX/dk, are length/M long and the polygon or the spectral curve encloses the area: Newton, at most `most` steps. left:
+   the largest relative error of squared edges and area. A circle, which has no freedom left, stays. */
+PETSC_EXTERN PetscErrorCode CurveFit(PetscInt M, PetscBool spectral, PetscReal length, PetscReal area, PetscReal X[],
+                                     PetscInt most, PetscReal *left);
+
+/* CurveFromPoints - closed periodic cubic spline through n points xy[2n], by chord length. */
+PETSC_EXTERN PetscErrorCode CurveFromPoints(PetscInt n, const PetscReal xy[], Curve *curve);
+
+/* CurvesFromFile - the closed curves of a text file ("x y" a line, # starts a comment, an empty line ends a curve),
+   turned counter-clockwise; curve[curves] to be freed, each after CurveDestroy. Collective: rank 0 reads. */
+PETSC_EXTERN PetscErrorCode CurvesFromFile(MPI_Comm comm, const char file[], PetscInt *curves, Curve **curve);
+PETSC_EXTERN PetscErrorCode CurveDestroy(Curve *curve);
+
+/* EllipseAxes - semi-axes a >= b of the ellipse with the given area and reduced area V = 4 pi area / perimeter^2. */
+PETSC_EXTERN PetscErrorCode EllipseAxes(PetscReal area, PetscReal reduced_area, PetscReal axes[2]);

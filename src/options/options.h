@@ -1,0 +1,69 @@
+/* A table of options, each once with its type, default, range and help. -help, the checks of single values, the text of
+   a value in force and the "did you mean" of a misspelt name all come from it. What the options mean is not known here:
+   their values go into a struct of the caller's, at the offsets of the rows. */
+#pragma once
+#include "base/base.h"
+
+#define OPTION_MAX_NAME 32
+
+/* Lists of any length. */
+typedef struct {
+  PetscInt n;
+  PetscReal *v; /* [n] */
+} RealList;
+typedef struct {
+  PetscInt n;
+  PetscInt *v; /* [n] */
+} IntList;
+
+/* What a row's offset holds: PetscReal, PetscInt, PetscBool, PetscInt (index in the range's list),
+   char[OPTION_MAX_NAME], char[PETSC_MAX_PATH_LEN], RealList, IntList. */
+typedef enum { OPT_REAL, OPT_INT, OPT_BOOL, OPT_ENUM, OPT_NAME, OPT_PATH, OPT_REALS, OPT_INTS } OptionType;
+
+typedef struct {
+  const char *name; /* with its dash */
+  OptionType type;
+  size_t offset;
+  const char *value; /* default, as a user would write it */
+  const char *range; /* ">0", ">=0", "(0,1)", "any"; for enums and names "a|b|c"; for lists the same for each entry */
+  const char *help;
+} OptionRow;
+
+typedef struct {
+  MPI_Comm comm;
+  PetscInt n;
+  const OptionRow *row; /* [n], borrowed */
+  PetscBool *given;     /* [n], whether the user gave it */
+} OptionTable;
+
+/* OptionsRead - make the table of n rows and read each option of the options database, or its default, into values.
+   Fills in -help under the title. Collective. A value that cannot be read or is out of its range is the user's mistake.
+   OptionsDestroy - free the table and the lists in values. */
+PETSC_EXTERN PetscErrorCode OptionsRead(MPI_Comm comm, const char title[], PetscInt n, const OptionRow row[],
+                                        OptionTable *table, void *values);
+PETSC_EXTERN PetscErrorCode OptionsDestroy(OptionTable *table, void *values);
+
+/* OptionFind - index of the option ("-name"), or -1. OptionGiven - whether the user gave it. Not collective. */
+PETSC_EXTERN PetscInt OptionFind(const OptionTable *table, const char name[]);
+PETSC_EXTERN PetscBool OptionGiven(const OptionTable *table, const char name[]);
+
+/* OptionChoose - give an option a value that the user has not given: what was given stays. */
+PETSC_EXTERN PetscErrorCode OptionChoose(const OptionTable *table, void *values, const char name[], const char text[]);
+
+/* OptionValue - the i-th option's value in force as text, cut to length - 1 characters. Not collective. */
+PETSC_EXTERN PetscErrorCode OptionValue(const OptionTable *table, const void *values, PetscInt i, char text[],
+                                        size_t length);
+
+/* OptionsWrite - write every option in force that has a value, defaults included, one "-name value" a line; but not
+   those in skip, whose last entry is NULL. */
+PETSC_EXTERN PetscErrorCode OptionsWrite(const OptionTable *table, const void *values, const char *const skip[],
+                                         FILE *file);
+
+/* OptionsCheckUnused - stop when the options database holds an option that nothing has read, naming it and the nearest
+   name of the table or of `others` (last entry NULL). Call when everything is set up. Collective. */
+PETSC_EXTERN PetscErrorCode OptionsCheckUnused(const OptionTable *table, const char *const others[]);
+
+/* OptionParse - text into the place of a row's value. Collective: a text that does not fit is the user's mistake.
+   OptionFormat - the value as text, to be freed with PetscFree. */
+PETSC_EXTERN PetscErrorCode OptionParse(MPI_Comm comm, const OptionRow *row, const char text[], void *place);
+PETSC_EXTERN PetscErrorCode OptionFormat(const OptionRow *row, const void *place, char **text);

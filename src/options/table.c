@@ -1,0 +1,92 @@
+/* All options of a table: read, chosen, written. */
+#include "options/options.h"
+
+static const void *Place(const OptionTable *t, const void *values, PetscInt i) {
+  return (const char *)values + t->row[i].offset;
+}
+
+/* The value that the user gave, as long as it may be, or the default. */
+static PetscErrorCode ReadOption(MPI_Comm comm, const OptionRow *o, PetscBool given, void *place) {
+  const PetscBool ranged = *o->range && strcmp(o->range, "any") ? PETSC_TRUE : PETSC_FALSE;
+  const char *text = NULL;
+  PetscFunctionBeginUser;
+  if (given) PetscCall(PetscOptionsFindPair(NULL, NULL, o->name, &text, NULL));
+  if (!text) text = given ? "" : o->value;
+  PetscCheck(!given || *text || o->type == OPT_BOOL, comm, PETSC_ERR_USER_INPUT,
+             "%s: given without a value; allowed: %s", o->name, ranged ? o->range : o->help);
+  PetscCall(OptionParse(comm, o, text, place));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode OptionsRead(MPI_Comm comm, const char title[], PetscInt n, const OptionRow row[], OptionTable *t,
+                           void *values) {
+  PetscFunctionBeginUser;
+  t->comm = comm;
+  t->n = n;
+  t->row = row;
+  PetscCall(PetscCalloc1(n, &t->given));
+  PetscOptionsBegin(comm, NULL, title, NULL);
+  for (PetscInt i = 0; i < n; i++) {
+    const char *range = strcmp(row[i].range, "any") ? row[i].range : "";
+    char text[PETSC_MAX_PATH_LEN], help[512];
+    PetscCall(PetscSNPrintf(help, sizeof(help), *range ? "%s [%s]" : "%s%s", row[i].help, range));
+    PetscCall(PetscOptionsString(row[i].name, help, "README.md", row[i].value, text, sizeof(text), &t->given[i]));
+    PetscCall(ReadOption(comm, &row[i], t->given[i], (void *)Place(t, values, i)));
+  }
+  PetscOptionsEnd();
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode OptionsDestroy(OptionTable *t, void *values) {
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < t->n; i++) {
+    void *place = (void *)Place(t, values, i);
+    if (t->row[i].type == OPT_REALS) PetscCall(PetscFree(((RealList *)place)->v));
+    if (t->row[i].type == OPT_INTS) PetscCall(PetscFree(((IntList *)place)->v));
+  }
+  PetscCall(PetscFree(t->given));
+  t->n = 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscInt OptionFind(const OptionTable *t, const char name[]) {
+  for (PetscInt i = 0; i < t->n; i++)
+    if (!strcmp(t->row[i].name, name)) return i;
+  return -1;
+}
+
+PetscBool OptionGiven(const OptionTable *t, const char name[]) {
+  const PetscInt i = OptionFind(t, name);
+  return i >= 0 && t->given[i] ? PETSC_TRUE : PETSC_FALSE;
+}
+
+PetscErrorCode OptionChoose(const OptionTable *t, void *values, const char name[], const char text[]) {
+  const PetscInt i = OptionFind(t, name);
+  PetscFunctionBeginUser;
+  PetscCheck(i >= 0, t->comm, PETSC_ERR_PLIB, "%s is not in the table of options", name);
+  if (!t->given[i]) PetscCall(OptionParse(t->comm, &t->row[i], text, (void *)Place(t, values, i)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode OptionValue(const OptionTable *t, const void *values, PetscInt i, char text[], size_t length) {
+  char *all;
+  PetscFunctionBeginUser;
+  PetscCall(OptionFormat(&t->row[i], Place(t, values, i), &all));
+  PetscCall(PetscStrncpy(text, all, length));
+  PetscCall(PetscFree(all));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode OptionsWrite(const OptionTable *t, const void *values, const char *const skip[], FILE *file) {
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < t->n; i++) {
+    char *text;
+    PetscBool left = PETSC_FALSE;
+    for (PetscInt k = 0; skip[k] && !left; k++) left = !strcmp(skip[k], t->row[i].name) ? PETSC_TRUE : PETSC_FALSE;
+    if (left) continue;
+    PetscCall(OptionFormat(&t->row[i], Place(t, values, i), &text));
+    if (*text) fprintf(file, "%s %s\n", t->row[i].name, text);
+    PetscCall(PetscFree(text));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

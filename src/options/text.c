@@ -1,0 +1,190 @@
+/* One option's value from text, and as text. */
+#include "options/options.h"
+#include <ctype.h>
+
+#define DIGITS 26 /* characters of a number with 17 digits and its comma, at most */
+
+/* One number from text; the whole text must be used up and finite. */
+static PetscBool ParseReal(const char *text, PetscReal *value) {
+  char *end;
+  while (isspace((unsigned char)*text)) text++;
+  if (!*text) return PETSC_FALSE;
+  *value = strtod(text, &end);
+  while (isspace((unsigned char)*end)) end++;
+  return !*end && !PetscIsInfOrNanReal(*value) ? PETSC_TRUE : PETSC_FALSE;
+}
+
+static PetscBool InRange(const char *range, PetscReal x) {
+  double a, b;
+  if (!strcmp(range, ">0")) return x > 0 ? PETSC_TRUE : PETSC_FALSE;
+  if (sscanf(range, ">=%lf", &a) == 1) return x >= a ? PETSC_TRUE : PETSC_FALSE;
+  if (sscanf(range, "(%lf,%lf)", &a, &b) == 2) return x > a && x < b ? PETSC_TRUE : PETSC_FALSE;
+  if (sscanf(range, "[%lf,%lf]", &a, &b) == 2) return x >= a && x <= b ? PETSC_TRUE : PETSC_FALSE;
+  return PETSC_TRUE;
+}
+
+static PetscErrorCode ParseNumber(MPI_Comm comm, const OptionRow *o, const char *text, PetscBool integer,
+                                  PetscReal *x) {
+  const char *what = integer ? "an integer" : "a number";
+  PetscFunctionBeginUser;
+  PetscCheck(ParseReal(text, x) && (!integer || (*x == PetscFloorReal(*x) && PetscAbsReal(*x) < 2e9)), comm,
+             PETSC_ERR_USER_INPUT, "%s %s: not %s; allowed: %s%s%s", o->name, text, what, what,
+             strcmp(o->range, "any") ? ", " : "", strcmp(o->range, "any") ? o->range : "");
+  PetscCheck(InRange(o->range, *x), comm, PETSC_ERR_USER_INPUT, "%s %s: out of range; allowed: %s %s", o->name, text,
+             what, o->range);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Index of text in "a|b|c", or -1. */
+static PetscInt IndexInList(const char *list, const char *text) {
+  const size_t length = strlen(text);
+  PetscInt index = 0;
+  for (const char *p = list; *p; index++) {
+    const size_t n = strcspn(p, "|");
+    if (n == length && !strncmp(p, text, n)) return index;
+    p += n + (p[n] == '|');
+  }
+  return -1;
+}
+
+/* Numbers between commas, x to be freed. */
+static PetscErrorCode ParseNumbers(MPI_Comm comm, const OptionRow *o, const char *text, PetscInt *n, PetscReal **x) {
+  const PetscBool integer = o->type == OPT_INTS ? PETSC_TRUE : PETSC_FALSE;
+  char *item;
+  PetscFunctionBeginUser;
+  *n = 1;
+  for (const char *p = text; *p; p++) *n += *p == ',';
+  PetscCall(PetscMalloc1(*n, x));
+  PetscCall(PetscMalloc1(strlen(text) + 1, &item));
+  for (PetscInt k = 0; k < *n; k++) {
+    const size_t length = strcspn(text, ",");
+    PetscCall(PetscStrncpy(item, text, length + 1));
+    PetscCall(ParseNumber(comm, o, item, integer, *x + k));
+    text += length + 1;
+  }
+  PetscCall(PetscFree(item));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ParseList(MPI_Comm comm, const OptionRow *o, const char *text, void *place) {
+  IntList *ints = (IntList *)place;
+  RealList *reals = (RealList *)place;
+  PetscReal *x;
+  PetscInt n;
+  PetscFunctionBeginUser;
+  PetscCall(ParseNumbers(comm, o, text, &n, &x));
+  if (o->type == OPT_REALS) {
+    PetscCall(PetscFree(reals->v));
+    reals->n = n;
+    reals->v = x;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(PetscFree(ints->v));
+  PetscCall(PetscMalloc1(n, &ints->v));
+  ints->n = n;
+  for (PetscInt k = 0; k < n; k++) ints->v[k] = (PetscInt)x[k];
+  PetscCall(PetscFree(x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* One word: a truth, or a name of the range. */
+static PetscErrorCode ParseWord(MPI_Comm comm, const OptionRow *o, const char *text, void *place) {
+  PetscInt index;
+  PetscFunctionBeginUser;
+  if (o->type == OPT_BOOL) {
+    const PetscInt yes = IndexInList("|true|yes|on|1", text), no = IndexInList("false|no|off|0", text);
+    PetscCheck(yes >= 0 || no >= 0 || !*text, comm, PETSC_ERR_USER_INPUT, "%s %s: allowed: true or false", o->name,
+               text);
+    *(PetscBool *)place = no >= 0 ? PETSC_FALSE : PETSC_TRUE;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  index = IndexInList(o->range, text);
+  PetscCheck(index >= 0, comm, PETSC_ERR_USER_INPUT, "%s %s: unknown; allowed: %s", o->name, text, o->range);
+  if (o->type == OPT_ENUM)
+    *(PetscInt *)place = index;
+  else
+    PetscCall(PetscStrncpy((char *)place, text, OPTION_MAX_NAME));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode OptionParse(MPI_Comm comm, const OptionRow *o, const char text[], void *place) {
+  PetscReal x = 0;
+  PetscFunctionBeginUser;
+  switch (o->type) {
+  case OPT_REAL:
+    PetscCall(ParseNumber(comm, o, text, PETSC_FALSE, &x));
+    *(PetscReal *)place = x;
+    break;
+  case OPT_INT:
+    PetscCall(ParseNumber(comm, o, text, PETSC_TRUE, &x));
+    *(PetscInt *)place = (PetscInt)x;
+    break;
+  case OPT_PATH:
+    PetscCall(PetscStrncpy((char *)place, text, PETSC_MAX_PATH_LEN));
+    break;
+  case OPT_REALS:
+  case OPT_INTS:
+    PetscCall(ParseList(comm, o, text, place));
+    break;
+  default:
+    PetscCall(ParseWord(comm, o, text, place));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Characters that the value takes, its end included. */
+static size_t Room(const OptionRow *o, const void *place) {
+  if (o->type == OPT_PATH) return PETSC_MAX_PATH_LEN;
+  if (o->type == OPT_REALS) return DIGITS * (size_t)((const RealList *)place)->n + 1;
+  if (o->type == OPT_INTS) return DIGITS * (size_t)((const IntList *)place)->n + 1;
+  return DIGITS + OPTION_MAX_NAME;
+}
+
+static PetscErrorCode FormatList(const OptionRow *o, const void *place, char text[]) {
+  const RealList *reals = (const RealList *)place;
+  const IntList *ints = (const IntList *)place;
+  const PetscInt n = o->type == OPT_REALS ? reals->n : ints->n;
+  PetscFunctionBeginUser;
+  *text = 0;
+  for (PetscInt k = 0; k < n; k++) {
+    const char *comma = k ? "," : "";
+    if (o->type == OPT_REALS)
+      PetscCall(PetscSNPrintf(text, DIGITS + 1, "%s%.17g", comma, (double)reals->v[k]));
+    else
+      PetscCall(PetscSNPrintf(text, DIGITS + 1, "%s%" PetscInt_FMT, comma, ints->v[k]));
+    text += strlen(text);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode OptionFormat(const OptionRow *o, const void *place, char **out) {
+  const size_t room = Room(o, place);
+  char *text;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(room, &text));
+  *out = text;
+  switch (o->type) {
+  case OPT_REAL:
+    PetscCall(PetscSNPrintf(text, room, "%.17g", (double)*(const PetscReal *)place));
+    break;
+  case OPT_INT:
+    PetscCall(PetscSNPrintf(text, room, "%" PetscInt_FMT, *(const PetscInt *)place));
+    break;
+  case OPT_BOOL:
+    PetscCall(PetscStrncpy(text, *(const PetscBool *)place ? "true" : "false", room));
+    break;
+  case OPT_ENUM: {
+    const char *p = o->range;
+    for (PetscInt k = *(const PetscInt *)place; k > 0; k--) p = strchr(p, '|') + 1;
+    PetscCall(PetscStrncpy(text, p, PetscMin(room, strcspn(p, "|") + 1)));
+    break;
+  }
+  case OPT_REALS:
+  case OPT_INTS:
+    PetscCall(FormatList(o, place, text));
+    break;
+  default:
+    PetscCall(PetscStrncpy(text, (const char *)place, room));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,31 @@
+/* Defaults that go by the scheme. */
+#include "kernel/kernel.h"
+#include "scene/resolve.h"
+
+PetscBool SceneIsProjection(Scene scene) {
+  const char *const name = scene->scheme.type;
+  return !strcmp(name, "split") || !strcmp(name, "penalty") ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* split and penalty are their papers' methods: one order, kernel ib6 and differences, none of the corrections of the
+   coupled scheme; all forces of penalty are explicit. */
+PetscErrorCode SceneChooseByScheme(Draft scene) {
+  PetscFunctionBeginUser;
+  if (!SceneIsProjection(scene)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(SceneChoose(scene, "-scheme_order", "1"));
+  PetscCall(SceneChoose(scene, "-delta_type", "ib6"));
+  PetscCall(SceneChoose(scene, "-membrane_derivative", "fd"));
+  PetscCall(SceneChoose(scene, "-coupling_self_mobility", "none"));
+  PetscCall(SceneChoose(scene, "-scheme_area_target", "false"));
+  if (!strcmp(scene->scheme.type, "penalty")) PetscCall(SceneChoose(scene, "-scheme_bending", "explicit"));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SceneChooseStiffness(Draft scene) {
+  const PetscReal h = FluidSpecCellSize(&scene->fluid), dt = scene->time.dt;
+  const PetscReal *bound = KernelFind(scene->coupling.kernel)->spring;
+  PetscFunctionBeginUser;
+  if (strcmp(scene->scheme.type, "penalty") || scene->scheme.stiffness > 0) PetscFunctionReturn(PETSC_SUCCESS);
+  scene->scheme.stiffness = 0.5 * (bound[0] * scene->fluid.nu * h / dt + bound[1] * h * PetscSqr(h / dt));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,158 @@
+/* Checks that involve more than one option. */
+#include "scene/resolve.h"
+
+static PetscErrorCode CheckDomain(Scene scene) {
+  const PetscReal *b = scene->domain.box.v;
+  const PetscInt *n = scene->domain.cells.v;
+  PetscReal hx, hy;
+  PetscFunctionBeginUser;
+  PetscCheck(scene->domain.box.n == 4, scene->comm, PETSC_ERR_USER_INPUT,
+             "-domain_box: %" PetscInt_FMT " numbers given; allowed: x_min,x_max,y_min,y_max", scene->domain.box.n);
+  PetscCheck(scene->domain.cells.n == 2, scene->comm, PETSC_ERR_USER_INPUT,
+             "-domain_cells: %" PetscInt_FMT " numbers given; allowed: two, cells in x and in y",
+             scene->domain.cells.n);
+  PetscCheck(b[0] < b[1] && b[2] < b[3], scene->comm, PETSC_ERR_USER_INPUT,
+             "-domain_box %g,%g,%g,%g: empty; allowed: x_min < x_max and y_min < y_max", (double)b[0], (double)b[1],
+             (double)b[2], (double)b[3]);
+  hx = (b[1] - b[0]) / n[0];
+  hy = (b[3] - b[2]) / n[1];
+  PetscCheck(PetscAbsReal(hx - hy) <= 1e-10 * hx, scene->comm, PETSC_ERR_USER_INPUT,
+             "-domain_cells %" PetscInt_FMT ",%" PetscInt_FMT
+             ": cells of %g x %g; allowed: square cells, for this -domain_box %g cells in y",
+             n[0], n[1], (double)hx, (double)hy, (double)((b[3] - b[2]) / hx));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CheckFlow(Scene scene) {
+  const PetscBool x_periodic = scene->fluid.bc[0] == BC_PERIODIC, y_periodic = scene->fluid.bc[1] == BC_PERIODIC;
+  const PetscInt type = scene->flow.type;
+  PetscFunctionBeginUser;
+  PetscCheck(
+      scene->fluid.inertia != INERTIA_CONVECTIVE || type != FLOW_CUSTOM, scene->comm, PETSC_ERR_USER_INPUT,
+      "-fluid_inertia convective: not with -flow_type custom, whose gradient is not known; allowed: none, unsteady");
+  if (scene->fluid.form != FORM_TOTAL || type == FLOW_QUIESCENT) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCheck(type != FLOW_CUSTOM, scene->comm, PETSC_ERR_USER_INPUT,
+             "-flow_form total: not with -flow_type custom; allowed: -flow_form disturbance");
+  PetscCheck(!y_periodic, scene->comm, PETSC_ERR_USER_INPUT,
+             "-flow_form total: the background flow is not periodic in y; allowed: -domain_bc_y wall or -flow_form "
+             "disturbance");
+  PetscCheck(type != FLOW_EXTENSION || !x_periodic, scene->comm, PETSC_ERR_USER_INPUT,
+             "-flow_form total: extension is not periodic in x; allowed: -domain_bc_x wall or -flow_form disturbance");
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A list has `each` numbers a vesicle, or (shared) `each` for all of them. */
+static PetscErrorCode CheckList(Scene scene, const char name[], PetscInt n, PetscInt each, PetscBool shared) {
+  PetscFunctionBeginUser;
+  PetscCheck(n == each * (PetscInt64)scene->vesicles.count || (shared && n == each), scene->comm, PETSC_ERR_USER_INPUT,
+             "%s: %" PetscInt_FMT " numbers given; allowed: %" PetscInt_FMT " for each of -vesicle_count %" PetscInt_FMT
+             " vesicles%s",
+             name, n, each, scene->vesicles.count, shared ? ", or once for all" : "");
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CheckVesicle(Scene scene) {
+  const PetscBool by_area = SceneByArea(scene);
+  PetscFunctionBeginUser;
+  PetscCheck(!(by_area && SceneGiven(scene, "-vesicle_semi_axes")), scene->comm, PETSC_ERR_USER_INPUT,
+             "-vesicle_semi_axes: given together with -vesicle_area or -vesicle_reduced_area; allowed: one description "
+             "of the ellipse");
+  PetscCall(CheckList(scene, "-vesicle_semi_axes", scene->vesicles.axes.n, 2, PETSC_TRUE));
+  PetscCall(CheckList(scene, "-vesicle_area", scene->vesicles.area.n, 1, PETSC_TRUE));
+  PetscCall(CheckList(scene, "-vesicle_reduced_area", scene->vesicles.reduced_area.n, 1, PETSC_TRUE));
+  if (scene->vesicles.shape != SHAPE_FILE) { /* the number of curves is known later */
+    PetscCall(CheckList(scene, "-vesicle_center", scene->vesicles.center.n, 2, PETSC_FALSE));
+    PetscCall(CheckList(scene, "-vesicle_angle", scene->vesicles.angle.n, 1, PETSC_TRUE));
+  }
+  PetscCheck(scene->vesicles.shape != SHAPE_FILE || *scene->vesicles.file, scene->comm, PETSC_ERR_USER_INPUT,
+             "-vesicle_shape file: no -vesicle_file given; allowed: a text file with x y a line");
+  PetscCheck(!*scene->vesicles.file || scene->vesicles.shape == SHAPE_FILE, scene->comm, PETSC_ERR_USER_INPUT,
+             "-vesicle_file %s: not read; allowed: with -vesicle_shape file only", scene->vesicles.file);
+  PetscCheck(scene->vesicles.shape == SHAPE_NONE || !scene->vesicles.markers || scene->vesicles.markers >= 8,
+             scene->comm, PETSC_ERR_USER_INPUT, "-vesicle_markers %" PetscInt_FMT ": too few; allowed: at least 8",
+             scene->vesicles.markers);
+  PetscCheck(!(scene->vesicles.markers && scene->vesicles.spacing > 0), scene->comm, PETSC_ERR_USER_INPUT,
+             "-vesicle_markers %" PetscInt_FMT ": given together with -vesicle_spacing; allowed: one of them",
+             scene->vesicles.markers);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* split and penalty are their papers' methods: one order, kernel ib6 and differences, none of the corrections of the
+   coupled scheme. */
+static PetscErrorCode CheckProjection(Scene scene) {
+  const char *const name = scene->scheme.type;
+  const PetscBool split = !strcmp(name, "split") ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionBeginUser;
+  PetscCheck(scene->scheme.order == 1, scene->comm, PETSC_ERR_USER_INPUT,
+             "-scheme_order %" PetscInt_FMT ": the %s of -scheme_type %s is of first order; allowed: 1",
+             scene->scheme.order, split ? "splitting error" : "forward step of the markers", name);
+  PetscCheck(scene->membrane.derivative != DERIVATIVE_SPECTRAL, scene->comm, PETSC_ERR_USER_INPUT,
+             "-membrane_derivative spectral: not with -scheme_type %s, whose %s; allowed: fd, bending, or -scheme_type "
+             "coupled or direct",
+             name, split ? "preconditioner knows chords only" : "springs are chords");
+  PetscCheck(!scene->scheme.area_target, scene->comm, PETSC_ERR_USER_INPUT,
+             "-scheme_area_target true: not with -scheme_type %s; allowed: false, or -scheme_type coupled or direct",
+             name);
+  PetscCheck(scene->fluid.inertia != INERTIA_NONE, scene->comm, PETSC_ERR_USER_INPUT,
+             "-fluid_inertia none: not with -scheme_type %s, %s; allowed: unsteady, or -scheme_type coupled or direct",
+             name,
+             split ? "whose projection stands on the inertia: it puts dt I in place of H^-1"
+                   : "whose projection step starts from the velocity before it");
+  PetscCheck(scene->fluid.inertia != INERTIA_CONVECTIVE, scene->comm, PETSC_ERR_USER_INPUT,
+             "-fluid_inertia convective: not with -scheme_type %s, %s for unsteady Stokes flow; allowed: unsteady, or "
+             "-scheme_type coupled or direct",
+             name, split ? "the paper's method" : "here");
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What penalty alone has or lacks. */
+static PetscErrorCode CheckPenalty(Scene scene, PetscBool split) {
+  PetscBool penalty;
+  PetscFunctionBeginUser;
+  PetscCall(PetscStrcmp(scene->scheme.type, "penalty", &penalty));
+  PetscCheck(!penalty || scene->scheme.bending_at == BENDING_EXPLICIT, scene->comm, PETSC_ERR_USER_INPUT,
+             "-scheme_bending implicit: -scheme_type penalty has all membrane forces at the old markers; allowed: "
+             "explicit, or -scheme_type split, coupled or direct");
+  PetscCheck(penalty || split || scene->scheme.bending_at == BENDING_IMPLICIT, scene->comm, PETSC_ERR_USER_INPUT,
+             "-scheme_bending explicit: not with -scheme_type %s, whose stability stands on implicit bending; allowed: "
+             "implicit, or -scheme_type split or penalty",
+             scene->scheme.type);
+  PetscCheck(!penalty || scene->coupling.self_mobility == SELF_NONE, scene->comm, PETSC_ERR_USER_INPUT,
+             "-coupling_self_mobility: not with -scheme_type penalty, whose forces are explicit; allowed: none, or "
+             "-scheme_type coupled or direct");
+  PetscCheck(penalty || scene->scheme.stiffness == 0, scene->comm, PETSC_ERR_USER_INPUT,
+             "-penalty_stiffness %g: -scheme_type %s has no springs, its length is a constraint; allowed: 0, or "
+             "-scheme_type penalty",
+             (double)scene->scheme.stiffness, scene->scheme.type);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CheckScheme(Scene scene) {
+  PetscBool split;
+  PetscFunctionBeginUser;
+  PetscCall(PetscStrcmp(scene->scheme.type, "split", &split));
+  if (SceneIsProjection(scene)) PetscCall(CheckProjection(scene));
+  PetscCall(CheckPenalty(scene, split));
+  PetscCheck(scene->time.adapt == ADAPT_NONE || scene->scheme.order == 2, scene->comm, PETSC_ERR_USER_INPUT,
+             "-time_adapt error: with -scheme_type %s of order %" PetscInt_FMT
+             "; allowed: coupled or direct with -scheme_order 2",
+             scene->scheme.type, scene->scheme.order);
+  PetscCheck(scene->fluid.inertia != INERTIA_CONVECTIVE || scene->scheme.order == 2, scene->comm, PETSC_ERR_USER_INPUT,
+             "-fluid_inertia convective: with -scheme_order %" PetscInt_FMT
+             " an explicit convection is unstable at any step that is not tiny; allowed: -scheme_order 2",
+             scene->scheme.order);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SceneCheck(Scene scene) {
+  PetscFunctionBeginUser;
+  PetscCall(CheckScheme(scene));
+  PetscCall(CheckDomain(scene));
+  PetscCall(CheckFlow(scene));
+  PetscCall(CheckVesicle(scene));
+  PetscCheck(scene->time.end / scene->time.dt < 1e9, scene->comm, PETSC_ERR_USER_INPUT,
+             "-time_step %g: more than 1e9 steps to -time_end %g; allowed: a larger step", (double)scene->time.dt,
+             (double)scene->time.end);
+  PetscCheck(*scene->output.dir, scene->comm, PETSC_ERR_USER_INPUT, "-output_dir: empty; allowed: a folder's name");
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,28 @@
+/* Background flow u_inf, an exact solution of the Stokes equations, or of a caller's own. Lengths and times are in the
+   user's units. */
+#pragma once
+#include "base/base.h"
+
+typedef enum { FLOW_QUIESCENT, FLOW_SHEAR, FLOW_POISEUILLE, FLOW_EXTENSION, FLOW_CUSTOM } FlowType;
+
+typedef struct {
+  PetscInt type; /* FlowType */
+  PetscReal rate, peak, half_width, center[2];
+  PetvesFlow function; /* FLOW_CUSTOM: the caller's, with its context */
+  void *ctx;
+} Flow;
+
+/* FlowVelocity - u_inf[2] at (x, y) and time t; NaN when a custom flow's function fails. */
+PETSC_EXTERN void FlowVelocity(const Flow *flow, PetscReal t, PetscReal x, PetscReal y, PetscReal u[2]);
+
+/* FlowVelocities - u_inf at n points X[2n] and time t, u[2n]: one call of a custom flow's function, whose error is
+   returned; a value that is not finite is the user's mistake. */
+PETSC_EXTERN PetscErrorCode FlowVelocities(const Flow *flow, PetscReal t, PetscInt n, const PetscReal X[],
+                                           PetscReal u[]);
+
+/* FlowPressureGradient - grad p_inf[2] at any point (uniform for the flows offered) for viscosity nu. */
+PETSC_EXTERN void FlowPressureGradient(const Flow *flow, PetscReal nu, PetscReal g[2]);
+
+/* FlowGradient - gradient[a][b] = d(u_inf)_a/dx_b at (x, y) and time t; not of a custom flow, which has none to give.
+ */
+PETSC_EXTERN void FlowGradient(const Flow *flow, PetscReal t, PetscReal x, PetscReal y, PetscReal gradient[2][2]);

@@ -1,0 +1,28 @@
+/* What a fluid is made from. */
+#pragma once
+#include "options/options.h"
+#include "scene/flow.h"
+
+typedef enum { BC_WALL, BC_PERIODIC } BoundaryType;
+typedef enum { FORM_DISTURBANCE, FORM_TOTAL } FlowForm;
+typedef enum { INERTIA_AUTO, INERTIA_NONE, INERTIA_UNSTEADY, INERTIA_CONVECTIVE } InertiaType;
+
+typedef struct {
+  MPI_Comm comm;
+  PetscReal box[4];                /* x_min, x_max, y_min, y_max */
+  PetscInt cells[2];               /* in x and y, square */
+  PetscInt bc[2];                  /* BoundaryType in x and y */
+  PetscReal nu;                    /* viscosity (density is 1) */
+  PetscInt inertia;                /* InertiaType, never INERTIA_AUTO */
+  PetscInt form;                   /* FlowForm: of the total form the walls move with the flow */
+  const Flow *flow;                /* background flow, borrowed */
+  char helmholtz[OPTION_MAX_NAME]; /* back end of the Helmholtz solves */
+  char poisson[OPTION_MAX_NAME];   /* back end of the Poisson solves */
+  PetscInt plan;                   /* FFTW's effort: 0 estimate, 1 measure, 2 patient */
+  PetscReal dt;                    /* the step that the first Helmholtz operator is made for */
+} FluidSpec;
+
+/* FluidSpecCellSize - h, the edge of the square cells. */
+static inline PetscReal FluidSpecCellSize(const FluidSpec *spec) {
+  return (spec->box[1] - spec->box[0]) / spec->cells[0];
+}

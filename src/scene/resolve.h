@@ -1,0 +1,39 @@
+/* The steps of SceneCreate, the only ones that write to a scene. scene.c has them in their order. */
+#pragma once
+#include "scene/scene.h"
+
+typedef struct _p_Scene *Draft; /* a scene that is not resolved yet */
+
+/* SceneReadOptions - every option of the table, or its default. SceneChoose - give an option of the table a value that
+   the user has not given: what was given stays. Collective. */
+PETSC_EXTERN PetscErrorCode SceneReadOptions(MPI_Comm comm, Draft scene);
+PETSC_EXTERN PetscErrorCode SceneChoose(Draft scene, const char name[], const char value[]);
+
+/* SceneByArea - whether the ellipses are given by area and reduced area. Not collective. */
+PETSC_EXTERN PetscBool SceneByArea(Scene scene);
+
+/* SceneChooseByError - with -scheme_auto: scheme, order, tolerances, kernel and spacing for the error wanted.
+   SceneChooseSteps - what depends on the vesicles: the steps. Collective. Errors: outside of what was measured, and
+   for schemes that have no error control. */
+PETSC_EXTERN PetscErrorCode SceneChooseByError(Draft scene);
+PETSC_EXTERN PetscErrorCode SceneChooseSteps(Draft scene);
+
+/* SceneIsProjection - whether the scheme is one of the baselines, split or penalty, which stand on a projection step.
+   SceneChooseByScheme - their defaults. SceneChooseStiffness - penalty's springs, where none are given: half of what
+   the step bears. */
+PETSC_EXTERN PetscBool SceneIsProjection(Scene scene);
+PETSC_EXTERN PetscErrorCode SceneChooseByScheme(Draft scene);
+PETSC_EXTERN PetscErrorCode SceneChooseStiffness(Draft scene);
+
+/* SceneCheck - checks that involve more than one option. Collective. */
+PETSC_EXTERN PetscErrorCode SceneCheck(Scene scene);
+
+/* SceneMakeShape - the initial markers of the scene's vesicles, all edges of a vesicle equal to 1e-12. Every rank gets
+   all markers. Collective; stops with the user's message on a bad file, spacing or position. */
+PETSC_EXTERN PetscErrorCode SceneMakeShape(Scene scene, Shape *shape);
+
+/* SceneChooseInertia - the Reynolds number (speed R0/nu with R0 of the largest vesicle and the speed of the scene: rate
+   R0 of shear and extension, u_max of poiseuille, c_b/(nu R0^2) of a quiescent fluid; 0 without vesicles), the model
+   that -fluid_inertia auto stands for, and the warning that goes with it. Stops with the user's message when the model
+   does not fit the scene. Collective. */
+PETSC_EXTERN PetscErrorCode SceneChooseInertia(Draft scene);

@@ -1,0 +1,53 @@
+/* A scene resolved from its options: all defaults in one order. */
+#include "scene/resolve.h"
+
+/* The user's lists, whose lengths have been checked, and the flow, for the fluid. */
+static void DescribeFluid(Draft s) {
+  s->fluid.comm = s->comm;
+  for (int k = 0; k < 4; k++) s->fluid.box[k] = s->domain.box.v[k];
+  for (int d = 0; d < 2; d++) s->fluid.cells[d] = s->domain.cells.v[d];
+  s->fluid.flow = &s->flow;
+}
+
+PetscErrorCode SceneCreate(MPI_Comm comm, PetvesFlow flow, void *ctx, Scene *out) {
+  Draft s;
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&s));
+  *out = s;
+  s->comm = comm;
+  s->coupling.ksp_rtol = 1e-6;
+  /* 1  what the user gives, or the table's defaults */
+  PetscCall(SceneReadOptions(comm, s));
+  /* 2  -scheme_auto: all but the steps */
+  PetscCall(SceneChooseByError(s));
+  /* 3  what split and penalty have instead of the table's defaults */
+  PetscCall(SceneChooseByScheme(s));
+  /* 4  mistakes that involve more than one option */
+  PetscCall(SceneCheck(s));
+  PetscCheck(flow || s->flow.type != FLOW_CUSTOM, comm, PETSC_ERR_USER_INPUT,
+             "-flow_type custom: no function given; allowed: from Python (flow=) or C (SimulationCreateWithFlow) only");
+  s->flow.function = flow;
+  s->flow.ctx = ctx;
+  DescribeFluid(s);
+  /* 5  the markers, with the kernel's spacing if none is given */
+  PetscCall(SceneMakeShape(s, &s->shape));
+  /* 6  -scheme_auto: the steps, which go by the vesicles' size */
+  PetscCall(SceneChooseSteps(s));
+  s->fluid.dt = s->time.dt;
+  /* 7  Reynolds number, model of the fluid, warning */
+  PetscCall(SceneChooseInertia(s));
+  /* 8  penalty's springs, which go by the step */
+  PetscCall(SceneChooseStiffness(s));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SceneDestroy(Scene *scene) {
+  Draft s = (Draft)*scene;
+  PetscFunctionBeginUser;
+  if (!s) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ShapeDestroy(&s->shape));
+  PetscCall(OptionsDestroy(&s->options, s));
+  PetscCall(PetscFree(s));
+  *scene = NULL;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,154 @@
+/* The option table: each option once, beside its default, range and unit. */
+#include "kernel/kernel.h"
+#include "scene/resolve.h"
+
+#define AT(member) offsetof(struct _p_Scene, member)
+/* clang-format off */
+static const OptionRow table[] = {
+  {"-domain_box", OPT_REALS, AT(domain.box), "-1,1,-1,1", "any", "x_min,x_max,y_min,y_max (length)"},
+  {"-domain_cells", OPT_INTS, AT(domain.cells), "128,128", ">=8", "cells in x and y; cells must be square"},
+  {"-domain_bc_x", OPT_ENUM, AT(fluid.bc[0]), "wall", "wall|periodic", "boundaries at x_min and x_max"},
+  {"-domain_bc_y", OPT_ENUM, AT(fluid.bc[1]), "wall", "wall|periodic", "boundaries at y_min and y_max"},
+  {"-flow_type", OPT_ENUM, AT(flow.type), "quiescent", "quiescent|shear|poiseuille|extension|custom", "background flow; custom: a function given from Python or C"},
+  {"-flow_rate", OPT_REAL, AT(flow.rate), "1", "any", "rate of shear or extension (1/time)"},
+  {"-flow_peak_velocity", OPT_REAL, AT(flow.peak), "1", "any", "u_max of poiseuille (length/time)"},
+  {"-flow_half_width", OPT_REAL, AT(flow.half_width), "3", ">0", "L_y of poiseuille: half the channel's height (length)"},
+  {"-flow_center_x", OPT_REAL, AT(flow.center[0]), "0", "any", "x_c of the background flow (length)"},
+  {"-flow_center_y", OPT_REAL, AT(flow.center[1]), "0", "any", "y_c of the background flow (length)"},
+  {"-flow_form", OPT_ENUM, AT(fluid.form), "disturbance", "disturbance|total", "solve for u - u_inf, or for u with moving walls as the paper"},
+  {"-fluid_viscosity", OPT_REAL, AT(fluid.nu), "1", ">0", "nu (length^2/time; density is 1)"},
+  {"-fluid_inertia", OPT_ENUM, AT(fluid.inertia), "auto", "auto|none|unsteady|convective", "inertia of the fluid: quasi-steady Stokes, unsteady Stokes, Navier-Stokes; auto goes by flow and Reynolds number"},
+  {"-vesicle_shape", OPT_ENUM, AT(vesicles.shape), "ellipse", "ellipse|file|none", "initial shape"},
+  {"-vesicle_count", OPT_INT, AT(vesicles.count), "1", ">=1", "number of ellipses; a file has its own number of curves"},
+  {"-vesicle_semi_axes", OPT_REALS, AT(vesicles.axes), "0.2,0.5", ">0", "semi-axes of the ellipse, two for all or two a vesicle (length)"},
+  {"-vesicle_area", OPT_REALS, AT(vesicles.area), "1", ">0", "area of the ellipse, with -vesicle_reduced_area; one for all or one a vesicle (length^2)"},
+  {"-vesicle_reduced_area", OPT_REALS, AT(vesicles.reduced_area), "0.7", "(0,1)", "V = area/(pi R0^2), R0 = perimeter/(2 pi); long axis along x"},
+  {"-vesicle_center", OPT_REALS, AT(vesicles.center), "0,0", "any", "x,y of the centre, a pair a vesicle (length)"},
+  {"-vesicle_angle", OPT_REALS, AT(vesicles.angle), "0", "any", "counter-clockwise turn of the shape, one for all or one a vesicle (degrees)"},
+  {"-vesicle_file", OPT_PATH, AT(vesicles.file), "", "", "closed curves: x y a line, an empty line between curves, for -vesicle_shape file"},
+  {"-vesicle_bending", OPT_REAL, AT(membrane.bending), "0.01", ">=0", "c_b, bending stiffness; 0 leaves bending out"},
+  {"-vesicle_spacing", OPT_REAL, AT(vesicles.spacing), "0", ">=0", "marker spacing ds/h; 0 takes the kernel's (" KERNEL_SPACINGS ")"},
+  {"-vesicle_markers", OPT_INT, AT(vesicles.markers), "0", ">=0", "number of markers of each vesicle, instead of the spacing; 0 takes the spacing"},
+  {"-vesicle_allow_close_markers", OPT_BOOL, AT(vesicles.allow_close_markers), "false", "true|false", "accept spacings below the kernel's least (" KERNEL_LEAST_SPACINGS ")"},
+  {"-delta_type", OPT_NAME, AT(coupling.kernel), "cbs54", KERNEL_NAMES, "kernel between grid and markers; split, penalty: ib6"},
+  {"-scheme_type", OPT_NAME, AT(scheme.type), "coupled", "split|penalty|coupled|direct", "time-stepping scheme: the paper's, stiff springs, unsplit, unsplit by sparse LU"},
+  {"-scheme_order", OPT_INT, AT(scheme.order), "2", "[1,2]", "order in time: backward Euler or BDF2; split and penalty are of order 1"},
+  {"-scheme_auto", OPT_REAL, AT(scheme.wanted), "0", ">=0", "relative error wanted, 1e-4 to 0.1: order, steps, tolerances, spacing and kernel by what was measured; 0 off"},
+  {"-scheme_bending", OPT_ENUM, AT(scheme.bending_at), "implicit", "implicit|explicit", "bending at the new markers, or (split only) at the old ones; penalty: explicit"},
+  {"-penalty_stiffness", OPT_REAL, AT(scheme.stiffness), "0", ">=0", "penalty: sigma_0 of the springs sigma = sigma_0 (|X_s| - 1) (length^3/time^2); 0 takes half of what the step bears"},
+  {"-scheme_length_target", OPT_BOOL, AT(scheme.length_target), "true", "true|false", "coupled, direct: new edges get their first length"},
+  {"-scheme_area_target", OPT_BOOL, AT(scheme.area_target), "true", "true|false", "coupled, direct: shift the markers to their first area after each step"},
+  {"-coupling_self_mobility", OPT_ENUM, AT(coupling.self_mobility), "symbol", "none|local|symbol", "coupled, direct: give back the mobility that the kernel's smoothing takes from the membrane"},
+  {"-membrane_derivative", OPT_ENUM, AT(membrane.derivative), "spectral", "fd|bending|spectral", "derivatives along the membrane: finite differences, spectral bending, spectral bending and edges; split, penalty: fd"},
+  {"-scheme_startup", OPT_ENUM, AT(scheme.startup), "graded", "euler|graded", "first step of order 2: backward Euler, or five growing parts of a step"},
+  {"-mobility_type", OPT_ENUM, AT(coupling.mobility), "table", "table|ilu|none", "Lagrangian part of coupled's preconditioner"},
+  {"-time_step", OPT_REAL, AT(time.dt), "0.01", ">0", "dt (time)"},
+  {"-time_end", OPT_REAL, AT(time.end), "1", ">=0", "end time"},
+  {"-time_adapt", OPT_ENUM, AT(time.adapt), "none", "none|error", "step size: fixed, or from an error estimate (coupled, direct of order 2)"},
+  {"-time_adapt_tol", OPT_REAL, AT(time.adapt_tol), "1e-4", ">0", "error estimate accepted a step, in units of R0"},
+  {"-time_adapt_max_move", OPT_REAL, AT(time.adapt_max_move), "1", ">=0", "cells that a marker may move in a step relative to its vesicle; 0 no limit"},
+  {"-time_adapt_max_step", OPT_REAL, AT(time.adapt_max_step), "0", ">=0", "largest step that -time_adapt error takes; 0 no limit (time)"},
+  {"-time_cfl_limit", OPT_REAL, AT(time.cfl_limit), "0.5", ">0", "convective: largest dt max(|u| + |v|)/h; -time_adapt error stays below it, a fixed step above it stops the run"},
+  {"-time_steady_tol", OPT_REAL, AT(time.steady_tol), "0", ">=0", "stop when max |u.n| on the membrane falls below it; 0 never (length/time)"},
+  {"-helmholtz_type", OPT_NAME, AT(fluid.helmholtz), "fftw_tridiagonal", "fftw_tridiagonal|fftw|hypre", "fast solver of the velocity Helmholtz problems"},
+  {"-poisson_type", OPT_NAME, AT(fluid.poisson), "fftw_tridiagonal", "fftw_tridiagonal|fftw|hypre", "fast solver of the pressure Poisson problems"},
+  {"-fftw_plan", OPT_ENUM, AT(fluid.plan), "estimate", "estimate|measure|patient", "effort that FFTW spends on planning; estimate gives the same bits every run"},
+  {"-fftw_wisdom", OPT_PATH, AT(wisdom), "", "", "file of FFTW's measurements: read if it is there, written when a run adds to it"},
+  {"-output_dir", OPT_PATH, AT(output.dir), "out/run", "", "folder of every output file"},
+  {"-output_overwrite", OPT_BOOL, AT(output.overwrite), "false", "true|false", "replace the results that -output_dir holds already"},
+  {"-output_every", OPT_REAL, AT(output.every), "0.1", ">0", "time between saved fields"},
+  {"-checkpoint_every", OPT_INT, AT(output.checkpoint_every), "100", ">=0", "steps between checkpoints; 0 writes one at the end only"},
+  {"-checkpoint_keep", OPT_INT, AT(output.checkpoint_keep), "2", "[1,100]", "checkpoints kept: checkpoint.h5, the one before it checkpoint_1.h5, and so on"},
+  {"-restart", OPT_PATH, AT(output.restart), "", "", "go on from this checkpoint, in its folder or in a new -output_dir"},
+  {"-time_wall_limit", OPT_REAL, AT(time.wall_limit), "0", ">=0", "stop with a checkpoint before this much wall time has passed; 0 never (seconds)"},
+  {"-limit_edge_ratio", OPT_REAL, AT(limits.edge_ratio), "5", ">=0", "stop when a vesicle's longest edge is more than this many times its shortest; 0 no limit"},
+  {"-limit_area_error", OPT_REAL, AT(limits.area_error), "0.2", ">=0", "stop when a vesicle's area is off by more than this part of its first; 0 no limit"},
+  {"-limit_length_error", OPT_REAL, AT(limits.length_error), "0.2", ">=0", "stop when a vesicle's length is off by more than this part of its first; 0 no limit"},
+  {"-view", OPT_BOOL, AT(view), "false", "true|false", "print the model in force and the solvers"},
+  {"-allow_unused_options", OPT_BOOL, AT(allow_unused), "false", "true|false", "go on when an option is misspelt or unused"},
+};
+/* clang-format on */
+#define TABLE_SIZE ((PetscInt)(sizeof(table) / sizeof(table[0])))
+
+/* Solver options that users write most, as candidates for a suggestion. */
+static const char *const solvers[] = {"-tension_ksp_type",   "-tension_ksp_rtol",         "-tension_ksp_atol",
+                                      "-tension_ksp_max_it", "-tension_ksp_monitor",      "-tension_pc_type",
+                                      "-bending_ksp_type",   "-bending_ksp_rtol",         "-bending_ksp_atol",
+                                      "-bending_ksp_max_it", "-bending_pc_type",          "-options_file",
+                                      "-log_view",           "-tension_pc_factor_levels", "-bending_ksp_monitor",
+                                      "-coupled_ksp_type",   "-coupled_ksp_rtol",         "-coupled_ksp_atol",
+                                      "-coupled_ksp_max_it", "-coupled_ksp_monitor",      NULL};
+
+PetscErrorCode SceneReadOptions(MPI_Comm comm, Draft scene) {
+  PetscFunctionBeginUser;
+  PetscCall(OptionsRead(comm, "petves: inextensible vesicles in two-dimensional viscous flow", TABLE_SIZE, table,
+                        &scene->options, scene));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SceneChoose(Draft scene, const char name[], const char value[]) {
+  PetscFunctionBeginUser;
+  PetscCall(OptionChoose(&scene->options, scene, name, value));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscBool SceneGiven(Scene scene, const char name[]) {
+  return OptionGiven(&scene->options, name);
+}
+
+PetscBool SceneByArea(Scene scene) {
+  return SceneGiven(scene, "-vesicle_area") || SceneGiven(scene, "-vesicle_reduced_area") ? PETSC_TRUE : PETSC_FALSE;
+}
+
+const char *SceneOptionName(PetscInt i) {
+  return i < TABLE_SIZE ? table[i].name : NULL;
+}
+
+PetscBool SceneOptionMayChange(const char name[]) {
+  const char *const free[] = {"-scheme_auto",
+                              "-time_end",
+                              "-time_step",
+                              "-time_adapt_tol",
+                              "-time_adapt_max_move",
+                              "-time_adapt_max_step",
+                              "-time_steady_tol",
+                              "-time_wall_limit",
+                              "-helmholtz_type",
+                              "-poisson_type",
+                              "-fftw_plan",
+                              "-mobility_type",
+                              "-vesicle_file",
+                              "-vesicle_allow_close_markers",
+                              "-restart",
+                              "-view",
+                              "-allow_unused_options"};
+  const char *const groups[] = {"-output_", "-checkpoint_", "-limit_"};
+  for (size_t i = 0; i < sizeof(free) / sizeof(free[0]); i++)
+    if (!strcmp(name, free[i])) return PETSC_TRUE;
+  for (size_t i = 0; i < sizeof(groups) / sizeof(groups[0]); i++)
+    if (!strncmp(name, groups[i], strlen(groups[i]))) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+PetscErrorCode SceneOptionValue(Scene scene, PetscInt i, char value[], size_t length) {
+  PetscFunctionBeginUser;
+  PetscCall(OptionValue(&scene->options, scene, i, value, length));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SceneWriteOptions(Scene scene, FILE *file) {
+  /* the ellipse is described in one of two ways: writing both would be refused when read back; what one launch was
+     asked to do with an earlier run's files is no part of the run */
+  const PetscBool by_area = SceneByArea(scene);
+  const char *const skip[] = {"-restart", "-output_overwrite", by_area ? "-vesicle_semi_axes" : "-vesicle_area",
+                              by_area ? NULL : "-vesicle_reduced_area", NULL};
+  PetscFunctionBeginUser;
+  PetscCall(OptionsWrite(&scene->options, scene, skip, file));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SceneCheckUnused(Scene scene) {
+  PetscFunctionBeginUser;
+  if (!scene->allow_unused) PetscCall(OptionsCheckUnused(&scene->options, solvers));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

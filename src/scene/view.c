@@ -1,0 +1,56 @@
+/* -view: the model in force. */
+#include "scene/scene.h"
+
+static PetscErrorCode ViewFluid(Scene scene, PetscViewer v) {
+  static const char *const forms[] = {"disturbance of the background flow", "total velocity with moving walls"};
+  static const char *const inertia[] = {"unsteady Stokes", "quasi-steady Stokes", "unsteady Stokes",
+                                        "Navier-Stokes, convection explicit"};
+  const PetscBool no_mean = scene->fluid.inertia == INERTIA_NONE && scene->fluid.bc[0] == BC_PERIODIC &&
+                                    scene->fluid.bc[1] == BC_PERIODIC
+                                ? PETSC_TRUE
+                                : PETSC_FALSE;
+  PetscFunctionBeginUser;
+  PetscCall(PetscViewerASCIIPrintf(v, "fluid: %s%s, nu = %g, solved for the %s\n", inertia[scene->fluid.inertia],
+                                   SceneGiven(scene, "-fluid_inertia") ? "" : " (default for this scene)",
+                                   (double)scene->fluid.nu, forms[scene->fluid.form]));
+  PetscCall(PetscViewerASCIIPrintf(v, "Reynolds number: %.4g\n", (double)scene->reynolds));
+  if (no_mean) PetscCall(PetscViewerASCIIPrintf(v, "periodic box: the disturbance has no mean flow\n"));
+  if (*scene->warning) PetscCall(PetscViewerASCIIPrintf(v, "warning: %s\n", scene->warning));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SceneView(Scene scene, PetscViewer v) {
+  static const char *const derivatives[] = {"finite differences", "spectral bending", "spectral bending and edges"};
+  static const char *const self[] = {"none", "local", "symbol"};
+  static const char *const bc[] = {"wall", "periodic"};
+  static const char *const flows[] = {"quiescent", "shear", "poiseuille", "extension", "custom"};
+  const PetscReal *b = scene->fluid.box, h = FluidSpecCellSize(&scene->fluid);
+  const Shape *shape = &scene->shape;
+  PetscFunctionBeginUser;
+  PetscCall(PetscViewerASCIIPrintf(v, "Model in force\n"));
+  PetscCall(PetscViewerASCIIPushTab(v));
+  PetscCall(PetscViewerASCIIPrintf(
+      v, "domain: [%g,%g] x [%g,%g], %" PetscInt_FMT " x %" PetscInt_FMT " cells, h = %g, %s in x, %s in y\n",
+      (double)b[0], (double)b[1], (double)b[2], (double)b[3], scene->fluid.cells[0], scene->fluid.cells[1], (double)h,
+      bc[scene->fluid.bc[0]], bc[scene->fluid.bc[1]]));
+  PetscCall(ViewFluid(scene, v));
+  PetscCall(PetscViewerASCIIPrintf(v, "background flow: %s\n", flows[scene->flow.type]));
+  if (!shape->vesicles) PetscCall(PetscViewerASCIIPrintf(v, "vesicle: none (no tension solve, no bending solve)\n"));
+  for (PetscInt k = 0; k < shape->vesicles; k++)
+    PetscCall(PetscViewerASCIIPrintf(v, "vesicle %" PetscInt_FMT ": %" PetscInt_FMT " markers, tension on\n", k + 1,
+                                     shape->start[k + 1] - shape->start[k]));
+  if (shape->vesicles && scene->membrane.bending > 0)
+    PetscCall(PetscViewerASCIIPrintf(v, "bending: on, c_b = %g\n", (double)scene->membrane.bending));
+  else
+    PetscCall(PetscViewerASCIIPrintf(v, "bending: off (no bending solve)\n"));
+  if (shape->vesicles)
+    PetscCall(PetscViewerASCIIPrintf(v, "membrane: kernel %s, %s, self-mobility %s, area target %s\n",
+                                     scene->coupling.kernel, derivatives[scene->membrane.derivative],
+                                     self[scene->coupling.self_mobility], scene->scheme.area_target ? "on" : "off"));
+  PetscCall(PetscViewerASCIIPrintf(v, "scheme: %s, order %" PetscInt_FMT ", dt = %g to t = %g\n", scene->scheme.type,
+                                   scene->scheme.order, (double)scene->time.dt, (double)scene->time.end));
+  PetscCall(PetscViewerASCIIPrintf(v, "fast solves: helmholtz %s, poisson %s\n", scene->fluid.helmholtz,
+                                   scene->fluid.poisson));
+  PetscCall(PetscViewerASCIIPopTab(v));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

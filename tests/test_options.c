@@ -1,0 +1,121 @@
+/* The option table, with rows that mean nothing: values of the user and defaults, lists of any length, text that reads
+   back as the value; and a scene of more vesicles than fit in a short list. */
+#include "world.h"
+
+#define MANY 2000 /* numbers, more text than a path may have */
+#define VESICLES 40
+
+typedef struct {
+  PetscReal real;
+  PetscInt integer, choice;
+  PetscBool truth;
+  char name[OPTION_MAX_NAME], path[PETSC_MAX_PATH_LEN];
+  RealList reals;
+  IntList ints;
+} Values;
+
+static const OptionRow rows[] = {{"-t_real", OPT_REAL, offsetof(Values, real), "0.1", ">0", "a number"},
+                                 {"-t_integer", OPT_INT, offsetof(Values, integer), "7", ">=0", "an integer"},
+                                 {"-t_choice", OPT_ENUM, offsetof(Values, choice), "b", "a|b|c", "a choice"},
+                                 {"-t_truth", OPT_BOOL, offsetof(Values, truth), "false", "true|false", "a truth"},
+                                 {"-t_name", OPT_NAME, offsetof(Values, name), "one", "one|two", "a name"},
+                                 {"-t_path", OPT_PATH, offsetof(Values, path), "", "", "a path"},
+                                 {"-t_reals", OPT_REALS, offsetof(Values, reals), "1,2", "any", "numbers"},
+                                 {"-t_ints", OPT_INTS, offsetof(Values, ints), "3", "any", "integers"}};
+#define ROWS ((PetscInt)(sizeof(rows) / sizeof(rows[0])))
+
+/* " -t_reals x,x,..." with 17 digits each. */
+static PetscErrorCode LongList(PetscReal x[MANY], char **text) {
+  unsigned state = 3;
+  char *end;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(32 * MANY, text));
+  end = *text + sprintf(*text, "-t_integer 5 -t_truth -t_reals ");
+  for (PetscInt k = 0; k < MANY; k++) {
+    x[k] = TestRandom(&state);
+    end += sprintf(end, "%s%.17g", k ? "," : "", (double)x[k]);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Every value as text, read again, is the same text. */
+static PetscErrorCode CheckText(const OptionTable *table, Values *values) {
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < ROWS; i++) {
+    char *text, *again, part[8];
+    void *place = (char *)values + rows[i].offset;
+    PetscBool same;
+    PetscCall(OptionFormat(&rows[i], place, &text));
+    PetscCall(OptionValue(table, values, i, part, sizeof(part)));
+    CHECK(!strncmp(part, text, 7) && strlen(part) == PetscMin(strlen(text), (size_t)7), "%s: its value, cut: %s",
+          rows[i].name, part);
+    if (*text) PetscCall(OptionParse(PETSC_COMM_WORLD, &rows[i], text, place));
+    PetscCall(OptionFormat(&rows[i], place, &again));
+    PetscCall(PetscStrcmp(text, again, &same));
+    CHECK(same, "%s: %zu characters read back to the same text", rows[i].name, strlen(text));
+    PetscCall(PetscFree(text));
+    PetscCall(PetscFree(again));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CheckTable(void) {
+  Values v = {0};
+  OptionTable table;
+  PetscReal x[MANY], off = 0;
+  char *text;
+  PetscFunctionBeginUser;
+  PetscCall(LongList(x, &text));
+  PetscCall(PetscOptionsClear(NULL));
+  PetscCall(PetscOptionsInsertString(NULL, text));
+  PetscCall(PetscFree(text));
+  PetscCall(OptionsRead(PETSC_COMM_WORLD, "test", ROWS, rows, &table, &v));
+  CHECK(v.real == 0.1 && v.choice == 1 && !strcmp(v.name, "one") && !*v.path && v.ints.n == 1 && v.ints.v[0] == 3,
+        "defaults where nothing is given");
+  CHECK(v.integer == 5 && v.truth, "the user's values");
+  for (PetscInt k = 0; k < v.reals.n; k++) off = PetscMax(off, PetscAbsReal(v.reals.v[k] - x[k]));
+  CHECK(v.reals.n == MANY && off == 0, "a list of %d numbers, to the bit", MANY);
+  CHECK(OptionGiven(&table, "-t_reals") && !OptionGiven(&table, "-t_real") && !OptionGiven(&table, "-t_other"),
+        "what is given and what is not");
+  CHECK(OptionFind(&table, "-t_path") == 5 && OptionFind(&table, "-t_pat") < 0, "found by the whole name");
+  PetscCall(OptionChoose(&table, &v, "-t_integer", "9"));
+  PetscCall(OptionChoose(&table, &v, "-t_choice", "c"));
+  CHECK(v.integer == 5 && v.choice == 2, "a choice takes the place of a default, not of what is given");
+  PetscCall(CheckText(&table, &v));
+  PetscCall(OptionsDestroy(&table, &v));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A row of vesicles, each where its own pair of numbers puts it. */
+static PetscErrorCode CheckScene(void) {
+  Scene scene;
+  char *options, *end;
+  PetscReal off = 0;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(64 * VESICLES, &options));
+  end = options + sprintf(options,
+                          "-domain_box 0,%d,0,1 -domain_cells %d,32 -vesicle_semi_axes 0.3,0.2 -vesicle_count %d "
+                          "-vesicle_center ",
+                          VESICLES, 32 * VESICLES, VESICLES);
+  for (int v = 0; v < VESICLES; v++) end += sprintf(end, "%s%g,0.5", v ? "," : "", v + 0.5);
+  PetscCall(TestScene(options, &scene));
+  PetscCall(PetscFree(options));
+  for (PetscInt v = 0; v < scene->shape.vesicles; v++) {
+    const PetscReal *X = scene->shape.X + 2 * scene->shape.start[v]; /* the end of the first semi-axis */
+    off = PetscMax(off, PetscAbsReal(X[0] - (v + 0.8)) + PetscAbsReal(X[1] - 0.5));
+  }
+  CHECK(scene->shape.vesicles == VESICLES && off < 1e-12, "%d vesicles in their places, %.1e", VESICLES, off);
+  PetscCall(SceneDestroy(&scene));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Facts(void) {
+  PetscFunctionBeginUser;
+  PetscCall(CheckTable());
+  PetscCall(CheckScene());
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+int main(int argc, char **argv) {
+  return CheckMain(argc, argv, Facts);
+}
