@@ -25,6 +25,7 @@ static PetscObject FindObject(Simulation s, const char name[]) {
   const State *q = &s->scheme->state;
   const Fluid f = s->fluid;
   const Coupling c = s->coupling;
+  const PetscBool any = CouplingHasMembrane(c);
   const struct {
     const char *name;
     void *object;
@@ -43,9 +44,9 @@ static PetscObject FindObject(Simulation s, const char name[]) {
              {"mat_D", f->D},
              {"mat_L", f->L},
              {"mat_H", f->H},
-             {"mat_E", c->markers->E},
-             {"mat_S", c->S},
-             {"mat_B", c->B}};
+             {"mat_E", any ? c->markers->E : NULL},
+             {"mat_S", any ? c->S : NULL},
+             {"mat_B", any ? c->B : NULL}};
   for (size_t i = 0; i < sizeof(all) / sizeof(all[0]); i++)
     if (!strcmp(name, all[i].name)) return (PetscObject)all[i].object;
   return NULL;
