@@ -169,6 +169,43 @@ PetscErrorCode H5GetString(H5File *f, const char name[], size_t length, char val
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Characters in one attribute of a text: HDF5 allows 64 KiB. The pieces are name, name_1, name_2 and so on. */
+#define PIECE 32000
+
+static PetscErrorCode PieceName(const char name[], int k, char piece[64]) {
+  PetscFunctionBeginUser;
+  PetscCall(k ? PetscSNPrintf(piece, 64, "%s_%d", name, k) : PetscStrncpy(piece, name, 64));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode H5PutText(H5File *f, const char name[], const char value[]) {
+  const size_t length = strlen(value);
+  char part[PIECE + 1], piece[64];
+  PetscFunctionBeginUser;
+  for (int k = 0; !k || (size_t)k * PIECE < length; k++) {
+    PetscCall(PieceName(name, k, piece));
+    PetscCall(PetscStrncpy(part, value + (size_t)k * PIECE, sizeof(part)));
+    PetscCall(H5PutString(f, piece, part));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode H5GetText(H5File *f, const char name[], char **value) {
+  char part[PIECE + 1], piece[64];
+  size_t length = 0;
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(1, value));
+  for (int k = 0; length == (size_t)k * PIECE; k++) {
+    PetscCall(PieceName(name, k, piece));
+    PetscCall(H5GetString(f, piece, sizeof(part), part));
+    PetscCall(PetscRealloc(length + strlen(part) + 1, value));
+    PetscCall(PetscStrncpy(*value + length, part, strlen(part) + 1));
+    length += strlen(part);
+    if (!*part) break;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode H5CreateSeries(H5File *f, const char name[], int ndims, const PetscInt dims[]) {
   hsize_t size[3] = {0, 1, 1}, limit[3] = {H5S_UNLIMITED, 1, 1}, chunk[3] = {1, 1, 1};
   hid_t space, create, link, set = -1;

@@ -36,6 +36,11 @@ PETSC_EXTERN PetscErrorCode H5GetReals(H5File *file, const char name[], PetscInt
 PETSC_EXTERN PetscErrorCode H5GetInts(H5File *file, const char name[], PetscInt n, PetscInt values[]);
 PETSC_EXTERN PetscErrorCode H5GetString(H5File *file, const char name[], size_t length, char value[]);
 
+/* H5PutText, H5GetText - a string of any length, in several attributes where it is longer than one may be. What is read
+   is to be freed with PetscFree; empty when it is not there. Reading is collective. */
+PETSC_EXTERN PetscErrorCode H5PutText(H5File *file, const char name[], const char value[]);
+PETSC_EXTERN PetscErrorCode H5GetText(H5File *file, const char name[], char **value);
+
 /* H5CreateSeries - dataset [0.., dims...] that grows along its first index; ndims <= 2 further ones. */
 PETSC_EXTERN PetscErrorCode H5CreateSeries(H5File *file, const char name[], int ndims, const PetscInt dims[]);
 
