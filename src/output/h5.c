@@ -1,5 +1,6 @@
 #define _GNU_SOURCE /* memfd_create */
 #include "output/h5.h"
+#include "output/h5place.h"
 #include <sys/mman.h>
 #include <unistd.h>
 
@@ -25,6 +26,7 @@ static PetscErrorCode Start(MPI_Comm comm, const char path[], H5File *f) {
 static hid_t Access(void) {
   const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
   (void)H5Pset_cache(access, 0, 0, 0, 0);
+  H5PlaceDriver(access);
   return access;
 }
 
@@ -266,14 +268,13 @@ PetscErrorCode H5TruncateSeries(H5File *f, const char name[], PetscInt length) {
 }
 
 unsigned long long H5FramePlace(H5File *f, const char name[], PetscInt index) {
-  hsize_t size[3], start[3] = {(hsize_t)index, 0, 0}, bytes = 0;
-  haddr_t place = HADDR_UNDEF;
-  unsigned filters;
-  int ndims;
+  hsize_t size[3], start[3] = {(hsize_t)index, 0, 0};
+  haddr_t place;
+  int ndims = 1;
   if (f->failed) return 0;
   const hid_t set = OpenSeries(f, name, &ndims, size);
   if (set < 0) return 0;
-  Try(f, H5Dget_chunk_info_by_coord(set, start, &filters, &place, &bytes));
+  place = H5PlaceOf(set, ndims, start);
   Try(f, place == HADDR_UNDEF ? -1 : 0);
   Try(f, H5Dclose(set));
   return f->failed ? 0 : (unsigned long long)place;
