@@ -111,7 +111,7 @@ static PetscErrorCode WriteMemory(Scheme s, H5File *file) {
 }
 
 /* The name of the k-th newest checkpoint. */
-static PetscErrorCode Name(const Folder *folder, PetscInt k, char path[PETSC_MAX_PATH_LEN]) {
+static PetscErrorCode Name(Folder *folder, PetscInt k, char path[PETSC_MAX_PATH_LEN]) {
   char file[64] = "checkpoint.h5";
   PetscFunctionBeginUser;
   if (k) PetscCall(PetscSNPrintf(file, sizeof(file), "checkpoint_%" PetscInt_FMT ".h5", k));
@@ -138,7 +138,7 @@ static PetscErrorCode Rotate(const Checkpoint *c, const char temporary[], PetscB
 }
 
 /* The place of a file among the checkpoints, by its inode; MOST when it is none of them. */
-static PetscErrorCode PlaceOf(const Folder *folder, const char file[], PetscInt *k) {
+static PetscErrorCode PlaceOf(Folder *folder, const char file[], PetscInt *k) {
   char path[PETSC_MAX_PATH_LEN];
   struct stat chosen, other;
   PetscFunctionBeginUser;
@@ -172,7 +172,7 @@ PetscErrorCode CheckpointAdopt(const Checkpoint *c, const char restart[]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode CheckpointClear(const Folder *folder) {
+PetscErrorCode CheckpointClear(Folder *folder) {
   char path[PETSC_MAX_PATH_LEN];
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < MOST && !folder->rank; k++) {
@@ -182,7 +182,7 @@ PetscErrorCode CheckpointClear(const Folder *folder) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode CheckpointCreate(Checkpoint *c, const Folder *folder, PetscInt keep) {
+PetscErrorCode CheckpointCreate(Checkpoint *c, Folder *folder, PetscInt keep) {
   PetscFunctionBeginUser;
   c->folder = folder;
   c->keep = keep;

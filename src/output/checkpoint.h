@@ -4,12 +4,12 @@
 #include "output/record.h"
 
 typedef struct {
-  const Folder *folder; /* borrowed */
-  PetscInt keep;        /* checkpoints kept, the newest included */
-  PetscInt step;        /* of the newest checkpoint.h5 that this run wrote; -1 none */
+  Folder *folder; /* borrowed */
+  PetscInt keep;  /* checkpoints kept, the newest included */
+  PetscInt step;  /* of the newest checkpoint.h5 that this run wrote; -1 none */
 } Checkpoint;
 
-PETSC_EXTERN PetscErrorCode CheckpointCreate(Checkpoint *checkpoint, const Folder *folder, PetscInt keep);
+PETSC_EXTERN PetscErrorCode CheckpointCreate(Checkpoint *checkpoint, Folder *folder, PetscInt keep);
 
 /* CheckpointWrite - the scheme's state, the record and the number of scheduled frames: to a temporary name, with a
    checksum at its end, all of it on the disk, then renamed. The ones before it become checkpoint_1.h5 and so on. Rows
@@ -23,4 +23,4 @@ PETSC_EXTERN PetscErrorCode CheckpointWrite(Checkpoint *checkpoint, Scheme schem
 PETSC_EXTERN PetscErrorCode CheckpointAdopt(const Checkpoint *checkpoint, const char restart[]);
 
 /* CheckpointClear - remove all checkpoints of the folder, on rank 0. */
-PETSC_EXTERN PetscErrorCode CheckpointClear(const Folder *folder);
+PETSC_EXTERN PetscErrorCode CheckpointClear(Folder *folder);

@@ -4,16 +4,17 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-PetscErrorCode FolderPath(const Folder *folder, const char file[], char path[PETSC_MAX_PATH_LEN]) {
+PetscErrorCode FolderPath(Folder *folder, const char file[], char path[PETSC_MAX_PATH_LEN]) {
   PetscFunctionBeginUser;
   PetscCall(PetscSNPrintf(path, PETSC_MAX_PATH_LEN, "%s/%s", folder->path, file));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode FolderCheck(const Folder *folder, PetscBool written, const char path[]) {
+PetscErrorCode FolderCheck(Folder *folder, PetscBool written, const char path[]) {
   PetscMPIInt failed = !folder->rank && !written;
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Bcast(&failed, 1, MPI_INT, 0, folder->comm));
+  if (failed) folder->failed = PETSC_TRUE;
   PetvesCheck(!failed, folder->comm, "%s: cannot be written; allowed: a folder with space that can be written", path);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -23,7 +24,7 @@ int FileSync(const char path[]) {
   return (fd >= 0 && close(fd)) || failed;
 }
 
-PetscErrorCode FolderRemove(const Folder *folder, const char file[]) {
+PetscErrorCode FolderRemove(Folder *folder, const char file[]) {
   char path[PETSC_MAX_PATH_LEN];
   PetscFunctionBeginUser;
   PetscCall(FolderPath(folder, file, path));
@@ -31,7 +32,7 @@ PetscErrorCode FolderRemove(const Folder *folder, const char file[]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode FolderWriteText(const Folder *folder, const char file[], FolderPrint print, const void *what) {
+PetscErrorCode FolderWriteText(Folder *folder, const char file[], FolderPrint print, const void *what) {
   char path[PETSC_MAX_PATH_LEN], temporary[PETSC_MAX_PATH_LEN], name[PETSC_MAX_PATH_LEN];
   PetscBool done = PETSC_TRUE;
   PetscFunctionBeginUser;
@@ -68,6 +69,7 @@ PetscErrorCode FolderMake(MPI_Comm comm, const char path[], Folder *folder) {
   PetscMPIInt error = 0;
   PetscFunctionBeginUser;
   folder->comm = comm;
+  folder->failed = PETSC_FALSE;
   PetscCallMPI(MPI_Comm_rank(comm, &folder->rank));
   PetscCall(PetscStrncpy(folder->path, path, sizeof(folder->path)));
   if (!folder->rank) error = MakeParts(path);
@@ -78,7 +80,7 @@ PetscErrorCode FolderMake(MPI_Comm comm, const char path[], Folder *folder) {
 }
 
 /* Whether a file lies in the folder. */
-static PetscBool LiesHere(const Folder *folder, const char file[]) {
+static PetscBool LiesHere(Folder *folder, const char file[]) {
   char above[PETSC_MAX_PATH_LEN], *slash;
   struct stat here, there;
   if (!*file) return PETSC_FALSE;
@@ -89,7 +91,7 @@ static PetscBool LiesHere(const Folder *folder, const char file[]) {
   return here.st_dev == there.st_dev && here.st_ino == there.st_ino ? PETSC_TRUE : PETSC_FALSE;
 }
 
-PetscErrorCode FolderClaim(const Folder *folder, const char restart[], PetscBool overwrite, PetscBool *here) {
+PetscErrorCode FolderClaim(Folder *folder, const char restart[], PetscBool overwrite, PetscBool *here) {
   const char *const results[] = {"series.csv", "run.h5", "checkpoint.h5"};
   char path[PETSC_MAX_PATH_LEN];
   PetscMPIInt found[2] = {0, -1}; /* go on here; result of another run */

@@ -27,7 +27,7 @@ PetscErrorCode FrameIndexAppend(FrameIndex *x, H5File *fields, PetscInt frame, P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode FrameIndexOpen(FrameIndex *x, const Folder *folder, Scheme scheme, H5File *fields, PetscInt frames,
+PetscErrorCode FrameIndexOpen(FrameIndex *x, Folder *folder, Scheme scheme, H5File *fields, PetscInt frames,
                               const PetscReal times[]) {
   char path[PETSC_MAX_PATH_LEN], temporary[PETSC_MAX_PATH_LEN];
   PetscBool done = PETSC_TRUE;
@@ -107,7 +107,7 @@ static PetscBool TakeNew(const char fresh[], const char index[], const char path
   return !access(fresh, F_OK) && (!unlink(index) || errno == ENOENT) && !rename(fresh, path) ? PETSC_TRUE : PETSC_FALSE;
 }
 
-PetscErrorCode FrameIndexRepair(const Folder *folder, Scheme scheme, PetscInt frames) {
+PetscErrorCode FrameIndexRepair(Folder *folder, Scheme scheme, PetscInt frames) {
   char path[PETSC_MAX_PATH_LEN], index[PETSC_MAX_PATH_LEN], part[PETSC_MAX_PATH_LEN], fresh[PETSC_MAX_PATH_LEN];
   FILE *lines = NULL;
   H5File f;
@@ -136,6 +136,6 @@ PetscErrorCode FrameIndexRepair(const Folder *folder, Scheme scheme, PetscInt fr
   }
   if (lines) (void)fclose(lines);
   if (old >= 0) (void)close(old);
-  if (here) PetscCall(H5FileCheck(&f));
+  if (here) PetscCall(FolderCheck(folder, !f.failed, part));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

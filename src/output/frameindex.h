@@ -6,14 +6,14 @@
 #include "output/framefile.h"
 
 typedef struct {
-  const Folder *folder; /* borrowed */
-  Scheme scheme;        /* borrowed */
-  FILE *file;           /* rank 0, when open */
+  Folder *folder; /* borrowed */
+  Scheme scheme;  /* borrowed */
+  FILE *file;     /* rank 0, when open */
 } FrameIndex;
 
 /* FrameIndexOpen - write the index of the frames so far, with their times, and go on with it. FrameIndexAppend - a
    further frame, whose values are in run.h5. Both collective; they stop with one line when it cannot be written. */
-PETSC_EXTERN PetscErrorCode FrameIndexOpen(FrameIndex *index, const Folder *folder, Scheme scheme, H5File *fields,
+PETSC_EXTERN PetscErrorCode FrameIndexOpen(FrameIndex *index, Folder *folder, Scheme scheme, H5File *fields,
                                            PetscInt frames, const PetscReal times[]);
 PETSC_EXTERN PetscErrorCode FrameIndexAppend(FrameIndex *index, H5File *fields, PetscInt frame, PetscReal time);
 
@@ -24,4 +24,4 @@ PETSC_EXTERN PetscErrorCode FrameIndexClose(FrameIndex *index, PetscBool whole);
 
 /* FrameIndexRepair - where a run was killed (its index is there): run.h5 anew, of its first `frames` frames. Stops with
    one line when that cannot be written; frames that cannot be read leave run.h5 as it is. Collective. */
-PETSC_EXTERN PetscErrorCode FrameIndexRepair(const Folder *folder, Scheme scheme, PetscInt frames);
+PETSC_EXTERN PetscErrorCode FrameIndexRepair(Folder *folder, Scheme scheme, PetscInt frames);

@@ -1,7 +1,7 @@
 #include "output/frames.h"
 #include "output/cells.h"
 
-static PetscErrorCode Begin(Frames *f, const Folder *folder, Scheme scheme, char path[PETSC_MAX_PATH_LEN]) {
+static PetscErrorCode Begin(Frames *f, Folder *folder, Scheme scheme, char path[PETSC_MAX_PATH_LEN]) {
   const Grid g = scheme->fluid->grid;
   PetscFunctionBeginUser;
   f->folder = folder;
@@ -11,13 +11,13 @@ static PetscErrorCode Begin(Frames *f, const Folder *folder, Scheme scheme, char
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode FramesCreate(Frames *f, const Folder *folder, Scheme scheme) {
+PetscErrorCode FramesCreate(Frames *f, Folder *folder, Scheme scheme) {
   char path[PETSC_MAX_PATH_LEN];
   PetscFunctionBeginUser;
   PetscCall(Begin(f, folder, scheme, path));
   PetscCall(FrameFileCreate(scheme, path, &f->file));
   f->open = PETSC_TRUE;
-  PetscCall(H5FileCheck(&f->file));
+  PetscCall(FolderCheck(folder, !f->file.failed, path));
   PetscCall(FrameIndexOpen(&f->index, folder, scheme, &f->file, 0, NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -40,7 +40,7 @@ static PetscErrorCode Cut(Frames *f, const char restart[]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode FramesGoOn(Frames *f, const Folder *folder, Scheme scheme, PetscInt scheduled, const char restart[]) {
+PetscErrorCode FramesGoOn(Frames *f, Folder *folder, Scheme scheme, PetscInt scheduled, const char restart[]) {
   char path[PETSC_MAX_PATH_LEN];
   PetscBool failed;
   PetscInt length;
@@ -95,7 +95,7 @@ PetscErrorCode FramesWrite(Frames *f, const Gathered *now, PetscBool scheduled) 
   PetscCall(FrameIndexAppend(&f->index, &f->file, f->count, t));
   PetscCall(H5WriteArray(&f->file, "/time", f->count, 1, &t)); /* last: readers count the frames by it */
   PetscCall(H5FileFlush(&f->file));
-  PetscCall(H5FileCheck(&f->file));
+  PetscCall(FolderCheck(f->folder, !f->file.failed, f->file.path));
   f->count++;
   if (scheduled) f->scheduled = f->count;
   f->time = t;
@@ -103,22 +103,21 @@ PetscErrorCode FramesWrite(Frames *f, const Gathered *now, PetscBool scheduled) 
 }
 
 PetscErrorCode FramesSync(Frames *f) {
+  PetscBool good = PETSC_TRUE;
   PetscFunctionBeginUser;
   PetscCall(H5FileFlush(&f->file));
-  PetscCall(H5FileCheck(&f->file));
-  PetscCall(
-      FolderCheck(f->folder, f->folder->rank || (!FileSync(f->file.path) && !FrameIndexSync(&f->index)), f->file.path));
+  if (!f->folder->rank) good = !f->file.failed && !FileSync(f->file.path) && !FrameIndexSync(&f->index);
+  PetscCall(FolderCheck(f->folder, good, f->file.path));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode FramesClose(Frames *f, PetscBool *good) {
-  const PetscBool known = f->open ? f->file.failed : PETSC_FALSE;
   PetscFunctionBeginUser;
   *good = PETSC_TRUE;
   if (f->open) {
     PetscCall(H5FileClose(&f->file));
     PetscCall(FrameIndexClose(&f->index, !f->file.failed));
-    *good = !f->file.failed || known ? PETSC_TRUE : PETSC_FALSE;
+    *good = f->file.failed ? PETSC_FALSE : PETSC_TRUE;
   }
   f->open = PETSC_FALSE;
   PetscCall(PetscFree(f->cells));

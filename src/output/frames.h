@@ -4,8 +4,8 @@
 #include "output/gathered.h"
 
 typedef struct {
-  const Folder *folder; /* borrowed */
-  Scheme scheme;        /* borrowed */
+  Folder *folder; /* borrowed */
+  Scheme scheme;  /* borrowed */
   H5File file;
   PetscBool open; /* on every rank */
   FrameIndex index;
@@ -19,8 +19,8 @@ typedef struct {
 /* FramesCreate - a new, empty file. FramesGoOn - the one of an earlier run, repaired where that was killed and cut to
    its first `scheduled` frames, whose times are in `times`: a frame that was saved only because that run ended goes.
    Stops with one line, naming `restart`, when there are not so many. Collective. */
-PETSC_EXTERN PetscErrorCode FramesCreate(Frames *frames, const Folder *folder, Scheme scheme);
-PETSC_EXTERN PetscErrorCode FramesGoOn(Frames *frames, const Folder *folder, Scheme scheme, PetscInt scheduled,
+PETSC_EXTERN PetscErrorCode FramesCreate(Frames *frames, Folder *folder, Scheme scheme);
+PETSC_EXTERN PetscErrorCode FramesGoOn(Frames *frames, Folder *folder, Scheme scheme, PetscInt scheduled,
                                        const char restart[]);
 
 /* FramesWrite - add the scheme's present fields, and its markers as gathered; scheduled: a saved time of -output_every,
@@ -31,6 +31,6 @@ PETSC_EXTERN PetscErrorCode FramesWrite(Frames *frames, const Gathered *now, Pet
 /* FramesSync - put all of it on the disk. Collective; stops with one line when it cannot be written. */
 PETSC_EXTERN PetscErrorCode FramesSync(Frames *frames);
 
-/* FramesClose - close the file and free everything; good: all of it was written, or it is known that it was not.
-   Counts on rank 0. */
+/* FramesClose - close the file and free everything; good: all of it was written. Rank 0 closes, and good is TRUE
+   elsewhere. */
 PETSC_EXTERN PetscErrorCode FramesClose(Frames *frames, PetscBool *good);

@@ -85,16 +85,6 @@ PetscErrorCode H5FileFailed(const H5File *f, PetscBool *failed) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode H5FileCheck(H5File *f) {
-  PetscBool failed;
-  PetscFunctionBeginUser;
-  PetscCall(H5FileFailed(f, &failed));
-  if (failed) PetscCall(H5FileClose(f));
-  PetscCheck(!failed, f->comm, PETSC_ERR_USER_INPUT,
-             "%s: cannot be written; allowed: a folder with space that can be written", f->path);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 static hid_t IntType(void) {
   return sizeof(PetscInt) == 8 ? H5T_NATIVE_INT64 : H5T_NATIVE_INT32;
 }

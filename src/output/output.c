@@ -82,7 +82,7 @@ PetscErrorCode OutputDestroy(Output *output) {
   PetscCall(GatheredDestroy(&o->now));
   folder = o->folder;
   PetscCall(PetscFree(o));
-  if (!*folder.path) PetscFunctionReturn(PETSC_SUCCESS); /* not even a folder was made */
+  if (!*folder.path || folder.failed) PetscFunctionReturn(PETSC_SUCCESS); /* no folder, or its error is known */
   while (bad < 3 && good[bad]) bad++;
   PetscCallMPI(MPI_Bcast(&bad, 1, MPIU_INT, 0, folder.comm));
   PetscCall(FolderPath(&folder, names[PetscMin(bad, 2)], path));

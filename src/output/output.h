@@ -30,7 +30,7 @@ struct _p_Output {
 PETSC_EXTERN PetscErrorCode OutputCreate(Scene scene, Scheme scheme, Output *output);
 
 /* OutputDestroy - close every file and free everything. Collective; stops with one line, everything freed, when a file
-   cannot be closed and no error was reported of it before. */
+   cannot be closed, unless it is known already that one could not be written. */
 PETSC_EXTERN PetscErrorCode OutputDestroy(Output *output);
 
 /* OutputBegin - the first row and frame; those of a checkpoint are there already, or (in a new folder) its row is. */

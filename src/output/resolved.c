@@ -40,7 +40,7 @@ static PetscErrorCode Print(FILE *f, const void *what) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode ResolvedWrite(const Folder *folder, Scheme scheme) {
+PetscErrorCode ResolvedWrite(Folder *folder, Scheme scheme) {
   PetscFunctionBeginUser;
   PetscCall(FolderWriteText(folder, "resolved.opts", Print, scheme));
   PetscFunctionReturn(PETSC_SUCCESS);

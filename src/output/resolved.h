@@ -4,4 +4,4 @@
 #include "scheme/scheme.h"
 
 /* ResolvedWrite - collective; stops with one line when it cannot be written. */
-PETSC_EXTERN PetscErrorCode ResolvedWrite(const Folder *folder, Scheme scheme);
+PETSC_EXTERN PetscErrorCode ResolvedWrite(Folder *folder, Scheme scheme);

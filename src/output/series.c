@@ -5,7 +5,7 @@
 #define NAME "series.csv"
 #define TEMPORARY "series.csv.tmp"
 
-PetscErrorCode SeriesPrepare(Series *s, const Folder *folder, const char header[], const char row[]) {
+PetscErrorCode SeriesPrepare(Series *s, Folder *folder, const char header[], const char row[]) {
   char path[PETSC_MAX_PATH_LEN], temporary[PETSC_MAX_PATH_LEN];
   PetscBool written = PETSC_TRUE;
   PetscFunctionBeginUser;
@@ -48,7 +48,7 @@ static const char *CopyRows(const char path[], const char temporary[], const cha
   return wrong ? wrong : "";
 }
 
-PetscErrorCode SeriesCut(Series *s, const Folder *folder, const char header[], PetscInt step, const char restart[]) {
+PetscErrorCode SeriesCut(Series *s, Folder *folder, const char header[], PetscInt step, const char restart[]) {
   char path[PETSC_MAX_PATH_LEN], temporary[PETSC_MAX_PATH_LEN], wrong[64] = "";
   PetscFunctionBeginUser;
   s->folder = folder;
@@ -80,10 +80,11 @@ PetscErrorCode SeriesWrite(Series *s, const char row[]) {
 
 PetscErrorCode SeriesFlush(Series *s, PetscBool sync) {
   char path[PETSC_MAX_PATH_LEN];
+  PetscBool good = PETSC_TRUE;
   PetscFunctionBeginUser;
   PetscCall(FolderPath(s->folder, NAME, path));
-  if (s->file && (fflush(s->file) || ferror(s->file) || (sync && fsync(fileno(s->file))))) s->failed = PETSC_TRUE;
-  PetscCall(FolderCheck(s->folder, !s->failed, path));
+  if (s->file) good = !fflush(s->file) && !ferror(s->file) && !(sync && fsync(fileno(s->file)));
+  PetscCall(FolderCheck(s->folder, good, path));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -91,7 +92,6 @@ PetscErrorCode SeriesClose(Series *s, PetscBool *good) {
   FILE *file = s->file;
   PetscFunctionBeginUser;
   s->file = NULL; /* also when closing it fails: it is gone then */
-  *good = PETSC_TRUE;
-  if (file) *good = !fclose(file) || s->failed ? PETSC_TRUE : PETSC_FALSE;
+  *good = !file || !fclose(file) ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

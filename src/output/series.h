@@ -3,16 +3,15 @@
 #include "output/folder.h"
 
 typedef struct {
-  const Folder *folder; /* borrowed */
-  FILE *file;           /* rank 0, when open */
-  PetscBool failed;     /* a write has failed, and was reported */
+  Folder *folder; /* borrowed */
+  FILE *file;     /* rank 0, when open */
 } Series;
 
 /* SeriesPrepare - the new series.csv under a temporary name: the header and, unless it is "", a first row. SeriesCut -
    the one that is there, up to the row of `step`, under a temporary name; stops with one line that names `restart` when
    it has other columns or lacks the row. Collective. */
-PETSC_EXTERN PetscErrorCode SeriesPrepare(Series *series, const Folder *folder, const char header[], const char row[]);
-PETSC_EXTERN PetscErrorCode SeriesCut(Series *series, const Folder *folder, const char header[], PetscInt step,
+PETSC_EXTERN PetscErrorCode SeriesPrepare(Series *series, Folder *folder, const char header[], const char row[]);
+PETSC_EXTERN PetscErrorCode SeriesCut(Series *series, Folder *folder, const char header[], PetscInt step,
                                       const char restart[]);
 
 /* SeriesOpen - the prepared file takes its name and is open for further rows. Collective. */
@@ -23,5 +22,5 @@ PETSC_EXTERN PetscErrorCode SeriesOpen(Series *series);
 PETSC_EXTERN PetscErrorCode SeriesWrite(Series *series, const char row[]);
 PETSC_EXTERN PetscErrorCode SeriesFlush(Series *series, PetscBool sync);
 
-/* SeriesClose - close the file; good: all of it was written, or it is known that it was not. Counts on rank 0. */
+/* SeriesClose - close the file; good: all of it was written. Rank 0 closes, and good is TRUE elsewhere. */
 PETSC_EXTERN PetscErrorCode SeriesClose(Series *series, PetscBool *good);

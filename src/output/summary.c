@@ -86,7 +86,7 @@ static PetscErrorCode Print(FILE *f, const void *what) {
   return PETSC_SUCCESS;
 }
 
-PetscErrorCode SummaryWrite(const Folder *folder, Scheme scheme, const Record *record, PetscReal seconds,
+PetscErrorCode SummaryWrite(Folder *folder, Scheme scheme, const Record *record, PetscReal seconds,
                             const char reason[]) {
   Summary summary = {scheme, record, reason, seconds, 1};
   PetscFunctionBeginUser;

@@ -5,5 +5,5 @@
 
 /* SummaryWrite - seconds: wall time of the run; reason: why it ended ("finished", "steady", "stopped", or the failure).
    Collective; stops with one line when it cannot be written. */
-PETSC_EXTERN PetscErrorCode SummaryWrite(const Folder *folder, Scheme scheme, const Record *record, PetscReal seconds,
+PETSC_EXTERN PetscErrorCode SummaryWrite(Folder *folder, Scheme scheme, const Record *record, PetscReal seconds,
                                          const char reason[]);

@@ -92,13 +92,12 @@ static PetscErrorCode PrintDocument(FILE *f, const void *what) {
   return PETSC_SUCCESS;
 }
 
-PetscErrorCode XdmfCreate(Xdmf *x, const Folder *folder, Scheme scheme) {
+PetscErrorCode XdmfCreate(Xdmf *x, Folder *folder, Scheme scheme) {
   PetscFunctionBeginUser;
   x->folder = folder;
   x->scheme = scheme;
   x->file = -1;
   x->frames = 0;
-  x->failed = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -109,8 +108,7 @@ PetscErrorCode XdmfGoOn(Xdmf *x, PetscInt frames, const PetscReal times[]) {
   PetscCall(FolderWriteText(x->folder, "run.xmf", PrintDocument, &document));
   PetscCall(FolderPath(x->folder, "run.xmf", path));
   if (!x->folder->rank) x->file = open(path, O_WRONLY);
-  x->failed = !x->folder->rank && x->file < 0 ? PETSC_TRUE : PETSC_FALSE;
-  PetscCall(FolderCheck(x->folder, !x->failed, path));
+  PetscCall(FolderCheck(x->folder, x->file >= 0, path));
   x->frames = frames;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -163,8 +161,7 @@ PetscErrorCode XdmfWrite(Xdmf *x, PetscInt frame, PetscReal time) {
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(FolderPath(x->folder, "run.xmf", path));
-  if (!x->folder->rank) x->failed = !Append(x, frame, time);
-  PetscCall(FolderCheck(x->folder, !x->failed, path));
+  PetscCall(FolderCheck(x->folder, x->folder->rank || Append(x, frame, time), path));
   x->frames = frame + 1;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -172,8 +169,7 @@ PetscErrorCode XdmfWrite(Xdmf *x, PetscInt frame, PetscReal time) {
 PetscErrorCode XdmfClose(Xdmf *x, PetscBool *good) {
   const int file = x->file;
   PetscFunctionBeginUser;
-  *good = PETSC_TRUE;
-  if (x->folder && !x->folder->rank && file >= 0) *good = !close(file) || x->failed ? PETSC_TRUE : PETSC_FALSE;
+  *good = !x->folder || file < 0 || !close(file) ? PETSC_TRUE : PETSC_FALSE;
   x->file = -1;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

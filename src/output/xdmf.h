@@ -7,22 +7,21 @@
 #include <sys/types.h>
 
 typedef struct {
-  const Folder *folder; /* borrowed */
-  Scheme scheme;        /* borrowed */
-  int file;             /* rank 0, when open; else -1 */
-  PetscInt frames;      /* in the document */
-  off_t last, end;      /* where the last frame begins, and where it ends: there the closing tags begin */
-  PetscBool failed;     /* a write has failed, and was reported */
+  Folder *folder;  /* borrowed */
+  Scheme scheme;   /* borrowed */
+  int file;        /* rank 0, when open; else -1 */
+  PetscInt frames; /* in the document */
+  off_t last, end; /* where the last frame begins, and where it ends: there the closing tags begin */
 } Xdmf;
 
 /* XdmfCreate - nothing is written yet: a document begins with its first frame. XdmfGoOn - the document anew, of the
    frames that a run goes on after. Collective; stops with one line when it cannot be written. */
-PETSC_EXTERN PetscErrorCode XdmfCreate(Xdmf *xdmf, const Folder *folder, Scheme scheme);
+PETSC_EXTERN PetscErrorCode XdmfCreate(Xdmf *xdmf, Folder *folder, Scheme scheme);
 PETSC_EXTERN PetscErrorCode XdmfGoOn(Xdmf *xdmf, PetscInt frames, const PetscReal times[]);
 
 /* XdmfWrite - frame number `frame`, which run.h5 has already: a further one, or the last one anew. Collective; stops
    with one line when it cannot be written, and leaves the document as it was. */
 PETSC_EXTERN PetscErrorCode XdmfWrite(Xdmf *xdmf, PetscInt frame, PetscReal time);
 
-/* XdmfClose - close the file; good: all of it was written, or it is known that it was not. Counts on rank 0. */
+/* XdmfClose - close the file; good: all of it was written. Rank 0 closes, and good is TRUE elsewhere. */
 PETSC_EXTERN PetscErrorCode XdmfClose(Xdmf *xdmf, PetscBool *good);
