@@ -1,5 +1,6 @@
 /* Questions about a simulation, and calls from programs that handle errors themselves (Python). */
 #include "simulation.h"
+#include "output/cells.h"
 #include <stdlib.h>
 #include <unistd.h>
 
@@ -86,12 +87,12 @@ PetscErrorCode SimulationGetColumn(Simulation s, PetscInt i, const char **name) 
 }
 
 PetscErrorCode SimulationGetRow(Simulation s, PetscInt vesicle, PetscReal row[]) {
-  const Output o = s->output;
+  const Record *record = &s->output->record;
   PetscFunctionBeginUser;
   PetscCheck(vesicle >= -1 && vesicle < s->layout->bodies, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "vesicle %" PetscInt_FMT ": out of range; allowed: 0 to %" PetscInt_FMT, vesicle,
              s->layout->bodies - 1);
-  PetscCall(PetscArraycpy(row, vesicle < 0 ? o->last : o->each + vesicle * COLUMN_COUNT, COLUMN_COUNT));
+  PetscCall(PetscArraycpy(row, vesicle < 0 ? record->last : record->each + vesicle * COLUMN_COUNT, COLUMN_COUNT));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -99,8 +100,8 @@ PetscErrorCode SimulationGetCellVelocity(Simulation s, PetscReal u[], PetscReal 
   const PetscScalar *w;
   PetscFunctionBeginUser;
   PetscCall(VecGetArrayRead(s->scheme->state.w, &w));
-  PetscCall(OutputVelocityAtCells(s->output, 0, w, u));
-  PetscCall(OutputVelocityAtCells(s->output, 1, w, v));
+  PetscCall(CellVelocity(s->scheme, 0, w, u));
+  PetscCall(CellVelocity(s->scheme, 1, w, v));
   PetscCall(VecRestoreArrayRead(s->scheme->state.w, &w));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -119,7 +120,7 @@ PetscErrorCode SimulationCheckpoint(Simulation s) {
 
 PetscErrorCode SimulationSetQuiet(Simulation s, PetscBool quiet) {
   PetscFunctionBeginUser;
-  s->output->quiet = quiet;
+  s->output->progress.quiet = quiet;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -4,13 +4,16 @@
 
 static PetscErrorCode Run(PetscBool *good) {
   Simulation simulation = NULL;
+  PetscErrorCode error = PETSC_SUCCESS;
   PetscBool only_help;
   PetscFunctionBeginUser;
   PetscCall(PetvesCatchSignals());
   PetscCall(PetscOptionsHasHelp(NULL, &only_help));
   PetscCall(SimulationCreate(PETSC_COMM_WORLD, &simulation));
-  if (!only_help) PetscCall(SimulationRun(simulation, good));
-  PetscCall(SimulationDestroy(&simulation));
+  if (!only_help) error = SimulationRun(simulation, good);
+  /* a mistake or a file that cannot be written stops every rank; any other error may be one rank's, and others wait */
+  if (!error || error == PETSC_ERR_USER_INPUT) PetscCall(SimulationDestroy(&simulation));
+  PetscCall(error);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -99,16 +99,19 @@ PetscErrorCode SimulationCreateWithFlow(MPI_Comm comm, PetvesFlow flow, void *ct
 
 PetscErrorCode SimulationDestroy(Simulation *simulation) {
   Simulation s = *simulation;
+  PetscErrorCode error;
   PetscFunctionBeginUser;
   if (!s) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(OutputDestroy(&s->output));
+  *simulation = NULL;                /* it is gone also when a file cannot be closed, */
+  error = OutputDestroy(&s->output); /* which is reported last */
   PetscCall(SchemeDestroy(&s->scheme));
   PetscCall(CouplingDestroy(&s->coupling));
   PetscCall(MembraneDestroy(&s->membrane));
   PetscCall(LayoutDestroy(&s->layout));
   PetscCall(FluidDestroy(&s->fluid));
   PetscCall(SceneDestroy(&s->scene));
-  PetscCall(PetscFree(*simulation));
+  PetscCall(PetscFree(s));
+  PetscCall(error);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -116,20 +119,6 @@ PetscErrorCode SimulationView(Simulation s, PetscViewer viewer) {
   PetscFunctionBeginUser;
   PetscCall(SceneView(s->scene, viewer));
   PetscCall(SchemeView(s->scheme, viewer));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Files that are due after a good step. */
-static PetscErrorCode WriteDue(Simulation s) {
-  const State *q = &s->scheme->state;
-  const PetscInt every = s->scene->output.checkpoint_every;
-  PetscFunctionBeginUser;
-  if (q->t >= s->next_output - 1e-9 * q->dt) {
-    PetscCall(OutputFields(s->output, PETSC_TRUE));
-    s->next_output = OutputNextTime(s->output);
-  }
-  if (every && q->step % every == 0) PetscCall(OutputCheckpoint(s->output));
-  PetscCall(OutputProgress(s->output, PETSC_FALSE));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -148,35 +137,26 @@ static PetscErrorCode IsSteady(Simulation s, PetscBool *steady) {
 /* One step, of at most `most` where step sizes are judged, its row of series.csv and the files that are due. */
 static PetscErrorCode TakeStep(Simulation s, PetscReal most, const char **failure) {
   const StepReport *report = &s->scheme->report;
-  Output o = s->output;
   PetscLogDouble start, end;
   PetscFunctionBeginUser;
   PetscCall(SimulationBegin(s));
   PetscCall(PetscTime(&start));
-  o->frames = PetscMin(o->frames, o->scheduled); /* an end that was not the end */
   PetscCall(SchemeStep(s->scheme, most));
   *failure = *report->failure ? report->failure : NULL;
   if (*failure) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(OutputSeries(s->output));
-  PetscCall(WriteDue(s));
+  PetscCall(OutputStep(s->output));
   PetscCall(IsSteady(s, &s->steady));
   PetscCall(PetscTime(&end));
   s->longest_step = PetscMax(s->longest_step, end - start);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The first row and frame; those of a checkpoint are there already, or (in a new folder) its row is. */
 PetscErrorCode SimulationBegin(Simulation s) {
   PetscFunctionBeginUser;
   if (s->begun) PetscFunctionReturn(PETSC_SUCCESS);
   s->begun = PETSC_TRUE;
   s->reason = "finished";
-  if (!*s->scene->output.restart)
-    PetscCall(OutputSeries(s->output));
-  else /* the checkpoint's row is there already */
-    PetscCall(OutputMeasureVesicles(s->output));
-  if (!s->output->go_on) PetscCall(OutputFields(s->output, PETSC_TRUE));
-  s->next_output = OutputNextTime(s->output);
+  PetscCall(OutputBegin(s->output));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -200,7 +180,7 @@ PetscErrorCode SimulationAdvance(Simulation s, PetscReal until, PetscBool *stepp
                           1 + 1.5 * (s->longest_step + s->output->checkpoint_seconds), &why));
   if (why) {
     s->reason = "stopped";
-    if (!s->output->quiet)
+    if (!s->output->progress.quiet)
       PetscCall(PetscPrintf(s->scene->comm, "petves: stopping after step %" PetscInt_FMT ": %s\n", q->step, why));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
@@ -212,12 +192,7 @@ PetscErrorCode SimulationAdvance(Simulation s, PetscReal until, PetscBool *stepp
 PetscErrorCode SimulationEnd(Simulation s, const char *failure) {
   PetscFunctionBeginUser;
   PetscCall(SimulationBegin(s));
-  if (s->scheme->state.t > s->output->times[s->output->frames - 1])
-    PetscCall(OutputFields(s->output, PETSC_FALSE)); /* the end state, when no saved time fell on it */
-  PetscCall(OutputCheckpoint(s->output));
-  PetscCall(OutputSummary(s->output, failure ? failure : s->reason));
-  PetscCall(OutputProgress(s->output, PETSC_TRUE));
-  PetscCall(OutputFinalTable(s->output, failure ? "stopped" : s->reason));
+  PetscCall(OutputEnd(s->output, s->reason, failure));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -230,6 +205,6 @@ PetscErrorCode SimulationRun(Simulation s, PetscBool *good) {
   PetscCall(SimulationEnd(s, failure));
   *good = failure ? PETSC_FALSE : PETSC_TRUE;
   if (failure && !s->fluid->grid->rank)
-    fprintf(stderr, "petves: error: %s; the last good state is in %s/checkpoint.h5\n", failure, s->output->folder);
+    fprintf(stderr, "petves: error: %s; the last good state is in %s/checkpoint.h5\n", failure, s->output->folder.path);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -10,9 +10,8 @@ struct _p_Simulation {
   Coupling coupling;
   Scheme scheme;
   Output output;
-  PetscReal next_output;
-  PetscBool begun;  /* the initial state has been written */
-  PetscBool steady; /* after the last step */
+  PetscBool begun;        /* the initial state has been written */
+  PetscBool steady;       /* after the last step */
   PetscReal longest_step; /* wall seconds, with its output */
-  const char *reason; /* why SimulationAdvance did not step */
+  const char *reason;     /* why SimulationAdvance did not step */
 };

@@ -297,14 +297,16 @@ class Simulation(Measures):
             self._free()
 
     def _free(self) -> None:
-        if self._handle:
-            self._call("SimulationDestroy", ctypes.byref(self._handle))
+        try:
+            if self._handle:
+                self._call("SimulationDestroy", ctypes.byref(self._handle))
+        finally:
             self._handle = Handle()
-        if self._options:
-            self._lib.PetscOptionsDestroy(ctypes.byref(self._options))
-        if self._temporary and self._comm.getRank() == 0:
-            shutil.rmtree(self._temporary_folder, ignore_errors=True)
-        _alive.pop(id(self), None)
+            if self._options:
+                self._lib.PetscOptionsDestroy(ctypes.byref(self._options))
+            if self._temporary and self._comm.getRank() == 0:
+                shutil.rmtree(self._temporary_folder, ignore_errors=True)
+            _alive.pop(id(self), None)
 
     def __enter__(self) -> Simulation:
         return self

@@ -1,5 +1,6 @@
 #define _GNU_SOURCE /* memfd_create */
 #include "output/h5.h"
+#include "output/h5place.h"
 #include <sys/mman.h>
 #include <unistd.h>
 
@@ -25,6 +26,7 @@ static PetscErrorCode Start(MPI_Comm comm, const char path[], H5File *f) {
 static hid_t Access(void) {
   const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
   (void)H5Pset_cache(access, 0, 0, 0, 0);
+  H5PlaceDriver(access);
   return access;
 }
 
@@ -80,16 +82,6 @@ PetscErrorCode H5FileFailed(const H5File *f, PetscBool *failed) {
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Bcast(&bad, 1, MPI_INT, 0, f->comm));
   *failed = bad ? PETSC_TRUE : PETSC_FALSE;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode H5FileCheck(H5File *f) {
-  PetscBool failed;
-  PetscFunctionBeginUser;
-  PetscCall(H5FileFailed(f, &failed));
-  if (failed) PetscCall(H5FileClose(f));
-  PetscCheck(!failed, f->comm, PETSC_ERR_USER_INPUT,
-             "%s: cannot be written; allowed: a folder with space that can be written", f->path);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -169,6 +161,43 @@ PetscErrorCode H5GetString(H5File *f, const char name[], size_t length, char val
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Characters in one attribute of a text: HDF5 allows 64 KiB. The pieces are name, name_1, name_2 and so on. */
+#define PIECE 32000
+
+static PetscErrorCode PieceName(const char name[], int k, char piece[64]) {
+  PetscFunctionBeginUser;
+  PetscCall(k ? PetscSNPrintf(piece, 64, "%s_%d", name, k) : PetscStrncpy(piece, name, 64));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode H5PutText(H5File *f, const char name[], const char value[]) {
+  const size_t length = strlen(value);
+  char part[PIECE + 1], piece[64];
+  PetscFunctionBeginUser;
+  for (int k = 0; !k || (size_t)k * PIECE < length; k++) {
+    PetscCall(PieceName(name, k, piece));
+    PetscCall(PetscStrncpy(part, value + (size_t)k * PIECE, sizeof(part)));
+    PetscCall(H5PutString(f, piece, part));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode H5GetText(H5File *f, const char name[], char **value) {
+  char part[PIECE + 1], piece[64];
+  size_t length = 0;
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(1, value));
+  for (int k = 0; length == (size_t)k * PIECE; k++) {
+    PetscCall(PieceName(name, k, piece));
+    PetscCall(H5GetString(f, piece, sizeof(part), part));
+    PetscCall(PetscRealloc(length + strlen(part) + 1, value));
+    PetscCall(PetscStrncpy(*value + length, part, strlen(part) + 1));
+    length += strlen(part);
+    if (!*part) break;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode H5CreateSeries(H5File *f, const char name[], int ndims, const PetscInt dims[]) {
   hsize_t size[3] = {0, 1, 1}, limit[3] = {H5S_UNLIMITED, 1, 1}, chunk[3] = {1, 1, 1};
   hid_t space, create, link, set = -1;
@@ -229,14 +258,13 @@ PetscErrorCode H5TruncateSeries(H5File *f, const char name[], PetscInt length) {
 }
 
 unsigned long long H5FramePlace(H5File *f, const char name[], PetscInt index) {
-  hsize_t size[3], start[3] = {(hsize_t)index, 0, 0}, bytes = 0;
-  haddr_t place = HADDR_UNDEF;
-  unsigned filters;
-  int ndims;
+  hsize_t size[3], start[3] = {(hsize_t)index, 0, 0};
+  haddr_t place;
+  int ndims = 1;
   if (f->failed) return 0;
   const hid_t set = OpenSeries(f, name, &ndims, size);
   if (set < 0) return 0;
-  Try(f, H5Dget_chunk_info_by_coord(set, start, &filters, &place, &bytes));
+  place = H5PlaceOf(set, ndims, start);
   Try(f, place == HADDR_UNDEF ? -1 : 0);
   Try(f, H5Dclose(set));
   return f->failed ? 0 : (unsigned long long)place;

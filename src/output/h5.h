@@ -1,7 +1,7 @@
 /* Small layer over HDF5: rank 0 owns every file, the others send it their rows. So a full disk or a broken file is one
    rank's to find, and no rank waits for another that has failed.
 
-   An error is kept in the file's `failed` and makes every later call on it do nothing: H5FileCheck tells all ranks. */
+   An error is kept in the file's `failed` and makes every later call on it do nothing: H5FileFailed tells all ranks. */
 #pragma once
 #include "fluid/grid.h"
 #include <hdf5.h>
@@ -22,10 +22,8 @@ PETSC_EXTERN PetscErrorCode H5FileOpen(MPI_Comm comm, const char path[], PetscBo
 PETSC_EXTERN PetscErrorCode H5FileFlush(H5File *file);
 PETSC_EXTERN PetscErrorCode H5FileClose(H5File *file);
 
-/* H5FileFailed - whether any call so far has failed; the same on every rank. H5FileCheck - close the
-   file and stop with one line that it cannot be written. Collective. */
+/* H5FileFailed - whether any call so far has failed; the same on every rank. Collective. */
 PETSC_EXTERN PetscErrorCode H5FileFailed(const H5File *file, PetscBool *failed);
-PETSC_EXTERN PetscErrorCode H5FileCheck(H5File *file);
 
 /* Attributes of the root group: rank 0's values are written; what is read goes to every rank. A string that is not
    there is left empty. Reading is collective. */
@@ -35,6 +33,11 @@ PETSC_EXTERN PetscErrorCode H5PutString(H5File *file, const char name[], const c
 PETSC_EXTERN PetscErrorCode H5GetReals(H5File *file, const char name[], PetscInt n, PetscReal values[]);
 PETSC_EXTERN PetscErrorCode H5GetInts(H5File *file, const char name[], PetscInt n, PetscInt values[]);
 PETSC_EXTERN PetscErrorCode H5GetString(H5File *file, const char name[], size_t length, char value[]);
+
+/* H5PutText, H5GetText - a string of any length, in several attributes where it is longer than one may be. What is read
+   is to be freed with PetscFree; empty when it is not there. Reading is collective. */
+PETSC_EXTERN PetscErrorCode H5PutText(H5File *file, const char name[], const char value[]);
+PETSC_EXTERN PetscErrorCode H5GetText(H5File *file, const char name[], char **value);
 
 /* H5CreateSeries - dataset [0.., dims...] that grows along its first index; ndims <= 2 further ones. */
 PETSC_EXTERN PetscErrorCode H5CreateSeries(H5File *file, const char name[], int ndims, const PetscInt dims[]);

@@ -1,34 +1,38 @@
-/* -restart: a checkpoint checked, compared with the scene, and read into the scheme. */
-#include "output/output.h"
+#include "output/gathered.h"
+#include "output/restart.h"
+#include "output/checksum.h"
+#include "output/h5.h"
 #include <errno.h>
+#include <stdlib.h>
 #include <unistd.h>
 
-static PetscErrorCode CheckFormat(Output o) {
+static PetscErrorCode CheckFormat(Scene scene) {
   H5File file;
   PetscInt format = 0;
   PetscBool failed;
   PetscFunctionBeginUser;
-  PetscCall(H5FileOpen(o->comm, o->scene->output.restart, PETSC_FALSE, &file));
+  PetscCall(H5FileOpen(scene->comm, scene->output.restart, PETSC_FALSE, &file));
   PetscCall(H5GetInts(&file, "format", 1, &format));
   PetscCall(H5FileFailed(&file, &failed));
   PetscCall(H5FileClose(&file));
-  PetscCheck(failed || format == CHECKPOINT_FORMAT, o->comm, PETSC_ERR_USER_INPUT,
-             "-restart %s: its format is %" PetscInt_FMT "; allowed: %d, which petves %s writes",
-             o->scene->output.restart, format, CHECKPOINT_FORMAT, PETVES_VERSION);
+  PetvesCheck(failed || format == CHECKPOINT_FORMAT, scene->comm,
+              "-restart %s: its format is %" PetscInt_FMT "; allowed: %d, which petves %s writes", scene->output.restart,
+              format, CHECKPOINT_FORMAT, PETVES_VERSION);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* What is wrong with the file as such, found on rank 0 and told to all. The checksum covers every byte, so that HDF5
    reads what it wrote. Without one the file may be of a format that has none, or has it elsewhere. */
-static PetscErrorCode CheckFile(Output o) {
-  const char *path = o->scene->output.restart;
+static PetscErrorCode CheckFile(Scene scene) {
+  const char *path = scene->output.restart;
   char message[PETVES_MAX_MESSAGE] = "", tail[CHECKPOINT_TAIL_LENGTH + 1] = "";
   unsigned crc = 0, stored = 0;
-  PetscMPIInt sealed = 1;
+  PetscMPIInt rank, sealed = 1;
   PetscFunctionBeginUser;
-  if (!o->rank && access(path, R_OK))
+  PetscCallMPI(MPI_Comm_rank(scene->comm, &rank));
+  if (!rank && access(path, R_OK))
     PetscCall(PetscSNPrintf(message, sizeof(message), "cannot be opened (%s)", strerror(errno)));
-  else if (!o->rank) {
+  else if (!rank) {
     const PetscBool read = ChecksumOfFile(path, CHECKPOINT_TAIL_LENGTH, &crc, tail);
     sealed = read && sscanf(tail, CHECKPOINT_TAIL, &stored) == 1;
     if (!sealed)
@@ -38,165 +42,181 @@ static PetscErrorCode CheckFile(Output o) {
       PetscCall(
           PetscSNPrintf(message, sizeof(message), "damaged: its checksum is %08x, its bytes have %08x", stored, crc));
   }
-  PetscCallMPI(MPI_Bcast(&sealed, 1, MPI_INT, 0, o->comm));
-  PetscCallMPI(MPI_Bcast(message, sizeof(message), MPI_CHAR, 0, o->comm));
-  if (!sealed || !*message) PetscCall(CheckFormat(o));
-  PetscCheck(!*message, o->comm, PETSC_ERR_USER_INPUT,
-             "-restart %s: %s; allowed: a checkpoint.h5 of petves, or the one before it, checkpoint_1.h5", path,
-             message);
+  PetscCallMPI(MPI_Bcast(&sealed, 1, MPI_INT, 0, scene->comm));
+  PetscCallMPI(MPI_Bcast(message, sizeof(message), MPI_CHAR, 0, scene->comm));
+  if (!sealed || !*message) PetscCall(CheckFormat(scene));
+  PetvesCheck(!*message, scene->comm,
+              "-restart %s: %s; allowed: a checkpoint.h5 of petves, or the one before it, checkpoint_1.h5", path,
+              message);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode CompareOptions(Output o, H5File *file) {
+static PetscErrorCode CompareOptions(Scene scene, H5File *file) {
   char here[PETSC_MAX_PATH_LEN], there[PETSC_MAX_PATH_LEN];
   PetscFunctionBeginUser;
   for (PetscInt i = 0; SceneOptionName(i); i++) {
     const char *name = SceneOptionName(i);
     if (SceneOptionMayChange(name)) continue;
-    PetscCall(SceneOptionValue(o->scene, i, here, sizeof(here)));
+    PetscCall(SceneOptionValue(scene, i, here, sizeof(here)));
     PetscCall(H5GetString(file, name, sizeof(there), there));
-    PetscCheck(!*there || !strcmp(here, there), o->comm, PETSC_ERR_USER_INPUT,
-               "%s %s: the checkpoint of -restart %s has %s; allowed: the same value", name, here,
-               o->scene->output.restart, there);
+    PetvesCheck(!*there || !strcmp(here, there), scene->comm,
+                "%s %s: the checkpoint of -restart %s has %s; allowed: the same value", name, here, scene->output.restart,
+                there);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Vesicles from a curve file that has changed since would have the same options. */
-static PetscErrorCode CompareVesicles(Output o, H5File *file) {
-  const Membrane m = o->scheme->membrane;
-  PetscInt vesicles = 0, *start;
-  PetscReal *length;
+static PetscErrorCode CompareVesicles(Scheme s, H5File *file) {
+  const Membrane m = s->membrane;
+  const Layout l = m->layout;
+  PetscInt vesicles = 0, *start, bad = 0, n, have;
+  PetscReal *length, there;
   PetscFunctionBeginUser;
-  if (!m->vesicles) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!l->bodies) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(H5GetInts(file, "vesicles", 1, &vesicles));
-  PetscCheck(vesicles == m->vesicles, o->comm, PETSC_ERR_USER_INPUT,
-             "-vesicle_file %s: %" PetscInt_FMT " curves, the checkpoint of -restart %s has %" PetscInt_FMT
-             " vesicles; allowed: the same curves",
-             o->scene->vesicles.file, m->vesicles, o->scene->output.restart, vesicles);
+  PetvesCheck(vesicles == l->bodies, s->scene->comm,
+              "-vesicle_file %s: %" PetscInt_FMT " curves, the checkpoint of -restart %s has %" PetscInt_FMT
+              " vesicles; allowed: the same curves",
+              s->scene->vesicles.file, l->bodies, s->scene->output.restart, vesicles);
   PetscCall(PetscCalloc2(vesicles + 1, &start, vesicles, &length));
   PetscCall(H5GetInts(file, "vesicle_start", vesicles + 1, start));
   PetscCall(H5GetReals(file, "vesicle_length", vesicles, length));
-  for (PetscInt v = 0; v < vesicles; v++) {
-    const PetscInt n = start[v + 1] - start[v], have = m->start[v + 1] - m->start[v];
-    PetscCheck(n == have && PetscAbsReal(length[v] / m->L0[v] - 1) < 1e-10, o->comm, PETSC_ERR_USER_INPUT,
-               "vesicle %" PetscInt_FMT " has %" PetscInt_FMT " markers and the length %.12g, the checkpoint of "
-               "-restart %s %" PetscInt_FMT " and %.12g; allowed: the same vesicles",
-               v + 1, have, (double)m->L0[v], o->scene->output.restart, n, (double)length[v]);
-  }
+  for (; bad < vesicles; bad++)
+    if (start[bad + 1] - start[bad] != LayoutCount(l, bad) ||
+        !(PetscAbsReal(length[bad] / m->L0[bad] - 1) < 1e-10))
+      break;
+  PetscCallMPI(MPI_Bcast(&bad, 1, MPIU_INT, 0, s->scene->comm)); /* rank 0 decides */
+  const PetscInt v = PetscMin(bad, vesicles - 1);
+  n = start[v + 1] - start[v];
+  have = LayoutCount(l, v);
+  there = length[v];
   PetscCall(PetscFree2(start, length));
+  PetvesCheck(bad == vesicles, s->scene->comm,
+              "vesicle %" PetscInt_FMT " has %" PetscInt_FMT " markers and the length %.12g, the checkpoint of "
+              "-restart %s %" PetscInt_FMT " and %.12g; allowed: the same vesicles",
+              v + 1, have, (double)m->L0[v], s->scene->output.restart, n, (double)there);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Wall forces are a guess that the next step starts from. Other back ends may have none, or others: zero then. */
-static PetscErrorCode ReadWalls(H5File *file, const char prefix[], Vec walls) {
-  PetscInt n, there = 0;
-  PetscScalar *x;
+static PetscErrorCode ReadFluid(Scheme s, H5File *file, const char prefix[], State *q) {
+  static const char *const names[3] = {"u", "v", "p"};
+  const Grid g = s->fluid->grid;
   char name[64];
-  PetscFunctionBeginUser;
-  if (!walls) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(VecGetSize(walls, &n));
-  PetscCall(H5GetInts(file, "walls", 1, &there));
-  if (!n || n != there) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscSNPrintf(name, sizeof(name), "%s/fluid/walls", prefix));
-  PetscCall(VecGetArray(walls, &x));
-  PetscCall(H5ReadArray(file, name, 0, n, x));
-  PetscCall(VecRestoreArray(walls, &x));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode ReadVectors(Output o, H5File *file, const char prefix[], State *q) {
-  static const char *const fluid[3] = {"u", "v", "p"}, *const vesicle[3] = {"markers", "velocity", "tension"};
-  const Grid g = o->scheme->fluid->grid;
-  const PetscInt M = o->scheme->membrane->M;
-  const Vec marker[3] = {q->X, q->U, q->sigma};
-  char name[64];
-  PetscScalar *a[3], *x;
+  PetscScalar *a[3];
   PetscFunctionBeginUser;
   PetscCall(VecGetArray(q->w, &a[0]));
   a[1] = a[0] + GridLocalU(g);
   PetscCall(VecGetArray(q->p, &a[2]));
   for (int f = 0; f < 3; f++) {
-    PetscCall(PetscSNPrintf(name, sizeof(name), "%s/fluid/%s", prefix, fluid[f]));
+    PetscCall(PetscSNPrintf(name, sizeof(name), "%s/fluid/%s", prefix, names[f]));
     PetscCall(H5ReadField(file, name, 0, g, (Field)f, a[f]));
   }
   PetscCall(VecRestoreArray(q->p, &a[2]));
   PetscCall(VecRestoreArray(q->w, &a[0]));
-  for (int k = 0; k < 3 && M; k++) {
-    PetscCall(PetscSNPrintf(name, sizeof(name), "%s/vesicle/%s", prefix, vesicle[k]));
-    PetscCall(VecGetArray(marker[k], &x));
-    PetscCall(H5ReadArray(file, name, 0, k < 2 ? 2 * M : M, x));
-    PetscCall(VecRestoreArray(marker[k], &x));
-  }
-  PetscCall(ReadWalls(file, prefix, q->walls));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ReadOnly(H5File *file, const char prefix[], const char name[], PetscInt n, PetscReal values[]) {
+  char path[64];
+  PetscFunctionBeginUser;
+  if (!n) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscSNPrintf(path, sizeof(path), "%s/%s", prefix, name));
+  PetscCall(H5ReadArray(file, path, 0, n, values));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The vectors of one state. Wall forces are a guess that the next step starts from: other back ends may have none, or
+   others, and then they stay zero. */
+static PetscErrorCode ReadVectors(Scheme s, H5File *file, const char prefix[], State *q) {
+  PetscInt walls = 0;
+  Gathered there;
+  PetscFunctionBeginUser;
+  PetscCall(ReadFluid(s, file, prefix, q));
+  PetscCall(GatheredCreate(q, &there));
+  PetscCall(ReadOnly(file, prefix, "vesicle/markers", 2 * there.M, there.markers));
+  PetscCall(ReadOnly(file, prefix, "vesicle/velocity", 2 * there.M, there.velocity));
+  PetscCall(ReadOnly(file, prefix, "vesicle/tension", there.M, there.tension));
+  PetscCall(H5GetInts(file, "walls", 1, &walls));
+  if (walls == there.walls) PetscCall(ReadOnly(file, prefix, "fluid/walls", walls, there.wall_force));
+  PetscCall(ScatterState(&there, q));
+  PetscCall(GatheredDestroy(&there));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* The level of step-size control counts from -time_step, which may have changed. */
-static PetscErrorCode ReadLevel(Output o, H5File *file) {
+static PetscErrorCode ReadLevel(Scheme s, H5File *file) {
   PetscInt level = 0;
   char base[64];
   PetscFunctionBeginUser;
   PetscCall(H5GetInts(file, "step_level", 1, &level));
   PetscCall(H5GetString(file, "-time_step", sizeof(base), base));
-  if (*base)
-    level += (PetscInt)PetscFloorReal(2 * PetscLog2Real((PetscReal)strtod(base, NULL) / o->scene->time.dt) + 1e-9);
-  if (o->scheme->level) *o->scheme->level = level;
+  if (*base) level += (PetscInt)PetscFloorReal(2 * PetscLog2Real((PetscReal)strtod(base, NULL) / s->scene->time.dt) + 1e-9);
+  if (s->policy.adaptive) s->plan.level = level;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The last row of series.csv, as text and as numbers. */
-static PetscErrorCode ReadRow(Output o, H5File *file) {
-  const char *p;
+/* The last row and the totals. */
+static PetscErrorCode ReadRecord(H5File *file, Record *record) {
+  PetscInt totals[4] = {0};
+  char *text;
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(SERIES_ROW_LENGTH, &o->row));
-  PetscCall(H5GetString(file, "series_row", SERIES_ROW_LENGTH, o->row));
-  p = o->row;
-  for (int c = 0; c < COLUMN_COUNT && *p; c++) {
-    char *end;
-    const double x = strtod(p, &end);
-    o->last[c] = end > p ? x : NAN; /* an empty entry */
-    p = strchr(p, ',') ? strchr(p, ',') + 1 : "";
-  }
+  PetscCall(H5GetInts(file, "totals", 4, totals));
+  record->solves = totals[0];
+  record->tension = totals[1];
+  record->bending = totals[2];
+  record->coupled = totals[3];
+  PetscCall(H5GetText(file, "series_row", &text));
+  PetscCall(RecordParse(record, text));
+  PetscCall(PetscFree(text));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode RestartRead(Output o) {
-  const Scheme s = o->scheme;
+static PetscErrorCode ReadState(Scheme s, H5File *file) {
   State *q = &s->state;
-  PetscInt has_old = 0, totals[4] = {0};
-  PetscReal *memory;
+  PetscInt has_old = 0;
+  PetscFunctionBeginUser;
+  PetscCall(H5GetInts(file, "step", 1, &q->step));
+  PetscCall(H5GetReals(file, "time", 1, &q->t));
+  PetscCall(H5GetReals(file, "dt", 1, &q->dt));
+  PetscCall(H5GetReals(file, "dt_last", 1, &q->dt_last));
+  PetscCall(H5GetInts(file, "has_previous", 1, &has_old));
+  PetscCall(ReadLevel(s, file));
+  PetscCall(ReadVectors(s, file, "", q));
+  s->has_old = has_old && s->old ? PETSC_TRUE : PETSC_FALSE;
+  if (s->has_old) PetscCall(ReadVectors(s, file, "/previous", s->old));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* All that the open checkpoint holds; memory[] is what the solvers have kept from earlier steps. */
+static PetscErrorCode ReadAll(Scheme s, H5File *file, Record *record, PetscInt *frames, PetscReal memory[]) {
   PetscBool failed;
+  PetscFunctionBeginUser;
+  PetscCall(CompareOptions(s->scene, file));
+  PetscCall(CompareVesicles(s, file));
+  PetscCall(ReadState(s, file));
+  PetscCall(H5GetInts(file, "frames", 1, frames));
+  PetscCall(ReadRecord(file, record));
+  PetscCall(H5ReadArray(file, "/solver", 0, SchemeMemorySize(s), memory));
+  PetscCall(H5FileFailed(file, &failed));
+  PetvesCheck(!failed, s->scene->comm,
+              "-restart %s: entries are missing or have another size; allowed: a checkpoint.h5 of petves",
+              s->scene->output.restart);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode RestartRead(Scheme s, Record *record, PetscInt *frames) {
+  PetscReal *memory;
+  PetscErrorCode error;
   H5File file;
   PetscFunctionBeginUser;
-  PetscCall(CheckFile(o));
-  PetscCall(H5FileOpen(o->comm, o->scene->output.restart, PETSC_FALSE, &file));
-  PetscCall(CompareOptions(o, &file));
-  PetscCall(CompareVesicles(o, &file));
-  PetscCall(H5GetInts(&file, "step", 1, &q->step));
-  PetscCall(H5GetReals(&file, "time", 1, &q->t));
-  PetscCall(H5GetReals(&file, "dt", 1, &q->dt));
-  PetscCall(H5GetReals(&file, "dt_last", 1, &q->dt_last));
-  PetscCall(H5GetInts(&file, "has_previous", 1, &has_old));
-  PetscCall(ReadLevel(o, &file));
-  PetscCall(H5GetInts(&file, "frames", 1, &o->scheduled));
-  PetscCall(H5GetInts(&file, "totals", 4, totals));
-  PetscCall(ReadRow(o, &file));
-  PetscCall(ReadVectors(o, &file, "", q));
-  s->has_old = has_old && s->old ? PETSC_TRUE : PETSC_FALSE;
-  if (s->has_old) PetscCall(ReadVectors(o, &file, "/previous", s->old));
+  PetscCall(CheckFile(s->scene));
   PetscCall(PetscMalloc1(SchemeMemorySize(s), &memory));
-  PetscCall(H5ReadArray(&file, "/solver", 0, SchemeMemorySize(s), memory));
-  PetscCall(H5FileFailed(&file, &failed));
+  PetscCall(H5FileOpen(s->scene->comm, s->scene->output.restart, PETSC_FALSE, &file));
+  error = ReadAll(s, &file, record, frames, memory);
   PetscCall(H5FileClose(&file));
-  PetscCheck(!failed, o->comm, PETSC_ERR_USER_INPUT,
-             "-restart %s: entries are missing or have another size; allowed: a checkpoint.h5 of petves",
-             o->scene->output.restart);
-  o->total_solves = totals[0];
-  o->total_tension = totals[1];
-  o->total_bending = totals[2];
-  o->total_coupled = totals[3];
-  PetscCall(SchemeRecall(s, memory));
+  if (!error) error = SchemeRecall(s, memory);
   PetscCall(PetscFree(memory));
+  PetscCall(error);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,0 +1,36 @@
+#include "output/framefile.h"
+
+const char *const FrameSeries[FRAME_SERIES] = {"/fluid/u",         "/fluid/v",          "/fluid/p",
+                                               "/vesicle/markers", "/vesicle/velocity", "/vesicle/tension"};
+
+PetscInt FrameSeriesCount(Scheme s) {
+  return s->membrane->layout->M ? FRAME_SERIES : 3;
+}
+
+PetscInt FrameEntries(Scheme s, PetscInt k) {
+  const Grid g = s->fluid->grid;
+  return k < 3 ? g->n[0] * g->n[1] : s->membrane->layout->M * (k < 5 ? 2 : 1);
+}
+
+PetscErrorCode FrameFileCreate(Scheme s, const char path[], H5File *f) {
+  const Grid g = s->fluid->grid;
+  const Layout l = s->membrane->layout;
+  const Scene scene = s->scene;
+  const PetscInt cells[2] = {g->n[1], g->n[0]}, markers[2] = {l->M, 2};
+  PetscFunctionBeginUser;
+  PetscCall(H5FileCreate(scene->comm, path, f));
+  PetscCall(H5PutReals(f, "box", 4, scene->fluid.box));
+  PetscCall(H5PutInts(f, "cells", 2, g->n));
+  PetscCall(H5PutReals(f, "h", 1, &g->h));
+  PetscCall(H5PutReals(f, "nu", 1, &scene->fluid.nu));
+  PetscCall(H5PutReals(f, "c_b", 1, &scene->membrane.bending));
+  PetscCall(H5PutInts(f, "vesicle_start", l->bodies + 1, l->start));
+  PetscCall(H5PutString(f, "about",
+                        "u, v: velocity (background included) at cell centres; p: pressure at cell centres, of the "
+                        "disturbance unless -flow_form total; tension k on the edge from marker k-1 to marker k"));
+  PetscCall(H5CreateSeries(f, "/time", 0, NULL));
+  for (int k = 0; k < FrameSeriesCount(s); k++)
+    PetscCall(H5CreateSeries(f, FrameSeries[k], k < 5 ? 2 : 1, k < 3 ? cells : markers));
+  PetscCall(H5FileFlush(f));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,36 @@
+/* run.h5: the fields at cell centres and the markers, per saved time. */
+#pragma once
+#include "output/frameindex.h"
+#include "output/gathered.h"
+
+typedef struct {
+  Folder *folder; /* borrowed */
+  Scheme scheme;  /* borrowed */
+  H5File file;
+  PetscBool open; /* on every rank */
+  FrameIndex index;
+  PetscInt count;     /* frames in the file */
+  PetscInt scheduled; /* of them those at multiples of -output_every, the first included */
+  PetscReal time;     /* of the last frame */
+  PetscReal *times;   /* [scheduled] of the frames that FramesGoOn has found; else NULL */
+  PetscScalar *cells; /* one cell-centred field, this rank's rows */
+} Frames;
+
+/* FramesCreate - a new, empty file. FramesGoOn - the one of an earlier run, repaired where that was killed and cut to
+   its first `scheduled` frames, whose times are in `times`: a frame that was saved only because that run ended goes.
+   Stops with one line, naming `restart`, when there are not so many. Collective. */
+PETSC_EXTERN PetscErrorCode FramesCreate(Frames *frames, Folder *folder, Scheme scheme);
+PETSC_EXTERN PetscErrorCode FramesGoOn(Frames *frames, Folder *folder, Scheme scheme, PetscInt scheduled,
+                                       const char restart[]);
+
+/* FramesWrite - add the scheme's present fields, and its markers as gathered; scheduled: a saved time of -output_every,
+   not only the end of this run. An unscheduled frame is written over by the next one, where a run goes on after its
+   end. Collective; stops with one line when it cannot be written. */
+PETSC_EXTERN PetscErrorCode FramesWrite(Frames *frames, const Gathered *now, PetscBool scheduled);
+
+/* FramesSync - put all of it on the disk. Collective; stops with one line when it cannot be written. */
+PETSC_EXTERN PetscErrorCode FramesSync(Frames *frames);
+
+/* FramesClose - close the file and free everything; good: all of it was written. Rank 0 closes, and good is TRUE
+   elsewhere. */
+PETSC_EXTERN PetscErrorCode FramesClose(Frames *frames, PetscBool *good);

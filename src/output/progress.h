@@ -1,0 +1,23 @@
+/* What a run prints on the terminal. */
+#pragma once
+#include "output/record.h"
+
+typedef struct {
+  MPI_Comm comm;
+  PetscMPIInt rank;
+  PetscBool quiet;               /* nothing is printed */
+  PetscLogDouble start, printed; /* wall time at the start, at the last progress line */
+} Progress;
+
+PETSC_EXTERN PetscErrorCode ProgressStart(Progress *progress, MPI_Comm comm);
+
+/* ProgressSeconds - wall seconds since the start. */
+PETSC_EXTERN PetscReal ProgressSeconds(const Progress *progress);
+
+/* ProgressLine - a line with step, time, percent of t_end and expected time left, at most every few seconds unless
+   `force`. */
+PETSC_EXTERN PetscErrorCode ProgressLine(Progress *progress, const State *state, PetscReal t_end, PetscBool force);
+
+/* ProgressTable - the table that a run ends with. Collective. */
+PETSC_EXTERN PetscErrorCode ProgressTable(const Progress *progress, const Record *record, const char folder[],
+                                          const char reason[]);

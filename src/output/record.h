@@ -1,0 +1,54 @@
+/* What a step amounts to in numbers: the row of series.csv, the rows of the vesicles, and the run's totals. */
+#pragma once
+#include "scheme/scheme.h"
+
+/* Columns of series.csv, in order; NULL past the last. */
+PETSC_EXTERN const char *const SeriesColumns[];
+enum {
+  COLUMN_STEP,
+  COLUMN_TIME,
+  COLUMN_DT,
+  COLUMN_KINETIC,
+  COLUMN_BENDING,
+  COLUMN_AREA,
+  COLUMN_LENGTH,
+  COLUMN_AREA_ERROR,
+  COLUMN_LENGTH_ERROR,
+  COLUMN_EDGE_RATIO,
+  COLUMN_DIV,
+  COLUMN_SURFACE_DIV,
+  COLUMN_CENTER_X,
+  COLUMN_CENTER_Y,
+  COLUMN_INCLINATION,
+  COLUMN_FREQUENCY,
+  COLUMN_TENSION_ITS,
+  COLUMN_BENDING_ITS,
+  COLUMN_COUPLED_ITS,
+  COLUMN_NSOLVE,
+  COLUMN_WALL,
+  COLUMN_AREA_SHIFT,
+  COLUMN_COUNT
+};
+
+typedef struct {
+  PetscInt vesicles;
+  PetscReal last[COLUMN_COUNT]; /* the last row, over all vesicles */
+  PetscReal *each;              /* [vesicles][COLUMN_COUNT] the vesicles' own columns of it */
+  char *header, *text;          /* the names and the last row as lines of series.csv, without the line's end */
+  size_t room;                  /* of each of the two: it grows with the vesicles */
+  PetscInt solves, tension, bending, coupled; /* sums over the run */
+  PetscReal cfl_max;                          /* largest of a step */
+} Record;
+
+/* RecordCreate - zero, with the header for so many vesicles. */
+PETSC_EXTERN PetscErrorCode RecordCreate(PetscInt vesicles, Record *record);
+PETSC_EXTERN PetscErrorCode RecordDestroy(Record *record);
+
+/* RecordMeasure - the vesicles' own columns of the present state, into `each`. Collective. */
+PETSC_EXTERN PetscErrorCode RecordMeasure(Record *record, Scheme scheme);
+
+/* RecordTake - the row of the scheme's state and last step, which is added to the totals. Collective. */
+PETSC_EXTERN PetscErrorCode RecordTake(Record *record, Scheme scheme);
+
+/* RecordParse - the last row from its text; a text that is too long for so many vesicles is cut. */
+PETSC_EXTERN PetscErrorCode RecordParse(Record *record, const char text[]);
