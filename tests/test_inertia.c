@@ -293,6 +293,34 @@ static PetscErrorCode CheckQuasiSteady(const char name[], const char options[]) 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* One entry of a velocity that is not a number, on one rank, is found by all ranks: the speed decides whether a step is
+   taken. Nothing is left of it in a velocity of finite entries. */
+static PetscErrorCode CheckSpeed(void) {
+  Run r;
+  Convection c;
+  PetscReal speed;
+  PetscMPIInt bad;
+  PetscFunctionBeginUser;
+  PetscCall(RunCreate(PERIODIC, 24, 1e-6, &r));
+  PetscCall(ConvectionCreate(r.scene, r.fluid, &c));
+  for (PetscMPIInt rank = 0; rank < r.fluid->grid->size; rank++) {
+    PetscScalar *a;
+    PetscCall(VecSet(r.scheme->state.w, 0.5));
+    PetscCall(ConvectionSpeed(c, r.scheme->state.w, &speed));
+    CHECK(PetscAbsReal(speed - 1) < 1e-15, "speed |u| + |v| of a uniform flow: %g", (double)speed);
+    PetscCall(VecGetArray(r.scheme->state.w, &a));
+    if (r.fluid->grid->rank == rank) a[30] = NAN;
+    PetscCall(VecRestoreArray(r.scheme->state.w, &a));
+    PetscCall(ConvectionSpeed(c, r.scheme->state.w, &speed));
+    bad = PetscIsNanReal(speed) ? 1 : 0;
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &bad, 1, MPI_INT, MPI_SUM, r.fluid->grid->comm));
+    CHECK(bad == r.fluid->grid->size, "a velocity that is not a number on rank %d is seen by %d ranks", rank, bad);
+  }
+  PetscCall(ConvectionDestroy(&c));
+  PetscCall(RunDestroy(&r));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode Facts(void) {
   PetscFunctionBeginUser;
   PetscCall(CheckConservation("periodic", PERIODIC));
@@ -306,6 +334,7 @@ static PetscErrorCode Facts(void) {
   PetscCall(CheckOrder("vortices in a stream", PERIODIC STREAM, Carried, PETSC_FALSE));
   PetscCall(CheckOrder("manufactured, poiseuille in a channel", CHANNEL, InChannel, PETSC_TRUE));
   PetscCall(CheckOrder("manufactured, shear between walls", "-flow_type shear", InBox, PETSC_TRUE));
+  PetscCall(CheckSpeed());
   PetscCall(CheckUnsteady());
   PetscCall(CheckQuasiSteady("periodic box", PERIODIC));
   PetscCall(CheckQuasiSteady("channel", "-domain_bc_x periodic"));
