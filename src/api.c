@@ -90,8 +90,7 @@ PetscErrorCode SimulationGetRow(Simulation s, PetscInt vesicle, PetscReal row[])
   const Record *record = &s->output->record;
   PetscFunctionBeginUser;
   PetscCheck(vesicle >= -1 && vesicle < s->layout->bodies, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "vesicle %" PetscInt_FMT ": out of range; allowed: 0 to %" PetscInt_FMT, vesicle,
-             s->layout->bodies - 1);
+             "vesicle %" PetscInt_FMT ": out of range; allowed: 0 to %" PetscInt_FMT, vesicle, s->layout->bodies - 1);
   PetscCall(PetscArraycpy(row, vesicle < 0 ? record->last : record->each + vesicle * COLUMN_COUNT, COLUMN_COUNT));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -3,11 +3,11 @@
 #include "coupling/lagrangian.h"
 
 typedef struct {
-  PetscInt n[2];     /* cells of a window, the same for all edges */
-  PetscInt *origin;  /* [2M] first cell of each window */
+  PetscInt n[2];      /* cells of a window, the same for all edges */
+  PetscInt *origin;   /* [2M] first cell of each window */
   PetscInt *previous; /* [M] the marker before k on the same vesicle */
   PetscReal *tau;     /* [2M] tangents of all vesicles */
-  PetscReal *values; /* [M][3][n1][n0]: u faces, v faces and scaled cells of G^T S */
+  PetscReal *values;  /* [M][3][n1][n0]: u faces, v faces and scaled cells of G^T S */
 } Windows;
 
 static PetscReal *Layer(const Windows *w, PetscInt k, int layer) {

@@ -1,5 +1,5 @@
-/* Fluid and membranes joined: where the membranes are in a step, their tangents, what gives back the kernel's smoothing,
-   and the operators S and B of the momentum equation. */
+/* Fluid and membranes joined: where the membranes are in a step, their tangents, what gives back the kernel's
+   smoothing, and the operators S and B of the momentum equation. */
 #pragma once
 #include "coupling/selfmobility.h"
 #include "fluid/fluid.h"
@@ -22,9 +22,9 @@ PETSC_EXTERN PetscErrorCode CouplingCreate(Fluid fluid, Membrane membrane, const
                                            Coupling *coupling);
 PETSC_EXTERN PetscErrorCode CouplingDestroy(Coupling *coupling);
 
-/* CouplingPlace - everything that a solve stands on, in one call: the time coefficient a0 (1/time) in the fluid's H; E, S,
-   B and the tangents at the markers X; Theta and R there. message[PETVES_MAX_MESSAGE] is empty, or says why it cannot be:
-   a marker near a wall, or a matrix without factor; the same on every rank. Collective. */
+/* CouplingPlace - everything that a solve stands on, in one call: the time coefficient a0 (1/time) in the fluid's H; E,
+   S, B and the tangents at the markers X; Theta and R there. message[PETVES_MAX_MESSAGE] is empty, or says why it
+   cannot be: a marker near a wall, or a matrix without factor; the same on every rank. Collective. */
 PETSC_EXTERN PetscErrorCode CouplingPlace(Coupling coupling, PetscReal a0, Vec X, char message[PETVES_MAX_MESSAGE]);
 
 /* CouplingHasMembrane - whether there is a vesicle. CouplingBending - c_b, 0 without a vesicle. Not collective. */
@@ -45,7 +45,7 @@ PETSC_EXTERN PetscErrorCode CouplingStretching(Coupling coupling, Vec U, Vec d);
 /* CouplingVelocity - U = E w, or R (E w - Theta Dm^T sigma) with self-mobility; sigma may be NULL. Collective. */
 PETSC_EXTERN PetscErrorCode CouplingVelocity(Coupling coupling, Vec w, Vec sigma, Vec U);
 
-/* CouplingSelfMobility - U := R (U - Theta (Dm^T sigma + c_b ds D4 Xhat)); without self-mobility U stays. sigma and Xhat
-   may be NULL. From U = E w and sigma it makes the velocity that a solve finds, from U = u_inf and Xhat the part that is
-   known before. Not collective. */
+/* CouplingSelfMobility - U := R (U - Theta (Dm^T sigma + c_b ds D4 Xhat)); without self-mobility U stays. sigma and
+   Xhat may be NULL. From U = E w and sigma it makes the velocity that a solve finds, from U = u_inf and Xhat the part
+   that is known before. Not collective. */
 PETSC_EXTERN PetscErrorCode CouplingSelfMobility(Coupling coupling, Vec sigma, Vec Xhat, Vec U);

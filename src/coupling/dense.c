@@ -15,7 +15,7 @@ struct _p_DenseBlocks {
   Coupling coupling;
   PetscBool together; /* one block for all vesicles, root's; else each rank has those of its own vesicles */
   PetscMPIInt root;
-  PetscInt count;         /* blocks of this rank */
+  PetscInt count; /* blocks of this rank */
   Block *block;
   PetscScalar *U, *sigma; /* together: [2M], [M] of all markers, on root */
   PetscScalar *d;         /* [M] work */

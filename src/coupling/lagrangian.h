@@ -1,5 +1,5 @@
-/* The two Lagrangian solves of the split scheme, on marker and edge vectors. Any KSP or PC option works under the prefixes
-   tension_ and bending_. */
+/* The two Lagrangian solves of the split scheme, on marker and edge vectors. Any KSP or PC option works under the
+   prefixes tension_ and bending_. */
 #pragma once
 #include "coupling/coupling.h"
 #include "coupling/rootpc.h"
@@ -34,11 +34,12 @@ PETSC_EXTERN PetscErrorCode TensionSolverCreate(Coupling coupling, LagrangianSol
 PETSC_EXTERN PetscErrorCode BendingSolverCreate(Coupling coupling, LagrangianSolver *solver);
 PETSC_EXTERN PetscErrorCode LagrangianSolverDestroy(LagrangianSolver *solver);
 
-/* LagrangianSolverSolve - A x = b from a zero guess, where the coupling has been placed; its, why and residual say how it
-   went (why < 0: failed). A tension solve assembles Chat first, where the preconditioner wants it. Collective. */
+/* LagrangianSolverSolve - A x = b from a zero guess, where the coupling has been placed; its, why and residual say how
+   it went (why < 0: failed). A tension solve assembles Chat first, where the preconditioner wants it. Collective. */
 PETSC_EXTERN PetscErrorCode LagrangianSolverSolve(LagrangianSolver solver, Vec b, Vec x);
 
-/* TensionAssemble - Chat at the coupling's markers, a sequential matrix on rank root, NULL elsewhere. Not collective. */
+/* TensionAssemble - Chat at the coupling's markers, a sequential matrix on rank root, NULL elsewhere. Not collective.
+ */
 PETSC_EXTERN PetscErrorCode TensionAssemble(Coupling coupling, PetscMPIInt root, Mat *Chat);
 
 /* KSPWriteOptions - a KSP's settings in force as options with this prefix, one a line; pc: its preconditioner where the

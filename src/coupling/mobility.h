@@ -1,8 +1,8 @@
-/* Mob, the membranes' mobility: an approximation of E A^-1 E^T, A^-1 the Stokes solution operator of the grid. Every pair
-   of markers is exact for a periodic box of the same cells: the two kernels' weights are summed against the grid's Green's
-   function, which is tabulated once per alpha of H = alpha I - nu L_u (once for all in quasi-steady flow). (Averaging over
-   sub-cell positions, even for far pairs only, leaves noise from marker to marker that a stiff membrane's fourth
-   derivative blows up.) */
+/* Mob, the membranes' mobility: an approximation of E A^-1 E^T, A^-1 the Stokes solution operator of the grid. Every
+   pair of markers is exact for a periodic box of the same cells: the two kernels' weights are summed against the grid's
+   Green's function, which is tabulated once per alpha of H = alpha I - nu L_u (once for all in quasi-steady flow).
+   (Averaging over sub-cell positions, even for far pairs only, leaves noise from marker to marker that a stiff
+   membrane's fourth derivative blows up.) */
 #pragma once
 #include "coupling/coupling.h"
 
@@ -43,8 +43,8 @@ PETSC_EXTERN PetscErrorCode MobilityForget(Mobility mobility);
    Collective; borrowed. */
 PETSC_EXTERN PetscErrorCode MobilityGetTable(Mobility mobility, PetscReal alpha, const GreenTable **table);
 
-/* MobilityAssemble - Mob of the n markers from `first` on, where the markers have been placed: symmetric matrix [2n][2n],
-   entries interlaced x, y. part p of `parts`: this call makes every parts-th row's pairs from p on and leaves zero
-   elsewhere, so that the sum over all parts is Mob. Not collective. */
+/* MobilityAssemble - Mob of the n markers from `first` on, where the markers have been placed: symmetric matrix
+   [2n][2n], entries interlaced x, y. part p of `parts`: this call makes every parts-th row's pairs from p on and leaves
+   zero elsewhere, so that the sum over all parts is Mob. Not collective. */
 PETSC_EXTERN PetscErrorCode MobilityAssemble(Mobility mobility, const GreenTable *table, PetscInt first, PetscInt n,
                                              PetscInt part, PetscInt parts, PetscReal Mob[]);

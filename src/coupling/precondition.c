@@ -122,8 +122,8 @@ PetscErrorCode PreconditionerSetUp(Preconditioner p) {
   p->now = (Application){0};
   p->failed = PETSC_FALSE;
   if (!CouplingHasMembrane(c)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(WallsSetMarkers(p->unknowns->walls, c->membrane->layout->n,
-                            c->markers->X + 2 * c->membrane->layout->first));
+  PetscCall(
+      WallsSetMarkers(p->unknowns->walls, c->membrane->layout->n, c->markers->X + 2 * c->membrane->layout->first));
   if (p->type == MOBILITY_ILU) PetscCall(SetUpChat(p));
   if (p->type != MOBILITY_TABLE) PetscFunctionReturn(PETSC_SUCCESS);
   DenseBlocksPlace(p->blocks);

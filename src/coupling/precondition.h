@@ -44,9 +44,9 @@ struct _p_Preconditioner {
 PETSC_EXTERN PetscErrorCode PreconditionerCreate(Scene scene, Unknowns unknowns, Preconditioner *preconditioner);
 PETSC_EXTERN PetscErrorCode PreconditionerDestroy(Preconditioner *preconditioner);
 
-/* PreconditionerSetUp - follow the coupling's a0 and markers; a solve begins. The dense blocks are kept while a0 moves by
-   less than 10 % and until the iterations beyond those of the first solve with them have cost as much as new ones would;
-   a solve that suffers badly makes them anew and goes on. Collective. */
+/* PreconditionerSetUp - follow the coupling's a0 and markers; a solve begins. The dense blocks are kept while a0 moves
+   by less than 10 % and until the iterations beyond those of the first solve with them have cost as much as new ones
+   would; a solve that suffers badly makes them anew and goes on. Collective. */
 PETSC_EXTERN PetscErrorCode PreconditionerSetUp(Preconditioner preconditioner);
 
 /* PreconditionerApply - z ~ A^-1 r, of residuals and unknowns. Collective. */
@@ -58,16 +58,16 @@ PETSC_EXTERN void PreconditionerSolved(Preconditioner preconditioner, PetscInt i
 /* PreconditionerIsNew - whether the blocks were made for the last solve or in it. Not collective. */
 PETSC_EXTERN PetscBool PreconditionerIsNew(Preconditioner preconditioner);
 
-/* PreconditionerGetMemory, PreconditionerSetMemory - all that earlier solves have left for later ones, as numbers that a
-   checkpoint can hold, and made again from them, with the coupling placed where and for the a0 (memory[0]; 0: no blocks)
-   for which the dense blocks were made. Whatever is kept from solve to solve belongs in here, or a restarted run would not
-   have the bits of one that went on. Set is collective. */
+/* PreconditionerGetMemory, PreconditionerSetMemory - all that earlier solves have left for later ones, as numbers that
+   a checkpoint can hold, and made again from them, with the coupling placed where and for the a0 (memory[0]; 0: no
+   blocks) for which the dense blocks were made. Whatever is kept from solve to solve belongs in here, or a restarted
+   run would not have the bits of one that went on. Set is collective. */
 #define PRECONDITIONER_MEMORY (6 + MOBILITY_CACHE)
 PETSC_EXTERN PetscErrorCode PreconditionerGetMemory(Preconditioner preconditioner,
                                                     PetscReal memory[PRECONDITIONER_MEMORY]);
 PETSC_EXTERN PetscErrorCode PreconditionerSetMemory(Preconditioner preconditioner,
                                                     const PetscReal memory[PRECONDITIONER_MEMORY]);
 
-/* PreconditionerForget - drop all that is kept from solve to solve, so that what follows depends on the state alone. Not
-   collective. */
+/* PreconditionerForget - drop all that is kept from solve to solve, so that what follows depends on the state alone.
+   Not collective. */
 PETSC_EXTERN PetscErrorCode PreconditionerForget(Preconditioner preconditioner);

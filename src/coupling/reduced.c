@@ -51,8 +51,8 @@ static PetscErrorCode MembraneConditions(Reduced s, const PetscScalar x[], Vec w
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* y = scaled (V - E w + Theta F, Dm V/h^2, d + slip) of x and the velocity w that its forces F gave; g, if any, comes off
-   Dm V/h^2. Collective. */
+/* y = scaled (V - E w + Theta F, Dm V/h^2, d + slip) of x and the velocity w that its forces F gave; g, if any, comes
+   off Dm V/h^2. Collective. */
 static PetscErrorCode Conditions(Reduced s, const PetscScalar x[], Vec w, Vec g, PetscScalar y[]) {
   const Unknowns u = s->unknowns;
   const PetscInt tension = u->velocity, wall = tension + u->tension;
@@ -139,8 +139,8 @@ PetscErrorCode ReducedForgetProducts(Reduced s) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Least squares by modified Gram-Schmidt: x = SUM y_j z_j + rest, rest orthogonal to every z. The z are overwritten by an
-   orthonormal basis q of them, z_j = SUM_{i <= j} upper_ij q_i. */
+/* Least squares by modified Gram-Schmidt: x = SUM y_j z_j + rest, rest orthogonal to every z. The z are overwritten by
+   an orthonormal basis q of them, z_j = SUM_{i <= j} upper_ij q_i. */
 static PetscErrorCode Expand(PetscInt n, Vec z[], Vec rest, PetscReal y[]) {
   PetscReal upper[REDUCED_KEPT][REDUCED_KEPT];
   PetscFunctionBeginUser;

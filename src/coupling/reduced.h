@@ -15,17 +15,17 @@
 #define REDUCED_KEPT 6
 
 typedef struct {
-  Vec w[REDUCED_KEPT + 1];                /* velocities and pressures of the products, the last for one not kept */
-  Vec p[REDUCED_KEPT + 1];                /* made when first needed */
-  Vec z[REDUCED_KEPT], Az[REDUCED_KEPT];  /* their unknowns, and what A makes of them */
-  PetscInt count;                         /* products since ReducedForgetProducts */
+  Vec w[REDUCED_KEPT + 1];               /* velocities and pressures of the products, the last for one not kept */
+  Vec p[REDUCED_KEPT + 1];               /* made when first needed */
+  Vec z[REDUCED_KEPT], Az[REDUCED_KEPT]; /* their unknowns, and what A makes of them */
+  PetscInt count;                        /* products since ReducedForgetProducts */
 } Products;
 
 typedef struct _p_Reduced *Reduced;
 struct _p_Reduced {
   Unknowns unknowns; /* borrowed */
   Stokes stokes;
-  Mat A;             /* the residuals' derivative, scaled */
+  Mat A; /* the residuals' derivative, scaled */
   Products kept;
   Vec r;             /* a force on the grid, */
   PetscInt dirty[2]; /* zero but for these rows */
@@ -39,14 +39,14 @@ struct _p_Reduced {
 PETSC_EXTERN PetscErrorCode ReducedCreate(Unknowns unknowns, Reduced *reduced);
 PETSC_EXTERN PetscErrorCode ReducedDestroy(Reduced *reduced);
 
-/* ReducedResidual - the forces of `added` go into f; minus the scaled residuals at x, with u, p = w, p by one Stokes solve
-   of f, f holding the forces of x. g: an edge vector. Collective. */
+/* ReducedResidual - the forces of `added` go into f; minus the scaled residuals at x, with u, p = w, p by one Stokes
+   solve of f, f holding the forces of x. g: an edge vector. Collective. */
 PETSC_EXTERN PetscErrorCode ReducedResidual(Reduced reduced, Vec added, Vec f, Vec g, Vec x, Vec w, Vec p,
                                             Vec residual);
 
 /* ReducedForgetProducts - a solve begins: products with A are kept from here on. Not collective. */
 PETSC_EXTERN PetscErrorCode ReducedForgetProducts(Reduced reduced);
 
-/* ReducedCombine - the change of w, p and the residual that goes with a change of x made of the kept products, added; x :=
-   what it is made of. combined is false when they were too many to be kept, and nothing has changed. Collective. */
+/* ReducedCombine - the change of w, p and the residual that goes with a change of x made of the kept products, added; x
+   := what it is made of. combined is false when they were too many to be kept, and nothing has changed. Collective. */
 PETSC_EXTERN PetscErrorCode ReducedCombine(Reduced reduced, Vec x, Vec w, Vec p, Vec residual, PetscBool *combined);

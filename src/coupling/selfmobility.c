@@ -111,8 +111,7 @@ static void BendingCirculant(SelfMobility s, PetscInt v) {
   Circulant(n, impulse, b->K);
 }
 
-PetscErrorCode SelfMobilityCreate(Markers markers, Membrane m, PetscReal nu, SelfMobilityType type,
-                                  SelfMobility *out) {
+PetscErrorCode SelfMobilityCreate(Markers markers, Membrane m, PetscReal nu, SelfMobilityType type, SelfMobility *out) {
   const Layout l = m->layout;
   SelfMobility s;
   PetscFunctionBeginUser;

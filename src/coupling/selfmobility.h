@@ -12,8 +12,8 @@
 
 typedef struct _p_SelfMobility *SelfMobility;
 
-/* SelfMobilityCreate - of the given type (SELF_LOCAL, SELF_SYMBOL) for membranes whose markers are on a grid, in a fluid
-   of viscosity nu. Not collective. */
+/* SelfMobilityCreate - of the given type (SELF_LOCAL, SELF_SYMBOL) for membranes whose markers are on a grid, in a
+   fluid of viscosity nu. Not collective. */
 PETSC_EXTERN PetscErrorCode SelfMobilityCreate(Markers markers, Membrane membrane, PetscReal nu, SelfMobilityType type,
                                                SelfMobility *self);
 PETSC_EXTERN PetscErrorCode SelfMobilityDestroy(SelfMobility *self);
@@ -25,8 +25,8 @@ PETSC_EXTERN PetscErrorCode SelfMobilityPlace(SelfMobility self, PetscReal a0, c
                                               PetscBool *factored);
 
 /* SelfMobilityApply - U := R (U - Theta (Dm^T sigma + c_b ds D4 Xhat)) of all own vesicles, U[2n], tangents tau[2n];
-   sigma[n] and Xhat[2n] may be NULL. With sigma, U = E u becomes the solved part of the markers' velocity; with Xhat, U =
-   u_inf becomes the part known before. Not collective. */
+   sigma[n] and Xhat[2n] may be NULL. With sigma, U = E u becomes the solved part of the markers' velocity; with Xhat, U
+   = u_inf becomes the part known before. Not collective. */
 PETSC_EXTERN PetscErrorCode SelfMobilityApply(SelfMobility self, const PetscReal tau[], const PetscScalar sigma[],
                                               const PetscScalar Xhat[], PetscScalar U[]);
 

@@ -5,7 +5,7 @@
 
 /* What a step asks for, and the vectors that its answer goes to. */
 typedef struct {
-  Vec f, g;            /* right-hand sides: a velocity (the forces of the solution are added to it) and an edge vector */
+  Vec f, g; /* right-hand sides: a velocity (the forces of the solution are added to it) and an edge vector */
   Vec w, p, sigma, d, V; /* solution; sigma, d and V = E w hold the first guess */
 } CoupledProblem;
 
@@ -24,10 +24,10 @@ struct _p_CoupledSolver {
   Reduced reduced;
   Preconditioner preconditioner;
   KSP ksp;
-  PetscBool guess; /* -coupled_ksp_initial_guess_nonzero: start from the guess */
-  Vec x, b;        /* unknowns, residual */
-  Vec change;      /* of one KSPSolve */
-  Vec pending;     /* part of x whose forces are not in the right-hand side f yet */
+  PetscBool guess;     /* -coupled_ksp_initial_guess_nonzero: start from the guess */
+  Vec x, b;            /* unknowns, residual */
+  Vec change;          /* of one KSPSolve */
+  Vec pending;         /* part of x whose forces are not in the right-hand side f yet */
   PetscReal reference; /* norm of the step's right-hand side, which the tolerance is relative to */
   PetscReal start;     /* residual norm that a KSPSolve starts from */
 };

@@ -1,8 +1,6 @@
-/* The unknowns of the reduced coupled problem and the norm of its residuals (docs/method.md, Reduced unknowns). A rank's
-   part of the vector is
-       V      [2n]  the solved part of its own markers' velocity,
-       sigma  [n]   the tension of its own edges,
-       d      [m]   its share of the forces on the faces next to walls, ranks having about as many each.
+/* The unknowns of the reduced coupled problem and the norm of its residuals (docs/method.md, Reduced unknowns). A
+   rank's part of the vector is V      [2n]  the solved part of its own markers' velocity, sigma  [n]   the tension of
+   its own edges, d      [m]   its share of the forces on the faces next to walls, ranks having about as many each.
    Residuals are laid out alike. */
 #pragma once
 #include "coupling/coupling.h"
@@ -10,8 +8,8 @@
 
 typedef struct _p_Unknowns *Unknowns;
 struct _p_Unknowns {
-  Coupling coupling; /* borrowed */
-  Walls walls;       /* borrowed */
+  Coupling coupling;                /* borrowed */
+  Walls walls;                      /* borrowed */
   PetscInt velocity, tension, wall; /* own numbers of each kind */
   PetscInt first_wall;              /* number of the first own wall force */
   PetscMPIInt *count, *at;          /* [ranks] wall forces of each rank, and where they start */
@@ -33,8 +31,9 @@ PETSC_EXTERN PetscErrorCode UnknownsGatherWalls(Unknowns unknowns, const PetscSc
 
 /* UnknownsScale - rows of this rank's residual y times their factors (inverse: over them), by which a residual of the
    membrane is a surface divergence (1/time): (1 + h alpha) h^2/ds for Dm V/h^2 = g, 1 + h alpha weighing short steps,
-   where the momentum's right-hand side u alpha would hide it; for V = E u - Theta F that over h^2, an edge's difference,
-   times the root of the force it means, bending over viscous (an energy norm). Wall rows have factor 1. Not collective. */
+   where the momentum's right-hand side u alpha would hide it; for V = E u - Theta F that over h^2, an edge's
+   difference, times the root of the force it means, bending over viscous (an energy norm). Wall rows have factor 1. Not
+   collective. */
 PETSC_EXTERN void UnknownsScale(Unknowns unknowns, PetscBool inverse, PetscScalar y[]);
 
 /* UnknownsTensionScale - the factor of the rows Dm V/h^2 = g of one vesicle. Not collective. */

@@ -70,8 +70,8 @@ PetscErrorCode LayoutGather(Layout l, int each, const PetscScalar own[], PetscSc
   if (l->size == 1)
     PetscCall(PetscArraycpy(all, own, each * l->n));
   else
-    PetscCallMPI(MPI_Allgatherv(own, l->count[each - 1][l->rank], MPIU_SCALAR, all, l->count[each - 1],
-                                l->at[each - 1], MPIU_SCALAR, l->comm));
+    PetscCallMPI(MPI_Allgatherv(own, l->count[each - 1][l->rank], MPIU_SCALAR, all, l->count[each - 1], l->at[each - 1],
+                                MPIU_SCALAR, l->comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -1,7 +1,7 @@
 /* Which rank owns which markers. Bodies are closed curves of markers, numbered one after another; each belongs to one
-   rank, ranks own contiguous ranges of bodies of about equal work. Marker vectors (two numbers a marker) and edge vectors
-   (one a marker, such as a tension) are MPI vectors in this order: a rank's part is that of its bodies, so what a body
-   needs of itself is on its owner. */
+   rank, ranks own contiguous ranges of bodies of about equal work. Marker vectors (two numbers a marker) and edge
+   vectors (one a marker, such as a tension) are MPI vectors in this order: a rank's part is that of its bodies, so what
+   a body needs of itself is on its owner. */
 #pragma once
 #include "base/base.h"
 
@@ -9,16 +9,16 @@ typedef struct _p_Layout *Layout;
 struct _p_Layout {
   MPI_Comm comm;
   PetscMPIInt rank, size;
-  PetscInt bodies, M;          /* bodies and markers in all */
-  PetscInt *start;             /* [bodies+1] first marker of each body */
-  PetscInt *body;              /* [ranks+1] first body of each rank */
-  PetscInt own, end;           /* this rank's bodies: own .. end - 1 */
-  PetscInt first, n;           /* this rank's markers: the first one's number, and how many */
+  PetscInt bodies, M;            /* bodies and markers in all */
+  PetscInt *start;               /* [bodies+1] first marker of each body */
+  PetscInt *body;                /* [ranks+1] first body of each rank */
+  PetscInt own, end;             /* this rank's bodies: own .. end - 1 */
+  PetscInt first, n;             /* this rank's markers: the first one's number, and how many */
   PetscMPIInt *count[2], *at[2]; /* [ranks] numbers of each rank, and where they start, with one and two a marker */
 };
 
-/* LayoutCreate - for bodies whose first markers are start[bodies+1] (copied). Work of a body: the square of its markers,
-   as of its dense matrices' products. Not collective. */
+/* LayoutCreate - for bodies whose first markers are start[bodies+1] (copied). Work of a body: the square of its
+   markers, as of its dense matrices' products. Not collective. */
 PETSC_EXTERN PetscErrorCode LayoutCreate(MPI_Comm comm, PetscInt bodies, const PetscInt start[], Layout *layout);
 PETSC_EXTERN PetscErrorCode LayoutDestroy(Layout *layout);
 
@@ -43,8 +43,8 @@ PETSC_EXTERN PetscErrorCode LayoutGather(Layout layout, int each, const PetscSca
 PETSC_EXTERN PetscErrorCode LayoutGatherVec(Layout layout, Vec x, PetscScalar all[]);
 PETSC_EXTERN PetscErrorCode LayoutSum(Layout layout, int each, const PetscScalar part[], PetscScalar own[]);
 
-/* LayoutToRank - own[each n] of every rank to all[each M] of one. LayoutFromRank - and back. all is not touched on other
-   ranks. Collective. */
+/* LayoutToRank - own[each n] of every rank to all[each M] of one. LayoutFromRank - and back. all is not touched on
+   other ranks. Collective. */
 PETSC_EXTERN PetscErrorCode LayoutToRank(Layout layout, PetscMPIInt root, int each, const PetscScalar own[],
                                          PetscScalar all[]);
 PETSC_EXTERN PetscErrorCode LayoutFromRank(Layout layout, PetscMPIInt root, int each, const PetscScalar all[],

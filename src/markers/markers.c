@@ -209,8 +209,8 @@ PetscErrorCode MarkersCreate(Grid g, Layout l, const char kernel[], Markers *out
   m->layout = l;
   m->kernel = KernelFind(kernel);
   PetscCheck(m->kernel, g->comm, PETSC_ERR_USER_INPUT, "-delta_type %s: unknown kernel", kernel);
-  PetscCall(PetscMalloc5(2 * l->M, &m->X, 2 * l->M, &m->stencil, 2 * l->M, &m->touching, 2 * l->M, &m->force,
-                         2 * l->M, &m->part));
+  PetscCall(PetscMalloc5(2 * l->M, &m->X, 2 * l->M, &m->stencil, 2 * l->M, &m->touching, 2 * l->M, &m->force, 2 * l->M,
+                         &m->part));
   PetscCall(MatCreateShell(g->comm, 2 * l->n, slab, 2 * l->M, PETSC_DETERMINE, m, &m->E));
   PetscCall(MatShellSetOperation(m->E, MATOP_MULT, (void (*)(void))Mult_E));
   PetscCall(MatShellSetOperation(m->E, MATOP_MULT_TRANSPOSE, (void (*)(void))MultTranspose_E));

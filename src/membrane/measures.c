@@ -37,8 +37,7 @@ static void SpectralMoments(PetscInt markers, const PetscScalar X[], const Petsc
 
 void MembraneMeasure(Membrane m, PetscInt v, const PetscScalar X[], Measures *out) {
   const PetscInt n = LayoutCount(m->layout, v);
-  PetscReal about[2] = {X[0], X[1]}, area = 0, first[2], second[3], shortest = PETSC_MAX_REAL,
-            longest = 0;
+  PetscReal about[2] = {X[0], X[1]}, area = 0, first[2], second[3], shortest = PETSC_MAX_REAL, longest = 0;
   PetscScalar *e = m->work.measures;
   MembraneEdges(m, v, X, e);
   for (int pass = 0; pass < 2; pass++) { /* about a marker, then about the centroid */

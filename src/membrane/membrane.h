@@ -70,12 +70,13 @@ typedef struct {
 } Measures;
 PETSC_EXTERN void MembraneMeasure(Membrane membrane, PetscInt vesicle, const PetscScalar X[], Measures *measures);
 
-/* MembraneFrequency - tank-treading frequency 2 pi/|CLOSED INT dl/(u.tau)| (radians a time) of one vesicle, u relative to
-   the markers' mean velocity, by spectral derivatives of X; NaN unless u.tau has one sign all round. */
+/* MembraneFrequency - tank-treading frequency 2 pi/|CLOSED INT dl/(u.tau)| (radians a time) of one vesicle, u relative
+   to the markers' mean velocity, by spectral derivatives of X; NaN unless u.tau has one sign all round. */
 PETSC_EXTERN PetscReal MembraneFrequency(Membrane membrane, PetscInt vesicle, const PetscScalar X[],
                                          const PetscScalar U[]);
 
-/* MembraneNormalSpeed - max over all markers of |u.n|, n the normal of the chord from X_{k-1} to X_{k+1}. Collective. */
+/* MembraneNormalSpeed - max over all markers of |u.n|, n the normal of the chord from X_{k-1} to X_{k+1}. Collective.
+ */
 PETSC_EXTERN PetscErrorCode MembraneNormalSpeed(Membrane membrane, Vec X, Vec U, PetscReal *speed);
 
 /* MembraneRestoreEdges - where an edge of one vesicle is off by more than tolerance (relative), move its markers as

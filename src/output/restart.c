@@ -16,8 +16,8 @@ static PetscErrorCode CheckFormat(Scene scene) {
   PetscCall(H5FileFailed(&file, &failed));
   PetscCall(H5FileClose(&file));
   PetvesCheck(failed || format == CHECKPOINT_FORMAT, scene->comm,
-              "-restart %s: its format is %" PetscInt_FMT "; allowed: %d, which petves %s writes", scene->output.restart,
-              format, CHECKPOINT_FORMAT, PETVES_VERSION);
+              "-restart %s: its format is %" PetscInt_FMT "; allowed: %d, which petves %s writes",
+              scene->output.restart, format, CHECKPOINT_FORMAT, PETVES_VERSION);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -60,8 +60,8 @@ static PetscErrorCode CompareOptions(Scene scene, H5File *file) {
     PetscCall(SceneOptionValue(scene, i, here, sizeof(here)));
     PetscCall(H5GetString(file, name, sizeof(there), there));
     PetvesCheck(!*there || !strcmp(here, there), scene->comm,
-                "%s %s: the checkpoint of -restart %s has %s; allowed: the same value", name, here, scene->output.restart,
-                there);
+                "%s %s: the checkpoint of -restart %s has %s; allowed: the same value", name, here,
+                scene->output.restart, there);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -83,8 +83,7 @@ static PetscErrorCode CompareVesicles(Scheme s, H5File *file) {
   PetscCall(H5GetInts(file, "vesicle_start", vesicles + 1, start));
   PetscCall(H5GetReals(file, "vesicle_length", vesicles, length));
   for (; bad < vesicles; bad++)
-    if (start[bad + 1] - start[bad] != LayoutCount(l, bad) ||
-        !(PetscAbsReal(length[bad] / m->L0[bad] - 1) < 1e-10))
+    if (start[bad + 1] - start[bad] != LayoutCount(l, bad) || !(PetscAbsReal(length[bad] / m->L0[bad] - 1) < 1e-10))
       break;
   PetscCallMPI(MPI_Bcast(&bad, 1, MPIU_INT, 0, s->scene->comm)); /* rank 0 decides */
   const PetscInt v = PetscMin(bad, vesicles - 1);
@@ -151,7 +150,8 @@ static PetscErrorCode ReadLevel(Scheme s, H5File *file) {
   PetscFunctionBeginUser;
   PetscCall(H5GetInts(file, "step_level", 1, &level));
   PetscCall(H5GetString(file, "-time_step", sizeof(base), base));
-  if (*base) level += (PetscInt)PetscFloorReal(2 * PetscLog2Real((PetscReal)strtod(base, NULL) / s->scene->time.dt) + 1e-9);
+  if (*base)
+    level += (PetscInt)PetscFloorReal(2 * PetscLog2Real((PetscReal)strtod(base, NULL) / s->scene->time.dt) + 1e-9);
   if (s->policy.adaptive) s->plan.level = level;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

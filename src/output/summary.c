@@ -35,9 +35,8 @@ static void PrintVersions(FILE *f) {
 /* The model of the fluid, how much inertia there is, the largest CFL number of a step (0 without convection). */
 static void PrintInertia(FILE *f, Scene scene, PetscReal cfl_max) {
   static const char *const names[] = {"unsteady", "none", "unsteady", "convective"};
-  fprintf(f,
-          "  \"inertia\": \"%s\",\n  \"reynolds\": %.6g,\n  \"cfl_max\": %.6g,\n  \"warning\": ", names[scene->fluid.inertia],
-          (double)scene->reynolds, (double)cfl_max);
+  fprintf(f, "  \"inertia\": \"%s\",\n  \"reynolds\": %.6g,\n  \"cfl_max\": %.6g,\n  \"warning\": ",
+          names[scene->fluid.inertia], (double)scene->reynolds, (double)cfl_max);
   PrintString(f, scene->warning);
   fprintf(f, ",\n");
 }

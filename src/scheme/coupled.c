@@ -1,5 +1,5 @@
-/* Schemes "coupled" and "direct": the unsplit step, first or second order, unconditionally stable. `coupled` solves it by
-   preconditioned FGMRES on its forces, `direct` by a sparse LU factorisation. Here: which steps are taken. */
+/* Schemes "coupled" and "direct": the unsplit step, first or second order, unconditionally stable. `coupled` solves it
+   by preconditioned FGMRES on its forces, `direct` by a sparse LU factorisation. Here: which steps are taken. */
 #include "scheme/coupled.h"
 #include "coupling/lagrangian.h"
 

@@ -24,6 +24,6 @@ typedef struct {
    Collective. */
 PETSC_EXTERN PetscErrorCode CoupledAttempt(Scheme scheme, PetscReal dt, PetscBool *solved);
 
-/* CoupledAdvance - next becomes the state and the state the old one; then the markers are moved to their area and edges.
-   Collective. */
+/* CoupledAdvance - next becomes the state and the state the old one; then the markers are moved to their area and
+   edges. Collective. */
 PETSC_EXTERN PetscErrorCode CoupledAdvance(Scheme scheme, PetscReal dt);

@@ -7,10 +7,10 @@ struct _p_DirectSolver {
   Coupling coupling; /* borrowed, and its fluid: */
   Fluid fluid;
   PetscInt M;
-  PetscInt *start;   /* [ranks+1] first global index of each rank; sigma, U and F come last, on the last rank */
+  PetscInt *start; /* [ranks+1] first global index of each rank; sigma, U and F come last, on the last rank */
   KSP ksp;
   Vec x, b;
-  PetscScalar *all; /* [M] tension or g of all edges, work */
+  PetscScalar *all;       /* [M] tension or g of all edges, work */
   KSPConvergedReason why; /* how the last solve ended; < 0: failed */
 };
 

@@ -42,8 +42,8 @@ PetscReal StepSize(const StepPolicy *p, StepPlan *plan, PetscReal courant, Petsc
   return most < 2 * dt ? most / 2 : dt;
 }
 
-/* The error X - X* is of second order in dt; in a first step X* = X, and it is the whole movement, so not tested. An error
-   that a smaller step has not lowered is not the step's, but what the length target corrects at the start, or the
+/* The error X - X* is of second order in dt; in a first step X* = X, and it is the whole movement, so not tested. An
+   error that a smaller step has not lowered is not the step's, but what the length target corrects at the start, or the
    solver's tolerance. */
 StepVerdict StepJudge(const StepPolicy *p, const StepTrial *t, StepPlan *plan) {
   const PetscBool fixed = t->error > 0.9 * plan->before ? PETSC_TRUE : PETSC_FALSE;

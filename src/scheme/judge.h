@@ -1,5 +1,5 @@
-/* Step sizes: fixed, or (-time_adapt error) judged after each attempt. Sizes are a base times powers of sqrt(2), so that
-   the coefficient a0 and the tables made for it come back. */
+/* Step sizes: fixed, or (-time_adapt error) judged after each attempt. Sizes are a base times powers of sqrt(2), so
+   that the coefficient a0 and the tables made for it come back. */
 #pragma once
 #include "scene/scene.h"
 
@@ -13,17 +13,17 @@ typedef struct {
 
 /* What an attempt of size dt showed. */
 typedef struct {
-  PetscBool solved;    /* markers could be placed, the solve converged; else the rest has no meaning */
-  PetscBool first;     /* the first step of a run, backward Euler: its error is not known */
+  PetscBool solved; /* markers could be placed, the solve converged; else the rest has no meaning */
+  PetscBool first;  /* the first step of a run, backward Euler: its error is not known */
   PetscReal dt;
-  PetscReal error;     /* max |X - X*|/R0 */
-  PetscReal speed;     /* largest of a marker relative to its vesicle's mean (length/time) */
-  PetscReal ratio;     /* worst edge ratio */
+  PetscReal error; /* max |X - X*|/R0 */
+  PetscReal speed; /* largest of a marker relative to its vesicle's mean (length/time) */
+  PetscReal ratio; /* worst edge ratio */
 } StepTrial;
 
 typedef struct {
-  PetscInt level;    /* of the next attempt: a step of base 2^(level/2) */
-  PetscReal before;  /* error of the attempt rejected last in this step; PETSC_MAX_REAL without */
+  PetscInt level;   /* of the next attempt: a step of base 2^(level/2) */
+  PetscReal before; /* error of the attempt rejected last in this step; PETSC_MAX_REAL without */
 } StepPlan;
 
 typedef enum { STEP_ACCEPT, STEP_REPEAT, STEP_GIVE_UP } StepVerdict;

@@ -9,8 +9,8 @@
 PETSC_EXTERN PetscErrorCode SchemePlace(Scheme scheme, PetscReal a0, Vec X, Vec sigma, Vec Xhat, PetscReal t,
                                         PetscBool *placed);
 
-/* SchemeBackground - the background flow's velocity at the markers X at time t, zero in the total form, where it is in w;
-   report.failure where a flow of the caller's has none. Collective. */
+/* SchemeBackground - the background flow's velocity at the markers X at time t, zero in the total form, where it is in
+   w; report.failure where a flow of the caller's has none. Collective. */
 PETSC_EXTERN PetscErrorCode SchemeBackground(Scheme scheme, Vec X, PetscReal t);
 
 /* SchemeMarkerVelocity - U = background + E w (+ self-mobility of sigma, which may be NULL) at the coupling's markers;

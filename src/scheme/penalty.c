@@ -110,7 +110,6 @@ PetscErrorCode SchemeCreate_Penalty(Scheme s) {
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&d));
   s->data = d;
-  s->ops = (SchemeOps){
-      .setup = SetUp_Penalty, .step = Step_Penalty, .view = View_Penalty, .destroy = Destroy_Penalty};
+  s->ops = (SchemeOps){.setup = SetUp_Penalty, .step = Step_Penalty, .view = View_Penalty, .destroy = Destroy_Penalty};
   PetscFunctionReturn(PETSC_SUCCESS);
 }

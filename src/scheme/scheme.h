@@ -27,8 +27,8 @@ typedef struct _p_Scheme *Scheme;
 
 typedef struct {
   PetscErrorCode (*setup)(Scheme);
-  PetscErrorCode (*step)(Scheme, PetscReal most); /* advance the state by state.dt, which step-size control chooses up to
-                                                     `most`; or fill in report.failure and leave it */
+  PetscErrorCode (*step)(Scheme, PetscReal most); /* advance the state by state.dt, which step-size control chooses up
+                                                     to `most`; or fill in report.failure and leave it */
   /* put back the velocities and pressures of state and old that a step with has_old has changed; NULL: they are copied
      before each step */
   PetscErrorCode (*undo)(Scheme);
@@ -49,18 +49,19 @@ struct _p_Scheme {
   Fluid fluid;
   Membrane membrane; /* of no vesicle when the scene has none */
   StepPolicy policy;
-  StepPlan plan;     /* of step-size control */
+  StepPlan plan; /* of step-size control */
   State state;
   State *old;        /* the state one step before, for schemes that go on from two; else NULL */
   PetscBool has_old; /* whether there was a step before */
   Snapshot before;   /* what SchemeStep goes back to when a step fails */
   PetscBool contact; /* whether parts of membranes are close, as last warned of */
   StepReport report;
-  Vec background;    /* marker vector: what the markers' velocity has besides the solved part: u_inf, zero in the total form */
-  Vec g;             /* edge vector: S^T u = g, minus the background's stretching, Dm u_inf/h^2 */
-  Vec work_tension;  /* edge vector, for use inside one function */
+  Vec background;   /* marker vector: what the markers' velocity has besides the solved part: u_inf, zero in the total
+                       form */
+  Vec g;            /* edge vector: S^T u = g, minus the background's stretching, Dm u_inf/h^2 */
+  Vec work_tension; /* edge vector, for use inside one function */
   PetscScalar *work_all; /* [2M] likewise, of all markers */
-  void *data;        /* the scheme's own */
+  void *data;            /* the scheme's own */
   SchemeOps ops;
 };
 
@@ -73,8 +74,8 @@ PETSC_EXTERN PetscErrorCode SchemeCreate(Scene scene, Coupling coupling, const P
 PETSC_EXTERN PetscErrorCode SchemeDestroy(Scheme *scheme);
 
 /* SchemeStep - one time step: the policy's, at most `most` where step sizes are judged. Afterwards scheme->report says
-   what was done; when report.failure is not empty the step could not be taken, or led to a state that is refused, and the
-   state is the last good one. Collective. */
+   what was done; when report.failure is not empty the step could not be taken, or led to a state that is refused, and
+   the state is the last good one. Collective. */
 PETSC_EXTERN PetscErrorCode SchemeStep(Scheme scheme, PetscReal most);
 
 /* SchemeRemember, SchemeRecall - what the solvers have kept from earlier steps (when their blocks were made, and where

@@ -160,7 +160,8 @@ static PetscErrorCode Options_Split(Scheme s, FILE *file) {
   PetscFunctionBeginUser;
   for (int k = 0; k < 2; k++)
     if (solvers[k])
-      PetscCall(KSPWriteOptions(solvers[k]->ksp, solvers[k]->chat ? solvers[k]->chat->pc : NULL, solvers[k]->prefix, file));
+      PetscCall(
+          KSPWriteOptions(solvers[k]->ksp, solvers[k]->chat ? solvers[k]->chat->pc : NULL, solvers[k]->prefix, file));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
