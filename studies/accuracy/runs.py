@@ -9,7 +9,7 @@ import h5py
 import numpy as np
 
 from petves.run import Run
-from petves.studies import Case
+from studies.common.engine import Case
 
 COMBINATIONS = {
     "default": ("cbs54", "spectral", "symbol", "true"),

@@ -6,10 +6,10 @@ from pathlib import Path
 
 import numpy as np
 
-from petves import scene_figures, scenes
-from petves.paper import REST, SHEAR, SHEAR_FREE
-from petves.scenes import BENDING, CHIS, REDUCED_AREAS
-from petves.studies import Results
+from studies.reproduction import scene_figures, scenes
+from studies.common.paper import REST, SHEAR, SHEAR_FREE
+from studies.reproduction.scenes import BENDING, CHIS, REDUCED_AREAS
+from studies.common.engine import Results
 from petves.tables import table
 
 COARSE = {"equilibrium": 8, "shear": 8}

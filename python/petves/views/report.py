@@ -12,9 +12,9 @@ from typing import Any
 
 import numpy as np
 
-from petves.plot import plot_conservation, plot_energy, plot_motion, plot_shapes, plot_tension
+from petves.views.plot import plot_conservation, plot_energy, plot_motion, plot_shapes, plot_tension
 from petves.run import Run
-from petves.words import key_numbers, scene_in_words
+from petves.views.words import key_numbers, scene_in_words
 
 FRAMES = 81  # saved times kept at most
 PIXELS = 96  # of a field's longer side

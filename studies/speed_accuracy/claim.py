@@ -6,10 +6,10 @@ from pathlib import Path
 
 import numpy as np
 
-from petves.accuracy_studies import last_markers
-from petves.convergence import at, fine_options, split_options
+from studies.accuracy.runs import last_markers
+from studies.reproduction.convergence import at, fine_options, split_options
 from petves.run import RunError
-from petves.studies import TIGHT, Case, Results, scene
+from studies.common.engine import TIGHT, Case, Results, scene
 from petves.tables import table, write_csv
 
 KINDS = ("relax", "shear")

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from petves.plot import draw_outlines, new_figure, save_figure
+from petves.views.plot import draw_outlines, new_figure, save_figure
 from petves.run import Run
 from petves.tables import table
 

@@ -9,11 +9,11 @@ from typing import Callable, Iterator
 
 import numpy as np
 
-from petves import scenes
-from petves.convergence import differences, fine_options, reference, split_options, state, truth
-from petves.paper import CELLS, REST, SHEAR
-from petves.scenes import QUIET, option_file
-from petves.studies import TIGHT, Case, Results, energy
+from studies.reproduction import scenes
+from studies.reproduction.convergence import differences, fine_options, reference, split_options, state, truth
+from studies.common.paper import CELLS, REST, SHEAR
+from studies.reproduction.scenes import QUIET, option_file
+from studies.common.engine import TIGHT, Case, Results, energy
 from petves.tables import table, write_csv
 
 REPEATS = 3

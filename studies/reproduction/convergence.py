@@ -7,10 +7,10 @@ from typing import Callable
 
 import numpy as np
 
-from petves.accuracy_studies import trigonometric
-from petves.paper import CELLS
+from studies.accuracy.runs import trigonometric
+from studies.common.paper import CELLS
 from petves.run import Run
-from petves.studies import ILU, MARKERS_TABLE_7, Case, Results, scene
+from studies.common.engine import ILU, MARKERS_TABLE_7, Case, Results, scene
 
 EULERIAN, LAGRANGIAN = ("u", "v", "p", "dp"), ("X", "Y", "sigma", "sigma_half")
 QUICK_REFERENCE = {"relax": 256, "shear": 128}

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import numpy as np
 
-from petves.accuracy_studies import trigonometric
-from petves.paper import RELAXATION
+from studies.accuracy.runs import trigonometric
+from studies.common.paper import RELAXATION
 from petves.run import Run
-from petves.studies import Case
+from studies.common.engine import Case
 
 BOXES = {
     "periodic": {"-domain_bc_x": "periodic", "-domain_bc_y": "periodic"},

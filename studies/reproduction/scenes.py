@@ -6,13 +6,13 @@ from pathlib import Path
 
 import numpy as np
 
-from petves.accuracy_studies import _measure_rest, trigonometric
-from petves.inertia_studies import aspect
-from petves.run import Run, RunError
-from petves.studies import ILU, Case
+from studies.accuracy.runs import _measure_rest, trigonometric
+from studies.inertia.runs import aspect
+from petves.run import Run
+from studies.common.engine import ILU, Case
 
-HOMES = [Path(__file__).resolve().parents[k] / name for k, name in ((2, "runs"), (4, "share/petves/runs"))]
-"""Where the option files are: in the repository, and after make install."""
+RUNS = Path(__file__).resolve().parents[2] / "runs"
+"""Where the option files are."""
 BENDING = 0.01
 REDUCED_AREAS, CHIS = (0.5, 0.6, 0.7, 0.8, 0.9), (1, 10, 100)
 WINDOWS = (6, 12, 24, 48, 384)
@@ -22,10 +22,7 @@ QUIET = {"-checkpoint_every": "0"}
 
 def option_file(name: str) -> dict[str, str]:
     """Return the options of runs/NAME.opts and their values, without -output_dir."""
-    path = next((home / f"{name}.opts" for home in HOMES if (home / f"{name}.opts").is_file()), None)
-    if path is None:
-        raise RunError(f"{name}.opts: not in {HOMES[0]} nor in {HOMES[1]}")
-    lines = [line.split("#")[0].split() for line in path.read_text().splitlines()]
+    lines = [line.split("#")[0].split() for line in (RUNS / f"{name}.opts").read_text().splitlines()]
     return {words[0]: " ".join(words[1:]) for words in lines if words and words[0] != "-output_dir"}
 
 

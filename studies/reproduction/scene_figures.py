@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from petves.accuracy_studies import trigonometric
-from petves.paper import SHEAR, SHEAR_FREE
-from petves.plot import save_figure
+from studies.accuracy.runs import trigonometric
+from studies.common.paper import SHEAR, SHEAR_FREE
+from petves.views.plot import save_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

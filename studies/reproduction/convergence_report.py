@@ -5,9 +5,9 @@ from __future__ import annotations
 from math import log2
 from pathlib import Path
 
-from petves.convergence import EULERIAN, finest, itself
-from petves.paper import CELLS, CONVERGENCE, TABLE_3, TABLE_7
-from petves.studies import Results
+from studies.reproduction.convergence import EULERIAN, finest, itself
+from studies.common.paper import CELLS, CONVERGENCE, TABLE_3, TABLE_7
+from studies.common.engine import Results
 from petves.tables import table, write_csv
 
 NAMES = {

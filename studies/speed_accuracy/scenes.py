@@ -8,12 +8,12 @@ from typing import Callable
 
 import numpy as np
 
-from petves.accuracy_studies import last_markers, tank_treading, trigonometric
-from petves.convergence import at, fine_options
-from petves.coupled_studies import PAPER_MEMBRANE
-from petves.paper import SHEAR
-from petves.scenes import CHANNEL_V, PEAK, option_file, radius
-from petves.studies import Case, scene
+from studies.accuracy.runs import last_markers, tank_treading, trigonometric
+from studies.reproduction.convergence import at, fine_options
+from studies.reproduction.coupled_runs import PAPER_MEMBRANE
+from studies.common.paper import SHEAR
+from studies.reproduction.scenes import CHANNEL_V, PEAK, option_file, radius
+from studies.common.engine import Case, scene
 
 QUIET = {"-output_every": "1e9", "-checkpoint_every": "0"}
 LIMITS = {"-limit_edge_ratio": "5", "-limit_area_error": "0.2", "-limit_length_error": "0.2"}  # the program's own

@@ -6,12 +6,12 @@ from pathlib import Path
 
 import numpy as np
 
-from petves.convergence import finest, split_options, split_state
-from petves.plot import save_figure
+from studies.reproduction.convergence import finest, split_options, split_state
+from petves.views.plot import save_figure
 from petves.run import Run, centroid
-from petves.scene_figures import grid_figure, membrane
-from petves.scenes import QUIET, option_file
-from petves.studies import Case, Results, iterations
+from studies.reproduction.scene_figures import grid_figure, membrane
+from studies.reproduction.scenes import QUIET, option_file
+from studies.common.engine import Case, Results, iterations
 from petves.tables import table, write_csv
 
 SETTINGS = {"relax": "relax", "shear": "shear_convergence"}

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import numpy as np
 
-from petves import inertia_studies as study
-from petves.paper import PARACHUTE, POISEUILLE, RELAXATION
-from petves.plot import new_figure, save_figure
-from petves.studies import Results, study_folder
+from studies.inertia import runs as study
+from studies.common.paper import PARACHUTE, POISEUILLE, RELAXATION
+from petves.views.plot import new_figure, save_figure
+from studies.common.engine import Results, study_folder
 from petves.tables import table, write_csv
 
 RELAXATIONS = (
@@ -34,7 +34,7 @@ REYNOLDS = (0.001, 0.01, 0.1, 0.3, 0.9, 3, 10)
 TRAVEL, SHORT = 160, 60
 
 
-def inertia(folder: str | Path, quick: bool = False) -> list[Path]:
+def write(folder: str | Path, quick: bool = False) -> list[Path]:
     """Run what is not there yet, write inertia_*.csv, two pictures and tables.md.
 
     Parameters

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import numpy as np
 
-from petves.accuracy_studies import KERNELS, tank_treading
-from petves import paper
+from studies.accuracy.runs import KERNELS, tank_treading
+from studies.common import paper
 from petves.run import Run
-from petves.studies import Case, Results, study_folder
+from studies.common.engine import Case, Results, study_folder
 from petves.tables import write_csv
 
 TOLERANCES = ("1e-1", "3e-2", "1e-2", "3e-3", "1e-3", "3e-4", "1e-4", "3e-5")
@@ -180,7 +180,7 @@ def _rest(results: Results) -> list[dict[str, object]]:
     return rows
 
 
-def calibrate(folder: str | Path) -> list[Path]:
+def write(folder: str | Path, quick: bool = False) -> list[Path]:
     """Run what is not there yet and write calibration.csv, which src/scene/auto.c quotes.
 
     Parameters

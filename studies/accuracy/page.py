@@ -7,17 +7,17 @@ from pathlib import Path
 
 import numpy as np
 
-from petves import accuracy_studies as study
-from petves.paper import REST, SHEAR
-from petves.plot import new_figure, save_figure
-from petves.studies import Results, study_folder
+from studies.accuracy import runs as study
+from studies.common.paper import REST, SHEAR
+from petves.views.plot import new_figure, save_figure
+from studies.common.engine import Results, study_folder
 from petves.tables import table, write_csv
 
 CELLS, PICTURE_CELLS, FINE_CELLS = (64, 128, 256), (48, 64, 96, 128, 192), (64, 128, 256, 512)
 PICTURE = ("uncorrected", "cbs54, none", "local", "chords", "ib6, symbol", "default")
 
 
-def accuracy(folder: str | Path, quick: bool = False) -> list[Path]:
+def write(folder: str | Path, quick: bool = False) -> list[Path]:
     """Run what is not there yet, write accuracy_*.csv, accuracy.png and tables.md.
 
     Parameters

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import numpy as np
 
-from petves import coupled_studies as study
-from petves.plot import new_figure, save_figure
-from petves.studies import Results
+from studies.reproduction import coupled_runs as study
+from petves.views.plot import new_figure, save_figure
+from studies.common.engine import Results
 from petves.tables import table, write_csv
 
 PROTOTYPE_COLUMNS = ("split", "1", "2_euler", "1_target", "2_target_euler")
@@ -77,7 +77,7 @@ def _head(quick: bool) -> str:
         "# The coupled scheme, measured\n\n"
         "Ellipse with semi-axes 0.2 and 0.5 in [-1,1]^2, nu = 1, c_b = 0.01 unless given, walls unless given; the paper's\n"
         "membrane (kernel ib6, finite differences, no self-mobility, no area target).\n"
-        f"Written by `{command}` (`python3 -m petves reproduce DIR --only coupled`); coupled.json holds every run's options.\n"
+        f"Written by `{command}` (`python3 -m studies reproduce DIR --only coupled`); coupled.json holds every run's options.\n"
     )
 
 

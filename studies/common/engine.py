@@ -11,7 +11,7 @@ from typing import Callable
 
 import numpy as np
 
-from petves.paper import CELLS
+from studies.common.paper import CELLS
 from petves.program import run_program
 from petves.run import RunError, read_series
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from petves.plot import FIELDS, draw_membranes, new_figure
+from petves.views.plot import FIELDS, draw_membranes, new_figure
 from petves.progress import progress_bar
 from petves.run import Run, RunError
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
-from petves.chart_claim import claim
-from petves.chart_pictures import picture
-from petves.chart_studies import BEST, CORRECTED, ERRORS, SCENES, SCHEMES, WIDE, Point, Scene
-from petves.studies import Case, Results, study_folder
+from studies.speed_accuracy.claim import claim
+from studies.speed_accuracy.pictures import picture
+from studies.speed_accuracy.scenes import BEST, CORRECTED, ERRORS, SCENES, SCHEMES, WIDE, Point, Scene
+from studies.common.engine import Case, Results, study_folder
 from petves.tables import table, write_csv
 
 ROUNDS = 3  # runs of a point, one of each in a round; the best counts
@@ -20,7 +20,7 @@ COLUMNS = "scene scheme cells h dt tolerance".split() + list(ERRORS) + "cpu_seco
 Row = dict[str, object]
 
 
-def chart(
+def write(
     folder: str | Path, quick: bool = False, scenes: tuple[Scene, ...] = SCENES, finest: int | None = None
 ) -> list[Path]:
     """Run what is not there yet; write chart.csv, recommended.csv, tables.md and the pictures.

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from petves.chart_studies import SCHEMES, Scene
-from petves.paper import BOUNDARY_INTEGRAL_CODES, SHEAR
-from petves.plot import new_figure, save_figure
+from studies.speed_accuracy.scenes import SCHEMES, Scene
+from studies.common.paper import BOUNDARY_INTEGRAL_CODES, SHEAR
+from petves.views.plot import new_figure, save_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

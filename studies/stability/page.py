@@ -10,10 +10,10 @@ from pathlib import Path
 
 import numpy as np
 
-from petves.plot import new_figure, save_figure
+from petves.views.plot import new_figure, save_figure
 from petves.run import RunError
-from petves.studies import study_folder
-from petves.stability_cells import MAPS, MARKS, SCHEMES, STEP_MAP, Map, run_cell
+from studies.common.engine import study_folder
+from studies.stability.cells import MAPS, MARKS, SCHEMES, STEP_MAP, Map, run_cell
 from petves.tables import table, write_csv
 
 COLUMNS = "map,scheme,x,y,mark,steps,energy_rise,area_error,length_error,drift,edge_ratio,its,message,options".split(
@@ -84,7 +84,7 @@ def _text(value: object) -> str:
     return value if isinstance(value, str) else f"{value:.6g}"
 
 
-def stability(folder: str | Path, quick: bool = False, maps: tuple[Map, ...] | None = None) -> list[Path]:
+def write(folder: str | Path, quick: bool = False, maps: tuple[Map, ...] | None = None) -> list[Path]:
     """Run what is not there yet; write stability.csv, tables.md, a picture a map and largest_step.csv, .png.
 
     Parameters

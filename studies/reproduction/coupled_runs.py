@@ -7,7 +7,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-from petves.studies import TIGHT, Case
+from studies.common.engine import TIGHT, Case
 
 PAPER_MEMBRANE = {
     "-delta_type": "ib6",

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from petves.convergence_figures import cost, end_figure
-from petves.convergence_report import convergence
-from petves.coupled_report import coupled_results
-from petves.paper import CELLS, ITERATIONS
-from petves.plot import new_figure, save_figure
-from petves.race import race
-from petves.scene_report import channel, equilibrium, tank_treading
-from petves.scenes import QUIET, option_file
-from petves.studies import Case, NotRun, Results, decay, energy, energy_start, iterations, sizes, study_folder
+from studies.reproduction.ends import cost, end_figure
+from studies.reproduction.convergence_report import convergence
+from studies.reproduction.coupled import coupled_results
+from studies.common.paper import CELLS, ITERATIONS
+from petves.views.plot import new_figure, save_figure
+from studies.reproduction.race import race
+from studies.reproduction.scene_report import channel, equilibrium, tank_treading
+from studies.reproduction.scenes import QUIET, option_file
+from studies.common.engine import Case, NotRun, Results, decay, energy, energy_start, iterations, sizes, study_folder
 from petves.tables import table, write_csv
 
 TESTS = {
@@ -28,7 +28,7 @@ ENERGY_CELLS = {True: 32, False: 64}
 """1/h of the energy study, in quick mode or not: dt = h^2 takes 3/h^2 steps."""
 
 
-def reproduce(
+def write(
     folder: str | Path, quick: bool = False, ranks: int = 2, only: str | None = None, run: bool = True
 ) -> list[Path]:
     """Run what is not there yet, then write the tables and the pictures.
