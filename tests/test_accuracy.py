@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pytest
 from conftest import run_petves
-from studies.accuracy.runs import last_markers, trigonometric
+from studies.common.curves import last_markers, trigonometric
 from studies.common.paper import SHEAR
 from test_coupled_runs import last_state, same_state
 

@@ -11,6 +11,7 @@ from studies.speed_accuracy import page as report
 from studies.speed_accuracy import claim as chart_claim
 from studies.speed_accuracy import scenes as study
 from studies.speed_accuracy.pictures import envelope
+from studies.common.curves import material_distance, outline_distance
 from studies.common.engine import Results
 
 RELAX = next(one for one in study.SCENES if one.name == "relax")
@@ -24,13 +25,13 @@ def ellipse(n: int, turn: float = 0.0) -> np.ndarray:
 def test_distances():
     """The outline's distance knows neither where markers are on it nor where it is; the material one knows both."""
     fine = ellipse(101)
-    assert study.material_distance(ellipse(31), fine) < 1e-5
-    assert study.material_distance(ellipse(31) + [3e-3, 4e-3], fine) == pytest.approx(5e-3, rel=1e-2)
+    assert material_distance(ellipse(31), fine) < 1e-5
+    assert material_distance(ellipse(31) + [3e-3, 4e-3], fine) == pytest.approx(5e-3, rel=1e-2)
     moved = ellipse(31, turn=0.3)
-    assert study.material_distance(moved, fine) > 1e-2
-    assert study.outline_distance(moved + [3, 4], fine) < 1e-6
+    assert material_distance(moved, fine) > 1e-2
+    assert outline_distance(moved + [3, 4], fine) < 1e-6
     circle = np.stack([np.cos(a := np.arange(65) * 2 * np.pi / 65), np.sin(a)], axis=1)
-    assert study.outline_distance(1.02 * circle, circle) == pytest.approx(0.02, rel=1e-3)
+    assert outline_distance(1.02 * circle, circle) == pytest.approx(0.02, rel=1e-3)
 
 
 def test_envelope_is_what_no_cheaper_point_equals():
@@ -113,9 +114,9 @@ def test_a_handful_of_points(tmp_path, monkeypatch):
         assert 8 * 24**2 * float(mine["solves"]) < 64**2 * float(theirs["solves"])
     assert float(found[2]["error"]) == pytest.approx(float(found[1]["error"]), rel=0.01)  # solves to 1e-12
 
-    monkeypatch.setattr("studies.common.engine._launch", lambda *words: pytest.fail("run again"))
+    monkeypatch.setattr("studies.common.engine.run_program", lambda *words: pytest.fail("run again"))
     kept = (tmp_path / "chart.csv").read_text()
     report.write(tmp_path, scenes=(scene,), finest=32)
     assert (tmp_path / "chart.csv").read_text() == kept
-    results = Results(tmp_path / "chart.json", 1)
-    assert all(entry["commit"] and entry["measures"]["cpu_seconds"] > 0 for entry in results.cases.values())
+    results = Results(tmp_path / "chart.json")
+    assert all(entry["commit"] and entry["measures"]["cpu_seconds"] > 0 for entry in results.entries.values())

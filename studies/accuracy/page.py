@@ -10,7 +10,8 @@ import numpy as np
 from studies.accuracy import runs as study
 from studies.common.paper import REST, SHEAR
 from petves.views.plot import new_figure, save_figure
-from studies.common.engine import Results, study_folder
+from studies.common.engine import Results
+from studies.common.scenes import KERNELS
 from petves.tables import table, write_csv
 
 CELLS, PICTURE_CELLS, FINE_CELLS = (64, 128, 256), (48, 64, 96, 128, 192), (64, 128, 256, 512)
@@ -18,22 +19,9 @@ PICTURE = ("uncorrected", "cbs54, none", "local", "chords", "ib6, symbol", "defa
 
 
 def write(folder: str | Path, quick: bool = False) -> list[Path]:
-    """Run what is not there yet, write accuracy_*.csv, accuracy.png and tables.md.
-
-    Parameters
-    ----------
-    folder : str or Path
-        Where the files go; accuracy.json keeps the measures of finished runs.
-    quick : bool
-        Leave out 256^2.
-
-    Returns
-    -------
-    list of Path
-        tables.md, accuracy.png.
-    """
-    folder = study_folder(folder)
-    results = Results(folder / "accuracy.json", 1)
+    """Run what is not there yet; write accuracy_*.csv, accuracy.png and tables.md. Quick: without 256^2."""
+    folder = Path(folder)
+    results = Results(folder / "accuracy.json")
     text = _steady(results, folder, CELLS[:2] if quick else CELLS) + _others(results, folder)
     text += _kernels(results, folder) + _chords(results, folder) + _rest(results, folder)
     if not quick:
@@ -53,6 +41,16 @@ def _percent(errors: tuple[float, float]) -> str:
     return ", ".join(f"{100 * e:+.2f}" for e in errors)
 
 
+def _norm(name: str, norm: np.ndarray, labels: int) -> list[list[str]]:
+    """Return the lines of a norm of the errors of angle and frequency by grid, and of its order between the grids."""
+    orders = np.log2(norm[:-1] / norm[1:])
+    blank = [""] * (labels - 1)
+    return [
+        [name, *blank, *(f"{a:.3f}, {b:.3f}" for a, b in norm)],
+        ["its order", *blank, "", *(f"{a:.1f}, {b:.1f}" for a, b in orders)],
+    ]
+
+
 def _steady(results: Results, folder: Path, cells: tuple[int, ...]) -> list[str]:
     """The default combination in both boxes."""
     rows, shown, every = [], [], []
@@ -63,11 +61,8 @@ def _steady(results: Results, folder: Path, cells: tuple[int, ...]) -> list[str]
         every.append(errors)
     write_csv(folder / "accuracy_steady.csv", ["combination", "box", "V", "chi", "cells", "angle", "frequency"], rows)
     every = 100 * np.array(every)  # scenes, grids, angle and frequency
-    norms = {"root mean square": np.sqrt((every**2).mean(axis=0)), "largest": np.abs(every).max(axis=0)}
-    for name, norm in norms.items():
-        shown.append([name, "", "", *(f"{a:.3f}, {b:.3f}" for a, b in norm)])
-        orders = np.log2(norm[:-1] / norm[1:])
-        shown.append(["its order", "", "", "", *(f"{a:.1f}, {b:.1f}" for a, b in orders)])
+    shown += _norm("root mean square", np.sqrt((every**2).mean(axis=0)), 3)
+    shown += _norm("largest", np.abs(every).max(axis=0), 3)
     kept = [results.get(study.steady(b, n, v, c)) for b, n, v, c in _all(cells[:2])]
     worst = {key: max(one[key] for one in kept) for key in ("area", "length", "shift")}
     note = (
@@ -87,10 +82,7 @@ def _fine(results: Results, folder: Path) -> list[str]:
         shown.append([f"{v}", f"{chi}", *(", ".join(f"{100 * e:+.3f}" for e in pair) for pair in errors)])
         every.append(errors)
     write_csv(folder / "accuracy_fine.csv", ["V", "chi", "cells", "angle", "frequency"], rows)
-    norm = 100 * np.sqrt((np.array(every) ** 2).mean(axis=0))
-    shown.append(["root mean square", "", *(f"{a:.3f}, {b:.3f}" for a, b in norm)])
-    orders = np.log2(norm[:-1] / norm[1:])
-    shown.append(["its order", "", "", *(f"{a:.1f}, {b:.1f}" for a, b in orders)])
+    shown += _norm("root mean square", 100 * np.sqrt((np.array(every) ** 2).mean(axis=0)), 2)
     header = ["V", "chi", *(f"{n}^2" for n in FINE_CELLS)]
     return ["### Finer grids: errors of angle, frequency in percent, box, rate dt = 0.0125\n", *table(header, shown)]
 
@@ -123,7 +115,7 @@ def _kernels(results: Results, folder: Path) -> list[str]:
     """Kernels and spacings at 64^2 and 128^2."""
     rows, shown = [], []
     base = {n: results.get(study.kernel_and_spacing("cbs54", 1.5, n)) for n in (64, 128)}
-    for kernel, spacing in product(study.KERNELS, study.SPACINGS):
+    for kernel, spacing in product(KERNELS, study.SPACINGS):
         line = [kernel, f"{spacing:g}"]
         for n in (64, 128):
             one = results.get(study.kernel_and_spacing(kernel, spacing, n))
@@ -177,11 +169,10 @@ def _cost(results: Results, folder: Path) -> list[str]:
     for repeat, name in product(range(3), names):
         found[name].append(results.get(study.cost(name, repeat)))
     seconds = {name: np.median([one["seconds_least"] for one in found[name]]) for name in names}
-    shown = [
-        [name, f"{found[name][0]['its_all']:.1f}", f"{seconds[name] / seconds['cbs54, none']:.2f}",
-         f"{seconds[name] / seconds['uncorrected']:.2f}"]
-        for name in names
-    ]  # fmt: skip
+    over = lambda name: [
+        f"{seconds[name] / seconds[base]:.2f}" for base in ("cbs54, none", "uncorrected")
+    ]  # noqa: E731
+    shown = [[name, f"{found[name][0]['its_all']:.1f}", *over(name)] for name in names]
     write_csv(folder / "accuracy_cost.csv", ["combination", "its", "over_cbs54_none", "over_uncorrected"], shown)
     header = ["", "iterations", "time over cbs54, none", "time over uncorrected"]
     title = "### Time a step at 256^2: V = 0.7, chi = 10, 25 steps, three runs each in turn\n"

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import product
 from pathlib import Path
 
-import h5py
 import numpy as np
 
 from petves.run import Run
-from studies.common.engine import Case
+from studies.common.curves import at_rest, trigonometric
+from studies.common.engine import Case, Series
+from studies.common.scenes import cells, tank_treading, words
 
 COMBINATIONS = {
     "default": ("cbs54", "spectral", "symbol", "true"),
@@ -21,43 +23,25 @@ COMBINATIONS = {
 }
 """Kernel, derivative, self-mobility and area target by name."""
 
-KERNELS, SPACINGS = ("ib6", "cbs32", "cbs43", "cbs54", "cbs65"), (1.25, 1.5, 2.0)
+SPACINGS = (1.25, 1.5, 2.0)
 REDUCED_AREAS, CHIS = (0.5, 0.7, 0.9), (1, 10)
+
+
+def label(name: str) -> str:
+    """Return a key of COMBINATIONS as part of a case's name."""
+    return name.replace(", ", "_")
 
 
 def combination(name: str) -> dict[str, str]:
     """Return the options of a key of COMBINATIONS."""
     kernel, derivative, mobility, area = COMBINATIONS[name]
-    options = {"-scheme_type": "coupled", "-delta_type": kernel, "-membrane_derivative": derivative}
-    return options | {"-coupling_self_mobility": mobility, "-scheme_area_target": area}
+    return words(
+        f"-scheme_type coupled -delta_type {kernel} -membrane_derivative {derivative} "
+        f"-coupling_self_mobility {mobility} -scheme_area_target {area}"
+    )
 
 
-def _radius(reduced_area: float) -> float:
-    """Return R0 of unit area."""
-    return (1 / (np.pi * reduced_area)) ** 0.5
-
-
-def tank_treading(box: str, n: int, reduced_area: float, chi: float, time_end: float = 12) -> dict[str, str]:
-    """Return the scene: 8 x 8 box, or channel 16 x 8, of n cells across; rate 1, rate dt = 0.05, unit area."""
-    length = 16 if box == "channel" else 8
-    options = {
-        "-domain_box": f"{-length / 2:g},{length / 2:g},-4,4",
-        "-domain_cells": f"{n * length // 8},{n}",
-        "-domain_bc_x": "periodic" if box == "channel" else "wall",
-        "-flow_type": "shear",
-        "-vesicle_area": "1",
-        "-vesicle_reduced_area": repr(reduced_area),
-        "-vesicle_bending": repr(float(_radius(reduced_area) ** 3 / chi)),
-        "-vesicle_angle": "20",
-        "-time_step": "0.05",
-        "-time_end": f"{time_end:g}",
-        "-output_every": "100",
-        "-checkpoint_every": "0",
-    }
-    return options
-
-
-def _measure_shear(series: dict[str, np.ndarray], folder: Path) -> dict[str, object]:
+def _measure_shear(series: Series, folder: Path) -> dict[str, object]:
     later = series["time"] >= 1 - 1e-9
     return {
         "theta": series["inclination"][-1] / np.pi,
@@ -75,19 +59,15 @@ def _measure_shear(series: dict[str, np.ndarray], folder: Path) -> dict[str, obj
 
 def shear(name: str, box: str, n: int, reduced_area: float, chi: float) -> Case:
     """Return a steady tank-treading run; name is a key of COMBINATIONS."""
-    label = name.replace(", ", "_")
     options = combination(name) | tank_treading(box, n, reduced_area, chi)
-    return Case(f"shear_{label}_{box}_{n}_{reduced_area}_{chi}", options, _measure_shear, ranks=1)
+    return Case(f"shear_{label(name)}_{box}_{n}_{reduced_area}_{chi}", options, _measure_shear)
 
 
 def steady(box: str, n: int, reduced_area: float, chi: float) -> Case:
     """Return shear("default", ...) with a smaller step, whose own part of the error is below 0.01 percent."""
     case = shear("default", box, n, reduced_area, chi)
-    return replace(
-        case,
-        name=case.name.replace("shear", "steady"),
-        options=case.options | {"-time_step": "0.025" if n >= 256 else "0.0125"},
-    )
+    options = case.options | {"-time_step": "0.025" if n >= 256 else "0.0125"}
+    return replace(case, name=case.name.replace("shear", "steady"), options=options)
 
 
 def fine(n: int, reduced_area: float, chi: float) -> Case:
@@ -101,80 +81,28 @@ def kernel_and_spacing(kernel: str, spacing: float, n: int) -> Case:
     """Return a timed run with V = 0.7, chi = 10 in the box, all corrections on."""
     options = combination("default") | {"-delta_type": kernel, "-vesicle_spacing": repr(spacing)}
     options |= tank_treading("box", n, 0.7, 10)
-    return Case(f"kernel_{kernel}_{spacing}_{n}", options, _measure_shear, ranks=1, may_fail=True)
+    return Case(f"kernel_{kernel}_{spacing}_{n}", options, _measure_shear, may_fail=True)
 
 
 def cost(name: str, repeat: int) -> Case:
     """Return a timed run of 25 steps at 256^2; repeats are the same run again."""
     options = combination(name) | tank_treading("box", 256, 0.7, 10, 1.25)
-    return Case(f"cost_{name.replace(', ', '_')}_{repeat}", options, _measure_shear, ranks=1)
-
-
-def trigonometric(markers: np.ndarray, count: int = 4096) -> np.ndarray:
-    """Return points of the trigonometric interpolation of markers, shape (n, 2), at equal steps of the index."""
-    n = len(markers)
-    hat = np.fft.fft(markers[:, 0] + 1j * markers[:, 1])
-    padded = np.zeros(count, complex)
-    half = (n - 1) // 2
-    padded[: half + 1] = hat[: half + 1]
-    padded[-half:] = hat[-half:]
-    if n % 2 == 0:
-        padded[n // 2] = padded[-(n // 2)] = hat[n // 2] / 2
-    points = np.fft.ifft(padded) * count / n
-    return np.stack([points.real, points.imag], axis=1)
-
-
-def last_markers(folder: Path) -> np.ndarray:
-    """Return the markers in a run's checkpoint, shape (n, 2)."""
-    with h5py.File(folder / "checkpoint.h5") as file:
-        return file["vesicle/markers"][0]
-
-
-def _measure_rest(series: dict[str, np.ndarray], folder: Path) -> dict[str, object]:
-    curve = trigonometric(last_markers(folder))
-    curve = curve - curve.mean(axis=0)
-    angle = series["inclination"][-1]
-    along = curve @ [np.cos(angle), np.sin(angle)]
-    across = curve @ [-np.sin(angle), np.cos(angle)]
-    middle = np.flatnonzero(np.diff(np.sign(along)))
-    crossings = [
-        across[k] - along[k] * (across[k + 1] - across[k]) / (along[k + 1] - along[k])
-        for k in middle
-        if k + 1 < len(along)
-    ]
-    edges = np.roll(curve, -1, axis=0) - curve
-    energy = series["energy_bending"]
-    return {
-        "energy": energy[-1],
-        "drift": abs(energy[-1] / energy[4 * len(energy) // 5] - 1),
-        "width": np.ptp(along),
-        "mid_height": max(crossings) - min(crossings),
-        "length": np.hypot(*edges.T).sum(),
-    }
+    return Case(f"cost_{label(name)}_{repeat}", options, _measure_shear)
 
 
 def rest(name: str, n: int, reduced_area: float) -> Case:
     """Return a relaxation of an ellipse of unit area to rest: 4 x 4 box with walls, n^2 cells, c_b = nu = 1."""
-    options = combination(name) | {
-        "-domain_box": "-2,2,-2,2",
-        "-domain_cells": f"{n},{n}",
-        "-vesicle_area": "1",
-        "-vesicle_reduced_area": repr(reduced_area),
-        "-vesicle_angle": "90",
-        "-vesicle_bending": "1",
-        "-time_step": "0.02",
-        "-time_end": "5",
-        "-output_every": "100",
-        "-checkpoint_every": "0",
-    }
-    return Case(f"rest_{name.replace(', ', '_')}_{n}_{reduced_area}", options, _measure_rest, ranks=1)
+    options = combination(name) | words("-domain_box -2,2,-2,2") | cells(n)
+    options |= words(f"-vesicle_area 1 -vesicle_reduced_area {reduced_area!r} -vesicle_angle 90 -vesicle_bending 1")
+    options |= words("-time_step 0.02 -time_end 5 -output_every 100 -checkpoint_every 0")
+    return Case(f"rest_{label(name)}_{n}_{reduced_area}", options, at_rest)
 
 
 DISTANCES, RAYS = (0.125, 0.25, 0.5), 64
 """Distances from the membrane in the 8 x 8 box, 2 h and 4 h of 64^2 and 128^2, and points on each."""
 
 
-def _measure_fields(series: dict[str, np.ndarray], folder: Path, reference: dict | None) -> dict[str, object]:
+def _measure_fields(series: Series, folder: Path, reference: dict | None) -> dict[str, object]:
     """Velocity and pressure at points outside the reference's membrane (the run's own without one), and tension."""
     run = Run.read(folder)
     u, v, pressure = run.fields(-1)
@@ -203,18 +131,11 @@ def _cubic(field: np.ndarray, place: np.ndarray) -> np.ndarray:
     """Return a field of shape (ny, nx) at places x, y in cells, shape (n, 2), by cubics through 4 x 4 cells."""
     first = np.floor(place).astype(int) - 1
     t = place - first - 1
-    weights = np.stack(
-        [
-            -t * (t - 1) * (t - 2) / 6,
-            (t + 1) * (t - 1) * (t - 2) / 2,
-            -(t + 1) * t * (t - 2) / 2,
-            (t + 1) * t * (t - 1) / 6,
-        ]
-    )
+    ends = -t * (t - 1) * (t - 2) / 6, (t + 1) * t * (t - 1) / 6
+    weights = ends[0], (t + 1) * (t - 1) * (t - 2) / 2, -(t + 1) * t * (t - 2) / 2, ends[1]
     values = np.zeros(len(place))
-    for i in range(4):
-        for j in range(4):
-            values += weights[i, :, 0] * weights[j, :, 1] * field[first[:, 1] + j, first[:, 0] + i]
+    for i, j in product(range(4), repeat=2):
+        values += weights[i][:, 0] * weights[j][:, 1] * field[first[:, 1] + j, first[:, 0] + i]
     return values
 
 
@@ -222,4 +143,4 @@ def fields(name: str, n: int, reference: dict | None) -> Case:
     """Return a run whose velocity and tension are looked at: V = 0.7, chi = 10, box."""
     options = combination(name) | tank_treading("box", n, 0.7, 10, 10) | {"-output_every": "10"}
     measure = lambda series, folder: _measure_fields(series, folder, reference)  # noqa: E731
-    return Case(f"outside_{name.replace(', ', '_')}_{n}", options, measure, ranks=1)
+    return Case(f"outside_{label(name)}_{n}", options, measure)

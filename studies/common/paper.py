@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-CELLS = (32, 64, 128, 256)
-"""1/h of the columns below."""
-
 CONVERGENCE = {
     "relax": {
         "u": (8.607e-3, 3.649e-3, 1.698e-3, 6.923e-4),

@@ -10,7 +10,8 @@ import numpy as np
 from studies.inertia import runs as study
 from studies.common.paper import PARACHUTE, POISEUILLE, RELAXATION
 from petves.views.plot import new_figure, save_figure
-from studies.common.engine import Results, study_folder
+from studies.common.engine import Results
+from studies.common.scenes import BOXES
 from petves.tables import table, write_csv
 
 RELAXATIONS = (
@@ -35,22 +36,9 @@ TRAVEL, SHORT = 160, 60
 
 
 def write(folder: str | Path, quick: bool = False) -> list[Path]:
-    """Run what is not there yet, write inertia_*.csv, two pictures and tables.md.
-
-    Parameters
-    ----------
-    folder : str or Path
-        Where the files go; inertia.json keeps the measures of finished runs.
-    quick : bool
-        Only the relaxing ellipse, the moving one and the iterations.
-
-    Returns
-    -------
-    list of Path
-        tables.md, galilean.png and, unless quick, migration.png.
-    """
-    folder = study_folder(folder)
-    results = Results(folder / "inertia.json", 1)
+    """Run what is not there yet; write inertia_*.csv, two pictures and tables.md. Quick: without the channels."""
+    folder = Path(folder)
+    results = Results(folder / "inertia.json")
     text = _relaxation(results, folder) + _galilean(results, folder) + _iterations(results, folder)
     pictures = [folder / "galilean.png"]
     if not quick:
@@ -116,7 +104,7 @@ def _galilean(results: Results, folder: Path) -> list[str]:
 def _iterations(results: Results, folder: Path) -> list[str]:
     """Iterations of none beside unsteady."""
     rows, shown = [], []
-    for box, n in product(study.BOXES, (64, 128, 256)):
+    for box, n in product(BOXES, (64, 128, 256)):
         line = [box, f"1/{n // 2}"]
         for model in ("unsteady", "none"):
             one = results.get(study.iterations(box, n, model))

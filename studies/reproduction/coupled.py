@@ -42,27 +42,10 @@ ENERGY_LABELS = {
 FIGURE_STYLES = ("s-", "o-", "^:", "v--")
 
 
-def coupled_results(folder: Path, quick: bool, ranks: int) -> Path:
-    """Run what is not there yet, write coupled_*.csv, pictures and coupled.md into an existing folder.
-
-    Parameters
-    ----------
-    folder : Path
-        Where the files go; coupled.json keeps the measures of finished runs.
-    quick : bool
-        Leave out the iterations at h = 1/256.
-    ranks : int
-        Not used by the runs here, which say their own; work is timed on 1 and 2.
-
-    Returns
-    -------
-    Path
-        coupled.md.
-    """
-    results = Results(folder / "coupled.json", ranks)
-    text = [_head(quick)]
-    text += _energy(results, folder)
-    text += _temporal(results, folder)
+def coupled_results(folder: Path, quick: bool) -> Path:
+    """Run what is not there yet; write coupled_*.csv, a picture and coupled.md. Quick: no iterations at h = 1/256."""
+    results = Results(folder / "coupled.json")
+    text = [_head(quick), *_energy(results, folder), *_temporal(results, folder)]
     text += _iterations(results, folder, (32, 64, 128) if quick else (32, 64, 128, 256))
     text += _work(results, folder, (64, 128, 256), 64 if quick else 128)
     text += _start(results, folder)
@@ -143,25 +126,15 @@ def _temporal(results: Results, folder: Path) -> list[str]:
         rows += [[scheme, 1 / k, e, one["nsolve"]] for k, e, one in zip(study.STEPS, errors, found)]
         shown.append([scheme, *(f"{e:.2e}" for e in errors), ", ".join(f"{q:.2f}" for q in orders)])
     lines = table(["", *(f"dt = 1/{k}" for k in study.STEPS), "observed order"], shown)
-    tolerances, steps, errors, solves = [], [], [], []
-    for tolerance in study.TOLERANCES:
-        one = results.get(study.adaptive(tolerance))
-        tolerances.append(tolerance)
-        steps.append(one["steps"])
-        solves.append(one["nsolve"])
-        errors.append(_distance(one, exact))
+    adaptive = [results.get(study.adaptive(tolerance)) for tolerance in study.TOLERANCES]
+    errors = [_distance(one, exact) for one in adaptive]
+    steps, solves = ([one[key] for one in adaptive] for key in ("steps", "nsolve"))
     write_csv(folder / "coupled_temporal.csv", ["scheme", "dt", "error", "nsolve"], rows)
-    write_csv(
-        folder / "coupled_adaptive.csv",
-        ["tolerance", "error", "steps", "nsolve"],
-        [list(r) for r in zip(tolerances, errors, steps, solves)],
-    )
+    numbers = list(zip(study.TOLERANCES, errors, steps, solves))
+    write_csv(folder / "coupled_adaptive.csv", ["tolerance", "error", "steps", "nsolve"], numbers)
     factors = ["", *(f"{a / b:.2f}" for a, b in zip(errors, errors[1:]))]
-    adapted = [
-        [f"{t:.3g}", f"{e:.2e}", f, str(n), f"{s:.0f}"]
-        for t, e, f, n, s in zip(tolerances, errors, factors, steps, solves)
-    ]
-    _draw_temporal(folder, curves, tolerances, errors, solves, rows)
+    adapted = [[f"{t:.3g}", f"{e:.2e}", f, str(n), f"{s:.0f}"] for (t, e, n, s), f in zip(numbers, factors)]
+    _draw_temporal(folder, curves, errors, solves, rows)
     about = (
         "h = 1/32, 36 markers, t = 0.25, length target off, tolerances 1e-12: root mean square distance of markers from those of\n"
         "coupled, order 2 with dt = 1/1024.\n"
@@ -182,14 +155,10 @@ def _temporal(results: Results, folder: Path) -> list[str]:
 
 
 def _draw_temporal(
-    folder: Path,
-    curves: dict[str, list[float]],
-    tolerances: list[float],
-    errors: list[float],
-    solves: list[float],
-    rows: list[list],
+    folder: Path, curves: dict[str, list[float]], errors: list[float], solves: list[float], rows: list[list]
 ) -> None:
     """Draw the errors against the step, against the tolerance and against the fast solves."""
+    tolerances = study.TOLERANCES
     figure, axes = new_figure(13, 4.2, columns=3)
     steps = np.array([1 / k for k in study.STEPS])
     for (name, values), style in zip(curves.items(), FIGURE_STYLES):

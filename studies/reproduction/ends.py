@@ -6,13 +6,16 @@ from pathlib import Path
 
 import numpy as np
 
-from studies.reproduction.convergence import finest, split_options, split_state
-from petves.views.plot import save_figure
-from petves.run import Run, centroid
-from studies.reproduction.scene_figures import grid_figure, membrane
-from studies.reproduction.scenes import QUIET, option_file
-from studies.common.engine import Case, Results, iterations
+from petves.run import Run
 from petves.tables import table, write_csv
+from petves.views.plot import save_figure
+from studies.common.curves import about_centroid
+from studies.common.engine import Case, Results
+from studies.common.scenes import option_file, split_options
+from studies.reproduction.convergence import finest, split_state
+from studies.reproduction.runs import iterations
+from studies.reproduction.scene_figures import grid_figure, membrane
+from studies.reproduction.scenes import QUIET
 
 SETTINGS = {"relax": "relax", "shear": "shear_convergence"}
 BLOCKS, ARROWS = 128, 16  # of the fields that are kept, a side
@@ -25,7 +28,7 @@ def end_figure(results: Results, folder: Path, kind: str, quick: bool) -> list[s
     n = min(256, finest(results, kind, quick))
     name = f"figure_{kind}_{n}"
     theirs = results.derive(name, split_options(kind, n), lambda: _kept(split_state(results, kind, n)))
-    ours = results.get(Case(f"figure_{kind}_ours", option_file(SETTINGS[kind]) | QUIET, _ours, ranks=1))
+    ours = results.get(Case(f"figure_{kind}_ours", option_file(SETTINGS[kind]) | QUIET, _ours))
     number = {"relax": 3, "shear": 4}[kind]
     figure, ((left, right),) = grid_figure(12, 5.2 if kind == "shear" else 4.6, 1, 2, equal=False)
     if kind == "shear":
@@ -69,7 +72,7 @@ def _ours(_: dict[str, np.ndarray], folder: Path) -> dict[str, object]:
 def _against_phase(one: dict[str, list]) -> tuple[np.ndarray, np.ndarray]:
     """Return the phase angle of the edges' midpoints over pi, in order, and the tension there."""
     points = np.asarray(one["markers"])
-    middle = (points + np.roll(points, 1, axis=0)) / 2 - centroid(np.vstack([points, points[:1]]))
+    middle = (points + np.roll(points, 1, axis=0)) / 2 - points + about_centroid(points)
     angle = np.arctan2(middle[:, 1], middle[:, 0]) / np.pi
     order = np.argsort(angle)
     return angle[order], np.asarray(one["tension"])[order]
@@ -77,7 +80,7 @@ def _against_phase(one: dict[str, list]) -> tuple[np.ndarray, np.ndarray]:
 
 def cost(results: Results, folder: Path, quick: bool) -> list[str]:
     """Draw Fig 5: seconds a step, and of all steps to t = 5, against the number of cells."""
-    cells = [n for n in COST_STEPS if not quick or n < 512 or f"cost_{n}_none_2" in results.cases]
+    cells = [n for n in COST_STEPS if not quick or n < 512 or f"cost_{n}_none_2" in results.entries]
     size = np.array([4 * n**2 for n in cells])
     found = {name: [_cost(results, n, name) for n in cells] for name in LABELS}
     step = {name: [seconds for seconds, _ in pairs] for name, pairs in found.items()}
@@ -115,8 +118,7 @@ def _cost(results: Results, n: int, name: str) -> tuple[float, float]:
     found = []
     for steps in COST_STEPS[n]:
         options = iterations("shear", n)[name].options | {"-time_end": repr(steps * 0.25 / n)}
-        case = Case(f"cost_{n}_{name}_{steps}", options, lambda series, _: {"solves": series["nsolve"].sum()}, ranks=1)
+        case = Case(f"cost_{n}_{name}_{steps}", options, lambda series, _: {"solves": series["nsolve"].sum()})
         found.append(results.get(case))
     first, last = COST_STEPS[n]
-    seconds, solves = ((found[1][key] - found[0][key]) / (last - first) for key in ("cpu_seconds", "solves"))
-    return seconds, solves
+    return tuple((found[1][key] - found[0][key]) / (last - first) for key in ("cpu_seconds", "solves"))

@@ -4,16 +4,18 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from studies.reproduction.ends import cost, end_figure
-from studies.reproduction.convergence_report import convergence
-from studies.reproduction.coupled import coupled_results
-from studies.common.paper import CELLS, ITERATIONS
-from petves.views.plot import new_figure, save_figure
-from studies.reproduction.race import race
-from studies.reproduction.scene_report import channel, equilibrium, tank_treading
-from studies.reproduction.scenes import QUIET, option_file
-from studies.common.engine import Case, NotRun, Results, decay, energy, energy_start, iterations, sizes, study_folder
 from petves.tables import table, write_csv
+from petves.views.plot import new_figure, save_figure
+from studies.common.engine import Case, NotRun, Results
+from studies.common.paper import ITERATIONS
+from studies.common.scenes import CELLS, option_file
+from studies.reproduction.convergence import convergence
+from studies.reproduction.coupled import coupled_results
+from studies.reproduction.ends import cost, end_figure
+from studies.reproduction.race import race
+from studies.reproduction.runs import decay, energy, energy_start, iterations, sizes
+from studies.reproduction.scene_report import channel, equilibrium, tank_treading
+from studies.reproduction.scenes import QUIET
 
 TESTS = {
     "none": ("none", "none, relative h^2"),
@@ -31,32 +33,17 @@ ENERGY_CELLS = {True: 32, False: 64}
 def write(
     folder: str | Path, quick: bool = False, ranks: int = 2, only: str | None = None, run: bool = True
 ) -> list[Path]:
-    """Run what is not there yet, then write the tables and the pictures.
+    """Run what is not there yet; write tables and pictures, the page FOLDER.md beside the folder, coupled.md in it.
 
-    Parameters
-    ----------
-    folder : str or Path
-        Where results.json, coupled.json, the CSV tables, pictures and coupled.md go; the page reproduction.md goes beside it.
-    quick : bool
-        Coarse grids only: minutes, not hours.
-    ranks : int
-        MPI ranks of the paper's studies.
-    only : "paper" or "coupled", optional
-        One of the two groups of studies.
-    run : bool
-        False: run nothing of the paper's studies; a section whose runs are missing says so.
-
-    Returns
-    -------
-    list of Path
-        The pages: of the paper, of the coupled scheme.
+    Quick: coarse grids only, minutes. `ranks`: of the split scheme's runs. `only`: "paper" or "coupled". Without `run`
+    nothing of the paper's part is run; a section whose runs are missing says so.
     """
-    folder = study_folder(folder)
+    folder = Path(folder)
     written = []
     if only != "coupled":
         written.append(_paper(folder, quick, ranks, run))
     if only != "paper":
-        written.append(coupled_results(folder, quick, ranks))
+        written.append(coupled_results(folder, quick))
     return written
 
 
@@ -128,11 +115,7 @@ def _iterations(results: Results, folder: Path, kind: str, quick: bool) -> list[
         "line stands beside. Relative and absolute: of the residual that GMRES sees, preconditioned from the left. L2 norm:\n"
         "(SUM a_k^2 ds)^(1/2) over the edges. These runs say `-tension_ksp_pc_side left`; the program's default is right.\n"
     )
-    return [
-        f"## Table {number}: tension iterations\n",
-        about,
-        *table(["", *(f"h = 1/{n}" for n in cells)], shown),
-    ]
+    return [f"## Table {number}: tension iterations\n", about, *table(["", *(f"h = 1/{n}" for n in cells)], shown)]
 
 
 def _energy(results: Results, folder: Path, n: int) -> list[str]:
@@ -145,7 +128,7 @@ def _energy(results: Results, folder: Path, n: int) -> list[str]:
         axes.plot(found["time"], found["energy"], style, label=rf"$\Delta t = {name}$")
         rows += [[name, t, e] for t, e in zip(found["time"], found["energy"])]
         shown.append([name, *(f"{x:+.2e}" for x in (*found["rise_first_two"], found["rise_later"]))])
-    own = results.get(Case("energy_ours", option_file("energy") | QUIET, decay, ranks=1))
+    own = results.get(Case("energy_ours", option_file("energy") | QUIET, decay))
     axes.plot(own["time"], own["energy"], "k-", lw=0.8, label="runs/energy.opts")
     shown.append(["runs/energy.opts", *(f"{x:+.2e}" for x in (*own["rise_first_two"], own["rise_later"]))])
     axes.set(xlabel="time $t$", ylabel="$E/E_0$")

@@ -9,29 +9,23 @@ from typing import Callable, Iterator
 
 import numpy as np
 
-from studies.reproduction import scenes
-from studies.reproduction.convergence import differences, fine_options, reference, split_options, state, truth
-from studies.common.paper import CELLS, REST, SHEAR
-from studies.reproduction.scenes import QUIET, option_file
-from studies.common.engine import TIGHT, Case, Results, energy
 from petves.tables import table, write_csv
+from studies.common.curves import edge_lengths, last_markers, material_distance, radius
+from studies.common.engine import Case, Results, Series
+from studies.common.paper import REST, SHEAR
+from studies.common.scenes import BENDING, CELLS, CHANNEL_V, TIGHT, cells, fine_options, option_file, split_options
+from studies.reproduction import scenes
+from studies.reproduction.convergence import truth
+from studies.reproduction.runs import energy, relative_energy
+from studies.reproduction.scenes import QUIET
 
 REPEATS = 3
 _QUICK = {"energy": 64, "relax": 64, "shear": 64}  # others: 16
 HEIGHT_TIMES = (24, 48, 96)
-HEADER = [
-    "scene",
-    "error of",
-    "the paper's h",
-    "steps",
-    "our steps",
-    "its error",
-    "our error",
-    "error ratio",
-    "time ratio",
-]
+HEADER = ["scene", "error of", "the paper's h", "steps", "our steps", "its error", "our error"]
+HEADER += ["error ratio", "time ratio"]
 
-Measure = Callable[[dict[str, np.ndarray], Path], float]
+Measure = Callable[[Series, Path], float]
 
 
 @dataclass
@@ -51,11 +45,8 @@ def race(results: Results, folder: Path, quick: bool) -> list[str]:
     """Return the section with a row for each comparison; in quick mode on coarse grids, and what is there."""
     rows, kept = [], []
     for one in _races(results):
-        if (
-            quick
-            and one.cells > _QUICK.get(one.key, 16)
-            and f"race_{one.key}_{one.cells}_ours_{REPEATS - 1}" not in results.cases
-        ):
+        there = f"race_{one.key}_{one.cells}_ours_{REPEATS - 1}" in results.entries
+        if quick and one.cells > _QUICK.get(one.key, 16) and not there:
             continue
         taken = _take(results, one)
         errors = [taken[who][0]["error"] for who in ("paper", "ours")]
@@ -81,21 +72,14 @@ def race(results: Results, folder: Path, quick: bool) -> list[str]:
 
 def _take(results: Results, one: Race) -> dict[str, list[dict]]:
     """Return the measures of REPEATS runs of both, run in turn."""
-    taken: dict[str, list[dict]] = {"paper": [], "ours": []}
 
-    def measure(series: dict[str, np.ndarray], folder: Path) -> dict[str, object]:
-        return {
-            "error": one.error(series, folder),
-            "steps": len(series["time"]) - 1,
-            "step_seconds": series["wall"].sum(),
-        }
+    def measure(series: Series, folder: Path) -> dict[str, object]:
+        found = {"error": one.error(series, folder), "steps": len(series["time"]) - 1}
+        return found | {"step_seconds": series["wall"].sum()}
 
-    for repeat in range(REPEATS):
-        for who, options in (("paper", one.theirs), ("ours", one.ours)):
-            taken[who].append(
-                results.get(Case(f"race_{one.key}_{one.cells}_{who}_{repeat}", options, measure, ranks=1))
-            )
-    return taken
+    both = {"paper": one.theirs, "ours": one.ours}
+    cases = {who: Case(f"race_{one.key}_{one.cells}_{who}", options, measure) for who, options in both.items()}
+    return results.in_turn(cases, REPEATS)
 
 
 def _races(results: Results) -> Iterator[Race]:
@@ -113,7 +97,7 @@ def _races(results: Results) -> Iterator[Race]:
         yield Race("equilibrium", "5.4, V = 0.7", "E_B at rest", n, theirs, ours, _rest_error)
     for name, re, nu in (("channel", "0.89", 1), ("channel_slow", "0.089", 10)):
         theirs = scenes.channel_paper(1, 8, 12, 96).options
-        theirs |= {"-fluid_viscosity": str(nu), "-vesicle_bending": repr(nu * scenes.BENDING)}
+        theirs |= {"-fluid_viscosity": str(nu), "-vesicle_bending": repr(nu * BENDING)}
         scene = f"5.5, c_0 = R0, its Re {re}"
         yield Race(name, scene, "height", 8, theirs, scenes.channel(1).options, _height_error(results))
     for n in (8, 16, 64):
@@ -121,45 +105,44 @@ def _races(results: Results) -> Iterator[Race]:
         yield Race("shear_steady", "5.6, V = 0.7, chi = 10", "angle, frequency", n, theirs, ours, _shear_error)
 
 
-def _energies(series: dict[str, np.ndarray], _: Path) -> dict[str, np.ndarray]:
-    total = series["energy_kinetic"] + series["energy_bending"]
-    return {"time": series["time"], "energy": total / total[0]}
+def _energies(series: Series, _: Path) -> Series:
+    return {"time": series["time"], "energy": relative_energy(series)}
 
 
 def _energy_error(results: Results) -> Measure:
-    def error(series: dict[str, np.ndarray], folder: Path) -> float:
-        options = fine_options("relax") | {"-domain_cells": "128,128", "-time_end": "3"}
-        fine, own = reference(results, "truth_energy", options, _energies), _energies(series, folder)
+    def error(series: Series, folder: Path) -> float:
+        options = fine_options("relax") | cells(128) | {"-time_end": "3"}
+        fine, own = results.arrays("truth_energy", options, _energies), _energies(series, folder)
         return float(np.abs(own["energy"] - np.interp(own["time"], fine["time"], fine["energy"])).max())
 
     return error
 
 
 def _marker_error(results: Results, kind: str) -> Measure:
-    def error(series: dict[str, np.ndarray], folder: Path) -> float:
-        found = differences(state(series, folder), truth(results, kind), 1)
-        return float(np.hypot(found["X"], found["Y"]))
+    def error(series: Series, folder: Path) -> float:
+        markers = last_markers(folder)
+        return material_distance(markers, truth(results, kind)["markers"], edge_lengths(markers).sum())
 
     return error
 
 
-def _rest_error(series: dict[str, np.ndarray], folder: Path) -> float:
+def _rest_error(series: Series, folder: Path) -> float:
     return abs(scenes.measure_rest(series, folder)["energy"] / REST[0.7][0] - 1)
 
 
 def _height_error(results: Results) -> Measure:
-    def height(series: dict[str, np.ndarray]) -> np.ndarray:
-        return np.interp(HEIGHT_TIMES, series["time"], series["center_y"] - 3) / scenes.radius(scenes.CHANNEL_V)
+    def height(series: Series) -> np.ndarray:
+        return np.interp(HEIGHT_TIMES, series["time"], series["center_y"] - 3) / radius(CHANNEL_V)
 
-    def error(series: dict[str, np.ndarray], folder: Path) -> float:
+    def error(series: Series, folder: Path) -> float:
         options = scenes.channel(1, cells=24, dt=0.04).options
-        fine = reference(results, "truth_channel", options, lambda found, _: {"height": height(found)})
+        fine = results.arrays("truth_channel", options, lambda found, _: {"height": height(found)})
         return float(np.abs(height(series) - fine["height"]).max())
 
     return error
 
 
-def _shear_error(series: dict[str, np.ndarray], folder: Path) -> float:
-    rate = 10 * scenes.BENDING / scenes.radius(0.7) ** 3
+def _shear_error(series: Series, folder: Path) -> float:
+    rate = scenes.shear_rate(0.7, 10)
     found = series["inclination"][-1] / np.pi, series["frequency"][-1] / rate
     return max(abs(value / target - 1) for value, target in zip(found, SHEAR["box"][0.7, 10]))

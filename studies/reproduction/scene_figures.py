@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from studies.accuracy.runs import trigonometric
+from petves.theory import ellipse_axes
+from studies.common.curves import trigonometric
 from studies.common.paper import SHEAR, SHEAR_FREE
 from petves.views.plot import save_figure
 
@@ -145,11 +146,9 @@ def shapes(found: dict[tuple[float, int], dict], path: Path) -> Path:
 
 def keller_skalak(reduced_area: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return inclination over pi and frequency over rate of an ellipse with fixed shape: atan(b/a), a b/(a^2 + b^2)."""
-    ratio = np.linspace(0.02, 1, 2000)
-    turn = 2 * np.pi * (np.arange(512) + 0.5) / 512
-    length = np.array([np.sqrt(np.sin(turn) ** 2 + (r * np.cos(turn)) ** 2).mean() for r in ratio]) * 2 * np.pi
-    r = np.interp(reduced_area, 4 * np.pi**2 * ratio / length**2, ratio)
-    return np.arctan(r) / np.pi, r / (1 + r**2)
+    axes = [ellipse_axes(v) for v in np.ravel(reduced_area)]
+    ratio = np.array([b / a for a, b in axes]).reshape(np.shape(reduced_area))
+    return np.arctan(ratio) / np.pi, ratio / (1 + ratio**2)
 
 
 def against_reduced_area(found: dict[tuple[float, int], dict], path: Path) -> Path:

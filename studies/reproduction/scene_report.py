@@ -8,7 +8,7 @@ import numpy as np
 
 from studies.reproduction import scene_figures, scenes
 from studies.common.paper import REST, SHEAR, SHEAR_FREE
-from studies.reproduction.scenes import BENDING, CHIS, REDUCED_AREAS
+from studies.reproduction.scenes import CHIS, REDUCED_AREAS, shear_rate
 from studies.common.engine import Results
 from petves.tables import table
 
@@ -118,16 +118,8 @@ def _settled(results: Results, quick: bool) -> list[str]:
     for case in shown:
         one, (offset, n, v) = results.get(case), case.name.split("_")[2:5]
         heights = [f"{np.interp(t, one['time'], one['height']):+.4f}" for t in (240, 480, 960, 1440)]
-        rows.append(
-            [
-                "R0" if offset == "1" else "0",
-                f"1/{n}",
-                v,
-                *heights,
-                f"{one['slip'][-1]:.4f}",
-                f"{one['aspect'][-1]:.4f}",
-            ]
-        )
+        last = [f"{one[key][-1]:.4f}" for key in ("slip", "aspect")]
+        rows.append(["R0" if offset == "1" else "0", f"1/{n}", v, *heights, *last])
     header = ["c_0", "h", "V", "t = 240", "t = 480", "t = 960", "t = 1440", "slip", "aspect"]
     about = (
         "Longer runs: height over R0. At V = 0.7 the symmetric parachute is not an end state in quasi-steady flow at w = 60: what the\n"
@@ -183,9 +175,9 @@ def tank_treading(results: Results, folder: Path, quick: bool) -> list[str]:
     for chi in CHIS:
         for v in REDUCED_AREAS:
             one = results.get(scenes.tank_treading(v, chi))
-            found[v, chi] = one | {"omega_over_rate": one["omega"] / _rate(v, chi)}
-    scene_figures.transient(results.get(scenes.transient()), _rate(0.5, 1), folder / "fig9_transient.png")
-    scene_figures.transient_curves(results.get(scenes.transient()), _rate(0.5, 1), folder / "fig9_curves.png")
+            found[v, chi] = one | {"omega_over_rate": one["omega"] / shear_rate(v, chi)}
+    scene_figures.transient(results.get(scenes.transient()), shear_rate(0.5, 1), folder / "fig9_transient.png")
+    scene_figures.transient_curves(results.get(scenes.transient()), shear_rate(0.5, 1), folder / "fig9_curves.png")
     scene_figures.shapes(found, folder / "fig10_shapes.png")
     scene_figures.against_reduced_area(found, folder / "fig11_angle_frequency.png")
     rows = [_angle_row(v, chi, one) for (v, chi), one in found.items()]
@@ -206,10 +198,6 @@ def tank_treading(results: Results, folder: Path, quick: bool) -> list[str]:
     ]
     text = ["## Section 5.6, Figs 9 to 11: tank-treading in shear\n", about, *table(header, rows), *pictures]
     return text + _paper_tank_treading(results, quick)
-
-
-def _rate(v: float, chi: float) -> float:
-    return chi * BENDING / scenes.radius(v) ** 3
 
 
 def _angle_row(v: float, chi: int, one: dict) -> list[str]:
@@ -238,10 +226,8 @@ def _paper_tank_treading(results: Results, quick: bool) -> list[str]:
             if "failed" in one:
                 rows.append(_failed([f"1/{n}", str(v)], one, len(header)))
                 continue
-            pairs = zip((one["theta"], one["omega"] / _rate(v, 10)), SHEAR["box"][v, 10])
+            pairs = zip((one["theta"], one["omega"] / shear_rate(v, 10)), SHEAR["box"][v, 10])
             small = [f"{one[name]:+.1e}" for name in ("area_error", "length_error")]
             rows.append([f"1/{n}", str(v), *(_percent(a, b) for a, b in pairs), *small, str(one["steps"])])
-    return [
-        "The paper's method (split, ib6, dt = h lambda_t/(8 chi)), chi = 10, to rate t = 12.\n",
-        *table(header, rows),
-    ]
+    about = "The paper's method (split, ib6, dt = h lambda_t/(8 chi)), chi = 10, to rate t = 12.\n"
+    return [about, *table(header, rows)]

@@ -6,29 +6,19 @@ from pathlib import Path
 
 import numpy as np
 
-from studies.accuracy.runs import _measure_rest, trigonometric
-from studies.inertia.runs import aspect
 from petves.run import Run
-from studies.common.engine import ILU, Case
+from studies.common.curves import aspect, at_rest, radius, trigonometric
+from studies.common.engine import Case, Series
+from studies.common.scenes import BENDING, CHANNEL_V, ILU, PEAK, cells as grid, option_file, words
 
-RUNS = Path(__file__).resolve().parents[2] / "runs"
-"""Where the option files are."""
-BENDING = 0.01
 REDUCED_AREAS, CHIS = (0.5, 0.6, 0.7, 0.8, 0.9), (1, 10, 100)
 WINDOWS = (6, 12, 24, 48, 384)
-PEAK, CHANNEL_V = 1.319456, 0.7
-QUIET = {"-checkpoint_every": "0"}
+QUIET = words("-checkpoint_every 0")
 
 
-def option_file(name: str) -> dict[str, str]:
-    """Return the options of runs/NAME.opts and their values, without -output_dir."""
-    lines = [line.split("#")[0].split() for line in (RUNS / f"{name}.opts").read_text().splitlines()]
-    return {words[0]: " ".join(words[1:]) for words in lines if words and words[0] != "-output_dir"}
-
-
-def radius(reduced_area: float) -> float:
-    """Return R0 of unit area."""
-    return float((1 / (np.pi * reduced_area)) ** 0.5)
+def shear_rate(reduced_area: float, chi: float) -> float:
+    """Return the rate of shear of section 5.6."""
+    return chi * BENDING / radius(reduced_area) ** 3
 
 
 def frames(run: Run, times: list[float]) -> dict[str, list]:
@@ -42,14 +32,14 @@ def frames(run: Run, times: list[float]) -> dict[str, list]:
     }
 
 
-def _cost(series: dict[str, np.ndarray]) -> dict[str, object]:
+def _cost(series: Series) -> dict[str, object]:
     return {"steps": len(series["time"]) - 1, "step_seconds": series["wall"].sum()}
 
 
-def measure_rest(series: dict[str, np.ndarray], folder: Path) -> dict[str, object]:
+def measure_rest(series: Series, folder: Path) -> dict[str, object]:
     run = Run.read(folder)
     r0 = series["length"][0] / (2 * np.pi)
-    found = _measure_rest(series, folder)
+    found = at_rest(series, folder)
     scaled = {"energy": found["energy"] * r0 / run.c_b, "drift": found["drift"]}
     scaled |= {key: found[key] / r0 for key in ("width", "mid_height")}
     ends = {"area_error": series["area_error"][-1], "length_error": series["length_error"][-1]}
@@ -59,19 +49,19 @@ def measure_rest(series: dict[str, np.ndarray], folder: Path) -> dict[str, objec
 def equilibrium(reduced_area: float) -> Case:
     """Return section 5.4 with the default scheme."""
     options = option_file("equilibrium") | QUIET | {"-vesicle_reduced_area": repr(reduced_area)}
-    return Case(f"equilibrium_{reduced_area}", options, measure_rest, ranks=1)
+    return Case(f"equilibrium_{reduced_area}", options, measure_rest)
 
 
 def equilibrium_paper(reduced_area: float, n: int) -> Case:
     """Return section 5.4 with the paper's method on h = 1/n, dt = h/4, to t = 100: about 3 nu R0^3/c_b."""
     options = option_file("paper/equilibrium") | QUIET | ILU
-    options |= {"-domain_cells": f"{4 * n},{4 * n}", "-time_step": repr(0.25 / n), "-time_end": "100"}
-    options |= {"-vesicle_reduced_area": repr(reduced_area), "-output_every": "50", "-vesicle_angle": "90"}
+    options |= grid(4 * n) | words(f"-time_step {0.25 / n!r} -time_end 100")
+    options |= words(f"-vesicle_reduced_area {reduced_area!r} -output_every 50 -vesicle_angle 90")
     del options["-time_steady_tol"]
-    return Case(f"equilibrium_paper_{n}_{reduced_area}", options, measure_rest, ranks=1, may_fail=True)
+    return Case(f"equilibrium_paper_{n}_{reduced_area}", options, measure_rest, may_fail=True)
 
 
-def _channel(series: dict[str, np.ndarray], folder: Path, r0: float = radius(CHANNEL_V)) -> dict[str, object]:
+def _channel(series: Series, folder: Path, r0: float = radius(CHANNEL_V)) -> dict[str, object]:
     run = Run.read(folder)
     time = np.linspace(0, series["time"][-1], 61)
     center = np.stack([np.interp(time, series["time"], series[f"center_{x}"]) for x in "xy"])
@@ -94,11 +84,11 @@ def channel(
     offset: int, window: int = 12, inertia: str = "none", cells: int = 8, time_end: float = 96, dt: float = 0.12
 ) -> Case:
     """Return section 5.5 with the default scheme: c_0 = offset R0, window length, cells a unit of length."""
-    options = option_file("poiseuille") | QUIET | {"-fluid_inertia": inertia, "-time_end": f"{time_end:g}"}
-    options |= {"-domain_box": f"0,{window},0,6", "-domain_cells": f"{window * cells},{6 * cells}"}
-    options |= {"-vesicle_center": f"{min(window, 12) / 2:g},{3 + offset * radius(CHANNEL_V)!r}"}
-    options |= {"-time_step": repr(dt), "-output_every": "400" if window > 100 else "4"}
-    return Case(f"channel_{offset}_{window}_{inertia}_{cells}_{time_end:g}", options, _channel, ranks=1, may_fail=True)
+    options = option_file("poiseuille") | QUIET | words(f"-fluid_inertia {inertia} -time_end {time_end:g}")
+    options |= words(f"-domain_box 0,{window},0,6") | grid(window * cells, 6 * cells)
+    options |= words(f"-vesicle_center {min(window, 12) / 2:g},{3 + offset * radius(CHANNEL_V)!r}")
+    options |= words(f"-time_step {dt!r} -output_every {400 if window > 100 else 4}")
+    return Case(f"channel_{offset}_{window}_{inertia}_{cells}_{time_end:g}", options, _channel, may_fail=True)
 
 
 def channel_end(offset: int, cells: int, reduced_area: float, time_end: float) -> Case:
@@ -108,13 +98,12 @@ def channel_end(offset: int, cells: int, reduced_area: float, time_end: float) -
     case.options |= {"-vesicle_reduced_area": repr(reduced_area), "-vesicle_center": f"6,{3 + offset * r0!r}"}
     case.options |= {"-output_every": repr(time_end / 60)}
 
-    def measure(series: dict[str, np.ndarray], folder: Path) -> dict[str, object]:
+    def measure(series: Series, folder: Path) -> dict[str, object]:
         found = _channel(series, folder, r0)
         return {key: found[key] for key in ("time", "height", "saved", "slip", "aspect", "area_error", "steps")}
 
-    return Case(
-        f"channel_end_{offset}_{cells}_{reduced_area}_{time_end:g}", case.options, measure, ranks=1, may_fail=True
-    )
+    name = f"channel_end_{offset}_{cells}_{reduced_area}_{time_end:g}"
+    return Case(name, case.options, measure, may_fail=True)
 
 
 def channel_models(model: str) -> Case:
@@ -127,13 +116,13 @@ def channel_models(model: str) -> Case:
 def channel_paper(offset: int, n: int, window: int, time_end: float) -> Case:
     """Return section 5.5 with the paper's method on h = 1/n: dt = h/(8 u_max), unsteady, window of the length given."""
     options = option_file("paper/poiseuille") | QUIET | ILU
-    options |= {"-domain_box": f"0,{window},0,6", "-domain_cells": f"{window * n},{6 * n}"}
-    options |= {"-vesicle_center": f"6,{3 + offset * radius(CHANNEL_V)!r}"}
-    options |= {"-time_step": repr(1 / (8 * n * PEAK)), "-time_end": f"{time_end:g}", "-output_every": "4"}
-    return Case(f"channel_paper_{offset}_{n}_{window}_{time_end:g}", options, _channel, ranks=1, may_fail=True)
+    options |= words(f"-domain_box 0,{window},0,6") | grid(window * n, 6 * n)
+    options |= words(f"-vesicle_center 6,{3 + offset * radius(CHANNEL_V)!r} -time_step {1 / (8 * n * PEAK)!r}")
+    options |= words(f"-time_end {time_end:g} -output_every 4")
+    return Case(f"channel_paper_{offset}_{n}_{window}_{time_end:g}", options, _channel, may_fail=True)
 
 
-def _tank_treading(series: dict[str, np.ndarray], folder: Path) -> dict[str, object]:
+def _tank_treading(series: Series, folder: Path) -> dict[str, object]:
     run = Run.read(folder)
     summary = {
         "theta": series["inclination"][-1] / np.pi,
@@ -147,24 +136,23 @@ def _tank_treading(series: dict[str, np.ndarray], folder: Path) -> dict[str, obj
 
 def tank_treading(reduced_area: float, chi: float, n: int = 64) -> Case:
     """Return section 5.6 with the default scheme on n^2 cells: rate dt = 0.05, to rate t = 12."""
-    rate = chi * BENDING / radius(reduced_area) ** 3
-    options = option_file("shear") | QUIET | {"-vesicle_reduced_area": repr(reduced_area), "-flow_rate": repr(rate)}
-    options |= {"-domain_cells": f"{n},{n}", "-time_step": repr(0.05 / rate), "-time_end": repr(12 / rate)}
-    options |= {"-output_every": repr(4 / rate)}
-    return Case(f"tank_treading_{n}_{reduced_area}_{chi}", options, _tank_treading, ranks=1)
+    rate = shear_rate(reduced_area, chi)
+    options = option_file("shear") | QUIET | words(f"-vesicle_reduced_area {reduced_area!r} -flow_rate {rate!r}")
+    options |= grid(n) | words(f"-time_step {0.05 / rate!r} -time_end {12 / rate!r} -output_every {4 / rate!r}")
+    return Case(f"tank_treading_{n}_{reduced_area}_{chi}", options, _tank_treading)
 
 
 def tank_treading_paper(reduced_area: float, chi: float, n: int) -> Case:
     """Return section 5.6 with the paper's method on h = 1/n: rate dt = h/8, to rate t = 12."""
-    rate = chi * BENDING / radius(reduced_area) ** 3
-    options = option_file("paper/shear") | QUIET | ILU | {"-vesicle_angle": "20", "-flow_rate": repr(rate)}
-    options |= {"-vesicle_reduced_area": repr(reduced_area), "-domain_cells": f"{8 * n},{8 * n}"}
-    options |= {"-time_step": repr(0.125 / n / rate), "-time_end": repr(12 / rate), "-output_every": repr(4 / rate)}
+    rate = shear_rate(reduced_area, chi)
+    options = option_file("paper/shear") | QUIET | ILU | words(f"-vesicle_angle 20 -flow_rate {rate!r}") | grid(8 * n)
+    options |= words(f"-vesicle_reduced_area {reduced_area!r} -time_step {0.125 / n / rate!r}")
+    options |= words(f"-time_end {12 / rate!r} -output_every {4 / rate!r}")
     del options["-time_steady_tol"]
-    return Case(f"tank_treading_paper_{n}_{reduced_area}_{chi}", options, _tank_treading, ranks=1, may_fail=True)
+    return Case(f"tank_treading_paper_{n}_{reduced_area}_{chi}", options, _tank_treading, may_fail=True)
 
 
-def _transient(series: dict[str, np.ndarray], folder: Path) -> dict[str, object]:
+def _transient(series: Series, folder: Path) -> dict[str, object]:
     run = Run.read(folder)
     angles = [np.round(run.phase_angle(k) / np.pi, 4).tolist() for k in range(len(run.time))]
     every = np.linspace(0, len(series["time"]) - 1, 121).round().astype(int)
@@ -179,7 +167,7 @@ def _transient(series: dict[str, np.ndarray], folder: Path) -> dict[str, object]
 
 def transient() -> Case:
     """Return Fig 9: V = 0.5, chi = 1, released across the flow, to rate t = 40."""
-    rate = BENDING / radius(0.5) ** 3
+    rate = shear_rate(0.5, 1)
     case = tank_treading(0.5, 1)
     options = case.options | {"-vesicle_angle": "90", "-time_end": repr(40 / rate), "-output_every": repr(2 / rate)}
-    return Case("transient", options, _transient, ranks=1)
+    return Case("transient", options, _transient)

@@ -2,23 +2,34 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from itertools import product
 from pathlib import Path
 
 import numpy as np
 
-from studies.accuracy.runs import last_markers
-from studies.reproduction.convergence import at, fine_options, split_options
 from petves.run import RunError
-from studies.common.engine import TIGHT, Case, Results, scene
 from petves.tables import table, write_csv
+from studies.common.curves import edge_lengths, last_markers, material_distance
+from studies.common.engine import Case, Results, Series
+from studies.common.scenes import (
+    LAST_ONLY,
+    TIGHT_SPLIT,
+    cells,
+    ellipse,
+    fine_options,
+    option_text,
+    split_options,
+    words,
+)
 
 KINDS = ("relax", "shear")
 REPEATS = 5  # runs in turn, whose median counts
 STRETCH = 20  # steps of the paper's run that are timed
-QUIET = {"-output_every": "1e9", "-checkpoint_every": "0"}
+FINER = {"relax": (384, "3e-7"), "shear": (288, "3e-6")}  # cells and tolerance
 
 
-def _measure(series: dict[str, np.ndarray], folder: Path) -> dict[str, object]:
+def _measure(series: Series, folder: Path) -> dict[str, object]:
     return {
         "steps": len(series["time"]) - 1,
         "solves": float(series["nsolve"].sum()),
@@ -30,37 +41,32 @@ def _measure(series: dict[str, np.ndarray], folder: Path) -> dict[str, object]:
 
 def paper(kind: str, n: int, tight: bool = False) -> Case:
     """Return the paper's run on h = 1/n; its solves to h^2, or (tight) to 1e-12."""
-    tolerances = {"-tension_ksp_rtol": TIGHT, "-bending_ksp_rtol": TIGHT} if tight else {}
-    options = split_options(kind, n) | QUIET | tolerances
-    return Case(f"paper_{kind}_{n}{'_tight' if tight else ''}", options, _measure, ranks=1)
+    options = split_options(kind, n) | LAST_ONLY | (TIGHT_SPLIT if tight else {})
+    return Case(f"paper_{kind}_{n}{'_tight' if tight else ''}", options, _measure)
 
 
 def truth(kind: str, finer: bool = False) -> Case:
     """Return the fine coupled run of docs/reproduction.md, or a finer one that shows how far that has converged."""
-    options = fine_options(kind) | QUIET
+    options = fine_options(kind) | LAST_ONLY
     if finer:
-        cells, tolerance = {"relax": (384, "3e-7"), "shear": (288, "3e-6")}[kind]
-        options |= {"-domain_cells": f"{cells},{cells}", "-time_adapt_tol": tolerance}
-    return Case(f"{'finer' if finer else 'truth'}_{kind}", options, _measure, ranks=1)
+        options |= cells(FINER[kind][0]) | {"-time_adapt_tol": FINER[kind][1]}
+    return Case(f"{'finer' if finer else 'truth'}_{kind}", options, _measure)
 
 
-def ours(kind: str, cells: int, tolerance: float, rtol: float = 1e-6, repeat: int = 0, **more: str) -> Case:
-    """Return a run of the default scheme on cells^2 cells, and other options without their dash."""
-    options = scene(kind, 0, 0, 0.02) | QUIET | {"-domain_cells": f"{cells},{cells}"}
-    for name in ("-vesicle_markers", "-scheme_type", "-scheme_order"):
-        del options[name]
-    options |= {"-fluid_inertia": "unsteady", "-time_adapt": "error", "-time_adapt_tol": repr(tolerance)}
-    options |= {"-coupled_ksp_rtol": repr(rtol)} | {f"-{name}": value for name, value in more.items()}
-    label = "_".join([f"{cells}_{tolerance:g}_{rtol:g}", *(f"{a}_{b}" for a, b in more.items()), str(repeat)])
-    return Case(f"ours_{kind}_{label}", options, _measure, ranks=1)
+def ours(kind: str, n: int, tolerance: float, rtol: float = 1e-6, **more: str) -> Case:
+    """Return a run of the default scheme on n^2 cells, and other options without their dash."""
+    options = without(ellipse(kind, 0, 0, 0.02), "-vesicle_markers", "-scheme_type", "-scheme_order")
+    options |= LAST_ONLY | cells(n) | words("-fluid_inertia unsteady -time_adapt error")
+    options |= {"-time_adapt_tol": repr(tolerance), "-coupled_ksp_rtol": repr(rtol)}
+    label = "_".join([f"{n}_{tolerance:g}_{rtol:g}", *(f"{a}_{b}" for a, b in more.items()), "0"])
+    options |= {f"-{name}": value for name, value in more.items()}
+    return Case(f"ours_{kind}_{label}", options, _measure, may_fail=True)
 
 
 def distance(found: dict, fine: dict) -> float:
     """Return the L2 norm along the membrane of the markers' distance from a fine run's, at equal material points."""
     markers, exact = (np.reshape(one["markers"], (-1, 2)) for one in (found, fine))
-    length = np.hypot(*(np.roll(markers, 1, axis=0) - markers).T).sum()
-    apart = markers - at(exact, np.arange(len(markers)) / len(markers))
-    return float(((apart**2).sum(axis=1).mean() * length) ** 0.5)
+    return material_distance(markers, exact, edge_lengths(markers).sum())
 
 
 def error(results: Results, case: Case, kind: str) -> float:
@@ -72,15 +78,11 @@ def candidates(kind: str) -> list[Case]:
     """Return the runs among which the cheapest as good as the paper's is looked for."""
     found = [ours(kind, n, tol, 1e-4) for n in (20, 24, 28, 32, 40) for tol in (1e-2, 3e-3, 1e-3, 5e-4, 2e-4)]
     found += [ours(kind, n, tol, rtol) for n in (24, 32) for tol in (3e-3, 1e-3) for rtol in (1e-6, 1e-3)]
-    found += [
-        ours(kind, n, tol, 1e-4, vesicle_spacing=ds) for n in (24, 32) for tol in (3e-3, 1e-3) for ds in ("1.25", "2")
-    ]
-    steps = {"relax": (1 / 32, 1 / 128), "shear": (1 / 16, 1 / 64)}[kind]
-    for dt in steps:
+    for n, tol in product((24, 32), (3e-3, 1e-3)):
+        found += [ours(kind, n, tol, 1e-4, vesicle_spacing=spacing) for spacing in ("1.25", "2")]
+    for dt in {"relax": (1 / 32, 1 / 128), "shear": (1 / 16, 1 / 64)}[kind]:
         case = ours(kind, 32, 1e-3, 1e-4, scheme_order="1", time_step=repr(dt))
-        found.append(Case(case.name, without(case.options, "-time_adapt", "-time_adapt_tol"), _measure, ranks=1))
-    for case in found:
-        case.may_fail = True
+        found.append(replace(case, options=without(case.options, "-time_adapt", "-time_adapt_tol")))
     return found
 
 
@@ -115,23 +117,14 @@ def claim(results: Results, folder: Path, n: int) -> list[str]:
         seconds, cpu, per_solve = in_turn(results, kind, n, best)
         found = results.get(best)
         mine = [kind, n, "ours", error(results, best, kind), found["steps"], found["solves"]]
-        rows.append([*mine, seconds, cpu, "", "", _text(best.options)])
+        rows.append([*mine, seconds, cpu, "", "", option_text(best.options)])
         cases = {"h^2": theirs} | ({"1e-12": paper(kind, n, tight=True)} if kind == "relax" else {})
         for name, case in cases.items():
             found = results.get(case)
-            steps = per_solve * found["solves"]
+            steps, whole = per_solve * found["solves"], found["cpu_seconds"]
             row = [kind, n, f"the paper's, solves to {name}", error(results, case, kind), found["steps"]]
-            rows.append(
-                [
-                    *row,
-                    found["solves"],
-                    steps,
-                    found["cpu_seconds"],
-                    steps / seconds,
-                    found["cpu_seconds"] / cpu,
-                    _text(case.options),
-                ]
-            )
+            row += [found["solves"], steps, whole, steps / seconds, whole / cpu]
+            rows.append([*row, option_text(case.options)])
     header = ["scene", "1/h", "run", "error", "steps", "solves", "step_seconds", "cpu_seconds"]
     write_csv(folder / "claim.csv", [*header, "ratio", "cpu_ratio", "options"], rows)
     shown = [[str(x) if isinstance(x, (str, int)) else f"{x:.3g}" for x in row[:-1]] for row in rows]
@@ -145,23 +138,15 @@ def claim(results: Results, folder: Path, n: int) -> list[str]:
 
 def in_turn(results: Results, kind: str, n: int, best: Case) -> tuple[float, float, float]:
     """Return medians of runs in turn: our step seconds in all, our CPU seconds, the paper's step seconds a solve."""
-    taken = []
-    for repeat in range(REPEATS):
-        first, second = (
-            Case(f"{case.name}_{repeat}", case.options, _measure, ranks=1) for case in (best, stretch(kind, n))
-        )
-        found, theirs = results.get(first), results.get(second)
-        a_solve = theirs["step_seconds"] / (theirs["solves"] / theirs["steps"])  # the first steps take more solves
-        taken.append((found["all_steps_seconds"], found["cpu_seconds"], a_solve))
-    return tuple(np.median(taken, axis=0).tolist())
+    taken = results.in_turn({"ours": best, "theirs": stretch(kind, n)}, REPEATS)
+    # the first steps of a run take more solves
+    a_solve = [one["step_seconds"] / (one["solves"] / one["steps"]) for one in taken["theirs"]]
+    columns = [[one[key] for one in taken["ours"]] for key in ("all_steps_seconds", "cpu_seconds")]
+    return tuple(float(np.median(values)) for values in (*columns, a_solve))
 
 
 def stretch(kind: str, n: int) -> Case:
     """Return the first steps of the paper's run, for the time that a solve takes."""
     case = paper(kind, n)
     options = case.options | {"-time_end": repr(STRETCH * float(case.options["-time_step"]))}
-    return Case(case.name.replace("paper", "stretch"), options, _measure, ranks=1)
-
-
-def _text(options: dict[str, str]) -> str:
-    return " ".join(f"{name} {value}" for name, value in options.items())
+    return replace(case, name=case.name.replace("paper", "stretch"), options=options)

@@ -8,8 +8,9 @@ from pathlib import Path
 from studies.speed_accuracy.claim import claim
 from studies.speed_accuracy.pictures import picture
 from studies.speed_accuracy.scenes import BEST, CORRECTED, ERRORS, SCENES, SCHEMES, WIDE, Point, Scene
-from studies.common.engine import Case, Results, study_folder
+from studies.common.engine import Case, Results
 from petves.tables import table, write_csv
+from studies.common.scenes import option_text
 
 ROUNDS = 3  # runs of a point, one of each in a round; the best counts
 ONCE = 20.0  # CPU seconds above which a point runs once
@@ -23,26 +24,13 @@ Row = dict[str, object]
 def write(
     folder: str | Path, quick: bool = False, scenes: tuple[Scene, ...] = SCENES, finest: int | None = None
 ) -> list[Path]:
-    """Run what is not there yet; write chart.csv, recommended.csv, tables.md and the pictures.
+    """Run what is not there yet; write chart.csv, recommended.csv, claim.csv, tables.md and the pictures.
 
-    Parameters
-    ----------
-    folder : str or Path
-        Where the files go; chart.json and claim.json keep every run's options, commit, CPU seconds and errors.
-    quick : bool
-        Only the points of little work, once each.
-    scenes : tuple of Scene
-        These in place of all.
-    finest : int, optional
-        1/h of the paper's settings that the last section compares with; 256, quick 64.
-
-    Returns
-    -------
-    list of Path
-        The files.
+    Quick: only the points of little work, once each. `scenes` stand in place of all; `finest`: 1/h of the paper's
+    settings that the last section compares with (256, quick 64).
     """
-    folder = study_folder(folder)
-    results = Results(folder / "chart.json", 1)
+    folder = Path(folder)
+    results = Results(folder / "chart.json")
     if quick:
         scenes = tuple(replace(one, reference=one.reference | one.quick) for one in scenes)
     points = {one.name: tuple(p for p in one.points if not quick or one.work(p) < QUICK_WORK) for one in scenes}
@@ -60,7 +48,7 @@ def write(
         best += [row | {"level": level} for level in LEVELS if (row := cheapest(rows, CORRECTED, level))]
     names = ["level", *COLUMNS[:-1]]
     write_csv(paths[1], names, [[row[name] for name in names] for row in best])
-    text += claim(Results(folder / "claim.json", 1), folder, finest or (64 if quick else 256))
+    text += claim(Results(folder / "claim.json"), folder, finest or (64 if quick else 256))
     tables = folder / "tables.md"
     tables.write_text("\n".join(text))
     return [*paths, folder / "claim.csv", tables]
@@ -74,13 +62,10 @@ def write_rows(path: Path, results: Results, scenes: tuple[Scene, ...], points: 
 
 def start_seconds(results: Results, one: Scene) -> float:
     """Return the CPU seconds of the program's start: the least of three runs of the scene that take no step."""
-    point = Point(BEST, min(p.cells for p in one.points), dt=0.02)
-    taken = []
-    for repeat in range(3):
-        case = one.case(point, repeat, {})
-        still = Case(f"{one.name}_start_{repeat}", case.options | {"-time_end": "0"}, lambda series, folder: {}, 1)
-        taken.append(results.get(still)["cpu_seconds"])
-    return min(taken)
+    case = one.case(Point(BEST, min(p.cells for p in one.points), dt=0.02), 0, {})
+    options = case.options | {"-time_end": "0"}
+    runs = results.in_turn({"start": Case(f"{one.name}_start", options, lambda series, folder: {})}, 3)["start"]
+    return min(run["cpu_seconds"] for run in runs)
 
 
 def converged(results: Results, one: Scene, quick: bool) -> dict[str, float]:
@@ -117,7 +102,7 @@ def _row(results: Results, one: Scene, point: Point) -> Row:
     row |= {name: found.get(name, "") for name in ("solves", "steps")}
     row |= {"cpu_seconds": min(run["cpu_seconds"] for run in runs), "runs": len(runs)}
     row["message"] = found.get("failed", "").split("; the last good state")[0]
-    return row | {"options": " ".join(f"{name} {value}" for name, value in ran[0].options.items())}
+    return row | {"options": option_text(ran[0].options)}
 
 
 def finer(row: Row, other: Row) -> bool:
@@ -134,9 +119,8 @@ def cheapest(rows: list[Row], schemes: tuple[str, ...], level: float) -> Row | N
     work of the solves decides.
     """
     keeps = lambda row: not row["message"] and row["largest"] <= level  # noqa: E731
-    good = [
-        row for row in rows if row["scheme"] in schemes and all(keeps(other) for other in rows if finer(row, other))
-    ]
+    ours = [row for row in rows if row["scheme"] in schemes]
+    good = [row for row in ours if all(keeps(other) for other in rows if finer(row, other))]
     cost = lambda row: (round(row["cpu_seconds"], 1), row["solves"] * row["cells"] ** 2)  # noqa: E731
     return min(good, key=cost, default=None)
 

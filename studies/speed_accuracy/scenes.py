@@ -8,25 +8,23 @@ from typing import Callable
 
 import numpy as np
 
-from studies.accuracy.runs import last_markers, tank_treading, trigonometric
-from studies.reproduction.convergence import at, fine_options
-from studies.reproduction.coupled_runs import PAPER_MEMBRANE
+from studies.common.curves import last_markers, material_distance, outline_distance, radius
+from studies.common.engine import Case, Series
 from studies.common.paper import SHEAR
-from studies.reproduction.scenes import CHANNEL_V, PEAK, option_file, radius
-from studies.common.engine import Case, scene
+from studies.common.scenes import CHANNEL_V, LAST_ONLY, PAPER_MEMBRANE, PEAK, cells, ellipse, fine_options, option_file
+from studies.common.scenes import tank_treading, words
 
-QUIET = {"-output_every": "1e9", "-checkpoint_every": "0"}
-LIMITS = {"-limit_edge_ratio": "5", "-limit_area_error": "0.2", "-limit_length_error": "0.2"}  # the program's own
-IB6 = {"-delta_type": "ib6", "-vesicle_spacing": "1.5"}
+LIMITS = words("-limit_edge_ratio 5 -limit_area_error 0.2 -limit_length_error 0.2")  # the program's own
+FIRST_ORDER, SECOND_ORDER = (words(f"-scheme_type coupled -scheme_order {order}") for order in (1, 2))
 SCHEMES = {
-    "penalty": {"-scheme_type": "penalty"},
-    "split, explicit bending": {"-scheme_type": "split", "-scheme_bending": "explicit"},
-    "split": {"-scheme_type": "split"},
-    "coupled 1, uncorrected": {"-scheme_type": "coupled", "-scheme_order": "1"} | PAPER_MEMBRANE,
-    "coupled 2, uncorrected": {"-scheme_type": "coupled", "-scheme_order": "2"} | PAPER_MEMBRANE,
-    "coupled 2, corrected": {"-scheme_type": "coupled", "-scheme_order": "2"},
-    "coupled 2, corrected, ib6": {"-scheme_type": "coupled", "-scheme_order": "2"} | IB6,
-    "direct, corrected": {"-scheme_type": "direct", "-scheme_order": "2"},
+    "penalty": words("-scheme_type penalty"),
+    "split, explicit bending": words("-scheme_type split -scheme_bending explicit"),
+    "split": words("-scheme_type split"),
+    "coupled 1, uncorrected": FIRST_ORDER | PAPER_MEMBRANE,
+    "coupled 2, uncorrected": SECOND_ORDER | PAPER_MEMBRANE,
+    "coupled 2, corrected": SECOND_ORDER,
+    "coupled 2, corrected, ib6": SECOND_ORDER | words("-delta_type ib6 -vesicle_spacing 1.5"),
+    "direct, corrected": words("-scheme_type direct -scheme_order 2"),
 }
 BEST, WIDE = "coupled 2, corrected", "coupled 2, corrected, ib6"
 CORRECTED = (BEST, WIDE)
@@ -109,15 +107,12 @@ class Scene:
     def case(self, point: Point, repeat: int, fine: dict) -> Case:
         """Return the run of a point; fine: the measures of the reference."""
 
-        def measure(series: dict[str, np.ndarray], folder: Path) -> dict[str, object]:
-            return self.kept(_measure(series, folder), fine)
+        def measure(series: Series, folder: Path) -> dict[str, object]:
+            found = _measure(series, folder)
+            return {key: found[key] for key in ("steps", "solves")} | {"errors": self.errors(found, fine)}
 
-        options = self.options(point) | QUIET | LIMITS | SCHEMES[point.scheme] | point.step()
-        return Case(f"{self.name}_{point.label()}_{repeat}", options, measure, ranks=1, may_fail=True)
-
-    def kept(self, found: dict, fine: dict) -> dict[str, object]:
-        """Return costs and errors of a run."""
-        return {key: found[key] for key in ("steps", "solves")} | {"errors": self.errors(found, fine)}
+        options = self.options(point) | LAST_ONLY | LIMITS | SCHEMES[point.scheme] | point.step()
+        return Case(f"{self.name}_{point.label()}_{repeat}", options, measure, may_fail=True)
 
     def largest(self, errors: dict[str, float]) -> float:
         """Return the largest of the wanted errors."""
@@ -125,8 +120,8 @@ class Scene:
 
     def fine(self, other: bool = False) -> Case:
         """Return the reference run, or the other fine one."""
-        options = self.reference | (self.other if other else {}) | QUIET
-        return Case(f"{self.name}_{'other' if other else 'reference'}", options, _measure, ranks=1)
+        options = self.reference | (self.other if other else {}) | LAST_ONLY
+        return Case(f"{self.name}_{'other' if other else 'reference'}", options, _measure)
 
     def work(self, point: Point) -> float:
         """Return an estimate of the work of a point: cells times steps."""
@@ -134,7 +129,7 @@ class Scene:
         return point.cells**2 * steps * (30 if point.scheme.startswith("direct") else 1)
 
 
-def _measure(series: dict[str, np.ndarray], folder: Path) -> dict[str, object]:
+def _measure(series: Series, folder: Path) -> dict[str, object]:
     """Return what the errors of every scene need of a run."""
     markers = last_markers(folder)
     return {
@@ -159,30 +154,6 @@ def _drift(found: dict) -> dict[str, float]:
     return {key: found[key] for key in ("area", "length")}
 
 
-def material_distance(markers: np.ndarray, exact: np.ndarray) -> float:
-    """Return the root mean square distance of markers from a fine run's at equal material points."""
-    apart = markers - at(exact, np.arange(len(markers)) / len(markers))
-    return float((apart**2).sum(axis=1).mean() ** 0.5)
-
-
-def outline_distance(markers: np.ndarray, exact: np.ndarray) -> float:
-    """Return the root mean square distance of a run's outline from a fine run's, both about their centroids."""
-    curve, fine = (trigonometric(x, n) for x, n in ((markers, 256), (exact, 4096)))
-    curve, fine = curve - _centroid(curve), fine - _centroid(fine)
-    nearest = np.abs((curve @ [1, 1j])[:, None] - (fine @ [1, 1j])[None, :]).argmin(axis=1)
-    tangent = np.roll(fine, -1, axis=0) - np.roll(fine, 1, axis=0)
-    normal = (tangent / np.hypot(*tangent.T)[:, None])[nearest] @ [[0, -1], [1, 0]]
-    return float((((curve - fine[nearest]) * normal).sum(axis=1) ** 2).mean() ** 0.5)
-
-
-def _centroid(points: np.ndarray) -> np.ndarray:
-    """Return the centroid of the area inside a closed curve."""
-    x, y = points.T
-    x1, y1 = np.roll(x, -1), np.roll(y, -1)
-    c = x * y1 - x1 * y
-    return np.array([((x + x1) * c).sum(), ((y + y1) * c).sum()]) / (3 * c.sum())
-
-
 def _relax_errors(found: dict, fine: dict) -> dict[str, float]:
     shape = material_distance(_markers(found), _markers(fine)) / fine["radius"]
     return {"shape": shape, "energy": abs(found["energy"] / fine["energy"] - 1)} | _drift(found)
@@ -190,10 +161,8 @@ def _relax_errors(found: dict, fine: dict) -> dict[str, float]:
 
 def _shear_errors(found: dict, fine: dict) -> dict[str, float]:
     angle, frequency = SHEAR["box"][0.7, 10]
-    return {
-        "angle": abs(found["angle"] / angle - 1),
-        "frequency": abs(found["frequency"] / frequency - 1),
-    } | _drift(found)
+    errors = {"angle": abs(found["angle"] / angle - 1), "frequency": abs(found["frequency"] / frequency - 1)}
+    return errors | _drift(found)
 
 
 def _channel_errors(found: dict, fine: dict) -> dict[str, float]:
@@ -203,7 +172,7 @@ def _channel_errors(found: dict, fine: dict) -> dict[str, float]:
 
 def relax_options(point: Point) -> dict[str, str]:
     """Return section 5.2's ellipse; split and penalty with the paper's 1/h markers."""
-    options = scene("relax", 1, point.cells // 2, 1) | {"-domain_cells": f"{point.cells},{point.cells}"}
+    options = ellipse("relax", 1, point.cells // 2, 1) | cells(point.cells)
     for name in ("-scheme_type", "-scheme_order", *(() if point.scheme in FIRST else ("-vesicle_markers",))):
         del options[name]
     return options | {"-fluid_inertia": "unsteady"}
@@ -211,12 +180,8 @@ def relax_options(point: Point) -> dict[str, str]:
 
 def channel_options(point: Point) -> dict[str, str]:
     """Return section 5.5's vesicle, c_0 = R0, in a window of 12."""
-    return option_file("poiseuille") | {
-        "-fluid_inertia": "unsteady",
-        "-vesicle_center": f"6,{3 + radius(CHANNEL_V)!r}",
-        "-domain_cells": f"{12 * point.cells},{6 * point.cells}",
-        "-time_end": "24",
-    }
+    options = words(f"-fluid_inertia unsteady -vesicle_center 6,{3 + radius(CHANNEL_V)!r}")
+    return option_file("poiseuille") | options | cells(12 * point.cells, 6 * point.cells) | {"-time_end": "24"}
 
 
 def grid(scheme: str, cells: tuple[int, ...], dts: tuple[float, ...] = (), tolerances: tuple[float, ...] = ()) -> list:
@@ -233,11 +198,8 @@ def over_h(scheme: str, width: float, cells: tuple[int, ...], parts: tuple[float
 def _relax_points() -> list[Point]:
     points = over_h("penalty", 2, (64, 128), (2, 8, 32, 128)) + over_h("penalty", 2, (256,), (8, 32))
     points += over_h("split, explicit bending", 2, (64, 128), (2, 8, 32)) + over_h(FIRST[1], 2, (256,), (2, 8))
-    points += (
-        over_h("split", 2, (64, 128), (2, 8, 32))
-        + over_h("split", 2, (256,), (2, 8))
-        + over_h("split", 2, (512,), (2,))
-    )
+    points += over_h("split", 2, (64, 128), (2, 8, 32)) + over_h("split", 2, (256,), (2, 8))
+    points += over_h("split", 2, (512,), (2,))
     points += grid("coupled 1, uncorrected", (32, 64, 128, 256), dts=(1 / 16, 1 / 64, 1 / 256))
     points += grid("coupled 2, uncorrected", (32, 64, 128, 256), tolerances=(1e-2, 1e-3, 1e-4))
     points += grid(BEST, (16, 20, 24, 28, 32), tolerances=(1e-2, 1e-3, 1e-4))
@@ -268,11 +230,6 @@ def _channel_points() -> list[Point]:
     return points + grid("direct, corrected", (6,), dts=(0.12,))
 
 
-def channel_reference() -> dict[str, str]:
-    """Return the fine run of the channel."""
-    return channel_options(Point(BEST, 56)) | SCHEMES[BEST] | {"-time_step": "0.0025"}
-
-
 SCENES = (
     Scene(
         "relax",
@@ -284,8 +241,8 @@ SCENES = (
         ("shape", "energy"),
         tuple(_relax_points()),
         fine_options("relax"),
-        {"-domain_cells": "384,384", "-time_adapt_tol": "3e-7"},
-        {"-domain_cells": "192,192", "-time_adapt_tol": "1e-5"},
+        words("-domain_cells 384,384 -time_adapt_tol 3e-7"),
+        words("-domain_cells 192,192 -time_adapt_tol 1e-5"),
     ),
     Scene(
         "shear",
@@ -306,8 +263,8 @@ SCENES = (
         _channel_errors,
         ("velocity", "shape"),
         tuple(_channel_points()),
-        channel_reference(),
-        {"-domain_cells": "480,240"},
-        {"-domain_cells": "240,120", "-time_step": "0.00375"},
+        channel_options(Point(BEST, 56)) | SCHEMES[BEST] | {"-time_step": "0.0025"},
+        words("-domain_cells 480,240"),
+        words("-domain_cells 240,120 -time_step 0.00375"),
     ),
 )

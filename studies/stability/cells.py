@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import re
 import subprocess
 import tempfile
@@ -12,8 +11,10 @@ from typing import Callable
 
 import numpy as np
 
-from petves.program import OPEN_MPI, program
+from petves.program import launch
 from petves.run import read_series
+from studies.common.curves import radius
+from studies.common.scenes import KERNELS
 
 SCHEMES = ("penalty", "split", "coupled")
 MARKS = (
@@ -29,14 +30,23 @@ MARKS = (
     "no clean stop",
 )
 """Marks of a cell; the last one is a defect of the program."""
+NEEDLES = {
+    "NANORINF": "NaN",
+    "not finite": "NaN",
+    "the solve with prefix": "solver failed",
+    "-limit_edge_ratio": "edge ratio above 2",
+    "-limit_area_error": "drift above 1 %",
+    "-limit_length_error": "drift above 1 %",
+    "cells from the wall": "left the box",
+}
+"""What the message of a run that stopped has in it, and the mark that this stands for; the first counts."""
 STEPS = 60
 SECONDS = 40
 DRIFT = 0.01  # of area or length at the end: a step that overshoots and is taken back has not drifted
 RISE = 0.01  # of the first energy: BDF2's plain energy may rise by a few thousandths in a quiescent fluid
-COMMON = f"-output_every 1e9 -checkpoint_every 0 -time_wall_limit {SECONDS} " "-limit_edge_ratio 2"
+COMMON = f"-output_every 1e9 -checkpoint_every 0 -time_wall_limit {SECONDS} -limit_edge_ratio 2"
 RELAX = "-vesicle_semi_axes 0.2,0.5"
 SHEAR = "-domain_box -2.4,2.4,-2.4,2.4 -flow_type shear -vesicle_area 1"
-KERNELS = ("ib6", "cbs32", "cbs43", "cbs54", "cbs65")
 
 
 @dataclass(frozen=True)
@@ -84,11 +94,9 @@ def relax(dt: float, c_b: float, cells: int = 32, steps: int = STEPS) -> str:
 
 def shear(dt: float, reduced_area: float, chi: float, cells: int = 64) -> str:
     """Return the options of a vesicle of unit area in shear of rate 1, nu = 1, [-2.4,2.4]^2."""
-    radius = (1 / (np.pi * reduced_area)) ** 0.5
-    return (
-        f"{SHEAR} -domain_cells {cells},{cells} -vesicle_reduced_area {reduced_area} "
-        f"-vesicle_bending {float(radius**3 / chi)!r} {_times(dt)}"
-    )
+    bending = radius(reduced_area) ** 3 / chi
+    vesicle = f"-vesicle_reduced_area {reduced_area} -vesicle_bending {bending!r}"
+    return f"{SHEAR} -domain_cells {cells},{cells} {vesicle} {_times(dt)}"
 
 
 def thin(dt: float, reduced_area: float) -> str:
@@ -109,81 +117,35 @@ def change(dt: float, factor: float) -> tuple[str, str]:
     )
 
 
-STEP_MAP = Map(
-    "dt_h",
-    "ellipse at rest, $c_b = 1$",
-    "cells across the box",
-    (24, 32, 48, 64, 96),
-    "$dt$",
-    tuple(2.0**-k for k in range(3, 15)),
-    lambda n, dt: (relax(dt, 1, n, 4 * STEPS),),  # a slow growth counts too
-)
+def _powers(*exponents: int) -> tuple[float, ...]:
+    """Return 2^-k for each k."""
+    return tuple(2.0**-k for k in exponents)
+
+
+ACROSS, STRONG = "cells across the box", r"shear, V = 0.7, $\chi = 1000$"
+CHANGE = "ellipse at rest, $c_b = 0.1$, $32^2$: dt changes after 20 steps"
+KERNEL = r"shear, V = 0.7, $\chi = 10$, $dt$ = 1/256, $64^2$"
+CHIS, OVER_RATE = (0.1, 1.0, 10.0, 100.0, 1000.0), "$dt$ (over 1/rate)"
+# fmt: off
+STEP_MAP = Map("dt_h", "ellipse at rest, $c_b = 1$", ACROSS, (24, 32, 48, 64, 96), "$dt$", _powers(*range(3, 15)),
+               lambda n, dt: (relax(dt, 1, n, 4 * STEPS),))  # a slow growth counts too
 MAPS = (
-    Map(
-        "dt_cb",
-        "ellipse at rest, $32^2$",
-        "$c_b$",
-        (1e-4, 1e-2, 1.0, 100.0),
-        "$dt$",
-        tuple(2.0**-k for k in (3, 5, 7, 9, 11, 13)),
-        lambda c_b, dt: (relax(dt, c_b),),
-    ),
-    Map(
-        "dt_chi",
-        "shear, V = 0.7, $64^2$",
-        r"$\chi$",
-        (0.1, 1.0, 10.0, 100.0, 1000.0),
-        "$dt$ (over 1/rate)",
-        tuple(2.0**-k for k in (2, 4, 6, 8, 10)),
-        lambda chi, dt: (shear(dt, 0.7, chi),),
-    ),
+    Map("dt_cb", "ellipse at rest, $32^2$", "$c_b$", (1e-4, 1e-2, 1.0, 100.0), "$dt$", _powers(3, 5, 7, 9, 11, 13),
+        lambda c_b, dt: (relax(dt, c_b),)),
+    Map("dt_chi", "shear, V = 0.7, $64^2$", r"$\chi$", CHIS, OVER_RATE, _powers(2, 4, 6, 8, 10),
+        lambda chi, dt: (shear(dt, 0.7, chi),)),
     STEP_MAP,
-    Map(
-        "V_chi",
-        "shear, $dt$ = 1/64, $64^2$",
-        r"$\chi$",
-        (1.0, 10.0, 100.0, 1000.0),
-        "V",
-        (0.2, 0.3, 0.5, 0.7, 0.9),
-        lambda chi, v: (shear(1 / 64, v, chi),),
-    ),
-    Map(
-        "spacing_kernel",
-        r"shear, V = 0.7, $\chi = 10$, $dt$ = 1/256, $64^2$",
-        "kernel",
-        KERNELS,
-        "ds/h",
-        (0.75, 1.1, 1.3, 1.5, 2.0, 2.5),
-        lambda kernel, spacing: (f"{shear(1 / 256, 0.7, 10)} -delta_type {kernel} -vesicle_spacing {spacing}",),
-    ),
-    Map(
-        "dt_change",
-        "ellipse at rest, $c_b = 0.1$, $32^2$: dt changes after 20 steps",
-        "new $dt$ over old",
-        (1 / 64, 1 / 8, 8.0, 64.0),
-        "first $dt$",
-        (1 / 64, 1 / 512, 1 / 4096),
-        lambda factor, dt: change(dt, factor),
-    ),
-    Map(
-        "thin",
-        "thin ellipse at rest, $c_b = 0.1$, $64^2$",
-        "V",
-        (0.2, 0.3, 0.4),
-        "$dt$",
-        tuple(2.0**-k for k in (4, 6, 8, 10)),
-        lambda v, dt: (thin(dt, v),),
-    ),
-    Map(
-        "strong",
-        r"shear, V = 0.7, $\chi = 1000$",
-        "cells across the box",
-        (32, 48, 64),
-        "$dt$ (over 1/rate)",
-        tuple(2.0**-k for k in (2, 4, 6, 8)),
-        lambda n, dt: (shear(dt, 0.7, 1000, n),),
-    ),
+    Map("V_chi", "shear, $dt$ = 1/64, $64^2$", r"$\chi$", CHIS[1:], "V", (0.2, 0.3, 0.5, 0.7, 0.9),
+        lambda chi, v: (shear(1 / 64, v, chi),)),
+    Map("spacing_kernel", KERNEL, "kernel", KERNELS, "ds/h", (0.75, 1.1, 1.3, 1.5, 2.0, 2.5),
+        lambda kernel, spacing: (f"{shear(1 / 256, 0.7, 10)} -delta_type {kernel} -vesicle_spacing {spacing}",)),
+    Map("dt_change", CHANGE, "new $dt$ over old", (1 / 64, 1 / 8, 8.0, 64.0), "first $dt$", _powers(6, 9, 12),
+        lambda factor, dt: change(dt, factor)),
+    Map("thin", "thin ellipse at rest, $c_b = 0.1$, $64^2$", "V", (0.2, 0.3, 0.4), "$dt$", _powers(4, 6, 8, 10),
+        lambda v, dt: (thin(dt, v),)),
+    Map("strong", STRONG, ACROSS, (32, 48, 64), OVER_RATE, _powers(2, 4, 6, 8), lambda n, dt: (shear(dt, 0.7, 1000, n),)),
 )
+# fmt: on
 
 
 def run_cell(scheme: str, stages: tuple[str, ...]) -> dict[str, object]:
@@ -204,22 +166,12 @@ def run_cell(scheme: str, stages: tuple[str, ...]) -> dict[str, object]:
         return _measure(here, status, message, quiescent="-flow_type" not in options)
 
 
-def _launch(options: str, folder: Path, tries: int = 3) -> tuple[int, str]:
+def _launch(options: str, folder: Path) -> tuple[int, str]:
     """Run petves on one rank; return its status (-1: killed or not one line) and its line."""
     try:
-        done = subprocess.run(
-            [str(program()), *options.split(), "-output_dir", str(folder)],
-            env=OPEN_MPI | {"OMPI_MCA_ess_singleton_isolated": "1"} | os.environ,
-            capture_output=True,
-            text=True,
-            errors="replace",
-            stdin=subprocess.DEVNULL,
-            timeout=3 * SECONDS,
-        )
+        done = launch([*options.split(), "-output_dir", str(folder)], timeout=3 * SECONDS)
     except subprocess.TimeoutExpired:
         return -1, f"no end after {3 * SECONDS} seconds"
-    if "An error occurred in MPI_Init" in done.stderr and tries > 1:  # of two that start in the same moment
-        return _launch(options, folder, tries - 1)
     lines = done.stderr.strip().splitlines()
     if not done.returncode:
         return 0, next((line for line in done.stdout.splitlines() if "petves: stopping" in line), "")
@@ -260,15 +212,4 @@ def mark(status: int, message: str) -> str:
         return "refused"
     if not status:
         return "too slow" if message else "ok"
-    for needle, name in (
-        ("NANORINF", "NaN"),
-        ("not finite", "NaN"),
-        ("the solve with prefix", "solver failed"),
-        ("-limit_edge_ratio", "edge ratio above 2"),
-        ("-limit_area_error", "drift above 1 %"),
-        ("-limit_length_error", "drift above 1 %"),
-        ("cells from the wall", "left the box"),
-    ):
-        if needle in message:
-            return name
-    return "no clean stop"
+    return next((name for needle, name in NEEDLES.items() if needle in message), "no clean stop")

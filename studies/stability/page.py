@@ -11,14 +11,11 @@ from pathlib import Path
 import numpy as np
 
 from petves.views.plot import new_figure, save_figure
-from petves.run import RunError
-from studies.common.engine import study_folder
+from studies.common.engine import Kept
 from studies.stability.cells import MAPS, MARKS, SCHEMES, STEP_MAP, Map, run_cell
-from petves.tables import table, write_csv
+from petves.tables import csv_text, table, write_csv
 
-COLUMNS = "map,scheme,x,y,mark,steps,energy_rise,area_error,length_error,drift,edge_ratio,its,message,options".split(
-    ","
-)
+COLUMNS = "map scheme x y mark steps energy_rise area_error length_error drift edge_ratio its message options".split()
 COLORS = dict(zip(MARKS, "#4a9d5b #d9d9d9 #f2d16b #e8973a #c65d3b #9c3848 #6b4c9a #222222 #8fb7d9 #ff00ff".split()))
 LETTERS = dict(zip(MARKS, "· R D E S B F N T !".split()))
 UNSETTLED = ("too slow", "no clean stop")  # run again by the next call: a busy machine may be to blame
@@ -26,58 +23,47 @@ MINUTES = 30
 HALVINGS = 3  # of the octave in which the largest stable step lies
 
 
-class Cells:
-    """Cells that have run, kept in one CSV file so that an interrupted study goes on where it stopped."""
+class Cells(Kept):
+    """Cells that have run, rows of one CSV file."""
 
     def __init__(self, path: Path, minutes: float = MINUTES) -> None:
-        self.path = path
+        super().__init__(path)
         self.until = time.monotonic() + 60 * minutes
         self.left_out = 0
-        self.rows: dict[tuple[str, ...], dict[str, str]] = {}
-        if path.is_file():
-            with path.open(newline="") as file:
-                reader = csv.DictReader(file)
-                if reader.fieldnames != COLUMNS:
-                    raise RunError(f"{path}: other columns than this version writes; remove it to start afresh")
-                self.rows = {self._key(row["map"], row["scheme"], row["x"], row["y"]): row for row in reader}
 
-    @staticmethod
-    def _key(name: str, scheme: str, x: object, y: object) -> tuple[str, ...]:
-        return name, scheme, _text(x), _text(y)
+    def parse(self, text: str) -> dict:
+        """Return the rows of the file by map, scheme, x and y."""
+        reader = csv.DictReader(text.splitlines())
+        if reader.fieldnames != COLUMNS:
+            raise ValueError("other columns than this version writes")
+        return {tuple(row[name] for name in COLUMNS[:4]): row for row in reader}
+
+    def text(self) -> str:
+        """Return the file of the rows."""
+        rows = sorted(self.entries.values(), key=lambda row: [row[name] for name in ("map", "scheme", "y", "x")])
+        return csv_text(COLUMNS, [[row[name] for name in COLUMNS] for row in rows])
 
     def mark(self, name: str, scheme: str, x: object, y: object) -> str:
         """Return the mark of a cell, "" when it has not run."""
-        return self.rows.get(self._key(name, scheme, x, y), {}).get("mark", "")
+        return self.entries.get((name, scheme, _text(x), _text(y)), {}).get("mark", "")
 
     def run(self, one: Map, cells: list[tuple[str, object, object]]) -> None:
         """Run those cells of a map that are not there with the same options, two at a time, while time is left."""
 
         def work(cell: tuple[str, object, object]) -> None:
-            scheme, x, y = cell
-            stages = one.options(x, y)
-            options = " + ".join(stages)
-            known = self.rows.get(self._key(one.name, *cell))
+            stages = one.options(*cell[1:])
+            place, options = (one.name, *map(_text, cell)), " + ".join(stages)
+            known = self.entries.get(place)
             if known and known["options"] == options and known["mark"] not in UNSETTLED:
                 return
             if time.monotonic() > self.until:
                 self.left_out += 1
                 return
-            found = run_cell(scheme, stages)
-            row = {"map": one.name, "scheme": scheme, "x": _text(x), "y": _text(y), "options": options}
-            self.rows[self._key(one.name, *cell)] = row | {k: _text(v) for k, v in found.items()}
+            found = {name: _text(value) for name, value in run_cell(cell[0], stages).items()}
+            self.keep(place, dict(zip(COLUMNS, place)) | {"options": options} | found)
 
         with ThreadPoolExecutor(2) as pool:
-            for done, _ in enumerate(pool.map(work, cells)):
-                if done % 8 == 7:
-                    self.save()
-        self.save()
-
-    def save(self) -> None:
-        """Write the file."""
-        temporary = self.path.with_suffix(".tmp")
-        rows = sorted(self.rows.values(), key=lambda row: [row[name] for name in ("map", "scheme", "y", "x")])
-        write_csv(temporary, COLUMNS, [[row[name] for name in COLUMNS] for row in rows])
-        temporary.replace(self.path)
+            list(pool.map(work, cells))
 
 
 def _text(value: object) -> str:
@@ -85,23 +71,9 @@ def _text(value: object) -> str:
 
 
 def write(folder: str | Path, quick: bool = False, maps: tuple[Map, ...] | None = None) -> list[Path]:
-    """Run what is not there yet; write stability.csv, tables.md, a picture a map and largest_step.csv, .png.
-
-    Parameters
-    ----------
-    folder : str or Path
-        Where the files go; stability.csv keeps the cells that have run.
-    quick : bool
-        Only the corners of each map.
-    maps : tuple of Map, optional
-        These in place of all.
-
-    Returns
-    -------
-    list of Path
-        The files.
-    """
-    folder = study_folder(folder)
+    """Run what is not there yet; write stability.csv, which keeps the cells that have run, tables.md, a picture a map
+    and largest_step.csv, .png. Quick: only the corners of each map; `maps`: these in place of all."""
+    folder = Path(folder)
     maps = MAPS if maps is None else maps
     maps = tuple(one.quick() for one in maps) if quick else maps
     cells = Cells(folder / "stability.csv")
@@ -128,10 +100,8 @@ def _counts(cells: Cells, maps: tuple[Map, ...]) -> list[str]:
         for scheme in SCHEMES:
             marks = [cells.mark(one.name, s, x, y) for s, x, y in one.cells() if s == scheme]
             ran = [m for m in marks if m and m != "refused"]
-            line.append(
-                f"{ran.count('ok')} of {len(ran)}"
-                + (f" ({len(marks) - len(ran)} refused or not run)" if len(ran) < len(marks) else "")
-            )
+            rest = f" ({len(marks) - len(ran)} refused or not run)" if len(ran) < len(marks) else ""
+            line.append(f"{ran.count('ok')} of {len(ran)}{rest}")
         rows.append(line)
     return ["### Cells that are ok\n", *table(["map", "scene", *SCHEMES], rows)]
 
@@ -139,17 +109,14 @@ def _counts(cells: Cells, maps: tuple[Map, ...]) -> list[str]:
 def _lines(cells: Cells, one: Map) -> list[str]:
     """A map as a table: for each y and scheme the letters along x."""
     header = [one.y_label, "scheme", *(f"{one.x_label} = {_text(x)}" for x in one.xs)]
-    rows = [
-        [_text(y), scheme, *(cells.mark(one.name, scheme, x, y) or "not run" for x in one.xs)]
-        for y in one.ys
-        for scheme in SCHEMES
-    ]
+    marks = lambda scheme, y: [cells.mark(one.name, scheme, x, y) or "not run" for x in one.xs]  # noqa: E731
+    rows = [[_text(y), scheme, *marks(scheme, y)] for y in one.ys for scheme in SCHEMES]
     return [f"### {one.name}: {one.title}\n", *table(header, rows)]
 
 
 def _picture(cells: Cells, one: Map, folder: Path) -> Path:
     """Draw a map, the schemes side by side."""
-    from matplotlib.patches import Patch
+    from matplotlib.patches import Patch, Rectangle
 
     height = 1.6 + 0.32 * len(one.ys)
     figure, axes = new_figure(11, height, columns=len(SCHEMES))
@@ -159,7 +126,7 @@ def _picture(cells: Cells, one: Map, folder: Path) -> Path:
             for j, y in enumerate(one.ys):
                 name = cells.mark(one.name, scheme, x, y)
                 seen.add(name)
-                panel.add_patch(_square(i, j, COLORS.get(name, "white")))
+                panel.add_patch(Rectangle((i - 0.48, j - 0.48), 0.96, 0.96, color=COLORS.get(name, "white")))
                 panel.text(i, j, LETTERS.get(name, ""), ha="center", va="center", fontsize=8, color="white")
         panel.set(xlim=(-0.5, len(one.xs) - 0.5), ylim=(-0.5, len(one.ys) - 0.5), xlabel=one.x_label, title=scheme)
         panel.set_xticks(range(len(one.xs)), [_text(x) for x in one.xs], fontsize=7)
@@ -169,12 +136,6 @@ def _picture(cells: Cells, one: Map, folder: Path) -> Path:
     axes[-1].legend(handles=handles, loc="upper left", bbox_to_anchor=(1.01, 1), frameon=False, fontsize=8)
     figure.suptitle(one.title, fontsize=9)
     return save_figure(figure, folder / f"{one.name}.png")
-
-
-def _square(i: int, j: int, color: str):
-    from matplotlib.patches import Rectangle
-
-    return Rectangle((i - 0.48, j - 0.48), 0.96, 0.96, color=color)
 
 
 def largest_step(cells: Cells, one: Map, scheme: str, n: int) -> tuple[float, bool]:
@@ -190,10 +151,7 @@ def largest_step(cells: Cells, one: Map, scheme: str, n: int) -> tuple[float, bo
     for _ in range(HALVINGS):
         middle = float(_text(math.sqrt(good * bad)))
         cells.run(one, [(scheme, n, middle)])
-        if cells.mark(one.name, scheme, n, middle) == "ok":
-            good = middle
-        else:
-            bad = middle
+        good, bad = (middle, bad) if cells.mark(one.name, scheme, n, middle) == "ok" else (good, middle)
     return good, True
 
 
@@ -208,13 +166,10 @@ def _largest_steps(cells: Cells, folder: Path, text: list[str]) -> list[Path]:
         power = fitted_power(bounded)
         note = f"{power:.2f}" if len(bounded) > 2 else f"no bound up to {one.ys[0]:g}" if not bounded else "too few"
         shown.append([scheme, *(f"{dt:.3g}" + ("" if is_bound else " and more") for _, dt, is_bound in found), note])
-        line = panel.loglog(
-            [r[0] for r in found], [r[1] for r in found], f"{style}-", ms=5, lw=1, label=f"{scheme}: {note}"
-        )
-        free = [(h, dt) for h, dt, is_bound in found if not is_bound]
-        panel.loglog(
-            [r[0] for r in free], [1.15 * r[1] for r in free], "^", color=line[0].get_color(), ms=8, mfc="none"
-        )
+        hs, dts, _ = zip(*found)
+        (line,) = panel.loglog(hs, dts, f"{style}-", ms=5, lw=1, label=f"{scheme}: {note}")
+        free = [(h, 1.15 * dt) for h, dt, is_bound in found if not is_bound]
+        panel.loglog([r[0] for r in free], [r[1] for r in free], "^", color=line.get_color(), ms=8, mfc="none")
     panel.set(xlabel="cell size $h$", ylabel="largest step without a mark", title=one.title)
     panel.grid(alpha=0.3, which="both")
     panel.legend(frameon=False, fontsize=8, title="fitted power of $h$; triangles: no bound found", title_fontsize=7)
