@@ -9,7 +9,7 @@ import numpy as np
 
 from studies.accuracy import runs as study
 from studies.common.paper import REST, SHEAR
-from petves.views.plot import new_figure, save_figure
+from petves.views.plot import dress, new_figure, save_figure
 from studies.common.engine import Results
 from studies.common.scenes import KERNELS
 from petves.tables import table, write_csv
@@ -235,8 +235,8 @@ def _picture(results: Results, folder: Path, quick: bool) -> Path:
     for panel, what in zip(axes, ("inclination", "frequency")):
         panel.loglog(h, 2 * h / h[-1], "k:", lw=0.8, label="slopes 1 and 2")
         panel.loglog(h, 0.7 * (h / h[-1]) ** 2, "k:", lw=0.8)
-        panel.set(xlabel="cell size $h$ (length; vesicle of unit area)", ylabel=f"error of the {what} (%)")
-        panel.grid(alpha=0.3, which="both")
+        label = "cell size $h$ (length; vesicle of unit area)"
+        dress(panel, grid="both", xlabel=label, ylabel=f"error of the {what} (%)")
     axes[0].legend(frameon=False, fontsize=7)
     write_csv(folder / "accuracy_picture.csv", ["combination", "cells", "angle", "frequency"], rows)
     return save_figure(figure, folder / "accuracy.png")

@@ -9,7 +9,7 @@ import numpy as np
 
 from studies.inertia import runs as study
 from studies.common.paper import PARACHUTE, POISEUILLE, RELAXATION
-from petves.views.plot import new_figure, save_figure
+from petves.views.plot import dress, new_figure, save_figure
 from studies.common.engine import Results
 from studies.common.scenes import BOXES
 from petves.tables import table, write_csv
@@ -92,8 +92,7 @@ def _galilean(results: Results, folder: Path) -> list[str]:
         for panel, key in zip(axes, keys):
             panel.loglog([2 / n for n in cells], errors[key], style, ms=4, lw=1.2, label=label)
     for panel, key in zip(axes, keys):
-        panel.set(xlabel="cell size $h$ (length)", ylabel=f"deviation of the {key}")
-        panel.grid(alpha=0.3, which="both")
+        dress(panel, grid="both", xlabel="cell size $h$ (length)", ylabel=f"deviation of the {key}")
     axes[0].legend(frameon=False, fontsize=8)
     save_figure(figure, folder / "galilean.png")
     write_csv(folder / "inertia_galilean.csv", ["vesicle", "cells", *keys], rows)

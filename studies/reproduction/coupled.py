@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from studies.reproduction import coupled_runs as study
-from petves.views.plot import new_figure, save_figure
+from petves.views.plot import dress, new_figure, save_figure
 from studies.common.engine import Results
 from petves.tables import table, write_csv
 
@@ -170,12 +170,8 @@ def _draw_temporal(
     axes[1].loglog(tolerances, errors, "o-", ms=4, lw=1.2, label="coupled, order 2, adaptive")
     axes[1].loglog(tolerances, np.array(tolerances) * errors[0] / tolerances[0], "k:", lw=0.8, label="slope 1")
     axes[2].loglog(solves, errors, "k.-", lw=1.2, label="coupled, order 2, adaptive")
-    axes[0].set(xlabel=r"time step $\Delta t$", ylabel="rms marker distance (length)")
-    axes[1].set(xlabel="-time_adapt_tol", ylabel="rms marker distance (length)")
-    axes[2].set(xlabel="scalar fast solves in the run", ylabel="rms marker distance (length)")
-    for panel in axes:
-        panel.grid(alpha=0.3, which="both")
-        panel.legend(frameon=False, fontsize=7)
+    for panel, label in zip(axes, (r"time step $\Delta t$", "-time_adapt_tol", "scalar fast solves in the run")):
+        dress(panel, 7, "both", xlabel=label, ylabel="rms marker distance (length)")
     save_figure(figure, folder / "coupled_temporal.png")
 
 

@@ -8,13 +8,13 @@ import numpy as np
 
 from petves.run import Run
 from petves.tables import table, write_csv
-from petves.views.plot import save_figure
+from petves.views.plot import dress, new_figure, save_figure
 from studies.common.curves import about_centroid
 from studies.common.engine import Case, Results
 from studies.common.scenes import option_file, split_options
 from studies.reproduction.convergence import finest, split_state
 from studies.reproduction.runs import iterations
-from studies.reproduction.scene_figures import grid_figure, membrane
+from studies.reproduction.scene_figures import membrane
 from studies.reproduction.scenes import QUIET
 
 SETTINGS = {"relax": "relax", "shear": "shear_convergence"}
@@ -30,7 +30,7 @@ def end_figure(results: Results, folder: Path, kind: str, quick: bool) -> list[s
     theirs = results.derive(name, split_options(kind, n), lambda: _kept(split_state(results, kind, n)))
     ours = results.get(Case(f"figure_{kind}_ours", option_file(SETTINGS[kind]) | QUIET, _ours))
     number = {"relax": 3, "shear": 4}[kind]
-    figure, ((left, right),) = grid_figure(12, 5.2 if kind == "shear" else 4.6, 1, 2, equal=False)
+    figure, (left, right) = new_figure(12, 5.2 if kind == "shear" else 4.6, 2)
     if kind == "shear":
         edges = np.linspace(-1, 1, BLOCKS + 1)
         pressure = np.asarray(theirs["p"])
@@ -45,9 +45,7 @@ def end_figure(results: Results, folder: Path, kind: str, quick: bool) -> list[s
     left.set(xlabel="$x$", ylabel="$y$", xlim=limits, ylim=limits, xticks=np.linspace(*limits, 5))
     right.plot(*_against_phase(theirs), "-", label=f"the paper's method, $h$ = 1/{n}")
     right.plot(*ours["curve"], ".", label=f"runs/{SETTINGS[kind]}.opts")
-    right.set(xlabel=r"$\varphi/\pi$", ylabel=r"tension $\sigma$", xlim=(-1, 1))
-    right.grid(alpha=0.3)
-    right.legend(frameon=False, fontsize=8)
+    dress(right, 8, xlabel=r"$\varphi/\pi$", ylabel=r"tension $\sigma$", xlim=(-1, 1))
     path = save_figure(figure, folder / f"fig{number}_{kind}.png")
     return [f"![Fig {number}: the membrane at the end, its tension]({folder.name}/{path.name})\n"]
 
@@ -84,18 +82,15 @@ def cost(results: Results, folder: Path, quick: bool) -> list[str]:
     size = np.array([4 * n**2 for n in cells])
     found = {name: [_cost(results, n, name) for n in cells] for name in LABELS}
     step = {name: [seconds for seconds, _ in pairs] for name, pairs in found.items()}
-    figure, (panels,) = grid_figure(11, 4.4, 1, 2, equal=False)
+    figure, panels = new_figure(11, 4.4, 2)
     for panel, count, power in zip(panels, (np.ones(len(cells)), 20 * np.array(cells)), (1, 1.5)):
         for (name, label), mark in zip(LABELS.items(), "os^"):
             panel.loglog(size, np.array(step[name]) * count, mark + "-", mfc="none", label=label)
         line = size**power * np.log(size)
         label = r"$N\log N$" if power == 1 else r"$N^{3/2}\log N$"
         panel.loglog(size, line / line[-1] * step["ilu"][-1] * count[-1], "k--", label=label)
-        panel.set(xlabel="cells $N$")
-        panel.grid(alpha=0.3)
-        panel.legend(frameon=False, fontsize=8)
-    panels[0].set_ylabel("CPU seconds a step")
-    panels[1].set_ylabel("CPU seconds of all steps to $t$ = 5")
+        of = "a step" if power == 1 else "of all steps to $t$ = 5"
+        dress(panel, 8, xlabel="cells $N$", ylabel=f"CPU seconds {of}")
     save_figure(figure, folder / "fig5_cost.png")
     rows = [[LABELS[k].replace("$", ""), *(f"{s:.4f}, {count:.0f}" for s, count in row)] for k, row in found.items()]
     write_csv(folder / "fig5_cost.csv", ["cells", *step], [[a, *b] for a, b in zip(size, zip(*step.values()))])

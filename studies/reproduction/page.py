@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from petves.tables import table, write_csv
-from petves.views.plot import new_figure, save_figure
+from petves.views.plot import dress, new_figure, save_figure
 from studies.common.engine import Case, NotRun, Results
 from studies.common.paper import ITERATIONS
 from studies.common.scenes import CELLS, option_file
@@ -131,9 +131,7 @@ def _energy(results: Results, folder: Path, n: int) -> list[str]:
     own = results.get(Case("energy_ours", option_file("energy") | QUIET, decay))
     axes.plot(own["time"], own["energy"], "k-", lw=0.8, label="runs/energy.opts")
     shown.append(["runs/energy.opts", *(f"{x:+.2e}" for x in (*own["rise_first_two"], own["rise_later"]))])
-    axes.set(xlabel="time $t$", ylabel="$E/E_0$")
-    axes.grid(alpha=0.3)
-    axes.legend(frameon=False)
+    dress(axes, 10, xlabel="time $t$", ylabel="$E/E_0$")
     save_figure(figure, folder / "energy_decay.png")
     write_csv(folder / "energy_decay.csv", ["dt", "time", "energy_over_initial"], rows)
     about = (

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -10,23 +11,12 @@ import numpy as np
 from petves.theory import ellipse_axes
 from studies.common.curves import trigonometric
 from studies.common.paper import SHEAR, SHEAR_FREE
-from petves.views.plot import save_figure
+from petves.views.plot import dress, new_figure, save_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 TENSION = r"$\sigma R_0^2/c_b$"
-
-
-def grid_figure(width: float, height: float, rows: int, columns: int, equal: bool = True) -> tuple[Figure, np.ndarray]:
-    """Return a figure that needs no display, and its axes, shape (rows, columns); equal: of equal scales in x and y."""
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(width, height), layout="compressed" if equal else "constrained")
-    FigureCanvasAgg(figure)
-    return figure, figure.subplots(rows, columns, squeeze=False)
 
 
 def membrane(
@@ -56,21 +46,21 @@ def membrane(
 
 def equilibrium(found: dict[float, dict], path: Path) -> Path:
     """Draw Fig 6: first and last shapes by V, with tension."""
-    figure, axes = grid_figure(13, 3.6, 1, len(found))
-    for panel, (v, one) in zip(axes[0], found.items()):
+    figure, axes = new_figure(13, 3.6, len(found), equal=True)
+    for panel, (v, one) in zip(axes, found.items()):
         first = trigonometric(np.asarray(one["frames"]["markers"][0]), 512)
         panel.plot(*np.vstack([first, first[:1]]).T, "k:", lw=1)
         lines = membrane(panel, one["frames"]["markers"][-1], one["frames"]["tension"][-1])
         panel.set(title=f"$V$ = {v}", xlabel="$x$", xlim=(-0.75, 0.75), ylim=(-1.25, 1.25))
         figure.colorbar(lines, ax=panel, location="bottom", shrink=0.9, label=TENSION)
-    axes[0][0].set_ylabel("$y$")
+    axes[0].set_ylabel("$y$")
     return save_figure(figure, path)
 
 
 def channel_strip(found: dict[int, dict], path: Path, spacing: float = 2.0) -> Path:
     """Draw Fig 8: shapes at nine times in the frame of the vesicle, one panel for each c_0."""
-    figure, axes = grid_figure(11, 11, len(found), 1)
-    for (panel,), (offset, one) in zip(axes, found.items()):
+    figure, axes = new_figure(11, 11, rows=len(found), equal=True)
+    for panel, (offset, one) in zip(axes, found.items()):
         shapes = list(zip(one["frames"]["time"], one["frames"]["markers"], one["frames"]["tension"]))[:9]
         limits = min(min(s[2]) for s in shapes[1:]), max(max(s[2]) for s in shapes[1:])
         for k, (time, markers, tension) in enumerate(shapes):
@@ -87,60 +77,53 @@ def channel_strip(found: dict[int, dict], path: Path, spacing: float = 2.0) -> P
 
 def channel_curves(height: dict[str, dict], slips: dict[str, dict], path: Path) -> Path:
     """Draw height over R_0, and velocity minus u_max over c_b/(nu R_0^2), against time."""
-    figure, axes = grid_figure(11, 4, 1, 2, equal=False)
+    figure, axes = new_figure(11, 4, 2)
     for label, one in height.items():
-        axes[0][0].plot(one["time"], one["height"], label=label)
+        axes[0].plot(one["time"], one["height"], label=label)
     for label, one in slips.items():
-        axes[0][1].plot(one["saved"][1:], one["slip"][1:], label=label)
-    axes[0][0].set(xlabel="time $t$", ylabel=r"$(y_c - 3)/R_0$")
-    axes[0][1].set(xlabel="time $t$", ylabel=r"$(U - u_{\max})\,\nu R_0^2/c_b$")
-    for panel in axes[0]:
-        panel.grid(alpha=0.3)
-        panel.legend(frameon=False, fontsize=8)
+        axes[1].plot(one["saved"][1:], one["slip"][1:], label=label)
+    for panel, label in zip(axes, (r"$(y_c - 3)/R_0$", r"$(U - u_{\max})\,\nu R_0^2/c_b$")):
+        dress(panel, 8, xlabel="time $t$", ylabel=label)
     return save_figure(figure, path)
 
 
 def transient(one: dict, rate: float, path: Path) -> Path:
     """Draw Fig 9: shapes with a tracked marker at ten times."""
     times = one["frames"]["time"]
-    figure, axes = grid_figure(13, 5, 2, 5)
-    for panel, k in zip(axes.ravel(), (0, 1, 2, 3, 4, 6, 8, 12, 16, len(times) - 1)):
+    figure, axes = new_figure(13, 5, 5, 2, equal=True)
+    for panel, k in zip(axes, (0, 1, 2, 3, 4, 6, 8, 12, 16, len(times) - 1)):
         markers, tension = one["frames"]["markers"][k], one["frames"]["tension"][k]
         lines = membrane(panel, markers, tension, (-17, 1))
         panel.plot(*markers[0], "ko", ms=5)
         middle = float(np.mean(markers, axis=0)[0])
         title = rf"$\dot\gamma t$ = {rate * times[k]:.0f}"
         panel.set(title=title, xlim=(middle - 1.3, middle + 1.3), ylim=(2.7, 5.3))
-    figure.colorbar(lines, ax=list(axes.ravel()), label=TENSION, shrink=0.8)
+    figure.colorbar(lines, ax=list(axes), label=TENSION, shrink=0.8)
     return save_figure(figure, path)
 
 
 def transient_curves(one: dict, rate: float, path: Path) -> Path:
     """Draw Fig 9's tension against the phase angle at late times, and the inclination against time."""
-    figure, ((last, angle),) = grid_figure(11, 4, 1, 2, equal=False)
+    figure, (last, angle) = new_figure(11, 4, 2)
     for k in (8, 12, 16, len(one["frames"]["time"]) - 1):
         order = np.argsort(one["phase"][k])
         label = rf"$\dot\gamma t$ = {rate * one['frames']['time'][k]:.0f}"
         last.plot(np.asarray(one["phase"][k])[order], np.asarray(one["frames"]["tension"][k])[order], ".-", label=label)
-    last.set(xlabel=r"$\varphi/\pi$", ylabel=TENSION)
-    last.legend(frameon=False, fontsize=8)
+    dress(last, 8, xlabel=r"$\varphi/\pi$", ylabel=TENSION)
     angle.plot(rate * np.asarray(one["time"]), one["theta"])
-    angle.set(xlabel=r"$\dot\gamma t$", ylabel=r"inclination $\theta/\pi$")
-    for panel in (last, angle):
-        panel.grid(alpha=0.3)
+    dress(angle, xlabel=r"$\dot\gamma t$", ylabel=r"inclination $\theta/\pi$")
     return save_figure(figure, path)
 
 
 def shapes(found: dict[tuple[float, int], dict], path: Path) -> Path:
     """Draw Fig 10: the steady shapes, a row for each chi, a column for each V."""
     reduced, chis = sorted({v for v, _ in found}), sorted({chi for _, chi in found})
-    figure, axes = grid_figure(14, 9.5, len(chis), len(reduced))
-    for row, chi in zip(axes, chis):
-        for panel, v in zip(row, reduced):
-            one = found[v, chi]["frames"]
-            lines = membrane(panel, one["markers"][-1], one["tension"][-1])
-            panel.set(title=rf"$V$ = {v}, $\chi$ = {chi}", xlim=(2.7, 5.3), ylim=(3.0, 5.0))
-            figure.colorbar(lines, ax=panel, label=TENSION, location="bottom", aspect=30)
+    figure, axes = new_figure(14, 9.5, len(reduced), len(chis), equal=True)
+    for panel, (chi, v) in zip(axes, product(chis, reduced)):
+        one = found[v, chi]["frames"]
+        lines = membrane(panel, one["markers"][-1], one["tension"][-1])
+        panel.set(title=rf"$V$ = {v}, $\chi$ = {chi}", xlim=(2.7, 5.3), ylim=(3.0, 5.0))
+        figure.colorbar(lines, ax=panel, label=TENSION, location="bottom", aspect=30)
     return save_figure(figure, path)
 
 
@@ -153,9 +136,9 @@ def keller_skalak(reduced_area: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 def against_reduced_area(found: dict[tuple[float, int], dict], path: Path) -> Path:
     """Draw Fig 11: inclination and frequency against V, with Keller-Skalak and boundary integral values."""
-    figure, axes = grid_figure(11, 4.4, 1, 2, equal=False)
+    figure, axes = new_figure(11, 4.4, 2)
     line = np.linspace(0.45, 0.99, 100)
-    for panel, quantity, curve in zip(axes[0], ("theta", "omega_over_rate"), keller_skalak(line)):
+    for panel, quantity, curve in zip(axes, ("theta", "omega_over_rate"), keller_skalak(line)):
         panel.plot(line, curve, "k-", label="Keller-Skalak, 2-D")
         for chi, mark in zip((1, 10, 100), "os^"):
             points = [(v, one[quantity]) for (v, c), one in found.items() if c == chi]
@@ -164,7 +147,5 @@ def against_reduced_area(found: dict[tuple[float, int], dict], path: Path) -> Pa
         panel.plot([v for v, _ in SHEAR["box"]], [x[k] for x in SHEAR["box"].values()], "r+", label="BI, same box")
         free = [(v, x[k]) for (v, chi), x in SHEAR_FREE.items() if chi == 100]
         panel.plot(*zip(*free), "bx", label=r"BI, unbounded, $\chi$ = 100")
-        panel.set(xlabel="reduced area $V$", ylabel=(r"$\theta/\pi$", r"$\omega/\dot\gamma$")[k])
-        panel.grid(alpha=0.3)
-        panel.legend(frameon=False, fontsize=8)
+        dress(panel, 8, xlabel="reduced area $V$", ylabel=(r"$\theta/\pi$", r"$\omega/\dot\gamma$")[k])
     return save_figure(figure, path)

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from petves.views.plot import new_figure, save_figure
+from petves.views.plot import dress, new_figure, save_figure
 from studies.common.engine import Kept
 from studies.stability.cells import MAPS, MARKS, SCHEMES, STEP_MAP, Map, run_cell
 from petves.tables import csv_text, table, write_csv
@@ -170,8 +170,7 @@ def _largest_steps(cells: Cells, folder: Path, text: list[str]) -> list[Path]:
         (line,) = panel.loglog(hs, dts, f"{style}-", ms=5, lw=1, label=f"{scheme}: {note}")
         free = [(h, 1.15 * dt) for h, dt, is_bound in found if not is_bound]
         panel.loglog([r[0] for r in free], [r[1] for r in free], "^", color=line.get_color(), ms=8, mfc="none")
-    panel.set(xlabel="cell size $h$", ylabel="largest step without a mark", title=one.title)
-    panel.grid(alpha=0.3, which="both")
+    dress(panel, grid="both", xlabel="cell size $h$", ylabel="largest step without a mark", title=one.title)
     panel.legend(frameon=False, fontsize=8, title="fitted power of $h$; triangles: no bound found", title_fontsize=7)
     write_csv(folder / "largest_step.csv", ["scheme", "h", "dt", "larger_failed"], rows)
     text += ["### Largest step without a mark, ellipse at rest, c_b = 1\n"]

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from petves.views.plot import draw_outlines, new_figure, save_figure
+from petves.views.plot import draw_outlines, dress, new_figure, save_figure
 from petves.run import Run
 from petves.tables import table
 
@@ -83,10 +83,7 @@ def _draw(runs: tuple[Run, Run], path: Path) -> Path:
         axes[0].plot(time, run.series["energy_kinetic"] + run.series["energy_bending"], style, color=color, label=label)
         axes[1].plot(time, np.unwrap(run.series["inclination"], period=np.pi), style, color=color, label=label)
         draw_outlines(axes[2], run, -1, color, style)
-    axes[0].set(xlabel="time $t$", ylabel="energy (length$^4$/time$^2$)")
-    axes[1].set(xlabel="time $t$", ylabel=r"inclination $\theta$ (radians)")
-    axes[2].set(xlabel="$x$ (length)", ylabel="$y$ (length)", aspect="equal", title="last saved outlines")
-    axes[0].legend(frameon=False)
-    for panel in axes:
-        panel.grid(alpha=0.3)
+    dress(axes[0], 10, xlabel="time $t$", ylabel="energy (length$^4$/time$^2$)")
+    dress(axes[1], xlabel="time $t$", ylabel=r"inclination $\theta$ (radians)")
+    dress(axes[2], xlabel="$x$ (length)", ylabel="$y$ (length)", aspect="equal", title="last saved outlines")
     return save_figure(figure, path)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Callable
+from typing import TYPE_CHECKING, Any, Callable
 
 import numpy as np
 
@@ -21,21 +21,30 @@ LEAST_SPAN = 0.02  # of an axis of angles over pi
 FLOOR = 1e-16  # smallest value on a logarithmic axis
 
 
-def new_figure(width: float, height: float, columns: int = 1, rows: int = 1) -> tuple[Figure, np.ndarray]:
-    """Return a figure that needs no display, and its axes, row by row."""
+def new_figure(
+    width: float, height: float, columns: int = 1, rows: int = 1, equal: bool = False
+) -> tuple[Figure, np.ndarray]:
+    """Return a figure that needs no display, and its axes, row by row; equal: of equal scales in x and y."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(width, height), layout="constrained")
+    figure = Figure(figsize=(width, height), layout="compressed" if equal else "constrained")
     FigureCanvasAgg(figure)
-    axes = figure.subplots(rows, columns, squeeze=False).ravel()
-    return figure, axes
+    return figure, figure.subplots(rows, columns, squeeze=False).ravel()
 
 
 def save_figure(figure: Figure, path: Path) -> Path:
     """Write a PNG file; return its path."""
     figure.savefig(path, dpi=120)
     return path
+
+
+def dress(axes: Axes, legend: float = 0, grid: str = "major", **names: Any) -> None:
+    """Set what is named, draw a grid (major, minor or both) and, in letters of a size, a legend."""
+    axes.set(**names)
+    axes.grid(alpha=0.3, which=grid)
+    if legend:
+        axes.legend(frameon=False, fontsize=legend)
 
 
 def plot_run(folder: str | Path) -> list[Path]:
@@ -73,9 +82,7 @@ def plot_energy(run: Run) -> Path:
     if run.vesicles and run.c_b > 0:
         axes.plot(time, bending / scale, "--", color="C0", label="bending $E_B$")
     axes.plot(time, kinetic / scale, "-.", color="C1", label="kinetic $E_K$")
-    axes.set(xlabel="time $t$", ylabel=f"$E/{name}$" if name != "1" else "$E$ (length$^4$/time$^2$)")
-    axes.grid(alpha=0.3)
-    axes.legend(frameon=False)
+    dress(axes, 10, xlabel="time $t$", ylabel=f"$E/{name}$" if name != "1" else "$E$ (length$^4$/time$^2$)")
     return save_figure(figure, run.folder / "energy.png")
 
 
@@ -88,9 +95,7 @@ def plot_conservation(run: Run) -> Path:
         ("length_error", "--", "length, $|L - L_0|/L_0$"),
     ):
         axes.semilogy(time, np.maximum(np.abs(run.series[column][1:]), FLOOR), style, label=label)
-    axes.set(xlabel="time $t$", ylabel="relative error")
-    axes.grid(alpha=0.3)
-    axes.legend(frameon=False)
+    dress(axes, 10, xlabel="time $t$", ylabel="relative error")
     return save_figure(figure, run.folder / "conservation.png")
 
 
@@ -152,10 +157,8 @@ def plot_motion(run: Run) -> Path:
             suffix = f"_{vesicle + 1}" if run.vesicles > 1 else ""
             other.plot(time, run.series["frequency" + suffix], "--", color=f"C{vesicle}")
     middle, half = np.mean(axes.get_ylim()), max(np.ptp(axes.get_ylim()) / 2, LEAST_SPAN / 2)
-    axes.set(xlabel="time $t$", ylabel=r"inclination $\theta/\pi$", ylim=(middle - half, middle + half))
-    axes.grid(alpha=0.3)
-    if run.vesicles > 1:
-        axes.legend(frameon=False)
+    limits, legend = (middle - half, middle + half), 10 if run.vesicles > 1 else 0
+    dress(axes, legend, xlabel="time $t$", ylabel=r"inclination $\theta/\pi$", ylim=limits)
     return save_figure(figure, run.folder / "motion.png")
 
 
@@ -176,8 +179,7 @@ def plot_field(run: Run, frame: int = -1) -> Path:
     x, y = run.cell_centers()
     sides = run.box[1] - run.box[0], run.box[3] - run.box[2]
     tall = min(max(4.7 * sides[1] / sides[0], 1.6), 9.0)
-    figure, axes = new_figure(12.4, tall + 1.9, columns=2)
-    figure.set_layout_engine("compressed")  # the layout for axes of equal scales
+    figure, axes = new_figure(12.4, tall + 1.9, columns=2, equal=True)
     tension, drawn = run.tension[frame], []
     limits = (tension.min(), tension.max()) if run.vesicles else (0.0, 1.0)
     for panel, kind in zip(axes, FIELDS.values()):
@@ -210,10 +212,7 @@ def plot_tension(run: Run, frame: int = -1) -> Path:
         label = f"vesicle {vesicle + 1}" if run.vesicles > 1 else None
         axes.plot(angle[order], run.edge_tension(frame, vesicle)[order], ".-", ms=4, lw=1, label=label)
     axes.set(xlabel=r"phase angle $\varphi/\pi$", ylabel=r"tension $\sigma$ (length$^3$/time$^2$)", xlim=(-1, 1))
-    axes.set_title(f"$t$ = {run.time[frame]:g}")
-    axes.grid(alpha=0.3)
-    if run.vesicles > 1:
-        axes.legend(frameon=False)
+    dress(axes, 10 if run.vesicles > 1 else 0, title=f"$t$ = {run.time[frame]:g}")
     return save_figure(figure, run.folder / "tension.png")
 
 
@@ -221,8 +220,7 @@ def plot_shapes(run: Run) -> Path:
     """Draw outlines at evenly spread saved times, with marker 0 as a dot."""
     import matplotlib
 
-    figure, (axes,) = new_figure(6, 5.2)
-    figure.set_layout_engine("compressed")
+    figure, (axes,) = new_figure(6, 5.2, equal=True)
     frames = np.unique(np.linspace(0, len(run.time) - 1, min(OUTLINES, len(run.time))).round().astype(int))
     colors = matplotlib.colormaps["viridis"](np.linspace(0, 0.9, len(frames)))
     for frame, color in zip(frames, colors):
