@@ -54,27 +54,13 @@ class Kept:
 
 @dataclass
 class Case:
-    """One run.
+    """One run."""
 
-    Attributes
-    ----------
-    name : str
-        Key of its measures in the file of results; the part before the first "_" names the study.
-    options : dict of str to str
-        Options of petves and their values.
-    measure : callable
-        A Measure.
-    ranks : int
-        MPI ranks; 0 takes the study's.
-    may_fail : bool
-        A run that stops (exit status 2) is a result: its measures are {"failed": line}.
-    """
-
-    name: str
+    name: str  # in the file of results; the part before the first "_" names the study
     options: dict[str, str]
     measure: Measure
-    ranks: int = 1
-    may_fail: bool = False
+    ranks: int = 1  # 0 takes the study's
+    may_fail: bool = False  # a run that stops (exit status 2) is a result: its measures are {"failed": line}
 
 
 class NotRun(RunError):

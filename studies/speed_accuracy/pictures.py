@@ -40,27 +40,9 @@ def envelope(costs: np.ndarray, errors: np.ndarray) -> np.ndarray:
 
 
 def picture(folder: Path, one: Scene, rows: list[dict], cost: str, floor: dict[str, float], start: float) -> Path:
-    """Draw the errors of a scene over a cost.
+    """Draw the errors of a scene, rows of chart.csv, over a cost: cpu_seconds or solves.
 
-    Parameters
-    ----------
-    folder : Path
-        Where the picture goes.
-    one : Scene
-        The scene.
-    rows : list of dict
-        Rows of chart.csv.
-    cost : str
-        cpu_seconds or solves.
-    floor : dict
-        Errors of the reference itself, as far as known.
-    start : float
-        CPU seconds of a run without steps.
-
-    Returns
-    -------
-    Path
-        The PNG file.
+    `floor`: errors of the reference itself, as far as known; `start`: CPU seconds of a run without steps.
     """
     names = ("largest", *one.wanted)
     columns = (len(names) + 2) // 2

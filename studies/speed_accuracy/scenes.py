@@ -35,27 +35,17 @@ ADAPTIVE_STEPS = 60  # for the estimate of work
 
 @dataclass(frozen=True)
 class Point:
-    """One point: a scheme on one grid with one step, or one tolerance of the step's control.
+    """One point: a scheme on one grid with one step, or one tolerance of the step's control; the other is 0."""
 
-    Attributes
-    ----------
-    scheme : str
-        Key of SCHEMES.
-    cells : int
-        Of the scene's measure: across the box, or a unit of length (channel).
-    dt, tolerance : float
-        Time step, or -time_adapt_tol; the other is 0.
-    """
-
-    scheme: str
-    cells: int
+    scheme: str  # key of SCHEMES
+    cells: int  # of the scene's measure: across the box, or a unit of length (channel)
     dt: float = 0.0
-    tolerance: float = 0.0
+    tolerance: float = 0.0  # -time_adapt_tol
 
     def step(self) -> dict[str, str]:
         """Return the options of the step."""
         if self.tolerance:
-            return {"-time_step": "0.02", "-time_adapt": "error", "-time_adapt_tol": repr(self.tolerance)}
+            return words(f"-time_step 0.02 -time_adapt error -time_adapt_tol {self.tolerance!r}")
         return {"-time_step": repr(self.dt)}
 
     def label(self) -> str:
@@ -66,43 +56,19 @@ class Point:
 
 @dataclass(frozen=True)
 class Scene:
-    """A scene of the chart.
+    """A scene of the chart."""
 
-    Attributes
-    ----------
-    name, title : str
-        Key in the files, and what the picture says.
-    options : callable
-        Takes a point; returns the options of its run but those of the scheme and the step.
-    width : float
-        h times Point.cells.
-    time_end : float
-        End of the run.
-    reference : dict
-        Options of the fine run; empty: the errors are against boundary integrals.
-    other : dict
-        What another fine run has other options for, which shows how far the reference has converged.
-    quick : dict
-        What the reference of a quick call has other options for.
-    errors : callable
-        Takes the measures of a run and of the reference; returns errors by name (of ERRORS).
-    wanted : tuple of str
-        Errors drawn, which a recommendation must keep.
-    points : tuple of Point
-        What is run.
-    """
-
-    name: str
+    name: str  # in the files
     title: str
-    options: Callable[[Point], dict[str, str]]
-    width: float
+    options: Callable[[Point], dict[str, str]]  # of the run of a point but those of the scheme and the step
+    width: float  # h times Point.cells
     time_end: float
-    errors: Callable[[dict, dict], dict[str, float]]
-    wanted: tuple[str, ...]
+    errors: Callable[[dict, dict], dict[str, float]]  # by name, from the measures of a run and of the reference
+    wanted: tuple[str, ...]  # the errors drawn, which a recommendation must keep
     points: tuple[Point, ...]
-    reference: dict[str, str] = field(default_factory=dict)
-    other: dict[str, str] = field(default_factory=dict)
-    quick: dict[str, str] = field(default_factory=dict)
+    reference: dict[str, str] = field(default_factory=dict)  # the fine run; empty: errors against boundary integrals
+    other: dict[str, str] = field(default_factory=dict)  # changed in another, which shows how far that has converged
+    quick: dict[str, str] = field(default_factory=dict)  # changed in the reference of a quick call
 
     def case(self, point: Point, repeat: int, fine: dict) -> Case:
         """Return the run of a point; fine: the measures of the reference."""
@@ -230,41 +196,17 @@ def _channel_points() -> list[Point]:
     return points + grid("direct, corrected", (6,), dts=(0.12,))
 
 
+# fmt: off
 SCENES = (
-    Scene(
-        "relax",
-        "relaxing ellipse, section 5.2, $t = 1$",
-        relax_options,
-        2,
-        1,
-        _relax_errors,
-        ("shape", "energy"),
-        tuple(_relax_points()),
-        fine_options("relax"),
-        words("-domain_cells 384,384 -time_adapt_tol 3e-7"),
-        words("-domain_cells 192,192 -time_adapt_tol 1e-5"),
-    ),
-    Scene(
-        "shear",
-        r"tank-treading in shear, $V = 0.7$, $\chi = 10$, box 8 x 8, $t = 12$",
-        lambda point: tank_treading("box", point.cells, 0.7, 10),
-        8,
-        12,
-        _shear_errors,
-        ("angle", "frequency", "area", "length"),
-        tuple(_shear_points()),
-    ),
-    Scene(
-        "channel",
-        "migration in a channel, section 5.5, window 12 x 6, $t = 24$",
-        channel_options,
-        1,
-        24,
-        _channel_errors,
-        ("velocity", "shape"),
-        tuple(_channel_points()),
-        channel_options(Point(BEST, 56)) | SCHEMES[BEST] | {"-time_step": "0.0025"},
-        words("-domain_cells 480,240"),
-        words("-domain_cells 240,120 -time_step 0.00375"),
-    ),
+    Scene("relax", "relaxing ellipse, section 5.2, $t = 1$", relax_options, 2, 1, _relax_errors, ("shape", "energy"),
+          tuple(_relax_points()), fine_options("relax"), words("-domain_cells 384,384 -time_adapt_tol 3e-7"),
+          words("-domain_cells 192,192 -time_adapt_tol 1e-5")),
+    Scene("shear", r"tank-treading in shear, $V = 0.7$, $\chi = 10$, box 8 x 8, $t = 12$",
+          lambda point: tank_treading("box", point.cells, 0.7, 10), 8, 12, _shear_errors,
+          ("angle", "frequency", "area", "length"), tuple(_shear_points())),
+    Scene("channel", "migration in a channel, section 5.5, window 12 x 6, $t = 24$", channel_options, 1, 24,
+          _channel_errors, ("velocity", "shape"), tuple(_channel_points()),
+          channel_options(Point(BEST, 56)) | SCHEMES[BEST] | {"-time_step": "0.0025"},
+          words("-domain_cells 480,240"), words("-domain_cells 240,120 -time_step 0.00375")),
 )
+# fmt: on

@@ -17,19 +17,19 @@ from studies.common.curves import radius
 from studies.common.scenes import KERNELS
 
 SCHEMES = ("penalty", "split", "coupled")
-MARKS = (
-    "ok",
-    "refused",
-    "drift above 1 %",
-    "energy rises",
-    "edge ratio above 2",
-    "left the box",
-    "solver failed",
-    "NaN",
-    "too slow",
-    "no clean stop",
-)
-"""Marks of a cell; the last one is a defect of the program."""
+MARKS = {
+    "ok": ("·", "#4a9d5b"),
+    "refused": ("R", "#d9d9d9"),
+    "drift above 1 %": ("D", "#f2d16b"),
+    "energy rises": ("E", "#e8973a"),
+    "edge ratio above 2": ("S", "#c65d3b"),
+    "left the box": ("B", "#9c3848"),
+    "solver failed": ("F", "#6b4c9a"),
+    "NaN": ("N", "#222222"),
+    "too slow": ("T", "#8fb7d9"),
+    "no clean stop": ("!", "#ff00ff"),
+}
+"""Marks of a cell, with their letters and colours in the pictures; the last one is a defect of the program."""
 NEEDLES = {
     "NANORINF": "NaN",
     "not finite": "NaN",
@@ -51,27 +51,17 @@ SHEAR = "-domain_box -2.4,2.4,-2.4,2.4 -flow_type shear -vesicle_area 1"
 
 @dataclass(frozen=True)
 class Map:
-    """A map of cells.
+    """A map of cells."""
 
-    Attributes
-    ----------
-    name, title : str
-        Name in the CSV file, and what the picture says.
-    x_label, y_label : str
-        Axes.
-    xs, ys : tuple
-        Values along them.
-    options : callable
-        Takes x and y, returns the options of one run, or of two of which the second goes on from the first's end.
-    """
-
-    name: str
+    name: str  # in the CSV file
     title: str
     x_label: str
     xs: tuple
     y_label: str
     ys: tuple
-    options: Callable[[object, object], tuple[str, ...]]
+    options: Callable[
+        [object, object], tuple[str, ...]
+    ]  # of the run at x, y; of two: the second goes on from the first
 
     def cells(self) -> list[tuple[str, object, object]]:
         """Return scheme, x, y of every cell."""

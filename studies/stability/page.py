@@ -16,8 +16,6 @@ from studies.stability.cells import MAPS, MARKS, SCHEMES, STEP_MAP, Map, run_cel
 from petves.tables import csv_text, table, write_csv
 
 COLUMNS = "map scheme x y mark steps energy_rise area_error length_error drift edge_ratio its message options".split()
-COLORS = dict(zip(MARKS, "#4a9d5b #d9d9d9 #f2d16b #e8973a #c65d3b #9c3848 #6b4c9a #222222 #8fb7d9 #ff00ff".split()))
-LETTERS = dict(zip(MARKS, "· R D E S B F N T !".split()))
 UNSETTLED = ("too slow", "no clean stop")  # run again by the next call: a busy machine may be to blame
 MINUTES = 30
 HALVINGS = 3  # of the octave in which the largest stable step lies
@@ -126,13 +124,14 @@ def _picture(cells: Cells, one: Map, folder: Path) -> Path:
             for j, y in enumerate(one.ys):
                 name = cells.mark(one.name, scheme, x, y)
                 seen.add(name)
-                panel.add_patch(Rectangle((i - 0.48, j - 0.48), 0.96, 0.96, color=COLORS.get(name, "white")))
-                panel.text(i, j, LETTERS.get(name, ""), ha="center", va="center", fontsize=8, color="white")
+                letter, color = MARKS.get(name, ("", "white"))
+                panel.add_patch(Rectangle((i - 0.48, j - 0.48), 0.96, 0.96, color=color))
+                panel.text(i, j, letter, ha="center", va="center", fontsize=8, color="white")
         panel.set(xlim=(-0.5, len(one.xs) - 0.5), ylim=(-0.5, len(one.ys) - 0.5), xlabel=one.x_label, title=scheme)
         panel.set_xticks(range(len(one.xs)), [_text(x) for x in one.xs], fontsize=7)
         panel.set_yticks(range(len(one.ys)), [_text(y) for y in one.ys], fontsize=7)
     axes[0].set_ylabel(one.y_label)
-    handles = [Patch(color=COLORS[m], label=f"{LETTERS[m]} {m}") for m in MARKS if m in seen]
+    handles = [Patch(color=color, label=f"{letter} {m}") for m, (letter, color) in MARKS.items() if m in seen]
     axes[-1].legend(handles=handles, loc="upper left", bbox_to_anchor=(1.01, 1), frameon=False, fontsize=8)
     figure.suptitle(one.title, fontsize=9)
     return save_figure(figure, folder / f"{one.name}.png")
