@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 from conftest import PETVES
 
-from studies.speed_accuracy import page as report
-from studies.speed_accuracy import claim as chart_claim
-from studies.speed_accuracy import scenes as study
-from studies.speed_accuracy.pictures import envelope
 from studies.common.curves import material_distance, outline_distance
 from studies.common.engine import Results
+from studies.speed_accuracy import claim as chart_claim
+from studies.speed_accuracy import page as report
+from studies.speed_accuracy import scenes as study
+from studies.speed_accuracy.pictures import envelope
 
 RELAX = next(one for one in study.SCENES if one.name == "relax")
 

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from conftest import PETVES, ROOT, Run, mpirun
 
+from petves.run import Run as Files
 from studies.common.curves import at, radius
 from studies.common.scenes import option_file
 from studies.reproduction.convergence import differences
-from petves.run import Run as Files
 from studies.reproduction.scene_figures import keller_skalak
 
 SCENES = ("energy", "relax", "shear_convergence", "equilibrium", "poiseuille", "shear")

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from conftest import PETVES, run_petves
 
-from studies.stability import page as report
-from studies.stability import cells as study
 from petves.run import RunError
+from studies.stability import cells as study
+from studies.stability import page as report
 
 DT_CB, CHANGE = (next(one for one in study.MAPS if one.name == name) for name in ("dt_cb", "dt_change"))
 SPACING = next(one for one in study.MAPS if one.name == "spacing_kernel")

@@ -7,12 +7,13 @@ from pathlib import Path
 
 import numpy as np
 
-from studies.accuracy import runs as study
-from studies.common.paper import REST, SHEAR
-from petves.views.plot import dress, new_figure, save_figure
-from studies.common.engine import Results
-from studies.common.scenes import KERNELS
 from petves.tables import table, write_csv
+from petves.views.plot import dress, new_figure, save_figure
+from studies.accuracy import runs as study
+from studies.common.curves import radius
+from studies.common.engine import Results
+from studies.common.paper import REST, SHEAR
+from studies.common.scenes import KERNELS
 
 CELLS, PICTURE_CELLS, FINE_CELLS = (64, 128, 256), (48, 64, 96, 128, 192), (64, 128, 256, 512)
 PICTURE = ("uncorrected", "cbs54, none", "local", "chords", "ib6, symbol", "default")
@@ -151,8 +152,7 @@ def _rest(results: Results, folder: Path) -> list[str]:
     rows, shown = [], []
     for name, v in [("default", v) for v in REST] + [("uncorrected", v) for v in study.REDUCED_AREAS]:
         one = results.get(study.rest(name, 128, v))
-        radius = (1 / (np.pi * v)) ** 0.5
-        got = one["energy"] * radius, one["width"] / radius, one["mid_height"] / radius
+        got = one["energy"] * radius(v), one["width"] / radius(v), one["mid_height"] / radius(v)
         errors = [100 * (a / b - 1) for a, b in zip(got, REST[v])]
         rows.append([name, v, *got, *errors, one["drift"]])
         shown.append([name, f"{v}", *(f"{a:.4f} ({e:+.3f} %)" for a, e in zip(got, errors)), f"{one['drift']:.0e}"])
@@ -165,14 +165,12 @@ def _rest(results: Results, folder: Path) -> list[str]:
 def _cost(results: Results, folder: Path) -> list[str]:
     """Seconds a step at 256^2."""
     names = ("uncorrected", "cbs54, none", "default")
-    found = {name: [] for name in names}
-    for repeat, name in product(range(3), names):
-        found[name].append(results.get(study.cost(name, repeat)))
-    seconds = {name: np.median([one["seconds_least"] for one in found[name]]) for name in names}
-    over = lambda name: [
-        f"{seconds[name] / seconds[base]:.2f}" for base in ("cbs54, none", "uncorrected")
-    ]  # noqa: E731
-    shown = [[name, f"{found[name][0]['its_all']:.1f}", *over(name)] for name in names]
+    taken = results.in_turn({name: study.cost(name) for name in names}, 3)
+    seconds = {name: np.median([one["seconds_least"] for one in runs]) for name, runs in taken.items()}
+    shown = []
+    for name, (first, *_) in taken.items():
+        over = [f"{seconds[name] / seconds[base]:.2f}" for base in ("cbs54, none", "uncorrected")]
+        shown.append([name, f"{first['its_all']:.1f}", *over])
     write_csv(folder / "accuracy_cost.csv", ["combination", "its", "over_cbs54_none", "over_uncorrected"], shown)
     header = ["", "iterations", "time over cbs54, none", "time over uncorrected"]
     title = "### Time a step at 256^2: V = 0.7, chi = 10, 25 steps, three runs each in turn\n"

@@ -84,10 +84,10 @@ def kernel_and_spacing(kernel: str, spacing: float, n: int) -> Case:
     return Case(f"kernel_{kernel}_{spacing}_{n}", options, _measure_shear, may_fail=True)
 
 
-def cost(name: str, repeat: int) -> Case:
-    """Return a timed run of 25 steps at 256^2; repeats are the same run again."""
+def cost(name: str) -> Case:
+    """Return a timed run of 25 steps at 256^2."""
     options = combination(name) | tank_treading("box", 256, 0.7, 10, 1.25)
-    return Case(f"cost_{label(name)}_{repeat}", options, _measure_shear)
+    return Case(f"cost_{label(name)}", options, _measure_shear)
 
 
 def rest(name: str, n: int, reduced_area: float) -> Case:

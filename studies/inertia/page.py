@@ -7,12 +7,12 @@ from pathlib import Path
 
 import numpy as np
 
-from studies.inertia import runs as study
-from studies.common.paper import PARACHUTE, POISEUILLE, RELAXATION
+from petves.tables import table, write_csv
 from petves.views.plot import dress, new_figure, save_figure
 from studies.common.engine import Results
+from studies.common.paper import PARACHUTE, POISEUILLE, RELAXATION
 from studies.common.scenes import BOXES
-from petves.tables import table, write_csv
+from studies.inertia import runs as study
 
 RELAXATIONS = (
     [("periodic", half, round(24 * half), 0.01) for half in (0.75, 1, 1.5, 2)]

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import numpy as np
 
-from studies.reproduction import coupled_runs as study
+from petves.tables import table, write_csv
 from petves.views.plot import dress, new_figure, save_figure
 from studies.common.engine import Results
-from petves.tables import table, write_csv
+from studies.reproduction import coupled_runs as study
 
 PROTOTYPE_COLUMNS = ("split", "1", "2_euler", "1_target", "2_target_euler")
 PROTOTYPE = {

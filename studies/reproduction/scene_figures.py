@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from petves.theory import ellipse_axes
+from petves.views.plot import dress, new_figure, save_figure
 from studies.common.curves import trigonometric
 from studies.common.paper import SHEAR, SHEAR_FREE
-from petves.views.plot import dress, new_figure, save_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -6,11 +6,11 @@ from pathlib import Path
 
 import numpy as np
 
-from studies.reproduction import scene_figures, scenes
-from studies.common.paper import REST, SHEAR, SHEAR_FREE
-from studies.reproduction.scenes import CHIS, REDUCED_AREAS, shear_rate
-from studies.common.engine import Results
 from petves.tables import table
+from studies.common.engine import Results
+from studies.common.paper import REST, SHEAR, SHEAR_FREE
+from studies.reproduction import scene_figures, scenes
+from studies.reproduction.scenes import CHIS, REDUCED_AREAS, shear_rate
 
 COARSE = {"equilibrium": 8, "shear": 8}
 """1/h of the paper's method in quick mode: its own are 128 and 64."""
@@ -22,6 +22,10 @@ def _percent(value: float, target: float) -> str:
 
 def _failed(label: list[str], found: dict, columns: int) -> list[str]:
     return [*label, f"stopped: {found['failed'].split('error: ')[-1][:90]}", *[""] * (columns - len(label) - 1)]
+
+
+def _last(one: dict, *keys: str) -> list[str]:
+    return [f"{one[key][-1]:.4f}" for key in keys]
 
 
 def equilibrium(results: Results, folder: Path, quick: bool) -> list[str]:
@@ -95,7 +99,7 @@ def _heights(one: dict) -> list[str]:
 
 def _end(one: dict) -> list[str]:
     extent = " x ".join(f"{x:.3f}" for x in one["extent"][-1])
-    return [f"{one['height'][-1]:+.4f}", f"{one['slip'][-1]:.4f}", f"{one['aspect'][-1]:.4f}", extent]
+    return [f"{one['height'][-1]:+.4f}", *_last(one, "slip", "aspect"), extent]
 
 
 def _ends(strip: dict[int, dict], long: dict[int, dict]) -> list[str]:
@@ -105,9 +109,8 @@ def _ends(strip: dict[int, dict], long: dict[int, dict]) -> list[str]:
         for offset, one in runs.items():
             name = {0: "0", 1: "R0", -1: "-R0"}[offset]
             rows.append([name, str(time), f"{one['travel'][-1]:.1f}", *_end(one)])
-    return ["At t = 96 and 480, runs/poiseuille.opts (none, window 12 x 6, h = 1/8).\n"] + table(
-        ["c_0", "t", "travel", "height", "slip", "aspect", "extents"], rows
-    )
+    header = ["c_0", "t", "travel", "height", "slip", "aspect", "extents"]
+    return ["At t = 96 and 480, runs/poiseuille.opts (none, window 12 x 6, h = 1/8).\n", *table(header, rows)]
 
 
 def _settled(results: Results, quick: bool) -> list[str]:
@@ -118,8 +121,7 @@ def _settled(results: Results, quick: bool) -> list[str]:
     for case in shown:
         one, (offset, n, v) = results.get(case), case.name.split("_")[2:5]
         heights = [f"{np.interp(t, one['time'], one['height']):+.4f}" for t in (240, 480, 960, 1440)]
-        last = [f"{one[key][-1]:.4f}" for key in ("slip", "aspect")]
-        rows.append(["R0" if offset == "1" else "0", f"1/{n}", v, *heights, *last])
+        rows.append(["R0" if offset == "1" else "0", f"1/{n}", v, *heights, *_last(one, "slip", "aspect")])
     header = ["c_0", "h", "V", "t = 240", "t = 480", "t = 960", "t = 1440", "slip", "aspect"]
     about = (
         "Longer runs: height over R0. At V = 0.7 the symmetric parachute is not an end state in quasi-steady flow at w = 60: what the\n"
@@ -137,7 +139,7 @@ def _model_rows(models: dict[str, dict]) -> list[str]:
         if "failed" in one:
             rows.append(_failed([model], one, len(header)))
             continue
-        rows.append([model, *_heights(one), f"{one['slip'][-1]:.4f}", f"{one['aspect'][-1]:.4f}", str(one["steps"])])
+        rows.append([model, *_heights(one), *_last(one, "slip", "aspect"), str(one["steps"])])
     return ["Height from c_0 = R0 by model of inertia, dt = .04, window 12, h = 1/8.\n", *table(header, rows)]
 
 
@@ -164,8 +166,8 @@ def _paper_channel(results: Results, quick: bool) -> list[str]:
         if "failed" in one:
             rows.append(_failed(label, one, len(header)))
             continue
-        end_state = [f"{one['slip'][-1]:.4f}", f"{one['aspect'][-1]:.4f}", f"{one['area_error']:+.1e}"]
-        rows.append([*label, *_heights(one), *end_state, str(one["steps"])])
+        last = [*_last(one, "slip", "aspect"), f"{one['area_error']:+.1e}", str(one["steps"])]
+        rows.append([*label, *_heights(one), *last])
     return ["The paper's method (split, ib6, unsteady, dt = h/(8 u_max)).\n", *table(header, rows)]
 
 

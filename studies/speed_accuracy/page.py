@@ -5,12 +5,12 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
+from petves.tables import table, write_csv
+from studies.common.engine import Case, Results
+from studies.common.scenes import option_text
 from studies.speed_accuracy.claim import claim
 from studies.speed_accuracy.pictures import picture
 from studies.speed_accuracy.scenes import BEST, CORRECTED, ERRORS, SCENES, SCHEMES, WIDE, Point, Scene
-from studies.common.engine import Case, Results
-from petves.tables import table, write_csv
-from studies.common.scenes import option_text
 
 ROUNDS = 3  # runs of a point, one of each in a round; the best counts
 ONCE = 20.0  # CPU seconds above which a point runs once

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from studies.speed_accuracy.scenes import SCHEMES, Scene
-from studies.common.paper import BOUNDARY_INTEGRAL_CODES, SHEAR
 from petves.views.plot import new_figure, save_figure
+from studies.common.paper import BOUNDARY_INTEGRAL_CODES, SHEAR
+from studies.speed_accuracy.scenes import SCHEMES, Scene
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

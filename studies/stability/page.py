@@ -10,10 +10,10 @@ from pathlib import Path
 
 import numpy as np
 
+from petves.tables import csv_text, table, write_csv
 from petves.views.plot import dress, new_figure, save_figure
 from studies.common.engine import Kept
 from studies.stability.cells import MAPS, MARKS, SCHEMES, STEP_MAP, Map, run_cell
-from petves.tables import csv_text, table, write_csv
 
 COLUMNS = "map scheme x y mark steps energy_rise area_error length_error drift edge_ratio its message options".split()
 UNSETTLED = ("too slow", "no clean stop")  # run again by the next call: a busy machine may be to blame

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import numpy as np
 
-from petves.views.plot import draw_outlines, dress, new_figure, save_figure
 from petves.run import Run
 from petves.tables import table
+from petves.views.plot import draw_outlines, dress, new_figure, save_figure
 
 COUNTERS = ("step", "wall", "nsolve", "tension_its", "bending_its", "coupled_its")
 SAME = 1e-9  # times closer than this part of a run are the same

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import numpy as np
 
-from petves.views.plot import FIELDS, draw_membranes, new_figure
 from petves.progress import progress_bar
 from petves.run import Run, RunError
+from petves.views.plot import FIELDS, draw_membranes, new_figure
 
 SUFFIXES = (".mp4", ".gif")
 

@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from petves.views.plot import plot_conservation, plot_energy, plot_motion, plot_shapes, plot_tension
 from petves.run import Run
+from petves.views.plot import plot_conservation, plot_energy, plot_motion, plot_shapes, plot_tension
 from petves.views.words import key_numbers, scene_in_words
 
 FRAMES = 81  # saved times kept at most
