@@ -12,7 +12,7 @@ from petves.views.plot import dress, new_figure, save_figure
 from studies.accuracy import runs as study
 from studies.common.curves import radius
 from studies.common.engine import Results
-from studies.common.paper import REST, SHEAR
+from studies.common.paper import REST, SHEAR, shear_errors
 from studies.common.scenes import KERNELS
 
 CELLS, PICTURE_CELLS, FINE_CELLS = (64, 128, 256), (48, 64, 96, 128, 192), (64, 128, 256, 512)
@@ -34,8 +34,7 @@ def write(folder: str | Path, quick: bool = False) -> list[Path]:
 
 def _errors(found: dict, box: str, reduced_area: float, chi: float) -> tuple[float, float]:
     """Return the errors of angle and frequency, relative."""
-    theta, omega = SHEAR[box][reduced_area, chi]
-    return found["theta"] / theta - 1, found["omega"] / omega - 1
+    return shear_errors(found["theta"], found["omega"], reduced_area, chi, box)
 
 
 def _percent(errors: tuple[float, float]) -> str:

@@ -47,7 +47,7 @@ def cells(n: int, m: int | None = None) -> dict[str, str]:
 def option_file(name: str) -> dict[str, str]:
     """Return the options of runs/NAME.opts and their values, without -output_dir."""
     lines = [line.split("#")[0].split() for line in (RUNS / f"{name}.opts").read_text().splitlines()]
-    return {name: " ".join(value) for name, *value in filter(None, lines) if name != "-output_dir"}
+    return {option: " ".join(value) for option, *value in filter(None, lines) if option != "-output_dir"}
 
 
 def ellipse(kind: str, n: int, markers: int, dt: float) -> dict[str, str]:

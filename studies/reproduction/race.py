@@ -12,7 +12,7 @@ import numpy as np
 from petves.tables import table, write_csv
 from studies.common.curves import edge_lengths, last_markers, material_distance, radius
 from studies.common.engine import Case, Results, Series
-from studies.common.paper import REST, SHEAR
+from studies.common.paper import REST, shear_errors
 from studies.common.scenes import BENDING, CELLS, CHANNEL_V, TIGHT, cells, fine_options, option_file, split_options
 from studies.reproduction import scenes
 from studies.reproduction.convergence import truth
@@ -144,5 +144,5 @@ def _height_error(results: Results) -> Measure:
 
 def _shear_error(series: Series, folder: Path) -> float:
     rate = scenes.shear_rate(0.7, 10)
-    found = series["inclination"][-1] / np.pi, series["frequency"][-1] / rate
-    return max(abs(value / target - 1) for value, target in zip(found, SHEAR["box"][0.7, 10]))
+    errors = shear_errors(series["inclination"][-1] / np.pi, series["frequency"][-1] / rate, 0.7, 10)
+    return max(map(abs, errors))

@@ -10,7 +10,7 @@ import numpy as np
 
 from studies.common.curves import last_markers, material_distance, outline_distance, radius
 from studies.common.engine import Case, Series
-from studies.common.paper import SHEAR
+from studies.common.paper import shear_errors
 from studies.common.scenes import CHANNEL_V, LAST_ONLY, PAPER_MEMBRANE, PEAK, cells, ellipse, fine_options, option_file
 from studies.common.scenes import tank_treading, words
 
@@ -126,9 +126,8 @@ def _relax_errors(found: dict, fine: dict) -> dict[str, float]:
 
 
 def _shear_errors(found: dict, fine: dict) -> dict[str, float]:
-    angle, frequency = SHEAR["box"][0.7, 10]
-    errors = {"angle": abs(found["angle"] / angle - 1), "frequency": abs(found["frequency"] / frequency - 1)}
-    return errors | _drift(found)
+    errors = map(abs, shear_errors(found["angle"], found["frequency"], 0.7, 10))
+    return dict(zip(("angle", "frequency"), errors)) | _drift(found)
 
 
 def _channel_errors(found: dict, fine: dict) -> dict[str, float]:

@@ -59,9 +59,7 @@ class Map:
     xs: tuple
     y_label: str
     ys: tuple
-    options: Callable[
-        [object, object], tuple[str, ...]
-    ]  # of the run at x, y; of two: the second goes on from the first
+    options: Callable[[object, object], tuple[str, ...]]  # at x, y: of one run, or of two, one going on from the other
 
     def cells(self) -> list[tuple[str, object, object]]:
         """Return scheme, x, y of every cell."""
