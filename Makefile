@@ -98,12 +98,12 @@ run: deps ## run the default scene (or SCENE=file.opts) on 2 ranks and draw it
 
 test: test-deps ## run every test; ends with "N passed, N failed"
 	@$(MAKE) --no-print-directory all tests $(BUILD)/site/.vtk
-	PETVES=$(CURDIR)/$(BIN)/petves PETVES_TESTS=$(CURDIR)/$(BUILD)/tests PYTHONPATH=python SANITIZE=$(SANITIZE) \
+	PETVES=$(CURDIR)/$(BIN)/petves PETVES_TESTS=$(CURDIR)/$(BUILD)/tests PYTHONPATH=python:. SANITIZE=$(SANITIZE) \
 	  $(PYTHON) -m pytest -p no:cacheprovider -q tests $(TESTFLAGS)
 
 bench: deps ## speed on this machine, into bench/results and docs/performance (12 minutes; QUICK=1: 2, into out/bench)
 	@$(MAKE) --no-print-directory all benches
-	PETVES=$(CURDIR)/$(BIN)/petves PETVES_BENCH=$(CURDIR)/$(BUILD)/bench CC="$(CC)" PYTHONPATH=python $(PYTHON) bench/bench.py
+	PETVES=$(CURDIR)/$(BIN)/petves PETVES_BENCH=$(CURDIR)/$(BUILD)/bench CC="$(CC)" PYTHONPATH=python:. $(PYTHON) bench/bench.py
 
 coverage: ## line coverage of src/ by the tests (needs gcovr)
 	@command -v gcovr >/dev/null || { echo "gcovr is missing: apt-get install gcovr"; exit 1; }
@@ -113,36 +113,37 @@ coverage: ## line coverage of src/ by the tests (needs gcovr)
 
 reproduce: deps ## the paper's scenes, tables and figures: docs/reproduction.md (a day; QUICK=1: 10 minutes)
 	@$(MAKE) --no-print-directory all
-	PETVES=$(CURDIR)/$(BIN)/petves PYTHONPATH=python $(PYTHON) -m petves reproduce docs/reproduction
+	PETVES=$(CURDIR)/$(BIN)/petves PYTHONPATH=python:. $(PYTHON) -m studies reproduce docs/reproduction
 
 stability: deps ## the maps of where each scheme fails, into docs/stability (at most half an hour; QUICK=1: two minutes)
 	@$(MAKE) --no-print-directory all
-	PETVES=$(CURDIR)/$(BIN)/petves PYTHONPATH=python $(PYTHON) -m petves stability $(if $(QUICK),out/stability,docs/stability)
+	PETVES=$(CURDIR)/$(BIN)/petves PYTHONPATH=python:. $(PYTHON) -m studies stability $(if $(QUICK),out/stability,docs/stability)
 
 chart: deps ## error against CPU time of every scheme, into docs/speed_accuracy (40 minutes; QUICK=1: two minutes)
 	@$(MAKE) --no-print-directory all
-	PETVES=$(CURDIR)/$(BIN)/petves PYTHONPATH=python $(PYTHON) -m petves chart $(if $(QUICK),out/chart,docs/speed_accuracy)
+	PETVES=$(CURDIR)/$(BIN)/petves PYTHONPATH=python:. $(PYTHON) -m studies chart $(if $(QUICK),out/chart,docs/speed_accuracy)
 
 calibrate: deps ## what -scheme_auto chooses by: docs/speed_accuracy/calibration.csv (ten minutes)
 	@$(MAKE) --no-print-directory all
-	PETVES=$(CURDIR)/$(BIN)/petves PYTHONPATH=python $(PYTHON) -m petves calibrate docs/speed_accuracy
+	PETVES=$(CURDIR)/$(BIN)/petves PYTHONPATH=python:. $(PYTHON) -m studies calibrate docs/speed_accuracy
 
 install: all ## install under PREFIX (/usr/local)
-	install -d $(PREFIX)/bin $(PREFIX)/lib $(PREFIX)/include $(PREFIX)/share/petves $(PYTHON_DIR)/petves
+	install -d $(PREFIX)/bin $(PREFIX)/lib $(PREFIX)/include $(PREFIX)/share/petves $(PYTHON_DIR)/petves/views
 	install $(BIN)/petves $(PREFIX)/bin/
 	install -m 644 $(LIBRARY) $(PREFIX)/lib/
 	install -m 644 include/petves.h $(PREFIX)/include/
 	cp -r runs python/examples $(PREFIX)/share/petves/
-	install -m 644 python/petves/*.py python/petves/*.html $(PYTHON_DIR)/petves/
+	install -m 644 python/petves/*.py $(PYTHON_DIR)/petves/
+	install -m 644 python/petves/views/*.py python/petves/views/*.html $(PYTHON_DIR)/petves/views/
 
 C_FILES = $(wildcard src/*.c src/*/*.c src/*/*.h include/*.h tests/*.c tests/*.h bench/*.c bench/*.h)
 format: test-deps ## format C and Python
 	clang-format -i $(C_FILES)
-	black -q -l 120 python tests bench
+	black -q -l 120 python studies tests bench
 
 check-format: test-deps ## fail when a file is not formatted
 	clang-format --dry-run --Werror $(C_FILES)
-	black -q --check -l 120 python tests bench
+	black -q --check -l 120 python studies tests bench
 
 clean: ## remove what was built
 	rm -rf build build-* bin bin-* lib lib-*

@@ -18,16 +18,11 @@ from pathlib import Path
 from machine import machine
 from report import report
 
+from petves.program import OPEN_MPI
+from studies.common.engine import Kept
+
 ROOT = Path(__file__).resolve().parent.parent
 PROGRAMS = Path(os.environ.get("PETVES_BENCH", str(ROOT / "build" / "bench")))
-OPEN_MPI = {
-    "OMPI_ALLOW_RUN_AS_ROOT": "1",
-    "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
-    "OMPI_MCA_rmaps_base_oversubscribe": "1",
-    "OMPI_MCA_btl_vader_single_copy_mechanism": "none",
-    "OMP_NUM_THREADS": "1",
-}
-
 BOXES = {
     "channel": "-domain_bc_x periodic",
     "periodic": "-domain_bc_x periodic -domain_bc_y periodic",
@@ -42,22 +37,10 @@ SCENE = (
 
 @dataclass
 class Run:
-    """One run of a program, repeated in `rounds` rounds.
+    """One run of a program, repeated in `rounds` rounds."""
 
-    Attributes
-    ----------
-    name : str
-        What it is, words that the report takes apart.
-    program : str
-        bench_solve or bench_step.
-    options : str
-        Its options.
-    ranks, rounds : int
-        MPI ranks; rounds.
-    """
-
-    name: str
-    program: str
+    name: str  # words that the report takes apart
+    program: str  # bench_solve or bench_step
     options: str
     ranks: int = 1
     rounds: int = 1
@@ -123,7 +106,7 @@ def measure(run: Run) -> list[dict[str, object]]:
     """Run a program; return the objects that it prints."""
     done = subprocess.run(
         ["mpirun", "-n", str(run.ranks), str(PROGRAMS / run.program), *run.options.split()],
-        env={**os.environ, **OPEN_MPI},
+        env=OPEN_MPI | os.environ,
         capture_output=True,
         text=True,
     )
@@ -134,19 +117,12 @@ def measure(run: Run) -> list[dict[str, object]]:
 
 def run_item(name: str, runs: list[Run], folder: Path) -> None:
     """Make the runs of an item that are not in its file yet, in turn."""
-    path = folder / f"{name}.json"
-    kept = json.loads(path.read_text()) if path.exists() else {}
-    began = time.time()
+    kept, began = Kept(folder / f"{name}.json"), time.time()
     for number in range(max(run.rounds for run in runs)):
         for run in runs:
             key = f"{run.name} #{number}"
-            if number >= run.rounds or key in kept:
-                continue
-            kept[key] = measure(run)
-            temporary = path.with_suffix(".tmp")
-            lines = [f"{json.dumps(k)}: {json.dumps(v)}" for k, v in kept.items()]
-            temporary.write_text("{\n" + ",\n".join(lines) + "\n}\n")
-            temporary.rename(path)
+            if number < run.rounds and key not in kept.entries:
+                kept.keep(key, measure(run))
     print(f"{name}: {time.time() - began:.0f} s", flush=True)
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 import model
-from petves.plot import new_figure, save_figure
+from petves.views.plot import new_figure, save_figure
 from petves.tables import table
 
 Kept = dict[str, list[dict]]

@@ -104,6 +104,9 @@ PETSC_EXTERN PetscErrorCode SimulationGetRow(Simulation simulation, PetscInt ves
  */
 PETSC_EXTERN PetscErrorCode SimulationGetCellVelocity(Simulation simulation, PetscReal u[], PetscReal v[]);
 
+/* PetvesAgree - the largest of all ranks' numbers, the same on every rank: a decision taken once. Collective. */
+PETSC_EXTERN PetscErrorCode PetvesAgree(MPI_Comm comm, PetscInt mine, PetscInt *largest);
+
 /* PetvesTemporaryFolder - make a folder in TMPDIR, path[PETSC_MAX_PATH_LEN]; all ranks get its name. */
 PETSC_EXTERN PetscErrorCode PetvesTemporaryFolder(MPI_Comm comm, char path[]);
 

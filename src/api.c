@@ -123,6 +123,12 @@ PetscErrorCode SimulationSetQuiet(Simulation s, PetscBool quiet) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode PetvesAgree(MPI_Comm comm, PetscInt mine, PetscInt *largest) {
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Allreduce(&mine, largest, 1, MPIU_INT, MPI_MAX, comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode PetvesTemporaryFolder(MPI_Comm comm, char path[]) {
   const char *base = getenv("TMPDIR");
   PetscMPIInt rank, failed = 0;

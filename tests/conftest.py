@@ -4,6 +4,7 @@ import csv
 import os
 import re
 import subprocess
+import sys
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -11,6 +12,7 @@ import numpy as np
 import pytest
 
 ROOT = Path(__file__).resolve().parent.parent
+sys.path[:0] = [str(ROOT / "python"), str(ROOT)]  # the package, and the studies of docs/
 PETVES = os.environ.get("PETVES", str(ROOT / "bin" / "petves"))
 PROGRAMS = Path(os.environ.get("PETVES_TESTS", str(ROOT / "build" / "tests")))
 SANITIZE = bool(os.environ.get("SANITIZE"))

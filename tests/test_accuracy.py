@@ -6,8 +6,8 @@ import math
 import numpy as np
 import pytest
 from conftest import run_petves
-from petves.accuracy_studies import last_markers, trigonometric
-from petves.paper import SHEAR
+from studies.common.curves import last_markers, trigonometric
+from studies.common.paper import SHEAR
 from test_coupled_runs import last_state, same_state
 
 CORRECTED = "-scheme_type coupled -delta_type cbs54 -membrane_derivative spectral -coupling_self_mobility symbol "

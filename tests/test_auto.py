@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from conftest import PETVES, ROOT, Run, mpirun
-from petves import paper
+from studies.common import paper
 
 CALIBRATION = ROOT / "docs" / "speed_accuracy" / "calibration.csv"
 WANTED = (0.1, 1e-2, 1e-3, 1e-4)

@@ -5,7 +5,7 @@ import re
 import numpy as np
 import pytest
 from conftest import COLUMNS, run_petves
-from test_restart import frames
+from restarts import frames
 
 SCENE = "-domain_cells 32,32 -vesicle_angle 20 -flow_type shear"
 H = 2 / 32

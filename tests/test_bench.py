@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from conftest import PROGRAMS, ROOT, mpirun
 
-sys.path[:0] = [str(ROOT / "bench"), str(ROOT / "python")]
+sys.path.insert(0, str(ROOT / "bench"))
 import bench  # noqa: E402
 import model  # noqa: E402
 import report  # noqa: E402

@@ -1,19 +1,18 @@
 """The work-precision diagrams: distances, envelopes, recommendations, resuming, what a handful of points must show."""
 
 import csv
-import sys
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from conftest import PETVES, ROOT
+from conftest import PETVES
 
-sys.path.insert(0, str(ROOT / "python"))
-from petves import chart as report  # noqa: E402
-from petves import chart_claim  # noqa: E402
-from petves import chart_studies as study  # noqa: E402
-from petves.chart_pictures import envelope  # noqa: E402
-from petves.studies import Results  # noqa: E402
+from studies.common.curves import material_distance, outline_distance
+from studies.common.engine import Results
+from studies.speed_accuracy import claim as chart_claim
+from studies.speed_accuracy import page as report
+from studies.speed_accuracy import scenes as study
+from studies.speed_accuracy.pictures import envelope
 
 RELAX = next(one for one in study.SCENES if one.name == "relax")
 
@@ -26,13 +25,13 @@ def ellipse(n: int, turn: float = 0.0) -> np.ndarray:
 def test_distances():
     """The outline's distance knows neither where markers are on it nor where it is; the material one knows both."""
     fine = ellipse(101)
-    assert study.material_distance(ellipse(31), fine) < 1e-5
-    assert study.material_distance(ellipse(31) + [3e-3, 4e-3], fine) == pytest.approx(5e-3, rel=1e-2)
+    assert material_distance(ellipse(31), fine) < 1e-5
+    assert material_distance(ellipse(31) + [3e-3, 4e-3], fine) == pytest.approx(5e-3, rel=1e-2)
     moved = ellipse(31, turn=0.3)
-    assert study.material_distance(moved, fine) > 1e-2
-    assert study.outline_distance(moved + [3, 4], fine) < 1e-6
+    assert material_distance(moved, fine) > 1e-2
+    assert outline_distance(moved + [3, 4], fine) < 1e-6
     circle = np.stack([np.cos(a := np.arange(65) * 2 * np.pi / 65), np.sin(a)], axis=1)
-    assert study.outline_distance(1.02 * circle, circle) == pytest.approx(0.02, rel=1e-3)
+    assert outline_distance(1.02 * circle, circle) == pytest.approx(0.02, rel=1e-3)
 
 
 def test_envelope_is_what_no_cheaper_point_equals():
@@ -92,7 +91,7 @@ def test_a_handful_of_points(tmp_path, monkeypatch):
         {"-vesicle_bending": "1"} if point.dt == 1 / 4 else {}
     )  # noqa: E731
     scene = replace(RELAX, points=points, reference=RELAX.reference | coarse, other={}, options=stiff)
-    paths = report.chart(tmp_path, scenes=(scene,), finest=32)
+    paths = report.write(tmp_path, scenes=(scene,), finest=32)
     assert {p.name for p in paths} == {
         *("chart.csv", "recommended.csv", "tables.md", "claim.csv", "relax_seconds.png", "relax_solves.png"),
     }
@@ -115,9 +114,9 @@ def test_a_handful_of_points(tmp_path, monkeypatch):
         assert 8 * 24**2 * float(mine["solves"]) < 64**2 * float(theirs["solves"])
     assert float(found[2]["error"]) == pytest.approx(float(found[1]["error"]), rel=0.01)  # solves to 1e-12
 
-    monkeypatch.setattr("petves.studies._launch", lambda *words: pytest.fail("run again"))
+    monkeypatch.setattr("studies.common.engine.run_program", lambda *words: pytest.fail("run again"))
     kept = (tmp_path / "chart.csv").read_text()
-    report.chart(tmp_path, scenes=(scene,), finest=32)
+    report.write(tmp_path, scenes=(scene,), finest=32)
     assert (tmp_path / "chart.csv").read_text() == kept
-    results = Results(tmp_path / "chart.json", 1)
-    assert all(entry["commit"] and entry["measures"]["cpu_seconds"] > 0 for entry in results.cases.values())
+    results = Results(tmp_path / "chart.json")
+    assert all(entry["commit"] and entry["measures"]["cpu_seconds"] > 0 for entry in results.entries.values())

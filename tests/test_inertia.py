@@ -8,8 +8,8 @@ import h5py
 import numpy as np
 import pytest
 from conftest import run_petves
-from petves.inertia_studies import extents, moving_and_resting, poiseuille_options, relaxation_options
-from petves.paper import POISEUILLE, RELAXATION
+from studies.common.paper import POISEUILLE, RELAXATION
+from studies.inertia.runs import extents, moving_and_resting, poiseuille_options, relaxation_options
 
 #: The scheme's own discretisation, which run_petves replaces by the paper's.
 CORRECTED = "-scheme_type coupled -delta_type cbs54 -membrane_derivative spectral -coupling_self_mobility symbol "

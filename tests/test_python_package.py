@@ -66,7 +66,7 @@ if not SANITIZE:  # a sanitized library cannot be loaded into Python
         assert done.returncode == 0, done.stderr
         home = tmp_path / "site" / "petves"
         assert done.stdout.split() == [str(home / "__init__.py"), str(home / "libpetves.so")]
-        assert (home / "report.html").is_file()
+        assert (home / "views" / "report.html").is_file() and not (tmp_path / "site" / "studies").exists()
 
     def test_make_install_installs_a_package_that_runs(tmp_path):
         words = ["make", "-C", str(ROOT), "install", f"PREFIX={tmp_path}", "BIN=bin", "LIBDIR=lib"]

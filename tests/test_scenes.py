@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 from conftest import PETVES, ROOT, Run, mpirun
 
-from petves.convergence import at, differences
 from petves.run import Run as Files
-from petves.scene_figures import keller_skalak
-from petves.scenes import option_file, radius
+from studies.common.curves import at, radius
+from studies.common.scenes import option_file
+from studies.reproduction.convergence import differences
+from studies.reproduction.scene_figures import keller_skalak
 
 SCENES = ("energy", "relax", "shear_convergence", "equilibrium", "poiseuille", "shear")
 RANKS = {f"{name}.opts": 1 for name in SCENES} | {"default.opts": 2, "two_vesicles.opts": 2}

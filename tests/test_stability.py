@@ -1,16 +1,14 @@
 """The stability maps: marks, resuming, the largest step and its power, and what a handful of cells must show."""
 
 import csv
-import sys
 
 import numpy as np
 import pytest
-from conftest import PETVES, ROOT, run_petves
+from conftest import PETVES, run_petves
 
-sys.path.insert(0, str(ROOT / "python"))
-from petves import stability as report  # noqa: E402
-from petves import stability_cells as study  # noqa: E402
-from petves.run import RunError  # noqa: E402
+from petves.run import RunError
+from studies.stability import cells as study
+from studies.stability import page as report
 
 DT_CB, CHANGE = (next(one for one in study.MAPS if one.name == name) for name in ("dt_cb", "dt_change"))
 SPACING = next(one for one in study.MAPS if one.name == "spacing_kernel")
@@ -92,7 +90,7 @@ def test_a_handful_of_cells(tmp_path, monkeypatch):
         some(CHANGE, (1 / 64, 64.0), (1 / 512,)),
         some(SPACING, ("ib6",), (0.75,)),
     )
-    paths = report.stability(tmp_path, maps=maps)
+    paths = report.write(tmp_path, maps=maps)
     assert {p.name for p in paths} == {"stability.csv", "tables.md", "dt_cb.png", "dt_change.png", "spacing_kernel.png"}
     assert all(p.stat().st_size for p in paths)
     rows = read(tmp_path)
@@ -111,11 +109,11 @@ def test_a_handful_of_cells(tmp_path, monkeypatch):
 
     ran = []
     monkeypatch.setattr(report, "run_cell", lambda scheme, stages: ran.append(stages) or study.run_cell(scheme, stages))
-    report.stability(tmp_path, maps=maps)
+    report.write(tmp_path, maps=maps)
     assert not ran and read(tmp_path) == rows
     text = (tmp_path / "stability.csv").read_text()
     (tmp_path / "stability.csv").write_text(text.replace("-vesicle_bending 1.0 -time_step 0.03125", "other", 1))
-    report.stability(tmp_path, maps=maps)
+    report.write(tmp_path, maps=maps)
     assert len(ran) == 1 and read(tmp_path) == rows
 
 
@@ -148,11 +146,11 @@ def test_strong_shear_at_a_quarter_of_the_rate(monkeypatch):
 def test_time_ends_the_maps_and_says_so(tmp_path, monkeypatch):
     monkeypatch.setattr(report, "MINUTES", 0)
     monkeypatch.setattr(report.Cells.__init__, "__defaults__", (0,))
-    report.stability(tmp_path, maps=(some(DT_CB, (1.0,), (2**-5,)),))
+    report.write(tmp_path, maps=(some(DT_CB, (1.0,), (2**-5,)),))
     assert "3 cells did not run" in (tmp_path / "tables.md").read_text()
 
 
 def test_other_columns_are_refused(tmp_path):
     (tmp_path / "stability.csv").write_text("a,b\n1,2\n")
     with pytest.raises(RunError, match="stability.csv: other columns"):
-        report.stability(tmp_path, maps=())
+        report.write(tmp_path, maps=())

@@ -81,7 +81,7 @@ def test_movie_has_a_picture_a_saved_time(suffix, first, folder, tmp_path):
 
 
 def test_movie_without_ffmpeg_is_a_gif(folder, tmp_path, monkeypatch):
-    from petves import movie
+    from petves.views import movie
 
     monkeypatch.setattr(movie.shutil, "which", lambda name: None)
     assert movie.movie(folder).name == "movie.gif"

@@ -8,7 +8,7 @@ import numpy as np
 from common import settings
 
 import petves
-from petves.plot import new_figure, save_figure
+from petves.views.plot import new_figure, save_figure
 
 chosen = settings(__doc__.splitlines()[0])
 RATE, TURN = 0.5, 0.2

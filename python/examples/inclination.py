@@ -8,7 +8,7 @@ import numpy as np
 from common import settings
 
 import petves
-from petves.plot import new_figure, save_figure
+from petves.views.plot import new_figure, save_figure
 from petves.theory import ellipse_axes, keller_skalak_angle
 
 

@@ -4,7 +4,7 @@ from petsc4py import PETSc
 from common import settings
 
 import petves
-from petves.plot import plot_run
+from petves.views.plot import plot_run
 
 chosen = settings(__doc__)
 folder = chosen.folder / "quick_start"

@@ -1,11 +1,17 @@
-"""Command line: ``python3 -m petves plot|movie|compare|sweep|report|reproduce|accuracy|inertia|stability|chart ...``."""
+"""Command line: ``python3 -m petves plot|movie|report|compare|sweep ...``."""
 
 from __future__ import annotations
 
 import argparse
 import os
 import sys
-from typing import Iterable
+from importlib import import_module
+from typing import Any
+
+from petves.errors import Error
+
+HOME = {name: f"petves.views.{name}" for name in ("plot", "movie", "report", "compare")} | {"sweep": "petves.sweep"}
+"""The module of each command, imported when the command is run."""
 
 
 def parser() -> argparse.ArgumentParser:
@@ -14,7 +20,6 @@ def parser() -> argparse.ArgumentParser:
     commands = top.add_subparsers(dest="command", required=True)
     _add_pictures(commands)
     _add_tables(commands)
-    _add_studies(commands)
     return top
 
 
@@ -51,79 +56,17 @@ def _add_tables(commands: argparse._SubParsersAction) -> None:
     grid.add_argument("--ranks", type=int, default=1, help="MPI ranks of each run (1)")
 
 
-def _add_studies(commands: argparse._SubParsersAction) -> None:
-    again = commands.add_parser("reproduce", help="run the studies: the paper's tables and the coupled scheme's")
-    again.add_argument("folder", metavar="DIR", help="where the tables and pictures go")
-    again.add_argument("--quick", action="store_true", help="coarse grids only (also QUICK=1)")
-    again.add_argument("--only", choices=("paper", "coupled"), help="the paper's studies, or the coupled scheme's")
-    again.add_argument(
-        "--write-only", action="store_true", help="with --only paper: the page from the runs that are there"
-    )
-    again.add_argument("--ranks", type=int, default=2, help="MPI ranks of every run (2)")
-    cells = commands.add_parser("accuracy", help="run the study of accuracy per cell: docs/accuracy.md's tables")
-    cells.add_argument("folder", metavar="DIR", help="where the tables and the picture go")
-    cells.add_argument("--quick", action="store_true", help="leave out 256^2")
-    inertia = commands.add_parser("inertia", help="run the study of the fluid's inertia: docs/inertia.md's tables")
-    inertia.add_argument("folder", metavar="DIR", help="where the tables and the pictures go")
-    inertia.add_argument("--quick", action="store_true", help="leave out the channels")
-    automatic = commands.add_parser("calibrate", help="measure what -scheme_auto chooses by: calibration.csv")
-    automatic.add_argument("folder", metavar="DIR", help="where the table goes")
-    maps = commands.add_parser("stability", help="run the stability maps: docs/stability.md's tables and pictures")
-    maps.add_argument("folder", metavar="DIR", help="where the tables and the pictures go")
-    maps.add_argument("--quick", action="store_true", help="only the corners of each map (also QUICK=1)")
-    speed = commands.add_parser("chart", help="run the work-precision diagrams: docs/speed_accuracy.md's pictures")
-    speed.add_argument("folder", metavar="DIR", help="where the tables and the pictures go")
-    speed.add_argument("--quick", action="store_true", help="only points of little work (also QUICK=1)")
-
-
-def _run(options: argparse.Namespace) -> Iterable[object]:
-    """Run one command; return the lines to print."""
-    if options.command == "plot":
-        from petves.plot import plot_run
-
-        return plot_run(options.folder)
-    if options.command == "movie":
-        from petves.movie import movie
-
-        return [movie(options.folder, options.output, options.field, options.rate)]
-    if options.command == "report":
-        from petves.report import report
-
-        return [report(options.folder, options.output)]
-    if options.command == "compare":
-        from petves.compare import compare
-
-        lines, picture = compare(options.first, options.second, options.output)
+def _run(command: str, words: dict[str, Any]) -> list[object]:
+    """Run one command with its arguments; return the lines to print."""
+    module = import_module(HOME[command])
+    if command == "plot":
+        return module.plot_run(**words)
+    if command == "compare":
+        lines, picture = module.compare(**words)
         return [*lines, picture]
-    if options.command == "sweep":
-        from petves.sweep import sweep
-
-        grid = {words[0].lstrip("-"): words[1:] for words in options.vary}
-        return [sweep(options.folder, grid, options.options_file, options.jobs, options.ranks)]
-    if options.command == "accuracy":
-        from petves.accuracy import accuracy
-
-        return accuracy(options.folder, quick=options.quick)
-    if options.command == "inertia":
-        from petves.inertia import inertia
-
-        return inertia(options.folder, quick=options.quick)
-    if options.command == "calibrate":
-        from petves.calibration import calibrate
-
-        return calibrate(options.folder)
-    quick = options.quick or os.environ.get("QUICK", "") not in ("", "0")
-    if options.command == "stability":
-        from petves.stability import stability
-
-        return stability(options.folder, quick=quick)
-    if options.command == "chart":
-        from petves.chart import chart
-
-        return chart(options.folder, quick=quick)
-    from petves.reproduce import reproduce
-
-    return reproduce(options.folder, quick=quick, ranks=options.ranks, only=options.only, run=not options.write_only)
+    if command == "sweep":
+        words["grid"] = {option.lstrip("-"): values for option, *values in words.pop("vary")}
+    return [getattr(module, command)(**words)]
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -139,11 +82,9 @@ def main(arguments: list[str] | None = None) -> int:
     int
         Exit status: 0 done, 1 something is missing or failed (one line on stderr says what).
     """
-    options = parser().parse_args(arguments)
-    from petves.errors import Error
-
+    words = vars(parser().parse_args(arguments))
     try:
-        for line in _run(options):
+        for line in _run(words.pop("command"), words):
             print(line)
     except Error as error:
         print(f"petves: error: {error}", file=sys.stderr)

@@ -14,41 +14,23 @@ if TYPE_CHECKING:
     import xarray
 
 #: Units of what a run has, in the user's lengths and times; "1" is a number, "" not a physical quantity.
-UNITS = {
-    "step": "1",
-    "time": "time",
-    "dt": "time",
-    "energy_kinetic": "length^4/time^2",
-    "energy_bending": "length^4/time^2",
-    "area": "length^2",
-    "length": "length",
-    "area_error": "1",
-    "length_error": "1",
-    "edge_ratio": "1",
-    "div_max": "1/time",
-    "surface_div_max": "1/time",
-    "center_x": "length",
-    "center_y": "length",
-    "inclination": "radian",
-    "frequency": "radian/time",
-    "tension_its": "1",
-    "bending_its": "1",
-    "coupled_its": "1",
-    "nsolve": "1",
-    "wall": "s",
-    "area_shift": "length",
-    "u": "length/time",
-    "v": "length/time",
-    "p": "length^2/time^2",
-    "markers": "length",
-    "velocity": "length/time",
-    "tension": "length^3/time^2",
-    "x": "length",
-    "y": "length",
-    "h": "length",
-    "nu": "length^2/time",
-    "c_b": "length^5/time^2",
+_HAVE = {
+    "1": "step area_error length_error edge_ratio tension_its bending_its coupled_its nsolve",
+    "s": "wall",
+    "time": "time dt",
+    "length": "length center_x center_y area_shift markers x y h",
+    "length^2": "area",
+    "length/time": "u v velocity",
+    "length^2/time": "nu",
+    "length^2/time^2": "p",
+    "length^3/time^2": "tension",
+    "length^4/time^2": "energy_kinetic energy_bending",
+    "length^5/time^2": "c_b",
+    "1/time": "div_max surface_div_max",
+    "radian": "inclination",
+    "radian/time": "frequency",
 }
+UNITS = {name: unit for unit, names in _HAVE.items() for name in names.split()}
 
 
 def unit(name: str) -> str:

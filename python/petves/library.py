@@ -42,6 +42,7 @@ _communicator = ctypes.c_void_p
 SIGNATURES = {
     "PetvesEnter": (Handle, _text, _pointer(Int)),
     "PetvesLeave": (Int,),
+    "PetvesAgree": (_communicator, Int, _pointer(Int)),
     "PetvesTemporaryFolder": (_communicator, _text),
     "SimulationCreateWithFlow": (_communicator, ctypes.c_void_p, ctypes.c_void_p, _pointer(Handle)),
     "SimulationDestroy": (_pointer(Handle),),

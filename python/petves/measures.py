@@ -7,6 +7,16 @@ import ctypes
 import numpy as np
 
 
+def _column(name: str, what: str) -> property:
+    """Return a property: a column of series.csv after the last step."""
+
+    def value(self: Measures) -> float:
+        return self.measure(name)
+
+    value.__doc__ = what
+    return property(value)
+
+
 class Measures:
     """Measures after the last step; with several vesicles totals, worst values or means, and `each` for one by one."""
 
@@ -37,85 +47,40 @@ class Measures:
         """Steps taken."""
         return int(self.measure("step"))
 
-    @property
-    def time(self) -> float:
-        """Time reached."""
-        return self.measure("time")
-
-    @property
-    def dt(self) -> float:
-        """The last time step (the next one before the first)."""
-        return self.measure("dt")
+    time = _column("time", "Time reached.")
+    dt = _column("dt", "The last time step (the next one before the first).")
 
     @property
     def energy(self) -> float:
         """Kinetic and bending energy (length^4/time^2)."""
         return self.energy_kinetic + self.energy_bending
 
-    @property
-    def energy_kinetic(self) -> float:
-        """Kinetic energy of the velocity minus the background (length^4/time^2)."""
-        return self.measure("energy_kinetic")
-
-    @property
-    def energy_bending(self) -> float:
-        """Bending energy (length^4/time^2)."""
-        return self.measure("energy_bending")
-
-    @property
-    def area(self) -> float:
-        """Enclosed area (length^2)."""
-        return self.measure("area")
-
-    @property
-    def length(self) -> float:
-        """Length of the membrane (length)."""
-        return self.measure("length")
+    energy_kinetic = _column("energy_kinetic", "Kinetic energy of the velocity minus the background (length^4/time^2).")
+    energy_bending = _column("energy_bending", "Bending energy (length^4/time^2).")
+    area = _column("area", "Enclosed area (length^2).")
+    length = _column("length", "Length of the membrane (length).")
 
     @property
     def reduced_area(self) -> float:
         """V = area/(pi R0^2), R0 = length/(2 pi), of the first vesicle."""
         return 4 * np.pi * self.each("area")[0] / self.each("length")[0] ** 2
 
-    @property
-    def area_error(self) -> float:
-        """Area over the initial one, minus 1."""
-        return self.measure("area_error")
-
-    @property
-    def length_error(self) -> float:
-        """Length over the initial one, minus 1."""
-        return self.measure("length_error")
-
-    @property
-    def edge_ratio(self) -> float:
-        """Longest over shortest edge."""
-        return self.measure("edge_ratio")
+    area_error = _column("area_error", "Area over the initial one, minus 1.")
+    length_error = _column("length_error", "Length over the initial one, minus 1.")
+    edge_ratio = _column("edge_ratio", "Longest over shortest edge.")
 
     @property
     def center(self) -> np.ndarray:
         """Centroid of the enclosed area (length), shape (2,)."""
         return np.array([self.measure("center_x"), self.measure("center_y")])
 
-    @property
-    def inclination(self) -> float:
-        """Angle of the long axis (radians in (-pi/2, pi/2]), of the first vesicle."""
-        return self.measure("inclination")
-
-    @property
-    def frequency(self) -> float:
-        """Tank-treading frequency (radians/time) of the first vesicle; NaN unless the membrane turns in one sense."""
-        return self.measure("frequency")
-
-    @property
-    def div_max(self) -> float:
-        """What the solver left of the velocity's divergence (1/time)."""
-        return self.measure("div_max")
-
-    @property
-    def surface_div_max(self) -> float:
-        """What the solver left of the membrane's inextensibility (1/time)."""
-        return self.measure("surface_div_max")
+    inclination = _column("inclination", "Angle of the long axis (radians in (-pi/2, pi/2]), of the first vesicle.")
+    frequency = _column(
+        "frequency",
+        "Tank-treading frequency (radians/time) of the first vesicle; NaN unless the membrane turns in one sense.",
+    )
+    div_max = _column("div_max", "What the solver left of the velocity's divergence (1/time).")
+    surface_div_max = _column("surface_div_max", "What the solver left of the membrane's inextensibility (1/time).")
 
     @property
     def iterations(self) -> dict[str, int]:

@@ -15,21 +15,21 @@ import numpy as np
 from petsc4py import PETSc
 
 from petves.errors import Error
-from petves.library import MAX_MESSAGE, MAX_PATH, Flow, Handle, Int, communicator, library, wrap
-from petves.measures import Measures
+from petves.library import MAX_MESSAGE, MAX_PATH, Flow, Handle, Int, communicator, library
 from petves.progress import progress_bar
+from petves.state import State
 
 Callback = Callable[["Simulation"], Any]
 FlowFunction = Callable[[np.ndarray, np.ndarray, float], "tuple[Any, Any]"]
 
-KSP_NAMES = ("coupled", "direct", "tension", "bending")
-DM_NAMES = {"velocity": "dm_velocity", "u": "dm_u", "v": "dm_v", "pressure": "dm_pressure"}
 PETSC_ERR_USER = 83
+GO_ON, STOP, FAILED = range(3)
+"""What a callback wants; the largest of all ranks' wishes counts."""
 
 _alive: dict[int, weakref.ref] = {}  # in the order of creation, which is the same on every rank
 
 
-class Simulation(Measures):
+class Simulation(State):
     """One simulation of vesicles in a viscous fluid.
 
     Options are the program's, without the dash: ``Simulation(domain_cells=(64, 64), flow_type="shear")``. Lists and
@@ -230,7 +230,9 @@ class Simulation(Measures):
             Time; the option ``time_end`` when left out, and then the run ends as the program's does: with the end state,
             checkpoint.h5 and summary.json on disk. With `until` they are written by `close`.
         callback : callable, optional
-            ``callback(simulation)`` after every step; the run stops when it returns True.
+            ``callback(simulation)`` after every step, on every rank. The run stops when it returns True on any of
+            them. An exception in it, on any of them, ends the run on all, with the last good state on disk: it comes
+            through where it was raised, the other ranks raise `Error`.
         progress : bool, optional
             Show a progress bar; when left out, if standard error is a terminal.
 
@@ -257,13 +259,25 @@ class Simulation(Measures):
                 self._stop_on(failure)
                 self._record()
                 bar(self.time)
-                if callback is not None and callback(self) is True:
+                if self._wants_to_stop(callback):
                     reason = "callback"
                     break
-
         if until is None and reason != "callback":
             self._end(None)
         return reason
+
+    def _wants_to_stop(self, callback: Callback | None) -> bool:
+        """Call the callback; return what all ranks have agreed on. It may have been given on some of them only."""
+        wish, agreed, cause = GO_ON, Int(GO_ON), None
+        try:
+            wish = STOP if callback is not None and callback(self) is True else GO_ON
+        except BaseException as error:
+            wish, cause = FAILED, error
+        self._lib.PetvesAgree(communicator(self._comm), wish, ctypes.byref(agreed))
+        if agreed.value == FAILED:
+            self._end(b"a callback raised an exception")
+            raise cause or Error("the callback raised an exception on another rank")
+        return agreed.value == STOP
 
     def _end(self, failure: bytes | None) -> None:
         self._call("SimulationEnd", self._open(), failure)
@@ -319,121 +333,6 @@ class Simulation(Measures):
     def __del__(self) -> None:
         if getattr(self, "_handle", None) and not sys.is_finalizing():
             self.close()
-
-    # -- state ---------------------------------------------------------------------------------------------------------
-
-    @property
-    def folder(self) -> Path:
-        """The run's output folder."""
-        return Path(self._in_force["output_dir"])
-
-    @property
-    def options(self) -> dict[str, str]:
-        """Every option of the program in force, as text, without the dash."""
-        return dict(self._in_force)
-
-    @property
-    def vesicles(self) -> int:
-        """Number of vesicles."""
-        return len(self._start) - 1
-
-    @property
-    def start(self) -> np.ndarray:
-        """First marker of each vesicle, then the number of markers M; shape (vesicles + 1,)."""
-        return self._start
-
-    @property
-    def markers(self) -> np.ndarray:
-        """Markers of all vesicles (length), shape (M, 2), the same on every rank.
-
-        A read-only view without copy: after the next step ask again, and copy what is to be kept. So are the other
-        arrays.
-        """
-        return self._array("markers").reshape(-1, 2)
-
-    @property
-    def marker_velocity(self) -> np.ndarray:
-        """Velocity of the markers, background included (length/time), shape (M, 2), the same on every rank; a view."""
-        return self._array("marker_velocity").reshape(-1, 2)
-
-    @property
-    def tension(self) -> np.ndarray:
-        """Tension (length^3/time^2), shape (M,), entry k on the edge from marker k-1 to marker k; a view."""
-        return self._array("tension")
-
-    @property
-    def pressure(self) -> np.ndarray:
-        """Pressure of this rank's rows at cell centres (length^2/time^2), shape (rows, cells in x); a view.
-
-        Of the disturbance unless ``flow_form`` is total.
-        """
-        return self._array("pressure").reshape(self._sizes[5:7])
-
-    @property
-    def velocity(self) -> tuple[np.ndarray, np.ndarray]:
-        """The solved velocity of this rank's faces (length/time): u on vertical faces, v on horizontal ones; views.
-
-        u has shape (rows, cells in x), one column less with walls in x; v (rows, cells in x), one row less in all with
-        walls in y. Entry (j, i) lies on the right (u) or top (v) face of cell (j, i). It is the disturbance of the
-        background flow unless ``flow_form`` is total; `cell_velocity` has the whole.
-        """
-        values, (_, rows, columns, *_) = self._array("velocity"), self._sizes
-        cut = rows * columns
-        return values[:cut].reshape(rows, columns), values[cut:].reshape(self._sizes[3:5])
-
-    def cell_velocity(self) -> tuple[np.ndarray, np.ndarray]:
-        """Return the velocity, background included, at this rank's cell centres: u and v, new arrays (rows, cells in
-        x). Collective."""
-        u, v = (np.empty(self._sizes[5:7]) for _ in range(2))
-        pointers = [a.ctypes.data_as(ctypes.POINTER(ctypes.c_double)) for a in (u, v)]
-        self._call("SimulationGetCellVelocity", self._open(), *pointers)
-        return u, v
-
-    def cell_centers(self) -> tuple[np.ndarray, np.ndarray]:
-        """Return x, shape (cells in x,), and y, shape (rows,), of this rank's cell centres."""
-        box = [float(x) for x in self._in_force["domain_box"].split(",")]
-        first, rows, columns = self._sizes[0], *self._sizes[5:7]
-        h = (box[1] - box[0]) / columns
-        return box[0] + h * (0.5 + np.arange(columns)), box[2] + h * (0.5 + first + np.arange(rows))
-
-    # -- PETSc objects -------------------------------------------------------------------------------------------------
-
-    def vec(self, name: str) -> PETSc.Vec:
-        """Return the state's vector: velocity, pressure (over the ranks), markers, marker_velocity, tension (whole on
-        every rank). After the next step ask again: the vectors change places."""
-        return self._object("Vec", name, name)
-
-    def dm(self, name: str) -> PETSc.DM:
-        """Return the grid's DM: velocity (a DMComposite of u and v), u, v, pressure (DMDAs)."""
-        return self._object("DM", name, DM_NAMES.get(name, ""))
-
-    def mat(self, name: str) -> PETSc.Mat:
-        """Return an operator of docs/method.md: G, D, L, H on the grid; E, S, B between grid and markers (as shells)."""
-        return self._object("Mat", name, f"mat_{name}")
-
-    def pc(self, name: str) -> PETSc.PC:
-        """Return a fast solver: helmholtz, the inverse of H, or poisson, of L."""
-        return self._object("PC", name, f"pc_{name}")
-
-    @property
-    def ksp(self) -> dict[str, PETSc.KSP]:
-        """The scheme's solvers by name: coupled; or direct; or tension and bending. They may be configured."""
-        handles = {name: self._find(f"{name}_") for name in KSP_NAMES}
-        return {name: wrap("KSP", handle) for name, handle in handles.items() if handle}
-
-    def _find(self, name: str) -> int | None:
-        found = Handle()
-        self._lib.SimulationGetObject(self._open(), name.encode(), ctypes.byref(found))
-        return found.value
-
-    def _object(self, kind: str, asked: str, name: str) -> PETSc.Object:
-        handle = self._find(name)
-        if not handle:
-            raise Error(f"{kind} {asked}: this simulation has none of that name")
-        return wrap(kind, handle)
-
-    def _array(self, name: str) -> np.ndarray:
-        return self.vec(name).array_r
 
 
 def option_text(value: Any) -> bytes | None:

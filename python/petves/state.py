@@ -1,0 +1,135 @@
+"""The state of a simulation as arrays and as PETSc objects."""
+
+from __future__ import annotations
+
+import ctypes
+from pathlib import Path
+
+import numpy as np
+from petsc4py import PETSc
+
+from petves.errors import Error
+from petves.library import Handle, wrap
+from petves.measures import Measures
+
+KSP_NAMES = ("coupled", "direct", "tension", "bending")
+DM_NAMES = {"velocity": "dm_velocity", "u": "dm_u", "v": "dm_v", "pressure": "dm_pressure"}
+
+
+class State(Measures):
+    """What a simulation holds after the last step: options in force, arrays, PETSc objects and measures."""
+
+    _start: np.ndarray
+    _sizes: list[int]
+    _in_force: dict[str, str]
+
+    @property
+    def folder(self) -> Path:
+        """The run's output folder."""
+        return Path(self._in_force["output_dir"])
+
+    @property
+    def options(self) -> dict[str, str]:
+        """Every option of the program in force, as text, without the dash."""
+        return dict(self._in_force)
+
+    @property
+    def vesicles(self) -> int:
+        """Number of vesicles."""
+        return len(self._start) - 1
+
+    @property
+    def start(self) -> np.ndarray:
+        """First marker of each vesicle, then the number of markers M; shape (vesicles + 1,)."""
+        return self._start
+
+    @property
+    def markers(self) -> np.ndarray:
+        """Markers of all vesicles (length), shape (M, 2), the same on every rank.
+
+        A read-only view without copy: after the next step ask again, and copy what is to be kept. So are the other
+        arrays.
+        """
+        return self._array("markers").reshape(-1, 2)
+
+    @property
+    def marker_velocity(self) -> np.ndarray:
+        """Velocity of the markers, background included (length/time), shape (M, 2), the same on every rank; a view."""
+        return self._array("marker_velocity").reshape(-1, 2)
+
+    @property
+    def tension(self) -> np.ndarray:
+        """Tension (length^3/time^2), shape (M,), entry k on the edge from marker k-1 to marker k; a view."""
+        return self._array("tension")
+
+    @property
+    def pressure(self) -> np.ndarray:
+        """Pressure of this rank's rows at cell centres (length^2/time^2), shape (rows, cells in x); a view.
+
+        Of the disturbance unless ``flow_form`` is total.
+        """
+        return self._array("pressure").reshape(self._sizes[5:7])
+
+    @property
+    def velocity(self) -> tuple[np.ndarray, np.ndarray]:
+        """The solved velocity of this rank's faces (length/time): u on vertical faces, v on horizontal ones; views.
+
+        u has shape (rows, cells in x), one column less with walls in x; v (rows, cells in x), one row less in all with
+        walls in y. Entry (j, i) lies on the right (u) or top (v) face of cell (j, i). It is the disturbance of the
+        background flow unless ``flow_form`` is total; `cell_velocity` has the whole.
+        """
+        values, (_, rows, columns, *_) = self._array("velocity"), self._sizes
+        cut = rows * columns
+        return values[:cut].reshape(rows, columns), values[cut:].reshape(self._sizes[3:5])
+
+    def cell_velocity(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return the velocity, background included, at this rank's cell centres: u and v, new arrays (rows, cells in
+        x). Collective."""
+        u, v = (np.empty(self._sizes[5:7]) for _ in range(2))
+        pointers = [a.ctypes.data_as(ctypes.POINTER(ctypes.c_double)) for a in (u, v)]
+        self._call("SimulationGetCellVelocity", self._open(), *pointers)
+        return u, v
+
+    def cell_centers(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return x, shape (cells in x,), and y, shape (rows,), of this rank's cell centres."""
+        box = [float(x) for x in self._in_force["domain_box"].split(",")]
+        first, rows, columns = self._sizes[0], *self._sizes[5:7]
+        h = (box[1] - box[0]) / columns
+        return box[0] + h * (0.5 + np.arange(columns)), box[2] + h * (0.5 + first + np.arange(rows))
+
+    def vec(self, name: str) -> PETSc.Vec:
+        """Return the state's vector: velocity, pressure (over the ranks), markers, marker_velocity, tension (whole on
+        every rank). After the next step ask again: the vectors change places."""
+        return self._object("Vec", name, name)
+
+    def dm(self, name: str) -> PETSc.DM:
+        """Return the grid's DM: velocity (a DMComposite of u and v), u, v, pressure (DMDAs)."""
+        return self._object("DM", name, DM_NAMES.get(name, ""))
+
+    def mat(self, name: str) -> PETSc.Mat:
+        """Return an operator of docs/method.md: G, D, L, H on the grid; E, S, B between grid and markers (as shells)."""
+        return self._object("Mat", name, f"mat_{name}")
+
+    def pc(self, name: str) -> PETSc.PC:
+        """Return a fast solver: helmholtz, the inverse of H, or poisson, of L."""
+        return self._object("PC", name, f"pc_{name}")
+
+    @property
+    def ksp(self) -> dict[str, PETSc.KSP]:
+        """The scheme's solvers by name: coupled; or direct; or tension and bending. They may be configured."""
+        handles = {name: self._find(f"{name}_") for name in KSP_NAMES}
+        return {name: wrap("KSP", handle) for name, handle in handles.items() if handle}
+
+    def _find(self, name: str) -> int | None:
+        found = Handle()
+        self._lib.SimulationGetObject(self._open(), name.encode(), ctypes.byref(found))
+        return found.value
+
+    def _object(self, kind: str, asked: str, name: str) -> PETSc.Object:
+        handle = self._find(name)
+        if not handle:
+            raise Error(f"{kind} {asked}: this simulation has none of that name")
+        return wrap(kind, handle)
+
+    def _array(self, name: str) -> np.ndarray:
+        return self.vec(name).array_r

@@ -1,0 +1,1 @@
+"""Views of runs: pictures, films, reports, comparisons."""

@@ -1,0 +1,142 @@
+"""One self-contained HTML file about a run."""
+
+from __future__ import annotations
+
+import base64
+import dataclasses
+import html
+import json
+import tempfile
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from petves.run import Run
+from petves.views.plot import plot_conservation, plot_energy, plot_motion, plot_shapes, plot_tension
+from petves.views.words import key_numbers, scene_in_words
+
+FRAMES = 81  # saved times kept at most
+PIXELS = 96  # of a field's longer side
+CAPTIONS = {
+    plot_energy: "Energy.",
+    plot_motion: "Inclination of the long axis, and tank-treading frequency where the membrane turns in one sense.",
+    plot_conservation: "What the scheme loses of area and length.",
+    plot_tension: "Tension around the membrane at the last saved time.",
+    plot_shapes: "Outlines; the dot is marker 0.",
+}
+
+
+def report(folder: str | Path, output: str | Path | None = None) -> Path:
+    """Write a report of a run: the scene in words, key numbers, plots, and the membrane playable with a slider.
+
+    Parameters
+    ----------
+    folder : str or Path
+        The run's ``-output_dir``.
+    output : str or Path, optional
+        File to write; report.html in the folder when left out. It needs no other file and no network.
+
+    Returns
+    -------
+    Path
+        The file written.
+
+    Raises
+    ------
+    RunError
+        When the run cannot be read.
+    """
+    run = Run.read(folder)
+    options = run.options()
+    rows = "".join(f"<tr><td>{_safe(name)}</td><td>{_safe(value)}</td></tr>" for name, value in key_numbers(run))
+    words = "".join(f"<p>{_safe(text)}</p>" for text in scene_in_words(run))
+    parts = {
+        "TITLE": _safe(f"petves: {run.folder.resolve().name}"),
+        "WORDS": words,
+        "NUMBERS": rows,
+        "PLOTS": _plots(run),
+        "OPTIONS": _safe("\n".join(f"-{name} {value}".rstrip() for name, value in options.items())),
+        "DATA": json.dumps(_data(run), separators=(",", ":")).replace("</", "<\\/"),
+    }
+    page = (Path(__file__).parent / "report.html").read_text(encoding="utf-8")
+    for name, text in parts.items():
+        page = page.replace(f"__{name}__", text)
+    path = Path(output) if output else run.folder / "report.html"
+    path.write_text(page, encoding="utf-8")
+    return path
+
+
+def _safe(text: str) -> str:
+    return html.escape(text)
+
+
+def _plots(run: Run) -> str:
+    """Return the plots as figures with embedded pictures."""
+    figures = []
+    with tempfile.TemporaryDirectory() as folder:
+        elsewhere = dataclasses.replace(run, folder=Path(folder))
+        for draw, caption in CAPTIONS.items():
+            if draw is not plot_energy and not run.vesicles:
+                continue
+            picture = base64.b64encode(draw(elsewhere).read_bytes()).decode()
+            figures.append(
+                f'<figure><img alt="{_safe(caption)}" src="data:image/png;base64,{picture}">'
+                f"<figcaption>{_safe(caption)}</figcaption></figure>"
+            )
+    return "\n".join(figures)
+
+
+def _data(run: Run) -> dict[str, Any]:
+    """Return what the page draws: outlines, tension and fields of at most FRAMES saved times."""
+    frames = np.unique(np.linspace(0, len(run.time) - 1, min(FRAMES, len(run.time))).round().astype(int))
+    digits = 5 - int(np.floor(np.log10(run.box[1] - run.box[0])))
+    raw = [run.fields(frame) for frame in frames]
+    speed = np.stack([coarsen(np.hypot(u, v)) for u, v, _ in raw])
+    pressure = np.stack([coarsen(p) for _, _, p in raw])
+    tension = run.tension[frames]
+    return {
+        "box": [float(x) for x in run.box],
+        "time": [float(t) for t in run.time[frames]],
+        "start": [int(k) for k in run.start],
+        "markers": np.round(run.markers[frames], digits).tolist(),
+        "tension": [[float(f"{x:.4g}") for x in row] for row in tension],
+        "tension_limits": [float(tension[1:].min()), float(tension[1:].max())] if tension[1:].size else [0.0, 1.0],
+        "fields": {
+            "speed": _field(speed, False, "viridis", "speed (length/time)"),
+            "pressure": _field(pressure, True, "RdBu_r", "pressure (length²/time²)"),
+        },
+        "colours": {name: _colours(name) for name in ("viridis", "RdBu_r", "plasma")},
+    }
+
+
+def coarsen(values: np.ndarray) -> np.ndarray:
+    """Return a field's means over square blocks, so that no side is longer than PIXELS."""
+    block = -(-max(values.shape) // PIXELS)
+    padded = np.pad(values, [(0, -n % block) for n in values.shape], mode="edge")
+    ny, nx = (n // block for n in padded.shape)
+    return padded.reshape(ny, block, nx, block).mean(axis=(1, 3))
+
+
+def _field(values: np.ndarray, signed: bool, colours: str, label: str) -> dict[str, Any]:
+    """Return a field of all frames in eight bits, each frame over its own range, from minus to plus if `signed`."""
+    high = np.abs(values).max(axis=(1, 2))
+    high[high == 0] = 1.0
+    low = -high if signed else 0 * high
+    share = (values - low[:, None, None]) / (high - low)[:, None, None]
+    scaled = np.clip(np.round(255 * share), 0, 255).astype(np.uint8)
+    text = base64.b64encode(scaled.tobytes()).decode()
+    shape = [int(n) for n in values.shape[1:]]
+    return {"values": text, "shape": shape, **_ends(low, high), "colours": colours, "label": label}
+
+
+def _ends(low: np.ndarray, high: np.ndarray) -> dict[str, list[float]]:
+    return {name: [float(f"{x:.4g}") for x in values] for name, values in (("low", low), ("high", high))}
+
+
+def _colours(name: str) -> str:
+    """Return matplotlib's colours, 256 of three bytes."""
+    import matplotlib
+
+    table = matplotlib.colormaps[name](np.arange(256))[:, :3]
+    return base64.b64encode((255 * table).round().astype(np.uint8).tobytes()).decode()

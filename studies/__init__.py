@@ -1,0 +1,1 @@
+"""The studies behind docs/: every table and picture there, made again by ``python3 -m studies``."""
