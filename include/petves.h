@@ -72,10 +72,16 @@ PETSC_EXTERN PetscErrorCode SimulationSetQuiet(Simulation simulation, PetscBool 
 PETSC_EXTERN PetscErrorCode SimulationGetTime(Simulation simulation, PetscInt *step, PetscReal *time);
 
 /* SimulationGetState - borrowed vectors: velocity on the faces (the local part is the rank's rows of u, then of v),
-   pressure, tension [M], markers [2M] and their velocity [2M] (sequential, the same on every rank). Any may be NULL.
-   Not collective. */
+   pressure, tension [M], markers [2M] and their velocity [2M], distributed by vesicle: each vesicle's part is on one
+   rank. Any may be NULL. Not collective. */
 PETSC_EXTERN PetscErrorCode SimulationGetState(Simulation simulation, Vec *velocity, Vec *pressure, Vec *tension,
                                                Vec *markers, Vec *marker_velocity);
+
+/* SimulationGatherMarkers - borrowed arrays of all vesicles' markers[2M], their velocity[2M] and tension[M], the same on
+   every rank, filled with the present state; they stay where they are, and are filled anew by the next call. Any may be
+   NULL. Collective. */
+PETSC_EXTERN PetscErrorCode SimulationGatherMarkers(Simulation simulation, const PetscReal **markers,
+                                                    const PetscReal **velocity, const PetscReal **tension);
 
 /* SimulationGetObject - borrowed PETSc object by name, NULL when the simulation has none of that name: Vecs velocity,
    pressure, tension, markers, marker_velocity; DMs dm_velocity, dm_u, dm_v, dm_pressure; Mats mat_G, mat_D, mat_L,

@@ -21,6 +21,17 @@ PetscErrorCode SimulationGetState(Simulation s, Vec *w, Vec *p, Vec *sigma, Vec 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode SimulationGatherMarkers(Simulation s, const PetscReal **markers, const PetscReal **velocity,
+                                       const PetscReal **tension) {
+  Gathered *now = &s->output->now;
+  PetscFunctionBeginUser;
+  PetscCall(GatherState(&s->scheme->state, now));
+  if (markers) *markers = now->markers;
+  if (velocity) *velocity = now->velocity;
+  if (tension) *tension = now->tension;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* PETSc objects by name. A name that this simulation has no object for gives NULL. */
 static PetscObject FindObject(Simulation s, const char name[]) {
   const State *q = &s->scheme->state;

@@ -85,6 +85,7 @@ class Simulation(State):
         self._temporary = False
         self._failed: list[BaseException] = []  # by the flow
         self._rows: list[tuple[float, ...]] = []
+        self._gathered: dict[str, np.ndarray] = {}
         self._comm = comm or PETSc.COMM_WORLD
         self._flow = Flow(0) if flow is None else _flow_function(flow, self._failed)
         if flow is not None:
@@ -180,11 +181,11 @@ class Simulation(State):
         finally:
             self._inside = False
             self._lib.PetvesLeave(depth)
-        if self._failed:
+        if code and self._failed:  # without a code all ranks have agreed that the step failed: _stop_on raises it
             cause = self._failed.pop()
-            self._failed.clear()
         if cause is not None or code:
             self._ended = True  # the state is not to be trusted: no files are written from it
+            self._failed.clear()
         if cause is not None:
             raise cause
         if code:
@@ -196,6 +197,14 @@ class Simulation(State):
         return self._handle
 
     def _record(self) -> None:
+        """Keep the row and show the markers of the state that has just been reached. Collective."""
+        found = [ctypes.POINTER(ctypes.c_double)() for _ in range(3)]
+        self._call("SimulationGatherMarkers", self._open(), *(ctypes.byref(pointer) for pointer in found))
+        count = int(self._start[-1])
+        for name, pointer, each in zip(("markers", "marker_velocity", "tension"), found, (2, 2, 1)):
+            array = np.ctypeslib.as_array(pointer, (each * count,)) if count else np.empty(0)
+            array.flags.writeable = False
+            self._gathered[name] = array
         self._lib.SimulationGetRow(self._handle, -1, self._row)
         self._rows.append(tuple(self._row))
 
@@ -286,8 +295,11 @@ class Simulation(State):
     def _stop_on(self, failure: ctypes.c_char_p) -> None:
         if failure.value is None:
             return
-        text = failure.value
+        text, cause = failure.value, self._failed.pop() if self._failed else None
+        self._failed.clear()
         self._end(text)
+        if cause is not None:
+            raise cause
         raise Error(f"{text.decode(errors='replace')}; the last good state is in {self.folder}/checkpoint.h5")
 
     def checkpoint(self) -> Path:

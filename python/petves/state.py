@@ -22,6 +22,7 @@ class State(Measures):
     _start: np.ndarray
     _sizes: list[int]
     _in_force: dict[str, str]
+    _gathered: dict[str, np.ndarray]
 
     @property
     def folder(self) -> Path:
@@ -47,20 +48,20 @@ class State(Measures):
     def markers(self) -> np.ndarray:
         """Markers of all vesicles (length), shape (M, 2), the same on every rank.
 
-        A read-only view without copy: after the next step ask again, and copy what is to be kept. So are the other
-        arrays.
+        A read-only view without copy: after the next step it has other values, so copy what is to be kept. So are the
+        other arrays.
         """
-        return self._array("markers").reshape(-1, 2)
+        return self._gathered["markers"].reshape(-1, 2)
 
     @property
     def marker_velocity(self) -> np.ndarray:
         """Velocity of the markers, background included (length/time), shape (M, 2), the same on every rank; a view."""
-        return self._array("marker_velocity").reshape(-1, 2)
+        return self._gathered["marker_velocity"].reshape(-1, 2)
 
     @property
     def tension(self) -> np.ndarray:
         """Tension (length^3/time^2), shape (M,), entry k on the edge from marker k-1 to marker k; a view."""
-        return self._array("tension")
+        return self._gathered["tension"]
 
     @property
     def pressure(self) -> np.ndarray:
@@ -98,8 +99,8 @@ class State(Measures):
         return box[0] + h * (0.5 + np.arange(columns)), box[2] + h * (0.5 + first + np.arange(rows))
 
     def vec(self, name: str) -> PETSc.Vec:
-        """Return the state's vector: velocity, pressure (over the ranks), markers, marker_velocity, tension (whole on
-        every rank). After the next step ask again: the vectors change places."""
+        """Return the state's vector: velocity, pressure (by rows over the ranks), markers, marker_velocity, tension (by
+        vesicles over the ranks). After the next step ask again: the vectors change places."""
         return self._object("Vec", name, name)
 
     def dm(self, name: str) -> PETSc.DM:

@@ -1,4 +1,5 @@
 #include "output/cells.h"
+#include "base/agree.h"
 
 /* Value of a velocity component on a wall: the background's in the total form, else zero. */
 static PetscScalar WallValue(Scheme s, int c, PetscInt i, PetscInt j, PetscReal wall) {
@@ -15,13 +16,14 @@ PetscErrorCode CellVelocity(Scheme s, int c, const PetscScalar w[], PetscScalar 
   const PetscInt columns = g->columns[c], nx = g->n[0];
   const PetscScalar *a = w + (c ? GridLocalU(g) : 0);
   Rows rows;
+  char message[PETVES_MAX_MESSAGE] = "";
   PetscReal *X, *u;
   PetscFunctionBeginUser;
   PetscCall(GridRows(g, (Field)c, a, &rows));
   PetscCall(PetscCalloc2(2 * nx, &X, 2 * nx, &u));
-  for (PetscInt j = 0; j < g->rows[FIELD_P]; j++) {
+  for (PetscInt j = 0; j < g->rows[FIELD_P] && !*message; j++) {
     for (PetscInt i = 0; i < nx; i++) GridPosition(g, FIELD_P, i, j + g->first, X + 2 * i);
-    if (!s->fluid->total) PetscCall(FlowVelocities(&s->scene->flow, s->state.t, nx, X, u));
+    if (!s->fluid->total) PetscCall(FlowVelocities(&s->scene->flow, s->state.t, nx, X, u, message));
     for (PetscInt i = 0; i < nx; i++) {
       const PetscInt index[2] = {i, j + g->first};
       PetscScalar face[2];
@@ -38,5 +40,7 @@ PetscErrorCode CellVelocity(Scheme s, int c, const PetscScalar w[], PetscScalar 
     }
   }
   PetscCall(PetscFree2(X, u));
+  if (s->scene->flow.type == FLOW_CUSTOM) PetscCall(AgreeMessage(g->comm, message));
+  PetscCheck(!*message, g->comm, PETSC_ERR_USER_INPUT, "%s", message);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -155,8 +155,8 @@ PetscErrorCode OutputStep(Output o) {
 PetscErrorCode OutputEnd(Output o, const char reason[], const char failure[]) {
   const State *q = &o->scheme->state;
   PetscFunctionBeginUser;
+  PetscCall(OutputCheckpoint(o)); /* first: a frame asks the flow for values, which a caller's own may not have */
   if (q->t > o->frames.time) PetscCall(WriteFrame(o, PETSC_FALSE));
-  PetscCall(OutputCheckpoint(o));
   PetscCall(SeriesFlush(&o->series, PETSC_FALSE));
   PetscCall(SummaryWrite(&o->folder, o->scheme, &o->record, ProgressSeconds(&o->progress), failure ? failure : reason));
   PetscCall(ProgressLine(&o->progress, q, o->scene->time.end, PETSC_TRUE));

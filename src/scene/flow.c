@@ -25,18 +25,27 @@ void FlowVelocity(const Flow *flow, PetscReal t, PetscReal x, PetscReal y, Petsc
   }
 }
 
-PetscErrorCode FlowVelocities(const Flow *flow, PetscReal t, PetscInt n, const PetscReal X[], PetscReal u[]) {
+PetscErrorCode FlowVelocities(const Flow *flow, PetscReal t, PetscInt n, const PetscReal X[], PetscReal u[],
+                              char message[PETVES_MAX_MESSAGE]) {
   PetscFunctionBeginUser;
+  message[0] = 0;
   if (flow->type != FLOW_CUSTOM) {
     for (PetscInt k = 0; k < n; k++) FlowVelocity(flow, t, X[2 * k], X[2 * k + 1], &u[2 * k]);
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  PetscCall(flow->function(t, n, X, u, flow->ctx));
-  for (PetscInt k = 0; k < n; k++)
-    PetscCheck(!PetscIsInfOrNanReal(u[2 * k]) && !PetscIsInfOrNanReal(u[2 * k + 1]), PETSC_COMM_SELF,
-               PETSC_ERR_USER_INPUT,
-               "-flow_type custom: u_inf is (%g, %g) at (%g, %g), time %g; allowed: finite numbers", (double)u[2 * k],
-               (double)u[2 * k + 1], (double)X[2 * k], (double)X[2 * k + 1], (double)t);
+  if (n && flow->function(t, n, X, u, flow->ctx)) {
+    PetscCall(PetscSNPrintf(message, PETVES_MAX_MESSAGE,
+                            "-flow_type custom: the function of the flow failed at time %g; allowed: one that gives "
+                            "u_inf at any point of the domain",
+                            (double)t));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  for (PetscInt k = 0; k < n && !*message; k++)
+    if (PetscIsInfOrNanReal(u[2 * k]) || PetscIsInfOrNanReal(u[2 * k + 1]))
+      PetscCall(PetscSNPrintf(message, PETVES_MAX_MESSAGE,
+                              "-flow_type custom: u_inf is (%g, %g) at (%g, %g), time %g; allowed: finite numbers",
+                              (double)u[2 * k], (double)u[2 * k + 1], (double)X[2 * k], (double)X[2 * k + 1],
+                              (double)t));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -22,9 +22,10 @@ PetscErrorCode SchemeBackground(Scheme s, Vec X, PetscReal t) {
   if (s->fluid->total) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecGetArrayRead(X, &x));
   PetscCall(VecGetArray(s->background, &u));
-  PetscCall(FlowVelocities(&s->scene->flow, t, s->membrane->layout->n, x, u));
+  PetscCall(FlowVelocities(&s->scene->flow, t, s->membrane->layout->n, x, u, s->report.failure));
   PetscCall(VecRestoreArray(s->background, &u));
   PetscCall(VecRestoreArrayRead(X, &x));
+  if (s->scene->flow.type == FLOW_CUSTOM) PetscCall(AgreeMessage(s->scene->comm, s->report.failure));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
