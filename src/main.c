@@ -4,13 +4,13 @@
 
 static PetscErrorCode Run(PetscBool *good) {
   Simulation simulation = NULL;
-  PetscErrorCode error = PETSC_SUCCESS;
+  PetscErrorCode error;
   PetscBool only_help;
   PetscFunctionBeginUser;
   PetscCall(PetvesCatchSignals());
   PetscCall(PetscOptionsHasHelp(NULL, &only_help));
-  PetscCall(SimulationCreate(PETSC_COMM_WORLD, &simulation));
-  if (!only_help) error = SimulationRun(simulation, good);
+  error = SimulationCreate(PETSC_COMM_WORLD, &simulation);
+  if (!error && !only_help) error = SimulationRun(simulation, good);
   /* a mistake or a file that cannot be written stops every rank; any other error may be one rank's, and others wait */
   if (!error || error == PETSC_ERR_USER_INPUT) PetscCall(SimulationDestroy(&simulation));
   PetscCall(error);

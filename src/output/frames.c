@@ -11,13 +11,22 @@ static PetscErrorCode Begin(Frames *f, Folder *folder, Scheme scheme, char path[
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Stop every rank when the file could not be written. It is closed at once: HDF5 crashes at the program's end where a
+   file is open that it cannot write. */
+static PetscErrorCode Check(Frames *f) {
+  PetscFunctionBeginUser;
+  if (f->file.failed) PetscCall(H5FileClose(&f->file));
+  PetscCall(FolderCheck(f->folder, !f->file.failed, f->file.path));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode FramesCreate(Frames *f, Folder *folder, Scheme scheme) {
   char path[PETSC_MAX_PATH_LEN];
   PetscFunctionBeginUser;
   PetscCall(Begin(f, folder, scheme, path));
   PetscCall(FrameFileCreate(scheme, path, &f->file));
   f->open = PETSC_TRUE;
-  PetscCall(FolderCheck(folder, !f->file.failed, path));
+  PetscCall(Check(f));
   PetscCall(FrameIndexOpen(&f->index, folder, scheme, &f->file, 0, NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -95,7 +104,7 @@ PetscErrorCode FramesWrite(Frames *f, const Gathered *now, PetscBool scheduled) 
   PetscCall(FrameIndexAppend(&f->index, &f->file, f->count, t));
   PetscCall(H5WriteArray(&f->file, "/time", f->count, 1, &t)); /* last: readers count the frames by it */
   PetscCall(H5FileFlush(&f->file));
-  PetscCall(FolderCheck(f->folder, !f->file.failed, f->file.path));
+  PetscCall(Check(f));
   f->count++;
   if (scheduled) f->scheduled = f->count;
   f->time = t;
@@ -103,11 +112,10 @@ PetscErrorCode FramesWrite(Frames *f, const Gathered *now, PetscBool scheduled) 
 }
 
 PetscErrorCode FramesSync(Frames *f) {
-  PetscBool good = PETSC_TRUE;
   PetscFunctionBeginUser;
   PetscCall(H5FileFlush(&f->file));
-  if (!f->folder->rank) good = !f->file.failed && !FileSync(f->file.path) && !FrameIndexSync(&f->index);
-  PetscCall(FolderCheck(f->folder, good, f->file.path));
+  if (!f->folder->rank && (FileSync(f->file.path) || FrameIndexSync(&f->index))) f->file.failed = PETSC_TRUE;
+  PetscCall(Check(f));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
