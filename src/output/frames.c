@@ -119,12 +119,13 @@ PetscErrorCode FramesSync(Frames *f) {
 }
 
 PetscErrorCode FramesClose(Frames *f, PetscBool *good) {
+  const PetscBool known = f->open ? f->file.failed : PETSC_FALSE; /* said when it was found */
   PetscFunctionBeginUser;
   *good = PETSC_TRUE;
   if (f->open) {
     PetscCall(H5FileClose(&f->file));
     PetscCall(FrameIndexClose(&f->index, !f->file.failed));
-    *good = f->file.failed ? PETSC_FALSE : PETSC_TRUE;
+    *good = !f->file.failed || known ? PETSC_TRUE : PETSC_FALSE;
   }
   f->open = PETSC_FALSE;
   PetscCall(PetscFree(f->cells));

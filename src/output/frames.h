@@ -31,6 +31,6 @@ PETSC_EXTERN PetscErrorCode FramesWrite(Frames *frames, const Gathered *now, Pet
 /* FramesSync - put all of it on the disk. Collective; stops with one line when it cannot be written. */
 PETSC_EXTERN PetscErrorCode FramesSync(Frames *frames);
 
-/* FramesClose - close the file and free everything; good: all of it was written. Rank 0 closes, and good is TRUE
-   elsewhere. */
+/* FramesClose - close the file and free everything; good: all of it was written, or an error of it is known already.
+   Rank 0 closes, and good is TRUE elsewhere. */
 PETSC_EXTERN PetscErrorCode FramesClose(Frames *frames, PetscBool *good);

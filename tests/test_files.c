@@ -1,0 +1,132 @@
+/* Parts of the output that no small run reaches: rows of many vesicles, texts longer than an HDF5 attribute, and the
+   places of frames. */
+#include "check.h"
+#include "output/h5.h"
+#include "output/record.h"
+#include <stdlib.h>
+
+/* Name of a scratch file. */
+static PetscErrorCode Scratch(const char name[], char path[PETSC_MAX_PATH_LEN]) {
+  const char *folder = getenv("PETVES_SCRATCH");
+  PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(path, PETSC_MAX_PATH_LEN, "%s%s", folder ? folder : "/tmp/", name));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A text comes back on every rank, at lengths around those of the attributes that it is cut into. */
+static PetscErrorCode CheckTexts(void) {
+  const size_t lengths[] = {0, 1, 31999, 32000, 32001, 64000, 200000};
+  const int n = sizeof(lengths) / sizeof(lengths[0]);
+  char path[PETSC_MAX_PATH_LEN], name[32], *text, *back;
+  PetscBool failed;
+  H5File file;
+  PetscFunctionBeginUser;
+  PetscCall(Scratch("texts.h5", path));
+  PetscCall(PetscMalloc1(lengths[n - 1] + 1, &text));
+  for (int pass = 0; pass < 2; pass++) {
+    PetscCall(pass ? H5FileOpen(PETSC_COMM_WORLD, path, PETSC_FALSE, &file)
+                   : H5FileCreate(PETSC_COMM_WORLD, path, &file));
+    for (int k = 0; k < n; k++) {
+      for (size_t i = 0; i < lengths[k]; i++) text[i] = (char)('a' + (i * i + 7 * i + (size_t)k) % 26);
+      text[lengths[k]] = 0;
+      PetscCall(PetscSNPrintf(name, sizeof(name), "text%d", k));
+      if (!pass) {
+        PetscCall(H5PutText(&file, name, text));
+        continue;
+      }
+      PetscCall(H5GetText(&file, name, &back));
+      CHECK(!strcmp(back, text), "a text of %zu characters", lengths[k]);
+      PetscCall(PetscFree(back));
+    }
+    PetscCall(H5FileFailed(&file, &failed));
+    CHECK(!failed, "texts %s", pass ? "read" : "written");
+    PetscCall(H5FileClose(&file));
+  }
+  PetscCall(PetscFree(text));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* How often a character is in a text. */
+static PetscInt Count(const char text[], char what) {
+  PetscInt n = 0;
+  for (; *text; text++) n += *text == what;
+  return n;
+}
+
+/* A row has room for the longest numbers of all its vesicles, and comes back from its text. */
+static PetscErrorCode CheckRows(PetscInt vesicles) {
+  const PetscInt columns = COLUMN_COUNT + (vesicles > 1 ? 10 * vesicles : 0);
+  char number[32], *text;
+  size_t used = 0;
+  Record record;
+  PetscFunctionBeginUser;
+  PetscCall(RecordCreate(vesicles, &record));
+  CHECK(Count(record.header, ',') == columns - 1, "%d vesicles: %d columns", (int)vesicles, (int)columns);
+  PetscCall(PetscSNPrintf(number, sizeof(number), "frequency_%d", (int)vesicles));
+  CHECK(vesicles == 1 || !strcmp(strrchr(record.header, ',') + 1, number), "%d vesicles: the last column",
+        (int)vesicles);
+  PetscCall(PetscMalloc1(32 * columns, &text));
+  for (PetscInt c = 0; c < columns; c++)
+    used += (size_t)snprintf(text + used, 32, "%s%.17g", c ? "," : "", -1.2345678901234567e-300 * (double)(c + 1));
+  PetscCall(RecordParse(&record, text));
+  CHECK(!strcmp(record.text, text), "%d vesicles: a row of %zu characters", (int)vesicles, used);
+  CHECK(record.last[COLUMN_AREA] == -1.2345678901234567e-300 * (COLUMN_AREA + 1), "%d vesicles: its numbers",
+        (int)vesicles);
+  PetscCall(PetscFree(text));
+  PetscCall(RecordDestroy(&record));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The place of a frame is HDF5's own answer; asked after many frames, and of a file that was opened again. */
+static PetscErrorCode CheckPlaces(void) {
+  const PetscInt frames = 300, size[2] = {5, 7}, ask[] = {0, 1, 63, 64, 150, 299};
+  char path[PETSC_MAX_PATH_LEN];
+  PetscReal values[35], *read = values;
+  H5File file;
+  PetscFunctionBeginUser;
+  PetscCall(Scratch("places.h5", path));
+  PetscCall(H5FileCreate(PETSC_COMM_WORLD, path, &file));
+  PetscCall(H5CreateSeries(&file, "/a/one", 2, size));
+  PetscCall(H5CreateSeries(&file, "/a/two", 1, size));
+  for (PetscInt t = 0; t < frames; t++) {
+    for (int k = 0; k < 35; k++) values[k] = t + k / 64.0;
+    PetscCall(H5WriteArray(&file, "/a/one", t, 35, values));
+    PetscCall(H5WriteArray(&file, "/a/two", t, 5, values));
+    PetscCall(H5FileFlush(&file));
+  }
+  for (int pass = 0; pass < 2; pass++) {
+    for (size_t k = 0; k < sizeof(ask) / sizeof(ask[0]); k++) {
+      const hsize_t start[2] = {(hsize_t)ask[k], 0};
+      haddr_t place = HADDR_UNDEF;
+      hsize_t bytes;
+      unsigned filters;
+      PetscBool same = PETSC_TRUE;
+      if (!file.rank) {
+        const hid_t set = H5Dopen2(file.id, "/a/two", H5P_DEFAULT);
+        (void)H5Dget_chunk_info_by_coord(set, start, &filters, &place, &bytes);
+        (void)H5Dclose(set);
+        same = place != HADDR_UNDEF && H5FramePlace(&file, "/a/two", ask[k]) == place ? PETSC_TRUE : PETSC_FALSE;
+      }
+      CHECK(same, "frame %d of %d lies where HDF5 says", (int)ask[k], (int)frames);
+      PetscCall(H5ReadArray(&file, "/a/one", ask[k], 35, read));
+      CHECK(read[34] == ask[k] + 34 / 64.0, "and frame %d of the other series is as written", (int)ask[k]);
+    }
+    PetscCall(H5FileClose(&file));
+    if (!pass) PetscCall(H5FileOpen(PETSC_COMM_WORLD, path, PETSC_FALSE, &file));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Facts(void) {
+  PetscFunctionBeginUser;
+  PetscCall(CheckTexts());
+  PetscCall(CheckRows(1));
+  PetscCall(CheckRows(33));
+  PetscCall(CheckRows(5000));
+  PetscCall(CheckPlaces());
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+int main(int argc, char **argv) {
+  return CheckMain(argc, argv, Facts);
+}
