@@ -80,3 +80,23 @@ with petves.Simulation(**SCENE) as sim:
         done, _ = run_script(tmp_path, body, 2)
         assert done.returncode == 1 and ("ValueError: mine" in done.stderr or "another rank" in done.stderr)
         assert last_good_step(tmp_path) == 3
+
+    @pytest.mark.parametrize("ranks", [2, 3])
+    @pytest.mark.parametrize("fault, what", [("raise KeyError('flow')", "KeyError"), ("u = u + np.nan", "Error")])
+    def test_a_flow_that_fails_on_one_rank_ends_all(fault, what, ranks, tmp_path):
+        """Its exception, or petves.Error for a velocity that is not finite; petves.Error on the other ranks."""
+        body = f"""
+def stumble(x, y, t):
+    u = y + 0.0
+    if ALONE and t > 0.035:
+        {fault}
+    return u, 0 * x
+with petves.Simulation(flow=stumble, **SCENE) as sim:
+    try:
+        sim.run()
+    except (KeyError, petves.Error) as error:
+        tell(type(error).__name__)
+"""
+        done, told = run_script(tmp_path, body, ranks)
+        assert done.returncode == 0, done.stderr
+        assert told == ["Error"] * (ranks - 1) + [what]
