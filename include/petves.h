@@ -77,9 +77,9 @@ PETSC_EXTERN PetscErrorCode SimulationGetTime(Simulation simulation, PetscInt *s
 PETSC_EXTERN PetscErrorCode SimulationGetState(Simulation simulation, Vec *velocity, Vec *pressure, Vec *tension,
                                                Vec *markers, Vec *marker_velocity);
 
-/* SimulationGatherMarkers - borrowed arrays of all vesicles' markers[2M], their velocity[2M] and tension[M], the same on
-   every rank, filled with the present state; they stay where they are, and are filled anew by the next call. Any may be
-   NULL. Collective. */
+/* SimulationGatherMarkers - borrowed arrays of all vesicles' markers[2M], their velocity[2M] and tension[M], the same
+   on every rank, filled with the present state; they stay where they are, and are filled anew by the next call. Any may
+   be NULL. Collective. */
 PETSC_EXTERN PetscErrorCode SimulationGatherMarkers(Simulation simulation, const PetscReal **markers,
                                                     const PetscReal **velocity, const PetscReal **tension);
 
