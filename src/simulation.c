@@ -65,7 +65,7 @@ static PetscErrorCode Build(MPI_Comm comm, PetvesFlow flow, void *ctx, Simulatio
   PetscCall(MembraneCreate(s->layout, scene->shape.X, scene->membrane.bending,
                            (DerivativeType)scene->membrane.derivative, &s->membrane));
   PetscCall(CouplingCreate(s->fluid, s->membrane, scene->coupling.kernel,
-                           (SelfMobilityType)scene->coupling.self_mobility, &s->coupling));
+                           (NearFieldType)scene->coupling.near_field, &s->coupling));
   PetscCall(SchemeCreate(scene, s->coupling, scene->shape.X, &s->scheme));
   PetscCall(SceneCheckUnused(scene));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -1,9 +1,7 @@
 #include "coupling/coupling.h"
-#include "base/agree.h"
 
 PetscErrorCode CouplingPlace(Coupling c, PetscReal a0, Vec X, char message[PETVES_MAX_MESSAGE]) {
   const PetscScalar *x;
-  PetscBool factored = PETSC_TRUE, failed;
   PetscFunctionBeginUser;
   message[0] = 0;
   PetscCall(FluidSetTimeCoefficient(c->fluid, a0));
@@ -13,13 +11,8 @@ PetscErrorCode CouplingPlace(Coupling c, PetscReal a0, Vec X, char message[PETVE
   PetscCall(MarkersPlace(c->markers, X));
   PetscCall(VecGetArrayRead(X, &x));
   MembraneTangents(c->membrane, x, c->tau);
-  if (c->self) PetscCall(SelfMobilityPlace(c->self, a0, x, &factored));
   PetscCall(VecRestoreArrayRead(X, &x));
-  if (!c->self) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(AgreeFlag(c->fluid->grid->comm, factored ? PETSC_FALSE : PETSC_TRUE, &failed));
-  if (failed)
-    PetscCall(PetscStrncpy(message, "the membranes' self-mobility with their bending is not positive definite",
-                           PETVES_MAX_MESSAGE));
+  if (c->near) PetscCall(NearFieldPlace(c->near));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -58,6 +51,21 @@ PetscErrorCode CouplingSpreadBending(Coupling c, PetscReal alpha, Vec X, Vec w) 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode CouplingNearBending(Coupling c, PetscReal alpha, Vec X, Vec U) {
+  const PetscReal h2 = PetscSqr(c->fluid->grid->h);
+  const PetscScalar *F;
+  PetscScalar *u;
+  PetscFunctionBeginUser;
+  if (!c->near) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(BendingForce(c, X, c->force));
+  PetscCall(VecGetArrayRead(c->force, &F));
+  PetscCall(VecGetArray(U, &u));
+  PetscCall(NearFieldApply(c->near, alpha * h2, F, u));
+  PetscCall(VecRestoreArray(U, &u));
+  PetscCall(VecRestoreArrayRead(c->force, &F));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode CouplingStretching(Coupling c, Vec U, Vec d) {
   const PetscScalar *u;
   PetscScalar *stretching;
@@ -68,28 +76,6 @@ PetscErrorCode CouplingStretching(Coupling c, Vec U, Vec d) {
   PetscCall(VecRestoreArray(d, &stretching));
   PetscCall(VecRestoreArrayRead(U, &u));
   PetscCall(VecScale(d, 1 / PetscSqr(c->fluid->grid->h)));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode CouplingSelfMobility(Coupling c, Vec sigma, Vec Xhat, Vec U) {
-  const PetscScalar *s = NULL, *x = NULL;
-  PetscScalar *u;
-  PetscFunctionBeginUser;
-  if (!c->self) PetscFunctionReturn(PETSC_SUCCESS);
-  if (sigma) PetscCall(VecGetArrayRead(sigma, &s));
-  if (Xhat) PetscCall(VecGetArrayRead(Xhat, &x));
-  PetscCall(VecGetArray(U, &u));
-  PetscCall(SelfMobilityApply(c->self, c->tau, s, x, u));
-  PetscCall(VecRestoreArray(U, &u));
-  if (Xhat) PetscCall(VecRestoreArrayRead(Xhat, &x));
-  if (sigma) PetscCall(VecRestoreArrayRead(sigma, &s));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode CouplingVelocity(Coupling c, Vec w, Vec sigma, Vec U) {
-  PetscFunctionBeginUser;
-  PetscCall(MarkersInterpolate(c->markers, w, U));
-  PetscCall(CouplingSelfMobility(c, sigma, NULL, U));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -144,7 +130,7 @@ static PetscErrorCode CreateShell(Coupling c, int each, ShellMult mult, ShellMul
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode CouplingCreate(Fluid fluid, Membrane m, const char kernel[], SelfMobilityType self, Coupling *out) {
+PetscErrorCode CouplingCreate(Fluid fluid, Membrane m, const char kernel[], NearFieldType near, Coupling *out) {
   Coupling c;
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&c));
@@ -157,8 +143,7 @@ PetscErrorCode CouplingCreate(Fluid fluid, Membrane m, const char kernel[], Self
   PetscCall(VecDuplicate(c->force, &c->velocity));
   PetscCall(CreateShell(c, 1, Mult_S, MultTranspose_S, &c->S));
   PetscCall(CreateShell(c, 2, Mult_B, MultTranspose_B, &c->B));
-  if (self != SELF_NONE && CouplingHasMembrane(c))
-    PetscCall(SelfMobilityCreate(c->markers, m, fluid->nu, self, &c->self));
+  if (near == NEAR_EXACT && CouplingHasMembrane(c)) PetscCall(NearFieldCreate(c->markers, m, fluid->nu, &c->near));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -166,7 +151,7 @@ PetscErrorCode CouplingDestroy(Coupling *coupling) {
   Coupling c = *coupling;
   PetscFunctionBeginUser;
   if (!c) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(SelfMobilityDestroy(&c->self));
+  PetscCall(NearFieldDestroy(&c->near));
   PetscCall(MarkersDestroy(&c->markers));
   PetscCall(PetscFree(c->tau));
   PetscCall(VecDestroy(&c->force));

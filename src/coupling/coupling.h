@@ -1,7 +1,7 @@
 /* Fluid and membranes joined: where the membranes are in a step, their tangents, what gives back the kernel's
    smoothing, and the operators S and B of the momentum equation. */
 #pragma once
-#include "coupling/selfmobility.h"
+#include "coupling/nearfield.h"
 #include "fluid/fluid.h"
 
 typedef struct _p_Coupling *Coupling;
@@ -9,7 +9,7 @@ struct _p_Coupling {
   Fluid fluid;       /* borrowed */
   Membrane membrane; /* borrowed; of no vesicle when the scene has none */
   Markers markers;
-  SelfMobility self; /* NULL without */
+  NearField near;    /* NULL without */
   PetscReal *tau;    /* [2n] tangents of the own vesicles */
   Vec force;         /* marker vector, work */
   Vec velocity;      /* marker vector, work */
@@ -17,14 +17,14 @@ struct _p_Coupling {
   Mat B;             /* (velocity x marker vector) B = E^T (c_b ds/h^2) D4: minus the spread bending force */
 };
 
-/* CouplingCreate - of a fluid and membranes with the named kernel and self-mobility; not placed yet. Collective. */
-PETSC_EXTERN PetscErrorCode CouplingCreate(Fluid fluid, Membrane membrane, const char kernel[], SelfMobilityType self,
+/* CouplingCreate - of a fluid and membranes with the named kernel and near field; not placed yet. Collective. */
+PETSC_EXTERN PetscErrorCode CouplingCreate(Fluid fluid, Membrane membrane, const char kernel[], NearFieldType near,
                                            Coupling *coupling);
 PETSC_EXTERN PetscErrorCode CouplingDestroy(Coupling *coupling);
 
 /* CouplingPlace - everything that a solve stands on, in one call: the time coefficient a0 (1/time) in the fluid's H; E,
-   S, B and the tangents at the markers X; Theta and R there. message[PETVES_MAX_MESSAGE] is empty, or says why it
-   cannot be: a marker near a wall, or a matrix without factor; the same on every rank. Collective. */
+   S, B, the tangents and the near field C at the markers X. message[PETVES_MAX_MESSAGE] is empty, or says why it
+   cannot be: a marker near a wall; the same on every rank. Collective. */
 PETSC_EXTERN PetscErrorCode CouplingPlace(Coupling coupling, PetscReal a0, Vec X, char message[PETVES_MAX_MESSAGE]);
 
 /* CouplingHasMembrane - whether there is a vesicle. CouplingBending - c_b, 0 without a vesicle. Not collective. */
@@ -39,13 +39,9 @@ static inline PetscReal CouplingBending(Coupling coupling) {
 PETSC_EXTERN PetscErrorCode CouplingSpreadTension(Coupling coupling, PetscReal alpha, Vec sigma, Vec w);
 PETSC_EXTERN PetscErrorCode CouplingSpreadBending(Coupling coupling, PetscReal alpha, Vec X, Vec w);
 
+/* CouplingNearBending - U += alpha C c_b ds D4 X, the near field of a bending force; nothing without near field.
+   Collective. */
+PETSC_EXTERN PetscErrorCode CouplingNearBending(Coupling coupling, PetscReal alpha, Vec X, Vec U);
+
 /* CouplingStretching - d = Dm U/h^2. d and U are an edge vector and a marker vector. Not collective. */
 PETSC_EXTERN PetscErrorCode CouplingStretching(Coupling coupling, Vec U, Vec d);
-
-/* CouplingVelocity - U = E w, or R (E w - Theta Dm^T sigma) with self-mobility; sigma may be NULL. Collective. */
-PETSC_EXTERN PetscErrorCode CouplingVelocity(Coupling coupling, Vec w, Vec sigma, Vec U);
-
-/* CouplingSelfMobility - U := R (U - Theta (Dm^T sigma + c_b ds D4 Xhat)); without self-mobility U stays. sigma and
-   Xhat may be NULL. From U = E w and sigma it makes the velocity that a solve finds, from U = u_inf and Xhat the part
-   that is known before. Not collective. */
-PETSC_EXTERN PetscErrorCode CouplingSelfMobility(Coupling coupling, Vec sigma, Vec Xhat, Vec U);

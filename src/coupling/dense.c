@@ -94,7 +94,7 @@ static void AssembleBlock(Membrane m, PetscReal h2, Block *q, PetscReal a0, cons
   }
 }
 
-/* Factors of N and C for Mob with self-mobility in it. */
+/* Factors of N and C for Mob with the near field in it. */
 static PetscErrorCode FactorBlock(Membrane m, PetscReal h2, Block *q, PetscReal a0, const PetscReal Mob[],
                                   PetscBool *factored) {
   const PetscInt n = q->n;
@@ -121,22 +121,29 @@ static PetscErrorCode FactorBlock(Membrane m, PetscReal h2, Block *q, PetscReal 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Mob += h^2 Theta of own vesicle v, in a block of n markers of which it starts with the one at `own`. */
-static void AddSelfMobility(DenseBlocks b, PetscInt v, PetscInt own, PetscInt n, PetscReal Mob[]) {
-  const PetscReal h2 = PetscSqr(b->coupling->fluid->grid->h), *Theta = SelfMobilityBlock(b->coupling->self, v);
-  const PetscInt n2 = 2 * LayoutCount(b->coupling->membrane->layout, v);
-  for (PetscInt r = 0; r < n2; r++)
-    for (PetscInt c = 0; c < n2; c++) Mob[(2 * own + r) * 2 * n + 2 * own + c] += h2 * Theta[r * n2 + c];
+/* Mob += h^2 C of the near field's blocks whose vesicles are both in [vesicle, end), Mob being of the markers from `first`
+   on, n in all. */
+static void AddNearField(Coupling c, PetscInt vesicle, PetscInt end, PetscInt first, PetscInt n, PetscReal Mob[]) {
+  const Layout l = c->membrane->layout;
+  const PetscReal h2 = PetscSqr(c->fluid->grid->h);
+  for (PetscInt k = 0; c->near && k < c->near->count; k++) {
+    const NearBlock *b = &c->near->block[k];
+    if (b->row < vesicle || b->row >= end || b->column < vesicle || b->column >= end) continue;
+    const PetscInt rows = 2 * LayoutCount(l, b->row), columns = 2 * LayoutCount(l, b->column);
+    PetscReal *at = Mob + 2 * (l->start[b->column] - first) * 2 * n + 2 * (l->start[b->row] - first);
+    for (PetscInt j = 0; j < columns; j++)
+      for (PetscInt i = 0; i < rows; i++) at[j * 2 * n + i] += h2 * b->C[j * rows + i];
+  }
 }
 
-/* The one block: every rank makes a part of Mob and adds its own vesicles' self-mobility, root has the sum. */
+/* The one block: every rank makes a part of Mob and adds its own rows of the near field, root has the sum. */
 static PetscErrorCode AssembleTogether(DenseBlocks b, Mobility mobility, const GreenTable *table, PetscReal Mob[]) {
   const Layout l = b->coupling->membrane->layout;
   PetscMPIInt size;
   PetscFunctionBeginUser;
   PetscCall(PetscMPIIntCast(4 * l->M * l->M, &size));
   PetscCall(MobilityAssemble(mobility, table, 0, l->M, l->rank, l->size, Mob));
-  for (PetscInt v = l->own; v < l->end && b->coupling->self; v++) AddSelfMobility(b, v, l->start[v], l->M, Mob);
+  AddNearField(b->coupling, 0, l->bodies, 0, l->M, Mob);
   if (l->size > 1)
     PetscCallMPI(MPI_Reduce(l->rank == b->root ? MPI_IN_PLACE : Mob, Mob, size, MPIU_REAL, MPI_SUM, b->root, l->comm));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -171,7 +178,7 @@ PetscErrorCode DenseBlocksFactor(DenseBlocks b, Mobility mobility, const GreenTa
     Block *q = &b->block[k];
     if (!b->together) {
       PetscCall(MobilityAssemble(mobility, table, q->first, q->n, 0, 1, Mob));
-      if (b->coupling->self) AddSelfMobility(b, q->vesicle, 0, q->n, Mob);
+      AddNearField(b->coupling, q->vesicle, q->end, q->first, q->n, Mob);
     }
     PetscCall(FactorBlock(m, h2, q, a0, Mob, &good));
   }

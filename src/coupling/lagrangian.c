@@ -1,14 +1,5 @@
 #include "coupling/lagrangian.h"
 
-/* y = S^T w, or Dm R (E w - alpha Theta Dm^T x)/h^2 with self-mobility. */
-static PetscErrorCode Stretching(LagrangianSolver s, Vec w, Vec x, PetscReal alpha, Vec y) {
-  PetscFunctionBeginUser;
-  if (s->coupling->self) PetscCall(VecAXPBY(s->F, alpha, 0, x));
-  PetscCall(CouplingVelocity(s->coupling, w, s->coupling->self ? s->F : NULL, s->U));
-  PetscCall(CouplingStretching(s->coupling, s->U, y));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* y = (S^T S + S^T G L^-1 G^T S) x */
 static PetscErrorCode MultTension(Mat A, Vec x, Vec y) {
   LagrangianSolver s;
@@ -22,7 +13,8 @@ static PetscErrorCode MultTension(Mat A, Vec x, Vec y) {
   PetscCall(GridGradientTransposeRows(c->fluid->grid, 1, s->w, m->window, s->q));
   PetscCall(FluidSolvePoisson(c->fluid, s->q, s->q2));
   PetscCall(GridGradientRows(c->fluid->grid, 1, s->q2, PETSC_TRUE, m->window, s->w));
-  PetscCall(Stretching(s, s->w, x, -c->fluid->a0, y));
+  PetscCall(MarkersInterpolate(m, s->w, s->U));
+  PetscCall(CouplingStretching(c, s->U, y));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -34,7 +26,7 @@ static PetscErrorCode MultBending(Mat A, Vec x, Vec y) {
   PetscCall(MarkersClear(s->coupling->markers, s->w, s->dirty_w));
   PetscCall(CouplingSpreadBending(s->coupling, 1, x, s->w));
   PetscCall(FluidSolveHelmholtz(s->coupling->fluid, s->w, s->w2));
-  PetscCall(CouplingVelocity(s->coupling, s->w2, NULL, y));
+  PetscCall(MarkersInterpolate(s->coupling->markers, s->w2, y));
   PetscCall(VecAYPX(y, 1 / s->coupling->fluid->a0, x));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -59,7 +51,6 @@ static PetscErrorCode Create(Coupling coupling, const char prefix[], int each, P
   s->prefix = prefix;
   PetscCall(DMCreateGlobalVector(g->velocity, &s->w));
   PetscCall(LayoutCreateVec(l, 2, &s->U));
-  PetscCall(LayoutCreateVec(l, each, &s->F));
   PetscCall(MatCreateShell(g->comm, each * l->n, each * l->n, each * l->M, each * l->M, s, &s->A));
   PetscCall(MatShellSetOperation(s->A, MATOP_MULT, (void (*)(void))mult));
   PetscCall(KSPCreate(g->comm, &s->ksp));
@@ -131,46 +122,7 @@ PetscErrorCode LagrangianSolverDestroy(LagrangianSolver *solver) {
   PetscCall(VecDestroy(&s->q));
   PetscCall(VecDestroy(&s->q2));
   PetscCall(VecDestroy(&s->U));
-  PetscCall(VecDestroy(&s->F));
   PetscCall(PetscFree(*solver));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Chat += (a0/h^2) Dm Theta Dm^T, a block a vesicle: self-mobility is the larger part of the corrected operator. Each
-   owner makes its own blocks, column by column, and root has the sum. */
-static PetscErrorCode AddSelfMobility(LagrangianSolver s, Mat *Chat) {
-  const Coupling c = s->coupling;
-  const Layout l = c->membrane->layout;
-  const PetscReal scale = c->fluid->a0 / PetscSqr(c->fluid->grid->h);
-  PetscScalar *unit, *F, *d, *all;
-  PetscMPIInt size;
-  PetscFunctionBeginUser;
-  PetscCall(PetscMPIIntCast(l->M * l->M, &size));
-  PetscCall(PetscCalloc4(l->n, &unit, 2 * l->n, &F, l->n, &d, size, &all)); /* all: row k is column k, symmetric */
-  for (PetscInt k = 0; k < l->n; k++) {
-    unit[k] = 1;
-    PetscCall(PetscArrayzero(F, 2 * l->n));
-    MembraneStretchingTranspose(c->membrane, c->tau, 1, unit, F);
-    PetscCall(SelfMobilityMultTheta(c->self, F));
-    MembraneStretching(c->membrane, c->tau, F, d);
-    for (PetscInt r = 0; r < l->n; r++) all[(l->first + k) * l->M + l->first + r] = scale * d[r];
-    unit[k] = 0;
-  }
-  if (l->size > 1)
-    PetscCallMPI(MPI_Reduce(l->rank == s->chat->root ? MPI_IN_PLACE : all, all, size, MPIU_SCALAR, MPI_SUM,
-                            s->chat->root, l->comm));
-  if (*Chat) {
-    Mat sum;
-    PetscCall(MatConvert(*Chat, MATSEQDENSE, MAT_INITIAL_MATRIX, &sum));
-    for (PetscInt k = 0; k < l->M; k++)
-      for (PetscInt r = 0; r < l->M; r++) PetscCall(MatSetValue(sum, r, k, all[k * l->M + r], ADD_VALUES));
-    PetscCall(MatAssemblyBegin(sum, MAT_FINAL_ASSEMBLY));
-    PetscCall(MatAssemblyEnd(sum, MAT_FINAL_ASSEMBLY));
-    PetscCall(MatDestroy(Chat));
-    PetscCall(MatConvert(sum, MATSEQAIJ, MAT_INITIAL_MATRIX, Chat));
-    PetscCall(MatDestroy(&sum));
-  }
-  PetscCall(PetscFree4(unit, F, d, all));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -184,7 +136,6 @@ static PetscErrorCode SetUpChat(LagrangianSolver s) {
   PetscCall(RootPCIsNone(s->chat, &none));
   if (none) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(TensionAssemble(s->coupling, s->chat->root, &Chat));
-  if (s->coupling->self) PetscCall(AddSelfMobility(s, &Chat));
   PetscCall(RootPCSetMatrix(s->chat, Chat, &s->failed));
   PetscCall(MatDestroy(&Chat));
   PetscFunctionReturn(PETSC_SUCCESS);

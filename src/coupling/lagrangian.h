@@ -11,14 +11,14 @@
 
 typedef struct _p_LagrangianSolver *LagrangianSolver;
 struct _p_LagrangianSolver {
-  Coupling coupling; /* borrowed; with self-mobility U = R (E u - Theta Dm^T dsigma) stands in place of E u */
+  Coupling coupling; /* borrowed */
   const char *prefix;
   KSP ksp;
   Mat A;            /* the operator, a shell */
   RootPC chat;      /* tension: preconditioner of the assembled approximation; NULL for bending */
   Vec w, w2, q, q2; /* work: two velocities, two pressures; w and q are zero but for their dirty rows */
   PetscInt dirty_w[2], dirty_q[2];
-  Vec U, F;               /* work: a marker vector, and the solution scaled */
+  Vec U;                  /* work: a marker vector */
   PetscBool failed;       /* the preconditioner could not be factored */
   PetscInt its;           /* iterations of the last solve */
   KSPConvergedReason why; /* how it ended */

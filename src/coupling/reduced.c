@@ -28,42 +28,44 @@ static PetscErrorCode AddForces(Reduced s, const PetscScalar x[], Vec r) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* y = (V - E w + Theta F, Dm V/h^2) of x, s->F holding F; not scaled yet. */
-static PetscErrorCode MembraneConditions(Reduced s, const PetscScalar x[], Vec w, PetscScalar y[]) {
-  const Coupling c = s->unknowns->coupling;
-  const PetscInt n = s->unknowns->velocity;
-  const PetscReal h2 = PetscSqr(c->fluid->grid->h);
-  const PetscScalar *U;
-  PetscScalar *F;
+/* y -= what is known: an own part of a right-hand side. */
+static PetscErrorCode Subtract(Vec known, PetscInt n, PetscScalar y[]) {
+  const PetscScalar *a;
   PetscFunctionBeginUser;
-  PetscCall(MarkersInterpolate(c->markers, w, s->U));
-  PetscCall(VecGetArrayRead(s->U, &U));
-  PetscCall(VecGetArray(s->F, &F));
-  if (c->self)
-    PetscCall(SelfMobilityMultTheta(c->self, F));
-  else
-    PetscCall(PetscArrayzero(F, n));
-  for (PetscInt k = 0; k < n; k++) y[k] = x[k] - U[k] + F[k];
-  PetscCall(VecRestoreArray(s->F, &F));
-  PetscCall(VecRestoreArrayRead(s->U, &U));
-  MembraneStretching(c->membrane, c->tau, x, y + n);
-  for (PetscInt k = 0; k < s->unknowns->tension; k++) y[n + k] /= h2;
+  if (!known) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecGetArrayRead(known, &a));
+  for (PetscInt k = 0; k < n; k++) y[k] -= a[k];
+  PetscCall(VecRestoreArrayRead(known, &a));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* y = scaled (V - E w + Theta F, Dm V/h^2, d + slip) of x and the velocity w that its forces F gave; g, if any, comes
-   off Dm V/h^2. Collective. */
-static PetscErrorCode Conditions(Reduced s, const PetscScalar x[], Vec w, Vec g, PetscScalar y[]) {
-  const Unknowns u = s->unknowns;
-  const PetscInt tension = u->velocity, wall = tension + u->tension;
+/* y = (V - E w + C F - k, Dm V/h^2 - g) of x, s->F holding F; k and g may be NULL; not scaled yet. */
+static PetscErrorCode MembraneConditions(Reduced s, const PetscScalar x[], Vec w, Vec known, Vec g, PetscScalar y[]) {
+  const Coupling c = s->unknowns->coupling;
+  const PetscInt n = s->unknowns->velocity;
+  const PetscReal h2 = PetscSqr(c->fluid->grid->h);
+  const PetscScalar *U, *F;
   PetscFunctionBeginUser;
-  if (CouplingHasMembrane(u->coupling)) PetscCall(MembraneConditions(s, x, w, y));
-  if (g) {
-    const PetscScalar *ga;
-    PetscCall(VecGetArrayRead(g, &ga));
-    for (PetscInt k = 0; k < u->tension; k++) y[tension + k] -= ga[k];
-    PetscCall(VecRestoreArrayRead(g, &ga));
-  }
+  PetscCall(MarkersInterpolate(c->markers, w, s->U));
+  PetscCall(VecGetArrayRead(s->U, &U));
+  for (PetscInt k = 0; k < n; k++) y[k] = x[k] - U[k];
+  PetscCall(VecRestoreArrayRead(s->U, &U));
+  PetscCall(VecGetArrayRead(s->F, &F));
+  if (c->near) PetscCall(NearFieldApply(c->near, 1, F, y));
+  PetscCall(VecRestoreArrayRead(s->F, &F));
+  MembraneStretching(c->membrane, c->tau, x, y + n);
+  for (PetscInt k = 0; k < s->unknowns->tension; k++) y[n + k] /= h2;
+  PetscCall(Subtract(known, n, y));
+  PetscCall(Subtract(g, s->unknowns->tension, y + n));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* y = scaled (V - E w + C F - k, Dm V/h^2 - g, d + slip) of x and the velocity w that its forces F gave. Collective. */
+static PetscErrorCode Conditions(Reduced s, const PetscScalar x[], Vec w, Vec known, Vec g, PetscScalar y[]) {
+  const Unknowns u = s->unknowns;
+  const PetscInt wall = u->velocity + u->tension;
+  PetscFunctionBeginUser;
+  if (CouplingHasMembrane(u->coupling)) PetscCall(MembraneConditions(s, x, w, known, g, y));
   UnknownsScale(u, PETSC_FALSE, y);
   if (!u->walls->n) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(WallsSlip(u->walls, StokesPotential(s->stokes), s->slip));
@@ -103,14 +105,14 @@ static PetscErrorCode Mult(Mat A, Vec x, Vec y) {
   PetscCall(AddForces(s, xa, s->r));
   PetscCall(StokesSolve(s->stokes, s->r, NULL, s->kept.w[place], s->kept.p[place]));
   PetscCall(VecGetArray(y, &ya));
-  PetscCall(Conditions(s, xa, s->kept.w[place], NULL, ya));
+  PetscCall(Conditions(s, xa, s->kept.w[place], NULL, NULL, ya));
   PetscCall(VecRestoreArray(y, &ya));
   PetscCall(VecRestoreArrayRead(x, &xa));
   if (place < REDUCED_KEPT) PetscCall(VecCopy(y, s->kept.Az[place]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode ReducedResidual(Reduced s, Vec added, Vec f, Vec g, Vec x, Vec w, Vec p, Vec residual) {
+PetscErrorCode ReducedResidual(Reduced s, Vec added, Vec f, Vec g, Vec k, Vec x, Vec w, Vec p, Vec residual) {
   const Coupling c = s->unknowns->coupling;
   const PetscScalar *xa;
   PetscScalar *ra;
@@ -126,7 +128,7 @@ PetscErrorCode ReducedResidual(Reduced s, Vec added, Vec f, Vec g, Vec x, Vec w,
   } else
     PetscCall(StokesSolve(s->stokes, f, NULL, w, p));
   PetscCall(VecGetArray(residual, &ra));
-  PetscCall(Conditions(s, xa, w, g, ra));
+  PetscCall(Conditions(s, xa, w, k, g, ra));
   PetscCall(VecRestoreArray(residual, &ra));
   PetscCall(VecRestoreArrayRead(x, &xa));
   PetscCall(VecScale(residual, -1));

@@ -1,11 +1,11 @@
 /* The coupled problem of one time step, for velocity, pressure and tension together (docs/method.md),
-       [ H + B R E/a0   G   S ] [u]       [ f    ]
-       [ G^T            0   0 ] [p]     = [ -bc2 ]       V = R (E u - Theta Dm^T sigma), R = 1, Theta = 0 without
-       [                      ]           [      ]       self-mobility;  S^T u = g reads Dm V/h^2 = g
+       H u + G p + E^T F/h^2 = f,   G^T u = -bc2,   F = Dm^T sigma + (c_b ds/a0) D4 V,
+       V = E u - C F + k,           Dm V/h^2 = g,
+   V the markers' velocity without the background's, C the near field, k what it gives of the bending force that is known,
    reduced to its forces. A Stokes solve gives u and p for any force, so the unknowns are V, sigma, and forces d on the
-   faces next to walls, where the Stokes solve is not exact: with F = Dm^T sigma + (c_b ds/a0) D4 V
+   faces next to walls, where the Stokes solve is not exact:
        (u, p) = Stokes(f - E^T F/h^2 + d, -bc2)
-       V - E u + Theta F = 0,    Dm V/h^2 = g,    d + (what the Stokes solve leaves at the walls) = 0
+       V - E u + C F = k,    Dm V/h^2 = g,    d + (what the Stokes solve leaves at the walls) = 0
    A product costs one Stokes solve. */
 #pragma once
 #include "coupling/unknowns.h"
@@ -40,8 +40,8 @@ PETSC_EXTERN PetscErrorCode ReducedCreate(Unknowns unknowns, Reduced *reduced);
 PETSC_EXTERN PetscErrorCode ReducedDestroy(Reduced *reduced);
 
 /* ReducedResidual - the forces of `added` go into f; minus the scaled residuals at x, with u, p = w, p by one Stokes
-   solve of f, f holding the forces of x. g: an edge vector. Collective. */
-PETSC_EXTERN PetscErrorCode ReducedResidual(Reduced reduced, Vec added, Vec f, Vec g, Vec x, Vec w, Vec p,
+   solve of f, f holding the forces of x. g: an edge vector, k: a marker vector. Collective. */
+PETSC_EXTERN PetscErrorCode ReducedResidual(Reduced reduced, Vec added, Vec f, Vec g, Vec k, Vec x, Vec w, Vec p,
                                             Vec residual);
 
 /* ReducedForgetProducts - a solve begins: products with A are kept from here on. Not collective. */

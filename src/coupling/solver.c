@@ -89,15 +89,13 @@ PetscErrorCode CoupledSolverDestroy(CoupledSolver *solver) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* x = (V, sigma, d) of the guess, V = R (E w - Theta Dm^T sigma). */
+/* x = (V, sigma, d) of the guess. */
 static PetscErrorCode Guess(CoupledSolver s, const CoupledProblem *q) {
   PetscFunctionBeginUser;
-  if (!s->guess) {
+  if (s->guess)
+    PetscCall(UnknownsPack(s->unknowns, q->V, q->sigma, q->d, s->x));
+  else
     PetscCall(VecSet(s->x, 0));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  PetscCall(CouplingSelfMobility(s->coupling, q->sigma, NULL, q->V));
-  PetscCall(UnknownsPack(s->unknowns, q->V, q->sigma, q->d, s->x));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -139,7 +137,7 @@ static PetscErrorCode Correct(CoupledSolver s, const CoupledProblem *q, SolveRep
   PetscCall(VecAXPY(s->x, 1, s->change));
   PetscCall(VecAXPY(s->pending, 1, s->change));
   if (!combined) {
-    PetscCall(ReducedResidual(s->reduced, s->pending, q->f, q->g, s->x, q->w, q->p, s->b));
+    PetscCall(ReducedResidual(s->reduced, s->pending, q->f, q->g, q->k, s->x, q->w, q->p, s->b));
     PetscCall(VecSet(s->pending, 0));
   }
   PetscCall(VecNorm(s->b, NORM_2, &report->residual));
@@ -158,7 +156,7 @@ PetscErrorCode CoupledSolverSolve(CoupledSolver s, const CoupledProblem *q, Solv
   }
   PetscCall(Reference(s, q->f, q->g));
   PetscCall(Guess(s, q));
-  PetscCall(ReducedResidual(s->reduced, s->x, q->f, q->g, s->x, q->w, q->p, s->b));
+  PetscCall(ReducedResidual(s->reduced, s->x, q->f, q->g, q->k, s->x, q->w, q->p, s->b));
   PetscCall(KSPGetTolerances(s->ksp, &rtol, &atol, NULL, NULL));
   PetscCall(VecSet(s->pending, 0));
   for (int round = 0; round < MOST_ROUNDS; round++) { /* rounding may spoil GMRES's own residual in stiff cases */

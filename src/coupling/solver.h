@@ -5,8 +5,8 @@
 
 /* What a step asks for, and the vectors that its answer goes to. */
 typedef struct {
-  Vec f, g; /* right-hand sides: a velocity (the forces of the solution are added to it) and an edge vector */
-  Vec w, p, sigma, d, V; /* solution; sigma, d and V = E w hold the first guess */
+  Vec f, g, k; /* right-hand sides of momentum (the forces of the solution are added to it), Dm V/h^2 and V */
+  Vec w, p, sigma, d, V; /* solution; sigma, d and V hold the first guess */
 } CoupledProblem;
 
 /* How a solve went. */

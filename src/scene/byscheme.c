@@ -15,7 +15,7 @@ PetscErrorCode SceneChooseByScheme(Draft scene) {
   PetscCall(SceneChoose(scene, "-scheme_order", "1"));
   PetscCall(SceneChoose(scene, "-delta_type", "ib6"));
   PetscCall(SceneChoose(scene, "-membrane_derivative", "fd"));
-  PetscCall(SceneChoose(scene, "-coupling_self_mobility", "none"));
+  PetscCall(SceneChoose(scene, "-coupling_near_field", "none"));
   PetscCall(SceneChoose(scene, "-scheme_area_target", "false"));
   if (!strcmp(scene->scheme.type, "penalty")) PetscCall(SceneChoose(scene, "-scheme_bending", "explicit"));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -117,9 +117,6 @@ static PetscErrorCode CheckPenalty(Scene scene, PetscBool split) {
              "-scheme_bending explicit: not with -scheme_type %s, whose stability stands on implicit bending; allowed: "
              "implicit, or -scheme_type split or penalty",
              scene->scheme.type);
-  PetscCheck(!penalty || scene->coupling.self_mobility == SELF_NONE, scene->comm, PETSC_ERR_USER_INPUT,
-             "-coupling_self_mobility: not with -scheme_type penalty, whose forces are explicit; allowed: none, or "
-             "-scheme_type coupled or direct");
   PetscCheck(penalty || scene->scheme.stiffness == 0, scene->comm, PETSC_ERR_USER_INPUT,
              "-penalty_stiffness %g: -scheme_type %s has no springs, its length is a constraint; allowed: 0, or "
              "-scheme_type penalty",
@@ -127,9 +124,24 @@ static PetscErrorCode CheckPenalty(Scene scene, PetscBool split) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The near field belongs to the unsplit step, and to a kernel whose second moments are the same everywhere in a cell. */
+static PetscErrorCode CheckNearField(Scene scene) {
+  PetscFunctionBeginUser;
+  if (scene->coupling.near_field == NEAR_NONE) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCheck(!SceneIsProjection(scene), scene->comm, PETSC_ERR_USER_INPUT,
+             "-coupling_near_field exact: not with -scheme_type %s, which is its paper's method; allowed: none, or "
+             "-scheme_type coupled or direct",
+             scene->scheme.type);
+  PetscCheck(strcmp(scene->coupling.kernel, "cbs32"), scene->comm, PETSC_ERR_USER_INPUT,
+             "-delta_type cbs32: not with -coupling_near_field exact, because its second moment depends on the place in a "
+             "cell; allowed: ib6, cbs43, cbs54, cbs65, or -coupling_near_field none");
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode CheckScheme(Scene scene) {
   PetscBool split;
   PetscFunctionBeginUser;
+  PetscCall(CheckNearField(scene));
   PetscCall(PetscStrcmp(scene->scheme.type, "split", &split));
   if (SceneIsProjection(scene)) PetscCall(CheckProjection(scene));
   PetscCall(CheckPenalty(scene, split));

@@ -5,7 +5,7 @@
 #include "scene/fluidspec.h"
 
 typedef enum { DERIVATIVE_FD, DERIVATIVE_BENDING, DERIVATIVE_SPECTRAL } DerivativeType;
-typedef enum { SELF_NONE, SELF_LOCAL, SELF_SYMBOL } SelfMobilityType;
+typedef enum { NEAR_EXACT, NEAR_NONE } NearFieldType;
 typedef enum { BENDING_IMPLICIT, BENDING_EXPLICIT } BendingType;
 typedef enum { ADAPT_NONE, ADAPT_ERROR } AdaptType;
 typedef enum { STARTUP_EULER, STARTUP_GRADED } StartUp;
@@ -35,7 +35,7 @@ typedef struct {
 
 typedef struct {
   char kernel[OPTION_MAX_NAME]; /* between grid and markers */
-  PetscInt self_mobility;       /* SelfMobilityType */
+  PetscInt near_field;          /* NearFieldType */
   PetscInt mobility;            /* index in -mobility_type's list */
   PetscReal ksp_rtol;           /* default of -coupled_ksp_rtol */
 } SceneCoupling;

@@ -21,7 +21,6 @@ static PetscErrorCode ViewFluid(Scene scene, PetscViewer v) {
 
 PetscErrorCode SceneView(Scene scene, PetscViewer v) {
   static const char *const derivatives[] = {"finite differences", "spectral bending", "spectral bending and edges"};
-  static const char *const self[] = {"none", "local", "symbol"};
   static const char *const bc[] = {"wall", "periodic"};
   static const char *const flows[] = {"quiescent", "shear", "poiseuille", "extension", "custom"};
   const PetscReal *b = scene->fluid.box, h = FluidSpecCellSize(&scene->fluid);
@@ -44,9 +43,9 @@ PetscErrorCode SceneView(Scene scene, PetscViewer v) {
   else
     PetscCall(PetscViewerASCIIPrintf(v, "bending: off (no bending solve)\n"));
   if (shape->vesicles)
-    PetscCall(PetscViewerASCIIPrintf(v, "membrane: kernel %s, %s, self-mobility %s, area target %s\n",
+    PetscCall(PetscViewerASCIIPrintf(v, "membrane: kernel %s, %s, near field %s, area target %s\n",
                                      scene->coupling.kernel, derivatives[scene->membrane.derivative],
-                                     self[scene->coupling.self_mobility], scene->scheme.area_target ? "on" : "off"));
+                                     scene->coupling.near_field == NEAR_EXACT ? "exact" : "none", scene->scheme.area_target ? "on" : "off"));
   PetscCall(PetscViewerASCIIPrintf(v, "scheme: %s, order %" PetscInt_FMT ", dt = %g to t = %g\n", scene->scheme.type,
                                    scene->scheme.order, (double)scene->time.dt, (double)scene->time.end));
   PetscCall(PetscViewerASCIIPrintf(v, "fast solves: helmholtz %s, poisson %s\n", scene->fluid.helmholtz,

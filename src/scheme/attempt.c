@@ -51,9 +51,11 @@ static PetscErrorCode History(const BDF *b, PetscReal scale, Vec x, Vec x_old, V
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* f = uhat - B (Xhat + u_inf/a0) + bc1 - N(w*); no uhat in quasi-steady flow. next.w is used for w*. */
-static PetscErrorCode MomentumRightHandSide(Scheme s, Coupled *d, const BDF *b, PetscReal r) {
+/* f = uhat - B Y + bc1 - N(w*) and k = -C c_b ds D4 Y, Y = Xhat + u_inf/a0; no uhat in quasi-steady flow. next.w is used
+   for w*. */
+static PetscErrorCode RightHandSides(Scheme s, Coupled *d, const BDF *b, PetscReal r) {
   PetscFunctionBeginUser;
+  PetscCall(VecSet(d->known, 0));
   if (s->fluid->steady)
     PetscCall(VecSet(d->f, 0));
   else
@@ -62,6 +64,7 @@ static PetscErrorCode MomentumRightHandSide(Scheme s, Coupled *d, const BDF *b, 
   if (CouplingBending(s->coupling) > 0) {
     PetscCall(VecWAXPY(d->Y, 1 / b->a0, s->background, d->Xhat));
     PetscCall(CouplingSpreadBending(s->coupling, -1, d->Y, d->f));
+    PetscCall(CouplingNearBending(s->coupling, -1, d->Y, d->known));
   }
   if (d->convection) {
     PetscCall(Extrapolate(r, s->state.w, d->old.w, d->next.w));
@@ -70,19 +73,16 @@ static PetscErrorCode MomentumRightHandSide(Scheme s, Coupled *d, const BDF *b, 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The solution extrapolated, the present one in a first step: tension, wall forces, and V = E w of the velocity. */
+/* The solution extrapolated, the present one in a first step: tension, wall forces, and V = U - u_inf. */
 static PetscErrorCode InitialGuess(Scheme s, Coupled *d, PetscReal r) {
   const State *q = &s->state;
   State *n = &d->next;
   PetscFunctionBeginUser;
   if (!d->solver) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(Extrapolate(r, q->walls, d->old.walls, n->walls));
-  if (!CouplingHasMembrane(s->coupling)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(Extrapolate(r, q->sigma, d->old.sigma, n->sigma));
-  PetscCall(MarkersInterpolate(s->coupling->markers, q->w, d->V));
-  if (r == 0) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(MarkersInterpolate(s->coupling->markers, d->old.w, d->Y));
-  PetscCall(VecAXPBY(d->V, -r, 1 + r, d->Y));
+  PetscCall(Extrapolate(r, q->U, d->old.U, d->V));
+  PetscCall(VecAXPY(d->V, -1, s->background));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -90,11 +90,11 @@ static PetscErrorCode InitialGuess(Scheme s, Coupled *d, PetscReal r) {
 static PetscErrorCode Solve(Scheme s, Coupled *d) {
   State *n = &d->next;
   const CoupledProblem problem = {
-      .f = d->f, .g = s->g, .w = n->w, .p = n->p, .sigma = n->sigma, .d = n->walls, .V = d->V};
+      .f = d->f, .g = s->g, .k = d->known, .w = n->w, .p = n->p, .sigma = n->sigma, .d = n->walls, .V = d->V};
   SolveReport report;
   PetscFunctionBeginUser;
   if (d->direct) {
-    PetscCall(DirectSolverSolve(d->direct, d->f, s->g, n->w, n->p, n->sigma));
+    PetscCall(DirectSolverSolve(d->direct, &problem));
     if (d->direct->why < 0) PetscCall(SchemeSolverFailed(s, "direct_", d->direct->why, 0, NAN));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
@@ -105,14 +105,13 @@ static PetscErrorCode Solve(Scheme s, Coupled *d) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* U = u_inf(X*) + E u,  X = Xhat + U/a0. Scheme coupled has solved for E u, whose bending force it used. */
+/* U = u_inf(X*) + V,  X = Xhat + U/a0. */
 static PetscErrorCode MoveMarkers(Scheme s, Coupled *d, PetscReal a0) {
   State *n = &d->next;
   PetscFunctionBeginUser;
   PetscCall(SchemeMeasureDivergence(s, n->w));
   if (!CouplingHasMembrane(s->coupling)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(SchemeMarkerVelocity(s, n->w, n->sigma, n->U));
-  if (d->solver) PetscCall(VecWAXPY(n->U, 1, s->background, d->V));
+  PetscCall(SchemeMarkerVelocity(s, d->V, n->U));
   PetscCall(VecWAXPY(n->X, 1 / a0, n->U, d->Xhat));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -126,10 +125,10 @@ PetscErrorCode CoupledAttempt(Scheme s, PetscReal dt, PetscBool *solved) {
   q->dt = dt;
   PetscCall(Extrapolate(b.ratio, q->X, d->old.X, d->Xstar));
   PetscCall(History(&b, 1 / b.a0, q->X, d->old.X, d->Xhat));
-  PetscCall(SchemePlace(s, b.a0, d->Xstar, NULL, d->Xhat, q->t + d->done + dt, solved));
+  PetscCall(SchemePlace(s, b.a0, d->Xstar, q->t + d->done + dt, solved));
   if (!*solved) PetscFunctionReturn(PETSC_SUCCESS);
   if (s->scene->scheme.length_target) PetscCall(LengthTarget(s, d, b.a0));
-  PetscCall(MomentumRightHandSide(s, d, &b, r));
+  PetscCall(RightHandSides(s, d, &b, r));
   PetscCall(InitialGuess(s, d, r));
   PetscCall(Solve(s, d));
   *solved = *s->report.failure ? PETSC_FALSE : PETSC_TRUE;

@@ -194,6 +194,7 @@ static PetscErrorCode SetUp_Coupled(Scheme s) {
   PetscCall(VecDuplicate(q->X, &d->Xstar));
   PetscCall(VecDuplicate(q->X, &d->Xhat));
   PetscCall(VecDuplicate(q->X, &d->V));
+  PetscCall(VecDuplicate(q->X, &d->known));
   PetscCall(VecDuplicate(q->X, &d->Y));
   PetscCall(VecDuplicate(q->X, &d->made_at));
   PetscCall(PetscMalloc1(2 * s->membrane->layout->n, &d->edges));
@@ -254,14 +255,14 @@ static PetscErrorCode KSP_Coupled(Scheme s, const char prefix[], KSP *ksp) {
 
 static PetscErrorCode Destroy_Coupled(Scheme s) {
   Coupled *d = (Coupled *)s->data;
-  Vec *others[] = {&d->f, &d->Xstar, &d->Xhat, &d->V, &d->Y, &d->made_at};
+  Vec *others[] = {&d->f, &d->Xstar, &d->Xhat, &d->V, &d->known, &d->Y, &d->made_at};
   PetscFunctionBeginUser;
   PetscCall(CoupledSolverDestroy(&d->solver));
   PetscCall(DirectSolverDestroy(&d->direct));
   PetscCall(ConvectionDestroy(&d->convection));
   PetscCall(StateDestroy(&d->old));
   PetscCall(StateDestroy(&d->next));
-  for (int i = 0; i < 6; i++) PetscCall(VecDestroy(others[i]));
+  for (int i = 0; i < 7; i++) PetscCall(VecDestroy(others[i]));
   PetscCall(PetscFree(d->edges));
   PetscCall(PetscFree(s->data));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -16,7 +16,7 @@ typedef struct {
   Vec made_at;           /* markers at which the preconditioner's dense blocks were made */
   Vec f;                 /* momentum's right-hand side */
   Vec Xstar, Xhat;       /* extrapolated markers, BDF history of the markers */
-  Vec V, Y;              /* solved part of the markers' velocity; marker vector, work */
+  Vec V, known, Y;       /* solved part of the markers' velocity, and what is known of it; marker vector, work */
   PetscScalar *edges;    /* [2n] work */
 } Coupled;
 

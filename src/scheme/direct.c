@@ -28,7 +28,7 @@ PetscErrorCode DirectSolverCreate(Coupling coupling, DirectSolver *out) {
   d->fluid = coupling->fluid;
   d->coupling = coupling;
   d->M = coupling->membrane->layout->M;
-  PetscCall(PetscMalloc1(d->M, &d->all));
+  PetscCall(PetscMalloc1(2 * d->M, &d->all));
   PetscCall(PetscCalloc1(g->size + 1, &d->start));
   for (PetscInt r = 0; r < g->size; r++) {
     d->start[r + 1] = d->start[r] + (r == g->size - 1 ? 5 * d->M : 0);
@@ -130,12 +130,11 @@ static PetscErrorCode AddNonzero(Mat A, PetscInt row, PetscInt column, PetscReal
 }
 
 /* One vesicle's rows between sigma, U and F, a column at a time by unit vectors:
-   U - E w + h^2 Theta F = 0,  F - Dm^T sigma/h^2 - (c_b ds/(h^2 a0)) D4 U = 0,  Dm U/h^2 = g. */
+   U - E w + h^2 C F = k,  F - Dm^T sigma/h^2 - (c_b ds/(h^2 a0)) D4 U = 0,  Dm U/h^2 = g. */
 static PetscErrorCode AddVesicle(DirectSolver d, Mat A, PetscInt v, PetscInt sigma, PetscInt U, PetscInt F) {
   const Membrane m = d->coupling->membrane;
   const PetscInt first = m->layout->start[v], n = LayoutCount(m->layout, v);
   const PetscReal h2 = PetscSqr(d->fluid->grid->h), *tau = d->coupling->tau + 2 * LayoutOffset(m->layout, v);
-  const PetscReal *Theta = d->coupling->self ? SelfMobilityBlock(d->coupling->self, v) : NULL;
   PetscReal *unit, *stretching, *out;
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc3(2 * n, &unit, n, &stretching, 2 * n, &out));
@@ -144,8 +143,6 @@ static PetscErrorCode AddVesicle(DirectSolver d, Mat A, PetscInt v, PetscInt sig
     unit[c] = 1;
     PetscCall(MatSetValue(A, U + column, U + column, 1, ADD_VALUES));
     PetscCall(MatSetValue(A, F + column, F + column, 1, ADD_VALUES));
-    for (PetscInt r = 0; r < 2 * n && Theta; r++)
-      PetscCall(AddNonzero(A, U + 2 * first + r, F + column, h2 * Theta[r * 2 * n + c]));
     MembraneVesicleStretching(m, v, tau, unit, stretching);
     for (PetscInt k = 0; k < n; k++) {
       PetscCall(AddNonzero(A, sigma + first + k, U + column, stretching[k] / h2));
@@ -160,6 +157,22 @@ static PetscErrorCode AddVesicle(DirectSolver d, Mat A, PetscInt v, PetscInt sig
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The near field: h^2 C F in the rows of the own vesicles' U. */
+static PetscErrorCode AddNearField(DirectSolver d, Mat A, PetscInt U, PetscInt F) {
+  const NearField near = d->coupling->near;
+  const Layout l = d->coupling->membrane->layout;
+  const PetscReal h2 = PetscSqr(d->fluid->grid->h);
+  PetscFunctionBeginUser;
+  for (PetscInt q = 0; near && q < near->count; q++) {
+    const NearBlock *b = &near->block[q];
+    const PetscInt rows = 2 * LayoutCount(l, b->row), columns = 2 * LayoutCount(l, b->column);
+    for (PetscInt j = 0; j < columns; j++)
+      for (PetscInt i = 0; i < rows; i++)
+        PetscCall(AddNonzero(A, U + 2 * l->start[b->row] + i, F + 2 * l->start[b->column] + j, h2 * b->C[j * rows + i]));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* sigma, U and F are the last rank's rows: it adds E, and every owner its vesicles. */
 static PetscErrorCode AddMembranes(DirectSolver d, Mat A) {
   const Grid g = d->fluid->grid;
@@ -168,6 +181,7 @@ static PetscErrorCode AddMembranes(DirectSolver d, Mat A) {
   PetscFunctionBeginUser;
   if (g->rank == g->size - 1) PetscCall(AddInterpolation(d, A, U, F));
   for (PetscInt v = l->own; v < l->end; v++) PetscCall(AddVesicle(d, A, v, sigma, U, F));
+  PetscCall(AddNearField(d, A, U, F));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -184,7 +198,7 @@ static PetscErrorCode Assemble(DirectSolver d, Mat *A) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode RightHandSide(DirectSolver d, Vec f, Vec g_s) {
+static PetscErrorCode RightHandSide(DirectSolver d, const CoupledProblem *q) {
   const Grid g = d->fluid->grid;
   const PetscInt nw = GridLocalU(g) + g->columns[FIELD_V] * g->rows[FIELD_V],
                  np = g->columns[FIELD_P] * g->rows[FIELD_P];
@@ -193,16 +207,18 @@ static PetscErrorCode RightHandSide(DirectSolver d, Vec f, Vec g_s) {
   PetscFunctionBeginUser;
   PetscCall(VecSet(d->b, 0));
   PetscCall(VecGetArray(d->b, &b));
-  PetscCall(VecGetArrayRead(f, &a));
+  PetscCall(VecGetArrayRead(q->f, &a));
   PetscCall(PetscArraycpy(b, a, nw));
-  PetscCall(VecRestoreArrayRead(f, &a));
+  PetscCall(VecRestoreArrayRead(q->f, &a));
   if (d->fluid->bc2) {
     PetscCall(VecGetArrayRead(d->fluid->bc2, &a));
     for (PetscInt k = 0; k < np; k++) b[nw + k] = -a[k];
     PetscCall(VecRestoreArrayRead(d->fluid->bc2, &a));
   }
-  PetscCall(LayoutGatherVec(d->coupling->membrane->layout, g_s, d->all));
+  PetscCall(LayoutGatherVec(d->coupling->membrane->layout, q->g, d->all));
   if (g->rank == g->size - 1) PetscCall(PetscArraycpy(b + nw + np, d->all, d->M));
+  PetscCall(LayoutGatherVec(d->coupling->membrane->layout, q->k, d->all));
+  if (g->rank == g->size - 1) PetscCall(PetscArraycpy(b + nw + np + d->M, d->all, 2 * d->M));
   PetscCall(VecRestoreArray(d->b, &b));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -213,6 +229,18 @@ static PetscErrorCode CopyPart(Vec to, const PetscScalar from[], PetscInt n) {
   PetscCall(VecGetArray(to, &a));
   PetscCall(PetscArraycpy(a, from, n));
   PetscCall(VecRestoreArray(to, &a));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The last rank's part `from` of the solution, `each` numbers a marker, to the owners. */
+static PetscErrorCode FromLastRank(DirectSolver d, int each, const PetscScalar from[], Vec to) {
+  const Grid g = d->fluid->grid;
+  PetscScalar *own;
+  PetscFunctionBeginUser;
+  if (g->rank == g->size - 1) PetscCall(PetscArraycpy(d->all, from, each * d->M));
+  PetscCall(VecGetArray(to, &own));
+  PetscCall(LayoutFromRank(d->coupling->membrane->layout, g->size - 1, each, d->all, own));
+  PetscCall(VecRestoreArray(to, &own));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -231,12 +259,12 @@ static PetscErrorCode SetUpFactor(DirectSolver d) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode DirectSolverSolve(DirectSolver d, Vec f, Vec g_s, Vec w, Vec p, Vec sigma) {
+PetscErrorCode DirectSolverSolve(DirectSolver d, const CoupledProblem *q) {
   const Grid g = d->fluid->grid;
   const PetscInt nw = GridLocalU(g) + g->columns[FIELD_V] * g->rows[FIELD_V],
                  np = g->columns[FIELD_P] * g->rows[FIELD_P];
   const PetscScalar *x;
-  PetscScalar *s, mean;
+  PetscScalar mean;
   Mat A;
   PetscFunctionBeginUser;
   PetscCall(Assemble(d, &A));
@@ -244,20 +272,18 @@ PetscErrorCode DirectSolverSolve(DirectSolver d, Vec f, Vec g_s, Vec w, Vec p, V
   PetscCall(KSPSetOperators(d->ksp, A, A));
   PetscCall(MatDestroy(&A)); /* the KSP keeps it */
   PetscCall(SetUpFactor(d));
-  PetscCall(RightHandSide(d, f, g_s));
+  PetscCall(RightHandSide(d, q));
   PetscCall(KSPSolve(d->ksp, d->b, d->x));
   PetscCall(KSPGetConvergedReason(d->ksp, &d->why));
   if (d->why < 0) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecGetArrayRead(d->x, &x));
-  PetscCall(CopyPart(w, x, nw));
-  PetscCall(CopyPart(p, x + nw, np));
-  PetscCall(VecSum(p, &mean));
-  PetscCall(VecShift(p, -mean / ((PetscReal)g->n[0] * g->n[1])));
-  if (NoMean(d)) PetscCall(FluidRemoveMean(d->fluid, w));
-  if (g->rank == g->size - 1) PetscCall(PetscArraycpy(d->all, x + nw + np, d->M));
+  PetscCall(CopyPart(q->w, x, nw));
+  PetscCall(CopyPart(q->p, x + nw, np));
+  PetscCall(VecSum(q->p, &mean));
+  PetscCall(VecShift(q->p, -mean / ((PetscReal)g->n[0] * g->n[1])));
+  if (NoMean(d)) PetscCall(FluidRemoveMean(d->fluid, q->w));
+  PetscCall(FromLastRank(d, 1, x + nw + np, q->sigma));
+  PetscCall(FromLastRank(d, 2, x + nw + np + d->M, q->V));
   PetscCall(VecRestoreArrayRead(d->x, &x));
-  PetscCall(VecGetArray(sigma, &s));
-  PetscCall(LayoutFromRank(d->coupling->membrane->layout, g->size - 1, 1, d->all, s));
-  PetscCall(VecRestoreArray(sigma, &s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

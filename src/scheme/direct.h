@@ -1,6 +1,6 @@
 /* Sparse direct solution of the coupled problem: the ground truth for small grids. */
 #pragma once
-#include "coupling/coupling.h"
+#include "coupling/solver.h"
 
 typedef struct _p_DirectSolver *DirectSolver;
 struct _p_DirectSolver {
@@ -10,7 +10,7 @@ struct _p_DirectSolver {
   PetscInt *start; /* [ranks+1] first global index of each rank; sigma, U and F come last, on the last rank */
   KSP ksp;
   Vec x, b;
-  PetscScalar *all;       /* [M] tension or g of all edges, work */
+  PetscScalar *all;       /* [2M] of all markers, work */
   KSPConvergedReason why; /* how the last solve ended; < 0: failed */
 };
 
@@ -18,9 +18,8 @@ struct _p_DirectSolver {
 PETSC_EXTERN PetscErrorCode DirectSolverCreate(Coupling coupling, DirectSolver *solver);
 PETSC_EXTERN PetscErrorCode DirectSolverDestroy(DirectSolver *solver);
 
-/* DirectSolverSolve - [H + B E/a0, G, S; G^T; S^T] (w, p, sigma) = (f, -bc2, g) at the coupling's markers, p of zero
-   mean (and w in a periodic box with alpha = 0). The markers' velocity U
-   and the force F = Dm^T sigma/h^2 + (c_b ds/(h^2 a0)) D4 U on them are unknowns of their own, so that the matrix stays
-   sparse. Afterwards solver->why
-   says how it went. Collective. */
-PETSC_EXTERN PetscErrorCode DirectSolverSolve(DirectSolver solver, Vec f, Vec g, Vec w, Vec p, Vec sigma);
+/* DirectSolverSolve - [H + B E/a0, G, S; G^T; S^T] with the near field, at the coupling's markers, p of zero mean (and w
+   in a periodic box with alpha = 0). The markers' velocity V and the force F = Dm^T sigma/h^2 + (c_b ds/(h^2 a0)) D4 V on
+   them are unknowns of their own, so that the matrix stays sparse. Takes f, g and k of the problem, gives w, p, sigma and
+   V. Afterwards solver->why says how it went. Collective. */
+PETSC_EXTERN PetscErrorCode DirectSolverSolve(DirectSolver solver, const CoupledProblem *problem);

@@ -29,7 +29,7 @@ PetscErrorCode SchemeBackground(Scheme s, Vec X, PetscReal t) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SchemePlace(Scheme s, PetscReal a0, Vec X, Vec sigma, Vec Xhat, PetscReal t, PetscBool *placed) {
+PetscErrorCode SchemePlace(Scheme s, PetscReal a0, Vec X, PetscReal t, PetscBool *placed) {
   PetscFunctionBeginUser;
   PetscCall(CouplingPlace(s->coupling, a0, X, s->report.failure));
   *placed = *s->report.failure ? PETSC_FALSE : PETSC_TRUE;
@@ -38,7 +38,6 @@ PetscErrorCode SchemePlace(Scheme s, PetscReal a0, Vec X, Vec sigma, Vec Xhat, P
   PetscCall(SchemeBackground(s, X, t));
   *placed = *s->report.failure ? PETSC_FALSE : PETSC_TRUE;
   if (!*placed) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(CouplingSelfMobility(s->coupling, sigma, Xhat, s->background));
   PetscCall(CouplingStretching(s->coupling, s->background, s->g));
   PetscCall(VecScale(s->g, -1));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -62,11 +61,13 @@ static PetscErrorCode MeasureSurfaceDivergence(Scheme s, Vec U) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SchemeMarkerVelocity(Scheme s, Vec w, Vec sigma, Vec U) {
+PetscErrorCode SchemeMarkerVelocity(Scheme s, Vec V, Vec U) {
   PetscFunctionBeginUser;
-  PetscCall(CouplingVelocity(s->coupling, w, sigma, U));
-  PetscCall(MeasureSurfaceDivergence(s, U));
-  PetscCall(VecAXPY(U, 1, s->background));
+  PetscCall(MeasureSurfaceDivergence(s, V));
+  if (U == V)
+    PetscCall(VecAXPY(U, 1, s->background));
+  else
+    PetscCall(VecWAXPY(U, 1, s->background, V));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

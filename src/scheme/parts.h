@@ -2,20 +2,18 @@
 #pragma once
 #include "scheme/scheme.h"
 
-/* SchemePlace - put everything that a solve stands on at the markers X (CouplingPlace), and the background of time t:
-   background = R (u_inf(X) - Theta (Dm^T sigma + c_b ds D4 Xhat)), g = -Dm background/h^2. sigma may be NULL. placed is
-   false with report.failure when a marker is too close to a wall, a matrix has no factor or the flow has no value.
-   Collective. */
-PETSC_EXTERN PetscErrorCode SchemePlace(Scheme scheme, PetscReal a0, Vec X, Vec sigma, Vec Xhat, PetscReal t,
-                                        PetscBool *placed);
+/* SchemePlace - put everything that a solve stands on at the markers X (CouplingPlace), and the background of time t there:
+   background = u_inf(X), g = -Dm background/h^2. placed is false with report.failure when a marker is too close to a wall
+   or the flow has no value. Collective. */
+PETSC_EXTERN PetscErrorCode SchemePlace(Scheme scheme, PetscReal a0, Vec X, PetscReal t, PetscBool *placed);
 
 /* SchemeBackground - the background flow's velocity at the markers X at time t, zero in the total form, where it is in
    w; report.failure where a flow of the caller's has none. Collective. */
 PETSC_EXTERN PetscErrorCode SchemeBackground(Scheme scheme, Vec X, PetscReal t);
 
-/* SchemeMarkerVelocity - U = background + E w (+ self-mobility of sigma, which may be NULL) at the coupling's markers;
-   measures report.surface_div_max on the way. Collective. */
-PETSC_EXTERN PetscErrorCode SchemeMarkerVelocity(Scheme scheme, Vec w, Vec sigma, Vec U);
+/* SchemeMarkerVelocity - U = background + V of the solved part V at the coupling's markers; measures
+   report.surface_div_max on the way. U may be V. Collective. */
+PETSC_EXTERN PetscErrorCode SchemeMarkerVelocity(Scheme scheme, Vec V, Vec U);
 
 /* SchemeMeasureDivergence - fill in report.div_max of a solved velocity. Collective. */
 PETSC_EXTERN PetscErrorCode SchemeMeasureDivergence(Scheme scheme, Vec w);

@@ -52,7 +52,7 @@ static PetscErrorCode Step_Penalty(Scheme s, PetscReal most) {
   State *q = &s->state;
   PetscBool placed;
   PetscFunctionBeginUser;
-  PetscCall(SchemePlace(s, 1 / q->dt, q->X, NULL, q->X, q->t, &placed));
+  PetscCall(SchemePlace(s, 1 / q->dt, q->X, q->t, &placed));
   if (!placed) PetscFunctionReturn(PETSC_SUCCESS);
   /* 1  forces of springs and bending at X^n */
   PetscCall(Momentum(s, d));
@@ -62,7 +62,8 @@ static PetscErrorCode Step_Penalty(Scheme s, PetscReal most) {
   PetscCall(SchemeMeasureDivergence(s, q->w));
   if (!CouplingHasMembrane(s->coupling)) PetscFunctionReturn(PETSC_SUCCESS);
   /* 3  X += dt (u_inf + E u), and the tension that goes with it */
-  PetscCall(SchemeMarkerVelocity(s, q->w, NULL, q->U));
+  PetscCall(MarkersInterpolate(s->coupling->markers, q->w, q->U));
+  PetscCall(SchemeMarkerVelocity(s, q->U, q->U));
   PetscCall(VecAXPY(q->X, q->dt, q->U));
   PetscCall(SpringTension(s, d, q->X, q->sigma, NULL));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -8,7 +8,7 @@ typedef struct {
   PetscInt tension_its, bending_its, coupled_its;
   PetscInt solves;                  /* scalar fast solves */
   PetscReal div_max;                /* max |G^T u + bc2|, what the solver left of the divergence */
-  PetscReal surface_div_max;        /* max |h^2 (S^T u - g)/ds|, self-mobility included */
+  PetscReal surface_div_max;        /* max |h^2 (Dm V/h^2 - g)/ds|, what it left of the surface divergence */
   PetscReal area_shift;             /* largest shift that restored a vesicle's area (length) */
   PetscReal cfl;                    /* dt max(|u| + |v|)/h; 0 without convection */
   PetscReal seconds;                /* wall, output excluded */

@@ -39,7 +39,7 @@ static PetscErrorCode PredictVelocity(Scheme s, Split *d) {
 static PetscErrorCode ImplicitBending(Scheme s, Split *d) {
   Coupling c = s->coupling;
   PetscFunctionBeginUser;
-  PetscCall(CouplingVelocity(c, d->u2, NULL, d->rhs_z));
+  PetscCall(MarkersInterpolate(c->markers, d->u2, d->rhs_z));
   PetscCall(VecScale(d->rhs_z, -s->state.dt));
   PetscCall(LagrangianSolverSolve(d->bending, d->rhs_z, d->z));
   s->report.bending_its = d->bending->its;
@@ -62,7 +62,7 @@ static PetscErrorCode SolveTension(Scheme s, Split *d) {
   PetscFunctionBeginUser;
   PetscCall(VecCopy(d->u2, d->r)); /* (1/dt) S^T u2 - S^T G dp* = (1/dt) S^T (u2 - dt G dp*) */
   PetscCall(GridGradient(f->grid, -s->state.dt, d->dp, PETSC_TRUE, d->r));
-  PetscCall(CouplingVelocity(c, d->r, NULL, d->U));
+  PetscCall(MarkersInterpolate(c->markers, d->r, d->U));
   PetscCall(CouplingStretching(c, d->U, d->rhs_sigma));
   PetscCall(VecAXPY(d->rhs_sigma, -1, s->g));
   PetscCall(VecScale(d->rhs_sigma, 1 / s->state.dt));
@@ -88,7 +88,7 @@ static PetscErrorCode Step_Split(Scheme s, PetscReal most) {
   const PetscBool any = CouplingHasMembrane(c);
   PetscBool placed;
   PetscFunctionBeginUser;
-  PetscCall(SchemePlace(s, 1 / q->dt, q->X, q->sigma, q->X, q->t, &placed));
+  PetscCall(SchemePlace(s, 1 / q->dt, q->X, q->t, &placed));
   if (!placed) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PredictVelocity(s, d));                 /* step 1 */
   if (d->bending) PetscCall(ImplicitBending(s, d)); /* step 2 */
@@ -107,7 +107,8 @@ static PetscErrorCode Step_Split(Scheme s, PetscReal most) {
   /* 7  X += dt (u_inf + E u),  p += dp,  sigma += dsigma */
   PetscCall(VecAXPY(q->p, 1, d->dp));
   if (!any) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(SchemeMarkerVelocity(s, q->w, d->dsigma, q->U));
+  PetscCall(MarkersInterpolate(c->markers, q->w, q->U));
+  PetscCall(SchemeMarkerVelocity(s, q->U, q->U));
   PetscCall(VecAXPY(q->X, q->dt, q->U));
   PetscCall(VecAXPY(q->sigma, 1, d->dsigma));
   PetscFunctionReturn(PETSC_SUCCESS);

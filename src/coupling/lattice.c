@@ -1,0 +1,88 @@
+/* In x a Fourier integral over theta in (0, pi], in y in closed form: with s = 4 sin^2(theta/2) and e^-mu the decay of
+   mode theta from row to row, mu = 2 asinh(sin(theta/2)), the inverse of s minus the second difference in y, and that of
+   its square, are
+       g1(j) = e^{-mu j}/(2 sinh mu),      g2(j) = e^{-mu j} (j sinh mu + cosh mu)/(4 sinh^3 mu),
+   and the projection onto divergence-free fields gives
+       uu(i, j) = (1/pi) INT [cos(i theta) (g1 - s g2)(j) - 1/(4 theta)] dtheta + (gamma + ln pi + 1)/(4 pi),
+       vv(i, j) = uu(j, i),
+       vu(i + 1/2, j + 1/2) = -(1/pi) INT 2 sin(theta/2) sin((i + 1/2) theta) (g2(j + 1) - g2(j)) dtheta,
+   vu odd in both offsets. The integrands are analytic: Gauss-Legendre converges to rounding. */
+#include "coupling/lattice.h"
+
+#define EULER_GAMMA 0.57721566490153286061
+
+/* Nodes and weights of Gauss-Legendre on (0, pi) by Newton on the Legendre polynomial. */
+static void GaussLegendre(PetscInt n, PetscReal theta[], PetscReal weight[]) {
+  for (PetscInt k = 0; k < n; k++) {
+    PetscReal x = PetscCosReal(PETSC_PI * (k + 0.75) / (n + 0.5)), slope = 1;
+    for (int it = 0; it < 100; it++) {
+      PetscReal p = 1, before = 0, step;
+      for (PetscInt j = 0; j < n; j++) { /* (j + 1) P_{j+1} = (2j + 1) x P_j - j P_{j-1} */
+        const PetscReal next = ((2 * j + 1) * x * p - j * before) / (j + 1);
+        before = p;
+        p = next;
+      }
+      slope = n * (x * p - before) / (x * x - 1);
+      step = p / slope;
+      x -= step;
+      if (PetscAbsReal(step) < 1e-15) break;
+    }
+    theta[k] = 0.5 * PETSC_PI * (1 - x);
+    weight[k] = PETSC_PI / ((1 - x * x) * slope * slope);
+  }
+}
+
+/* (g1 - s g2)(j), and g2(j). */
+static PetscReal Along(PetscReal mu, PetscReal s, PetscInt j) {
+  const PetscReal S = PetscSinhReal(mu), C = PetscCoshReal(mu), e = PetscExpReal(-mu * j);
+  return e / (2 * S) - s * e * (j * S + C) / (4 * S * S * S);
+}
+
+static PetscReal Square(PetscReal mu, PetscInt j) {
+  const PetscReal S = PetscSinhReal(mu), C = PetscCoshReal(mu);
+  return PetscExpReal(-mu * j) * (j * S + C) / (4 * S * S * S);
+}
+
+/* uu and vu of offsets 0 .. reach: arrays [i][j], i fastest in memory order [j * (reach + 1) + i]. */
+static PetscErrorCode Quadrant(PetscInt reach, PetscReal uu[], PetscReal vu[]) {
+  const PetscInt nodes = 3 * reach + 60, n = reach + 1;
+  PetscReal *theta, *weight;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(nodes, &theta, nodes, &weight));
+  GaussLegendre(nodes, theta, weight);
+  PetscCall(PetscArrayzero(vu, n * n));
+  for (PetscInt k = 0; k < n * n; k++) uu[k] = (EULER_GAMMA + PetscLogReal(PETSC_PI) + 1) / (4 * PETSC_PI);
+  for (PetscInt q = 0; q < nodes; q++) {
+    const PetscReal half = PetscSinReal(0.5 * theta[q]), s = 4 * half * half, mu = 2 * PetscAsinhReal(half);
+    const PetscReal w = weight[q] / PETSC_PI;
+    for (PetscInt j = 0; j < n; j++) {
+      const PetscReal along = Along(mu, s, j), across = Square(mu, j + 1) - Square(mu, j);
+      for (PetscInt i = 0; i < n; i++) {
+        uu[j * n + i] += w * (PetscCosReal(i * theta[q]) * along - 1 / (4 * theta[q]));
+        vu[j * n + i] -= w * 2 * half * PetscSinReal((i + 0.5) * theta[q]) * across;
+      }
+    }
+  }
+  PetscCall(PetscFree2(theta, weight));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Entry (i, j) of v lies half a cell left of and above that of u: the offset (i - 1/2, j + 1/2). */
+PetscErrorCode LatticeStokeslet(PetscInt reach, OffsetTable *t) {
+  const PetscInt size[2] = {reach, reach}, n = reach + 2, width = 2 * reach + 1;
+  PetscReal *uu, *vu;
+  PetscFunctionBeginUser;
+  PetscCall(OffsetTableCreate(size, t));
+  PetscCall(PetscMalloc2(n * n, &uu, n * n, &vu));
+  PetscCall(Quadrant(reach + 1, uu, vu));
+  for (PetscInt j = -reach; j <= reach; j++)
+    for (PetscInt i = -reach; i <= reach; i++) {
+      const PetscInt at = (j + reach) * width + i + reach, ai = PetscAbsInt(i), aj = PetscAbsInt(j);
+      const PetscInt hi = i > 0 ? i - 1 : -i, hj = j >= 0 ? j : -j - 1;
+      t->value[OFFSET_UU][at] = uu[aj * n + ai];
+      t->value[OFFSET_VV][at] = uu[ai * n + aj];
+      t->value[OFFSET_VU][at] = ((i > 0) == (j >= 0) ? 1 : -1) * vu[hj * n + hi];
+    }
+  PetscCall(PetscFree2(uu, vu));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

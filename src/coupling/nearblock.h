@@ -1,0 +1,11 @@
+/* One block of the near field: pairs of markers. */
+#pragma once
+#include "coupling/nearfield.h"
+
+#define NEAR_CELLS 10 /* up to which a pair's stencils are summed; farther pairs have a closed form */
+
+/* NearFarCoefficients - of a kernel, from its second moments along and across. */
+PETSC_EXTERN void NearFarCoefficients(const Kernel *kernel, PetscReal far[5]);
+
+/* NearBlockFill - the block's matrix at the present markers. Not collective. */
+PETSC_EXTERN PetscErrorCode NearBlockFill(NearField near, NearBlock *block);
