@@ -178,10 +178,8 @@ static PetscErrorCode CheckWalls(const char options[], const char name[], PetscR
   PetscCall(VecRestoreArray(d, &da));
   CHECK(off > 0.1 * size, "%s: the projection slips, by %.2f of the force", name, off / size);
   CHECK(error < (pair ? 1e-11 : 1e-3) * size, "%s: the walls' inverse, %.1e", name, error / size);
-  PetscCall(VecDestroy(&r));
-  PetscCall(VecDestroy(&p));
-  PetscCall(VecDestroy(&d));
-  PetscCall(VecDestroy(&y));
+  Vec *all[] = {&r, &p, &d, &y};
+  for (int k = 0; k < 4; k++) PetscCall(VecDestroy(all[k]));
   PetscCall(WallsDestroy(&walls));
   PetscCall(StokesDestroy(&stokes));
   PetscCall(FluidDestroy(&fluid));

@@ -169,51 +169,67 @@ static PetscErrorCode CheckFile(void) {
 }
 
 /* E(X + e V) - E(X - e V) = 2 e <c_b ds D4 X, V>, exactly, as the energy is quadratic; and D4 is symmetric. */
-static PetscErrorCode CheckOperators(void) {
-  TestMembrane m;
-  PetscInt n;
-  PetscReal *F, *V, *W, *work, *tau, slope, product = 0, swapped = 0, error, e = 1e-2, size = 0;
-  unsigned state = 5;
+static PetscErrorCode CheckBending(const TestMembrane *m, unsigned *state) {
+  const PetscInt n = 2 * m->M;
+  const PetscReal e = 1e-2, *X = m->scene->shape.X;
+  PetscReal *F, *V, *W, slope, product = 0, swapped = 0, error, size = 0;
   PetscFunctionBeginUser;
-  PetscCall(Ellipse(48, 0.6, 0.25, 17, &m));
-  n = 2 * m.M;
-  PetscCall(PetscMalloc5(n, &F, n, &V, n, &W, n, &work, n, &tau));
-  for (PetscInt k = 0; k < n; k++) V[k] = TestRandom(&state);
-  for (PetscInt k = 0; k < n; k++) W[k] = m.scene->shape.X[k] + e * V[k];
-  slope = MembraneBendingEnergy(m.membrane, 0, W);
-  for (PetscInt k = 0; k < n; k++) W[k] = m.scene->shape.X[k] - e * V[k];
-  slope = (slope - MembraneBendingEnergy(m.membrane, 0, W)) / (2 * e);
+  PetscCall(PetscMalloc3(n, &F, n, &V, n, &W));
+  for (PetscInt k = 0; k < n; k++) V[k] = TestRandom(state);
+  for (PetscInt k = 0; k < n; k++) W[k] = X[k] + e * V[k];
+  slope = MembraneBendingEnergy(m->membrane, 0, W);
+  for (PetscInt k = 0; k < n; k++) W[k] = X[k] - e * V[k];
+  slope = (slope - MembraneBendingEnergy(m->membrane, 0, W)) / (2 * e);
   PetscCall(PetscArrayzero(F, n));
-  MembraneBending(m.membrane, m.membrane->bending, m.scene->shape.X, F);
+  MembraneBending(m->membrane, m->membrane->bending, X, F);
   for (PetscInt k = 0; k < n; k++) product += F[k] * V[k], size += PetscAbsReal(F[k] * V[k]);
   error = PetscAbsReal(product - slope) / size;
   CHECK(error < 1e-10, "bending is the gradient of the energy, error %.1e", error);
-  for (PetscInt k = 0; k < n; k++) W[k] = TestRandom(&state);
+  for (PetscInt k = 0; k < n; k++) W[k] = TestRandom(state);
   PetscCall(PetscArrayzero(F, n));
-  MembraneBending(m.membrane, 1, W, F);
+  MembraneBending(m->membrane, 1, W, F);
   product = size = 0;
   for (PetscInt k = 0; k < n; k++) product += F[k] * V[k], size += PetscAbsReal(F[k] * V[k]);
   PetscCall(PetscArrayzero(F, n));
-  MembraneBending(m.membrane, 1, V, F);
+  MembraneBending(m->membrane, 1, V, F);
   for (PetscInt k = 0; k < n; k++) swapped += F[k] * W[k];
   CHECK(PetscAbsReal(product - swapped) < 1e-13 * size, "bending is symmetric, error %.1e",
         PetscAbsReal(product - swapped) / size);
-  MembraneTangents(m.membrane, m.scene->shape.X, tau);
-  MembraneStretching(m.membrane, tau, V, work);
-  product = swapped = size = 0;
-  for (PetscInt k = 0; k < m.M; k++) product += work[k] * W[k], size += PetscAbsReal(work[k] * W[k]);
-  PetscCall(PetscArrayzero(F, n));
-  MembraneStretchingTranspose(m.membrane, tau, 1, W, F);
+  PetscCall(PetscFree3(F, V, W));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Dm and Dm^T, and what Dm makes of a rigid motion. */
+static PetscErrorCode CheckStretching(const TestMembrane *m, unsigned *state) {
+  const PetscInt n = 2 * m->M;
+  const PetscReal *X = m->scene->shape.X;
+  PetscReal *F, *V, *sigma, *d, *tau, product = 0, swapped = 0, size = 0, error = 0;
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc5(n, &F, n, &V, m->M, &sigma, m->M, &d, n, &tau));
+  for (PetscInt k = 0; k < n; k++) V[k] = TestRandom(state);
+  for (PetscInt k = 0; k < m->M; k++) sigma[k] = TestRandom(state);
+  MembraneTangents(m->membrane, X, tau);
+  MembraneStretching(m->membrane, tau, V, d);
+  for (PetscInt k = 0; k < m->M; k++) product += d[k] * sigma[k], size += PetscAbsReal(d[k] * sigma[k]);
+  MembraneStretchingTranspose(m->membrane, tau, 1, sigma, F);
   for (PetscInt k = 0; k < n; k++) swapped += F[k] * V[k];
   CHECK(PetscAbsReal(product - swapped) < 1e-13 * size, "Dm and Dm^T adjoint, error %.1e",
         PetscAbsReal(product - swapped) / size);
-  for (PetscInt k = 0; k < m.M; k++)
-    V[2 * k] = 3 - 2 * m.scene->shape.X[2 * k + 1], V[2 * k + 1] = 1 + 2 * m.scene->shape.X[2 * k];
-  MembraneStretching(m.membrane, tau, V, work);
-  error = 0;
-  for (PetscInt k = 0; k < m.M; k++) error = PetscMax(error, PetscAbsReal(work[k]));
+  for (PetscInt k = 0; k < m->M; k++) V[2 * k] = 3 - 2 * X[2 * k + 1], V[2 * k + 1] = 1 + 2 * X[2 * k];
+  MembraneStretching(m->membrane, tau, V, d);
+  for (PetscInt k = 0; k < m->M; k++) error = PetscMax(error, PetscAbsReal(d[k]));
   CHECK(error < 1e-14, "a rigid motion stretches no edge, error %.1e", error);
-  PetscCall(PetscFree5(F, V, W, work, tau));
+  PetscCall(PetscFree5(F, V, sigma, d, tau));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CheckOperators(void) {
+  TestMembrane m;
+  unsigned state = 5;
+  PetscFunctionBeginUser;
+  PetscCall(Ellipse(48, 0.6, 0.25, 17, &m));
+  PetscCall(CheckBending(&m, &state));
+  PetscCall(CheckStretching(&m, &state));
   PetscCall(TestMembraneDestroy(&m));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
