@@ -291,6 +291,12 @@ static PetscErrorCode Facts(void) {
                       "0.2,0.5,0.3,0.35",
                       20, yes));
   PetscCall(CheckCase("-domain_cells 32,32 -vesicle_semi_axes 0.9,0.2", 20, yes));
+  /* so many markers that every vesicle has a dense block of its own, with its owner */
+  PetscCall(
+      CheckCase("-domain_cells 256,256 -domain_bc_x periodic -vesicle_bending 1e-3 -vesicle_count 5 -vesicle_semi_axes "
+                "0.3,0.35,0.25,0.35,0.2,0.3,0.3,0.2,0.25,0.3 "
+                "-vesicle_center -0.5,-0.5,0.3,-0.5,-0.5,0.4,0.2,0.5,0.9,0.4",
+                20, no));
   PetscCall(CheckWalls("-domain_cells 48,32 -domain_box -1.5,1.5,-1,1 -domain_bc_y periodic -vesicle_shape none",
                        "48,32 walls in x", 50, yes));
   PetscCall(CheckWalls("-domain_cells 33,21 -domain_box 0,3.3,0,2.1 -domain_bc_y periodic -vesicle_shape none",
