@@ -42,7 +42,7 @@ PETSC_EXTERN PetscErrorCode SimulationView(Simulation simulation, PetscViewer vi
 PETSC_EXTERN PetscErrorCode SimulationBegin(Simulation simulation);
 
 /* SimulationStep - one time step, with its row of series.csv and the files that are due; failure is NULL or says why
-   the step could not be taken (the state is then the last good one). The text lives until the next step. */
+   the step could not be taken (the state is then the last good one). The text is kept until the next step. */
 PETSC_EXTERN PetscErrorCode SimulationStep(Simulation simulation, const char **failure);
 
 /* SimulationAdvance - SimulationStep, unless time `until` or the steady state has been reached, or a signal or
@@ -77,9 +77,9 @@ PETSC_EXTERN PetscErrorCode SimulationGetTime(Simulation simulation, PetscInt *s
 PETSC_EXTERN PetscErrorCode SimulationGetState(Simulation simulation, Vec *velocity, Vec *pressure, Vec *tension,
                                                Vec *markers, Vec *marker_velocity);
 
-/* SimulationGatherMarkers - borrowed arrays of all vesicles' markers[2M], their velocity[2M] and tension[M], the same on
-   every rank, filled with the present state; they stay where they are, and are filled anew by the next call. Any may be
-   NULL. Collective. */
+/* SimulationGatherMarkers - borrowed arrays of all vesicles' markers[2M], their velocity[2M] and tension[M], the same
+   on every rank, filled with the present state; they stay where they are, and are filled anew by the next call. Any may
+   be NULL. Collective. */
 PETSC_EXTERN PetscErrorCode SimulationGatherMarkers(Simulation simulation, const PetscReal **markers,
                                                     const PetscReal **velocity, const PetscReal **tension);
 

@@ -18,8 +18,8 @@ PETSC_EXTERN void FlowVelocity(const Flow *flow, PetscReal t, PetscReal x, Petsc
 /* FlowVelocities - u_inf at n points X[2n] and time t, u[2n]: at most one call of a custom flow's function. message is
    empty, or says that the function failed or gave a value that is not finite: this rank's, to be agreed on before the
    next collective call. Not collective. */
-PETSC_EXTERN PetscErrorCode FlowVelocities(const Flow *flow, PetscReal t, PetscInt n, const PetscReal X[], PetscReal u[],
-                                           char message[PETVES_MAX_MESSAGE]);
+PETSC_EXTERN PetscErrorCode FlowVelocities(const Flow *flow, PetscReal t, PetscInt n, const PetscReal X[],
+                                           PetscReal u[], char message[PETVES_MAX_MESSAGE]);
 
 /* FlowPressureGradient - grad p_inf[2] at any point (uniform for the flows offered) for viscosity nu. */
 PETSC_EXTERN void FlowPressureGradient(const Flow *flow, PetscReal nu, PetscReal g[2]);
