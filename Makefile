@@ -4,6 +4,8 @@ SHELL := /bin/bash
 PREFIX ?= /usr/local
 RANKS ?= 2
 SCENE ?= runs/default.opts
+# Tests that run at the same time: of one rank, two or four each.
+WORKERS ?= 2
 # With PETSC_DIR (and PETSC_ARCH) another PETSc than Debian's; each kind of build has folders of its own.
 KIND := $(if $(SANITIZE),-sanitize)$(if $(COVERAGE),-coverage)$(if $(PETSC_DIR),-petsc)
 BUILD := build$(KIND)
@@ -16,7 +18,7 @@ PYTHON_DIR ?= $(PREFIX)/lib/python$(shell $(PYTHON) -c 'import sys; print("%d.%d
 # Debian packages: to build and run, then to test.
 PACKAGES := gcc libc6-dev make pkg-config libpetsc-real-dev libfftw3-dev libfftw3-mpi-dev libhdf5-openmpi-dev openmpi-bin libopenblas0-serial \
   python3-petsc4py python3-h5py python3-numpy python3-matplotlib python3-tqdm
-TEST_PACKAGES := python3-pytest python3-scipy python3-xarray python3-nbclient python3-ipykernel python3-pip python3-setuptools python3-wheel \
+TEST_PACKAGES := python3-pytest python3-pytest-xdist python3-scipy python3-xarray python3-nbclient python3-ipykernel python3-pip python3-setuptools python3-wheel \
   ffmpeg chromium-headless-shell valgrind clang-format black
 # VTK with its XDMF reader, which Debian's lacks: from PyPI, into build/, for one test.
 VTK := vtk==9.3.1
@@ -99,7 +101,7 @@ run: deps ## run the default scene (or SCENE=file.opts) on 2 ranks and draw it
 test: test-deps ## run every test; ends with "N passed, N failed"
 	@$(MAKE) --no-print-directory all tests $(BUILD)/site/.vtk
 	PETVES=$(CURDIR)/$(BIN)/petves PETVES_TESTS=$(CURDIR)/$(BUILD)/tests PYTHONPATH=python:. SANITIZE=$(SANITIZE) \
-	  $(PYTHON) -m pytest -p no:cacheprovider -q tests $(TESTFLAGS)
+	  $(PYTHON) -m pytest -p no:cacheprovider -q -n $(WORKERS) --dist loadgroup tests $(TESTFLAGS)
 
 bench: deps ## speed on this machine, into bench/results and docs/performance (12 minutes; QUICK=1: 2, into out/bench)
 	@$(MAKE) --no-print-directory all benches

@@ -51,7 +51,7 @@ static PetscErrorCode Step(TestWorld *w, PetscReal at[LISTS]) {
 static void Print(const TestWorld *w, PetscReal setup, PetscReal first, PetscReal memory, PetscInt steps,
                   const PetscReal *lists) {
   printf("{\"cells\": %d, \"markers\": %d, \"ranks\": %d, \"setup\": %.6g, \"first\": %.6g, \"memory\": %.0f",
-         (int)w->scene->fluid.cells[0], (int)w->membrane->M, w->fluid->grid->size, (double)setup, (double)first,
+         (int)w->scene->fluid.cells[0], (int)w->layout->M, w->fluid->grid->size, (double)setup, (double)first,
          (double)memory);
   for (int k = 0; k < LISTS; k++) {
     printf(", ");

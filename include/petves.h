@@ -42,7 +42,7 @@ PETSC_EXTERN PetscErrorCode SimulationView(Simulation simulation, PetscViewer vi
 PETSC_EXTERN PetscErrorCode SimulationBegin(Simulation simulation);
 
 /* SimulationStep - one time step, with its row of series.csv and the files that are due; failure is NULL or says why
-   the step could not be taken (the state is then the last good one). The text lives until the next step. */
+   the step could not be taken (the state is then the last good one). The text is kept until the next step. */
 PETSC_EXTERN PetscErrorCode SimulationStep(Simulation simulation, const char **failure);
 
 /* SimulationAdvance - SimulationStep, unless time `until` or the steady state has been reached, or a signal or

@@ -36,16 +36,15 @@ static inline PetscReal TestRandom(unsigned *state) {
   return 2 * ((*state >> 8) + 0.5) / (1 << 24) - 1;
 }
 
-/* TestRandomVec - random entries, the same on every rank for a sequential vector, different ones on each rank for a
-   distributed one. */
+/* TestRandomVec - entry k of the vector is number k of one sequence, whatever the number of ranks. */
 static inline PetscErrorCode TestRandomVec(unsigned seed, Vec x) {
   PetscScalar *a;
   PetscInt n, first;
-  unsigned state;
+  unsigned state = seed;
   PetscFunctionBeginUser;
   PetscCall(VecGetLocalSize(x, &n));
   PetscCall(VecGetOwnershipRange(x, &first, NULL));
-  state = seed + 7919u * (unsigned)first;
+  for (PetscInt i = 0; i < first; i++) (void)TestRandom(&state);
   PetscCall(VecGetArray(x, &a));
   for (PetscInt i = 0; i < n; i++) a[i] = TestRandom(&state);
   PetscCall(VecRestoreArray(x, &a));

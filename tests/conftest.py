@@ -1,10 +1,12 @@
 """Helpers of the tests: run petves under mpirun, read what it leaves, and end with one plain line of counts."""
 
 import csv
+import fcntl
 import os
 import re
 import subprocess
 import sys
+import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -26,6 +28,7 @@ ENVIRONMENT = {
     "OMPI_MCA_btl_vader_single_copy_mechanism": "none",
     "OMPI_MCA_odls_base_sigkill_timeout": "0",  # else mpirun sleeps two seconds after a non-zero exit
     "OMPI_MCA_ess_singleton_isolated": "1",  # one rank without mpirun starts no daemon
+    "OMPI_MCA_hwloc_base_binding_policy": "none",  # or runs side by side would all be bound to the first cores
     "OMP_NUM_THREADS": "1",
     "ASAN_OPTIONS": "detect_leaks=0",
     "UBSAN_OPTIONS": "halt_on_error=1:print_stacktrace=1",
@@ -117,6 +120,39 @@ def cached_run(tmp_path_factory):
     return get
 
 
+#: Files that last longest, in the order in which their tests are handed to workers, so that none is begun last.
+LONG = "coupled_runs runs fuzz accuracy valgrind interrupted programs restart chart python tools baselines".split()
+
+
+def pytest_configure(config):
+    """`make test` has two workers (pytest-xdist). The process that starts them makes the folder of their locks."""
+    config.addinivalue_line("markers", "alone: measures time, so that no other test may run meanwhile")
+    config.addinivalue_line("markers", "xdist_group(name): tests of one name run on one worker, and share its runs")
+    if not hasattr(config, "workerinput") and config.getoption("numprocesses", None):
+        config.petves_locks = tempfile.TemporaryDirectory(prefix="petves-tests-")
+        os.environ["PETVES_TEST_LOCKS"] = config.petves_locks.name
+
+
+def pytest_collection_modifyitems(items):
+    order = {f"test_{name}": place for place, name in enumerate(LONG)}
+    items.sort(key=lambda item: order.get(item.path.stem, len(LONG)))
+
+
+@pytest.hookimpl(hookwrapper=True)
+def pytest_runtest_protocol(item):
+    """Tests of two workers share the machine, but for those marked alone. The gate lets tests in one after
+    another, so that one that waits to be alone is not passed by later ones."""
+    folder = os.environ.get("PETVES_TEST_LOCKS")
+    if not folder:
+        yield
+        return
+    with open(Path(folder) / "gate", "w") as gate, open(Path(folder) / "lock", "w") as lock:
+        fcntl.flock(gate, fcntl.LOCK_EX)
+        fcntl.flock(lock, fcntl.LOCK_EX if item.get_closest_marker("alone") else fcntl.LOCK_SH)
+        fcntl.flock(gate, fcntl.LOCK_UN)
+        yield
+
+
 _passed: set[str] = set()
 _failed: set[str] = set()
 
@@ -134,6 +170,12 @@ def pytest_collectreport(report):
 
 
 def pytest_unconfigure(config):
-    """The last line of all; errors of set-up or collection count as failures."""
+    """The last line of all; errors of set-up or collection count as failures. Workers leave it to the process
+    that started them."""
+    if hasattr(config, "workerinput"):
+        return
+    if hasattr(config, "petves_locks"):
+        config.petves_locks.cleanup()
+        os.environ.pop("PETVES_TEST_LOCKS")
     if not config.option.collectonly:
         print(f"{len(_passed - _failed)} passed, {len(_failed)} failed", flush=True)

@@ -17,7 +17,7 @@ SCHEMES = {
     "penalty": f"{BASE} -scheme_type penalty",
     "order_1": f"{BASE} -scheme_type coupled -scheme_order 1",
     "order_2": f"{BASE} -scheme_type coupled {DEFAULTS}",
-    "stiff": f"{BASE} -scheme_type coupled {DEFAULTS} -vesicle_bending 100",  # edges are put right after its steps
+    "stiff": f"{BASE} -scheme_type coupled {DEFAULTS} -vesicle_bending 100",  # edges are corrected after its steps
     "adaptive": f"{BASE} -scheme_type coupled {DEFAULTS} -time_adapt error -time_adapt_tol 1e-3",
     "two_vesicles": f"{BASE} {TWO} -scheme_type coupled {DEFAULTS}",
     "total_form": f"{BASE} -flow_form total -scheme_type coupled -scheme_order 1",

@@ -20,31 +20,9 @@ static PetscErrorCode PairError(Mat A, Vec x, Vec y, PetscReal *error) {
   PetscCall(VecNorm(Aty, NORM_2, &size[2]));
   PetscCall(VecNorm(x, NORM_2, &size[3]));
   *error = PetscAbsReal(one - two) / PetscMax(size[0] * size[1], size[2] * size[3]);
+  CHECK(size[0] > 0 && size[2] > 0, "   both products give something: %.3e %.3e", size[0], size[2]);
   PetscCall(VecDestroy(&Ax));
   PetscCall(VecDestroy(&Aty));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The same for spreading and interpolation: x on the markers, w a velocity; spread w = A x, interpolate x = A^T w. */
-static PetscErrorCode SpreadError(TestWorld *t, Mat A, Vec x, Vec w, PetscReal *error) {
-  Vec spread, back;
-  PetscReal one, two, size[4];
-  PetscFunctionBeginUser;
-  PetscCall(VecDuplicate(w, &spread));
-  PetscCall(VecDuplicate(x, &back));
-  PetscCall(VecSet(spread, 0));
-  PetscCall(CouplingSpreadAdd(t->coupling, 1, A, x, spread));
-  PetscCall(CouplingInterpolate(t->coupling, A, w, back));
-  PetscCall(VecDot(spread, w, &one));
-  PetscCall(VecDot(x, back, &two));
-  PetscCall(VecNorm(spread, NORM_2, &size[0]));
-  PetscCall(VecNorm(w, NORM_2, &size[1]));
-  PetscCall(VecNorm(back, NORM_2, &size[2]));
-  PetscCall(VecNorm(x, NORM_2, &size[3]));
-  *error = PetscAbsReal(one - two) / PetscMax(size[0] * size[1], size[2] * size[3]);
-  CHECK(size[0] > 0 && size[2] > 0, "   spreading and interpolation give something: %.3e %.3e", size[0], size[2]);
-  PetscCall(VecDestroy(&spread));
-  PetscCall(VecDestroy(&back));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -134,16 +112,16 @@ static PetscErrorCode CheckCoupling(const char name[], TestWorld *t) {
   PetscReal error;
   PetscFunctionBeginUser;
   PetscCall(DMCreateGlobalVector(t->fluid->grid->velocity, &w));
-  PetscCall(MembraneCreateMarkerVec(t->membrane, &x));
-  PetscCall(MembraneCreateTensionVec(t->membrane, &sigma));
+  PetscCall(LayoutCreateVec(t->layout, 2, &x));
+  PetscCall(LayoutCreateVec(t->layout, 1, &sigma));
   PetscCall(TestRandomVec(3, w));
   PetscCall(TestRandomVec(4, x));
   PetscCall(TestRandomVec(5, sigma));
-  PetscCall(SpreadError(t, t->coupling->E, x, w, &error));
+  PetscCall(PairError(t->coupling->markers->E, w, x, &error));
   CHECK(error < TOLERANCE, "%s: E and E^T adjoint, error %.1e", name, error);
-  PetscCall(SpreadError(t, t->coupling->S, sigma, w, &error));
+  PetscCall(PairError(t->coupling->S, sigma, w, &error));
   CHECK(error < TOLERANCE, "%s: S and S^T adjoint, error %.1e", name, error);
-  PetscCall(SpreadError(t, t->coupling->B, x, w, &error));
+  PetscCall(PairError(t->coupling->B, x, w, &error));
   CHECK(error < TOLERANCE, "%s: B and B^T adjoint, error %.1e", name, error);
   PetscCall(VecDestroy(&w));
   PetscCall(VecDestroy(&x));
@@ -159,19 +137,19 @@ static PetscErrorCode CheckSums(const char name[], TestWorld *t) {
   PetscReal error = 0, sum, want;
   PetscFunctionBeginUser;
   PetscCall(DMCreateGlobalVector(t->fluid->grid->velocity, &w));
-  PetscCall(MembraneCreateMarkerVec(t->membrane, &x));
+  PetscCall(LayoutCreateVec(t->layout, 2, &x));
   PetscCall(VecSet(w, 1));
-  PetscCall(CouplingInterpolate(t->coupling, t->coupling->E, w, x));
+  PetscCall(MarkersInterpolate(t->coupling->markers, w, x));
   PetscCall(VecGetArrayRead(x, &a));
-  for (PetscInt k = 0; k < 2 * t->membrane->M; k++) error = PetscMax(error, PetscAbsReal(a[k] - 1));
+  for (PetscInt k = 0; k < 2 * t->layout->n; k++) error = PetscMax(error, PetscAbsReal(a[k] - 1));
   PetscCall(VecRestoreArrayRead(x, &a));
   CHECK(error < 1e-13, "%s: a constant velocity is interpolated exactly, error %.1e", name, error);
   PetscCall(TestRandomVec(6, x));
   PetscCall(VecSum(x, &want));
   PetscCall(VecSet(w, 0));
-  PetscCall(CouplingSpreadAdd(t->coupling, 2, t->coupling->E, x, w));
+  PetscCall(MarkersSpread(t->coupling->markers, 2, x, w));
   PetscCall(VecSum(w, &sum));
-  error = PetscAbsReal(sum - 2 * want) / t->membrane->M;
+  error = PetscAbsReal(sum - 2 * want) / t->layout->M;
   CHECK(error < TOLERANCE, "%s: spreading keeps the sum of the force, error %.1e", name, error);
   PetscCall(VecDestroy(&w));
   PetscCall(VecDestroy(&x));

@@ -7,6 +7,8 @@ import pytest
 from conftest import COLUMNS, run_petves
 from restarts import frames
 
+pytestmark = pytest.mark.xdist_group("baselines")  # its tests share runs
+
 SCENE = "-domain_cells 32,32 -vesicle_angle 20 -flow_type shear"
 H = 2 / 32
 END = 0.125

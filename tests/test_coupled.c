@@ -1,51 +1,43 @@
 /* The coupled problem's parts: its solution put back into the equations of the step, Mob against E A^-1 E^T column by
    column, the wall forces' preconditioner as an inverse. */
 #include "world.h"
-#include "coupling/saddle.h"
+#include "coupling/solver.h"
 
 typedef struct {
   TestWorld t;
-  Saddle s;
-  Vec f, w, p, g, sigma, d; /* right-hand sides and solution */
+  CoupledSolver s;
+  Vec f, w, p, g, sigma, d, V; /* right-hand sides and solution */
 } Problem;
 
 static PetscErrorCode ProblemCreate(const char options[], PetscReal a0, Problem *q) {
   PetscFunctionBeginUser;
   PetscCall(TestWorldCreate(options, &q->t));
-  PetscCall(FluidSetTimeCoefficient(q->t.fluid, a0));
-  PetscCall(SaddleCreate(q->t.scene, q->t.fluid, q->t.coupling, NULL, &q->s));
-  PetscCall(SaddleSetUp(q->s));
-  PetscCall(VecDuplicate(q->s->r, &q->f));
-  PetscCall(VecDuplicate(q->s->r, &q->w));
+  PetscCall(TestWorldPlace(a0, &q->t));
+  PetscCall(CoupledSolverCreate(q->t.scene, q->t.coupling, &q->s));
+  PetscCall(DMCreateGlobalVector(q->t.fluid->grid->velocity, &q->f));
+  PetscCall(VecDuplicate(q->f, &q->w));
   PetscCall(DMCreateGlobalVector(q->t.fluid->grid->da[FIELD_P], &q->p));
-  PetscCall(MembraneCreateTensionVec(q->t.membrane, &q->g));
+  PetscCall(LayoutCreateVec(q->t.layout, 1, &q->g));
   PetscCall(VecDuplicate(q->g, &q->sigma));
-  PetscCall(SaddleCreateWallVec(q->s, &q->d));
+  PetscCall(UnknownsCreateWallVec(q->s->unknowns, &q->d));
+  PetscCall(VecDuplicate(q->t.X, &q->V));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode ProblemDestroy(Problem *q) {
-  Vec *all[] = {&q->f, &q->w, &q->p, &q->g, &q->sigma, &q->d};
+  Vec *all[] = {&q->f, &q->w, &q->p, &q->g, &q->sigma, &q->d, &q->V};
   PetscFunctionBeginUser;
-  for (int k = 0; k < 6; k++) PetscCall(VecDestroy(all[k]));
-  PetscCall(SaddleDestroy(&q->s));
+  for (int k = 0; k < 7; k++) PetscCall(VecDestroy(all[k]));
+  PetscCall(CoupledSolverDestroy(&q->s));
   PetscCall(TestWorldDestroy(&q->t));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The solution put back into H w + B E w/a0 + G p + S sigma = f, G^T w = 0, S^T w = g by the operators that split uses;
-   the third row scaled. From a zero and from a random guess. */
-static PetscErrorCode CheckSolution(const char name[], Problem *q, PetscBool random) {
-  const Fluid f = q->t.fluid;
-  const Coupling c = q->t.coupling;
-  const PetscScalar *got, *want;
-  PetscReal row[3], reference, norm;
-  Vec r, div, U, stretching;
+/* A random problem solved, from a zero or a random guess; f stays what it was. */
+static PetscErrorCode SolveProblem(const char name[], Problem *q, PetscBool random) {
+  SolveReport report;
+  Vec r;
   PetscFunctionBeginUser;
-  PetscCall(VecDuplicate(q->f, &r));
-  PetscCall(VecDuplicate(q->p, &div));
-  PetscCall(VecDuplicate(q->t.X, &U));
-  PetscCall(VecDuplicate(q->g, &stretching));
   PetscCall(TestRandomVec(11, q->f));
   PetscCall(TestRandomVec(12, q->g));
   PetscCall(VecSet(q->w, 0));
@@ -58,40 +50,66 @@ static PetscErrorCode CheckSolution(const char name[], Problem *q, PetscBool ran
     PetscCall(VecScale(q->w, 0.01)); /* a guess far larger than the solution would leave its rounding */
     PetscCall(VecScale(q->sigma, 0.01));
   }
-  PetscCall(CouplingInterpolate(c, c->E, q->w, U));
+  PetscCall(MarkersInterpolate(q->t.coupling->markers, q->w, q->V));
+  PetscCall(VecDuplicate(q->f, &r));
   PetscCall(VecCopy(q->f, r));
-  PetscCall(SaddleSolve(q->s, r, q->g, q->w, q->p, q->sigma, q->d, U));
+  const CoupledProblem problem = {.f = r, .g = q->g, .w = q->w, .p = q->p, .sigma = q->sigma, .d = q->d, .V = q->V};
+  PetscCall(CoupledSolverSolve(q->s, &problem, &report));
+  CHECK(report.why > 0, "%s: converged in %d iterations", name, (int)report.its);
+  PetscCall(VecDestroy(&r));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* d times the scale of each edge's row: what a residual of S^T u = g counts in the solver's norm. */
+static PetscErrorCode ScaledNorm(Problem *q, Vec d, PetscReal *norm) {
+  const Layout l = q->t.layout;
+  PetscScalar *a;
+  Vec scaled;
+  PetscFunctionBeginUser;
+  PetscCall(VecDuplicate(d, &scaled));
+  PetscCall(VecCopy(d, scaled));
+  PetscCall(VecGetArray(scaled, &a));
+  for (PetscInt v = l->own; v < l->end; v++)
+    for (PetscInt k = 0; k < LayoutCount(l, v); k++)
+      a[LayoutOffset(l, v) + k] *= UnknownsTensionScale(q->s->unknowns, v);
+  PetscCall(VecRestoreArray(scaled, &a));
+  PetscCall(VecNorm(scaled, NORM_2, norm));
+  PetscCall(VecDestroy(&scaled));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The solution put back into H w + B E w/a0 + G p + S sigma = f, G^T w = 0, S^T w = g by the operators that split uses;
+   the third row scaled. */
+static PetscErrorCode CheckSolution(const char name[], Problem *q, PetscBool random) {
+  const Fluid f = q->t.fluid;
+  const Coupling c = q->t.coupling;
+  PetscReal row[3], reference[2];
+  Vec r, div, U, stretching;
+  PetscFunctionBeginUser;
+  PetscCall(SolveProblem(name, q, random));
+  PetscCall(VecDuplicate(q->f, &r));
+  PetscCall(VecDuplicate(q->p, &div));
+  PetscCall(VecDuplicate(q->t.X, &U));
+  PetscCall(VecDuplicate(q->g, &stretching));
   PetscCall(MatMult(f->H, q->w, r));
-  PetscCall(CouplingInterpolate(c, c->E, q->w, U));
-  PetscCall(CouplingSpreadAdd(c, 1 / f->a0, c->B, U, r));
+  PetscCall(MatMult(c->markers->E, q->w, U));
+  PetscCall(CouplingSpreadBending(c, 1 / f->a0, U, r));
   PetscCall(GridGradient(f->grid, 1, q->p, PETSC_TRUE, r));
-  PetscCall(CouplingSpreadAdd(c, 1, c->S, q->sigma, r));
+  PetscCall(CouplingSpreadTension(c, 1, q->sigma, r));
   PetscCall(VecAXPY(r, -1, q->f));
   PetscCall(VecNorm(r, NORM_2, &row[0]));
   PetscCall(GridGradientTranspose(f->grid, 1, q->w, div));
   PetscCall(VecNorm(div, NORM_2, &row[1]));
-  PetscCall(CouplingInterpolate(c, c->S, q->w, stretching));
-  PetscCall(VecNorm(q->f, NORM_2, &norm));
-  reference = PetscSqr(norm);
-  row[2] = 0;
-  PetscCall(VecGetArrayRead(q->g, &want));
-  PetscCall(VecGetArrayRead(stretching, &got));
-  for (PetscInt k = 0; k < q->t.membrane->M; k++) {
-    row[2] += PetscSqr((got[k] - want[k]) * SaddleScale(q->s, k));
-    reference += PetscSqr(want[k] * SaddleScale(q->s, k));
-  }
-  PetscCall(VecRestoreArrayRead(stretching, &got));
-  PetscCall(VecRestoreArrayRead(q->g, &want));
-  reference = PetscSqrtReal(reference);
-  row[2] = PetscSqrtReal(row[2]);
-  CHECK(q->s->why > 0, "%s: converged in %d iterations", name, (int)q->s->its);
+  PetscCall(MatMultTranspose(c->S, q->w, stretching));
+  PetscCall(VecAXPY(stretching, -1, q->g));
+  PetscCall(ScaledNorm(q, stretching, &row[2]));
+  PetscCall(VecNorm(q->f, NORM_2, &reference[0]));
+  PetscCall(ScaledNorm(q, q->g, &reference[1]));
+  const PetscReal size = PetscSqrtReal(PetscSqr(reference[0]) + PetscSqr(reference[1]));
   for (int k = 0; k < 3; k++) /* the solver's residual is V - E u; in row 1 it counts with the bending's stiffness */
-    CHECK(row[k] < (k ? 3e-12 : 2e-11) * reference, "%s: row %d of the solution put back, %.1e", name, k + 1,
-          row[k] / reference);
-  PetscCall(VecDestroy(&r));
-  PetscCall(VecDestroy(&div));
-  PetscCall(VecDestroy(&U));
-  PetscCall(VecDestroy(&stretching));
+    CHECK(row[k] < (k ? 3e-12 : 2e-11) * size, "%s: row %d of the solution put back, %.1e", name, k + 1, row[k] / size);
+  Vec *all[] = {&r, &div, &U, &stretching};
+  for (int k = 0; k < 4; k++) PetscCall(VecDestroy(all[k]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -106,9 +124,8 @@ static PetscErrorCode CheckBending(const char name[], Problem *q) {
     PetscCall(VecDuplicate(q->f, &x[k]));
     PetscCall(VecDuplicate(q->f, &y[k]));
     PetscCall(TestRandomVec(21 + (unsigned)k, x[k]));
-    PetscCall(CouplingInterpolate(c, c->E, x[k], U));
-    PetscCall(VecSet(y[k], 0));
-    PetscCall(CouplingSpreadAdd(c, 1, c->B, U, y[k]));
+    PetscCall(MatMult(c->markers->E, x[k], U));
+    PetscCall(MatMult(c->B, U, y[k]));
   }
   PetscCall(VecDot(y[0], x[0], &energy));
   PetscCall(VecDot(y[0], x[1], &one));
@@ -161,10 +178,8 @@ static PetscErrorCode CheckWalls(const char options[], const char name[], PetscR
   PetscCall(VecRestoreArray(d, &da));
   CHECK(off > 0.1 * size, "%s: the projection slips, by %.2f of the force", name, off / size);
   CHECK(error < (pair ? 1e-11 : 1e-3) * size, "%s: the walls' inverse, %.1e", name, error / size);
-  PetscCall(VecDestroy(&r));
-  PetscCall(VecDestroy(&p));
-  PetscCall(VecDestroy(&d));
-  PetscCall(VecDestroy(&y));
+  Vec *all[] = {&r, &p, &d, &y};
+  for (int k = 0; k < 4; k++) PetscCall(VecDestroy(all[k]));
   PetscCall(WallsDestroy(&walls));
   PetscCall(StokesDestroy(&stokes));
   PetscCall(FluidDestroy(&fluid));
@@ -172,46 +187,74 @@ static PetscErrorCode CheckWalls(const char options[], const char name[], PetscR
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Mob of one vesicle against E A^-1 E^T, one Stokes solve a column: largest difference over the largest entry. */
-static PetscErrorCode CheckMobility(const char name[], Problem *q, PetscInt v) {
-  const Coupling c = q->t.coupling;
-  const PetscInt first = c->membrane->start[v], n = 2 * (c->membrane->start[v + 1] - first);
-  const GreenTable *table;
-  const PetscScalar *U;
-  PetscReal *Mob, most = 0, error = 0, asymmetry = 0;
+/* Largest difference of a column of Mob from the part U of one vesicle's markers, on every rank. */
+static PetscErrorCode ColumnError(Layout l, PetscInt v, Vec U, const PetscReal column[], PetscReal *error) {
+  PetscScalar *all;
+  PetscFunctionBeginUser;
+  *error = 0;
+  PetscCall(PetscMalloc1(2 * l->M, &all));
+  PetscCall(LayoutGatherVec(l, U, all));
+  for (PetscInt row = 0; row < 2 * LayoutCount(l, v); row++)
+    *error = PetscMax(*error, PetscAbsReal(column[row] - all[2 * l->start[v] + row]));
+  PetscCall(PetscFree(all));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Largest |Mob - E A^-1 E^T| of one vesicle, one Stokes solve a column. */
+static PetscErrorCode MobilityError(Problem *q, PetscInt v, const PetscReal Mob[], PetscReal *error) {
+  const Markers m = q->t.coupling->markers;
+  const PetscInt first = 2 * q->t.layout->start[v], n = 2 * LayoutCount(q->t.layout, v);
   Stokes stokes;
   Vec F, r;
   PetscFunctionBeginUser;
-  PetscCall(MobilityGetTable(q->s->mobility, q->t.fluid->alpha, &table));
-  CHECK(table->alpha == q->t.fluid->alpha, "%s: the table is for alpha = %g", name, (double)q->t.fluid->alpha);
-  PetscCall(PetscMalloc1(n * n, &Mob));
-  PetscCall(MobilityAssemble(q->s->mobility, table, first, n / 2, Mob));
+  *error = 0;
   PetscCall(StokesCreate(q->t.fluid, &stokes));
   PetscCall(VecDuplicate(q->t.X, &F));
   PetscCall(VecDuplicate(q->f, &r));
   for (PetscInt column = 0; column < n; column++) {
+    PetscReal off;
     PetscCall(VecSet(F, 0));
-    PetscCall(VecSetValue(F, 2 * first + column, 1, INSERT_VALUES));
+    PetscCall(VecSetValue(F, first + column, 1, INSERT_VALUES));
     PetscCall(VecAssemblyBegin(F));
     PetscCall(VecAssemblyEnd(F));
-    PetscCall(VecSet(r, 0));
-    PetscCall(CouplingSpreadAdd(c, 1, c->E, F, r));
+    PetscCall(MatMultTranspose(m->E, F, r));
     PetscCall(StokesSolve(stokes, r, NULL, r, q->p));
-    PetscCall(CouplingInterpolate(c, c->E, r, F));
-    PetscCall(VecGetArrayRead(F, &U));
-    for (PetscInt row = 0; row < n; row++) {
-      error = PetscMax(error, PetscAbsReal(Mob[column * n + row] - U[2 * first + row]));
-      asymmetry = PetscMax(asymmetry, PetscAbsReal(Mob[column * n + row] - Mob[row * n + column]));
-      most = PetscMax(most, PetscAbsReal(Mob[column * n + row]));
-    }
-    PetscCall(VecRestoreArrayRead(F, &U));
+    PetscCall(MatMult(m->E, r, F));
+    PetscCall(ColumnError(q->t.layout, v, F, Mob + column * n, &off));
+    *error = PetscMax(*error, off);
   }
-  CHECK(error < 1e-11 * most, "%s: Mob is E A^-1 E^T, %.1e", name, error / most);
-  CHECK(asymmetry < 1e-11 * most, "%s: Mob is symmetric, %.1e", name, asymmetry / most);
   PetscCall(VecDestroy(&F));
   PetscCall(VecDestroy(&r));
   PetscCall(StokesDestroy(&stokes));
-  PetscCall(PetscFree(Mob));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Mob of one vesicle against E A^-1 E^T: largest difference over the largest entry; and that shares of it add up. */
+static PetscErrorCode CheckMobility(const char name[], Problem *q, PetscInt v) {
+  const Mobility mobility = q->s->preconditioner->mobility;
+  const PetscInt first = q->t.layout->start[v], n = 2 * LayoutCount(q->t.layout, v);
+  const GreenTable *table;
+  PetscReal *Mob, *part, most = 0, error, asymmetry = 0, apart = 0;
+  PetscFunctionBeginUser;
+  PetscCall(MobilityGetTable(mobility, q->t.fluid->alpha, &table));
+  CHECK(table->alpha == q->t.fluid->alpha, "%s: the table is for alpha = %g", name, (double)q->t.fluid->alpha);
+  PetscCall(PetscMalloc2(n * n, &Mob, n * n, &part));
+  PetscCall(MobilityAssemble(mobility, table, first, n / 2, 0, 1, Mob));
+  PetscCall(MobilityError(q, v, Mob, &error));
+  for (PetscInt c = 0; c < n; c++)
+    for (PetscInt r = 0; r < n; r++) {
+      asymmetry = PetscMax(asymmetry, PetscAbsReal(Mob[c * n + r] - Mob[r * n + c]));
+      most = PetscMax(most, PetscAbsReal(Mob[c * n + r]));
+    }
+  CHECK(error < 1e-11 * most, "%s: Mob is E A^-1 E^T, %.1e", name, error / most);
+  CHECK(asymmetry < 1e-11 * most, "%s: Mob is symmetric, %.1e", name, asymmetry / most);
+  for (PetscInt p = 0; p < 3; p++) {
+    PetscCall(MobilityAssemble(mobility, table, first, n / 2, p, 3, part));
+    for (PetscInt k = 0; k < n * n; k++) Mob[k] -= part[k];
+  }
+  for (PetscInt k = 0; k < n * n; k++) apart = PetscMax(apart, PetscAbsReal(Mob[k]));
+  CHECK(apart == 0, "%s: three shares of Mob add up to it, %.1e", name, apart / most);
+  PetscCall(PetscFree2(Mob, part));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -227,7 +270,7 @@ static PetscErrorCode CheckCase(const char options[], PetscReal a0, PetscBool pe
   PetscCall(CheckBending(name, &q));
   PetscCall(CheckSolution(name, &q, PETSC_FALSE));
   PetscCall(CheckSolution(name, &q, PETSC_TRUE));
-  for (PetscInt v = 0; v < q.t.membrane->vesicles && periodic; v++) PetscCall(CheckMobility(name, &q, v));
+  for (PetscInt v = 0; v < q.t.layout->bodies && periodic; v++) PetscCall(CheckMobility(name, &q, v));
   PetscCall(ProblemDestroy(&q));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -248,6 +291,12 @@ static PetscErrorCode Facts(void) {
                       "0.2,0.5,0.3,0.35",
                       20, yes));
   PetscCall(CheckCase("-domain_cells 32,32 -vesicle_semi_axes 0.9,0.2", 20, yes));
+  /* so many markers that every vesicle has a dense block of its own, with its owner */
+  PetscCall(
+      CheckCase("-domain_cells 256,256 -domain_bc_x periodic -vesicle_bending 1e-3 -vesicle_count 5 -vesicle_semi_axes "
+                "0.3,0.35,0.25,0.35,0.2,0.3,0.3,0.2,0.25,0.3 "
+                "-vesicle_center -0.5,-0.5,0.3,-0.5,-0.5,0.4,0.2,0.5,0.9,0.4",
+                20, no));
   PetscCall(CheckWalls("-domain_cells 48,32 -domain_box -1.5,1.5,-1,1 -domain_bc_y periodic -vesicle_shape none",
                        "48,32 walls in x", 50, yes));
   PetscCall(CheckWalls("-domain_cells 33,21 -domain_box 0,3.3,0,2.1 -domain_bc_y periodic -vesicle_shape none",

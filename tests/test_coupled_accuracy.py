@@ -7,13 +7,15 @@ import numpy as np
 import pytest
 from conftest import run_petves
 
+pytestmark = pytest.mark.xdist_group("coupled_accuracy")  # its tests share runs
+
 BASE = "-scheme_type coupled -output_every 10 -checkpoint_every 0"
 
-#: The issue's scene for errors in time.
+#: The scene for errors in time.
 TIME = f"{BASE} -domain_cells 64,64 -vesicle_markers 36 -time_end 0.25 -scheme_length_target false"
 STEPS = (1 / 32, 1 / 64, 1 / 128, 1 / 256)
 
-#: rms marker distance to direct BDF2 at dt = 1/1024, NumPy prototype; see DESIGN section 6.
+#: rms marker distance to direct BDF2 at dt = 1/1024, of a NumPy prototype of the same equations.
 PROTOTYPE = {1: (2.6e-4, 1.3e-4, 6.7e-5, 3.4e-5), 2: (4.1e-5, 9.8e-6, 2.2e-6, 4.8e-7)}
 
 

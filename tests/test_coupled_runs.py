@@ -9,6 +9,8 @@ import pytest
 from conftest import COLUMNS, run_petves
 from test_errors import leaves_files, stops_with
 
+pytestmark = pytest.mark.xdist_group("coupled_runs")  # its tests share runs
+
 TIGHT = "-scheme_type coupled -coupled_ksp_rtol 1e-12"
 DIRECT = "-scheme_type direct"
 

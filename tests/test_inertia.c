@@ -296,13 +296,13 @@ static PetscErrorCode CheckQuasiSteady(const char name[], const char options[]) 
 /* One entry of a velocity that is not a number, on one rank, is found by all ranks: the speed decides whether a step is
    taken. Nothing is left of it in a velocity of finite entries. */
 static PetscErrorCode CheckSpeed(void) {
-  Run r;
+  TestWorld r;
   Convection c;
   PetscReal speed;
   PetscMPIInt bad;
   PetscFunctionBeginUser;
   PetscCall(RunCreate(PERIODIC, 24, 1e-6, &r));
-  PetscCall(ConvectionCreate(r.scene, r.fluid, &c));
+  PetscCall(ConvectionCreate(&r.scene->flow, r.fluid, &c));
   for (PetscMPIInt rank = 0; rank < r.fluid->grid->size; rank++) {
     PetscScalar *a;
     PetscCall(VecSet(r.scheme->state.w, 0.5));
@@ -317,7 +317,7 @@ static PetscErrorCode CheckSpeed(void) {
     CHECK(bad == r.fluid->grid->size, "a velocity that is not a number on rank %d is seen by %d ranks", rank, bad);
   }
   PetscCall(ConvectionDestroy(&c));
-  PetscCall(RunDestroy(&r));
+  PetscCall(TestWorldDestroy(&r));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

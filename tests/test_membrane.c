@@ -1,16 +1,8 @@
 /* Membranes: initial shapes with equal edges, measures of exact shapes, bending and stretching operators. */
 #include "world.h"
 
-/* The membrane of an options text. */
-static PetscErrorCode FromOptions(const char options[], Scene *scene, Membrane *m) {
-  PetscFunctionBeginUser;
-  PetscCall(TestScene(options, scene));
-  PetscCall(MembraneCreate(&(*scene)->shape, (*scene)->membrane.bending, DERIVATIVE_FD, m));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Membrane of M markers on an ellipse, turned and moved. */
-static PetscErrorCode Ellipse(PetscInt M, PetscReal a, PetscReal b, PetscReal degrees, Scene *scene, Membrane *m) {
+static PetscErrorCode Ellipse(PetscInt M, PetscReal a, PetscReal b, PetscReal degrees, TestMembrane *m) {
   char options[512];
   PetscFunctionBeginUser;
   PetscCall(PetscSNPrintf(options, sizeof(options),
@@ -18,14 +10,7 @@ static PetscErrorCode Ellipse(PetscInt M, PetscReal a, PetscReal b, PetscReal de
                           "%.17g -vesicle_center 1.25,-0.5 -vesicle_markers %d -vesicle_bending 0.3 "
                           "-vesicle_allow_close_markers",
                           (double)a, (double)b, (double)degrees, (int)M));
-  PetscCall(FromOptions(options, scene, m));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode Destroy(Scene *scene, Membrane *m) {
-  PetscFunctionBeginUser;
-  PetscCall(MembraneDestroy(m));
-  PetscCall(SceneDestroy(scene));
+  PetscCall(TestMembraneCreate(options, m));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -39,18 +24,29 @@ static PetscReal Perimeter(PetscReal a, PetscReal b) {
   return sum * 2 * PETSC_PI / 2000;
 }
 
+/* MembraneNormalSpeed at the initial markers. */
+static PetscErrorCode NormalSpeed(TestMembrane *m, PetscReal U[], PetscReal *speed) {
+  Vec x, u;
+  PetscFunctionBeginUser;
+  PetscCall(VecCreateSeqWithArray(PETSC_COMM_SELF, 1, 2 * m->M, m->scene->shape.X, &x));
+  PetscCall(VecCreateSeqWithArray(PETSC_COMM_SELF, 1, 2 * m->M, U, &u));
+  PetscCall(MembraneNormalSpeed(m->membrane, x, u, speed));
+  PetscCall(VecDestroy(&x));
+  PetscCall(VecDestroy(&u));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* A regular polygon: everything in closed form. */
 static PetscErrorCode CheckCircle(void) {
   const PetscInt M = 60;
   const PetscReal R = 0.7, half = PETSC_PI / M, omega = 0.83, edge = 2 * R * PetscSinReal(half);
   const PetscReal energy = 0.5 * 0.3 * M * edge * PetscSqr(2 * PetscSinReal(half) / edge);
-  Scene scene;
-  Membrane m;
+  TestMembrane m;
   Measures got;
   PetscReal error, frequency, *U;
   PetscFunctionBeginUser;
-  PetscCall(Ellipse(M, R, R, 30, &scene, &m));
-  MembraneMeasure(m, 0, scene->shape.X, &got);
+  PetscCall(Ellipse(M, R, R, 30, &m));
+  MembraneMeasure(m.membrane, 0, m.scene->shape.X, &got);
   error = PetscAbsReal(got.area / (0.5 * M * R * R * PetscSinReal(2 * half)) - 1);
   CHECK(error < 1e-13, "circle: area of the regular polygon, error %.1e", error);
   error = PetscAbsReal(got.length / (M * edge) - 1);
@@ -58,26 +54,26 @@ static PetscErrorCode CheckCircle(void) {
   CHECK(got.edge_ratio - 1 < 1e-12, "circle: equal edges, ratio - 1 = %.1e", got.edge_ratio - 1);
   error = PetscAbsReal(got.center[0] - 1.25) + PetscAbsReal(got.center[1] + 0.5);
   CHECK(error < 1e-13, "circle: centroid, error %.1e", error);
-  error = PetscAbsReal(MembraneBendingEnergy(m, 0, scene->shape.X) / energy - 1);
+  error = PetscAbsReal(MembraneBendingEnergy(m.membrane, 0, m.scene->shape.X) / energy - 1);
   CHECK(error < 1e-10, "circle: bending energy of the regular polygon, error %.1e", error);
   PetscCall(PetscMalloc1(2 * M, &U));
   for (PetscInt k = 0; k < M; k++) {
-    U[2 * k] = 0.4 - omega * (scene->shape.X[2 * k + 1] + 0.5); /* rotation and translation */
-    U[2 * k + 1] = -0.2 + omega * (scene->shape.X[2 * k] - 1.25);
+    U[2 * k] = 0.4 - omega * (m.scene->shape.X[2 * k + 1] + 0.5); /* rotation and translation */
+    U[2 * k + 1] = -0.2 + omega * (m.scene->shape.X[2 * k] - 1.25);
   }
-  PetscCall(MembraneFrequency(m, 0, scene->shape.X, U, &frequency));
+  frequency = MembraneFrequency(m.membrane, 0, m.scene->shape.X, U);
   CHECK(PetscAbsReal(frequency / omega - 1) < 1e-12, "circle: rigid rotation has frequency omega, error %.1e",
         PetscAbsReal(frequency / omega - 1));
-  error = MembraneNormalSpeed(m, scene->shape.X, U);
+  PetscCall(NormalSpeed(&m, U, &error));
   CHECK(error > 0.4, "circle: normal speed sees the translation, %.3f", error);
   for (PetscInt k = 0; k < 2 * M; k++) U[k] -= k % 2 ? -0.2 : 0.4;
-  error = MembraneNormalSpeed(m, scene->shape.X, U);
+  PetscCall(NormalSpeed(&m, U, &error));
   CHECK(error < 1e-13, "circle: pure rotation has no normal speed, %.1e", error);
   for (PetscInt k = 0; k < M; k++) U[2 * k + 1] = 0;
-  PetscCall(MembraneFrequency(m, 0, scene->shape.X, U, &frequency));
+  frequency = MembraneFrequency(m.membrane, 0, m.scene->shape.X, U);
   CHECK(PetscIsNanReal(frequency), "circle: no frequency where the membrane does not rotate in one sense");
   PetscCall(PetscFree(U));
-  PetscCall(Destroy(&scene, &m));
+  PetscCall(TestMembraneDestroy(&m));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -89,18 +85,18 @@ static PetscErrorCode CheckEllipse(PetscReal degrees) {
   PetscFunctionBeginUser;
   for (int level = 0; level < 2; level++) {
     const PetscInt M = level ? 192 : 96;
-    Scene scene;
-    Membrane m;
+    TestMembrane m;
     Measures got;
-    PetscCall(Ellipse(M, a, b, degrees, &scene, &m));
-    MembraneMeasure(m, 0, scene->shape.X, &got);
+    PetscCall(Ellipse(M, a, b, degrees, &m));
+    MembraneMeasure(m.membrane, 0, m.scene->shape.X, &got);
     CHECK(got.edge_ratio - 1 < 1e-12, "ellipse at %g degrees: %d equal edges, ratio - 1 = %.1e", degrees, (int)M,
           got.edge_ratio - 1);
     for (PetscInt k = 0; k < M; k++) {
-      const PetscReal x = scene->shape.X[2 * k] - 1.25, y = scene->shape.X[2 * k + 1] + 0.5;
+      const PetscReal x = m.scene->shape.X[2 * k] - 1.25, y = m.scene->shape.X[2 * k + 1] + 0.5;
       off = PetscMax(off, PetscAbsReal(PetscSqr((c * x + s * y) / a) + PetscSqr((c * y - s * x) / b) - 1));
     }
-    off = PetscMax(off, PetscAbsReal(scene->shape.X[0] - 1.25 - a * c) + PetscAbsReal(scene->shape.X[1] + 0.5 - a * s));
+    off = PetscMax(off,
+                   PetscAbsReal(m.scene->shape.X[0] - 1.25 - a * c) + PetscAbsReal(m.scene->shape.X[1] + 0.5 - a * s));
     CHECK(off < 1e-13, "ellipse at %g degrees: markers on it, marker 0 on the first semi-axis, error %.1e", degrees,
           off);
     off = PetscAbsReal(PetscSinReal(got.inclination - angle));
@@ -108,11 +104,11 @@ static PetscErrorCode CheckEllipse(PetscReal degrees) {
           "ellipse at %g degrees: inclination %.6f, error %.1e", degrees, got.inclination, off);
     off = PetscAbsReal(got.center[0] - 1.25) + PetscAbsReal(got.center[1] + 0.5);
     CHECK(off < 1e-13, "ellipse at %g degrees: centroid, error %.1e", degrees, off);
-    off = PetscAbsReal(m->ds[0] * M / got.length - 1) + PetscAbsReal(m->A0[0] / got.area - 1);
+    off = PetscAbsReal(m.membrane->ds[0] * M / got.length - 1) + PetscAbsReal(m.membrane->A0[0] / got.area - 1);
     CHECK(off < 1e-14, "ellipse at %g degrees: ds is the mean chord, A0 the polygon's area, error %.1e", degrees, off);
     error[level][0] = area / got.area - 1;
     error[level][1] = length / got.length - 1;
-    PetscCall(Destroy(&scene, &m));
+    PetscCall(TestMembraneDestroy(&m));
   }
   for (int k = 0; k < 2; k++) {
     const PetscReal order = PetscLog2Real(error[0][k] / error[1][k]);
@@ -141,8 +137,7 @@ static PetscErrorCode CheckFile(void) {
   char path[PETSC_MAX_PATH_LEN], options[PETSC_MAX_PATH_LEN + 128];
   const PetscReal a = 0.5, b = 0.3;
   PetscMPIInt rank;
-  Scene scene;
-  Membrane m;
+  TestMembrane m;
   Measures got;
   PetscReal off = 0;
   PetscFunctionBeginUser;
@@ -161,66 +156,81 @@ static PetscErrorCode CheckFile(void) {
   }
   PetscCallMPI(MPI_Barrier(PETSC_COMM_WORLD));
   PetscCall(PetscSNPrintf(options, sizeof(options), "-vesicle_shape file -vesicle_file %s -vesicle_markers 64", path));
-  PetscCall(FromOptions(options, &scene, &m));
-  MembraneMeasure(m, 0, scene->shape.X, &got);
-  for (PetscInt k = 0; k < m->M; k++)
+  PetscCall(TestMembraneCreate(options, &m));
+  MembraneMeasure(m.membrane, 0, m.scene->shape.X, &got);
+  for (PetscInt k = 0; k < m.M; k++)
     off = PetscMax(off,
-                   PetscAbsReal(PetscSqr(scene->shape.X[2 * k] / a) + PetscSqr(scene->shape.X[2 * k + 1] / b) - 1));
-  CHECK(m->M == 64 && off < 2e-4, "curve file: 64 markers on the ellipse, error %.1e", off);
+                   PetscAbsReal(PetscSqr(m.scene->shape.X[2 * k] / a) + PetscSqr(m.scene->shape.X[2 * k + 1] / b) - 1));
+  CHECK(m.M == 64 && off < 2e-4, "curve file: 64 markers on the ellipse, error %.1e", off);
   CHECK(got.edge_ratio - 1 < 1e-12, "curve file: equal edges, ratio - 1 = %.1e", got.edge_ratio - 1);
   CHECK(got.area > 0, "curve file: turned counter-clockwise, area %.4f", got.area);
-  PetscCall(Destroy(&scene, &m));
+  PetscCall(TestMembraneDestroy(&m));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* E(X + e V) - E(X - e V) = 2 e <c_b ds D4 X, V>, exactly, as the energy is quadratic; and D4 is symmetric. */
-static PetscErrorCode CheckOperators(void) {
-  Scene scene;
-  Membrane m;
-  PetscInt n;
-  PetscReal *F, *V, *W, *work, *tau, slope, product = 0, swapped = 0, error, e = 1e-2, size = 0;
-  unsigned state = 5;
+static PetscErrorCode CheckBending(const TestMembrane *m, unsigned *state) {
+  const PetscInt n = 2 * m->M;
+  const PetscReal e = 1e-2, *X = m->scene->shape.X;
+  PetscReal *F, *V, *W, slope, product = 0, swapped = 0, error, size = 0;
   PetscFunctionBeginUser;
-  PetscCall(Ellipse(48, 0.6, 0.25, 17, &scene, &m));
-  n = 2 * m->M;
-  PetscCall(PetscMalloc5(n, &F, n, &V, n, &W, n, &work, n, &tau));
-  for (PetscInt k = 0; k < n; k++) V[k] = TestRandom(&state);
-  for (PetscInt k = 0; k < n; k++) W[k] = scene->shape.X[k] + e * V[k];
-  slope = MembraneBendingEnergy(m, 0, W);
-  for (PetscInt k = 0; k < n; k++) W[k] = scene->shape.X[k] - e * V[k];
-  slope = (slope - MembraneBendingEnergy(m, 0, W)) / (2 * e);
+  PetscCall(PetscMalloc3(n, &F, n, &V, n, &W));
+  for (PetscInt k = 0; k < n; k++) V[k] = TestRandom(state);
+  for (PetscInt k = 0; k < n; k++) W[k] = X[k] + e * V[k];
+  slope = MembraneBendingEnergy(m->membrane, 0, W);
+  for (PetscInt k = 0; k < n; k++) W[k] = X[k] - e * V[k];
+  slope = (slope - MembraneBendingEnergy(m->membrane, 0, W)) / (2 * e);
   PetscCall(PetscArrayzero(F, n));
-  MembraneBending(m, m->bending, scene->shape.X, work, F);
+  MembraneBending(m->membrane, m->membrane->bending, X, F);
   for (PetscInt k = 0; k < n; k++) product += F[k] * V[k], size += PetscAbsReal(F[k] * V[k]);
   error = PetscAbsReal(product - slope) / size;
   CHECK(error < 1e-10, "bending is the gradient of the energy, error %.1e", error);
-  for (PetscInt k = 0; k < n; k++) W[k] = TestRandom(&state);
+  for (PetscInt k = 0; k < n; k++) W[k] = TestRandom(state);
   PetscCall(PetscArrayzero(F, n));
-  MembraneBending(m, 1, W, work, F);
+  MembraneBending(m->membrane, 1, W, F);
   product = size = 0;
   for (PetscInt k = 0; k < n; k++) product += F[k] * V[k], size += PetscAbsReal(F[k] * V[k]);
   PetscCall(PetscArrayzero(F, n));
-  MembraneBending(m, 1, V, work, F);
+  MembraneBending(m->membrane, 1, V, F);
   for (PetscInt k = 0; k < n; k++) swapped += F[k] * W[k];
   CHECK(PetscAbsReal(product - swapped) < 1e-13 * size, "bending is symmetric, error %.1e",
         PetscAbsReal(product - swapped) / size);
-  MembraneTangents(m, scene->shape.X, tau);
-  MembraneStretching(m, tau, V, work);
-  product = swapped = size = 0;
-  for (PetscInt k = 0; k < m->M; k++) product += work[k] * W[k], size += PetscAbsReal(work[k] * W[k]);
-  PetscCall(PetscArrayzero(F, n));
-  MembraneStretchingTranspose(m, tau, 1, W, F);
+  PetscCall(PetscFree3(F, V, W));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Dm and Dm^T, and what Dm makes of a rigid motion. */
+static PetscErrorCode CheckStretching(const TestMembrane *m, unsigned *state) {
+  const PetscInt n = 2 * m->M;
+  const PetscReal *X = m->scene->shape.X;
+  PetscReal *F, *V, *sigma, *d, *tau, product = 0, swapped = 0, size = 0, error = 0;
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc5(n, &F, n, &V, m->M, &sigma, m->M, &d, n, &tau));
+  for (PetscInt k = 0; k < n; k++) V[k] = TestRandom(state);
+  for (PetscInt k = 0; k < m->M; k++) sigma[k] = TestRandom(state);
+  MembraneTangents(m->membrane, X, tau);
+  MembraneStretching(m->membrane, tau, V, d);
+  for (PetscInt k = 0; k < m->M; k++) product += d[k] * sigma[k], size += PetscAbsReal(d[k] * sigma[k]);
+  MembraneStretchingTranspose(m->membrane, tau, 1, sigma, F);
   for (PetscInt k = 0; k < n; k++) swapped += F[k] * V[k];
   CHECK(PetscAbsReal(product - swapped) < 1e-13 * size, "Dm and Dm^T adjoint, error %.1e",
         PetscAbsReal(product - swapped) / size);
-  for (PetscInt k = 0; k < m->M; k++)
-    V[2 * k] = 3 - 2 * scene->shape.X[2 * k + 1], V[2 * k + 1] = 1 + 2 * scene->shape.X[2 * k];
-  MembraneStretching(m, tau, V, work);
-  error = 0;
-  for (PetscInt k = 0; k < m->M; k++) error = PetscMax(error, PetscAbsReal(work[k]));
+  for (PetscInt k = 0; k < m->M; k++) V[2 * k] = 3 - 2 * X[2 * k + 1], V[2 * k + 1] = 1 + 2 * X[2 * k];
+  MembraneStretching(m->membrane, tau, V, d);
+  for (PetscInt k = 0; k < m->M; k++) error = PetscMax(error, PetscAbsReal(d[k]));
   CHECK(error < 1e-14, "a rigid motion stretches no edge, error %.1e", error);
-  PetscCall(PetscFree5(F, V, W, work, tau));
-  PetscCall(Destroy(&scene, &m));
+  PetscCall(PetscFree5(F, V, sigma, d, tau));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CheckOperators(void) {
+  TestMembrane m;
+  unsigned state = 5;
+  PetscFunctionBeginUser;
+  PetscCall(Ellipse(48, 0.6, 0.25, 17, &m));
+  PetscCall(CheckBending(&m, &state));
+  PetscCall(CheckStretching(&m, &state));
+  PetscCall(TestMembraneDestroy(&m));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 from conftest import COLUMNS, read_series, run_petves
 
+pytestmark = pytest.mark.xdist_group("output")  # its tests share runs
+
 #: Saved times fall on steps 0, 5, 10 and, as the end state, 12. A channel: u has as many columns as cells, v one row less.
 OPTIONS = (
     "-domain_box 0,2,-1,1 -domain_cells 40,40 -domain_bc_x periodic -flow_type shear -flow_rate 0.5 -fluid_viscosity 0.7 "

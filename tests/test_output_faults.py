@@ -12,6 +12,8 @@ import numpy as np
 import pytest
 from conftest import PAPER, PETVES, ROOT, SANITIZE, mpirun, read_series, run_petves, without_mpirun
 
+pytestmark = pytest.mark.xdist_group("output_faults")  # its tests share runs
+
 SCENE = "-domain_cells 24,24 -vesicle_semi_axes 0.3,0.5 -flow_type shear -time_step 0.02 -output_every 0.04"
 PYTHON = "/usr/bin/python3"
 
@@ -215,7 +217,7 @@ def times_of(folder: Path) -> tuple[list[float], list[float]]:
 
 
 def test_run_xmf_after_a_restart(straight, tmp_path):
-    """The frame of an end that was not the end goes, and so do frames past the checkpoint and what a killed run left
+    """A last frame goes when the restarted run passes its time, and so do frames past the checkpoint and what a killed run left
     half written; the rest is as the run had been one."""
     folder = tmp_path / "run"
     run_petves(folder, f"{SCENE} -time_end 0.06")

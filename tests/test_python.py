@@ -45,6 +45,7 @@ if not SANITIZE:  # a sanitized library cannot be loaded into Python
         assert done.returncode == 0 and "facts hold" in done.stdout, done.stdout + done.stderr
         assert not without_mpirun(done.stderr), "nothing is printed: the exception has the message"
 
+    @pytest.mark.alone
     def test_a_callback_costs_less_than_two_per_cent():
         done = run_python(SCRIPTS / "overhead.py", [])
         assert done.returncode == 0 and float(done.stdout) < 0.02, done.stdout + done.stderr

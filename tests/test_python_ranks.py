@@ -1,10 +1,12 @@
 """What one rank alone decides in Python, all ranks do: no run hangs. A time-out of mpirun's own ends one that does."""
 
+import re
 from pathlib import Path
 
 import h5py
 import pytest
 from conftest import PETVES, ROOT, SANITIZE, mpirun
+from test_errors import matches
 
 TIMEOUT = 60
 HEAD = """
@@ -100,3 +102,31 @@ with petves.Simulation(flow=stumble, **SCENE) as sim:
         done, told = run_script(tmp_path, body, ranks)
         assert done.returncode == 0, done.stderr
         assert told == ["Error"] * (ranks - 1) + [what]
+
+    @pytest.mark.parametrize("mistake", ["raise ValueError('mine')", "u = np.where(x > -9, np.nan, x)"])
+    def test_a_flow_that_fails_on_one_rank_fails_the_step_on_all(mistake, tmp_path):
+        """The message of docs/errors.md, on all ranks; the state before is on disk."""
+        body = f"""
+def flow(x, y, t):
+    u = y.copy()
+    if ALONE and t > 0.035:
+        {mistake}
+    return u, 0 * y
+TWO = dict(vesicle_count=2, vesicle_center=(-0.5, 0, 0.5, 0), vesicle_semi_axes=(0.2, 0.3), domain_cells=(48, 48))
+with petves.Simulation(flow=flow, **SCENE | TWO) as sim:
+    try:
+        sim.run()
+    except (ValueError, petves.Error) as error:
+        tell(type(error).__name__, sim.steps, error)
+"""
+        done, told = run_script(tmp_path, body, 2)
+        assert done.returncode == 0, done.stderr
+        raised = "raise" in mistake
+        listed = (ROOT / "docs" / "errors.md").read_text().split("## A flow from Python or C")[1]
+        pattern = re.search(rf"\| (?:{'fails' if raised else 'gives'}).*\| (.*) \|", listed)[1]
+        lines = ["ValueError 3 mine" if raised and rank else told[rank] for rank in range(2)]
+        assert told == lines and len(told) == 2
+        for line in told[: 1 if raised else 2]:
+            kind, steps, message = line.split(maxsplit=2)
+            assert (kind, steps) == ("Error", "3") and matches(pattern, message), line
+        assert last_good_step(tmp_path) == 3

@@ -12,6 +12,8 @@ import pytest
 from conftest import run_petves
 from restarts import SCHEMES, N, frames, one_line, without_wall
 
+pytestmark = pytest.mark.xdist_group("restart")  # its tests share runs
+
 
 @pytest.fixture(scope="module")
 def straight(tmp_path_factory):

@@ -5,41 +5,46 @@
 static const char *const derivatives[] = {"fd", "bending", "spectral"};
 
 /* Membrane of M markers on an ellipse, turned, off the middle. */
-static PetscErrorCode Create(int derivative, const char axes[], PetscInt M, TestWorld *w) {
+static PetscErrorCode Create(int derivative, const char axes[], PetscInt M, TestMembrane *w) {
   char options[512];
   PetscFunctionBeginUser;
   PetscCall(PetscSNPrintf(options, sizeof(options),
                           "-domain_cells 64,64 -domain_box 3,5,-1,1 -vesicle_semi_axes %s -vesicle_angle 25 "
                           "-vesicle_center 4.1,0.05 -vesicle_markers %d -membrane_derivative %s -scheme_type coupled",
                           axes, (int)M, derivatives[derivative]));
-  PetscCall(TestWorldCreate(options, w));
+  PetscCall(TestMembraneCreate(options, w));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Largest relative errors of edges and of the area against `area`. */
-static void Errors(Membrane m, const PetscScalar X[], PetscReal area, PetscReal error[2]) {
-  PetscScalar *e = m->work;
+static PetscErrorCode Errors(const TestMembrane *w, const PetscScalar X[], PetscReal area, PetscReal error[2]) {
+  const Membrane m = w->membrane;
+  PetscScalar *e;
   Measures measures;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(2 * w->M, &e));
   MembraneMeasure(m, 0, X, &measures);
   MembraneEdges(m, 0, X, e);
   error[0] = 0;
-  for (PetscInt k = 0; k < m->M; k++)
+  for (PetscInt k = 0; k < w->M; k++)
     error[0] = PetscMax(error[0],
                         PetscAbsReal(PetscSqrtReal(PetscSqr(e[2 * k]) + PetscSqr(e[2 * k + 1])) / m->ds[0] - 1));
   error[1] = PetscAbsReal(measures.area / area - 1);
+  PetscCall(PetscFree(e));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Random waves, and markers by themselves: edges are off by about epsilon. Afterwards all edges have their length, the
    area is the one before, and markers have not moved as a whole (a least displacement has no part that no constraint
    asks for). */
 static PetscErrorCode CheckRestored(int derivative, PetscReal epsilon) {
-  TestWorld w;
+  TestMembrane w;
   unsigned seed = 3;
   PetscReal *X, *before, wave[8], error[2], found, drift[2] = {0, 0};
   Measures measures;
   PetscFunctionBeginUser;
   PetscCall(Create(derivative, "0.25,0.5", 35, &w));
-  const PetscInt M = w.membrane->M;
+  const PetscInt M = w.M;
   PetscCall(PetscMalloc2(2 * M, &X, 2 * M, &before));
   for (int q = 0; q < 8; q++) wave[q] = TestRandom(&seed);
   for (PetscInt k = 0; k < 2 * M; k++) {
@@ -48,11 +53,11 @@ static PetscErrorCode CheckRestored(int derivative, PetscReal epsilon) {
       X[k] += epsilon * 0.1 * wave[2 * q + k % 2] * PetscCosReal(2 * PETSC_PI * (q + 1) * (k / 2) / M) / (q + 1);
     before[k] = X[k];
   }
-  Errors(w.membrane, X, 1, error);
+  PetscCall(Errors(&w, X, 1, error));
   const PetscReal wrong = error[0];
   MembraneMeasure(w.membrane, 0, X, &measures);
   PetscCall(MembraneRestoreEdges(w.membrane, 0, 1e-3, X, &found));
-  Errors(w.membrane, X, measures.area, error);
+  PetscCall(Errors(&w, X, measures.area, error));
   for (PetscInt k = 0; k < 2 * M; k++) drift[k % 2] += (X[k] - before[k]) / M;
   CHECK(wrong > 0.3 * epsilon && found == wrong && error[0] < 1e-12 && error[1] < 1e-12,
         "%s: edges off by %.1e (%.1e found) afterwards by %.1e, area by %.1e", derivatives[derivative], wrong, found,
@@ -60,41 +65,47 @@ static PetscErrorCode CheckRestored(int derivative, PetscReal epsilon) {
   CHECK(PetscAbsReal(drift[0]) + PetscAbsReal(drift[1]) < 1e-14, "%s, %.0e: the markers' mean stays, to %.1e",
         derivatives[derivative], epsilon, PetscAbsReal(drift[0]) + PetscAbsReal(drift[1]));
   PetscCall(PetscFree2(X, before));
-  PetscCall(TestWorldDestroy(&w));
+  PetscCall(TestMembraneDestroy(&w));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The shape found is the nearest: from X_0 + t J^T lambda, J^T lambda being across the shapes with the right edges,
-   back to X_0 but for O(t^2). Of edges alone J^T is that of MembraneEdges; the area is X_0's to first order only if J^T
-   lambda does not change it, so a multiple of the area's gradient (normals) is taken off. */
-static PetscErrorCode CheckNearest(int derivative) {
-  TestWorld w;
-  PetscReal *e, *across, *X, *normal, off[2] = {0, 0}, change[2], step = 1e-3;
+/* Gradient of the area at the initial markers, by differences: exact, as the polygon's and the spectral curve's areas
+   are quadratic. */
+static PetscErrorCode AreaGradient(const TestMembrane *w, PetscReal gradient[]) {
+  const PetscReal step = 1e-3;
+  PetscReal *X, change[2];
   PetscFunctionBeginUser;
-  PetscCall(Create(derivative, "0.25,0.5", 35, &w));
-  const Membrane m = w.membrane;
-  const PetscInt n = 2 * m->M;
-  PetscCall(PetscCalloc4(n, &e, n, &across, n, &X, n, &normal));
-  for (PetscInt k = 0; k < n;
-       k += 2) { /* the polygon's or the spectral curve's area, by differences: both are quadratic */
-    for (int c = 0; c < 2; c++) {
-      for (int side = 0; side < 2; side++) {
-        Measures measures;
-        PetscCall(PetscArraycpy(X, w.scene->shape.X, n));
-        X[k + c] += side ? step : -step;
-        MembraneMeasure(m, 0, X, &measures);
-        change[side] = measures.area;
-      }
-      normal[k + c] = (change[1] - change[0]) / (2 * step);
+  PetscCall(PetscMalloc1(2 * w->M, &X));
+  for (PetscInt k = 0; k < 2 * w->M; k++) {
+    for (int side = 0; side < 2; side++) {
+      Measures measures;
+      PetscCall(PetscArraycpy(X, w->scene->shape.X, 2 * w->M));
+      X[k] += side ? step : -step;
+      MembraneMeasure(w->membrane, 0, X, &measures);
+      change[side] = measures.area;
     }
+    gradient[k] = (change[1] - change[0]) / (2 * step);
   }
-  MembraneEdges(m, 0, w.scene->shape.X, e);
+  PetscCall(PetscFree(X));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A displacement across the shapes with the right edges: J^T lambda, J^T of edges alone being that of MembraneEdges. It
+   must not change the area, so a multiple of the area's gradient (normals) is taken off. Of largest entry 1. */
+static PetscErrorCode Across(const TestMembrane *w, PetscReal across[]) {
+  const Membrane m = w->membrane;
+  const PetscInt n = 2 * w->M;
+  PetscReal *e, *normal, flux = 0, size = 0, largest = 0;
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc2(n, &e, n, &normal));
+  PetscCall(PetscArrayzero(across, n));
+  PetscCall(AreaGradient(w, normal));
+  MembraneEdges(m, 0, w->scene->shape.X, e);
   for (PetscInt k = 0; k < n; k += 2) {
-    const PetscReal lambda = 0.5 + PetscCosReal(3 * PETSC_PI * k / m->M + 0.4);
+    const PetscReal lambda = 0.5 + PetscCosReal(3 * PETSC_PI * k / w->M + 0.4);
     for (int c = 0; c < 2; c++) e[k + c] *= lambda;
   }
   MembraneEdgesTranspose(m, 0, 1, e, across);
-  PetscReal flux = 0, size = 0, largest = 0;
   for (PetscInt k = 0; k < n; k++) {
     flux += across[k] * normal[k];
     size += PetscSqr(normal[k]);
@@ -103,27 +114,43 @@ static PetscErrorCode CheckNearest(int derivative) {
     across[k] -= flux / size * normal[k];
     largest = PetscMax(largest, PetscAbsReal(across[k]));
   }
+  for (PetscInt k = 0; k < n; k++) across[k] /= largest;
+  PetscCall(PetscFree2(e, normal));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The shape found is the nearest: from X_0 + t J^T lambda, J^T lambda being across the shapes with the right edges,
+   back to X_0 but for O(t^2). */
+static PetscErrorCode CheckNearest(int derivative) {
+  TestMembrane w;
+  PetscReal *across, *X, off[2] = {0, 0};
+  PetscFunctionBeginUser;
+  PetscCall(Create(derivative, "0.25,0.5", 35, &w));
+  const PetscReal *X0 = w.scene->shape.X, ds = w.membrane->ds[0];
+  const PetscInt n = 2 * w.M;
+  PetscCall(PetscMalloc2(n, &across, n, &X));
+  PetscCall(Across(&w, across));
   for (int t = 0; t < 2; t++) {
     PetscReal found;
-    for (PetscInt k = 0; k < n; k++) X[k] = w.scene->shape.X[k] + (t ? 0.005 : 0.01) * m->ds[0] / largest * across[k];
-    PetscCall(MembraneRestoreEdges(m, 0, 1e-6, X, &found));
-    for (PetscInt k = 0; k < n; k++) off[t] = PetscMax(off[t], PetscAbsReal(X[k] - w.scene->shape.X[k]));
+    for (PetscInt k = 0; k < n; k++) X[k] = X0[k] + (t ? 0.005 : 0.01) * ds * across[k];
+    PetscCall(MembraneRestoreEdges(w.membrane, 0, 1e-6, X, &found));
+    for (PetscInt k = 0; k < n; k++) off[t] = PetscMax(off[t], PetscAbsReal(X[k] - X0[k]));
   }
-  CHECK(off[0] / off[1] > 3.6 && off[0] / off[1] < 4.4 && off[0] < 0.001 * m->ds[0],
+  CHECK(off[0] / off[1] > 3.6 && off[0] / off[1] < 4.4 && off[0] < 0.001 * ds,
         "%s: back to the nearest shape but for second order, %.1e and %.1e from half as far", derivatives[derivative],
         off[0], off[1]);
-  PetscCall(PetscFree4(e, across, X, normal));
-  PetscCall(TestWorldDestroy(&w));
+  PetscCall(PetscFree2(across, X));
+  PetscCall(TestMembraneDestroy(&w));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* What is left after one, two and three steps of Newton: the square of what was left before, times a constant. */
 static PetscErrorCode CheckQuadratic(int derivative) {
-  TestWorld w;
+  TestMembrane w;
   PetscReal *X, left[4];
   PetscFunctionBeginUser;
   PetscCall(Create(derivative, "0.25,0.5", 35, &w));
-  const PetscInt M = w.membrane->M;
+  const PetscInt M = w.M;
   const PetscBool spectral = derivative == 2 ? PETSC_TRUE : PETSC_FALSE;
   PetscCall(PetscMalloc1(2 * M, &X));
   for (PetscInt most = 0; most < 4; most++) {
@@ -139,7 +166,7 @@ static PetscErrorCode CheckQuadratic(int derivative) {
     CHECK(left[k + 1] < 5 * PetscSqr(left[k]) + 1e-13, "%s: %.1e, after another one %.1e: %.1f times the square",
           derivatives[derivative], left[k], left[k + 1], left[k + 1] / PetscSqr(left[k]));
   PetscCall(PetscFree(X));
-  PetscCall(TestWorldDestroy(&w));
+  PetscCall(TestMembraneDestroy(&w));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -148,11 +175,11 @@ static PetscErrorCode CheckNothingMoves(int derivative) {
   static const char *const axes[] = {"0.25,0.5", "0.4,0.4"};
   PetscFunctionBeginUser;
   for (int circle = 0; circle < 2; circle++) {
-    TestWorld w;
+    TestMembrane w;
     PetscReal *X, *before, found;
     PetscBool same;
     PetscCall(Create(derivative, axes[circle], 35, &w));
-    const PetscInt M = w.membrane->M;
+    const PetscInt M = w.M;
     PetscCall(PetscMalloc2(2 * M, &X, 2 * M, &before));
     for (PetscInt k = 0; k < 2 * M; k++) X[k] = before[k] = (circle ? 1.01 : 1.0009) * w.scene->shape.X[k];
     PetscCall(MembraneRestoreEdges(w.membrane, 0, 1e-3, X, &found));
@@ -160,7 +187,7 @@ static PetscErrorCode CheckNothingMoves(int derivative) {
     CHECK(same && found == 0, "%s: %s moves nothing", derivatives[derivative],
           circle ? "a circle that is too large" : "an edge error of 9e-4");
     PetscCall(PetscFree2(X, before));
-    PetscCall(TestWorldDestroy(&w));
+    PetscCall(TestMembraneDestroy(&w));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -7,6 +7,8 @@ import numpy as np
 import pytest
 from conftest import COLUMNS, SANITIZE, run_petves
 
+pytestmark = pytest.mark.xdist_group("runs")  # its tests share runs
+
 REFERENCES = json.loads((Path(__file__).parent / "references.json").read_text())
 TIGHT = "-tension_ksp_rtol 1e-12 -bending_ksp_rtol 1e-12"
 SHEAR = "-domain_cells 64,64 -flow_type shear -time_step 0.0078125"

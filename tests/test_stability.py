@@ -131,7 +131,7 @@ def test_stiff_membranes_keep_area_length_and_shape(dt, tmp_path):
     assert (energy - np.minimum.accumulate(energy)).max() < 2e-3 * energy[0]
     soft = run_petves(tmp_path / "soft", f"{scene} 1 -time_step {1 / 64} -time_end 4").series
     assert abs(series["energy_bending"][-1] / (100 * soft["energy_bending"][-1]) - 1) < 1e-3
-    warnings = [line for line in run.stdout.splitlines() if "has been put right" in line]
+    warnings = [line for line in run.stdout.splitlines() if "has been corrected" in line]
     assert len(warnings) == 1, run.stdout
 
 

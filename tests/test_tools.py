@@ -17,6 +17,8 @@ from conftest import ENVIRONMENT, PETVES, PROGRAMS, ROOT, read_series, run_petve
 import petves
 from petves.run import Run
 
+pytestmark = pytest.mark.xdist_group("tools")  # its tests share runs
+
 OPTIONS = (
     "-scheme_type coupled -delta_type cbs54 -domain_cells 32,48 -domain_box -1,1,-1,2 -flow_type shear"
     " -vesicle_semi_axes 0.3,0.5 -time_step 0.01 -time_end 0.04 -output_every 0.02"

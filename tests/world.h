@@ -20,10 +20,40 @@ static inline PetscErrorCode TestScene(const char options[], Scene *scene) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A fluid and (coupling and X NULL without vesicles) membranes in it; no files. */
+/* The membranes of a scene without a fluid. Every rank has all vesicles to itself: the layout is of PETSC_COMM_SELF. */
+typedef struct {
+  Scene scene;
+  Layout layout;
+  Membrane membrane;
+  PetscInt M; /* markers in all */
+} TestMembrane;
+
+/* TestMembraneCreate - from an options text after PAPER_MEMBRANE. */
+static inline PetscErrorCode TestMembraneCreate(const char options[], TestMembrane *m) {
+  const SceneMembrane *membrane;
+  PetscFunctionBeginUser;
+  PetscCall(TestScene(options, &m->scene));
+  membrane = &m->scene->membrane;
+  PetscCall(LayoutCreate(PETSC_COMM_SELF, m->scene->shape.vesicles, m->scene->shape.start, &m->layout));
+  PetscCall(MembraneCreate(m->layout, m->scene->shape.X, membrane->bending, (DerivativeType)membrane->derivative,
+                           &m->membrane));
+  m->M = m->layout->M;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static inline PetscErrorCode TestMembraneDestroy(TestMembrane *m) {
+  PetscFunctionBeginUser;
+  PetscCall(MembraneDestroy(&m->membrane));
+  PetscCall(LayoutDestroy(&m->layout));
+  PetscCall(SceneDestroy(&m->scene));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A fluid and the membranes in it, none without vesicles; no files. */
 typedef struct {
   Scene scene;
   Fluid fluid;
+  Layout layout;
   Membrane membrane;
   Coupling coupling;
   Vec X;         /* the initial markers */
@@ -32,42 +62,60 @@ typedef struct {
 
 /* TestWorldBuild - all but the scheme, from the scene that is in it. */
 static inline PetscErrorCode TestWorldBuild(TestWorld *w) {
-  const SceneMembrane *membrane = &w->scene->membrane;
+  const Scene s = w->scene;
   PetscScalar *x;
   PetscFunctionBeginUser;
-  PetscCall(FluidCreate(&w->scene->fluid, &w->fluid));
-  PetscCall(MembraneCreate(&w->scene->shape, membrane->bending, (DerivativeType)membrane->derivative, &w->membrane));
   w->scheme = NULL;
-  w->coupling = NULL;
-  w->X = NULL;
-  if (!w->scene->shape.vesicles) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(CouplingCreate(w->fluid->grid, w->membrane, w->scene->coupling.kernel, &w->coupling));
-  PetscCall(MembraneCreateMarkerVec(w->membrane, &w->X));
+  PetscCall(FluidCreate(&s->fluid, &w->fluid));
+  PetscCall(LayoutCreate(s->comm, s->shape.vesicles, s->shape.start, &w->layout));
+  PetscCall(
+      MembraneCreate(w->layout, s->shape.X, s->membrane.bending, (DerivativeType)s->membrane.derivative, &w->membrane));
+  PetscCall(CouplingCreate(w->fluid, w->membrane, s->coupling.kernel, (SelfMobilityType)s->coupling.self_mobility,
+                           &w->coupling));
+  PetscCall(LayoutCreateVec(w->layout, 2, &w->X));
   PetscCall(VecGetArray(w->X, &x));
-  PetscCall(PetscArraycpy(x, w->scene->shape.X, 2 * w->membrane->M));
+  PetscCall(PetscArraycpy(x, s->shape.X + 2 * w->layout->first, 2 * w->layout->n));
   PetscCall(VecRestoreArray(w->X, &x));
-  PetscCall(CouplingSetMarkers(w->coupling, w->X));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* TestWorldPlace - the coupling at the initial markers for the time coefficient a0. */
+static inline PetscErrorCode TestWorldPlace(PetscReal a0, TestWorld *w) {
+  char message[PETVES_MAX_MESSAGE];
+  PetscFunctionBeginUser;
+  PetscCall(CouplingPlace(w->coupling, a0, w->X, message));
+  PetscCheck(!*message, w->scene->comm, PETSC_ERR_LIB, "%s", message);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* TestWorldShare - x[n] of the first vesicle's owner to every rank. Collective. */
+static inline PetscErrorCode TestWorldShare(TestWorld *w, PetscMPIInt n, PetscReal x[]) {
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Bcast(x, n, MPIU_REAL, LayoutOwner(w->layout, 0), w->scene->comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* TestWorldScheme - the scheme, at its initial state. */
 static inline PetscErrorCode TestWorldScheme(TestWorld *w) {
   PetscFunctionBeginUser;
-  PetscCall(SchemeCreate(w->scene, w->fluid, w->membrane, w->coupling, w->scene->shape.X, &w->scheme));
+  PetscCall(SchemeCreate(w->scene, w->coupling, w->scene->shape.X, &w->scheme));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* TestWorldCreate - without a scheme; TestRunCreate - with it: from an options text after PAPER_MEMBRANE. */
+/* TestWorldCreate - placed, for the first step's a0, without a scheme; TestRunCreate - with a scheme, which places:
+   from an options text after PAPER_MEMBRANE. */
 static inline PetscErrorCode TestWorldCreate(const char options[], TestWorld *w) {
   PetscFunctionBeginUser;
   PetscCall(TestScene(options, &w->scene));
   PetscCall(TestWorldBuild(w));
+  PetscCall(TestWorldPlace(w->fluid->a0, w));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static inline PetscErrorCode TestRunCreate(const char options[], TestWorld *w) {
   PetscFunctionBeginUser;
-  PetscCall(TestWorldCreate(options, w));
+  PetscCall(TestScene(options, &w->scene));
+  PetscCall(TestWorldBuild(w));
   PetscCall(TestWorldScheme(w));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -78,6 +126,7 @@ static inline PetscErrorCode TestWorldDestroy(TestWorld *w) {
   PetscCall(VecDestroy(&w->X));
   PetscCall(CouplingDestroy(&w->coupling));
   PetscCall(MembraneDestroy(&w->membrane));
+  PetscCall(LayoutDestroy(&w->layout));
   PetscCall(FluidDestroy(&w->fluid));
   PetscCall(SceneDestroy(&w->scene));
   PetscFunctionReturn(PETSC_SUCCESS);

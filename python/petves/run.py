@@ -131,7 +131,7 @@ class Run:
         return np.arctan2(middle[:, 1], middle[:, 0])
 
     def tension_points(self, frame: int, vesicle: int = 0) -> np.ndarray:
-        """Return where the tension lives, shape (n, 2): the midpoints of the edges, or the markers with spectral edges."""
+        """Return where the tension is, shape (n, 2): the midpoints of the edges, or the markers with spectral edges."""
         points = self.outline(frame, vesicle)[:-1]
         if self.options().get("membrane_derivative") == "spectral":
             return points

@@ -1,7 +1,7 @@
 #include "base/base.h"
 #include <ctype.h>
 
-/* Logging and error state of the whole program. It lives here and nowhere else; PETSc's logging, which it feeds, is
+/* Logging and error state of the whole program. It is kept here and nowhere else; PETSc's logging, which it feeds, is
    program-wide too. */
 static struct {
   PetscBool one_line;

@@ -1,5 +1,5 @@
-/* Chat = S^T S + S^T G diag(L)^-1 G^T S, assembled. Each column of S lives in a small window of cells around its edge:
-   entry (Chat)_kl is the product of two windows where they overlap. */
+/* Chat = S^T S + S^T G diag(L)^-1 G^T S, assembled. Each column of S is zero outside a small window of cells around its
+   edge: entry (Chat)_kl is the product of two windows where they overlap. */
 #include "coupling/lagrangian.h"
 
 typedef struct {

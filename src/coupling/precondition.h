@@ -46,7 +46,7 @@ PETSC_EXTERN PetscErrorCode PreconditionerDestroy(Preconditioner *preconditioner
 
 /* PreconditionerSetUp - follow the coupling's a0 and markers; a solve begins. The dense blocks are kept while a0 moves
    by less than 10 % and until the iterations beyond those of the first solve with them have cost as much as new ones
-   would; a solve that suffers badly makes them anew and goes on. Collective. */
+   would; a solve that needs many more iterations makes them anew and goes on. Collective. */
 PETSC_EXTERN PetscErrorCode PreconditionerSetUp(Preconditioner preconditioner);
 
 /* PreconditionerApply - z ~ A^-1 r, of residuals and unknowns. Collective. */

@@ -81,8 +81,8 @@ PETSC_EXTERN PetscErrorCode MembraneNormalSpeed(Membrane membrane, Vec X, Vec U,
 
 /* MembraneRestoreEdges - where an edge of one vesicle is off by more than tolerance (relative), move its markers as
    little as possible until all edges have the length ds and the area is what it was: Newton (CurveFit). Nothing moves
-   where that does not converge, as on a circle, which has no freedom. error: the largest one mended, 0 when nothing has
-   moved. */
+   where that does not converge, as on a circle, which has no freedom. error: the largest one corrected, 0 when nothing
+   has moved. */
 PETSC_EXTERN PetscErrorCode MembraneRestoreEdges(Membrane membrane, PetscInt vesicle, PetscReal tolerance,
                                                  PetscScalar X[], PetscReal *error);
 

@@ -20,7 +20,7 @@ static PetscErrorCode WarnOfEdges(Scheme s, Coupled *d, const Restored *r) {
   if (r->error >= EDGE_WARNING)
     PetscCall(PetscSNPrintf(message, sizeof(message),
                             "vesicle %" PetscInt_FMT ": an edge was off by %.2g of its length after step "
-                            "%" PetscInt_FMT " and has been put right; try a smaller -time_step",
+                            "%" PetscInt_FMT " and has been corrected; try a smaller -time_step",
                             r->who + 1, (double)r->error, s->state.step + 1));
   PetscCall(AgreeMessage(s->membrane->layout->comm, message));
   PetscCall(PetscPrintf(s->scene->comm, "petves: warning: %s\n", message));

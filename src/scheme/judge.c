@@ -44,10 +44,12 @@ PetscReal StepSize(const StepPolicy *p, StepPlan *plan, PetscReal courant, Petsc
 
 /* The error X - X* is of second order in dt; in a first step X* = X, and it is the whole movement, so not tested. An
    error that a smaller step has not lowered is not the step's, but what the length target corrects at the start, or the
-   solver's tolerance. */
+   solver's tolerance. One that is not finite is always the step's. */
 StepVerdict StepJudge(const StepPolicy *p, const StepTrial *t, StepPlan *plan) {
-  const PetscBool fixed = t->error > 0.9 * plan->before ? PETSC_TRUE : PETSC_FALSE;
-  const PetscBool inexact = !t->first && !fixed && !(t->error <= p->tolerance) ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool lost = PetscIsInfOrNanReal(t->error) ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool fixed = !lost && t->error > 0.9 * plan->before ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool above = !t->first && !fixed && t->error > p->tolerance ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool inexact = lost || above ? PETSC_TRUE : PETSC_FALSE;
   const PetscBool too_far = p->max_move > 0 && t->speed * t->dt > p->max_move ? PETSC_TRUE : PETSC_FALSE;
   const PetscBool uneven = t->ratio <= 2 ? PETSC_FALSE : PETSC_TRUE; /* or not a number */
   PetscReal factor = SAFETY * (t->first ? 1 : PetscSqrtReal(p->tolerance / PetscMax(t->error, 1e-30)));
@@ -57,7 +59,7 @@ StepVerdict StepJudge(const StepPolicy *p, const StepTrial *t, StepPlan *plan) {
     return plan->level < LEAST_LEVEL ? STEP_GIVE_UP : STEP_REPEAT;
   }
   if (too_far) factor = PetscMin(factor, SAFETY * p->max_move / (t->speed * t->dt));
-  if (uneven || PetscIsNanReal(t->error)) factor = 0.25;
+  if (uneven || lost) factor = 0.25;
   wanted = LevelOfSize(p, factor * t->dt, 0);
   if (inexact || too_far || uneven) {
     plan->before = t->error;

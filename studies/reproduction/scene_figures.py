@@ -27,7 +27,7 @@ def membrane(
     shift: float = 0.0,
     before: float = 0.0,
 ):
-    """Draw a smooth closed curve coloured by tension, which lives `before` edges before the markers; return the lines."""
+    """Draw a smooth closed curve coloured by tension, which is given `before` edges before the markers; return the lines."""
     from matplotlib.collections import LineCollection
 
     points = np.asarray(markers)

@@ -1,4 +1,4 @@
-"""Facts of petves.Simulation, on any number of ranks: state, measures, PETSc objects, life and death."""
+"""Facts of petves.Simulation, on any number of ranks: state, measures, PETSc objects, creation and destruction."""
 
 import gc
 import sys
@@ -137,7 +137,7 @@ def solvers():
 
 
 def several():
-    """Simulations live side by side, each with its own options, and give the same bits as alone."""
+    """Several simulations exist at the same time, each with its own options, and give the same bits as alone."""
     with petves.Simulation(**SMALL) as alone:
         alone.run()
         expected = alone.markers.copy()

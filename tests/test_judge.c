@@ -1,0 +1,253 @@
+/* Step sizes: what StepJudge makes of an attempt and StepSize of a plan, both pure functions, as tables of cases. */
+#include "world.h"
+#include "scheme/judge.h"
+
+#define TOL 1e-4 /* of the error */
+#define MOVE 0.1 /* that a marker may move */
+#define SMALL 1e-12
+#define NONE PETSC_MAX_REAL
+
+/* An attempt at a level, of a whole step of it or of a part; sizes are over the base, speeds times it. */
+typedef struct {
+  const char *name;
+  PetscInt level;
+  PetscReal part;   /* of the level's step that was tried: less than 1 at the end of a run */
+  PetscReal before; /* error of the attempt before in the same step, NONE without */
+  PetscReal error, speed, ratio;
+  PetscBool unsolved, first;
+  StepVerdict verdict;
+  PetscInt next; /* level after */
+} Row;
+
+/* clang-format off */
+static const Row rows[] = {
+  /* accepted: 0.9 sqrt(TOL/error) of the step, at most two levels up, as many down as that says */
+  {"a tiny error grows by a factor of 2 only", 0, 1, NONE, SMALL, 0, 1, .verdict = STEP_ACCEPT, .next = 2},
+  {"the same from a deep level", -20, 1, NONE, SMALL, 0, 1, .verdict = STEP_ACCEPT, .next = -18},
+  {"an error of zero", 0, 1, NONE, 0, 0, 1, .verdict = STEP_ACCEPT, .next = 2},
+  {"a quarter of the tolerance grows by a level", 0, 1, NONE, 0.25 * TOL, 0, 1, .verdict = STEP_ACCEPT, .next = 1},
+  {"half of the tolerance keeps its size", 0, 1, NONE, 0.5 * TOL, 0, 1, .verdict = STEP_ACCEPT, .next = 0},
+  {"just inside the tolerance is accepted and then smaller", 0, 1, NONE, 0.95 * TOL, 0, 1,
+   .verdict = STEP_ACCEPT, .next = -1},
+  {"an error equal to the tolerance is accepted", 0, 1, NONE, TOL, 0, 1, .verdict = STEP_ACCEPT, .next = -1},
+  {"no growth above the largest level", 40, 1, NONE, SMALL, 0, 1, .verdict = STEP_ACCEPT, .next = 40},
+  {"nor beyond it by half a growth", 39, 1, NONE, SMALL, 0, 1, .verdict = STEP_ACCEPT, .next = 40},
+  {"a part of a step says nothing of a larger one", 0, 0.3, NONE, SMALL, 0, 1, .verdict = STEP_ACCEPT, .next = 0},
+  {"nor of a smaller one", 0, 0.3, NONE, 0.95 * TOL, 0, 1, .verdict = STEP_ACCEPT, .next = 0},
+  {"growth no further than markers may move", 0, 1, NONE, SMALL, 0.05, 1, .verdict = STEP_ACCEPT, .next = 1},
+  {"or smaller when they nearly moved too far", 0, 1, NONE, SMALL, 0.095, 1, .verdict = STEP_ACCEPT, .next = -1},
+  {"edges of ratio 2 are even enough", 0, 1, NONE, SMALL, 0, 2, .verdict = STEP_ACCEPT, .next = 2},
+  /* above the tolerance: smaller, by a level at least */
+  {"just above the tolerance", 0, 1, NONE, 1.001 * TOL, 0, 1, .verdict = STEP_REPEAT, .next = -1},
+  {"twice the tolerance", 0, 1, NONE, 2 * TOL, 0, 1, .verdict = STEP_REPEAT, .next = -2},
+  {"a hundred times the tolerance", 0, 1, NONE, 100 * TOL, 0, 1, .verdict = STEP_REPEAT, .next = -7},
+  {"a part of a step with a large error", 0, 0.5, NONE, 4 * TOL, 0, 1, .verdict = STEP_REPEAT, .next = -5},
+  {"an error that is not a number: a quarter", 0, 1, NONE, NAN, 0, 1, .verdict = STEP_REPEAT, .next = -4},
+  {"not a number after a known error", 0, 1, 2 * TOL, NAN, 0, 1, .verdict = STEP_REPEAT, .next = -4},
+  {"an error that asks for less than the least level", 0, 1, NONE, 1e30, 0, 1, .verdict = STEP_GIVE_UP, .next = -114},
+  {"an infinite error: a quarter", 0, 1, NONE, INFINITY, 0, 1, .verdict = STEP_REPEAT, .next = -4},
+  {"an infinite error after a known one", 0, 1, 2 * TOL, INFINITY, 0, 1, .verdict = STEP_REPEAT, .next = -4},
+  {"a large error after an infinite one", 0, 1, INFINITY, 100 * TOL, 0, 1, .verdict = STEP_REPEAT, .next = -7},
+  /* not solved: half the step, whatever the rest says */
+  {"not solved", 0, 1, NONE, NAN, NAN, NAN, PETSC_TRUE, .verdict = STEP_REPEAT, .next = -2},
+  {"not solved, with numbers that would do", 6, 1, NONE, SMALL, 0, 1, PETSC_TRUE, .verdict = STEP_REPEAT, .next = 4},
+  {"a first step not solved", -10, 1, NONE, 0, 0, 1, PETSC_TRUE, PETSC_TRUE, STEP_REPEAT, -12},
+  {"not solved at the last levels", -78, 1, NONE, 0, 0, 1, PETSC_TRUE, .verdict = STEP_REPEAT, .next = -80},
+  {"not solved below them", -79, 1, NONE, 0, 0, 1, PETSC_TRUE, .verdict = STEP_GIVE_UP, .next = -81},
+  /* too far: 0.9 of the step that moves as far as allowed */
+  {"twice too far", 0, 1, NONE, SMALL, 0.2, 1, .verdict = STEP_REPEAT, .next = -3},
+  {"just too far", 0, 1, NONE, SMALL, 0.1001, 1, .verdict = STEP_REPEAT, .next = -1},
+  {"too far and too large an error: the smaller step", 0, 1, NONE, 100 * TOL, 0.2, 1,
+   .verdict = STEP_REPEAT, .next = -7},
+  {"too far, from a large level", 4, 1, NONE, SMALL, 0.2, 1, .verdict = STEP_REPEAT, .next = -3},
+  /* uneven edges: a quarter */
+  {"uneven edges", 0, 1, NONE, SMALL, 0, 2.1, .verdict = STEP_REPEAT, .next = -4},
+  {"an edge ratio that is not a number", 0, 1, NONE, SMALL, 0, NAN, .verdict = STEP_REPEAT, .next = -4},
+  {"uneven edges, large error", 0, 1, NONE, 1e4 * TOL, 0, 3, .verdict = STEP_REPEAT, .next = -4},
+  /* a first step's error is its whole movement and does not count */
+  {"a first step, whatever its error", -10, 1, NONE, 1e6 * TOL, 0, 1, .first = PETSC_TRUE,
+   .verdict = STEP_ACCEPT, .next = -10},
+  {"a first step does not grow", -10, 1, NONE, SMALL, 0, 1, .first = PETSC_TRUE, .verdict = STEP_ACCEPT, .next = -10},
+  {"a first step to where nothing is finite", -10, 1, NONE, NAN, 0, 1, .first = PETSC_TRUE,
+   .verdict = STEP_REPEAT, .next = -14},
+  {"a first step too far", 0, 1, NONE, 1e6 * TOL, 0.2, 1, .first = PETSC_TRUE, .verdict = STEP_REPEAT, .next = -3},
+  {"a first step with uneven edges", 0, 1, NONE, SMALL, 0, 3, .first = PETSC_TRUE, .verdict = STEP_REPEAT, .next = -4},
+  /* an error that a smaller step does not lower is not the step's */
+  {"an error hardly lowered is accepted, without growth", -2, 1, 2 * TOL, 1.9 * TOL, 0, 1,
+   .verdict = STEP_ACCEPT, .next = -2},
+  {"a larger error than before too", -2, 1, 2 * TOL, 5 * TOL, 0, 1, .verdict = STEP_ACCEPT, .next = -2},
+  {"an error lowered by more than a tenth repeats", 0, 1, 2 * TOL, 1.7 * TOL, 0, 1, .verdict = STEP_REPEAT, .next = -2},
+  {"not lowered, but too far", 0, 1, 2 * TOL, 1.9 * TOL, 0.2, 1, .verdict = STEP_REPEAT, .next = -3},
+  {"not lowered, but uneven", 0, 1, 2 * TOL, 1.9 * TOL, 0, 3, .verdict = STEP_REPEAT, .next = -4},
+  /* nothing smaller is left */
+  {"too large an error at the least level", -80, 1, NONE, 1.001 * TOL, 0, 1, .verdict = STEP_GIVE_UP, .next = -81},
+  {"too large an error one above", -79, 1, NONE, 1.001 * TOL, 0, 1, .verdict = STEP_REPEAT, .next = -80},
+  {"uneven edges near the least level", -77, 1, NONE, SMALL, 0, 3, .verdict = STEP_GIVE_UP, .next = -81},
+  {"a good step at the least level", -80, 1, NONE, SMALL, 0, 1, .verdict = STEP_ACCEPT, .next = -78}};
+/* clang-format on */
+
+static StepPolicy Policy(PetscReal base) {
+  return (StepPolicy){.adaptive = PETSC_TRUE, .base = base, .tolerance = TOL, .max_move = MOVE};
+}
+
+static PetscReal SizeOf(PetscReal base, PetscInt level) {
+  return base * PetscPowReal(2, 0.5 * (PetscReal)level);
+}
+
+/* A row at a base; twice, as a pure function says the same again. What an attempt that is tried again leaves behind is
+   its error. */
+static PetscErrorCode CheckRow(const Row *r, PetscReal base) {
+  const StepPolicy policy = Policy(base);
+  const StepTrial trial = {.solved = r->unsolved ? PETSC_FALSE : PETSC_TRUE,
+                           .first = r->first,
+                           .dt = r->part * SizeOf(base, r->level),
+                           .error = r->error,
+                           .speed = r->speed / base,
+                           .ratio = r->ratio};
+  StepPlan plan[2];
+  StepVerdict verdict[2];
+  PetscFunctionBeginUser;
+  for (int k = 0; k < 2; k++) {
+    plan[k] = (StepPlan){.level = r->level, .before = r->before};
+    verdict[k] = StepJudge(&policy, &trial, &plan[k]);
+  }
+  const PetscBool known = trial.solved && verdict[0] != STEP_ACCEPT ? PETSC_TRUE : PETSC_FALSE;
+  const PetscReal left = known ? r->error : r->before;
+  CHECK(verdict[0] == r->verdict && plan[0].level == r->next,
+        "base %g, %s: verdict %d, level %d to %d (wanted: %d, %d)", base, r->name, verdict[0], (int)r->level,
+        (int)plan[0].level, r->verdict, (int)r->next);
+  CHECK(plan[0].before == left || (PetscIsNanReal(left) && PetscIsNanReal(plan[0].before)),
+        "   and leaves the error %g behind", plan[0].before);
+  CHECK(verdict[1] == verdict[0] && plan[1].level == plan[0].level, "   and says the same again");
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Without a limit on what markers move, and with other tolerances. */
+static PetscErrorCode CheckPolicies(void) {
+  StepPolicy policy = Policy(1);
+  StepTrial trial = {.solved = PETSC_TRUE, .dt = 1, .error = SMALL, .speed = 1e6, .ratio = 1};
+  StepPlan plan = {.before = NONE};
+  PetscFunctionBeginUser;
+  policy.max_move = 0;
+  CHECK(StepJudge(&policy, &trial, &plan) == STEP_ACCEPT && plan.level == 2, "max_move = 0: markers may go anywhere");
+  policy.tolerance = 1;
+  trial.error = 0.5;
+  plan = (StepPlan){.before = NONE};
+  CHECK(StepJudge(&policy, &trial, &plan) == STEP_ACCEPT && plan.level == 0, "half of another tolerance");
+  trial.error = 2;
+  CHECK(StepJudge(&policy, &trial, &plan) == STEP_REPEAT && plan.level == -2, "twice another tolerance");
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Sizes, over the base. */
+static const struct {
+  const char *name;
+  PetscInt level;
+  PetscReal max_step, courant, most; /* max_step 0, courant and most NONE: no limit */
+  PetscReal dt;
+  PetscInt next;
+} sizes[] = {{"a level's step", 2, 0, NONE, NONE, 2, 2},
+             {"an odd level's step", 1, 0, NONE, NONE, PETSC_SQRT2, 1},
+             {"max_step lowers the level", 2, 1, NONE, NONE, 1, 0},
+             {"to a whole level below it", 2, 1.3, NONE, NONE, 1, 0},
+             {"to itself where it is one", 4, PETSC_SQRT2, NONE, NONE, PETSC_SQRT2, 1},
+             {"max_step above the step", 0, 100, NONE, NONE, 1, 0},
+             {"the Courant limit lowers the level", 2, 0, 0.5, NONE, 0.5, -2},
+             {"to a whole level below it", 2, 0, 0.6, NONE, 0.5, -2},
+             {"a Courant limit above the step", 2, 0, 3, NONE, 2, 2},
+             {"the lower one of two limits", 2, 1, 0.5, NONE, 0.5, -2},
+             {"whichever it is", 2, 0.5, 1, NONE, 0.5, -2},
+             {"a whole step, far from the end", 0, 0, NONE, 100, 1, 0},
+             {"a whole step, two from the end", 0, 0, NONE, 2, 1, 0},
+             {"half of what is left, less than two steps from it", 0, 0, NONE, 1.5, 0.75, 0},
+             {"half of what is left, hardly more than a step", 0, 0, NONE, 1.001, 0.5005, 0},
+             {"what is left, where a step reaches it", 0, 0, NONE, 1, 1, 0},
+             {"what is left, a rounding above a step", 0, 0, NONE, 1 + 1e-13, 1 + 1e-13, 0},
+             {"what is left, less than a step", 0, 0, NONE, 0.3, 0.3, 0},
+             {"half of what is left, of a lowered step", 6, 0, 1, 1.5, 0.75, 0}};
+
+static PetscErrorCode CheckSizes(PetscReal base) {
+  PetscFunctionBeginUser;
+  for (size_t k = 0; k < sizeof(sizes) / sizeof(sizes[0]); k++) {
+    StepPolicy policy = Policy(base);
+    StepPlan plan = {.level = sizes[k].level, .before = NONE};
+    PetscReal dt;
+    policy.max_step = base * sizes[k].max_step;
+    dt = StepSize(&policy, &plan, sizes[k].courant < NONE ? base * sizes[k].courant : NONE,
+                  sizes[k].most < NONE ? base * sizes[k].most : NONE);
+    CHECK(PetscAbsReal(dt / (base * sizes[k].dt) - 1) < 1e-14 && plan.level == sizes[k].next,
+          "base %g, %s: %g of the base, level %d", base, sizes[k].name, dt / base, (int)plan.level);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Steps of one level up to an end: the two last are equal, and no step is shorter than half a step. */
+static PetscErrorCode CheckEnd(PetscReal end) {
+  const StepPolicy policy = Policy(0.1);
+  StepPlan plan = {.level = 0, .before = NONE};
+  PetscReal t = 0, last[2] = {0, 0}, least = NONE;
+  int steps = 0;
+  PetscFunctionBeginUser;
+  while (!StepFinished(&policy, t, end) && steps++ < 1000) {
+    last[0] = last[1];
+    last[1] = StepSize(&policy, &plan, NONE, end - t);
+    least = PetscMin(least, last[1]);
+    t += last[1];
+  }
+  CHECK(PetscAbsReal(t - end) < 1e-12 && PetscAbsReal(last[0] - last[1]) < 1e-12 && least > 0.4999 * policy.base,
+        "%d steps to %g, the last two %g and %g", steps, end, last[0], last[1]);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* When a time counts as the end: within rounding of it, or within half a fixed step. */
+static PetscErrorCode CheckFinished(void) {
+  StepPolicy p = Policy(0.1);
+  PetscFunctionBeginUser;
+  CHECK(StepFinished(&p, 3, 3) && StepFinished(&p, 3.5, 3) && StepFinished(&p, 3 - 1e-11, 3), "the end");
+  CHECK(!StepFinished(&p, 3 - 1e-9, 3) && !StepFinished(&p, 2.96, 3), "before the end");
+  p.adaptive = PETSC_FALSE;
+  CHECK(StepFinished(&p, 2.96, 3) && !StepFinished(&p, 2.94, 3), "within half a fixed step of the end");
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The policy of a scene; without vesicles there is no error to judge by. */
+static PetscErrorCode CheckPolicy(void) {
+  static const char options[] = "-domain_cells 64,64 -scheme_type coupled -time_step 0.02 -time_adapt_tol 3e-4 "
+                                "-time_adapt_max_move 2 -time_adapt_max_step 0.5 -time_adapt error";
+  const PetscReal first = SizeOf(1, StepFirstLevel());
+  StepPolicy p;
+  Scene scene;
+  PetscFunctionBeginUser;
+  PetscCall(TestScene(options, &scene));
+  p = StepPolicyCreate(scene, scene->shape.vesicles);
+  CHECK(p.adaptive && p.base == 0.02 && p.tolerance == 3e-4 && p.max_move == 2. / 32 && p.max_step == 0.5,
+        "a policy has what its scene says: base %g, tolerance %g, move %g, step %g", p.base, p.tolerance, p.max_move,
+        p.max_step);
+  p = StepPolicyCreate(scene, 0);
+  CHECK(!p.adaptive && p.base == 0.02, "without vesicles steps are fixed");
+  PetscCall(SceneDestroy(&scene));
+  PetscCall(TestScene("-domain_cells 64,64 -scheme_type coupled -time_step 0.02", &scene));
+  p = StepPolicyCreate(scene, scene->shape.vesicles);
+  CHECK(!p.adaptive, "without -time_adapt error steps are fixed");
+  CHECK(PetscAbsReal(32 * first - 1) < 1e-14, "an adaptive run starts with a step of base/32");
+  PetscCall(SceneDestroy(&scene));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Facts(void) {
+  static const PetscReal bases[] = {1, 0.25, 1024}; /* powers of 2: the same rounding */
+  PetscFunctionBeginUser;
+  for (int b = 0; b < 3; b++) {
+    for (size_t k = 0; k < sizeof(rows) / sizeof(rows[0]); k++) PetscCall(CheckRow(&rows[k], bases[b]));
+    PetscCall(CheckSizes(bases[b]));
+  }
+  PetscCall(CheckPolicies());
+  for (int k = 1; k < 20; k++) PetscCall(CheckEnd(0.2 + 0.037 * k));
+  PetscCall(CheckFinished());
+  PetscCall(CheckPolicy());
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+int main(int argc, char **argv) {
+  return CheckMain(argc, argv, Facts);
+}

@@ -1,0 +1,260 @@
+/* Markers of several vesicles that belong to different ranks, across seams and borders between ranks: interpolation
+   against its sum written out, spreading as its exact transpose, the lists of stencils, and what is wrong with one
+   rank's markers. */
+#include "world.h"
+
+#define TOLERANCE 1e-13 /* relative: round-off of sums of some thousand terms */
+
+/* Five vesicles of different size; in a periodic box the second lies across the seam in x, the third across that in y,
+   the fourth across both. */
+#define VESICLES                                                                                                       \
+  "-vesicle_count 5 -vesicle_semi_axes 0.3,0.35,0.15,0.2,0.2,0.25,0.12,0.14,0.25,0.1 -vesicle_angle 0,20,40,60,80 "
+#define ACROSS VESICLES "-vesicle_center 0.05,0.03,0.97,0.1,-0.5,0.96,0.93,-0.95,-0.45,-0.45 "
+#define INSIDE VESICLES "-vesicle_center 0.05,0.03,0.6,0.3,-0.5,0.5,0.5,-0.5,-0.45,-0.45 "
+
+/* Weight of grid point 0 of a marker at x (cells). */
+static PetscReal Weight(KernelWeights weights, PetscReal x) {
+  PetscReal w[KERNEL_MAX_POINTS];
+  PetscInt first;
+  const PetscInt n = weights(x, &first, w);
+  return first <= 0 && -first < n ? w[-first] : 0;
+}
+
+/* Weight in one direction of a face at `face` for a marker at x, of all images where periodic. */
+static PetscReal FaceWeight(Markers m, int comp, int dir, PetscReal x, PetscReal face) {
+  const Grid g = m->grid;
+  const KernelWeights weights = comp == dir ? m->kernel->along : m->kernel->across;
+  PetscReal sum = 0;
+  for (int image = g->wall[dir] ? 0 : -1; image <= (g->wall[dir] ? 0 : 1); image++)
+    sum += Weight(weights, (x - face) / g->h - image * g->n[dir]);
+  return sum;
+}
+
+/* A velocity by its place on the whole grid, rough. */
+static PetscReal Velocity(int comp, PetscInt i, PetscInt j) {
+  return PetscSinReal(1.7 * i + 2.9 * j + 0.4 * comp + 0.01 * i * j);
+}
+
+static PetscErrorCode FillVelocity(Grid g, Vec w) {
+  PetscScalar *a;
+  PetscFunctionBeginUser;
+  PetscCall(VecGetArray(w, &a));
+  for (int c = 0; c < 2; c++)
+    for (PetscInt j = 0; j < g->rows[c]; j++)
+      for (PetscInt i = 0; i < g->columns[c]; i++)
+        a[(c ? GridLocalU(g) : 0) + j * g->columns[c] + i] = Velocity(c, i, j + g->first);
+  PetscCall(VecRestoreArray(w, &a));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* SUM u(x) phi phi over every face of the grid, for a marker at X. */
+static PetscReal Sum(Markers m, int comp, const PetscReal X[2]) {
+  const Grid g = m->grid;
+  PetscReal sum = 0, face[2];
+  for (PetscInt j = 0; j < g->all_rows[comp]; j++) {
+    GridPosition(g, (Field)comp, 0, j, face);
+    const PetscReal across = FaceWeight(m, comp, 1, X[1], face[1]);
+    for (PetscInt i = 0; i < g->columns[comp] && across != 0; i++) {
+      GridPosition(g, (Field)comp, i, j, face);
+      sum += Velocity(comp, i, j) * across * FaceWeight(m, comp, 0, X[0], face[0]);
+    }
+  }
+  return sum;
+}
+
+static PetscErrorCode CheckInterpolation(const char name[], TestWorld *t) {
+  const Markers m = t->coupling->markers;
+  const PetscScalar *X, *got;
+  PetscReal error = 0;
+  Vec w, U;
+  PetscFunctionBeginUser;
+  PetscCall(DMCreateGlobalVector(t->fluid->grid->velocity, &w));
+  PetscCall(VecDuplicate(t->X, &U));
+  PetscCall(FillVelocity(t->fluid->grid, w));
+  PetscCall(MarkersInterpolate(m, w, U));
+  PetscCall(VecGetArrayRead(t->X, &X));
+  PetscCall(VecGetArrayRead(U, &got));
+  for (PetscInt k = 0; k < 2 * t->layout->n; k++)
+    error = PetscMax(error, PetscAbsReal(got[k] - Sum(m, k % 2, X + k - k % 2)));
+  PetscCall(VecRestoreArrayRead(U, &got));
+  PetscCall(VecRestoreArrayRead(t->X, &X));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &error, 1, MPIU_REAL, MPI_MAX, t->layout->comm));
+  CHECK(error < TOLERANCE, "%s: every marker's velocity is the sum over all faces, error %.1e", name, error);
+  PetscCall(VecDestroy(&w));
+  PetscCall(VecDestroy(&U));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* <E w, F> = <w, E^T F>, and two times E^T F comes on top of what is there. */
+static PetscErrorCode CheckTranspose(const char name[], TestWorld *t, unsigned seed) {
+  const Markers m = t->coupling->markers;
+  PetscReal one, two, size[2], error;
+  Vec w, spread, F, U;
+  PetscFunctionBeginUser;
+  PetscCall(DMCreateGlobalVector(t->fluid->grid->velocity, &w));
+  PetscCall(VecDuplicate(w, &spread));
+  PetscCall(VecDuplicate(t->X, &F));
+  PetscCall(VecDuplicate(t->X, &U));
+  PetscCall(TestRandomVec(seed, w));
+  PetscCall(TestRandomVec(seed + 1, F));
+  PetscCall(MatMult(m->E, w, U));
+  PetscCall(MatMultTranspose(m->E, F, spread));
+  PetscCall(VecDot(U, F, &one));
+  PetscCall(VecDot(w, spread, &two));
+  PetscCall(VecNorm(F, NORM_2, &size[0]));
+  PetscCall(VecNorm(U, NORM_2, &size[1]));
+  error = PetscAbsReal(one - two) / (size[0] * size[1]);
+  CHECK(error < TOLERANCE && size[1] > 0, "%s: E and E^T are transposes, error %.1e", name, error);
+  PetscCall(VecAXPY(spread, 1, w));
+  PetscCall(MarkersSpread(m, 1, F, w)); /* w + E^T F */
+  PetscCall(VecAXPY(w, -1, spread));
+  PetscCall(VecNorm(w, NORM_INFINITY, &error));
+  CHECK(error < TOLERANCE, "%s: spreading adds to what is there, error %.1e", name, error);
+  Vec *all[] = {&w, &spread, &F, &U};
+  for (int k = 0; k < 4; k++) PetscCall(VecDestroy(all[k]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Whether a row of this rank is among those of a stencil; largest weight at a row of this rank. */
+static PetscBool Touches(Markers m, PetscInt k, PetscReal *weight) {
+  const Grid g = m->grid;
+  const Stencil *s = &m->stencil[k];
+  PetscBool touches = PETSC_FALSE;
+  *weight = 0;
+  for (PetscInt j = g->first; j < g->first + g->rows[k % 2]; j++) {
+    PetscReal face[2];
+    GridPosition(g, (Field)(k % 2), 0, j, face);
+    *weight = PetscMax(*weight, PetscAbsReal(FaceWeight(m, k % 2, 1, m->X[2 * (k / 2) + 1], face[1])));
+    for (PetscInt b = 0; b < s->n[1]; b++) {
+      const PetscInt row = s->first[1] + b;
+      if (row == j || (!g->wall[1] && row - g->n[1] == j)) touches = PETSC_TRUE;
+    }
+  }
+  return touches;
+}
+
+/* The list has the stencils that touch the rank's rows, in order, and no other. */
+static PetscErrorCode CheckList(const char name[], TestWorld *t) {
+  const Markers m = t->coupling->markers;
+  PetscInt next = 0, missed = 0, idle = 0, reached = 0;
+  PetscMPIInt *here, *somewhere;
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc2(2 * t->layout->M, &here, 2 * t->layout->M, &somewhere));
+  for (PetscInt k = 0; k < 2 * t->layout->M; k++) {
+    PetscReal weight;
+    const PetscBool touches = Touches(m, k, &weight);
+    here[k] = next < m->touched && m->touching[next] == k;
+    next += here[k];
+    if (here[k] && !touches) idle++;
+    if (!here[k] && weight != 0) missed++;
+  }
+  CHECK(next == m->touched, "%s: the list of stencils is in order", name);
+  CHECK(!idle, "%s: a listed stencil has a row of the rank", name);
+  CHECK(!missed, "%s: a stencil that is not listed has no weight at the rank's rows", name);
+  PetscCallMPI(MPI_Allreduce(here, somewhere, (PetscMPIInt)(2 * t->layout->M), MPI_INT, MPI_SUM, t->layout->comm));
+  for (PetscInt k = 0; k < 2 * t->layout->M; k++) reached += somewhere[k] > 0;
+  CHECK(reached == 2 * t->layout->M, "%s: every stencil is in a list", name);
+  PetscCall(PetscFree2(here, somewhere));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* All that spreading writes is inside the window, and MarkersClear zeroes it. */
+static PetscErrorCode CheckWindow(const char name[], TestWorld *t) {
+  const Markers m = t->coupling->markers;
+  const Grid g = m->grid;
+  PetscInt dirty[2] = {m->window[0], m->window[1]};
+  const PetscScalar *a;
+  PetscReal outside = 0, norm;
+  Vec w, F;
+  PetscFunctionBeginUser;
+  PetscCall(DMCreateGlobalVector(g->velocity, &w));
+  PetscCall(VecDuplicate(t->X, &F));
+  PetscCall(TestRandomVec(9, F));
+  PetscCall(MatMultTranspose(m->E, F, w));
+  PetscCall(VecGetArrayRead(w, &a));
+  for (int c = 0; c < 2; c++)
+    for (PetscInt j = 0; j < g->rows[c]; j++)
+      for (PetscInt i = 0; i < g->columns[c] && (j < m->window[0] || j >= m->window[1]); i++)
+        outside = PetscMax(outside, PetscAbsReal(a[(c ? GridLocalU(g) : 0) + j * g->columns[c] + i]));
+  PetscCall(VecRestoreArrayRead(w, &a));
+  CHECK(outside == 0, "%s: nothing is spread outside the window", name);
+  PetscCall(MarkersClear(m, w, dirty));
+  PetscCall(VecNorm(w, NORM_INFINITY, &norm));
+  CHECK(norm == 0, "%s: the window cleared is all that was spread", name);
+  PetscCall(VecDestroy(&w));
+  PetscCall(VecDestroy(&F));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CheckCase(const char options[], const char vesicles[], const char delta[]) {
+  char all[1024], name[256];
+  TestWorld t;
+  PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(all, sizeof(all), "%s %s -delta_type %s", options, vesicles, delta));
+  PetscCall(PetscSNPrintf(name, sizeof(name), "%s %s", strstr(options, "-domain_cells") + 14, delta));
+  PetscCall(TestWorldCreate(all, &t));
+  CHECK(t.layout->bodies == 5, "%s: five vesicles, %d markers in all", name, (int)t.layout->M);
+  PetscCall(CheckInterpolation(name, &t));
+  for (unsigned k = 0; k < 3; k++) PetscCall(CheckTranspose(name, &t, 31 + 2 * k));
+  PetscCall(CheckList(name, &t));
+  PetscCall(CheckWindow(name, &t));
+  PetscCall(TestWorldDestroy(&t));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* MarkersCheck of marker 0 of one vesicle moved to (x, y): all ranks have the message, which names the vesicle and
+   says `what`; what NULL: there is none. */
+static PetscErrorCode CheckMessage(TestWorld *t, PetscInt vesicle, PetscReal x, PetscReal y, const char what[]) {
+  char message[PETVES_MAX_MESSAGE], who[64];
+  const PetscScalar move[2] = {x, y};
+  PetscScalar *a;
+  Vec X;
+  PetscFunctionBeginUser;
+  PetscCall(VecDuplicate(t->X, &X));
+  PetscCall(VecCopy(t->X, X));
+  PetscCall(VecGetArray(X, &a));
+  for (int c = 0; c < 2 && LayoutOwner(t->layout, vesicle) == t->layout->rank; c++)
+    a[2 * LayoutOffset(t->layout, vesicle) + c] = move[c];
+  PetscCall(VecRestoreArray(X, &a));
+  PetscCall(MarkersCheck(t->coupling->markers, X, message));
+  PetscCall(PetscSNPrintf(who, sizeof(who), "vesicle %" PetscInt_FMT ":", vesicle + 1));
+  CHECK(what ? strstr(message, who) && strstr(message, what) : !*message,
+        "a marker of vesicle %d at (%g, %g), known on all ranks: %s", (int)vesicle + 1, x, y,
+        *message ? message : "good");
+  PetscCall(VecDestroy(&X));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CheckMessages(void) {
+  TestWorld t;
+  PetscFunctionBeginUser;
+  PetscCall(TestWorldCreate("-domain_cells 60,60 -domain_bc_x periodic " INSIDE, &t));
+  for (PetscInt v = 0; v < 5; v++) {
+    PetscCall(CheckMessage(&t, v, 0.3, 1 - 2.9 / 30, "y_max"));
+    PetscCall(CheckMessage(&t, v, 0.3, -1 + 2.9 / 30, "y_min"));
+    PetscCall(CheckMessage(&t, v, NAN, 0, "not finite"));
+    PetscCall(CheckMessage(&t, v, 0.3, INFINITY, "not finite"));
+    PetscCall(CheckMessage(&t, v, 5.3, 1 - 3.1 / 30, NULL));
+  }
+  PetscCall(TestWorldDestroy(&t));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Facts(void) {
+  static const char *const kernels[] = {"ib6", "cbs32", "cbs43", "cbs54", "cbs65"};
+  PetscFunctionBeginUser;
+  for (int k = 0; k < 5; k++)
+    PetscCall(CheckCase("-domain_cells 60,60 -domain_bc_x periodic -domain_bc_y periodic", ACROSS, kernels[k]));
+  PetscCall(CheckCase("-domain_box -1,1,-1,1.1860465116279069 -domain_cells 43,47 -domain_bc_x periodic "
+                      "-domain_bc_y periodic",
+                      ACROSS, "cbs54"));
+  PetscCall(CheckCase("-domain_cells 60,60 -domain_bc_x periodic", INSIDE, "cbs54"));
+  PetscCall(CheckCase("-domain_cells 60,60 -domain_bc_y periodic", INSIDE, "ib6"));
+  PetscCall(CheckCase("-domain_cells 60,60", INSIDE, "cbs43"));
+  PetscCall(CheckMessages());
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+int main(int argc, char **argv) {
+  return CheckMain(argc, argv, Facts);
+}

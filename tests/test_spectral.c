@@ -1,0 +1,198 @@
+/* Derivatives along the membrane: spectral ones, edges with their exact transposes, bending, and the area target. */
+#include "world.h"
+
+static PetscReal Dot(PetscInt n, const PetscReal a[], const PetscReal b[]) {
+  PetscReal sum = 0;
+  for (PetscInt i = 0; i < n; i++) sum += a[i] * b[i];
+  return sum;
+}
+
+/* Exact on trigonometric curves; the first derivative antisymmetric, the fourth symmetric. */
+static PetscErrorCode CheckDerivatives(PetscInt n) {
+  static const int powers[] = {1, 2, 4};
+  Spectral s;
+  PetscReal *x, *y, *a, *b, *c, *d;
+  unsigned seed = 3;
+  PetscFunctionBeginUser;
+  PetscCall(SpectralCreate(n, &s));
+  PetscCall(PetscCalloc6(2 * n, &x, 2 * n, &y, 2 * n, &a, 2 * n, &b, 2 * n, &c, 2 * n, &d));
+  for (int p = 0; p < 3; p++) {
+    PetscReal error = 0, size = 0;
+    for (PetscInt q = 0; q <= (n - 1) / 2; q++) {
+      const PetscReal wave = 2 * PETSC_PI * q / n, factor = PetscPowRealInt(wave, powers[p]);
+      for (PetscInt k = 0; k < n; k++) {
+        x[2 * k] = PetscCosReal(wave * k + 0.3);
+        x[2 * k + 1] = PetscSinReal(wave * k + 1.1);
+        a[2 * k] = a[2 * k + 1] = 0.5; /* adds to what is there */
+      }
+      SpectralDerivative(s, powers[p], 2, x, a);
+      for (PetscInt k = 0; k < n; k++)
+        for (int i = 0; i < 2; i++) {
+          const PetscReal phase = wave * k + (i ? 1.1 - PETSC_PI / 2 : 0.3) + powers[p] * PETSC_PI / 2;
+          error = PetscMax(error, PetscAbsReal(a[2 * k + i] - 0.5 - 2 * factor * PetscCosReal(phase)));
+          size = PetscMax(size, factor);
+        }
+    }
+    CHECK(error < 1e-13 * size, "%d markers: derivative %d exact on %d waves, error %.1e of %.1e", (int)n, powers[p],
+          (int)((n + 1) / 2), error, size);
+  }
+  for (PetscInt i = 0; i < 2 * n; i++) {
+    x[i] = TestRandom(&seed);
+    y[i] = TestRandom(&seed);
+    a[i] = b[i] = c[i] = d[i] = 0;
+  }
+  SpectralDerivative(s, 1, 1, x, a);
+  SpectralDerivative(s, 1, 1, y, b);
+  SpectralDerivative(s, 4, 1, x, c);
+  SpectralDerivative(s, 4, 1, y, d);
+  const PetscReal odd = Dot(2 * n, y, a) + Dot(2 * n, x, b), even = Dot(2 * n, y, c) - Dot(2 * n, x, d);
+  CHECK(PetscAbsReal(odd) < 1e-12 * n, "%d markers: y.Dx + x.Dy = %.1e for random x, y", (int)n, odd);
+  CHECK(PetscAbsReal(even) < 1e-11 * n, "%d markers: y.D4x - x.D4y = %.1e for random x, y", (int)n, even);
+  PetscCall(PetscFree6(x, y, a, b, c, d));
+  PetscCall(SpectralDestroy(&s));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A membrane near rest, and random numbers. */
+typedef struct {
+  TestMembrane w;
+  const char *derivative;
+  PetscReal *X, *U, *tau, *F, *other; /* [2M]: markers, random velocity, tangents, room for a force and for markers */
+  PetscReal *d, *sigma;               /* [M]: stretching of U, random tension */
+} Near;
+
+static PetscErrorCode NearCreate(const char derivative[], Near *q) {
+  char options[512];
+  unsigned seed = 5;
+  PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(options, sizeof(options),
+                          "-domain_cells 64,64 -domain_box -1,1,-1,1 -vesicle_semi_axes 0.25,0.45 -vesicle_angle 25 "
+                          "-vesicle_bending 0.3 -membrane_derivative %s",
+                          derivative));
+  PetscCall(TestMembraneCreate(options, &q->w));
+  q->derivative = derivative;
+  const Membrane m = q->w.membrane;
+  const PetscInt M = q->w.M;
+  PetscCall(PetscCalloc5(2 * M, &q->X, 2 * M, &q->U, 2 * M, &q->tau, 2 * M, &q->F, 2 * M, &q->other));
+  PetscCall(PetscCalloc2(M, &q->d, M, &q->sigma));
+  for (PetscInt k = 0; k < 2 * M; k++) {
+    q->U[k] = TestRandom(&seed);
+    q->X[k] = q->w.scene->shape.X[k] + 0.02 * m->ds[0] * TestRandom(&seed);
+    q->sigma[k / 2] = TestRandom(&seed);
+  }
+  MembraneTangents(m, q->X, q->tau);
+  MembraneStretching(m, q->tau, q->U, q->d);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode NearDestroy(Near *q) {
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree5(q->X, q->U, q->tau, q->F, q->other));
+  PetscCall(PetscFree2(q->d, q->sigma));
+  PetscCall(TestMembraneDestroy(&q->w));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Dm and Dm^T; half the squared edges' rate of change along U is ds SUM d; bending force and bending energy. */
+static PetscErrorCode CheckForces(Near *q) {
+  const Membrane m = q->w.membrane;
+  const PetscInt M = q->w.M;
+  const PetscReal step = 1e-4;
+  PetscReal half[2] = {0, 0}, energy[2], rate, slope;
+  PetscFunctionBeginUser;
+  MembraneStretchingTranspose(m, q->tau, 1, q->sigma, q->F);
+  rate = Dot(M, q->sigma, q->d) - Dot(2 * M, q->U, q->F);
+  CHECK(PetscAbsReal(rate) < 1e-13 * M, "%s: sigma.(Dm U) - (Dm^T sigma).U = %.1e", q->derivative, rate);
+  for (int side = 0; side < 2; side++) {
+    for (PetscInt k = 0; k < 2 * M; k++) q->other[k] = q->X[k] + (side ? step : -step) * q->U[k];
+    MembraneEdges(m, 0, q->other, q->F);
+    half[side] = 0.5 * Dot(2 * M, q->F, q->F);
+    energy[side] = MembraneBendingEnergy(m, 0, q->other);
+  }
+  rate = 0;
+  for (PetscInt k = 0; k < M; k++) rate += m->ds[0] * q->d[k];
+  slope = (half[1] - half[0]) / (2 * step);
+  CHECK(PetscAbsReal(slope - rate) < 1e-9 * M, "%s: Dm is the rate of the squared edges, %.10f against %.10f",
+        q->derivative, rate, slope);
+  PetscCall(PetscArrayzero(q->F, 2 * M));
+  MembraneBending(m, -m->bending, q->X, q->F); /* the force, per marker */
+  rate = Dot(2 * M, q->F, q->U);
+  slope = (energy[1] - energy[0]) / (2 * step);
+  CHECK(PetscAbsReal(slope + rate) < 1e-8 * PetscAbsReal(rate),
+        "%s: bending force is minus the gradient of the energy, %.8e against %.8e", q->derivative, rate, -slope);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The area target: a uniform shift, of the old markers alike. */
+static PetscErrorCode CheckArea(Near *q) {
+  const Membrane m = q->w.membrane;
+  const PetscInt M = q->w.M;
+  PetscReal *X = q->X, *old = q->other, apart = 0;
+  Measures measures;
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < 2 * M; k++) X[k] = old[k] = 1.004 * q->w.scene->shape.X[k];
+  for (PetscInt k = 0; k < M; k++) old[2 * k] += 0.1;
+  const PetscReal shift = MembraneRestoreArea(m, 0, X, old);
+  MembraneMeasure(m, 0, X, &measures);
+  for (PetscInt k = 0; k < M; k++)
+    apart = PetscMax(apart, PetscAbsReal(old[2 * k] - X[2 * k] - 0.1) + PetscAbsReal(old[2 * k + 1] - X[2 * k + 1]));
+  CHECK(PetscAbsReal(measures.area / m->A0[0] - 1) < 1e-12, "%s: area restored to %.1e", q->derivative,
+        measures.area / m->A0[0] - 1);
+  CHECK(shift < 0 && PetscAbsReal(shift * m->L0[0] / m->A0[0] + 0.008) < 1e-3 && apart < 1e-15,
+        "%s: shift %.5f, old markers moved alike to %.1e", q->derivative, shift, apart);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CheckMembrane(const char derivative[]) {
+  Near q;
+  PetscFunctionBeginUser;
+  PetscCall(NearCreate(derivative, &q));
+  PetscCall(CheckForces(&q));
+  PetscCall(CheckArea(&q));
+  PetscCall(NearDestroy(&q));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Few markers on a slender ellipse: the spectral curve through them has its length, its area and equal edges, and its
+   symmetry about the first axis. */
+static PetscErrorCode CheckStart(const char *cells) {
+  char options[512];
+  TestMembrane w;
+  Measures measures;
+  Curve curve = {0, {0.15, 0.6}, NULL, {NULL, NULL}, {NULL, NULL}};
+  PetscReal asymmetry = 0;
+  PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(options, sizeof(options),
+                          "-domain_cells %s -domain_box -1,1,-1,1 -vesicle_semi_axes 0.15,0.6 -membrane_derivative "
+                          "spectral -delta_type cbs54 -vesicle_spacing 1.5",
+                          cells));
+  PetscCall(TestMembraneCreate(options, &w));
+  const PetscInt M = w.M;
+  MembraneMeasure(w.membrane, 0, w.scene->shape.X, &measures);
+  for (PetscInt k = 1; k < M; k++) {
+    const PetscReal *a = &w.scene->shape.X[2 * k], *b = &w.scene->shape.X[2 * (M - k)];
+    asymmetry = PetscMax(asymmetry, PetscAbsReal(a[0] - b[0]) + PetscAbsReal(a[1] + b[1]));
+  }
+  CHECK(PetscAbsReal(measures.length / CurveLength(&curve) - 1) < 1e-12 && measures.edge_ratio - 1 < 1e-12 &&
+            PetscAbsReal(measures.area / (PETSC_PI * 0.15 * 0.6) - 1) < 1e-12 && asymmetry < 1e-12,
+        "%d markers: length off by %.1e, area by %.1e, edges by %.1e, symmetry by %.1e", (int)M,
+        measures.length / CurveLength(&curve) - 1, measures.area / (PETSC_PI * 0.15 * 0.6) - 1, measures.edge_ratio - 1,
+        asymmetry);
+  PetscCall(TestMembraneDestroy(&w));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Facts(void) {
+  static const char *const derivatives[] = {"fd", "bending", "spectral"};
+  PetscFunctionBeginUser;
+  PetscCall(CheckStart("24,24"));
+  PetscCall(CheckStart("64,64"));
+  PetscCall(CheckDerivatives(35));
+  PetscCall(CheckDerivatives(48));
+  for (int k = 0; k < 3; k++) PetscCall(CheckMembrane(derivatives[k]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+int main(int argc, char **argv) {
+  return CheckMain(argc, argv, Facts);
+}
