@@ -49,3 +49,19 @@ PetscErrorCode DenseMultAdd(PetscInt m, PetscInt n, PetscReal alpha, const Petsc
   PetscCallBLAS("BLASgemv", BLASgemv_("N", &rows, &columns, &alpha, A, &rows, x, &step, &one, y, &step));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+PetscErrorCode DenseProduct(PetscBool transpose, PetscInt m, PetscInt n, PetscInt k, const PetscReal A[],
+                            const PetscReal B[], PetscReal C[]) {
+  PetscBLASInt rows, columns, inner, lda;
+  const PetscReal one = 1, zero = 0;
+  PetscFunctionBeginUser;
+  if (!m || !n) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscBLASIntCast(m, &rows));
+  PetscCall(PetscBLASIntCast(n, &columns));
+  PetscCall(PetscBLASIntCast(k, &inner));
+  PetscCall(PetscBLASIntCast(PetscMax(1, transpose ? k : m), &lda));
+  const PetscBLASInt ldb = PetscMax(1, inner);
+  PetscCallBLAS("BLASgemm", BLASgemm_(transpose ? "T" : "N", "N", &rows, &columns, &inner, &one, A, &lda, B, &ldb, &zero,
+                                      C, &rows));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -18,3 +18,7 @@ PETSC_EXTERN PetscErrorCode DenseSolveSymmetric(PetscInt n, const PetscReal A[],
 /* DenseMultAdd - y += alpha A x, A (m x n). */
 PETSC_EXTERN PetscErrorCode DenseMultAdd(PetscInt m, PetscInt n, PetscReal alpha, const PetscReal A[],
                                          const PetscReal x[], PetscReal y[]);
+
+/* DenseProduct - C = A B, or (transpose) A^T B: C (m x n), B (k x n), A (m x k) or (k x m). */
+PETSC_EXTERN PetscErrorCode DenseProduct(PetscBool transpose, PetscInt m, PetscInt n, PetscInt k, const PetscReal A[],
+                                         const PetscReal B[], PetscReal C[]);

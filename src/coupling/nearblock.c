@@ -1,4 +1,5 @@
 #include "coupling/nearblock.h"
+#include "coupling/nearclose.h"
 
 /* Second moment of a kernel's weights about the place x, the same at every place for the kernels used here. */
 static PetscReal SecondMoment(KernelWeights weights) {
@@ -126,5 +127,6 @@ PetscErrorCode NearBlockFill(NearField f, NearBlock *b) {
       mirror[2 * n + 1] = C[1];
     }
   PetscCall(PetscFree(T));
+  if (!self) PetscCall(NearBlockRefine(f, b));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
