@@ -6,6 +6,7 @@
 
 typedef enum { DERIVATIVE_FD, DERIVATIVE_BENDING, DERIVATIVE_SPECTRAL } DerivativeType;
 typedef enum { NEAR_EXACT, NEAR_NONE } NearFieldType;
+#define NEAR_LEAST_SPACING 0.3 /* ds/h with the exact near field, in which neither kernel nor grid is felt */
 typedef enum { BENDING_IMPLICIT, BENDING_EXPLICIT } BendingType;
 typedef enum { ADAPT_NONE, ADAPT_ERROR } AdaptType;
 typedef enum { STARTUP_EULER, STARTUP_GRADED } StartUp;

@@ -29,7 +29,7 @@ static const OptionRow table[] = {
   {"-vesicle_bending", OPT_REAL, AT(membrane.bending), "0.01", ">=0", "c_b, bending stiffness; 0 leaves bending out"},
   {"-vesicle_spacing", OPT_REAL, AT(vesicles.spacing), "0", ">=0", "marker spacing ds/h; 0 takes the kernel's (" KERNEL_SPACINGS ")"},
   {"-vesicle_markers", OPT_INT, AT(vesicles.markers), "0", ">=0", "number of markers of each vesicle, instead of the spacing; 0 takes the spacing"},
-  {"-vesicle_allow_close_markers", OPT_BOOL, AT(vesicles.allow_close_markers), "false", "true|false", "accept spacings below the kernel's least (" KERNEL_LEAST_SPACINGS ")"},
+  {"-vesicle_allow_close_markers", OPT_BOOL, AT(vesicles.allow_close_markers), "false", "true|false", "accept spacings below the least: 0.3 h with -coupling_near_field exact, else the kernel's (" KERNEL_LEAST_SPACINGS ")"},
   {"-delta_type", OPT_NAME, AT(coupling.kernel), "cbs54", KERNEL_NAMES, "kernel between grid and markers; split, penalty: ib6"},
   {"-scheme_type", OPT_NAME, AT(scheme.type), "coupled", "split|penalty|coupled|direct", "time-stepping scheme: the paper's, stiff springs, unsplit, unsplit by sparse LU"},
   {"-scheme_order", OPT_INT, AT(scheme.order), "2", "[1,2]", "order in time: backward Euler or BDF2; split and penalty are of order 1"},

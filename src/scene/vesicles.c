@@ -23,7 +23,8 @@ static PetscInt FastOdd(PetscInt M) {
 static PetscErrorCode MarkerCount(Scene scene, PetscReal length, PetscInt *M) {
   const Kernel *kernel = KernelFind(scene->coupling.kernel);
   const PetscReal spacing = scene->vesicles.spacing > 0 ? scene->vesicles.spacing : kernel->default_spacing;
-  const PetscReal h = FluidSpecCellSize(&scene->fluid), least = kernel->least_spacing;
+  const PetscReal h = FluidSpecCellSize(&scene->fluid);
+  const PetscReal least = scene->coupling.near_field == NEAR_EXACT ? NEAR_LEAST_SPACING : kernel->least_spacing;
   PetscReal s;
   PetscFunctionBeginUser;
   *M = scene->vesicles.markers ? scene->vesicles.markers

@@ -73,25 +73,39 @@ static PetscReal Apart(Grid g, int dir, PetscReal a, PetscReal b) {
   return g->wall[dir] ? d : PetscAbsReal(d - box * PetscFloorReal(d / box + 0.5));
 }
 
-/* Markers closer than 2 h that are no neighbours: on two vesicles, or more than 4 h apart along one. X[2M]. */
-static PetscBool FindContact(Scheme s, const PetscScalar X[], PetscMPIInt pair[2]) {
-  const Membrane m = s->membrane;
-  const Layout layout = m->layout;
+/* Distance of markers below which the fluid between two membranes, or two parts of one, is not resolved: two cells; with
+   the exact near field vesicles have no such distance, as finer points resolve what is between them, parts of one vesicle
+   that of their markers. */
+static PetscReal Unresolved(Scheme s, PetscInt v, PetscInt w) {
+  if (!s->coupling->near) return CONTACT * s->fluid->grid->h;
+  return v == w ? 1.5 * s->membrane->ds[v] : 0;
+}
+
+/* Markers of vesicles v and w closer than `near` that are no neighbours along one, which are more than twice `near` apart
+   along it. X[2M]. */
+static PetscBool AreClose(Scheme s, PetscInt v, PetscInt w, PetscReal near, const PetscScalar X[]) {
+  const Layout layout = s->membrane->layout;
   const Grid g = s->fluid->grid;
-  const PetscReal near = CONTACT * g->h;
-  for (PetscInt v = 0; v < layout->bodies; v++)
-    for (PetscInt w = v; w < layout->bodies; w++)
-      for (PetscInt k = layout->start[v]; k < layout->start[v + 1]; k++)
-        for (PetscInt l = v == w ? k + 1 : layout->start[w]; l < layout->start[w + 1]; l++) {
-          if (v == w && PetscMin(l - k, LayoutCount(layout, v) - (l - k)) * m->ds[v] <= 2 * near) continue;
-          const PetscReal dx = Apart(g, 0, X[2 * k], X[2 * l]);
-          if (dx >= near) continue;
-          const PetscReal dy = Apart(g, 1, X[2 * k + 1], X[2 * l + 1]);
-          if (dx * dx + dy * dy >= near * near) continue;
-          pair[0] = (PetscMPIInt)v + 1;
-          pair[1] = (PetscMPIInt)w + 1;
-          return PETSC_TRUE;
-        }
+  for (PetscInt k = layout->start[v]; k < layout->start[v + 1] && near > 0; k++)
+    for (PetscInt l = v == w ? k + 1 : layout->start[w]; l < layout->start[w + 1]; l++) {
+      if (v == w && PetscMin(l - k, LayoutCount(layout, v) - (l - k)) * s->membrane->ds[v] <= 2 * near) continue;
+      const PetscReal dx = Apart(g, 0, X[2 * k], X[2 * l]);
+      if (dx >= near) continue;
+      const PetscReal dy = Apart(g, 1, X[2 * k + 1], X[2 * l + 1]);
+      if (dx * dx + dy * dy < near * near) return PETSC_TRUE;
+    }
+  return PETSC_FALSE;
+}
+
+/* The first such pair, numbered from 1. */
+static PetscBool FindContact(Scheme s, const PetscScalar X[], PetscMPIInt pair[2]) {
+  for (PetscInt v = 0; v < s->membrane->layout->bodies; v++)
+    for (PetscInt w = v; w < s->membrane->layout->bodies; w++) {
+      if (!AreClose(s, v, w, Unresolved(s, v, w), X)) continue;
+      pair[0] = (PetscMPIInt)v + 1;
+      pair[1] = (PetscMPIInt)w + 1;
+      return PETSC_TRUE;
+    }
   return PETSC_FALSE;
 }
 
@@ -111,10 +125,13 @@ static PetscErrorCode WarnOfContact(Scheme s) {
     PetscCall(PetscSNPrintf(who, sizeof(who), "parts of vesicle %d", pair[0]));
   else
     PetscCall(PetscSNPrintf(who, sizeof(who), "vesicles %d and %d", pair[0], pair[1]));
+  const PetscReal near = Unresolved(s, pair[0] - 1, pair[1] - 1) / s->fluid->grid->h;
+  const char *const what = s->coupling->near ? "their markers do" : "the grid does";
+  const char *const advice = s->coupling->near ? "more -vesicle_markers" : "finer -domain_cells";
   PetscCall(PetscPrintf(s->scene->comm,
-                        "petves: warning: %s are closer than %d cells after step %" PetscInt_FMT
-                        ", time %g; the grid does not resolve the fluid between them: try finer -domain_cells\n",
-                        who, CONTACT, s->state.step, (double)s->state.t));
+                        "petves: warning: %s are closer than %.3g cells after step %" PetscInt_FMT
+                        ", time %g; %s not resolve the fluid between them: try %s\n",
+                        who, (double)near, s->state.step, (double)s->state.t, what, advice));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
