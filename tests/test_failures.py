@@ -28,19 +28,33 @@ def test_fast_solve_that_fails_ends_the_run(scheme, solver, ranks, tmp_path):
     assert list(series["step"]) == [0]
 
 
+FIVE = "-domain_cells 32,32 -scheme_type coupled -helmholtz_type hypre -helmholtz_ksp_max_it 5"
+
+
 @pytest.mark.parametrize("ranks", [1, 2, 3])
 def test_fast_solve_that_fails_later_keeps_the_steps_before(ranks, tmp_path):
-    """Steps grow, H comes closer to a Laplacian, and five iterations are no longer enough; step and time in the line
-    are those of the step that failed."""
-    options = (
-        "-domain_cells 32,32 -time_step 0.1 -time_end 3 -scheme_type coupled -time_adapt error "
-        "-helmholtz_type hypre -helmholtz_ksp_max_it 5"
-    )
-    run = run_petves(tmp_path / "out", options, ranks, good=False, timeout=120)
+    """In a larger step H is closer to a Laplacian, and five iterations are no longer enough; step and time in the line are
+    those of the step that failed."""
+    options = f"{FIVE} -time_step 0.001 -helmholtz_ksp_max_it 10"
+    run_petves(tmp_path / "out", f"{options} -time_end 0.003", ranks)
+    options = f"{FIVE} -time_step 0.5 -time_end 3 -restart {tmp_path}/out/checkpoint.h5"
+    run = run_petves(tmp_path / "out", options, ranks, good=False, timeout=60)
     summary, series = leaves_files(run, reason("helmholtz_", 5))
     step, time = re.search(r"in step (\d+) at time ([\d.e-]+):", summary["reason"]).groups()
     assert series["step"][-1] > 1 and int(step) == series["step"][-1] + 1
-    assert series["time"][-1] < float(time) < 3
+    assert float(time) == pytest.approx(series["time"][-1] + 0.5)
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_step_control_tries_a_failed_fast_solve_again_with_half_the_step(ranks, tmp_path):
+    """The run goes on to its end in steps for which five iterations are enough; with more of them steps are larger."""
+    options = "-time_step 0.1 -time_end 0.4 -time_adapt error"
+    five = run_petves(tmp_path / "five", f"{FIVE} {options}", ranks).series
+    more = run_petves(tmp_path / "more", f"{FIVE} {options} -helmholtz_ksp_max_it 100", ranks).series
+    assert five["time"][-1] == more["time"][-1] == pytest.approx(0.4)
+    assert 2 * five["dt"][1:].max() < 1.01 * more["dt"][1:].max()
+    for name in ("area", "length", "energy_bending"):
+        assert five[name][-1] == pytest.approx(more[name][-1], rel=1e-4)
 
 
 def test_fast_solve_without_vesicle(tmp_path):
