@@ -25,22 +25,16 @@ def floors(page: str) -> dict[str, int]:
     return found | {"": max(found.values()) + 1}
 
 
-def symbols(path: Path) -> tuple[set[str], set[str]]:
-    """Names that an object file defines, and names that it wants."""
-    text = subprocess.run(["nm", "-g", str(path)], capture_output=True, text=True, check=True).stdout
-    words = [line.split()[-2:] for line in text.splitlines()]
-    return {name for kind, name in words if kind not in "Uw"}, {name for kind, name in words if kind in "Uw"}
-
-
 def linked(build: Path, sources: Iterable[str]) -> Uses:
     """Who calls whom, by the object files of these sources, whose names have no suffix: "fluid/grid"."""
-    tables = {name: symbols(build / f"{name}.o") for name in sources}
-    home = {symbol: name for name, (defined, _) in tables.items() for symbol in defined}
-    uses: Uses = {name: {} for name in tables}
-    for name, (defined, wanted) in tables.items():
-        for symbol in wanted - defined:
-            if symbol in home:
-                uses[name].setdefault(home[symbol], symbol)
+    uses: Uses = {name: {} for name in sources}
+    words = ["nm", "-g", "-A", *(f"{name}.o" for name in uses)]
+    text = subprocess.run(words, cwd=build, capture_output=True, text=True, check=True).stdout
+    table = [(line.split(".o:")[0], *line.split()[-2:]) for line in text.splitlines()]
+    home = {symbol: name for name, kind, symbol in table if kind not in "Uw"}
+    for name, kind, symbol in table:
+        if kind in "Uw" and home.get(symbol, name) != name:
+            uses[name].setdefault(home[symbol], symbol)
     return uses
 
 
@@ -146,6 +140,16 @@ def order() -> dict[str, int]:
 
 def test_every_folder_has_its_floor(order):
     assert set(order) - {""} == {path.name for path in (ROOT / "src").iterdir() if path.is_dir()}
+
+
+def test_names_of_the_page_are_in_the_source():
+    """Functions by their CamelCase, and files."""
+    page = (ROOT / "docs" / "source.md").read_text()
+    source = "\n".join(path.read_text() for path in (ROOT / "src").rglob("*.[ch]"))
+    names = set(re.findall(r"\b[A-Z][a-z]+(?:[A-Z][a-z]*)+\b", page)) - {"ParaView"}
+    assert len(names) > 40
+    assert not [name for name in names if not re.search(rf"\b{name}\b", source)]
+    assert not [path for path in re.findall(r"\bsrc/[\w/]+\.[ch]\b", page) if not (ROOT / path).exists()]
 
 
 def test_no_circle_among_files(calls):
