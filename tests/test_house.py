@@ -19,9 +19,9 @@ ELSEWHERE = "DE" + "SIGN"  # a document that readers of this repository do not h
 Uses = dict[str, dict[str, str]]  # file to files that it uses, and one thing that it uses there
 
 
-def floors(page: str) -> dict[str, int]:
-    """Folder to floor, of the table in docs/source.md; the files of src itself are on the highest."""
-    found = {name: int(floor) for floor, name in re.findall(r"^\| (\d+) \| (?:src/)?`?(\w+)`? \|", page, re.M)}
+def layers(page: str) -> dict[str, int]:
+    """Folder to layer, of the table in docs/source.md; the files of src itself are the highest."""
+    found = {name: int(layer) for layer, name in re.findall(r"^\| (\d+) \| (?:src/)?`?(\w+)`? \|", page, re.M)}
     return found | {"": max(found.values()) + 1}
 
 
@@ -68,7 +68,7 @@ def folders(uses: Uses) -> Uses:
 
 
 def upwards(uses: Uses, order: dict[str, int]) -> list[str]:
-    """Uses of another folder on the same floor or a higher one."""
+    """Uses of another folder of the same layer or a higher one."""
     return [
         f"{name} uses {what} of {other}"
         for name, others in uses.items()
@@ -135,10 +135,10 @@ def calls() -> Uses:
 
 @pytest.fixture(scope="module")
 def order() -> dict[str, int]:
-    return floors((ROOT / "docs" / "source.md").read_text())
+    return layers((ROOT / "docs" / "source.md").read_text())
 
 
-def test_every_folder_has_its_floor(order):
+def test_every_folder_is_in_the_table(order):
     assert set(order) - {""} == {path.name for path in (ROOT / "src").iterdir() if path.is_dir()}
 
 
@@ -202,7 +202,7 @@ def test_a_circle_is_found(tmp_path):
     assert uses == {"low/one": {"high/one": "g"}, "high/one": {"low/one": "f"}, "low/two": {}}
     assert sorted(circle(uses)[1:]) == ["high/one", "low/one"] and sorted(circle(folders(uses))[1:]) == ["high", "low"]
     assert upwards(uses, {"low": 1, "high": 2}) == ["low/one uses g of high/one"]
-    assert len(upwards(uses, {"low": 1, "high": 1})) == 2, "neighbours on a floor do not use one another"
+    assert len(upwards(uses, {"low": 1, "high": 1})) == 2, "folders of one layer do not use one another"
 
 
 def test_a_circle_of_folders_without_one_of_files_is_found():
@@ -211,8 +211,8 @@ def test_a_circle_of_folders_without_one_of_files_is_found():
 
 
 def test_the_table_is_read():
-    page = "| floor | folder | what |\n|---|---|---|\n| 0 | `base` | x |\n| 1 | `kernel` | y |\n| 1 | `options` | z |\n"
-    assert floors(page) == {"base": 0, "kernel": 1, "options": 1, "": 2}
+    page = "| layer | folder | what |\n|---|---|---|\n| 0 | `base` | x |\n| 1 | `kernel` | y |\n| 1 | `options` | z |\n"
+    assert layers(page) == {"base": 0, "kernel": 1, "options": 1, "": 2}
 
 
 def test_sizes_are_counted(tmp_path):
