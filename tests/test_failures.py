@@ -2,9 +2,10 @@
 one line names the options' prefix and the reason, and the last good state is on disk."""
 
 import re
+import shutil
 
 import pytest
-from conftest import run_petves
+from conftest import PETVES, SANITIZE, Run, mpirun, run_petves, without_mpirun
 from test_errors import SMALL, leaves_files
 
 
@@ -28,33 +29,30 @@ def test_fast_solve_that_fails_ends_the_run(scheme, solver, ranks, tmp_path):
     assert list(series["step"]) == [0]
 
 
-FIVE = "-domain_cells 32,32 -scheme_type coupled -helmholtz_type hypre -helmholtz_ksp_max_it 5"
+#: Five iterations are enough for H of a small step, and no longer for that of a large one.
+LARGER_STEPS = "-domain_cells 32,32 -time_step 0.1 -scheme_type coupled -helmholtz_type hypre -helmholtz_ksp_max_it 5"
 
 
 @pytest.mark.parametrize("ranks", [1, 2, 3])
 def test_fast_solve_that_fails_later_keeps_the_steps_before(ranks, tmp_path):
-    """In a larger step H is closer to a Laplacian, and five iterations are no longer enough; step and time in the line are
-    those of the step that failed."""
-    options = f"{FIVE} -time_step 0.001 -helmholtz_ksp_max_it 10"
-    run_petves(tmp_path / "out", f"{options} -time_end 0.003", ranks)
-    options = f"{FIVE} -time_step 0.5 -time_end 3 -restart {tmp_path}/out/checkpoint.h5"
-    run = run_petves(tmp_path / "out", options, ranks, good=False, timeout=60)
+    """A run goes on from its checkpoint with larger steps; step and time in the line are those of the step that failed."""
+    first = run_petves(tmp_path / "out", f"{LARGER_STEPS} -time_step 0.01 -time_end 0.03", ranks, timeout=120)
+    restart = f"-restart {first.folder}/checkpoint.h5 -time_step 1 -time_end 5"
+    run = run_petves(tmp_path / "out", f"{LARGER_STEPS} {restart}", ranks, good=False, timeout=120)
     summary, series = leaves_files(run, reason("helmholtz_", 5))
     step, time = re.search(r"in step (\d+) at time ([\d.e-]+):", summary["reason"]).groups()
-    assert series["step"][-1] > 1 and int(step) == series["step"][-1] + 1
-    assert float(time) == pytest.approx(series["time"][-1] + 0.5)
+    assert series["step"][-1] >= 3 and int(step) == series["step"][-1] + 1
+    assert series["time"][-1] < float(time) < 5
 
 
 @pytest.mark.parametrize("ranks", [1, 2])
-def test_step_control_tries_a_failed_fast_solve_again_with_half_the_step(ranks, tmp_path):
-    """The run goes on to its end in steps for which five iterations are enough; with more of them steps are larger."""
-    options = "-time_step 0.1 -time_end 0.4 -time_adapt error"
-    five = run_petves(tmp_path / "five", f"{FIVE} {options}", ranks).series
-    more = run_petves(tmp_path / "more", f"{FIVE} {options} -helmholtz_ksp_max_it 100", ranks).series
-    assert five["time"][-1] == more["time"][-1] == pytest.approx(0.4)
-    assert 2 * five["dt"][1:].max() < 1.01 * more["dt"][1:].max()
-    for name in ("area", "length", "energy_bending"):
-        assert five[name][-1] == pytest.approx(more[name][-1], rel=1e-4)
+def test_judged_steps_stay_where_the_fast_solve_converges(ranks, tmp_path):
+    """Steps of -time_adapt error grow until five iterations are too few, and then no further."""
+    options = f"{LARGER_STEPS} -time_end 3 -time_adapt error"
+    free = run_petves(tmp_path / "free", options.replace("max_it 5", "max_it 100"), ranks, timeout=120)
+    run = run_petves(tmp_path / "out", options, ranks, timeout=120)
+    assert run.series["time"][-1] == 3 and not run.errors
+    assert run.series["dt"][1:].max() < free.series["dt"][1:].max()
 
 
 def test_fast_solve_without_vesicle(tmp_path):
@@ -67,3 +65,44 @@ def test_fast_solve_without_vesicle(tmp_path):
     assert run.status == 2 and len(run.errors) == 1
     assert re.search(reason("helmholtz_", 1), run.errors[0].removeprefix("petves: error: "))
     assert (run.folder / "checkpoint.h5").exists()
+
+
+#: A LAPACK whose factorisations fail from the FAIL-th call on.
+FAILING = r"""
+#define _GNU_SOURCE
+#include <dlfcn.h>
+#include <stdlib.h>
+static int fails(void) { static int calls; return ++calls >= atoi(getenv("FAIL")); }
+void dgetrf_(int *m, int *n, double *A, int *lda, int *pivot, int *info) {
+  ((void (*)(int *, int *, double *, int *, int *, int *))dlsym(RTLD_NEXT, "dgetrf_"))(m, n, A, lda, pivot, info);
+  if (!getenv("CHOLESKY") && fails()) *info = 7;
+}
+void dpotrf_(char *uplo, int *n, double *A, int *lda, int *info) {
+  ((void (*)(char *, int *, double *, int *, int *))dlsym(RTLD_NEXT, "dpotrf_"))(uplo, n, A, lda, info);
+  if (getenv("CHOLESKY") && fails()) *info = 7;
+}
+"""
+
+
+@pytest.mark.skipif(SANITIZE, reason="the sanitizers' library must be the first to be loaded")
+@pytest.mark.parametrize("ranks", [1, 2, 3])
+@pytest.mark.parametrize("which", ["the dense blocks of the preconditioner", "self-mobility with bending"])
+def test_matrix_without_factor_ends_the_run(which, ranks, tmp_path):
+    """On the one rank that owns the vesicle: every rank ends, one line, status 2, the last good state on disk."""
+    (tmp_path / "failing.c").write_text(FAILING)
+    library = str(tmp_path / "failing.so")
+    done = mpirun([shutil.which("gcc"), "-shared", "-fPIC", "-o", library, str(tmp_path / "failing.c"), "-ldl"], 1)
+    assert done.returncode == 0, done.stderr
+    dense = which.startswith("the dense")
+    options = "-domain_cells 32,32 -flow_type shear -time_step 0.02 -time_end 2 -checkpoint_every 0".split()
+    environment = {"LD_PRELOAD": library, "FAIL": "15" if dense else "30"} | ({} if dense else {"CHOLESKY": "1"})
+    wrapper = ("env", *(f"{name}={value}" for name, value in environment.items()))
+    done = mpirun([PETVES, "-output_dir", str(tmp_path / "out"), *options], ranks, 60, wrapper)
+    run = Run(tmp_path / "out", done.returncode, done.stdout, without_mpirun(done.stderr))
+    line = (
+        reason("coupled_", 0).replace("ITS", "PC_FAILED")
+        if dense
+        else "^the membranes' self-mobility with their bending"
+    )
+    _, series = leaves_files(run, line.replace(r"[\d.e-]+;", r"\S+;"))
+    assert series["step"][-1] > 1
