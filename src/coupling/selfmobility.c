@@ -155,8 +155,8 @@ const PetscReal *SelfMobilityBlock(SelfMobility s, PetscInt v) {
   return OwnBlock(s, v)->Theta;
 }
 
-/* Unit tangents: of the spectral edges, or by fourth-order differences (with chords the area would drift ten times
- * faster). */
+/* Unit tangents: of the spectral edges, or by fourth-order differences (with chords the area would drift ten
+   times faster). */
 static void Tangents(SelfMobility s, PetscInt v, const PetscScalar x[], PetscReal t[]) {
   const Membrane m = s->membrane;
   const PetscInt n = LayoutCount(m->layout, v);

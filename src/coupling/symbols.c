@@ -54,8 +54,8 @@ static PetscReal Look(const PetscReal table[], PetscReal theta) {
 }
 
 /* T_grid, N_grid and X_grid of the wave number k: the integral over q, over 2 pi, of d.W A W d' with d, d' the tangent,
-   the normal, one of each; A = (I - K~ K~^T/|K~|^2)/(a0 + nu |K~|^2), W the kernel's transforms of the two components.
- */
+   the normal, one of each; A = (I - K~ K~^T/|K~|^2)/(a0 + nu |K~|^2), W the kernel's transforms of the
+   two components. */
 static void GridMobility(PetscReal *const table[2], PetscReal h, PetscReal a0, PetscReal nu, PetscReal angle,
                          PetscReal k, PetscReal mobility[3]) {
   const PetscReal c = PetscCosReal(angle), s = PetscSinReal(angle);
