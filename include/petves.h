@@ -30,8 +30,8 @@ PETSC_EXTERN PetscErrorCode PetvesCatchSignals(void);
    checkpoint's, output files open. */
 PETSC_EXTERN PetscErrorCode SimulationCreate(MPI_Comm comm, Simulation *simulation);
 
-/* SimulationCreateWithFlow - the same with a function for -flow_type custom (docs/method.md says what it must satisfy).
- */
+/* SimulationCreateWithFlow - the same with a function for -flow_type custom (docs/method.md says what it
+   must satisfy). */
 PETSC_EXTERN PetscErrorCode SimulationCreateWithFlow(MPI_Comm comm, PetvesFlow flow, void *ctx, Simulation *simulation);
 PETSC_EXTERN PetscErrorCode SimulationDestroy(Simulation *simulation);
 
@@ -106,8 +106,8 @@ PETSC_EXTERN PetscErrorCode SimulationGetColumn(Simulation simulation, PetscInt 
    (the others are 0). Not collective. */
 PETSC_EXTERN PetscErrorCode SimulationGetRow(Simulation simulation, PetscInt vesicle, PetscReal row[]);
 
-/* SimulationGetCellVelocity - velocity, background included, at this rank's cell centres: u, v[rows of p][cells in x].
- */
+/* SimulationGetCellVelocity - velocity, background included, at this rank's cell centres: u, v[rows of p][cells
+   in x]. */
 PETSC_EXTERN PetscErrorCode SimulationGetCellVelocity(Simulation simulation, PetscReal u[], PetscReal v[]);
 
 /* PetvesAgree - the largest of all ranks' numbers, the same on every rank: a decision taken once. Collective. */

@@ -29,6 +29,9 @@ ENVIRONMENT = {
     "OMPI_MCA_odls_base_sigkill_timeout": "0",  # else mpirun sleeps two seconds after a non-zero exit
     "OMPI_MCA_ess_singleton_isolated": "1",  # one rank without mpirun starts no daemon
     "OMPI_MCA_hwloc_base_binding_policy": "none",  # or runs side by side would all be bound to the first cores
+    "OMPI_MCA_pml": "ob1",  # shared memory: looking for other networks takes longer than most runs
+    "OMPI_MCA_btl": "^openib,ofi,uct,usnic",
+    "OMPI_MCA_osc": "^ucx",
     "OMP_NUM_THREADS": "1",
     "ASAN_OPTIONS": "detect_leaks=0",
     "UBSAN_OPTIONS": "halt_on_error=1:print_stacktrace=1",

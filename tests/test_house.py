@@ -19,28 +19,22 @@ ELSEWHERE = "DE" + "SIGN"  # a document that readers of this repository do not h
 Uses = dict[str, dict[str, str]]  # file to files that it uses, and one thing that it uses there
 
 
-def floors(page: str) -> dict[str, int]:
-    """Folder to floor, of the table in docs/source.md; the files of src itself are on the highest."""
-    found = {name: int(floor) for floor, name in re.findall(r"^\| (\d+) \| (?:src/)?`?(\w+)`? \|", page, re.M)}
+def layers(page: str) -> dict[str, int]:
+    """Folder to layer, of the table in docs/source.md; the files of src itself are the highest."""
+    found = {name: int(layer) for layer, name in re.findall(r"^\| (\d+) \| (?:src/)?`?(\w+)`? \|", page, re.M)}
     return found | {"": max(found.values()) + 1}
-
-
-def symbols(path: Path) -> tuple[set[str], set[str]]:
-    """Names that an object file defines, and names that it wants."""
-    text = subprocess.run(["nm", "-g", str(path)], capture_output=True, text=True, check=True).stdout
-    words = [line.split()[-2:] for line in text.splitlines()]
-    return {name for kind, name in words if kind not in "Uw"}, {name for kind, name in words if kind in "Uw"}
 
 
 def linked(build: Path, sources: Iterable[str]) -> Uses:
     """Who calls whom, by the object files of these sources, whose names have no suffix: "fluid/grid"."""
-    tables = {name: symbols(build / f"{name}.o") for name in sources}
-    home = {symbol: name for name, (defined, _) in tables.items() for symbol in defined}
-    uses: Uses = {name: {} for name in tables}
-    for name, (defined, wanted) in tables.items():
-        for symbol in wanted - defined:
-            if symbol in home:
-                uses[name].setdefault(home[symbol], symbol)
+    uses: Uses = {name: {} for name in sources}
+    words = ["nm", "-g", "-A", *(f"{name}.o" for name in uses)]
+    text = subprocess.run(words, cwd=build, capture_output=True, text=True, check=True).stdout
+    table = [(line.split(".o:")[0], *line.split()[-2:]) for line in text.splitlines()]
+    home = {symbol: name for name, kind, symbol in table if kind not in "Uw"}
+    for name, kind, symbol in table:
+        if kind in "Uw" and home.get(symbol, name) != name:
+            uses[name].setdefault(home[symbol], symbol)
     return uses
 
 
@@ -74,7 +68,7 @@ def folders(uses: Uses) -> Uses:
 
 
 def upwards(uses: Uses, order: dict[str, int]) -> list[str]:
-    """Uses of another folder on the same floor or a higher one."""
+    """Uses of another folder of the same layer or a higher one."""
     return [
         f"{name} uses {what} of {other}"
         for name, others in uses.items()
@@ -141,11 +135,21 @@ def calls() -> Uses:
 
 @pytest.fixture(scope="module")
 def order() -> dict[str, int]:
-    return floors((ROOT / "docs" / "source.md").read_text())
+    return layers((ROOT / "docs" / "source.md").read_text())
 
 
-def test_every_folder_has_its_floor(order):
+def test_every_folder_is_in_the_table(order):
     assert set(order) - {""} == {path.name for path in (ROOT / "src").iterdir() if path.is_dir()}
+
+
+def test_names_of_the_page_are_in_the_source():
+    """Functions by their CamelCase, and files."""
+    page = (ROOT / "docs" / "source.md").read_text()
+    source = "\n".join(path.read_text() for path in (ROOT / "src").rglob("*.[ch]"))
+    names = set(re.findall(r"\b[A-Z][a-z]+(?:[A-Z][a-z]*)+\b", page)) - {"ParaView"}
+    assert len(names) > 40
+    assert not [name for name in names if not re.search(rf"\b{name}\b", source)]
+    assert not [path for path in re.findall(r"\bsrc/[\w/]+\.[ch]\b", page) if not (ROOT / path).exists()]
 
 
 def test_no_circle_among_files(calls):
@@ -198,7 +202,7 @@ def test_a_circle_is_found(tmp_path):
     assert uses == {"low/one": {"high/one": "g"}, "high/one": {"low/one": "f"}, "low/two": {}}
     assert sorted(circle(uses)[1:]) == ["high/one", "low/one"] and sorted(circle(folders(uses))[1:]) == ["high", "low"]
     assert upwards(uses, {"low": 1, "high": 2}) == ["low/one uses g of high/one"]
-    assert len(upwards(uses, {"low": 1, "high": 1})) == 2, "neighbours on a floor do not use one another"
+    assert len(upwards(uses, {"low": 1, "high": 1})) == 2, "folders of one layer do not use one another"
 
 
 def test_a_circle_of_folders_without_one_of_files_is_found():
@@ -207,8 +211,8 @@ def test_a_circle_of_folders_without_one_of_files_is_found():
 
 
 def test_the_table_is_read():
-    page = "| floor | folder | what |\n|---|---|---|\n| 0 | `base` | x |\n| 1 | `kernel` | y |\n| 1 | `options` | z |\n"
-    assert floors(page) == {"base": 0, "kernel": 1, "options": 1, "": 2}
+    page = "| layer | folder | what |\n|---|---|---|\n| 0 | `base` | x |\n| 1 | `kernel` | y |\n| 1 | `options` | z |\n"
+    assert layers(page) == {"base": 0, "kernel": 1, "options": 1, "": 2}
 
 
 def test_sizes_are_counted(tmp_path):

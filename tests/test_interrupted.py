@@ -57,7 +57,7 @@ def test_signals_stop_the_run_after_a_step(ranks, name, tmp_path):
 def test_wall_limit_stops_in_time(tmp_path):
     """With room for one more step and the checkpoint, and not at once."""
     begin = time.time()
-    run = run_petves(tmp_path / "run", f"{BASE} -time_end 1000 -time_wall_limit 4", ranks=2)
+    run = run_petves(tmp_path / "run", f"{BASE} -domain_cells 96,96 -time_end 1000 -time_wall_limit 3", ranks=2)
     assert time.time() - begin < 8, "limit and start of mpirun on a busy machine"
     assert "-time_wall_limit" in run.stdout
     assert json.loads((run.folder / "summary.json").read_text())["reason"] == "stopped"

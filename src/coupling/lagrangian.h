@@ -38,8 +38,8 @@ PETSC_EXTERN PetscErrorCode LagrangianSolverDestroy(LagrangianSolver *solver);
    it went (why < 0: failed). A tension solve assembles Chat first, where the preconditioner wants it. Collective. */
 PETSC_EXTERN PetscErrorCode LagrangianSolverSolve(LagrangianSolver solver, Vec b, Vec x);
 
-/* TensionAssemble - Chat at the coupling's markers, a sequential matrix on rank root, NULL elsewhere. Not collective.
- */
+/* TensionAssemble - Chat at the coupling's markers, a sequential matrix on rank root, NULL elsewhere.
+   Not collective. */
 PETSC_EXTERN PetscErrorCode TensionAssemble(Coupling coupling, PetscMPIInt root, Mat *Chat);
 
 /* KSPWriteOptions - a KSP's settings in force as options with this prefix, one a line; pc: its preconditioner where the

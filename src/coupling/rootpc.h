@@ -11,9 +11,8 @@ struct _p_RootPC {
   Vec x, y;         /* on root: all edges */
 };
 
-/* RootPCCreate - PCILU of `levels` levels in nested dissection, unless options with this prefix say otherwise.
- * Collective.
- */
+/* RootPCCreate - PCILU of `levels` levels in nested dissection, unless options with this prefix
+   say otherwise. Collective. */
 PETSC_EXTERN PetscErrorCode RootPCCreate(Layout layout, const char prefix[], PetscInt levels, RootPC *pc);
 PETSC_EXTERN PetscErrorCode RootPCDestroy(RootPC *pc);
 

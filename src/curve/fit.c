@@ -1,5 +1,5 @@
-/* The markers of a closed curve moved as little as possible until their edges and their area are what they should be.
- */
+/* The markers of a closed curve moved as little as possible until their edges and their area are what they
+   should be. */
 #include "curve/curve.h"
 #include <petscblaslapack.h>
 

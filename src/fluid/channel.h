@@ -4,9 +4,8 @@
 
 typedef struct _p_Channel *Channel;
 
-/* ChannelCreate - for a fluid whose grid is periodic in x with walls in y; it follows the fluid's alpha. Not
- * collective.
- */
+/* ChannelCreate - for a fluid whose grid is periodic in x with walls in y; it follows the fluid's
+   alpha. Not collective. */
 PETSC_EXTERN PetscErrorCode ChannelCreate(Fluid fluid, Channel *channel);
 PETSC_EXTERN PetscErrorCode ChannelDestroy(Channel *channel);
 

@@ -1,8 +1,8 @@
 /* Convection of the disturbance u' = u - u_inf, explicit in time:
        N(u') = (u' + u_inf).grad u' + u'.grad u_inf
    The first part is skew-symmetric on the staggered grid: it keeps the energy h^2/2 SUM |u'|^2 to rounding, even where
-   the carrying flow has a divergence. u_inf.grad u_inf is a gradient for the flows offered; the pressure takes it up.
- */
+   the carrying flow has a divergence. u_inf.grad u_inf is a gradient for the flows offered; the pressure takes
+   it up. */
 #pragma once
 #include "fluid/fluid.h"
 

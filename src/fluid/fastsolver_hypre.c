@@ -1,6 +1,6 @@
 /* Back end "hypre": conjugate gradients with hypre's algebraic multigrid (BoomerAMG) on the assembled operator, to
-   check the other back ends. Any -helmholtz_ksp_*, -helmholtz_pc_*, -poisson_ksp_*, -poisson_pc_* option works on it.
- */
+   check the other back ends. Any -helmholtz_ksp_*, -helmholtz_pc_*, -poisson_ksp_*, -poisson_pc_* option works
+   on it. */
 #include "fluid/fastsolver.h"
 
 typedef struct {

@@ -37,8 +37,8 @@ struct _p_Grid {
 PETSC_EXTERN PetscErrorCode GridCreate(const FluidSpec *spec, Grid *grid);
 PETSC_EXTERN PetscErrorCode GridDestroy(Grid *grid);
 
-/* GridPosition - position X[2] (length) of entry (i, j) of a field, j counting the rows of all ranks. Not collective.
- */
+/* GridPosition - position X[2] (length) of entry (i, j) of a field, j counting the rows of all ranks.
+   Not collective. */
 PETSC_EXTERN void GridPosition(Grid grid, Field field, PetscInt i, PetscInt j, PetscReal X[2]);
 
 /* Number of this rank's entries of u, which come first in a velocity's local array. */

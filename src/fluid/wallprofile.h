@@ -1,5 +1,5 @@
-/* The flow of a force wave on a wall: profiles across the box, from which channel.c and walls.c build their inverses.
- */
+/* The flow of a force wave on a wall: profiles across the box, from which channel.c and walls.c build
+   their inverses. */
 #pragma once
 #include "fluid/fluid.h"
 

@@ -75,8 +75,8 @@ PETSC_EXTERN void MembraneMeasure(Membrane membrane, PetscInt vesicle, const Pet
 PETSC_EXTERN PetscReal MembraneFrequency(Membrane membrane, PetscInt vesicle, const PetscScalar X[],
                                          const PetscScalar U[]);
 
-/* MembraneNormalSpeed - max over all markers of |u.n|, n the normal of the chord from X_{k-1} to X_{k+1}. Collective.
- */
+/* MembraneNormalSpeed - max over all markers of |u.n|, n the normal of the chord from X_{k-1} to
+   X_{k+1}. Collective. */
 PETSC_EXTERN PetscErrorCode MembraneNormalSpeed(Membrane membrane, Vec X, Vec U, PetscReal *speed);
 
 /* MembraneRestoreEdges - where an edge of one vesicle is off by more than tolerance (relative), move its markers as

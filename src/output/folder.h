@@ -10,8 +10,8 @@ typedef struct {
   char path[PETSC_MAX_PATH_LEN];
 } Folder;
 
-/* FolderMake - make the folder, with those above it. Collective. Errors: PETSC_ERR_USER_INPUT when it cannot be made.
- */
+/* FolderMake - make the folder, with those above it. Collective. Errors: PETSC_ERR_USER_INPUT when it cannot
+   be made. */
 PETSC_EXTERN PetscErrorCode FolderMake(MPI_Comm comm, const char path[], Folder *folder);
 
 /* FolderClaim - refuse a folder that holds another run's results, unless overwrite. here: the checkpoint `restart` (""

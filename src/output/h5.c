@@ -21,8 +21,8 @@ static PetscErrorCode Start(MPI_Comm comm, const char path[], H5File *f) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* No cache of chunks: a write that fails does so in H5Dwrite, not when the dataset is closed, which HDF5 cannot undo.
- */
+/* No cache of chunks: a write that fails does so in H5Dwrite, not when the dataset is closed, which HDF5
+   cannot undo. */
 static hid_t Access(void) {
   const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
   (void)H5Pset_cache(access, 0, 0, 0, 0);

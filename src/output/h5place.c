@@ -1,7 +1,7 @@
 #include "output/h5place.h"
 
-/* The driver, and where it last read values. HDF5's drivers are the whole program's, and their calls have no context.
- */
+/* The driver, and where it last read values. HDF5's drivers are the whole program's, and their calls have
+   no context. */
 static struct {
   hid_t id;
   H5FD_class_t class;

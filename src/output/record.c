@@ -79,8 +79,8 @@ PetscErrorCode RecordMeasure(Record *r, Scheme s) {
 }
 
 /* Totals (energy, area, length), worst values (errors, edge ratio) or means (centre) of several vesicles. The
-   inclination and the frequency of the first stand for all: neither a total nor a worst value of angles means anything.
- */
+   inclination and the frequency of the first stand for all: neither a total nor a worst value of angles
+   means anything. */
 static void Combine(PetscInt vesicles, const PetscReal one[], PetscReal all[]) {
   const int total[] = {COLUMN_BENDING, COLUMN_AREA, COLUMN_LENGTH};
   const int worst[] = {COLUMN_AREA_ERROR, COLUMN_LENGTH_ERROR, COLUMN_EDGE_RATIO};

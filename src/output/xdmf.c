@@ -21,8 +21,8 @@ static void HyperSlab(FILE *f, PetscInt t, const char name[], PetscInt first, Pe
           (int)all, (int)m, name);
 }
 
-/* Values at cell centres are the nodes of a grid of one layer: readers put a two-dimensional grid into the y-z plane.
- */
+/* Values at cell centres are the nodes of a grid of one layer: readers put a two-dimensional grid into the
+   y-z plane. */
 static void PrintFluid(Grid g, FILE *f, PetscInt t) {
   const int nx = (int)g->n[0], ny = (int)g->n[1];
   fprintf(

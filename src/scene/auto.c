@@ -65,8 +65,8 @@ static PetscReal SmallestRadius(Scene scene) {
   return R0;
 }
 
-/* The slowest and the fastest time of the scene: nu R0^3/c_b, and the least of it and the flow's; PETSC_MAX_REAL: none.
- */
+/* The slowest and the fastest time of the scene: nu R0^3/c_b, and the least of it and the flow's;
+   PETSC_MAX_REAL: none. */
 static void Times(Scene scene, PetscReal *slow, PetscReal *fast) {
   const PetscReal rate = Rate(scene), R0 = SmallestRadius(scene);
   *slow = scene->membrane.bending > 0 ? scene->fluid.nu * R0 * R0 * R0 / scene->membrane.bending : PETSC_MAX_REAL;

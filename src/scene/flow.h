@@ -24,6 +24,6 @@ PETSC_EXTERN PetscErrorCode FlowVelocities(const Flow *flow, PetscReal t, PetscI
 /* FlowPressureGradient - grad p_inf[2] at any point (uniform for the flows offered) for viscosity nu. */
 PETSC_EXTERN void FlowPressureGradient(const Flow *flow, PetscReal nu, PetscReal g[2]);
 
-/* FlowGradient - gradient[a][b] = d(u_inf)_a/dx_b at (x, y) and time t; not of a custom flow, which has none to give.
- */
+/* FlowGradient - gradient[a][b] = d(u_inf)_a/dx_b at (x, y) and time t; not of a custom flow, which has none
+   to give. */
 PETSC_EXTERN void FlowGradient(const Flow *flow, PetscReal t, PetscReal x, PetscReal y, PetscReal gradient[2][2]);

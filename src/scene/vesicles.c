@@ -18,8 +18,8 @@ static PetscInt FastOdd(PetscInt M) {
   return M;
 }
 
-/* Number of markers of a curve: the even (for spectral edges odd) number nearest to length/(spacing h), or the user's
- * own. */
+/* Number of markers of a curve: the even (for spectral edges odd) number nearest to length/(spacing h), or the
+   user's own. */
 static PetscErrorCode MarkerCount(Scene scene, PetscReal length, PetscInt *M) {
   const Kernel *kernel = KernelFind(scene->coupling.kernel);
   const PetscReal spacing = scene->vesicles.spacing > 0 ? scene->vesicles.spacing : kernel->default_spacing;

@@ -13,7 +13,7 @@ typedef struct {
   PetscInt who;
 } Restored;
 
-/* Once a run: edges as wrong as this mean a step too large for what it follows. */
+/* Once a run: an edge that was off by this much shows that the step is too large. */
 static PetscErrorCode WarnOfEdges(Scheme s, Coupled *d, const Restored *r) {
   char message[PETVES_MAX_MESSAGE] = "";
   PetscFunctionBeginUser;

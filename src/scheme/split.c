@@ -15,8 +15,8 @@ static PetscErrorCode SolverFailed(Scheme s, LagrangianSolver solver) {
   return SchemeSolverFailed(s, solver->prefix, solver->why, solver->its, solver->residual);
 }
 
-/* 1  H u3 = r - G p - S sigma - B X + bc1, where r = u/dt and B acts on X + dt u_inf, or on X when bending is explicit
- */
+/* 1  H u3 = r - G p - S sigma - B X + bc1, where r = u/dt and B acts on X + dt u_inf, or on X when bending
+   is explicit */
 static PetscErrorCode PredictVelocity(Scheme s, Split *d) {
   const State *q = &s->state;
   Fluid f = s->fluid;
