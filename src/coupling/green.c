@@ -2,8 +2,6 @@
 #include "coupling/mobility.h"
 #include "fluid/stokes.h"
 
-#define LAGS (2 * KERNEL_MAX_POINTS) /* of two kernels, one spare: whole vectors */
-
 PetscErrorCode MobilityCreate(const FluidSpec *spec, Coupling coupling, Mobility *out) {
   const Grid g = coupling->fluid->grid;
   const Layout l = coupling->membrane->layout;
@@ -27,15 +25,9 @@ PetscErrorCode MobilityCreate(const FluidSpec *spec, Coupling coupling, Mobility
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode FreeTable(GreenTable *t) {
-  PetscFunctionBeginUser;
-  for (int b = 0; b < GREEN_COUNT; b++) PetscCall(PetscFree(t->grid[b]));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode MobilityForget(Mobility m) {
   PetscFunctionBeginUser;
-  for (int i = 0; i < MOBILITY_CACHE; i++) PetscCall(FreeTable(&m->cache[i]));
+  for (int i = 0; i < MOBILITY_CACHE; i++) PetscCall(OffsetTableDestroy(&m->cache[i].offset));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -80,20 +72,19 @@ static PetscErrorCode UnitResponse(Mobility m, Stokes stokes, int source, Vec u,
   PetscCall(StokesSolve(stokes, u, NULL, u, p));
   PetscCall(VecGetArrayRead(u, &a));
   if (!source) {
-    PetscCall(Gather(m, FIELD_U, a, t->grid[GREEN_UU]));
-    PetscCall(Gather(m, FIELD_V, a + GridLocalU(g), t->grid[GREEN_VU]));
+    PetscCall(Gather(m, FIELD_U, a, t->offset.value[OFFSET_UU]));
+    PetscCall(Gather(m, FIELD_V, a + GridLocalU(g), t->offset.value[OFFSET_VU]));
   } else
-    PetscCall(Gather(m, FIELD_V, a + GridLocalU(g), t->grid[GREEN_VV]));
+    PetscCall(Gather(m, FIELD_V, a + GridLocalU(g), t->offset.value[OFFSET_VV]));
   PetscCall(VecRestoreArrayRead(u, &a));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode BuildTable(Mobility m, PetscReal alpha, GreenTable *t) {
-  const PetscInt size = (2 * m->size[0] + 1) * (2 * m->size[1] + 1);
   Stokes stokes;
   Vec u, p;
   PetscFunctionBeginUser;
-  for (int b = 0; b < GREEN_COUNT; b++) PetscCall(PetscMalloc1(size, &t->grid[b]));
+  PetscCall(OffsetTableCreate(m->size, &t->offset));
   t->alpha = alpha;
   PetscCall(FluidSetTimeCoefficient(m->periodic, alpha));
   PetscCall(StokesCreate(m->periodic, &stokes));
@@ -110,7 +101,7 @@ static PetscErrorCode BuildTable(Mobility m, PetscReal alpha, GreenTable *t) {
 PetscErrorCode MobilitySetTables(Mobility m, const PetscReal alpha[MOBILITY_CACHE]) {
   PetscFunctionBeginUser;
   for (int i = 0; i < MOBILITY_CACHE; i++) {
-    PetscCall(FreeTable(&m->cache[i]));
+    PetscCall(OffsetTableDestroy(&m->cache[i].offset));
     if (alpha[i] >= 0) PetscCall(BuildTable(m, alpha[i], &m->cache[i]));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -118,7 +109,7 @@ PetscErrorCode MobilitySetTables(Mobility m, const PetscReal alpha[MOBILITY_CACH
 
 /* Made, and for a coefficient near enough. */
 static PetscBool Serves(const GreenTable *t, PetscReal alpha) {
-  return t->grid[0] && PetscAbsReal(t->alpha - alpha) <= 0.1 * alpha ? PETSC_TRUE : PETSC_FALSE;
+  return t->offset.value[0] && PetscAbsReal(t->alpha - alpha) <= 0.1 * alpha ? PETSC_TRUE : PETSC_FALSE;
 }
 
 PetscErrorCode MobilityGetTable(Mobility m, PetscReal alpha, const GreenTable **table) {
@@ -129,7 +120,7 @@ PetscErrorCode MobilityGetTable(Mobility m, PetscReal alpha, const GreenTable **
   if (Serves(&m->cache[i], alpha))
     found = m->cache[i];
   else {
-    PetscCall(FreeTable(&m->cache[i])); /* the oldest */
+    PetscCall(OffsetTableDestroy(&m->cache[i].offset)); /* the oldest */
     PetscCall(BuildTable(m, alpha, &found));
   }
   for (; i > 0; i--) m->cache[i] = m->cache[i - 1];
@@ -138,65 +129,33 @@ PetscErrorCode MobilityGetTable(Mobility m, PetscReal alpha, const GreenTable **
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A stencil's weights in one direction between zeros, so that correlations run over whole vectors. */
-typedef struct {
-  PetscReal weight[2][3 * KERNEL_MAX_POINTS];
-  PetscInt first[2];
-} Padded;
-
-static void Pad(const Stencil *s, Padded *p) {
+/* SUM SUM phi(response) Green phi(source), the source being the nearest image. */
+static PetscReal Pair(Mobility m, const GreenTable *t, OffsetBlock b, const PaddedStencil *response,
+                      const PaddedStencil *source) {
+  PetscInt shift[2];
   for (int dir = 0; dir < 2; dir++) {
-    for (int i = 0; i < 3 * KERNEL_MAX_POINTS; i++) p->weight[dir][i] = 0;
-    for (PetscInt i = 0; i < s->n[dir]; i++) p->weight[dir][KERNEL_MAX_POINTS + i] = s->weight[dir][i];
-    p->first[dir] = s->first[dir];
+    const PetscInt n = m->coupling->fluid->grid->n[dir], middle = response->first[dir] - source->first[dir] + 1;
+    const PetscBool near = middle < n / 2 && middle >= -n / 2 ? PETSC_TRUE : PETSC_FALSE;
+    shift[dir] = near ? 0 : -n * (PetscInt)PetscFloorReal((PetscReal)middle / (PetscReal)n + 0.5);
   }
-}
-
-/* Correlation of two stencils in one direction: weight[q] for offsets first + q, LAGS of them. Offsets go to the
-   nearest image, inside the window. */
-static inline PetscInt Correlate(Mobility m, int dir, const Padded *response, const Padded *source,
-                                 PetscReal weight[restrict LAGS]) {
-  const PetscReal *restrict a = response->weight[dir] + 1, *restrict b = source->weight[dir] + KERNEL_MAX_POINTS;
-  const PetscInt n = m->coupling->fluid->grid->n[dir];
-  PetscInt first = response->first[dir] - source->first[dir] - (KERNEL_MAX_POINTS - 1);
-  const PetscInt middle = first + LAGS / 2;
-  for (int q = 0; q < LAGS; q++) {
-    PetscReal sum = 0;
-    for (int j = 0; j < KERNEL_MAX_POINTS; j++) sum += a[q + j] * b[j];
-    weight[q] = sum;
-  }
-  if (middle >= n / 2 || middle < -n / 2) first -= n * (PetscInt)PetscFloorReal((PetscReal)middle / (PetscReal)n + 0.5);
-  return PetscMax(-m->size[dir], PetscMin(first, m->size[dir] - LAGS + 1));
-}
-
-/* SUM SUM phi(response) Green phi(source). */
-static inline PetscReal Pair(Mobility m, const GreenTable *t, GreenBlock b, const Padded *response,
-                             const Padded *source) {
-  const PetscInt width = 2 * m->size[0] + 1;
-  PetscReal wx[LAGS], wy[LAGS], line[LAGS] = {0}, sum = 0;
-  const PetscInt i0 = Correlate(m, 0, response, source, wx), j0 = Correlate(m, 1, response, source, wy);
-  const PetscReal *row = t->grid[b] + (j0 + m->size[1]) * width + i0 + m->size[0];
-  for (int j = 0; j < LAGS; j++, row += width)
-    for (int i = 0; i < LAGS; i++) line[i] += wy[j] * row[i];
-  for (int i = 0; i < LAGS; i++) sum += wx[i] * line[i];
-  return sum;
+  return StencilPairSum(&t->offset, b, response, source, shift);
 }
 
 PetscErrorCode MobilityAssemble(Mobility m, const GreenTable *t, PetscInt first, PetscInt n, PetscInt part,
                                 PetscInt parts, PetscReal Mob[]) {
-  Padded *p; /* component c of marker k at 2k + c */
+  PaddedStencil *p; /* component c of marker k at 2k + c */
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(2 * n, &p));
-  for (PetscInt k = 0; k < 2 * n; k++) Pad(&m->coupling->markers->stencil[2 * first + k], &p[k]);
+  for (PetscInt k = 0; k < 2 * n; k++) StencilPad(&m->coupling->markers->stencil[2 * first + k], &p[k]);
   if (parts > 1) PetscCall(PetscArrayzero(Mob, 4 * n * n));
   for (PetscInt k = part; k < n; k += parts)
     for (PetscInt l = 0; l < n; l++) {
       PetscReal *block = Mob + 2 * k * 2 * n + 2 * l, *mirror = Mob + 2 * l * 2 * n + 2 * k;
       if (l >= k) { /* symmetric */
-        block[0] = mirror[0] = Pair(m, t, GREEN_UU, &p[2 * k], &p[2 * l]);
-        block[2 * n + 1] = mirror[2 * n + 1] = Pair(m, t, GREEN_VV, &p[2 * k + 1], &p[2 * l + 1]);
+        block[0] = mirror[0] = Pair(m, t, OFFSET_UU, &p[2 * k], &p[2 * l]);
+        block[2 * n + 1] = mirror[2 * n + 1] = Pair(m, t, OFFSET_VV, &p[2 * k + 1], &p[2 * l + 1]);
       }
-      block[2 * n] = mirror[1] = Pair(m, t, GREEN_VU, &p[2 * k + 1], &p[2 * l]);
+      block[2 * n] = mirror[1] = Pair(m, t, OFFSET_VU, &p[2 * k + 1], &p[2 * l]);
     }
   PetscCall(PetscFree(p));
   PetscFunctionReturn(PETSC_SUCCESS);

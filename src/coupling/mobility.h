@@ -5,15 +5,14 @@
    membrane's fourth derivative blows up.) */
 #pragma once
 #include "coupling/coupling.h"
+#include "coupling/offsets.h"
 
 #define MOBILITY_CACHE 4
 
-/* Velocity per unit force between faces by their offset in cells, in a window [-size[1] .. size[1]] x [-size[0] ..
-   size[0]], x fastest: response u to a source u, v to v, v to u. */
-typedef enum { GREEN_UU, GREEN_VV, GREEN_VU, GREEN_COUNT } GreenBlock;
+/* The periodic box's Green's function for one coefficient, by offsets of faces. */
 typedef struct {
-  PetscReal alpha;              /* coefficient that it was made for */
-  PetscReal *grid[GREEN_COUNT]; /* NULL: empty */
+  PetscReal alpha;    /* coefficient that it was made for */
+  OffsetTable offset; /* without values: empty */
 } GreenTable;
 
 typedef struct _p_Mobility *Mobility;
@@ -33,7 +32,7 @@ PETSC_EXTERN PetscErrorCode MobilityDestroy(Mobility *mobility);
    MobilityCoefficient - the coefficient of table k, negative without one. */
 PETSC_EXTERN PetscErrorCode MobilitySetTables(Mobility mobility, const PetscReal alpha[MOBILITY_CACHE]);
 static inline PetscReal MobilityCoefficient(Mobility mobility, PetscInt k) {
-  return mobility->cache[k].grid[0] ? mobility->cache[k].alpha : -1;
+  return mobility->cache[k].offset.value[0] ? mobility->cache[k].alpha : -1;
 }
 
 /* MobilityForget - drop all tables. Not collective. */
