@@ -27,7 +27,7 @@ static const OptionRow table[] = {
   {"-vesicle_angle", OPT_REALS, AT(vesicles.angle), "0", "any", "counter-clockwise turn of the shape, one for all or one a vesicle (degrees)"},
   {"-vesicle_file", OPT_PATH, AT(vesicles.file), "", "", "closed curves: x y a line, an empty line between curves, for -vesicle_shape file"},
   {"-vesicle_bending", OPT_REAL, AT(membrane.bending), "0.01", ">=0", "c_b, bending stiffness; 0 leaves bending out"},
-  {"-vesicle_spacing", OPT_REAL, AT(vesicles.spacing), "0", ">=0", "marker spacing ds/h; 0 takes the kernel's (" KERNEL_SPACINGS ")"},
+  {"-vesicle_spacing", OPT_REAL, AT(vesicles.spacing), "0", ">=0", "marker spacing ds/h; 0: by the shape with -coupling_near_field exact (45 markers, more on thin vesicles, at most 2 h apart), else the kernel's (" KERNEL_SPACINGS ")"},
   {"-vesicle_markers", OPT_INT, AT(vesicles.markers), "0", ">=0", "number of markers of each vesicle, instead of the spacing; 0 takes the spacing"},
   {"-vesicle_allow_close_markers", OPT_BOOL, AT(vesicles.allow_close_markers), "false", "true|false", "accept spacings below the least: 0.3 h with -coupling_near_field exact, else the kernel's (" KERNEL_LEAST_SPACINGS ")"},
   {"-delta_type", OPT_NAME, AT(coupling.kernel), "cbs54", KERNEL_NAMES, "kernel between grid and markers; split, penalty: ib6"},

@@ -18,32 +18,56 @@ static PetscInt FastOdd(PetscInt M) {
   return M;
 }
 
-/* Number of markers of a curve: the even (for spectral edges odd) number nearest to length/(spacing h), or the
-   user's own. */
-static PetscErrorCode MarkerCount(Scene scene, PetscReal length, PetscInt *M) {
+/* lambda_t rate of the flow with a vesicle of radius R0; 0 where either is zero. */
+static PetscReal Chi(Scene scene, PetscReal R0) {
+  const Flow *flow = &scene->flow;
+  PetscReal rate = 0;
+  if (flow->type == FLOW_SHEAR || flow->type == FLOW_EXTENSION) rate = PetscAbsReal(flow->rate);
+  if (flow->type == FLOW_POISEUILLE) rate = 2 * PetscAbsReal(flow->peak) / flow->half_width;
+  if (scene->membrane.bending == 0) return 0;
+  return rate * scene->fluid.nu * PetscPowRealInt(R0, 3) / scene->membrane.bending;
+}
+
+/* With the exact near field markers have to resolve the shape, not the grid: 45 for a reduced area of 0.6 and more, in
+   proportion more for thinner ones, half as many more where the flow is so strong that membranes wrinkle; and no edge
+   longer than two cells, so that the kernel leaks nothing. */
+static PetscInt CountByShape(Scene scene, PetscReal length, PetscReal area) {
+  const PetscReal V = 4 * PETSC_PI * area / PetscSqr(length), thin = PetscMax(1, 0.6 / V);
+  const PetscReal strong = Chi(scene, length / (2 * PETSC_PI)) >= 100 ? 1.5 : 1;
+  const PetscReal wanted = PetscMax(45 * thin * strong, length / (2 * FluidSpecCellSize(&scene->fluid)));
+  return 2 * (PetscInt)PetscCeilReal((wanted - 1) / 2 * (1 - 1e-12)) + 1;
+}
+
+/* Number of markers of a curve: the user's own; by the shape; or the even (for spectral edges odd) number nearest to
+   length/(spacing h). */
+static PetscErrorCode MarkerCount(Scene scene, PetscReal length, PetscReal area, PetscInt *M) {
   const Kernel *kernel = KernelFind(scene->coupling.kernel);
-  const PetscReal spacing = scene->vesicles.spacing > 0 ? scene->vesicles.spacing : kernel->default_spacing;
-  const PetscReal h = FluidSpecCellSize(&scene->fluid);
-  const PetscReal least = scene->coupling.near_field == NEAR_EXACT ? NEAR_LEAST_SPACING : kernel->least_spacing;
+  const SceneVesicles *own = &scene->vesicles;
+  const PetscBool exact = scene->coupling.near_field == NEAR_EXACT ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool spectral = scene->membrane.derivative == DERIVATIVE_SPECTRAL ? PETSC_TRUE : PETSC_FALSE;
+  const PetscReal spacing = own->spacing > 0 ? own->spacing : kernel->default_spacing;
+  const PetscReal h = FluidSpecCellSize(&scene->fluid), least = exact ? NEAR_LEAST_SPACING : kernel->least_spacing;
+  const PetscReal pairs = length / (2 * spacing * h);
+  const PetscBool by_shape = exact && !own->markers && own->spacing == 0 ? PETSC_TRUE : PETSC_FALSE;
   PetscReal s;
   PetscFunctionBeginUser;
-  *M = scene->vesicles.markers ? scene->vesicles.markers
-                               : 2 * (PetscInt)PetscFloorReal(length / (2 * spacing * h) + 0.5);
-  if (!scene->vesicles.markers && scene->membrane.derivative == DERIVATIVE_SPECTRAL) /* odd: no Nyquist mode */
-    *M = 2 * (PetscInt)PetscFloorReal(length / (2 * spacing * h)) + 1;
-  if (!scene->vesicles.markers && scene->membrane.derivative == DERIVATIVE_SPECTRAL && *M > MANY) *M = FastOdd(*M);
+  if (own->markers)
+    *M = own->markers;
+  else if (by_shape)
+    *M = CountByShape(scene, length, area);
+  else /* odd: no Nyquist mode */
+    *M = spectral ? 2 * (PetscInt)PetscFloorReal(pairs) + 1 : 2 * (PetscInt)PetscFloorReal(pairs + 0.5);
+  if (!own->markers && !by_shape && spectral && *M > MANY) *M = FastOdd(*M);
   PetscCheck(*M >= 8, scene->comm, PETSC_ERR_USER_INPUT,
              "-vesicle_spacing %g: %" PetscInt_FMT
              " markers on a membrane of length %g at h = %g; allowed: at least 8, so a finer -domain_cells",
              (double)spacing, *M, (double)length, (double)h);
-  s = length / (*M * h);
-  /* rounding to an even number of markers may go one marker below the limit that the user asked for */
-  PetscCheck(scene->vesicles.allow_close_markers || (scene->vesicles.markers ? s : spacing) >= least * (1 - 1e-12),
-             scene->comm, PETSC_ERR_USER_INPUT,
+  s = own->spacing > 0 ? spacing : length / (*M * h); /* rounding to a number of markers may go just below the limit */
+  PetscCheck(own->allow_close_markers || (!own->markers && !own->spacing) || s >= least * (1 - 1e-12), scene->comm,
+             PETSC_ERR_USER_INPUT,
              "-vesicle_%s %g: markers %g h apart with -delta_type %s; allowed: at least %g h "
              "(-vesicle_allow_close_markers goes on)",
-             scene->vesicles.markers ? "markers" : "spacing",
-             scene->vesicles.markers ? (double)scene->vesicles.markers : (double)spacing, (double)s,
+             own->markers ? "markers" : "spacing", own->markers ? (double)own->markers : (double)spacing, (double)s,
              scene->coupling.kernel, (double)least);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -126,7 +150,7 @@ PetscErrorCode SceneMakeShape(Scene scene, Shape *shape) {
   PetscCall(PetscCalloc1(shape->vesicles + 1, &shape->start));
   for (PetscInt v = 0; v < shape->vesicles; v++) {
     PetscInt M;
-    PetscCall(MarkerCount(scene, CurveLength(&curve[v]), &M));
+    PetscCall(MarkerCount(scene, CurveLength(&curve[v]), CurveArea(&curve[v]), &M));
     shape->start[v + 1] = shape->start[v] + M;
   }
   PetscCall(PetscMalloc1(2 * shape->start[shape->vesicles], &shape->X));
