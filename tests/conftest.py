@@ -38,9 +38,7 @@ ENVIRONMENT = {
 }
 
 #: The paper's scheme and discretisation, which most tests start from: options given after them win.
-PAPER = (
-    "-scheme_type split -delta_type ib6 -membrane_derivative fd -coupling_self_mobility none -scheme_area_target false"
-)
+PAPER = "-scheme_type split -delta_type ib6 -membrane_derivative fd -coupling_near_field none -scheme_area_target false"
 
 COLUMNS = (
     "step,time,dt,energy_kinetic,energy_bending,area,length,area_error,length_error,edge_ratio,div_max,"

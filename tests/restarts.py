@@ -7,7 +7,7 @@ import numpy as np
 from conftest import COLUMNS
 
 BASE = "-domain_cells 32,32 -vesicle_semi_axes 0.3,0.5 -flow_type shear -time_step 0.02 -output_every 0.05"
-DEFAULTS = "-delta_type cbs54 -membrane_derivative spectral -coupling_self_mobility symbol -scheme_area_target true"
+DEFAULTS = "-delta_type cbs54 -membrane_derivative spectral -coupling_near_field exact -scheme_area_target true"
 TWO = (
     "-domain_box -1.5,1.5,-1.5,1.5 -domain_cells 48,48 -vesicle_semi_axes 0.2,0.4 -vesicle_count 2 "
     "-vesicle_center -0.5,0.2,0.5,-0.2"

@@ -12,7 +12,7 @@ from test_coupled_runs import last_state, same_state
 
 pytestmark = pytest.mark.xdist_group("accuracy")  # its tests share runs
 
-CORRECTED = "-scheme_type coupled -delta_type cbs54 -membrane_derivative spectral -coupling_self_mobility symbol "
+CORRECTED = "-scheme_type coupled -delta_type cbs54 -membrane_derivative spectral -coupling_near_field exact "
 CORRECTED += "-scheme_area_target true -checkpoint_every 0 -output_every 100"
 BOXES = {
     "box": "-domain_box -4,4,-4,4 -domain_cells {n},{n}",
@@ -116,7 +116,7 @@ def test_split_with_self_mobility_tends_to_coupled(tmp_path):
     splitting error at the smallest step does."""
     scene = "-domain_cells 48,48 -vesicle_markers 36 -time_end 0.0625 -checkpoint_every 0 -delta_type cbs54"
     scene += " -membrane_derivative bending"
-    symbol = f"{scene} -coupling_self_mobility symbol"
+    symbol = f"{scene} -coupling_near_field exact"
     tight = "-tension_ksp_rtol 1e-10 -bending_ksp_rtol 1e-10"
 
     def markers(name, options):

@@ -60,9 +60,7 @@ def test_coupled_is_the_direct_solution(box, flow, tmp_path):
             same_state(want, got, 1e-9)
 
 
-@pytest.mark.parametrize(
-    "membrane", ["", "-delta_type cbs54 -membrane_derivative spectral -coupling_self_mobility symbol"]
-)
+@pytest.mark.parametrize("membrane", ["", "-delta_type cbs54 -membrane_derivative spectral -coupling_near_field exact"])
 def test_total_form_is_the_disturbance_form(membrane, tmp_path):
     """Shear with moving walls against u - u_inf, 20 steps with the length target: every column but wall to 1e-8."""
     options = f"-scheme_type coupled {membrane} -domain_cells 48,48 -vesicle_angle 25 -flow_type shear {TIGHT} "

@@ -127,13 +127,12 @@ static PetscErrorCode ReportLengthTarget(PetscReal bending, PetscReal dt) {
 
 /* Spectral edges and self-mobility: Theta only dissipates, and the law stays. 35 markers: spectral edges take an odd
  * number. */
-#define CORRECTED "-delta_type cbs54 -membrane_derivative spectral -coupling_self_mobility symbol -vesicle_markers 35 "
+#define CORRECTED "-delta_type cbs54 -membrane_derivative spectral -coupling_near_field exact -vesicle_markers 35 "
 
 static PetscErrorCode CheckCorrected(PetscReal bending, PetscReal dt, PetscBool more) {
-  static const char *const others[] = {
-      "-delta_type ib6 -membrane_derivative spectral -coupling_self_mobility local "
-      "-vesicle_markers 35 ",
-      "-delta_type cbs54 -membrane_derivative bending -coupling_self_mobility symbol "};
+  static const char *const others[] = {"-delta_type ib6 -membrane_derivative spectral -coupling_near_field exact "
+                                       "-vesicle_markers 35 ",
+                                       "-delta_type cbs54 -membrane_derivative bending -coupling_near_field exact "};
   const char *order1 = "-scheme_length_target false -coupled_ksp_rtol 1e-12 -scheme_order 1";
   const char *order2 = "-scheme_length_target false -coupled_ksp_rtol 1e-12 -scheme_order 2 -scheme_startup euler";
   char scheme[512];

@@ -12,7 +12,7 @@ from studies.common.paper import POISEUILLE, RELAXATION
 from studies.inertia.runs import extents, moving_and_resting, poiseuille_options, relaxation_options
 
 #: The scheme's own discretisation, which run_petves replaces by the paper's.
-CORRECTED = "-scheme_type coupled -delta_type cbs54 -membrane_derivative spectral -coupling_self_mobility symbol "
+CORRECTED = "-scheme_type coupled -delta_type cbs54 -membrane_derivative spectral -coupling_near_field exact "
 CORRECTED += "-scheme_area_target true -checkpoint_every 0"
 PERIODIC = "-domain_bc_x periodic -domain_bc_y periodic"
 CHANNEL = "-domain_box 0,2.5,-1,1 -domain_cells 60,48 -domain_bc_x periodic -flow_type poiseuille -flow_half_width 1 "
@@ -113,7 +113,7 @@ DEFAULTS = {
     "slow_channel": ("-flow_peak_velocity 0.02", "none", "quasi-steady Stokes (default", 0.02),
     "channel": ("-flow_peak_velocity 0.4", "convective", "Navier-Stokes, convection explicit (default", 0.4),
     "split": ("-flow_peak_velocity 0.4 -scheme_type split -delta_type ib6 -membrane_derivative fd "
-              "-coupling_self_mobility none -scheme_area_target false", "unsteady", "unsteady Stokes (default", 0.4),
+              "-coupling_near_field none -scheme_area_target false", "unsteady", "unsteady Stokes (default", 0.4),
     "shear": ("-flow_type shear -vesicle_center 1.25,0", "unsteady", "unsteady Stokes (default", 1),
     "carried_in_shear": ("-flow_type shear -vesicle_center 1.25,0.4", "unsteady", "unsteady Stokes (default", 1),
     "at_rest": ("-flow_type quiescent", "unsteady", "unsteady Stokes (default", None),

@@ -122,7 +122,7 @@ def test_stiff_membranes_keep_area_length_and_shape(dt, tmp_path):
     """c_b = 100, 250 and 60 times the membrane's own time a step: area and edges stay, energy rises by 2e-3 at most (the
     length target has no energy law) and the shape at the end is that of c_b = 1, its energy to 1e-3; the user is told.
     """
-    membrane = "-scheme_type coupled -delta_type cbs54 -membrane_derivative spectral -coupling_self_mobility symbol"
+    membrane = "-scheme_type coupled -delta_type cbs54 -membrane_derivative spectral -coupling_near_field exact"
     scene = f"{membrane} -scheme_area_target true -vesicle_semi_axes 0.2,0.5 -domain_cells 32,32 -vesicle_bending"
     run = run_petves(tmp_path / "stiff", f"{scene} 100 -time_step {dt} -time_end {60 * dt}")
     series = run.series

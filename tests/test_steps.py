@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from conftest import run_petves
 
-COUPLED = "-scheme_type coupled -delta_type cbs54 -membrane_derivative spectral -coupling_self_mobility symbol"
+COUPLED = "-scheme_type coupled -delta_type cbs54 -membrane_derivative spectral -coupling_near_field exact"
 
 
 @pytest.mark.parametrize("ranks", [1, 2])

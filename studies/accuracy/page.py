@@ -13,10 +13,10 @@ from studies.accuracy import runs as study
 from studies.common.curves import radius
 from studies.common.engine import Results
 from studies.common.paper import REST, SHEAR, shear_errors
-from studies.common.scenes import KERNELS
+from studies.common.scenes import NEAR_KERNELS
 
 CELLS, PICTURE_CELLS, FINE_CELLS = (64, 128, 256), (48, 64, 96, 128, 192), (64, 128, 256, 512)
-PICTURE = ("uncorrected", "cbs54, none", "local", "chords", "ib6, symbol", "default")
+PICTURE = ("uncorrected", "cbs54, none", "chords", "ib6, exact", "default")
 
 
 def write(folder: str | Path, quick: bool = False) -> list[Path]:
@@ -92,9 +92,9 @@ def _all(cells: tuple[int, ...]) -> product:
 
 
 def _others(results: Results, folder: Path) -> list[str]:
-    """Uncorrected and local beside the default, chi = 10."""
+    """Uncorrected and without near field beside the default, chi = 10."""
     rows, shown = [], []
-    names = ("uncorrected", "local", "default")
+    names = ("uncorrected", "cbs54, none", "default")
     for box, v in product(SHEAR, study.REDUCED_AREAS):
         line = [box, f"{v}"]
         for n, name in product((64, 128), names):
@@ -104,7 +104,7 @@ def _others(results: Results, folder: Path) -> list[str]:
         shown.append(line)
     write_csv(folder / "accuracy_others.csv", ["combination", "box", "V", "chi", "cells", "angle", "frequency"], rows)
     header = ["box", "V", *(f"{n}^2 {name}" for n, name in product((64, 128), names))]
-    return ["### Uncorrected, local, default: the same errors, chi = 10\n", *table(header, shown)]
+    return ["### Uncorrected, no near field, default: the same errors, chi = 10\n", *table(header, shown)]
 
 
 def _seconds(one: dict) -> float:
@@ -115,7 +115,7 @@ def _kernels(results: Results, folder: Path) -> list[str]:
     """Kernels and spacings at 64^2 and 128^2."""
     rows, shown = [], []
     base = {n: results.get(study.kernel_and_spacing("cbs54", 1.5, n)) for n in (64, 128)}
-    for kernel, spacing in product(KERNELS, study.SPACINGS):
+    for kernel, spacing in product(NEAR_KERNELS, study.SPACINGS):
         line = [kernel, f"{spacing:g}"]
         for n in (64, 128):
             one = results.get(study.kernel_and_spacing(kernel, spacing, n))
@@ -222,7 +222,7 @@ def _picture(results: Results, folder: Path, quick: bool) -> Path:
     """Draw errors of angle and frequency against h, V = 0.7, chi = 10, box."""
     figure, axes = new_figure(11, 4.4, columns=2)
     rows = []
-    for name, style in zip(PICTURE, ("s-", "v-", "^-", "D--", "x--", "o-")):
+    for name, style in zip(PICTURE, ("s-", "v-", "D--", "x--", "o-")):
         cells = PICTURE_CELLS + ((256,) if name == "default" and not quick else ())
         errors = [_errors(results.get(study.shear(name, "box", n, 0.7, 10)), "box", 0.7, 10) for n in cells]
         rows += [[name, n, *e] for n, e in zip(cells, errors)]

@@ -14,14 +14,13 @@ from studies.common.engine import Case, Series
 from studies.common.scenes import cells, tank_treading, words
 
 COMBINATIONS = {
-    "default": ("cbs54", "spectral", "symbol", "true"),
-    "local": ("cbs54", "spectral", "local", "true"),
-    "chords": ("cbs54", "bending", "symbol", "true"),
-    "ib6, symbol": ("ib6", "spectral", "symbol", "true"),
+    "default": ("cbs54", "spectral", "exact", "true"),
+    "chords": ("cbs54", "bending", "exact", "true"),
+    "ib6, exact": ("ib6", "spectral", "exact", "true"),
     "cbs54, none": ("cbs54", "spectral", "none", "true"),
     "uncorrected": ("ib6", "fd", "none", "false"),
 }
-"""Kernel, derivative, self-mobility and area target by name."""
+"""Kernel, derivative, near field and area target by name."""
 
 SPACINGS = (1.25, 1.5, 2.0)
 REDUCED_AREAS, CHIS = (0.5, 0.7, 0.9), (1, 10)
@@ -34,10 +33,10 @@ def label(name: str) -> str:
 
 def combination(name: str) -> dict[str, str]:
     """Return the options of a key of COMBINATIONS."""
-    kernel, derivative, mobility, area = COMBINATIONS[name]
+    kernel, derivative, near, area = COMBINATIONS[name]
     return words(
         f"-scheme_type coupled -delta_type {kernel} -membrane_derivative {derivative} "
-        f"-coupling_self_mobility {mobility} -scheme_area_target {area}"
+        f"-coupling_near_field {near} -scheme_area_target {area}"
     )
 
 

@@ -1,0 +1,311 @@
+/* The near field C = S - L: the lattice table, the closed form of distant pairs, symmetry, and any number of ranks. */
+#include "world.h"
+#include "coupling/nearblock.h"
+#include "fluid/stokes.h"
+
+#define EXACT "-coupling_near_field exact -membrane_derivative spectral -vesicle_allow_close_markers "
+#define PERIODIC "-domain_bc_x periodic -domain_bc_y periodic -fluid_inertia none "
+
+static PetscReal Entry(const OffsetTable *t, OffsetBlock b, PetscInt i, PetscInt j) {
+  return t->value[b][(j + t->size[1]) * (2 * t->size[0] + 1) + i + t->size[0]];
+}
+
+/* Response u (b = OFFSET_UU) or v (OFFSET_VU) at entry (i, j) to a force on u at entry (0, 0), and the same of a force
+   on v: u from v is v from u the other way round. */
+static PetscReal Response(const OffsetTable *t, int source, int response, PetscInt i, PetscInt j) {
+  if (source == response) return Entry(t, source ? OFFSET_VV : OFFSET_UU, i, j);
+  return source ? Entry(t, OFFSET_VU, -i, -j) : Entry(t, OFFSET_VU, i, j);
+}
+
+/* What the response tends to: the Stokeslet at the offset (x, y), nu = 1. */
+static PetscReal Stokeslet(int source, int response, PetscReal x, PetscReal y) {
+  const PetscReal r2 = x * x + y * y, d[2] = {x, y};
+  return ((source == response ? -0.5 * PetscLogReal(r2) : 0) + d[source] * d[response] / r2) / (4 * PETSC_PI);
+}
+
+/* Entry (i, j) of v lies half a cell left of and above that of u. */
+static void Offset(int source, int response, PetscInt i, PetscInt j, PetscReal d[2]) {
+  const PetscReal half = 0.5 * (response - source);
+  d[0] = i - half;
+  d[1] = j + half;
+}
+
+/* Largest distance of the table from the Stokeslet, times r^2, within half a cell of a circle. */
+static PetscReal RingError(const OffsetTable *t, PetscInt radius) {
+  PetscReal worst = 0, d[2];
+  for (int k = 0; k < 4; k++)
+    for (PetscInt j = -radius; j <= radius; j++)
+      for (PetscInt i = -radius; i <= radius; i++) {
+        Offset(k / 2, k % 2, i, j, d);
+        const PetscReal r = PetscSqrtReal(d[0] * d[0] + d[1] * d[1]);
+        if (PetscAbsReal(r - radius) > 0.5) continue;
+        worst = PetscMax(worst,
+                         r * r * PetscAbsReal(Response(t, k / 2, k % 2, i, j) - Stokeslet(k / 2, k % 2, d[0], d[1])));
+      }
+  return worst;
+}
+
+/* Known values, no divergence, the Stokeslet far away with a remainder in h^2/r^2. */
+static PetscErrorCode CheckTable(const OffsetTable *t) {
+  PetscReal divergence = 0, ring[3];
+  PetscFunctionBeginUser;
+  const PetscReal at0 = Entry(t, OFFSET_UU, 0, 0) - 0.168460448979795;
+  const PetscReal at1 = Entry(t, OFFSET_UU, 1, 0) - 0.088882977433848;
+  CHECK(PetscAbsReal(at0) < 1e-14 && PetscAbsReal(at1) < 1e-14, "uu(0,0) and uu(1,0): off by %.1e, %.1e", at0, at1);
+  for (int s = 0; s < 2; s++)
+    for (PetscInt j = -39; j <= 39; j++)
+      for (PetscInt i = -39; i <= 39; i++)
+        divergence = PetscMax(divergence, PetscAbsReal(Response(t, s, 0, i, j) - Response(t, s, 0, i - 1, j) +
+                                                       Response(t, s, 1, i, j) - Response(t, s, 1, i, j - 1)));
+  CHECK(divergence < 1e-14, "the response has no divergence: %.1e", divergence);
+  for (int k = 0; k < 3; k++) ring[k] = RingError(t, 10 << k);
+  CHECK(ring[0] < 0.05 && PetscAbsReal(ring[1] / ring[0] - 1) < 0.05 && PetscAbsReal(ring[2] / ring[1] - 1) < 0.02,
+        "Stokeslet far away, apart by c/r^2: c = %.5f at r = 10, %.5f at 20, %.5f at 40", ring[0], ring[1], ring[2]);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+#define BOX_CELLS 256
+#define FROM 100 /* row and column of the force */
+
+/* The periodic grid's velocity w, entry (i, j) from the force, of every component, on every rank. */
+static PetscErrorCode Gather(Grid g, Vec w, PetscReal *all) {
+  const PetscScalar *a;
+  PetscFunctionBeginUser;
+  PetscCall(PetscArrayzero(all, 2 * BOX_CELLS * BOX_CELLS));
+  PetscCall(VecGetArrayRead(w, &a));
+  for (int f = 0; f < 2; f++)
+    PetscCall(PetscArraycpy(all + (f * BOX_CELLS + g->first) * BOX_CELLS, a + (f ? GridLocalU(g) : 0),
+                            g->rows[f] * g->columns[f]));
+  PetscCall(VecRestoreArrayRead(w, &a));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, all, 2 * BOX_CELLS * BOX_CELLS, MPIU_REAL, MPI_SUM, g->comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Fourth difference along x (dir 0) or y, and second along both (dir 2), of a 5 x 5 patch about its middle. */
+static PetscReal FourthDifference(PetscReal patch[5][5], int dir) {
+  static const PetscReal four[5] = {1, -4, 6, -4, 1}, two[5] = {0, 1, -2, 1, 0};
+  PetscReal sum = 0;
+  for (int q = 0; q < 5; q++) {
+    if (dir < 2) sum += four[q] * (dir ? patch[q][2] : patch[2][q]);
+    for (int p = 0; p < 5 && dir == 2; p++) sum += two[q] * two[p] * patch[q][p];
+  }
+  return sum;
+}
+
+/* Largest difference of table and grid from one entry to the next one, and of their fourth differences. */
+static void CompareGrid(const OffsetTable *t, const PetscReal *all, PetscReal worst[2]) {
+  worst[0] = worst[1] = 0;
+  for (int f = 0; f < 2; f++)
+    for (PetscInt j = -8; j <= 8; j++)
+      for (PetscInt i = -8; i <= 8; i++) {
+        PetscReal patch[5][5];
+        for (int q = 0; q < 5; q++)
+          for (int p = 0; p < 5; p++) {
+            const PetscInt x = i + p - 2, y = j + q - 2;
+            patch[q][p] = all[(f * BOX_CELLS + FROM + y) * BOX_CELLS + FROM + x] - Response(t, 0, f, x, y);
+          }
+        worst[0] = PetscMax(worst[0], PetscAbsReal(patch[2][3] - patch[2][2]));
+        worst[0] = PetscMax(worst[0], PetscAbsReal(patch[3][2] - patch[2][2]));
+        for (int dir = 0; dir < 3; dir++) worst[1] = PetscMax(worst[1], PetscAbsReal(FourthDifference(patch, dir)));
+      }
+}
+
+/* The table is the response of a 256^2 periodic grid but for what the images add: a constant, quadratic terms of
+   r^2/L^2 and quartic ones, of which fourth differences leave 1/L^4 = 2e-10. */
+static PetscErrorCode CheckPeriodicGrid(const OffsetTable *t) {
+  TestWorld w;
+  Stokes stokes;
+  Vec force, u, p;
+  PetscScalar *a;
+  PetscReal *all, worst[2];
+  PetscFunctionBeginUser;
+  PetscCall(TestWorldCreate("-domain_cells 256,256 -domain_box 0,256,0,256 -vesicle_shape none -fluid_viscosity 1 "
+                            "-scheme_type coupled " PERIODIC,
+                            &w));
+  const Grid g = w.fluid->grid;
+  PetscCall(StokesCreate(w.fluid, &stokes));
+  PetscCall(DMCreateGlobalVector(g->velocity, &force));
+  PetscCall(VecDuplicate(force, &u));
+  PetscCall(DMCreateGlobalVector(g->da[FIELD_P], &p));
+  PetscCall(VecGetArray(force, &a));
+  if (FROM >= g->first && FROM < g->first + g->rows[0]) a[(FROM - g->first) * BOX_CELLS + FROM] = 1;
+  PetscCall(VecRestoreArray(force, &a));
+  PetscCall(FluidRemoveMean(w.fluid, force));
+  PetscCall(StokesSolve(stokes, force, NULL, u, p));
+  PetscCall(PetscMalloc1(2 * BOX_CELLS * BOX_CELLS, &all));
+  PetscCall(Gather(g, u, all));
+  CompareGrid(t, all, worst);
+  CHECK(worst[0] < 1e-4 && worst[1] < 1e-8,
+        "a 256^2 periodic grid's response: from one entry to the next apart by %.1e, fourth differences by %.1e",
+        worst[0], worst[1]);
+  PetscCall(PetscFree(all));
+  PetscCall(VecDestroy(&force));
+  PetscCall(VecDestroy(&u));
+  PetscCall(VecDestroy(&p));
+  PetscCall(StokesDestroy(&stokes));
+  PetscCall(TestWorldDestroy(&w));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* C of a pair by sums over the stencils: xx, yy, xy, yx. */
+static void BySums(const OffsetTable *t, const NearField f, PetscInt i, PetscInt j, const PetscReal d[2],
+                   PetscReal C[4]) {
+  static const PetscInt none[2] = {0, 0};
+  const PetscReal h = f->markers->grid->h, nu = f->nu;
+  const PaddedStencil *a = &f->stencil[2 * i], *b = &f->stencil[2 * j];
+  const PetscReal x = d[0] / h, y = d[1] / h;
+  C[0] = (Stokeslet(0, 0, x, y) - StencilPairSum(t, OFFSET_UU, &a[0], &b[0], none)) / nu;
+  C[1] = (Stokeslet(1, 1, x, y) - StencilPairSum(t, OFFSET_VV, &a[1], &b[1], none)) / nu;
+  C[2] = (Stokeslet(1, 0, x, y) - StencilPairSum(t, OFFSET_VU, &b[1], &a[0], none)) / nu;
+  C[3] = (Stokeslet(0, 1, x, y) - StencilPairSum(t, OFFSET_VU, &a[1], &b[0], none)) / nu;
+}
+
+/* Pairs of two vesicles about 12 h apart: the closed form against the stencils' sums; measured .18, .14, .17, .27
+   h^4/(nu r^4) with cbs43, cbs54, cbs65, ib6. And pairs closer by, which are such sums themselves. */
+static PetscErrorCode CheckClosedForm(const OffsetTable *t, const char kernel[], PetscReal bound) {
+  char options[512];
+  TestWorld w;
+  PetscReal worst[2] = {0, 0}, C[4];
+  PetscInt pairs = 0;
+  PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(options, sizeof(options),
+                          EXACT PERIODIC
+                          "-scheme_type coupled -domain_cells 128,128 -domain_box 0,4,0,4 -vesicle_count 2 "
+                          "-vesicle_semi_axes 0.2,0.3 -vesicle_center 1.5,1.6,2.02,1.74 "
+                          "-vesicle_markers 65 -delta_type %s",
+                          kernel));
+  PetscCall(TestWorldCreate(options, &w));
+  const NearField f = w.coupling->near;
+  const PetscReal h = w.fluid->grid->h, *X = w.coupling->markers->X;
+  for (PetscInt k = 0; k < f->count; k++) {
+    const NearBlock *b = &f->block[k];
+    const PetscInt i0 = w.layout->start[b->row], j0 = w.layout->start[b->column], n = LayoutCount(w.layout, b->row);
+    if (b->row == b->column) continue;
+    for (PetscInt j = 0; j < n; j++)
+      for (PetscInt i = 0; i < n; i++) {
+        const PetscReal d[2] = {X[2 * (i0 + i)] - X[2 * (j0 + j)], X[2 * (i0 + i) + 1] - X[2 * (j0 + j) + 1]};
+        const PetscReal r = PetscSqrtReal(d[0] * d[0] + d[1] * d[1]) / h, *at = b->C + 4 * j * n + 2 * i;
+        const PetscReal found[4] = {at[0], at[2 * n + 1], at[2 * n], at[1]};
+        const int is = r > 10 ? 1 : 0;
+        if (r > 10 && PetscAbsReal(r - 12) > 0.5) continue;
+        BySums(t, f, i0 + i, j0 + j, d, C);
+        pairs += is;
+        for (int c = 0; c < 4; c++)
+          worst[is] = PetscMax(worst[is], PetscAbsReal(found[c] - C[c]) * f->nu * (is ? r * r * r * r : 1));
+      }
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, worst, 2, MPIU_REAL, MPI_MAX, PETSC_COMM_WORLD));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &pairs, 1, MPIU_INT, MPI_SUM, PETSC_COMM_WORLD));
+  CHECK(worst[0] < 1e-12 && worst[1] < bound && pairs > 100,
+        "%s: closed form of %d pairs 12 h apart within %.2f h^4/(nu r^4), bound %g; nearer ones to %.1e", kernel,
+        (int)pairs, worst[1], bound, worst[0]);
+  PetscCall(TestWorldDestroy(&w));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The whole of C, [2M][2M] by columns, on every rank. */
+static PetscErrorCode WholeMatrix(TestWorld *w, PetscReal *C) {
+  const Layout l = w->layout;
+  const PetscInt N = 2 * l->M;
+  PetscScalar *F, *U;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(2 * l->n, &F, 2 * l->n, &U));
+  for (PetscInt j = 0; j < N; j++) {
+    PetscCall(PetscArrayzero(F, 2 * l->n));
+    PetscCall(PetscArrayzero(U, 2 * l->n));
+    if (j >= 2 * l->first && j < 2 * (l->first + l->n)) F[j - 2 * l->first] = 1;
+    PetscCall(NearFieldApply(w->coupling->near, 1, F, U));
+    PetscCall(LayoutGather(l, 2, U, C + j * N));
+  }
+  PetscCall(PetscFree2(F, U));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* max |C - C^T| over max |C| inside the blocks of vesicles with themselves, and between different ones. */
+static void Asymmetry(Layout l, const PetscReal *C, PetscReal worst[2]) {
+  const PetscInt N = 2 * l->M;
+  PetscReal largest = 0;
+  worst[0] = worst[1] = 0;
+  for (PetscInt v = 0; v < l->bodies; v++)
+    for (PetscInt w = 0; w < l->bodies; w++)
+      for (PetscInt i = 2 * l->start[v]; i < 2 * l->start[v + 1]; i++)
+        for (PetscInt j = 2 * l->start[w]; j < 2 * l->start[w + 1]; j++) {
+          largest = PetscMax(largest, PetscAbsReal(C[j * N + i]));
+          worst[v != w] = PetscMax(worst[v != w], PetscAbsReal(C[j * N + i] - C[i * N + j]));
+        }
+  for (int k = 0; k < 2; k++) worst[k] /= largest;
+}
+
+/* A world whose every rank has the scene to itself. */
+static PetscErrorCode SerialWorld(const char options[], TestWorld *w) {
+  PetscFunctionBeginUser;
+  PetscCall(PetscOptionsClear(NULL));
+  PetscCall(PetscOptionsInsertString(NULL, PAPER_MEMBRANE));
+  PetscCall(PetscOptionsInsertString(NULL, options));
+  PetscCall(SceneCreate(PETSC_COMM_SELF, NULL, NULL, &w->scene));
+  PetscCall(TestWorldBuild(w));
+  PetscCall(TestWorldPlace(w->fluid->a0, w));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* C is symmetric, and the same on one rank and on all. */
+static PetscErrorCode CheckSymmetry(const char name[], const char scene[], const char kernel[]) {
+  char options[512];
+  TestWorld w, alone;
+  PetscReal *C, *same, worst[2], apart = 0, largest = 0;
+  PetscInt blocks;
+  PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(options, sizeof(options), EXACT "-scheme_type coupled -delta_type %s %s", kernel, scene));
+  PetscCall(TestWorldCreate(options, &w));
+  const PetscInt N = 2 * w.layout->M;
+  PetscCall(PetscMalloc2(N * N, &C, N * N, &same));
+  PetscCall(WholeMatrix(&w, C));
+  blocks = w.coupling->near->count;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &blocks, 1, MPIU_INT, MPI_SUM, PETSC_COMM_WORLD));
+  Asymmetry(w.layout, C, worst);
+  CHECK(worst[0] < 1e-14 && worst[1] < 1e-13, "%s, %s: C of %d blocks symmetric to %.1e, %.1e between vesicles", name,
+        kernel, (int)blocks, worst[0], worst[1]);
+  PetscCall(SerialWorld(options, &alone));
+  PetscCall(WholeMatrix(&alone, same));
+  for (PetscInt k = 0; k < N * N; k++) {
+    apart = PetscMax(apart, PetscAbsReal(C[k] - same[k]));
+    largest = PetscMax(largest, PetscAbsReal(same[k]));
+  }
+  CHECK(apart < 1e-14 * largest, "%s, %s: C of all ranks is that of one, apart by %.1e of its largest", name, kernel,
+        apart / largest);
+  PetscCall(PetscFree2(C, same));
+  PetscCall(TestWorldDestroy(&alone));
+  PetscCall(TestWorldDestroy(&w));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+#define TWO_WALLS                                                                                                      \
+  "-domain_cells 48,48 -domain_box -1.5,1.5,-1.5,1.5 -vesicle_count 2 -vesicle_semi_axes 0.2,0.4 -vesicle_center "     \
+  "-0.3,0.1,0.28,-0.1 -vesicle_markers 27 "
+#define THREE_PERIODIC                                                                                                 \
+  "-domain_cells 45,39 -domain_box 0,3,0,2.6 " PERIODIC "-vesicle_count 3 -vesicle_semi_axes 0.25,0.35 "               \
+  "-vesicle_center 0.05,0.1,1.1,0.9,2.2,2.5 -vesicle_markers 27 "
+#define SEAM                                                                                                           \
+  "-domain_cells 51,32 -domain_box 0,3.1875,-1,1 -domain_bc_x periodic -vesicle_count 2 -vesicle_semi_axes 0.3,0.5 "   \
+  "-vesicle_center 0.1,0,2.4,0 -vesicle_markers 33 "
+
+static PetscErrorCode Facts(void) {
+  static const char *const kernels[] = {"cbs43", "cbs54", "cbs65", "ib6"};
+  OffsetTable table;
+  PetscFunctionBeginUser;
+  PetscCall(LatticeStokeslet(42, &table));
+  PetscCall(CheckTable(&table));
+  PetscCall(CheckPeriodicGrid(&table));
+  for (int k = 0; k < 4; k++) {
+    PetscCall(CheckClosedForm(&table, kernels[k], k == 3 ? 0.3 : 0.2));
+    PetscCall(CheckSymmetry("two, walls", TWO_WALLS, kernels[k]));
+    PetscCall(CheckSymmetry("three, periodic", THREE_PERIODIC, kernels[k]));
+    PetscCall(CheckSymmetry("over a seam", SEAM, kernels[k]));
+  }
+  PetscCall(OffsetTableDestroy(&table));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+int main(int argc, char **argv) {
+  return CheckMain(argc, argv, Facts);
+}
