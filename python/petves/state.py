@@ -65,11 +65,13 @@ class State(Measures):
 
     @property
     def pressure(self) -> np.ndarray:
-        """Pressure of this rank's rows at cell centres (length^2/time^2), shape (rows, cells in x); a view.
+        """Pressure of this rank's rows at cell centres (length^2/time^2), shape (rows, cells in x); a new array.
 
-        Of the disturbance unless ``flow_form`` is total.
+        Of the disturbance unless ``flow_form`` is total; in unbounded fluid it is zero far away. Collective.
         """
-        return self._array("pressure").reshape(self._sizes[5:7])
+        p = np.empty(self._sizes[5:7])
+        self._call("SimulationGetCellPressure", self._open(), p.ctypes.data_as(ctypes.POINTER(ctypes.c_double)))
+        return p
 
     @property
     def velocity(self) -> tuple[np.ndarray, np.ndarray]:
@@ -77,7 +79,8 @@ class State(Measures):
 
         u has shape (rows, cells in x), one column less with walls in x; v (rows, cells in x), one row less in all with
         walls in y. Entry (j, i) lies on the right (u) or top (v) face of cell (j, i). It is the disturbance of the
-        background flow unless ``flow_form`` is total; `cell_velocity` has the whole.
+        background flow unless ``flow_form`` is total; `cell_velocity` has the whole. In unbounded fluid it is zero: nothing
+        is solved for on the grid, and `cell_velocity` has the flow.
         """
         values, (_, rows, columns, *_) = self._array("velocity"), self._sizes
         cut = rows * columns
