@@ -65,13 +65,12 @@ class State(Measures):
 
     @property
     def pressure(self) -> np.ndarray:
-        """Pressure of this rank's rows at cell centres (length^2/time^2), shape (rows, cells in x); a new array.
+        """The solved pressure of this rank's rows at cell centres (length^2/time^2), shape (rows, cells in x); a view.
 
-        Of the disturbance unless ``flow_form`` is total; in unbounded fluid it is zero far away. Collective.
+        Of the disturbance unless ``flow_form`` is total. In unbounded fluid it is zero: nothing is solved for on the
+        grid, and `cell_pressure` has it.
         """
-        p = np.empty(self._sizes[5:7])
-        self._call("SimulationGetCellPressure", self._open(), p.ctypes.data_as(ctypes.POINTER(ctypes.c_double)))
-        return p
+        return self._array("pressure").reshape(self._sizes[5:7])
 
     @property
     def velocity(self) -> tuple[np.ndarray, np.ndarray]:
@@ -93,6 +92,13 @@ class State(Measures):
         pointers = [a.ctypes.data_as(ctypes.POINTER(ctypes.c_double)) for a in (u, v)]
         self._call("SimulationGetCellVelocity", self._open(), *pointers)
         return u, v
+
+    def cell_pressure(self) -> np.ndarray:
+        """Return the pressure at this rank's cell centres, as run.h5 has it: a new array (rows, cells in x). In unbounded
+        fluid it is zero far away. Collective."""
+        p = np.empty(self._sizes[5:7])
+        self._call("SimulationGetCellPressure", self._open(), p.ctypes.data_as(ctypes.POINTER(ctypes.c_double)))
+        return p
 
     def cell_centers(self) -> tuple[np.ndarray, np.ndarray]:
         """Return x, shape (cells in x,), and y, shape (rows,), of this rank's cell centres."""

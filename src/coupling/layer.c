@@ -12,10 +12,10 @@ typedef double complex Point;
 /* One membrane, a trigonometric polynomial of the parameter t: marker k at t = 2 pi k/n. */
 typedef struct {
   PetscInt n;
-  PetscReal spacing;          /* of the markers, the mean */
-  const PetscReal *X, *F;     /* [2n] markers and forces */
-  Point *curve, *force;       /* [n + 1] modes -n/2 .. n/2, of X and of F */
-  Point *fine, *fine_force;   /* [FINE n] the finer curve; forces, 1/FINE of a marker's */
+  PetscReal spacing;        /* of the markers, the mean */
+  const PetscReal *X, *F;   /* [2n] markers and forces */
+  Point *curve, *force;     /* [n + 1] modes -n/2 .. n/2, of X and of F */
+  Point *fine, *fine_force; /* [FINE n] the finer curve; forces, 1/FINE of a marker's */
 } LayerCurve;
 
 struct _p_Layer {
@@ -168,8 +168,8 @@ static Point PoleError(PetscInt N, Point t0, Point rho) {
 }
 
 /* Corrections of the finer curve's sums for z close to its point `nearest`: poles, and a logarithm, of the analytic
-   integrands at the complex parameter t0 where the curve is at z. Pressure: Re F/(z - X(t)). Velocity: of x (x.F)/r^2 the
-   part conj[F conj(z - X)/(z - X)]/2; of -ln r, whose error per density is that of ln|2 sin((t - t0)/2)|. */
+   integrands at the complex parameter t0 where the curve is at z. Pressure: Re F/(z - X(t)). Velocity: of x (x.F)/r^2
+   the part conj[F conj(z - X)/(z - X)]/2; of -ln r, whose error per density is that of ln|2 sin((t - t0)/2)|. */
 static void CorrectClose(const LayerCurve *c, Point z, PetscInt nearest, Point *u, PetscReal *p) {
   const PetscInt N = FINE * c->n;
   const PetscReal per = (PetscReal)c->n / (2 * PETSC_PI);
