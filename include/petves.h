@@ -71,8 +71,8 @@ PETSC_EXTERN PetscErrorCode SimulationSetQuiet(Simulation simulation, PetscBool 
 /* SimulationGetTime - steps taken and time reached. Not collective. */
 PETSC_EXTERN PetscErrorCode SimulationGetTime(Simulation simulation, PetscInt *step, PetscReal *time);
 
-/* SimulationGetState - borrowed vectors: velocity on the faces (the local part is the rank's rows of u, then of v),
-   pressure, tension [M], markers [2M] and their velocity [2M], distributed by vesicle: each vesicle's part is on one
+/* SimulationGetState - borrowed vectors: velocity on the faces (the local part is the rank's rows of u, then of v) and
+   pressure (both zero in unbounded fluid, which is not solved for on the grid: SimulationGetCellVelocity has it), tension [M], markers [2M] and their velocity [2M], distributed by vesicle: each vesicle's part is on one
    rank. Any may be NULL. Not collective. */
 PETSC_EXTERN PetscErrorCode SimulationGetState(Simulation simulation, Vec *velocity, Vec *pressure, Vec *tension,
                                                Vec *markers, Vec *marker_velocity);
@@ -109,6 +109,10 @@ PETSC_EXTERN PetscErrorCode SimulationGetRow(Simulation simulation, PetscInt ves
 /* SimulationGetCellVelocity - velocity, background included, at this rank's cell centres: u, v[rows of p][cells
    in x]. */
 PETSC_EXTERN PetscErrorCode SimulationGetCellVelocity(Simulation simulation, PetscReal u[], PetscReal v[]);
+
+/* SimulationGetCellPressure - pressure at this rank's cell centres, of the disturbance unless the form is total:
+   p[rows of p][cells in x]. */
+PETSC_EXTERN PetscErrorCode SimulationGetCellPressure(Simulation simulation, PetscReal p[]);
 
 /* PetvesAgree - the largest of all ranks' numbers, the same on every rank: a decision taken once. Collective. */
 PETSC_EXTERN PetscErrorCode PetvesAgree(MPI_Comm comm, PetscInt mine, PetscInt *largest);

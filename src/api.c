@@ -107,12 +107,14 @@ PetscErrorCode SimulationGetRow(Simulation s, PetscInt vesicle, PetscReal row[])
 }
 
 PetscErrorCode SimulationGetCellVelocity(Simulation s, PetscReal u[], PetscReal v[]) {
-  const PetscScalar *w;
   PetscFunctionBeginUser;
-  PetscCall(VecGetArrayRead(s->scheme->state.w, &w));
-  PetscCall(CellVelocity(s->scheme, 0, w, u));
-  PetscCall(CellVelocity(s->scheme, 1, w, v));
-  PetscCall(VecRestoreArrayRead(s->scheme->state.w, &w));
+  PetscCall(CellVelocity(s->scheme, u, v));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SimulationGetCellPressure(Simulation s, PetscReal p[]) {
+  PetscFunctionBeginUser;
+  PetscCall(CellPressure(s->scheme, p));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

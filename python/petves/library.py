@@ -61,6 +61,7 @@ SIGNATURES = {
     "SimulationGetColumn": (Handle, Int, _pointer(_text)),
     "SimulationGetRow": (Handle, Int, _pointer(_double)),
     "SimulationGetCellVelocity": (Handle, _pointer(_double), _pointer(_double)),
+    "SimulationGetCellPressure": (Handle, _pointer(_double)),
     "PetscOptionsCreate": (_pointer(Handle),),
     "PetscOptionsDestroy": (_pointer(Handle),),
     "PetscOptionsInsertFile": (_communicator, Handle, _text, ctypes.c_int),

@@ -65,9 +65,10 @@ class State(Measures):
 
     @property
     def pressure(self) -> np.ndarray:
-        """Pressure of this rank's rows at cell centres (length^2/time^2), shape (rows, cells in x); a view.
+        """The solved pressure of this rank's rows at cell centres (length^2/time^2), shape (rows, cells in x); a view.
 
-        Of the disturbance unless ``flow_form`` is total.
+        Of the disturbance unless ``flow_form`` is total. In unbounded fluid it is zero: nothing is solved for on the
+        grid, and `cell_pressure` has it.
         """
         return self._array("pressure").reshape(self._sizes[5:7])
 
@@ -77,7 +78,8 @@ class State(Measures):
 
         u has shape (rows, cells in x), one column less with walls in x; v (rows, cells in x), one row less in all with
         walls in y. Entry (j, i) lies on the right (u) or top (v) face of cell (j, i). It is the disturbance of the
-        background flow unless ``flow_form`` is total; `cell_velocity` has the whole.
+        background flow unless ``flow_form`` is total; `cell_velocity` has the whole. In unbounded fluid it is zero: nothing
+        is solved for on the grid, and `cell_velocity` has the flow.
         """
         values, (_, rows, columns, *_) = self._array("velocity"), self._sizes
         cut = rows * columns
@@ -90,6 +92,13 @@ class State(Measures):
         pointers = [a.ctypes.data_as(ctypes.POINTER(ctypes.c_double)) for a in (u, v)]
         self._call("SimulationGetCellVelocity", self._open(), *pointers)
         return u, v
+
+    def cell_pressure(self) -> np.ndarray:
+        """Return the pressure at this rank's cell centres, as run.h5 has it: a new array (rows, cells in x). In unbounded
+        fluid it is zero far away. Collective."""
+        p = np.empty(self._sizes[5:7])
+        self._call("SimulationGetCellPressure", self._open(), p.ctypes.data_as(ctypes.POINTER(ctypes.c_double)))
+        return p
 
     def cell_centers(self) -> tuple[np.ndarray, np.ndarray]:
         """Return x, shape (cells in x,), and y, shape (rows,), of this rank's cell centres."""

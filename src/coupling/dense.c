@@ -136,13 +136,24 @@ static void AddNearField(Coupling c, PetscInt vesicle, PetscInt end, PetscInt fi
   }
 }
 
+/* Mob by MobilityAssemble, zero without a table. */
+static PetscErrorCode AssembleTable(Mobility mobility, const GreenTable *table, PetscInt first, PetscInt n,
+                                    PetscInt part, PetscInt parts, PetscReal Mob[]) {
+  PetscFunctionBeginUser;
+  if (mobility)
+    PetscCall(MobilityAssemble(mobility, table, first, n, part, parts, Mob));
+  else
+    PetscCall(PetscArrayzero(Mob, 4 * n * n));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* The one block: every rank makes a part of Mob and adds its own rows of the near field, root has the sum. */
 static PetscErrorCode AssembleTogether(DenseBlocks b, Mobility mobility, const GreenTable *table, PetscReal Mob[]) {
   const Layout l = b->coupling->membrane->layout;
   PetscMPIInt size;
   PetscFunctionBeginUser;
   PetscCall(PetscMPIIntCast(4 * l->M * l->M, &size));
-  PetscCall(MobilityAssemble(mobility, table, 0, l->M, l->rank, l->size, Mob));
+  PetscCall(AssembleTable(mobility, table, 0, l->M, l->rank, l->size, Mob));
   AddNearField(b->coupling, 0, l->bodies, 0, l->M, Mob);
   if (l->size > 1)
     PetscCallMPI(MPI_Reduce(l->rank == b->root ? MPI_IN_PLACE : Mob, Mob, size, MPIU_REAL, MPI_SUM, b->root, l->comm));
@@ -177,7 +188,7 @@ PetscErrorCode DenseBlocksFactor(DenseBlocks b, Mobility mobility, const GreenTa
   for (PetscInt k = 0; k < b->count && good; k++) {
     Block *q = &b->block[k];
     if (!b->together) {
-      PetscCall(MobilityAssemble(mobility, table, q->first, q->n, 0, 1, Mob));
+      PetscCall(AssembleTable(mobility, table, q->first, q->n, 0, 1, Mob));
       AddNearField(b->coupling, q->vesicle, q->end, q->first, q->n, Mob);
     }
     PetscCall(FactorBlock(m, h2, q, a0, Mob, &good));

@@ -88,11 +88,12 @@ static void Pair(NearField f, PetscInt v, PetscInt i, PetscInt j, PetscInt k, co
                  const PetscReal T[2], PetscReal C[4]) {
   const PetscReal *X = f->markers->X, h = f->markers->grid->h;
   const PetscReal d[2] = {X[2 * i] - X[2 * j] - shift[0], X[2 * i + 1] - X[2 * j + 1] - shift[1]};
-  PetscReal S[3] = {0, 0, 0}, own[3] = {0, 0, 0}, L[4];
+  PetscReal S[3] = {0, 0, 0}, own[3] = {0, 0, 0}, L[4] = {0, 0, 0, 0};
   if (k >= 0) SelfPart(f, v, k, T, own);
-  if (k && d[0] * d[0] + d[1] * d[1] > PetscSqr(NEAR_CELLS * h)) {
+  if (f->free) {
+    if (k) Stokeslet(f->nu, d, S);
+  } else if (k && d[0] * d[0] + d[1] * d[1] > PetscSqr(NEAR_CELLS * h)) {
     FarPair(f->far, h * h / (2 * PETSC_PI * f->nu), d, S);
-    L[0] = L[1] = L[2] = L[3] = 0;
   } else {
     if (k) Stokeslet(f->nu, d, S);
     LatticePair(f, i, j, d, L);

@@ -23,7 +23,8 @@ PetscErrorCode NearFieldCreate(Markers markers, Membrane m, PetscReal nu, NearFi
   f->markers = markers;
   f->membrane = m;
   f->nu = nu;
-  PetscCall(LatticeStokeslet(NEAR_CELLS + OFFSET_LAGS, &f->lattice));
+  f->free = markers->grid->free;
+  if (!f->free) PetscCall(LatticeStokeslet(NEAR_CELLS + OFFSET_LAGS, &f->lattice));
   NearFarCoefficients(markers->kernel, f->far);
   PetscCall(PetscCalloc1(l->bodies, &f->kress));
   for (PetscInt v = l->own; v < l->end; v++) {
@@ -77,10 +78,11 @@ static PetscErrorCode AddBlock(NearField f, PetscInt v, PetscInt w, const PetscR
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether markers of v and of w moved by shift come nearer than REACH cells. */
+/* Whether markers of v and of w moved by shift come nearer than REACH cells; in unbounded fluid all are near. */
 static PetscBool AreNear(NearField f, PetscInt v, PetscInt w, const PetscReal shift[2]) {
   const Layout l = f->membrane->layout;
   const PetscReal reach = REACH * f->markers->grid->h, *X = f->markers->X;
+  if (f->free) return PETSC_TRUE;
   for (PetscInt i = l->start[v]; i < l->start[v + 1]; i++)
     for (PetscInt j = l->start[w]; j < l->start[w + 1]; j++) {
       const PetscReal dx = X[2 * i] - X[2 * j] - shift[0], dy = X[2 * i + 1] - X[2 * j + 1] - shift[1];
@@ -116,7 +118,7 @@ PetscErrorCode NearFieldPlace(NearField f) {
   PetscFunctionBeginUser;
   PetscCall(PetscLogEventBegin(f->event, 0, 0, 0, 0));
   PetscCall(FreeBlocks(f));
-  for (PetscInt k = 0; k < 2 * l->M; k++) StencilPad(&f->markers->stencil[k], &f->stencil[k]);
+  for (PetscInt k = 0; k < 2 * l->M && !f->free; k++) StencilPad(&f->markers->stencil[k], &f->stencil[k]);
   for (PetscInt v = l->own; v < l->end; v++)
     for (PetscInt w = 0; w < l->bodies; w++) PetscCall(AddPair(f, v, w));
   PetscCall(AgreeFlag(l->comm, f->count > l->end - l->own ? PETSC_TRUE : PETSC_FALSE, &f->crossed));

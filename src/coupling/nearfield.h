@@ -3,7 +3,8 @@
        U = u_inf + E u + C (f ds),      C = S - L,
    S the exact free-space single layer, L = E G E^T/h^2 the mobility of the same kernel on the infinite lattice. The grid's
    own mobility is L and a smooth part of walls and images, so kernel, angle to the grid, place in the cells and spacing of
-   the markers cancel. Pairs of markers of one vesicle, and of vesicles near one another, images included. */
+   the markers cancel. Pairs of markers of one vesicle, and of vesicles near one another, images included.
+   In unbounded fluid there is no grid to take from: C = S, of all pairs. */
 #pragma once
 #include "coupling/lattice.h"
 #include "membrane/membrane.h"
@@ -20,6 +21,7 @@ struct _p_NearField {
   Markers markers;   /* borrowed */
   Membrane membrane; /* borrowed */
   PetscReal nu;
+  PetscBool free; /* unbounded fluid: C = S */
   OffsetTable lattice;
   PetscReal far[5];       /* coefficients a2, a4, a6, b2, b6 of distant pairs */
   PetscReal **kress;      /* [vesicles][n] weights of the logarithm by index difference; NULL for others' vesicles */

@@ -15,7 +15,7 @@ PetscErrorCode PreconditionerCreate(Scene scene, Unknowns u, Preconditioner *out
   p->type = CouplingHasMembrane(c) ? (MobilityType)scene->coupling.mobility : MOBILITY_NONE;
   PetscCall(PetscMalloc1(u->walls->n, &p->d));
   if (p->type == MOBILITY_TABLE) {
-    PetscCall(MobilityCreate(&scene->fluid, c, &p->mobility));
+    if (!c->fluid->grid->free) PetscCall(MobilityCreate(&scene->fluid, c, &p->mobility));
     PetscCall(DenseBlocksCreate(c, &p->blocks));
   }
   if (p->type == MOBILITY_ILU) {
@@ -50,10 +50,10 @@ PetscErrorCode PreconditionerForget(Preconditioner p) {
 
 static PetscErrorCode MakeBlocks(Preconditioner p) {
   const Fluid f = p->unknowns->coupling->fluid;
-  const GreenTable *table;
+  const GreenTable *table = NULL;
   PetscBool factored;
   PetscFunctionBeginUser;
-  PetscCall(MobilityGetTable(p->mobility, f->alpha, &table));
+  if (p->mobility) PetscCall(MobilityGetTable(p->mobility, f->alpha, &table));
   PetscCall(DenseBlocksFactor(p->blocks, p->mobility, table, f->a0, &factored));
   p->failed = factored ? PETSC_FALSE : PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -71,14 +71,14 @@ PetscErrorCode PreconditionerGetMemory(Preconditioner p, PetscReal memory[PRECON
 
 PetscErrorCode PreconditionerSetMemory(Preconditioner p, const PetscReal memory[PRECONDITIONER_MEMORY]) {
   PetscFunctionBeginUser;
-  if (!p->mobility || memory[0] == 0) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!p->blocks || memory[0] == 0) PetscFunctionReturn(PETSC_SUCCESS);
   p->age = (Ageing){.a0 = memory[0],
                     .fresh_its = (PetscInt)memory[1],
                     .solves = (PetscInt)memory[2],
                     .excess = memory[3],
                     .most = (PetscInt)memory[4],
                     .made = (PetscInt)memory[5]};
-  PetscCall(MobilitySetTables(p->mobility, memory + OWN_MEMORY));
+  if (p->mobility) PetscCall(MobilitySetTables(p->mobility, memory + OWN_MEMORY));
   DenseBlocksPlace(p->blocks);
   PetscCall(MakeBlocks(p));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -102,7 +102,7 @@ static PetscReal RenewalCost(Preconditioner p) {
   const Coupling c = p->unknowns->coupling;
   const Layout l = c->membrane->layout;
   const PetscReal n = l->M <= DENSE_TOGETHER ? l->M : (PetscReal)l->M / l->bodies, blocks = l->M / n;
-  const PetscReal cells = (PetscReal)c->fluid->grid->n[0] * c->fluid->grid->n[1];
+  const PetscReal cells = p->mobility ? (PetscReal)c->fluid->grid->n[0] * c->fluid->grid->n[1] : 0;
   return blocks * (4e-9 * n * n * n + 6e-7 * n * n) / (1.5e-8 * cells + blocks * 1e-8 * n * n + 5e-5);
 }
 

@@ -7,8 +7,6 @@
 #include "coupling/unknowns.h"
 #include "scene/scene.h"
 
-typedef enum { MOBILITY_TABLE, MOBILITY_ILU, MOBILITY_NONE } MobilityType;
-
 /* How the dense blocks age. Iterations, not seconds, so that a run does not depend on the machine. */
 typedef struct {
   PetscReal a0;       /* that they were made for; 0: none yet */
@@ -29,7 +27,7 @@ typedef struct _p_Preconditioner *Preconditioner;
 struct _p_Preconditioner {
   Unknowns unknowns; /* borrowed */
   MobilityType type;
-  Mobility mobility;  /* table */
+  Mobility mobility;  /* table; NULL in unbounded fluid, where the near field is all of it */
   DenseBlocks blocks; /* table */
   RootPC ilu;         /* ilu: of the assembled Chat, prefix coupled_mobility_ */
   Ageing age;

@@ -79,10 +79,11 @@ static PetscErrorCode NextPlace(Reduced s, PetscInt *place) {
   PetscFunctionBeginUser;
   *place = PetscMin(q->count, REDUCED_KEPT);
   q->count++;
-  if (q->w[*place]) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(VecDuplicate(s->r, &q->w[*place]));
-  PetscCall(DMCreateGlobalVector(s->unknowns->coupling->fluid->grid->da[FIELD_P], &q->p[*place]));
-  if (*place == REDUCED_KEPT) PetscFunctionReturn(PETSC_SUCCESS);
+  if (s->stokes && !q->w[*place]) {
+    PetscCall(VecDuplicate(s->r, &q->w[*place]));
+    PetscCall(DMCreateGlobalVector(s->unknowns->coupling->fluid->grid->da[FIELD_P], &q->p[*place]));
+  }
+  if (*place == REDUCED_KEPT || q->z[*place]) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecDuplicate(s->rest, &q->z[*place]));
   PetscCall(VecDuplicate(s->rest, &q->Az[*place]));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -103,7 +104,7 @@ static PetscErrorCode Mult(Mat A, Vec x, Vec y) {
   else
     PetscCall(MarkersClear(s->unknowns->coupling->markers, s->r, s->dirty));
   PetscCall(AddForces(s, xa, s->r));
-  PetscCall(StokesSolve(s->stokes, s->r, NULL, s->kept.w[place], s->kept.p[place]));
+  if (s->stokes) PetscCall(StokesSolve(s->stokes, s->r, NULL, s->kept.w[place], s->kept.p[place]));
   PetscCall(VecGetArray(y, &ya));
   PetscCall(Conditions(s, xa, s->kept.w[place], NULL, NULL, ya));
   PetscCall(VecRestoreArray(y, &ya));
@@ -125,7 +126,7 @@ PetscErrorCode ReducedResidual(Reduced s, Vec added, Vec f, Vec g, Vec k, Vec x,
   if (c->fluid->bc2) { /* p holds the right-hand side, then the solution */
     PetscCall(VecAXPBY(p, -1, 0, c->fluid->bc2));
     PetscCall(StokesSolve(s->stokes, f, p, w, p));
-  } else
+  } else if (s->stokes)
     PetscCall(StokesSolve(s->stokes, f, NULL, w, p));
   PetscCall(VecGetArray(residual, &ra));
   PetscCall(Conditions(s, xa, w, k, g, ra));
@@ -173,8 +174,10 @@ PetscErrorCode ReducedCombine(Reduced s, Vec x, Vec w, Vec p, Vec residual, Pets
   PetscCall(VecCopy(x, s->rest));
   PetscCall(Expand(q->count, q->z, s->rest, y));
   PetscCall(VecAXPY(x, -1, s->rest));
-  PetscCall(VecMAXPY(w, q->count, y, q->w));
-  PetscCall(VecMAXPY(p, q->count, y, q->p));
+  if (s->stokes) {
+    PetscCall(VecMAXPY(w, q->count, y, q->w));
+    PetscCall(VecMAXPY(p, q->count, y, q->p));
+  }
   for (PetscInt j = 0; j < q->count; j++) PetscCall(VecAXPY(residual, -y[j], q->Az[j]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -187,7 +190,7 @@ PetscErrorCode ReducedCreate(Unknowns u, Reduced *out) {
   PetscCall(PetscNew(&s));
   *out = s;
   s->unknowns = u;
-  PetscCall(StokesCreate(c->fluid, &s->stokes));
+  if (!c->fluid->grid->free) PetscCall(StokesCreate(c->fluid, &s->stokes));
   PetscCall(DMCreateGlobalVector(c->fluid->grid->velocity, &s->r));
   PetscCall(LayoutCreateVec(c->membrane->layout, 2, &s->F));
   PetscCall(VecDuplicate(s->F, &s->U));

@@ -6,7 +6,8 @@
    faces next to walls, where the Stokes solve is not exact:
        (u, p) = Stokes(f - E^T F/h^2 + d, -bc2)
        V - E u + C F = k,    Dm V/h^2 = g,    d + (what the Stokes solve leaves at the walls) = 0
-   A product costs one Stokes solve. */
+   A product costs one Stokes solve. In unbounded fluid there is no u on a grid (E = 0) and C is all of the mobility: a
+   product is dense work on markers, and u and p stay zero. */
 #pragma once
 #include "coupling/unknowns.h"
 #include "fluid/stokes.h"
@@ -24,7 +25,7 @@ typedef struct {
 typedef struct _p_Reduced *Reduced;
 struct _p_Reduced {
   Unknowns unknowns; /* borrowed */
-  Stokes stokes;
+  Stokes stokes; /* NULL in unbounded fluid */
   Mat A; /* the residuals' derivative, scaled */
   Products kept;
   Vec r;             /* a force on the grid, */

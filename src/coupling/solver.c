@@ -99,6 +99,26 @@ static PetscErrorCode Guess(CoupledSolver s, const CoupledProblem *q) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* In unbounded fluid, which has no f: the norm of the right-hand sides k and g with their factors, and of the speed
+   c_b/(nu R0^2) that bending can give a marker, without which a circle, whose k is all rounding, would have no scale. */
+static PetscErrorCode FreeReference(CoupledSolver s, const CoupledProblem *q) {
+  const Membrane m = s->coupling->membrane;
+  const Layout l = m->layout;
+  PetscScalar *a;
+  PetscFunctionBeginUser;
+  PetscCall(UnknownsPack(s->unknowns, q->k, q->g, q->d, s->change));
+  PetscCall(VecGetArray(s->change, &a));
+  for (PetscInt v = l->own; v < l->end; v++) {
+    const PetscReal speed = m->bending / (s->coupling->fluid->nu * PetscSqr(m->L0[v] / (2 * PETSC_PI)));
+    const PetscInt at = 2 * LayoutOffset(l, v);
+    for (PetscInt k = at; k < at + 2 * LayoutCount(l, v); k++) a[k] = PetscSqrtReal(a[k] * a[k] + speed * speed);
+  }
+  UnknownsScale(s->unknowns, PETSC_FALSE, a);
+  PetscCall(VecRestoreArray(s->change, &a));
+  PetscCall(VecNorm(s->change, NORM_2, &s->reference));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Norm of (f, bc2, g with its factor). */
 static PetscErrorCode Reference(CoupledSolver s, Vec f, Vec g) {
   const Layout l = s->coupling->membrane->layout;
@@ -154,7 +174,7 @@ PetscErrorCode CoupledSolverSolve(CoupledSolver s, const CoupledProblem *q, Solv
     report->residual = NAN;
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  PetscCall(Reference(s, q->f, q->g));
+  PetscCall(s->reduced->stokes ? Reference(s, q->f, q->g) : FreeReference(s, q));
   PetscCall(Guess(s, q));
   PetscCall(ReducedResidual(s->reduced, s->x, q->f, q->g, q->k, s->x, q->w, q->p, s->b));
   PetscCall(KSPGetTolerances(s->ksp, &rtol, &atol, NULL, NULL));

@@ -133,6 +133,18 @@ static PetscErrorCode CreateWallData(const FluidSpec *spec, Fluid f) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static PetscErrorCode CreateSolvers(const FluidSpec *spec, Fluid f) {
+  PetscFunctionBeginUser;
+  for (int k = FIELD_U; k <= FIELD_P; k++)
+    PetscCall(
+        FastSolverCreate(f->grid, (Field)k, k == FIELD_P ? spec->poisson : spec->helmholtz, spec->plan, &f->solver[k]));
+  PetscCall(FastSolverSetCoefficients(f->solver[FIELD_P], 0, -1));
+  PetscCall(FastSolverGetPC(f->solver[FIELD_P], &f->Linv));
+  PetscCall(PetscObjectReference((PetscObject)f->Linv));
+  PetscCall(CreateHelmholtz(f, spec->helmholtz));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode FluidCreate(const FluidSpec *spec, Fluid *out) {
   Fluid f;
   PetscFunctionBeginUser;
@@ -146,13 +158,7 @@ PetscErrorCode FluidCreate(const FluidSpec *spec, Fluid *out) {
   PetscCall(GridCreateG(f->grid, &f->G));
   PetscCall(GridCreateD(f->grid, &f->D));
   PetscCall(GridCreateL(f->grid, &f->L));
-  for (int k = FIELD_U; k <= FIELD_P; k++)
-    PetscCall(
-        FastSolverCreate(f->grid, (Field)k, k == FIELD_P ? spec->poisson : spec->helmholtz, spec->plan, &f->solver[k]));
-  PetscCall(FastSolverSetCoefficients(f->solver[FIELD_P], 0, -1));
-  PetscCall(FastSolverGetPC(f->solver[FIELD_P], &f->Linv));
-  PetscCall(PetscObjectReference((PetscObject)f->Linv));
-  PetscCall(CreateHelmholtz(f, spec->helmholtz));
+  if (!f->grid->free) PetscCall(CreateSolvers(spec, f));
   PetscCall(FluidSetTimeCoefficient(f, 1 / spec->dt));
   f->total = spec->form == FORM_TOTAL ? PETSC_TRUE : PETSC_FALSE;
   if (f->total) PetscCall(CreateWallData(spec, f));
@@ -182,7 +188,8 @@ PetscErrorCode FluidSetTimeCoefficient(Fluid f, PetscReal a0) {
   PetscFunctionBeginUser;
   f->a0 = a0;
   f->alpha = f->steady ? 0 : a0;
-  for (int k = FIELD_U; k <= FIELD_V; k++) PetscCall(FastSolverSetCoefficients(f->solver[k], f->alpha, f->nu));
+  for (int k = FIELD_U; k <= FIELD_V && !f->grid->free; k++)
+    PetscCall(FastSolverSetCoefficients(f->solver[k], f->alpha, f->nu));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -200,15 +207,16 @@ PetscErrorCode FluidRemoveMean(Fluid f, Vec w) {
 }
 
 PetscInt FluidCountSolves(Fluid f) {
+  if (f->grid->free) return 0;
   return f->solver[FIELD_U]->solves + f->solver[FIELD_V]->solves + f->solver[FIELD_P]->solves;
 }
 
 const SolveFailure *FluidFailure(Fluid f) {
-  for (int k = FIELD_U; k <= FIELD_P; k++)
+  for (int k = FIELD_U; k <= FIELD_P && !f->grid->free; k++)
     if (f->solver[k]->failure.why < 0) return &f->solver[k]->failure;
   return NULL;
 }
 
 void FluidClearFailure(Fluid f) {
-  for (int k = FIELD_U; k <= FIELD_P; k++) f->solver[k]->failure.why = KSP_CONVERGED_ITERATING;
+  for (int k = FIELD_U; k <= FIELD_P && !f->grid->free; k++) f->solver[k]->failure.why = KSP_CONVERGED_ITERATING;
 }

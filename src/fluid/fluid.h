@@ -11,8 +11,8 @@ struct _p_Fluid {
   PetscReal alpha;       /* leading coefficient in H = alpha I - nu L_u: a0 (0 in quasi-steady flow) */
   PetscBool steady;      /* quasi-steady flow, -fluid_inertia none */
   Mat G, D, L, H;        /* gradient, divergence, pressure Laplacian, velocity Helmholtz operator (MatShells) */
-  PC Hinv, Linv;         /* fast solves of H (two scalar solves) and of L (one), PCSHELLs */
-  FastSolver solver[3];  /* behind them, one a field */
+  PC Hinv, Linv;         /* fast solves of H (two scalar solves) and of L (one), PCSHELLs; NULL in unbounded fluid */
+  FastSolver solver[3];  /* behind them, one a field; NULL in unbounded fluid */
   PetscBool tridiagonal; /* all of them by fftw_tridiagonal */
   PetscInt plan;         /* FFTW's effort: 0 estimate, 1 measure, 2 patient */
   PetscBool total;       /* total form: walls move with the background flow */

@@ -66,8 +66,9 @@ PetscErrorCode GridCreate(const FluidSpec *spec, Grid *grid) {
     g->lo[d] = spec->box[2 * d];
     g->hi[d] = spec->box[2 * d + 1];
     g->n[d] = spec->cells[d];
-    g->wall[d] = spec->bc[d] == BC_WALL ? PETSC_TRUE : PETSC_FALSE;
+    g->wall[d] = spec->bc[d] == BC_PERIODIC ? PETSC_FALSE : PETSC_TRUE;
   }
+  g->free = FluidSpecIsFree(spec);
   g->h = FluidSpecCellSize(spec);
   g->block = (g->n[1] + g->size - 1) / g->size;
   g->first = g->rank * g->block;

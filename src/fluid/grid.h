@@ -19,7 +19,8 @@ struct _p_Grid {
   PetscMPIInt rank, size;
   PetscReal lo[2], hi[2], h; /* box (length) and cell size */
   PetscInt n[2];             /* cells */
-  PetscBool wall[2];         /* wall (or periodic) in x, y */
+  PetscBool wall[2];         /* wall (or periodic) in x, y; in unbounded fluid the window ends there */
+  PetscBool free;            /* unbounded fluid: the grid is only a window in which fields are written */
   PetscInt columns[3];       /* columns of each field */
   PetscInt all_rows[3];      /* rows of each field, all ranks */
   PetscInt rows[3];          /* rows of each field on this rank */

@@ -9,7 +9,7 @@ struct _p_Stokes {
 };
 
 PetscBool StokesIsExact(Fluid f) {
-  return f->grid->wall[0] ? PETSC_FALSE : PETSC_TRUE;
+  return f->grid->wall[0] && !f->grid->free ? PETSC_FALSE : PETSC_TRUE;
 }
 
 Vec StokesPotential(Stokes s) {

@@ -14,7 +14,7 @@ static PetscErrorCode CheckBody(Markers m, PetscInt b, const PetscScalar X[], ch
                                 "vesicle %" PetscInt_FMT ": marker positions are not finite", b + 1));
         PetscFunctionReturn(PETSC_SUCCESS);
       }
-      for (int side = 0; side < 2 && g->wall[dir]; side++) {
+      for (int side = 0; side < 2 && g->wall[dir] && !g->free; side++) {
         const PetscReal distance = side ? g->hi[dir] - x : x - g->lo[dir];
         if (distance >= 3 * g->h * (1 - 1e-12)) continue;
         PetscCall(PetscSNPrintf(message, PETVES_MAX_MESSAGE,
@@ -80,6 +80,7 @@ PetscErrorCode MarkersPlace(Markers m, Vec X) {
   const Grid g = m->grid;
   PetscFunctionBeginUser;
   PetscCall(LayoutGatherVec(m->layout, X, m->X));
+  if (g->free) PetscFunctionReturn(PETSC_SUCCESS); /* no stencils, an empty window: E = 0 */
   for (PetscInt k = 0; k < m->layout->M; k++)
     for (int comp = 0; comp < 2; comp++)
       for (int dir = 0; dir < 2; dir++) {
@@ -151,6 +152,7 @@ static void Interpolate(Markers m, const PetscScalar w[], PetscScalar U[]) {
 PetscErrorCode MarkersSpread(Markers m, PetscReal alpha, Vec F, Vec w) {
   PetscScalar *wa;
   PetscFunctionBeginUser;
+  if (m->grid->free) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscLogEventBegin(m->spread, 0, 0, 0, 0));
   PetscCall(LayoutGatherVec(m->layout, F, m->force));
   PetscCall(VecGetArray(w, &wa));
@@ -164,6 +166,10 @@ PetscErrorCode MarkersInterpolate(Markers m, Vec w, Vec U) {
   const PetscScalar *wa;
   PetscScalar *own;
   PetscFunctionBeginUser;
+  if (m->grid->free) {
+    PetscCall(VecSet(U, 0));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(PetscLogEventBegin(m->interpolate, 0, 0, 0, 0));
   PetscCall(VecGetArrayRead(w, &wa));
   Interpolate(m, wa, m->part);

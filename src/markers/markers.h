@@ -2,7 +2,7 @@
 
    Markers are few beside the grid's faces: every rank knows the positions of all of them and spreads onto its own rows
    only. So a spreading begins with one gather of the forces, and an interpolation ends with one sum of the ranks' parts
-   that goes to the bodies' owners. */
+   that goes to the bodies' owners. In unbounded fluid (grid->free) nothing is on the grid: markers may be anywhere, E = 0. */
 #pragma once
 #include "fluid/grid.h"
 #include "kernel/kernel.h"
@@ -35,7 +35,7 @@ PETSC_EXTERN PetscErrorCode MarkersCreate(Grid grid, Layout layout, const char k
 PETSC_EXTERN PetscErrorCode MarkersDestroy(Markers *markers);
 
 /* MarkersCheck - message[PETVES_MAX_MESSAGE] is empty when every marker of X is finite and at least three cells from
-   every wall, else it names the vesicle and the wall; the same on every rank. Collective. */
+   every wall (not in unbounded fluid), else it names the vesicle and the wall; the same on every rank. Collective. */
 PETSC_EXTERN PetscErrorCode MarkersCheck(Markers markers, Vec X, char message[PETVES_MAX_MESSAGE]);
 
 /* MarkersPlace - put E at the markers X (checked by MarkersCheck before). Collective. */

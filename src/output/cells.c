@@ -1,5 +1,6 @@
 #include "output/cells.h"
 #include "base/agree.h"
+#include "coupling/layer.h"
 
 /* Value of a velocity component on a wall: the background's in the total form, else zero. */
 static PetscScalar WallValue(Scheme s, int c, PetscInt i, PetscInt j, PetscReal wall) {
@@ -11,7 +12,8 @@ static PetscScalar WallValue(Scheme s, int c, PetscInt i, PetscInt j, PetscReal 
   return u[c];
 }
 
-PetscErrorCode CellVelocity(Scheme s, int c, const PetscScalar w[], PetscScalar cells[]) {
+/* Component c of w, the mean of a cell's two faces, with the background. */
+static PetscErrorCode Component(Scheme s, int c, const PetscScalar w[], PetscReal cells[]) {
   const Grid g = s->fluid->grid;
   const PetscInt columns = g->columns[c], nx = g->n[0];
   const PetscScalar *a = w + (c ? GridLocalU(g) : 0);
@@ -42,5 +44,50 @@ PetscErrorCode CellVelocity(Scheme s, int c, const PetscScalar w[], PetscScalar 
   PetscCall(PetscFree2(X, u));
   if (s->scene->flow.type == FLOW_CUSTOM) PetscCall(AgreeMessage(g->comm, message));
   PetscCheck(!*message, g->comm, PETSC_ERR_USER_INPUT, "%s", message);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The single layer at all cells of this rank; u and v, or p, may be NULL. */
+static PetscErrorCode FromLayer(Scheme s, PetscReal u[], PetscReal v[], PetscReal p[]) {
+  const Grid g = s->fluid->grid;
+  Layer layer;
+  PetscFunctionBeginUser;
+  PetscCall(LayerCreate(s->coupling, s->state.sigma, s->state.X, &layer));
+  for (PetscInt j = 0; j < g->rows[FIELD_P]; j++)
+    for (PetscInt i = 0; i < g->n[0]; i++) {
+      const PetscInt k = j * g->n[0] + i;
+      PetscReal X[2], velocity[2], pressure;
+      GridPosition(g, FIELD_P, i, j + g->first, X);
+      LayerEvaluate(layer, X, velocity, &pressure);
+      if (u) u[k] += velocity[0];
+      if (v) v[k] += velocity[1];
+      if (p) p[k] = pressure;
+    }
+  PetscCall(LayerDestroy(&layer));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CellVelocity(Scheme s, PetscReal u[], PetscReal v[]) {
+  const PetscScalar *w;
+  PetscFunctionBeginUser;
+  PetscCall(VecGetArrayRead(s->state.w, &w));
+  PetscCall(Component(s, 0, w, u));
+  PetscCall(Component(s, 1, w, v));
+  PetscCall(VecRestoreArrayRead(s->state.w, &w));
+  if (s->fluid->grid->free) PetscCall(FromLayer(s, u, v, NULL));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CellPressure(Scheme s, PetscReal p[]) {
+  const Grid g = s->fluid->grid;
+  const PetscScalar *a;
+  PetscFunctionBeginUser;
+  if (g->free) {
+    PetscCall(FromLayer(s, NULL, NULL, p));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(VecGetArrayRead(s->state.p, &a));
+  PetscCall(PetscArraycpy(p, a, g->n[0] * g->rows[FIELD_P]));
+  PetscCall(VecRestoreArrayRead(s->state.p, &a));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

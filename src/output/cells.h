@@ -1,7 +1,9 @@
-/* Velocity at cell centres, as run.h5 and the callers of SimulationGetCellVelocity have it. */
+/* Velocity and pressure at cell centres, as run.h5 and callers have them. */
 #pragma once
 #include "scheme/scheme.h"
 
-/* CellVelocity - component c of the velocity w (local array) at this rank's cell centres: mean of the cell's two faces,
-   plus the background at the flow's time; cells[rows][nx]. Collective. */
-PETSC_EXTERN PetscErrorCode CellVelocity(Scheme scheme, int c, const PetscScalar w[], PetscScalar cells[]);
+/* CellVelocity - u, v: the velocity, background included, at this rank's cell centres; means of the cells' faces, or in
+   unbounded fluid that of the membranes' single layer. CellPressure - p likewise, of the disturbance unless the form is
+   total; in unbounded fluid it is zero far away. Arrays [rows][nx]. Collective. */
+PETSC_EXTERN PetscErrorCode CellVelocity(Scheme scheme, PetscReal u[], PetscReal v[]);
+PETSC_EXTERN PetscErrorCode CellPressure(Scheme scheme, PetscReal p[]);

@@ -7,7 +7,8 @@ static PetscErrorCode Begin(Frames *f, Folder *folder, Scheme scheme, char path[
   f->folder = folder;
   f->scheme = scheme;
   PetscCall(FolderPath(folder, "run.h5", path));
-  PetscCall(PetscMalloc1(g->n[0] * g->rows[FIELD_P], &f->cells));
+  const PetscInt n = g->n[0] * g->rows[FIELD_P];
+  PetscCall(PetscMalloc3(n, &f->cells[0], n, &f->cells[1], n, &f->cells[2]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -75,20 +76,12 @@ PetscErrorCode FramesGoOn(Frames *f, Folder *folder, Scheme scheme, PetscInt sch
 
 /* The values of the present frame, at entry `count`. */
 static PetscErrorCode WriteValues(Frames *f, const Gathered *now) {
-  const State *q = &f->scheme->state;
   const Grid g = f->scheme->fluid->grid;
   const PetscReal *const marker[3] = {now->markers, now->velocity, now->tension};
-  const PetscScalar *a;
   PetscFunctionBeginUser;
-  PetscCall(VecGetArrayRead(q->w, &a));
-  for (int c = 0; c < 2; c++) {
-    PetscCall(CellVelocity(f->scheme, c, a, f->cells));
-    PetscCall(H5WriteField(&f->file, FrameSeries[c], f->count, g, FIELD_P, f->cells));
-  }
-  PetscCall(VecRestoreArrayRead(q->w, &a));
-  PetscCall(VecGetArrayRead(q->p, &a));
-  PetscCall(H5WriteField(&f->file, FrameSeries[2], f->count, g, FIELD_P, a));
-  PetscCall(VecRestoreArrayRead(q->p, &a));
+  PetscCall(CellVelocity(f->scheme, f->cells[0], f->cells[1]));
+  PetscCall(CellPressure(f->scheme, f->cells[2]));
+  for (int c = 0; c < 3; c++) PetscCall(H5WriteField(&f->file, FrameSeries[c], f->count, g, FIELD_P, f->cells[c]));
   for (int k = 0; k < 3 && now->M; k++)
     PetscCall(H5WriteArray(&f->file, FrameSeries[3 + k], f->count, k < 2 ? 2 * now->M : now->M, marker[k]));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -128,7 +121,7 @@ PetscErrorCode FramesClose(Frames *f, PetscBool *good) {
     *good = !f->file.failed || known ? PETSC_TRUE : PETSC_FALSE;
   }
   f->open = PETSC_FALSE;
-  PetscCall(PetscFree(f->cells));
+  PetscCall(PetscFree3(f->cells[0], f->cells[1], f->cells[2]));
   PetscCall(PetscFree(f->times));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

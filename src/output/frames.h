@@ -9,11 +9,11 @@ typedef struct {
   H5File file;
   PetscBool open; /* on every rank */
   FrameIndex index;
-  PetscInt count;     /* frames in the file */
-  PetscInt scheduled; /* of them those at multiples of -output_every, the first included */
-  PetscReal time;     /* of the last frame */
-  PetscReal *times;   /* [scheduled] of the frames that FramesGoOn has found; else NULL */
-  PetscScalar *cells; /* one cell-centred field, this rank's rows */
+  PetscInt count;        /* frames in the file */
+  PetscInt scheduled;    /* of them those at multiples of -output_every, the first included */
+  PetscReal time;        /* of the last frame */
+  PetscReal *times;      /* [scheduled] of the frames that FramesGoOn has found; else NULL */
+  PetscScalar *cells[3]; /* u, v, p at cell centres, this rank's rows */
 } Frames;
 
 /* FramesCreate - a new, empty file. FramesGoOn - the one of an earlier run, repaired where that was killed and cut to

@@ -3,7 +3,7 @@
 #include "options/options.h"
 #include "scene/flow.h"
 
-typedef enum { BC_WALL, BC_PERIODIC } BoundaryType;
+typedef enum { BC_WALL, BC_PERIODIC, BC_FREE } BoundaryType;
 typedef enum { FORM_DISTURBANCE, FORM_TOTAL } FlowForm;
 typedef enum { INERTIA_AUTO, INERTIA_NONE, INERTIA_UNSTEADY, INERTIA_CONVECTIVE } InertiaType;
 
@@ -11,7 +11,7 @@ typedef struct {
   MPI_Comm comm;
   PetscReal box[4];                /* x_min, x_max, y_min, y_max */
   PetscInt cells[2];               /* in x and y, square */
-  PetscInt bc[2];                  /* BoundaryType in x and y */
+  PetscInt bc[2];                  /* BoundaryType in x and y; BC_FREE in both or in none */
   PetscReal nu;                    /* viscosity (density is 1) */
   PetscInt inertia;                /* InertiaType, never INERTIA_AUTO */
   PetscInt form;                   /* FlowForm: of the total form the walls move with the flow */
@@ -25,4 +25,9 @@ typedef struct {
 /* FluidSpecCellSize - h, the edge of the square cells. */
 static inline PetscReal FluidSpecCellSize(const FluidSpec *spec) {
   return (spec->box[1] - spec->box[0]) / spec->cells[0];
+}
+
+/* FluidSpecIsFree - whether the fluid is unbounded: the box is only the window in which fields are written. */
+static inline PetscBool FluidSpecIsFree(const FluidSpec *spec) {
+  return spec->bc[0] == BC_FREE ? PETSC_TRUE : PETSC_FALSE;
 }

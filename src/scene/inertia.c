@@ -77,7 +77,7 @@ PetscErrorCode SceneChooseInertia(Draft scene) {
                                     scene->flow.type == FLOW_CUSTOM
                                 ? PETSC_TRUE
                                 : PETSC_FALSE;
-    scene->fluid.inertia = INERTIA_UNSTEADY;
+    scene->fluid.inertia = FluidSpecIsFree(&scene->fluid) ? INERTIA_NONE : INERTIA_UNSTEADY;
     if (!baseline && scene->shape.vesicles && !paper) {
       if (scene->reynolds < SMALL_REYNOLDS)
         scene->fluid.inertia = INERTIA_NONE;

@@ -28,6 +28,10 @@ PETSC_EXTERN PetscErrorCode SceneChooseStiffness(Draft scene);
 /* SceneCheck - checks that involve more than one option. Collective. */
 PETSC_EXTERN PetscErrorCode SceneCheck(Scene scene);
 
+/* SceneCheckFree - that a scene in unbounded fluid (-domain_bc_x free) asks for nothing that needs a grid, nor for more
+   vesicles than it is meant for; the vesicles are known. Collective. */
+PETSC_EXTERN PetscErrorCode SceneCheckFree(Scene scene);
+
 /* SceneMakeShape - the initial markers of the scene's vesicles, all edges of a vesicle equal to 1e-12. Every rank gets
    all markers. Collective; stops with the user's message on a bad file, spacing or position. */
 PETSC_EXTERN PetscErrorCode SceneMakeShape(Scene scene, Shape *shape);

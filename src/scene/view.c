@@ -21,7 +21,7 @@ static PetscErrorCode ViewFluid(Scene scene, PetscViewer v) {
 
 PetscErrorCode SceneView(Scene scene, PetscViewer v) {
   static const char *const derivatives[] = {"finite differences", "spectral bending", "spectral bending and edges"};
-  static const char *const bc[] = {"wall", "periodic"};
+  static const char *const bc[] = {"wall", "periodic", "free"};
   static const char *const flows[] = {"quiescent", "shear", "poiseuille", "extension", "custom"};
   const PetscReal *b = scene->fluid.box, h = FluidSpecCellSize(&scene->fluid);
   const Shape *shape = &scene->shape;

@@ -73,6 +73,7 @@ PetscErrorCode SchemeMarkerVelocity(Scheme s, Vec V, Vec U) {
 
 PetscErrorCode SchemeMeasureDivergence(Scheme s, Vec w) {
   PetscFunctionBeginUser;
+  if (s->fluid->grid->free) PetscFunctionReturn(PETSC_SUCCESS); /* no velocity on the grid */
   PetscCall(GridLargestDivergence(s->fluid->grid, w, s->fluid->bc2, &s->report.div_max));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,0 +1,215 @@
+#include "coupling/layer.h"
+#include <complex.h>
+
+#define FINE 4   /* points of the finer curve a marker */
+#define NEAR 6   /* spacings of markers from a membrane, within which the finer curve is summed */
+#define CLOSE 3  /* spacings of its points, within which the trapezoidal rule is corrected */
+#define NEWTON 8 /* most steps */
+
+/* Points of a plane as complex numbers. */
+typedef double complex Point;
+
+/* One membrane, a trigonometric polynomial of the parameter t: marker k at t = 2 pi k/n. */
+typedef struct {
+  PetscInt n;
+  PetscReal spacing;        /* of the markers, the mean */
+  const PetscReal *X, *F;   /* [2n] markers and forces */
+  Point *curve, *force;     /* [n + 1] modes -n/2 .. n/2, of X and of F */
+  Point *fine, *fine_force; /* [FINE n] the finer curve; forces, 1/FINE of a marker's */
+} LayerCurve;
+
+struct _p_Layer {
+  PetscReal nu;
+  PetscInt count;
+  LayerCurve *curve;
+  PetscReal *X, *F; /* [2M] of all markers */
+};
+
+/* SUM hat_k e^{ikt}, and its derivative. */
+static Point Series(PetscInt n, const Point hat[], Point t, Point *slope) {
+  const PetscInt half = n / 2;
+  const Point up = cexp(I * t), down = 1 / up;
+  Point sum = hat[half], plus = 1, minus = 1;
+  *slope = 0;
+  for (PetscInt k = 1; k <= half; k++) {
+    plus *= up;
+    minus *= down;
+    sum += hat[half + k] * plus + hat[half - k] * minus;
+    *slope += I * (PetscReal)k * (hat[half + k] * plus - hat[half - k] * minus);
+  }
+  return sum;
+}
+
+/* The modes of a[2n]; the last of an even n belongs to both ends by halves. */
+static void Modes(PetscInt n, const PetscReal a[], Point hat[]) {
+  const PetscInt half = n / 2;
+  for (PetscInt k = -half; k <= half; k++) {
+    Point sum = 0;
+    for (PetscInt j = 0; j < n; j++)
+      sum += (a[2 * j] + I * a[2 * j + 1]) * cexp(-2 * PETSC_PI * I * (PetscReal)((k * j) % n) / (PetscReal)n);
+    hat[half + k] = sum / (PetscReal)(2 * PetscAbsInt(k) == n ? 2 * n : n);
+  }
+}
+
+static PetscErrorCode CreateCurve(LayerCurve *c, PetscInt n, const PetscReal X[], const PetscReal F[]) {
+  PetscReal length = 0;
+  PetscFunctionBeginUser;
+  c->n = n;
+  c->X = X;
+  c->F = F;
+  PetscCall(PetscMalloc4(n + 1, &c->curve, n + 1, &c->force, FINE * n, &c->fine, FINE * n, &c->fine_force));
+  Modes(n, X, c->curve);
+  Modes(n, F, c->force);
+  for (PetscInt j = 0; j < FINE * n; j++) {
+    const PetscReal t = 2 * PETSC_PI * (PetscReal)j / (PetscReal)(FINE * n);
+    Point slope;
+    c->fine_force[j] = Series(n, c->force, t, &slope) / FINE;
+    c->fine[j] = Series(n, c->curve, t, &slope);
+    length += cabs(slope) * 2 * PETSC_PI / (PetscReal)(FINE * n);
+  }
+  c->spacing = length / (PetscReal)n;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Own parts of the markers x and of the force times ds, f. */
+static PetscErrorCode Forces(Membrane m, Vec sigma, const PetscScalar x[], PetscScalar f[]) {
+  const PetscScalar *s;
+  PetscReal *tau;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(2 * m->layout->n, &tau));
+  PetscCall(PetscArrayzero(f, 2 * m->layout->n));
+  PetscCall(VecGetArrayRead(sigma, &s));
+  MembraneTangents(m, x, tau);
+  MembraneStretchingTranspose(m, tau, -1, s, f);
+  PetscCall(VecRestoreArrayRead(sigma, &s));
+  if (m->bending > 0) MembraneBending(m, -m->bending, x, f);
+  PetscCall(PetscFree(tau));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode LayerCreate(Coupling coupling, Vec sigma, Vec X, Layer *out) {
+  const Layout l = coupling->membrane->layout;
+  const PetscScalar *x;
+  PetscScalar *f;
+  Layer s;
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&s));
+  *out = s;
+  s->nu = coupling->fluid->nu;
+  s->count = l->bodies;
+  PetscCall(PetscCalloc1(l->bodies, &s->curve));
+  PetscCall(PetscMalloc2(2 * l->M, &s->X, 2 * l->M, &s->F));
+  PetscCall(PetscMalloc1(2 * l->n, &f));
+  PetscCall(VecGetArrayRead(X, &x));
+  PetscCall(Forces(coupling->membrane, sigma, x, f));
+  PetscCall(LayoutGather(l, 2, x, s->X));
+  PetscCall(LayoutGather(l, 2, f, s->F));
+  PetscCall(VecRestoreArrayRead(X, &x));
+  PetscCall(PetscFree(f));
+  for (PetscInt v = 0; v < l->bodies; v++)
+    PetscCall(CreateCurve(&s->curve[v], LayoutCount(l, v), s->X + 2 * l->start[v], s->F + 2 * l->start[v]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode LayerDestroy(Layer *layer) {
+  Layer s = *layer;
+  PetscFunctionBeginUser;
+  if (!s) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt v = 0; v < s->count; v++) {
+    LayerCurve *c = &s->curve[v];
+    PetscCall(PetscFree4(c->curve, c->force, c->fine, c->fine_force));
+  }
+  PetscCall(PetscFree(s->curve));
+  PetscCall(PetscFree2(s->X, s->F));
+  PetscCall(PetscFree(*layer));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Sums of the markers, 4 pi nu u and 2 pi p added; the least distance. */
+static PetscReal CoarseSums(const LayerCurve *c, Point z, Point *u, PetscReal *p) {
+  PetscReal least = PETSC_MAX_REAL, sum[3] = {0, 0, 0};
+  for (PetscInt j = 0; j < c->n; j++) {
+    const PetscReal x = creal(z) - c->X[2 * j], y = cimag(z) - c->X[2 * j + 1], r2 = x * x + y * y;
+    const PetscReal along = (x * c->F[2 * j] + y * c->F[2 * j + 1]) / r2, logarithm = 0.5 * PetscLogReal(r2);
+    sum[0] += x * along - logarithm * c->F[2 * j];
+    sum[1] += y * along - logarithm * c->F[2 * j + 1];
+    sum[2] += along;
+    least = PetscMin(least, r2);
+  }
+  *u = sum[0] + I * sum[1];
+  *p = sum[2];
+  return PetscSqrtReal(least);
+}
+
+/* The same of the finer curve, and its point nearest to z. */
+static PetscInt FineSums(const LayerCurve *c, Point z, Point *u, PetscReal *p) {
+  PetscReal least = PETSC_MAX_REAL;
+  PetscInt nearest = 0;
+  *u = *p = 0;
+  for (PetscInt j = 0; j < FINE * c->n; j++) {
+    const Point r = z - c->fine[j], F = c->fine_force[j];
+    const PetscReal r2 = creal(r) * creal(r) + cimag(r) * cimag(r);
+    const PetscReal along = (creal(r) * creal(F) + cimag(r) * cimag(F)) / r2;
+    *u += r * along - 0.5 * PetscLogReal(r2) * F;
+    *p += along;
+    if (r2 >= least) continue;
+    least = r2;
+    nearest = j;
+  }
+  return nearest;
+}
+
+/* What the trapezoidal rule on N points lacks of INT f dt over a period, f of period 2 pi with a pole of residue rho at
+   t0: exact for (1/2) cot((t - t0)/2), whose integral is +-i pi and whose sum is -pi cot(N t0/2). */
+static Point PoleError(PetscInt N, Point t0, Point rho) {
+  const PetscReal side = cimag(t0) >= 0 ? 1 : -1;
+  const Point wave = cexp(I * side * (PetscReal)N * t0); /* cot(N t0/2) = -side i (1 + wave)/(1 - wave) */
+  return -2 * PETSC_PI * side * I * rho * wave / (1 - wave);
+}
+
+/* Corrections of the finer curve's sums for z close to its point `nearest`: poles, and a logarithm, of the analytic
+   integrands at the complex parameter t0 where the curve is at z. Pressure: Re F/(z - X(t)). Velocity: of x (x.F)/r^2
+   the part conj[F conj(z - X)/(z - X)]/2; of -ln r, whose error per density is that of ln|2 sin((t - t0)/2)|. */
+static void CorrectClose(const LayerCurve *c, Point z, PetscInt nearest, Point *u, PetscReal *p) {
+  const PetscInt N = FINE * c->n;
+  const PetscReal per = (PetscReal)c->n / (2 * PETSC_PI);
+  Point t0 = 2 * PETSC_PI * (PetscReal)nearest / (PetscReal)N, slope, mirror, other, step = 1;
+  for (int k = 0; k < NEWTON && cabs(step) > 1e-13; k++) {
+    const Point off = z - Series(c->n, c->curve, t0, &slope);
+    step = off / slope;
+    t0 += step;
+  }
+  if (!(cabs(step) < 1e-8) || PetscAbsReal(cimag(t0)) * N > 2 * 2 * PETSC_PI * CLOSE) return;
+  (void)Series(c->n, c->curve, t0, &slope);
+  mirror = conj(Series(c->n, c->curve, conj(t0), &other));
+  const Point F = Series(c->n, c->force, t0, &other), residue = -F / slope;
+  const Point density = Series(c->n, c->force, creal(t0), &other);
+  const PetscReal side = cimag(t0) >= 0 ? 1 : -1;
+  const PetscReal logarithm = PetscLogReal(cabs(1 - cexp(I * side * (PetscReal)N * t0)));
+  *p += per * creal(PoleError(N, t0, residue));
+  *u += 0.5 * per * conj(PoleError(N, t0, residue * (conj(z) - mirror))) + density * logarithm / FINE;
+}
+
+void LayerEvaluate(Layer s, const PetscReal x[2], PetscReal u[2], PetscReal *p) {
+  Point sum = 0;
+  *p = 0;
+  for (PetscInt v = 0; v < s->count; v++) {
+    const LayerCurve *c = &s->curve[v];
+    Point z = x[0] + I * x[1], velocity;
+    PetscReal pressure;
+    if (CoarseSums(c, z, &velocity, &pressure) < NEAR * c->spacing) {
+      PetscInt nearest = FineSums(c, z, &velocity, &pressure);
+      if (cabs(z - c->fine[nearest]) < 1e-7 * c->spacing) { /* a point of the curve: next to it */
+        z = c->fine[nearest] + 1e-7 * c->spacing;
+        nearest = FineSums(c, z, &velocity, &pressure);
+      }
+      if (cabs(z - c->fine[nearest]) < CLOSE * c->spacing / FINE) CorrectClose(c, z, nearest, &velocity, &pressure);
+    }
+    sum += velocity;
+    *p += pressure;
+  }
+  sum /= 4 * PETSC_PI * s->nu;
+  *p /= 2 * PETSC_PI;
+  u[0] = creal(sum);
+  u[1] = cimag(sum);
+}
