@@ -6,7 +6,7 @@
 /* The paper's discretisation of the membrane and its model of the fluid, which tests start from: options given after
    it win. */
 #define PAPER_MEMBRANE                                                                                                 \
-  "-delta_type ib6 -membrane_derivative fd -coupling_self_mobility none -scheme_area_target false "                    \
+  "-delta_type ib6 -membrane_derivative fd -coupling_near_field none -scheme_area_target false "                       \
   "-fluid_inertia unsteady "
 
 /* TestScene - the scene of PAPER_MEMBRANE and an options text, which replaces what earlier scenes of the same program
@@ -70,8 +70,8 @@ static inline PetscErrorCode TestWorldBuild(TestWorld *w) {
   PetscCall(LayoutCreate(s->comm, s->shape.vesicles, s->shape.start, &w->layout));
   PetscCall(
       MembraneCreate(w->layout, s->shape.X, s->membrane.bending, (DerivativeType)s->membrane.derivative, &w->membrane));
-  PetscCall(CouplingCreate(w->fluid, w->membrane, s->coupling.kernel, (SelfMobilityType)s->coupling.self_mobility,
-                           &w->coupling));
+  PetscCall(
+      CouplingCreate(w->fluid, w->membrane, s->coupling.kernel, (NearFieldType)s->coupling.near_field, &w->coupling));
   PetscCall(LayoutCreateVec(w->layout, 2, &w->X));
   PetscCall(VecGetArray(w->X, &x));
   PetscCall(PetscArraycpy(x, s->shape.X + 2 * w->layout->first, 2 * w->layout->n));

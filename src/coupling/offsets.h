@@ -1,12 +1,12 @@
-/* Sums over the faces of two kernels' stencils: SUM SUM phi(response) G(offset) phi(source), G a function of the offset of
-   two faces that is tabulated. */
+/* Sums over the faces of two kernels' stencils: SUM SUM phi(response) G(offset) phi(source), G a function of the offset
+   of two faces that is tabulated. */
 #pragma once
 #include "markers/markers.h"
 
 #define OFFSET_LAGS (2 * KERNEL_MAX_POINTS) /* offsets of two kernels, one spare: whole vectors */
 
-/* Velocity per unit force between faces by their offset in cells, response minus source, in a window [-size[1] .. size[1]]
-   x [-size[0] .. size[0]], x fastest: response u to a source u, v to v, v to u. */
+/* Velocity per unit force between faces by their offset in cells, response minus source, in a window [-size[1] ..
+   size[1]] x [-size[0] .. size[0]], x fastest: response u to a source u, v to v, v to u. */
 typedef enum { OFFSET_UU, OFFSET_VV, OFFSET_VU, OFFSET_COUNT } OffsetBlock;
 typedef struct {
   PetscInt size[2];
@@ -23,8 +23,12 @@ typedef struct {
   PetscInt first[2];
 } PaddedStencil;
 
-/* StencilPad - of a stencil. StencilPairSum - the double sum; shift[2]: cells that are added to the offset, whole periods,
-   by which the source is meant to be moved. Offsets beyond the table take its border. Not collective. */
+/* StencilPad - of a stencil. StencilPairSum - the double sum; shift[2]: cells that are added to the offset, whole
+   periods, by which the source is meant to be moved. Offsets beyond the table take its border. Not collective. */
 PETSC_EXTERN void StencilPad(const Stencil *stencil, PaddedStencil *padded);
+/* StencilLagWeights - along one direction a double sum depends on the lag of two entries only: weight[q] = SUM_j
+   a_{q+j} b_j of the lag first + q; returns first. */
+PETSC_EXTERN PetscInt StencilLagWeights(int dir, const PaddedStencil *response, const PaddedStencil *source,
+                                        PetscReal weight[OFFSET_LAGS]);
 PETSC_EXTERN PetscReal StencilPairSum(const OffsetTable *table, OffsetBlock block, const PaddedStencil *response,
                                       const PaddedStencil *source, const PetscInt shift[2]);
