@@ -137,7 +137,9 @@ PetscErrorCode CouplingCreate(Fluid fluid, Membrane m, const char kernel[], Near
   *out = c;
   c->fluid = fluid;
   c->membrane = m;
-  PetscCall(MarkersCreate(fluid->grid, m->layout, kernel, &c->markers));
+  /* walls that move with the flow are not at rest in the total form: nothing to fold there */
+  const PetscBool folded = near == NEAR_EXACT && !fluid->total ? PETSC_TRUE : PETSC_FALSE;
+  PetscCall(MarkersCreate(fluid->grid, m->layout, kernel, folded, &c->markers));
   PetscCall(PetscMalloc1(2 * m->layout->n, &c->tau));
   PetscCall(LayoutCreateVec(m->layout, 2, &c->force));
   PetscCall(VecDuplicate(c->force, &c->velocity));

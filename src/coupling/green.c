@@ -146,7 +146,7 @@ PetscErrorCode MobilityAssemble(Mobility m, const GreenTable *t, PetscInt first,
   PaddedStencil *p; /* component c of marker k at 2k + c */
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(2 * n, &p));
-  for (PetscInt k = 0; k < 2 * n; k++) StencilPad(&m->coupling->markers->stencil[2 * first + k], &p[k]);
+  for (PetscInt k = 0; k < 2 * n; k++) StencilPad(&m->coupling->markers->plain[2 * first + k], &p[k]);
   if (parts > 1) PetscCall(PetscArrayzero(Mob, 4 * n * n));
   for (PetscInt k = part; k < n; k += parts)
     for (PetscInt l = 0; l < n; l++) {

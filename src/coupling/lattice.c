@@ -1,18 +1,20 @@
 /* In x a Fourier integral over theta in (0, pi], in y in closed form: with s = 4 sin^2(theta/2) and e^-mu the decay of
-   mode theta from row to row, mu = 2 asinh(sin(theta/2)), the inverse of s minus the second difference in y, and that of
-   its square, are
-       g1(j) = e^{-mu j}/(2 sinh mu),      g2(j) = e^{-mu j} (j sinh mu + cosh mu)/(4 sinh^3 mu),
-   and the projection onto divergence-free fields gives
-       uu(i, j) = (1/pi) INT [cos(i theta) (g1 - s g2)(j) - 1/(4 theta)] dtheta + (gamma + ln pi + 1)/(4 pi),
-       vv(i, j) = uu(j, i),
-       vu(i + 1/2, j + 1/2) = -(1/pi) INT 2 sin(theta/2) sin((i + 1/2) theta) (g2(j + 1) - g2(j)) dtheta,
-   vu odd in both offsets. The integrands are analytic: Gauss-Legendre converges to rounding. */
+   mode theta from row to row, mu = 2 asinh(sin(theta/2)), the inverse of s minus the second difference in y, and that
+   of its square, are g1(j) = e^{-mu j}/(2 sinh mu),      g2(j) = e^{-mu j} (j sinh mu + cosh mu)/(4 sinh^3 mu), and the
+   projection onto divergence-free fields gives uu(i, j) = (1/pi) INT [cos(i theta) (g1 - s g2)(j) - 1/(4 theta)] dtheta
+   + (gamma + ln pi + 1)/(4 pi), vv(i, j) = uu(j, i), vu(i + 1/2, j + 1/2) = -(1/pi) INT 2 sin(theta/2) sin((i + 1/2)
+   theta) (g2(j + 1) - g2(j)) dtheta, vu odd in both offsets. The integrands are analytic: Gauss-Legendre converges to
+   rounding. */
 #include "coupling/lattice.h"
 
 #define EULER_GAMMA 0.57721566490153286061
 
-/* Nodes and weights of Gauss-Legendre on (0, pi) by Newton on the Legendre polynomial. */
-static void GaussLegendre(PetscInt n, PetscReal theta[], PetscReal weight[]) {
+PetscReal LatticeConstant(void) {
+  return (EULER_GAMMA + PetscLogReal(PETSC_PI) + 1) / (4 * PETSC_PI);
+}
+
+/* Newton on the Legendre polynomial. */
+void GaussLegendre(PetscInt n, PetscReal theta[], PetscReal weight[]) {
   for (PetscInt k = 0; k < n; k++) {
     PetscReal x = PetscCosReal(PETSC_PI * (k + 0.75) / (n + 0.5)), slope = 1;
     for (int it = 0; it < 100; it++) {
@@ -51,7 +53,7 @@ static PetscErrorCode Quadrant(PetscInt reach, PetscReal uu[], PetscReal vu[]) {
   PetscCall(PetscMalloc2(nodes, &theta, nodes, &weight));
   GaussLegendre(nodes, theta, weight);
   PetscCall(PetscArrayzero(vu, n * n));
-  for (PetscInt k = 0; k < n * n; k++) uu[k] = (EULER_GAMMA + PetscLogReal(PETSC_PI) + 1) / (4 * PETSC_PI);
+  for (PetscInt k = 0; k < n * n; k++) uu[k] = LatticeConstant();
   for (PetscInt q = 0; q < nodes; q++) {
     const PetscReal half = PetscSinReal(0.5 * theta[q]), s = 4 * half * half, mu = 2 * PetscAsinhReal(half);
     const PetscReal w = weight[q] / PETSC_PI;

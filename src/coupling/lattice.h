@@ -1,9 +1,14 @@
-/* The Stokeslet of the infinite staggered lattice, h = nu = 1: what the grid's Stokes solve gives at a face per unit force
-   on a face, without box and without inertia (docs/method.md, Near field). */
+/* The Stokeslet of the infinite staggered lattice, h = nu = 1: what the grid's Stokes solve gives at a face per unit
+   force on a face, without box and without inertia (docs/method.md, Near field). */
 #pragma once
 #include "coupling/offsets.h"
 
-/* LatticeStokeslet - the table for offsets up to `reach` cells. Far away uu tends to (-ln r + x^2/r^2)/(4 pi), the constant
-   included: in length units and with viscosity nu a velocity per force is (table - ln(h)/(4 pi))/nu on the diagonal and
-   table/nu off it. Not collective. */
+/* LatticeStokeslet - the table for offsets up to `reach` cells. Far away uu tends to (-ln r + x^2/r^2)/(4 pi), the
+   constant included: in length units and with viscosity nu a velocity per force is (table - ln(h)/(4 pi))/nu on the
+   diagonal and table/nu off it. Not collective. */
 PETSC_EXTERN PetscErrorCode LatticeStokeslet(PetscInt reach, OffsetTable *table);
+
+/* LatticeConstant - what uu has besides its integral. GaussLegendre - n nodes and weights on (0, pi). Not collective.
+ */
+PETSC_EXTERN PetscReal LatticeConstant(void);
+PETSC_EXTERN void GaussLegendre(PetscInt n, PetscReal theta[], PetscReal weight[]);

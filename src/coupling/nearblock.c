@@ -1,25 +1,15 @@
 #include "coupling/nearblock.h"
 #include "coupling/nearclose.h"
 
-/* Second moment of a kernel's weights about the place x, the same at every place for the kernels used here. */
-static PetscReal SecondMoment(KernelWeights weights) {
-  const PetscReal x = 0.3;
-  PetscReal w[KERNEL_MAX_POINTS], sum = 0;
-  PetscInt first;
-  const PetscInt n = weights(x, &first, w);
-  for (PetscInt k = 0; k < n; k++) sum += w[k] * PetscSqr(first + k - x);
-  return sum;
-}
-
-/* Smoothing by the kernel and dispersion by the lattice, to the order h^2/r^2: transforms of e^{i n phi} waves, the first
-   three from the moments (docs/method.md, Near field). */
+/* Smoothing by the kernel and dispersion by the lattice, to the order h^2/r^2: transforms of e^{i n phi} waves, the
+   first three from the moments (docs/method.md, Near field). */
 void NearFarCoefficients(const Kernel *kernel, PetscReal far[5]) {
-  const PetscReal along = SecondMoment(kernel->along), across = SecondMoment(kernel->across);
-  far[0] = -(across + 1. / 12) / 2 + 3.5 / 48;           /* a2 */
+  const PetscReal along = KernelSecondMoment(kernel->along), across = KernelSecondMoment(kernel->across);
+  far[0] = -(across + 1. / 12) / 2 + 3.5 / 48;            /* a2 */
   far[1] = -along / 8 + (across + 1. / 12) / 8 - 1. / 48; /* a4 */
-  far[2] = 1. / 96;                                      /* a6 */
-  far[3] = -(along + across) / 4 + 1. / 32;              /* b2 */
-  far[4] = 1. / 96;                                      /* b6 */
+  far[2] = 1. / 96;                                       /* a6 */
+  far[3] = -(along + across) / 4 + 1. / 32;               /* b2 */
+  far[4] = 1. / 96;                                       /* b6 */
 }
 
 /* C of two distant markers, d apart: xx, yy, xy. */
@@ -88,19 +78,18 @@ static void Pair(NearField f, PetscInt v, PetscInt i, PetscInt j, PetscInt k, co
                  const PetscReal T[2], PetscReal C[4]) {
   const PetscReal *X = f->markers->X, h = f->markers->grid->h;
   const PetscReal d[2] = {X[2 * i] - X[2 * j] - shift[0], X[2 * i + 1] - X[2 * j + 1] - shift[1]};
-  PetscReal S[3] = {0, 0, 0}, own[3] = {0, 0, 0}, L[4] = {0, 0, 0, 0};
+  PetscReal S[3] = {0, 0, 0}, own[3] = {0, 0, 0}, far[3], L[4] = {0, 0, 0, 0};
   if (k >= 0) SelfPart(f, v, k, T, own);
-  if (f->free) {
-    if (k) Stokeslet(f->nu, d, S);
-  } else if (k && d[0] * d[0] + d[1] * d[1] > PetscSqr(NEAR_CELLS * h)) {
-    FarPair(f->far, h * h / (2 * PETSC_PI * f->nu), d, S);
-  } else {
-    if (k) Stokeslet(f->nu, d, S);
+  if (k) Stokeslet(f->nu, d, S);
+  if (!f->free && k && d[0] * d[0] + d[1] * d[1] > PetscSqr(NEAR_CELLS * h)) {
+    FarPair(f->far, h * h / (2 * PETSC_PI * f->nu), d, far);
+    for (int c = 0; c < 4; c++) L[c] = S[PetscMin(c, 2)] - far[PetscMin(c, 2)];
+  } else if (!f->free)
     LatticePair(f, i, j, d, L);
-  }
   for (int c = 0; c < 2; c++) C[c] = S[c] + own[c] - L[c];
   C[2] = S[2] + own[2] - L[2];
   C[3] = S[2] + own[2] - L[3];
+  if (f->image) NearImageAdd(f->image, i, j, d, L, C);
 }
 
 PetscErrorCode NearBlockFill(NearField f, NearBlock *b) {

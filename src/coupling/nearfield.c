@@ -25,6 +25,7 @@ PetscErrorCode NearFieldCreate(Markers markers, Membrane m, PetscReal nu, NearFi
   f->nu = nu;
   f->free = markers->grid->free;
   if (!f->free) PetscCall(LatticeStokeslet(NEAR_CELLS + OFFSET_LAGS, &f->lattice));
+  if (!f->free) PetscCall(NearImageCreate(markers, nu, &f->lattice, &f->image));
   NearFarCoefficients(markers->kernel, f->far);
   PetscCall(PetscCalloc1(l->bodies, &f->kress));
   for (PetscInt v = l->own; v < l->end; v++) {
@@ -52,6 +53,7 @@ PetscErrorCode NearFieldDestroy(NearField *near) {
   for (PetscInt v = 0; v < f->membrane->layout->bodies; v++) PetscCall(PetscFree(f->kress[v]));
   PetscCall(PetscFree(f->kress));
   PetscCall(PetscFree2(f->stencil, f->force));
+  PetscCall(NearImageDestroy(&f->image));
   PetscCall(OffsetTableDestroy(&f->lattice));
   PetscCall(PetscFree(*near));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -118,7 +120,8 @@ PetscErrorCode NearFieldPlace(NearField f) {
   PetscFunctionBeginUser;
   PetscCall(PetscLogEventBegin(f->event, 0, 0, 0, 0));
   PetscCall(FreeBlocks(f));
-  for (PetscInt k = 0; k < 2 * l->M && !f->free; k++) StencilPad(&f->markers->stencil[k], &f->stencil[k]);
+  for (PetscInt k = 0; k < 2 * l->M && !f->free; k++) StencilPad(&f->markers->plain[k], &f->stencil[k]);
+  if (f->image) PetscCall(NearImagePlace(f->image));
   for (PetscInt v = l->own; v < l->end; v++)
     for (PetscInt w = 0; w < l->bodies; w++) PetscCall(AddPair(f, v, w));
   PetscCall(AgreeFlag(l->comm, f->count > l->end - l->own ? PETSC_TRUE : PETSC_FALSE, &f->crossed));

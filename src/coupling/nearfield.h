@@ -1,12 +1,12 @@
-/* The near field: what the grid's kernel and lattice take from the markers' velocity is given back (docs/method.md, Near
-   field),
-       U = u_inf + E u + C (f ds),      C = S - L,
-   S the exact free-space single layer, L = E G E^T/h^2 the mobility of the same kernel on the infinite lattice. The grid's
-   own mobility is L and a smooth part of walls and images, so kernel, angle to the grid, place in the cells and spacing of
-   the markers cancel. Pairs of markers of one vesicle, and of vesicles near one another, images included.
-   In unbounded fluid there is no grid to take from: C = S, of all pairs. */
+/* The near field: what the grid's kernel and lattice take from the markers' velocity is given back (docs/method.md,
+   Near field), U = u_inf + E u + C (f ds),      C = S - L, S the exact free-space single layer, L = E G E^T/h^2 the
+   mobility of the same kernel on the infinite lattice. The grid's own mobility is L and a smooth part of walls and
+   images, so kernel, angle to the grid, place in the cells and spacing of the markers cancel. Pairs of markers of one
+   vesicle, and of vesicles near one another, images included; each pair with its images in the grid's walls
+   (nearimage.h). In unbounded fluid there is no grid to take from: C = S, of all pairs. */
 #pragma once
 #include "coupling/lattice.h"
+#include "coupling/nearimage.h"
 #include "membrane/membrane.h"
 
 /* The rows of an own vesicle's markers, the columns of a vesicle's that is near, moved by `shift` (length). */
@@ -23,6 +23,7 @@ struct _p_NearField {
   PetscReal nu;
   PetscBool free; /* unbounded fluid: C = S */
   OffsetTable lattice;
+  NearImage image;        /* what the walls add to each pair */
   PetscReal far[5];       /* coefficients a2, a4, a6, b2, b6 of distant pairs */
   PetscReal **kress;      /* [vesicles][n] weights of the logarithm by index difference; NULL for others' vesicles */
   PaddedStencil *stencil; /* [2M] */
@@ -40,6 +41,6 @@ PETSC_EXTERN PetscErrorCode NearFieldDestroy(NearField *near);
 /* NearFieldPlace - the blocks of the own vesicles where the markers have been placed (MarkersPlace). Collective. */
 PETSC_EXTERN PetscErrorCode NearFieldPlace(NearField near);
 
-/* NearFieldApply - U += alpha C F, own parts F[2n] and U[2n] of marker vectors; F is a force times ds (length^4/time^2 with
-   density 1). Collective. */
+/* NearFieldApply - U += alpha C F, own parts F[2n] and U[2n] of marker vectors; F is a force times ds (length^4/time^2
+   with density 1). Collective. */
 PETSC_EXTERN PetscErrorCode NearFieldApply(NearField near, PetscReal alpha, const PetscScalar F[], PetscScalar U[]);

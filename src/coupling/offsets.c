@@ -21,17 +21,21 @@ void StencilPad(const Stencil *s, PaddedStencil *p) {
   }
 }
 
-/* Along one direction the double sum depends on the lag of two entries only: weight[q] = SUM_j a_{q+j} b_j of the lag
-   first + q. */
-static inline PetscInt LagWeights(const OffsetTable *t, int dir, const PaddedStencil *response,
-                                  const PaddedStencil *source, PetscInt shift, PetscReal weight[restrict OFFSET_LAGS]) {
+PetscInt StencilLagWeights(int dir, const PaddedStencil *response, const PaddedStencil *source,
+                           PetscReal weight[restrict OFFSET_LAGS]) {
   const PetscReal *restrict a = response->weight[dir] + 1, *restrict b = source->weight[dir] + KERNEL_MAX_POINTS;
-  const PetscInt first = response->first[dir] - source->first[dir] + shift - (KERNEL_MAX_POINTS - 1);
   for (int q = 0; q < OFFSET_LAGS; q++) {
     PetscReal sum = 0;
     for (int j = 0; j < KERNEL_MAX_POINTS; j++) sum += a[q + j] * b[j];
     weight[q] = sum;
   }
+  return response->first[dir] - source->first[dir] - (KERNEL_MAX_POINTS - 1);
+}
+
+/* First offset, shifted, inside the table. */
+static inline PetscInt LagWeights(const OffsetTable *t, int dir, const PaddedStencil *response,
+                                  const PaddedStencil *source, PetscInt shift, PetscReal weight[OFFSET_LAGS]) {
+  const PetscInt first = StencilLagWeights(dir, response, source, weight) + shift;
   return PetscMax(-t->size[dir], PetscMin(first, t->size[dir] - OFFSET_LAGS + 1));
 }
 

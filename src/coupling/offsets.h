@@ -26,5 +26,9 @@ typedef struct {
 /* StencilPad - of a stencil. StencilPairSum - the double sum; shift[2]: cells that are added to the offset, whole
    periods, by which the source is meant to be moved. Offsets beyond the table take its border. Not collective. */
 PETSC_EXTERN void StencilPad(const Stencil *stencil, PaddedStencil *padded);
+/* StencilLagWeights - along one direction a double sum depends on the lag of two entries only: weight[q] = SUM_j
+   a_{q+j} b_j of the lag first + q; returns first. */
+PETSC_EXTERN PetscInt StencilLagWeights(int dir, const PaddedStencil *response, const PaddedStencil *source,
+                                        PetscReal weight[OFFSET_LAGS]);
 PETSC_EXTERN PetscReal StencilPairSum(const OffsetTable *table, OffsetBlock block, const PaddedStencil *response,
                                       const PaddedStencil *source, const PetscInt shift[2]);

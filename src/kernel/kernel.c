@@ -61,3 +61,12 @@ const Kernel *KernelFind(const char name[]) {
     if (!strcmp(kernels[i].name, name)) return &kernels[i];
   return NULL;
 }
+
+PetscReal KernelSecondMoment(KernelWeights weights) {
+  const PetscReal x = 0.3;
+  PetscReal w[KERNEL_MAX_POINTS], sum = 0;
+  PetscInt first;
+  const PetscInt n = weights(x, &first, w);
+  for (PetscInt k = 0; k < n; k++) sum += w[k] * PetscSqr(first + k - x);
+  return sum;
+}

@@ -39,3 +39,6 @@ typedef struct {
 
 /* KernelFind - kernel by name, NULL when unknown. */
 PETSC_EXTERN const Kernel *KernelFind(const char name[]);
+
+/* KernelSecondMoment - SUM phi(x - j) (x - j)^2, the same at every place x but for cbs32. Not collective. */
+PETSC_EXTERN PetscReal KernelSecondMoment(KernelWeights weights);

@@ -1,5 +1,9 @@
 #include "markers/markers.h"
 #include "base/agree.h"
+#include "markers/fold.h"
+
+#define LEAST_PLAIN 3     /* cells: the kernels' reach */
+#define LEAST_FOLDED 0.25 /* nearer, mobility with the near field may not be positive */
 
 /* What is wrong with the own body b's markers X[2n], if anything. */
 static PetscErrorCode CheckBody(Markers m, PetscInt b, const PetscScalar X[], char message[PETVES_MAX_MESSAGE]) {
@@ -16,12 +20,12 @@ static PetscErrorCode CheckBody(Markers m, PetscInt b, const PetscScalar X[], ch
       }
       for (int side = 0; side < 2 && g->wall[dir] && !g->free; side++) {
         const PetscReal distance = side ? g->hi[dir] - x : x - g->lo[dir];
-        if (distance >= 3 * g->h * (1 - 1e-12)) continue;
+        if (distance >= m->least * g->h * (1 - 1e-12)) continue;
         PetscCall(PetscSNPrintf(message, PETVES_MAX_MESSAGE,
                                 "vesicle %" PetscInt_FMT ": a marker at (%g, %g) is %g cells from the wall %s = %g; "
-                                "the kernel needs 3",
+                                "the kernel needs %g",
                                 b + 1, (double)X[2 * k], (double)X[2 * k + 1], (double)(distance / g->h),
-                                names[dir][side], (double)(side ? g->hi[dir] : g->lo[dir])));
+                                names[dir][side], (double)(side ? g->hi[dir] : g->lo[dir]), (double)m->least));
         PetscFunctionReturn(PETSC_SUCCESS);
       }
     }
@@ -57,7 +61,7 @@ static void SetWindow(Markers m) {
 }
 
 /* Local row of a component that is entry b of a stencil, or -1 when another rank holds it. Beyond a wall only zero
-   weights can fall, as markers keep three cells away. */
+   weights can fall: markers keep three cells away, or stencils are folded. */
 static inline PetscInt LocalRow(const Grid g, int comp, const Stencil *s, PetscInt b) {
   PetscInt j = s->first[1] + b;
   if (!g->wall[1] && j >= g->n[1]) j -= g->n[1];
@@ -76,6 +80,22 @@ static void ListTouching(Markers m) {
   }
 }
 
+/* The stencil of one component of a marker at X between the walls. */
+static void FoldStencil(Markers m, int comp, const PetscReal X[2], Stencil *s) {
+  const Grid g = m->grid;
+  for (int dir = 0; dir < 2; dir++) {
+    const PetscBool normal = comp == dir ? PETSC_TRUE : PETSC_FALSE;
+    if (!g->wall[dir]) continue;
+    if (normal) {
+      const PetscReal y = (X[dir] - g->lo[dir]) / g->h;
+      const PetscReal scale = WallScale(m->kernel, y) * WallScale(m->kernel, g->n[dir] - y);
+      for (PetscInt k = 0; k < s->n[dir]; k++) s->weight[dir][k] *= scale;
+    }
+    FoldLow(normal, &s->first[dir], &s->n[dir], s->weight[dir]);
+    FoldHigh(normal, g->n[dir], &s->first[dir], &s->n[dir], s->weight[dir]);
+  }
+}
+
 PetscErrorCode MarkersPlace(Markers m, Vec X) {
   const Grid g = m->grid;
   PetscFunctionBeginUser;
@@ -84,12 +104,16 @@ PetscErrorCode MarkersPlace(Markers m, Vec X) {
   for (PetscInt k = 0; k < m->layout->M; k++)
     for (int comp = 0; comp < 2; comp++)
       for (int dir = 0; dir < 2; dir++) {
-        Stencil *s = &m->stencil[2 * k + comp];
+        Stencil *s = &m->plain[2 * k + comp];
         /* entry 0 of a component sits on the first right (top) face along its direction, in a cell's middle across */
         const PetscReal r = (m->X[2 * k + dir] - g->lo[dir]) / g->h - (comp == dir ? 1.0 : 0.5);
         s->n[dir] = (comp == dir ? m->kernel->along : m->kernel->across)(r, &s->first[dir], s->weight[dir]);
         if (!g->wall[dir]) s->first[dir] = ((s->first[dir] % g->n[dir]) + g->n[dir]) % g->n[dir];
       }
+  if (m->folded) {
+    PetscCall(PetscArraycpy(m->stencil, m->plain, 2 * m->layout->M));
+    for (PetscInt k = 0; k < 2 * m->layout->M; k++) FoldStencil(m, k % 2, m->X + k - k % 2, &m->stencil[k]);
+  }
   SetWindow(m);
   ListTouching(m);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -205,7 +229,7 @@ static PetscErrorCode MultTranspose_E(Mat E, Vec F, Vec w) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode MarkersCreate(Grid g, Layout l, const char kernel[], Markers *out) {
+PetscErrorCode MarkersCreate(Grid g, Layout l, const char kernel[], PetscBool folded, Markers *out) {
   Markers m;
   const PetscInt slab = GridLocalU(g) + g->columns[FIELD_V] * g->rows[FIELD_V];
   PetscFunctionBeginUser;
@@ -215,8 +239,12 @@ PetscErrorCode MarkersCreate(Grid g, Layout l, const char kernel[], Markers *out
   m->layout = l;
   m->kernel = KernelFind(kernel);
   PetscCheck(m->kernel, g->comm, PETSC_ERR_USER_INPUT, "-delta_type %s: unknown kernel", kernel);
-  PetscCall(PetscMalloc5(2 * l->M, &m->X, 2 * l->M, &m->stencil, 2 * l->M, &m->touching, 2 * l->M, &m->force, 2 * l->M,
+  PetscCall(PetscMalloc5(2 * l->M, &m->X, 2 * l->M, &m->plain, 2 * l->M, &m->touching, 2 * l->M, &m->force, 2 * l->M,
                          &m->part));
+  m->folded = folded && (g->wall[0] || g->wall[1]) ? PETSC_TRUE : PETSC_FALSE;
+  m->least = folded ? LEAST_FOLDED : LEAST_PLAIN;
+  m->stencil = m->plain;
+  if (m->folded) PetscCall(PetscMalloc1(2 * l->M, &m->stencil));
   PetscCall(MatCreateShell(g->comm, 2 * l->n, slab, 2 * l->M, PETSC_DETERMINE, m, &m->E));
   PetscCall(MatShellSetOperation(m->E, MATOP_MULT, (void (*)(void))Mult_E));
   PetscCall(MatShellSetOperation(m->E, MATOP_MULT_TRANSPOSE, (void (*)(void))MultTranspose_E));
@@ -229,7 +257,8 @@ PetscErrorCode MarkersDestroy(Markers *markers) {
   Markers m = *markers;
   PetscFunctionBeginUser;
   if (!m) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscFree5(m->X, m->stencil, m->touching, m->force, m->part));
+  if (m->folded) PetscCall(PetscFree(m->stencil));
+  PetscCall(PetscFree5(m->X, m->plain, m->touching, m->force, m->part));
   PetscCall(MatDestroy(&m->E));
   PetscCall(PetscFree(*markers));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -20,7 +20,10 @@ struct _p_Markers {
   Layout layout; /* borrowed */
   const Kernel *kernel;
   PetscReal *X;       /* [2M] positions of all markers */
+  PetscBool folded;   /* stencils are folded at walls and scaled near them (fold.h) */
+  PetscReal least;    /* cells that markers keep from walls */
   Stencil *stencil;   /* [2M]: component c of marker k at 2k + c */
+  Stencil *plain;     /* [2M]: the same neither folded nor scaled */
   PetscInt *touching; /* the stencils that reach a row of this rank, in order */
   PetscInt touched;   /* how many */
   PetscInt window[2]; /* this rank's rows that hold all stencils, with the rows next to them */
@@ -30,11 +33,13 @@ struct _p_Markers {
   PetscLogEvent spread, interpolate;
 };
 
-/* MarkersCreate - for the bodies of a layout over a grid with the named kernel; not placed yet. Collective. */
-PETSC_EXTERN PetscErrorCode MarkersCreate(Grid grid, Layout layout, const char kernel[], Markers *markers);
+/* MarkersCreate - for the bodies of a layout over a grid with the named kernel; not placed yet. folded: stencils are
+   folded at walls at rest and scaled near them, and markers may come to a quarter of a cell from walls. Collective. */
+PETSC_EXTERN PetscErrorCode MarkersCreate(Grid grid, Layout layout, const char kernel[], PetscBool folded,
+                                          Markers *markers);
 PETSC_EXTERN PetscErrorCode MarkersDestroy(Markers *markers);
 
-/* MarkersCheck - message[PETVES_MAX_MESSAGE] is empty when every marker of X is finite and at least three cells from
+/* MarkersCheck - message[PETVES_MAX_MESSAGE] is empty when every marker of X is finite and at least `least` cells from
    every wall (not in unbounded fluid), else it names the vesicle and the wall; the same on every rank. Collective. */
 PETSC_EXTERN PetscErrorCode MarkersCheck(Markers markers, Vec X, char message[PETVES_MAX_MESSAGE]);
 

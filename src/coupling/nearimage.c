@@ -1,0 +1,241 @@
+#include "coupling/nearimage.h"
+#include "markers/fold.h"
+
+/* A pair seen from a wall: distances in cells, t along the wall, n away from it. */
+typedef struct {
+  PetscReal x, a, b; /* along the wall, response minus source; from the wall: of the response and of the source */
+} Seen;
+
+enum { TT, NN, NT, TN, PARTS }; /* response, source */
+
+/* Blake's image part of the Stokeslet in a wall, cells and nu = 1: -S(R) + 2 b^2 D - 2 b SD with R from the source's
+   mirror image, D_ij = s_j (delta_ij/R^2 - 2 R_i R_j/R^4), SD_ij = R_n D_ij + s_j (delta_jn R_i - delta_in R_j)/R^2, s
+   = (1, -1). */
+static void Blake(const Seen *p, PetscReal image[PARTS]) {
+  const PetscReal b = p->b, R[2] = {p->x, p->a + p->b}, r2 = R[0] * R[0] + R[1] * R[1];
+  static const int place[2][2] = {{TT, TN}, {NT, NN}};
+  for (int i = 0; i < 2; i++)
+    for (int j = 0; j < 2; j++) {
+      const PetscReal s = j ? -1 : 1, D = s * ((i == j) / r2 - 2 * R[i] * R[j] / (r2 * r2));
+      const PetscReal SD = R[1] * D + s * (j * R[i] - i * R[j]) / r2;
+      const PetscReal S = (i == j) * -0.5 * PetscLogReal(r2) + R[i] * R[j] / r2;
+      image[place[i][j]] = (-S + 2 * b * b * D - 2 * b * SD) / (4 * PETSC_PI);
+    }
+}
+
+/* SUM c_pq a^p b^q n!/z^{n + 1}, n = 1 + p + q, z = a + b - i x, of a polynomial with c_pq at 4 p + q: the Fourier
+   integral of e^{-k(a + b)} k^n. Real and imaginary part over -4 pi. */
+static void Integral(const PetscReal c[16], const Seen *p, PetscReal sum[2]) {
+  const PetscReal H = p->a + p->b, r2 = H * H + p->x * p->x, inverse[2] = {H / r2, p->x / r2};
+  PetscReal power[2] = {inverse[0], inverse[1]}, factorial = 1;
+  PetscReal level[4] = {0};
+  for (int q = 0; q < 4; q++) {
+    PetscReal value = q == 0 ? 1 : q == 1 ? p->b : q == 2 ? p->b * p->b : p->b * p->b * p->b;
+    for (int r = 0; r + q < 4; r++, value *= p->a) level[r + q] += c[4 * r + q] * value;
+  }
+  sum[0] = sum[1] = 0;
+  for (int n = 0; n < 4; n++) {
+    const PetscReal real = power[0] * inverse[0] - power[1] * inverse[1];
+    power[1] = power[0] * inverse[1] + power[1] * inverse[0];
+    power[0] = real;
+    factorial *= n + 1;
+    sum[0] -= level[n] * factorial * power[0] / (4 * PETSC_PI);
+    sum[1] -= level[n] * factorial * power[1] / (4 * PETSC_PI);
+  }
+}
+
+/* Polynomials in k a, k b (at 4 p + q) of TT, NN, NT: e^{-kH}/(4k) [p + k^2 P] is the image of the lattice, P its
+ * dispersion. */
+static const PetscReal leading[3][16] = {
+    {[0] = -1, [1] = 1, [4] = 1, [5] = -2}, {[0] = -1, [1] = -1, [4] = -1, [5] = -2}, {[1] = 1, [4] = -1, [5] = 2}};
+static const PetscReal dispersion[3][16] = {{[0] = 4. / 12,
+                                             [1] = -10. / 12,
+                                             [4] = -10. / 12,
+                                             [2] = 1. / 12,
+                                             [8] = 1. / 12,
+                                             [5] = 18. / 12,
+                                             [6] = -2. / 12,
+                                             [9] = -2. / 12},
+                                            {[0] = -2. / 12,
+                                             [1] = 2. / 12,
+                                             [4] = 2. / 12,
+                                             [2] = -1. / 12,
+                                             [8] = -1. / 12,
+                                             [5] = 14. / 12,
+                                             [6] = -2. / 12,
+                                             [9] = -2. / 12},
+                                            {[0] = 3. / 12,
+                                             [1] = -3. / 12,
+                                             [4] = 9. / 12,
+                                             [2] = 1. / 12,
+                                             [8] = -1. / 12,
+                                             [5] = -16. / 12,
+                                             [6] = 2. / 12,
+                                             [9] = 2. / 12}};
+
+/* One part's closed form: dispersion and the smoothing by kernels of second moments `along` along the wall (of both
+   ends the mean), ma and mb across it. */
+static void ClosedForm(int part, const Seen *p, PetscReal along, PetscReal ma, PetscReal mb, PetscReal sum[2]) {
+  const PetscReal *lead = leading[part];
+  const PetscReal both = -along + 0.5 * (ma + mb);
+  PetscReal c[16];
+  for (int k = 0; k < 16; k++) c[k] = dispersion[part][k] + both * lead[k];
+  c[0] -= ma * lead[4] + mb * lead[1];
+  c[1] -= ma * lead[5];
+  c[4] -= mb * lead[5];
+  Integral(c, p, sum);
+}
+
+/* C_image of a distant pair whose stencils are folded but not scaled. */
+static void Distant(NearImage m, const Seen *p, const ImageEnd *e, const ImageEnd *f, PetscReal C[PARTS]) {
+  const PetscReal mean = 0.5 * (m->along + m->across);
+  const Seen back = {-p->x, p->b, p->a};
+  PetscReal sum[2];
+  ClosedForm(TT, p, m->along, e->moment, f->moment, sum);
+  C[TT] = sum[0];
+  ClosedForm(NN, p, m->across, m->along, m->along, sum);
+  C[NN] = sum[0];
+  ClosedForm(NT, p, mean, m->along, f->moment, sum);
+  C[NT] = sum[1];
+  ClosedForm(NT, &back, mean, m->along, e->moment, sum); /* t from n is n from t the other way round */
+  C[TN] = sum[1];
+}
+
+/* Sum of one part over two stencils against the half-space table; response comp r (0 t, 1 n) of i, source comp s of j.
+ */
+static PetscReal HalfSum(NearImage m, int direction, OffsetBlock b, const ImageEnd *e, PetscInt i, int r,
+                         const ImageEnd *f, PetscInt j, int s, PetscReal x) {
+  const Grid g = m->markers->grid;
+  const int t = 1 - direction;
+  const PaddedStencil *from = &m->stencil[2 * i + (r ? direction : t)], *to = &m->stencil[2 * j + (s ? direction : t)];
+  PetscReal weight[OFFSET_LAGS], line[OFFSET_LAGS] = {0}, sum = 0;
+  PetscInt first = StencilLagWeights(t, from, to, weight);
+  if (!g->wall[t]) {
+    const PetscReal off = x - (PetscReal)(from->first[t] - to->first[t]);
+    first += g->n[t] * (PetscInt)PetscFloorReal(off / g->n[t] + 0.5);
+  }
+  first = PetscMax(-IMAGE_SHIFT, PetscMin(first, IMAGE_SHIFT - OFFSET_LAGS + 1));
+  for (PetscInt q = 0; q < e->n[r]; q++)
+    for (PetscInt k = 0; k < f->n[s]; k++) {
+      const PetscReal w = e->weight[r][q] * f->weight[s][k];
+      const PetscReal *row = m->table->value[b][e->first[r] + q][f->first[s] + k] + IMAGE_SHIFT + first;
+      for (int a = 0; a < OFFSET_LAGS; a++) line[a] += w * row[a];
+    }
+  for (int a = 0; a < OFFSET_LAGS; a++) sum += weight[a] * line[a];
+  return sum;
+}
+
+/* The half-space lattice's mobility of a pair near the wall. */
+static void Half(NearImage m, int direction, const Seen *p, PetscInt i, PetscInt j, const ImageEnd *e,
+                 const ImageEnd *f, PetscReal C[PARTS]) {
+  C[TT] = HalfSum(m, direction, OFFSET_UU, e, i, 0, f, j, 0, p->x);
+  C[NN] = HalfSum(m, direction, OFFSET_VV, e, i, 1, f, j, 1, p->x);
+  C[NT] = HalfSum(m, direction, OFFSET_VU, e, i, 1, f, j, 0, p->x);
+  C[TN] = HalfSum(m, direction, OFFSET_VU, f, j, 1, e, i, 0, -p->x);
+}
+
+/* One wall's part, added. Stencils that are scaled near the wall take s s' of the half-space's mobility S + Blake -
+   C_free - C_image only: the rest comes on top. */
+static void AddWall(NearImage m, int direction, int side, PetscInt i, PetscInt j, const PetscReal d[2],
+                    const PetscReal L[4], PetscReal C[4]) {
+  const PetscReal h = m->markers->grid->h, sign = side ? -1 : 1;
+  const ImageEnd *e = &m->end[direction][side][i], *f = &m->end[direction][side][j];
+  const Seen p = {d[1 - direction] / h, e->y, f->y};
+  const int place[PARTS] = {1 - direction, direction, direction ? 3 : 2, direction ? 2 : 3};
+  PetscReal blake[PARTS], part[PARTS], free[PARTS];
+  for (int q = 0; q < PARTS; q++) free[q] = (q == NT || q == TN ? sign : 1) * m->nu * L[place[q]];
+  const PetscReal constant = PetscLogReal(h) / (4 * PETSC_PI);
+  free[TT] += constant;
+  free[NN] += constant;
+  if (p.x * p.x + PetscSqr(p.a + p.b) < PetscSqr(IMAGE_CELLS)) {
+    Blake(&p, blake);
+    Half(m, direction, &p, i, j, e, f, part);
+    for (int q = 0; q < PARTS; q++) part[q] = blake[q] + free[q] - part[q];
+  } else {
+    Distant(m, &p, e, f, part);
+    if (e->scale < 1 || f->scale < 1) {
+      const PetscReal scale[PARTS] = {1, e->scale * f->scale, e->scale, f->scale};
+      Blake(&p, blake);
+      for (int q = 0; q < PARTS; q++) part[q] += (1 - scale[q]) * (free[q] + blake[q] - part[q]);
+    }
+  }
+  for (int q = 0; q < PARTS; q++) C[place[q]] += (q == NT || q == TN ? sign : 1) * part[q] / m->nu;
+}
+
+void NearImageAdd(NearImage m, PetscInt i, PetscInt j, const PetscReal d[2], const PetscReal L[4], PetscReal C[4]) {
+  for (int direction = 0; direction < 2; direction++)
+    for (int side = 0; side < 2; side++)
+      if (m->end[direction][side]) AddWall(m, direction, side, i, j, d, L, C);
+}
+
+/* SUM w [c|c| - sgn(c)/4] - y^2 + 1/4 over the tangential stencil's rows at c from the wall, before it is folded. */
+static PetscReal OddMoment(PetscReal y, PetscInt first, PetscInt n, const PetscReal w[]) {
+  PetscReal sum = 0.25 - y * y;
+  for (PetscInt k = 0; k < n; k++) {
+    const PetscReal c = first + k + 0.5;
+    sum += w[k] * (c > 0 ? c * c - 0.25 : 0.25 - c * c);
+  }
+  return sum;
+}
+
+/* Where marker k, y cells away, sees a wall. */
+static ImageEnd MakeEnd(Markers m, PetscReal y, PetscReal across) {
+  ImageEnd e = {.y = y, .scale = m->folded ? WallScale(m->kernel, y) : 1, .moment = across};
+  if (y >= IMAGE_CELLS) return e;
+  for (int comp = 0; comp < 2; comp++) { /* entries as in the grid: t at j + 1/2, n at j + 1, row j + 1 of the table */
+    e.n[comp] = (comp ? m->kernel->along : m->kernel->across)(y - (comp ? 1 : 0.5), &e.first[comp], e.weight[comp]);
+    if (!comp && e.first[0] < 0) e.moment = OddMoment(y, e.first[0], e.n[0], e.weight[0]);
+    FoldLow(comp ? PETSC_TRUE : PETSC_FALSE, &e.first[comp], &e.n[comp], e.weight[comp]);
+    if (comp) e.first[1]++;
+  }
+  for (PetscInt k = 0; k < e.n[1]; k++) e.weight[1][k] *= e.scale;
+  return e;
+}
+
+PetscErrorCode NearImagePlace(NearImage m) {
+  const Grid g = m->markers->grid;
+  const PetscInt M = m->markers->layout->M;
+  PetscFunctionBeginUser;
+  if (!m->table) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt k = 0; k < 2 * M; k++) StencilPad(&m->markers->plain[k], &m->stencil[k]);
+  for (int direction = 0; direction < 2; direction++)
+    for (int side = 0; side < 2 && g->wall[direction]; side++)
+      for (PetscInt k = 0; k < M; k++) {
+        const PetscReal x = m->markers->X[2 * k + direction];
+        const PetscReal y = (side ? g->hi[direction] - x : x - g->lo[direction]) / g->h;
+        m->end[direction][side][k] = MakeEnd(m->markers, y, m->across);
+      }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode NearImageCreate(Markers markers, PetscReal nu, const OffsetTable *lattice, NearImage *out) {
+  const PetscInt M = markers->layout->M;
+  NearImage m;
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&m));
+  *out = m;
+  m->markers = markers;
+  m->nu = nu;
+  m->along = KernelSecondMoment(markers->kernel->along);
+  m->across = KernelSecondMoment(markers->kernel->across);
+  if (!markers->grid->wall[0] && !markers->grid->wall[1]) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMalloc1(2 * M, &m->stencil));
+  for (int direction = 0; direction < 2; direction++)
+    for (int side = 0; side < 2 && markers->grid->wall[direction]; side++)
+      PetscCall(PetscMalloc1(M, &m->end[direction][side]));
+  PetscCall(PetscNew(&m->table));
+  PetscCall(ImageTableFill(lattice, m->table));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode NearImageDestroy(NearImage *image) {
+  NearImage m = *image;
+  PetscFunctionBeginUser;
+  if (!m) PetscFunctionReturn(PETSC_SUCCESS);
+  for (int direction = 0; direction < 2; direction++)
+    for (int side = 0; side < 2; side++) PetscCall(PetscFree(m->end[direction][side]));
+  PetscCall(PetscFree(m->stencil));
+  PetscCall(PetscFree(m->table));
+  PetscCall(PetscFree(*image));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

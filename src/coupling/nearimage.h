@@ -1,0 +1,39 @@
+/* What a wall of the grid adds to the near field's C = S - L of a pair of markers: Blake's image of the Stokeslet in
+   the wall less the image that kernel and lattice make of it (docs/method.md, Near field). One term for each wall and
+   pair; two walls' terms are added, so that images of images, and what a corner's walls do to one another, stay the
+   grid's. */
+#pragma once
+#include "coupling/imagetable.h"
+
+typedef struct {
+  PetscReal y;             /* cells from the wall */
+  PetscReal scale;         /* WallScale */
+  PetscReal moment;        /* second moment across the wall of the tangential stencil, continued oddly */
+  PetscInt first[2], n[2]; /* rows in ImageTable of the tangential and the normal component, folded */
+  PetscReal weight[2][KERNEL_MAX_POINTS];
+} ImageEnd;
+
+typedef struct _p_NearImage *NearImage;
+struct _p_NearImage {
+  Markers markers; /* borrowed */
+  PetscReal nu;
+  PetscReal along, across; /* the kernel's second moments */
+  ImageTable *table;
+  PaddedStencil *stencil; /* [2M] unfolded */
+  ImageEnd *end[2][2];    /* [M] by direction of the normal and side; NULL without a wall */
+};
+
+/* NearImageCreate - for markers on a grid with any walls, in a fluid of viscosity nu; lattice: the free lattice's
+   table, of reach IMAGE_SHIFT or more, used here only. Collective. */
+PETSC_EXTERN PetscErrorCode NearImageCreate(Markers markers, PetscReal nu, const OffsetTable *lattice,
+                                            NearImage *image);
+PETSC_EXTERN PetscErrorCode NearImageDestroy(NearImage *image);
+
+/* NearImagePlace - where the markers have been placed. Not collective. */
+PETSC_EXTERN PetscErrorCode NearImagePlace(NearImage image);
+
+/* NearImageAdd - add all walls' parts to C of the response of marker i to marker j: xx, yy, xy (x to a force in y) and
+   yx. d = X_i - X_j, in periodic directions to the image meant (length). L: the pair's free lattice mobility, which is
+   S - C_free where that is known in closed form. Not collective. */
+PETSC_EXTERN void NearImageAdd(NearImage image, PetscInt i, PetscInt j, const PetscReal d[2], const PetscReal L[4],
+                               PetscReal C[4]);
