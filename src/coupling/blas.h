@@ -18,3 +18,6 @@ PETSC_EXTERN PetscErrorCode DenseSolveSymmetric(PetscInt n, const PetscReal A[],
 /* DenseMultAdd - y += alpha A x, A (m x n). */
 PETSC_EXTERN PetscErrorCode DenseMultAdd(PetscInt m, PetscInt n, PetscReal alpha, const PetscReal A[],
                                          const PetscReal x[], PetscReal y[]);
+
+/* DenseEigen - eigenvalues l[n], ascending, of the symmetric A (n x n), whose columns become the eigenvectors. */
+PETSC_EXTERN PetscErrorCode DenseEigen(PetscInt n, PetscReal A[], PetscReal l[]);

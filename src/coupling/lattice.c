@@ -1,12 +1,10 @@
 /* In x a Fourier integral over theta in (0, pi], in y in closed form: with s = 4 sin^2(theta/2) and e^-mu the decay of
-   mode theta from row to row, mu = 2 asinh(sin(theta/2)), the inverse of s minus the second difference in y, and that of
-   its square, are
-       g1(j) = e^{-mu j}/(2 sinh mu),      g2(j) = e^{-mu j} (j sinh mu + cosh mu)/(4 sinh^3 mu),
-   and the projection onto divergence-free fields gives
-       uu(i, j) = (1/pi) INT [cos(i theta) (g1 - s g2)(j) - 1/(4 theta)] dtheta + (gamma + ln pi + 1)/(4 pi),
-       vv(i, j) = uu(j, i),
-       vu(i + 1/2, j + 1/2) = -(1/pi) INT 2 sin(theta/2) sin((i + 1/2) theta) (g2(j + 1) - g2(j)) dtheta,
-   vu odd in both offsets. The integrands are analytic: Gauss-Legendre converges to rounding. */
+   mode theta from row to row, mu = 2 asinh(sin(theta/2)), the inverse of s minus the second difference in y, and that
+   of its square, are g1(j) = e^{-mu j}/(2 sinh mu),      g2(j) = e^{-mu j} (j sinh mu + cosh mu)/(4 sinh^3 mu), and the
+   projection onto divergence-free fields gives uu(i, j) = (1/pi) INT [cos(i theta) (g1 - s g2)(j) - 1/(4 theta)] dtheta
+   + (gamma + ln pi + 1)/(4 pi), vv(i, j) = uu(j, i), vu(i + 1/2, j + 1/2) = -(1/pi) INT 2 sin(theta/2) sin((i + 1/2)
+   theta) (g2(j + 1) - g2(j)) dtheta, vu odd in both offsets. The integrands are analytic: Gauss-Legendre converges to
+   rounding. */
 #include "coupling/lattice.h"
 
 #define EULER_GAMMA 0.57721566490153286061
@@ -46,24 +44,28 @@ static PetscReal Square(PetscReal mu, PetscInt j) {
 /* uu and vu of offsets 0 .. reach: arrays [i][j], i fastest in memory order [j * (reach + 1) + i]. */
 static PetscErrorCode Quadrant(PetscInt reach, PetscReal uu[], PetscReal vu[]) {
   const PetscInt nodes = 3 * reach + 60, n = reach + 1;
-  PetscReal *theta, *weight;
+  PetscReal *theta, *weight, *cosine, *sine;
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(nodes, &theta, nodes, &weight));
+  PetscCall(PetscMalloc4(nodes, &theta, nodes, &weight, n, &cosine, n, &sine));
   GaussLegendre(nodes, theta, weight);
   PetscCall(PetscArrayzero(vu, n * n));
   for (PetscInt k = 0; k < n * n; k++) uu[k] = (EULER_GAMMA + PetscLogReal(PETSC_PI) + 1) / (4 * PETSC_PI);
   for (PetscInt q = 0; q < nodes; q++) {
     const PetscReal half = PetscSinReal(0.5 * theta[q]), s = 4 * half * half, mu = 2 * PetscAsinhReal(half);
     const PetscReal w = weight[q] / PETSC_PI;
+    for (PetscInt i = 0; i < n; i++) {
+      cosine[i] = PetscCosReal(i * theta[q]);
+      sine[i] = PetscSinReal((i + 0.5) * theta[q]);
+    }
     for (PetscInt j = 0; j < n; j++) {
       const PetscReal along = Along(mu, s, j), across = Square(mu, j + 1) - Square(mu, j);
       for (PetscInt i = 0; i < n; i++) {
-        uu[j * n + i] += w * (PetscCosReal(i * theta[q]) * along - 1 / (4 * theta[q]));
-        vu[j * n + i] -= w * 2 * half * PetscSinReal((i + 0.5) * theta[q]) * across;
+        uu[j * n + i] += w * (cosine[i] * along - 1 / (4 * theta[q]));
+        vu[j * n + i] -= w * 2 * half * sine[i] * across;
       }
     }
   }
-  PetscCall(PetscFree2(theta, weight));
+  PetscCall(PetscFree4(theta, weight, cosine, sine));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

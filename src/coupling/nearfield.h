@@ -1,10 +1,10 @@
-/* The near field: what the grid's kernel and lattice take from the markers' velocity is given back (docs/method.md, Near
-   field),
-       U = u_inf + E u + C (f ds),      C = S - L,
-   S the exact free-space single layer, L = E G E^T/h^2 the mobility of the same kernel on the infinite lattice. The grid's
-   own mobility is L and a smooth part of walls and images, so kernel, angle to the grid, place in the cells and spacing of
-   the markers cancel. Pairs of markers of one vesicle, and of vesicles near one another, images included. */
+/* The near field: what the grid's kernel and lattice take from the markers' velocity is given back (docs/method.md,
+   Near field), U = u_inf + E u + C (f ds),      C = S - L, S the exact free-space single layer, L = E G E^T/h^2 the
+   mobility of the same kernel on the infinite lattice. The grid's own mobility is L and a smooth part of walls and
+   images, so kernel, angle to the grid, place in the cells and spacing of the markers cancel. Pairs of markers of one
+   vesicle, and of vesicles near one another, images included. */
 #pragma once
+#include "coupling/boxpart.h"
 #include "coupling/lattice.h"
 #include "membrane/membrane.h"
 
@@ -28,6 +28,7 @@ struct _p_NearField {
   PetscInt count, room; /* blocks in use, and made */
   PetscBool crossed;    /* whether any rank has a block between two vesicles, or of an image */
   PetscScalar *force;   /* [2M] work */
+  BoxPart box;          /* NULL without */
   PetscLogEvent event;
 };
 
@@ -38,6 +39,9 @@ PETSC_EXTERN PetscErrorCode NearFieldDestroy(NearField *near);
 /* NearFieldPlace - the blocks of the own vesicles where the markers have been placed (MarkersPlace). Collective. */
 PETSC_EXTERN PetscErrorCode NearFieldPlace(NearField near);
 
-/* NearFieldApply - U += alpha C F, own parts F[2n] and U[2n] of marker vectors; F is a force times ds (length^4/time^2 with
-   density 1). Collective. */
+/* NearFieldAddBoxPart - from here on with the box part, for the fluid that spec makes. Collective. */
+PETSC_EXTERN PetscErrorCode NearFieldAddBoxPart(NearField near, const FluidSpec *spec);
+
+/* NearFieldApply - U += alpha (C + D) F, D the box part if there is one, own parts F[2n] and U[2n] of marker vectors; F
+   is a force times ds (length^4/time^2 with density 1). Collective. */
 PETSC_EXTERN PetscErrorCode NearFieldApply(NearField near, PetscReal alpha, const PetscScalar F[], PetscScalar U[]);
