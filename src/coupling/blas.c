@@ -65,3 +65,17 @@ PetscErrorCode DenseProduct(PetscBool transpose, PetscInt m, PetscInt n, PetscIn
                                       C, &rows));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+PetscErrorCode DenseEigen(PetscInt n, PetscReal A[], PetscReal l[]) {
+  PetscBLASInt size, room, info;
+  PetscReal *work;
+  PetscFunctionBeginUser;
+  PetscCall(PetscBLASIntCast(n, &size));
+  PetscCall(PetscBLASIntCast(40 * n, &room));
+  PetscCall(PetscMalloc1(room, &work));
+  PetscCallBLAS("LAPACKsyev", LAPACKsyev_("V", "L", &size, A, &size, l, work, &room, &info));
+  PetscCheck(!info, PETSC_COMM_SELF, PETSC_ERR_LIB, "eigenvalues of a matrix of %d rows: LAPACK says %d", (int)n,
+             (int)info);
+  PetscCall(PetscFree(work));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -121,7 +121,7 @@ static PetscErrorCode FactorBlock(Membrane m, PetscReal h2, Block *q, PetscReal 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Mob += h^2 C of the near field's blocks whose vesicles are both in [vesicle, end), Mob being of the markers from `first`
+/* Mob += h^2 (C + D) of the near field's blocks whose vesicles are both in [vesicle, end), Mob being of the markers from `first`
    on, n in all. */
 static void AddNearField(Coupling c, PetscInt vesicle, PetscInt end, PetscInt first, PetscInt n, PetscReal Mob[]) {
   const Layout l = c->membrane->layout;
@@ -133,6 +133,10 @@ static void AddNearField(Coupling c, PetscInt vesicle, PetscInt end, PetscInt fi
     PetscReal *at = Mob + 2 * (l->start[b->column] - first) * 2 * n + 2 * (l->start[b->row] - first);
     for (PetscInt j = 0; j < columns; j++)
       for (PetscInt i = 0; i < rows; i++) at[j * 2 * n + i] += h2 * b->C[j * rows + i];
+  }
+  if (c->near && c->near->box) {
+    const PetscInt begin = PetscMax(l->first, first), last = PetscMin(l->first + l->n, first + n);
+    BoxPartAdd(c->near->box, h2, first, n, begin, last, Mob);
   }
 }
 

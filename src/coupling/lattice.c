@@ -48,24 +48,28 @@ static PetscReal Square(PetscReal mu, PetscInt j) {
 /* uu and vu of offsets 0 .. reach: arrays [i][j], i fastest in memory order [j * (reach + 1) + i]. */
 static PetscErrorCode Quadrant(PetscInt reach, PetscReal uu[], PetscReal vu[]) {
   const PetscInt nodes = 3 * reach + 60, n = reach + 1;
-  PetscReal *theta, *weight;
+  PetscReal *theta, *weight, *cosine, *sine;
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(nodes, &theta, nodes, &weight));
+  PetscCall(PetscMalloc4(nodes, &theta, nodes, &weight, n, &cosine, n, &sine));
   GaussLegendre(nodes, theta, weight);
   PetscCall(PetscArrayzero(vu, n * n));
   for (PetscInt k = 0; k < n * n; k++) uu[k] = LatticeConstant();
   for (PetscInt q = 0; q < nodes; q++) {
     const PetscReal half = PetscSinReal(0.5 * theta[q]), s = 4 * half * half, mu = 2 * PetscAsinhReal(half);
     const PetscReal w = weight[q] / PETSC_PI;
+    for (PetscInt i = 0; i < n; i++) {
+      cosine[i] = PetscCosReal(i * theta[q]);
+      sine[i] = PetscSinReal((i + 0.5) * theta[q]);
+    }
     for (PetscInt j = 0; j < n; j++) {
       const PetscReal along = Along(mu, s, j), across = Square(mu, j + 1) - Square(mu, j);
       for (PetscInt i = 0; i < n; i++) {
-        uu[j * n + i] += w * (PetscCosReal(i * theta[q]) * along - 1 / (4 * theta[q]));
-        vu[j * n + i] -= w * 2 * half * PetscSinReal((i + 0.5) * theta[q]) * across;
+        uu[j * n + i] += w * (cosine[i] * along - 1 / (4 * theta[q]));
+        vu[j * n + i] -= w * 2 * half * sine[i] * across;
       }
     }
   }
-  PetscCall(PetscFree2(theta, weight));
+  PetscCall(PetscFree4(theta, weight, cosine, sine));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -120,3 +120,15 @@ PetscErrorCode NearBlockFill(NearField f, NearBlock *b) {
   if (!self) PetscCall(NearBlockRefine(f, b));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+void NearLatticePair(NearField f, PetscInt i, PetscInt j, const PetscReal d[2], PetscReal L[4]) {
+  const PetscReal h = f->markers->grid->h, reach = (f->lattice.size[0] - OFFSET_LAGS) * h;
+  PetscReal S[3], C[3];
+  if (d[0] * d[0] + d[1] * d[1] <= reach * reach) {
+    LatticePair(f, i, j, d, L);
+    return;
+  }
+  Stokeslet(f->nu, d, S);
+  FarPair(f->far, h * h / (2 * PETSC_PI * f->nu), d, C);
+  for (int c = 0; c < 4; c++) L[c] = S[PetscMin(c, 2)] - C[PetscMin(c, 2)];
+}

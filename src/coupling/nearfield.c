@@ -55,7 +55,14 @@ PetscErrorCode NearFieldDestroy(NearField *near) {
   PetscCall(PetscFree2(f->stencil, f->force));
   PetscCall(NearImageDestroy(&f->image));
   PetscCall(OffsetTableDestroy(&f->lattice));
+  PetscCall(BoxPartDestroy(&f->box));
   PetscCall(PetscFree(*near));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode NearFieldAddBoxPart(NearField f, const FluidSpec *spec) {
+  PetscFunctionBeginUser;
+  PetscCall(BoxPartCreate(spec, f->markers, &f->box));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -124,6 +131,7 @@ PetscErrorCode NearFieldPlace(NearField f) {
   if (f->image) PetscCall(NearImagePlace(f->image));
   for (PetscInt v = l->own; v < l->end; v++)
     for (PetscInt w = 0; w < l->bodies; w++) PetscCall(AddPair(f, v, w));
+  if (f->box) BoxPartPlace(f->box);
   PetscCall(AgreeFlag(l->comm, f->count > l->end - l->own ? PETSC_TRUE : PETSC_FALSE, &f->crossed));
   PetscCall(PetscLogEventEnd(f->event, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -141,5 +149,6 @@ PetscErrorCode NearFieldApply(NearField f, PetscReal alpha, const PetscScalar F[
     PetscCall(DenseMultAdd(2 * LayoutCount(l, b->row), 2 * LayoutCount(l, b->column), alpha, b->C,
                            f->force + 2 * l->start[b->column], U + 2 * LayoutOffset(l, b->row)));
   }
+  if (f->box) PetscCall(BoxPartApply(f->box, alpha, F, U));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -5,6 +5,7 @@
    vesicle, and of vesicles near one another, images included; each pair with its images in the grid's walls
    (nearimage.h). In unbounded fluid there is no grid to take from: C = S, of all pairs. */
 #pragma once
+#include "coupling/boxpart.h"
 #include "coupling/lattice.h"
 #include "coupling/nearimage.h"
 #include "membrane/membrane.h"
@@ -31,6 +32,7 @@ struct _p_NearField {
   PetscInt count, room; /* blocks in use, and made */
   PetscBool crossed;    /* whether any rank has a block between two vesicles, or of an image */
   PetscScalar *force;   /* [2M] work */
+  BoxPart box;          /* NULL without */
   PetscLogEvent event;
 };
 
@@ -41,6 +43,9 @@ PETSC_EXTERN PetscErrorCode NearFieldDestroy(NearField *near);
 /* NearFieldPlace - the blocks of the own vesicles where the markers have been placed (MarkersPlace). Collective. */
 PETSC_EXTERN PetscErrorCode NearFieldPlace(NearField near);
 
-/* NearFieldApply - U += alpha C F, own parts F[2n] and U[2n] of marker vectors; F is a force times ds (length^4/time^2
-   with density 1). Collective. */
+/* NearFieldAddBoxPart - from here on with the box part, for the fluid that spec makes. Collective. */
+PETSC_EXTERN PetscErrorCode NearFieldAddBoxPart(NearField near, const FluidSpec *spec);
+
+/* NearFieldApply - U += alpha (C + D) F, D the box part if there is one, own parts F[2n] and U[2n] of marker vectors; F
+   is a force times ds (length^4/time^2 with density 1). Collective. */
 PETSC_EXTERN PetscErrorCode NearFieldApply(NearField near, PetscReal alpha, const PetscScalar F[], PetscScalar U[]);

@@ -38,6 +38,7 @@ typedef struct {
 typedef struct {
   char kernel[OPTION_MAX_NAME]; /* between grid and markers */
   PetscInt near_field;          /* NearFieldType */
+  PetscBool box_part;           /* of the near field: what the box adds, to fourth order */
   PetscInt mobility;            /* MobilityType */
   PetscReal ksp_rtol;           /* default of -coupled_ksp_rtol */
 } SceneCoupling;

@@ -1,0 +1,25 @@
+/* The smooth part W = E A^-1 E^T/h^2 - L of a grid's mobility between places: what walls and periodic images add to the
+   infinite lattice (docs/method.md, Near field). In quasi-steady flow, whatever the run's. */
+#pragma once
+#include "coupling/lattice.h"
+#include "fluid/fluid.h"
+
+#define BOX_PLACES 48 /* largest number of places in a direction */
+
+/* Places in one direction. Between walls a force may be at any of them; where the box is periodic it is at the first
+   one, and W depends on the offset alone. */
+typedef struct {
+  PetscBool wall;
+  PetscReal low, high; /* of the places (length): within the walls, or the period */
+  PetscInt places;     /* an even number: mirror images in pairs */
+  PetscReal place[BOX_PLACES];
+  PetscInt pairs; /* of a response's place a and a force's b: a * places + b, or the offset a */
+} BoxAxis;
+
+/* BoxGridAdd - W += scale times the smooth part of the grid `spec`, with the named kernel, lattice Stokeslet as far as
+   it is tabulated and the closed form beyond. W[2][2][x pairs][y pairs], of a velocity component to a force component
+   (velocity per force). Every rank adds the forces that are its own: the sum over ranks is the whole. Not collective.
+ */
+PETSC_EXTERN PetscErrorCode BoxGridAdd(const FluidSpec *spec, MPI_Comm comm, const char kernel[],
+                                       const OffsetTable *lattice, const BoxAxis axis[2], PetscReal scale,
+                                       PetscReal W[]);

@@ -1,0 +1,99 @@
+#include "coupling/boxpart.h"
+
+PetscErrorCode BoxPartCreate(const FluidSpec *spec, Markers markers, BoxPart *out) {
+  BoxPart b;
+  PetscLogEvent event;
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&b));
+  *out = b;
+  b->markers = markers;
+  b->ramp = spec->inertia == INERTIA_NONE ? PETSC_FALSE : PETSC_TRUE;
+  PetscCall(PetvesEvent("BoxTable", &event));
+  PetscCall(PetscLogEventBegin(event, 0, 0, 0, 0));
+  PetscCall(BoxTableCreate(spec, markers->kernel->name, &b->table));
+  PetscCall(PetscLogEventEnd(event, 0, 0, 0, 0));
+  PetscCall(PetscMalloc2(2 * markers->layout->M * b->table.rank, &b->A, b->table.rank, &b->amplitude));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode BoxPartDestroy(BoxPart *box) {
+  PetscFunctionBeginUser;
+  if (!*box) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(BoxTableDestroy(&(*box)->table));
+  PetscCall(PetscFree2((*box)->A, (*box)->amplitude));
+  PetscCall(PetscFree(*box));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* 0 up to low, 1 from high on. */
+static PetscReal SmoothStep(PetscReal x, PetscReal low, PetscReal high) {
+  const PetscReal t = PetscMax(0, PetscMin(1, (x - low) / (high - low)));
+  return t * t * (3 - 2 * t);
+}
+
+/* The part of D that a marker has: less where the table ends, one cell of its coarser grid from its last places, and in
+   unsteady flow up to four cells from a wall, where the force's smear in the inertia would make C + D indefinite. */
+static PetscReal Fade(BoxPart b, const PetscReal X[2]) {
+  const Grid g = b->markers->grid;
+  const BoxTable *t = &b->table;
+  const PetscReal last = t->H > g->h * (1 + 1e-9) ? t->H
+                                                  : 0.5 * g->h; /* the table of the run's own grid ends at its limit */
+  PetscReal fade = 1;
+  for (int d = 0; d < 2; d++) {
+    const PetscReal *x = &X[d], end = t->axis[d].low - g->lo[d] - (last < t->H ? last : 0);
+    if (!g->wall[d]) continue;
+    const PetscReal off = PetscMin(*x - g->lo[d], g->hi[d] - *x);
+    fade *= SmoothStep(off, end, end + last);
+    if (b->ramp) fade *= SmoothStep(off, g->h, 4 * g->h);
+  }
+  return fade;
+}
+
+/* The rows of A of marker k, from its functions' values. */
+static void PlaceMarker(BoxPart b, PetscInt k) {
+  const BoxTable *t = &b->table;
+  const PetscInt nx = t->functions[0], ny = t->functions[1], r = t->rank;
+  const PetscReal *X = b->markers->X + 2 * k, fade = Fade(b, X);
+  PetscReal vx[BOX_FUNCTIONS], vy[BOX_FUNCTIONS];
+  (void)PetscArrayzero(b->A + 2 * k * r, 2 * r);
+  if (fade == 0) return;
+  BoxTableFunctions(t, 0, X[0], vx);
+  BoxTableFunctions(t, 1, X[1], vy);
+  for (int c = 0; c < 2; c++)
+    for (PetscInt i = 0; i < nx; i++)
+      for (PetscInt j = 0; j < ny; j++) {
+        const PetscReal weight = fade * vx[i] * vy[j], *q = t->Q + ((c * nx + i) * ny + j) * r;
+        PetscReal *a = b->A + (2 * k + c) * r;
+        for (PetscInt m = 0; m < r; m++) a[m] += weight * q[m];
+      }
+}
+
+void BoxPartPlace(BoxPart b) {
+  for (PetscInt k = 0; k < b->markers->layout->M; k++) PlaceMarker(b, k);
+}
+
+PetscErrorCode BoxPartApply(BoxPart b, PetscReal alpha, const PetscScalar F[], PetscScalar U[]) {
+  const Layout l = b->markers->layout;
+  const PetscInt r = b->table.rank;
+  const PetscReal *own = b->A + 2 * l->first * r;
+  PetscFunctionBeginUser;
+  PetscCall(PetscArrayzero(b->amplitude, r));
+  for (PetscInt k = 0; k < 2 * l->n; k++)
+    for (PetscInt m = 0; m < r; m++) b->amplitude[m] += own[k * r + m] * F[k];
+  if (l->size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, b->amplitude, (PetscMPIInt)r, MPIU_REAL, MPI_SUM, l->comm));
+  for (PetscInt m = 0; m < r; m++) b->amplitude[m] *= alpha * b->table.l[m];
+  for (PetscInt k = 0; k < 2 * l->n; k++)
+    for (PetscInt m = 0; m < r; m++) U[k] += own[k * r + m] * b->amplitude[m];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+void BoxPartAdd(BoxPart b, PetscReal scale, PetscInt first, PetscInt n, PetscInt begin, PetscInt end, PetscReal out[]) {
+  const PetscInt r = b->table.rank;
+  for (PetscInt j = 0; j < 2 * n; j++)
+    for (PetscInt i = 2 * (begin - first); i < 2 * (end - first); i++) {
+      const PetscReal *x = b->A + (2 * first + i) * r, *y = b->A + (2 * first + j) * r;
+      PetscReal sum = 0;
+      for (PetscInt m = 0; m < r; m++) sum += b->table.l[m] * (x[m] * y[m]);
+      out[j * 2 * n + i] += scale * sum;
+    }
+}

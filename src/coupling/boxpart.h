@@ -1,0 +1,29 @@
+/* The box part of the near field: D takes the error of second order off what walls and periodic images add to the
+   markers' mobility (boxtable.h), U += D (f ds) for all pairs of markers. D is steady in every flow. */
+#pragma once
+#include "coupling/boxtable.h"
+#include "markers/markers.h"
+
+typedef struct _p_BoxPart *BoxPart;
+struct _p_BoxPart {
+  Markers markers; /* borrowed */
+  BoxTable table;
+  PetscBool ramp;       /* unsteady flow: D fades next to walls */
+  PetscReal *A;         /* [2M][rank], D = A diag(l) A^T */
+  PetscReal *amplitude; /* [rank] work */
+};
+
+/* BoxPartCreate - for markers on the grid that `spec` makes. Collective. */
+PETSC_EXTERN PetscErrorCode BoxPartCreate(const FluidSpec *spec, Markers markers, BoxPart *box);
+PETSC_EXTERN PetscErrorCode BoxPartDestroy(BoxPart *box);
+
+/* BoxPartPlace - where the markers have been placed. Not collective. */
+PETSC_EXTERN void BoxPartPlace(BoxPart box);
+
+/* BoxPartApply - U += alpha D F, own parts F[2n] and U[2n] of marker vectors, F as NearFieldApply's. Collective. */
+PETSC_EXTERN PetscErrorCode BoxPartApply(BoxPart box, PetscReal alpha, const PetscScalar F[], PetscScalar U[]);
+
+/* BoxPartAdd - out += scale D between the markers first .. first + n - 1, out[2n][2n], rows of the markers begin .. end
+   - 1 only. Not collective. */
+PETSC_EXTERN void BoxPartAdd(BoxPart box, PetscReal scale, PetscInt first, PetscInt n, PetscInt begin, PetscInt end,
+                             PetscReal out[]);

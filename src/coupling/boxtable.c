@@ -1,0 +1,231 @@
+#include "coupling/boxtable.h"
+#include "coupling/blas.h"
+
+#define WALL_PLACES 12
+#define WALL_MARGIN 3    /* cells of the coarser grid between the places and a wall: what its kernels reach */
+#define MODES 11         /* of a period */
+#define COARSE_CELLS 64  /* of the shorter side, on the coarser grid */
+#define LATTICE_CELLS 30 /* of the lattice's table; beyond, its closed form is right to 2e-7 */
+#define SMALLEST 1e-4    /* of the largest: eigenvalues below it are dropped */
+
+/* The coarser grid: as many cells as keep them square, from COARSE_CELLS on across, or the run's own. */
+static void CoarseCells(const FluidSpec *spec, PetscInt cells[2]) {
+  PetscInt a = spec->cells[0], b = spec->cells[1];
+  while (b) {
+    const PetscInt rest = a % b;
+    a = b;
+    b = rest;
+  }
+  const PetscInt shorter = PetscMin(spec->cells[0], spec->cells[1]) / a;
+  const PetscInt times = PetscMin(a, (COARSE_CELLS + shorter - 1) / shorter);
+  for (int d = 0; d < 2; d++) cells[d] = spec->cells[d] / a * times;
+}
+
+static void MakeAxis(const FluidSpec *spec, int dir, PetscReal H, BoxAxis *a) {
+  a->wall = spec->bc[dir] == BC_WALL ? PETSC_TRUE : PETSC_FALSE;
+  a->low = spec->box[2 * dir] + (a->wall ? WALL_MARGIN * H : 0);
+  a->high = spec->box[2 * dir + 1] - (a->wall ? WALL_MARGIN * H : 0);
+  a->places = a->wall ? WALL_PLACES : BOX_PLACES;
+  a->pairs = a->wall ? a->places * a->places : a->places;
+  for (PetscInt k = 0; k < a->places; k++) {
+    const PetscReal z = -PetscCosReal(PETSC_PI * (k + 0.5) / a->places);
+    a->place[k] = a->wall ? 0.5 * (a->low + a->high) + 0.5 * (a->high - a->low) * z
+                          : a->low + (a->high - a->low) * k / a->places;
+  }
+}
+
+void BoxTableFunctions(const BoxTable *t, int dir, PetscReal x, PetscReal values[]) {
+  const BoxAxis *a = &t->axis[dir];
+  const PetscInt n = a->places;
+  PetscReal sum = 0;
+  if (!a->wall) {
+    values[0] = 1;
+    for (PetscInt m = 1; m <= MODES; m++) {
+      const PetscReal angle = 2 * PETSC_PI * m * (x - a->low) / (a->high - a->low);
+      values[2 * m - 1] = PetscCosReal(angle);
+      values[2 * m] = PetscSinReal(angle);
+    }
+    return;
+  }
+  for (PetscInt k = 0; k < n; k++) { /* the second barycentric formula */
+    const PetscReal off = x - a->place[k];
+    if (PetscAbsReal(off) < 1e-14 * (a->high - a->low)) {
+      for (PetscInt q = 0; q < n; q++) values[q] = q == k;
+      return;
+    }
+    values[k] = (k % 2 ? -1 : 1) * PetscSinReal(PETSC_PI * (k + 0.5) / n) / off;
+    sum += values[k];
+  }
+  for (PetscInt k = 0; k < n; k++) values[k] /= sum;
+}
+
+/* Functions f, g of a response and a force that W couples, with the weights of its pairs. */
+typedef struct {
+  PetscInt f, g;
+} Couple;
+typedef struct {
+  PetscInt count;
+  Couple *couple;
+  PetscReal *weight; /* [count][pairs] */
+} Couplings;
+
+/* Between walls each pair of places by itself. Over a period, from W's Fourier series in the offset, with cos(a - b) =
+   cos a cos b + sin a sin b and sin(a - b) = sin a cos b - cos a sin b. */
+static PetscErrorCode MakeCouplings(const BoxAxis *a, Couplings *c) {
+  const PetscInt n = a->places;
+  PetscFunctionBeginUser;
+  c->count = a->wall ? n * n : 1 + 4 * MODES;
+  PetscCall(PetscMalloc1(c->count, &c->couple));
+  PetscCall(PetscCalloc1(c->count * a->pairs, &c->weight));
+  for (PetscInt k = 0; k < c->count; k++) {
+    PetscReal *weight = c->weight + k * a->pairs;
+    const PetscInt m = (k + 3) / 4, kind = k ? (k - 1) % 4 : 0, cosine = m ? 2 * m - 1 : 0;
+    if (a->wall) {
+      c->couple[k] = (Couple){k / n, k % n};
+      weight[k] = 1;
+      continue;
+    }
+    c->couple[k] = (Couple){cosine + (kind == 1 || kind == 2), cosine + (kind == 1 || kind == 3)};
+    for (PetscInt q = 0; q < n; q++) {
+      const PetscReal angle = 2 * PETSC_PI * ((m * q) % n) / n, factor = (m ? 2.0 : 1.0) / n;
+      weight[q] = factor * (kind < 2 ? PetscCosReal(angle) : PetscSinReal(angle)) * (kind == 3 ? -1 : 1);
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* T[count][count] between functions, from W between places; symmetric. */
+static PetscErrorCode Transform(const BoxTable *t, const PetscReal W[], PetscReal T[]) {
+  const PetscInt nx = t->axis[0].pairs, ny = t->axis[1].pairs, fy = t->functions[1], half = t->functions[0] * fy,
+                 n = t->count;
+  PetscReal *line;
+  Couplings c[2];
+  PetscFunctionBeginUser;
+  for (int dir = 0; dir < 2; dir++) PetscCall(MakeCouplings(&t->axis[dir], &c[dir]));
+  PetscCall(PetscMalloc1(ny, &line));
+  for (int b = 0; b < 4; b++)
+    for (PetscInt p = 0; p < c[0].count; p++) {
+      PetscCall(PetscArrayzero(line, ny));
+      for (PetscInt i = 0; i < nx; i++) {
+        const PetscReal weight = c[0].weight[p * nx + i], *row = W + (b * nx + i) * ny;
+        for (PetscInt j = 0; j < ny && weight != 0; j++) line[j] += weight * row[j];
+      }
+      for (PetscInt q = 0; q < c[1].count; q++) {
+        const Couple *x = &c[0].couple[p], *y = &c[1].couple[q];
+        const PetscReal *weight = c[1].weight + q * ny;
+        PetscReal sum = 0;
+        for (PetscInt j = 0; j < ny; j++) sum += weight[j] * line[j];
+        const PetscInt row = b / 2 * half + x->f * fy + y->f, column = b % 2 * half + x->g * fy + y->g;
+        T[row * n + column] += 0.5 * sum;
+        T[column * n + row] += 0.5 * sum;
+      }
+    }
+  for (int dir = 0; dir < 2; dir++) {
+    PetscCall(PetscFree(c[dir].couple));
+    PetscCall(PetscFree(c[dir].weight));
+  }
+  PetscCall(PetscFree(line));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Number of the block of T that a function belongs to: periodic modes do not couple. */
+static PetscInt BlockOf(const BoxTable *t, PetscInt function) {
+  const PetscInt fy = t->functions[1], x = function / fy % t->functions[0], y = function % fy;
+  return (t->axis[0].wall ? 0 : (x + 1) / 2) * (MODES + 1) + (t->axis[1].wall ? 0 : (y + 1) / 2);
+}
+
+/* Eigenpairs of one block of T, put in: values l and vectors Q[.][count]; *found counts them. */
+static PetscErrorCode SolveBlock(const BoxTable *t, PetscInt block, const PetscReal T[], PetscInt *found, PetscReal l[],
+                                 PetscReal Q[]) {
+  const PetscInt n = t->count;
+  PetscInt *member, size = 0;
+  PetscReal *A;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(n, &member));
+  for (PetscInt k = 0; k < n; k++)
+    if (BlockOf(t, k) == block) member[size++] = k;
+  PetscCall(PetscMalloc1(size * size, &A));
+  for (PetscInt i = 0; i < size; i++)
+    for (PetscInt j = 0; j < size; j++) A[i * size + j] = T[member[i] * n + member[j]];
+  if (size) PetscCall(DenseEigen(size, A, l + *found));
+  for (PetscInt k = 0; k < size; k++)
+    for (PetscInt i = 0; i < size; i++) Q[(*found + k) * n + member[i]] = A[k * size + i];
+  *found += size;
+  PetscCall(PetscFree(A));
+  PetscCall(PetscFree(member));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The largest eigenvalues of T, with their vectors. */
+static PetscErrorCode Decompose(BoxTable *t, const PetscReal T[]) {
+  const PetscInt n = t->count;
+  PetscInt found = 0, *order;
+  PetscReal *l, *size, *Q;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc4(n, &l, n, &size, n, &order, n * n, &Q));
+  PetscCall(PetscArrayzero(Q, n * n));
+  for (PetscInt b = 0; b < PetscSqr(MODES + 1); b++) PetscCall(SolveBlock(t, b, T, &found, l, Q));
+  for (PetscInt k = 0; k < n; k++) {
+    size[k] = -PetscAbsReal(l[k]);
+    order[k] = k;
+  }
+  PetscCall(PetscSortRealWithArrayInt(n, size, order));
+  t->rank = 0;
+  while (t->rank < PetscMin(n, BOX_RANK) && size[t->rank] < SMALLEST * size[0]) t->rank++;
+  PetscCall(PetscMalloc2(n * t->rank, &t->Q, t->rank, &t->l));
+  for (PetscInt k = 0; k < t->rank; k++) {
+    t->l[k] = l[order[k]];
+    for (PetscInt i = 0; i < n; i++) t->Q[i * t->rank + k] = Q[order[k] * n + i];
+  }
+  PetscCall(PetscFree4(l, size, order, Q));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* 4/3 (W_{H/2} - W_H) of the pair, times (h/H)^2. */
+static PetscErrorCode Pair(const FluidSpec *run, const char kernel[], const PetscInt cells[2], const BoxTable *t,
+                           PetscReal W[]) {
+  const PetscReal scale = 4. / 3 * PetscSqr(FluidSpecCellSize(run) / t->H);
+  FluidSpec spec = *run;
+  OffsetTable lattice;
+  PetscFunctionBeginUser;
+  spec.comm = PETSC_COMM_SELF;
+  spec.form = FORM_DISTURBANCE;
+  spec.inertia = INERTIA_NONE;
+  spec.plan = 0; /* the same bits in every run */
+  PetscCall(PetscStrncpy(spec.helmholtz, "fftw_tridiagonal", sizeof(spec.helmholtz)));
+  PetscCall(PetscStrncpy(spec.poisson, "fftw_tridiagonal", sizeof(spec.poisson)));
+  PetscCall(LatticeStokeslet(LATTICE_CELLS + OFFSET_LAGS, &lattice));
+  for (int times = 1; times <= 2; times++) {
+    for (int d = 0; d < 2; d++) spec.cells[d] = times * cells[d];
+    PetscCall(BoxGridAdd(&spec, run->comm, kernel, &lattice, t->axis, times == 1 ? -scale : scale, W));
+  }
+  PetscCall(OffsetTableDestroy(&lattice));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode BoxTableCreate(const FluidSpec *spec, const char kernel[], BoxTable *t) {
+  PetscInt cells[2], size = 4;
+  PetscReal *W, *T;
+  PetscFunctionBeginUser;
+  CoarseCells(spec, cells);
+  t->H = (spec->box[1] - spec->box[0]) / cells[0];
+  for (int d = 0; d < 2; d++) {
+    MakeAxis(spec, d, t->H, &t->axis[d]);
+    t->functions[d] = t->axis[d].wall ? WALL_PLACES : 2 * MODES + 1;
+    size *= t->axis[d].pairs;
+  }
+  t->count = 2 * t->functions[0] * t->functions[1];
+  PetscCall(PetscCalloc2(size, &W, PetscSqr(t->count), &T));
+  PetscCall(Pair(spec, kernel, cells, t, W));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, W, (PetscMPIInt)size, MPIU_REAL, MPI_SUM, spec->comm));
+  PetscCall(Transform(t, W, T));
+  PetscCall(Decompose(t, T));
+  PetscCall(PetscFree2(W, T));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode BoxTableDestroy(BoxTable *t) {
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree2(t->Q, t->l));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,27 @@
+/* The error of second order of a grid's smooth part W, made once for a run by Richardson's extrapolation from a coarse
+   pair of grids of the box's shape (docs/method.md, Near field): D = (h/H)^2 4/3 (W_{H/2} - W_H) = phi Q diag(l) Q^T
+   phi^T, phi the values of interpolating functions at a marker. */
+#pragma once
+#include "coupling/boxgrid.h"
+
+#define BOX_RANK 48      /* largest rank kept */
+#define BOX_FUNCTIONS 48 /* largest number of functions of a direction */
+
+typedef struct {
+  BoxAxis axis[2];       /* of the places: Chebyshev's between walls, even offsets over a period */
+  PetscInt functions[2]; /* in x and y: Lagrange's polynomials, or 1, cos, sin, .. over the period */
+  PetscInt count;        /* of all: 2 components, x and y functions, y fastest */
+  PetscInt rank;
+  PetscReal *Q; /* [count][rank] */
+  PetscReal *l; /* [rank] velocity per force */
+  PetscReal H;  /* cell size of the coarser grid */
+} BoxTable;
+
+/* BoxTableCreate - for the run's grid and boundaries. Collective on spec->comm: ranks share the solves. BoxTableDestroy
+   - and free. */
+PETSC_EXTERN PetscErrorCode BoxTableCreate(const FluidSpec *spec, const char kernel[], BoxTable *table);
+PETSC_EXTERN PetscErrorCode BoxTableDestroy(BoxTable *table);
+
+/* BoxTableFunctions - values[functions[dir]] of a direction's functions at the coordinate x (length). Not collective.
+ */
+PETSC_EXTERN void BoxTableFunctions(const BoxTable *table, int dir, PetscReal x, PetscReal values[]);
