@@ -9,7 +9,7 @@ PetscBool SceneIsProjection(Scene scene) {
 
 /* split and penalty are their papers' methods: one order, kernel ib6 and differences, none of the corrections of the
    coupled scheme; all forces of penalty are explicit. */
-PetscErrorCode SceneChooseByScheme(Draft scene) {
+static PetscErrorCode ChooseProjection(Draft scene) {
   PetscFunctionBeginUser;
   if (!SceneIsProjection(scene)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SceneChoose(scene, "-scheme_order", "1"));
@@ -18,6 +18,15 @@ PetscErrorCode SceneChooseByScheme(Draft scene) {
   PetscCall(SceneChoose(scene, "-coupling_near_field", "none"));
   PetscCall(SceneChoose(scene, "-scheme_area_target", "false"));
   if (!strcmp(scene->scheme.type, "penalty")) PetscCall(SceneChoose(scene, "-scheme_bending", "explicit"));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SceneChooseByScheme(Draft scene) {
+  PetscFunctionBeginUser;
+  PetscCall(ChooseProjection(scene));
+  /* the box part is the grid's, and nothing without the rest of the near field */
+  if (scene->coupling.near_field == NEAR_NONE || FluidSpecIsFree(&scene->fluid))
+    PetscCall(SceneChoose(scene, "-coupling_box_part", "false"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

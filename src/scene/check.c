@@ -127,8 +127,7 @@ static PetscErrorCode CheckPenalty(Scene scene, PetscBool split) {
 /* The near field belongs to the unsplit step, and to a kernel whose second moments are the same everywhere in a cell. */
 static PetscErrorCode CheckNearField(Scene scene) {
   PetscFunctionBeginUser;
-  PetscCheck(scene->coupling.near_field == NEAR_EXACT || !scene->coupling.box_part ||
-                 !SceneGiven(scene, "-coupling_box_part"),
+  PetscCheck(scene->coupling.near_field == NEAR_EXACT || !scene->coupling.box_part,
              scene->comm, PETSC_ERR_USER_INPUT,
              "-coupling_box_part true: stands on the exact near field; allowed: false, or -coupling_near_field exact");
   if (scene->coupling.near_field == NEAR_NONE) PetscFunctionReturn(PETSC_SUCCESS);
