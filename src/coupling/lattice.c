@@ -1,10 +1,17 @@
-/* In x a Fourier integral over theta in (0, pi], in y in closed form: with s = 4 sin^2(theta/2) and e^-mu the decay of
-   mode theta from row to row, mu = 2 asinh(sin(theta/2)), the inverse of s minus the second difference in y, and that
-   of its square, are g1(j) = e^{-mu j}/(2 sinh mu),      g2(j) = e^{-mu j} (j sinh mu + cosh mu)/(4 sinh^3 mu), and the
-   projection onto divergence-free fields gives uu(i, j) = (1/pi) INT [cos(i theta) (g1 - s g2)(j) - 1/(4 theta)] dtheta
-   + (gamma + ln pi + 1)/(4 pi), vv(i, j) = uu(j, i), vu(i + 1/2, j + 1/2) = -(1/pi) INT 2 sin(theta/2) sin((i + 1/2)
-   theta) (g2(j + 1) - g2(j)) dtheta, vu odd in both offsets. The integrands are analytic: Gauss-Legendre converges to
-   rounding. */
+/* In x a Fourier integral over theta in (0, pi], in y in closed form. With s = 4 sin^2(theta/2) and the decay e^-mu of
+   mode theta from row to row, mu = 2 asinh(sin(theta/2)), the inverse of s minus the second difference in y and that of
+   its square are
+
+       g1(j) = e^{-mu j}/(2 sinh mu)
+       g2(j) = e^{-mu j} (j sinh mu + cosh mu)/(4 sinh^3 mu)
+
+   and the projection onto divergence-free fields gives
+
+       uu(i, j) = (1/pi) INT [cos(i theta) (g1 - s g2)(j) - 1/(4 theta)] dtheta + (gamma + ln pi + 1)/(4 pi)
+       vv(i, j) = uu(j, i)
+       vu(i + 1/2, j + 1/2) = -(1/pi) INT 2 sin(theta/2) sin((i + 1/2) theta) (g2(j + 1) - g2(j)) dtheta
+
+   vu odd in both offsets. The integrands are analytic: Gauss-Legendre converges to rounding. */
 #include "coupling/lattice.h"
 
 #define EULER_GAMMA 0.57721566490153286061
@@ -90,5 +97,43 @@ PetscErrorCode LatticeStokeslet(PetscInt reach, OffsetTable *t) {
       t->value[OFFSET_VU][at] = ((i > 0) == (j >= 0) ? 1 : -1) * vu[hj * n + hi];
     }
   PetscCall(PetscFree2(uu, vu));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The inverse of the lattice's Laplacian is -(1/pi) INT cos(i theta) g1(j) dtheta; its difference over one cell in x has
+   2 sin(theta/2)/(2 sinh mu) = 1/(2 cosh(mu/2)), so it is (1/(2 pi)) INT sin((i - 1/2) theta) e^{-mu j}/cosh(mu/2) dtheta.
+   quadrant[j * (reach + 2) + i] for i from 1, j from 0. */
+static PetscErrorCode PressureQuadrant(PetscInt reach, PetscReal quadrant[]) {
+  const PetscInt nodes = 3 * reach + 60, n = reach + 2;
+  PetscReal *theta, *weight;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(nodes, &theta, nodes, &weight));
+  GaussLegendre(nodes, theta, weight);
+  PetscCall(PetscArrayzero(quadrant, n * n));
+  for (PetscInt q = 0; q < nodes; q++) {
+    const PetscReal half = PetscSinReal(0.5 * theta[q]), mu = 2 * PetscAsinhReal(half);
+    for (PetscInt j = 0; j < n; j++) {
+      const PetscReal along = weight[q] / (2 * PETSC_PI) * PetscExpReal(-mu * j) / PetscSqrtReal(1 + half * half);
+      for (PetscInt i = 1; i < n; i++) quadrant[j * n + i] += along * PetscSinReal((i - 0.5) * theta[q]);
+    }
+  }
+  PetscCall(PetscFree2(theta, weight));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode LatticePressure(PetscInt reach, OffsetTable *t) {
+  const PetscInt size[2] = {reach, reach}, n = reach + 2, width = 2 * reach + 1;
+  PetscReal *quadrant;
+  PetscFunctionBeginUser;
+  PetscCall(OffsetTableCreate(size, t));
+  PetscCall(PetscMalloc1(n * n, &quadrant));
+  PetscCall(PressureQuadrant(reach, quadrant));
+  for (PetscInt j = -reach; j <= reach; j++)
+    for (PetscInt i = -reach; i <= reach; i++) {
+      const PetscReal p = (i > 0 ? 1 : -1) * quadrant[PetscAbsInt(j) * n + (i > 0 ? i : 1 - i)];
+      t->value[OFFSET_UU][(j + reach) * width + i + reach] = p;
+      t->value[OFFSET_VV][(i + reach) * width + j + reach] = p;
+    }
+  PetscCall(PetscFree(quadrant));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

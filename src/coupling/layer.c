@@ -10,19 +10,12 @@
 typedef double complex Point;
 
 /* One membrane, a trigonometric polynomial of the parameter t: marker k at t = 2 pi k/n. */
-typedef struct {
+struct _p_LayerCurve {
   PetscInt n;
   PetscReal spacing;        /* of the markers, the mean */
   const PetscReal *X, *F;   /* [2n] markers and forces */
   Point *curve, *force;     /* [n + 1] modes -n/2 .. n/2, of X and of F */
   Point *fine, *fine_force; /* [FINE n] the finer curve; forces, 1/FINE of a marker's */
-} LayerCurve;
-
-struct _p_Layer {
-  PetscReal nu;
-  PetscInt count;
-  LayerCurve *curve;
-  PetscReal *X, *F; /* [2M] of all markers */
 };
 
 /* SUM hat_k e^{ikt}, and its derivative. */
@@ -190,26 +183,24 @@ static void CorrectClose(const LayerCurve *c, Point z, PetscInt nearest, Point *
   *u += 0.5 * per * conj(PoleError(N, t0, residue * (conj(z) - mirror))) + density * logarithm / FINE;
 }
 
-void LayerEvaluate(Layer s, const PetscReal x[2], PetscReal u[2], PetscReal *p) {
-  Point sum = 0;
-  *p = 0;
-  for (PetscInt v = 0; v < s->count; v++) {
-    const LayerCurve *c = &s->curve[v];
-    Point z = x[0] + I * x[1], velocity;
-    PetscReal pressure;
-    if (CoarseSums(c, z, &velocity, &pressure) < NEAR * c->spacing) {
-      PetscInt nearest = FineSums(c, z, &velocity, &pressure);
-      if (cabs(z - c->fine[nearest]) < 1e-7 * c->spacing) { /* a point of the curve: next to it */
-        z = c->fine[nearest] + 1e-7 * c->spacing;
-        nearest = FineSums(c, z, &velocity, &pressure);
-      }
-      if (cabs(z - c->fine[nearest]) < CLOSE * c->spacing / FINE) CorrectClose(c, z, nearest, &velocity, &pressure);
+void LayerAdd(Layer s, PetscInt v, const PetscReal x[2], PetscReal u[2], PetscReal *p) {
+  const LayerCurve *c = &s->curve[v];
+  Point z = x[0] + I * x[1], velocity;
+  PetscReal pressure;
+  if (CoarseSums(c, z, &velocity, &pressure) < NEAR * c->spacing) {
+    PetscInt nearest = FineSums(c, z, &velocity, &pressure);
+    if (cabs(z - c->fine[nearest]) < 1e-7 * c->spacing) { /* a point of the curve: next to it */
+      z = c->fine[nearest] + 1e-7 * c->spacing;
+      nearest = FineSums(c, z, &velocity, &pressure);
     }
-    sum += velocity;
-    *p += pressure;
+    if (cabs(z - c->fine[nearest]) < CLOSE * c->spacing / FINE) CorrectClose(c, z, nearest, &velocity, &pressure);
   }
-  sum /= 4 * PETSC_PI * s->nu;
-  *p /= 2 * PETSC_PI;
-  u[0] = creal(sum);
-  u[1] = cimag(sum);
+  u[0] += creal(velocity) / (4 * PETSC_PI * s->nu);
+  u[1] += cimag(velocity) / (4 * PETSC_PI * s->nu);
+  *p += pressure / (2 * PETSC_PI);
+}
+
+void LayerEvaluate(Layer s, const PetscReal x[2], PetscReal u[2], PetscReal *p) {
+  u[0] = u[1] = *p = 0;
+  for (PetscInt v = 0; v < s->count; v++) LayerAdd(s, v, x, u, p);
 }

@@ -1,6 +1,7 @@
 #include "output/cells.h"
 #include "base/agree.h"
 #include "coupling/layer.h"
+#include "coupling/nearcells.h"
 
 /* Value of a velocity component on a wall: the background's in the total form, else zero. */
 static PetscScalar WallValue(Scheme s, int c, PetscInt i, PetscInt j, PetscReal wall) {
@@ -61,9 +62,19 @@ static PetscErrorCode FromLayer(Scheme s, PetscReal u[], PetscReal v[], PetscRea
       LayerEvaluate(layer, X, velocity, &pressure);
       if (u) u[k] += velocity[0];
       if (v) v[k] += velocity[1];
-      if (p) p[k] = pressure;
+      if (p) p[k] += pressure;
     }
   PetscCall(LayerDestroy(&layer));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What the grid does not have of the membranes' forces: all of it in unbounded fluid, the near field otherwise. Nothing
+   before the first step, whose velocity and tension are not known. */
+static PetscErrorCode AddMembranes(Scheme s, PetscReal u[], PetscReal v[], PetscReal p[]) {
+  const State *q = &s->state;
+  PetscFunctionBeginUser;
+  if (q->dt_last == 0) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(s->fluid->grid->free ? FromLayer(s, u, v, p) : NearCellsCorrect(s->coupling, q->sigma, q->X, u, v, p));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -74,7 +85,7 @@ PetscErrorCode CellVelocity(Scheme s, PetscReal u[], PetscReal v[]) {
   PetscCall(Component(s, 0, w, u));
   PetscCall(Component(s, 1, w, v));
   PetscCall(VecRestoreArrayRead(s->state.w, &w));
-  if (s->fluid->grid->free) PetscCall(FromLayer(s, u, v, NULL));
+  PetscCall(AddMembranes(s, u, v, NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -82,12 +93,9 @@ PetscErrorCode CellPressure(Scheme s, PetscReal p[]) {
   const Grid g = s->fluid->grid;
   const PetscScalar *a;
   PetscFunctionBeginUser;
-  if (g->free) {
-    PetscCall(FromLayer(s, NULL, NULL, p));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
   PetscCall(VecGetArrayRead(s->state.p, &a));
   PetscCall(PetscArraycpy(p, a, g->n[0] * g->rows[FIELD_P]));
   PetscCall(VecRestoreArrayRead(s->state.p, &a));
+  PetscCall(AddMembranes(s, NULL, NULL, p));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

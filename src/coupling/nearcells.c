@@ -1,0 +1,149 @@
+#include "coupling/nearcells.h"
+#include "coupling/layer.h"
+#include "coupling/nearblock.h"
+
+#define CELLS 4 /* distance from a marker, in cells, up to which a cell is corrected */
+
+/* What all cells need, and one vesicle's kernels: component c of marker k at 2k + c, not wrapped into the grid. */
+typedef struct {
+  Coupling coupling;
+  Layer layer;
+  OffsetTable pressure;
+  PetscInt vesicle, n;
+  const PetscReal *X, *F; /* [2n] of the vesicle */
+  PaddedStencil *source;  /* [2n] */
+} NearCells;
+
+static void SetVesicle(NearCells *s, PetscInt v) {
+  const Markers m = s->coupling->markers;
+  const Layout l = m->layout;
+  s->vesicle = v;
+  s->n = LayoutCount(l, v);
+  s->X = s->layer->X + 2 * l->start[v];
+  s->F = s->layer->F + 2 * l->start[v];
+  for (PetscInt k = 0; k < 2 * s->n; k++) {
+    Stencil stencil;
+    for (int dir = 0; dir < 2; dir++) {
+      const PetscBool along = k % 2 == dir ? PETSC_TRUE : PETSC_FALSE;
+      const PetscReal r = (s->X[k - k % 2 + dir] - m->grid->lo[dir]) / m->grid->h - (along ? 1.0 : 0.5);
+      stencil.n[dir] = (along ? m->kernel->along : m->kernel->across)(r, &stencil.first[dir], stencil.weight[dir]);
+    }
+    StencilPad(&stencil, &s->source[k]);
+  }
+}
+
+/* The weights by which a field's entries make its value at the centre of cell (i, j): the two faces' mean, or the
+ * entry. */
+static void CellStencil(Field f, const PetscInt cell[2], PaddedStencil *padded) {
+  Stencil stencil;
+  for (int dir = 0; dir < 2; dir++) {
+    const PetscBool faces = (int)f == dir ? PETSC_TRUE : PETSC_FALSE;
+    stencil.n[dir] = faces ? 2 : 1;
+    stencil.first[dir] = cell[dir] - (faces ? 1 : 0);
+    stencil.weight[dir][0] = stencil.weight[dir][1] = faces ? 0.5 : 1;
+  }
+  StencilPad(&stencil, padded);
+}
+
+/* Velocity and pressure of marker k on the lattice, taken off those of a cell with these weights. */
+static void TakeLattice(const NearCells *s, PetscInt k, const PaddedStencil cell[3], PetscReal u[2], PetscReal *p) {
+  static const PetscInt none[2] = {0, 0};
+  const OffsetTable *t = &s->coupling->near->lattice;
+  const PaddedStencil *source = &s->source[2 * k];
+  const PetscReal *F = &s->F[2 * k], h = s->coupling->fluid->grid->h, nu = s->coupling->fluid->nu;
+  const PetscReal constant = PetscLogReal(h) / (4 * PETSC_PI);
+  const PetscReal uu = StencilPairSum(t, OFFSET_UU, &cell[0], &source[0], none) - constant;
+  const PetscReal vv = StencilPairSum(t, OFFSET_VV, &cell[1], &source[1], none) - constant;
+  const PetscReal vu = StencilPairSum(t, OFFSET_VU, &cell[1], &source[0], none);
+  const PetscReal uv = StencilPairSum(t, OFFSET_VU, &source[1], &cell[0], none); /* as v from u the other way round */
+  u[0] -= (uu * F[0] + uv * F[1]) / nu;
+  u[1] -= (vu * F[0] + vv * F[1]) / nu;
+  *p -= (StencilPairSum(&s->pressure, OFFSET_UU, &cell[2], &source[0], none) * F[0] +
+         StencilPairSum(&s->pressure, OFFSET_VV, &cell[2], &source[1], none) * F[1]) /
+        h;
+}
+
+/* The exact layer less the lattice's at the centre x of a cell, whose indices are not wrapped into the grid. Far
+   markers are the same for both, but for h^2/r^2. */
+static void Difference(const NearCells *s, const PetscInt cell[2], const PetscReal x[2], PetscReal u[2], PetscReal *p) {
+  const PetscReal near2 = PetscSqr(NEAR_CELLS * s->coupling->fluid->grid->h);
+  PaddedStencil weights[3];
+  for (int f = 0; f < 3; f++) CellStencil((Field)f, cell, &weights[f]);
+  u[0] = u[1] = *p = 0;
+  LayerAdd(s->layer, s->vesicle, x, u, p);
+  for (PetscInt k = 0; k < s->n; k++) {
+    const PetscReal d[2] = {x[0] - s->X[2 * k], x[1] - s->X[2 * k + 1]}, *F = &s->F[2 * k];
+    const PetscReal r2 = d[0] * d[0] + d[1] * d[1], along = (d[0] * F[0] + d[1] * F[1]) / r2;
+    if (r2 < near2) {
+      TakeLattice(s, k, weights, u, p);
+      continue;
+    }
+    for (int c = 0; c < 2; c++)
+      u[c] -= (d[c] * along - 0.5 * PetscLogReal(r2) * F[c]) / (4 * PETSC_PI * s->coupling->fluid->nu);
+    *p -= along / (2 * PETSC_PI);
+  }
+}
+
+static PetscBool IsNear(const NearCells *s, const PetscReal x[2]) {
+  const PetscReal reach = CELLS * s->coupling->fluid->grid->h;
+  for (PetscInt k = 0; k < s->n; k++) {
+    const PetscReal dx = x[0] - s->X[2 * k], dy = x[1] - s->X[2 * k + 1];
+    if (dx * dx + dy * dy < reach * reach) return PETSC_TRUE;
+  }
+  return PETSC_FALSE;
+}
+
+/* Cells from box[dir][0] to box[dir][1] hold all that is near, indices beyond the grid where it is periodic. */
+static void FindBox(const NearCells *s, PetscInt box[2][2]) {
+  const Grid g = s->coupling->fluid->grid;
+  for (int dir = 0; dir < 2; dir++) {
+    PetscReal low = PETSC_MAX_REAL, high = -PETSC_MAX_REAL;
+    for (PetscInt k = 0; k < s->n; k++) {
+      low = PetscMin(low, s->X[2 * k + dir]);
+      high = PetscMax(high, s->X[2 * k + dir]);
+    }
+    box[dir][0] = (PetscInt)PetscFloorReal((low - g->lo[dir]) / g->h) - CELLS;
+    box[dir][1] = (PetscInt)PetscFloorReal((high - g->lo[dir]) / g->h) + CELLS;
+    if (!g->wall[dir]) continue;
+    box[dir][0] = PetscMax(box[dir][0], 0);
+    box[dir][1] = PetscMin(box[dir][1], g->n[dir] - 1);
+  }
+}
+
+static void CorrectVesicle(const NearCells *s, PetscReal *const field[3]) {
+  const Grid g = s->coupling->fluid->grid;
+  PetscInt box[2][2], cell[2];
+  FindBox(s, box);
+  for (cell[1] = box[1][0]; cell[1] <= box[1][1]; cell[1]++) {
+    const PetscInt row = ((cell[1] % g->n[1]) + g->n[1]) % g->n[1] - g->first;
+    if (row < 0 || row >= g->rows[FIELD_P]) continue;
+    for (cell[0] = box[0][0]; cell[0] <= box[0][1]; cell[0]++) {
+      const PetscInt at = row * g->n[0] + ((cell[0] % g->n[0]) + g->n[0]) % g->n[0];
+      PetscReal x[2], found[3];
+      GridPosition(g, FIELD_P, cell[0], cell[1], x);
+      if (!IsNear(s, x)) continue;
+      Difference(s, cell, x, found, &found[2]);
+      for (int f = 0; f < 3; f++)
+        if (field[f]) field[f][at] += found[f];
+    }
+  }
+}
+
+PetscErrorCode NearCellsCorrect(Coupling coupling, Vec sigma, Vec X, PetscReal u[], PetscReal v[], PetscReal p[]) {
+  const Layout l = coupling->membrane->layout;
+  PetscReal *const field[3] = {u, v, p};
+  NearCells s = {.coupling = coupling};
+  PetscFunctionBeginUser;
+  if (!coupling->near || coupling->near->free) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(LayerCreate(coupling, sigma, X, &s.layer));
+  PetscCall(LatticePressure(NEAR_CELLS + OFFSET_LAGS, &s.pressure));
+  PetscCall(PetscMalloc1(2 * l->M, &s.source));
+  for (PetscInt b = 0; b < l->bodies; b++) {
+    SetVesicle(&s, b);
+    CorrectVesicle(&s, field);
+  }
+  PetscCall(PetscFree(s.source));
+  PetscCall(OffsetTableDestroy(&s.pressure));
+  PetscCall(LayerDestroy(&s.layer));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
