@@ -1,4 +1,5 @@
 #include "coupling/nearblock.h"
+#include "coupling/wallclose.h"
 
 /* Smoothing by the kernel and dispersion by the lattice, to the order h^2/r^2: transforms of e^{i n phi} waves, the
    first three from the moments (docs/method.md, Near field). */
@@ -116,5 +117,6 @@ PetscErrorCode NearBlockFill(NearField f, NearBlock *b) {
       mirror[2 * n + 1] = C[1];
     }
   PetscCall(PetscFree(T));
+  PetscCall(NearBlockRefineAtWalls(f, b));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
