@@ -1,5 +1,6 @@
 #include "coupling/nearblock.h"
 #include "coupling/nearclose.h"
+#include "coupling/wallclose.h"
 
 /* Smoothing by the kernel and dispersion by the lattice, to the order h^2/r^2: transforms of e^{i n phi} waves, the
    first three from the moments (docs/method.md, Near field). */
@@ -118,6 +119,7 @@ PetscErrorCode NearBlockFill(NearField f, NearBlock *b) {
     }
   PetscCall(PetscFree(T));
   if (!self) PetscCall(NearBlockRefine(f, b));
+  if (f->image) PetscCall(NearBlockRefineAtWalls(f, b));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

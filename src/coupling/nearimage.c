@@ -6,14 +6,12 @@ typedef struct {
   PetscReal x, a, b; /* along the wall, response minus source; from the wall: of the response and of the source */
 } Seen;
 
-enum { TT, NN, NT, TN, PARTS }; /* response, source */
-
-/* Blake's image part of the Stokeslet in a wall, cells and nu = 1: -S(R) + 2 b^2 D - 2 b SD with R from the source's
+/* -S(R) + 2 b^2 D - 2 b SD with R from the source's
    mirror image, D_ij = s_j (delta_ij/R^2 - 2 R_i R_j/R^4), SD_ij = R_n D_ij + s_j (delta_jn R_i - delta_in R_j)/R^2, s
    = (1, -1). */
-static void Blake(const Seen *p, PetscReal image[PARTS]) {
-  const PetscReal b = p->b, R[2] = {p->x, p->a + p->b}, r2 = R[0] * R[0] + R[1] * R[1];
-  static const int place[2][2] = {{TT, TN}, {NT, NN}};
+void NearImageBlake(PetscReal x, PetscReal a, PetscReal b, PetscReal image[IMAGE_PARTS]) {
+  const PetscReal R[2] = {x, a + b}, r2 = R[0] * R[0] + R[1] * R[1];
+  static const int place[2][2] = {{IMAGE_TT, IMAGE_TN}, {IMAGE_NT, IMAGE_NN}};
   for (int i = 0; i < 2; i++)
     for (int j = 0; j < 2; j++) {
       const PetscReal s = j ? -1 : 1, D = s * ((i == j) / r2 - 2 * R[i] * R[j] / (r2 * r2));
@@ -21,6 +19,11 @@ static void Blake(const Seen *p, PetscReal image[PARTS]) {
       const PetscReal S = (i == j) * -0.5 * PetscLogReal(r2) + R[i] * R[j] / r2;
       image[place[i][j]] = (-S + 2 * b * b * D - 2 * b * SD) / (4 * PETSC_PI);
     }
+}
+
+void NearImageTurn(int direction, int side, PetscReal alpha, const PetscReal part[IMAGE_PARTS], PetscReal C[4]) {
+  const int place[IMAGE_PARTS] = {1 - direction, direction, direction ? 3 : 2, direction ? 2 : 3};
+  for (int q = 0; q < IMAGE_PARTS; q++) C[place[q]] += (side && q >= IMAGE_NT ? -alpha : alpha) * part[q];
 }
 
 /* SUM c_pq a^p b^q n!/z^{n + 1}, n = 1 + p + q, z = a + b - i x, of a polynomial with c_pq at 4 p + q: the Fourier
@@ -44,8 +47,8 @@ static void Integral(const PetscReal c[16], const Seen *p, PetscReal sum[2]) {
   }
 }
 
-/* Polynomials in k a, k b (at 4 p + q) of TT, NN, NT: e^{-kH}/(4k) [p + k^2 P] is the image of the lattice, P its
- * dispersion. */
+/* Polynomials in k a, k b (at 4 p + q) of IMAGE_TT, IMAGE_NN, IMAGE_NT: e^{-kH}/(4k) [p + k^2 P] is the image of the
+ * lattice, P its dispersion. */
 static const PetscReal leading[3][16] = {
     {[0] = -1, [1] = 1, [4] = 1, [5] = -2}, {[0] = -1, [1] = -1, [4] = -1, [5] = -2}, {[1] = 1, [4] = -1, [5] = 2}};
 static const PetscReal dispersion[3][16] = {{[0] = 4. / 12,
@@ -87,18 +90,18 @@ static void ClosedForm(int part, const Seen *p, PetscReal along, PetscReal ma, P
 }
 
 /* C_image of a distant pair whose stencils are folded but not scaled. */
-static void Distant(NearImage m, const Seen *p, const ImageEnd *e, const ImageEnd *f, PetscReal C[PARTS]) {
+static void Distant(NearImage m, const Seen *p, const ImageEnd *e, const ImageEnd *f, PetscReal C[IMAGE_PARTS]) {
   const PetscReal mean = 0.5 * (m->along + m->across);
   const Seen back = {-p->x, p->b, p->a};
   PetscReal sum[2];
-  ClosedForm(TT, p, m->along, e->moment, f->moment, sum);
-  C[TT] = sum[0];
-  ClosedForm(NN, p, m->across, m->along, m->along, sum);
-  C[NN] = sum[0];
-  ClosedForm(NT, p, mean, m->along, f->moment, sum);
-  C[NT] = sum[1];
-  ClosedForm(NT, &back, mean, m->along, e->moment, sum); /* t from n is n from t the other way round */
-  C[TN] = sum[1];
+  ClosedForm(IMAGE_TT, p, m->along, e->moment, f->moment, sum);
+  C[IMAGE_TT] = sum[0];
+  ClosedForm(IMAGE_NN, p, m->across, m->along, m->along, sum);
+  C[IMAGE_NN] = sum[0];
+  ClosedForm(IMAGE_NT, p, mean, m->along, f->moment, sum);
+  C[IMAGE_NT] = sum[1];
+  ClosedForm(IMAGE_NT, &back, mean, m->along, e->moment, sum); /* t from n is n from t the other way round */
+  C[IMAGE_TN] = sum[1];
 }
 
 /* Sum of one part over two stencils against the half-space table; response comp r (0 t, 1 n) of i, source comp s of j.
@@ -127,11 +130,11 @@ static PetscReal HalfSum(NearImage m, int direction, OffsetBlock b, const ImageE
 
 /* The half-space lattice's mobility of a pair near the wall. */
 static void Half(NearImage m, int direction, const Seen *p, PetscInt i, PetscInt j, const ImageEnd *e,
-                 const ImageEnd *f, PetscReal C[PARTS]) {
-  C[TT] = HalfSum(m, direction, OFFSET_UU, e, i, 0, f, j, 0, p->x);
-  C[NN] = HalfSum(m, direction, OFFSET_VV, e, i, 1, f, j, 1, p->x);
-  C[NT] = HalfSum(m, direction, OFFSET_VU, e, i, 1, f, j, 0, p->x);
-  C[TN] = HalfSum(m, direction, OFFSET_VU, f, j, 1, e, i, 0, -p->x);
+                 const ImageEnd *f, PetscReal C[IMAGE_PARTS]) {
+  C[IMAGE_TT] = HalfSum(m, direction, OFFSET_UU, e, i, 0, f, j, 0, p->x);
+  C[IMAGE_NN] = HalfSum(m, direction, OFFSET_VV, e, i, 1, f, j, 1, p->x);
+  C[IMAGE_NT] = HalfSum(m, direction, OFFSET_VU, e, i, 1, f, j, 0, p->x);
+  C[IMAGE_TN] = HalfSum(m, direction, OFFSET_VU, f, j, 1, e, i, 0, -p->x);
 }
 
 /* One wall's part, added. Stencils that are scaled near the wall take s s' of the half-space's mobility S + Blake -
@@ -141,25 +144,25 @@ static void AddWall(NearImage m, int direction, int side, PetscInt i, PetscInt j
   const PetscReal h = m->markers->grid->h, sign = side ? -1 : 1;
   const ImageEnd *e = &m->end[direction][side][i], *f = &m->end[direction][side][j];
   const Seen p = {d[1 - direction] / h, e->y, f->y};
-  const int place[PARTS] = {1 - direction, direction, direction ? 3 : 2, direction ? 2 : 3};
-  PetscReal blake[PARTS], part[PARTS], free[PARTS];
-  for (int q = 0; q < PARTS; q++) free[q] = (q == NT || q == TN ? sign : 1) * m->nu * L[place[q]];
+  const int place[IMAGE_PARTS] = {1 - direction, direction, direction ? 3 : 2, direction ? 2 : 3};
+  PetscReal blake[IMAGE_PARTS], part[IMAGE_PARTS], free[IMAGE_PARTS];
+  for (int q = 0; q < IMAGE_PARTS; q++) free[q] = (q == IMAGE_NT || q == IMAGE_TN ? sign : 1) * m->nu * L[place[q]];
   const PetscReal constant = PetscLogReal(h) / (4 * PETSC_PI);
-  free[TT] += constant;
-  free[NN] += constant;
+  free[IMAGE_TT] += constant;
+  free[IMAGE_NN] += constant;
   if (p.x * p.x + PetscSqr(p.a + p.b) < PetscSqr(IMAGE_CELLS)) {
-    Blake(&p, blake);
+    NearImageBlake(p.x, p.a, p.b, blake);
     Half(m, direction, &p, i, j, e, f, part);
-    for (int q = 0; q < PARTS; q++) part[q] = blake[q] + free[q] - part[q];
+    for (int q = 0; q < IMAGE_PARTS; q++) part[q] = blake[q] + free[q] - part[q];
   } else {
     Distant(m, &p, e, f, part);
     if (e->scale < 1 || f->scale < 1) {
-      const PetscReal scale[PARTS] = {1, e->scale * f->scale, e->scale, f->scale};
-      Blake(&p, blake);
-      for (int q = 0; q < PARTS; q++) part[q] += (1 - scale[q]) * (free[q] + blake[q] - part[q]);
+      const PetscReal scale[IMAGE_PARTS] = {1, e->scale * f->scale, e->scale, f->scale};
+      NearImageBlake(p.x, p.a, p.b, blake);
+      for (int q = 0; q < IMAGE_PARTS; q++) part[q] += (1 - scale[q]) * (free[q] + blake[q] - part[q]);
     }
   }
-  for (int q = 0; q < PARTS; q++) C[place[q]] += (q == NT || q == TN ? sign : 1) * part[q] / m->nu;
+  NearImageTurn(direction, side, 1 / m->nu, part, C);
 }
 
 void NearImageAdd(NearImage m, PetscInt i, PetscInt j, const PetscReal d[2], const PetscReal L[4], PetscReal C[4]) {

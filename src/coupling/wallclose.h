@@ -1,0 +1,8 @@
+/* Membranes nearer to a wall than to their next marker: Blake's image between them on finer points. */
+#pragma once
+#include "coupling/nearfield.h"
+
+/* NearBlockRefineAtWalls - to the block between two curves, or of one with itself, whose images in a wall are nearer
+   than two marker spacings, the difference between Blake's image on finer points of both and on the markers; nothing
+   elsewhere. Not collective. */
+PETSC_EXTERN PetscErrorCode NearBlockRefineAtWalls(NearField near, NearBlock *block);
