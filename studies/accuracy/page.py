@@ -11,16 +11,24 @@ from petves.tables import table, write_csv
 from petves.views.plot import dress, new_figure, save_figure
 from studies.accuracy import runs as study
 from studies.common.curves import radius
-from studies.common.engine import Results
+from studies.common.engine import Case, Results
 from studies.common.paper import REST, SHEAR, shear_errors
-from studies.common.scenes import NEAR_KERNELS
+from studies.common.scenes import NEAR_FIELD_KERNELS
 
-CELLS, PICTURE_CELLS, FINE_CELLS = (64, 128, 256), (48, 64, 96, 128, 192), (64, 128, 256, 512)
-PICTURE = ("uncorrected", "cbs54, none", "chords", "ib6, exact", "default")
+CELLS, FINE_CELLS = (32, 64, 128), (24, 32, 48, 64, 96, 128, 256)
+PICTURE = {
+    "uncorrected": (48, 64, 96, 128, 192),
+    "cbs54, none": (48, 64, 96, 128, 192),
+    "chords": (32, 48, 64, 128),
+    "ib6": (24, 32, 48, 64, 96, 128),
+    "default": (24, 32, 48, 64, 96, 128),
+}
+FINE = ((0.7, 10), (0.5, 1), (0.9, 10))
+"""V and chi."""
 
 
 def write(folder: str | Path, quick: bool = False) -> list[Path]:
-    """Run what is not there yet; write accuracy_*.csv, accuracy.png and tables.md. Quick: without 256^2."""
+    """Run what is not there yet; write accuracy_*.csv, accuracy.png and tables.md. Quick: without 128^2 where it can be."""
     folder = Path(folder)
     results = Results(folder / "accuracy.json")
     text = _steady(results, folder, CELLS[:2] if quick else CELLS) + _others(results, folder)
@@ -29,7 +37,7 @@ def write(folder: str | Path, quick: bool = False) -> list[Path]:
         text += _fine(results, folder) + _cost(results, folder) + _fields(results, folder)
     text_path = folder / "tables.md"
     text_path.write_text("\n".join(text))
-    return [text_path, _picture(results, folder, quick)]
+    return [text_path, _picture(results, folder)]
 
 
 def _errors(found: dict, box: str, reduced_area: float, chi: float) -> tuple[float, float]:
@@ -66,7 +74,7 @@ def _steady(results: Results, folder: Path, cells: tuple[int, ...]) -> list[str]
     kept = [results.get(study.steady(b, n, v, c)) for b, n, v, c in _all(cells[:2])]
     worst = {key: max(one[key] for one in kept) for key in ("area", "length", "shift")}
     note = (
-        f"Worst of the 64^2 and 128^2 runs from t = 1 on: area {worst['area']:.0e}, length {worst['length']:.0e}, "
+        f"Worst of the {cells[0]}^2 and {cells[1]}^2 runs from t = 1 on: area {worst['area']:.0e}, length {worst['length']:.0e}, "
         f"shift {worst['shift']:.0e} a step (length units; R0 is 0.6 to 0.8).\n"
     )
     header = ["box", "V", "chi", *(f"{n}^2" for n in cells)]
@@ -74,17 +82,24 @@ def _steady(results: Results, folder: Path, cells: tuple[int, ...]) -> list[str]
 
 
 def _fine(results: Results, folder: Path) -> list[str]:
-    """The default combination in the box up to 512^2, rate dt = 0.0125, and the order between the grids."""
-    rows, shown, every = [], [], []
-    for v, chi in product(study.REDUCED_AREAS, study.CHIS):
-        errors = [_errors(results.get(study.fine(n, v, chi)), "box", v, chi) for n in FINE_CELLS]
+    """The grid's part: differences from the finest grid, V and chi of FINE in the box, and the order between grids."""
+    rows, shown = [], []
+    for v, chi in FINE:
+        found = [results.get(study.fine(n, v, chi)) for n in FINE_CELLS]
+        *errors, finest = [(one["theta"], one["omega"]) for one in found]
+        errors = 100 * (np.array(errors) / finest - 1)
         rows += [[v, chi, n, *e] for n, e in zip(FINE_CELLS, errors)]
-        shown.append([f"{v}", f"{chi}", *(", ".join(f"{100 * e:+.3f}" for e in pair) for pair in errors)])
-        every.append(errors)
+        shown.append([f"{v}", f"{chi}", "angle", *(f"{e:+.4f}" for e in errors[:, 0])])
+        steps = np.log(np.array(FINE_CELLS[1:-1]) / FINE_CELLS[:-2])
+        orders = np.log(np.abs(errors[:-1, 0] / errors[1:, 0])) / steps
+        shown.append(["", "", "its order", "", *(f"{order:.1f}" for order in orders)])
+        shown.append(["", "", "frequency", *(f"{e:+.4f}" for e in errors[:, 1])])
     write_csv(folder / "accuracy_fine.csv", ["V", "chi", "cells", "angle", "frequency"], rows)
-    shown += _norm("root mean square", 100 * np.sqrt((np.array(every) ** 2).mean(axis=0)), 2)
-    header = ["V", "chi", *(f"{n}^2" for n in FINE_CELLS)]
-    return ["### Finer grids: errors of angle, frequency in percent, box, rate dt = 0.0125\n", *table(header, shown)]
+    header = ["V", "chi", "", *(f"{n}^2" for n in FINE_CELLS[:-1])]
+    title = (
+        f"### The grid's part: percent of difference from {FINE_CELLS[-1]}^2, box, rate dt = 0.0125, solver to 1e-9\n"
+    )
+    return [title, *table(header, shown)]
 
 
 def _all(cells: tuple[int, ...]) -> product:
@@ -92,19 +107,22 @@ def _all(cells: tuple[int, ...]) -> product:
 
 
 def _others(results: Results, folder: Path) -> list[str]:
-    """Uncorrected and without near field beside the default, chi = 10."""
+    """Uncorrected beside the default, chi = 10."""
     rows, shown = [], []
-    names = ("uncorrected", "cbs54, none", "default")
     for box, v in product(SHEAR, study.REDUCED_AREAS):
         line = [box, f"{v}"]
-        for n, name in product((64, 128), names):
-            errors = _errors(results.get(study.shear(name, box, n, v, 10)), box, v, 10)
-            rows.append([name, box, v, 10, n, *errors])
-            line.append(_percent(errors))
+        for n in (64, 128):
+            for name, case in (
+                ("uncorrected", study.shear("uncorrected", box, n, v, 10)),
+                ("default", study.steady(box, n, v, 10)),
+            ):
+                errors = _errors(results.get(case), box, v, 10)
+                rows.append([name, box, v, 10, n, *errors])
+                line.append(_percent(errors))
         shown.append(line)
     write_csv(folder / "accuracy_others.csv", ["combination", "box", "V", "chi", "cells", "angle", "frequency"], rows)
-    header = ["box", "V", *(f"{n}^2 {name}" for n, name in product((64, 128), names))]
-    return ["### Uncorrected, no near field, default: the same errors, chi = 10\n", *table(header, shown)]
+    header = ["box", "V", *(f"{n}^2 {name}" for n, name in product((64, 128), ("uncorrected", "default")))]
+    return ["### Uncorrected and default: the same errors, chi = 10\n", *table(header, shown)]
 
 
 def _seconds(one: dict) -> float:
@@ -112,25 +130,22 @@ def _seconds(one: dict) -> float:
 
 
 def _kernels(results: Results, folder: Path) -> list[str]:
-    """Kernels and spacings at 64^2 and 128^2."""
+    """Kernels and numbers of markers at 64^2 and 128^2."""
     rows, shown = [], []
-    base = {n: results.get(study.kernel_and_spacing("cbs54", 1.5, n)) for n in (64, 128)}
-    for kernel, spacing in product(NEAR_KERNELS, study.SPACINGS):
-        line = [kernel, f"{spacing:g}"]
+    base = {n: results.get(study.kernel_and_markers("cbs54", 45, n)) for n in (64, 128)}
+    for kernel, count in product(NEAR_FIELD_KERNELS, study.MARKERS):
+        line = [kernel, f"{count}"]
         for n in (64, 128):
-            one = results.get(study.kernel_and_spacing(kernel, spacing, n))
-            if "failed" in one:
-                line += ["stopped", "", "", ""]
-                continue
+            one = results.get(study.kernel_and_markers(kernel, count, n))
             errors, ratio = _errors(one, "box", 0.7, 10), _seconds(one) / _seconds(base[n])
-            rows.append([kernel, spacing, n, *errors, one["length"], one["its"], ratio])
+            rows.append([kernel, count, n, *errors, one["length"], one["its"], ratio])
             line += [_percent(errors), f"{one['length']:.0e}", f"{one['its']:.1f}", f"{ratio:.2f}"]
         shown.append(line)
-    header = ["kernel", "spacing", "cells", "angle", "frequency", "length", "its", "seconds_over_default"]
+    header = ["kernel", "markers", "cells", "angle", "frequency", "length", "its", "seconds_over_default"]
     write_csv(folder / "accuracy_kernels.csv", header, rows)
     columns = [f"{n}^2 {name}" for n in (64, 128) for name in ("errors, %", "length", "its", "time")]
-    title = "### Kernels and spacings (in h): V = 0.7, chi = 10, box, all corrections; time over cbs54 at 1.5\n"
-    return [title, *table(["kernel", "ds/h", *columns], shown)]
+    title = "### Kernels and numbers of markers: V = 0.7, chi = 10, box, rate dt = 0.025; time over cbs54 with 45\n"
+    return [title, *table(["kernel", "markers", *columns], shown)]
 
 
 def _chords(results: Results, folder: Path) -> list[str]:
@@ -138,7 +153,7 @@ def _chords(results: Results, folder: Path) -> list[str]:
     shown = []
     for v in (0.5, 0.7):
         for name in ("chords", "default"):
-            found = [results.get(study.shear(name, "box", n, v, 10)) for n in (64, 128)]
+            found = [results.get(study.steady("box", n, v, 10, name)) for n in (64, 128)]
             texts = [_percent(_errors(one, "box", v, 10)) for one in found]
             kept = [f"{one['length']:.0e}, {one['shift']:.0e}" for one in found]
             shown.append([f"{v}", "chords" if name == "chords" else "spectral edges", *texts, *kept])
@@ -218,22 +233,27 @@ def _tension(one: dict, name: str) -> np.ndarray:
     return np.interp(grid, phase[order], np.array(one["tension"])[order], period=2 * np.pi)
 
 
-def _picture(results: Results, folder: Path, quick: bool) -> Path:
+def _picture_case(name: str, n: int) -> Case:
+    exact = study.COMBINATIONS[name][2] == "exact"
+    return study.steady("box", n, 0.7, 10, name) if exact else study.shear(name, "box", n, 0.7, 10)
+
+
+def _picture(results: Results, folder: Path) -> Path:
     """Draw errors of angle and frequency against h, V = 0.7, chi = 10, box."""
     figure, axes = new_figure(11, 4.4, columns=2)
     rows = []
-    for name, style in zip(PICTURE, ("s-", "v-", "D--", "x--", "o-")):
-        cells = PICTURE_CELLS + ((256,) if name == "default" and not quick else ())
-        errors = [_errors(results.get(study.shear(name, "box", n, 0.7, 10)), "box", 0.7, 10) for n in cells]
+    for (name, cells), style in zip(PICTURE.items(), ("s-", "v-", "D--", "x--", "o-")):
+        cases = [_picture_case(name, n) for n in cells]
+        errors = [_errors(results.get(case), "box", 0.7, 10) for case in cases]
         rows += [[name, n, *e] for n, e in zip(cells, errors)]
         for panel, values in zip(axes, np.abs(errors).T):
             panel.loglog(8 / np.array(cells), 100 * values, style, ms=4, lw=1.2, label=name)
-    h = np.array([8 / 192, 8 / 48])
+    h = np.array([8 / 192, 8 / 24])
     for panel, what in zip(axes, ("inclination", "frequency")):
         panel.loglog(h, 2 * h / h[-1], "k:", lw=0.8, label="slopes 1 and 2")
         panel.loglog(h, 0.7 * (h / h[-1]) ** 2, "k:", lw=0.8)
         label = "cell size $h$ (length; vesicle of unit area)"
         dress(panel, grid="both", xlabel=label, ylabel=f"error of the {what} (%)")
-    axes[0].legend(frameon=False, fontsize=7)
+    axes[1].legend(frameon=False, fontsize=7, loc="lower left")
     write_csv(folder / "accuracy_picture.csv", ["combination", "cells", "angle", "frequency"], rows)
     return save_figure(figure, folder / "accuracy.png")

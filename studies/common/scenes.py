@@ -37,8 +37,8 @@ BOXES = {
     "walls": {},
 }
 KERNELS = ("ib6", "cbs32", "cbs43", "cbs54", "cbs65")
-NEAR_KERNELS = ("ib6", "cbs43", "cbs54", "cbs65")
-"""Those that the near field takes."""
+NEAR_FIELD_KERNELS = tuple(kernel for kernel in KERNELS if kernel != "cbs32")
+"""Those of -coupling_near_field exact."""
 
 
 def cells(n: int, m: int | None = None) -> dict[str, str]:

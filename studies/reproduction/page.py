@@ -82,7 +82,8 @@ def _head(quick: bool, ranks: int, name: str) -> str:
         "0.2 and 0.5 in [-1,1]^2 with walls, nu = 1, c_b = 0.01, disturbance form, start with sigma = 0. Ours: runs/*.opts.\n"
         f"Written by `{command}`, split on {ranks} ranks and ours on one; {name}/results.json holds every run's options and\n"
         f"commit. Longer runs than the command makes are shown where results.json has them. {name}/coupled.md: the\n"
-        "coupled scheme by itself, also where split fails.\n"
+        "coupled scheme by itself, also where split fails. Ours, and the fine coupled runs, were measured before the exact near field\n"
+        "(docs/accuracy.md).\n"
     )
 
 

@@ -12,7 +12,7 @@ from petves.tables import write_csv
 from studies.common import paper
 from studies.common.curves import radius
 from studies.common.engine import Case, Results, Series
-from studies.common.scenes import NEAR_KERNELS, tank_treading, words
+from studies.common.scenes import NEAR_FIELD_KERNELS, tank_treading, words
 
 TOLERANCES = ("1e-1", "3e-2", "1e-2", "3e-3", "1e-3", "3e-4", "1e-4", "3e-5")
 RTOLS = ("1e-3", "1e-4", "1e-5", "1e-6", "1e-7")
@@ -126,7 +126,7 @@ def _grids(results: Results) -> list[dict[str, object]]:
             extra = words("-delta_type ib6 -vesicle_spacing 1.5")
             row = {"table": "ib6_cells_a_radius", "scene": scene, "value": f"{radius(reduced_area) * cells / 8:.3g}"}
             rows.append(row | _against_targets(results, cells, reduced_area, chi, **extra))
-    for cells, kernel, spacing in product((64, 128), NEAR_KERNELS, SPACINGS):
+    for cells, kernel, spacing in product((64, 128), NEAR_FIELD_KERNELS, SPACINGS):
         extra = words(f"-delta_type {kernel} -vesicle_spacing {spacing:g}")
         scene = f"shear V=0.7 chi=10, {cells}^2, {kernel}"
         row = {"table": "spacing", "scene": scene, "value": f"{spacing:g}"}
