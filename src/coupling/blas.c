@@ -61,8 +61,8 @@ PetscErrorCode DenseProduct(PetscBool transpose, PetscInt m, PetscInt n, PetscIn
   PetscCall(PetscBLASIntCast(k, &inner));
   PetscCall(PetscBLASIntCast(PetscMax(1, transpose ? k : m), &lda));
   const PetscBLASInt ldb = PetscMax(1, inner);
-  PetscCallBLAS("BLASgemm", BLASgemm_(transpose ? "T" : "N", "N", &rows, &columns, &inner, &one, A, &lda, B, &ldb, &zero,
-                                      C, &rows));
+  PetscCallBLAS("BLASgemm", BLASgemm_(transpose ? "T" : "N", "N", &rows, &columns, &inner, &one, A, &lda, B, &ldb,
+                                      &zero, C, &rows));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -102,7 +102,8 @@ static PetscErrorCode Solve(BoxGrid *b) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What the lattice has of places i and j that are d apart, less what the near field gives of the walls: xx, yy, xy, yx. */
+/* What the lattice has of places i and j that are d apart, less what the near field gives of the walls: xx, yy, xy, yx.
+ */
 static void LatticeAt(BoxGrid *b, PetscInt i, PetscInt j, const PetscReal d[2], PetscReal L[4]) {
   PetscReal C[4] = {0, 0, 0, 0};
   NearLatticePair(&b->near, i, j, d, L);
@@ -137,8 +138,8 @@ static PetscBool IsSquare(const BoxAxis axis[2]) {
   return axis[0].wall == axis[1].wall && PetscAbsReal(x - y) < 1e-12 * x ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* W of the pair and of its mirror images between walls: a mirrored velocity or force changes its sign. In a square also of
-   that with x and y exchanged. */
+/* W of the pair and of its mirror images between walls: a mirrored velocity or force changes its sign. In a square also
+   of that with x and y exchanged. */
 static void AddEntry(const BoxAxis axis[2], int ci, int cj, const PetscInt a[2], const PetscInt s[2], PetscReal value,
                      PetscReal W[]) {
   for (int my = 0; my <= (int)axis[1].wall; my++)

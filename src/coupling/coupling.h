@@ -9,12 +9,12 @@ struct _p_Coupling {
   Fluid fluid;       /* borrowed */
   Membrane membrane; /* borrowed; of no vesicle when the scene has none */
   Markers markers;
-  NearField near;    /* NULL without */
-  PetscReal *tau;    /* [2n] tangents of the own vesicles */
-  Vec force;         /* marker vector, work */
-  Vec velocity;      /* marker vector, work */
-  Mat S;             /* (velocity x tension) S = E^T Dm^T/h^2: minus the spread tension force */
-  Mat B;             /* (velocity x marker vector) B = E^T (c_b ds/h^2) D4: minus the spread bending force */
+  NearField near; /* NULL without */
+  PetscReal *tau; /* [2n] tangents of the own vesicles */
+  Vec force;      /* marker vector, work */
+  Vec velocity;   /* marker vector, work */
+  Mat S;          /* (velocity x tension) S = E^T Dm^T/h^2: minus the spread tension force */
+  Mat B;          /* (velocity x marker vector) B = E^T (c_b ds/h^2) D4: minus the spread bending force */
 };
 
 /* CouplingCreate - of a fluid and membranes with the named kernel and near field; not placed yet. Collective. */

@@ -121,8 +121,8 @@ static PetscErrorCode FactorBlock(Membrane m, PetscReal h2, Block *q, PetscReal 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Mob += h^2 (C + D) of the near field's blocks whose vesicles are both in [vesicle, end), Mob being of the markers from `first`
-   on, n in all. */
+/* Mob += h^2 (C + D) of the near field's blocks whose vesicles are both in [vesicle, end), Mob being of the markers
+   from `first` on, n in all. */
 static void AddNearField(Coupling c, PetscInt vesicle, PetscInt end, PetscInt first, PetscInt n, PetscReal Mob[]) {
   const Layout l = c->membrane->layout;
   const PetscReal h2 = PetscSqr(c->fluid->grid->h);

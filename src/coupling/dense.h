@@ -19,9 +19,9 @@ PETSC_EXTERN PetscErrorCode DenseBlocksDestroy(DenseBlocks *blocks);
    collective. */
 PETSC_EXTERN void DenseBlocksPlace(DenseBlocks blocks);
 
-/* DenseBlocksFactor - assemble Mob from the table (mobility NULL: zero, the near field is all) at the coupling's markers, factor N and C for a0. Ranks share the
-   sums of Mob of a block for all, its owner does the rest. factored is false, on every rank, when a matrix is singular.
-   Collective. */
+/* DenseBlocksFactor - assemble Mob from the table (mobility NULL: zero, the near field is all) at the coupling's
+   markers, factor N and C for a0. Ranks share the sums of Mob of a block for all, its owner does the rest. factored is
+   false, on every rank, when a matrix is singular. Collective. */
 PETSC_EXTERN PetscErrorCode DenseBlocksFactor(DenseBlocks blocks, Mobility mobility, const GreenTable *table,
                                               PetscReal a0, PetscBool *factored);
 

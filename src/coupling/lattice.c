@@ -100,9 +100,9 @@ PetscErrorCode LatticeStokeslet(PetscInt reach, OffsetTable *t) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The inverse of the lattice's Laplacian is -(1/pi) INT cos(i theta) g1(j) dtheta; its difference over one cell in x has
-   2 sin(theta/2)/(2 sinh mu) = 1/(2 cosh(mu/2)), so it is (1/(2 pi)) INT sin((i - 1/2) theta) e^{-mu j}/cosh(mu/2) dtheta.
-   quadrant[j * (reach + 2) + i] for i from 1, j from 0. */
+/* The inverse of the lattice's Laplacian is -(1/pi) INT cos(i theta) g1(j) dtheta; its difference over one cell in x
+   has 2 sin(theta/2)/(2 sinh mu) = 1/(2 cosh(mu/2)), so it is (1/(2 pi)) INT sin((i - 1/2) theta) e^{-mu j}/cosh(mu/2)
+   dtheta. quadrant[j * (reach + 2) + i] for i from 1, j from 0. */
 static PetscErrorCode PressureQuadrant(PetscInt reach, PetscReal quadrant[]) {
   const PetscInt nodes = 3 * reach + 60, n = reach + 2;
   PetscReal *theta, *weight;

@@ -3,9 +3,9 @@
 #pragma once
 #include "coupling/offsets.h"
 
-/* LatticePressure - the pressure at cell centres that goes with it, from sources u (value[OFFSET_UU], offset of cell (i, j)
-   from the face (i - 1/2, j)) and v (value[OFFSET_VV], (i, j - 1/2)): the lattice's gradient of its Green's function, which
-   tends to x/(2 pi r^2). In length units it is table/h. Not collective. */
+/* LatticePressure - the pressure at cell centres that goes with it, from sources u (value[OFFSET_UU], offset of cell
+   (i, j) from the face (i - 1/2, j)) and v (value[OFFSET_VV], (i, j - 1/2)): the lattice's gradient of its Green's
+   function, which tends to x/(2 pi r^2). In length units it is table/h. Not collective. */
 PETSC_EXTERN PetscErrorCode LatticePressure(PetscInt reach, OffsetTable *table);
 
 /* LatticeStokeslet - the table for offsets up to `reach` cells. Far away uu tends to (-ln r + x^2/r^2)/(4 pi), the

@@ -100,7 +100,8 @@ static PetscErrorCode Guess(CoupledSolver s, const CoupledProblem *q) {
 }
 
 /* In unbounded fluid, which has no f: the norm of the right-hand sides k and g with their factors, and of the speed
-   c_b/(nu R0^2) that bending can give a marker, without which a circle, whose k is all rounding, would have no scale. */
+   c_b/(nu R0^2) that bending can give a marker, without which a circle, whose k is all rounding, would have no scale.
+ */
 static PetscErrorCode FreeReference(CoupledSolver s, const CoupledProblem *q) {
   const Membrane m = s->coupling->membrane;
   const Layout l = m->layout;

@@ -2,7 +2,8 @@
 
    Markers are few beside the grid's faces: every rank knows the positions of all of them and spreads onto its own rows
    only. So a spreading begins with one gather of the forces, and an interpolation ends with one sum of the ranks' parts
-   that goes to the bodies' owners. In unbounded fluid (grid->free) nothing is on the grid: markers may be anywhere, E = 0. */
+   that goes to the bodies' owners. In unbounded fluid (grid->free) nothing is on the grid: markers may be anywhere, E =
+   0. */
 #pragma once
 #include "fluid/grid.h"
 #include "kernel/kernel.h"

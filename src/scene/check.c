@@ -124,20 +124,21 @@ static PetscErrorCode CheckPenalty(Scene scene, PetscBool split) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The near field belongs to the unsplit step, and to a kernel whose second moments are the same everywhere in a cell. */
+/* The near field belongs to the unsplit step, and to a kernel whose second moments are the same everywhere in a cell.
+ */
 static PetscErrorCode CheckNearField(Scene scene) {
   PetscFunctionBeginUser;
-  PetscCheck(scene->coupling.near_field == NEAR_EXACT || !scene->coupling.box_part,
-             scene->comm, PETSC_ERR_USER_INPUT,
+  PetscCheck(scene->coupling.near_field == NEAR_EXACT || !scene->coupling.box_part, scene->comm, PETSC_ERR_USER_INPUT,
              "-coupling_box_part true: stands on the exact near field; allowed: false, or -coupling_near_field exact");
   if (scene->coupling.near_field == NEAR_NONE) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCheck(!SceneIsProjection(scene), scene->comm, PETSC_ERR_USER_INPUT,
              "-coupling_near_field exact: not with -scheme_type %s, which is its paper's method; allowed: none, or "
              "-scheme_type coupled or direct",
              scene->scheme.type);
-  PetscCheck(strcmp(scene->coupling.kernel, "cbs32"), scene->comm, PETSC_ERR_USER_INPUT,
-             "-delta_type cbs32: not with -coupling_near_field exact, because its second moment depends on the place in a "
-             "cell; allowed: ib6, cbs43, cbs54, cbs65, or -coupling_near_field none");
+  PetscCheck(
+      strcmp(scene->coupling.kernel, "cbs32"), scene->comm, PETSC_ERR_USER_INPUT,
+      "-delta_type cbs32: not with -coupling_near_field exact, because its second moment depends on the place in a "
+      "cell; allowed: ib6, cbs43, cbs54, cbs65, or -coupling_near_field none");
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

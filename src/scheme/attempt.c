@@ -51,8 +51,8 @@ static PetscErrorCode History(const BDF *b, PetscReal scale, Vec x, Vec x_old, V
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* f = uhat - B Y + bc1 - N(w*) and k = -C c_b ds D4 Y, Y = Xhat + u_inf/a0; no uhat in quasi-steady flow. next.w is used
-   for w*. */
+/* f = uhat - B Y + bc1 - N(w*) and k = -C c_b ds D4 Y, Y = Xhat + u_inf/a0; no uhat in quasi-steady flow. next.w is
+   used for w*. */
 static PetscErrorCode RightHandSides(Scheme s, Coupled *d, const BDF *b, PetscReal r) {
   PetscFunctionBeginUser;
   PetscCall(VecSet(d->known, 0));

@@ -182,7 +182,8 @@ static PetscErrorCode AddNearField(DirectSolver d, Mat A, PetscInt U, PetscInt F
     const PetscInt rows = 2 * LayoutCount(l, b->row), columns = 2 * LayoutCount(l, b->column);
     for (PetscInt j = 0; j < columns; j++)
       for (PetscInt i = 0; i < rows; i++)
-        PetscCall(AddNonzero(A, U + 2 * l->start[b->row] + i, F + 2 * l->start[b->column] + j, h2 * b->C[j * rows + i]));
+        PetscCall(
+            AddNonzero(A, U + 2 * l->start[b->row] + i, F + 2 * l->start[b->column] + j, h2 * b->C[j * rows + i]));
   }
   if (near && near->box) PetscCall(AddBoxPart(d, A, U, F));
   PetscFunctionReturn(PETSC_SUCCESS);

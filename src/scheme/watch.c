@@ -73,16 +73,16 @@ static PetscReal Apart(Grid g, int dir, PetscReal a, PetscReal b) {
   return g->wall[dir] ? d : PetscAbsReal(d - box * PetscFloorReal(d / box + 0.5));
 }
 
-/* Distance of markers below which the fluid between two membranes, or two parts of one, is not resolved: two cells; with
-   the exact near field vesicles have no such distance, as finer points resolve what is between them, parts of one vesicle
-   that of their markers. */
+/* Distance of markers below which the fluid between two membranes, or two parts of one, is not resolved: two cells;
+   with the exact near field vesicles have no such distance, as finer points resolve what is between them, parts of one
+   vesicle that of their markers. */
 static PetscReal Unresolved(Scheme s, PetscInt v, PetscInt w) {
   if (!s->coupling->near) return CONTACT * s->fluid->grid->h;
   return v == w ? 1.5 * s->membrane->ds[v] : 0;
 }
 
-/* Markers of vesicles v and w closer than `near` that are no neighbours along one, which are more than twice `near` apart
-   along it. X[2M]. */
+/* Markers of vesicles v and w closer than `near` that are no neighbours along one, which are more than twice `near`
+   apart along it. X[2M]. */
 static PetscBool AreClose(Scheme s, PetscInt v, PetscInt w, PetscReal near, const PetscScalar X[]) {
   const Layout layout = s->membrane->layout;
   const Grid g = s->fluid->grid;
