@@ -2,7 +2,10 @@
 #include "coupling/layer.h"
 #include "coupling/nearblock.h"
 
-#define CELLS 4 /* distance from a marker, in cells, up to which a cell is corrected */
+/* Distance from a marker up to which a cell is corrected, in cells; and in spacings of markers, whose single forces the
+   lattice shows a little farther where they are more than 2 h apart. */
+#define CELLS 4
+#define SPACINGS 2
 
 /* What all cells need, and one vesicle's kernels: component c of marker k at 2k + c, not wrapped into the grid. */
 typedef struct {
@@ -10,6 +13,7 @@ typedef struct {
   Layer layer;
   OffsetTable pressure;
   PetscInt vesicle, n;
+  PetscReal reach;        /* of the correction (length) */
   const PetscReal *X, *F; /* [2n] of the vesicle */
   PaddedStencil *source;  /* [2n] */
 } NearCells;
@@ -19,6 +23,7 @@ static void SetVesicle(NearCells *s, PetscInt v) {
   const Layout l = m->layout;
   s->vesicle = v;
   s->n = LayoutCount(l, v);
+  s->reach = PetscMax(CELLS * m->grid->h, SPACINGS * s->coupling->membrane->ds[v]);
   s->X = s->layer->X + 2 * l->start[v];
   s->F = s->layer->F + 2 * l->start[v];
   for (PetscInt k = 0; k < 2 * s->n; k++) {
@@ -85,10 +90,9 @@ static void Difference(const NearCells *s, const PetscInt cell[2], const PetscRe
 }
 
 static PetscBool IsNear(const NearCells *s, const PetscReal x[2]) {
-  const PetscReal reach = CELLS * s->coupling->fluid->grid->h;
   for (PetscInt k = 0; k < s->n; k++) {
     const PetscReal dx = x[0] - s->X[2 * k], dy = x[1] - s->X[2 * k + 1];
-    if (dx * dx + dy * dy < reach * reach) return PETSC_TRUE;
+    if (dx * dx + dy * dy < s->reach * s->reach) return PETSC_TRUE;
   }
   return PETSC_FALSE;
 }
@@ -102,8 +106,8 @@ static void FindBox(const NearCells *s, PetscInt box[2][2]) {
       low = PetscMin(low, s->X[2 * k + dir]);
       high = PetscMax(high, s->X[2 * k + dir]);
     }
-    box[dir][0] = (PetscInt)PetscFloorReal((low - g->lo[dir]) / g->h) - CELLS;
-    box[dir][1] = (PetscInt)PetscFloorReal((high - g->lo[dir]) / g->h) + CELLS;
+    box[dir][0] = (PetscInt)PetscFloorReal((low - s->reach - g->lo[dir]) / g->h);
+    box[dir][1] = (PetscInt)PetscFloorReal((high + s->reach - g->lo[dir]) / g->h);
     if (!g->wall[dir]) continue;
     box[dir][0] = PetscMax(box[dir][0], 0);
     box[dir][1] = PetscMin(box[dir][1], g->n[dir] - 1);
