@@ -2,7 +2,16 @@
 #include "coupling/layer.h"
 #include "coupling/nearblock.h"
 
-#define CELLS 4 /* distance from a marker, in cells, up to which a cell is corrected */
+/* Distance from a marker up to which a cell is corrected, in cells; and in spacings of markers, whose single forces the
+   lattice shows a little farther where they are more than 2 h apart. */
+#define CELLS 4
+#define SPACINGS 2
+
+/* Coefficients of the velocity of distant markers, as in nearblock.c, of two ends that differ: a kernel, and a cell's
+   two faces. */
+typedef struct {
+  PetscReal a2, a4, a6, b2, b4, b6;
+} FarCell;
 
 /* What all cells need, and one vesicle's kernels: component c of marker k at 2k + c, not wrapped into the grid. */
 typedef struct {
@@ -10,25 +19,51 @@ typedef struct {
   Layer layer;
   OffsetTable pressure;
   PetscInt vesicle, n;
+  FarCell far;
+  PetscReal reach;        /* of the correction (length) */
   const PetscReal *X, *F; /* [2n] of the vesicle */
   PaddedStencil *source;  /* [2n] */
 } NearCells;
+
+/* Second moments along and across are averaged over both ends where one component meets itself; from one to the other
+   those of x and of y, p and q, are not the same, which gives b4. The mean of two faces has 1/4 along and none across.
+ */
+static FarCell FarCoefficients(PetscReal along, PetscReal across) {
+  const PetscReal a = 0.5 * (along + 0.25), c = 0.5 * across + 1. / 12, p = 0.25 + across, q = along;
+  return (FarCell){.a2 = -c / 2 + 3.5 / 48,
+                   .a4 = -a / 8 + c / 8 - 1. / 48,
+                   .a6 = 1. / 96,
+                   .b2 = -(p + q) / 8 + 1. / 32,
+                   .b4 = -(p - q) / 16,
+                   .b6 = 1. / 96};
+}
+
+/* Of weights about the place x. */
+static PetscReal SecondMoment(const Stencil *s, int dir, PetscReal x) {
+  PetscReal sum = 0;
+  for (PetscInt k = 0; k < s->n[dir]; k++) sum += s->weight[dir][k] * PetscSqr(s->first[dir] + k - x);
+  return sum;
+}
 
 static void SetVesicle(NearCells *s, PetscInt v) {
   const Markers m = s->coupling->markers;
   const Layout l = m->layout;
   s->vesicle = v;
   s->n = LayoutCount(l, v);
+  s->reach = PetscMax(CELLS * m->grid->h, SPACINGS * s->coupling->membrane->ds[v]);
   s->X = s->layer->X + 2 * l->start[v];
   s->F = s->layer->F + 2 * l->start[v];
   for (PetscInt k = 0; k < 2 * s->n; k++) {
     Stencil stencil;
+    PetscReal moment[2];
     for (int dir = 0; dir < 2; dir++) {
       const PetscBool along = k % 2 == dir ? PETSC_TRUE : PETSC_FALSE;
       const PetscReal r = (s->X[k - k % 2 + dir] - m->grid->lo[dir]) / m->grid->h - (along ? 1.0 : 0.5);
       stencil.n[dir] = (along ? m->kernel->along : m->kernel->across)(r, &stencil.first[dir], stencil.weight[dir]);
+      moment[along ? 0 : 1] = SecondMoment(&stencil, dir, r);
     }
     StencilPad(&stencil, &s->source[k]);
+    s->far = FarCoefficients(moment[0], moment[1]); /* the same for all */
   }
 }
 
@@ -63,32 +98,41 @@ static void TakeLattice(const NearCells *s, PetscInt k, const PaddedStencil cell
         h;
 }
 
-/* The exact layer less the lattice's at the centre x of a cell, whose indices are not wrapped into the grid. Far
-   markers are the same for both, but for h^2/r^2. */
+/* The same of a distant marker, d from it to the cell: the Stokeslet, and the closed form of its difference. */
+static void TakeFar(const NearCells *s, const PetscReal F[2], const PetscReal d[2], PetscReal u[2], PetscReal *p) {
+  const FarCell *f = &s->far;
+  const PetscReal h = s->coupling->fluid->grid->h, nu = s->coupling->fluid->nu;
+  const PetscReal r2 = d[0] * d[0] + d[1] * d[1], along = (d[0] * F[0] + d[1] * F[1]) / r2;
+  const PetscReal c2 = (d[0] * d[0] - d[1] * d[1]) / r2, s2 = 2 * d[0] * d[1] / r2, c4 = c2 * c2 - s2 * s2,
+                  s4 = 2 * c2 * s2, c6 = c4 * c2 - s4 * s2, s6 = s4 * c2 + c4 * s2;
+  const PetscReal factor = h * h / (2 * PETSC_PI * nu * r2), even = 4 * f->a4 * c4,
+                  odd = 2 * f->a2 * c2 + 6 * f->a6 * c6, both = -2 * f->b2 * s2 - 6 * f->b6 * s6, ends = 4 * f->b4 * s4;
+  for (int c = 0; c < 2; c++) u[c] -= (d[c] * along - 0.5 * PetscLogReal(r2) * F[c]) / (4 * PETSC_PI * nu);
+  u[0] += factor * ((even - odd) * F[0] + (both + ends) * F[1]);
+  u[1] += factor * ((both - ends) * F[0] + (even + odd) * F[1]);
+  *p -= along / (2 * PETSC_PI); /* but for h^2/r^3 */
+}
+
+/* The exact layer less the lattice's at the centre x of a cell, whose indices are not wrapped into the grid. */
 static void Difference(const NearCells *s, const PetscInt cell[2], const PetscReal x[2], PetscReal u[2], PetscReal *p) {
-  const PetscReal near2 = PetscSqr(NEAR_CELLS * s->coupling->fluid->grid->h);
+  const PetscReal near = NEAR_CELLS * s->coupling->fluid->grid->h;
   PaddedStencil weights[3];
   for (int f = 0; f < 3; f++) CellStencil((Field)f, cell, &weights[f]);
   u[0] = u[1] = *p = 0;
   LayerAdd(s->layer, s->vesicle, x, u, p);
   for (PetscInt k = 0; k < s->n; k++) {
-    const PetscReal d[2] = {x[0] - s->X[2 * k], x[1] - s->X[2 * k + 1]}, *F = &s->F[2 * k];
-    const PetscReal r2 = d[0] * d[0] + d[1] * d[1], along = (d[0] * F[0] + d[1] * F[1]) / r2;
-    if (r2 < near2) {
+    const PetscReal d[2] = {x[0] - s->X[2 * k], x[1] - s->X[2 * k + 1]};
+    if (d[0] * d[0] + d[1] * d[1] < near * near)
       TakeLattice(s, k, weights, u, p);
-      continue;
-    }
-    for (int c = 0; c < 2; c++)
-      u[c] -= (d[c] * along - 0.5 * PetscLogReal(r2) * F[c]) / (4 * PETSC_PI * s->coupling->fluid->nu);
-    *p -= along / (2 * PETSC_PI);
+    else
+      TakeFar(s, &s->F[2 * k], d, u, p);
   }
 }
 
 static PetscBool IsNear(const NearCells *s, const PetscReal x[2]) {
-  const PetscReal reach = CELLS * s->coupling->fluid->grid->h;
   for (PetscInt k = 0; k < s->n; k++) {
     const PetscReal dx = x[0] - s->X[2 * k], dy = x[1] - s->X[2 * k + 1];
-    if (dx * dx + dy * dy < reach * reach) return PETSC_TRUE;
+    if (dx * dx + dy * dy < s->reach * s->reach) return PETSC_TRUE;
   }
   return PETSC_FALSE;
 }
@@ -102,8 +146,8 @@ static void FindBox(const NearCells *s, PetscInt box[2][2]) {
       low = PetscMin(low, s->X[2 * k + dir]);
       high = PetscMax(high, s->X[2 * k + dir]);
     }
-    box[dir][0] = (PetscInt)PetscFloorReal((low - g->lo[dir]) / g->h) - CELLS;
-    box[dir][1] = (PetscInt)PetscFloorReal((high - g->lo[dir]) / g->h) + CELLS;
+    box[dir][0] = (PetscInt)PetscFloorReal((low - s->reach - g->lo[dir]) / g->h);
+    box[dir][1] = (PetscInt)PetscFloorReal((high + s->reach - g->lo[dir]) / g->h);
     if (!g->wall[dir]) continue;
     box[dir][0] = PetscMax(box[dir][0], 0);
     box[dir][1] = PetscMin(box[dir][1], g->n[dir] - 1);

@@ -1,0 +1,181 @@
+/* Fields next to a membrane: the lattice's pressure, and a circle under tension, inside of which nothing moves and the
+   pressure is higher by tension over radius. */
+#include "world.h"
+#include "coupling/lattice.h"
+#include "coupling/nearcells.h"
+#include "fluid/stokes.h"
+
+#define EXACT "-coupling_near_field exact -membrane_derivative spectral -vesicle_allow_close_markers "
+#define PERIODIC "-domain_bc_x periodic -domain_bc_y periodic "
+#define RADIUS 0.5
+
+static PetscReal Entry(const OffsetTable *t, OffsetBlock b, PetscInt i, PetscInt j) {
+  return t->value[b][(j + t->size[1]) * (2 * t->size[0] + 1) + i + t->size[0]];
+}
+
+/* Its Laplacian is the divergence of the force, and far away it is x/(2 pi r^2). */
+static PetscErrorCode CheckTable(const OffsetTable *t) {
+  PetscReal worst = 0, far = 0;
+  PetscFunctionBeginUser;
+  for (PetscInt j = -19; j <= 19; j++)
+    for (PetscInt i = -19; i <= 19; i++) {
+      const PetscReal laplacian = Entry(t, OFFSET_UU, i + 1, j) + Entry(t, OFFSET_UU, i - 1, j) +
+                                  Entry(t, OFFSET_UU, i, j + 1) + Entry(t, OFFSET_UU, i, j - 1) -
+                                  4 * Entry(t, OFFSET_UU, i, j);
+      const PetscReal divergence = j ? 0 : (i == 0) - (i == 1); /* the face lies between cells 0 and 1 */
+      const PetscReal x = i - 0.5, r2 = x * x + j * j;
+      worst = PetscMax(worst, PetscAbsReal(laplacian - divergence));
+      worst = PetscMax(worst, PetscAbsReal(Entry(t, OFFSET_VV, j, i) - Entry(t, OFFSET_UU, i, j)));
+      if (r2 > 100)
+        far = PetscMax(far, PetscAbsReal(Entry(t, OFFSET_UU, i, j) - x / (2 * PETSC_PI * r2)) * r2 * PetscSqrtReal(r2));
+    }
+  CHECK(worst < 1e-13, "the pressure's Laplacian is the force's divergence: off by %.1e", worst);
+  CHECK(far < 0.1, "far away it is x/(2 pi r^2), but for %.3f/r^3", far);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Against the grid's Stokes solve for two opposite forces, of u and of v, in a large periodic box, near the first ones.
+ */
+static PetscErrorCode CheckAgainstGrid(const OffsetTable *t) {
+  const PetscInt at[2] = {64, 64}, apart = 64;
+  PetscReal worst = 0;
+  PetscScalar *a;
+  TestWorld w;
+  Stokes stokes;
+  Vec f, u, p;
+  PetscFunctionBeginUser;
+  PetscCall(TestWorldCreate(EXACT PERIODIC "-vesicle_shape none -scheme_type coupled -scheme_order 2 -delta_type cbs54 "
+                                           "-domain_box 0,256,0,256 -domain_cells 256,256 -fluid_inertia none",
+                            &w));
+  const Grid g = w.fluid->grid;
+  PetscCall(StokesCreate(w.fluid, &stokes));
+  PetscCall(DMCreateGlobalVector(g->velocity, &f));
+  PetscCall(VecDuplicate(f, &u));
+  PetscCall(DMCreateGlobalVector(g->da[FIELD_P], &p));
+  PetscCall(VecGetArray(f, &a));
+  for (int k = 0; k < 2; k++) {
+    const PetscInt row = at[1] + k * 2 * apart - g->first, column = at[0] + k * 2 * apart;
+    if (row < 0 || row >= g->rows[FIELD_P]) continue;
+    a[row * g->n[0] + column] = k ? -1 : 1;
+    a[GridLocalU(g) + row * g->n[0] + column] = k ? -2 : 2;
+  }
+  PetscCall(VecRestoreArray(f, &a));
+  PetscCall(StokesSolve(stokes, f, NULL, u, p));
+  PetscCall(VecGetArray(p, &a));
+  for (PetscInt j = -6; j <= 6; j++)
+    for (PetscInt i = -6; i <= 6; i++) {
+      const PetscInt row = at[1] + j - g->first;
+      if (row < 0 || row >= g->rows[FIELD_P]) continue;
+      worst = PetscMax(worst, PetscAbsReal(a[row * g->n[0] + at[0] + i] - Entry(t, OFFSET_UU, i, j) -
+                                           2 * Entry(t, OFFSET_VV, i, j)));
+    }
+  PetscCall(VecRestoreArray(p, &a));
+  CHECK(worst < 1e-5, "the Stokes solve's pressure next to a force, its images 256 h away: %.1e", worst);
+  PetscCall(VecDestroy(&f));
+  PetscCall(VecDestroy(&u));
+  PetscCall(VecDestroy(&p));
+  PetscCall(StokesDestroy(&stokes));
+  PetscCall(TestWorldDestroy(&w));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Largest difference of the pressure from 1/RADIUS inside and from zero outside, its mean outside taken off. */
+static PetscErrorCode JumpError(Grid g, const PetscReal center[2], const PetscReal p[], PetscReal *error) {
+  PetscReal sum[2] = {0, 0}, X[2];
+  PetscFunctionBeginUser;
+  *error = 0;
+  for (int round = 0; round < 2; round++) {
+    for (PetscInt k = 0; k < g->n[0] * g->rows[FIELD_P]; k++) {
+      GridPosition(g, FIELD_P, k % g->n[0], k / g->n[0] + g->first, X);
+      const PetscReal r = PetscSqrtReal(PetscSqr(X[0] - center[0]) + PetscSqr(X[1] - center[1]));
+      if (round)
+        *error = PetscMax(*error, PetscAbsReal(p[k] - sum[0] / sum[1] - (r < RADIUS ? 1 / RADIUS : 0)));
+      else if (r > RADIUS + 0.3) {
+        sum[0] += p[k];
+        sum[1]++;
+      }
+    }
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, round ? 0 : 2, MPIU_REAL, MPI_SUM, g->comm));
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, error, 1, MPIU_REAL, MPI_MAX, g->comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The circle with tension 1, at the time coefficient a0 (0: any, quasi-steady). */
+static PetscErrorCode CheckCircle(const char options[], PetscReal a0) {
+  const PetscReal center[2] = {0.013, -0.021};
+  PetscReal before, after, speed[2] = {0, 0}, *cells[2];
+  const PetscScalar *a;
+  TestWorld w;
+  Stokes stokes;
+  Vec f, u, p, sigma;
+  PetscFunctionBeginUser;
+  PetscCall(TestWorldCreate(options, &w));
+  if (a0 > 0) PetscCall(TestWorldPlace(a0, &w));
+  const Grid g = w.fluid->grid;
+  const PetscInt n = g->n[0] * g->rows[FIELD_P];
+  PetscCall(StokesCreate(w.fluid, &stokes));
+  PetscCall(DMCreateGlobalVector(g->velocity, &f));
+  PetscCall(VecDuplicate(f, &u));
+  PetscCall(DMCreateGlobalVector(g->da[FIELD_P], &p));
+  PetscCall(LayoutCreateVec(w.layout, 1, &sigma));
+  PetscCall(VecSet(sigma, 1));
+  PetscCall(CouplingSpreadTension(w.coupling, -1, sigma, f));
+  PetscCall(StokesSolve(stokes, f, NULL, u, p));
+  PetscCall(PetscCalloc2(n, &cells[0], n, &cells[1]));
+  PetscCall(VecGetArrayRead(p, &a));
+  PetscCall(JumpError(g, center, a, &before));
+  PetscCall(PetscArraycpy(cells[0], a, n));
+  PetscCall(VecRestoreArrayRead(p, &a));
+  PetscCall(VecGetArrayRead(u, &a));
+  for (PetscInt k = 0; k < n; k++) { /* the mean of the cell's faces */
+    cells[1][k] = 0.5 * (a[k] + a[k % g->n[0] ? k - 1 : k - 1 + g->n[0]]);
+    speed[0] = PetscMax(speed[0], PetscAbsReal(cells[1][k]));
+  }
+  PetscCall(VecRestoreArrayRead(u, &a));
+  PetscCall(NearCellsCorrect(w.coupling, sigma, w.X, cells[1], NULL, cells[0]));
+  PetscCall(JumpError(g, center, cells[0], &after));
+  for (PetscInt k = 0; k < n; k++) speed[1] = PetscMax(speed[1], PetscAbsReal(cells[1][k]));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, speed, 2, MPIU_REAL, MPI_MAX, g->comm));
+  CHECK(before > 0.1 / RADIUS && after < 0.01 / RADIUS,
+        "%s: pressure over a circle under tension, a0 = %g: off by %.2g of the jump, corrected by %.1e",
+        w.scene->coupling.kernel, a0, before * RADIUS, after * RADIUS);
+  CHECK(speed[1] < 3e-4, "where nothing moves: velocity %.1e of tension over viscosity, corrected %.1e", speed[0],
+        speed[1]);
+  PetscCall(PetscFree2(cells[0], cells[1]));
+  PetscCall(VecDestroy(&f));
+  PetscCall(VecDestroy(&u));
+  PetscCall(VecDestroy(&p));
+  PetscCall(VecDestroy(&sigma));
+  PetscCall(StokesDestroy(&stokes));
+  PetscCall(TestWorldDestroy(&w));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+#define CIRCLE                                                                                                         \
+  EXACT PERIODIC "-scheme_type coupled -scheme_order 2 -domain_box -1.5,1.5,-1.5,1.5 "                                 \
+                 "-vesicle_semi_axes .5,.5 -vesicle_center .013,-.021 -vesicle_bending 0 "
+
+static PetscErrorCode Facts(void) {
+  static const char *const kernels[] = {"cbs43", "cbs54", "cbs65", "ib6"};
+  static const char *const grids[] = {"-domain_cells 32,32 -fluid_inertia none -vesicle_markers 35",
+                                      "-domain_cells 64,64 -fluid_inertia none -vesicle_markers 45"};
+  OffsetTable pressure;
+  PetscFunctionBeginUser;
+  PetscCall(LatticePressure(20, &pressure));
+  PetscCall(CheckTable(&pressure));
+  PetscCall(CheckAgainstGrid(&pressure));
+  PetscCall(OffsetTableDestroy(&pressure));
+  for (int k = 0; k < 8; k++) {
+    char options[1024];
+    PetscCall(PetscSNPrintf(options, sizeof(options), "%s -delta_type %s %s", CIRCLE, kernels[k / 2], grids[k % 2]));
+    PetscCall(CheckCircle(options, 0));
+  }
+  PetscCall(
+      CheckCircle(CIRCLE "-delta_type cbs54 -domain_cells 64,64 -fluid_inertia unsteady -vesicle_markers 45", 100));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+int main(int argc, char **argv) {
+  return CheckMain(argc, argv, Facts);
+}
