@@ -2,6 +2,7 @@
    against its sum written out, spreading as its exact transpose, the lists of stencils, and what is wrong with one
    rank's markers. */
 #include "world.h"
+#include "markers/fold.h"
 
 #define TOLERANCE 1e-13 /* relative: round-off of sums of some thousand terms */
 
@@ -12,6 +13,11 @@
 #define ACROSS VESICLES "-vesicle_center 0.05,0.03,0.97,0.1,-0.5,0.96,0.93,-0.95,-0.45,-0.45 "
 #define INSIDE VESICLES "-vesicle_center 0.05,0.03,0.6,0.3,-0.5,0.5,0.5,-0.5,-0.45,-0.45 "
 
+/* Some a third of a cell from a wall, the fourth from both in a corner. */
+#define AT_WALLS                                                                                                       \
+  "-coupling_near_field exact -scheme_type coupled " VESICLES                                                          \
+  "-vesicle_center 0.05,0.64,-0.8314,0.5,-0.5,-0.1,0.8547,-0.8547,-0.2,-0.6 "
+
 /* Weight of grid point 0 of a marker at x (cells). */
 static PetscReal Weight(KernelWeights weights, PetscReal x) {
   PetscReal w[KERNEL_MAX_POINTS];
@@ -20,14 +26,20 @@ static PetscReal Weight(KernelWeights weights, PetscReal x) {
   return first <= 0 && -first < n ? w[-first] : 0;
 }
 
-/* Weight in one direction of a face at `face` for a marker at x, of all images where periodic. */
+/* Weight in one direction of a face at `face` for a marker at x, of all images where periodic; folded, of its mirror
+   images in the walls too, with the sign of the flow that continues across them, and scaled. */
 static PetscReal FaceWeight(Markers m, int comp, int dir, PetscReal x, PetscReal face) {
   const Grid g = m->grid;
   const KernelWeights weights = comp == dir ? m->kernel->along : m->kernel->across;
-  PetscReal sum = 0;
+  PetscReal sum = 0, scale = 1;
   for (int image = g->wall[dir] ? 0 : -1; image <= (g->wall[dir] ? 0 : 1); image++)
     sum += Weight(weights, (x - face) / g->h - image * g->n[dir]);
-  return sum;
+  for (int side = 0; side < 2 && m->folded && g->wall[dir]; side++) {
+    const PetscReal wall = side ? g->hi[dir] : g->lo[dir], mirror = 2 * wall - face;
+    sum += (comp == dir ? 1 : -1) * Weight(weights, (x - mirror) / g->h);
+    if (comp == dir) scale *= WallScale(m->kernel, PetscAbsReal(x - wall) / g->h);
+  }
+  return scale * sum;
 }
 
 /* A velocity by its place on the whole grid, rough. */
@@ -237,6 +249,39 @@ static PetscErrorCode CheckMessages(void) {
     PetscCall(CheckMessage(&t, v, 5.3, 1 - 3.1 / 30, NULL));
   }
   PetscCall(TestWorldDestroy(&t));
+  PetscCall(TestWorldCreate("-domain_cells 60,60 -domain_bc_x periodic " AT_WALLS, &t));
+  for (PetscInt v = 0; v < 5; v++) {
+    PetscCall(CheckMessage(&t, v, 0.3, 1 - 0.24 / 30, "y_max"));
+    PetscCall(CheckMessage(&t, v, 0.3, 1 - 0.26 / 30, NULL));
+  }
+  PetscCall(TestWorldDestroy(&t));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A folded stencil gives flows that are zero at the wall there: y along it exactly, scaled y^2 across it. */
+static PetscErrorCode CheckFold(void) {
+  static const char *const kernels[] = {"ib6", "cbs43", "cbs54", "cbs65"};
+  PetscFunctionBeginUser;
+  for (int k = 0; k < 4; k++) {
+    const Kernel *kernel = KernelFind(kernels[k]);
+    PetscReal error = 0, wall = 0;
+    for (int step = 0; step <= 40; step++) {
+      const PetscReal y = 0.075 * step;
+      PetscReal w[KERNEL_MAX_POINTS], sum = 0;
+      PetscInt first, n = kernel->along(y - 1, &first, w);
+      FoldLow(PETSC_TRUE, &first, &n, w);
+      for (PetscInt q = 0; q < n; q++) sum += WallScale(kernel, y) * w[q] * PetscSqr(first + q + 1);
+      error = PetscMax(error, PetscAbsReal(sum - y * y));
+      n = kernel->across(y - 0.5, &first, w);
+      FoldLow(PETSC_FALSE, &first, &n, w);
+      sum = 0;
+      for (PetscInt q = 0; q < n; q++) sum += w[q] * (first + q + 0.5);
+      error = PetscMax(error, PetscAbsReal(sum - y));
+      if (!step) wall = sum;
+    }
+    CHECK(error < 1e-13 && PetscAbsReal(wall) < 1e-14, "%s: y along and y^2 across a wall are exact at it, error %.1e",
+          kernels[k], error);
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -251,6 +296,10 @@ static PetscErrorCode Facts(void) {
   PetscCall(CheckCase("-domain_cells 60,60 -domain_bc_x periodic", INSIDE, "cbs54"));
   PetscCall(CheckCase("-domain_cells 60,60 -domain_bc_y periodic", INSIDE, "ib6"));
   PetscCall(CheckCase("-domain_cells 60,60", INSIDE, "cbs43"));
+  for (int k = 0; k < 5; k++)
+    if (k != 1) PetscCall(CheckCase("-domain_cells 60,60", AT_WALLS, kernels[k]));
+  PetscCall(CheckCase("-domain_cells 60,60 -domain_bc_x periodic", AT_WALLS, "ib6"));
+  PetscCall(CheckFold());
   PetscCall(CheckMessages());
   PetscFunctionReturn(PETSC_SUCCESS);
 }

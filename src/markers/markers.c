@@ -2,9 +2,6 @@
 #include "base/agree.h"
 #include "markers/fold.h"
 
-#define LEAST_PLAIN 3     /* cells: the kernels' reach */
-#define LEAST_FOLDED 0.25 /* nearer, mobility with the near field may not be positive */
-
 /* What is wrong with the own body b's markers X[2n], if anything. */
 static PetscErrorCode CheckBody(Markers m, PetscInt b, const PetscScalar X[], char message[PETVES_MAX_MESSAGE]) {
   static const char *const names[2][2] = {{"x_min", "x_max"}, {"y_min", "y_max"}};
@@ -23,9 +20,9 @@ static PetscErrorCode CheckBody(Markers m, PetscInt b, const PetscScalar X[], ch
         if (distance >= m->least * g->h * (1 - 1e-12)) continue;
         PetscCall(PetscSNPrintf(message, PETVES_MAX_MESSAGE,
                                 "vesicle %" PetscInt_FMT ": a marker at (%g, %g) is %g cells from the wall %s = %g; "
-                                "the kernel needs %g",
+                                "the kernel needs %s",
                                 b + 1, (double)X[2 * k], (double)X[2 * k + 1], (double)(distance / g->h),
-                                names[dir][side], (double)(side ? g->hi[dir] : g->lo[dir]), (double)m->least));
+                                names[dir][side], (double)(side ? g->hi[dir] : g->lo[dir]), m->needs));
         PetscFunctionReturn(PETSC_SUCCESS);
       }
     }
@@ -242,7 +239,8 @@ PetscErrorCode MarkersCreate(Grid g, Layout l, const char kernel[], PetscBool fo
   PetscCall(PetscMalloc5(2 * l->M, &m->X, 2 * l->M, &m->plain, 2 * l->M, &m->touching, 2 * l->M, &m->force, 2 * l->M,
                          &m->part));
   m->folded = folded && (g->wall[0] || g->wall[1]) ? PETSC_TRUE : PETSC_FALSE;
-  m->least = folded ? LEAST_FOLDED : LEAST_PLAIN;
+  m->least = folded ? 0.25 : 3; /* nearer, mobility with the near field may not be positive; the kernels' reach */
+  m->needs = folded ? "0.25" : "3";
   m->stencil = m->plain;
   if (m->folded) PetscCall(PetscMalloc1(2 * l->M, &m->stencil));
   PetscCall(MatCreateShell(g->comm, 2 * l->n, slab, 2 * l->M, PETSC_DETERMINE, m, &m->E));

@@ -23,6 +23,7 @@ struct _p_Markers {
   PetscReal *X;       /* [2M] positions of all markers */
   PetscBool folded;   /* stencils are folded at walls and scaled near them (fold.h) */
   PetscReal least;    /* cells that markers keep from walls */
+  const char *needs;  /* the same as text */
   Stencil *stencil;   /* [2M]: component c of marker k at 2k + c */
   Stencil *plain;     /* [2M]: the same neither folded nor scaled */
   PetscInt *touching; /* the stencils that reach a row of this rank, in order */

@@ -40,9 +40,9 @@ static PetscErrorCode PlaceFirst(Scheme s, const PetscReal X[]) {
   PetscCall(VecRestoreArray(q->X, &x));
   PetscCall(MarkersCheck(s->coupling->markers, q->X, message));
   PetscCheck(!*message, s->scene->comm, PETSC_ERR_USER_INPUT,
-             "-vesicle_center %g,%g: %s; allowed: a vesicle inside -domain_box, %g cells from its walls",
+             "-vesicle_center %g,%g: %s; allowed: a vesicle inside -domain_box, %s cells from its walls",
              (double)s->scene->vesicles.center.v[0], (double)s->scene->vesicles.center.v[1], message,
-             (double)s->coupling->markers->least);
+             s->coupling->markers->needs);
   PetscCall(MarkersPlace(s->coupling->markers, q->X));
   PetscCall(MarkersInterpolate(s->coupling->markers, q->w, q->U));
   PetscCall(SchemeBackground(s, q->X, q->t));
