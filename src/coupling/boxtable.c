@@ -3,7 +3,7 @@
 
 #define WALL_PLACES 12
 #define WALL_MARGIN 3    /* cells of the coarser grid between the places and a wall: what its kernels reach */
-#define MODES 11         /* of a period */
+#define MODES 16         /* of a period as long as the other side */
 #define COARSE_CELLS 64  /* of the shorter side, on the coarser grid */
 #define LATTICE_CELLS 30 /* of the lattice's table; beyond, its closed form is right to 2e-7 */
 #define SMALLEST 1e-4    /* of the largest: eigenvalues below it are dropped */
@@ -22,10 +22,12 @@ static void CoarseCells(const FluidSpec *spec, PetscInt cells[2]) {
 }
 
 static void MakeAxis(const FluidSpec *spec, int dir, PetscReal H, BoxAxis *a) {
+  const PetscInt shorter = PetscMin(spec->cells[0], spec->cells[1]), times = (spec->cells[dir] + shorter - 1) / shorter;
   a->wall = spec->bc[dir] == BC_WALL ? PETSC_TRUE : PETSC_FALSE;
   a->low = spec->box[2 * dir] + (a->wall ? WALL_MARGIN * H : 0);
   a->high = spec->box[2 * dir + 1] - (a->wall ? WALL_MARGIN * H : 0);
-  a->places = a->wall ? WALL_PLACES : BOX_PLACES;
+  a->places = a->wall ? WALL_PLACES : times * BOX_PLACES / BOX_ASPECT;
+  a->modes = a->wall ? 0 : times * MODES;
   a->pairs = a->wall ? a->places * a->places : a->places;
   for (PetscInt k = 0; k < a->places; k++) {
     const PetscReal z = -PetscCosReal(PETSC_PI * (k + 0.5) / a->places);
@@ -40,7 +42,7 @@ void BoxTableFunctions(const BoxTable *t, int dir, PetscReal x, PetscReal values
   PetscReal sum = 0;
   if (!a->wall) {
     values[0] = 1;
-    for (PetscInt m = 1; m <= MODES; m++) {
+    for (PetscInt m = 1; m <= a->modes; m++) {
       const PetscReal angle = 2 * PETSC_PI * m * (x - a->low) / (a->high - a->low);
       values[2 * m - 1] = PetscCosReal(angle);
       values[2 * m] = PetscSinReal(angle);
@@ -74,7 +76,7 @@ typedef struct {
 static PetscErrorCode MakeCouplings(const BoxAxis *a, Couplings *c) {
   const PetscInt n = a->places;
   PetscFunctionBeginUser;
-  c->count = a->wall ? n * n : 1 + 4 * MODES;
+  c->count = a->wall ? n * n : 1 + 4 * a->modes;
   PetscCall(PetscMalloc1(c->count, &c->couple));
   PetscCall(PetscCalloc1(c->count * a->pairs, &c->weight));
   for (PetscInt k = 0; k < c->count; k++) {
@@ -128,56 +130,72 @@ static PetscErrorCode Transform(const BoxTable *t, const PetscReal W[], PetscRea
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Number of the block of T that a function belongs to: periodic modes do not couple. */
-static PetscInt BlockOf(const BoxTable *t, PetscInt function) {
-  const PetscInt fy = t->functions[1], x = function / fy % t->functions[0], y = function % fy;
-  return (t->axis[0].wall ? 0 : (x + 1) / 2) * (MODES + 1) + (t->axis[1].wall ? 0 : (y + 1) / 2);
+/* A direction's functions of block b: all between walls, a cosine and its sine over a period. */
+static void BlockFunctions(const BoxTable *t, int dir, PetscInt b, BoxBlock *q) {
+  q->first[dir] = t->axis[dir].wall || !b ? 0 : 2 * b - 1;
+  q->n[dir] = t->axis[dir].wall ? t->functions[dir] : b ? 2 : 1;
 }
 
-/* Eigenpairs of one block of T, put in: values l and vectors Q[.][count]; *found counts them. */
-static PetscErrorCode SolveBlock(const BoxTable *t, PetscInt block, const PetscReal T[], PetscInt *found, PetscReal l[],
-                                 PetscReal Q[]) {
-  const PetscInt n = t->count;
-  PetscInt *member, size = 0;
-  PetscReal *A;
+/* The block's part of T, its eigenvectors in A (columns) and eigenvalues l. */
+static PetscErrorCode SolveBlock(const BoxTable *t, const BoxBlock *q, const PetscReal T[], PetscReal A[], PetscReal l[]) {
+  const PetscInt half = q->n[0] * q->n[1], size = 2 * half;
+  PetscInt *member;
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(n, &member));
-  for (PetscInt k = 0; k < n; k++)
-    if (BlockOf(t, k) == block) member[size++] = k;
-  PetscCall(PetscMalloc1(size * size, &A));
+  PetscCall(PetscMalloc1(size, &member));
+  for (PetscInt k = 0; k < size; k++) {
+    const PetscInt x = q->first[0] + k % half / q->n[1], y = q->first[1] + k % q->n[1];
+    member[k] = (k / half * t->functions[0] + x) * t->functions[1] + y;
+  }
   for (PetscInt i = 0; i < size; i++)
-    for (PetscInt j = 0; j < size; j++) A[i * size + j] = T[member[i] * n + member[j]];
-  if (size) PetscCall(DenseEigen(size, A, l + *found));
-  for (PetscInt k = 0; k < size; k++)
-    for (PetscInt i = 0; i < size; i++) Q[(*found + k) * n + member[i]] = A[k * size + i];
-  *found += size;
-  PetscCall(PetscFree(A));
+    for (PetscInt j = 0; j < size; j++) A[i * size + j] = T[member[i] * t->count + member[j]];
+  PetscCall(DenseEigen(size, A, l));
   PetscCall(PetscFree(member));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The largest eigenvalues of T, with their vectors. */
-static PetscErrorCode Decompose(BoxTable *t, const PetscReal T[]) {
-  const PetscInt n = t->count;
-  PetscInt found = 0, *order;
-  PetscReal *l, *size, *Q;
+/* Keep the block's eigenpairs that are larger than `least`. */
+static PetscErrorCode KeepLargest(BoxBlock *q, const PetscReal A[], const PetscReal l[], PetscReal least,
+                                  PetscReal kept[], PetscInt *rank) {
+  const PetscInt size = 2 * q->n[0] * q->n[1];
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc4(n, &l, n, &size, n, &order, n * n, &Q));
-  PetscCall(PetscArrayzero(Q, n * n));
-  for (PetscInt b = 0; b < PetscSqr(MODES + 1); b++) PetscCall(SolveBlock(t, b, T, &found, l, Q));
-  for (PetscInt k = 0; k < n; k++) {
-    size[k] = -PetscAbsReal(l[k]);
-    order[k] = k;
+  q->start = *rank;
+  q->modes = 0;
+  for (PetscInt k = 0; k < size; k++) q->modes += PetscAbsReal(l[k]) > least;
+  PetscCall(PetscMalloc1(size * q->modes, &q->Q));
+  for (PetscInt k = 0, m = 0; k < size; k++) {
+    if (PetscAbsReal(l[k]) <= least) continue;
+    kept[(*rank)++] = l[k];
+    for (PetscInt i = 0; i < size; i++) q->Q[i * q->modes + m] = A[k * size + i];
+    m++;
   }
-  PetscCall(PetscSortRealWithArrayInt(n, size, order));
-  t->rank = 0;
-  while (t->rank < PetscMin(n, BOX_RANK) && size[t->rank] < SMALLEST * size[0]) t->rank++;
-  PetscCall(PetscMalloc2(n * t->rank, &t->Q, t->rank, &t->l));
-  for (PetscInt k = 0; k < t->rank; k++) {
-    t->l[k] = l[order[k]];
-    for (PetscInt i = 0; i < n; i++) t->Q[i * t->rank + k] = Q[order[k] * n + i];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The largest eigenvalues of T, with their vectors, block by block. */
+static PetscErrorCode Decompose(BoxTable *t, const PetscReal T[]) {
+  PetscReal *l, *A, most = 0;
+  PetscInt *at, *from, values = 0, vectors = 0;
+  PetscFunctionBeginUser;
+  t->blocks = (t->axis[0].modes + 1) * (t->axis[1].modes + 1);
+  PetscCall(PetscCalloc1(t->blocks, &t->block));
+  PetscCall(PetscMalloc2(t->blocks + 1, &at, t->blocks + 1, &from));
+  for (PetscInt b = 0; b < t->blocks; b++) {
+    BoxBlock *q = &t->block[b];
+    BlockFunctions(t, 0, b / (t->axis[1].modes + 1), q);
+    BlockFunctions(t, 1, b % (t->axis[1].modes + 1), q);
+    at[b] = values;
+    from[b] = vectors;
+    values += 2 * q->n[0] * q->n[1];
+    vectors += PetscSqr(2 * q->n[0] * q->n[1]);
   }
-  PetscCall(PetscFree4(l, size, order, Q));
+  PetscCall(PetscMalloc2(values, &l, vectors, &A));
+  for (PetscInt b = 0; b < t->blocks; b++) PetscCall(SolveBlock(t, &t->block[b], T, A + from[b], l + at[b]));
+  for (PetscInt k = 0; k < values; k++) most = PetscMax(most, PetscAbsReal(l[k]));
+  PetscCall(PetscMalloc1(values, &t->l));
+  for (PetscInt b = 0; b < t->blocks; b++)
+    PetscCall(KeepLargest(&t->block[b], A + from[b], l + at[b], SMALLEST * most, t->l, &t->rank));
+  PetscCall(PetscFree2(l, A));
+  PetscCall(PetscFree2(at, from));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -211,7 +229,7 @@ PetscErrorCode BoxTableCreate(const FluidSpec *spec, const char kernel[], BoxTab
   t->H = (spec->box[1] - spec->box[0]) / cells[0];
   for (int d = 0; d < 2; d++) {
     MakeAxis(spec, d, t->H, &t->axis[d]);
-    t->functions[d] = t->axis[d].wall ? WALL_PLACES : 2 * MODES + 1;
+    t->functions[d] = t->axis[d].wall ? WALL_PLACES : 2 * t->axis[d].modes + 1;
     size *= t->axis[d].pairs;
   }
   t->count = 2 * t->functions[0] * t->functions[1];
@@ -226,6 +244,8 @@ PetscErrorCode BoxTableCreate(const FluidSpec *spec, const char kernel[], BoxTab
 
 PetscErrorCode BoxTableDestroy(BoxTable *t) {
   PetscFunctionBeginUser;
-  PetscCall(PetscFree2(t->Q, t->l));
+  for (PetscInt b = 0; b < t->blocks; b++) PetscCall(PetscFree(t->block[b].Q));
+  PetscCall(PetscFree(t->block));
+  PetscCall(PetscFree(t->l));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

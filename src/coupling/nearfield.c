@@ -96,6 +96,14 @@ static PetscBool AreNear(NearField f, PetscInt v, PetscInt w, const PetscReal sh
   return PETSC_FALSE;
 }
 
+/* With a box part: the images of w nearest to each marker of v, if any image is within reach. */
+static PetscErrorCode AddNearest(NearField f, PetscInt v, PetscInt w, PetscBool near) {
+  const PetscReal none[2] = {0, 0};
+  PetscFunctionBeginUser;
+  if (near) PetscCall(AddBlock(f, v, w, none));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Images of w within reach of v: the one whose first marker is nearest, and its neighbours. */
 static PetscErrorCode AddPair(NearField f, PetscInt v, PetscInt w) {
   const Grid g = f->markers->grid;
@@ -103,6 +111,7 @@ static PetscErrorCode AddPair(NearField f, PetscInt v, PetscInt w) {
   const PetscReal *X = f->markers->X;
   PetscInt around[2];
   PetscReal middle[2], box[2];
+  PetscBool near = PETSC_FALSE;
   PetscFunctionBeginUser;
   for (int d = 0; d < 2; d++) {
     box[d] = g->hi[d] - g->lo[d];
@@ -113,8 +122,11 @@ static PetscErrorCode AddPair(NearField f, PetscInt v, PetscInt w) {
     for (PetscInt p = -around[0]; p <= around[0]; p++) {
       const PetscReal shift[2] = {(middle[0] + p) * box[0], (middle[1] + q) * box[1]};
       const PetscBool self = v == w && shift[0] == 0 && shift[1] == 0 ? PETSC_TRUE : PETSC_FALSE;
-      if (self || AreNear(f, v, w, shift)) PetscCall(AddBlock(f, v, w, shift));
+      if (!self && !AreNear(f, v, w, shift)) continue;
+      near = PETSC_TRUE;
+      if (!f->box) PetscCall(AddBlock(f, v, w, shift));
     }
+  if (f->box) PetscCall(AddNearest(f, v, w, near));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
