@@ -124,8 +124,8 @@ static PetscBool IsSquare(const BoxAxis axis[2]) {
   return axis[0].wall == axis[1].wall && PetscAbsReal(x - y) < 1e-12 * x ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* W of the pair and of its mirror images between walls: a mirrored velocity or force changes its sign. In a square also of
-   that with x and y exchanged. */
+/* W of the pair and of its mirror images between walls: a mirrored velocity or force changes its sign. In a square also
+   of that with x and y exchanged. */
 static void AddEntry(const BoxAxis axis[2], int ci, int cj, const PetscInt a[2], const PetscInt s[2], PetscReal value,
                      PetscReal W[]) {
   for (int my = 0; my <= (int)axis[1].wall; my++)

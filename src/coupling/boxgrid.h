@@ -1,5 +1,6 @@
 /* The smooth part W = E A^-1 E^T/h^2 - L of a grid's mobility between places: what walls and periodic images add to the
-   infinite lattice, L of the nearest image times a window over a period (docs/method.md, Near field). In quasi-steady flow, whatever the run's. */
+   infinite lattice, L of the nearest image times a window over a period (docs/method.md, Near field). In quasi-steady
+   flow, whatever the run's. */
 #pragma once
 #include "coupling/lattice.h"
 #include "fluid/fluid.h"
@@ -18,9 +19,9 @@ typedef struct {
   PetscInt pairs; /* of a response's place a and a force's b: a * places + b, or the offset a */
 } BoxAxis;
 
-/* BoxImage - d[2] (length) between two points becomes that of the nearest image; returns the part of the infinite lattice's
-   mobility that W leaves out: from 1 it falls to 0 at half a period, where images change, so that W is smooth and periodic. 1
-   between walls. Not collective. */
+/* BoxImage - d[2] (length) between two points becomes that of the nearest image; returns the part of the infinite
+   lattice's mobility that W leaves out: from 1 it falls to 0 at half a period, where images change, so that W is smooth
+   and periodic. 1 between walls. Not collective. */
 PETSC_EXTERN PetscReal BoxImage(const BoxAxis axis[2], PetscReal d[2]);
 
 /* BoxGridAdd - W += scale times the smooth part of the grid `spec`, with the named kernel, lattice Stokeslet as far as

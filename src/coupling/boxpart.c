@@ -50,11 +50,12 @@ static PetscReal Fade(BoxPart b, const PetscReal X[2]) {
 }
 
 /* a[modes] += weights of one velocity component's functions times the block's vectors. */
-static void AddBlock(const BoxBlock *q, int c, const PetscReal vx[], const PetscReal vy[], PetscReal fade, PetscReal a[]) {
+static void AddBlock(const BoxBlock *q, int c, const PetscReal vx[], const PetscReal vy[], PetscReal fade,
+                     PetscReal a[]) {
   const PetscReal *row = q->Q + c * q->n[0] * q->n[1] * q->modes;
   for (PetscInt i = 0; i < q->n[0]; i++)
     for (PetscInt j = 0; j < q->n[1]; j++, row += q->modes) {
-      const PetscReal weight = fade * vx[q->first[0] + i] * vy[q->first[1] + j];
+      const PetscReal weight = fade * vx[q->first[c][0] + i] * vy[q->first[c][1] + j];
       for (PetscInt m = 0; m < q->modes; m++) a[m] += weight * row[m];
     }
 }

@@ -6,7 +6,7 @@
 #define MODES 16         /* of a period as long as the other side */
 #define COARSE_CELLS 64  /* of the shorter side, on the coarser grid */
 #define LATTICE_CELLS 30 /* of the lattice's table; beyond, its closed form is right to 2e-7 */
-#define SMALLEST 1e-4    /* of the largest: eigenvalues below it are dropped */
+#define SMALLEST 1e-3    /* of the largest: eigenvalues below it are dropped */
 
 /* The coarser grid: as many cells as keep them square, from COARSE_CELLS on across, or the run's own. */
 static void CoarseCells(const FluidSpec *spec, PetscInt cells[2]) {
@@ -36,29 +36,36 @@ static void MakeAxis(const FluidSpec *spec, int dir, PetscReal H, BoxAxis *a) {
   }
 }
 
-void BoxTableFunctions(const BoxTable *t, int dir, PetscReal x, PetscReal values[]) {
-  const BoxAxis *a = &t->axis[dir];
+/* Lagrange's polynomials, then their even and odd halves, which the mirror images of a box keep apart. */
+static void Polynomials(const BoxAxis *a, PetscReal x, PetscReal values[]) {
   const PetscInt n = a->places;
-  PetscReal sum = 0;
-  if (!a->wall) {
-    values[0] = 1;
-    for (PetscInt m = 1; m <= a->modes; m++) {
-      const PetscReal angle = 2 * PETSC_PI * m * (x - a->low) / (a->high - a->low);
-      values[2 * m - 1] = PetscCosReal(angle);
-      values[2 * m] = PetscSinReal(angle);
-    }
-    return;
-  }
+  PetscReal plain[WALL_PLACES], sum = 0;
+  PetscInt at = -1;
   for (PetscInt k = 0; k < n; k++) { /* the second barycentric formula */
     const PetscReal off = x - a->place[k];
-    if (PetscAbsReal(off) < 1e-14 * (a->high - a->low)) {
-      for (PetscInt q = 0; q < n; q++) values[q] = q == k;
-      return;
-    }
-    values[k] = (k % 2 ? -1 : 1) * PetscSinReal(PETSC_PI * (k + 0.5) / n) / off;
-    sum += values[k];
+    if (PetscAbsReal(off) < 1e-14 * (a->high - a->low)) at = k;
+    plain[k] = (k % 2 ? -1 : 1) * PetscSinReal(PETSC_PI * (k + 0.5) / n) / off;
+    sum += plain[k];
   }
-  for (PetscInt k = 0; k < n; k++) values[k] /= sum;
+  for (PetscInt k = 0; k < n; k++) plain[k] = at < 0 ? plain[k] / sum : k == at;
+  for (PetscInt k = 0; k < n / 2; k++) {
+    values[k] = PetscSqrtReal(0.5) * (plain[k] + plain[n - 1 - k]);
+    values[n / 2 + k] = PetscSqrtReal(0.5) * (plain[k] - plain[n - 1 - k]);
+  }
+}
+
+void BoxTableFunctions(const BoxTable *t, int dir, PetscReal x, PetscReal values[]) {
+  const BoxAxis *a = &t->axis[dir];
+  if (a->wall) {
+    Polynomials(a, x, values);
+    return;
+  }
+  values[0] = 1;
+  for (PetscInt m = 1; m <= a->modes; m++) {
+    const PetscReal angle = 2 * PETSC_PI * m * (x - a->low) / (a->high - a->low);
+    values[2 * m - 1] = PetscCosReal(angle);
+    values[2 * m] = PetscSinReal(angle);
+  }
 }
 
 /* Functions f, g of a response and a force that W couples, with the weights of its pairs. */
@@ -71,8 +78,27 @@ typedef struct {
   PetscReal *weight; /* [count][pairs] */
 } Couplings;
 
-/* Between walls each pair of places by itself. Over a period, from W's Fourier series in the offset, with cos(a - b) =
-   cos a cos b + sin a sin b and sin(a - b) = sin a cos b - cos a sin b. */
+/* Between walls: halves f and g, even or odd, of the polynomials of two places each. */
+static void WallCouple(const BoxAxis *a, Couple c, PetscReal weight[]) {
+  const PetscInt n = a->places, half = n / 2, i = c.f % half, j = c.g % half;
+  const PetscReal si = c.f < half ? 1 : -1, sj = c.g < half ? 1 : -1;
+  weight[i * n + j] += 0.5;
+  weight[(n - 1 - i) * n + j] += 0.5 * si;
+  weight[i * n + n - 1 - j] += 0.5 * sj;
+  weight[(n - 1 - i) * n + n - 1 - j] += 0.5 * si * sj;
+}
+
+/* Over a period, from W's Fourier series in the offset, with cos(a - b) = cos a cos b + sin a sin b and sin(a - b) =
+   sin a cos b - cos a sin b. */
+static void PeriodCouple(const BoxAxis *a, PetscInt k, Couple *c, PetscReal weight[]) {
+  const PetscInt n = a->places, m = (k + 3) / 4, kind = k ? (k - 1) % 4 : 0, cosine = m ? 2 * m - 1 : 0;
+  *c = (Couple){cosine + (kind == 1 || kind == 2), cosine + (kind == 1 || kind == 3)};
+  for (PetscInt q = 0; q < n; q++) {
+    const PetscReal angle = 2 * PETSC_PI * ((m * q) % n) / n, factor = (m ? 2.0 : 1.0) / n;
+    weight[q] = factor * (kind < 2 ? PetscCosReal(angle) : PetscSinReal(angle)) * (kind == 3 ? -1 : 1);
+  }
+}
+
 static PetscErrorCode MakeCouplings(const BoxAxis *a, Couplings *c) {
   const PetscInt n = a->places;
   PetscFunctionBeginUser;
@@ -81,17 +107,11 @@ static PetscErrorCode MakeCouplings(const BoxAxis *a, Couplings *c) {
   PetscCall(PetscCalloc1(c->count * a->pairs, &c->weight));
   for (PetscInt k = 0; k < c->count; k++) {
     PetscReal *weight = c->weight + k * a->pairs;
-    const PetscInt m = (k + 3) / 4, kind = k ? (k - 1) % 4 : 0, cosine = m ? 2 * m - 1 : 0;
-    if (a->wall) {
-      c->couple[k] = (Couple){k / n, k % n};
-      weight[k] = 1;
-      continue;
-    }
-    c->couple[k] = (Couple){cosine + (kind == 1 || kind == 2), cosine + (kind == 1 || kind == 3)};
-    for (PetscInt q = 0; q < n; q++) {
-      const PetscReal angle = 2 * PETSC_PI * ((m * q) % n) / n, factor = (m ? 2.0 : 1.0) / n;
-      weight[q] = factor * (kind < 2 ? PetscCosReal(angle) : PetscSinReal(angle)) * (kind == 3 ? -1 : 1);
-    }
+    c->couple[k] = (Couple){k / n, k % n};
+    if (a->wall)
+      WallCouple(a, c->couple[k], weight);
+    else
+      PeriodCouple(a, k, &c->couple[k], weight);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -130,21 +150,30 @@ static PetscErrorCode Transform(const BoxTable *t, const PetscReal W[], PetscRea
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A direction's functions of block b: all between walls, a cosine and its sine over a period. */
+/* A direction's blocks: even and odd between walls, one a mode over a period. */
+static PetscInt CountBlocks(const BoxAxis *a) {
+  return a->wall ? 2 : a->modes + 1;
+}
+
+/* A direction's functions of block b: a cosine and its sine; between walls the even or odd half, and of the other
+   component the other one, as the mirror image of a velocity changes the sign of one component. */
 static void BlockFunctions(const BoxTable *t, int dir, PetscInt b, BoxBlock *q) {
-  q->first[dir] = t->axis[dir].wall || !b ? 0 : 2 * b - 1;
-  q->n[dir] = t->axis[dir].wall ? t->functions[dir] : b ? 2 : 1;
+  const PetscInt half = t->functions[dir] / 2;
+  const PetscBool wall = t->axis[dir].wall;
+  q->n[dir] = wall ? half : b ? 2 : 1;
+  for (int c = 0; c < 2; c++) q->first[c][dir] = wall ? (b == c ? 0 : half) : b ? 2 * b - 1 : 0;
 }
 
 /* The block's part of T, its eigenvectors in A (columns) and eigenvalues l. */
-static PetscErrorCode SolveBlock(const BoxTable *t, const BoxBlock *q, const PetscReal T[], PetscReal A[], PetscReal l[]) {
+static PetscErrorCode SolveBlock(const BoxTable *t, const BoxBlock *q, const PetscReal T[], PetscReal A[],
+                                 PetscReal l[]) {
   const PetscInt half = q->n[0] * q->n[1], size = 2 * half;
   PetscInt *member;
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(size, &member));
   for (PetscInt k = 0; k < size; k++) {
-    const PetscInt x = q->first[0] + k % half / q->n[1], y = q->first[1] + k % q->n[1];
-    member[k] = (k / half * t->functions[0] + x) * t->functions[1] + y;
+    const PetscInt c = k / half, x = q->first[c][0] + k % half / q->n[1], y = q->first[c][1] + k % q->n[1];
+    member[k] = (c * t->functions[0] + x) * t->functions[1] + y;
   }
   for (PetscInt i = 0; i < size; i++)
     for (PetscInt j = 0; j < size; j++) A[i * size + j] = T[member[i] * t->count + member[j]];
@@ -176,13 +205,13 @@ static PetscErrorCode Decompose(BoxTable *t, const PetscReal T[]) {
   PetscReal *l, *A, most = 0;
   PetscInt *at, *from, values = 0, vectors = 0;
   PetscFunctionBeginUser;
-  t->blocks = (t->axis[0].modes + 1) * (t->axis[1].modes + 1);
+  t->blocks = CountBlocks(&t->axis[0]) * CountBlocks(&t->axis[1]);
   PetscCall(PetscCalloc1(t->blocks, &t->block));
   PetscCall(PetscMalloc2(t->blocks + 1, &at, t->blocks + 1, &from));
   for (PetscInt b = 0; b < t->blocks; b++) {
     BoxBlock *q = &t->block[b];
-    BlockFunctions(t, 0, b / (t->axis[1].modes + 1), q);
-    BlockFunctions(t, 1, b % (t->axis[1].modes + 1), q);
+    BlockFunctions(t, 0, b / CountBlocks(&t->axis[1]), q);
+    BlockFunctions(t, 1, b % CountBlocks(&t->axis[1]), q);
     at[b] = values;
     from[b] = vectors;
     values += 2 * q->n[0] * q->n[1];

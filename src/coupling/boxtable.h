@@ -8,9 +8,10 @@
 
 /* Functions of x and y that D couples with one another only, and what is kept of its eigenvectors in them. */
 typedef struct {
-  PetscInt first[2], n[2]; /* functions of x, of y */
-  PetscInt start, modes;   /* its eigenvalues among all */
-  PetscReal *Q;            /* [2 components][n[0]][n[1]][modes] */
+  PetscInt first[2][2];  /* [component]: its functions of x, of y, from here on */
+  PetscInt n[2];         /* so many */
+  PetscInt start, modes; /* its eigenvalues among all */
+  PetscReal *Q;          /* [2 components][n[0]][n[1]][modes] */
 } BoxBlock;
 
 typedef struct {
@@ -21,7 +22,7 @@ typedef struct {
   BoxBlock *block;
   PetscInt rank; /* eigenvalues kept */
   PetscReal *l;  /* [rank] velocity per force */
-  PetscReal H;  /* cell size of the coarser grid */
+  PetscReal H;   /* cell size of the coarser grid */
 } BoxTable;
 
 /* BoxTableCreate - for the run's grid and boundaries. Collective on spec->comm: ranks share the solves. BoxTableDestroy

@@ -10,15 +10,15 @@ static PetscReal SecondMoment(KernelWeights weights) {
   return sum;
 }
 
-/* Smoothing by the kernel and dispersion by the lattice, to the order h^2/r^2: transforms of e^{i n phi} waves, the first
-   three from the moments (docs/method.md, Near field). */
+/* Smoothing by the kernel and dispersion by the lattice, to the order h^2/r^2: transforms of e^{i n phi} waves, the
+   first three from the moments (docs/method.md, Near field). */
 void NearFarCoefficients(const Kernel *kernel, PetscReal far[5]) {
   const PetscReal along = SecondMoment(kernel->along), across = SecondMoment(kernel->across);
-  far[0] = -(across + 1. / 12) / 2 + 3.5 / 48;           /* a2 */
+  far[0] = -(across + 1. / 12) / 2 + 3.5 / 48;            /* a2 */
   far[1] = -along / 8 + (across + 1. / 12) / 8 - 1. / 48; /* a4 */
-  far[2] = 1. / 96;                                      /* a6 */
-  far[3] = -(along + across) / 4 + 1. / 32;              /* b2 */
-  far[4] = 1. / 96;                                      /* b6 */
+  far[2] = 1. / 96;                                       /* a6 */
+  far[3] = -(along + across) / 4 + 1. / 32;               /* b2 */
+  far[4] = 1. / 96;                                       /* b6 */
 }
 
 /* C of two distant markers, d apart: xx, yy, xy. */

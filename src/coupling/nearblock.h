@@ -10,6 +10,7 @@ PETSC_EXTERN void NearFarCoefficients(const Kernel *kernel, PetscReal far[5]);
 /* NearBlockFill - the block's matrix at the present markers. Not collective. */
 PETSC_EXTERN PetscErrorCode NearBlockFill(NearField near, NearBlock *block);
 
-/* NearLatticePair - L of markers i and j, d = X_i - X_j (length) that of the image meant: xx, yy, xy, yx. By stencils as far
-   as the table goes, by closed form beyond. Of `near` it reads markers, stencil, lattice, far and nu. Not collective. */
+/* NearLatticePair - L of markers i and j, d = X_i - X_j (length) that of the image meant: xx, yy, xy, yx. By stencils
+   as far as the table goes, by closed form beyond. Of `near` it reads markers, stencil, lattice, far and nu. Not
+   collective. */
 PETSC_EXTERN void NearLatticePair(NearField near, PetscInt i, PetscInt j, const PetscReal d[2], PetscReal L[4]);

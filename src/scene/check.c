@@ -124,7 +124,8 @@ static PetscErrorCode CheckPenalty(Scene scene, PetscBool split) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The near field belongs to the unsplit step, and to a kernel whose second moments are the same everywhere in a cell. */
+/* The near field belongs to the unsplit step, and to a kernel whose second moments are the same everywhere in a cell.
+ */
 static PetscErrorCode CheckNearField(Scene scene) {
   PetscFunctionBeginUser;
   PetscCheck(scene->coupling.near_field == NEAR_EXACT || !scene->coupling.box_part ||
@@ -136,9 +137,10 @@ static PetscErrorCode CheckNearField(Scene scene) {
              "-coupling_near_field exact: not with -scheme_type %s, which is its paper's method; allowed: none, or "
              "-scheme_type coupled or direct",
              scene->scheme.type);
-  PetscCheck(strcmp(scene->coupling.kernel, "cbs32"), scene->comm, PETSC_ERR_USER_INPUT,
-             "-delta_type cbs32: not with -coupling_near_field exact, because its second moment depends on the place in a "
-             "cell; allowed: ib6, cbs43, cbs54, cbs65, or -coupling_near_field none");
+  PetscCheck(
+      strcmp(scene->coupling.kernel, "cbs32"), scene->comm, PETSC_ERR_USER_INPUT,
+      "-delta_type cbs32: not with -coupling_near_field exact, because its second moment depends on the place in a "
+      "cell; allowed: ib6, cbs43, cbs54, cbs65, or -coupling_near_field none");
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -46,8 +46,8 @@ PetscErrorCode SceneView(Scene scene, PetscViewer v) {
     PetscCall(PetscViewerASCIIPrintf(v, "membrane: kernel %s, %s, near field %s, area target %s\n",
                                      scene->coupling.kernel, derivatives[scene->membrane.derivative],
                                      scene->coupling.near_field != NEAR_EXACT ? "none"
-                                     : scene->coupling.box_part             ? "exact with box part"
-                                                                            : "exact",
+                                     : scene->coupling.box_part               ? "exact with box part"
+                                                                              : "exact",
                                      scene->scheme.area_target ? "on" : "off"));
   PetscCall(PetscViewerASCIIPrintf(v, "scheme: %s, order %" PetscInt_FMT ", dt = %g to t = %g\n", scene->scheme.type,
                                    scene->scheme.order, (double)scene->time.dt, (double)scene->time.end));
