@@ -102,34 +102,26 @@ static PetscErrorCode Solve(BoxGrid *b) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What the lattice has of places i and j that are d apart, less what the near field gives of the walls: xx, yy, xy, yx.
- */
-static void LatticeAt(BoxGrid *b, PetscInt i, PetscInt j, const PetscReal d[2], PetscReal L[4]) {
-  PetscReal C[4] = {0, 0, 0, 0};
-  NearLatticePair(&b->near, i, j, d, L);
-  NearImageAdd(b->image, i, j, d, L, C);
-  for (int c = 0; c < 4; c++) L[c] -= C[c];
+PetscReal BoxImage(const BoxAxis axis[2], PetscReal d[2]) {
+  PetscReal part = 1;
+  for (int dir = 0; dir < 2; dir++) {
+    const PetscReal period = axis[dir].high - axis[dir].low;
+    if (axis[dir].wall) continue;
+    d[dir] -= period * PetscFloorReal(d[dir] / period + 0.5);
+    part *= 0.5 * erfc(2.3 * (PetscAbsReal(d[dir]) / period - 0.3) / 0.2);
+  }
+  return part;
 }
 
-/* The same of the nearest image; of two as near the mean. */
+/* What the lattice has of places i and j, less what the near field gives of the walls: xx, yy, xy, yx. */
 static void Lattice(BoxGrid *b, PetscInt i, PetscInt j, PetscReal L[4]) {
   const PetscReal *X = b->markers->X;
-  PetscReal d[2], other[2], more[4];
-  PetscBool even = PETSC_FALSE;
-  for (int dir = 0; dir < 2; dir++) {
-    const BoxAxis *a = &b->axis[dir];
-    const PetscReal period = a->high - a->low;
-    d[dir] = X[2 * i + dir] - X[2 * j + dir];
-    if (!a->wall) d[dir] -= period * PetscFloorReal(d[dir] / period + 0.5);
-    other[dir] = d[dir];
-    if (a->wall || PetscAbsReal(PetscAbsReal(d[dir]) - 0.5 * period) > 1e-9 * period) continue;
-    other[dir] = -d[dir];
-    even = PETSC_TRUE;
-  }
-  LatticeAt(b, i, j, d, L);
-  if (!even) return;
-  LatticeAt(b, i, j, other, more);
-  for (int c = 0; c < 4; c++) L[c] = 0.5 * (L[c] + more[c]);
+  PetscReal d[2] = {X[2 * i] - X[2 * j], X[2 * i + 1] - X[2 * j + 1]};
+  PetscReal C[4] = {0, 0, 0, 0};
+  const PetscReal part = BoxImage(b->axis, d);
+  NearLatticePair(&b->near, i, j, d, L);
+  NearImageAdd(b->image, i, j, d, L, C);
+  for (int c = 0; c < 4; c++) L[c] = part * (L[c] - C[c]);
 }
 
 /* Whether x and y are alike. */

@@ -49,23 +49,29 @@ static PetscReal Fade(BoxPart b, const PetscReal X[2]) {
   return fade;
 }
 
+/* a[modes] += weights of one velocity component's functions times the block's vectors. */
+static void AddBlock(const BoxBlock *q, int c, const PetscReal vx[], const PetscReal vy[], PetscReal fade,
+                     PetscReal a[]) {
+  const PetscReal *row = q->Q + c * q->n[0] * q->n[1] * q->modes;
+  for (PetscInt i = 0; i < q->n[0]; i++)
+    for (PetscInt j = 0; j < q->n[1]; j++, row += q->modes) {
+      const PetscReal weight = fade * vx[q->first[c][0] + i] * vy[q->first[c][1] + j];
+      for (PetscInt m = 0; m < q->modes; m++) a[m] += weight * row[m];
+    }
+}
+
 /* The rows of A of marker k, from its functions' values. */
 static void PlaceMarker(BoxPart b, PetscInt k) {
   const BoxTable *t = &b->table;
-  const PetscInt nx = t->functions[0], ny = t->functions[1], r = t->rank;
   const PetscReal *X = b->markers->X + 2 * k, fade = Fade(b, X);
   PetscReal vx[BOX_FUNCTIONS], vy[BOX_FUNCTIONS];
-  (void)PetscArrayzero(b->A + 2 * k * r, 2 * r);
+  (void)PetscArrayzero(b->A + 2 * k * t->rank, 2 * t->rank);
   if (fade == 0) return;
   BoxTableFunctions(t, 0, X[0], vx);
   BoxTableFunctions(t, 1, X[1], vy);
-  for (int c = 0; c < 2; c++)
-    for (PetscInt i = 0; i < nx; i++)
-      for (PetscInt j = 0; j < ny; j++) {
-        const PetscReal weight = fade * vx[i] * vy[j], *q = t->Q + ((c * nx + i) * ny + j) * r;
-        PetscReal *a = b->A + (2 * k + c) * r;
-        for (PetscInt m = 0; m < r; m++) a[m] += weight * q[m];
-      }
+  for (PetscInt q = 0; q < t->blocks; q++)
+    for (int c = 0; c < 2; c++)
+      AddBlock(&t->block[q], c, vx, vy, fade, b->A + (2 * k + c) * t->rank + t->block[q].start);
 }
 
 void BoxPartPlace(BoxPart b) {

@@ -1,5 +1,6 @@
 /* The box part of the near field: D takes the error of second order off what walls and periodic images add to the
-   markers' mobility (boxtable.h), U += D (f ds) for all pairs of markers. D is steady in every flow. */
+   markers' mobility (boxtable.h), U += D (f ds) for all pairs of markers. D is steady in every flow. Over a period C is
+   of the nearest images only and fades where D takes over (BoxPartImage). */
 #pragma once
 #include "coupling/boxtable.h"
 #include "markers/markers.h"
@@ -19,6 +20,11 @@ PETSC_EXTERN PetscErrorCode BoxPartDestroy(BoxPart *box);
 
 /* BoxPartPlace - where the markers have been placed. Not collective. */
 PETSC_EXTERN void BoxPartPlace(BoxPart box);
+
+/* BoxPartImage - BoxImage of the box. Not collective. */
+static inline PetscReal BoxPartImage(BoxPart box, PetscReal d[2]) {
+  return BoxImage(box->table.axis, d);
+}
 
 /* BoxPartApply - U += alpha D F, own parts F[2n] and U[2n] of marker vectors, F as NearFieldApply's. Collective. */
 PETSC_EXTERN PetscErrorCode BoxPartApply(BoxPart box, PetscReal alpha, const PetscScalar F[], PetscScalar U[]);

@@ -3,10 +3,10 @@
 
 #define WALL_PLACES 12
 #define WALL_MARGIN 3    /* cells of the coarser grid between the places and a wall: what its kernels reach */
-#define MODES 11         /* of a period */
+#define MODES 16         /* of a period as long as the other side */
 #define COARSE_CELLS 64  /* of the shorter side, on the coarser grid */
 #define LATTICE_CELLS 30 /* of the lattice's table; beyond, its closed form is right to 2e-7 */
-#define SMALLEST 1e-4    /* of the largest: eigenvalues below it are dropped */
+#define SMALLEST 1e-3    /* of the largest: eigenvalues below it are dropped */
 
 /* The coarser grid: as many cells as keep them square, from COARSE_CELLS on across, or the run's own. */
 static void CoarseCells(const FluidSpec *spec, PetscInt cells[2]) {
@@ -22,10 +22,12 @@ static void CoarseCells(const FluidSpec *spec, PetscInt cells[2]) {
 }
 
 static void MakeAxis(const FluidSpec *spec, int dir, PetscReal H, BoxAxis *a) {
+  const PetscInt shorter = PetscMin(spec->cells[0], spec->cells[1]), times = (spec->cells[dir] + shorter - 1) / shorter;
   a->wall = spec->bc[dir] == BC_WALL ? PETSC_TRUE : PETSC_FALSE;
   a->low = spec->box[2 * dir] + (a->wall ? WALL_MARGIN * H : 0);
   a->high = spec->box[2 * dir + 1] - (a->wall ? WALL_MARGIN * H : 0);
-  a->places = a->wall ? WALL_PLACES : BOX_PLACES;
+  a->places = a->wall ? WALL_PLACES : times * BOX_PLACES / BOX_ASPECT;
+  a->modes = a->wall ? 0 : times * MODES;
   a->pairs = a->wall ? a->places * a->places : a->places;
   for (PetscInt k = 0; k < a->places; k++) {
     const PetscReal z = -PetscCosReal(PETSC_PI * (k + 0.5) / a->places);
@@ -34,29 +36,36 @@ static void MakeAxis(const FluidSpec *spec, int dir, PetscReal H, BoxAxis *a) {
   }
 }
 
-void BoxTableFunctions(const BoxTable *t, int dir, PetscReal x, PetscReal values[]) {
-  const BoxAxis *a = &t->axis[dir];
+/* Lagrange's polynomials, then their even and odd halves, which the mirror images of a box keep apart. */
+static void Polynomials(const BoxAxis *a, PetscReal x, PetscReal values[]) {
   const PetscInt n = a->places;
-  PetscReal sum = 0;
-  if (!a->wall) {
-    values[0] = 1;
-    for (PetscInt m = 1; m <= MODES; m++) {
-      const PetscReal angle = 2 * PETSC_PI * m * (x - a->low) / (a->high - a->low);
-      values[2 * m - 1] = PetscCosReal(angle);
-      values[2 * m] = PetscSinReal(angle);
-    }
-    return;
-  }
+  PetscReal plain[WALL_PLACES], sum = 0;
+  PetscInt at = -1;
   for (PetscInt k = 0; k < n; k++) { /* the second barycentric formula */
     const PetscReal off = x - a->place[k];
-    if (PetscAbsReal(off) < 1e-14 * (a->high - a->low)) {
-      for (PetscInt q = 0; q < n; q++) values[q] = q == k;
-      return;
-    }
-    values[k] = (k % 2 ? -1 : 1) * PetscSinReal(PETSC_PI * (k + 0.5) / n) / off;
-    sum += values[k];
+    if (PetscAbsReal(off) < 1e-14 * (a->high - a->low)) at = k;
+    plain[k] = (k % 2 ? -1 : 1) * PetscSinReal(PETSC_PI * (k + 0.5) / n) / off;
+    sum += plain[k];
   }
-  for (PetscInt k = 0; k < n; k++) values[k] /= sum;
+  for (PetscInt k = 0; k < n; k++) plain[k] = at < 0 ? plain[k] / sum : k == at;
+  for (PetscInt k = 0; k < n / 2; k++) {
+    values[k] = PetscSqrtReal(0.5) * (plain[k] + plain[n - 1 - k]);
+    values[n / 2 + k] = PetscSqrtReal(0.5) * (plain[k] - plain[n - 1 - k]);
+  }
+}
+
+void BoxTableFunctions(const BoxTable *t, int dir, PetscReal x, PetscReal values[]) {
+  const BoxAxis *a = &t->axis[dir];
+  if (a->wall) {
+    Polynomials(a, x, values);
+    return;
+  }
+  values[0] = 1;
+  for (PetscInt m = 1; m <= a->modes; m++) {
+    const PetscReal angle = 2 * PETSC_PI * m * (x - a->low) / (a->high - a->low);
+    values[2 * m - 1] = PetscCosReal(angle);
+    values[2 * m] = PetscSinReal(angle);
+  }
 }
 
 /* Functions f, g of a response and a force that W couples, with the weights of its pairs. */
@@ -69,27 +78,40 @@ typedef struct {
   PetscReal *weight; /* [count][pairs] */
 } Couplings;
 
-/* Between walls each pair of places by itself. Over a period, from W's Fourier series in the offset, with cos(a - b) =
-   cos a cos b + sin a sin b and sin(a - b) = sin a cos b - cos a sin b. */
+/* Between walls: halves f and g, even or odd, of the polynomials of two places each. */
+static void WallCouple(const BoxAxis *a, Couple c, PetscReal weight[]) {
+  const PetscInt n = a->places, half = n / 2, i = c.f % half, j = c.g % half;
+  const PetscReal si = c.f < half ? 1 : -1, sj = c.g < half ? 1 : -1;
+  weight[i * n + j] += 0.5;
+  weight[(n - 1 - i) * n + j] += 0.5 * si;
+  weight[i * n + n - 1 - j] += 0.5 * sj;
+  weight[(n - 1 - i) * n + n - 1 - j] += 0.5 * si * sj;
+}
+
+/* Over a period, from W's Fourier series in the offset, with cos(a - b) = cos a cos b + sin a sin b and sin(a - b) =
+   sin a cos b - cos a sin b. */
+static void PeriodCouple(const BoxAxis *a, PetscInt k, Couple *c, PetscReal weight[]) {
+  const PetscInt n = a->places, m = (k + 3) / 4, kind = k ? (k - 1) % 4 : 0, cosine = m ? 2 * m - 1 : 0;
+  *c = (Couple){cosine + (kind == 1 || kind == 2), cosine + (kind == 1 || kind == 3)};
+  for (PetscInt q = 0; q < n; q++) {
+    const PetscReal angle = 2 * PETSC_PI * ((m * q) % n) / n, factor = (m ? 2.0 : 1.0) / n;
+    weight[q] = factor * (kind < 2 ? PetscCosReal(angle) : PetscSinReal(angle)) * (kind == 3 ? -1 : 1);
+  }
+}
+
 static PetscErrorCode MakeCouplings(const BoxAxis *a, Couplings *c) {
   const PetscInt n = a->places;
   PetscFunctionBeginUser;
-  c->count = a->wall ? n * n : 1 + 4 * MODES;
+  c->count = a->wall ? n * n : 1 + 4 * a->modes;
   PetscCall(PetscMalloc1(c->count, &c->couple));
   PetscCall(PetscCalloc1(c->count * a->pairs, &c->weight));
   for (PetscInt k = 0; k < c->count; k++) {
     PetscReal *weight = c->weight + k * a->pairs;
-    const PetscInt m = (k + 3) / 4, kind = k ? (k - 1) % 4 : 0, cosine = m ? 2 * m - 1 : 0;
-    if (a->wall) {
-      c->couple[k] = (Couple){k / n, k % n};
-      weight[k] = 1;
-      continue;
-    }
-    c->couple[k] = (Couple){cosine + (kind == 1 || kind == 2), cosine + (kind == 1 || kind == 3)};
-    for (PetscInt q = 0; q < n; q++) {
-      const PetscReal angle = 2 * PETSC_PI * ((m * q) % n) / n, factor = (m ? 2.0 : 1.0) / n;
-      weight[q] = factor * (kind < 2 ? PetscCosReal(angle) : PetscSinReal(angle)) * (kind == 3 ? -1 : 1);
-    }
+    c->couple[k] = (Couple){k / n, k % n};
+    if (a->wall)
+      WallCouple(a, c->couple[k], weight);
+    else
+      PeriodCouple(a, k, &c->couple[k], weight);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -128,56 +150,81 @@ static PetscErrorCode Transform(const BoxTable *t, const PetscReal W[], PetscRea
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Number of the block of T that a function belongs to: periodic modes do not couple. */
-static PetscInt BlockOf(const BoxTable *t, PetscInt function) {
-  const PetscInt fy = t->functions[1], x = function / fy % t->functions[0], y = function % fy;
-  return (t->axis[0].wall ? 0 : (x + 1) / 2) * (MODES + 1) + (t->axis[1].wall ? 0 : (y + 1) / 2);
+/* A direction's blocks: even and odd between walls, one a mode over a period. */
+static PetscInt CountBlocks(const BoxAxis *a) {
+  return a->wall ? 2 : a->modes + 1;
 }
 
-/* Eigenpairs of one block of T, put in: values l and vectors Q[.][count]; *found counts them. */
-static PetscErrorCode SolveBlock(const BoxTable *t, PetscInt block, const PetscReal T[], PetscInt *found, PetscReal l[],
-                                 PetscReal Q[]) {
-  const PetscInt n = t->count;
-  PetscInt *member, size = 0;
-  PetscReal *A;
+/* A direction's functions of block b: a cosine and its sine; between walls the even or odd half, and of the other
+   component the other one, as the mirror image of a velocity changes the sign of one component. */
+static void BlockFunctions(const BoxTable *t, int dir, PetscInt b, BoxBlock *q) {
+  const PetscInt half = t->functions[dir] / 2;
+  const PetscBool wall = t->axis[dir].wall;
+  q->n[dir] = wall ? half : b ? 2 : 1;
+  for (int c = 0; c < 2; c++) q->first[c][dir] = wall ? (b == c ? 0 : half) : b ? 2 * b - 1 : 0;
+}
+
+/* The block's part of T, its eigenvectors in A (columns) and eigenvalues l. */
+static PetscErrorCode SolveBlock(const BoxTable *t, const BoxBlock *q, const PetscReal T[], PetscReal A[],
+                                 PetscReal l[]) {
+  const PetscInt half = q->n[0] * q->n[1], size = 2 * half;
+  PetscInt *member;
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(n, &member));
-  for (PetscInt k = 0; k < n; k++)
-    if (BlockOf(t, k) == block) member[size++] = k;
-  PetscCall(PetscMalloc1(size * size, &A));
+  PetscCall(PetscMalloc1(size, &member));
+  for (PetscInt k = 0; k < size; k++) {
+    const PetscInt c = k / half, x = q->first[c][0] + k % half / q->n[1], y = q->first[c][1] + k % q->n[1];
+    member[k] = (c * t->functions[0] + x) * t->functions[1] + y;
+  }
   for (PetscInt i = 0; i < size; i++)
-    for (PetscInt j = 0; j < size; j++) A[i * size + j] = T[member[i] * n + member[j]];
-  if (size) PetscCall(DenseEigen(size, A, l + *found));
-  for (PetscInt k = 0; k < size; k++)
-    for (PetscInt i = 0; i < size; i++) Q[(*found + k) * n + member[i]] = A[k * size + i];
-  *found += size;
-  PetscCall(PetscFree(A));
+    for (PetscInt j = 0; j < size; j++) A[i * size + j] = T[member[i] * t->count + member[j]];
+  PetscCall(DenseEigen(size, A, l));
   PetscCall(PetscFree(member));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The largest eigenvalues of T, with their vectors. */
-static PetscErrorCode Decompose(BoxTable *t, const PetscReal T[]) {
-  const PetscInt n = t->count;
-  PetscInt found = 0, *order;
-  PetscReal *l, *size, *Q;
+/* Keep the block's eigenpairs that are larger than `least`. */
+static PetscErrorCode KeepLargest(BoxBlock *q, const PetscReal A[], const PetscReal l[], PetscReal least,
+                                  PetscReal kept[], PetscInt *rank) {
+  const PetscInt size = 2 * q->n[0] * q->n[1];
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc4(n, &l, n, &size, n, &order, n * n, &Q));
-  PetscCall(PetscArrayzero(Q, n * n));
-  for (PetscInt b = 0; b < PetscSqr(MODES + 1); b++) PetscCall(SolveBlock(t, b, T, &found, l, Q));
-  for (PetscInt k = 0; k < n; k++) {
-    size[k] = -PetscAbsReal(l[k]);
-    order[k] = k;
+  q->start = *rank;
+  q->modes = 0;
+  for (PetscInt k = 0; k < size; k++) q->modes += PetscAbsReal(l[k]) > least;
+  PetscCall(PetscMalloc1(size * q->modes, &q->Q));
+  for (PetscInt k = 0, m = 0; k < size; k++) {
+    if (PetscAbsReal(l[k]) <= least) continue;
+    kept[(*rank)++] = l[k];
+    for (PetscInt i = 0; i < size; i++) q->Q[i * q->modes + m] = A[k * size + i];
+    m++;
   }
-  PetscCall(PetscSortRealWithArrayInt(n, size, order));
-  t->rank = 0;
-  while (t->rank < PetscMin(n, BOX_RANK) && size[t->rank] < SMALLEST * size[0]) t->rank++;
-  PetscCall(PetscMalloc2(n * t->rank, &t->Q, t->rank, &t->l));
-  for (PetscInt k = 0; k < t->rank; k++) {
-    t->l[k] = l[order[k]];
-    for (PetscInt i = 0; i < n; i++) t->Q[i * t->rank + k] = Q[order[k] * n + i];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The largest eigenvalues of T, with their vectors, block by block. */
+static PetscErrorCode Decompose(BoxTable *t, const PetscReal T[]) {
+  PetscReal *l, *A, most = 0;
+  PetscInt *at, *from, values = 0, vectors = 0;
+  PetscFunctionBeginUser;
+  t->blocks = CountBlocks(&t->axis[0]) * CountBlocks(&t->axis[1]);
+  PetscCall(PetscCalloc1(t->blocks, &t->block));
+  PetscCall(PetscMalloc2(t->blocks + 1, &at, t->blocks + 1, &from));
+  for (PetscInt b = 0; b < t->blocks; b++) {
+    BoxBlock *q = &t->block[b];
+    BlockFunctions(t, 0, b / CountBlocks(&t->axis[1]), q);
+    BlockFunctions(t, 1, b % CountBlocks(&t->axis[1]), q);
+    at[b] = values;
+    from[b] = vectors;
+    values += 2 * q->n[0] * q->n[1];
+    vectors += PetscSqr(2 * q->n[0] * q->n[1]);
   }
-  PetscCall(PetscFree4(l, size, order, Q));
+  PetscCall(PetscMalloc2(values, &l, vectors, &A));
+  for (PetscInt b = 0; b < t->blocks; b++) PetscCall(SolveBlock(t, &t->block[b], T, A + from[b], l + at[b]));
+  for (PetscInt k = 0; k < values; k++) most = PetscMax(most, PetscAbsReal(l[k]));
+  PetscCall(PetscMalloc1(values, &t->l));
+  for (PetscInt b = 0; b < t->blocks; b++)
+    PetscCall(KeepLargest(&t->block[b], A + from[b], l + at[b], SMALLEST * most, t->l, &t->rank));
+  PetscCall(PetscFree2(l, A));
+  PetscCall(PetscFree2(at, from));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -211,7 +258,7 @@ PetscErrorCode BoxTableCreate(const FluidSpec *spec, const char kernel[], BoxTab
   t->H = (spec->box[1] - spec->box[0]) / cells[0];
   for (int d = 0; d < 2; d++) {
     MakeAxis(spec, d, t->H, &t->axis[d]);
-    t->functions[d] = t->axis[d].wall ? WALL_PLACES : 2 * MODES + 1;
+    t->functions[d] = t->axis[d].wall ? WALL_PLACES : 2 * t->axis[d].modes + 1;
     size *= t->axis[d].pairs;
   }
   t->count = 2 * t->functions[0] * t->functions[1];
@@ -226,6 +273,8 @@ PetscErrorCode BoxTableCreate(const FluidSpec *spec, const char kernel[], BoxTab
 
 PetscErrorCode BoxTableDestroy(BoxTable *t) {
   PetscFunctionBeginUser;
-  PetscCall(PetscFree2(t->Q, t->l));
+  for (PetscInt b = 0; b < t->blocks; b++) PetscCall(PetscFree(t->block[b].Q));
+  PetscCall(PetscFree(t->block));
+  PetscCall(PetscFree(t->l));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

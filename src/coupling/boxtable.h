@@ -4,17 +4,25 @@
 #pragma once
 #include "coupling/boxgrid.h"
 
-#define BOX_RANK 48      /* largest rank kept */
-#define BOX_FUNCTIONS 48 /* largest number of functions of a direction */
+#define BOX_FUNCTIONS BOX_PLACES /* more than the functions of a direction */
+
+/* Functions of x and y that D couples with one another only, and what is kept of its eigenvectors in them. */
+typedef struct {
+  PetscInt first[2][2];  /* [component]: its functions of x, of y, from here on */
+  PetscInt n[2];         /* so many */
+  PetscInt start, modes; /* its eigenvalues among all */
+  PetscReal *Q;          /* [2 components][n[0]][n[1]][modes] */
+} BoxBlock;
 
 typedef struct {
   BoxAxis axis[2];       /* of the places: Chebyshev's between walls, even offsets over a period */
   PetscInt functions[2]; /* in x and y: Lagrange's polynomials, or 1, cos, sin, .. over the period */
   PetscInt count;        /* of all: 2 components, x and y functions, y fastest */
-  PetscInt rank;
-  PetscReal *Q; /* [count][rank] */
-  PetscReal *l; /* [rank] velocity per force */
-  PetscReal H;  /* cell size of the coarser grid */
+  PetscInt blocks;
+  BoxBlock *block;
+  PetscInt rank; /* eigenvalues kept */
+  PetscReal *l;  /* [rank] velocity per force */
+  PetscReal H;   /* cell size of the coarser grid */
 } BoxTable;
 
 /* BoxTableCreate - for the run's grid and boundaries. Collective on spec->comm: ranks share the solves. BoxTableDestroy

@@ -78,7 +78,8 @@ static void SelfPart(NearField f, PetscInt v, PetscInt k, const PetscReal T[2], 
 static void Pair(NearField f, PetscInt v, PetscInt i, PetscInt j, PetscInt k, const PetscReal shift[2],
                  const PetscReal T[2], PetscReal C[4]) {
   const PetscReal *X = f->markers->X, h = f->markers->grid->h;
-  const PetscReal d[2] = {X[2 * i] - X[2 * j] - shift[0], X[2 * i + 1] - X[2 * j + 1] - shift[1]};
+  PetscReal d[2] = {X[2 * i] - X[2 * j] - shift[0], X[2 * i + 1] - X[2 * j + 1] - shift[1]};
+  const PetscReal part = f->box ? BoxPartImage(f->box, d) : 1;
   PetscReal S[3] = {0, 0, 0}, own[3] = {0, 0, 0}, far[3], L[4] = {0, 0, 0, 0};
   if (k >= 0) SelfPart(f, v, k, T, own);
   if (k) Stokeslet(f->nu, d, S);
@@ -87,10 +88,9 @@ static void Pair(NearField f, PetscInt v, PetscInt i, PetscInt j, PetscInt k, co
     for (int c = 0; c < 4; c++) L[c] = S[PetscMin(c, 2)] - far[PetscMin(c, 2)];
   } else if (!f->free)
     LatticePair(f, i, j, d, L);
-  for (int c = 0; c < 2; c++) C[c] = S[c] + own[c] - L[c];
-  C[2] = S[2] + own[2] - L[2];
-  C[3] = S[2] + own[2] - L[3];
+  for (int c = 0; c < 4; c++) C[c] = S[PetscMin(c, 2)] - L[c];
   if (f->image) NearImageAdd(f->image, i, j, d, L, C);
+  for (int c = 0; c < 4; c++) C[c] = part * C[c] + own[PetscMin(c, 2)];
 }
 
 PetscErrorCode NearBlockFill(NearField f, NearBlock *b) {

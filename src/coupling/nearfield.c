@@ -87,26 +87,27 @@ static PetscErrorCode AddBlock(NearField f, PetscInt v, PetscInt w, const PetscR
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether markers of v and of w moved by shift come nearer than REACH cells; in unbounded fluid all are near. */
-static PetscBool AreNear(NearField f, PetscInt v, PetscInt w, const PetscReal shift[2]) {
+/* Square of the least distance (length^2) between markers of v and of w moved by shift. */
+static PetscReal Apart(NearField f, PetscInt v, PetscInt w, const PetscReal shift[2]) {
   const Layout l = f->membrane->layout;
-  const PetscReal reach = REACH * f->markers->grid->h, *X = f->markers->X;
-  if (f->free) return PETSC_TRUE;
+  const PetscReal *X = f->markers->X;
+  PetscReal least = PETSC_MAX_REAL;
   for (PetscInt i = l->start[v]; i < l->start[v + 1]; i++)
     for (PetscInt j = l->start[w]; j < l->start[w + 1]; j++) {
       const PetscReal dx = X[2 * i] - X[2 * j] - shift[0], dy = X[2 * i + 1] - X[2 * j + 1] - shift[1];
-      if (dx * dx + dy * dy < reach * reach) return PETSC_TRUE;
+      least = PetscMin(least, dx * dx + dy * dy);
     }
-  return PETSC_FALSE;
+  return least;
 }
 
-/* Images of w within reach of v: the one whose first marker is nearest, and its neighbours. */
+/* Images of w within REACH cells of v, in unbounded fluid at any distance: the one whose first marker is nearest, and
+   its neighbours. With a box part one block, of the images nearest to each marker, named after the nearest. */
 static PetscErrorCode AddPair(NearField f, PetscInt v, PetscInt w) {
   const Grid g = f->markers->grid;
   const Layout l = f->membrane->layout;
-  const PetscReal *X = f->markers->X;
+  const PetscReal *X = f->markers->X, reach = f->free ? PETSC_MAX_REAL : PetscSqr(REACH * g->h);
   PetscInt around[2];
-  PetscReal middle[2], box[2];
+  PetscReal middle[2], box[2], nearest[2] = {0, 0}, least = reach;
   PetscFunctionBeginUser;
   for (int d = 0; d < 2; d++) {
     box[d] = g->hi[d] - g->lo[d];
@@ -116,9 +117,14 @@ static PetscErrorCode AddPair(NearField f, PetscInt v, PetscInt w) {
   for (PetscInt q = -around[1]; q <= around[1]; q++)
     for (PetscInt p = -around[0]; p <= around[0]; p++) {
       const PetscReal shift[2] = {(middle[0] + p) * box[0], (middle[1] + q) * box[1]};
-      const PetscBool self = v == w && shift[0] == 0 && shift[1] == 0 ? PETSC_TRUE : PETSC_FALSE;
-      if (self || AreNear(f, v, w, shift)) PetscCall(AddBlock(f, v, w, shift));
+      const PetscReal apart = v == w && shift[0] == 0 && shift[1] == 0 ? 0 : Apart(f, v, w, shift);
+      if (apart >= reach) continue;
+      if (!f->box) PetscCall(AddBlock(f, v, w, shift));
+      if (apart >= least) continue;
+      least = apart;
+      PetscCall(PetscArraycpy(nearest, shift, 2));
     }
+  if (f->box && least < reach) PetscCall(AddBlock(f, v, w, nearest));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -1,0 +1,210 @@
+/* The box part D of the near field: symmetric, of second order in h, free of a net flux through a membrane; with it the
+   markers' velocity on a coarse grid is that on a finer one. */
+#include "check.h"
+#include "fluid/stokes.h"
+#include "scheme/scheme.h"
+
+typedef struct {
+  Scene scene;
+  Fluid fluid;
+  Layout layout;
+  Membrane membrane;
+  Coupling coupling;
+  PetscReal *D; /* [2M][2M] */
+} World;
+
+static PetscErrorCode WorldCreate(const char options[], PetscInt cells, World *w) {
+  char all[1024], message[PETVES_MAX_MESSAGE];
+  PetscScalar *x;
+  Vec X;
+  PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(all, sizeof(all), "%s -domain_cells %d,%d", options, (int)cells, (int)cells));
+  PetscCall(PetscOptionsClear(NULL));
+  PetscCall(PetscOptionsInsertString(NULL, all));
+  PetscCall(SceneCreate(PETSC_COMM_WORLD, NULL, NULL, &w->scene));
+  const Scene s = w->scene;
+  PetscCall(FluidCreate(&s->fluid, &w->fluid));
+  PetscCall(LayoutCreate(s->comm, s->shape.vesicles, s->shape.start, &w->layout));
+  PetscCall(
+      MembraneCreate(w->layout, s->shape.X, s->membrane.bending, (DerivativeType)s->membrane.derivative, &w->membrane));
+  PetscCall(CouplingCreate(w->fluid, w->membrane, s->coupling.kernel, NEAR_EXACT, &w->coupling));
+  PetscCall(NearFieldAddBoxPart(w->coupling->near, &s->fluid));
+  PetscCall(LayoutCreateVec(w->layout, 2, &X));
+  PetscCall(VecGetArray(X, &x));
+  PetscCall(PetscArraycpy(x, s->shape.X + 2 * w->layout->first, 2 * w->layout->n));
+  PetscCall(VecRestoreArray(X, &x));
+  PetscCall(CouplingPlace(w->coupling, w->fluid->a0, X, message));
+  PetscCheck(!*message, s->comm, PETSC_ERR_LIB, "%s", message);
+  PetscCall(VecDestroy(&X));
+  PetscCall(PetscCalloc1(PetscSqr(2 * w->layout->M), &w->D));
+  BoxPartAdd(w->coupling->near->box, 1, 0, w->layout->M, 0, w->layout->M, w->D);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode WorldDestroy(World *w) {
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(w->D));
+  PetscCall(CouplingDestroy(&w->coupling));
+  PetscCall(MembraneDestroy(&w->membrane));
+  PetscCall(LayoutDestroy(&w->layout));
+  PetscCall(FluidDestroy(&w->fluid));
+  PetscCall(SceneDestroy(&w->scene));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* x.D y of vectors of all markers. */
+static PetscReal Form(World *w, const PetscReal x[], const PetscReal y[]) {
+  const PetscInt n = 2 * w->layout->M;
+  PetscReal sum = 0;
+  for (PetscInt j = 0; j < n; j++)
+    for (PetscInt i = 0; i < n; i++) sum += x[i] * w->D[j * n + i] * y[j];
+  return sum;
+}
+
+/* Root of the sum of squares of D - factor D', over that of D. */
+static PetscReal OffBy(World *w, World *finer, PetscReal factor) {
+  PetscReal sum = 0, size = 0;
+  for (PetscInt k = 0; k < PetscSqr(2 * w->layout->M); k++) {
+    sum += PetscSqr(w->D[k] - factor * finer->D[k]);
+    size += PetscSqr(w->D[k]);
+  }
+  return PetscSqrtReal(sum / size);
+}
+
+static PetscReal Asymmetry(World *w) {
+  const PetscInt n = 2 * w->layout->M;
+  PetscReal most = 0;
+  for (PetscInt j = 0; j < n; j++)
+    for (PetscInt i = 0; i < n; i++) most = PetscMax(most, PetscAbsReal(w->D[j * n + i] - w->D[i * n + j]));
+  return most;
+}
+
+/* Normals of unit size in all, and the forces c + k (1, 2) of the cosines of the markers' numbers. */
+static void Vectors(World *w, PetscReal normal[], PetscReal force[]) {
+  const PetscInt M = w->layout->M;
+  const PetscReal *X = w->coupling->markers->X;
+  PetscReal size = 0;
+  for (PetscInt v = 0; v < w->layout->bodies; v++) {
+    const PetscInt first = w->layout->start[v], n = LayoutCount(w->layout, v);
+    for (PetscInt k = 0; k < n; k++) {
+      const PetscInt next = first + (k + 1) % n, before = first + (k + n - 1) % n, at = first + k;
+      normal[2 * at] = X[2 * next + 1] - X[2 * before + 1];
+      normal[2 * at + 1] = X[2 * before] - X[2 * next];
+      force[2 * at] = PetscCosReal(2 * PETSC_PI * k / n) + 0.3 * PetscSinReal(4 * PETSC_PI * k / n);
+      force[2 * at + 1] = 0.5 * PetscSinReal(2 * PETSC_PI * k / n) - 0.2 * PetscCosReal(6 * PETSC_PI * k / n);
+    }
+  }
+  for (PetscInt k = 0; k < 2 * M; k++) size += PetscSqr(normal[k]);
+  for (PetscInt k = 0; k < 2 * M; k++) normal[k] /= PetscSqrtReal(size);
+}
+
+/* The table itself: the same markers on a grid and on one twice as fine. Over a period the flux is that of C + D. */
+static PetscErrorCode CheckTable(const char name[], const char options[], PetscBool walls) {
+  PetscReal *normal, *force, off;
+  World w[2];
+  PetscFunctionBeginUser;
+  for (int k = 0; k < 2; k++) PetscCall(WorldCreate(options, k ? 64 : 32, &w[k]));
+  PetscCall(PetscMalloc2(2 * w[0].layout->M, &normal, 2 * w[0].layout->M, &force));
+  for (int k = 0; k < 2; k++) {
+    CHECK(Asymmetry(&w[k]) == 0, "%s: D is symmetric to the bit, rank %d", name,
+          (int)w[k].coupling->near->box->table.rank);
+    Vectors(&w[k], normal, force);
+    const PetscReal flux = Form(&w[k], normal, normal);
+    if (walls) CHECK(PetscAbsReal(flux) < 1e-6, "%s: n.D n = %.1e", name, flux);
+  }
+  off = OffBy(&w[0], &w[1], 4);
+  CHECK(off < 0.03, "%s: D at h is 4 D at h/2 but for %.4f", name, off);
+  PetscCall(PetscFree2(normal, force));
+  for (int k = 0; k < 2; k++) PetscCall(WorldDestroy(&w[k]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* U[2M] = (E A^-1 E^T/h^2 + C + D) F where the Stokes solve is exact; D or not. */
+static PetscErrorCode Velocity(World *w, const PetscReal force[], PetscBool part, PetscReal all[]) {
+  const Coupling c = w->coupling;
+  const BoxPart box = c->near->box;
+  Stokes stokes;
+  Vec F, U, u, p;
+  PetscScalar *f, *a;
+  PetscFunctionBeginUser;
+  PetscCall(LayoutCreateVec(w->layout, 2, &F));
+  PetscCall(VecDuplicate(F, &U));
+  PetscCall(DMCreateGlobalVector(w->fluid->grid->velocity, &u));
+  PetscCall(DMCreateGlobalVector(w->fluid->grid->da[FIELD_P], &p));
+  PetscCall(StokesCreate(w->fluid, &stokes));
+  PetscCall(VecGetArray(F, &f));
+  PetscCall(PetscArraycpy(f, force + 2 * w->layout->first, 2 * w->layout->n));
+  PetscCall(VecRestoreArray(F, &f));
+  PetscCall(VecSet(u, 0));
+  PetscCall(MarkersSpread(c->markers, 1 / PetscSqr(w->fluid->grid->h), F, u));
+  PetscCall(StokesSolve(stokes, u, NULL, u, p));
+  PetscCall(MarkersInterpolate(c->markers, u, U));
+  if (!part) c->near->box = NULL;
+  PetscCall(VecGetArray(F, &f));
+  PetscCall(VecGetArray(U, &a));
+  PetscCall(NearFieldApply(c->near, 1, f, a));
+  PetscCall(VecRestoreArray(U, &a));
+  PetscCall(VecRestoreArray(F, &f));
+  c->near->box = box;
+  PetscCall(LayoutGatherVec(w->layout, U, all));
+  PetscCall(StokesDestroy(&stokes));
+  Vec *vectors[] = {&F, &U, &u, &p};
+  for (int k = 0; k < 4; k++) PetscCall(VecDestroy(vectors[k]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscReal Difference(PetscInt n, const PetscReal a[], const PetscReal b[]) {
+  PetscReal sum = 0, size = 0;
+  for (PetscInt k = 0; k < n; k++) {
+    sum += PetscSqr(a[k] - b[k]);
+    size += PetscSqr(b[k]);
+  }
+  return PetscSqrtReal(sum / size);
+}
+
+/* The markers' velocity on two grids, with D and without. */
+static PetscErrorCode CheckVelocity(const char name[], const char options[], PetscReal most) {
+  PetscReal *normal, *force, *U[2][2], with, without;
+  World w[2];
+  PetscFunctionBeginUser;
+  for (int k = 0; k < 2; k++) {
+    PetscCall(WorldCreate(options, k ? 64 : 32, &w[k]));
+    const PetscInt n = 2 * w[0].layout->M;
+    if (!k) PetscCall(PetscMalloc6(n, &normal, n, &force, n, &U[0][0], n, &U[0][1], n, &U[1][0], n, &U[1][1]));
+    Vectors(&w[k], normal, force);
+    for (int part = 0; part < 2; part++) PetscCall(Velocity(&w[k], force, (PetscBool)part, U[k][part]));
+  }
+  without = Difference(2 * w[0].layout->M, U[0][0], U[1][0]);
+  with = Difference(2 * w[0].layout->M, U[0][1], U[1][1]);
+  CHECK(with < most && with < 0.2 * without, "%s: velocities on 32 and 64 cells differ by %.1e, without D by %.1e",
+        name, with, without);
+  PetscCall(PetscFree6(normal, force, U[0][0], U[0][1], U[1][0], U[1][1]));
+  for (int k = 0; k < 2; k++) PetscCall(WorldDestroy(&w[k]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+#define ONE                                                                                                            \
+  "-domain_box 0,5,0,5 -fluid_inertia none -vesicle_semi_axes 0.4,0.6 -vesicle_center 2.6,2.3 -vesicle_angle 20 "      \
+  "-vesicle_markers 45 -vesicle_allow_close_markers true "
+#define TWO                                                                                                            \
+  "-domain_box 0,4,0,4 -fluid_inertia none -vesicle_count 2 -vesicle_semi_axes 0.4,0.6 -vesicle_center 1.2,1.8,3.1,2 " \
+  "-vesicle_markers 45 -vesicle_allow_close_markers true "
+#define CHANNEL "-domain_bc_x periodic "
+#define PERIODIC "-domain_bc_x periodic -domain_bc_y periodic "
+
+static PetscErrorCode Facts(void) {
+  PetscFunctionBeginUser;
+  PetscCall(CheckTable("walls", ONE, PETSC_TRUE));
+  PetscCall(CheckTable("channel", ONE CHANNEL, PETSC_FALSE));
+  PetscCall(CheckTable("channel in y", ONE "-domain_bc_y periodic ", PETSC_FALSE));
+  PetscCall(CheckTable("periodic", ONE PERIODIC, PETSC_FALSE));
+  PetscCall(CheckVelocity("channel", ONE CHANNEL, 5e-5));
+  PetscCall(CheckVelocity("periodic", ONE PERIODIC, 5e-5));
+  PetscCall(CheckVelocity("two in a channel", TWO CHANNEL, 2e-4));
+  PetscCall(CheckVelocity("two in a periodic box", TWO PERIODIC, 2e-4));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+int main(int argc, char **argv) {
+  return CheckMain(argc, argv, Facts);
+}
