@@ -49,7 +49,7 @@ def steady_errors(cached_run, n: int, reduced_area: float, chi: float) -> np.nda
 
 @pytest.mark.parametrize("reduced_area,chi", BOX)
 def test_steady_state_of_the_boundary_integral(reduced_area, chi, cached_run):
-    """Markers 2.8 h to 0.7 h apart. 32^2, 64^2, 128^2: angle and frequency to 0.07, 0.02 and 0.01 percent; measured 0.062,
+    """Markers 0.4 h to 1.5 h apart. 32^2, 64^2, 128^2: angle and frequency to 0.07, 0.02 and 0.01 percent; measured 0.062,
     0.015, 0.006 or less. Second order in the angle; the frequency's error does not depend on the grid."""
     errors = {n: np.abs(steady_errors(cached_run, n, reduced_area, chi)) for n in (32, 64, 128)}
     for n, bound in ((32, 7e-4), (64, 2e-4), (128, 1e-4)):
