@@ -275,6 +275,24 @@ static PetscErrorCode SetUpFactor(DirectSolver d) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Take the mean off the fluid's velocity, and as much off the markers', which interpolate it. */
+static PetscErrorCode RemoveMean(DirectSolver d, Vec w, Vec V) {
+  const PetscInt n = GridLocalU(d->fluid->grid);
+  const PetscScalar *a;
+  PetscScalar *own, before[2];
+  PetscFunctionBeginUser;
+  PetscCall(VecGetArrayRead(w, &a));
+  for (int c = 0; c < 2; c++) before[c] = a[c * n];
+  PetscCall(VecRestoreArrayRead(w, &a));
+  PetscCall(FluidRemoveMean(d->fluid, w));
+  PetscCall(VecGetArrayRead(w, &a));
+  PetscCall(VecGetArray(V, &own));
+  for (PetscInt k = 0; k < 2 * d->coupling->membrane->layout->n; k++) own[k] += a[k % 2 * n] - before[k % 2];
+  PetscCall(VecRestoreArray(V, &own));
+  PetscCall(VecRestoreArrayRead(w, &a));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode DirectSolverSolve(DirectSolver d, const CoupledProblem *q) {
   const Grid g = d->fluid->grid;
   const PetscInt nw = GridLocalU(g) + g->columns[FIELD_V] * g->rows[FIELD_V],
@@ -297,9 +315,9 @@ PetscErrorCode DirectSolverSolve(DirectSolver d, const CoupledProblem *q) {
   PetscCall(CopyPart(q->p, x + nw, np));
   PetscCall(VecSum(q->p, &mean));
   PetscCall(VecShift(q->p, -mean / ((PetscReal)g->n[0] * g->n[1])));
-  if (NoMean(d)) PetscCall(FluidRemoveMean(d->fluid, q->w));
   PetscCall(FromLastRank(d, 1, x + nw + np, q->sigma));
   PetscCall(FromLastRank(d, 2, x + nw + np + d->M, q->V));
+  if (NoMean(d)) PetscCall(RemoveMean(d, q->w, q->V));
   PetscCall(VecRestoreArrayRead(d->x, &x));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
