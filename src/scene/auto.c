@@ -43,7 +43,6 @@ PetscErrorCode SceneChooseByError(Draft scene) {
   PetscCall(SceneChoose(scene, "-time_adapt", "error"));
   PetscCall(SceneChoose(scene, "-time_adapt_tol", settings[Row(scene)].adapt_tol));
   PetscCall(SceneChoose(scene, "-delta_type", "cbs54"));
-  if (!scene->vesicles.markers) PetscCall(SceneChoose(scene, "-vesicle_spacing", "1.5"));
   scene->coupling.ksp_rtol = strtod(settings[Row(scene)].ksp_rtol, NULL);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -141,9 +140,7 @@ static PetscErrorCode PrintGrid(Scene scene, PetscReal cells) {
   else if (enough >= 0)
     PetscCall(PetscPrintf(scene->comm, ": TOO COARSE for %g, take R0/h = %g (-domain_cells)%s\n",
                           (double)scene->scheme.wanted, (double)grids[enough].cells,
-                          !many && ErrorWithMarkers(cells) <= wanted
-                              ? ", or this grid and -vesicle_markers 45 -vesicle_allow_close_markers"
-                              : ""));
+                          !many && ErrorWithMarkers(cells) <= wanted ? ", or this grid and -vesicle_markers 45" : ""));
   else
     PetscCall(PetscPrintf(scene->comm, ": no grid up to R0/h = %g reached %g\n", (double)grids[0].cells,
                           (double)scene->scheme.wanted));
@@ -169,7 +166,7 @@ static PetscErrorCode PrintChoice(Scene scene, PetscInt row, PetscBool timed) {
   PetscCall(PetscSNPrintf(why, sizeof(why), "the solver leaves up to %.1e", (double)settings[row].of_solver));
   if (!strcmp(scene->scheme.type, "coupled")) PetscCall(PrintSetting(scene, "-coupled_ksp_rtol", why));
   PetscCall(PrintSetting(scene, "-delta_type", "kernels differ by 1e-4 at most"));
-  if (!scene->vesicles.markers) PetscCall(PrintSetting(scene, "-vesicle_spacing", "2 h may cost 0.7 %"));
+  if (scene->vesicles.spacing > 0) PetscCall(PrintSetting(scene, "-vesicle_spacing", ""));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
