@@ -69,7 +69,7 @@ def test_choice_is_what_was_measured(wanted, tmp_path):
         assert printed == pytest.approx(worst, rel=0.06), name
         assert worst <= wanted / 2, name
     assert chosen["-scheme_order"][0] == "2" and chosen["-time_adapt"][0] == "error"
-    assert chosen["-delta_type"][0] == "cbs54" and chosen["-vesicle_spacing"][0] == "1.5"
+    assert chosen["-delta_type"][0] == "cbs54" and "-vesicle_spacing" not in chosen
 
 
 @pytest.mark.parametrize(
@@ -114,9 +114,11 @@ def test_what_is_given_stays(tmp_path):
 
 
 def test_coarse_grid_is_called_so(tmp_path):
-    """32 cells in a box of 8 are too coarse for 1 percent: the cells a radius that it takes are named."""
+    """32 cells in a box of 8, markers 1.5 h apart, are too coarse for 1 percent: the cells a radius that it takes are named,
+    and the markers with which it would do."""
     options = f"{BOX} {QUIET} -vesicle_area 1 -time_end 0 -scheme_auto 1e-2"
-    run = run_plain(tmp_path / "coarse", f"{options} -domain_cells 32,32")
+    run = run_plain(tmp_path / "coarse", f"{options} -domain_cells 32,32 -vesicle_spacing 1.5")
+    assert "or this grid and -vesicle_markers 45\n" in run.stdout
     needs = float(re.search(r"TOO COARSE for 0.01, take R0/h = (\S+)", run.stdout)[1])
     cells = 8 * int(np.ceil(needs * 8 / radius(0.7) / 8))
     fine = run_plain(tmp_path / "fine", f"{options} -domain_cells {cells},{cells}")
