@@ -71,8 +71,9 @@ static void Images(const WallCurve *a, const WallCurve *b, PetscReal window, Pet
     for (PetscInt q = 0; q < b->count; q++) {
       const PetscReal *x = a->x + 2 * a->used[p], *y = b->x + 2 * b->used[q];
       const PetscReal t = PetscMin(1, PetscMax(0, (Distance(x, y) / window - 1. / 3) * 1.5));
+      const ImagePair pair = {x[0] - y[0], x[1], y[1]};
       PetscReal image[IMAGE_PARTS];
-      NearImageBlake(x[0] - y[0], x[1], y[1], image);
+      NearImageBlake(&pair, image);
       for (int c = 0; c < IMAGE_PARTS; c++) G[c][p * b->count + q] = (1 - t * t * (3 - 2 * t)) * image[c];
     }
 }
