@@ -11,8 +11,17 @@ typedef struct {
   PetscReal x, a, b;
 } ImagePair;
 
-/* ImageFar - for viscosity 1 and a kernel of second moments kernel[2] along and across; ma, mb: the moments across the
-   wall of the tangential stencils of response and source, continued oddly across it (kernel[1] off the wall). Stencils
-   are folded, not scaled. Not collective. */
-PETSC_EXTERN void ImageFar(const ImagePair *pair, const PetscReal kernel[2], PetscReal ma, PetscReal mb,
+#define IMAGE_MONOMIALS 8
+
+/* A kernel's second moments along and across, and the polynomials of pairs off the wall. */
+typedef struct {
+  PetscReal moment[2], c[3][IMAGE_MONOMIALS];
+} ImageKernel;
+
+/* ImageKernelMake - of second moments along and across. Not collective. */
+PETSC_EXTERN void ImageKernelMake(PetscReal along, PetscReal across, ImageKernel *kernel);
+
+/* ImageFar - for viscosity 1; ma, mb: the moments across the wall of the tangential stencils of response and source,
+   continued oddly across it (kernel->moment[1] off the wall). Stencils are folded, not scaled. Not collective. */
+PETSC_EXTERN void ImageFar(const ImagePair *pair, const ImageKernel *kernel, PetscReal ma, PetscReal mb,
                            PetscReal part[IMAGE_PARTS]);

@@ -79,7 +79,7 @@ static void AddWall(NearImage m, int direction, int side, PetscInt i, PetscInt j
     Half(m, direction, &p, i, j, e, f, part);
     for (int q = 0; q < IMAGE_PARTS; q++) part[q] = blake[q] + free[q] - part[q];
   } else
-    ImageFar(&p, m->kernel, e->moment, f->moment, part);
+    ImageFar(&p, &m->kernel, e->moment, f->moment, part);
   if (!near && (e->scale < 1 || f->scale < 1)) {
     const PetscReal scale[IMAGE_PARTS] = {1, e->scale * f->scale, e->scale, f->scale};
     for (int q = 0; q < IMAGE_PARTS; q++) part[q] += (1 - scale[q]) * (free[q] + blake[q] - part[q]);
@@ -128,7 +128,7 @@ PetscErrorCode NearImagePlace(NearImage m) {
       for (PetscInt k = 0; k < M; k++) {
         const PetscReal x = m->markers->X[2 * k + direction];
         const PetscReal y = (side ? g->hi[direction] - x : x - g->lo[direction]) / g->h;
-        m->end[direction][side][k] = MakeEnd(m->markers, y, m->kernel[1]);
+        m->end[direction][side][k] = MakeEnd(m->markers, y, m->kernel.moment[1]);
       }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -141,8 +141,7 @@ PetscErrorCode NearImageCreate(Markers markers, PetscReal nu, const OffsetTable 
   *out = m;
   m->markers = markers;
   m->nu = nu;
-  m->kernel[0] = KernelSecondMoment(markers->kernel->along);
-  m->kernel[1] = KernelSecondMoment(markers->kernel->across);
+  ImageKernelMake(KernelSecondMoment(markers->kernel->along), KernelSecondMoment(markers->kernel->across), &m->kernel);
   if (!markers->grid->wall[0] && !markers->grid->wall[1]) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMalloc1(2 * M, &m->stencil));
   for (int direction = 0; direction < 2; direction++)

@@ -18,7 +18,7 @@ typedef struct _p_NearImage *NearImage;
 struct _p_NearImage {
   Markers markers; /* borrowed */
   PetscReal nu;
-  PetscReal kernel[2]; /* its second moments along and across */
+  ImageKernel kernel;
   ImageTable *table;
   PaddedStencil *stencil; /* [2M] unfolded */
   ImageEnd *end[2][2];    /* [M] by direction of the normal and side; NULL without a wall */
