@@ -1,22 +1,17 @@
 #include "coupling/nearimage.h"
 #include "markers/fold.h"
 
-/* A pair seen from a wall: distances in cells, t along the wall, n away from it. */
-typedef struct {
-  PetscReal x, a, b; /* along the wall, response minus source; from the wall: of the response and of the source */
-} Seen;
-
-/* -S(R) + 2 b^2 D - 2 b SD with R from the source's
-   mirror image, D_ij = s_j (delta_ij/R^2 - 2 R_i R_j/R^4), SD_ij = R_n D_ij + s_j (delta_jn R_i - delta_in R_j)/R^2, s
-   = (1, -1). */
-void NearImageBlake(PetscReal x, PetscReal a, PetscReal b, PetscReal image[IMAGE_PARTS]) {
-  const PetscReal R[2] = {x, a + b}, r2 = R[0] * R[0] + R[1] * R[1];
+/* -S(R) + 2 b^2 D - 2 b SD with R from the source's mirror image, D_ij = s_j (delta_ij/R^2 - 2 R_i R_j/R^4), SD_ij =
+   R_n D_ij + s_j (delta_jn R_i - delta_in R_j)/R^2, s = (1, -1). */
+void NearImageBlake(const ImagePair *p, PetscReal image[IMAGE_PARTS]) {
+  const PetscReal b = p->b, R[2] = {p->x, p->a + b}, r2 = R[0] * R[0] + R[1] * R[1];
+  const PetscReal logarithm = -0.5 * PetscLogReal(r2);
   static const int place[2][2] = {{IMAGE_TT, IMAGE_TN}, {IMAGE_NT, IMAGE_NN}};
   for (int i = 0; i < 2; i++)
     for (int j = 0; j < 2; j++) {
       const PetscReal s = j ? -1 : 1, D = s * ((i == j) / r2 - 2 * R[i] * R[j] / (r2 * r2));
       const PetscReal SD = R[1] * D + s * (j * R[i] - i * R[j]) / r2;
-      const PetscReal S = (i == j) * -0.5 * PetscLogReal(r2) + R[i] * R[j] / r2;
+      const PetscReal S = (i == j) * logarithm + R[i] * R[j] / r2;
       image[place[i][j]] = (-S + 2 * b * b * D - 2 * b * SD) / (4 * PETSC_PI);
     }
 }
@@ -24,84 +19,6 @@ void NearImageBlake(PetscReal x, PetscReal a, PetscReal b, PetscReal image[IMAGE
 void NearImageTurn(int direction, int side, PetscReal alpha, const PetscReal part[IMAGE_PARTS], PetscReal C[4]) {
   const int place[IMAGE_PARTS] = {1 - direction, direction, direction ? 3 : 2, direction ? 2 : 3};
   for (int q = 0; q < IMAGE_PARTS; q++) C[place[q]] += (side && q >= IMAGE_NT ? -alpha : alpha) * part[q];
-}
-
-/* SUM c_pq a^p b^q n!/z^{n + 1}, n = 1 + p + q, z = a + b - i x, of a polynomial with c_pq at 4 p + q: the Fourier
-   integral of e^{-k(a + b)} k^n. Real and imaginary part over -4 pi. */
-static void Integral(const PetscReal c[16], const Seen *p, PetscReal sum[2]) {
-  const PetscReal H = p->a + p->b, r2 = H * H + p->x * p->x, inverse[2] = {H / r2, p->x / r2};
-  PetscReal power[2] = {inverse[0], inverse[1]}, factorial = 1;
-  PetscReal level[4] = {0};
-  for (int q = 0; q < 4; q++) {
-    PetscReal value = q == 0 ? 1 : q == 1 ? p->b : q == 2 ? p->b * p->b : p->b * p->b * p->b;
-    for (int r = 0; r + q < 4; r++, value *= p->a) level[r + q] += c[4 * r + q] * value;
-  }
-  sum[0] = sum[1] = 0;
-  for (int n = 0; n < 4; n++) {
-    const PetscReal real = power[0] * inverse[0] - power[1] * inverse[1];
-    power[1] = power[0] * inverse[1] + power[1] * inverse[0];
-    power[0] = real;
-    factorial *= n + 1;
-    sum[0] -= level[n] * factorial * power[0] / (4 * PETSC_PI);
-    sum[1] -= level[n] * factorial * power[1] / (4 * PETSC_PI);
-  }
-}
-
-/* Polynomials in k a, k b (at 4 p + q) of IMAGE_TT, IMAGE_NN, IMAGE_NT: e^{-kH}/(4k) [p + k^2 P] is the image of the
- * lattice, P its dispersion. */
-static const PetscReal leading[3][16] = {
-    {[0] = -1, [1] = 1, [4] = 1, [5] = -2}, {[0] = -1, [1] = -1, [4] = -1, [5] = -2}, {[1] = 1, [4] = -1, [5] = 2}};
-static const PetscReal dispersion[3][16] = {{[0] = 4. / 12,
-                                             [1] = -10. / 12,
-                                             [4] = -10. / 12,
-                                             [2] = 1. / 12,
-                                             [8] = 1. / 12,
-                                             [5] = 18. / 12,
-                                             [6] = -2. / 12,
-                                             [9] = -2. / 12},
-                                            {[0] = -2. / 12,
-                                             [1] = 2. / 12,
-                                             [4] = 2. / 12,
-                                             [2] = -1. / 12,
-                                             [8] = -1. / 12,
-                                             [5] = 14. / 12,
-                                             [6] = -2. / 12,
-                                             [9] = -2. / 12},
-                                            {[0] = 3. / 12,
-                                             [1] = -3. / 12,
-                                             [4] = 9. / 12,
-                                             [2] = 1. / 12,
-                                             [8] = -1. / 12,
-                                             [5] = -16. / 12,
-                                             [6] = 2. / 12,
-                                             [9] = 2. / 12}};
-
-/* One part's closed form: dispersion and the smoothing by kernels of second moments `along` along the wall (of both
-   ends the mean), ma and mb across it. */
-static void ClosedForm(int part, const Seen *p, PetscReal along, PetscReal ma, PetscReal mb, PetscReal sum[2]) {
-  const PetscReal *lead = leading[part];
-  const PetscReal both = -along + 0.5 * (ma + mb);
-  PetscReal c[16];
-  for (int k = 0; k < 16; k++) c[k] = dispersion[part][k] + both * lead[k];
-  c[0] -= ma * lead[4] + mb * lead[1];
-  c[1] -= ma * lead[5];
-  c[4] -= mb * lead[5];
-  Integral(c, p, sum);
-}
-
-/* C_image of a distant pair whose stencils are folded but not scaled. */
-static void Distant(NearImage m, const Seen *p, const ImageEnd *e, const ImageEnd *f, PetscReal C[IMAGE_PARTS]) {
-  const PetscReal mean = 0.5 * (m->along + m->across);
-  const Seen back = {-p->x, p->b, p->a};
-  PetscReal sum[2];
-  ClosedForm(IMAGE_TT, p, m->along, e->moment, f->moment, sum);
-  C[IMAGE_TT] = sum[0];
-  ClosedForm(IMAGE_NN, p, m->across, m->along, m->along, sum);
-  C[IMAGE_NN] = sum[0];
-  ClosedForm(IMAGE_NT, p, mean, m->along, f->moment, sum);
-  C[IMAGE_NT] = sum[1];
-  ClosedForm(IMAGE_NT, &back, mean, m->along, e->moment, sum); /* t from n is n from t the other way round */
-  C[IMAGE_TN] = sum[1];
 }
 
 /* Sum of one part over two stencils against the half-space table; response comp r (0 t, 1 n) of i, source comp s of j.
@@ -129,7 +46,7 @@ static PetscReal HalfSum(NearImage m, int direction, OffsetBlock b, const ImageE
 }
 
 /* The half-space lattice's mobility of a pair near the wall. */
-static void Half(NearImage m, int direction, const Seen *p, PetscInt i, PetscInt j, const ImageEnd *e,
+static void Half(NearImage m, int direction, const ImagePair *p, PetscInt i, PetscInt j, const ImageEnd *e,
                  const ImageEnd *f, PetscReal C[IMAGE_PARTS]) {
   C[IMAGE_TT] = HalfSum(m, direction, OFFSET_UU, e, i, 0, f, j, 0, p->x);
   C[IMAGE_NN] = HalfSum(m, direction, OFFSET_VV, e, i, 1, f, j, 1, p->x);
@@ -137,30 +54,35 @@ static void Half(NearImage m, int direction, const Seen *p, PetscInt i, PetscInt
   C[IMAGE_TN] = HalfSum(m, direction, OFFSET_VU, f, j, 1, e, i, 0, -p->x);
 }
 
+/* The free lattice's mobility seen from a wall, in cells and of viscosity 1. */
+static void FreePart(NearImage m, int direction, int side, const PetscReal L[4], PetscReal free[IMAGE_PARTS]) {
+  const int place[IMAGE_PARTS] = {1 - direction, direction, direction ? 3 : 2, direction ? 2 : 3};
+  const PetscReal constant = PetscLogReal(m->markers->grid->h) / (4 * PETSC_PI);
+  for (int q = 0; q < IMAGE_PARTS; q++) free[q] = (side && q >= IMAGE_NT ? -m->nu : m->nu) * L[place[q]];
+  free[IMAGE_TT] += constant;
+  free[IMAGE_NN] += constant;
+}
+
 /* One wall's part, added. Stencils that are scaled near the wall take s s' of the half-space's mobility S + Blake -
    C_free - C_image only: the rest comes on top. */
 static void AddWall(NearImage m, int direction, int side, PetscInt i, PetscInt j, const PetscReal d[2],
                     const PetscReal L[4], PetscReal C[4]) {
-  const PetscReal h = m->markers->grid->h, sign = side ? -1 : 1;
   const ImageEnd *e = &m->end[direction][side][i], *f = &m->end[direction][side][j];
-  const Seen p = {d[1 - direction] / h, e->y, f->y};
-  const int place[IMAGE_PARTS] = {1 - direction, direction, direction ? 3 : 2, direction ? 2 : 3};
-  PetscReal blake[IMAGE_PARTS], part[IMAGE_PARTS], free[IMAGE_PARTS];
-  for (int q = 0; q < IMAGE_PARTS; q++) free[q] = (q == IMAGE_NT || q == IMAGE_TN ? sign : 1) * m->nu * L[place[q]];
-  const PetscReal constant = PetscLogReal(h) / (4 * PETSC_PI);
-  free[IMAGE_TT] += constant;
-  free[IMAGE_NN] += constant;
-  if (p.x * p.x + PetscSqr(p.a + p.b) < PetscSqr(IMAGE_CELLS)) {
-    NearImageBlake(p.x, p.a, p.b, blake);
+  const ImagePair p = {d[1 - direction] / m->markers->grid->h, e->y, f->y};
+  const PetscBool near = p.x * p.x + PetscSqr(p.a + p.b) < PetscSqr(IMAGE_CELLS) ? PETSC_TRUE : PETSC_FALSE;
+  PetscReal blake[IMAGE_PARTS] = {0}, part[IMAGE_PARTS], free[IMAGE_PARTS] = {0};
+  if (near || e->scale < 1 || f->scale < 1) {
+    FreePart(m, direction, side, L, free);
+    NearImageBlake(&p, blake);
+  }
+  if (near) {
     Half(m, direction, &p, i, j, e, f, part);
     for (int q = 0; q < IMAGE_PARTS; q++) part[q] = blake[q] + free[q] - part[q];
-  } else {
-    Distant(m, &p, e, f, part);
-    if (e->scale < 1 || f->scale < 1) {
-      const PetscReal scale[IMAGE_PARTS] = {1, e->scale * f->scale, e->scale, f->scale};
-      NearImageBlake(p.x, p.a, p.b, blake);
-      for (int q = 0; q < IMAGE_PARTS; q++) part[q] += (1 - scale[q]) * (free[q] + blake[q] - part[q]);
-    }
+  } else
+    ImageFar(&p, &m->kernel, e->moment, f->moment, part);
+  if (!near && (e->scale < 1 || f->scale < 1)) {
+    const PetscReal scale[IMAGE_PARTS] = {1, e->scale * f->scale, e->scale, f->scale};
+    for (int q = 0; q < IMAGE_PARTS; q++) part[q] += (1 - scale[q]) * (free[q] + blake[q] - part[q]);
   }
   NearImageTurn(direction, side, 1 / m->nu, part, C);
 }
@@ -206,7 +128,7 @@ PetscErrorCode NearImagePlace(NearImage m) {
       for (PetscInt k = 0; k < M; k++) {
         const PetscReal x = m->markers->X[2 * k + direction];
         const PetscReal y = (side ? g->hi[direction] - x : x - g->lo[direction]) / g->h;
-        m->end[direction][side][k] = MakeEnd(m->markers, y, m->across);
+        m->end[direction][side][k] = MakeEnd(m->markers, y, m->kernel.moment[1]);
       }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -219,8 +141,7 @@ PetscErrorCode NearImageCreate(Markers markers, PetscReal nu, const OffsetTable 
   *out = m;
   m->markers = markers;
   m->nu = nu;
-  m->along = KernelSecondMoment(markers->kernel->along);
-  m->across = KernelSecondMoment(markers->kernel->across);
+  ImageKernelMake(KernelSecondMoment(markers->kernel->along), KernelSecondMoment(markers->kernel->across), &m->kernel);
   if (!markers->grid->wall[0] && !markers->grid->wall[1]) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMalloc1(2 * M, &m->stencil));
   for (int direction = 0; direction < 2; direction++)

@@ -3,6 +3,7 @@
    pair; two walls' terms are added, so that images of images, and what a corner's walls do to one another, stay the
    grid's. */
 #pragma once
+#include "coupling/imagefar.h"
 #include "coupling/imagetable.h"
 
 typedef struct {
@@ -13,14 +14,11 @@ typedef struct {
   PetscReal weight[2][KERNEL_MAX_POINTS];
 } ImageEnd;
 
-/* Parts of a pair seen from a wall, response and source: tangential and normal to it. */
-enum { IMAGE_TT, IMAGE_NN, IMAGE_NT, IMAGE_TN, IMAGE_PARTS };
-
 typedef struct _p_NearImage *NearImage;
 struct _p_NearImage {
   Markers markers; /* borrowed */
   PetscReal nu;
-  PetscReal along, across; /* the kernel's second moments */
+  ImageKernel kernel;
   ImageTable *table;
   PaddedStencil *stencil; /* [2M] unfolded */
   ImageEnd *end[2][2];    /* [M] by direction of the normal and side; NULL without a wall */
@@ -41,9 +39,8 @@ PETSC_EXTERN PetscErrorCode NearImagePlace(NearImage image);
 PETSC_EXTERN void NearImageAdd(NearImage image, PetscInt i, PetscInt j, const PetscReal d[2], const PetscReal L[4],
                                PetscReal C[4]);
 
-/* NearImageBlake - Blake's image part of the Stokeslet in a wall, viscosity 1: x along the wall, response minus source,
-   a and b the distances of response and source from the wall, in cells. NearImageTurn - C += alpha times a pair's
-   parts, turned from the wall with this normal and side to x and y. Not collective. */
-PETSC_EXTERN void NearImageBlake(PetscReal x, PetscReal a, PetscReal b, PetscReal image[IMAGE_PARTS]);
+/* NearImageBlake - Blake's image part of the Stokeslet in a wall, cells, viscosity 1. NearImageTurn - C += alpha times
+   a pair's parts, turned from the wall with this normal and side to x and y. Not collective. */
+PETSC_EXTERN void NearImageBlake(const ImagePair *pair, PetscReal image[IMAGE_PARTS]);
 PETSC_EXTERN void NearImageTurn(int direction, int side, PetscReal alpha, const PetscReal part[IMAGE_PARTS],
                                 PetscReal C[4]);

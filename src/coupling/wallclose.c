@@ -21,9 +21,10 @@ static void Images(Grid g, int direction, int side, const FineCurve *a, const Fi
     for (PetscInt p = 0; p < a->count; p++) {
       const PetscReal *x = a->x + 2 * a->used[p], *y = b->x + 2 * b->used[q];
       const PetscReal R = PetscSqrtReal(PetscSqr(x[0] - y[0]) + PetscSqr(x[1] - y[1])), chi = FineWindow(R, window);
+      const ImagePair pair = {(x[1 - direction] - y[1 - direction]) / g->h, inward * (x[direction] - wall),
+                              inward * (wall - y[direction])};
       PetscReal image[IMAGE_PARTS];
-      NearImageBlake((x[1 - direction] - y[1 - direction]) / g->h, inward * (x[direction] - wall),
-                     inward * (wall - y[direction]), image);
+      NearImageBlake(&pair, image);
       for (int c = 0; c < IMAGE_PARTS; c++) K[c][q * a->count + p] = chi * image[c];
     }
 }

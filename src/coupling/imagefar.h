@@ -1,0 +1,27 @@
+/* C_image of distant pairs of markers in closed form (nearimage.h), to the order h^2/R^2, R from the source's image. */
+#pragma once
+#include "base/base.h"
+
+/* Parts of a pair seen from a wall, response and source: tangential and normal to it. */
+enum { IMAGE_TT, IMAGE_NN, IMAGE_NT, IMAGE_TN, IMAGE_PARTS };
+
+/* A pair seen from a wall, in cells: x along the wall, response minus source; a, b the distances of response and
+ * source. */
+typedef struct {
+  PetscReal x, a, b;
+} ImagePair;
+
+#define IMAGE_MONOMIALS 8
+
+/* A kernel's second moments along and across, and the polynomials of pairs off the wall. */
+typedef struct {
+  PetscReal moment[2], c[3][IMAGE_MONOMIALS];
+} ImageKernel;
+
+/* ImageKernelMake - of second moments along and across. Not collective. */
+PETSC_EXTERN void ImageKernelMake(PetscReal along, PetscReal across, ImageKernel *kernel);
+
+/* ImageFar - for viscosity 1; ma, mb: the moments across the wall of the tangential stencils of response and source,
+   continued oddly across it (kernel->moment[1] off the wall). Stencils are folded, not scaled. Not collective. */
+PETSC_EXTERN void ImageFar(const ImagePair *pair, const ImageKernel *kernel, PetscReal ma, PetscReal mb,
+                           PetscReal part[IMAGE_PARTS]);
