@@ -51,8 +51,11 @@ PetscErrorCode SceneView(Scene scene, PetscViewer v) {
                                      scene->scheme.area_target ? "on" : "off"));
   PetscCall(PetscViewerASCIIPrintf(v, "scheme: %s, order %" PetscInt_FMT ", dt = %g to t = %g\n", scene->scheme.type,
                                    scene->scheme.order, (double)scene->time.dt, (double)scene->time.end));
-  PetscCall(PetscViewerASCIIPrintf(v, "fast solves: helmholtz %s, poisson %s\n", scene->fluid.helmholtz,
-                                   scene->fluid.poisson));
+  if (FluidSpecIsFree(&scene->fluid))
+    PetscCall(PetscViewerASCIIPrintf(v, "unbounded fluid: no Stokes solve, the box is the window of the fields\n"));
+  else
+    PetscCall(PetscViewerASCIIPrintf(v, "fast solves: helmholtz %s, poisson %s\n", scene->fluid.helmholtz,
+                                     scene->fluid.poisson));
   PetscCall(PetscViewerASCIIPopTab(v));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
