@@ -5,8 +5,7 @@
 #include "coupling/lattice.h"
 #include "fluid/fluid.h"
 
-#define BOX_ASPECT 4                 /* largest period over the box's shorter side */
-#define BOX_PLACES (64 * BOX_ASPECT) /* largest number of places in a direction */
+#define BOX_PLACES (64 * FLUID_LONGEST_PERIOD) /* largest number of places in a direction */
 
 /* Places in one direction. Between walls a force may be at any of them; where the box is periodic it is at the first
    one, and W depends on the offset alone. */

@@ -9,9 +9,8 @@ PetscBool SceneIsProjection(Scene scene) {
 
 /* split and penalty are their papers' methods: one order, kernel ib6 and differences, none of the corrections of the
    coupled scheme; all forces of penalty are explicit. */
-PetscErrorCode SceneChooseByScheme(Draft scene) {
+static PetscErrorCode ChooseProjection(Draft scene) {
   PetscFunctionBeginUser;
-  if (!SceneIsProjection(scene)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SceneChoose(scene, "-scheme_order", "1"));
   PetscCall(SceneChoose(scene, "-delta_type", "ib6"));
   PetscCall(SceneChoose(scene, "-membrane_derivative", "fd"));
@@ -19,6 +18,21 @@ PetscErrorCode SceneChooseByScheme(Draft scene) {
   PetscCall(SceneChoose(scene, "-scheme_area_target", "false"));
   if (!strcmp(scene->scheme.type, "penalty")) PetscCall(SceneChoose(scene, "-scheme_bending", "explicit"));
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SceneChooseByScheme(Draft scene) {
+  PetscFunctionBeginUser;
+  if (SceneIsProjection(scene)) PetscCall(ChooseProjection(scene));
+  if (scene->coupling.near_field == NEAR_NONE) PetscCall(SceneChoose(scene, "-coupling_box_part", "false"));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscBool SceneHasBoxPart(Scene scene) {
+  const FluidSpec *f = &scene->fluid;
+  PetscBool served = scene->coupling.box_part && scene->coupling.near_field == NEAR_EXACT ? PETSC_TRUE : PETSC_FALSE;
+  for (int d = 0; d < 2; d++)
+    if (f->bc[d] == BC_PERIODIC && f->cells[d] > FLUID_LONGEST_PERIOD * f->cells[1 - d]) served = PETSC_FALSE;
+  return served;
 }
 
 PetscErrorCode SceneChooseStiffness(Draft scene) {
