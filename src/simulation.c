@@ -66,7 +66,7 @@ static PetscErrorCode Build(MPI_Comm comm, PetvesFlow flow, void *ctx, Simulatio
                            (DerivativeType)scene->membrane.derivative, &s->membrane));
   PetscCall(CouplingCreate(s->fluid, s->membrane, scene->coupling.kernel, (NearFieldType)scene->coupling.near_field,
                            &s->coupling));
-  if (s->coupling->near && scene->coupling.box_part) PetscCall(NearFieldAddBoxPart(s->coupling->near, &scene->fluid));
+  if (s->coupling->near && SceneHasBoxPart(scene)) PetscCall(NearFieldAddBoxPart(s->coupling->near, &scene->fluid));
   PetscCall(SchemeCreate(scene, s->coupling, scene->shape.X, &s->scheme));
   PetscCall(SceneCheckUnused(scene));
   PetscFunctionReturn(PETSC_SUCCESS);

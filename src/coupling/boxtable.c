@@ -26,7 +26,7 @@ static void MakeAxis(const FluidSpec *spec, int dir, PetscReal H, BoxAxis *a) {
   a->wall = spec->bc[dir] == BC_WALL ? PETSC_TRUE : PETSC_FALSE;
   a->low = spec->box[2 * dir] + (a->wall ? WALL_MARGIN * H : 0);
   a->high = spec->box[2 * dir + 1] - (a->wall ? WALL_MARGIN * H : 0);
-  a->places = a->wall ? WALL_PLACES : times * BOX_PLACES / BOX_ASPECT;
+  a->places = a->wall ? WALL_PLACES : times * BOX_PLACES / FLUID_LONGEST_PERIOD;
   a->modes = a->wall ? 0 : times * MODES;
   a->pairs = a->wall ? a->places * a->places : a->places;
   for (PetscInt k = 0; k < a->places; k++) {
@@ -116,40 +116,6 @@ static PetscErrorCode MakeCouplings(const BoxAxis *a, Couplings *c) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* T[count][count] between functions, from W between places; symmetric. */
-static PetscErrorCode Transform(const BoxTable *t, const PetscReal W[], PetscReal T[]) {
-  const PetscInt nx = t->axis[0].pairs, ny = t->axis[1].pairs, fy = t->functions[1], half = t->functions[0] * fy,
-                 n = t->count;
-  PetscReal *line;
-  Couplings c[2];
-  PetscFunctionBeginUser;
-  for (int dir = 0; dir < 2; dir++) PetscCall(MakeCouplings(&t->axis[dir], &c[dir]));
-  PetscCall(PetscMalloc1(ny, &line));
-  for (int b = 0; b < 4; b++)
-    for (PetscInt p = 0; p < c[0].count; p++) {
-      PetscCall(PetscArrayzero(line, ny));
-      for (PetscInt i = 0; i < nx; i++) {
-        const PetscReal weight = c[0].weight[p * nx + i], *row = W + (b * nx + i) * ny;
-        for (PetscInt j = 0; j < ny && weight != 0; j++) line[j] += weight * row[j];
-      }
-      for (PetscInt q = 0; q < c[1].count; q++) {
-        const Couple *x = &c[0].couple[p], *y = &c[1].couple[q];
-        const PetscReal *weight = c[1].weight + q * ny;
-        PetscReal sum = 0;
-        for (PetscInt j = 0; j < ny; j++) sum += weight[j] * line[j];
-        const PetscInt row = b / 2 * half + x->f * fy + y->f, column = b % 2 * half + x->g * fy + y->g;
-        T[row * n + column] += 0.5 * sum;
-        T[column * n + row] += 0.5 * sum;
-      }
-    }
-  for (int dir = 0; dir < 2; dir++) {
-    PetscCall(PetscFree(c[dir].couple));
-    PetscCall(PetscFree(c[dir].weight));
-  }
-  PetscCall(PetscFree(line));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* A direction's blocks: even and odd between walls, one a mode over a period. */
 static PetscInt CountBlocks(const BoxAxis *a) {
   return a->wall ? 2 : a->modes + 1;
@@ -164,28 +130,74 @@ static void BlockFunctions(const BoxTable *t, int dir, PetscInt b, BoxBlock *q) 
   for (int c = 0; c < 2; c++) q->first[c][dir] = wall ? (b == c ? 0 : half) : b ? 2 * b - 1 : 0;
 }
 
-/* The block's part of T, its eigenvectors in A (columns) and eigenvalues l. */
-static PetscErrorCode SolveBlock(const BoxTable *t, const BoxBlock *q, const PetscReal T[], PetscReal A[],
-                                 PetscReal l[]) {
-  const PetscInt half = q->n[0] * q->n[1], size = 2 * half;
-  PetscInt *member;
+/* The block that a component's function f of a direction belongs to. */
+static PetscInt BlockOf(const BoxTable *t, int dir, int c, PetscInt f) {
+  if (!t->axis[dir].wall) return (f + 1) / 2;
+  return f < t->functions[dir] / 2 ? c : 1 - c;
+}
+
+/* The blocks, with room for their parts of D in Q. */
+static PetscErrorCode CreateBlocks(BoxTable *t) {
+  const PetscInt ny = CountBlocks(&t->axis[1]);
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(size, &member));
-  for (PetscInt k = 0; k < size; k++) {
-    const PetscInt c = k / half, x = q->first[c][0] + k % half / q->n[1], y = q->first[c][1] + k % q->n[1];
-    member[k] = (c * t->functions[0] + x) * t->functions[1] + y;
+  t->blocks = CountBlocks(&t->axis[0]) * ny;
+  PetscCall(PetscCalloc1(t->blocks, &t->block));
+  for (PetscInt b = 0; b < t->blocks; b++) {
+    BoxBlock *q = &t->block[b];
+    BlockFunctions(t, 0, b / ny, q);
+    BlockFunctions(t, 1, b % ny, q);
+    PetscCall(PetscCalloc1(PetscSqr(2 * q->n[0] * q->n[1]), &q->Q));
   }
-  for (PetscInt i = 0; i < size; i++)
-    for (PetscInt j = 0; j < size; j++) A[i * size + j] = T[member[i] * t->count + member[j]];
-  PetscCall(DenseEigen(size, A, l));
-  PetscCall(PetscFree(member));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Keep the block's eigenpairs that are larger than `least`. */
-static PetscErrorCode KeepLargest(BoxBlock *q, const PetscReal A[], const PetscReal l[], PetscReal least,
-                                  PetscReal kept[], PetscInt *rank) {
+/* value between the functions (x.f, y.f) of component ci and (x.g, y.g) of cj, half of it each way. Zero but for
+   rounding where they are of two blocks. */
+static void AddCouple(const BoxTable *t, int ci, int cj, Couple x, Couple y, PetscReal value) {
+  const PetscInt bx = BlockOf(t, 0, ci, x.f), by = BlockOf(t, 1, ci, y.f);
+  if (bx != BlockOf(t, 0, cj, x.g) || by != BlockOf(t, 1, cj, y.g)) return;
+  const BoxBlock *q = &t->block[bx * CountBlocks(&t->axis[1]) + by];
   const PetscInt size = 2 * q->n[0] * q->n[1];
+  const PetscInt row = (ci * q->n[0] + x.f - q->first[ci][0]) * q->n[1] + y.f - q->first[ci][1];
+  const PetscInt column = (cj * q->n[0] + x.g - q->first[cj][0]) * q->n[1] + y.g - q->first[cj][1];
+  q->Q[row * size + column] += 0.5 * value;
+  q->Q[column * size + row] += 0.5 * value;
+}
+
+/* The blocks' parts of D between functions, from W between places; symmetric. */
+static PetscErrorCode Transform(const BoxTable *t, const PetscReal W[]) {
+  const PetscInt nx = t->axis[0].pairs, ny = t->axis[1].pairs;
+  PetscReal *line;
+  Couplings c[2];
+  PetscFunctionBeginUser;
+  for (int dir = 0; dir < 2; dir++) PetscCall(MakeCouplings(&t->axis[dir], &c[dir]));
+  PetscCall(PetscMalloc1(ny, &line));
+  for (int b = 0; b < 4; b++)
+    for (PetscInt p = 0; p < c[0].count; p++) {
+      PetscCall(PetscArrayzero(line, ny));
+      for (PetscInt i = 0; i < nx; i++) {
+        const PetscReal weight = c[0].weight[p * nx + i], *row = W + (b * nx + i) * ny;
+        for (PetscInt j = 0; j < ny && weight != 0; j++) line[j] += weight * row[j];
+      }
+      for (PetscInt q = 0; q < c[1].count; q++) {
+        const PetscReal *weight = c[1].weight + q * ny;
+        PetscReal sum = 0;
+        for (PetscInt j = 0; j < ny; j++) sum += weight[j] * line[j];
+        AddCouple(t, b / 2, b % 2, c[0].couple[p], c[1].couple[q], sum);
+      }
+    }
+  for (int dir = 0; dir < 2; dir++) {
+    PetscCall(PetscFree(c[dir].couple));
+    PetscCall(PetscFree(c[dir].weight));
+  }
+  PetscCall(PetscFree(line));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Of the block's eigenvectors Q, columns, and eigenvalues l only those larger than `least` are kept. */
+static PetscErrorCode KeepLargest(BoxBlock *q, const PetscReal l[], PetscReal least, PetscReal kept[], PetscInt *rank) {
+  const PetscInt size = 2 * q->n[0] * q->n[1];
+  PetscReal *all = q->Q;
   PetscFunctionBeginUser;
   q->start = *rank;
   q->modes = 0;
@@ -194,37 +206,34 @@ static PetscErrorCode KeepLargest(BoxBlock *q, const PetscReal A[], const PetscR
   for (PetscInt k = 0, m = 0; k < size; k++) {
     if (PetscAbsReal(l[k]) <= least) continue;
     kept[(*rank)++] = l[k];
-    for (PetscInt i = 0; i < size; i++) q->Q[i * q->modes + m] = A[k * size + i];
+    for (PetscInt i = 0; i < size; i++) q->Q[i * q->modes + m] = all[k * size + i];
     m++;
   }
+  PetscCall(PetscFree(all));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The largest eigenvalues of T, with their vectors, block by block. */
-static PetscErrorCode Decompose(BoxTable *t, const PetscReal T[]) {
-  PetscReal *l, *A, most = 0;
-  PetscInt *at, *from, values = 0, vectors = 0;
+/* The largest eigenvalues of D, with their vectors, block by block. */
+static PetscErrorCode Decompose(BoxTable *t) {
+  const PetscInt count = 2 * t->functions[0] * t->functions[1];
+  PetscReal *l, most = 0;
+  PetscInt at = 0;
   PetscFunctionBeginUser;
-  t->blocks = CountBlocks(&t->axis[0]) * CountBlocks(&t->axis[1]);
-  PetscCall(PetscCalloc1(t->blocks, &t->block));
-  PetscCall(PetscMalloc2(t->blocks + 1, &at, t->blocks + 1, &from));
+  PetscCall(PetscMalloc1(count, &l));
+  PetscCall(PetscMalloc1(count, &t->l));
+  for (PetscInt b = 0; b < t->blocks; b++) {
+    const PetscInt size = 2 * t->block[b].n[0] * t->block[b].n[1];
+    PetscCall(DenseEigen(size, t->block[b].Q, l + at));
+    at += size;
+  }
+  for (PetscInt k = 0; k < count; k++) most = PetscMax(most, PetscAbsReal(l[k]));
+  t->rank = at = 0;
   for (PetscInt b = 0; b < t->blocks; b++) {
     BoxBlock *q = &t->block[b];
-    BlockFunctions(t, 0, b / CountBlocks(&t->axis[1]), q);
-    BlockFunctions(t, 1, b % CountBlocks(&t->axis[1]), q);
-    at[b] = values;
-    from[b] = vectors;
-    values += 2 * q->n[0] * q->n[1];
-    vectors += PetscSqr(2 * q->n[0] * q->n[1]);
+    PetscCall(KeepLargest(q, l + at, SMALLEST * most, t->l, &t->rank));
+    at += 2 * q->n[0] * q->n[1];
   }
-  PetscCall(PetscMalloc2(values, &l, vectors, &A));
-  for (PetscInt b = 0; b < t->blocks; b++) PetscCall(SolveBlock(t, &t->block[b], T, A + from[b], l + at[b]));
-  for (PetscInt k = 0; k < values; k++) most = PetscMax(most, PetscAbsReal(l[k]));
-  PetscCall(PetscMalloc1(values, &t->l));
-  for (PetscInt b = 0; b < t->blocks; b++)
-    PetscCall(KeepLargest(&t->block[b], A + from[b], l + at[b], SMALLEST * most, t->l, &t->rank));
-  PetscCall(PetscFree2(l, A));
-  PetscCall(PetscFree2(at, from));
+  PetscCall(PetscFree(l));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -252,7 +261,7 @@ static PetscErrorCode Pair(const FluidSpec *run, const char kernel[], const Pets
 
 PetscErrorCode BoxTableCreate(const FluidSpec *spec, const char kernel[], BoxTable *t) {
   PetscInt cells[2], size = 4;
-  PetscReal *W, *T;
+  PetscReal *W;
   PetscFunctionBeginUser;
   CoarseCells(spec, cells);
   t->H = (spec->box[1] - spec->box[0]) / cells[0];
@@ -261,13 +270,13 @@ PetscErrorCode BoxTableCreate(const FluidSpec *spec, const char kernel[], BoxTab
     t->functions[d] = t->axis[d].wall ? WALL_PLACES : 2 * t->axis[d].modes + 1;
     size *= t->axis[d].pairs;
   }
-  t->count = 2 * t->functions[0] * t->functions[1];
-  PetscCall(PetscCalloc2(size, &W, PetscSqr(t->count), &T));
+  PetscCall(PetscCalloc1(size, &W));
   PetscCall(Pair(spec, kernel, cells, t, W));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, W, (PetscMPIInt)size, MPIU_REAL, MPI_SUM, spec->comm));
-  PetscCall(Transform(t, W, T));
-  PetscCall(Decompose(t, T));
-  PetscCall(PetscFree2(W, T));
+  PetscCall(CreateBlocks(t));
+  PetscCall(Transform(t, W));
+  PetscCall(Decompose(t));
+  PetscCall(PetscFree(W));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -17,7 +17,6 @@ typedef struct {
 typedef struct {
   BoxAxis axis[2];       /* of the places: Chebyshev's between walls, even offsets over a period */
   PetscInt functions[2]; /* in x and y: Lagrange's polynomials, or 1, cos, sin, .. over the period */
-  PetscInt count;        /* of all: 2 components, x and y functions, y fastest */
   PetscInt blocks;
   BoxBlock *block;
   PetscInt rank; /* eigenvalues kept */

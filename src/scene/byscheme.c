@@ -11,7 +11,6 @@ PetscBool SceneIsProjection(Scene scene) {
    coupled scheme; all forces of penalty are explicit. */
 static PetscErrorCode ChooseProjection(Draft scene) {
   PetscFunctionBeginUser;
-  if (!SceneIsProjection(scene)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SceneChoose(scene, "-scheme_order", "1"));
   PetscCall(SceneChoose(scene, "-delta_type", "ib6"));
   PetscCall(SceneChoose(scene, "-membrane_derivative", "fd"));
@@ -23,11 +22,19 @@ static PetscErrorCode ChooseProjection(Draft scene) {
 
 PetscErrorCode SceneChooseByScheme(Draft scene) {
   PetscFunctionBeginUser;
-  PetscCall(ChooseProjection(scene));
+  if (SceneIsProjection(scene)) PetscCall(ChooseProjection(scene));
   /* the box part is the grid's, and nothing without the rest of the near field */
   if (scene->coupling.near_field == NEAR_NONE || FluidSpecIsFree(&scene->fluid))
     PetscCall(SceneChoose(scene, "-coupling_box_part", "false"));
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscBool SceneHasBoxPart(Scene scene) {
+  const FluidSpec *f = &scene->fluid;
+  PetscBool served = scene->coupling.box_part && scene->coupling.near_field == NEAR_EXACT ? PETSC_TRUE : PETSC_FALSE;
+  for (int d = 0; d < 2; d++)
+    if (f->bc[d] == BC_PERIODIC && f->cells[d] > FLUID_LONGEST_PERIOD * f->cells[1 - d]) served = PETSC_FALSE;
+  return served;
 }
 
 PetscErrorCode SceneChooseStiffness(Draft scene) {

@@ -22,6 +22,9 @@ typedef struct {
   PetscReal dt;                    /* the step that the first Helmholtz operator is made for */
 } FluidSpec;
 
+/* Period over the other side up to which the box part of the near field has a table: modes grow with it. */
+#define FLUID_LONGEST_PERIOD 4
+
 /* FluidSpecCellSize - h, the edge of the square cells. */
 static inline PetscReal FluidSpecCellSize(const FluidSpec *spec) {
   return (spec->box[1] - spec->box[0]) / spec->cells[0];

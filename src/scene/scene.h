@@ -109,6 +109,9 @@ PETSC_EXTERN PetscErrorCode SceneDestroy(Scene *scene);
 /* SceneGiven - whether the user gave this option ("-name"). */
 PETSC_EXTERN PetscBool SceneGiven(Scene scene, const char name[]);
 
+/* SceneHasBoxPart - whether the near field has its box part: asked for, and no period too long. Not collective. */
+PETSC_EXTERN PetscBool SceneHasBoxPart(Scene scene);
+
 /* SceneCheckUnused - stop when the options database holds an option that nothing has read, naming it and the nearest
    known option. Call when all solvers are set up. Collective. */
 PETSC_EXTERN PetscErrorCode SceneCheckUnused(Scene scene);

@@ -19,6 +19,12 @@ static PetscErrorCode ViewFluid(Scene scene, PetscViewer v) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static const char *NearField(Scene scene) {
+  if (scene->coupling.near_field == NEAR_NONE) return "none";
+  if (SceneHasBoxPart(scene)) return "exact with box part";
+  return scene->coupling.box_part ? "exact without box part (a period is longer than 4 times the other side)" : "exact";
+}
+
 PetscErrorCode SceneView(Scene scene, PetscViewer v) {
   static const char *const derivatives[] = {"finite differences", "spectral bending", "spectral bending and edges"};
   static const char *const bc[] = {"wall", "periodic", "free"};
@@ -44,10 +50,7 @@ PetscErrorCode SceneView(Scene scene, PetscViewer v) {
     PetscCall(PetscViewerASCIIPrintf(v, "bending: off (no bending solve)\n"));
   if (shape->vesicles)
     PetscCall(PetscViewerASCIIPrintf(v, "membrane: kernel %s, %s, near field %s, area target %s\n",
-                                     scene->coupling.kernel, derivatives[scene->membrane.derivative],
-                                     scene->coupling.near_field != NEAR_EXACT ? "none"
-                                     : scene->coupling.box_part               ? "exact with box part"
-                                                                              : "exact",
+                                     scene->coupling.kernel, derivatives[scene->membrane.derivative], NearField(scene),
                                      scene->scheme.area_target ? "on" : "off"));
   PetscCall(PetscViewerASCIIPrintf(v, "scheme: %s, order %" PetscInt_FMT ", dt = %g to t = %g\n", scene->scheme.type,
                                    scene->scheme.order, (double)scene->time.dt, (double)scene->time.end));

@@ -1,0 +1,54 @@
+"""The box part of the near field: tank-treading on a coarse grid is that on a finer one, between walls and in a channel."""
+
+import math
+
+import pytest
+
+R0 = math.sqrt(1 / (0.7 * math.pi))  # of the channel's vesicle: area 1, V = .7
+
+COMMON = (
+    "-scheme_type coupled -delta_type cbs54 -membrane_derivative spectral -coupling_near_field exact "
+    "-scheme_area_target true -flow_type shear -vesicle_area 1 -vesicle_markers 45 -vesicle_allow_close_markers true -fluid_inertia none "
+    "-time_step 0.05 -coupled_ksp_rtol 1e-10 -output_every 100 -checkpoint_every 0"
+)
+BOX = (
+    f"{COMMON} -domain_box -4,4,-4,4 -vesicle_reduced_area 0.55 -vesicle_angle 20 -time_end 10 "
+    f"-vesicle_bending {(1 / (0.55 * math.pi)) ** 1.5 / 3!r}"
+)
+CHANNEL = (
+    f"{COMMON} -domain_box {-6 * R0!r},{6 * R0!r},{-1.5 * R0!r},{1.5 * R0!r} -domain_bc_x periodic "
+    f"-vesicle_reduced_area 0.7 -vesicle_angle 15 -time_end 6 -vesicle_bending {R0**3 / 10!r}"
+)
+
+
+def last(run) -> tuple[float, float]:
+    return float(run.series["inclination"][-1]), float(run.series["frequency"][-1])
+
+
+@pytest.mark.parametrize(
+    "scene, cells, angle, frequency, without",
+    [
+        (BOX, ("32,32", "64,64"), 1e-5, 1e-5, 4e-4),
+        (CHANNEL, ("64,16", "128,32"), 2e-4, 2e-4, 8e-3),
+    ],
+    ids=["walls", "channel"],
+)
+def test_coarse_grid_is_enough(cached_run, scene, cells, angle, frequency, without):
+    """Measured: walls 2e-6 and 2e-6, without the box part 4.6e-4; channel 1.5e-4 and 1e-4, without it 9.3e-3."""
+    coarse, fine = (last(cached_run(f"{scene} -domain_cells {n}")) for n in cells)
+    plain = [last(cached_run(f"{scene} -coupling_box_part false -domain_cells {n}")) for n in cells]
+    assert abs(coarse[0] / fine[0] - 1) < angle
+    assert abs(coarse[1] / fine[1] - 1) < frequency
+    assert abs(plain[0][0] / plain[1][0] - 1) > without
+
+
+@pytest.mark.parametrize("bc", ["-domain_bc_x wall", "-domain_bc_x periodic"])
+def test_ranks_and_direct(cached_run, bc):
+    """The same on two ranks, and with the matrix of -scheme_type direct."""
+    scene = f"{COMMON} -domain_box -2,2,-2,2 -domain_cells 32,32 -vesicle_area 0.5 -time_end 0.1 {bc}"
+    one = cached_run(f"{scene} -coupled_ksp_rtol 1e-12")
+    two = cached_run(f"{scene} -coupled_ksp_rtol 1e-12", 2)
+    direct = cached_run(f"{scene} -scheme_type direct -allow_unused_options true")
+    for column in ("inclination", "energy_bending"):
+        assert two.series[column][-1] == pytest.approx(one.series[column][-1], rel=1e-9)
+        assert direct.series[column][-1] == pytest.approx(one.series[column][-1], rel=1e-8)
