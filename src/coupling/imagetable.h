@@ -3,9 +3,9 @@
 #pragma once
 #include "coupling/offsets.h"
 
-#define IMAGE_CELLS 14 /* from a marker to another one's image, up to which stencils are summed */
-#define IMAGE_ROWS 19  /* rows from the wall: t at row + 1/2, n at row (0 on the wall, zero) */
-#define IMAGE_SHIFT 22 /* largest offset along the wall */
+#define IMAGE_CELLS 20 /* from a marker to another one's image, up to which stencils are summed */
+#define IMAGE_ROWS 25  /* rows from the wall: t at row + 1/2, n at row (0 on the wall, zero) */
+#define IMAGE_SHIFT 28 /* largest offset along the wall */
 #define IMAGE_WIDTH (2 * IMAGE_SHIFT + 1)
 
 /* Velocity per unit force by rows of response and source and the offset along the wall, response minus source, as in
@@ -15,5 +15,6 @@ typedef struct {
   PetscReal value[OFFSET_COUNT][IMAGE_ROWS][IMAGE_ROWS][IMAGE_WIDTH];
 } ImageTable;
 
-/* ImageTableFill - from the free lattice's table (lattice.h) of reach IMAGE_SHIFT or more. Not collective. */
+/* ImageTableFill - from the free lattice's table (lattice.h), or a longer one made here where its reach is below
+   IMAGE_SHIFT. Not collective. */
 PETSC_EXTERN PetscErrorCode ImageTableFill(const OffsetTable *lattice, ImageTable *table);

@@ -25,7 +25,7 @@ struct _p_NearImage {
 };
 
 /* NearImageCreate - for markers on a grid with any walls, in a fluid of viscosity nu; lattice: the free lattice's
-   table, of reach IMAGE_SHIFT or more, used here only. Collective. */
+   table, used here only. Collective. */
 PETSC_EXTERN PetscErrorCode NearImageCreate(Markers markers, PetscReal nu, const OffsetTable *lattice,
                                             NearImage *image);
 PETSC_EXTERN PetscErrorCode NearImageDestroy(NearImage *image);
