@@ -50,11 +50,11 @@ def steady_errors(cached_run, n: int, reduced_area: float, chi: float) -> np.nda
 @pytest.mark.parametrize("reduced_area,chi", BOX)
 def test_steady_state_of_the_boundary_integral(reduced_area, chi, cached_run):
     """Markers 0.4 h to 1.5 h apart. 32^2, 64^2, 128^2: angle and frequency to 0.07, 0.02 and 0.01 percent; measured 0.062,
-    0.015, 0.006 or less. Second order in the angle; the frequency's error does not depend on the grid."""
+    0.015, 0.006 or less without the box part, which leaves angles right to the references' own 2e-5 on all grids."""
     errors = {n: np.abs(steady_errors(cached_run, n, reduced_area, chi)) for n in (32, 64, 128)}
     for n, bound in ((32, 7e-4), (64, 2e-4), (128, 1e-4)):
         assert errors[n].max() < bound
-    assert math.log2(errors[32][0] / errors[64][0]) > 1.8
+        assert errors[n][0] < 4e-5
 
 
 @pytest.mark.parametrize("box", BOXES)
@@ -131,8 +131,8 @@ CASES = {
 
 @pytest.mark.parametrize("case", CASES)
 def test_corrected_is_the_direct_solution(case, tmp_path):
-    """Scheme direct puts C into its sparse matrix: 3 steps in 32^2 cells to 1e-9, with c_b = 100 of the largest
-    number where that is above 1: the tension is 8e3."""
+    """Scheme direct puts C into its sparse matrix: 3 steps in 32^2 cells to 1e-9; with c_b = 100, whose
+    forces are 100 times as large against the solve's tolerance, to 1e-7, of the tension's 8e3."""
     options = f"{CORRECTED} -domain_cells 32,32 -flow_type shear -flow_rate 2 -vesicle_angle 20 -time_step 0.02 "
     options += f"-time_end 0.06 {CASES[case]}"
     direct = run_petves(tmp_path / "direct", f"{options} -scheme_type direct")
@@ -140,4 +140,4 @@ def test_corrected_is_the_direct_solution(case, tmp_path):
     assert coupled.series["coupled_its"][1:].min() > 0 and not direct.series["coupled_its"].any()
     want, got = last_state(direct.folder), last_state(coupled.folder)
     for name in ("vesicle/markers", "vesicle/velocity", "vesicle/tension", "fluid/u", "fluid/v"):
-        same_state(want, got, 1e-9 * (max(1, np.abs(want[name]).max()) if case == "bending_100" else 1), [name])
+        same_state(want, got, 1e-9 * (100 * max(1, np.abs(want[name]).max()) if case == "bending_100" else 1), [name])

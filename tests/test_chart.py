@@ -105,7 +105,9 @@ def test_a_handful_of_points(tmp_path, monkeypatch):
     assert penalty["message"] and not penalty["shape"] and not split["message"]
     assert penalty["message"] in (tmp_path / "tables.md").read_text()
     with (tmp_path / "recommended.csv").open(newline="") as file:
-        assert [(row["level"], row["cells"]) for row in csv.DictReader(file)] == [("0.01", "24"), ("0.001", "24")]
+        assert [(row["level"], row["cells"]) for row in csv.DictReader(file)] == [
+            (level, "24") for level in ("0.01", "0.001", "0.0001")
+        ]
     with (tmp_path / "claim.csv").open(newline="") as file:
         found = list(csv.DictReader(file))
     assert [row["scene"] for row in found] == ["relax", "relax", "relax", "shear", "shear"]

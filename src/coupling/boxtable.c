@@ -213,8 +213,9 @@ static PetscErrorCode KeepLargest(BoxBlock *q, const PetscReal l[], PetscReal le
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The largest eigenvalues of D, with their vectors, block by block. */
-static PetscErrorCode Decompose(BoxTable *t) {
+/* The largest eigenvalues of D, with their vectors, block by block; the first rank's, as alike eigenvalues leave to
+   rounding which vectors they have. */
+static PetscErrorCode Decompose(MPI_Comm comm, BoxTable *t) {
   const PetscInt count = 2 * t->functions[0] * t->functions[1];
   PetscReal *l, most = 0;
   PetscInt at = 0;
@@ -224,6 +225,8 @@ static PetscErrorCode Decompose(BoxTable *t) {
   for (PetscInt b = 0; b < t->blocks; b++) {
     const PetscInt size = 2 * t->block[b].n[0] * t->block[b].n[1];
     PetscCall(DenseEigen(size, t->block[b].Q, l + at));
+    PetscCallMPI(MPI_Bcast(t->block[b].Q, (PetscMPIInt)(size * size), MPIU_REAL, 0, comm));
+    PetscCallMPI(MPI_Bcast(l + at, (PetscMPIInt)size, MPIU_REAL, 0, comm));
     at += size;
   }
   for (PetscInt k = 0; k < count; k++) most = PetscMax(most, PetscAbsReal(l[k]));
@@ -275,7 +278,7 @@ PetscErrorCode BoxTableCreate(const FluidSpec *spec, const char kernel[], BoxTab
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, W, (PetscMPIInt)size, MPIU_REAL, MPI_SUM, spec->comm));
   PetscCall(CreateBlocks(t));
   PetscCall(Transform(t, W));
-  PetscCall(Decompose(t));
+  PetscCall(Decompose(spec->comm, t));
   PetscCall(PetscFree(W));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

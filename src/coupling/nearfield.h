@@ -47,5 +47,5 @@ PETSC_EXTERN PetscErrorCode NearFieldPlace(NearField near);
 PETSC_EXTERN PetscErrorCode NearFieldAddBoxPart(NearField near, const FluidSpec *spec);
 
 /* NearFieldApply - U += alpha (C + D) F, D the box part if there is one, own parts F[2n] and U[2n] of marker vectors; F
-   is a force times ds (length^4/time^2 with density 1). Collective. */
+   is a force times ds (length^3/time^2 with density 1). Collective. */
 PETSC_EXTERN PetscErrorCode NearFieldApply(NearField near, PetscReal alpha, const PetscScalar F[], PetscScalar U[]);

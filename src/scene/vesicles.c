@@ -28,11 +28,13 @@ static PetscReal Chi(Scene scene, PetscReal R0) {
   return rate * scene->fluid.nu * PetscPowRealInt(R0, 3) / scene->membrane.bending;
 }
 
+#define THINNEST 8 /* times the markers of a round vesicle, at most */
+
 /* With the exact near field markers have to resolve the shape, not the grid: 45 for a reduced area of 0.6 and more, in
    proportion more for thinner ones, half as many more where the flow is so strong that membranes wrinkle; and no edge
    longer than two cells, so that the kernel leaks nothing. */
 static PetscInt CountByShape(Scene scene, PetscReal length, PetscReal area) {
-  const PetscReal V = 4 * PETSC_PI * area / PetscSqr(length), thin = PetscMax(1, 0.6 / V);
+  const PetscReal V = 4 * PETSC_PI * area / PetscSqr(length), thin = PetscMin(THINNEST, PetscMax(1, 0.6 / V));
   const PetscReal strong = Chi(scene, length / (2 * PETSC_PI)) >= 100 ? 1.5 : 1;
   const PetscReal wanted = PetscMax(45 * thin * strong, length / (2 * FluidSpecCellSize(&scene->fluid)));
   return 2 * (PetscInt)PetscCeilReal((wanted - 1) / 2 * (1 - 1e-12)) + 1;
