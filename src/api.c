@@ -108,13 +108,13 @@ PetscErrorCode SimulationGetRow(Simulation s, PetscInt vesicle, PetscReal row[])
 
 PetscErrorCode SimulationGetCellVelocity(Simulation s, PetscReal u[], PetscReal v[]) {
   PetscFunctionBeginUser;
-  PetscCall(CellVelocity(s->scheme, u, v));
+  PetscCall(CellFields(s->scheme, u, v, NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode SimulationGetCellPressure(Simulation s, PetscReal p[]) {
   PetscFunctionBeginUser;
-  PetscCall(CellPressure(s->scheme, p));
+  PetscCall(CellFields(s->scheme, NULL, NULL, p));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -20,24 +20,6 @@ PetscErrorCode DenseSolve(PetscInt n, const PetscReal A[], const PetscBLASInt pi
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode DenseFactorSymmetric(PetscInt n, PetscReal A[], PetscBool *factored) {
-  PetscBLASInt size, info;
-  PetscFunctionBeginUser;
-  PetscCall(PetscBLASIntCast(n, &size));
-  PetscCallBLAS("LAPACKpotrf", LAPACKpotrf_("L", &size, A, &size, &info));
-  *factored = info ? PETSC_FALSE : PETSC_TRUE;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode DenseSolveSymmetric(PetscInt n, const PetscReal A[], PetscReal x[]) {
-  PetscBLASInt size, info;
-  const PetscBLASInt one = 1;
-  PetscFunctionBeginUser;
-  PetscCall(PetscBLASIntCast(n, &size));
-  PetscCallBLAS("LAPACKpotrs", LAPACKpotrs_("L", &size, &one, (PetscReal *)A, &size, x, &size, &info));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode DenseMultAdd(PetscInt m, PetscInt n, PetscReal alpha, const PetscReal A[], const PetscReal x[],
                             PetscReal y[]) {
   PetscBLASInt rows, columns;

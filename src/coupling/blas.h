@@ -10,11 +10,6 @@ PETSC_EXTERN PetscErrorCode DenseFactor(PetscInt n, PetscReal A[], PetscBLASInt 
 PETSC_EXTERN PetscErrorCode DenseSolve(PetscInt n, const PetscReal A[], const PetscBLASInt pivot[], PetscBool transpose,
                                        PetscInt nrhs, PetscReal X[]);
 
-/* DenseFactorSymmetric, DenseSolveSymmetric - Cholesky factor of the positive definite A (n x n) in place, x := A^-1 x
-   for it; factored is false when A is not positive definite. */
-PETSC_EXTERN PetscErrorCode DenseFactorSymmetric(PetscInt n, PetscReal A[], PetscBool *factored);
-PETSC_EXTERN PetscErrorCode DenseSolveSymmetric(PetscInt n, const PetscReal A[], PetscReal x[]);
-
 /* DenseMultAdd - y += alpha A x, A (m x n). */
 PETSC_EXTERN PetscErrorCode DenseMultAdd(PetscInt m, PetscInt n, PetscReal alpha, const PetscReal A[],
                                          const PetscReal x[], PetscReal y[]);

@@ -52,7 +52,7 @@ static PetscErrorCode Create(const FluidSpec *spec, const char kernel[], const O
   b->near = (struct _p_NearField){.markers = b->markers, .nu = spec->nu, .lattice = *lattice, .stencil = b->stencil};
   NearFarCoefficients(b->markers->kernel, b->near.far);
   PetscCall(NearImageCreate(b->markers, spec->nu, lattice, &b->image));
-  PetscCall(NearImagePlace(b->image));
+  PetscCall(NearImagePlace(b->image, b->stencil));
   PetscCall(DMCreateGlobalVector(b->fluid->grid->velocity, &b->force));
   PetscCall(VecDuplicate(b->force, &b->r));
   PetscCall(VecDuplicate(b->force, &b->u));

@@ -57,6 +57,18 @@ static void LatticePair(NearField f, PetscInt i, PetscInt j, const PetscReal d[2
   L[2] = StencilPairSum(&f->lattice, OFFSET_VU, &b[1], &a[0], back) / f->nu;
 }
 
+void NearLatticePair(NearField f, PetscInt i, PetscInt j, const PetscReal d[2], PetscReal L[4]) {
+  const PetscReal h = f->markers->grid->h, reach = (f->lattice.size[0] - OFFSET_LAGS) * h;
+  PetscReal S[3], C[3];
+  if (d[0] * d[0] + d[1] * d[1] <= reach * reach) {
+    LatticePair(f, i, j, d, L);
+    return;
+  }
+  Stokeslet(f->nu, d, S);
+  FarPair(f->far, h * h / (2 * PETSC_PI * f->nu), d, C);
+  for (int c = 0; c < 4; c++) L[c] = S[PetscMin(c, 2)] - C[PetscMin(c, 2)];
+}
+
 /* What Kress' quadrature has besides the plain logarithm, for two markers of one curve of n that are k apart; on the
    diagonal the whole of S, from the derivative T = dX/dk: xx, yy, xy. */
 static void SelfPart(NearField f, PetscInt v, PetscInt k, const PetscReal T[2], PetscReal S[3]) {
@@ -77,17 +89,13 @@ static void SelfPart(NearField f, PetscInt v, PetscInt k, const PetscReal T[2], 
 /* C of marker i and the image of marker j, k their difference along one curve (-1: of another curve or image). */
 static void Pair(NearField f, PetscInt v, PetscInt i, PetscInt j, PetscInt k, const PetscReal shift[2],
                  const PetscReal T[2], PetscReal C[4]) {
-  const PetscReal *X = f->markers->X, h = f->markers->grid->h;
+  const PetscReal *X = f->markers->X;
   PetscReal d[2] = {X[2 * i] - X[2 * j] - shift[0], X[2 * i + 1] - X[2 * j + 1] - shift[1]};
   const PetscReal part = f->box ? BoxPartImage(f->box, d) : 1;
-  PetscReal S[3] = {0, 0, 0}, own[3] = {0, 0, 0}, far[3], L[4] = {0, 0, 0, 0};
+  PetscReal S[3] = {0, 0, 0}, own[3] = {0, 0, 0}, L[4] = {0, 0, 0, 0};
   if (k >= 0) SelfPart(f, v, k, T, own);
   if (k) Stokeslet(f->nu, d, S);
-  if (!f->free && k && d[0] * d[0] + d[1] * d[1] > PetscSqr(NEAR_CELLS * h)) {
-    FarPair(f->far, h * h / (2 * PETSC_PI * f->nu), d, far);
-    for (int c = 0; c < 4; c++) L[c] = S[PetscMin(c, 2)] - far[PetscMin(c, 2)];
-  } else if (!f->free)
-    LatticePair(f, i, j, d, L);
+  if (!f->free) NearLatticePair(f, i, j, d, L);
   for (int c = 0; c < 4; c++) C[c] = S[PetscMin(c, 2)] - L[c];
   if (f->image) NearImageAdd(f->image, i, j, d, L, C);
   for (int c = 0; c < 4; c++) C[c] = part * C[c] + own[PetscMin(c, 2)];
@@ -121,16 +129,4 @@ PetscErrorCode NearBlockFill(NearField f, NearBlock *b) {
   if (!self) PetscCall(NearBlockRefine(f, b));
   if (f->image) PetscCall(NearBlockRefineAtWalls(f, b));
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-void NearLatticePair(NearField f, PetscInt i, PetscInt j, const PetscReal d[2], PetscReal L[4]) {
-  const PetscReal h = f->markers->grid->h, reach = (f->lattice.size[0] - OFFSET_LAGS) * h;
-  PetscReal S[3], C[3];
-  if (d[0] * d[0] + d[1] * d[1] <= reach * reach) {
-    LatticePair(f, i, j, d, L);
-    return;
-  }
-  Stokeslet(f->nu, d, S);
-  FarPair(f->far, h * h / (2 * PETSC_PI * f->nu), d, C);
-  for (int c = 0; c < 4; c++) L[c] = S[PetscMin(c, 2)] - C[PetscMin(c, 2)];
 }

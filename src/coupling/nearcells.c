@@ -28,7 +28,8 @@ typedef struct {
 /* Second moments along and across are averaged over both ends where one component meets itself; from one to the other
    those of x and of y, p and q, are not the same, which gives b4. The mean of two faces has 1/4 along and none across.
  */
-static FarCell FarCoefficients(PetscReal along, PetscReal across) {
+static FarCell FarCoefficients(const Kernel *kernel) {
+  const PetscReal along = KernelSecondMoment(kernel->along), across = KernelSecondMoment(kernel->across);
   const PetscReal a = 0.5 * (along + 0.25), c = 0.5 * across + 1. / 12, p = 0.25 + across, q = along;
   return (FarCell){.a2 = -c / 2 + 3.5 / 48,
                    .a4 = -a / 8 + c / 8 - 1. / 48,
@@ -36,13 +37,6 @@ static FarCell FarCoefficients(PetscReal along, PetscReal across) {
                    .b2 = -(p + q) / 8 + 1. / 32,
                    .b4 = -(p - q) / 16,
                    .b6 = 1. / 96};
-}
-
-/* Of weights about the place x. */
-static PetscReal SecondMoment(const Stencil *s, int dir, PetscReal x) {
-  PetscReal sum = 0;
-  for (PetscInt k = 0; k < s->n[dir]; k++) sum += s->weight[dir][k] * PetscSqr(s->first[dir] + k - x);
-  return sum;
 }
 
 static void SetVesicle(NearCells *s, PetscInt v) {
@@ -55,15 +49,12 @@ static void SetVesicle(NearCells *s, PetscInt v) {
   s->F = s->layer->F + 2 * l->start[v];
   for (PetscInt k = 0; k < 2 * s->n; k++) {
     Stencil stencil;
-    PetscReal moment[2];
     for (int dir = 0; dir < 2; dir++) {
       const PetscBool along = k % 2 == dir ? PETSC_TRUE : PETSC_FALSE;
       const PetscReal r = (s->X[k - k % 2 + dir] - m->grid->lo[dir]) / m->grid->h - (along ? 1.0 : 0.5);
       stencil.n[dir] = (along ? m->kernel->along : m->kernel->across)(r, &stencil.first[dir], stencil.weight[dir]);
-      moment[along ? 0 : 1] = SecondMoment(&stencil, dir, r);
     }
     StencilPad(&stencil, &s->source[k]);
-    s->far = FarCoefficients(moment[0], moment[1]); /* the same for all */
   }
 }
 
@@ -180,6 +171,7 @@ PetscErrorCode NearCellsCorrect(Coupling coupling, Vec sigma, Vec X, PetscReal u
   PetscFunctionBeginUser;
   if (!coupling->near || coupling->near->free) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(LayerCreate(coupling, sigma, X, &s.layer));
+  s.far = FarCoefficients(coupling->markers->kernel);
   PetscCall(LatticePressure(NEAR_CELLS + OFFSET_LAGS, &s.pressure));
   PetscCall(PetscMalloc1(2 * l->M, &s.source));
   for (PetscInt b = 0; b < l->bodies; b++) {

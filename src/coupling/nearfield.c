@@ -134,7 +134,7 @@ PetscErrorCode NearFieldPlace(NearField f) {
   PetscCall(PetscLogEventBegin(f->event, 0, 0, 0, 0));
   PetscCall(FreeBlocks(f));
   for (PetscInt k = 0; k < 2 * l->M && !f->free; k++) StencilPad(&f->markers->plain[k], &f->stencil[k]);
-  if (f->image) PetscCall(NearImagePlace(f->image));
+  if (f->image) PetscCall(NearImagePlace(f->image, f->stencil));
   for (PetscInt v = l->own; v < l->end; v++)
     for (PetscInt w = 0; w < l->bodies; w++) PetscCall(AddPair(f, v, w));
   if (f->box) BoxPartPlace(f->box);

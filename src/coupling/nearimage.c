@@ -117,12 +117,12 @@ static ImageEnd MakeEnd(Markers m, PetscReal y, PetscReal across) {
   return e;
 }
 
-PetscErrorCode NearImagePlace(NearImage m) {
+PetscErrorCode NearImagePlace(NearImage m, const PaddedStencil stencil[]) {
   const Grid g = m->markers->grid;
   const PetscInt M = m->markers->layout->M;
   PetscFunctionBeginUser;
   if (!m->table) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt k = 0; k < 2 * M; k++) StencilPad(&m->markers->plain[k], &m->stencil[k]);
+  m->stencil = stencil;
   for (int direction = 0; direction < 2; direction++)
     for (int side = 0; side < 2 && g->wall[direction]; side++)
       for (PetscInt k = 0; k < M; k++) {
@@ -143,7 +143,6 @@ PetscErrorCode NearImageCreate(Markers markers, PetscReal nu, const OffsetTable 
   m->nu = nu;
   ImageKernelMake(KernelSecondMoment(markers->kernel->along), KernelSecondMoment(markers->kernel->across), &m->kernel);
   if (!markers->grid->wall[0] && !markers->grid->wall[1]) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscMalloc1(2 * M, &m->stencil));
   for (int direction = 0; direction < 2; direction++)
     for (int side = 0; side < 2 && markers->grid->wall[direction]; side++)
       PetscCall(PetscMalloc1(M, &m->end[direction][side]));
@@ -158,7 +157,6 @@ PetscErrorCode NearImageDestroy(NearImage *image) {
   if (!m) PetscFunctionReturn(PETSC_SUCCESS);
   for (int direction = 0; direction < 2; direction++)
     for (int side = 0; side < 2; side++) PetscCall(PetscFree(m->end[direction][side]));
-  PetscCall(PetscFree(m->stencil));
   PetscCall(PetscFree(m->table));
   PetscCall(PetscFree(*image));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -20,8 +20,8 @@ struct _p_NearImage {
   PetscReal nu;
   ImageKernel kernel;
   ImageTable *table;
-  PaddedStencil *stencil; /* [2M] unfolded */
-  ImageEnd *end[2][2];    /* [M] by direction of the normal and side; NULL without a wall */
+  const PaddedStencil *stencil; /* [2M] unfolded, borrowed */
+  ImageEnd *end[2][2];          /* [M] by direction of the normal and side; NULL without a wall */
 };
 
 /* NearImageCreate - for markers on a grid with any walls, in a fluid of viscosity nu; lattice: the free lattice's
@@ -30,8 +30,9 @@ PETSC_EXTERN PetscErrorCode NearImageCreate(Markers markers, PetscReal nu, const
                                             NearImage *image);
 PETSC_EXTERN PetscErrorCode NearImageDestroy(NearImage *image);
 
-/* NearImagePlace - where the markers have been placed. Not collective. */
-PETSC_EXTERN PetscErrorCode NearImagePlace(NearImage image);
+/* NearImagePlace - where the markers have been placed, whose unfolded stencils are stencil[2M] (kept by the caller).
+   Not collective. */
+PETSC_EXTERN PetscErrorCode NearImagePlace(NearImage image, const PaddedStencil stencil[]);
 
 /* NearImageAdd - add all walls' parts to C of the response of marker i to marker j: xx, yy, xy (x to a force in y) and
    yx. d = X_i - X_j, in periodic directions to the image meant (length). L: the pair's free lattice mobility, which is

@@ -48,7 +48,7 @@ static PetscErrorCode Component(Scheme s, int c, const PetscScalar w[], PetscRea
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The single layer at all cells of this rank; u and v, or p, may be NULL. */
+/* The single layer at all cells of this rank; any of the fields may be NULL. */
 static PetscErrorCode FromLayer(Scheme s, PetscReal u[], PetscReal v[], PetscReal p[]) {
   const Grid g = s->fluid->grid;
   Layer layer;
@@ -78,24 +78,17 @@ static PetscErrorCode AddMembranes(Scheme s, PetscReal u[], PetscReal v[], Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode CellVelocity(Scheme s, PetscReal u[], PetscReal v[]) {
-  const PetscScalar *w;
-  PetscFunctionBeginUser;
-  PetscCall(VecGetArrayRead(s->state.w, &w));
-  PetscCall(Component(s, 0, w, u));
-  PetscCall(Component(s, 1, w, v));
-  PetscCall(VecRestoreArrayRead(s->state.w, &w));
-  PetscCall(AddMembranes(s, u, v, NULL));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode CellPressure(Scheme s, PetscReal p[]) {
+PetscErrorCode CellFields(Scheme s, PetscReal u[], PetscReal v[], PetscReal p[]) {
   const Grid g = s->fluid->grid;
   const PetscScalar *a;
   PetscFunctionBeginUser;
+  PetscCall(VecGetArrayRead(s->state.w, &a));
+  if (u) PetscCall(Component(s, 0, a, u));
+  if (v) PetscCall(Component(s, 1, a, v));
+  PetscCall(VecRestoreArrayRead(s->state.w, &a));
   PetscCall(VecGetArrayRead(s->state.p, &a));
-  PetscCall(PetscArraycpy(p, a, g->n[0] * g->rows[FIELD_P]));
+  if (p) PetscCall(PetscArraycpy(p, a, g->n[0] * g->rows[FIELD_P]));
   PetscCall(VecRestoreArrayRead(s->state.p, &a));
-  PetscCall(AddMembranes(s, NULL, NULL, p));
+  PetscCall(AddMembranes(s, u, v, p));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

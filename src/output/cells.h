@@ -2,9 +2,8 @@
 #pragma once
 #include "scheme/scheme.h"
 
-/* CellVelocity - u, v: the velocity, background included, at this rank's cell centres; means of the cells' faces, with
-   the near field next to membranes, or in unbounded fluid that of the membranes' single layer. CellPressure - p
-   likewise, of the disturbance unless the form is total; in unbounded fluid it is zero far away. Arrays [rows][nx].
-   Collective. */
-PETSC_EXTERN PetscErrorCode CellVelocity(Scheme scheme, PetscReal u[], PetscReal v[]);
-PETSC_EXTERN PetscErrorCode CellPressure(Scheme scheme, PetscReal p[]);
+/* CellFields - u, v: the velocity, background included, at this rank's cell centres; means of the cells' faces, with
+   the near field next to membranes, or in unbounded fluid that of the membranes' single layer; p likewise, of the
+   disturbance unless the form is total; in unbounded fluid it is zero far away. Arrays [rows][nx], NULL on every rank
+   for those not wanted. Collective. */
+PETSC_EXTERN PetscErrorCode CellFields(Scheme scheme, PetscReal u[], PetscReal v[], PetscReal p[]);

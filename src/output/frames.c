@@ -79,8 +79,7 @@ static PetscErrorCode WriteValues(Frames *f, const Gathered *now) {
   const Grid g = f->scheme->fluid->grid;
   const PetscReal *const marker[3] = {now->markers, now->velocity, now->tension};
   PetscFunctionBeginUser;
-  PetscCall(CellVelocity(f->scheme, f->cells[0], f->cells[1]));
-  PetscCall(CellPressure(f->scheme, f->cells[2]));
+  PetscCall(CellFields(f->scheme, f->cells[0], f->cells[1], f->cells[2]));
   for (int c = 0; c < 3; c++) PetscCall(H5WriteField(&f->file, FrameSeries[c], f->count, g, FIELD_P, f->cells[c]));
   for (int k = 0; k < 3 && now->M; k++)
     PetscCall(H5WriteArray(&f->file, FrameSeries[3 + k], f->count, k < 2 ? 2 * now->M : now->M, marker[k]));
