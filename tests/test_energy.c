@@ -126,8 +126,8 @@ static PetscErrorCode ReportLengthTarget(PetscReal bending, PetscReal dt) {
 }
 
 /* With the near field. Its only negative eigenvalue goes along the normals and is -1e-5 or less beside the grid's
-   mobility, so energy may rise a little. It does with cbs54 at 2 cells between markers and c_b = 100, by 1.9e-5 at most;
-   in no other case. Spectral edges take an odd number of markers. */
+   mobility, so energy may rise a little. It does with cbs54 at 2 cells between markers and c_b = 100, by 1.9e-5 at
+   most; in no other case. Spectral edges take an odd number of markers. */
 #define CLOSE_BY "-vesicle_markers 71 -vesicle_allow_close_markers "
 static const struct {
   const char *options;

@@ -77,3 +77,16 @@ def test_no_warning_without_contact(tmp_path):
     options = "-vesicle_count 2 -vesicle_semi_axes 0.2,0.5 -vesicle_center -0.35,0,0.35,0"
     run = run_petves(tmp_path / "run", f"-domain_cells 32,32 {options} -time_step 0.002 -time_end 0.01")
     assert "petves: warning" not in run.stdout
+
+
+def test_markers_that_do_not_resolve_a_shape(tmp_path):
+    """Warned of once, on any number of ranks; as many as the warning says are enough."""
+    scene = "-domain_cells 32,32 -domain_bc_x free -domain_bc_y free -fluid_inertia none -vesicle_allow_close_markers "
+    scene += "-scheme_type coupled -coupling_near_field exact -membrane_derivative spectral -delta_type cbs54 "
+    scene += "-domain_box 0,8,0,8 -flow_type shear -vesicle_center 2.5,4,5.5,4 -vesicle_count 2 -vesicle_area 1,1 "
+    scene += "-vesicle_reduced_area 0.95,0.7 -time_step 0.05 -time_end 0.3 -vesicle_markers"
+    run = run_petves(tmp_path / "run", f"{scene} 17", ranks=2)
+    lines = [line for line in run.stdout.splitlines() if "petves: warning" in line]
+    assert len(lines) == 1 and "17 markers do not resolve vesicle 2 after step 1," in lines[0], run.stdout
+    wanted = lines[0].split("try -vesicle_markers ")[1]
+    assert "petves: warning" not in run_petves(tmp_path / "more", f"{scene} {wanted}").stdout

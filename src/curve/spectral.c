@@ -53,3 +53,18 @@ void SpectralDerivative(Spectral s, int power, PetscReal scale, const PetscScala
   fftw_execute(s->backward);
   for (PetscInt k = 0; k < 2 * n; k++) Y[k] += line[k];
 }
+
+PetscReal SpectralTail(Spectral s, PetscReal part, const PetscScalar X[]) {
+  const PetscInt n = s->n;
+  const double *hat = (double *)s->hat;
+  PetscReal all = 0, tail = 0;
+  memcpy(s->line, X, 2 * (size_t)n * sizeof(double));
+  fftw_execute(s->forward);
+  for (PetscInt q = 1; q < n; q++) {
+    const PetscInt m = PetscMin(q, n - q);
+    const PetscReal bending = PetscSqr((PetscReal)m * m) * (PetscSqr(hat[2 * q]) + PetscSqr(hat[2 * q + 1]));
+    all += bending;
+    if (2 * m > part * (n - 1)) tail += bending;
+  }
+  return all > 0 ? PetscSqrtReal(tail / all) : 0;
+}

@@ -12,3 +12,7 @@ PETSC_EXTERN PetscErrorCode SpectralDestroy(Spectral *spectral);
    x, y. Odd powers drop the Nyquist mode of an even n, so that the first derivative is antisymmetric. */
 PETSC_EXTERN void SpectralDerivative(Spectral spectral, int power, PetscReal scale, const PetscScalar X[],
                                      PetscScalar Y[]);
+
+/* SpectralTail - how much of a curve's bending is in modes above `part` of the highest, K = (n - 1)/2: the root of
+   SUM m^4 |X_m|^2 over |m| > part K, divided by that over all modes. Small where markers resolve the curve. */
+PETSC_EXTERN PetscReal SpectralTail(Spectral spectral, PetscReal part, const PetscScalar X[]);

@@ -55,6 +55,7 @@ struct _p_Scheme {
   PetscBool has_old; /* whether there was a step before */
   Snapshot before;   /* what SchemeStep goes back to when a step fails */
   PetscBool contact; /* whether parts of membranes are close, as last warned of */
+  PetscBool rough;   /* whether it was warned that markers do not resolve a membrane */
   StepReport report;
   Vec background;   /* marker vector: what the markers' velocity has besides the solved part: u_inf, zero in the total
                        form */
