@@ -1,7 +1,8 @@
 #include "scheme/watch.h"
 #include "base/agree.h"
 
-#define CONTACT 2 /* cells between membranes below which a warning is due */
+#define CONTACT 2       /* cells between membranes below which a warning is due */
+#define CLOSE_PARTS 1.5 /* edges between parts of one membrane, likewise with the exact near field */
 
 /* A shape's tail, what it has of its bending in the last third of its modes. Above ROUGH the steady angle or
    frequency is off by .05 % or more, below SMOOTH by less than .001 % (V = .35 to .9, chi = 1 to 30, 17 to 91
@@ -84,7 +85,7 @@ static PetscReal Apart(Grid g, int dir, PetscReal a, PetscReal b) {
    vesicle that of their markers. */
 static PetscReal Unresolved(Scheme s, PetscInt v, PetscInt w) {
   if (!s->coupling->near) return CONTACT * s->fluid->grid->h;
-  return v == w ? 1.5 * s->membrane->ds[v] : 0;
+  return v == w ? CLOSE_PARTS * s->membrane->ds[v] : 0;
 }
 
 /* Markers of vesicles v and w closer than `near` that are no neighbours along one, which are more than twice `near`
@@ -131,13 +132,13 @@ static PetscErrorCode WarnOfContact(Scheme s) {
     PetscCall(PetscSNPrintf(who, sizeof(who), "parts of vesicle %d", pair[0]));
   else
     PetscCall(PetscSNPrintf(who, sizeof(who), "vesicles %d and %d", pair[0], pair[1]));
-  const PetscReal near = Unresolved(s, pair[0] - 1, pair[1] - 1) / s->fluid->grid->h;
-  const char *const what = s->coupling->near ? "their markers do" : "the grid does";
-  const char *const advice = s->coupling->near ? "more -vesicle_markers" : "finer -domain_cells";
+  const PetscBool exact = s->coupling->near ? PETSC_TRUE : PETSC_FALSE;
   PetscCall(PetscPrintf(s->scene->comm,
-                        "petves: warning: %s are closer than %.3g cells after step %" PetscInt_FMT
+                        "petves: warning: %s are closer than %.3g %s after step %" PetscInt_FMT
                         ", time %g; %s not resolve the fluid between them: try %s\n",
-                        who, (double)near, s->state.step, (double)s->state.t, what, advice));
+                        who, exact ? CLOSE_PARTS : CONTACT, exact ? "edges" : "cells", s->state.step,
+                        (double)s->state.t, exact ? "their markers do" : "the grid does",
+                        exact ? "more -vesicle_markers" : "finer -domain_cells"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
