@@ -90,3 +90,17 @@ def test_markers_that_do_not_resolve_a_shape(tmp_path):
     assert len(lines) == 1 and "17 markers do not resolve vesicle 2 after step 1," in lines[0], run.stdout
     wanted = lines[0].split("try -vesicle_markers ")[1]
     assert "petves: warning" not in run_petves(tmp_path / "more", f"{scene} {wanted}").stdout
+
+
+def test_membranes_that_cross_end_the_run(tmp_path):
+    """Without the near field and with long steps two vesicles pressed together cross: the last good state is the one before."""
+    options = "-domain_box -4,4,-4,4 -domain_cells 32,32 -flow_type extension -flow_rate -1 -fluid_inertia none "
+    options += "-scheme_type coupled -delta_type cbs54 -membrane_derivative spectral -vesicle_count 2 "
+    options += "-vesicle_semi_axes 0.4,0.8 -vesicle_center -0.55,0,0.55,0 "
+    options += "-vesicle_angle 0 -vesicle_bending 0.001 -time_step 0.5 -time_end 8"
+    run = run_petves(tmp_path / "run", options, ranks=2, good=False)
+    assert run.status == 2 and "vesicles 1 and 2 cross after step" in run.errors[0] and "; try " in run.errors[0]
+    last = int(run.series["step"][-1])
+    assert 3 < last < 16 and f"after step {last + 1}," in run.errors[0]
+    with h5py.File(run.folder / "checkpoint.h5") as file:
+        assert file.attrs["step"] == last

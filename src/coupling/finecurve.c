@@ -1,12 +1,6 @@
 #include "coupling/finecurve.h"
 #include "coupling/blas.h"
-
-/* Cardinal function of trigonometric interpolation on n points. */
-static PetscReal Cardinal(PetscInt n, PetscReal t) {
-  const PetscReal s = PetscSinReal(0.5 * t);
-  if (PetscAbsReal(s) < 1e-14) return 1;
-  return PetscSinReal(0.5 * n * t) / (n * (n % 2 ? s : PetscTanReal(0.5 * t)));
-}
+#include "curve/spectral.h"
 
 PetscErrorCode FineCurveCreate(NearField f, PetscInt v, const PetscReal shift[2], PetscInt factor, FineCurve *c) {
   const PetscInt n = LayoutCount(f->membrane->layout, v), Q = n * factor;
@@ -14,7 +8,7 @@ PetscErrorCode FineCurveCreate(NearField f, PetscInt v, const PetscReal shift[2]
   PetscFunctionBeginUser;
   *c = (FineCurve){.n = n, .f = factor};
   PetscCall(PetscMalloc3(Q, &c->weight, 2 * Q, &c->x, Q, &c->used));
-  for (PetscInt q = 0; q < Q; q++) c->weight[q] = Cardinal(n, 2 * PETSC_PI * q / Q);
+  for (PetscInt q = 0; q < Q; q++) c->weight[q] = TrigonometricCardinal(n, 2 * PETSC_PI * q / Q);
   for (PetscInt q = 0; q < Q; q++)
     for (int d = 0; d < 2; d++) {
       PetscReal sum = shift[d];

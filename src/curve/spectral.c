@@ -68,3 +68,20 @@ PetscReal SpectralTail(Spectral s, PetscReal part, const PetscScalar X[]) {
   }
   return all > 0 ? PetscSqrtReal(tail / all) : 0;
 }
+
+PetscReal TrigonometricCardinal(PetscInt n, PetscReal t) {
+  const PetscReal s = PetscSinReal(0.5 * t);
+  if (PetscAbsReal(s) < 1e-14) return 1;
+  return PetscSinReal(0.5 * n * t) / (n * (n % 2 ? s : PetscTanReal(0.5 * t)));
+}
+
+void TrigonometricPoints(PetscInt n, const PetscReal X[], PetscInt times, PetscReal Y[]) {
+  for (PetscInt q = 0; q < n * times; q++) {
+    Y[2 * q] = Y[2 * q + 1] = 0;
+    for (PetscInt k = 0; k < n; k++) {
+      const PetscReal weight = TrigonometricCardinal(n, 2 * PETSC_PI * ((q - times * k + n * times) % (n * times)) /
+                                                            (n * times));
+      for (int c = 0; c < 2; c++) Y[2 * q + c] += weight * X[2 * k + c];
+    }
+  }
+}

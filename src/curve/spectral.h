@@ -16,3 +16,9 @@ PETSC_EXTERN void SpectralDerivative(Spectral spectral, int power, PetscReal sca
 /* SpectralTail - how much of a curve's bending is in modes above `part` of the highest, K = (n - 1)/2: the root of
    SUM m^4 |X_m|^2 over |m| > part K, divided by that over all modes. Small where markers resolve the curve. */
 PETSC_EXTERN PetscReal SpectralTail(Spectral spectral, PetscReal part, const PetscScalar X[]);
+
+/* TrigonometricCardinal - the function of trigonometric interpolation on n points: 1 at t = 0, 0 at the others, t the
+   distance from 0 to 2 pi. TrigonometricPoints - the curve through n points X[2n] at `times` as many, Y[2 times n]. Not
+   collective. */
+PETSC_EXTERN PetscReal TrigonometricCardinal(PetscInt n, PetscReal t);
+PETSC_EXTERN void TrigonometricPoints(PetscInt n, const PetscReal X[], PetscInt times, PetscReal Y[]);

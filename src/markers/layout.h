@@ -37,6 +37,19 @@ static inline PetscInt LayoutOffset(Layout layout, PetscInt body) {
   return layout->start[body] - layout->first;
 }
 
+/* LayoutBody - the body that a marker belongs to. Not collective. */
+static inline PetscInt LayoutBody(Layout layout, PetscInt marker) {
+  PetscInt low = 0, high = layout->bodies; /* start[low] <= marker < start[high] */
+  while (high - low > 1) {
+    const PetscInt middle = (low + high) / 2;
+    if (layout->start[middle] <= marker)
+      low = middle;
+    else
+      high = middle;
+  }
+  return low;
+}
+
 /* LayoutGather - own[each n] of every rank to all[each M] of every rank. LayoutGatherVec - the same of a vector.
    LayoutSum - the sum over ranks of part[each M] to the owners' own[each n]. Collective. */
 PETSC_EXTERN PetscErrorCode LayoutGather(Layout layout, int each, const PetscScalar own[], PetscScalar all[]);

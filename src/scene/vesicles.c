@@ -1,4 +1,5 @@
 /* The initial markers of a scene: equal edges on an ellipse or on a curve from a file. */
+#include "curve/crossing.h"
 #include "kernel/kernel.h"
 #include "scene/resolve.h"
 
@@ -131,16 +132,56 @@ static PetscBool Inside(PetscInt M, const PetscReal X[], PetscReal x, PetscReal 
   return inside;
 }
 
+static void Bounds(const Shape *s, PetscInt v, PetscReal box[2][2]) {
+  for (int d = 0; d < 2; d++) {
+    box[d][0] = PETSC_MAX_REAL;
+    box[d][1] = -PETSC_MAX_REAL;
+    for (PetscInt k = s->start[v]; k < s->start[v + 1]; k++) {
+      box[d][0] = PetscMin(box[d][0], s->X[2 * k + d]);
+      box[d][1] = PetscMax(box[d][1], s->X[2 * k + d]);
+    }
+  }
+}
+
+/* Whether vesicle b, or an image of it, lies inside vesicle a, given that they do not cross. box[2][2] holds a. */
+static PetscBool Encloses(const Shape *s, PetscInt a, PetscInt b, PetscReal box[2][2], const PetscReal period[2]) {
+  const PetscReal *X = s->X + 2 * s->start[a], *at = s->X + 2 * s->start[b];
+  for (int p = -1; p <= 1; p++)
+    for (int q = -1; q <= 1; q++) {
+      if ((p && period[0] == 0) || (q && period[1] == 0)) continue;
+      const PetscReal x = at[0] + p * period[0], y = at[1] + q * period[1];
+      if (x < box[0][0] || x > box[0][1] || y < box[1][0] || y > box[1][1]) continue;
+      if (Inside(s->start[a + 1] - s->start[a], X, x, y)) return PETSC_TRUE;
+    }
+  return PETSC_FALSE;
+}
+
+/* No vesicle crosses another, an image of one or itself, nor lies within another. */
 static PetscErrorCode CheckOverlap(Scene scene, const Shape *s) {
+  const PetscBool smooth = scene->membrane.derivative == DERIVATIVE_SPECTRAL ? PETSC_TRUE : PETSC_FALSE;
+  PetscReal period[2];
+  PetscInt pair[2];
   PetscFunctionBeginUser;
-  for (PetscInt a = 0; a < s->vesicles; a++)
-    for (PetscInt b = 0; b < s->vesicles; b++)
-      for (PetscInt k = s->start[b]; k < s->start[b + 1] && a != b; k++)
-        PetscCheck(!Inside(s->start[a + 1] - s->start[a], s->X + 2 * s->start[a], s->X[2 * k], s->X[2 * k + 1]),
-                   scene->comm, PETSC_ERR_USER_INPUT,
-                   "-vesicle_center: vesicles %" PetscInt_FMT " and %" PetscInt_FMT
-                   " overlap at (%g, %g); allowed: vesicles apart from one another",
-                   a + 1, b + 1, (double)s->X[2 * k], (double)s->X[2 * k + 1]);
+  for (int d = 0; d < 2; d++)
+    period[d] = scene->fluid.bc[d] == BC_PERIODIC ? scene->fluid.box[2 * d + 1] - scene->fluid.box[2 * d] : 0;
+  PetscCall(CurvesCross(s->vesicles, s->start, s->X, period, smooth, pair));
+  PetscCheck(pair[0] < 0 || pair[0] != pair[1], scene->comm, PETSC_ERR_USER_INPUT,
+             "%s: vesicle %" PetscInt_FMT
+             " crosses itself or its periodic image; allowed: curves that do not, in a box that holds them",
+             scene->vesicles.shape == SHAPE_FILE ? "-vesicle_file" : "-domain_box", pair[0] + 1);
+  for (PetscInt a = 0; a < s->vesicles && pair[0] < 0; a++) {
+    PetscReal box[2][2];
+    Bounds(s, a, box);
+    for (PetscInt b = 0; b < s->vesicles && pair[0] < 0; b++)
+      if (a != b && Encloses(s, a, b, box, period)) {
+        pair[0] = PetscMin(a, b);
+        pair[1] = PetscMax(a, b);
+      }
+  }
+  PetscCheck(pair[0] < 0, scene->comm, PETSC_ERR_USER_INPUT,
+             "-vesicle_center: vesicles %" PetscInt_FMT " and %" PetscInt_FMT
+             " overlap; allowed: vesicles apart from one another",
+             pair[0] + 1, pair[1] + 1);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -89,3 +89,12 @@ PetscErrorCode SchemeSolverFailed(Scheme s, const char prefix[], KSPConvergedRea
                           KSPConvergedReasons[why], its, (double)residual, prefix));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+PetscErrorCode SchemeAdvise(Scheme s, const char advice[]) {
+  char *text = s->report.failure;
+  const size_t used = strlen(text), room = sizeof(s->report.failure) - used;
+  PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(text + used, room, " after step %" PetscInt_FMT ", time %g; try %s", s->state.step,
+                          (double)s->state.t, advice));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

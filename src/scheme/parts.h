@@ -26,3 +26,6 @@ PETSC_EXTERN PetscErrorCode SchemeSolverFailed(Scheme scheme, const char prefix[
 PETSC_EXTERN PetscErrorCode SchemeCreate_Split(Scheme);
 PETSC_EXTERN PetscErrorCode SchemeCreate_Penalty(Scheme);
 PETSC_EXTERN PetscErrorCode SchemeCreate_Coupled(Scheme);
+
+/* SchemeAdvise - step, time and what to try, behind what is wrong in report.failure. Not collective. */
+PETSC_EXTERN PetscErrorCode SchemeAdvise(Scheme scheme, const char advice[]);

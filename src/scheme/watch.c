@@ -1,24 +1,13 @@
 #include "scheme/watch.h"
 #include "base/agree.h"
-
-#define CONTACT 2       /* cells between membranes below which a warning is due */
-#define CLOSE_PARTS 1.5 /* edges between parts of one membrane, likewise with the exact near field */
+#include "scheme/contact.h"
+#include "scheme/parts.h"
 
 /* A shape's tail, what it has of its bending in the last third of its modes. Above ROUGH the steady angle or
    frequency is off by .05 % or more, below SMOOTH by less than .001 % (V = .35 to .9, chi = 1 to 30, 17 to 91
    markers, against 91). */
 #define ROUGH 0.15
 #define SMOOTH 0.03
-
-/* What to try goes behind what is wrong. */
-static PetscErrorCode Advise(Scheme s, const char advice[]) {
-  char *text = s->report.failure;
-  const size_t used = strlen(text), room = sizeof(s->report.failure) - used;
-  PetscFunctionBeginUser;
-  PetscCall(PetscSNPrintf(text + used, room, " after step %" PetscInt_FMT ", time %g; try %s", s->state.step,
-                          (double)s->state.t, advice));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
 
 static PetscErrorCode CheckFinite(Scheme s) {
   static const char *const names[] = {"velocity", "pressure", "tension", "marker velocity"};
@@ -29,7 +18,7 @@ static PetscErrorCode CheckFinite(Scheme s) {
     if (k) PetscCall(VecNorm(all[k], NORM_2, &norm));
     if (!PetscIsInfOrNanReal(norm)) continue;
     PetscCall(PetscSNPrintf(s->report.failure, sizeof(s->report.failure), "the %s is not finite", names[k]));
-    PetscCall(Advise(s, "a smaller -time_step, or tighter solver tolerances"));
+    PetscCall(SchemeAdvise(s, "a smaller -time_step, or tighter solver tolerances"));
     break;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -55,7 +44,7 @@ static PetscErrorCode CheckLimits(Scheme s, PetscInt v, const PetscScalar X[]) {
     PetscCall(PetscSNPrintf(s->report.failure, sizeof(s->report.failure),
                             "vesicle %" PetscInt_FMT ": %s %.3g beyond %s %g", v + 1, what[k], (double)found[k],
                             names[k], (double)limit[k]));
-    PetscCall(Advise(s, advice[k]));
+    PetscCall(SchemeAdvise(s, advice[k]));
     break;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -71,74 +60,6 @@ static PetscErrorCode CheckVesicles(Scheme s) {
     PetscCall(CheckLimits(s, v, X + 2 * LayoutOffset(l, v)));
   PetscCall(VecRestoreArrayRead(s->state.X, &X));
   PetscCall(AgreeMessage(l->comm, s->report.failure));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Distance of two coordinates, through a periodic boundary where that is shorter. */
-static PetscReal Apart(Grid g, int dir, PetscReal a, PetscReal b) {
-  const PetscReal box = g->hi[dir] - g->lo[dir], d = PetscAbsReal(a - b);
-  return g->wall[dir] ? d : PetscAbsReal(d - box * PetscFloorReal(d / box + 0.5));
-}
-
-/* Distance of markers below which the fluid between two membranes, or two parts of one, is not resolved: two cells;
-   with the exact near field vesicles have no such distance, as finer points resolve what is between them, parts of one
-   vesicle that of their markers. */
-static PetscReal Unresolved(Scheme s, PetscInt v, PetscInt w) {
-  if (!s->coupling->near) return CONTACT * s->fluid->grid->h;
-  return v == w ? CLOSE_PARTS * s->membrane->ds[v] : 0;
-}
-
-/* Markers of vesicles v and w closer than `near` that are no neighbours along one, which are more than twice `near`
-   apart along it. X[2M]. */
-static PetscBool AreClose(Scheme s, PetscInt v, PetscInt w, PetscReal near, const PetscScalar X[]) {
-  const Layout layout = s->membrane->layout;
-  const Grid g = s->fluid->grid;
-  for (PetscInt k = layout->start[v]; k < layout->start[v + 1] && near > 0; k++)
-    for (PetscInt l = v == w ? k + 1 : layout->start[w]; l < layout->start[w + 1]; l++) {
-      if (v == w && PetscMin(l - k, LayoutCount(layout, v) - (l - k)) * s->membrane->ds[v] <= 2 * near) continue;
-      const PetscReal dx = Apart(g, 0, X[2 * k], X[2 * l]);
-      if (dx >= near) continue;
-      const PetscReal dy = Apart(g, 1, X[2 * k + 1], X[2 * l + 1]);
-      if (dx * dx + dy * dy < near * near) return PETSC_TRUE;
-    }
-  return PETSC_FALSE;
-}
-
-/* The first such pair, numbered from 1. */
-static PetscBool FindContact(Scheme s, const PetscScalar X[], PetscMPIInt pair[2]) {
-  for (PetscInt v = 0; v < s->membrane->layout->bodies; v++)
-    for (PetscInt w = v; w < s->membrane->layout->bodies; w++) {
-      if (!AreClose(s, v, w, Unresolved(s, v, w), X)) continue;
-      pair[0] = (PetscMPIInt)v + 1;
-      pair[1] = (PetscMPIInt)w + 1;
-      return PETSC_TRUE;
-    }
-  return PETSC_FALSE;
-}
-
-/* Once when a contact begins: rank 0 looks for one and tells the others. */
-static PetscErrorCode WarnOfContact(Scheme s) {
-  const Layout l = s->membrane->layout;
-  const PetscBool before = s->contact;
-  PetscMPIInt pair[2] = {0, 0};
-  PetscFunctionBeginUser;
-  PetscCall(LayoutGatherVec(l, s->state.X, s->work_all));
-  if (!l->rank) (void)FindContact(s, s->work_all, pair);
-  PetscCallMPI(MPI_Bcast(pair, 2, MPI_INT, 0, l->comm));
-  s->contact = pair[0] ? PETSC_TRUE : PETSC_FALSE;
-  if (!s->contact || before) PetscFunctionReturn(PETSC_SUCCESS);
-  char who[64];
-  if (pair[0] == pair[1])
-    PetscCall(PetscSNPrintf(who, sizeof(who), "parts of vesicle %d", pair[0]));
-  else
-    PetscCall(PetscSNPrintf(who, sizeof(who), "vesicles %d and %d", pair[0], pair[1]));
-  const PetscBool exact = s->coupling->near ? PETSC_TRUE : PETSC_FALSE;
-  PetscCall(PetscPrintf(s->scene->comm,
-                        "petves: warning: %s are closer than %.3g %s after step %" PetscInt_FMT
-                        ", time %g; %s not resolve the fluid between them: try %s\n",
-                        who, exact ? CLOSE_PARTS : CONTACT, exact ? "edges" : "cells", s->state.step,
-                        (double)s->state.t, exact ? "their markers do" : "the grid does",
-                        exact ? "more -vesicle_markers" : "finer -domain_cells"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -183,9 +104,10 @@ PetscErrorCode SchemeCheck(Scheme s) {
   PetscCall(CheckFinite(s));
   if (*failure || !CouplingHasMembrane(s->coupling)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(MarkersCheck(s->coupling->markers, s->state.X, failure));
-  if (*failure) PetscCall(Advise(s, "a larger -domain_box, or a smaller -time_step if it should not have come there"));
+  if (*failure)
+    PetscCall(SchemeAdvise(s, "a larger -domain_box, or a smaller -time_step if it should not have come there"));
   if (!*failure) PetscCall(CheckVesicles(s));
-  if (!*failure) PetscCall(WarnOfContact(s));
+  if (!*failure) PetscCall(SchemeCheckContact(s));
   if (!*failure) PetscCall(WarnOfSpectrum(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

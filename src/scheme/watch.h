@@ -2,6 +2,7 @@
 #pragma once
 #include "scheme/scheme.h"
 
-/* SchemeCheck - finite values, markers away from walls, edge ratio, area and length within -limit_*; what is wrong and
-   what to try goes into report.failure. Warns when membranes come closer than 2 h. Collective. */
+/* SchemeCheck - finite values, markers away from walls, edge ratio, area and length within -limit_*, membranes that do
+   not cross; what is wrong and what to try goes into report.failure. Warns of membranes in contact and of markers that
+   do not resolve their membrane. Collective. */
 PETSC_EXTERN PetscErrorCode SchemeCheck(Scheme scheme);

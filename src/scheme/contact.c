@@ -1,0 +1,106 @@
+#include "scheme/contact.h"
+#include "base/agree.h"
+#include "curve/crossing.h"
+#include "scheme/parts.h"
+
+#define CONTACT 2       /* cells between membranes below which a warning is due */
+#define CLOSE_PARTS 1.5 /* edges between parts of one membrane, likewise with the exact near field */
+
+/* Distance of markers below which the fluid between two membranes, or two parts of one, is not resolved: two cells;
+   with the exact near field vesicles have no such distance, as finer points resolve what is between them, parts of one
+   vesicle that of their markers. */
+static PetscReal Unresolved(Scheme s, PetscInt v, PetscInt w) {
+  if (!s->coupling->near) return CONTACT * s->fluid->grid->h;
+  return v == w ? CLOSE_PARTS * s->membrane->ds[v] : 0;
+}
+
+typedef struct {
+  Scheme scheme;
+  PetscMPIInt pair[2]; /* vesicles in contact, numbered from 1; 0, 0: none */
+} ContactSearch;
+
+/* Whether two markers that are near are a contact: nearer than Unresolved, and on one vesicle more than twice that
+   apart along it. */
+static PetscBool IsContact(void *context, PetscInt k, PetscInt l, const PetscReal d[2]) {
+  ContactSearch *c = (ContactSearch *)context;
+  const Scheme s = c->scheme;
+  const Layout layout = s->membrane->layout;
+  const PetscInt v = LayoutBody(layout, k), w = LayoutBody(layout, l);
+  const PetscReal near = Unresolved(s, v, w);
+  if (v == w && PetscMin(l - k, LayoutCount(layout, v) - (l - k)) * s->membrane->ds[v] <= 2 * near) return PETSC_FALSE;
+  if (d[0] * d[0] + d[1] * d[1] >= near * near) return PETSC_FALSE;
+  c->pair[0] = (PetscMPIInt)v + 1;
+  c->pair[1] = (PetscMPIInt)w + 1;
+  return PETSC_TRUE;
+}
+
+/* The first contact; X[2M]. */
+static PetscErrorCode FindContact(Scheme s, const PetscScalar X[], const PetscReal period[2], PetscMPIInt pair[2]) {
+  const Layout l = s->membrane->layout;
+  ContactSearch search = {.scheme = s};
+  PetscReal reach = 0;
+  PetscFunctionBeginUser;
+  for (PetscInt v = 0; v < l->bodies; v++) reach = PetscMax(reach, Unresolved(s, v, v));
+  PetscCall(PairsWithin(l->M, X, period, reach, IsContact, &search));
+  PetscCall(PetscArraycpy(pair, search.pair, 2));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Vesicles by their numbers from 1. */
+static PetscErrorCode Name(PetscMPIInt v, PetscMPIInt w, size_t room, char who[]) {
+  PetscFunctionBeginUser;
+  if (v == w)
+    PetscCall(PetscSNPrintf(who, room, "parts of vesicle %d", v));
+  else
+    PetscCall(PetscSNPrintf(who, room, "vesicles %d and %d", v, w));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Warn(Scheme s, const PetscMPIInt pair[2]) {
+  const PetscBool exact = s->coupling->near ? PETSC_TRUE : PETSC_FALSE;
+  char who[64];
+  PetscFunctionBeginUser;
+  PetscCall(Name(pair[0], pair[1], sizeof(who), who));
+  PetscCall(PetscPrintf(s->scene->comm,
+                        "petves: warning: %s are closer than %.3g %s after step %" PetscInt_FMT
+                        ", time %g; %s not resolve the fluid between them: try %s\n",
+                        who, exact ? CLOSE_PARTS : CONTACT, exact ? "edges" : "cells", s->state.step,
+                        (double)s->state.t, exact ? "their markers do" : "the grid does",
+                        exact ? "more -vesicle_markers" : "finer -domain_cells"));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CheckCrossing(Scheme s, const PetscScalar X[], const PetscReal period[2]) {
+  const Layout l = s->membrane->layout;
+  const PetscBool smooth = s->membrane->derivative == DERIVATIVE_SPECTRAL ? PETSC_TRUE : PETSC_FALSE;
+  PetscInt pair[2];
+  char who[64];
+  PetscFunctionBeginUser;
+  PetscCall(CurvesCross(l->bodies, l->start, X, period, smooth, pair));
+  if (pair[0] < 0) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(Name((PetscMPIInt)pair[0] + 1, (PetscMPIInt)pair[1] + 1, sizeof(who), who));
+  PetscCall(PetscSNPrintf(s->report.failure, sizeof(s->report.failure), "%s cross", who));
+  PetscCall(SchemeAdvise(s, "a smaller -time_step, more -vesicle_markers or finer -domain_cells"));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Rank 0 looks and tells the others. */
+PetscErrorCode SchemeCheckContact(Scheme s) {
+  const Layout l = s->membrane->layout;
+  const Grid g = s->fluid->grid;
+  const PetscBool before = s->contact;
+  PetscReal period[2];
+  PetscMPIInt pair[2] = {0, 0};
+  PetscFunctionBeginUser;
+  for (int d = 0; d < 2; d++) period[d] = g->wall[d] ? 0 : g->hi[d] - g->lo[d];
+  PetscCall(LayoutGatherVec(l, s->state.X, s->work_all));
+  if (!l->rank) {
+    PetscCall(CheckCrossing(s, s->work_all, period));
+    PetscCall(FindContact(s, s->work_all, period, pair));
+  }
+  PetscCall(AgreeMessage(l->comm, s->report.failure));
+  PetscCallMPI(MPI_Bcast(pair, 2, MPI_INT, 0, l->comm));
+  s->contact = pair[0] ? PETSC_TRUE : PETSC_FALSE;
+  if (s->contact && !before && !*s->report.failure) PetscCall(Warn(s, pair));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

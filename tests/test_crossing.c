@@ -1,0 +1,103 @@
+/* Pairs of near points against the search of all pairs, and closed curves that cross or do not. */
+#include "check.h"
+#include "curve/crossing.h"
+
+typedef struct {
+  PetscInt pairs, repeated;
+  char *seen; /* [n][n] */
+  PetscInt n;
+} Count;
+
+static PetscBool CountPair(void *context, PetscInt i, PetscInt j, const PetscReal d[2]) {
+  Count *c = (Count *)context;
+  c->pairs++;
+  if (c->seen[i * c->n + j]++) c->repeated++;
+  return PETSC_FALSE;
+}
+
+static PetscErrorCode CheckPairs(PetscInt n, PetscReal period_x, PetscReal period_y, PetscReal reach) {
+  const PetscReal period[2] = {period_x, period_y};
+  Count c = {.n = n};
+  PetscReal *X;
+  PetscInt wanted = 0;
+  unsigned seed = 7;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(2 * n, &X));
+  PetscCall(PetscCalloc1(n * n, &c.seen));
+  for (PetscInt k = 0; k < 2 * n; k++) X[k] = 3 * TestRandom(&seed); /* some are outside of a period */
+  for (PetscInt i = 0; i < n; i++)
+    for (PetscInt j = i + 1; j < n; j++) {
+      PetscReal square = 0;
+      for (int dir = 0; dir < 2; dir++) {
+        PetscReal d = X[2 * j + dir] - X[2 * i + dir];
+        if (period[dir] > 0) d = remainder(d, period[dir]);
+        square += d * d;
+      }
+      if (square < reach * reach) wanted++;
+    }
+  PetscCall(PairsWithin(n, X, period, reach, CountPair, &c));
+  CHECK(c.pairs == wanted && !c.repeated, "%d points, periods %g and %g: %d pairs nearer than %g, %d by the cells",
+        (int)n, period_x, period_y, (int)wanted, reach, (int)c.pairs);
+  PetscCall(PetscFree(X));
+  PetscCall(PetscFree(c.seen));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+#define POINTS 40
+
+/* x = x0 + a cos t + waist cos 3t, y = y0 + b sin(fold t): an ellipse, a dumbbell, with fold 2 a figure of eight. */
+typedef struct {
+  PetscReal x, y, a, b, waist;
+  int fold;
+} Loop;
+
+static PetscErrorCode CheckLoops(const char what[], const Loop loop[2], PetscReal period_x, PetscBool smooth,
+                                 PetscInt first, PetscInt second) {
+  const PetscInt start[3] = {0, POINTS, 2 * POINTS};
+  const PetscReal period[2] = {period_x, 0};
+  PetscReal X[4 * POINTS];
+  PetscInt pair[2];
+  PetscFunctionBeginUser;
+  for (int v = 0; v < 2; v++)
+    for (int k = 0; k < POINTS; k++) {
+      const PetscReal t = 2 * PETSC_PI * k / POINTS;
+      X[2 * (v * POINTS + k)] = loop[v].x + loop[v].a * PetscCosReal(t) + loop[v].waist * PetscCosReal(3 * t);
+      X[2 * (v * POINTS + k) + 1] = loop[v].y + loop[v].b * PetscSinReal(loop[v].fold * t);
+    }
+  PetscCall(CurvesCross(2, start, X, period, smooth, pair));
+  const PetscInt low = PetscMin(pair[0], pair[1]), high = PetscMax(pair[0], pair[1]);
+  CHECK(low == first && high == second, "%s, %s: %d and %d cross", what, smooth ? "curves" : "polygons", (int)low,
+        (int)high);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Facts(void) {
+  static const Loop apart[2] = {{0, 0, 1, 0.5, 0, 1}, {0, 1.001, 1, 0.5, 0, 1}},
+                    over[2] = {{0, 0, 1, 0.5, 0, 1}, {0, 0.99, 1, 0.5, 0, 1}},
+                    inside[2] = {{0, 0, 1, 0.5, 0, 1}, {0, 0, 0.5, 0.2, 0, 1}},
+                    eight[2] = {{0, 0, 1, 0.5, 0, 1}, {0, 3, 1, 0.5, 0.1, 2}},
+                    seam[2] = {{0, 0, 1, 0.5, 0, 1}, {2.5, 0, 1, 0.5, 0, 1}},
+                    /* the right-hand one's tip in the other's hollow end: chords of the hollow cut into the tip */
+      nested[2] = {{0, 0, 0.4, 1, -0.3, 1}, {0.7105, 0.0785, 0.6, 0.01, 0, 1}};
+  PetscFunctionBeginUser;
+  for (int n = 1; n <= 300; n = 3 * n + 2)
+    for (int k = 0; k < 4; k++) PetscCall(CheckPairs(n, k & 1 ? 4 : 0, k & 2 ? 5 : 0, n < 30 ? 1.9 : 0.3));
+  PetscCall(CheckPairs(50, 4, 4, 100));
+  for (int smooth = 0; smooth < 2; smooth++) {
+    const PetscBool curves = smooth ? PETSC_TRUE : PETSC_FALSE;
+    PetscCall(CheckLoops("one above the other", apart, 0, curves, -1, -1));
+    PetscCall(CheckLoops("a little lower", over, 0, curves, 0, 1));
+    PetscCall(CheckLoops("one in the other", inside, 0, curves, -1, -1));
+    PetscCall(CheckLoops("a figure of eight", eight, 0, curves, 1, 1));
+    PetscCall(CheckLoops("beside one another", seam, 0, curves, -1, -1));
+    PetscCall(CheckLoops("over a seam", seam, 4, curves, 0, 1));
+    PetscCall(CheckLoops("over its own seam", apart, 1.9, curves, 0, 0));
+  }
+  PetscCall(CheckLoops("a tip in a hollow", nested, 0, PETSC_FALSE, 0, 1));
+  PetscCall(CheckLoops("a tip in a hollow", nested, 0, PETSC_TRUE, -1, -1));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+int main(int argc, char **argv) {
+  return CheckMain(argc, argv, Facts);
+}
