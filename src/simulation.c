@@ -1,5 +1,6 @@
 /* A whole run: build everything from the options, step, write. */
 #include "simulation.h"
+#include "base/agree.h"
 #include "fluid/wisdom.h"
 #include <errno.h>
 #include <unistd.h>
@@ -125,13 +126,23 @@ PetscErrorCode SimulationView(Simulation s, PetscViewer viewer) {
 
 static PetscErrorCode IsSteady(Simulation s, PetscBool *steady) {
   const State *q = &s->scheme->state;
+  const Layout l = s->layout;
   const PetscReal tolerance = s->scene->time.steady_tol;
-  PetscReal speed;
+  const PetscScalar *X, *U;
+  PetscBool moves = PETSC_FALSE;
   PetscFunctionBeginUser;
   *steady = PETSC_FALSE;
-  if (tolerance <= 0 || !s->layout->bodies) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(MembraneNormalSpeed(s->membrane, q->X, q->U, &speed));
-  *steady = speed < tolerance ? PETSC_TRUE : PETSC_FALSE;
+  if (tolerance <= 0 || !l->bodies) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecGetArrayRead(q->X, &X));
+  PetscCall(VecGetArrayRead(q->U, &U));
+  for (PetscInt v = l->own; v < l->end; v++) {
+    const PetscInt at = 2 * LayoutOffset(l, v);
+    if (!(MembraneNormalSpeed(s->membrane, v, X + at, U + at) < tolerance)) moves = PETSC_TRUE;
+  }
+  PetscCall(VecRestoreArrayRead(q->U, &U));
+  PetscCall(VecRestoreArrayRead(q->X, &X));
+  PetscCall(AgreeFlag(l->comm, moves, &moves));
+  *steady = moves ? PETSC_FALSE : PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -20,7 +20,7 @@ _HAVE = {
     "time": "time dt",
     "length": "length center_x center_y area_shift markers x y h",
     "length^2": "area",
-    "length/time": "u v velocity",
+    "length/time": "u v velocity normal_speed",
     "length^2/time": "nu",
     "length^2/time^2": "p",
     "length^3/time^2": "tension",

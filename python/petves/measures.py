@@ -79,6 +79,7 @@ class Measures:
         "frequency",
         "Tank-treading frequency (radians/time) of the first vesicle; NaN unless the membrane turns in one sense.",
     )
+    normal_speed = _column("normal_speed", "Largest |u.n| on a membrane (length/time): the speed of its outline.")
     div_max = _column("div_max", "What the solver left of the velocity's divergence (1/time).")
     surface_div_max = _column("surface_div_max", "What the solver left of the membrane's inextensibility (1/time).")
 

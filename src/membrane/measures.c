@@ -80,31 +80,14 @@ PetscReal MembraneFrequency(Membrane m, PetscInt v, const PetscScalar X[], const
   return positive == n || negative == n ? n / PetscAbsReal(sum) : NAN;
 }
 
-/* max |u.n| of one vesicle */
-static PetscReal NormalSpeed(PetscInt markers, const PetscScalar X[], const PetscScalar U[]) {
-  PetscReal largest = 0;
-  for (PetscInt k = 0; k < markers; k++) {
-    const PetscInt p = (k ? k : markers) - 1, n = k + 1 < markers ? k + 1 : 0;
-    const PetscReal tx = X[2 * n] - X[2 * p], ty = X[2 * n + 1] - X[2 * p + 1];
-    const PetscReal speed = PetscAbsReal(ty * U[2 * k] - tx * U[2 * k + 1]) / PetscSqrtReal(tx * tx + ty * ty);
-    largest = PetscMax(largest, speed);
+PetscReal MembraneNormalSpeed(Membrane m, PetscInt v, const PetscScalar X[], const PetscScalar U[]) {
+  const PetscInt n = LayoutCount(m->layout, v);
+  PetscReal *T = m->work.measures, largest = 0;
+  (void)PetscArrayzero(T, 2 * n);
+  SpectralDerivative(m->spectral[v], 1, 1, X, T);
+  for (PetscInt k = 0; k < n; k++) {
+    const PetscReal across = T[2 * k + 1] * U[2 * k] - T[2 * k] * U[2 * k + 1];
+    largest = PetscMax(largest, PetscAbsReal(across) / PetscHypotReal(T[2 * k], T[2 * k + 1]));
   }
   return largest;
-}
-
-PetscErrorCode MembraneNormalSpeed(Membrane m, Vec X, Vec U, PetscReal *speed) {
-  const Layout l = m->layout;
-  const PetscScalar *x, *u;
-  PetscFunctionBeginUser;
-  *speed = 0;
-  PetscCall(VecGetArrayRead(X, &x));
-  PetscCall(VecGetArrayRead(U, &u));
-  for (PetscInt v = l->own; v < l->end; v++) {
-    const PetscInt at = 2 * LayoutOffset(l, v);
-    *speed = PetscMax(*speed, NormalSpeed(LayoutCount(l, v), x + at, u + at));
-  }
-  PetscCall(VecRestoreArrayRead(U, &u));
-  PetscCall(VecRestoreArrayRead(X, &x));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, speed, 1, MPIU_REAL, MPI_MAX, l->comm));
-  PetscFunctionReturn(PETSC_SUCCESS);
 }

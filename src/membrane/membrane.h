@@ -75,9 +75,10 @@ PETSC_EXTERN void MembraneMeasure(Membrane membrane, PetscInt vesicle, const Pet
 PETSC_EXTERN PetscReal MembraneFrequency(Membrane membrane, PetscInt vesicle, const PetscScalar X[],
                                          const PetscScalar U[]);
 
-/* MembraneNormalSpeed - max over all markers of |u.n|, n the normal of the chord from X_{k-1} to
-   X_{k+1}. Collective. */
-PETSC_EXTERN PetscErrorCode MembraneNormalSpeed(Membrane membrane, Vec X, Vec U, PetscReal *speed);
+/* MembraneNormalSpeed - max |u.n| of one vesicle, the speed of its outline (length/time): n by the spectral derivative
+   of X, so that it is not taken for motion when markers pass along a curve at rest. */
+PETSC_EXTERN PetscReal MembraneNormalSpeed(Membrane membrane, PetscInt vesicle, const PetscScalar X[],
+                                           const PetscScalar U[]);
 
 /* MembraneRestoreEdges - where an edge of one vesicle is off by more than tolerance (relative), move its markers as
    little as possible until all edges have the length ds and the area is what it was: Newton (CurveFit). Nothing moves

@@ -1,16 +1,15 @@
 #include "output/record.h"
 
-const char *const SeriesColumns[] = {"step",           "time",        "dt",          "energy_kinetic",
-                                     "energy_bending", "area",        "length",      "area_error",
-                                     "length_error",   "edge_ratio",  "div_max",     "surface_div_max",
-                                     "center_x",       "center_y",    "inclination", "frequency",
-                                     "tension_its",    "bending_its", "coupled_its", "nsolve",
-                                     "wall",           "area_shift",  NULL};
+const char *const SeriesColumns[] = {
+    "step",        "time",       "dt",           "energy_kinetic", "energy_bending", "area",
+    "length",      "area_error", "length_error", "edge_ratio",     "div_max",        "surface_div_max",
+    "center_x",    "center_y",   "inclination",  "frequency",      "tension_its",    "bending_its",
+    "coupled_its", "nsolve",     "wall",         "area_shift",     "normal_speed",   NULL};
 
 /* Columns that repeat with a suffix when there are several vesicles. */
-static const int per_vesicle[] = {COLUMN_BENDING,      COLUMN_AREA,       COLUMN_LENGTH,   COLUMN_AREA_ERROR,
-                                  COLUMN_LENGTH_ERROR, COLUMN_EDGE_RATIO, COLUMN_CENTER_X, COLUMN_CENTER_Y,
-                                  COLUMN_INCLINATION,  COLUMN_FREQUENCY};
+static const int per_vesicle[] = {COLUMN_BENDING,      COLUMN_AREA,       COLUMN_LENGTH,      COLUMN_AREA_ERROR,
+                                  COLUMN_LENGTH_ERROR, COLUMN_EDGE_RATIO, COLUMN_CENTER_X,    COLUMN_CENTER_Y,
+                                  COLUMN_INCLINATION,  COLUMN_FREQUENCY,  COLUMN_NORMAL_SPEED};
 #define PER_VESICLE ((int)(sizeof(per_vesicle) / sizeof(per_vesicle[0])))
 
 /* Room for an entry of a line: 24 characters a number and the comma; the longest name and a vesicle's number. */
@@ -58,6 +57,7 @@ static void VesicleRow(Membrane m, PetscInt v, const PetscScalar X[], const Pets
   row[COLUMN_CENTER_Y] = measures.center[1];
   row[COLUMN_INCLINATION] = measures.inclination;
   row[COLUMN_FREQUENCY] = MembraneFrequency(m, v, X, U);
+  row[COLUMN_NORMAL_SPEED] = MembraneNormalSpeed(m, v, X, U);
 }
 
 /* Each owner measures its vesicles, all ranks get all rows. */
@@ -78,15 +78,15 @@ PetscErrorCode RecordMeasure(Record *r, Scheme s) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Totals (energy, area, length), worst values (errors, edge ratio) or means (centre) of several vesicles. The
-   inclination and the frequency of the first stand for all: neither a total nor a worst value of angles
-   means anything. */
+/* Totals (energy, area, length), worst values (errors, edge ratio, normal speed) or means (centre) of several vesicles.
+   The inclination and the frequency of the first stand for all: neither a total nor a worst value of angles means
+   anything. */
 static void Combine(PetscInt vesicles, const PetscReal one[], PetscReal all[]) {
   const int total[] = {COLUMN_BENDING, COLUMN_AREA, COLUMN_LENGTH};
-  const int worst[] = {COLUMN_AREA_ERROR, COLUMN_LENGTH_ERROR, COLUMN_EDGE_RATIO};
+  const int worst[] = {COLUMN_AREA_ERROR, COLUMN_LENGTH_ERROR, COLUMN_EDGE_RATIO, COLUMN_NORMAL_SPEED};
   const int mean[] = {COLUMN_CENTER_X, COLUMN_CENTER_Y};
   for (int c = 0; c < 3; c++) all[total[c]] += one[total[c]];
-  for (int c = 0; c < 3; c++)
+  for (int c = 0; c < 4; c++)
     if (PetscAbsReal(one[worst[c]]) > PetscAbsReal(all[worst[c]])) all[worst[c]] = one[worst[c]];
   for (int c = 0; c < 2; c++) all[mean[c]] += one[mean[c]] / vesicles;
 }

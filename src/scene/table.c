@@ -50,7 +50,7 @@ static const OptionRow table[] = {
   {"-time_adapt_max_move", OPT_REAL, AT(time.adapt_max_move), "1", ">=0", "cells that a marker may move in a step relative to its vesicle; 0 no limit"},
   {"-time_adapt_max_step", OPT_REAL, AT(time.adapt_max_step), "0", ">=0", "largest step that -time_adapt error takes; 0 no limit (time)"},
   {"-time_cfl_limit", OPT_REAL, AT(time.cfl_limit), "0.5", ">0", "convective: largest dt max(|u| + |v|)/h; -time_adapt error stays below it, a fixed step above it stops the run"},
-  {"-time_steady_tol", OPT_REAL, AT(time.steady_tol), "0", ">=0", "stop when max |u.n| on the membrane falls below it; 0 never (length/time)"},
+  {"-time_steady_tol", OPT_REAL, AT(time.steady_tol), "0", ">=0", "stop when normal_speed, max |u.n| on a membrane, falls below it; 0 never (length/time)"},
   {"-helmholtz_type", OPT_NAME, AT(fluid.helmholtz), "fftw_tridiagonal", "fftw_tridiagonal|fftw|hypre", "fast solver of the velocity Helmholtz problems"},
   {"-poisson_type", OPT_NAME, AT(fluid.poisson), "fftw_tridiagonal", "fftw_tridiagonal|fftw|hypre", "fast solver of the pressure Poisson problems"},
   {"-fftw_plan", OPT_ENUM, AT(fluid.plan), "estimate", "estimate|measure|patient", "effort that FFTW spends on planning; estimate gives the same bits every run"},
