@@ -7,6 +7,7 @@ typedef struct {
   TestWorld t;
   CoupledSolver s;
   Vec f, w, p, g, sigma, d, V; /* right-hand sides and solution */
+  PetscInt its;                /* of the last solve */
 } Problem;
 
 static PetscErrorCode ProblemCreate(const char options[], PetscReal a0, Problem *q) {
@@ -36,7 +37,7 @@ static PetscErrorCode ProblemDestroy(Problem *q) {
 /* A random problem solved, from a zero or a random guess; f stays what it was. */
 static PetscErrorCode SolveProblem(const char name[], Problem *q, PetscBool random) {
   SolveReport report;
-  Vec r;
+  Vec r, k;
   PetscFunctionBeginUser;
   PetscCall(TestRandomVec(11, q->f));
   PetscCall(TestRandomVec(12, q->g));
@@ -53,10 +54,15 @@ static PetscErrorCode SolveProblem(const char name[], Problem *q, PetscBool rand
   PetscCall(MarkersInterpolate(q->t.coupling->markers, q->w, q->V));
   PetscCall(VecDuplicate(q->f, &r));
   PetscCall(VecCopy(q->f, r));
-  const CoupledProblem problem = {.f = r, .g = q->g, .w = q->w, .p = q->p, .sigma = q->sigma, .d = q->d, .V = q->V};
+  PetscCall(VecDuplicate(q->V, &k));
+  if (q->t.fluid->grid->free) PetscCall(TestRandomVec(16, k)); /* there a force on the grid does nothing */
+  const CoupledProblem problem = {
+      .f = r, .g = q->g, .k = k, .w = q->w, .p = q->p, .sigma = q->sigma, .d = q->d, .V = q->V};
   PetscCall(CoupledSolverSolve(q->s, &problem, &report));
   CHECK(report.why > 0, "%s: converged in %d iterations", name, (int)report.its);
+  q->its = report.its;
   PetscCall(VecDestroy(&r));
+  PetscCall(VecDestroy(&k));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -233,13 +239,11 @@ static PetscErrorCode MobilityError(Problem *q, PetscInt v, const PetscReal Mob[
 static PetscErrorCode CheckMobility(const char name[], Problem *q, PetscInt v) {
   const Mobility mobility = q->s->preconditioner->mobility;
   const PetscInt first = q->t.layout->start[v], n = 2 * LayoutCount(q->t.layout, v);
-  const GreenTable *table;
   PetscReal *Mob, *part, most = 0, error, asymmetry = 0, apart = 0;
   PetscFunctionBeginUser;
-  PetscCall(MobilityGetTable(mobility, q->t.fluid->alpha, &table));
-  CHECK(table->alpha == q->t.fluid->alpha, "%s: the table is for alpha = %g", name, (double)q->t.fluid->alpha);
+  PetscCall(MobilitySetUp(mobility, q->t.fluid->alpha));
   PetscCall(PetscMalloc2(n * n, &Mob, n * n, &part));
-  PetscCall(MobilityAssemble(mobility, table, first, n / 2, 0, 1, Mob));
+  PetscCall(MobilityAssemble(mobility, first, n / 2, 0, 1, Mob));
   PetscCall(MobilityError(q, v, Mob, &error));
   for (PetscInt c = 0; c < n; c++)
     for (PetscInt r = 0; r < n; r++) {
@@ -249,12 +253,40 @@ static PetscErrorCode CheckMobility(const char name[], Problem *q, PetscInt v) {
   CHECK(error < 1e-11 * most, "%s: Mob is E A^-1 E^T, %.1e", name, error / most);
   CHECK(asymmetry < 1e-11 * most, "%s: Mob is symmetric, %.1e", name, asymmetry / most);
   for (PetscInt p = 0; p < 3; p++) {
-    PetscCall(MobilityAssemble(mobility, table, first, n / 2, p, 3, part));
+    PetscCall(MobilityAssemble(mobility, first, n / 2, p, 3, part));
     for (PetscInt k = 0; k < n * n; k++) Mob[k] -= part[k];
   }
   for (PetscInt k = 0; k < n * n; k++) apart = PetscMax(apart, PetscAbsReal(Mob[k]));
   CHECK(apart == 0, "%s: three shares of Mob add up to it, %.1e", name, apart / most);
   PetscCall(PetscFree2(Mob, part));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* With the near field: C is in the equations and in the preconditioner alike, and Mob of markers 14 h and more apart is
+   smooth and interpolated. Largest difference from E A^-1 E^T over the largest entry, and iterations to 1e-8. */
+static PetscErrorCode CheckNearField(const char box[], PetscReal a0, PetscReal most_error, PetscInt most_its) {
+  char options[512];
+  Problem q;
+  PetscFunctionBeginUser;
+  PetscCall(
+      PetscSNPrintf(options, sizeof(options),
+                    "-delta_type cbs54 -membrane_derivative spectral -coupling_near_field exact -vesicle_markers 45 "
+                    "-domain_cells 64,64 -vesicle_semi_axes 0.3,0.6 -vesicle_bending 10 -coupled_ksp_rtol 1e-8 %s",
+                    box));
+  PetscCall(ProblemCreate(options, a0, &q));
+  PetscCall(SolveProblem(box, &q, PETSC_FALSE));
+  CHECK(q.its <= most_its, "%s, a0 = %g: %d iterations", box, (double)a0, (int)q.its);
+  if (q.s->preconditioner->mobility) {
+    const PetscInt n = 2 * q.t.layout->M;
+    PetscReal *Mob, error, most = 0;
+    PetscCall(PetscMalloc1(n * n, &Mob));
+    PetscCall(MobilityAssemble(q.s->preconditioner->mobility, 0, n / 2, 0, 1, Mob));
+    PetscCall(MobilityError(&q, 0, Mob, &error));
+    for (PetscInt k = 0; k < n * n; k++) most = PetscMax(most, PetscAbsReal(Mob[k]));
+    CHECK(error < most_error * most, "%s, a0 = %g: Mob is E A^-1 E^T within %.1e", box, (double)a0, error / most);
+    PetscCall(PetscFree(Mob));
+  }
+  PetscCall(ProblemDestroy(&q));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -297,6 +329,14 @@ static PetscErrorCode Facts(void) {
                 "0.3,0.35,0.25,0.35,0.2,0.3,0.3,0.2,0.25,0.3 "
                 "-vesicle_center -0.5,-0.5,0.3,-0.5,-0.5,0.4,0.2,0.5,0.9,0.4",
                 20, no));
+  /* images in walls are left to FGMRES; a channel lets the mean flow slip, which closed membranes do not make */
+  PetscCall(CheckNearField("-domain_bc_x periodic -domain_bc_y periodic", 3, 2e-6, 2));
+  PetscCall(CheckNearField("-domain_bc_x periodic -domain_bc_y periodic", 300, 2e-6, 2));
+  PetscCall(CheckNearField("-domain_bc_x periodic -domain_bc_y periodic -fluid_inertia none", 3, 2e-6, 2));
+  PetscCall(CheckNearField("-domain_bc_x periodic -fluid_inertia none", 3, 0.8, 7));
+  PetscCall(CheckNearField("-fluid_inertia none", 3, 0.2, 8));
+  PetscCall(CheckNearField("", 30, 0.1, 6));
+  PetscCall(CheckNearField("-domain_bc_x free -domain_bc_y free -fluid_inertia none", 3, 0, 1));
   PetscCall(CheckWalls("-domain_cells 48,32 -domain_box -1.5,1.5,-1,1 -domain_bc_y periodic -vesicle_shape none",
                        "48,32 walls in x", 50, yes));
   PetscCall(CheckWalls("-domain_cells 33,21 -domain_box 0,3.3,0,2.1 -domain_bc_y periodic -vesicle_shape none",

@@ -140,24 +140,24 @@ static void AddNearField(Coupling c, PetscInt vesicle, PetscInt end, PetscInt fi
   }
 }
 
-/* Mob by MobilityAssemble, zero without a table. */
-static PetscErrorCode AssembleTable(Mobility mobility, const GreenTable *table, PetscInt first, PetscInt n,
-                                    PetscInt part, PetscInt parts, PetscReal Mob[]) {
+/* Mob by MobilityAssemble, zero in unbounded fluid. */
+static PetscErrorCode AssembleTable(Mobility mobility, PetscInt first, PetscInt n, PetscInt part, PetscInt parts,
+                                    PetscReal Mob[]) {
   PetscFunctionBeginUser;
   if (mobility)
-    PetscCall(MobilityAssemble(mobility, table, first, n, part, parts, Mob));
+    PetscCall(MobilityAssemble(mobility, first, n, part, parts, Mob));
   else
     PetscCall(PetscArrayzero(Mob, 4 * n * n));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* The one block: every rank makes a part of Mob and adds its own rows of the near field, root has the sum. */
-static PetscErrorCode AssembleTogether(DenseBlocks b, Mobility mobility, const GreenTable *table, PetscReal Mob[]) {
+static PetscErrorCode AssembleTogether(DenseBlocks b, Mobility mobility, PetscReal Mob[]) {
   const Layout l = b->coupling->membrane->layout;
   PetscMPIInt size;
   PetscFunctionBeginUser;
   PetscCall(PetscMPIIntCast(4 * l->M * l->M, &size));
-  PetscCall(AssembleTable(mobility, table, 0, l->M, l->rank, l->size, Mob));
+  PetscCall(AssembleTable(mobility, 0, l->M, l->rank, l->size, Mob));
   AddNearField(b->coupling, 0, l->bodies, 0, l->M, Mob);
   if (l->size > 1)
     PetscCallMPI(MPI_Reduce(l->rank == b->root ? MPI_IN_PLACE : Mob, Mob, size, MPIU_REAL, MPI_SUM, b->root, l->comm));
@@ -175,8 +175,7 @@ void DenseBlocksPlace(DenseBlocks b) {
   }
 }
 
-PetscErrorCode DenseBlocksFactor(DenseBlocks b, Mobility mobility, const GreenTable *table, PetscReal a0,
-                                 PetscBool *factored) {
+PetscErrorCode DenseBlocksFactor(DenseBlocks b, Mobility mobility, PetscReal a0, PetscBool *factored) {
   const Membrane m = b->coupling->membrane;
   const PetscReal h2 = PetscSqr(b->coupling->fluid->grid->h);
   PetscBool good = PETSC_TRUE, failed;
@@ -188,11 +187,11 @@ PetscErrorCode DenseBlocksFactor(DenseBlocks b, Mobility mobility, const GreenTa
   PetscCall(PetscLogEventBegin(event, 0, 0, 0, 0));
   for (PetscInt k = 0; k < b->count; k++) most = PetscMax(most, b->block[k].n);
   PetscCall(PetscMalloc1(4 * most * most, &Mob));
-  if (b->together) PetscCall(AssembleTogether(b, mobility, table, Mob));
+  if (b->together) PetscCall(AssembleTogether(b, mobility, Mob));
   for (PetscInt k = 0; k < b->count && good; k++) {
     Block *q = &b->block[k];
     if (!b->together) {
-      PetscCall(AssembleTable(mobility, table, q->first, q->n, 0, 1, Mob));
+      PetscCall(AssembleTable(mobility, q->first, q->n, 0, 1, Mob));
       AddNearField(b->coupling, q->vesicle, q->end, q->first, q->n, Mob);
     }
     PetscCall(FactorBlock(m, h2, q, a0, Mob, &good));

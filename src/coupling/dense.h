@@ -19,11 +19,10 @@ PETSC_EXTERN PetscErrorCode DenseBlocksDestroy(DenseBlocks *blocks);
    collective. */
 PETSC_EXTERN void DenseBlocksPlace(DenseBlocks blocks);
 
-/* DenseBlocksFactor - assemble Mob from the table (mobility NULL: zero, the near field is all) at the coupling's
-   markers, factor N and C for a0. Ranks share the sums of Mob of a block for all, its owner does the rest. factored is
+/* DenseBlocksFactor - assemble Mob (mobility NULL: zero, the near field is all) at the coupling's markers, factor N and
+   C for a0. Ranks share the sums of Mob of a block for all, its owner does the rest. factored is
    false, on every rank, when a matrix is singular. Collective. */
-PETSC_EXTERN PetscErrorCode DenseBlocksFactor(DenseBlocks blocks, Mobility mobility, const GreenTable *table,
-                                              PetscReal a0, PetscBool *factored);
+PETSC_EXTERN PetscErrorCode DenseBlocksFactor(DenseBlocks blocks, Mobility mobility, PetscReal a0, PetscBool *factored);
 
 /* DenseBlocksSolve - from the own U[2n] and sigma[n] = r_s: sigma, and U overwritten by U3. Collective. */
 PETSC_EXTERN PetscErrorCode DenseBlocksSolve(DenseBlocks blocks, PetscScalar U[], PetscScalar sigma[]);

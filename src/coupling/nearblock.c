@@ -32,29 +32,15 @@ static void Stokeslet(PetscReal nu, const PetscReal d[2], PetscReal S[3]) {
   S[2] = factor * d[0] * d[1] / r2;
 }
 
-/* Periods, in cells, between two wrapped stencils and the distance d of their markers. */
-static void Periods(Grid g, const PaddedStencil *a, const PaddedStencil *b, const PetscReal d[2], PetscInt cells[2]) {
-  for (int dir = 0; dir < 2; dir++) {
-    const PetscReal off = d[dir] / g->h - (PetscReal)(a->first[dir] - b->first[dir]);
-    cells[dir] = g->wall[dir] ? 0 : g->n[dir] * (PetscInt)PetscFloorReal(off / g->n[dir] + 0.5);
-  }
-}
-
 /* L of markers i and j, d = X_i - X_j: xx, yy, xy and yx. */
 static void LatticePair(NearField f, PetscInt i, PetscInt j, const PetscReal d[2], PetscReal L[4]) {
   const Grid g = f->markers->grid;
   const PaddedStencil *a = &f->stencil[2 * i], *b = &f->stencil[2 * j];
-  const PetscReal constant = PetscLogReal(g->h) / (4 * PETSC_PI);
-  PetscInt cells[3][2], back[2];
-  Periods(g, &a[0], &b[0], d, cells[0]);
-  Periods(g, &a[1], &b[1], d, cells[1]);
-  Periods(g, &a[1], &b[0], d, cells[2]);
-  L[0] = (StencilPairSum(&f->lattice, OFFSET_UU, &a[0], &b[0], cells[0]) - constant) / f->nu;
-  L[1] = (StencilPairSum(&f->lattice, OFFSET_VV, &a[1], &b[1], cells[1]) - constant) / f->nu;
-  L[3] = StencilPairSum(&f->lattice, OFFSET_VU, &a[1], &b[0], cells[2]) / f->nu;
-  Periods(g, &a[0], &b[1], d, back); /* u from v is v from u the other way round */
-  for (int dir = 0; dir < 2; dir++) back[dir] = -back[dir];
-  L[2] = StencilPairSum(&f->lattice, OFFSET_VU, &b[1], &a[0], back) / f->nu;
+  const PetscReal constant = PetscLogReal(g->h) / (4 * PETSC_PI), back[2] = {-d[0], -d[1]};
+  L[0] = (StencilImageSum(g, &f->lattice, OFFSET_UU, &a[0], &b[0], d) - constant) / f->nu;
+  L[1] = (StencilImageSum(g, &f->lattice, OFFSET_VV, &a[1], &b[1], d) - constant) / f->nu;
+  L[2] = StencilImageSum(g, &f->lattice, OFFSET_VU, &b[1], &a[0], back) / f->nu; /* the other way round */
+  L[3] = StencilImageSum(g, &f->lattice, OFFSET_VU, &a[1], &b[0], d) / f->nu;
 }
 
 void NearLatticePair(NearField f, PetscInt i, PetscInt j, const PetscReal d[2], PetscReal L[4]) {

@@ -51,3 +51,13 @@ PetscReal StencilPairSum(const OffsetTable *t, OffsetBlock b, const PaddedStenci
   for (int i = 0; i < OFFSET_LAGS; i++) sum += wx[i] * line[i];
   return sum;
 }
+
+PetscReal StencilImageSum(Grid g, const OffsetTable *t, OffsetBlock block, const PaddedStencil *a,
+                          const PaddedStencil *b, const PetscReal d[2]) {
+  PetscInt cells[2];
+  for (int dir = 0; dir < 2; dir++) {
+    const PetscReal off = d[dir] / g->h - (PetscReal)(a->first[dir] - b->first[dir]);
+    cells[dir] = g->n[dir] * (PetscInt)PetscFloorReal(off / g->n[dir] + 0.5);
+  }
+  return StencilPairSum(t, block, a, b, cells);
+}

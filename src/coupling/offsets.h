@@ -32,3 +32,9 @@ PETSC_EXTERN PetscInt StencilLagWeights(int dir, const PaddedStencil *response, 
                                         PetscReal weight[OFFSET_LAGS]);
 PETSC_EXTERN PetscReal StencilPairSum(const OffsetTable *table, OffsetBlock block, const PaddedStencil *response,
                                       const PaddedStencil *source, const PetscInt shift[2]);
+
+/* StencilImageSum - the same of the image for which the response's marker is d (length) from the source's. Not
+   collective. */
+PETSC_EXTERN PetscReal StencilImageSum(Grid grid, const OffsetTable *table, OffsetBlock block,
+                                       const PaddedStencil *response, const PaddedStencil *source,
+                                       const PetscReal d[2]);

@@ -3,7 +3,6 @@
 
 #define MOST_EXCESS 5 /* iterations more than with new blocks, in one solve */
 #define NO_LIMIT 1000 /* solves that blocks may serve */
-#define OWN_MEMORY (PRECONDITIONER_MEMORY - MOBILITY_CACHE)
 
 PetscErrorCode PreconditionerCreate(Scene scene, Unknowns u, Preconditioner *out) {
   const Coupling c = u->coupling;
@@ -44,17 +43,15 @@ PetscErrorCode PreconditionerDestroy(Preconditioner *preconditioner) {
 PetscErrorCode PreconditionerForget(Preconditioner p) {
   PetscFunctionBeginUser;
   p->age = (Ageing){.fresh_its = -1, .most = NO_LIMIT};
-  if (p->mobility) PetscCall(MobilityForget(p->mobility));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode MakeBlocks(Preconditioner p) {
   const Fluid f = p->unknowns->coupling->fluid;
-  const GreenTable *table = NULL;
   PetscBool factored;
   PetscFunctionBeginUser;
-  if (p->mobility) PetscCall(MobilityGetTable(p->mobility, f->alpha, &table));
-  PetscCall(DenseBlocksFactor(p->blocks, p->mobility, table, f->a0, &factored));
+  if (p->mobility) PetscCall(MobilitySetUp(p->mobility, f->alpha));
+  PetscCall(DenseBlocksFactor(p->blocks, p->mobility, f->a0, &factored));
   p->failed = factored ? PETSC_FALSE : PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -63,9 +60,7 @@ PetscErrorCode PreconditionerGetMemory(Preconditioner p, PetscReal memory[PRECON
   const Ageing *a = &p->age;
   const PetscReal own[] = {a->a0, a->fresh_its, a->solves, a->excess, a->most, a->made};
   PetscFunctionBeginUser;
-  for (int k = 0; k < OWN_MEMORY; k++) memory[k] = own[k];
-  for (int k = 0; k < MOBILITY_CACHE; k++)
-    memory[OWN_MEMORY + k] = p->mobility ? MobilityCoefficient(p->mobility, k) : -1;
+  PetscCall(PetscArraycpy(memory, own, PRECONDITIONER_MEMORY));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -78,7 +73,6 @@ PetscErrorCode PreconditionerSetMemory(Preconditioner p, const PetscReal memory[
                     .excess = memory[3],
                     .most = (PetscInt)memory[4],
                     .made = (PetscInt)memory[5]};
-  if (p->mobility) PetscCall(MobilitySetTables(p->mobility, memory + OWN_MEMORY));
   DenseBlocksPlace(p->blocks);
   PetscCall(MakeBlocks(p));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -60,7 +60,7 @@ PETSC_EXTERN PetscBool PreconditionerIsNew(Preconditioner preconditioner);
    a checkpoint can hold, and made again from them, with the coupling placed where and for the a0 (memory[0]; 0: no
    blocks) for which the dense blocks were made. Whatever is kept from solve to solve belongs in here, or a restarted
    run would not have the bits of one that went on. Set is collective. */
-#define PRECONDITIONER_MEMORY (6 + MOBILITY_CACHE)
+#define PRECONDITIONER_MEMORY 6
 PETSC_EXTERN PetscErrorCode PreconditionerGetMemory(Preconditioner preconditioner,
                                                     PetscReal memory[PRECONDITIONER_MEMORY]);
 PETSC_EXTERN PetscErrorCode PreconditionerSetMemory(Preconditioner preconditioner,
