@@ -12,8 +12,9 @@ static PetscBool few;
 static PetscErrorCode RunCreate(const char options[], TestWorld *r) {
   PetscFunctionBeginUser;
   char all[1024]; /* stability is looked at however bad the answer: no limits */
-  PetscCall(
-      PetscSNPrintf(all, sizeof(all), "%s -limit_area_error 0 -limit_length_error 0 -limit_edge_ratio 0", options));
+  PetscCall(PetscSNPrintf(all, sizeof(all),
+                          "%s -limit_area_error 0 -limit_length_error 0 -limit_edge_ratio 0 -limit_crossing false",
+                          options));
   PetscCall(TestRunCreate(all, r));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

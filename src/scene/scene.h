@@ -73,9 +73,10 @@ typedef struct {
   PetscBool overwrite;
 } SceneOutput;
 
-/* The run stops above them; 0: no limit. */
+/* The run stops above them, 0: no limit; and where membranes cross. */
 typedef struct {
   PetscReal edge_ratio, area_error, length_error;
+  PetscBool crossing;
 } SceneLimits;
 
 struct _p_Scene {

@@ -65,6 +65,7 @@ static const OptionRow table[] = {
   {"-limit_edge_ratio", OPT_REAL, AT(limits.edge_ratio), "5", ">=0", "stop when a vesicle's longest edge is more than this many times its shortest; 0 no limit"},
   {"-limit_area_error", OPT_REAL, AT(limits.area_error), "0.2", ">=0", "stop when a vesicle's area is off by more than this part of its first; 0 no limit"},
   {"-limit_length_error", OPT_REAL, AT(limits.length_error), "0.2", ">=0", "stop when a vesicle's length is off by more than this part of its first; 0 no limit"},
+  {"-limit_crossing", OPT_BOOL, AT(limits.crossing), "true", "true|false", "stop when membranes cross, one another or themselves"},
   {"-view", OPT_BOOL, AT(view), "false", "true|false", "print the model in force and the solvers"},
   {"-allow_unused_options", OPT_BOOL, AT(allow_unused), "false", "true|false", "go on when an option is misspelt or unused"},
 };

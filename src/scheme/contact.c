@@ -95,7 +95,7 @@ PetscErrorCode SchemeCheckContact(Scheme s) {
   for (int d = 0; d < 2; d++) period[d] = g->wall[d] ? 0 : g->hi[d] - g->lo[d];
   PetscCall(LayoutGatherVec(l, s->state.X, s->work_all));
   if (!l->rank) {
-    PetscCall(CheckCrossing(s, s->work_all, period));
+    if (s->scene->limits.crossing) PetscCall(CheckCrossing(s, s->work_all, period));
     PetscCall(FindContact(s, s->work_all, period, pair));
   }
   PetscCall(AgreeMessage(l->comm, s->report.failure));
