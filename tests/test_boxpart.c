@@ -98,9 +98,8 @@ static void Vectors(World *w, PetscReal normal[], PetscReal force[]) {
   for (PetscInt k = 0; k < 2 * M; k++) normal[k] /= PetscSqrtReal(size);
 }
 
-/* The table itself: the same markers on a grid and on one twice as fine. At walls the near field takes the images,
-   whose windows are in cells: what they leave to D is small and falls not quite as h^2, and n.D n is minus theirs. Over
-   a period the flux is that of C + D. */
+/* The table itself: the same markers on a grid and on one twice as fine. At walls n.D n is minus what the images leave;
+   over a period the flux is that of C + D. */
 static PetscErrorCode CheckTable(const char name[], const char options[], PetscBool walls) {
   PetscReal *normal, *force, off;
   World w[2];
@@ -115,7 +114,7 @@ static PetscErrorCode CheckTable(const char name[], const char options[], PetscB
     if (walls) CHECK(PetscAbsReal(flux) < 2e-5, "%s: n.D n = %.1e", name, flux);
   }
   off = OffBy(&w[0], &w[1], 4);
-  CHECK(off < (walls ? 0.1 : 0.03), "%s: D at h is 4 D at h/2 but for %.4f", name, off);
+  CHECK(off < 0.03, "%s: D at h is 4 D at h/2 but for %.4f", name, off);
   PetscCall(PetscFree2(normal, force));
   for (int k = 0; k < 2; k++) PetscCall(WorldDestroy(&w[k]));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -6,7 +6,7 @@
 #define MODES 16         /* of a period as long as the other side */
 #define COARSE_CELLS 64  /* of the shorter side, on the coarser grid */
 #define LATTICE_CELLS 30 /* of the lattice's table; beyond, its closed form is right to 2e-7 */
-#define SMALLEST 1e-3    /* of the largest: eigenvalues below it are dropped */
+#define SMALLEST 5e-4    /* of the largest: eigenvalues below it are dropped */
 
 /* The coarser grid: as many cells as keep them square, from COARSE_CELLS on across, or the run's own. */
 static void CoarseCells(const FluidSpec *spec, PetscInt cells[2]) {
