@@ -1,8 +1,9 @@
 #include "coupling/boxtable.h"
 #include "coupling/blas.h"
 
-#define WALL_PLACES 12
+#define WALL_PLACES 16
 #define WALL_MARGIN 3    /* cells of the coarser grid between the places and a wall: what its kernels reach */
+#define OWN_MARGIN 1     /* the same where that is the run's own grid, whose stencils at the wall are the run's */
 #define MODES 16         /* of a period as long as the other side */
 #define COARSE_CELLS 64  /* of the shorter side, on the coarser grid */
 #define LATTICE_CELLS 30 /* of the lattice's table; beyond, its closed form is right to 2e-7 */
@@ -23,9 +24,10 @@ static void CoarseCells(const FluidSpec *spec, PetscInt cells[2]) {
 
 static void MakeAxis(const FluidSpec *spec, int dir, PetscReal H, BoxAxis *a) {
   const PetscInt shorter = PetscMin(spec->cells[0], spec->cells[1]), times = (spec->cells[dir] + shorter - 1) / shorter;
+  const PetscReal margin = (H > FluidSpecCellSize(spec) * (1 + 1e-9) ? WALL_MARGIN : OWN_MARGIN) * H;
   a->wall = spec->bc[dir] == BC_WALL ? PETSC_TRUE : PETSC_FALSE;
-  a->low = spec->box[2 * dir] + (a->wall ? WALL_MARGIN * H : 0);
-  a->high = spec->box[2 * dir + 1] - (a->wall ? WALL_MARGIN * H : 0);
+  a->low = spec->box[2 * dir] + (a->wall ? margin : 0);
+  a->high = spec->box[2 * dir + 1] - (a->wall ? margin : 0);
   a->places = a->wall ? WALL_PLACES : times * BOX_PLACES / FLUID_LONGEST_PERIOD;
   a->modes = a->wall ? 0 : times * MODES;
   a->pairs = a->wall ? a->places * a->places : a->places;
