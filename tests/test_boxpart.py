@@ -15,10 +15,16 @@ BOX = (
     f"{COMMON} -domain_box -4,4,-4,4 -vesicle_reduced_area 0.55 -vesicle_angle 20 -time_end 10 "
     f"-vesicle_bending {(1 / (0.55 * math.pi)) ** 1.5 / 3!r}"
 )
-CHANNEL = (
-    f"{COMMON} -domain_box {-6 * R0!r},{6 * R0!r},{-1.5 * R0!r},{1.5 * R0!r} -domain_bc_x periodic "
-    f"-vesicle_reduced_area 0.7 -vesicle_angle 15 -time_end 6 -vesicle_bending {R0**3 / 10!r}"
-)
+
+
+def channel(half: float) -> str:
+    """A vesicle in the middle between walls `half` R0 away, window four times as long."""
+    x, y = 4 * half * R0, half * R0
+    return (
+        f"{COMMON} -domain_box {-x!r},{x!r},{-y!r},{y!r} -domain_bc_x periodic "
+        f"-vesicle_reduced_area 0.7 -vesicle_angle 15 -time_end 6 -vesicle_bending {R0**3 / 10!r}"
+    )
+
 
 
 def last(run) -> tuple[float, float]:
@@ -29,12 +35,14 @@ def last(run) -> tuple[float, float]:
     "scene, cells, angle, frequency, without",
     [
         (BOX, ("32,32", "64,64"), 1e-5, 1e-5, 3e-4),
-        (CHANNEL, ("64,16", "128,32"), 8e-4, 8e-4, 6e-3),
+        (channel(1.5), ("64,16", "128,32"), 5e-5, 2e-4, 6e-3),
+        (channel(2), ("64,16", "128,32"), 5e-5, 2e-4, 3e-3),
     ],
-    ids=["walls", "channel"],
+    ids=["walls", "channel", "wider"],
 )
 def test_coarse_grid_is_enough(cached_run, scene, cells, angle, frequency, without):
-    """Measured: walls 5e-6, without the box part 3.6e-4; channel with walls 1.5 R0 away 6e-4, without it 7e-3."""
+    """Measured: walls 2e-6, without the box part 3.6e-4; channel with walls 1.5 and 2 R0 away 1.3e-5 and 1.4e-5 in the
+    angle, 9.5e-5 in the frequency, without it 9.2e-3 and 4e-3 in the angle."""
     coarse, fine = (last(cached_run(f"{scene} -domain_cells {n}")) for n in cells)
     plain = [last(cached_run(f"{scene} -coupling_box_part false -domain_cells {n}")) for n in cells]
     assert abs(coarse[0] / fine[0] - 1) < angle

@@ -214,12 +214,12 @@ static PetscErrorCode CheckSides(void) {
 }
 
 static PetscErrorCode Facts(void) {
-  static const PetscReal coefficients[] = {0, 0.1, 1, 10}, gaps[] = {2, 0.5, 0.25};
+  static const PetscReal coefficients[] = {0, 0.1, 1, 10}, gaps[] = {3, 2, 0.5, 0.25};
   PetscFunctionBeginUser;
   PetscCall(CheckSides());
   PetscCall(CheckVelocity());
   for (int a = 0; a < 4; a++)
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < 4; k++) {
       PetscCall(CheckPositive(coefficients[a], 18, gaps[k]));
       if (a % 3 == 0) PetscCall(CheckPositive(coefficients[a], 45, gaps[k]));
     }

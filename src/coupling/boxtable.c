@@ -1,31 +1,45 @@
 #include "coupling/boxtable.h"
 #include "coupling/blas.h"
 
-#define WALL_PLACES 12
+#define WALL_PLACES 16
 #define WALL_MARGIN 3    /* cells of the coarser grid between the places and a wall: what its kernels reach */
+#define OWN_MARGIN 1     /* the same where that is the run's own grid, whose stencils at the wall are the run's */
 #define MODES 16         /* of a period as long as the other side */
 #define COARSE_CELLS 64  /* of the shorter side, on the coarser grid */
+#define MOST_CELLS 80
 #define LATTICE_CELLS 30 /* of the lattice's table; beyond, its closed form is right to 2e-7 */
-#define SMALLEST 1e-3    /* of the largest: eigenvalues below it are dropped */
+#define SMALLEST 5e-4    /* of the largest: eigenvalues below it are dropped */
 
-/* The coarser grid: as many cells as keep them square, from COARSE_CELLS on across, or the run's own. */
+/* The coarser grid, its cells square: the run's own or, where that has more than COARSE_CELLS across, the fewest from
+   there up to MOST_CELLS that fit the box, or else fit it best: within a half of 1/COARSE_CELLS, which D is smooth
+   enough for. */
 static void CoarseCells(const FluidSpec *spec, PetscInt cells[2]) {
-  PetscInt a = spec->cells[0], b = spec->cells[1];
-  while (b) {
-    const PetscInt rest = a % b;
-    a = b;
-    b = rest;
+  const int across = spec->cells[0] <= spec->cells[1] ? 0 : 1;
+  const PetscInt shorter = spec->cells[across], longer = spec->cells[1 - across];
+  PetscReal best = PETSC_MAX_REAL;
+  for (PetscInt n = PetscMin(COARSE_CELLS, shorter); n <= PetscMin(MOST_CELLS, shorter) && best > 0; n++) {
+    const PetscInt m = (2 * n * longer + shorter) / (2 * shorter); /* rounded */
+    const PetscReal misfit = PetscAbsReal((PetscReal)(m * shorter - n * longer) / (n * longer));
+    if (misfit >= best) continue;
+    best = misfit;
+    cells[across] = n;
+    cells[1 - across] = m;
   }
-  const PetscInt shorter = PetscMin(spec->cells[0], spec->cells[1]) / a;
-  const PetscInt times = PetscMin(a, (COARSE_CELLS + shorter - 1) / shorter);
-  for (int d = 0; d < 2; d++) cells[d] = spec->cells[d] / a * times;
+}
+
+/* The axis of a box that differs in this length only. */
+static void Stretch(PetscReal from, PetscReal factor, BoxAxis *a) {
+  a->low = from + factor * (a->low - from);
+  a->high = from + factor * (a->high - from);
+  for (PetscInt k = 0; k < a->places; k++) a->place[k] = from + factor * (a->place[k] - from);
 }
 
 static void MakeAxis(const FluidSpec *spec, int dir, PetscReal H, BoxAxis *a) {
   const PetscInt shorter = PetscMin(spec->cells[0], spec->cells[1]), times = (spec->cells[dir] + shorter - 1) / shorter;
+  const PetscReal margin = (H > FluidSpecCellSize(spec) * (1 + 1e-9) ? WALL_MARGIN : OWN_MARGIN) * H;
   a->wall = spec->bc[dir] == BC_WALL ? PETSC_TRUE : PETSC_FALSE;
-  a->low = spec->box[2 * dir] + (a->wall ? WALL_MARGIN * H : 0);
-  a->high = spec->box[2 * dir + 1] - (a->wall ? WALL_MARGIN * H : 0);
+  a->low = spec->box[2 * dir] + (a->wall ? margin : 0);
+  a->high = spec->box[2 * dir + 1] - (a->wall ? margin : 0);
   a->places = a->wall ? WALL_PLACES : times * BOX_PLACES / FLUID_LONGEST_PERIOD;
   a->modes = a->wall ? 0 : times * MODES;
   a->pairs = a->wall ? a->places * a->places : a->places;
@@ -241,9 +255,9 @@ static PetscErrorCode Decompose(MPI_Comm comm, BoxTable *t) {
 }
 
 /* 4/3 (W_{H/2} - W_H) of the pair, times (h/H)^2. */
-static PetscErrorCode Pair(const FluidSpec *run, const char kernel[], const PetscInt cells[2], const BoxTable *t,
-                           PetscReal W[]) {
-  const PetscReal scale = 4. / 3 * PetscSqr(FluidSpecCellSize(run) / t->H);
+static PetscErrorCode Pair(const FluidSpec *run, const char kernel[], const PetscInt cells[2], const BoxAxis axis[2],
+                           PetscReal H, PetscReal W[]) {
+  const PetscReal scale = 4. / 3 * PetscSqr(FluidSpecCellSize(run) / H);
   FluidSpec spec = *run;
   OffsetTable lattice;
   PetscFunctionBeginUser;
@@ -256,7 +270,7 @@ static PetscErrorCode Pair(const FluidSpec *run, const char kernel[], const Pets
   PetscCall(LatticeStokeslet(LATTICE_CELLS + OFFSET_LAGS, &lattice));
   for (int times = 1; times <= 2; times++) {
     for (int d = 0; d < 2; d++) spec.cells[d] = times * cells[d];
-    PetscCall(BoxGridAdd(&spec, run->comm, kernel, &lattice, t->axis, times == 1 ? -scale : scale, W));
+    PetscCall(BoxGridAdd(&spec, run->comm, kernel, &lattice, axis, times == 1 ? -scale : scale, W));
   }
   PetscCall(OffsetTableDestroy(&lattice));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -264,17 +278,22 @@ static PetscErrorCode Pair(const FluidSpec *run, const char kernel[], const Pets
 
 PetscErrorCode BoxTableCreate(const FluidSpec *spec, const char kernel[], BoxTable *t) {
   PetscInt cells[2], size = 4;
-  PetscReal *W;
+  PetscReal *W, height = spec->box[3] - spec->box[2];
+  FluidSpec pair = *spec;
+  BoxAxis axis[2];
   PetscFunctionBeginUser;
   CoarseCells(spec, cells);
   t->H = (spec->box[1] - spec->box[0]) / cells[0];
+  if (cells[0] * spec->cells[1] != cells[1] * spec->cells[0]) pair.box[3] = pair.box[2] + cells[1] * t->H;
   for (int d = 0; d < 2; d++) {
-    MakeAxis(spec, d, t->H, &t->axis[d]);
+    MakeAxis(&pair, d, t->H, &axis[d]);
+    t->axis[d] = axis[d];
+    if (d) Stretch(pair.box[2], height / (pair.box[3] - pair.box[2]), &t->axis[d]);
     t->functions[d] = t->axis[d].wall ? WALL_PLACES : 2 * t->axis[d].modes + 1;
     size *= t->axis[d].pairs;
   }
   PetscCall(PetscCalloc1(size, &W));
-  PetscCall(Pair(spec, kernel, cells, t, W));
+  PetscCall(Pair(&pair, kernel, cells, axis, t->H, W));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, W, (PetscMPIInt)size, MPIU_REAL, MPI_SUM, spec->comm));
   PetscCall(CreateBlocks(t));
   PetscCall(Transform(t, W));

@@ -1,5 +1,4 @@
 #include "coupling/nearblock.h"
-#include "coupling/nearclose.h"
 #include "coupling/wallclose.h"
 
 /* Smoothing by the kernel and dispersion by the lattice, to the order h^2/r^2: transforms of e^{i n phi} waves, the
@@ -112,7 +111,6 @@ PetscErrorCode NearBlockFill(NearField f, NearBlock *b) {
       mirror[2 * n + 1] = C[1];
     }
   PetscCall(PetscFree(T));
-  if (!self) PetscCall(NearBlockRefine(f, b));
   if (f->image) PetscCall(NearBlockRefineAtWalls(f, b));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -19,7 +19,7 @@ static void Windowed(PetscReal nu, PetscReal window, const PetscReal x[2], const
 }
 
 /* block += sign times part [columns][rows] of component c (0 xx, 1 yy, 2 xy and yx). */
-static void AddComponent(NearBlock *b, PetscInt rows, PetscInt columns, int c, PetscReal sign, const PetscReal part[]) {
+static void AddComponent(const NearBlock *b, PetscInt rows, PetscInt columns, int c, PetscReal sign, const PetscReal part[]) {
   const PetscInt place = c == 1 ? 2 * rows + 1 : (c == 2 ? 2 * rows : 0);
   for (PetscInt j = 0; j < columns; j++)
     for (PetscInt i = 0; i < rows; i++) {
@@ -30,7 +30,7 @@ static void AddComponent(NearBlock *b, PetscInt rows, PetscInt columns, int c, P
 }
 
 /* The block of curves at `factor` times their markers, windowed, added with a sign. */
-static PetscErrorCode AddAt(NearField f, NearBlock *block, PetscInt factor, PetscReal window, PetscReal sign) {
+static PetscErrorCode AddAt(NearField f, const NearBlock *block, PetscInt factor, PetscReal window, PetscReal sign) {
   const PetscReal none[2] = {0, 0};
   PetscReal *K[3], *part;
   FineCurve a, b;
@@ -69,17 +69,17 @@ static PetscErrorCode Gap(NearField f, const NearBlock *block, PetscInt factor, 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode NearBlockRefine(NearField f, NearBlock *block) {
-  const PetscReal ds = PetscMax(f->membrane->ds[block->row], f->membrane->ds[block->column]);
+PetscErrorCode NearBlockRefine(NearField f, const NearBlock *image) {
+  const PetscReal ds = PetscMax(f->membrane->ds[image->row], f->membrane->ds[image->column]);
   PetscReal gap;
   PetscFunctionBeginUser;
-  PetscCall(Gap(f, block, 1, &gap)); /* of markers: where it is wide, so is that of the curves */
+  PetscCall(Gap(f, image, 1, &gap)); /* of markers: where it is wide, so is that of the curves */
   if (gap > (CLOSE + 1) * ds) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(Gap(f, block, PROBE, &gap));
+  PetscCall(Gap(f, image, PROBE, &gap));
   if (gap > CLOSE * ds) PetscFunctionReturn(PETSC_SUCCESS);
   const PetscInt factor = (PetscInt)PetscMin(MOST_FINE,
                                              PetscCeilReal(FINE * ds / PetscMax(gap, FINE * ds / MOST_FINE)));
-  PetscCall(AddAt(f, block, factor, WINDOW * ds, 1));
-  PetscCall(AddAt(f, block, 1, WINDOW * ds, -1));
+  PetscCall(AddAt(f, image, factor, WINDOW * ds, 1));
+  PetscCall(AddAt(f, image, 1, WINDOW * ds, -1));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

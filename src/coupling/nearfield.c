@@ -2,8 +2,10 @@
 #include "base/agree.h"
 #include "coupling/blas.h"
 #include "coupling/nearblock.h"
+#include "coupling/nearclose.h"
 
-#define REACH 24 /* cells between vesicles up to which they have blocks */
+#define REACH 24      /* cells between vesicles up to which they have blocks */
+#define MOST_IMAGES 9 /* of a vesicle around another */
 
 /* Weights of ln(4 sin^2(t/2)) in Kress' quadrature on n points, by index difference. */
 static void Kress(PetscInt n, PetscReal k[]) {
@@ -87,6 +89,11 @@ static PetscErrorCode AddBlock(NearField f, PetscInt v, PetscInt w, const PetscR
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Whether the image of w moved by shift is v itself. */
+static PetscBool IsSelf(PetscInt v, PetscInt w, const PetscReal shift[2]) {
+  return v == w && shift[0] == 0 && shift[1] == 0 ? PETSC_TRUE : PETSC_FALSE;
+}
+
 /* Square of the least distance (length^2) between markers of v and of w moved by shift. */
 static PetscReal Apart(NearField f, PetscInt v, PetscInt w, const PetscReal shift[2]) {
   const Layout l = f->membrane->layout;
@@ -100,15 +107,14 @@ static PetscReal Apart(NearField f, PetscInt v, PetscInt w, const PetscReal shif
   return least;
 }
 
-/* Images of w within REACH cells of v, in unbounded fluid at any distance: the one whose first marker is nearest, and
-   its neighbours. With a box part one block, of the images nearest to each marker, named after the nearest. */
-static PetscErrorCode AddPair(NearField f, PetscInt v, PetscInt w) {
+/* Shifts of w's images within REACH cells of v, in unbounded fluid at any distance, of the one whose first marker is
+   nearest and its neighbours: the nearest first. */
+static PetscInt Images(NearField f, PetscInt v, PetscInt w, PetscReal image[MOST_IMAGES][2]) {
   const Grid g = f->markers->grid;
   const Layout l = f->membrane->layout;
   const PetscReal *X = f->markers->X, reach = f->free ? PETSC_MAX_REAL : PetscSqr(REACH * g->h);
-  PetscInt around[2];
-  PetscReal middle[2], box[2], nearest[2] = {0, 0}, least = reach;
-  PetscFunctionBeginUser;
+  PetscInt around[2], count = 0;
+  PetscReal middle[2], box[2], least = reach;
   for (int d = 0; d < 2; d++) {
     box[d] = g->hi[d] - g->lo[d];
     around[d] = g->wall[d] ? 0 : 1;
@@ -117,14 +123,30 @@ static PetscErrorCode AddPair(NearField f, PetscInt v, PetscInt w) {
   for (PetscInt q = -around[1]; q <= around[1]; q++)
     for (PetscInt p = -around[0]; p <= around[0]; p++) {
       const PetscReal shift[2] = {(middle[0] + p) * box[0], (middle[1] + q) * box[1]};
-      const PetscReal apart = v == w && shift[0] == 0 && shift[1] == 0 ? 0 : Apart(f, v, w, shift);
+      const PetscReal apart = IsSelf(v, w, shift) ? 0 : Apart(f, v, w, shift);
       if (apart >= reach) continue;
-      if (!f->box) PetscCall(AddBlock(f, v, w, shift));
-      if (apart >= least) continue;
-      least = apart;
-      PetscCall(PetscArraycpy(nearest, shift, 2));
+      const PetscInt at = apart < least ? 0 : count;
+      for (int d = 0; d < 2; d++) {
+        if (at < count) image[count][d] = image[at][d];
+        image[at][d] = shift[d];
+      }
+      least = PetscMin(least, apart);
+      count++;
     }
-  if (f->box && least < reach) PetscCall(AddBlock(f, v, w, nearest));
+  return count;
+}
+
+/* A block for each image; with a box part one, of the images nearest to each marker, named after the nearest, in which
+   all close images are refined. */
+static PetscErrorCode AddPair(NearField f, PetscInt v, PetscInt w) {
+  PetscReal image[MOST_IMAGES][2];
+  PetscFunctionBeginUser;
+  const PetscInt count = Images(f, v, w, image);
+  for (PetscInt k = 0; k < count; k++) {
+    if (!f->box || !k) PetscCall(AddBlock(f, v, w, image[k]));
+    const NearBlock at = {.row = v, .column = w, .shift = {image[k][0], image[k][1]}, .C = f->block[f->count - 1].C};
+    if (!IsSelf(v, w, image[k])) PetscCall(NearBlockRefine(f, &at));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

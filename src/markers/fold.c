@@ -32,7 +32,7 @@ void FoldHigh(PetscBool normal, PetscInt cells, PetscInt *first, PetscInt *n, Pe
 
 PetscReal WallScale(const Kernel *kernel, PetscReal y) {
   if (y >= FOLD_SCALED) return 1;
-  const PetscReal t = PetscMax(0, (y - 0.5 * FOLD_SCALED) / (0.5 * FOLD_SCALED));
+  const PetscReal t = PetscMax(0, y - (FOLD_SCALED - 1));
   const PetscReal moment = KernelSecondMoment(kernel->along) * (1 - t * t * (3 - 2 * t));
   return y * y / (y * y + moment);
 }

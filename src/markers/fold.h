@@ -4,7 +4,7 @@
 #pragma once
 #include "kernel/kernel.h"
 
-#define FOLD_SCALED 6 /* cells from a wall up to which WallScale is not 1 */
+#define FOLD_SCALED 3 /* cells from a wall up to which WallScale is not 1: where the box part ends */
 
 /* FoldLow - fold the weights [n] of entries first .. first + n - 1 at a wall below entry 0: half a cell below (normal
    false), or a whole one, on a face, which drops out (normal true). first, n and weights change. Not collective. */
