@@ -8,7 +8,7 @@
 #include "coupling/mobility.h"
 
 /* Vesicles whose markers together are at most this many share one block, which knows how they move one another. */
-#define DENSE_TOGETHER 800
+#define DENSE_TOGETHER 300
 
 typedef struct _p_DenseBlocks *DenseBlocks;
 
