@@ -104,3 +104,15 @@ def test_membranes_that_cross_end_the_run(tmp_path):
     assert 3 < last < 16 and f"after step {last + 1}," in run.errors[0]
     with h5py.File(run.folder / "checkpoint.h5") as file:
         assert file.attrs["step"] == last
+
+
+def test_corner_is_warned_of_once(tmp_path):
+    """2 cells from two walls that meet, and from one of them only."""
+    scene = (
+        "-scheme_type coupled -coupling_near_field exact -delta_type cbs54 -membrane_derivative spectral "
+        "-fluid_inertia none -domain_cells 32,32 -domain_box 0,2,0,2 -vesicle_semi_axes 0.3,0.3 -vesicle_markers 45 "
+        "-time_step 1e-4 -time_end 3e-4"
+    )
+    for centre, count in (("0.425,0.425", 1), ("0.425,1", 0)):
+        run = run_petves(tmp_path / str(count), f"{scene} -vesicle_center {centre}")
+        assert run.stdout.count("within 3 cells of two walls that meet after step 1,") == count, run.stdout

@@ -2,10 +2,10 @@
 #include "coupling/blas.h"
 
 #define WALL_PLACES 16
-#define WALL_MARGIN 3    /* cells of the coarser grid between the places and a wall: what its kernels reach */
-#define OWN_MARGIN 1     /* the same where that is the run's own grid, whose stencils at the wall are the run's */
-#define MODES 16         /* of a period as long as the other side */
-#define COARSE_CELLS 64  /* of the shorter side, on the coarser grid */
+#define WALL_MARGIN 3   /* cells of the coarser grid between the places and a wall: what its kernels reach */
+#define OWN_MARGIN 2    /* the same where that is the run's own grid, whose stencils at the wall are the run's */
+#define MODES 16        /* of a period as long as the other side */
+#define COARSE_CELLS 64 /* of the shorter side, on the coarser grid */
 #define MOST_CELLS 80
 #define LATTICE_CELLS 30 /* of the lattice's table; beyond, its closed form is right to 2e-7 */
 #define SMALLEST 5e-4    /* of the largest: eigenvalues below it are dropped */

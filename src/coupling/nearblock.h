@@ -7,7 +7,8 @@
 /* NearFarCoefficients - of a kernel, from its second moments along and across. */
 PETSC_EXTERN void NearFarCoefficients(const Kernel *kernel, PetscReal far[5]);
 
-/* NearBlockFill - the block's matrix at the present markers, close curves not yet refined (nearclose.h). Not collective. */
+/* NearBlockFill - the block's matrix at the present markers, close curves not yet refined (nearclose.h). Not
+ * collective. */
 PETSC_EXTERN PetscErrorCode NearBlockFill(NearField near, NearBlock *block);
 
 /* NearLatticePair - L of markers i and j, d = X_i - X_j (length) that of the image meant: xx, yy, xy, yx. By stencils

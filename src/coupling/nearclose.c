@@ -19,7 +19,8 @@ static void Windowed(PetscReal nu, PetscReal window, const PetscReal x[2], const
 }
 
 /* block += sign times part [columns][rows] of component c (0 xx, 1 yy, 2 xy and yx). */
-static void AddComponent(const NearBlock *b, PetscInt rows, PetscInt columns, int c, PetscReal sign, const PetscReal part[]) {
+static void AddComponent(const NearBlock *b, PetscInt rows, PetscInt columns, int c, PetscReal sign,
+                         const PetscReal part[]) {
   const PetscInt place = c == 1 ? 2 * rows + 1 : (c == 2 ? 2 * rows : 0);
   for (PetscInt j = 0; j < columns; j++)
     for (PetscInt i = 0; i < rows; i++) {

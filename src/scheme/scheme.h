@@ -56,6 +56,7 @@ struct _p_Scheme {
   Snapshot before;   /* what SchemeStep goes back to when a step fails */
   PetscBool contact; /* whether parts of membranes are close, as last warned of */
   PetscBool rough;   /* whether it was warned that markers do not resolve a membrane */
+  PetscBool corner;  /* whether a vesicle in a corner of two walls has been warned of */
   StepReport report;
   Vec background;   /* marker vector: what the markers' velocity has besides the solved part: u_inf, zero in the total
                        form */

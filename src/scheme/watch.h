@@ -4,5 +4,5 @@
 
 /* SchemeCheck - finite values, markers away from walls, edge ratio, area and length within -limit_*, membranes that do
    not cross; what is wrong and what to try goes into report.failure. Warns of membranes in contact and of markers that
-   do not resolve their membrane. Collective. */
+   do not resolve their membrane, and of a vesicle in a corner of two walls. Collective. */
 PETSC_EXTERN PetscErrorCode SchemeCheck(Scheme scheme);
