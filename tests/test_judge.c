@@ -302,6 +302,7 @@ static PetscErrorCode Facts(void) {
   }
   PetscCall(CheckPolicies());
   for (int k = 1; k < 20; k++) PetscCall(CheckEnd(0.2 + 0.037 * k));
+  PetscCall(CheckFixed());
   PetscCall(CheckFinished());
   PetscCall(CheckPolicy());
   PetscFunctionReturn(PETSC_SUCCESS);

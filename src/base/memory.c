@@ -18,7 +18,8 @@ PetscErrorCode PetvesWarmUpBlas(MPI_Comm comm) {
   lacking = room == MAP_FAILED;
   if (!lacking) (void)munmap(room, (size_t)MIB << 20);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &lacking, 1, MPI_INT, MPI_MAX, comm));
-  PetvesCheck(!lacking, comm, "out of memory: no %d MiB for the BLAS on a rank; allowed: a larger limit (ulimit -v), or fewer ranks",
+  PetvesCheck(!lacking, comm,
+              "out of memory: no %d MiB for the BLAS on a rank; allowed: a larger limit (ulimit -v), or fewer ranks",
               MIB);
   PetscCallBLAS("BLASgemm", BLASgemm_("N", "N", &n, &n, &n, &zero, a, &n, a, &n, &zero, c, &n));
   done = PETSC_TRUE;

@@ -113,10 +113,11 @@ static PetscErrorCode ParsePath(MPI_Comm comm, const OptionRow *o, const char *t
   PetscFunctionBeginUser;
   for (const char *c = text; *c && plain; c++)
     plain = iscntrl((unsigned char)*c) || *c == '"' || *c == '#' ? PETSC_FALSE : PETSC_TRUE;
-  PetscCheck(plain, comm, PETSC_ERR_USER_INPUT,
-             "%s %s: no options file can hold this name; allowed: no double quote, # or control character in it, and no "
-             "dash before it",
-             o->name, text);
+  PetscCheck(
+      plain, comm, PETSC_ERR_USER_INPUT,
+      "%s %s: no options file can hold this name; allowed: no double quote, # or control character in it, and no "
+      "dash before it",
+      o->name, text);
   PetscCheck(strlen(text) < PETSC_MAX_PATH_LEN - 64, comm, PETSC_ERR_USER_INPUT,
              "%s: a name of %d characters; allowed: less than %d", o->name, (int)strlen(text), PETSC_MAX_PATH_LEN - 64);
   PetscCall(PetscStrncpy(path, text, PETSC_MAX_PATH_LEN));

@@ -34,15 +34,17 @@ static void WriteHolder(int file) {
   if (!ftruncate(file, 0)) (void)!dprintf(file, "process %ld on %s\n", (long)getpid(), host);
 }
 
-/* After a moment in which a holder that has just taken the lock writes who it is. */
-static void ReadHolder(const char path[], char who[], size_t length) {
+/* After a moment in which a holder that has just taken the lock writes who it is; false when it has ended meanwhile. */
+static PetscBool ReadHolder(const char path[], char who[], size_t length) {
   const struct timespec moment = {.tv_nsec = 100000000};
   FILE *f;
   (void)nanosleep(&moment, NULL);
   f = fopen(path, "r");
-  if (!f || !fgets(who, (int)length, f)) (void)PetscStrncpy(who, "another run", length);
+  if (!f) return PETSC_FALSE;
+  if (!fgets(who, (int)length, f)) (void)PetscStrncpy(who, "another run", length);
   who[strcspn(who, "\n")] = 0;
-  if (f) (void)fclose(f);
+  (void)fclose(f);
+  return PETSC_TRUE;
 }
 
 /* Rank 0 takes the lock, all ranks hear of it. */
@@ -52,8 +54,8 @@ static PetscErrorCode Lock(Folder *folder) {
   PetscFunctionBeginUser;
   PetscCall(FolderPath(folder, NAME, path));
   if (!folder->rank) error = TakeLock(path, &folder->lock);
+  while (error == EWOULDBLOCK && !ReadHolder(path, who, sizeof(who))) error = TakeLock(path, &folder->lock);
   if (!folder->rank && !error) WriteHolder(folder->lock);
-  if (error == EWOULDBLOCK) ReadHolder(path, who, sizeof(who));
   PetscCallMPI(MPI_Bcast(&error, 1, MPI_INT, 0, folder->comm));
   PetscCallMPI(MPI_Bcast(who, sizeof(who), MPI_CHAR, 0, folder->comm));
   if (error == ENOENT || error == ENOTDIR) PetscFunctionReturn(PETSC_SUCCESS); /* no folder */

@@ -172,16 +172,27 @@ static PetscErrorCode ReadVectors(Scheme s, H5File *file, const char prefix[], S
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* That all so far could be read. */
+static PetscErrorCode CheckEntries(Scene scene, const H5File *file) {
+  PetscBool failed;
+  PetscFunctionBeginUser;
+  PetscCall(H5FileFailed(file, &failed));
+  PetvesCheck(!failed, scene->comm,
+              "-restart %s: entries are missing, or have another size or storage; allowed: a checkpoint.h5 of petves",
+              scene->output.restart);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Numbers that a run may have had: a step to which as many may be added as a run may take. */
 static PetscErrorCode CheckNumbers(Scene scene, H5File *file) {
   static const struct {
     const char *name;
     PetscReal least, most;
     PetscBool whole;
-  } all[] = {{"step", 0, 1e9, PETSC_TRUE},           {"has_previous", 0, 1, PETSC_TRUE},
-             {"step_level", -1000, 1000, PETSC_TRUE}, {"frames", 0, 1e9, PETSC_TRUE},
-             {"time", 0, 1e300, PETSC_FALSE},         {"dt", 0, 1e300, PETSC_FALSE},
-             {"dt_last", 0, 1e300, PETSC_FALSE}};
+  } all[] = {
+      {"step", 0, 1e9, PETSC_TRUE},      {"has_previous", 0, 1, PETSC_TRUE}, {"step_level", -1000, 1000, PETSC_TRUE},
+      {"frames", 0, 1e9, PETSC_TRUE},    {"time", 0, 1e300, PETSC_FALSE},    {"dt", 0, 1e300, PETSC_FALSE},
+      {"dt_last", 0, 1e300, PETSC_FALSE}};
   PetscReal x[7] = {0};
   PetscFunctionBeginUser;
   for (int k = 0; k < 7; k++) {
@@ -252,7 +263,7 @@ static PetscErrorCode ReadState(Scheme s, H5File *file) {
 /* All that the open checkpoint holds; memory[] is what the solvers have kept from earlier steps. */
 static PetscErrorCode ReadAll(Scheme s, H5File *file, Record *record, PetscInt *frames, PetscReal memory[]) {
   const PetscInt numbers = SchemeMemorySize(s);
-  PetscBool failed, plain;
+  PetscBool plain;
   PetscFunctionBeginUser;
   PetscCall(H5CheckLinks(file, &plain));
   PetvesCheck(plain, s->scene->comm,
@@ -260,6 +271,7 @@ static PetscErrorCode ReadAll(Scheme s, H5File *file, Record *record, PetscInt *
               s->scene->output.restart);
   PetscCall(CompareOptions(s->scene, file));
   PetscCall(CheckNumbers(s->scene, file));
+  PetscCall(CheckEntries(s->scene, file));
   PetscCall(CompareVesicles(s, file));
   PetscCall(ReadState(s, file));
   PetscCall(H5GetInts(file, "frames", 1, frames));
@@ -268,10 +280,7 @@ static PetscErrorCode ReadAll(Scheme s, H5File *file, Record *record, PetscInt *
   PetscCall(H5ReadArray(file, "/solver", 0, numbers, memory));
   for (PetscInt k = 0; k < numbers; k++)
     if (PetscIsInfOrNanReal(memory[k])) file->failed = file->rank ? PETSC_FALSE : PETSC_TRUE;
-  PetscCall(H5FileFailed(file, &failed));
-  PetvesCheck(!failed, s->scene->comm,
-              "-restart %s: entries are missing, or have another size or storage; allowed: a checkpoint.h5 of petves",
-              s->scene->output.restart);
+  PetscCall(CheckEntries(s->scene, file));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
