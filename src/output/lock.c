@@ -135,19 +135,30 @@ void FolderWatch(Folder *folder, const char file[]) {
   folder->files = PetscMax(folder->files, k + 1);
 }
 
-PetscErrorCode FolderCheckOwn(Folder *folder) {
-  char path[PETSC_MAX_PATH_LEN] = "";
+/* The first watched file that is not there, or is another one; -1 when there is none. A file system that does not
+   answer says nothing. */
+static PetscMPIInt FindForeign(Folder *folder, char path[PETSC_MAX_PATH_LEN]) {
   struct stat there;
-  PetscFunctionBeginUser;
   for (int k = 0; k < folder->files; k++) {
     const FolderFile *f = &folder->file[k];
-    PetscCall(FolderPath(folder, f->name, path));
-    if (stat(path, &there) || there.st_dev != f->device || there.st_ino != f->inode) break;
-    *path = 0;
+    (void)FolderPath(folder, f->name, path);
+    const int error = stat(path, &there) ? errno : 0;
+    if (error == ENOENT || error == ENOTDIR) return k;
+    if (!error && (there.st_dev != f->device || there.st_ino != f->inode)) return k;
   }
+  return -1;
+}
+
+PetscErrorCode FolderCheckOwn(Folder *folder) {
+  char path[PETSC_MAX_PATH_LEN] = "";
+  PetscMPIInt foreign = -1;
+  PetscFunctionBeginUser;
+  if (!folder->rank) foreign = FindForeign(folder, path);
+  PetscCallMPI(MPI_Bcast(&foreign, 1, MPI_INT, 0, folder->comm));
+  if (foreign < 0) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCallMPI(MPI_Bcast(path, sizeof(path), MPI_CHAR, 0, folder->comm));
-  if (*path) folder->failed = PETSC_TRUE;
-  PetvesCheck(!*path, folder->comm,
+  folder->failed = PETSC_TRUE;
+  PetvesCheck(PETSC_FALSE, folder->comm,
               "%s: cannot be written: it is gone, or another file has its name; allowed: a run's files left where they "
               "are while it goes on",
               path);
