@@ -49,6 +49,7 @@ PetscErrorCode PetvesErrorHandler(MPI_Comm comm, int line, const char *function,
   PetscMPIInt rank = 0;
   MPI_Comm_rank(MPI_COMM_WORLD, &rank);
   if (type != PETSC_ERROR_INITIAL) return code;
+  if (code == PETSC_ERR_MEM) message = "out of memory; allowed: fewer cells or vesicles, a larger limit, or more nodes";
   if (rank && code == PETSC_ERR_USER_INPUT && !kept) return code; /* rank 0 says it */
   OneLine(code, message, text);
   if (code != PETSC_ERR_USER_INPUT && !base.one_line) { /* no user's mistake: say where */
