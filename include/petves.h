@@ -23,7 +23,8 @@ PETSC_EXTERN PetscErrorCode PetvesInitialize(int *argc, char ***argv);
 PETSC_EXTERN PetscErrorCode PetvesFinalize(void);
 
 /* PetvesCatchSignals - from now on SIGTERM and SIGUSR1 end SimulationRun after the step under way, with a checkpoint,
-   and a closed standard output does not end the program. Not collective. */
+   and a closed standard output does not end the program. Before the first step, and more than a second after the first
+   signal, they end the process at once. Not collective. */
 PETSC_EXTERN PetscErrorCode PetvesCatchSignals(void);
 
 /* SimulationCreate - the simulation that the options database describes, at its initial state or (-restart) at a
@@ -46,7 +47,7 @@ PETSC_EXTERN PetscErrorCode SimulationBegin(Simulation simulation);
 PETSC_EXTERN PetscErrorCode SimulationStep(Simulation simulation, const char **failure);
 
 /* SimulationAdvance - SimulationStep, unless time `until` or the steady state has been reached, or a signal or
-   -time_wall_limit asks to stop: then stepped is false. Steps of -time_adapt end at `until`. */
+   -time_wall_limit asks to stop: then stepped is false. The last steps are shortened so that they end at `until`. */
 PETSC_EXTERN PetscErrorCode SimulationAdvance(Simulation simulation, PetscReal until, PetscBool *stepped,
                                               const char **failure);
 

@@ -17,11 +17,19 @@ static PetscErrorCode Run(PetscBool *good) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Other ranks may have had enough memory and wait for this one. */
+static void StopOthers(void) {
+  PetscMPIInt size = 1;
+  (void)MPI_Comm_size(PETSC_COMM_WORLD, &size);
+  if (size > 1) (void)MPI_Abort(PETSC_COMM_WORLD, 1);
+}
+
 int main(int argc, char **argv) {
   PetscBool good = PETSC_TRUE;
   PetscErrorCode error = PetvesInitialize(&argc, &argv);
   if (error) return 1;
   error = Run(&good);
+  if (error == PETSC_ERR_MEM) StopOthers();
   if (PetvesFinalize() || error) return 1;
   return good ? 0 : 2;
 }

@@ -57,6 +57,7 @@ PetscErrorCode PetvesFinalize(void) {
 static PetscErrorCode Build(MPI_Comm comm, PetvesFlow flow, void *ctx, Simulation s) {
   Scene scene;
   PetscFunctionBeginUser;
+  PetscCall(PetvesWarmUpBlas(comm));
   PetscCall(SceneCreate(comm, flow, ctx, &s->scene));
   scene = s->scene;
   PetscCall(SceneReport(scene));
@@ -146,7 +147,7 @@ static PetscErrorCode IsSteady(Simulation s, PetscBool *steady) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* One step, of at most `most` where step sizes are judged, its row of series.csv and the files that are due. */
+/* One step, of at most `most`, its row of series.csv and the files that are due. */
 static PetscErrorCode TakeStep(Simulation s, PetscReal most, const char **failure) {
   const StepReport *report = &s->scheme->report;
   PetscLogDouble start, end;
@@ -173,9 +174,9 @@ PetscErrorCode SimulationBegin(Simulation s) {
 }
 
 PetscErrorCode SimulationStep(Simulation s, const char **failure) {
-  const PetscReal left = s->scene->time.end - s->scheme->state.t;
+  const PetscReal t = s->scheme->state.t, end = s->scene->time.end;
   PetscFunctionBeginUser;
-  PetscCall(TakeStep(s, left > 0 ? left : PETSC_MAX_REAL, failure));
+  PetscCall(TakeStep(s, StepFinished(&s->scheme->policy, t, end) ? PETSC_MAX_REAL : end - t, failure));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -182,7 +182,7 @@ def small_disk(tmp_path):
         subprocess.run(["umount", str(path)], check=True)
 
 
-@pytest.mark.parametrize("kib, ranks", [(8, 1), (60, 1), (120, 2), (240, 1), (300, 2), (420, 1)])
+@pytest.mark.parametrize("kib, ranks", [(8, 1), (56, 1), (60, 1), (120, 2), (240, 1), (300, 2), (420, 1)])
 def test_full_disk(kib, ranks, small_disk, tmp_path):
     """One line; a checkpoint that is there is good, and no half one has its name."""
     folder = small_disk(kib) / "run"

@@ -199,14 +199,73 @@ static PetscErrorCode CheckEnd(PetscReal end) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* When a time counts as the end: within rounding of it, or within half a fixed step. */
+/* Fixed steps of 0.1 to an end: whole ones, then one step or two equal ones that are shorter; sizes over the base. */
+static const struct {
+  const char *name;
+  PetscReal t, most, dt;
+} fixed[] = {{"far from the end", 0, 10, 1},
+             {"no end", 3, NONE, 1},
+             {"two steps from it", 1, 2, 1},
+             {"a rounding less than two", 1, 2 - 1e-12, 1},
+             {"a step from it", 1, 1, 1},
+             {"a rounding more than a step", 1, 1 + 1e-12, 1},
+             {"a rounding less", 1, 1 - 1e-12, 1},
+             {"half of one and a half", 1, 1.5, 0.75},
+             {"half of hardly more than a step", 1, 1.001, 0.5005},
+             {"half of hardly less than two", 1, 1.999, 0.9995},
+             {"what is left", 1, 0.4, 0.4},
+             {"all of a short run", 0, 0.3, 0.3},
+             {"a rounding of a million steps", 1e6, 1 - 1e-5, 1}};
+
+/* The sum of `n` steps is the sum that it always was, and n steps are taken; n + part end in time. */
+static PetscErrorCode CheckFixedRun(PetscReal base, PetscInt n, PetscReal part) {
+  const StepPolicy p = {.base = base};
+  const PetscReal end = (n + part) * base;
+  PetscReal t = 0, sum = 0, least = NONE;
+  PetscInt steps = 0;
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < n; k++) sum += base;
+  for (; !StepFinished(&p, t, end) && steps < 2 * n + 2; steps++) {
+    const PetscReal dt = StepFixed(&p, t, end - t);
+    least = PetscMin(least, dt);
+    t += dt;
+  }
+  if (part == 0)
+    CHECK(steps == n && t == sum && least == base, "%d steps of %g: %d, t %.17g", (int)n, base, (int)steps, t);
+  else
+    CHECK(PetscAbsReal(t - end) <= 1e-15 * end && steps == n + 1 && (!n || least >= 0.5 * base),
+          "%g steps of %g: %d, t %.17g of %.17g, least %g", n + part, base, (int)steps, t, end, least);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CheckFixed(void) {
+  const PetscReal bases[] = {0.1, 0.02, 1. / 3, 0.0125, 7};
+  StepPolicy p = {.base = 0.1};
+  PetscFunctionBeginUser;
+  for (size_t k = 0; k < sizeof(fixed) / sizeof(fixed[0]); k++) {
+    const PetscReal most = fixed[k].most < NONE ? fixed[k].most * p.base : NONE;
+    const PetscReal dt = StepFixed(&p, fixed[k].t * p.base, most);
+    CHECK(PetscAbsReal(dt / (p.base * fixed[k].dt) - 1) < 1e-14, "%s: %g of a step", fixed[k].name, dt / p.base);
+  }
+  for (int b = 0; b < 5; b++)
+    for (int e = 0; e < 6; e++) {
+      PetscInt n = 1;
+      for (int k = 0; k < e; k++) n *= 10;
+      PetscCall(CheckFixedRun(bases[b], n, 0));
+      PetscCall(CheckFixedRun(bases[b], n - 1, 1. / 3));
+    }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* When a time counts as the end: within rounding of it, which of a sum of many fixed steps may be more. */
 static PetscErrorCode CheckFinished(void) {
   StepPolicy p = Policy(0.1);
   PetscFunctionBeginUser;
   CHECK(StepFinished(&p, 3, 3) && StepFinished(&p, 3.5, 3) && StepFinished(&p, 3 - 1e-11, 3), "the end");
   CHECK(!StepFinished(&p, 3 - 1e-9, 3) && !StepFinished(&p, 2.96, 3), "before the end");
   p.adaptive = PETSC_FALSE;
-  CHECK(StepFinished(&p, 2.96, 3) && !StepFinished(&p, 2.94, 3), "within half a fixed step of the end");
+  CHECK(StepFinished(&p, 3 - 1e-11, 3) && !StepFinished(&p, 2.999, 3), "fixed steps");
+  CHECK(StepFinished(&p, 1e5 - 1e-6, 1e5) && !StepFinished(&p, 1e5 - 0.03, 1e5), "a million of them");
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -243,6 +302,7 @@ static PetscErrorCode Facts(void) {
   }
   PetscCall(CheckPolicies());
   for (int k = 1; k < 20; k++) PetscCall(CheckEnd(0.2 + 0.037 * k));
+  PetscCall(CheckFixed());
   PetscCall(CheckFinished());
   PetscCall(CheckPolicy());
   PetscFunctionReturn(PETSC_SUCCESS);

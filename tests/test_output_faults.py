@@ -234,7 +234,7 @@ def test_run_xmf_after_a_restart(straight, tmp_path):
 def test_run_xmf_when_a_run_goes_on_after_its_end(straight, tmp_path):
     """From Python: the last frame of run.xmf is written over, also by a shorter text."""
     script = tmp_path / "script.py"
-    call = simulation(tmp_path / "run", f"{PAPER} {SCENE} -time_end 0.0601")
+    call = simulation(tmp_path / "run", f"{PAPER} {SCENE} -time_end 0.06")
     script.write_text(f"import petves\nsim = {call}\nsim.run()\nsim.run(until=0.12)\nsim.close()\n")
     done = run_python(script)
     assert done.returncode == 0, done.stdout + done.stderr

@@ -69,6 +69,11 @@ def _run(command: str, words: dict[str, Any]) -> list[object]:
     return [getattr(module, command)(**words)]
 
 
+def _left(command: str, lines: list[object]) -> list[str]:
+    """Return what of a sweep is not done."""
+    return import_module(HOME[command]).failures(lines[-1]) if command == "sweep" else []
+
+
 def main(arguments: list[str] | None = None) -> int:
     """Run one command.
 
@@ -80,19 +85,24 @@ def main(arguments: list[str] | None = None) -> int:
     Returns
     -------
     int
-        Exit status: 0 done, 1 something is missing or failed (one line on stderr says what).
+        Exit status: 0 done, 1 something is missing or failed (one line on stderr says what, of a sweep one a run).
     """
     words = vars(parser().parse_args(arguments))
+    command = words.pop("command")
     try:
-        for line in _run(words.pop("command"), words):
+        lines = _run(command, words)
+        for line in lines:
             print(line)
+        left = _left(command, lines)
+        for line in left:
+            print(f"petves: error: {line}", file=sys.stderr)
+        return 1 if left else 0
     except Error as error:
         print(f"petves: error: {error}", file=sys.stderr)
         return 1
     except KeyboardInterrupt:
         print("petves: stopped; the same command goes on", file=sys.stderr)
         return 130
-    return 0
 
 
 if __name__ == "__main__":

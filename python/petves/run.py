@@ -99,8 +99,8 @@ class Run:
         """Return the options in force (resolved.opts), without the dash; empty when the file is missing."""
         path = self.folder / "resolved.opts"
         lines = path.read_text().splitlines() if path.is_file() else []
-        words = [line[1:].split(maxsplit=1) for line in lines if line.startswith("-")]
-        return {word[0]: word[1] if len(word) > 1 else "" for word in words}
+        words = [line[1:].split(" ", maxsplit=1) for line in lines if line.startswith("-")]
+        return {word[0]: word[1].strip('"') if len(word) > 1 else "" for word in words}
 
     def first_measures(self, vesicle: int = 0) -> tuple[float, float]:
         """Return a vesicle's initial area and length."""

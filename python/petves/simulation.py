@@ -236,8 +236,9 @@ class Simulation(State):
         Parameters
         ----------
         until : float, optional
-            Time; the option ``time_end`` when left out, and then the run ends as the program's does: with the end state,
-            checkpoint.h5 and summary.json on disk. With `until` they are written by `close`.
+            Time, reached exactly: the last steps are shortened. The option ``time_end`` when left out, and then the run
+            ends as the program's does: with the end state, checkpoint.h5 and summary.json on disk. With `until` they are
+            written by `close`.
         callback : callable, optional
             ``callback(simulation)`` after every step, on every rank. The run stops when it returns True on any of
             them. An exception in it, on any of them, ends the run on all, with the last good state on disk: it comes

@@ -2,19 +2,30 @@
 
 from __future__ import annotations
 
+import contextlib
 import csv
+import fcntl
+import hashlib
+import io
 import itertools
 import json
-import shutil
+from collections.abc import Iterator
 from concurrent.futures import Future, ThreadPoolExecutor, as_completed
 from pathlib import Path
+from urllib.parse import quote
 
 from petves.errors import Error
 from petves.program import program, run_program
 from petves.progress import progress_bar
 
 GOOD = ("finished", "steady")
+REMEMBERED = ("done", "stopped", "refused")
 FORBIDDEN = ("output_dir", "restart", "options_file")
+SAFE = " !$&'()*+,-.:;<>?@[]^_`{|}~"  # what a folder's name has as it is: no slash, =, # nor %
+LONGEST = 200  # characters of a folder's name
+
+Ended = tuple[str, str]
+"""Status and message of a run."""
 
 
 def sweep(
@@ -30,10 +41,12 @@ def sweep(
     Parameters
     ----------
     folder : str or Path
-        Where the runs go, a folder each, and sweep.csv: a row a run with the varied options, `folder`, `status` ("done",
-        "stopped" when a step could not be taken, "refused" when the options were) and `message`, then the last row of the
-        run's series.csv. A finished run is not run again and an interrupted one goes on from its checkpoint, so that a
-        sweep goes on where it stopped, and a larger grid adds to it.
+        Where the runs go, a folder each, and sweep.csv: a row a run with the varied options, `folder`, `status` and
+        `message`, then the last row of the run's series.csv. "done", "stopped" (a step could not be taken) and
+        "refused" (the options were) are remembered: such a run is not run again. "failed" (a full disk, no slots, a
+        kill) and "interrupted" (a signal, ``time_wall_limit``) are not: the next call goes on from the run's checkpoint.
+        A larger grid adds to the sweep. Nothing that a run has left is deleted; what was left without a checkpoint is
+        moved aside to the folder's name with ``~1``, ``~2``.
     grid : dict of str to list of str
         Values of each option, named without the dash.
     options_file : str or Path, optional
@@ -46,12 +59,12 @@ def sweep(
     Returns
     -------
     Path
-        sweep.csv.
+        sweep.csv; `failures` says what of it is not done.
 
     Raises
     ------
     Error
-        When the grid is empty, or the folder holds runs of other shared options.
+        When the grid is empty, the folder holds runs of other shared options, or a file of the sweep cannot be written.
     """
     folder = Path(folder)
     _check(grid, jobs, ranks)
@@ -59,23 +72,53 @@ def sweep(
     if options_file and not base:
         raise Error(f"{options_file}: no such file, or nothing in it; allowed: a file of options")
     program()
-    folder.mkdir(parents=True, exist_ok=True)
-    shared = folder / "shared.opts"
-    if shared.is_file() and shared.read_text() != base:
-        raise Error(f"{folder}: holds a sweep with other shared options, see {shared}; choose another folder")
-    shared.write_text(base)
-    points = [dict(zip(grid, values)) for values in itertools.product(*grid.values())]
+    points = list({_name(point): point for point in _points(grid)}.values())
+    with _writing(folder):
+        folder.mkdir(parents=True, exist_ok=True)
+        shared = folder / "shared.opts"
+        if not shared.is_file():
+            _replace(shared, base)
+        elif shared.read_text() != base:
+            raise Error(f"{folder}: holds a sweep with other shared options, see {shared}; choose another folder")
+    ended: dict[str, Ended] = {}
     with ThreadPoolExecutor(jobs) as pool, progress_bar(len(points), show=progress, unit="runs") as bar:
-        waiting: list[Future[None]] = [pool.submit(_run_point, folder, point, ranks) for point in points]
+        waiting: dict[Future[Ended], str] = {pool.submit(_run_point, folder, x, ranks): _name(x) for x in points}
         try:
             for done, future in enumerate(as_completed(waiting), 1):
-                future.result()
+                ended[waiting[future]] = future.result()
                 bar(done)
-                _write(folder, grid, points)
+                _write(folder, grid, points, ended)
         except BaseException:
             pool.shutdown(cancel_futures=True)  # what has been started still ends
             raise
-    return _write(folder, grid, points)
+    return _write(folder, grid, points, ended)
+
+
+def failures(path: str | Path) -> list[str]:
+    """Return a line for each run of a sweep.csv that is not done: its folder, status and message."""
+    with Path(path).open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    return [f"{row['folder']}: {row['status']}: {row['message']}" for row in rows if row["status"] != "done"]
+
+
+def _points(grid: dict[str, list[str]]) -> Iterator[dict[str, str]]:
+    for values in itertools.product(*grid.values()):
+        yield dict(zip(grid, values))
+
+
+@contextlib.contextmanager
+def _writing(path: Path) -> Iterator[None]:
+    try:
+        yield
+    except OSError as error:
+        raise Error(f"{path}: cannot be written ({error.strerror}); allowed: a folder with space") from None
+
+
+def _replace(path: Path, text: str) -> None:
+    """Write a file that is whole or as it was."""
+    temporary = path.with_name(path.name + ".tmp")
+    temporary.write_text(text)
+    temporary.replace(path)
 
 
 def _check(grid: dict[str, list[str]], jobs: int, ranks: int) -> None:
@@ -89,52 +132,86 @@ def _check(grid: dict[str, list[str]], jobs: int, ranks: int) -> None:
 
 
 def _name(point: dict[str, str]) -> str:
-    """Return the folder's name of one combination."""
-    return ",".join(f"{name}={value}" for name, value in point.items()).replace("/", "_")
+    """Return the folder's name of one combination: another for any other, and no longer than file systems allow."""
+    name = ",".join(f"{option}={quote(value, safe=SAFE)}" for option, value in point.items())
+    if len(name) <= LONGEST:
+        return name
+    return f"{name[: LONGEST - 20]}~{hashlib.sha256(name.encode()).hexdigest()[:16]}"
 
 
-def _run_point(folder: Path, point: dict[str, str], ranks: int) -> None:
-    """Run one combination unless that has been done, and leave status.json beside its files."""
+def _run_point(folder: Path, point: dict[str, str], ranks: int) -> Ended:
+    """Run one combination unless that has been done; leave status.json beside its files where there is no more to do."""
     home = folder / _name(point)
-    if (home / "status.json").is_file():
-        return
+    with contextlib.suppress(FileNotFoundError):
+        known = json.loads((home / "status.json").read_text())
+        return known["status"], known["message"]
     words = [word for name, value in point.items() for word in (f"-{name}", value)]
-    words = ["-options_file", str(folder / "shared.opts"), *words, "-output_dir", str(home)]
-    status, message = 1, ""
-    if (home / "checkpoint.h5").is_file():  # of an interrupted run
-        status, message = run_program([*words, "-restart", str(home / "checkpoint.h5")], ranks)
-    if status == 1:
-        shutil.rmtree(home, ignore_errors=True)
-        status, message = run_program(words, ranks)
-    if status < 0 or status > 2:
-        raise Error(f"{home}: the program ended with status {status}: {message}")
-    if status == 0 and json.loads((home / "summary.json").read_text())["reason"] not in GOOD:
-        return  # asked to stop: the next call goes on
-    home.mkdir(exist_ok=True)
-    kind = ("done", "refused", "stopped")[status]
-    temporary = home / "status.json.tmp"
-    temporary.write_text(json.dumps({"status": kind, "message": message}) + "\n")
-    temporary.replace(home / "status.json")
+    words = ["-options_file", str(folder / "shared.opts"), *words]
+    try:
+        kind, message = _launch(home, words, ranks)
+        if kind in REMEMBERED:
+            home.mkdir(exist_ok=True)
+            _replace(home / "status.json", json.dumps({"status": kind, "message": message}) + "\n")
+    except OSError as error:  # of what has ended well the next call finds the end state
+        kind, message = "failed", f"{home}: cannot be written ({error.strerror})"
+    return kind, message
 
 
-def _write(folder: Path, grid: dict[str, list[str]], points: list[dict[str, str]]) -> Path:
+def _launch(home: Path, words: list[str], ranks: int) -> Ended:
+    """Run one combination from its checkpoint, or from the start; return how it has ended."""
+    begin = [*words, "-output_dir", str(home)]
+    if (home / "checkpoint.h5").is_file():
+        begin += ["-restart", str(home / "checkpoint.h5")]
+    else:
+        _move_aside(home)
+    status, message = run_program(begin, ranks)
+    if status == 0:
+        reason = json.loads((home / "summary.json").read_text())["reason"]
+        return ("done", "") if reason in GOOD else ("interrupted", reason)
+    if status == 2:
+        return "stopped", message
+    if status == 1 and "-restart" not in begin and _refused(words, ranks):
+        return "refused", message
+    return "failed", message
+
+
+def _refused(words: list[str], ranks: int) -> bool:
+    """Return whether the options are what is wrong: petves with -help sets everything up and writes nothing."""
+    status, message = run_program([*words, "-help"], ranks)
+    return status == 1 and message.startswith("-")
+
+
+def _move_aside(home: Path) -> None:
+    """Rename a folder in which a run has begun, which was killed before its first checkpoint; not that of a live one."""
+    if not any((home / name).exists() for name in ("series.csv", "run.h5")):
+        return
+    with (home / "run.lock").open("a") as lock:
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:
+            return  # the program says by whom it is used
+        aside = next(name for k in itertools.count(1) if not (name := home.with_name(f"{home.name}~{k}")).exists())
+        home.rename(aside)
+        (aside / "run.lock").unlink()
+
+
+def _row(home: Path, ended: Ended) -> dict[str, object]:
+    """Return what sweep.csv says of a run besides its options; the last row of its series when it has one."""
+    row: dict[str, object] = {"folder": home.name, "status": ended[0], "message": ended[1]}
+    with contextlib.suppress(FileNotFoundError, ValueError), (home / "series.csv").open(newline="") as file:
+        *_, last = csv.DictReader(file)
+        row |= last
+    return row
+
+
+def _write(folder: Path, grid: dict[str, list[str]], points: list[dict[str, str]], ended: dict[str, Ended]) -> Path:
     """Write sweep.csv of the runs that have ended, in the grid's order."""
-    rows: list[dict[str, object]] = []
-    for point in points:
-        home = folder / _name(point)
-        if not (home / "status.json").is_file():
-            continue
-        row: dict[str, object] = {**point, "folder": home.name, **json.loads((home / "status.json").read_text())}
-        if row["status"] != "refused":
-            with (home / "series.csv").open(newline="") as file:
-                *_, last = csv.DictReader(file)
-            row |= last
-        rows.append(row)
+    rows = [{**point, **_row(folder / _name(point), ended[_name(point)])} for point in points if _name(point) in ended]
     names = list(dict.fromkeys(itertools.chain(grid, ("folder", "status", "message"), *rows)))
-    path = folder / "sweep.csv"
-    with path.with_suffix(".tmp").open("w", newline="") as file:
-        writer = csv.DictWriter(file, names, restval="", lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(rows)
-    path.with_suffix(".tmp").replace(path)
-    return path
+    text = io.StringIO()
+    writer = csv.DictWriter(text, names, restval="", lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(rows)
+    with _writing(folder / "sweep.csv"):
+        _replace(folder / "sweep.csv", text.getvalue())
+    return folder / "sweep.csv"

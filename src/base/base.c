@@ -49,6 +49,10 @@ PetscErrorCode PetvesErrorHandler(MPI_Comm comm, int line, const char *function,
   PetscMPIInt rank = 0;
   MPI_Comm_rank(MPI_COMM_WORLD, &rank);
   if (type != PETSC_ERROR_INITIAL) return code;
+  if (code == PETSC_ERR_MEM || !strcmp(function, "PetscMallocAlign")) { /* which gives a line's number as its code */
+    code = PETSC_ERR_MEM;
+    message = "out of memory; allowed: fewer cells or vesicles, a larger limit, or more nodes";
+  }
   if (rank && code == PETSC_ERR_USER_INPUT && !kept) return code; /* rank 0 says it */
   OneLine(code, message, text);
   if (code != PETSC_ERR_USER_INPUT && !base.one_line) { /* no user's mistake: say where */
@@ -58,7 +62,8 @@ PetscErrorCode PetvesErrorHandler(MPI_Comm comm, int line, const char *function,
   }
   if (kept && !*kept)
     (void)PetscStrncpy(kept, text, PETVES_MAX_MESSAGE);
-  else if (!kept && (code == PETSC_ERR_USER_INPUT || !rank || !(base.one_line || comm == MPI_COMM_WORLD)))
+  else if (!kept && (code == PETSC_ERR_USER_INPUT || code == PETSC_ERR_MEM || !rank ||
+                     !(base.one_line || comm == MPI_COMM_WORLD)))
     fprintf(stderr, "petves: error: %s\n", text);
   fflush(stderr);
   return code;

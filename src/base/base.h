@@ -50,6 +50,10 @@ PETSC_EXTERN const char *const PhaseNames[PHASE_COUNT];
 /* PetvesEvent - id of a -log_view event of the given name, registered on first use. */
 PETSC_EXTERN PetscErrorCode PetvesEvent(const char name[], PetscLogEvent *event);
 
+/* PetvesWarmUpBlas - let the BLAS take its own memory now, or stop with one line where a rank has too little: OpenBLAS
+   would wait for it without end. Does nothing when it has been done. Collective. */
+PETSC_EXTERN PetscErrorCode PetvesWarmUpBlas(MPI_Comm comm);
+
 /* StopClock - the wall time of -time_wall_limit starts here. */
 PETSC_EXTERN void StopClock(void);
 

@@ -1,16 +1,36 @@
 /* Reasons to stop between two steps: a signal, or the wall time that the job has. */
 #include "base/base.h"
 #include <signal.h>
+#include <time.h>
+
+/* A signal that comes so soon after the first is the same request: mpirun and the batch system both send it. */
+#define SAME_REQUEST 1.0
 
 static volatile sig_atomic_t caught;
-static PetscLogDouble began;
+static volatile sig_atomic_t stepping; /* somebody asks between steps whether a signal has come */
+static double caught_at;
+static double began;
 
-static void Catch(int signal) {
-  caught = signal;
+/* Seconds of a clock that nobody sets. */
+static double Now(void) {
+  struct timespec now;
+  (void)clock_gettime(CLOCK_MONOTONIC, &now);
+  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+/* While nobody asks, or when the first one has not helped, a signal ends the process as if it were not caught. */
+static void Catch(int number) {
+  if (!stepping || (caught && Now() - caught_at > SAME_REQUEST)) {
+    (void)signal(number, SIG_DFL);
+    (void)raise(number); /* comes when this function returns */
+  } else if (!caught) {
+    caught_at = Now();
+    caught = number;
+  }
 }
 
 void StopClock(void) {
-  (void)PetscTime(&began);
+  began = Now();
 }
 
 PetscErrorCode PetvesCatchSignals(void) {
@@ -18,6 +38,7 @@ PetscErrorCode PetvesCatchSignals(void) {
   struct sigaction action = {.sa_handler = Catch, .sa_flags = SA_RESTART};
   PetscFunctionBeginUser;
   sigemptyset(&action.sa_mask);
+  for (int k = 0; k < 2; k++) sigaddset(&action.sa_mask, signals[k]);
   PetscCheck(signal(SIGPIPE, SIG_IGN) != SIG_ERR, PETSC_COMM_SELF, PETSC_ERR_SYS, "SIGPIPE cannot be ignored");
   for (int k = 0; k < 2; k++)
     PetscCheck(!sigaction(signals[k], &action, NULL), PETSC_COMM_SELF, PETSC_ERR_SYS, "no handler for signal %d",
@@ -27,11 +48,10 @@ PetscErrorCode PetvesCatchSignals(void) {
 
 PetscErrorCode StopRequested(MPI_Comm comm, PetscReal limit, PetscReal reserve, const char **why) {
   PetscMPIInt rank, stop[2] = {caught, 0};
-  PetscLogDouble now;
   PetscFunctionBeginUser;
+  stepping = 1;
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
-  PetscCall(PetscTime(&now));
-  stop[1] = !rank && limit > 0 && now - began + reserve > limit;
+  stop[1] = !rank && limit > 0 && Now() - began + reserve > limit;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, stop, 2, MPI_INT, MPI_MAX, comm));
   *why = NULL;
   if (stop[1]) *why = "-time_wall_limit";

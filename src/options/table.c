@@ -77,6 +77,11 @@ PetscErrorCode OptionValue(const OptionTable *t, const void *values, PetscInt i,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+void OptionPrint(FILE *file, const char name[], const char value[]) {
+  const char *const quote = strchr(value, ' ') ? "\"" : "";
+  fprintf(file, *value ? "%s %s%s%s\n" : "%s\n", name, quote, value, quote);
+}
+
 PetscErrorCode OptionsWrite(const OptionTable *t, const void *values, const char *const skip[], FILE *file) {
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < t->n; i++) {
@@ -85,7 +90,7 @@ PetscErrorCode OptionsWrite(const OptionTable *t, const void *values, const char
     for (PetscInt k = 0; skip[k] && !left; k++) left = !strcmp(skip[k], t->row[i].name) ? PETSC_TRUE : PETSC_FALSE;
     if (left) continue;
     PetscCall(OptionFormat(&t->row[i], Place(t, values, i), &text));
-    if (*text) fprintf(file, "%s %s\n", t->row[i].name, text);
+    if (*text) OptionPrint(file, t->row[i].name, text);
     PetscCall(PetscFree(text));
   }
   PetscFunctionReturn(PETSC_SUCCESS);

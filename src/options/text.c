@@ -107,6 +107,23 @@ static PetscErrorCode ParseWord(MPI_Comm comm, const OptionRow *o, const char *t
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* A name that resolved.opts can hold, so that it repeats the run: PETSc's options files have no escapes. */
+static PetscErrorCode ParsePath(MPI_Comm comm, const OptionRow *o, const char *text, char path[]) {
+  PetscBool plain = text[0] == '-' ? PETSC_FALSE : PETSC_TRUE;
+  PetscFunctionBeginUser;
+  for (const char *c = text; *c && plain; c++)
+    plain = iscntrl((unsigned char)*c) || *c == '"' || *c == '#' ? PETSC_FALSE : PETSC_TRUE;
+  PetscCheck(
+      plain, comm, PETSC_ERR_USER_INPUT,
+      "%s %s: no options file can hold this name; allowed: no double quote, # or control character in it, and no "
+      "dash before it",
+      o->name, text);
+  PetscCheck(strlen(text) < PETSC_MAX_PATH_LEN - 64, comm, PETSC_ERR_USER_INPUT,
+             "%s: a name of %d characters; allowed: less than %d", o->name, (int)strlen(text), PETSC_MAX_PATH_LEN - 64);
+  PetscCall(PetscStrncpy(path, text, PETSC_MAX_PATH_LEN));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode OptionParse(MPI_Comm comm, const OptionRow *o, const char text[], void *place) {
   PetscReal x = 0;
   PetscFunctionBeginUser;
@@ -120,7 +137,7 @@ PetscErrorCode OptionParse(MPI_Comm comm, const OptionRow *o, const char text[],
     *(PetscInt *)place = (PetscInt)x;
     break;
   case OPT_PATH:
-    PetscCall(PetscStrncpy((char *)place, text, PETSC_MAX_PATH_LEN));
+    PetscCall(ParsePath(comm, o, text, (char *)place));
     break;
   case OPT_REALS:
   case OPT_INTS:

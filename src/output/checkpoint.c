@@ -2,6 +2,7 @@
 #include "output/checkpoint.h"
 #include "output/checksum.h"
 #include "output/h5.h"
+#include "output/lock.h"
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -196,6 +197,7 @@ PetscErrorCode CheckpointWrite(Checkpoint *c, Scheme s, const Record *record, Pe
   char path[PETSC_MAX_PATH_LEN];
   H5File file;
   PetscBool done = PETSC_TRUE;
+  PetscErrorCode error;
   PetscFunctionBeginUser;
   PetscCall(FolderPath(c->folder, TEMPORARY, path));
   PetscCall(H5FileCreate(c->folder->comm, path, &file));
@@ -205,11 +207,13 @@ PetscErrorCode CheckpointWrite(Checkpoint *c, Scheme s, const Record *record, Pe
   if (s->has_old) PetscCall(WriteVectors(s, &file, "/previous", s->old));
   PetscCall(WriteMemory(s, &file));
   PetscCall(H5FileClose(&file));
+  if (!c->folder->rank) done = !file.failed && ChecksumAppend(path) && !FileSync(path) ? PETSC_TRUE : PETSC_FALSE;
+  error = FolderCheckOwn(c->folder); /* once more: that took time */
   if (!c->folder->rank) {
-    done = !file.failed && ChecksumAppend(path) && !FileSync(path) ? PETSC_TRUE : PETSC_FALSE;
-    if (done) PetscCall(Rotate(c, path, &done));
-    if (!done) (void)unlink(path);
+    if (done && !error) PetscCall(Rotate(c, path, &done));
+    if (!done || error) (void)unlink(path);
   }
+  PetscCall(error);
   PetscCall(Name(c->folder, 0, path));
   PetscCall(FolderCheck(c->folder, done, path));
   c->step = s->state.step;

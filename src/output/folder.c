@@ -50,35 +50,6 @@ PetscErrorCode FolderWriteText(Folder *folder, const char file[], FolderPrint pr
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* mkdir -p; the error number, or 0. */
-static PetscMPIInt MakeParts(const char path[]) {
-  char part[PETSC_MAX_PATH_LEN];
-  struct stat what;
-  (void)PetscStrncpy(part, path, sizeof(part));
-  for (char *p = part + 1; *p; p++)
-    if (*p == '/') {
-      *p = 0;
-      (void)mkdir(part, 0777);
-      *p = '/';
-    }
-  if (mkdir(part, 0777) && errno != EEXIST) return errno;
-  return stat(part, &what) || !S_ISDIR(what.st_mode) ? ENOTDIR : 0;
-}
-
-PetscErrorCode FolderMake(MPI_Comm comm, const char path[], Folder *folder) {
-  PetscMPIInt error = 0;
-  PetscFunctionBeginUser;
-  folder->comm = comm;
-  folder->failed = PETSC_FALSE;
-  PetscCallMPI(MPI_Comm_rank(comm, &folder->rank));
-  PetscCall(PetscStrncpy(folder->path, path, sizeof(folder->path)));
-  if (!folder->rank) error = MakeParts(path);
-  PetscCallMPI(MPI_Bcast(&error, 1, MPI_INT, 0, comm));
-  PetvesCheck(!error, comm, "-output_dir %s: cannot be made (%s); allowed: a folder that can be written", path,
-              strerror(error));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Whether a file lies in the folder. */
 static PetscBool LiesHere(Folder *folder, const char file[]) {
   char above[PETSC_MAX_PATH_LEN], *slash;

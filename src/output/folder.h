@@ -2,17 +2,27 @@
    writes every file. */
 #pragma once
 #include "base/base.h"
+#include <sys/types.h>
+
+/* A file as it was when the run opened it. */
+typedef struct {
+  const char *name;
+  dev_t device;
+  ino_t inode;
+} FolderFile;
+
+#define FOLDER_FILES 4
 
 typedef struct {
   MPI_Comm comm;
   PetscMPIInt rank;
   PetscBool failed; /* that a file could not be written has been said; the same on every rank */
   char path[PETSC_MAX_PATH_LEN];
+  PetscBool locked;              /* the folder is this run's; the same on every rank. lock.h has what is below */
+  int lock;                      /* rank 0: the lock's file; -1 where there are no locks */
+  int files;                     /* rank 0: files that are watched */
+  FolderFile file[FOLDER_FILES]; /* [files] */
 } Folder;
-
-/* FolderMake - make the folder, with those above it. Collective. Errors: PETSC_ERR_USER_INPUT when it cannot
-   be made. */
-PETSC_EXTERN PetscErrorCode FolderMake(MPI_Comm comm, const char path[], Folder *folder);
 
 /* FolderClaim - refuse a folder that holds another run's results, unless overwrite. here: the checkpoint `restart` (""
    for none) lies in this folder, so that its files go on. Collective. */

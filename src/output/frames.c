@@ -1,5 +1,6 @@
 #include "output/frames.h"
 #include "output/cells.h"
+#include "output/lock.h"
 
 static PetscErrorCode Begin(Frames *f, Folder *folder, Scheme scheme, char path[PETSC_MAX_PATH_LEN]) {
   const Grid g = scheme->fluid->grid;
@@ -28,6 +29,7 @@ PetscErrorCode FramesCreate(Frames *f, Folder *folder, Scheme scheme) {
   PetscCall(FrameFileCreate(scheme, path, &f->file));
   f->open = PETSC_TRUE;
   PetscCall(Check(f));
+  FolderWatch(folder, "run.h5");
   PetscCall(FrameIndexOpen(&f->index, folder, scheme, &f->file, 0, NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -71,6 +73,7 @@ PetscErrorCode FramesGoOn(Frames *f, Folder *folder, Scheme scheme, PetscInt sch
   if (scheduled) f->time = f->times[scheduled - 1];
   PetscCall(FrameIndexOpen(&f->index, folder, scheme, &f->file, scheduled, f->times)); /* before anything is changed */
   PetscCall(Cut(f, restart));
+  FolderWatch(folder, "run.h5");
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -116,7 +119,7 @@ PetscErrorCode FramesClose(Frames *f, PetscBool *good) {
   *good = PETSC_TRUE;
   if (f->open) {
     PetscCall(H5FileClose(&f->file));
-    PetscCall(FrameIndexClose(&f->index, !f->file.failed));
+    PetscCall(FrameIndexClose(&f->index, !f->file.failed && !f->folder->failed));
     *good = !f->file.failed || known ? PETSC_TRUE : PETSC_FALSE;
   }
   f->open = PETSC_FALSE;

@@ -7,7 +7,7 @@
 /* A call on rank 0's file, once all before it were good. */
 #define Try(file, call)                                                                                                \
   do {                                                                                                                 \
-    if (!(file)->failed && (call) < 0) (file)->failed = PETSC_TRUE;                                                    \
+    if (!(file)->failed && ((call) < 0 || H5PlaceLost())) (file)->failed = PETSC_TRUE;                                 \
   } while (0)
 
 static PetscErrorCode Start(MPI_Comm comm, const char path[], H5File *f) {
@@ -70,9 +70,9 @@ static void Redirect(hid_t file) {
 PetscErrorCode H5FileClose(H5File *f) {
   PetscFunctionBeginUser;
   if (f->id < 0) PetscFunctionReturn(PETSC_SUCCESS);
-  if (H5Fflush(f->id, H5F_SCOPE_GLOBAL) < 0) f->failed = PETSC_TRUE;
+  if (H5Fflush(f->id, H5F_SCOPE_GLOBAL) < 0 || H5PlaceLost()) f->failed = PETSC_TRUE;
   if (f->failed) Redirect(f->id);
-  if (H5Fclose(f->id) < 0) f->failed = PETSC_TRUE;
+  if (H5Fclose(f->id) < 0 || H5PlaceLost()) f->failed = PETSC_TRUE;
   f->id = -1;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

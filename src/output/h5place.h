@@ -4,6 +4,9 @@
 #pragma once
 #include <hdf5.h>
 
+/* H5PlaceLost - 1 when a write of this driver has failed since the last call, else 0. Not collective. */
+int H5PlaceLost(void);
+
 /* H5PlaceDriver - let files of these access properties be read through the driver; without effect where HDF5 refuses.
    Not collective. */
 void H5PlaceDriver(hid_t access);

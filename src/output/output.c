@@ -1,4 +1,5 @@
 #include "output/output.h"
+#include "output/lock.h"
 #include "output/resolved.h"
 #include "output/restart.h"
 #include "output/summary.h"
@@ -15,6 +16,7 @@ static PetscErrorCode ClearFolder(Output o) {
   PetscFunctionBeginUser;
   PetscCall(FolderRemove(&o->folder, "summary.json"));
   if (o->go_on) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(FolderRemove(&o->folder, "run.h5"));
   PetscCall(FolderRemove(&o->folder, "run.h5.new"));
   PetscCall(CheckpointClear(&o->folder));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -54,8 +56,9 @@ PetscErrorCode OutputCreate(Scene scene, Scheme scheme, Output *out) {
   o->scheme = scheme;
   PetscCall(RecordCreate(scheme->membrane->layout->bodies, &o->record));
   PetscCall(GatheredCreate(&scheme->state, &o->now));
+  PetscCall(FolderOpen(scene->comm, scene->output.dir, &o->folder));
   if (*scene->output.restart) PetscCall(RestartRead(scheme, &o->record, &frames));
-  PetscCall(FolderMake(scene->comm, scene->output.dir, &o->folder));
+  PetscCall(FolderMake(&o->folder));
   PetscCall(FolderClaim(&o->folder, scene->output.restart, scene->output.overwrite, &o->go_on));
   PetscCall(CheckpointCreate(&o->checkpoint, &o->folder, scene->output.checkpoint_keep));
   PetscCall(XdmfCreate(&o->xdmf, &o->folder, scheme));
@@ -80,6 +83,7 @@ PetscErrorCode OutputDestroy(Output *output) {
   PetscCall(XdmfClose(&o->xdmf, &good[2]));
   PetscCall(RecordDestroy(&o->record));
   PetscCall(GatheredDestroy(&o->now));
+  FolderRelease(&o->folder);
   folder = o->folder;
   PetscCall(PetscFree(o));
   if (!*folder.path || folder.failed) PetscFunctionReturn(PETSC_SUCCESS); /* no folder, or its error is known */
@@ -94,6 +98,7 @@ PetscErrorCode OutputDestroy(Output *output) {
 static PetscErrorCode WriteRow(Output o) {
   PetscFunctionBeginUser;
   PetscCall(PhaseBegin(PHASE_OUTPUT));
+  PetscCall(FolderCheckOwn(&o->folder));
   PetscCall(RecordTake(&o->record, o->scheme));
   PetscCall(SeriesWrite(&o->series, o->record.text));
   PetscCall(PhaseEnd());
@@ -118,6 +123,7 @@ PetscErrorCode OutputCheckpoint(Output o) {
   if (o->checkpoint.step == o->scheme->state.step) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscTime(&start));
   PetscCall(PhaseBegin(PHASE_OUTPUT));
+  PetscCall(FolderCheckOwn(&o->folder));
   PetscCall(SeriesFlush(&o->series, PETSC_TRUE));
   PetscCall(FramesSync(&o->frames));
   PetscCall(CheckpointWrite(&o->checkpoint, o->scheme, &o->record, o->frames.scheduled));
@@ -155,6 +161,7 @@ PetscErrorCode OutputStep(Output o) {
 PetscErrorCode OutputEnd(Output o, const char reason[], const char failure[]) {
   const State *q = &o->scheme->state;
   PetscFunctionBeginUser;
+  PetscCall(FolderCheckOwn(&o->folder));
   PetscCall(OutputCheckpoint(o)); /* first: a frame asks the flow for values, which a caller's own may not have */
   if (q->t > o->frames.time) PetscCall(WriteFrame(o, PETSC_FALSE));
   PetscCall(SeriesFlush(&o->series, PETSC_FALSE));

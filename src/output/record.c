@@ -141,6 +141,16 @@ PetscErrorCode RecordTake(Record *r, Scheme s) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscBool RecordFits(const Record *r, PetscInt step, PetscReal t) {
+  PetscInt more = 0;
+  for (const char *c = r->header; *c; c++) more += *c == ',';
+  for (const char *c = r->text; *c; c++) more -= *c == ',';
+  return !more && !r->text[strspn(r->text, "0123456789+-.einf,")] && r->last[COLUMN_STEP] == step &&
+                 r->last[COLUMN_TIME] == t
+             ? PETSC_TRUE
+             : PETSC_FALSE;
+}
+
 PetscErrorCode RecordParse(Record *r, const char text[]) {
   const char *p = r->text;
   PetscFunctionBeginUser;

@@ -51,5 +51,9 @@ PETSC_EXTERN PetscErrorCode RecordMeasure(Record *record, Scheme scheme);
 /* RecordTake - the row of the scheme's state and last step, which is added to the totals. Collective. */
 PETSC_EXTERN PetscErrorCode RecordTake(Record *record, Scheme scheme);
 
+/* RecordFits - whether the text is a row of as many numbers as the header has names, of this step and time. Not
+   collective. */
+PETSC_EXTERN PetscBool RecordFits(const Record *record, PetscInt step, PetscReal t);
+
 /* RecordParse - the last row from its text; a text that is too long for so many vesicles is cut. */
 PETSC_EXTERN PetscErrorCode RecordParse(Record *record, const char text[]);

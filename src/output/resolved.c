@@ -11,21 +11,19 @@ static PetscBool Skip(const char *name) {
   return PETSC_FALSE;
 }
 
-/* The options of PETSc's own that the user gave: -tension_ksp_monitor, -log_view and so on. */
+/* The options of PETSc's own that the user gave: -tension_ksp_monitor, -log_view and so on. Words of values are no
+   options of the database. */
 static PetscErrorCode PrintOthers(FILE *f) {
   char *all, *word, *end = NULL;
-  PetscBool keep = PETSC_FALSE;
   PetscFunctionBeginUser;
   PetscCall(PetscOptionsGetAll(NULL, &all));
   for (word = strtok_r(all, " \n", &end); word; word = strtok_r(NULL, " \n", &end)) {
-    if (word[0] == '-' && isalpha((unsigned char)word[1])) {
-      if (keep) fprintf(f, "\n");
-      keep = Skip(word) ? PETSC_FALSE : PETSC_TRUE;
-      if (keep) fprintf(f, "%s", word);
-    } else if (keep)
-      fprintf(f, " %s", word);
+    const char *value = NULL;
+    PetscBool given = PETSC_FALSE;
+    if (word[0] != '-' || !isalpha((unsigned char)word[1]) || Skip(word)) continue;
+    PetscCall(PetscOptionsFindPair(NULL, NULL, word, &value, &given));
+    if (given) OptionPrint(f, word, value ? value : "");
   }
-  if (keep) fprintf(f, "\n");
   PetscCall(PetscFree(all));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

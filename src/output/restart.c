@@ -1,7 +1,7 @@
 #include "output/gathered.h"
 #include "output/restart.h"
 #include "output/checksum.h"
-#include "output/h5.h"
+#include "output/h5plain.h"
 #include <errno.h>
 #include <stdlib.h>
 #include <unistd.h>
@@ -108,7 +108,9 @@ static PetscErrorCode ReadFluid(Scheme s, H5File *file, const char prefix[], Sta
   a[1] = a[0] + GridLocalU(g);
   PetscCall(VecGetArray(q->p, &a[2]));
   for (int f = 0; f < 3; f++) {
+    const PetscInt dims[2] = {g->all_rows[f], g->columns[f]};
     PetscCall(PetscSNPrintf(name, sizeof(name), "%s/fluid/%s", prefix, names[f]));
+    H5CheckEntry(file, name, 2, dims);
     PetscCall(H5ReadField(file, name, 0, g, (Field)f, a[f]));
   }
   PetscCall(VecRestoreArray(q->p, &a[2]));
@@ -116,12 +118,38 @@ static PetscErrorCode ReadFluid(Scheme s, H5File *file, const char prefix[], Sta
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode ReadOnly(H5File *file, const char prefix[], const char name[], PetscInt n, PetscReal values[]) {
+/* n rows of one number, or of `each`. */
+static PetscErrorCode ReadOnly(H5File *file, const char prefix[], const char name[], PetscInt n, PetscInt each,
+                               PetscReal values[]) {
+  const PetscInt dims[2] = {n, each};
   char path[64];
   PetscFunctionBeginUser;
   if (!n) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscSNPrintf(path, sizeof(path), "%s/%s", prefix, name));
-  PetscCall(H5ReadArray(file, path, 0, n, values));
+  H5CheckEntry(file, path, each > 1 ? 2 : 1, dims);
+  PetscCall(H5ReadArray(file, path, 0, n * each, values));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Values that a run may have had. Vectors of an entry that could not be read are refused as that. */
+static PetscErrorCode CheckVectors(Scheme s, const State *q) {
+  const struct {
+    const char *name;
+    Vec vector;
+    PetscReal most;
+  } all[] = {{"velocity", q->w, PETSC_MAX_REAL},
+             {"pressure", q->p, PETSC_MAX_REAL},
+             {"markers", q->X, 1e9 * s->fluid->grid->h},
+             {"marker velocity", q->U, PETSC_MAX_REAL},
+             {"tension", q->sigma, PETSC_MAX_REAL}};
+  PetscFunctionBeginUser;
+  for (int k = 0; k < 5; k++) {
+    PetscReal largest = 0;
+    if (all[k].vector) PetscCall(VecNorm(all[k].vector, NORM_INFINITY, &largest));
+    PetvesCheck(largest <= all[k].most, s->scene->comm,
+                "-restart %s: its %s is up to %g; allowed: a checkpoint.h5 of petves", s->scene->output.restart,
+                all[k].name, (double)largest);
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -133,13 +161,51 @@ static PetscErrorCode ReadVectors(Scheme s, H5File *file, const char prefix[], S
   PetscFunctionBeginUser;
   PetscCall(ReadFluid(s, file, prefix, q));
   PetscCall(GatheredCreate(q, &there));
-  PetscCall(ReadOnly(file, prefix, "vesicle/markers", 2 * there.M, there.markers));
-  PetscCall(ReadOnly(file, prefix, "vesicle/velocity", 2 * there.M, there.velocity));
-  PetscCall(ReadOnly(file, prefix, "vesicle/tension", there.M, there.tension));
+  PetscCall(ReadOnly(file, prefix, "vesicle/markers", there.M, 2, there.markers));
+  PetscCall(ReadOnly(file, prefix, "vesicle/velocity", there.M, 2, there.velocity));
+  PetscCall(ReadOnly(file, prefix, "vesicle/tension", there.M, 1, there.tension));
   PetscCall(H5GetInts(file, "walls", 1, &walls));
-  if (walls == there.walls) PetscCall(ReadOnly(file, prefix, "fluid/walls", walls, there.wall_force));
+  if (walls == there.walls) PetscCall(ReadOnly(file, prefix, "fluid/walls", walls, 1, there.wall_force));
   PetscCall(ScatterState(&there, q));
   PetscCall(GatheredDestroy(&there));
+  PetscCall(CheckVectors(s, q));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* That all so far could be read. */
+static PetscErrorCode CheckEntries(Scene scene, const H5File *file) {
+  PetscBool failed;
+  PetscFunctionBeginUser;
+  PetscCall(H5FileFailed(file, &failed));
+  PetvesCheck(!failed, scene->comm,
+              "-restart %s: entries are missing, or have another size or storage; allowed: a checkpoint.h5 of petves",
+              scene->output.restart);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Numbers that a run may have had: a step to which as many may be added as a run may take. */
+static PetscErrorCode CheckNumbers(Scene scene, H5File *file) {
+  static const struct {
+    const char *name;
+    PetscReal least, most;
+    PetscBool whole;
+  } all[] = {
+      {"step", 0, 1e9, PETSC_TRUE},      {"has_previous", 0, 1, PETSC_TRUE}, {"step_level", -1000, 1000, PETSC_TRUE},
+      {"frames", 0, 1e9, PETSC_TRUE},    {"time", 0, 1e300, PETSC_FALSE},    {"dt", 0, 1e300, PETSC_FALSE},
+      {"dt_last", 0, 1e300, PETSC_FALSE}};
+  PetscReal x[7] = {0};
+  PetscFunctionBeginUser;
+  for (int k = 0; k < 7; k++) {
+    PetscInt n = 0;
+    PetscCall(all[k].whole ? H5GetInts(file, all[k].name, 1, &n) : H5GetReals(file, all[k].name, 1, &x[k]));
+    if (all[k].whole) x[k] = n;
+    PetvesCheck(x[k] >= all[k].least && x[k] <= all[k].most, scene->comm,
+                "-restart %s: its %s is %g; allowed: %g to %g, as petves writes it", scene->output.restart, all[k].name,
+                (double)x[k], (double)all[k].least, (double)all[k].most);
+  }
+  PetvesCheck(x[3] <= x[0] + 1 && (x[0] == 0 || x[6] > 0), scene->comm,
+              "-restart %s: it has %g frames and a last step of %g at step %g; allowed: a checkpoint.h5 of petves",
+              scene->output.restart, (double)x[3], (double)x[6], (double)x[0]);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -150,14 +216,15 @@ static PetscErrorCode ReadLevel(Scheme s, H5File *file) {
   PetscFunctionBeginUser;
   PetscCall(H5GetInts(file, "step_level", 1, &level));
   PetscCall(H5GetString(file, "-time_step", sizeof(base), base));
-  if (*base)
+  if (*base && strtod(base, NULL) > 0 && strtod(base, NULL) < 1e300)
     level += (PetscInt)PetscFloorReal(2 * PetscLog2Real((PetscReal)strtod(base, NULL) / s->scene->time.dt) + 1e-9);
   if (s->policy.adaptive) s->plan.level = level;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* The last row and the totals. */
-static PetscErrorCode ReadRecord(H5File *file, Record *record) {
+static PetscErrorCode ReadRecord(Scheme s, H5File *file, Record *record) {
+  PetscBool fits;
   PetscInt totals[4] = {0};
   char *text;
   PetscFunctionBeginUser;
@@ -169,6 +236,11 @@ static PetscErrorCode ReadRecord(H5File *file, Record *record) {
   PetscCall(H5GetText(file, "series_row", &text));
   PetscCall(RecordParse(record, text));
   PetscCall(PetscFree(text));
+  fits = file->rank || file->failed || RecordFits(record, s->state.step, s->state.t) ? PETSC_TRUE : PETSC_FALSE;
+  PetscCallMPI(MPI_Bcast(&fits, 1, MPIU_BOOL, 0, file->comm));
+  PetvesCheck(fits, s->scene->comm,
+              "-restart %s: its row of series.csv is not that of its step; allowed: a checkpoint.h5 of petves",
+              s->scene->output.restart);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -190,18 +262,25 @@ static PetscErrorCode ReadState(Scheme s, H5File *file) {
 
 /* All that the open checkpoint holds; memory[] is what the solvers have kept from earlier steps. */
 static PetscErrorCode ReadAll(Scheme s, H5File *file, Record *record, PetscInt *frames, PetscReal memory[]) {
-  PetscBool failed;
+  const PetscInt numbers = SchemeMemorySize(s);
+  PetscBool plain;
   PetscFunctionBeginUser;
+  PetscCall(H5CheckLinks(file, &plain));
+  PetvesCheck(plain, s->scene->comm,
+              "-restart %s: it has links to other names or files; allowed: a checkpoint.h5 of petves",
+              s->scene->output.restart);
   PetscCall(CompareOptions(s->scene, file));
+  PetscCall(CheckNumbers(s->scene, file));
+  PetscCall(CheckEntries(s->scene, file));
   PetscCall(CompareVesicles(s, file));
   PetscCall(ReadState(s, file));
   PetscCall(H5GetInts(file, "frames", 1, frames));
-  PetscCall(ReadRecord(file, record));
-  PetscCall(H5ReadArray(file, "/solver", 0, SchemeMemorySize(s), memory));
-  PetscCall(H5FileFailed(file, &failed));
-  PetvesCheck(!failed, s->scene->comm,
-              "-restart %s: entries are missing or have another size; allowed: a checkpoint.h5 of petves",
-              s->scene->output.restart);
+  PetscCall(ReadRecord(s, file, record));
+  H5CheckEntry(file, "/solver", 1, &numbers);
+  PetscCall(H5ReadArray(file, "/solver", 0, numbers, memory));
+  for (PetscInt k = 0; k < numbers; k++)
+    if (PetscIsInfOrNanReal(memory[k])) file->failed = file->rank ? PETSC_FALSE : PETSC_TRUE;
+  PetscCall(CheckEntries(s->scene, file));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

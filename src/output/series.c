@@ -1,4 +1,5 @@
 #include "output/series.h"
+#include "output/lock.h"
 #include <stdlib.h>
 #include <unistd.h>
 
@@ -69,6 +70,7 @@ PetscErrorCode SeriesOpen(Series *s) {
   PetscCall(FolderPath(s->folder, TEMPORARY, temporary));
   if (!s->folder->rank && !rename(temporary, path)) s->file = fopen(path, "a");
   PetscCall(FolderCheck(s->folder, s->file ? PETSC_TRUE : PETSC_FALSE, path));
+  FolderWatch(s->folder, NAME);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -1,5 +1,6 @@
 #define _GNU_SOURCE /* open_memstream */
 #include "output/xdmf.h"
+#include "output/lock.h"
 #include <fcntl.h>
 #include <stdlib.h>
 #include <unistd.h>
@@ -109,6 +110,7 @@ PetscErrorCode XdmfGoOn(Xdmf *x, PetscInt frames, const PetscReal times[]) {
   PetscCall(FolderPath(x->folder, "run.xmf", path));
   if (!x->folder->rank) x->file = open(path, O_WRONLY);
   PetscCall(FolderCheck(x->folder, x->file >= 0, path));
+  FolderWatch(x->folder, "run.xmf");
   x->frames = frames;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

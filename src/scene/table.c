@@ -44,7 +44,7 @@ static const OptionRow table[] = {
   {"-scheme_startup", OPT_ENUM, AT(scheme.startup), "graded", "euler|graded", "first step of order 2: backward Euler, or five growing parts of a step"},
   {"-mobility_type", OPT_ENUM, AT(coupling.mobility), "table", "table|ilu|none", "Lagrangian part of coupled's preconditioner"},
   {"-time_step", OPT_REAL, AT(time.dt), "0.01", ">0", "dt (time)"},
-  {"-time_end", OPT_REAL, AT(time.end), "1", ">=0", "end time"},
+  {"-time_end", OPT_REAL, AT(time.end), "1", ">=0", "end time, reached exactly: the last steps are shortened"},
   {"-time_adapt", OPT_ENUM, AT(time.adapt), "none", "none|error", "step size: fixed, or from an error estimate (coupled, direct of order 2)"},
   {"-time_adapt_tol", OPT_REAL, AT(time.adapt_tol), "1e-4", ">0", "error estimate accepted a step, in units of R0"},
   {"-time_adapt_max_move", OPT_REAL, AT(time.adapt_max_move), "1", ">=0", "cells that a marker may move in a step relative to its vesicle; 0 no limit"},

@@ -19,8 +19,20 @@ PetscInt StepFirstLevel(void) {
   return FIRST_LEVEL;
 }
 
+/* n steps of the same size, added up, may all be rounded the same way: n^2 eps/4 of a step at most. */
+static PetscReal Rounding(const StepPolicy *p, PetscReal until) {
+  const PetscReal steps = p->adaptive ? 0 : until / p->base;
+  return p->base * PetscMin(0.25, PetscMax(1e-9, PETSC_MACHINE_EPSILON * steps * steps));
+}
+
 PetscBool StepFinished(const StepPolicy *p, PetscReal t, PetscReal until) {
-  return t >= until - (p->adaptive ? 1e-9 : 0.5) * p->base ? PETSC_TRUE : PETSC_FALSE;
+  return t >= until - Rounding(p, until) ? PETSC_TRUE : PETSC_FALSE;
+}
+
+PetscReal StepFixed(const StepPolicy *p, PetscReal t, PetscReal most) {
+  const PetscReal rounding = Rounding(p, t + most);
+  if (most >= 2 * p->base - rounding || PetscAbsReal(most - p->base) <= rounding) return p->base;
+  return most > p->base ? most / 2 : most; /* as in StepSize, no step is far shorter than the one before */
 }
 
 static PetscReal SizeOfLevel(const StepPolicy *p, PetscInt level) {

@@ -34,8 +34,12 @@ PETSC_EXTERN StepPolicy StepPolicyCreate(Scene scene, PetscInt vesicles);
 /* StepFirstLevel - of an adaptive run's first step. */
 PETSC_EXTERN PetscInt StepFirstLevel(void);
 
-/* StepFinished - whether the time t counts as `until`. */
+/* StepFinished - whether the time t counts as `until`: it is, but for what rounding leaves of a sum of steps. */
 PETSC_EXTERN PetscBool StepFinished(const StepPolicy *policy, PetscReal t, PetscReal until);
+
+/* StepFixed - of a policy that is not adaptive, at time t with `most` left: the base, and two equal steps or a single
+   one at the end where `most` is no multiple of it. A function of these alone: a restart goes the same way. */
+PETSC_EXTERN PetscReal StepFixed(const StepPolicy *policy, PetscReal t, PetscReal most);
 
 /* StepSize - of the next attempt: of the plan's level, which is lowered to what max_step and the CFL limit `courant`
    (PETSC_MAX_REAL: none) allow; at most `most`, and towards it two equal steps. Adaptive policies only. */

@@ -136,7 +136,7 @@ PetscErrorCode SchemeStep(Scheme s, PetscReal most) {
   PetscCall(PetscMemzero(&s->report, sizeof(s->report)));
   PetscCall(Keep(s));
   FluidClearFailure(s->fluid);
-  s->state.dt = s->policy.base;
+  s->state.dt = s->policy.adaptive ? s->policy.base : StepFixed(&s->policy, s->state.t, most);
   PetscCall(s->ops.step(s, most));
   s->report.solves = FluidCountSolves(s->fluid) - solves;
   if (!*s->report.failure) {

@@ -75,9 +75,9 @@ PETSC_EXTERN PetscErrorCode SchemeRegister(const char type[], PetscErrorCode (*c
 PETSC_EXTERN PetscErrorCode SchemeCreate(Scene scene, Coupling coupling, const PetscReal X[], Scheme *scheme);
 PETSC_EXTERN PetscErrorCode SchemeDestroy(Scheme *scheme);
 
-/* SchemeStep - one time step: the policy's, at most `most` where step sizes are judged. Afterwards scheme->report says
-   what was done; when report.failure is not empty the step could not be taken, or led to a state that is refused, and
-   the state is the last good one. Collective. */
+/* SchemeStep - one time step: the policy's, at most `most`, the time that is left (PETSC_MAX_REAL: no end). Afterwards
+   scheme->report says what was done; when report.failure is not empty the step could not be taken, or led to a state
+   that is refused, and the state is the last good one. Collective. */
 PETSC_EXTERN PetscErrorCode SchemeStep(Scheme scheme, PetscReal most);
 
 /* SchemeRemember, SchemeRecall - what the solvers have kept from earlier steps (when their blocks were made, and where

@@ -6,6 +6,7 @@ import base64
 import dataclasses
 import html
 import json
+import re
 import tempfile
 from pathlib import Path
 from typing import Any
@@ -60,8 +61,7 @@ def report(folder: str | Path, output: str | Path | None = None) -> Path:
         "DATA": json.dumps(_data(run), separators=(",", ":")).replace("</", "<\\/"),
     }
     page = (Path(__file__).parent / "report.html").read_text(encoding="utf-8")
-    for name, text in parts.items():
-        page = page.replace(f"__{name}__", text)
+    page = re.sub(f"__({'|'.join(parts)})__", lambda found: parts[found[1]], page)  # once: a folder may be so called
     path = Path(output) if output else run.folder / "report.html"
     path.write_text(page, encoding="utf-8")
     return path
