@@ -16,17 +16,25 @@ static struct {
 
 const char *const PhaseNames[PHASE_COUNT] = {"setup", "step", "fast_solve", "output"};
 
-/* PETSc's messages about a bad solver option (-tension_ksp_type foo) name the value but not the option. So look for the
-   first solver option whose value is a word of the message: "-name value: ", or nothing. */
+/* Whether an option is PETSc's own: of a solver, or of the library. */
+static PetscBool OfPetsc(const char *name) {
+  const char *const heads[] = {"-malloc", "-log_",     "-info",     "-fp_trap",
+                               "-memory", "-options_", "-on_error", "-objects"};
+  for (size_t k = 0; k < sizeof(heads) / sizeof(heads[0]); k++)
+    if (!strncmp(name, heads[k], strlen(heads[k]))) return PETSC_TRUE;
+  return strstr(name, "_ksp_") || strstr(name, "_pc_") ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* PETSc's messages about a bad option of its own (-tension_ksp_type foo) name the value but not the option. So look for
+   the first such option whose value is a word of the message: "-name value: ", or nothing. */
 static void NameOption(const char *message, char name[], size_t length) {
   char *all = NULL, *word, *last = NULL, *end = NULL;
   name[0] = 0;
   if (PetscOptionsGetAll(NULL, &all)) return;
   for (word = strtok_r(all, " \n", &end); word && !*name; last = word, word = strtok_r(NULL, " \n", &end)) {
-    const char *found = last && (strstr(last, "_ksp_") || strstr(last, "_pc_")) ? strstr(message, word) : NULL;
+    const char *found = last && OfPetsc(last) ? strstr(message, word) : NULL;
     if (!found || (found > message && !isspace((unsigned char)found[-1]))) continue;
-    const char after = found[strlen(word)];
-    if (!after || isspace((unsigned char)after)) (void)PetscSNPrintf(name, length, "%s %s: ", last, word);
+    if (!isalnum((unsigned char)found[strlen(word)])) (void)PetscSNPrintf(name, length, "%s %s: ", last, word);
   }
   (void)PetscFree(all);
 }
