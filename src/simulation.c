@@ -57,7 +57,7 @@ PetscErrorCode PetvesFinalize(void) {
   /* unused options have been reported in one line; newer PETSc would list them again */
   if (!PetscOptionsHasName(NULL, NULL, "-options_left", &given) && !given)
     (void)PetscOptionsSetValue(NULL, "-options_left", "no");
-  (void)PetvesSetupErrors(PETSC_TRUE);
+  (void)PetvesLastErrors();
   error = PetscFinalize();
   if (!error) (void)PetscPopErrorHandler();
   if (began_mpi && MPI_Finalize()) return PETSC_ERR_MPI;
