@@ -282,7 +282,9 @@ def check(case: Case, folder: Path, tries: int = 3) -> str:
         process.kill()
         process.communicate()
         return "hangs"
-    if "An error occurred in MPI_Init" in stderr and tries:  # of two that start in the same moment: before petves begins
+    if (
+        "An error occurred in MPI_Init" in stderr and tries
+    ):  # of two that start in the same moment: before petves begins
         return check(case, folder.with_name(folder.name + "+"), tries - 1)
     lines = without_mpirun(stderr) if case.ranks > 1 else stderr.splitlines()
     if process.returncode not in (0, 1, 2):
