@@ -45,7 +45,7 @@ export OMPI_MCA_mpi_yield_when_idle := 1
 export OMPI_MCA_btl_vader_single_copy_mechanism := none
 export OMP_NUM_THREADS := 1
 
-.PHONY: all help deps test-deps run test coverage reproduce stability chart calibrate bench install format check-format clean tests benches
+.PHONY: all help deps test-deps run test coverage reproduce stability chart calibrate bench fuzz install format check-format clean tests benches
 all: $(BIN)/petves ## build bin/petves and lib/libpetves.so
 
 help: ## list the targets
@@ -128,6 +128,11 @@ chart: deps ## error against CPU time of every scheme, into docs/speed_accuracy 
 calibrate: deps ## what -scheme_auto chooses by: docs/speed_accuracy/calibration.csv (ten minutes)
 	@$(MAKE) --no-print-directory all
 	PETVES=$(CURDIR)/$(BIN)/petves PYTHONPATH=python:. $(PYTHON) -m studies calibrate docs/speed_accuracy
+
+fuzz: test-deps ## runs with options, files and environments drawn at random (CASES=2000, SEED=1, FUZZ_RANKS="1 1 1 2")
+	@$(MAKE) --no-print-directory all
+	PETVES=$(CURDIR)/$(BIN)/petves PYTHONPATH=python:. $(PYTHON) tests/fuzz.py --cases $(or $(CASES),2000) --seed $(or $(SEED),1) \
+	  --ranks $(or $(FUZZ_RANKS),1 1 1 2)
 
 install: all ## install under PREFIX (/usr/local)
 	install -d $(PREFIX)/bin $(PREFIX)/lib $(PREFIX)/include $(PREFIX)/share/petves $(PYTHON_DIR)/petves/views

@@ -18,7 +18,8 @@ typedef struct _p_Simulation *Simulation;
    stops the run. Every rank calls it, for other points and other numbers of times. */
 typedef PetscErrorCode (*PetvesFlow)(PetscReal time, PetscInt n, const PetscReal X[], PetscReal u[], void *ctx);
 
-/* PetvesInitialize - start PETSc with petves' help text and error handler; reads -options_file. */
+/* PetvesInitialize - start PETSc with petves' help text and error handler, and the options of the command line, of its
+   -options_file and of PETSC_OPTIONS; what is no option there is a user's mistake. */
 PETSC_EXTERN PetscErrorCode PetvesInitialize(int *argc, char ***argv);
 PETSC_EXTERN PetscErrorCode PetvesFinalize(void);
 
@@ -121,6 +122,9 @@ PETSC_EXTERN PetscErrorCode PetvesAgree(MPI_Comm comm, PetscInt mine, PetscInt *
 
 /* PetvesTemporaryFolder - make a folder in TMPDIR, path[PETSC_MAX_PATH_LEN]; all ranks get its name. */
 PETSC_EXTERN PetscErrorCode PetvesTemporaryFolder(MPI_Comm comm, char path[]);
+
+/* PetvesReadOptions - put a file of options into an options database (NULL: the default one). Collective. */
+PETSC_EXTERN PetscErrorCode PetvesReadOptions(MPI_Comm comm, PetscOptions options, const char path[]);
 
 /* PetvesEnter, PetvesLeave - around calls of a program that has started PETSc itself and handles errors itself: between
    them an error's first message goes to message[PETVES_MAX_MESSAGE], nothing is printed, and `options` is the options

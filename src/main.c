@@ -1,6 +1,7 @@
 /* petves: initialise, build from options, run, report. Exit status: 0 finished or stopped, 1 bad input or a file that
    cannot be written, 2 a step failed. */
 #include "petves.h"
+#include <stdlib.h>
 
 static PetscErrorCode Run(PetscBool *good) {
   Simulation simulation = NULL;
@@ -24,12 +25,18 @@ static void StopOthers(void) {
   if (size > 1) (void)MPI_Abort(PETSC_COMM_WORLD, 1);
 }
 
+static const char usage[] = "usage: mpirun -n RANKS petves -options_file SCENE [-option value ...]\n"
+                            "       runs/default.opts is a scene to start from; petves -help lists the options\n";
+
 int main(int argc, char **argv) {
+  const char *const given = getenv("PETSC_OPTIONS");
+  const PetscBool asked = argc > 1 || (given && given[strspn(given, " \t\n")]) ? PETSC_TRUE : PETSC_FALSE;
   PetscBool good = PETSC_TRUE;
   PetscErrorCode error = PetvesInitialize(&argc, &argv);
   if (error) return 1;
-  error = Run(&good);
+  if (asked) error = Run(&good);
+  if (!asked) (void)PetscFPrintf(PETSC_COMM_WORLD, stderr, "%s", usage);
   if (error == PETSC_ERR_MEM) StopOthers();
-  if (PetvesFinalize() || error) return 1;
+  if (PetvesFinalize() || error || !asked) return 1;
   return good ? 0 : 2;
 }

@@ -2,56 +2,79 @@
 #include "simulation.h"
 #include "base/agree.h"
 #include "fluid/wisdom.h"
-#include <errno.h>
-#include <unistd.h>
+#include "options/typed.h"
+#include <stdlib.h>
 
 static const char help[] = "petves: inextensible vesicles in two-dimensional viscous flow.\n"
                            "usage: mpirun -n RANKS petves -options_file scene.opts [-option value ...]\n\n";
 
-/* MPI is started here and not by PETSc, so that a missing -options_file gets its one line: PETSc reads it while it
-   starts and would print a traceback. */
+/* MPI is started here and not by PETSc: what the user typed is read and checked before PETSc sees it. */
 static PetscBool began_mpi = PETSC_FALSE;
 
-static const char *MissingOptionsFile(int argc, char **argv) {
-  for (int i = 1; i + 1 < argc; i++)
-    if (!strcmp(argv[i], "-options_file") && access(argv[i + 1], R_OK)) return argv[i + 1];
-  return NULL;
+/* Into the options database that PETSc will start with. */
+static int ReadTyped(int argc, char **argv) {
+  Typed typed = {0};
+  int rank, error;
+  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  if (!rank) TypedCommand(&typed, argc - 1, argv + 1);
+  error = TypedShare(&typed, MPI_COMM_WORLD);
+  if (!error && *typed.error) {
+    if (!rank) fprintf(stderr, "petves: error: %s\n", typed.error);
+    error = PETSC_ERR_USER_INPUT;
+  }
+  if (!error) error = (int)TypedInsert(&typed, NULL);
+  TypedDestroy(&typed);
+  return error;
 }
 
 PetscErrorCode PetvesInitialize(int *argc, char ***argv) {
-  int running, provided, missing = 0, rank;
+  static char skip[] = "-skip_petscrc";
+  int running, provided, one = 2;
   if (MPI_Initialized(&running)) return PETSC_ERR_MPI;
   began_mpi = running ? PETSC_FALSE : PETSC_TRUE;
   /* newer PETSc leaves the level to decide (negative) until it starts MPI itself */
   const int level = PETSC_MPI_THREAD_REQUIRED < 0 ? MPI_THREAD_FUNNELED : (int)PETSC_MPI_THREAD_REQUIRED;
   if (began_mpi && MPI_Init_thread(argc, argv, level, &provided)) return PETSC_ERR_MPI;
-  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-  if (!rank && MissingOptionsFile(*argc, *argv)) {
-    fprintf(stderr, "petves: error: -options_file %s: cannot be opened (%s); allowed: a readable file of options\n",
-            MissingOptionsFile(*argc, *argv), strerror(errno));
-    missing = 1;
-  }
-  if (MPI_Bcast(&missing, 1, MPI_INT, 0, MPI_COMM_WORLD)) return PETSC_ERR_MPI;
-  if (missing) {
+  if (ReadTyped(*argc, *argv)) {
     if (began_mpi) MPI_Finalize();
-    return PETSC_ERR_FILE_OPEN;
+    return PETSC_ERR_USER_INPUT;
   }
   StopClock();
+  unsetenv("PETSC_OPTIONS"); /* it has been read */
+  char *words[] = {(*argv)[0], skip, NULL}, **given = words;
   PetscFunctionBeginUser;
-  PetscCall(PetscInitialize(argc, argv, NULL, help));
   PetscCall(PetscPushErrorHandler(PetvesErrorHandler, NULL));
+  PetscCall(PetvesSetupErrors(PETSC_TRUE));
+  PetscCall(PetscInitialize(&one, &given, NULL, help));
+  PetscCall(PetvesSetupErrors(PETSC_FALSE));
+  PetscCall(PetscOptionsClearValue(NULL, skip));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode PetvesFinalize(void) {
-  PetscErrorCode error = PetscPopErrorHandler();
+  PetscErrorCode error;
   PetscBool given = PETSC_FALSE;
   /* unused options have been reported in one line; newer PETSc would list them again */
   if (!PetscOptionsHasName(NULL, NULL, "-options_left", &given) && !given)
     (void)PetscOptionsSetValue(NULL, "-options_left", "no");
-  if (!error) error = PetscFinalize();
+  (void)PetvesLastErrors();
+  error = PetscFinalize();
+  if (!error) (void)PetscPopErrorHandler();
   if (began_mpi && MPI_Finalize()) return PETSC_ERR_MPI;
   return error;
+}
+
+PetscErrorCode PetvesReadOptions(MPI_Comm comm, PetscOptions options, const char path[]) {
+  Typed typed = {0};
+  PetscMPIInt rank;
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  if (!rank) TypedFile(&typed, path);
+  PetscCallMPI(TypedShare(&typed, comm));
+  if (!*typed.error) PetscCall(TypedInsert(&typed, options));
+  TypedDestroy(&typed);
+  PetscCheck(!*typed.error, comm, PETSC_ERR_USER_INPUT, "%s", typed.error);
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode Build(MPI_Comm comm, PetvesFlow flow, void *ctx, Simulation s) {
@@ -60,6 +83,7 @@ static PetscErrorCode Build(MPI_Comm comm, PetvesFlow flow, void *ctx, Simulatio
   PetscCall(PetvesWarmUpBlas(comm));
   PetscCall(SceneCreate(comm, flow, ctx, &s->scene));
   scene = s->scene;
+  PetscCall(SceneCheckUsed(scene));
   PetscCall(SceneReport(scene));
   PetscCall(WisdomRead(comm, scene->wisdom));
   PetscCall(FluidCreate(&scene->fluid, &s->fluid));

@@ -102,7 +102,8 @@ def run_petves(folder: Path, options: str, ranks: int = 1, good: bool = True, ti
 
     The scheme is split, and the membrane's discretisation the paper's, unless the options say otherwise.
     """
-    done = mpirun([PETVES, "-output_dir", str(folder), *PAPER.split(), *options.split()], ranks, timeout)
+    paper = PAPER if "-vesicle_shape none" not in options else "-scheme_type split"
+    done = mpirun([PETVES, "-output_dir", str(folder), *paper.split(), *options.split()], ranks, timeout)
     run = Run(folder, done.returncode, done.stdout, without_mpirun(done.stderr))
     if good:
         assert run.status == 0, f"petves {options}\n{done.stdout}\n{done.stderr}"

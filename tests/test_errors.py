@@ -7,7 +7,7 @@ import re
 import h5py
 import numpy as np
 import pytest
-from conftest import ROOT, run_petves
+from conftest import PETVES, ROOT, mpirun, run_petves, without_mpirun
 
 
 #: Options of every row, before its own.
@@ -31,6 +31,20 @@ CURVES = {
     "three columns": ["0.1 0.2 0.3"] + CIRCLE,
     "repeated point": CIRCLE[:5] + CIRCLE[4:],
     "flat": [f"{0.01 * k} 0" for k in range(20)],
+}
+
+OPTIONS = {
+    "two values": b"-time_end 1\n-vesicle_angle 45 -30\n",
+    "blank in a list": b"-domain_cells 32, 32 # cells\n",
+    "no dash": b"# a comment\n\ntime_end 1\n",
+    "equals": b"-time_step 0.1\n-time_end = 1\n",
+    "mark, crlf": b"\xef\xbb\xbf-time_step 0.1\r\n-time_end=1\r\n",
+    "cr": b"-time_step 0.1\r\r-time_end=1\r",
+    "open quote": b'-output_dir "out\n',
+    "zero": b"-time_step 0.1\n-time_end 1\0\n",
+    "itself": b"-time_step 0.1\n-options_file itself.opts\n",
+    "nothing there": b"-time_step 0.1\n-options_file no.opts\n",
+    "good": b"\xef\xbb\xbf# a comment\r\n-flow_rate 2\r\n\t-time_end\t0.02 # a comment\r\n",
 }
 
 
@@ -72,6 +86,10 @@ def test_mistake_is_named(group, options, ranks, message, tmp_path, monkeypatch)
         path = tmp_path / f"{name.replace(' ', '_')}.txt"
         path.write_text("\n".join(lines) + "\n")
         options = options.replace(f"{{curve: {name}}}", str(path))
+    for name, content in OPTIONS.items():
+        path = tmp_path / f"{name.replace(' ', '_')}.opts"
+        path.write_bytes(content)
+        options = options.replace(f"{{opts: {name}}}", path.name)
     run = run_petves(tmp_path / "out", f"{SMALL} {options}", ranks, good=False, timeout=60)
     assert matches(f"petves: error: {message}", "\n".join(run.errors)), run.errors
     if group == "Steps":
@@ -82,7 +100,65 @@ def test_mistake_is_named(group, options, ranks, message, tmp_path, monkeypatch)
 
 def test_page_has_rows_of_every_kind():
     assert len(rows()) >= 80
-    assert {group for group, *_ in rows()} == {"Options", "Geometry", "Ranks", "Files", "Solver settings", "Steps"}
+    groups = {"Words and option files", "Options", "Geometry", "Ranks", "Files", "Solver settings", "Steps"}
+    assert {group for group, *_ in rows()} == groups
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_no_option_prints_the_usage(ranks, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    done = mpirun([PETVES], ranks, PETSC_OPTIONS="")
+    assert done.returncode == 1 and "usage:" in done.stderr and done.stdout == "" and not list(tmp_path.iterdir())
+    assert done.stderr.count("usage:") == 1 and "runs/default.opts" in done.stderr
+
+
+def test_stray_word_alone(tmp_path, monkeypatch):
+    """An options file without -options_file used to run the default scene."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "my.opts").write_text("-time_end 1\n")
+    done = mpirun([PETVES, "my.opts"], 2)
+    line = 'petves: error: "my.opts": no option, nor the value of one; allowed: -name value, or -options_file FILE'
+    assert done.returncode == 1 and without_mpirun(done.stderr) == [line] and not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize(
+    "typed, needle",
+    [
+        ("stray", 'PETSC_OPTIONS: "stray": no option'),
+        ("-time_end = 1", "PETSC_OPTIONS: -time_end = 1: an equals sign"),
+        ("-domain_cells 32, 32", "PETSC_OPTIONS: -domain_cells 32, 32: two values"),
+        ("-options_file no.opts", "PETSC_OPTIONS: -options_file no.opts: cannot be opened"),
+        ("-time_ende 1", "-time_ende 1: no such option; -time_end is meant?"),
+        ("-log_view gmres", "-log_view gmres: no viewer"),
+    ],
+)
+def test_environment_is_read_alike(typed, needle, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    done = mpirun([PETVES, *SMALL.split()], 2, PETSC_OPTIONS=typed)
+    lines = without_mpirun(done.stderr)
+    assert done.returncode == 1 and len(lines) == 1 and needle in lines[0], done.stderr
+
+
+def test_command_line_wins_over_files_over_environment(tmp_path, monkeypatch):
+    """In whatever order they are given; a value in quotes may hold blanks and #."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "inner.opts").write_text("-vesicle_angle 3\n-output_dir 'out/a # b'  # a comment\n")
+    (tmp_path / "outer.opts").write_text("-options_file inner.opts\n-fluid_viscosity 2\n-vesicle_bending 0.02\n")
+    words = "-time_end 0.01 -vesicle_bending 0.03 -options_file outer.opts -domain_cells 16,16"
+    done = mpirun(
+        [PETVES, *words.split()], 1, PETSC_OPTIONS="-fluid_viscosity 3 -time_end 9 -vesicle_angle 4 -time_step 0.01"
+    )
+    assert done.returncode == 0, done.stderr
+    read = (tmp_path / "out" / "a # b" / "resolved.opts").read_text().splitlines()
+    options = dict(line.split(maxsplit=1) for line in read if line.startswith("-"))
+    wanted = {
+        "-time_end": 0.01,
+        "-vesicle_bending": 0.03,
+        "-fluid_viscosity": 2,
+        "-vesicle_angle": 3,
+        "-time_step": 0.01,
+    }
+    assert {name: float(options[name]) for name in wanted} == wanted
 
 
 @pytest.mark.parametrize("name", ["series.csv", "run.h5", "run.xmf", "resolved.opts", "checkpoint.h5", "summary.json"])

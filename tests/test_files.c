@@ -55,7 +55,7 @@ static PetscInt Count(const char text[], char what) {
 
 /* A row has room for the longest numbers of all its vesicles, and comes back from its text. */
 static PetscErrorCode CheckRows(PetscInt vesicles) {
-  const PetscInt columns = COLUMN_COUNT + (vesicles > 1 ? 10 * vesicles : 0);
+  const PetscInt columns = COLUMN_COUNT + (vesicles > 1 ? 11 * vesicles : 0);
   char number[32], *text;
   size_t used = 0;
   Record record;

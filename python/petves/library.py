@@ -43,6 +43,7 @@ SIGNATURES = {
     "PetvesEnter": (Handle, _text, _pointer(Int)),
     "PetvesLeave": (Int,),
     "PetvesAgree": (_communicator, Int, _pointer(Int)),
+    "PetvesReadOptions": (_communicator, Handle, _text),
     "PetvesTemporaryFolder": (_communicator, _text),
     "SimulationCreateWithFlow": (_communicator, ctypes.c_void_p, ctypes.c_void_p, _pointer(Handle)),
     "SimulationDestroy": (_pointer(Handle),),
@@ -64,7 +65,6 @@ SIGNATURES = {
     "SimulationGetCellPressure": (Handle, _pointer(_double)),
     "PetscOptionsCreate": (_pointer(Handle),),
     "PetscOptionsDestroy": (_pointer(Handle),),
-    "PetscOptionsInsertFile": (_communicator, Handle, _text, ctypes.c_int),
     "PetscOptionsSetValue": (Handle, _text, _text),
     "PetscOptionsHasName": (Handle, _text, _text, _pointer(ctypes.c_int)),
 }

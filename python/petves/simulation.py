@@ -132,9 +132,7 @@ class Simulation(State):
         """Fill the simulation's own options database."""
         comm = communicator(self._comm)
         if options_file is not None:
-            if not os.access(options_file, os.R_OK) or not os.path.isfile(options_file):
-                raise Error(f"-options_file {options_file}: cannot be opened; allowed: a readable file of options")
-            self._call("PetscOptionsInsertFile", comm, self._options, os.fsencode(options_file), 1)
+            self._call("PetvesReadOptions", comm, self._options, os.fsencode(options_file))
         for name, value in options.items():
             if value is not None:
                 self._call("PetscOptionsSetValue", self._options, f"-{name}".encode(), option_text(value))

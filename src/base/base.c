@@ -1,3 +1,4 @@
+#define _GNU_SOURCE /* strcasestr */
 #include "base/base.h"
 #include <ctype.h>
 
@@ -5,6 +6,7 @@
    program-wide too. */
 static struct {
   PetscBool one_line;
+  PetscBool said, ending; /* an error has been printed; the program ends */
   PetscBool registered;
   PetscLogStage stage[PHASE_COUNT];
   PetscReal seconds[PHASE_COUNT];
@@ -16,23 +18,31 @@ static struct {
 
 const char *const PhaseNames[PHASE_COUNT] = {"setup", "step", "fast_solve", "output"};
 
-/* PETSc's messages about a bad solver option (-tension_ksp_type foo) name the value but not the option. So look for the
-   first solver option whose value is a word of the message: "-name value: ", or nothing. */
+/* Whether an option is PETSc's own: of a solver, or of the library. */
+static PetscBool OfPetsc(const char *name) {
+  const char *const heads[] = {"-malloc", "-log_",     "-info",     "-fp_trap",
+                               "-memory", "-options_", "-on_error", "-objects"};
+  for (size_t k = 0; k < sizeof(heads) / sizeof(heads[0]); k++)
+    if (!strncmp(name, heads[k], strlen(heads[k]))) return PETSC_TRUE;
+  return strstr(name, "_ksp_") || strstr(name, "_pc_") ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* PETSc's messages about a bad option of its own (-tension_ksp_type foo) name the value but not the option. So look for
+   the first such option whose value is a word of the message: "-name value: ", or nothing. */
 static void NameOption(const char *message, char name[], size_t length) {
   char *all = NULL, *word, *last = NULL, *end = NULL;
   name[0] = 0;
   if (PetscOptionsGetAll(NULL, &all)) return;
   for (word = strtok_r(all, " \n", &end); word && !*name; last = word, word = strtok_r(NULL, " \n", &end)) {
-    const char *found = last && (strstr(last, "_ksp_") || strstr(last, "_pc_")) ? strstr(message, word) : NULL;
+    const char *found = last && OfPetsc(last) ? strcasestr(message, word) : NULL;
     if (!found || (found > message && !isspace((unsigned char)found[-1]))) continue;
-    const char after = found[strlen(word)];
-    if (!after || isspace((unsigned char)after)) (void)PetscSNPrintf(name, length, "%s %s: ", last, word);
+    if (!isalnum((unsigned char)found[strlen(word)])) (void)PetscSNPrintf(name, length, "%s %s: ", last, word);
   }
   (void)PetscFree(all);
 }
 
-/* One line of text: the message, after the option at fault. */
-static void OneLine(PetscErrorCode code, const char *message, char text[PETVES_MAX_MESSAGE]) {
+/* One line of text: the message, after the option at fault; whether there is one. */
+static PetscBool OneLine(PetscErrorCode code, const char *message, char text[PETVES_MAX_MESSAGE]) {
   char before[PETVES_MAX_MESSAGE / 2] = "";
   size_t n;
   if (code != PETSC_ERR_USER_INPUT && message) NameOption(message, before, sizeof(before));
@@ -41,32 +51,41 @@ static void OneLine(PetscErrorCode code, const char *message, char text[PETVES_M
   for (const char *c = message ? message : "unknown error"; *c && n < PETVES_MAX_MESSAGE - 1; c++)
     text[n++] = *c == '\n' ? ' ' : *c;
   text[n] = 0;
+  return *before ? PETSC_TRUE : PETSC_FALSE;
 }
 
 PetscErrorCode PetvesErrorHandler(MPI_Comm comm, int line, const char *function, const char *file, PetscErrorCode code,
                                   PetscErrorType type, const char *message, void *ctx) {
   char text[PETVES_MAX_MESSAGE], *kept = (char *)ctx;
-  PetscMPIInt rank = 0;
+  PetscMPIInt rank = 0, among = 0; /* of all, and of those whose error it is: the first of them says it */
+  PetscBool mistake;
   MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-  if (type != PETSC_ERROR_INITIAL) return code;
+  if (comm != MPI_COMM_NULL) MPI_Comm_rank(comm, &among);
+  if (type != PETSC_ERROR_INITIAL || (base.said && base.ending)) return code;
   if (code == PETSC_ERR_MEM || !strcmp(function, "PetscMallocAlign")) { /* which gives a line's number as its code */
     code = PETSC_ERR_MEM;
     message = "out of memory; allowed: fewer cells or vesicles, a larger limit, or more nodes";
   }
-  if (rank && code == PETSC_ERR_USER_INPUT && !kept) return code; /* rank 0 says it */
-  OneLine(code, message, text);
-  if (code != PETSC_ERR_USER_INPUT && !base.one_line) { /* no user's mistake: say where */
+  if ((rank || among) && code == PETSC_ERR_USER_INPUT && !kept) return code; /* rank 0 says it */
+  mistake = OneLine(code, message, text) || code == PETSC_ERR_USER_INPUT || base.one_line ? PETSC_TRUE : PETSC_FALSE;
+  if (!mistake) { /* say where */
     const size_t used = strlen(text);
     (void)PetscSNPrintf(text + used, sizeof(text) - used, " (%s() in %s, line %d, rank %d)", function, file, line,
                         rank);
   }
   if (kept && !*kept)
     (void)PetscStrncpy(kept, text, PETVES_MAX_MESSAGE);
-  else if (!kept && (code == PETSC_ERR_USER_INPUT || code == PETSC_ERR_MEM || !rank ||
-                     !(base.one_line || comm == MPI_COMM_WORLD)))
+  else if (!kept && (code == PETSC_ERR_MEM || !rank || !(base.one_line || among)))
     fprintf(stderr, "petves: error: %s\n", text);
+  if (!kept) base.said = PETSC_TRUE;
   fflush(stderr);
   return code;
+}
+
+PetscErrorCode PetvesLastErrors(void) {
+  PetscFunctionBeginUser;
+  base.ending = base.one_line = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode PetvesSetupErrors(PetscBool on) {

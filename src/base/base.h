@@ -32,6 +32,9 @@ PETSC_EXTERN PetscErrorCode PetvesErrorHandler(MPI_Comm, int, const char *, cons
    (-tension_ksp_type foo) is one, and PETSc reports it with its own codes. */
 PETSC_EXTERN PetscErrorCode PetvesSetupErrors(PetscBool);
 
+/* PetvesLastErrors - the program ends: errors count as a user's mistake, and after a line none is printed. */
+PETSC_EXTERN PetscErrorCode PetvesLastErrors(void);
+
 /* Phases of a run: one -log_view stage each, and the wall seconds of summary.json. Time in a nested phase belongs to
    the inner one only. */
 typedef enum { PHASE_SETUP, PHASE_STEP, PHASE_FAST_SOLVE, PHASE_OUTPUT, PHASE_COUNT } Phase;

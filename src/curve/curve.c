@@ -118,8 +118,8 @@ PetscErrorCode CurveEqualArcs(const Curve *c, PetscInt M, PetscReal X[]) {
 }
 
 PetscErrorCode EllipseAxes(PetscReal area, PetscReal reduced_area, PetscReal axes[2]) {
-  /* the reduced area rises with b/a from 0 to 1: bisection */
-  PetscReal lo = 1e-4, hi = 1;
+  /* the reduced area rises with b/a from 0 to 1: bisection; a perimeter from 4 a to 2 pi a bounds b/a */
+  PetscReal lo = 0.4 * reduced_area, hi = reduced_area;
   Curve c = {0};
   PetscFunctionBeginUser;
   for (int it = 0; it < 60; it++) {

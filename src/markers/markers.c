@@ -2,6 +2,21 @@
 #include "base/agree.h"
 #include "markers/fold.h"
 
+/* A marker of body b at X too near a wall, or beyond it: the distance in cells. */
+static PetscErrorCode WrongPlace(PetscInt b, const PetscReal X[2], PetscReal distance, const char wall[], PetscReal at,
+                                 const char needs[], char message[PETVES_MAX_MESSAGE]) {
+  char where[64] = "beyond", need[64] = "";
+  PetscFunctionBeginUser;
+  if (distance >= 0) {
+    PetscCall(PetscSNPrintf(where, sizeof(where), "%g cells from", (double)distance));
+    PetscCall(PetscSNPrintf(need, sizeof(need), "; the kernel needs %s", needs));
+  }
+  PetscCall(PetscSNPrintf(message, PETVES_MAX_MESSAGE,
+                          "vesicle %" PetscInt_FMT ": a marker at (%g, %g) is %s the wall %s = %g%s", b + 1,
+                          (double)X[0], (double)X[1], where, wall, (double)at, need));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* What is wrong with the own body b's markers X[2n], if anything. */
 static PetscErrorCode CheckBody(Markers m, PetscInt b, const PetscScalar X[], char message[PETVES_MAX_MESSAGE]) {
   static const char *const names[2][2] = {{"x_min", "x_max"}, {"y_min", "y_max"}};
@@ -18,11 +33,8 @@ static PetscErrorCode CheckBody(Markers m, PetscInt b, const PetscScalar X[], ch
       for (int side = 0; side < 2 && g->wall[dir] && !g->free; side++) {
         const PetscReal distance = side ? g->hi[dir] - x : x - g->lo[dir];
         if (distance >= m->least * g->h * (1 - 1e-12)) continue;
-        PetscCall(PetscSNPrintf(message, PETVES_MAX_MESSAGE,
-                                "vesicle %" PetscInt_FMT ": a marker at (%g, %g) is %g cells from the wall %s = %g; "
-                                "the kernel needs %s",
-                                b + 1, (double)X[2 * k], (double)X[2 * k + 1], (double)(distance / g->h),
-                                names[dir][side], (double)(side ? g->hi[dir] : g->lo[dir]), m->needs));
+        PetscCall(WrongPlace(b, X + 2 * k, distance / g->h, names[dir][side], side ? g->hi[dir] : g->lo[dir], m->needs,
+                             message));
         PetscFunctionReturn(PETSC_SUCCESS);
       }
     }

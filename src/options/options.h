@@ -63,9 +63,18 @@ PETSC_EXTERN void OptionPrint(FILE *file, const char name[], const char value[])
 PETSC_EXTERN PetscErrorCode OptionsWrite(const OptionTable *table, const void *values, const char *const skip[],
                                          FILE *file);
 
-/* OptionsCheckUnused - stop when the options database holds an option that nothing has read, naming it and the nearest
-   name of the table or of `others` (last entry NULL). Call when everything is set up. Collective. */
-PETSC_EXTERN PetscErrorCode OptionsCheckUnused(const OptionTable *table, const char *const others[]);
+/* Options of a solver begin with its prefix ("-tension_"); `need` is the option of the table, and its value, with which
+   the solver is there. A list ends with NULL. */
+typedef struct {
+  const char *prefix, *need;
+} OptionOwner;
+
+/* OptionsCheckUnused - stop when the options database holds an option that nothing has read: one of a solver that is
+   not there, by `owners` and the values in force, or one that there is not, with the name of the table or of `others`
+   (last entry NULL) that is meant, if one is near. Viewers that PETSc opens only when it ends (-log_view) are tried.
+   Call when everything is set up. Collective. */
+PETSC_EXTERN PetscErrorCode OptionsCheckUnused(const OptionTable *table, const void *values, const char *const others[],
+                                               const OptionOwner owners[]);
 
 /* OptionParse - text into the place of a row's value. Collective: a text that does not fit is the user's mistake.
    OptionFormat - the value as text, to be freed with PetscFree. */

@@ -27,8 +27,9 @@ static PetscErrorCode ParseNumber(MPI_Comm comm, const OptionRow *o, const char 
                                   PetscReal *x) {
   const char *what = integer ? "an integer" : "a number";
   PetscFunctionBeginUser;
-  PetscCheck(ParseReal(text, x) && (!integer || (*x == PetscFloorReal(*x) && PetscAbsReal(*x) < 2e9)), comm,
-             PETSC_ERR_USER_INPUT, "%s %s: not %s; allowed: %s%s%s", o->name, text, what, what,
+  PetscCheck(ParseReal(text, x) &&
+                 (!integer || (*x == PetscFloorReal(*x) && PetscAbsReal(*x) < (PetscReal)PETSC_MAX_INT)),
+             comm, PETSC_ERR_USER_INPUT, "%s %s: not %s; allowed: %s%s%s", o->name, text, what, what,
              strcmp(o->range, "any") ? ", " : "", strcmp(o->range, "any") ? o->range : "");
   PetscCheck(InRange(o->range, *x), comm, PETSC_ERR_USER_INPUT, "%s %s: out of range; allowed: %s %s", o->name, text,
              what, o->range);

@@ -1,17 +1,63 @@
-/* Misspelt and unused options: found, named, and the nearest known option suggested. */
+/* Misspelt and unused options: found, and named with the option that is meant, if one is near. */
 #include "options/options.h"
+#include <strings.h>
 
 /* Options that PETSc itself reads only while it finalises. */
 static const char *const late[] = {"options_left",    "objects_dump", "malloc_dump",    "malloc_view",
                                    "memory_view",     "log_view",     "log_trace",      "log_summary",
                                    "log_view_memory", "mpi_finalize", "on_error_abort", "options_view"};
+#define LATE (sizeof(late) / sizeof(late[0]))
 
-/* Solver options that PETSc reads only when it solves, after the check. */
-static PetscBool ReadWhileSolving(const char *name) {
-  const char *const parts[] = {"_ksp_view", "_ksp_converged_reason", "_ksp_converged_rate", "_mat_mumps_", "_mat_view"};
-  for (size_t i = 0; i < sizeof(parts) / sizeof(parts[0]); i++)
-    if (strstr(name, parts[i])) return PETSC_TRUE;
+/* Solver options that PETSc reads only when it solves, after the check; viewers first. */
+static const char *const later[] = {"_ksp_view", "_ksp_converged_reason", "_ksp_converged_rate", "_mat_view",
+                                    "_mat_mumps_"};
+#define LATER (sizeof(later) / sizeof(later[0]))
+#define LATER_VIEWERS 4
+
+/* Whether PETSc will read the option (without its dash) after the check, and if it is of a viewer. */
+static PetscBool ReadLater(const char *name, PetscBool *viewer) {
+  *viewer = PETSC_FALSE;
+  for (size_t k = 0; k < LATE; k++)
+    if (!strcasecmp(name, late[k])) return PETSC_TRUE;
+  for (size_t k = 0; k < LATER; k++)
+    if (strstr(name, later[k])) {
+      *viewer = k < LATER_VIEWERS ? PETSC_TRUE : PETSC_FALSE;
+      return PETSC_TRUE;
+    }
   return PETSC_FALSE;
+}
+
+#if PETSC_VERSION_GE(3, 22, 0)
+#define MakeViewer PetscOptionsCreateViewer
+#else
+#define MakeViewer PetscOptionsGetViewer
+#endif
+
+/* Read now what PETSc reads when the run is over, a viewer or a truth: a mistake in it would be found only then. */
+static PetscErrorCode TryLate(MPI_Comm comm, const char name[], PetscBool is_viewer) {
+  const char *value = NULL;
+  PetscErrorCode error;
+  PetscViewer viewer = NULL;
+  PetscViewerFormat format;
+  PetscBool set, truth;
+  PetscFunctionBeginUser;
+  PetscCall(PetscOptionsFindPair(NULL, NULL, name, &value, &set));
+  if (!set) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscPushErrorHandler(PetscReturnErrorHandler, NULL));
+  error = is_viewer ? MakeViewer(comm, NULL, NULL, name, &viewer, &format, &set)
+                    : PetscOptionsGetBool(NULL, NULL, name, &truth, &set);
+  PetscCall(PetscPopErrorHandler());
+  if (error) { /* PETSc must not stumble over it once more */
+    char text[256];
+    PetscCall(PetscSNPrintf(text, sizeof(text), "%s %s", name, value ? value : ""));
+    PetscCall(PetscOptionsClearValue(NULL, name));
+    SETERRQ(comm, PETSC_ERR_USER_INPUT, "%s: %s", text,
+            is_viewer ? "no viewer of PETSc's, or its file cannot be written; allowed: no value, or type:file:format, "
+                        "such as ascii:log.txt"
+                      : "allowed: true or false");
+  }
+  PetscCall(PetscViewerDestroy(&viewer));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Edit distance of two short words (Levenshtein). */
@@ -31,33 +77,82 @@ static PetscInt Distance(const char *a, const char *b) {
   return row[n];
 }
 
-static const char *Nearest(const OptionTable *t, const char *const others[], const char *name) {
-  const char *best = "";
-  PetscInt least = PETSC_MAX_INT;
-  for (PetscInt i = 0; i < t->n; i++)
-    if (Distance(name, t->row[i].name) < least) least = Distance(name, t->row[i].name), best = t->row[i].name;
-  for (PetscInt i = 0; others[i]; i++)
-    if (Distance(name, others[i]) < least) least = Distance(name, others[i]), best = others[i];
+/* Whether `name` is the end of a longer name: -rate of -flow_rate. */
+static PetscBool IsTail(const char *name, const char *longer) {
+  const size_t n = strlen(name) - 1, m = strlen(longer);
+  return n > 2 && m > n + 1 && longer[m - n - 1] == '_' && !strcmp(longer + m - n, name + 1) ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* The known name that is meant; NULL: none is near. */
+static const char *Meant(const OptionTable *t, const char *const others[], const char *name) {
+  const PetscInt far = 2 + (PetscInt)strlen(name) / 5;
+  const char *best = NULL;
+  PetscInt least = far;
+  for (PetscInt i = 0; i < t->n || others[i - t->n]; i++) {
+    const char *known = i < t->n ? t->row[i].name : others[i - t->n];
+    const PetscInt distance = IsTail(name, known) ? far - 1 : Distance(name, known);
+    if (distance >= least) continue;
+    least = distance;
+    best = known;
+  }
   return best;
 }
 
-PetscErrorCode OptionsCheckUnused(const OptionTable *t, const char *const others[]) {
-  PetscInt n = 0;
-  char **names, **values, unused[PETSC_MAX_PATH_LEN] = "", value[PETSC_MAX_PATH_LEN] = "";
-  const PetscInt late_count = (PetscInt)(sizeof(late) / sizeof(late[0]));
+/* Whether the table's options in force are what a solver needs: "-name value". */
+static PetscErrorCode HasOwner(const OptionTable *t, const void *values, const char need[], PetscBool *has) {
+  const size_t n = strcspn(need, " ");
+  char name[64], value[64] = "";
+  PetscInt i;
   PetscFunctionBeginUser;
-  PetscCall(PetscOptionsLeftGet(NULL, &n, &names, &values));
+  PetscCall(PetscStrncpy(name, need, PetscMin(sizeof(name), n + 1)));
+  i = OptionFind(t, name);
+  if (i >= 0) PetscCall(OptionValue(t, values, i, value, sizeof(value)));
+  *has = !strcmp(value, need + n + 1) ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* An option that nothing has read, with its dash. */
+static PetscErrorCode Refuse(const OptionTable *t, const void *values, const char *const others[],
+                             const OptionOwner owners[], const char name[], const char value[]) {
+  const char *meant;
+  PetscBool known = PETSC_FALSE, has = PETSC_TRUE;
+  PetscInt k = 0;
+  PetscFunctionBeginUser;
+  while (owners[k].prefix && strncmp(owners[k].prefix, name, strlen(owners[k].prefix))) k++;
+  if (owners[k].prefix) PetscCall(HasOwner(t, values, owners[k].need, &has));
+  for (PetscInt i = 0; others[i] && !known; i++) PetscCall(PetscStrcmp(others[i], name, &known));
+  PetscCheck(has, t->comm, PETSC_ERR_USER_INPUT,
+             "%s %s: not used by this scene; allowed: with %s (-allow_unused_options goes on)", name, value,
+             owners[k].need);
+  PetscCheck(!known, t->comm, PETSC_ERR_USER_INPUT,
+             "%s %s: not used by this scene's solvers as they are set up (-allow_unused_options goes on)", name, value);
+  meant = Meant(t, others, name);
+  PetscCheck(!meant, t->comm, PETSC_ERR_USER_INPUT,
+             "%s %s: no such option; %s is meant? (-allow_unused_options goes on)", name, value, meant);
+  SETERRQ(t->comm, PETSC_ERR_USER_INPUT,
+          "%s %s: no such option; petves -help lists them (-allow_unused_options goes on)", name, value);
+}
+
+PetscErrorCode OptionsCheckUnused(const OptionTable *t, const void *values, const char *const others[],
+                                  const OptionOwner owners[]) {
+  char **names, **texts, unused[128] = "", value[128] = "";
+  PetscInt n = 0;
+  PetscFunctionBeginUser;
+  PetscCall(TryLate(t->comm, "-log_view", PETSC_TRUE));
+  PetscCall(TryLate(t->comm, "-options_left", PETSC_FALSE));
+  PetscCall(TryLate(t->comm, "-options_view", PETSC_FALSE));
+  PetscCall(PetscOptionsLeftGet(NULL, &n, &names, &texts));
   for (PetscInt i = 0; i < n && !*unused; i++) {
-    PetscBool known = ReadWhileSolving(names[i]);
-    for (PetscInt k = 0; k < late_count && !known; k++) PetscCall(PetscStrcmp(names[i], late[k], &known));
-    if (known) continue;
-    PetscCall(PetscSNPrintf(unused, sizeof(unused), "-%s", names[i]));
-    if (values[i]) PetscCall(PetscStrncpy(value, values[i], sizeof(value)));
+    char name[128];
+    PetscBool viewer;
+    PetscCall(PetscSNPrintf(name, sizeof(name), "-%s", names[i]));
+    const PetscBool later_read = ReadLater(names[i], &viewer);
+    if (viewer) PetscCall(TryLate(t->comm, name, PETSC_TRUE));
+    if (later_read) continue;
+    PetscCall(PetscStrncpy(unused, name, sizeof(unused)));
+    if (texts[i]) PetscCall(PetscStrncpy(value, texts[i], sizeof(value)));
   }
-  PetscCall(PetscOptionsLeftRestore(NULL, &n, &names, &values));
-  PetscCheck(!*unused, t->comm, PETSC_ERR_USER_INPUT,
-             "%s %s: misspelt, or not used by this scene's solvers; nearest known option: %s "
-             "(-allow_unused_options goes on)",
-             unused, value, Nearest(t, others, unused));
+  PetscCall(PetscOptionsLeftRestore(NULL, &n, &names, &texts));
+  if (*unused) PetscCall(Refuse(t, values, others, owners, unused, value));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -14,6 +14,10 @@ static PetscErrorCode CheckDomain(Scene scene) {
   PetscCheck(b[0] < b[1] && b[2] < b[3], scene->comm, PETSC_ERR_USER_INPUT,
              "-domain_box %g,%g,%g,%g: empty; allowed: x_min < x_max and y_min < y_max", (double)b[0], (double)b[1],
              (double)b[2], (double)b[3]);
+  PetscCheck(2. * n[0] * n[1] < (double)PETSC_MAX_INT, scene->comm, PETSC_ERR_USER_INPUT,
+             "-domain_cells %" PetscInt_FMT ",%" PetscInt_FMT
+             ": %.3g cells are more than this PETSc can number; allowed: at most %.3g in all",
+             n[0], n[1], (double)n[0] * n[1], (double)PETSC_MAX_INT / 2);
   hx = (b[1] - b[0]) / n[0];
   hy = (b[3] - b[2]) / n[1];
   PetscCheck(PetscAbsReal(hx - hy) <= 1e-10 * hx, scene->comm, PETSC_ERR_USER_INPUT,

@@ -62,12 +62,32 @@ static PetscBool Seamless(Scene scene, int *dir) {
   return PETSC_TRUE;
 }
 
+/* Steps over the membrane's own time from which on no step was seen to succeed: rounding is all that is left. */
+#define MOST_STIFF 1e10
+
+/* What the fluid puts against the membrane: viscosity, or inertia over a step where the near field is not there. */
+static PetscErrorCode CheckStiffness(Scene scene) {
+  const PetscReal R0 = LargestRadius(&scene->shape), dt = scene->time.dt, inertia = R0 * R0 / dt;
+  const PetscBool viscous = scene->coupling.near_field == NEAR_EXACT ? PETSC_TRUE : PETSC_FALSE;
+  const PetscReal resists = viscous ? scene->fluid.nu : PetscMax(scene->fluid.nu, inertia);
+  const PetscReal own = resists * R0 * R0 * R0 / scene->membrane.bending;
+  PetscFunctionBeginUser;
+  if (R0 == 0 || scene->membrane.bending == 0) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCheck(dt < MOST_STIFF * own, scene->comm, PETSC_ERR_USER_INPUT,
+             "-vesicle_bending %g: with -fluid_viscosity %g the membrane's own time is %.3g, -time_step %g is %.1g of "
+             "them; allowed: up to %g of them, by less bending, more viscosity or a smaller step",
+             (double)scene->membrane.bending, (double)scene->fluid.nu, (double)own, (double)dt, (double)(dt / own),
+             MOST_STIFF);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode SceneChooseInertia(Draft scene) {
   const PetscReal carried = CarriedReynolds(scene);
   const PetscBool baseline = SceneIsProjection(scene);
   PetscBool seamless;
   int dir;
   PetscFunctionBeginUser;
+  PetscCall(CheckStiffness(scene));
   seamless = Seamless(scene, &dir);
   scene->reynolds = Reynolds(scene);
   if (scene->fluid.inertia == INERTIA_AUTO) {

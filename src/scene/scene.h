@@ -113,11 +113,17 @@ PETSC_EXTERN PetscBool SceneGiven(Scene scene, const char name[]);
 /* SceneHasBoxPart - whether the near field has its box part: asked for, and no period too long. Not collective. */
 PETSC_EXTERN PetscBool SceneHasBoxPart(Scene scene);
 
-/* SceneCheckUnused - stop when the options database holds an option that nothing has read, naming it and the nearest
-   known option. Call when all solvers are set up. Collective. */
+/* SceneUses - whether an option of the table means something for this scene. Not collective.
+   SceneCheckUsed - stop when the user gave an option of the table that the scene does not use. Collective. */
+PETSC_EXTERN PetscBool SceneUses(Scene scene, const char name[]);
+PETSC_EXTERN PetscErrorCode SceneCheckUsed(Scene scene);
+
+/* SceneCheckUnused - stop when the options database holds an option that nothing has read: one of a solver that the
+   scene does not have, or one that there is not. Call when all solvers are set up. Collective. */
 PETSC_EXTERN PetscErrorCode SceneCheckUnused(Scene scene);
 
-/* SceneWriteOptions - write every option of the table in force, defaults included, one "-name value" a line. */
+/* SceneWriteOptions - write every option of the table that the scene uses, defaults included, one "-name value" a
+   line. */
 PETSC_EXTERN PetscErrorCode SceneWriteOptions(Scene scene, FILE *file);
 
 /* SceneOptionName, SceneOptionValue - name and value in force (as text, cut to length - 1) of the i-th option of the

@@ -139,18 +139,31 @@ PetscErrorCode SceneOptionValue(Scene scene, PetscInt i, char value[], size_t le
 }
 
 PetscErrorCode SceneWriteOptions(Scene scene, FILE *file) {
-  /* the ellipse is described in one of two ways: writing both would be refused when read back; what one launch was
-     asked to do with an earlier run's files is no part of the run */
+  /* what the scene does not use would be refused when read back, and so would be both descriptions of the ellipse; what
+     one launch was asked to do with an earlier run's files is no part of the run */
   const PetscBool by_area = SceneByArea(scene);
-  const char *const skip[] = {"-restart", "-output_overwrite", by_area ? "-vesicle_semi_axes" : "-vesicle_area",
-                              by_area ? NULL : "-vesicle_reduced_area", NULL};
+  const char *skip[TABLE_SIZE + 5] = {"-restart", "-output_overwrite"};
+  PetscInt skipped = 2;
   PetscFunctionBeginUser;
+  if (by_area) skip[skipped++] = "-vesicle_semi_axes";
+  if (!by_area) skip[skipped++] = "-vesicle_area";
+  if (!by_area) skip[skipped++] = "-vesicle_reduced_area";
+  for (PetscInt i = 0; i < TABLE_SIZE; i++)
+    if (!SceneUses(scene, table[i].name)) skip[skipped++] = table[i].name;
+  skip[skipped] = NULL;
   PetscCall(OptionsWrite(&scene->options, scene, skip, file));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Prefixes of solvers, and what a scene needs to have them. */
+static const OptionOwner owners[] = {
+    {"-tension_", "-scheme_type split"},          {"-bending_", "-scheme_type split"},
+    {"-coupled_mobility_", "-mobility_type ilu"}, {"-coupled_", "-scheme_type coupled"},
+    {"-direct_", "-scheme_type direct"},          {"-helmholtz_", "-helmholtz_type hypre"},
+    {"-poisson_", "-poisson_type hypre"},         {NULL, NULL}};
+
 PetscErrorCode SceneCheckUnused(Scene scene) {
   PetscFunctionBeginUser;
-  if (!scene->allow_unused) PetscCall(OptionsCheckUnused(&scene->options, solvers));
+  if (!scene->allow_unused) PetscCall(OptionsCheckUnused(&scene->options, scene, solvers, owners));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -34,12 +34,15 @@ static PetscReal Chi(Scene scene, PetscReal R0) {
 /* With the exact near field markers have to resolve the shape, not the grid: 45 for a reduced area of 0.6 and more, in
    proportion more for thinner ones, half as many more where the flow is so strong that membranes wrinkle; and no edge
    longer than two cells, so that the kernel leaks nothing. */
-static PetscInt CountByShape(Scene scene, PetscReal length, PetscReal area) {
+static PetscReal WantedByShape(Scene scene, PetscReal length, PetscReal area) {
   const PetscReal V = 4 * PETSC_PI * area / PetscSqr(length), thin = PetscMin(THINNEST, PetscMax(1, 0.6 / V));
   const PetscReal strong = Chi(scene, length / (2 * PETSC_PI)) >= 100 ? 1.5 : 1;
-  const PetscReal wanted = PetscMax(45 * thin * strong, length / (2 * FluidSpecCellSize(&scene->fluid)));
-  return 2 * (PetscInt)PetscCeilReal((wanted - 1) / 2 * (1 - 1e-12)) + 1;
+  return PetscMax(45 * thin * strong, length / (2 * FluidSpecCellSize(&scene->fluid)));
 }
+
+/* Dense matrices of a vesicle grow with the square of its markers: 3 GB and more above it, and 32-bit sizes end soon.
+ */
+#define MOST_MARKERS 10000
 
 /* Number of markers of a curve: the user's own; by the shape; or the even (for spectral edges odd) number nearest to
    length/(spacing h). */
@@ -49,15 +52,22 @@ static PetscErrorCode MarkerCount(Scene scene, PetscReal length, PetscReal area,
   const PetscBool exact = scene->coupling.near_field == NEAR_EXACT ? PETSC_TRUE : PETSC_FALSE;
   const PetscBool spectral = scene->membrane.derivative == DERIVATIVE_SPECTRAL ? PETSC_TRUE : PETSC_FALSE;
   const PetscReal spacing = own->spacing > 0 ? own->spacing : kernel->default_spacing;
-  const PetscReal h = FluidSpecCellSize(&scene->fluid), least = exact ? NEAR_LEAST_SPACING : kernel->least_spacing;
-  const PetscReal pairs = length / (2 * spacing * h);
+  const PetscReal h = FluidSpecCellSize(&scene->fluid), pairs = length / (2 * spacing * h);
   const PetscBool by_shape = exact && !own->markers && own->spacing == 0 ? PETSC_TRUE : PETSC_FALSE;
-  PetscReal s;
+  const PetscReal wanted = own->markers ? own->markers : (by_shape ? WantedByShape(scene, length, area) : 2 * pairs);
   PetscFunctionBeginUser;
+  PetscCheck(own->markers <= MOST_MARKERS, scene->comm, PETSC_ERR_USER_INPUT,
+             "-vesicle_markers %" PetscInt_FMT ": more than the dense matrices of a vesicle hold; allowed: at most %d",
+             own->markers, MOST_MARKERS);
+  PetscCheck(
+      wanted <= MOST_MARKERS, scene->comm, PETSC_ERR_USER_INPUT,
+      "-vesicle_spacing %g: %.3g markers on a membrane of length %g at h = %g; allowed: at most %d a vesicle, so "
+      "a smaller vesicle, a larger spacing or coarser -domain_cells",
+      (double)own->spacing, (double)wanted, (double)length, (double)h, MOST_MARKERS);
   if (own->markers)
     *M = own->markers;
   else if (by_shape)
-    *M = CountByShape(scene, length, area);
+    *M = 2 * (PetscInt)PetscCeilReal((wanted - 1) / 2 * (1 - 1e-12)) + 1;
   else /* odd: no Nyquist mode */
     *M = spectral ? 2 * (PetscInt)PetscFloorReal(pairs) + 1 : 2 * (PetscInt)PetscFloorReal(pairs + 0.5);
   if (!own->markers && !by_shape && spectral && *M > MANY) *M = FastOdd(*M);
@@ -65,13 +75,24 @@ static PetscErrorCode MarkerCount(Scene scene, PetscReal length, PetscReal area,
              "-vesicle_spacing %g: %" PetscInt_FMT
              " markers on a membrane of length %g at h = %g; allowed: at least 8, so a finer -domain_cells",
              (double)spacing, *M, (double)length, (double)h);
-  s = own->spacing > 0 ? spacing : length / (*M * h); /* rounding to a number of markers may go just below the limit */
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* That M markers on a curve are as far apart as kernel and near field need. */
+static PetscErrorCode CheckSpacing(Scene scene, PetscReal length, PetscInt M) {
+  const Kernel *kernel = KernelFind(scene->coupling.kernel);
+  const SceneVesicles *own = &scene->vesicles;
+  const PetscReal h = FluidSpecCellSize(&scene->fluid);
+  const PetscReal least = scene->coupling.near_field == NEAR_EXACT ? NEAR_LEAST_SPACING : kernel->least_spacing;
+  /* rounding to a number of markers may go just below the limit */
+  const PetscReal s = own->spacing > 0 ? own->spacing : length / (M * h);
+  PetscFunctionBeginUser;
   PetscCheck(own->allow_close_markers || (!own->markers && !own->spacing) || s >= least * (1 - 1e-12), scene->comm,
              PETSC_ERR_USER_INPUT,
              "-vesicle_%s %g: markers %g h apart with -delta_type %s; allowed: at least %g h "
              "(-vesicle_allow_close_markers goes on)",
-             own->markers ? "markers" : "spacing", own->markers ? (double)own->markers : (double)spacing, (double)s,
-             scene->coupling.kernel, (double)least);
+             own->markers ? "markers" : "spacing", own->markers ? (double)own->markers : (double)own->spacing,
+             (double)s, scene->coupling.kernel, (double)least);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -120,6 +141,52 @@ static void Place(Scene scene, PetscInt v, PetscInt M, PetscReal X[]) {
     X[2 * k] = Entry(&scene->vesicles.center, 2, v, 0) + c * x - s * y;
     X[2 * k + 1] = Entry(&scene->vesicles.center, 2, v, 1) + s * x + c * y;
   }
+}
+
+#define OUTLINE 256 /* points that stand for a curve */
+
+/* The options that a vesicle's size comes from. */
+static PetscErrorCode SizeOptions(Scene scene, PetscInt v, char text[], size_t length) {
+  const SceneVesicles *own = &scene->vesicles;
+  PetscFunctionBeginUser;
+  if (own->shape == SHAPE_FILE)
+    PetscCall(PetscSNPrintf(text, length, "-vesicle_file %s", own->file));
+  else if (SceneByArea(scene))
+    PetscCall(PetscSNPrintf(text, length, "-vesicle_area %g -vesicle_reduced_area %g",
+                            (double)Entry(&own->area, 1, v, 0), (double)Entry(&own->reduced_area, 1, v, 0)));
+  else
+    PetscCall(PetscSNPrintf(text, length, "-vesicle_semi_axes %g,%g", (double)Entry(&own->axes, 2, v, 0),
+                            (double)Entry(&own->axes, 2, v, 1)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* That a curve, turned and moved, is between the walls and no longer than a period: before markers are fitted to it. */
+static PetscErrorCode CheckRoom(Scene scene, const Curve *curve, PetscInt v) {
+  const FluidSpec *f = &scene->fluid;
+  PetscReal X[2 * OUTLINE];
+  char size[256];
+  PetscFunctionBeginUser;
+  PetscCall(SizeOptions(scene, v, size, sizeof(size)));
+  for (PetscInt k = 0; k < OUTLINE; k++) CurveEvaluate(curve, (PetscReal)k / OUTLINE, X + 2 * k);
+  Place(scene, v, OUTLINE, X);
+  for (int dir = 0; dir < 2 && f->bc[dir] != BC_FREE; dir++) {
+    const PetscReal *wall = f->box + 2 * dir, width = wall[1] - wall[0];
+    PetscReal low = X[dir], high = X[dir];
+    for (PetscInt k = 1; k < OUTLINE; k++) {
+      low = PetscMin(low, X[2 * k + dir]);
+      high = PetscMax(high, X[2 * k + dir]);
+    }
+    PetscCheck(high - low <= width, scene->comm, PETSC_ERR_USER_INPUT,
+               "%s: vesicle %" PetscInt_FMT " is %g long in %c, -domain_box %g; allowed: one that fits in", size, v + 1,
+               (double)(high - low), dir ? 'y' : 'x', (double)width);
+    const int side = high > wall[1] ? 1 : 0;
+    PetscCheck(f->bc[dir] == BC_PERIODIC || (low >= wall[0] && high <= wall[1]), scene->comm, PETSC_ERR_USER_INPUT,
+               "-vesicle_center %g,%g: vesicle %" PetscInt_FMT
+               " reaches %c = %g, beyond the wall %c_%s = %g; allowed: a vesicle inside -domain_box",
+               (double)Entry(&scene->vesicles.center, 2, v, 0), (double)Entry(&scene->vesicles.center, 2, v, 1), v + 1,
+               dir ? 'y' : 'x', (double)(side ? high : low), dir ? 'y' : 'x', side ? "max" : "min", (double)wall[side]);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Whether (x, y) is inside the polygon X[2M]: crossings of a ray. */
@@ -193,7 +260,12 @@ PetscErrorCode SceneMakeShape(Scene scene, Shape *shape) {
   PetscCall(PetscCalloc1(shape->vesicles + 1, &shape->start));
   for (PetscInt v = 0; v < shape->vesicles; v++) {
     PetscInt M;
+    PetscCall(CheckRoom(scene, &curve[v], v));
     PetscCall(MarkerCount(scene, CurveLength(&curve[v]), CurveArea(&curve[v]), &M));
+    PetscCall(CheckSpacing(scene, CurveLength(&curve[v]), M));
+    PetscCheck(shape->start[v] < PETSC_MAX_INT / 8 - M, scene->comm, PETSC_ERR_USER_INPUT,
+               "-vesicle_count %" PetscInt_FMT ": more markers than this PETSc can number; allowed: fewer vesicles",
+               shape->vesicles);
     shape->start[v + 1] = shape->start[v] + M;
   }
   PetscCall(PetscMalloc1(2 * shape->start[shape->vesicles], &shape->X));

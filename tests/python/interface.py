@@ -159,12 +159,12 @@ def mistakes():
     """Every mistake is a petves.Error with the program's line; a monitor's exception comes through."""
     bad = [
         (
-            "-flow_rat 1: misspelt, or not used by this scene's solvers; nearest known option: -flow_rate",
+            "-flow_rat 1: no such option; -flow_rate is meant?",
             dict(flow_rat=1),
         ),
         ("square cells", dict(domain_cells=(32, 33))),
         ("-coupled_ksp_type foo: Unable to find", dict(coupled_ksp_type="foo")),
-        ("from the wall", dict(vesicle_center=(0.9, 0))),
+        ("beyond the wall x_max", dict(vesicle_center=(0.9, 0))),
         ("-output_dir /proc/no: cannot be made", dict(output_dir="/proc/no")),
         ("-flow_type custom: no function given", dict(flow_type="custom")),
         ("-time_step 0: out of range", dict(time_step=0)),

@@ -1,0 +1,295 @@
+/* The words that a user typed, checked one by one. Plain malloc: PETSc has not started. */
+#include "options/typed.h"
+#include <ctype.h>
+#include <errno.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <strings.h>
+#include <sys/stat.h>
+
+#define MOST_BYTES (16 << 20) /* of an option file */
+#define MOST_NAME 128         /* characters of an option's name */
+#define EXCERPT 60            /* characters of a line that a message shows */
+
+typedef struct {
+  const char *text;
+  PetscBool quoted; /* a value, whatever it begins with */
+} Word;
+
+/* Where words are from. */
+typedef struct _Source {
+  const struct _Source *outer; /* the file that includes this one */
+  const char *name;            /* "PETSC_OPTIONS" or a file's path; NULL: the command line */
+  const char *line;            /* of a file, with its number */
+  int number;
+  dev_t device;
+  ino_t file;
+} Source;
+
+/* What is wrong, behind where it is. */
+static void PETSC_ATTRIBUTE_FORMAT(3, 4) Wrong(Typed *t, const Source *from, const char format[], ...) {
+  int used = 0;
+  va_list arguments;
+  if (from->line)
+    used = snprintf(t->error, sizeof(t->error), "-options_file %.200s: line %d is \"%.*s\": ", from->name, from->number,
+                    EXCERPT, from->line);
+  else if (from->name)
+    used = snprintf(t->error, sizeof(t->error), "%.200s: ", from->name);
+  va_start(arguments, format);
+  (void)vsnprintf(t->error + used, sizeof(t->error) - (size_t)used, format, arguments);
+  va_end(arguments);
+}
+
+static void Append(Typed *t, const char *name, const char *value) {
+  const size_t need = strlen(name) + (value ? strlen(value) + 1 : 0) + 2;
+  if (t->used + need > t->room) {
+    t->room = 2 * (t->used + need);
+    t->text = (char *)realloc(t->text, t->room);
+    if (!t->text) abort();
+  }
+  t->used += (size_t)sprintf(t->text + t->used, "%s", name) + 1;
+  t->used += (size_t)sprintf(t->text + t->used, "%s%s", value ? "=" : "", value ? value : "") + 1;
+}
+
+/* Whether a word is an option's name and no value: a dash and a letter, but for -inf and -nan. */
+static PetscBool IsName(const Word *word) {
+  PetscBool is = PETSC_FALSE;
+  if (!word->quoted) (void)PetscOptionsValidKey(word->text, &is);
+  return is;
+}
+
+static void CheckName(Typed *t, const Source *from, const char *name) {
+  const char *p = name + 1;
+  if (*p == '-') {
+    Wrong(t, from, "%.100s: two dashes; allowed: one, as in %.100s", name, name + 1);
+    return;
+  }
+  while (isalnum((unsigned char)*p) || *p == '_' || *p == '-' || *p == '.') p++;
+  if (*p == '=')
+    Wrong(t, from, "%.100s: an equals sign; allowed: a blank, as in %.*s %.60s", name, (int)PetscMin(p - name, 60),
+          name, p[1] ? p + 1 : "VALUE");
+  else if (*p || p - name > MOST_NAME)
+    Wrong(t, from, "%.100s: not the name of an option; allowed: up to %d letters, digits and _", name, MOST_NAME);
+}
+
+/* A word where an option should begin: behind an option with a value, or alone. */
+static void WrongWord(Typed *t, const Source *from, const char *name, const char *value, const char *word) {
+  const PetscBool comma = value && *value && (value[strlen(value) - 1] == ',' || *word == ',') ? PETSC_TRUE
+                                                                                               : PETSC_FALSE;
+  if (value && *value == '=')
+    Wrong(t, from, "%.60s = %.60s: an equals sign; allowed: a blank, as in %.60s %.60s", name, word, name, word);
+  else if (value)
+    Wrong(t, from,
+          "%.60s %.60s %.60s: two values; allowed: one, a list with commas and no blanks (%.60s%s%.60s), text with "
+          "blanks in quotes",
+          name, value, word, value, comma ? "" : ",", word);
+  else if (from->line)
+    Wrong(t, from, "no option, for its first word begins with no dash; allowed: -name value");
+  else
+    Wrong(t, from, "\"%.150s\": no option, nor the value of one; allowed: -name value, or -options_file FILE", word);
+}
+
+static void ReadFile(Typed *t, const char *path, const Source *outer);
+
+/* Pairs of names and values. files: -options_file is to be read (1), left out (-1). */
+static void TakeWords(Typed *t, const Source *from, int n, const Word word[], int files) {
+  for (int k = 0; k < n && !*t->error;) {
+    const char *name = word[k].text, *value = NULL;
+    if (!IsName(&word[k])) WrongWord(t, from, NULL, NULL, name);
+    if (!*t->error) CheckName(t, from, name);
+    if (++k < n && !IsName(&word[k])) value = word[k++].text;
+    if (!*t->error && k < n && !IsName(&word[k])) WrongWord(t, from, name, value, word[k].text);
+    if (!*t->error && value && *value == '=' && !word[k - 1].quoted)
+      Wrong(t, from, "%.60s %.60s: an equals sign; allowed: a blank, as in %.60s %.60s", name, value, name,
+            value[1] ? value + 1 : "VALUE");
+    if (*t->error) return;
+    if (strcasecmp(name, "-options_file"))
+      Append(t, name, value);
+    else if (!value)
+      Wrong(t, from, "-options_file: given without a value; allowed: a readable file of options");
+    else if (files > 0)
+      ReadFile(t, value, from);
+  }
+}
+
+/* Cut a line into words where it is; returns their number, -1: a quote without its end. */
+static int Cut(char *line, Word word[]) {
+  int n = 0;
+  for (char *p = line;;) {
+    p += strspn(p, " \t\f\v");
+    if (!*p || *p == '#') return n;
+    word[n].quoted = *p == '"' || *p == '\'' ? PETSC_TRUE : PETSC_FALSE;
+    if (word[n].quoted) {
+      const char quote = *p++;
+      word[n++].text = p;
+      p = strchr(p, quote);
+      if (!p) return -1;
+    } else {
+      word[n++].text = p;
+      p += strcspn(p, " \t\f\v");
+      if (!*p) return n;
+    }
+    *p++ = 0;
+  }
+}
+
+/* All words of a line, which is cut. */
+static void TakeLine(Typed *t, const Source *from, char *line) {
+  Word *word = (Word *)malloc((strlen(line) / 2 + 1) * sizeof(*word));
+  const int n = word ? Cut(line, word) : 0;
+  if (n < 0)
+    Wrong(t, from, "a quote without its end; allowed: \"...\" or '...' around a value");
+  else
+    TakeWords(t, from, n, word, 1);
+  free(word);
+}
+
+/* The file's text with a zero behind it, to be freed; NULL and why when it cannot be read. */
+static char *Text(FILE *f, size_t *length, const char **why) {
+  char *text = (char *)malloc(MOST_BYTES + 2);
+  *why = text ? NULL : "needs too much memory";
+  if (!text) return NULL;
+  *length = fread(text, 1, MOST_BYTES + 1, f);
+  if (ferror(f)) *why = "cannot be read";
+  if (*length > MOST_BYTES) *why = "is longer than 16 MB";
+  text[*length] = 0;
+  if (!*why) return text;
+  free(text);
+  return NULL;
+}
+
+/* Lines of a text that ends with a zero. */
+static void TakeText(Typed *t, Source *from, char *text, size_t length) {
+  char *copy = (char *)malloc(length + 1), *p = text;
+  if (!strncmp(p, "\xef\xbb\xbf", 3)) p += 3;
+  for (from->number = 1; copy && p <= text + length && !*t->error; from->number++) {
+    char *line = p;
+    from->line = NULL;
+    while (*p && *p != '\n' && *p != '\r') {
+      if (iscntrl((unsigned char)*p) && !isspace((unsigned char)*p)) break;
+      p++;
+    }
+    if ((*p && *p != '\n' && *p != '\r') || (!*p && p < text + length)) {
+      (void)snprintf(t->error, sizeof(t->error),
+                     "-options_file %.200s: line %d has a byte 0x%02x, which is no text; allowed: a file of options",
+                     from->name, from->number, (unsigned char)*p);
+      break;
+    }
+    const PetscBool crlf = *p == '\r' && p[1] == '\n' ? PETSC_TRUE : PETSC_FALSE;
+    *p = 0;
+    p += crlf ? 2 : 1;
+    from->line = line;
+    TakeLine(t, from, strcpy(copy, line));
+  }
+  free(copy);
+}
+
+static void ReadFile(Typed *t, const char *path, const Source *outer) {
+  Source from = {.outer = outer, .name = path};
+  const char *why = NULL;
+  struct stat status;
+  size_t length;
+  char *text = NULL;
+  FILE *f = fopen(path, "r");
+  if (!f || fstat(fileno(f), &status)) {
+    why = strerror(errno);
+  } else {
+    from.device = status.st_dev;
+    from.file = status.st_ino;
+    for (const Source *s = outer; s && !why; s = s->outer)
+      if (s->line && s->device == from.device && s->file == from.file) why = "includes itself";
+    if (!why && S_ISDIR(status.st_mode)) why = "is a folder";
+    if (!why) text = Text(f, &length, &why);
+  }
+  if (!text && outer && outer->line)
+    Wrong(t, outer, "%s (%s); allowed: a readable file of options", f ? "not read" : "cannot be opened", why);
+  else if (!text && outer)
+    Wrong(t, outer, "-options_file %.200s: %s (%s); allowed: a readable file of options", path,
+          f ? "not read" : "cannot be opened", why);
+  else if (!text)
+    (void)snprintf(t->error, sizeof(t->error), "-options_file %.300s: %s (%s); allowed: a readable file of options",
+                   path, f ? "not read" : "cannot be opened", why);
+  else
+    TakeText(t, &from, text, length);
+  free(text);
+  if (f) fclose(f);
+}
+
+void TypedFile(Typed *t, const char path[]) {
+  ReadFile(t, path, NULL);
+}
+
+/* PETSc's own files, those that are there, unless the command line says -skip_petscrc. */
+static void TakePetscFiles(Typed *t, int n, char **word) {
+  const char *const home = getenv("HOME");
+  char path[3][PETSC_MAX_PATH_LEN] = {"", ".petscrc", "petscrc"};
+  if (home) (void)snprintf(path[0], sizeof(path[0]), "%s/.petscrc", home);
+  for (int k = 0; k < n; k++)
+    if (!strcasecmp(word[k], "-skip_petscrc")) return;
+  for (int k = 0; k < 3 && !*t->error; k++) {
+    struct stat status;
+    if (*path[k] && !stat(path[k], &status) && S_ISREG(status.st_mode)) ReadFile(t, path[k], NULL);
+  }
+}
+
+static void TakeEnvironment(Typed *t) {
+  const Source from = {.name = "PETSC_OPTIONS"};
+  const char *const typed = getenv("PETSC_OPTIONS");
+  char *line = typed && !*t->error ? strdup(typed) : NULL;
+  for (char *p = line; p && *p; p++)
+    if (*p == '\n' || *p == '\r') *p = ' ';
+  if (line) TakeLine(t, &from, line);
+  free(line);
+}
+
+void TypedCommand(Typed *t, int n, char **word) {
+  const Source from = {.name = NULL};
+  Word *words = (Word *)malloc(((size_t)n + 1) * sizeof(*words));
+  Typed rest = {0};
+  if (!words) abort();
+  for (int k = 0; k < n; k++) words[k] = (Word){.text = word[k]};
+  TakeWords(&rest, &from, n, words, -1); /* the command line's own mistakes first */
+  (void)snprintf(t->error, sizeof(t->error), "%s", rest.error);
+  if (!*t->error) TakePetscFiles(t, n, word);
+  TakeEnvironment(t);
+  for (int k = 0; k + 1 < n && !*t->error; k++)
+    if (!strcasecmp(word[k], "-options_file")) ReadFile(t, word[k + 1], NULL);
+  for (size_t at = 0; at < rest.used && !*t->error;) {
+    const char *name = rest.text + at, *value = name + strlen(name) + 1;
+    Append(t, name, *value ? value + 1 : NULL);
+    at = (size_t)(value + strlen(value) + 1 - rest.text);
+  }
+  TypedDestroy(&rest);
+  free(words);
+}
+
+int TypedShare(Typed *t, MPI_Comm comm) {
+  unsigned long used = t->used;
+  int rank, error;
+  MPI_Comm_rank(comm, &rank);
+  error = MPI_Bcast(t->error, sizeof(t->error), MPI_CHAR, 0, comm);
+  if (!error) error = MPI_Bcast(&used, 1, MPI_UNSIGNED_LONG, 0, comm);
+  if (error || *t->error || !used) return error;
+  if (rank) {
+    free(t->text);
+    t->text = (char *)malloc(used);
+    t->used = used;
+  }
+  return MPI_Bcast(t->text, (int)used, MPI_CHAR, 0, comm);
+}
+
+PetscErrorCode TypedInsert(const Typed *t, PetscOptions options) {
+  PetscFunctionBeginUser;
+  for (size_t at = 0; at < t->used;) {
+    const char *name = t->text + at, *value = name + strlen(name) + 1;
+    PetscCall(PetscOptionsSetValue(options, name, *value ? value + 1 : NULL));
+    at = (size_t)(value + strlen(value) + 1 - t->text);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+void TypedDestroy(Typed *t) {
+  free(t->text);
+  t->text = NULL;
+  t->used = t->room = 0;
+}

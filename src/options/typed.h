@@ -1,0 +1,26 @@
+/* What the user typed: options of the command line, of PETSC_OPTIONS and of option files. One rank reads them, checks
+   every word and gives the others what it found, before PETSc starts: a mistake ends with one line, never inside PETSc.
+
+   A file has an option a line, its value behind it. A value with blanks or # in it stands in quotes, "..." or '...'.
+   # at the beginning of a word starts a comment. Lines end with LF, CR LF or CR; a byte-order mark is skipped.
+   -options_file includes another file; its path is relative to where the program was started. */
+#pragma once
+#include "base/base.h"
+
+typedef struct {
+  char *text; /* "-name\0=value\0" or "-name\0\0", one after the other; NULL when nothing was typed */
+  size_t used, room;
+  char error[PETVES_MAX_MESSAGE]; /* what is wrong; empty when nothing is */
+} Typed;
+
+/* TypedCommand - what a program starts with, later words before earlier ones: PETSc's own files of options (.petscrc),
+   PETSC_OPTIONS, option files of the command line, the rest of its n words. Not collective, and before PETSc starts.
+   TypedFile - an option file and what it includes. Not collective. */
+PETSC_EXTERN void TypedCommand(Typed *typed, int n, char **word);
+PETSC_EXTERN void TypedFile(Typed *typed, const char path[]);
+
+/* TypedShare - what rank 0 has read, or its error, becomes everybody's; returns an MPI error code. Collective.
+   TypedInsert - put it into an options database (NULL: the default one). TypedDestroy - free it. */
+PETSC_EXTERN int TypedShare(Typed *typed, MPI_Comm comm);
+PETSC_EXTERN PetscErrorCode TypedInsert(const Typed *typed, PetscOptions options);
+PETSC_EXTERN void TypedDestroy(Typed *typed);

@@ -1,0 +1,151 @@
+/* Which options a scene uses: one that says something about what is not there is refused. */
+#include "scene/resolve.h"
+
+/* What has to be there for an option to mean something. */
+typedef enum {
+  BY_STRAIN,
+  BY_CHANNEL,
+  BY_EXTENSION,
+  BY_SHEARED,
+  BY_FLOW,
+  BY_VESICLES,
+  BY_ELLIPSES,
+  BY_FILE,
+  BY_UNSPLIT,
+  BY_COUPLED,
+  BY_PENALTY,
+  BY_ORDER,
+  BY_ADAPT,
+  BY_ADAPTABLE,
+  BY_CONVECTION,
+  BY_GRID
+} Need;
+
+static const char *const needs[] = {"-flow_type shear or extension",
+                                    "-flow_type poiseuille",
+                                    "-flow_type extension",
+                                    "-flow_type shear, poiseuille or extension",
+                                    "a -flow_type that is not quiescent",
+                                    "vesicles (-vesicle_shape)",
+                                    "-vesicle_shape ellipse",
+                                    "-vesicle_shape file",
+                                    "vesicles and -scheme_type coupled or direct",
+                                    "vesicles and -scheme_type coupled",
+                                    "vesicles and -scheme_type penalty",
+                                    "-scheme_order 2",
+                                    "-time_adapt error",
+                                    "vesicles; without, steps are fixed",
+                                    "-fluid_inertia convective",
+                                    "walls or periodic boundaries (-domain_bc_x)"};
+
+/* Options that are not listed are used by every scene. */
+static const struct {
+  const char *name;
+  Need need;
+} rules[] = {{"-flow_rate", BY_STRAIN},
+             {"-flow_peak_velocity", BY_CHANNEL},
+             {"-flow_half_width", BY_CHANNEL},
+             {"-flow_center_x", BY_EXTENSION},
+             {"-flow_center_y", BY_SHEARED},
+             {"-flow_form", BY_FLOW},
+             {"-vesicle_count", BY_VESICLES},
+             {"-vesicle_semi_axes", BY_ELLIPSES},
+             {"-vesicle_area", BY_ELLIPSES},
+             {"-vesicle_reduced_area", BY_ELLIPSES},
+             {"-vesicle_center", BY_VESICLES},
+             {"-vesicle_angle", BY_VESICLES},
+             {"-vesicle_file", BY_FILE},
+             {"-vesicle_bending", BY_VESICLES},
+             {"-vesicle_spacing", BY_VESICLES},
+             {"-vesicle_markers", BY_VESICLES},
+             {"-vesicle_allow_close_markers", BY_VESICLES},
+             {"-delta_type", BY_VESICLES},
+             {"-scheme_auto", BY_VESICLES},
+             {"-scheme_bending", BY_VESICLES},
+             {"-penalty_stiffness", BY_PENALTY},
+             {"-scheme_length_target", BY_UNSPLIT},
+             {"-scheme_area_target", BY_VESICLES},
+             {"-coupling_near_field", BY_VESICLES},
+             {"-coupling_box_part", BY_VESICLES},
+             {"-membrane_derivative", BY_VESICLES},
+             {"-scheme_startup", BY_ORDER},
+             {"-mobility_type", BY_COUPLED},
+             {"-time_adapt", BY_ADAPTABLE},
+             {"-time_adapt_tol", BY_ADAPT},
+             {"-time_adapt_max_move", BY_ADAPT},
+             {"-time_adapt_max_step", BY_ADAPT},
+             {"-time_cfl_limit", BY_CONVECTION},
+             {"-time_steady_tol", BY_VESICLES},
+             {"-helmholtz_type", BY_GRID},
+             {"-poisson_type", BY_GRID},
+             {"-fftw_plan", BY_GRID},
+             {"-fftw_wisdom", BY_GRID},
+             {"-limit_edge_ratio", BY_VESICLES},
+             {"-limit_area_error", BY_VESICLES},
+             {"-limit_length_error", BY_VESICLES}};
+#define RULES (sizeof(rules) / sizeof(rules[0]))
+
+static PetscBool IsFlow(Scene s, FlowType a, FlowType b) {
+  return s->flow.type == (PetscInt)a || s->flow.type == (PetscInt)b ? PETSC_TRUE : PETSC_FALSE;
+}
+
+static PetscBool IsScheme(Scene s, const char name[]) {
+  return s->shape.vesicles && !strcmp(s->scheme.type, name) ? PETSC_TRUE : PETSC_FALSE;
+}
+
+static PetscBool Met(Scene s, Need need) {
+  const PetscBool any = s->shape.vesicles > 0 ? PETSC_TRUE : PETSC_FALSE;
+  switch (need) {
+  case BY_STRAIN:
+    return IsFlow(s, FLOW_SHEAR, FLOW_EXTENSION);
+  case BY_CHANNEL:
+    return IsFlow(s, FLOW_POISEUILLE, FLOW_POISEUILLE);
+  case BY_EXTENSION:
+    return IsFlow(s, FLOW_EXTENSION, FLOW_EXTENSION);
+  case BY_SHEARED:
+    return !IsFlow(s, FLOW_QUIESCENT, FLOW_CUSTOM);
+  case BY_FLOW:
+    return s->flow.type != FLOW_QUIESCENT;
+  case BY_ELLIPSES:
+    return s->vesicles.shape == SHAPE_ELLIPSE;
+  case BY_FILE:
+    return s->vesicles.shape == SHAPE_FILE;
+  case BY_UNSPLIT:
+    return IsScheme(s, "coupled") || IsScheme(s, "direct");
+  case BY_COUPLED:
+    return IsScheme(s, "coupled");
+  case BY_PENALTY: /* the 0 that stands for none is right for all */
+    return IsScheme(s, "penalty") || s->scheme.stiffness == 0;
+  case BY_ORDER:
+    return s->scheme.order == 2;
+  case BY_ADAPT:
+    return s->time.adapt == ADAPT_ERROR;
+  case BY_ADAPTABLE:
+    return any || s->time.adapt == ADAPT_NONE;
+  case BY_CONVECTION:
+    return s->fluid.inertia == INERTIA_CONVECTIVE;
+  case BY_GRID:
+    return !FluidSpecIsFree(&s->fluid);
+  default:
+    return any;
+  }
+}
+
+PetscBool SceneUses(Scene scene, const char name[]) {
+  for (size_t k = 0; k < RULES; k++)
+    if (!strcmp(rules[k].name, name)) return Met(scene, rules[k].need);
+  return PETSC_TRUE;
+}
+
+PetscErrorCode SceneCheckUsed(Scene scene) {
+  PetscFunctionBeginUser;
+  for (size_t k = 0; k < RULES && !scene->allow_unused; k++) {
+    const char *value = NULL; /* as it was typed */
+    if (!OptionGiven(&scene->options, rules[k].name) || Met(scene, rules[k].need)) continue;
+    PetscCall(PetscOptionsFindPair(NULL, NULL, rules[k].name, &value, NULL));
+    SETERRQ(scene->comm, PETSC_ERR_USER_INPUT,
+            "%s %.128s: not used by this scene; allowed: with %s (-allow_unused_options goes on)", rules[k].name,
+            value ? value : "", needs[rules[k].need]);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
