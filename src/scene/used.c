@@ -82,7 +82,8 @@ static const struct {
              {"-fftw_wisdom", BY_GRID},
              {"-limit_edge_ratio", BY_VESICLES},
              {"-limit_area_error", BY_VESICLES},
-             {"-limit_length_error", BY_VESICLES}};
+             {"-limit_length_error", BY_VESICLES},
+             {"-limit_crossing", BY_VESICLES}};
 #define RULES (sizeof(rules) / sizeof(rules[0]))
 
 static PetscBool IsFlow(Scene s, FlowType a, FlowType b) {
