@@ -185,7 +185,7 @@ def tank_treading(results: Results, folder: Path, quick: bool) -> list[str]:
     rows = [_angle_row(v, chi, one) for (v, chi), one in found.items()]
     header = ["chi", "V", "inclination/pi", "frequency/rate", "still changes by", "length error", "Keller-Skalak"]
     about = (
-        "runs/shear.opts: 8 x 8 box, 64^2 cells, quasi-steady, rate dt = 0.05, to rate t = 12. In brackets the difference from the\n"
+        "runs/shear.opts, but in an 8 x 8 box with four walls, 64^2 cells, quasi-steady, rate dt = 0.05, to rate t = 12. In brackets the difference from the\n"
         "boundary integral in the same box; where there is none (chi = 100), from that of unbounded flow, marked *: the box\n"
         "itself adds to that, at chi = 10 by +4.7, +2.4, +1.1 percent of the angle at V = 0.5, 0.7, 0.9.\n"
     )
