@@ -132,7 +132,7 @@ static PetscErrorCode CheckArea(Near *q) {
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < 2 * M; k++) X[k] = old[k] = 1.004 * q->w.scene->shape.X[k];
   for (PetscInt k = 0; k < M; k++) old[2 * k] += 0.1;
-  const PetscReal shift = MembraneRestoreArea(m, 0, X, old);
+  const PetscReal shift = MembraneRestoreArea(m, 0, X, 1, &old);
   MembraneMeasure(m, 0, X, &measures);
   for (PetscInt k = 0; k < M; k++)
     apart = PetscMax(apart, PetscAbsReal(old[2 * k] - X[2 * k] - 0.1) + PetscAbsReal(old[2 * k + 1] - X[2 * k + 1]));

@@ -81,7 +81,7 @@ PetscErrorCode SceneChooseInertia(Draft scene) {
     if (!baseline && scene->shape.vesicles && !paper) {
       if (scene->reynolds < SMALL_REYNOLDS)
         scene->fluid.inertia = INERTIA_NONE;
-      else if (scene->scheme.order == 2 && seamless)
+      else if (scene->scheme.order > 1 && seamless)
         scene->fluid.inertia = INERTIA_CONVECTIVE;
     }
   }

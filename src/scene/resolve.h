@@ -18,6 +18,19 @@ PETSC_EXTERN PetscBool SceneByArea(Scene scene);
 PETSC_EXTERN PetscErrorCode SceneChooseByError(Draft scene);
 PETSC_EXTERN PetscErrorCode SceneChooseSteps(Draft scene);
 
+/* SceneSmallestRadius - R0 of the smallest vesicle (length). SceneTimes - the slowest and the fastest time of the
+   scene, nu R0^3/c_b of the smallest vesicle, and the least of it and the flow's; PETSC_MAX_REAL: none. Not collective.
+ */
+PETSC_EXTERN PetscReal SceneSmallestRadius(Scene scene);
+PETSC_EXTERN void SceneTimes(Scene scene, PetscReal *slow, PetscReal *fast);
+
+/* SceneLargestStep - up to which -time_adapt error lets steps grow when nothing changes (time): in a flow
+   0.5/(rate (1 + chi/100)), half of the largest step that ends at a steady shape (docs/stability.md), chi = rate nu
+   R0^3/c_b of the largest vesicle; at rest nu R0^3/c_b of the smallest, which the area target's error calls for;
+   PETSC_MAX_REAL where the flow's rate is not known. SceneChooseLargestStep - make it the default. */
+PETSC_EXTERN PetscReal SceneLargestStep(Scene scene);
+PETSC_EXTERN PetscErrorCode SceneChooseLargestStep(Draft scene);
+
 /* SceneIsProjection - whether the scheme is one of the baselines, split or penalty, which stand on a projection step.
    SceneChooseByScheme - their defaults. SceneChooseStiffness - penalty's springs, where none are given: half of what
    the step bears. */

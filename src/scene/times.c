@@ -1,0 +1,51 @@
+/* The times of a scene: of its flow and of its membranes. */
+#include "scene/resolve.h"
+
+/* Above it nothing was measured: membranes that bend as easily have no larger steps. */
+#define MOST_CHI 1000
+
+/* The fastest rate at which the flow shears a vesicle. */
+static PetscReal Rate(Scene scene) {
+  const Flow *flow = &scene->flow;
+  if (flow->type == FLOW_SHEAR || flow->type == FLOW_EXTENSION) return PetscAbsReal(flow->rate);
+  if (flow->type == FLOW_POISEUILLE) return 2 * PetscAbsReal(flow->peak) / flow->half_width;
+  return 0;
+}
+
+PetscReal SceneSmallestRadius(Scene scene) {
+  PetscReal R0 = PETSC_MAX_REAL;
+  for (PetscInt v = 0; v < scene->shape.vesicles; v++) R0 = PetscMin(R0, ShapeRadius(&scene->shape, v));
+  return R0;
+}
+
+/* nu R0^3/c_b, PETSC_MAX_REAL without bending. */
+static PetscReal MembraneTime(Scene scene, PetscReal R0) {
+  return scene->membrane.bending > 0 ? scene->fluid.nu * R0 * R0 * R0 / scene->membrane.bending : PETSC_MAX_REAL;
+}
+
+void SceneTimes(Scene scene, PetscReal *slow, PetscReal *fast) {
+  const PetscReal rate = Rate(scene);
+  *slow = MembraneTime(scene, SceneSmallestRadius(scene));
+  *fast = rate > 0 ? PetscMin(*slow, 1 / rate) : *slow;
+}
+
+PetscReal SceneLargestStep(Scene scene) {
+  const PetscReal rate = Rate(scene);
+  PetscReal largest = 0;
+  if (scene->flow.type == FLOW_CUSTOM) return PETSC_MAX_REAL;
+  if (rate == 0) return MembraneTime(scene, SceneSmallestRadius(scene));
+  for (PetscInt v = 0; v < scene->shape.vesicles; v++) largest = PetscMax(largest, ShapeRadius(&scene->shape, v));
+  return 0.5 / (rate * (1 + PetscMin(rate * MembraneTime(scene, largest), MOST_CHI) / 100));
+}
+
+PetscErrorCode SceneChooseLargestStep(Draft scene) {
+  const PetscReal most = SceneLargestStep(scene);
+  char value[64];
+  PetscFunctionBeginUser;
+  if (scene->time.adapt == ADAPT_NONE || !scene->shape.vesicles || most == PETSC_MAX_REAL)
+    PetscFunctionReturn(PETSC_SUCCESS);
+  if (scene->scheme.wanted > 0) PetscFunctionReturn(PETSC_SUCCESS); /* has its own */
+  PetscCall(PetscSNPrintf(value, sizeof(value), "%.6g", (double)most));
+  PetscCall(SceneChoose(scene, "-time_adapt_max_step", value));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
