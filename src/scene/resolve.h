@@ -25,8 +25,8 @@ PETSC_EXTERN PetscReal SceneSmallestRadius(Scene scene);
 PETSC_EXTERN void SceneTimes(Scene scene, PetscReal *slow, PetscReal *fast);
 
 /* SceneLargestStep - up to which -time_adapt error lets steps grow when nothing changes (time): in a flow
-   0.5/(rate (1 + chi/100)), half of the largest step that ends at a steady shape (docs/stability.md), chi = rate nu
-   R0^3/c_b of the largest vesicle; at rest nu R0^3/c_b of the smallest, which the area target's error calls for;
+   1/(rate (1 + 0.03 chi)), which fixed steps from an ellipse still bear (docs/time.md), chi = rate nu R0^3/c_b of the
+   largest vesicle, at most 250; at rest nu R0^3/c_b of the smallest, which the area target's error calls for;
    PETSC_MAX_REAL where the flow's rate is not known. SceneChooseLargestStep - make it the default. */
 PETSC_EXTERN PetscReal SceneLargestStep(Scene scene);
 PETSC_EXTERN PetscErrorCode SceneChooseLargestStep(Draft scene);

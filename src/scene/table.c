@@ -49,7 +49,7 @@ static const OptionRow table[] = {
   {"-time_adapt", OPT_ENUM, AT(time.adapt), "none", "none|error", "step size: fixed, or from an error estimate (coupled, direct of order 2)"},
   {"-time_adapt_tol", OPT_REAL, AT(time.adapt_tol), "1e-4", ">0", "error estimate accepted a step, in units of R0"},
   {"-time_adapt_max_move", OPT_REAL, AT(time.adapt_max_move), "1", ">=0", "cells that a marker may move in a step relative to its vesicle; 0 no limit"},
-  {"-time_adapt_max_step", OPT_REAL, AT(time.adapt_max_step), "0", ">=0", "largest step that -time_adapt error takes; 0 no limit; not given: .5/(rate (1 + chi/100)) in a flow, nu R0^3/c_b without one (time)"},
+  {"-time_adapt_max_step", OPT_REAL, AT(time.adapt_max_step), "0", ">=0", "largest step that -time_adapt error takes; 0 no limit; not given: 1/(rate (1 + .03 chi)) in a flow, nu R0^3/c_b without one (time)"},
   {"-time_cfl_limit", OPT_REAL, AT(time.cfl_limit), "0.5", ">0", "convective: largest dt max(|u| + |v|)/h; -time_adapt error stays below it, a fixed step above it stops the run"},
   {"-time_steady_tol", OPT_REAL, AT(time.steady_tol), "0", ">=0", "stop when max |u.n| on the membrane falls below it; 0 never (length/time)"},
   {"-helmholtz_type", OPT_NAME, AT(fluid.helmholtz), "fftw_tridiagonal", "fftw_tridiagonal|fftw|hypre", "fast solver of the velocity Helmholtz problems"},

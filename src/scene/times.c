@@ -1,8 +1,8 @@
 /* The times of a scene: of its flow and of its membranes. */
 #include "scene/resolve.h"
 
-/* Above it nothing was measured: membranes that bend as easily have no larger steps. */
-#define MOST_CHI 1000
+/* From here on the largest step falls more slowly than 1/chi: .125 over the rate at chi = 1000. */
+#define MOST_CHI 250
 
 /* The fastest rate at which the flow shears a vesicle. */
 static PetscReal Rate(Scene scene) {
@@ -35,7 +35,7 @@ PetscReal SceneLargestStep(Scene scene) {
   if (scene->flow.type == FLOW_CUSTOM) return PETSC_MAX_REAL;
   if (rate == 0) return MembraneTime(scene, SceneSmallestRadius(scene));
   for (PetscInt v = 0; v < scene->shape.vesicles; v++) largest = PetscMax(largest, ShapeRadius(&scene->shape, v));
-  return 0.5 / (rate * (1 + PetscMin(rate * MembraneTime(scene, largest), MOST_CHI) / 100));
+  return 1 / (rate * (1 + 0.03 * PetscMin(rate * MembraneTime(scene, largest), MOST_CHI)));
 }
 
 PetscErrorCode SceneChooseLargestStep(Draft scene) {
