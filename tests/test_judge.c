@@ -145,7 +145,7 @@ static PetscErrorCode CheckOrder(void) {
     PetscReal error;
     StepVerdict verdict;
     PetscInt next;
-  } cases[] = {{SMALL, STEP_ACCEPT, 1},      {0.25 * TOL, STEP_ACCEPT, 1},  {0.5 * TOL, STEP_ACCEPT, 0},
+  } cases[] = {{SMALL, STEP_ACCEPT, 1},       {0.25 * TOL, STEP_ACCEPT, 1}, {0.5 * TOL, STEP_ACCEPT, 0},
                {0.95 * TOL, STEP_ACCEPT, -1}, {1.5 * TOL, STEP_REPEAT, -1}, {8 * TOL, STEP_REPEAT, -3}};
   const StepPolicy policy = Policy(1);
   PetscFunctionBeginUser;
@@ -153,8 +153,9 @@ static PetscErrorCode CheckOrder(void) {
     const StepTrial trial = {.solved = PETSC_TRUE, .order = 3, .dt = 1, .error = cases[k].error, .ratio = 1};
     StepPlan plan = {.before = NONE};
     const StepVerdict verdict = StepJudge(&policy, &trial, &plan);
-    CHECK(verdict == cases[k].verdict && plan.level == cases[k].next, "order 3, error %g: verdict %d, level %d (%d, %d)",
-          trial.error, verdict, (int)plan.level, cases[k].verdict, (int)cases[k].next);
+    CHECK(verdict == cases[k].verdict && plan.level == cases[k].next,
+          "order 3, error %g: verdict %d, level %d (%d, %d)", trial.error, verdict, (int)plan.level, cases[k].verdict,
+          (int)cases[k].next);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -176,8 +176,8 @@ static PetscErrorCode CheckArea(Near *q) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The labels' speed of a known motion, a translation, a turn and a shift of labels together; on a circle, where a turn is
-   a shift, all of it. */
+/* The labels' speed of a known motion, a translation, a turn and a shift of labels together; on a circle, where a turn
+   is a shift, all of it. */
 static PetscErrorCode CheckTreading(Near *q) {
   const Membrane m = q->w.membrane;
   const PetscInt M = q->w.M;

@@ -83,8 +83,7 @@ static PetscErrorCode WriteScene(Scheme s, H5File *file) {
 /* The numbers that stand for time, step and what has been written so far. */
 static PetscErrorCode WriteNumbers(Scheme s, H5File *file, const Record *record, PetscInt frames) {
   const State *q = &s->state;
-  const PetscInt format = CHECKPOINT_FORMAT, past = s->past, order = s->plan.order,
-                 level = s->policy.adaptive ? s->plan.level : 0;
+  const PetscInt format = CHECKPOINT_FORMAT, past = s->past, level = s->policy.adaptive ? s->plan.level : 0;
   const PetscInt totals[4] = {record->solves, record->tension, record->bending, record->coupled};
   PetscReal earlier[SCHEME_PAST] = {0};
   PetscInt walls = 0;
@@ -98,7 +97,8 @@ static PetscErrorCode WriteNumbers(Scheme s, H5File *file, const Record *record,
   for (PetscInt j = 0; j < past; j++) earlier[j] = s->old[j].dt_last;
   PetscCall(H5PutReals(file, "dt_earlier", SCHEME_PAST, earlier));
   PetscCall(H5PutInts(file, "step_level", 1, &level));
-  PetscCall(H5PutInts(file, "step_order", 1, &order));
+  PetscCall(H5PutInts(file, "step_order", 1, &s->plan.order));
+  PetscCall(H5PutInts(file, "step_guess", 1, &s->plan.guess));
   PetscCall(GatheredWalls(q, &walls));
   PetscCall(H5PutInts(file, "walls", 1, &walls));
   PetscCall(H5PutInts(file, "frames", 1, &frames));

@@ -185,6 +185,7 @@ static PetscErrorCode ReadState(Scheme s, H5File *file) {
   PetscCall(H5GetInts(file, "past", 1, &s->past));
   PetscCall(H5GetReals(file, "dt_earlier", SCHEME_PAST, earlier));
   PetscCall(H5GetInts(file, "step_order", 1, &s->plan.order));
+  PetscCall(H5GetInts(file, "step_guess", 1, &s->plan.guess));
   PetscCall(ReadLevel(s, file));
   PetscCall(ReadVectors(s, file, "", q));
   for (PetscInt j = 0; j < s->past; j++) {

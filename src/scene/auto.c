@@ -49,7 +49,7 @@ PetscErrorCode SceneChooseByError(Draft scene) {
 
 /* For the error at rest, and no more than the flow bears. */
 static PetscReal LargestStep(Scene scene, PetscReal slow) {
-  return PetscMin(settings[Row(scene)].max_step * slow, SceneLargestStep(scene));
+  return PetscMin(settings[Row(scene)].max_step * slow, SceneFlowStep(scene));
 }
 
 PetscErrorCode SceneChooseSteps(Draft scene) {
@@ -143,7 +143,7 @@ static PetscErrorCode PrintChoice(Scene scene, PetscInt row, PetscBool timed) {
   if (scene->time.adapt == ADAPT_ERROR) {
     PetscCall(PetscSNPrintf(why, sizeof(why), "steps leave up to %.1e", (double)settings[row].of_steps));
     PetscCall(PrintSetting(scene, "-time_adapt_tol", why));
-    if (SceneLargestStep(scene) < settings[row].max_step * slow)
+    if (SceneFlowStep(scene) < settings[row].max_step * slow)
       PetscCall(PetscSNPrintf(why, sizeof(why), "what this flow bears"));
     else
       PetscCall(PetscSNPrintf(why, sizeof(why), "%g nu R0^3/c_b: leaves up to %.1e of the energy at rest",

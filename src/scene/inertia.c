@@ -78,7 +78,7 @@ PetscErrorCode SceneChooseInertia(Draft scene) {
                                 ? PETSC_TRUE
                                 : PETSC_FALSE;
     scene->fluid.inertia = FluidSpecIsFree(&scene->fluid) ? INERTIA_NONE : INERTIA_UNSTEADY;
-    if (!baseline && scene->shape.vesicles && !paper) {
+    if (!baseline && scene->shape.vesicles && !paper && !FluidSpecIsFree(&scene->fluid)) {
       if (scene->reynolds < SMALL_REYNOLDS)
         scene->fluid.inertia = INERTIA_NONE;
       else if (scene->scheme.order > 1 && seamless)

@@ -24,11 +24,11 @@ PETSC_EXTERN PetscErrorCode SceneChooseSteps(Draft scene);
 PETSC_EXTERN PetscReal SceneSmallestRadius(Scene scene);
 PETSC_EXTERN void SceneTimes(Scene scene, PetscReal *slow, PetscReal *fast);
 
-/* SceneLargestStep - up to which -time_adapt error lets steps grow when nothing changes (time): in a flow
-   1/(rate (1 + 0.03 chi)), which fixed steps from an ellipse still bear (docs/time.md), chi = rate nu R0^3/c_b of the
-   largest vesicle, at most 250; at rest nu R0^3/c_b of the smallest, which the area target's error calls for;
-   PETSC_MAX_REAL where the flow's rate is not known. SceneChooseLargestStep - make it the default. */
-PETSC_EXTERN PetscReal SceneLargestStep(Scene scene);
+/* SceneFlowStep - up to which -time_adapt error lets steps grow in a flow when nothing changes (time): 1/(rate (1 +
+   0.03 chi)), which fixed steps from an ellipse still bear (docs/time.md), chi = rate nu R0^3/c_b of the largest
+   vesicle, at most 250; PETSC_MAX_REAL without a known rate. SceneChooseLargestStep - make it the default; at rest nu
+   R0^3/c_b of the smallest vesicle, for the error that the area target leaves there. */
+PETSC_EXTERN PetscReal SceneFlowStep(Scene scene);
 PETSC_EXTERN PetscErrorCode SceneChooseLargestStep(Draft scene);
 
 /* SceneIsProjection - whether the scheme is one of the baselines, split or penalty, which stand on a projection step.

@@ -29,22 +29,27 @@ void SceneTimes(Scene scene, PetscReal *slow, PetscReal *fast) {
   *fast = rate > 0 ? PetscMin(*slow, 1 / rate) : *slow;
 }
 
-PetscReal SceneLargestStep(Scene scene) {
+PetscReal SceneFlowStep(Scene scene) {
   const PetscReal rate = Rate(scene);
   PetscReal largest = 0;
-  if (scene->flow.type == FLOW_CUSTOM) return PETSC_MAX_REAL;
-  if (rate == 0) return MembraneTime(scene, SceneSmallestRadius(scene));
+  if (rate == 0) return PETSC_MAX_REAL;
   for (PetscInt v = 0; v < scene->shape.vesicles; v++) largest = PetscMax(largest, ShapeRadius(&scene->shape, v));
   return 1 / (rate * (1 + 0.03 * PetscMin(rate * MembraneTime(scene, largest), MOST_CHI)));
 }
 
+/* Of a fluid at rest; a flow has steps of its own. */
+static PetscReal MembraneTimeAtRest(Scene scene) {
+  return Rate(scene) == 0 ? MembraneTime(scene, SceneSmallestRadius(scene)) : PETSC_MAX_REAL;
+}
+
 PetscErrorCode SceneChooseLargestStep(Draft scene) {
-  const PetscReal most = SceneLargestStep(scene);
+  PetscReal most = SceneFlowStep(scene);
   char value[64];
   PetscFunctionBeginUser;
-  if (scene->time.adapt == ADAPT_NONE || !scene->shape.vesicles || most == PETSC_MAX_REAL)
-    PetscFunctionReturn(PETSC_SUCCESS);
+  if (scene->time.adapt == ADAPT_NONE || !scene->shape.vesicles) PetscFunctionReturn(PETSC_SUCCESS);
   if (scene->scheme.wanted > 0) PetscFunctionReturn(PETSC_SUCCESS); /* has its own */
+  if (scene->flow.type != FLOW_CUSTOM) most = PetscMin(most, MembraneTimeAtRest(scene));
+  if (most == PETSC_MAX_REAL) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscSNPrintf(value, sizeof(value), "%.6g", (double)most));
   PetscCall(SceneChoose(scene, "-time_adapt_max_step", value));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -97,7 +97,8 @@ PetscErrorCode CoupledAdvance(Scheme s, PetscReal dt) {
   s->old[0].dt_last = s->state.dt_last;
   s->state.dt_last = dt;
   s->past = PetscMin(s->past + 1, SCHEME_PAST);
-  s->plan.order = d->next_order;
+  s->plan.order = d->next_plan.order;
+  s->plan.guess = d->next_plan.guess;
   if (CouplingHasMembrane(s->coupling)) PetscCall(RestoreMarkers(s, d));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

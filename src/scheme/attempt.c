@@ -63,12 +63,11 @@ static PetscErrorCode RightHandSides(Scheme s, Coupled *d, const BDF *b) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The solution extrapolated through all states known: tension, wall forces, and V = U - (labels' speed) dX/dt - u_inf.
-   -time_frame none, for comparison, goes by two states as ever. */
+/* The solution extrapolated: tension, wall forces, and V = U - (labels' speed) dX/dt - u_inf. */
 static PetscErrorCode InitialGuess(Scheme s, Coupled *d) {
   State *n = &d->next;
   History *h = &d->history;
-  const PetscInt count = s->scene->time.frame == FRAME_NONE ? PetscMin(h->n, 2) : h->n;
+  const PetscInt count = PetscMin(h->n, s->plan.guess);
   PetscReal weight[BDF_MOST];
   PetscFunctionBeginUser;
   if (!d->solver) PetscFunctionReturn(PETSC_SUCCESS);
@@ -123,15 +122,15 @@ static PetscInt Order(Scheme s, const History *h) {
   return PetscMin(PetscMin(s->plan.order, h->n), even ? 3 : 2);
 }
 
-/* Largest |X - X*| of the extrapolation through `count` states. */
-static PetscErrorCode Miss(Scheme s, Coupled *d, PetscInt count, PetscReal *largest) {
+/* Largest |x - x*| on this rank, x* the extrapolation of a marker vector of the states through `count` of them. */
+static PetscErrorCode Miss(Scheme s, Coupled *d, PetscInt count, const Vec states[], Vec x, PetscReal *largest) {
   PetscReal star[BDF_MOST];
   const PetscScalar *y;
   PetscFunctionBeginUser;
   *largest = 0;
   BDFExtrapolation(count, d->history.step, star);
-  PetscCall(HistoryMarkers(&d->history, count, star, 1, d->Y));
-  PetscCall(VecAXPY(d->Y, -1, d->next.X));
+  PetscCall(HistorySum(&d->history, s->membrane, count, star, 1, 2, states, d->Y));
+  PetscCall(VecAXPY(d->Y, -1, x));
   PetscCall(VecGetArrayRead(d->Y, &y));
   for (PetscInt k = 0; k < s->membrane->layout->n; k++)
     *largest = PetscMax(*largest, PetscSqrtReal(PetscSqr(y[2 * k]) + PetscSqr(y[2 * k + 1])));
@@ -139,17 +138,23 @@ static PetscErrorCode Miss(Scheme s, Coupled *d, PetscInt count, PetscReal *larg
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Order 3 where the motion is so smooth that three states tell the next one better than two. */
-static PetscErrorCode ChooseOrder(Scheme s, Coupled *d) {
-  const PetscInt most = s->scene->scheme.order;
-  PetscReal miss[2];
+/* Order 3, and a guess through three states, where the motion is so smooth that three tell the next state better than
+   two: of the markers, and of their velocity. */
+static PetscErrorCode ChooseNext(Scheme s, Coupled *d) {
+  const Vec *const X = STATES(s, X), *const U = STATES(s, U);
+  StepPlan *next = &d->next_plan;
+  PetscReal miss[4] = {0};
   PetscFunctionBeginUser;
-  d->next_order = PetscMin(most, 2);
-  if (most < 3 || d->history.n < 3) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(Miss(s, d, 2, &miss[0]));
-  PetscCall(Miss(s, d, 3, &miss[1]));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, miss, 2, MPIU_REAL, MPI_MAX, s->membrane->layout->comm));
-  if (miss[1] < SMOOTH * miss[0]) d->next_order = 3;
+  next->order = PetscMin(s->scene->scheme.order, 2);
+  next->guess = 2;
+  if (d->history.n < 3) PetscFunctionReturn(PETSC_SUCCESS);
+  for (int k = 0; k < 2; k++) {
+    if (s->scene->scheme.order > 2) PetscCall(Miss(s, d, 2 + k, X, d->next.X, &miss[k]));
+    if (s->scene->time.frame != FRAME_NONE) PetscCall(Miss(s, d, 2 + k, U, d->next.U, &miss[2 + k]));
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, miss, 4, MPIU_REAL, MPI_MAX, s->membrane->layout->comm));
+  if (miss[1] < SMOOTH * miss[0]) next->order = 3;
+  if (miss[3] < miss[2]) next->guess = 3;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -170,6 +175,6 @@ PetscErrorCode CoupledAttempt(Scheme s, PetscReal dt, PetscBool *solved) {
   PetscCall(Solve(s, d));
   *solved = *s->report.failure ? PETSC_FALSE : PETSC_TRUE;
   if (*solved) PetscCall(MoveMarkers(s, d, b.a0));
-  if (*solved) PetscCall(ChooseOrder(s, d));
+  if (*solved) PetscCall(ChooseNext(s, d));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

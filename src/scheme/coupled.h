@@ -13,7 +13,7 @@ typedef struct {
   State next;            /* the state being made */
   History history;       /* what it is made from */
   PetscInt order;        /* of the step being made, */
-  PetscInt next_order;   /* and what it says for the next one */
+  StepPlan next_plan;    /* and what it says for the next one: order and guess */
   PetscReal done;        /* of the step under way: parts of a graded start (time) */
   PetscBool warned;      /* of edges that were off */
   Vec made_at;           /* markers at which the preconditioner's dense blocks were made, */

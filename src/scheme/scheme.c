@@ -80,7 +80,7 @@ PetscErrorCode SchemeCreate(Scene scene, Coupling coupling, const PetscReal X[],
   s->fluid = coupling->fluid;
   s->membrane = coupling->membrane;
   s->policy = StepPolicyCreate(scene, s->membrane->layout->bodies);
-  s->plan = (StepPlan){.level = StepFirstLevel(), .order = PetscMin(scene->scheme.order, 2)};
+  s->plan = (StepPlan){.level = StepFirstLevel(), .order = PetscMin(scene->scheme.order, 2), .guess = 2};
   PetscCall(CreateState(s, X));
   PetscCall(create(s));
   PetscCall(s->ops.setup(s));
