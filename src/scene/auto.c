@@ -12,13 +12,13 @@ static const struct {
   PetscReal max_step;  /* over nu R0^3/c_b */
   PetscReal of_rest;   /* energy of shapes at rest */
 } settings[] = {
-    {1e-1, "1e-2", 8.3e-3, "1e-4", 6.8e-4, 4, 1.0e-4},   {1e-2, "3e-3", 1.4e-3, "1e-4", 6.8e-4, 4, 1.0e-4},
-    {1e-3, "1e-3", 3.6e-4, "1e-5", 4.2e-5, 2, 6.4e-5},   {3e-4, "3e-4", 1.3e-4, "1e-6", 7.4e-6, 1, 3.0e-5},
-    {1e-4, "1e-4", 3.6e-5, "1e-6", 7.4e-6, 0.5, 8.9e-6},
+    {1e-1, "3e-2", 1.1e-2, "1e-4", 3.1e-5, 4, 1.2e-4},   {1e-2, "3e-3", 2.5e-3, "1e-4", 3.1e-5, 4, 1.2e-4},
+    {1e-3, "3e-4", 3.7e-4, "1e-5", 5.8e-6, 2, 6.3e-5},   {3e-4, "1e-4", 1.3e-4, "1e-6", 4.8e-7, 1, 3.7e-5},
+    {1e-4, "3e-5", 4.0e-5, "1e-6", 4.8e-7, 0.5, 1.2e-5},
 };
 
 /* Worst error of angle and frequency in steady tank-treading (V = 0.5 to 0.9, chi = 1 and 10), by R0/h and finer, with
-   markers 1.5 h apart: on coarse grids it is that of too few markers. */
+   markers 1.5 h apart: on coarse grids it is that of too few markers (an earlier calibration's, docs/choosing.md). */
 static const struct { PetscReal cells, error; } grids[] = {{12.8, 1.4e-4}, {7, 1.4e-4}, {5.3, 3.6e-4}, {3.9, 4.2e-2}};
 
 static PetscInt Row(Scene scene) {
@@ -137,7 +137,7 @@ static PetscErrorCode PrintChoice(Scene scene, PetscInt row, PetscBool timed) {
   PetscCall(PetscPrintf(scene->comm, "petves: -scheme_auto %g, by the worst errors measured (docs/speed_accuracy.md)\n",
                         (double)scene->scheme.wanted));
   PetscCall(PrintSetting(scene, "-scheme_type", "the membrane and the fluid in one solve"));
-  PetscCall(PrintSetting(scene, "-scheme_order", "order 1 leaves 1 % of the frequency at rate dt = 0.0125"));
+  PetscCall(PrintSetting(scene, "-scheme_order", "what was calibrated"));
   PetscCall(PrintSetting(scene, "-time_adapt", "finds the step of any scene"));
   PetscCall(PrintSetting(scene, "-time_step", timed ? "a twentieth of the fastest time of the scene" : "the default"));
   if (scene->time.adapt == ADAPT_ERROR) {
