@@ -45,7 +45,7 @@ export OMPI_MCA_mpi_yield_when_idle := 1
 export OMPI_MCA_btl_vader_single_copy_mechanism := none
 export OMP_NUM_THREADS := 1
 
-.PHONY: all help deps test-deps run test coverage reproduce stability chart calibrate bench fuzz install format check-format clean tests benches
+.PHONY: all help deps test-deps run test coverage reproduce stability time chart calibrate bench fuzz install format check-format clean tests benches
 all: $(BIN)/petves ## build bin/petves and lib/libpetves.so
 
 help: ## list the targets
@@ -124,6 +124,10 @@ stability: deps ## the maps of where each scheme fails, into docs/stability (at 
 chart: deps ## error against CPU time of every scheme, into docs/speed_accuracy (40 minutes; QUICK=1: two minutes)
 	@$(MAKE) --no-print-directory all
 	PETVES=$(CURDIR)/$(BIN)/petves PYTHONPATH=python:. $(PYTHON) -m studies chart $(if $(QUICK),out/chart,docs/speed_accuracy)
+
+time: deps ## what the time step leaves, by order and frame of the labels, into docs/time (ten minutes; QUICK=1: one, into out/time)
+	@$(MAKE) --no-print-directory all
+	PETVES=$(CURDIR)/$(BIN)/petves PYTHONPATH=python:. $(PYTHON) -m studies time $(if $(QUICK),out/time,docs/time)
 
 calibrate: deps ## what -scheme_auto chooses by: docs/speed_accuracy/calibration.csv (ten minutes)
 	@$(MAKE) --no-print-directory all

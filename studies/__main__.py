@@ -16,6 +16,7 @@ STUDIES = {
     "stability": ("stability.page", "where each scheme fails: docs/stability"),
     "accuracy": ("accuracy.page", "accuracy per cell: docs/accuracy"),
     "inertia": ("inertia.page", "the fluid's inertia: docs/inertia"),
+    "time": ("time.page", "what the time step leaves, by order and frame of the labels: docs/time"),
 }
 """The module whose `write` makes each study's files, and what it studies."""
 

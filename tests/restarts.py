@@ -17,8 +17,9 @@ SCHEMES = {
     "penalty": f"{BASE} -scheme_type penalty",
     "order_1": f"{BASE} -scheme_type coupled -scheme_order 1",
     "order_2": f"{BASE} -scheme_type coupled {DEFAULTS}",
+    "order_3": f"{BASE} -scheme_type coupled {DEFAULTS} -scheme_order 3",  # unsteady: with the velocity of three states
     "stiff": f"{BASE} -scheme_type coupled {DEFAULTS} -vesicle_bending 100",  # edges are corrected after its steps
-    "adaptive": f"{BASE} -scheme_type coupled {DEFAULTS} -time_adapt error -time_adapt_tol 1e-3",
+    "adaptive": f"{BASE} -scheme_type coupled {DEFAULTS} -scheme_order 3 -time_adapt error -time_adapt_tol 1e-3",
     "two_vesicles": f"{BASE} {TWO} -scheme_type coupled {DEFAULTS}",
     "total_form": f"{BASE} -flow_form total -scheme_type coupled -scheme_order 1",
 }

@@ -2,7 +2,6 @@
    markers, 24 steps, c_b and dt over four decades: E_K + E_B never rises with backward Euler, nor the G-norm energy
    with BDF2 at constant steps. And the split scheme, which has no such law. */
 #include "world.h"
-#include "scheme/coupled.h"
 
 #define STEPS 24
 #define FEW_STEPS 3
@@ -35,7 +34,7 @@ static PetscErrorCode EnergyOf(TestWorld *r, Vec w, Vec X, PetscReal *energy) {
 
 /* (E(u, X) + E(2u - u_old, 2X - X_old))/2: the G-norm energy. */
 static PetscErrorCode GNormEnergy(TestWorld *r, PetscReal *energy) {
-  const State *q = &r->scheme->state, *old = &((Coupled *)r->scheme->data)->old;
+  const State *q = &r->scheme->state, *old = &r->scheme->old[0];
   PetscReal now, ahead;
   Vec w, X;
   PetscFunctionBeginUser;

@@ -139,6 +139,27 @@ static PetscErrorCode CheckPolicies(void) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Order 3: the error goes like dt^3, and steps grow by a level at most. */
+static PetscErrorCode CheckOrder(void) {
+  static const struct {
+    PetscReal error;
+    StepVerdict verdict;
+    PetscInt next;
+  } cases[] = {{SMALL, STEP_ACCEPT, 1},       {0.25 * TOL, STEP_ACCEPT, 1}, {0.5 * TOL, STEP_ACCEPT, 0},
+               {0.95 * TOL, STEP_ACCEPT, -1}, {1.5 * TOL, STEP_REPEAT, -1}, {8 * TOL, STEP_REPEAT, -3}};
+  const StepPolicy policy = Policy(1);
+  PetscFunctionBeginUser;
+  for (size_t k = 0; k < sizeof(cases) / sizeof(cases[0]); k++) {
+    const StepTrial trial = {.solved = PETSC_TRUE, .order = 3, .dt = 1, .error = cases[k].error, .ratio = 1};
+    StepPlan plan = {.before = NONE};
+    const StepVerdict verdict = StepJudge(&policy, &trial, &plan);
+    CHECK(verdict == cases[k].verdict && plan.level == cases[k].next,
+          "order 3, error %g: verdict %d, level %d (%d, %d)", trial.error, verdict, (int)plan.level, cases[k].verdict,
+          (int)cases[k].next);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Sizes, over the base. */
 static const struct {
   const char *name;
@@ -301,6 +322,7 @@ static PetscErrorCode Facts(void) {
     PetscCall(CheckSizes(bases[b]));
   }
   PetscCall(CheckPolicies());
+  PetscCall(CheckOrder());
   for (int k = 1; k < 20; k++) PetscCall(CheckEnd(0.2 + 0.037 * k));
   PetscCall(CheckFixed());
   PetscCall(CheckFinished());

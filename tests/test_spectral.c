@@ -53,6 +53,39 @@ static PetscErrorCode CheckDerivatives(PetscInt n) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* A shift of labels: exact on trigonometric curves, alone or in pairs; it keeps sums of squares of an odd number. */
+static PetscErrorCode CheckShift(PetscInt n) {
+  const PetscReal phi = 0.37;
+  PetscReal *x, *y, error = 0;
+  unsigned seed = 9;
+  Spectral s;
+  PetscFunctionBeginUser;
+  PetscCall(SpectralCreate(n, &s));
+  PetscCall(PetscCalloc2(2 * n, &x, 2 * n, &y));
+  for (int each = 1; each <= 2; each++)
+    for (PetscInt q = 0; q <= (n - 1) / 2; q++) {
+      for (PetscInt k = 0; k < each * n; k++)
+        x[k] = PetscCosReal(2 * PETSC_PI * q * (PetscReal)(k / each) / n + 0.3 + k % each);
+      SpectralShift(s, each, phi, x, y);
+      for (PetscInt k = 0; k < each * n; k++)
+        error = PetscMax(error, PetscAbsReal(y[k] - PetscCosReal(q * (2 * PETSC_PI * (PetscReal)(k / each) / n + phi) +
+                                                                 0.3 + k % each)));
+    }
+  CHECK(error < 1e-12, "%d markers: labels shifted exactly on %d waves, error %.1e", (int)n, (int)((n + 1) / 2), error);
+  for (PetscInt k = 0; k < 2 * n; k++) x[k] = TestRandom(&seed);
+  SpectralShift(s, 2, phi, x, y);
+  const PetscReal change = Dot(2 * n, y, y) / Dot(2 * n, x, x) - 1;
+  CHECK(n % 2 ? PetscAbsReal(change) < 1e-13 : change < 0, "%d markers: a shift changes the sum of squares by %.1e",
+        (int)n, change);
+  SpectralShift(s, 2, -phi, y, y);
+  error = 0;
+  for (PetscInt k = 0; k < 2 * n; k++) error = PetscMax(error, PetscAbsReal(y[k] - x[k]));
+  if (n % 2) CHECK(error < 1e-13, "%d markers: and back, in place, to %.1e", (int)n, error);
+  PetscCall(PetscFree2(x, y));
+  PetscCall(SpectralDestroy(&s));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* A membrane near rest, and random numbers. */
 typedef struct {
   TestMembrane w;
@@ -132,7 +165,7 @@ static PetscErrorCode CheckArea(Near *q) {
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < 2 * M; k++) X[k] = old[k] = 1.004 * q->w.scene->shape.X[k];
   for (PetscInt k = 0; k < M; k++) old[2 * k] += 0.1;
-  const PetscReal shift = MembraneRestoreArea(m, 0, X, old);
+  const PetscReal shift = MembraneRestoreArea(m, 0, X, 1, &old);
   MembraneMeasure(m, 0, X, &measures);
   for (PetscInt k = 0; k < M; k++)
     apart = PetscMax(apart, PetscAbsReal(old[2 * k] - X[2 * k] - 0.1) + PetscAbsReal(old[2 * k + 1] - X[2 * k + 1]));
@@ -143,12 +176,41 @@ static PetscErrorCode CheckArea(Near *q) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The labels' speed of a known motion, a translation, a turn and a shift of labels together; on a circle, where a turn
+   is a shift, all of it. */
+static PetscErrorCode CheckTreading(Near *q) {
+  const Membrane m = q->w.membrane;
+  const PetscInt M = q->w.M;
+  const PetscReal V = 0.41, omega = -0.7, *X = q->w.scene->shape.X;
+  PetscReal *circle = q->other, *U = q->F;
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < M; k++) {
+    U[2 * k] = 3 - omega * X[2 * k + 1];
+    U[2 * k + 1] = -2 + omega * X[2 * k];
+  }
+  MembraneLabelDerivative(m, 0, V, X, U);
+  const PetscReal found = MembraneTreading(m, 0, X, U);
+  CHECK(PetscAbsReal(found / V - 1) < 1e-12, "%s: labels at the speed %.15f, %g known", q->derivative, found, V);
+  for (PetscInt k = 0; k < M; k++) {
+    const PetscReal t = 2 * PETSC_PI * (PetscReal)k / M;
+    circle[2 * k] = 5 + 0.3 * PetscCosReal(t);
+    circle[2 * k + 1] = 0.3 * PetscSinReal(t);
+    U[2 * k] = 1 - omega * 0.3 * PetscSinReal(t);
+    U[2 * k + 1] = omega * 0.3 * PetscCosReal(t);
+  }
+  const PetscReal turn = MembraneTreading(m, 0, circle, U);
+  CHECK(PetscAbsReal(turn / omega - 1) < 1e-12, "%s: a circle that turns at %g: labels at %.15f", q->derivative, omega,
+        turn);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode CheckMembrane(const char derivative[]) {
   Near q;
   PetscFunctionBeginUser;
   PetscCall(NearCreate(derivative, &q));
   PetscCall(CheckForces(&q));
   PetscCall(CheckArea(&q));
+  PetscCall(CheckTreading(&q));
   PetscCall(NearDestroy(&q));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -189,6 +251,8 @@ static PetscErrorCode Facts(void) {
   PetscCall(CheckStart("64,64"));
   PetscCall(CheckDerivatives(35));
   PetscCall(CheckDerivatives(48));
+  PetscCall(CheckShift(35));
+  PetscCall(CheckShift(48));
   for (int k = 0; k < 3; k++) PetscCall(CheckMembrane(derivatives[k]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -11,6 +11,7 @@ from conftest import ROOT
 HOMES = {
     "accuracy": "accuracy",
     "inertia": "inertia",
+    "time": "time",
     "stability": "stability",
     "chart": "speed_accuracy",
     "calibrate": "speed_accuracy",

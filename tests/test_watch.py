@@ -52,7 +52,7 @@ def test_failed_graded_start_leaves_the_first_state(tmp_path):
     run = run_petves(tmp_path / "run", options, good=False)
     assert run.status == 2 and "needs 3" in run.errors[0] and "; try " in run.errors[0]
     with h5py.File(run.folder / "checkpoint.h5") as file:
-        assert file.attrs["step"] == 0 and file.attrs["time"] == 0 and file.attrs["has_previous"] == 0
+        assert file.attrs["step"] == 0 and file.attrs["time"] == 0 and file.attrs["past"] == 0
         assert not file["fluid/u"][:].any()
 
 

@@ -1,9 +1,11 @@
 #include "coupling/coupling.h"
 
-PetscErrorCode CouplingPlace(Coupling c, PetscReal a0, Vec X, char message[PETVES_MAX_MESSAGE]) {
+PetscErrorCode CouplingPlace(Coupling c, PetscReal a0, Vec X, const PetscReal treading[],
+                             char message[PETVES_MAX_MESSAGE]) {
   const PetscScalar *x;
   PetscFunctionBeginUser;
   message[0] = 0;
+  for (PetscInt v = 0; v < c->membrane->layout->bodies; v++) c->treading[v] = treading ? treading[v] : 0;
   PetscCall(FluidSetTimeCoefficient(c->fluid, a0));
   if (!CouplingHasMembrane(c)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(MarkersCheck(c->markers, X, message));
@@ -63,6 +65,18 @@ PetscErrorCode CouplingNearBending(Coupling c, PetscReal alpha, Vec X, Vec U) {
   PetscCall(NearFieldApply(c->near, alpha * h2, F, u));
   PetscCall(VecRestoreArray(U, &u));
   PetscCall(VecRestoreArrayRead(c->force, &F));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CouplingTread(Coupling c, PetscReal alpha, Vec X, Vec U) {
+  const PetscScalar *x;
+  PetscScalar *u;
+  PetscFunctionBeginUser;
+  PetscCall(VecGetArrayRead(X, &x));
+  PetscCall(VecGetArray(U, &u));
+  MembraneTread(c->membrane, c->treading, alpha, x, u);
+  PetscCall(VecRestoreArray(U, &u));
+  PetscCall(VecRestoreArrayRead(X, &x));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -141,6 +155,7 @@ PetscErrorCode CouplingCreate(Fluid fluid, Membrane m, const char kernel[], Near
   const PetscBool folded = near == NEAR_EXACT && !fluid->total ? PETSC_TRUE : PETSC_FALSE;
   PetscCall(MarkersCreate(fluid->grid, m->layout, kernel, folded, &c->markers));
   PetscCall(PetscMalloc1(2 * m->layout->n, &c->tau));
+  PetscCall(PetscCalloc1(m->layout->bodies, &c->treading));
   PetscCall(LayoutCreateVec(m->layout, 2, &c->force));
   PetscCall(VecDuplicate(c->force, &c->velocity));
   PetscCall(CreateShell(c, 1, Mult_S, MultTranspose_S, &c->S));
@@ -156,6 +171,7 @@ PetscErrorCode CouplingDestroy(Coupling *coupling) {
   PetscCall(NearFieldDestroy(&c->near));
   PetscCall(MarkersDestroy(&c->markers));
   PetscCall(PetscFree(c->tau));
+  PetscCall(PetscFree(c->treading));
   PetscCall(VecDestroy(&c->force));
   PetscCall(VecDestroy(&c->velocity));
   PetscCall(MatDestroy(&c->S));

@@ -9,12 +9,13 @@ struct _p_Coupling {
   Fluid fluid;       /* borrowed */
   Membrane membrane; /* borrowed; of no vesicle when the scene has none */
   Markers markers;
-  NearField near; /* NULL without */
-  PetscReal *tau; /* [2n] tangents of the own vesicles */
-  Vec force;      /* marker vector, work */
-  Vec velocity;   /* marker vector, work */
-  Mat S;          /* (velocity x tension) S = E^T Dm^T/h^2: minus the spread tension force */
-  Mat B;          /* (velocity x marker vector) B = E^T (c_b ds/h^2) D4: minus the spread bending force */
+  NearField near;      /* NULL without */
+  PetscReal *tau;      /* [2n] tangents of the own vesicles */
+  PetscReal *treading; /* [vesicles] V, the speed of the labels in which the step is made (1/time) */
+  Vec force;           /* marker vector, work */
+  Vec velocity;        /* marker vector, work */
+  Mat S;               /* (velocity x tension) S = E^T Dm^T/h^2: minus the spread tension force */
+  Mat B;               /* (velocity x marker vector) B = E^T (c_b ds/h^2) D4: minus the spread bending force */
 };
 
 /* CouplingCreate - of a fluid and membranes with the named kernel and near field; not placed yet. Collective. */
@@ -23,9 +24,11 @@ PETSC_EXTERN PetscErrorCode CouplingCreate(Fluid fluid, Membrane membrane, const
 PETSC_EXTERN PetscErrorCode CouplingDestroy(Coupling *coupling);
 
 /* CouplingPlace - everything that a solve stands on, in one call: the time coefficient a0 (1/time) in the fluid's H; E,
-   S, B, the tangents and the near field C at the markers X. message[PETVES_MAX_MESSAGE] is empty, or says why it
-   cannot be: a marker near a wall; the same on every rank. Collective. */
-PETSC_EXTERN PetscErrorCode CouplingPlace(Coupling coupling, PetscReal a0, Vec X, char message[PETVES_MAX_MESSAGE]);
+   S, B, the tangents and the near field C at the markers X; the labels' speeds treading[vesicles] (1/time; NULL: at
+   rest). message[PETVES_MAX_MESSAGE] is empty, or says why it cannot be: a marker near a wall; the same on every rank.
+   Collective. */
+PETSC_EXTERN PetscErrorCode CouplingPlace(Coupling coupling, PetscReal a0, Vec X, const PetscReal treading[],
+                                          char message[PETVES_MAX_MESSAGE]);
 
 /* CouplingHasMembrane - whether there is a vesicle. CouplingBending - c_b, 0 without a vesicle. Not collective. */
 static inline PetscBool CouplingHasMembrane(Coupling coupling) {
@@ -42,6 +45,9 @@ PETSC_EXTERN PetscErrorCode CouplingSpreadBending(Coupling coupling, PetscReal a
 /* CouplingNearBending - U += alpha C c_b ds D4 X, the near field of a bending force; nothing without near field.
    Collective. */
 PETSC_EXTERN PetscErrorCode CouplingNearBending(Coupling coupling, PetscReal alpha, Vec X, Vec U);
+
+/* CouplingTread - U += alpha V dX/dt, what the labels' own motion adds to the markers' velocity. Not collective. */
+PETSC_EXTERN PetscErrorCode CouplingTread(Coupling coupling, PetscReal alpha, Vec X, Vec U);
 
 /* CouplingStretching - d = Dm U/h^2. d and U are an edge vector and a marker vector. Not collective. */
 PETSC_EXTERN PetscErrorCode CouplingStretching(Coupling coupling, Vec U, Vec d);

@@ -94,14 +94,32 @@ static void AssembleBlock(Membrane m, PetscReal h2, Block *q, PetscReal a0, cons
   }
 }
 
+/* N^T += ((v/a0) d/dt)^T, the labels' own motion: antisymmetric. */
+static PetscErrorCode AddTreading(Membrane m, Block *q, PetscReal a0, const PetscReal treading[]) {
+  PetscReal *unit;
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(2 * q->n, &unit));
+  for (PetscInt v = q->vesicle; v < q->end; v++) {
+    const PetscInt at = 2 * (m->layout->start[v] - q->first);
+    for (PetscInt c = 0; c < 2 * LayoutCount(m->layout, v) && treading[v] != 0; c++) {
+      unit[c] = 1;
+      MembraneLabelDerivative(m, v, -treading[v] / a0, unit, q->N + (at + c) * 2 * q->n + at);
+      unit[c] = 0;
+    }
+  }
+  PetscCall(PetscFree(unit));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Factors of N and C for Mob with the near field in it. */
-static PetscErrorCode FactorBlock(Membrane m, PetscReal h2, Block *q, PetscReal a0, const PetscReal Mob[],
-                                  PetscBool *factored) {
+static PetscErrorCode FactorBlock(Membrane m, PetscReal h2, Block *q, PetscReal a0, const PetscReal treading[],
+                                  const PetscReal Mob[], PetscBool *factored) {
   const PetscInt n = q->n;
   PetscReal *D, trace = 0;
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(2 * n * n, &D));
   AssembleBlock(m, h2, q, a0, Mob, D);
+  PetscCall(AddTreading(m, q, a0, treading));
   PetscCall(DenseFactor(2 * n, q->N, q->pivot_N, factored));
   if (*factored) {
     /* K = N^-1 M Dm^T/h^2; M is symmetric, so M Dm^T is D^T */
@@ -194,7 +212,7 @@ PetscErrorCode DenseBlocksFactor(DenseBlocks b, Mobility mobility, PetscReal a0,
       PetscCall(AssembleTable(mobility, q->first, q->n, 0, 1, Mob));
       AddNearField(b->coupling, q->vesicle, q->end, q->first, q->n, Mob);
     }
-    PetscCall(FactorBlock(m, h2, q, a0, Mob, &good));
+    PetscCall(FactorBlock(m, h2, q, a0, b->coupling->treading, Mob, &good));
   }
   PetscCall(PetscFree(Mob));
   PetscCall(AgreeFlag(m->layout->comm, good ? PETSC_FALSE : PETSC_TRUE, &failed));

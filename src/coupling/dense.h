@@ -1,7 +1,7 @@
 /* The small problem of the membranes inside the coupled preconditioner, one dense block for all vesicles or, when their
    markers are many, one a vesicle (docs/method.md, Preconditioner), with M = Mob + h^2 C, C the near
    field:
-       N = I + (c_b ds/(h^2 a0)) M D4,   C = Dm N^-1 M Dm^T/h^4,
+       N = I + (v/a0) d/dt + (c_b ds/(h^2 a0)) M D4 (v: the labels' speed),   C = Dm N^-1 M Dm^T/h^4,
        U1 = N^-1 U,   sigma = C^-1 (Dm U1/h^2 - r_s),   U3 = U1 - N^-1 M Dm^T sigma/h^2.
    A block is one rank's, the owner of its first vesicle. */
 #pragma once
@@ -20,8 +20,8 @@ PETSC_EXTERN PetscErrorCode DenseBlocksDestroy(DenseBlocks *blocks);
 PETSC_EXTERN void DenseBlocksPlace(DenseBlocks blocks);
 
 /* DenseBlocksFactor - assemble Mob (mobility NULL: zero, the near field is all) at the coupling's markers, factor N and
-   C for a0. Ranks share the sums of Mob of a block for all, its owner does the rest. factored is
-   false, on every rank, when a matrix is singular. Collective. */
+   C for a0 and the coupling's label speeds. Ranks share the sums of Mob of a block for all, its owner does the rest.
+   factored is false, on every rank, when a matrix is singular. Collective. */
 PETSC_EXTERN PetscErrorCode DenseBlocksFactor(DenseBlocks blocks, Mobility mobility, PetscReal a0, PetscBool *factored);
 
 /* DenseBlocksSolve - from the own U[2n] and sigma[n] = r_s: sigma, and U overwritten by U3. Collective. */

@@ -13,6 +13,7 @@ PetscErrorCode PreconditionerCreate(Scene scene, Unknowns u, Preconditioner *out
   p->unknowns = u;
   p->type = CouplingHasMembrane(c) ? (MobilityType)scene->coupling.mobility : MOBILITY_NONE;
   PetscCall(PetscMalloc1(u->walls->n, &p->d));
+  PetscCall(PetscCalloc1(c->membrane->layout->bodies, &p->age.treading));
   if (p->type == MOBILITY_TABLE) {
     if (!c->fluid->grid->free) PetscCall(MobilityCreate(&scene->fluid, c, &p->mobility));
     PetscCall(DenseBlocksCreate(c, &p->blocks));
@@ -36,23 +37,26 @@ PetscErrorCode PreconditionerDestroy(Preconditioner *preconditioner) {
   PetscCall(VecDestroy(&p->rhs));
   PetscCall(VecDestroy(&p->sigma));
   PetscCall(PetscFree(p->d));
+  PetscCall(PetscFree(p->age.treading));
   PetscCall(PetscFree(*preconditioner));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode PreconditionerForget(Preconditioner p) {
   PetscFunctionBeginUser;
-  p->age = (Ageing){.fresh_its = -1, .most = NO_LIMIT};
+  p->age = (Ageing){.treading = p->age.treading, .fresh_its = -1, .most = NO_LIMIT};
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode MakeBlocks(Preconditioner p) {
-  const Fluid f = p->unknowns->coupling->fluid;
+  const Coupling c = p->unknowns->coupling;
+  const Fluid f = c->fluid;
   PetscBool factored;
   PetscFunctionBeginUser;
   if (p->mobility) PetscCall(MobilitySetUp(p->mobility, f->alpha));
   PetscCall(DenseBlocksFactor(p->blocks, p->mobility, f->a0, &factored));
   p->failed = factored ? PETSC_FALSE : PETSC_TRUE;
+  PetscCall(PetscArraycpy(p->age.treading, c->treading, c->membrane->layout->bodies));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -67,7 +71,8 @@ PetscErrorCode PreconditionerGetMemory(Preconditioner p, PetscReal memory[PRECON
 PetscErrorCode PreconditionerSetMemory(Preconditioner p, const PetscReal memory[PRECONDITIONER_MEMORY]) {
   PetscFunctionBeginUser;
   if (!p->blocks || memory[0] == 0) PetscFunctionReturn(PETSC_SUCCESS);
-  p->age = (Ageing){.a0 = memory[0],
+  p->age = (Ageing){.treading = p->age.treading,
+                    .a0 = memory[0],
                     .fresh_its = (PetscInt)memory[1],
                     .solves = (PetscInt)memory[2],
                     .excess = memory[3],
@@ -100,6 +105,17 @@ static PetscReal RenewalCost(Preconditioner p) {
   return blocks * (4e-9 * n * n * n + 6e-7 * n * n) / (1.5e-8 * cells + blocks * 1e-8 * n * n + 5e-5);
 }
 
+/* Whether I + (v/a0) d/dt of a vesicle has moved by 10 % in its highest mode, n/2. */
+static PetscBool LabelsMoved(Preconditioner p) {
+  const Coupling c = p->unknowns->coupling;
+  for (PetscInt v = 0; v < c->membrane->layout->bodies; v++) {
+    const PetscReal mode = 0.5 * (PetscReal)LayoutCount(c->membrane->layout, v) / c->fluid->a0;
+    const PetscReal now = mode * c->treading[v], made = mode * p->age.treading[v];
+    if (PetscAbsReal(now - made) > 0.1 * (1 + PetscAbsReal(made))) return PETSC_TRUE;
+  }
+  return PETSC_FALSE;
+}
+
 static PetscErrorCode SetUpChat(Preconditioner p) {
   Mat Chat;
   PetscFunctionBeginUser;
@@ -121,7 +137,8 @@ PetscErrorCode PreconditionerSetUp(Preconditioner p) {
   if (p->type == MOBILITY_ILU) PetscCall(SetUpChat(p));
   if (p->type != MOBILITY_TABLE) PetscFunctionReturn(PETSC_SUCCESS);
   DenseBlocksPlace(p->blocks);
-  if (a->excess > RenewalCost(p) || a->solves >= a->most || !(PetscAbsReal(a->a0 / c->fluid->a0 - 1) < 0.1))
+  if (a->excess > RenewalCost(p) || a->solves >= a->most || !(PetscAbsReal(a->a0 / c->fluid->a0 - 1) < 0.1) ||
+      LabelsMoved(p))
     PetscCall(Renew(p));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -9,12 +9,13 @@
 
 /* How the dense blocks age. Iterations, not seconds, so that a run does not depend on the machine. */
 typedef struct {
-  PetscReal a0;       /* that they were made for; 0: none yet */
-  PetscInt fresh_its; /* iterations of the first solve with them; -1: not known yet */
-  PetscInt solves;    /* that they have served */
-  PetscReal excess;   /* iterations above fresh_its in all of these */
-  PetscInt most;      /* solves that they may serve */
-  PetscInt made;      /* times that blocks have been made */
+  PetscReal a0;        /* that they were made for; 0: none yet */
+  PetscReal *treading; /* [vesicles] label speeds that they were made for */
+  PetscInt fresh_its;  /* iterations of the first solve with them; -1: not known yet */
+  PetscInt solves;     /* that they have served */
+  PetscReal excess;    /* iterations above fresh_its in all of these */
+  PetscInt most;       /* solves that they may serve */
+  PetscInt made;       /* times that blocks have been made */
 } Ageing;
 
 /* Of the solve under way. */
@@ -44,7 +45,8 @@ PETSC_EXTERN PetscErrorCode PreconditionerDestroy(Preconditioner *preconditioner
 
 /* PreconditionerSetUp - follow the coupling's a0 and markers; a solve begins. The dense blocks are kept while a0 moves
    by less than 10 % and until the iterations beyond those of the first solve with them have cost as much as new ones
-   would; a solve that needs many more iterations makes them anew and goes on. Collective. */
+   would, and while I + (v/a0) d/dt of the labels' speeds v moves by less than 10 %; a solve that needs many more
+   iterations makes them anew and goes on. Collective. */
 PETSC_EXTERN PetscErrorCode PreconditionerSetUp(Preconditioner preconditioner);
 
 /* PreconditionerApply - z ~ A^-1 r, of residuals and unknowns. Collective. */
@@ -58,8 +60,9 @@ PETSC_EXTERN PetscBool PreconditionerIsNew(Preconditioner preconditioner);
 
 /* PreconditionerGetMemory, PreconditionerSetMemory - all that earlier solves have left for later ones, as numbers that
    a checkpoint can hold, and made again from them, with the coupling placed where and for the a0 (memory[0]; 0: no
-   blocks) for which the dense blocks were made. Whatever is kept from solve to solve belongs in here, or a restarted
-   run would not have the bits of one that went on. Set is collective. */
+   blocks) and the label speeds for which the dense blocks were made, which are not among the numbers. Whatever is kept
+   from solve to solve belongs in here, or a restarted run would not have the bits of one that went on. Set is
+   collective. */
 #define PRECONDITIONER_MEMORY 6
 PETSC_EXTERN PetscErrorCode PreconditionerGetMemory(Preconditioner preconditioner,
                                                     PetscReal memory[PRECONDITIONER_MEMORY]);

@@ -39,7 +39,8 @@ static PetscErrorCode Subtract(Vec known, PetscInt n, PetscScalar y[]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* y = (V - E w + C F - k, Dm V/h^2 - g) of x, s->F holding F; k and g may be NULL; not scaled yet. */
+/* y = (V + (treading/a0) dV/dt - E w + C F - k, Dm V/h^2 - g) of x, s->F holding F; k and g may be NULL; not scaled
+   yet. */
 static PetscErrorCode MembraneConditions(Reduced s, const PetscScalar x[], Vec w, Vec known, Vec g, PetscScalar y[]) {
   const Coupling c = s->unknowns->coupling;
   const PetscInt n = s->unknowns->velocity;
@@ -50,6 +51,7 @@ static PetscErrorCode MembraneConditions(Reduced s, const PetscScalar x[], Vec w
   PetscCall(VecGetArrayRead(s->U, &U));
   for (PetscInt k = 0; k < n; k++) y[k] = x[k] - U[k];
   PetscCall(VecRestoreArrayRead(s->U, &U));
+  MembraneTread(c->membrane, c->treading, 1 / c->fluid->a0, x, y);
   PetscCall(VecGetArrayRead(s->F, &F));
   if (c->near) PetscCall(NearFieldApply(c->near, 1, F, y));
   PetscCall(VecRestoreArrayRead(s->F, &F));
@@ -60,7 +62,8 @@ static PetscErrorCode MembraneConditions(Reduced s, const PetscScalar x[], Vec w
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* y = scaled (V - E w + C F - k, Dm V/h^2 - g, d + slip) of x and the velocity w that its forces F gave. Collective. */
+/* y = scaled (V + (treading/a0) dV/dt - E w + C F - k, Dm V/h^2 - g, d + slip) of x and the velocity w that its forces
+ * F gave. Collective. */
 static PetscErrorCode Conditions(Reduced s, const PetscScalar x[], Vec w, Vec known, Vec g, PetscScalar y[]) {
   const Unknowns u = s->unknowns;
   const PetscInt wall = u->velocity + u->tension;

@@ -85,3 +85,20 @@ void TrigonometricPoints(PetscInt n, const PetscReal X[], PetscInt times, PetscR
     }
   }
 }
+
+void SpectralShift(Spectral s, int each, PetscReal phi, const PetscScalar X[], PetscScalar Y[]) {
+  const PetscInt n = s->n;
+  double *line = (double *)s->line, *hat = (double *)s->hat;
+  for (PetscInt k = 0; k < n; k++)
+    for (int c = 0; c < 2; c++) line[2 * k + c] = c < each ? X[each * k + c] : 0;
+  fftw_execute(s->forward);
+  for (PetscInt q = 0; q < n; q++) {
+    const PetscReal angle = (PetscReal)(2 * q > n ? q - n : q) * phi, re = hat[2 * q], im = hat[2 * q + 1];
+    const PetscReal a = PetscCosReal(angle) / n, b = 2 * q == n ? 0 : PetscSinReal(angle) / n;
+    hat[2 * q] = a * re - b * im;
+    hat[2 * q + 1] = a * im + b * re;
+  }
+  fftw_execute(s->backward);
+  for (PetscInt k = 0; k < n; k++)
+    for (int c = 0; c < each; c++) Y[each * k + c] = line[2 * k + c];
+}

@@ -1,4 +1,4 @@
-/* Derivatives with respect to the marker index in the discrete Fourier space of one closed curve. */
+/* Derivatives with respect to the marker index, and shifts of it, in the discrete Fourier space of one closed curve. */
 #pragma once
 #include "base/base.h"
 
@@ -22,3 +22,8 @@ PETSC_EXTERN PetscReal SpectralTail(Spectral spectral, PetscReal part, const Pet
    collective. */
 PETSC_EXTERN PetscReal TrigonometricCardinal(PetscInt n, PetscReal t);
 PETSC_EXTERN void TrigonometricPoints(PetscInt n, const PetscReal X[], PetscInt times, PetscReal Y[]);
+
+/* SpectralShift - Y_k = X at the label t_k + phi, t_k = 2 pi k/n, of the trigonometric polynomial through X: mode m
+   times e^{i m phi}, the Nyquist mode of an even n times cos(n phi/2). `each` numbers a marker, 1 or 2 (interlaced).
+   For odd n it keeps the sum of squares. Y may be X. */
+PETSC_EXTERN void SpectralShift(Spectral spectral, int each, PetscReal phi, const PetscScalar X[], PetscScalar Y[]);

@@ -25,8 +25,8 @@ PetscErrorCode MembraneCreate(Layout layout, const PetscReal X[], PetscReal bend
   m->derivative = derivative;
   PetscCall(
       PetscMalloc5(vesicles, &m->ds, vesicles, &m->A0, vesicles, &m->L0, vesicles, &m->spectral, vesicles, &m->arc));
-  PetscCall(PetscMalloc4(2 * layout->M, &w->stretching, 2 * layout->M, &w->bending, 2 * layout->M, &w->measures,
-                         2 * layout->M, &w->restore));
+  PetscCall(PetscMalloc5(2 * layout->M, &w->stretching, 2 * layout->M, &w->bending, 2 * layout->M, &w->measures,
+                         2 * layout->M, &w->restore, 2 * layout->M, &w->treading));
   for (PetscInt v = 0; v < vesicles; v++) {
     const PetscInt n = LayoutCount(layout, v);
     Measures measures;
@@ -46,7 +46,7 @@ PetscErrorCode MembraneDestroy(Membrane *membrane) {
   if (!m) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt v = 0; v < m->layout->bodies; v++) PetscCall(SpectralDestroy(&m->spectral[v]));
   PetscCall(PetscFree5(m->ds, m->A0, m->L0, m->spectral, m->arc));
-  PetscCall(PetscFree4(m->work.stretching, m->work.bending, m->work.measures, m->work.restore));
+  PetscCall(PetscFree5(m->work.stretching, m->work.bending, m->work.measures, m->work.restore, m->work.treading));
   PetscCall(PetscFree(*membrane));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

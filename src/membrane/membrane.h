@@ -10,7 +10,7 @@
 
 /* Work space of [2 M], each for one purpose: what calls one another does not share. */
 typedef struct {
-  PetscScalar *stretching, *bending, *measures, *restore;
+  PetscScalar *stretching, *bending, *measures, *restore, *treading;
 } MembraneWork;
 
 typedef struct _p_Membrane *Membrane;
@@ -88,6 +88,28 @@ PETSC_EXTERN PetscErrorCode MembraneRestoreEdges(Membrane membrane, PetscInt ves
                                                  PetscScalar X[], PetscReal *error);
 
 /* MembraneRestoreArea - shift one vesicle's markers by a uniform distance along the vertex normals (of the chord from
-   X_{k-1} to X_{k+1}, or of the spectral edge) until its area is A0: Newton on the area. The old markers move alike.
-   Returns the shift (length). */
-PETSC_EXTERN PetscReal MembraneRestoreArea(Membrane membrane, PetscInt vesicle, PetscScalar X[], PetscScalar X_old[]);
+   X_{k-1} to X_{k+1}, or of the spectral edge) until its area is A0: Newton on the area. The markers of `count` old
+   states move alike. Returns the shift (length). */
+PETSC_EXTERN PetscReal MembraneRestoreArea(Membrane membrane, PetscInt vesicle, PetscScalar X[], PetscInt count,
+                                           PetscScalar *const X_old[]);
+
+/* MembraneMoveNormally - shift one vesicle's markers by a distance along their own vertex normals, outwards. */
+PETSC_EXTERN void MembraneMoveNormally(Membrane membrane, PetscInt vesicle, PetscReal distance, PetscScalar X[]);
+
+/* MembraneTreading - how fast the shape of one vesicle turns in its labels t, which run from 0 to 2 pi: V (1/time) of
+   the least squares fit U ~ c + omega J (X - mean) + V dX/dt. Where a turn and a shift of labels are the same to 5 %,
+   as on a circle, omega is left out. */
+PETSC_EXTERN PetscReal MembraneTreading(Membrane membrane, PetscInt vesicle, const PetscScalar X[],
+                                        const PetscScalar U[]);
+
+/* MembraneLabelDerivative - Y += alpha dX/dt of one vesicle, spectral. MembraneTread - U += alpha V dX/dt of all own
+   vesicles, with V[vesicles]. */
+PETSC_EXTERN void MembraneLabelDerivative(Membrane membrane, PetscInt vesicle, PetscReal alpha, const PetscScalar X[],
+                                          PetscScalar Y[]);
+PETSC_EXTERN void MembraneTread(Membrane membrane, const PetscReal V[], PetscReal alpha, const PetscScalar X[],
+                                PetscScalar U[]);
+
+/* MembraneShiftLabels - y(t) = x(t + V time) of all own vesicles, with V[vesicles] and `each` (1 or 2) numbers a
+   marker. */
+PETSC_EXTERN void MembraneShiftLabels(Membrane membrane, const PetscReal V[], PetscReal time, int each,
+                                      const PetscScalar x[], PetscScalar y[]);

@@ -21,22 +21,24 @@ static PetscErrorCode WriteOnly(H5File *file, const char prefix[], const char na
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* What the state has: of an older one no step needs the pressure, and most not the velocity. */
 static PetscErrorCode WriteFluid(Scheme s, H5File *file, const char prefix[], const State *q) {
   static const char *const names[3] = {"u", "v", "p"};
   const Grid g = s->fluid->grid;
   char name[64];
   const PetscScalar *a[3];
   PetscFunctionBeginUser;
+  if (!q->w) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecGetArrayRead(q->w, &a[0]));
   a[1] = a[0] + GridLocalU(g);
-  PetscCall(VecGetArrayRead(q->p, &a[2]));
-  for (int f = 0; f < 3; f++) {
+  if (q->p) PetscCall(VecGetArrayRead(q->p, &a[2]));
+  for (int f = 0; f < (q->p ? 3 : 2); f++) {
     const PetscInt dims[2] = {g->all_rows[f], g->columns[f]};
     PetscCall(PetscSNPrintf(name, sizeof(name), "%s/fluid/%s", prefix, names[f]));
     PetscCall(H5CreateSeries(file, name, 2, dims));
     PetscCall(H5WriteField(file, name, 0, g, (Field)f, a[f]));
   }
-  PetscCall(VecRestoreArrayRead(q->p, &a[2]));
+  if (q->p) PetscCall(VecRestoreArrayRead(q->p, &a[2]));
   PetscCall(VecRestoreArrayRead(q->w, &a[0]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -82,8 +84,9 @@ static PetscErrorCode WriteScene(Scheme s, H5File *file) {
 /* The numbers that stand for time, step and what has been written so far. */
 static PetscErrorCode WriteNumbers(Scheme s, H5File *file, const Record *record, PetscInt frames) {
   const State *q = &s->state;
-  const PetscInt format = CHECKPOINT_FORMAT, has_old = s->has_old, level = s->policy.adaptive ? s->plan.level : 0;
+  const PetscInt format = CHECKPOINT_FORMAT, past = s->past, level = s->policy.adaptive ? s->plan.level : 0;
   const PetscInt totals[4] = {record->solves, record->tension, record->bending, record->coupled};
+  PetscReal earlier[SCHEME_PAST] = {0};
   PetscInt walls = 0;
   PetscFunctionBeginUser;
   PetscCall(H5PutInts(file, "format", 1, &format));
@@ -91,8 +94,12 @@ static PetscErrorCode WriteNumbers(Scheme s, H5File *file, const Record *record,
   PetscCall(H5PutReals(file, "time", 1, &q->t));
   PetscCall(H5PutReals(file, "dt", 1, &q->dt));
   PetscCall(H5PutReals(file, "dt_last", 1, &q->dt_last));
-  PetscCall(H5PutInts(file, "has_previous", 1, &has_old));
+  PetscCall(H5PutInts(file, "past", 1, &past));
+  for (PetscInt j = 0; j < past; j++) earlier[j] = s->old[j].dt_last;
+  PetscCall(H5PutReals(file, "dt_earlier", SCHEME_PAST, earlier));
   PetscCall(H5PutInts(file, "step_level", 1, &level));
+  PetscCall(H5PutInts(file, "step_order", 1, &s->plan.order));
+  PetscCall(H5PutInts(file, "step_guess", 1, &s->plan.guess));
   PetscCall(GatheredWalls(q, &walls));
   PetscCall(H5PutInts(file, "walls", 1, &walls));
   PetscCall(H5PutInts(file, "frames", 1, &frames));
@@ -204,7 +211,7 @@ PetscErrorCode CheckpointWrite(Checkpoint *c, Scheme s, const Record *record, Pe
   PetscCall(WriteNumbers(s, &file, record, frames));
   PetscCall(WriteScene(s, &file));
   PetscCall(WriteVectors(s, &file, "", &s->state));
-  if (s->has_old) PetscCall(WriteVectors(s, &file, "/previous", s->old));
+  for (PetscInt j = 0; j < s->past; j++) PetscCall(WriteVectors(s, &file, CheckpointGroup(j), &s->old[j]));
   PetscCall(WriteMemory(s, &file));
   PetscCall(H5FileClose(&file));
   if (!c->folder->rank) done = !file.failed && ChecksumAppend(path) && !FileSync(path) ? PETSC_TRUE : PETSC_FALSE;

@@ -3,6 +3,11 @@
 #include "output/folder.h"
 #include "output/record.h"
 
+/* Where a checkpoint has the states before the present one. */
+static inline const char *CheckpointGroup(PetscInt j) {
+  return j ? "/previous_1" : "/previous";
+}
+
 typedef struct {
   Folder *folder; /* borrowed */
   PetscInt keep;  /* checkpoints kept, the newest included */

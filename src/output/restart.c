@@ -1,5 +1,6 @@
 #include "output/gathered.h"
 #include "output/restart.h"
+#include "output/checkpoint.h"
 #include "output/checksum.h"
 #include "output/h5plain.h"
 #include <errno.h>
@@ -104,16 +105,17 @@ static PetscErrorCode ReadFluid(Scheme s, H5File *file, const char prefix[], Sta
   char name[64];
   PetscScalar *a[3];
   PetscFunctionBeginUser;
+  if (!q->w) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecGetArray(q->w, &a[0]));
   a[1] = a[0] + GridLocalU(g);
-  PetscCall(VecGetArray(q->p, &a[2]));
-  for (int f = 0; f < 3; f++) {
+  if (q->p) PetscCall(VecGetArray(q->p, &a[2]));
+  for (int f = 0; f < (q->p ? 3 : 2); f++) {
     const PetscInt dims[2] = {g->all_rows[f], g->columns[f]};
     PetscCall(PetscSNPrintf(name, sizeof(name), "%s/fluid/%s", prefix, names[f]));
     H5CheckEntry(file, name, 2, dims);
     PetscCall(H5ReadField(file, name, 0, g, (Field)f, a[f]));
   }
-  PetscCall(VecRestoreArray(q->p, &a[2]));
+  if (q->p) PetscCall(VecRestoreArray(q->p, &a[2]));
   PetscCall(VecRestoreArray(q->w, &a[0]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -246,17 +248,22 @@ static PetscErrorCode ReadRecord(Scheme s, H5File *file, Record *record) {
 
 static PetscErrorCode ReadState(Scheme s, H5File *file) {
   State *q = &s->state;
-  PetscInt has_old = 0;
+  PetscReal earlier[SCHEME_PAST] = {0};
   PetscFunctionBeginUser;
   PetscCall(H5GetInts(file, "step", 1, &q->step));
   PetscCall(H5GetReals(file, "time", 1, &q->t));
   PetscCall(H5GetReals(file, "dt", 1, &q->dt));
   PetscCall(H5GetReals(file, "dt_last", 1, &q->dt_last));
-  PetscCall(H5GetInts(file, "has_previous", 1, &has_old));
+  PetscCall(H5GetInts(file, "past", 1, &s->past));
+  PetscCall(H5GetReals(file, "dt_earlier", SCHEME_PAST, earlier));
+  PetscCall(H5GetInts(file, "step_order", 1, &s->plan.order));
+  PetscCall(H5GetInts(file, "step_guess", 1, &s->plan.guess));
   PetscCall(ReadLevel(s, file));
   PetscCall(ReadVectors(s, file, "", q));
-  s->has_old = has_old && s->old ? PETSC_TRUE : PETSC_FALSE;
-  if (s->has_old) PetscCall(ReadVectors(s, file, "/previous", s->old));
+  for (PetscInt j = 0; j < s->past; j++) {
+    s->old[j].dt_last = earlier[j];
+    PetscCall(ReadVectors(s, file, CheckpointGroup(j), &s->old[j]));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

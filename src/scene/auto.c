@@ -12,13 +12,13 @@ static const struct {
   PetscReal max_step;  /* over nu R0^3/c_b */
   PetscReal of_rest;   /* energy of shapes at rest */
 } settings[] = {
-    {1e-1, "1e-2", 8.3e-3, "1e-4", 6.8e-4, 4, 1.0e-4},   {1e-2, "3e-3", 1.4e-3, "1e-4", 6.8e-4, 4, 1.0e-4},
-    {1e-3, "1e-3", 3.6e-4, "1e-5", 4.2e-5, 2, 6.4e-5},   {3e-4, "3e-4", 1.3e-4, "1e-6", 7.4e-6, 1, 3.0e-5},
-    {1e-4, "1e-4", 3.6e-5, "1e-6", 7.4e-6, 0.5, 8.9e-6},
+    {1e-1, "3e-2", 1.1e-2, "1e-4", 3.1e-5, 4, 1.2e-4},   {1e-2, "3e-3", 2.5e-3, "1e-4", 3.1e-5, 4, 1.2e-4},
+    {1e-3, "3e-4", 3.7e-4, "1e-5", 5.8e-6, 2, 6.3e-5},   {3e-4, "1e-4", 1.3e-4, "1e-6", 4.8e-7, 1, 3.7e-5},
+    {1e-4, "3e-5", 4.0e-5, "1e-6", 4.8e-7, 0.5, 1.2e-5},
 };
 
 /* Worst error of angle and frequency in steady tank-treading (V = 0.5 to 0.9, chi = 1 and 10), by R0/h and finer, with
-   markers 1.5 h apart: on coarse grids it is that of too few markers. */
+   markers 1.5 h apart: on coarse grids it is that of too few markers (an earlier calibration's, docs/choosing.md). */
 static const struct { PetscReal cells, error; } grids[] = {{12.8, 1.4e-4}, {7, 1.4e-4}, {5.3, 3.6e-4}, {3.9, 4.2e-2}};
 
 static PetscInt Row(Scene scene) {
@@ -47,27 +47,9 @@ PetscErrorCode SceneChooseByError(Draft scene) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The fastest rate at which the flow shears a vesicle. */
-static PetscReal Rate(Scene scene) {
-  const Flow *flow = &scene->flow;
-  if (flow->type == FLOW_SHEAR || flow->type == FLOW_EXTENSION) return PetscAbsReal(flow->rate);
-  if (flow->type == FLOW_POISEUILLE) return 2 * PetscAbsReal(flow->peak) / flow->half_width;
-  return 0;
-}
-
-/* Of the smallest vesicle. */
-static PetscReal SmallestRadius(Scene scene) {
-  PetscReal R0 = PETSC_MAX_REAL;
-  for (PetscInt v = 0; v < scene->shape.vesicles; v++) R0 = PetscMin(R0, ShapeRadius(&scene->shape, v));
-  return R0;
-}
-
-/* The slowest and the fastest time of the scene: nu R0^3/c_b, and the least of it and the flow's;
-   PETSC_MAX_REAL: none. */
-static void Times(Scene scene, PetscReal *slow, PetscReal *fast) {
-  const PetscReal rate = Rate(scene), R0 = SmallestRadius(scene);
-  *slow = scene->membrane.bending > 0 ? scene->fluid.nu * R0 * R0 * R0 / scene->membrane.bending : PETSC_MAX_REAL;
-  *fast = rate > 0 ? PetscMin(*slow, 1 / rate) : *slow;
+/* For the error at rest, and no more than the flow bears. */
+static PetscReal LargestStep(Scene scene, PetscReal slow) {
+  return PetscMin(settings[Row(scene)].max_step * slow, SceneFlowStep(scene));
 }
 
 PetscErrorCode SceneChooseSteps(Draft scene) {
@@ -75,9 +57,9 @@ PetscErrorCode SceneChooseSteps(Draft scene) {
   char value[64];
   PetscFunctionBeginUser;
   if (scene->scheme.wanted == 0 || !scene->shape.vesicles) PetscFunctionReturn(PETSC_SUCCESS);
-  Times(scene, &slow, &fast);
+  SceneTimes(scene, &slow, &fast);
   if (slow < PETSC_MAX_REAL) {
-    PetscCall(PetscSNPrintf(value, sizeof(value), "%.6g", (double)(settings[Row(scene)].max_step * slow)));
+    PetscCall(PetscSNPrintf(value, sizeof(value), "%.6g", (double)LargestStep(scene, slow)));
     PetscCall(SceneChoose(scene, "-time_adapt_max_step", value));
   }
   if (fast < PETSC_MAX_REAL) {
@@ -149,18 +131,23 @@ static PetscErrorCode PrintGrid(Scene scene, PetscReal cells) {
 
 static PetscErrorCode PrintChoice(Scene scene, PetscInt row, PetscBool timed) {
   char why[128];
+  PetscReal slow, fast;
   PetscFunctionBeginUser;
+  SceneTimes(scene, &slow, &fast);
   PetscCall(PetscPrintf(scene->comm, "petves: -scheme_auto %g, by the worst errors measured (docs/speed_accuracy.md)\n",
                         (double)scene->scheme.wanted));
   PetscCall(PrintSetting(scene, "-scheme_type", "the membrane and the fluid in one solve"));
-  PetscCall(PrintSetting(scene, "-scheme_order", "order 1 leaves 1 % of the frequency at rate dt = 0.0125"));
+  PetscCall(PrintSetting(scene, "-scheme_order", "what was calibrated"));
   PetscCall(PrintSetting(scene, "-time_adapt", "finds the step of any scene"));
   PetscCall(PrintSetting(scene, "-time_step", timed ? "a twentieth of the fastest time of the scene" : "the default"));
   if (scene->time.adapt == ADAPT_ERROR) {
     PetscCall(PetscSNPrintf(why, sizeof(why), "steps leave up to %.1e", (double)settings[row].of_steps));
     PetscCall(PrintSetting(scene, "-time_adapt_tol", why));
-    PetscCall(PetscSNPrintf(why, sizeof(why), "%g nu R0^3/c_b: leaves up to %.1e of the energy at rest",
-                            (double)settings[row].max_step, (double)settings[row].of_rest));
+    if (SceneFlowStep(scene) < settings[row].max_step * slow)
+      PetscCall(PetscSNPrintf(why, sizeof(why), "what this flow bears"));
+    else
+      PetscCall(PetscSNPrintf(why, sizeof(why), "%g nu R0^3/c_b: leaves up to %.1e of the energy at rest",
+                              (double)settings[row].max_step, (double)settings[row].of_rest));
     if (scene->membrane.bending > 0) PetscCall(PrintSetting(scene, "-time_adapt_max_step", why));
   }
   PetscCall(PetscSNPrintf(why, sizeof(why), "the solver leaves up to %.1e", (double)settings[row].of_solver));
@@ -174,9 +161,9 @@ PetscErrorCode SceneReport(Scene scene) {
   PetscReal slow, fast;
   PetscFunctionBeginUser;
   if (scene->scheme.wanted > 0 && scene->shape.vesicles) {
-    Times(scene, &slow, &fast);
+    SceneTimes(scene, &slow, &fast);
     PetscCall(PrintChoice(scene, Row(scene), fast < PETSC_MAX_REAL ? PETSC_TRUE : PETSC_FALSE));
-    PetscCall(PrintGrid(scene, SmallestRadius(scene) / FluidSpecCellSize(&scene->fluid)));
+    PetscCall(PrintGrid(scene, SceneSmallestRadius(scene) / FluidSpecCellSize(&scene->fluid)));
   }
   if (*scene->warning) PetscCall(PetscPrintf(scene->comm, "petves: warning: %s\n", scene->warning));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -23,6 +23,9 @@ static PetscErrorCode ChooseProjection(Draft scene) {
 PetscErrorCode SceneChooseByScheme(Draft scene) {
   PetscFunctionBeginUser;
   if (SceneIsProjection(scene)) PetscCall(ChooseProjection(scene));
+  /* labels are shifted by the spectral derivative's trigonometric polynomials, which keep the lengths of its edges */
+  if (SceneIsProjection(scene) || scene->membrane.derivative != DERIVATIVE_SPECTRAL)
+    PetscCall(SceneChoose(scene, "-time_frame", "none"));
   /* the box part is the grid's, and nothing without the rest of the near field */
   if (scene->coupling.near_field == NEAR_NONE || FluidSpecIsFree(&scene->fluid))
     PetscCall(SceneChoose(scene, "-coupling_box_part", "false"));

@@ -146,20 +146,35 @@ static PetscErrorCode CheckNearField(Scene scene) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Turning labels need what is carried along to be trigonometric. */
+static PetscErrorCode CheckFrame(Scene scene) {
+  PetscFunctionBeginUser;
+  if (scene->time.frame == FRAME_NONE) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCheck(!SceneIsProjection(scene), scene->comm, PETSC_ERR_USER_INPUT,
+             "-time_frame treading: not with -scheme_type %s, which is its paper's method; allowed: none, or "
+             "-scheme_type coupled or direct",
+             scene->scheme.type);
+  PetscCheck(scene->membrane.derivative == DERIVATIVE_SPECTRAL, scene->comm, PETSC_ERR_USER_INPUT,
+             "-time_frame treading: a shift of labels keeps the lengths of spectral edges only; allowed: none, or "
+             "-membrane_derivative spectral");
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode CheckScheme(Scene scene) {
   PetscBool split;
   PetscFunctionBeginUser;
+  PetscCall(CheckFrame(scene));
   PetscCall(CheckNearField(scene));
   PetscCall(PetscStrcmp(scene->scheme.type, "split", &split));
   if (SceneIsProjection(scene)) PetscCall(CheckProjection(scene));
   PetscCall(CheckPenalty(scene, split));
-  PetscCheck(scene->time.adapt == ADAPT_NONE || scene->scheme.order == 2, scene->comm, PETSC_ERR_USER_INPUT,
+  PetscCheck(scene->time.adapt == ADAPT_NONE || scene->scheme.order > 1, scene->comm, PETSC_ERR_USER_INPUT,
              "-time_adapt error: with -scheme_type %s of order %" PetscInt_FMT
-             "; allowed: coupled or direct with -scheme_order 2",
+             "; allowed: coupled or direct with -scheme_order 2 or 3",
              scene->scheme.type, scene->scheme.order);
-  PetscCheck(scene->fluid.inertia != INERTIA_CONVECTIVE || scene->scheme.order == 2, scene->comm, PETSC_ERR_USER_INPUT,
+  PetscCheck(scene->fluid.inertia != INERTIA_CONVECTIVE || scene->scheme.order > 1, scene->comm, PETSC_ERR_USER_INPUT,
              "-fluid_inertia convective: with -scheme_order %" PetscInt_FMT
-             " an explicit convection is unstable at any step that is not tiny; allowed: -scheme_order 2",
+             " an explicit convection is unstable at any step that is not tiny; allowed: -scheme_order 2 or 3",
              scene->scheme.order);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

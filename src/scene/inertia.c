@@ -98,10 +98,10 @@ PetscErrorCode SceneChooseInertia(Draft scene) {
                                 ? PETSC_TRUE
                                 : PETSC_FALSE;
     scene->fluid.inertia = FluidSpecIsFree(&scene->fluid) ? INERTIA_NONE : INERTIA_UNSTEADY;
-    if (!baseline && scene->shape.vesicles && !paper) {
+    if (!baseline && scene->shape.vesicles && !paper && !FluidSpecIsFree(&scene->fluid)) {
       if (scene->reynolds < SMALL_REYNOLDS)
         scene->fluid.inertia = INERTIA_NONE;
-      else if (scene->scheme.order == 2 && seamless)
+      else if (scene->scheme.order > 1 && seamless)
         scene->fluid.inertia = INERTIA_CONVECTIVE;
     }
   }

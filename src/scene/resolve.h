@@ -18,6 +18,19 @@ PETSC_EXTERN PetscBool SceneByArea(Scene scene);
 PETSC_EXTERN PetscErrorCode SceneChooseByError(Draft scene);
 PETSC_EXTERN PetscErrorCode SceneChooseSteps(Draft scene);
 
+/* SceneSmallestRadius - R0 of the smallest vesicle (length). SceneTimes - the slowest and the fastest time of the
+   scene, nu R0^3/c_b of the smallest vesicle, and the least of it and the flow's; PETSC_MAX_REAL: none. Not collective.
+ */
+PETSC_EXTERN PetscReal SceneSmallestRadius(Scene scene);
+PETSC_EXTERN void SceneTimes(Scene scene, PetscReal *slow, PetscReal *fast);
+
+/* SceneFlowStep - up to which -time_adapt error lets steps grow in a flow when nothing changes (time): 1/(rate (1 +
+   0.03 chi)), which fixed steps from an ellipse still bear (docs/time.md), chi = rate nu R0^3/c_b of the largest
+   vesicle, at most 250; PETSC_MAX_REAL without a known rate. SceneChooseLargestStep - make it the default; at rest nu
+   R0^3/c_b of the smallest vesicle, for the error that the area target leaves there. */
+PETSC_EXTERN PetscReal SceneFlowStep(Scene scene);
+PETSC_EXTERN PetscErrorCode SceneChooseLargestStep(Draft scene);
+
 /* SceneIsProjection - whether the scheme is one of the baselines, split or penalty, which stand on a projection step.
    SceneChooseByScheme - their defaults. SceneChooseStiffness - penalty's springs, where none are given: half of what
    the step bears. */

@@ -32,8 +32,9 @@ PetscErrorCode SceneCreate(MPI_Comm comm, PetvesFlow flow, void *ctx, Scene *out
   /* 5  the markers, with the kernel's spacing if none is given */
   PetscCall(SceneMakeShape(s, &s->shape));
   PetscCall(SceneCheckFree(s));
-  /* 6  -scheme_auto: the steps, which go by the vesicles' size */
+  /* 6  the steps, which go by the vesicles' size */
   PetscCall(SceneChooseSteps(s));
+  PetscCall(SceneChooseLargestStep(s));
   s->fluid.dt = s->time.dt;
   /* 7  Reynolds number, model of the fluid, warning */
   PetscCall(SceneChooseInertia(s));

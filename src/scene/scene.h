@@ -10,6 +10,7 @@ typedef enum { NEAR_EXACT, NEAR_NONE } NearFieldType;
 typedef enum { MOBILITY_TABLE, MOBILITY_ILU, MOBILITY_NONE } MobilityType;
 typedef enum { BENDING_IMPLICIT, BENDING_EXPLICIT } BendingType;
 typedef enum { ADAPT_NONE, ADAPT_ERROR } AdaptType;
+typedef enum { FRAME_TREADING, FRAME_NONE } FrameType;
 typedef enum { STARTUP_EULER, STARTUP_GRADED } StartUp;
 typedef enum { SHAPE_ELLIPSE, SHAPE_FILE, SHAPE_NONE } ShapeType;
 
@@ -56,6 +57,7 @@ typedef struct {
 
 typedef struct {
   PetscReal dt, end;
+  PetscInt frame;                      /* FrameType */
   PetscInt adapt;                      /* AdaptType */
   PetscReal adapt_tol, adapt_max_move; /* error a step over R0; cells a marker may move in a step */
   PetscReal adapt_max_step;            /* largest step of -time_adapt error; 0: none */

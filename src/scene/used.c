@@ -32,7 +32,7 @@ static const char *const needs[] = {"-flow_type shear or extension",
                                     "vesicles and -scheme_type coupled or direct",
                                     "vesicles and -scheme_type coupled",
                                     "vesicles and -scheme_type penalty",
-                                    "-scheme_order 2",
+                                    "-scheme_order 2 or 3",
                                     "-time_adapt error",
                                     "vesicles; without, steps are fixed",
                                     "-fluid_inertia convective",
@@ -118,7 +118,7 @@ static PetscBool Met(Scene s, Need need) {
   case BY_PENALTY: /* the 0 that stands for none is right for all */
     return IsScheme(s, "penalty") || s->scheme.stiffness == 0;
   case BY_ORDER:
-    return s->scheme.order == 2;
+    return s->scheme.order > 1;
   case BY_ADAPT:
     return s->time.adapt == ADAPT_ERROR;
   case BY_ADAPTABLE:

@@ -1,6 +1,8 @@
 /* One unsplit step, backward Euler or BDF2 (docs/method.md, One step). */
 #include "scheme/coupled.h"
 
+#define SMOOTH 0.7 /* least gain of a predictor through three states over that through two for order 3 */
+
 /* S^T u = g: the new edges get the length ds, linearised at the extrapolated edge e*:
    e*.(dU)_k = a0 [(ds^2 - |e*|^2)/2 - e*.(ehat - e*)], the background's own stretching taken off (already in g). */
 static PetscErrorCode LengthTarget(Scheme s, Coupled *d, PetscReal a0) {
@@ -31,58 +33,50 @@ static PetscErrorCode LengthTarget(Scheme s, Coupled *d, PetscReal a0) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* y = (1 + r) x - r x_old, the extrapolation; x itself in a first step. */
-static PetscErrorCode Extrapolate(PetscReal r, Vec x, Vec x_old, Vec y) {
-  PetscFunctionBeginUser;
-  if (r > 0)
-    PetscCall(VecAXPBYPCZ(y, 1 + r, -r, 0, x, x_old));
-  else
-    PetscCall(VecCopy(x, y));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
+/* Vectors of the states that the step goes on from. */
+#define STATES(s, which)                                                                                               \
+  (const Vec[]) {                                                                                                      \
+    (s)->state.which, (s)->old[0].which, (s)->old[1].which                                                             \
+  }
 
-/* y = scale (current x + old x_old) */
-static PetscErrorCode History(const BDF *b, PetscReal scale, Vec x, Vec x_old, Vec y) {
-  PetscFunctionBeginUser;
-  if (b->old != 0)
-    PetscCall(VecAXPBYPCZ(y, scale * b->current, scale * b->old, 0, x, x_old));
-  else
-    PetscCall(VecAXPBY(y, scale * b->current, 0, x));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* f = uhat - B Y + bc1 - N(w*) and k = -C c_b ds D4 Y, Y = Xhat + u_inf/a0; no uhat in quasi-steady flow. next.w is
-   used for w*. */
-static PetscErrorCode RightHandSides(Scheme s, Coupled *d, const BDF *b, PetscReal r) {
+/* f = uhat - B Y + bc1 - N(w*) and k = -(C c_b ds D4 + V d/dt) Y, Y = Xhat + u_inf/a0, V the labels' speed; no uhat in
+   quasi-steady flow. next.w is used for w*. */
+static PetscErrorCode RightHandSides(Scheme s, Coupled *d, const BDF *b) {
+  History *h = &d->history;
   PetscFunctionBeginUser;
   PetscCall(VecSet(d->known, 0));
   if (s->fluid->steady)
     PetscCall(VecSet(d->f, 0));
   else
-    PetscCall(History(b, 1, s->state.w, d->old.w, d->f));
+    PetscCall(HistorySum(h, s->membrane, b->order, b->history, 1, 0, STATES(s, w), d->f));
   if (s->fluid->bc1) PetscCall(VecAXPY(d->f, 1, s->fluid->bc1));
+  PetscCall(VecWAXPY(d->Y, 1 / b->a0, s->background, d->Xhat));
   if (CouplingBending(s->coupling) > 0) {
-    PetscCall(VecWAXPY(d->Y, 1 / b->a0, s->background, d->Xhat));
     PetscCall(CouplingSpreadBending(s->coupling, -1, d->Y, d->f));
     PetscCall(CouplingNearBending(s->coupling, -1, d->Y, d->known));
   }
+  PetscCall(CouplingTread(s->coupling, -1, d->Y, d->known));
   if (d->convection) {
-    PetscCall(Extrapolate(r, s->state.w, d->old.w, d->next.w));
+    PetscCall(HistorySum(h, s->membrane, b->order, b->star, 1, 0, STATES(s, w), d->next.w));
     PetscCall(ConvectionAdd(d->convection, -1, d->next.w, d->f));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The solution extrapolated, the present one in a first step: tension, wall forces, and V = U - u_inf. */
-static PetscErrorCode InitialGuess(Scheme s, Coupled *d, PetscReal r) {
-  const State *q = &s->state;
+/* The solution extrapolated: tension, wall forces, and V = U - (labels' speed) dX/dt - u_inf. */
+static PetscErrorCode InitialGuess(Scheme s, Coupled *d) {
   State *n = &d->next;
+  History *h = &d->history;
+  const PetscInt count = PetscMin(h->n, s->plan.guess);
+  PetscReal weight[BDF_MOST];
   PetscFunctionBeginUser;
   if (!d->solver) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(Extrapolate(r, q->walls, d->old.walls, n->walls));
-  PetscCall(Extrapolate(r, q->sigma, d->old.sigma, n->sigma));
-  PetscCall(Extrapolate(r, q->U, d->old.U, d->V));
+  BDFExtrapolation(count, h->step, weight);
+  PetscCall(HistorySum(h, s->membrane, count, weight, 1, 0, STATES(s, walls), n->walls));
+  PetscCall(HistorySum(h, s->membrane, count, weight, 1, 1, STATES(s, sigma), n->sigma));
+  PetscCall(HistorySum(h, s->membrane, count, weight, 1, 2, STATES(s, U), d->V));
   PetscCall(VecAXPY(d->V, -1, s->background));
+  PetscCall(CouplingTread(s->coupling, -1, d->Xstar, d->V));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -100,38 +94,87 @@ static PetscErrorCode Solve(Scheme s, Coupled *d) {
   }
   PetscCall(CoupledSolverSolve(d->solver, &problem, &report));
   s->report.coupled_its += report.its;
-  if (PreconditionerIsNew(d->solver->preconditioner)) PetscCall(VecCopy(d->Xstar, d->made_at));
+  if (PreconditionerIsNew(d->solver->preconditioner)) {
+    PetscCall(VecCopy(d->Xstar, d->made_at));
+    PetscCall(PetscArraycpy(d->made_with, d->history.treading, s->membrane->layout->bodies));
+  }
   if (report.why < 0) PetscCall(SchemeSolverFailed(s, "coupled_", report.why, report.its, report.residual));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* U = u_inf(X*) + V,  X = Xhat + U/a0. */
+/* P = u_inf(X*) + V,  X = Xhat + P/a0,  U = P + (labels' speed) dX/dt. */
 static PetscErrorCode MoveMarkers(Scheme s, Coupled *d, PetscReal a0) {
   State *n = &d->next;
   PetscFunctionBeginUser;
   PetscCall(SchemeMeasureDivergence(s, n->w));
   if (!CouplingHasMembrane(s->coupling)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(SchemeMarkerVelocity(s, d->V, n->U));
-  PetscCall(VecWAXPY(n->X, 1 / a0, n->U, d->Xhat));
+  PetscCall(SchemeMarkerVelocity(s, d->V, d->P));
+  PetscCall(VecWAXPY(n->X, 1 / a0, d->P, d->Xhat));
+  PetscCall(VecCopy(d->P, n->U));
+  PetscCall(CouplingTread(s->coupling, 1, n->X, n->U));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The plan's order, as far as states are known; order 3 with steps that grow by no more than sqrt(2), as its limit of
+   stability for steps that go on growing is 1.53. */
+static PetscInt Order(Scheme s, const History *h) {
+  const PetscBool even = h->n > 2 && h->step[0] <= 1.42 * h->step[1] ? PETSC_TRUE : PETSC_FALSE;
+  return PetscMin(PetscMin(s->plan.order, h->n), even ? 3 : 2);
+}
+
+/* Largest |x - x*| on this rank, x* the extrapolation of a marker vector of the states through `count` of them. */
+static PetscErrorCode Miss(Scheme s, Coupled *d, PetscInt count, const Vec states[], Vec x, PetscReal *largest) {
+  PetscReal star[BDF_MOST];
+  const PetscScalar *y;
+  PetscFunctionBeginUser;
+  *largest = 0;
+  BDFExtrapolation(count, d->history.step, star);
+  PetscCall(HistorySum(&d->history, s->membrane, count, star, 1, 2, states, d->Y));
+  PetscCall(VecAXPY(d->Y, -1, x));
+  PetscCall(VecGetArrayRead(d->Y, &y));
+  for (PetscInt k = 0; k < s->membrane->layout->n; k++)
+    *largest = PetscMax(*largest, PetscSqrtReal(PetscSqr(y[2 * k]) + PetscSqr(y[2 * k + 1])));
+  PetscCall(VecRestoreArrayRead(d->Y, &y));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Order 3, and a guess through three states, where the motion is so smooth that three tell the next state better than
+   two: of the markers, and of their velocity. */
+static PetscErrorCode ChooseNext(Scheme s, Coupled *d) {
+  const Vec *const X = STATES(s, X), *const U = STATES(s, U);
+  StepPlan *next = &d->next_plan;
+  PetscReal miss[4] = {0};
+  PetscFunctionBeginUser;
+  next->order = PetscMin(s->scene->scheme.order, 2);
+  next->guess = 2;
+  if (d->history.n < 3) PetscFunctionReturn(PETSC_SUCCESS);
+  for (int k = 0; k < 2; k++) {
+    if (s->scene->scheme.order > 2) PetscCall(Miss(s, d, 2 + k, X, d->next.X, &miss[k]));
+    if (s->scene->time.frame != FRAME_NONE) PetscCall(Miss(s, d, 2 + k, U, d->next.U, &miss[2 + k]));
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, miss, 4, MPIU_REAL, MPI_MAX, s->membrane->layout->comm));
+  if (miss[1] < SMOOTH * miss[0]) next->order = 3;
+  if (miss[3] < miss[2]) next->guess = 3;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode CoupledAttempt(Scheme s, PetscReal dt, PetscBool *solved) {
   Coupled *d = (Coupled *)s->data;
-  State *q = &s->state;
-  const PetscReal r = s->has_old ? dt / q->dt_last : 0;
-  const BDF b = BDFCoefficients(s->has_old ? s->scene->scheme.order : 1, dt, s->has_old ? q->dt_last : dt);
+  History *h = &d->history;
   PetscFunctionBeginUser;
-  q->dt = dt;
-  PetscCall(Extrapolate(b.ratio, q->X, d->old.X, d->Xstar));
-  PetscCall(History(&b, 1 / b.a0, q->X, d->old.X, d->Xhat));
-  PetscCall(SchemePlace(s, b.a0, d->Xstar, q->t + d->done + dt, solved));
+  s->state.dt = dt;
+  PetscCall(HistoryCarry(h, s, dt));
+  const BDF b = BDFCoefficients(d->order = Order(s, h), h->step);
+  PetscCall(HistoryMarkers(h, b.order, b.star, 1, d->Xstar));
+  PetscCall(HistoryMarkers(h, b.order, b.history, 1 / b.a0, d->Xhat));
+  PetscCall(SchemePlace(s, b.a0, d->Xstar, h->treading, s->state.t + d->done + dt, solved));
   if (!*solved) PetscFunctionReturn(PETSC_SUCCESS);
   if (s->scene->scheme.length_target) PetscCall(LengthTarget(s, d, b.a0));
-  PetscCall(RightHandSides(s, d, &b, r));
-  PetscCall(InitialGuess(s, d, r));
+  PetscCall(RightHandSides(s, d, &b));
+  PetscCall(InitialGuess(s, d));
   PetscCall(Solve(s, d));
   *solved = *s->report.failure ? PETSC_FALSE : PETSC_TRUE;
   if (*solved) PetscCall(MoveMarkers(s, d, b.a0));
+  if (*solved) PetscCall(ChooseNext(s, d));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,24 +1,48 @@
-/* Backward differentiation formulas with variable steps: du/dt ~ a0 u - current u_n - old u_{n-1}. */
+/* Backward differentiation formulas with variable steps: du/dt ~ a0 u - uhat, uhat = SUM history_j u_j, and the
+   extrapolation u* = SUM star_j u_j, j = 0 the present state, 1 the one before it, and so on. */
 #pragma once
 #include "base/base.h"
 
+#define BDF_MOST 3
+
 typedef struct {
-  PetscReal a0;      /* leading coefficient (1/time) */
-  PetscReal current; /* weight of the present value: uhat = current u + old u_old */
-  PetscReal old;
-  PetscReal ratio; /* dt over the step before; 0 in a first step: extrapolation u* = (1 + ratio) u - ratio u_old */
+  PetscInt order;              /* 1 to BDF_MOST: the number of states that are used */
+  PetscReal a0;                /* leading coefficient (1/time) */
+  PetscReal history[BDF_MOST]; /* (1/time) */
+  PetscReal star[BDF_MOST];
 } BDF;
 
-/* BDFCoefficients - order 1 (dt_old is not used), or order 2 with the step dt after a step dt_old. For dt = dt_old
+/* BDFExtrapolation - weights star[n] of the polynomial through n states at the end of the step step[0], step[j] being
+   the step that led from state j to state j - 1 (time). */
+static inline void BDFExtrapolation(PetscInt n, const PetscReal step[], PetscReal star[]) {
+  const PetscReal r = n > 1 ? step[0] / step[1] : 0;
+  star[0] = 1 + r;
+  if (n > 1) star[1] = -r;
+  if (n < 3) return;
+  const PetscReal back[] = {step[0], step[0] + step[1], step[0] + step[1] + step[2]};
+  for (int j = 0; j < 3; j++) {
+    star[j] = 1;
+    for (int i = 0; i < 3; i++)
+      if (i != j) star[j] *= back[i] / (back[i] - back[j]);
+  }
+}
+
+/* BDFCoefficients - exact for polynomials of degree `order` through the new time and that many states. For equal steps
    order 2 is a0 = 3/(2dt), uhat = (2u - u_old/2)/dt, u* = 2u - u_old. */
-static inline BDF BDFCoefficients(PetscInt order, PetscReal dt, PetscReal dt_old) {
-  BDF b = {1 / dt, 1 / dt, 0, 0};
-  if (order > 1) {
-    const PetscReal r = dt / dt_old;
+static inline BDF BDFCoefficients(PetscInt order, const PetscReal step[]) {
+  BDF b = {.order = order};
+  BDFExtrapolation(order, step, b.star);
+  if (order < 3) {
+    const PetscReal dt = step[0], r = order > 1 ? dt / step[1] : 0;
     b.a0 = (1 + 2 * r) / ((1 + r) * dt);
-    b.current = (1 + r) / dt;
-    b.old = -r * r / ((1 + r) * dt);
-    b.ratio = r;
+    b.history[0] = (1 + r) / dt;
+    b.history[1] = -r * r / ((1 + r) * dt);
+    return b;
+  }
+  for (int j = 0; j < 3; j++) { /* the derivative at the new time of the polynomial that is 1 at one state */
+    const PetscReal back = step[0] + (j > 0 ? step[1] : 0) + (j > 1 ? step[2] : 0);
+    b.a0 += 1 / back;
+    b.history[j] = b.star[j] / back;
   }
   return b;
 }

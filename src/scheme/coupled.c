@@ -23,7 +23,7 @@ static PetscErrorCode GradedStart(Scheme s, Coupled *d, PetscReal dt) {
 static PetscErrorCode FixedStep(Scheme s, Coupled *d, PetscReal dt) {
   PetscBool solved;
   PetscFunctionBeginUser;
-  if (!s->has_old && s->scene->scheme.order > 1 && s->scene->scheme.startup == STARTUP_GRADED) {
+  if (!s->past && s->scene->scheme.order > 1 && s->scene->scheme.startup == STARTUP_GRADED) {
     PetscCall(GradedStart(s, d, dt));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
@@ -44,7 +44,7 @@ static PetscReal LargestError(Membrane m, const PetscScalar X[], const PetscScal
   return largest;
 }
 
-/* Largest speed of a marker of one vesicle relative to the vesicle's mean. */
+/* Largest speed of a marker of one vesicle relative to the vesicle's mean, as its labels see it. */
 static PetscReal RelativeSpeed(PetscInt n, const PetscScalar U[]) {
   PetscReal mean[2] = {0, 0}, largest = 0;
   for (PetscInt k = 0; k < n; k++)
@@ -58,21 +58,21 @@ static PetscReal RelativeSpeed(PetscInt n, const PetscScalar U[]) {
 static PetscErrorCode Look(Scheme s, Coupled *d, StepTrial *trial) {
   const Membrane m = s->membrane;
   const Layout l = m->layout;
-  const PetscScalar *X, *U, *Xstar;
+  const PetscScalar *X, *P, *Xstar;
   PetscReal found[4] = {0, 0, 1, 0};
   PetscFunctionBeginUser;
   PetscCall(VecGetArrayRead(d->next.X, &X));
-  PetscCall(VecGetArrayRead(d->next.U, &U));
+  PetscCall(VecGetArrayRead(d->P, &P));
   PetscCall(VecGetArrayRead(d->Xstar, &Xstar));
   found[0] = LargestError(m, X, Xstar);
   for (PetscInt v = l->own; v < l->end; v++) {
     Measures measures;
     MembraneMeasure(m, v, X + 2 * LayoutOffset(l, v), &measures);
-    found[1] = PetscMax(found[1], RelativeSpeed(LayoutCount(l, v), U + 2 * LayoutOffset(l, v)));
+    found[1] = PetscMax(found[1], RelativeSpeed(LayoutCount(l, v), P + 2 * LayoutOffset(l, v)));
     found[2] = PetscMax(found[2], measures.edge_ratio);
   }
   PetscCall(VecRestoreArrayRead(d->Xstar, &Xstar));
-  PetscCall(VecRestoreArrayRead(d->next.U, &U));
+  PetscCall(VecRestoreArrayRead(d->P, &P));
   PetscCall(VecRestoreArrayRead(d->next.X, &X));
   if (PetscIsNanReal(found[0])) found[3] = 1; /* a maximum may lose it */
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, found, 4, MPIU_REAL, MPI_MAX, l->comm));
@@ -115,6 +115,7 @@ static PetscErrorCode JudgedStep(Scheme s, Coupled *d, PetscReal speed, PetscRea
     FluidClearFailure(s->fluid);
     PetscCall(DecideSize(s, speed, most, &trial.dt));
     PetscCall(CoupledAttempt(s, trial.dt, &trial.solved));
+    trial.order = d->order;
     if (trial.solved) PetscCall(Look(s, d, &trial));
     PetscCall(Decide(s, &trial, &verdict));
   } while (verdict == STEP_REPEAT);
@@ -163,7 +164,8 @@ static PetscErrorCode Undo_Coupled(Scheme s) {
   Coupled *d = (Coupled *)s->data;
   PetscFunctionBeginUser;
   StateSwap(&s->state, &d->next);
-  StateSwap(&s->state, &d->old);
+  StateSwap(&s->old[0], &s->state);
+  StateSwap(&s->old[1], &s->old[0]);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -178,6 +180,15 @@ static PetscErrorCode SetUpConvection(Scheme s, Coupled *d) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The older state has the velocity where order 3 needs it, and no pressure. */
+static PetscErrorCode CreatePast(Scheme s) {
+  PetscFunctionBeginUser;
+  for (int j = 0; j < SCHEME_PAST; j++) PetscCall(StateDuplicate(&s->state, &s->old[j]));
+  PetscCall(VecDestroy(&s->old[1].p));
+  if (s->fluid->steady || s->scene->scheme.order < 3) PetscCall(VecDestroy(&s->old[1].w));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode SetUp_Coupled(Scheme s) {
   Coupled *d = (Coupled *)s->data;
   State *q = &s->state;
@@ -188,27 +199,31 @@ static PetscErrorCode SetUp_Coupled(Scheme s) {
     PetscCall(CoupledSolverCreate(s->scene, s->coupling, &d->solver));
     PetscCall(UnknownsCreateWallVec(d->solver->unknowns, &q->walls));
   }
-  PetscCall(StateDuplicate(q, &d->old));
+  PetscCall(CreatePast(s));
   PetscCall(StateDuplicate(q, &d->next));
+  PetscCall(HistoryCreate(s, &d->history));
   PetscCall(VecDuplicate(q->w, &d->f));
   PetscCall(VecDuplicate(q->X, &d->Xstar));
   PetscCall(VecDuplicate(q->X, &d->Xhat));
   PetscCall(VecDuplicate(q->X, &d->V));
   PetscCall(VecDuplicate(q->X, &d->known));
   PetscCall(VecDuplicate(q->X, &d->Y));
+  PetscCall(VecDuplicate(q->X, &d->P));
   PetscCall(VecDuplicate(q->X, &d->made_at));
-  PetscCall(PetscMalloc1(2 * s->membrane->layout->n, &d->edges));
-  s->old = &d->old;
+  PetscCall(PetscCalloc1(s->membrane->layout->bodies, &d->made_with));
+  PetscCall(PetscMalloc1(4 * s->membrane->layout->n, &d->edges));
   PetscCall(SetUpConvection(s, d));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode Remember_Coupled(Scheme s, PetscReal memory[]) {
   Coupled *d = (Coupled *)s->data;
+  const Layout l = s->membrane->layout;
   PetscFunctionBeginUser;
   if (!d->solver) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PreconditionerGetMemory(d->solver->preconditioner, memory));
-  PetscCall(LayoutGatherVec(s->membrane->layout, d->made_at, memory + PRECONDITIONER_MEMORY));
+  PetscCall(LayoutGatherVec(l, d->made_at, memory + PRECONDITIONER_MEMORY));
+  PetscCall(PetscArraycpy(memory + PRECONDITIONER_MEMORY + 2 * l->M, d->made_with, l->bodies));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -223,7 +238,8 @@ static PetscErrorCode Recall_Coupled(Scheme s, const PetscReal memory[]) {
   PetscCall(VecGetArray(d->made_at, &X));
   PetscCall(PetscArraycpy(X, memory + PRECONDITIONER_MEMORY + 2 * l->first, 2 * l->n));
   PetscCall(VecRestoreArray(d->made_at, &X));
-  PetscCall(CouplingPlace(s->coupling, a0, d->made_at, message));
+  PetscCall(PetscArraycpy(d->made_with, memory + PRECONDITIONER_MEMORY + 2 * l->M, l->bodies));
+  PetscCall(CouplingPlace(s->coupling, a0, d->made_at, d->made_with, message));
   PetscCheck(!*message, s->scene->comm, PETSC_ERR_USER_INPUT, "-restart %s: %s; allowed: a checkpoint of this scene",
              s->scene->output.restart, message);
   PetscCall(PreconditionerSetMemory(d->solver->preconditioner, memory));
@@ -255,14 +271,15 @@ static PetscErrorCode KSP_Coupled(Scheme s, const char prefix[], KSP *ksp) {
 
 static PetscErrorCode Destroy_Coupled(Scheme s) {
   Coupled *d = (Coupled *)s->data;
-  Vec *others[] = {&d->f, &d->Xstar, &d->Xhat, &d->V, &d->known, &d->Y, &d->made_at};
+  Vec *others[] = {&d->f, &d->Xstar, &d->Xhat, &d->V, &d->known, &d->Y, &d->P, &d->made_at};
   PetscFunctionBeginUser;
   PetscCall(CoupledSolverDestroy(&d->solver));
   PetscCall(DirectSolverDestroy(&d->direct));
   PetscCall(ConvectionDestroy(&d->convection));
-  PetscCall(StateDestroy(&d->old));
   PetscCall(StateDestroy(&d->next));
-  for (int i = 0; i < 7; i++) PetscCall(VecDestroy(others[i]));
+  PetscCall(HistoryDestroy(&d->history));
+  for (int i = 0; i < 8; i++) PetscCall(VecDestroy(others[i]));
+  PetscCall(PetscFree(d->made_with));
   PetscCall(PetscFree(d->edges));
   PetscCall(PetscFree(s->data));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -2,22 +2,27 @@
 #pragma once
 #include "coupling/solver.h"
 #include "fluid/convection.h"
-#include "scheme/bdf.h"
 #include "scheme/direct.h"
+#include "scheme/history.h"
 #include "scheme/parts.h"
 
 typedef struct {
   CoupledSolver solver;  /* scheme coupled: FGMRES */
   DirectSolver direct;   /* scheme direct: sparse LU */
   Convection convection; /* NULL unless the fluid has it */
-  State old, next;       /* the state before, the one being made */
+  State next;            /* the state being made */
+  History history;       /* what it is made from */
+  PetscInt order;        /* of the step being made, */
+  StepPlan next_plan;    /* and what it says for the next one: order and guess */
   PetscReal done;        /* of the step under way: parts of a graded start (time) */
   PetscBool warned;      /* of edges that were off */
-  Vec made_at;           /* markers at which the preconditioner's dense blocks were made */
+  Vec made_at;           /* markers at which the preconditioner's dense blocks were made, */
+  PetscReal *made_with;  /* [vesicles] and the label speeds */
   Vec f;                 /* momentum's right-hand side */
   Vec Xstar, Xhat;       /* extrapolated markers, BDF history of the markers */
   Vec V, known, Y;       /* solved part of the markers' velocity, and what is known of it; marker vector, work */
-  PetscScalar *edges;    /* [2n] work */
+  Vec P;                 /* the markers' velocity as the labels of the step see it */
+  PetscScalar *edges;    /* [4n] work */
 } Coupled;
 
 /* CoupledAttempt - solve one step of size dt from the state into next; false with report.failure when it cannot be.

@@ -4,7 +4,7 @@
 #define LEAST_LEVEL (-80)
 #define MOST_LEVEL 40
 #define SAFETY 0.9
-#define GROWTH 2 /* levels a step, a factor of 2 */
+#define GROWTH 2 /* levels a step, a factor of 2; one less at order 3, which bears 1.53 in a row */
 #define HALF 2   /* levels of a factor of 2 */
 
 StepPolicy StepPolicyCreate(Scene scene, PetscInt vesicles) {
@@ -54,9 +54,9 @@ PetscReal StepSize(const StepPolicy *p, StepPlan *plan, PetscReal courant, Petsc
   return most < 2 * dt ? most / 2 : dt;
 }
 
-/* The error X - X* is of second order in dt; in a first step X* = X, and it is the whole movement, so not tested. An
-   error that a smaller step has not lowered is not the step's, but what the length target corrects at the start, or the
-   solver's tolerance. One that is not finite is always the step's. */
+/* The error X - X* is of the formula's order in dt; in a first step X* = X, and it is the whole movement, so not
+   tested. An error that a smaller step has not lowered is not the step's, but what the length target corrects at the
+   start, or the solver's tolerance. One that is not finite is always the step's. */
 StepVerdict StepJudge(const StepPolicy *p, const StepTrial *t, StepPlan *plan) {
   const PetscBool lost = PetscIsInfOrNanReal(t->error) ? PETSC_TRUE : PETSC_FALSE;
   const PetscBool fixed = !lost && t->error > 0.9 * plan->before ? PETSC_TRUE : PETSC_FALSE;
@@ -64,7 +64,8 @@ StepVerdict StepJudge(const StepPolicy *p, const StepTrial *t, StepPlan *plan) {
   const PetscBool inexact = lost || above ? PETSC_TRUE : PETSC_FALSE;
   const PetscBool too_far = p->max_move > 0 && t->speed * t->dt > p->max_move ? PETSC_TRUE : PETSC_FALSE;
   const PetscBool uneven = t->ratio <= 2 ? PETSC_FALSE : PETSC_TRUE; /* or not a number */
-  PetscReal factor = SAFETY * (t->first ? 1 : PetscSqrtReal(p->tolerance / PetscMax(t->error, 1e-30)));
+  const PetscReal spare = p->tolerance / PetscMax(t->error, 1e-30);
+  PetscReal factor = SAFETY * (t->first ? 1 : t->order > 2 ? PetscCbrtReal(spare) : PetscSqrtReal(spare));
   PetscInt wanted;
   if (!t->solved) {
     plan->level -= HALF;
@@ -80,7 +81,7 @@ StepVerdict StepJudge(const StepPolicy *p, const StepTrial *t, StepPlan *plan) {
   }
   const PetscBool whole = t->dt >= SizeOfLevel(p, plan->level) * (1 - 1e-12) ? PETSC_TRUE : PETSC_FALSE;
   if (t->first || fixed || !whole) return STEP_ACCEPT; /* says nothing of a larger step */
-  wanted = PetscMin(PetscMin(wanted, plan->level + GROWTH), MOST_LEVEL);
+  wanted = PetscMin(PetscMin(wanted, plan->level + GROWTH - (t->order > 2)), MOST_LEVEL);
   if (p->max_move > 0 && t->speed > 0) wanted = PetscMin(wanted, LevelOfSize(p, SAFETY * p->max_move / t->speed, 0));
   plan->level = wanted;
   return STEP_ACCEPT;

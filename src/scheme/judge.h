@@ -15,15 +15,18 @@ typedef struct {
 typedef struct {
   PetscBool solved; /* markers could be placed, the solve converged; else the rest has no meaning */
   PetscBool first;  /* the first step of a run, backward Euler: its error is not known */
+  PetscInt order;   /* of its differentiation formula; 0 counts as 2 */
   PetscReal dt;
-  PetscReal error; /* max |X - X*|/R0 */
+  PetscReal error; /* max |X - X*|/R0, of this order in dt */
   PetscReal speed; /* largest of a marker relative to its vesicle's mean (length/time) */
   PetscReal ratio; /* worst edge ratio */
 } StepTrial;
 
 typedef struct {
-  PetscInt level;   /* of the next attempt: a step of base 2^(level/2) */
-  PetscReal before; /* error of the attempt rejected last in this step; PETSC_MAX_REAL without */
+  PetscInt level;   /* step-size control: of the next attempt, a step of base 2^(level/2) */
+  PetscReal before; /* likewise: error of the attempt rejected last in this step; PETSC_MAX_REAL without */
+  PetscInt order;   /* of the next step, as far as states are known and its size allows it */
+  PetscInt guess;   /* states that its first guess goes by, 2 or 3 */
 } StepPlan;
 
 typedef enum { STEP_ACCEPT, STEP_REPEAT, STEP_GIVE_UP } StepVerdict;

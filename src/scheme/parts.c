@@ -29,9 +29,9 @@ PetscErrorCode SchemeBackground(Scheme s, Vec X, PetscReal t) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SchemePlace(Scheme s, PetscReal a0, Vec X, PetscReal t, PetscBool *placed) {
+PetscErrorCode SchemePlace(Scheme s, PetscReal a0, Vec X, const PetscReal treading[], PetscReal t, PetscBool *placed) {
   PetscFunctionBeginUser;
-  PetscCall(CouplingPlace(s->coupling, a0, X, s->report.failure));
+  PetscCall(CouplingPlace(s->coupling, a0, X, treading, s->report.failure));
   *placed = *s->report.failure ? PETSC_FALSE : PETSC_TRUE;
   if (!*placed) PetscCall(Advise(s));
   if (!*placed || !CouplingHasMembrane(s->coupling)) PetscFunctionReturn(PETSC_SUCCESS);

@@ -2,10 +2,11 @@
 #pragma once
 #include "scheme/scheme.h"
 
-/* SchemePlace - put everything that a solve stands on at the markers X (CouplingPlace), and the background of time t
-   there: background = u_inf(X), g = -Dm background/h^2. placed is false with report.failure when a marker is too close
-   to a wall or the flow has no value. Collective. */
-PETSC_EXTERN PetscErrorCode SchemePlace(Scheme scheme, PetscReal a0, Vec X, PetscReal t, PetscBool *placed);
+/* SchemePlace - put everything that a solve stands on at the markers X, with label speeds treading[vesicles] or NULL
+   (CouplingPlace), and the background of time t there: background = u_inf(X), g = -Dm background/h^2. placed is false
+   with report.failure when a marker is too close to a wall or the flow has no value. Collective. */
+PETSC_EXTERN PetscErrorCode SchemePlace(Scheme scheme, PetscReal a0, Vec X, const PetscReal treading[], PetscReal t,
+                                        PetscBool *placed);
 
 /* SchemeBackground - the background flow's velocity at the markers X at time t, zero in the total form, where it is in
    w; report.failure where a flow of the caller's has none. Collective. */

@@ -52,7 +52,7 @@ static PetscErrorCode Step_Penalty(Scheme s, PetscReal most) {
   State *q = &s->state;
   PetscBool placed;
   PetscFunctionBeginUser;
-  PetscCall(SchemePlace(s, 1 / q->dt, q->X, q->t, &placed));
+  PetscCall(SchemePlace(s, 1 / q->dt, q->X, NULL, q->t, &placed));
   if (!placed) PetscFunctionReturn(PETSC_SUCCESS);
   /* 1  forces of springs and bending at X^n */
   PetscCall(Momentum(s, d));

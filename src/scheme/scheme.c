@@ -80,7 +80,7 @@ PetscErrorCode SchemeCreate(Scene scene, Coupling coupling, const PetscReal X[],
   s->fluid = coupling->fluid;
   s->membrane = coupling->membrane;
   s->policy = StepPolicyCreate(scene, s->membrane->layout->bodies);
-  s->plan.level = StepFirstLevel();
+  s->plan = (StepPlan){.level = StepFirstLevel(), .order = PetscMin(scene->scheme.order, 2), .guess = 2};
   PetscCall(CreateState(s, X));
   PetscCall(create(s));
   PetscCall(s->ops.setup(s));
@@ -93,8 +93,11 @@ PetscErrorCode SchemeDestroy(Scheme *scheme) {
   if (!s) PetscFunctionReturn(PETSC_SUCCESS);
   if (s->ops.destroy) PetscCall(s->ops.destroy(s));
   PetscCall(StateDestroy(&s->before.state));
-  PetscCall(StateDestroy(&s->before.old));
   PetscCall(StateDestroy(&s->state));
+  for (int j = 0; j < SCHEME_PAST; j++) {
+    PetscCall(StateDestroy(&s->before.old[j]));
+    PetscCall(StateDestroy(&s->old[j]));
+  }
   PetscCall(VecDestroy(&s->background));
   PetscCall(VecDestroy(&s->g));
   PetscCall(VecDestroy(&s->work_tension));
@@ -107,11 +110,11 @@ PetscErrorCode SchemeDestroy(Scheme *scheme) {
 static PetscErrorCode Keep(Scheme s) {
   Snapshot *b = &s->before;
   PetscFunctionBeginUser;
-  b->fields = s->ops.undo && s->has_old ? PETSC_FALSE : PETSC_TRUE;
+  b->fields = s->ops.undo && s->past ? PETSC_FALSE : PETSC_TRUE;
   PetscCall(StateCopy(&s->state, &b->state, b->fields));
-  if (s->has_old) PetscCall(StateCopy(s->old, &b->old, b->fields));
-  b->has_old = s->has_old;
-  b->level = s->plan.level;
+  for (PetscInt j = 0; j < s->past; j++) PetscCall(StateCopy(&s->old[j], &b->old[j], b->fields));
+  b->past = s->past;
+  b->plan = s->plan;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -121,9 +124,9 @@ static PetscErrorCode Return(Scheme s) {
   PetscFunctionBeginUser;
   if (!b->fields && s->state.step > b->state.step) PetscCall(s->ops.undo(s));
   PetscCall(StateCopy(&b->state, &s->state, b->fields));
-  if (b->has_old) PetscCall(StateCopy(&b->old, s->old, b->fields));
-  s->has_old = b->has_old;
-  s->plan.level = b->level;
+  for (PetscInt j = 0; j < b->past; j++) PetscCall(StateCopy(&b->old[j], &s->old[j], b->fields));
+  s->past = b->past;
+  s->plan = b->plan;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -157,7 +160,7 @@ PetscErrorCode SchemeStep(Scheme s, PetscReal most) {
 }
 
 PetscInt SchemeMemorySize(Scheme s) {
-  return PRECONDITIONER_MEMORY + 2 * s->membrane->layout->M;
+  return PRECONDITIONER_MEMORY + 2 * s->membrane->layout->M + s->membrane->layout->bodies;
 }
 
 PetscErrorCode SchemeRemember(Scheme s, PetscReal memory[]) {

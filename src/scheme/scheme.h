@@ -15,11 +15,14 @@ typedef struct {
   char failure[PETVES_MAX_MESSAGE]; /* why the step could not be taken; empty when it was */
 } StepReport;
 
+/* The states before the present one that are kept. */
+#define SCHEME_PAST 2
+
 /* All that a step changes and the next one needs; State and this are what a checkpoint holds. */
 typedef struct {
-  State state, old; /* old without vectors where the scheme has none */
-  PetscBool has_old;
-  PetscInt level;
+  State state, old[SCHEME_PAST]; /* old without vectors where the scheme has none */
+  PetscInt past;
+  StepPlan plan;
   PetscBool fields; /* velocities and pressures too; without, the scheme's undo brings them back */
 } Snapshot;
 
@@ -29,7 +32,7 @@ typedef struct {
   PetscErrorCode (*setup)(Scheme);
   PetscErrorCode (*step)(Scheme, PetscReal most); /* advance the state by state.dt, which step-size control chooses up
                                                      to `most`; or fill in report.failure and leave it */
-  /* put back the velocities and pressures of state and old that a step with has_old has changed; NULL: they are copied
+  /* put back the velocities and pressures of state and old that a step with a past has changed; NULL: they are copied
      before each step */
   PetscErrorCode (*undo)(Scheme);
   /* what solvers keep from step to step, as SchemeMemorySize numbers, the same on every rank, and made again from them;
@@ -49,14 +52,14 @@ struct _p_Scheme {
   Fluid fluid;
   Membrane membrane; /* of no vesicle when the scene has none */
   StepPolicy policy;
-  StepPlan plan; /* of step-size control */
+  StepPlan plan;
   State state;
-  State *old;        /* the state one step before, for schemes that go on from two; else NULL */
-  PetscBool has_old; /* whether there was a step before */
-  Snapshot before;   /* what SchemeStep goes back to when a step fails */
-  PetscBool contact; /* whether parts of membranes are close, as last warned of */
-  PetscBool rough;   /* whether it was warned that markers do not resolve a membrane */
-  PetscBool corner;  /* whether a vesicle in a corner of two walls has been warned of */
+  State old[SCHEME_PAST]; /* the states before it, the newest first, of schemes that go on from several; else empty */
+  PetscInt past;          /* how many of them are known */
+  Snapshot before;        /* what SchemeStep goes back to when a step fails */
+  PetscBool contact;      /* whether parts of membranes are close, as last warned of */
+  PetscBool rough;        /* whether it was warned that markers do not resolve a membrane */
+  PetscBool corner;       /* whether a vesicle in a corner of two walls has been warned of */
   StepReport report;
   Vec background;   /* marker vector: what the markers' velocity has besides the solved part: u_inf, zero in the total
                        form */

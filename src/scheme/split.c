@@ -88,7 +88,7 @@ static PetscErrorCode Step_Split(Scheme s, PetscReal most) {
   const PetscBool any = CouplingHasMembrane(c);
   PetscBool placed;
   PetscFunctionBeginUser;
-  PetscCall(SchemePlace(s, 1 / q->dt, q->X, q->t, &placed));
+  PetscCall(SchemePlace(s, 1 / q->dt, q->X, NULL, q->t, &placed));
   if (!placed) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PredictVelocity(s, d));                 /* step 1 */
   if (d->bending) PetscCall(ImplicitBending(s, d)); /* step 2 */

@@ -66,6 +66,7 @@ void StateSwap(State *a, State *b) {
   List(b, other);
   for (int k = 0; k < VECTORS; k++) {
     const Vec v = *one[k];
+    if (!v || !*other[k]) continue;
     *one[k] = *other[k];
     *other[k] = v;
   }

@@ -25,5 +25,5 @@ PETSC_EXTERN PetscErrorCode StateDestroy(State *state);
    they stay. Collective. */
 PETSC_EXTERN PetscErrorCode StateCopy(const State *from, State *to, PetscBool fields);
 
-/* StateSwap - the vectors of two states change places; times stay. Not collective. */
+/* StateSwap - the vectors that two states both have change places; times stay. Not collective. */
 PETSC_EXTERN void StateSwap(State *a, State *b);

@@ -1,0 +1,56 @@
+/* The times of a scene: of its flow and of its membranes. */
+#include "scene/resolve.h"
+
+/* From here on the largest step falls more slowly than 1/chi: .125 over the rate at chi = 1000. */
+#define MOST_CHI 250
+
+/* The fastest rate at which the flow shears a vesicle. */
+static PetscReal Rate(Scene scene) {
+  const Flow *flow = &scene->flow;
+  if (flow->type == FLOW_SHEAR || flow->type == FLOW_EXTENSION) return PetscAbsReal(flow->rate);
+  if (flow->type == FLOW_POISEUILLE) return 2 * PetscAbsReal(flow->peak) / flow->half_width;
+  return 0;
+}
+
+PetscReal SceneSmallestRadius(Scene scene) {
+  PetscReal R0 = PETSC_MAX_REAL;
+  for (PetscInt v = 0; v < scene->shape.vesicles; v++) R0 = PetscMin(R0, ShapeRadius(&scene->shape, v));
+  return R0;
+}
+
+/* nu R0^3/c_b, PETSC_MAX_REAL without bending. */
+static PetscReal MembraneTime(Scene scene, PetscReal R0) {
+  return scene->membrane.bending > 0 ? scene->fluid.nu * R0 * R0 * R0 / scene->membrane.bending : PETSC_MAX_REAL;
+}
+
+void SceneTimes(Scene scene, PetscReal *slow, PetscReal *fast) {
+  const PetscReal rate = Rate(scene);
+  *slow = MembraneTime(scene, SceneSmallestRadius(scene));
+  *fast = rate > 0 ? PetscMin(*slow, 1 / rate) : *slow;
+}
+
+PetscReal SceneFlowStep(Scene scene) {
+  const PetscReal rate = Rate(scene);
+  PetscReal largest = 0;
+  if (rate == 0) return PETSC_MAX_REAL;
+  for (PetscInt v = 0; v < scene->shape.vesicles; v++) largest = PetscMax(largest, ShapeRadius(&scene->shape, v));
+  return 1 / (rate * (1 + 0.03 * PetscMin(rate * MembraneTime(scene, largest), MOST_CHI)));
+}
+
+/* Of a fluid at rest; a flow has steps of its own. */
+static PetscReal MembraneTimeAtRest(Scene scene) {
+  return Rate(scene) == 0 ? MembraneTime(scene, SceneSmallestRadius(scene)) : PETSC_MAX_REAL;
+}
+
+PetscErrorCode SceneChooseLargestStep(Draft scene) {
+  PetscReal most = SceneFlowStep(scene);
+  char value[64];
+  PetscFunctionBeginUser;
+  if (scene->time.adapt == ADAPT_NONE || !scene->shape.vesicles) PetscFunctionReturn(PETSC_SUCCESS);
+  if (scene->scheme.wanted > 0) PetscFunctionReturn(PETSC_SUCCESS); /* has its own */
+  if (scene->flow.type != FLOW_CUSTOM) most = PetscMin(most, MembraneTimeAtRest(scene));
+  if (most == PETSC_MAX_REAL) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscSNPrintf(value, sizeof(value), "%.6g", (double)most));
+  PetscCall(SceneChoose(scene, "-time_adapt_max_step", value));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

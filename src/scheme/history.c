@@ -1,0 +1,105 @@
+#include "scheme/history.h"
+
+PetscErrorCode HistoryCreate(Scheme s, History *h) {
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(s->membrane->layout->bodies, &h->treading));
+  for (int j = 0; j < BDF_MOST; j++) PetscCall(VecDuplicate(s->state.X, &h->room[j]));
+  PetscCall(VecDuplicate(s->state.sigma, &h->carried[0]));
+  PetscCall(VecDuplicate(s->state.X, &h->carried[1]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode HistoryDestroy(History *h) {
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(h->treading));
+  for (int j = 0; j < BDF_MOST; j++) PetscCall(VecDestroy(&h->room[j]));
+  for (int each = 0; each < 2; each++) PetscCall(VecDestroy(&h->carried[each]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* V of every vesicle, on all ranks. */
+static PetscErrorCode Fit(History *h, Scheme s) {
+  const Membrane m = s->membrane;
+  const Layout l = m->layout;
+  const PetscScalar *X, *U;
+  PetscMPIInt vesicles;
+  PetscFunctionBeginUser;
+  h->moving = PETSC_FALSE;
+  PetscCall(PetscArrayzero(h->treading, l->bodies));
+  if (!s->past || s->scene->time.frame == FRAME_NONE) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecGetArrayRead(s->state.X, &X));
+  PetscCall(VecGetArrayRead(s->state.U, &U));
+  for (PetscInt v = l->own; v < l->end; v++) {
+    const PetscInt at = 2 * LayoutOffset(l, v);
+    h->treading[v] = MembraneTreading(m, v, X + at, U + at);
+  }
+  PetscCall(VecRestoreArrayRead(s->state.U, &U));
+  PetscCall(VecRestoreArrayRead(s->state.X, &X));
+  PetscCall(PetscMPIIntCast(l->bodies, &vesicles));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, h->treading, vesicles, MPIU_REAL, MPI_SUM, l->comm));
+  for (PetscInt v = 0; v < l->bodies; v++)
+    if (h->treading[v] != 0) h->moving = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* y = x of state j at the labels of the new time. */
+static PetscErrorCode Carry(const History *h, Membrane m, PetscInt j, int each, Vec x, Vec y) {
+  const PetscScalar *from;
+  PetscScalar *to;
+  PetscReal back = 0;
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i <= j; i++) back += h->step[i];
+  PetscCall(VecGetArrayRead(x, &from));
+  PetscCall(VecGetArray(y, &to));
+  MembraneShiftLabels(m, h->treading, back, each, from, to);
+  PetscCall(VecRestoreArray(y, &to));
+  PetscCall(VecRestoreArrayRead(x, &from));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode HistoryCarry(History *h, Scheme s, PetscReal dt) {
+  const Vec X[] = {s->state.X, s->old[0].X, s->old[1].X};
+  PetscFunctionBeginUser;
+  h->n = s->past + 1;
+  h->step[0] = dt;
+  h->step[1] = s->state.dt_last;
+  h->step[2] = s->old[0].dt_last;
+  PetscCall(Fit(h, s));
+  for (PetscInt j = 0; j < h->n; j++) {
+    h->X[j] = h->moving ? h->room[j] : X[j];
+    if (h->moving) PetscCall(Carry(h, s->membrane, j, 2, X[j], h->room[j]));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* y = scale SUM_j weight_j x_j */
+static PetscErrorCode Sum(PetscInt count, const PetscReal weight[], PetscReal scale, const Vec x[], Vec y) {
+  PetscFunctionBeginUser;
+  if (count > 1)
+    PetscCall(VecAXPBYPCZ(y, scale * weight[0], scale * weight[1], 0, x[0], x[1]));
+  else
+    PetscCall(VecAXPBY(y, scale * weight[0], 0, x[0]));
+  for (PetscInt j = 2; j < count; j++) PetscCall(VecAXPY(y, scale * weight[j], x[j]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode HistorySum(History *h, Membrane m, PetscInt count, const PetscReal weight[], PetscReal scale, int each,
+                          const Vec x[], Vec y) {
+  PetscFunctionBeginUser;
+  if (!each || !h->moving) {
+    PetscCall(Sum(count, weight, scale, x, y));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(VecSet(y, 0));
+  for (PetscInt j = 0; j < count; j++) {
+    PetscCall(Carry(h, m, j, each, x[j], h->carried[each - 1]));
+    PetscCall(VecAXPY(y, scale * weight[j], h->carried[each - 1]));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode HistoryMarkers(const History *h, PetscInt count, const PetscReal weight[], PetscReal scale, Vec y) {
+  PetscFunctionBeginUser;
+  PetscCall(Sum(count, weight, scale, h->X, y));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,32 @@
+/* What a step goes on from: the present state and those before it, carried along by labels that turn with the
+   tank-treading membranes (docs/method.md, Frame of the labels), so that a steady shape is the same in all of them. */
+#pragma once
+#include "scheme/bdf.h"
+#include "scheme/scheme.h"
+
+typedef struct {
+  PetscInt n;               /* states: 1 to BDF_MOST */
+  PetscReal step[BDF_MOST]; /* the step to be made, the one before it, ... (time) */
+  PetscReal *treading;      /* [vesicles] V, speed of the labels (1/time) */
+  PetscBool moving;         /* one of them is not zero */
+  Vec X[BDF_MOST];          /* markers of the states, carried; borrowed */
+  Vec room[BDF_MOST];       /* marker vectors, where they are when labels move */
+  Vec carried[2];           /* edge vector, marker vector: work */
+} History;
+
+/* HistoryCreate - for the scheme's vectors. Collective. */
+PETSC_EXTERN PetscErrorCode HistoryCreate(Scheme scheme, History *history);
+PETSC_EXTERN PetscErrorCode HistoryDestroy(History *history);
+
+/* HistoryCarry - before a step of size dt: fit V of each vesicle to the present velocity of its markers (zero in a
+   first step, and with -time_frame none), and carry the markers of all states known. Collective. */
+PETSC_EXTERN PetscErrorCode HistoryCarry(History *history, Scheme scheme, PetscReal dt);
+
+/* HistorySum - y = scale SUM_j weight_j x_j over the first `count` states, x_j their vectors. Those of markers (each =
+   2) and of edges (each = 1) are carried, others (each = 0) are taken as they are. Not collective. */
+PETSC_EXTERN PetscErrorCode HistorySum(History *history, Membrane membrane, PetscInt count, const PetscReal weight[],
+                                       PetscReal scale, int each, const Vec x[], Vec y);
+
+/* HistoryMarkers - y = scale SUM_j weight_j X_j of the carried markers. Not collective. */
+PETSC_EXTERN PetscErrorCode HistoryMarkers(const History *history, PetscInt count, const PetscReal weight[],
+                                           PetscReal scale, Vec y);
