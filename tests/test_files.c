@@ -62,7 +62,7 @@ static PetscErrorCode CheckRows(PetscInt vesicles) {
   PetscFunctionBeginUser;
   PetscCall(RecordCreate(vesicles, &record));
   CHECK(Count(record.header, ',') == columns - 1, "%d vesicles: %d columns", (int)vesicles, (int)columns);
-  PetscCall(PetscSNPrintf(number, sizeof(number), "frequency_%d", (int)vesicles));
+  PetscCall(PetscSNPrintf(number, sizeof(number), "normal_speed_%d", (int)vesicles));
   CHECK(vesicles == 1 || !strcmp(strrchr(record.header, ',') + 1, number), "%d vesicles: the last column",
         (int)vesicles);
   PetscCall(PetscMalloc1(32 * columns, &text));
