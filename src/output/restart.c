@@ -3,6 +3,7 @@
 #include "output/checkpoint.h"
 #include "output/checksum.h"
 #include "output/h5plain.h"
+#include "scheme/bdf.h"
 #include <errno.h>
 #include <stdlib.h>
 #include <unistd.h>
@@ -191,13 +192,18 @@ static PetscErrorCode CheckNumbers(Scene scene, H5File *file) {
     const char *name;
     PetscReal least, most;
     PetscBool whole;
-  } all[] = {
-      {"step", 0, 1e9, PETSC_TRUE},      {"has_previous", 0, 1, PETSC_TRUE}, {"step_level", -1000, 1000, PETSC_TRUE},
-      {"frames", 0, 1e9, PETSC_TRUE},    {"time", 0, 1e300, PETSC_FALSE},    {"dt", 0, 1e300, PETSC_FALSE},
-      {"dt_last", 0, 1e300, PETSC_FALSE}};
-  PetscReal x[7] = {0};
+  } all[] = {{"step", 0, 1e9, PETSC_TRUE},
+             {"past", 0, SCHEME_PAST, PETSC_TRUE},
+             {"step_level", -1000, 1000, PETSC_TRUE},
+             {"frames", 0, 1e9, PETSC_TRUE},
+             {"time", 0, 1e300, PETSC_FALSE},
+             {"dt", 0, 1e300, PETSC_FALSE},
+             {"dt_last", 0, 1e300, PETSC_FALSE},
+             {"step_order", 1, BDF_MOST, PETSC_TRUE},
+             {"step_guess", 2, BDF_MOST, PETSC_TRUE}};
+  PetscReal x[9] = {0};
   PetscFunctionBeginUser;
-  for (int k = 0; k < 7; k++) {
+  for (int k = 0; k < 9; k++) {
     PetscInt n = 0;
     PetscCall(all[k].whole ? H5GetInts(file, all[k].name, 1, &n) : H5GetReals(file, all[k].name, 1, &x[k]));
     if (all[k].whole) x[k] = n;
@@ -246,6 +252,21 @@ static PetscErrorCode ReadRecord(Scheme s, H5File *file, Record *record) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* How many earlier states there are, and the steps that led to them: to each but the first state of a run there was
+ * one.
+ */
+static PetscErrorCode ReadPast(Scheme s, H5File *file, PetscReal earlier[SCHEME_PAST]) {
+  PetscFunctionBeginUser;
+  PetscCall(H5GetInts(file, "past", 1, &s->past));
+  PetscCall(H5GetReals(file, "dt_earlier", SCHEME_PAST, earlier));
+  if (!s->old[0].X) s->past = 0; /* schemes that go on from one state */
+  for (PetscInt j = 0; j < s->past; j++)
+    PetvesCheck(earlier[j] >= 0 && earlier[j] <= 1e300 && (j == s->past - 1 || earlier[j] > 0), s->scene->comm,
+                "-restart %s: its dt_earlier is %g; allowed: a step above 0, as petves writes it",
+                s->scene->output.restart, (double)earlier[j]);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode ReadState(Scheme s, H5File *file) {
   State *q = &s->state;
   PetscReal earlier[SCHEME_PAST] = {0};
@@ -254,8 +275,7 @@ static PetscErrorCode ReadState(Scheme s, H5File *file) {
   PetscCall(H5GetReals(file, "time", 1, &q->t));
   PetscCall(H5GetReals(file, "dt", 1, &q->dt));
   PetscCall(H5GetReals(file, "dt_last", 1, &q->dt_last));
-  PetscCall(H5GetInts(file, "past", 1, &s->past));
-  PetscCall(H5GetReals(file, "dt_earlier", SCHEME_PAST, earlier));
+  PetscCall(ReadPast(s, file, earlier));
   PetscCall(H5GetInts(file, "step_order", 1, &s->plan.order));
   PetscCall(H5GetInts(file, "step_guess", 1, &s->plan.guess));
   PetscCall(ReadLevel(s, file));
