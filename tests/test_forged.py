@@ -91,7 +91,6 @@ FORGED = {
     "no order": (attribute("step_order", np.int32(0)), "its step_order is 0"),
     "an order that there is not": (attribute("step_order", np.int32(4)), "its step_order is 4"),
     "a guess that there is not": (attribute("step_guess", np.int32(9)), "its step_guess is 9"),
-    "earlier steps of no length": (attribute("dt_earlier", np.zeros(2)), "its dt_earlier is 0"),
     "step that is a text": (attribute("step", np.bytes_("three")), "entries are missing"),
     "two steps": (attribute("step", np.array([3, 3], np.int32)), "entries are missing"),
     "row of words": (attribute("series_row", np.bytes_("a,b")), "row of series.csv"),
@@ -143,6 +142,15 @@ def test_forged_checkpoints_are_refused(name, good, tmp_path):
     run = run_petves(tmp_path / "new", f"{SCENE} -time_end 0.1 -restart {path}", ranks, good=False, timeout=60)
     one_line(run, f"-restart {path}: ", needle, "allowed: ")
     assert not (tmp_path / "new").exists()
+
+
+def test_earlier_steps_of_no_length_are_refused(tmp_path):
+    """The steps between the states that coupled goes on from divide what it makes of them."""
+    scene = f"{SCENE} -scheme_type coupled -coupling_near_field none"
+    good = run_petves(tmp_path / "run", f"{scene} -time_end 0.06").folder / "checkpoint.h5"
+    path = forge(good, tmp_path, attribute("dt_earlier", np.zeros(2)))
+    run = run_petves(tmp_path / "new", f"{scene} -time_end 0.1 -restart {path}", good=False, timeout=60)
+    one_line(run, f"-restart {path}: ", "its dt_earlier is 0", "allowed: ")
 
 
 def test_a_copy_without_a_change_is_taken(good, tmp_path):

@@ -199,8 +199,8 @@ static PetscErrorCode CheckNumbers(Scene scene, H5File *file) {
              {"time", 0, 1e300, PETSC_FALSE},
              {"dt", 0, 1e300, PETSC_FALSE},
              {"dt_last", 0, 1e300, PETSC_FALSE},
-             {"step_order", 1, BDF_MOST, PETSC_TRUE},
-             {"step_guess", 2, BDF_MOST, PETSC_TRUE}};
+             {"step_order", 0, BDF_MOST, PETSC_TRUE},
+             {"step_guess", 0, BDF_MOST, PETSC_TRUE}};
   PetscReal x[9] = {0};
   PetscFunctionBeginUser;
   for (int k = 0; k < 9; k++) {
@@ -259,6 +259,12 @@ static PetscErrorCode ReadPast(Scheme s, H5File *file, PetscReal earlier[SCHEME_
   PetscFunctionBeginUser;
   PetscCall(H5GetInts(file, "past", 1, &s->past));
   PetscCall(H5GetReals(file, "dt_earlier", SCHEME_PAST, earlier));
+  PetscCall(H5GetInts(file, "step_order", 1, &s->plan.order));
+  PetscCall(H5GetInts(file, "step_guess", 1, &s->plan.guess));
+  PetvesCheck(s->plan.order > 0 && s->plan.guess > 1, s->scene->comm,
+              "-restart %s: its step_order is %" PetscInt_FMT ", its step_guess is %" PetscInt_FMT
+              "; allowed: at least 1 and 2",
+              s->scene->output.restart, s->plan.order, s->plan.guess);
   if (!s->old[0].X) s->past = 0; /* schemes that go on from one state */
   for (PetscInt j = 0; j < s->past; j++)
     PetvesCheck(earlier[j] >= 0 && earlier[j] <= 1e300 && (j == s->past - 1 || earlier[j] > 0), s->scene->comm,
@@ -276,8 +282,6 @@ static PetscErrorCode ReadState(Scheme s, H5File *file) {
   PetscCall(H5GetReals(file, "dt", 1, &q->dt));
   PetscCall(H5GetReals(file, "dt_last", 1, &q->dt_last));
   PetscCall(ReadPast(s, file, earlier));
-  PetscCall(H5GetInts(file, "step_order", 1, &s->plan.order));
-  PetscCall(H5GetInts(file, "step_guess", 1, &s->plan.guess));
   PetscCall(ReadLevel(s, file));
   PetscCall(ReadVectors(s, file, "", q));
   for (PetscInt j = 0; j < s->past; j++) {
