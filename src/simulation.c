@@ -59,7 +59,11 @@ PetscErrorCode PetvesFinalize(void) {
     (void)PetscOptionsSetValue(NULL, "-options_left", "no");
   (void)PetvesLastErrors();
   error = PetscFinalize();
-  if (!error) (void)PetscPopErrorHandler();
+  if (error) { /* of one rank: others wait for it */
+    int ranks = 1;
+    if (!MPI_Comm_size(MPI_COMM_WORLD, &ranks) && ranks > 1) (void)MPI_Abort(MPI_COMM_WORLD, 1);
+  } else
+    (void)PetscPopErrorHandler();
   if (began_mpi && MPI_Finalize()) return PETSC_ERR_MPI;
   return error;
 }

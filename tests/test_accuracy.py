@@ -164,7 +164,8 @@ def test_corrected_is_the_direct_solution(case, tmp_path):
     forces are 100 times as large against the solve's tolerance, to 1e-7, of the tension's 8e3."""
     options = f"{CORRECTED} -domain_cells 32,32 -flow_type shear -flow_rate 2 -vesicle_angle 20 -time_step 0.02 "
     options += f"-time_end 0.06 {CASES[case]}"
-    direct = run_petves(tmp_path / "direct", f"{options} -scheme_type direct")
+    refined = "-direct_ksp_type gmres -direct_ksp_rtol 1e-13" if case == "bending_100" else ""  # else 1e-7 of rounding
+    direct = run_petves(tmp_path / "direct", f"{options} -scheme_type direct {refined}")
     coupled = run_petves(tmp_path / "coupled", f"{options} -coupled_ksp_rtol 1e-12", 2)
     assert coupled.series["coupled_its"][1:].min() > 0 and not direct.series["coupled_its"].any()
     want, got = last_state(direct.folder), last_state(coupled.folder)

@@ -9,7 +9,8 @@ from restarts import without_wall
 
 
 @pytest.mark.parametrize(
-    "name", ["two words", "out/ü 'é' ", " before", "back\\slash%s$HOME", "it's", "pipe|;*?[1]~", "a,b=c"]
+    "name",
+    ["two words", "out/ü 'é' ", " before", "back\\slash%s$HOME", "it's", "pipe|;*?[1]~", "a,b=c", "a #b", "#", "'"],
 )
 def test_resolved_options_repeat_the_run(name, tmp_path, monkeypatch):
     """In a folder of any name that is not refused, and with a curve file of that name."""

@@ -73,7 +73,9 @@ def test_tension_is_where_it_is_said_to_be(derivative, tmp_path):
 def test_option_files_are_read():
     """Comments and the output folder are left out; values keep their text."""
     options = option_file("shear")
-    assert options["-domain_box"] == "0,8,0,8" and options["-flow_rate"] == "0.326116" and "-output_dir" not in options
+    assert (
+        options["-domain_box"] == "-4,12,0,8" and options["-flow_rate"] == "0.326116" and "-output_dir" not in options
+    )
 
 
 def test_ellipses_of_keller_and_skalak():

@@ -132,21 +132,17 @@ def stiff(folder, stiffness: float, dt: float):
     return series, rise, series["energy_bending"][-1] / (stiffness * soft["energy_bending"][-1])
 
 
-@pytest.mark.parametrize("stiffness, dt", [(100, 1 / 8), (200, 1 / 32)])
-def test_stiff_membranes_keep_area_length_and_shape(stiffness, dt, tmp_path):
-    """250 and 120 times the membrane's own time a step: area and edges stay, energy rises by 2e-3 at most (the length
-    target has no energy law) and the shape at the end is that of c_b = 1, its energy to 1e-3; the user is told."""
-    series, rise, energy = stiff(tmp_path, stiffness, dt)
-    assert abs(series["area_error"]).max() < 1e-12 and abs(series["length_error"]).max() < 1e-12
-    assert rise < 2e-3 and abs(energy - 1) < 1e-3
-
-
-def test_a_stiff_membrane_whose_edges_are_nearly_right(tmp_path):
-    """c_b = 100, 60 times the membrane's own time a step: with the near field the first step's length is off by 3.7e-4,
-    less than the 1e-3 that is left to the length target, whose next step lifts the energy by 3.4e-3."""
-    series, rise, energy = stiff(tmp_path, 100, 1 / 32)
-    assert abs(series["area_error"]).max() < 1e-12 and abs(series["length_error"][2:]).max() < 1e-12
-    assert abs(series["length_error"][1]) < 1e-3 and rise < 5e-3 and abs(energy - 1) < 1e-3
+@pytest.mark.parametrize("stiffness, dt, rise", [(100, 1 / 8, 2e-3), (200, 1 / 32, 2e-3), (100, 1 / 32, 5e-3)])
+def test_stiff_membranes_keep_area_length_and_shape(stiffness, dt, rise, tmp_path):
+    """250, 120 and 60 times the membrane's own time a step: the area stays; edges that are off by more than
+    1e-3 are made right, with a warning in the first step, and less is left to the length target. Energy rises by 2e-3 at most, 5e-3 in
+    the last case (the length target has no energy law), and the shape at the end is that of c_b = 1, its energy to 1e-3; the
+    user is told."""
+    series, found, energy = stiff(tmp_path, stiffness, dt)
+    length = abs(series["length_error"])
+    assert abs(series["area_error"]).max() < 1e-12 and length.max() < 1e-3
+    assert found < rise and abs(energy - 1) < 1e-3
+    assert series["area_shift"][2:].max() < 3e-4, "the near field lets nearly nothing through"
 
 
 def test_strong_shear_at_a_quarter_of_the_rate(monkeypatch):

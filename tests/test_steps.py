@@ -29,7 +29,11 @@ def test_solve_that_never_converges_ends_the_run(tmp_path):
 
 @pytest.mark.parametrize("ranks", [1, 2])
 def test_without_vesicle_steps_are_fixed(ranks, tmp_path):
-    """Nothing to judge steps by: -time_adapt error takes -time_step, not one step to the end."""
+    """Nothing to judge steps by: -time_adapt error is refused, and where unused options pass it takes -time_step, not one step
+    to the end."""
     options = "-domain_cells 16,16 -vesicle_shape none -flow_type shear -scheme_type coupled -time_step 0.1 -time_end 1"
-    run = run_petves(tmp_path / "out", f"{options} -time_adapt error", ranks)
+    options += " -time_adapt error"
+    refused = run_petves(tmp_path / "out", options, ranks, good=False)
+    assert refused.status == 1 and "-time_adapt error: not used by this scene" in refused.errors[0]
+    run = run_petves(tmp_path / "out", f"{options} -allow_unused_options", ranks)
     assert np.allclose(run.series["dt"][1:], 0.1) and len(run.series["time"]) == 11

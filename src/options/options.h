@@ -54,8 +54,8 @@ PETSC_EXTERN PetscErrorCode OptionChoose(const OptionTable *table, void *values,
 PETSC_EXTERN PetscErrorCode OptionValue(const OptionTable *table, const void *values, PetscInt i, char text[],
                                         size_t length);
 
-/* OptionPrint - one line of an options file, "-name value"; a value with spaces goes between double quotes. A value
-   that no options file can hold is no value of a table (OptionParse refuses it). Not collective. */
+/* OptionPrint - one line of an options file, "-name value"; a value with blanks, # or ' goes between double quotes. A
+   value that no options file can hold is no value of a table (OptionParse refuses it). Not collective. */
 PETSC_EXTERN void OptionPrint(FILE *file, const char name[], const char value[]);
 
 /* OptionsWrite - write every option in force that has a value, defaults included, one "-name value" a line; but not

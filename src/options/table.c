@@ -78,7 +78,7 @@ PetscErrorCode OptionValue(const OptionTable *t, const void *values, PetscInt i,
 }
 
 void OptionPrint(FILE *file, const char name[], const char value[]) {
-  const char *const quote = strchr(value, ' ') ? "\"" : "";
+  const char *const quote = strpbrk(value, " #'") ? "\"" : "";
   fprintf(file, *value ? "%s %s%s%s\n" : "%s\n", name, quote, value, quote);
 }
 

@@ -108,16 +108,16 @@ static PetscErrorCode ParseWord(MPI_Comm comm, const OptionRow *o, const char *t
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A name that resolved.opts can hold, so that it repeats the run: PETSc's options files have no escapes. */
+/* A name that resolved.opts can hold, so that it repeats the run: options files have no escapes. */
 static PetscErrorCode ParsePath(MPI_Comm comm, const OptionRow *o, const char *text, char path[]) {
   PetscBool plain = text[0] == '-' ? PETSC_FALSE : PETSC_TRUE;
   PetscFunctionBeginUser;
   for (const char *c = text; *c && plain; c++)
-    plain = iscntrl((unsigned char)*c) || *c == '"' || *c == '#' ? PETSC_FALSE : PETSC_TRUE;
+    plain = iscntrl((unsigned char)*c) || *c == '"' ? PETSC_FALSE : PETSC_TRUE;
   PetscCheck(
       plain, comm, PETSC_ERR_USER_INPUT,
-      "%s %s: no options file can hold this name; allowed: no double quote, # or control character in it, and no "
-      "dash before it",
+      "%s %s: no options file can hold this name; allowed: no double quote or control character in it, and no dash "
+      "before it",
       o->name, text);
   PetscCheck(strlen(text) < PETSC_MAX_PATH_LEN - 64, comm, PETSC_ERR_USER_INPUT,
              "%s: a name of %d characters; allowed: less than %d", o->name, (int)strlen(text), PETSC_MAX_PATH_LEN - 64);
