@@ -88,6 +88,8 @@ def test_markers_that_do_not_resolve_a_shape(tmp_path):
     run = run_petves(tmp_path / "run", f"{scene} 17", ranks=2)
     lines = [line for line in run.stdout.splitlines() if "petves: warning" in line]
     assert len(lines) == 1 and "17 markers do not resolve vesicle 2 after step 1," in lines[0], run.stdout
+    listed = json.loads((run.folder / "summary.json").read_text())["warnings"]
+    assert [f"petves: warning: {text}" for text in listed] == lines
     wanted = lines[0].split("try -vesicle_markers ")[1]
     assert "petves: warning" not in run_petves(tmp_path / "more", f"{scene} {wanted}").stdout
 

@@ -41,6 +41,16 @@ static void PrintInertia(FILE *f, Scene scene, PetscReal cfl_max) {
   fprintf(f, ",\n");
 }
 
+/* What the run has warned of, in order. */
+static void PrintWarnings(FILE *f, const Warnings *w) {
+  fprintf(f, "  \"warnings\": [");
+  for (PetscInt k = 0; k < w->n; k++) {
+    if (k) fprintf(f, ", ");
+    PrintString(f, w->text[k]);
+  }
+  fprintf(f, "],\n");
+}
+
 static void PrintRow(FILE *f, const Record *record) {
   fprintf(f, ",\n  \"last\": {");
   for (int c = 0; c < COLUMN_COUNT; c++) {
@@ -80,6 +90,7 @@ static PetscErrorCode Print(FILE *f, const void *what) {
   fprintf(f, "  \"markers\": %d,\n  \"cells\": [%d, %d],\n  \"ranks\": %d,\n", (int)s->scheme->membrane->layout->M,
           (int)s->scheme->scene->fluid.cells[0], (int)s->scheme->scene->fluid.cells[1], s->ranks);
   PrintInertia(f, s->scheme->scene, r->cfl_max);
+  PrintWarnings(f, &s->scheme->warnings);
   PrintVersions(f);
   fprintf(f, "  \"git_commit\": \"%s\"\n}\n", PETVES_COMMIT);
   return PETSC_SUCCESS;

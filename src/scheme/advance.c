@@ -23,7 +23,7 @@ static PetscErrorCode WarnOfEdges(Scheme s, Coupled *d, const Restored *r) {
                             "%" PetscInt_FMT " and has been corrected; try a smaller -time_step",
                             r->who + 1, (double)r->error, s->state.step + 1));
   PetscCall(AgreeMessage(s->membrane->layout->comm, message));
-  PetscCall(PetscPrintf(s->scene->comm, "petves: warning: %s\n", message));
+  PetscCall(SchemeWarn(s, "%s", message));
   d->warned = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

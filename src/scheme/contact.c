@@ -61,12 +61,11 @@ static PetscErrorCode Warn(Scheme s, const PetscMPIInt pair[2]) {
   char who[64];
   PetscFunctionBeginUser;
   PetscCall(Name(pair[0], pair[1], sizeof(who), who));
-  PetscCall(PetscPrintf(s->scene->comm,
-                        "petves: warning: %s are closer than %.3g %s after step %" PetscInt_FMT
-                        ", time %g; %s not resolve the fluid between them: try %s\n",
-                        who, exact ? CLOSE_PARTS : CONTACT, exact ? "edges" : "cells", s->state.step,
-                        (double)s->state.t, exact ? "their markers do" : "the grid does",
-                        exact ? "more -vesicle_markers" : "finer -domain_cells"));
+  PetscCall(SchemeWarn(
+      s,
+      "%s are closer than %.3g %s after step %" PetscInt_FMT ", time %g; %s not resolve the fluid between them: try %s",
+      who, exact ? CLOSE_PARTS : CONTACT, exact ? "edges" : "cells", s->state.step, (double)s->state.t,
+      exact ? "their markers do" : "the grid does", exact ? "more -vesicle_markers" : "finer -domain_cells"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -88,7 +87,7 @@ static PetscErrorCode CheckCrossing(Scheme s, const PetscScalar X[], const Petsc
 PetscErrorCode SchemeCheckContact(Scheme s) {
   const Layout l = s->membrane->layout;
   const Grid g = s->fluid->grid;
-  const PetscBool before = s->contact;
+  const PetscBool before = s->warnings.contact;
   PetscReal period[2];
   PetscMPIInt pair[2] = {0, 0};
   PetscFunctionBeginUser;
@@ -100,7 +99,7 @@ PetscErrorCode SchemeCheckContact(Scheme s) {
   }
   PetscCall(AgreeMessage(l->comm, s->report.failure));
   PetscCallMPI(MPI_Bcast(pair, 2, MPI_INT, 0, l->comm));
-  s->contact = pair[0] ? PETSC_TRUE : PETSC_FALSE;
-  if (s->contact && !before && !*s->report.failure) PetscCall(Warn(s, pair));
+  s->warnings.contact = pair[0] ? PETSC_TRUE : PETSC_FALSE;
+  if (s->warnings.contact && !before && !*s->report.failure) PetscCall(Warn(s, pair));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -98,3 +98,15 @@ PetscErrorCode SchemeAdvise(Scheme s, const char advice[]) {
                           (double)s->state.t, advice));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+PetscErrorCode SchemeWarn(Scheme s, const char format[], ...) {
+  char text[PETVES_MAX_MESSAGE];
+  va_list arguments;
+  PetscFunctionBeginUser;
+  va_start(arguments, format);
+  PetscCall(PetscVSNPrintf(text, sizeof(text), format, NULL, arguments));
+  va_end(arguments);
+  PetscCall(PetscPrintf(s->scene->comm, "petves: warning: %s\n", text));
+  if (s->warnings.n < SCHEME_WARNINGS) PetscCall(PetscStrallocpy(text, &s->warnings.text[s->warnings.n++]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -30,3 +30,7 @@ PETSC_EXTERN PetscErrorCode SchemeCreate_Coupled(Scheme);
 
 /* SchemeAdvise - step, time and what to try, behind what is wrong in report.failure. Not collective. */
 PETSC_EXTERN PetscErrorCode SchemeAdvise(Scheme scheme, const char advice[]);
+
+/* SchemeWarn - a warning on rank 0's output, one line, and among those of summary.json. Every rank gives the same text.
+   Collective. */
+PETSC_EXTERN PetscErrorCode SchemeWarn(Scheme scheme, const char format[], ...) PETSC_ATTRIBUTE_FORMAT(2, 3);

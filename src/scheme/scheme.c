@@ -102,6 +102,7 @@ PetscErrorCode SchemeDestroy(Scheme *scheme) {
   PetscCall(VecDestroy(&s->g));
   PetscCall(VecDestroy(&s->work_tension));
   PetscCall(PetscFree(s->work_all));
+  for (PetscInt k = 0; k < s->warnings.n; k++) PetscCall(PetscFree(s->warnings.text[k]));
   PetscCall(PetscFree(*scheme));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -26,6 +26,16 @@ typedef struct {
   PetscBool fields; /* velocities and pressures too; without, the scheme's undo brings them back */
 } Snapshot;
 
+/* Warnings of the run, for summary.json: the first ones, and which have been given. */
+#define SCHEME_WARNINGS 16
+typedef struct {
+  PetscInt n;
+  char *text[SCHEME_WARNINGS];
+  PetscBool contact; /* whether parts of membranes are close, as last warned of */
+  PetscBool rough;   /* whether it was warned that markers do not resolve a membrane */
+  PetscBool corner;  /* whether a vesicle in a corner of two walls has been warned of */
+} Warnings;
+
 typedef struct _p_Scheme *Scheme;
 
 typedef struct {
@@ -57,9 +67,7 @@ struct _p_Scheme {
   State old[SCHEME_PAST]; /* the states before it, the newest first, of schemes that go on from several; else empty */
   PetscInt past;          /* how many of them are known */
   Snapshot before;        /* what SchemeStep goes back to when a step fails */
-  PetscBool contact;      /* whether parts of membranes are close, as last warned of */
-  PetscBool rough;        /* whether it was warned that markers do not resolve a membrane */
-  PetscBool corner;       /* whether a vesicle in a corner of two walls has been warned of */
+  Warnings warnings;
   StepReport report;
   Vec background;   /* marker vector: what the markers' velocity has besides the solved part: u_inf, zero in the total
                        form */

@@ -79,7 +79,7 @@ static PetscErrorCode WarnOfSpectrum(Scheme s) {
   char text[PETVES_MAX_MESSAGE] = "";
   const PetscScalar *X;
   PetscFunctionBeginUser;
-  if (!s->coupling->near || s->rough) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!s->coupling->near || s->warnings.rough) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecGetArrayRead(s->state.X, &X));
   for (PetscInt v = l->own; v < l->end && !*text; v++) {
     const PetscScalar *own = X + 2 * LayoutOffset(l, v);
@@ -87,15 +87,15 @@ static PetscErrorCode WarnOfSpectrum(Scheme s) {
     if (tail < ROUGH) continue;
     const PetscInt n = LayoutCount(l, v), more = Resolving(n, SpectralTail(m->spectral[v], 1. / 3, own), tail);
     PetscCall(PetscSNPrintf(text, sizeof(text),
-                            "petves: warning: %" PetscInt_FMT " markers do not resolve vesicle %" PetscInt_FMT
+                            "%" PetscInt_FMT " markers do not resolve vesicle %" PetscInt_FMT
                             " after step %" PetscInt_FMT ", time %g: %.2g of its bending is in the last third of its "
-                            "modes, %g is good; try -vesicle_markers %" PetscInt_FMT "\n",
+                            "modes, %g is good; try -vesicle_markers %" PetscInt_FMT,
                             n, v + 1, s->state.step, (double)s->state.t, (double)tail, SMOOTH, more));
   }
   PetscCall(VecRestoreArrayRead(s->state.X, &X));
   PetscCall(AgreeMessage(l->comm, text));
-  s->rough = *text ? PETSC_TRUE : PETSC_FALSE;
-  if (s->rough) PetscCall(PetscPrintf(s->scene->comm, "%s", text));
+  s->warnings.rough = *text ? PETSC_TRUE : PETSC_FALSE;
+  if (s->warnings.rough) PetscCall(SchemeWarn(s, "%s", text));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -113,17 +113,17 @@ static PetscReal FromWall(Scheme s, PetscInt v, int dir, const PetscScalar X[]) 
 static PetscErrorCode WarnOfCorner(Scheme s) {
   const Layout l = s->membrane->layout;
   PetscFunctionBeginUser;
-  if (!s->coupling->near || s->corner || !s->fluid->grid->wall[0] || !s->fluid->grid->wall[1])
+  if (!s->coupling->near || s->warnings.corner || !s->fluid->grid->wall[0] || !s->fluid->grid->wall[1])
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(LayoutGatherVec(l, s->state.X, s->work_all));
-  for (PetscInt v = 0; v < l->bodies && !s->corner; v++) {
+  for (PetscInt v = 0; v < l->bodies && !s->warnings.corner; v++) {
     if (PetscMax(FromWall(s, v, 0, s->work_all), FromWall(s, v, 1, s->work_all)) >= CORNER) continue;
-    s->corner = PETSC_TRUE;
-    PetscCall(PetscPrintf(s->scene->comm,
-                          "petves: warning: vesicle %" PetscInt_FMT " is within %d cells of two walls that meet after "
-                          "step %" PetscInt_FMT ", time %g; there its velocity is off by 1 to 20 %%: try finer "
-                          "-domain_cells\n",
-                          v + 1, CORNER, s->state.step, (double)s->state.t));
+    s->warnings.corner = PETSC_TRUE;
+    PetscCall(SchemeWarn(s,
+                         "vesicle %" PetscInt_FMT " is within %d cells of two walls that meet after "
+                         "step %" PetscInt_FMT ", time %g; there its velocity is off by 1 to 20 %%: try finer "
+                         "-domain_cells",
+                         v + 1, CORNER, s->state.step, (double)s->state.t));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
