@@ -52,12 +52,18 @@ static PetscReal Fade(BoxPart b, const PetscReal X[2]) {
 /* a[modes] += weights of one velocity component's functions times the block's vectors. */
 static void AddBlock(const BoxBlock *q, int c, const PetscReal vx[], const PetscReal vy[], PetscReal fade,
                      PetscReal a[]) {
-  const PetscReal *row = q->Q + c * q->n[0] * q->n[1] * q->modes;
-  for (PetscInt i = 0; i < q->n[0]; i++)
-    for (PetscInt j = 0; j < q->n[1]; j++, row += q->modes) {
-      const PetscReal weight = fade * vx[q->first[c][0] + i] * vy[q->first[c][1] + j];
-      for (PetscInt m = 0; m < q->modes; m++) a[m] += weight * row[m];
-    }
+  const PetscInt modes = q->modes;
+  const PetscReal *row = q->Q + c * q->n[0] * q->n[1] * modes, *y = vy + q->first[c][1];
+  for (PetscInt i = 0; i < q->n[0]; i++) {
+    const PetscReal x = fade * vx[q->first[c][0] + i];
+    PetscInt j = 0;
+    for (; j + 4 <= q->n[1]; j += 4, row += 4 * modes) /* four at once: a is read and written a quarter as often */
+      for (PetscInt m = 0; m < modes; m++)
+        a[m] += x * (y[j] * row[m] + y[j + 1] * row[modes + m] + y[j + 2] * row[2 * modes + m] +
+                     y[j + 3] * row[3 * modes + m]);
+    for (; j < q->n[1]; j++, row += modes)
+      for (PetscInt m = 0; m < modes; m++) a[m] += x * y[j] * row[m];
+  }
 }
 
 /* The rows of A of marker k, from its functions' values. */
@@ -78,6 +84,16 @@ void BoxPartPlace(BoxPart b) {
   for (PetscInt k = 0; k < b->markers->layout->M; k++) PlaceMarker(b, k);
 }
 
+/* SUM l x in four lanes. */
+static PetscReal Sum(PetscInt r, const PetscReal l[], const PetscReal x[]) {
+  PetscReal sum[4] = {0}, rest = 0;
+  PetscInt m = 0;
+  for (; m + 4 <= r; m += 4)
+    for (int q = 0; q < 4; q++) sum[q] += l[m + q] * x[m + q];
+  for (; m < r; m++) rest += l[m] * x[m];
+  return sum[0] + sum[1] + sum[2] + sum[3] + rest;
+}
+
 PetscErrorCode BoxPartApply(BoxPart b, PetscReal alpha, const PetscScalar F[], PetscScalar U[]) {
   const Layout l = b->markers->layout;
   const PetscInt r = b->table.rank;
@@ -88,8 +104,7 @@ PetscErrorCode BoxPartApply(BoxPart b, PetscReal alpha, const PetscScalar F[], P
     for (PetscInt m = 0; m < r; m++) b->amplitude[m] += own[k * r + m] * F[k];
   if (l->size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, b->amplitude, (PetscMPIInt)r, MPIU_REAL, MPI_SUM, l->comm));
   for (PetscInt m = 0; m < r; m++) b->amplitude[m] *= alpha * b->table.l[m];
-  for (PetscInt k = 0; k < 2 * l->n; k++)
-    for (PetscInt m = 0; m < r; m++) U[k] += own[k * r + m] * b->amplitude[m];
+  for (PetscInt k = 0; k < 2 * l->n; k++) U[k] += Sum(r, b->amplitude, own + k * r);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
