@@ -186,7 +186,9 @@ def test_clock_set_back(tmp_path):
     (tmp_path / "clock.c").write_text(CLOCK)
     library = tmp_path / "clock.so"
     subprocess.run(["gcc", "-shared", "-fPIC", "-o", library, tmp_path / "clock.c", "-ldl"], check=True)
-    options = f"{SCENE} -time_step 1e-5 -time_end 1000 -output_every 10 -time_wall_limit 4 -output_dir {tmp_path / 'run'}"
+    options = (
+        f"{SCENE} -time_step 1e-5 -time_end 1000 -output_every 10 -time_wall_limit 4 -output_dir {tmp_path / 'run'}"
+    )
     done = mpirun([PETVES, *PAPER.split(), *options.split()], 1, 60, LD_PRELOAD=str(library))
     assert done.returncode == 0 and "-time_wall_limit" in done.stdout, done.stdout + done.stderr
     assert read_series(tmp_path / "run" / "series.csv")["wall"].min() >= 0
