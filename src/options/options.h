@@ -71,7 +71,7 @@ typedef struct {
 
 /* OptionsCheckUnused - stop when the options database holds an option that nothing has read: one of a solver that is
    not there, by `owners` and the values in force, or one that there is not, with the name of the table or of `others`
-   (last entry NULL) that is meant, if one is near. Viewers that PETSc opens only when it ends (-log_view) are tried.
+   (last entry NULL) that is meant, if one is near.
    Call when everything is set up. Collective. */
 PETSC_EXTERN PetscErrorCode OptionsCheckUnused(const OptionTable *table, const void *values, const char *const others[],
                                                const OptionOwner owners[]);
@@ -80,3 +80,7 @@ PETSC_EXTERN PetscErrorCode OptionsCheckUnused(const OptionTable *table, const v
    OptionFormat - the value as text, to be freed with PetscFree. */
 PETSC_EXTERN PetscErrorCode OptionParse(MPI_Comm comm, const OptionRow *row, const char text[], void *place);
 PETSC_EXTERN PetscErrorCode OptionFormat(const OptionRow *row, const void *place, char **text);
+
+/* OptionsTryLate - read now what PETSc reads when a run is over (-log_view, -options_left, -options_view): a mistake in
+   it would be found only then. Collective. Errors: no such viewer, a file that cannot be written. */
+PETSC_EXTERN PetscErrorCode OptionsTryLate(const OptionTable *table);

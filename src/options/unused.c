@@ -1,5 +1,6 @@
 /* Misspelt and unused options: found, and named with the option that is meant, if one is near. */
 #include "options/options.h"
+#include "base/agree.h"
 #include <strings.h>
 
 /* Options that PETSc itself reads only while it finalises. */
@@ -39,7 +40,7 @@ static PetscErrorCode TryLate(MPI_Comm comm, const char name[], PetscBool is_vie
   PetscErrorCode error;
   PetscViewer viewer = NULL;
   PetscViewerFormat format;
-  PetscBool set, truth;
+  PetscBool set, truth, failed;
   PetscFunctionBeginUser;
   PetscCall(PetscOptionsFindPair(NULL, NULL, name, &value, &set));
   if (!set) PetscFunctionReturn(PETSC_SUCCESS);
@@ -47,7 +48,8 @@ static PetscErrorCode TryLate(MPI_Comm comm, const char name[], PetscBool is_vie
   error = is_viewer ? MakeViewer(comm, NULL, NULL, name, &viewer, &format, &set)
                     : PetscOptionsGetBool(NULL, NULL, name, &truth, &set);
   PetscCall(PetscPopErrorHandler());
-  if (error) { /* PETSc must not stumble over it once more */
+  PetscCall(AgreeFlag(comm, error ? PETSC_TRUE : PETSC_FALSE, &failed)); /* one rank alone opens a file */
+  if (failed) {                                                          /* PETSc must not stumble over it once more */
     char text[256];
     PetscCall(PetscSNPrintf(text, sizeof(text), "%s %s", name, value ? value : ""));
     PetscCall(PetscOptionsClearValue(NULL, name));
@@ -133,14 +135,19 @@ static PetscErrorCode Refuse(const OptionTable *t, const void *values, const cha
           "%s %s: no such option; petves -help lists them (-allow_unused_options goes on)", name, value);
 }
 
+PetscErrorCode OptionsTryLate(const OptionTable *t) {
+  PetscFunctionBeginUser;
+  PetscCall(TryLate(t->comm, "-log_view", PETSC_TRUE));
+  PetscCall(TryLate(t->comm, "-options_left", PETSC_FALSE));
+  PetscCall(TryLate(t->comm, "-options_view", PETSC_FALSE));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode OptionsCheckUnused(const OptionTable *t, const void *values, const char *const others[],
                                   const OptionOwner owners[]) {
   char **names, **texts, unused[128] = "", value[128] = "";
   PetscInt n = 0;
   PetscFunctionBeginUser;
-  PetscCall(TryLate(t->comm, "-log_view", PETSC_TRUE));
-  PetscCall(TryLate(t->comm, "-options_left", PETSC_FALSE));
-  PetscCall(TryLate(t->comm, "-options_view", PETSC_FALSE));
   PetscCall(PetscOptionsLeftGet(NULL, &n, &names, &texts));
   for (PetscInt i = 0; i < n && !*unused; i++) {
     char name[128];

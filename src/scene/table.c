@@ -165,6 +165,7 @@ static const OptionOwner owners[] = {
 
 PetscErrorCode SceneCheckUnused(Scene scene) {
   PetscFunctionBeginUser;
+  PetscCall(OptionsTryLate(&scene->options));
   if (!scene->allow_unused) PetscCall(OptionsCheckUnused(&scene->options, scene, solvers, owners));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
