@@ -51,6 +51,14 @@ typedef struct {
   int fold;
 } Loop;
 
+static void Place(const Loop *loop, PetscReal away, PetscReal X[]) {
+  for (int k = 0; k < POINTS; k++) {
+    const PetscReal t = 2 * PETSC_PI * k / POINTS;
+    X[2 * k] = loop->x + away + loop->a * PetscCosReal(t) + loop->waist * PetscCosReal(3 * t);
+    X[2 * k + 1] = loop->y + loop->b * PetscSinReal(loop->fold * t);
+  }
+}
+
 static PetscErrorCode CheckLoops(const char what[], const Loop loop[2], PetscReal period_x, PetscBool smooth,
                                  PetscInt first, PetscInt second) {
   const PetscInt start[3] = {0, POINTS, 2 * POINTS};
@@ -58,16 +66,25 @@ static PetscErrorCode CheckLoops(const char what[], const Loop loop[2], PetscRea
   PetscReal X[4 * POINTS];
   PetscInt pair[2];
   PetscFunctionBeginUser;
-  for (int v = 0; v < 2; v++)
-    for (int k = 0; k < POINTS; k++) {
-      const PetscReal t = 2 * PETSC_PI * k / POINTS;
-      X[2 * (v * POINTS + k)] = loop[v].x + loop[v].a * PetscCosReal(t) + loop[v].waist * PetscCosReal(3 * t);
-      X[2 * (v * POINTS + k) + 1] = loop[v].y + loop[v].b * PetscSinReal(loop[v].fold * t);
-    }
+  for (int v = 0; v < 2; v++) Place(&loop[v], 0, X + 2 * v * POINTS);
   PetscCall(CurvesCross(2, start, X, period, smooth, pair));
   const PetscInt low = PetscMin(pair[0], pair[1]), high = PetscMax(pair[0], pair[1]);
   CHECK(low == first && high == second, "%s, %s: %d and %d cross", what, smooth ? "curves" : "polygons", (int)low,
         (int)high);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The tip in the hollow, first in order, must not hide two others that cross. */
+static PetscErrorCode CheckBehind(const Loop nested[2], const Loop over[2]) {
+  const PetscInt start[5] = {0, POINTS, 2 * POINTS, 3 * POINTS, 4 * POINTS};
+  const PetscReal period[2] = {0, 0};
+  PetscReal X[8 * POINTS];
+  PetscInt pair[2];
+  PetscFunctionBeginUser;
+  for (int v = 0; v < 4; v++) Place(v < 2 ? &nested[v] : &over[v - 2], v < 2 ? 0 : 9, X + 2 * v * POINTS);
+  PetscCall(CurvesCross(4, start, X, period, PETSC_TRUE, pair));
+  CHECK(PetscMin(pair[0], pair[1]) == 2 && PetscMax(pair[0], pair[1]) == 3, "behind a tip in a hollow: %d and %d cross",
+        (int)pair[0], (int)pair[1]);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -95,6 +112,7 @@ static PetscErrorCode Facts(void) {
   }
   PetscCall(CheckLoops("a tip in a hollow", nested, 0, PETSC_FALSE, 0, 1));
   PetscCall(CheckLoops("a tip in a hollow", nested, 0, PETSC_TRUE, -1, -1));
+  PetscCall(CheckBehind(nested, over));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

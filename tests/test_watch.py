@@ -118,3 +118,11 @@ def test_corner_is_warned_of_once(tmp_path):
     for centre, count in (("0.425,0.425", 1), ("0.425,1", 0)):
         run = run_petves(tmp_path / str(count), f"{scene} -vesicle_center {centre}")
         assert run.stdout.count("within 3 cells of two walls that meet after step 1,") == count, run.stdout
+
+
+def test_window_of_unbounded_fluid_has_no_corner(tmp_path):
+    """A vesicle may lie over the corner of its window, and outside of it."""
+    scene = "-domain_box 0,2,0,2 -domain_cells 32,32 -domain_bc_x free -domain_bc_y free -fluid_inertia none "
+    scene += "-scheme_type coupled -coupling_near_field exact -delta_type cbs54 -membrane_derivative spectral "
+    scene += "-vesicle_semi_axes 0.3,0.4 -vesicle_center -0.1,2.5 -time_step 0.01 -time_end 0.02"
+    assert "petves: warning" not in run_petves(tmp_path / "run", scene).stdout

@@ -81,7 +81,7 @@ static void Complete(const OffsetTable *lattice, PetscInt row, PetscInt source, 
 }
 
 /* All rows, from a lattice's table that reaches far enough. */
-static PetscErrorCode Fill(const OffsetTable *lattice, ImageTable *t) {
+PetscErrorCode ImageTableFill(const OffsetTable *lattice, ImageTable *t) {
   const PetscReal constant = LatticeConstant();
   PetscReal *theta, *weight;
   PetscFunctionBeginUser;
@@ -98,18 +98,5 @@ static PetscErrorCode Fill(const OffsetTable *lattice, ImageTable *t) {
   for (int row = 0; row < IMAGE_ROWS; row++)
     for (int source = 0; source < IMAGE_ROWS; source++) Complete(lattice, row, source, t);
   PetscCall(PetscFree2(theta, weight));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode ImageTableFill(const OffsetTable *lattice, ImageTable *t) {
-  OffsetTable own;
-  PetscFunctionBeginUser;
-  if (PetscMin(lattice->size[0], lattice->size[1]) >= IMAGE_SHIFT) {
-    PetscCall(Fill(lattice, t));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  PetscCall(LatticeStokeslet(IMAGE_SHIFT, &own));
-  PetscCall(Fill(&own, t));
-  PetscCall(OffsetTableDestroy(&own));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -15,6 +15,5 @@ typedef struct {
   PetscReal value[OFFSET_COUNT][IMAGE_ROWS][IMAGE_ROWS][IMAGE_WIDTH];
 } ImageTable;
 
-/* ImageTableFill - from the free lattice's table (lattice.h), or a longer one made here where its reach is below
-   IMAGE_SHIFT. Not collective. */
+/* ImageTableFill - from the free lattice's table (lattice.h), of a reach of IMAGE_SHIFT at least. Not collective. */
 PETSC_EXTERN PetscErrorCode ImageTableFill(const OffsetTable *lattice, ImageTable *table);

@@ -2,6 +2,7 @@
 #include "curve/spectral.h"
 
 #define FINER 8 /* times the points, where polygons of smooth curves cross */
+#define MOST 64 /* pairs of curves whose polygons cross and that do not themselves; more are too close to tell */
 
 /* Points sorted into cells at least `reach` wide: those of cell c are next[first[c]], ... up to -1. */
 typedef struct {
@@ -87,9 +88,10 @@ PetscErrorCode PairsWithin(PetscInt n, const PetscReal X[], const PetscReal peri
 }
 
 typedef struct {
-  const PetscInt *next; /* of each point: where its edge ends */
+  const PetscInt *curve, *next; /* of each point; where its edge ends */
   const PetscReal *X, *middle;
-  PetscInt at[2]; /* edges that cross */
+  PetscInt passed[MOST][2], count; /* pairs of curves that do not cross, whatever their polygons do */
+  PetscInt pair[2];                /* of curves that cross */
 } EdgeSearch;
 
 /* Twice the area of the triangle a, b, c. */
@@ -108,13 +110,16 @@ static PetscBool EdgesCross(void *context, PetscInt i, PetscInt j, const PetscRe
     q[dir] = s->X[2 * s->next[j] + dir] + shift;
   }
   if (Turn(a, b, p) * Turn(a, b, q) >= 0 || Turn(p, q, a) * Turn(p, q, b) >= 0) return PETSC_FALSE;
-  s->at[0] = i;
-  s->at[1] = j;
+  for (PetscInt k = 0; k < s->count; k++)
+    if (s->curve[i] == s->passed[k][0] && s->curve[j] == s->passed[k][1]) return PETSC_FALSE;
+  s->pair[0] = s->curve[i];
+  s->pair[1] = s->curve[j];
   return PETSC_TRUE;
 }
 
+/* The first pair of polygons that cross, but for those passed. */
 static PetscErrorCode PolygonsCross(PetscInt curves, const PetscInt start[], const PetscReal X[],
-                                    const PetscReal period[2], PetscInt pair[2]) {
+                                    const PetscReal period[2], EdgeSearch *s) {
   const PetscInt n = start[curves];
   PetscInt *curve, *next;
   PetscReal *middle, longest = 0;
@@ -127,29 +132,47 @@ static PetscErrorCode PolygonsCross(PetscInt curves, const PetscInt start[], con
       for (int dir = 0; dir < 2; dir++) middle[2 * k + dir] = 0.5 * (X[2 * k + dir] + X[2 * next[k] + dir]);
       longest = PetscMax(longest, PetscHypotReal(X[2 * next[k]] - X[2 * k], X[2 * next[k] + 1] - X[2 * k + 1]));
     }
-  EdgeSearch s = {.next = next, .X = X, .middle = middle, .at = {-1, -1}};
-  PetscCall(PairsWithin(n, middle, period, longest, EdgesCross, &s)); /* edges that cross have their middles so near */
-  for (int k = 0; k < 2; k++) pair[k] = s.at[k] < 0 ? -1 : curve[s.at[k]];
+  s->curve = curve;
+  s->next = next;
+  s->X = X;
+  s->middle = middle;
+  s->pair[0] = s->pair[1] = -1;
+  PetscCall(PairsWithin(n, middle, period, longest, EdgesCross, s)); /* edges that cross have their middles so near */
   PetscCall(PetscFree3(curve, next, middle));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode CurvesCross(PetscInt curves, const PetscInt start[], const PetscReal X[], const PetscReal period[2],
-                           PetscBool smooth, PetscInt pair[2]) {
-  PetscInt fine[3] = {0}, n[2], of[2];
+/* Whether two curves cross at FINER times their points. */
+static PetscErrorCode FinerCross(const PetscInt start[], const PetscReal X[], const PetscReal period[2],
+                                 const PetscInt pair[2], PetscBool *cross) {
+  const PetscInt two = pair[0] == pair[1] ? 1 : 2;
+  PetscInt fine[3] = {0}, n[2];
+  EdgeSearch search = {.count = 0};
   PetscReal *Y;
   PetscFunctionBeginUser;
-  PetscCall(PolygonsCross(curves, start, X, period, pair));
-  if (pair[0] < 0 || !smooth) PetscFunctionReturn(PETSC_SUCCESS);
-  const PetscInt two = pair[0] == pair[1] ? 1 : 2;
   for (int k = 0; k < two; k++) {
     n[k] = start[pair[k] + 1] - start[pair[k]];
     fine[k + 1] = fine[k] + FINER * n[k];
   }
   PetscCall(PetscMalloc1(2 * fine[two], &Y));
   for (int k = 0; k < two; k++) TrigonometricPoints(n[k], X + 2 * start[pair[k]], FINER, Y + 2 * fine[k]);
-  PetscCall(PolygonsCross(two, fine, Y, period, of));
-  if (of[0] < 0) pair[0] = pair[1] = -1;
+  PetscCall(PolygonsCross(two, fine, Y, period, &search));
+  *cross = search.pair[0] < 0 ? PETSC_FALSE : PETSC_TRUE;
   PetscCall(PetscFree(Y));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CurvesCross(PetscInt curves, const PetscInt start[], const PetscReal X[], const PetscReal period[2],
+                           PetscBool smooth, PetscInt pair[2]) {
+  EdgeSearch search = {.count = 0};
+  PetscBool cross = PETSC_TRUE;
+  PetscFunctionBeginUser;
+  do {
+    PetscCall(PolygonsCross(curves, start, X, period, &search));
+    if (search.pair[0] < 0 || !smooth || search.count == MOST) break;
+    PetscCall(FinerCross(start, X, period, search.pair, &cross));
+    if (!cross) PetscCall(PetscArraycpy(search.passed[search.count++], search.pair, 2));
+  } while (!cross);
+  PetscCall(PetscArraycpy(pair, search.pair, 2));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

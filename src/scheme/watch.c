@@ -99,32 +99,37 @@ static PetscErrorCode WarnOfSpectrum(Scheme s) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Cells from vesicle v to the nearest wall of a direction. X[2M]. */
-static PetscReal FromWall(Scheme s, PetscInt v, int dir, const PetscScalar X[]) {
-  const Layout l = s->membrane->layout;
-  const Grid g = s->fluid->grid;
+/* Cells from n markers X[2n] to the nearest wall of a direction. */
+static PetscReal FromWall(Grid g, int dir, PetscInt n, const PetscScalar X[]) {
   PetscReal least = PETSC_MAX_REAL;
-  for (PetscInt k = l->start[v]; k < l->start[v + 1] && g->wall[dir]; k++)
+  for (PetscInt k = 0; k < n; k++)
     least = PetscMin(least, PetscMin(X[2 * k + dir] - g->lo[dir], g->hi[dir] - X[2 * k + dir]) / g->h);
   return least;
 }
 
-/* Once, of the first vesicle near two walls that meet. */
+/* Once, of the first vesicle near two walls that meet. Each owner looks at its vesicles. */
 static PetscErrorCode WarnOfCorner(Scheme s) {
   const Layout l = s->membrane->layout;
+  const Grid g = s->fluid->grid;
+  char text[PETVES_MAX_MESSAGE] = "";
+  const PetscScalar *X;
   PetscFunctionBeginUser;
-  if (!s->coupling->near || s->warnings.corner || !s->fluid->grid->wall[0] || !s->fluid->grid->wall[1])
+  if (!s->coupling->near || g->free || !g->wall[0] || !g->wall[1] || s->warnings.corner)
     PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(LayoutGatherVec(l, s->state.X, s->work_all));
-  for (PetscInt v = 0; v < l->bodies && !s->warnings.corner; v++) {
-    if (PetscMax(FromWall(s, v, 0, s->work_all), FromWall(s, v, 1, s->work_all)) >= CORNER) continue;
-    s->warnings.corner = PETSC_TRUE;
-    PetscCall(SchemeWarn(s,
-                         "vesicle %" PetscInt_FMT " is within %d cells of two walls that meet after "
-                         "step %" PetscInt_FMT ", time %g; there its velocity is off by 1 to 20 %%: try finer "
-                         "-domain_cells",
-                         v + 1, CORNER, s->state.step, (double)s->state.t));
+  PetscCall(VecGetArrayRead(s->state.X, &X));
+  for (PetscInt v = l->own; v < l->end && !*text; v++) {
+    const PetscScalar *own = X + 2 * LayoutOffset(l, v);
+    if (PetscMax(FromWall(g, 0, LayoutCount(l, v), own), FromWall(g, 1, LayoutCount(l, v), own)) >= CORNER) continue;
+    PetscCall(PetscSNPrintf(text, sizeof(text),
+                            "vesicle %" PetscInt_FMT " is within %d cells of two walls that meet after "
+                            "step %" PetscInt_FMT ", time %g; there its velocity is off by 1 to 20 %%: try finer "
+                            "-domain_cells",
+                            v + 1, CORNER, s->state.step, (double)s->state.t));
   }
+  PetscCall(VecRestoreArrayRead(s->state.X, &X));
+  PetscCall(AgreeMessage(l->comm, text));
+  s->warnings.corner = *text ? PETSC_TRUE : PETSC_FALSE;
+  if (s->warnings.corner) PetscCall(SchemeWarn(s, "%s", text));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
