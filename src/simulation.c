@@ -97,6 +97,18 @@ PetscErrorCode PetvesReadOptions(MPI_Comm comm, PetscOptions options, const char
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static PetscErrorCode SetWeights(Scene scene, Membrane membrane) {
+  const PetscInt n = 2 * scene->shape.vesicles;
+  PetscReal *weight;
+  PetscFunctionBeginUser;
+  if (!SceneHasGravity(scene)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMalloc1(n, &weight));
+  for (PetscInt k = 0; k < n; k++) weight[k] = SceneWeight(scene, k / 2, (int)(k % 2));
+  PetscCall(MembraneSetWeight(membrane, weight));
+  PetscCall(PetscFree(weight));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode Build(MPI_Comm comm, PetvesFlow flow, void *ctx, Simulation s) {
   Scene scene;
   PetscFunctionBeginUser;
@@ -110,6 +122,7 @@ static PetscErrorCode Build(MPI_Comm comm, PetvesFlow flow, void *ctx, Simulatio
   PetscCall(LayoutCreate(comm, scene->shape.vesicles, scene->shape.start, &s->layout));
   PetscCall(MembraneCreate(s->layout, scene->shape.X, scene->membrane.bending,
                            (DerivativeType)scene->membrane.derivative, &s->membrane));
+  PetscCall(SetWeights(scene, s->membrane));
   PetscCall(CouplingCreate(s->fluid, s->membrane, scene->coupling.kernel, (NearFieldType)scene->coupling.near_field,
                            &s->coupling));
   if (s->coupling->near && SceneHasBoxPart(scene)) PetscCall(NearFieldAddBoxPart(s->coupling->near, &scene->fluid));

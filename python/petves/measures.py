@@ -80,6 +80,15 @@ class Measures:
         "Tank-treading frequency (radians/time) of the first vesicle; NaN unless the membrane turns in one sense.",
     )
     normal_speed = _column("normal_speed", "Largest |u.n| on a membrane (length/time): the speed of its outline.")
+
+    @property
+    def center_velocity(self) -> np.ndarray:
+        """Velocity of the centroid (length/time), shape (2,), the mean of several vesicles."""
+        return np.array([self.measure("velocity_x"), self.measure("velocity_y")])
+
+    energy_gravity = _column(
+        "energy_gravity", "Minus density difference times gravity times area times centroid (length^4/time^2)."
+    )
     div_max = _column("div_max", "What the solver left of the velocity's divergence (1/time).")
     surface_div_max = _column("surface_div_max", "What the solver left of the membrane's inextensibility (1/time).")
 

@@ -68,6 +68,29 @@ PetscErrorCode CouplingNearBending(Coupling c, PetscReal alpha, Vec X, Vec U) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode CouplingAddGravity(Coupling c, Vec X, Vec f, Vec U) {
+  const Grid g = c->fluid->grid;
+  const PetscScalar *x, *F;
+  PetscScalar *a;
+  PetscFunctionBeginUser;
+  if (!c->membrane->weight) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecSet(c->force, 0));
+  PetscCall(VecGetArrayRead(X, &x));
+  PetscCall(VecGetArray(c->force, &a));
+  MembraneGravity(c->membrane, 1, x, a);
+  PetscCall(VecRestoreArray(c->force, &a));
+  PetscCall(VecRestoreArrayRead(X, &x));
+  PetscCall(MarkersSpread(c->markers, 1 / PetscSqr(g->h), c->force, f));
+  if (!g->wall[0] && !g->wall[1]) PetscCall(FluidRemoveMean(c->fluid, f));
+  if (!c->near) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecGetArrayRead(c->force, &F));
+  PetscCall(VecGetArray(U, &a));
+  PetscCall(NearFieldApply(c->near, 1, F, a));
+  PetscCall(VecRestoreArray(U, &a));
+  PetscCall(VecRestoreArrayRead(c->force, &F));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode CouplingTread(Coupling c, PetscReal alpha, Vec X, Vec U) {
   const PetscScalar *x;
   PetscScalar *u;

@@ -46,6 +46,10 @@ PETSC_EXTERN PetscErrorCode CouplingSpreadBending(Coupling coupling, PetscReal a
    Collective. */
 PETSC_EXTERN PetscErrorCode CouplingNearBending(Coupling coupling, PetscReal alpha, Vec X, Vec U);
 
+/* CouplingAddGravity - what gravity does to the markers placed: its spread force to f, less the mean in a box that is
+   periodic both ways, and its near field to U; nothing without gravity. Collective. */
+PETSC_EXTERN PetscErrorCode CouplingAddGravity(Coupling coupling, Vec X, Vec f, Vec U);
+
 /* CouplingTread - U += alpha V dX/dt, what the labels' own motion adds to the markers' velocity. Not collective. */
 PETSC_EXTERN PetscErrorCode CouplingTread(Coupling coupling, PetscReal alpha, Vec X, Vec U);
 

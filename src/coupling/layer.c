@@ -76,6 +76,7 @@ static PetscErrorCode Forces(Membrane m, Vec sigma, const PetscScalar x[], Petsc
   MembraneStretchingTranspose(m, tau, -1, s, f);
   PetscCall(VecRestoreArrayRead(sigma, &s));
   if (m->bending > 0) MembraneBending(m, -m->bending, x, f);
+  MembraneGravity(m, 1, x, f);
   PetscCall(PetscFree(tau));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

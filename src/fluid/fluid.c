@@ -154,6 +154,7 @@ PetscErrorCode FluidCreate(const FluidSpec *spec, Fluid *out) {
   f->nu = spec->nu;
   f->steady = spec->inertia == INERTIA_NONE ? PETSC_TRUE : PETSC_FALSE;
   f->plan = spec->plan;
+  f->zero_flux = spec->drive == DRIVE_FLUX ? PETSC_TRUE : PETSC_FALSE;
   f->tridiagonal = !strcmp(spec->helmholtz, "fftw_tridiagonal") && !strcmp(spec->poisson, "fftw_tridiagonal");
   PetscCall(GridCreateG(f->grid, &f->G));
   PetscCall(GridCreateD(f->grid, &f->D));

@@ -1,10 +1,12 @@
 #include "fluid/stokes.h"
 #include "fluid/banded.h"
+#include "fluid/flux.h"
 
 struct _p_Stokes {
   Fluid fluid;
   Channel channel;     /* NULL unless x is periodic and y has walls */
   BandedStokes banded; /* NULL unless x is periodic and both fast solves are fftw_tridiagonal's */
+  ZeroFlux flux;       /* NULL unless the fluid may carry no flux along x */
   Vec q, psi;          /* of the solve by parts */
 };
 
@@ -24,6 +26,7 @@ PetscErrorCode StokesCreate(Fluid fluid, Stokes *out) {
   s->fluid = fluid;
   if (!fluid->grid->wall[0] && fluid->grid->wall[1]) PetscCall(ChannelCreate(fluid, &s->channel));
   if (!fluid->grid->wall[0] && fluid->tridiagonal) PetscCall(BandedStokesCreate(fluid, s->channel, &s->banded));
+  if (fluid->zero_flux) PetscCall(ZeroFluxCreate(fluid, &s->flux));
   if (s->banded) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(DMCreateGlobalVector(fluid->grid->da[FIELD_P], &s->q));
   PetscCall(VecDuplicate(s->q, &s->psi));
@@ -35,13 +38,15 @@ PetscErrorCode StokesDestroy(Stokes *stokes) {
   if (!*stokes) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(BandedStokesDestroy(&(*stokes)->banded));
   PetscCall(ChannelDestroy(&(*stokes)->channel));
+  PetscCall(ZeroFluxDestroy(&(*stokes)->flux));
   PetscCall(VecDestroy(&(*stokes)->q));
   PetscCall(VecDestroy(&(*stokes)->psi));
   PetscCall(PetscFree(*stokes));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode StokesSolve(Stokes s, Vec r_u, Vec r_p, Vec u, Vec p) {
+/* The solve without regard to the flux. */
+static PetscErrorCode Solve(Stokes s, Vec r_u, Vec r_p, Vec u, Vec p) {
   Fluid f = s->fluid;
   PetscFunctionBeginUser;
   if (s->banded) {
@@ -57,5 +62,12 @@ PetscErrorCode StokesSolve(Stokes s, Vec r_u, Vec r_p, Vec u, Vec p) {
   PetscCall(GridGradient(f->grid, -1, s->psi, PETSC_TRUE, u));
   PetscCall(VecAXPBYPCZ(p, f->alpha, -f->nu, 0, s->psi, s->q));
   if (s->channel) PetscCall(ChannelCorrect(s->channel, s->psi, u, p));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode StokesSolve(Stokes s, Vec r_u, Vec r_p, Vec u, Vec p) {
+  PetscFunctionBeginUser;
+  PetscCall(Solve(s, r_u, r_p, u, p));
+  if (s->flux) PetscCall(ZeroFluxCorrect(s->flux, u));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -22,6 +22,7 @@ struct _p_Membrane {
   DerivativeType derivative;
   Spectral *spectral; /* [vesicles] */
   PetscReal *arc;     /* [vesicles] initial arc length, spectrally accurate */
+  PetscReal *weight;  /* [2 vesicles] density difference times gravity (length/time^2); NULL without gravity */
   MembraneWork work;
 };
 
@@ -79,6 +80,20 @@ PETSC_EXTERN PetscReal MembraneFrequency(Membrane membrane, PetscInt vesicle, co
    of X, so that it is not taken for motion when markers pass along a curve at rest. */
 PETSC_EXTERN PetscReal MembraneNormalSpeed(Membrane membrane, PetscInt vesicle, const PetscScalar X[],
                                            const PetscScalar U[]);
+
+/* MembraneSetWeight - density difference (over the outer density) times gravity, weight[2 vesicles] (length/time^2).
+   MembraneVesicleGravity - F += alpha (weight.(X - centroid)) n ds of one vesicle, n outward: the jump of the
+   hydrostatic pressures, whose sum over the markers is weight times the area, without torque. MembraneGravity - of all
+   own vesicles; nothing without gravity. MembraneGravityEnergy - minus weight . INT x dA of one vesicle. */
+PETSC_EXTERN PetscErrorCode MembraneSetWeight(Membrane membrane, const PetscReal weight[]);
+PETSC_EXTERN void MembraneVesicleGravity(Membrane membrane, PetscInt vesicle, PetscReal alpha, const PetscScalar X[],
+                                         PetscScalar F[]);
+PETSC_EXTERN void MembraneGravity(Membrane membrane, PetscReal alpha, const PetscScalar X[], PetscScalar F[]);
+PETSC_EXTERN PetscReal MembraneGravityEnergy(Membrane membrane, PetscInt vesicle, const PetscScalar X[]);
+
+/* MembraneCentroidVelocity - of the centroid of one vesicle's area (length/time), its markers moving with U. */
+PETSC_EXTERN void MembraneCentroidVelocity(Membrane membrane, PetscInt vesicle, const PetscScalar X[],
+                                           const PetscScalar U[], PetscReal velocity[2]);
 
 /* MembraneRestoreEdges - where an edge of one vesicle is off by more than tolerance (relative), move its markers as
    little as possible until all edges have the length ds and the area is what it was: Newton (CurveFit). Nothing moves

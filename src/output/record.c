@@ -1,15 +1,16 @@
 #include "output/record.h"
 
 const char *const SeriesColumns[] = {
-    "step",        "time",       "dt",           "energy_kinetic", "energy_bending", "area",
-    "length",      "area_error", "length_error", "edge_ratio",     "div_max",        "surface_div_max",
-    "center_x",    "center_y",   "inclination",  "frequency",      "tension_its",    "bending_its",
-    "coupled_its", "nsolve",     "wall",         "area_shift",     "normal_speed",   NULL};
+    "step",        "time",         "dt",          "energy_kinetic", "energy_bending",  "area",     "length",
+    "area_error",  "length_error", "edge_ratio",  "div_max",        "surface_div_max", "center_x", "center_y",
+    "inclination", "frequency",    "tension_its", "bending_its",    "coupled_its",     "nsolve",   "wall",
+    "area_shift",  "normal_speed", "velocity_x",  "velocity_y",     "energy_gravity",  NULL};
 
 /* Columns that repeat with a suffix when there are several vesicles. */
-static const int per_vesicle[] = {COLUMN_BENDING,      COLUMN_AREA,       COLUMN_LENGTH,      COLUMN_AREA_ERROR,
-                                  COLUMN_LENGTH_ERROR, COLUMN_EDGE_RATIO, COLUMN_CENTER_X,    COLUMN_CENTER_Y,
-                                  COLUMN_INCLINATION,  COLUMN_FREQUENCY,  COLUMN_NORMAL_SPEED};
+static const int per_vesicle[] = {COLUMN_BENDING,      COLUMN_AREA,       COLUMN_LENGTH,       COLUMN_AREA_ERROR,
+                                  COLUMN_LENGTH_ERROR, COLUMN_EDGE_RATIO, COLUMN_CENTER_X,     COLUMN_CENTER_Y,
+                                  COLUMN_INCLINATION,  COLUMN_FREQUENCY,  COLUMN_NORMAL_SPEED, COLUMN_VELOCITY_X,
+                                  COLUMN_VELOCITY_Y,   COLUMN_GRAVITY};
 #define PER_VESICLE ((int)(sizeof(per_vesicle) / sizeof(per_vesicle[0])))
 
 /* Room for an entry of a line: 24 characters a number and the comma; the longest name and a vesicle's number. */
@@ -58,6 +59,8 @@ static void VesicleRow(Membrane m, PetscInt v, const PetscScalar X[], const Pets
   row[COLUMN_INCLINATION] = measures.inclination;
   row[COLUMN_FREQUENCY] = MembraneFrequency(m, v, X, U);
   row[COLUMN_NORMAL_SPEED] = MembraneNormalSpeed(m, v, X, U);
+  MembraneCentroidVelocity(m, v, X, U, &row[COLUMN_VELOCITY_X]);
+  row[COLUMN_GRAVITY] = MembraneGravityEnergy(m, v, X);
 }
 
 /* Each owner measures its vesicles, all ranks get all rows. */
@@ -82,13 +85,13 @@ PetscErrorCode RecordMeasure(Record *r, Scheme s) {
    The inclination and the frequency of the first stand for all: neither a total nor a worst value of angles means
    anything. */
 static void Combine(PetscInt vesicles, const PetscReal one[], PetscReal all[]) {
-  const int total[] = {COLUMN_BENDING, COLUMN_AREA, COLUMN_LENGTH};
+  const int total[] = {COLUMN_BENDING, COLUMN_AREA, COLUMN_LENGTH, COLUMN_GRAVITY};
   const int worst[] = {COLUMN_AREA_ERROR, COLUMN_LENGTH_ERROR, COLUMN_EDGE_RATIO, COLUMN_NORMAL_SPEED};
-  const int mean[] = {COLUMN_CENTER_X, COLUMN_CENTER_Y};
-  for (int c = 0; c < 3; c++) all[total[c]] += one[total[c]];
+  const int mean[] = {COLUMN_CENTER_X, COLUMN_CENTER_Y, COLUMN_VELOCITY_X, COLUMN_VELOCITY_Y};
+  for (int c = 0; c < 4; c++) all[total[c]] += one[total[c]];
   for (int c = 0; c < 4; c++)
     if (PetscAbsReal(one[worst[c]]) > PetscAbsReal(all[worst[c]])) all[worst[c]] = one[worst[c]];
-  for (int c = 0; c < 2; c++) all[mean[c]] += one[mean[c]] / vesicles;
+  for (int c = 0; c < 4; c++) all[mean[c]] += one[mean[c]] / vesicles;
 }
 
 /* The columns that are not of the vesicles, and the totals. */

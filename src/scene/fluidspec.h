@@ -5,17 +5,19 @@
 
 typedef enum { BC_WALL, BC_PERIODIC, BC_FREE } BoundaryType;
 typedef enum { FORM_DISTURBANCE, FORM_TOTAL } FlowForm;
+typedef enum { DRIVE_PRESSURE, DRIVE_FLUX } DriveType;
 typedef enum { INERTIA_AUTO, INERTIA_NONE, INERTIA_UNSTEADY, INERTIA_CONVECTIVE } InertiaType;
 
 typedef struct {
   MPI_Comm comm;
-  PetscReal box[4];                /* x_min, x_max, y_min, y_max */
-  PetscInt cells[2];               /* in x and y, square */
-  PetscInt bc[2];                  /* BoundaryType in x and y; BC_FREE in both or in none */
-  PetscReal nu;                    /* viscosity (density is 1) */
-  PetscInt inertia;                /* InertiaType, never INERTIA_AUTO */
-  PetscInt form;                   /* FlowForm: of the total form the walls move with the flow */
-  const Flow *flow;                /* background flow, borrowed */
+  PetscReal box[4];  /* x_min, x_max, y_min, y_max */
+  PetscInt cells[2]; /* in x and y, square */
+  PetscInt bc[2];    /* BoundaryType in x and y; BC_FREE in both or in none */
+  PetscReal nu;      /* viscosity (density is 1) */
+  PetscInt inertia;  /* InertiaType, never INERTIA_AUTO */
+  PetscInt drive;    /* DriveType: in a channel no mean pressure gradient, or no flux, of what is solved for */
+  PetscInt form;     /* FlowForm: of the total form the walls move with the flow */
+  const Flow *flow;  /* background flow, borrowed */
   char helmholtz[OPTION_MAX_NAME]; /* back end of the Helmholtz solves */
   char poisson[OPTION_MAX_NAME];   /* back end of the Poisson solves */
   PetscInt plan;                   /* FFTW's effort: 0 estimate, 1 measure, 2 patient */

@@ -21,6 +21,9 @@ static PetscReal Reynolds(Scene scene) {
   if (flow->type == FLOW_SHEAR || flow->type == FLOW_EXTENSION) speed = PetscAbsReal(flow->rate) * R0;
   if (flow->type == FLOW_POISEUILLE) speed = PetscAbsReal(flow->peak);
   if (flow->type == FLOW_QUIESCENT) speed = scene->membrane.bending / (scene->fluid.nu * PetscSqr(R0));
+  for (PetscInt v = 0; v < scene->shape.vesicles; v++) /* settling */
+    speed = PetscMax(speed, PetscHypotReal(SceneWeight(scene, v, 0), SceneWeight(scene, v, 1)) * PetscSqr(R0) /
+                                scene->fluid.nu);
   return speed * R0 / scene->fluid.nu;
 }
 

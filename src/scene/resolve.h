@@ -45,6 +45,9 @@ PETSC_EXTERN PetscErrorCode SceneCheck(Scene scene);
    vesicles than it is meant for; the vesicles are known. Collective. */
 PETSC_EXTERN PetscErrorCode SceneCheckFree(Scene scene);
 
+/* SceneCheckGravity - gravity, density differences and the drive of a channel; the vesicles are known. Collective. */
+PETSC_EXTERN PetscErrorCode SceneCheckGravity(Scene scene);
+
 /* SceneMakeShape - the initial markers of the scene's vesicles, all edges of a vesicle equal to 1e-12. Every rank gets
    all markers. Collective; stops with the user's message on a bad file, spacing or position. */
 PETSC_EXTERN PetscErrorCode SceneMakeShape(Scene scene, Shape *shape);

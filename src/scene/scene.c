@@ -32,6 +32,7 @@ PetscErrorCode SceneCreate(MPI_Comm comm, PetvesFlow flow, void *ctx, Scene *out
   /* 5  the markers, with the kernel's spacing if none is given */
   PetscCall(SceneMakeShape(s, &s->shape));
   PetscCall(SceneCheckFree(s));
+  PetscCall(SceneCheckGravity(s));
   /* 6  the steps, which go by the vesicles' size */
   PetscCall(SceneChooseSteps(s));
   PetscCall(SceneChooseLargestStep(s));

@@ -36,6 +36,12 @@ typedef struct {
   PetscInt derivative; /* DerivativeType */
 } SceneMembrane;
 
+/* Gravity: a force on the membranes, the inertia of both fluids being the same (Boussinesq). */
+typedef struct {
+  RealList g;       /* g_x, g_y (length/time^2) */
+  RealList density; /* difference over the outer density, one for all or one a vesicle */
+} SceneGravity;
+
 typedef struct {
   char kernel[OPTION_MAX_NAME]; /* between grid and markers */
   PetscInt near_field;          /* NearFieldType */
@@ -89,6 +95,7 @@ struct _p_Scene {
   Flow flow;
   SceneVesicles vesicles;
   SceneMembrane membrane;
+  SceneGravity gravity;
   SceneCoupling coupling;
   SceneScheme scheme;
   SceneTime time;
@@ -111,6 +118,11 @@ PETSC_EXTERN PetscErrorCode SceneDestroy(Scene *scene);
 
 /* SceneGiven - whether the user gave this option ("-name"). */
 PETSC_EXTERN PetscBool SceneGiven(Scene scene, const char name[]);
+
+/* SceneHasGravity - whether it pulls at a vesicle. SceneWeight - density difference times gravity of one vesicle, in
+   direction dir (length/time^2). Not collective. */
+PETSC_EXTERN PetscBool SceneHasGravity(Scene scene);
+PETSC_EXTERN PetscReal SceneWeight(Scene scene, PetscInt vesicle, int dir);
 
 /* SceneHasBoxPart - whether the near field has its box part: asked for, and no period too long. Not collective. */
 PETSC_EXTERN PetscBool SceneHasBoxPart(Scene scene);

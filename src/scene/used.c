@@ -18,7 +18,9 @@ typedef enum {
   BY_ADAPT,
   BY_ADAPTABLE,
   BY_CONVECTION,
-  BY_GRID
+  BY_GRID,
+  BY_GRAVITY,
+  BY_PERIOD
 } Need;
 
 static const char *const needs[] = {"-flow_type shear or extension",
@@ -36,7 +38,9 @@ static const char *const needs[] = {"-flow_type shear or extension",
                                     "-time_adapt error",
                                     "vesicles; without, steps are fixed",
                                     "-fluid_inertia convective",
-                                    "walls or periodic boundaries (-domain_bc_x)"};
+                                    "walls or periodic boundaries (-domain_bc_x)",
+                                    "a -fluid_gravity that is not 0,0",
+                                    "-domain_bc_x periodic and -domain_bc_y wall"};
 
 /* Options that are not listed are used by every scene. */
 static const struct {
@@ -48,6 +52,8 @@ static const struct {
              {"-flow_center_x", BY_EXTENSION},
              {"-flow_center_y", BY_SHEARED},
              {"-flow_form", BY_FLOW},
+             {"-flow_drive", BY_PERIOD},
+             {"-fluid_gravity", BY_UNSPLIT},
              {"-vesicle_count", BY_VESICLES},
              {"-vesicle_semi_axes", BY_ELLIPSES},
              {"-vesicle_area", BY_ELLIPSES},
@@ -56,6 +62,7 @@ static const struct {
              {"-vesicle_angle", BY_VESICLES},
              {"-vesicle_file", BY_FILE},
              {"-vesicle_bending", BY_VESICLES},
+             {"-vesicle_density_difference", BY_GRAVITY},
              {"-vesicle_spacing", BY_VESICLES},
              {"-vesicle_markers", BY_VESICLES},
              {"-vesicle_allow_close_markers", BY_VESICLES},
@@ -127,6 +134,10 @@ static PetscBool Met(Scene s, Need need) {
     return s->fluid.inertia == INERTIA_CONVECTIVE;
   case BY_GRID:
     return !FluidSpecIsFree(&s->fluid);
+  case BY_GRAVITY: /* the 0 that stands for none is right for all */
+    return (any && SceneHasGravity(s)) || (s->gravity.density.n == 1 && s->gravity.density.v[0] == 0);
+  case BY_PERIOD:
+    return s->fluid.bc[0] == BC_PERIODIC && s->fluid.bc[1] == BC_WALL;
   default:
     return any;
   }

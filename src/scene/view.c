@@ -14,6 +14,10 @@ static PetscErrorCode ViewFluid(Scene scene, PetscViewer v) {
                                    SceneGiven(scene, "-fluid_inertia") ? "" : " (default for this scene)",
                                    (double)scene->fluid.nu, forms[scene->fluid.form]));
   PetscCall(PetscViewerASCIIPrintf(v, "Reynolds number: %.4g\n", (double)scene->reynolds));
+  if (scene->shape.vesicles && SceneHasGravity(scene))
+    PetscCall(PetscViewerASCIIPrintf(v, "gravity: %g,%g by the vesicles' density differences\n",
+                                     (double)scene->gravity.g.v[0], (double)scene->gravity.g.v[1]));
+  if (scene->fluid.drive == DRIVE_FLUX) PetscCall(PetscViewerASCIIPrintf(v, "channel: no flux of the disturbance\n"));
   if (no_mean) PetscCall(PetscViewerASCIIPrintf(v, "periodic box: the disturbance has no mean flow\n"));
   if (*scene->warning) PetscCall(PetscViewerASCIIPrintf(v, "warning: %s\n", scene->warning));
   PetscFunctionReturn(PETSC_SUCCESS);

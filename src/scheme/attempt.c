@@ -55,6 +55,7 @@ static PetscErrorCode RightHandSides(Scheme s, Coupled *d, const BDF *b) {
     PetscCall(CouplingSpreadBending(s->coupling, -1, d->Y, d->f));
     PetscCall(CouplingNearBending(s->coupling, -1, d->Y, d->known));
   }
+  PetscCall(CouplingAddGravity(s->coupling, d->Xstar, d->f, d->known));
   PetscCall(CouplingTread(s->coupling, -1, d->Y, d->known));
   if (d->convection) {
     PetscCall(HistorySum(h, s->membrane, b->order, b->star, 1, 0, STATES(s, w), d->next.w));

@@ -1,0 +1,65 @@
+#include "fluid/flux.h"
+
+struct _p_ZeroFlux {
+  Fluid fluid;
+  PetscReal alpha;         /* coefficient that the profile is for; -1 none yet */
+  PetscReal *profile;      /* [rows of all] b */
+  PetscReal *factor, mean; /* work of its solve; mean of b */
+};
+
+PetscErrorCode ZeroFluxCreate(Fluid fluid, ZeroFlux *out) {
+  ZeroFlux z;
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&z));
+  *out = z;
+  z->fluid = fluid;
+  z->alpha = -1;
+  PetscCall(PetscMalloc2(fluid->grid->n[1], &z->profile, fluid->grid->n[1], &z->factor));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ZeroFluxDestroy(ZeroFlux *flux) {
+  PetscFunctionBeginUser;
+  if (!*flux) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscFree2((*flux)->profile, (*flux)->factor));
+  PetscCall(PetscFree(*flux));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* (alpha - nu d_yy) b = 1 with b reflected in the walls to minus itself, by elimination. */
+static void SetUp(ZeroFlux z) {
+  const Fluid f = z->fluid;
+  const PetscInt n = f->grid->n[1];
+  const PetscReal off = -f->nu / PetscSqr(f->grid->h);
+  PetscReal *b = z->profile, *c = z->factor;
+  if (z->alpha == f->alpha) return;
+  z->alpha = f->alpha;
+  for (PetscInt j = 0; j < n; j++) {
+    const PetscReal diagonal = f->alpha - off * (j == 0 || j == n - 1 ? 3 : 2);
+    const PetscReal pivot = diagonal - (j ? off * c[j - 1] : 0);
+    c[j] = off / pivot;
+    b[j] = (1 - (j ? off * b[j - 1] : 0)) / pivot;
+  }
+  for (PetscInt j = n - 2; j >= 0; j--) b[j] -= c[j] * b[j + 1];
+  z->mean = 0;
+  for (PetscInt j = 0; j < n; j++) z->mean += b[j] / n;
+}
+
+PetscErrorCode ZeroFluxCorrect(ZeroFlux z, Vec u) {
+  const Grid g = z->fluid->grid;
+  const PetscInt n = g->n[0], rows = g->rows[FIELD_U];
+  PetscReal mean = 0;
+  PetscScalar *a;
+  PetscFunctionBeginUser;
+  SetUp(z);
+  PetscCall(VecGetArray(u, &a));
+  for (PetscInt k = 0; k < n * rows; k++) mean += a[k];
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &mean, 1, MPIU_REAL, MPI_SUM, g->comm));
+  mean /= (PetscReal)n * g->n[1];
+  for (PetscInt j = 0; j < rows; j++) {
+    const PetscReal off = mean / z->mean * z->profile[g->first + j];
+    for (PetscInt i = 0; i < n; i++) a[j * n + i] -= off;
+  }
+  PetscCall(VecRestoreArray(u, &a));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

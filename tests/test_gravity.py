@@ -1,0 +1,86 @@
+"""Gravity: settling of the boundary integral, the drag of a rigid circle, the energy law, boxes without walls."""
+
+import json
+
+import h5py
+import numpy as np
+import pytest
+from conftest import ROOT, run_petves
+
+COUPLED = "-scheme_type coupled -membrane_derivative spectral -delta_type cbs54 -coupling_near_field exact"
+COUPLED += " -scheme_area_target true -scheme_order 3 -output_overwrite"
+SETTLE = f"{COUPLED} -options_file {ROOT / 'runs' / 'settling.opts'}"
+SINKS = json.loads((ROOT / "tests" / "references.json").read_text())["settling"]
+AREA = np.pi / 100
+CHANNEL = f"{COUPLED} -domain_box 0,3,0,1 -domain_cells 96,32 -domain_bc_x periodic -fluid_inertia none"
+CHANNEL += f" -fluid_gravity 1,0 -vesicle_density_difference 1 -vesicle_area {AREA!r} -vesicle_center 1.5,.5"
+CHANNEL += " -vesicle_markers 45 -time_step 1e-4 -time_end 1e-3 -output_every 1"
+
+
+def settle(folder, options="", ranks=1):
+    """The scene of runs/settling.opts on a coarser grid."""
+    return run_petves(folder, f"{SETTLE} -domain_cells 32,32 -output_every 2 {options}", ranks=ranks)
+
+
+def test_sinks_as_the_boundary_integral_says(tmp_path):
+    """Within .1 % at every time, without drifting sideways; the column of the speed is the centroid's."""
+    series = settle(tmp_path / "sinks").series
+    for time, y in zip(SINKS["t"], SINKS["y"], strict=True):
+        assert np.interp(time, series["time"], series["center_y"]) == pytest.approx(y, rel=1e-3)
+    assert np.abs(series["center_x"]).max() < 1e-5
+    late = series["time"] > 1
+    speed = np.gradient(series["center_y"], series["time"])
+    assert series["velocity_y"][late][:-1] == pytest.approx(speed[late][:-1], rel=1e-3)
+
+
+def test_energy_falls(tmp_path):
+    """Bending energy and gravity's together, which the weight times the height is."""
+    series = settle(tmp_path / "energy").series
+    assert series["energy_gravity"] == pytest.approx(series["area"] * series["center_y"], abs=1e-12)
+    assert (np.diff(series["energy_gravity"] + series["energy_bending"]) < 0).all()
+
+
+def test_ranks_restart_and_direct(tmp_path):
+    """Two ranks and the sparse LU agree; a restart has the same bits."""
+    short = "-time_end 0.4 -coupled_ksp_rtol 1e-11"
+    whole = settle(tmp_path / "whole", short).series
+    for name, options, ranks in (("ranks", short, 2), ("direct", "-time_end 0.4 -scheme_type direct", 1)):
+        other = settle(tmp_path / name, options, ranks).series
+        assert other["center_y"] == pytest.approx(whole["center_y"], abs=1e-9)
+    settle(tmp_path / "half", "-time_end 0.2 -coupled_ksp_rtol 1e-11")
+    rest = settle(tmp_path / "rest", f"{short} -restart {tmp_path / 'half' / 'checkpoint.h5'}").series
+    assert np.array_equal(rest["center_y"], whole["center_y"][-len(rest["center_y"]) :])
+
+
+def drag(folder, options):
+    """Weight over speed of a vesicle midway in a channel; the two orientations of a nearly round one averaged."""
+    found = []
+    for angle in (0, 90):
+        run = run_petves(folder / str(angle), f"{CHANNEL} {options} -vesicle_angle {angle}")
+        found.append(AREA / run.series["velocity_x"][-1])
+    return sum(found) / 2
+
+
+def test_drag_of_a_nearly_rigid_circle(tmp_path):
+    """V = .99 and .999, a fifth of the channel wide, zero flux: extrapolated to V = 1 it is 16.5328 (Faxen) to .5 %."""
+    found = [drag(tmp_path / f"{V}", f"-flow_drive flux -vesicle_reduced_area {V}") for V in (0.99, 0.999)]
+    assert found[1] + (found[1] - found[0]) / 9 == pytest.approx(16.5328, rel=5e-3)
+
+
+def test_periodic_box_has_no_mean_flow(tmp_path):
+    """Periodic both ways: the weight's mean is taken off, the vesicle sinks at a finite speed, also with inertia."""
+    box = "-domain_bc_x periodic -domain_bc_y periodic -time_step .2"
+    for inertia in ("none", "unsteady"):
+        series = settle(tmp_path / inertia, f"{box} -fluid_inertia {inertia} -time_end 8").series
+        assert -1 < series["velocity_y"][-1] < -0.05
+        assert abs(np.diff(series["velocity_y"])[-1]) < 0.02
+
+
+def test_zero_flux(tmp_path):
+    """The mean of u over the channel: zero to rounding with -flow_drive flux, a good part of the speed without."""
+    means = []
+    for drive in ("flux", "pressure"):
+        run = run_petves(tmp_path / drive, f"{CHANNEL} -vesicle_reduced_area .9 -flow_drive {drive}")
+        with h5py.File(run.folder / "checkpoint.h5") as file:
+            means.append(abs(file["fluid/u"][:].mean()) / run.series["velocity_x"][-1])
+    assert means[0] < 1e-12 and means[1] > 0.1
