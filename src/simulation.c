@@ -120,8 +120,8 @@ static PetscErrorCode Build(MPI_Comm comm, PetvesFlow flow, void *ctx, Simulatio
   PetscCall(WisdomRead(comm, scene->wisdom));
   PetscCall(FluidCreate(&scene->fluid, &s->fluid));
   PetscCall(LayoutCreate(comm, scene->shape.vesicles, scene->shape.start, &s->layout));
-  PetscCall(MembraneCreate(s->layout, scene->shape.X, scene->membrane.bending,
-                           (DerivativeType)scene->membrane.derivative, &s->membrane));
+  PetscCall(MembraneCreate(s->layout, scene->shape.X, scene->membrane.each, (DerivativeType)scene->membrane.derivative,
+                           &s->membrane));
   PetscCall(SetWeights(scene, s->membrane));
   PetscCall(CouplingCreate(s->fluid, s->membrane, scene->coupling.kernel, (NearFieldType)scene->coupling.near_field,
                            &s->coupling));

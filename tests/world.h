@@ -35,8 +35,8 @@ static inline PetscErrorCode TestMembraneCreate(const char options[], TestMembra
   PetscCall(TestScene(options, &m->scene));
   membrane = &m->scene->membrane;
   PetscCall(LayoutCreate(PETSC_COMM_SELF, m->scene->shape.vesicles, m->scene->shape.start, &m->layout));
-  PetscCall(MembraneCreate(m->layout, m->scene->shape.X, membrane->bending, (DerivativeType)membrane->derivative,
-                           &m->membrane));
+  PetscCall(
+      MembraneCreate(m->layout, m->scene->shape.X, membrane->each, (DerivativeType)membrane->derivative, &m->membrane));
   m->M = m->layout->M;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -69,7 +69,7 @@ static inline PetscErrorCode TestWorldBuild(TestWorld *w) {
   PetscCall(FluidCreate(&s->fluid, &w->fluid));
   PetscCall(LayoutCreate(s->comm, s->shape.vesicles, s->shape.start, &w->layout));
   PetscCall(
-      MembraneCreate(w->layout, s->shape.X, s->membrane.bending, (DerivativeType)s->membrane.derivative, &w->membrane));
+      MembraneCreate(w->layout, s->shape.X, s->membrane.each, (DerivativeType)s->membrane.derivative, &w->membrane));
   PetscCall(
       CouplingCreate(w->fluid, w->membrane, s->coupling.kernel, (NearFieldType)s->coupling.near_field, &w->coupling));
   PetscCall(LayoutCreateVec(w->layout, 2, &w->X));

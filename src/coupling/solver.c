@@ -110,7 +110,7 @@ static PetscErrorCode FreeReference(CoupledSolver s, const CoupledProblem *q) {
   PetscCall(UnknownsPack(s->unknowns, q->k, q->g, q->d, s->change));
   PetscCall(VecGetArray(s->change, &a));
   for (PetscInt v = l->own; v < l->end; v++) {
-    const PetscReal speed = m->bending / (s->coupling->fluid->nu * PetscSqr(m->L0[v] / (2 * PETSC_PI)));
+    const PetscReal speed = m->bending * m->part[v] / (s->coupling->fluid->nu * PetscSqr(m->L0[v] / (2 * PETSC_PI)));
     const PetscInt at = 2 * LayoutOffset(l, v);
     for (PetscInt k = at; k < at + 2 * LayoutCount(l, v); k++) a[k] = PetscSqrtReal(a[k] * a[k] + speed * speed);
   }

@@ -102,7 +102,7 @@ void UnknownsScale(Unknowns u, PetscBool inverse, PetscScalar y[]) {
   const Layout l = m->layout;
   const Fluid f = u->coupling->fluid;
   for (PetscInt v = l->own; v < l->end; v++) {
-    const PetscReal stiffness = m->bending / (f->a0 * f->nu * PetscPowRealInt(m->ds[v], 3));
+    const PetscReal stiffness = m->bending * m->part[v] / (f->a0 * f->nu * PetscPowRealInt(m->ds[v], 3));
     const PetscReal tension = UnknownsTensionScale(u, v);
     const PetscReal velocity = tension / PetscSqr(f->grid->h) * PetscSqrtReal(1 + stiffness);
     const PetscInt at = LayoutOffset(l, v), n = LayoutCount(l, v);

@@ -1,8 +1,7 @@
 /* Closed curves: ellipses and periodic cubic splines, and equal chords along them. */
 #include "curve/curve.h"
 
-/* Quadrature points for the length of a curve: the trapezoidal sum converges geometrically for an ellipse. */
-#define CURVE_SAMPLES 4000
+#define CURVE_SAMPLES 4000 /* parts of a curve, of which integrals along it are summed */
 
 void CurveEvaluate(const Curve *c, PetscReal t, PetscReal X[2]) {
   t -= PetscFloorReal(t);
@@ -25,9 +24,25 @@ void CurveEvaluate(const Curve *c, PetscReal t, PetscReal X[2]) {
            ((a * a * a - a) * c->m[k][lo] + (b * b * b - b) * c->m[k][hi]) * d * d / 6;
 }
 
+/* Perimeter of an ellipse by arithmetic-geometric means: 2 pi (a^2 - SUM 2^(n-1) c_n^2)/M(a, b), c_0^2 = a^2 - b^2,
+   c_(n+1) = (a_n - b_n)/2 (NIST Handbook of Mathematical Functions, 19.8.6). To rounding. */
+static PetscReal EllipsePerimeter(PetscReal x, PetscReal y) {
+  PetscReal a = PetscMax(x, y), b = PetscMin(x, y), power = 0.5, sum = (a + b) * (a - b) / 2;
+  const PetscReal square = a * a;
+  while (a - b > 1e-9 * a) { /* twice the digits a time: what is left is below rounding after the next */
+    const PetscReal mean = (a + b) / 2, c = (a - b) / 2;
+    b = PetscSqrtReal(a * b);
+    a = mean;
+    power *= 2;
+    sum += power * c * c;
+  }
+  return 2 * PETSC_PI * (square - sum) / ((a + b) / 2);
+}
+
 PetscReal CurveLength(const Curve *c) {
   /* Richardson on chord sums: error h^4 for a smooth curve */
   PetscReal sum[2] = {0, 0};
+  if (!c->n) return EllipsePerimeter(c->axes[0], c->axes[1]);
   for (int level = 0; level < 2; level++) {
     const PetscInt n = CURVE_SAMPLES << level;
     PetscReal last[2], X[2];
@@ -45,6 +60,7 @@ PetscReal CurveLength(const Curve *c) {
 PetscReal CurveArea(const Curve *c) {
   /* Richardson on polygons, error h^4; about the first point */
   PetscReal sum[2] = {0, 0};
+  if (!c->n) return PETSC_PI * c->axes[0] * c->axes[1];
   for (int level = 0; level < 2; level++) {
     const PetscInt n = CURVE_SAMPLES << level;
     PetscReal about[2], last[2], X[2];
@@ -104,16 +120,39 @@ PetscErrorCode CurveEqualChords(const Curve *c, PetscInt M, PetscReal X[]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Arc length up to the end of each of n equal parts of the parameter, s[n+1], and up to its middle, middle[n]: chords
+   and half chords by Richardson, relative error h^4. */
+static void Arcs(const Curve *c, PetscInt n, PetscReal s[], PetscReal middle[]) {
+  PetscReal a[2], b[2], m[2];
+  CurveEvaluate(c, 0, a);
+  s[0] = 0;
+  for (PetscInt i = 0; i < n; i++) {
+    CurveEvaluate(c, (i + 0.5) / n, m);
+    CurveEvaluate(c, (i + 1.) / n, b);
+    const PetscReal first = PetscHypotReal(m[0] - a[0], m[1] - a[1]), second = PetscHypotReal(b[0] - m[0], b[1] - m[1]);
+    const PetscReal whole = (4 * (first + second) - PetscHypotReal(b[0] - a[0], b[1] - a[1])) / 3;
+    middle[i] = s[i] + whole * first / (first + second);
+    s[i + 1] = s[i] + whole;
+    for (int k = 0; k < 2; k++) a[k] = b[k];
+  }
+}
+
 PetscErrorCode CurveEqualArcs(const Curve *c, PetscInt M, PetscReal X[]) {
-  const PetscInt n = 50 * CURVE_SAMPLES; /* chords of 5e-6 of the length: their arcs differ by 1e-12 of it */
-  PetscReal *t, *s, *at, *points;
+  const PetscInt n = PetscMax(CURVE_SAMPLES, 20 * M);
+  PetscReal *s, *middle;
+  PetscInt i = 0;
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc4(n + 1, &t, n + 1, &s, M + 1, &at, 2 * n + 2, &points));
-  for (PetscInt i = 0; i <= n; i++) t[i] = (PetscReal)i / n;
-  (void)Chords(c, n, t, s, points);
-  EqualSteps(n, t, s, M, at);
-  for (PetscInt k = 0; k < M; k++) CurveEvaluate(c, at[k], &X[2 * k]);
-  PetscCall(PetscFree4(t, s, at, points));
+  PetscCall(PetscMalloc2(n + 1, &s, n, &middle));
+  Arcs(c, n, s, middle);
+  for (PetscInt k = 0; k < M; k++) {
+    const PetscReal want = s[n] * k / M;
+    while (i < n - 1 && s[i + 1] < want) i++;
+    /* the parabola through the part's two ends and middle, as t(s) */
+    const PetscReal x = (want - s[i]) / (s[i + 1] - s[i]), m = (middle[i] - s[i]) / (s[i + 1] - s[i]);
+    const PetscReal bend = (0.5 - m) / (m * (m - 1));
+    CurveEvaluate(c, (i + x + bend * x * (x - 1)) / n, &X[2 * k]);
+  }
+  PetscCall(PetscFree2(s, middle));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -29,7 +29,8 @@ PETSC_EXTERN PetscReal CurveArea(const Curve *curve);
 /* CurveEqualChords - place M points on the curve so that all M chords are equal; X[2M], first point at t = 0. */
 PETSC_EXTERN PetscErrorCode CurveEqualChords(const Curve *curve, PetscInt M, PetscReal X[]);
 
-/* CurveEqualArcs - the same with M equal arcs: the edges of the spectral derivative. */
+/* CurveEqualArcs - the same with M arcs, equal to 1e-9 of their length on a smooth curve: what CurveFit starts from
+   for the edges of the spectral derivative. */
 PETSC_EXTERN PetscErrorCode CurveEqualArcs(const Curve *curve, PetscInt M, PetscReal X[]);
 
 /* CurveFit - move M markers X[2M] as little as possible (least squares) until all their edges, chords or spectral ones

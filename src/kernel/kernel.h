@@ -4,6 +4,8 @@
 #include "base/base.h"
 
 #define KERNEL_MAX_POINTS 6
+#define KERNEL_WALL_CELLS 3      /* cells that markers keep from walls: the kernels' reach; */
+#define KERNEL_FOLDED_CELLS 0.25 /* or where stencils are folded at walls (markers/fold.h) */
 
 /* The kernels: ib6 of Bao, Kaye and Peskin (2016), the composite B-splines of Gruninger and Griffith (2025). Name;
    weights along and across; marker spacing ds/h that suits it; spacing below which the tension problem is near

@@ -251,7 +251,9 @@ PetscErrorCode MarkersCreate(Grid g, Layout l, const char kernel[], PetscBool fo
   PetscCall(PetscMalloc5(2 * l->M, &m->X, 2 * l->M, &m->plain, 2 * l->M, &m->touching, 2 * l->M, &m->force, 2 * l->M,
                          &m->part));
   m->folded = folded && (g->wall[0] || g->wall[1]) ? PETSC_TRUE : PETSC_FALSE;
-  m->least = folded ? 0.25 : 3; /* nearer, mobility with the near field may not be positive; the kernels' reach */
+  m->least = folded
+                 ? KERNEL_FOLDED_CELLS
+                 : KERNEL_WALL_CELLS; /* nearer, mobility with the near field may not be positive; the kernels' reach */
   m->needs = folded ? "0.25" : "3";
   m->stencil = m->plain;
   if (m->folded) PetscCall(PetscMalloc1(2 * l->M, &m->stencil));

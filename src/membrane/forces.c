@@ -68,6 +68,7 @@ static void AddSecondDifference(PetscInt n, PetscReal w, const PetscScalar X[], 
 void MembraneVesicleBending(Membrane m, PetscInt v, PetscReal alpha, const PetscScalar X[], PetscScalar F[]) {
   const PetscInt n = LayoutCount(m->layout, v);
   PetscScalar *curvature = m->work.bending;
+  alpha *= m->part[v];
   if (m->derivative != DERIVATIVE_FD) {
     SpectralDerivative(m->spectral[v], 4, alpha * m->ds[v] * PetscPowRealInt(n / m->arc[v], 4), X, F);
     return;
@@ -94,5 +95,5 @@ PetscReal MembraneBendingEnergy(Membrane m, PetscInt v, const PetscScalar X[]) {
   else
     SpectralDerivative(m->spectral[v], 2, PetscSqr(n / m->arc[v]), X, curvature);
   for (PetscInt k = 0; k < 2 * n; k++) sum += PetscSqr(curvature[k]);
-  return 0.5 * m->bending * sum * m->ds[v];
+  return 0.5 * m->bending * m->part[v] * sum * m->ds[v];
 }

@@ -11,7 +11,7 @@ static PetscReal ArcLength(Membrane m, PetscInt v, const PetscScalar X[]) {
   return length;
 }
 
-PetscErrorCode MembraneCreate(Layout layout, const PetscReal X[], PetscReal bending, DerivativeType derivative,
+PetscErrorCode MembraneCreate(Layout layout, const PetscReal X[], const PetscReal bending[], DerivativeType derivative,
                               Membrane *out) {
   const PetscInt vesicles = layout->bodies;
   MembraneWork *w;
@@ -21,10 +21,11 @@ PetscErrorCode MembraneCreate(Layout layout, const PetscReal X[], PetscReal bend
   *out = m;
   w = &m->work;
   m->layout = layout;
-  m->bending = bending;
+  m->bending = 0;
+  for (PetscInt v = 0; v < vesicles; v++) m->bending = PetscMax(m->bending, bending[v]);
   m->derivative = derivative;
-  PetscCall(
-      PetscMalloc5(vesicles, &m->ds, vesicles, &m->A0, vesicles, &m->L0, vesicles, &m->spectral, vesicles, &m->arc));
+  PetscCall(PetscMalloc6(vesicles, &m->ds, vesicles, &m->A0, vesicles, &m->L0, vesicles, &m->spectral, vesicles,
+                         &m->arc, vesicles, &m->part));
   PetscCall(PetscMalloc5(2 * layout->M, &w->stretching, 2 * layout->M, &w->bending, 2 * layout->M, &w->measures,
                          2 * layout->M, &w->restore, 2 * layout->M, &w->treading));
   for (PetscInt v = 0; v < vesicles; v++) {
@@ -36,6 +37,7 @@ PetscErrorCode MembraneCreate(Layout layout, const PetscReal X[], PetscReal bend
     m->A0[v] = measures.area;
     m->L0[v] = measures.length;
     m->ds[v] = measures.length / n;
+    m->part[v] = m->bending > 0 ? bending[v] / m->bending : 1;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -45,7 +47,7 @@ PetscErrorCode MembraneDestroy(Membrane *membrane) {
   PetscFunctionBeginUser;
   if (!m) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt v = 0; v < m->layout->bodies; v++) PetscCall(SpectralDestroy(&m->spectral[v]));
-  PetscCall(PetscFree5(m->ds, m->A0, m->L0, m->spectral, m->arc));
+  PetscCall(PetscFree6(m->ds, m->A0, m->L0, m->spectral, m->arc, m->part));
   PetscCall(PetscFree(m->weight));
   PetscCall(PetscFree5(m->work.stretching, m->work.bending, m->work.measures, m->work.restore, m->work.treading));
   PetscCall(PetscFree(*membrane));

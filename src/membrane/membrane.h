@@ -18,7 +18,8 @@ struct _p_Membrane {
   Layout layout;      /* borrowed; a body is a vesicle */
   PetscReal *ds;      /* [vesicles] fixed material spacing: mean initial edge (length) */
   PetscReal *A0, *L0; /* [vesicles] initial area and length */
-  PetscReal bending;  /* c_b */
+  PetscReal bending;  /* c_b, the largest */
+  PetscReal *part;    /* [vesicles] c_b of each over the largest; 1 where that is 0 */
   DerivativeType derivative;
   Spectral *spectral; /* [vesicles] */
   PetscReal *arc;     /* [vesicles] initial arc length, spectrally accurate */
@@ -26,8 +27,9 @@ struct _p_Membrane {
   MembraneWork work;
 };
 
-/* MembraneCreate - membranes at rest with the markers X[2M] of all vesicles. Not collective. */
-PETSC_EXTERN PetscErrorCode MembraneCreate(Layout layout, const PetscReal X[], PetscReal bending,
+/* MembraneCreate - membranes at rest with the markers X[2M] of all vesicles, and c_b of each, bending[vesicles]. Not
+   collective. */
+PETSC_EXTERN PetscErrorCode MembraneCreate(Layout layout, const PetscReal X[], const PetscReal bending[],
                                            DerivativeType derivative, Membrane *membrane);
 PETSC_EXTERN PetscErrorCode MembraneDestroy(Membrane *membrane);
 
@@ -52,8 +54,8 @@ PETSC_EXTERN void MembraneStretching(Membrane membrane, const PetscReal tau[], c
 PETSC_EXTERN void MembraneStretchingTranspose(Membrane membrane, const PetscReal tau[], PetscReal alpha,
                                               const PetscScalar sigma[], PetscScalar F[]);
 
-/* MembraneVesicleBending - F += alpha ds D4 X of one vesicle, D4 = (D+D-)(D+D-) with the fixed spacing ds. Symmetric.
-   MembraneBending - of all own vesicles. */
+/* MembraneVesicleBending - F += alpha part ds D4 X of one vesicle, D4 = (D+D-)(D+D-) with the fixed spacing ds, part
+   its c_b over the largest: alpha is with the largest. Symmetric. MembraneBending - of all own vesicles. */
 PETSC_EXTERN void MembraneVesicleBending(Membrane membrane, PetscInt vesicle, PetscReal alpha, const PetscScalar X[],
                                          PetscScalar F[]);
 PETSC_EXTERN void MembraneBending(Membrane membrane, PetscReal alpha, const PetscScalar X[], PetscScalar F[]);

@@ -55,16 +55,50 @@ static PetscErrorCode CheckList(Scene scene, const char name[], PetscInt n, Pets
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* A list that says what vesicles are has `each` numbers for all of them, a vesicle, or with a mixture a kind; packed
+   vesicles have no numbers by which a list could name them. */
+static PetscErrorCode CheckKinds(Scene scene, const char name[], PetscInt n, PetscInt each) {
+  const PetscInt kinds = scene->vesicles.mixture.n;
+  PetscFunctionBeginUser;
+  if (scene->vesicles.shape == SHAPE_FILE) PetscFunctionReturn(PETSC_SUCCESS); /* their number is known later */
+  PetscCheck(n == each || n == each * kinds || kinds == 1, scene->comm, PETSC_ERR_USER_INPUT,
+             "%s: %" PetscInt_FMT " numbers given; allowed: %" PetscInt_FMT " for each of %" PetscInt_FMT
+             " kinds (-vesicle_mixture), or once for all",
+             name, n, each, kinds);
+  PetscCheck(n == each || kinds > 1 || scene->vesicles.packing == 0, scene->comm, PETSC_ERR_USER_INPUT,
+             "%s: %" PetscInt_FMT " numbers given with -vesicle_packing; allowed: %" PetscInt_FMT
+             " for all, or an entry for each kind of -vesicle_mixture",
+             name, n, each);
+  if (kinds == 1) PetscCall(CheckList(scene, name, n, each, PETSC_TRUE));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CheckPacking(Scene scene) {
+  const SceneVesicles *own = &scene->vesicles;
+  const PetscBool sized = SceneGiven(scene, "-vesicle_area") || SceneGiven(scene, "-vesicle_semi_axes");
+  PetscReal sum = 0;
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < own->mixture.n; k++) sum += own->mixture.v[k];
+  PetscCheck(PetscAbsReal(sum - 1) < 1e-6, scene->comm, PETSC_ERR_USER_INPUT,
+             "-vesicle_mixture: its parts add up to %g; allowed: parts that add up to 1", (double)sum);
+  PetscCheck(own->packing == 0 || !SceneGiven(scene, "-vesicle_count") || !sized, scene->comm, PETSC_ERR_USER_INPUT,
+             "-vesicle_packing %g: given together with -vesicle_count %" PetscInt_FMT
+             " and the vesicles' size; allowed: one of the two, the other follows from it",
+             (double)own->packing, own->count);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
 static PetscErrorCode CheckVesicle(Scene scene) {
   const PetscBool by_area = SceneByArea(scene);
   PetscFunctionBeginUser;
   PetscCheck(!(by_area && SceneGiven(scene, "-vesicle_semi_axes")), scene->comm, PETSC_ERR_USER_INPUT,
              "-vesicle_semi_axes: given together with -vesicle_area or -vesicle_reduced_area; allowed: one description "
              "of the ellipse");
-  PetscCall(CheckList(scene, "-vesicle_semi_axes", scene->vesicles.axes.n, 2, PETSC_TRUE));
-  PetscCall(CheckList(scene, "-vesicle_area", scene->vesicles.area.n, 1, PETSC_TRUE));
-  PetscCall(CheckList(scene, "-vesicle_reduced_area", scene->vesicles.reduced_area.n, 1, PETSC_TRUE));
-  if (scene->vesicles.shape != SHAPE_FILE) { /* the number of curves is known later */
+  PetscCall(CheckPacking(scene));
+  PetscCall(CheckKinds(scene, "-vesicle_semi_axes", scene->vesicles.axes.n, 2));
+  PetscCall(CheckKinds(scene, "-vesicle_area", scene->vesicles.area.n, 1));
+  PetscCall(CheckKinds(scene, "-vesicle_reduced_area", scene->vesicles.reduced_area.n, 1));
+  PetscCall(CheckKinds(scene, "-vesicle_bending", scene->membrane.stiffness.n, 1));
+  if (scene->vesicles.shape != SHAPE_FILE && scene->vesicles.packing == 0) {
     PetscCall(CheckList(scene, "-vesicle_center", scene->vesicles.center.n, 2, PETSC_FALSE));
     PetscCall(CheckList(scene, "-vesicle_angle", scene->vesicles.angle.n, 1, PETSC_TRUE));
   }

@@ -1,9 +1,9 @@
 /* What gravity and the drive of a channel need of a scene. */
-#include "scene/resolve.h"
+#include "scene/kinds.h"
 
 PetscReal SceneWeight(Scene scene, PetscInt vesicle, int dir) {
   const RealList *density = &scene->gravity.density;
-  return density->v[density->n > 1 ? vesicle : 0] * scene->gravity.g.v[dir];
+  return ListEntry(density, 1, SceneKindOf(scene, vesicle), 0) * scene->gravity.g.v[dir];
 }
 
 PetscBool SceneHasGravity(Scene scene) {
@@ -12,10 +12,11 @@ PetscBool SceneHasGravity(Scene scene) {
 
 PetscErrorCode SceneCheckGravity(Scene scene) {
   const RealList *g = &scene->gravity.g, *density = &scene->gravity.density;
+  const PetscInt entries = scene->vesicles.kind ? scene->vesicles.mixture.n : scene->shape.vesicles;
   PetscFunctionBeginUser;
   PetscCheck(g->n == 2, scene->comm, PETSC_ERR_USER_INPUT,
              "-fluid_gravity: %" PetscInt_FMT " numbers given; allowed: two, g_x,g_y", g->n);
-  PetscCheck(density->n == 1 || density->n == scene->shape.vesicles, scene->comm, PETSC_ERR_USER_INPUT,
+  PetscCheck(density->n == 1 || density->n == entries, scene->comm, PETSC_ERR_USER_INPUT,
              "-vesicle_density_difference: %" PetscInt_FMT " numbers given for %" PetscInt_FMT
              " vesicles; allowed: one for all or one a vesicle",
              density->n, scene->shape.vesicles);

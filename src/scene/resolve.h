@@ -1,5 +1,6 @@
 /* The steps of SceneCreate, the only ones that write to a scene. scene.c has them in their order. */
 #pragma once
+#include "curve/packing.h"
 #include "scene/scene.h"
 
 typedef struct _p_Scene *Draft; /* a scene that is not resolved yet */
@@ -19,15 +20,15 @@ PETSC_EXTERN PetscErrorCode SceneChooseByError(Draft scene);
 PETSC_EXTERN PetscErrorCode SceneChooseSteps(Draft scene);
 
 /* SceneSmallestRadius - R0 of the smallest vesicle (length). SceneTimes - the slowest and the fastest time of the
-   scene, nu R0^3/c_b of the smallest vesicle, and the least of it and the flow's; PETSC_MAX_REAL: none. Not collective.
+   scene, the least nu R0^3/c_b of a vesicle, and the least of it and the flow's; PETSC_MAX_REAL: none. Not collective.
  */
 PETSC_EXTERN PetscReal SceneSmallestRadius(Scene scene);
 PETSC_EXTERN void SceneTimes(Scene scene, PetscReal *slow, PetscReal *fast);
 
 /* SceneFlowStep - up to which -time_adapt error lets steps grow in a flow when nothing changes (time): 1/(rate (1 +
-   0.03 chi)), which fixed steps from an ellipse still bear (docs/time.md), chi = rate nu R0^3/c_b of the largest
-   vesicle, at most 250; PETSC_MAX_REAL without a known rate. SceneChooseLargestStep - make it the default; at rest nu
-   R0^3/c_b of the smallest vesicle, for the error that the area target leaves there. */
+   0.03 chi)), which fixed steps from an ellipse still bear (docs/time.md), chi = rate nu R0^3/c_b of the
+   softest vesicle, at most 250; PETSC_MAX_REAL without a known rate. SceneChooseLargestStep - make it the default; at
+   rest the least nu R0^3/c_b of a vesicle, for the error that the area target leaves there. */
 PETSC_EXTERN PetscReal SceneFlowStep(Scene scene);
 PETSC_EXTERN PetscErrorCode SceneChooseLargestStep(Draft scene);
 
@@ -48,9 +49,10 @@ PETSC_EXTERN PetscErrorCode SceneCheckFree(Scene scene);
 /* SceneCheckGravity - gravity, density differences and the drive of a channel; the vesicles are known. Collective. */
 PETSC_EXTERN PetscErrorCode SceneCheckGravity(Scene scene);
 
-/* SceneMakeShape - the initial markers of the scene's vesicles, all edges of a vesicle equal to 1e-12. Every rank gets
-   all markers. Collective; stops with the user's message on a bad file, spacing or position. */
-PETSC_EXTERN PetscErrorCode SceneMakeShape(Scene scene, Shape *shape);
+/* SceneMakeShape - the initial markers of the scene's vesicles, all edges of a vesicle equal to 1e-12, and their
+   bending stiffnesses. Every rank gets all of it. Collective; stops with the user's message on a bad file, spacing or
+   position, and when a packing has no room. */
+PETSC_EXTERN PetscErrorCode SceneMakeShape(Draft scene);
 
 /* SceneChooseInertia - the Reynolds number (speed R0/nu with R0 of the largest vesicle and the speed of the scene: rate
    R0 of shear and extension, u_max of poiseuille, c_b/(nu R0^2) of a quiescent fluid; 0 without vesicles), the model

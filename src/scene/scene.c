@@ -16,6 +16,7 @@ PetscErrorCode SceneCreate(MPI_Comm comm, PetvesFlow flow, void *ctx, Scene *out
   *out = s;
   s->comm = comm;
   s->coupling.ksp_rtol = 1e-6;
+  s->vesicles.area_scale = 1;
   /* 1  what the user gives, or the table's defaults */
   PetscCall(SceneReadOptions(comm, s));
   /* 2  -scheme_auto: all but the steps */
@@ -30,7 +31,7 @@ PetscErrorCode SceneCreate(MPI_Comm comm, PetvesFlow flow, void *ctx, Scene *out
   s->flow.ctx = ctx;
   DescribeFluid(s);
   /* 5  the markers, with the kernel's spacing if none is given */
-  PetscCall(SceneMakeShape(s, &s->shape));
+  PetscCall(SceneMakeShape(s));
   PetscCall(SceneCheckFree(s));
   PetscCall(SceneCheckGravity(s));
   /* 6  the steps, which go by the vesicles' size */
@@ -49,6 +50,8 @@ PetscErrorCode SceneDestroy(Scene *scene) {
   PetscFunctionBeginUser;
   if (!s) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ShapeDestroy(&s->shape));
+  PetscCall(PetscFree(s->vesicles.kind));
+  PetscCall(PetscFree(s->membrane.each));
   PetscCall(OptionsDestroy(&s->options, s));
   PetscCall(PetscFree(s));
   *scene = NULL;

@@ -13,6 +13,7 @@ typedef enum { ADAPT_NONE, ADAPT_ERROR } AdaptType;
 typedef enum { FRAME_TREADING, FRAME_NONE } FrameType;
 typedef enum { STARTUP_EULER, STARTUP_GRADED } StartUp;
 typedef enum { SHAPE_ELLIPSE, SHAPE_FILE, SHAPE_NONE } ShapeType;
+typedef enum { PACKING_RANDOM, PACKING_LATTICE } PackingType;
 
 /* The domain as the user gives it: fluid.box and fluid.cells when their lengths are right. */
 typedef struct {
@@ -21,10 +22,17 @@ typedef struct {
 } SceneDomain;
 
 typedef struct {
-  PetscInt shape;                /* ShapeType */
-  PetscInt count;                /* of ellipses */
-  RealList axes, center, angle;  /* semi-axes, centre, angle in degrees; one entry for all, or one a vesicle */
-  RealList area, reduced_area;   /* of the ellipses, instead of semi-axes */
+  PetscInt shape;               /* ShapeType */
+  PetscInt count;               /* of ellipses */
+  RealList axes, center, angle; /* semi-axes, centre, angle in degrees; one entry for all, or one a vesicle */
+  RealList area, reduced_area;  /* of the ellipses, instead of semi-axes */
+  PetscReal area_scale;         /* of the areas, where a packing of so many vesicles chooses them; else 1 */
+  RealList mixture;             /* parts of the vesicles' number; one: no mixture */
+  PetscInt *kind;               /* [count] with a mixture: which entry of the lists a vesicle takes; else NULL */
+  PetscReal packing;            /* area fraction; 0: vesicles lie at their centres */
+  PetscInt packing_type;        /* PackingType */
+  PetscInt packing_seed;
+  PetscReal packing_gap;         /* least distance in a packing (length); 0: by the grid */
   char file[PETSC_MAX_PATH_LEN]; /* curve file */
   PetscReal spacing;             /* ds/h; 0: by kernel */
   PetscInt markers;              /* 0: from spacing */
@@ -32,7 +40,9 @@ typedef struct {
 } SceneVesicles;
 
 typedef struct {
-  PetscReal bending;   /* c_b */
+  RealList stiffness;  /* c_b; one entry for all, or one a vesicle or kind */
+  PetscReal bending;   /* the largest of them */
+  PetscReal *each;     /* [vesicles] c_b of each */
   PetscInt derivative; /* DerivativeType */
 } SceneMembrane;
 

@@ -21,15 +21,20 @@ static const OptionRow table[] = {
   {"-fluid_inertia", OPT_ENUM, AT(fluid.inertia), "auto", "auto|none|unsteady|convective", "inertia of the fluid: quasi-steady Stokes, unsteady Stokes, Navier-Stokes; auto goes by flow and Reynolds number"},
   {"-fluid_gravity", OPT_REALS, AT(gravity.g), "0,0", "any", "gravity g_x,g_y (length/time^2); it moves vesicles by -vesicle_density_difference"},
   {"-vesicle_shape", OPT_ENUM, AT(vesicles.shape), "ellipse", "ellipse|file|none", "initial shape"},
-  {"-vesicle_count", OPT_INT, AT(vesicles.count), "1", ">=1", "number of ellipses; a file has its own number of curves"},
-  {"-vesicle_semi_axes", OPT_REALS, AT(vesicles.axes), "0.2,0.5", ">0", "semi-axes of the ellipse, two for all or two a vesicle (length)"},
-  {"-vesicle_area", OPT_REALS, AT(vesicles.area), "1", ">0", "area of the ellipse, with -vesicle_reduced_area; one for all or one a vesicle (length^2)"},
+  {"-vesicle_count", OPT_INT, AT(vesicles.count), "1", ">=1", "number of ellipses; a file has its own number of curves, a packing the number that it takes"},
+  {"-vesicle_semi_axes", OPT_REALS, AT(vesicles.axes), "0.2,0.5", ">0", "semi-axes of the ellipse, two for all, or two a vesicle or kind (length)"},
+  {"-vesicle_area", OPT_REALS, AT(vesicles.area), "1", ">0", "area of the ellipse, with -vesicle_reduced_area; one for all, or one a vesicle or kind (length^2)"},
   {"-vesicle_reduced_area", OPT_REALS, AT(vesicles.reduced_area), "0.7", "(0,1)", "V = area/(pi R0^2), R0 = perimeter/(2 pi); long axis along x"},
   {"-vesicle_center", OPT_REALS, AT(vesicles.center), "0,0", "any", "x,y of the centre, a pair a vesicle (length)"},
   {"-vesicle_angle", OPT_REALS, AT(vesicles.angle), "0", "any", "counter-clockwise turn of the shape, one for all or one a vesicle (degrees)"},
   {"-vesicle_file", OPT_PATH, AT(vesicles.file), "", "", "closed curves: x y a line, an empty line between curves, for -vesicle_shape file"},
-  {"-vesicle_bending", OPT_REAL, AT(membrane.bending), "0.01", ">=0", "c_b, bending stiffness; 0 leaves bending out"},
-  {"-vesicle_density_difference", OPT_REALS, AT(gravity.density), "0", "any", "density inside less density outside, over that outside; one for all or one a vesicle"},
+  {"-vesicle_mixture", OPT_REALS, AT(vesicles.mixture), "1", ">0", "parts of the vesicles' number that are of each kind, which add up to 1; lists of area, reduced area, semi-axes and bending have an entry a kind then"},
+  {"-vesicle_packing", OPT_REAL, AT(vesicles.packing), "0", "[0,1]", "area fraction of ellipses packed into the box; their number follows, or with -vesicle_count their area; 0: they lie at -vesicle_center"},
+  {"-vesicle_packing_type", OPT_ENUM, AT(vesicles.packing_type), "random", "random|lattice", "random places and angles, or a rectangular lattice with -vesicle_angle"},
+  {"-vesicle_packing_seed", OPT_INT, AT(vesicles.packing_seed), "1", ">=0", "of the random packing: the same seed gives the same vesicles"},
+  {"-vesicle_packing_gap", OPT_REAL, AT(vesicles.packing_gap), "0", ">=0", "least distance of packed vesicles from one another and from walls; 0: a cell, at most R0/20 (length)"},
+  {"-vesicle_bending", OPT_REALS, AT(membrane.stiffness), "0.01", ">=0", "c_b, bending stiffness, one for all, or one a vesicle or kind; 0 leaves bending out"},
+  {"-vesicle_density_difference", OPT_REALS, AT(gravity.density), "0", "any", "density inside less density outside, over that outside; one for all, or one a vesicle or kind"},
   {"-vesicle_spacing", OPT_REAL, AT(vesicles.spacing), "0", ">=0", "marker spacing ds/h; 0: by the shape with -coupling_near_field exact (45 markers, more on thin vesicles, at most 2 h apart), else the kernel's (" KERNEL_SPACINGS ")"},
   {"-vesicle_markers", OPT_INT, AT(vesicles.markers), "0", ">=0", "number of markers of each vesicle, instead of the spacing; 0 takes the spacing"},
   {"-vesicle_allow_close_markers", OPT_BOOL, AT(vesicles.allow_close_markers), "false", "true|false", "accept spacings below the least: 0.3 h with -coupling_near_field exact, else the kernel's (" KERNEL_LEAST_SPACINGS ")"},
@@ -103,7 +108,9 @@ PetscBool SceneGiven(Scene scene, const char name[]) {
 }
 
 PetscBool SceneByArea(Scene scene) {
-  return SceneGiven(scene, "-vesicle_area") || SceneGiven(scene, "-vesicle_reduced_area") ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool packed = scene->vesicles.packing > 0 && !SceneGiven(scene, "-vesicle_semi_axes");
+  return SceneGiven(scene, "-vesicle_area") || SceneGiven(scene, "-vesicle_reduced_area") || packed ? PETSC_TRUE
+                                                                                                    : PETSC_FALSE;
 }
 
 const char *SceneOptionName(PetscInt i) {
@@ -145,12 +152,14 @@ PetscErrorCode SceneOptionValue(Scene scene, PetscInt i, char value[], size_t le
 PetscErrorCode SceneWriteOptions(Scene scene, FILE *file) {
   /* what the scene does not use would be refused when read back, and so would be both descriptions of the ellipse; what
      one launch was asked to do with an earlier run's files is no part of the run */
-  const PetscBool by_area = SceneByArea(scene);
-  const char *skip[TABLE_SIZE + 5] = {"-restart", "-output_overwrite"};
+  const PetscBool by_area = SceneByArea(scene), packed = scene->vesicles.packing > 0 ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool counted = SceneGiven(scene, "-vesicle_count");
+  const char *skip[TABLE_SIZE + 7] = {"-restart", "-output_overwrite"};
   PetscInt skipped = 2;
   PetscFunctionBeginUser;
   if (by_area) skip[skipped++] = "-vesicle_semi_axes";
-  if (!by_area) skip[skipped++] = "-vesicle_area";
+  if (packed && !counted) skip[skipped++] = "-vesicle_count"; /* of fraction, number and area two say the third */
+  if (!by_area || (packed && counted)) skip[skipped++] = "-vesicle_area";
   if (!by_area) skip[skipped++] = "-vesicle_reduced_area";
   for (PetscInt i = 0; i < TABLE_SIZE; i++)
     if (!SceneUses(scene, table[i].name)) skip[skipped++] = table[i].name;

@@ -18,14 +18,21 @@ PetscReal SceneSmallestRadius(Scene scene) {
   return R0;
 }
 
-/* nu R0^3/c_b, PETSC_MAX_REAL without bending. */
-static PetscReal MembraneTime(Scene scene, PetscReal R0) {
-  return scene->membrane.bending > 0 ? scene->fluid.nu * R0 * R0 * R0 / scene->membrane.bending : PETSC_MAX_REAL;
+/* nu R0^3/c_b of a vesicle, PETSC_MAX_REAL without bending. */
+static PetscReal MembraneTime(Scene scene, PetscInt v) {
+  const PetscReal c_b = scene->membrane.each[v];
+  return c_b > 0 ? scene->fluid.nu * PetscPowRealInt(ShapeRadius(&scene->shape, v), 3) / c_b : PETSC_MAX_REAL;
+}
+
+static PetscReal ShortestMembraneTime(Scene scene) {
+  PetscReal time = PETSC_MAX_REAL;
+  for (PetscInt v = 0; v < scene->shape.vesicles; v++) time = PetscMin(time, MembraneTime(scene, v));
+  return time;
 }
 
 void SceneTimes(Scene scene, PetscReal *slow, PetscReal *fast) {
   const PetscReal rate = Rate(scene);
-  *slow = MembraneTime(scene, SceneSmallestRadius(scene));
+  *slow = ShortestMembraneTime(scene);
   *fast = rate > 0 ? PetscMin(*slow, 1 / rate) : *slow;
 }
 
@@ -33,13 +40,13 @@ PetscReal SceneFlowStep(Scene scene) {
   const PetscReal rate = Rate(scene);
   PetscReal largest = 0;
   if (rate == 0) return PETSC_MAX_REAL;
-  for (PetscInt v = 0; v < scene->shape.vesicles; v++) largest = PetscMax(largest, ShapeRadius(&scene->shape, v));
-  return 1 / (rate * (1 + 0.03 * PetscMin(rate * MembraneTime(scene, largest), MOST_CHI)));
+  for (PetscInt v = 0; v < scene->shape.vesicles; v++) largest = PetscMax(largest, MembraneTime(scene, v));
+  return 1 / (rate * (1 + 0.03 * PetscMin(rate * largest, MOST_CHI)));
 }
 
 /* Of a fluid at rest; a flow has steps of its own. */
 static PetscReal MembraneTimeAtRest(Scene scene) {
-  return Rate(scene) == 0 ? MembraneTime(scene, SceneSmallestRadius(scene)) : PETSC_MAX_REAL;
+  return Rate(scene) == 0 ? ShortestMembraneTime(scene) : PETSC_MAX_REAL;
 }
 
 PetscErrorCode SceneChooseLargestStep(Draft scene) {

@@ -11,6 +11,10 @@ typedef enum {
   BY_VESICLES,
   BY_ELLIPSES,
   BY_FILE,
+  BY_PACKING,
+  BY_RANDOM,
+  BY_CENTERS,
+  BY_ANGLES,
   BY_UNSPLIT,
   BY_COUPLED,
   BY_PENALTY,
@@ -31,6 +35,10 @@ static const char *const needs[] = {"-flow_type shear or extension",
                                     "vesicles (-vesicle_shape)",
                                     "-vesicle_shape ellipse",
                                     "-vesicle_shape file",
+                                    "-vesicle_packing",
+                                    "-vesicle_packing and -vesicle_packing_type random",
+                                    "vesicles that are not packed (-vesicle_packing 0)",
+                                    "vesicles that are not packed at random (-vesicle_packing)",
                                     "vesicles and -scheme_type coupled or direct",
                                     "vesicles and -scheme_type coupled",
                                     "vesicles and -scheme_type penalty",
@@ -58,8 +66,13 @@ static const struct {
              {"-vesicle_semi_axes", BY_ELLIPSES},
              {"-vesicle_area", BY_ELLIPSES},
              {"-vesicle_reduced_area", BY_ELLIPSES},
-             {"-vesicle_center", BY_VESICLES},
-             {"-vesicle_angle", BY_VESICLES},
+             {"-vesicle_center", BY_CENTERS},
+             {"-vesicle_angle", BY_ANGLES},
+             {"-vesicle_mixture", BY_ELLIPSES},
+             {"-vesicle_packing", BY_ELLIPSES},
+             {"-vesicle_packing_type", BY_PACKING},
+             {"-vesicle_packing_seed", BY_RANDOM},
+             {"-vesicle_packing_gap", BY_PACKING},
              {"-vesicle_file", BY_FILE},
              {"-vesicle_bending", BY_VESICLES},
              {"-vesicle_density_difference", BY_GRAVITY},
@@ -101,8 +114,13 @@ static PetscBool IsScheme(Scene s, const char name[]) {
   return s->shape.vesicles && !strcmp(s->scheme.type, name) ? PETSC_TRUE : PETSC_FALSE;
 }
 
+static PetscBool IsPacked(Scene s) {
+  return s->vesicles.shape == SHAPE_ELLIPSE && s->vesicles.packing > 0 ? PETSC_TRUE : PETSC_FALSE;
+}
+
 static PetscBool Met(Scene s, Need need) {
   const PetscBool any = s->shape.vesicles > 0 ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool packed = IsPacked(s), random = packed && s->vesicles.packing_type == PACKING_RANDOM;
   switch (need) {
   case BY_STRAIN:
     return IsFlow(s, FLOW_SHEAR, FLOW_EXTENSION);
@@ -118,6 +136,13 @@ static PetscBool Met(Scene s, Need need) {
     return s->vesicles.shape == SHAPE_ELLIPSE;
   case BY_FILE:
     return s->vesicles.shape == SHAPE_FILE;
+  case BY_PACKING:
+    return packed;
+  case BY_RANDOM:
+    return random;
+  case BY_CENTERS:
+  case BY_ANGLES:
+    return any && !(need == BY_ANGLES ? random : packed);
   case BY_UNSPLIT:
     return IsScheme(s, "coupled") || IsScheme(s, "direct");
   case BY_COUPLED:

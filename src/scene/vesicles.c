@@ -1,145 +1,14 @@
-/* The initial markers of a scene: equal edges on an ellipse or on a curve from a file. */
+/* The initial markers of a scene: equal edges on ellipses or on curves from a file, each where it belongs. */
 #include "curve/crossing.h"
-#include "kernel/kernel.h"
-#include "scene/resolve.h"
+#include "scene/kinds.h"
 
-#define MAX_NEWTON 20 /* of the first markers; four are usual */
-#define MANY 100      /* markers, from which on it matters that Fourier transforms of them are fast */
-#define LEEWAY 0.04   /* by which their number may differ for it */
-
-/* The odd number with prime factors up to 13 that is nearest to M, if one is near. */
-static PetscInt FastOdd(PetscInt M) {
-  for (PetscInt away = 0; away <= LEEWAY * M; away += 2)
-    for (int side = -1; side <= 1; side += 2) {
-      PetscInt left = M + side * away;
-      for (PetscInt p = 3; p <= 13; p += 2)
-        while (left % p == 0) left /= p;
-      if (left == 1) return M + side * away;
-    }
-  return M;
-}
-
-/* lambda_t rate of the flow with a vesicle of radius R0; 0 where either is zero. */
-static PetscReal Chi(Scene scene, PetscReal R0) {
-  const Flow *flow = &scene->flow;
-  PetscReal rate = 0;
-  if (flow->type == FLOW_SHEAR || flow->type == FLOW_EXTENSION) rate = PetscAbsReal(flow->rate);
-  if (flow->type == FLOW_POISEUILLE) rate = 2 * PetscAbsReal(flow->peak) / flow->half_width;
-  if (scene->membrane.bending == 0) return 0;
-  return rate * scene->fluid.nu * PetscPowRealInt(R0, 3) / scene->membrane.bending;
-}
-
-#define THINNEST 8 /* times the markers of a round vesicle, at most */
-
-/* With the exact near field markers have to resolve the shape, not the grid: 45 for a reduced area of 0.6 and more, in
-   proportion more for thinner ones, half as many more where the flow is so strong that membranes wrinkle; and no edge
-   longer than two cells, so that the kernel leaks nothing. */
-static PetscReal WantedByShape(Scene scene, PetscReal length, PetscReal area) {
-  const PetscReal V = 4 * PETSC_PI * area / PetscSqr(length), thin = PetscMin(THINNEST, PetscMax(1, 0.6 / V));
-  const PetscReal strong = Chi(scene, length / (2 * PETSC_PI)) >= 100 ? 1.5 : 1;
-  return PetscMax(45 * thin * strong, length / (2 * FluidSpecCellSize(&scene->fluid)));
-}
-
-/* Dense matrices of a vesicle grow with the square of its markers: 3 GB and more above it, and 32-bit sizes end soon.
- */
-#define MOST_MARKERS 10000
-
-/* Number of markers of a curve: the user's own; by the shape; or the even (for spectral edges odd) number nearest to
-   length/(spacing h). */
-static PetscErrorCode MarkerCount(Scene scene, PetscReal length, PetscReal area, PetscInt *M) {
-  const Kernel *kernel = KernelFind(scene->coupling.kernel);
-  const SceneVesicles *own = &scene->vesicles;
-  const PetscBool exact = scene->coupling.near_field == NEAR_EXACT ? PETSC_TRUE : PETSC_FALSE;
-  const PetscBool spectral = scene->membrane.derivative == DERIVATIVE_SPECTRAL ? PETSC_TRUE : PETSC_FALSE;
-  const PetscReal spacing = own->spacing > 0 ? own->spacing : kernel->default_spacing;
-  const PetscReal h = FluidSpecCellSize(&scene->fluid), pairs = length / (2 * spacing * h);
-  const PetscBool by_shape = exact && !own->markers && own->spacing == 0 ? PETSC_TRUE : PETSC_FALSE;
-  const PetscReal wanted = own->markers ? own->markers : (by_shape ? WantedByShape(scene, length, area) : 2 * pairs);
-  PetscFunctionBeginUser;
-  PetscCheck(own->markers <= MOST_MARKERS, scene->comm, PETSC_ERR_USER_INPUT,
-             "-vesicle_markers %" PetscInt_FMT ": more than the dense matrices of a vesicle hold; allowed: at most %d",
-             own->markers, MOST_MARKERS);
-  PetscCheck(
-      wanted <= MOST_MARKERS, scene->comm, PETSC_ERR_USER_INPUT,
-      "-vesicle_spacing %g: %.3g markers on a membrane of length %g at h = %g; allowed: at most %d a vesicle, so "
-      "a smaller vesicle, a larger spacing or coarser -domain_cells",
-      (double)own->spacing, (double)wanted, (double)length, (double)h, MOST_MARKERS);
-  if (own->markers)
-    *M = own->markers;
-  else if (by_shape)
-    *M = 2 * (PetscInt)PetscCeilReal((wanted - 1) / 2 * (1 - 1e-12)) + 1;
-  else /* odd: no Nyquist mode */
-    *M = spectral ? 2 * (PetscInt)PetscFloorReal(pairs) + 1 : 2 * (PetscInt)PetscFloorReal(pairs + 0.5);
-  if (!own->markers && !by_shape && spectral && *M > MANY) *M = FastOdd(*M);
-  PetscCheck(*M >= 8, scene->comm, PETSC_ERR_USER_INPUT,
-             "-vesicle_spacing %g: %" PetscInt_FMT
-             " markers on a membrane of length %g at h = %g; allowed: at least 8, so a finer -domain_cells",
-             (double)spacing, *M, (double)length, (double)h);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* That M markers on a curve are as far apart as kernel and near field need. */
-static PetscErrorCode CheckSpacing(Scene scene, PetscReal length, PetscInt M) {
-  const Kernel *kernel = KernelFind(scene->coupling.kernel);
-  const SceneVesicles *own = &scene->vesicles;
-  const PetscReal h = FluidSpecCellSize(&scene->fluid);
-  const PetscReal least = scene->coupling.near_field == NEAR_EXACT ? NEAR_LEAST_SPACING : kernel->least_spacing;
-  /* rounding to a number of markers may go just below the limit */
-  const PetscReal s = own->spacing > 0 ? own->spacing : length / (M * h);
-  PetscFunctionBeginUser;
-  PetscCheck(own->allow_close_markers || (!own->markers && !own->spacing) || s >= least * (1 - 1e-12), scene->comm,
-             PETSC_ERR_USER_INPUT,
-             "-vesicle_%s %g: markers %g h apart with -delta_type %s; allowed: at least %g h "
-             "(-vesicle_allow_close_markers goes on)",
-             own->markers ? "markers" : "spacing", own->markers ? (double)own->markers : (double)own->spacing,
-             (double)s, scene->coupling.kernel, (double)least);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Entry k of a list that has one entry for all or one a vesicle. */
-static PetscReal Entry(const RealList *list, PetscInt each, PetscInt vesicle, PetscInt component) {
-  return list->v[list->n > each ? each * vesicle + component : component];
-}
-
-/* The scene's curves about the origin. */
-static PetscErrorCode MakeCurves(Scene scene, PetscInt *count, Curve **out) {
-  Curve *curve;
-  PetscFunctionBeginUser;
-  *count = scene->vesicles.shape == SHAPE_ELLIPSE ? scene->vesicles.count : 0;
-  PetscCall(PetscCalloc1(*count, &curve));
-  *out = curve;
-  for (PetscInt k = 0; k < *count; k++) {
-    if (SceneByArea(scene))
-      PetscCall(EllipseAxes(Entry(&scene->vesicles.area, 1, k, 0), Entry(&scene->vesicles.reduced_area, 1, k, 0),
-                            curve[k].axes));
-    else
-      for (int c = 0; c < 2; c++) curve[k].axes[c] = Entry(&scene->vesicles.axes, 2, k, c);
-  }
-  if (scene->vesicles.shape != SHAPE_FILE) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(CurvesFromFile(scene->comm, scene->vesicles.file, count, out));
-  PetscCheck(!SceneGiven(scene, "-vesicle_count") || scene->vesicles.count == *count, scene->comm, PETSC_ERR_USER_INPUT,
-             "-vesicle_count %" PetscInt_FMT ": -vesicle_file %s has %" PetscInt_FMT
-             " curves; allowed: the same number",
-             scene->vesicles.count, scene->vesicles.file, *count);
-  PetscCheck(scene->vesicles.center.n == 2 || scene->vesicles.center.n == 2 * *count, scene->comm, PETSC_ERR_USER_INPUT,
-             "-vesicle_center: %" PetscInt_FMT " numbers given for %" PetscInt_FMT
-             " curves; allowed: two for all or two a curve",
-             scene->vesicles.center.n, *count);
-  PetscCheck(scene->vesicles.angle.n == 1 || scene->vesicles.angle.n == *count, scene->comm, PETSC_ERR_USER_INPUT,
-             "-vesicle_angle: %" PetscInt_FMT " numbers given for %" PetscInt_FMT
-             " curves; allowed: one for all or one a curve",
-             scene->vesicles.angle.n, *count);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Turn and move markers of vesicle v. */
-static void Place(Scene scene, PetscInt v, PetscInt M, PetscReal X[]) {
-  const PetscReal turn = Entry(&scene->vesicles.angle, 1, v, 0) * PETSC_PI / 180, c = PetscCosReal(turn),
-                  s = PetscSinReal(turn);
+/* The markers X about the origin, turned and moved, as Y, which may be X. */
+static void Place(const Pose *at, PetscInt M, const PetscReal X[], PetscReal Y[]) {
+  const PetscReal c = at->along[0], s = at->along[1];
   for (PetscInt k = 0; k < M; k++) {
     const PetscReal x = X[2 * k], y = X[2 * k + 1];
-    X[2 * k] = Entry(&scene->vesicles.center, 2, v, 0) + c * x - s * y;
-    X[2 * k + 1] = Entry(&scene->vesicles.center, 2, v, 1) + s * x + c * y;
+    Y[2 * k] = at->center[0] + c * x - s * y;
+    Y[2 * k + 1] = at->center[1] + s * x + c * y;
   }
 }
 
@@ -148,27 +17,29 @@ static void Place(Scene scene, PetscInt v, PetscInt M, PetscReal X[]) {
 /* The options that a vesicle's size comes from. */
 static PetscErrorCode SizeOptions(Scene scene, PetscInt v, char text[], size_t length) {
   const SceneVesicles *own = &scene->vesicles;
+  const PetscInt k = SceneKindOf(scene, v);
   PetscFunctionBeginUser;
   if (own->shape == SHAPE_FILE)
     PetscCall(PetscSNPrintf(text, length, "-vesicle_file %s", own->file));
   else if (SceneByArea(scene))
     PetscCall(PetscSNPrintf(text, length, "-vesicle_area %g -vesicle_reduced_area %g",
-                            (double)Entry(&own->area, 1, v, 0), (double)Entry(&own->reduced_area, 1, v, 0)));
+                            (double)own->area_scale * ListEntry(&own->area, 1, k, 0),
+                            (double)ListEntry(&own->reduced_area, 1, k, 0)));
   else
-    PetscCall(PetscSNPrintf(text, length, "-vesicle_semi_axes %g,%g", (double)Entry(&own->axes, 2, v, 0),
-                            (double)Entry(&own->axes, 2, v, 1)));
+    PetscCall(PetscSNPrintf(text, length, "-vesicle_semi_axes %g,%g", (double)ListEntry(&own->axes, 2, k, 0),
+                            (double)ListEntry(&own->axes, 2, k, 1)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* That a curve, turned and moved, is between the walls and no longer than a period: before markers are fitted to it. */
-static PetscErrorCode CheckRoom(Scene scene, const Curve *curve, PetscInt v) {
+static PetscErrorCode CheckRoom(Scene scene, const Curve *curve, const Pose *at, PetscInt v) {
   const FluidSpec *f = &scene->fluid;
   PetscReal X[2 * OUTLINE];
   char size[256];
   PetscFunctionBeginUser;
   PetscCall(SizeOptions(scene, v, size, sizeof(size)));
   for (PetscInt k = 0; k < OUTLINE; k++) CurveEvaluate(curve, (PetscReal)k / OUTLINE, X + 2 * k);
-  Place(scene, v, OUTLINE, X);
+  Place(at, OUTLINE, X, X);
   for (int dir = 0; dir < 2 && f->bc[dir] != BC_FREE; dir++) {
     const PetscReal *wall = f->box + 2 * dir, width = wall[1] - wall[0];
     PetscReal low = X[dir], high = X[dir];
@@ -183,8 +54,8 @@ static PetscErrorCode CheckRoom(Scene scene, const Curve *curve, PetscInt v) {
     PetscCheck(f->bc[dir] == BC_PERIODIC || (low >= wall[0] && high <= wall[1]), scene->comm, PETSC_ERR_USER_INPUT,
                "-vesicle_center %g,%g: vesicle %" PetscInt_FMT
                " reaches %c = %g, beyond the wall %c_%s = %g; allowed: a vesicle inside -domain_box",
-               (double)Entry(&scene->vesicles.center, 2, v, 0), (double)Entry(&scene->vesicles.center, 2, v, 1), v + 1,
-               dir ? 'y' : 'x', (double)(side ? high : low), dir ? 'y' : 'x', side ? "max" : "min", (double)wall[side]);
+               (double)at->center[0], (double)at->center[1], v + 1, dir ? 'y' : 'x', (double)(side ? high : low),
+               dir ? 'y' : 'x', side ? "max" : "min", (double)wall[side]);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -223,6 +94,47 @@ static PetscBool Encloses(const Shape *s, PetscInt a, PetscInt b, PetscReal box[
   return PETSC_FALSE;
 }
 
+/* Vesicles by a point of each and the middle of its bounding box, for a search of those that enclose another. */
+typedef struct {
+  const Shape *shape;
+  const PetscReal *period;
+  PetscInt pair[2];
+} EncloseSearch;
+
+/* Points i < vesicles are middles of boxes, the others first markers. */
+static PetscBool FindEnclosed(void *context, PetscInt i, PetscInt j, const PetscReal d[2]) {
+  EncloseSearch *e = (EncloseSearch *)context;
+  const PetscInt n = e->shape->vesicles, inner = j - n;
+  PetscReal box[2][2];
+  (void)d;
+  if (i >= n || j < n || inner == i) return PETSC_FALSE;
+  Bounds(e->shape, i, box);
+  if (!Encloses(e->shape, i, inner, box, e->period)) return PETSC_FALSE;
+  e->pair[0] = PetscMin(i, inner);
+  e->pair[1] = PetscMax(i, inner);
+  return PETSC_TRUE;
+}
+
+/* The first vesicles found of which one lies within the other, given that none cross; -1 where there are none. */
+static PetscErrorCode FindWithin(const Shape *s, const PetscReal period[2], PetscInt pair[2]) {
+  EncloseSearch search = {s, period, {-1, -1}};
+  PetscReal *points, reach = 0, box[2][2];
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(4 * s->vesicles, &points));
+  for (PetscInt v = 0; v < s->vesicles; v++) {
+    Bounds(s, v, box);
+    for (int d = 0; d < 2; d++) {
+      points[2 * v + d] = 0.5 * (box[d][0] + box[d][1]);
+      points[2 * (s->vesicles + v) + d] = s->X[2 * s->start[v] + d];
+    }
+    reach = PetscMax(reach, PetscHypotReal(box[0][1] - box[0][0], box[1][1] - box[1][0]) / 2);
+  }
+  PetscCall(PairsWithin(2 * s->vesicles, points, period, reach * (1 + 1e-12), FindEnclosed, &search));
+  PetscCall(PetscFree(points));
+  PetscCall(PetscArraycpy(pair, search.pair, 2));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* No vesicle crosses another, an image of one or itself, nor lies within another. */
 static PetscErrorCode CheckOverlap(Scene scene, const Shape *s) {
   const PetscBool smooth = scene->membrane.derivative == DERIVATIVE_SPECTRAL ? PETSC_TRUE : PETSC_FALSE;
@@ -236,15 +148,7 @@ static PetscErrorCode CheckOverlap(Scene scene, const Shape *s) {
              "%s: vesicle %" PetscInt_FMT
              " crosses itself or its periodic image; allowed: curves that do not, in a box that holds them",
              scene->vesicles.shape == SHAPE_FILE ? "-vesicle_file" : "-domain_box", pair[0] + 1);
-  for (PetscInt a = 0; a < s->vesicles && pair[0] < 0; a++) {
-    PetscReal box[2][2];
-    Bounds(s, a, box);
-    for (PetscInt b = 0; b < s->vesicles && pair[0] < 0; b++)
-      if (a != b && Encloses(s, a, b, box, period)) {
-        pair[0] = PetscMin(a, b);
-        pair[1] = PetscMax(a, b);
-      }
-  }
+  if (pair[0] < 0) PetscCall(FindWithin(s, period, pair));
   PetscCheck(pair[0] < 0, scene->comm, PETSC_ERR_USER_INPUT,
              "-vesicle_center: vesicles %" PetscInt_FMT " and %" PetscInt_FMT
              " overlap; allowed: vesicles apart from one another",
@@ -252,36 +156,45 @@ static PetscErrorCode CheckOverlap(Scene scene, const Shape *s) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SceneMakeShape(Scene scene, Shape *shape) {
-  Curve *curve;
+/* Where each vesicle's markers start, of kinds that are fitted when they are met first. */
+static PetscErrorCode Number(Scene scene, Kinds *kinds, Shape *shape) {
   PetscFunctionBeginUser;
-  shape->X = NULL;
-  PetscCall(MakeCurves(scene, &shape->vesicles, &curve));
   PetscCall(PetscCalloc1(shape->vesicles + 1, &shape->start));
   for (PetscInt v = 0; v < shape->vesicles; v++) {
-    PetscInt M;
-    PetscCall(CheckRoom(scene, &curve[v], v));
-    PetscCall(MarkerCount(scene, CurveLength(&curve[v]), CurveArea(&curve[v]), &M));
-    PetscCall(CheckSpacing(scene, CurveLength(&curve[v]), M));
-    PetscCheck(shape->start[v] < PETSC_MAX_INT / 8 - M, scene->comm, PETSC_ERR_USER_INPUT,
+    Kind *kind = &kinds->kind[kinds->of[v]];
+    if (!kind->M) PetscCall(KindFit(scene, kind));
+    PetscCheck(shape->start[v] < PETSC_MAX_INT / 8 - kind->M, scene->comm, PETSC_ERR_USER_INPUT,
                "-vesicle_count %" PetscInt_FMT ": more markers than this PETSc can number; allowed: fewer vesicles",
                shape->vesicles);
-    shape->start[v + 1] = shape->start[v] + M;
+    shape->start[v + 1] = shape->start[v] + kind->M;
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SceneMakeShape(Draft scene) {
+  Shape *shape = &scene->shape;
+  Kinds kinds;
+  Pose *pose;
+  PetscFunctionBeginUser;
+  PetscCall(SceneCountPacked(scene));
+  PetscCall(SceneMixKinds(scene));
+  PetscCall(KindsCreate(scene, &kinds));
+  shape->vesicles = kinds.vesicles;
+  PetscCall(PetscMalloc1(kinds.vesicles, &pose));
+  PetscCall(PetscMalloc1(kinds.vesicles, &scene->membrane.each));
+  PetscCall(ScenePlace(scene, &kinds, pose));
+  for (PetscInt v = 0; v < kinds.vesicles; v++)
+    PetscCall(CheckRoom(scene, &kinds.kind[kinds.of[v]].curve, &pose[v], v));
+  PetscCall(Number(scene, &kinds, shape));
   PetscCall(PetscMalloc1(2 * shape->start[shape->vesicles], &shape->X));
-  for (PetscInt v = 0; v < shape->vesicles; v++) {
-    PetscReal *X = shape->X + 2 * shape->start[v], left;
-    const PetscInt M = shape->start[v + 1] - shape->start[v];
-    if (scene->membrane.derivative == DERIVATIVE_SPECTRAL) {
-      PetscCall(CurveEqualArcs(&curve[v], M, X));
-      /* what M markers sample of a curve with sharper tips than they resolve has neither its length nor its area */
-      PetscCall(CurveFit(M, PETSC_TRUE, CurveLength(&curve[v]), CurveArea(&curve[v]), X, MAX_NEWTON, &left));
-    } else
-      PetscCall(CurveEqualChords(&curve[v], M, X));
-    PetscCall(CurveDestroy(&curve[v]));
-    Place(scene, v, M, X);
+  for (PetscInt v = 0; v < kinds.vesicles; v++) {
+    const Kind *kind = &kinds.kind[kinds.of[v]];
+    Place(&pose[v], kind->M, kind->X, shape->X + 2 * shape->start[v]);
+    scene->membrane.each[v] = kind->bending;
+    scene->membrane.bending = PetscMax(scene->membrane.bending, kind->bending);
   }
-  PetscCall(PetscFree(curve));
+  PetscCall(PetscFree(pose));
+  PetscCall(KindsDestroy(&kinds));
   PetscCall(CheckOverlap(scene, shape));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -29,6 +29,48 @@ static const char *NearField(Scene scene) {
   return scene->coupling.box_part ? "exact without box part (a period is longer than 4 times the other side)" : "exact";
 }
 
+#define FEW 8 /* vesicles that get a line each */
+
+/* Area of the polygons of all markers. */
+static PetscReal PolygonArea(const Shape *s) {
+  PetscReal area = 0;
+  for (PetscInt v = 0; v < s->vesicles; v++)
+    for (PetscInt k = s->start[v], p = s->start[v + 1] - 1; k < s->start[v + 1]; p = k++)
+      area += 0.5 * (s->X[2 * p] * s->X[2 * k + 1] - s->X[2 * k] * s->X[2 * p + 1]);
+  return area;
+}
+
+static PetscErrorCode ViewVesicles(Scene scene, PetscViewer v) {
+  const Shape *shape = &scene->shape;
+  const PetscReal *b = scene->fluid.box;
+  PetscReal soft = PETSC_MAX_REAL;
+  PetscInt few = PETSC_MAX_INT, many = 0;
+  PetscFunctionBeginUser;
+  if (!shape->vesicles) PetscCall(PetscViewerASCIIPrintf(v, "vesicle: none (no tension solve, no bending solve)\n"));
+  for (PetscInt k = 0; k < shape->vesicles; k++) {
+    const PetscInt M = shape->start[k + 1] - shape->start[k];
+    few = PetscMin(few, M);
+    many = PetscMax(many, M);
+    soft = PetscMin(soft, scene->membrane.each[k]);
+    if (shape->vesicles > FEW) continue;
+    PetscCall(
+        PetscViewerASCIIPrintf(v, "vesicle %" PetscInt_FMT ": %" PetscInt_FMT " markers, tension on\n", k + 1, M));
+  }
+  if (shape->vesicles > FEW)
+    PetscCall(PetscViewerASCIIPrintf(
+        v, "vesicles: %" PetscInt_FMT " of %" PetscInt_FMT " to %" PetscInt_FMT " markers, area fraction %.4g%s\n",
+        shape->vesicles, few, many, (double)(PolygonArea(shape) / ((b[1] - b[0]) * (b[3] - b[2]))),
+        scene->vesicles.packing > 0 ? ", packed" : ""));
+  if (!shape->vesicles || scene->membrane.bending == 0)
+    PetscCall(PetscViewerASCIIPrintf(v, "bending: off (no bending solve)\n"));
+  else if (soft < scene->membrane.bending)
+    PetscCall(
+        PetscViewerASCIIPrintf(v, "bending: on, c_b = %g to %g\n", (double)soft, (double)scene->membrane.bending));
+  else
+    PetscCall(PetscViewerASCIIPrintf(v, "bending: on, c_b = %g\n", (double)soft));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode SceneView(Scene scene, PetscViewer v) {
   static const char *const derivatives[] = {"finite differences", "spectral bending", "spectral bending and edges"};
   static const char *const bc[] = {"wall", "periodic", "free"};
@@ -44,14 +86,7 @@ PetscErrorCode SceneView(Scene scene, PetscViewer v) {
       bc[scene->fluid.bc[0]], bc[scene->fluid.bc[1]]));
   PetscCall(ViewFluid(scene, v));
   PetscCall(PetscViewerASCIIPrintf(v, "background flow: %s\n", flows[scene->flow.type]));
-  if (!shape->vesicles) PetscCall(PetscViewerASCIIPrintf(v, "vesicle: none (no tension solve, no bending solve)\n"));
-  for (PetscInt k = 0; k < shape->vesicles; k++)
-    PetscCall(PetscViewerASCIIPrintf(v, "vesicle %" PetscInt_FMT ": %" PetscInt_FMT " markers, tension on\n", k + 1,
-                                     shape->start[k + 1] - shape->start[k]));
-  if (shape->vesicles && scene->membrane.bending > 0)
-    PetscCall(PetscViewerASCIIPrintf(v, "bending: on, c_b = %g\n", (double)scene->membrane.bending));
-  else
-    PetscCall(PetscViewerASCIIPrintf(v, "bending: off (no bending solve)\n"));
+  PetscCall(ViewVesicles(scene, v));
   if (shape->vesicles)
     PetscCall(PetscViewerASCIIPrintf(v, "membrane: kernel %s, %s, near field %s, area target %s\n",
                                      scene->coupling.kernel, derivatives[scene->membrane.derivative], NearField(scene),

@@ -1,0 +1,247 @@
+/* The kinds of vesicles of a scene: which vesicle is of which, and the markers that all of a kind share. */
+#include "kernel/kernel.h"
+#include "scene/kinds.h"
+#include <stdlib.h>
+
+#define MAX_NEWTON 20 /* of the first markers; four are usual */
+#define MANY 100      /* markers, from which on it matters that Fourier transforms of them are fast */
+#define LEEWAY 0.04   /* by which their number may differ for it */
+
+/* The odd number with prime factors up to 13 that is nearest to M, if one is near. */
+static PetscInt FastOdd(PetscInt M) {
+  for (PetscInt away = 0; away <= LEEWAY * M; away += 2)
+    for (int side = -1; side <= 1; side += 2) {
+      PetscInt left = M + side * away;
+      for (PetscInt p = 3; p <= 13; p += 2)
+        while (left % p == 0) left /= p;
+      if (left == 1) return M + side * away;
+    }
+  return M;
+}
+
+/* lambda_t rate of the flow with a vesicle of radius R0; 0 where either is zero. */
+static PetscReal Chi(Scene scene, PetscReal R0, PetscReal bending) {
+  const Flow *flow = &scene->flow;
+  PetscReal rate = 0;
+  if (flow->type == FLOW_SHEAR || flow->type == FLOW_EXTENSION) rate = PetscAbsReal(flow->rate);
+  if (flow->type == FLOW_POISEUILLE) rate = 2 * PetscAbsReal(flow->peak) / flow->half_width;
+  if (bending == 0) return 0;
+  return rate * scene->fluid.nu * PetscPowRealInt(R0, 3) / bending;
+}
+
+#define THINNEST 8 /* times the markers of a round vesicle, at most */
+
+/* With the exact near field markers have to resolve the shape, not the grid: 45 for a reduced area of 0.6 and more, in
+   proportion more for thinner ones, half as many more where the flow is so strong that membranes wrinkle; and no edge
+   longer than two cells, so that the kernel leaks nothing. */
+static PetscReal WantedByShape(Scene scene, const Kind *kind) {
+  const PetscReal length = kind->length, V = 4 * PETSC_PI * kind->area / PetscSqr(length),
+                  thin = PetscMin(THINNEST, PetscMax(1, 0.6 / V));
+  const PetscReal strong = Chi(scene, length / (2 * PETSC_PI), kind->bending) >= 100 ? 1.5 : 1;
+  return PetscMax(45 * thin * strong, length / (2 * FluidSpecCellSize(&scene->fluid)));
+}
+
+/* Dense matrices of a vesicle grow with the square of its markers: 3 GB and more above it, and 32-bit sizes end soon.
+ */
+#define MOST_MARKERS 10000
+
+/* Number of markers of a curve: the user's own; by the shape; or the even (for spectral edges odd) number nearest to
+   length/(spacing h). */
+static PetscErrorCode MarkerCount(Scene scene, const Kind *kind, PetscInt *M) {
+  const Kernel *kernel = KernelFind(scene->coupling.kernel);
+  const SceneVesicles *own = &scene->vesicles;
+  const PetscBool exact = scene->coupling.near_field == NEAR_EXACT ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool spectral = scene->membrane.derivative == DERIVATIVE_SPECTRAL ? PETSC_TRUE : PETSC_FALSE;
+  const PetscReal spacing = own->spacing > 0 ? own->spacing : kernel->default_spacing;
+  const PetscReal length = kind->length, h = FluidSpecCellSize(&scene->fluid), pairs = length / (2 * spacing * h);
+  const PetscBool by_shape = exact && !own->markers && own->spacing == 0 ? PETSC_TRUE : PETSC_FALSE;
+  const PetscReal wanted = own->markers ? own->markers : (by_shape ? WantedByShape(scene, kind) : 2 * pairs);
+  PetscFunctionBeginUser;
+  PetscCheck(own->markers <= MOST_MARKERS, scene->comm, PETSC_ERR_USER_INPUT,
+             "-vesicle_markers %" PetscInt_FMT ": more than the dense matrices of a vesicle hold; allowed: at most %d",
+             own->markers, MOST_MARKERS);
+  PetscCheck(
+      wanted <= MOST_MARKERS, scene->comm, PETSC_ERR_USER_INPUT,
+      "-vesicle_spacing %g: %.3g markers on a membrane of length %g at h = %g; allowed: at most %d a vesicle, so "
+      "a smaller vesicle, a larger spacing or coarser -domain_cells",
+      (double)own->spacing, (double)wanted, (double)length, (double)h, MOST_MARKERS);
+  if (own->markers)
+    *M = own->markers;
+  else if (by_shape)
+    *M = 2 * (PetscInt)PetscCeilReal((wanted - 1) / 2 * (1 - 1e-12)) + 1;
+  else /* odd: no Nyquist mode */
+    *M = spectral ? 2 * (PetscInt)PetscFloorReal(pairs) + 1 : 2 * (PetscInt)PetscFloorReal(pairs + 0.5);
+  if (!own->markers && !by_shape && spectral && *M > MANY) *M = FastOdd(*M);
+  PetscCheck(*M >= 8, scene->comm, PETSC_ERR_USER_INPUT,
+             "-vesicle_spacing %g: %" PetscInt_FMT
+             " markers on a membrane of length %g at h = %g; allowed: at least 8, so a finer -domain_cells",
+             (double)spacing, *M, (double)length, (double)h);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* That M markers on a curve are as far apart as kernel and near field need. */
+static PetscErrorCode CheckSpacing(Scene scene, const Kind *kind, PetscInt M) {
+  const Kernel *kernel = KernelFind(scene->coupling.kernel);
+  const SceneVesicles *own = &scene->vesicles;
+  const PetscReal h = FluidSpecCellSize(&scene->fluid);
+  const PetscReal least = scene->coupling.near_field == NEAR_EXACT ? NEAR_LEAST_SPACING : kernel->least_spacing;
+  /* rounding to a number of markers may go just below the limit */
+  const PetscReal s = own->spacing > 0 ? own->spacing : kind->length / (M * h);
+  PetscFunctionBeginUser;
+  PetscCheck(own->allow_close_markers || (!own->markers && !own->spacing) || s >= least * (1 - 1e-12), scene->comm,
+             PETSC_ERR_USER_INPUT,
+             "-vesicle_%s %g: markers %g h apart with -delta_type %s; allowed: at least %g h "
+             "(-vesicle_allow_close_markers goes on)",
+             own->markers ? "markers" : "spacing", own->markers ? (double)own->markers : (double)own->spacing,
+             (double)s, scene->coupling.kernel, (double)least);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode KindFit(Scene scene, Kind *kind) {
+  PetscReal left;
+  PetscFunctionBeginUser;
+  PetscCall(MarkerCount(scene, kind, &kind->M));
+  PetscCall(CheckSpacing(scene, kind, kind->M));
+  PetscCall(PetscMalloc1(2 * kind->M, &kind->X));
+  if (scene->membrane.derivative == DERIVATIVE_SPECTRAL) {
+    PetscCall(CurveEqualArcs(&kind->curve, kind->M, kind->X));
+    /* what M markers sample of a curve with sharper tips than they resolve has neither its length nor its area */
+    PetscCall(CurveFit(kind->M, PETSC_TRUE, kind->length, kind->area, kind->X, MAX_NEWTON, &left));
+  } else
+    PetscCall(CurveEqualChords(&kind->curve, kind->M, kind->X));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscReal ListEntry(const RealList *list, PetscInt each, PetscInt entry, PetscInt component) {
+  return list->v[list->n > each ? each * entry + component : component];
+}
+
+PetscInt SceneKindOf(Scene scene, PetscInt v) {
+  return scene->vesicles.kind ? scene->vesicles.kind[v] : v;
+}
+
+PetscErrorCode SceneMixKinds(Draft scene) {
+  const RealList *part = &scene->vesicles.mixture;
+  const PetscInt n = scene->vesicles.count;
+  PetscInt *have;
+  PetscFunctionBeginUser;
+  if (part->n < 2 || scene->vesicles.shape != SHAPE_ELLIPSE) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMalloc1(n, &scene->vesicles.kind));
+  PetscCall(PetscCalloc1(part->n, &have));
+  for (PetscInt v = 0; v < n; v++) {
+    PetscInt next = 0;
+    for (PetscInt k = 1; k < part->n; k++)
+      if (part->v[k] * (v + 1) - have[k] > part->v[next] * (v + 1) - have[next] + 1e-9) next = k;
+    have[next]++;
+    scene->vesicles.kind[v] = next;
+  }
+  PetscCall(PetscFree(have));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What makes an ellipse: area and reduced area or both semi-axes, and the bending stiffness. */
+typedef struct {
+  PetscReal key[3];
+  PetscInt vesicle;
+} Ellipse;
+
+static int Order(const void *a, const void *b) {
+  const Ellipse *e = (const Ellipse *)a, *f = (const Ellipse *)b;
+  for (int k = 0; k < 3; k++)
+    if (e->key[k] != f->key[k]) return e->key[k] < f->key[k] ? -1 : 1;
+  return e->vesicle < f->vesicle ? -1 : 1;
+}
+
+static PetscErrorCode DescribeEllipse(Scene scene, PetscInt v, Ellipse *e) {
+  const SceneVesicles *own = &scene->vesicles;
+  const PetscInt k = SceneKindOf(scene, v);
+  PetscFunctionBeginUser;
+  for (int c = 0; c < 2; c++) e->key[c] = SceneByArea(scene) ? 0 : ListEntry(&own->axes, 2, k, c);
+  if (SceneByArea(scene)) {
+    e->key[0] = own->area_scale * ListEntry(&own->area, 1, k, 0);
+    e->key[1] = ListEntry(&own->reduced_area, 1, k, 0);
+  }
+  e->key[2] = ListEntry(&scene->membrane.stiffness, 1, k, 0);
+  e->vesicle = v;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode EllipseKinds(Scene scene, Kinds *all) {
+  Ellipse *e;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(all->vesicles, &e));
+  for (PetscInt v = 0; v < all->vesicles; v++) PetscCall(DescribeEllipse(scene, v, &e[v]));
+  qsort(e, (size_t)all->vesicles, sizeof(*e), Order);
+  PetscCall(PetscCalloc1(all->vesicles, &all->kind));
+  for (PetscInt j = 0; j < all->vesicles; j++) {
+    if (!j || memcmp(e[j].key, e[j - 1].key, sizeof(e[j].key))) {
+      Kind *kind = &all->kind[all->kinds++];
+      PetscCall(PetscArraycpy(kind->curve.axes, e[j].key, 2));
+      if (SceneByArea(scene)) PetscCall(EllipseAxes(e[j].key[0], e[j].key[1], kind->curve.axes));
+      kind->bending = e[j].key[2];
+    }
+    all->of[e[j].vesicle] = all->kinds - 1;
+  }
+  PetscCall(PetscFree(e));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* That a list has `each` numbers for all curves of the file, or `each` a curve. */
+static PetscErrorCode CheckForCurves(Scene scene, const char name[], PetscInt n, PetscInt each, PetscInt curves) {
+  PetscFunctionBeginUser;
+  PetscCheck(n == each || n == each * curves, scene->comm, PETSC_ERR_USER_INPUT,
+             "%s: %" PetscInt_FMT " numbers given for %" PetscInt_FMT " curves; allowed: %s for all or %s a curve",
+             name, n, curves, each == 1 ? "one" : "two", each == 1 ? "one" : "two");
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode FileKinds(Scene scene, Kinds *all) {
+  const SceneVesicles *own = &scene->vesicles;
+  Curve *curve;
+  PetscFunctionBeginUser;
+  PetscCall(CurvesFromFile(scene->comm, own->file, &all->vesicles, &curve));
+  all->kinds = all->vesicles;
+  PetscCall(PetscMalloc1(all->vesicles, &all->of));
+  PetscCall(PetscCalloc1(all->kinds, &all->kind));
+  for (PetscInt k = 0; k < all->kinds; k++) all->kind[k].curve = curve[k];
+  PetscCall(PetscFree(curve));
+  PetscCheck(!SceneGiven(scene, "-vesicle_count") || own->count == all->vesicles, scene->comm, PETSC_ERR_USER_INPUT,
+             "-vesicle_count %" PetscInt_FMT ": -vesicle_file %s has %" PetscInt_FMT
+             " curves; allowed: the same number",
+             own->count, own->file, all->vesicles);
+  PetscCall(CheckForCurves(scene, "-vesicle_center", own->center.n, 2, all->vesicles));
+  PetscCall(CheckForCurves(scene, "-vesicle_angle", own->angle.n, 1, all->vesicles));
+  PetscCall(CheckForCurves(scene, "-vesicle_bending", scene->membrane.stiffness.n, 1, all->vesicles));
+  for (PetscInt k = 0; k < all->kinds; k++) {
+    all->of[k] = k;
+    all->kind[k].bending = ListEntry(&scene->membrane.stiffness, 1, k, 0);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode KindsCreate(Scene scene, Kinds *all) {
+  PetscFunctionBeginUser;
+  PetscCall(PetscMemzero(all, sizeof(*all)));
+  if (scene->vesicles.shape == SHAPE_FILE) PetscCall(FileKinds(scene, all));
+  if (scene->vesicles.shape == SHAPE_ELLIPSE) {
+    all->vesicles = scene->vesicles.count;
+    PetscCall(PetscMalloc1(all->vesicles, &all->of));
+    PetscCall(EllipseKinds(scene, all));
+  }
+  for (PetscInt k = 0; k < all->kinds; k++) {
+    all->kind[k].length = CurveLength(&all->kind[k].curve);
+    all->kind[k].area = CurveArea(&all->kind[k].curve);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode KindsDestroy(Kinds *all) {
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < all->kinds; k++) {
+    PetscCall(CurveDestroy(&all->kind[k].curve));
+    PetscCall(PetscFree(all->kind[k].X));
+  }
+  PetscCall(PetscFree(all->kind));
+  PetscCall(PetscFree(all->of));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

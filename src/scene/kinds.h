@@ -1,0 +1,39 @@
+/* Kinds of vesicles: equal vesicles share one curve and the markers fitted to it, so that a scene of many starts in the
+   time of its kinds. */
+#pragma once
+#include "scene/resolve.h"
+
+typedef struct {
+  Curve curve; /* about the origin */
+  PetscReal length, area, bending;
+  PetscInt M;   /* markers, 0 before KindFit */
+  PetscReal *X; /* [2M] */
+} Kind;
+
+typedef struct {
+  PetscInt vesicles, kinds;
+  PetscInt *of; /* [vesicles] the kind of each */
+  Kind *kind;   /* [kinds] */
+} Kinds;
+
+/* KindsCreate - the kinds of the scene's vesicles, with their curves: ellipses that are equal in all are one kind, each
+   curve of a file is one. KindFit - the markers of a kind: their number, and equal edges. Collective; stop with the
+   user's message on a bad file, list, number of markers or spacing. */
+PETSC_EXTERN PetscErrorCode KindsCreate(Scene scene, Kinds *kinds);
+PETSC_EXTERN PetscErrorCode KindsDestroy(Kinds *kinds);
+PETSC_EXTERN PetscErrorCode KindFit(Scene scene, Kind *kind);
+
+/* SceneMixKinds - which entry of the lists each of -vesicle_count vesicles takes with -vesicle_mixture: one after
+   another the kind that is furthest behind its part, so that any row of vesicles has the mixture. SceneKindOf - that
+   entry; without a mixture the vesicle's own number. Not collective. */
+PETSC_EXTERN PetscErrorCode SceneMixKinds(Draft scene);
+PETSC_EXTERN PetscInt SceneKindOf(Scene scene, PetscInt vesicle);
+
+/* ListEntry - number `component` of entry `entry` of a list with `each` numbers an entry, or the same for all. */
+PETSC_EXTERN PetscReal ListEntry(const RealList *list, PetscInt each, PetscInt entry, PetscInt component);
+
+/* ScenePlace - where the vesicles lie: pose[vesicles] by -vesicle_center and -vesicle_angle, or packed. With
+   -vesicle_packing SceneCountPacked has chosen -vesicle_count, or the area, by the fraction before. Collective; stop
+   with the user's message when there is no room. */
+PETSC_EXTERN PetscErrorCode SceneCountPacked(Draft scene);
+PETSC_EXTERN PetscErrorCode ScenePlace(Scene scene, const Kinds *kinds, Pose pose[]);

@@ -1,0 +1,107 @@
+/* Where vesicles lie: at the centres given, or packed into the box. */
+#include "kernel/kernel.h"
+#include "scene/kinds.h"
+
+#define GAP_CELLS 1    /* of the default gap of a packing, */
+#define GAP_RADII 0.05 /* and at most so many R0 of the smallest vesicle */
+
+static PetscReal BoxArea(Scene scene) {
+  const PetscReal *b = scene->fluid.box;
+  return (b[1] - b[0]) * (b[3] - b[2]);
+}
+
+/* Mean area of a vesicle by the mixture. */
+static PetscReal MeanArea(Scene scene) {
+  const SceneVesicles *own = &scene->vesicles;
+  PetscReal mean = 0;
+  for (PetscInt k = 0; k < own->mixture.n; k++) {
+    const PetscReal part = own->mixture.n > 1 ? own->mixture.v[k] : 1;
+    const PetscReal axes = PETSC_PI * ListEntry(&own->axes, 2, k, 0) * ListEntry(&own->axes, 2, k, 1);
+    mean += part * (SceneByArea(scene) ? ListEntry(&own->area, 1, k, 0) : axes);
+  }
+  return mean;
+}
+
+PetscErrorCode SceneCountPacked(Draft scene) {
+  SceneVesicles *own = &scene->vesicles;
+  const PetscReal mean = MeanArea(scene), box = BoxArea(scene), wanted = own->packing * box / mean;
+  char text[32];
+  PetscFunctionBeginUser;
+  if (own->shape != SHAPE_ELLIPSE || own->packing == 0) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCheck(!FluidSpecIsFree(&scene->fluid), scene->comm, PETSC_ERR_USER_INPUT,
+             "-vesicle_packing %g: not with -domain_bc_x free, where the box holds nothing; allowed: walls or periodic "
+             "boundaries",
+             (double)own->packing);
+  if (SceneGiven(scene, "-vesicle_count")) {
+    own->area_scale = wanted / own->count;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCheck(wanted >= 0.5 && wanted < PETSC_MAX_INT / 64, scene->comm, PETSC_ERR_USER_INPUT,
+             "-vesicle_packing %g: %.3g vesicles of area %g in a box of area %g; allowed: a fraction of at least one "
+             "vesicle, and as many as can be numbered",
+             (double)own->packing, (double)wanted, (double)mean, (double)box);
+  PetscCall(PetscSNPrintf(text, sizeof(text), "%" PetscInt_FMT, (PetscInt)PetscFloorReal(wanted + 0.5)));
+  PetscCall(SceneChoose(scene, "-vesicle_count", text));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A cell, but not more than a twentieth of R0: a film that the near field resolves. */
+static PetscReal Gap(Scene scene, const Kinds *kinds) {
+  PetscReal R0 = PETSC_MAX_REAL;
+  if (scene->vesicles.packing_gap > 0) return scene->vesicles.packing_gap;
+  for (PetscInt k = 0; k < kinds->kinds; k++) R0 = PetscMin(R0, kinds->kind[k].length / (2 * PETSC_PI));
+  return PetscMin(GAP_CELLS * FluidSpecCellSize(&scene->fluid), GAP_RADII * R0);
+}
+
+static PetscErrorCode Turned(Scene scene, PetscInt v, PetscReal along[2]) {
+  const PetscReal turn = ListEntry(&scene->vesicles.angle, 1, v, 0) * PETSC_PI / 180;
+  PetscFunctionBeginUser;
+  along[0] = PetscCosReal(turn);
+  along[1] = PetscSinReal(turn);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Rank 0 packs and tells the others. */
+static PetscErrorCode Pack(Scene scene, const Kinds *kinds, Pose pose[]) {
+  const SceneVesicles *own = &scene->vesicles;
+  const PetscBool lattice = own->packing_type == PACKING_LATTICE ? PETSC_TRUE : PETSC_FALSE;
+  const PetscReal cells = scene->coupling.near_field == NEAR_EXACT ? KERNEL_FOLDED_CELLS : KERNEL_WALL_CELLS;
+  const PetscReal gap = Gap(scene, kinds), wall = cells * FluidSpecCellSize(&scene->fluid) * (1 + 1e-9);
+  PackingSpec spec = {.gap = gap, .wall_gap = PetscMax(gap, wall), .seed = own->packing_seed};
+  PetscReal *axes, part = 0, along[2];
+  PetscMPIInt rank;
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(scene->comm, &rank));
+  PetscCall(PetscArraycpy(spec.box, scene->fluid.box, 4));
+  for (int d = 0; d < 2; d++) spec.periodic[d] = scene->fluid.bc[d] == BC_PERIODIC ? PETSC_TRUE : PETSC_FALSE;
+  PetscCall(PetscMalloc1(2 * kinds->vesicles, &axes));
+  for (PetscInt v = 0; v < kinds->vesicles; v++)
+    PetscCall(PetscArraycpy(axes + 2 * v, kinds->kind[kinds->of[v]].curve.axes, 2));
+  PetscCall(Turned(scene, 0, along));
+  if (!rank && lattice) PetscCall(PackLattice(&spec, kinds->vesicles, axes, along, pose, &part));
+  if (!rank && !lattice) PetscCall(PackRandomly(&spec, kinds->vesicles, axes, pose, &part));
+  PetscCall(PetscFree(axes));
+  PetscCallMPI(MPI_Bcast(&part, 1, MPIU_REAL, 0, scene->comm));
+  PetscCallMPI(MPI_Bcast(pose, (PetscMPIInt)(sizeof(Pose) / sizeof(PetscReal) * (size_t)kinds->vesicles), MPIU_REAL, 0,
+                         scene->comm));
+  PetscCheck(part >= 1, scene->comm, PETSC_ERR_USER_INPUT,
+             "-vesicle_packing %g: %" PetscInt_FMT
+             " vesicles at least %.3g apart (-vesicle_packing_gap) %s reached %.3g; "
+             "allowed: a lower fraction, a smaller gap, or shorter vesicles",
+             (double)own->packing, kinds->vesicles, (double)spec.gap,
+             lattice ? "on a lattice, turned by -vesicle_angle," : "at random places", (double)(part * own->packing));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ScenePlace(Scene scene, const Kinds *kinds, Pose pose[]) {
+  PetscFunctionBeginUser;
+  if (scene->vesicles.packing > 0 && scene->vesicles.shape == SHAPE_ELLIPSE) {
+    PetscCall(Pack(scene, kinds, pose));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  for (PetscInt v = 0; v < kinds->vesicles; v++) {
+    for (int c = 0; c < 2; c++) pose[v].center[c] = ListEntry(&scene->vesicles.center, 2, v, c);
+    PetscCall(Turned(scene, v, pose[v].along));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,138 @@
+/* Packings of ellipses: all of them in the box, a gap apart, at fractions that random placing alone does not reach. */
+#include "curve/packing.h"
+#include "check.h"
+
+#define POINTS 64 /* on an outline */
+
+/* The outline of an ellipse as it lies. */
+static void Outline(const PetscReal axes[2], const Pose *at, PetscReal X[]) {
+  for (PetscInt k = 0; k < POINTS; k++) {
+    const PetscReal t = 2 * PETSC_PI * k / POINTS, x = axes[0] * PetscCosReal(t), y = axes[1] * PetscSinReal(t);
+    X[2 * k] = at->center[0] + at->along[0] * x - at->along[1] * y;
+    X[2 * k + 1] = at->center[1] + at->along[1] * x + at->along[0] * y;
+  }
+}
+
+/* Least distance of points of any two ellipses or images, at least the true one; box: the box grown by images. */
+static PetscReal LeastDistance(const PackingSpec *s, PetscInt n, const PetscReal X[]) {
+  PetscReal least = PETSC_MAX_REAL;
+  for (PetscInt i = 0; i < n * POINTS; i++)
+    for (PetscInt j = (i / POINTS + 1) * POINTS; j < n * POINTS; j++) {
+      PetscReal d[2];
+      for (int c = 0; c < 2; c++) {
+        const PetscReal period = s->box[2 * c + 1] - s->box[2 * c];
+        d[c] = X[2 * i + c] - X[2 * j + c];
+        if (s->periodic[c]) d[c] -= period * PetscFloorReal(d[c] / period + 0.5);
+      }
+      least = PetscMin(least, PetscHypotReal(d[0], d[1]));
+    }
+  return least;
+}
+
+/* Least distance of a point from a wall. */
+static PetscReal WallDistance(const PackingSpec *s, PetscInt n, const PetscReal X[]) {
+  PetscReal least = PETSC_MAX_REAL;
+  for (PetscInt i = 0; i < n * POINTS; i++)
+    for (int c = 0; c < 2; c++) {
+      if (s->periodic[c]) continue;
+      least = PetscMin(least, PetscMin(X[2 * i + c] - s->box[2 * c], s->box[2 * c + 1] - X[2 * i + c]));
+    }
+  return least;
+}
+
+/* Semi-axes of n ellipses in the proportion 3:1, or every other of them half as large and rounder. */
+static PetscReal Axes(PetscInt n, PetscBool mixed, PetscReal fraction, PetscReal box, PetscReal axes[]) {
+  PetscReal area = 0;
+  for (PetscInt i = 0; i < n; i++) {
+    const PetscBool small = mixed && i % 2 ? PETSC_TRUE : PETSC_FALSE;
+    axes[2 * i] = small ? 0.8 : 1.7;
+    axes[2 * i + 1] = small ? 0.6 : 0.57;
+    area += PETSC_PI * axes[2 * i] * axes[2 * i + 1];
+  }
+  const PetscReal scale = PetscSqrtReal(fraction * box / area);
+  for (PetscInt i = 0; i < 2 * n; i++) axes[i] *= scale;
+  return scale;
+}
+
+static PetscErrorCode CheckRandom(const PackingSpec *s, PetscInt n, PetscBool mixed, PetscReal fraction) {
+  const PetscReal box = (s->box[1] - s->box[0]) * (s->box[3] - s->box[2]);
+  PetscReal *axes, *X, part, other, mean[2] = {0, 0}, same = 0, apart = 0;
+  PackingSpec again = *s;
+  Pose *pose, *second;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc4(2 * n, &axes, 2 * n * POINTS, &X, n, &pose, n, &second));
+  (void)Axes(n, mixed, fraction, box, axes);
+  PetscCall(PackRandomly(s, n, axes, pose, &part));
+  for (PetscInt i = 0; i < n; i++) {
+    Outline(axes + 2 * i, pose + i, X + 2 * POINTS * i);
+    mean[0] += (2 * PetscSqr(pose[i].along[0]) - 1) / n; /* cos, sin of twice the angle */
+    mean[1] += 2 * pose[i].along[0] * pose[i].along[1] / n;
+  }
+  PetscCall(PackRandomly(s, n, axes, second, &other));
+  for (PetscInt i = 0; i < n; i++) same = PetscMax(same, PetscAbsReal(pose[i].center[0] - second[i].center[0]));
+  again.seed++;
+  PetscCall(PackRandomly(&again, n, axes, second, &other));
+  for (PetscInt i = 0; i < n; i++) apart += PetscAbsReal(pose[i].center[0] - second[i].center[0]) / n;
+  const char *kind = mixed ? "mixed" : "equal";
+  CHECK(part >= 1, "%d %s ellipses at %g: all have their size", (int)n, kind, (double)fraction);
+  CHECK(LeastDistance(s, n, X) >= s->gap, "they are %.3g apart, at least %g", (double)LeastDistance(s, n, X),
+        (double)s->gap);
+  CHECK(WallDistance(s, n, X) >= s->wall_gap * (1 - 1e-12), "they are %.3g from walls, at least %g",
+        (double)WallDistance(s, n, X), (double)s->wall_gap);
+  CHECK(PetscHypotReal(mean[0], mean[1]) < 5 / PetscSqrtReal(n), "their directions have the mean %.2g",
+        (double)PetscHypotReal(mean[0], mean[1]));
+  CHECK(same == 0 && apart > 0.1 * (s->box[1] - s->box[0]), "the same seed gives the same, another one another");
+  PetscCall(PetscFree4(axes, X, pose, second));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CheckLattice(void) {
+  const PackingSpec s = {{0, 12, -2, 4}, {PETSC_TRUE, PETSC_FALSE}, 0.05, 0.05, 1};
+  const PetscReal along[2] = {0.8, 0.6};
+  PetscReal axes[2 * 18], X[2 * 18 * POINTS], part;
+  Pose pose[18];
+  PetscFunctionBeginUser;
+  (void)Axes(18, PETSC_FALSE, 0.3, 72, axes);
+  PetscCall(PackLattice(&s, 18, axes, along, pose, &part));
+  for (PetscInt i = 0; i < 18; i++) Outline(axes + 2 * i, pose + i, X + 2 * POINTS * i);
+  CHECK(part >= 1 && LeastDistance(&s, 18, X) >= s.gap && WallDistance(&s, 18, X) >= s.gap, "a lattice at .3");
+  (void)Axes(18, PETSC_FALSE, 0.9, 72, axes);
+  PetscCall(PackLattice(&s, 18, axes, along, pose, &part));
+  CHECK(part < 0.9 && part > 0.3, "at .9 it has room for %.2g", (double)(0.9 * part));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CheckTooMany(void) {
+  const PackingSpec s = {{0, 8, 0, 8}, {PETSC_TRUE, PETSC_TRUE}, 0.02, 0.02, 1};
+  PetscReal axes[40], part;
+  Pose pose[20];
+  PetscFunctionBeginUser;
+  (void)Axes(20, PETSC_FALSE, 0.95, 64, axes);
+  PetscCall(PackRandomly(&s, 20, axes, pose, &part));
+  CHECK(part < 1, "at .95 only %.2g have their size", (double)part);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Facts(void) {
+  const PackingSpec channel = {{0, 12, -3, 3}, {PETSC_TRUE, PETSC_FALSE}, 0.03, 0.03, 1},
+                    walls = {{-5, 5, 0, 8}, {PETSC_FALSE, PETSC_FALSE}, 0.02, 0.1, 7},
+                    periodic = {{0, 6, 0, 6}, {PETSC_TRUE, PETSC_TRUE}, 0.03, 0.03, 3},
+                    tiny = {{0, 2.6, 0, 2.6},
+                            {PETSC_TRUE, PETSC_TRUE},
+                            0.02,
+                            0.02,
+                            1}; /* images of itself are neighbours */
+  PetscFunctionBeginUser;
+  PetscCall(CheckRandom(&channel, 60, PETSC_FALSE, 0.3));
+  PetscCall(CheckRandom(&channel, 48, PETSC_TRUE, 0.52));
+  PetscCall(CheckRandom(&walls, 60, PETSC_FALSE, 0.52));
+  PetscCall(CheckRandom(&periodic, 36, PETSC_FALSE, 0.55));
+  PetscCall(CheckRandom(&tiny, 3, PETSC_FALSE, 0.3));
+  PetscCall(CheckLattice());
+  PetscCall(CheckTooMany());
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+int main(int argc, char **argv) {
+  return CheckMain(argc, argv, Facts);
+}
