@@ -6,9 +6,7 @@ from conftest import run_petves
 
 from petves.run import Run as Files
 
-METHOD = (
-    "-scheme_type coupled -coupling_near_field exact -delta_type cbs54 -membrane_derivative spectral -scheme_area_target true"
-)
+METHOD = "-scheme_type coupled -coupling_near_field exact -delta_type cbs54 -membrane_derivative spectral -scheme_area_target true"
 PACKED = (
     f"{METHOD} "
     "-domain_box 0,6,0,3 -domain_cells 96,48 -domain_bc_x periodic -fluid_inertia none -flow_type shear -vesicle_markers 24 "
