@@ -1,8 +1,14 @@
 """Suspensions: packed vesicles, mixtures, and the files of many vesicles."""
 
+import re
+import signal
+import subprocess
+
+import h5py
 import numpy as np
 import pytest
 from conftest import run_petves
+from test_interrupted import start, wait_for_rows
 
 from petves.run import Run as Files
 
@@ -49,3 +55,81 @@ def test_bending_of_each(tmp_path):
     assert one["energy_bending_2"][-1] / one["energy_bending_1"][-1] < 9.97  # and so do the forces
     assert one["energy_bending_1"] == pytest.approx(two["energy_bending_2"], rel=1e-8)
     assert one["center_x_1"] == pytest.approx(-two["center_x_2"], abs=1e-9)
+
+
+MANY = (
+    "-scheme_type split -domain_box 0,9,0,6 -domain_cells 96,64 -domain_bc_x periodic -flow_type shear -flow_center_y 3 "
+    "-vesicle_packing .25 -vesicle_packing_type lattice -vesicle_angle 30 -vesicle_count 42 -vesicle_reduced_area .8 -time_step .01 "
+    "-output_every .02 -checkpoint_every 2"
+)
+
+
+def rows(folder):
+    """The datasets of vesicles.h5."""
+    with h5py.File(folder / "vesicles.h5") as file:
+        return {name: file[name][:] for name in file}
+
+
+def same_rows(ours, theirs, first=0):
+    assert ours.keys() == theirs.keys()
+    for name in theirs:
+        np.testing.assert_array_equal(ours[name], theirs[name][first:], err_msg=name)
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory):
+    """A run of 42 vesicles."""
+    return run_petves(tmp_path_factory.mktemp("many"), f"{MANY} -time_end .08").folder
+
+
+def test_many_have_a_file_of_their_own(whole):
+    """Above 40 vesicles series.csv has totals, and vesicles.h5 what they are totals of, at every step."""
+    run, each = Files.read(whole), rows(whole)
+    assert not any(re.search(r"_\d+$", name) for name in run.series)
+    assert each["area"].shape == (9, 42) and list(each["step"]) == list(range(9))
+    np.testing.assert_array_equal(each["time"], run.series["time"])
+    np.testing.assert_allclose(each["area"].sum(1), run.series["area"], rtol=1e-13)
+    np.testing.assert_allclose(each["energy_bending"].sum(1), run.series["energy_bending"], rtol=1e-12)
+    np.testing.assert_allclose(each["center_x"].mean(1), run.series["center_x"], rtol=1e-12)
+    np.testing.assert_array_equal(each["inclination"][:, 0], run.series["inclination"])
+
+
+def test_restart_goes_on_with_the_rows(whole, tmp_path):
+    """In its folder and in a new one; a file that lacks the checkpoint's row is refused and left as it is."""
+    first = run_petves(tmp_path / "a", f"{MANY} -time_end .05").folder
+    checkpoint = f"-restart {first}/checkpoint.h5 -time_end .08"
+    new = run_petves(tmp_path / "b", f"{MANY} {checkpoint}")
+    same_rows(rows(new.folder), rows(whole), 5)
+    bytes_before = (first / "vesicles.h5").read_bytes()
+    with h5py.File(first / "vesicles.h5", "r+") as file:
+        for name in file:
+            file[name].resize(4, 0)
+    short = (first / "vesicles.h5").read_bytes()
+    refused = run_petves(first, f"{MANY} {checkpoint}", good=False)
+    assert refused.status == 1 and "vesicles.h5 has 4 readable rows, the checkpoint counts 6" in refused.errors[0]
+    assert (first / "vesicles.h5").read_bytes() == short
+    (first / "vesicles.h5").write_bytes(bytes_before)
+    run_petves(first, f"{MANY} {checkpoint}", ranks=2)
+    np.testing.assert_allclose(rows(first)["center_y"], rows(whole)["center_y"], atol=1e-10)
+
+
+def test_killed_run_has_its_rows(whole, tmp_path):
+    """All of vesicles.h5 but the values of its rows is overwritten: with the index a restart makes it anew."""
+    folder = tmp_path / "run"
+    process = start(folder, f"{MANY} -time_end 10", stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    wait_for_rows(folder, 3)
+    process.kill()
+    assert process.wait() == -signal.SIGKILL
+    with h5py.File(folder / "checkpoint.h5") as file:
+        last = int(file.attrs["step"])
+    good = (folder / "vesicles.h5").read_bytes()
+    bad = bytearray(len(good))
+    for line in (folder / "vesicles.h5.index").read_text().splitlines():
+        for k, place in enumerate(int(x) for x in line.split()[2:]):
+            size = 8 * (42 if k else 1)
+            bad[place : place + size] = good[place : place + size]
+    (folder / "vesicles.h5").write_bytes(bad)
+    run_petves(folder, f"{MANY} -time_end {max(last + 1, 8) * 0.01} -restart {folder}/checkpoint.h5")
+    for name, values in rows(whole).items():
+        np.testing.assert_array_equal(rows(folder)[name][:9], values, err_msg=name)
+    assert not (folder / "vesicles.h5.index").exists()

@@ -263,6 +263,12 @@ PetscErrorCode PackRandomly(const PackingSpec *spec, PetscInt n, const PetscReal
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Where lattice cells may lie along d: less than the whole box where walls keep ellipses further away than they keep
+   one another. */
+static PetscReal Room(const Packing *p, int d) {
+  return p->length[d] - (p->spec.periodic[d] ? 0 : 2 * p->spec.wall_gap - p->spec.gap);
+}
+
 /* Columns of the lattice whose cells are widest beside what the longest ellipse takes in x and y. */
 static PetscInt Columns(const Packing *p, const PetscReal along[2]) {
   PetscReal best = 0, extent[2] = {0, 0};
@@ -273,7 +279,7 @@ static PetscInt Columns(const Packing *p, const PetscReal along[2]) {
       extent[d] = PetscMax(extent[d], PetscSqrtReal(a * a + b * b));
     }
   for (PetscInt k = 1; k <= p->n; k++) {
-    const PetscReal x = p->length[0] / (k * extent[0]), y = p->length[1] / (((p->n + k - 1) / k) * extent[1]);
+    const PetscReal x = Room(p, 0) / (k * extent[0]), y = Room(p, 1) / (((p->n + k - 1) / k) * extent[1]);
     if (PetscMin(x, y) <= best) continue;
     best = PetscMin(x, y);
     columns = k;
@@ -296,8 +302,9 @@ PetscErrorCode PackLattice(const PackingSpec *spec, PetscInt n, const PetscReal 
   PetscCall(Begin(&p, spec, n, axes, pose));
   const PetscInt columns = Columns(&p, along), rows = (n + columns - 1) / columns;
   for (PetscInt i = 0; i < n; i++) {
-    const Pose at = {{spec->box[0] + (i % columns + 0.5) * p.length[0] / columns,
-                      spec->box[2] + (i / columns + 0.5) * p.length[1] / rows},
+    const PetscReal at_x = (i % columns + 0.5) / columns - 0.5, at_y = (i / columns + 0.5) / rows - 0.5;
+    const Pose at = {{0.5 * (spec->box[0] + spec->box[1]) + at_x * Room(&p, 0),
+                      0.5 * (spec->box[2] + spec->box[3]) + at_y * Room(&p, 1)},
                      {along[0], along[1]}};
     Put(&p, i, &at, 1);
   }

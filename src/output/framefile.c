@@ -3,16 +3,11 @@
 const char *const FrameSeries[FRAME_SERIES] = {"/fluid/u",         "/fluid/v",          "/fluid/p",
                                                "/vesicle/markers", "/vesicle/velocity", "/vesicle/tension"};
 
-PetscInt FrameSeriesCount(Scheme s) {
+static PetscInt Count(Scheme s) {
   return s->membrane->layout->M ? FRAME_SERIES : 3;
 }
 
-PetscInt FrameEntries(Scheme s, PetscInt k) {
-  const Grid g = s->fluid->grid;
-  return k < 3 ? g->n[0] * g->n[1] : s->membrane->layout->M * (k < 5 ? 2 : 1);
-}
-
-PetscErrorCode FrameFileCreate(Scheme s, const char path[], H5File *f) {
+static PetscErrorCode Create(Scheme s, const char path[], H5File *f) {
   const Grid g = s->fluid->grid;
   const Layout l = s->membrane->layout;
   const Scene scene = s->scene;
@@ -25,12 +20,26 @@ PetscErrorCode FrameFileCreate(Scheme s, const char path[], H5File *f) {
   PetscCall(H5PutReals(f, "nu", 1, &scene->fluid.nu));
   PetscCall(H5PutReals(f, "c_b", 1, &scene->membrane.bending));
   PetscCall(H5PutInts(f, "vesicle_start", l->bodies + 1, l->start));
+  if (l->bodies) PetscCall(H5PutReals(f, "vesicle_c_b", l->bodies, scene->membrane.each));
   PetscCall(H5PutString(f, "about",
                         "u, v: velocity (background included) at cell centres; p: pressure at cell centres, of the "
                         "disturbance unless -flow_form total; tension k on the edge from marker k-1 to marker k"));
   PetscCall(H5CreateSeries(f, "/time", 0, NULL));
-  for (int k = 0; k < FrameSeriesCount(s); k++)
+  for (int k = 0; k < Count(s); k++)
     PetscCall(H5CreateSeries(f, FrameSeries[k], k < 5 ? 2 : 1, k < 3 ? cells : markers));
   PetscCall(H5FileFlush(f));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode FrameKind(Scheme s, GrowingKind *kind) {
+  const Grid g = s->fluid->grid;
+  PetscFunctionBeginUser;
+  kind->name = "run.h5";
+  kind->series = Count(s);
+  kind->path = FrameSeries;
+  for (PetscInt k = 0; k < kind->series; k++)
+    kind->entries[k] = k < 3 ? g->n[0] * g->n[1] : s->membrane->layout->M * (k < 5 ? 2 : 1);
+  kind->scheme = s;
+  kind->create = Create;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

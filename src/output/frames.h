@@ -1,23 +1,18 @@
 /* run.h5: the fields at cell centres and the markers, per saved time. */
 #pragma once
-#include "output/frameindex.h"
+#include "output/framefile.h"
 #include "output/gathered.h"
 
 typedef struct {
-  Folder *folder; /* borrowed */
-  Scheme scheme;  /* borrowed */
-  H5File file;
-  PetscBool open; /* on every rank */
-  FrameIndex index;
-  PetscInt count;        /* frames in the file */
-  PetscInt scheduled;    /* of them those at multiples of -output_every, the first included */
+  Scheme scheme; /* borrowed */
+  Growing grown;
+  PetscInt scheduled;    /* frames at multiples of -output_every, the first included */
   PetscReal time;        /* of the last frame */
-  PetscReal *times;      /* [scheduled] of the frames that FramesGoOn has found; else NULL */
   PetscScalar *cells[3]; /* u, v, p at cell centres, this rank's rows */
 } Frames;
 
 /* FramesCreate - a new, empty file. FramesGoOn - the one of an earlier run, repaired where that was killed and cut to
-   its first `scheduled` frames, whose times are in `times`: a frame that was saved only because that run ended goes.
+   its first `scheduled` frames, whose times are in `grown`: a frame that was saved only because that run ended goes.
    Stops with one line, naming `restart`, when there are not so many. Collective. */
 PETSC_EXTERN PetscErrorCode FramesCreate(Frames *frames, Folder *folder, Scheme scheme);
 PETSC_EXTERN PetscErrorCode FramesGoOn(Frames *frames, Folder *folder, Scheme scheme, PetscInt scheduled,

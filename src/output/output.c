@@ -18,6 +18,8 @@ static PetscErrorCode ClearFolder(Output o) {
   if (o->go_on) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(FolderRemove(&o->folder, "run.h5"));
   PetscCall(FolderRemove(&o->folder, "run.h5.new"));
+  PetscCall(FolderRemove(&o->folder, "vesicles.h5"));
+  PetscCall(FolderRemove(&o->folder, "vesicles.h5.new"));
   PetscCall(CheckpointClear(&o->folder));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -28,6 +30,7 @@ static PetscErrorCode BeginFiles(Output o) {
   PetscCall(SeriesPrepare(&o->series, &o->folder, o->record.header, o->record.text));
   PetscCall(ClearFolder(o));
   PetscCall(FramesCreate(&o->frames, &o->folder, o->scheme));
+  PetscCall(VesicleFileCreate(&o->vesicles, &o->folder, o->scheme));
   PetscCall(SeriesOpen(&o->series));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -40,7 +43,8 @@ static PetscErrorCode GoOnWithFiles(Output o, PetscInt frames) {
   PetscCall(SeriesCut(&o->series, &o->folder, o->record.header, o->scheme->state.step, restart));
   PetscCall(ClearFolder(o));
   PetscCall(FramesGoOn(&o->frames, &o->folder, o->scheme, frames, restart));
-  PetscCall(XdmfGoOn(&o->xdmf, frames, o->frames.times));
+  PetscCall(VesicleFileGoOn(&o->vesicles, &o->folder, o->scheme, o->scheme->state.step, restart));
+  PetscCall(XdmfGoOn(&o->xdmf, frames, o->frames.grown.time));
   PetscCall(SeriesOpen(&o->series));
   PetscCall(CheckpointAdopt(&o->checkpoint, restart));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -70,9 +74,9 @@ PetscErrorCode OutputCreate(Scene scene, Scheme scheme, Output *out) {
 
 PetscErrorCode OutputDestroy(Output *output) {
   Output o = *output;
-  static const char *const names[3] = {"series.csv", "run.h5", "run.xmf"};
+  static const char *const names[4] = {"series.csv", "run.h5", "run.xmf", "vesicles.h5"};
   char path[PETSC_MAX_PATH_LEN];
-  PetscBool good[3];
+  PetscBool good[4];
   PetscInt bad = 0;
   Folder folder;
   PetscFunctionBeginUser;
@@ -81,16 +85,25 @@ PetscErrorCode OutputDestroy(Output *output) {
   PetscCall(SeriesClose(&o->series, &good[0]));
   PetscCall(FramesClose(&o->frames, &good[1]));
   PetscCall(XdmfClose(&o->xdmf, &good[2]));
+  PetscCall(VesicleFileClose(&o->vesicles, &good[3]));
   PetscCall(RecordDestroy(&o->record));
   PetscCall(GatheredDestroy(&o->now));
   FolderRelease(&o->folder);
   folder = o->folder;
   PetscCall(PetscFree(o));
   if (!*folder.path || folder.failed) PetscFunctionReturn(PETSC_SUCCESS); /* no folder, or its error is known */
-  while (bad < 3 && good[bad]) bad++;
+  while (bad < 4 && good[bad]) bad++;
   PetscCallMPI(MPI_Bcast(&bad, 1, MPIU_INT, 0, folder.comm));
-  PetscCall(FolderPath(&folder, names[PetscMin(bad, 2)], path));
-  PetscCall(FolderCheck(&folder, bad == 3, path));
+  PetscCall(FolderPath(&folder, names[PetscMin(bad, 3)], path));
+  PetscCall(FolderCheck(&folder, bad == 4, path));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The vesicles' rows of the present state. */
+static PetscErrorCode WriteVesicles(Output o) {
+  const State *q = &o->scheme->state;
+  PetscFunctionBeginUser;
+  PetscCall(VesicleFileWrite(&o->vesicles, &o->record, q->step, q->t));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -101,6 +114,7 @@ static PetscErrorCode WriteRow(Output o) {
   PetscCall(FolderCheckOwn(&o->folder));
   PetscCall(RecordTake(&o->record, o->scheme));
   PetscCall(SeriesWrite(&o->series, o->record.text));
+  PetscCall(WriteVesicles(o));
   PetscCall(PhaseEnd());
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -112,7 +126,8 @@ static PetscErrorCode WriteFrame(Output o, PetscBool scheduled) {
   PetscCall(GatherState(&o->scheme->state, &o->now));
   PetscCall(FramesWrite(&o->frames, &o->now, scheduled));
   PetscCall(SeriesFlush(&o->series, PETSC_FALSE));
-  PetscCall(XdmfWrite(&o->xdmf, o->frames.count - 1, o->frames.time));
+  PetscCall(VesicleFileFlush(&o->vesicles, PETSC_FALSE));
+  PetscCall(XdmfWrite(&o->xdmf, o->frames.grown.count - 1, o->frames.time));
   PetscCall(PhaseEnd());
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -126,6 +141,7 @@ PetscErrorCode OutputCheckpoint(Output o) {
   PetscCall(FolderCheckOwn(&o->folder));
   PetscCall(SeriesFlush(&o->series, PETSC_TRUE));
   PetscCall(FramesSync(&o->frames));
+  PetscCall(VesicleFileFlush(&o->vesicles, PETSC_TRUE));
   PetscCall(CheckpointWrite(&o->checkpoint, o->scheme, &o->record, o->frames.scheduled));
   PetscCall(PhaseEnd());
   PetscCall(PetscTime(&end));
@@ -135,10 +151,11 @@ PetscErrorCode OutputCheckpoint(Output o) {
 
 PetscErrorCode OutputBegin(Output o) {
   PetscFunctionBeginUser;
-  if (*o->scene->output.restart) /* the checkpoint's row is there already */
+  if (*o->scene->output.restart) /* the checkpoint's row is there already, but for its vesicles in a new folder */
     PetscCall(RecordMeasure(&o->record, o->scheme));
   else
     PetscCall(WriteRow(o));
+  if (*o->scene->output.restart && !o->go_on) PetscCall(WriteVesicles(o));
   if (!o->go_on) PetscCall(WriteFrame(o, PETSC_TRUE));
   o->next = NextTime(o);
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -4,6 +4,7 @@
 #include "output/frames.h"
 #include "output/progress.h"
 #include "output/series.h"
+#include "output/vesiclefile.h"
 #include "output/xdmf.h"
 
 typedef struct _p_Output *Output;
@@ -14,6 +15,7 @@ struct _p_Output {
   Gathered now;  /* the present markers */
   Record record; /* the present numbers */
   Series series;
+  VesicleFile vesicles; /* where they are many */
   Frames frames;
   Xdmf xdmf;
   Checkpoint checkpoint;

@@ -6,12 +6,17 @@ const char *const SeriesColumns[] = {
     "inclination", "frequency",    "tension_its", "bending_its",    "coupled_its",     "nsolve",   "wall",
     "area_shift",  "normal_speed", "velocity_x",  "velocity_y",     "energy_gravity",  NULL};
 
-/* Columns that repeat with a suffix when there are several vesicles. */
-static const int per_vesicle[] = {COLUMN_BENDING,      COLUMN_AREA,       COLUMN_LENGTH,       COLUMN_AREA_ERROR,
-                                  COLUMN_LENGTH_ERROR, COLUMN_EDGE_RATIO, COLUMN_CENTER_X,     COLUMN_CENTER_Y,
-                                  COLUMN_INCLINATION,  COLUMN_FREQUENCY,  COLUMN_NORMAL_SPEED, COLUMN_VELOCITY_X,
-                                  COLUMN_VELOCITY_Y,   COLUMN_GRAVITY};
-#define PER_VESICLE ((int)(sizeof(per_vesicle) / sizeof(per_vesicle[0])))
+const int RecordVesicleColumns[] = {
+    COLUMN_BENDING,      COLUMN_AREA,       COLUMN_LENGTH,     COLUMN_AREA_ERROR,  COLUMN_LENGTH_ERROR,
+    COLUMN_EDGE_RATIO,   COLUMN_CENTER_X,   COLUMN_CENTER_Y,   COLUMN_INCLINATION, COLUMN_FREQUENCY,
+    COLUMN_NORMAL_SPEED, COLUMN_VELOCITY_X, COLUMN_VELOCITY_Y, COLUMN_GRAVITY,     -1};
+
+/* The columns that repeat with a suffix in series.csv: of several vesicles, but not of many. */
+static int Repeated(const Record *r) {
+  int n = 0;
+  while (RecordVesicleColumns[n] >= 0) n++;
+  return r->vesicles > 1 && r->vesicles <= RECORD_FEW ? n : 0;
+}
 
 /* Room for an entry of a line: 24 characters a number and the comma; the longest name and a vesicle's number. */
 #define ENTRY 32
@@ -21,9 +26,10 @@ static PetscErrorCode WriteHeader(Record *r) {
   PetscFunctionBeginUser;
   for (int c = 0; c < COLUMN_COUNT; c++)
     used += (size_t)snprintf(r->header + used, r->room - used, "%s%s", c ? "," : "", SeriesColumns[c]);
-  for (PetscInt v = 1; v <= r->vesicles && r->vesicles > 1; v++)
-    for (int c = 0; c < PER_VESICLE; c++)
-      used += (size_t)snprintf(r->header + used, r->room - used, ",%s_%d", SeriesColumns[per_vesicle[c]], (int)v);
+  for (PetscInt v = 1; v <= r->vesicles; v++)
+    for (int c = 0; c < Repeated(r); c++)
+      used += (size_t)snprintf(r->header + used, r->room - used, ",%s_%d", SeriesColumns[RecordVesicleColumns[c]],
+                               (int)v);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -31,7 +37,7 @@ PetscErrorCode RecordCreate(PetscInt vesicles, Record *r) {
   PetscFunctionBeginUser;
   PetscCall(PetscMemzero(r, sizeof(*r)));
   r->vesicles = vesicles;
-  r->room = (size_t)(COLUMN_COUNT + vesicles * PER_VESICLE) * ENTRY;
+  r->room = (size_t)(COLUMN_COUNT + vesicles * Repeated(r)) * ENTRY;
   PetscCall(
       PetscCalloc3(vesicles * COLUMN_COUNT, &r->each, (PetscInt)r->room, &r->header, (PetscInt)r->room, &r->text));
   PetscCall(WriteHeader(r));
@@ -139,8 +145,8 @@ PetscErrorCode RecordTake(Record *r, Scheme s) {
   row[COLUMN_INCLINATION] = r->vesicles ? r->each[COLUMN_INCLINATION] : 0;
   row[COLUMN_FREQUENCY] = r->vesicles ? r->each[COLUMN_FREQUENCY] : NAN;
   for (int c = 0; c < COLUMN_COUNT; c++) AddNumber(r, &used, row[c]);
-  for (PetscInt v = 0; v < r->vesicles && r->vesicles > 1; v++)
-    for (int c = 0; c < PER_VESICLE; c++) AddNumber(r, &used, r->each[v * COLUMN_COUNT + per_vesicle[c]]);
+  for (PetscInt v = 0; v < r->vesicles; v++)
+    for (int c = 0; c < Repeated(r); c++) AddNumber(r, &used, r->each[v * COLUMN_COUNT + RecordVesicleColumns[c]]);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

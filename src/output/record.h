@@ -34,6 +34,11 @@ enum {
   COLUMN_COUNT
 };
 
+/* RecordVesicleColumns - those that vesicles have of their own; -1 past the last. Up to RECORD_FEW vesicles they are in
+   series.csv, with a suffix each, and in vesicles.h5 above. */
+#define RECORD_FEW 40
+PETSC_EXTERN const int RecordVesicleColumns[];
+
 typedef struct {
   PetscInt vesicles;
   PetscReal last[COLUMN_COUNT]; /* the last row, over all vesicles */

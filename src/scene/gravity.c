@@ -1,5 +1,5 @@
 /* What gravity and the drive of a channel need of a scene. */
-#include "scene/kinds.h"
+#include "scene/mixture.h"
 
 PetscReal SceneWeight(Scene scene, PetscInt vesicle, int dir) {
   const RealList *density = &scene->gravity.density;

@@ -1,7 +1,7 @@
 /* Kinds of vesicles: equal vesicles share one curve and the markers fitted to it, so that a scene of many starts in the
    time of its kinds. */
 #pragma once
-#include "scene/resolve.h"
+#include "scene/mixture.h"
 
 typedef struct {
   Curve curve; /* about the origin */
@@ -22,15 +22,6 @@ typedef struct {
 PETSC_EXTERN PetscErrorCode KindsCreate(Scene scene, Kinds *kinds);
 PETSC_EXTERN PetscErrorCode KindsDestroy(Kinds *kinds);
 PETSC_EXTERN PetscErrorCode KindFit(Scene scene, Kind *kind);
-
-/* SceneMixKinds - which entry of the lists each of -vesicle_count vesicles takes with -vesicle_mixture: one after
-   another the kind that is furthest behind its part, so that any row of vesicles has the mixture. SceneKindOf - that
-   entry; without a mixture the vesicle's own number. Not collective. */
-PETSC_EXTERN PetscErrorCode SceneMixKinds(Draft scene);
-PETSC_EXTERN PetscInt SceneKindOf(Scene scene, PetscInt vesicle);
-
-/* ListEntry - number `component` of entry `entry` of a list with `each` numbers an entry, or the same for all. */
-PETSC_EXTERN PetscReal ListEntry(const RealList *list, PetscInt each, PetscInt entry, PetscInt component);
 
 /* ScenePlace - where the vesicles lie: pose[vesicles] by -vesicle_center and -vesicle_angle, or packed. With
    -vesicle_packing SceneCountPacked has chosen -vesicle_count, or the area, by the fraction before. Collective; stop

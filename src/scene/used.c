@@ -114,13 +114,18 @@ static PetscBool IsScheme(Scene s, const char name[]) {
   return s->shape.vesicles && !strcmp(s->scheme.type, name) ? PETSC_TRUE : PETSC_FALSE;
 }
 
-static PetscBool IsPacked(Scene s) {
-  return s->vesicles.shape == SHAPE_ELLIPSE && s->vesicles.packing > 0 ? PETSC_TRUE : PETSC_FALSE;
+/* What depends on how vesicles come to their places. */
+static PetscBool MetByPlaces(Scene s, Need need) {
+  const PetscBool packed = s->vesicles.shape == SHAPE_ELLIPSE && s->vesicles.packing > 0 ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool random = packed && s->vesicles.packing_type == PACKING_RANDOM ? PETSC_TRUE : PETSC_FALSE;
+  if (need == BY_PACKING) return packed;
+  if (need == BY_RANDOM) return random;
+  return s->shape.vesicles && !(need == BY_ANGLES ? random : packed) ? PETSC_TRUE : PETSC_FALSE;
 }
 
 static PetscBool Met(Scene s, Need need) {
   const PetscBool any = s->shape.vesicles > 0 ? PETSC_TRUE : PETSC_FALSE;
-  const PetscBool packed = IsPacked(s), random = packed && s->vesicles.packing_type == PACKING_RANDOM;
+  if (need >= BY_PACKING && need <= BY_ANGLES) return MetByPlaces(s, need);
   switch (need) {
   case BY_STRAIN:
     return IsFlow(s, FLOW_SHEAR, FLOW_EXTENSION);
@@ -136,13 +141,6 @@ static PetscBool Met(Scene s, Need need) {
     return s->vesicles.shape == SHAPE_ELLIPSE;
   case BY_FILE:
     return s->vesicles.shape == SHAPE_FILE;
-  case BY_PACKING:
-    return packed;
-  case BY_RANDOM:
-    return random;
-  case BY_CENTERS:
-  case BY_ANGLES:
-    return any && !(need == BY_ANGLES ? random : packed);
   case BY_UNSPLIT:
     return IsScheme(s, "coupled") || IsScheme(s, "direct");
   case BY_COUPLED:
