@@ -13,7 +13,12 @@ from studies.reproduction.convergence import differences
 from studies.reproduction.scene_figures import keller_skalak
 
 SCENES = ("energy", "relax", "shear_convergence", "equilibrium", "poiseuille", "shear")
-RANKS = {f"{name}.opts": 1 for name in SCENES} | {"default.opts": 2, "two_vesicles.opts": 2, "free.opts": 1}
+RANKS = {f"{name}.opts": 1 for name in SCENES} | {
+    "default.opts": 2,
+    "two_vesicles.opts": 2,
+    "free.opts": 1,
+    "suspension.opts": 2,
+}
 RANKS |= {f"paper/{name}.opts": 2 for name in SCENES}
 
 

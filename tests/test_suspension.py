@@ -10,7 +10,12 @@ import pytest
 from conftest import run_petves
 from test_interrupted import start, wait_for_rows
 
+import petves
 from petves.run import Run as Files
+from petves.run import RunError
+from petves.views.plot import draw_members, new_figure, plot_run
+from petves.views.report import report
+from petves.views.words import scene_in_words
 
 METHOD = "-scheme_type coupled -coupling_near_field exact -delta_type cbs54 -membrane_derivative spectral -scheme_area_target true"
 PACKED = (
@@ -92,6 +97,38 @@ def test_many_have_a_file_of_their_own(whole):
     np.testing.assert_allclose(each["energy_bending"].sum(1), run.series["energy_bending"], rtol=1e-12)
     np.testing.assert_allclose(each["center_x"].mean(1), run.series["center_x"], rtol=1e-12)
     np.testing.assert_array_equal(each["inclination"][:, 0], run.series["inclination"])
+
+
+def test_python_has_each(whole):
+    """Arrays of all vesicles by name, from vesicles.h5 or from the columns of series.csv, and in the dataset."""
+    run = Files.read(whole)
+    np.testing.assert_array_equal(run.each("area"), rows(whole)["area"])
+    with pytest.raises(RunError, match="column colour"):
+        run.each("colour")
+    data = petves.load(whole)
+    assert data["each_length"].dims == ("step", "member") and data["each_length"].attrs["units"] == "length"
+
+
+def test_images_are_cut_at_the_seam(tmp_path):
+    """A vesicle that has left a periodic box twice over is drawn in it, on both sides of the seam where it lies on it."""
+    run = Files.read(
+        run_petves(tmp_path, "-domain_bc_x periodic -vesicle_semi_axes .2,.3 -vesicle_center 4.95,0 -time_end 0").folder
+    )
+    left, right = sorted(run.images(0), key=lambda points: points[:, 0].mean())
+    assert left[:, 0].mean() == pytest.approx(-1.05, abs=1e-2) and right[:, 0].mean() == pytest.approx(0.95, abs=1e-2)
+    whole_box = {path.name for path in plot_run(tmp_path)}
+    assert whole_box >= {"field.png", "shapes.png", "tension.png"}
+
+
+def test_many_are_drawn_in_colours_without_names(whole, tmp_path):
+    """One polygon an image, each vesicle of the colour that it keeps, no legend."""
+    run = Files.read(whole)
+    _, (axes,) = new_figure(4, 3)
+    drawn = draw_members(axes, run, -1)
+    assert len(drawn.get_paths()) == sum(len(run.images(-1, v)) for v in range(42)) >= 42
+    assert len(np.unique(drawn.get_facecolors(), axis=0)) == 20 and axes.get_legend() is None
+    assert scene_in_words(run)[1].startswith("42 vesicles") and "markers each" in scene_in_words(run)[1]
+    assert report(whole, tmp_path / "page.html").stat().st_size > 1e5
 
 
 def test_restart_goes_on_with_the_rows(whole, tmp_path):

@@ -35,7 +35,7 @@ UNITS = {name: unit for unit, names in _HAVE.items() for name in names.split()}
 
 def unit(name: str) -> str:
     """Return the unit of a column or field; columns of single vesicles (``area_1``) have their column's."""
-    return UNITS.get(re.sub(r"_\d+$", "", name), "")
+    return UNITS.get(re.sub(r"^each_|_\d+$", "", name), "")
 
 
 def load(folder: str | Path, kind: str = "auto") -> Run | xarray.Dataset:
@@ -54,7 +54,7 @@ def load(folder: str | Path, kind: str = "auto") -> Run | xarray.Dataset:
         Dataset: variables of the steps (dimension step) are the columns of series.csv, with the coordinate step_time;
         variables of the saved times (dimension time) are u, v, p (time, y, x), markers and
         velocity (time, marker, xy) and tension (time, marker), with the coordinate vesicle of each marker. Every variable
-        has ``attrs["units"]``; the dataset's attributes are h, nu, c_b and the run's summary. Run: see there, and `unit`.
+        has ``attrs["units"]``; above 40 vesicles each_area, each_center_x, ... (step, member) are those of vesicles.h5; the dataset's attributes are h, nu, c_b and the run's summary. Run: see there, and `unit`.
 
     Raises
     ------
@@ -75,10 +75,12 @@ def load(folder: str | Path, kind: str = "auto") -> Run | xarray.Dataset:
 
 def _dataset(run: Run, xarray: Any) -> xarray.Dataset:
     x, y = run.cell_centers()
+    many = {f"each_{name}": (("step", "member"), run.each(name)) for name in run.columns_of_each()}
     fields = [np.array(values) for values in zip(*(run.fields(frame) for frame in range(len(run.time))))]
     vesicle = np.repeat(np.arange(run.vesicles), np.diff(run.start))
     variables = {name: ("step", values) for name, values in run.series.items() if name not in ("step", "time")}
     variables |= {name: (("time", "y", "x"), values) for name, values in zip("uvp", fields)}
+    variables |= many
     variables |= {
         "markers": (("time", "marker", "xy"), run.markers),
         "velocity": (("time", "marker", "xy"), run.velocity),

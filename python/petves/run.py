@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import functools
 import json
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -12,6 +13,10 @@ import h5py
 import numpy as np
 
 from petves.errors import Error
+
+
+#: Vesicles up to which series.csv has columns of each.
+FEW = 40
 
 
 class RunError(Error):
@@ -31,7 +36,7 @@ class Run:
     box : ndarray, shape (4,)
         x_min, x_max, y_min, y_max (length).
     h, nu, c_b : float
-        Cell size (length), viscosity (length^2/time), bending stiffness.
+        Cell size (length), viscosity (length^2/time), bending stiffness (the largest, where vesicles differ).
     time : ndarray, shape (T,)
         Saved times.
     markers, velocity : ndarray, shape (T, M, 2)
@@ -95,6 +100,60 @@ class Run:
         """Number of vesicles."""
         return len(self.start) - 1
 
+    def each(self, name: str) -> np.ndarray:
+        """Return a column of every vesicle at every step ("area", "center_x"), shape (steps, vesicles).
+
+        From the suffixed columns of series.csv, or above 40 vesicles from vesicles.h5, whose last rows may be NaN while the run
+        goes on.
+        """
+        own = name if self.vesicles == 1 else f"{name}_1"
+        if own in self.series:
+            names = [name] if self.vesicles == 1 else [f"{name}_{v + 1}" for v in range(self.vesicles)]
+            return np.stack([self.series[column] for column in names], axis=1)
+        values = np.full((len(self.series["step"]), self.vesicles), np.nan)
+        with _open(self.folder / "vesicles.h5") as file:
+            if name not in file:
+                raise RunError(f"column {name}: vesicles have none of that name")
+            rows = min(len(values), len(file["time"]))
+            values[:rows] = file[name][:rows]
+        return values
+
+    def columns_of_each(self) -> list[str]:
+        """Return the names that `each` takes from vesicles.h5; none up to 40 vesicles."""
+        if not (self.folder / "vesicles.h5").is_file() or self.vesicles <= FEW:
+            return []
+        with _open(self.folder / "vesicles.h5") as file:
+            return [name for name in file if name not in ("step", "time")]
+
+    @functools.cached_property
+    def periods(self) -> tuple[float, float]:
+        """The box's periods in x and y (length); 0 where it is not periodic."""
+        options = self.options()
+        return tuple(
+            float(self.box[2 * d + 1] - self.box[2 * d]) if options.get(f"domain_bc_{c}") == "periodic" else 0.0
+            for d, c in enumerate("xy")
+        )
+
+    def images(self, frame: int, vesicle: int = 0) -> list[np.ndarray]:
+        """Return one vesicle's outline at a saved time with every image of it that reaches into the box.
+
+        Markers are not wrapped: a vesicle that has left a periodic box goes on outside of it. Here it is in the box, and once
+        more at the other side where it lies across the seam. Each outline has shape (n + 1, 2).
+        """
+        outline = self.outline(frame, vesicle)
+        shifts = []
+        for d, period in enumerate(self.periods):
+            low, high = outline[:, d].min(), outline[:, d].max()
+            first, last = (int(np.floor((self.box[2 * d] - x) / period)) if period else 0 for x in (high, low))
+            inside = [
+                k * period for k in range(first, last + 3) if self._reaches(d, low + k * period, high + k * period)
+            ]
+            shifts.append(inside if period else [0.0])
+        return [outline + (x, y) for x in shifts[0] for y in shifts[1]]
+
+    def _reaches(self, d: int, low: float, high: float) -> bool:
+        return high > self.box[2 * d] and low < self.box[2 * d + 1]
+
     def options(self) -> dict[str, str]:
         """Return the options in force (resolved.opts), without the dash; empty when the file is missing."""
         path = self.folder / "resolved.opts"
@@ -104,8 +163,7 @@ class Run:
 
     def first_measures(self, vesicle: int = 0) -> tuple[float, float]:
         """Return a vesicle's initial area and length."""
-        suffix = f"_{vesicle + 1}" if self.vesicles > 1 else ""
-        return tuple(float(self.series[name + suffix][0]) for name in ("area", "length"))
+        return tuple(float(self.each(name)[0, vesicle]) for name in ("area", "length"))
 
     def fields(self, frame: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return u, v, p at cell centres at a saved time, each of shape (ny, nx)."""

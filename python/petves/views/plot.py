@@ -19,6 +19,7 @@ ARROWS = 20  # arrows across the longer side of a velocity picture
 OUTLINES = 7  # outlines in shapes.png
 LEAST_SPAN = 0.02  # of an axis of angles over pi
 FLOOR = 1e-16  # smallest value on a logarithmic axis
+MANY = 8  # vesicles above which each has a colour and none a name
 
 
 def new_figure(
@@ -121,30 +122,50 @@ FIELDS = {
 def draw_membranes(axes: Axes, run: Run, frame: int, limits: tuple[float, float], color: str) -> list[Artist]:
     """Draw the vesicles' edges coloured by tension over a wider line of one colour, the first outline dotted.
 
+    More than MANY vesicles are areas instead, each of a colour that it keeps. Images across a periodic seam are there too.
+
     Returns
     -------
     list of Artist
-        What was drawn; the last one is what a colour bar of the tension needs.
+        What was drawn; of few vesicles the last one is what a colour bar of the tension needs.
     """
     from matplotlib.collections import LineCollection
 
     drawn: list[Artist] = []
+    if run.vesicles > MANY:
+        return [draw_members(axes, run, frame)]
     for vesicle in range(run.vesicles):
-        initial, points = run.outline(0, vesicle), run.outline(frame, vesicle)
-        drawn += axes.plot(*initial.T, ":", color=color, lw=1)
-        drawn += axes.plot(*points.T, "-", color=color, lw=4, solid_joinstyle="round")
-        edges = np.stack([np.roll(points[:-1], 1, axis=0), points[:-1]], axis=1)
-        lines = LineCollection(edges, cmap="plasma", lw=2.4, capstyle="round")
-        lines.set_array(run.edge_tension(frame, vesicle))
-        lines.set_clim(*limits)
-        drawn.append(axes.add_collection(lines))
+        for initial in run.images(0, vesicle):
+            drawn += axes.plot(*initial.T, ":", color=color, lw=1)
+        for points in run.images(frame, vesicle):
+            drawn += axes.plot(*points.T, "-", color=color, lw=4, solid_joinstyle="round")
+            edges = np.stack([np.roll(points[:-1], 1, axis=0), points[:-1]], axis=1)
+            lines = LineCollection(edges, cmap="plasma", lw=2.4, capstyle="round")
+            lines.set_array(run.edge_tension(frame, vesicle))
+            lines.set_clim(*limits)
+            drawn.append(axes.add_collection(lines))
     return drawn
+
+
+def draw_members(axes: Axes, run: Run, frame: int) -> Artist:
+    """Draw many vesicles as areas, images across a periodic seam included; vesicle v has colour v of a cycle of 20."""
+    import matplotlib
+    from matplotlib.collections import PolyCollection
+
+    outlines = [(v, points) for v in range(run.vesicles) for points in run.images(frame, v)]
+    colors = matplotlib.colormaps["tab20"]([v % 20 for v, _ in outlines])
+    width = 0.8 if run.vesicles < 200 else 0.4
+    return axes.add_collection(
+        PolyCollection([points for _, points in outlines], facecolors=colors, edgecolors="black", lw=width)
+    )
 
 
 def plot_motion(run: Run) -> Path:
     """Draw the inclination and the tank-treading frequency against time."""
     figure, (axes,) = new_figure(6, 4)
     time = run.series["time"]
+    if run.vesicles > MANY:
+        return _plot_motion_of_many(run, figure, axes)
     for vesicle in range(run.vesicles):
         suffix = f"_{vesicle + 1}" if run.vesicles > 1 else ""
         angle = np.unwrap(run.series["inclination" + suffix], period=np.pi) / np.pi
@@ -159,6 +180,20 @@ def plot_motion(run: Run) -> Path:
     middle, half = np.mean(axes.get_ylim()), max(np.ptp(axes.get_ylim()) / 2, LEAST_SPAN / 2)
     limits, legend = (middle - half, middle + half), 10 if run.vesicles > 1 else 0
     dress(axes, legend, xlabel="time $t$", ylabel=r"inclination $\theta/\pi$", ylim=limits)
+    return save_figure(figure, run.folder / "motion.png")
+
+
+def _plot_motion_of_many(run: Run, figure: Figure, axes: Axes) -> Path:
+    """Draw how vesicles lie: the mean axis of all (of twice the angle), and how well they agree with it."""
+    turned = np.mean(np.exp(2j * run.each("inclination")), axis=1)
+    axes.plot(
+        run.series["time"],
+        np.unwrap(np.angle(turned) / 2, period=np.pi) / np.pi,
+        "C0-",
+        label=r"mean axis $\theta/\pi$",
+    )
+    axes.plot(run.series["time"], np.abs(turned), "C1--", label="order $|\\langle e^{2i\\theta}\\rangle|$")
+    dress(axes, 10, xlabel="time $t$", title=f"{run.vesicles} vesicles")
     return save_figure(figure, run.folder / "motion.png")
 
 
@@ -180,6 +215,7 @@ def plot_field(run: Run, frame: int = -1) -> Path:
     sides = run.box[1] - run.box[0], run.box[3] - run.box[2]
     tall = min(max(4.7 * sides[1] / sides[0], 1.6), 9.0)
     figure, axes = new_figure(12.4, tall + 1.9, columns=2, equal=True)
+    few = run.vesicles <= MANY
     tension, drawn = run.tension[frame], []
     limits = (tension.min(), tension.max()) if run.vesicles else (0.0, 1.0)
     for panel, kind in zip(axes, FIELDS.values()):
@@ -195,7 +231,7 @@ def plot_field(run: Run, frame: int = -1) -> Path:
     every = max(1, round(max(len(x), len(y)) / ARROWS))
     cut = np.s_[every // 2 :: every]
     axes[1].quiver(x[cut], y[cut], u[cut, cut], v[cut, cut], color="white", alpha=0.8, pivot="mid", width=0.003)
-    if drawn:
+    if drawn and few:
         figure.colorbar(
             drawn[-1], ax=list(axes), label=r"tension $\sigma$ (length$^3$/time$^2$)", shrink=0.7, aspect=30
         )
@@ -206,13 +242,15 @@ def plot_field(run: Run, frame: int = -1) -> Path:
 def plot_tension(run: Run, frame: int = -1) -> Path:
     """Draw the tension against the phase angle about the centroid, at a saved time."""
     figure, (axes,) = new_figure(6, 4)
+    few = run.vesicles <= MANY
     for vesicle in range(run.vesicles):
         angle = run.phase_angle(frame, vesicle) / np.pi
         order = np.argsort(angle)
-        label = f"vesicle {vesicle + 1}" if run.vesicles > 1 else None
-        axes.plot(angle[order], run.edge_tension(frame, vesicle)[order], ".-", ms=4, lw=1, label=label)
+        label = f"vesicle {vesicle + 1}" if few and run.vesicles > 1 else None
+        style = dict(ms=4, lw=1) if few else dict(ms=0, lw=0.3, color=f"C{vesicle % 10}")
+        axes.plot(angle[order], run.edge_tension(frame, vesicle)[order], ".-", label=label, **style)
     axes.set(xlabel=r"phase angle $\varphi/\pi$", ylabel=r"tension $\sigma$ (length$^3$/time$^2$)", xlim=(-1, 1))
-    dress(axes, 10 if run.vesicles > 1 else 0, title=f"$t$ = {run.time[frame]:g}")
+    dress(axes, 10 if few and run.vesicles > 1 else 0, title=f"$t$ = {run.time[frame]:g}")
     return save_figure(figure, run.folder / "tension.png")
 
 
@@ -220,6 +258,8 @@ def plot_shapes(run: Run) -> Path:
     """Draw outlines at evenly spread saved times, with marker 0 as a dot."""
     import matplotlib
 
+    if run.vesicles > MANY:
+        return _plot_first_and_last(run)
     figure, (axes,) = new_figure(6, 5.2, equal=True)
     frames = np.unique(np.linspace(0, len(run.time) - 1, min(OUTLINES, len(run.time))).round().astype(int))
     colors = matplotlib.colormaps["viridis"](np.linspace(0, 0.9, len(frames)))
@@ -229,4 +269,19 @@ def plot_shapes(run: Run) -> Path:
     axes.margins(0.08)
     axes.grid(alpha=0.3)
     axes.legend(title="time $t$", frameon=False, loc="center left", bbox_to_anchor=(1.0, 0.5))
+    return save_figure(figure, run.folder / "shapes.png")
+
+
+def _plot_first_and_last(run: Run) -> Path:
+    """Draw many vesicles in the box at the first and the last saved time."""
+    sides = run.box[1] - run.box[0], run.box[3] - run.box[2]
+    wide = sides[0] > sides[1]
+    tall = 9 * min(max(sides[1] / sides[0], 0.2), 1.2)
+    figure, axes = new_figure(
+        9, 2 * tall + 1 if wide else tall / 2 + 1, rows=2 if wide else 1, columns=1 if wide else 2
+    )
+    for panel, frame in zip(axes, (0, -1)):
+        draw_members(panel, run, frame)
+        panel.set(xlim=run.box[:2], ylim=run.box[2:], aspect="equal", xlabel="$x$ (length)", ylabel="$y$ (length)")
+        panel.set_title(f"$t$ = {run.time[frame]:.4g}")
     return save_figure(figure, run.folder / "shapes.png")

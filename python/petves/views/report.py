@@ -76,6 +76,8 @@ def _plots(run: Run) -> str:
     figures = []
     with tempfile.TemporaryDirectory() as folder:
         elsewhere = dataclasses.replace(run, folder=Path(folder))
+        for name in ("resolved.opts", "vesicles.h5"):  # what pictures read besides
+            (Path(folder) / name).symlink_to(run.folder.resolve() / name)
         for draw, caption in CAPTIONS.items():
             if draw is not plot_energy and not run.vesicles:
                 continue

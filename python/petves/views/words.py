@@ -6,6 +6,7 @@ import numpy as np
 
 from petves.run import Run
 
+MANY = 8  # vesicles above which they are told of together
 FLOWS = {
     "quiescent": "There is no background flow",
     "shear": "The background is a shear flow of rate {flow_rate}",
@@ -50,12 +51,26 @@ def _vesicles(run: Run, o: dict[str, str]) -> str:
     if not run.vesicles:
         return "There is no vesicle."
     count = "One vesicle" if run.vesicles == 1 else f"{run.vesicles} vesicles"
+    if run.vesicles > MANY:
+        return f"{count} with an inextensible membrane{_ranges(run)}."
     shapes = []
     for v in range(run.vesicles):
         n, (area, length) = run.start[v + 1] - run.start[v], run.first_measures(v)
         shapes.append(f"area {area:.4g}, length {length:.4g}, reduced area {4*np.pi*area/length**2:.3f}, {n} markers")
     bending = f"bending stiffness {run.c_b:g}" if run.c_b > 0 else "no bending stiffness"
     return f"{count} with an inextensible membrane and {bending}: {'; '.join(shapes)}."
+
+
+def _ranges(run: Run) -> str:
+    """Return the area fraction, sizes and markers of many vesicles."""
+    area, length = (run.each(name)[0] for name in ("area", "length"))
+    reduced, markers = 4 * np.pi * area / length**2, np.diff(run.start)
+    box = (run.box[1] - run.box[0]) * (run.box[3] - run.box[2])
+    span = lambda x: f"{x.min():.4g}" if np.ptp(x) < 1e-3 * abs(x.mean()) else f"{x.min():.4g} to {x.max():.4g}"
+    return (
+        f" and bending stiffness up to {run.c_b:g}: area fraction {area.sum() / box:.3f}, area {span(area)}, reduced area "
+        f"{span(reduced)}, {span(markers)} markers each"
+    )
 
 
 def _method(run: Run, o: dict[str, str]) -> str:
