@@ -126,6 +126,8 @@ static PetscErrorCode Build(MPI_Comm comm, PetvesFlow flow, void *ctx, Simulatio
   PetscCall(CouplingCreate(s->fluid, s->membrane, scene->coupling.kernel, (NearFieldType)scene->coupling.near_field,
                            &s->coupling));
   if (s->coupling->near && SceneHasBoxPart(scene)) PetscCall(NearFieldAddBoxPart(s->coupling->near, &scene->fluid));
+  if (scene->repulsion.stress > 0 && scene->shape.vesicles)
+    PetscCall(CouplingAddRepulsion(s->coupling, &scene->repulsion));
   PetscCall(SchemeCreate(scene, s->coupling, scene->shape.X, &s->scheme));
   PetscCall(SceneCheckUnused(scene));
   PetscFunctionReturn(PETSC_SUCCESS);

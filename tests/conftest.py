@@ -43,7 +43,8 @@ PAPER = "-scheme_type split -delta_type ib6 -membrane_derivative fd -coupling_ne
 COLUMNS = (
     "step,time,dt,energy_kinetic,energy_bending,area,length,area_error,length_error,edge_ratio,div_max,"
     "surface_div_max,center_x,center_y,inclination,frequency,tension_its,bending_its,coupled_its,nsolve,wall,area_shift,"
-    "normal_speed,velocity_x,velocity_y,energy_gravity"
+    "normal_speed,velocity_x,velocity_y,energy_gravity,"
+    "gap,energy_contact,viscosity_wall,viscosity,normal_stress_wall,normal_stress"
 ).split(",")
 
 

@@ -139,6 +139,27 @@ static PetscErrorCode CheckPolicies(void) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* A film that has lost so much over what it may: above 1 a smaller step, below it growth no further than it bears. */
+static PetscErrorCode CheckFilms(void) {
+  static const struct {
+    PetscReal loss;
+    StepVerdict verdict;
+    PetscInt next;
+  } cases[] = {{0, STEP_ACCEPT, 2},  {0.3, STEP_ACCEPT, 2},     {0.6, STEP_ACCEPT, 1},  {0.95, STEP_ACCEPT, -1},
+               {1, STEP_ACCEPT, -1}, {1.0001, STEP_REPEAT, -1}, {1.5, STEP_REPEAT, -2}, {2, STEP_REPEAT, -3}};
+  const StepPolicy policy = Policy(1);
+  PetscFunctionBeginUser;
+  for (size_t k = 0; k < sizeof(cases) / sizeof(cases[0]); k++) {
+    const StepTrial trial = {.solved = PETSC_TRUE, .dt = 1, .error = SMALL, .ratio = 1, .loss = cases[k].loss};
+    StepPlan plan = {.before = NONE};
+    const StepVerdict verdict = StepJudge(&policy, &trial, &plan);
+    CHECK(verdict == cases[k].verdict && plan.level == cases[k].next,
+          "a film's loss of %g of what is allowed: verdict %d, level %d (%d, %d)", trial.loss, verdict, (int)plan.level,
+          cases[k].verdict, (int)cases[k].next);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Order 3: the error goes like dt^3, and steps grow by a level at most. */
 static PetscErrorCode CheckOrder(void) {
   static const struct {
@@ -322,6 +343,7 @@ static PetscErrorCode Facts(void) {
     PetscCall(CheckSizes(bases[b]));
   }
   PetscCall(CheckPolicies());
+  PetscCall(CheckFilms());
   PetscCall(CheckOrder());
   for (int k = 1; k < 20; k++) PetscCall(CheckEnd(0.2 + 0.037 * k));
   PetscCall(CheckFixed());

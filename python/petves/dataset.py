@@ -15,16 +15,16 @@ if TYPE_CHECKING:
 
 #: Units of what a run has, in the user's lengths and times; "1" is a number, "" not a physical quantity.
 _HAVE = {
-    "1": "step area_error length_error edge_ratio tension_its bending_its coupled_its nsolve",
+    "1": "viscosity_wall viscosity step area_error length_error edge_ratio tension_its bending_its coupled_its nsolve",
     "s": "wall",
     "time": "time dt",
-    "length": "length center_x center_y area_shift markers x y h",
+    "length": "gap length center_x center_y area_shift markers x y h",
     "length^2": "area",
     "length/time": "u v velocity normal_speed velocity_x velocity_y",
     "length^2/time": "nu",
-    "length^2/time^2": "p",
+    "length^2/time^2": "p normal_stress_wall normal_stress",
     "length^3/time^2": "tension",
-    "length^4/time^2": "energy_kinetic energy_bending energy_gravity",
+    "length^4/time^2": "energy_kinetic energy_bending energy_gravity energy_contact",
     "length^5/time^2": "c_b",
     "1/time": "div_max surface_div_max",
     "radian": "inclination",

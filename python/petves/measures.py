@@ -52,11 +52,12 @@ class Measures:
 
     @property
     def energy(self) -> float:
-        """Kinetic and bending energy (length^4/time^2)."""
-        return self.energy_kinetic + self.energy_bending
+        """Kinetic, bending and contact energy (length^4/time^2)."""
+        return self.energy_kinetic + self.energy_bending + self.energy_contact
 
     energy_kinetic = _column("energy_kinetic", "Kinetic energy of the velocity minus the background (length^4/time^2).")
     energy_bending = _column("energy_bending", "Bending energy (length^4/time^2).")
+    energy_contact = _column("energy_contact", "Energy of repulsion and adhesion between membranes (length^4/time^2).")
     area = _column("area", "Enclosed area (length^2).")
     length = _column("length", "Length of the membrane (length).")
 
@@ -88,6 +89,14 @@ class Measures:
 
     energy_gravity = _column(
         "energy_gravity", "Minus density difference times gravity times area times centroid (length^4/time^2)."
+    )
+    gap = _column("gap", "Least distance of two vesicles, or of one and a wall (length); NaN where there is none.")
+    viscosity = _column(
+        "viscosity", "Effective viscosity of a sheared channel over nu, by the membranes' forces; NaN in other scenes."
+    )
+    normal_stress = _column(
+        "normal_stress",
+        "First normal stress difference of a sheared channel (length^2/time^2), by the membranes' forces.",
     )
     div_max = _column("div_max", "What the solver left of the velocity's divergence (1/time).")
     surface_div_max = _column("surface_div_max", "What the solver left of the membrane's inextensibility (1/time).")

@@ -15,6 +15,7 @@ PetscErrorCode CouplingPlace(Coupling c, PetscReal a0, Vec X, const PetscReal tr
   MembraneTangents(c->membrane, x, c->tau);
   PetscCall(VecRestoreArrayRead(X, &x));
   if (c->near) PetscCall(NearFieldPlace(c->near));
+  if (c->repulsion) PetscCall(RepulsionPlace(c->repulsion, c->markers->X));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -53,16 +54,37 @@ PetscErrorCode CouplingSpreadBending(Coupling c, PetscReal alpha, Vec X, Vec w) 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode CouplingNearBending(Coupling c, PetscReal alpha, Vec X, Vec U) {
-  const PetscReal h2 = PetscSqr(c->fluid->grid->h);
+PetscErrorCode CouplingElasticRate(Coupling c, PetscReal alpha, const PetscScalar V[], PetscScalar F[]) {
+  PetscFunctionBeginUser;
+  if (c->membrane->bending > 0) MembraneBending(c->membrane, alpha * c->membrane->bending, V, F);
+  if (c->repulsion) PetscCall(RepulsionStiffness(c->repulsion, alpha, V, F));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CouplingElasticForce(Coupling c, Vec X, Vec F) {
+  const PetscScalar *x;
+  PetscScalar *f;
+  PetscFunctionBeginUser;
+  PetscCall(VecSet(F, 0));
+  PetscCall(VecGetArrayRead(X, &x));
+  PetscCall(VecGetArray(F, &f));
+  PetscCall(CouplingElasticRate(c, 1, x, f));
+  if (c->repulsion) RepulsionPush(c->repulsion, -1, f);
+  PetscCall(VecRestoreArray(F, &f));
+  PetscCall(VecRestoreArrayRead(X, &x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CouplingElastic(Coupling c, PetscReal alpha, Vec X, Vec w, Vec U) {
   const PetscScalar *F;
   PetscScalar *u;
   PetscFunctionBeginUser;
+  PetscCall(CouplingElasticForce(c, X, c->force));
+  PetscCall(MarkersSpread(c->markers, alpha / PetscSqr(c->fluid->grid->h), c->force, w));
   if (!c->near) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(BendingForce(c, X, c->force));
   PetscCall(VecGetArrayRead(c->force, &F));
   PetscCall(VecGetArray(U, &u));
-  PetscCall(NearFieldApply(c->near, alpha * h2, F, u));
+  PetscCall(NearFieldApply(c->near, alpha, F, u));
   PetscCall(VecRestoreArray(U, &u));
   PetscCall(VecRestoreArrayRead(c->force, &F));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -187,10 +209,17 @@ PetscErrorCode CouplingCreate(Fluid fluid, Membrane m, const char kernel[], Near
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode CouplingAddRepulsion(Coupling c, const SceneRepulsion *law) {
+  PetscFunctionBeginUser;
+  PetscCall(RepulsionCreate(c->membrane, c->fluid->grid, law, &c->repulsion));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode CouplingDestroy(Coupling *coupling) {
   Coupling c = *coupling;
   PetscFunctionBeginUser;
   if (!c) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(RepulsionDestroy(&c->repulsion));
   PetscCall(NearFieldDestroy(&c->near));
   PetscCall(MarkersDestroy(&c->markers));
   PetscCall(PetscFree(c->tau));

@@ -2,6 +2,7 @@
    smoothing, and the operators S and B of the momentum equation. */
 #pragma once
 #include "coupling/nearfield.h"
+#include "coupling/repulsion.h"
 #include "fluid/fluid.h"
 
 typedef struct _p_Coupling *Coupling;
@@ -10,6 +11,7 @@ struct _p_Coupling {
   Membrane membrane; /* borrowed; of no vesicle when the scene has none */
   Markers markers;
   NearField near;      /* NULL without */
+  Repulsion repulsion; /* NULL without */
   PetscReal *tau;      /* [2n] tangents of the own vesicles */
   PetscReal *treading; /* [vesicles] V, the speed of the labels in which the step is made (1/time) */
   Vec force;           /* marker vector, work */
@@ -23,10 +25,13 @@ PETSC_EXTERN PetscErrorCode CouplingCreate(Fluid fluid, Membrane membrane, const
                                            Coupling *coupling);
 PETSC_EXTERN PetscErrorCode CouplingDestroy(Coupling *coupling);
 
+/* CouplingAddRepulsion - from here on with a force of short range between membranes. Not collective. */
+PETSC_EXTERN PetscErrorCode CouplingAddRepulsion(Coupling coupling, const SceneRepulsion *law);
+
 /* CouplingPlace - everything that a solve stands on, in one call: the time coefficient a0 (1/time) in the fluid's H; E,
-   S, B, the tangents and the near field C at the markers X; the labels' speeds treading[vesicles] (1/time; NULL: at
-   rest). message[PETVES_MAX_MESSAGE] is empty, or says why it cannot be: a marker near a wall; the same on every rank.
-   Collective. */
+   S, B, the tangents, the near field C and the springs of a repulsion at the markers X; the labels' speeds
+   treading[vesicles] (1/time; NULL: at rest). message[PETVES_MAX_MESSAGE] is empty, or says why it cannot be: a marker
+   near a wall; the same on every rank. Collective. */
 PETSC_EXTERN PetscErrorCode CouplingPlace(Coupling coupling, PetscReal a0, Vec X, const PetscReal treading[],
                                           char message[PETVES_MAX_MESSAGE]);
 
@@ -42,9 +47,15 @@ static inline PetscReal CouplingBending(Coupling coupling) {
 PETSC_EXTERN PetscErrorCode CouplingSpreadTension(Coupling coupling, PetscReal alpha, Vec sigma, Vec w);
 PETSC_EXTERN PetscErrorCode CouplingSpreadBending(Coupling coupling, PetscReal alpha, Vec X, Vec w);
 
-/* CouplingNearBending - U += alpha C c_b ds D4 X, the near field of a bending force; nothing without near field.
+/* CouplingElasticForce - F = (c_b ds D4 + K_rep) X less the springs' push: minus the force of bending and repulsion at
+   the markers X (length^3/time^2). CouplingElastic - w += alpha E^T F/h^2, and U += alpha C F with near field.
    Collective. */
-PETSC_EXTERN PetscErrorCode CouplingNearBending(Coupling coupling, PetscReal alpha, Vec X, Vec U);
+PETSC_EXTERN PetscErrorCode CouplingElasticForce(Coupling coupling, Vec X, Vec F);
+PETSC_EXTERN PetscErrorCode CouplingElastic(Coupling coupling, PetscReal alpha, Vec X, Vec w, Vec U);
+
+/* CouplingElasticRate - F += alpha (c_b ds D4 + K_rep) V, own parts V[2n], F[2n] of marker vectors. Collective. */
+PETSC_EXTERN PetscErrorCode CouplingElasticRate(Coupling coupling, PetscReal alpha, const PetscScalar V[],
+                                                PetscScalar F[]);
 
 /* CouplingAddGravity - what gravity does to the markers placed: its spread force to f, less the mean in a box that is
    periodic both ways, and its near field to U; nothing without gravity. Collective. */

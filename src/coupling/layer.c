@@ -85,6 +85,7 @@ PetscErrorCode LayerCreate(Coupling coupling, Vec sigma, Vec X, Layer *out) {
   const Layout l = coupling->membrane->layout;
   const PetscScalar *x;
   PetscScalar *f;
+  PetscReal energy;
   Layer s;
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&s));
@@ -96,6 +97,7 @@ PetscErrorCode LayerCreate(Coupling coupling, Vec sigma, Vec X, Layer *out) {
   PetscCall(PetscMalloc1(2 * l->n, &f));
   PetscCall(VecGetArrayRead(X, &x));
   PetscCall(Forces(coupling->membrane, sigma, x, f));
+  if (coupling->repulsion) PetscCall(RepulsionAt(coupling->repulsion, 1, x, f, &energy));
   PetscCall(LayoutGather(l, 2, x, s->X));
   PetscCall(LayoutGather(l, 2, f, s->F));
   PetscCall(VecRestoreArrayRead(X, &x));

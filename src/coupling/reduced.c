@@ -1,6 +1,6 @@
 #include "coupling/reduced.h"
 
-/* F = Dm^T sigma + (c_b ds/a0) D4 V, minus h^2 times the force on the markers. */
+/* F = Dm^T sigma + (1/a0) (c_b ds D4 + K_rep) V, minus h^2 times the force on the markers. */
 static PetscErrorCode Force(Reduced s, const PetscScalar x[], Vec F) {
   const Coupling c = s->unknowns->coupling;
   const Membrane m = c->membrane;
@@ -8,7 +8,7 @@ static PetscErrorCode Force(Reduced s, const PetscScalar x[], Vec F) {
   PetscFunctionBeginUser;
   PetscCall(VecSet(F, 0));
   PetscCall(VecGetArray(F, &f));
-  if (m->bending > 0) MembraneBending(m, m->bending / c->fluid->a0, x, f);
+  PetscCall(CouplingElasticRate(c, 1 / c->fluid->a0, x, f));
   MembraneStretchingTranspose(m, c->tau, 1, x + s->unknowns->velocity, f);
   PetscCall(VecRestoreArray(F, &f));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -1,13 +1,13 @@
 /* The coupled problem of one time step, for velocity, pressure and tension together (docs/method.md),
-       H u + G p + E^T F/h^2 = f,   G^T u = -bc2,   F = Dm^T sigma + (c_b ds/a0) D4 V,
+       H u + G p + E^T F/h^2 = f,   G^T u = -bc2,   F = Dm^T sigma + (1/a0) (c_b ds D4 + K_rep) V,
        V + (v/a0) dV/dt = E u - C F + k,           Dm V/h^2 = g,
    V the markers' velocity without the background's, seen from labels t that turn at the speed v of their vesicle, C the
-   near field, k what it gives of the bending force that is known, reduced to its forces. A Stokes solve gives u and p
-   for any force, so the unknowns are V, sigma, and forces d on the faces next to walls, where the Stokes solve is not
-   exact: (u, p) = Stokes(f - E^T F/h^2 + d, -bc2),
-       V + (v/a0) dV/dt - E u + C F = k,    Dm V/h^2 = g,    d + (what the Stokes solve leaves at the walls) = 0.
-   A product costs one Stokes solve. In unbounded fluid there is no u on a grid (E = 0) and C is all of the mobility: a
-   product is dense work on markers, and u and p stay zero. */
+   near field, K_rep the springs of a repulsion if there is one, k what C gives of the forces that are known, reduced to
+   its forces. A Stokes solve gives u and p for any force, so the unknowns are V, sigma, and forces d on the faces next
+   to walls, where the Stokes solve is not exact: (u, p) = Stokes(f - E^T F/h^2 + d, -bc2), V + (v/a0) dV/dt - E u + C F
+   = k,    Dm V/h^2 = g,    d + (what the Stokes solve leaves at the walls) = 0. A product costs one Stokes solve. In
+   unbounded fluid there is no u on a grid (E = 0) and C is all of the mobility: a product is dense work on markers, and
+   u and p stay zero. */
 #pragma once
 #include "coupling/unknowns.h"
 #include "fluid/stokes.h"

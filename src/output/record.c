@@ -1,10 +1,39 @@
 #include "output/record.h"
+#include "scheme/films.h"
 
-const char *const SeriesColumns[] = {
-    "step",        "time",         "dt",          "energy_kinetic", "energy_bending",  "area",     "length",
-    "area_error",  "length_error", "edge_ratio",  "div_max",        "surface_div_max", "center_x", "center_y",
-    "inclination", "frequency",    "tension_its", "bending_its",    "coupled_its",     "nsolve",   "wall",
-    "area_shift",  "normal_speed", "velocity_x",  "velocity_y",     "energy_gravity",  NULL};
+const char *const SeriesColumns[] = {"step",
+                                     "time",
+                                     "dt",
+                                     "energy_kinetic",
+                                     "energy_bending",
+                                     "area",
+                                     "length",
+                                     "area_error",
+                                     "length_error",
+                                     "edge_ratio",
+                                     "div_max",
+                                     "surface_div_max",
+                                     "center_x",
+                                     "center_y",
+                                     "inclination",
+                                     "frequency",
+                                     "tension_its",
+                                     "bending_its",
+                                     "coupled_its",
+                                     "nsolve",
+                                     "wall",
+                                     "area_shift",
+                                     "normal_speed",
+                                     "velocity_x",
+                                     "velocity_y",
+                                     "energy_gravity",
+                                     "gap",
+                                     "energy_contact",
+                                     "viscosity_wall",
+                                     "viscosity",
+                                     "normal_stress_wall",
+                                     "normal_stress",
+                                     NULL};
 
 const int RecordVesicleColumns[] = {
     COLUMN_BENDING,      COLUMN_AREA,       COLUMN_LENGTH,     COLUMN_AREA_ERROR,  COLUMN_LENGTH_ERROR,
@@ -118,6 +147,12 @@ static PetscErrorCode TakeStep(Record *r, Scheme s) {
   row[COLUMN_NSOLVE] = report->solves;
   row[COLUMN_WALL] = report->seconds;
   row[COLUMN_AREA_SHIFT] = report->area_shift;
+  PetscCall(FilmsLeastGap(s, &row[COLUMN_GAP]));
+  PetscCall(SchemeContactEnergy(s, &row[COLUMN_CONTACT]));
+  for (int k = 0; k < 2; k++) {
+    row[COLUMN_VISCOSITY_WALL + k] = report->stress.known ? report->stress.viscosity[k] : NAN;
+    row[COLUMN_NORMAL_WALL + k] = report->stress.known ? report->stress.normal[k] : NAN;
+  }
   r->solves += report->solves;
   r->tension += report->tension_its;
   r->bending += report->bending_its;

@@ -60,6 +60,14 @@ typedef struct {
   PetscReal ksp_rtol;           /* default of -coupled_ksp_rtol */
 } SceneCoupling;
 
+/* A force of short range between membranes, src/coupling/repulsion.h. */
+typedef struct {
+  PetscReal stress;   /* K (length^2/time^2); 0: none */
+  PetscReal range;    /* D (length); 0: 1.5 times the longest mean edge */
+  PetscReal adhesion; /* W, depth of the well (length^3/time^2) */
+  PetscReal band;     /* B, its width (length); 0: D */
+} SceneRepulsion;
+
 typedef struct {
   char type[OPTION_MAX_NAME];
   PetscInt order;          /* in time */
@@ -94,6 +102,7 @@ typedef struct {
 /* The run stops above them, 0: no limit; and where membranes cross. */
 typedef struct {
   PetscReal edge_ratio, area_error, length_error;
+  PetscReal gap_loss; /* part of a thin film that a step may take */
   PetscBool crossing;
 } SceneLimits;
 
@@ -107,6 +116,7 @@ struct _p_Scene {
   SceneMembrane membrane;
   SceneGravity gravity;
   SceneCoupling coupling;
+  SceneRepulsion repulsion;
   SceneScheme scheme;
   SceneTime time;
   SceneOutput output;

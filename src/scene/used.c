@@ -17,6 +17,8 @@ typedef enum {
   BY_ANGLES,
   BY_UNSPLIT,
   BY_COUPLED,
+  BY_REPULSION,
+  BY_ADHESION,
   BY_PENALTY,
   BY_ORDER,
   BY_ADAPT,
@@ -41,6 +43,8 @@ static const char *const needs[] = {"-flow_type shear or extension",
                                     "vesicles that are not packed at random (-vesicle_packing)",
                                     "vesicles and -scheme_type coupled or direct",
                                     "vesicles and -scheme_type coupled",
+                                    "-contact_repulsion",
+                                    "-contact_adhesion",
                                     "vesicles and -scheme_type penalty",
                                     "-scheme_order 2 or 3",
                                     "-time_adapt error",
@@ -87,6 +91,10 @@ static const struct {
              {"-scheme_area_target", BY_VESICLES},
              {"-coupling_near_field", BY_VESICLES},
              {"-coupling_box_part", BY_VESICLES},
+             {"-contact_repulsion", BY_UNSPLIT},
+             {"-contact_repulsion_range", BY_REPULSION},
+             {"-contact_adhesion", BY_REPULSION},
+             {"-contact_adhesion_range", BY_ADHESION},
              {"-membrane_derivative", BY_VESICLES},
              {"-scheme_startup", BY_ORDER},
              {"-mobility_type", BY_COUPLED},
@@ -103,6 +111,7 @@ static const struct {
              {"-limit_edge_ratio", BY_VESICLES},
              {"-limit_area_error", BY_VESICLES},
              {"-limit_length_error", BY_VESICLES},
+             {"-limit_gap_loss", BY_VESICLES},
              {"-limit_crossing", BY_VESICLES}};
 #define RULES (sizeof(rules) / sizeof(rules[0]))
 
@@ -145,6 +154,10 @@ static PetscBool Met(Scene s, Need need) {
     return IsScheme(s, "coupled") || IsScheme(s, "direct");
   case BY_COUPLED:
     return IsScheme(s, "coupled");
+  case BY_REPULSION:
+    return s->repulsion.stress > 0 && s->shape.vesicles ? PETSC_TRUE : PETSC_FALSE;
+  case BY_ADHESION:
+    return s->repulsion.adhesion > 0 ? PETSC_TRUE : PETSC_FALSE;
   case BY_PENALTY: /* the 0 that stands for none is right for all */
     return IsScheme(s, "penalty") || s->scheme.stiffness == 0;
   case BY_ORDER:

@@ -1,5 +1,6 @@
 /* One unsplit step, backward Euler or BDF2 (docs/method.md, One step). */
 #include "scheme/coupled.h"
+#include "scheme/stress.h"
 
 #define SMOOTH 0.7 /* least gain of a predictor through three states over that through two for order 3 */
 
@@ -39,8 +40,8 @@ static PetscErrorCode LengthTarget(Scheme s, Coupled *d, PetscReal a0) {
     (s)->state.which, (s)->old[0].which, (s)->old[1].which                                                             \
   }
 
-/* f = uhat - B Y + bc1 - N(w*) and k = -(C c_b ds D4 + V d/dt) Y, Y = Xhat + u_inf/a0, V the labels' speed; no uhat in
-   quasi-steady flow. next.w is used for w*. */
+/* f = uhat - B Y + bc1 - N(w*) and k = -(C c_b ds D4 + V d/dt) Y, with a repulsion's springs beside bending, Y = Xhat +
+   u_inf/a0, V the labels' speed; no uhat in quasi-steady flow. next.w is used for w*. */
 static PetscErrorCode RightHandSides(Scheme s, Coupled *d, const BDF *b) {
   History *h = &d->history;
   PetscFunctionBeginUser;
@@ -51,10 +52,8 @@ static PetscErrorCode RightHandSides(Scheme s, Coupled *d, const BDF *b) {
     PetscCall(HistorySum(h, s->membrane, b->order, b->history, 1, 0, STATES(s, w), d->f));
   if (s->fluid->bc1) PetscCall(VecAXPY(d->f, 1, s->fluid->bc1));
   PetscCall(VecWAXPY(d->Y, 1 / b->a0, s->background, d->Xhat));
-  if (CouplingBending(s->coupling) > 0) {
-    PetscCall(CouplingSpreadBending(s->coupling, -1, d->Y, d->f));
-    PetscCall(CouplingNearBending(s->coupling, -1, d->Y, d->known));
-  }
+  if (CouplingBending(s->coupling) > 0 || s->coupling->repulsion)
+    PetscCall(CouplingElastic(s->coupling, -1, d->Y, d->f, d->known));
   PetscCall(CouplingAddGravity(s->coupling, d->Xstar, d->f, d->known));
   PetscCall(CouplingTread(s->coupling, -1, d->Y, d->known));
   if (d->convection) {
@@ -113,6 +112,25 @@ static PetscErrorCode MoveMarkers(Scheme s, Coupled *d, PetscReal a0) {
   PetscCall(VecWAXPY(n->X, 1 / a0, d->P, d->Xhat));
   PetscCall(VecCopy(d->P, n->U));
   PetscCall(CouplingTread(s->coupling, 1, n->X, n->U));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What the forces of the step, which are spread at X*, do to a sheared channel. */
+static PetscErrorCode MeasureStress(Scheme s, Coupled *d) {
+  const PetscScalar *sigma, *x;
+  PetscScalar *F;
+  PetscFunctionBeginUser;
+  if (!StressApplies(s)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(CouplingElasticForce(s->coupling, d->next.X, d->Y));
+  PetscCall(VecGetArrayRead(d->next.sigma, &sigma));
+  PetscCall(VecGetArray(d->Y, &F));
+  MembraneStretchingTranspose(s->membrane, s->coupling->tau, 1, sigma, F);
+  PetscCall(VecGetArrayRead(d->Xstar, &x));
+  MembraneGravity(s->membrane, -1, x, F);
+  PetscCall(VecRestoreArrayRead(d->Xstar, &x));
+  PetscCall(VecRestoreArray(d->Y, &F));
+  PetscCall(VecRestoreArrayRead(d->next.sigma, &sigma));
+  PetscCall(StressMeasure(s, d->next.w, d->next.p, d->Y, d->next.X));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -176,6 +194,7 @@ PetscErrorCode CoupledAttempt(Scheme s, PetscReal dt, PetscBool *solved) {
   PetscCall(Solve(s, d));
   *solved = *s->report.failure ? PETSC_FALSE : PETSC_TRUE;
   if (*solved) PetscCall(MoveMarkers(s, d, b.a0));
+  if (*solved) PetscCall(MeasureStress(s, d));
   if (*solved) PetscCall(ChooseNext(s, d));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,6 +1,7 @@
 #include "scheme/contact.h"
 #include "base/agree.h"
 #include "curve/crossing.h"
+#include "scheme/films.h"
 #include "scheme/parts.h"
 
 #define CONTACT 2       /* cells between membranes below which a warning is due */
@@ -69,13 +70,20 @@ static PetscErrorCode Warn(Scheme s, const PetscMPIInt pair[2]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static PetscBool Smooth(Scheme s) {
+  return s->membrane->derivative == DERIVATIVE_SPECTRAL ? PETSC_TRUE : PETSC_FALSE;
+}
+
+static void Periods(Grid g, PetscReal period[2]) {
+  for (int d = 0; d < 2; d++) period[d] = g->wall[d] ? 0 : g->hi[d] - g->lo[d];
+}
+
 static PetscErrorCode CheckCrossing(Scheme s, const PetscScalar X[], const PetscReal period[2]) {
   const Layout l = s->membrane->layout;
-  const PetscBool smooth = s->membrane->derivative == DERIVATIVE_SPECTRAL ? PETSC_TRUE : PETSC_FALSE;
   PetscInt pair[2];
   char who[64];
   PetscFunctionBeginUser;
-  PetscCall(CurvesCross(l->bodies, l->start, X, period, smooth, pair));
+  PetscCall(CurvesCross(l->bodies, l->start, X, period, Smooth(s), pair));
   if (pair[0] < 0) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(Name((PetscMPIInt)pair[0] + 1, (PetscMPIInt)pair[1] + 1, sizeof(who), who));
   PetscCall(PetscSNPrintf(s->report.failure, sizeof(s->report.failure), "%s cross", who));
@@ -86,12 +94,11 @@ static PetscErrorCode CheckCrossing(Scheme s, const PetscScalar X[], const Petsc
 /* Rank 0 looks and tells the others. */
 PetscErrorCode SchemeCheckContact(Scheme s) {
   const Layout l = s->membrane->layout;
-  const Grid g = s->fluid->grid;
   const PetscBool before = s->warnings.contact;
   PetscReal period[2];
   PetscMPIInt pair[2] = {0, 0};
   PetscFunctionBeginUser;
-  for (int d = 0; d < 2; d++) period[d] = g->wall[d] ? 0 : g->hi[d] - g->lo[d];
+  Periods(s->fluid->grid, period);
   PetscCall(LayoutGatherVec(l, s->state.X, s->work_all));
   if (!l->rank) {
     if (s->scene->limits.crossing) PetscCall(CheckCrossing(s, s->work_all, period));
@@ -100,6 +107,7 @@ PetscErrorCode SchemeCheckContact(Scheme s) {
   PetscCall(AgreeMessage(l->comm, s->report.failure));
   PetscCallMPI(MPI_Bcast(pair, 2, MPI_INT, 0, l->comm));
   s->warnings.contact = pair[0] ? PETSC_TRUE : PETSC_FALSE;
+  if (!*s->report.failure && !s->policy.adaptive) PetscCall(FilmsCheck(s)); /* else judged before it was accepted */
   if (s->warnings.contact && !before && !*s->report.failure) PetscCall(Warn(s, pair));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

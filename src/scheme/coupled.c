@@ -2,6 +2,7 @@
    by preconditioned FGMRES on its forces, `direct` by a sparse LU factorisation. Here: which steps are taken. */
 #include "scheme/coupled.h"
 #include "coupling/lagrangian.h"
+#include "scheme/films.h"
 
 /* Start-up: backward Euler on a sixteenth of the step, then BDF2 with doubling steps up to the whole of it. */
 static PetscErrorCode GradedStart(Scheme s, Coupled *d, PetscReal dt) {
@@ -103,6 +104,26 @@ static PetscErrorCode Decide(Scheme s, const StepTrial *trial, StepVerdict *verd
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The attempt becomes the state unless, with its area and edges restored, it takes too much of a film: then all is as
+   before, and the verdict another one. */
+static PetscErrorCode Advance(Scheme s, StepTrial *trial, const StepPlan *before, StepVerdict *verdict) {
+  const PetscReal shift = s->report.area_shift;
+  StepPlan plan;
+  PetscFunctionBeginUser;
+  PetscCall(CoupledAdvance(s, trial->dt));
+  PetscCall(FilmsLoss(s, s->before.state.X, s->state.X, &trial->loss));
+  if (trial->loss == 0) PetscFunctionReturn(PETSC_SUCCESS);
+  s->plan.level = before->level;
+  PetscCall(Decide(s, trial, verdict));
+  if (*verdict == STEP_ACCEPT) PetscFunctionReturn(PETSC_SUCCESS);
+  plan = s->plan;
+  PetscCall(SchemeReturn(s, PETSC_TRUE));
+  s->plan.level = plan.level;
+  s->plan.before = plan.before;
+  s->report.area_shift = shift;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Attempts until one is accepted. What makes the last one fail is the step's failure. */
 static PetscErrorCode JudgedStep(Scheme s, Coupled *d, PetscReal speed, PetscReal most) {
   StepVerdict verdict;
@@ -114,19 +135,20 @@ static PetscErrorCode JudgedStep(Scheme s, Coupled *d, PetscReal speed, PetscRea
     s->report.failure[0] = 0;
     FluidClearFailure(s->fluid);
     PetscCall(DecideSize(s, speed, most, &trial.dt));
+    const StepPlan before = s->plan;
     PetscCall(CoupledAttempt(s, trial.dt, &trial.solved));
     trial.order = d->order;
     if (trial.solved) PetscCall(Look(s, d, &trial));
     PetscCall(Decide(s, &trial, &verdict));
+    if (verdict == STEP_ACCEPT) PetscCall(Advance(s, &trial, &before, &verdict));
   } while (verdict == STEP_REPEAT);
-  if (verdict == STEP_ACCEPT)
-    PetscCall(CoupledAdvance(s, trial.dt));
-  else if (trial.solved)
-    PetscCall(
-        PetscSNPrintf(s->report.failure, sizeof(s->report.failure),
-                      "-time_adapt error: no step small enough in step %" PetscInt_FMT
-                      " at time %g (estimate %g, edge ratio %g); a larger -time_adapt_tol or more markers may help",
-                      s->state.step + 1, (double)s->state.t, (double)trial.error, (double)trial.ratio));
+  if (verdict == STEP_GIVE_UP && trial.solved)
+    PetscCall(PetscSNPrintf(
+        s->report.failure, sizeof(s->report.failure),
+        "-time_adapt error: no step small enough in step %" PetscInt_FMT
+        " at time %g (estimate %g, edge ratio %g, film lost over allowed %g); a larger -time_adapt_tol "
+        "or more markers may help",
+        s->state.step + 1, (double)s->state.t, (double)trial.error, (double)trial.ratio, (double)trial.loss));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

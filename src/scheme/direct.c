@@ -161,6 +161,22 @@ static PetscErrorCode AddVesicle(DirectSolver d, Mat A, PetscInt v, PetscInt sig
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The springs of a repulsion: -(K_rep/(h^2 a0)) U in the rows of F. They are the same on every rank: one adds them. */
+static PetscErrorCode AddSprings(DirectSolver d, Mat A, PetscInt U, PetscInt F) {
+  const Repulsion r = d->coupling->repulsion;
+  const PetscReal scale = -1 / (PetscSqr(d->fluid->grid->h) * d->fluid->a0);
+  PetscFunctionBeginUser;
+  for (PetscInt q = 0; r && q < r->count; q++) {
+    const Spring *s = &r->spring[q];
+    for (PetscInt i = 0; i < 2 * s->n; i++)
+      for (PetscInt j = 0; j < 2 * s->n; j++)
+        PetscCall(AddNonzero(A, F + 2 * s->marker[i / 2] + i % 2, U + 2 * s->marker[j / 2] + j % 2,
+                             scale * s->stiffness * s->weight[i / 2] * s->normal[i % 2] * s->weight[j / 2] *
+                                 s->normal[j % 2]));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* The box part: h^2 D F in the rows of the own markers' U. */
 static PetscErrorCode AddBoxPart(DirectSolver d, Mat A, PetscInt U, PetscInt F) {
   const Layout l = d->coupling->membrane->layout;
@@ -200,6 +216,7 @@ static PetscErrorCode AddMembranes(DirectSolver d, Mat A) {
   const PetscInt sigma = d->start[d->fluid->grid->size] - 5 * d->M, U = sigma + d->M, F = U + 2 * d->M;
   PetscFunctionBeginUser;
   if (g->rank == g->size - 1) PetscCall(AddInterpolation(d, A, U, F));
+  if (g->rank == g->size - 1) PetscCall(AddSprings(d, A, U, F));
   for (PetscInt v = l->own; v < l->end; v++) PetscCall(AddVesicle(d, A, v, sigma, U, F));
   PetscCall(AddNearField(d, A, U, F));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -63,6 +63,7 @@ StepVerdict StepJudge(const StepPolicy *p, const StepTrial *t, StepPlan *plan) {
   const PetscBool above = !t->first && !fixed && t->error > p->tolerance ? PETSC_TRUE : PETSC_FALSE;
   const PetscBool inexact = lost || above ? PETSC_TRUE : PETSC_FALSE;
   const PetscBool too_far = p->max_move > 0 && t->speed * t->dt > p->max_move ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool drained = t->loss > 1 ? PETSC_TRUE : PETSC_FALSE;
   const PetscBool uneven = t->ratio <= 2 ? PETSC_FALSE : PETSC_TRUE; /* or not a number */
   const PetscReal spare = p->tolerance / PetscMax(t->error, 1e-30);
   PetscReal factor = SAFETY * (t->first ? 1 : t->order > 2 ? PetscCbrtReal(spare) : PetscSqrtReal(spare));
@@ -72,9 +73,10 @@ StepVerdict StepJudge(const StepPolicy *p, const StepTrial *t, StepPlan *plan) {
     return plan->level < LEAST_LEVEL ? STEP_GIVE_UP : STEP_REPEAT;
   }
   if (too_far) factor = PetscMin(factor, SAFETY * p->max_move / (t->speed * t->dt));
+  if (t->loss > 0) factor = PetscMin(factor, SAFETY / t->loss);
   if (uneven || lost) factor = 0.25;
   wanted = LevelOfSize(p, factor * t->dt, 0);
-  if (inexact || too_far || uneven) {
+  if (inexact || too_far || uneven || drained) {
     plan->before = t->error;
     plan->level = PetscMin(plan->level - 1, wanted);
     return plan->level < LEAST_LEVEL ? STEP_GIVE_UP : STEP_REPEAT;
@@ -83,6 +85,7 @@ StepVerdict StepJudge(const StepPolicy *p, const StepTrial *t, StepPlan *plan) {
   if (t->first || fixed || !whole) return STEP_ACCEPT; /* says nothing of a larger step */
   wanted = PetscMin(PetscMin(wanted, plan->level + GROWTH - (t->order > 2)), MOST_LEVEL);
   if (p->max_move > 0 && t->speed > 0) wanted = PetscMin(wanted, LevelOfSize(p, SAFETY * p->max_move / t->speed, 0));
+  if (t->loss > 0) wanted = PetscMin(wanted, LevelOfSize(p, SAFETY / t->loss * t->dt, 0));
   plan->level = wanted;
   return STEP_ACCEPT;
 }

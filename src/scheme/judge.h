@@ -20,6 +20,7 @@ typedef struct {
   PetscReal error; /* max |X - X*|/R0, of this order in dt */
   PetscReal speed; /* largest of a marker relative to its vesicle's mean (length/time) */
   PetscReal ratio; /* worst edge ratio */
+  PetscReal loss;  /* of a film between vesicles, over what is allowed; above 1 too much, or membranes cross */
 } StepTrial;
 
 typedef struct {

@@ -1,6 +1,28 @@
 #include "scheme/parts.h"
 #include "base/agree.h"
 
+PetscErrorCode SchemeKeep(Scheme s) {
+  Snapshot *b = &s->before;
+  PetscFunctionBeginUser;
+  b->fields = s->ops.undo && s->past ? PETSC_FALSE : PETSC_TRUE;
+  PetscCall(StateCopy(&s->state, &b->state, b->fields));
+  for (PetscInt j = 0; j < s->past; j++) PetscCall(StateCopy(&s->old[j], &b->old[j], b->fields));
+  b->past = s->past;
+  b->plan = s->plan;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SchemeReturn(Scheme s, PetscBool advanced) {
+  const Snapshot *b = &s->before;
+  PetscFunctionBeginUser;
+  if (!b->fields && advanced) PetscCall(s->ops.undo(s));
+  PetscCall(StateCopy(&b->state, &s->state, b->fields));
+  for (PetscInt j = 0; j < b->past; j++) PetscCall(StateCopy(&b->old[j], &s->old[j], b->fields));
+  s->past = b->past;
+  s->plan = b->plan;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* What to try goes behind what is wrong. */
 static PetscErrorCode Advise(Scheme s) {
   char *text = s->report.failure;

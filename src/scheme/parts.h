@@ -19,6 +19,11 @@ PETSC_EXTERN PetscErrorCode SchemeMarkerVelocity(Scheme scheme, Vec V, Vec U);
 /* SchemeMeasureDivergence - fill in report.div_max of a solved velocity. Collective. */
 PETSC_EXTERN PetscErrorCode SchemeMeasureDivergence(Scheme scheme, Vec w);
 
+/* SchemeKeep - copy the state into scheme->before. SchemeReturn - put back what was kept before the step; advanced: the
+   new state has taken the old one's place since. Collective. */
+PETSC_EXTERN PetscErrorCode SchemeKeep(Scheme scheme);
+PETSC_EXTERN PetscErrorCode SchemeReturn(Scheme scheme, PetscBool advanced);
+
 /* SchemeSolverFailed - record a failed solve: prefix, step, time, residual. Not collective. */
 PETSC_EXTERN PetscErrorCode SchemeSolverFailed(Scheme scheme, const char prefix[], KSPConvergedReason why, PetscInt its,
                                                PetscReal residual);

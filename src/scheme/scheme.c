@@ -107,30 +107,6 @@ PetscErrorCode SchemeDestroy(Scheme *scheme) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Copy the state into s->before. */
-static PetscErrorCode Keep(Scheme s) {
-  Snapshot *b = &s->before;
-  PetscFunctionBeginUser;
-  b->fields = s->ops.undo && s->past ? PETSC_FALSE : PETSC_TRUE;
-  PetscCall(StateCopy(&s->state, &b->state, b->fields));
-  for (PetscInt j = 0; j < s->past; j++) PetscCall(StateCopy(&s->old[j], &b->old[j], b->fields));
-  b->past = s->past;
-  b->plan = s->plan;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* And put it back. */
-static PetscErrorCode Return(Scheme s) {
-  const Snapshot *b = &s->before;
-  PetscFunctionBeginUser;
-  if (!b->fields && s->state.step > b->state.step) PetscCall(s->ops.undo(s));
-  PetscCall(StateCopy(&b->state, &s->state, b->fields));
-  for (PetscInt j = 0; j < b->past; j++) PetscCall(StateCopy(&b->old[j], &s->old[j], b->fields));
-  s->past = b->past;
-  s->plan = b->plan;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode SchemeStep(Scheme s, PetscReal most) {
   const PetscInt solves = FluidCountSolves(s->fluid);
   PetscLogDouble start, end;
@@ -138,7 +114,7 @@ PetscErrorCode SchemeStep(Scheme s, PetscReal most) {
   PetscCall(PetscTime(&start));
   PetscCall(PhaseBegin(PHASE_STEP));
   PetscCall(PetscMemzero(&s->report, sizeof(s->report)));
-  PetscCall(Keep(s));
+  PetscCall(SchemeKeep(s));
   FluidClearFailure(s->fluid);
   s->state.dt = s->policy.adaptive ? s->policy.base : StepFixed(&s->policy, s->state.t, most);
   PetscCall(s->ops.step(s, most));
@@ -152,7 +128,7 @@ PetscErrorCode SchemeStep(Scheme s, PetscReal most) {
   if (*s->report.failure) {
     const SolveFailure *cause = FluidFailure(s->fluid); /* of whatever else went wrong */
     if (cause) PetscCall(SchemeSolverFailed(s, cause->prefix, cause->why, cause->its, cause->residual));
-    PetscCall(Return(s));
+    PetscCall(SchemeReturn(s, s->state.step > s->before.state.step ? PETSC_TRUE : PETSC_FALSE));
   }
   PetscCall(PhaseEnd());
   PetscCall(PetscTime(&end));
@@ -180,6 +156,17 @@ PetscErrorCode SchemeRecall(Scheme s, const PetscReal memory[]) {
 PetscErrorCode SchemeView(Scheme s, PetscViewer viewer) {
   PetscFunctionBeginUser;
   if (s->ops.view) PetscCall(s->ops.view(s, viewer));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SchemeContactEnergy(Scheme s, PetscReal *energy) {
+  const PetscScalar *x;
+  PetscFunctionBeginUser;
+  *energy = 0;
+  if (!s->coupling->repulsion) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecGetArrayRead(s->state.X, &x));
+  PetscCall(RepulsionAt(s->coupling->repulsion, 0, x, NULL, energy));
+  PetscCall(VecRestoreArrayRead(s->state.X, &x));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -3,15 +3,23 @@
 #include "scheme/judge.h"
 #include "scheme/state.h"
 
+/* Of a sheared channel after a step, from the walls [0] and from the membranes' forces [1] (src/scheme/stress.h). */
+typedef struct {
+  PetscBool known;        /* whether the scene is one, and a step has been made */
+  PetscReal viscosity[2]; /* effective, over nu */
+  PetscReal normal[2];    /* first normal stress difference (length^2/time^2) */
+} Stress;
+
 /* What the last step did. */
 typedef struct {
   PetscInt tension_its, bending_its, coupled_its;
-  PetscInt solves;                  /* scalar fast solves */
-  PetscReal div_max;                /* max |G^T u + bc2|, what the solver left of the divergence */
-  PetscReal surface_div_max;        /* max |h^2 (Dm V/h^2 - g)/ds|, what it left of the surface divergence */
-  PetscReal area_shift;             /* largest shift that restored a vesicle's area (length) */
-  PetscReal cfl;                    /* dt max(|u| + |v|)/h; 0 without convection */
-  PetscReal seconds;                /* wall, output excluded */
+  PetscInt solves;           /* scalar fast solves */
+  PetscReal div_max;         /* max |G^T u + bc2|, what the solver left of the divergence */
+  PetscReal surface_div_max; /* max |h^2 (Dm V/h^2 - g)/ds|, what it left of the surface divergence */
+  PetscReal area_shift;      /* largest shift that restored a vesicle's area (length) */
+  PetscReal cfl;             /* dt max(|u| + |v|)/h; 0 without convection */
+  PetscReal seconds;         /* wall, output excluded */
+  Stress stress;
   char failure[PETVES_MAX_MESSAGE]; /* why the step could not be taken; empty when it was */
 } StepReport;
 
@@ -98,6 +106,10 @@ PETSC_EXTERN PetscErrorCode SchemeRemember(Scheme scheme, PetscReal memory[]);
 PETSC_EXTERN PetscErrorCode SchemeRecall(Scheme scheme, const PetscReal memory[]);
 
 PETSC_EXTERN PetscErrorCode SchemeView(Scheme scheme, PetscViewer viewer);
+
+/* SchemeContactEnergy - of the repulsion and adhesion of membranes at the present state (length^4/time^2); 0 without.
+   Collective. */
+PETSC_EXTERN PetscErrorCode SchemeContactEnergy(Scheme scheme, PetscReal *energy);
 
 /* SchemeKineticEnergy - E_K = 1/2 SUM u^2 h^2 of the total velocity minus the background. Collective. */
 PETSC_EXTERN PetscErrorCode SchemeKineticEnergy(Scheme scheme, PetscReal *energy);

@@ -1,0 +1,230 @@
+#include "curve/contacts.h"
+#include "curve/crossing.h"
+#include "curve/spectral.h"
+#include <stdlib.h>
+
+#define FINER 8 /* times the points, where smooth curves are near */
+
+typedef struct {
+  const PetscInt *start;
+  const PetscReal *X;
+  PetscReal reach;
+  PetscReal seam;  /* an image is farther than this from where its curve is */
+  PetscInt *curve; /* of each point */
+  PetscInt *head;  /* of each point: its first contact, or -1; contacts in a chain */
+  PetscInt *next;  /* of each contact: the point's next one, or -1 */
+  CurveContact *contact;
+  PetscInt count, room;
+  PetscErrorCode error;
+} ContactSearch;
+
+static PetscInt After(const ContactSearch *s, PetscInt k) {
+  const PetscInt v = s->curve[k];
+  return k + 1 < s->start[v + 1] ? k + 1 : s->start[v];
+}
+
+static PetscInt Before(const ContactSearch *s, PetscInt k) {
+  const PetscInt v = s->curve[k];
+  return k > s->start[v] ? k - 1 : s->start[v + 1] - 1;
+}
+
+/* The point p seen from the edge that starts at a, all moved by `shift`: distance and where. At an end of the edge the
+   outside is that of both edges that meet there. */
+static CurveContact Measure(const ContactSearch *s, PetscInt p, PetscInt a, const PetscReal shift[2]) {
+  const PetscInt b = After(s, a);
+  const PetscReal *A = s->X + 2 * a, *B = s->X + 2 * b, edge[2] = {B[0] - A[0], B[1] - A[1]};
+  const PetscReal d[2] = {s->X[2 * p] - A[0] - shift[0], s->X[2 * p + 1] - A[1] - shift[1]};
+  const PetscReal square = edge[0] * edge[0] + edge[1] * edge[1];
+  const PetscReal along = square > 0 ? (d[0] * edge[0] + d[1] * edge[1]) / square : 0;
+  CurveContact c = {.point = p, .edge = {a, b}, .curve = {s->curve[p], s->curve[a]}};
+  PetscReal out[2] = {edge[1], -edge[0]}, size;
+  c.at = PetscMax(0, PetscMin(1, along));
+  if (c.at == 0 || c.at == 1) {
+    const PetscReal *P = s->X + 2 * (c.at == 0 ? Before(s, a) : a), *Q = s->X + 2 * (c.at == 0 ? b : After(s, b));
+    out[0] = Q[1] - P[1];
+    out[1] = P[0] - Q[0];
+  }
+  for (int k = 0; k < 2; k++) c.normal[k] = d[k] - c.at * edge[k];
+  c.distance = PetscSqrtReal(PetscSqr(c.normal[0]) + PetscSqr(c.normal[1]));
+  if (c.normal[0] * out[0] + c.normal[1] * out[1] < 0) c.distance = -c.distance;
+  size = PetscAbsReal(c.distance) > 0 ? c.distance : PetscSqrtReal(PetscSqr(out[0]) + PetscSqr(out[1]));
+  for (int k = 0; k < 2; k++) c.normal[k] = (PetscAbsReal(c.distance) > 0 ? c.normal[k] : out[k]) / size;
+  return c;
+}
+
+static PetscErrorCode Append(ContactSearch *s, const CurveContact *c) {
+  PetscFunctionBeginUser;
+  if (s->count == s->room) {
+    s->room = 2 * s->room + 64;
+    PetscCall(PetscRealloc((size_t)s->room * sizeof(*s->contact), &s->contact));
+    PetscCall(PetscRealloc((size_t)s->room * sizeof(*s->next), &s->next));
+  }
+  s->next[s->count] = s->head[c->point];
+  s->head[c->point] = s->count;
+  s->contact[s->count++] = *c;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Keep c if it is the nearest one of its point to its curve so far. */
+static PetscErrorCode Offer(ContactSearch *s, const CurveContact *c) {
+  PetscInt k = s->head[c->point];
+  PetscFunctionBeginUser;
+  if (PetscAbsReal(c->distance) >= s->reach) PetscFunctionReturn(PETSC_SUCCESS);
+  while (k >= 0 && s->contact[k].curve[1] != c->curve[1]) k = s->next[k];
+  if (k < 0)
+    PetscCall(Append(s, c));
+  else if (PetscAbsReal(c->distance) < PetscAbsReal(s->contact[k].distance))
+    s->contact[k] = *c;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Points i and j, the image of j being d from i: each to the two edges at the other. */
+static PetscErrorCode OfferBoth(ContactSearch *s, PetscInt i, PetscInt j, const PetscReal d[2]) {
+  const PetscInt pair[2][2] = {{i, j}, {j, i}};
+  PetscFunctionBeginUser;
+  for (int side = 0; side < 2; side++) {
+    const PetscInt p = pair[side][0], q = pair[side][1];
+    PetscReal shift[2];
+    for (int k = 0; k < 2; k++) shift[k] = (side ? -d[k] : d[k]) - (s->X[2 * q + k] - s->X[2 * p + k]);
+    for (int edge = 0; edge < 2; edge++) {
+      const CurveContact c = Measure(s, p, edge ? Before(s, q) : q, shift);
+      PetscCall(Offer(s, &c));
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscBool Near(void *context, PetscInt i, PetscInt j, const PetscReal d[2]) {
+  ContactSearch *s = (ContactSearch *)context;
+  if (s->curve[i] == s->curve[j]) { /* nothing but images */
+    const PetscReal x = d[0] - (s->X[2 * j] - s->X[2 * i]), y = d[1] - (s->X[2 * j + 1] - s->X[2 * i + 1]);
+    if (PetscAbsReal(x) + PetscAbsReal(y) < s->seam) return PETSC_FALSE;
+  }
+  s->error = OfferBoth(s, i, j, d);
+  return s->error ? PETSC_TRUE : PETSC_FALSE;
+}
+
+static PetscReal LongestEdge(PetscInt curves, const PetscInt start[], const PetscReal X[]) {
+  PetscReal longest = 0;
+  for (PetscInt v = 0; v < curves; v++)
+    for (PetscInt k = start[v], l = start[v + 1] - 1; k < start[v + 1]; l = k++)
+      longest = PetscMax(longest, PetscHypotReal(X[2 * k] - X[2 * l], X[2 * k + 1] - X[2 * l + 1]));
+  return longest;
+}
+
+PetscErrorCode CurveContacts(PetscInt curves, const PetscInt start[], const PetscReal X[], const PetscReal period[2],
+                             PetscReal reach, PetscInt *n, CurveContact **contacts) {
+  const PetscInt points = start[curves];
+  /* a point near an edge is as near as this to one of its ends */
+  const PetscReal apart = PetscHypotReal(reach, 0.5 * LongestEdge(curves, start, X));
+  ContactSearch s = {.start = start, .X = X, .reach = reach, .seam = PETSC_MAX_REAL};
+  PetscInt count = 0;
+  PetscFunctionBeginUser;
+  for (int d = 0; d < 2; d++)
+    if (period[d] > 0) s.seam = PetscMin(s.seam, 0.5 * period[d]);
+  PetscCall(PetscMalloc2(points, &s.curve, points, &s.head));
+  for (PetscInt v = 0; v < curves; v++)
+    for (PetscInt k = start[v]; k < start[v + 1]; k++) s.curve[k] = v;
+  for (PetscInt k = 0; k < points; k++) s.head[k] = -1;
+  PetscCall(PairsWithin(points, X, period, apart, Near, &s));
+  PetscCall(s.error);
+  PetscCall(PetscMalloc1(s.count, contacts));
+  for (PetscInt p = 0; p < points; p++)
+    for (PetscInt k = s.head[p]; k >= 0; k = s.next[k]) (*contacts)[count++] = s.contact[k];
+  *n = count;
+  PetscCall(PetscFree2(s.curve, s.head));
+  PetscCall(PetscFree(s.next));
+  PetscCall(PetscFree(s.contact));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* By pair, then by distance. */
+static int Order(const void *first, const void *second) {
+  const CurveGap *a = (const CurveGap *)first, *b = (const CurveGap *)second;
+  for (int k = 0; k < 2; k++)
+    if (a->curve[k] != b->curve[k]) return a->curve[k] < b->curve[k] ? -1 : 1;
+  return (a->distance > b->distance) - (a->distance < b->distance);
+}
+
+/* Of the polygons. */
+static PetscErrorCode PolygonGaps(PetscInt curves, const PetscInt start[], const PetscReal X[],
+                                  const PetscReal period[2], PetscReal reach, PetscInt *n, CurveGap **gaps) {
+  CurveContact *c;
+  PetscInt count, kept = 0;
+  PetscFunctionBeginUser;
+  PetscCall(CurveContacts(curves, start, X, period, reach, &count, &c));
+  PetscCall(PetscMalloc1(count, gaps));
+  for (PetscInt k = 0; k < count; k++) {
+    const PetscInt v = c[k].curve[0], w = c[k].curve[1];
+    (*gaps)[k] = (CurveGap){.curve = {PetscMin(v, w), PetscMax(v, w)}, .distance = c[k].distance};
+  }
+  PetscCall(PetscFree(c));
+  qsort(*gaps, (size_t)count, sizeof(**gaps), Order);
+  for (PetscInt k = 0; k < count; k++)
+    if (!kept || (*gaps)[k].curve[0] != (*gaps)[kept - 1].curve[0] || (*gaps)[k].curve[1] != (*gaps)[kept - 1].curve[1])
+      (*gaps)[kept++] = (*gaps)[k];
+  *n = kept;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The gap of two polygons becomes that of the curves, which bulge beyond their chords. */
+static PetscErrorCode Refine(const PetscInt start[], const PetscReal X[], const PetscReal period[2], PetscReal edge,
+                             CurveGap *gap) {
+  const PetscInt two = gap->curve[0] == gap->curve[1] ? 1 : 2;
+  PetscInt fine[3] = {0}, n[2], count;
+  CurveGap *found;
+  PetscReal *Y;
+  PetscFunctionBeginUser;
+  for (int k = 0; k < two; k++) {
+    n[k] = start[gap->curve[k] + 1] - start[gap->curve[k]];
+    fine[k + 1] = fine[k] + FINER * n[k];
+  }
+  PetscCall(PetscMalloc1(2 * fine[two], &Y));
+  for (int k = 0; k < two; k++) TrigonometricPoints(n[k], X + 2 * start[gap->curve[k]], FINER, Y + 2 * fine[k]);
+  PetscCall(PolygonGaps(two, fine, Y, period, PetscAbsReal(gap->distance) + 0.5 * edge, &count, &found));
+  for (PetscInt k = 0; k < count; k++)
+    if (two == 1 || found[k].curve[0] != found[k].curve[1]) gap->distance = found[k].distance;
+  PetscCall(PetscFree(found));
+  PetscCall(PetscFree(Y));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CurveGaps(PetscInt curves, const PetscInt start[], const PetscReal X[], const PetscReal period[2],
+                         PetscBool smooth, PetscReal reach, PetscInt *n, CurveGap **gaps) {
+  const PetscReal edge = LongestEdge(curves, start, X);
+  PetscInt kept = 0;
+  PetscFunctionBeginUser;
+  PetscCall(PolygonGaps(curves, start, X, period, smooth ? reach + 0.25 * edge : reach, n, gaps));
+  for (PetscInt k = 0; k < *n; k++) {
+    if (smooth && (*gaps)[k].distance < 0.5 * edge) PetscCall(Refine(start, X, period, edge, &(*gaps)[k]));
+    if ((*gaps)[k].distance < reach) (*gaps)[kept++] = (*gaps)[k];
+  }
+  *n = kept;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CurveLeastGap(PetscInt curves, const PetscInt start[], const PetscReal X[], const PetscReal period[2],
+                             PetscBool smooth, PetscReal *distance) {
+  const PetscReal edge = LongestEdge(curves, start, X);
+  PetscReal most = 0, low[2] = {PETSC_MAX_REAL, PETSC_MAX_REAL}, high[2] = {-PETSC_MAX_REAL, -PETSC_MAX_REAL};
+  PetscFunctionBeginUser;
+  *distance = NAN;
+  for (PetscInt k = 0; k < 2 * start[curves]; k++) {
+    low[k % 2] = PetscMin(low[k % 2], X[k]);
+    high[k % 2] = PetscMax(high[k % 2], X[k]);
+  }
+  for (int d = 0; d < 2; d++) most += period[d] > 0 ? period[d] : high[d] - low[d]; /* no two points are farther */
+  if (curves < 2 && period[0] <= 0 && period[1] <= 0) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscReal reach = 2 * edge; PetscIsNanReal(*distance); reach *= 4) {
+    CurveGap *gaps, *least = NULL;
+    PetscInt n;
+    PetscCall(PolygonGaps(curves, start, X, period, reach, &n, &gaps));
+    for (PetscInt k = 0; k < n; k++)
+      if (!least || gaps[k].distance < least->distance) least = &gaps[k];
+    if (least && smooth) PetscCall(Refine(start, X, period, edge, least));
+    if (least) *distance = least->distance;
+    PetscCall(PetscFree(gaps));
+    if (reach > most) break;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

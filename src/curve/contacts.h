@@ -1,0 +1,38 @@
+/* How near closed curves are to one another, by a list of cells, in a time in proportion to their points. Curves run
+   counter-clockwise, curve v has the points start[v] .. start[v+1]-1 of X (interlaced, x0,y0,x1,y1,...); a period of 0
+   is none, else the nearest images count, a curve's own among them. */
+#pragma once
+#include "base/base.h"
+
+/* A point and the edge of another curve that is nearest to it. Distances are negative for a point inside. */
+typedef struct {
+  PetscInt point, edge[2]; /* the edge's two ends */
+  PetscInt curve[2];       /* the point's and the edge's; the same twice: the edge is of an image */
+  PetscReal at;            /* where on the edge: weight `at` of its second end, 1 - at of its first */
+  PetscReal distance;      /* length */
+  PetscReal normal[2];     /* unit, from the edge to the outside of its curve: point = edge + distance normal */
+} CurveContact;
+
+/* CurveContacts - for each point, in order, and each other curve that has an edge nearer than reach (length) the
+   nearest edge; contacts[n] is the caller's to free (PetscFree). Not collective. Errors: memory. */
+PETSC_EXTERN PetscErrorCode CurveContacts(PetscInt curves, const PetscInt start[], const PetscReal X[],
+                                          const PetscReal period[2], PetscReal reach, PetscInt *n,
+                                          CurveContact **contacts);
+
+/* The least distance of two curves, negative where a point of one is inside of the other. */
+typedef struct {
+  PetscInt curve[2]; /* the first not above the second; the same twice: of a curve and its image */
+  PetscReal distance;
+} CurveGap;
+
+/* CurveGaps - of every two curves nearer than reach, in order; gaps[n] is the caller's to free. With `smooth` points
+   are those of trigonometric curves, and what is nearer than half an edge is found at eight times the points. Not
+   collective. Errors: memory. */
+PETSC_EXTERN PetscErrorCode CurveGaps(PetscInt curves, const PetscInt start[], const PetscReal X[],
+                                      const PetscReal period[2], PetscBool smooth, PetscReal reach, PetscInt *n,
+                                      CurveGap **gaps);
+
+/* CurveLeastGap - the least of all distances, of any size; not a number where nothing is within half a period, or where
+   one curve is alone. Not collective. Errors: memory. */
+PETSC_EXTERN PetscErrorCode CurveLeastGap(PetscInt curves, const PetscInt start[], const PetscReal X[],
+                                          const PetscReal period[2], PetscBool smooth, PetscReal *distance);

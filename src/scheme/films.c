@@ -1,0 +1,160 @@
+#include "scheme/films.h"
+#include "base/agree.h"
+#include "curve/contacts.h"
+#include "curve/crossing.h"
+#include "scheme/parts.h"
+
+#define THIN 0.5 /* edges below which a film that loses much is drained by the step's error */
+
+/* The film that a step takes most of. */
+typedef struct {
+  PetscReal loss; /* part of its thickness, over what is allowed */
+  CurveGap before, after;
+} Drained;
+
+static PetscBool Smooth(Scheme s) {
+  return s->membrane->derivative == DERIVATIVE_SPECTRAL ? PETSC_TRUE : PETSC_FALSE;
+}
+
+static void Periods(Scheme s, PetscReal period[2]) {
+  const Grid g = s->fluid->grid;
+  for (int d = 0; d < 2; d++) period[d] = g->wall[d] ? 0 : g->hi[d] - g->lo[d];
+}
+
+static PetscReal Thin(Scheme s) {
+  PetscReal ds = 0;
+  if (!s->coupling->near) return s->fluid->grid->h;
+  for (PetscInt v = 0; v < s->membrane->layout->bodies; v++) ds = PetscMax(ds, s->membrane->ds[v]);
+  return THIN * ds;
+}
+
+/* From n markers X[2n] to the nearest wall. */
+static PetscReal WallGap(Grid g, PetscInt n, const PetscScalar X[]) {
+  PetscReal least = PETSC_MAX_REAL;
+  for (int d = 0; d < 2 && !g->free; d++)
+    for (PetscInt k = 0; k < n && g->wall[d]; k++)
+      least = PetscMin(least, PetscMin(X[2 * k + d] - g->lo[d], g->hi[d] - X[2 * k + d]));
+  return least;
+}
+
+/* All films thinner than reach at the markers X[2M], in order; those of walls come last, as of a curve that comes
+   behind all vesicles. To be freed. */
+static PetscErrorCode Find(Scheme s, const PetscScalar X[], PetscReal reach, PetscInt *n, CurveGap **films) {
+  const Layout l = s->membrane->layout;
+  PetscReal period[2];
+  CurveGap *between;
+  PetscInt count;
+  PetscFunctionBeginUser;
+  Periods(s, period);
+  PetscCall(CurveGaps(l->bodies, l->start, X, period, Smooth(s), reach, &count, &between));
+  PetscCall(PetscMalloc1(count + l->bodies, films));
+  PetscCall(PetscArraycpy(*films, between, count));
+  PetscCall(PetscFree(between));
+  for (PetscInt v = 0; v < l->bodies; v++) {
+    const PetscReal gap = WallGap(s->fluid->grid, LayoutCount(l, v), X + 2 * l->start[v]);
+    if (gap < reach) (*films)[count++] = (CurveGap){.curve = {l->bodies, v}, .distance = gap};
+  }
+  *n = count;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The films that are thin now against what they were. One that was not among those found was thicker than all. */
+static void Compare(PetscInt n, const CurveGap now[], PetscInt m, const CurveGap before[], PetscReal reach,
+                    PetscReal limit, Drained *worst) {
+  for (PetscInt k = 0, j = 0; k < n; k++) {
+    CurveGap old = {.curve = {now[k].curve[0], now[k].curve[1]}, .distance = reach};
+    while (j < m && (before[j].curve[0] < old.curve[0] ||
+                     (before[j].curve[0] == old.curve[0] && before[j].curve[1] < old.curve[1])))
+      j++;
+    if (j < m && before[j].curve[0] == old.curve[0] && before[j].curve[1] == old.curve[1]) old = before[j];
+    if (old.distance <= 0) continue; /* crossed before: not this step's doing */
+    const PetscReal loss = (1 - now[k].distance / old.distance) / limit;
+    if (loss > worst->loss) *worst = (Drained){loss, old, now[k]};
+  }
+}
+
+/* On rank 0, for all. */
+static PetscErrorCode FindDrained(Scheme s, Vec X_old, Vec X_new, PetscReal limit, Drained *worst) {
+  const Layout l = s->membrane->layout;
+  const PetscReal thin = Thin(s), thick = thin / PetscMax(1 - limit, 0.25);
+  CurveGap *now = NULL, *before = NULL;
+  PetscInt n = 0, m;
+  PetscFunctionBeginUser;
+  *worst = (Drained){0};
+  PetscCall(LayoutGatherVec(l, X_new, s->work_all));
+  if (!l->rank) PetscCall(Find(s, s->work_all, thin, &n, &now));
+  PetscCallMPI(MPI_Bcast(&n, 1, MPIU_INT, 0, l->comm));
+  if (!n) {
+    PetscCall(PetscFree(now));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(LayoutGatherVec(l, X_old, s->work_all));
+  if (!l->rank) {
+    PetscCall(Find(s, s->work_all, thick, &m, &before));
+    Compare(n, now, m, before, thick, limit, worst);
+  }
+  PetscCall(PetscFree(now));
+  PetscCall(PetscFree(before));
+  PetscCallMPI(MPI_Bcast(worst, sizeof(*worst), MPI_BYTE, 0, l->comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode FilmsLoss(Scheme s, Vec X_old, Vec X_new, PetscReal *loss) {
+  const Layout l = s->membrane->layout;
+  PetscReal period[2];
+  PetscInt pair[2] = {-1, -1};
+  PetscFunctionBeginUser;
+  *loss = 0;
+  if (s->scene->limits.gap_loss > 0) {
+    Drained worst;
+    PetscCall(FindDrained(s, X_old, X_new, s->scene->limits.gap_loss, &worst));
+    *loss = worst.loss;
+  }
+  if (!s->scene->limits.crossing) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(LayoutGatherVec(l, X_new, s->work_all));
+  Periods(s, period);
+  if (!l->rank) PetscCall(CurvesCross(l->bodies, l->start, s->work_all, period, Smooth(s), pair));
+  PetscCallMPI(MPI_Bcast(pair, 1, MPIU_INT, 0, l->comm));
+  if (pair[0] >= 0) *loss = PetscMax(*loss, 2);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode FilmsCheck(Scheme s) {
+  char who[64];
+  Drained worst;
+  PetscFunctionBeginUser;
+  if (!(s->scene->limits.gap_loss > 0)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(FindDrained(s, s->before.state.X, s->state.X, s->scene->limits.gap_loss, &worst));
+  if (worst.loss <= 1) PetscFunctionReturn(PETSC_SUCCESS);
+  const PetscInt v = worst.after.curve[0], w = worst.after.curve[1];
+  if (v == s->membrane->layout->bodies)
+    PetscCall(PetscSNPrintf(who, sizeof(who), "vesicle %" PetscInt_FMT " and a wall", w + 1));
+  else if (v == w)
+    PetscCall(PetscSNPrintf(who, sizeof(who), "vesicle %" PetscInt_FMT " and its image", v + 1));
+  else
+    PetscCall(PetscSNPrintf(who, sizeof(who), "vesicles %" PetscInt_FMT " and %" PetscInt_FMT, v + 1, w + 1));
+  PetscCall(PetscSNPrintf(s->report.failure, sizeof(s->report.failure),
+                          "the film between %s went from %s%.3g to %.3g in one step, which is more than "
+                          "-limit_gap_loss %g allows",
+                          who, worst.before.distance < Thin(s) ? "" : "more than ", (double)worst.before.distance,
+                          (double)worst.after.distance, (double)s->scene->limits.gap_loss));
+  PetscCall(SchemeAdvise(s, "a smaller -time_step, -time_adapt error or -contact_repulsion"));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode FilmsLeastGap(Scheme s, PetscReal *gap) {
+  const Layout l = s->membrane->layout;
+  PetscReal period[2], wall;
+  PetscFunctionBeginUser;
+  *gap = NAN;
+  if (!l->bodies) PetscFunctionReturn(PETSC_SUCCESS);
+  Periods(s, period);
+  PetscCall(LayoutGatherVec(l, s->state.X, s->work_all));
+  if (!l->rank) {
+    PetscCall(CurveLeastGap(l->bodies, l->start, s->work_all, period, Smooth(s), gap));
+    wall = WallGap(s->fluid->grid, l->M, s->work_all);
+    if (wall < PETSC_MAX_REAL && !(*gap < wall)) *gap = wall;
+  }
+  PetscCallMPI(MPI_Bcast(gap, 1, MPIU_REAL, 0, l->comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

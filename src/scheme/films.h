@@ -1,0 +1,17 @@
+/* The films of fluid between two vesicles, images included, and between a vesicle and a wall: how thin they are, and
+   what a step does to them (docs/method.md, Contact). A film drains slowly; where it is thinner than half an edge (a
+   cell without near field) and has lost half of that in one step, the step's error has drained it. */
+#pragma once
+#include "scheme/scheme.h"
+
+/* FilmsLeastGap - least distance (length) of any two vesicles, or of one and a wall, at the present state; negative
+   where they overlap; not a number where there is nothing that a vesicle may touch. Collective. */
+PETSC_EXTERN PetscErrorCode FilmsLeastGap(Scheme scheme, PetscReal *gap);
+
+/* FilmsLoss - what a step from the markers X_old to X_new does: the largest part of its thickness that a thin film has
+   lost, over -limit_gap_loss; above 1 is too much, and so are membranes that cross (-limit_crossing). 0 where no film
+   is thin, or nothing is limited. Collective. */
+PETSC_EXTERN PetscErrorCode FilmsLoss(Scheme scheme, Vec X_old, Vec X_new, PetscReal *loss);
+
+/* FilmsCheck - report.failure when the last step has taken too much of a film. Collective. */
+PETSC_EXTERN PetscErrorCode FilmsCheck(Scheme scheme);

@@ -1,0 +1,86 @@
+#include "scheme/stress.h"
+
+PetscBool StressApplies(Scheme s) {
+  const Grid g = s->fluid->grid;
+  return s->scene->flow.type == FLOW_SHEAR && s->scene->flow.rate != 0 && CouplingHasMembrane(s->coupling) &&
+                 !g->free && !g->wall[0] && g->wall[1]
+             ? PETSC_TRUE
+             : PETSC_FALSE;
+}
+
+/* SUM over columns of the first and the last row of a field (u or p), on all ranks. */
+static PetscErrorCode EndRows(Grid g, Field field, Vec x, PetscReal sum[2]) {
+  const PetscInt columns = g->columns[field], rows = g->rows[field];
+  const PetscScalar *a;
+  PetscFunctionBeginUser;
+  sum[0] = sum[1] = 0;
+  PetscCall(VecGetArrayRead(x, &a));
+  for (PetscInt i = 0; i < columns; i++) {
+    if (!g->first) sum[0] += a[i];
+    if (g->rank == g->size - 1) sum[1] += a[(rows - 1) * columns + i];
+  }
+  PetscCall(VecRestoreArrayRead(x, &a));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPIU_REAL, MPI_SUM, g->comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Mean over both walls of the disturbance's shear stress nu du/dy, and of its pressure less the mean of all. */
+static PetscErrorCode WallStress(Scheme s, Vec w, Vec p, PetscReal *shear, PetscReal *pressure) {
+  const Fluid f = s->fluid;
+  const Grid g = f->grid;
+  PetscReal u[2], background[2] = {0, 0}, q[2];
+  PetscScalar all;
+  PetscFunctionBeginUser;
+  PetscCall(EndRows(g, FIELD_U, w, u));
+  if (f->total) PetscCall(EndRows(g, FIELD_U, f->background, background));
+  PetscCall(EndRows(g, FIELD_P, p, q));
+  PetscCall(VecSum(p, &all));
+  *shear = f->nu / (g->h * g->n[0]) * ((u[0] - background[0]) - (u[1] - background[1]));
+  *pressure = 0.5 * (q[0] + q[1]) / g->n[0] - all / ((PetscReal)g->n[0] * g->n[1]);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* SUM of force times place over the box, xx, yy and xy: y from the middle; x along each vesicle, so that forces between
+   vesicles over the seam are where they act. */
+static PetscErrorCode Stresslets(Scheme s, Vec F, Vec X, PetscReal sum[3]) {
+  const Layout l = s->membrane->layout;
+  const Grid g = s->fluid->grid;
+  const Repulsion r = s->coupling->repulsion;
+  const PetscReal *at = s->coupling->markers->X + 2 * l->first, middle = 0.5 * (g->lo[1] + g->hi[1]);
+  const PetscScalar *a, *x;
+  PetscReal seams = 0;
+  PetscFunctionBeginUser;
+  sum[0] = sum[1] = sum[2] = 0;
+  PetscCall(VecGetArrayRead(X, &x));
+  if (r) PetscCall(RepulsionSeams(r, s->coupling->markers->X, x, &seams));
+  PetscCall(VecRestoreArrayRead(X, &x));
+  PetscCall(VecGetArrayRead(F, &a));
+  for (PetscInt k = 0; k < l->n; k++) {
+    const PetscReal y = at[2 * k + 1] - middle;
+    sum[0] -= a[2 * k] * at[2 * k];
+    sum[1] -= a[2 * k + 1] * y;
+    sum[2] -= a[2 * k] * y;
+  }
+  PetscCall(VecRestoreArrayRead(F, &a));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 3, MPIU_REAL, MPI_SUM, l->comm));
+  sum[0] -= seams;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode StressMeasure(Scheme s, Vec w, Vec p, Vec F, Vec X) {
+  const Grid g = s->fluid->grid;
+  const PetscReal area = (g->hi[0] - g->lo[0]) * (g->hi[1] - g->lo[1]);
+  const PetscReal scale = s->fluid->nu * s->scene->flow.rate;
+  Stress *out = &s->report.stress;
+  PetscReal sum[3], shear = 0, pressure = 0;
+  PetscFunctionBeginUser;
+  if (!StressApplies(s)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(WallStress(s, w, p, &shear, &pressure));
+  PetscCall(Stresslets(s, F, X, sum));
+  out->viscosity[0] = 1 + shear / scale;
+  out->viscosity[1] = 1 - sum[2] / area / scale;
+  out->normal[0] = pressure - sum[0] / area;
+  out->normal[1] = (sum[1] - sum[0]) / area;
+  out->known = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

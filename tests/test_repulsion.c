@@ -1,0 +1,104 @@
+/* Repulsion and adhesion of membranes: the force is minus the slope of the energy, every force has its counterforce,
+   and the springs of a step are the law where they were found. */
+#include "world.h"
+
+/* Two vesicles, one of them near a wall and near an image of the other. */
+static const char scene[] =
+    "-domain_box 0,3,0,3 -domain_cells 48,48 -domain_bc_x periodic -scheme_type coupled -fluid_inertia none "
+    "-membrane_derivative spectral -vesicle_count 2 -vesicle_semi_axes 0.6,0.5 -vesicle_angle 20,-30 "
+    "-vesicle_markers 30 -vesicle_allow_close_markers ";
+
+typedef struct {
+  const char *name, *centers;
+  SceneRepulsion law;
+  PetscBool wall;
+} Case;
+
+static const Case cases[] = {{"repulsion", "-vesicle_center 0.8,1.5,2.05,1.6", {20, 0.25, 0, 0}, PETSC_FALSE},
+                             {"over the seam", "-vesicle_center 0.3,1.5,2.1,1.6", {20, 0.4, 0, 0}, PETSC_FALSE},
+                             {"at a wall", "-vesicle_center 0.8,0.65,2.1,1.6", {20, 0.25, 0, 0}, PETSC_TRUE},
+                             {"adhesion", "-vesicle_center 0.8,1.5,2.05,1.6", {20, 0.13, 0.3, 0.3}, PETSC_FALSE}};
+
+/* Largest difference of the force from the energy's slope, over the largest force. */
+static PetscErrorCode CheckSlope(const Case *c, Repulsion r, Layout l, PetscReal X[]) {
+  const PetscReal step = 1e-6;
+  PetscReal *F, energy, around[2], off = 0, largest = 0, sum[2] = {0, 0};
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(2 * l->M, &F));
+  PetscCall(RepulsionAt(r, 1, X, F, &energy));
+  for (PetscInt k = 0; k < 2 * l->M; k++) {
+    const PetscReal x = X[k];
+    for (int side = 0; side < 2; side++) {
+      X[k] = x + (side ? step : -step);
+      PetscCall(RepulsionAt(r, 0, X, NULL, &around[side]));
+    }
+    X[k] = x;
+    off = PetscMax(off, PetscAbsReal(F[k] + (around[1] - around[0]) / (2 * step)));
+    largest = PetscMax(largest, PetscAbsReal(F[k]));
+    sum[k % 2] += F[k];
+  }
+  CHECK(largest > 0.01 && off < 1e-5 * largest, "%s: force %.3g, minus the energy's slope to %.1g", c->name, largest,
+        off);
+  CHECK(PetscAbsReal(sum[0]) < 1e-12 && (c->wall ? sum[1] > 0.01 : PetscAbsReal(sum[1]) < 1e-12),
+        "%s: forces add up to %.1g, %.3g", c->name, sum[0], sum[1]);
+  PetscCall(PetscFree(F));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* At X*, push - K_rep X is the force; K_rep is symmetric and takes energy. */
+static PetscErrorCode CheckSprings(const Case *c, Repulsion r, Layout l, const PetscReal X[]) {
+  PetscReal *F, *x, *y, *Kx, *Ky, energy, off = 0, products[3] = {0, 0, 0};
+  unsigned seed = 5;
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc5(2 * l->M, &F, 2 * l->M, &x, 2 * l->M, &y, 2 * l->M, &Kx, 2 * l->M, &Ky));
+  PetscCall(RepulsionPlace(r, X));
+  PetscCall(RepulsionAt(r, 1, X, F, &energy));
+  RepulsionPush(r, -1, F);
+  PetscCall(RepulsionStiffness(r, 1, X, F));
+  for (PetscInt k = 0; k < 2 * l->M; k++) {
+    off = PetscMax(off, PetscAbsReal(F[k]));
+    x[k] = TestRandom(&seed);
+    y[k] = TestRandom(&seed);
+  }
+  PetscCall(RepulsionStiffness(r, 1, x, Kx));
+  PetscCall(RepulsionStiffness(r, 1, y, Ky));
+  for (PetscInt k = 0; k < 2 * l->M; k++) {
+    products[0] += x[k] * Ky[k];
+    products[1] += y[k] * Kx[k];
+    products[2] += x[k] * Kx[k];
+  }
+  CHECK(r->count > 0 && off < 1e-12, "%s: %d springs are the law where they were found, to %.1g", c->name,
+        (int)r->count, off);
+  CHECK(PetscAbsReal(products[0] - products[1]) < 1e-12 && products[2] >= 0, "%s: K_rep is symmetric, x.K_rep x = %.3g",
+        c->name, products[2]);
+  PetscCall(PetscFree5(F, x, y, Kx, Ky));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Facts(void) {
+  PetscFunctionBeginUser;
+  for (size_t k = 0; k < sizeof(cases) / sizeof(cases[0]); k++) {
+    char options[1024];
+    TestMembrane m;
+    Repulsion r;
+    Grid grid;
+    PetscReal *X;
+    PetscCall(PetscSNPrintf(options, sizeof(options), "%s%s", scene, cases[k].centers));
+    PetscCall(TestMembraneCreate(options, &m));
+    PetscCall(GridCreate(&m.scene->fluid, &grid));
+    PetscCall(RepulsionCreate(m.membrane, grid, &cases[k].law, &r));
+    PetscCall(PetscMalloc1(2 * m.M, &X));
+    PetscCall(PetscArraycpy(X, m.scene->shape.X, 2 * m.M));
+    PetscCall(CheckSlope(&cases[k], r, m.layout, X));
+    PetscCall(CheckSprings(&cases[k], r, m.layout, X));
+    PetscCall(PetscFree(X));
+    PetscCall(RepulsionDestroy(&r));
+    PetscCall(GridDestroy(&grid));
+    PetscCall(TestMembraneDestroy(&m));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+int main(int argc, char **argv) {
+  return CheckMain(argc, argv, Facts);
+}
