@@ -30,10 +30,11 @@ def test_iterations(straight):
     assert its[2:].mean() <= 7
 
 
-def test_ranks(straight, tmp_path):
-    """The same to rounding, also where shapes have been chosen and dropped."""
+@pytest.mark.parametrize("ranks", [3, 5])
+def test_ranks(straight, tmp_path, ranks):
+    """The same to rounding. The 16 rows of the coarse grid are shared by 3 ranks; of 5 each has all of them."""
     here = columns(straight)
-    there = columns(run_petves(tmp_path / "run", f"{SCENE} -time_end 0.2", ranks=3).folder)
+    there = columns(run_petves(tmp_path / "run", f"{SCENE} -time_end 0.2", ranks=ranks).folder)
     for name in ("center_x", "center_y", "inclination", "energy_bending"):
         np.testing.assert_allclose(there[name], here[name], rtol=1e-10, atol=1e-11)
     np.testing.assert_array_equal(there["coupled_its"], here["coupled_its"])

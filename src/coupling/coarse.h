@@ -7,11 +7,13 @@
 typedef struct _p_Coarse *Coarse;
 struct _p_Coarse {
   Layout layout; /* of the points */
+  Layout all;    /* all points on every rank, where its rows are too few for the ranks and each has the whole grid; else
+                    NULL */
   Fluid fluid;
   Stokes stokes;
   Markers markers;     /* the points, between cells */
   MobilityTable table; /* what the coarse grid does to the vesicle itself */
-  Vec X, F;            /* marker vectors */
+  Vec X, F;            /* marker vectors, of `all` if there is one */
   Vec r, u, p;         /* on the grid */
   PetscInt dirty[2];   /* rows where r is not zero */
 };
