@@ -5,20 +5,20 @@
    the places in a cell, by whole cells between two markers, interpolated. */
 #pragma once
 #include "coupling/coupling.h"
+#include "coupling/mobilitytable.h"
 
 typedef struct _p_Mobility *Mobility;
 struct _p_Mobility {
-  Coupling coupling;      /* borrowed */
-  Fluid periodic;         /* a periodic box of the same cells */
-  PetscReal alpha;        /* coefficient of H that the tables are for; negative: none yet */
-  OffsetTable green;      /* its Green's function, by offsets of faces */
-  OffsetTable mean;       /* of two markers' mobility, by whole cells between them */
+  Coupling coupling; /* borrowed */
+  MobilityTable table;
   PetscReal near;         /* cells up to which a pair's stencils are summed */
   PaddedStencil *stencil; /* [2M] work */
 };
 
-/* MobilityCreate - for the fluid's grid and the coupling's membranes and kernel. Collective. */
-PETSC_EXTERN PetscErrorCode MobilityCreate(const FluidSpec *spec, Coupling coupling, Mobility *mobility);
+/* MobilityCreate - for the fluid's grid and the coupling's membranes and kernel, markers up to `reach` (length) apart.
+ * Collective. */
+PETSC_EXTERN PetscErrorCode MobilityCreate(const FluidSpec *spec, Coupling coupling, PetscReal reach,
+                                           Mobility *mobility);
 PETSC_EXTERN PetscErrorCode MobilityDestroy(Mobility *mobility);
 
 /* MobilitySetUp - the tables for the fluid's coefficient alpha of H = alpha I - nu L_u (0 in quasi-steady flow: made

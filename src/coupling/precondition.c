@@ -4,6 +4,13 @@
 #define MOST_EXCESS 5 /* iterations more than with new blocks, in one solve */
 #define NO_LIMIT 1000 /* solves that blocks may serve */
 
+/* How far apart markers of one block are: half a contour, or anywhere. */
+static PetscReal Reach(Membrane m) {
+  PetscReal reach = 0;
+  for (PetscInt v = 0; v < m->layout->bodies; v++) reach = PetscMax(reach, m->L0[v] / 2);
+  return m->layout->bodies > 1 && m->layout->M <= DENSE_TOGETHER ? PETSC_MAX_REAL : reach;
+}
+
 PetscErrorCode PreconditionerCreate(Scene scene, Unknowns u, Preconditioner *out) {
   const Coupling c = u->coupling;
   Preconditioner p;
@@ -14,8 +21,10 @@ PetscErrorCode PreconditionerCreate(Scene scene, Unknowns u, Preconditioner *out
   p->type = CouplingHasMembrane(c) ? (MobilityType)scene->coupling.mobility : MOBILITY_NONE;
   PetscCall(PetscMalloc1(u->walls->n, &p->d));
   PetscCall(PetscCalloc1(c->membrane->layout->bodies, &p->age.treading));
-  if (p->type == MOBILITY_TABLE) {
-    if (!c->fluid->grid->free) PetscCall(MobilityCreate(&scene->fluid, c, &p->mobility));
+  if (p->type == MOBILITY_TABLE && c->near && c->fluid->steady && c->membrane->layout->M > DENSE_TOGETHER) {
+    PetscCall(PatternsCreate(&scene->fluid, c, &p->patterns));
+  } else if (p->type == MOBILITY_TABLE) {
+    if (!c->fluid->grid->free) PetscCall(MobilityCreate(&scene->fluid, c, Reach(c->membrane), &p->mobility));
     PetscCall(DenseBlocksCreate(c, &p->blocks));
   }
   if (p->type == MOBILITY_ILU) {
@@ -31,6 +40,7 @@ PetscErrorCode PreconditionerDestroy(Preconditioner *preconditioner) {
   Preconditioner p = *preconditioner;
   PetscFunctionBeginUser;
   if (!p) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PatternsDestroy(&p->patterns));
   PetscCall(DenseBlocksDestroy(&p->blocks));
   PetscCall(MobilityDestroy(&p->mobility));
   PetscCall(RootPCDestroy(&p->ilu));
@@ -135,7 +145,8 @@ PetscErrorCode PreconditionerSetUp(Preconditioner p) {
   PetscCall(
       WallsSetMarkers(p->unknowns->walls, c->membrane->layout->n, c->markers->X + 2 * c->membrane->layout->first));
   if (p->type == MOBILITY_ILU) PetscCall(SetUpChat(p));
-  if (p->type != MOBILITY_TABLE) PetscFunctionReturn(PETSC_SUCCESS);
+  if (p->patterns) PetscCall(PatternsFollow(p->patterns, &p->failed));
+  if (!p->blocks) PetscFunctionReturn(PETSC_SUCCESS);
   DenseBlocksPlace(p->blocks);
   if (a->excess > RenewalCost(p) || a->solves >= a->most || !(PetscAbsReal(a->a0 / c->fluid->a0 - 1) < 0.1) ||
       LabelsMoved(p))
@@ -178,7 +189,7 @@ static PetscErrorCode SolveChat(Preconditioner p, const PetscScalar V[], PetscSc
 static PetscErrorCode RenewUnderWay(Preconditioner p) {
   Ageing *a = &p->age;
   PetscFunctionBeginUser;
-  if (!p->flexible || p->type != MOBILITY_TABLE || a->solves == 0 || p->now.applied != a->fresh_its + MOST_EXCESS)
+  if (!p->flexible || !p->blocks || a->solves == 0 || p->now.applied != a->fresh_its + MOST_EXCESS)
     PetscFunctionReturn(PETSC_SUCCESS);
   a->most = a->solves;
   PetscCall(Renew(p));
@@ -202,7 +213,8 @@ PetscErrorCode PreconditionerApply(Preconditioner p, Vec r, Vec z) {
   if (CouplingHasMembrane(u->coupling)) {
     UnknownsScale(u, PETSC_TRUE, V);
     PetscCall(WallsMarkerVelocity(u->walls, 1, V)); /* block triangular: the walls' flow moves the markers */
-    if (p->type == MOBILITY_TABLE) PetscCall(DenseBlocksSolve(p->blocks, V, sigma));
+    if (p->patterns) PetscCall(PatternsSolve(p->patterns, V, sigma));
+    if (p->blocks) PetscCall(DenseBlocksSolve(p->blocks, V, sigma));
     if (p->type == MOBILITY_ILU) PetscCall(SolveChat(p, V, sigma));
     if (p->type == MOBILITY_NONE)
       for (PetscInt k = 0; k < u->tension; k++) sigma[k] *= -1;

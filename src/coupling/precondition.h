@@ -4,6 +4,7 @@
 #pragma once
 #include "coupling/dense.h"
 #include "coupling/rootpc.h"
+#include "coupling/patterns.h"
 #include "coupling/unknowns.h"
 #include "scene/scene.h"
 
@@ -29,7 +30,8 @@ struct _p_Preconditioner {
   Unknowns unknowns; /* borrowed */
   MobilityType type;
   Mobility mobility;  /* table; NULL in unbounded fluid, where the near field is all of it */
-  DenseBlocks blocks; /* table */
+  DenseBlocks blocks; /* table, few vesicles */
+  Patterns patterns;  /* table, many vesicles */
   RootPC ilu;         /* ilu: of the assembled Chat, prefix coupled_mobility_ */
   Ageing age;
   Application now;
@@ -62,7 +64,7 @@ PETSC_EXTERN PetscBool PreconditionerIsNew(Preconditioner preconditioner);
    a checkpoint can hold, and made again from them, with the coupling placed where and for the a0 (memory[0]; 0: no
    blocks) and the label speeds for which the dense blocks were made, which are not among the numbers. Whatever is kept
    from solve to solve belongs in here, or a restarted run would not have the bits of one that went on. Set is
-   collective. */
+   collective. Patterns are all among numbers of their own (PatternsGetMemory). */
 #define PRECONDITIONER_MEMORY 6
 PETSC_EXTERN PetscErrorCode PreconditionerGetMemory(Preconditioner preconditioner,
                                                     PetscReal memory[PRECONDITIONER_MEMORY]);

@@ -8,17 +8,21 @@ static PetscInt LastRows(PetscInt n, PetscInt ranks) {
   return n - (ranks - 1) * block;
 }
 
+PetscBool GridFits(PetscInt n, PetscInt ranks) {
+  return ranks == 1 || LastRows(n, ranks) >= LEAST_ROWS ? PETSC_TRUE : PETSC_FALSE;
+}
+
 /* All ranks but the last have block rows; stop where the last one then has too few, and say what works. */
 static PetscErrorCode CheckRanks(Grid g) {
   char works[PETVES_MAX_MESSAGE] = "1";
   PetscFunctionBeginUser;
   for (PetscInt r = 2, listed = 1; r <= g->n[1] / LEAST_ROWS && listed < 24; r++) {
-    if (LastRows(g->n[1], r) < LEAST_ROWS) continue;
+    if (!GridFits(g->n[1], r)) continue;
     const size_t used = strlen(works);
     PetscCall(PetscSNPrintf(works + used, sizeof(works) - used, ",%" PetscInt_FMT, r));
     listed++;
   }
-  PetscCheck(LastRows(g->n[1], g->size) >= LEAST_ROWS || g->size == 1, g->comm, PETSC_ERR_USER_INPUT,
+  PetscCheck(GridFits(g->n[1], g->size), g->comm, PETSC_ERR_USER_INPUT,
              "mpirun -n %d: slabs of %" PetscInt_FMT " of the %" PetscInt_FMT
              " rows of -domain_cells leave a rank without rows; allowed: %s%s ranks",
              g->size, g->block, g->n[1], works, g->n[1] / LEAST_ROWS > 24 ? ",..." : "");

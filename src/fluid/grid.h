@@ -38,6 +38,9 @@ struct _p_Grid {
 PETSC_EXTERN PetscErrorCode GridCreate(const FluidSpec *spec, Grid *grid);
 PETSC_EXTERN PetscErrorCode GridDestroy(Grid *grid);
 
+/* GridFits - whether n rows of cells can be shared out among so many ranks. Not collective. */
+PETSC_EXTERN PetscBool GridFits(PetscInt n, PetscInt ranks);
+
 /* GridPosition - position X[2] (length) of entry (i, j) of a field, j counting the rows of all ranks.
    Not collective. */
 PETSC_EXTERN void GridPosition(Grid grid, Field field, PetscInt i, PetscInt j, PetscReal X[2]);

@@ -14,7 +14,9 @@ static void Share(Layout l) {
   while (rank < l->size) l->body[++rank] = l->bodies;
 }
 
-PetscErrorCode LayoutCreate(MPI_Comm comm, PetscInt bodies, const PetscInt start[], Layout *out) {
+/* body[ranks+1]: first body of each rank; NULL: to be shared out. */
+static PetscErrorCode Create(MPI_Comm comm, PetscInt bodies, const PetscInt start[], const PetscInt body[],
+                             Layout *out) {
   Layout l;
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&l));
@@ -26,7 +28,10 @@ PetscErrorCode LayoutCreate(MPI_Comm comm, PetscInt bodies, const PetscInt start
   l->M = start[bodies];
   PetscCall(PetscMalloc2(bodies + 1, &l->start, l->size + 1, &l->body));
   PetscCall(PetscArraycpy(l->start, start, bodies + 1));
-  Share(l);
+  if (body)
+    PetscCall(PetscArraycpy(l->body, body, l->size + 1));
+  else
+    Share(l);
   l->own = l->body[l->rank];
   l->end = l->body[l->rank + 1];
   l->first = start[l->own];
@@ -38,6 +43,18 @@ PetscErrorCode LayoutCreate(MPI_Comm comm, PetscInt bodies, const PetscInt start
       PetscCall(PetscMPIIntCast(each * start[l->body[r]], &l->at[each - 1][r]));
     }
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode LayoutCreate(MPI_Comm comm, PetscInt bodies, const PetscInt start[], Layout *layout) {
+  PetscFunctionBeginUser;
+  PetscCall(Create(comm, bodies, start, NULL, layout));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode LayoutCreateLike(Layout like, const PetscInt start[], Layout *layout) {
+  PetscFunctionBeginUser;
+  PetscCall(Create(like->comm, like->bodies, start, like->body, layout));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -20,6 +20,9 @@ struct _p_Layout {
 /* LayoutCreate - for bodies whose first markers are start[bodies+1] (copied). Work of a body: the square of its
    markers, as of its dense matrices' products. Not collective. */
 PETSC_EXTERN PetscErrorCode LayoutCreate(MPI_Comm comm, PetscInt bodies, const PetscInt start[], Layout *layout);
+
+/* LayoutCreateLike - of the same bodies on the same ranks with other markers, start[bodies+1]. Not collective. */
+PETSC_EXTERN PetscErrorCode LayoutCreateLike(Layout like, const PetscInt start[], Layout *layout);
 PETSC_EXTERN PetscErrorCode LayoutDestroy(Layout *layout);
 
 /* LayoutCreateVec - zero vector with `each` (1 or 2) numbers a marker. Collective. */

@@ -261,9 +261,9 @@ static PetscErrorCode ReadPast(Scheme s, H5File *file, PetscReal earlier[SCHEME_
   PetscCall(H5GetReals(file, "dt_earlier", SCHEME_PAST, earlier));
   PetscCall(H5GetInts(file, "step_order", 1, &s->plan.order));
   PetscCall(H5GetInts(file, "step_guess", 1, &s->plan.guess));
-  PetvesCheck(s->plan.order > 0 && s->plan.guess > 1, s->scene->comm,
+  PetvesCheck(s->plan.order > 0 && s->plan.guess > 0, s->scene->comm,
               "-restart %s: its step_order is %" PetscInt_FMT ", its step_guess is %" PetscInt_FMT
-              "; allowed: at least 1 and 2",
+              "; allowed: at least 1",
               s->scene->output.restart, s->plan.order, s->plan.guess);
   if (!s->old[0].X) s->past = 0; /* schemes that go on from one state */
   for (PetscInt j = 0; j < s->past; j++)

@@ -67,7 +67,7 @@ static PetscErrorCode RightHandSides(Scheme s, Coupled *d, const BDF *b) {
 static PetscErrorCode InitialGuess(Scheme s, Coupled *d) {
   State *n = &d->next;
   History *h = &d->history;
-  const PetscInt count = PetscMin(h->n, s->plan.guess);
+  const PetscInt count = PetscMax(1, PetscMin(h->solved, s->plan.guess));
   PetscReal weight[BDF_MOST];
   PetscFunctionBeginUser;
   if (!d->solver) PetscFunctionReturn(PETSC_SUCCESS);
@@ -157,23 +157,22 @@ static PetscErrorCode Miss(Scheme s, Coupled *d, PetscInt count, const Vec state
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Order 3, and a guess through three states, where the motion is so smooth that three tell the next state better than
-   two: of the markers, and of their velocity. */
+/* Order 3 where the motion is so smooth that three states tell the next one better than two; and a guess through as
+   many states as would have told this one's velocity best, of those whose velocity is known. */
 static PetscErrorCode ChooseNext(Scheme s, Coupled *d) {
   const Vec *const X = STATES(s, X), *const U = STATES(s, U);
+  const PetscInt solved = s->scene->time.frame == FRAME_NONE ? 0 : d->history.solved;
   StepPlan *next = &d->next_plan;
-  PetscReal miss[4] = {0};
+  PetscReal miss[BDF_MOST - 1 + BDF_MOST] = {0}, *of_U = miss + BDF_MOST - 1;
   PetscFunctionBeginUser;
-  next->order = PetscMin(s->scene->scheme.order, 2);
-  next->guess = 2;
-  if (d->history.n < 3) PetscFunctionReturn(PETSC_SUCCESS);
-  for (int k = 0; k < 2; k++) {
-    if (s->scene->scheme.order > 2) PetscCall(Miss(s, d, 2 + k, X, d->next.X, &miss[k]));
-    if (s->scene->time.frame != FRAME_NONE) PetscCall(Miss(s, d, 2 + k, U, d->next.U, &miss[2 + k]));
-  }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, miss, 4, MPIU_REAL, MPI_MAX, s->membrane->layout->comm));
-  if (miss[1] < SMOOTH * miss[0]) next->order = 3;
-  if (miss[3] < miss[2]) next->guess = 3;
+  for (PetscInt k = 2; k <= BDF_MOST && d->history.n == BDF_MOST && s->scene->scheme.order > 2; k++)
+    PetscCall(Miss(s, d, k, X, d->next.X, &miss[k - 2]));
+  for (PetscInt k = 1; k <= solved; k++) PetscCall(Miss(s, d, k, U, d->next.U, &of_U[k - 1]));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, miss, 2 * BDF_MOST - 1, MPIU_REAL, MPI_MAX, s->membrane->layout->comm));
+  next->order = miss[1] < SMOOTH * miss[0] ? 3 : PetscMin(s->scene->scheme.order, 2);
+  next->guess = solved ? 1 : 2;
+  for (PetscInt k = 2; k <= solved; k++)
+    if (of_U[k - 1] < of_U[next->guess - 1]) next->guess = k;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -244,8 +244,22 @@ static PetscErrorCode Remember_Coupled(Scheme s, PetscReal memory[]) {
   PetscFunctionBeginUser;
   if (!d->solver) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PreconditionerGetMemory(d->solver->preconditioner, memory));
+  if (d->solver->preconditioner->patterns) {
+    PatternsGetMemory(d->solver->preconditioner->patterns, memory + PRECONDITIONER_MEMORY);
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(LayoutGatherVec(l, d->made_at, memory + PRECONDITIONER_MEMORY));
   PetscCall(PetscArraycpy(memory + PRECONDITIONER_MEMORY + 2 * l->M, d->made_with, l->bodies));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode RecallPatterns(Scheme s, Patterns patterns, const PetscReal memory[]) {
+  PetscBool valid;
+  PetscFunctionBeginUser;
+  PetscCall(PatternsSetMemory(patterns, memory, &valid));
+  PetscCheck(valid, s->scene->comm, PETSC_ERR_USER_INPUT,
+             "-restart %s: its solver's memory is of other vesicles; allowed: a checkpoint of this scene",
+             s->scene->output.restart);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -256,6 +270,8 @@ static PetscErrorCode Recall_Coupled(Scheme s, const PetscReal memory[]) {
   char message[PETVES_MAX_MESSAGE];
   PetscScalar *X;
   PetscFunctionBeginUser;
+  if (d->solver && d->solver->preconditioner->patterns)
+    PetscCall(RecallPatterns(s, d->solver->preconditioner->patterns, memory + PRECONDITIONER_MEMORY));
   if (!d->solver || !l->bodies || a0 == 0) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecGetArray(d->made_at, &X));
   PetscCall(PetscArraycpy(X, memory + PRECONDITIONER_MEMORY + 2 * l->first, 2 * l->n));

@@ -64,6 +64,8 @@ PetscErrorCode HistoryCarry(History *h, Scheme s, PetscReal dt) {
   h->step[0] = dt;
   h->step[1] = s->state.dt_last;
   h->step[2] = s->old[0].dt_last;
+  const PetscReal led[] = {s->state.dt_last, s->old[0].dt_last, s->old[1].dt_last};
+  for (h->solved = 0; h->solved < h->n && led[h->solved] > 0;) h->solved++;
   PetscCall(Fit(h, s));
   for (PetscInt j = 0; j < h->n; j++) {
     h->X[j] = h->moving ? h->room[j] : X[j];

@@ -6,6 +6,7 @@
 
 typedef struct {
   PetscInt n;               /* states: 1 to BDF_MOST */
+  PetscInt solved;          /* of them that a step has led to: a run's first one has no velocity nor tension yet */
   PetscReal step[BDF_MOST]; /* the step to be made, the one before it, ... (time) */
   PetscReal *treading;      /* [vesicles] V, speed of the labels (1/time) */
   PetscBool moving;         /* one of them is not zero */

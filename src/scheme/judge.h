@@ -27,7 +27,7 @@ typedef struct {
   PetscInt level;   /* step-size control: of the next attempt, a step of base 2^(level/2) */
   PetscReal before; /* likewise: error of the attempt rejected last in this step; PETSC_MAX_REAL without */
   PetscInt order;   /* of the next step, as far as states are known and its size allows it */
-  PetscInt guess;   /* states that its first guess goes by, 2 or 3 */
+  PetscInt guess;   /* states that its first guess goes by, as far as they are known */
 } StepPlan;
 
 typedef enum { STEP_ACCEPT, STEP_REPEAT, STEP_GIVE_UP } StepVerdict;

@@ -137,7 +137,7 @@ PetscErrorCode SchemeStep(Scheme s, PetscReal most) {
 }
 
 PetscInt SchemeMemorySize(Scheme s) {
-  return PRECONDITIONER_MEMORY + 2 * s->membrane->layout->M + s->membrane->layout->bodies;
+  return PRECONDITIONER_MEMORY + PatternsMemorySize(s->membrane->layout);
 }
 
 PetscErrorCode SchemeRemember(Scheme s, PetscReal memory[]) {

@@ -1,0 +1,33 @@
+/* What vesicles do to one another, on a grid of cells some four times as large and with a few points a vesicle: for the
+   preconditioner (docs/method.md, Preconditioner). */
+#pragma once
+#include "coupling/mobilitytable.h"
+#include "fluid/stokes.h"
+
+typedef struct _p_Coarse *Coarse;
+struct _p_Coarse {
+  Layout layout; /* of the points */
+  Layout all;    /* all points on every rank, where its rows are too few for the ranks and each has the whole grid; else
+                    NULL */
+  Fluid fluid;
+  Stokes stokes;
+  Markers markers;     /* the points, between cells */
+  MobilityTable table; /* what the coarse grid does to the vesicle itself */
+  Vec X, F;            /* marker vectors, of `all` if there is one */
+  Vec r, u, p;         /* on the grid */
+  PetscInt dirty[2];   /* rows where r is not zero */
+};
+
+/* CoarseCreate - for the quasi-steady fluid that spec makes and vesicles with these initial lengths, whose layout is
+   `fine`. NULL in unbounded fluid, and where the numbers of cells have no common divisor of 2 to 5 or the coarse cells
+   would be fewer than 16. Collective. */
+PETSC_EXTERN PetscErrorCode CoarseCreate(const FluidSpec *spec, Layout fine, const PetscReal length[],
+                                         const char kernel[], Coarse *coarse);
+PETSC_EXTERN PetscErrorCode CoarseDestroy(Coarse *coarse);
+
+/* CoarsePlace - at the points X of the own vesicles; those nearer to a wall than
+   markers may be are moved off it. Collective. */
+PETSC_EXTERN PetscErrorCode CoarsePlace(Coarse coarse, PetscScalar X[]);
+
+/* CoarseApply - F := E A^-1 (-E^T F/h^2) of the coarse grid, h its cells, own parts of marker vectors. Collective. */
+PETSC_EXTERN PetscErrorCode CoarseApply(Coarse coarse, PetscScalar F[]);

@@ -1,0 +1,29 @@
+/* The dense problem of one or several vesicles (docs/method.md, Preconditioner), M their mobility times h^2:
+       N = I + (v/a0) d/dt + (c_b ds/(h^2 a0)) M D4 (v: the labels' speed),   C = Dm N^-1 M Dm^T/h^4,
+       U1 = N^-1 U,   sigma = C^-1 (Dm U1/h^2 - r_s),   U3 = U1 - N^-1 M Dm^T sigma/h^2. */
+#pragma once
+#include "membrane/membrane.h"
+#include <petscblaslapack.h>
+
+typedef struct {
+  PetscInt vesicle, end; /* its vesicles: vesicle .. end - 1 */
+  PetscInt first, n;     /* its markers */
+  PetscReal *N, *C;      /* LU factors of N^T (2n x 2n) and C (n x n) */
+  PetscReal *K;          /* N^-1 M Dm^T/h^2, (2n x n), columns contiguous */
+  PetscReal *tau;        /* [2n] tangents */
+  PetscReal *d;          /* [n] work */
+  PetscBLASInt *pivot_N, *pivot_C;
+} DenseBlock;
+
+/* DenseBlockCreate - for vesicles vesicle .. end - 1, tangents not set. Not collective. */
+PETSC_EXTERN PetscErrorCode DenseBlockCreate(Layout layout, PetscInt vesicle, PetscInt end, DenseBlock *block);
+PETSC_EXTERN PetscErrorCode DenseBlockDestroy(DenseBlock *block);
+
+/* DenseBlockFactor - N and C for M = Mob[2n][2n], the block's tangents, a0 and its vesicles' label speeds treading[];
+   h2 = h^2. factored is false when a matrix is singular. Not collective. */
+PETSC_EXTERN PetscErrorCode DenseBlockFactor(Membrane membrane, PetscReal h2, DenseBlock *block, PetscReal a0,
+                                             const PetscReal treading[], const PetscReal Mob[], PetscBool *factored);
+
+/* DenseBlockSolve - from nrhs columns of U[2n] and sigma[n] = r_s: sigma, and U overwritten by U3. Not collective. */
+PETSC_EXTERN PetscErrorCode DenseBlockSolve(Membrane membrane, PetscReal h2, const DenseBlock *block, PetscInt nrhs,
+                                            PetscScalar U[], PetscScalar sigma[]);

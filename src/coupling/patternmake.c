@@ -1,0 +1,131 @@
+#include "coupling/patternmake.h"
+#include "coupling/blas.h"
+#include "coupling/denseblock.h"
+#include "coupling/selflayer.h"
+
+/* M += scale times the coarse grid's mean mobility between n points. */
+static void AddMean(MobilityTable table, PetscReal scale, PetscInt n, const PetscReal X[], PetscReal M[]) {
+  for (PetscInt j = 0; j < n; j++)
+    for (PetscInt i = 0; i < n; i++) {
+      const PetscReal d[2] = {X[2 * i] - X[2 * j], X[2 * i + 1] - X[2 * j + 1]};
+      PetscReal mean[3], *at = M + 2 * j * 2 * n + 2 * i;
+      MobilityTableMean(table, d, mean);
+      at[0] += scale * mean[0];
+      at[1] += scale * mean[2];
+      at[2 * n] += scale * mean[2];
+      at[2 * n + 1] += scale * mean[1];
+    }
+}
+
+/* M = h^2 S. */
+static PetscErrorCode Assemble(Patterns s, const Pattern *q, PetscReal M[]) {
+  const Coupling c = s->coupling;
+  const PetscInt n = LayoutCount(c->membrane->layout, q->like);
+  const PetscReal h2 = PetscSqr(c->fluid->grid->h);
+  PetscFunctionBeginUser;
+  PetscCall(SelfLayer(c->membrane->spectral[q->like], n, c->fluid->nu, q->X, M));
+  for (PetscInt k = 0; k < 4 * n * n; k++) M[k] *= h2;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The columns of the inverse are the answers to those of the identity. */
+static PetscErrorCode Invert(Patterns s, const Pattern *q, PetscReal inverse[], PetscBool *good) {
+  const Membrane m = s->coupling->membrane;
+  const PetscInt n = LayoutCount(m->layout, q->like), all = 3 * n;
+  const PetscReal h2 = PetscSqr(s->coupling->fluid->grid->h);
+  PetscReal *M, *U, *sigma;
+  DenseBlock block;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(4 * n * n, &M));
+  PetscCall(PetscCalloc2(2 * n * all, &U, n * all, &sigma));
+  PetscCall(DenseBlockCreate(m->layout, q->like, q->like + 1, &block));
+  PetscCall(Assemble(s, q, M));
+  MembraneVesicleTangents(m, q->like, q->X, block.tau);
+  PetscCall(DenseBlockFactor(m, h2, &block, s->a0, &q->treading, M, good));
+  for (PetscInt j = 0; j < 2 * n; j++) U[j * 2 * n + j] = 1;
+  for (PetscInt j = 0; j < n; j++) sigma[(2 * n + j) * n + j] = 1;
+  if (*good) PetscCall(DenseBlockSolve(m, h2, &block, all, U, sigma));
+  for (PetscInt j = 0; j < all; j++) {
+    PetscCall(PetscArraycpy(inverse + j * all, U + j * 2 * n, 2 * n));
+    PetscCall(PetscArraycpy(inverse + j * all + 2 * n, sigma + j * n, n));
+  }
+  PetscCall(DenseBlockDestroy(&block));
+  PetscCall(PetscFree(M));
+  PetscCall(PetscFree2(U, sigma));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* P[2 points][2n], columns contiguous: trigonometric interpolation from the coarse points to the markers. */
+static void Interpolation(PetscInt points, PetscInt n, PetscReal P[]) {
+  (void)PetscArrayzero(P, 4 * n * points);
+  for (PetscInt i = 0; i < points; i++)
+    for (PetscInt k = 0; k < n; k++)
+      for (int c = 0; c < 2; c++)
+        P[(2 * i + c) * 2 * n + 2 * k + c] = TrigonometricCardinal(
+            points, 2 * PETSC_PI * ((PetscReal)k / (PetscReal)n - (PetscReal)i / (PetscReal)points));
+}
+
+/* F = Dm^T sigma + (c_b ds/a0) D4 V of each column (V, sigma) of the inverse. */
+static void Forces(Patterns s, const Pattern *q, const PetscReal tau[], const PetscReal inverse[], PetscReal F[]) {
+  const Membrane m = s->coupling->membrane;
+  const PetscInt n = LayoutCount(m->layout, q->like), all = 3 * n;
+  PetscReal *pull = s->X;
+  for (PetscInt j = 0; j < all; j++) {
+    const PetscReal *V = inverse + j * all, *sigma = V + 2 * n;
+    PetscReal *f = F + j * 2 * n;
+    for (PetscInt k = 0; k < 2 * n; k++) pull[k] = sigma[k / 2] * tau[k];
+    (void)PetscArrayzero(f, 2 * n);
+    MembraneEdgesTranspose(m, q->like, 1, pull, f);
+    if (m->bending > 0) MembraneVesicleBending(m, q->like, m->bending / s->a0, V, f);
+  }
+}
+
+/* The curve through n markers X at the labels of the coarse points. */
+static void Points(PetscInt n, const PetscReal X[], PetscInt points, PetscReal Y[]) {
+  (void)PetscArrayzero(Y, 2 * points);
+  for (PetscInt i = 0; i < points; i++)
+    for (PetscInt k = 0; k < n; k++) {
+      const PetscReal t = 2 * PETSC_PI * ((PetscReal)i / (PetscReal)points - (PetscReal)k / (PetscReal)n);
+      const PetscReal weight = TrigonometricCardinal(n, t);
+      for (int c = 0; c < 2; c++) Y[2 * i + c] += weight * X[2 * k + c];
+    }
+}
+
+/* The coarse parts of a pattern from its inverse: forces on the points under it, self, second, points. */
+static PetscErrorCode MakeCoarse(Patterns s, Pattern *q, const PetscReal inverse[]) {
+  const Membrane m = s->coupling->membrane;
+  const PetscInt n = LayoutCount(m->layout, q->like), all = 3 * n, points = LayoutCount(s->coarse->layout, q->like);
+  const PetscReal h2 = PetscSqr(s->coarse->fluid->grid->h);
+  PetscReal *P, *F, *G, *tau;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc4(4 * n * points, &P, 2 * n * all, &F, 2 * points * all, &G, 2 * n, &tau));
+  PetscCall(PetscMalloc1(2 * points * all, &q->second));
+  PetscCall(PetscCalloc1(4 * points * points, &q->self));
+  PetscCall(PetscMalloc1(2 * points, &q->points));
+  Interpolation(points, n, P);
+  MembraneVesicleTangents(m, q->like, q->X, tau);
+  Forces(s, q, tau, inverse, F);
+  PetscCall(DenseProduct(PETSC_TRUE, 2 * points, all, 2 * n, P, F, G));
+  PetscCall(DenseProduct(PETSC_FALSE, all, 2 * points, 2 * n, inverse, P, q->second));
+  for (PetscInt j = 0; j < all; j++)
+    PetscCall(PetscArraycpy(q->first + j * (all + 2 * points) + all, G + j * 2 * points, 2 * points));
+  Points(n, q->X, points, q->points);
+  AddMean(s->coarse->table, 1 / h2, points, q->points, q->self);
+  PetscCall(PetscFree4(P, F, G, tau));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode PatternMake(Patterns s, Pattern *q, PetscBool *good) {
+  const PetscInt all = 3 * LayoutCount(s->coupling->membrane->layout, q->like),
+                 points = s->coarse ? LayoutCount(s->coarse->layout, q->like) : 0;
+  PetscReal *inverse;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(all * all, &inverse));
+  PetscCall(Invert(s, q, inverse, good));
+  PetscCall(PetscMalloc1(all * (all + 2 * points), &q->first));
+  for (PetscInt j = 0; j < all; j++)
+    PetscCall(PetscArraycpy(q->first + j * (all + 2 * points), inverse + j * all, all));
+  if (s->coarse) PetscCall(MakeCoarse(s, q, inverse));
+  PetscCall(PetscFree(inverse));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

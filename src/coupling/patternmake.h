@@ -1,0 +1,7 @@
+/* The matrices of one pattern. */
+#pragma once
+#include "coupling/patterns.h"
+
+/* PatternMake - first, and with a coarse grid self, second and points, for the patterns' a0 and tables. good is false
+   when a matrix is singular. Not collective. */
+PETSC_EXTERN PetscErrorCode PatternMake(Patterns patterns, Pattern *pattern, PetscBool *good);

@@ -1,0 +1,279 @@
+#include "coupling/patterns.h"
+#include "base/agree.h"
+#include "coupling/patternmake.h"
+
+#define TOLERANCE 0.01 /* of a vesicle's distance from its pattern */
+
+/* Work space of the vesicles' columns and of one vesicle. */
+static PetscErrorCode CreateWork(Patterns s) {
+  const Layout l = s->coupling->membrane->layout, coarse = s->coarse ? s->coarse->layout : NULL;
+  PetscInt most = 0;
+  PetscFunctionBeginUser;
+  for (PetscInt v = 0; v < l->bodies; v++) most = PetscMax(most, LayoutCount(l, v));
+  const PetscInt points = coarse ? 2 * coarse->n : 0;
+  PetscCall(PetscMalloc4(l->bodies, &s->of, l->end - l->own, &s->order, l->end - l->own, &s->pose, 2 * most, &s->X));
+  PetscCall(PetscMalloc4(3 * l->n + points, &s->from, 3 * l->n + points, &s->to, points, &s->F, points, &s->W));
+  for (PetscInt v = 0; v < l->bodies; v++) s->of[v] = -1;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode PatternsCreate(const FluidSpec *spec, Coupling c, Patterns *out) {
+  const Membrane m = c->membrane;
+  Patterns s;
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&s));
+  *out = s;
+  s->coupling = c;
+  PetscCall(CoarseCreate(spec, m->layout, m->L0, c->markers->kernel->name, &s->coarse));
+  PetscCall(CreateWork(s));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode FreeMatrices(Pattern *q) {
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(q->first));
+  PetscCall(PetscFree(q->self));
+  PetscCall(PetscFree(q->second));
+  PetscCall(PetscFree(q->points));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode FreePattern(Pattern *q) {
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(q->X));
+  PetscCall(FreeMatrices(q));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode PatternsDestroy(Patterns *patterns) {
+  Patterns s = *patterns;
+  PetscFunctionBeginUser;
+  if (!s) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt k = 0; k < s->count; k++) PetscCall(FreePattern(&s->pattern[k]));
+  PetscCall(PetscFree(s->pattern));
+  PetscCall(CoarseDestroy(&s->coarse));
+  PetscCall(PetscFree4(s->of, s->order, s->pose, s->X));
+  PetscCall(PetscFree4(s->from, s->to, s->F, s->W));
+  PetscCall(PetscFree(*patterns));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Whether two vesicles have as many markers, as far apart. */
+static PetscBool Alike(Membrane m, PetscInt v, PetscInt w) {
+  return LayoutCount(m->layout, v) == LayoutCount(m->layout, w) && PetscAbsReal(m->ds[v] - m->ds[w]) < 1e-6 * m->ds[v]
+             ? PETSC_TRUE
+             : PETSC_FALSE;
+}
+
+/* How far a pattern's matrices are from those of own vesicle v, whose centred markers are s->X: its curve, part of R0,
+   and its label speed, in the mode in which that counts most beside the I and the bending of N, 1 + c_b m^3/(4 nu R0^3
+   a0). */
+static PetscReal Distance(Patterns s, PetscInt v, const Pattern *q, Pose *pose) {
+  const Coupling c = s->coupling;
+  const Membrane m = c->membrane;
+  const PetscInt n = LayoutCount(m->layout, v);
+  const PetscReal R0 = m->L0[v] / (2 * PETSC_PI), a0 = c->fluid->a0;
+  const PetscReal stiffness = m->bending / (4 * c->fluid->nu * R0 * R0 * R0 * a0);
+  PetscReal most = 0;
+  if (!Alike(m, v, q->like)) return PETSC_MAX_REAL;
+  *pose = PoseFit(n, s->X, q->X);
+  for (PetscInt k = 1; 2 * k <= n; k++) {
+    const PetscReal mode = (PetscReal)k;
+    most = PetscMax(most, mode / (1 + stiffness * mode * mode * mode));
+  }
+  return pose->distance / R0 + most * PetscAbsReal(c->treading[v] - q->treading) / a0;
+}
+
+/* The pattern that own vesicle v takes from here on: that of before while it is near enough, else the nearest of those
+   from `first` on; false when it needs a new one. */
+static PetscBool Choose(Patterns s, PetscInt v, PetscInt first) {
+  const Layout l = s->coupling->membrane->layout;
+  PetscReal least = TOLERANCE;
+  Pose pose;
+  PoseCentred(LayoutCount(l, v), s->coupling->markers->X + 2 * l->start[v], s->X);
+  if (s->of[v] >= 0 && Distance(s, v, &s->pattern[s->of[v]], &s->pose[v - l->own]) <= least) return PETSC_TRUE;
+  s->of[v] = -1;
+  for (PetscInt k = first; k < s->count; k++) {
+    const PetscReal distance = Distance(s, v, &s->pattern[k], &pose);
+    if (distance > least) continue;
+    least = distance;
+    s->of[v] = k;
+    s->pose[v - l->own] = pose;
+  }
+  return s->of[v] >= 0 ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* A pattern, zero but for its X. */
+static PetscErrorCode Add(Patterns s, PetscInt like, PetscReal treading, const PetscReal X[]) {
+  const Membrane m = s->coupling->membrane;
+  PetscFunctionBeginUser;
+  if (s->count == s->room) {
+    s->room = 2 * s->room + 8;
+    PetscCall(PetscRealloc((size_t)s->room * sizeof(Pattern), &s->pattern));
+  }
+  Pattern *q = &s->pattern[s->count++];
+  *q = (Pattern){.like = like, .treading = treading};
+  PetscCall(PetscMalloc1(2 * LayoutCount(m->layout, like), &q->X));
+  PetscCall(PetscArraycpy(q->X, X, 2 * LayoutCount(m->layout, like)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Which vesicle takes which pattern, told to all ranks; those that none takes any more are dropped. */
+static PetscErrorCode Tell(Patterns s) {
+  const Layout l = s->coupling->membrane->layout;
+  PetscInt *to, kept = 0;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(s->count, &to));
+  for (PetscInt v = 0; v < l->bodies; v++)
+    if (v < l->own || v >= l->end) s->of[v] = -1;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, s->of, (PetscMPIInt)l->bodies, MPIU_INT, MPI_MAX, l->comm));
+  for (PetscInt k = 0; k < s->count; k++) to[k] = -1;
+  for (PetscInt v = 0; v < l->bodies; v++) to[s->of[v]] = 0;
+  for (PetscInt k = 0; k < s->count; k++) {
+    if (to[k] < 0) {
+      PetscCall(FreePattern(&s->pattern[k]));
+      continue;
+    }
+    s->pattern[kept] = s->pattern[k];
+    to[k] = kept++;
+  }
+  s->count = kept;
+  for (PetscInt v = 0; v < l->bodies; v++) s->of[v] = to[s->of[v]];
+  PetscCall(PetscFree(to));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* New patterns until every vesicle has one: each of the first vesicle of all ranks that needs one, so that they do not
+   depend on the ranks. */
+static PetscErrorCode ChooseAll(Patterns s) {
+  const Layout l = s->coupling->membrane->layout;
+  PetscInt first = 0, found[2] = {0, 0}; /* the vesicle that needs one, minus whether any has changed */
+  PetscFunctionBeginUser;
+  for (PetscInt round = 0;; round++) {
+    found[0] = l->bodies;
+    for (PetscInt v = l->own; v < l->end; v++) {
+      const PetscInt before = s->of[v];
+      if (round && before >= 0) continue;
+      if (!Choose(s, v, first)) found[0] = PetscMin(found[0], v);
+      if (s->of[v] != before) found[1] = -1;
+    }
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, found, 2, MPIU_INT, MPI_MIN, l->comm));
+    if (found[0] == l->bodies) break;
+    first = s->count;
+    PoseCentred(LayoutCount(l, found[0]), s->coupling->markers->X + 2 * l->start[found[0]], s->X);
+    PetscCall(Add(s, found[0], s->coupling->treading[found[0]], s->X));
+  }
+  if (found[1]) PetscCall(Tell(s));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Own vesicles by pattern. */
+static void Sort(Patterns s) {
+  const Layout l = s->coupling->membrane->layout;
+  PetscInt at = 0;
+  for (PetscInt k = 0; k < s->count; k++) s->pattern[k].begin = s->pattern[k].end = 0;
+  for (PetscInt v = l->own; v < l->end; v++) s->pattern[s->of[v]].end++;
+  for (PetscInt k = 0; k < s->count; k++) {
+    Pattern *q = &s->pattern[k];
+    const PetscInt own = q->end;
+    q->begin = q->end = at;
+    at += own;
+  }
+  for (PetscInt v = l->own; v < l->end; v++) s->order[s->pattern[s->of[v]].end++] = v;
+}
+
+/* Matrices of the patterns that own vesicles take, for the a0 in force. */
+static PetscErrorCode MakeAll(Patterns s, PetscBool *good) {
+  const Fluid f = s->coupling->fluid;
+  PetscFunctionBeginUser;
+  *good = PETSC_TRUE;
+  if (!(PetscAbsReal(s->a0 / f->a0 - 1) < 0.1)) {
+    s->a0 = f->a0;
+    for (PetscInt k = 0; k < s->count; k++) PetscCall(FreeMatrices(&s->pattern[k]));
+  }
+  for (PetscInt k = 0; k < s->count && *good; k++) {
+    Pattern *q = &s->pattern[k];
+    if (q->end > q->begin && !q->first) PetscCall(PatternMake(s, q, good));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Each vesicle's coarse points lie where its pattern's lie in its frame. */
+static PetscErrorCode PlaceCoarse(Patterns s) {
+  const Layout l = s->coupling->membrane->layout, coarse = s->coarse->layout;
+  PetscFunctionBeginUser;
+  for (PetscInt v = l->own; v < l->end; v++) {
+    const PetscInt n = LayoutCount(l, v);
+    const PetscReal *X = s->coupling->markers->X + 2 * l->start[v], *y = s->pattern[s->of[v]].points;
+    const Pose *p = &s->pose[v - l->own];
+    PetscReal mean[2] = {0, 0}, *to = s->W + 2 * LayoutOffset(coarse, v);
+    for (PetscInt k = 0; k < 2 * n; k++) mean[k % 2] += X[k] / (PetscReal)n;
+    for (PetscInt i = 0; i < LayoutCount(coarse, v); i++) {
+      to[2 * i] = mean[0] + p->turn[0] * y[2 * i] - p->turn[1] * y[2 * i + 1];
+      to[2 * i + 1] = mean[1] + p->turn[1] * y[2 * i] + p->turn[0] * y[2 * i + 1];
+    }
+  }
+  PetscCall(CoarsePlace(s->coarse, s->W));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode PatternsFollow(Patterns s, PetscBool *failed) {
+  PetscBool good;
+  PetscLogEvent event;
+  PetscFunctionBeginUser;
+  PetscCall(PetvesEvent("FactorMobility", &event));
+  PetscCall(PetscLogEventBegin(event, 0, 0, 0, 0));
+  PetscCall(ChooseAll(s));
+  Sort(s);
+  PetscCall(MakeAll(s, &good));
+  PetscCall(AgreeFlag(s->coupling->membrane->layout->comm, good ? PETSC_FALSE : PETSC_TRUE, failed));
+  if (s->coarse && !*failed) PetscCall(PlaceCoarse(s));
+  PetscCall(PetscLogEventEnd(event, 0, 0, 0, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Memory: a0; the curve of each pattern in the place of the first vesicle that takes it; that vesicle's number for
+   every vesicle; label speed and kin of each pattern, in the place of that vesicle. */
+void PatternsGetMemory(Patterns s, PetscReal memory[]) {
+  const Layout l = s->coupling->membrane->layout;
+  PetscReal *X = memory + 1, *first = X + 2 * l->M, *treading = first + l->bodies, *like = treading + l->bodies;
+  (void)PetscArrayzero(memory, PatternsMemorySize(l));
+  memory[0] = s->a0;
+  for (PetscInt v = 0; v < l->bodies && s->a0 > 0; v++) {
+    const Pattern *q = &s->pattern[s->of[v]];
+    PetscInt w = 0;
+    while (s->of[w] != s->of[v]) w++;
+    first[v] = (PetscReal)w;
+    if (w != v) continue;
+    (void)PetscArraycpy(X + 2 * l->start[v], q->X, 2 * LayoutCount(l, v));
+    treading[v] = q->treading;
+    like[v] = (PetscReal)q->like;
+  }
+}
+
+/* Whether a number from a file is that of a vesicle like v. */
+static PetscBool IsLike(Membrane m, PetscInt v, PetscReal number) {
+  return number >= 0 && number < (PetscReal)m->layout->bodies && Alike(m, v, (PetscInt)number) ? PETSC_TRUE
+                                                                                               : PETSC_FALSE;
+}
+
+PetscErrorCode PatternsSetMemory(Patterns s, const PetscReal memory[], PetscBool *valid) {
+  const Membrane m = s->coupling->membrane;
+  const Layout l = m->layout;
+  const PetscReal *X = memory + 1, *first = X + 2 * l->M, *treading = first + l->bodies, *like = treading + l->bodies;
+  PetscFunctionBeginUser;
+  *valid = PETSC_TRUE;
+  if (!(memory[0] > 0)) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt v = 0; v < l->bodies; v++)
+    if (!IsLike(m, v, first[v]) || first[v] > (PetscReal)v || !IsLike(m, v, like[(PetscInt)first[v]]) ||
+        first[(PetscInt)first[v]] != first[v])
+      *valid = PETSC_FALSE;
+  if (!*valid) PetscFunctionReturn(PETSC_SUCCESS);
+  s->a0 = memory[0];
+  for (PetscInt v = 0; v < l->bodies; v++) {
+    const PetscInt w = (PetscInt)first[v];
+    s->of[v] = w == v ? s->count : s->of[w];
+    if (w == v) PetscCall(Add(s, (PetscInt)like[v], treading[v], X + 2 * l->start[v]));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

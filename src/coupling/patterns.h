@@ -1,0 +1,59 @@
+/* The membranes' problems inside the coupled preconditioner for many vesicles (docs/method.md, Preconditioner). A
+   vesicle's exact mobility in unbounded fluid is that of any other of its shape, turned, moved and with its labels
+   shifted. So the dense problem (denseblock.h) is inverted for a few shapes only, and each vesicle takes that of the
+   shape it is nearest to, in its own frame. For quasi-steady flow: with inertia the mobility of short steps depends on
+   the place in the cells. What the others and the walls do to it is found on a coarse grid. Shapes
+   are chosen alike whatever the ranks. */
+#pragma once
+#include "coupling/coarse.h"
+#include "coupling/coupling.h"
+#include "coupling/pose.h"
+
+/* A shape: its curve, and on ranks that need them the matrices of its dense problem, columns contiguous. */
+typedef struct {
+  PetscInt like;       /* vesicle whose markers' number and spacing it has */
+  PetscReal treading;  /* label speed (1/time) */
+  PetscReal *X;        /* [2n] centred */
+  PetscInt begin, end; /* own vesicles that take it: a range of the order */
+  PetscReal *first;    /* [3n][3n + 2q]: (r_V, r_s) to (V, sigma) and its forces at q coarse points; NULL: not made */
+  PetscReal *self;     /* [2q][2q]: these forces to what they do to the vesicle itself on the coarse grid, times -1 */
+  PetscReal *second;   /* [2q][3n]: velocities at the points to (V, sigma) */
+  PetscReal *points;   /* [2q] where they are */
+} Pattern;
+
+typedef struct _p_Patterns *Patterns;
+struct _p_Patterns {
+  Coupling coupling; /* borrowed */
+  Coarse coarse;     /* NULL where no coarse cells fit */
+  PetscReal a0;      /* that the matrices are for; 0: none yet */
+  PetscInt count, room;
+  Pattern *pattern;
+  PetscInt *of;         /* [vesicles] pattern of each, -1: none yet */
+  PetscInt *order;      /* [own vesicles] by pattern */
+  Pose *pose;           /* [own vesicles] in its pattern's frame */
+  PetscReal *X;         /* [2 most markers of a vesicle] work */
+  PetscReal *from, *to; /* [3n], [3n + 2q] of own vesicles: work */
+  PetscReal *F, *W;     /* [2 own coarse points] forces and velocities */
+};
+
+/* PatternsCreate - for the coupling's membranes, which have a near field, in the quasi-steady fluid that spec makes.
+   Collective. */
+PETSC_EXTERN PetscErrorCode PatternsCreate(const FluidSpec *spec, Coupling coupling, Patterns *patterns);
+PETSC_EXTERN PetscErrorCode PatternsDestroy(Patterns *patterns);
+
+/* PatternsFollow - a pattern for each vesicle where the coupling has been placed: its last one while that is within the
+   tolerance, else the nearest, else a new one, of its own shape. All matrices are made anew where a0 has moved by more
+   than 10 %. failed, on every rank, when a matrix is singular. Collective. */
+PETSC_EXTERN PetscErrorCode PatternsFollow(Patterns patterns, PetscBool *failed);
+
+/* PatternsSolve - from the own U[2n] and sigma[n] = r_s: V and sigma of each vesicle's dense problem, corrected by what
+   the others do to it on the coarse grid. Collective. */
+PETSC_EXTERN PetscErrorCode PatternsSolve(Patterns patterns, PetscScalar U[], PetscScalar sigma[]);
+
+/* PatternsGetMemory, PatternsSetMemory - the patterns as PatternsMemorySize numbers for a checkpoint, the same on every
+   rank, and again from them; valid is false when they are not of these vesicles. Not collective. */
+static inline PetscInt PatternsMemorySize(Layout layout) {
+  return 1 + 2 * layout->M + 3 * layout->bodies;
+}
+PETSC_EXTERN void PatternsGetMemory(Patterns patterns, PetscReal memory[]);
+PETSC_EXTERN PetscErrorCode PatternsSetMemory(Patterns patterns, const PetscReal memory[], PetscBool *valid);

@@ -1,0 +1,43 @@
+#include "coupling/pose.h"
+
+void PoseCentred(PetscInt n, const PetscReal X[], PetscReal Y[]) {
+  PetscReal mean[2] = {0, 0};
+  for (PetscInt k = 0; k < n; k++)
+    for (int c = 0; c < 2; c++) mean[c] += X[2 * k + c] / n;
+  for (PetscInt k = 0; k < n; k++)
+    for (int c = 0; c < 2; c++) Y[2 * k + c] = X[2 * k + c] - mean[c];
+}
+
+/* SUM_k conj(y_k) x_k: real, imaginary. */
+static inline void AddProduct(PetscInt n, const PetscReal X[], const PetscReal Y[], PetscReal c[2]) {
+  PetscReal xx = 0, xy = 0, yx = 0, yy = 0;
+  for (PetscInt k = 0; k < n; k++) {
+    xx += Y[2 * k] * X[2 * k];
+    yy += Y[2 * k + 1] * X[2 * k + 1];
+    xy += Y[2 * k] * X[2 * k + 1];
+    yx += Y[2 * k + 1] * X[2 * k];
+  }
+  c[0] += xx + yy;
+  c[1] += xy - yx;
+}
+
+Pose PoseFit(PetscInt n, const PetscReal X[], const PetscReal Y[]) {
+  Pose pose = {.turn = {1, 0}};
+  PetscReal squares = 0, largest = -1;
+  for (PetscInt k = 0; k < 2 * n; k++) squares += X[k] * X[k] + Y[k] * Y[k];
+  for (PetscInt j = 0; j < n; j++) {
+    PetscReal c[2] = {0, 0};
+    AddProduct(n - j, X + 2 * j, Y, c);
+    AddProduct(j, X, Y + 2 * (n - j), c);
+    const PetscReal size = c[0] * c[0] + c[1] * c[1];
+    if (size <= largest) continue;
+    largest = size;
+    pose.shift = j;
+    pose.turn[0] = c[0];
+    pose.turn[1] = c[1];
+  }
+  const PetscReal size = PetscSqrtReal(PetscMax(largest, 0));
+  for (int c = 0; c < 2; c++) pose.turn[c] = size > 0 ? pose.turn[c] / size : !c;
+  pose.distance = PetscSqrtReal(PetscMax(squares - 2 * size, 0) / (PetscReal)n);
+  return pose;
+}

@@ -1,0 +1,17 @@
+/* How a curve lies: its markers' mean, and the shift of labels and the turn by which another curve fits it best. */
+#pragma once
+#include "base/base.h"
+
+typedef struct {
+  PetscInt shift;     /* marker k of the other curve is marker k + shift of this one */
+  PetscReal turn[2];  /* cosine and sine of the turn from the other curve to this one */
+  PetscReal distance; /* root mean square of what is left (length) */
+} Pose;
+
+/* PoseCentred - y = X less the mean of its n markers: [2n], interlaced x, y. Not collective. */
+PETSC_EXTERN void PoseCentred(PetscInt n, const PetscReal X[], PetscReal Y[]);
+
+/* PoseFit - of the centred curve X to the centred curve Y, n markers each: in complex numbers the j with the largest
+   |c_j|, c_j = SUM_k conj(y_k) x_{k+j}, and e^{i theta} = c_j/|c_j|, which leave the least SUM |x_{k+j} - e^{i theta}
+   y_k|^2. Not collective. */
+PETSC_EXTERN Pose PoseFit(PetscInt n, const PetscReal X[], const PetscReal Y[]);

@@ -1,0 +1,178 @@
+/* Patterns of many vesicles (docs/method.md, Many vesicles): how a curve lies, the exact mobility of one curve, and a
+   vesicle's problem solved by another's pattern. */
+#include "coupling/patterns.h"
+#include "coupling/selflayer.h"
+#include "world.h"
+
+#define VESICLES 7
+#define N 45 /* markers of a vesicle */
+
+/* Curves of one shape, each turned and with its labels shifted. */
+#define OPTIONS                                                                                                        \
+  "-scheme_type coupled -coupling_near_field exact -membrane_derivative spectral -fluid_inertia none -delta_type "     \
+  "cbs54 -vesicle_count 7 -vesicle_center 1,1,3,1,5,1,7,1,1,3,3,3,5,3 -vesicle_angle 0,10,20,40,80,120,170 "           \
+  "-vesicle_markers 45 -domain_box 0,8,0,4 -vesicle_bending 0.1 "
+
+static void TurnCurve(PetscReal angle, PetscInt shift, const PetscReal X[], PetscReal Y[]) {
+  for (PetscInt k = 0; k < N; k++) {
+    const PetscReal *x = X + 2 * ((k + shift) % N);
+    Y[2 * k] = 3 + cos(angle) * x[0] - sin(angle) * x[1];
+    Y[2 * k + 1] = 4 + sin(angle) * x[0] + cos(angle) * x[1];
+  }
+}
+
+/* A curve without symmetry is found again wherever it lies. */
+static PetscErrorCode CheckPose(PetscReal angle, PetscInt shift) {
+  PetscReal X[2 * N], Y[2 * N], x[2 * N], y[2 * N];
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < N; k++) {
+    const PetscReal t = 2 * PETSC_PI * (PetscReal)k / N;
+    Y[2 * k] = cos(t) + 0.1 * cos(2 * t + 1);
+    Y[2 * k + 1] = 0.5 * sin(t) + 0.05 * sin(3 * t);
+  }
+  TurnCurve(angle, shift, Y, X);
+  PoseCentred(N, X, x);
+  PoseCentred(N, Y, y);
+  Pose p = PoseFit(N, x, y);
+  CHECK((p.shift + shift) % N == 0, "labels shifted by %d are shifted back by %d", (int)shift, (int)p.shift);
+  CHECK(fabs(p.turn[0] - cos(angle)) + fabs(p.turn[1] - sin(angle)) < 1e-13, "a turn of %g is found", (double)angle);
+  CHECK(p.distance < 1e-7, "nothing is left, %.1e", (double)p.distance);
+  for (PetscInt k = 0; k < N; k++) x[2 * k] += k % 2 ? 0.01 : -0.01;
+  p = PoseFit(N, x, y);
+  CHECK(fabs(p.distance - 0.01) < 5e-4, "a zigzag of 0.01 is left, %.4f", (double)p.distance);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* S is the near field of unbounded fluid, where that is all of the mobility. */
+static PetscErrorCode CheckSelfLayer(PetscInt n) {
+  char options[256];
+  TestWorld t;
+  PetscScalar *F, *U;
+  PetscReal *S, most = 0, error = 0;
+  PetscFunctionBeginUser;
+  PetscCall(
+      PetscSNPrintf(options, sizeof(options),
+                    "-scheme_type coupled -coupling_near_field exact -membrane_derivative spectral -delta_type cbs54 "
+                    "-fluid_inertia none -domain_bc_x free -domain_bc_y free -vesicle_markers %d",
+                    (int)n));
+  PetscCall(TestWorldCreate(options, &t));
+  PetscCall(PetscMalloc3(4 * n * n, &S, 2 * n, &F, 2 * n, &U));
+  PetscCall(SelfLayer(t.membrane->spectral[0], n, t.fluid->nu, t.coupling->markers->X, S));
+  for (PetscInt i = 0; i < 2 * n; i++) {
+    F[i] = sin(1.0 + 0.3 * (double)i);
+    U[i] = 0;
+  }
+  PetscCall(NearFieldApply(t.coupling->near, 1, F, U));
+  for (PetscInt i = 0; i < 2 * t.layout->n; i++) {
+    PetscReal sum = 0;
+    for (PetscInt j = 0; j < 2 * n; j++) sum += S[j * 2 * n + i] * F[j];
+    most = PetscMax(most, fabs(U[i]));
+    error = PetscMax(error, fabs(U[i] - sum));
+  }
+  CHECK(error <= 1e-12 * most, "%d markers: S of one curve is the near field's", (int)n);
+  PetscCall(PetscFree3(S, F, U));
+  PetscCall(TestWorldDestroy(&t));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* r_V and r_s of V and sigma of one vesicle in unbounded fluid: V + S F, Dm V/h^2, F = Dm^T sigma + (c_b ds/a0) D4 V.
+ */
+static PetscErrorCode Multiply(TestWorld *t, PetscInt v, const PetscScalar V[], const PetscScalar sigma[],
+                               PetscScalar U[], PetscScalar s[]) {
+  const Membrane m = t->membrane;
+  const PetscReal *X = t->coupling->markers->X + 2 * t->layout->start[v], h2 = PetscSqr(t->fluid->grid->h);
+  PetscReal *S, tau[2 * N], pull[2 * N], F[2 * N] = {0};
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(4 * N * N, &S));
+  PetscCall(SelfLayer(m->spectral[v], N, t->fluid->nu, X, S));
+  MembraneVesicleTangents(m, v, X, tau);
+  for (PetscInt k = 0; k < 2 * N; k++) pull[k] = sigma[k / 2] * tau[k];
+  MembraneEdgesTranspose(m, v, 1, pull, F);
+  MembraneVesicleBending(m, v, m->bending / t->fluid->a0, V, F);
+  for (PetscInt i = 0; i < 2 * N; i++) {
+    U[i] = V[i];
+    for (PetscInt j = 0; j < 2 * N; j++) U[i] += S[j * 2 * N + i] * F[j];
+  }
+  MembraneVesicleStretching(m, v, tau, V, s);
+  for (PetscInt k = 0; k < N; k++) s[k] /= h2;
+  PetscCall(PetscFree(S));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* All vesicles take the first one's pattern, and each gets its own solution by it. */
+static PetscErrorCode CheckSolve(void) {
+  TestWorld t;
+  Patterns s;
+  PetscBool failed;
+  PetscScalar V[VESICLES * 2 * N], sigma[VESICLES * N], U[VESICLES * 2 * N], r[VESICLES * N];
+  PetscReal error = 0, most = 0;
+  PetscFunctionBeginUser;
+  PetscCall(TestWorldCreate(
+      OPTIONS "-domain_cells 64,32 -domain_bc_x free -domain_bc_y free -vesicle_semi_axes 0.4,0.8", &t));
+  PetscCall(PatternsCreate(&t.scene->fluid, t.coupling, &s));
+  PetscCall(PatternsFollow(s, &failed));
+  CHECK(!failed && s->count == 1, "equal vesicles have one pattern, %d", (int)s->count);
+  CHECK(!s->coarse, "no coarse grid in unbounded fluid");
+  const PetscInt own = t.layout->end - t.layout->own;
+  for (PetscInt i = 0; i < own * 2 * N; i++) V[i] = sin(1.0 + 0.37 * (double)i);
+  for (PetscInt i = 0; i < own * N; i++) sigma[i] = cos(0.2 * (double)i * (double)i);
+  for (PetscInt v = 0; v < own; v++)
+    PetscCall(Multiply(&t, t.layout->own + v, V + 2 * N * v, sigma + N * v, U + 2 * N * v, r + N * v));
+  PetscCall(PatternsSolve(s, U, r));
+  for (PetscInt i = 0; i < own * 2 * N; i++) {
+    error = PetscMax(error, fabs(U[i] - V[i]));
+    most = PetscMax(most, fabs(V[i]));
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &error, 1, MPIU_REAL, MPI_MAX, PETSC_COMM_WORLD));
+  CHECK(error < 1e-6 * most, "each vesicle's V comes back, %.1e", (double)(error / most));
+  PetscCall(PatternsDestroy(&s));
+  PetscCall(TestWorldDestroy(&t));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The memory makes the same patterns again, and is refused where it is of other vesicles. */
+static PetscErrorCode CheckMemory(void) {
+  TestWorld t;
+  Patterns s, again;
+  PetscBool failed, valid;
+  PetscReal *memory, *second;
+  PetscFunctionBeginUser;
+  PetscCall(TestWorldCreate(OPTIONS "-domain_cells 64,32 -domain_bc_x periodic -vesicle_reduced_area "
+                                    "0.7,0.8,0.9,0.7,0.8,0.9,0.7 -vesicle_area 1",
+                            &t));
+  const PetscInt size = PatternsMemorySize(t.layout);
+  PetscCall(PatternsCreate(&t.scene->fluid, t.coupling, &s));
+  PetscCall(PatternsCreate(&t.scene->fluid, t.coupling, &again));
+  PetscCall(PatternsFollow(s, &failed));
+  CHECK(!failed && s->count == 3, "three kinds of vesicles have three patterns, %d", (int)s->count);
+  PetscCall(PetscMalloc2(size, &memory, size, &second));
+  PatternsGetMemory(s, memory);
+  PetscCall(PatternsSetMemory(again, memory, &valid));
+  PetscCall(PatternsFollow(again, &failed));
+  PatternsGetMemory(again, second);
+  CHECK(valid && !memcmp(memory, second, (size_t)size * sizeof(PetscReal)), "the memory makes the same patterns again");
+  memory[1 + 2 * t.layout->M + 1] = 0; /* vesicle 1 after vesicle 0, whose edges are longer */
+  PetscCall(PatternsSetMemory(again, memory, &valid));
+  CHECK(!valid, "a memory of other vesicles is refused");
+  PetscCall(PetscFree2(memory, second));
+  PetscCall(PatternsDestroy(&again));
+  PetscCall(PatternsDestroy(&s));
+  PetscCall(TestWorldDestroy(&t));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Facts(void) {
+  const PetscReal angle[] = {2.1, -0.3, 0, 3.1};
+  const PetscInt shift[] = {17, 44, 0, 1};
+  PetscFunctionBeginUser;
+  for (int k = 0; k < 4; k++) PetscCall(CheckPose(angle[k], shift[k]));
+  PetscCall(CheckSelfLayer(45));
+  PetscCall(CheckSelfLayer(44));
+  PetscCall(CheckSolve());
+  PetscCall(CheckMemory());
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+int main(int argc, char **argv) {
+  return CheckMain(argc, argv, Facts);
+}
