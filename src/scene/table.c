@@ -42,7 +42,7 @@ static const OptionRow table[] = {
   {"-scheme_length_target", OPT_BOOL, AT(scheme.length_target), "true", "true|false", "coupled, direct: new edges get their first length"},
   {"-scheme_area_target", OPT_BOOL, AT(scheme.area_target), "true", "true|false", "coupled, direct: shift the markers to their first area after each step"},
   {"-coupling_near_field", OPT_ENUM, AT(coupling.near_field), "exact", "exact|none", "coupled, direct: what kernel and lattice take from the markers' velocity is given back, to the free-space single layer; none: it is not"},
-  {"-coupling_box_part", OPT_BOOL, AT(coupling.box_part), "true", "true|false", "with the exact near field: the grid's error of second order in what walls and periodic images do is taken off"},
+  {"-coupling_box_part", OPT_BOOL, AT(coupling.box_part), "true", "true|false", "with the exact near field: the grid's error of second order in what walls and periodic images do is taken off; default false from 256 cells across on"},
   {"-membrane_derivative", OPT_ENUM, AT(membrane.derivative), "spectral", "fd|bending|spectral", "derivatives along the membrane: finite differences, spectral bending, spectral bending and edges; split, penalty: fd"},
   {"-scheme_startup", OPT_ENUM, AT(scheme.startup), "graded", "euler|graded", "first step of orders 2 and 3: backward Euler, or five growing parts of a step"},
   {"-mobility_type", OPT_ENUM, AT(coupling.mobility), "table", "table|ilu|none", "Lagrangian part of coupled's preconditioner"},
