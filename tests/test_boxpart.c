@@ -37,7 +37,7 @@ static PetscErrorCode WorldCreate(const char options[], PetscInt cells, PetscBoo
   PetscCheck(!*message, s->comm, PETSC_ERR_LIB, "%s", message);
   PetscCall(VecDestroy(&X));
   PetscCall(PetscCalloc1(PetscSqr(2 * w->layout->M), &w->D));
-  if (box) BoxPartAdd(w->coupling->near->box, 1, 0, w->layout->M, 0, w->layout->M, w->D);
+  if (box) PetscCall(BoxPartAdd(w->coupling->near->box, 1, 0, w->layout->M, 0, w->layout->M, w->D));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -228,8 +228,34 @@ static PetscErrorCode CheckOwnImages(const char name[], const char options[]) {
 #define CHANNEL "-domain_bc_x periodic "
 #define PERIODIC "-domain_bc_x periodic -domain_bc_y periodic "
 
+/* In a box of 256 cells across or more there is a box part only when it is asked for. */
+static PetscErrorCode CheckDefault(void) {
+  static const struct {
+    const char *options;
+    PetscBool has;
+  } rows[] = {{"-domain_cells 255,300 -domain_box 0,25.5,0,30", PETSC_TRUE},
+              {"-domain_cells 256,300 -domain_box 0,25.6,0,30", PETSC_FALSE},
+              {"-domain_cells 256,300 -domain_box 0,25.6,0,30 -coupling_box_part true", PETSC_TRUE},
+              {"-domain_cells 255,300 -domain_box 0,25.5,0,30 -coupling_box_part false", PETSC_FALSE}};
+  PetscInt wrong = 0;
+  PetscFunctionBeginUser;
+  for (int k = 0; k < 4; k++) {
+    char options[512];
+    Scene scene;
+    PetscCall(PetscSNPrintf(options, sizeof(options), "-vesicle_center 9,9 %s", rows[k].options));
+    PetscCall(PetscOptionsClear(NULL));
+    PetscCall(PetscOptionsInsertString(NULL, options));
+    PetscCall(SceneCreate(PETSC_COMM_WORLD, NULL, NULL, &scene));
+    wrong += SceneHasBoxPart(scene) != rows[k].has;
+    PetscCall(SceneDestroy(&scene));
+  }
+  CHECK(!wrong, "the box part's default goes by the cells across, an option by itself: %d wrong", (int)wrong);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode Facts(void) {
   PetscFunctionBeginUser;
+  PetscCall(CheckDefault());
   PetscCall(CheckTable("walls", ONE, PETSC_TRUE));
   PetscCall(CheckTable("channel", ONE CHANNEL, PETSC_FALSE));
   PetscCall(CheckTable("channel in y", ONE "-domain_bc_y periodic ", PETSC_FALSE));

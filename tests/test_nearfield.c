@@ -177,23 +177,24 @@ static PetscErrorCode CheckClosedForm(const OffsetTable *t, const char kernel[],
   PetscCall(TestWorldCreate(options, &w));
   const NearField f = w.coupling->near;
   const PetscReal h = w.fluid->grid->h, *X = w.coupling->markers->X;
-  for (PetscInt k = 0; k < f->count; k++) {
-    const NearBlock *b = &f->block[k];
-    const PetscInt i0 = w.layout->start[b->row], j0 = w.layout->start[b->column], n = LayoutCount(w.layout, b->row);
-    if (b->row == b->column) continue;
-    for (PetscInt j = 0; j < n; j++)
-      for (PetscInt i = 0; i < n; i++) {
-        const PetscReal d[2] = {X[2 * (i0 + i)] - X[2 * (j0 + j)], X[2 * (i0 + i) + 1] - X[2 * (j0 + j) + 1]};
-        const PetscReal r = PetscSqrtReal(d[0] * d[0] + d[1] * d[1]) / h, *at = b->C + 4 * j * n + 2 * i;
-        const PetscReal found[4] = {at[0], at[2 * n + 1], at[2 * n], at[1]};
-        const int is = r > 10 ? 1 : 0;
-        if (r > 10 && PetscAbsReal(r - 12) > 0.5) continue;
-        BySums(t, f, i0 + i, j0 + j, d, C);
-        pairs += is;
-        for (int c = 0; c < 4; c++)
-          worst[is] = PetscMax(worst[is], PetscAbsReal(found[c] - C[c]) * f->nu * (is ? r * r * r * r : 1));
-      }
-  }
+  const Layout l = w.layout;
+  const PetscInt N = 2 * l->M;
+  PetscReal *all;
+  PetscCall(PetscCalloc1(N * N, &all));
+  PetscCall(NearFieldAdd(f, 1, PETSC_TRUE, 0, l->M, all));
+  for (PetscInt i = l->first; i < l->first + l->n; i++)
+    for (PetscInt j = 0; j < l->M; j++) {
+      const PetscReal d[2] = {X[2 * i] - X[2 * j], X[2 * i + 1] - X[2 * j + 1]};
+      const PetscReal r = PetscSqrtReal(d[0] * d[0] + d[1] * d[1]) / h, *at = all + 2 * j * N + 2 * i;
+      const PetscReal found[4] = {at[0], at[N + 1], at[N], at[1]};
+      const int is = r > 10 ? 1 : 0;
+      if (LayoutBody(l, i) == LayoutBody(l, j) || (r > 10 && PetscAbsReal(r - 12) > 0.5)) continue;
+      BySums(t, f, i, j, d, C);
+      pairs += is;
+      for (int c = 0; c < 4; c++)
+        worst[is] = PetscMax(worst[is], PetscAbsReal(found[c] - C[c]) * f->nu * (is ? r * r * r * r : 1));
+    }
+  PetscCall(PetscFree(all));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, worst, 2, MPIU_REAL, MPI_MAX, PETSC_COMM_WORLD));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &pairs, 1, MPIU_INT, MPI_SUM, PETSC_COMM_WORLD));
   CHECK(worst[0] < 1e-12 && worst[1] < bound && pairs > 100,
@@ -260,7 +261,7 @@ static PetscErrorCode CheckSymmetry(const char name[], const char scene[], const
   const PetscInt N = 2 * w.layout->M;
   PetscCall(PetscMalloc2(N * N, &C, N * N, &same));
   PetscCall(WholeMatrix(&w, C));
-  blocks = w.coupling->near->count;
+  blocks = w.coupling->near->blocks;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &blocks, 1, MPIU_INT, MPI_SUM, PETSC_COMM_WORLD));
   Asymmetry(w.layout, C, worst);
   CHECK(worst[0] < 1e-14 && worst[1] < 1e-13, "%s, %s: C of %d blocks symmetric to %.1e, %.1e between vesicles", name,
@@ -289,6 +290,57 @@ static PetscErrorCode CheckSymmetry(const char name[], const char scene[], const
   "-domain_cells 51,32 -domain_box 0,3.1875,-1,1 -domain_bc_x periodic -vesicle_count 2 -vesicle_semi_axes 0.3,0.5 "   \
   "-vesicle_center 0.1,0,2.4,0 -vesicle_markers 33 "
 
+/* Least distance of markers of v and of the images of w. */
+static PetscReal Gap(const TestWorld *w, PetscInt v, PetscInt u) {
+  const Layout l = w->layout;
+  const Grid g = w->fluid->grid;
+  const PetscReal *X = w->coupling->markers->X;
+  PetscReal least = PETSC_MAX_REAL;
+  for (PetscInt i = l->start[v]; i < l->start[v + 1]; i++)
+    for (PetscInt j = l->start[u]; j < l->start[u + 1]; j++) {
+      PetscReal r2 = 0;
+      for (int dir = 0; dir < 2; dir++) {
+        const PetscReal d = X[2 * i + dir] - X[2 * j + dir], period = g->hi[dir] - g->lo[dir];
+        r2 += PetscSqr(g->wall[dir] ? d : d - period * PetscFloorReal(d / period + 0.5));
+      }
+      least = PetscMin(least, r2);
+    }
+  return PetscSqrtReal(least);
+}
+
+/* Vesicles up to NEAR_REACH apart, over the seam too, have all their pairs in C, others none; each rank its own rows.
+ */
+static PetscErrorCode CheckReach(void) {
+  TestWorld w;
+  PetscReal *C;
+  PetscInt count[3] = {0, 0, 0}; /* near, far, wrong */
+  PetscFunctionBeginUser;
+  PetscCall(TestWorldCreate(EXACT
+                            "-scheme_type coupled -domain_cells 320,96 -domain_box 0,20,0,6 -domain_bc_x periodic "
+                            "-fluid_inertia none -vesicle_count 9 -vesicle_semi_axes 0.3,0.5 -vesicle_markers 27 "
+                            "-vesicle_center 0.2,1,2.1,1.4,4.6,1,4.2,3,9.8,4.4,9.2,2.2,12.9,3.8,17,1,19.3,1.9",
+                            &w));
+  const Layout l = w.layout;
+  PetscCall(PetscCalloc1(4 * l->M * l->M, &C));
+  PetscCall(NearFieldAdd(w.coupling->near, 1, PETSC_TRUE, 0, l->M, C));
+  for (PetscInt v = l->own; v < l->end; v++)
+    for (PetscInt u = 0; u < l->bodies; u++) {
+      PetscInt zeros = 0;
+      for (PetscInt i = 2 * l->start[v]; i < 2 * l->start[v + 1]; i++)
+        for (PetscInt j = 2 * l->start[u]; j < 2 * l->start[u + 1]; j++) zeros += C[j * 2 * l->M + i] == 0;
+      const PetscBool near = Gap(&w, v, u) < NEAR_REACH * w.fluid->grid->h ? PETSC_TRUE : PETSC_FALSE;
+      count[near ? 0 : 1]++;
+      count[2] += zeros != (near ? 0 : 4 * LayoutCount(l, v) * LayoutCount(l, u));
+    }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, count, 3, MPIU_INT, MPI_SUM, PETSC_COMM_WORLD));
+  CHECK(count[0] > 15 && count[1] > 40 && !count[2],
+        "nine vesicles: %d pairs nearer than %d cells have C, %d others have none, %d are wrong", (int)count[0],
+        NEAR_REACH, (int)count[1], (int)count[2]);
+  PetscCall(PetscFree(C));
+  PetscCall(TestWorldDestroy(&w));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode Facts(void) {
   static const char *const kernels[] = {"cbs43", "cbs54", "cbs65", "ib6"};
   OffsetTable table;
@@ -296,6 +348,7 @@ static PetscErrorCode Facts(void) {
   PetscCall(LatticeStokeslet(42, &table));
   PetscCall(CheckTable(&table));
   PetscCall(CheckPeriodicGrid(&table));
+  PetscCall(CheckReach());
   for (int k = 0; k < 4; k++) {
     PetscCall(CheckClosedForm(&table, kernels[k], k == 3 ? 0.3 : 0.2));
     PetscCall(CheckSymmetry("two, walls", TWO_WALLS, kernels[k]));

@@ -38,6 +38,7 @@ static PetscErrorCode PlaceMarkers(BoxGrid *b, const char kernel[]) {
   PetscCall(MarkersPlace(b->markers, b->U));
   PetscCall(PetscMalloc1(2 * start[1], &b->stencil));
   for (PetscInt k = 0; k < 2 * start[1]; k++) StencilPad(&b->markers->plain[k], &b->stencil[k]);
+  for (PetscInt k = 0; k < start[1]; k++) StencilUnwrap(b->fluid->grid, b->markers->X + 2 * k, &b->stencil[2 * k]);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

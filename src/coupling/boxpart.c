@@ -12,7 +12,7 @@ PetscErrorCode BoxPartCreate(const FluidSpec *spec, Markers markers, BoxPart *ou
   PetscCall(PetscLogEventBegin(event, 0, 0, 0, 0));
   PetscCall(BoxTableCreate(spec, markers->kernel->name, &b->table));
   PetscCall(PetscLogEventEnd(event, 0, 0, 0, 0));
-  PetscCall(PetscMalloc2(2 * markers->layout->M * b->table.rank, &b->A, b->table.rank, &b->amplitude));
+  PetscCall(PetscMalloc2(2 * markers->layout->n * b->table.rank, &b->A, b->table.rank, &b->amplitude));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -66,22 +66,22 @@ static void AddBlock(const BoxBlock *q, int c, const PetscReal vx[], const Petsc
   }
 }
 
-/* The rows of A of marker k, from its functions' values. */
-static void PlaceMarker(BoxPart b, PetscInt k) {
+/* The rows A[2][rank] of marker k, from its functions' values. */
+static void PlaceMarker(BoxPart b, PetscInt k, PetscReal A[]) {
   const BoxTable *t = &b->table;
   const PetscReal *X = b->markers->X + 2 * k, fade = Fade(b, X);
   PetscReal vx[BOX_FUNCTIONS], vy[BOX_FUNCTIONS];
-  (void)PetscArrayzero(b->A + 2 * k * t->rank, 2 * t->rank);
+  (void)PetscArrayzero(A, 2 * t->rank);
   if (fade == 0) return;
   BoxTableFunctions(t, 0, X[0], vx);
   BoxTableFunctions(t, 1, X[1], vy);
   for (PetscInt q = 0; q < t->blocks; q++)
-    for (int c = 0; c < 2; c++)
-      AddBlock(&t->block[q], c, vx, vy, fade, b->A + (2 * k + c) * t->rank + t->block[q].start);
+    for (int c = 0; c < 2; c++) AddBlock(&t->block[q], c, vx, vy, fade, A + c * t->rank + t->block[q].start);
 }
 
 void BoxPartPlace(BoxPart b) {
-  for (PetscInt k = 0; k < b->markers->layout->M; k++) PlaceMarker(b, k);
+  const Layout l = b->markers->layout;
+  for (PetscInt k = 0; k < l->n; k++) PlaceMarker(b, l->first + k, b->A + 2 * k * b->table.rank);
 }
 
 /* SUM l x in four lanes. */
@@ -97,14 +97,13 @@ static PetscReal Sum(PetscInt r, const PetscReal l[], const PetscReal x[]) {
 PetscErrorCode BoxPartApply(BoxPart b, PetscReal alpha, const PetscScalar F[], PetscScalar U[]) {
   const Layout l = b->markers->layout;
   const PetscInt r = b->table.rank;
-  const PetscReal *own = b->A + 2 * l->first * r;
   PetscFunctionBeginUser;
   PetscCall(PetscArrayzero(b->amplitude, r));
   for (PetscInt k = 0; k < 2 * l->n; k++)
-    for (PetscInt m = 0; m < r; m++) b->amplitude[m] += own[k * r + m] * F[k];
+    for (PetscInt m = 0; m < r; m++) b->amplitude[m] += b->A[k * r + m] * F[k];
   if (l->size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, b->amplitude, (PetscMPIInt)r, MPIU_REAL, MPI_SUM, l->comm));
   for (PetscInt m = 0; m < r; m++) b->amplitude[m] *= alpha * b->table.l[m];
-  for (PetscInt k = 0; k < 2 * l->n; k++) U[k] += Sum(r, b->amplitude, own + k * r);
+  for (PetscInt k = 0; k < 2 * l->n; k++) U[k] += Sum(r, b->amplitude, b->A + k * r);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -118,11 +117,18 @@ static PetscReal Product(PetscInt r, const PetscReal l[], const PetscReal x[], c
   return sum[0] + sum[1] + sum[2] + sum[3] + rest;
 }
 
-void BoxPartAdd(BoxPart b, PetscReal scale, PetscInt first, PetscInt n, PetscInt begin, PetscInt end, PetscReal out[]) {
+PetscErrorCode BoxPartAdd(BoxPart b, PetscReal scale, PetscInt first, PetscInt n, PetscInt begin, PetscInt end,
+                          PetscReal out[]) {
+  const Layout l = b->markers->layout;
   const PetscInt r = b->table.rank;
+  const PetscBool own = first >= l->first && first + n <= l->first + l->n ? PETSC_TRUE : PETSC_FALSE;
+  PetscReal *all = own ? b->A + 2 * (first - l->first) * r : NULL;
+  PetscFunctionBeginUser;
+  if (!own) PetscCall(PetscMalloc1(2 * n * r, &all));
+  for (PetscInt k = 0; k < n && !own; k++) PlaceMarker(b, first + k, all + 2 * k * r);
   for (PetscInt j = 0; j < 2 * n; j++)
-    for (PetscInt i = 2 * (begin - first); i < 2 * (end - first); i++) {
-      const PetscReal *x = b->A + (2 * first + i) * r, *y = b->A + (2 * first + j) * r;
-      out[j * 2 * n + i] += scale * Product(r, b->table.l, x, y);
-    }
+    for (PetscInt i = 2 * (begin - first); i < 2 * (end - first); i++)
+      out[j * 2 * n + i] += scale * Product(r, b->table.l, all + i * r, all + j * r);
+  if (!own) PetscCall(PetscFree(all));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -10,7 +10,7 @@ struct _p_BoxPart {
   Markers markers; /* borrowed */
   BoxTable table;
   PetscBool ramp;       /* unsteady flow: D fades next to walls */
-  PetscReal *A;         /* [2M][rank], D = A diag(l) A^T */
+  PetscReal *A;         /* [2n][rank] of the own markers, D = A diag(l) A^T */
   PetscReal *amplitude; /* [rank] work */
 };
 
@@ -31,5 +31,5 @@ PETSC_EXTERN PetscErrorCode BoxPartApply(BoxPart box, PetscReal alpha, const Pet
 
 /* BoxPartAdd - out += scale D between the markers first .. first + n - 1, out[2n][2n], rows of the markers begin .. end
    - 1 only. Not collective. */
-PETSC_EXTERN void BoxPartAdd(BoxPart box, PetscReal scale, PetscInt first, PetscInt n, PetscInt begin, PetscInt end,
-                             PetscReal out[]);
+PETSC_EXTERN PetscErrorCode BoxPartAdd(BoxPart box, PetscReal scale, PetscInt first, PetscInt n, PetscInt begin,
+                                       PetscInt end, PetscReal out[]);

@@ -41,27 +41,6 @@ PetscErrorCode DenseBlocksDestroy(DenseBlocks *blocks) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Mob += h^2 C of the near field's blocks whose vesicles are both in [vesicle, end), Mob being of the markers from
-   `first` on, n in all; and h^2 D of the box part, which does not change the iterations of one vesicle's block but
-   costs more than the rest of it. */
-static void AddNearField(Coupling c, PetscInt vesicle, PetscInt end, PetscInt first, PetscInt n, PetscBool box,
-                         PetscReal Mob[]) {
-  const Layout l = c->membrane->layout;
-  const PetscReal h2 = PetscSqr(c->fluid->grid->h);
-  for (PetscInt k = 0; c->near && k < c->near->count; k++) {
-    const NearBlock *b = &c->near->block[k];
-    if (b->row < vesicle || b->row >= end || b->column < vesicle || b->column >= end) continue;
-    const PetscInt rows = 2 * LayoutCount(l, b->row), columns = 2 * LayoutCount(l, b->column);
-    PetscReal *at = Mob + 2 * (l->start[b->column] - first) * 2 * n + 2 * (l->start[b->row] - first);
-    for (PetscInt j = 0; j < columns; j++)
-      for (PetscInt i = 0; i < rows; i++) at[j * 2 * n + i] += h2 * b->C[j * rows + i];
-  }
-  if (c->near && c->near->box && box) {
-    const PetscInt begin = PetscMax(l->first, first), last = PetscMin(l->first + l->n, first + n);
-    BoxPartAdd(c->near->box, h2, first, n, begin, last, Mob);
-  }
-}
-
 /* Mob by MobilityAssemble, zero in unbounded fluid. */
 static PetscErrorCode AssembleTable(Mobility mobility, PetscInt first, PetscInt n, PetscInt part, PetscInt parts,
                                     PetscReal Mob[]) {
@@ -80,7 +59,8 @@ static PetscErrorCode AssembleTogether(DenseBlocks b, Mobility mobility, PetscRe
   PetscFunctionBeginUser;
   PetscCall(PetscMPIIntCast(4 * l->M * l->M, &size));
   PetscCall(AssembleTable(mobility, 0, l->M, l->rank, l->size, Mob));
-  AddNearField(b->coupling, 0, l->bodies, 0, l->M, PETSC_TRUE, Mob);
+  if (b->coupling->near)
+    PetscCall(NearFieldAdd(b->coupling->near, PetscSqr(b->coupling->fluid->grid->h), PETSC_TRUE, 0, l->M, Mob));
   if (l->size > 1)
     PetscCallMPI(MPI_Reduce(l->rank == b->root ? MPI_IN_PLACE : Mob, Mob, size, MPIU_REAL, MPI_SUM, b->root, l->comm));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -114,7 +94,8 @@ PetscErrorCode DenseBlocksFactor(DenseBlocks b, Mobility mobility, PetscReal a0,
     DenseBlock *q = &b->block[k];
     if (!b->together) {
       PetscCall(AssembleTable(mobility, q->first, q->n, 0, 1, Mob));
-      AddNearField(b->coupling, q->vesicle, q->end, q->first, q->n, PETSC_FALSE, Mob);
+      /* the box part does not change the iterations of one vesicle's block but costs more than the rest of it */
+      if (b->coupling->near) PetscCall(NearFieldAdd(b->coupling->near, h2, PETSC_FALSE, q->first, q->n, Mob));
     }
     PetscCall(DenseBlockFactor(m, h2, q, a0, b->coupling->treading + q->vesicle, Mob, &good));
   }

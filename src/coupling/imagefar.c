@@ -5,6 +5,7 @@
        C_image = -1/(4 pi) SUM c_pq a^p b^q n!/z^{n+1},   n = 1 + p + q,   z = a + b - i x,
    the real part for tt and nn, the imaginary part for nt. */
 #include "coupling/imagefar.h"
+#include "base/lanes.h"
 
 /* Monomials 1, a, b, aa, ab, bb, aab, abb. */
 enum { ONE, A, B, AA, AB, BB, AAB, ABB };
@@ -33,17 +34,19 @@ void ImageKernelMake(PetscReal along, PetscReal across, ImageKernel *kernel) {
 }
 
 /* One at a and b against the powers of 1/z. */
-static inline PetscReal Sum(const PetscReal c[IMAGE_MONOMIALS], PetscReal a, PetscReal b, const PetscReal power[4]) {
+static inline Lanes Sum(const PetscReal c[IMAGE_MONOMIALS], Lanes a, Lanes b, const Lanes power[4]) {
   return c[ONE] * power[0] + (c[A] * a + c[B] * b) * power[1] +
          (a * (c[AA] * a + c[AB] * b) + c[BB] * b * b) * power[2] + a * b * (c[AAB] * a + c[ABB] * b) * power[3];
 }
 
-/* The sums of the three polynomials, that of nt for the source's tangential component and for the response's. */
-static void Sums(const ImagePair *p, const PetscReal *const c[IMAGE_PARTS], PetscReal part[IMAGE_PARTS]) {
-  const PetscReal a = p->a, b = p->b, H = a + b, over = 1 / (H * H + p->x * p->x), u = H * over, v = p->x * over;
-  PetscReal real[4], imaginary[4], w[2] = {u, v}, factor = -1 / (4 * PETSC_PI);
+/* The sums of the three polynomials, that of nt for the source's tangential component and for the response's, of four
+   pairs. */
+static inline void Sums(Lanes x, Lanes a, Lanes b, const PetscReal *const c[IMAGE_PARTS], Lanes part[IMAGE_PARTS]) {
+  const Lanes H = a + b, over = 1 / (H * H + x * x), u = H * over, v = x * over;
+  Lanes real[4], imaginary[4], w[2] = {u, v};
+  PetscReal factor = -1 / (4 * PETSC_PI);
   for (int n = 0; n < 4; n++) {
-    const PetscReal next = w[0] * u - w[1] * v;
+    const Lanes next = w[0] * u - w[1] * v;
     w[1] = w[0] * v + w[1] * u;
     w[0] = next;
     factor *= n + 1;
@@ -56,6 +59,16 @@ static void Sums(const ImagePair *p, const PetscReal *const c[IMAGE_PARTS], Pets
   part[IMAGE_TN] = -Sum(c[IMAGE_TN], b, a, imaginary); /* t from n is n from t the other way round */
 }
 
+void ImageFarRow(PetscInt n, const PetscReal x[], const PetscReal a[], const PetscReal b[], const ImageKernel *kernel,
+                 PetscReal *const part[IMAGE_PARTS]) {
+  const PetscReal *c[IMAGE_PARTS] = {kernel->c[0], kernel->c[1], kernel->c[2], kernel->c[2]};
+  Lanes four[IMAGE_PARTS];
+  for (PetscInt k = 0; k < n; k += LANES) {
+    Sums(LanesAt(x + k), LanesAt(a + k), LanesAt(b + k), c, four);
+    for (int q = 0; q < IMAGE_PARTS; q++) *(Lanes *)(part[q] + k) = four[q];
+  }
+}
+
 void ImageFar(const ImagePair *p, const ImageKernel *kernel, PetscReal ma, PetscReal mb, PetscReal part[IMAGE_PARTS]) {
   const PetscReal *c[IMAGE_PARTS] = {kernel->c[0], kernel->c[1], kernel->c[2], kernel->c[2]};
   PetscReal own[IMAGE_PARTS][IMAGE_MONOMIALS];
@@ -66,5 +79,7 @@ void ImageFar(const ImagePair *p, const ImageKernel *kernel, PetscReal ma, Petsc
     for (int q = 0; q < IMAGE_PARTS; q++)
       if (q != IMAGE_NN) c[q] = own[q];
   }
-  Sums(p, c, part);
+  Lanes four[IMAGE_PARTS];
+  Sums(p->x - (Lanes){0}, p->a - (Lanes){0}, p->b - (Lanes){0}, c, four);
+  for (int q = 0; q < IMAGE_PARTS; q++) part[q] = four[q][0];
 }

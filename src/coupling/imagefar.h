@@ -25,3 +25,8 @@ PETSC_EXTERN void ImageKernelMake(PetscReal along, PetscReal across, ImageKernel
    continued oddly across it (kernel->moment[1] off the wall). Stencils are folded, not scaled. Not collective. */
 PETSC_EXTERN void ImageFar(const ImagePair *pair, const ImageKernel *kernel, PetscReal ma, PetscReal mb,
                            PetscReal part[IMAGE_PARTS]);
+
+/* ImageFarRow - the same of n pairs off the wall: part[IMAGE_PARTS][n] of x, a and b [n], all with room for whole
+   vectors behind n. Not collective. */
+PETSC_EXTERN void ImageFarRow(PetscInt n, const PetscReal x[], const PetscReal a[], const PetscReal b[],
+                              const ImageKernel *kernel, PetscReal *const part[IMAGE_PARTS]);

@@ -1,15 +1,51 @@
-/* One block of the near field: pairs of markers. */
+/* The numbers of the near field: pairs of markers. */
 #pragma once
 #include "coupling/nearfield.h"
 
-#define NEAR_CELLS 30 /* up to which a pair's stencils are summed; farther pairs have a closed form, right to 2e-7 */
+#define NEAR_CELLS 30       /* up to which stencils of one vesicle are summed; farther, a closed form, right to 2e-7 */
+#define NEAR_CROSS_CELLS 16 /* the same of two vesicles; right to 2e-6 */
+#define NEAR_REACH 24       /* cells between two vesicles up to which they have a block */
 
 /* NearFarCoefficients - of a kernel, from its second moments along and across. */
 PETSC_EXTERN void NearFarCoefficients(const Kernel *kernel, PetscReal far[5]);
 
-/* NearBlockFill - the block's matrix at the present markers, close curves not yet refined (nearclose.h). Not
- * collective. */
-PETSC_EXTERN PetscErrorCode NearBlockFill(NearField near, NearBlock *block);
+/* NearBlockIsSelf - whether it is of a vesicle with itself, not with an image. */
+static inline PetscBool NearBlockIsSelf(const NearBlock *b) {
+  return b->row == b->column && b->shift[0] == 0 && b->shift[1] == 0 ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* One marker's two rows of a block, the y row a stride behind. */
+typedef struct {
+  PetscInt row, column, count; /* marker; the first of the columns' markers, how many */
+  PetscInt stride;             /* whole vectors, zeros behind the last marker */
+  size_t at;                   /* in `value` */
+} NearRow;
+
+/* NearBlockBegin - of a block's first marker; NearBlockNext - of the next one; false when there is none. */
+static inline PetscInt NearStride(PetscInt count) {
+  return 4 * ((count + 1) / 2);
+}
+static inline NearRow NearBlockBegin(Layout l, const NearBlock *b) {
+  const PetscInt count = LayoutCount(l, b->column);
+  return (NearRow){l->start[b->row], l->start[b->column], count, NearStride(count), b->at};
+}
+static inline PetscBool NearBlockNext(Layout l, const NearBlock *b, NearRow *r) {
+  r->at += 2 * (size_t)r->stride;
+  if (++r->row == l->start[b->row + 1]) return PETSC_FALSE;
+  if (NearBlockIsSelf(b)) {
+    r->column++;
+    r->stride = NearStride(--r->count);
+  }
+  return PETSC_TRUE;
+}
+
+/* NearBlockFill - the values of the block at the present markers, close curves not yet refined (nearclose.h). Not
+   collective. */
+PETSC_EXTERN PetscErrorCode NearBlockFill(NearField near, const NearBlock *block);
+
+/* NearBlockAdd - the block += parts xx, yy, xy, yx, [n_column][n_row] each; where it is of a vesicle with itself, of
+   one of the two of each pair. Not collective. */
+PETSC_EXTERN void NearBlockAdd(NearField near, const NearBlock *block, PetscReal scale, PetscReal *const part[4]);
 
 /* NearLatticePair - L of markers i and j, d = X_i - X_j (length) that of the image meant: xx, yy, xy, yx. By stencils
    as far as the table goes, by closed form beyond. Of `near` it reads markers, stencil, lattice, far and nu. Not

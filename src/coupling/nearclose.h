@@ -2,7 +2,12 @@
 #pragma once
 #include "coupling/nearfield.h"
 
-/* NearBlockRefine - to image->C, the block of these two curves, for the column's image at image->shift: where its gap
-   to the row's curve is below 1.3 marker spacings, the difference between the Stokeslet on finer points of both and on
-   the markers; nothing for wider gaps. Not collective. */
-PETSC_EXTERN PetscErrorCode NearBlockRefine(NearField near, const NearBlock *image);
+/* NearCloseGap - the gap of two curves, the column's moved by shift, whose markers come as near as this to one another
+   (length): that of finer points where it may be below 1.3 marker spacings, else as it is. `close`: whether it is. Not
+   collective. */
+PETSC_EXTERN PetscErrorCode NearCloseGap(NearField near, PetscInt row, PetscInt column, const PetscReal shift[2],
+                                         PetscReal *gap, PetscBool *close);
+
+/* NearCloseAdd - to the block of such curves the difference between the Stokeslet on finer points of both and on the
+   markers. Not collective. */
+PETSC_EXTERN PetscErrorCode NearCloseAdd(NearField near, const NearClose *close);

@@ -1,18 +1,19 @@
 #include "coupling/nearfield.h"
 #include "base/agree.h"
-#include "coupling/blas.h"
+#include "base/lanes.h"
 #include "coupling/nearblock.h"
 #include "coupling/nearclose.h"
+#include "coupling/nearpairs.h"
+#include "coupling/wallclose.h"
 
-#define REACH 24      /* cells between vesicles up to which they have blocks */
-#define MOST_IMAGES 9 /* of a vesicle around another */
-
-/* Weights of ln(4 sin^2(t/2)) in Kress' quadrature on n points, by index difference. */
+/* Weights of ln(4 sin^2(t/2)) in Kress' quadrature on n points, by index difference; less that logarithm and times -1/2
+   but at 0. */
 static void Kress(PetscInt n, PetscReal k[]) {
   for (PetscInt d = 0; d < n; d++) {
     k[d] = 0;
     for (PetscInt m = 1; m <= (n - 1) / 2; m++) k[d] -= 2 * PetscCosReal(2 * PETSC_PI * ((m * d) % n) / n) / m;
     if (n % 2 == 0) k[d] -= (d % 2 ? -2.0 : 2.0) / n;
+    if (d) k[d] = -0.5 * (k[d] - PetscLogReal(4 * PetscSqr(PetscSinReal(PETSC_PI * d / n))));
   }
 }
 
@@ -34,15 +35,10 @@ PetscErrorCode NearFieldCreate(Markers markers, Membrane m, PetscReal nu, NearFi
     PetscCall(PetscMalloc1(LayoutCount(l, v), &f->kress[v]));
     Kress(LayoutCount(l, v), f->kress[v]);
   }
-  PetscCall(PetscMalloc2(2 * l->M, &f->stencil, 2 * l->M, &f->force));
-  PetscCall(PetvesEvent("NearField", &f->event));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode FreeBlocks(NearField f) {
-  PetscFunctionBeginUser;
-  for (PetscInt b = 0; b < f->count; b++) PetscCall(PetscFree(f->block[b].C));
-  f->count = 0;
+  PetscCall(PetscMalloc2(2 * l->M, &f->stencil, l->bodies, &f->bounds));
+  PetscCall(PetscCalloc2(2 * l->M + LANES, &f->force, 2 * l->n + LANES, &f->velocity)); /* whole vectors */
+  PetscCall(PetvesEvent("NearField", &f->place));
+  PetscCall(PetvesEvent("NearFieldApply", &f->apply));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -50,11 +46,13 @@ PetscErrorCode NearFieldDestroy(NearField *near) {
   NearField f = *near;
   PetscFunctionBeginUser;
   if (!f) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(FreeBlocks(f));
   PetscCall(PetscFree(f->block));
+  PetscCall(PetscFree(f->close));
+  PetscCall(PetscFree(f->value));
   for (PetscInt v = 0; v < f->membrane->layout->bodies; v++) PetscCall(PetscFree(f->kress[v]));
   PetscCall(PetscFree(f->kress));
-  PetscCall(PetscFree2(f->stencil, f->force));
+  PetscCall(PetscFree2(f->stencil, f->bounds));
+  PetscCall(PetscFree2(f->force, f->velocity));
   PetscCall(NearImageDestroy(&f->image));
   PetscCall(OffsetTableDestroy(&f->lattice));
   PetscCall(BoxPartDestroy(&f->box));
@@ -68,115 +66,135 @@ PetscErrorCode NearFieldAddBoxPart(NearField f, const FluidSpec *spec) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A block between own vesicle v and the image of w moved by shift, and its matrix. */
-static PetscErrorCode AddBlock(NearField f, PetscInt v, PetscInt w, const PetscReal shift[2]) {
+/* The stencils of the vesicles that blocks are of, each once. */
+static PetscErrorCode PlaceStencils(NearField f) {
   const Layout l = f->membrane->layout;
-  NearBlock *b;
+  PetscBool *done;
   PetscFunctionBeginUser;
-  if (f->count == f->room) {
-    PetscInt room = PetscMax(8, 2 * f->room);
-    NearBlock *more;
-    PetscCall(PetscCalloc1(room, &more));
-    if (f->count) PetscCall(PetscArraycpy(more, f->block, f->count));
-    PetscCall(PetscFree(f->block));
-    f->block = more;
-    f->room = room;
-  }
-  b = &f->block[f->count++];
-  *b = (NearBlock){.row = v, .column = w, .shift = {shift[0], shift[1]}};
-  PetscCall(PetscMalloc1(4 * LayoutCount(l, v) * LayoutCount(l, w), &b->C));
-  PetscCall(NearBlockFill(f, b));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Whether the image of w moved by shift is v itself. */
-static PetscBool IsSelf(PetscInt v, PetscInt w, const PetscReal shift[2]) {
-  return v == w && shift[0] == 0 && shift[1] == 0 ? PETSC_TRUE : PETSC_FALSE;
-}
-
-/* Square of the least distance (length^2) between markers of v and of w moved by shift. */
-static PetscReal Apart(NearField f, PetscInt v, PetscInt w, const PetscReal shift[2]) {
-  const Layout l = f->membrane->layout;
-  const PetscReal *X = f->markers->X;
-  PetscReal least = PETSC_MAX_REAL;
-  for (PetscInt i = l->start[v]; i < l->start[v + 1]; i++)
-    for (PetscInt j = l->start[w]; j < l->start[w + 1]; j++) {
-      const PetscReal dx = X[2 * i] - X[2 * j] - shift[0], dy = X[2 * i + 1] - X[2 * j + 1] - shift[1];
-      least = PetscMin(least, dx * dx + dy * dy);
-    }
-  return least;
-}
-
-/* Shifts of w's images within REACH cells of v, in unbounded fluid at any distance, of the one whose first marker is
-   nearest and its neighbours: the nearest first. */
-static PetscInt Images(NearField f, PetscInt v, PetscInt w, PetscReal image[MOST_IMAGES][2]) {
-  const Grid g = f->markers->grid;
-  const Layout l = f->membrane->layout;
-  const PetscReal *X = f->markers->X, reach = f->free ? PETSC_MAX_REAL : PetscSqr(REACH * g->h);
-  PetscInt around[2], count = 0;
-  PetscReal middle[2], box[2], least = reach;
-  for (int d = 0; d < 2; d++) {
-    box[d] = g->hi[d] - g->lo[d];
-    around[d] = g->wall[d] ? 0 : 1;
-    middle[d] = around[d] * PetscFloorReal((X[2 * l->start[v] + d] - X[2 * l->start[w] + d]) / box[d] + 0.5);
-  }
-  for (PetscInt q = -around[1]; q <= around[1]; q++)
-    for (PetscInt p = -around[0]; p <= around[0]; p++) {
-      const PetscReal shift[2] = {(middle[0] + p) * box[0], (middle[1] + q) * box[1]};
-      const PetscReal apart = IsSelf(v, w, shift) ? 0 : Apart(f, v, w, shift);
-      if (apart >= reach) continue;
-      const PetscInt at = apart < least ? 0 : count;
-      for (int d = 0; d < 2; d++) {
-        if (at < count) image[count][d] = image[at][d];
-        image[at][d] = shift[d];
+  PetscCall(PetscCalloc1(l->bodies, &done));
+  for (PetscInt b = 0; b < f->blocks; b++)
+    for (int end = 0; end < 2; end++) {
+      const PetscInt v = end ? f->block[b].column : f->block[b].row;
+      for (PetscInt k = l->start[v]; k < l->start[v + 1] && !done[v]; k++) {
+        PaddedStencil *s = &f->stencil[2 * k];
+        for (int c = 0; c < 2; c++) StencilPad(&f->markers->plain[2 * k + c], &s[c]);
+        StencilUnwrap(f->markers->grid, f->markers->X + 2 * k, s);
       }
-      least = PetscMin(least, apart);
-      count++;
+      done[v] = PETSC_TRUE;
     }
-  return count;
-}
-
-/* A block for each image; with a box part one, of the images nearest to each marker, named after the nearest, in which
-   all close images are refined. */
-static PetscErrorCode AddPair(NearField f, PetscInt v, PetscInt w) {
-  PetscReal image[MOST_IMAGES][2];
-  PetscFunctionBeginUser;
-  const PetscInt count = Images(f, v, w, image);
-  for (PetscInt k = 0; k < count; k++) {
-    if (!f->box || !k) PetscCall(AddBlock(f, v, w, image[k]));
-    const NearBlock at = {.row = v, .column = w, .shift = {image[k][0], image[k][1]}, .C = f->block[f->count - 1].C};
-    if (!IsSelf(v, w, image[k])) PetscCall(NearBlockRefine(f, &at));
-  }
+  PetscCall(PetscFree(done));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode NearFieldPlace(NearField f) {
   const Layout l = f->membrane->layout;
+  PetscBool crossed = PETSC_FALSE;
   PetscFunctionBeginUser;
-  PetscCall(PetscLogEventBegin(f->event, 0, 0, 0, 0));
-  PetscCall(FreeBlocks(f));
-  for (PetscInt k = 0; k < 2 * l->M && !f->free; k++) StencilPad(&f->markers->plain[k], &f->stencil[k]);
+  PetscCall(PetscLogEventBegin(f->place, 0, 0, 0, 0));
+  PetscCall(NearPairsFind(f));
+  if (f->values > f->value_room) {
+    f->value_room = f->values + f->values / 4;
+    PetscCall(PetscFree(f->value));
+    PetscCall(PetscMalloc1(f->value_room, &f->value));
+  }
+  if (!f->free) PetscCall(PlaceStencils(f));
   if (f->image) PetscCall(NearImagePlace(f->image, f->stencil));
-  for (PetscInt v = l->own; v < l->end; v++)
-    for (PetscInt w = 0; w < l->bodies; w++) PetscCall(AddPair(f, v, w));
+  for (PetscInt k = 0; k < f->blocks; k++) {
+    const NearBlock *b = &f->block[k];
+    PetscCall(NearBlockFill(f, b));
+    if (f->image) PetscCall(NearBlockRefineAtWalls(f, b));
+    if (b->column < l->own || b->column >= l->end) crossed = PETSC_TRUE;
+  }
+  for (PetscInt k = 0; k < f->closes; k++) PetscCall(NearCloseAdd(f, &f->close[k]));
   if (f->box) BoxPartPlace(f->box);
-  PetscCall(AgreeFlag(l->comm, f->count > l->end - l->own ? PETSC_TRUE : PETSC_FALSE, &f->crossed));
-  PetscCall(PetscLogEventEnd(f->event, 0, 0, 0, 0));
+  PetscCall(AgreeFlag(l->comm, crossed, &f->crossed));
+  PetscCall(PetscLogEventEnd(f->place, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A row's part of C F to its marker's velocity and, with `both`, to velocity[2 count] of the columns' markers; forces
+   from the row's and from the columns' on. */
+static void ApplyRow(const NearRow *r, const PetscReal value[], PetscReal alpha, PetscBool both,
+                     const PetscScalar row_force[2], const PetscScalar force[], PetscScalar row_velocity[2],
+                     PetscScalar velocity[]) {
+  const PetscReal *x = value + r->at, *y = x + r->stride, fx = alpha * row_force[0], fy = alpha * row_force[1];
+  Lanes ux = {0}, uy = {0};
+  for (PetscInt k = 0; k < r->stride; k += LANES) {
+    const Lanes F = LanesAt(force + k), cx = LanesAt(x + k), cy = LanesAt(y + k);
+    ux += cx * F;
+    uy += cy * F;
+    if (both) *(Lanes *)(velocity + k) += fx * cx + fy * cy;
+  }
+  row_velocity[0] += alpha * LanesSum(ux);
+  row_velocity[1] += alpha * LanesSum(uy);
+}
+
+/* velocity[2n] += alpha C force[2M] of one block: both ways where both vesicles are own ones. */
+static void ApplyBlock(NearField f, const NearBlock *b, PetscReal alpha, const PetscScalar force[],
+                       PetscScalar velocity[]) {
+  const Layout l = f->membrane->layout;
+  const PetscBool both = b->column >= l->own && b->column < l->end ? PETSC_TRUE : PETSC_FALSE;
+  NearRow r = NearBlockBegin(l, b);
+  do {
+    PetscScalar *other = both ? velocity + 2 * (r.column - l->first) : NULL;
+    ApplyRow(&r, f->value, alpha, both, force + 2 * r.row, force + 2 * r.column, velocity + 2 * (r.row - l->first),
+             other);
+  } while (NearBlockNext(l, b, &r));
 }
 
 PetscErrorCode NearFieldApply(NearField f, PetscReal alpha, const PetscScalar F[], PetscScalar U[]) {
   const Layout l = f->membrane->layout;
   PetscFunctionBeginUser;
+  PetscCall(PetscLogEventBegin(f->apply, 0, 0, 0, 0));
   if (f->crossed)
     PetscCall(LayoutGather(l, 2, F, f->force));
   else
     PetscCall(PetscArraycpy(f->force + 2 * l->first, F, 2 * l->n));
-  for (PetscInt k = 0; k < f->count; k++) {
-    const NearBlock *b = &f->block[k];
-    PetscCall(DenseMultAdd(2 * LayoutCount(l, b->row), 2 * LayoutCount(l, b->column), alpha, b->C,
-                           f->force + 2 * l->start[b->column], U + 2 * LayoutOffset(l, b->row)));
-  }
+  PetscCall(PetscArrayzero(f->velocity, 2 * l->n + LANES));
+  for (PetscInt k = 0; k < f->blocks; k++) ApplyBlock(f, &f->block[k], alpha, f->force, f->velocity);
+  for (PetscInt k = 0; k < 2 * l->n; k++) U[k] += f->velocity[k];
   if (f->box) PetscCall(BoxPartApply(f->box, alpha, F, U));
+  PetscCall(PetscLogEventEnd(f->apply, 0, 0, 0, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* out[2n][2n] += scale times a block, rows and columns counted from marker `first`, in its own rows. */
+static void AddBlock(NearField f, const NearBlock *b, PetscReal scale, PetscInt first, PetscInt n, PetscReal out[]) {
+  const Layout l = f->membrane->layout;
+  const PetscBool both = b->column >= l->own && b->column < l->end ? PETSC_TRUE : PETSC_FALSE;
+  NearRow r = NearBlockBegin(l, b);
+  if (r.column < first || r.column >= first + n) return;
+  do
+    for (PetscInt k = 0; k < 2 * r.count; k++)
+      for (int c = 0; c < 2; c++) {
+        const PetscReal value = scale * f->value[r.at + c * r.stride + k];
+        const PetscInt i = 2 * (r.row - first) + c, j = 2 * (r.column - first) + k;
+        out[j * 2 * n + i] += value;
+        if (both) out[i * 2 * n + j] += value;
+      }
+  while (NearBlockNext(l, b, &r));
+}
+
+/* The first block of the vesicle that a marker belongs to, or of a later one. */
+static PetscInt FirstBlock(NearField f, PetscInt marker) {
+  const PetscInt *start = f->membrane->layout->start;
+  PetscInt low = 0, high = f->blocks;
+  while (low < high) {
+    const PetscInt middle = (low + high) / 2;
+    if (start[f->block[middle].row] < marker)
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  return low;
+}
+
+PetscErrorCode NearFieldAdd(NearField f, PetscReal scale, PetscBool box, PetscInt first, PetscInt n, PetscReal out[]) {
+  const Layout l = f->membrane->layout;
+  PetscFunctionBeginUser;
+  for (PetscInt b = FirstBlock(f, first); b < f->blocks && l->start[f->block[b].row] < first + n; b++)
+    AddBlock(f, &f->block[b], scale, first, n, out);
+  const PetscInt begin = PetscMax(l->first, first), end = PetscMin(l->first + l->n, first + n);
+  if (f->box && box) PetscCall(BoxPartAdd(f->box, scale, first, n, begin, end, out));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

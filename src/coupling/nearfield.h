@@ -10,12 +10,26 @@
 #include "coupling/nearimage.h"
 #include "membrane/membrane.h"
 
-/* The rows of an own vesicle's markers, the columns of a vesicle's that is near, moved by `shift` (length). */
+/* C of an own vesicle with one that is near, moved by `shift` (length): each pair of vesicles or images once, in rows,
+   two for each marker of the row's vesicle, its x and its y velocity, with columns interlaced, which are the columns of
+   that marker's force on the others too. A vesicle's block with itself has of each row what is right of the diagonal,
+   and of a marker with itself the half. */
 typedef struct {
   PetscInt row, column; /* vesicles */
   PetscReal shift[2];
-  PetscReal *C; /* [2 n_column][2 n_row], columns one after another, entries interlaced x, y */
+  size_t at; /* in `value` */
 } NearBlock;
+
+/* An image of the block's column so near to its row that both need finer points. */
+typedef struct {
+  PetscInt block;
+  PetscReal shift[2], gap; /* length */
+} NearClose;
+
+/* A vesicle's least and largest x and y. */
+typedef struct {
+  PetscReal low[2], high[2];
+} NearBounds;
 
 typedef struct _p_NearField *NearField;
 struct _p_NearField {
@@ -26,21 +40,27 @@ struct _p_NearField {
   OffsetTable lattice;
   NearImage image;        /* what the walls add to each pair */
   PetscReal far[5];       /* coefficients a2, a4, a6, b2, b6 of distant pairs */
-  PetscReal **kress;      /* [vesicles][n] weights of the logarithm by index difference; NULL for others' vesicles */
+  PetscReal **kress;      /* [vesicles][n] by index difference, what Kress' quadrature has besides the plain logarithm,
+                             at 0 its weight; NULL for others' vesicles */
   PaddedStencil *stencil; /* [2M] */
+  NearBounds *bounds;     /* [vesicles] */
   NearBlock *block;
-  PetscInt count, room; /* blocks in use, and made */
-  PetscBool crossed;    /* whether any rank has a block between two vesicles, or of an image */
-  PetscScalar *force;   /* [2M] work */
-  BoxPart box;          /* NULL without */
-  PetscLogEvent event;
+  NearClose *close;
+  PetscReal *value;
+  PetscInt blocks, block_room, closes, close_room; /* in use, and made */
+  size_t values, value_room;
+  PetscBool crossed;     /* whether any rank has a pair with another rank's marker */
+  PetscScalar *force;    /* [2M] work */
+  PetscScalar *velocity; /* [2n] work */
+  BoxPart box;           /* NULL without */
+  PetscLogEvent place, apply;
 };
 
 /* NearFieldCreate - for membranes whose markers are on a grid, in a fluid of viscosity nu. Collective. */
 PETSC_EXTERN PetscErrorCode NearFieldCreate(Markers markers, Membrane membrane, PetscReal nu, NearField *near);
 PETSC_EXTERN PetscErrorCode NearFieldDestroy(NearField *near);
 
-/* NearFieldPlace - the blocks of the own vesicles where the markers have been placed (MarkersPlace). Collective. */
+/* NearFieldPlace - C of the own vesicles where the markers have been placed (MarkersPlace). Collective. */
 PETSC_EXTERN PetscErrorCode NearFieldPlace(NearField near);
 
 /* NearFieldAddBoxPart - from here on with the box part, for the fluid that spec makes. Collective. */
@@ -49,3 +69,8 @@ PETSC_EXTERN PetscErrorCode NearFieldAddBoxPart(NearField near, const FluidSpec 
 /* NearFieldApply - U += alpha (C + D) F, D the box part if there is one, own parts F[2n] and U[2n] of marker vectors; F
    is a force times ds (length^3/time^2 with density 1). Collective. */
 PETSC_EXTERN PetscErrorCode NearFieldApply(NearField near, PetscReal alpha, const PetscScalar F[], PetscScalar U[]);
+
+/* NearFieldAdd - out += scale (C + D), or scale C where the box part is not asked for, between the markers first .. first + n - 1, out[2n][2n] entries interlaced, the
+   rows of own markers only. Not collective. */
+PETSC_EXTERN PetscErrorCode NearFieldAdd(NearField near, PetscReal scale, PetscBool box, PetscInt first, PetscInt n,
+                                         PetscReal out[]);

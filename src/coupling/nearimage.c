@@ -1,4 +1,5 @@
 #include "coupling/nearimage.h"
+#include "base/lanes.h"
 #include "markers/fold.h"
 
 /* -S(R) + 2 b^2 D - 2 b SD with R from the source's mirror image, D_ij = s_j (delta_ij/R^2 - 2 R_i R_j/R^4), SD_ij =
@@ -93,6 +94,41 @@ void NearImageAdd(NearImage m, PetscInt i, PetscInt j, const PetscReal d[2], con
       if (m->end[direction][side]) AddWall(m, direction, side, i, j, d, L, C);
 }
 
+PetscBool NearImageIsFar(NearImage m, const PetscReal X[2], const PetscReal low[2], const PetscReal high[2]) {
+  const Grid g = m->markers->grid;
+  for (int dir = 0; dir < 2; dir++)
+    for (int side = 0; side < 2 && g->wall[dir]; side++) {
+      const PetscReal a = (side ? g->hi[dir] - X[dir] : X[dir] - g->lo[dir]) / g->h;
+      const PetscReal b = (side ? g->hi[dir] - high[dir] : low[dir] - g->lo[dir]) / g->h;
+      if (PetscMin(a, b) < FOLD_SCALED || a + b < IMAGE_CELLS) return PETSC_FALSE;
+    }
+  return PETSC_TRUE;
+}
+
+/* One wall's part, added; d along the wall. */
+static void AddFarWall(NearImage m, int direction, int side, PetscInt i, PetscInt j, PetscInt n, PetscBool back,
+                       const PetscReal d[], PetscReal *const C[4]) {
+  const PetscReal cell = 1 / m->markers->grid->h, over = 1 / m->nu, *y = m->y[direction][side], *other = y + j;
+  const int place[IMAGE_PARTS] = {1 - direction, direction, direction ? 3 : 2, direction ? 2 : 3};
+  PetscReal x[IMAGE_ROW], own[IMAGE_ROW], part[IMAGE_PARTS][IMAGE_ROW];
+  for (PetscInt k = 0; k < IMAGE_ROW && k < n + LANES; k++) {
+    x[k] = cell * d[k];
+    own[k] = y[i];
+  }
+  ImageFarRow(n, x, back ? other : own, back ? own : other, &m->kernel,
+              (PetscReal *[]){part[0], part[1], part[2], part[3]});
+  for (int q = 0; q < IMAGE_PARTS; q++) {
+    const PetscReal alpha = side && q >= IMAGE_NT ? -over : over;
+    for (PetscInt k = 0; k < n; k++) C[place[q]][k] += alpha * part[q][k];
+  }
+}
+
+void NearImageAddFar(NearImage m, PetscInt i, PetscInt j, PetscInt n, PetscBool back, const PetscReal x[],
+                     const PetscReal y[], PetscReal *const C[4]) {
+  for (int wall = 0; wall < 4; wall++)
+    if (m->end[wall / 2][wall % 2]) AddFarWall(m, wall / 2, wall % 2, i, j, n, back, wall / 2 ? x : y, C);
+}
+
 /* SUM w [c|c| - sgn(c)/4] - y^2 + 1/4 over the tangential stencil's rows at c from the wall, before it is folded. */
 static PetscReal OddMoment(PetscReal y, PetscInt first, PetscInt n, const PetscReal w[]) {
   PetscReal sum = 0.25 - y * y;
@@ -128,6 +164,7 @@ PetscErrorCode NearImagePlace(NearImage m, const PaddedStencil stencil[]) {
       for (PetscInt k = 0; k < M; k++) {
         const PetscReal x = m->markers->X[2 * k + direction];
         const PetscReal y = (side ? g->hi[direction] - x : x - g->lo[direction]) / g->h;
+        m->y[direction][side][k] = y;
         m->end[direction][side][k] = MakeEnd(m->markers, y, m->kernel.moment[1]);
       }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -145,7 +182,7 @@ PetscErrorCode NearImageCreate(Markers markers, PetscReal nu, const OffsetTable 
   if (!markers->grid->wall[0] && !markers->grid->wall[1]) PetscFunctionReturn(PETSC_SUCCESS);
   for (int direction = 0; direction < 2; direction++)
     for (int side = 0; side < 2 && markers->grid->wall[direction]; side++)
-      PetscCall(PetscMalloc1(M, &m->end[direction][side]));
+      PetscCall(PetscMalloc2(M, &m->end[direction][side], M + LANES, &m->y[direction][side]));
   PetscCall(PetscNew(&m->table));
   PetscCall(ImageTableFill(lattice, m->table));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -156,7 +193,7 @@ PetscErrorCode NearImageDestroy(NearImage *image) {
   PetscFunctionBeginUser;
   if (!m) PetscFunctionReturn(PETSC_SUCCESS);
   for (int direction = 0; direction < 2; direction++)
-    for (int side = 0; side < 2; side++) PetscCall(PetscFree(m->end[direction][side]));
+    for (int side = 0; side < 2; side++) PetscCall(PetscFree2(m->end[direction][side], m->y[direction][side]));
   PetscCall(PetscFree(m->table));
   PetscCall(PetscFree(*image));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -22,6 +22,7 @@ struct _p_NearImage {
   ImageTable *table;
   const PaddedStencil *stencil; /* [2M] unfolded, borrowed */
   ImageEnd *end[2][2];          /* [M] by direction of the normal and side; NULL without a wall */
+  PetscReal *y[2][2];           /* [M] cells from the wall, with room for whole vectors */
 };
 
 /* NearImageCreate - for markers on a grid with any walls, in a fluid of viscosity nu; lattice: the free lattice's
@@ -39,6 +40,16 @@ PETSC_EXTERN PetscErrorCode NearImagePlace(NearImage image, const PaddedStencil 
    S - C_free where that is known in closed form. Not collective. */
 PETSC_EXTERN void NearImageAdd(NearImage image, PetscInt i, PetscInt j, const PetscReal d[2], const PetscReal L[4],
                                PetscReal C[4]);
+
+/* NearImageIsFar - whether a marker at X and all in a box are off all walls, and so far from one another's images that
+   no stencils are summed. NearImageAddFar - the same as NearImageAdd for such a marker i and the n markers from j on, d
+   = (x, y)[n] with room for whole vectors behind n: C[4][n] of i's response to them, or, with back, of theirs to it, d
+   turned. n at most IMAGE_ROW. Not collective. */
+#define IMAGE_ROW 96
+PETSC_EXTERN PetscBool NearImageIsFar(NearImage image, const PetscReal X[2], const PetscReal low[2],
+                                      const PetscReal high[2]);
+PETSC_EXTERN void NearImageAddFar(NearImage image, PetscInt i, PetscInt j, PetscInt n, PetscBool back,
+                                  const PetscReal x[], const PetscReal y[], PetscReal *const C[4]);
 
 /* NearImageBlake - Blake's image part of the Stokeslet in a wall, cells, viscosity 1. NearImageTurn - C += alpha times
    a pair's parts, turned from the wall with this normal and side to x and y. Not collective. */

@@ -1,4 +1,5 @@
 #include "coupling/offsets.h"
+#include "base/lanes.h"
 
 PetscErrorCode OffsetTableCreate(const PetscInt size[2], OffsetTable *t) {
   PetscFunctionBeginUser;
@@ -18,6 +19,7 @@ void StencilPad(const Stencil *s, PaddedStencil *p) {
     for (int i = 0; i < 3 * KERNEL_MAX_POINTS; i++) p->weight[dir][i] = 0;
     for (PetscInt i = 0; i < s->n[dir]; i++) p->weight[dir][KERNEL_MAX_POINTS + i] = s->weight[dir][i];
     p->first[dir] = s->first[dir];
+    p->n[dir] = s->n[dir];
   }
 }
 
@@ -60,4 +62,64 @@ PetscReal StencilImageSum(Grid g, const OffsetTable *t, OffsetBlock block, const
     cells[dir] = g->n[dir] * (PetscInt)PetscFloorReal(off / g->n[dir] + 0.5);
   }
   return StencilPairSum(t, block, a, b, cells);
+}
+
+void StencilUnwrap(Grid g, const PetscReal X[2], PaddedStencil s[2]) {
+  for (int comp = 0; comp < 2; comp++)
+    for (int dir = 0; dir < 2; dir++) {
+      const PetscReal off = (X[dir] - g->lo[dir]) / g->h - (PetscReal)s[comp].first[dir];
+      if (!g->wall[dir]) s[comp].first[dir] += g->n[dir] * (PetscInt)PetscFloorReal(off / g->n[dir] + 0.5);
+    }
+}
+
+/* Weights of the lags that two stencils have, from the least one on, which is returned; zeros up to the last vector's
+   end. */
+static inline PetscInt Lags(const int vectors, int dir, const PaddedStencil *response, const PaddedStencil *source,
+                            Lanes weight[]) {
+  const PetscInt n = source->n[dir];
+  const PetscReal *a = response->weight[dir] + KERNEL_MAX_POINTS + 1 - n, *b = source->weight[dir] + KERNEL_MAX_POINTS;
+  for (int q = 0; q < vectors; q++) weight[q] = b[0] * LanesAt(a + q * LANES);
+  for (PetscInt j = 1; j < n; j++)
+    for (int q = 0; q < vectors; q++) weight[q] += b[j] * LanesAt(a + j + q * LANES);
+  return response->first[dir] - source->first[dir] - (n - 1);
+}
+
+/* The double sum of a table whose middle is at `value`, with a row's lags in so many vectors. */
+static inline PetscReal RowSum(const int vectors, const PetscReal *value, PetscInt width, const PaddedStencil *response,
+                               const PaddedStencil *source, const PetscInt cells[2]) {
+  Lanes wx[3], line[3];
+  union {
+    Lanes lanes[3];
+    PetscReal weight[3 * LANES];
+  } wy;
+  const PetscInt rows = response->n[1] + source->n[1] - 1, i0 = Lags(vectors, 0, response, source, wx) + cells[0];
+  const PetscInt j0 = cells[1] + (rows <= 2 * LANES ? Lags(2, 1, response, source, wy.lanes)
+                                                    : Lags(3, 1, response, source, wy.lanes));
+  const PetscReal *row = value + j0 * width + i0;
+  for (int q = 0; q < vectors; q++) line[q] = wy.weight[0] * LanesAt(row + q * LANES);
+  for (PetscInt j = 1; j < rows; j++) {
+    row += width;
+    for (int q = 0; q < vectors; q++) line[q] += wy.weight[j] * LanesAt(row + q * LANES);
+  }
+  line[0] *= wx[0];
+  for (int q = 1; q < vectors; q++) line[0] += wx[q] * line[q];
+  return LanesSum(line[0]);
+}
+
+/* Of one component of a to one of b. */
+static inline PetscReal TableSum(const PetscReal *value, PetscInt width, const PaddedStencil *a, const PaddedStencil *b,
+                                 const PetscInt cells[2]) {
+  return a->n[0] + b->n[0] - 1 <= 2 * LANES ? RowSum(2, value, width, a, b, cells)
+                                            : RowSum(3, value, width, a, b, cells);
+}
+
+/* u from v at an offset is v from u the other way round, which is even in the distance of the two: the table of v from
+   u one entry to the right and one below. */
+void StencilFourSums(const OffsetTable *t, const PaddedStencil a[2], const PaddedStencil b[2], const PetscInt cells[2],
+                     PetscReal sum[4]) {
+  const PetscInt width = 2 * t->size[0] + 1, middle = t->size[1] * width + t->size[0];
+  sum[0] = TableSum(t->value[OFFSET_UU] + middle, width, &a[0], &b[0], cells);
+  sum[1] = TableSum(t->value[OFFSET_VV] + middle, width, &a[1], &b[1], cells);
+  sum[2] = TableSum(t->value[OFFSET_VU] + middle + 1 - width, width, &a[0], &b[1], cells);
+  sum[3] = TableSum(t->value[OFFSET_VU] + middle, width, &a[1], &b[0], cells);
 }

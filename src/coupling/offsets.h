@@ -20,7 +20,7 @@ PETSC_EXTERN PetscErrorCode OffsetTableDestroy(OffsetTable *table);
 /* A stencil's weights in one direction between zeros, so that sums run over whole vectors. */
 typedef struct {
   PetscReal weight[2][3 * KERNEL_MAX_POINTS];
-  PetscInt first[2];
+  PetscInt first[2], n[2];
 } PaddedStencil;
 
 /* StencilPad - of a stencil. StencilPairSum - the double sum; shift[2]: cells that are added to the offset, whole
@@ -38,3 +38,10 @@ PETSC_EXTERN PetscReal StencilPairSum(const OffsetTable *table, OffsetBlock bloc
 PETSC_EXTERN PetscReal StencilImageSum(Grid grid, const OffsetTable *table, OffsetBlock block,
                                        const PaddedStencil *response, const PaddedStencil *source,
                                        const PetscReal d[2]);
+
+/* StencilUnwrap - the two components' stencils of a marker at X count from its own place, however many periods that is
+   from the grid. StencilFourSums - the sums of markers a and b, so unwrapped, `cells` being added to the offset: xx,
+   yy, xy (x of a to a force along y of b), yx. Far within the table. Not collective. */
+PETSC_EXTERN void StencilUnwrap(Grid grid, const PetscReal X[2], PaddedStencil stencil[2]);
+PETSC_EXTERN void StencilFourSums(const OffsetTable *table, const PaddedStencil a[2], const PaddedStencil b[2],
+                                  const PetscInt cells[2], PetscReal sum[4]);

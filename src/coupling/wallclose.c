@@ -2,6 +2,7 @@
    between markers and finer points, R the distance to the image and chi a smooth window. */
 #include "coupling/wallclose.h"
 #include "coupling/finecurve.h"
+#include "coupling/nearblock.h"
 
 #define CLOSE 2      /* spacings from a curve to an image, below which finer points are needed */
 #define FINE 2.5     /* fine points from a curve to an image */
@@ -29,24 +30,9 @@ static void Images(Grid g, int direction, int side, const FineCurve *a, const Fi
     }
 }
 
-/* block += the parts [n_b][n_a], turned from the wall's directions to x and y. */
-static void AddParts(NearBlock *block, const FineCurve *a, const FineCurve *b, int direction, int side,
-                     PetscReal factor, PetscReal *part[IMAGE_PARTS]) {
-  for (PetscInt j = 0; j < b->n; j++)
-    for (PetscInt i = 0; i < a->n; i++) {
-      PetscReal C[4] = {0, 0, 0, 0}, one[IMAGE_PARTS], *at = block->C + 4 * j * a->n + 2 * i;
-      for (int c = 0; c < IMAGE_PARTS; c++) one[c] = part[c][j * a->n + i];
-      NearImageTurn(direction, side, factor, one, C);
-      at[0] += C[0];
-      at[1] += C[3];
-      at[2 * a->n] += C[2];
-      at[2 * a->n + 1] += C[1];
-    }
-}
-
 /* The block of images in one wall at `factor` times the markers, windowed, times alpha. */
-static PetscErrorCode AddAt(NearField f, NearBlock *block, int direction, int side, PetscInt factor, PetscReal window,
-                            PetscReal alpha) {
+static PetscErrorCode AddAt(NearField f, const NearBlock *block, int direction, int side, PetscInt factor,
+                            PetscReal window, PetscReal alpha) {
   const Grid g = f->markers->grid;
   const PetscReal none[2] = {0, 0};
   PetscReal *K[IMAGE_PARTS], *part[IMAGE_PARTS];
@@ -59,33 +45,37 @@ static PetscErrorCode AddAt(NearField f, NearBlock *block, int direction, int si
   for (int c = 0; c < IMAGE_PARTS; c++) PetscCall(PetscMalloc2(a.count * b.count, &K[c], a.n * b.n, &part[c]));
   Images(g, direction, side, &a, &b, window, K);
   for (int c = 0; c < IMAGE_PARTS; c++) PetscCall(FineCurveProject(&a, &b, K[c], part[c]));
-  AddParts(block, &a, &b, direction, side, alpha / f->nu, part);
+  if (side) /* the wall's directions turned to x and y */
+    for (int c = IMAGE_NT; c <= IMAGE_TN; c++)
+      for (PetscInt k = 0; k < a.n * b.n; k++) part[c][k] *= -1;
+  NearBlockAdd(f, block, alpha / f->nu,
+               direction ? (PetscReal *[4]){part[IMAGE_TT], part[IMAGE_NN], part[IMAGE_TN], part[IMAGE_NT]}
+                         : (PetscReal *[4]){part[IMAGE_NN], part[IMAGE_TT], part[IMAGE_NT], part[IMAGE_TN]});
   for (int c = 0; c < IMAGE_PARTS; c++) PetscCall(PetscFree2(K[c], part[c]));
   PetscCall(FineCurveDestroy(&a));
   PetscCall(FineCurveDestroy(&b));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Cells from the wall to the nearest marker of a vesicle. */
-static PetscReal Nearest(NearField f, PetscInt v, const ImageEnd end[]) {
-  const Layout l = f->membrane->layout;
-  PetscReal least = PETSC_MAX_REAL;
-  for (PetscInt k = l->start[v]; k < l->start[v + 1]; k++) least = PetscMin(least, end[k].y);
-  return least;
+/* From the one vesicle to the other one's image in a wall (length). */
+static PetscReal ImageGap(NearField f, const NearBlock *b, int direction, int side) {
+  const NearBounds *row = &f->bounds[b->row], *column = &f->bounds[b->column];
+  const PetscReal wall = WallPlace(f->markers->grid, direction, side);
+  if (side) return 2 * wall - row->high[direction] - column->high[direction];
+  return row->low[direction] + column->low[direction] - 2 * wall;
 }
 
-PetscErrorCode NearBlockRefineAtWalls(NearField f, NearBlock *block) {
-  const PetscReal h = f->markers->grid->h, ds = PetscMax(f->membrane->ds[block->row], f->membrane->ds[block->column]);
+PetscErrorCode NearBlockRefineAtWalls(NearField f, const NearBlock *b) {
+  const PetscReal ds = PetscMax(f->membrane->ds[b->row], f->membrane->ds[b->column]);
   PetscFunctionBeginUser;
-  for (int direction = 0; direction < 2; direction++)
-    for (int side = 0; side < 2; side++) {
-      const ImageEnd *end = f->image->end[direction][side];
-      if (!end) continue;
-      const PetscReal gap = h * (Nearest(f, block->row, end) + Nearest(f, block->column, end));
-      if (gap > CLOSE * ds) continue;
-      const PetscInt factor = (PetscInt)PetscMin(MOST_FINE, PetscCeilReal(FINE * ds / gap));
-      PetscCall(AddAt(f, block, direction, side, factor, WINDOW * ds, 1));
-      PetscCall(AddAt(f, block, direction, side, 1, WINDOW * ds, -1));
-    }
+  for (int wall = 0; wall < 4; wall++) {
+    const int direction = wall / 2, side = wall % 2;
+    if (!f->image->end[direction][side]) continue;
+    const PetscReal gap = ImageGap(f, b, direction, side);
+    if (gap > CLOSE * ds) continue;
+    const PetscInt factor = (PetscInt)PetscMin(MOST_FINE, PetscCeilReal(FINE * ds / gap));
+    PetscCall(AddAt(f, b, direction, side, factor, WINDOW * ds, 1));
+    PetscCall(AddAt(f, b, direction, side, 1, WINDOW * ds, -1));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

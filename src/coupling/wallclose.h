@@ -5,4 +5,4 @@
 /* NearBlockRefineAtWalls - to the block between two curves, or of one with itself, whose images in a wall are nearer
    than two marker spacings, the difference between Blake's image on finer points of both and on the markers; nothing
    elsewhere. Not collective. */
-PETSC_EXTERN PetscErrorCode NearBlockRefineAtWalls(NearField near, NearBlock *block);
+PETSC_EXTERN PetscErrorCode NearBlockRefineAtWalls(NearField near, const NearBlock *block);

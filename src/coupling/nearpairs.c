@@ -1,0 +1,197 @@
+#include "coupling/nearpairs.h"
+#include "coupling/nearblock.h"
+#include "coupling/nearclose.h"
+#include "curve/crossing.h"
+
+static void FindBounds(NearField f) {
+  const Layout l = f->membrane->layout;
+  for (PetscInt v = 0; v < l->bodies; v++) {
+    NearBounds *b = &f->bounds[v];
+    *b = (NearBounds){{PETSC_MAX_REAL, PETSC_MAX_REAL}, {PETSC_MIN_REAL, PETSC_MIN_REAL}};
+    for (PetscInt k = l->start[v]; k < l->start[v + 1]; k++)
+      for (int d = 0; d < 2; d++) {
+        b->low[d] = PetscMin(b->low[d], f->markers->X[2 * k + d]);
+        b->high[d] = PetscMax(b->high[d], f->markers->X[2 * k + d]);
+      }
+  }
+}
+
+static PetscReal Reach(NearField f) {
+  return f->free ? PETSC_MAX_REAL : NEAR_REACH * f->markers->grid->h;
+}
+
+/* Whether b moved by shift comes as near as `reach` to a. */
+static PetscBool Meet(const NearBounds *a, const NearBounds *b, const PetscReal shift[2], PetscReal reach) {
+  for (int d = 0; d < 2; d++)
+    if (b->low[d] + shift[d] - a->high[d] >= reach || a->low[d] - b->high[d] - shift[d] >= reach) return PETSC_FALSE;
+  return PETSC_TRUE;
+}
+
+/* Room for one more of `size` bytes. */
+static PetscErrorCode Grow(PetscInt count, size_t size, PetscInt *room, void **all) {
+  void *more;
+  PetscFunctionBeginUser;
+  if (count < *room) PetscFunctionReturn(PETSC_SUCCESS);
+  *room = PetscMax(64, 2 * *room);
+  PetscCall(PetscMalloc(*room * size, &more));
+  PetscCall(PetscMemcpy(more, *all, count * size));
+  PetscCall(PetscFree(*all));
+  *all = more;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The block of own vesicle v and the image of w moved by shift, with room for its values. */
+static PetscErrorCode AddBlock(NearField f, PetscInt v, PetscInt w, const PetscReal shift[2]) {
+  const Layout l = f->membrane->layout;
+  NearBlock *b;
+  NearRow r;
+  PetscFunctionBeginUser;
+  PetscCall(Grow(f->blocks, sizeof(NearBlock), &f->block_room, (void **)&f->block));
+  b = &f->block[f->blocks++];
+  *b = (NearBlock){.row = v, .column = w, .shift = {shift[0], shift[1]}, .at = f->values};
+  r = NearBlockBegin(l, b);
+  while (NearBlockNext(l, b, &r)) continue;
+  f->values = r.at;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Note that the last block has an image of these shift and gap. */
+static PetscErrorCode AddClose(NearField f, const PetscReal shift[2], PetscReal gap) {
+  PetscFunctionBeginUser;
+  PetscCall(Grow(f->closes, sizeof(NearClose), &f->close_room, (void **)&f->close));
+  f->close[f->closes++] = (NearClose){.block = f->blocks - 1, .shift = {shift[0], shift[1]}, .gap = gap};
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Least distance (length) between markers of v and of w moved by shift, where it is below reach. */
+static PetscReal Apart(NearField f, PetscInt v, PetscInt w, const PetscReal shift[2], PetscReal reach) {
+  const Layout l = f->membrane->layout;
+  const PetscReal *X = f->markers->X, none[2] = {0, 0};
+  PetscReal least = f->free ? reach : reach * reach;
+  for (PetscInt i = l->start[v]; i < l->start[v + 1]; i++) {
+    const PetscReal x = X[2 * i] - shift[0], y = X[2 * i + 1] - shift[1];
+    const NearBounds at = {{x, y}, {x, y}};
+    if (!Meet(&at, &f->bounds[w], none, reach)) continue;
+    for (PetscInt j = l->start[w]; j < l->start[w + 1]; j++) {
+      const PetscReal dx = x - X[2 * j], dy = y - X[2 * j + 1];
+      least = PetscMin(least, dx * dx + dy * dy);
+    }
+  }
+  return PetscSqrtReal(least);
+}
+
+/* An image of w near v. */
+typedef struct {
+  PetscReal shift[2], gap;
+  PetscBool close;
+} Image;
+#define MOST_IMAGES 9
+
+/* The images of w near v, the nearest first; of v's own without a box part one of each two that are opposite. */
+static PetscErrorCode Images(NearField f, PetscInt v, PetscInt w, Image image[MOST_IMAGES], int *count) {
+  const Grid g = f->markers->grid;
+  const NearBounds *a = &f->bounds[v], *b = &f->bounds[w];
+  const PetscReal reach = Reach(f);
+  PetscInt around[2];
+  PetscReal middle[2], period[2];
+  PetscFunctionBeginUser;
+  *count = 0;
+  for (int d = 0; d < 2; d++) {
+    period[d] = g->hi[d] - g->lo[d];
+    around[d] = g->wall[d] ? 0 : 1;
+    middle[d] = around[d] * PetscFloorReal(0.5 * (a->low[d] + a->high[d] - b->low[d] - b->high[d]) / period[d] + 0.5);
+  }
+  for (PetscInt q = -around[1]; q <= around[1]; q++)
+    for (PetscInt p = -around[0]; p <= around[0]; p++) {
+      Image one = {.shift = {(middle[0] + p) * period[0], (middle[1] + q) * period[1]}};
+      if (v == w && ((!p && !q) || (!f->box && (q < 0 || (q == 0 && p < 0))))) continue;
+      if (!Meet(a, b, one.shift, reach)) continue;
+      one.gap = Apart(f, v, w, one.shift, reach);
+      if (!f->free && one.gap >= reach) continue;
+      PetscCall(NearCloseGap(f, v, w, one.shift, &one.gap, &one.close));
+      image[*count] = one;
+      if (one.gap < image[0].gap) {
+        image[*count] = image[0];
+        image[0] = one;
+      }
+      (*count)++;
+    }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A block for each image of w; with a box part one, of the images nearest to each marker, named after the nearest, in
+   which all close images are refined; v's own are in its block with itself. */
+static PetscErrorCode AddImages(NearField f, PetscInt v, PetscInt w) {
+  Image image[MOST_IMAGES];
+  int count;
+  PetscFunctionBeginUser;
+  PetscCall(Images(f, v, w, image, &count));
+  for (int k = 0; k < count; k++) {
+    if (!f->box || (!k && v != w)) PetscCall(AddBlock(f, v, w, image[k].shift));
+    if (image[k].close) PetscCall(AddClose(f, image[k].shift, image[k].gap));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Pairs of vesicles with an own one among them. */
+typedef struct {
+  Layout layout;
+  PetscInt (*pair)[2], count, room;
+  PetscErrorCode error;
+} Candidates;
+
+static PetscBool Keep(void *context, PetscInt v, PetscInt w, const PetscReal d[2]) {
+  Candidates *c = (Candidates *)context;
+  const Layout l = c->layout;
+  const PetscBool first = v >= l->own && v < l->end ? PETSC_TRUE : PETSC_FALSE;
+  if (!first && (w < l->own || w >= l->end)) return PETSC_FALSE;
+  c->error = Grow(c->count, sizeof(*c->pair), &c->room, (void **)&c->pair);
+  if (c->error) return PETSC_TRUE;
+  c->pair[c->count][0] = first ? v : w;
+  c->pair[c->count++][1] = first ? w : v;
+  return PETSC_FALSE;
+}
+
+static PetscErrorCode FindCandidates(NearField f, Candidates *c) {
+  const Grid g = f->markers->grid;
+  const PetscInt bodies = c->layout->bodies;
+  PetscReal *middle, period[2], widest = 0;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(2 * bodies, &middle));
+  for (int d = 0; d < 2; d++) period[d] = g->wall[d] ? 0 : g->hi[d] - g->lo[d];
+  for (PetscInt v = 0; v < bodies; v++) {
+    const NearBounds *b = &f->bounds[v];
+    for (int d = 0; d < 2; d++) middle[2 * v + d] = 0.5 * (b->low[d] + b->high[d]);
+    widest = PetscMax(widest, PetscHypotReal(b->high[0] - b->low[0], b->high[1] - b->low[1]));
+  }
+  PetscCall(PairsWithin(bodies, middle, period, f->free ? PETSC_MAX_REAL : widest + Reach(f), Keep, c));
+  PetscCall(PetscFree(middle));
+  PetscCall(c->error);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static int ByRow(const void *a, const void *b) {
+  const PetscInt *p = (const PetscInt *)a, *q = (const PetscInt *)b;
+  const PetscInt first = p[0] != q[0] ? p[0] - q[0] : p[1] - q[1];
+  return (first > 0) - (first < 0);
+}
+
+PetscErrorCode NearPairsFind(NearField f) {
+  const Layout l = f->membrane->layout;
+  const PetscReal none[2] = {0, 0};
+  Candidates c = {.layout = l};
+  PetscInt k = 0;
+  PetscFunctionBeginUser;
+  f->blocks = f->closes = 0;
+  f->values = 0;
+  FindBounds(f);
+  PetscCall(FindCandidates(f, &c));
+  qsort(c.pair, (size_t)c.count, sizeof(*c.pair), ByRow);
+  for (PetscInt v = l->own; v < l->end; v++) {
+    PetscCall(AddBlock(f, v, v, none));
+    PetscCall(AddImages(f, v, v));
+    for (; k < c.count && c.pair[k][0] == v; k++) PetscCall(AddImages(f, v, c.pair[k][1]));
+  }
+  PetscCall(PetscFree(c.pair));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
