@@ -3,6 +3,7 @@
 import re
 import signal
 import subprocess
+import xml.etree.ElementTree as ET
 
 import h5py
 import numpy as np
@@ -118,6 +119,21 @@ def test_images_are_cut_at_the_seam(tmp_path):
     assert left[:, 0].mean() == pytest.approx(-1.05, abs=1e-2) and right[:, 0].mean() == pytest.approx(0.95, abs=1e-2)
     whole_box = {path.name for path in plot_run(tmp_path)}
     assert whole_box >= {"field.png", "shapes.png", "tension.png"}
+
+
+def test_run_xmf_is_wrapped(tmp_path):
+    """A vesicle two periods away is shifted back by them, the other is as it is in run.h5; each has its number."""
+    pair = "-domain_bc_x periodic -vesicle_count 2 -vesicle_semi_axes .2,.3 -vesicle_center 4.5,0,-.4,0 -time_end 0"
+    grids = [
+        grid
+        for grid in ET.parse(run_petves(tmp_path, pair).folder / "run.xmf").getroot().iter("Grid")
+        if grid.get("Name").startswith("vesicle")
+    ]
+    items = [grid.find("Geometry/DataItem") for grid in grids]
+    assert [item.get("ItemType") for item in items] == ["Function", "HyperSlab"]
+    shift = [float(x) for x in re.findall(r"\(([-.0-9]+)\)", items[0].get("Function"))]
+    assert shift == [-4, 0] and [child.find("DataItem").text.split()[2] for child in items[0]] == ["0", "1"]
+    assert [grid.find("Attribute[@Name='vesicle']/DataItem").text for grid in grids] == ["1", "2"]
 
 
 def test_many_are_drawn_in_colours_without_names(whole, tmp_path):

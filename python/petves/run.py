@@ -89,7 +89,9 @@ class Run:
                     markers=file["vesicle/markers"][:] if "vesicle" in file else none,
                     velocity=file["vesicle/velocity"][:] if "vesicle" in file else none,
                     tension=file["vesicle/tension"][:] if "vesicle" in file else none[:, :, 0],
-                    start=np.atleast_1d(file.attrs["vesicle_start"]).astype(int),
+                    start=np.atleast_1d(
+                        file.attrs.get("vesicle_start", file["vesicle_start"] if "vesicle_start" in file else None)
+                    ).astype(int),
                     summary=json.loads(summary.read_text()) if summary.is_file() else {},
                 )
             except KeyError as error:

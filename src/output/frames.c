@@ -59,6 +59,15 @@ PetscErrorCode FramesWrite(Frames *f, const Gathered *now, PetscBool scheduled) 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode FramesMarkers(Frames *f, PetscReal **markers) {
+  const PetscInt M = f->scheme->membrane->layout->M;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(2 * M * f->grown.count, markers));
+  for (PetscInt t = 0; t < f->grown.count && M; t++)
+    PetscCall(H5ReadArray(&f->grown.file, FrameSeries[3], t, 2 * M, *markers + 2 * M * t));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode FramesSync(Frames *f) {
   PetscFunctionBeginUser;
   PetscCall(GrowingFlush(&f->grown, PETSC_TRUE));

@@ -23,6 +23,9 @@ PETSC_EXTERN PetscErrorCode FramesGoOn(Frames *frames, Folder *folder, Scheme sc
    end. Collective; stops with one line when it cannot be written. */
 PETSC_EXTERN PetscErrorCode FramesWrite(Frames *frames, const Gathered *now, PetscBool scheduled);
 
+/* FramesMarkers - markers[frames][2 M] of the frames that FramesGoOn has found, to be freed. Collective. */
+PETSC_EXTERN PetscErrorCode FramesMarkers(Frames *frames, PetscReal **markers);
+
 /* FramesSync - put all of it on the disk. Collective; stops with one line when it cannot be written. */
 PETSC_EXTERN PetscErrorCode FramesSync(Frames *frames);
 

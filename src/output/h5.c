@@ -89,11 +89,37 @@ static hid_t IntType(void) {
   return sizeof(PetscInt) == 8 ? H5T_NATIVE_INT64 : H5T_NATIVE_INT32;
 }
 
+/* Numbers that an attribute may have: HDF5 keeps no more than 64 KiB with an object. More are a dataset of the name. */
+#define ATTRIBUTE_NUMBERS 8000
+
+static void PutDataset(H5File *f, const char name[], hid_t type, hsize_t size, const void *values) {
+  hid_t space = -1, set = -1;
+  Try(f, space = H5Screate_simple(1, &size, NULL));
+  Try(f, set = H5Dcreate2(f->id, name, type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
+  Try(f, H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values));
+  if (set >= 0) Try(f, H5Dclose(set));
+  if (space >= 0) Try(f, H5Sclose(space));
+}
+
+static void GetDataset(H5File *f, const char name[], hid_t type, PetscInt n, void *values) {
+  hid_t set = -1, space = -1;
+  Try(f, set = H5Dopen2(f->id, name, H5P_DEFAULT));
+  Try(f, space = H5Dget_space(set));
+  Try(f, H5Sget_simple_extent_npoints(space) == n ? 0 : -1);
+  Try(f, H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values));
+  if (space >= 0) (void)H5Sclose(space);
+  if (set >= 0) (void)H5Dclose(set);
+}
+
 static PetscErrorCode PutAttribute(H5File *f, const char name[], hid_t type, PetscInt n, const void *values) {
   const hsize_t size = (hsize_t)n;
   hid_t space = -1, attribute = -1;
   PetscFunctionBeginUser;
   if (f->rank || f->failed) PetscFunctionReturn(PETSC_SUCCESS);
+  if (n > ATTRIBUTE_NUMBERS) {
+    PutDataset(f, name, type, size, values);
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   Try(f, space = n == 1 ? H5Screate(H5S_SCALAR) : H5Screate_simple(1, &size, NULL));
   Try(f, attribute = H5Acreate2(f->id, name, type, space, H5P_DEFAULT, H5P_DEFAULT));
   Try(f, H5Awrite(attribute, type, values));
@@ -125,6 +151,10 @@ PetscErrorCode H5PutString(H5File *f, const char name[], const char value[]) {
 static void GetAttribute(H5File *f, const char name[], hid_t type, PetscInt n, void *values) {
   hid_t attribute = -1, space = -1;
   if (f->rank || f->failed) return;
+  if (n > ATTRIBUTE_NUMBERS) {
+    GetDataset(f, name, type, n, values);
+    return;
+  }
   Try(f, attribute = H5Aopen(f->id, name, H5P_DEFAULT));
   Try(f, space = H5Aget_space(attribute));
   Try(f, H5Sget_simple_extent_npoints(space) == n ? 0 : -1);

@@ -25,7 +25,8 @@ PETSC_EXTERN PetscErrorCode H5FileClose(H5File *file);
 /* H5FileFailed - whether any call so far has failed; the same on every rank. Collective. */
 PETSC_EXTERN PetscErrorCode H5FileFailed(const H5File *file, PetscBool *failed);
 
-/* Attributes of the root group: rank 0's values are written; what is read goes to every rank. A string that is not
+/* Attributes of the root group, of more than 8000 numbers datasets of their name: rank 0's values are written; what is
+   read goes to every rank. A string that is not
    there is left empty. Reading is collective. */
 PETSC_EXTERN PetscErrorCode H5PutReals(H5File *file, const char name[], PetscInt n, const PetscReal values[]);
 PETSC_EXTERN PetscErrorCode H5PutInts(H5File *file, const char name[], PetscInt n, const PetscInt values[]);

@@ -39,12 +39,15 @@ static PetscErrorCode BeginFiles(Output o) {
    found good. */
 static PetscErrorCode GoOnWithFiles(Output o, PetscInt frames) {
   const char *restart = o->scene->output.restart;
+  PetscReal *markers;
   PetscFunctionBeginUser;
   PetscCall(SeriesCut(&o->series, &o->folder, o->record.header, o->scheme->state.step, restart));
   PetscCall(ClearFolder(o));
   PetscCall(FramesGoOn(&o->frames, &o->folder, o->scheme, frames, restart));
   PetscCall(VesicleFileGoOn(&o->vesicles, &o->folder, o->scheme, o->scheme->state.step, restart));
-  PetscCall(XdmfGoOn(&o->xdmf, frames, o->frames.grown.time));
+  PetscCall(FramesMarkers(&o->frames, &markers));
+  PetscCall(XdmfGoOn(&o->xdmf, frames, o->frames.grown.time, markers));
+  PetscCall(PetscFree(markers));
   PetscCall(SeriesOpen(&o->series));
   PetscCall(CheckpointAdopt(&o->checkpoint, restart));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -127,7 +130,7 @@ static PetscErrorCode WriteFrame(Output o, PetscBool scheduled) {
   PetscCall(FramesWrite(&o->frames, &o->now, scheduled));
   PetscCall(SeriesFlush(&o->series, PETSC_FALSE));
   PetscCall(VesicleFileFlush(&o->vesicles, PETSC_FALSE));
-  PetscCall(XdmfWrite(&o->xdmf, o->frames.grown.count - 1, o->frames.time));
+  PetscCall(XdmfWrite(&o->xdmf, o->frames.grown.count - 1, o->frames.time, o->now.markers));
   PetscCall(PhaseEnd());
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -42,8 +42,41 @@ static void PrintFluid(Grid g, FILE *f, PetscInt t) {
   fprintf(f, "</DataItem></Attribute></Grid>\n");
 }
 
-static void PrintVesicle(Membrane m, FILE *f, PetscInt t, PetscInt v) {
+/* Coordinate c of one vesicle's markers. */
+static void PrintCoordinate(FILE *f, PetscInt t, PetscInt first, PetscInt n, PetscInt M, int c) {
+  fprintf(f,
+          "<DataItem ItemType=\"HyperSlab\" Dimensions=\"%d\"><DataItem Dimensions=\"3 3\" Format=\"XML\">%d %d %d 1 1 "
+          "1 1 %d 1</DataItem>",
+          (int)n, (int)t, (int)first, c, (int)n);
+  fprintf(f,
+          "<DataItem Dimensions=\"&frames; %d 2\" NumberType=\"Float\" Precision=\"8\" "
+          "Format=\"HDF\">run.h5:/vesicle/markers</DataItem></DataItem>\n",
+          (int)M);
+}
+
+/* One vesicle's markers, shifted. */
+static void PrintShifted(FILE *f, PetscInt t, PetscInt first, PetscInt n, PetscInt M, const PetscReal shift[2]) {
+  fprintf(f, "<DataItem ItemType=\"Function\" Function=\"JOIN($0 + (%.17g), $1 + (%.17g))\" Dimensions=\"%d 2\">\n",
+          (double)shift[0], (double)shift[1], (int)n);
+  for (int c = 0; c < 2; c++) PrintCoordinate(f, t, first, n, M, c);
+  fprintf(f, "</DataItem>\n");
+}
+
+/* Whole periods that bring the middle of a vesicle with these n markers into the box. */
+static void Wrap(Grid g, PetscInt n, const PetscReal X[], PetscReal shift[2]) {
+  for (int d = 0; d < 2; d++) {
+    const PetscReal period = g->hi[d] - g->lo[d];
+    PetscReal middle = 0;
+    for (PetscInt k = 0; k < n; k++) middle += X[2 * k + d] / n;
+    shift[d] = g->wall[d] || g->free ? 0 : -period * PetscFloorReal((middle - g->lo[d]) / period);
+  }
+}
+
+static void PrintVesicle(Scheme s, FILE *f, PetscInt t, PetscInt v, const PetscReal X[]) {
+  const Membrane m = s->membrane;
   const PetscInt first = m->layout->start[v], n = LayoutCount(m->layout, v);
+  PetscReal shift[2];
+  Wrap(s->fluid->grid, n, X + 2 * first, shift);
   fprintf(f, "<Grid Name=\"vesicle %d\" GridType=\"Uniform\">", (int)v + 1);
   fprintf(f,
           "<Topology TopologyType=\"Polyline\" NumberOfElements=\"1\" NodesPerElement=\"%d\"><DataItem "
@@ -51,7 +84,10 @@ static void PrintVesicle(Membrane m, FILE *f, PetscInt t, PetscInt v) {
           (int)n + 1, (int)n + 1);
   for (PetscInt k = 0; k <= n; k++) fprintf(f, "%d ", (int)(k % n));
   fprintf(f, "</DataItem></Topology>\n<Geometry GeometryType=\"XY\">\n");
-  HyperSlab(f, t, "/vesicle/markers", first, n, m->layout->M, 2, "");
+  if (shift[0] || shift[1])
+    PrintShifted(f, t, first, n, m->layout->M, shift);
+  else
+    HyperSlab(f, t, "/vesicle/markers", first, n, m->layout->M, 2, "");
   fprintf(f, "</Geometry>\n<Attribute Name=\"tension\" AttributeType=\"Scalar\" Center=\"Node\">\n");
   fprintf(f,
           "<DataItem ItemType=\"HyperSlab\" Dimensions=\"%d\"><DataItem Dimensions=\"3 2\" Format=\"XML\">%d %d 1 1 1 "
@@ -61,14 +97,15 @@ static void PrintVesicle(Membrane m, FILE *f, PetscInt t, PetscInt v) {
           "<DataItem Dimensions=\"&frames; %d\" NumberType=\"Float\" Precision=\"8\" "
           "Format=\"HDF\">run.h5:/vesicle/tension</DataItem></DataItem>\n",
           (int)m->layout->M);
-  fprintf(f, "</Attribute></Grid>\n");
+  fprintf(f, "</Attribute>\n<Attribute Name=\"vesicle\" AttributeType=\"Scalar\" Center=\"Cell\">");
+  fprintf(f, "<DataItem Dimensions=\"1\" NumberType=\"Int\">%d</DataItem></Attribute></Grid>\n", (int)v + 1);
 }
 
-static void PrintFrame(Scheme s, FILE *f, PetscInt t, PetscReal time) {
+static void PrintFrame(Scheme s, FILE *f, PetscInt t, PetscReal time, const PetscReal X[]) {
   fprintf(f, "<Grid Name=\"frame %d\" GridType=\"Collection\" CollectionType=\"Spatial\"><Time Value=\"%.17g\"/>\n",
           (int)t, (double)time);
   PrintFluid(s->fluid->grid, f, t);
-  for (PetscInt v = 0; v < s->membrane->layout->bodies; v++) PrintVesicle(s->membrane, f, t, v);
+  for (PetscInt v = 0; v < s->membrane->layout->bodies; v++) PrintVesicle(s, f, t, v, X);
   fprintf(f, "</Grid>\n");
 }
 
@@ -76,7 +113,7 @@ static void PrintFrame(Scheme s, FILE *f, PetscInt t, PetscReal time) {
 typedef struct {
   Scheme scheme;
   PetscInt frames;
-  const PetscReal *times;
+  const PetscReal *times, *markers; /* [frames], [frames][2 M] */
   off_t *last, *end;
 } Document;
 
@@ -86,7 +123,7 @@ static PetscErrorCode PrintDocument(FILE *f, const void *what) {
   fprintf(f, "<Grid Name=\"run\" GridType=\"Collection\" CollectionType=\"Temporal\">\n");
   for (PetscInt t = 0; t < d->frames; t++) {
     *d->last = ftello(f);
-    PrintFrame(d->scheme, f, t, d->times[t]);
+    PrintFrame(d->scheme, f, t, d->times[t], d->markers + 2 * t * d->scheme->membrane->layout->M);
   }
   *d->end = ftello(f);
   fprintf(f, CLOSING);
@@ -102,8 +139,8 @@ PetscErrorCode XdmfCreate(Xdmf *x, Folder *folder, Scheme scheme) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode XdmfGoOn(Xdmf *x, PetscInt frames, const PetscReal times[]) {
-  const Document document = {x->scheme, frames, times, &x->last, &x->end};
+PetscErrorCode XdmfGoOn(Xdmf *x, PetscInt frames, const PetscReal times[], const PetscReal markers[]) {
+  const Document document = {x->scheme, frames, times, markers, &x->last, &x->end};
   char path[PETSC_MAX_PATH_LEN];
   PetscFunctionBeginUser;
   PetscCall(FolderWriteText(x->folder, "run.xmf", PrintDocument, &document));
@@ -133,14 +170,14 @@ static PetscBool Overwrite(int file, off_t place, const char text[], size_t leng
 }
 
 /* Rank 0's part of XdmfWrite. The number of frames goes first: run.h5 has them already. */
-static PetscBool Append(Xdmf *x, PetscInt frame, PetscReal time) {
+static PetscBool Append(Xdmf *x, PetscInt frame, PetscReal time, const PetscReal X[]) {
   const off_t place = frame < x->frames ? x->last : x->end;
   char count[COUNT_WIDTH + 8], *text = NULL;
   size_t size = 0;
   FILE *f = open_memstream(&text, &size);
   PetscBool done = PETSC_FALSE;
   if (!f) return PETSC_FALSE;
-  PrintFrame(x->scheme, f, frame, time);
+  PrintFrame(x->scheme, f, frame, time, X);
   fprintf(f, CLOSING);
   if (!fclose(f)) {
     (void)snprintf(count, sizeof(count), "%*d", COUNT_WIDTH, (int)frame + 1);
@@ -153,17 +190,17 @@ static PetscBool Append(Xdmf *x, PetscInt frame, PetscReal time) {
   return done;
 }
 
-PetscErrorCode XdmfWrite(Xdmf *x, PetscInt frame, PetscReal time) {
+PetscErrorCode XdmfWrite(Xdmf *x, PetscInt frame, PetscReal time, const PetscReal markers[]) {
   char path[PETSC_MAX_PATH_LEN];
   PetscFunctionBeginUser;
   PetscCheck(frame == x->frames || frame == x->frames - 1, x->folder->comm, PETSC_ERR_PLIB,
              "frame %" PetscInt_FMT " of run.xmf after %" PetscInt_FMT, frame, x->frames);
   if (!x->frames) {
-    PetscCall(XdmfGoOn(x, 1, &time));
+    PetscCall(XdmfGoOn(x, 1, &time, markers));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(FolderPath(x->folder, "run.xmf", path));
-  PetscCall(FolderCheck(x->folder, x->folder->rank || Append(x, frame, time), path));
+  PetscCall(FolderCheck(x->folder, x->folder->rank || Append(x, frame, time, markers), path));
   x->frames = frame + 1;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

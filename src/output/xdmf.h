@@ -15,13 +15,14 @@ typedef struct {
 } Xdmf;
 
 /* XdmfCreate - nothing is written yet: a document begins with its first frame. XdmfGoOn - the document anew, of the
-   frames that a run goes on after. Collective; stops with one line when it cannot be written. */
+   frames that a run goes on after, with their times[frames] and markers[frames][2 M], by which membranes are shown in
+   a periodic box. Collective; stops with one line when it cannot be written. */
 PETSC_EXTERN PetscErrorCode XdmfCreate(Xdmf *xdmf, Folder *folder, Scheme scheme);
-PETSC_EXTERN PetscErrorCode XdmfGoOn(Xdmf *xdmf, PetscInt frames, const PetscReal times[]);
+PETSC_EXTERN PetscErrorCode XdmfGoOn(Xdmf *xdmf, PetscInt frames, const PetscReal times[], const PetscReal markers[]);
 
 /* XdmfWrite - frame number `frame`, which run.h5 has already: a further one, or the last one anew. Collective; stops
    with one line when it cannot be written, and leaves the document as it was. */
-PETSC_EXTERN PetscErrorCode XdmfWrite(Xdmf *xdmf, PetscInt frame, PetscReal time);
+PETSC_EXTERN PetscErrorCode XdmfWrite(Xdmf *xdmf, PetscInt frame, PetscReal time, const PetscReal markers[]);
 
 /* XdmfClose - close the file; good: all of it was written. Rank 0 closes, and good is TRUE elsewhere. */
 PETSC_EXTERN PetscErrorCode XdmfClose(Xdmf *xdmf, PetscBool *good);

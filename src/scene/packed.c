@@ -3,6 +3,7 @@
 #include "scene/kinds.h"
 
 #define GAP_CELLS 1    /* of the default gap of a packing, */
+#define LEEWAY 0.25    /* cells that markers fitted to an ellipse may lie beside it */
 #define GAP_RADII 0.05 /* and at most so many R0 of the smallest vesicle */
 
 static PetscReal BoxArea(Scene scene) {
@@ -66,7 +67,7 @@ static PetscErrorCode Pack(Scene scene, const Kinds *kinds, Pose pose[]) {
   const SceneVesicles *own = &scene->vesicles;
   const PetscBool lattice = own->packing_type == PACKING_LATTICE ? PETSC_TRUE : PETSC_FALSE;
   const PetscReal cells = scene->coupling.near_field == NEAR_EXACT ? KERNEL_FOLDED_CELLS : KERNEL_WALL_CELLS;
-  const PetscReal gap = Gap(scene, kinds), wall = cells * FluidSpecCellSize(&scene->fluid) * (1 + 1e-9);
+  const PetscReal gap = Gap(scene, kinds), wall = (cells + LEEWAY) * FluidSpecCellSize(&scene->fluid);
   PackingSpec spec = {.gap = gap, .wall_gap = PetscMax(gap, wall), .seed = own->packing_seed};
   PetscReal *axes, part = 0, along[2];
   PetscMPIInt rank;
