@@ -42,8 +42,8 @@ if not SANITIZE:  # a sanitized library cannot be loaded into Python
         assert not without_mpirun(done.stderr)
         assert (tmp_path / LEFT.get(name, f"{name}.png")).stat().st_size > 1000
 
-    def test_six_examples():
-        assert len(EXAMPLES) == 6
+    def test_seven_examples():
+        assert len(EXAMPLES) == 7
 
     def test_pip_installs_a_package_that_runs(tmp_path):
         shutil.copytree(ROOT / "python", tmp_path / "tree" / "python", ignore=shutil.ignore_patterns("__pycache__"))

@@ -58,9 +58,10 @@ PetscErrorCode PatternsDestroy(Patterns *patterns) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether two vesicles have as many markers, as far apart. */
+/* Whether two vesicles have as many markers, as far apart, and the same stiffness. */
 static PetscBool Alike(Membrane m, PetscInt v, PetscInt w) {
-  return LayoutCount(m->layout, v) == LayoutCount(m->layout, w) && PetscAbsReal(m->ds[v] - m->ds[w]) < 1e-6 * m->ds[v]
+  return LayoutCount(m->layout, v) == LayoutCount(m->layout, w) &&
+                 PetscAbsReal(m->ds[v] - m->ds[w]) < 1e-6 * m->ds[v] && m->part[v] == m->part[w]
              ? PETSC_TRUE
              : PETSC_FALSE;
 }
@@ -73,7 +74,7 @@ static PetscReal Distance(Patterns s, PetscInt v, const Pattern *q, Pose *pose) 
   const Membrane m = c->membrane;
   const PetscInt n = LayoutCount(m->layout, v);
   const PetscReal R0 = m->L0[v] / (2 * PETSC_PI), a0 = c->fluid->a0;
-  const PetscReal stiffness = m->bending / (4 * c->fluid->nu * R0 * R0 * R0 * a0);
+  const PetscReal stiffness = m->part[v] * m->bending / (4 * c->fluid->nu * R0 * R0 * R0 * a0);
   PetscReal most = 0;
   if (!Alike(m, v, q->like)) return PETSC_MAX_REAL;
   *pose = PoseFit(n, s->X, q->X);

@@ -132,6 +132,13 @@ static PetscBool MetByPlaces(Scene s, Need need) {
   return s->shape.vesicles && !(need == BY_ANGLES ? random : packed) ? PETSC_TRUE : PETSC_FALSE;
 }
 
+/* The 0 that stands for none is right for all. */
+static PetscBool UsesDensity(Scene s) {
+  const RealList *density = &s->gravity.density;
+  return (s->shape.vesicles && SceneHasGravity(s)) || (density->n == 1 && density->v[0] == 0) ? PETSC_TRUE
+                                                                                              : PETSC_FALSE;
+}
+
 static PetscBool Met(Scene s, Need need) {
   const PetscBool any = s->shape.vesicles > 0 ? PETSC_TRUE : PETSC_FALSE;
   if (need >= BY_PACKING && need <= BY_ANGLES) return MetByPlaces(s, need);
@@ -170,8 +177,8 @@ static PetscBool Met(Scene s, Need need) {
     return s->fluid.inertia == INERTIA_CONVECTIVE;
   case BY_GRID:
     return !FluidSpecIsFree(&s->fluid);
-  case BY_GRAVITY: /* the 0 that stands for none is right for all */
-    return (any && SceneHasGravity(s)) || (s->gravity.density.n == 1 && s->gravity.density.v[0] == 0);
+  case BY_GRAVITY:
+    return UsesDensity(s);
   case BY_PERIOD:
     return s->fluid.bc[0] == BC_PERIODIC && s->fluid.bc[1] == BC_WALL;
   default:
