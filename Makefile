@@ -35,7 +35,7 @@ SOURCES := $(filter-out src/main.c,$(wildcard src/*.c src/*/*.c))
 OBJECTS := $(SOURCES:src/%.c=$(BUILD)/%.o)
 LIBRARY := $(LIBDIR)/libpetves.so
 BENCHES := $(patsubst bench/%.c,$(BUILD)/bench/%,$(wildcard bench/bench_*.c))
-TESTS := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/test_*.c))
+TESTS := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/test_*.c) tests/scenes.c)
 
 # Open MPI: run as root, and on more ranks than cores.
 export OMPI_ALLOW_RUN_AS_ROOT := 1
@@ -45,7 +45,7 @@ export OMPI_MCA_mpi_yield_when_idle := 1
 export OMPI_MCA_btl_vader_single_copy_mechanism := none
 export OMP_NUM_THREADS := 1
 
-.PHONY: all help deps test-deps run test coverage reproduce stability time chart calibrate bench fuzz install format check-format clean tests benches
+.PHONY: all help deps test-deps run test coverage reproduce stability time chart calibrate bench fuzz memcheck install format check-format clean tests benches
 all: $(BIN)/petves ## build bin/petves and lib/libpetves.so
 
 help: ## list the targets
@@ -137,6 +137,11 @@ fuzz: test-deps ## runs with options, files and environments drawn at random (CA
 	@$(MAKE) --no-print-directory all
 	PETVES=$(CURDIR)/$(BIN)/petves PYTHONPATH=python:. $(PYTHON) tests/fuzz.py --cases $(or $(CASES),2000) --seed $(or $(SEED),1) \
 	  --ranks $(or $(FUZZ_RANKS),1 1 1 2)
+
+memcheck: test-deps ## every kind of scene under valgrind's memcheck, on 1 and 2 ranks (minutes; SANITIZE=1: the sanitizers instead)
+	@$(MAKE) --no-print-directory all tests
+	PETVES=$(CURDIR)/$(BIN)/petves PETVES_TESTS=$(CURDIR)/$(BUILD)/tests PYTHONPATH=python:. SANITIZE=$(SANITIZE) MEMCHECK=1 \
+	  $(PYTHON) -m pytest -p no:cacheprovider -q tests/test_valgrind.py
 
 install: all ## install under PREFIX (/usr/local)
 	install -d $(PREFIX)/bin $(PREFIX)/lib $(PREFIX)/include $(PREFIX)/share/petves $(PYTHON_DIR)/petves/views

@@ -292,7 +292,7 @@ def check(case: Case, folder: Path, tries: int = 3) -> str:
     if process.returncode == 0 and lines:
         return f"a good run with {stderr[-600:]}"
     if process.returncode and not (len(lines) == 1 and lines[0].startswith("petves: error: ") and len(lines[0]) > 30):
-        return f"status {process.returncode}: {stderr[-600:]}"
+        return f"status {process.returncode}: {stderr[:3000]}"  # from its start: mpirun's own lines are at the end
     return "" if process.returncode == 1 else not_finite(folder / "out")
 
 

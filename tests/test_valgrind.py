@@ -1,67 +1,103 @@
-"""valgrind's memcheck finds no error with a petves function on the stack."""
+"""valgrind's memcheck finds no error with a petves function on the stack, and no leak. Its start takes seconds, so scenes run one
+after another in one process (tests/scenes.c). `make memcheck` runs all of them, each test run those of SHORT."""
 
+import os
 import shutil
 import xml.etree.ElementTree as ET
 from pathlib import Path
 
 import pytest
-from conftest import PAPER, PETVES, SANITIZE, mpirun, run_petves
+from conftest import PAPER, PETVES, PROGRAMS, SANITIZE, mpirun, run_petves
 
 OPENMPI = Path("/usr/share/openmpi/openmpi-valgrind.supp")
-OPTIONS = (
-    "-domain_cells 24,24 -vesicle_semi_axes 0.3,0.5 -flow_type shear -time_step 0.01 -time_end 0.03 -output_every 0.01"
-)
-OBJECTS = ("libpetves.so", "bin/petves")
+OBJECTS = ("libpetves.so", "bin/petves", "tests/scenes")
+BASE = "-domain_cells 16,16 -vesicle_semi_axes 0.3,0.5 -time_step 0.01 -time_end 0.03 -output_every 0.01"
+SHEAR = f"{BASE} -flow_type shear"
+TWO_STEPS = f"{SHEAR} -scheme_startup euler -time_end 0.02"
+COUPLED = f"{SHEAR} {PAPER} -scheme_type coupled -checkpoint_every 1"
+PERIODIC, FREE = (f"-domain_bc_x {bc} -domain_bc_y {bc}" for bc in ("periodic", "free"))
+ROWS = ",".join(f"{x},{y}" for x in (-0.6, -0.2, 0.2, 0.6) for y in (-0.55, 0, 0.55))
+TWELVE = f"-vesicle_count 12 -vesicle_center {ROWS} -vesicle_semi_axes 0.08,0.12 -vesicle_markers 16"
 
-if not SANITIZE:  # the sanitizers and valgrind do not go together
+#: Options and status. Restarts: one that goes on, one whose first step is refused, one of another scene.
+SHORT = {
+    "disturbance": (SHEAR, 0),
+    "total": (f"{TWO_STEPS} -flow_form total -coupling_box_part false", 0),
+    "restart": (f"{COUPLED} -restart {{checkpoint}}", 0),
+    "limit": (f"{COUPLED} -time_end 1 -limit_length_error 1e-14 -restart {{checkpoint}}", 2),
+    "another_scene": (f"{COUPLED} -fluid_viscosity 2 -restart {{checkpoint}}", 1),
+}
+LONG = SHORT | {
+    "twelve": (f"{TWO_STEPS} -domain_cells 32,32 {TWELVE}", 0),
+    "convective": (f"{TWO_STEPS} -fluid_inertia convective", 0),
+    "channel": (f"{TWO_STEPS} -domain_box 0,2,-1,1 -domain_bc_x periodic -vesicle_center 1.9,0.1", 0),
+    "periodic": (f"{BASE} {PERIODIC} -vesicle_center 0.97,-0.95 -scheme_startup euler", 0),
+    "free": (f"{SHEAR} {FREE}", 0),
+    "free_twelve": (f"{TWO_STEPS} {FREE} -domain_cells 32,32 {TWELVE}", 0),
+    "adaptive": (f"{SHEAR} -time_adapt error", 0),
+    "penalty": (f"{SHEAR} -scheme_type penalty", 0),
+    "split": (f"{SHEAR} -scheme_type split", 0),
+    "hypre": (f"{SHEAR} -scheme_type split -helmholtz_type hypre -poisson_type hypre", 0),
+    "direct": (f"{TWO_STEPS} -scheme_type direct", 0),
+    "auto": (f"{SHEAR} -scheme_auto 0.01", 0),
+    "no_vesicle": ("-domain_cells 16,16 -vesicle_shape none -flow_type shear -flow_form total -time_end 0.03", 0),
+}
 
-    def memcheck(options: str, folder: Path, status: int, ranks: int = 2):
-        """Run petves under memcheck: its exit status, and no error of ours on any rank."""
+
+def checked(words: list[str], folder: Path, ranks: int, leaks: bool = True):
+    """Run under memcheck, or as it is when the sanitizers are built in; fails at an error of ours on any rank."""
+    reports, wrapper = folder / "reports", ()
+    reports.mkdir()
+    if not SANITIZE:  # the two do not go together
         assert shutil.which("valgrind")
-        reports = folder / "reports"
-        reports.mkdir(exist_ok=True)
         wrapper = ("valgrind", "--xml=yes", f"--xml-file={reports}/%p.xml", "--leak-check=no", "--num-callers=40")
-        suppressions = [f"--suppressions={OPENMPI}"] if OPENMPI.exists() else []
-        words = [*OPTIONS.split(), *options.split(), "-output_dir", str(folder / "out")]
-        done = mpirun([*suppressions, PETVES, *words], ranks, wrapper=wrapper)
-        assert done.returncode == status, done.stdout + done.stderr
-        found = sorted(reports.glob("*.xml"))
-        assert len(found) >= ranks
-        errors = [error for report in found for error in ET.parse(report).getroot().iter("error") if is_ours(error)]
-        if status == 1:  # a refused run ends as it is
-            errors = [error for error in errors if not error.findtext("kind", "").startswith("Leak_")]
-        ours = [describe(error) for error in errors]
-        assert not ours, "\n\n".join(ours)
+        wrapper += (f"--suppressions={OPENMPI}",) if OPENMPI.exists() else ()
+    done = mpirun(words, ranks, 3000, wrapper)
+    found = sorted(reports.glob("*.xml"))
+    assert len(found) >= (0 if SANITIZE else ranks)
+    errors = [error for report in found for error in ET.parse(report).getroot().iter("error")]
+    ours = [describe(error) for error in errors if is_ours(error) and (leaks or not is_leak(error))]
+    assert not ours, "\n\n".join(ours)
+    assert "runtime error" not in done.stderr and "Sanitizer" not in done.stderr, done.stderr
+    return done
 
-    @pytest.mark.parametrize("form, ranks", [("disturbance", 2), ("total", 1)])
-    def test_memory_is_used_as_it_should(form, ranks, tmp_path):
-        memcheck(f"-flow_form {form}", tmp_path, 0, ranks)
 
-    @pytest.mark.parametrize(
-        "options, status, ranks",
-        [
-            ("", 0, 2),
-            ("-time_end 1 -limit_length_error 1e-14", 2, 1),  # the first step is refused
-            ("-fluid_viscosity 2", 1, 1),  # another scene
-            ("cut off", 1, 1),  # not an option: what happens to the checkpoint
-        ],
-    )
-    def test_memory_of_a_restart(options, status, ranks, tmp_path):
-        """A restart under the coupled scheme, one that stops at a limit, and ones that are refused."""
-        coupled, path = f"{PAPER} -scheme_type coupled -checkpoint_every 1", tmp_path / "out" / "checkpoint.h5"
-        run_petves(tmp_path / "out", f"{OPTIONS} {coupled} -time_end 0.02")
-        if options == "cut off":
-            path.write_bytes(path.read_bytes()[:5000])
-            options = ""
-        memcheck(f"{coupled} -restart {path} {options}", tmp_path, status, ranks)
+def is_leak(error) -> bool:
+    return error.findtext("kind", "").startswith("Leak_")
 
-    def is_ours(error) -> bool:
-        """Some frame lies in petves; for a leak, some frame beyond those that start and end PETSc and MPI."""
-        names = [f.findtext("fn", "") for f in error.iter("frame") if f.findtext("obj", "").endswith(OBJECTS)]
-        if error.findtext("kind", "").startswith("Leak_"):
-            names = [name for name in names if name not in ("main", "PetvesInitialize", "PetvesFinalize")]
-        return bool(names)
 
-    def describe(error) -> str:
-        frames = [f"{f.findtext('fn')} ({f.findtext('file')}:{f.findtext('line')})" for f in error.iter("frame")]
-        return "\n  ".join([error.findtext("what", error.findtext("xwhat/text", "?")), *frames])
+def is_ours(error) -> bool:
+    """Some frame lies in petves; for a leak, some frame beyond those that start and end PETSc and MPI."""
+    names = [f.findtext("fn", "") for f in error.iter("frame") if f.findtext("obj", "").endswith(OBJECTS)]
+    if is_leak(error):
+        names = [name for name in names if name not in ("main", "PetvesInitialize", "PetvesFinalize")]
+    return bool(names)
+
+
+def describe(error) -> str:
+    frames = [f"{f.findtext('fn')} ({f.findtext('file')}:{f.findtext('line')})" for f in error.iter("frame")]
+    return "\n  ".join([error.findtext("what", error.findtext("xwhat/text", "?")), *frames])
+
+
+@pytest.fixture
+def checkpoint(tmp_path) -> Path:
+    return run_petves(tmp_path / "first", f"{COUPLED} -time_end 0.02").folder / "checkpoint.h5"
+
+
+@pytest.mark.parametrize("ranks", [1, 2] if os.environ.get("MEMCHECK") else [2])
+def test_memory_of_scenes(ranks, checkpoint, tmp_path):
+    scenes = LONG if os.environ.get("MEMCHECK") else SHORT
+    lines = [f"-output_dir {tmp_path}/{name} {options}" for name, (options, _) in scenes.items()]
+    (tmp_path / "scenes").write_text("\n".join(lines).format(checkpoint=checkpoint) + "\n")
+    done = checked([str(PROGRAMS / "scenes"), str(tmp_path / "scenes")], tmp_path, ranks)
+    ended = [line[:1] for line in done.stdout.splitlines() if line[:2] in ("0 ", "1 ", "2 ")]
+    assert ended == [str(status) for _, status in scenes.values()], done.stdout + done.stderr
+    assert done.returncode == 0, done.stderr
+
+
+def test_memory_of_the_program(checkpoint, tmp_path):
+    """From the words of the command line to the refusal of a checkpoint that was cut off."""
+    checkpoint.write_bytes(checkpoint.read_bytes()[:5000])
+    words = [PETVES, *f"{COUPLED} -output_dir {tmp_path}/out -restart {checkpoint}".split()]
+    done = checked(words, tmp_path, 1, leaks=False)  # a refused run ends as it is
+    assert done.returncode == 1 and "checksum" in done.stderr, done.stderr

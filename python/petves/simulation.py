@@ -327,6 +327,8 @@ class Simulation(State):
                 self._call("SimulationDestroy", ctypes.byref(self._handle))
         finally:
             self._handle = Handle()
+            # petsc4py keeps objects that Python has dropped, such as a KSP of a simulation closed before, until all ranks say so
+            PETSc.garbage_cleanup(self._comm)
             if self._options:
                 self._lib.PetscOptionsDestroy(ctypes.byref(self._options))
             if self._temporary and self._comm.getRank() == 0:

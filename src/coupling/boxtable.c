@@ -82,33 +82,35 @@ void BoxTableFunctions(const BoxTable *t, int dir, PetscReal x, PetscReal values
   }
 }
 
-/* Functions f, g of a response and a force that W couples, with the weights of its pairs. */
+/* Functions f, g of a response and a force that W couples, with the weights of its pairs: `terms` a couple, the others
+   are zero. */
 typedef struct {
   PetscInt f, g;
 } Couple;
 typedef struct {
-  PetscInt count;
+  PetscInt count, terms;
   Couple *couple;
-  PetscReal *weight; /* [count][pairs] */
+  PetscInt *pair;    /* [count][terms] */
+  PetscReal *weight; /* [count][terms] */
 } Couplings;
 
 /* Between walls: halves f and g, even or odd, of the polynomials of two places each. */
-static void WallCouple(const BoxAxis *a, Couple c, PetscReal weight[]) {
+static void WallCouple(const BoxAxis *a, Couple c, PetscInt pair[], PetscReal weight[]) {
   const PetscInt n = a->places, half = n / 2, i = c.f % half, j = c.g % half;
-  const PetscReal si = c.f < half ? 1 : -1, sj = c.g < half ? 1 : -1;
-  weight[i * n + j] += 0.5;
-  weight[(n - 1 - i) * n + j] += 0.5 * si;
-  weight[i * n + n - 1 - j] += 0.5 * sj;
-  weight[(n - 1 - i) * n + n - 1 - j] += 0.5 * si * sj;
+  for (int k = 0; k < 4; k++) {
+    pair[k] = (k / 2 ? n - 1 - i : i) * n + (k % 2 ? n - 1 - j : j);
+    weight[k] = (k / 2 && c.f >= half ? -1 : 1) * (k % 2 && c.g >= half ? -0.5 : 0.5);
+  }
 }
 
 /* Over a period, from W's Fourier series in the offset, with cos(a - b) = cos a cos b + sin a sin b and sin(a - b) =
    sin a cos b - cos a sin b. */
-static void PeriodCouple(const BoxAxis *a, PetscInt k, Couple *c, PetscReal weight[]) {
+static void PeriodCouple(const BoxAxis *a, PetscInt k, Couple *c, PetscInt pair[], PetscReal weight[]) {
   const PetscInt n = a->places, m = (k + 3) / 4, kind = k ? (k - 1) % 4 : 0, cosine = m ? 2 * m - 1 : 0;
   *c = (Couple){cosine + (kind == 1 || kind == 2), cosine + (kind == 1 || kind == 3)};
   for (PetscInt q = 0; q < n; q++) {
     const PetscReal angle = 2 * PETSC_PI * ((m * q) % n) / n, factor = (m ? 2.0 : 1.0) / n;
+    pair[q] = q;
     weight[q] = factor * (kind < 2 ? PetscCosReal(angle) : PetscSinReal(angle)) * (kind == 3 ? -1 : 1);
   }
 }
@@ -117,15 +119,16 @@ static PetscErrorCode MakeCouplings(const BoxAxis *a, Couplings *c) {
   const PetscInt n = a->places;
   PetscFunctionBeginUser;
   c->count = a->wall ? n * n : 1 + 4 * a->modes;
-  PetscCall(PetscMalloc1(c->count, &c->couple));
-  PetscCall(PetscCalloc1(c->count * a->pairs, &c->weight));
+  c->terms = a->wall ? 4 : n;
+  PetscCall(PetscMalloc3(c->count, &c->couple, c->count * c->terms, &c->pair, c->count * c->terms, &c->weight));
   for (PetscInt k = 0; k < c->count; k++) {
-    PetscReal *weight = c->weight + k * a->pairs;
+    PetscInt *pair = c->pair + k * c->terms;
+    PetscReal *weight = c->weight + k * c->terms;
     c->couple[k] = (Couple){k / n, k % n};
     if (a->wall)
-      WallCouple(a, c->couple[k], weight);
+      WallCouple(a, c->couple[k], pair, weight);
     else
-      PeriodCouple(a, k, &c->couple[k], weight);
+      PeriodCouple(a, k, &c->couple[k], pair, weight);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -189,21 +192,17 @@ static PetscErrorCode Transform(const BoxTable *t, const PetscReal W[]) {
   for (int b = 0; b < 4; b++)
     for (PetscInt p = 0; p < c[0].count; p++) {
       PetscCall(PetscArrayzero(line, ny));
-      for (PetscInt i = 0; i < nx; i++) {
-        const PetscReal weight = c[0].weight[p * nx + i], *row = W + (b * nx + i) * ny;
-        for (PetscInt j = 0; j < ny && weight != 0; j++) line[j] += weight * row[j];
+      for (PetscInt k = p * c[0].terms; k < (p + 1) * c[0].terms; k++) {
+        const PetscReal weight = c[0].weight[k], *row = W + (b * nx + c[0].pair[k]) * ny;
+        for (PetscInt j = 0; j < ny; j++) line[j] += weight * row[j];
       }
       for (PetscInt q = 0; q < c[1].count; q++) {
-        const PetscReal *weight = c[1].weight + q * ny;
         PetscReal sum = 0;
-        for (PetscInt j = 0; j < ny; j++) sum += weight[j] * line[j];
+        for (PetscInt k = q * c[1].terms; k < (q + 1) * c[1].terms; k++) sum += c[1].weight[k] * line[c[1].pair[k]];
         AddCouple(t, b / 2, b % 2, c[0].couple[p], c[1].couple[q], sum);
       }
     }
-  for (int dir = 0; dir < 2; dir++) {
-    PetscCall(PetscFree(c[dir].couple));
-    PetscCall(PetscFree(c[dir].weight));
-  }
+  for (int dir = 0; dir < 2; dir++) PetscCall(PetscFree3(c[dir].couple, c[dir].pair, c[dir].weight));
   PetscCall(PetscFree(line));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
