@@ -79,14 +79,12 @@ static void TakeLattice(const NearCells *s, PetscInt k, const PaddedStencil cell
   const PaddedStencil *source = &s->source[2 * k];
   const PetscReal *F = &s->F[2 * k], h = s->coupling->fluid->grid->h, nu = s->coupling->fluid->nu;
   const PetscReal constant = PetscLogReal(h) / (4 * PETSC_PI);
-  const PetscReal uu = StencilPairSum(t, OFFSET_UU, &cell[0], &source[0], none) - constant;
-  const PetscReal vv = StencilPairSum(t, OFFSET_VV, &cell[1], &source[1], none) - constant;
-  const PetscReal vu = StencilPairSum(t, OFFSET_VU, &cell[1], &source[0], none);
-  const PetscReal uv = StencilPairSum(t, OFFSET_VU, &source[1], &cell[0], none); /* as v from u the other way round */
-  u[0] -= (uu * F[0] + uv * F[1]) / nu;
-  u[1] -= (vu * F[0] + vv * F[1]) / nu;
-  *p -= (StencilPairSum(&s->pressure, OFFSET_UU, &cell[2], &source[0], none) * F[0] +
-         StencilPairSum(&s->pressure, OFFSET_VV, &cell[2], &source[1], none) * F[1]) /
+  PetscReal sum[4];
+  StencilFourSums(t, cell, source, none, sum);
+  u[0] -= ((sum[0] - constant) * F[0] + sum[2] * F[1]) / nu;
+  u[1] -= (sum[3] * F[0] + (sum[1] - constant) * F[1]) / nu;
+  *p -= (StencilNearSum(&s->pressure, OFFSET_UU, &cell[2], &source[0]) * F[0] +
+         StencilNearSum(&s->pressure, OFFSET_VV, &cell[2], &source[1]) * F[1]) /
         h;
 }
 

@@ -113,6 +113,13 @@ static inline PetscReal TableSum(const PetscReal *value, PetscInt width, const P
                                             : RowSum(3, value, width, a, b, cells);
 }
 
+PetscReal StencilNearSum(const OffsetTable *t, OffsetBlock b, const PaddedStencil *response,
+                         const PaddedStencil *source) {
+  static const PetscInt none[2] = {0, 0};
+  const PetscInt width = 2 * t->size[0] + 1;
+  return TableSum(t->value[b] + t->size[1] * width + t->size[0], width, response, source, none);
+}
+
 /* u from v at an offset is v from u the other way round, which is even in the distance of the two: the table of v from
    u one entry to the right and one below. */
 void StencilFourSums(const OffsetTable *t, const PaddedStencil a[2], const PaddedStencil b[2], const PetscInt cells[2],

@@ -2,7 +2,7 @@
 #include "base/agree.h"
 #include "coupling/patternmake.h"
 
-#define TOLERANCE 0.01 /* of a vesicle's distance from its pattern */
+#define TOLERANCE 0.03 /* of a vesicle's distance from its pattern */
 
 /* Work space of the vesicles' columns and of one vesicle. */
 static PetscErrorCode CreateWork(Patterns s) {
