@@ -18,6 +18,16 @@ PETSC_EXTERN PetscBool SceneByArea(Scene scene);
 PETSC_EXTERN PetscErrorCode SceneChooseByError(Draft scene);
 PETSC_EXTERN PetscErrorCode SceneChooseSteps(Draft scene);
 
+/* SceneChooseMarkers - with -scheme_auto, where the user gives neither their number nor their spacing: more than the
+   default where the start needs it, in steps of a fifth up to three times, and not closer than the near field bears;
+   the shape is made anew. SceneSqueeze - nu R0^3/c_b times the rate at which the flow shortens a vesicle of the start
+   along its length, the largest. SceneIsSqueezed - whether it wrinkles. SceneThinnestFilm - of the start, in marker
+   spacings (2: none is thinner), and the error that it leaves, of its thickness over R0. Collective. */
+PETSC_EXTERN PetscErrorCode SceneChooseMarkers(Draft scene);
+PETSC_EXTERN PetscReal SceneSqueeze(Scene scene);
+PETSC_EXTERN PetscBool SceneIsSqueezed(Scene scene);
+PETSC_EXTERN PetscErrorCode SceneThinnestFilm(Scene scene, PetscReal *spacings, PetscReal *error);
+
 /* SceneSmallestRadius - R0 of the smallest vesicle (length). SceneTimes - the slowest and the fastest time of the
    scene, nu R0^3/c_b of the smallest vesicle, and the least of it and the flow's; PETSC_MAX_REAL: none. Not collective.
  */

@@ -31,6 +31,7 @@ PetscErrorCode SceneCreate(MPI_Comm comm, PetvesFlow flow, void *ctx, Scene *out
   DescribeFluid(s);
   /* 5  the markers, with the kernel's spacing if none is given */
   PetscCall(SceneMakeShape(s, &s->shape));
+  PetscCall(SceneChooseMarkers(s));
   PetscCall(SceneCheckFree(s));
   PetscCall(SceneCheckGravity(s));
   /* 6  the steps, which go by the vesicles' size */
