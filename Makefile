@@ -45,7 +45,7 @@ export OMPI_MCA_mpi_yield_when_idle := 1
 export OMPI_MCA_btl_vader_single_copy_mechanism := none
 export OMP_NUM_THREADS := 1
 
-.PHONY: all help deps test-deps run test coverage reproduce stability time chart calibrate bench fuzz memcheck install format check-format clean tests benches
+.PHONY: all help deps test-deps run test coverage reproduce stability time chart calibrate unseen bench fuzz memcheck install format check-format clean tests benches
 all: $(BIN)/petves ## build bin/petves and lib/libpetves.so
 
 help: ## list the targets
@@ -132,6 +132,10 @@ time: deps ## what the time step leaves, by order and frame of the labels, into 
 calibrate: deps ## what -scheme_auto chooses by: docs/speed_accuracy/calibration.csv (ten minutes)
 	@$(MAKE) --no-print-directory all
 	PETVES=$(CURDIR)/$(BIN)/petves PYTHONPATH=python:. $(PYTHON) -m studies calibrate docs/speed_accuracy
+
+unseen: deps ## -scheme_auto on scenes it was not calibrated by: docs/speed_accuracy/unseen.csv (ten minutes; QUICK=1: four scenes, into out/unseen)
+	@$(MAKE) --no-print-directory all
+	PETVES=$(CURDIR)/$(BIN)/petves PYTHONPATH=python:. $(PYTHON) -m studies unseen $(if $(QUICK),out/unseen,docs/speed_accuracy)
 
 fuzz: test-deps ## runs with options, files and environments drawn at random (CASES=2000, SEED=1, FUZZ_RANKS="1 1 1 2")
 	@$(MAKE) --no-print-directory all

@@ -13,6 +13,10 @@ STUDIES = {
     "reproduce": ("reproduction.page", "the paper's tables and figures, and the coupled scheme's: docs/reproduction"),
     "chart": ("speed_accuracy.page", "error against CPU time of every scheme: docs/speed_accuracy"),
     "calibrate": ("speed_accuracy.calibration", "what -scheme_auto chooses by: docs/speed_accuracy/calibration.csv"),
+    "unseen": (
+        "speed_accuracy.unseen",
+        "-scheme_auto on scenes it was not calibrated by: docs/speed_accuracy/unseen.csv",
+    ),
     "stability": ("stability.page", "where each scheme fails: docs/stability"),
     "accuracy": ("accuracy.page", "accuracy per cell: docs/accuracy"),
     "inertia": ("inertia.page", "the fluid's inertia: docs/inertia"),

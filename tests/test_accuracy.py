@@ -108,7 +108,7 @@ def test_relaxation_reaches_its_fine_grid_limit(cached_run):
 
 def least_gap(run, frame: int) -> float:
     """Least distance of the two vesicles' curves."""
-    first, second = (trigonometric(run.outline(frame, k)) @ (1, 1j) for k in (0, 1))
+    first, second = (trigonometric(run.outline(frame, k)[:-1]) @ (1, 1j) for k in (0, 1))
     return float(np.abs(first[:, None] - second).min())
 
 

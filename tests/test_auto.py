@@ -8,6 +8,9 @@ import numpy as np
 import pytest
 from conftest import PETVES, ROOT, Run, mpirun
 from studies.common import paper
+from studies.common.engine import Case, Results
+from studies.common.scenes import words
+from studies.speed_accuracy import unseen
 
 CALIBRATION = ROOT / "docs" / "speed_accuracy" / "calibration.csv"
 WANTED = (0.1, 1e-2, 1e-3, 1e-4)
@@ -136,3 +139,40 @@ def test_last_steps_are_of_one_size(tmp_path):
         assert run.series["time"][-1] == pytest.approx(end, abs=1e-14)
         assert dt.max() <= 0.01 * (1 + 1e-12) and dt.max() > 0.005, "steps are -time_step times powers of sqrt(2)"
         assert dt[-1] > 0.49 * dt[-3], dt[-4:]
+
+
+FREE = "-domain_box -4,4,-4,4 -domain_cells 32,32 -domain_bc_x free -domain_bc_y free"
+
+
+def test_compressed_start_within_the_wanted_error(tmp_path):
+    """V = 0.65, chi = 100, start at -20 degrees: the vesicle wrinkles, and the steps that do elsewhere leave ten times the error."""
+    scene = unseen.Scene("free", 1, 0.65, 100, -20, 0.5, 4)
+    results = Results(tmp_path / "unseen.json")
+    exact = results.get(
+        Case("fine", scene.options() | unseen.FINE | words("-vesicle_markers 121 -time_end 3"), unseen.measure)
+    )
+    for wanted in (1e-2, 1e-3):
+        auto = scene.options() | words(f"-scheme_auto {wanted} -time_end 3")
+        assert unseen.error(results.get(Case(f"{wanted}", auto, unseen.measure)), exact) < wanted
+        earlier = auto | words(f"-scheme_order 2 -time_adapt_tol {0.3 * wanted}")
+        assert unseen.error(results.get(Case(f"earlier {wanted}", earlier, unseen.measure)), exact) > 1.5 * wanted
+
+
+@pytest.mark.parametrize("number", (0, 5))
+def test_unseen_scenes_within_the_wanted_error(number, tmp_path):
+    """Two of the study's scenes, in unbounded fluid, where they take a second; docs/speed_accuracy/unseen.csv has all."""
+    results = Results(tmp_path / "unseen.json")
+    exact = results.get(unseen.fine(number))
+    for wanted in (1e-2, 1e-3):
+        assert unseen.error(results.get(unseen.auto(number, wanted)), exact) < wanted
+
+
+def test_film_at_the_start(tmp_path):
+    """Two ellipses .08 apart: too thin for 25 markers, .45 spacings, and for .1 %; more markers are chosen where they are left open."""
+    scene = f"{FREE} {QUIET} -flow_type shear -vesicle_count 2 -vesicle_semi_axes 0.5,1 -vesicle_angle 0 -time_end 0 "
+    scene += "-vesicle_center -0.54,0,0.54,0 -scheme_auto 1e-3"
+    few = run_plain(tmp_path / "few", f"{scene} -vesicle_markers 25").stdout
+    assert re.search(r"thinnest film: 0\.4\d marker spacings.*: TOO THIN, take more -vesicle_markers\n", few)
+    chosen = run_plain(tmp_path / "chosen", scene)
+    assert int(settings(chosen.stdout)["-vesicle_markers"][0]) > 55
+    assert "TOO THIN" not in chosen.stdout and "grid: none, unbounded fluid: enough\n" in chosen.stdout

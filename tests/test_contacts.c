@@ -1,4 +1,5 @@
-/* The edge nearest to each point and the gaps of curves, against the search of all pairs and of circles. */
+/* The edge nearest to each point, the gaps of curves and the thinnest film, against the search of all pairs and of
+ * circles. */
 #include "check.h"
 #include "curve/contacts.h"
 
@@ -114,6 +115,30 @@ static PetscErrorCode CheckAlone(void) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Circles with a film between the first two (0.1), to the wall x_max (0.14) and, where y is periodic, from the lowest
+   to the highest (0.05). Against the spacings the first or the last is thinnest, or that of the wall where the others
+   have more points. */
+static PetscErrorCode CheckFilm(PetscBool images, PetscReal coarse, PetscInt v, PetscInt w, PetscReal thickness) {
+  const Circle circles[4] = {{-1.6, 0, 1}, {0.5, 0, 1}, {2.36, 0, 0.5}, {-1.6, 2.475, 0.475}};
+  const PetscInt start[5] = {0, POINTS, 2 * POINTS, 3 * POINTS, 4 * POINTS};
+  const CurveRoom room = {
+      .box = {-4, 3, -1.05, 2.95}, .period = {0, images ? 4 : 0}, .wall = {PETSC_TRUE, PETSC_FALSE}};
+  PetscReal X[8 * POINTS], ds[4];
+  CurveFilm film;
+  PetscFunctionBeginUser;
+  Place(4, circles, POINTS, X);
+  for (int k = 0; k < 4; k++) ds[k] = (k == 2 ? 1 : coarse) * 2 * PETSC_PI * circles[k].radius / POINTS;
+  PetscCall(CurveThinnestFilm(4, start, X, ds, &room, PETSC_TRUE, 2, &film));
+  const PetscReal spacing = PetscMax(ds[v], w < 0 ? 0 : ds[w]);
+  CHECK(film.pair[0] == v && film.pair[1] == w && PetscAbsReal(film.thickness - thickness) < 6e-3 &&
+            PetscAbsReal(film.spacings * spacing - film.thickness) < 1e-14,
+        "film of %d and %d: %g thick, %g spacings", (int)film.pair[0], (int)film.pair[1], film.thickness,
+        film.spacings);
+  PetscCall(CurveThinnestFilm(4, start, X, ds, &room, PETSC_TRUE, 0.9 * film.spacings, &film));
+  CHECK(film.pair[0] == 0 && film.pair[1] == 0 && film.thickness == 0, "   none below that");
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode Facts(void) {
   PetscFunctionBeginUser;
   for (int k = 0; k < 4; k++) PetscCall(CheckNearest(k & 1 ? 5.3 : 0, k & 2 ? 6.5 : 0, k < 2 ? 0.4 : 0.15));
@@ -124,6 +149,9 @@ static PetscErrorCode Facts(void) {
     PetscCall(CheckGap(1.5, k ? 9 : 0, 2e-3));
   }
   PetscCall(CheckAlone());
+  PetscCall(CheckFilm(PETSC_FALSE, 1, 0, 1, 0.1));
+  PetscCall(CheckFilm(PETSC_TRUE, 1, 0, 3, 0.05));
+  PetscCall(CheckFilm(PETSC_FALSE, 1.0 / 3, 2, -2, 0.14));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

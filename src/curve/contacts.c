@@ -228,3 +228,42 @@ PetscErrorCode CurveLeastGap(PetscInt curves, const PetscInt start[], const Pets
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+PetscReal CurveWallGap(PetscInt n, const PetscReal X[], const CurveRoom *room, PetscInt *side) {
+  PetscReal least = PETSC_MAX_REAL;
+  *side = -1;
+  for (int at = 0; at < 4; at++)
+    for (PetscInt k = 0; k < n && room->wall[at / 2]; k++) {
+      const PetscReal gap = (at % 2 ? -1 : 1) * (X[2 * k + at / 2] - room->box[at]);
+      if (gap >= least) continue;
+      least = gap;
+      *side = at;
+    }
+  return least;
+}
+
+static void Thinner(CurveFilm *film, PetscReal gap, PetscReal ds, PetscInt v, PetscInt w) {
+  if (gap <= 0 || gap >= film->spacings * ds) return;
+  *film = (CurveFilm){.thickness = gap, .spacings = gap / ds, .pair = {v, w}};
+}
+
+PetscErrorCode CurveThinnestFilm(PetscInt curves, const PetscInt start[], const PetscReal X[], const PetscReal ds[],
+                                 const CurveRoom *room, PetscBool smooth, PetscReal most, CurveFilm *film) {
+  PetscReal widest = 0;
+  CurveGap *gap;
+  PetscInt n, side;
+  PetscFunctionBeginUser;
+  *film = (CurveFilm){.spacings = most};
+  for (PetscInt v = 0; v < curves; v++) widest = PetscMax(widest, ds[v]);
+  PetscCall(CurveGaps(curves, start, X, room->period, smooth, most * widest, &n, &gap));
+  for (PetscInt k = 0; k < n; k++) {
+    const PetscInt v = gap[k].curve[0], w = gap[k].curve[1];
+    Thinner(film, gap[k].distance, PetscMax(ds[v], ds[w]), v, w);
+  }
+  PetscCall(PetscFree(gap));
+  for (PetscInt v = 0; v < curves; v++) {
+    const PetscReal wall = CurveWallGap(start[v + 1] - start[v], X + 2 * start[v], room, &side);
+    Thinner(film, wall, ds[v], v, -1 - side);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

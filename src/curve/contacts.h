@@ -36,3 +36,28 @@ PETSC_EXTERN PetscErrorCode CurveGaps(PetscInt curves, const PetscInt start[], c
    one curve is alone. Not collective. Errors: memory. */
 PETSC_EXTERN PetscErrorCode CurveLeastGap(PetscInt curves, const PetscInt start[], const PetscReal X[],
                                           const PetscReal period[2], PetscBool smooth, PetscReal *distance);
+
+/* Where curves lie: walls at the sides of the box in the directions that have them, images in those with a period. */
+typedef struct {
+  PetscReal box[4]; /* x_min, x_max, y_min, y_max */
+  PetscReal period[2];
+  PetscBool wall[2];
+} CurveRoom;
+
+/* CurveWallGap - least distance of n points X[2n] from a wall, the one at box[side]; PETSC_MAX_REAL, side -1: none. Not
+   collective. */
+PETSC_EXTERN PetscReal CurveWallGap(PetscInt n, const PetscReal X[], const CurveRoom *room, PetscInt *side);
+
+/* A film of fluid: between two curves, a curve and its own image (the same twice), or a curve and a wall. */
+typedef struct {
+  PetscReal thickness; /* length */
+  PetscReal spacings;  /* the same over the larger of both curves' point spacings */
+  PetscInt pair[2];    /* the curves; -1 - side for a wall */
+} CurveFilm;
+
+/* CurveThinnestFilm - the film that is thinnest against the points, which are ds[v] apart (length) on curve v, of those
+   thinner than `most` spacings; spacings is `most` where there is none. Distances are those of CurveGaps and
+   CurveWallGap; curves that overlap have no film. Not collective. Errors: memory. */
+PETSC_EXTERN PetscErrorCode CurveThinnestFilm(PetscInt curves, const PetscInt start[], const PetscReal X[],
+                                              const PetscReal ds[], const CurveRoom *room, PetscBool smooth,
+                                              PetscReal most, CurveFilm *film);

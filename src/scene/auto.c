@@ -47,6 +47,24 @@ PetscErrorCode SceneChooseByError(Draft scene) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Where the flow compresses a vesicle and it wrinkles: order 3, and a tolerance of a hundredth of the error wanted,
+   whose steps leave up to a third of it (docs/choosing.md). */
+#define OF_WRINKLES 100
+
+#define OF_TURNING 10 /* where it is compressed without that: a third of the table's */
+
+static PetscErrorCode ChooseForCompression(Draft scene) {
+  const PetscBool squeezed = SceneIsSqueezed(scene);
+  char value[32];
+  PetscFunctionBeginUser;
+  if (SceneSqueeze(scene) == 0) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscSNPrintf(value, sizeof(value), "%g",
+                          (double)(scene->scheme.wanted / (squeezed ? OF_WRINKLES : OF_TURNING))));
+  if (squeezed) PetscCall(SceneChoose(scene, "-scheme_order", "3"));
+  PetscCall(SceneChoose(scene, "-time_adapt_tol", value));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* For the error at rest, and no more than the flow bears. */
 static PetscReal LargestStep(Scene scene, PetscReal slow) {
   return PetscMin(settings[Row(scene)].max_step * slow, SceneFlowStep(scene));
@@ -57,6 +75,7 @@ PetscErrorCode SceneChooseSteps(Draft scene) {
   char value[64];
   PetscFunctionBeginUser;
   if (scene->scheme.wanted == 0 || !scene->shape.vesicles) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ChooseForCompression(scene));
   SceneTimes(scene, &slow, &fast);
   if (slow < PETSC_MAX_REAL) {
     PetscCall(PetscSNPrintf(value, sizeof(value), "%.6g", (double)LargestStep(scene, slow)));
@@ -129,7 +148,20 @@ static PetscErrorCode PrintGrid(Scene scene, PetscReal cells) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* What the thinnest film of the start leaves. */
+static PetscErrorCode PrintFilm(Scene scene) {
+  PetscReal spacings, error;
+  PetscFunctionBeginUser;
+  PetscCall(SceneThinnestFilm(scene, &spacings, &error));
+  if (error > 0)
+    PetscCall(PetscPrintf(scene->comm, "  thinnest film: %.2g marker spacings, which leaves up to %.1g of R0: %s\n",
+                          (double)spacings, (double)error,
+                          error <= scene->scheme.wanted ? "enough" : "TOO THIN, take more -vesicle_markers"));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode PrintChoice(Scene scene, PetscInt row, PetscBool timed) {
+  const PetscBool squeezed = SceneIsSqueezed(scene);
   char why[128];
   PetscReal slow, fast;
   PetscFunctionBeginUser;
@@ -137,11 +169,15 @@ static PetscErrorCode PrintChoice(Scene scene, PetscInt row, PetscBool timed) {
   PetscCall(PetscPrintf(scene->comm, "petves: -scheme_auto %g, by the worst errors measured (docs/speed_accuracy.md)\n",
                         (double)scene->scheme.wanted));
   PetscCall(PrintSetting(scene, "-scheme_type", "the membrane and the fluid in one solve"));
-  PetscCall(PrintSetting(scene, "-scheme_order", "what was calibrated"));
+  PetscCall(PrintSetting(scene, "-scheme_order", squeezed ? "better where a vesicle wrinkles" : "what was calibrated"));
   PetscCall(PrintSetting(scene, "-time_adapt", "finds the step of any scene"));
   PetscCall(PrintSetting(scene, "-time_step", timed ? "a twentieth of the fastest time of the scene" : "the default"));
   if (scene->time.adapt == ADAPT_ERROR) {
     PetscCall(PetscSNPrintf(why, sizeof(why), "steps leave up to %.1e", (double)settings[row].of_steps));
+    if (SceneSqueeze(scene) > 0)
+      PetscCall(PetscSNPrintf(why, sizeof(why), "a vesicle is compressed (chi = %.2g) and %s: leaves up to %.1e",
+                              (double)SceneSqueeze(scene), squeezed ? "wrinkles" : "turns",
+                              (double)(scene->scheme.wanted / 3)));
     PetscCall(PrintSetting(scene, "-time_adapt_tol", why));
     if (SceneFlowStep(scene) < settings[row].max_step * slow)
       PetscCall(PetscSNPrintf(why, sizeof(why), "what this flow bears"));
@@ -154,6 +190,8 @@ static PetscErrorCode PrintChoice(Scene scene, PetscInt row, PetscBool timed) {
   if (!strcmp(scene->scheme.type, "coupled")) PetscCall(PrintSetting(scene, "-coupled_ksp_rtol", why));
   PetscCall(PrintSetting(scene, "-delta_type", "kernels differ by 1e-4 at most"));
   if (scene->vesicles.spacing > 0) PetscCall(PrintSetting(scene, "-vesicle_spacing", ""));
+  if (scene->vesicles.markers > 0)
+    PetscCall(PrintSetting(scene, "-vesicle_markers", "by the shapes, films and compression of the start"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -163,7 +201,11 @@ PetscErrorCode SceneReport(Scene scene) {
   if (scene->scheme.wanted > 0 && scene->shape.vesicles) {
     SceneTimes(scene, &slow, &fast);
     PetscCall(PrintChoice(scene, Row(scene), fast < PETSC_MAX_REAL ? PETSC_TRUE : PETSC_FALSE));
-    PetscCall(PrintGrid(scene, SceneSmallestRadius(scene) / FluidSpecCellSize(&scene->fluid)));
+    PetscCall(PrintFilm(scene));
+    if (FluidSpecIsFree(&scene->fluid))
+      PetscCall(PetscPrintf(scene->comm, "  grid: none, unbounded fluid: enough\n"));
+    else
+      PetscCall(PrintGrid(scene, SceneSmallestRadius(scene) / FluidSpecCellSize(&scene->fluid)));
   }
   if (*scene->warning) PetscCall(PetscPrintf(scene->comm, "petves: warning: %s\n", scene->warning));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -29,6 +29,7 @@ static PetscReal Chi(Scene scene, PetscReal R0, PetscReal bending) {
   return rate * scene->fluid.nu * PetscPowRealInt(R0, 3) / bending;
 }
 
+#define STRONG 100 /* chi from which on membranes wrinkle */
 #define THINNEST 8 /* times the markers of a round vesicle, at most */
 
 /* With the exact near field markers have to resolve the shape, not the grid: 45 for a reduced area of 0.6 and more, in
@@ -37,7 +38,7 @@ static PetscReal Chi(Scene scene, PetscReal R0, PetscReal bending) {
 static PetscReal WantedByShape(Scene scene, const Kind *kind) {
   const PetscReal length = kind->length, V = 4 * PETSC_PI * kind->area / PetscSqr(length),
                   thin = PetscMin(THINNEST, PetscMax(1, 0.6 / V));
-  const PetscReal strong = Chi(scene, length / (2 * PETSC_PI), kind->bending) >= 100 ? 1.5 : 1;
+  const PetscReal strong = Chi(scene, length / (2 * PETSC_PI), kind->bending) >= STRONG * (1 - 1e-6) ? 1.5 : 1;
   return PetscMax(45 * thin * strong, length / (2 * FluidSpecCellSize(&scene->fluid)));
 }
 

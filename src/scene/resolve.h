@@ -19,10 +19,22 @@ PETSC_EXTERN PetscBool SceneByArea(Scene scene);
 PETSC_EXTERN PetscErrorCode SceneChooseByError(Draft scene);
 PETSC_EXTERN PetscErrorCode SceneChooseSteps(Draft scene);
 
-/* SceneSmallestRadius - R0 of the smallest vesicle (length). SceneTimes - the slowest and the fastest time of the
+/* SceneChooseMarkers - with -scheme_auto, where the user gives neither their number nor their spacing: more than the
+   default where the start needs it, in steps of a fifth up to three times, and not closer than the near field bears;
+   the shape is made anew. SceneSqueeze - nu R0^3/c_b times the rate at which the flow shortens a vesicle of the start
+   along its length, the largest. SceneIsSqueezed - whether it wrinkles. SceneThinnestFilm - of the start, in marker
+   spacings (2: none is thinner), and the error that it leaves, of its thickness over R0. Collective. */
+PETSC_EXTERN PetscErrorCode SceneChooseMarkers(Draft scene);
+PETSC_EXTERN PetscReal SceneSqueeze(Scene scene);
+PETSC_EXTERN PetscBool SceneIsSqueezed(Scene scene);
+PETSC_EXTERN PetscErrorCode SceneThinnestFilm(Scene scene, PetscReal *spacings, PetscReal *error);
+
+/* SceneSmallestRadius - R0 of the smallest vesicle (length). SceneMembraneTime - nu R0^3/c_b of vesicle v;
+   PETSC_MAX_REAL without bending. SceneTimes - the slowest and the fastest time of the
    scene, the least nu R0^3/c_b of a vesicle, and the least of it and the flow's; PETSC_MAX_REAL: none. Not collective.
  */
 PETSC_EXTERN PetscReal SceneSmallestRadius(Scene scene);
+PETSC_EXTERN PetscReal SceneMembraneTime(Scene scene, PetscInt v);
 PETSC_EXTERN void SceneTimes(Scene scene, PetscReal *slow, PetscReal *fast);
 
 /* SceneFlowStep - up to which -time_adapt error lets steps grow in a flow when nothing changes (time): 1/(rate (1 +
@@ -51,8 +63,9 @@ PETSC_EXTERN PetscErrorCode SceneCheckGravity(Scene scene);
 
 /* SceneMakeShape - the initial markers of the scene's vesicles, all edges of a vesicle equal to 1e-12, and their
    bending stiffnesses. Every rank gets all of it. Collective; stops with the user's message on a bad file, spacing or
-   position, and when a packing has no room. */
+   position, and when a packing has no room. SceneDropShape - what it has made is gone, so that it can be made anew. */
 PETSC_EXTERN PetscErrorCode SceneMakeShape(Draft scene);
+PETSC_EXTERN PetscErrorCode SceneDropShape(Draft scene);
 
 /* SceneChooseInertia - the Reynolds number (speed R0/nu with R0 of the largest vesicle and the speed of the scene: rate
    R0 of shear and extension, u_max of poiseuille, c_b/(nu R0^2) of a quiescent fluid; 0 without vesicles), the model

@@ -32,6 +32,7 @@ PetscErrorCode SceneCreate(MPI_Comm comm, PetvesFlow flow, void *ctx, Scene *out
   DescribeFluid(s);
   /* 5  the markers, with the kernel's spacing if none is given */
   PetscCall(SceneMakeShape(s));
+  PetscCall(SceneChooseMarkers(s));
   PetscCall(SceneCheckFree(s));
   PetscCall(SceneCheckGravity(s));
   /* 6  the steps, which go by the vesicles' size */
@@ -49,9 +50,7 @@ PetscErrorCode SceneDestroy(Scene *scene) {
   Draft s = (Draft)*scene;
   PetscFunctionBeginUser;
   if (!s) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(ShapeDestroy(&s->shape));
-  PetscCall(PetscFree(s->vesicles.kind));
-  PetscCall(PetscFree(s->membrane.each));
+  PetscCall(SceneDropShape(s));
   PetscCall(OptionsDestroy(&s->options, s));
   PetscCall(PetscFree(s));
   *scene = NULL;

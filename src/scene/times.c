@@ -18,15 +18,14 @@ PetscReal SceneSmallestRadius(Scene scene) {
   return R0;
 }
 
-/* nu R0^3/c_b of a vesicle, PETSC_MAX_REAL without bending. */
-static PetscReal MembraneTime(Scene scene, PetscInt v) {
+PetscReal SceneMembraneTime(Scene scene, PetscInt v) {
   const PetscReal c_b = scene->membrane.each[v];
   return c_b > 0 ? scene->fluid.nu * PetscPowRealInt(ShapeRadius(&scene->shape, v), 3) / c_b : PETSC_MAX_REAL;
 }
 
 static PetscReal ShortestMembraneTime(Scene scene) {
   PetscReal time = PETSC_MAX_REAL;
-  for (PetscInt v = 0; v < scene->shape.vesicles; v++) time = PetscMin(time, MembraneTime(scene, v));
+  for (PetscInt v = 0; v < scene->shape.vesicles; v++) time = PetscMin(time, SceneMembraneTime(scene, v));
   return time;
 }
 
@@ -40,7 +39,7 @@ PetscReal SceneFlowStep(Scene scene) {
   const PetscReal rate = Rate(scene);
   PetscReal largest = 0;
   if (rate == 0) return PETSC_MAX_REAL;
-  for (PetscInt v = 0; v < scene->shape.vesicles; v++) largest = PetscMax(largest, MembraneTime(scene, v));
+  for (PetscInt v = 0; v < scene->shape.vesicles; v++) largest = PetscMax(largest, SceneMembraneTime(scene, v));
   return 1 / (rate * (1 + 0.03 * PetscMin(rate * largest, MOST_CHI)));
 }
 

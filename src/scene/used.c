@@ -123,6 +123,13 @@ static PetscBool IsScheme(Scene s, const char name[]) {
   return s->shape.vesicles && !strcmp(s->scheme.type, name) ? PETSC_TRUE : PETSC_FALSE;
 }
 
+static PetscBool MetByFlow(Scene s, Need need) {
+  if (need == BY_STRAIN) return IsFlow(s, FLOW_SHEAR, FLOW_EXTENSION);
+  if (need == BY_CHANNEL) return IsFlow(s, FLOW_POISEUILLE, FLOW_POISEUILLE);
+  if (need == BY_EXTENSION) return IsFlow(s, FLOW_EXTENSION, FLOW_EXTENSION);
+  return !IsFlow(s, FLOW_QUIESCENT, need == BY_SHEARED ? FLOW_CUSTOM : FLOW_QUIESCENT);
+}
+
 /* What depends on how vesicles come to their places. */
 static PetscBool MetByPlaces(Scene s, Need need) {
   const PetscBool packed = s->vesicles.shape == SHAPE_ELLIPSE && s->vesicles.packing > 0 ? PETSC_TRUE : PETSC_FALSE;
@@ -141,18 +148,9 @@ static PetscBool UsesDensity(Scene s) {
 
 static PetscBool Met(Scene s, Need need) {
   const PetscBool any = s->shape.vesicles > 0 ? PETSC_TRUE : PETSC_FALSE;
+  if (need <= BY_FLOW) return MetByFlow(s, need);
   if (need >= BY_PACKING && need <= BY_ANGLES) return MetByPlaces(s, need);
   switch (need) {
-  case BY_STRAIN:
-    return IsFlow(s, FLOW_SHEAR, FLOW_EXTENSION);
-  case BY_CHANNEL:
-    return IsFlow(s, FLOW_POISEUILLE, FLOW_POISEUILLE);
-  case BY_EXTENSION:
-    return IsFlow(s, FLOW_EXTENSION, FLOW_EXTENSION);
-  case BY_SHEARED:
-    return !IsFlow(s, FLOW_QUIESCENT, FLOW_CUSTOM);
-  case BY_FLOW:
-    return s->flow.type != FLOW_QUIESCENT;
   case BY_ELLIPSES:
     return s->vesicles.shape == SHAPE_ELLIPSE;
   case BY_FILE:

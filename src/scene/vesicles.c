@@ -198,3 +198,11 @@ PetscErrorCode SceneMakeShape(Draft scene) {
   PetscCall(CheckOverlap(scene, shape));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+PetscErrorCode SceneDropShape(Draft scene) {
+  PetscFunctionBeginUser;
+  PetscCall(ShapeDestroy(&scene->shape));
+  PetscCall(PetscFree(scene->vesicles.kind));
+  PetscCall(PetscFree(scene->membrane.each));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

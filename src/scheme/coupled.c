@@ -20,19 +20,6 @@ static PetscErrorCode GradedStart(Scheme s, Coupled *d, PetscReal dt) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A step of the given size, whatever it shows. */
-static PetscErrorCode FixedStep(Scheme s, Coupled *d, PetscReal dt) {
-  PetscBool solved;
-  PetscFunctionBeginUser;
-  if (!s->past && s->scene->scheme.order > 1 && s->scene->scheme.startup == STARTUP_GRADED) {
-    PetscCall(GradedStart(s, d, dt));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  PetscCall(CoupledAttempt(s, dt, &solved));
-  if (solved) PetscCall(CoupledAdvance(s, dt));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* max |X - X*|/R0 with R0 of the smallest vesicle; not a number where an X is. Marker vectors' own parts. */
 static PetscReal LargestError(Membrane m, const PetscScalar X[], const PetscScalar Xstar[]) {
   PetscReal R0 = PETSC_MAX_REAL, largest = 0;
@@ -43,6 +30,37 @@ static PetscReal LargestError(Membrane m, const PetscScalar X[], const PetscScal
     largest = error > largest || PetscIsNanReal(error) ? error : largest;
   }
   return largest;
+}
+
+/* The same of the step in next, on all ranks. */
+static PetscErrorCode Estimate(Scheme s, Coupled *d, PetscReal *error) {
+  const PetscScalar *X, *Xstar;
+  PetscReal found[2] = {0, 0};
+  PetscFunctionBeginUser;
+  PetscCall(VecGetArrayRead(d->next.X, &X));
+  PetscCall(VecGetArrayRead(d->Xstar, &Xstar));
+  found[0] = LargestError(s->membrane, X, Xstar);
+  PetscCall(VecRestoreArrayRead(d->Xstar, &Xstar));
+  PetscCall(VecRestoreArrayRead(d->next.X, &X));
+  if (PetscIsNanReal(found[0])) found[1] = 1; /* a maximum may lose it */
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, found, 2, MPIU_REAL, MPI_MAX, s->membrane->layout->comm));
+  *error = found[1] > 0 ? NAN : found[0];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A step of the given size, whatever it shows. */
+static PetscErrorCode FixedStep(Scheme s, Coupled *d, PetscReal dt) {
+  PetscBool solved;
+  PetscFunctionBeginUser;
+  if (!s->past && s->scene->scheme.order > 1 && s->scene->scheme.startup == STARTUP_GRADED) {
+    PetscCall(GradedStart(s, d, dt));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(CoupledAttempt(s, dt, &solved));
+  if (solved && s->state.dt_last > 0 && CouplingHasMembrane(s->coupling))
+    PetscCall(Estimate(s, d, &s->report.estimate));
+  if (solved) PetscCall(CoupledAdvance(s, dt));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Largest speed of a marker of one vesicle relative to the vesicle's mean, as its labels see it. */
@@ -59,27 +77,23 @@ static PetscReal RelativeSpeed(PetscInt n, const PetscScalar U[]) {
 static PetscErrorCode Look(Scheme s, Coupled *d, StepTrial *trial) {
   const Membrane m = s->membrane;
   const Layout l = m->layout;
-  const PetscScalar *X, *P, *Xstar;
-  PetscReal found[4] = {0, 0, 1, 0};
+  const PetscScalar *X, *P;
+  PetscReal found[2] = {0, 1};
   PetscFunctionBeginUser;
   PetscCall(VecGetArrayRead(d->next.X, &X));
   PetscCall(VecGetArrayRead(d->P, &P));
-  PetscCall(VecGetArrayRead(d->Xstar, &Xstar));
-  found[0] = LargestError(m, X, Xstar);
   for (PetscInt v = l->own; v < l->end; v++) {
     Measures measures;
     MembraneMeasure(m, v, X + 2 * LayoutOffset(l, v), &measures);
-    found[1] = PetscMax(found[1], RelativeSpeed(LayoutCount(l, v), P + 2 * LayoutOffset(l, v)));
-    found[2] = PetscMax(found[2], measures.edge_ratio);
+    found[0] = PetscMax(found[0], RelativeSpeed(LayoutCount(l, v), P + 2 * LayoutOffset(l, v)));
+    found[1] = PetscMax(found[1], measures.edge_ratio);
   }
-  PetscCall(VecRestoreArrayRead(d->Xstar, &Xstar));
   PetscCall(VecRestoreArrayRead(d->P, &P));
   PetscCall(VecRestoreArrayRead(d->next.X, &X));
-  if (PetscIsNanReal(found[0])) found[3] = 1; /* a maximum may lose it */
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, found, 4, MPIU_REAL, MPI_MAX, l->comm));
-  trial->error = found[3] > 0 ? NAN : found[0];
-  trial->speed = found[1];
-  trial->ratio = found[2];
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, found, 2, MPIU_REAL, MPI_MAX, l->comm));
+  trial->speed = found[0];
+  trial->ratio = found[1];
+  PetscCall(Estimate(s, d, &trial->error));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -6,6 +6,11 @@
 
 #define THIN 0.5 /* edges below which a film that loses much is drained by the step's error */
 
+/* Marker spacings below which a film's thickness is off by 1 % or will be as it thins (measured: from .3 to .65,
+   docs/choosing.md), and those at which it is off by .1 to .4 %. */
+#define COARSE 0.6
+#define RESOLVED 1.0
+
 /* The film that a step takes most of. */
 typedef struct {
   PetscReal loss; /* part of its thickness, over what is allowed */
@@ -16,9 +21,16 @@ static PetscBool Smooth(Scheme s) {
   return s->membrane->derivative == DERIVATIVE_SPECTRAL ? PETSC_TRUE : PETSC_FALSE;
 }
 
-static void Periods(Scheme s, PetscReal period[2]) {
+static CurveRoom Room(Scheme s) {
   const Grid g = s->fluid->grid;
-  for (int d = 0; d < 2; d++) period[d] = g->wall[d] ? 0 : g->hi[d] - g->lo[d];
+  CurveRoom room;
+  for (int d = 0; d < 2; d++) {
+    room.box[2 * d] = g->lo[d];
+    room.box[2 * d + 1] = g->hi[d];
+    room.period[d] = g->wall[d] ? 0 : g->hi[d] - g->lo[d];
+    room.wall[d] = g->wall[d] && !g->free ? PETSC_TRUE : PETSC_FALSE;
+  }
+  return room;
 }
 
 static PetscReal Thin(Scheme s) {
@@ -28,30 +40,20 @@ static PetscReal Thin(Scheme s) {
   return THIN * ds;
 }
 
-/* From n markers X[2n] to the nearest wall. */
-static PetscReal WallGap(Grid g, PetscInt n, const PetscScalar X[]) {
-  PetscReal least = PETSC_MAX_REAL;
-  for (int d = 0; d < 2 && !g->free; d++)
-    for (PetscInt k = 0; k < n && g->wall[d]; k++)
-      least = PetscMin(least, PetscMin(X[2 * k + d] - g->lo[d], g->hi[d] - X[2 * k + d]));
-  return least;
-}
-
 /* All films thinner than reach at the markers X[2M], in order; those of walls come last, as of a curve that comes
    behind all vesicles. To be freed. */
 static PetscErrorCode Find(Scheme s, const PetscScalar X[], PetscReal reach, PetscInt *n, CurveGap **films) {
   const Layout l = s->membrane->layout;
-  PetscReal period[2];
+  const CurveRoom room = Room(s);
   CurveGap *between;
-  PetscInt count;
+  PetscInt count, side;
   PetscFunctionBeginUser;
-  Periods(s, period);
-  PetscCall(CurveGaps(l->bodies, l->start, X, period, Smooth(s), reach, &count, &between));
+  PetscCall(CurveGaps(l->bodies, l->start, X, room.period, Smooth(s), reach, &count, &between));
   PetscCall(PetscMalloc1(count + l->bodies, films));
   PetscCall(PetscArraycpy(*films, between, count));
   PetscCall(PetscFree(between));
   for (PetscInt v = 0; v < l->bodies; v++) {
-    const PetscReal gap = WallGap(s->fluid->grid, LayoutCount(l, v), X + 2 * l->start[v]);
+    const PetscReal gap = CurveWallGap(LayoutCount(l, v), X + 2 * l->start[v], &room, &side);
     if (gap < reach) (*films)[count++] = (CurveGap){.curve = {l->bodies, v}, .distance = gap};
   }
   *n = count;
@@ -101,7 +103,7 @@ static PetscErrorCode FindDrained(Scheme s, Vec X_old, Vec X_new, PetscReal limi
 
 PetscErrorCode FilmsLoss(Scheme s, Vec X_old, Vec X_new, PetscReal *loss) {
   const Layout l = s->membrane->layout;
-  PetscReal period[2];
+  const CurveRoom room = Room(s);
   PetscInt pair[2] = {-1, -1};
   PetscFunctionBeginUser;
   *loss = 0;
@@ -112,8 +114,7 @@ PetscErrorCode FilmsLoss(Scheme s, Vec X_old, Vec X_new, PetscReal *loss) {
   }
   if (!s->scene->limits.crossing) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(LayoutGatherVec(l, X_new, s->work_all));
-  Periods(s, period);
-  if (!l->rank) PetscCall(CurvesCross(l->bodies, l->start, s->work_all, period, Smooth(s), pair));
+  if (!l->rank) PetscCall(CurvesCross(l->bodies, l->start, s->work_all, room.period, Smooth(s), pair));
   PetscCallMPI(MPI_Bcast(pair, 1, MPIU_INT, 0, l->comm));
   if (pair[0] >= 0) *loss = PetscMax(*loss, 2);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -144,17 +145,55 @@ PetscErrorCode FilmsCheck(Scheme s) {
 
 PetscErrorCode FilmsLeastGap(Scheme s, PetscReal *gap) {
   const Layout l = s->membrane->layout;
-  PetscReal period[2], wall;
+  const CurveRoom room = Room(s);
+  PetscInt side;
   PetscFunctionBeginUser;
   *gap = NAN;
   if (!l->bodies) PetscFunctionReturn(PETSC_SUCCESS);
-  Periods(s, period);
   PetscCall(LayoutGatherVec(l, s->state.X, s->work_all));
   if (!l->rank) {
-    PetscCall(CurveLeastGap(l->bodies, l->start, s->work_all, period, Smooth(s), gap));
-    wall = WallGap(s->fluid->grid, l->M, s->work_all);
+    PetscCall(CurveLeastGap(l->bodies, l->start, s->work_all, room.period, Smooth(s), gap));
+    const PetscReal wall = CurveWallGap(l->M, s->work_all, &room, &side);
     if (wall < PETSC_MAX_REAL && !(*gap < wall)) *gap = wall;
   }
   PetscCallMPI(MPI_Bcast(gap, 1, MPIU_REAL, 0, l->comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Warn(Scheme s, const CurveFilm *film) {
+  static const char *const walls[] = {"the wall x_min", "the wall x_max", "the wall y_min", "the wall y_max"};
+  const Membrane m = s->membrane;
+  const PetscInt v = film->pair[0], w = film->pair[1], coarse = w < 0 || m->ds[v] >= m->ds[w] ? v : w;
+  const PetscReal wanted = RESOLVED / film->spacings * LayoutCount(m->layout, coarse);
+  char other[64];
+  PetscFunctionBeginUser;
+  if (w < 0)
+    PetscCall(PetscStrncpy(other, walls[-1 - w], sizeof(other)));
+  else if (v == w)
+    PetscCall(PetscStrncpy(other, "its periodic image", sizeof(other)));
+  else
+    PetscCall(PetscSNPrintf(other, sizeof(other), "vesicle %" PetscInt_FMT, w + 1));
+  PetscCall(SchemeWarn(s,
+                       "the film between vesicle %" PetscInt_FMT " and %s is %.2g marker spacings thick after "
+                       "step %" PetscInt_FMT ", time %g; below %g its thickness is off by 1 %% or more: try "
+                       "-vesicle_markers %" PetscInt_FMT,
+                       v + 1, other, (double)film->spacings, s->state.step, (double)s->state.t, COARSE,
+                       2 * (PetscInt)PetscCeilReal((PetscMin(wanted, 1e4) - 1) / 2) + 1));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Rank 0 looks and tells the others. */
+PetscErrorCode FilmsWarn(Scheme s) {
+  const Layout l = s->membrane->layout;
+  const CurveRoom room = Room(s);
+  CurveFilm film;
+  PetscFunctionBeginUser;
+  if (!s->coupling->near || s->warnings.film) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(LayoutGatherVec(l, s->state.X, s->work_all));
+  if (!l->rank)
+    PetscCall(CurveThinnestFilm(l->bodies, l->start, s->work_all, s->membrane->ds, &room, Smooth(s), COARSE, &film));
+  PetscCallMPI(MPI_Bcast(&film, sizeof(film), MPI_BYTE, 0, l->comm));
+  s->warnings.film = film.spacings < COARSE ? PETSC_TRUE : PETSC_FALSE;
+  if (s->warnings.film) PetscCall(Warn(s, &film));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -17,6 +17,7 @@ typedef struct {
   PetscReal div_max;         /* max |G^T u + bc2|, what the solver left of the divergence */
   PetscReal surface_div_max; /* max |h^2 (Dm V/h^2 - g)/ds|, what it left of the surface divergence */
   PetscReal area_shift;      /* largest shift that restored a vesicle's area (length) */
+  PetscReal estimate;        /* of a fixed step of coupled or direct: max |X - X*|/R0, 0 in the first one */
   PetscReal cfl;             /* dt max(|u| + |v|)/h; 0 without convection */
   PetscReal seconds;         /* wall, output excluded */
   Stress stress;
@@ -41,7 +42,9 @@ typedef struct {
   char *text[SCHEME_WARNINGS];
   PetscBool contact; /* whether parts of membranes are close, as last warned of */
   PetscBool rough;   /* whether it was warned that markers do not resolve a membrane */
-  PetscBool corner;  /* whether a vesicle in a corner of two walls has been warned of */
+  PetscBool film;    /* likewise that they do not resolve a film, */
+  PetscBool step;    /* that a step was too large, */
+  PetscBool corner;  /* and of a vesicle in a corner of two walls */
 } Warnings;
 
 typedef struct _p_Scheme *Scheme;

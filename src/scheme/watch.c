@@ -1,6 +1,7 @@
 #include "scheme/watch.h"
 #include "base/agree.h"
 #include "scheme/contact.h"
+#include "scheme/films.h"
 #include "scheme/parts.h"
 
 /* A shape's tail, what it has of its bending in the last third of its modes. Above ROUGH the steady angle or
@@ -8,6 +9,10 @@
    markers, against 91). */
 #define ROUGH 0.15
 #define SMOOTH 0.03
+/* |X - X*|/R0 of a fixed step above which markers are off by 1 % of R0 or more (docs/time.md), and from which step on:
+   before, an ellipse lets go of high modes, which die out whatever the step. */
+#define COARSE_STEP 0.02
+#define FIRST_JUDGED 4
 #define CORNER 3 /* cells from each of two walls that meet, below which the near field does not hold */
 
 static PetscErrorCode CheckFinite(Scheme s) {
@@ -133,6 +138,23 @@ static PetscErrorCode WarnOfCorner(Scheme s) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Once a run, of a fixed step that does not follow what moves. The estimate falls with the square of the step or
+ * faster.
+ */
+static PetscErrorCode WarnOfStep(Scheme s) {
+  const PetscReal found = s->report.estimate;
+  PetscFunctionBeginUser;
+  if (s->warnings.step || s->state.step < FIRST_JUDGED || found < COARSE_STEP) PetscFunctionReturn(PETSC_SUCCESS);
+  s->warnings.step = PETSC_TRUE;
+  PetscCall(SchemeWarn(s,
+                       "a marker moved by %.2g R0 otherwise than the steps before foretold, in step %" PetscInt_FMT
+                       ", time %g; above %g R0 markers are off by 1 %% of R0 or more: try -time_step %.2g, or "
+                       "-time_adapt error",
+                       (double)found, s->state.step, (double)s->state.t, COARSE_STEP,
+                       (double)(s->state.dt * PetscSqrtReal(0.5 * COARSE_STEP / found))));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode SchemeCheck(Scheme s) {
   char *failure = s->report.failure;
   PetscFunctionBeginUser;
@@ -145,5 +167,7 @@ PetscErrorCode SchemeCheck(Scheme s) {
   if (!*failure) PetscCall(SchemeCheckContact(s));
   if (!*failure) PetscCall(WarnOfSpectrum(s));
   if (!*failure) PetscCall(WarnOfCorner(s));
+  if (!*failure) PetscCall(FilmsWarn(s));
+  if (!*failure) PetscCall(WarnOfStep(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

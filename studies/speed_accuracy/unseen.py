@@ -1,0 +1,157 @@
+"""-scheme_auto on scenes that its calibration has not seen: drawn from a seed, each against a far finer run."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from petves.run import Run
+from petves.tables import write_csv
+from studies.common.curves import material_distance
+from studies.common.engine import Case, Results, Series
+from studies.common.scenes import words
+
+SEED = 17
+WANTED = {0.01: 8, 0.001: 6}
+"""Relative errors asked for, and how many of the scenes."""
+BOXES = {
+    "free": (8, 8, "-domain_bc_x free -domain_bc_y free"),
+    "channel": (10, 5, "-domain_bc_x periodic"),
+    "box": (5, 5, ""),
+    "pipe": (10, 4, "-domain_bc_x periodic"),
+    "press": (8, 8, ""),
+}
+"""Length and height in R0, and boundaries: shear, but for the pipe, a parabola, and the press, extension."""
+
+
+FINE = words(
+    "-vesicle_allow_close_markers true -scheme_order 3 -time_adapt error -time_adapt_tol 3e-6 -time_step 0.01 "
+    "-coupled_ksp_rtol 1e-8"
+)
+"""Of the runs that stand for the truth."""
+
+
+@dataclass
+class Scene:
+    """A scene in units of R0 and the flow's rate: one ellipse, or two beside one another."""
+
+    place: str
+    count: int
+    reduced_area: float
+    chi: float
+    angle: float  # degrees; negative: the flow compresses the vesicle
+    gap: float  # between the two vesicles, or below the one (R0)
+    cells: int  # a R0
+
+    def ellipse(self) -> np.ndarray:
+        """Return points of the ellipse about the origin, turned."""
+        t = 2 * np.pi * np.arange(2000) / 2000
+        low, high = 0.02, 1.0
+        for _ in range(60):
+            ratio = (low + high) / 2
+            points = np.stack([np.cos(t), ratio * np.sin(t)], axis=1)
+            length = np.hypot(*(points - np.roll(points, 1, axis=0)).T).sum()
+            low, high = (ratio, high) if 4 * np.pi * np.pi * ratio / length**2 < self.reduced_area else (low, ratio)
+        turn = np.deg2rad(self.angle)
+        matrix = np.array([[np.cos(turn), np.sin(turn)], [-np.sin(turn), np.cos(turn)]])
+        return points * (2 * np.pi / length) @ matrix
+
+    def centers(self) -> list[float]:
+        """Return where the vesicles are for the gap wanted."""
+        points = self.ellipse()
+        if self.count == 1:
+            below = -BOXES[self.place][1] / 2 + self.gap - points[:, 1].min()
+            return [0.0, 0.0 if self.place in ("free", "box") else float(below)]
+        up, low, high = 0.4 if self.place != "press" else 0.0, 0.0, 6.0
+        for _ in range(40):
+            x = (low + high) / 2
+            apart = np.abs((points @ (1, 1j))[:, None, None] - (points @ (1, 1j) + x - up * 1j)[None]).min()
+            inside = x * x + up * up < 0.2 or apart < self.gap
+            low, high = (x, high) if inside else (low, x)
+        return [-x / 2, up / 2, x / 2, -up / 2]
+
+    def options(self) -> dict[str, str]:
+        """Return the scene's options, without those of accuracy."""
+        length, height, walls = BOXES[self.place]
+        flow = "-flow_type shear -flow_rate 1"
+        if self.place == "pipe":  # its rate at the wall is 1
+            flow = f"-flow_type poiseuille -flow_half_width {height / 2} -flow_peak_velocity {height / 4}"
+        if self.place == "press":  # together
+            flow = "-flow_type extension -flow_rate -1"
+        text = f"-domain_box {-length / 2},{length / 2},{-height / 2},{height / 2} {walls} {flow} "
+        text += f"-fluid_inertia none -vesicle_area {np.pi * self.reduced_area!r} -vesicle_reduced_area {self.reduced_area} "
+        text += f"-vesicle_angle {self.angle} -vesicle_bending {1 / self.chi!r} -vesicle_count {self.count} "
+        text += f"-vesicle_center {','.join(f'{x:.6f}' for x in self.centers())} -time_end {3 if self.place == 'press' else 6} "
+        text += "-output_every 1000 -checkpoint_every 0"
+        return words(text)
+
+    def grid(self, finer: int = 1) -> dict[str, str]:
+        """Return the option of the grid."""
+        length, height, _ = BOXES[self.place]
+        return words(f"-domain_cells {length * self.cells * finer},{height * self.cells * finer}")
+
+
+def drawn(number: int) -> Scene:
+    """Return the scene of a number: place and count in turn, the rest at random."""
+    random = np.random.default_rng([SEED, number])
+    place = list(BOXES)[number % 5]
+    gap = 10 ** random.uniform(-1, 0)
+    return Scene(
+        place=place,
+        count=2 if place == "press" else 1 + (number // 5 + number) % 2,
+        reduced_area=round(random.uniform(0.5, 0.95), 2),
+        chi=float(f"{10 ** random.uniform(0, 2):.2g}"),
+        angle=90 if place == "press" else round(random.uniform(-45, 80)),
+        gap=float(f"{gap:.2g}"),
+        cells=int(random.integers(3, 6)),
+    )
+
+
+def measure(series: Series, folder: Path) -> dict[str, object]:
+    """Return a Measure: steps, bending energy, markers of each vesicle and the warnings."""
+    run = Run.read(folder)
+    outlines = [np.round(run.outline(-1, k)[:-1], 10).tolist() for k in range(len(run.start) - 1)]
+    kept: dict[str, object] = {
+        "steps": len(series["time"]) - 1,
+        "energy": series["energy_bending"][-1],
+        "markers": outlines,
+    }
+    return kept | {"warnings": run.summary["warnings"]}
+
+
+def fine(number: int) -> Case:
+    """Return the run that stands for the truth: half the cells' size, markers twice the default's or more, small steps."""
+    scene = drawn(number)
+    markers = 2 * int(45 * max(1, 0.6 / scene.reduced_area) * (1.3 if scene.chi > 50 or scene.gap < 0.3 else 1)) + 1
+    options = scene.options() | scene.grid(2) | words(f"-vesicle_markers {markers}")
+    return Case(f"fine_{number}", options | FINE, measure)
+
+
+def auto(number: int, wanted: float) -> Case:
+    """Return the run with -scheme_auto."""
+    scene = drawn(number)
+    return Case(
+        f"auto_{number}_{wanted:g}", scene.options() | scene.grid() | words(f"-scheme_auto {wanted:g}"), measure
+    )
+
+
+def error(found: dict, exact: dict) -> float:
+    """Return the worse of energy and markers, root mean square over R0 = 1."""
+    apart = [material_distance(np.array(x), np.array(y)) for x, y in zip(found["markers"], exact["markers"])]
+    return max(abs(found["energy"] / exact["energy"] - 1), *apart)
+
+
+def write(folder: str | Path, quick: bool = False) -> list[Path]:
+    """Run what is not there yet and write unseen.csv; quick: four scenes for .01."""
+    folder = Path(folder)
+    results = Results(folder / "unseen.json")
+    rows = []
+    for wanted, count in {0.01: 4}.items() if quick else WANTED.items():
+        for number in range(count):
+            scene, found = drawn(number), results.get(auto(number, wanted))
+            row = {"wanted": wanted, "scene": number} | vars(scene)
+            row |= {"error": f"{error(found, results.get(fine(number))):.2e}", "steps": found["steps"]}
+            rows.append(row | {"markers": len(found["markers"][0]), "warnings": len(found["warnings"])})
+    return [write_csv(folder / "unseen.csv", list(rows[0]), [list(row.values()) for row in rows])]
