@@ -117,7 +117,7 @@ def test_stray_word_alone(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "my.opts").write_text("-time_end 1\n")
     done = mpirun([PETVES, "my.opts"], 2)
-    line = 'petves: error: "my.opts": no option, nor the value of one; allowed: -name value, or -options_file FILE'
+    line = 'petves: error: "my.opts": no option, nor the value of one; allowed: -name value, or petves run FILE'
     assert done.returncode == 1 and without_mpirun(done.stderr) == [line] and not (tmp_path / "out").exists()
 
 

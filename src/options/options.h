@@ -58,6 +58,10 @@ PETSC_EXTERN PetscErrorCode OptionValue(const OptionTable *table, const void *va
    value that no options file can hold is no value of a table (OptionParse refuses it). Not collective. */
 PETSC_EXTERN void OptionPrint(FILE *file, const char name[], const char value[]);
 
+/* OptionHelp - a row for a reader: "  -name default  [range]", and its help below in lines that begin with six blanks.
+   Not collective. */
+PETSC_EXTERN void OptionHelp(FILE *file, const OptionRow *row);
+
 /* OptionsWrite - write every option in force that has a value, defaults included, one "-name value" a line; but not
    those in skip, whose last entry is NULL. */
 PETSC_EXTERN PetscErrorCode OptionsWrite(const OptionTable *table, const void *values, const char *const skip[],

@@ -132,7 +132,7 @@ static PetscErrorCode Refuse(const OptionTable *t, const void *values, const cha
   PetscCheck(!meant, t->comm, PETSC_ERR_USER_INPUT,
              "%s %s: no such option; %s is meant? (-allow_unused_options goes on)", name, value, meant);
   SETERRQ(t->comm, PETSC_ERR_USER_INPUT,
-          "%s %s: no such option; petves -help lists them (-allow_unused_options goes on)", name, value);
+          "%s %s: no such option; petves -help options lists them (-allow_unused_options goes on)", name, value);
 }
 
 PetscErrorCode OptionsTryLate(const OptionTable *t) {

@@ -1,11 +1,9 @@
 #include "output/summary.h"
+#include "base/version.h"
 #include <fftw3.h>
 #include <hdf5.h>
 #include <sys/resource.h>
 
-#ifndef PETVES_COMMIT
-#define PETVES_COMMIT "unknown"
-#endif
 
 /* A JSON string: quotes, backslashes and control characters escaped. */
 static void PrintString(FILE *f, const char *text) {
@@ -92,7 +90,7 @@ static PetscErrorCode Print(FILE *f, const void *what) {
   PrintInertia(f, s->scheme->scene, r->cfl_max);
   PrintWarnings(f, &s->scheme->warnings);
   PrintVersions(f);
-  fprintf(f, "  \"git_commit\": \"%s\"\n}\n", PETVES_COMMIT);
+  fprintf(f, "  \"git_commit\": \"%s\"\n}\n", PetvesCommit());
   return PETSC_SUCCESS;
 }
 

@@ -106,6 +106,10 @@ PetscBool SceneByArea(Scene scene) {
   return SceneGiven(scene, "-vesicle_area") || SceneGiven(scene, "-vesicle_reduced_area") ? PETSC_TRUE : PETSC_FALSE;
 }
 
+const OptionRow *SceneOptionRow(PetscInt i) {
+  return i < TABLE_SIZE ? &table[i] : NULL;
+}
+
 const char *SceneOptionName(PetscInt i) {
   return i < TABLE_SIZE ? table[i].name : NULL;
 }
