@@ -4,7 +4,6 @@
 #include <hdf5.h>
 #include <sys/resource.h>
 
-
 /* A JSON string: quotes, backslashes and control characters escaped. */
 static void PrintString(FILE *f, const char *text) {
   fputc('"', f);
