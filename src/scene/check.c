@@ -56,7 +56,8 @@ static PetscErrorCode CheckList(Scene scene, const char name[], PetscInt n, Pets
 }
 
 static PetscErrorCode CheckVesicle(Scene scene) {
-  const PetscBool by_area = SceneByArea(scene);
+  const SceneVesicles *own = &scene->vesicles;
+  const PetscBool by_area = SceneGiven(scene, "-vesicle_area") || SceneGiven(scene, "-vesicle_reduced_area");
   PetscFunctionBeginUser;
   PetscCheck(!(by_area && SceneGiven(scene, "-vesicle_semi_axes")), scene->comm, PETSC_ERR_USER_INPUT,
              "-vesicle_semi_axes: given together with -vesicle_area or -vesicle_reduced_area; allowed: one description "
@@ -64,6 +65,11 @@ static PetscErrorCode CheckVesicle(Scene scene) {
   PetscCall(CheckList(scene, "-vesicle_semi_axes", scene->vesicles.axes.n, 2, PETSC_TRUE));
   PetscCall(CheckList(scene, "-vesicle_area", scene->vesicles.area.n, 1, PETSC_TRUE));
   PetscCall(CheckList(scene, "-vesicle_reduced_area", scene->vesicles.reduced_area.n, 1, PETSC_TRUE));
+  for (PetscInt k = 0; k < own->reduced_area.n; k++)
+    PetscCheck(own->shape != SHAPE_BICONCAVE || (own->reduced_area.v[k] >= 0.35 && own->reduced_area.v[k] <= 0.9),
+               scene->comm, PETSC_ERR_USER_INPUT,
+               "-vesicle_reduced_area %g: no -vesicle_shape biconcave has it; allowed: 0.35 to 0.9",
+               (double)own->reduced_area.v[k]);
   if (scene->vesicles.shape != SHAPE_FILE) { /* the number of curves is known later */
     PetscCall(CheckList(scene, "-vesicle_center", scene->vesicles.center.n, 2, PETSC_FALSE));
     PetscCall(CheckList(scene, "-vesicle_angle", scene->vesicles.angle.n, 1, PETSC_TRUE));

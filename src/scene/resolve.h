@@ -9,7 +9,7 @@ typedef struct _p_Scene *Draft; /* a scene that is not resolved yet */
 PETSC_EXTERN PetscErrorCode SceneReadOptions(MPI_Comm comm, Draft scene);
 PETSC_EXTERN PetscErrorCode SceneChoose(Draft scene, const char name[], const char value[]);
 
-/* SceneByArea - whether the ellipses are given by area and reduced area. Not collective. */
+/* SceneByArea - whether the vesicles are given by area and reduced area. Not collective. */
 PETSC_EXTERN PetscBool SceneByArea(Scene scene);
 
 /* SceneChooseByError - with -scheme_auto: scheme, order, tolerances, kernel and spacing for the error wanted.
@@ -17,6 +17,13 @@ PETSC_EXTERN PetscBool SceneByArea(Scene scene);
    for schemes that have no error control. */
 PETSC_EXTERN PetscErrorCode SceneChooseByError(Draft scene);
 PETSC_EXTERN PetscErrorCode SceneChooseSteps(Draft scene);
+
+/* SceneChooseFlow - rate or peak velocity from -flow_chi or -flow_ca: rate = chi c_b/(nu R0^3), u_max = Ca c_b/(nu
+   R0^2), R0 of the largest vesicle. Collective. Errors: both given, no bending, no vesicles. */
+PETSC_EXTERN PetscErrorCode SceneChooseFlow(Draft scene);
+
+/* SceneLargestRadius - R0 of the largest of the scene's curves, before there are markers (length). Collective. */
+PETSC_EXTERN PetscErrorCode SceneLargestRadius(Scene scene, PetscReal *R0);
 
 /* SceneSmallestRadius - R0 of the smallest vesicle (length). SceneTimes - the slowest and the fastest time of the
    scene, nu R0^3/c_b of the smallest vesicle, and the least of it and the flow's; PETSC_MAX_REAL: none. Not collective.

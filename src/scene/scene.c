@@ -29,7 +29,8 @@ PetscErrorCode SceneCreate(MPI_Comm comm, PetvesFlow flow, void *ctx, Scene *out
   s->flow.function = flow;
   s->flow.ctx = ctx;
   DescribeFluid(s);
-  /* 5  the markers, with the kernel's spacing if none is given */
+  /* 5  the flow, from numbers that go by the vesicles' size; the markers, with the kernel's spacing if none is given */
+  PetscCall(SceneChooseFlow(s));
   PetscCall(SceneMakeShape(s, &s->shape));
   PetscCall(SceneCheckFree(s));
   PetscCall(SceneCheckGravity(s));

@@ -12,7 +12,7 @@ typedef enum { BENDING_IMPLICIT, BENDING_EXPLICIT } BendingType;
 typedef enum { ADAPT_NONE, ADAPT_ERROR } AdaptType;
 typedef enum { FRAME_TREADING, FRAME_NONE } FrameType;
 typedef enum { STARTUP_EULER, STARTUP_GRADED } StartUp;
-typedef enum { SHAPE_ELLIPSE, SHAPE_FILE, SHAPE_NONE } ShapeType;
+typedef enum { SHAPE_ELLIPSE, SHAPE_BICONCAVE, SHAPE_FILE, SHAPE_NONE } ShapeType;
 
 /* The domain as the user gives it: fluid.box and fluid.cells when their lengths are right. */
 typedef struct {
@@ -22,9 +22,9 @@ typedef struct {
 
 typedef struct {
   PetscInt shape;                /* ShapeType */
-  PetscInt count;                /* of ellipses */
+  PetscInt count;                /* of vesicles, but of a file's */
   RealList axes, center, angle;  /* semi-axes, centre, angle in degrees; one entry for all, or one a vesicle */
-  RealList area, reduced_area;   /* of the ellipses, instead of semi-axes */
+  RealList area, reduced_area;   /* instead of semi-axes, and of biconcave outlines */
   char file[PETSC_MAX_PATH_LEN]; /* curve file */
   PetscReal spacing;             /* ds/h; 0: by kernel */
   PetscInt markers;              /* 0: from spacing */

@@ -11,7 +11,9 @@ static const OptionRow table[] = {
   {"-domain_bc_y", OPT_ENUM, AT(fluid.bc[1]), "wall", "wall|periodic|free", "boundaries at y_min and y_max"},
   {"-flow_type", OPT_ENUM, AT(flow.type), "quiescent", "quiescent|shear|poiseuille|extension|custom", "background flow; custom: a function given from Python or C"},
   {"-flow_rate", OPT_REAL, AT(flow.rate), "1", "any", "rate of shear or extension (1/time)"},
+  {"-flow_chi", OPT_REAL, AT(flow.chi), "0", "any", "in place of -flow_rate: chi = rate nu R0^3/c_b, R0 of the largest vesicle"},
   {"-flow_peak_velocity", OPT_REAL, AT(flow.peak), "1", "any", "u_max of poiseuille (length/time)"},
+  {"-flow_ca", OPT_REAL, AT(flow.ca), "0", "any", "in place of -flow_peak_velocity: u_max nu R0^2/c_b, the paper's w"},
   {"-flow_half_width", OPT_REAL, AT(flow.half_width), "3", ">0", "L_y of poiseuille: half the channel's height (length)"},
   {"-flow_center_x", OPT_REAL, AT(flow.center[0]), "0", "any", "x_c of the background flow (length)"},
   {"-flow_center_y", OPT_REAL, AT(flow.center[1]), "0", "any", "y_c of the background flow (length)"},
@@ -20,13 +22,13 @@ static const OptionRow table[] = {
   {"-fluid_viscosity", OPT_REAL, AT(fluid.nu), "1", ">0", "nu (length^2/time; density is 1)"},
   {"-fluid_inertia", OPT_ENUM, AT(fluid.inertia), "auto", "auto|none|unsteady|convective", "inertia of the fluid: quasi-steady Stokes, unsteady Stokes, Navier-Stokes; auto goes by flow and Reynolds number"},
   {"-fluid_gravity", OPT_REALS, AT(gravity.g), "0,0", "any", "gravity g_x,g_y (length/time^2); it moves vesicles by -vesicle_density_difference"},
-  {"-vesicle_shape", OPT_ENUM, AT(vesicles.shape), "ellipse", "ellipse|file|none", "initial shape"},
-  {"-vesicle_count", OPT_INT, AT(vesicles.count), "1", ">=1", "number of ellipses; a file has its own number of curves"},
+  {"-vesicle_shape", OPT_ENUM, AT(vesicles.shape), "ellipse", "ellipse|biconcave|file|none", "initial shape; biconcave: the red cell's outline"},
+  {"-vesicle_count", OPT_INT, AT(vesicles.count), "1", ">=1", "number of vesicles; a file has its own number of curves"},
   {"-vesicle_semi_axes", OPT_REALS, AT(vesicles.axes), "0.2,0.5", ">0", "semi-axes of the ellipse, two for all or two a vesicle (length)"},
-  {"-vesicle_area", OPT_REALS, AT(vesicles.area), "1", ">0", "area of the ellipse, with -vesicle_reduced_area; one for all or one a vesicle (length^2)"},
-  {"-vesicle_reduced_area", OPT_REALS, AT(vesicles.reduced_area), "0.7", "(0,1)", "V = area/(pi R0^2), R0 = perimeter/(2 pi); long axis along x"},
-  {"-vesicle_center", OPT_REALS, AT(vesicles.center), "0,0", "any", "x,y of the centre, a pair a vesicle (length)"},
-  {"-vesicle_angle", OPT_REALS, AT(vesicles.angle), "0", "any", "counter-clockwise turn of the shape, one for all or one a vesicle (degrees)"},
+  {"-vesicle_area", OPT_REALS, AT(vesicles.area), "1", ">0", "area, with -vesicle_reduced_area; one for all or one a vesicle (length^2)"},
+  {"-vesicle_reduced_area", OPT_REALS, AT(vesicles.reduced_area), "0.7", "(0,1)", "V = area/(pi R0^2), R0 = perimeter/(2 pi); long axis along x; biconcave: 0.35 to 0.9, 0.65 when not given"},
+  {"-vesicle_center", OPT_REALS, AT(vesicles.center), "0,0", "any", "x,y of the centre, a pair a vesicle; file: added to its coordinates, one pair for all or one each (length)"},
+  {"-vesicle_angle", OPT_REALS, AT(vesicles.angle), "0", "any", "counter-clockwise turn about the centre, file: about each curve's centroid; one for all or one a vesicle (degrees)"},
   {"-vesicle_file", OPT_PATH, AT(vesicles.file), "", "", "closed curves: x y a line, an empty line between curves, for -vesicle_shape file"},
   {"-vesicle_bending", OPT_REAL, AT(membrane.bending), "0.01", ">=0", "c_b, bending stiffness; 0 leaves bending out"},
   {"-vesicle_density_difference", OPT_REALS, AT(gravity.density), "0", "any", "density inside less density outside, over that outside; one for all or one a vesicle"},
@@ -103,6 +105,7 @@ PetscBool SceneGiven(Scene scene, const char name[]) {
 }
 
 PetscBool SceneByArea(Scene scene) {
+  if (scene->vesicles.shape == SHAPE_BICONCAVE) return PETSC_TRUE;
   return SceneGiven(scene, "-vesicle_area") || SceneGiven(scene, "-vesicle_reduced_area") ? PETSC_TRUE : PETSC_FALSE;
 }
 
@@ -116,6 +119,8 @@ const char *SceneOptionName(PetscInt i) {
 
 PetscBool SceneOptionMayChange(const char name[]) {
   const char *const free[] = {"-scheme_auto",
+                              "-flow_chi", /* what they stand for is compared */
+                              "-flow_ca",
                               "-time_end",
                               "-time_step",
                               "-time_adapt_tol",
@@ -147,11 +152,11 @@ PetscErrorCode SceneOptionValue(Scene scene, PetscInt i, char value[], size_t le
 }
 
 PetscErrorCode SceneWriteOptions(Scene scene, FILE *file) {
-  /* what the scene does not use would be refused when read back, and so would be both descriptions of the ellipse; what
-     one launch was asked to do with an earlier run's files is no part of the run */
+  /* what the scene does not use would be refused when read back, and so would be both descriptions of the ellipse, or
+     of the flow; what one launch was asked to do with an earlier run's files is no part of the run */
   const PetscBool by_area = SceneByArea(scene);
-  const char *skip[TABLE_SIZE + 5] = {"-restart", "-output_overwrite"};
-  PetscInt skipped = 2;
+  const char *skip[TABLE_SIZE + 7] = {"-restart", "-output_overwrite", "-flow_chi", "-flow_ca"};
+  PetscInt skipped = 4;
   PetscFunctionBeginUser;
   if (by_area) skip[skipped++] = "-vesicle_semi_axes";
   if (!by_area) skip[skipped++] = "-vesicle_area";

@@ -10,6 +10,7 @@ typedef enum {
   BY_FLOW,
   BY_VESICLES,
   BY_ELLIPSES,
+  BY_SIZES,
   BY_FILE,
   BY_UNSPLIT,
   BY_COUPLED,
@@ -30,6 +31,7 @@ static const char *const needs[] = {"-flow_type shear or extension",
                                     "a -flow_type that is not quiescent",
                                     "vesicles (-vesicle_shape)",
                                     "-vesicle_shape ellipse",
+                                    "-vesicle_shape ellipse or biconcave",
                                     "-vesicle_shape file",
                                     "vesicles and -scheme_type coupled or direct",
                                     "vesicles and -scheme_type coupled",
@@ -47,6 +49,8 @@ static const struct {
   const char *name;
   Need need;
 } rules[] = {{"-flow_rate", BY_STRAIN},
+             {"-flow_chi", BY_STRAIN},
+             {"-flow_ca", BY_CHANNEL},
              {"-flow_peak_velocity", BY_CHANNEL},
              {"-flow_half_width", BY_CHANNEL},
              {"-flow_center_x", BY_EXTENSION},
@@ -56,8 +60,8 @@ static const struct {
              {"-fluid_gravity", BY_UNSPLIT},
              {"-vesicle_count", BY_VESICLES},
              {"-vesicle_semi_axes", BY_ELLIPSES},
-             {"-vesicle_area", BY_ELLIPSES},
-             {"-vesicle_reduced_area", BY_ELLIPSES},
+             {"-vesicle_area", BY_SIZES},
+             {"-vesicle_reduced_area", BY_SIZES},
              {"-vesicle_center", BY_VESICLES},
              {"-vesicle_angle", BY_VESICLES},
              {"-vesicle_file", BY_FILE},
@@ -116,6 +120,8 @@ static PetscBool Met(Scene s, Need need) {
     return s->flow.type != FLOW_QUIESCENT;
   case BY_ELLIPSES:
     return s->vesicles.shape == SHAPE_ELLIPSE;
+  case BY_SIZES:
+    return s->vesicles.shape == SHAPE_ELLIPSE || s->vesicles.shape == SHAPE_BICONCAVE ? PETSC_TRUE : PETSC_FALSE;
   case BY_FILE:
     return s->vesicles.shape == SHAPE_FILE;
   case BY_UNSPLIT:

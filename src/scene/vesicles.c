@@ -105,13 +105,15 @@ static PetscReal Entry(const RealList *list, PetscInt each, PetscInt vesicle, Pe
 static PetscErrorCode MakeCurves(Scene scene, PetscInt *count, Curve **out) {
   Curve *curve;
   PetscFunctionBeginUser;
-  *count = scene->vesicles.shape == SHAPE_ELLIPSE ? scene->vesicles.count : 0;
+  *count = scene->vesicles.shape < SHAPE_FILE ? scene->vesicles.count : 0;
   PetscCall(PetscCalloc1(*count, &curve));
   *out = curve;
   for (PetscInt k = 0; k < *count; k++) {
-    if (SceneByArea(scene))
-      PetscCall(EllipseAxes(Entry(&scene->vesicles.area, 1, k, 0), Entry(&scene->vesicles.reduced_area, 1, k, 0),
-                            curve[k].axes));
+    const PetscReal area = Entry(&scene->vesicles.area, 1, k, 0), V = Entry(&scene->vesicles.reduced_area, 1, k, 0);
+    if (scene->vesicles.shape == SHAPE_BICONCAVE)
+      PetscCall(BiconcaveCurve(area, V, &curve[k]));
+    else if (SceneByArea(scene))
+      PetscCall(EllipseAxes(area, V, curve[k].axes));
     else
       for (int c = 0; c < 2; c++) curve[k].axes[c] = Entry(&scene->vesicles.axes, 2, k, c);
   }
@@ -132,14 +134,16 @@ static PetscErrorCode MakeCurves(Scene scene, PetscInt *count, Curve **out) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Turn and move markers of vesicle v. */
-static void Place(Scene scene, PetscInt v, PetscInt M, PetscReal X[]) {
+/* Turn and move markers of vesicle v. What is no file's is about the origin. */
+static void Place(Scene scene, const Curve *curve, PetscInt v, PetscInt M, PetscReal X[]) {
+  PetscReal about[2] = {0, 0};
   const PetscReal turn = Entry(&scene->vesicles.angle, 1, v, 0) * PETSC_PI / 180, c = PetscCosReal(turn),
                   s = PetscSinReal(turn);
+  if (scene->vesicles.shape == SHAPE_FILE && turn != 0) CurveCentroid(curve, about);
   for (PetscInt k = 0; k < M; k++) {
-    const PetscReal x = X[2 * k], y = X[2 * k + 1];
-    X[2 * k] = Entry(&scene->vesicles.center, 2, v, 0) + c * x - s * y;
-    X[2 * k + 1] = Entry(&scene->vesicles.center, 2, v, 1) + s * x + c * y;
+    const PetscReal x = X[2 * k] - about[0], y = X[2 * k + 1] - about[1];
+    X[2 * k] = Entry(&scene->vesicles.center, 2, v, 0) + about[0] + c * x - s * y;
+    X[2 * k + 1] = Entry(&scene->vesicles.center, 2, v, 1) + about[1] + s * x + c * y;
   }
 }
 
@@ -168,7 +172,7 @@ static PetscErrorCode CheckRoom(Scene scene, const Curve *curve, PetscInt v) {
   PetscFunctionBeginUser;
   PetscCall(SizeOptions(scene, v, size, sizeof(size)));
   for (PetscInt k = 0; k < OUTLINE; k++) CurveEvaluate(curve, (PetscReal)k / OUTLINE, X + 2 * k);
-  Place(scene, v, OUTLINE, X);
+  Place(scene, curve, v, OUTLINE, X);
   for (int dir = 0; dir < 2 && f->bc[dir] != BC_FREE; dir++) {
     const PetscReal *wall = f->box + 2 * dir, width = wall[1] - wall[0];
     PetscReal low = X[dir], high = X[dir];
@@ -252,10 +256,25 @@ static PetscErrorCode CheckOverlap(Scene scene, const Shape *s) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode SceneLargestRadius(Scene scene, PetscReal *R0) {
+  PetscInt n;
+  Curve *curve;
+  PetscFunctionBeginUser;
+  *R0 = 0;
+  PetscCall(MakeCurves(scene, &n, &curve));
+  for (PetscInt v = 0; v < n; v++) {
+    *R0 = PetscMax(*R0, CurveLength(&curve[v]) / (2 * PETSC_PI));
+    PetscCall(CurveDestroy(&curve[v]));
+  }
+  PetscCall(PetscFree(curve));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode SceneMakeShape(Scene scene, Shape *shape) {
   Curve *curve;
   PetscFunctionBeginUser;
   shape->X = NULL;
+  shape->longest = 0;
   PetscCall(MakeCurves(scene, &shape->vesicles, &curve));
   PetscCall(PetscCalloc1(shape->vesicles + 1, &shape->start));
   for (PetscInt v = 0; v < shape->vesicles; v++) {
@@ -267,6 +286,7 @@ PetscErrorCode SceneMakeShape(Scene scene, Shape *shape) {
                "-vesicle_count %" PetscInt_FMT ": more markers than this PETSc can number; allowed: fewer vesicles",
                shape->vesicles);
     shape->start[v + 1] = shape->start[v] + M;
+    shape->longest = PetscMax(shape->longest, CurveLength(&curve[v]));
   }
   PetscCall(PetscMalloc1(2 * shape->start[shape->vesicles], &shape->X));
   for (PetscInt v = 0; v < shape->vesicles; v++) {
@@ -278,8 +298,8 @@ PetscErrorCode SceneMakeShape(Scene scene, Shape *shape) {
       PetscCall(CurveFit(M, PETSC_TRUE, CurveLength(&curve[v]), CurveArea(&curve[v]), X, MAX_NEWTON, &left));
     } else
       PetscCall(CurveEqualChords(&curve[v], M, X));
+    Place(scene, &curve[v], v, M, X);
     PetscCall(CurveDestroy(&curve[v]));
-    Place(scene, v, M, X);
   }
   PetscCall(PetscFree(curve));
   PetscCall(CheckOverlap(scene, shape));
