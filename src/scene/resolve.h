@@ -45,6 +45,9 @@ PETSC_EXTERN PetscBool SceneIsProjection(Scene scene);
 PETSC_EXTERN PetscErrorCode SceneChooseByScheme(Draft scene);
 PETSC_EXTERN PetscErrorCode SceneChooseStiffness(Draft scene);
 
+/* SceneWishes - what is asked for by names that there are not. Not collective. */
+PETSC_EXTERN const OptionWish *SceneWishes(void);
+
 /* SceneCheck - checks that involve more than one option. Collective. */
 PETSC_EXTERN PetscErrorCode SceneCheck(Scene scene);
 

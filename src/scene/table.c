@@ -178,6 +178,6 @@ static const OptionOwner owners[] = {
 PetscErrorCode SceneCheckUnused(Scene scene) {
   PetscFunctionBeginUser;
   PetscCall(OptionsTryLate(&scene->options));
-  if (!scene->allow_unused) PetscCall(OptionsCheckUnused(&scene->options, scene, solvers, owners));
+  if (!scene->allow_unused) PetscCall(OptionsCheckUnused(&scene->options, scene, solvers, owners, SceneWishes()));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
