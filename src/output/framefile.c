@@ -12,6 +12,10 @@ PetscInt FrameEntries(Scheme s, PetscInt k) {
   return k < 3 ? g->n[0] * g->n[1] : s->membrane->layout->M * (k < 5 ? 2 : 1);
 }
 
+PetscBool FrameIsSingle(Scheme s, PetscInt k) {
+  return k < 3 && s->scene->output.precision == PRECISION_SINGLE ? PETSC_TRUE : PETSC_FALSE;
+}
+
 PetscErrorCode FrameFileCreate(Scheme s, const char path[], H5File *f) {
   const Grid g = s->fluid->grid;
   const Layout l = s->membrane->layout;
@@ -30,7 +34,8 @@ PetscErrorCode FrameFileCreate(Scheme s, const char path[], H5File *f) {
                         "disturbance unless -flow_form total; tension k on the edge from marker k-1 to marker k"));
   PetscCall(H5CreateSeries(f, "/time", 0, NULL));
   for (int k = 0; k < FrameSeriesCount(s); k++)
-    PetscCall(H5CreateSeries(f, FrameSeries[k], k < 5 ? 2 : 1, k < 3 ? cells : markers));
+    PetscCall((FrameIsSingle(s, k) ? H5CreateSingleSeries : H5CreateSeries)(f, FrameSeries[k], k < 5 ? 2 : 1,
+                                                                            k < 3 ? cells : markers));
   PetscCall(H5FileFlush(f));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

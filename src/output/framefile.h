@@ -11,6 +11,9 @@ PETSC_EXTERN PetscInt FrameSeriesCount(Scheme scheme);
 /* FrameEntries - numbers in one frame of series k. */
 PETSC_EXTERN PetscInt FrameEntries(Scheme scheme, PetscInt k);
 
+/* FrameIsSingle - whether series k is in single precision. */
+PETSC_EXTERN PetscBool FrameIsSingle(Scheme scheme, PetscInt k);
+
 /* FrameFileCreate - a file with the attributes and the empty series of run.h5. Collective; what went wrong is kept in
    the file. */
 PETSC_EXTERN PetscErrorCode FrameFileCreate(Scheme scheme, const char path[], H5File *file);

@@ -74,6 +74,19 @@ static PetscBool ReadPlaces(FILE *index, PetscInt n, PetscInt *frame, PetscReal 
   return PETSC_TRUE;
 }
 
+/* Entry k of a frame at its place in the file, n numbers. */
+static PetscBool ReadEntry(Scheme s, int file, PetscInt k, off_t place, PetscReal values[]) {
+  const PetscInt n = FrameEntries(s, k);
+  const size_t bytes = (size_t)n * (FrameIsSingle(s, k) ? sizeof(float) : sizeof(PetscReal));
+  if (pread(file, values, bytes, place) != (ssize_t)bytes) return PETSC_FALSE;
+  for (PetscInt i = n - 1; i >= 0 && FrameIsSingle(s, k); i--) { /* from behind, where there is room */
+    float x;
+    memcpy(&x, (const char *)values + (size_t)i * sizeof(x), sizeof(x));
+    values[i] = x;
+  }
+  return PETSC_TRUE;
+}
+
 /* Copy the first `frames` frames into the new file `f`; the number that could be read. A frame may have several lines,
    where a run went on after its end: the last one holds. Rank 0's. */
 static PetscErrorCode CopyFrames(Scheme s, PetscInt frames, FILE *index, int old, H5File *f, PetscInt *copied) {
@@ -89,10 +102,8 @@ static PetscErrorCode CopyFrames(Scheme s, PetscInt frames, FILE *index, int old
     PetscBool good = PETSC_TRUE;
     if (frame >= frames) continue;
     for (PetscInt k = 0; good && k < series; k++) {
-      const PetscInt n = FrameEntries(s, k);
-      const ssize_t bytes = (ssize_t)((size_t)n * sizeof(*values));
-      good = pread(old, values, (size_t)bytes, (off_t)place[k]) == bytes ? PETSC_TRUE : PETSC_FALSE;
-      if (good) PetscCall(H5WriteArray(f, FrameSeries[k], frame, n, values));
+      good = ReadEntry(s, old, k, (off_t)place[k], values);
+      if (good) PetscCall(H5WriteArray(f, FrameSeries[k], frame, FrameEntries(s, k), values));
     }
     if (!good) break;
     PetscCall(H5WriteArray(f, "/time", frame, 1, &t));

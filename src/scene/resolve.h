@@ -31,6 +31,9 @@ PETSC_EXTERN PetscErrorCode SceneLargestRadius(Scene scene, PetscReal *R0);
 PETSC_EXTERN PetscReal SceneSmallestRadius(Scene scene);
 PETSC_EXTERN void SceneTimes(Scene scene, PetscReal *slow, PetscReal *fast);
 
+/* SceneChooseOutput - -output_every where it is not given: for at most 100 frames, the first included. Collective. */
+PETSC_EXTERN PetscErrorCode SceneChooseOutput(Draft scene);
+
 /* SceneFlowStep - up to which -time_adapt error lets steps grow in a flow when nothing changes (time): 1/(rate (1 +
    0.03 chi)), which fixed steps from an ellipse still bear (docs/time.md), chi = rate nu R0^3/c_b of the largest
    vesicle, at most 250; PETSC_MAX_REAL without a known rate. SceneChooseLargestStep - make it the default; at rest nu

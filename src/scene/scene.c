@@ -37,6 +37,7 @@ PetscErrorCode SceneCreate(MPI_Comm comm, PetvesFlow flow, void *ctx, Scene *out
   /* 6  the steps, which go by the vesicles' size */
   PetscCall(SceneChooseSteps(s));
   PetscCall(SceneChooseLargestStep(s));
+  PetscCall(SceneChooseOutput(s));
   s->fluid.dt = s->time.dt;
   /* 7  Reynolds number, model of the fluid, warning */
   PetscCall(SceneChooseInertia(s));

@@ -11,6 +11,7 @@ typedef enum { MOBILITY_TABLE, MOBILITY_ILU, MOBILITY_NONE } MobilityType;
 typedef enum { BENDING_IMPLICIT, BENDING_EXPLICIT } BendingType;
 typedef enum { ADAPT_NONE, ADAPT_ERROR } AdaptType;
 typedef enum { FRAME_TREADING, FRAME_NONE } FrameType;
+typedef enum { PRECISION_DOUBLE, PRECISION_SINGLE } PrecisionType;
 typedef enum { STARTUP_EULER, STARTUP_GRADED } StartUp;
 typedef enum { SHAPE_ELLIPSE, SHAPE_BICONCAVE, SHAPE_FILE, SHAPE_NONE } ShapeType;
 
@@ -75,6 +76,7 @@ typedef struct {
 typedef struct {
   char dir[PETSC_MAX_PATH_LEN];     /* every output file goes here */
   PetscReal every;                  /* time between saved fields */
+  PetscInt precision;               /* PrecisionType, of saved velocity and pressure */
   PetscInt checkpoint_every;        /* steps between checkpoints; 0: only at the end */
   PetscInt checkpoint_keep;         /* checkpoints kept, the newest included */
   char restart[PETSC_MAX_PATH_LEN]; /* checkpoint to go on from; empty: none */

@@ -63,7 +63,8 @@ static const OptionRow table[] = {
   {"-fftw_wisdom", OPT_PATH, AT(wisdom), "", "", "file of FFTW's measurements: read if it is there, written when a run adds to it"},
   {"-output_dir", OPT_PATH, AT(output.dir), "out/run", "", "folder of every output file"},
   {"-output_overwrite", OPT_BOOL, AT(output.overwrite), "false", "true|false", "replace the results that -output_dir holds already"},
-  {"-output_every", OPT_REAL, AT(output.every), "0.1", ">0", "time between saved fields"},
+  {"-output_every", OPT_REAL, AT(output.every), "0.1", ">0", "time between saved fields; not given: 0.1, or so many times more (1, 2, 5, 10 ...) that there are at most 100"},
+  {"-output_precision", OPT_ENUM, AT(output.precision), "double", "double|single", "of saved velocity and pressure; single takes half the room"},
   {"-checkpoint_every", OPT_INT, AT(output.checkpoint_every), "100", ">=0", "steps between checkpoints; 0 writes one at the end only"},
   {"-checkpoint_keep", OPT_INT, AT(output.checkpoint_keep), "2", "[1,100]", "checkpoints kept: checkpoint.h5, the one before it checkpoint_1.h5, and so on"},
   {"-restart", OPT_PATH, AT(output.restart), "", "", "go on from this checkpoint, in its folder or in a new -output_dir"},
@@ -137,9 +138,10 @@ PetscBool SceneOptionMayChange(const char name[]) {
                               "-restart",
                               "-view",
                               "-allow_unused_options"};
-  const char *const groups[] = {"-output_", "-checkpoint_", "-limit_"};
+  const char *const groups[] = {"-output_", /* but a file goes on as it was begun */ "-checkpoint_", "-limit_"};
   for (size_t i = 0; i < sizeof(free) / sizeof(free[0]); i++)
     if (!strcmp(name, free[i])) return PETSC_TRUE;
+  if (!strcmp(name, "-output_precision")) return PETSC_FALSE;
   for (size_t i = 0; i < sizeof(groups) / sizeof(groups[0]); i++)
     if (!strncmp(name, groups[i], strlen(groups[i]))) return PETSC_TRUE;
   return PETSC_FALSE;
