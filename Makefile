@@ -36,7 +36,7 @@ KNOWS = $(shell $(CC) $(ARCH_OPTION)=$(1) -x c -E /dev/null >/dev/null 2>&1 && e
 ifneq ($(origin ARCH),command line) # not what the environment calls so
 ARCH := $(firstword $(foreach candidate,$(CANDIDATES),$(call KNOWS,$(candidate))))
 endif
-FOR := $(MACHINE)$(if $(ARCH), $(ARCH_OPTION)=$(ARCH))
+FOR := $(MACHINE)$(if $(SANITIZE)$(COVERAGE),,$(if $(ARCH), $(ARCH_OPTION)=$(ARCH)))
 
 PKG := $(if $(PETSC_DIR),PKG_CONFIG_PATH=$(PETSC_DIR)/$(PETSC_ARCH)/lib/pkgconfig) pkg-config
 COMMA := ,
