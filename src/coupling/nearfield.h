@@ -70,7 +70,7 @@ PETSC_EXTERN PetscErrorCode NearFieldAddBoxPart(NearField near, const FluidSpec 
    is a force times ds (length^3/time^2 with density 1). Collective. */
 PETSC_EXTERN PetscErrorCode NearFieldApply(NearField near, PetscReal alpha, const PetscScalar F[], PetscScalar U[]);
 
-/* NearFieldAdd - out += scale (C + D), or scale C where the box part is not asked for, between the markers first .. first + n - 1, out[2n][2n] entries interlaced, the
-   rows of own markers only. Not collective. */
+/* NearFieldAdd - out += scale (C + D), or scale C where the box part is not asked for, between the markers first ..
+   first + n - 1, out[2n][2n] entries interlaced, the rows of own markers only. Not collective. */
 PETSC_EXTERN PetscErrorCode NearFieldAdd(NearField near, PetscReal scale, PetscBool box, PetscInt first, PetscInt n,
                                          PetscReal out[]);

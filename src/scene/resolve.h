@@ -10,7 +10,7 @@ typedef struct _p_Scene *Draft; /* a scene that is not resolved yet */
 PETSC_EXTERN PetscErrorCode SceneReadOptions(MPI_Comm comm, Draft scene);
 PETSC_EXTERN PetscErrorCode SceneChoose(Draft scene, const char name[], const char value[]);
 
-/* SceneByArea - whether the ellipses are given by area and reduced area. Not collective. */
+/* SceneByArea - whether the vesicles are given by area and reduced area. Not collective. */
 PETSC_EXTERN PetscBool SceneByArea(Scene scene);
 
 /* SceneChooseByError - with -scheme_auto: scheme, order, tolerances, kernel and spacing for the error wanted.
@@ -19,11 +19,19 @@ PETSC_EXTERN PetscBool SceneByArea(Scene scene);
 PETSC_EXTERN PetscErrorCode SceneChooseByError(Draft scene);
 PETSC_EXTERN PetscErrorCode SceneChooseSteps(Draft scene);
 
+/* SceneChooseFlow - rate or peak velocity from -flow_chi or -flow_ca: rate = chi c_b/(nu R0^3), u_max = Ca c_b/(nu
+   R0^2), R0 of the largest vesicle and the largest c_b, both known before there are markers (shape.longest,
+   membrane.bending). Collective. Errors: both given, no bending, no vesicles. */
+PETSC_EXTERN PetscErrorCode SceneChooseFlow(Draft scene);
+
 /* SceneSmallestRadius - R0 of the smallest vesicle (length). SceneTimes - the slowest and the fastest time of the
    scene, the least nu R0^3/c_b of a vesicle, and the least of it and the flow's; PETSC_MAX_REAL: none. Not collective.
  */
 PETSC_EXTERN PetscReal SceneSmallestRadius(Scene scene);
 PETSC_EXTERN void SceneTimes(Scene scene, PetscReal *slow, PetscReal *fast);
+
+/* SceneChooseOutput - -output_every where it is not given: for at most 100 frames, the first included. Collective. */
+PETSC_EXTERN PetscErrorCode SceneChooseOutput(Draft scene);
 
 /* SceneFlowStep - up to which -time_adapt error lets steps grow in a flow when nothing changes (time): 1/(rate (1 +
    0.03 chi)), which fixed steps from an ellipse still bear (docs/time.md), chi = rate nu R0^3/c_b of the
@@ -39,6 +47,9 @@ PETSC_EXTERN PetscBool SceneIsProjection(Scene scene);
 PETSC_EXTERN PetscErrorCode SceneChooseByScheme(Draft scene);
 PETSC_EXTERN PetscErrorCode SceneChooseStiffness(Draft scene);
 
+/* SceneWishes - what is asked for by names that there are not. Not collective. */
+PETSC_EXTERN const OptionWish *SceneWishes(void);
+
 /* SceneCheck - checks that involve more than one option. Collective. */
 PETSC_EXTERN PetscErrorCode SceneCheck(Scene scene);
 
@@ -50,8 +61,9 @@ PETSC_EXTERN PetscErrorCode SceneCheckFree(Scene scene);
 PETSC_EXTERN PetscErrorCode SceneCheckGravity(Scene scene);
 
 /* SceneMakeShape - the initial markers of the scene's vesicles, all edges of a vesicle equal to 1e-12, and their
-   bending stiffnesses. Every rank gets all of it. Collective; stops with the user's message on a bad file, spacing or
-   position, and when a packing has no room. */
+   bending stiffnesses; before the markers, whose number goes by it, the flow from numbers that go by the vesicles.
+   Every rank gets all of it. Collective; stops with the user's message on a bad file, spacing or position, and when a
+   packing has no room. */
 PETSC_EXTERN PetscErrorCode SceneMakeShape(Draft scene);
 
 /* SceneChooseInertia - the Reynolds number (speed R0/nu with R0 of the largest vesicle and the speed of the scene: rate
