@@ -72,6 +72,22 @@ def test_numbers_go_by_the_largest_vesicle(flow, power, name, tmp_path):
     assert float(VIEW.search(run.stdout)[2]) == pytest.approx(3, rel=1e-5)
 
 
+def test_red_cells_of_two_kinds_in_shear(tmp_path):
+    """Areas and bending by -vesicle_mixture; chi by the largest of either."""
+    scene = f"{SMALL} -domain_box -3,3,-3,3 -vesicle_shape biconcave -vesicle_count 3 -vesicle_center -1.5,0,0,0,1.5,0"
+    kinds = "-vesicle_mixture 0.7,0.3 -vesicle_area 0.5,0.8 -vesicle_bending 0.01,0.02 -vesicle_angle 90"
+    run = run_petves(tmp_path / "run", f"{scene} {kinds} -flow_type shear -flow_chi 5 -time_end 0 -view")
+    R0 = np.sqrt(0.8 / (np.pi * 0.65))
+    assert float(options(run)["-flow_rate"]) == pytest.approx(5 * 0.02 / R0**3, rel=1e-6)
+    assert float(VIEW.search(run.stdout)[2]) == pytest.approx(5, rel=1e-5)
+    with h5py.File(run.folder / "run.h5") as file:
+        start, X = file.attrs["vesicle_start"], file["vesicle/markers"][0]
+        assert list(file.attrs["vesicle_c_b"]) == [0.01, 0.02, 0.01]
+    for v, area in enumerate((0.5, 0.8, 0.5)):
+        measured, _, centroid = spectral_measures(X[start[v] : start[v + 1]])
+        assert measured == pytest.approx(area, rel=1e-6) and abs(centroid - (1.5 * v - 1.5)) < 1e-5
+
+
 def test_chi_can_be_swept(tmp_path):
     scene = f"{SMALL} -flow_type shear -vesicle_semi_axes 0.4,0.4"
     (tmp_path / "shared.opts").write_text(re.sub(r" (?=-[a-z])", "\n", scene) + "\n")
