@@ -23,16 +23,33 @@ TEST_PACKAGES := python3-pytest python3-pytest-xdist python3-scipy python3-xarra
 # VTK with its XDMF reader, which Debian's lacks: from PyPI, into build/, for one test.
 VTK := vtk==9.3.1
 
-PKG := $(if $(PETSC_DIR),PKG_CONFIG_PATH=$(PETSC_DIR)/$(PETSC_ARCH)/lib/pkgconfig) pkg-config
 CC := mpicc
+# Which processor the code is for: ARCH=..., else what this machine has and the compiler knows. Empty: any of its kind.
+MACHINE := $(shell uname -m)
+CPU_FLAGS := $(shell sed -n '/^flags/{s/.*://p;q}' /proc/cpuinfo)
+V2 := cx16 lahf_lm popcnt sse4_1 sse4_2 ssse3
+V3 := $(V2) abm avx avx2 bmi1 bmi2 f16c fma movbe
+ARCH_OPTION = $(if $(filter aarch64 arm64,$(MACHINE)),-mcpu,-march)
+CANDIDATES := $(if $(filter x86_64,$(MACHINE)),$(if $(filter-out $(CPU_FLAGS),$(V3)),,x86-64-v3) $(if $(filter-out $(CPU_FLAGS),$(V2)),,x86-64-v2))
+CANDIDATES += $(if $(filter aarch64 arm64,$(MACHINE)),native)
+KNOWS = $(shell $(CC) $(ARCH_OPTION)=$(1) -x c -E /dev/null >/dev/null 2>&1 && echo $(1))
+ifneq ($(origin ARCH),command line) # not what the environment calls so
+ARCH := $(firstword $(foreach candidate,$(CANDIDATES),$(call KNOWS,$(candidate))))
+endif
+FOR := $(MACHINE)$(if $(SANITIZE)$(COVERAGE),,$(if $(ARCH), $(ARCH_OPTION)=$(ARCH)))
+
+PKG := $(if $(PETSC_DIR),PKG_CONFIG_PATH=$(PETSC_DIR)/$(PETSC_ARCH)/lib/pkgconfig) pkg-config
 COMMA := ,
-OPTIMISE := $(if $(SANITIZE),-O1 -g -fsanitize=address$(COMMA)undefined -fno-omit-frame-pointer,$(if $(COVERAGE),-O1 -g --coverage -fprofile-update=atomic,-O3 -g -march=x86-64-v3))
+OPTIMISE := $(if $(SANITIZE),-O1 -g -fsanitize=address$(COMMA)undefined -fno-omit-frame-pointer,$(if $(COVERAGE),-O1 -g --coverage -fprofile-update=atomic,-O3 -g$(if $(ARCH), $(ARCH_OPTION)=$(ARCH))))
 CFLAGS = -std=gnu11 -Wall -Wextra -Werror -Wno-unused-parameter -Wno-missing-field-initializers $(OPTIMISE) -fPIC -Iinclude -Isrc \
-  $(shell $(PKG) --cflags PETSc hdf5-openmpi fftw3) -DPETVES_COMMIT='"$(shell git describe --always --dirty 2>/dev/null || echo unknown)"'
+  $(shell $(PKG) --cflags PETSc hdf5-openmpi fftw3)
+COMMIT := $(shell git describe --always --dirty 2>/dev/null || echo unknown)
 LIBS = $(shell $(PKG) --libs PETSc hdf5-openmpi fftw3) -lfftw3_mpi -lm $(if $(PETSC_DIR),-Wl$(COMMA)-rpath$(COMMA)$(PETSC_DIR)/$(PETSC_ARCH)/lib)
 
 SOURCES := $(filter-out src/main.c,$(wildcard src/*.c src/*/*.c))
 OBJECTS := $(SOURCES:src/%.c=$(BUILD)/%.o)
+# What programs that load the library are built for: not the commit's name.
+CODE := $(filter-out $(BUILD)/base/version.o,$(OBJECTS))
 LIBRARY := $(LIBDIR)/libpetves.so
 BENCHES := $(patsubst bench/%.c,$(BUILD)/bench/%,$(wildcard bench/bench_*.c))
 TESTS := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/test_*.c) tests/scenes.c)
@@ -45,11 +62,25 @@ export OMPI_MCA_mpi_yield_when_idle := 1
 export OMPI_MCA_btl_vader_single_copy_mechanism := none
 export OMP_NUM_THREADS := 1
 
-.PHONY: all help deps test-deps run test coverage reproduce stability time chart calibrate unseen bench fuzz memcheck install format check-format clean tests benches
+.PHONY: all help deps test-deps run test coverage reproduce stability time chart calibrate unseen bench fuzz memcheck install uninstall manual arch format check-format clean tests benches FORCE
 all: $(BIN)/petves ## build bin/petves and lib/libpetves.so
 
 help: ## list the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*##/\t/' | expand -t 18
+
+# Written anew when it is not what it was: what depends on it is then built again.
+define remember
+$(1): FORCE
+	@mkdir -p $$(@D); echo '$(2)' | cmp -s - $$@ || echo '$(2)' > $$@
+endef
+$(eval $(call remember,$(BUILD)/.arch,$(FOR)))
+$(eval $(call remember,$(BUILD)/.commit,$(COMMIT)))
+FORCE:
+
+$(OBJECTS) $(BUILD)/main.o: $(BUILD)/.arch
+$(BUILD)/base/version.o: $(BUILD)/.commit
+$(BUILD)/base/version.o: CFLAGS += -DPETVES_COMMIT='"$(COMMIT)"' -DPETVES_ARCH='"$(FOR)"'
+$(BUILD)/program.o: CFLAGS += -DPETVES_PYTHON='"$(PYTHON)"'
 
 $(BUILD)/%.o: src/%.c
 	@mkdir -p $(@D)
@@ -63,11 +94,11 @@ $(BIN)/petves: $(BUILD)/main.o $(LIBRARY)
 	@mkdir -p $(@D)
 	$(CC) $(OPTIMISE) -o $@ $< -L$(LIBDIR) -lpetves -Wl,-rpath,'$$ORIGIN/../$(LIBDIR)' $(LIBS)
 
-$(BUILD)/tests/%: tests/%.c $(wildcard tests/*.h) $(LIBRARY)
+$(BUILD)/tests/%: tests/%.c $(wildcard tests/*.h) $(CODE) | $(LIBRARY)
 	@mkdir -p $(@D)
 	$(CC) $(CFLAGS) -Itests -o $@ $< -L$(LIBDIR) -lpetves -Wl,-rpath,$(CURDIR)/$(LIBDIR) $(LIBS)
 
-$(BUILD)/bench/%: bench/%.c bench/bench.h $(wildcard tests/*.h) $(LIBRARY)
+$(BUILD)/bench/%: bench/%.c bench/bench.h $(wildcard tests/*.h) $(CODE) | $(LIBRARY)
 	@mkdir -p $(@D)
 	$(CC) $(CFLAGS) -Itests -Ibench -o $@ $< -L$(LIBDIR) -lpetves -Wl,-rpath,$(CURDIR)/$(LIBDIR) $(LIBS)
 
@@ -147,14 +178,29 @@ memcheck: test-deps ## every kind of scene under valgrind's memcheck, on 1 and 2
 	PETVES=$(CURDIR)/$(BIN)/petves PETVES_TESTS=$(CURDIR)/$(BUILD)/tests PYTHONPATH=python:. SANITIZE=$(SANITIZE) MEMCHECK=1 \
 	  $(PYTHON) -m pytest -p no:cacheprovider -q tests/test_valgrind.py
 
-install: all ## install under PREFIX (/usr/local)
-	install -d $(PREFIX)/bin $(PREFIX)/lib $(PREFIX)/include $(PREFIX)/share/petves $(PYTHON_DIR)/petves/views
+manual: all ## the manual page and completion for bash, into build/
+	$(PYTHON) python/make_manual.py $(BIN)/petves $(BUILD)
+
+install: manual ## install under PREFIX (/usr/local): program, library, Python package, manual, completion, scenes
+	install -d $(addprefix $(PREFIX)/,bin lib include share/petves share/doc/petves share/man/man1 share/bash-completion/completions)
+	install -d $(PYTHON_DIR)/petves/views
 	install $(BIN)/petves $(PREFIX)/bin/
 	install -m 644 $(LIBRARY) $(PREFIX)/lib/
 	install -m 644 include/petves.h $(PREFIX)/include/
+	install -m 644 $(BUILD)/petves.1 $(PREFIX)/share/man/man1/
+	install -m 644 $(BUILD)/petves.bash $(PREFIX)/share/bash-completion/completions/petves
+	install -m 644 README.md CHANGELOG.md LICENSE docs/*.md $(PREFIX)/share/doc/petves/
 	cp -r runs python/examples $(PREFIX)/share/petves/
 	install -m 644 python/petves/*.py $(PYTHON_DIR)/petves/
 	install -m 644 python/petves/views/*.py python/petves/views/*.html $(PYTHON_DIR)/petves/views/
+
+uninstall: ## remove what make install has put under PREFIX
+	rm -f $(PREFIX)/bin/petves $(PREFIX)/lib/libpetves.so $(PREFIX)/include/petves.h $(PREFIX)/share/man/man1/petves.1
+	rm -f $(PREFIX)/share/bash-completion/completions/petves
+	rm -rf $(PREFIX)/share/petves $(PREFIX)/share/doc/petves $(PYTHON_DIR)/petves
+
+arch: ## print which processor the code is built for (make ARCH=... takes another)
+	@echo "$(FOR)"
 
 C_FILES = $(wildcard src/*.c src/*/*.c src/*/*.h include/*.h tests/*.c tests/*.h bench/*.c bench/*.h)
 format: test-deps ## format C and Python

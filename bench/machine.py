@@ -6,6 +6,8 @@ import os
 import re
 import subprocess
 
+from petves.program import command
+
 
 def _output(*command: str) -> str:
     try:
@@ -26,6 +28,12 @@ def _blas() -> str:
     return f"OpenBLAS {_package('libopenblas0-serial')}" if "openblas" in target else "reference BLAS"
 
 
+def _processor() -> str:
+    """Return the compiler's option for the processor that petves was built for."""
+    option = re.search(r" -m\w+=\S+", _output(*command(), "-version"))
+    return option[0] if option else ""
+
+
 def machine() -> dict[str, str]:
     """Return the processor, its caches, memory, compiler and libraries."""
     cpu = dict(re.findall(r"^([^:\n]+):\s+(.*)$", _output("lscpu"), re.MULTILINE))
@@ -38,7 +46,7 @@ def machine() -> dict[str, str]:
         "cores": cpu.get("CPU(s)", "?"),
         "caches": ", ".join(f"{key} {cpu[key + ' cache']}" for key in ("L1d", "L2", "L3") if key + " cache" in cpu),
         "memory": f"{int(memory[1]) / 2**20:.0f} GiB" if memory else "unknown",
-        "compiler": _output("gcc", "--version").split("\n")[0] + ", -O3 -march=x86-64-v3",
+        "compiler": _output("gcc", "--version").split("\n")[0] + ", -O3" + _processor(),
         "PETSc": re.sub(r"^.*?(\d+\.\d+\.\d+).*$", r"\1", _output("pkg-config", "--modversion", "PETSc").strip()),
         "FFTW": _output("pkg-config", "--modversion", "fftw3").strip(),
         "BLAS": _blas(),

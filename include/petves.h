@@ -18,6 +18,10 @@ typedef struct _p_Simulation *Simulation;
    stops the run. Every rank calls it, for other points and other numbers of times. */
 typedef PetscErrorCode (*PetvesFlow)(PetscReal time, PetscInt n, const PetscReal X[], PetscReal u[], void *ctx);
 
+/* PetvesMain - the whole program petves, from its words to its exit status (0 finished or stopped, 1 bad input, 2 a
+   step failed); argv may be changed. Starts and ends MPI and PETSc, which must not be running. */
+PETSC_EXTERN int PetvesMain(int argc, char **argv);
+
 /* PetvesInitialize - start PETSc with petves' help text and error handler, and the options of the command line, of its
    -options_file and of PETSC_OPTIONS; what is no option there is a user's mistake. */
 PETSC_EXTERN PetscErrorCode PetvesInitialize(int *argc, char ***argv);

@@ -7,7 +7,7 @@
 #include <time.h>
 
 static const char help[] = "petves: inextensible vesicles in two-dimensional viscous flow.\n"
-                           "usage: mpirun -n RANKS petves -options_file scene.opts [-option value ...]\n\n";
+                           "usage: mpirun -n RANKS petves run SCENE.opts [-option value ...]\n\n";
 
 /* MPI is started here and not by PETSc: what the user typed is read and checked before PETSc sees it. */
 static PetscBool began_mpi = PETSC_FALSE;

@@ -126,7 +126,7 @@ class Draw:
             words += ["-scheme_type", self.random.choice(["split", "penalty", "coupled", "direct"])]
         if self.random.random() < 0.3:
             words.append("-allow_unused_options")
-        for name, default, _, allowed in self.random.sample(self.table, self.random.randint(0, most)):
+        for name, default, _, allowed, _ in self.random.sample(self.table, self.random.randint(0, most)):
             values = OWN.get(name, [])
             if values is not None:
                 text = self.random.choice(values).format(**self.places) if values else self.value(default, allowed)

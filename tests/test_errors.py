@@ -28,6 +28,7 @@ CURVES = {
     "three points": circle(3),
     "empty": ["# nothing"],
     "words": CIRCLE + ["x y"],
+    "control character": CIRCLE[:2] + ["0.1\x1c 0.2"] + CIRCLE[2:],
     "three columns": ["0.1 0.2 0.3"] + CIRCLE,
     "repeated point": CIRCLE[:5] + CIRCLE[4:],
     "flat": [f"{0.01 * k} 0" for k in range(20)],
@@ -117,7 +118,7 @@ def test_stray_word_alone(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "my.opts").write_text("-time_end 1\n")
     done = mpirun([PETVES, "my.opts"], 2)
-    line = 'petves: error: "my.opts": no option, nor the value of one; allowed: -name value, or -options_file FILE'
+    line = 'petves: error: "my.opts": no option, nor the value of one; allowed: -name value, or petves run FILE'
     assert done.returncode == 1 and without_mpirun(done.stderr) == [line] and not (tmp_path / "out").exists()
 
 

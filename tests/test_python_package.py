@@ -67,6 +67,14 @@ if not SANITIZE:  # a sanitized library cannot be loaded into Python
         home = tmp_path / "site" / "petves"
         assert done.stdout.split() == [str(home / "__init__.py"), str(home / "libpetves.so")]
         assert (home / "views" / "report.html").is_file() and not (tmp_path / "site" / "studies").exists()
+        words = f"run -domain_cells 24,24 -time_end 0.01 -output_dir {tmp_path / 'out'}".split()
+        done = python([str(tmp_path / "site" / "bin" / "petves"), *words], PYTHONPATH=str(tmp_path / "site"))
+        assert done.returncode == 0 and (tmp_path / "out" / "run.h5").is_file(), (
+            "pip's command has the program\n" + done.stderr
+        )
+        words = ["sweep", str(tmp_path / "s"), "--vary", "time_end", "0"]
+        done = python([str(tmp_path / "site" / "bin" / "petves"), *words], PYTHONPATH=str(tmp_path / "site"))
+        assert done.returncode == 0 and list((tmp_path / "s").glob("*/run.h5")), done.stderr
 
     def test_make_install_installs_a_package_that_runs(tmp_path):
         words = ["make", "-C", str(ROOT), "install", f"PREFIX={tmp_path}", "BIN=bin", "LIBDIR=lib"]
@@ -78,6 +86,22 @@ if not SANITIZE:  # a sanitized library cannot be loaded into Python
         assert done.stdout.split() == [str(site / "petves" / "__init__.py"), str(tmp_path / "lib" / "libpetves.so")]
         again = python(["-m", "petves", "sweep", str(tmp_path / "s"), "--vary", "time_end", "0"], PYTHONPATH=str(site))
         assert again.returncode == 0, "the tools find bin/petves under the prefix\n" + again.stderr
+        environment = {name: value for name, value in os.environ.items() if not name.startswith(("PETVES", "PYTHON"))}
+        words = [tmp_path / "bin" / "petves", "compare", tmp_path / "s" / "time_end=0", tmp_path / "s" / "time_end=0"]
+        done = subprocess.run(words, env=environment | ENVIRONMENT, capture_output=True, text=True, cwd=tmp_path)
+        assert done.returncode == 0 and (tmp_path / "compare.png").is_file(), (
+            "and the program finds them\n" + done.stderr
+        )
+        share = tmp_path / "share"
+        left = [
+            "man/man1/petves.1",
+            "bash-completion/completions/petves",
+            "doc/petves/README.md",
+            "petves/runs/shear.opts",
+        ]
+        assert all((share / name).is_file() for name in left)
+        done = subprocess.run(["make", "-C", str(ROOT), "uninstall", f"PREFIX={tmp_path}"], capture_output=True)
+        assert done.returncode == 0 and not [path for path in tmp_path.rglob("*petves*") if path.is_file()]
 
     def test_notebook_runs(tmp_path, monkeypatch):
         import nbformat

@@ -1,5 +1,6 @@
 """Suspensions: packed vesicles, mixtures, and the files of many vesicles."""
 
+import json
 import re
 import signal
 import subprocess
@@ -134,6 +135,12 @@ def test_run_xmf_is_wrapped(tmp_path):
     shift = [float(x) for x in re.findall(r"\(([-.0-9]+)\)", items[0].get("Function"))]
     assert shift == [-4, 0] and [child.find("DataItem").text.split()[2] for child in items[0]] == ["0", "1"]
     assert [grid.find("Attribute[@Name='vesicle']/DataItem").text for grid in grids] == ["1", "2"]
+
+
+def test_what_was_written_counts_vesicles_h5(whole):
+    written = json.loads((whole / "summary.json").read_text())["written"]
+    others = {"resolved.opts", "summary.json"}
+    assert written["bytes"] == sum(path.stat().st_size for path in whole.iterdir() if path.name not in others)
 
 
 def test_many_are_drawn_in_colours_without_names(whole, tmp_path):

@@ -1,4 +1,4 @@
-"""Command line: ``python3 -m petves plot|movie|report|compare|sweep ...``."""
+"""Command line: ``petves`` of pip, ``python3 -m petves``: ``run|plot|movie|report|compare|sweep ...``."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from importlib import import_module
 from typing import Any
 
 from petves.errors import Error
+from petves.program import become
 
 HOME = {name: f"petves.views.{name}" for name in ("plot", "movie", "report", "compare")} | {"sweep": "petves.sweep"}
 """The module of each command, imported when the command is run."""
@@ -16,8 +17,11 @@ HOME = {name: f"petves.views.{name}" for name in ("plot", "movie", "report", "co
 
 def parser() -> argparse.ArgumentParser:
     """Return the parser of the command line."""
-    top = argparse.ArgumentParser(prog="petves", description="Draw, film, compare, sweep and report petves runs.")
+    top = argparse.ArgumentParser(
+        prog="petves", description="Run, draw, film, compare, sweep and report petves scenes."
+    )
     commands = top.add_subparsers(dest="command", required=True)
+    commands.add_parser("run", help="run a scene: run SCENE.opts -option value ...; run -help, run -help options")
     _add_pictures(commands)
     _add_tables(commands)
     return top
@@ -74,6 +78,11 @@ def _left(command: str, lines: list[object]) -> list[str]:
     return import_module(HOME[command]).failures(lines[-1]) if command == "sweep" else []
 
 
+def _for_program(words: list[str]) -> bool:
+    """Return whether the words are the program's own: run, or an option that begins with one dash."""
+    return bool(words) and (words[0] == "run" or (words[0].startswith("-") and words[0] not in ("-h", "--help")))
+
+
 def main(arguments: list[str] | None = None) -> int:
     """Run one command.
 
@@ -87,9 +96,12 @@ def main(arguments: list[str] | None = None) -> int:
     int
         Exit status: 0 done, 1 something is missing or failed (one line on stderr says what, of a sweep one a run).
     """
-    words = vars(parser().parse_args(arguments))
-    command = words.pop("command")
+    given = sys.argv[1:] if arguments is None else arguments
     try:
+        if _for_program(given):
+            return become(given)
+        words = vars(parser().parse_args(given))
+        command = words.pop("command")
         lines = _run(command, words)
         for line in lines:
             print(line)

@@ -8,17 +8,15 @@ from __future__ import annotations
 
 import ctypes
 import functools
-import os
-from pathlib import Path
 
 import numpy as np
 from petsc4py import PETSc
 
 from petves.errors import Error
+from petves.program import LIBRARY, candidates
 
 MAX_MESSAGE = 512  # PETVES_MAX_MESSAGE
 MAX_PATH = 4096  # PETSC_MAX_PATH_LEN
-NAME = "libpetves.so"
 
 Int = ctypes.c_int64 if np.dtype(PETSc.IntType).itemsize == 8 else ctypes.c_int32
 Handle = ctypes.c_void_p
@@ -70,18 +68,6 @@ SIGNATURES = {
 }
 
 
-def candidates() -> list[Path]:
-    """Return where libpetves.so is looked for, in this order.
-
-    ``PETVES_LIBRARY``; the package itself (pip); ``lib`` of the repository; ``lib`` of the prefix of ``make install``.
-    """
-    if os.environ.get("PETVES_LIBRARY"):
-        return [Path(os.environ["PETVES_LIBRARY"])]
-    package = Path(__file__).resolve().parent
-    prefixes = [*package.parents[1:6], Path("/usr/local")]
-    return [package / NAME, *(prefix / "lib" / NAME for prefix in prefixes)]
-
-
 @functools.lru_cache(maxsize=None)
 def library() -> ctypes.CDLL:
     """Return libpetves.so, loaded once.
@@ -94,7 +80,7 @@ def library() -> ctypes.CDLL:
     found = next((path for path in candidates() if path.is_file()), None)
     if found is None:
         raise Error(
-            f"{NAME}: not found in {', '.join(str(p.parent) for p in candidates())}; run make, or set PETVES_LIBRARY"
+            f"{LIBRARY}: not found in {', '.join(str(p.parent) for p in candidates())}; run make, or set PETVES_LIBRARY"
         )
     try:
         lib = ctypes.CDLL(str(found))

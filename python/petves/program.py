@@ -1,12 +1,16 @@
-"""Running the program bin/petves."""
+"""Running the program bin/petves, or where there is none (pip) the one that is in libpetves.so."""
 
 from __future__ import annotations
 
+import ctypes
 import os
 import subprocess
+import sys
 from pathlib import Path
 
-from petves.run import RunError
+from petves.errors import Error
+
+LIBRARY = "libpetves.so"
 
 OPEN_MPI = {
     "OMPI_ALLOW_RUN_AS_ROOT": "1",
@@ -20,29 +24,70 @@ OPEN_MPI = {
 """What Open MPI needs as root, on more ranks than cores and in containers; one rank without mpirun starts no daemon."""
 
 
-def program() -> Path:
-    """Return the program: ``PETVES``, the repository's bin/petves, or that of the prefix of ``make install``."""
+PACKAGE = Path(__file__).resolve().parent
+
+
+def programs() -> list[Path]:
+    """Return where the program is looked for: ``PETVES``; bin of the repository, and of the prefix of ``make install``."""
     if os.environ.get("PETVES"):
-        places = [Path(os.environ["PETVES"])]
-    else:
-        prefixes = [*Path(__file__).resolve().parents[2:7], Path("/usr/local")]
-        places = [prefix / "bin" / "petves" for prefix in prefixes]
-    found = next((place for place in places if place.is_file()), None)
-    if found is None:
-        raise RunError(f"{places[0]}: no such program; build it with make, or set PETVES")
-    return found
+        return [Path(os.environ["PETVES"])]
+    here = Path(sys.argv[0]).resolve()  # pip's own script of that name
+    prefixes = [*PACKAGE.parents[1:6], Path("/usr/local")]
+    return [place for prefix in prefixes if (place := prefix / "bin" / "petves") != here]
+
+
+def candidates() -> list[Path]:
+    """Return where libpetves.so is looked for, in this order.
+
+    ``PETVES_LIBRARY``; the package itself (pip); ``lib`` of the repository; ``lib`` of the prefix of ``make install``.
+    """
+    if os.environ.get("PETVES_LIBRARY"):
+        return [Path(os.environ["PETVES_LIBRARY"])]
+    prefixes = [*PACKAGE.parents[1:6], Path("/usr/local")]
+    return [PACKAGE / LIBRARY, *(prefix / "lib" / LIBRARY for prefix in prefixes)]
+
+
+def _find() -> tuple[Path | None, Path | None]:
+    """Return the program, or the library that has it: the package's own before a program of another installation."""
+    found = next((place for place in programs() if place.is_file()), None)
+    library = next((place for place in candidates() if place.is_file()), None)
+    if os.environ.get("PETVES") or (found and library != PACKAGE / LIBRARY):
+        library = None
+    if not library and not found:
+        raise Error(f"{programs()[0]}: no such program; build it with make, or set PETVES")
+    return (None, library) if library else (found, None)
+
+
+def command() -> list[str]:
+    """Return the words that start petves: the program, or this Python with the library that pip has brought."""
+    found, _ = _find()
+    return [str(found)] if found else [sys.executable, "-m", "petves", "run"]
+
+
+def become(words: list[str]) -> int:
+    """Run petves with these words in place of this process, or from the library; return its exit status."""
+    found, library = _find()
+    os.environ.update(OPEN_MPI | os.environ)
+    if found:
+        os.execv(found, [str(found), *words])
+    try:
+        main = ctypes.CDLL(str(library)).PetvesMain
+    except (OSError, AttributeError) as error:
+        raise Error(f"{library}: cannot be used ({error})") from None
+    given = [word.encode("utf-8", "surrogateescape") for word in ("petves", *words)]
+    return main(len(given), (ctypes.c_char_p * (len(given) + 1))(*given, None))
 
 
 def launch(words: list[str], ranks: int = 1, timeout: float | None = None) -> subprocess.CompletedProcess[str]:
     """Run petves; return what has ended: its status and what it has printed. subprocess.TimeoutExpired after `timeout`."""
-    command = [*(["mpirun", "-n", str(ranks)] if ranks > 1 else []), str(program()), *words]
+    started = [*(["mpirun", "-n", str(ranks)] if ranks > 1 else []), *command(), *words]
     kept = {"capture_output": True, "text": True, "errors": "replace", "stdin": subprocess.DEVNULL}
     try:
-        done = subprocess.run(command, env=OPEN_MPI | os.environ, timeout=timeout, **kept)
+        done = subprocess.run(started, env=OPEN_MPI | os.environ, timeout=timeout, **kept)
     except FileNotFoundError:
-        raise RunError("mpirun: no such program; install openmpi-bin") from None
+        raise Error("mpirun: no such program; install openmpi-bin") from None
     if ranks == 1 and "An error occurred in MPI_Init" in done.stderr:  # of two that start in the same moment
-        done = subprocess.run(command, env=OPEN_MPI | os.environ, timeout=timeout, **kept)
+        done = subprocess.run(started, env=OPEN_MPI | os.environ, timeout=timeout, **kept)
     return done
 
 

@@ -15,7 +15,7 @@ from pathlib import Path
 from urllib.parse import quote
 
 from petves.errors import Error
-from petves.program import program, run_program
+from petves.program import command, run_program
 from petves.progress import progress_bar
 
 GOOD = ("finished", "steady")
@@ -71,7 +71,7 @@ def sweep(
     base = Path(options_file).read_text() if options_file and Path(options_file).is_file() else ""
     if options_file and not base:
         raise Error(f"{options_file}: no such file, or nothing in it; allowed: a file of options")
-    program()
+    command()
     points = list({_name(point): point for point in _points(grid)}.values())
     with _writing(folder):
         folder.mkdir(parents=True, exist_ok=True)
@@ -176,8 +176,8 @@ def _launch(home: Path, words: list[str], ranks: int) -> Ended:
 
 
 def _refused(words: list[str], ranks: int) -> bool:
-    """Return whether the options are what is wrong: petves with -help sets everything up and writes nothing."""
-    status, message = run_program([*words, "-help"], ranks)
+    """Return whether the options are what is wrong: petves with -help all sets everything up and writes nothing."""
+    status, message = run_program([*words, "-help", "all"], ranks)
     return status == 1 and message.startswith("-")
 
 

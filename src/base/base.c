@@ -49,7 +49,7 @@ static PetscBool OneLine(PetscErrorCode code, const char *message, char text[PET
   (void)PetscStrncpy(text, before, PETVES_MAX_MESSAGE);
   n = strlen(text);
   for (const char *c = message ? message : "unknown error"; *c && n < PETVES_MAX_MESSAGE - 1; c++)
-    text[n++] = *c == '\n' ? ' ' : *c;
+    text[n++] = iscntrl((unsigned char)*c) ? ' ' : *c;
   text[n] = 0;
   return *before ? PETSC_TRUE : PETSC_FALSE;
 }

@@ -16,8 +16,6 @@
 #define KSPGMRESSetCGSRefinementType KSPOrthogonalizationSetCGSRefinementType
 #endif
 
-#define PETVES_VERSION "0.1.0"
-
 /* PetvesCheck - a user's mistake: when cond is false, every rank returns PETSC_ERR_USER_INPUT and one line is printed.
    Say the option or file, the value and what is allowed. Collective: all ranks must agree on cond. */
 #define PetvesCheck(cond, comm, ...) PetscCheck((cond), (comm), PETSC_ERR_USER_INPUT, __VA_ARGS__)

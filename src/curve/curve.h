@@ -7,8 +7,9 @@
    vesicle v owns markers start[v] .. start[v+1]-1. */
 typedef struct {
   PetscInt vesicles;
-  PetscInt *start; /* [vesicles+1] */
-  PetscReal *X;    /* [2*start[vesicles]] */
+  PetscInt *start;   /* [vesicles+1] */
+  PetscReal *X;      /* [2*start[vesicles]] */
+  PetscReal longest; /* length of the longest of the curves that they are on */
 } Shape;
 PETSC_EXTERN PetscErrorCode ShapeDestroy(Shape *shape);
 
@@ -49,3 +50,9 @@ PETSC_EXTERN PetscErrorCode CurveDestroy(Curve *curve);
 
 /* EllipseAxes - semi-axes a >= b of the ellipse with the given area and reduced area V = 4 pi area / perimeter^2. */
 PETSC_EXTERN PetscErrorCode EllipseAxes(PetscReal area, PetscReal reduced_area, PetscReal axes[2]);
+
+/* BiconcaveCurve - the red cell's outline of Evans and Fung, thicker or thinner in its middle so that it has the
+   reduced area (.35 to .9; their cell has .461) and the area; about the origin, long axis along x. CurveCentroid - of
+   the area that a curve encloses. Not collective. */
+PETSC_EXTERN PetscErrorCode BiconcaveCurve(PetscReal area, PetscReal reduced_area, Curve *curve);
+PETSC_EXTERN void CurveCentroid(const Curve *curve, PetscReal centroid[2]);

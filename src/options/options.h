@@ -58,6 +58,10 @@ PETSC_EXTERN PetscErrorCode OptionValue(const OptionTable *table, const void *va
    value that no options file can hold is no value of a table (OptionParse refuses it). Not collective. */
 PETSC_EXTERN void OptionPrint(FILE *file, const char name[], const char value[]);
 
+/* OptionHelp - a row for a reader: "  -name default  [range]", and its help below in lines that begin with six blanks.
+   Not collective. */
+PETSC_EXTERN void OptionHelp(FILE *file, const OptionRow *row);
+
 /* OptionsWrite - write every option in force that has a value, defaults included, one "-name value" a line; but not
    those in skip, whose last entry is NULL. */
 PETSC_EXTERN PetscErrorCode OptionsWrite(const OptionTable *table, const void *values, const char *const skip[],
@@ -69,12 +73,18 @@ typedef struct {
   const char *prefix, *need;
 } OptionOwner;
 
+/* What a name asks for that is none: the whole name ("-dt"), or words in it ("*inflow"), and what to say. Where words
+   are in the name of an option too, that option is meant. A list ends with NULL. */
+typedef struct {
+  const char *name, *say;
+} OptionWish;
+
 /* OptionsCheckUnused - stop when the options database holds an option that nothing has read: one of a solver that is
-   not there, by `owners` and the values in force, or one that there is not, with the name of the table or of `others`
-   (last entry NULL) that is meant, if one is near.
+   not there, by `owners` and the values in force, or one that there is not, with what `wishes` say, or the name of the
+   table or of `others` (last entry NULL) that is meant, if one is near.
    Call when everything is set up. Collective. */
 PETSC_EXTERN PetscErrorCode OptionsCheckUnused(const OptionTable *table, const void *values, const char *const others[],
-                                               const OptionOwner owners[]);
+                                               const OptionOwner owners[], const OptionWish wishes[]);
 
 /* OptionParse - text into the place of a row's value. Collective: a text that does not fit is the user's mistake.
    OptionFormat - the value as text, to be freed with PetscFree. */

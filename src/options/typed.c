@@ -86,7 +86,7 @@ static void WrongWord(Typed *t, const Source *from, const char *name, const char
   else if (from->line)
     Wrong(t, from, "no option, for its first word begins with no dash; allowed: -name value");
   else
-    Wrong(t, from, "\"%.150s\": no option, nor the value of one; allowed: -name value, or -options_file FILE", word);
+    Wrong(t, from, "\"%.150s\": no option, nor the value of one; allowed: -name value, or petves run FILE", word);
 }
 
 static void ReadFile(Typed *t, const char *path, const Source *outer);

@@ -79,25 +79,57 @@ static PetscInt Distance(const char *a, const char *b) {
   return row[n];
 }
 
-/* Whether `name` is the end of a longer name: -rate of -flow_rate. */
-static PetscBool IsTail(const char *name, const char *longer) {
+/* Whether `name` is the end of a longer name, -rate of -flow_rate, or its beginning, -vesicle_reduced. */
+static PetscBool IsPart(const char *name, const char *longer) {
   const size_t n = strlen(name) - 1, m = strlen(longer);
-  return n > 2 && m > n + 1 && longer[m - n - 1] == '_' && !strcmp(longer + m - n, name + 1) ? PETSC_TRUE : PETSC_FALSE;
+  if (n < 3 || m <= n + 1) return PETSC_FALSE;
+  if (longer[m - n - 1] == '_' && !strcmp(longer + m - n, name + 1)) return PETSC_TRUE;
+  return strchr(name, '_') && longer[n + 1] == '_' && !strncmp(longer, name, n + 1) ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* The known name that is meant; NULL: none is near. */
+/* What differs of two names: behind the words that they begin with alike. */
+static size_t Alike(const char *a, const char *b) {
+  size_t same = 0;
+  for (size_t k = 0; a[k] && a[k] == b[k]; k++)
+    if (a[k] == '_') same = k + 1;
+  return same;
+}
+
+/* The known name that is meant; NULL: none is near. A letter may be wrong, and one in four of what differs. */
 static const char *Meant(const OptionTable *t, const char *const others[], const char *name) {
-  const PetscInt far = 2 + (PetscInt)strlen(name) / 5;
   const char *best = NULL;
-  PetscInt least = far;
+  PetscInt least = PETSC_MAX_INT;
   for (PetscInt i = 0; i < t->n || others[i - t->n]; i++) {
     const char *known = i < t->n ? t->row[i].name : others[i - t->n];
-    const PetscInt distance = IsTail(name, known) ? far - 1 : Distance(name, known);
-    if (distance >= least) continue;
+    const size_t same = Alike(name, known);
+    const PetscInt far = 1 + (PetscInt)strlen(name + same) / 4;
+    const PetscInt distance = IsPart(name, known) ? 0 : Distance(name + same, known + same);
+    if (distance > far || distance >= least) continue;
     least = distance;
     best = known;
   }
   return best;
+}
+
+/* Whether words are in a name as whole words: inflow in -domain_inflow_x. */
+static PetscBool HasWords(const char *name, const char *words) {
+  const size_t n = strlen(words);
+  for (const char *p = strstr(name, words); p; p = strstr(p + 1, words))
+    if ((p[-1] == '_' || p[-1] == '-') && (!p[n] || p[n] == '_')) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+/* What to say to a name that asks for something; NULL: nothing. */
+static const char *Wished(const OptionTable *t, const OptionWish wishes[], const char *name) {
+  for (; wishes->name; wishes++) {
+    const char *words = wishes->name + 1;
+    PetscBool granted = PETSC_FALSE;
+    if (wishes->name[0] == '*' ? !HasWords(name, words) : strcmp(wishes->name, name) != 0) continue;
+    for (PetscInt i = 0; i < t->n && !granted; i++)
+      granted = wishes->name[0] == '*' ? HasWords(t->row[i].name, words) : PETSC_FALSE;
+    if (!granted) return wishes->say;
+  }
+  return NULL;
 }
 
 /* Whether the table's options in force are what a solver needs: "-name value". */
@@ -115,8 +147,9 @@ static PetscErrorCode HasOwner(const OptionTable *t, const void *values, const c
 
 /* An option that nothing has read, with its dash. */
 static PetscErrorCode Refuse(const OptionTable *t, const void *values, const char *const others[],
-                             const OptionOwner owners[], const char name[], const char value[]) {
-  const char *meant;
+                             const OptionOwner owners[], const OptionWish wishes[], const char name[],
+                             const char value[]) {
+  const char *meant, *say;
   PetscBool known = PETSC_FALSE, has = PETSC_TRUE;
   PetscInt k = 0;
   PetscFunctionBeginUser;
@@ -128,11 +161,14 @@ static PetscErrorCode Refuse(const OptionTable *t, const void *values, const cha
              owners[k].need);
   PetscCheck(!known, t->comm, PETSC_ERR_USER_INPUT,
              "%s %s: not used by this scene's solvers as they are set up (-allow_unused_options goes on)", name, value);
+  say = Wished(t, wishes, name);
+  PetscCheck(!say, t->comm, PETSC_ERR_USER_INPUT, "%s %s: no such option; %s (-allow_unused_options goes on)", name,
+             value, say);
   meant = Meant(t, others, name);
   PetscCheck(!meant, t->comm, PETSC_ERR_USER_INPUT,
              "%s %s: no such option; %s is meant? (-allow_unused_options goes on)", name, value, meant);
   SETERRQ(t->comm, PETSC_ERR_USER_INPUT,
-          "%s %s: no such option; petves -help lists them (-allow_unused_options goes on)", name, value);
+          "%s %s: no such option; petves -help options lists them (-allow_unused_options goes on)", name, value);
 }
 
 PetscErrorCode OptionsTryLate(const OptionTable *t) {
@@ -144,7 +180,7 @@ PetscErrorCode OptionsTryLate(const OptionTable *t) {
 }
 
 PetscErrorCode OptionsCheckUnused(const OptionTable *t, const void *values, const char *const others[],
-                                  const OptionOwner owners[]) {
+                                  const OptionOwner owners[], const OptionWish wishes[]) {
   char **names, **texts, unused[128] = "", value[128] = "";
   PetscInt n = 0;
   PetscFunctionBeginUser;
@@ -160,6 +196,6 @@ PetscErrorCode OptionsCheckUnused(const OptionTable *t, const void *values, cons
     if (texts[i]) PetscCall(PetscStrncpy(value, texts[i], sizeof(value)));
   }
   PetscCall(PetscOptionsLeftRestore(NULL, &n, &names, &texts));
-  if (*unused) PetscCall(Refuse(t, values, others, owners, unused, value));
+  if (*unused) PetscCall(Refuse(t, values, others, owners, wishes, unused, value));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,3 +1,4 @@
+#include "base/version.h"
 #include "output/gathered.h"
 #include "output/checkpoint.h"
 #include "output/checksum.h"

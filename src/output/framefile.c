@@ -7,6 +7,11 @@ static PetscInt Count(Scheme s) {
   return s->membrane->layout->M ? FRAME_SERIES : 3;
 }
 
+/* Whether series k is in single precision. */
+static PetscBool IsSingle(Scheme s, PetscInt k) {
+  return k < 3 && s->scene->output.precision == PRECISION_SINGLE ? PETSC_TRUE : PETSC_FALSE;
+}
+
 static PetscErrorCode Create(Scheme s, const char path[], H5File *f) {
   const Grid g = s->fluid->grid;
   const Layout l = s->membrane->layout;
@@ -26,7 +31,8 @@ static PetscErrorCode Create(Scheme s, const char path[], H5File *f) {
                         "disturbance unless -flow_form total; tension k on the edge from marker k-1 to marker k"));
   PetscCall(H5CreateSeries(f, "/time", 0, NULL));
   for (int k = 0; k < Count(s); k++)
-    PetscCall(H5CreateSeries(f, FrameSeries[k], k < 5 ? 2 : 1, k < 3 ? cells : markers));
+    PetscCall((IsSingle(s, k) ? H5CreateSingleSeries : H5CreateSeries)(f, FrameSeries[k], k < 5 ? 2 : 1,
+                                                                       k < 3 ? cells : markers));
   PetscCall(H5FileFlush(f));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -37,8 +43,10 @@ PetscErrorCode FrameKind(Scheme s, GrowingKind *kind) {
   kind->name = "run.h5";
   kind->series = Count(s);
   kind->path = FrameSeries;
-  for (PetscInt k = 0; k < kind->series; k++)
+  for (PetscInt k = 0; k < kind->series; k++) {
     kind->entries[k] = k < 3 ? g->n[0] * g->n[1] : s->membrane->layout->M * (k < 5 ? 2 : 1);
+    kind->single[k] = IsSingle(s, k);
+  }
   kind->scheme = s;
   kind->create = Create;
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -76,6 +76,19 @@ static PetscBool ReadPlaces(FILE *index, PetscInt n, PetscInt *entry, PetscReal 
   return PETSC_TRUE;
 }
 
+/* Entry of series k at its place in the old file. */
+static PetscBool ReadEntry(const GrowingKind *kind, int old, PetscInt k, off_t place, PetscReal values[]) {
+  const PetscInt n = kind->entries[k];
+  const size_t bytes = (size_t)n * (kind->single[k] ? sizeof(float) : sizeof(*values));
+  if (pread(old, values, bytes, place) != (ssize_t)bytes) return PETSC_FALSE;
+  for (PetscInt i = n - 1; i >= 0 && kind->single[k]; i--) { /* from behind, where there is room */
+    float x;
+    memcpy(&x, (const char *)values + (size_t)i * sizeof(x), sizeof(x));
+    values[i] = x;
+  }
+  return PETSC_TRUE;
+}
+
 /* Copy the first `most` entries into the new file `f`; the number that could be read. An entry may have several lines,
    where a run went on after its end: the last one holds. Rank 0's. */
 static PetscErrorCode CopyEntries(const GrowingKind *kind, PetscInt most, FILE *index, int old, H5File *f,
@@ -91,10 +104,8 @@ static PetscErrorCode CopyEntries(const GrowingKind *kind, PetscInt most, FILE *
     PetscBool good = PETSC_TRUE;
     if (entry >= most) continue;
     for (PetscInt k = 0; good && k < kind->series; k++) {
-      const PetscInt n = kind->entries[k];
-      const ssize_t bytes = (ssize_t)((size_t)n * sizeof(*values));
-      good = pread(old, values, (size_t)bytes, (off_t)place[k]) == bytes ? PETSC_TRUE : PETSC_FALSE;
-      if (good) PetscCall(H5WriteArray(f, kind->path[k], entry, n, values));
+      good = ReadEntry(kind, old, k, (off_t)place[k], values);
+      if (good) PetscCall(H5WriteArray(f, kind->path[k], entry, kind->entries[k], values));
     }
     if (!good) break;
     PetscCall(H5WriteArray(f, "/time", entry, 1, &t));

@@ -15,7 +15,8 @@ typedef struct {
   const char *name;                 /* of the file */
   PetscInt series;                  /* beside /time */
   const char *const *path;          /* [series] */
-  PetscInt entries[GROWING_SERIES]; /* numbers in an entry of each */
+  PetscInt entries[GROWING_SERIES]; /* numbers in an entry of each, */
+  PetscBool single[GROWING_SERIES]; /* in single precision */
   Scheme scheme;                    /* borrowed */
   PetscErrorCode (*create)(Scheme scheme, const char path[], H5File *file);
 } GrowingKind;

@@ -228,7 +228,7 @@ PetscErrorCode H5GetText(H5File *f, const char name[], char **value) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode H5CreateSeries(H5File *f, const char name[], int ndims, const PetscInt dims[]) {
+static PetscErrorCode Create(H5File *f, const char name[], hid_t type, int ndims, const PetscInt dims[]) {
   hsize_t size[3] = {0, 1, 1}, limit[3] = {H5S_UNLIMITED, 1, 1}, chunk[3] = {1, 1, 1};
   hid_t space, create, link, set = -1;
   PetscFunctionBeginUser;
@@ -240,12 +240,20 @@ PetscErrorCode H5CreateSeries(H5File *f, const char name[], int ndims, const Pet
   link = H5Pcreate(H5P_LINK_CREATE);
   Try(f, H5Pset_chunk(create, ndims + 1, chunk));
   Try(f, H5Pset_create_intermediate_group(link, 1));
-  Try(f, set = H5Dcreate2(f->id, name, H5T_NATIVE_DOUBLE, space, link, create, H5P_DEFAULT));
+  Try(f, set = H5Dcreate2(f->id, name, type, space, link, create, H5P_DEFAULT));
   if (set >= 0) Try(f, H5Dclose(set));
   (void)H5Pclose(link);
   (void)H5Pclose(create);
   (void)H5Sclose(space);
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode H5CreateSeries(H5File *f, const char name[], int ndims, const PetscInt dims[]) {
+  return Create(f, name, H5T_NATIVE_DOUBLE, ndims, dims);
+}
+
+PetscErrorCode H5CreateSingleSeries(H5File *f, const char name[], int ndims, const PetscInt dims[]) {
+  return Create(f, name, H5T_NATIVE_FLOAT, ndims, dims);
 }
 
 /* A series, and its size, on rank 0; -1 when there is none. */

@@ -43,6 +43,9 @@ PETSC_EXTERN PetscErrorCode H5GetText(H5File *file, const char name[], char **va
 /* H5CreateSeries - dataset [0.., dims...] that grows along its first index; ndims <= 2 further ones. */
 PETSC_EXTERN PetscErrorCode H5CreateSeries(H5File *file, const char name[], int ndims, const PetscInt dims[]);
 
+/* H5CreateSingleSeries - the same in single precision; it is written and read as doubles. */
+PETSC_EXTERN PetscErrorCode H5CreateSingleSeries(H5File *file, const char name[], int ndims, const PetscInt dims[]);
+
 /* H5SeriesLength - entries of a series. H5TruncateSeries - drop the entries from `length` on. */
 PETSC_EXTERN PetscErrorCode H5SeriesLength(H5File *file, const char name[], PetscInt *length);
 PETSC_EXTERN PetscErrorCode H5TruncateSeries(H5File *file, const char name[], PetscInt length);

@@ -180,13 +180,16 @@ PetscErrorCode OutputStep(Output o) {
 
 PetscErrorCode OutputEnd(Output o, const char reason[], const char failure[]) {
   const State *q = &o->scheme->state;
+  Written written;
   PetscFunctionBeginUser;
   PetscCall(FolderCheckOwn(&o->folder));
   PetscCall(OutputCheckpoint(o)); /* first: a frame asks the flow for values, which a caller's own may not have */
   if (q->t > o->frames.time) PetscCall(WriteFrame(o, PETSC_FALSE));
   PetscCall(SeriesFlush(&o->series, PETSC_FALSE));
-  PetscCall(SummaryWrite(&o->folder, o->scheme, &o->record, ProgressSeconds(&o->progress), failure ? failure : reason));
+  PetscCall(WrittenCount(&o->folder, o->frames.grown.count, o->checkpoint.keep, &written));
+  PetscCall(SummaryWrite(&o->folder, o->scheme, &o->record, &written, ProgressSeconds(&o->progress),
+                         failure ? failure : reason));
   PetscCall(ProgressLine(&o->progress, q, o->scene->time.end, PETSC_TRUE));
-  PetscCall(ProgressTable(&o->progress, &o->record, o->folder.path, failure ? "stopped" : reason));
+  PetscCall(ProgressTable(&o->progress, &o->record, o->folder.path, &written, failure ? "stopped" : reason));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

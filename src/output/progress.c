@@ -54,7 +54,8 @@ static PetscErrorCode PrintVesicles(MPI_Comm comm, const Record *record, PetscIn
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode ProgressTable(const Progress *p, const Record *record, const char folder[], const char reason[]) {
+PetscErrorCode ProgressTable(const Progress *p, const Record *record, const char folder[], const Written *w,
+                             const char reason[]) {
   const PetscReal *r = record->last;
   const PetscInt step = (PetscInt)r[COLUMN_STEP], steps = PetscMax(step, 1);
   PetscFunctionBeginUser;
@@ -67,6 +68,7 @@ PetscErrorCode ProgressTable(const Progress *p, const Record *record, const char
   PetscCall(PetscPrintf(p->comm, "  seconds: fast solves %.2f, rest of the steps %.2f, output %.2f\n",
                         (double)PhaseSeconds(PHASE_FAST_SOLVE), (double)PhaseSeconds(PHASE_STEP),
                         (double)PhaseSeconds(PHASE_OUTPUT)));
-  PetscCall(PetscPrintf(p->comm, "  files in %s\n", folder));
+  PetscCall(PetscPrintf(p->comm, "  files in %s: %.3g MB, %.3g MB of them run.h5 with %" PetscInt_FMT " frames\n",
+                        folder, w->all / 1e6, w->h5 / 1e6, w->frames));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,6 +1,7 @@
 /* What a run prints on the terminal. */
 #pragma once
 #include "output/record.h"
+#include "output/written.h"
 
 typedef struct {
   MPI_Comm comm;
@@ -18,6 +19,6 @@ PETSC_EXTERN PetscReal ProgressSeconds(const Progress *progress);
    `force`. */
 PETSC_EXTERN PetscErrorCode ProgressLine(Progress *progress, const State *state, PetscReal t_end, PetscBool force);
 
-/* ProgressTable - the table that a run ends with. Collective. */
+/* ProgressTable - the table that a run ends with: the last row, and what is in its folder. Collective. */
 PETSC_EXTERN PetscErrorCode ProgressTable(const Progress *progress, const Record *record, const char folder[],
-                                          const char reason[]);
+                                          const Written *written, const char reason[]);

@@ -1,3 +1,4 @@
+#include "base/version.h"
 #include "output/gathered.h"
 #include "output/restart.h"
 #include "output/checkpoint.h"

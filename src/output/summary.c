@@ -1,11 +1,8 @@
 #include "output/summary.h"
+#include "base/version.h"
 #include <fftw3.h>
 #include <hdf5.h>
 #include <sys/resource.h>
-
-#ifndef PETVES_COMMIT
-#define PETVES_COMMIT "unknown"
-#endif
 
 /* A JSON string: quotes, backslashes and control characters escaped. */
 static void PrintString(FILE *f, const char *text) {
@@ -67,6 +64,7 @@ static void PrintRow(FILE *f, const Record *record) {
 typedef struct {
   Scheme scheme;
   const Record *record;
+  const Written *written;
   const char *reason;
   PetscReal seconds;
   PetscMPIInt ranks;
@@ -89,16 +87,18 @@ static PetscErrorCode Print(FILE *f, const void *what) {
   fprintf(f, "},\n  \"memory_mib_rank_0\": %.1f,\n", (double)usage.ru_maxrss / 1024);
   fprintf(f, "  \"markers\": %d,\n  \"cells\": [%d, %d],\n  \"ranks\": %d,\n", (int)s->scheme->membrane->layout->M,
           (int)s->scheme->scene->fluid.cells[0], (int)s->scheme->scene->fluid.cells[1], s->ranks);
+  fprintf(f, "  \"written\": {\"frames\": %d, \"bytes\": %.0f, \"bytes_run_h5\": %.0f},\n", (int)s->written->frames,
+          s->written->all, s->written->h5);
   PrintInertia(f, s->scheme->scene, r->cfl_max);
   PrintWarnings(f, &s->scheme->warnings);
   PrintVersions(f);
-  fprintf(f, "  \"git_commit\": \"%s\"\n}\n", PETVES_COMMIT);
+  fprintf(f, "  \"git_commit\": \"%s\"\n}\n", PetvesCommit());
   return PETSC_SUCCESS;
 }
 
-PetscErrorCode SummaryWrite(Folder *folder, Scheme scheme, const Record *record, PetscReal seconds,
-                            const char reason[]) {
-  Summary summary = {scheme, record, reason, seconds, 1};
+PetscErrorCode SummaryWrite(Folder *folder, Scheme scheme, const Record *record, const Written *written,
+                            PetscReal seconds, const char reason[]) {
+  Summary summary = {scheme, record, written, reason, seconds, 1};
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_size(folder->comm, &summary.ranks));
   PetscCall(FolderWriteText(folder, "summary.json", Print, &summary));

@@ -10,21 +10,22 @@
 #define COUNT_WIDTH 10
 #define CLOSING "</Grid>\n</Domain></Xdmf>\n"
 
-/* Rows first .. first + n - 1 of entry t of a series [frames,all,m] as an XDMF item of dimensions before,n,m. */
+/* Rows first .. first + n - 1 of entry t of a series [frames,all,m], of so many bytes a number, as an XDMF item of
+ * dimensions before,n,m. */
 static void HyperSlab(FILE *f, PetscInt t, const char name[], PetscInt first, PetscInt n, PetscInt all, PetscInt m,
-                      const char before[]) {
+                      int bytes, const char before[]) {
   fprintf(f, "<DataItem ItemType=\"HyperSlab\" Dimensions=\"%s%d %d\"><DataItem Dimensions=\"3 3\" Format=\"XML\">",
           before, (int)n, (int)m);
   fprintf(f, "%d %d 0 1 1 1 1 %d %d</DataItem>", (int)t, (int)first, (int)n, (int)m);
   fprintf(f,
-          "<DataItem Dimensions=\"&frames; %d %d\" NumberType=\"Float\" Precision=\"8\" "
+          "<DataItem Dimensions=\"&frames; %d %d\" NumberType=\"Float\" Precision=\"%d\" "
           "Format=\"HDF\">run.h5:%s</DataItem></DataItem>\n",
-          (int)all, (int)m, name);
+          (int)all, (int)m, bytes, name);
 }
 
 /* Values at cell centres are the nodes of a grid of one layer: readers put a two-dimensional grid into the
    y-z plane. */
-static void PrintFluid(Grid g, FILE *f, PetscInt t) {
+static void PrintFluid(Grid g, FILE *f, PetscInt t, int bytes) {
   const int nx = (int)g->n[0], ny = (int)g->n[1];
   fprintf(
       f, "<Grid Name=\"fluid\" GridType=\"Uniform\"><Topology TopologyType=\"3DCoRectMesh\" Dimensions=\"1 %d %d\"/>\n",
@@ -34,11 +35,11 @@ static void PrintFluid(Grid g, FILE *f, PetscInt t) {
   fprintf(f, "<DataItem Dimensions=\"3\">%.17g %.17g %.17g</DataItem></Geometry>\n", (double)g->h, (double)g->h,
           (double)g->h);
   fprintf(f, "<Attribute Name=\"pressure\" AttributeType=\"Scalar\" Center=\"Node\">\n");
-  HyperSlab(f, t, "/fluid/p", 0, ny, ny, nx, "1 ");
+  HyperSlab(f, t, "/fluid/p", 0, ny, ny, nx, bytes, "1 ");
   fprintf(f, "</Attribute>\n<Attribute Name=\"velocity\" AttributeType=\"Vector\" Center=\"Node\">\n");
   fprintf(f, "<DataItem ItemType=\"Function\" Function=\"JOIN($0, $1, 0*$0)\" Dimensions=\"1 %d %d 3\">\n", ny, nx);
-  HyperSlab(f, t, "/fluid/u", 0, ny, ny, nx, "1 ");
-  HyperSlab(f, t, "/fluid/v", 0, ny, ny, nx, "1 ");
+  HyperSlab(f, t, "/fluid/u", 0, ny, ny, nx, bytes, "1 ");
+  HyperSlab(f, t, "/fluid/v", 0, ny, ny, nx, bytes, "1 ");
   fprintf(f, "</DataItem></Attribute></Grid>\n");
 }
 
@@ -87,7 +88,7 @@ static void PrintVesicle(Scheme s, FILE *f, PetscInt t, PetscInt v, const PetscR
   if (shift[0] || shift[1])
     PrintShifted(f, t, first, n, m->layout->M, shift);
   else
-    HyperSlab(f, t, "/vesicle/markers", first, n, m->layout->M, 2, "");
+    HyperSlab(f, t, "/vesicle/markers", first, n, m->layout->M, 2, 8, "");
   fprintf(f, "</Geometry>\n<Attribute Name=\"tension\" AttributeType=\"Scalar\" Center=\"Node\">\n");
   fprintf(f,
           "<DataItem ItemType=\"HyperSlab\" Dimensions=\"%d\"><DataItem Dimensions=\"3 2\" Format=\"XML\">%d %d 1 1 1 "
@@ -104,7 +105,7 @@ static void PrintVesicle(Scheme s, FILE *f, PetscInt t, PetscInt v, const PetscR
 static void PrintFrame(Scheme s, FILE *f, PetscInt t, PetscReal time, const PetscReal X[]) {
   fprintf(f, "<Grid Name=\"frame %d\" GridType=\"Collection\" CollectionType=\"Spatial\"><Time Value=\"%.17g\"/>\n",
           (int)t, (double)time);
-  PrintFluid(s->fluid->grid, f, t);
+  PrintFluid(s->fluid->grid, f, t, s->scene->output.precision == PRECISION_SINGLE ? 4 : 8);
   for (PetscInt v = 0; v < s->membrane->layout->bodies; v++) PrintVesicle(s, f, t, v, X);
   fprintf(f, "</Grid>\n");
 }

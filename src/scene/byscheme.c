@@ -29,6 +29,7 @@ static PetscBool IsLarge(Scene scene) {
 
 PetscErrorCode SceneChooseByScheme(Draft scene) {
   PetscFunctionBeginUser;
+  if (scene->vesicles.shape == SHAPE_BICONCAVE) PetscCall(SceneChoose(scene, "-vesicle_reduced_area", "0.65"));
   if (SceneIsProjection(scene)) PetscCall(ChooseProjection(scene));
   /* labels are shifted by the spectral derivative's trigonometric polynomials, which keep the lengths of its edges */
   if (SceneIsProjection(scene) || scene->membrane.derivative != DERIVATIVE_SPECTRAL)

@@ -78,6 +78,9 @@ static PetscErrorCode CheckPacking(Scene scene) {
   const PetscBool sized = SceneGiven(scene, "-vesicle_area") || SceneGiven(scene, "-vesicle_semi_axes");
   PetscReal sum = 0;
   PetscFunctionBeginUser;
+  PetscCheck(own->packing == 0 || own->shape != SHAPE_BICONCAVE, scene->comm, PETSC_ERR_USER_INPUT,
+             "-vesicle_packing %g: not with -vesicle_shape biconcave; allowed: ellipses, the only shape that is packed",
+             (double)own->packing);
   for (PetscInt k = 0; k < own->mixture.n; k++) sum += own->mixture.v[k];
   PetscCheck(PetscAbsReal(sum - 1) < 1e-6, scene->comm, PETSC_ERR_USER_INPUT,
              "-vesicle_mixture: its parts add up to %g; allowed: parts that add up to 1", (double)sum);
@@ -87,8 +90,10 @@ static PetscErrorCode CheckPacking(Scene scene) {
              (double)own->packing, own->count);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
 static PetscErrorCode CheckVesicle(Scene scene) {
-  const PetscBool by_area = SceneByArea(scene);
+  const SceneVesicles *own = &scene->vesicles;
+  const PetscBool by_area = SceneGiven(scene, "-vesicle_area") || SceneGiven(scene, "-vesicle_reduced_area");
   PetscFunctionBeginUser;
   PetscCheck(!(by_area && SceneGiven(scene, "-vesicle_semi_axes")), scene->comm, PETSC_ERR_USER_INPUT,
              "-vesicle_semi_axes: given together with -vesicle_area or -vesicle_reduced_area; allowed: one description "
@@ -98,6 +103,11 @@ static PetscErrorCode CheckVesicle(Scene scene) {
   PetscCall(CheckKinds(scene, "-vesicle_area", scene->vesicles.area.n, 1));
   PetscCall(CheckKinds(scene, "-vesicle_reduced_area", scene->vesicles.reduced_area.n, 1));
   PetscCall(CheckKinds(scene, "-vesicle_bending", scene->membrane.stiffness.n, 1));
+  for (PetscInt k = 0; k < own->reduced_area.n; k++)
+    PetscCheck(own->shape != SHAPE_BICONCAVE || (own->reduced_area.v[k] >= 0.35 && own->reduced_area.v[k] <= 0.9),
+               scene->comm, PETSC_ERR_USER_INPUT,
+               "-vesicle_reduced_area %g: no -vesicle_shape biconcave has it; allowed: 0.35 to 0.9",
+               (double)own->reduced_area.v[k]);
   if (scene->vesicles.shape != SHAPE_FILE && scene->vesicles.packing == 0) {
     PetscCall(CheckList(scene, "-vesicle_center", scene->vesicles.center.n, 2, PETSC_FALSE));
     PetscCall(CheckList(scene, "-vesicle_angle", scene->vesicles.angle.n, 1, PETSC_TRUE));

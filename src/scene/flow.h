@@ -8,6 +8,7 @@ typedef enum { FLOW_QUIESCENT, FLOW_SHEAR, FLOW_POISEUILLE, FLOW_EXTENSION, FLOW
 typedef struct {
   PetscInt type; /* FlowType */
   PetscReal rate, peak, half_width, center[2];
+  PetscReal chi, ca;   /* what the user gives in place of rate or peak */
   PetvesFlow function; /* FLOW_CUSTOM: the caller's, with its context */
   void *ctx;
 } Flow;

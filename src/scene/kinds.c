@@ -113,7 +113,7 @@ PetscErrorCode KindFit(Scene scene, Kind *kind) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What makes an ellipse: area and reduced area or both semi-axes, and the bending stiffness. */
+/* What makes an ellipse or a biconcave outline: area and reduced area or both semi-axes, and the bending stiffness. */
 typedef struct {
   PetscReal key[3];
   PetscInt vesicle;
@@ -150,8 +150,12 @@ static PetscErrorCode EllipseKinds(Scene scene, Kinds *all) {
   for (PetscInt j = 0; j < all->vesicles; j++) {
     if (!j || memcmp(e[j].key, e[j - 1].key, sizeof(e[j].key))) {
       Kind *kind = &all->kind[all->kinds++];
-      PetscCall(PetscArraycpy(kind->curve.axes, e[j].key, 2));
-      if (SceneByArea(scene)) PetscCall(EllipseAxes(e[j].key[0], e[j].key[1], kind->curve.axes));
+      if (scene->vesicles.shape == SHAPE_BICONCAVE)
+        PetscCall(BiconcaveCurve(e[j].key[0], e[j].key[1], &kind->curve));
+      else if (SceneByArea(scene))
+        PetscCall(EllipseAxes(e[j].key[0], e[j].key[1], kind->curve.axes));
+      else
+        PetscCall(PetscArraycpy(kind->curve.axes, e[j].key, 2));
       kind->bending = e[j].key[2];
     }
     all->of[e[j].vesicle] = all->kinds - 1;
@@ -189,6 +193,7 @@ static PetscErrorCode FileKinds(Scene scene, Kinds *all) {
   for (PetscInt k = 0; k < all->kinds; k++) {
     all->of[k] = k;
     all->kind[k].bending = ListEntry(&scene->membrane.stiffness, 1, k, 0);
+    if (ListEntry(&own->angle, 1, k, 0) != 0) CurveCentroid(&all->kind[k].curve, all->kind[k].pivot);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -197,7 +202,7 @@ PetscErrorCode KindsCreate(Scene scene, Kinds *all) {
   PetscFunctionBeginUser;
   PetscCall(PetscMemzero(all, sizeof(*all)));
   if (scene->vesicles.shape == SHAPE_FILE) PetscCall(FileKinds(scene, all));
-  if (scene->vesicles.shape == SHAPE_ELLIPSE) {
+  if (scene->vesicles.shape < SHAPE_FILE) {
     all->vesicles = scene->vesicles.count;
     PetscCall(PetscMalloc1(all->vesicles, &all->of));
     PetscCall(EllipseKinds(scene, all));

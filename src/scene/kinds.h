@@ -4,7 +4,8 @@
 #include "scene/mixture.h"
 
 typedef struct {
-  Curve curve; /* about the origin */
+  Curve curve;        /* about the origin, or where its file has it */
+  PetscReal pivot[2]; /* about which it is turned: the origin, or the centroid of a file's curve */
   PetscReal length, area, bending;
   PetscInt M;   /* markers, 0 before KindFit */
   PetscReal *X; /* [2M] */
@@ -16,9 +17,9 @@ typedef struct {
   Kind *kind;   /* [kinds] */
 } Kinds;
 
-/* KindsCreate - the kinds of the scene's vesicles, with their curves: ellipses that are equal in all are one kind, each
-   curve of a file is one. KindFit - the markers of a kind: their number, and equal edges. Collective; stop with the
-   user's message on a bad file, list, number of markers or spacing. */
+/* KindsCreate - the kinds of the scene's vesicles, with their curves: ellipses and outlines that are equal in all are
+   one kind, each curve of a file is one. KindFit - the markers of a kind: their number, and equal edges. Collective;
+   stop with the user's message on a bad file, list, number of markers or spacing. */
 PETSC_EXTERN PetscErrorCode KindsCreate(Scene scene, Kinds *kinds);
 PETSC_EXTERN PetscErrorCode KindsDestroy(Kinds *kinds);
 PETSC_EXTERN PetscErrorCode KindFit(Scene scene, Kind *kind);

@@ -14,7 +14,7 @@ PetscErrorCode SceneMixKinds(Draft scene) {
   const PetscInt n = scene->vesicles.count;
   PetscInt *have;
   PetscFunctionBeginUser;
-  if (part->n < 2 || scene->vesicles.shape != SHAPE_ELLIPSE) PetscFunctionReturn(PETSC_SUCCESS);
+  if (part->n < 2 || scene->vesicles.shape >= SHAPE_FILE) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMalloc1(n, &scene->vesicles.kind));
   PetscCall(PetscCalloc1(part->n, &have));
   for (PetscInt v = 0; v < n; v++) {

@@ -10,7 +10,7 @@ typedef struct _p_Scene *Draft; /* a scene that is not resolved yet */
 PETSC_EXTERN PetscErrorCode SceneReadOptions(MPI_Comm comm, Draft scene);
 PETSC_EXTERN PetscErrorCode SceneChoose(Draft scene, const char name[], const char value[]);
 
-/* SceneByArea - whether the ellipses are given by area and reduced area. Not collective. */
+/* SceneByArea - whether the vesicles are given by area and reduced area. Not collective. */
 PETSC_EXTERN PetscBool SceneByArea(Scene scene);
 
 /* SceneChooseByError - with -scheme_auto: scheme, order, tolerances, kernel and spacing for the error wanted.
@@ -18,6 +18,11 @@ PETSC_EXTERN PetscBool SceneByArea(Scene scene);
    for schemes that have no error control. */
 PETSC_EXTERN PetscErrorCode SceneChooseByError(Draft scene);
 PETSC_EXTERN PetscErrorCode SceneChooseSteps(Draft scene);
+
+/* SceneChooseFlow - rate or peak velocity from -flow_chi or -flow_ca: rate = chi c_b/(nu R0^3), u_max = Ca c_b/(nu
+   R0^2), R0 of the largest vesicle and the largest c_b, both known before there are markers (shape.longest,
+   membrane.bending). Collective. Errors: both given, no bending, no vesicles. */
+PETSC_EXTERN PetscErrorCode SceneChooseFlow(Draft scene);
 
 /* SceneChooseMarkers - with -scheme_auto, where the user gives neither their number nor their spacing: more than the
    default where the start needs it, in steps of a fifth up to three times, and not closer than the near field bears;
@@ -37,6 +42,9 @@ PETSC_EXTERN PetscReal SceneSmallestRadius(Scene scene);
 PETSC_EXTERN PetscReal SceneMembraneTime(Scene scene, PetscInt v);
 PETSC_EXTERN void SceneTimes(Scene scene, PetscReal *slow, PetscReal *fast);
 
+/* SceneChooseOutput - -output_every where it is not given: for at most 100 frames, the first included. Collective. */
+PETSC_EXTERN PetscErrorCode SceneChooseOutput(Draft scene);
+
 /* SceneFlowStep - up to which -time_adapt error lets steps grow in a flow when nothing changes (time): 1/(rate (1 +
    0.03 chi)), which fixed steps from an ellipse still bear (docs/time.md), chi = rate nu R0^3/c_b of the
    softest vesicle, at most 250; PETSC_MAX_REAL without a known rate. SceneChooseLargestStep - make it the default; at
@@ -51,6 +59,9 @@ PETSC_EXTERN PetscBool SceneIsProjection(Scene scene);
 PETSC_EXTERN PetscErrorCode SceneChooseByScheme(Draft scene);
 PETSC_EXTERN PetscErrorCode SceneChooseStiffness(Draft scene);
 
+/* SceneWishes - what is asked for by names that there are not. Not collective. */
+PETSC_EXTERN const OptionWish *SceneWishes(void);
+
 /* SceneCheck - checks that involve more than one option. Collective. */
 PETSC_EXTERN PetscErrorCode SceneCheck(Scene scene);
 
@@ -62,8 +73,10 @@ PETSC_EXTERN PetscErrorCode SceneCheckFree(Scene scene);
 PETSC_EXTERN PetscErrorCode SceneCheckGravity(Scene scene);
 
 /* SceneMakeShape - the initial markers of the scene's vesicles, all edges of a vesicle equal to 1e-12, and their
-   bending stiffnesses. Every rank gets all of it. Collective; stops with the user's message on a bad file, spacing or
-   position, and when a packing has no room. SceneDropShape - what it has made is gone, so that it can be made anew. */
+   bending stiffnesses; before the markers, whose number goes by it, the flow from numbers that go by the vesicles.
+   Every rank gets all of it. Collective; stops with the user's message on a bad file, spacing or position, and when a
+   packing has no room. SceneDropShape - what it has made is gone, so that it can be made
+   anew. */
 PETSC_EXTERN PetscErrorCode SceneMakeShape(Draft scene);
 PETSC_EXTERN PetscErrorCode SceneDropShape(Draft scene);
 

@@ -30,7 +30,9 @@ PetscErrorCode SceneCreate(MPI_Comm comm, PetvesFlow flow, void *ctx, Scene *out
   s->flow.function = flow;
   s->flow.ctx = ctx;
   DescribeFluid(s);
-  /* 5  the markers, with the kernel's spacing if none is given */
+  /* 5  the vesicles, the flow from numbers that go by their size, the markers with the kernel's spacing if none is
+   * given
+   */
   PetscCall(SceneMakeShape(s));
   PetscCall(SceneChooseMarkers(s));
   PetscCall(SceneCheckFree(s));
@@ -38,6 +40,7 @@ PetscErrorCode SceneCreate(MPI_Comm comm, PetvesFlow flow, void *ctx, Scene *out
   /* 6  the steps, which go by the vesicles' size */
   PetscCall(SceneChooseSteps(s));
   PetscCall(SceneChooseLargestStep(s));
+  PetscCall(SceneChooseOutput(s));
   s->fluid.dt = s->time.dt;
   /* 7  Reynolds number, model of the fluid, warning */
   PetscCall(SceneChooseInertia(s));

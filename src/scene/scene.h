@@ -11,8 +11,9 @@ typedef enum { MOBILITY_TABLE, MOBILITY_ILU, MOBILITY_NONE } MobilityType;
 typedef enum { BENDING_IMPLICIT, BENDING_EXPLICIT } BendingType;
 typedef enum { ADAPT_NONE, ADAPT_ERROR } AdaptType;
 typedef enum { FRAME_TREADING, FRAME_NONE } FrameType;
+typedef enum { PRECISION_DOUBLE, PRECISION_SINGLE } PrecisionType;
 typedef enum { STARTUP_EULER, STARTUP_GRADED } StartUp;
-typedef enum { SHAPE_ELLIPSE, SHAPE_FILE, SHAPE_NONE } ShapeType;
+typedef enum { SHAPE_ELLIPSE, SHAPE_BICONCAVE, SHAPE_FILE, SHAPE_NONE } ShapeType;
 typedef enum { PACKING_RANDOM, PACKING_LATTICE } PackingType;
 
 /* The domain as the user gives it: fluid.box and fluid.cells when their lengths are right. */
@@ -23,9 +24,9 @@ typedef struct {
 
 typedef struct {
   PetscInt shape;               /* ShapeType */
-  PetscInt count;               /* of ellipses */
+  PetscInt count;               /* of vesicles, but of a file's */
   RealList axes, center, angle; /* semi-axes, centre, angle in degrees; one entry for all, or one a vesicle */
-  RealList area, reduced_area;  /* of the ellipses, instead of semi-axes */
+  RealList area, reduced_area;  /* instead of semi-axes, and of biconcave outlines */
   PetscReal area_scale;         /* of the areas, where a packing of so many vesicles chooses them; else 1 */
   RealList mixture;             /* parts of the vesicles' number; one: no mixture */
   PetscInt *kind;               /* [count] with a mixture: which entry of the lists a vesicle takes; else NULL */
@@ -93,6 +94,7 @@ typedef struct {
 typedef struct {
   char dir[PETSC_MAX_PATH_LEN];     /* every output file goes here */
   PetscReal every;                  /* time between saved fields */
+  PetscInt precision;               /* PrecisionType, of saved velocity and pressure */
   PetscInt checkpoint_every;        /* steps between checkpoints; 0: only at the end */
   PetscInt checkpoint_keep;         /* checkpoints kept, the newest included */
   char restart[PETSC_MAX_PATH_LEN]; /* checkpoint to go on from; empty: none */
@@ -160,9 +162,12 @@ PETSC_EXTERN PetscErrorCode SceneCheckUnused(Scene scene);
    line. */
 PETSC_EXTERN PetscErrorCode SceneWriteOptions(Scene scene, FILE *file);
 
-/* SceneOptionName, SceneOptionValue - name and value in force (as text, cut to length - 1) of the i-th option of the
-   table; name is NULL past the last one. */
+/* SceneOptionRow - the i-th option of the table, NULL past the last one. SceneHelp - print the table by groups; with a
+   word, the options that have it in their name: false when there is none. Not collective, and also before PETSc starts.
+   SceneOptionName, SceneOptionValue - its name, and its value in force as text cut to length - 1. */
+PETSC_EXTERN const OptionRow *SceneOptionRow(PetscInt i);
 PETSC_EXTERN const char *SceneOptionName(PetscInt i);
+PETSC_EXTERN PetscBool SceneHelp(FILE *file, const char word[]);
 PETSC_EXTERN PetscErrorCode SceneOptionValue(Scene scene, PetscInt i, char value[], size_t length);
 
 /* SceneOptionMayChange - whether a restart may have another value of this option than its checkpoint: the end,

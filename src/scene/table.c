@@ -11,7 +11,9 @@ static const OptionRow table[] = {
   {"-domain_bc_y", OPT_ENUM, AT(fluid.bc[1]), "wall", "wall|periodic|free", "boundaries at y_min and y_max"},
   {"-flow_type", OPT_ENUM, AT(flow.type), "quiescent", "quiescent|shear|poiseuille|extension|custom", "background flow; custom: a function given from Python or C"},
   {"-flow_rate", OPT_REAL, AT(flow.rate), "1", "any", "rate of shear or extension (1/time)"},
+  {"-flow_chi", OPT_REAL, AT(flow.chi), "0", "any", "in place of -flow_rate: chi = rate nu R0^3/c_b, R0 of the largest vesicle"},
   {"-flow_peak_velocity", OPT_REAL, AT(flow.peak), "1", "any", "u_max of poiseuille (length/time)"},
+  {"-flow_ca", OPT_REAL, AT(flow.ca), "0", "any", "in place of -flow_peak_velocity: u_max nu R0^2/c_b, the paper's w"},
   {"-flow_half_width", OPT_REAL, AT(flow.half_width), "3", ">0", "L_y of poiseuille: half the channel's height (length)"},
   {"-flow_center_x", OPT_REAL, AT(flow.center[0]), "0", "any", "x_c of the background flow (length)"},
   {"-flow_center_y", OPT_REAL, AT(flow.center[1]), "0", "any", "y_c of the background flow (length)"},
@@ -20,13 +22,13 @@ static const OptionRow table[] = {
   {"-fluid_viscosity", OPT_REAL, AT(fluid.nu), "1", ">0", "nu (length^2/time; density is 1)"},
   {"-fluid_inertia", OPT_ENUM, AT(fluid.inertia), "auto", "auto|none|unsteady|convective", "inertia of the fluid: quasi-steady Stokes, unsteady Stokes, Navier-Stokes; auto goes by flow and Reynolds number"},
   {"-fluid_gravity", OPT_REALS, AT(gravity.g), "0,0", "any", "gravity g_x,g_y (length/time^2); it moves vesicles by -vesicle_density_difference"},
-  {"-vesicle_shape", OPT_ENUM, AT(vesicles.shape), "ellipse", "ellipse|file|none", "initial shape"},
-  {"-vesicle_count", OPT_INT, AT(vesicles.count), "1", ">=1", "number of ellipses; a file has its own number of curves, a packing the number that it takes"},
+  {"-vesicle_shape", OPT_ENUM, AT(vesicles.shape), "ellipse", "ellipse|biconcave|file|none", "initial shape; biconcave: the red cell's outline"},
+  {"-vesicle_count", OPT_INT, AT(vesicles.count), "1", ">=1", "number of vesicles; a file has its own number of curves, a packing the number that it takes"},
   {"-vesicle_semi_axes", OPT_REALS, AT(vesicles.axes), "0.2,0.5", ">0", "semi-axes of the ellipse, two for all, or two a vesicle or kind (length)"},
-  {"-vesicle_area", OPT_REALS, AT(vesicles.area), "1", ">0", "area of the ellipse, with -vesicle_reduced_area; one for all, or one a vesicle or kind (length^2)"},
-  {"-vesicle_reduced_area", OPT_REALS, AT(vesicles.reduced_area), "0.7", "(0,1)", "V = area/(pi R0^2), R0 = perimeter/(2 pi); long axis along x"},
-  {"-vesicle_center", OPT_REALS, AT(vesicles.center), "0,0", "any", "x,y of the centre, a pair a vesicle (length)"},
-  {"-vesicle_angle", OPT_REALS, AT(vesicles.angle), "0", "any", "counter-clockwise turn of the shape, one for all or one a vesicle (degrees)"},
+  {"-vesicle_area", OPT_REALS, AT(vesicles.area), "1", ">0", "area, with -vesicle_reduced_area; one for all, or one a vesicle or kind (length^2)"},
+  {"-vesicle_reduced_area", OPT_REALS, AT(vesicles.reduced_area), "0.7", "(0,1)", "V = area/(pi R0^2), R0 = perimeter/(2 pi); long axis along x; biconcave: 0.35 to 0.9, 0.65 when not given"},
+  {"-vesicle_center", OPT_REALS, AT(vesicles.center), "0,0", "any", "x,y of the centre, a pair a vesicle; file: added to its coordinates, one pair for all or one each (length)"},
+  {"-vesicle_angle", OPT_REALS, AT(vesicles.angle), "0", "any", "counter-clockwise turn about the centre, file: about each curve's centroid; one for all or one a vesicle (degrees)"},
   {"-vesicle_file", OPT_PATH, AT(vesicles.file), "", "", "closed curves: x y a line, an empty line between curves, for -vesicle_shape file"},
   {"-vesicle_mixture", OPT_REALS, AT(vesicles.mixture), "1", ">0", "parts of the vesicles' number that are of each kind, which add up to 1; lists of area, reduced area, semi-axes and bending have an entry a kind then"},
   {"-vesicle_packing", OPT_REAL, AT(vesicles.packing), "0", "[0,1]", "area fraction of ellipses packed into the box; their number follows, or with -vesicle_count their area; 0: they lie at -vesicle_center"},
@@ -70,7 +72,8 @@ static const OptionRow table[] = {
   {"-fftw_wisdom", OPT_PATH, AT(wisdom), "", "", "file of FFTW's measurements: read if it is there, written when a run adds to it"},
   {"-output_dir", OPT_PATH, AT(output.dir), "out/run", "", "folder of every output file"},
   {"-output_overwrite", OPT_BOOL, AT(output.overwrite), "false", "true|false", "replace the results that -output_dir holds already"},
-  {"-output_every", OPT_REAL, AT(output.every), "0.1", ">0", "time between saved fields"},
+  {"-output_every", OPT_REAL, AT(output.every), "0.1", ">0", "time between saved fields; not given: 0.1, or so many times more (1, 2, 5, 10 ...) that there are at most 100"},
+  {"-output_precision", OPT_ENUM, AT(output.precision), "double", "double|single", "of saved velocity and pressure; single takes half the room"},
   {"-checkpoint_every", OPT_INT, AT(output.checkpoint_every), "100", ">=0", "steps between checkpoints; 0 writes one at the end only"},
   {"-checkpoint_keep", OPT_INT, AT(output.checkpoint_keep), "2", "[1,100]", "checkpoints kept: checkpoint.h5, the one before it checkpoint_1.h5, and so on"},
   {"-restart", OPT_PATH, AT(output.restart), "", "", "go on from this checkpoint, in its folder or in a new -output_dir"},
@@ -114,8 +117,13 @@ PetscBool SceneGiven(Scene scene, const char name[]) {
 
 PetscBool SceneByArea(Scene scene) {
   const PetscBool packed = scene->vesicles.packing > 0 && !SceneGiven(scene, "-vesicle_semi_axes");
+  if (scene->vesicles.shape == SHAPE_BICONCAVE) return PETSC_TRUE;
   return SceneGiven(scene, "-vesicle_area") || SceneGiven(scene, "-vesicle_reduced_area") || packed ? PETSC_TRUE
                                                                                                     : PETSC_FALSE;
+}
+
+const OptionRow *SceneOptionRow(PetscInt i) {
+  return i < TABLE_SIZE ? &table[i] : NULL;
 }
 
 const char *SceneOptionName(PetscInt i) {
@@ -124,6 +132,8 @@ const char *SceneOptionName(PetscInt i) {
 
 PetscBool SceneOptionMayChange(const char name[]) {
   const char *const free[] = {"-scheme_auto",
+                              "-flow_chi", /* what they stand for is compared */
+                              "-flow_ca",
                               "-time_end",
                               "-time_step",
                               "-time_adapt_tol",
@@ -140,9 +150,10 @@ PetscBool SceneOptionMayChange(const char name[]) {
                               "-restart",
                               "-view",
                               "-allow_unused_options"};
-  const char *const groups[] = {"-output_", "-checkpoint_", "-limit_"};
+  const char *const groups[] = {"-output_", /* but a file goes on as it was begun */ "-checkpoint_", "-limit_"};
   for (size_t i = 0; i < sizeof(free) / sizeof(free[0]); i++)
     if (!strcmp(name, free[i])) return PETSC_TRUE;
+  if (!strcmp(name, "-output_precision")) return PETSC_FALSE;
   for (size_t i = 0; i < sizeof(groups) / sizeof(groups[0]); i++)
     if (!strncmp(name, groups[i], strlen(groups[i]))) return PETSC_TRUE;
   return PETSC_FALSE;
@@ -155,12 +166,12 @@ PetscErrorCode SceneOptionValue(Scene scene, PetscInt i, char value[], size_t le
 }
 
 PetscErrorCode SceneWriteOptions(Scene scene, FILE *file) {
-  /* what the scene does not use would be refused when read back, and so would be both descriptions of the ellipse; what
-     one launch was asked to do with an earlier run's files is no part of the run */
+  /* what the scene does not use would be refused when read back, and so would be both descriptions of the ellipse, or
+     of the flow; what one launch was asked to do with an earlier run's files is no part of the run */
   const PetscBool by_area = SceneByArea(scene), packed = scene->vesicles.packing > 0 ? PETSC_TRUE : PETSC_FALSE;
   const PetscBool counted = SceneGiven(scene, "-vesicle_count");
-  const char *skip[TABLE_SIZE + 7] = {"-restart", "-output_overwrite"};
-  PetscInt skipped = 2;
+  const char *skip[TABLE_SIZE + 9] = {"-restart", "-output_overwrite", "-flow_chi", "-flow_ca"};
+  PetscInt skipped = 4;
   PetscFunctionBeginUser;
   if (by_area) skip[skipped++] = "-vesicle_semi_axes";
   if (packed && !counted) skip[skipped++] = "-vesicle_count"; /* of fraction, number and area two say the third */
@@ -183,6 +194,6 @@ static const OptionOwner owners[] = {
 PetscErrorCode SceneCheckUnused(Scene scene) {
   PetscFunctionBeginUser;
   PetscCall(OptionsTryLate(&scene->options));
-  if (!scene->allow_unused) PetscCall(OptionsCheckUnused(&scene->options, scene, solvers, owners));
+  if (!scene->allow_unused) PetscCall(OptionsCheckUnused(&scene->options, scene, solvers, owners, SceneWishes()));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

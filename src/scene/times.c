@@ -60,3 +60,19 @@ PetscErrorCode SceneChooseLargestStep(Draft scene) {
   PetscCall(SceneChoose(scene, "-time_adapt_max_step", value));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+#define MOST_FRAMES 100
+
+PetscErrorCode SceneChooseOutput(Draft scene) {
+  static const int steps[3] = {1, 2, 5};
+  const PetscReal least = scene->time.end / (MOST_FRAMES - 1) * (1 - 1e-12);
+  char value[64] = "";
+  PetscFunctionBeginUser;
+  if (scene->output.every >= least) PetscFunctionReturn(PETSC_SUCCESS); /* 0.1 */
+  for (int k = -1; !*value; k++)
+    for (int s = 0; s < 3 && !*value; s++)
+      if (steps[s] * PetscPowRealInt(10, k) >= least)
+        PetscCall(PetscSNPrintf(value, sizeof(value), "%de%d", steps[s], k));
+  PetscCall(SceneChoose(scene, "-output_every", value));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

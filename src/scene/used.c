@@ -10,6 +10,7 @@ typedef enum {
   BY_FLOW,
   BY_VESICLES,
   BY_ELLIPSES,
+  BY_SIZES,
   BY_FILE,
   BY_PACKING,
   BY_RANDOM,
@@ -36,6 +37,7 @@ static const char *const needs[] = {"-flow_type shear or extension",
                                     "a -flow_type that is not quiescent",
                                     "vesicles (-vesicle_shape)",
                                     "-vesicle_shape ellipse",
+                                    "-vesicle_shape ellipse or biconcave",
                                     "-vesicle_shape file",
                                     "-vesicle_packing",
                                     "-vesicle_packing and -vesicle_packing_type random",
@@ -59,6 +61,8 @@ static const struct {
   const char *name;
   Need need;
 } rules[] = {{"-flow_rate", BY_STRAIN},
+             {"-flow_chi", BY_STRAIN},
+             {"-flow_ca", BY_CHANNEL},
              {"-flow_peak_velocity", BY_CHANNEL},
              {"-flow_half_width", BY_CHANNEL},
              {"-flow_center_x", BY_EXTENSION},
@@ -68,11 +72,11 @@ static const struct {
              {"-fluid_gravity", BY_UNSPLIT},
              {"-vesicle_count", BY_VESICLES},
              {"-vesicle_semi_axes", BY_ELLIPSES},
-             {"-vesicle_area", BY_ELLIPSES},
-             {"-vesicle_reduced_area", BY_ELLIPSES},
+             {"-vesicle_area", BY_SIZES},
+             {"-vesicle_reduced_area", BY_SIZES},
              {"-vesicle_center", BY_CENTERS},
              {"-vesicle_angle", BY_ANGLES},
-             {"-vesicle_mixture", BY_ELLIPSES},
+             {"-vesicle_mixture", BY_SIZES},
              {"-vesicle_packing", BY_ELLIPSES},
              {"-vesicle_packing_type", BY_PACKING},
              {"-vesicle_packing_seed", BY_RANDOM},
@@ -130,6 +134,12 @@ static PetscBool MetByFlow(Scene s, Need need) {
   return !IsFlow(s, FLOW_QUIESCENT, need == BY_SHEARED ? FLOW_CUSTOM : FLOW_QUIESCENT);
 }
 
+static PetscBool MetByShape(Scene s, Need need) {
+  const PetscInt shape = s->vesicles.shape;
+  if (need == BY_FILE) return shape == SHAPE_FILE;
+  return shape == SHAPE_ELLIPSE || (need == BY_SIZES && shape == SHAPE_BICONCAVE) ? PETSC_TRUE : PETSC_FALSE;
+}
+
 /* What depends on how vesicles come to their places. */
 static PetscBool MetByPlaces(Scene s, Need need) {
   const PetscBool packed = s->vesicles.shape == SHAPE_ELLIPSE && s->vesicles.packing > 0 ? PETSC_TRUE : PETSC_FALSE;
@@ -149,12 +159,9 @@ static PetscBool UsesDensity(Scene s) {
 static PetscBool Met(Scene s, Need need) {
   const PetscBool any = s->shape.vesicles > 0 ? PETSC_TRUE : PETSC_FALSE;
   if (need <= BY_FLOW) return MetByFlow(s, need);
+  if (need >= BY_ELLIPSES && need <= BY_FILE) return MetByShape(s, need);
   if (need >= BY_PACKING && need <= BY_ANGLES) return MetByPlaces(s, need);
   switch (need) {
-  case BY_ELLIPSES:
-    return s->vesicles.shape == SHAPE_ELLIPSE;
-  case BY_FILE:
-    return s->vesicles.shape == SHAPE_FILE;
   case BY_UNSPLIT:
     return IsScheme(s, "coupled") || IsScheme(s, "direct");
   case BY_COUPLED:

@@ -2,13 +2,13 @@
 #include "curve/crossing.h"
 #include "scene/kinds.h"
 
-/* The markers X about the origin, turned and moved, as Y, which may be X. */
-static void Place(const Pose *at, PetscInt M, const PetscReal X[], PetscReal Y[]) {
-  const PetscReal c = at->along[0], s = at->along[1];
+/* Markers X on a kind's curve, turned and moved, as Y, which may be X. */
+static void Place(const Kind *kind, const Pose *at, PetscInt M, const PetscReal X[], PetscReal Y[]) {
+  const PetscReal c = at->along[0], s = at->along[1], *about = kind->pivot;
   for (PetscInt k = 0; k < M; k++) {
-    const PetscReal x = X[2 * k], y = X[2 * k + 1];
-    Y[2 * k] = at->center[0] + c * x - s * y;
-    Y[2 * k + 1] = at->center[1] + s * x + c * y;
+    const PetscReal x = X[2 * k] - about[0], y = X[2 * k + 1] - about[1];
+    Y[2 * k] = at->center[0] + about[0] + c * x - s * y;
+    Y[2 * k + 1] = at->center[1] + about[1] + s * x + c * y;
   }
 }
 
@@ -32,14 +32,14 @@ static PetscErrorCode SizeOptions(Scene scene, PetscInt v, char text[], size_t l
 }
 
 /* That a curve, turned and moved, is between the walls and no longer than a period: before markers are fitted to it. */
-static PetscErrorCode CheckRoom(Scene scene, const Curve *curve, const Pose *at, PetscInt v) {
+static PetscErrorCode CheckRoom(Scene scene, const Kind *kind, const Pose *at, PetscInt v) {
   const FluidSpec *f = &scene->fluid;
   PetscReal X[2 * OUTLINE];
   char size[256];
   PetscFunctionBeginUser;
   PetscCall(SizeOptions(scene, v, size, sizeof(size)));
-  for (PetscInt k = 0; k < OUTLINE; k++) CurveEvaluate(curve, (PetscReal)k / OUTLINE, X + 2 * k);
-  Place(at, OUTLINE, X, X);
+  for (PetscInt k = 0; k < OUTLINE; k++) CurveEvaluate(&kind->curve, (PetscReal)k / OUTLINE, X + 2 * k);
+  Place(kind, at, OUTLINE, X, X);
   for (int dir = 0; dir < 2 && f->bc[dir] != BC_FREE; dir++) {
     const PetscReal *wall = f->box + 2 * dir, width = wall[1] - wall[0];
     PetscReal low = X[dir], high = X[dir];
@@ -180,18 +180,21 @@ PetscErrorCode SceneMakeShape(Draft scene) {
   PetscCall(SceneMixKinds(scene));
   PetscCall(KindsCreate(scene, &kinds));
   shape->vesicles = kinds.vesicles;
+  for (PetscInt k = 0; k < kinds.kinds; k++) {
+    scene->membrane.bending = PetscMax(scene->membrane.bending, kinds.kind[k].bending);
+    shape->longest = PetscMax(shape->longest, kinds.kind[k].length);
+  }
+  PetscCall(SceneChooseFlow(scene));
   PetscCall(PetscMalloc1(kinds.vesicles, &pose));
   PetscCall(PetscMalloc1(kinds.vesicles, &scene->membrane.each));
   PetscCall(ScenePlace(scene, &kinds, pose));
-  for (PetscInt v = 0; v < kinds.vesicles; v++)
-    PetscCall(CheckRoom(scene, &kinds.kind[kinds.of[v]].curve, &pose[v], v));
+  for (PetscInt v = 0; v < kinds.vesicles; v++) PetscCall(CheckRoom(scene, &kinds.kind[kinds.of[v]], &pose[v], v));
   PetscCall(Number(scene, &kinds, shape));
   PetscCall(PetscMalloc1(2 * shape->start[shape->vesicles], &shape->X));
   for (PetscInt v = 0; v < kinds.vesicles; v++) {
     const Kind *kind = &kinds.kind[kinds.of[v]];
-    Place(&pose[v], kind->M, kind->X, shape->X + 2 * shape->start[v]);
+    Place(kind, &pose[v], kind->M, kind->X, shape->X + 2 * shape->start[v]);
     scene->membrane.each[v] = kind->bending;
-    scene->membrane.bending = PetscMax(scene->membrane.bending, kind->bending);
   }
   PetscCall(PetscFree(pose));
   PetscCall(KindsDestroy(&kinds));

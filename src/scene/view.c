@@ -23,6 +23,26 @@ static PetscErrorCode ViewFluid(Scene scene, PetscViewer v) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The background flow, and its dimensionless number where it has one. */
+static PetscErrorCode ViewFlow(Scene scene, PetscViewer v) {
+  static const char *const names[] = {"quiescent", "shear", "poiseuille", "extension", "custom"};
+  const PetscInt type = scene->flow.type;
+  const PetscBool channel = type == FLOW_POISEUILLE ? PETSC_TRUE : PETSC_FALSE;
+  const PetscReal R0 = scene->shape.longest / (2 * PETSC_PI), c_b = scene->membrane.bending;
+  const PetscReal time = c_b > 0 ? scene->fluid.nu * PetscPowRealInt(R0, 3) / c_b : 0;
+  const PetscReal value = channel ? scene->flow.peak : scene->flow.rate;
+  char of[256] = "", number[256] = "";
+  PetscFunctionBeginUser;
+  if (channel || type == FLOW_SHEAR || type == FLOW_EXTENSION)
+    PetscCall(PetscSNPrintf(of, sizeof(of), ", %s = %g", channel ? "u_max" : "rate", (double)value));
+  if (*of && time > 0)
+    PetscCall(PetscSNPrintf(number, sizeof(number), ": %s = %g with R0 = %g, nu R0^3/c_b = %g",
+                            channel ? "Ca = u_max nu R0^2/c_b" : "chi = rate nu R0^3/c_b",
+                            (double)(channel ? value * time / R0 : value * time), (double)R0, (double)time));
+  PetscCall(PetscViewerASCIIPrintf(v, "background flow: %s%s%s\n", names[type], of, number));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static const char *NearField(Scene scene) {
   if (scene->coupling.near_field == NEAR_NONE) return "none";
   if (SceneHasBoxPart(scene)) return "exact with box part";
@@ -74,7 +94,6 @@ static PetscErrorCode ViewVesicles(Scene scene, PetscViewer v) {
 PetscErrorCode SceneView(Scene scene, PetscViewer v) {
   static const char *const derivatives[] = {"finite differences", "spectral bending", "spectral bending and edges"};
   static const char *const bc[] = {"wall", "periodic", "free"};
-  static const char *const flows[] = {"quiescent", "shear", "poiseuille", "extension", "custom"};
   const PetscReal *b = scene->fluid.box, h = FluidSpecCellSize(&scene->fluid);
   const Shape *shape = &scene->shape;
   PetscFunctionBeginUser;
@@ -85,7 +104,7 @@ PetscErrorCode SceneView(Scene scene, PetscViewer v) {
       (double)b[0], (double)b[1], (double)b[2], (double)b[3], scene->fluid.cells[0], scene->fluid.cells[1], (double)h,
       bc[scene->fluid.bc[0]], bc[scene->fluid.bc[1]]));
   PetscCall(ViewFluid(scene, v));
-  PetscCall(PetscViewerASCIIPrintf(v, "background flow: %s\n", flows[scene->flow.type]));
+  PetscCall(ViewFlow(scene, v));
   PetscCall(ViewVesicles(scene, v));
   if (shape->vesicles)
     PetscCall(PetscViewerASCIIPrintf(v, "membrane: kernel %s, %s, near field %s, area target %s\n",
