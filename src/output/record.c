@@ -199,11 +199,11 @@ PetscErrorCode RecordParse(Record *r, const char text[]) {
   const char *p = r->text;
   PetscFunctionBeginUser;
   PetscCall(PetscStrncpy(r->text, text, r->room));
-  for (int c = 0; c < COLUMN_COUNT && *p; c++) {
+  for (int c = 0; c < COLUMN_COUNT && p; c++) {
     char *end;
     const double x = strtod(p, &end);
-    r->last[c] = end > p ? x : NAN; /* an empty entry */
-    p = strchr(p, ',') ? strchr(p, ',') + 1 : "";
+    r->last[c] = end > p ? x : NAN; /* an empty entry, which the last may be */
+    p = strchr(p, ',') ? strchr(p, ',') + 1 : NULL;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
