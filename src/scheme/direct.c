@@ -185,9 +185,8 @@ static PetscErrorCode AddNearField(DirectSolver d, Mat A, PetscInt U, PetscInt F
   if (!d->coupling->near) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscCalloc1(PetscSqr(2 * l->M), &C));
   PetscCall(NearFieldAdd(d->coupling->near, PetscSqr(d->fluid->grid->h), PETSC_TRUE, 0, l->M, C));
-  for (PetscInt j = 0; j < 2 * l->M; j++)
-    for (PetscInt i = 2 * l->first; i < 2 * (l->first + l->n); i++)
-      PetscCall(AddNonzero(A, U + i, F + j, C[j * 2 * l->M + i]));
+  for (PetscInt i = 2 * l->first; i < 2 * (l->first + l->n); i++) /* a row's columns in order */
+    for (PetscInt j = 0; j < 2 * l->M; j++) PetscCall(AddNonzero(A, U + i, F + j, C[j * 2 * l->M + i]));
   PetscCall(PetscFree(C));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -205,11 +204,31 @@ static PetscErrorCode AddMembranes(DirectSolver d, Mat A) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Assemble(DirectSolver d, Mat *A) {
+#define FEW 24 /* entries of a row of the fluid */
+
+/* An empty matrix with room for its rows: those of sigma, U and F, the last rank's, are coupled to all of their vesicle
+   by spectral derivatives, U to all F by the near field. */
+static PetscErrorCode CreateMatrix(DirectSolver d, Mat *A) {
   const Grid g = d->fluid->grid;
+  const Layout l = d->coupling->membrane->layout;
   const PetscInt n = d->start[g->rank + 1] - d->start[g->rank];
+  PetscInt *room, longest = 0;
   PetscFunctionBeginUser;
-  PetscCall(MatCreateAIJ(g->comm, n, n, PETSC_DETERMINE, PETSC_DETERMINE, 24, NULL, 24, NULL, A));
+  PetscCall(PetscMalloc1(n, &room));
+  for (PetscInt k = 0; k < n; k++) room[k] = FEW;
+  for (PetscInt v = 0; v < l->bodies; v++) longest = PetscMax(longest, LayoutCount(l, v));
+  for (PetscInt k = n - 5 * d->M; k < n && g->rank == g->size - 1; k++) {
+    const PetscBool U = k >= n - 4 * d->M && k < n - 2 * d->M && d->coupling->near ? PETSC_TRUE : PETSC_FALSE;
+    room[k] = PetscMin(n, 4 * FEW + 3 * longest + (U ? 2 * d->M : 0));
+  }
+  PetscCall(MatCreateAIJ(g->comm, n, n, PETSC_DETERMINE, PETSC_DETERMINE, 0, room, FEW, NULL, A));
+  PetscCall(PetscFree(room));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Assemble(DirectSolver d, Mat *A) {
+  PetscFunctionBeginUser;
+  PetscCall(CreateMatrix(d, A));
   PetscCall(MatSetOption(*A, MAT_NEW_NONZERO_ALLOCATION_ERR, PETSC_FALSE));
   PetscCall(AddFluid(d, *A));
   PetscCall(AddMembranes(d, *A));
