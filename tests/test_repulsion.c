@@ -75,6 +75,25 @@ static PetscErrorCode CheckSprings(const Case *c, Repulsion r, Layout l, const P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* With a range shorter than every film there is neither spring nor force nor energy. */
+static PetscErrorCode CheckRange(const Case *c, const TestMembrane *m, Grid grid, const PetscReal X[]) {
+  SceneRepulsion law = c->law;
+  PetscReal *F, energy, largest = 0;
+  Repulsion r;
+  PetscFunctionBeginUser;
+  law.range = law.band = 1e-3;
+  PetscCall(RepulsionCreate(m->membrane, grid, &law, &r));
+  PetscCall(PetscCalloc1(2 * m->M, &F));
+  PetscCall(RepulsionPlace(r, X));
+  PetscCall(RepulsionAt(r, 1, X, F, &energy));
+  for (PetscInt k = 0; k < 2 * m->M; k++) largest = PetscMax(largest, PetscAbsReal(F[k]));
+  CHECK(r->count == 0 && energy == 0 && largest == 0, "%s: out of range there are %d springs and no force", c->name,
+        (int)r->count);
+  PetscCall(PetscFree(F));
+  PetscCall(RepulsionDestroy(&r));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode Facts(void) {
   PetscFunctionBeginUser;
   for (size_t k = 0; k < sizeof(cases) / sizeof(cases[0]); k++) {
@@ -91,6 +110,7 @@ static PetscErrorCode Facts(void) {
     PetscCall(PetscArraycpy(X, m.scene->shape.X, 2 * m.M));
     PetscCall(CheckSlope(&cases[k], r, m.layout, X));
     PetscCall(CheckSprings(&cases[k], r, m.layout, X));
+    PetscCall(CheckRange(&cases[k], &m, grid, X));
     PetscCall(PetscFree(X));
     PetscCall(RepulsionDestroy(&r));
     PetscCall(GridDestroy(&grid));

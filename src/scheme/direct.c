@@ -102,8 +102,8 @@ static PetscErrorCode AddFluid(DirectSolver d, Mat A) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* E: -E w in the rows of U, E^T F in the momentum. */
-static PetscErrorCode AddInterpolation(DirectSolver d, Mat A, PetscInt U, PetscInt F) {
+/* E: -E w in the rows of U, E^T F in the momentum. Without a matrix: entries of the own momentum rows, into room. */
+static PetscErrorCode AddInterpolation(DirectSolver d, Mat A, PetscInt room[], PetscInt U, PetscInt F) {
   const Grid g = d->fluid->grid;
   PetscFunctionBeginUser;
   for (PetscInt q = 0; q < 2 * d->M; q++) {
@@ -116,6 +116,11 @@ static PetscErrorCode AddInterpolation(DirectSolver d, Mat A, PetscInt U, PetscI
         if (!g->wall[0]) i %= g->n[0];
         if (!g->wall[1]) j %= g->n[1];
         if (i < 0 || j < 0 || i >= g->columns[c] || j >= g->all_rows[c]) continue;
+        if (!A) {
+          const PetscInt row = Index(d, c, i, j);
+          if (row >= d->start[g->rank] && row < d->start[g->rank + 1]) room[row - d->start[g->rank]]++;
+          continue;
+        }
         PetscCall(MatSetValue(A, U + q, Index(d, c, i, j), -weight, ADD_VALUES));
         PetscCall(MatSetValue(A, Index(d, c, i, j), F + q, weight, ADD_VALUES));
       }
@@ -139,16 +144,20 @@ static PetscErrorCode AddVesicle(DirectSolver d, Mat A, PetscInt v, PetscInt sig
   PetscReal *unit, *stretching, *out;
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc3(2 * n, &unit, n, &stretching, 2 * n, &out));
+  for (PetscInt c = 0; c < 2 * n; c++) { /* a row's columns in order: those of sigma before those of U */
+    unit[c] = 1;
+    MembraneVesicleStretching(m, v, tau, unit, stretching);
+    for (PetscInt k = 0; k < n; k++) {
+      PetscCall(AddNonzero(A, sigma + first + k, U + 2 * first + c, stretching[k] / h2));
+      PetscCall(AddNonzero(A, F + 2 * first + c, sigma + first + k, -stretching[k] / h2));
+    }
+    unit[c] = 0;
+  }
   for (PetscInt c = 0; c < 2 * n; c++) {
     const PetscInt column = 2 * first + c;
     unit[c] = 1;
     PetscCall(MatSetValue(A, U + column, U + column, 1, ADD_VALUES));
     PetscCall(MatSetValue(A, F + column, F + column, 1, ADD_VALUES));
-    MembraneVesicleStretching(m, v, tau, unit, stretching);
-    for (PetscInt k = 0; k < n; k++) {
-      PetscCall(AddNonzero(A, sigma + first + k, U + column, stretching[k] / h2));
-      PetscCall(AddNonzero(A, F + column, sigma + first + k, -stretching[k] / h2));
-    }
     PetscCall(PetscArrayzero(out, 2 * n));
     if (m->bending > 0) MembraneVesicleBending(m, v, -m->bending / (h2 * d->fluid->a0), unit, out);
     for (PetscInt r = 0; r < 2 * n; r++) PetscCall(AddNonzero(A, F + 2 * first + r, U + column, out[r]));
@@ -197,7 +206,7 @@ static PetscErrorCode AddMembranes(DirectSolver d, Mat A) {
   const Layout l = d->coupling->membrane->layout;
   const PetscInt sigma = d->start[d->fluid->grid->size] - 5 * d->M, U = sigma + d->M, F = U + 2 * d->M;
   PetscFunctionBeginUser;
-  if (g->rank == g->size - 1) PetscCall(AddInterpolation(d, A, U, F));
+  if (g->rank == g->size - 1) PetscCall(AddInterpolation(d, A, NULL, U, F));
   if (g->rank == g->size - 1) PetscCall(AddSprings(d, A, U, F));
   for (PetscInt v = l->own; v < l->end; v++) PetscCall(AddVesicle(d, A, v, sigma, U, F));
   PetscCall(AddNearField(d, A, U, F));
@@ -219,8 +228,10 @@ static PetscErrorCode CreateMatrix(DirectSolver d, Mat *A) {
   for (PetscInt v = 0; v < l->bodies; v++) longest = PetscMax(longest, LayoutCount(l, v));
   for (PetscInt k = n - 5 * d->M; k < n && g->rank == g->size - 1; k++) {
     const PetscBool U = k >= n - 4 * d->M && k < n - 2 * d->M && d->coupling->near ? PETSC_TRUE : PETSC_FALSE;
-    room[k] = PetscMin(n, 4 * FEW + 3 * longest + (U ? 2 * d->M : 0));
+    room[k] = 4 * FEW + 3 * longest + (U ? 2 * d->M : 0);
   }
+  PetscCall(AddInterpolation(d, NULL, room, 0, 0));
+  for (PetscInt k = 0; k < n; k++) room[k] = PetscMin(n, room[k]);
   PetscCall(MatCreateAIJ(g->comm, n, n, PETSC_DETERMINE, PETSC_DETERMINE, 0, room, FEW, NULL, A));
   PetscCall(PetscFree(room));
   PetscFunctionReturn(PETSC_SUCCESS);
