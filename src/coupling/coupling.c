@@ -75,11 +75,11 @@ PetscErrorCode CouplingElasticForce(Coupling c, Vec X, Vec F) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode CouplingElastic(Coupling c, PetscReal alpha, Vec X, Vec w, Vec U) {
+/* The force in c->force, alpha times: spread to w, and its near field to U. */
+static PetscErrorCode Act(Coupling c, PetscReal alpha, Vec w, Vec U) {
   const PetscScalar *F;
   PetscScalar *u;
   PetscFunctionBeginUser;
-  PetscCall(CouplingElasticForce(c, X, c->force));
   PetscCall(MarkersSpread(c->markers, alpha / PetscSqr(c->fluid->grid->h), c->force, w));
   if (!c->near) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecGetArrayRead(c->force, &F));
@@ -90,26 +90,27 @@ PetscErrorCode CouplingElastic(Coupling c, PetscReal alpha, Vec X, Vec w, Vec U)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode CouplingElastic(Coupling c, PetscReal alpha, Vec X, Vec w, Vec U) {
+  PetscFunctionBeginUser;
+  PetscCall(CouplingElasticForce(c, X, c->force));
+  PetscCall(Act(c, alpha, w, U));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode CouplingAddGravity(Coupling c, Vec X, Vec f, Vec U) {
   const Grid g = c->fluid->grid;
-  const PetscScalar *x, *F;
-  PetscScalar *a;
+  const PetscScalar *x;
+  PetscScalar *F;
   PetscFunctionBeginUser;
   if (!c->membrane->weight) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecSet(c->force, 0));
   PetscCall(VecGetArrayRead(X, &x));
-  PetscCall(VecGetArray(c->force, &a));
-  MembraneGravity(c->membrane, 1, x, a);
-  PetscCall(VecRestoreArray(c->force, &a));
+  PetscCall(VecGetArray(c->force, &F));
+  MembraneGravity(c->membrane, 1, x, F);
+  PetscCall(VecRestoreArray(c->force, &F));
   PetscCall(VecRestoreArrayRead(X, &x));
-  PetscCall(MarkersSpread(c->markers, 1 / PetscSqr(g->h), c->force, f));
+  PetscCall(Act(c, 1, f, U));
   if (!g->wall[0] && !g->wall[1]) PetscCall(FluidRemoveMean(c->fluid, f));
-  if (!c->near) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(VecGetArrayRead(c->force, &F));
-  PetscCall(VecGetArray(U, &a));
-  PetscCall(NearFieldApply(c->near, 1, F, a));
-  PetscCall(VecRestoreArray(U, &a));
-  PetscCall(VecRestoreArrayRead(c->force, &F));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -26,7 +26,7 @@ PetscErrorCode StokesCreate(Fluid fluid, Stokes *out) {
   s->fluid = fluid;
   if (!fluid->grid->wall[0] && fluid->grid->wall[1]) PetscCall(ChannelCreate(fluid, &s->channel));
   if (!fluid->grid->wall[0] && fluid->tridiagonal) PetscCall(BandedStokesCreate(fluid, s->channel, &s->banded));
-  if (fluid->zero_flux) PetscCall(ZeroFluxCreate(fluid, &s->flux));
+  if (fluid->zero_flux && !fluid->grid->wall[0] && fluid->grid->wall[1]) PetscCall(ZeroFluxCreate(fluid, &s->flux));
   if (s->banded) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(DMCreateGlobalVector(fluid->grid->da[FIELD_P], &s->q));
   PetscCall(VecDuplicate(s->q, &s->psi));

@@ -70,20 +70,12 @@ static PetscErrorCode Warn(Scheme s, const PetscMPIInt pair[2]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscBool Smooth(Scheme s) {
-  return s->membrane->derivative == DERIVATIVE_SPECTRAL ? PETSC_TRUE : PETSC_FALSE;
-}
-
-static void Periods(Grid g, PetscReal period[2]) {
-  for (int d = 0; d < 2; d++) period[d] = g->wall[d] ? 0 : g->hi[d] - g->lo[d];
-}
-
 static PetscErrorCode CheckCrossing(Scheme s, const PetscScalar X[], const PetscReal period[2]) {
   const Layout l = s->membrane->layout;
   PetscInt pair[2];
   char who[64];
   PetscFunctionBeginUser;
-  PetscCall(CurvesCross(l->bodies, l->start, X, period, Smooth(s), pair));
+  PetscCall(CurvesCross(l->bodies, l->start, X, period, SchemeIsSmooth(s), pair));
   if (pair[0] < 0) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(Name((PetscMPIInt)pair[0] + 1, (PetscMPIInt)pair[1] + 1, sizeof(who), who));
   PetscCall(PetscSNPrintf(s->report.failure, sizeof(s->report.failure), "%s cross", who));
@@ -98,7 +90,7 @@ PetscErrorCode SchemeCheckContact(Scheme s) {
   PetscReal period[2];
   PetscMPIInt pair[2] = {0, 0};
   PetscFunctionBeginUser;
-  Periods(s->fluid->grid, period);
+  SchemePeriods(s, period);
   PetscCall(LayoutGatherVec(l, s->state.X, s->work_all));
   if (!l->rank) {
     if (s->scene->limits.crossing) PetscCall(CheckCrossing(s, s->work_all, period));

@@ -17,17 +17,13 @@ typedef struct {
   CurveGap before, after;
 } Drained;
 
-static PetscBool Smooth(Scheme s) {
-  return s->membrane->derivative == DERIVATIVE_SPECTRAL ? PETSC_TRUE : PETSC_FALSE;
-}
-
 static CurveRoom Room(Scheme s) {
   const Grid g = s->fluid->grid;
   CurveRoom room;
+  SchemePeriods(s, room.period);
   for (int d = 0; d < 2; d++) {
     room.box[2 * d] = g->lo[d];
     room.box[2 * d + 1] = g->hi[d];
-    room.period[d] = g->wall[d] ? 0 : g->hi[d] - g->lo[d];
     room.wall[d] = g->wall[d] && !g->free ? PETSC_TRUE : PETSC_FALSE;
   }
   return room;
@@ -48,7 +44,7 @@ static PetscErrorCode Find(Scheme s, const PetscScalar X[], PetscReal reach, Pet
   CurveGap *between;
   PetscInt count, side;
   PetscFunctionBeginUser;
-  PetscCall(CurveGaps(l->bodies, l->start, X, room.period, Smooth(s), reach, &count, &between));
+  PetscCall(CurveGaps(l->bodies, l->start, X, room.period, SchemeIsSmooth(s), reach, &count, &between));
   PetscCall(PetscMalloc1(count + l->bodies, films));
   PetscCall(PetscArraycpy(*films, between, count));
   PetscCall(PetscFree(between));
@@ -114,7 +110,7 @@ PetscErrorCode FilmsLoss(Scheme s, Vec X_old, Vec X_new, PetscReal *loss) {
   }
   if (!s->scene->limits.crossing) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(LayoutGatherVec(l, X_new, s->work_all));
-  if (!l->rank) PetscCall(CurvesCross(l->bodies, l->start, s->work_all, room.period, Smooth(s), pair));
+  if (!l->rank) PetscCall(CurvesCross(l->bodies, l->start, s->work_all, room.period, SchemeIsSmooth(s), pair));
   PetscCallMPI(MPI_Bcast(pair, 1, MPIU_INT, 0, l->comm));
   if (pair[0] >= 0) *loss = PetscMax(*loss, 2);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -152,7 +148,7 @@ PetscErrorCode FilmsLeastGap(Scheme s, PetscReal *gap) {
   if (!l->bodies) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(LayoutGatherVec(l, s->state.X, s->work_all));
   if (!l->rank) {
-    PetscCall(CurveLeastGap(l->bodies, l->start, s->work_all, room.period, Smooth(s), gap));
+    PetscCall(CurveLeastGap(l->bodies, l->start, s->work_all, room.period, SchemeIsSmooth(s), gap));
     const PetscReal wall = CurveWallGap(l->M, s->work_all, &room, &side);
     if (wall < PETSC_MAX_REAL && !(*gap < wall)) *gap = wall;
   }
@@ -191,7 +187,8 @@ PetscErrorCode FilmsWarn(Scheme s) {
   if (!s->coupling->near || s->warnings.film) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(LayoutGatherVec(l, s->state.X, s->work_all));
   if (!l->rank)
-    PetscCall(CurveThinnestFilm(l->bodies, l->start, s->work_all, s->membrane->ds, &room, Smooth(s), COARSE, &film));
+    PetscCall(
+        CurveThinnestFilm(l->bodies, l->start, s->work_all, s->membrane->ds, &room, SchemeIsSmooth(s), COARSE, &film));
   PetscCallMPI(MPI_Bcast(&film, sizeof(film), MPI_BYTE, 0, l->comm));
   s->warnings.film = film.spacings < COARSE ? PETSC_TRUE : PETSC_FALSE;
   if (s->warnings.film) PetscCall(Warn(s, &film));

@@ -36,6 +36,15 @@ static PetscErrorCode Advise(Scheme s) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+void SchemePeriods(Scheme s, PetscReal period[2]) {
+  const Grid g = s->fluid->grid;
+  for (int d = 0; d < 2; d++) period[d] = g->wall[d] ? 0 : g->hi[d] - g->lo[d];
+}
+
+PetscBool SchemeIsSmooth(Scheme s) {
+  return s->membrane->derivative == DERIVATIVE_SPECTRAL ? PETSC_TRUE : PETSC_FALSE;
+}
+
 PetscErrorCode SchemeBackground(Scheme s, Vec X, PetscReal t) {
   const PetscScalar *x;
   PetscScalar *u;

@@ -28,6 +28,11 @@ PETSC_EXTERN PetscErrorCode SchemeReturn(Scheme scheme, PetscBool advanced);
 PETSC_EXTERN PetscErrorCode SchemeSolverFailed(Scheme scheme, const char prefix[], KSPConvergedReason why, PetscInt its,
                                                PetscReal residual);
 
+/* SchemePeriods - the box's length in x and y (length), 0 where there are walls. SchemeIsSmooth - whether membranes are
+   curves by their markers, not polygons. Not collective. */
+PETSC_EXTERN void SchemePeriods(Scheme scheme, PetscReal period[2]);
+PETSC_EXTERN PetscBool SchemeIsSmooth(Scheme scheme);
+
 /* The schemes. */
 PETSC_EXTERN PetscErrorCode SchemeCreate_Split(Scheme);
 PETSC_EXTERN PetscErrorCode SchemeCreate_Penalty(Scheme);
