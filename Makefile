@@ -19,7 +19,8 @@ PYTHON_DIR ?= $(PREFIX)/lib/python$(shell $(PYTHON) -c 'import sys; print("%d.%d
 PACKAGES := gcc libc6-dev make pkg-config libpetsc-real-dev libfftw3-dev libfftw3-mpi-dev libhdf5-openmpi-dev openmpi-bin libopenblas0-serial \
   python3-petsc4py python3-h5py python3-numpy python3-matplotlib python3-tqdm
 TEST_PACKAGES := python3-pytest python3-pytest-xdist python3-scipy python3-xarray python3-nbclient python3-ipykernel python3-pip \
-  python3-setuptools python3-wheel ffmpeg chromium-headless-shell valgrind clang-format black
+  python3-setuptools python3-wheel ffmpeg chromium-headless-shell valgrind clang-format black \
+  codespell mkdocs
 # VTK with its XDMF reader, which Debian's lacks: from PyPI, into build/, for one test.
 VTK := vtk==9.3.1
 
@@ -62,7 +63,7 @@ export OMPI_MCA_mpi_yield_when_idle := 1
 export OMPI_MCA_btl_vader_single_copy_mechanism := none
 export OMP_NUM_THREADS := 1
 
-.PHONY: all help deps test-deps run test coverage reproduce stability time chart calibrate unseen bench fuzz memcheck install uninstall manual arch format check-format clean tests benches FORCE
+.PHONY: all help deps test-deps run test coverage reproduce stability time chart calibrate unseen bench fuzz memcheck install uninstall manual docs arch format check-format clean tests benches FORCE
 all: $(BIN)/petves ## build bin/petves and lib/libpetves.so
 
 help: ## list the targets
@@ -178,6 +179,10 @@ memcheck: test-deps ## every kind of scene under valgrind's memcheck, on 1 and 2
 	PETVES=$(CURDIR)/$(BIN)/petves PETVES_TESTS=$(CURDIR)/$(BUILD)/tests PYTHONPATH=python:. SANITIZE=$(SANITIZE) MEMCHECK=1 \
 	  $(PYTHON) -m pytest -p no:cacheprovider -q tests/test_valgrind.py
 
+docs: ## the pages of docs/ as a site: build/docs/index.html
+	$(call install_packages,mkdocs)
+	mkdocs build -q --strict
+
 manual: all ## the manual page and completion for bash, into build/
 	$(PYTHON) python/make_manual.py $(BIN)/petves $(BUILD)
 
@@ -189,7 +194,9 @@ install: manual ## install under PREFIX (/usr/local): program, library, Python p
 	install -m 644 include/petves.h $(PREFIX)/include/
 	install -m 644 $(BUILD)/petves.1 $(PREFIX)/share/man/man1/
 	install -m 644 $(BUILD)/petves.bash $(PREFIX)/share/bash-completion/completions/petves
-	install -m 644 README.md CHANGELOG.md LICENSE docs/*.md $(PREFIX)/share/doc/petves/
+	install -d $(PREFIX)/share/doc/petves/docs
+	install -m 644 README.md CHANGELOG.md CONTRIBUTING.md CITATION.cff LICENSE $(PREFIX)/share/doc/petves/
+	install -m 644 docs/*.md $(PREFIX)/share/doc/petves/docs/
 	cp -r runs python/examples $(PREFIX)/share/petves/
 	install -m 644 python/petves/*.py $(PYTHON_DIR)/petves/
 	install -m 644 python/petves/views/*.py python/petves/views/*.html $(PYTHON_DIR)/petves/views/

@@ -1,6 +1,6 @@
 /* petves: inextensible vesicles in two-dimensional viscous flow, on PETSc. Public C API.
 
-   A simulation is built from PETSc's options database (see README.md for the options), stepped or run to its end, and
+   A simulation is built from PETSc's options database (docs/options.md lists them), stepped or run to its end, and
    asked for its state. Every call is collective over the simulation's communicator unless it says otherwise, and
    returns a PetscErrorCode; a user's mistake is PETSC_ERR_USER_INPUT after one line on standard error. */
 #pragma once

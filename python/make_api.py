@@ -28,7 +28,7 @@ PAGES = [
 HEAD = """# Python reference
 
 Made from the docstrings by `python/make_api.py`. docs/tutorial.ipynb shows the package at work, python/examples has
-scripts, and README.md the options.
+scripts, and [options.md](options.md) the options.
 """
 
 

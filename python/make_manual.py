@@ -10,7 +10,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from check_readme import Option, described
+from check_options import Option, described
 
 TOOLS = "run plot movie report compare sweep"
 WORDS = "-help -version -options_file -log_view"

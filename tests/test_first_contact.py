@@ -11,7 +11,7 @@ import pytest
 from conftest import ENVIRONMENT, PETVES, PROGRAMS, ROOT, SANITIZE, mpirun, without_mpirun
 
 sys.path.insert(0, str(ROOT / "python"))
-from check_readme import described, missing  # noqa: E402
+from check_options import described, missing  # noqa: E402
 from make_manual import completion, manual  # noqa: E402
 
 SMALL = "-domain_cells 24,24 -vesicle_semi_axes 0.4,0.5 -time_step 0.01 -time_end 0.01".split()
@@ -38,13 +38,13 @@ def test_help_names_scenes_that_are_there():
     assert len(set(named)) >= 4 and all((ROOT / name).is_file() for name in named)
 
 
-def test_readme_has_the_rows_of_the_table():
-    readme = (ROOT / "README.md").read_text()
-    assert len(described(PETVES)) > 60 and missing(PETVES, readme) == []
-    (row,) = re.findall(r"^\| `-time_step` .*$", readme, re.MULTILINE)
-    assert missing(PETVES, readme.replace(row, row.replace("0.01", "0.02"))) == [
-        f"README.md lacks {row}",
-        f"README.md has {row.replace('0.01', '0.02')}",
+def test_page_of_options_has_the_rows_of_the_table():
+    page = (ROOT / "docs" / "options.md").read_text()
+    assert len(described(PETVES)) > 60 and missing(PETVES, page) == []
+    (row,) = re.findall(r"^\| `-time_step` .*$", page, re.MULTILINE)
+    assert missing(PETVES, page.replace(row, row.replace("0.01", "0.02"))) == [
+        f"docs/options.md lacks {row}",
+        f"docs/options.md has {row.replace('0.01', '0.02')}",
     ]
 
 

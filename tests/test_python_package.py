@@ -97,6 +97,7 @@ if not SANITIZE:  # a sanitized library cannot be loaded into Python
             "man/man1/petves.1",
             "bash-completion/completions/petves",
             "doc/petves/README.md",
+            "doc/petves/docs/options.md",
             "petves/runs/shear.opts",
         ]
         assert all((share / name).is_file() for name in left)

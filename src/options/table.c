@@ -30,7 +30,7 @@ PetscErrorCode OptionsRead(MPI_Comm comm, const char title[], PetscInt n, const 
     const char *range = strcmp(row[i].range, "any") ? row[i].range : "";
     char text[PETSC_MAX_PATH_LEN], help[512];
     PetscCall(PetscSNPrintf(help, sizeof(help), *range ? "%s [%s]" : "%s%s", row[i].help, range));
-    PetscCall(PetscOptionsString(row[i].name, help, "README.md", row[i].value, text, sizeof(text), &t->given[i]));
+    PetscCall(PetscOptionsString(row[i].name, help, "docs/options.md", row[i].value, text, sizeof(text), &t->given[i]));
     PetscCall(ReadOption(comm, &row[i], t->given[i], (void *)Place(t, values, i)));
   }
   PetscOptionsEnd();
