@@ -20,7 +20,7 @@ PACKAGES := gcc libc6-dev make pkg-config libpetsc-real-dev libfftw3-dev libfftw
   python3-petsc4py python3-h5py python3-numpy python3-matplotlib python3-tqdm
 TEST_PACKAGES := python3-pytest python3-pytest-xdist python3-scipy python3-xarray python3-nbclient python3-ipykernel python3-pip \
   python3-setuptools python3-wheel ffmpeg chromium-headless-shell valgrind clang-format black \
-  codespell mkdocs
+  aspell aspell-en codespell mkdocs
 # VTK with its XDMF reader, which Debian's lacks: from PyPI, into build/, for one test.
 VTK := vtk==9.3.1
 

@@ -16,7 +16,7 @@ def prose(text: str) -> str:
     """Return a page without its blocks of code and its spans of code."""
     text = re.sub(r"^```.*?^```$", "", text, flags=re.MULTILINE | re.DOTALL)
     text = re.sub(r"(?<=\n\n)(?:(?: {4}|\t).*\n|\n(?= {4}))+", "", text)
-    return re.sub(r"`[^`\n]*`", "", text)
+    return re.sub(r"`[^`\n]*\n?[^`\n]*`", " ", text)
 
 
 def anchors(text: str) -> set[str]:
@@ -80,3 +80,31 @@ def test_site_is_built(tmp_path):
     )
     assert done.returncode == 0 and not done.stderr, done.stdout + done.stderr
     assert "<h1" in (tmp_path / "method.html").read_text() and (tmp_path / "shear.png").is_file()
+
+
+def unknown(text: str) -> set[str]:
+    """Return the words of a page that neither the speller's British dictionary nor tests/words.txt has."""
+    text = re.sub(r"\]\([^)]*\)|<!--.*?-->", " ", prose(text), flags=re.DOTALL)
+    text = re.sub(r"\S*[_/^\\=\d]\S*", " ", text)  # names of files and options, formulas
+    words = ["aspell", "list", "--lang=en_GB", "--encoding=utf-8"]
+    found = subprocess.run(words, input=text, capture_output=True, text=True, check=True).stdout.split()
+    return {word.removesuffix("'s") for word in found} - set((ROOT / "tests" / "words.txt").read_text().split())
+
+
+@pytest.mark.skipif(not shutil.which("aspell"), reason="aspell is not installed")
+def test_words_are_spelt_well():
+    assert not {page.name: words for page in PAGES if (words := unknown(page.read_text()))}
+    assert unknown("The velosity of the membrane `velosity`, at runs/velosity.opts") == {"velosity"}
+
+
+@pytest.mark.skipif(not shutil.which("codespell"), reason="codespell is not installed")
+def test_code_is_spelt_well():
+    """Frequent misspellings, in comments and names too; nd is an ordering, tread what a tank has."""
+    folders = ["src", "include", "python", "studies", "tests", "bench", "runs", "docs", "README.md", "Makefile"]
+    done = subprocess.run(
+        ["codespell", "-L", "nd,tread", "-S", "*.ipynb,*.json,*.csv,*.png,words.txt,test_docs.py,*.pyc", *folders],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 0, done.stdout
