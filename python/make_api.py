@@ -11,6 +11,7 @@ PAGES = [
     ("petves.dataset", "load", "Read"),
     ("petves.run", "Run", ""),
     ("petves.views.plot", "plot_run", "Draw, film, report"),
+    ("petves.views.figures", "Look", ""),
     ("petves.views.movie", "movie", ""),
     ("petves.views.report", "report", ""),
     ("petves.views.compare", "compare", "Compare, sweep"),

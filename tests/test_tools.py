@@ -16,6 +16,7 @@ from conftest import ENVIRONMENT, PETVES, PROGRAMS, ROOT, read_series, run_petve
 
 import petves
 from petves.run import Run
+from petves.views.report import report
 
 pytestmark = pytest.mark.xdist_group("tools")  # its tests share runs
 
@@ -71,15 +72,18 @@ def test_load_has_the_files_and_units(folder):
         petves.load(folder / "nothing")
 
 
-@pytest.mark.parametrize("suffix,first", [(".mp4", b"ftyp"), (".gif", b"GIF89a")])
-def test_movie_has_a_picture_a_saved_time(suffix, first, folder, tmp_path):
+@pytest.mark.parametrize(
+    "suffix, first, chosen, count",
+    [(".mp4", b"ftyp", (), 3), (".gif", b"GIF89a", ("--every", 2, "--from", 0.01, "--to", 0.04), 1)],
+)
+def test_movie_has_a_picture_a_saved_time(suffix, first, chosen, count, folder, tmp_path):
     path = tmp_path / f"film{suffix}"
-    assert tool("movie", folder, "--output", path, "--field", "pressure") == [str(path)]
+    assert tool("movie", folder, "--output", path, "--field", "pressure", *chosen) == [str(path)]
     assert first in path.read_bytes()[:12]
-    count = "stream=nb_read_frames"
-    words = ["ffprobe", "-v", "error", "-count_frames", "-show_entries", count, "-of", "csv=p=0", str(path)]
+    shown = "stream=nb_read_frames"
+    words = ["ffprobe", "-v", "error", "-count_frames", "-show_entries", shown, "-of", "csv=p=0", str(path)]
     frames = subprocess.run(words, capture_output=True, text=True).stdout
-    assert int(frames.strip().strip(",")) == len(Run.read(folder).time) == 3
+    assert int(frames.strip().strip(",")) == count and len(Run.read(folder).time) == 3
 
 
 def test_movie_without_ffmpeg_is_a_gif(folder, tmp_path, monkeypatch):
@@ -91,6 +95,10 @@ def test_movie_without_ffmpeg_is_a_gif(folder, tmp_path, monkeypatch):
         movie.movie(folder, tmp_path / "film.mp4")
     with pytest.raises(petves.Error, match="allowed: a name that ends in .mp4 or .gif"):
         movie.movie(folder, tmp_path / "film.avi")
+    with pytest.raises(petves.Error, match="no saved time; allowed: times in 0 to 0.04"):
+        movie.movie(folder, begin=1)
+    with pytest.raises(petves.Error, match="every 0: out of range"):
+        movie.movie(folder, every=0)
 
 
 def test_compare_says_what_differs(folder, other, tmp_path):
@@ -142,19 +150,27 @@ def test_report_is_whole_and_offline(folder, tmp_path):
     data = json.loads(re.search(r'type="application/json">(.*?)</script>', page, re.S).group(1))
     named = tmp_path / "__DATA____PLOTS__"  # as the page's own places are
     shutil.copytree(folder, named)
-    tool("report", named)
+    report(named)
     assert (named / "report.html").read_text() == page.replace(f"petves: {folder.name}", f"petves: {named.name}")
     np.testing.assert_allclose(data["markers"], run.markers, atol=1e-5)
     np.testing.assert_allclose(data["time"], run.time)
     assert "shear flow of rate 1" in page and "reduced area 0." in page and f"{run.start[1]} markers" in page
 
 
-@pytest.mark.parametrize("frame", [0, 2])
-def test_report_draws_the_membrane_in_a_browser(frame, folder, tmp_path):
-    """The page runs without a script error, and the membrane's pixels lie where the markers are."""
+@pytest.fixture(scope="module")
+def left(tmp_path_factory):
+    """A vesicle that starts two periods away from the box."""
+    beyond = " -domain_bc_x periodic -vesicle_center 4.3,0.5"
+    return run_petves(tmp_path_factory.mktemp("tools") / "left", OPTIONS + beyond).folder
+
+
+@pytest.mark.parametrize("name, frame, periods", [("folder", 2, 0), ("left", 0, 2)])
+def test_report_draws_the_membrane_in_a_browser(name, frame, periods, request, tmp_path):
+    """The page runs without a script error, and the membrane's pixels lie where the markers are, less whole periods."""
     from matplotlib.image import imread
 
     assert CHROMIUM, "no headless Chromium"
+    folder = request.getfixturevalue(name)
     tool("report", folder, "--output", tmp_path / "page.html")
     shot = tmp_path / "shot.png"
     done = subprocess.run(
@@ -182,7 +198,7 @@ def test_report_draws_the_membrane_in_a_browser(frame, folder, tmp_path):
     run = Run.read(folder)
     scale = (right - left) / (run.box[1] - run.box[0])
     drawn = run.box[0] + (dot[1] - left) / scale, run.box[2] + (bottom - dot[0]) / scale
-    np.testing.assert_allclose(drawn, run.markers[frame, 0], atol=2 / scale)  # pixels
+    np.testing.assert_allclose(drawn, run.markers[frame, 0] - (2 * periods, 0), atol=2 / scale)  # pixels
 
 
 def test_run_xmf_opens_in_vtk(folder):

@@ -27,14 +27,35 @@ def parser() -> argparse.ArgumentParser:
     return top
 
 
+def _add_look(command: argparse.ArgumentParser, *names: str) -> None:
+    """Add options of how pictures look."""
+    known: dict[str, dict[str, Any]] = {
+        "format": dict(metavar="FORMAT", default="png", help="png, pdf or svg (png)"),
+        "dpi": dict(type=float, default=120, help="dots an inch (120)"),
+        "width": dict(type=float, metavar="INCHES", help="width of each picture; letters keep their size"),
+        "cmap": dict(metavar="NAME", help="matplotlib's colour map of the speed (viridis)"),
+        "follow": dict(
+            type=int, nargs="?", const=1, metavar="VESICLE", help="go along with a vesicle (1) in a periodic box"
+        ),
+    }
+    for name in names:
+        command.add_argument(f"--{name}", **known[name])
+
+
 def _add_pictures(commands: argparse._SubParsersAction) -> None:
-    plot = commands.add_parser("plot", help="draw a run's folder into PNG files in that folder")
+    plot = commands.add_parser("plot", help="draw a run's folder into pictures in that folder")
     plot.add_argument("folder", metavar="DIR", help="the run's -output_dir")
+    _add_look(plot, "format", "dpi", "width", "cmap", "follow")
     film = commands.add_parser("movie", help="film the membrane over the flow: mp4 (with ffmpeg) or gif")
     film.add_argument("folder", metavar="DIR", help="the run's -output_dir")
     film.add_argument("--output", metavar="FILE", help="FILE.mp4 or FILE.gif (movie.mp4 or movie.gif in DIR)")
     film.add_argument("--field", choices=("speed", "pressure"), default="speed", help="under the membrane (speed)")
     film.add_argument("--rate", type=float, default=15, help="pictures a second (15)")
+    film.add_argument("--every", type=int, default=1, metavar="N", help="one saved time in N (1)")
+    film.add_argument("--from", type=float, dest="begin", metavar="TIME", help="first time (the first saved)")
+    film.add_argument("--to", type=float, dest="end", metavar="TIME", help="last time (the last saved)")
+    film.add_argument("--width", type=int, default=720, metavar="PIXELS", help="width of the film (720)")
+    _add_look(film, "cmap", "follow")
     page = commands.add_parser("report", help="write one HTML file about a run that opens anywhere, offline")
     page.add_argument("folder", metavar="DIR", help="the run's -output_dir")
     page.add_argument("--output", metavar="FILE", help="the file (report.html in DIR)")
@@ -63,6 +84,10 @@ def _add_tables(commands: argparse._SubParsersAction) -> None:
 def _run(command: str, words: dict[str, Any]) -> list[object]:
     """Run one command with its arguments; return the lines to print."""
     module = import_module(HOME[command])
+    if command in ("plot", "movie"):
+        own = ("format", "dpi", "width", "cmap", "follow") if command == "plot" else ("cmap", "follow")
+        look = import_module("petves.views.figures").Look
+        words["look"] = look(**{name: words.pop(name) for name in own})
     if command == "plot":
         return module.plot_run(**words)
     if command == "compare":

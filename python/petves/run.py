@@ -12,11 +12,15 @@ from typing import Any
 import h5py
 import numpy as np
 
+from petves.curves import trigonometric
 from petves.errors import Error
 
 
 #: Vesicles up to which series.csv has columns of each.
 FEW = 40
+
+#: Points of a vesicle's smooth curve for each of its markers.
+CURVE = 6
 
 
 class RunError(Error):
@@ -130,34 +134,48 @@ class Run:
     @functools.cached_property
     def periods(self) -> tuple[float, float]:
         """The box's periods in x and y (length); 0 where it is not periodic."""
-        options = self.options()
+        options = self._in_force
         return tuple(
             float(self.box[2 * d + 1] - self.box[2 * d]) if options.get(f"domain_bc_{c}") == "periodic" else 0.0
             for d, c in enumerate("xy")
         )
 
-    def images(self, frame: int, vesicle: int = 0) -> list[np.ndarray]:
+    def images(
+        self,
+        frame: int,
+        vesicle: int = 0,
+        curve: bool = False,
+        limits: np.ndarray | None = None,
+        origin: np.ndarray | None = None,
+    ) -> list[np.ndarray]:
         """Return one vesicle's outline at a saved time with every image of it that reaches into the box.
 
         Markers are not wrapped: a vesicle that has left a periodic box goes on outside of it. Here it is in the box, and once
-        more at the other side where it lies across the seam. Each outline has shape (n + 1, 2).
+        more at the other side where it lies across the seam. Each outline has shape (n + 1, 2): the markers, or with `curve`
+        the smooth curve through them. `limits` (4,) stand in place of the box, `origin` (2,) is taken off all places.
         """
-        outline = self.outline(frame, vesicle)
+        outline = self.curve(frame, vesicle) if curve else self.outline(frame, vesicle)
+        if origin is not None:
+            outline = outline - origin
+        box = self.box if limits is None else limits
         shifts = []
         for d, period in enumerate(self.periods):
             low, high = outline[:, d].min(), outline[:, d].max()
-            first, last = (int(np.floor((self.box[2 * d] - x) / period)) if period else 0 for x in (high, low))
+            first, last = (int(np.floor((box[2 * d] - x) / period)) if period else 0 for x in (high, low))
             inside = [
-                k * period for k in range(first, last + 3) if self._reaches(d, low + k * period, high + k * period)
+                k * period
+                for k in range(first, last + 3)
+                if high + k * period > box[2 * d] and low + k * period < box[2 * d + 1]
             ]
             shifts.append(inside if period else [0.0])
         return [outline + (x, y) for x in shifts[0] for y in shifts[1]]
 
-    def _reaches(self, d: int, low: float, high: float) -> bool:
-        return high > self.box[2 * d] and low < self.box[2 * d + 1]
-
     def options(self) -> dict[str, str]:
         """Return the options in force (resolved.opts), without the dash; empty when the file is missing."""
+        return dict(self._in_force)
+
+    @functools.cached_property
+    def _in_force(self) -> dict[str, str]:
         path = self.folder / "resolved.opts"
         lines = path.read_text().splitlines() if path.is_file() else []
         words = [line[1:].split(" ", maxsplit=1) for line in lines if line.startswith("-")]
@@ -185,6 +203,30 @@ class Run:
         points = self.markers[frame, self.start[vesicle] : self.start[vesicle + 1]]
         return np.vstack([points, points[:1]])
 
+    def curve(self, frame: int, vesicle: int = 0) -> np.ndarray:
+        """Return the smooth closed curve through one vesicle's markers, by their Fourier series.
+
+        Shape (CURVE n + 1, 2) for n markers: CURVE points a marker, the marker first; the first point is repeated at the end.
+        """
+        points = self.outline(frame, vesicle)[:-1]
+        smooth = trigonometric(points, CURVE * len(points))
+        return np.vstack([smooth, smooth[:1]])
+
+    def curve_tension(self, frame: int, vesicle: int = 0) -> np.ndarray:
+        """Return the tension between the points of `curve`, shape (CURVE n,), by its Fourier series."""
+        values = self.edge_tension(frame, vesicle)
+        at_edges = self._in_force.get("membrane_derivative") != "spectral"  # entry k half a spacing before marker k
+        return trigonometric(values, CURVE * len(values), 0.5 / CURVE + (0.5 if at_edges else 0.0))
+
+    def centroid(self, frame: int, vesicle: int = 0) -> np.ndarray:
+        """Return the centroid of the area of one vesicle at a saved time (length), shape (2,)."""
+        return centroid(self.outline(frame, vesicle))
+
+    def at(self, frame: int, column: str, vesicle: int = 0) -> float:
+        """Return a vesicle's column ("velocity_x") at a saved time; NaN where series.csv has no such row yet."""
+        step = int(np.argmin(np.abs(self.series["time"] - self.time[frame])))
+        return float(self.each(column)[step, vesicle])
+
     def phase_angle(self, frame: int, vesicle: int = 0) -> np.ndarray:
         """Return the phase angle of where each tension is about the centroid of the area, in (-pi, pi]."""
         middle = self.tension_points(frame, vesicle) - centroid(self.outline(frame, vesicle))
@@ -193,7 +235,7 @@ class Run:
     def tension_points(self, frame: int, vesicle: int = 0) -> np.ndarray:
         """Return where the tension is, shape (n, 2): the midpoints of the edges, or the markers with spectral edges."""
         points = self.outline(frame, vesicle)[:-1]
-        if self.options().get("membrane_derivative") == "spectral":
+        if self._in_force.get("membrane_derivative") == "spectral":
             return points
         return 0.5 * (points + np.roll(points, 1, axis=0))
 

@@ -9,15 +9,25 @@ import numpy as np
 
 from petves.progress import progress_bar
 from petves.run import Run, RunError
-from petves.views.plot import FIELDS, draw_membranes, new_figure
+from petves.views.field import FIELDS, draw_field, draw_membranes
+from petves.views.figures import PLAIN, Look, new_figure
+from petves.views.window import Window
 
 SUFFIXES = (".mp4", ".gif")
 
 
 def movie(
-    folder: str | Path, output: str | Path | None = None, field: str = "speed", rate: float = 15, width: int = 720
+    folder: str | Path,
+    output: str | Path | None = None,
+    field: str = "speed",
+    rate: float = 15,
+    width: int = 720,
+    every: int = 1,
+    begin: float | None = None,
+    end: float | None = None,
+    look: Look = PLAIN,
 ) -> Path:
-    """Film a run: a picture a saved time.
+    """Film a run: a picture a saved time. A bar shows how far it has come, where standard error is a terminal.
 
     Parameters
     ----------
@@ -31,6 +41,12 @@ def movie(
         Pictures a second.
     width : int
         Width in pixels.
+    every : int
+        Take one saved time in so many.
+    begin, end : float, optional
+        First and last time; all saved times when left out.
+    look : Look
+        Colour map, and whether the picture goes along with a vesicle; a film has its own format and size.
 
     Returns
     -------
@@ -51,38 +67,48 @@ def movie(
         raise RunError(f"{path}: ffmpeg is not installed; install it, or ask for a .gif")
     if field not in FIELDS:
         raise RunError(f"field {field}: unknown; allowed: {', '.join(FIELDS)}")
-    _film(run, path, field, rate, width)
+    _film(run, chosen_frames(run, every, begin, end), path, field, rate, width, look)
     return path
 
 
-def _film(run: Run, path: Path, field: str, rate: float, width: int) -> None:
+def chosen_frames(run: Run, every: int, begin: float | None, end: float | None) -> np.ndarray:
+    """Return the numbers of the saved times from `begin` to `end`, one in `every`."""
+    if every < 1:
+        raise RunError(f"every {every}: out of range; allowed: 1 or more")
+    slack = 1e-9 * max(abs(run.time[-1]), abs(run.time[0]))
+    low, high = (run.time[0] if begin is None else begin), (run.time[-1] if end is None else end)
+    frames = np.flatnonzero((run.time >= low - slack) & (run.time <= high + slack))[::every]
+    if not len(frames):
+        raise RunError(
+            f"from {low:g} to {high:g}: no saved time; allowed: times in {run.time[0]:g} to {run.time[-1]:g}"
+        )
+    return frames
+
+
+def _film(run: Run, frames: np.ndarray, path: Path, field: str, rate: float, width: int, look: Look) -> None:
     from matplotlib.animation import FFMpegWriter, PillowWriter
 
-    frames = range(len(run.time))
-    values = FIELDS[field].values
-    highest = max((float(np.max(np.abs(values(*run.fields(frame))))) for frame in frames), default=0.0) or 1.0
+    kind = FIELDS[field]
+    windows = [Window(run, frame, look.follow) for frame in frames]
+    highest = max(float(np.max(np.abs(kind.values(*window.fields())))) for window in windows) or 1.0
     sides = run.box[1] - run.box[0], run.box[3] - run.box[2]
     inches = width / 100
     height = 2 * round(50 * np.clip((inches - 1.6) * sides[1] / sides[0] + 0.9, 2.0, 1.5 * inches)) / 100  # even pixels
     figure, (axes,) = new_figure(inches, height)
-    kind = FIELDS[field]
-    low = -highest if kind.signed else 0.0
-    image = axes.imshow(
-        values(*run.fields(0)), origin="lower", extent=run.box, cmap=kind.cmap, vmin=low, vmax=highest, aspect="equal"
-    )
+    image = draw_field(axes, kind, windows[0], look, highest)
     figure.colorbar(image, ax=axes, label=kind.label, shrink=0.85)
-    axes.set(xlabel="$x$ (length)", ylabel="$y$ (length)", xlim=run.box[:2], ylim=run.box[2:])
     limits = (run.tension.min(), run.tension.max()) if run.vesicles else (0.0, 1.0)
     if path.suffix == ".mp4":
         writer = FFMpegWriter(fps=rate, codec="libx264", extra_args=["-pix_fmt", "yuv420p", "-loglevel", "error"])
     else:
         writer = PillowWriter(fps=rate)
     with writer.saving(figure, str(path), 100), progress_bar(len(frames), unit="frames") as bar:
-        for frame in frames:
-            image.set_data(values(*run.fields(frame)))
-            drawn = draw_membranes(axes, run, frame, limits, kind.line)
-            axes.set_title(f"$t$ = {run.time[frame]:.4g}")
+        for done, window in enumerate(windows):
+            image.set(data=kind.values(*window.fields()), extent=window.extent)
+            axes.set(xlim=window.limits[:2], ylim=window.limits[2:])
+            drawn = draw_membranes(axes, run, window.frame, limits, kind.line, look.follow)
+            axes.set_title(f"$t$ = {run.time[window.frame]:.4g}")
             writer.grab_frame()
             for artist in drawn:
                 artist.remove()
-            bar(frame + 1)
+            bar(done + 1)

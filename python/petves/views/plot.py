@@ -2,73 +2,55 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Callable
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from petves.run import Run
+from petves.views.field import box_sheet, draw_members, plot_field
+from petves.views.figures import MANY, PLAIN, Look, Sheet, dress, legend_above, new_figure, new_sheet, save_figure
+from petves.views.window import Window
 
 if TYPE_CHECKING:
-    from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-ARROWS = 20  # arrows across the longer side of a velocity picture
-OUTLINES = 7  # outlines in shapes.png
+OUTLINES = 7  # outlines in the picture of shapes
 LEAST_SPAN = 0.02  # of an axis of angles over pi
 FLOOR = 1e-16  # smallest value on a logarithmic axis
-MANY = 8  # vesicles above which each has a colour and none a name
+LAST = 0.1  # part of the run that says whether it is steady,
+STEADY = 0.002  # and by how much of itself a steady value changes in it at most
 
 
-def new_figure(
-    width: float, height: float, columns: int = 1, rows: int = 1, equal: bool = False
-) -> tuple[Figure, np.ndarray]:
-    """Return a figure that needs no display, and its axes, row by row; equal: of equal scales in x and y."""
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(width, height), layout="compressed" if equal else "constrained")
-    FigureCanvasAgg(figure)
-    return figure, figure.subplots(rows, columns, squeeze=False).ravel()
-
-
-def save_figure(figure: Figure, path: Path) -> Path:
-    """Write a PNG file; return its path."""
-    figure.savefig(path, dpi=120)
-    return path
-
-
-def dress(axes: Axes, legend: float = 0, grid: str = "major", **names: Any) -> None:
-    """Set what is named, draw a grid (major, minor or both) and, in letters of a size, a legend."""
-    axes.set(**names)
-    axes.grid(alpha=0.3, which=grid)
-    if legend:
-        axes.legend(frameon=False, fontsize=legend)
-
-
-def plot_run(folder: str | Path) -> list[Path]:
+def plot_run(folder: str | Path, look: Look = PLAIN) -> list[Path]:
     """Draw every picture that a run's files allow.
 
     Parameters
     ----------
     folder : str or Path
         The run's ``-output_dir``; the pictures go there too.
+    look : Look
+        Format, size, colours, and whether fields and outlines go along with a vesicle.
 
     Returns
     -------
     list of Path
-        The PNG files written.
+        The files written: energy, field, and with vesicles conservation, motion, tension, shapes.
+
+    Raises
+    ------
+    RunError
+        When the run cannot be read, or not be drawn this way.
     """
     run = Run.read(folder)
-    drawn = [plot_energy(run), plot_field(run)]
+    drawn = [plot_energy(run, look), plot_field(run, look=look)]
     if run.vesicles:
-        drawn += [plot_conservation(run), plot_tension(run), plot_shapes(run)]
+        drawn += [plot(run, look=look) for plot in (plot_conservation, plot_motion, plot_tension, plot_shapes)]
     return drawn
 
 
-def plot_energy(run: Run) -> Path:
+def plot_energy(run: Run, look: Look = PLAIN) -> Path:
     """Draw kinetic, bending and total energy over the initial total energy (or over the largest, if that is 0)."""
     figure, (axes,) = new_figure(6, 4)
     time = run.series["time"]
@@ -83,11 +65,12 @@ def plot_energy(run: Run) -> Path:
     if run.vesicles and run.c_b > 0:
         axes.plot(time, bending / scale, "--", color="C0", label="bending $E_B$")
     axes.plot(time, kinetic / scale, "-.", color="C1", label="kinetic $E_K$")
-    dress(axes, 10, xlabel="time $t$", ylabel=f"$E/{name}$" if name != "1" else "$E$ (length$^4$/time$^2$)")
-    return save_figure(figure, run.folder / "energy.png")
+    dress(axes, xlabel="time $t$", ylabel=f"$E/{name}$" if name != "1" else "$E$ (length$^4$/time$^2$)")
+    legend_above(axes)
+    return save_figure(figure, run.folder / "energy.png", look)
 
 
-def plot_conservation(run: Run) -> Path:
+def plot_conservation(run: Run, look: Look = PLAIN) -> Path:
     """Draw the relative errors of area and length against time, on a logarithmic axis."""
     figure, (axes,) = new_figure(6, 4)
     time = run.series["time"][1:]
@@ -96,192 +79,148 @@ def plot_conservation(run: Run) -> Path:
         ("length_error", "--", "length, $|L - L_0|/L_0$"),
     ):
         axes.semilogy(time, np.maximum(np.abs(run.series[column][1:]), FLOOR), style, label=label)
-    dress(axes, 10, xlabel="time $t$", ylabel="relative error")
-    return save_figure(figure, run.folder / "conservation.png")
+    dress(axes, xlabel="time $t$", ylabel="relative error")
+    legend_above(axes)
+    return save_figure(figure, run.folder / "conservation.png", look)
 
 
-@dataclass
-class FieldKind:
-    """How a field is drawn: its values from u, v, p, its colours, and the colour of what lies on it."""
-
-    values: Callable[[np.ndarray, np.ndarray, np.ndarray], np.ndarray]
-    label: str
-    cmap: str
-    line: str
-    signed: bool
+def steady_value(time: np.ndarray, values: np.ndarray) -> float | None:
+    """Return the last value when the last tenth of the run changes by less than STEADY of it, else None."""
+    last = values[time >= time[-1] - LAST * (time[-1] - time[0])]
+    if len(last) < 3 or not np.isfinite(last).all():
+        return None
+    return float(last[-1]) if np.ptp(last) <= STEADY * abs(last[-1]) else None
 
 
-FIELDS = {
-    "pressure": FieldKind(lambda u, v, p: p, "pressure $p$ (length$^2$/time$^2$)", "RdBu_r", "black", True),
-    "speed": FieldKind(
-        lambda u, v, p: np.hypot(u, v), r"speed $|\mathbf{u}|$ (length/time)", "viridis", "white", False
-    ),
-}
+def _draw_course(axes: Axes, time: np.ndarray, values: np.ndarray, color: str, label: str | None) -> None:
+    """Draw a quantity against time, with its steady value, where it has one, as a dotted line and a number."""
+    axes.plot(time, values, color=color, label=label)
+    steady = steady_value(time, values)
+    if steady is not None:
+        axes.axhline(steady, color=color, ls=":", lw=1)
+        place = dict(xytext=(4, 0), textcoords="offset points", va="center", fontsize=9, annotation_clip=False)
+        axes.annotate(f"{steady:.4g}", (1.0, steady), xycoords=("axes fraction", "data"), color=color, **place)
 
 
-def draw_membranes(axes: Axes, run: Run, frame: int, limits: tuple[float, float], color: str) -> list[Artist]:
-    """Draw the vesicles' edges coloured by tension over a wider line of one colour, the first outline dotted.
-
-    More than MANY vesicles are areas instead, each of a colour that it keeps. Images across a periodic seam are there too.
-
-    Returns
-    -------
-    list of Artist
-        What was drawn; of few vesicles the last one is what a colour bar of the tension needs.
-    """
-    from matplotlib.collections import LineCollection
-
-    drawn: list[Artist] = []
+def plot_motion(run: Run, look: Look = PLAIN) -> Path:
+    """Draw the inclination and the tank-treading frequency against time; a steady value is marked."""
     if run.vesicles > MANY:
-        return [draw_members(axes, run, frame)]
-    for vesicle in range(run.vesicles):
-        for initial in run.images(0, vesicle):
-            drawn += axes.plot(*initial.T, ":", color=color, lw=1)
-        for points in run.images(frame, vesicle):
-            drawn += axes.plot(*points.T, "-", color=color, lw=4, solid_joinstyle="round")
-            edges = np.stack([np.roll(points[:-1], 1, axis=0), points[:-1]], axis=1)
-            lines = LineCollection(edges, cmap="plasma", lw=2.4, capstyle="round")
-            lines.set_array(run.edge_tension(frame, vesicle))
-            lines.set_clim(*limits)
-            drawn.append(axes.add_collection(lines))
-    return drawn
-
-
-def draw_members(axes: Axes, run: Run, frame: int) -> Artist:
-    """Draw many vesicles as areas, images across a periodic seam included; vesicle v has colour v of a cycle of 20."""
-    import matplotlib
-    from matplotlib.collections import PolyCollection
-
-    outlines = [(v, points) for v in range(run.vesicles) for points in run.images(frame, v)]
-    colors = matplotlib.colormaps["tab20"]([v % 20 for v, _ in outlines])
-    width = 0.8 if run.vesicles < 200 else 0.4
-    return axes.add_collection(
-        PolyCollection([points for _, points in outlines], facecolors=colors, edgecolors="black", lw=width)
-    )
-
-
-def plot_motion(run: Run) -> Path:
-    """Draw the inclination and the tank-treading frequency against time."""
-    figure, (axes,) = new_figure(6, 4)
+        return _plot_motion_of_many(run, look)
     time = run.series["time"]
-    if run.vesicles > MANY:
-        return _plot_motion_of_many(run, figure, axes)
+    angles = np.unwrap(run.each("inclination"), period=np.pi, axis=0) / np.pi
+    frequencies = run.each("frequency")
+    turning = bool(np.isfinite(frequencies).any())
+    figure, axes = new_figure(6, 4, rows=2 if turning else 1)
     for vesicle in range(run.vesicles):
-        suffix = f"_{vesicle + 1}" if run.vesicles > 1 else ""
-        angle = np.unwrap(run.series["inclination" + suffix], period=np.pi) / np.pi
-        name = f" of vesicle {vesicle + 1}" if run.vesicles > 1 else ""
-        axes.plot(time, angle, color=f"C{vesicle}", label=rf"inclination $\theta/\pi${name}")
-    if any(np.isfinite(run.series[name]).any() for name in run.series if name.startswith("frequency")):
-        other = axes.twinx()
-        other.set(ylabel="frequency (radians/time), dashed")
-        for vesicle in range(run.vesicles):
-            suffix = f"_{vesicle + 1}" if run.vesicles > 1 else ""
-            other.plot(time, run.series["frequency" + suffix], "--", color=f"C{vesicle}")
-    middle, half = np.mean(axes.get_ylim()), max(np.ptp(axes.get_ylim()) / 2, LEAST_SPAN / 2)
-    limits, legend = (middle - half, middle + half), 10 if run.vesicles > 1 else 0
-    dress(axes, legend, xlabel="time $t$", ylabel=r"inclination $\theta/\pi$", ylim=limits)
-    return save_figure(figure, run.folder / "motion.png")
+        label = f"vesicle {vesicle + 1}" if run.vesicles > 1 else None
+        _draw_course(axes[0], time, angles[:, vesicle], f"C{vesicle}", label)
+        if turning:
+            _draw_course(axes[1], time, frequencies[:, vesicle], f"C{vesicle}", None)
+    middle, half = np.mean(axes[0].get_ylim()), max(np.ptp(axes[0].get_ylim()) / 2, LEAST_SPAN / 2)
+    dress(axes[0], ylabel=r"inclination $\theta/\pi$", ylim=(middle - half, middle + half))
+    if turning:
+        dress(axes[1], ylabel="frequency (radians/time)", xlim=axes[0].get_xlim())
+    axes[-1].set_xlabel("time $t$")
+    if run.vesicles > 1:
+        legend_above(axes[0], columns=4)
+    return save_figure(figure, run.folder / "motion.png", look)
 
 
-def _plot_motion_of_many(run: Run, figure: Figure, axes: Axes) -> Path:
+def _plot_motion_of_many(run: Run, look: Look) -> Path:
     """Draw how vesicles lie: the mean axis of all (of twice the angle), and how well they agree with it."""
+    figure, (axes,) = new_figure(6, 4)
     turned = np.mean(np.exp(2j * run.each("inclination")), axis=1)
-    axes.plot(
-        run.series["time"],
-        np.unwrap(np.angle(turned) / 2, period=np.pi) / np.pi,
-        "C0-",
-        label=r"mean axis $\theta/\pi$",
-    )
-    axes.plot(run.series["time"], np.abs(turned), "C1--", label="order $|\\langle e^{2i\\theta}\\rangle|$")
-    dress(axes, 10, xlabel="time $t$", title=f"{run.vesicles} vesicles")
-    return save_figure(figure, run.folder / "motion.png")
+    time, axis = run.series["time"], np.unwrap(np.angle(turned) / 2, period=np.pi) / np.pi
+    axes.plot(time, axis, "C0-", label=rf"mean axis $\theta/\pi$ of {run.vesicles} vesicles")
+    axes.plot(time, np.abs(turned), "C1--", label="order $|\\langle e^{2i\\theta}\\rangle|$")
+    dress(axes, xlabel="time $t$")
+    legend_above(axes)
+    return save_figure(figure, run.folder / "motion.png", look)
 
 
-def draw_outlines(axes: Axes, run: Run, frame: int, color: object, style: str, label: str | None = None) -> None:
-    """Draw the vesicles' outlines at a saved time, marker 0 as a dot."""
-    for vesicle in range(run.vesicles):
-        points = run.outline(frame, vesicle)
-        axes.plot(*points.T, style, color=color, lw=1.5, label=label if vesicle == 0 else None)
-        axes.plot(*points[0], "o", color=color, ms=4)
-
-
-def plot_field(run: Run, frame: int = -1) -> Path:
-    """Draw the membrane, coloured by tension, over pressure and over speed with arrows, at a saved time.
-
-    The dotted outline is the initial one.
-    """
-    u, v, p = run.fields(frame)
-    x, y = run.cell_centers()
-    sides = run.box[1] - run.box[0], run.box[3] - run.box[2]
-    tall = min(max(4.7 * sides[1] / sides[0], 1.6), 9.0)
-    figure, axes = new_figure(12.4, tall + 1.9, columns=2, equal=True)
-    few = run.vesicles <= MANY
-    tension, drawn = run.tension[frame], []
-    limits = (tension.min(), tension.max()) if run.vesicles else (0.0, 1.0)
-    for panel, kind in zip(axes, FIELDS.values()):
-        values = kind.values(u, v, p)
-        high = np.max(np.abs(values)) or 1.0
-        low = -high if kind.signed else 0.0
-        image = panel.imshow(
-            values, origin="lower", extent=run.box, cmap=kind.cmap, vmin=low, vmax=high, aspect="equal"
-        )
-        figure.colorbar(image, ax=panel, label=kind.label, location="bottom", shrink=0.8, pad=0.02)
-        drawn = draw_membranes(panel, run, frame, limits, kind.line)
-        panel.set(xlabel="$x$ (length)", ylabel="$y$ (length)", xlim=run.box[:2], ylim=run.box[2:])
-    every = max(1, round(max(len(x), len(y)) / ARROWS))
-    cut = np.s_[every // 2 :: every]
-    axes[1].quiver(x[cut], y[cut], u[cut, cut], v[cut, cut], color="white", alpha=0.8, pivot="mid", width=0.003)
-    if drawn and few:
-        figure.colorbar(
-            drawn[-1], ax=list(axes), label=r"tension $\sigma$ (length$^3$/time$^2$)", shrink=0.7, aspect=30
-        )
-    figure.suptitle(f"$t$ = {run.time[frame]:g}")
-    return save_figure(figure, run.folder / "field.png")
-
-
-def plot_tension(run: Run, frame: int = -1) -> Path:
-    """Draw the tension against the phase angle about the centroid, at a saved time."""
+def plot_tension(run: Run, frame: int = -1, look: Look = PLAIN) -> Path:
+    """Draw the tension against the phase angle about the centroid, at a saved time; many vesicles in one colour."""
     figure, (axes,) = new_figure(6, 4)
     few = run.vesicles <= MANY
     for vesicle in range(run.vesicles):
         angle = run.phase_angle(frame, vesicle) / np.pi
         order = np.argsort(angle)
-        label = f"vesicle {vesicle + 1}" if few and run.vesicles > 1 else None
-        style = dict(ms=4, lw=1) if few else dict(ms=0, lw=0.3, color=f"C{vesicle % 10}")
-        axes.plot(angle[order], run.edge_tension(frame, vesicle)[order], ".-", label=label, **style)
-    axes.set(xlabel=r"phase angle $\varphi/\pi$", ylabel=r"tension $\sigma$ (length$^3$/time$^2$)", xlim=(-1, 1))
-    dress(axes, 10 if few and run.vesicles > 1 else 0, title=f"$t$ = {run.time[frame]:g}")
-    return save_figure(figure, run.folder / "tension.png")
+        label = f"vesicle {vesicle + 1}" if run.vesicles > 1 else None
+        style = dict(ms=4, lw=1, label=label) if few else dict(ms=0, lw=0.5, color="black", alpha=0.3)
+        axes.plot(angle[order], run.edge_tension(frame, vesicle)[order], ".-", **style)
+    names = dict(xlabel=r"phase angle $\varphi/\pi$", ylabel=r"tension $\sigma$ (length$^3$/time$^2$)", xlim=(-1, 1))
+    dress(axes, **names)
+    axes.set_title(f"$t$ = {run.time[frame]:g}", loc="right", fontsize=10)
+    if few and run.vesicles > 1:
+        legend_above(axes, columns=4)
+    return save_figure(figure, run.folder / "tension.png", look)
 
 
-def plot_shapes(run: Run) -> Path:
-    """Draw outlines at evenly spread saved times, with marker 0 as a dot."""
+def draw_outlines(axes: Axes, run: Run, frame: int, color: object, style: str, follow: int | None = None) -> None:
+    """Draw the vesicles' smooth outlines at a saved time, images across a periodic seam too, marker 0 as a dot."""
+    window = Window(run, frame, follow)
+    for vesicle in range(run.vesicles):
+        for points in window.images(vesicle):
+            axes.plot(*points.T, style, color=color, lw=1.5)
+            axes.plot(*points[0], "o", color=color, ms=4)
+
+
+def _left_the_box(run: Run) -> bool:
+    """Return whether a membrane reaches over a periodic side of the box at a saved time."""
+    if not run.markers.size:
+        return False
+    low, high = run.markers.min(axis=(0, 1)), run.markers.max(axis=(0, 1))
+    return any(
+        period > 0 and (low[d] < run.box[2 * d] or high[d] > run.box[2 * d + 1]) for d, period in enumerate(run.periods)
+    )
+
+
+def plot_shapes(run: Run, look: Look = PLAIN) -> Path:
+    """Draw outlines at evenly spread saved times in the colours of time, with marker 0 as a dot.
+
+    Where a vesicle has left a periodic box all outlines are drawn in the box, cut at the seam.
+    """
     import matplotlib
+    from matplotlib.cm import ScalarMappable
+    from matplotlib.colors import BoundaryNorm
 
     if run.vesicles > MANY:
-        return _plot_first_and_last(run)
-    figure, (axes,) = new_figure(6, 5.2, equal=True)
+        return _plot_first_and_last(run, look)
+    whole = _left_the_box(run) and look.follow is None
     frames = np.unique(np.linspace(0, len(run.time) - 1, min(OUTLINES, len(run.time))).round().astype(int))
     colors = matplotlib.colormaps["viridis"](np.linspace(0, 0.9, len(frames)))
+    sheet, limits = _sheet_of_shapes(run, frames, whole, look)
     for frame, color in zip(frames, colors):
-        draw_outlines(axes, run, frame, color, "-", label=f"{run.time[frame]:.4g}")
-    axes.set(xlabel="$x$ (length)", ylabel="$y$ (length)", aspect="equal")
-    axes.margins(0.08)
-    axes.grid(alpha=0.3)
-    axes.legend(title="time $t$", frameon=False, loc="center left", bbox_to_anchor=(1.0, 0.5))
-    return save_figure(figure, run.folder / "shapes.png")
-
-
-def _plot_first_and_last(run: Run) -> Path:
-    """Draw many vesicles in the box at the first and the last saved time."""
-    sides = run.box[1] - run.box[0], run.box[3] - run.box[2]
-    wide = sides[0] > sides[1]
-    tall = 9 * min(max(sides[1] / sides[0], 0.2), 1.2)
-    figure, axes = new_figure(
-        9, 2 * tall + 1 if wide else tall / 2 + 1, rows=2 if wide else 1, columns=1 if wide else 2
+        draw_outlines(sheet.panels[0], run, frame, color, "-", look.follow)
+    names = dict(xlabel="$x$ (length)", ylabel="$y$ (length)", xlim=limits[:2], ylim=limits[2:])
+    dress(sheet.panels[0], aspect="equal", **names)
+    scale = ScalarMappable(
+        BoundaryNorm(np.arange(len(frames) + 1), len(frames)), matplotlib.colors.ListedColormap(colors)
     )
-    for panel, frame in zip(axes, (0, -1)):
-        draw_members(panel, run, frame)
-        panel.set(xlim=run.box[:2], ylim=run.box[2:], aspect="equal", xlabel="$x$ (length)", ylabel="$y$ (length)")
-        panel.set_title(f"$t$ = {run.time[frame]:.4g}")
-    return save_figure(figure, run.folder / "shapes.png")
+    ticks = np.arange(len(frames)) + 0.5
+    bar = sheet.figure.colorbar(scale, cax=sheet.bars[0], label="time $t$", ticks=ticks, orientation="horizontal")
+    bar.set_ticklabels([f"{run.time[frame]:.4g}" for frame in frames])
+    return save_figure(sheet.figure, run.folder / "shapes.png", look)
+
+
+def _sheet_of_shapes(run: Run, frames: np.ndarray, whole: bool, look: Look) -> tuple[Sheet, np.ndarray]:
+    """Return a sheet with one panel, and its limits: the box, or what the outlines of these frames take."""
+    if whole:
+        return box_sheet(Window(run, 0), look, panels=1), run.box
+    windows = [Window(run, frame, look.follow) for frame in frames]
+    points = np.vstack([image for w in windows for v in range(run.vesicles) for image in w.images(v)])
+    low, high = points.min(axis=0), points.max(axis=0)
+    margin = 0.08 * np.max(high - low)
+    low, high = low - margin, high + margin
+    return new_sheet(*(high - low), panels=1, look=look), np.array([low[0], high[0], low[1], high[1]])
+
+
+def _plot_first_and_last(run: Run, look: Look) -> Path:
+    """Draw many vesicles in the box at the first and the last saved time."""
+    sheet = box_sheet(Window(run, 0), look, panels=2, bars=False)
+    for panel, frame in zip(sheet.panels, (0, -1)):
+        draw_members(panel, run, frame, look.follow)
+        limits = Window(run, frame, look.follow).limits
+        panel.set(xlim=limits[:2], ylim=limits[2:], aspect="equal", xlabel="$x$ (length)", ylabel="$y$ (length)")
+        panel.set_title(f"$t$ = {run.time[frame]:.4g}", fontsize=10)
+    return save_figure(sheet.figure, run.folder / "shapes.png", look)

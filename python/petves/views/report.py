@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from petves.run import Run
+from petves.views.figures import MANY
 from petves.views.plot import plot_conservation, plot_energy, plot_motion, plot_shapes, plot_tension
 from petves.views.words import key_numbers, scene_in_words
 
@@ -21,10 +22,10 @@ FRAMES = 81  # saved times kept at most
 PIXELS = 96  # of a field's longer side
 CAPTIONS = {
     plot_energy: "Energy.",
-    plot_motion: "Inclination of the long axis, and tank-treading frequency where the membrane turns in one sense.",
+    plot_motion: "How the vesicles lie and turn; dotted: steady values.",
     plot_conservation: "What the scheme loses of area and length.",
     plot_tension: "Tension around the membrane at the last saved time.",
-    plot_shapes: "Outlines; the dot is marker 0.",
+    plot_shapes: "Outlines.",
 }
 
 
@@ -56,6 +57,7 @@ def report(folder: str | Path, output: str | Path | None = None) -> Path:
         "TITLE": _safe(f"petves: {run.folder.resolve().name}"),
         "WORDS": words,
         "NUMBERS": rows,
+        "NOTE": _note(run),
         "PLOTS": _plots(run),
         "OPTIONS": _safe("\n".join(f"-{name} {value}".rstrip() for name, value in options.items())),
         "DATA": json.dumps(_data(run), separators=(",", ":")).replace("</", "<\\/"),
@@ -69,6 +71,13 @@ def report(folder: str | Path, output: str | Path | None = None) -> Path:
 
 def _safe(text: str) -> str:
     return html.escape(text)
+
+
+def _note(run: Run) -> str:
+    """Return what the picture's colours and dots are."""
+    few = " The dot is marker 0, a point of the membrane; dotted: the first outline." if run.vesicles <= MANY else ""
+    membranes = f"Membranes are coloured by their tension.{few} " if run.vesicles else ""
+    return f"{membranes}The colours of the fluid span the range of each time."
 
 
 def _plots(run: Run) -> str:
@@ -101,6 +110,8 @@ def _data(run: Run) -> dict[str, Any]:
         "box": [float(x) for x in run.box],
         "time": [float(t) for t in run.time[frames]],
         "start": [int(k) for k in run.start],
+        "periods": [float(period) for period in run.periods],
+        "shift": 0.0 if run.options().get("membrane_derivative") == "spectral" else 0.5,
         "markers": np.round(run.markers[frames], digits).tolist(),
         "tension": [[float(f"{x:.4g}") for x in row] for row in tension],
         "tension_limits": [float(tension[1:].min()), float(tension[1:].max())] if tension[1:].size else [0.0, 1.0],

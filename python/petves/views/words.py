@@ -43,7 +43,7 @@ def _short(value: str) -> str:
 
 
 def _boundaries(x: str, y: str) -> str:
-    names = {"wall": "walls", "periodic": "periodic"}
+    names = {"wall": "walls", "periodic": "periodic", "free": "without bounds"}
     return f"{names[x]} in x and y" if x == y else f"{names[x]} in x, {names[y]} in y"
 
 
@@ -66,10 +66,9 @@ def _ranges(run: Run) -> str:
     area, length = (run.each(name)[0] for name in ("area", "length"))
     reduced, markers = 4 * np.pi * area / length**2, np.diff(run.start)
     box = (run.box[1] - run.box[0]) * (run.box[3] - run.box[2])
-    span = lambda x: f"{x.min():.4g}" if np.ptp(x) < 1e-3 * abs(x.mean()) else f"{x.min():.4g} to {x.max():.4g}"
     return (
-        f" and bending stiffness up to {run.c_b:g}: area fraction {area.sum() / box:.3f}, area {span(area)}, reduced area "
-        f"{span(reduced)}, {span(markers)} markers each"
+        f" and bending stiffness up to {run.c_b:g}: area fraction {area.sum() / box:.3f}, area {_span(area)}, reduced area "
+        f"{_span(reduced)}, {_span(markers)} markers each"
     )
 
 
@@ -86,46 +85,76 @@ def _method(run: Run, o: dict[str, str]) -> str:
 
 
 def key_numbers(run: Run) -> list[tuple[str, str]]:
-    """Return names and values, as text, of what people ask of a run first."""
+    """Return names and values, as text, of what people ask of a run first; what is not known is left out."""
     s, rows = run.series, []
     total = s["energy_kinetic"] + s["energy_bending"]
-    rows.append(("time", f"{s['time'][-1]:g}"))
-    rows.append(("steps", f"{int(s['step'][-1])}"))
     rows.append(("energy, first and last", f"{total[0]:.4g}, {total[-1]:.4g}"))
     if run.vesicles:
-        rows += _vesicle_numbers(run)
+        rows += _sizes(run) + (_motion(run) if run.vesicles == 1 else _motions(run)) + _losses(run)
     rows.append(("largest |div u| left", f"{s['div_max'].max():.1e}"))
-    rows.append(("iterations a step", ", ".join(_iterations(s)) or "none"))
-    rows.append(("fast solves a step", f"{s['nsolve'][1:].mean():.0f}" if len(s["nsolve"]) > 1 else "none"))
+    rows.append(("iterations a step", ", ".join(_iterations(s))))
+    rows.append(("fast solves a step", f"{s['nsolve'][1:].mean():.0f}" if len(s["nsolve"]) > 1 else ""))
     rows.append(("seconds in steps", f"{s['wall'].sum():.3g}"))
-    if "reynolds" in run.summary:
-        rows.append(("Reynolds number", f"{run.summary['reynolds']:.3g}"))
-    if run.summary:
-        versions = run.summary.get("versions", {})
-        rows.append(("ranks", f"{run.summary.get('ranks', '')}"))
-        rows.append(("petves", f"{versions.get('petves', '')}, {run.summary.get('git_commit', '')}"))
-        rows.append(("PETSc", versions.get("petsc", "")))
+    rows.append(("Reynolds number", f"{run.summary['reynolds']:.3g}" if "reynolds" in run.summary else ""))
+    versions = run.summary.get("versions", {})
+    rows.append(("ranks", str(run.summary.get("ranks", ""))))
+    rows.append(("petves", ", ".join(filter(None, (versions.get("petves"), run.summary.get("git_commit"))))))
+    rows.append(("PETSc", versions.get("petsc", "")))
+    return [(name, value) for name, value in rows if value]
+
+
+def _span(values: np.ndarray, form: str = ".4g") -> str:
+    """Return the least and the largest value, or one where they are the same to a thousandth; "" without values."""
+    known = values[np.isfinite(values)]
+    if not len(known):
+        return ""
+    low, high = known.min(), known.max()
+    return f"{high:{form}}" if high - low <= 1e-3 * abs(high) else f"{low:{form}} to {high:{form}}"
+
+
+def _sizes(run: Run) -> list[tuple[str, str]]:
+    """Return what scales the vesicles: of several, the least and the largest; times and chi of the largest."""
+    area, length = (run.each(name) for name in ("area", "length"))
+    radius = length[0] / (2 * np.pi)
+    rows = [("radius R0 = length/(2 pi)", _span(radius))]
+    if run.vesicles > 1:
+        rows.append(("area of all vesicles", f"{area[-1].sum():.5g}"))
+        rows.append(("length of all membranes", f"{length[-1].sum():.5g}"))
+    if run.c_b <= 0:
+        return rows
+    relaxation = run.nu * radius.max() ** 3 / run.c_b
+    rows.append(("relaxation time nu R0^3/c_b", f"{relaxation:.4g}"))
+    if run.options().get("flow_type") in ("shear", "extension"):
+        rows.append(("chi = rate nu R0^3/c_b", f"{abs(float(run.options()['flow_rate'])) * relaxation:.4g}"))
     return rows
 
 
-def _vesicle_numbers(run: Run) -> list[tuple[str, str]]:
-    s = run.series
-    area, length = run.first_measures(0)
-    radius = length / (2 * np.pi)
-    rows = [("radius R0 = length/(2 pi)", f"{radius:.4g}")]
-    if run.c_b > 0:
-        rows.append(("relaxation time nu R0^3/c_b", f"{run.nu * radius**3 / run.c_b:.4g}"))
-        if run.options().get("flow_type") in ("shear", "extension"):
-            rate = abs(float(run.options()["flow_rate"]))
-            rows.append(("chi = rate nu R0^3/c_b", f"{rate * run.nu * radius**3 / run.c_b:.4g}"))
-    angle, frequency = s["inclination"][-1], s["frequency"][-1]
-    rows.append(("last inclination", f"{angle:.4f} rad = {np.degrees(angle):.2f}°"))
-    rows.append(("last tank-treading frequency", f"{frequency:.4g}" if np.isfinite(frequency) else "none"))
-    rows.append(("worst area error", f"{np.abs(s['area_error']).max():.1e}"))
-    rows.append(("worst length error", f"{np.abs(s['length_error']).max():.1e}"))
-    tension = run.tension[-1]
-    rows.append(("last tension, least and largest", f"{tension.min():.4g}, {tension.max():.4g}"))
-    return rows
+def _motion(run: Run) -> list[tuple[str, str]]:
+    angle, frequency = (run.series[name][-1] for name in ("inclination", "frequency"))
+    return [
+        ("last inclination", f"{angle:.4f} rad = {np.degrees(angle):.2f}°"),
+        ("last tank-treading frequency", f"{frequency:.4g}" if np.isfinite(frequency) else ""),
+    ]
+
+
+def _motions(run: Run) -> list[tuple[str, str]]:
+    """Return how several vesicles lie at the end: the mean axis, how well they agree with it, and frequencies."""
+    turned = np.mean(np.exp(2j * run.each("inclination")[-1]))
+    return [
+        ("last mean axis", f"{np.degrees(np.angle(turned) / 2):.2f}°"),
+        ("last order |<exp(2 i inclination)>|", f"{abs(turned):.3f}"),
+        ("last tank-treading frequencies", _span(run.each("frequency")[-1], ".3g")),
+        ("last gap", _span(run.series["gap"][-1:], ".3g") if "gap" in run.series else ""),
+    ]
+
+
+def _losses(run: Run) -> list[tuple[str, str]]:
+    s, tension = run.series, run.tension[-1]
+    return [
+        ("worst area error", f"{np.abs(s['area_error']).max():.1e}"),
+        ("worst length error", f"{np.abs(s['length_error']).max():.1e}"),
+        ("last tension, least and largest", f"{tension.min():.4g}, {tension.max():.4g}"),
+    ]
 
 
 def _iterations(series: dict[str, np.ndarray]) -> list[str]:

@@ -1,0 +1,157 @@
+"""What all pictures share: how they look, figures without a display, files."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from petves.run import RunError
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+FORMATS = ("png", "pdf", "svg")
+MANY = 8  # vesicles above which each has a colour and none a name
+LEGEND = 10  # size of its letters
+
+
+@dataclass(frozen=True)
+class Look:
+    """How pictures are to look.
+
+    Attributes
+    ----------
+    format : str
+        "png", "pdf" or "svg".
+    dpi : float
+        Dots an inch, of png and of the fields inside pdf and svg.
+    width : float, optional
+        Width of each picture in inches; letters keep their size. Left out: each picture has its own.
+    cmap : str, optional
+        matplotlib's colour map of the speed, "viridis" when left out: like those of pressure and tension it can be read by
+        colour-blind readers and in grey.
+    follow : int, optional
+        The vesicle, 1 for the first, in whose frame fields and outlines are drawn, in a periodic box.
+    """
+
+    format: str = "png"
+    dpi: float = 120
+    width: float | None = None
+    cmap: str | None = None
+    follow: int | None = None
+
+    def __post_init__(self) -> None:
+        """Refuse what cannot be drawn."""
+        import matplotlib
+
+        if self.format not in FORMATS:
+            raise RunError(f"format {self.format}: unknown; allowed: {', '.join(FORMATS)}")
+        if not 10 <= self.dpi <= 2400:
+            raise RunError(f"dpi {self.dpi:g}: out of range; allowed: 10 to 2400")
+        if self.width is not None and not 2 <= self.width <= 60:
+            raise RunError(f"width {self.width:g}: out of range; allowed: 2 to 60 inches")
+        if self.cmap is not None and self.cmap not in matplotlib.colormaps:
+            raise RunError(f"cmap {self.cmap}: unknown; allowed: matplotlib's, such as viridis, cividis, magma, gray")
+
+
+PLAIN = Look()
+
+
+def new_figure(
+    width: float, height: float, columns: int = 1, rows: int = 1, equal: bool = False
+) -> tuple[Figure, np.ndarray]:
+    """Return a figure that needs no display, and its axes, row by row; equal: of equal scales in x and y."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(width, height), layout="compressed" if equal else "constrained")
+    FigureCanvasAgg(figure)
+    return figure, figure.subplots(rows, columns, squeeze=False).ravel()
+
+
+LEFT, RIGHT, BELOW, ABOVE = 0.8, 0.3, 0.6, 0.4  # what stands around a panel, in inches
+BAR, UNDER_BAR = 0.14, 0.56  # a colour bar, and its numbers and name
+WIDE = 1.6  # a box wider than this, over its height, has its panels one above the other
+NARROW = 3.2  # width of a colour bar where its panel is narrower, for its name
+LEAST = 2.0  # width that a panel has at least beside another one
+
+
+@dataclass
+class Sheet:
+    """A figure of panels of one shape, each with a colour bar below, and a last bar for all of them."""
+
+    figure: Figure
+    panels: list[Axes]
+    bars: list[Axes]
+    last: Axes | None
+
+
+def new_sheet(
+    wide: float, high: float, panels: int, bars: bool = True, last: bool = False, look: Look = PLAIN
+) -> Sheet:
+    """Return a sheet whose panels have the sides of a box, all in inches, so that nothing overlaps or is cut.
+
+    Panels stand side by side, or one above the other where the box is wide.
+    """
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    around = LEFT + RIGHT
+    flat = wide > WIDE * high or (look.width is not None and look.width / panels - around < LEAST)
+    rows = panels if flat else 1
+    columns = panels // rows
+    across = look.width / columns - around if look.width is not None else 8.0 if flat else 4.8
+    tall = min(across * high / wide, 9.0)
+    each = max(tall * wide / high, across if look.width is not None else min(across, NARROW))
+    across = tall * wide / high
+    row = ABOVE + tall + BELOW + bars * (BAR + UNDER_BAR)
+    width, height = columns * (LEFT + each + RIGHT), rows * row + last * (BAR + UNDER_BAR)
+    figure = Figure(figsize=(width, height))
+    FigureCanvasAgg(figure)
+
+    def place(left: float, bottom: float, w: float, h: float) -> Axes:
+        return figure.add_axes((left / width, bottom / height, w / width, h / height))
+
+    sheet = Sheet(figure, [], [], place(LEFT, UNDER_BAR, width - LEFT - RIGHT, BAR) if last else None)
+    for k in range(panels):
+        left = LEFT + (k % columns) * (LEFT + each + RIGHT)
+        bottom = height - (k // columns + 1) * row
+        sheet.panels.append(place(left + (each - across) / 2, bottom + row - ABOVE - tall, across, tall))
+        if bars:
+            sheet.bars.append(place(left, bottom + UNDER_BAR, each, BAR))
+    return sheet
+
+
+def save_figure(figure: Figure, path: Path, look: Look = PLAIN) -> Path:
+    """Write a picture in the look's format and width; return its path."""
+    path = path.with_suffix(f".{look.format}")
+    if look.width is not None and figure.get_layout_engine() is not None:  # sheets have it already
+        figure.set_size_inches(look.width, look.width * figure.get_figheight() / figure.get_figwidth())
+    dates = {"png": {}, "pdf": {"CreationDate": None}, "svg": {"Date": None}}  # the same run, the same file
+    figure.savefig(path, dpi=look.dpi, metadata=dates[look.format])
+    return path
+
+
+def dress(axes: Axes, legend: float = 0, grid: str = "major", **names: Any) -> None:
+    """Set what is named, draw a grid (major, minor or both) and, in letters of a size, a legend."""
+    axes.set(**names)
+    axes.grid(alpha=0.3, which=grid)
+    if legend:
+        axes.legend(frameon=False, fontsize=legend)
+
+
+def legend_above(axes: Axes, columns: int = 3) -> None:
+    """Draw the legend over the axes, where there are no data."""
+    axes.legend(
+        frameon=False,
+        fontsize=LEGEND,
+        loc="lower left",
+        bbox_to_anchor=(-0.02, 1.0),
+        ncols=columns,
+        borderaxespad=0.1,
+        columnspacing=1.2,
+    )

@@ -1,0 +1,81 @@
+"""What part of a periodic box is seen: the box as it is, or one that goes along with a vesicle."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from petves.run import Run, RunError
+
+
+class Window:
+    """The box at a saved time, or with `follow` its periods about a vesicle.
+
+    Following vesicle v, along the periodic directions: places are counted from its centroid, the middle of the window, and
+    velocities from the centroid's. Other directions are as they are.
+
+    Attributes
+    ----------
+    limits : ndarray, shape (4,)
+        x_min, x_max, y_min, y_max of what is seen (length).
+    origin : ndarray, shape (2,)
+        The place that 0 stands for (length).
+    velocity : ndarray, shape (2,)
+        What is taken off all velocities (length/time).
+    """
+
+    def __init__(self, run: Run, frame: int, follow: int | None = None) -> None:
+        self.run, self.frame = run, frame
+        self.limits, self.origin, self.velocity = run.box.copy(), np.zeros(2), np.zeros(2)
+        self.moving = follow is not None
+        if follow is None:
+            return
+        if not 1 <= follow <= run.vesicles:
+            raise RunError(f"follow {follow}: no such vesicle; allowed: 1 to {run.vesicles}")
+        if not any(run.periods):
+            raise RunError("follow: the box has no periodic direction to follow a vesicle in")
+        center = run.centroid(frame, follow - 1)
+        for d, period in enumerate(run.periods):
+            if period:
+                self.origin[d] = center[d]
+                self.velocity[d] = np.nan_to_num(run.at(frame, f"velocity_{'xy'[d]}", follow - 1))
+                self.limits[2 * d : 2 * d + 2] = -period / 2, period / 2
+
+    @property
+    def extent(self) -> np.ndarray:
+        """The cells' outer sides, x_min, x_max, y_min, y_max; up to a cell more than the limits."""
+        extent = self.limits.copy()
+        for d in range(2):
+            if self.origin[d]:
+                first, count = self._cells(d)
+                low = self.run.box[2 * d] + first * self.run.h - self.origin[d]
+                extent[2 * d : 2 * d + 2] = low, low + count * self.run.h
+        return extent
+
+    def _cells(self, d: int) -> tuple[int, int]:
+        """Return the first cell seen in a direction that moves, and how many."""
+        cells = round(self.run.periods[d] / self.run.h)
+        first = int(np.floor((self.origin[d] - self.run.periods[d] / 2 - self.run.box[2 * d]) / self.run.h))
+        return first, cells + 1
+
+    def _seen(self, field: np.ndarray) -> np.ndarray:
+        for d in range(2):
+            if self.origin[d]:
+                first, count = self._cells(d)
+                field = np.take(field, np.arange(first, first + count), axis=1 - d, mode="wrap")
+        return field
+
+    def fields(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return u, v, p on the cells of `extent`, each of shape (ny, nx)."""
+        u, v, p = (self._seen(field) for field in self.run.fields(self.frame))
+        return u - self.velocity[0], v - self.velocity[1], p
+
+    def cell_centers(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return x, shape (nx,), and y, shape (ny,), of the cells of `fields`."""
+        u = self.fields()[0]
+        extent, h = self.extent, self.run.h
+        return tuple(extent[2 * d] + h * (0.5 + np.arange(u.shape[1 - d])) for d in range(2))
+
+    def images(self, vesicle: int, frame: int | None = None, curve: bool = True) -> list[np.ndarray]:
+        """Return a vesicle's outlines that are seen, of the window's time or of another, each of shape (n + 1, 2)."""
+        at = self.frame if frame is None else frame
+        return self.run.images(at, vesicle, curve, self.limits, self.origin)
