@@ -6,6 +6,7 @@ PetscErrorCode CouplingPlace(Coupling c, PetscReal a0, Vec X, const PetscReal tr
   PetscFunctionBeginUser;
   message[0] = 0;
   for (PetscInt v = 0; v < c->membrane->layout->bodies; v++) c->treading[v] = treading ? treading[v] : 0;
+  PetscCall(PetscArrayzero(c->turning, c->membrane->layout->n));
   PetscCall(FluidSetTimeCoefficient(c->fluid, a0));
   if (!CouplingHasMembrane(c)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(MarkersCheck(c->markers, X, message));
@@ -16,6 +17,15 @@ PetscErrorCode CouplingPlace(Coupling c, PetscReal a0, Vec X, const PetscReal tr
   PetscCall(VecRestoreArrayRead(X, &x));
   if (c->near) PetscCall(NearFieldPlace(c->near));
   if (c->repulsion) PetscCall(RepulsionPlace(c->repulsion, c->markers->X));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CouplingTurn(Coupling c, Vec expected) {
+  const PetscScalar *sigma;
+  PetscFunctionBeginUser;
+  PetscCall(VecGetArrayRead(expected, &sigma));
+  for (PetscInt k = 0; k < c->membrane->layout->n; k++) c->turning[k] = PetscMax(0, sigma[k]);
+  PetscCall(VecRestoreArrayRead(expected, &sigma));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -57,6 +67,7 @@ PetscErrorCode CouplingSpreadBending(Coupling c, PetscReal alpha, Vec X, Vec w) 
 PetscErrorCode CouplingElasticRate(Coupling c, PetscReal alpha, const PetscScalar V[], PetscScalar F[]) {
   PetscFunctionBeginUser;
   if (c->membrane->bending > 0) MembraneBending(c->membrane, alpha * c->membrane->bending, V, F);
+  MembranePull(c->membrane, alpha, c->turning, V, F);
   if (c->repulsion) PetscCall(RepulsionStiffness(c->repulsion, alpha, V, F));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -69,6 +80,7 @@ PetscErrorCode CouplingElasticForce(Coupling c, Vec X, Vec F) {
   PetscCall(VecGetArrayRead(X, &x));
   PetscCall(VecGetArray(F, &f));
   PetscCall(CouplingElasticRate(c, 1, x, f));
+  MembraneStretchingTranspose(c->membrane, c->tau, -1, c->turning, f);
   if (c->repulsion) RepulsionPush(c->repulsion, -1, f);
   PetscCall(VecRestoreArray(F, &f));
   PetscCall(VecRestoreArrayRead(X, &x));
@@ -201,6 +213,7 @@ PetscErrorCode CouplingCreate(Fluid fluid, Membrane m, const char kernel[], Near
   const PetscBool folded = near == NEAR_EXACT && !fluid->total ? PETSC_TRUE : PETSC_FALSE;
   PetscCall(MarkersCreate(fluid->grid, m->layout, kernel, folded, &c->markers));
   PetscCall(PetscMalloc1(2 * m->layout->n, &c->tau));
+  PetscCall(PetscCalloc1(m->layout->n, &c->turning));
   PetscCall(PetscCalloc1(m->layout->bodies, &c->treading));
   PetscCall(LayoutCreateVec(m->layout, 2, &c->force));
   PetscCall(VecDuplicate(c->force, &c->velocity));
@@ -224,6 +237,7 @@ PetscErrorCode CouplingDestroy(Coupling *coupling) {
   PetscCall(NearFieldDestroy(&c->near));
   PetscCall(MarkersDestroy(&c->markers));
   PetscCall(PetscFree(c->tau));
+  PetscCall(PetscFree(c->turning));
   PetscCall(PetscFree(c->treading));
   PetscCall(VecDestroy(&c->force));
   PetscCall(VecDestroy(&c->velocity));

@@ -13,6 +13,7 @@ struct _p_Coupling {
   NearField near;      /* NULL without */
   Repulsion repulsion; /* NULL without */
   PetscReal *tau;      /* [2n] tangents of the own vesicles */
+  PetscReal *turning;  /* [n] the tension whose pull turns with the edges (length^3/time^2); CouplingTurn */
   PetscReal *treading; /* [vesicles] V, the speed of the labels in which the step is made (1/time) */
   Vec force;           /* marker vector, work */
   Vec velocity;        /* marker vector, work */
@@ -35,6 +36,11 @@ PETSC_EXTERN PetscErrorCode CouplingAddRepulsion(Coupling coupling, const SceneR
 PETSC_EXTERN PetscErrorCode CouplingPlace(Coupling coupling, PetscReal a0, Vec X, const PetscReal treading[],
                                           char message[PETVES_MAX_MESSAGE]);
 
+/* CouplingTurn - from here on, until the next CouplingPlace, a tension expected (edge vector) pulls along the new edges
+   where it is positive, and only what the tension has beyond it along those of the markers placed: K_sigma X - Dm^T
+   sigma joins the elastic forces, K_sigma = MembranePull. Not collective. */
+PETSC_EXTERN PetscErrorCode CouplingTurn(Coupling coupling, Vec expected);
+
 /* CouplingHasMembrane - whether there is a vesicle. CouplingBending - c_b, 0 without a vesicle. Not collective. */
 static inline PetscBool CouplingHasMembrane(Coupling coupling) {
   return coupling->membrane->layout->bodies > 0 ? PETSC_TRUE : PETSC_FALSE;
@@ -47,13 +53,14 @@ static inline PetscReal CouplingBending(Coupling coupling) {
 PETSC_EXTERN PetscErrorCode CouplingSpreadTension(Coupling coupling, PetscReal alpha, Vec sigma, Vec w);
 PETSC_EXTERN PetscErrorCode CouplingSpreadBending(Coupling coupling, PetscReal alpha, Vec X, Vec w);
 
-/* CouplingElasticForce - F = (c_b ds D4 + K_rep) X less the springs' push: minus the force of bending and repulsion at
-   the markers X (length^3/time^2). CouplingElastic - w += alpha E^T F/h^2, and U += alpha C F with near field.
-   Collective. */
+/* CouplingElasticForce - F = (c_b ds D4 + K_sigma + K_rep) X less the springs' push and the pull of the turning tension
+   along the old edges: minus the force of bending, turning and repulsion at the markers X (length^3/time^2).
+   CouplingElastic - w += alpha E^T F/h^2, and U += alpha C F with near field. Collective. */
 PETSC_EXTERN PetscErrorCode CouplingElasticForce(Coupling coupling, Vec X, Vec F);
 PETSC_EXTERN PetscErrorCode CouplingElastic(Coupling coupling, PetscReal alpha, Vec X, Vec w, Vec U);
 
-/* CouplingElasticRate - F += alpha (c_b ds D4 + K_rep) V, own parts V[2n], F[2n] of marker vectors. Collective. */
+/* CouplingElasticRate - F += alpha (c_b ds D4 + K_sigma + K_rep) V, own parts V[2n], F[2n] of marker vectors.
+ * Collective. */
 PETSC_EXTERN PetscErrorCode CouplingElasticRate(Coupling coupling, PetscReal alpha, const PetscScalar V[],
                                                 PetscScalar F[]);
 

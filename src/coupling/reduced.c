@@ -1,6 +1,6 @@
 #include "coupling/reduced.h"
 
-/* F = Dm^T sigma + (1/a0) (c_b ds D4 + K_rep) V, minus h^2 times the force on the markers. */
+/* F = Dm^T sigma + (1/a0) (c_b ds D4 + K_sigma + K_rep) V, minus h^2 times the force on the markers. */
 static PetscErrorCode Force(Reduced s, const PetscScalar x[], Vec F) {
   const Coupling c = s->unknowns->coupling;
   const Membrane m = c->membrane;

@@ -57,6 +57,21 @@ void MembraneStretchingTranspose(Membrane m, const PetscReal tau[], PetscReal al
   }
 }
 
+void MembraneVesiclePull(Membrane m, PetscInt v, PetscReal alpha, const PetscReal tension[], const PetscScalar X[],
+                         PetscScalar F[]) {
+  PetscScalar *e = m->work.stretching;
+  MembraneEdges(m, v, X, e);
+  for (PetscInt k = 0; k < 2 * LayoutCount(m->layout, v); k++) e[k] *= tension[k / 2] / m->ds[v];
+  MembraneEdgesTranspose(m, v, alpha, e, F);
+}
+
+void MembranePull(Membrane m, PetscReal alpha, const PetscReal tension[], const PetscScalar X[], PetscScalar F[]) {
+  for (PetscInt v = m->layout->own; v < m->layout->end; v++) {
+    const PetscInt at = LayoutOffset(m->layout, v);
+    MembraneVesiclePull(m, v, alpha, tension + at, X + 2 * at, F + 2 * at);
+  }
+}
+
 /* Y += w (second difference of X) around a closed curve of n points. */
 static void AddSecondDifference(PetscInt n, PetscReal w, const PetscScalar X[], PetscScalar Y[]) {
   for (PetscInt k = 0; k < n; k++) {

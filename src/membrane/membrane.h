@@ -54,6 +54,14 @@ PETSC_EXTERN void MembraneStretching(Membrane membrane, const PetscReal tau[], c
 PETSC_EXTERN void MembraneStretchingTranspose(Membrane membrane, const PetscReal tau[], PetscReal alpha,
                                               const PetscScalar sigma[], PetscScalar F[]);
 
+/* MembraneVesiclePull - F += alpha D^T (tension D X)/ds of one vesicle, D X its edges: minus the force of a given
+   tension[n] (length^3/time^2), linear in the markers X. Symmetric, without negative eigenvalue where the tension is
+   nowhere negative. MembranePull - of all own vesicles. */
+PETSC_EXTERN void MembraneVesiclePull(Membrane membrane, PetscInt vesicle, PetscReal alpha, const PetscReal tension[],
+                                      const PetscScalar X[], PetscScalar F[]);
+PETSC_EXTERN void MembranePull(Membrane membrane, PetscReal alpha, const PetscReal tension[], const PetscScalar X[],
+                               PetscScalar F[]);
+
 /* MembraneVesicleBending - F += alpha part ds D4 X of one vesicle, D4 = (D+D-)(D+D-) with the fixed spacing ds, part
    its c_b over the largest: alpha is with the largest. Symmetric. MembraneBending - of all own vesicles. */
 PETSC_EXTERN void MembraneVesicleBending(Membrane membrane, PetscInt vesicle, PetscReal alpha, const PetscScalar X[],
@@ -103,6 +111,12 @@ PETSC_EXTERN void MembraneCentroidVelocity(Membrane membrane, PetscInt vesicle, 
    has moved. */
 PETSC_EXTERN PetscErrorCode MembraneRestoreEdges(Membrane membrane, PetscInt vesicle, PetscReal tolerance,
                                                  PetscScalar X[], PetscReal *error);
+
+/* MembraneRestoreLength - move one vesicle's markers as little as possible until the sum of its edges is L0 and the
+   area is what it was: Newton on the two. Nothing moves where the length is off by more than tolerance (relative), or
+   where the gradients of both are nearly the same, as on a circle. */
+PETSC_EXTERN PetscErrorCode MembraneRestoreLength(Membrane membrane, PetscInt vesicle, PetscReal tolerance,
+                                                  PetscScalar X[]);
 
 /* MembraneRestoreArea - shift one vesicle's markers by a uniform distance along the vertex normals (of the chord from
    X_{k-1} to X_{k+1}, or of the spectral edge) until its area is A0: Newton on the area. The markers of `count` old

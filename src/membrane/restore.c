@@ -3,6 +3,8 @@
 
 #define MAX_NEWTON 20
 #define CONVERGED 1e-10 /* of squared edges and area; Newton ends far below it or not at all */
+#define LENGTH_RIGHT 1e-13
+#define CIRCLE 1e-3 /* sin^2 of the angle of the gradients of area and length, below which one gives the other */
 
 /* e: edges at the vertices, dX/dk, or half the chord from k-1 to k+1, which is the mean of two edges. Returns the sum
    of their lengths. */
@@ -75,5 +77,52 @@ PetscErrorCode MembraneRestoreEdges(Membrane m, PetscInt v, PetscReal tolerance,
   *error = found;
   for (PetscInt k = 0; k < 2 * n; k++) fitted[k] += X[k % 2];
   PetscCall(PetscArraycpy(X, fitted, 2 * n));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Gradients by the markers: of the area, the vertex normals, and of the length, the unit edges' transposed difference.
+ */
+static void Gradients(Membrane m, PetscInt v, const PetscScalar X[], PetscScalar area[], PetscScalar length[]) {
+  const PetscInt n = LayoutCount(m->layout, v);
+  PetscScalar *e = m->work.restore;
+  (void)VertexEdges(m, v, X, e);
+  for (PetscInt k = 0; k < n; k++) {
+    area[2 * k] = e[2 * k + 1];
+    area[2 * k + 1] = -e[2 * k];
+  }
+  MembraneEdges(m, v, X, e);
+  for (PetscInt k = 0; k < n; k++) {
+    const PetscReal size = PetscSqrtReal(PetscSqr(e[2 * k]) + PetscSqr(e[2 * k + 1]));
+    for (int c = 0; c < 2; c++) e[2 * k + c] /= size;
+  }
+  (void)PetscArrayzero(length, 2 * n);
+  MembraneEdgesTranspose(m, v, 1, e, length);
+}
+
+PetscErrorCode MembraneRestoreLength(Membrane m, PetscInt v, PetscReal tolerance, PetscScalar X[]) {
+  const PetscInt n = 2 * LayoutCount(m->layout, v);
+  PetscScalar *area, *length;
+  PetscReal wanted = 0;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(n, &area, n, &length));
+  for (int it = 0; it < 4; it++) {
+    PetscReal aa = 0, al = 0, ll = 0;
+    Measures measures;
+    MembraneMeasure(m, v, X, &measures);
+    if (it == 0) wanted = measures.area;
+    const PetscReal long_by = measures.length - m->L0[v], large_by = measures.area - wanted;
+    if (PetscAbsReal(long_by) < LENGTH_RIGHT * m->L0[v] || !(PetscAbsReal(long_by) < tolerance * m->L0[v])) break;
+    Gradients(m, v, X, area, length);
+    for (PetscInt k = 0; k < n; k++) {
+      aa += area[k] * area[k];
+      al += area[k] * length[k];
+      ll += length[k] * length[k];
+    }
+    const PetscReal det = aa * ll - al * al;
+    if (!(det > CIRCLE * aa * ll)) break;
+    for (PetscInt k = 0; k < n; k++)
+      X[k] -= ((aa * long_by - al * large_by) * length[k] + (ll * large_by - al * long_by) * area[k]) / det;
+  }
+  PetscCall(PetscFree2(area, length));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -40,8 +40,22 @@ static PetscErrorCode LengthTarget(Scheme s, Coupled *d, PetscReal a0) {
     (s)->state.which, (s)->old[0].which, (s)->old[1].which                                                             \
   }
 
-/* f = uhat - B Y + bc1 - N(w*) and k = -(C c_b ds D4 + V d/dt) Y, with a repulsion's springs beside bending, Y = Xhat +
-   u_inf/a0, V the labels' speed; no uhat in quasi-steady flow. next.w is used for w*. */
+/* The tension of the last two states, extrapolated, pulls along the new edges (docs/method.md, The tension turns with
+   the membrane). next.sigma is used for it. */
+static PetscErrorCode TurnTension(Scheme s, Coupled *d) {
+  History *h = &d->history;
+  const PetscInt count = PetscMin(2, h->solved);
+  PetscReal weight[BDF_MOST];
+  PetscFunctionBeginUser;
+  if (!count) PetscFunctionReturn(PETSC_SUCCESS);
+  BDFExtrapolation(count, h->step, weight);
+  PetscCall(HistorySum(h, s->membrane, count, weight, 1, 1, STATES(s, sigma), d->next.sigma));
+  PetscCall(CouplingTurn(s->coupling, d->next.sigma));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* f = uhat - B Y + bc1 - N(w*) and k = -(C c_b ds D4 + V d/dt) Y, with turning tension and a repulsion's springs beside
+   bending, Y = Xhat + u_inf/a0, V the labels' speed; no uhat in quasi-steady flow. next.w is used for w*. */
 static PetscErrorCode RightHandSides(Scheme s, Coupled *d, const BDF *b) {
   History *h = &d->history;
   PetscFunctionBeginUser;
@@ -52,8 +66,7 @@ static PetscErrorCode RightHandSides(Scheme s, Coupled *d, const BDF *b) {
     PetscCall(HistorySum(h, s->membrane, b->order, b->history, 1, 0, STATES(s, w), d->f));
   if (s->fluid->bc1) PetscCall(VecAXPY(d->f, 1, s->fluid->bc1));
   PetscCall(VecWAXPY(d->Y, 1 / b->a0, s->background, d->Xhat));
-  if (CouplingBending(s->coupling) > 0 || s->coupling->repulsion)
-    PetscCall(CouplingElastic(s->coupling, -1, d->Y, d->f, d->known));
+  if (CouplingHasMembrane(s->coupling)) PetscCall(CouplingElastic(s->coupling, -1, d->Y, d->f, d->known));
   PetscCall(CouplingAddGravity(s->coupling, d->Xstar, d->f, d->known));
   PetscCall(CouplingTread(s->coupling, -1, d->Y, d->known));
   if (d->convection) {
@@ -188,6 +201,7 @@ PetscErrorCode CoupledAttempt(Scheme s, PetscReal dt, PetscBool *solved) {
   PetscCall(SchemePlace(s, b.a0, d->Xstar, h->treading, s->state.t + d->done + dt, solved));
   if (!*solved) PetscFunctionReturn(PETSC_SUCCESS);
   if (s->scene->scheme.length_target) PetscCall(LengthTarget(s, d, b.a0));
+  PetscCall(TurnTension(s, d));
   PetscCall(RightHandSides(s, d, &b));
   PetscCall(InitialGuess(s, d));
   PetscCall(Solve(s, d));

@@ -135,12 +135,12 @@ static PetscErrorCode AddNonzero(Mat A, PetscInt row, PetscInt column, PetscReal
 }
 
 /* One vesicle's rows between sigma, U and F, a column at a time by unit vectors:
-   U + (v/a0) dU/dt - E w + h^2 C F = k,  F - Dm^T sigma/h^2 - (c_b ds/(h^2 a0)) D4 U = 0,  Dm U/h^2 = g. */
+   U + (v/a0) dU/dt - E w + h^2 C F = k,  F - Dm^T sigma/h^2 - ((c_b ds D4 + K_sigma)/(h^2 a0)) U = 0,  Dm U/h^2 = g. */
 static PetscErrorCode AddVesicle(DirectSolver d, Mat A, PetscInt v, PetscInt sigma, PetscInt U, PetscInt F) {
   const Membrane m = d->coupling->membrane;
   const PetscInt first = m->layout->start[v], n = LayoutCount(m->layout, v);
   const PetscReal h2 = PetscSqr(d->fluid->grid->h), *tau = d->coupling->tau + 2 * LayoutOffset(m->layout, v);
-  const PetscReal treading = d->coupling->treading[v];
+  const PetscReal treading = d->coupling->treading[v], *turning = d->coupling->turning + LayoutOffset(m->layout, v);
   PetscReal *unit, *stretching, *out;
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc3(2 * n, &unit, n, &stretching, 2 * n, &out));
@@ -160,6 +160,7 @@ static PetscErrorCode AddVesicle(DirectSolver d, Mat A, PetscInt v, PetscInt sig
     PetscCall(MatSetValue(A, F + column, F + column, 1, ADD_VALUES));
     PetscCall(PetscArrayzero(out, 2 * n));
     if (m->bending > 0) MembraneVesicleBending(m, v, -m->bending / (h2 * d->fluid->a0), unit, out);
+    MembraneVesiclePull(m, v, -1 / (h2 * d->fluid->a0), turning, unit, out);
     for (PetscInt r = 0; r < 2 * n; r++) PetscCall(AddNonzero(A, F + 2 * first + r, U + column, out[r]));
     PetscCall(PetscArrayzero(out, 2 * n));
     if (treading != 0) MembraneLabelDerivative(m, v, treading / d->fluid->a0, unit, out);
