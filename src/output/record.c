@@ -38,7 +38,8 @@ const char *const SeriesColumns[] = {"step",
 const int RecordVesicleColumns[] = {
     COLUMN_BENDING,      COLUMN_AREA,       COLUMN_LENGTH,     COLUMN_AREA_ERROR,  COLUMN_LENGTH_ERROR,
     COLUMN_EDGE_RATIO,   COLUMN_CENTER_X,   COLUMN_CENTER_Y,   COLUMN_INCLINATION, COLUMN_FREQUENCY,
-    COLUMN_NORMAL_SPEED, COLUMN_VELOCITY_X, COLUMN_VELOCITY_Y, COLUMN_GRAVITY,     -1};
+    COLUMN_NORMAL_SPEED, COLUMN_VELOCITY_X, COLUMN_VELOCITY_Y, COLUMN_GRAVITY,     COLUMN_GAP,
+    -1};
 
 /* The columns that repeat with a suffix in series.csv: of several vesicles, but not of many. */
 static int Repeated(const Record *r) {
@@ -98,6 +99,16 @@ static void VesicleRow(Membrane m, PetscInt v, const PetscScalar X[], const Pets
   row[COLUMN_GRAVITY] = MembraneGravityEnergy(m, v, X);
 }
 
+static PetscErrorCode MeasureGaps(Record *r, Scheme s) {
+  PetscReal *each;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(r->vesicles, &each));
+  PetscCall(FilmsGaps(s, &r->last[COLUMN_GAP], each));
+  for (PetscInt v = 0; v < r->vesicles; v++) r->each[v * COLUMN_COUNT + COLUMN_GAP] = each[v];
+  PetscCall(PetscFree(each));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Each owner measures its vesicles, all ranks get all rows. */
 PetscErrorCode RecordMeasure(Record *r, Scheme s) {
   const Layout l = s->membrane->layout;
@@ -113,6 +124,7 @@ PetscErrorCode RecordMeasure(Record *r, Scheme s) {
   PetscCall(VecRestoreArrayRead(s->state.U, &U));
   PetscCall(VecRestoreArrayRead(s->state.X, &X));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, r->each, size, MPIU_REAL, MPI_SUM, l->comm));
+  PetscCall(MeasureGaps(r, s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -147,7 +159,6 @@ static PetscErrorCode TakeStep(Record *r, Scheme s) {
   row[COLUMN_NSOLVE] = report->solves;
   row[COLUMN_WALL] = report->seconds;
   row[COLUMN_AREA_SHIFT] = report->area_shift;
-  PetscCall(FilmsLeastGap(s, &row[COLUMN_GAP]));
   PetscCall(SchemeContactEnergy(s, &row[COLUMN_CONTACT]));
   for (int k = 0; k < 2; k++) {
     row[COLUMN_VISCOSITY_WALL + k] = report->stress.known ? report->stress.viscosity[k] : NAN;

@@ -59,7 +59,7 @@ typedef struct {
 PETSC_EXTERN PetscErrorCode RecordCreate(PetscInt vesicles, Record *record);
 PETSC_EXTERN PetscErrorCode RecordDestroy(Record *record);
 
-/* RecordMeasure - the vesicles' own columns of the present state, into `each`. Collective. */
+/* RecordMeasure - the vesicles' own columns of the present state, into `each`, and the least gap of all. Collective. */
 PETSC_EXTERN PetscErrorCode RecordMeasure(Record *record, Scheme scheme);
 
 /* RecordTake - the row of the scheme's state and last step, which is added to the totals. Collective. */

@@ -11,6 +11,8 @@
 #define COARSE 0.6
 #define RESOLVED 1.0
 
+#define FAR 4 /* longest mean edges up to which each vesicle's own films are told */
+
 /* The film that a step takes most of. */
 typedef struct {
   PetscReal loss; /* part of its thickness, over what is allowed */
@@ -139,20 +141,46 @@ PetscErrorCode FilmsCheck(Scheme s) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode FilmsLeastGap(Scheme s, PetscReal *gap) {
+/* On rank 0: each vesicle's thinnest film of those thinner than FAR edges, not a number where there is none. */
+static PetscErrorCode ThinnestOfEach(Scheme s, const PetscScalar X[], PetscReal each[]) {
+  const Membrane m = s->membrane;
+  const PetscInt vesicles = m->layout->bodies;
+  PetscReal edge = 0;
+  CurveGap *films;
+  PetscInt n;
+  PetscFunctionBeginUser;
+  for (PetscInt v = 0; v < vesicles; v++) {
+    each[v] = NAN;
+    edge = PetscMax(edge, m->ds[v]);
+  }
+  PetscCall(Find(s, X, FAR * edge, &n, &films));
+  for (PetscInt k = 0; k < n; k++)
+    for (int side = 0; side < 2; side++) {
+      const PetscInt v = films[k].curve[side];
+      if (v < vesicles && !(each[v] <= films[k].distance)) each[v] = films[k].distance;
+    }
+  PetscCall(PetscFree(films));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode FilmsGaps(Scheme s, PetscReal *least, PetscReal each[]) {
   const Layout l = s->membrane->layout;
   const CurveRoom room = Room(s);
+  PetscMPIInt vesicles;
   PetscInt side;
   PetscFunctionBeginUser;
-  *gap = NAN;
+  *least = NAN;
   if (!l->bodies) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMPIIntCast(l->bodies, &vesicles));
   PetscCall(LayoutGatherVec(l, s->state.X, s->work_all));
   if (!l->rank) {
-    PetscCall(CurveLeastGap(l->bodies, l->start, s->work_all, room.period, SchemeIsSmooth(s), gap));
+    PetscCall(CurveLeastGap(l->bodies, l->start, s->work_all, room.period, SchemeIsSmooth(s), least));
     const PetscReal wall = CurveWallGap(l->M, s->work_all, &room, &side);
-    if (wall < PETSC_MAX_REAL && !(*gap < wall)) *gap = wall;
+    if (wall < PETSC_MAX_REAL && !(*least < wall)) *least = wall;
+    PetscCall(ThinnestOfEach(s, s->work_all, each));
   }
-  PetscCallMPI(MPI_Bcast(gap, 1, MPIU_REAL, 0, l->comm));
+  PetscCallMPI(MPI_Bcast(least, 1, MPIU_REAL, 0, l->comm));
+  PetscCallMPI(MPI_Bcast(each, vesicles, MPIU_REAL, 0, l->comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

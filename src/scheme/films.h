@@ -4,9 +4,10 @@
 #pragma once
 #include "scheme/scheme.h"
 
-/* FilmsLeastGap - least distance (length) of any two vesicles, or of one and a wall, at the present state; negative
-   where they overlap; not a number where there is nothing that a vesicle may touch. Collective. */
-PETSC_EXTERN PetscErrorCode FilmsLeastGap(Scheme scheme, PetscReal *gap);
+/* FilmsGaps - least distance (length) of any two vesicles, or of one and a wall, at the present state, and each[vesicles],
+   that of every vesicle from others; negative where they overlap; not a number where there is nothing that a vesicle may
+   touch, and in each where nothing is within four mean edges. Collective. */
+PETSC_EXTERN PetscErrorCode FilmsGaps(Scheme scheme, PetscReal *least, PetscReal each[]);
 
 /* FilmsLoss - what a step from the markers X_old to X_new does: the largest part of its thickness that a thin film has
    lost, over -limit_gap_loss; above 1 is too much, and so are membranes that cross (-limit_crossing). 0 where no film
