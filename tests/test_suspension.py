@@ -100,14 +100,18 @@ def test_many_have_a_file_of_their_own(whole):
     np.testing.assert_allclose(each["center_x"].mean(1), run.series["center_x"], rtol=1e-12)
     np.testing.assert_array_equal(each["inclination"][:, 0], run.series["inclination"])
     assert np.isfinite(each["gap"]).all() and (each["gap"] > 0).all()
-    np.testing.assert_allclose(each["gap"].min(1), run.series["gap"], rtol=0.02)  # of polygons where they are half an edge apart
+    np.testing.assert_allclose(
+        each["gap"].min(1), run.series["gap"], rtol=0.02
+    )  # of polygons where they are half an edge apart
 
 
 def test_gap_of_each(tmp_path):
     """Circles of radius 1/4: the first two .1 apart, the third .2 from the second over the seam, the fourth .15 from a wall,
     the fifth far from all."""
     scene = f"{METHOD} -domain_box 0,6,0,4 -domain_cells 60,40 -domain_bc_x periodic -vesicle_semi_axes .25,.25 "
-    scene += "-vesicle_count 5 -vesicle_center 5,2,5.6,2,.3,2,2,.4,3,3 -vesicle_markers 25 -vesicle_allow_close_markers "
+    scene += (
+        "-vesicle_count 5 -vesicle_center 5,2,5.6,2,.3,2,2,.4,3,3 -vesicle_markers 25 -vesicle_allow_close_markers "
+    )
     run = run_petves(tmp_path / "run", scene + "-time_end 0")
     gaps = [run.series[f"gap_{v}"][0] for v in range(1, 6)]
     np.testing.assert_allclose(gaps, (0.1, 0.1, 0.2, 0.15, np.nan), atol=2e-3)

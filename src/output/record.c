@@ -35,11 +35,10 @@ const char *const SeriesColumns[] = {"step",
                                      "normal_stress",
                                      NULL};
 
-const int RecordVesicleColumns[] = {
-    COLUMN_BENDING,      COLUMN_AREA,       COLUMN_LENGTH,     COLUMN_AREA_ERROR,  COLUMN_LENGTH_ERROR,
-    COLUMN_EDGE_RATIO,   COLUMN_CENTER_X,   COLUMN_CENTER_Y,   COLUMN_INCLINATION, COLUMN_FREQUENCY,
-    COLUMN_NORMAL_SPEED, COLUMN_VELOCITY_X, COLUMN_VELOCITY_Y, COLUMN_GRAVITY,     COLUMN_GAP,
-    -1};
+const int RecordVesicleColumns[] = {COLUMN_BENDING,      COLUMN_AREA,       COLUMN_LENGTH,       COLUMN_AREA_ERROR,
+                                    COLUMN_LENGTH_ERROR, COLUMN_EDGE_RATIO, COLUMN_CENTER_X,     COLUMN_CENTER_Y,
+                                    COLUMN_INCLINATION,  COLUMN_FREQUENCY,  COLUMN_NORMAL_SPEED, COLUMN_VELOCITY_X,
+                                    COLUMN_VELOCITY_Y,   COLUMN_GRAVITY,    COLUMN_GAP,          -1};
 
 /* The columns that repeat with a suffix in series.csv: of several vesicles, but not of many. */
 static int Repeated(const Record *r) {

@@ -4,9 +4,9 @@
 #pragma once
 #include "scheme/scheme.h"
 
-/* FilmsGaps - least distance (length) of any two vesicles, or of one and a wall, at the present state, and each[vesicles],
-   that of every vesicle from others; negative where they overlap; not a number where there is nothing that a vesicle may
-   touch, and in each where nothing is within four mean edges. Collective. */
+/* FilmsGaps - least distance (length) of any two vesicles, or of one and a wall, at the present state, and
+   each[vesicles], that of every vesicle from others; negative where they overlap; not a number where there is nothing
+   that a vesicle may touch, and in each where nothing is within four mean edges. Collective. */
 PETSC_EXTERN PetscErrorCode FilmsGaps(Scheme scheme, PetscReal *least, PetscReal each[]);
 
 /* FilmsLoss - what a step from the markers X_old to X_new does: the largest part of its thickness that a thin film has
