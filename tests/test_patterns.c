@@ -2,6 +2,7 @@
    vesicle's problem solved by another's pattern. */
 #include "coupling/patterns.h"
 #include "coupling/selflayer.h"
+#include "fluid/stokes.h"
 #include "world.h"
 
 #define VESICLES 7
@@ -12,6 +13,11 @@
   "-scheme_type coupled -coupling_near_field exact -membrane_derivative spectral -fluid_inertia none -delta_type "     \
   "cbs54 -vesicle_count 7 -vesicle_center 1,1,3,1,5,1,7,1,1,3,3,3,5,3 -vesicle_angle 0,10,20,40,80,120,170 "           \
   "-vesicle_markers 45 -domain_box 0,8,0,4 -vesicle_bending 0.1 "
+
+/* Seven side by side, gaps of 1.2 cells but for the last. */
+#define CLOSE                                                                                                          \
+  "-domain_cells 96,48 -domain_bc_x periodic -vesicle_semi_axes 0.35,0.8 -vesicle_center "                             \
+  "0.6,2,1.4,2,2.2,2,3.0,2,3.8,2,4.6,2,6.8,2 -vesicle_angle 0 -time_step 0.05 -vesicle_bending 0.5 "
 
 static void TurnCurve(PetscReal angle, PetscInt shift, const PetscReal X[], PetscReal Y[]) {
   for (PetscInt k = 0; k < N; k++) {
@@ -130,6 +136,88 @@ static PetscErrorCode CheckSolve(void) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* r_V and r_s of V and sigma in a box with walls, where velocity comes from the grid and the near field. */
+static PetscErrorCode MultiplyAll(TestWorld *t, Vec V, Vec sigma, Vec U, Vec s) {
+  const PetscReal h2 = PetscSqr(t->fluid->grid->h);
+  const PetscScalar *f;
+  PetscScalar *u;
+  Vec F, r, w, p;
+  Stokes stokes;
+  PetscFunctionBeginUser;
+  PetscCall(VecDuplicate(V, &F));
+  PetscCall(DMCreateGlobalVector(t->fluid->grid->velocity, &r));
+  PetscCall(VecDuplicate(r, &w));
+  PetscCall(DMCreateGlobalVector(t->fluid->grid->da[FIELD_P], &p));
+  PetscCall(StokesCreate(t->fluid, &stokes));
+  PetscCall(VecGetArrayRead(V, &f));
+  PetscCall(VecGetArray(F, &u));
+  PetscCall(CouplingElasticRate(t->coupling, 1 / t->fluid->a0, f, u));
+  PetscCall(VecRestoreArrayRead(V, &f));
+  PetscCall(VecGetArrayRead(sigma, &f));
+  MembraneStretchingTranspose(t->membrane, t->coupling->tau, 1, f, u);
+  PetscCall(VecRestoreArrayRead(sigma, &f));
+  PetscCall(VecRestoreArray(F, &u));
+  PetscCall(MarkersSpread(t->coupling->markers, 1 / h2, F, r));
+  PetscCall(StokesSolve(stokes, r, NULL, w, p));
+  PetscCall(MarkersInterpolate(t->coupling->markers, w, U));
+  PetscCall(VecAXPY(U, 1, V));
+  PetscCall(VecGetArrayRead(F, &f));
+  PetscCall(VecGetArray(U, &u));
+  PetscCall(NearFieldApply(t->coupling->near, 1, f, u));
+  PetscCall(VecRestoreArray(U, &u));
+  PetscCall(VecRestoreArrayRead(F, &f));
+  PetscCall(CouplingStretching(t->coupling, V, s));
+  PetscCall(StokesDestroy(&stokes));
+  Vec *all[] = {&F, &r, &w, &p};
+  for (int k = 0; k < 4; k++) PetscCall(VecDestroy(all[k]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Vesicles next to one another: the patterns with what vesicles do to one another, coarse grid and near
+   markers, give V back but for some per cent. */
+static PetscErrorCode CheckCross(void) {
+  TestWorld t;
+  Patterns s;
+  PetscBool failed;
+  Vec V, sigma, U, r;
+  PetscScalar *v, *g;
+  PetscReal norm, error;
+  PetscFunctionBeginUser;
+  PetscCall(TestWorldCreate(OPTIONS CLOSE, &t));
+  PetscCall(PatternsCreate(&t.scene->fluid, t.coupling, &s));
+  PetscCall(PatternsFollow(s, &failed));
+  CHECK(!failed && s->cross, "a coarse grid in a channel");
+  PetscCall(LayoutCreateVec(t.layout, 2, &V));
+  PetscCall(VecDuplicate(V, &U));
+  PetscCall(LayoutCreateVec(t.layout, 1, &sigma));
+  PetscCall(VecDuplicate(sigma, &r));
+  PetscCall(VecGetArray(V, &v));
+  PetscCall(VecGetArray(sigma, &g));
+  for (PetscInt k = 0; k < t.layout->n; k++) {
+    const PetscReal at = 2 * PETSC_PI * (PetscReal)((t.layout->first + k) % N) / N;
+    v[2 * k] = cos(2 * at);
+    v[2 * k + 1] = sin(at) + cos(3 * at);
+    g[k] = cos(2 * at + 1);
+  }
+  PetscCall(VecRestoreArray(sigma, &g));
+  PetscCall(VecRestoreArray(V, &v));
+  PetscCall(MultiplyAll(&t, V, sigma, U, r));
+  PetscCall(VecGetArray(U, &v));
+  PetscCall(VecGetArray(r, &g));
+  PetscCall(PatternsSolve(s, v, g));
+  PetscCall(VecRestoreArray(r, &g));
+  PetscCall(VecRestoreArray(U, &v));
+  PetscCall(VecNorm(V, NORM_2, &norm));
+  PetscCall(VecAXPY(U, -1, V));
+  PetscCall(VecNorm(U, NORM_2, &error));
+  CHECK(error < 0.05 * norm, "V comes back, %.3f of it is left", (double)(error / norm));
+  Vec *all[] = {&V, &sigma, &U, &r};
+  for (int k = 0; k < 4; k++) PetscCall(VecDestroy(all[k]));
+  PetscCall(PatternsDestroy(&s));
+  PetscCall(TestWorldDestroy(&t));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* The memory makes the same patterns again, and is refused where it is of other vesicles. */
 static PetscErrorCode CheckMemory(void) {
   TestWorld t;
@@ -169,6 +257,7 @@ static PetscErrorCode Facts(void) {
   PetscCall(CheckSelfLayer(45));
   PetscCall(CheckSelfLayer(44));
   PetscCall(CheckSolve());
+  PetscCall(CheckCross());
   PetscCall(CheckMemory());
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,25 +1,30 @@
 /* The preconditioner's part of the vesicles: patterns' matrices on the columns of all vesicles that take them. */
 #include "coupling/blas.h"
-#include "coupling/patterns.h"
+#include "coupling/patternapply.h"
 
-/* y = x turned by the angle of cosine c and sine s, n pairs. */
-static void Turn(PetscReal c, PetscReal s, PetscInt n, const PetscReal x[], PetscReal y[]) {
+void PoseTurn(const Pose *p, PetscBool back, PetscInt n, const PetscReal x[], PetscReal y[]) {
+  const PetscReal c = p->turn[0], s = back ? -p->turn[1] : p->turn[1];
   for (PetscInt k = 0; k < n; k++) {
     y[2 * k] = c * x[2 * k] - s * x[2 * k + 1];
     y[2 * k + 1] = s * x[2 * k] + c * x[2 * k + 1];
   }
 }
 
-/* y = (U, sigma) of a vesicle in its pattern's frame. */
-static void ToPattern(const Pose *p, PetscInt n, const PetscScalar U[], const PetscScalar sigma[], PetscReal y[]) {
+/* y = the velocities or forces U of a vesicle's n markers in its pattern's frame. */
+static void ToPattern(const Pose *p, PetscInt n, const PetscScalar U[], PetscReal y[]) {
   const PetscInt j = p->shift;
-  Turn(p->turn[0], -p->turn[1], n - j, U + 2 * j, y);
-  Turn(p->turn[0], -p->turn[1], j, U, y + 2 * (n - j));
-  (void)PetscArraycpy(y + 2 * n, sigma + j, n - j);
-  (void)PetscArraycpy(y + 3 * n - j, sigma, j);
+  PoseTurn(p, PETSC_TRUE, n - j, U + 2 * j, y);
+  PoseTurn(p, PETSC_TRUE, j, U, y + 2 * (n - j));
 }
 
-/* And back: added to (U, sigma). */
+/* And back. */
+static void FromPattern(const Pose *p, PetscInt n, const PetscReal y[], PetscScalar U[]) {
+  const PetscInt j = p->shift;
+  PoseTurn(p, PETSC_FALSE, n - j, y, U + 2 * j);
+  PoseTurn(p, PETSC_FALSE, j, y + 2 * (n - j), U);
+}
+
+/* (U, sigma) += y, back from the pattern's frame. */
 static void AddFromPattern(const Pose *p, PetscInt n, const PetscReal y[], PetscScalar U[], PetscScalar sigma[]) {
   const PetscReal c = p->turn[0], s = p->turn[1];
   for (PetscInt k = 0; k < n; k++) {
@@ -30,63 +35,70 @@ static void AddFromPattern(const Pose *p, PetscInt n, const PetscReal y[], Petsc
   }
 }
 
-static PetscInt Points(Patterns s, const Pattern *q) {
-  return s->coarse ? LayoutCount(s->coarse->layout, q->like) : 0;
+/* Columns W of the vesicles that take a pattern, in its frame, to s->from, `each` numbers apart. */
+static void GatherColumns(Patterns s, const Pattern *q, PetscInt each, const PetscScalar W[]) {
+  const Layout l = s->coupling->membrane->layout;
+  PetscReal *x = s->from;
+  for (PetscInt k = q->begin; k < q->end; k++, x += each) {
+    const PetscInt v = s->order[k];
+    ToPattern(&s->pose[v - l->own], LayoutCount(l, v), W + 2 * LayoutOffset(l, v), x);
+  }
 }
 
-/* (U, sigma) := each vesicle's own answer, and its forces F at the coarse points. */
-static PetscErrorCode First(Patterns s, const Pattern *q, PetscScalar U[], PetscScalar sigma[]) {
+/* A vesicle's numbers in a column of a product that is `each` numbers long, from the `at`-th on, to F. */
+static void ScatterForces(Patterns s, const Pattern *q, PetscInt each, PetscInt at, PetscScalar F[]) {
   const Layout l = s->coupling->membrane->layout;
-  const PetscInt n = LayoutCount(l, q->like), points = Points(s, q), rows = 3 * n + 2 * points;
-  PetscReal *x = s->from, *y = s->to;
-  PetscFunctionBeginUser;
-  for (PetscInt k = q->begin; k < q->end; k++, x += 3 * n) {
+  const PetscReal *y = s->to + at;
+  for (PetscInt k = q->begin; k < q->end; k++, y += each) {
+    const PetscInt v = s->order[k];
+    FromPattern(&s->pose[v - l->own], LayoutCount(l, v), y, F + 2 * LayoutOffset(l, v));
+  }
+}
+
+/* The same of (V, sigma), added. */
+static void AddAnswers(Patterns s, const Pattern *q, PetscInt each, PetscScalar U[], PetscScalar sigma[]) {
+  const Layout l = s->coupling->membrane->layout;
+  const PetscReal *y = s->to;
+  for (PetscInt k = q->begin; k < q->end; k++, y += each) {
     const PetscInt v = s->order[k], at = LayoutOffset(l, v);
-    ToPattern(&s->pose[v - l->own], n, U + 2 * at, sigma + at, x);
+    AddFromPattern(&s->pose[v - l->own], LayoutCount(l, v), y, U + 2 * at, sigma + at);
+  }
+}
+
+PetscErrorCode PatternSolveAlone(Patterns s, const Pattern *q, PetscScalar U[], PetscScalar sigma[], PetscScalar F[]) {
+  const Layout l = s->coupling->membrane->layout;
+  const PetscInt n = LayoutCount(l, q->like), rows = F ? 5 * n : 3 * n;
+  PetscReal *x = s->from + 2 * n;
+  PetscFunctionBeginUser;
+  GatherColumns(s, q, 3 * n, U);
+  for (PetscInt k = q->begin; k < q->end; k++, x += 3 * n) {
+    const PetscInt v = s->order[k], at = LayoutOffset(l, v), shift = s->pose[v - l->own].shift;
+    PetscCall(PetscArraycpy(x, sigma + at + shift, n - shift));
+    PetscCall(PetscArraycpy(x + n - shift, sigma + at, shift));
     PetscCall(PetscArrayzero(U + 2 * at, 2 * n));
     PetscCall(PetscArrayzero(sigma + at, n));
   }
-  PetscCall(DenseProduct(PETSC_FALSE, rows, q->end - q->begin, 3 * n, q->first, s->from, s->to));
-  for (PetscInt k = q->begin; k < q->end; k++, y += rows) {
-    const PetscInt v = s->order[k], at = LayoutOffset(l, v);
-    const Pose *p = &s->pose[v - l->own];
-    AddFromPattern(p, n, y, U + 2 * at, sigma + at);
-    if (points) Turn(p->turn[0], p->turn[1], points, y + 3 * n, s->F + 2 * LayoutOffset(s->coarse->layout, v));
-  }
+  PetscCall(DensePartProduct(rows, q->end - q->begin, 3 * n, q->inverse, 5 * n, s->from, s->to));
+  AddAnswers(s, q, rows, U, sigma);
+  if (F) ScatterForces(s, q, rows, 3 * n, F);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* (U, sigma) += each vesicle's own answer to W, less what its own forces F have made of W. */
-static PetscErrorCode Second(Patterns s, const Pattern *q, PetscScalar U[], PetscScalar sigma[]) {
-  const Layout l = s->coupling->membrane->layout, coarse = s->coarse->layout;
-  const PetscInt n = LayoutCount(l, q->like), points = Points(s, q), columns = q->end - q->begin;
-  PetscReal *x = s->from, *y = s->to;
+PetscErrorCode PatternForces(Patterns s, const Pattern *q, const PetscScalar W[], PetscScalar F[]) {
+  const PetscInt n = LayoutCount(s->coupling->membrane->layout, q->like);
   PetscFunctionBeginUser;
-  for (PetscInt k = q->begin; k < q->end; k++, x += 2 * points) {
-    const Pose *p = &s->pose[s->order[k] - l->own];
-    Turn(p->turn[0], -p->turn[1], points, s->F + 2 * LayoutOffset(coarse, s->order[k]), x);
-  }
-  PetscCall(DenseProduct(PETSC_FALSE, 2 * points, columns, 2 * points, q->self, s->from, s->to));
-  x = s->from;
-  for (PetscInt k = q->begin; k < q->end; k++, x += 2 * points) {
-    const Pose *p = &s->pose[s->order[k] - l->own];
-    Turn(p->turn[0], -p->turn[1], points, s->W + 2 * LayoutOffset(coarse, s->order[k]), x);
-  }
-  for (PetscInt i = 0; i < 2 * points * columns; i++) s->from[i] += s->to[i];
-  PetscCall(DenseProduct(PETSC_FALSE, 3 * n, columns, 2 * points, q->second, s->from, s->to));
-  for (PetscInt k = q->begin; k < q->end; k++, y += 3 * n) {
-    const PetscInt v = s->order[k], at = LayoutOffset(l, v);
-    AddFromPattern(&s->pose[v - l->own], n, y, U + 2 * at, sigma + at);
-  }
+  GatherColumns(s, q, 2 * n, W);
+  PetscCall(DensePartProduct(2 * n, q->end - q->begin, 2 * n, q->inverse + 3 * n, 5 * n, s->from, s->to));
+  ScatterForces(s, q, 2 * n, 0, F);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode PatternsSolve(Patterns s, PetscScalar U[], PetscScalar sigma[]) {
+PetscErrorCode PatternAddAnswer(Patterns s, const Pattern *q, const PetscScalar W[], PetscScalar U[],
+                                PetscScalar sigma[]) {
+  const PetscInt n = LayoutCount(s->coupling->membrane->layout, q->like);
   PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < s->count; k++) PetscCall(First(s, &s->pattern[k], U, sigma));
-  if (!s->coarse) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscArraycpy(s->W, s->F, 2 * s->coarse->layout->n));
-  PetscCall(CoarseApply(s->coarse, s->W));
-  for (PetscInt k = 0; k < s->count; k++) PetscCall(Second(s, &s->pattern[k], U, sigma));
+  GatherColumns(s, q, 2 * n, W);
+  PetscCall(DensePartProduct(3 * n, q->end - q->begin, 2 * n, q->inverse, 5 * n, s->from, s->to));
+  AddAnswers(s, q, 3 * n, U, sigma);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -46,8 +46,8 @@ static PetscErrorCode Invert(Patterns s, const Pattern *q, PetscReal inverse[], 
   for (PetscInt j = 0; j < n; j++) sigma[(2 * n + j) * n + j] = 1;
   if (*good) PetscCall(DenseBlockSolve(m, h2, &block, all, U, sigma));
   for (PetscInt j = 0; j < all; j++) {
-    PetscCall(PetscArraycpy(inverse + j * all, U + j * 2 * n, 2 * n));
-    PetscCall(PetscArraycpy(inverse + j * all + 2 * n, sigma + j * n, n));
+    PetscCall(PetscArraycpy(inverse + j * 5 * n, U + j * 2 * n, 2 * n));
+    PetscCall(PetscArraycpy(inverse + j * 5 * n + 2 * n, sigma + j * n, n));
   }
   PetscCall(DenseBlockDestroy(&block));
   PetscCall(PetscFree(M));
@@ -55,28 +55,25 @@ static PetscErrorCode Invert(Patterns s, const Pattern *q, PetscReal inverse[], 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* P[2 points][2n], columns contiguous: trigonometric interpolation from the coarse points to the markers. */
-static void Interpolation(PetscInt points, PetscInt n, PetscReal P[]) {
-  (void)PetscArrayzero(P, 4 * n * points);
+/* [points][n]: trigonometric interpolation from the coarse points to the markers. */
+static void Interpolation(PetscInt points, PetscInt n, PetscReal weight[]) {
   for (PetscInt i = 0; i < points; i++)
     for (PetscInt k = 0; k < n; k++)
-      for (int c = 0; c < 2; c++)
-        P[(2 * i + c) * 2 * n + 2 * k + c] = TrigonometricCardinal(
-            points, 2 * PETSC_PI * ((PetscReal)k / (PetscReal)n - (PetscReal)i / (PetscReal)points));
+      weight[i * n + k] = TrigonometricCardinal(
+          points, 2 * PETSC_PI * ((PetscReal)k / (PetscReal)n - (PetscReal)i / (PetscReal)points));
 }
 
-/* F = Dm^T sigma + (c_b ds/a0) D4 V of each column (V, sigma) of the inverse. */
-static void Forces(Patterns s, const Pattern *q, const PetscReal tau[], const PetscReal inverse[], PetscReal F[]) {
+/* F = Dm^T sigma + (c_b ds/a0) D4 V below each column (V, sigma) of the inverse. */
+static void Forces(Patterns s, const Pattern *q, const PetscReal tau[]) {
   const Membrane m = s->coupling->membrane;
-  const PetscInt n = LayoutCount(m->layout, q->like), all = 3 * n;
+  const PetscInt n = LayoutCount(m->layout, q->like);
   PetscReal *pull = s->X;
-  for (PetscInt j = 0; j < all; j++) {
-    const PetscReal *V = inverse + j * all, *sigma = V + 2 * n;
-    PetscReal *f = F + j * 2 * n;
+  for (PetscInt j = 0; j < 3 * n; j++) {
+    PetscReal *V = q->inverse + j * 5 * n, *sigma = V + 2 * n, *F = V + 3 * n;
     for (PetscInt k = 0; k < 2 * n; k++) pull[k] = sigma[k / 2] * tau[k];
-    (void)PetscArrayzero(f, 2 * n);
-    MembraneEdgesTranspose(m, q->like, 1, pull, f);
-    if (m->bending > 0) MembraneVesicleBending(m, q->like, m->bending / s->a0, V, f);
+    (void)PetscArrayzero(F, 2 * n);
+    MembraneEdgesTranspose(m, q->like, 1, pull, F);
+    if (m->bending > 0) MembraneVesicleBending(m, q->like, m->bending / s->a0, V, F);
   }
 }
 
@@ -91,41 +88,32 @@ static void Points(PetscInt n, const PetscReal X[], PetscInt points, PetscReal Y
     }
 }
 
-/* The coarse parts of a pattern from its inverse: forces on the points under it, self, second, points. */
-static PetscErrorCode MakeCoarse(Patterns s, Pattern *q, const PetscReal inverse[]) {
-  const Membrane m = s->coupling->membrane;
-  const PetscInt n = LayoutCount(m->layout, q->like), all = 3 * n, points = LayoutCount(s->coarse->layout, q->like);
+/* The coarse parts of a pattern: weight, self, points. */
+static PetscErrorCode MakeCoarse(Patterns s, Pattern *q) {
+  const PetscInt n = LayoutCount(s->coupling->membrane->layout, q->like),
+                 points = LayoutCount(s->coarse->layout, q->like);
   const PetscReal h2 = PetscSqr(s->coarse->fluid->grid->h);
-  PetscReal *P, *F, *G, *tau;
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc4(4 * n * points, &P, 2 * n * all, &F, 2 * points * all, &G, 2 * n, &tau));
-  PetscCall(PetscMalloc1(2 * points * all, &q->second));
+  PetscCall(PetscMalloc1(n * points, &q->weight));
   PetscCall(PetscCalloc1(4 * points * points, &q->self));
   PetscCall(PetscMalloc1(2 * points, &q->points));
-  Interpolation(points, n, P);
-  MembraneVesicleTangents(m, q->like, q->X, tau);
-  Forces(s, q, tau, inverse, F);
-  PetscCall(DenseProduct(PETSC_TRUE, 2 * points, all, 2 * n, P, F, G));
-  PetscCall(DenseProduct(PETSC_FALSE, all, 2 * points, 2 * n, inverse, P, q->second));
-  for (PetscInt j = 0; j < all; j++)
-    PetscCall(PetscArraycpy(q->first + j * (all + 2 * points) + all, G + j * 2 * points, 2 * points));
+  Interpolation(points, n, q->weight);
   Points(n, q->X, points, q->points);
   AddMean(s->coarse->table, 1 / h2, points, q->points, q->self);
-  PetscCall(PetscFree4(P, F, G, tau));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode PatternMake(Patterns s, Pattern *q, PetscBool *good) {
-  const PetscInt all = 3 * LayoutCount(s->coupling->membrane->layout, q->like),
-                 points = s->coarse ? LayoutCount(s->coarse->layout, q->like) : 0;
-  PetscReal *inverse;
+  const Membrane m = s->coupling->membrane;
+  const PetscInt n = LayoutCount(m->layout, q->like);
+  PetscReal *tau;
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(all * all, &inverse));
-  PetscCall(Invert(s, q, inverse, good));
-  PetscCall(PetscMalloc1(all * (all + 2 * points), &q->first));
-  for (PetscInt j = 0; j < all; j++)
-    PetscCall(PetscArraycpy(q->first + j * (all + 2 * points), inverse + j * all, all));
-  if (s->coarse) PetscCall(MakeCoarse(s, q, inverse));
-  PetscCall(PetscFree(inverse));
+  PetscCall(PetscMalloc1(15 * n * n, &q->inverse));
+  PetscCall(PetscMalloc1(2 * n, &tau));
+  PetscCall(Invert(s, q, q->inverse, good));
+  MembraneVesicleTangents(m, q->like, q->X, tau);
+  Forces(s, q, tau);
+  if (s->coarse) PetscCall(MakeCoarse(s, q));
+  PetscCall(PetscFree(tau));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,18 +1,19 @@
 #include "coupling/patterns.h"
 #include "base/agree.h"
+#include "coupling/patternapply.h"
+#include "coupling/patterncross.h"
 #include "coupling/patternmake.h"
 
 #define TOLERANCE 0.03 /* of a vesicle's distance from its pattern */
 
 /* Work space of the vesicles' columns and of one vesicle. */
 static PetscErrorCode CreateWork(Patterns s) {
-  const Layout l = s->coupling->membrane->layout, coarse = s->coarse ? s->coarse->layout : NULL;
+  const Layout l = s->coupling->membrane->layout;
   PetscInt most = 0;
   PetscFunctionBeginUser;
   for (PetscInt v = 0; v < l->bodies; v++) most = PetscMax(most, LayoutCount(l, v));
-  const PetscInt points = coarse ? 2 * coarse->n : 0;
   PetscCall(PetscMalloc4(l->bodies, &s->of, l->end - l->own, &s->order, l->end - l->own, &s->pose, 2 * most, &s->X));
-  PetscCall(PetscMalloc4(3 * l->n + points, &s->from, 3 * l->n + points, &s->to, points, &s->F, points, &s->W));
+  PetscCall(PetscMalloc3(3 * l->n, &s->from, 5 * l->n, &s->to, 2 * l->n, &s->force));
   for (PetscInt v = 0; v < l->bodies; v++) s->of[v] = -1;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -26,14 +27,15 @@ PetscErrorCode PatternsCreate(const FluidSpec *spec, Coupling c, Patterns *out) 
   s->coupling = c;
   PetscCall(CoarseCreate(spec, m->layout, m->L0, c->markers->kernel->name, &s->coarse));
   PetscCall(CreateWork(s));
+  if (s->coarse) PetscCall(PatternCrossCreate(s, &s->cross));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode FreeMatrices(Pattern *q) {
   PetscFunctionBeginUser;
-  PetscCall(PetscFree(q->first));
+  PetscCall(PetscFree(q->inverse));
   PetscCall(PetscFree(q->self));
-  PetscCall(PetscFree(q->second));
+  PetscCall(PetscFree(q->weight));
   PetscCall(PetscFree(q->points));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -51,9 +53,10 @@ PetscErrorCode PatternsDestroy(Patterns *patterns) {
   if (!s) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt k = 0; k < s->count; k++) PetscCall(FreePattern(&s->pattern[k]));
   PetscCall(PetscFree(s->pattern));
+  PetscCall(PatternCrossDestroy(&s->cross));
   PetscCall(CoarseDestroy(&s->coarse));
   PetscCall(PetscFree4(s->of, s->order, s->pose, s->X));
-  PetscCall(PetscFree4(s->from, s->to, s->F, s->W));
+  PetscCall(PetscFree3(s->from, s->to, s->force));
   PetscCall(PetscFree(*patterns));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -194,27 +197,8 @@ static PetscErrorCode MakeAll(Patterns s, PetscBool *good) {
   }
   for (PetscInt k = 0; k < s->count && *good; k++) {
     Pattern *q = &s->pattern[k];
-    if (q->end > q->begin && !q->first) PetscCall(PatternMake(s, q, good));
+    if (q->end > q->begin && !q->inverse) PetscCall(PatternMake(s, q, good));
   }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Each vesicle's coarse points lie where its pattern's lie in its frame. */
-static PetscErrorCode PlaceCoarse(Patterns s) {
-  const Layout l = s->coupling->membrane->layout, coarse = s->coarse->layout;
-  PetscFunctionBeginUser;
-  for (PetscInt v = l->own; v < l->end; v++) {
-    const PetscInt n = LayoutCount(l, v);
-    const PetscReal *X = s->coupling->markers->X + 2 * l->start[v], *y = s->pattern[s->of[v]].points;
-    const Pose *p = &s->pose[v - l->own];
-    PetscReal mean[2] = {0, 0}, *to = s->W + 2 * LayoutOffset(coarse, v);
-    for (PetscInt k = 0; k < 2 * n; k++) mean[k % 2] += X[k] / (PetscReal)n;
-    for (PetscInt i = 0; i < LayoutCount(coarse, v); i++) {
-      to[2 * i] = mean[0] + p->turn[0] * y[2 * i] - p->turn[1] * y[2 * i + 1];
-      to[2 * i + 1] = mean[1] + p->turn[1] * y[2 * i] + p->turn[0] * y[2 * i + 1];
-    }
-  }
-  PetscCall(CoarsePlace(s->coarse, s->W));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -228,8 +212,22 @@ PetscErrorCode PatternsFollow(Patterns s, PetscBool *failed) {
   Sort(s);
   PetscCall(MakeAll(s, &good));
   PetscCall(AgreeFlag(s->coupling->membrane->layout->comm, good ? PETSC_FALSE : PETSC_TRUE, failed));
-  if (s->coarse && !*failed) PetscCall(PlaceCoarse(s));
+  if (s->cross && !*failed) PetscCall(PatternCrossPlace(s->cross));
   PetscCall(PetscLogEventEnd(event, 0, 0, 0, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode PatternsSolve(Patterns s, PetscScalar U[], PetscScalar sigma[]) {
+  const PetscScalar *a;
+  Vec W;
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < s->count; k++)
+    PetscCall(PatternSolveAlone(s, &s->pattern[k], U, sigma, s->cross ? s->force : NULL));
+  if (!s->cross) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PatternCrossSolve(s->cross, s->force, &W));
+  PetscCall(VecGetArrayRead(W, &a));
+  for (PetscInt k = 0; k < s->count; k++) PetscCall(PatternAddAnswer(s, &s->pattern[k], a, U, sigma));
+  PetscCall(VecRestoreArrayRead(W, &a));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

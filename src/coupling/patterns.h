@@ -2,8 +2,8 @@
    vesicle's exact mobility in unbounded fluid is that of any other of its shape, turned, moved and with its labels
    shifted. So the dense problem (denseblock.h) is inverted for a few shapes only, and each vesicle takes that of the
    shape it is nearest to, in its own frame. For quasi-steady flow: with inertia the mobility of short steps depends on
-   the place in the cells. What the others and the walls do to it is found on a coarse grid. Shapes
-   are chosen alike whatever the ranks. */
+   the place in the cells. What the others and the walls do to it is patterncross.h's. Shapes are chosen alike whatever
+   the ranks. */
 #pragma once
 #include "coupling/coarse.h"
 #include "coupling/coupling.h"
@@ -15,12 +15,13 @@ typedef struct {
   PetscReal treading;  /* label speed (1/time) */
   PetscReal *X;        /* [2n] centred */
   PetscInt begin, end; /* own vesicles that take it: a range of the order */
-  PetscReal *first;    /* [3n][3n + 2q]: (r_V, r_s) to (V, sigma) and its forces at q coarse points; NULL: not made */
-  PetscReal *self;     /* [2q][2q]: these forces to what they do to the vesicle itself on the coarse grid, times -1 */
-  PetscReal *second;   /* [2q][3n]: velocities at the points to (V, sigma) */
+  PetscReal *inverse;  /* [3n][5n]: (r_V, r_s) to (V, sigma) and their forces F; NULL: not made */
+  PetscReal *self;     /* [2q][2q]: forces at q coarse points to what they do to the vesicle itself there, times -1 */
+  PetscReal *weight;   /* [q][n] of the interpolation from the points to the markers */
   PetscReal *points;   /* [2q] where they are */
 } Pattern;
 
+typedef struct _p_PatternCross *PatternCross; /* patterncross.h */
 typedef struct _p_Patterns *Patterns;
 struct _p_Patterns {
   Coupling coupling; /* borrowed */
@@ -32,8 +33,9 @@ struct _p_Patterns {
   PetscInt *order;      /* [own vesicles] by pattern */
   Pose *pose;           /* [own vesicles] in its pattern's frame */
   PetscReal *X;         /* [2 most markers of a vesicle] work */
-  PetscReal *from, *to; /* [3n], [3n + 2q] of own vesicles: work */
-  PetscReal *F, *W;     /* [2 own coarse points] forces and velocities */
+  PetscReal *from, *to; /* [3n], [5n] of own vesicles: work */
+  PetscScalar *force;   /* [2n] of own vesicles: work */
+  PatternCross cross;   /* NULL without coarse grid */
 };
 
 /* PatternsCreate - for the coupling's membranes, which have a near field, in the quasi-steady fluid that spec makes.
@@ -47,7 +49,7 @@ PETSC_EXTERN PetscErrorCode PatternsDestroy(Patterns *patterns);
 PETSC_EXTERN PetscErrorCode PatternsFollow(Patterns patterns, PetscBool *failed);
 
 /* PatternsSolve - from the own U[2n] and sigma[n] = r_s: V and sigma of each vesicle's dense problem, corrected by what
-   the others do to it on the coarse grid. Collective. */
+   the others and the walls do to it. Collective. */
 PETSC_EXTERN PetscErrorCode PatternsSolve(Patterns patterns, PetscScalar U[], PetscScalar sigma[]);
 
 /* PatternsGetMemory, PatternsSetMemory - the patterns as PatternsMemorySize numbers for a checkpoint, the same on every

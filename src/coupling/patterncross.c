@@ -1,0 +1,172 @@
+#include "coupling/patterncross.h"
+#include "base/lanes.h"
+#include "coupling/patternapply.h"
+
+#define ITERATIONS 2 /* of GMRES */
+
+static PetscReal Dot(PetscInt n, const PetscReal a[], const PetscReal b[]) {
+  Lanes four = {0};
+  PetscReal rest = 0;
+  PetscInt k = 0;
+  for (; k + LANES <= n; k += LANES) four += LanesAt(a + k) * LanesAt(b + k);
+  for (; k < n; k++) rest += a[k] * b[k];
+  return LanesSum(four) + rest;
+}
+
+/* P^T F: a vesicle's forces, its labels those of the pattern, to the coarse points. work[2n]. */
+static void Restrict(const Pattern *q, PetscInt points, PetscInt n, PetscInt shift, const PetscScalar F[],
+                     PetscReal work[], PetscScalar to[]) {
+  PetscReal *x = work, *y = work + n;
+  for (PetscInt k = 0; k < n; k++) {
+    const PetscInt at = k + shift < n ? k + shift : k + shift - n;
+    x[k] = F[2 * at];
+    y[k] = F[2 * at + 1];
+  }
+  for (PetscInt i = 0; i < points; i++) {
+    to[2 * i] = Dot(n, q->weight + i * n, x);
+    to[2 * i + 1] = Dot(n, q->weight + i * n, y);
+  }
+}
+
+/* P W: velocities at the coarse points to the markers. work[2n]. */
+static void Prolong(const Pattern *q, PetscInt points, PetscInt n, PetscInt shift, const PetscReal W[],
+                    PetscReal work[], PetscScalar to[]) {
+  PetscReal *x = work, *y = work + n;
+  (void)PetscArrayzero(work, 2 * n);
+  for (PetscInt i = 0; i < points; i++)
+    for (PetscInt k = 0; k < n; k++) {
+      x[k] += q->weight[i * n + k] * W[2 * i];
+      y[k] += q->weight[i * n + k] * W[2 * i + 1];
+    }
+  for (PetscInt k = 0; k < n; k++) {
+    const PetscInt at = k + shift < n ? k + shift : k + shift - n;
+    to[2 * at] = x[k];
+    to[2 * at + 1] = y[k];
+  }
+}
+
+/* W += what a vesicle's forces F do to itself on the coarse grid, taken off. work[4 points]. */
+static void TakeSelf(const Pattern *q, const Pose *pose, PetscInt points, const PetscReal F[], PetscReal work[],
+                     PetscReal W[]) {
+  PetscReal *f = work, *w = work + 2 * points;
+  PoseTurn(pose, PETSC_TRUE, points, F, f);
+  (void)PetscArrayzero(w, 2 * points);
+  for (PetscInt j = 0; j < 2 * points; j++)
+    for (PetscInt i = 0; i < 2 * points; i++) w[i] += q->self[j * 2 * points + i] * f[j];
+  PoseTurn(pose, PETSC_FALSE, points, w, f);
+  for (PetscInt i = 0; i < 2 * points; i++) W[i] += f[i];
+}
+
+/* W = -K F: what forces F of the own vesicles, and the walls, do to the others; own parts of marker vectors. */
+static PetscErrorCode Others(PatternCross c, const PetscScalar F[], PetscScalar W[]) {
+  const Patterns s = c->patterns;
+  const Layout l = s->coupling->membrane->layout, coarse = s->coarse->layout;
+  PetscFunctionBeginUser;
+  for (PetscInt v = l->own; v < l->end; v++)
+    Restrict(&s->pattern[s->of[v]], LayoutCount(coarse, v), LayoutCount(l, v), s->pose[v - l->own].shift,
+             F + 2 * LayoutOffset(l, v), c->work, c->F + 2 * LayoutOffset(coarse, v));
+  PetscCall(PetscArraycpy(c->W, c->F, 2 * coarse->n));
+  PetscCall(CoarseApply(s->coarse, c->W));
+  for (PetscInt v = l->own; v < l->end; v++) {
+    const Pattern *q = &s->pattern[s->of[v]];
+    const Pose *pose = &s->pose[v - l->own];
+    const PetscInt points = LayoutCount(coarse, v), at = 2 * LayoutOffset(coarse, v);
+    TakeSelf(q, pose, points, c->F + at, c->work, c->W + at);
+    Prolong(q, points, LayoutCount(l, v), pose->shift, c->W + at, c->work, W + 2 * LayoutOffset(l, v));
+  }
+  PetscCall(ShortRangeApply(c->near, F, W));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* y = W + K F(B^-1 (W, 0)). */
+static PetscErrorCode Mult(Mat A, Vec W, Vec y) {
+  PatternCross c;
+  const PetscScalar *from;
+  PetscScalar *to;
+  PetscFunctionBeginUser;
+  PetscCall(MatShellGetContext(A, &c));
+  const Patterns s = c->patterns;
+  PetscCall(VecGetArrayRead(W, &from));
+  PetscCall(VecGetArray(y, &to));
+  for (PetscInt k = 0; k < s->count; k++) PetscCall(PatternForces(s, &s->pattern[k], from, c->force));
+  PetscCall(Others(c, c->force, to));
+  PetscCall(VecRestoreArray(y, &to));
+  PetscCall(VecRestoreArrayRead(W, &from));
+  PetscCall(VecAYPX(y, -1, W));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CreateKSP(PatternCross c, Layout l) {
+  PC pc;
+  PetscFunctionBeginUser;
+  PetscCall(LayoutCreateVec(l, 2, &c->known));
+  PetscCall(VecDuplicate(c->known, &c->velocity));
+  PetscCall(MatCreateShell(l->comm, 2 * l->n, 2 * l->n, 2 * l->M, 2 * l->M, c, &c->A));
+  PetscCall(MatShellSetOperation(c->A, MATOP_MULT, (void (*)(void))Mult));
+  PetscCall(KSPCreate(l->comm, &c->ksp));
+  PetscCall(KSPSetType(c->ksp, KSPGMRES));
+  PetscCall(KSPGetPC(c->ksp, &pc));
+  PetscCall(PCSetType(pc, PCNONE));
+  PetscCall(KSPSetOperators(c->ksp, c->A, c->A));
+  PetscCall(KSPSetTolerances(c->ksp, PETSC_SMALL, 0, PETSC_DEFAULT, ITERATIONS));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode PatternCrossCreate(Patterns s, PatternCross *out) {
+  const Layout l = s->coupling->membrane->layout, coarse = s->coarse->layout;
+  PetscInt most = 0;
+  PatternCross c;
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&c));
+  *out = c;
+  c->patterns = s;
+  for (PetscInt v = l->own; v < l->end; v++)
+    most = PetscMax(most, PetscMax(2 * LayoutCount(l, v), 4 * LayoutCount(coarse, v)));
+  PetscCall(PetscMalloc4(2 * coarse->n, &c->F, 2 * coarse->n, &c->W, 2 * l->n, &c->force, most, &c->work));
+  PetscCall(ShortRangeCreate(s->coupling, s->coarse, &c->near));
+  PetscCall(CreateKSP(c, l));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode PatternCrossDestroy(PatternCross *cross) {
+  PatternCross c = *cross;
+  PetscFunctionBeginUser;
+  if (!c) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(KSPDestroy(&c->ksp));
+  PetscCall(MatDestroy(&c->A));
+  PetscCall(VecDestroy(&c->known));
+  PetscCall(VecDestroy(&c->velocity));
+  PetscCall(ShortRangeDestroy(&c->near));
+  PetscCall(PetscFree4(c->F, c->W, c->force, c->work));
+  PetscCall(PetscFree(*cross));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Each vesicle's coarse points lie where its pattern's lie in its frame. */
+PetscErrorCode PatternCrossPlace(PatternCross c) {
+  const Patterns s = c->patterns;
+  const Layout l = s->coupling->membrane->layout, coarse = s->coarse->layout;
+  PetscFunctionBeginUser;
+  for (PetscInt v = l->own; v < l->end; v++) {
+    const PetscInt n = LayoutCount(l, v), points = LayoutCount(coarse, v);
+    const PetscReal *X = s->coupling->markers->X + 2 * l->start[v];
+    PetscReal mean[2] = {0, 0}, *to = c->W + 2 * LayoutOffset(coarse, v);
+    for (PetscInt k = 0; k < 2 * n; k++) mean[k % 2] += X[k] / (PetscReal)n;
+    PoseTurn(&s->pose[v - l->own], PETSC_FALSE, points, s->pattern[s->of[v]].points, to);
+    for (PetscInt i = 0; i < 2 * points; i++) to[i] += mean[i % 2];
+  }
+  PetscCall(CoarsePlace(s->coarse, c->W));
+  PetscCall(ShortRangePlace(c->near));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode PatternCrossSolve(PatternCross c, const PetscScalar F[], Vec *W) {
+  PetscScalar *known;
+  PetscFunctionBeginUser;
+  PetscCall(VecGetArray(c->known, &known));
+  PetscCall(Others(c, F, known));
+  PetscCall(VecRestoreArray(c->known, &known));
+  PetscCall(KSPSolve(c->ksp, c->known, c->velocity));
+  *W = c->velocity;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
