@@ -198,7 +198,7 @@ install: manual ## install under PREFIX (/usr/local): program, library, Python p
 	install -m 644 README.md CHANGELOG.md CONTRIBUTING.md CITATION.cff LICENSE $(PREFIX)/share/doc/petves/
 	install -m 644 docs/*.md $(PREFIX)/share/doc/petves/docs/
 	cp -r runs python/examples $(PREFIX)/share/petves/
-	install -m 644 python/petves/*.py $(PYTHON_DIR)/petves/
+	install -m 644 python/petves/*.py python/petves/*.pyi python/petves/py.typed $(PYTHON_DIR)/petves/
 	install -m 644 python/petves/views/*.py python/petves/views/*.html $(PYTHON_DIR)/petves/views/
 
 uninstall: ## remove what make install has put under PREFIX

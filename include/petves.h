@@ -71,8 +71,12 @@ PETSC_EXTERN PetscErrorCode SimulationRun(Simulation simulation, PetscBool *good
 /* SimulationCheckpoint - write checkpoint.h5 now. */
 PETSC_EXTERN PetscErrorCode SimulationCheckpoint(Simulation simulation);
 
-/* SimulationSetQuiet - print neither progress nor the final table. Not collective. */
-PETSC_EXTERN PetscErrorCode SimulationSetQuiet(Simulation simulation, PetscBool quiet);
+/* PetvesSetQuiet - from now on simulations of this process print neither progress nor the final table, reasons or
+   warnings, or do again; what is asked for (-view) is printed. Not collective. */
+PETSC_EXTERN PetscErrorCode PetvesSetQuiet(PetscBool quiet);
+
+/* SimulationGetWarning - the i-th warning so far, of at most 17; NULL past the last. Borrowed. Not collective. */
+PETSC_EXTERN PetscErrorCode SimulationGetWarning(Simulation simulation, PetscInt i, const char **text);
 
 /* SimulationGetTime - steps taken and time reached. Not collective. */
 PETSC_EXTERN PetscErrorCode SimulationGetTime(Simulation simulation, PetscInt *step, PetscReal *time);

@@ -130,9 +130,15 @@ PetscErrorCode SimulationCheckpoint(Simulation s) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SimulationSetQuiet(Simulation s, PetscBool quiet) {
+PetscErrorCode SimulationGetWarning(Simulation s, PetscInt i, const char **text) {
+  const Warnings *warnings = &s->scheme->warnings;
+  const PetscInt own = *s->scene->warning ? 1 : 0;
   PetscFunctionBeginUser;
-  s->output->progress.quiet = quiet;
+  *text = NULL;
+  if (i >= 0 && i < own)
+    *text = s->scene->warning;
+  else if (i >= own && i < own + warnings->n)
+    *text = warnings->text[i - own];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

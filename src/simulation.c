@@ -252,8 +252,7 @@ PetscErrorCode SimulationAdvance(Simulation s, PetscReal until, PetscBool *stepp
                           1 + 1.5 * (s->longest_step + s->output->checkpoint_seconds), &why));
   if (why) {
     s->reason = "stopped";
-    if (!s->output->progress.quiet)
-      PetscCall(PetscPrintf(s->scene->comm, "petves: stopping after step %" PetscInt_FMT ": %s\n", q->step, why));
+    PetscCall(PetvesSay(s->scene->comm, "petves: stopping after step %" PetscInt_FMT ": %s\n", q->step, why));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   *stepped = PETSC_TRUE;

@@ -16,7 +16,7 @@ static PetscErrorCode RunScene(const char line[], char message[], PetscBool *goo
   PetscCall(PetscOptionsInsertString(options, line));
   PetscCall(PetvesEnter(options, message, &depth));
   error = SimulationCreate(PETSC_COMM_WORLD, &simulation);
-  if (!error) error = SimulationSetQuiet(simulation, PETSC_TRUE);
+  if (!error) error = PetvesSetQuiet(PETSC_TRUE);
   if (!error) error = SimulationRun(simulation, good);
   PetscCall(SimulationDestroy(&simulation));
   PetscCall(PetvesLeave(depth));

@@ -18,3 +18,8 @@ def __getattr__(name: str) -> Any:
     import importlib
 
     return getattr(importlib.import_module(f"petves.{_HOME[name]}"), name)
+
+
+def __dir__() -> list[str]:
+    """Return the public names, those that are not imported yet too."""
+    return sorted([*__all__, "__doc__", "__file__", "__name__", "__path__", "__version__"])

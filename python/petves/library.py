@@ -38,6 +38,7 @@ _text = ctypes.c_char_p
 _communicator = ctypes.c_void_p
 
 SIGNATURES = {
+    "PetvesSetQuiet": (ctypes.c_int,),
     "PetvesEnter": (Handle, _text, _pointer(Int)),
     "PetvesLeave": (Int,),
     "PetvesAgree": (_communicator, Int, _pointer(Int)),
@@ -52,7 +53,7 @@ SIGNATURES = {
     "SimulationEnd": (Handle, _text),
     "SimulationGetReason": (Handle, _pointer(_text)),
     "SimulationCheckpoint": (Handle,),
-    "SimulationSetQuiet": (Handle, ctypes.c_int),
+    "SimulationGetWarning": (Handle, Int, _pointer(_text)),
     "SimulationGetTime": (Handle, _pointer(Int), _pointer(_double)),
     "SimulationGetObject": (Handle, _text, _pointer(Handle)),
     "SimulationGetSizes": (Handle, _pointer(Int), _pointer(Int), _pointer(Int)),

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import ctypes
+import difflib
 
 import numpy as np
+
+from petves.errors import Error
 
 
 def _column(name: str, what: str) -> property:
@@ -24,16 +27,30 @@ class Measures:
     _columns: dict[str, int]
 
     def measure(self, name: str) -> float:
-        """Return the value of a column of series.csv after the last step."""
-        return self._rows[-1][self._columns[name]]
+        """Return the value of a column of series.csv after the last step.
+
+        Raises
+        ------
+        Error
+            When there is no column of this name: the line names all that there are.
+        """
+        return self._rows[-1][self._place(name)]
+
+    def _place(self, name: str) -> int:
+        if name not in self._columns:
+            near = difflib.get_close_matches(name, self._columns, 1)
+            meant = f"{near[0]} is meant? " if near else ""
+            raise Error(f"{name}: no such column; {meant}allowed: {', '.join(self._columns)}")
+        return self._columns[name]
 
     def each(self, name: str) -> np.ndarray:
-        """Return a vesicle column's values of the single vesicles, shape (vesicles,)."""
+        """Return the column `name` of the single vesicles, shape (vesicles,); errors as of `measure`."""
+        column = self._place(name)
         values, row = [], np.empty(len(self._columns))
         pointer = row.ctypes.data_as(ctypes.POINTER(ctypes.c_double))
         for vesicle in range(self.vesicles):
             self._lib.SimulationGetRow(self._open(), vesicle, pointer)
-            values.append(row[self._columns[name]])
+            values.append(row[column])
         return np.array(values)
 
     @property

@@ -14,6 +14,13 @@ def stresslets(run: Run, frame: int) -> np.ndarray:
     The sum of force a times place b is S_ab = -SUM ds (sigma tau_a tau_b + c_b k_a k_b), tau the tangent and k the second
     derivative along the membrane, length^4/time^2 with density 1. Divided by minus the area of the box it is what the
     vesicle adds to the stress (Batchelor 1970). Forces of contact between vesicles (-contact_repulsion) are not in it.
+
+    Parameters
+    ----------
+    run : Run
+        The run, read with ``petves.load(folder, "numpy")``.
+    frame : int
+        Number of a saved time, -1 the last one.
     """
     kind = run.options().get("membrane_derivative", "spectral")
     found = []
@@ -32,7 +39,15 @@ def stresslets(run: Run, frame: int) -> np.ndarray:
 
 
 def velocity_profile(run: Run, frame: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return y of the rows of cells and the mean of u over x there (length, length/time), each of shape (ny,)."""
+    """Return y of the rows of cells and the mean of u over x there (length, length/time), each of shape (ny,).
+
+    Parameters
+    ----------
+    run : Run
+        The run, read with ``petves.load(folder, "numpy")``.
+    frame : int
+        Number of a saved time, -1 the last one.
+    """
     return run.cell_centers()[1], run.fields(frame)[0].mean(axis=1)
 
 
@@ -40,6 +55,15 @@ def area_fraction_profile(run: Run, frame: int, layers: int = 20) -> tuple[np.nd
     """Return y in the middle of so many layers of equal height, and the part of each that vesicles take up.
 
     Each vesicle is the polygon of its markers, cut at the layers' bounds exactly.
+
+    Parameters
+    ----------
+    run : Run
+        The run, read with ``petves.load(folder, "numpy")``.
+    frame : int
+        Number of a saved time, -1 the last one.
+    layers : int
+        How many.
     """
     bounds = np.linspace(run.box[2], run.box[3], layers + 1)
     area = sum(_below(run.outline(frame, vesicle), bounds) for vesicle in range(run.vesicles))
@@ -47,7 +71,13 @@ def area_fraction_profile(run: Run, frame: int, layers: int = 20) -> tuple[np.nd
 
 
 def centers(run: Run) -> np.ndarray:
-    """Return the centroids of all vesicles at the saved times, shape (T, vesicles, 2); seams are not folded back."""
+    """Return the centroids of all vesicles at the saved times, shape (T, vesicles, 2); seams are not folded back.
+
+    Parameters
+    ----------
+    run : Run
+        The run, read with ``petves.load(folder, "numpy")``.
+    """
     return np.array(
         [[centroid(run.outline(frame, v)) for v in range(run.vesicles)] for frame in range(len(run.time))]
     ).reshape(len(run.time), run.vesicles, 2)
@@ -58,6 +88,11 @@ def mean_square_displacement(run: Run) -> tuple[np.ndarray, np.ndarray]:
 
     Means over the vesicles and over all pairs of saved times with that lag; saved times are taken to be evenly spaced. In
     a sheared channel x is mostly the flow's, y is what collisions do.
+
+    Parameters
+    ----------
+    run : Run
+        The run, read with ``petves.load(folder, "numpy")``.
     """
     places = centers(run)
     lags = [np.mean((places[lag:] - places[: len(places) - lag]) ** 2, axis=(0, 1)) for lag in range(len(places))]

@@ -51,6 +51,10 @@ class Run:
         First marker of each vesicle, and the number of markers.
     summary : dict
         summary.json; empty while the run has not ended.
+
+    Notes
+    -----
+    In the methods `frame` is the number of a saved time, -1 the last one, and `vesicle` the number of a vesicle from 0.
     """
 
     folder: Path
@@ -107,7 +111,7 @@ class Run:
         return len(self.start) - 1
 
     def each(self, name: str) -> np.ndarray:
-        """Return a column of every vesicle at every step ("area", "center_x"), shape (steps, vesicles).
+        """Return the column `name` of every vesicle at every step ("area", "center_x"), shape (steps, vesicles).
 
         From the suffixed columns of series.csv, or above 40 vesicles from vesicles.h5, whose last rows may be NaN while the run
         goes on.

@@ -51,7 +51,7 @@ class Simulation(State):
         communicate; nor may it use the simulation. A part of it that is no Stokes flow for this viscosity (du/dt -
         nu Lap u + grad p not zero for any p) acts as if a body force held it; its divergence must be zero.
     quiet : bool, optional
-        Print neither progress lines nor the final table (default).
+        Print nothing that was not asked for (default): no progress, final table, reasons or warnings. `warnings` has the last.
     **options
         The program's options. Without ``output_dir`` the files go to a temporary folder that `close` removes.
 
@@ -81,6 +81,7 @@ class Simulation(State):
         self._options = Handle()
         self._message = ctypes.create_string_buffer(MAX_MESSAGE)
         self._inside = False
+        self._quiet = quiet
         self._ended = True  # nothing to write yet
         self._temporary = False
         self._failed: list[BaseException] = []  # by the flow
@@ -96,7 +97,6 @@ class Simulation(State):
             self._call(
                 "SimulationCreateWithFlow", communicator(self._comm), self._flow, None, ctypes.byref(self._handle)
             )
-            self._lib.SimulationSetQuiet(self._handle, int(quiet))
             self._learn()
             self._call("SimulationBegin", self._handle)
         except BaseException:
@@ -171,6 +171,7 @@ class Simulation(State):
             raise Error("a simulation cannot be used inside its own step; copy what the flow needs beforehand")
         depth, code, cause = Int(), 0, None
         self._lib.PetvesEnter(self._options, self._message, ctypes.byref(depth))
+        self._lib.PetvesSetQuiet(int(self._quiet))
         self._inside = True
         try:
             code = getattr(self._lib, function)(*arguments)
@@ -178,6 +179,7 @@ class Simulation(State):
             cause = error.__cause__ or error
         finally:
             self._inside = False
+            self._lib.PetvesSetQuiet(0)
             self._lib.PetvesLeave(depth)
         if code and self._failed:  # without a code all ranks have agreed that the step failed: _stop_on raises it
             cause = self._failed.pop()

@@ -35,6 +35,14 @@ class State(Measures):
         return dict(self._in_force)
 
     @property
+    def warnings(self) -> list[str]:
+        """What the run has warned of so far, also with ``quiet``."""
+        text, found = ctypes.c_char_p(), []
+        while not self._lib.SimulationGetWarning(self._open(), len(found), ctypes.byref(text)) and text.value:
+            found.append(text.value.decode(errors="replace"))
+        return found
+
+    @property
     def vesicles(self) -> int:
         """Number of vesicles."""
         return len(self._start) - 1
@@ -108,20 +116,20 @@ class State(Measures):
         return box[0] + h * (0.5 + np.arange(columns)), box[2] + h * (0.5 + first + np.arange(rows))
 
     def vec(self, name: str) -> PETSc.Vec:
-        """Return the state's vector: velocity, pressure (by rows over the ranks), markers, marker_velocity, tension (by
+        """Return the state's vector `name`: velocity, pressure (by rows over the ranks), markers, marker_velocity, tension (by
         vesicles over the ranks). After the next step ask again: the vectors change places."""
         return self._object("Vec", name, name)
 
     def dm(self, name: str) -> PETSc.DM:
-        """Return the grid's DM: velocity (a DMComposite of u and v), u, v, pressure (DMDAs)."""
+        """Return the grid's DM `name`: velocity (a DMComposite of u and v), u, v, pressure (DMDAs)."""
         return self._object("DM", name, DM_NAMES.get(name, ""))
 
     def mat(self, name: str) -> PETSc.Mat:
-        """Return an operator of docs/method.md: G, D, L, H on the grid; E, S, B between grid and markers (as shells)."""
+        """Return the operator `name` of docs/method.md: G, D, L, H on the grid; E, S, B between grid and markers (as shells)."""
         return self._object("Mat", name, f"mat_{name}")
 
     def pc(self, name: str) -> PETSc.PC:
-        """Return a fast solver: helmholtz, the inverse of H, or poisson, of L."""
+        """Return the fast solver `name`: helmholtz, the inverse of H, or poisson, of L."""
         return self._object("PC", name, f"pc_{name}")
 
     @property

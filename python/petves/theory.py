@@ -6,7 +6,13 @@ import numpy as np
 
 
 def ellipse_axes(reduced_area: float) -> tuple[float, float]:
-    """Return semi-axes a > b = 1/a of the ellipse of area pi with this reduced area V = 4 pi area/perimeter^2."""
+    """Return semi-axes a > b = 1/a of the ellipse of area pi with this reduced area.
+
+    Parameters
+    ----------
+    reduced_area : float
+        V = 4 pi area/perimeter^2, in (0, 1).
+    """
     angle = np.linspace(0, 2 * np.pi, 512, endpoint=False)
 
     def reduced(a: float) -> float:

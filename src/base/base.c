@@ -7,6 +7,7 @@
 static struct {
   PetscBool one_line;
   PetscBool said, ending; /* an error has been printed; the program ends */
+  PetscBool quiet;        /* PetvesSay says nothing */
   PetscBool registered;
   PetscLogStage stage[PHASE_COUNT];
   PetscReal seconds[PHASE_COUNT];
@@ -145,5 +146,26 @@ PetscErrorCode PetvesEvent(const char name[], PetscLogEvent *event) {
   PetscFunctionBeginUser;
   if (!base.registered) PetscCall(RegisterStages());
   PetscCall(PetscLogEventRegister(name, base.classid, event));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode PetvesSetQuiet(PetscBool quiet) {
+  base.quiet = quiet;
+  return PETSC_SUCCESS;
+}
+
+PetscBool PetvesIsQuiet(void) {
+  return base.quiet;
+}
+
+PetscErrorCode PetvesSay(MPI_Comm comm, const char format[], ...) {
+  char text[PETVES_MAX_MESSAGE];
+  va_list arguments;
+  PetscFunctionBeginUser;
+  if (base.quiet) PetscFunctionReturn(PETSC_SUCCESS);
+  va_start(arguments, format);
+  PetscCall(PetscVSNPrintf(text, sizeof(text), format, NULL, arguments));
+  va_end(arguments);
+  PetscCall(PetscPrintf(comm, "%s", text));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

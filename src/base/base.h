@@ -26,6 +26,11 @@
 PETSC_EXTERN PetscErrorCode PetvesErrorHandler(MPI_Comm, int, const char *, const char *, PetscErrorCode,
                                                PetscErrorType, const char *, void *);
 
+/* PetvesSay - PetscPrintf of what a run says by itself: progress, reasons of -scheme_auto, warnings. Nothing while
+   PetvesSetQuiet asks for that, as PetvesIsQuiet tells. Collective, but for PetvesIsQuiet. */
+PETSC_EXTERN PetscErrorCode PetvesSay(MPI_Comm comm, const char format[], ...) PETSC_ATTRIBUTE_FORMAT(2, 3);
+PETSC_EXTERN PetscBool PetvesIsQuiet(void);
+
 /* PetvesSetupErrors - while on, every error counts as a user's mistake: a solver option with a bad value
    (-tension_ksp_type foo) is one, and PETSc reports it with its own codes. */
 PETSC_EXTERN PetscErrorCode PetvesSetupErrors(PetscBool);

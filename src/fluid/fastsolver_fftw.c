@@ -54,10 +54,10 @@ static PetscErrorCode WarnSlow(Grid g, Field f, int dir) {
       largest = p;
     }
   if (g->wall[dir] && (int)f == dir && largest > 13)
-    PetscCall(PetscPrintf(g->comm,
-                          "petves: warning: -domain_cells %" PetscInt_FMT " in %c has the prime factor %" PetscInt_FMT
-                          ", sine transforms are slow; products of 2, 3, 5 and 7 are fast\n",
-                          g->n[dir], dir ? 'y' : 'x', largest));
+    PetscCall(PetvesSay(g->comm,
+                        "petves: warning: -domain_cells %" PetscInt_FMT " in %c has the prime factor %" PetscInt_FMT
+                        ", sine transforms are slow; products of 2, 3, 5 and 7 are fast\n",
+                        g->n[dir], dir ? 'y' : 'x', largest));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

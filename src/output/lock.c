@@ -60,10 +60,10 @@ static PetscErrorCode Lock(Folder *folder) {
   PetscCallMPI(MPI_Bcast(who, sizeof(who), MPI_CHAR, 0, folder->comm));
   if (error == ENOENT || error == ENOTDIR) PetscFunctionReturn(PETSC_SUCCESS); /* no folder */
   if (error == ENOLCK || error == ENOSYS || error == EOPNOTSUPP || error == EINVAL) {
-    PetscCall(PetscPrintf(folder->comm,
-                          "petves: warning: %s: no locks on this file system (%s); nothing keeps a second run out of "
-                          "the folder\n",
-                          path, strerror(error)));
+    PetscCall(PetvesSay(folder->comm,
+                        "petves: warning: %s: no locks on this file system (%s); nothing keeps a second run out of "
+                        "the folder\n",
+                        path, strerror(error)));
     folder->locked = PETSC_TRUE;
     PetscFunctionReturn(PETSC_SUCCESS);
   }

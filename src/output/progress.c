@@ -22,7 +22,7 @@ PetscErrorCode ProgressLine(Progress *p, const State *q, PetscReal t_end, PetscB
   PetscLogDouble now;
   PetscReal share, left;
   PetscFunctionBeginUser;
-  if (p->rank || p->quiet) PetscFunctionReturn(PETSC_SUCCESS);
+  if (p->rank || PetvesIsQuiet()) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscTime(&now));
   if (!force && now - p->printed < PROGRESS_SECONDS) PetscFunctionReturn(PETSC_SUCCESS);
   p->printed = now;
@@ -38,19 +38,19 @@ PetscErrorCode ProgressLine(Progress *p, const State *q, PetscReal t_end, PetscB
 static PetscErrorCode PrintVesicles(MPI_Comm comm, const Record *record, PetscInt steps) {
   const PetscReal *r = record->last;
   PetscFunctionBeginUser;
-  PetscCall(PetscPrintf(comm, "  energy, kinetic and bending   %.6e  %.6e\n", (double)r[COLUMN_KINETIC],
-                        (double)r[COLUMN_BENDING]));
-  PetscCall(PetscPrintf(comm, "  area error, length error      %.3e  %.3e\n", (double)r[COLUMN_AREA_ERROR],
-                        (double)r[COLUMN_LENGTH_ERROR]));
-  PetscCall(PetscPrintf(comm, "  inclination (radians)         %.6f\n", (double)r[COLUMN_INCLINATION]));
+  PetscCall(PetvesSay(comm, "  energy, kinetic and bending   %.6e  %.6e\n", (double)r[COLUMN_KINETIC],
+                      (double)r[COLUMN_BENDING]));
+  PetscCall(PetvesSay(comm, "  area error, length error      %.3e  %.3e\n", (double)r[COLUMN_AREA_ERROR],
+                      (double)r[COLUMN_LENGTH_ERROR]));
+  PetscCall(PetvesSay(comm, "  inclination (radians)         %.6f\n", (double)r[COLUMN_INCLINATION]));
   if (!PetscIsNanReal(r[COLUMN_FREQUENCY]))
-    PetscCall(PetscPrintf(comm, "  tank-treading frequency       %.6f\n", (double)r[COLUMN_FREQUENCY]));
-  PetscCall(PetscPrintf(comm, "  iterations a step             "));
+    PetscCall(PetvesSay(comm, "  tank-treading frequency       %.6f\n", (double)r[COLUMN_FREQUENCY]));
+  PetscCall(PetvesSay(comm, "  iterations a step             "));
   if (record->coupled)
-    PetscCall(PetscPrintf(comm, "coupled %.1f\n", (double)record->coupled / (double)steps));
+    PetscCall(PetvesSay(comm, "coupled %.1f\n", (double)record->coupled / (double)steps));
   else
-    PetscCall(PetscPrintf(comm, "tension %.1f, bending %.1f\n", (double)record->tension / (double)steps,
-                          (double)record->bending / (double)steps));
+    PetscCall(PetvesSay(comm, "tension %.1f, bending %.1f\n", (double)record->tension / (double)steps,
+                        (double)record->bending / (double)steps));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -59,16 +59,15 @@ PetscErrorCode ProgressTable(const Progress *p, const Record *record, const char
   const PetscReal *r = record->last;
   const PetscInt step = (PetscInt)r[COLUMN_STEP], steps = PetscMax(step, 1);
   PetscFunctionBeginUser;
-  if (p->quiet) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscPrintf(p->comm, "\n%s at time %g after %" PetscInt_FMT " steps, %.2f s\n", reason,
-                        (double)r[COLUMN_TIME], step, (double)ProgressSeconds(p)));
+  PetscCall(PetvesSay(p->comm, "\n%s at time %g after %" PetscInt_FMT " steps, %.2f s\n", reason,
+                      (double)r[COLUMN_TIME], step, (double)ProgressSeconds(p)));
   if (record->vesicles) PetscCall(PrintVesicles(p->comm, record, steps));
-  PetscCall(PetscPrintf(p->comm, "  max |div u|                   %.3e\n", (double)r[COLUMN_DIV]));
-  PetscCall(PetscPrintf(p->comm, "  fast solves a step            %.1f\n", (double)record->solves / (double)steps));
-  PetscCall(PetscPrintf(p->comm, "  seconds: fast solves %.2f, rest of the steps %.2f, output %.2f\n",
-                        (double)PhaseSeconds(PHASE_FAST_SOLVE), (double)PhaseSeconds(PHASE_STEP),
-                        (double)PhaseSeconds(PHASE_OUTPUT)));
-  PetscCall(PetscPrintf(p->comm, "  files in %s: %.3g MB, %.3g MB of them run.h5 with %" PetscInt_FMT " frames\n",
-                        folder, w->all / 1e6, w->h5 / 1e6, w->frames));
+  PetscCall(PetvesSay(p->comm, "  max |div u|                   %.3e\n", (double)r[COLUMN_DIV]));
+  PetscCall(PetvesSay(p->comm, "  fast solves a step            %.1f\n", (double)record->solves / (double)steps));
+  PetscCall(PetvesSay(p->comm, "  seconds: fast solves %.2f, rest of the steps %.2f, output %.2f\n",
+                      (double)PhaseSeconds(PHASE_FAST_SOLVE), (double)PhaseSeconds(PHASE_STEP),
+                      (double)PhaseSeconds(PHASE_OUTPUT)));
+  PetscCall(PetvesSay(p->comm, "  files in %s: %.3g MB, %.3g MB of them run.h5 with %" PetscInt_FMT " frames\n", folder,
+                      w->all / 1e6, w->h5 / 1e6, w->frames));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -6,7 +6,6 @@
 typedef struct {
   MPI_Comm comm;
   PetscMPIInt rank;
-  PetscBool quiet;               /* nothing is printed */
   PetscLogDouble start, printed; /* wall time at the start, at the last progress line */
 } Progress;
 

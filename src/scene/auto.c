@@ -101,7 +101,7 @@ static PetscErrorCode PrintSetting(Scene scene, const char name[], const char wh
   }
   if (strlen(value) > 10 && strchr(value, '.'))
     PetscCall(PetscSNPrintf(value, sizeof(value), "%g", strtod(value, NULL)));
-  PetscCall(PetscPrintf(scene->comm, "  %-20s %-8s %s\n", name, value, given ? "yours" : why));
+  PetscCall(PetvesSay(scene->comm, "  %-20s %-8s %s\n", name, value, given ? "yours" : why));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -131,20 +131,20 @@ static PetscErrorCode PrintGrid(Scene scene, PetscReal cells) {
   while (enough >= 0 && grids[enough].error > wanted) enough--;
   error = here < n ? grids[here].error : PETSC_MAX_REAL;
   if (many) error = PetscMin(error, ErrorWithMarkers(cells));
-  PetscCall(PetscPrintf(scene->comm, "  grid: R0/h = %.3g", (double)cells));
+  PetscCall(PetvesSay(scene->comm, "  grid: R0/h = %.3g", (double)cells));
   if (error < PETSC_MAX_REAL)
-    PetscCall(PetscPrintf(scene->comm, ", which leaves up to %.2g in steady tank-treading", (double)error));
+    PetscCall(PetvesSay(scene->comm, ", which leaves up to %.2g in steady tank-treading", (double)error));
   else
-    PetscCall(PetscPrintf(scene->comm, ", coarser than any that was measured"));
+    PetscCall(PetvesSay(scene->comm, ", coarser than any that was measured"));
   if (error <= wanted)
-    PetscCall(PetscPrintf(scene->comm, ": enough\n"));
+    PetscCall(PetvesSay(scene->comm, ": enough\n"));
   else if (enough >= 0)
-    PetscCall(PetscPrintf(scene->comm, ": TOO COARSE for %g, take R0/h = %g (-domain_cells)%s\n",
-                          (double)scene->scheme.wanted, (double)grids[enough].cells,
-                          !many && ErrorWithMarkers(cells) <= wanted ? ", or this grid and -vesicle_markers 45" : ""));
+    PetscCall(PetvesSay(scene->comm, ": TOO COARSE for %g, take R0/h = %g (-domain_cells)%s\n",
+                        (double)scene->scheme.wanted, (double)grids[enough].cells,
+                        !many && ErrorWithMarkers(cells) <= wanted ? ", or this grid and -vesicle_markers 45" : ""));
   else
-    PetscCall(PetscPrintf(scene->comm, ": no grid up to R0/h = %g reached %g\n", (double)grids[0].cells,
-                          (double)scene->scheme.wanted));
+    PetscCall(PetvesSay(scene->comm, ": no grid up to R0/h = %g reached %g\n", (double)grids[0].cells,
+                        (double)scene->scheme.wanted));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -154,9 +154,9 @@ static PetscErrorCode PrintFilm(Scene scene) {
   PetscFunctionBeginUser;
   PetscCall(SceneThinnestFilm(scene, &spacings, &error));
   if (error > 0)
-    PetscCall(PetscPrintf(scene->comm, "  thinnest film: %.2g marker spacings, which leaves up to %.1g of R0: %s\n",
-                          (double)spacings, (double)error,
-                          error <= scene->scheme.wanted ? "enough" : "TOO THIN, take more -vesicle_markers"));
+    PetscCall(PetvesSay(scene->comm, "  thinnest film: %.2g marker spacings, which leaves up to %.1g of R0: %s\n",
+                        (double)spacings, (double)error,
+                        error <= scene->scheme.wanted ? "enough" : "TOO THIN, take more -vesicle_markers"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -166,8 +166,8 @@ static PetscErrorCode PrintChoice(Scene scene, PetscInt row, PetscBool timed) {
   PetscReal slow, fast;
   PetscFunctionBeginUser;
   SceneTimes(scene, &slow, &fast);
-  PetscCall(PetscPrintf(scene->comm, "petves: -scheme_auto %g, by the worst errors measured (docs/speed_accuracy.md)\n",
-                        (double)scene->scheme.wanted));
+  PetscCall(PetvesSay(scene->comm, "petves: -scheme_auto %g, by the worst errors measured (docs/speed_accuracy.md)\n",
+                      (double)scene->scheme.wanted));
   PetscCall(PrintSetting(scene, "-scheme_type", "the membrane and the fluid in one solve"));
   PetscCall(PrintSetting(scene, "-scheme_order", squeezed ? "better where a vesicle wrinkles" : "what was calibrated"));
   PetscCall(PrintSetting(scene, "-time_adapt", "finds the step of any scene"));
@@ -203,10 +203,10 @@ PetscErrorCode SceneReport(Scene scene) {
     PetscCall(PrintChoice(scene, Row(scene), fast < PETSC_MAX_REAL ? PETSC_TRUE : PETSC_FALSE));
     PetscCall(PrintFilm(scene));
     if (FluidSpecIsFree(&scene->fluid))
-      PetscCall(PetscPrintf(scene->comm, "  grid: none, unbounded fluid: enough\n"));
+      PetscCall(PetvesSay(scene->comm, "  grid: none, unbounded fluid: enough\n"));
     else
       PetscCall(PrintGrid(scene, SceneSmallestRadius(scene) / FluidSpecCellSize(&scene->fluid)));
   }
-  if (*scene->warning) PetscCall(PetscPrintf(scene->comm, "petves: warning: %s\n", scene->warning));
+  if (*scene->warning) PetscCall(PetvesSay(scene->comm, "petves: warning: %s\n", scene->warning));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

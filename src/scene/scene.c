@@ -36,6 +36,7 @@ PetscErrorCode SceneCreate(MPI_Comm comm, PetvesFlow flow, void *ctx, Scene *out
   PetscCall(SceneMakeShape(s));
   PetscCall(SceneChooseMarkers(s));
   PetscCall(SceneCheckFree(s));
+  PetscCall(SceneCheckDivergence(s));
   PetscCall(SceneCheckGravity(s));
   /* 6  the steps, which go by the vesicles' size */
   PetscCall(SceneChooseSteps(s));

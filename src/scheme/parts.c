@@ -137,7 +137,7 @@ PetscErrorCode SchemeWarn(Scheme s, const char format[], ...) {
   va_start(arguments, format);
   PetscCall(PetscVSNPrintf(text, sizeof(text), format, NULL, arguments));
   va_end(arguments);
-  PetscCall(PetscPrintf(s->scene->comm, "petves: warning: %s\n", text));
+  PetscCall(PetvesSay(s->scene->comm, "petves: warning: %s\n", text));
   if (s->warnings.n < SCHEME_WARNINGS) PetscCall(PetscStrallocpy(text, &s->warnings.text[s->warnings.n++]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -60,6 +60,14 @@ def failures():
         assert "-flow_type custom: u_inf is (nan., 0.) at" in str(error), error
     else:
         raise AssertionError("NaN is taken")
+    try:
+        petves.Simulation(flow=lambda x, y, t: (2 * x, y), **SMALL)
+    except petves.Error as error:
+        assert "-flow_type custom: u_inf has the divergence 3 at" in str(error), error
+    else:
+        raise AssertionError("a divergence is taken")
+    swirl = lambda x, y, t: (np.sin(9 * x) * np.cos(9 * y) + 50, -np.cos(9 * x) * np.sin(9 * y))
+    petves.Simulation(flow=swirl, **SMALL).close()
     held = []
 
     def inside(x, y, t):

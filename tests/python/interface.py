@@ -8,8 +8,9 @@ import numpy as np
 import petsc4py
 
 FOLDER, FACTS = Path(sys.argv[1]), sys.argv[2:]
-CHECKED = [] if FACTS == ["memory"] else ["-malloc_debug", "-malloc_dump"]  # they take time and memory of their own
-petsc4py.init(["interface", "-objects_dump", *CHECKED])  # prints what is not freed at the end
+DUMPED = [] if FACTS == ["memory"] else ["-malloc_dump"]  # these take time and memory of their own: the dump little,
+CHECKED = ["-malloc_debug"] if "solvers" in FACTS else []  # writing beyond an array is looked for with each allocation
+petsc4py.init(["interface", "-objects_dump", *DUMPED, *CHECKED])  # prints what is not freed at the end
 from petsc4py import PETSc
 
 import petves
@@ -194,6 +195,19 @@ def mistakes():
             raise AssertionError("a monitor's exception is lost")
 
 
+def quiet():
+    """Nothing is printed that was not asked for, and warnings are kept; columns that there are not are named."""
+    scene = {**SMALL, "flow_rate": 5, "time_step": 0.1, "time_end": 0.2}
+    with petves.Simulation(**scene) as sim:
+        sim.run()
+        assert any("-time_step" in text for text in sim.warnings), sim.warnings
+        refused(
+            "inclinaton: no such column; inclination is meant? allowed: step, time, dt,",
+            lambda: sim.measure("inclinaton"),
+        )
+        refused("foo: no such column; allowed: step, time, dt,", lambda: sim.each("foo"))
+
+
 def memory():
     """Making, running and freeing 50 simulations of four kinds takes no memory that is not given back."""
     small, start = {**SMALL, "domain_cells": (16, 16)}, dict(scheme_startup="euler")
@@ -221,7 +235,7 @@ def memory():
     assert after - before < 2e6, f"{after - before} bytes in 50 runs"  # a simulation has about 1e6
 
 
-for fact in (state, measures, running, restarting, solvers, several, memory, mistakes):
+for fact in (state, measures, running, restarting, solvers, several, quiet, memory, mistakes):
     if fact.__name__ in FACTS:
         fact()
         gc.collect()
