@@ -1,6 +1,7 @@
 /* Fluid and membranes joined: where the membranes are in a step, their tangents, what gives back the kernel's
    smoothing, and the operators S and B of the momentum equation. */
 #pragma once
+#include "coupling/doublelayer.h"
 #include "coupling/nearfield.h"
 #include "coupling/repulsion.h"
 #include "fluid/fluid.h"
@@ -11,6 +12,7 @@ struct _p_Coupling {
   Membrane membrane; /* borrowed; of no vesicle when the scene has none */
   Markers markers;
   NearField near;      /* NULL without */
+  DoubleLayer contrast; /* NULL where all viscosities are alike (contrast.h) */
   Repulsion repulsion; /* NULL without */
   PetscReal *tau;      /* [2n] tangents of the own vesicles */
   PetscReal *turning;  /* [n] the tension whose pull turns with the edges (length^3/time^2); CouplingTurn */
