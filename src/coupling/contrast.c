@@ -4,7 +4,7 @@ PetscErrorCode CouplingAddContrast(Coupling c, const PetscReal ratio[]) {
   PetscFunctionBeginUser;
   PetscCall(DoubleLayerCreate(c->near, ratio, &c->contrast));
   c->markers->least = DIPOLE_WALL_CELLS;
-  c->markers->needs = "4 with a viscosity ratio";
+  c->markers->needs = "4";
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

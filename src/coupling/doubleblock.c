@@ -101,11 +101,12 @@ static void LatticePair(DoubleLayer s, PetscInt i, PetscInt j, const PetscReal d
   Contract(K, s->normal + 2 * j, cell, L);
 }
 
-/* C = D - L of two markers, and L; r from the target i to the source j's image, D(i, i) for a marker with itself. */
-static void Pair(DoubleLayer s, PetscInt i, PetscInt j, const PetscReal r[2], const PetscReal *own, PetscReal C[4],
-                 PetscReal L[4]) {
+/* C = D - L of two markers, and L; r from the target i to the source j's image, own: D(i, i) of a marker with itself; by
+   stencils up to `reach` (length). */
+static void Pair(DoubleLayer s, PetscInt i, PetscInt j, const PetscReal r[2], PetscReal reach, const PetscReal *own,
+                 PetscReal C[4], PetscReal L[4]) {
   const PetscReal h = s->near->markers->grid->h, d[2] = {-r[0], -r[1]}, *N = s->normal + 2 * j;
-  const PetscBool far = r[0] * r[0] + r[1] * r[1] > PetscSqr(DOUBLE_CELLS * h) ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool far = r[0] * r[0] + r[1] * r[1] > reach * reach ? PETSC_TRUE : PETSC_FALSE;
   PetscReal D[3];
   if (own)
     for (int k = 0; k < 3; k++) D[k] = own[k];
@@ -147,7 +148,7 @@ PetscErrorCode DoubleBlockFill(DoubleLayer s, const DoubleBlock *b, PetscBool la
   const Layout l = f->membrane->layout;
   const PetscInt n = LayoutCount(l, b->row), m = LayoutCount(l, b->column);
   const PetscBool self = b->row == b->column && b->shift[0] == 0 && b->shift[1] == 0 ? PETSC_TRUE : PETSC_FALSE;
-  const PetscReal *X = f->markers->X;
+  const PetscReal *X = f->markers->X, reach = (self ? DOUBLE_CELLS : DOUBLE_CROSS_CELLS) * f->markers->grid->h;
   PetscReal *flux, *diagonal;
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc2(2 * n, &flux, 3 * n, &diagonal));
@@ -159,7 +160,7 @@ PetscErrorCode DoubleBlockFill(DoubleLayer s, const DoubleBlock *b, PetscBool la
       const PetscReal *own = self && p == q ? diagonal + 3 * p : NULL, *N = s->normal + 2 * j;
       PetscReal C[4], L[4], *at = value + 2 * q * 2 * n + 2 * p;
       if (lattice) {
-        Pair(s, i, j, r, own, C, L);
+        Pair(s, i, j, r, reach, own, C, L);
         for (int c = 0; c < 2; c++) flux[2 * p + c] += (L[c] * N[0] + L[2 + c] * N[1]) / s->along[j];
       } else
         Whole(s, j, r, own, C);

@@ -137,24 +137,37 @@ PetscErrorCode DoubleLayerApply(DoubleLayer s, PetscReal alpha, PetscScalar y[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Tensors of the dipoles, less the jump's flux; zero where there is no jump, as for a ratio of 1, which has no normals. */
+static void Tensors(DoubleLayer s) {
+  for (PetscInt k = 0; k < s->near->membrane->layout->M; k++) {
+    const PetscReal *J = s->jump + 2 * k, *N = s->normal + 2 * k;
+    const PetscBool none = J[0] == 0 && J[1] == 0 ? PETSC_TRUE : PETSC_FALSE;
+    PetscReal *T = s->tensor + DIPOLE_COUNT * k;
+    T[DIPOLE_XX] = none ? 0 : 2 * J[0] * N[0];
+    T[DIPOLE_YY] = none ? 0 : 2 * J[1] * N[1];
+    T[DIPOLE_XY] = none ? 0 : J[0] * N[1] + J[1] * N[0];
+  }
+}
+
 PetscErrorCode DoubleLayerSpread(DoubleLayer s, Vec w, Vec source, PetscReal mean[2]) {
   const NearField f = s->near;
   const Grid g = f->markers->grid;
   const PetscReal area = (g->hi[0] - g->lo[0]) * (g->hi[1] - g->lo[1]);
   PetscFunctionBeginUser;
   if (f->free) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt k = 0; k < f->membrane->layout->M; k++) {
-    const PetscReal *J = s->jump + 2 * k, *N = s->normal + 2 * k;
-    PetscReal *T = s->tensor + DIPOLE_COUNT * k;
-    T[0] = T[1] = T[2] = 0;
-    if (J[0] == 0 && J[1] == 0) continue; /* also of ratio 1, without a normal */
-    T[DIPOLE_XX] = 2 * J[0] * N[0];
-    T[DIPOLE_YY] = 2 * J[1] * N[1];
-    T[DIPOLE_XY] = J[0] * N[1] + J[1] * N[0];
-    for (int c = 0; c < 2; c++) mean[c] -= f->markers->X[2 * k + c] * (J[0] * N[0] + J[1] * N[1]) / area;
+  Tensors(s);
+  for (PetscInt k = 0; k < 2 * f->membrane->layout->M; k++) { /* J.n is half the trace */
+    const PetscReal *T = s->tensor + DIPOLE_COUNT * (k / 2);
+    mean[k % 2] -= f->markers->X[k] * 0.5 * (T[DIPOLE_XX] + T[DIPOLE_YY]) / area;
   }
   PetscCall(DipolesSpread(f->markers, f->nu, s->tensor, w, source));
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+void DoubleLayerStress(DoubleLayer s, PetscReal sum[3]) {
+  Tensors(s);
+  for (PetscInt k = 0; k < s->near->membrane->layout->M; k++)
+    for (int q = 0; q < 3; q++) sum[q] += s->near->nu * s->tensor[DIPOLE_COUNT * k + q];
 }
 
 PetscErrorCode DoubleLayerAdd(DoubleLayer s, PetscReal scale, PetscBool lattice, PetscInt first, PetscInt n,

@@ -58,6 +58,10 @@ PETSC_EXTERN PetscErrorCode DoubleLayerApply(DoubleLayer layer, PetscReal alpha,
    outside a moving rigid body. Nothing in unbounded fluid. Not collective. */
 PETSC_EXTERN PetscErrorCode DoubleLayerSpread(DoubleLayer layer, Vec w, Vec source, PetscReal mean[2]);
 
+/* DoubleLayerStress - sum[3] (xx, yy, xy) += minus nu INT (J n + n J) ds of the jump last set, less its flux: what the
+   dipoles add to the sum of force times place. Not collective. */
+PETSC_EXTERN void DoubleLayerStress(DoubleLayer layer, PetscReal sum[3]);
+
 /* DoubleLayerAdd - out += scale C_D (1 - ratio) or, without lattice, D (1 - ratio), between the markers first .. first + n
    - 1: out[2n][2n], columns one after another, the rows of own markers only. Not collective. */
 PETSC_EXTERN PetscErrorCode DoubleLayerAdd(DoubleLayer layer, PetscReal scale, PetscBool lattice, PetscInt first,

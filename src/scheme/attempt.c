@@ -139,7 +139,8 @@ static PetscErrorCode MoveMarkers(Scheme s, Coupled *d, PetscReal a0) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What the forces of the step, which are spread at X*, do to a sheared channel. */
+/* What the forces of the step, which are spread at X*, and the jump, which is still that of U, do to a sheared
+   channel. */
 static PetscErrorCode MeasureStress(Scheme s, Coupled *d) {
   const PetscScalar *sigma, *x;
   PetscScalar *F;
