@@ -45,7 +45,9 @@ def test_tumbling_half_period(tmp_path):
 
 
 @pytest.mark.parametrize(
-    "walls", ["", "-domain_bc_x periodic", "-domain_bc_x periodic -domain_bc_y periodic"], ids=["walls", "channel", "periodic"]
+    "walls",
+    ["", "-domain_bc_x periodic", "-domain_bc_x periodic -domain_bc_y periodic"],
+    ids=["walls", "channel", "periodic"],
 )
 def test_sparse_lu(tmp_path, walls):
     """coupled solves the equations that direct assembles, two vesicles of different ratios in every kind of box."""

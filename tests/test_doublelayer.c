@@ -1,5 +1,5 @@
-/* The double layer of a viscosity contrast, grid and near field together: the lattice's tables, rigid motions, flux, and
-   that it is adjoint to itself through the single layer. */
+/* The double layer of a viscosity contrast, grid and near field together: the lattice's tables, rigid motions, flux,
+   and that it is adjoint to itself through the single layer. */
 #include "world.h"
 #include "coupling/contrast.h"
 #include "coupling/blas.h"
@@ -17,8 +17,8 @@ static PetscReal Entry(const OffsetTable *t, DipolePart b, PetscInt i, PetscInt 
   return t->value[b][(j + t->size[1]) * (2 * t->size[0] + 1) + i + t->size[0]];
 }
 
-/* Known values; the divergence is 1/2 in the dipole's own cell, none elsewhere nor of xy. Of xy, whose entry is the upper
-   right corner of a cell, the four cells around it are those with offsets 0 and 1. */
+/* Known values; the divergence is 1/2 in the dipole's own cell, none elsewhere nor of xy. Of xy, whose entry is the
+   upper right corner of a cell, the four cells around it are those with offsets 0 and 1. */
 static PetscErrorCode CheckTables(void) {
   OffsetTable t[2];
   PetscReal most = 0;
@@ -27,8 +27,10 @@ static PetscErrorCode CheckTables(void) {
   const PetscReal xx = Entry(&t[0], DIPOLE_XX, 0, 0) - .204577471545947,
                   yy = Entry(&t[0], DIPOLE_YY, 0, 0) - .045422528454052,
                   xy = Entry(&t[0], DIPOLE_XY, 0, 1) - .090845056908106;
-  CHECK(PetscAbsReal(xx) + PetscAbsReal(yy) + PetscAbsReal(xy) < 3e-14, "xx, yy, xy next to the dipole: off by %.0e, "
-        "%.0e, %.0e", xx, yy, xy);
+  CHECK(PetscAbsReal(xx) + PetscAbsReal(yy) + PetscAbsReal(xy) < 3e-14,
+        "xx, yy, xy next to the dipole: off by %.0e, "
+        "%.0e, %.0e",
+        xx, yy, xy);
   for (int k = 0; k < DIPOLE_COUNT; k++)
     for (PetscInt j = -38; j <= 38; j++)
       for (PetscInt i = -38; i <= 38; i++) {
@@ -123,7 +125,8 @@ static PetscErrorCode SetMotion(Double *d, int which) {
   PetscCall(VecGetArray(d->U, &u));
   for (PetscInt k = 0; k < l->n; k++) {
     const PetscReal *X = d->world.coupling->markers->X + 2 * (l->first + k), *N = s->normal + 2 * (l->first + k);
-    const PetscReal motion[4][2] = {{1, 0}, {0, 1}, {-X[1], X[0]}, {-N[1] / s->along[l->first + k], N[0] / s->along[l->first + k]}};
+    const PetscReal motion[4][2] = {
+        {1, 0}, {0, 1}, {-X[1], X[0]}, {-N[1] / s->along[l->first + k], N[0] / s->along[l->first + k]}};
     for (int c = 0; c < 2; c++) u[2 * k + c] = motion[which][c];
   }
   PetscCall(VecRestoreArray(d->U, &u));
@@ -194,8 +197,8 @@ static PetscErrorCode CheckAdjoint(void) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* On the unit circle, in a fluid of viscosity 3: J = (1, 2) is -J inside and nothing outside; J = (x, -y) is -J/2 inside
-   without pressure, and has the pressure 2 nu cos(2 phi)/r^2 outside. At any distance from the curve. */
+/* On the unit circle, in a fluid of viscosity 3: J = (1, 2) is -J inside and nothing outside; J = (x, -y) is -J/2
+   inside without pressure, and has the pressure 2 nu cos(2 phi)/r^2 outside. At any distance from the curve. */
 static PetscErrorCode CheckCurve(void) {
   const PetscReal radius[] = {0.3, 0.9, 0.9999, 1.0001, 1.1, 3};
   PetscReal X[64], constant[64], strain[64], worst = 0;

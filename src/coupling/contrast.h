@@ -1,7 +1,8 @@
 /* Viscosity contrast in the equations of a step (docs/method.md, Viscosity contrast): what stands in the place of the
    markers' velocity U where the inner viscosity is another than the outer one,
 
-       B U - E v' + C F = ...,      B U = (1 + ratio)/2 U - C_D (1 - ratio) U,      U = V + (treading/a0) dV/dt + known. */
+       B U - E v' + C F = ...,      B U = (1 + ratio)/2 U - C_D (1 - ratio) U,      U = V + (treading/a0) dV/dt + known.
+ */
 #pragma once
 #include "coupling/coupling.h"
 
@@ -17,11 +18,13 @@ PETSC_EXTERN PetscErrorCode ContrastKnown(Coupling coupling, Vec background, Vec
 PETSC_EXTERN PetscErrorCode ContrastJump(Coupling coupling, const PetscScalar V[], PetscScalar G[]);
 PETSC_EXTERN PetscErrorCode ContrastRest(Coupling coupling, const PetscScalar G[], PetscScalar y[]);
 
-/* ContrastSource - source = G^T of the solved velocity where markers move with U: nothing but of dipoles. Collective. */
+/* ContrastSource - source = G^T of the solved velocity where markers move with U: nothing but of dipoles. Collective.
+ */
 PETSC_EXTERN PetscErrorCode ContrastSource(Coupling coupling, Vec U, Vec source);
 
-/* ContrastMatrix - out[2n][2n], zero before, of the markers first .. first + n - 1, which are whole vesicles: its column r
-   is row r of B (1 + (treading/a0) d/dt), of own markers; lattice false: with D in the place of C_D. Not collective. */
+/* ContrastMatrix - out[2n][2n], zero before, of the markers first .. first + n - 1, which are whole vesicles: its
+   column r is row r of B (1 + (treading/a0) d/dt), of own markers; lattice false: with D in the place of C_D. Not
+   collective. */
 PETSC_EXTERN PetscErrorCode ContrastMatrix(Coupling coupling, PetscBool lattice, PetscReal a0, PetscInt first,
                                            PetscInt n, PetscReal out[]);
 

@@ -67,8 +67,8 @@ static PetscErrorCode AssembleTogether(DenseBlocks b, Mobility mobility, PetscRe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What the velocities do with viscosity contrast, of free space (ContrastMatrix): made for a block's owner, NULL without
-   contrast. Collective where the block is for all. */
+/* What the velocities do with viscosity contrast, of free space (ContrastMatrix): made for a block's owner, NULL
+   without contrast. Collective where the block is for all. */
 static PetscErrorCode AssembleMotion(DenseBlocks b, PetscReal a0, PetscInt first, PetscInt n, PetscReal **motion) {
   const Layout l = b->coupling->membrane->layout;
   PetscMPIInt size;
@@ -79,8 +79,8 @@ static PetscErrorCode AssembleMotion(DenseBlocks b, PetscReal a0, PetscInt first
   PetscCall(PetscCalloc1(4 * n * n, motion));
   PetscCall(ContrastMatrix(b->coupling, PETSC_FALSE, a0, first, n, *motion));
   if (l->size > 1 && b->together)
-    PetscCallMPI(MPI_Reduce(l->rank == b->root ? MPI_IN_PLACE : *motion, *motion, size, MPIU_REAL, MPI_SUM, b->root,
-                            l->comm));
+    PetscCallMPI(
+        MPI_Reduce(l->rank == b->root ? MPI_IN_PLACE : *motion, *motion, size, MPIU_REAL, MPI_SUM, b->root, l->comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

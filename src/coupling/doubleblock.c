@@ -65,8 +65,8 @@ PetscErrorCode DoubleSelf(Spectral spectral, PetscInt n, const PetscReal X[], Pe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A pair's response to J of parts that respond with K to tensors, N = n w: T = (2 J_x N_x, 2 J_y N_y, J_x N_y + J_y N_x).
-   M[4]: x from J_x, y from J_x, x from J_y, y from J_y. */
+/* A pair's response to J of parts that respond with K to tensors, N = n w: T = (2 J_x N_x, 2 J_y N_y, J_x N_y + J_y
+   N_x). M[4]: x from J_x, y from J_x, x from J_y, y from J_y. */
 static void Contract(const PetscReal K[2][DIPOLE_COUNT], const PetscReal N[2], PetscReal scale, PetscReal M[4]) {
   for (int c = 0; c < 2; c++) {
     M[c] = scale * (2 * N[0] * K[c][DIPOLE_XX] + N[1] * K[c][DIPOLE_XY]);
@@ -74,8 +74,8 @@ static void Contract(const PetscReal K[2][DIPOLE_COUNT], const PetscReal N[2], P
   }
 }
 
-/* D - L of distant markers, d = X_i - X_j: smoothing by the kernels and dispersion by the lattice, h^2/(48 pi r^3) times
-   these waves of the angle of d. */
+/* D - L of distant markers, d = X_i - X_j: smoothing by the kernels and dispersion by the lattice, h^2/(48 pi r^3)
+   times these waves of the angle of d. */
 static void FarPair(const PetscReal d[2], PetscReal h, const PetscReal N[2], PetscReal M[4]) {
   const PetscReal r = PetscHypotReal(d[0], d[1]), c = d[0] / r, s = d[1] / r, c2 = c * c - s * s, s2 = 2 * c * s;
   const PetscReal c3 = c2 * c - s2 * s, s3 = s2 * c + c2 * s, c5 = c3 * c2 - s3 * s2, s5 = s3 * c2 + c3 * s2;
@@ -92,8 +92,7 @@ static void LatticePair(DoubleLayer s, PetscInt i, PetscInt j, const PetscReal d
   const PetscReal *X = f->markers->X, cell = 1 / f->markers->grid->h;
   PetscReal K[2][DIPOLE_COUNT];
   PetscInt cells[2];
-  for (int dir = 0; dir < 2; dir++)
-    cells[dir] = (PetscInt)rint((d[dir] - (X[2 * i + dir] - X[2 * j + dir])) * cell);
+  for (int dir = 0; dir < 2; dir++) cells[dir] = (PetscInt)rint((d[dir] - (X[2 * i + dir] - X[2 * j + dir])) * cell);
   for (int c = 0; c < 2; c++)
     for (int k = 0; k < DIPOLE_COUNT; k++)
       K[c][k] = StencilShiftedSum(&s->lattice[c], (OffsetBlock)k, &f->stencil[2 * i + c],
@@ -101,8 +100,8 @@ static void LatticePair(DoubleLayer s, PetscInt i, PetscInt j, const PetscReal d
   Contract(K, s->normal + 2 * j, cell, L);
 }
 
-/* C = D - L of two markers, and L; r from the target i to the source j's image, own: D(i, i) of a marker with itself; by
-   stencils up to `reach` (length). */
+/* C = D - L of two markers, and L; r from the target i to the source j's image, own: D(i, i) of a marker with itself;
+   by stencils up to `reach` (length). */
 static void Pair(DoubleLayer s, PetscInt i, PetscInt j, const PetscReal r[2], PetscReal reach, const PetscReal *own,
                  PetscReal C[4], PetscReal L[4]) {
   const PetscReal h = s->near->markers->grid->h, d[2] = {-r[0], -r[1]}, *N = s->normal + 2 * j;
@@ -135,7 +134,8 @@ static void Whole(DoubleLayer s, PetscInt j, const PetscReal r[2], const PetscRe
   C[3] = D[1];
 }
 
-/* value += (L n) (n w)^T/length: L acts on what Q leaves, flux[2n] being the rows' SUM L n over the column's markers. */
+/* value += (L n) (n w)^T/length: L acts on what Q leaves, flux[2n] being the rows' SUM L n over the column's markers.
+ */
 static void PutFluxBack(DoubleLayer s, const DoubleBlock *b, const PetscReal flux[], PetscReal value[]) {
   const Layout l = s->near->membrane->layout;
   const PetscInt n = 2 * LayoutCount(l, b->row), first = 2 * l->start[b->column];

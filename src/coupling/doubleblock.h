@@ -2,7 +2,7 @@
 #pragma once
 #include "coupling/doublelayer.h"
 
-#define DOUBLE_CELLS 30       /* up to which stencils of one vesicle are summed; farther, a closed form, right to 1e-8 */
+#define DOUBLE_CELLS 30 /* up to which stencils of one vesicle are summed; farther, a closed form, right to 1e-8 */
 #define DOUBLE_CROSS_CELLS 16 /* the same of two vesicles */
 
 /* DoubleBlockFill - C_D (or, without lattice, D) of a block, [2 n_column][2 n_row]. Not collective. */

@@ -13,7 +13,7 @@ typedef struct {
   OffsetTable pressure; /* of dipoles, in cells, viscosity 1, over h^2 */
   DoubleCurve curve;
   PetscInt n;
-  PetscReal reach;       /* of the correction (length); everywhere in unbounded fluid */
+  PetscReal reach; /* of the correction (length); everywhere in unbounded fluid */
   PetscReal ratio;
   const PetscReal *X;    /* [2n] */
   PetscReal *tensor;     /* [DIPOLE_COUNT n] */
@@ -81,7 +81,8 @@ static void TakeFar(const DoubleCells *s, const PetscReal x[2], PetscReal f[3]) 
     const PetscReal r[2] = {s->X[2 * k] - x[0], s->X[2 * k + 1] - x[1]}, r2 = r[0] * r[0] + r[1] * r[1];
     const PetscReal *T = s->tensor + DIPOLE_COUNT * k;
     if (r2 <= PetscSqr(SUMMED_CELLS * h)) continue;
-    const PetscReal through = 0.5 * (T[DIPOLE_XX] * r[0] * r[0] + T[DIPOLE_YY] * r[1] * r[1]) + T[DIPOLE_XY] * r[0] * r[1];
+    const PetscReal through = 0.5 * (T[DIPOLE_XX] * r[0] * r[0] + T[DIPOLE_YY] * r[1] * r[1]) +
+                              T[DIPOLE_XY] * r[0] * r[1];
     for (int c = 0; c < 2; c++) f[c] += through * r[c] / (PETSC_PI * r2 * r2);
     f[2] += nu / PETSC_PI * (0.5 * (T[DIPOLE_XX] + T[DIPOLE_YY]) / r2 - 2 * through / (r2 * r2));
   }

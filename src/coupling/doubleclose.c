@@ -9,8 +9,7 @@ static void Normals(const FineCurve *c, const PetscReal normal[], PetscReal N[])
   for (PetscInt q = 0; q < c->count; q++)
     for (int d = 0; d < 2; d++) {
       PetscReal sum = 0;
-      for (PetscInt k = 0; k < c->n; k++)
-        sum += c->weight[((c->used[q] - c->f * k) % Q + Q) % Q] * normal[2 * k + d];
+      for (PetscInt k = 0; k < c->n; k++) sum += c->weight[((c->used[q] - c->f * k) % Q + Q) % Q] * normal[2 * k + d];
       N[2 * q + d] = sum;
     }
 }

@@ -106,9 +106,9 @@ static PetscInt FineSums(DoubleCurve c, Point z, Sums *s, PetscReal *distance) {
   return nearest;
 }
 
-/* What they lack at the complex t0 where the curve is at z, for z close to the point `nearest`. Of the velocity, 2i times
-   it is J X'/r - conj(conj(J) X'/r) + conj(J conj(X')/r) - conj(conj(r) J X'/r^2), bars meaning values at conj(t0);
-   X'/r^2 = 1/(X'(t0) (t - t0)^2) without a simple pole. */
+/* What they lack at the complex t0 where the curve is at z, for z close to the point `nearest`. Of the velocity, 2i
+   times it is J X'/r - conj(conj(J) X'/r) + conj(J conj(X')/r) - conj(conj(r) J X'/r^2), bars meaning values at
+   conj(t0); X'/r^2 = 1/(X'(t0) (t - t0)^2) without a simple pole. */
 static void CorrectClose(DoubleCurve c, Point z, PetscInt nearest, Sums *s) {
   const PetscInt N = FINE * c->n;
   Point t0 = 2 * PETSC_PI * (PetscReal)nearest / (PetscReal)N, slope, step = 1, other, turned;

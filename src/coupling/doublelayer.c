@@ -70,8 +70,8 @@ static PetscErrorCode AddBlock(DoubleLayer s, PetscInt row, PetscInt column, Pet
     s->block_room = 2 * s->block_room + 16;
     PetscCall(PetscRealloc((size_t)s->block_room * sizeof(DoubleBlock), &s->block));
   }
-  s->block[s->blocks++] = (DoubleBlock){.row = row, .column = column, .shift = {sign * shift[0], sign * shift[1]},
-                                        .at = s->values};
+  s->block[s->blocks++] = (DoubleBlock){
+      .row = row, .column = column, .shift = {sign * shift[0], sign * shift[1]}, .at = s->values};
   s->values += 4 * (size_t)LayoutCount(l, row) * (size_t)LayoutCount(l, column);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -137,7 +137,8 @@ PetscErrorCode DoubleLayerApply(DoubleLayer s, PetscReal alpha, PetscScalar y[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Tensors of the dipoles, less the jump's flux; zero where there is no jump, as for a ratio of 1, which has no normals. */
+/* Tensors of the dipoles, less the jump's flux; zero where there is no jump, as for a ratio of 1, which has no normals.
+ */
 static void Tensors(DoubleLayer s) {
   for (PetscInt k = 0; k < s->near->membrane->layout->M; k++) {
     const PetscReal *J = s->jump + 2 * k, *N = s->normal + 2 * k;

@@ -1,12 +1,12 @@
 /* The double layer of membranes whose inner fluid has another viscosity than the outer one (docs/method.md, Viscosity
    contrast). v, the velocity outside and the ratio times the velocity inside, is a field of the outer viscosity that
-   jumps by J = (1 - ratio) U at a membrane that moves with U: a sheet of tensor dipoles J n + n J with the source J.n. The
-   markers' velocities obey
+   jumps by J = (1 - ratio) U at a membrane that moves with U: a sheet of tensor dipoles J n + n J with the source J.n.
+   The markers' velocities obey
 
        (1 + ratio)/2 U = u_inf + E v' + C_S f + C_D J,      C_D = D - L Q
 
-   with D the exact double layer of unbounded fluid, L what the same dipoles give on the infinite lattice, as in the near
-   field (nearfield.h), whose pairs of vesicles it has, and Q, which takes the net flux off a vesicle's J, as the
+   with D the exact double layer of unbounded fluid, L what the same dipoles give on the infinite lattice, as in the
+   near field (nearfield.h), whose pairs of vesicles it has, and Q, which takes the net flux off a vesicle's J, as the
    spreading on the grid does. In unbounded fluid L = 0. */
 #pragma once
 #include "coupling/latticedipole.h"
@@ -22,8 +22,8 @@ typedef struct {
 
 typedef struct _p_DoubleLayer *DoubleLayer;
 struct _p_DoubleLayer {
-  NearField near;        /* borrowed: markers, membranes, their pairs and stencils */
-  PetscReal *ratio;      /* [vesicles] viscosity inside over that outside */
+  NearField near;   /* borrowed: markers, membranes, their pairs and stencils */
+  PetscReal *ratio; /* [vesicles] viscosity inside over that outside */
   OffsetTable lattice[2];
   PaddedStencil *dipole; /* [DIPOLE_COUNT M] */
   PetscReal *normal;     /* [2M] outward n times the marker's share w of the length */
@@ -62,7 +62,8 @@ PETSC_EXTERN PetscErrorCode DoubleLayerSpread(DoubleLayer layer, Vec w, Vec sour
    dipoles add to the sum of force times place. Not collective. */
 PETSC_EXTERN void DoubleLayerStress(DoubleLayer layer, PetscReal sum[3]);
 
-/* DoubleLayerAdd - out += scale C_D (1 - ratio) or, without lattice, D (1 - ratio), between the markers first .. first + n
+/* DoubleLayerAdd - out += scale C_D (1 - ratio) or, without lattice, D (1 - ratio), between the markers first .. first
+   + n
    - 1: out[2n][2n], columns one after another, the rows of own markers only. Not collective. */
 PETSC_EXTERN PetscErrorCode DoubleLayerAdd(DoubleLayer layer, PetscReal scale, PetscBool lattice, PetscInt first,
                                            PetscInt n, PetscReal out[]);

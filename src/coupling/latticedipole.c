@@ -1,5 +1,5 @@
-/* A source in a cell moves the lattice's faces by the gradient of its Green's function (LatticePressure), a unit force by
-   the Stokeslet: the dipoles are differences of both. With I, J the offset in cells of a face of u,
+/* A source in a cell moves the lattice's faces by the gradient of its Green's function (LatticePressure), a unit force
+   by the Stokeslet: the dipoles are differences of both. With I, J the offset in cells of a face of u,
 
        U_xx(I + 1/2, J) = uu(I, J) - uu(I + 1, J) + su(I + 1/2, J)/2                                    from a cell
        U_yy(I + 1/2, J) = vu(I + 1/2, J - 1/2) - vu(I + 1/2, J + 1/2) + su(I + 1/2, J)/2                from a cell

@@ -29,9 +29,9 @@ typedef struct {
 } DipoleSpot;
 #define DIPOLE_SPOTS 6
 
-/* DipoleSpots - of a marker at X with tensor T (xx, yy, xy; velocity times length): -nu DIV T/h^2 on the faces, -(T_xx +
-   T_yy)/(2 h^2), which is G^T of the velocity, in cells. DipoleEntry - row (direction 1) or column of entry k of a spot,
-   of all ranks' rows. Not collective. */
+/* DipoleSpots - of a marker at X with tensor T (xx, yy, xy; velocity times length): -nu DIV T/h^2 on the faces, -(T_xx
+   + T_yy)/(2 h^2), which is G^T of the velocity, in cells. DipoleEntry - row (direction 1) or column of entry k of a
+   spot, of all ranks' rows. Not collective. */
 PETSC_EXTERN void DipoleSpots(Grid grid, PetscReal nu, const PetscReal X[2], const PetscReal T[DIPOLE_COUNT],
                               DipoleSpot spot[DIPOLE_SPOTS]);
 static inline PetscInt DipoleEntry(Grid g, const DipoleSpot *s, int direction, PetscInt k) {

@@ -69,9 +69,9 @@ static PetscErrorCode FromLayer(Scheme s, PetscReal u[], PetscReal v[], PetscRea
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What the grid does not have of the membranes' forces and jumps: all of it in unbounded fluid, the near field otherwise;
-   then the velocity inside vesicles of another viscosity. Nothing before the first step, whose velocity and tension are
-   not known. */
+/* What the grid does not have of the membranes' forces and jumps: all of it in unbounded fluid, the near field
+   otherwise; then the velocity inside vesicles of another viscosity. Nothing before the first step, whose velocity and
+   tension are not known. */
 static PetscErrorCode AddMembranes(Scheme s, PetscReal u[], PetscReal v[], PetscReal p[]) {
   const State *q = &s->state;
   PetscFunctionBeginUser;

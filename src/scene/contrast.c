@@ -1,17 +1,6 @@
 /* What two viscosities need of a scene. */
 #include "scene/mixture.h"
 
-PetscReal SceneViscosityRatio(Scene scene, PetscInt v) {
-  return ListEntry(&scene->membrane.viscosity_ratio, 1, SceneKindOf(scene, v), 0);
-}
-
-PetscBool SceneHasContrast(Scene scene) {
-  const RealList *ratio = &scene->membrane.viscosity_ratio;
-  for (PetscInt k = 0; k < ratio->n && scene->vesicles.shape != SHAPE_NONE; k++)
-    if (ratio->v[k] != 1) return PETSC_TRUE;
-  return PETSC_FALSE;
-}
-
 /* The double layer is of quasi-steady flow: with inertia the inner fluid's velocity obeys another equation than the
    outer one's. It stands on the unsplit step and its near field. */
 static PetscErrorCode CheckMethod(Scene scene, PetscReal ratio) {

@@ -41,11 +41,11 @@ typedef struct {
 } SceneVesicles;
 
 typedef struct {
-  RealList stiffness;  /* c_b; one entry for all, or one a vesicle or kind */
-  PetscReal bending;   /* the largest of them */
-  PetscReal *each;     /* [vesicles] c_b of each */
+  RealList stiffness;       /* c_b; one entry for all, or one a vesicle or kind */
+  PetscReal bending;        /* the largest of them */
+  PetscReal *each;          /* [vesicles] c_b of each */
   RealList viscosity_ratio; /* inside over outside; one for all, or one a vesicle or kind */
-  PetscInt derivative; /* DerivativeType */
+  PetscInt derivative;      /* DerivativeType */
 } SceneMembrane;
 
 /* Gravity: a force on the membranes, the inertia of both fluids being the same (Boussinesq). */

@@ -100,8 +100,15 @@ static PetscErrorCode InitialGuess(Scheme s, Coupled *d) {
 /* u, p, sigma of the new time (and V); report.failure when the solver fails. */
 static PetscErrorCode Solve(Scheme s, Coupled *d) {
   State *n = &d->next;
-  const CoupledProblem problem = {
-      .moved = d->moved, .f = d->f, .g = s->g, .k = d->known, .w = n->w, .p = n->p, .sigma = n->sigma, .d = n->walls, .V = d->V};
+  const CoupledProblem problem = {.moved = d->moved,
+                                  .f = d->f,
+                                  .g = s->g,
+                                  .k = d->known,
+                                  .w = n->w,
+                                  .p = n->p,
+                                  .sigma = n->sigma,
+                                  .d = n->walls,
+                                  .V = d->V};
   SolveReport report;
   PetscFunctionBeginUser;
   if (d->direct) {

@@ -1,22 +1,5 @@
 #include "scheme/direct.h"
 
-/* Rank that holds a global row of a field. */
-static PetscInt Owner(Grid g, PetscInt j) {
-  return PetscMin(j / g->block, g->size - 1);
-}
-
-static PetscInt RowsOf(Grid g, PetscInt rank, int f) {
-  return rank < g->size - 1 ? g->block : g->all_rows[f] - (g->size - 1) * g->block;
-}
-
-PetscInt DirectIndex(DirectSolver d, int f, PetscInt i, PetscInt j) {
-  const Grid g = d->fluid->grid;
-  const PetscInt rank = Owner(g, j);
-  PetscInt index = d->start[rank] + (j - rank * g->block) * g->columns[f] + i;
-  for (int k = 0; k < f; k++) index += g->columns[k] * RowsOf(g, rank, k);
-  return index;
-}
-
 PetscErrorCode DirectSolverCreate(Coupling coupling, DirectSolver *out) {
   const Grid g = coupling->fluid->grid;
   DirectSolver d;
@@ -32,7 +15,7 @@ PetscErrorCode DirectSolverCreate(Coupling coupling, DirectSolver *out) {
   PetscCall(PetscCalloc1(g->size + 1, &d->start));
   for (PetscInt r = 0; r < g->size; r++) {
     d->start[r + 1] = d->start[r] + (r == g->size - 1 ? d->each * d->M : 0);
-    for (int f = 0; f < 3; f++) d->start[r + 1] += g->columns[f] * RowsOf(g, r, f);
+    for (int f = 0; f < 3; f++) d->start[r + 1] += g->columns[f] * DirectRows(g, r, f);
   }
   PetscCall(VecCreateMPI(g->comm, d->start[g->rank + 1] - d->start[g->rank], PETSC_DETERMINE, &d->x));
   PetscCall(VecDuplicate(d->x, &d->b));
@@ -98,7 +81,8 @@ static PetscErrorCode AddFluid(DirectSolver d, Mat A) {
         PetscCall(MatSetValue(A, here, row, -1 / h, ADD_VALUES));
       }
   if (!g->rank)
-    PetscCall(MatSetValue(A, DirectIndex(d, FIELD_P, 0, 0), DirectIndex(d, FIELD_P, 0, 0), -1, ADD_VALUES)); /* p_0 = 0 */
+    PetscCall(
+        MatSetValue(A, DirectIndex(d, FIELD_P, 0, 0), DirectIndex(d, FIELD_P, 0, 0), -1, ADD_VALUES)); /* p_0 = 0 */
   for (int f = FIELD_U; f <= FIELD_V && NoMean(d) && !d->source && !g->rank; f++)
     PetscCall(MatSetValue(A, DirectIndex(d, f, 0, 0), DirectIndex(d, f, 0, 0), off, ADD_VALUES)); /* u_0 = v_0 = 0 */
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -11,7 +11,7 @@ struct _p_DirectSolver {
   PetscInt *start; /* [ranks+1] first global index of each rank; sigma, U, F and J come last, on the last rank */
   KSP ksp;
   Vec x, b;
-  Vec source; /* with viscosity contrast: G^T of the velocity; else NULL */
+  Vec source;             /* with viscosity contrast: G^T of the velocity; else NULL */
   PetscScalar *all;       /* [2M] of all markers, work */
   KSPConvergedReason why; /* how the last solve ended; < 0: failed */
 };
@@ -26,8 +26,9 @@ PETSC_EXTERN PetscErrorCode DirectSolverDestroy(DirectSolver *solver);
    whose dipoles are added to f), gives w, p, sigma and V. Afterwards solver->why says how it went. Collective. */
 PETSC_EXTERN PetscErrorCode DirectSolverSolve(DirectSolver solver, const CoupledProblem *problem);
 
-/* DirectIndex - global index of entry (i, j) of a field. */
+/* DirectIndex - global index of entry (i, j) of a field. DirectRows - rows of a field on a rank. Not collective. */
 PETSC_EXTERN PetscInt DirectIndex(DirectSolver solver, int field, PetscInt i, PetscInt j);
+PETSC_EXTERN PetscInt DirectRows(Grid grid, PetscInt rank, int field);
 
 /* DirectAddContrast - viscosity contrast in the matrix, U and J the first rows of these unknowns: B U in the rows of U,
    J - Q (1 - ratio) (U + (treading/a0) dU/dt) = 0, the dipoles of J in the momentum and the divergence. DirectRoom -

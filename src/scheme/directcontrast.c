@@ -87,8 +87,7 @@ PetscErrorCode DirectAddContrast(DirectSolver d, Mat A, PetscInt U, PetscInt J) 
   PetscCall(ContrastMatrix(d->coupling, PETSC_TRUE, d->fluid->a0, 0, l->M, B));
   for (PetscInt i = 2 * l->first; i < 2 * (l->first + l->n); i++)
     for (PetscInt j = 0; j < 2 * l->M; j++)
-      if (B[i * 2 * l->M + j] != 0)
-        PetscCall(MatSetValue(A, U + i, U + j, B[i * 2 * l->M + j], ADD_VALUES));
+      if (B[i * 2 * l->M + j] != 0) PetscCall(MatSetValue(A, U + i, U + j, B[i * 2 * l->M + j], ADD_VALUES));
   PetscCall(PetscFree(B));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -106,8 +105,8 @@ PetscErrorCode DirectContrastMean(DirectSolver d, Mat A, PetscInt J, PetscReal s
         PetscCall(MatSetValue(A, row, DirectIndex(d, f, i, j), scale / cells, ADD_VALUES));
     for (PetscInt k = 0; k < 2 * l->M; k++)
       if (s->ratio[LayoutBody(l, k / 2)] != 1)
-        PetscCall(MatSetValue(A, row, J + k,
-                              scale * d->coupling->markers->X[2 * (k / 2) + f] * s->normal[k] / area, ADD_VALUES));
+        PetscCall(MatSetValue(A, row, J + k, scale * d->coupling->markers->X[2 * (k / 2) + f] * s->normal[k] / area,
+                              ADD_VALUES));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
