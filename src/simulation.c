@@ -1,6 +1,7 @@
 /* A whole run: build everything from the options, step, write. */
 #include "simulation.h"
 #include "base/agree.h"
+#include "coupling/contrast.h"
 #include "fluid/wisdom.h"
 #include "options/typed.h"
 #include <stdlib.h>
@@ -109,6 +110,17 @@ static PetscErrorCode SetWeights(Scene scene, Membrane membrane) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static PetscErrorCode AddContrast(Scene scene, Coupling coupling) {
+  PetscReal *ratio;
+  PetscFunctionBeginUser;
+  if (!SceneHasContrast(scene)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMalloc1(scene->shape.vesicles, &ratio));
+  for (PetscInt v = 0; v < scene->shape.vesicles; v++) ratio[v] = SceneViscosityRatio(scene, v);
+  PetscCall(CouplingAddContrast(coupling, ratio));
+  PetscCall(PetscFree(ratio));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode Build(MPI_Comm comm, PetvesFlow flow, void *ctx, Simulation s) {
   Scene scene;
   PetscFunctionBeginUser;
@@ -126,6 +138,7 @@ static PetscErrorCode Build(MPI_Comm comm, PetvesFlow flow, void *ctx, Simulatio
   PetscCall(CouplingCreate(s->fluid, s->membrane, scene->coupling.kernel, (NearFieldType)scene->coupling.near_field,
                            &s->coupling));
   if (s->coupling->near && SceneHasBoxPart(scene)) PetscCall(NearFieldAddBoxPart(s->coupling->near, &scene->fluid));
+  PetscCall(AddContrast(scene, s->coupling));
   if (scene->repulsion.stress > 0 && scene->shape.vesicles)
     PetscCall(CouplingAddRepulsion(s->coupling, &scene->repulsion));
   PetscCall(SchemeCreate(scene, s->coupling, scene->shape.X, &s->scheme));

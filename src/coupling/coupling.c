@@ -16,6 +16,7 @@ PetscErrorCode CouplingPlace(Coupling c, PetscReal a0, Vec X, const PetscReal tr
   MembraneTangents(c->membrane, x, c->tau);
   PetscCall(VecRestoreArrayRead(X, &x));
   if (c->near) PetscCall(NearFieldPlace(c->near));
+  if (c->contrast) PetscCall(DoubleLayerPlace(c->contrast));
   if (c->repulsion) PetscCall(RepulsionPlace(c->repulsion, c->markers->X));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -234,6 +235,7 @@ PetscErrorCode CouplingDestroy(Coupling *coupling) {
   PetscFunctionBeginUser;
   if (!c) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(RepulsionDestroy(&c->repulsion));
+  PetscCall(DoubleLayerDestroy(&c->contrast));
   PetscCall(NearFieldDestroy(&c->near));
   PetscCall(MarkersDestroy(&c->markers));
   PetscCall(PetscFree(c->tau));

@@ -1,6 +1,7 @@
 /* Fluid and membranes joined: where the membranes are in a step, their tangents, what gives back the kernel's
    smoothing, and the operators S and B of the momentum equation. */
 #pragma once
+#include "coupling/doublelayer.h"
 #include "coupling/nearfield.h"
 #include "coupling/repulsion.h"
 #include "fluid/fluid.h"
@@ -10,15 +11,16 @@ struct _p_Coupling {
   Fluid fluid;       /* borrowed */
   Membrane membrane; /* borrowed; of no vesicle when the scene has none */
   Markers markers;
-  NearField near;      /* NULL without */
-  Repulsion repulsion; /* NULL without */
-  PetscReal *tau;      /* [2n] tangents of the own vesicles */
-  PetscReal *turning;  /* [n] the tension whose pull turns with the edges (length^3/time^2); CouplingTurn */
-  PetscReal *treading; /* [vesicles] V, the speed of the labels in which the step is made (1/time) */
-  Vec force;           /* marker vector, work */
-  Vec velocity;        /* marker vector, work */
-  Mat S;               /* (velocity x tension) S = E^T Dm^T/h^2: minus the spread tension force */
-  Mat B;               /* (velocity x marker vector) B = E^T (c_b ds/h^2) D4: minus the spread bending force */
+  NearField near;       /* NULL without */
+  DoubleLayer contrast; /* NULL where all viscosities are alike (contrast.h) */
+  Repulsion repulsion;  /* NULL without */
+  PetscReal *tau;       /* [2n] tangents of the own vesicles */
+  PetscReal *turning;   /* [n] the tension whose pull turns with the edges (length^3/time^2); CouplingTurn */
+  PetscReal *treading;  /* [vesicles] V, the speed of the labels in which the step is made (1/time) */
+  Vec force;            /* marker vector, work */
+  Vec velocity;         /* marker vector, work */
+  Mat S;                /* (velocity x tension) S = E^T Dm^T/h^2: minus the spread tension force */
+  Mat B;                /* (velocity x marker vector) B = E^T (c_b ds/h^2) D4: minus the spread bending force */
 };
 
 /* CouplingCreate - of a fluid and membranes with the named kernel and near field; not placed yet. Collective. */

@@ -1,5 +1,6 @@
 #include "coupling/dense.h"
 #include "base/agree.h"
+#include "coupling/contrast.h"
 #include "coupling/denseblock.h"
 
 struct _p_DenseBlocks {
@@ -66,6 +67,23 @@ static PetscErrorCode AssembleTogether(DenseBlocks b, Mobility mobility, PetscRe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* What the velocities do with viscosity contrast, of free space (ContrastMatrix): made for a block's owner, NULL
+   without contrast. Collective where the block is for all. */
+static PetscErrorCode AssembleMotion(DenseBlocks b, PetscReal a0, PetscInt first, PetscInt n, PetscReal **motion) {
+  const Layout l = b->coupling->membrane->layout;
+  PetscMPIInt size;
+  PetscFunctionBeginUser;
+  *motion = NULL;
+  if (!b->coupling->contrast) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMPIIntCast(4 * n * n, &size));
+  PetscCall(PetscCalloc1(4 * n * n, motion));
+  PetscCall(ContrastMatrix(b->coupling, PETSC_FALSE, a0, first, n, *motion));
+  if (l->size > 1 && b->together)
+    PetscCallMPI(
+        MPI_Reduce(l->rank == b->root ? MPI_IN_PLACE : *motion, *motion, size, MPIU_REAL, MPI_SUM, b->root, l->comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 void DenseBlocksPlace(DenseBlocks b) {
   const Membrane m = b->coupling->membrane;
   for (PetscInt k = 0; k < b->count; k++) {
@@ -81,7 +99,7 @@ PetscErrorCode DenseBlocksFactor(DenseBlocks b, Mobility mobility, PetscReal a0,
   const Membrane m = b->coupling->membrane;
   const PetscReal h2 = PetscSqr(b->coupling->fluid->grid->h);
   PetscBool good = PETSC_TRUE, failed;
-  PetscReal *Mob;
+  PetscReal *Mob, *motion = NULL;
   PetscInt most = b->together ? m->layout->M : 0;
   PetscLogEvent event;
   PetscFunctionBeginUser;
@@ -89,16 +107,22 @@ PetscErrorCode DenseBlocksFactor(DenseBlocks b, Mobility mobility, PetscReal a0,
   PetscCall(PetscLogEventBegin(event, 0, 0, 0, 0));
   for (PetscInt k = 0; k < b->count; k++) most = PetscMax(most, b->block[k].n);
   PetscCall(PetscMalloc1(4 * most * most, &Mob));
-  if (b->together) PetscCall(AssembleTogether(b, mobility, Mob));
+  if (b->together) {
+    PetscCall(AssembleTogether(b, mobility, Mob));
+    PetscCall(AssembleMotion(b, a0, 0, m->layout->M, &motion));
+  }
   for (PetscInt k = 0; k < b->count && good; k++) {
     DenseBlock *q = &b->block[k];
     if (!b->together) {
       PetscCall(AssembleTable(mobility, q->first, q->n, 0, 1, Mob));
       /* the box part does not change the iterations of one vesicle's block but costs more than the rest of it */
       if (b->coupling->near) PetscCall(NearFieldAdd(b->coupling->near, h2, PETSC_FALSE, q->first, q->n, Mob));
+      PetscCall(AssembleMotion(b, a0, q->first, q->n, &motion));
     }
-    PetscCall(DenseBlockFactor(m, h2, q, a0, b->coupling->treading + q->vesicle, Mob, &good));
+    PetscCall(DenseBlockFactor(m, h2, q, a0, b->coupling->treading + q->vesicle, Mob, motion, &good));
+    if (!b->together) PetscCall(PetscFree(motion));
   }
+  PetscCall(PetscFree(motion));
   PetscCall(PetscFree(Mob));
   PetscCall(AgreeFlag(m->layout->comm, good ? PETSC_FALSE : PETSC_TRUE, &failed));
   *factored = failed ? PETSC_FALSE : PETSC_TRUE;

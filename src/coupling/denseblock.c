@@ -35,14 +35,16 @@ static void Bending(Membrane m, const DenseBlock *q, PetscReal alpha, const Pets
   }
 }
 
-/* N^T = I + (c_b ds/(h^2 a0)) D4 M, column by column, and D = Dm M/h^2 (n x 2n). */
-static void AssembleBlock(Membrane m, PetscReal h2, DenseBlock *q, PetscReal a0, const PetscReal Mob[], PetscReal D[]) {
+/* N^T = I + (c_b ds/(h^2 a0)) D4 M, or with motion in the place of I, column by column, and D = Dm M/h^2 (n x 2n). */
+static void AssembleBlock(Membrane m, PetscReal h2, DenseBlock *q, PetscReal a0, const PetscReal Mob[],
+                          const PetscReal motion[], PetscReal D[]) {
   const PetscInt n = q->n;
   for (PetscInt c = 0; c < 2 * n; c++) {
     PetscReal *column = q->N + c * 2 * n;
     (void)PetscArrayzero(column, 2 * n);
     if (m->bending > 0) Bending(m, q, m->bending / (h2 * a0), Mob + c * 2 * n, column);
-    column[c] += 1;
+    if (!motion) column[c] += 1;
+    for (PetscInt k = 0; motion && k < 2 * n; k++) column[k] += motion[c * 2 * n + k];
     Stretching(m, q, Mob + c * 2 * n, D + c * n);
     for (PetscInt k = 0; k < n; k++) D[c * n + k] /= h2;
   }
@@ -66,13 +68,13 @@ static PetscErrorCode AddTreading(Membrane m, DenseBlock *q, PetscReal a0, const
 }
 
 PetscErrorCode DenseBlockFactor(Membrane m, PetscReal h2, DenseBlock *q, PetscReal a0, const PetscReal treading[],
-                                const PetscReal Mob[], PetscBool *factored) {
+                                const PetscReal Mob[], const PetscReal motion[], PetscBool *factored) {
   const PetscInt n = q->n;
   PetscReal *D, trace = 0;
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(2 * n * n, &D));
-  AssembleBlock(m, h2, q, a0, Mob, D);
-  PetscCall(AddTreading(m, q, a0, treading));
+  AssembleBlock(m, h2, q, a0, Mob, motion, D);
+  if (!motion) PetscCall(AddTreading(m, q, a0, treading));
   PetscCall(DenseFactor(2 * n, q->N, q->pivot_N, factored));
   if (*factored) {
     /* K = N^-1 M Dm^T/h^2; M is symmetric, so M Dm^T is D^T */

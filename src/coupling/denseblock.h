@@ -20,9 +20,11 @@ PETSC_EXTERN PetscErrorCode DenseBlockCreate(Layout layout, PetscInt vesicle, Pe
 PETSC_EXTERN PetscErrorCode DenseBlockDestroy(DenseBlock *block);
 
 /* DenseBlockFactor - N and C for M = Mob[2n][2n], the block's tangents, a0 and its vesicles' label speeds treading[];
-   h2 = h^2. factored is false when a matrix is singular. Not collective. */
+   h2 = h^2. motion: with viscosity contrast what stands in the place of (I + (v/a0) d/dt)^T (ContrastMatrix), else
+   NULL. factored is false when a matrix is singular. Not collective. */
 PETSC_EXTERN PetscErrorCode DenseBlockFactor(Membrane membrane, PetscReal h2, DenseBlock *block, PetscReal a0,
-                                             const PetscReal treading[], const PetscReal Mob[], PetscBool *factored);
+                                             const PetscReal treading[], const PetscReal Mob[],
+                                             const PetscReal motion[], PetscBool *factored);
 
 /* DenseBlockSolve - from nrhs columns of U[2n] and sigma[n] = r_s: sigma, and U overwritten by U3. Not collective. */
 PETSC_EXTERN PetscErrorCode DenseBlockSolve(Membrane membrane, PetscReal h2, const DenseBlock *block, PetscInt nrhs,

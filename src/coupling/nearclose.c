@@ -65,12 +65,20 @@ PetscErrorCode NearCloseGap(NearField f, PetscInt row, PetscInt column, const Pe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode NearCloseAdd(NearField f, const NearClose *close) {
+void NearCloseFineness(NearField f, const NearClose *close, PetscInt *factor, PetscReal *window) {
   const NearBlock *block = &f->block[close->block];
   const PetscReal ds = Spacing(f, block->row, block->column);
   const PetscReal times = FINE * ds / PetscMax(close->gap, FINE * ds / MOST_FINE);
+  *factor = (PetscInt)PetscMin(MOST_FINE, PetscCeilReal(times));
+  *window = WINDOW * ds;
+}
+
+PetscErrorCode NearCloseAdd(NearField f, const NearClose *close) {
+  PetscInt factor;
+  PetscReal window;
   PetscFunctionBeginUser;
-  PetscCall(AddAt(f, close, (PetscInt)PetscMin(MOST_FINE, PetscCeilReal(times)), WINDOW * ds, 1));
-  PetscCall(AddAt(f, close, 1, WINDOW * ds, -1));
+  NearCloseFineness(f, close, &factor, &window);
+  PetscCall(AddAt(f, close, factor, window, 1));
+  PetscCall(AddAt(f, close, 1, window, -1));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

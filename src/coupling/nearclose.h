@@ -8,6 +8,9 @@
 PETSC_EXTERN PetscErrorCode NearCloseGap(NearField near, PetscInt row, PetscInt column, const PetscReal shift[2],
                                          PetscReal *gap, PetscBool *close);
 
+/* NearCloseFineness - so many fine points a marker, and the window (length) of a close pair. Not collective. */
+PETSC_EXTERN void NearCloseFineness(NearField near, const NearClose *close, PetscInt *factor, PetscReal *window);
+
 /* NearCloseAdd - to the block of such curves the difference between the Stokeslet on finer points of both and on the
    markers. Not collective. */
 PETSC_EXTERN PetscErrorCode NearCloseAdd(NearField near, const NearClose *close);

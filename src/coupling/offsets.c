@@ -113,11 +113,16 @@ static inline PetscReal TableSum(const PetscReal *value, PetscInt width, const P
                                             : RowSum(3, value, width, a, b, cells);
 }
 
+PetscReal StencilShiftedSum(const OffsetTable *t, OffsetBlock b, const PaddedStencil *response,
+                            const PaddedStencil *source, const PetscInt cells[2]) {
+  const PetscInt width = 2 * t->size[0] + 1;
+  return TableSum(t->value[b] + t->size[1] * width + t->size[0], width, response, source, cells);
+}
+
 PetscReal StencilNearSum(const OffsetTable *t, OffsetBlock b, const PaddedStencil *response,
                          const PaddedStencil *source) {
   static const PetscInt none[2] = {0, 0};
-  const PetscInt width = 2 * t->size[0] + 1;
-  return TableSum(t->value[b] + t->size[1] * width + t->size[0], width, response, source, none);
+  return StencilShiftedSum(t, b, response, source, none);
 }
 
 /* u from v at an offset is v from u the other way round, which is even in the distance of the two: the table of v from

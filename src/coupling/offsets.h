@@ -41,8 +41,10 @@ PETSC_EXTERN PetscReal StencilImageSum(Grid grid, const OffsetTable *table, Offs
 
 /* StencilUnwrap - the two components' stencils of a marker at X count from its own place, however many periods that is
    from the grid. StencilFourSums - the sums of markers a and b, so unwrapped, `cells` being added to the offset: xx,
-   yy, xy (x of a to a force along y of b), yx. StencilNearSum - one block's sum, nothing added. Both far within the
-   table. Not collective. */
+   yy, xy (x of a to a force along y of b), yx. StencilShiftedSum - one block's sum, with `cells` added; StencilNearSum
+   - with nothing added. All far within the table. Not collective. */
+PETSC_EXTERN PetscReal StencilShiftedSum(const OffsetTable *table, OffsetBlock block, const PaddedStencil *response,
+                                         const PaddedStencil *source, const PetscInt cells[2]);
 PETSC_EXTERN PetscReal StencilNearSum(const OffsetTable *table, OffsetBlock block, const PaddedStencil *response,
                                       const PaddedStencil *source);
 PETSC_EXTERN void StencilUnwrap(Grid grid, const PetscReal X[2], PaddedStencil stencil[2]);

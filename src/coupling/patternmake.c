@@ -1,6 +1,8 @@
 #include "coupling/patternmake.h"
 #include "coupling/blas.h"
+#include "coupling/contrast.h"
 #include "coupling/denseblock.h"
+#include "coupling/doubleblock.h"
 #include "coupling/selflayer.h"
 
 /* M += scale times the coarse grid's mean mobility between n points. */
@@ -28,20 +30,42 @@ static PetscErrorCode Assemble(Patterns s, const Pattern *q, PetscReal M[]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* With viscosity contrast what ContrastMatrix has of a vesicle of this shape, else NULL. */
+static PetscErrorCode Motion(Patterns s, const Pattern *q, PetscReal **motion) {
+  const Membrane m = s->coupling->membrane;
+  const PetscInt n = 2 * LayoutCount(m->layout, q->like);
+  PetscReal *D;
+  PetscFunctionBeginUser;
+  *motion = NULL;
+  if (!s->coupling->contrast) PetscFunctionReturn(PETSC_SUCCESS);
+  const PetscReal ratio = s->coupling->contrast->ratio[q->like];
+  PetscCall(PetscMalloc1(n * n, motion));
+  PetscCall(PetscMalloc1(n * n, &D));
+  PetscCall(DoubleSelf(m->spectral[q->like], n / 2, q->X, D));
+  for (PetscInt j = 0; j < n; j++)
+    for (PetscInt i = 0; i < n; i++)
+      (*motion)[j * n + i] = (i == j ? 0.5 * (1 + ratio) : 0) - (1 - ratio) * D[i * n + j];
+  PetscCall(ContrastTread(m, q->like, q->like + 1, &q->treading, s->a0, n, *motion));
+  PetscCall(PetscFree(D));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* The columns of the inverse are the answers to those of the identity. */
 static PetscErrorCode Invert(Patterns s, const Pattern *q, PetscReal inverse[], PetscBool *good) {
   const Membrane m = s->coupling->membrane;
   const PetscInt n = LayoutCount(m->layout, q->like), all = 3 * n;
   const PetscReal h2 = PetscSqr(s->coupling->fluid->grid->h);
-  PetscReal *M, *U, *sigma;
+  PetscReal *M, *motion, *U, *sigma;
   DenseBlock block;
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(4 * n * n, &M));
   PetscCall(PetscCalloc2(2 * n * all, &U, n * all, &sigma));
   PetscCall(DenseBlockCreate(m->layout, q->like, q->like + 1, &block));
   PetscCall(Assemble(s, q, M));
+  PetscCall(Motion(s, q, &motion));
   MembraneVesicleTangents(m, q->like, q->X, block.tau);
-  PetscCall(DenseBlockFactor(m, h2, &block, s->a0, &q->treading, M, good));
+  PetscCall(DenseBlockFactor(m, h2, &block, s->a0, &q->treading, M, motion, good));
+  PetscCall(PetscFree(motion));
   for (PetscInt j = 0; j < 2 * n; j++) U[j * 2 * n + j] = 1;
   for (PetscInt j = 0; j < n; j++) sigma[(2 * n + j) * n + j] = 1;
   if (*good) PetscCall(DenseBlockSolve(m, h2, &block, all, U, sigma));

@@ -61,8 +61,10 @@ PetscErrorCode PatternsDestroy(Patterns *patterns) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether two vesicles have as many markers, as far apart, and the same stiffness. */
-static PetscBool Alike(Membrane m, PetscInt v, PetscInt w) {
+/* Whether two vesicles have as many markers, as far apart, the same stiffness and the same viscosity. */
+static PetscBool Alike(Coupling c, PetscInt v, PetscInt w) {
+  const Membrane m = c->membrane;
+  if (c->contrast && c->contrast->ratio[v] != c->contrast->ratio[w]) return PETSC_FALSE;
   return LayoutCount(m->layout, v) == LayoutCount(m->layout, w) &&
                  PetscAbsReal(m->ds[v] - m->ds[w]) < 1e-6 * m->ds[v] && m->part[v] == m->part[w]
              ? PETSC_TRUE
@@ -79,7 +81,7 @@ static PetscReal Distance(Patterns s, PetscInt v, const Pattern *q, Pose *pose) 
   const PetscReal R0 = m->L0[v] / (2 * PETSC_PI), a0 = c->fluid->a0;
   const PetscReal stiffness = m->part[v] * m->bending / (4 * c->fluid->nu * R0 * R0 * R0 * a0);
   PetscReal most = 0;
-  if (!Alike(m, v, q->like)) return PETSC_MAX_REAL;
+  if (!Alike(c, v, q->like)) return PETSC_MAX_REAL;
   *pose = PoseFit(n, s->X, q->X);
   for (PetscInt k = 1; 2 * k <= n; k++) {
     const PetscReal mode = (PetscReal)k;
@@ -251,20 +253,20 @@ void PatternsGetMemory(Patterns s, PetscReal memory[]) {
 }
 
 /* Whether a number from a file is that of a vesicle like v. */
-static PetscBool IsLike(Membrane m, PetscInt v, PetscReal number) {
-  return number >= 0 && number < (PetscReal)m->layout->bodies && Alike(m, v, (PetscInt)number) ? PETSC_TRUE
-                                                                                               : PETSC_FALSE;
+static PetscBool IsLike(Coupling c, PetscInt v, PetscReal number) {
+  return number >= 0 && number < (PetscReal)c->membrane->layout->bodies && Alike(c, v, (PetscInt)number) ? PETSC_TRUE
+                                                                                                         : PETSC_FALSE;
 }
 
 PetscErrorCode PatternsSetMemory(Patterns s, const PetscReal memory[], PetscBool *valid) {
-  const Membrane m = s->coupling->membrane;
-  const Layout l = m->layout;
+  const Coupling c = s->coupling;
+  const Layout l = c->membrane->layout;
   const PetscReal *X = memory + 1, *first = X + 2 * l->M, *treading = first + l->bodies, *like = treading + l->bodies;
   PetscFunctionBeginUser;
   *valid = PETSC_TRUE;
   if (!(memory[0] > 0)) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt v = 0; v < l->bodies; v++)
-    if (!IsLike(m, v, first[v]) || first[v] > (PetscReal)v || !IsLike(m, v, like[(PetscInt)first[v]]) ||
+    if (!IsLike(c, v, first[v]) || first[v] > (PetscReal)v || !IsLike(c, v, like[(PetscInt)first[v]]) ||
         first[(PetscInt)first[v]] != first[v])
       *valid = PETSC_FALSE;
   if (!*valid) PetscFunctionReturn(PETSC_SUCCESS);

@@ -1,4 +1,5 @@
 #include "coupling/reduced.h"
+#include "coupling/contrast.h"
 
 /* F = Dm^T sigma + (1/a0) (c_b ds D4 + K_sigma + K_rep) V, minus h^2 times the force on the markers. */
 static PetscErrorCode Force(Reduced s, const PetscScalar x[], Vec F) {
@@ -14,8 +15,20 @@ static PetscErrorCode Force(Reduced s, const PetscScalar x[], Vec F) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* r += -E^T F/h^2 + d; leaves F. */
-static PetscErrorCode AddForces(Reduced s, const PetscScalar x[], Vec r) {
+/* The jump of the motion that x gives the markers, which is left in s->motion. */
+static PetscErrorCode Jump(Reduced s, const PetscScalar x[]) {
+  PetscScalar *G;
+  PetscFunctionBeginUser;
+  if (!s->source) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecGetArray(s->motion, &G));
+  PetscCall(ContrastJump(s->unknowns->coupling, x, G));
+  PetscCall(VecRestoreArray(s->motion, &G));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* r += -E^T F/h^2 + d and the dipoles' force, source and mean += their divergence and mean velocity; leaves F and the
+   jump. */
+static PetscErrorCode AddForces(Reduced s, const PetscScalar x[], Vec r, Vec source, PetscReal mean[2]) {
   const Unknowns u = s->unknowns;
   const Coupling c = u->coupling;
   PetscFunctionBeginUser;
@@ -23,6 +36,8 @@ static PetscErrorCode AddForces(Reduced s, const PetscScalar x[], Vec r) {
     PetscCall(Force(s, x, s->F));
     PetscCall(MarkersSpread(c->markers, -1 / PetscSqr(c->fluid->grid->h), s->F, r));
   }
+  PetscCall(Jump(s, x));
+  if (s->source) PetscCall(DoubleLayerSpread(c->contrast, r, source, mean));
   PetscCall(UnknownsGatherWalls(u, x + u->velocity + u->tension, s->d));
   PetscCall(WallsAdd(u->walls, s->d, r));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -39,8 +54,8 @@ static PetscErrorCode Subtract(Vec known, PetscInt n, PetscScalar y[]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* y = (V + (treading/a0) dV/dt - E w + C F - k, Dm V/h^2 - g) of x, s->F holding F; k and g may be NULL; not scaled
-   yet. */
+/* y = (V + (treading/a0) dV/dt - E w + C F - k, Dm V/h^2 - g) of x, s->F holding F, and with viscosity contrast
+   s->motion what stands in the place of the first two; k and g may be NULL; not scaled yet. */
 static PetscErrorCode MembraneConditions(Reduced s, const PetscScalar x[], Vec w, Vec known, Vec g, PetscScalar y[]) {
   const Coupling c = s->unknowns->coupling;
   const PetscInt n = s->unknowns->velocity;
@@ -55,6 +70,11 @@ static PetscErrorCode MembraneConditions(Reduced s, const PetscScalar x[], Vec w
   PetscCall(VecGetArrayRead(s->F, &F));
   if (c->near) PetscCall(NearFieldApply(c->near, 1, F, y));
   PetscCall(VecRestoreArrayRead(s->F, &F));
+  if (s->source) {
+    PetscCall(VecGetArrayRead(s->motion, &U));
+    PetscCall(ContrastRest(c, U, y));
+    PetscCall(VecRestoreArrayRead(s->motion, &U));
+  }
   MembraneStretching(c->membrane, c->tau, x, y + n);
   for (PetscInt k = 0; k < s->unknowns->tension; k++) y[n + k] /= h2;
   PetscCall(Subtract(known, n, y));
@@ -92,10 +112,47 @@ static PetscErrorCode NextPlace(Reduced s, PetscInt *place) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* In a box that is periodic both ways the solve leaves w without a mean, which dipoles have. */
+static PetscErrorCode AddMean(Reduced s, const PetscReal mean[2], Vec w) {
+  const Grid g = s->unknowns->coupling->fluid->grid;
+  const PetscInt n = GridLocalU(g);
+  PetscScalar *a;
+  PetscFunctionBeginUser;
+  if (!s->source || g->wall[0] || g->wall[1]) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecGetArray(w, &a));
+  for (PetscInt k = 0; k < 2 * n; k++) a[k] += mean[k / n];
+  PetscCall(VecRestoreArray(w, &a));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* (w, p) = Stokes(r, source), source NULL (zero) or p. */
+static PetscErrorCode Solve(Reduced s, Vec r, Vec source, const PetscReal mean[2], Vec w, Vec p) {
+  PetscFunctionBeginUser;
+  if (!s->stokes) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(StokesSolve(s->stokes, r, source, w, p));
+  PetscCall(AddMean(s, mean, w));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ReducedBegin(Reduced s, Vec moved, Vec f) {
+  const Coupling c = s->unknowns->coupling;
+  const PetscScalar *U;
+  PetscFunctionBeginUser;
+  if (!s->source) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecSet(s->source, 0));
+  s->mean[0] = s->mean[1] = 0;
+  PetscCall(VecGetArrayRead(moved, &U));
+  PetscCall(DoubleLayerSet(c->contrast, U));
+  PetscCall(VecRestoreArrayRead(moved, &U));
+  PetscCall(DoubleLayerSpread(c->contrast, f, s->source, s->mean));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode Mult(Mat A, Vec x, Vec y) {
   Reduced s;
   const PetscScalar *xa;
   PetscScalar *ya;
+  PetscReal mean[2] = {0, 0};
   PetscInt place;
   PetscFunctionBeginUser;
   PetscCall(MatShellGetContext(A, &s));
@@ -106,8 +163,10 @@ static PetscErrorCode Mult(Mat A, Vec x, Vec y) {
     PetscCall(VecSet(s->r, 0));
   else
     PetscCall(MarkersClear(s->unknowns->coupling->markers, s->r, s->dirty));
-  PetscCall(AddForces(s, xa, s->r));
-  if (s->stokes) PetscCall(StokesSolve(s->stokes, s->r, NULL, s->kept.w[place], s->kept.p[place]));
+  const Vec p = s->kept.p[place];
+  if (s->source && p) PetscCall(VecSet(p, 0));
+  PetscCall(AddForces(s, xa, s->r, p, mean));
+  PetscCall(Solve(s, s->r, s->source ? p : NULL, mean, s->kept.w[place], p));
   PetscCall(VecGetArray(y, &ya));
   PetscCall(Conditions(s, xa, s->kept.w[place], NULL, NULL, ya));
   PetscCall(VecRestoreArray(y, &ya));
@@ -122,15 +181,15 @@ PetscErrorCode ReducedResidual(Reduced s, Vec added, Vec f, Vec g, Vec k, Vec x,
   PetscScalar *ra;
   PetscFunctionBeginUser;
   PetscCall(VecGetArrayRead(added, &xa));
-  PetscCall(AddForces(s, xa, f));
+  PetscCall(AddForces(s, xa, f, s->source, s->mean));
   PetscCall(VecRestoreArrayRead(added, &xa));
   PetscCall(VecGetArrayRead(x, &xa));
   if (CouplingHasMembrane(c) && added != x) PetscCall(Force(s, xa, s->F));
-  if (c->fluid->bc2) { /* p holds the right-hand side, then the solution */
-    PetscCall(VecAXPBY(p, -1, 0, c->fluid->bc2));
-    PetscCall(StokesSolve(s->stokes, f, p, w, p));
-  } else if (s->stokes)
-    PetscCall(StokesSolve(s->stokes, f, NULL, w, p));
+  if (added != x) PetscCall(Jump(s, xa));
+  /* p holds the right-hand side, then the solution */
+  if (c->fluid->bc2) PetscCall(VecAXPBY(p, -1, 0, c->fluid->bc2));
+  if (s->source) PetscCall(VecCopy(s->source, p));
+  PetscCall(Solve(s, f, s->source || c->fluid->bc2 ? p : NULL, s->mean, w, p));
   PetscCall(VecGetArray(residual, &ra));
   PetscCall(Conditions(s, xa, w, k, g, ra));
   PetscCall(VecRestoreArray(residual, &ra));
@@ -197,6 +256,10 @@ PetscErrorCode ReducedCreate(Unknowns u, Reduced *out) {
   PetscCall(DMCreateGlobalVector(c->fluid->grid->velocity, &s->r));
   PetscCall(LayoutCreateVec(c->membrane->layout, 2, &s->F));
   PetscCall(VecDuplicate(s->F, &s->U));
+  if (c->contrast) {
+    PetscCall(VecDuplicate(s->F, &s->motion));
+    PetscCall(DMCreateGlobalVector(c->fluid->grid->da[FIELD_P], &s->source));
+  }
   PetscCall(UnknownsCreateVec(u, &s->rest));
   PetscCall(PetscMalloc2(u->walls->n, &s->d, u->walls->n, &s->slip));
   PetscCall(VecGetLocalSize(s->rest, &n));
@@ -220,6 +283,8 @@ PetscErrorCode ReducedDestroy(Reduced *reduced) {
   PetscCall(VecDestroy(&s->r));
   PetscCall(VecDestroy(&s->F));
   PetscCall(VecDestroy(&s->U));
+  PetscCall(VecDestroy(&s->motion));
+  PetscCall(VecDestroy(&s->source));
   PetscCall(VecDestroy(&s->rest));
   PetscCall(PetscFree2(s->d, s->slip));
   PetscCall(MatDestroy(&s->A));

@@ -31,6 +31,9 @@ struct _p_Reduced {
   Vec r;             /* a force on the grid, */
   PetscInt dirty[2]; /* zero but for these rows */
   Vec F, U;          /* marker vectors, work */
+  Vec motion;        /* with a viscosity contrast: what the jump is of, marker vector, work */
+  Vec source;        /* and what the divergence of the forces in f is, minus; NULL without */
+  PetscReal mean[2]; /* and the mean velocity that goes with it in a box that is periodic both ways */
   Vec rest;          /* unknowns, work */
   PetscScalar *d;    /* [walls->n] all wall forces, work */
   PetscScalar *slip; /* [walls->n] work */
@@ -39,6 +42,10 @@ struct _p_Reduced {
 /* ReducedCreate - the problem for these unknowns. Collective. */
 PETSC_EXTERN PetscErrorCode ReducedCreate(Unknowns unknowns, Reduced *reduced);
 PETSC_EXTERN PetscErrorCode ReducedDestroy(Reduced *reduced);
+
+/* ReducedBegin - a problem begins: the dipoles of the part `moved` of the markers' motion that is known go into f, and
+   into the source of the divergence that goes with f; nothing without viscosity contrast. Collective. */
+PETSC_EXTERN PetscErrorCode ReducedBegin(Reduced reduced, Vec moved, Vec f);
 
 /* ReducedResidual - the forces of `added` go into f; minus the scaled residuals at x, with u, p = w, p by one Stokes
    solve of f, f holding the forces of x. g: an edge vector, k: a marker vector. Collective. */

@@ -177,6 +177,7 @@ PetscErrorCode CoupledSolverSolve(CoupledSolver s, const CoupledProblem *q, Solv
   }
   PetscCall(s->reduced->stokes ? Reference(s, q->f, q->g) : FreeReference(s, q));
   PetscCall(Guess(s, q));
+  PetscCall(ReducedBegin(s->reduced, q->moved, q->f));
   PetscCall(ReducedResidual(s->reduced, s->x, q->f, q->g, q->k, s->x, q->w, q->p, s->b));
   PetscCall(KSPGetTolerances(s->ksp, &rtol, &atol, NULL, NULL));
   PetscCall(VecSet(s->pending, 0));

@@ -1,5 +1,6 @@
 #include "output/cells.h"
 #include "base/agree.h"
+#include "coupling/doublecells.h"
 #include "coupling/layer.h"
 #include "coupling/nearcells.h"
 
@@ -68,13 +69,15 @@ static PetscErrorCode FromLayer(Scheme s, PetscReal u[], PetscReal v[], PetscRea
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What the grid does not have of the membranes' forces: all of it in unbounded fluid, the near field otherwise. Nothing
-   before the first step, whose velocity and tension are not known. */
+/* What the grid does not have of the membranes' forces and jumps: all of it in unbounded fluid, the near field
+   otherwise; then the velocity inside vesicles of another viscosity. Nothing before the first step, whose velocity and
+   tension are not known. */
 static PetscErrorCode AddMembranes(Scheme s, PetscReal u[], PetscReal v[], PetscReal p[]) {
   const State *q = &s->state;
   PetscFunctionBeginUser;
   if (q->dt_last == 0) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(s->fluid->grid->free ? FromLayer(s, u, v, p) : NearCellsCorrect(s->coupling, q->sigma, q->X, u, v, p));
+  PetscCall(DoubleCellsCorrect(s->coupling, q->U, q->X, u, v, p));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

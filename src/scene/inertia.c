@@ -100,8 +100,9 @@ PetscErrorCode SceneChooseInertia(Draft scene) {
                                     scene->flow.type == FLOW_CUSTOM
                                 ? PETSC_TRUE
                                 : PETSC_FALSE;
-    scene->fluid.inertia = FluidSpecIsFree(&scene->fluid) ? INERTIA_NONE : INERTIA_UNSTEADY;
-    if (!baseline && scene->shape.vesicles && !paper && !FluidSpecIsFree(&scene->fluid)) {
+    const PetscBool none = FluidSpecIsFree(&scene->fluid) || SceneHasContrast(scene) ? PETSC_TRUE : PETSC_FALSE;
+    scene->fluid.inertia = none ? INERTIA_NONE : INERTIA_UNSTEADY;
+    if (!baseline && scene->shape.vesicles && !paper && !none) {
       if (scene->reynolds < SMALL_REYNOLDS)
         scene->fluid.inertia = INERTIA_NONE;
       else if (scene->scheme.order > 1 && seamless)

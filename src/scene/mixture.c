@@ -27,3 +27,14 @@ PetscErrorCode SceneMixKinds(Draft scene) {
   PetscCall(PetscFree(have));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+PetscReal SceneViscosityRatio(Scene scene, PetscInt v) {
+  return ListEntry(&scene->membrane.viscosity_ratio, 1, SceneKindOf(scene, v), 0);
+}
+
+PetscBool SceneHasContrast(Scene scene) {
+  const RealList *ratio = &scene->membrane.viscosity_ratio;
+  for (PetscInt k = 0; k < ratio->n && scene->vesicles.shape != SHAPE_NONE; k++)
+    if (ratio->v[k] != 1) return PETSC_TRUE;
+  return PETSC_FALSE;
+}

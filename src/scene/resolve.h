@@ -75,6 +75,9 @@ PETSC_EXTERN PetscErrorCode SceneCheckDivergence(Scene scene);
 /* SceneCheckGravity - gravity, density differences and the drive of a channel; the vesicles are known. Collective. */
 PETSC_EXTERN PetscErrorCode SceneCheckGravity(Scene scene);
 
+/* SceneCheckContrast - ratios of viscosities and what they can do without; the vesicles are known. Collective. */
+PETSC_EXTERN PetscErrorCode SceneCheckContrast(Scene scene);
+
 /* SceneMakeShape - the initial markers of the scene's vesicles, all edges of a vesicle equal to 1e-12, and their
    bending stiffnesses; before the markers, whose number goes by it, the flow from numbers that go by the vesicles.
    Every rank gets all of it. Collective; stops with the user's message on a bad file, spacing or position, and when a

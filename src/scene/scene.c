@@ -38,6 +38,7 @@ PetscErrorCode SceneCreate(MPI_Comm comm, PetvesFlow flow, void *ctx, Scene *out
   PetscCall(SceneCheckFree(s));
   PetscCall(SceneCheckDivergence(s));
   PetscCall(SceneCheckGravity(s));
+  PetscCall(SceneCheckContrast(s));
   /* 6  the steps, which go by the vesicles' size */
   PetscCall(SceneChooseSteps(s));
   PetscCall(SceneChooseLargestStep(s));

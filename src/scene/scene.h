@@ -41,10 +41,11 @@ typedef struct {
 } SceneVesicles;
 
 typedef struct {
-  RealList stiffness;  /* c_b; one entry for all, or one a vesicle or kind */
-  PetscReal bending;   /* the largest of them */
-  PetscReal *each;     /* [vesicles] c_b of each */
-  PetscInt derivative; /* DerivativeType */
+  RealList stiffness;       /* c_b; one entry for all, or one a vesicle or kind */
+  PetscReal bending;        /* the largest of them */
+  PetscReal *each;          /* [vesicles] c_b of each */
+  RealList viscosity_ratio; /* inside over outside; one for all, or one a vesicle or kind */
+  PetscInt derivative;      /* DerivativeType */
 } SceneMembrane;
 
 /* Gravity: a force on the membranes, the inertia of both fluids being the same (Boussinesq). */
@@ -145,6 +146,11 @@ PETSC_EXTERN PetscBool SceneGiven(Scene scene, const char name[]);
    direction dir (length/time^2). Not collective. */
 PETSC_EXTERN PetscBool SceneHasGravity(Scene scene);
 PETSC_EXTERN PetscReal SceneWeight(Scene scene, PetscInt vesicle, int dir);
+
+/* SceneHasContrast - whether a vesicle's inner fluid has another viscosity than the outer one. SceneViscosityRatio - of
+   one vesicle, inner over outer. Not collective. */
+PETSC_EXTERN PetscBool SceneHasContrast(Scene scene);
+PETSC_EXTERN PetscReal SceneViscosityRatio(Scene scene, PetscInt vesicle);
 
 /* SceneHasBoxPart - whether the near field has its box part: asked for, and no period too long. Not collective. */
 PETSC_EXTERN PetscBool SceneHasBoxPart(Scene scene);

@@ -84,6 +84,7 @@ static const struct {
              {"-vesicle_file", BY_FILE},
              {"-vesicle_bending", BY_VESICLES},
              {"-vesicle_density_difference", BY_GRAVITY},
+             {"-vesicle_viscosity_ratio", BY_VESICLES},
              {"-vesicle_spacing", BY_VESICLES},
              {"-vesicle_markers", BY_VESICLES},
              {"-vesicle_allow_close_markers", BY_VESICLES},

@@ -1,6 +1,20 @@
 /* -view: the model in force. */
 #include "scene/scene.h"
 
+static PetscErrorCode ViewContrast(Scene scene, PetscViewer v) {
+  PetscReal low = PETSC_MAX_REAL, high = 0;
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < scene->shape.vesicles; k++) {
+    low = PetscMin(low, SceneViscosityRatio(scene, k));
+    high = PetscMax(high, SceneViscosityRatio(scene, k));
+  }
+  if (low == high)
+    PetscCall(PetscViewerASCIIPrintf(v, "viscosity inside over outside: %g\n", (double)low));
+  else
+    PetscCall(PetscViewerASCIIPrintf(v, "viscosity inside over outside: %g to %g\n", (double)low, (double)high));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode ViewFluid(Scene scene, PetscViewer v) {
   static const char *const forms[] = {"disturbance of the background flow", "total velocity with moving walls"};
   static const char *const inertia[] = {"unsteady Stokes", "quasi-steady Stokes", "unsteady Stokes",
@@ -17,6 +31,7 @@ static PetscErrorCode ViewFluid(Scene scene, PetscViewer v) {
   if (scene->shape.vesicles && SceneHasGravity(scene))
     PetscCall(PetscViewerASCIIPrintf(v, "gravity: %g,%g by the vesicles' density differences\n",
                                      (double)scene->gravity.g.v[0], (double)scene->gravity.g.v[1]));
+  if (SceneHasContrast(scene)) PetscCall(ViewContrast(scene, v));
   if (scene->fluid.drive == DRIVE_FLUX) PetscCall(PetscViewerASCIIPrintf(v, "channel: no flux of the disturbance\n"));
   if (no_mean) PetscCall(PetscViewerASCIIPrintf(v, "periodic box: the disturbance has no mean flow\n"));
   if (*scene->warning) PetscCall(PetscViewerASCIIPrintf(v, "warning: %s\n", scene->warning));

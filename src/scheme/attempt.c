@@ -1,4 +1,5 @@
 /* One unsplit step, backward Euler or BDF2 (docs/method.md, One step). */
+#include "coupling/contrast.h"
 #include "scheme/coupled.h"
 #include "scheme/stress.h"
 
@@ -68,7 +69,10 @@ static PetscErrorCode RightHandSides(Scheme s, Coupled *d, const BDF *b) {
   PetscCall(VecWAXPY(d->Y, 1 / b->a0, s->background, d->Xhat));
   if (CouplingHasMembrane(s->coupling)) PetscCall(CouplingElastic(s->coupling, -1, d->Y, d->f, d->known));
   PetscCall(CouplingAddGravity(s->coupling, d->Xstar, d->f, d->known));
-  PetscCall(CouplingTread(s->coupling, -1, d->Y, d->known));
+  if (d->moved)
+    PetscCall(ContrastKnown(s->coupling, s->background, d->Y, d->moved, d->known));
+  else
+    PetscCall(CouplingTread(s->coupling, -1, d->Y, d->known));
   if (d->convection) {
     PetscCall(HistorySum(h, s->membrane, b->order, b->star, 1, 0, STATES(s, w), d->next.w));
     PetscCall(ConvectionAdd(d->convection, -1, d->next.w, d->f));
@@ -96,8 +100,15 @@ static PetscErrorCode InitialGuess(Scheme s, Coupled *d) {
 /* u, p, sigma of the new time (and V); report.failure when the solver fails. */
 static PetscErrorCode Solve(Scheme s, Coupled *d) {
   State *n = &d->next;
-  const CoupledProblem problem = {
-      .f = d->f, .g = s->g, .k = d->known, .w = n->w, .p = n->p, .sigma = n->sigma, .d = n->walls, .V = d->V};
+  const CoupledProblem problem = {.moved = d->moved,
+                                  .f = d->f,
+                                  .g = s->g,
+                                  .k = d->known,
+                                  .w = n->w,
+                                  .p = n->p,
+                                  .sigma = n->sigma,
+                                  .d = n->walls,
+                                  .V = d->V};
   SolveReport report;
   PetscFunctionBeginUser;
   if (d->direct) {
@@ -119,16 +130,24 @@ static PetscErrorCode Solve(Scheme s, Coupled *d) {
 static PetscErrorCode MoveMarkers(Scheme s, Coupled *d, PetscReal a0) {
   State *n = &d->next;
   PetscFunctionBeginUser;
-  PetscCall(SchemeMeasureDivergence(s, n->w));
-  if (!CouplingHasMembrane(s->coupling)) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!CouplingHasMembrane(s->coupling)) {
+    PetscCall(SchemeMeasureDivergence(s, n->w, s->fluid->bc2));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(SchemeMarkerVelocity(s, d->V, d->P));
   PetscCall(VecWAXPY(n->X, 1 / a0, d->P, d->Xhat));
   PetscCall(VecCopy(d->P, n->U));
   PetscCall(CouplingTread(s->coupling, 1, n->X, n->U));
+  if (d->source) {
+    PetscCall(ContrastSource(s->coupling, n->U, d->source));
+    PetscCall(VecScale(d->source, -1));
+  }
+  PetscCall(SchemeMeasureDivergence(s, n->w, d->source ? d->source : s->fluid->bc2));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What the forces of the step, which are spread at X*, do to a sheared channel. */
+/* What the forces of the step, which are spread at X*, and the jump, which is still that of U, do to a sheared
+   channel. */
 static PetscErrorCode MeasureStress(Scheme s, Coupled *d) {
   const PetscScalar *sigma, *x;
   PetscScalar *F;

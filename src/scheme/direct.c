@@ -1,23 +1,5 @@
 #include "scheme/direct.h"
 
-/* Rank that holds a global row of a field. */
-static PetscInt Owner(Grid g, PetscInt j) {
-  return PetscMin(j / g->block, g->size - 1);
-}
-
-static PetscInt RowsOf(Grid g, PetscInt rank, int f) {
-  return rank < g->size - 1 ? g->block : g->all_rows[f] - (g->size - 1) * g->block;
-}
-
-/* Global index of entry (i, j) of a field. */
-static PetscInt Index(DirectSolver d, int f, PetscInt i, PetscInt j) {
-  const Grid g = d->fluid->grid;
-  const PetscInt rank = Owner(g, j);
-  PetscInt index = d->start[rank] + (j - rank * g->block) * g->columns[f] + i;
-  for (int k = 0; k < f; k++) index += g->columns[k] * RowsOf(g, rank, k);
-  return index;
-}
-
 PetscErrorCode DirectSolverCreate(Coupling coupling, DirectSolver *out) {
   const Grid g = coupling->fluid->grid;
   DirectSolver d;
@@ -28,14 +10,16 @@ PetscErrorCode DirectSolverCreate(Coupling coupling, DirectSolver *out) {
   d->fluid = coupling->fluid;
   d->coupling = coupling;
   d->M = coupling->membrane->layout->M;
+  d->each = coupling->contrast ? 7 : 5;
   PetscCall(PetscMalloc1(2 * d->M, &d->all));
   PetscCall(PetscCalloc1(g->size + 1, &d->start));
   for (PetscInt r = 0; r < g->size; r++) {
-    d->start[r + 1] = d->start[r] + (r == g->size - 1 ? 5 * d->M : 0);
-    for (int f = 0; f < 3; f++) d->start[r + 1] += g->columns[f] * RowsOf(g, r, f);
+    d->start[r + 1] = d->start[r] + (r == g->size - 1 ? d->each * d->M : 0);
+    for (int f = 0; f < 3; f++) d->start[r + 1] += g->columns[f] * DirectRows(g, r, f);
   }
   PetscCall(VecCreateMPI(g->comm, d->start[g->rank + 1] - d->start[g->rank], PETSC_DETERMINE, &d->x));
   PetscCall(VecDuplicate(d->x, &d->b));
+  if (coupling->contrast) PetscCall(DMCreateGlobalVector(g->da[FIELD_P], &d->source));
   PetscCall(KSPCreate(g->comm, &d->ksp));
   PetscCall(KSPSetOptionsPrefix(d->ksp, "direct_"));
   PetscCall(KSPSetType(d->ksp, KSPPREONLY));
@@ -54,6 +38,7 @@ PetscErrorCode DirectSolverDestroy(DirectSolver *solver) {
   PetscCall(KSPDestroy(&(*solver)->ksp));
   PetscCall(VecDestroy(&(*solver)->x));
   PetscCall(VecDestroy(&(*solver)->b));
+  PetscCall(VecDestroy(&(*solver)->source));
   PetscCall(PetscFree(*solver));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -72,10 +57,10 @@ static PetscErrorCode AddFluid(DirectSolver d, Mat A) {
   for (int f = FIELD_U; f <= FIELD_V; f++)
     for (PetscInt j = g->first; j < g->first + g->rows[f]; j++)
       for (PetscInt i = 0; i < g->columns[f]; i++) {
-        const PetscInt row = Index(d, f, i, j), di[4] = {-1, 1, 0, 0}, dj[4] = {0, 0, -1, 1};
-        const PetscInt ahead = f == FIELD_U ? Index(d, FIELD_P, (i + 1) % g->n[0], j)
-                                            : Index(d, FIELD_P, i, (j + 1) % g->n[1]);
-        const PetscInt here = Index(d, FIELD_P, i, j);
+        const PetscInt row = DirectIndex(d, f, i, j), di[4] = {-1, 1, 0, 0}, dj[4] = {0, 0, -1, 1};
+        const PetscInt ahead = f == FIELD_U ? DirectIndex(d, FIELD_P, (i + 1) % g->n[0], j)
+                                            : DirectIndex(d, FIELD_P, i, (j + 1) % g->n[1]);
+        const PetscInt here = DirectIndex(d, FIELD_P, i, j);
         PetscReal diagonal = d->fluid->alpha + 4 * off;
         for (int k = 0; k < 4; k++) {
           PetscInt c = i + di[k], r = j + dj[k];
@@ -87,7 +72,7 @@ static PetscErrorCode AddFluid(DirectSolver d, Mat A) {
           }
           c = (c + g->columns[f]) % g->columns[f];
           r = (r + g->all_rows[f]) % g->all_rows[f];
-          PetscCall(MatSetValue(A, row, Index(d, f, c, r), -off, ADD_VALUES));
+          PetscCall(MatSetValue(A, row, DirectIndex(d, f, c, r), -off, ADD_VALUES));
         }
         PetscCall(MatSetValue(A, row, row, diagonal, ADD_VALUES));
         PetscCall(MatSetValue(A, row, ahead, 1 / h, ADD_VALUES));
@@ -96,9 +81,10 @@ static PetscErrorCode AddFluid(DirectSolver d, Mat A) {
         PetscCall(MatSetValue(A, here, row, -1 / h, ADD_VALUES));
       }
   if (!g->rank)
-    PetscCall(MatSetValue(A, Index(d, FIELD_P, 0, 0), Index(d, FIELD_P, 0, 0), -1, ADD_VALUES)); /* p_0 = 0 */
-  for (int f = FIELD_U; f <= FIELD_V && NoMean(d) && !g->rank; f++)
-    PetscCall(MatSetValue(A, Index(d, f, 0, 0), Index(d, f, 0, 0), off, ADD_VALUES)); /* u_0 = v_0 = 0 */
+    PetscCall(
+        MatSetValue(A, DirectIndex(d, FIELD_P, 0, 0), DirectIndex(d, FIELD_P, 0, 0), -1, ADD_VALUES)); /* p_0 = 0 */
+  for (int f = FIELD_U; f <= FIELD_V && NoMean(d) && !d->source && !g->rank; f++)
+    PetscCall(MatSetValue(A, DirectIndex(d, f, 0, 0), DirectIndex(d, f, 0, 0), off, ADD_VALUES)); /* u_0 = v_0 = 0 */
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -117,12 +103,12 @@ static PetscErrorCode AddInterpolation(DirectSolver d, Mat A, PetscInt room[], P
         if (!g->wall[1]) j %= g->n[1];
         if (i < 0 || j < 0 || i >= g->columns[c] || j >= g->all_rows[c]) continue;
         if (!A) {
-          const PetscInt row = Index(d, c, i, j);
+          const PetscInt row = DirectIndex(d, c, i, j);
           if (row >= d->start[g->rank] && row < d->start[g->rank + 1]) room[row - d->start[g->rank]]++;
           continue;
         }
-        PetscCall(MatSetValue(A, U + q, Index(d, c, i, j), -weight, ADD_VALUES));
-        PetscCall(MatSetValue(A, Index(d, c, i, j), F + q, weight, ADD_VALUES));
+        PetscCall(MatSetValue(A, U + q, DirectIndex(d, c, i, j), -weight, ADD_VALUES));
+        PetscCall(MatSetValue(A, DirectIndex(d, c, i, j), F + q, weight, ADD_VALUES));
       }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -156,14 +142,14 @@ static PetscErrorCode AddVesicle(DirectSolver d, Mat A, PetscInt v, PetscInt sig
   for (PetscInt c = 0; c < 2 * n; c++) {
     const PetscInt column = 2 * first + c;
     unit[c] = 1;
-    PetscCall(MatSetValue(A, U + column, U + column, 1, ADD_VALUES));
+    if (!d->source) PetscCall(MatSetValue(A, U + column, U + column, 1, ADD_VALUES));
     PetscCall(MatSetValue(A, F + column, F + column, 1, ADD_VALUES));
     PetscCall(PetscArrayzero(out, 2 * n));
     if (m->bending > 0) MembraneVesicleBending(m, v, -m->bending / (h2 * d->fluid->a0), unit, out);
     MembraneVesiclePull(m, v, -1 / (h2 * d->fluid->a0), turning, unit, out);
     for (PetscInt r = 0; r < 2 * n; r++) PetscCall(AddNonzero(A, F + 2 * first + r, U + column, out[r]));
     PetscCall(PetscArrayzero(out, 2 * n));
-    if (treading != 0) MembraneLabelDerivative(m, v, treading / d->fluid->a0, unit, out);
+    if (treading != 0 && !d->source) MembraneLabelDerivative(m, v, treading / d->fluid->a0, unit, out);
     for (PetscInt r = 0; r < 2 * n; r++) PetscCall(AddNonzero(A, U + 2 * first + r, U + column, out[r]));
     unit[c] = 0;
   }
@@ -201,16 +187,18 @@ static PetscErrorCode AddNearField(DirectSolver d, Mat A, PetscInt U, PetscInt F
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* sigma, U and F are the last rank's rows: it adds E, and every owner its vesicles. */
+/* sigma, U, F and J are the last rank's rows: it adds E, and every owner its vesicles. */
 static PetscErrorCode AddMembranes(DirectSolver d, Mat A) {
   const Grid g = d->fluid->grid;
   const Layout l = d->coupling->membrane->layout;
-  const PetscInt sigma = d->start[d->fluid->grid->size] - 5 * d->M, U = sigma + d->M, F = U + 2 * d->M;
+  const PetscInt sigma = d->start[g->size] - d->each * d->M, U = sigma + d->M, F = U + 2 * d->M, J = F + 2 * d->M;
   PetscFunctionBeginUser;
   if (g->rank == g->size - 1) PetscCall(AddInterpolation(d, A, NULL, U, F));
   if (g->rank == g->size - 1) PetscCall(AddSprings(d, A, U, F));
   for (PetscInt v = l->own; v < l->end; v++) PetscCall(AddVesicle(d, A, v, sigma, U, F));
   PetscCall(AddNearField(d, A, U, F));
+  if (d->source) PetscCall(DirectAddContrast(d, A, U, J));
+  if (d->source && NoMean(d)) PetscCall(DirectContrastMean(d, A, J, d->fluid->nu / PetscSqr(g->h)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -227,11 +215,13 @@ static PetscErrorCode CreateMatrix(DirectSolver d, Mat *A) {
   PetscCall(PetscMalloc1(n, &room));
   for (PetscInt k = 0; k < n; k++) room[k] = FEW;
   for (PetscInt v = 0; v < l->bodies; v++) longest = PetscMax(longest, LayoutCount(l, v));
-  for (PetscInt k = n - 5 * d->M; k < n && g->rank == g->size - 1; k++) {
-    const PetscBool U = k >= n - 4 * d->M && k < n - 2 * d->M && d->coupling->near ? PETSC_TRUE : PETSC_FALSE;
-    room[k] = 4 * FEW + 3 * longest + (U ? 2 * d->M : 0);
+  const PetscInt sigma = n - d->each * d->M;
+  for (PetscInt k = sigma; k < n && g->rank == g->size - 1; k++) {
+    const PetscBool U = k >= sigma + d->M && k < sigma + 3 * d->M && d->coupling->near ? PETSC_TRUE : PETSC_FALSE;
+    room[k] = 4 * FEW + 3 * longest + (U ? (d->each - 3) * d->M : 0);
   }
   PetscCall(AddInterpolation(d, NULL, room, 0, 0));
+  if (d->source) PetscCall(DirectRoom(d, room));
   for (PetscInt k = 0; k < n; k++) room[k] = PetscMin(n, room[k]);
   PetscCall(MatCreateAIJ(g->comm, n, n, PETSC_DETERMINE, PETSC_DETERMINE, 0, room, FEW, NULL, A));
   PetscCall(PetscFree(room));
@@ -249,13 +239,27 @@ static PetscErrorCode Assemble(DirectSolver d, Mat *A) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The dipoles of the motion that is known, to f and the source, and the mean velocity that goes with them. */
+static PetscErrorCode KnownDipoles(DirectSolver d, const CoupledProblem *q, PetscReal mean[2]) {
+  const PetscScalar *U;
+  PetscFunctionBeginUser;
+  PetscCall(VecSet(d->source, 0));
+  PetscCall(VecGetArrayRead(q->moved, &U));
+  PetscCall(DoubleLayerSet(d->coupling->contrast, U));
+  PetscCall(VecRestoreArrayRead(q->moved, &U));
+  PetscCall(DoubleLayerSpread(d->coupling->contrast, q->f, d->source, mean));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode RightHandSide(DirectSolver d, const CoupledProblem *q) {
   const Grid g = d->fluid->grid;
   const PetscInt nw = GridLocalU(g) + g->columns[FIELD_V] * g->rows[FIELD_V],
                  np = g->columns[FIELD_P] * g->rows[FIELD_P];
   const PetscScalar *a;
   PetscScalar *b;
+  PetscReal mean[2] = {0, 0};
   PetscFunctionBeginUser;
+  if (d->source) PetscCall(KnownDipoles(d, q, mean));
   PetscCall(VecSet(d->b, 0));
   PetscCall(VecGetArray(d->b, &b));
   PetscCall(VecGetArrayRead(q->f, &a));
@@ -265,6 +269,13 @@ static PetscErrorCode RightHandSide(DirectSolver d, const CoupledProblem *q) {
     PetscCall(VecGetArrayRead(d->fluid->bc2, &a));
     for (PetscInt k = 0; k < np; k++) b[nw + k] = -a[k];
     PetscCall(VecRestoreArrayRead(d->fluid->bc2, &a));
+  }
+  if (d->source) {
+    PetscCall(VecGetArrayRead(d->source, &a));
+    PetscCall(PetscArraycpy(b + nw, a, np));
+    PetscCall(VecRestoreArrayRead(d->source, &a));
+    for (int f = FIELD_U; f <= FIELD_V && NoMean(d) && !g->rank; f++)
+      b[f ? GridLocalU(g) : 0] += d->fluid->nu / PetscSqr(g->h) * mean[f];
   }
   PetscCall(LayoutGatherVec(d->coupling->membrane->layout, q->g, d->all));
   if (g->rank == g->size - 1) PetscCall(PetscArraycpy(b + nw + np, d->all, d->M));
@@ -352,7 +363,7 @@ PetscErrorCode DirectSolverSolve(DirectSolver d, const CoupledProblem *q) {
   PetscCall(VecShift(q->p, -mean / ((PetscReal)g->n[0] * g->n[1])));
   PetscCall(FromLastRank(d, 1, x + nw + np, q->sigma));
   PetscCall(FromLastRank(d, 2, x + nw + np + d->M, q->V));
-  if (NoMean(d)) PetscCall(RemoveMean(d, q->w, q->V));
+  if (NoMean(d) && !d->source) PetscCall(RemoveMean(d, q->w, q->V));
   PetscCall(VecRestoreArrayRead(d->x, &x));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

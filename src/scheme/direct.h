@@ -7,9 +7,11 @@ struct _p_DirectSolver {
   Coupling coupling; /* borrowed, and its fluid: */
   Fluid fluid;
   PetscInt M;
-  PetscInt *start; /* [ranks+1] first global index of each rank; sigma, U and F come last, on the last rank */
+  PetscInt each;   /* unknowns a marker: sigma, U, F, and with viscosity contrast the jump J */
+  PetscInt *start; /* [ranks+1] first global index of each rank; sigma, U, F and J come last, on the last rank */
   KSP ksp;
   Vec x, b;
+  Vec source;             /* with viscosity contrast: G^T of the velocity; else NULL */
   PetscScalar *all;       /* [2M] of all markers, work */
   KSPConvergedReason why; /* how the last solve ended; < 0: failed */
 };
@@ -20,6 +22,18 @@ PETSC_EXTERN PetscErrorCode DirectSolverDestroy(DirectSolver *solver);
 
 /* DirectSolverSolve - [H + B E/a0, G, S; G^T; S^T] with the near field, at the coupling's markers, p of zero mean (and
    w in a periodic box with alpha = 0). The markers' velocity V and the force F = Dm^T sigma/h^2 + (c_b ds/(h^2 a0)) D4
-   V on them are unknowns of their own, so that the matrix stays sparse. Takes f, g and k of the problem, gives w, p,
-   sigma and V. Afterwards solver->why says how it went. Collective. */
+   V on them are unknowns of their own, so that the matrix stays sparse. Takes f, g and k of the problem (and moved,
+   whose dipoles are added to f), gives w, p, sigma and V. Afterwards solver->why says how it went. Collective. */
 PETSC_EXTERN PetscErrorCode DirectSolverSolve(DirectSolver solver, const CoupledProblem *problem);
+
+/* DirectIndex - global index of entry (i, j) of a field. DirectRows - rows of a field on a rank. Not collective. */
+PETSC_EXTERN PetscInt DirectIndex(DirectSolver solver, int field, PetscInt i, PetscInt j);
+PETSC_EXTERN PetscInt DirectRows(Grid grid, PetscInt rank, int field);
+
+/* DirectAddContrast - viscosity contrast in the matrix, U and J the first rows of these unknowns: B U in the rows of U,
+   J - Q (1 - ratio) (U + (treading/a0) dU/dt) = 0, the dipoles of J in the momentum and the divergence. DirectRoom -
+   entries that they need in the rank's own rows, added to room. DirectContrastMean - in a box periodic both ways the
+   row of the first u and v: `scale` times the mean velocity less that of the dipoles. Collective. */
+PETSC_EXTERN PetscErrorCode DirectAddContrast(DirectSolver solver, Mat A, PetscInt U, PetscInt J);
+PETSC_EXTERN PetscErrorCode DirectRoom(DirectSolver solver, PetscInt room[]);
+PETSC_EXTERN PetscErrorCode DirectContrastMean(DirectSolver solver, Mat A, PetscInt J, PetscReal scale);

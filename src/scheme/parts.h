@@ -16,8 +16,9 @@ PETSC_EXTERN PetscErrorCode SchemeBackground(Scheme scheme, Vec X, PetscReal t);
    report.surface_div_max on the way. U may be V. Collective. */
 PETSC_EXTERN PetscErrorCode SchemeMarkerVelocity(Scheme scheme, Vec V, Vec U);
 
-/* SchemeMeasureDivergence - fill in report.div_max of a solved velocity. Collective. */
-PETSC_EXTERN PetscErrorCode SchemeMeasureDivergence(Scheme scheme, Vec w);
+/* SchemeMeasureDivergence - fill in report.div_max of a solved velocity, whose divergence is to be `expected` (NULL:
+   zero). Collective. */
+PETSC_EXTERN PetscErrorCode SchemeMeasureDivergence(Scheme scheme, Vec w, Vec expected);
 
 /* SchemeKeep - copy the state into scheme->before. SchemeReturn - put back what was kept before the step; advanced: the
    new state has taken the old one's place since. Collective. */

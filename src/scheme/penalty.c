@@ -59,7 +59,7 @@ static PetscErrorCode Step_Penalty(Scheme s, PetscReal most) {
   /* 2  H u* = r,  L psi = -(G^T u* + bc2),  u = u* - G psi,  dp = psi/dt + nu (G^T u* + bc2) */
   PetscCall(StokesSolve(d->stokes, d->r, d->constraint, q->w, d->dp));
   PetscCall(VecAXPY(q->p, 1, d->dp));
-  PetscCall(SchemeMeasureDivergence(s, q->w));
+  PetscCall(SchemeMeasureDivergence(s, q->w, s->fluid->bc2));
   if (!CouplingHasMembrane(s->coupling)) PetscFunctionReturn(PETSC_SUCCESS);
   /* 3  X += dt (u_inf + E u), and the tension that goes with it */
   PetscCall(MarkersInterpolate(s->coupling->markers, q->w, q->U));

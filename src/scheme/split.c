@@ -103,7 +103,7 @@ static PetscErrorCode Step_Split(Scheme s, PetscReal most) {
   PetscCall(VecCopy(d->u2, q->w));
   PetscCall(GridGradient(f->grid, -q->dt, d->dp, PETSC_TRUE, q->w));
   if (any) PetscCall(CouplingSpreadTension(c, -q->dt, d->dsigma, q->w));
-  PetscCall(SchemeMeasureDivergence(s, q->w));
+  PetscCall(SchemeMeasureDivergence(s, q->w, s->fluid->bc2));
   /* 7  X += dt (u_inf + E u),  p += dp,  sigma += dsigma */
   PetscCall(VecAXPY(q->p, 1, d->dp));
   if (!any) PetscFunctionReturn(PETSC_SUCCESS);

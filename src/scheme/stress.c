@@ -64,6 +64,7 @@ static PetscErrorCode Stresslets(Scheme s, Vec F, Vec X, PetscReal sum[3]) {
   PetscCall(VecRestoreArrayRead(F, &a));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 3, MPIU_REAL, MPI_SUM, l->comm));
   sum[0] -= seams;
+  if (s->coupling->contrast) DoubleLayerStress(s->coupling->contrast, sum);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -1,0 +1,102 @@
+#include "coupling/contrast.h"
+
+PetscErrorCode CouplingAddContrast(Coupling c, const PetscReal ratio[]) {
+  PetscFunctionBeginUser;
+  PetscCall(DoubleLayerCreate(c->near, ratio, &c->contrast));
+  c->markers->least = DIPOLE_WALL_CELLS;
+  c->markers->needs = "4";
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* y += alpha (1 + ratio)/2 U */
+static void AddMean(Coupling c, PetscReal alpha, const PetscScalar U[], PetscScalar y[]) {
+  const Layout l = c->membrane->layout;
+  for (PetscInt v = l->own; v < l->end; v++)
+    for (PetscInt k = 2 * LayoutOffset(l, v); k < 2 * (LayoutOffset(l, v) + LayoutCount(l, v)); k++)
+      y[k] += alpha * 0.5 * (1 + c->contrast->ratio[v]) * U[k];
+}
+
+PetscErrorCode ContrastJump(Coupling c, const PetscScalar V[], PetscScalar G[]) {
+  PetscFunctionBeginUser;
+  PetscCall(PetscArraycpy(G, V, 2 * c->membrane->layout->n));
+  MembraneTread(c->membrane, c->treading, 1 / c->fluid->a0, V, G);
+  PetscCall(DoubleLayerSet(c->contrast, G));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ContrastRest(Coupling c, const PetscScalar G[], PetscScalar y[]) {
+  PetscFunctionBeginUser;
+  AddMean(c, 1, G, y);
+  for (PetscInt k = 0; k < 2 * c->membrane->layout->n; k++) y[k] -= G[k];
+  PetscCall(DoubleLayerApply(c->contrast, -1, y));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ContrastKnown(Coupling c, Vec background, Vec Y, Vec moved, Vec k) {
+  const PetscScalar *U;
+  PetscScalar *y;
+  PetscFunctionBeginUser;
+  PetscCall(VecCopy(background, moved));
+  PetscCall(CouplingTread(c, 1, Y, moved));
+  PetscCall(VecAXPY(k, 1, background));
+  PetscCall(VecGetArrayRead(moved, &U));
+  PetscCall(VecGetArray(k, &y));
+  PetscCall(DoubleLayerSet(c->contrast, U));
+  AddMean(c, -1, U, y);
+  PetscCall(DoubleLayerApply(c->contrast, 1, y));
+  PetscCall(VecRestoreArray(k, &y));
+  PetscCall(VecRestoreArrayRead(moved, &U));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ContrastSource(Coupling c, Vec U, Vec source) {
+  const PetscScalar *u;
+  PetscReal mean[2];
+  Vec w;
+  PetscFunctionBeginUser;
+  PetscCall(VecSet(source, 0));
+  PetscCall(VecGetArrayRead(U, &u));
+  PetscCall(DoubleLayerSet(c->contrast, u));
+  PetscCall(VecRestoreArrayRead(U, &u));
+  PetscCall(DMGetGlobalVector(c->fluid->grid->velocity, &w));
+  PetscCall(DoubleLayerSpread(c->contrast, w, source, mean));
+  PetscCall(DMRestoreGlobalVector(c->fluid->grid->velocity, &w));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ContrastTread(Membrane m, PetscInt vesicle, PetscInt end, const PetscReal treading[], PetscReal a0,
+                             PetscInt columns, PetscReal out[]) {
+  const PetscInt first = m->layout->start[vesicle], n = 2 * (m->layout->start[end] - first);
+  PetscReal *x;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(n, &x));
+  for (PetscInt r = 0; r < columns; r++) {
+    PetscCall(PetscArraycpy(x, out + r * n, n));
+    for (PetscInt v = vesicle; v < end; v++) {
+      const PetscInt at = 2 * (m->layout->start[v] - first);
+      if (treading[v - vesicle] != 0)
+        MembraneLabelDerivative(m, v, -treading[v - vesicle] / a0, x + at, out + r * n + at);
+    }
+  }
+  PetscCall(PetscFree(x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ContrastMatrix(Coupling c, PetscBool lattice, PetscReal a0, PetscInt first, PetscInt n,
+                              PetscReal out[]) {
+  const Layout l = c->membrane->layout;
+  const PetscInt begin = LayoutBody(l, first), end = LayoutBody(l, first + n - 1) + 1;
+  PetscFunctionBeginUser;
+  PetscCall(DoubleLayerAdd(c->contrast, -1, lattice, first, n, out));
+  for (PetscInt v = PetscMax(begin, l->own); v < PetscMin(end, l->end); v++)
+    for (PetscInt k = 2 * (l->start[v] - first); k < 2 * (l->start[v + 1] - first); k++)
+      out[k * 2 * n + k] += 0.5 * (1 + c->contrast->ratio[v]);
+  for (PetscInt j = 0; j < 2 * n; j++) /* transposed */
+    for (PetscInt i = 0; i < j; i++) {
+      const PetscReal kept = out[j * 2 * n + i];
+      out[j * 2 * n + i] = out[i * 2 * n + j];
+      out[i * 2 * n + j] = kept;
+    }
+  PetscCall(ContrastTread(c->membrane, begin, end, c->treading + begin, a0, 2 * n, out));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,34 @@
+/* Viscosity contrast in the equations of a step (docs/method.md, Viscosity contrast): what stands in the place of the
+   markers' velocity U where the inner viscosity is another than the outer one,
+
+       B U - E v' + C F = ...,      B U = (1 + ratio)/2 U - C_D (1 - ratio) U,      U = V + (treading/a0) dV/dt + known.
+ */
+#pragma once
+#include "coupling/coupling.h"
+
+/* CouplingAddContrast - from here on with ratio[vesicles] of viscosities; the coupling has a near field. Collective. */
+PETSC_EXTERN PetscErrorCode CouplingAddContrast(Coupling coupling, const PetscReal ratio[]);
+
+/* ContrastKnown - of the part of the motion that is known before the step, the background's and what the labels' speed
+   makes of Y: moved = background + treading dY/dt, and k += background - B moved. Collective. */
+PETSC_EXTERN PetscErrorCode ContrastKnown(Coupling coupling, Vec background, Vec Y, Vec moved, Vec k);
+
+/* ContrastJump - set the jump of the motion V + (treading/a0) dV/dt of own V[2n], G[2n] being room for it. ContrastRest
+   - y += (B - 1) G for the motion G whose jump is set. Collective; not collective. */
+PETSC_EXTERN PetscErrorCode ContrastJump(Coupling coupling, const PetscScalar V[], PetscScalar G[]);
+PETSC_EXTERN PetscErrorCode ContrastRest(Coupling coupling, const PetscScalar G[], PetscScalar y[]);
+
+/* ContrastSource - source = G^T of the solved velocity where markers move with U: nothing but of dipoles. Collective.
+ */
+PETSC_EXTERN PetscErrorCode ContrastSource(Coupling coupling, Vec U, Vec source);
+
+/* ContrastMatrix - out[2n][2n], zero before, of the markers first .. first + n - 1, which are whole vesicles: its
+   column r is row r of B (1 + (treading/a0) d/dt), of own markers; lattice false: with D in the place of C_D. Not
+   collective. */
+PETSC_EXTERN PetscErrorCode ContrastMatrix(Coupling coupling, PetscBool lattice, PetscReal a0, PetscInt first,
+                                           PetscInt n, PetscReal out[]);
+
+/* ContrastTread - the labels' part of such a matrix: each column x of out[columns][2n] becomes (1 - (treading/a0) d/dt)
+   x, for the markers of vesicles vesicle .. end - 1 and their treading[]. Not collective. */
+PETSC_EXTERN PetscErrorCode ContrastTread(Membrane membrane, PetscInt vesicle, PetscInt end, const PetscReal treading[],
+                                          PetscReal a0, PetscInt columns, PetscReal out[]);

@@ -1,0 +1,175 @@
+#include "coupling/doubleblock.h"
+#include "coupling/nearblock.h"
+
+PetscErrorCode DoubleGeometry(Spectral spectral, PetscInt n, const PetscReal X[], PetscReal normal[],
+                              PetscReal along[]) {
+  PetscReal *T;
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(2 * n, &T));
+  SpectralDerivative(spectral, 1, 1, X, T);
+  for (PetscInt k = 0; k < n; k++) {
+    normal[2 * k] = T[2 * k + 1];
+    normal[2 * k + 1] = -T[2 * k];
+    along[k] = PetscHypotReal(T[2 * k], T[2 * k + 1]);
+  }
+  PetscCall(PetscFree(T));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* D = -(1/pi) (r.n) r r/r^4 w with r from the target to the source and N = n w: xx, yy, xy. */
+static void Free(const PetscReal r[2], const PetscReal N[2], PetscReal D[3]) {
+  const PetscReal r2 = r[0] * r[0] + r[1] * r[1], q = -(r[0] * N[0] + r[1] * N[1]) / (PETSC_PI * r2 * r2);
+  D[0] = q * r[0] * r[0];
+  D[1] = q * r[1] * r[1];
+  D[2] = q * r[0] * r[1];
+}
+
+/* On the diagonal the curvature takes the place of 2 r.n/r^2: D = -(kappa/2 pi) t t w, from the label's derivatives T
+   and T' : xx, yy, xy. */
+static void Diagonal(const PetscReal T[2], const PetscReal TT[2], PetscReal D[3]) {
+  const PetscReal t2 = T[0] * T[0] + T[1] * T[1];
+  const PetscReal q = -(T[0] * TT[1] - T[1] * TT[0]) / (2 * PETSC_PI * t2 * t2);
+  D[0] = q * T[0] * T[0];
+  D[1] = q * T[1] * T[1];
+  D[2] = q * T[0] * T[1];
+}
+
+/* D(i, i) of all markers: [n][3]. */
+static PetscErrorCode Diagonals(Spectral spectral, PetscInt n, const PetscReal X[], PetscReal D[]) {
+  PetscReal *T, *TT;
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc2(2 * n, &T, 2 * n, &TT));
+  SpectralDerivative(spectral, 1, 1, X, T);
+  SpectralDerivative(spectral, 2, 1, X, TT);
+  for (PetscInt k = 0; k < n; k++) Diagonal(T + 2 * k, TT + 2 * k, D + 3 * k);
+  PetscCall(PetscFree2(T, TT));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode DoubleSelf(Spectral spectral, PetscInt n, const PetscReal X[], PetscReal D[]) {
+  PetscReal *normal, *along, *diagonal;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc3(2 * n, &normal, n, &along, 3 * n, &diagonal));
+  PetscCall(DoubleGeometry(spectral, n, X, normal, along));
+  PetscCall(Diagonals(spectral, n, X, diagonal));
+  for (PetscInt j = 0; j < n; j++)
+    for (PetscInt i = 0; i < n; i++) {
+      const PetscReal r[2] = {X[2 * j] - X[2 * i], X[2 * j + 1] - X[2 * i + 1]};
+      PetscReal pair[3], *at = D + 2 * j * 2 * n + 2 * i, *d = i == j ? diagonal + 3 * i : pair;
+      if (i != j) Free(r, normal + 2 * j, pair);
+      at[0] = d[0];
+      at[2 * n + 1] = d[1];
+      at[1] = at[2 * n] = d[2];
+    }
+  PetscCall(PetscFree3(normal, along, diagonal));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A pair's response to J of parts that respond with K to tensors, N = n w: T = (2 J_x N_x, 2 J_y N_y, J_x N_y + J_y
+   N_x). M[4]: x from J_x, y from J_x, x from J_y, y from J_y. */
+static void Contract(const PetscReal K[2][DIPOLE_COUNT], const PetscReal N[2], PetscReal scale, PetscReal M[4]) {
+  for (int c = 0; c < 2; c++) {
+    M[c] = scale * (2 * N[0] * K[c][DIPOLE_XX] + N[1] * K[c][DIPOLE_XY]);
+    M[2 + c] = scale * (2 * N[1] * K[c][DIPOLE_YY] + N[0] * K[c][DIPOLE_XY]);
+  }
+}
+
+/* D - L of distant markers, d = X_i - X_j: smoothing by the kernels and dispersion by the lattice, h^2/(48 pi r^3)
+   times these waves of the angle of d. */
+static void FarPair(const PetscReal d[2], PetscReal h, const PetscReal N[2], PetscReal M[4]) {
+  const PetscReal r = PetscHypotReal(d[0], d[1]), c = d[0] / r, s = d[1] / r, c2 = c * c - s * s, s2 = 2 * c * s;
+  const PetscReal c3 = c2 * c - s2 * s, s3 = s2 * c + c2 * s, c5 = c3 * c2 - s3 * s2, s5 = s3 * c2 + c3 * s2;
+  const PetscReal c7 = c5 * c2 - s5 * s2, s7 = s5 * c2 + c5 * s2;
+  const PetscReal K[2][DIPOLE_COUNT] = {
+      {13 * c3 - 9 * c5 - 6 * c7, -17 * c3 - 3 * c5 + 6 * c7, 34 * s3 - 6 * s5 - 12 * s7},
+      {17 * s3 - 3 * s5 - 6 * s7, -13 * s3 - 9 * s5 + 6 * s7, -34 * c3 - 6 * c5 + 12 * c7}};
+  Contract(K, N, h * h / (48 * PETSC_PI * r * r * r), M);
+}
+
+/* L of markers i and j, d = X_i - X_j of the image meant (length). */
+static void LatticePair(DoubleLayer s, PetscInt i, PetscInt j, const PetscReal d[2], PetscReal L[4]) {
+  const NearField f = s->near;
+  const PetscReal *X = f->markers->X, cell = 1 / f->markers->grid->h;
+  PetscReal K[2][DIPOLE_COUNT];
+  PetscInt cells[2];
+  for (int dir = 0; dir < 2; dir++) cells[dir] = (PetscInt)rint((d[dir] - (X[2 * i + dir] - X[2 * j + dir])) * cell);
+  for (int c = 0; c < 2; c++)
+    for (int k = 0; k < DIPOLE_COUNT; k++)
+      K[c][k] = StencilShiftedSum(&s->lattice[c], (OffsetBlock)k, &f->stencil[2 * i + c],
+                                  &s->dipole[DIPOLE_COUNT * j + k], cells);
+  Contract(K, s->normal + 2 * j, cell, L);
+}
+
+/* C = D - L of two markers, and L; r from the target i to the source j's image, own: D(i, i) of a marker with itself;
+   by stencils up to `reach` (length). */
+static void Pair(DoubleLayer s, PetscInt i, PetscInt j, const PetscReal r[2], PetscReal reach, const PetscReal *own,
+                 PetscReal C[4], PetscReal L[4]) {
+  const PetscReal h = s->near->markers->grid->h, d[2] = {-r[0], -r[1]}, *N = s->normal + 2 * j;
+  const PetscBool far = r[0] * r[0] + r[1] * r[1] > reach * reach ? PETSC_TRUE : PETSC_FALSE;
+  PetscReal D[3];
+  if (own)
+    for (int k = 0; k < 3; k++) D[k] = own[k];
+  else
+    Free(r, N, D);
+  const PetscReal whole[4] = {D[0], D[2], D[2], D[1]};
+  if (far)
+    FarPair(d, h, N, C);
+  else
+    LatticePair(s, i, j, d, L);
+  for (int k = 0; k < 4; k++) {
+    if (far)
+      L[k] = whole[k] - C[k];
+    else
+      C[k] = whole[k] - L[k];
+  }
+}
+
+/* D alone. */
+static void Whole(DoubleLayer s, PetscInt j, const PetscReal r[2], const PetscReal *own, PetscReal C[4]) {
+  PetscReal D[3];
+  if (!own) Free(r, s->normal + 2 * j, D);
+  for (int k = 0; k < 3 && own; k++) D[k] = own[k];
+  C[0] = D[0];
+  C[1] = C[2] = D[2];
+  C[3] = D[1];
+}
+
+/* value += (L n) (n w)^T/length: L acts on what Q leaves, flux[2n] being the rows' SUM L n over the column's markers.
+ */
+static void PutFluxBack(DoubleLayer s, const DoubleBlock *b, const PetscReal flux[], PetscReal value[]) {
+  const Layout l = s->near->membrane->layout;
+  const PetscInt n = 2 * LayoutCount(l, b->row), first = 2 * l->start[b->column];
+  for (PetscInt j = 0; j < 2 * LayoutCount(l, b->column); j++)
+    for (PetscInt i = 0; i < n; i++) value[j * n + i] += flux[i] * s->normal[first + j] / s->length[b->column];
+}
+
+PetscErrorCode DoubleBlockFill(DoubleLayer s, const DoubleBlock *b, PetscBool lattice, PetscReal value[]) {
+  const NearField f = s->near;
+  const Layout l = f->membrane->layout;
+  const PetscInt n = LayoutCount(l, b->row), m = LayoutCount(l, b->column);
+  const PetscBool self = b->row == b->column && b->shift[0] == 0 && b->shift[1] == 0 ? PETSC_TRUE : PETSC_FALSE;
+  const PetscReal *X = f->markers->X, reach = (self ? DOUBLE_CELLS : DOUBLE_CROSS_CELLS) * f->markers->grid->h;
+  PetscReal *flux, *diagonal;
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc2(2 * n, &flux, 3 * n, &diagonal));
+  if (self) PetscCall(Diagonals(f->membrane->spectral[b->row], n, X + 2 * l->start[b->row], diagonal));
+  for (PetscInt q = 0; q < m; q++)
+    for (PetscInt p = 0; p < n; p++) {
+      const PetscInt i = l->start[b->row] + p, j = l->start[b->column] + q;
+      const PetscReal r[2] = {X[2 * j] + b->shift[0] - X[2 * i], X[2 * j + 1] + b->shift[1] - X[2 * i + 1]};
+      const PetscReal *own = self && p == q ? diagonal + 3 * p : NULL, *N = s->normal + 2 * j;
+      PetscReal C[4], L[4], *at = value + 2 * q * 2 * n + 2 * p;
+      if (lattice) {
+        Pair(s, i, j, r, reach, own, C, L);
+        for (int c = 0; c < 2; c++) flux[2 * p + c] += (L[c] * N[0] + L[2 + c] * N[1]) / s->along[j];
+      } else
+        Whole(s, j, r, own, C);
+      at[0] = C[0];
+      at[1] = C[1];
+      at[2 * n] = C[2];
+      at[2 * n + 1] = C[3];
+    }
+  if (lattice) PutFluxBack(s, b, flux, value);
+  PetscCall(PetscFree2(flux, diagonal));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,17 @@
+/* The numbers of the double layer: pairs of markers. */
+#pragma once
+#include "coupling/doublelayer.h"
+
+#define DOUBLE_CELLS 30 /* up to which stencils of one vesicle are summed; farther, a closed form, right to 1e-8 */
+#define DOUBLE_CROSS_CELLS 16 /* the same of two vesicles */
+
+/* DoubleBlockFill - C_D (or, without lattice, D) of a block, [2 n_column][2 n_row]. Not collective. */
+PETSC_EXTERN PetscErrorCode DoubleBlockFill(DoubleLayer layer, const DoubleBlock *block, PetscBool lattice,
+                                            PetscReal value[]);
+
+/* DoubleSelf - D of a closed curve with itself from its n markers X: [2n][2n]. Not collective. */
+PETSC_EXTERN PetscErrorCode DoubleSelf(Spectral spectral, PetscInt n, const PetscReal X[], PetscReal D[]);
+
+/* DoubleGeometry - n w [2n] and w [n] of a curve's markers: the derivative by the label, turned. Not collective. */
+PETSC_EXTERN PetscErrorCode DoubleGeometry(Spectral spectral, PetscInt n, const PetscReal X[], PetscReal normal[],
+                                           PetscReal along[]);

@@ -1,0 +1,196 @@
+#include "coupling/doublelayer.h"
+#include "coupling/blas.h"
+#include "coupling/doubleblock.h"
+#include "coupling/doubleclose.h"
+
+PetscErrorCode DoubleLayerCreate(NearField near, const PetscReal ratio[], DoubleLayer *out) {
+  const Layout l = near->membrane->layout;
+  PetscInt most = 0;
+  DoubleLayer s;
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&s));
+  *out = s;
+  s->near = near;
+  for (PetscInt v = 0; v < l->bodies; v++) most = PetscMax(most, LayoutCount(l, v));
+  PetscCall(PetscMalloc3(l->bodies, &s->ratio, l->bodies, &s->length, 2 * most, &s->column));
+  PetscCall(PetscArraycpy(s->ratio, ratio, l->bodies));
+  PetscCall(PetscMalloc3(2 * l->M, &s->normal, l->M, &s->along, DIPOLE_COUNT * l->M, &s->dipole));
+  PetscCall(PetscCalloc3(2 * l->M, &s->jump, 2 * l->M, &s->plain, DIPOLE_COUNT * l->M, &s->tensor));
+  if (!near->free) PetscCall(LatticeDipoles(DOUBLE_CELLS + OFFSET_LAGS, s->lattice));
+  PetscCall(PetvesEvent("DoubleLayer", &s->place));
+  PetscCall(PetvesEvent("DoubleLayerApply", &s->apply));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode DoubleLayerDestroy(DoubleLayer *layer) {
+  DoubleLayer s = *layer;
+  PetscFunctionBeginUser;
+  if (!s) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscFree3(s->ratio, s->length, s->column));
+  PetscCall(PetscFree3(s->normal, s->along, s->dipole));
+  PetscCall(PetscFree3(s->jump, s->plain, s->tensor));
+  for (int c = 0; c < 2; c++) PetscCall(OffsetTableDestroy(&s->lattice[c]));
+  PetscCall(PetscFree(s->block));
+  PetscCall(PetscFree(s->value));
+  PetscCall(PetscFree(*layer));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Normals and dipoles' stencils of the vesicles that have a jump. */
+static PetscErrorCode PlaceDipoles(DoubleLayer s) {
+  const NearField f = s->near;
+  const Layout l = f->membrane->layout;
+  const Grid g = f->markers->grid;
+  PetscFunctionBeginUser;
+  for (PetscInt v = 0; v < l->bodies; v++) {
+    const PetscInt first = l->start[v];
+    if (s->ratio[v] == 1) continue;
+    PetscCall(DoubleGeometry(f->membrane->spectral[v], LayoutCount(l, v), f->markers->X + 2 * first,
+                             s->normal + 2 * first, s->along + first));
+    s->length[v] = 0;
+    for (PetscInt k = first; k < l->start[v + 1]; k++) {
+      PaddedStencil *p = s->dipole + DIPOLE_COUNT * k;
+      Stencil part[DIPOLE_COUNT];
+      s->length[v] += s->along[k];
+      if (f->free) continue;
+      DipoleStencils(g, f->markers->X + 2 * k, part);
+      for (int c = 0; c < DIPOLE_COUNT; c++) StencilPad(&part[c], &p[c]);
+      StencilUnwrap(g, f->markers->X + 2 * k, p);
+      StencilUnwrap(g, f->markers->X + 2 * k, p + 1); /* two at a time */
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AddBlock(DoubleLayer s, PetscInt row, PetscInt column, PetscReal sign, const PetscReal shift[2]) {
+  const Layout l = s->near->membrane->layout;
+  PetscFunctionBeginUser;
+  if (s->ratio[column] == 1 || row < l->own || row >= l->end) PetscFunctionReturn(PETSC_SUCCESS);
+  if (s->blocks == s->block_room) {
+    s->block_room = 2 * s->block_room + 16;
+    PetscCall(PetscRealloc((size_t)s->block_room * sizeof(DoubleBlock), &s->block));
+  }
+  s->block[s->blocks++] = (DoubleBlock){
+      .row = row, .column = column, .shift = {sign * shift[0], sign * shift[1]}, .at = s->values};
+  s->values += 4 * (size_t)LayoutCount(l, row) * (size_t)LayoutCount(l, column);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The near field's pairs, each both ways. */
+static PetscErrorCode FindBlocks(DoubleLayer s) {
+  const NearField f = s->near;
+  PetscFunctionBeginUser;
+  s->blocks = 0;
+  s->values = 0;
+  for (PetscInt k = 0; k < f->blocks; k++) {
+    const NearBlock *b = &f->block[k];
+    const PetscBool self = b->row == b->column && b->shift[0] == 0 && b->shift[1] == 0 ? PETSC_TRUE : PETSC_FALSE;
+    PetscCall(AddBlock(s, b->row, b->column, 1, b->shift));
+    if (!self) PetscCall(AddBlock(s, b->column, b->row, -1, b->shift));
+  }
+  if (s->values <= s->value_room) PetscFunctionReturn(PETSC_SUCCESS);
+  s->value_room = s->values + s->values / 4;
+  PetscCall(PetscFree(s->value));
+  PetscCall(PetscMalloc1(s->value_room, &s->value));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode DoubleLayerPlace(DoubleLayer s) {
+  PetscFunctionBeginUser;
+  PetscCall(PetscLogEventBegin(s->place, 0, 0, 0, 0));
+  PetscCall(PlaceDipoles(s));
+  PetscCall(FindBlocks(s));
+  for (PetscInt k = 0; k < s->blocks; k++) {
+    const DoubleBlock *b = &s->block[k];
+    PetscCall(DoubleBlockFill(s, b, s->near->free ? PETSC_FALSE : PETSC_TRUE, s->value + b->at));
+    PetscCall(DoubleCloseAdd(s, b, s->value + b->at));
+  }
+  PetscCall(PetscLogEventEnd(s->place, 0, 0, 0, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode DoubleLayerSet(DoubleLayer s, const PetscScalar U[]) {
+  const Layout l = s->near->membrane->layout;
+  PetscFunctionBeginUser;
+  PetscCall(LayoutGather(l, 2, U, s->plain));
+  for (PetscInt v = 0; v < l->bodies; v++) {
+    const PetscInt first = 2 * l->start[v], end = 2 * l->start[v + 1];
+    PetscReal flux = 0;
+    for (PetscInt k = first; k < end; k++) s->jump[k] = s->plain[k] *= 1 - s->ratio[v];
+    for (PetscInt k = first; k < end && s->ratio[v] != 1; k++) flux += s->normal[k] * s->plain[k];
+    for (PetscInt k = first; k < end && s->ratio[v] != 1; k++)
+      s->jump[k] -= flux / s->length[v] * s->normal[k] / s->along[k / 2];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode DoubleLayerApply(DoubleLayer s, PetscReal alpha, PetscScalar y[]) {
+  const Layout l = s->near->membrane->layout;
+  PetscFunctionBeginUser;
+  PetscCall(PetscLogEventBegin(s->apply, 0, 0, 0, 0));
+  for (PetscInt k = 0; k < s->blocks; k++) {
+    const DoubleBlock *b = &s->block[k];
+    PetscCall(DenseMultAdd(2 * LayoutCount(l, b->row), 2 * LayoutCount(l, b->column), alpha, s->value + b->at,
+                           s->plain + 2 * l->start[b->column], y + 2 * LayoutOffset(l, b->row)));
+  }
+  PetscCall(PetscLogEventEnd(s->apply, 0, 0, 0, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Tensors of the dipoles, less the jump's flux; zero where there is no jump, as for a ratio of 1, which has no normals.
+ */
+static void Tensors(DoubleLayer s) {
+  for (PetscInt k = 0; k < s->near->membrane->layout->M; k++) {
+    const PetscReal *J = s->jump + 2 * k, *N = s->normal + 2 * k;
+    const PetscBool none = J[0] == 0 && J[1] == 0 ? PETSC_TRUE : PETSC_FALSE;
+    PetscReal *T = s->tensor + DIPOLE_COUNT * k;
+    T[DIPOLE_XX] = none ? 0 : 2 * J[0] * N[0];
+    T[DIPOLE_YY] = none ? 0 : 2 * J[1] * N[1];
+    T[DIPOLE_XY] = none ? 0 : J[0] * N[1] + J[1] * N[0];
+  }
+}
+
+PetscErrorCode DoubleLayerSpread(DoubleLayer s, Vec w, Vec source, PetscReal mean[2]) {
+  const NearField f = s->near;
+  const Grid g = f->markers->grid;
+  const PetscReal area = (g->hi[0] - g->lo[0]) * (g->hi[1] - g->lo[1]);
+  PetscFunctionBeginUser;
+  if (f->free) PetscFunctionReturn(PETSC_SUCCESS);
+  Tensors(s);
+  for (PetscInt k = 0; k < 2 * f->membrane->layout->M; k++) { /* J.n is half the trace */
+    const PetscReal *T = s->tensor + DIPOLE_COUNT * (k / 2);
+    mean[k % 2] -= f->markers->X[k] * 0.5 * (T[DIPOLE_XX] + T[DIPOLE_YY]) / area;
+  }
+  PetscCall(DipolesSpread(f->markers, f->nu, s->tensor, w, source));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+void DoubleLayerStress(DoubleLayer s, PetscReal sum[3]) {
+  Tensors(s);
+  for (PetscInt k = 0; k < s->near->membrane->layout->M; k++)
+    for (int q = 0; q < 3; q++) sum[q] += s->near->nu * s->tensor[DIPOLE_COUNT * k + q];
+}
+
+PetscErrorCode DoubleLayerAdd(DoubleLayer s, PetscReal scale, PetscBool lattice, PetscInt first, PetscInt n,
+                              PetscReal out[]) {
+  const Layout l = s->near->membrane->layout;
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < s->blocks; k++) {
+    const DoubleBlock *b = &s->block[k];
+    const PetscInt rows = 2 * LayoutCount(l, b->row), columns = 2 * LayoutCount(l, b->column);
+    const PetscInt i0 = 2 * (l->start[b->row] - first), j0 = 2 * (l->start[b->column] - first);
+    PetscReal *value = s->value + b->at, *free = NULL;
+    if (i0 < 0 || j0 < 0 || i0 >= 2 * n || j0 >= 2 * n) continue;
+    if (!lattice && !s->near->free) {
+      PetscCall(PetscMalloc1(rows * columns, &free));
+      PetscCall(DoubleBlockFill(s, b, PETSC_FALSE, free));
+      PetscCall(DoubleCloseAdd(s, b, free));
+      value = free;
+    }
+    for (PetscInt j = 0; j < columns; j++)
+      for (PetscInt i = 0; i < rows; i++)
+        out[(j0 + j) * 2 * n + i0 + i] += scale * (1 - s->ratio[b->column]) * value[j * rows + i];
+    PetscCall(PetscFree(free));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

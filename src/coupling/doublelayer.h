@@ -1,0 +1,69 @@
+/* The double layer of membranes whose inner fluid has another viscosity than the outer one (docs/method.md, Viscosity
+   contrast). v, the velocity outside and the ratio times the velocity inside, is a field of the outer viscosity that
+   jumps by J = (1 - ratio) U at a membrane that moves with U: a sheet of tensor dipoles J n + n J with the source J.n.
+   The markers' velocities obey
+
+       (1 + ratio)/2 U = u_inf + E v' + C_S f + C_D J,      C_D = D - L Q
+
+   with D the exact double layer of unbounded fluid, L what the same dipoles give on the infinite lattice, as in the
+   near field (nearfield.h), whose pairs of vesicles it has, and Q, which takes the net flux off a vesicle's J, as the
+   spreading on the grid does. In unbounded fluid L = 0. */
+#pragma once
+#include "coupling/latticedipole.h"
+#include "coupling/nearfield.h"
+
+/* Response of own vesicle `row` to an image of `column`, moved by `shift` (length): a matrix of 2n rows, columns one
+   after another, entries interlaced. */
+typedef struct {
+  PetscInt row, column;
+  PetscReal shift[2];
+  size_t at; /* in `value` */
+} DoubleBlock;
+
+typedef struct _p_DoubleLayer *DoubleLayer;
+struct _p_DoubleLayer {
+  NearField near;   /* borrowed: markers, membranes, their pairs and stencils */
+  PetscReal *ratio; /* [vesicles] viscosity inside over that outside */
+  OffsetTable lattice[2];
+  PaddedStencil *dipole; /* [DIPOLE_COUNT M] */
+  PetscReal *normal;     /* [2M] outward n times the marker's share w of the length */
+  PetscReal *along;      /* [M] w (length); of vesicles of ratio 1 these are not made */
+  PetscReal *length;     /* [vesicles] sum of w */
+  DoubleBlock *block;
+  PetscReal *value;
+  PetscInt blocks, block_room;
+  size_t values, value_room;
+  PetscScalar *jump;   /* [2M] J of all markers, less its flux */
+  PetscScalar *plain;  /* [2M] J */
+  PetscReal *tensor;   /* [DIPOLE_COUNT M] work */
+  PetscScalar *column; /* [2 most markers of a vesicle] work */
+  PetscLogEvent place, apply;
+};
+
+/* DoubleLayerCreate - for membranes with a near field and ratio[vesicles] (copied). Collective. */
+PETSC_EXTERN PetscErrorCode DoubleLayerCreate(NearField near, const PetscReal ratio[], DoubleLayer *layer);
+PETSC_EXTERN PetscErrorCode DoubleLayerDestroy(DoubleLayer *layer);
+
+/* DoubleLayerPlace - C_D where the near field has been placed (NearFieldPlace). Collective. */
+PETSC_EXTERN PetscErrorCode DoubleLayerPlace(DoubleLayer layer);
+
+/* DoubleLayerSet - the jump that the next two act on: of markers that move with U[2n], this rank's part. Collective. */
+PETSC_EXTERN PetscErrorCode DoubleLayerSet(DoubleLayer layer, const PetscScalar U[]);
+
+/* DoubleLayerApply - y += alpha C_D J, this rank's part y[2n] of a marker vector. Not collective. */
+PETSC_EXTERN PetscErrorCode DoubleLayerApply(DoubleLayer layer, PetscReal alpha, PetscScalar y[]);
+
+/* DoubleLayerSpread - w += the force of J's dipoles, source += G^T of the velocity that is their source; mean += the
+   mean velocity v' that a box which is periodic both ways has with them, -(1/box) SUM w X (J.n), the one without flow
+   outside a moving rigid body. Nothing in unbounded fluid. Not collective. */
+PETSC_EXTERN PetscErrorCode DoubleLayerSpread(DoubleLayer layer, Vec w, Vec source, PetscReal mean[2]);
+
+/* DoubleLayerStress - sum[3] (xx, yy, xy) += minus nu INT (J n + n J) ds of the jump last set, less its flux: what the
+   dipoles add to the sum of force times place. Not collective. */
+PETSC_EXTERN void DoubleLayerStress(DoubleLayer layer, PetscReal sum[3]);
+
+/* DoubleLayerAdd - out += scale C_D (1 - ratio) or, without lattice, D (1 - ratio), between the markers first .. first
+   + n
+   - 1: out[2n][2n], columns one after another, the rows of own markers only. Not collective. */
+PETSC_EXTERN PetscErrorCode DoubleLayerAdd(DoubleLayer layer, PetscReal scale, PetscBool lattice, PetscInt first,
+                                           PetscInt n, PetscReal out[]);

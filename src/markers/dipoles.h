@@ -1,0 +1,44 @@
+/* Tensor dipoles of markers on the grid, for the double layer of a membrane between two viscosities (docs/method.md,
+   Viscosity contrast). A marker's symmetric tensor T goes to cells (xx, yy) and nodes (xy) with the kernel cbs54
+   convolved by one cell along the derivatives that follow,
+
+       T_xx: B6(x) B4(y),   T_yy: B4(x) B6(y)   cells,      T_xy: B5(x) B5(y)   nodes,
+
+   so that the force -nu DIV T and the source of a closed curve moving as a rigid body give a smoothed rigid motion
+   inside it and nothing outside. Markers keep DIPOLE_WALL_CELLS from walls. */
+#pragma once
+#include "markers/markers.h"
+
+typedef enum { DIPOLE_XX, DIPOLE_YY, DIPOLE_XY, DIPOLE_COUNT } DipolePart;
+#define DIPOLE_WALL_CELLS 4
+
+/* DipoleStencils - of a marker at X: where its three parts are. Entry (i, j) of xy is the upper right corner of cell
+   (i, j). DipoleStencilsUnwrapped - the same, entries beyond a periodic grid as they are. Not collective. */
+PETSC_EXTERN void DipoleStencilsUnwrapped(Grid grid, const PetscReal X[2], Stencil stencil[DIPOLE_COUNT]);
+PETSC_EXTERN void DipoleStencils(Grid grid, const PetscReal X[2], Stencil stencil[DIPOLE_COUNT]);
+
+/* What a marker's tensor adds to the entries of a field: value times a product of weights along x and y. */
+typedef struct {
+  PetscInt first, n;
+  PetscReal weight[KERNEL_MAX_POINTS + 1];
+} DipoleLine;
+typedef struct {
+  Field field;
+  PetscReal value;
+  DipoleLine line[2];
+} DipoleSpot;
+#define DIPOLE_SPOTS 6
+
+/* DipoleSpots - of a marker at X with tensor T (xx, yy, xy; velocity times length): -nu DIV T/h^2 on the faces, -(T_xx
+   + T_yy)/(2 h^2), which is G^T of the velocity, in cells. DipoleEntry - row (direction 1) or column of entry k of a
+   spot, of all ranks' rows. Not collective. */
+PETSC_EXTERN void DipoleSpots(Grid grid, PetscReal nu, const PetscReal X[2], const PetscReal T[DIPOLE_COUNT],
+                              DipoleSpot spot[DIPOLE_SPOTS]);
+static inline PetscInt DipoleEntry(Grid g, const DipoleSpot *s, int direction, PetscInt k) {
+  const PetscInt entry = s->line[direction].first + k, n = g->n[direction];
+  return g->wall[direction] ? entry : (entry + n) % n;
+}
+
+/* DipolesSpread - of the M markers of all bodies with tensors T[3M], the same on every rank: their spots added to w and
+   source. Not collective. */
+PETSC_EXTERN PetscErrorCode DipolesSpread(Markers markers, PetscReal nu, const PetscReal T[], Vec w, Vec source);

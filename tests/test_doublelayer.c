@@ -1,0 +1,244 @@
+/* The double layer of a viscosity contrast, grid and near field together: the lattice's tables, rigid motions, flux,
+   and that it is adjoint to itself through the single layer. */
+#include "world.h"
+#include "coupling/contrast.h"
+#include "coupling/blas.h"
+#include "coupling/doublecurve.h"
+#include "fluid/stokes.h"
+
+#define SCENE                                                                                                          \
+  "-delta_type cbs54 -coupling_near_field exact -coupling_box_part false -membrane_derivative spectral "               \
+  "-scheme_type coupled -fluid_inertia none -domain_box -2,2,-2,2 -domain_cells 64,64 -vesicle_area 1 "                \
+  "-vesicle_reduced_area .7 -vesicle_center .013,.021 -vesicle_angle 20 "
+#define CHANNEL SCENE "-domain_bc_x periodic -domain_bc_y wall "
+#define PERIODIC SCENE "-domain_bc_x periodic -domain_bc_y periodic "
+
+static PetscReal Entry(const OffsetTable *t, DipolePart b, PetscInt i, PetscInt j) {
+  return t->value[b][(j + t->size[1]) * (2 * t->size[0] + 1) + i + t->size[0]];
+}
+
+/* Known values; the divergence is 1/2 in the dipole's own cell, none elsewhere nor of xy. Of xy, whose entry is the
+   upper right corner of a cell, the four cells around it are those with offsets 0 and 1. */
+static PetscErrorCode CheckTables(void) {
+  OffsetTable t[2];
+  PetscFunctionBeginUser;
+  PetscCall(LatticeDipoles(40, t));
+  const PetscReal known[] = {.204577471545947, .045422528454052, .090845056908106};
+  const char *const name[] = {"xx", "yy", "xy"};
+  for (int k = 0; k < DIPOLE_COUNT; k++) {
+    const DipolePart part = (DipolePart)k;
+    const PetscReal off = Entry(&t[0], part, 0, part == DIPOLE_XY) - known[k];
+    PetscReal most = 0;
+    CHECK(PetscAbsReal(off) < 1e-14, "%s: the velocity next to the dipole is off by %.0e", name[k], off);
+    for (PetscInt j = -38; j <= 38; j++)
+      for (PetscInt i = -38; i <= 38; i++) {
+        const PetscReal div = Entry(&t[0], part, i, j) - Entry(&t[0], part, i - 1, j) + Entry(&t[1], part, i, j) -
+                              Entry(&t[1], part, i, j - 1);
+        most = PetscMax(most, PetscAbsReal(div - (part != DIPOLE_XY && !i && !j ? 0.5 : 0)));
+      }
+    CHECK(most < 2e-14, "%s: a divergence of 1/2 in the own cell, of xy none, elsewhere none: %.0e", name[k], most);
+  }
+  for (int c = 0; c < 2; c++) PetscCall(OffsetTableDestroy(&t[c]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A world with the ratio 0, so that the jump is the motion itself, and what its responses are made with. */
+typedef struct {
+  TestWorld world;
+  Stokes stokes;
+  Vec r, w, p, U, V; /* force, velocity, source or pressure on the grid; marker vectors */
+} Double;
+
+static PetscErrorCode Create(const char options[], Double *d) {
+  const PetscReal ratio = 0;
+  TestWorld *w = &d->world;
+  PetscFunctionBeginUser;
+  PetscCall(TestScene(options, &w->scene));
+  PetscCall(TestWorldBuild(w));
+  PetscCall(CouplingAddContrast(w->coupling, &ratio));
+  PetscCall(TestWorldPlace(1, w));
+  PetscCall(StokesCreate(w->fluid, &d->stokes));
+  PetscCall(DMCreateGlobalVector(w->fluid->grid->velocity, &d->r));
+  PetscCall(DMCreateGlobalVector(w->fluid->grid->da[FIELD_P], &d->p));
+  PetscCall(VecDuplicate(d->r, &d->w));
+  PetscCall(VecDuplicate(w->X, &d->U));
+  PetscCall(VecDuplicate(w->X, &d->V));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Destroy(Double *d) {
+  Vec *all[] = {&d->r, &d->p, &d->w, &d->U, &d->V};
+  PetscFunctionBeginUser;
+  for (int k = 0; k < 5; k++) PetscCall(VecDestroy(all[k]));
+  PetscCall(StokesDestroy(&d->stokes));
+  PetscCall(TestWorldDestroy(&d->world));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AddConstant(Vec w, PetscInt first, const PetscReal mean[2]) {
+  PetscScalar *a;
+  PetscInt n;
+  PetscFunctionBeginUser;
+  PetscCall(VecGetLocalSize(w, &n));
+  PetscCall(VecGetArray(w, &a));
+  for (PetscInt k = 0; k < n; k++) a[k] += mean[k >= first];
+  PetscCall(VecRestoreArray(w, &a));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* V = E v + C_D U, the double layer of the motion U; or (single) V = E v + C U of the forces U. */
+static PetscErrorCode Respond(Double *d, PetscBool single) {
+  const Coupling c = d->world.coupling;
+  const Grid g = d->world.fluid->grid;
+  const PetscScalar *u;
+  PetscScalar *v;
+  PetscReal mean[2] = {0, 0};
+  PetscFunctionBeginUser;
+  PetscCall(VecSet(d->r, 0));
+  PetscCall(VecSet(d->p, 0));
+  PetscCall(VecGetArrayRead(d->U, &u));
+  PetscCall(DoubleLayerSet(c->contrast, u));
+  if (single)
+    PetscCall(MarkersSpread(c->markers, 1 / PetscSqr(g->h), d->U, d->r));
+  else
+    PetscCall(DoubleLayerSpread(c->contrast, d->r, d->p, mean));
+  PetscCall(StokesSolve(d->stokes, d->r, d->p, d->w, d->p));
+  if (!g->wall[1]) PetscCall(AddConstant(d->w, GridLocalU(g), mean));
+  PetscCall(MarkersInterpolate(c->markers, d->w, d->V));
+  PetscCall(VecGetArray(d->V, &v));
+  if (single)
+    PetscCall(NearFieldApply(c->near, 1, u, v));
+  else
+    PetscCall(DoubleLayerApply(c->contrast, 1, v));
+  PetscCall(VecRestoreArray(d->V, &v));
+  PetscCall(VecRestoreArrayRead(d->U, &u));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* U of marker k: e_x, e_y, a turn, or along the curve. */
+static PetscErrorCode SetMotion(Double *d, int which) {
+  const DoubleLayer s = d->world.coupling->contrast;
+  const Layout l = d->world.layout;
+  PetscScalar *u;
+  PetscFunctionBeginUser;
+  PetscCall(VecGetArray(d->U, &u));
+  for (PetscInt k = 0; k < l->n; k++) {
+    const PetscReal *X = d->world.coupling->markers->X + 2 * (l->first + k), *N = s->normal + 2 * (l->first + k);
+    const PetscReal motion[4][2] = {
+        {1, 0}, {0, 1}, {-X[1], X[0]}, {-N[1] / s->along[l->first + k], N[0] / s->along[l->first + k]}};
+    for (int c = 0; c < 2; c++) u[2 * k + c] = motion[which][c];
+  }
+  PetscCall(VecRestoreArray(d->U, &u));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* D R = -R/2 for rigid motions; a motion along the curve sends no flux through it. */
+static PetscErrorCode CheckMotions(const char name[], const char options[]) {
+  PetscReal rigid, flux = 0, *V;
+  Double d;
+  PetscFunctionBeginUser;
+  PetscCall(Create(options, &d));
+  for (int which = 0; which < 3; which++) {
+    PetscCall(SetMotion(&d, which));
+    PetscCall(Respond(&d, PETSC_FALSE));
+    PetscCall(VecAXPY(d.V, 0.5, d.U));
+    PetscCall(VecNorm(d.V, NORM_INFINITY, &rigid));
+    CHECK(rigid < 1e-6, "%s: D R = -R/2 for the rigid motion %d: %.1e", name, which, rigid);
+  }
+  PetscCall(SetMotion(&d, 3));
+  PetscCall(Respond(&d, PETSC_FALSE));
+  PetscCall(PetscMalloc1(2 * d.world.layout->M, &V));
+  PetscCall(LayoutGatherVec(d.world.layout, d.V, V));
+  for (PetscInt k = 0; k < 2 * d.world.layout->M; k++) flux += d.world.coupling->contrast->normal[k] * V[k];
+  flux /= d.world.coupling->contrast->length[0];
+  CHECK(PetscAbsReal(flux) < 1e-9, "%s: no flux of a motion along the curve, speed 1, a length: %.1e", name, flux);
+  PetscCall(PetscFree(V));
+  PetscCall(Destroy(&d));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The matrix of a response, columns one after another, on every rank. */
+static PetscErrorCode Matrix(Double *d, PetscBool single, PetscReal A[]) {
+  const PetscInt n = 2 * d->world.layout->M;
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < n; k++) {
+    PetscCall(VecSet(d->U, 0));
+    PetscCall(VecSetValue(d->U, k, 1, INSERT_VALUES));
+    PetscCall(VecAssemblyBegin(d->U));
+    PetscCall(VecAssemblyEnd(d->U));
+    PetscCall(Respond(d, single));
+    PetscCall(LayoutGatherVec(d->world.layout, d->V, A + k * n));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* D S = S D^T, by which the power of the forces is a dissipation. */
+static PetscErrorCode CheckAdjoint(void) {
+  PetscReal *D, *S, *product, off = 0, all = 0;
+  Double d;
+  PetscFunctionBeginUser;
+  PetscCall(Create(CHANNEL "-vesicle_markers 45", &d));
+  const PetscInt n = 2 * d.world.layout->M;
+  PetscCall(PetscMalloc3(n * n, &D, n * n, &S, n * n, &product));
+  PetscCall(Matrix(&d, PETSC_FALSE, D));
+  PetscCall(Matrix(&d, PETSC_TRUE, S));
+  PetscCall(DenseProduct(PETSC_FALSE, n, n, n, D, S, product));
+  for (PetscInt j = 0; j < n; j++)
+    for (PetscInt i = 0; i < n; i++) { /* S is symmetric: S D^T is the transpose */
+      off += PetscSqr(product[j * n + i] - product[i * n + j]);
+      all += PetscSqr(product[j * n + i]);
+    }
+  off = PetscSqrtReal(off / all);
+  CHECK(off < 1e-3, "D S = S D^T: apart by %.1e of it", off);
+  PetscCall(PetscFree3(D, S, product));
+  PetscCall(Destroy(&d));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* On the unit circle, in a fluid of viscosity 3: J = (1, 2) is -J inside and nothing outside; J = (x, -y) is -J/2
+   inside without pressure, and has the pressure 2 nu cos(2 phi)/r^2 outside. At any distance from the curve. */
+static PetscErrorCode CheckCurve(void) {
+  const PetscReal radius[] = {0.3, 0.9, 0.9999, 1.0001, 1.1, 3};
+  PetscReal X[64], constant[64], strain[64];
+  DoubleCurve curve[2];
+  PetscFunctionBeginUser;
+  for (int k = 0; k < 64; k++) {
+    X[k] = k % 2 ? PetscSinReal(PETSC_PI * (k / 2) / 16) : PetscCosReal(PETSC_PI * (k / 2) / 16);
+    constant[k] = k % 2 ? 2 : 1;
+    strain[k] = k % 2 ? -X[k] : X[k];
+  }
+  PetscCall(DoubleCurveCreate(32, 3, X, constant, &curve[0]));
+  PetscCall(DoubleCurveCreate(32, 3, X, strain, &curve[1]));
+  for (int k = 0; k < 6; k++) {
+    const PetscReal r = radius[k];
+    PetscReal worst = 0;
+    for (PetscReal angle = 0.1; angle < 6; angle += 0.37) {
+      const PetscReal x[2] = {r * PetscCosReal(angle), r * PetscSinReal(angle)};
+      PetscReal u[3] = {0}, s[3] = {0};
+      PetscBool inside;
+      DoubleCurveAdd(curve[0], x, u, &u[2], &inside);
+      worst = PetscMax(worst, PetscAbsReal(u[0] + (r < 1)) + PetscAbsReal(u[1] + 2 * (r < 1)) + PetscAbsReal(u[2]));
+      DoubleCurveAdd(curve[1], x, s, &s[2], &inside);
+      worst = PetscMax(worst, PetscAbsReal(s[2] - (r < 1 ? 0 : 6 * PetscCosReal(2 * angle) / (r * r))));
+      if (r < 1) worst = PetscMax(worst, PetscAbsReal(s[0] + 0.5 * x[0]) + PetscAbsReal(s[1] - 0.5 * x[1]));
+      if (inside != (r < 1)) worst = PETSC_MAX_REAL;
+    }
+    CHECK(worst < 1e-7, "the double layer of a unit circle %g from its middle: off by %.1e", r, worst);
+  }
+  for (int k = 0; k < 2; k++) PetscCall(DoubleCurveDestroy(&curve[k]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Facts(void) {
+  PetscFunctionBeginUser;
+  PetscCall(CheckCurve());
+  PetscCall(CheckTables());
+  PetscCall(CheckMotions("channel", CHANNEL "-vesicle_markers 69"));
+  PetscCall(CheckMotions("periodic both ways", PERIODIC "-vesicle_markers 69"));
+  PetscCall(CheckAdjoint());
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+int main(int argc, char **argv) {
+  return CheckMain(argc, argv, Facts);
+}
