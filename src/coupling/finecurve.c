@@ -2,6 +2,10 @@
 #include "coupling/blas.h"
 #include "curve/spectral.h"
 
+static PetscReal Distance2(const PetscReal a[2], const PetscReal b[2]) {
+  return PetscSqr(a[0] - b[0]) + PetscSqr(a[1] - b[1]);
+}
+
 PetscErrorCode FineCurveCreate(NearField f, PetscInt v, const PetscReal shift[2], PetscInt factor, FineCurve *c) {
   const PetscInt n = LayoutCount(f->membrane->layout, v), Q = n * factor;
   const PetscReal *X = f->markers->X + 2 * f->membrane->layout->start[v];
@@ -9,12 +13,10 @@ PetscErrorCode FineCurveCreate(NearField f, PetscInt v, const PetscReal shift[2]
   *c = (FineCurve){.n = n, .f = factor};
   PetscCall(PetscMalloc3(Q, &c->weight, 2 * Q, &c->x, Q, &c->used));
   for (PetscInt q = 0; q < Q; q++) c->weight[q] = TrigonometricCardinal(n, 2 * PETSC_PI * q / Q);
-  for (PetscInt q = 0; q < Q; q++)
-    for (int d = 0; d < 2; d++) {
-      PetscReal sum = shift[d];
-      for (PetscInt k = 0; k < n; k++) sum += c->weight[((q - factor * k) % Q + Q) % Q] * X[2 * k + d];
-      c->x[2 * q + d] = sum;
-    }
+  TrigonometricPoints(n, X, factor, c->x);
+  for (PetscInt q = 0; q < 2 * Q; q++) c->x[q] += shift[q % 2];
+  for (PetscInt q = 0; q < Q; q++) c->edge = PetscMax(c->edge, Distance2(c->x + 2 * q, c->x + 2 * ((q + 1) % Q)));
+  c->edge = PetscSqrtReal(c->edge);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -29,15 +31,22 @@ void FineCurveReflect(FineCurve *c, int direction, PetscReal wall) {
   for (PetscInt q = 0; q < c->n * c->f; q++) c->x[2 * q + direction] = 2 * wall - c->x[2 * q + direction];
 }
 
-static PetscReal Distance2(const PetscReal a[2], const PetscReal b[2]) {
-  return PetscSqr(a[0] - b[0]) + PetscSqr(a[1] - b[1]);
+/* The distance from x to the points of a curve where it is below `least`, which else is returned. Along the curve it
+   changes by an edge a point at most: points that cannot be near are left out. */
+static PetscReal DistanceBelow(const PetscReal x[2], const FineCurve *c, PetscReal least) {
+  PetscInt skip;
+  for (PetscInt q = 0; q < c->n * c->f; q += PetscMax(1, skip)) {
+    const PetscReal distance = PetscSqrtReal(Distance2(x, c->x + 2 * q));
+    least = PetscMin(least, distance);
+    skip = (PetscInt)PetscMin((distance - least) / c->edge, c->n * c->f);
+  }
+  return least;
 }
 
 PetscReal FineCurveGap(const FineCurve *a, const FineCurve *b) {
   PetscReal least = PETSC_MAX_REAL;
-  for (PetscInt p = 0; p < a->n * a->f; p++)
-    for (PetscInt q = 0; q < b->n * b->f; q++) least = PetscMin(least, Distance2(a->x + 2 * p, b->x + 2 * q));
-  return PetscSqrtReal(least);
+  for (PetscInt p = 0; p < a->n * a->f; p++) least = DistanceBelow(a->x + 2 * p, b, least);
+  return least;
 }
 
 /* The points of a with a point of b in the window, and their rows of P. */
@@ -45,15 +54,11 @@ static PetscErrorCode Use(FineCurve *a, const FineCurve *b, PetscReal window) {
   const PetscInt Q = a->n * a->f;
   PetscFunctionBeginUser;
   for (PetscInt p = 0; p < Q; p++)
-    for (PetscInt q = 0; q < b->n * b->f; q++)
-      if (Distance2(a->x + 2 * p, b->x + 2 * q) < window * window) {
-        a->used[a->count++] = p;
-        break;
-      }
+    if (DistanceBelow(a->x + 2 * p, b, window) < window) a->used[a->count++] = p;
   PetscCall(PetscMalloc1(a->n * a->count, &a->P));
   for (PetscInt k = 0; k < a->n; k++)
     for (PetscInt p = 0; p < a->count; p++)
-      a->P[k * a->count + p] = a->weight[((a->used[p] - a->f * k) % Q + Q) % Q] / a->f;
+      a->P[k * a->count + p] = a->weight[a->used[p] - a->f * k + (a->used[p] < a->f * k ? Q : 0)] / a->f;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -7,6 +7,7 @@ typedef struct {
   PetscInt n, f;     /* markers, factor */
   PetscReal *weight; /* [f n] P by index difference: P_qk = weight[(q - f k) mod f n] */
   PetscReal *x;      /* [f n][2] the points (length) */
+  PetscReal edge;    /* the longest distance from one point to the next */
   PetscInt *used;    /* [count] points in use */
   PetscInt count;
   PetscReal *P; /* [n][count] rows of P/f that are in use, columns one after another */

@@ -1,32 +1,4 @@
 #include "coupling/nearblock.h"
-#include "base/lanes.h"
-
-/* Smoothing by the kernel and dispersion by the lattice, to the order h^2/r^2: transforms of e^{i n phi} waves, the
-   first three from the moments (docs/method.md, Near field). */
-void NearFarCoefficients(const Kernel *kernel, PetscReal far[5]) {
-  const PetscReal along = KernelSecondMoment(kernel->along), across = KernelSecondMoment(kernel->across);
-  far[0] = -(across + 1. / 12) / 2 + 3.5 / 48;            /* a2 */
-  far[1] = -along / 8 + (across + 1. / 12) / 8 - 1. / 48; /* a4 */
-  far[2] = 1. / 96;                                       /* a6 */
-  far[3] = -(along + across) / 4 + 1. / 32;               /* b2 */
-  far[4] = 1. / 96;                                       /* b6 */
-}
-
-/* C of four pairs of distant markers, (x, y) apart: xx, yy, xy. */
-static inline void FarPairs(const PetscReal far[5], PetscReal scale, Lanes x, Lanes y, Lanes C[3]) {
-  const Lanes factor = 1 / (x * x + y * y), c2 = (x * x - y * y) * factor, s2 = 2 * x * y * factor,
-              c4 = c2 * c2 - s2 * s2, s4 = 2 * c2 * s2, c6 = c4 * c2 - s4 * s2, s6 = s4 * c2 + c4 * s2;
-  const Lanes even = 4 * far[1] * c4, odd = 2 * far[0] * c2 + 6 * far[2] * c6;
-  C[0] = scale * factor * (even - odd);
-  C[1] = scale * factor * (even + odd);
-  C[2] = scale * factor * (-2 * far[3] * s2 - 6 * far[4] * s6);
-}
-
-static void FarPair(const PetscReal far[5], PetscReal scale, const PetscReal d[2], PetscReal C[3]) {
-  Lanes four[3];
-  FarPairs(far, scale, d[0] - (Lanes){0}, d[1] - (Lanes){0}, four);
-  for (int c = 0; c < 3; c++) C[c] = four[c][0];
-}
 
 /* The free-space Stokeslet: xx, yy, xy. */
 static void Stokeslet(PetscReal nu, const PetscReal d[2], PetscReal S[3]) {
@@ -49,20 +21,21 @@ static void LatticePair(NearField f, PetscInt i, PetscInt j, const PetscReal d[2
   for (int c = 0; c < 4; c++) L[c] *= over;
 }
 
-/* L and C = S - L of two markers; by stencils up to `reach` (length). */
-static void Pair(NearField f, PetscInt i, PetscInt j, const PetscReal d[2], PetscReal reach, PetscReal L[4],
+/* L and C = S - L of two markers; by stencils up to the reach of `far`. */
+static void Pair(NearField f, const NearFar *far, PetscInt i, PetscInt j, const PetscReal d[2], PetscReal L[4],
                  PetscReal C[4]) {
-  const PetscReal h = f->markers->grid->h, r2 = d[0] * d[0] + d[1] * d[1];
-  PetscReal S[3], far[3];
+  const PetscReal cell = 1 / f->markers->grid->h, r2 = d[0] * d[0] + d[1] * d[1];
+  PetscReal S[3];
+  Lanes four[3];
   Stokeslet(f->nu, d, S);
-  if (f->free || r2 <= reach * reach) {
+  if (f->free || r2 * cell * cell <= far->reach * far->reach) {
     if (!f->free) LatticePair(f, i, j, d, L);
     for (int c = 0; c < 4; c++) C[c] = S[PetscMin(c, 2)] - L[c];
     return;
   }
-  FarPair(f->far, h * h / (2 * PETSC_PI * f->nu), d, far);
+  NearFarPairs(far, 1 / f->nu, cell * d[0] - (Lanes){0}, cell * d[1] - (Lanes){0}, four);
   for (int c = 0; c < 4; c++) {
-    C[c] = far[PetscMin(c, 2)];
+    C[c] = four[PetscMin(c, 2)][0];
     L[c] = S[PetscMin(c, 2)] - C[c];
   }
 }
@@ -72,7 +45,7 @@ void NearLatticePair(NearField f, PetscInt i, PetscInt j, const PetscReal d[2], 
   if (d[0] == 0 && d[1] == 0)
     LatticePair(f, i, j, d, L);
   else
-    Pair(f, i, j, d, NEAR_CELLS * f->markers->grid->h, L, C);
+    Pair(f, &f->far[NEAR_ONE], i, j, d, L, C);
 }
 
 /* What Kress' quadrature has besides the plain logarithm, for two markers of one curve of n that are k apart; on the
@@ -95,52 +68,78 @@ static void SelfPart(NearField f, PetscInt v, PetscInt k, const PetscReal T[2], 
    arrays have room for whole vectors. */
 #define CHUNK IMAGE_ROW
 typedef struct {
+  const NearBlock *block;
   PetscInt i, j, n;
-  PetscBool back, plain; /* plain: far from all walls */
-  PetscReal reach;       /* of stencils' sums (length) */
+  PetscBool self, back, plain; /* plain: far from all walls */
+  PetscBool walls[2][2];       /* whose images count */
+  const NearFar *far;
+  PetscReal reach; /* of stencils' sums (length) */
   PetscReal d[2][CHUNK], part[CHUNK], L[4][CHUNK], C[4][CHUNK];
 } Chunk;
 
-static void Distances(NearField f, const NearBlock *b, Chunk *c) {
-  const PetscReal *X = f->markers->X, *x = X + 2 * c->i, sign = c->back ? -1 : 1;
-  const PetscReal own[2] = {x[0] - b->shift[0], x[1] - b->shift[1]};
-  for (PetscInt k = 0; k < c->n; k++)
-    for (int dir = 0; dir < 2; dir++) c->d[dir][k] = sign * (own[dir] - X[2 * (c->j + k) + dir]);
-  for (PetscInt k = 0; k < c->n; k++) c->part[k] = 1;
-  for (PetscInt k = 0; k < c->n && f->box; k++) {
+/* Marker i from the other vesicle's frame. */
+static void Place(NearField f, const Chunk *c, PetscReal own[2]) {
+  for (int dir = 0; dir < 2; dir++) own[dir] = f->markers->X[2 * c->i + dir] - c->block->shift[dir];
+}
+
+static void Distances(NearField f, Chunk *c) {
+  const PetscReal *X = f->markers->X + 2 * c->j, sign = c->back ? -1 : 1;
+  PetscReal own[2];
+  PetscInt k = 0;
+  Place(f, c, own);
+  for (; k + LANES <= c->n; k += LANES) {
+    Lanes x, y;
+    LanesPairs(X + 2 * k, &x, &y);
+    *(Lanes *)(c->d[0] + k) = sign * (own[0] - x);
+    *(Lanes *)(c->d[1] + k) = sign * (own[1] - y);
+    *(Lanes *)(c->part + k) = 1 - (Lanes){0};
+  }
+  for (; k < c->n; k++) {
+    for (int dir = 0; dir < 2; dir++) c->d[dir][k] = sign * (own[dir] - X[2 * k + dir]);
+    c->part[k] = 1;
+  }
+  for (k = 0; k < c->n && f->box; k++) {
     PetscReal d[2] = {c->d[0][k], c->d[1][k]};
     c->part[k] = BoxPartImage(f->box, d);
     for (int dir = 0; dir < 2; dir++) c->d[dir][k] = d[dir];
   }
-  for (PetscInt k = c->n; k < CHUNK && k < c->n + LANES; k++) c->d[0][k] = c->d[1][k] = 1;
+  for (k = c->n; k < CHUNK && k < c->n + LANES; k++) c->d[0][k] = c->d[1][k] = c->part[k] = 1;
 }
 
 /* All pairs as if they were distant. */
 static void FillFar(NearField f, Chunk *c) {
-  const PetscReal scale = PetscSqr(f->markers->grid->h) / (2 * PETSC_PI * f->nu);
+  const PetscReal cell = 1 / f->markers->grid->h;
   Lanes C[3];
   for (PetscInt k = 0; k < c->n; k += LANES) {
-    FarPairs(f->far, scale, LanesAt(c->d[0] + k), LanesAt(c->d[1] + k), C);
+    NearFarPairs(c->far, 1 / f->nu, cell * LanesAt(c->d[0] + k), cell * LanesAt(c->d[1] + k), C);
     for (int q = 0; q < 4; q++) *(Lanes *)(c->C[q] + k) = C[PetscMin(q, 2)];
   }
 }
 
-/* All but the walls' images. */
-static void FillChunk(NearField f, const NearBlock *b, Chunk *c) {
-  const PetscReal reach2 = c->plain ? c->reach * c->reach : PETSC_MAX_REAL;
-  Distances(f, b, c);
-  if (c->plain) FillFar(f, c);
+/* No marker of the other vesicle is within the stencils' reach; with a box part images are looked for one by one. */
+static PetscBool IsAlone(NearField f, const Chunk *c) {
+  const NearBounds *bounds = &f->bounds[c->block->column];
+  PetscReal own[2], r2 = 0;
+  Place(f, c, own);
+  for (int dir = 0; dir < 2; dir++)
+    r2 += PetscSqr(PetscMax(0, PetscMax(bounds->low[dir] - own[dir], own[dir] - bounds->high[dir])));
+  return !f->box && r2 > c->reach * c->reach ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* Pairs up to so far apart (its square) one by one; without walls nearby those within the stencils' reach are enough.
+ */
+static void FillNear(NearField f, PetscReal farthest2, Chunk *c) {
   for (PetscInt k = 0; k < c->n; k++) {
     const PetscInt j = c->j + k, from = c->back ? c->i : j, to = c->back ? j : c->i;
     const PetscReal d[2] = {c->d[0][k], c->d[1][k]};
     PetscReal L[4] = {0, 0, 0, 0}, C[4];
-    if (d[0] * d[0] + d[1] * d[1] > reach2) continue;
-    if (j == c->i && NearBlockIsSelf(b)) {
+    if (d[0] * d[0] + d[1] * d[1] > farthest2) continue;
+    if (j == c->i && c->self) {
       if (!f->free) LatticePair(f, to, from, d, L);
       for (int q = 0; q < 4; q++) C[q] = -L[q];
       c->part[k] *= 0.5;
     } else
-      Pair(f, to, from, d, c->reach, L, C);
+      Pair(f, c->far, to, from, d, L, C);
     for (int q = 0; q < 4; q++) {
       c->L[q][k] = L[q];
       c->C[q][k] = C[q];
@@ -148,13 +147,8 @@ static void FillChunk(NearField f, const NearBlock *b, Chunk *c) {
   }
 }
 
-/* The walls' images. */
+/* The walls' images of pairs near a wall. */
 static void AddImages(NearField f, Chunk *c) {
-  if (c->plain) {
-    NearImageAddFar(f->image, c->i, c->j, c->n, c->back, c->d[0], c->d[1],
-                    (PetscReal *[]){c->C[0], c->C[1], c->C[2], c->C[3]});
-    return;
-  }
   for (PetscInt k = 0; k < c->n; k++) {
     const PetscInt from = c->back ? c->i : c->j + k, to = c->back ? c->j + k : c->i;
     const PetscReal d[2] = {c->d[0][k], c->d[1][k]}, L[4] = {c->L[0][k], c->L[1][k], c->L[2][k], c->L[3][k]};
@@ -164,11 +158,30 @@ static void AddImages(NearField f, Chunk *c) {
   }
 }
 
+static void FillChunk(NearField f, Chunk *c) {
+  Distances(f, c);
+  if (c->plain) {
+    FillFar(f, c);
+    if (!IsAlone(f, c)) FillNear(f, c->reach * c->reach, c);
+    NearImageAddFar(f->image, c->walls, c->i, c->j, c->n, c->back, c->d[0], c->d[1],
+                    (PetscReal *[]){c->C[0], c->C[1], c->C[2], c->C[3]});
+  } else {
+    FillNear(f, PETSC_MAX_REAL, c);
+    if (f->image) AddImages(f, c);
+  }
+}
+
 /* The chunk's pairs, from the k-th of the row on. */
 static void Write(const Chunk *c, PetscInt k, PetscInt stride, PetscReal row[]) {
   PetscReal *x = row + 2 * k, *y = x + stride;
   const int xy = c->back ? 3 : 2, yx = 5 - xy;
-  for (PetscInt q = 0; q < c->n; q++) {
+  PetscInt q = 0;
+  for (; q + LANES <= c->n; q += LANES) {
+    const Lanes part = LanesAt(c->part + q);
+    LanesInterlace(part * LanesAt(c->C[0] + q), part * LanesAt(c->C[xy] + q), x + 2 * q);
+    LanesInterlace(part * LanesAt(c->C[yx] + q), part * LanesAt(c->C[1] + q), y + 2 * q);
+  }
+  for (; q < c->n; q++) {
     const PetscReal part = c->part[q];
     x[2 * q] = part * c->C[0][q];
     x[2 * q + 1] = part * c->C[xy][q];
@@ -177,23 +190,17 @@ static void Write(const Chunk *c, PetscInt k, PetscInt stride, PetscReal row[]) 
   }
 }
 
-static void FillRow(NearField f, const NearBlock *b, const NearRow *r) {
-  const PetscReal cells = NearBlockIsSelf(b) ? NEAR_CELLS : NEAR_CROSS_CELLS;
-  const NearBounds *bounds = &f->bounds[b->column];
+static void FillRow(NearField f, const NearRow *r, Chunk *c) {
+  const NearBounds *column = &f->bounds[c->block->column];
   PetscReal *x = f->value + r->at, *y = x + r->stride;
-  Chunk c;
-  c.i = r->row;
-  c.back = b->row > b->column ? PETSC_TRUE : PETSC_FALSE;
-  c.reach = cells * f->markers->grid->h;
-  c.plain = f->image && NearImageIsFar(f->image, f->markers->X + 2 * r->row, bounds->low, bounds->high) ? PETSC_TRUE
-                                                                                                        : PETSC_FALSE;
+  c->i = r->row;
+  c->plain = f->image && NearImageIsFar(f->image, f->markers->X + 2 * r->row, column) ? PETSC_TRUE : PETSC_FALSE;
   for (PetscInt k = 2 * r->count; k < r->stride; k++) x[k] = y[k] = 0;
   for (PetscInt k = 0; k < r->count; k += CHUNK) {
-    c.j = r->column + k;
-    c.n = PetscMin(CHUNK, r->count - k);
-    FillChunk(f, b, &c);
-    if (f->image) AddImages(f, &c);
-    Write(&c, k, r->stride, x);
+    c->j = r->column + k;
+    c->n = PetscMin(CHUNK, r->count - k);
+    FillChunk(f, c);
+    Write(c, k, r->stride, x);
   }
 }
 
@@ -238,11 +245,26 @@ void NearBlockAdd(NearField f, const NearBlock *b, PetscReal scale, PetscReal *c
   } while (NearBlockNext(l, b, &r));
 }
 
+/* The walls whose images of the one vesicle count for the other; with a box part all, as it was found with all. */
+static void FindWalls(NearField f, const NearBlock *b, PetscBool walls[2][2]) {
+  const Grid g = f->markers->grid;
+  for (int direction = 0; direction < 2; direction++)
+    for (int side = 0; side < 2; side++) {
+      const PetscReal gap = NearImageGap(g, direction, side, &f->bounds[b->row], &f->bounds[b->column]);
+      walls[direction][side] = g->wall[direction] && (f->box || gap < NEAR_IMAGE_REACH * g->h) ? PETSC_TRUE
+                                                                                               : PETSC_FALSE;
+    }
+}
+
 PetscErrorCode NearBlockFill(NearField f, const NearBlock *b) {
+  Chunk c = {.block = b, .self = NearBlockIsSelf(b), .back = b->row > b->column ? PETSC_TRUE : PETSC_FALSE};
   NearRow r = NearBlockBegin(f->membrane->layout, b);
   PetscFunctionBeginUser;
-  do FillRow(f, b, &r);
+  if (f->image) FindWalls(f, b, c.walls);
+  c.far = &f->far[c.self ? NEAR_ONE : NEAR_TWO];
+  c.reach = c.far->reach * f->markers->grid->h;
+  do FillRow(f, &r, &c);
   while (NearBlockNext(f->membrane->layout, b, &r));
-  if (NearBlockIsSelf(b)) PetscCall(AddSelf(f, b));
+  if (c.self) PetscCall(AddSelf(f, b));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -2,12 +2,8 @@
 #pragma once
 #include "coupling/nearfield.h"
 
-#define NEAR_CELLS 30       /* up to which stencils of one vesicle are summed; farther, a closed form, right to 2e-7 */
-#define NEAR_CROSS_CELLS 16 /* the same of two vesicles; right to 2e-6 */
-#define NEAR_REACH 24       /* cells between two vesicles up to which they have a block */
-
-/* NearFarCoefficients - of a kernel, from its second moments along and across. */
-PETSC_EXTERN void NearFarCoefficients(const Kernel *kernel, PetscReal far[5]);
+#define NEAR_REACH 24        /* cells between two vesicles up to which they have a block */
+#define NEAR_IMAGE_REACH 300 /* cells between a vesicle and another one's image in a wall: beyond, none */
 
 /* NearBlockIsSelf - whether it is of a vesicle with itself, not with an image. */
 static inline PetscBool NearBlockIsSelf(const NearBlock *b) {

@@ -27,9 +27,10 @@ PetscErrorCode NearFieldCreate(Markers markers, Membrane m, PetscReal nu, NearFi
   f->membrane = m;
   f->nu = nu;
   f->free = markers->grid->free;
-  if (!f->free) PetscCall(LatticeStokeslet(NEAR_CELLS + OFFSET_LAGS, &f->lattice));
+  NearFarMake(markers->kernel, f->far);
+  const PetscInt reach = (PetscInt)f->far[NEAR_ONE].reach + OFFSET_LAGS;
+  if (!f->free) PetscCall(LatticeStokeslet(PetscMax(reach, IMAGE_SHIFT), &f->lattice));
   if (!f->free) PetscCall(NearImageCreate(markers, nu, &f->lattice, &f->image));
-  NearFarCoefficients(markers->kernel, f->far);
   PetscCall(PetscCalloc1(l->bodies, &f->kress));
   for (PetscInt v = l->own; v < l->end; v++) {
     PetscCall(PetscMalloc1(LayoutCount(l, v), &f->kress[v]));

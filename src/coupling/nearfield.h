@@ -7,6 +7,7 @@
 #pragma once
 #include "coupling/boxpart.h"
 #include "coupling/lattice.h"
+#include "coupling/nearfar.h"
 #include "coupling/nearimage.h"
 #include "membrane/membrane.h"
 
@@ -26,11 +27,6 @@ typedef struct {
   PetscReal shift[2], gap; /* length */
 } NearClose;
 
-/* A vesicle's least and largest x and y. */
-typedef struct {
-  PetscReal low[2], high[2];
-} NearBounds;
-
 typedef struct _p_NearField *NearField;
 struct _p_NearField {
   Markers markers;   /* borrowed */
@@ -39,7 +35,7 @@ struct _p_NearField {
   PetscBool free; /* unbounded fluid: C = S */
   OffsetTable lattice;
   NearImage image;        /* what the walls add to each pair */
-  PetscReal far[5];       /* coefficients a2, a4, a6, b2, b6 of distant pairs */
+  NearFar far[2];         /* distant pairs of one vesicle, of two */
   PetscReal **kress;      /* [vesicles][n] by index difference, what Kress' quadrature has besides the plain logarithm,
                              at 0 its weight; NULL for others' vesicles */
   PaddedStencil *stencil; /* [2M] */

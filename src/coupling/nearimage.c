@@ -94,14 +94,20 @@ void NearImageAdd(NearImage m, PetscInt i, PetscInt j, const PetscReal d[2], con
       if (m->end[direction][side]) AddWall(m, direction, side, i, j, d, L, C);
 }
 
-PetscBool NearImageIsFar(NearImage m, const PetscReal X[2], const PetscReal low[2], const PetscReal high[2]) {
+PetscReal NearImageGap(Grid g, int direction, int side, const NearBounds *a, const NearBounds *b) {
+  if (side) return 2 * g->hi[direction] - a->high[direction] - b->high[direction];
+  return a->low[direction] + b->low[direction] - 2 * g->lo[direction];
+}
+
+PetscBool NearImageIsFar(NearImage m, const PetscReal X[2], const NearBounds *box) {
   const Grid g = m->markers->grid;
+  const NearBounds at = {{X[0], X[1]}, {X[0], X[1]}};
   for (int dir = 0; dir < 2; dir++)
-    for (int side = 0; side < 2 && g->wall[dir]; side++) {
-      const PetscReal a = (side ? g->hi[dir] - X[dir] : X[dir] - g->lo[dir]) / g->h;
-      const PetscReal b = (side ? g->hi[dir] - high[dir] : low[dir] - g->lo[dir]) / g->h;
-      if (PetscMin(a, b) < FOLD_SCALED || a + b < IMAGE_CELLS) return PETSC_FALSE;
-    }
+    for (int side = 0; side < 2 && g->wall[dir]; side++)
+      if (PetscMin(NearImageGap(g, dir, side, &at, &at), NearImageGap(g, dir, side, box, box)) <
+              2 * FOLD_SCALED * g->h ||
+          NearImageGap(g, dir, side, &at, box) < IMAGE_CELLS * g->h)
+        return PETSC_FALSE;
   return PETSC_TRUE;
 }
 
@@ -123,10 +129,10 @@ static void AddFarWall(NearImage m, int direction, int side, PetscInt i, PetscIn
   }
 }
 
-void NearImageAddFar(NearImage m, PetscInt i, PetscInt j, PetscInt n, PetscBool back, const PetscReal x[],
-                     const PetscReal y[], PetscReal *const C[4]) {
+void NearImageAddFar(NearImage m, const PetscBool walls[2][2], PetscInt i, PetscInt j, PetscInt n, PetscBool back,
+                     const PetscReal x[], const PetscReal y[], PetscReal *const C[4]) {
   for (int wall = 0; wall < 4; wall++)
-    if (m->end[wall / 2][wall % 2]) AddFarWall(m, wall / 2, wall % 2, i, j, n, back, wall / 2 ? x : y, C);
+    if (walls[wall / 2][wall % 2]) AddFarWall(m, wall / 2, wall % 2, i, j, n, back, wall / 2 ? x : y, C);
 }
 
 /* SUM w [c|c| - sgn(c)/4] - y^2 + 1/4 over the tangential stencil's rows at c from the wall, before it is folded. */

@@ -14,6 +14,11 @@ typedef struct {
   PetscReal weight[2][KERNEL_MAX_POINTS];
 } ImageEnd;
 
+/* A vesicle's least and largest x and y. */
+typedef struct {
+  PetscReal low[2], high[2];
+} NearBounds;
+
 typedef struct _p_NearImage *NearImage;
 struct _p_NearImage {
   Markers markers; /* borrowed */
@@ -41,15 +46,18 @@ PETSC_EXTERN PetscErrorCode NearImagePlace(NearImage image, const PaddedStencil 
 PETSC_EXTERN void NearImageAdd(NearImage image, PetscInt i, PetscInt j, const PetscReal d[2], const PetscReal L[4],
                                PetscReal C[4]);
 
+/* NearImageGap - the least distance there can be between markers within `one` and images in a wall of markers within
+   `other` (length). Not collective. */
+PETSC_EXTERN PetscReal NearImageGap(Grid grid, int direction, int side, const NearBounds *one, const NearBounds *other);
+
 /* NearImageIsFar - whether a marker at X and all in a box are off all walls, and so far from one another's images that
    no stencils are summed. NearImageAddFar - the same as NearImageAdd for such a marker i and the n markers from j on, d
-   = (x, y)[n] with room for whole vectors behind n: C[4][n] of i's response to them, or, with back, of theirs to it, d
-   turned. n at most IMAGE_ROW. Not collective. */
+   = (x, y)[n] with room for whole vectors behind n, by walls[direction][side] only: C[4][n] of i's response to them,
+   or, with back, of theirs to it, d turned. n at most IMAGE_ROW. Not collective. */
 #define IMAGE_ROW 96
-PETSC_EXTERN PetscBool NearImageIsFar(NearImage image, const PetscReal X[2], const PetscReal low[2],
-                                      const PetscReal high[2]);
-PETSC_EXTERN void NearImageAddFar(NearImage image, PetscInt i, PetscInt j, PetscInt n, PetscBool back,
-                                  const PetscReal x[], const PetscReal y[], PetscReal *const C[4]);
+PETSC_EXTERN PetscBool NearImageIsFar(NearImage image, const PetscReal X[2], const NearBounds *box);
+PETSC_EXTERN void NearImageAddFar(NearImage image, const PetscBool walls[2][2], PetscInt i, PetscInt j, PetscInt n,
+                                  PetscBool back, const PetscReal x[], const PetscReal y[], PetscReal *const C[4]);
 
 /* NearImageBlake - Blake's image part of the Stokeslet in a wall, cells, viscosity 1. NearImageTurn - C += alpha times
    a pair's parts, turned from the wall with this normal and side to x and y. Not collective. */

@@ -57,21 +57,13 @@ static PetscErrorCode AddAt(NearField f, const NearBlock *block, int direction, 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* From the one vesicle to the other one's image in a wall (length). */
-static PetscReal ImageGap(NearField f, const NearBlock *b, int direction, int side) {
-  const NearBounds *row = &f->bounds[b->row], *column = &f->bounds[b->column];
-  const PetscReal wall = WallPlace(f->markers->grid, direction, side);
-  if (side) return 2 * wall - row->high[direction] - column->high[direction];
-  return row->low[direction] + column->low[direction] - 2 * wall;
-}
-
 PetscErrorCode NearBlockRefineAtWalls(NearField f, const NearBlock *b) {
   const PetscReal ds = PetscMax(f->membrane->ds[b->row], f->membrane->ds[b->column]);
   PetscFunctionBeginUser;
   for (int wall = 0; wall < 4; wall++) {
     const int direction = wall / 2, side = wall % 2;
     if (!f->image->end[direction][side]) continue;
-    const PetscReal gap = ImageGap(f, b, direction, side);
+    const PetscReal gap = NearImageGap(f->markers->grid, direction, side, &f->bounds[b->row], &f->bounds[b->column]);
     if (gap > CLOSE * ds) continue;
     const PetscInt factor = (PetscInt)PetscMin(MOST_FINE, PetscCeilReal(FINE * ds / gap));
     PetscCall(AddAt(f, b, direction, side, factor, WINDOW * ds, 1));

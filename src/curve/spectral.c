@@ -75,15 +75,19 @@ PetscReal TrigonometricCardinal(PetscInt n, PetscReal t) {
   return PetscSinReal(0.5 * n * t) / (n * (n % 2 ? s : PetscTanReal(0.5 * t)));
 }
 
+/* The points between the same two markers of every pair have the same weights. */
 void TrigonometricPoints(PetscInt n, const PetscReal X[], PetscInt times, PetscReal Y[]) {
-  for (PetscInt q = 0; q < n * times; q++) {
-    Y[2 * q] = Y[2 * q + 1] = 0;
-    for (PetscInt k = 0; k < n; k++) {
-      const PetscReal weight = TrigonometricCardinal(n, 2 * PETSC_PI * ((q - times * k + n * times) % (n * times)) /
-                                                            (n * times));
-      for (int c = 0; c < 2; c++) Y[2 * q + c] += weight * X[2 * k + c];
+  for (PetscInt q = 0; q < 2 * n * times; q++) Y[q] = 0;
+  for (PetscInt between = 0; between < times; between++)
+    for (PetscInt off = 0; off < n; off++) {
+      const PetscReal weight = TrigonometricCardinal(n, 2 * PETSC_PI * (between + times * off) / (n * times));
+      PetscReal *y = Y + 2 * between;
+      for (PetscInt p = 0; p < n; p++, y += 2 * times) {
+        const PetscReal *x = X + 2 * (p < off ? p - off + n : p - off);
+        y[0] += weight * x[0];
+        y[1] += weight * x[1];
+      }
     }
-  }
 }
 
 void SpectralShift(Spectral s, int each, PetscReal phi, const PetscScalar X[], PetscScalar Y[]) {
