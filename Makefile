@@ -20,7 +20,7 @@ PACKAGES := gcc libc6-dev make pkg-config libpetsc-real-dev libfftw3-dev libfftw
   python3-petsc4py python3-h5py python3-numpy python3-matplotlib python3-tqdm
 TEST_PACKAGES := python3-pytest python3-pytest-xdist python3-scipy python3-xarray python3-nbclient python3-ipykernel python3-pip \
   python3-setuptools python3-wheel ffmpeg chromium-headless-shell valgrind clang-format black \
-  aspell aspell-en codespell mkdocs
+  aspell aspell-en codespell mkdocs shellcheck python3-yaml
 # VTK with its XDMF reader, which Debian's lacks: from PyPI, into build/, for one test.
 VTK := vtk==9.3.1
 
@@ -39,13 +39,17 @@ ARCH := $(firstword $(foreach candidate,$(CANDIDATES),$(call KNOWS,$(candidate))
 endif
 FOR := $(MACHINE)$(if $(SANITIZE)$(COVERAGE),,$(if $(ARCH), $(ARCH_OPTION)=$(ARCH)))
 
+# Of pkg-config; Debian calls its HDF5 with MPI hdf5-openmpi.
+MODULES := PETSc hdf5-openmpi fftw3
 PKG := $(if $(PETSC_DIR),PKG_CONFIG_PATH=$(PETSC_DIR)/$(PETSC_ARCH)/lib/pkgconfig) pkg-config
 COMMA := ,
 OPTIMISE := $(if $(SANITIZE),-O1 -g -fsanitize=address$(COMMA)undefined -fno-omit-frame-pointer,$(if $(COVERAGE),-O1 -g --coverage -fprofile-update=atomic,-O3 -g$(if $(ARCH), $(ARCH_OPTION)=$(ARCH))))
 CFLAGS = -std=gnu11 -Wall -Wextra -Werror -Wno-unused-parameter -Wno-missing-field-initializers $(OPTIMISE) -fPIC -Iinclude -Isrc \
-  $(shell $(PKG) --cflags PETSc hdf5-openmpi fftw3)
-COMMIT := $(shell git describe --always --dirty 2>/dev/null || echo unknown)
-LIBS = $(shell $(PKG) --libs PETSc hdf5-openmpi fftw3) -lfftw3_mpi -lm $(if $(PETSC_DIR),-Wl$(COMMA)-rpath$(COMMA)$(PETSC_DIR)/$(PETSC_ARCH)/lib)
+  $(shell $(PKG) --cflags $(MODULES))
+VERSION := $(shell sed -n 's/^\#define PETVES_VERSION "\(.*\)"/\1/p' src/base/version.h)
+# An archive of make dist has the commit in a file.
+COMMIT := $(shell cat .commit 2>/dev/null || git describe --always --dirty 2>/dev/null || echo unknown)
+LIBS = $(shell $(PKG) --libs $(MODULES)) -lfftw3_mpi -lm $(if $(PETSC_DIR),-Wl$(COMMA)-rpath$(COMMA)$(PETSC_DIR)/$(PETSC_ARCH)/lib)
 
 SOURCES := $(filter-out src/main.c,$(wildcard src/*.c src/*/*.c))
 OBJECTS := $(SOURCES:src/%.c=$(BUILD)/%.o)
@@ -63,7 +67,7 @@ export OMPI_MCA_mpi_yield_when_idle := 1
 export OMPI_MCA_btl_vader_single_copy_mechanism := none
 export OMP_NUM_THREADS := 1
 
-.PHONY: all help deps test-deps run test coverage reproduce stability time chart calibrate unseen bench fuzz memcheck install uninstall manual docs arch format check-format clean tests benches FORCE
+.PHONY: all help deps test-deps run test coverage reproduce stability time chart calibrate unseen bench fuzz memcheck install uninstall manual docs dist arch format check-format clean tests benches FORCE
 all: $(BIN)/petves ## build bin/petves and lib/libpetves.so
 
 help: ## list the targets
@@ -186,23 +190,33 @@ docs: ## the pages of docs/ as a site: build/docs/index.html
 manual: all ## the manual page and completion for bash, into build/
 	$(PYTHON) python/make_manual.py $(BIN)/petves $(BUILD)
 
-install: manual ## install under PREFIX (/usr/local): program, library, Python package, manual, completion, scenes
-	install -d $(addprefix $(PREFIX)/,bin lib include share/petves share/doc/petves share/man/man1 share/bash-completion/completions)
+$(BUILD)/petves.pc: packaging/petves.pc.in FORCE
+	sed -e 's|@PREFIX@|$(abspath $(PREFIX))|; s|@VERSION@|$(VERSION)|' $< > $@
+
+dist: ## the source of the last commit as an archive: build/petves-VERSION.tar.gz
+	@mkdir -p $(BUILD)
+	git archive --prefix=petves-$(VERSION)/ --add-virtual-file=petves-$(VERSION)/.commit:$$(git describe --always) \
+	  -o $(BUILD)/petves-$(VERSION).tar.gz HEAD
+	@echo $(BUILD)/petves-$(VERSION).tar.gz
+
+install: manual $(BUILD)/petves.pc ## install under PREFIX (/usr/local): program, library, Python package, manual, completion, scenes
+	install -d $(addprefix $(PREFIX)/,bin lib/pkgconfig include share/petves share/doc/petves share/man/man1 share/bash-completion/completions)
 	install -d $(PYTHON_DIR)/petves/views
 	install $(BIN)/petves $(PREFIX)/bin/
 	install -m 644 $(LIBRARY) $(PREFIX)/lib/
+	install -m 644 $(BUILD)/petves.pc $(PREFIX)/lib/pkgconfig/
 	install -m 644 include/petves.h $(PREFIX)/include/
 	install -m 644 $(BUILD)/petves.1 $(PREFIX)/share/man/man1/
 	install -m 644 $(BUILD)/petves.bash $(PREFIX)/share/bash-completion/completions/petves
 	install -d $(PREFIX)/share/doc/petves/docs
 	install -m 644 README.md CHANGELOG.md CONTRIBUTING.md CITATION.cff LICENSE $(PREFIX)/share/doc/petves/
-	install -m 644 docs/*.md $(PREFIX)/share/doc/petves/docs/
+	install -m 644 docs/*.md docs/*.png docs/*.ipynb $(PREFIX)/share/doc/petves/docs/
 	cp -r runs python/examples $(PREFIX)/share/petves/
 	install -m 644 python/petves/*.py python/petves/*.pyi python/petves/py.typed $(PYTHON_DIR)/petves/
 	install -m 644 python/petves/views/*.py python/petves/views/*.html $(PYTHON_DIR)/petves/views/
 
 uninstall: ## remove what make install has put under PREFIX
-	rm -f $(PREFIX)/bin/petves $(PREFIX)/lib/libpetves.so $(PREFIX)/include/petves.h $(PREFIX)/share/man/man1/petves.1
+	rm -f $(PREFIX)/bin/petves $(PREFIX)/lib/libpetves.so $(PREFIX)/lib/pkgconfig/petves.pc $(PREFIX)/include/petves.h $(PREFIX)/share/man/man1/petves.1
 	rm -f $(PREFIX)/share/bash-completion/completions/petves
 	rm -rf $(PREFIX)/share/petves $(PREFIX)/share/doc/petves $(PYTHON_DIR)/petves
 

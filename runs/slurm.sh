@@ -11,6 +11,7 @@ folder=$(awk '$1 == "-output_dir" {print $2}' "$options")
 
 restart() { [ -e "$folder/checkpoint.h5" ] && echo "-restart $folder/checkpoint.h5"; }
 
+# shellcheck disable=SC2046 # two words or none
 mpirun bin/petves -options_file "$options" $(restart) -time_wall_limit 3400 &
 run=$!
 trap 'kill -USR1 $run' USR1          # mpirun hands it on to the ranks

@@ -133,24 +133,6 @@ if not SANITIZE:  # a sanitized library cannot be loaded into Python
         done = subprocess.run(["make", "-C", str(ROOT), "uninstall", f"PREFIX={tmp_path}"], capture_output=True)
         assert done.returncode == 0 and not [path for path in tmp_path.rglob("*petves*") if path.is_file()]
 
-    def test_notebook_runs(tmp_path, monkeypatch):
-        import nbformat
-        from nbclient import NotebookClient
-
-        monkeypatch.setenv("PYTHONPATH", str(ROOT / "python"))
-        monkeypatch.setenv("PETVES_LIBRARY", str(LIBRARY))
-        for name, value in ENVIRONMENT.items():
-            monkeypatch.setenv(name, value)
-        notebook = nbformat.read(ROOT / "docs" / "tutorial.ipynb", as_version=4)
-        kept = [bool(cell.get("outputs")) for cell in notebook.cells]
-        for cell in notebook.cells:
-            cell.pop("outputs", None) if cell.cell_type != "code" else cell.update(outputs=[])
-        NotebookClient(notebook, timeout=120, resources={"metadata": {"path": str(tmp_path)}}).execute()
-        assert [
-            bool(cell.get("outputs")) for cell in notebook.cells
-        ] == kept, "the outputs shown are those of its cells"
-        assert sum(kept) >= 5
-
     def test_reference_is_in_step_with_the_docstrings():
         done = python(
             [str(ROOT / "python" / "make_api.py")], PYTHONPATH=str(ROOT / "python"), PETVES_LIBRARY=str(LIBRARY)

@@ -6,7 +6,7 @@ from typing import Any
 
 from petves.errors import Error
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"
 __all__ = ["Error", "Run", "RunError", "Simulation", "load"]
 _HOME = {"Run": "run", "RunError": "run", "Simulation": "simulation", "load": "dataset"}
 

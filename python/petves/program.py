@@ -39,12 +39,19 @@ def programs() -> list[Path]:
 def candidates() -> list[Path]:
     """Return where libpetves.so is looked for, in this order.
 
-    ``PETVES_LIBRARY``; the package itself (pip); ``lib`` of the repository; ``lib`` of the prefix of ``make install``.
+    ``PETVES_LIBRARY``; the package itself (pip); ``lib`` of the repository; ``lib`` of the prefix of ``make install``, where
+    the package is or where a command ``petves`` on PATH is.
     """
     if os.environ.get("PETVES_LIBRARY"):
         return [Path(os.environ["PETVES_LIBRARY"])]
-    prefixes = [*PACKAGE.parents[1:6], Path("/usr/local")]
+    prefixes = [*PACKAGE.parents[1:6], *_of_command(), Path("/usr/local")]
     return [PACKAGE / LIBRARY, *(prefix / "lib" / LIBRARY for prefix in prefixes)]
+
+
+def _of_command() -> list[Path]:
+    """Return the prefixes of commands called petves on PATH, where make install has put the library too."""
+    folders = os.environ.get("PATH", "").split(os.pathsep)
+    return [Path(folder).parent for folder in folders if folder and (Path(folder) / "petves").is_file()]
 
 
 def _find() -> tuple[Path | None, Path | None]:

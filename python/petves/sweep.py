@@ -9,7 +9,7 @@ import hashlib
 import io
 import itertools
 import json
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from concurrent.futures import Future, ThreadPoolExecutor, as_completed
 from pathlib import Path
 from urllib.parse import quote
@@ -30,7 +30,7 @@ Ended = tuple[str, str]
 
 def sweep(
     folder: str | Path,
-    grid: dict[str, list[str]],
+    grid: Mapping[str, Iterable[object]],
     options_file: str | Path | None = None,
     jobs: int = 1,
     ranks: int = 1,
@@ -47,8 +47,8 @@ def sweep(
         kill) and "interrupted" (a signal, ``time_wall_limit``) are not: the next call goes on from the run's checkpoint.
         A larger grid adds to the sweep. Nothing that a run has left is deleted; what was left without a checkpoint is
         moved aside to the folder's name with ``~1``, ``~2``.
-    grid : dict of str to list of str
-        Values of each option, named without the dash.
+    grid : mapping of str to iterable
+        Values of each option, named without the dash: text or numbers.
     options_file : str or Path, optional
         Options that all runs share.
     jobs, ranks : int
@@ -67,6 +67,7 @@ def sweep(
         When the grid is empty, the folder holds runs of other shared options, or a file of the sweep cannot be written.
     """
     folder = Path(folder)
+    grid = {name: [str(value) for value in values] for name, values in grid.items()}
     _check(grid, jobs, ranks)
     base = Path(options_file).read_text() if options_file and Path(options_file).is_file() else ""
     if options_file and not base:

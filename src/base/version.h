@@ -2,7 +2,7 @@
 #pragma once
 #include "base/base.h"
 
-#define PETVES_VERSION "0.1.0"
+#define PETVES_VERSION "0.2.0"
 
 /* PetvesVersion - one line: version, commit, the PETSc that runs, and the processor that the code is for. May be called
    before MPI and PETSc start. Not collective. PetvesCommit - the commit that was built, or "unknown". */
