@@ -69,7 +69,8 @@ PETSC_EXTERN PetscErrorCode SceneCheck(Scene scene);
    vesicles than it is meant for; the vesicles are known. Collective. */
 PETSC_EXTERN PetscErrorCode SceneCheckFree(Scene scene);
 
-/* SceneCheckDivergence - that a custom flow has no divergence, by differences at points all over the box. Collective. */
+/* SceneCheckDivergence - that a custom flow has no divergence, by differences at points all over the box. Collective.
+ */
 PETSC_EXTERN PetscErrorCode SceneCheckDivergence(Scene scene);
 
 /* SceneCheckGravity - gravity, density differences and the drive of a channel; the vesicles are known. Collective. */
