@@ -98,7 +98,7 @@ def test_membranes_that_cross_end_the_run(tmp_path):
     """Without the near field and with long steps two vesicles pressed together cross: the last good state is the one before."""
     options = "-domain_box -4,4,-4,4 -domain_cells 32,32 -flow_type extension -flow_rate -1 -fluid_inertia none "
     options += "-scheme_type coupled -delta_type cbs54 -membrane_derivative spectral -vesicle_count 2 "
-    options += "-vesicle_semi_axes 0.4,0.8 -vesicle_center -0.55,0,0.55,0 "
+    options += "-vesicle_semi_axes 0.4,0.8 -vesicle_center -0.42,0,0.42,0 "
     options += "-vesicle_angle 0 -vesicle_bending 0.001 -time_step 0.5 -time_end 8 -limit_gap_loss 0"
     run = run_petves(tmp_path / "run", options, ranks=2, good=False)
     assert run.status == 2 and "vesicles 1 and 2 cross after step" in run.errors[0] and "; try " in run.errors[0]
@@ -109,22 +109,25 @@ def test_membranes_that_cross_end_the_run(tmp_path):
 
 
 PRESSED = "-domain_box -4,4,-4,4 -domain_cells 32,32 -flow_type extension -flow_rate -1 -fluid_inertia none "
-PRESSED += "-scheme_type coupled -delta_type cbs54 -coupling_near_field exact -membrane_derivative spectral -scheme_area_target true "
-PRESSED += (
-    "-vesicle_count 2 -vesicle_semi_axes 0.4,0.8 -vesicle_center -0.55,0,0.55,0 -vesicle_bending 0.01 -time_end 3"
-)
+PRESSED += "-scheme_type coupled -delta_type cbs54 -membrane_derivative spectral -scheme_area_target true "
+PRESSED += "-vesicle_count 2 -vesicle_semi_axes 0.4,0.8 -vesicle_center -0.42,0,0.42,0 "
 
 
 def test_step_that_drains_a_film(tmp_path):
-    """A fixed step ends the run before it, with both vesicles named; step-size control goes on with shorter steps."""
-    run = run_petves(tmp_path / "run", f"{PRESSED} -time_step 0.3", ranks=2, good=False)
+    """A fixed step ends the run before it, with both vesicles named; step-size control goes on with shorter steps, in which
+    no film loses more than it may: .9 % would be lost in the longest one."""
+    options = f"{PRESSED} -coupling_near_field none -vesicle_bending 0.001 -time_step 0.5 -time_end 8"
+    run = run_petves(tmp_path / "run", options, ranks=2, good=False)
     assert run.status == 2 and "the film between vesicles 1 and 2 went from " in run.errors[0], run.errors
     assert run.series["gap"][-1] > 0 and len(run.series["gap"]) > 2
     adaptive = "-scheme_order 2 -time_adapt error -time_adapt_tol 0.1 -time_adapt_max_move 0 -time_adapt_max_step 0.3"
-    run = run_petves(tmp_path / "adaptive", f"{PRESSED} {adaptive} -time_step 0.3")
-    gap = run.series["gap"]
-    thin = gap[1:] < 0.25 * run.series["length"][0] / 45  # half an edge; 45 markers each
-    assert (gap > 0).all() and thin.any() and (gap[1:][thin] > 0.5 * gap[:-1][thin]).all()
+    exact = f"{PRESSED} -coupling_near_field exact -vesicle_bending 0.01 {adaptive} -time_step 0.3 -time_end 0.6"
+    gaps = [
+        run_petves(tmp_path / str(limit), f"{exact} -limit_gap_loss {limit}").series["gap"] for limit in (0.5, 0.002)
+    ]
+    kept = [(gap[1:] / gap[:-1]).min() for gap in gaps]
+    assert gaps[0].max() < 0.25 * 7.7 / 45  # half an edge; 45 markers each
+    assert kept[0] < 0.998 < kept[1] and len(gaps[1]) > len(gaps[0]), kept
 
 
 def test_corner_is_warned_of_once(tmp_path):

@@ -1,5 +1,7 @@
 #include "coupling/coupling.h"
 
+#define EXPLICIT 0.3 /* of Return, what may pull along the old edges: order 3 bears .52, order 2 .89 */
+
 PetscErrorCode CouplingPlace(Coupling c, PetscReal a0, Vec X, const PetscReal treading[],
                              char message[PETVES_MAX_MESSAGE]) {
   const PetscScalar *x;
@@ -21,11 +23,31 @@ PetscErrorCode CouplingPlace(Coupling c, PetscReal a0, Vec X, const PetscReal tr
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* max over waves k of (sigma k/(4 nu a0))/(1 + c_b k^3/(4 nu a0)): how far a membrane under this tension comes back in
+   a step, over what bending lets it. */
+static PetscReal Return(Coupling c, PetscInt v, PetscReal sigma) {
+  const Membrane m = c->membrane;
+  const PetscReal slow = 4 * c->fluid->nu * c->fluid->a0, bending = m->bending * m->part[v];
+  PetscReal largest = 0;
+  for (PetscInt mode = 1; 2 * mode <= LayoutCount(m->layout, v); mode++) {
+    const PetscReal k = 2 * PETSC_PI * mode / m->L0[v];
+    largest = PetscMax(largest, sigma * k / (slow + bending * k * k * k));
+  }
+  return largest;
+}
+
 PetscErrorCode CouplingTurn(Coupling c, Vec expected) {
+  const Layout l = c->membrane->layout;
   const PetscScalar *sigma;
   PetscFunctionBeginUser;
   PetscCall(VecGetArrayRead(expected, &sigma));
-  for (PetscInt k = 0; k < c->membrane->layout->n; k++) c->turning[k] = PetscMax(0, sigma[k]);
+  for (PetscInt v = l->own; v < l->end; v++) {
+    const PetscInt at = LayoutOffset(l, v), n = LayoutCount(l, v);
+    PetscReal most = 0;
+    for (PetscInt k = at; k < at + n; k++) most = PetscMax(most, sigma[k]);
+    const PetscReal part = 1 - EXPLICIT / PetscMax(EXPLICIT, Return(c, v, most));
+    for (PetscInt k = at; k < at + n; k++) c->turning[k] = part * PetscMax(0, sigma[k]);
+  }
   PetscCall(VecRestoreArrayRead(expected, &sigma));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

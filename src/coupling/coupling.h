@@ -39,8 +39,9 @@ PETSC_EXTERN PetscErrorCode CouplingPlace(Coupling coupling, PetscReal a0, Vec X
                                           char message[PETVES_MAX_MESSAGE]);
 
 /* CouplingTurn - from here on, until the next CouplingPlace, a tension expected (edge vector) pulls along the new edges
-   where it is positive, and only what the tension has beyond it along those of the markers placed: K_sigma X - Dm^T
-   sigma joins the elastic forces, K_sigma = MembranePull. Not collective. */
+   where it is positive, as much of it as waves of the membrane would otherwise swing by (docs/method.md), and only the
+   rest along those of the markers placed: K_sigma X - Dm^T sigma joins the elastic forces, K_sigma = MembranePull. Not
+   collective. */
 PETSC_EXTERN PetscErrorCode CouplingTurn(Coupling coupling, Vec expected);
 
 /* CouplingHasMembrane - whether there is a vesicle. CouplingBending - c_b, 0 without a vesicle. Not collective. */

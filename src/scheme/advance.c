@@ -53,7 +53,7 @@ static PetscErrorCode RestoreVesicle(Scheme s, PetscInt v, PetscScalar X[], Pets
   if (!s->scene->scheme.length_target || PetscAbsReal(shift) > 0.5 * m->ds[v]) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(MembraneRestoreEdges(m, v, EDGE_TOLERANCE, X, &error));
   for (PetscInt j = 0; j < s->past && error > 0; j++) PetscCall(PetscArraycpy(X_old[j], unmoved + j * n2, n2));
-  if (error == 0) PetscCall(MembraneRestoreLength(m, v, EDGE_TOLERANCE, X));
+  if (error == 0 && s->scene->scheme.area_target) PetscCall(MembraneRestoreLength(m, v, EDGE_TOLERANCE, X));
   if (error > r->error) {
     r->error = error;
     r->who = v;

@@ -70,12 +70,11 @@ static PetscErrorCode Warn(Scheme s, const PetscMPIInt pair[2]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode CheckCrossing(Scheme s, const PetscScalar X[], const PetscReal period[2]) {
-  const Layout l = s->membrane->layout;
+static PetscErrorCode CheckCrossing(Scheme s, const PetscScalar X[]) {
   PetscInt pair[2];
   char who[64];
   PetscFunctionBeginUser;
-  PetscCall(CurvesCross(l->bodies, l->start, X, period, SchemeIsSmooth(s), pair));
+  PetscCall(FilmsCross(s, X, pair));
   if (pair[0] < 0) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(Name((PetscMPIInt)pair[0] + 1, (PetscMPIInt)pair[1] + 1, sizeof(who), who));
   PetscCall(PetscSNPrintf(s->report.failure, sizeof(s->report.failure), "%s cross", who));
@@ -93,7 +92,7 @@ PetscErrorCode SchemeCheckContact(Scheme s) {
   SchemePeriods(s, period);
   PetscCall(LayoutGatherVec(l, s->state.X, s->work_all));
   if (!l->rank) {
-    if (s->scene->limits.crossing) PetscCall(CheckCrossing(s, s->work_all, period));
+    if (s->scene->limits.crossing) PetscCall(CheckCrossing(s, s->work_all));
     PetscCall(FindContact(s, s->work_all, period, pair));
   }
   PetscCall(AgreeMessage(l->comm, s->report.failure));

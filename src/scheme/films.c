@@ -99,9 +99,22 @@ static PetscErrorCode FindDrained(Scheme s, Vec X_old, Vec X_new, PetscReal limi
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode FilmsLoss(Scheme s, Vec X_old, Vec X_new, PetscReal *loss) {
+PetscErrorCode FilmsCross(Scheme s, const PetscScalar X[], PetscInt pair[2]) {
   const Layout l = s->membrane->layout;
   const CurveRoom room = Room(s);
+  CurveGap *gaps;
+  PetscInt n;
+  PetscFunctionBeginUser;
+  PetscCall(CurvesCross(l->bodies, l->start, X, room.period, SchemeIsSmooth(s), pair));
+  if (pair[0] >= 0 || !SchemeIsSmooth(s)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(CurveGaps(l->bodies, l->start, X, room.period, PETSC_TRUE, 0, &n, &gaps));
+  if (n) PetscCall(PetscArraycpy(pair, gaps[0].curve, 2));
+  PetscCall(PetscFree(gaps));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode FilmsLoss(Scheme s, Vec X_old, Vec X_new, PetscReal *loss) {
+  const Layout l = s->membrane->layout;
   PetscInt pair[2] = {-1, -1};
   PetscFunctionBeginUser;
   *loss = 0;
@@ -112,7 +125,7 @@ PetscErrorCode FilmsLoss(Scheme s, Vec X_old, Vec X_new, PetscReal *loss) {
   }
   if (!s->scene->limits.crossing) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(LayoutGatherVec(l, X_new, s->work_all));
-  if (!l->rank) PetscCall(CurvesCross(l->bodies, l->start, s->work_all, room.period, SchemeIsSmooth(s), pair));
+  if (!l->rank) PetscCall(FilmsCross(s, s->work_all, pair));
   PetscCallMPI(MPI_Bcast(pair, 1, MPIU_INT, 0, l->comm));
   if (pair[0] >= 0) *loss = PetscMax(*loss, 2);
   PetscFunctionReturn(PETSC_SUCCESS);

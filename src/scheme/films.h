@@ -9,6 +9,10 @@
    that a vesicle may touch, and in each where nothing is within four mean edges. Collective. */
 PETSC_EXTERN PetscErrorCode FilmsGaps(Scheme scheme, PetscReal *least, PetscReal each[]);
 
+/* FilmsCross - the first two vesicles (the same twice: one and itself) that cross with markers X[2M]: their polygons
+   do, or smooth outlines whose polygons do not; -1, -1: none. Not collective. */
+PETSC_EXTERN PetscErrorCode FilmsCross(Scheme scheme, const PetscScalar X[], PetscInt pair[2]);
+
 /* FilmsLoss - what a step from the markers X_old to X_new does: the largest part of its thickness that a thin film has
    lost, over -limit_gap_loss; above 1 is too much, and so are membranes that cross (-limit_crossing). 0 where no film
    is thin, or nothing is limited. Collective. */
