@@ -25,7 +25,7 @@ import numpy as np
 from conftest import ENVIRONMENT, PETVES, ROOT, SANITIZE, read_series, run_petves, without_mpirun
 
 sys.path.insert(0, str(ROOT / "python"))
-from check_readme import described  # noqa: E402
+from check_options import described  # noqa: E402
 
 SECONDS = 10  # of processor time
 
