@@ -296,7 +296,7 @@ def check(case: Case, folder: Path, tries: int = 3) -> str:
     return "" if process.returncode == 1 else not_finite(folder / "out")
 
 
-MAY_BE_EMPTY = ("frequency", "gap", "viscosity", "normal_stress")  # columns, README.md says when
+MAY_BE_EMPTY = ("frequency", "gap", "viscosity", "normal_stress")  # columns, docs/output.md says when
 
 
 def not_finite(folder: Path) -> str:
