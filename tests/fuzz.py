@@ -25,7 +25,7 @@ import numpy as np
 from conftest import ENVIRONMENT, PETVES, ROOT, SANITIZE, read_series, run_petves, without_mpirun
 
 sys.path.insert(0, str(ROOT / "python"))
-from check_readme import described  # noqa: E402
+from check_options import described  # noqa: E402
 
 SECONDS = 10  # of processor time
 
@@ -296,7 +296,7 @@ def check(case: Case, folder: Path, tries: int = 3) -> str:
     return "" if process.returncode == 1 else not_finite(folder / "out")
 
 
-MAY_BE_EMPTY = ("frequency", "gap", "viscosity", "normal_stress")  # columns, README.md says when
+MAY_BE_EMPTY = ("frequency", "gap", "viscosity", "normal_stress")  # columns, docs/output.md says when
 
 
 def not_finite(folder: Path) -> str:
