@@ -9,6 +9,7 @@
    slabs say by themselves, as in tridiagonal.c: Y leaves a slab of m rows as its own and M^m times what came in, Z as
    its own, the gain times Y from below and M^m times Z from above. */
 #include "fluid/stream.h"
+#include "base/lanes.h"
 #include "fluid/streamfactors.h"
 #include "fluid/tridiagonal.h"
 
@@ -98,9 +99,15 @@ static void Curl(PetscInt n, const PetscScalar *restrict low, const PetscScalar 
 }
 
 static PetscReal Sum(PetscInt n, const PetscScalar x[]) {
-  PetscReal sum = 0;
-  for (PetscInt i = 0; i < n; i++) sum += x[i];
-  return sum;
+  Lanes sum[2] = {{0}, {0}};
+  PetscReal rest = 0;
+  PetscInt i = 0;
+  for (; i + 2 * LANES <= n; i += 2 * LANES) {
+    sum[0] += LanesAt(x + i);
+    sum[1] += LanesAt(x + i + LANES);
+  }
+  for (; i < n; i++) rest += x[i];
+  return LanesSum(sum[0] + sum[1]) + rest;
 }
 
 /* One row upwards: y of the row, from its modes b and y of the row below; y1 goes along. */

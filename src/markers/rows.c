@@ -1,4 +1,7 @@
 #include "markers/rows.h"
+#include "base/lanes.h"
+
+#define AHEAD 16 /* entries */
 
 /* The row of this rank, or the one above its rows, that is entry b of a stencil; -1 when it is another rank's. Beyond a
    wall only zero weights can fall: markers keep three cells away, or stencils are folded. */
@@ -24,7 +27,7 @@ PetscErrorCode MarkerRowsPlace(MarkerRows r, const Stencil stencil[]) {
     if (start[g->rows[c] + 1] > r->room[c]) {
       r->room[c] = start[g->rows[c] + 1] * 11 / 10;
       PetscCall(PetscFree(r->entry[c]));
-      PetscCall(PetscMalloc1(r->room[c], &r->entry[c]));
+      PetscCall(PetscCalloc1(r->room[c] + AHEAD, &r->entry[c]));
     }
     for (PetscInt k = c; k < r->stencils; k += 2)
       for (PetscInt b = 0; b < stencil[k].n[1]; b++)
@@ -35,17 +38,25 @@ PetscErrorCode MarkerRowsPlace(MarkerRows r, const Stencil stencil[]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Stencils of a row lie apart: the one that is wanted some entries on is asked for now. */
+static inline void Prefetch(MarkerRows r, Field f, PetscInt e) {
+  const char *next = (const char *)&r->stencil[r->entry[f][e + AHEAD].stencil];
+  __builtin_prefetch(next);
+  __builtin_prefetch(next + 64);
+}
+
 void MarkerRowSpread(MarkerRows r, Field f, PetscInt j, PetscReal alpha, const PetscScalar F[], PetscScalar row[]) {
   const PetscInt columns = r->grid->columns[f];
   for (PetscInt e = r->start[f][j]; e < r->start[f][j + 1]; e++) {
     const RowEntry at = r->entry[f][e];
     const Stencil *s = &r->stencil[at.stencil];
+    Prefetch(r, f, e);
     const PetscInt i0 = s->first[0];
-    const PetscReal *restrict weight = s->weight[0];
+    const PetscReal *weight = s->weight[0];
     const PetscScalar force = alpha * F[at.stencil] * s->weight[1][at.entry];
-    if (i0 >= 0 && i0 + KERNEL_MAX_POINTS <= columns) {
-      PetscScalar *restrict to = row + i0;
-      for (int a = 0; a < KERNEL_MAX_POINTS; a++) to[a] += force * weight[a];
+    if (i0 >= 0 && i0 + LANES <= columns && i0 + s->n[0] <= columns) {
+      LanesPut(LanesAt(row + i0) + force * LanesAt(weight), row + i0);
+      for (PetscInt a = LANES; a < s->n[0]; a++) row[i0 + a] += force * weight[a];
     } else
       for (PetscInt a = 0; a < s->n[0]; a++) {
         const PetscInt i = r->grid->wall[0] ? i0 + a : (i0 + a) % columns;
@@ -59,12 +70,14 @@ void MarkerRowInterpolate(MarkerRows r, Field f, PetscInt j, const PetscScalar r
   for (PetscInt e = r->start[f][j]; e < r->start[f][j + 1]; e++) {
     const RowEntry at = r->entry[f][e];
     const Stencil *s = &r->stencil[at.stencil];
+    Prefetch(r, f, e);
     const PetscInt i0 = s->first[0];
     const PetscReal *weight = s->weight[0];
     PetscScalar line = 0;
-    if (i0 >= 0 && i0 + KERNEL_MAX_POINTS <= columns)
-      for (int a = 0; a < KERNEL_MAX_POINTS; a++) line += row[i0 + a] * weight[a];
-    else
+    if (i0 >= 0 && i0 + LANES <= columns && i0 + s->n[0] <= columns) {
+      line = LanesSum(LanesAt(row + i0) * LanesAt(weight));
+      for (PetscInt a = LANES; a < s->n[0]; a++) line += row[i0 + a] * weight[a];
+    } else
       for (PetscInt a = 0; a < s->n[0]; a++) {
         const PetscInt i = r->grid->wall[0] ? i0 + a : (i0 + a) % columns;
         if (i >= 0 && i < columns) line += row[i] * weight[a];
