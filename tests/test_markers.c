@@ -127,46 +127,49 @@ static PetscErrorCode CheckTranspose(const char name[], TestWorld *t, unsigned s
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether a row of this rank is among those of a stencil; largest weight at a row of this rank. */
-static PetscBool Touches(Markers m, PetscInt k, PetscReal *weight) {
-  const Grid g = m->grid;
+/* How often row j of this rank, or the one above them, has an entry of stencil k, and whether it is the right one. */
+static int Listed(Markers m, PetscInt k, PetscInt j) {
+  const MarkerRows r = m->rows;
   const Stencil *s = &m->stencil[k];
-  PetscBool touches = PETSC_FALSE;
-  *weight = 0;
-  for (PetscInt j = g->first; j < g->first + g->rows[k % 2]; j++) {
-    PetscReal face[2];
-    GridPosition(g, (Field)(k % 2), 0, j, face);
-    *weight = PetscMax(*weight, PetscAbsReal(FaceWeight(m, k % 2, 1, m->X[2 * (k / 2) + 1], face[1])));
-    for (PetscInt b = 0; b < s->n[1]; b++) {
-      const PetscInt row = s->first[1] + b;
-      if (row == j || (!g->wall[1] && row - g->n[1] == j)) touches = PETSC_TRUE;
-    }
+  int times = 0;
+  for (PetscInt e = r->start[k % 2][j]; e < r->start[k % 2][j + 1]; e++) {
+    const RowEntry at = r->entry[k % 2][e];
+    if (at.stencil == k) times += (s->first[1] + at.entry - m->grid->first - j) % m->grid->n[1] == 0 ? 1 : 2;
   }
-  return touches;
+  return times;
 }
 
-/* The list has the stencils that touch the rank's rows, in order, and no other. */
+/* The rows' lists have every stencil with a weight there once, in order; each stencil is as long on all ranks together
+   as it is. */
 static PetscErrorCode CheckList(const char name[], TestWorld *t) {
   const Markers m = t->coupling->markers;
-  PetscInt next = 0, missed = 0, idle = 0, reached = 0;
-  PetscMPIInt *here, *somewhere;
+  const Grid g = m->grid;
+  PetscInt missed = 0, twice = 0, order = 0, wrong = 0;
+  PetscMPIInt *here, *all;
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc2(2 * t->layout->M, &here, 2 * t->layout->M, &somewhere));
+  PetscCall(PetscCalloc2(2 * t->layout->M, &here, 2 * t->layout->M, &all));
   for (PetscInt k = 0; k < 2 * t->layout->M; k++) {
-    PetscReal weight;
-    const PetscBool touches = Touches(m, k, &weight);
-    here[k] = next < m->touched && m->touching[next] == k;
-    next += here[k];
-    if (here[k] && !touches) idle++;
-    if (!here[k] && weight != 0) missed++;
+    const int c = (int)(k % 2);
+    for (PetscInt j = 0; j < g->rows[c] + (g->size > 1 && g->above != MPI_PROC_NULL ? 1 : 0); j++) {
+      const int times = Listed(m, k, j);
+      PetscReal face[2];
+      GridPosition(g, (Field)c, 0, (j + g->first) % g->n[1], face);
+      if (times == 0 && FaceWeight(m, c, 1, m->X[k - c + 1], face[1]) != 0) missed++;
+      if (times > 1) twice++;
+      here[k] += j < g->rows[c] ? times : 0;
+    }
   }
-  CHECK(next == m->touched, "%s: the list of stencils is in order", name);
-  CHECK(!idle, "%s: a listed stencil has a row of the rank", name);
-  CHECK(!missed, "%s: a stencil that is not listed has no weight at the rank's rows", name);
-  PetscCallMPI(MPI_Allreduce(here, somewhere, (PetscMPIInt)(2 * t->layout->M), MPI_INT, MPI_SUM, t->layout->comm));
-  for (PetscInt k = 0; k < 2 * t->layout->M; k++) reached += somewhere[k] > 0;
-  CHECK(reached == 2 * t->layout->M, "%s: every stencil is in a list", name);
-  PetscCall(PetscFree2(here, somewhere));
+  for (int c = 0; c < 2; c++)
+    for (PetscInt j = 0; j <= g->rows[c]; j++)
+      for (PetscInt e = m->rows->start[c][j] + 1; e < m->rows->start[c][j + 1]; e++)
+        order += m->rows->entry[c][e - 1].stencil >= m->rows->entry[c][e].stencil;
+  CHECK(!missed, "%s: no row misses a stencil that has a weight there", name);
+  CHECK(!twice, "%s: every stencil is in a row once, with the row of its own that it is", name);
+  CHECK(!order, "%s: the stencils of a row are in order", name);
+  PetscCallMPI(MPI_Allreduce(here, all, (PetscMPIInt)(2 * t->layout->M), MPI_INT, MPI_SUM, t->layout->comm));
+  for (PetscInt k = 0; k < 2 * t->layout->M; k++) wrong += !g->wall[1] && all[k] != m->stencil[k].n[1];
+  CHECK(!wrong, "%s: every row of every stencil is on one rank", name);
+  PetscCall(PetscFree2(here, all));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

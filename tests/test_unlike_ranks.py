@@ -43,7 +43,7 @@ SCENES = {
     "-vesicle_count 2 -vesicle_center 1.3,2.2,2.7,1.8 -time_step 0.02 -time_end 0.5",
     "adaptive": "-domain_cells 48,48 -flow_type shear -time_step 0.05 -time_end 1 -time_adapt error -time_adapt_tol 1e-3",
     "split": "-domain_box 0,4,0,4 -domain_cells 64,64 -flow_type shear -flow_center_y 2 -scheme_type split -delta_type ib6 "
-    "-vesicle_count 2 -vesicle_center 1.2,2.2,2.8,1.8 -time_step 0.02 -time_end 0.3",
+    "-vesicle_count 2 -vesicle_center 1.2,2.2,2.8,1.8 -time_step 0.05 -time_end 0.75",
 }
 
 

@@ -6,10 +6,13 @@
 #define LANES 4
 typedef PetscReal Lanes __attribute__((vector_size(LANES * sizeof(PetscReal)), aligned(sizeof(PetscReal)), may_alias));
 
-/* LanesAt - the four numbers from x on. LanesSum - their sum. LanesPairs - four pairs x[8], interlaced, become their
-   first and their second numbers; LanesInterlace - the other way round. */
+/* LanesAt - the four numbers from x on. LanesPut - to x on. LanesSum - their sum. LanesPairs - four pairs x[8],
+   interlaced, become their first and their second numbers; LanesInterlace - the other way round. */
 static inline Lanes LanesAt(const PetscReal x[]) {
   return *(const Lanes *)x;
+}
+static inline void LanesPut(Lanes a, PetscReal x[]) {
+  *(Lanes *)x = a;
 }
 static inline PetscReal LanesSum(Lanes x) {
   return (x[0] + x[1]) + (x[2] + x[3]);

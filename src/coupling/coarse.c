@@ -53,6 +53,7 @@ PetscErrorCode CoarseCreate(const FluidSpec *run, Layout fine, const PetscReal l
   PetscCall(MobilityTableSetUp(c->table, c->fluid->alpha));
   PetscCall(LayoutCreateVec(points, 2, &c->X));
   PetscCall(VecDuplicate(c->X, &c->F));
+  if (StokesStream(c->stokes)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(DMCreateGlobalVector(c->fluid->grid->velocity, &c->r));
   PetscCall(VecDuplicate(c->r, &c->u));
   PetscCall(DMCreateGlobalVector(c->fluid->grid->da[FIELD_P], &c->p));
@@ -102,13 +103,18 @@ PetscErrorCode CoarsePlace(Coarse c, PetscScalar X[]) {
 }
 
 PetscErrorCode CoarseApply(Coarse c, PetscScalar F[]) {
+  const PetscReal alpha = -1 / PetscSqr(c->fluid->grid->h);
   const PetscScalar *U;
   PetscFunctionBeginUser;
   PetscCall(Gather(c, F, c->F));
-  PetscCall(MarkersClear(c->markers, c->r, c->dirty));
-  PetscCall(MarkersSpread(c->markers, -1 / PetscSqr(c->fluid->grid->h), c->F, c->r));
-  PetscCall(StokesSolve(c->stokes, c->r, NULL, c->u, c->p));
-  PetscCall(MarkersInterpolate(c->markers, c->u, c->F));
+  if (StokesStream(c->stokes))
+    PetscCall(MarkersRespond(c->markers, StokesStream(c->stokes), alpha, c->F, c->F));
+  else {
+    PetscCall(MarkersClear(c->markers, c->r, c->dirty));
+    PetscCall(MarkersSpread(c->markers, alpha, c->F, c->r));
+    PetscCall(StokesSolve(c->stokes, c->r, NULL, c->u, c->p));
+    PetscCall(MarkersInterpolate(c->markers, c->u, c->F));
+  }
   PetscCall(VecGetArrayRead(c->F, &U));
   PetscCall(PetscArraycpy(F, U + (c->all ? 2 * c->layout->first : 0), 2 * c->layout->n));
   PetscCall(VecRestoreArrayRead(c->F, &U));

@@ -14,7 +14,7 @@ struct _p_Coarse {
   Markers markers;     /* the points, between cells */
   MobilityTable table; /* what the coarse grid does to the vesicle itself */
   Vec X, F;            /* marker vectors, of `all` if there is one */
-  Vec r, u, p;         /* on the grid */
+  Vec r, u, p;         /* on the grid; NULL where the velocity is had by rows (fluid/stream.h) */
   PetscInt dirty[2];   /* rows where r is not zero */
 };
 

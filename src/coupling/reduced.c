@@ -54,15 +54,14 @@ static PetscErrorCode Subtract(Vec known, PetscInt n, PetscScalar y[]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* y = (V + (treading/a0) dV/dt - E w + C F - k, Dm V/h^2 - g) of x, s->F holding F, and with viscosity contrast
-   s->motion what stands in the place of the first two; k and g may be NULL; not scaled yet. */
-static PetscErrorCode MembraneConditions(Reduced s, const PetscScalar x[], Vec w, Vec known, Vec g, PetscScalar y[]) {
+/* y = (V + (treading/a0) dV/dt - U + C F - k, Dm V/h^2 - g) of x, s->U holding U = E u, s->F F, and with viscosity
+   contrast s->motion what stands in the place of the first two; k and g may be NULL; not scaled yet. */
+static PetscErrorCode MembraneConditions(Reduced s, const PetscScalar x[], Vec known, Vec g, PetscScalar y[]) {
   const Coupling c = s->unknowns->coupling;
   const PetscInt n = s->unknowns->velocity;
   const PetscReal h2 = PetscSqr(c->fluid->grid->h);
   const PetscScalar *U, *F;
   PetscFunctionBeginUser;
-  PetscCall(MarkersInterpolate(c->markers, w, s->U));
   PetscCall(VecGetArrayRead(s->U, &U));
   for (PetscInt k = 0; k < n; k++) y[k] = x[k] - U[k];
   PetscCall(VecRestoreArrayRead(s->U, &U));
@@ -82,13 +81,13 @@ static PetscErrorCode MembraneConditions(Reduced s, const PetscScalar x[], Vec w
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* y = scaled (V + (treading/a0) dV/dt - E w + C F - k, Dm V/h^2 - g, d + slip) of x and the velocity w that its forces
- * F gave. Collective. */
-static PetscErrorCode Conditions(Reduced s, const PetscScalar x[], Vec w, Vec known, Vec g, PetscScalar y[]) {
+/* y = scaled (V + (treading/a0) dV/dt - U + C F - k, Dm V/h^2 - g, d + slip) of x and the velocity U at the markers
+   that its forces F gave. Collective. */
+static PetscErrorCode Conditions(Reduced s, const PetscScalar x[], Vec known, Vec g, PetscScalar y[]) {
   const Unknowns u = s->unknowns;
   const PetscInt wall = u->velocity + u->tension;
   PetscFunctionBeginUser;
-  if (CouplingHasMembrane(u->coupling)) PetscCall(MembraneConditions(s, x, w, known, g, y));
+  if (CouplingHasMembrane(u->coupling)) PetscCall(MembraneConditions(s, x, known, g, y));
   UnknownsScale(u, PETSC_FALSE, y);
   if (!u->walls->n) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(WallsSlip(u->walls, StokesPotential(s->stokes), s->slip));
@@ -148,35 +147,67 @@ PetscErrorCode ReducedBegin(Reduced s, Vec moved, Vec f) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* U = E u of the forces of x alone, on the grid; the product is kept. */
+static PetscErrorCode RespondOnGrid(Reduced s, const PetscScalar x[], PetscInt place) {
+  const Coupling c = s->unknowns->coupling;
+  const Vec p = s->kept.p[place];
+  PetscReal mean[2] = {0, 0};
+  PetscFunctionBeginUser;
+  if (s->unknowns->walls->n) /* wall forces are everywhere */
+    PetscCall(VecSet(s->r, 0));
+  else
+    PetscCall(MarkersClear(c->markers, s->r, s->dirty));
+  if (s->source && p) PetscCall(VecSet(p, 0));
+  PetscCall(AddForces(s, x, s->r, p, mean));
+  PetscCall(Solve(s, s->r, s->source ? p : NULL, mean, s->kept.w[place], p));
+  if (CouplingHasMembrane(c)) PetscCall(MarkersInterpolate(c->markers, s->kept.w[place], s->U));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode Mult(Mat A, Vec x, Vec y) {
   Reduced s;
   const PetscScalar *xa;
   PetscScalar *ya;
-  PetscReal mean[2] = {0, 0};
-  PetscInt place;
+  PetscInt place = REDUCED_KEPT;
   PetscFunctionBeginUser;
   PetscCall(MatShellGetContext(A, &s));
-  PetscCall(NextPlace(s, &place));
+  const Coupling c = s->unknowns->coupling;
+  if (!s->stream) PetscCall(NextPlace(s, &place));
   if (place < REDUCED_KEPT) PetscCall(VecCopy(x, s->kept.z[place]));
   PetscCall(VecGetArrayRead(x, &xa));
-  if (s->unknowns->walls->n) /* wall forces are everywhere */
-    PetscCall(VecSet(s->r, 0));
-  else
-    PetscCall(MarkersClear(s->unknowns->coupling->markers, s->r, s->dirty));
-  const Vec p = s->kept.p[place];
-  if (s->source && p) PetscCall(VecSet(p, 0));
-  PetscCall(AddForces(s, xa, s->r, p, mean));
-  PetscCall(Solve(s, s->r, s->source ? p : NULL, mean, s->kept.w[place], p));
+  if (!s->stream)
+    PetscCall(RespondOnGrid(s, xa, place));
+  else if (CouplingHasMembrane(c)) {
+    PetscCall(Force(s, xa, s->F));
+    PetscCall(MarkersRespond(c->markers, s->stream, -1 / PetscSqr(c->fluid->grid->h), s->F, s->U));
+  }
   PetscCall(VecGetArray(y, &ya));
-  PetscCall(Conditions(s, xa, s->kept.w[place], NULL, NULL, ya));
+  PetscCall(Conditions(s, xa, NULL, NULL, ya));
   PetscCall(VecRestoreArray(y, &ya));
   PetscCall(VecRestoreArrayRead(x, &xa));
   if (place < REDUCED_KEPT) PetscCall(VecCopy(y, s->kept.Az[place]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode ReducedResidual(Reduced s, Vec added, Vec f, Vec g, Vec k, Vec x, Vec w, Vec p, Vec residual) {
+/* U = E u of the force f, and u and p themselves unless they are not wanted and U can be had without. */
+static PetscErrorCode Follow(Reduced s, Vec f, PetscBool grid, Vec w, Vec p) {
   const Coupling c = s->unknowns->coupling;
+  const PetscBool membrane = CouplingHasMembrane(c);
+  PetscFunctionBeginUser;
+  if (!grid && s->stream && !c->fluid->bc2) {
+    if (membrane) PetscCall(MarkersFollow(c->markers, s->stream, f, s->U));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  /* p holds the right-hand side, then the solution */
+  if (c->fluid->bc2) PetscCall(VecAXPBY(p, -1, 0, c->fluid->bc2));
+  if (s->source) PetscCall(VecCopy(s->source, p));
+  PetscCall(Solve(s, f, s->source || c->fluid->bc2 ? p : NULL, s->mean, w, p));
+  if (membrane) PetscCall(MarkersInterpolate(c->markers, w, s->U));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ReducedResidual(Reduced s, Vec added, Vec f, Vec g, Vec k, Vec x, PetscBool grid, Vec w, Vec p,
+                               Vec residual) {
   const PetscScalar *xa;
   PetscScalar *ra;
   PetscFunctionBeginUser;
@@ -184,14 +215,11 @@ PetscErrorCode ReducedResidual(Reduced s, Vec added, Vec f, Vec g, Vec k, Vec x,
   PetscCall(AddForces(s, xa, f, s->source, s->mean));
   PetscCall(VecRestoreArrayRead(added, &xa));
   PetscCall(VecGetArrayRead(x, &xa));
-  if (CouplingHasMembrane(c) && added != x) PetscCall(Force(s, xa, s->F));
+  if (CouplingHasMembrane(s->unknowns->coupling) && added != x) PetscCall(Force(s, xa, s->F));
   if (added != x) PetscCall(Jump(s, xa));
-  /* p holds the right-hand side, then the solution */
-  if (c->fluid->bc2) PetscCall(VecAXPBY(p, -1, 0, c->fluid->bc2));
-  if (s->source) PetscCall(VecCopy(s->source, p));
-  PetscCall(Solve(s, f, s->source || c->fluid->bc2 ? p : NULL, s->mean, w, p));
+  PetscCall(Follow(s, f, grid, w, p));
   PetscCall(VecGetArray(residual, &ra));
-  PetscCall(Conditions(s, xa, w, k, g, ra));
+  PetscCall(Conditions(s, xa, k, g, ra));
   PetscCall(VecRestoreArray(residual, &ra));
   PetscCall(VecRestoreArrayRead(x, &xa));
   PetscCall(VecScale(residual, -1));
@@ -231,7 +259,7 @@ PetscErrorCode ReducedCombine(Reduced s, Vec x, Vec w, Vec p, Vec residual, Pets
   Products *q = &s->kept;
   PetscReal y[REDUCED_KEPT];
   PetscFunctionBeginUser;
-  *combined = q->count <= REDUCED_KEPT ? PETSC_TRUE : PETSC_FALSE;
+  *combined = !s->stream && q->count <= REDUCED_KEPT ? PETSC_TRUE : PETSC_FALSE;
   if (!*combined) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecCopy(x, s->rest));
   PetscCall(Expand(q->count, q->z, s->rest, y));
@@ -253,7 +281,8 @@ PetscErrorCode ReducedCreate(Unknowns u, Reduced *out) {
   *out = s;
   s->unknowns = u;
   if (!c->fluid->grid->free) PetscCall(StokesCreate(c->fluid, &s->stokes));
-  PetscCall(DMCreateGlobalVector(c->fluid->grid->velocity, &s->r));
+  if (s->stokes && !c->contrast) s->stream = StokesStream(s->stokes);
+  if (!s->stream) PetscCall(DMCreateGlobalVector(c->fluid->grid->velocity, &s->r));
   PetscCall(LayoutCreateVec(c->membrane->layout, 2, &s->F));
   PetscCall(VecDuplicate(s->F, &s->U));
   if (c->contrast) {

@@ -5,9 +5,10 @@
    near field, K_rep the springs of a repulsion if there is one, k what C gives of the forces that are known, reduced to
    its forces. A Stokes solve gives u and p for any force, so the unknowns are V, sigma, and forces d on the faces next
    to walls, where the Stokes solve is not exact: (u, p) = Stokes(f - E^T F/h^2 + d, -bc2), V + (v/a0) dV/dt - E u + C F
-   = k,    Dm V/h^2 = g,    d + (what the Stokes solve leaves at the walls) = 0. A product costs one Stokes solve. In
-   unbounded fluid there is no u on a grid (E = 0) and C is all of the mobility: a product is dense work on markers, and
-   u and p stay zero. */
+   = k,    Dm V/h^2 = g,    d + (what the Stokes solve leaves at the walls) = 0. A product costs one Stokes solve; where
+   x is periodic one for the velocity at the markers only (fluid/stream.h), u and p follow from the solution's forces.
+   In unbounded fluid there is no u on a grid (E = 0) and C is all of the mobility: a product is dense work on markers,
+   and u and p stay zero. */
 #pragma once
 #include "coupling/unknowns.h"
 #include "fluid/stokes.h"
@@ -26,9 +27,10 @@ typedef struct _p_Reduced *Reduced;
 struct _p_Reduced {
   Unknowns unknowns; /* borrowed */
   Stokes stokes;     /* NULL in unbounded fluid */
+  Stream stream;     /* borrowed; NULL where products are made on the grid, and kept */
   Mat A;             /* the residuals' derivative, scaled */
   Products kept;
-  Vec r;             /* a force on the grid, */
+  Vec r;             /* a force on the grid, NULL with stream */
   PetscInt dirty[2]; /* zero but for these rows */
   Vec F, U;          /* marker vectors, work */
   Vec motion;        /* with a viscosity contrast: what the jump is of, marker vector, work */
@@ -48,13 +50,15 @@ PETSC_EXTERN PetscErrorCode ReducedDestroy(Reduced *reduced);
 PETSC_EXTERN PetscErrorCode ReducedBegin(Reduced reduced, Vec moved, Vec f);
 
 /* ReducedResidual - the forces of `added` go into f; minus the scaled residuals at x, with u, p = w, p by one Stokes
-   solve of f, f holding the forces of x. g: an edge vector, k: a marker vector. Collective. */
-PETSC_EXTERN PetscErrorCode ReducedResidual(Reduced reduced, Vec added, Vec f, Vec g, Vec k, Vec x, Vec w, Vec p,
-                                            Vec residual);
+   solve of f, f holding the forces of x. grid false: w and p are not wanted and may stay as they are. g: an edge
+   vector, k: a marker vector. Collective. */
+PETSC_EXTERN PetscErrorCode ReducedResidual(Reduced reduced, Vec added, Vec f, Vec g, Vec k, Vec x, PetscBool grid,
+                                            Vec w, Vec p, Vec residual);
 
 /* ReducedForgetProducts - a solve begins: products with A are kept from here on. Not collective. */
 PETSC_EXTERN PetscErrorCode ReducedForgetProducts(Reduced reduced);
 
 /* ReducedCombine - the change of w, p and the residual that goes with a change of x made of the kept products, added; x
-   := what it is made of. combined is false when they were too many to be kept, and nothing has changed. Collective. */
+   := what it is made of. combined is false when they were not kept, or too many, and nothing has changed. Collective.
+ */
 PETSC_EXTERN PetscErrorCode ReducedCombine(Reduced reduced, Vec x, Vec w, Vec p, Vec residual, PetscBool *combined);

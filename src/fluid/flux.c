@@ -45,19 +45,37 @@ static void SetUp(ZeroFlux z) {
   for (PetscInt j = 0; j < n; j++) z->mean += b[j] / n;
 }
 
+/* On every rank: what times the profile has a mean whose own part of the sum over rows is given, row means of u. */
+static PetscErrorCode Factor(ZeroFlux z, PetscReal sum, PetscReal *factor) {
+  const Grid g = z->fluid->grid;
+  PetscFunctionBeginUser;
+  SetUp(z);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPIU_REAL, MPI_SUM, g->comm));
+  *factor = sum / g->n[1] / z->mean;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ZeroFluxCorrectMeans(ZeroFlux z, PetscReal means[]) {
+  const Grid g = z->fluid->grid;
+  PetscReal sum = 0, factor;
+  PetscFunctionBeginUser;
+  for (PetscInt j = 0; j < g->rows[FIELD_U]; j++) sum += means[j];
+  PetscCall(Factor(z, sum, &factor));
+  for (PetscInt j = 0; j < g->rows[FIELD_U]; j++) means[j] -= factor * z->profile[g->first + j];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode ZeroFluxCorrect(ZeroFlux z, Vec u) {
   const Grid g = z->fluid->grid;
   const PetscInt n = g->n[0], rows = g->rows[FIELD_U];
-  PetscReal mean = 0;
+  PetscReal sum = 0, factor;
   PetscScalar *a;
   PetscFunctionBeginUser;
-  SetUp(z);
   PetscCall(VecGetArray(u, &a));
-  for (PetscInt k = 0; k < n * rows; k++) mean += a[k];
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &mean, 1, MPIU_REAL, MPI_SUM, g->comm));
-  mean /= (PetscReal)n * g->n[1];
+  for (PetscInt k = 0; k < n * rows; k++) sum += a[k];
+  PetscCall(Factor(z, sum / n, &factor));
   for (PetscInt j = 0; j < rows; j++) {
-    const PetscReal off = mean / z->mean * z->profile[g->first + j];
+    const PetscReal off = factor * z->profile[g->first + j];
     for (PetscInt i = 0; i < n; i++) a[j * n + i] -= off;
   }
   PetscCall(VecRestoreArray(u, &a));

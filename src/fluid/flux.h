@@ -15,3 +15,6 @@ PETSC_EXTERN PetscErrorCode ZeroFluxDestroy(ZeroFlux *flux);
 /* ZeroFluxCorrect - take the profile off the velocity of a Stokes solve, as much as makes its mean along x zero.
    Collective. */
 PETSC_EXTERN PetscErrorCode ZeroFluxCorrect(ZeroFlux flux, Vec u);
+
+/* ZeroFluxCorrectMeans - the same on the row means of u, means[rows of u on this rank]. Collective. */
+PETSC_EXTERN PetscErrorCode ZeroFluxCorrectMeans(ZeroFlux flux, PetscReal means[]);

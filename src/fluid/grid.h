@@ -50,6 +50,11 @@ static inline PetscInt GridLocalU(Grid grid) {
   return grid->columns[FIELD_U] * grid->rows[FIELD_U];
 }
 
+/* Where local row j of u or v starts in a velocity's local array. */
+static inline PetscInt GridRowStart(Grid grid, Field field, PetscInt j) {
+  return (field == FIELD_V ? GridLocalU(grid) : 0) + j * grid->columns[field];
+}
+
 /* A field's local rows with the row below and the row above them. */
 typedef struct {
   const PetscScalar *a, *below, *above;

@@ -1,12 +1,12 @@
 #include "fluid/stokes.h"
 #include "fluid/banded.h"
-#include "fluid/flux.h"
 
 struct _p_Stokes {
   Fluid fluid;
   Channel channel;     /* NULL unless x is periodic and y has walls */
   BandedStokes banded; /* NULL unless x is periodic and both fast solves are fftw_tridiagonal's */
   ZeroFlux flux;       /* NULL unless the fluid may carry no flux along x */
+  Stream stream;       /* NULL where banded is */
   Vec q, psi;          /* of the solve by parts */
 };
 
@@ -18,6 +18,10 @@ Vec StokesPotential(Stokes s) {
   return s->psi;
 }
 
+Stream StokesStream(Stokes s) {
+  return s->stream;
+}
+
 PetscErrorCode StokesCreate(Fluid fluid, Stokes *out) {
   Stokes s;
   PetscFunctionBeginUser;
@@ -27,7 +31,10 @@ PetscErrorCode StokesCreate(Fluid fluid, Stokes *out) {
   if (!fluid->grid->wall[0] && fluid->grid->wall[1]) PetscCall(ChannelCreate(fluid, &s->channel));
   if (!fluid->grid->wall[0] && fluid->tridiagonal) PetscCall(BandedStokesCreate(fluid, s->channel, &s->banded));
   if (fluid->zero_flux && !fluid->grid->wall[0] && fluid->grid->wall[1]) PetscCall(ZeroFluxCreate(fluid, &s->flux));
-  if (s->banded) PetscFunctionReturn(PETSC_SUCCESS);
+  if (s->banded) {
+    PetscCall(StreamCreate(fluid, s->flux, &s->stream));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(DMCreateGlobalVector(fluid->grid->da[FIELD_P], &s->q));
   PetscCall(VecDuplicate(s->q, &s->psi));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -36,6 +43,7 @@ PetscErrorCode StokesCreate(Fluid fluid, Stokes *out) {
 PetscErrorCode StokesDestroy(Stokes *stokes) {
   PetscFunctionBeginUser;
   if (!*stokes) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(StreamDestroy(&(*stokes)->stream));
   PetscCall(BandedStokesDestroy(&(*stokes)->banded));
   PetscCall(ChannelDestroy(&(*stokes)->channel));
   PetscCall(ZeroFluxDestroy(&(*stokes)->flux));

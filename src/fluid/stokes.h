@@ -1,6 +1,6 @@
 /* The unsteady Stokes solve A (u, p) = (r_u, r_p):  H u + G p = r_u,  G^T u = r_p. */
 #pragma once
-#include "fluid/fluid.h"
+#include "fluid/stream.h"
 
 typedef struct _p_Stokes *Stokes;
 
@@ -21,3 +21,7 @@ PETSC_EXTERN PetscBool StokesIsExact(Fluid fluid);
 /* StokesPotential - psi of the last solve, u = w - G psi; borrowed. NULL where the banded solve is used, which keeps
    psi in Fourier modes. Not collective. */
 PETSC_EXTERN Vec StokesPotential(Stokes stokes);
+
+/* StokesStream - the solve for the velocity alone, much cheaper, the same to rounding; borrowed. NULL unless x is
+   periodic and the fast solves are fftw_tridiagonal's. Not collective. */
+PETSC_EXTERN Stream StokesStream(Stokes stokes);

@@ -69,26 +69,6 @@ static void SetWindow(Markers m) {
   m->window[1] = seam ? rows : PetscMax(PetscMin(high, rows), m->window[0]);
 }
 
-/* Local row of a component that is entry b of a stencil, or -1 when another rank holds it. Beyond a wall only zero
-   weights can fall: markers keep three cells away, or stencils are folded. */
-static inline PetscInt LocalRow(const Grid g, int comp, const Stencil *s, PetscInt b) {
-  PetscInt j = s->first[1] + b;
-  if (!g->wall[1] && j >= g->n[1]) j -= g->n[1];
-  j -= g->first;
-  return j >= 0 && j < g->rows[comp] ? j : -1;
-}
-
-/* The stencils with a row on this rank. */
-static void ListTouching(Markers m) {
-  m->touched = 0;
-  for (PetscInt k = 0; k < 2 * m->layout->M; k++) {
-    const Stencil *s = &m->stencil[k];
-    PetscInt b = 0;
-    while (b < s->n[1] && LocalRow(m->grid, k % 2, s, b) < 0) b++;
-    if (b < s->n[1]) m->touching[m->touched++] = k;
-  }
-}
-
 /* The stencil of one component of a marker at X between the walls. */
 static void FoldStencil(Markers m, int comp, const PetscReal X[2], Stencil *s) {
   const Grid g = m->grid;
@@ -123,63 +103,11 @@ PetscErrorCode MarkersPlace(Markers m, Vec X) {
     PetscCall(PetscArraycpy(m->stencil, m->plain, 2 * m->layout->M));
     for (PetscInt k = 0; k < 2 * m->layout->M; k++) FoldStencil(m, k % 2, m->X + k - k % 2, &m->stencil[k]);
   }
+  for (PetscInt k = 0; k < 2 * m->layout->M; k++) /* weights of whole vectors */
+    for (PetscInt a = m->stencil[k].n[0]; a < KERNEL_MAX_POINTS; a++) m->stencil[k].weight[0][a] = 0;
   SetWindow(m);
-  ListTouching(m);
+  PetscCall(MarkerRowsPlace(m->rows, m->stencil));
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* w += alpha E^T F on this rank's rows w of u, then v. */
-static void Spread(Markers m, PetscReal alpha, const PetscScalar F[], PetscScalar w[]) {
-  const Grid g = m->grid;
-  for (PetscInt q = 0; q < m->touched; q++) {
-    const PetscInt k = m->touching[q];
-    const int comp = k % 2;
-    const Stencil *s = &m->stencil[k];
-    const PetscInt columns = g->columns[comp], i0 = s->first[0], n = s->n[0];
-    const PetscBool inside = i0 >= 0 && i0 + n <= columns ? PETSC_TRUE : PETSC_FALSE;
-    for (PetscInt b = 0; b < s->n[1]; b++) {
-      const PetscInt j = LocalRow(g, comp, s, b);
-      if (j < 0) continue;
-      PetscScalar *row = w + (comp ? GridLocalU(g) : 0) + j * columns;
-      const PetscScalar f = alpha * F[k] * s->weight[1][b];
-      if (inside)
-        for (PetscInt a = 0; a < n; a++) row[i0 + a] += f * s->weight[0][a];
-      else
-        for (PetscInt a = 0; a < n; a++) {
-          const PetscInt i = g->wall[0] ? i0 + a : (i0 + a) % columns;
-          if (i >= 0 && i < columns) row[i] += f * s->weight[0][a];
-        }
-    }
-  }
-}
-
-/* U = E w of this rank's rows; zero where a stencil reaches none of them. */
-static void Interpolate(Markers m, const PetscScalar w[], PetscScalar U[]) {
-  const Grid g = m->grid;
-  if (m->touched < 2 * m->layout->M) (void)PetscArrayzero(U, 2 * m->layout->M);
-  for (PetscInt q = 0; q < m->touched; q++) {
-    const PetscInt k = m->touching[q];
-    const int comp = k % 2;
-    const Stencil *s = &m->stencil[k];
-    const PetscInt columns = g->columns[comp], i0 = s->first[0], n = s->n[0];
-    const PetscBool inside = i0 >= 0 && i0 + n <= columns ? PETSC_TRUE : PETSC_FALSE;
-    PetscScalar sum = 0;
-    for (PetscInt b = 0; b < s->n[1]; b++) {
-      const PetscInt j = LocalRow(g, comp, s, b);
-      if (j < 0) continue;
-      const PetscScalar *row = w + (comp ? GridLocalU(g) : 0) + j * columns;
-      PetscScalar line = 0;
-      if (inside)
-        for (PetscInt a = 0; a < n; a++) line += row[i0 + a] * s->weight[0][a];
-      else
-        for (PetscInt a = 0; a < n; a++) {
-          const PetscInt i = g->wall[0] ? i0 + a : (i0 + a) % columns;
-          if (i >= 0 && i < columns) line += row[i] * s->weight[0][a];
-        }
-      sum += line * s->weight[1][b];
-    }
-    U[k] = sum;
-  }
 }
 
 PetscErrorCode MarkersSpread(Markers m, PetscReal alpha, Vec F, Vec w) {
@@ -189,7 +117,9 @@ PetscErrorCode MarkersSpread(Markers m, PetscReal alpha, Vec F, Vec w) {
   PetscCall(PetscLogEventBegin(m->spread, 0, 0, 0, 0));
   PetscCall(LayoutGatherVec(m->layout, F, m->force));
   PetscCall(VecGetArray(w, &wa));
-  Spread(m, alpha, m->force, wa);
+  for (int f = FIELD_U; f <= FIELD_V; f++)
+    for (PetscInt j = 0; j < m->grid->rows[f]; j++)
+      MarkerRowSpread(m->rows, (Field)f, j, alpha, m->force, wa + GridRowStart(m->grid, (Field)f, j));
   PetscCall(VecRestoreArray(w, &wa));
   PetscCall(PetscLogEventEnd(m->spread, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -205,7 +135,10 @@ PetscErrorCode MarkersInterpolate(Markers m, Vec w, Vec U) {
   }
   PetscCall(PetscLogEventBegin(m->interpolate, 0, 0, 0, 0));
   PetscCall(VecGetArrayRead(w, &wa));
-  Interpolate(m, wa, m->part);
+  PetscCall(PetscArrayzero(m->part, 2 * m->layout->M));
+  for (int f = FIELD_U; f <= FIELD_V; f++)
+    for (PetscInt j = 0; j < m->grid->rows[f]; j++)
+      MarkerRowInterpolate(m->rows, (Field)f, j, wa + GridRowStart(m->grid, (Field)f, j), m->part);
   PetscCall(VecRestoreArrayRead(w, &wa));
   PetscCall(VecGetArray(U, &own));
   PetscCall(LayoutSum(m->layout, 2, m->part, own));
@@ -248,8 +181,7 @@ PetscErrorCode MarkersCreate(Grid g, Layout l, const char kernel[], PetscBool fo
   m->layout = l;
   m->kernel = KernelFind(kernel);
   PetscCheck(m->kernel, g->comm, PETSC_ERR_USER_INPUT, "-delta_type %s: unknown kernel", kernel);
-  PetscCall(PetscMalloc5(2 * l->M, &m->X, 2 * l->M, &m->plain, 2 * l->M, &m->touching, 2 * l->M, &m->force, 2 * l->M,
-                         &m->part));
+  PetscCall(PetscMalloc4(2 * l->M, &m->X, 2 * l->M, &m->plain, 2 * l->M, &m->force, 2 * l->M, &m->part));
   m->folded = folded && (g->wall[0] || g->wall[1]) ? PETSC_TRUE : PETSC_FALSE;
   m->least = folded
                  ? KERNEL_FOLDED_CELLS
@@ -257,11 +189,13 @@ PetscErrorCode MarkersCreate(Grid g, Layout l, const char kernel[], PetscBool fo
   m->needs = folded ? "0.25" : "3";
   m->stencil = m->plain;
   if (m->folded) PetscCall(PetscMalloc1(2 * l->M, &m->stencil));
+  PetscCall(MarkerRowsCreate(g, 2 * l->M, &m->rows));
   PetscCall(MatCreateShell(g->comm, 2 * l->n, slab, 2 * l->M, PETSC_DETERMINE, m, &m->E));
   PetscCall(MatShellSetOperation(m->E, MATOP_MULT, (void (*)(void))Mult_E));
   PetscCall(MatShellSetOperation(m->E, MATOP_MULT_TRANSPOSE, (void (*)(void))MultTranspose_E));
   PetscCall(PetvesEvent("Spread", &m->spread));
   PetscCall(PetvesEvent("Interpolate", &m->interpolate));
+  PetscCall(PetvesEvent("Respond", &m->respond));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -270,7 +204,8 @@ PetscErrorCode MarkersDestroy(Markers *markers) {
   PetscFunctionBeginUser;
   if (!m) PetscFunctionReturn(PETSC_SUCCESS);
   if (m->folded) PetscCall(PetscFree(m->stencil));
-  PetscCall(PetscFree5(m->X, m->plain, m->touching, m->force, m->part));
+  PetscCall(PetscFree4(m->X, m->plain, m->force, m->part));
+  PetscCall(MarkerRowsDestroy(&m->rows));
   PetscCall(MatDestroy(&m->E));
   PetscCall(PetscFree(*markers));
   PetscFunctionReturn(PETSC_SUCCESS);

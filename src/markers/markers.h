@@ -5,15 +5,9 @@
    that goes to the bodies' owners. In unbounded fluid (grid->free) nothing is on the grid: markers may be anywhere, E =
    0. */
 #pragma once
-#include "fluid/grid.h"
-#include "kernel/kernel.h"
+#include "fluid/stream.h"
 #include "markers/layout.h"
-
-/* Where a marker sees one component: rows y.first.., columns x.first.., with their weights. */
-typedef struct {
-  PetscInt first[2], n[2]; /* x, y; first wrapped into the grid where periodic */
-  PetscReal weight[2][KERNEL_MAX_POINTS];
-} Stencil;
+#include "markers/rows.h"
 
 typedef struct _p_Markers *Markers;
 struct _p_Markers {
@@ -26,13 +20,12 @@ struct _p_Markers {
   const char *needs;  /* the same as text */
   Stencil *stencil;   /* [2M]: component c of marker k at 2k + c */
   Stencil *plain;     /* [2M]: the same neither folded nor scaled */
-  PetscInt *touching; /* the stencils that reach a row of this rank, in order */
-  PetscInt touched;   /* how many */
+  MarkerRows rows;    /* of stencil, those of this rank */
   PetscInt window[2]; /* this rank's rows that hold all stencils, with the rows next to them */
   PetscScalar *force; /* [2M] work: all forces */
   PetscScalar *part;  /* [2M] work: this rank's part of all velocities */
   Mat E;              /* (marker vector x velocity) U_k = SUM u(x) phi phi; E^T spreads */
-  PetscLogEvent spread, interpolate;
+  PetscLogEvent spread, interpolate, respond;
 };
 
 /* MarkersCreate - for the bodies of a layout over a grid with the named kernel; not placed yet. folded: stencils are
@@ -55,3 +48,9 @@ PETSC_EXTERN PetscErrorCode MarkersClear(Markers markers, Vec w, PetscInt dirty[
 /* MarkersSpread - w += alpha E^T F; F a marker vector, w a velocity. MarkersInterpolate - U = E w. Collective. */
 PETSC_EXTERN PetscErrorCode MarkersSpread(Markers markers, PetscReal alpha, Vec F, Vec w);
 PETSC_EXTERN PetscErrorCode MarkersInterpolate(Markers markers, Vec w, Vec U);
+
+/* MarkersRespond - U = E u, u the Stokes solve's velocity for the force alpha E^T F; MarkersFollow - for the force f on
+   the grid. Forces and velocities go row by row between markers and stream, which must be of the markers' grid: nothing
+   is made on the grid. U may be F. Collective. */
+PETSC_EXTERN PetscErrorCode MarkersRespond(Markers markers, Stream stream, PetscReal alpha, Vec F, Vec U);
+PETSC_EXTERN PetscErrorCode MarkersFollow(Markers markers, Stream stream, Vec f, Vec U);

@@ -1,0 +1,32 @@
+/* The velocity alone of an unsteady Stokes solve, H u + G p = r_u, G^T u = 0, in a box that is periodic in x: what a
+   Krylov iteration needs of it. Rows of forces come in from below and rows of velocity go out from above, one at a
+   time, so that neither is ever an array over the grid.
+
+   On the nodes between faces, chi with u = d_y chi, v = -d_x chi has no divergence, and the curl of the momentum
+   equation has no pressure (docs/method.md, Stream function):
+       (alpha - nu (d_xx + d_yy)) (-(d_xx + d_yy)) chi = d_x r_v - d_y r_u,
+   with chi = 0 and d_y chi = 0 on walls. One Fourier transform along x there and one back, a fourth-order recurrence in
+   y between them. The mean flow, mode 0, is a tridiagonal problem by itself. */
+#pragma once
+#include "fluid/flux.h"
+
+typedef struct _p_Stream *Stream;
+
+/* Where rows come from and where they go to. Rows are this rank's; row j of a field of forces is asked for once, in
+   order, each row of u before that of v with the same number; of u the row above the last, too, if there is one (the
+   next rank's first; row 0 on one rank). */
+typedef struct {
+  void *ctx;
+  const PetscScalar *(*force)(void *ctx, Field f, PetscInt j,
+                              PetscScalar work[]);                           /* may be work[n_x], which it fills */
+  void (*velocity)(void *ctx, Field f, PetscInt j, const PetscScalar row[]); /* downwards */
+} StreamRows;
+
+/* StreamCreate - for a fluid in a box that is periodic in x, whose alpha it follows; flux: borrowed, NULL unless the
+   fluid may carry no flux along x. Not collective. */
+PETSC_EXTERN PetscErrorCode StreamCreate(Fluid fluid, ZeroFlux flux, Stream *stream);
+PETSC_EXTERN PetscErrorCode StreamDestroy(Stream *stream);
+
+/* StreamSolve - velocity for these forces, zero mean in quasi-steady flow in a box that is periodic both ways. Counted
+   as one scalar solve, whose transforms it has. Collective. */
+PETSC_EXTERN PetscErrorCode StreamSolve(Stream stream, const StreamRows *rows);

@@ -1,0 +1,63 @@
+/* Markers between which only the fluid is: forces spread and velocities interpolated row by row of a Stokes solve. */
+#include "markers/markers.h"
+
+typedef struct {
+  Markers m;
+  PetscReal alpha;      /* of the markers' forces */
+  const PetscScalar *f; /* or a force on the grid, */
+  Rows u;               /* whose u has a row above */
+} Response;
+
+static const PetscScalar *SpreadForce(void *ctx, Field f, PetscInt j, PetscScalar work[]) {
+  const Response *r = (const Response *)ctx;
+  const Grid g = r->m->grid;
+  const PetscInt row = j == g->rows[f] && g->size == 1 ? 0 : j; /* across the seam */
+  (void)PetscArrayzero(work, g->columns[f]);
+  MarkerRowSpread(r->m->rows, f, row, r->alpha, r->m->force, work);
+  return work;
+}
+
+static const PetscScalar *GridForce(void *ctx, Field f, PetscInt j, PetscScalar work[]) {
+  const Response *r = (const Response *)ctx;
+  return f == FIELD_U ? RowAt(&r->u, j) : r->f + GridRowStart(r->m->grid, f, j);
+}
+
+static void TakeVelocity(void *ctx, Field f, PetscInt j, const PetscScalar row[]) {
+  const Response *r = (const Response *)ctx;
+  MarkerRowInterpolate(r->m->rows, f, j, row, r->m->part);
+}
+
+static PetscErrorCode Solve(Response *r, Stream stream, Vec U) {
+  const Markers m = r->m;
+  const StreamRows rows = {.ctx = r, .force = r->f ? GridForce : SpreadForce, .velocity = TakeVelocity};
+  PetscScalar *own;
+  PetscFunctionBeginUser;
+  PetscCall(PetscArrayzero(m->part, 2 * m->layout->M));
+  PetscCall(StreamSolve(stream, &rows));
+  PetscCall(VecGetArray(U, &own));
+  PetscCall(LayoutSum(m->layout, 2, m->part, own));
+  PetscCall(VecRestoreArray(U, &own));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode MarkersRespond(Markers m, Stream stream, PetscReal alpha, Vec F, Vec U) {
+  Response r = {.m = m, .alpha = alpha};
+  PetscFunctionBeginUser;
+  PetscCall(PetscLogEventBegin(m->respond, 0, 0, 0, 0));
+  PetscCall(LayoutGatherVec(m->layout, F, m->force));
+  PetscCall(Solve(&r, stream, U));
+  PetscCall(PetscLogEventEnd(m->respond, 0, 0, 0, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode MarkersFollow(Markers m, Stream stream, Vec f, Vec U) {
+  Response r = {.m = m};
+  PetscFunctionBeginUser;
+  PetscCall(PetscLogEventBegin(m->respond, 0, 0, 0, 0));
+  PetscCall(VecGetArrayRead(f, &r.f));
+  PetscCall(GridRows(m->grid, FIELD_U, r.f, &r.u));
+  PetscCall(Solve(&r, stream, U));
+  PetscCall(VecRestoreArrayRead(f, &r.f));
+  PetscCall(PetscLogEventEnd(m->respond, 0, 0, 0, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
