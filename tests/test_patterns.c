@@ -1,5 +1,6 @@
 /* Patterns of many vesicles (docs/method.md, Many vesicles): how a curve lies, the exact mobility of one curve, and a
    vesicle's problem solved by another's pattern. */
+#include "coupling/panels.h"
 #include "coupling/patterns.h"
 #include "coupling/selflayer.h"
 #include "fluid/stokes.h"
@@ -29,7 +30,7 @@ static void TurnCurve(PetscReal angle, PetscInt shift, const PetscReal X[], Pets
 
 /* A curve without symmetry is found again wherever it lies. */
 static PetscErrorCode CheckPose(PetscReal angle, PetscInt shift) {
-  PetscReal X[2 * N], Y[2 * N], x[2 * N], y[2 * N];
+  PetscReal X[2 * N], Y[2 * N], x[2 * N], y[2 * N], a[POSE_SIZES], b[POSE_SIZES];
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < N; k++) {
     const PetscReal t = 2 * PETSC_PI * (PetscReal)k / N;
@@ -43,8 +44,13 @@ static PetscErrorCode CheckPose(PetscReal angle, PetscInt shift) {
   CHECK((p.shift + shift) % N == 0, "labels shifted by %d are shifted back by %d", (int)shift, (int)p.shift);
   CHECK(fabs(p.turn[0] - cos(angle)) + fabs(p.turn[1] - sin(angle)) < 1e-13, "a turn of %g is found", (double)angle);
   CHECK(p.distance < 1e-7, "nothing is left, %.1e", (double)p.distance);
+  PoseSizes(N, x, a);
+  PoseSizes(N, y, b);
+  CHECK(PoseLeast(a, b) < 1e-13, "sizes know no turn and no labels, %.1e", (double)PoseLeast(a, b));
   for (PetscInt k = 0; k < N; k++) x[2 * k] += k % 2 ? 0.01 : -0.01;
   p = PoseFit(N, x, y);
+  PoseSizes(N, x, a);
+  CHECK(PoseLeast(a, b) > 1e-3 && PoseLeast(a, b) <= p.distance, "the distance is not less than that of the sizes");
   CHECK(fabs(p.distance - 0.01) < 5e-4, "a zigzag of 0.01 is left, %.4f", (double)p.distance);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -249,6 +255,29 @@ static PetscErrorCode CheckMemory(void) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Panels against sums, with rows and columns that do not fill them. */
+static PetscErrorCode CheckPanels(PetscInt rows, PetscInt columns, PetscInt inner, PetscInt count) {
+  const PetscInt apart[2] = {columns, PanelsRows(rows)};
+  PetscReal *A, *a, *b, *c, error = 0;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc4(PanelsSize(rows, columns), &A, rows, &a, columns * count, &b, apart[1] * count, &c));
+  for (PetscInt j = 0; j < columns; j++) {
+    for (PetscInt i = 0; i < rows; i++) a[i] = sin(1.0 + (double)(i * columns + j));
+    PanelsSetColumn(rows, columns, j, a, A);
+  }
+  for (PetscInt k = 0; k < columns * count; k++) b[k] = cos(0.3 * (double)k);
+  PanelsProduct(rows, columns, A, inner, count, apart, b, c);
+  for (PetscInt q = 0; q < count; q++)
+    for (PetscInt i = 0; i < rows; i++) {
+      PetscReal sum = 0;
+      for (PetscInt j = 0; j < inner; j++) sum += sin(1.0 + (double)(i * columns + j)) * b[q * columns + j];
+      error = PetscMax(error, fabs(sum - c[q * apart[1] + i]));
+    }
+  CHECK(error < 1e-13 * (double)columns, "%d x %d panels times %d columns", (int)rows, (int)inner, (int)count);
+  PetscCall(PetscFree4(A, a, b, c));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode Facts(void) {
   const PetscReal angle[] = {2.1, -0.3, 0, 3.1};
   const PetscInt shift[] = {17, 44, 0, 1};
@@ -256,6 +285,9 @@ static PetscErrorCode Facts(void) {
   for (int k = 0; k < 4; k++) PetscCall(CheckPose(angle[k], shift[k]));
   PetscCall(CheckSelfLayer(45));
   PetscCall(CheckSelfLayer(44));
+  PetscCall(CheckPanels(8, 5, 5, 4));
+  PetscCall(CheckPanels(21, 14, 9, 7));
+  PetscCall(CheckPanels(3, 2, 1, 1));
   PetscCall(CheckSolve());
   PetscCall(CheckCross());
   PetscCall(CheckMemory());

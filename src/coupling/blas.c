@@ -32,34 +32,19 @@ PetscErrorCode DenseMultAdd(PetscInt m, PetscInt n, PetscReal alpha, const Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* C = A B or A^T B, the columns of A lda apart. */
-static PetscErrorCode Product(PetscBool transpose, PetscInt m, PetscInt n, PetscInt k, const PetscReal A[],
-                              PetscInt lda, const PetscReal B[], PetscReal C[]) {
-  PetscBLASInt rows, columns, inner, apart;
+PetscErrorCode DenseProduct(PetscBool transpose, PetscInt m, PetscInt n, PetscInt k, const PetscReal A[],
+                            const PetscReal B[], PetscReal C[]) {
+  PetscBLASInt rows, columns, inner, lda;
   const PetscReal one = 1, zero = 0;
   PetscFunctionBeginUser;
   if (!m || !n) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscBLASIntCast(m, &rows));
   PetscCall(PetscBLASIntCast(n, &columns));
   PetscCall(PetscBLASIntCast(k, &inner));
-  PetscCall(PetscBLASIntCast(PetscMax(1, lda), &apart));
+  PetscCall(PetscBLASIntCast(PetscMax(1, transpose ? k : m), &lda));
   const PetscBLASInt ldb = PetscMax(1, inner);
-  PetscCallBLAS("BLASgemm", BLASgemm_(transpose ? "T" : "N", "N", &rows, &columns, &inner, &one, A, &apart, B, &ldb,
+  PetscCallBLAS("BLASgemm", BLASgemm_(transpose ? "T" : "N", "N", &rows, &columns, &inner, &one, A, &lda, B, &ldb,
                                       &zero, C, &rows));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode DenseProduct(PetscBool transpose, PetscInt m, PetscInt n, PetscInt k, const PetscReal A[],
-                            const PetscReal B[], PetscReal C[]) {
-  PetscFunctionBeginUser;
-  PetscCall(Product(transpose, m, n, k, A, transpose ? k : m, B, C));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode DensePartProduct(PetscInt m, PetscInt n, PetscInt k, const PetscReal A[], PetscInt lda,
-                                const PetscReal B[], PetscReal C[]) {
-  PetscFunctionBeginUser;
-  PetscCall(Product(PETSC_FALSE, m, n, k, A, lda, B, C));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -18,9 +18,5 @@ PETSC_EXTERN PetscErrorCode DenseMultAdd(PetscInt m, PetscInt n, PetscReal alpha
 PETSC_EXTERN PetscErrorCode DenseProduct(PetscBool transpose, PetscInt m, PetscInt n, PetscInt k, const PetscReal A[],
                                          const PetscReal B[], PetscReal C[]);
 
-/* DensePartProduct - C = A B, the m rows of A (m x k) being a part of its columns, which are lda apart. */
-PETSC_EXTERN PetscErrorCode DensePartProduct(PetscInt m, PetscInt n, PetscInt k, const PetscReal A[], PetscInt lda,
-                                             const PetscReal B[], PetscReal C[]);
-
 /* DenseEigen - eigenvalues l[n], ascending, of the symmetric A (n x n), whose columns become the eigenvectors. */
 PETSC_EXTERN PetscErrorCode DenseEigen(PetscInt n, PetscReal A[], PetscReal l[]);

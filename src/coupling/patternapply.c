@@ -1,6 +1,6 @@
 /* The preconditioner's part of the vesicles: patterns' matrices on the columns of all vesicles that take them. */
-#include "coupling/blas.h"
 #include "coupling/patternapply.h"
+#include "coupling/panels.h"
 
 void PoseTurn(const Pose *p, PetscBool back, PetscInt n, const PetscReal x[], PetscReal y[]) {
   const PetscReal c = p->turn[0], s = back ? -p->turn[1] : p->turn[1];
@@ -45,60 +45,60 @@ static void GatherColumns(Patterns s, const Pattern *q, PetscInt each, const Pet
   }
 }
 
-/* A vesicle's numbers in a column of a product that is `each` numbers long, from the `at`-th on, to F. */
-static void ScatterForces(Patterns s, const Pattern *q, PetscInt each, PetscInt at, PetscScalar F[]) {
+/* s->to = panels of `rows` rows times the columns gathered, 3n or (W alone) 2n numbers each; returns how far its
+   columns are apart. */
+static PetscInt Multiply(Patterns s, const Pattern *q, PetscInt rows, const PetscReal panels[], PetscInt inner) {
+  const PetscInt all = 3 * LayoutCount(s->coupling->membrane->layout, q->like), apart[2] = {inner, PanelsRows(rows)};
+  PanelsProduct(rows, all, panels, inner, q->end - q->begin, apart, s->from, s->to);
+  return apart[1];
+}
+
+/* F of each vesicle, from the columns gathered. */
+static void FindForces(Patterns s, const Pattern *q, PetscInt inner, PetscScalar F[]) {
   const Layout l = s->coupling->membrane->layout;
-  const PetscReal *y = s->to + at;
-  for (PetscInt k = q->begin; k < q->end; k++, y += each) {
+  const PetscInt apart = Multiply(s, q, 2 * LayoutCount(l, q->like), q->forces, inner);
+  const PetscReal *y = s->to;
+  for (PetscInt k = q->begin; k < q->end; k++, y += apart) {
     const PetscInt v = s->order[k];
     FromPattern(&s->pose[v - l->own], LayoutCount(l, v), y, F + 2 * LayoutOffset(l, v));
   }
 }
 
-/* The same of (V, sigma), added. */
-static void AddAnswers(Patterns s, const Pattern *q, PetscInt each, PetscScalar U[], PetscScalar sigma[]) {
+/* (V, sigma) of each vesicle, added. */
+static void AddAnswers(Patterns s, const Pattern *q, PetscInt inner, PetscScalar U[], PetscScalar sigma[]) {
   const Layout l = s->coupling->membrane->layout;
+  const PetscInt apart = Multiply(s, q, 3 * LayoutCount(l, q->like), q->inverse, inner);
   const PetscReal *y = s->to;
-  for (PetscInt k = q->begin; k < q->end; k++, y += each) {
+  for (PetscInt k = q->begin; k < q->end; k++, y += apart) {
     const PetscInt v = s->order[k], at = LayoutOffset(l, v);
     AddFromPattern(&s->pose[v - l->own], LayoutCount(l, v), y, U + 2 * at, sigma + at);
   }
 }
 
-PetscErrorCode PatternSolveAlone(Patterns s, const Pattern *q, PetscScalar U[], PetscScalar sigma[], PetscScalar F[]) {
+void PatternSolveAlone(Patterns s, const Pattern *q, PetscScalar U[], PetscScalar sigma[], PetscScalar F[]) {
   const Layout l = s->coupling->membrane->layout;
-  const PetscInt n = LayoutCount(l, q->like), rows = F ? 5 * n : 3 * n;
+  const PetscInt n = LayoutCount(l, q->like);
   PetscReal *x = s->from + 2 * n;
-  PetscFunctionBeginUser;
   GatherColumns(s, q, 3 * n, U);
   for (PetscInt k = q->begin; k < q->end; k++, x += 3 * n) {
     const PetscInt v = s->order[k], at = LayoutOffset(l, v), shift = s->pose[v - l->own].shift;
-    PetscCall(PetscArraycpy(x, sigma + at + shift, n - shift));
-    PetscCall(PetscArraycpy(x + n - shift, sigma + at, shift));
-    PetscCall(PetscArrayzero(U + 2 * at, 2 * n));
-    PetscCall(PetscArrayzero(sigma + at, n));
+    (void)PetscArraycpy(x, sigma + at + shift, n - shift);
+    (void)PetscArraycpy(x + n - shift, sigma + at, shift);
+    (void)PetscArrayzero(U + 2 * at, 2 * n);
+    (void)PetscArrayzero(sigma + at, n);
   }
-  PetscCall(DensePartProduct(rows, q->end - q->begin, 3 * n, q->inverse, 5 * n, s->from, s->to));
-  AddAnswers(s, q, rows, U, sigma);
-  if (F) ScatterForces(s, q, rows, 3 * n, F);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode PatternForces(Patterns s, const Pattern *q, const PetscScalar W[], PetscScalar F[]) {
-  const PetscInt n = LayoutCount(s->coupling->membrane->layout, q->like);
-  PetscFunctionBeginUser;
-  GatherColumns(s, q, 2 * n, W);
-  PetscCall(DensePartProduct(2 * n, q->end - q->begin, 2 * n, q->inverse + 3 * n, 5 * n, s->from, s->to));
-  ScatterForces(s, q, 2 * n, 0, F);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode PatternAddAnswer(Patterns s, const Pattern *q, const PetscScalar W[], PetscScalar U[],
-                                PetscScalar sigma[]) {
-  const PetscInt n = LayoutCount(s->coupling->membrane->layout, q->like);
-  PetscFunctionBeginUser;
-  GatherColumns(s, q, 2 * n, W);
-  PetscCall(DensePartProduct(3 * n, q->end - q->begin, 2 * n, q->inverse, 5 * n, s->from, s->to));
   AddAnswers(s, q, 3 * n, U, sigma);
-  PetscFunctionReturn(PETSC_SUCCESS);
+  if (F) FindForces(s, q, 3 * n, F);
+}
+
+void PatternForces(Patterns s, const Pattern *q, const PetscScalar W[], PetscScalar F[]) {
+  const PetscInt inner = 2 * LayoutCount(s->coupling->membrane->layout, q->like);
+  GatherColumns(s, q, inner, W);
+  FindForces(s, q, inner, F);
+}
+
+void PatternAddAnswer(Patterns s, const Pattern *q, const PetscScalar W[], PetscScalar U[], PetscScalar sigma[]) {
+  const PetscInt inner = 2 * LayoutCount(s->coupling->membrane->layout, q->like);
+  GatherColumns(s, q, inner, W);
+  AddAnswers(s, q, inner, U, sigma);
 }

@@ -6,12 +6,11 @@
 /* PatternSolveAlone - from U[2n] and sigma[n] = r_s: V and sigma of each vesicle's dense problem, and their forces
    F[2n] unless NULL. PatternForces - F of the answers to (W, 0). PatternAddAnswer - (U, sigma) += these answers. Not
    collective. */
-PETSC_EXTERN PetscErrorCode PatternSolveAlone(Patterns patterns, const Pattern *pattern, PetscScalar U[],
-                                              PetscScalar sigma[], PetscScalar F[]);
-PETSC_EXTERN PetscErrorCode PatternForces(Patterns patterns, const Pattern *pattern, const PetscScalar W[],
-                                          PetscScalar F[]);
-PETSC_EXTERN PetscErrorCode PatternAddAnswer(Patterns patterns, const Pattern *pattern, const PetscScalar W[],
-                                             PetscScalar U[], PetscScalar sigma[]);
+PETSC_EXTERN void PatternSolveAlone(Patterns patterns, const Pattern *pattern, PetscScalar U[], PetscScalar sigma[],
+                                    PetscScalar F[]);
+PETSC_EXTERN void PatternForces(Patterns patterns, const Pattern *pattern, const PetscScalar W[], PetscScalar F[]);
+PETSC_EXTERN void PatternAddAnswer(Patterns patterns, const Pattern *pattern, const PetscScalar W[], PetscScalar U[],
+                                   PetscScalar sigma[]);
 
 /* PoseTurn - n vectors x turned from the other curve's frame to this one's, or (back) the other way. */
 PETSC_EXTERN void PoseTurn(const Pose *pose, PetscBool back, PetscInt n, const PetscReal x[], PetscReal y[]);

@@ -14,29 +14,30 @@ static PetscReal Dot(PetscInt n, const PetscReal a[], const PetscReal b[]) {
 }
 
 /* P^T F: a vesicle's forces, its labels those of the pattern, to the coarse points. work[2n]. */
-static void Restrict(const Pattern *q, PetscInt points, PetscInt n, PetscInt shift, const PetscScalar F[],
-                     PetscReal work[], PetscScalar to[]) {
+static void Restrict(const PatternWeights *q, PetscInt shift, const PetscScalar F[], PetscReal work[],
+                     PetscScalar to[]) {
+  const PetscInt n = q->n;
   PetscReal *x = work, *y = work + n;
   for (PetscInt k = 0; k < n; k++) {
     const PetscInt at = k + shift < n ? k + shift : k + shift - n;
     x[k] = F[2 * at];
     y[k] = F[2 * at + 1];
   }
-  for (PetscInt i = 0; i < points; i++) {
-    to[2 * i] = Dot(n, q->weight + i * n, x);
-    to[2 * i + 1] = Dot(n, q->weight + i * n, y);
+  for (PetscInt i = 0; i < q->points; i++) {
+    to[2 * i] = Dot(n, q->to_markers + i * n, x);
+    to[2 * i + 1] = Dot(n, q->to_markers + i * n, y);
   }
 }
 
 /* P W: velocities at the coarse points to the markers. work[2n]. */
-static void Prolong(const Pattern *q, PetscInt points, PetscInt n, PetscInt shift, const PetscReal W[],
-                    PetscReal work[], PetscScalar to[]) {
+static void Prolong(const PatternWeights *q, PetscInt shift, const PetscReal W[], PetscReal work[], PetscScalar to[]) {
+  const PetscInt n = q->n;
   PetscReal *x = work, *y = work + n;
   (void)PetscArrayzero(work, 2 * n);
-  for (PetscInt i = 0; i < points; i++)
+  for (PetscInt i = 0; i < q->points; i++)
     for (PetscInt k = 0; k < n; k++) {
-      x[k] += q->weight[i * n + k] * W[2 * i];
-      y[k] += q->weight[i * n + k] * W[2 * i + 1];
+      x[k] += q->to_markers[i * n + k] * W[2 * i];
+      y[k] += q->to_markers[i * n + k] * W[2 * i + 1];
     }
   for (PetscInt k = 0; k < n; k++) {
     const PetscInt at = k + shift < n ? k + shift : k + shift - n;
@@ -63,8 +64,8 @@ static PetscErrorCode Others(PatternCross c, const PetscScalar F[], PetscScalar 
   const Layout l = s->coupling->membrane->layout, coarse = s->coarse->layout;
   PetscFunctionBeginUser;
   for (PetscInt v = l->own; v < l->end; v++)
-    Restrict(&s->pattern[s->of[v]], LayoutCount(coarse, v), LayoutCount(l, v), s->pose[v - l->own].shift,
-             F + 2 * LayoutOffset(l, v), c->work, c->F + 2 * LayoutOffset(coarse, v));
+    Restrict(&s->weights[s->pattern[s->of[v]].weights], s->pose[v - l->own].shift, F + 2 * LayoutOffset(l, v), c->work,
+             c->F + 2 * LayoutOffset(coarse, v));
   PetscCall(PetscArraycpy(c->W, c->F, 2 * coarse->n));
   PetscCall(CoarseApply(s->coarse, c->W));
   for (PetscInt v = l->own; v < l->end; v++) {
@@ -72,7 +73,7 @@ static PetscErrorCode Others(PatternCross c, const PetscScalar F[], PetscScalar 
     const Pose *pose = &s->pose[v - l->own];
     const PetscInt points = LayoutCount(coarse, v), at = 2 * LayoutOffset(coarse, v);
     TakeSelf(q, pose, points, c->F + at, c->work, c->W + at);
-    Prolong(q, points, LayoutCount(l, v), pose->shift, c->W + at, c->work, W + 2 * LayoutOffset(l, v));
+    Prolong(&s->weights[q->weights], pose->shift, c->W + at, c->work, W + 2 * LayoutOffset(l, v));
   }
   PetscCall(ShortRangeApply(c->near, F, W));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -88,7 +89,7 @@ static PetscErrorCode Mult(Mat A, Vec W, Vec y) {
   const Patterns s = c->patterns;
   PetscCall(VecGetArrayRead(W, &from));
   PetscCall(VecGetArray(y, &to));
-  for (PetscInt k = 0; k < s->count; k++) PetscCall(PatternForces(s, &s->pattern[k], from, c->force));
+  for (PetscInt k = 0; k < s->count; k++) PatternForces(s, &s->pattern[k], from, c->force);
   PetscCall(Others(c, c->force, to));
   PetscCall(VecRestoreArray(y, &to));
   PetscCall(VecRestoreArrayRead(W, &from));

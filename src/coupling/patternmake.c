@@ -1,8 +1,8 @@
 #include "coupling/patternmake.h"
-#include "coupling/blas.h"
 #include "coupling/contrast.h"
 #include "coupling/denseblock.h"
 #include "coupling/doubleblock.h"
+#include "coupling/panels.h"
 #include "coupling/selflayer.h"
 
 /* M += scale times the coarse grid's mean mobility between n points. */
@@ -50,94 +50,101 @@ static PetscErrorCode Motion(Patterns s, const Pattern *q, PetscReal **motion) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The columns of the inverse are the answers to those of the identity. */
-static PetscErrorCode Invert(Patterns s, const Pattern *q, PetscReal inverse[], PetscBool *good) {
+static PetscErrorCode AddWeights(Patterns s, PetscInt n, PetscInt points) {
+  PatternWeights *w;
+  PetscFunctionBeginUser;
+  PetscCall(PetscRealloc((size_t)(s->kinds + 1) * sizeof(PatternWeights), &s->weights));
+  w = &s->weights[s->kinds++];
+  *w = (PatternWeights){.n = n, .points = points};
+  PetscCall(PetscMalloc1(n * points, &w->to_markers));
+  PetscCall(PetscMalloc1(n * points, &w->to_points));
+  for (PetscInt i = 0; i < points; i++)
+    for (PetscInt k = 0; k < n; k++) {
+      const PetscReal t = 2 * PETSC_PI * ((PetscReal)k / (PetscReal)n - (PetscReal)i / (PetscReal)points);
+      w->to_markers[i * n + k] = TrigonometricCardinal(points, t);
+      w->to_points[i * n + k] = TrigonometricCardinal(n, -t);
+    }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The weights of n markers and so many points; those of an earlier pattern where there are. */
+static PetscErrorCode FindWeights(Patterns s, PetscInt n, PetscInt points, PetscInt *which) {
+  PetscFunctionBeginUser;
+  for (*which = 0; *which < s->kinds; (*which)++)
+    if (s->weights[*which].n == n && s->weights[*which].points == points) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(AddWeights(s, n, points));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* F = Dm^T sigma + (c_b ds/a0) D4 V of an answer (V, sigma). */
+static void Forces(Patterns s, const Pattern *q, const PetscReal tau[], const PetscReal V[], PetscReal F[]) {
+  const Membrane m = s->coupling->membrane;
+  const PetscInt n = LayoutCount(m->layout, q->like);
+  PetscReal *pull = s->X;
+  for (PetscInt k = 0; k < 2 * n; k++) pull[k] = V[2 * n + k / 2] * tau[k];
+  (void)PetscArrayzero(F, 2 * n);
+  MembraneEdgesTranspose(m, q->like, 1, pull, F);
+  if (m->bending > 0) MembraneVesicleBending(m, q->like, m->bending / s->a0, V, F);
+}
+
+/* The coarse parts of a pattern: the points of the curve through its markers, weights, self. */
+static PetscErrorCode MakeCoarse(Patterns s, Pattern *q) {
+  const PetscInt n = LayoutCount(s->coupling->membrane->layout, q->like),
+                 points = LayoutCount(s->coarse->layout, q->like);
+  const PetscReal h2 = PetscSqr(s->coarse->fluid->grid->h);
+  PetscFunctionBeginUser;
+  PetscCall(FindWeights(s, n, points, &q->weights));
+  PetscCall(PetscCalloc1(4 * points * points, &q->self));
+  PetscCall(PetscCalloc1(2 * points, &q->points));
+  for (PetscInt i = 0; i < points; i++)
+    for (PetscInt k = 0; k < 2 * n; k++)
+      q->points[2 * i + k % 2] += s->weights[q->weights].to_points[i * n + k / 2] * q->X[k];
+  AddMean(s->coarse->table, 1 / h2, points, q->points, q->self);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The inverse and its forces: the columns are the answers V, sigma to those of the identity. */
+static PetscErrorCode Store(Patterns s, Pattern *q, const PetscReal tau[], const PetscReal V[],
+                            const PetscReal sigma[]) {
+  const PetscInt n = LayoutCount(s->coupling->membrane->layout, q->like), all = 3 * n;
+  PetscReal *answer, *F;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(all, &answer, 2 * n, &F));
+  PetscCall(PetscMalloc1(PanelsSize(all, all), &q->inverse));
+  PetscCall(PetscMalloc1(PanelsSize(2 * n, all), &q->forces));
+  for (PetscInt j = 0; j < all; j++) {
+    PetscCall(PetscArraycpy(answer, V + j * 2 * n, 2 * n));
+    PetscCall(PetscArraycpy(answer + 2 * n, sigma + j * n, n));
+    Forces(s, q, tau, answer, F);
+    PanelsSetColumn(all, all, j, answer, q->inverse);
+    PanelsSetColumn(2 * n, all, j, F, q->forces);
+  }
+  PetscCall(PetscFree2(answer, F));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode PatternMake(Patterns s, Pattern *q, PetscBool *good) {
   const Membrane m = s->coupling->membrane;
   const PetscInt n = LayoutCount(m->layout, q->like), all = 3 * n;
   const PetscReal h2 = PetscSqr(s->coupling->fluid->grid->h);
-  PetscReal *M, *motion, *U, *sigma;
+  PetscReal *M, *motion, *V, *sigma;
   DenseBlock block;
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(4 * n * n, &M));
-  PetscCall(PetscCalloc2(2 * n * all, &U, n * all, &sigma));
+  PetscCall(PetscCalloc2(2 * n * all, &V, n * all, &sigma));
   PetscCall(DenseBlockCreate(m->layout, q->like, q->like + 1, &block));
   PetscCall(Assemble(s, q, M));
   PetscCall(Motion(s, q, &motion));
   MembraneVesicleTangents(m, q->like, q->X, block.tau);
   PetscCall(DenseBlockFactor(m, h2, &block, s->a0, &q->treading, M, motion, good));
   PetscCall(PetscFree(motion));
-  for (PetscInt j = 0; j < 2 * n; j++) U[j * 2 * n + j] = 1;
+  for (PetscInt j = 0; j < 2 * n; j++) V[j * 2 * n + j] = 1;
   for (PetscInt j = 0; j < n; j++) sigma[(2 * n + j) * n + j] = 1;
-  if (*good) PetscCall(DenseBlockSolve(m, h2, &block, all, U, sigma));
-  for (PetscInt j = 0; j < all; j++) {
-    PetscCall(PetscArraycpy(inverse + j * 5 * n, U + j * 2 * n, 2 * n));
-    PetscCall(PetscArraycpy(inverse + j * 5 * n + 2 * n, sigma + j * n, n));
-  }
+  if (*good) PetscCall(DenseBlockSolve(m, h2, &block, all, V, sigma));
+  PetscCall(Store(s, q, block.tau, V, sigma));
+  if (s->coarse) PetscCall(MakeCoarse(s, q));
   PetscCall(DenseBlockDestroy(&block));
   PetscCall(PetscFree(M));
-  PetscCall(PetscFree2(U, sigma));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* [points][n]: trigonometric interpolation from the coarse points to the markers. */
-static void Interpolation(PetscInt points, PetscInt n, PetscReal weight[]) {
-  for (PetscInt i = 0; i < points; i++)
-    for (PetscInt k = 0; k < n; k++)
-      weight[i * n + k] = TrigonometricCardinal(
-          points, 2 * PETSC_PI * ((PetscReal)k / (PetscReal)n - (PetscReal)i / (PetscReal)points));
-}
-
-/* F = Dm^T sigma + (c_b ds/a0) D4 V below each column (V, sigma) of the inverse. */
-static void Forces(Patterns s, const Pattern *q, const PetscReal tau[]) {
-  const Membrane m = s->coupling->membrane;
-  const PetscInt n = LayoutCount(m->layout, q->like);
-  PetscReal *pull = s->X;
-  for (PetscInt j = 0; j < 3 * n; j++) {
-    PetscReal *V = q->inverse + j * 5 * n, *sigma = V + 2 * n, *F = V + 3 * n;
-    for (PetscInt k = 0; k < 2 * n; k++) pull[k] = sigma[k / 2] * tau[k];
-    (void)PetscArrayzero(F, 2 * n);
-    MembraneEdgesTranspose(m, q->like, 1, pull, F);
-    if (m->bending > 0) MembraneVesicleBending(m, q->like, m->bending / s->a0, V, F);
-  }
-}
-
-/* The curve through n markers X at the labels of the coarse points. */
-static void Points(PetscInt n, const PetscReal X[], PetscInt points, PetscReal Y[]) {
-  (void)PetscArrayzero(Y, 2 * points);
-  for (PetscInt i = 0; i < points; i++)
-    for (PetscInt k = 0; k < n; k++) {
-      const PetscReal t = 2 * PETSC_PI * ((PetscReal)i / (PetscReal)points - (PetscReal)k / (PetscReal)n);
-      const PetscReal weight = TrigonometricCardinal(n, t);
-      for (int c = 0; c < 2; c++) Y[2 * i + c] += weight * X[2 * k + c];
-    }
-}
-
-/* The coarse parts of a pattern: weight, self, points. */
-static PetscErrorCode MakeCoarse(Patterns s, Pattern *q) {
-  const PetscInt n = LayoutCount(s->coupling->membrane->layout, q->like),
-                 points = LayoutCount(s->coarse->layout, q->like);
-  const PetscReal h2 = PetscSqr(s->coarse->fluid->grid->h);
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(n * points, &q->weight));
-  PetscCall(PetscCalloc1(4 * points * points, &q->self));
-  PetscCall(PetscMalloc1(2 * points, &q->points));
-  Interpolation(points, n, q->weight);
-  Points(n, q->X, points, q->points);
-  AddMean(s->coarse->table, 1 / h2, points, q->points, q->self);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode PatternMake(Patterns s, Pattern *q, PetscBool *good) {
-  const Membrane m = s->coupling->membrane;
-  const PetscInt n = LayoutCount(m->layout, q->like);
-  PetscReal *tau;
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(15 * n * n, &q->inverse));
-  PetscCall(PetscMalloc1(2 * n, &tau));
-  PetscCall(Invert(s, q, q->inverse, good));
-  MembraneVesicleTangents(m, q->like, q->X, tau);
-  Forces(s, q, tau);
-  if (s->coarse) PetscCall(MakeCoarse(s, q));
-  PetscCall(PetscFree(tau));
+  PetscCall(PetscFree2(V, sigma));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -2,6 +2,6 @@
 #pragma once
 #include "coupling/patterns.h"
 
-/* PatternMake - inverse, and with a coarse grid self, weight and points, for the patterns' a0 and tables. good is false
-   when a matrix is singular. Not collective. */
+/* PatternMake - inverse, forces, and with a coarse grid self, weight and points, for the patterns' a0 and tables. good
+   is false when a matrix is singular. Not collective. */
 PETSC_EXTERN PetscErrorCode PatternMake(Patterns patterns, Pattern *pattern, PetscBool *good);

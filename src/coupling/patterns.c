@@ -1,5 +1,6 @@
 #include "coupling/patterns.h"
 #include "base/agree.h"
+#include "coupling/panels.h"
 #include "coupling/patternapply.h"
 #include "coupling/patterncross.h"
 #include "coupling/patternmake.h"
@@ -13,7 +14,7 @@ static PetscErrorCode CreateWork(Patterns s) {
   PetscFunctionBeginUser;
   for (PetscInt v = 0; v < l->bodies; v++) most = PetscMax(most, LayoutCount(l, v));
   PetscCall(PetscMalloc4(l->bodies, &s->of, l->end - l->own, &s->order, l->end - l->own, &s->pose, 2 * most, &s->X));
-  PetscCall(PetscMalloc3(3 * l->n, &s->from, 5 * l->n, &s->to, 2 * l->n, &s->force));
+  PetscCall(PetscMalloc3(3 * l->n, &s->from, 3 * l->n + PANEL_ROWS * (l->end - l->own), &s->to, 2 * l->n, &s->force));
   for (PetscInt v = 0; v < l->bodies; v++) s->of[v] = -1;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -34,8 +35,8 @@ PetscErrorCode PatternsCreate(const FluidSpec *spec, Coupling c, Patterns *out) 
 static PetscErrorCode FreeMatrices(Pattern *q) {
   PetscFunctionBeginUser;
   PetscCall(PetscFree(q->inverse));
+  PetscCall(PetscFree(q->forces));
   PetscCall(PetscFree(q->self));
-  PetscCall(PetscFree(q->weight));
   PetscCall(PetscFree(q->points));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -53,6 +54,11 @@ PetscErrorCode PatternsDestroy(Patterns *patterns) {
   if (!s) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt k = 0; k < s->count; k++) PetscCall(FreePattern(&s->pattern[k]));
   PetscCall(PetscFree(s->pattern));
+  for (PetscInt k = 0; k < s->kinds; k++) {
+    PetscCall(PetscFree(s->weights[k].to_markers));
+    PetscCall(PetscFree(s->weights[k].to_points));
+  }
+  PetscCall(PetscFree(s->weights));
   PetscCall(PatternCrossDestroy(&s->cross));
   PetscCall(CoarseDestroy(&s->coarse));
   PetscCall(PetscFree4(s->of, s->order, s->pose, s->X));
@@ -71,40 +77,50 @@ static PetscBool Alike(Coupling c, PetscInt v, PetscInt w) {
              : PETSC_FALSE;
 }
 
-/* How far a pattern's matrices are from those of own vesicle v, whose centred markers are s->X: its curve, part of R0,
-   and its label speed, in the mode in which that counts most beside the I and the bending of N, 1 + c_b m^3/(4 nu R0^3
-   a0). */
-static PetscReal Distance(Patterns s, PetscInt v, const Pattern *q, Pose *pose) {
-  const Coupling c = s->coupling;
+/* What of a pattern's distance is due to its label speed, in the mode in which that counts most beside the I and the
+   bending of N, 1 + c_b m^3/(4 nu R0^3 a0). */
+static PetscReal TreadingDistance(Coupling c, PetscInt v, const Pattern *q) {
   const Membrane m = c->membrane;
-  const PetscInt n = LayoutCount(m->layout, v);
   const PetscReal R0 = m->L0[v] / (2 * PETSC_PI), a0 = c->fluid->a0;
   const PetscReal stiffness = m->part[v] * m->bending / (4 * c->fluid->nu * R0 * R0 * R0 * a0);
   PetscReal most = 0;
-  if (!Alike(c, v, q->like)) return PETSC_MAX_REAL;
-  *pose = PoseFit(n, s->X, q->X);
-  for (PetscInt k = 1; 2 * k <= n; k++) {
+  for (PetscInt k = 1; 2 * k <= LayoutCount(m->layout, v); k++) {
     const PetscReal mode = (PetscReal)k;
     most = PetscMax(most, mode / (1 + stiffness * mode * mode * mode));
   }
-  return pose->distance / R0 + most * PetscAbsReal(c->treading[v] - q->treading) / a0;
+  return most * PetscAbsReal(c->treading[v] - q->treading) / a0;
+}
+
+/* How far a pattern's matrices are from those of own vesicle v, whose centred markers are s->X: its curve, part of R0,
+   and its label speed. Where that is more than `limit` (what no pose can mend shows most of them) it may be any larger
+   number. */
+static PetscReal Distance(Patterns s, PetscInt v, const Pattern *q, const PetscReal size[], PetscReal limit,
+                          Pose *pose) {
+  const Membrane m = s->coupling->membrane;
+  const PetscReal R0 = m->L0[v] / (2 * PETSC_PI);
+  if (!Alike(s->coupling, v, q->like)) return PETSC_MAX_REAL;
+  const PetscReal treading = TreadingDistance(s->coupling, v, q);
+  if (PoseLeast(size, q->size) / R0 + treading > limit) return PETSC_MAX_REAL;
+  *pose = PoseFit(LayoutCount(m->layout, v), s->X, q->X);
+  return pose->distance / R0 + treading;
 }
 
 /* The pattern that own vesicle v takes from here on: that of before while it is near enough, else the nearest of those
    from `first` on; false when it needs a new one. */
 static PetscBool Choose(Patterns s, PetscInt v, PetscInt first) {
   const Layout l = s->coupling->membrane->layout;
-  PetscReal least = TOLERANCE;
-  Pose pose;
+  PetscReal least = TOLERANCE, size[POSE_SIZES];
+  Pose *own = &s->pose[v - l->own], pose;
   PoseCentred(LayoutCount(l, v), s->coupling->markers->X + 2 * l->start[v], s->X);
-  if (s->of[v] >= 0 && Distance(s, v, &s->pattern[s->of[v]], &s->pose[v - l->own]) <= least) return PETSC_TRUE;
+  PoseSizes(LayoutCount(l, v), s->X, size);
+  if (s->of[v] >= 0 && Distance(s, v, &s->pattern[s->of[v]], size, least, own) <= least) return PETSC_TRUE;
   s->of[v] = -1;
   for (PetscInt k = first; k < s->count; k++) {
-    const PetscReal distance = Distance(s, v, &s->pattern[k], &pose);
+    const PetscReal distance = Distance(s, v, &s->pattern[k], size, least, &pose);
     if (distance > least) continue;
     least = distance;
     s->of[v] = k;
-    s->pose[v - l->own] = pose;
+    *own = pose;
   }
   return s->of[v] >= 0 ? PETSC_TRUE : PETSC_FALSE;
 }
@@ -121,6 +137,7 @@ static PetscErrorCode Add(Patterns s, PetscInt like, PetscReal treading, const P
   *q = (Pattern){.like = like, .treading = treading};
   PetscCall(PetscMalloc1(2 * LayoutCount(m->layout, like), &q->X));
   PetscCall(PetscArraycpy(q->X, X, 2 * LayoutCount(m->layout, like)));
+  PoseSizes(LayoutCount(m->layout, like), X, q->size);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -223,12 +240,11 @@ PetscErrorCode PatternsSolve(Patterns s, PetscScalar U[], PetscScalar sigma[]) {
   const PetscScalar *a;
   Vec W;
   PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < s->count; k++)
-    PetscCall(PatternSolveAlone(s, &s->pattern[k], U, sigma, s->cross ? s->force : NULL));
+  for (PetscInt k = 0; k < s->count; k++) PatternSolveAlone(s, &s->pattern[k], U, sigma, s->cross ? s->force : NULL);
   if (!s->cross) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PatternCrossSolve(s->cross, s->force, &W));
   PetscCall(VecGetArrayRead(W, &a));
-  for (PetscInt k = 0; k < s->count; k++) PetscCall(PatternAddAnswer(s, &s->pattern[k], a, U, sigma));
+  for (PetscInt k = 0; k < s->count; k++) PatternAddAnswer(s, &s->pattern[k], a, U, sigma);
   PetscCall(VecRestoreArrayRead(W, &a));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -9,17 +9,25 @@
 #include "coupling/coupling.h"
 #include "coupling/pose.h"
 
-/* A shape: its curve, and on ranks that need them the matrices of its dense problem, columns contiguous. */
+/* A shape: its curve, and on ranks that need them the matrices of its dense problem. */
 typedef struct {
-  PetscInt like;       /* vesicle whose markers' number and spacing it has */
-  PetscReal treading;  /* label speed (1/time) */
-  PetscReal *X;        /* [2n] centred */
+  PetscInt like;      /* vesicle whose markers' number and spacing it has */
+  PetscReal treading; /* label speed (1/time) */
+  PetscReal *X;       /* [2n] centred */
+  PetscReal size[POSE_SIZES];
   PetscInt begin, end; /* own vesicles that take it: a range of the order */
-  PetscReal *inverse;  /* [3n][5n]: (r_V, r_s) to (V, sigma) and their forces F; NULL: not made */
+  PetscReal *inverse;  /* panels (panels.h), 3n x 3n: (r_V, r_s) to (V, sigma); NULL: not made */
+  PetscReal *forces;   /* 2n x 3n: to their forces F */
   PetscReal *self;     /* [2q][2q]: forces at q coarse points to what they do to the vesicle itself there, times -1 */
-  PetscReal *weight;   /* [q][n] of the interpolation from the points to the markers */
+  PetscInt weights;    /* which */
   PetscReal *points;   /* [2q] where they are */
 } Pattern;
+
+/* Trigonometric interpolation between n markers and q coarse points, [q][n] each. */
+typedef struct {
+  PetscInt n, points;
+  PetscReal *to_markers, *to_points;
+} PatternWeights;
 
 typedef struct _p_PatternCross *PatternCross; /* patterncross.h */
 typedef struct _p_Patterns *Patterns;
@@ -29,11 +37,13 @@ struct _p_Patterns {
   PetscReal a0;      /* that the matrices are for; 0: none yet */
   PetscInt count, room;
   Pattern *pattern;
+  PatternWeights *weights; /* one for each n and q */
+  PetscInt kinds;
   PetscInt *of;         /* [vesicles] pattern of each, -1: none yet */
   PetscInt *order;      /* [own vesicles] by pattern */
   Pose *pose;           /* [own vesicles] in its pattern's frame */
   PetscReal *X;         /* [2 most markers of a vesicle] work */
-  PetscReal *from, *to; /* [3n], [5n] of own vesicles: work */
+  PetscReal *from, *to; /* columns of own vesicles: work */
   PetscScalar *force;   /* [2n] of own vesicles: work */
   PatternCross cross;   /* NULL without coarse grid */
 };

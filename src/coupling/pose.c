@@ -8,6 +8,32 @@ void PoseCentred(PetscInt n, const PetscReal X[], PetscReal Y[]) {
     for (int c = 0; c < 2; c++) Y[2 * k + c] = X[2 * k + c] - mean[c];
 }
 
+void PoseSizes(PetscInt n, const PetscReal X[], PetscReal size[POSE_SIZES]) {
+  PetscReal rest = 0;
+  for (PetscInt k = 0; k < 2 * n; k++) rest += X[k] * X[k] / (PetscReal)n;
+  for (int q = 0; q < POSE_SIZES - 1; q++) {
+    const PetscReal angle = (q % 2 ? 2 : -2) * PETSC_PI * (q / 2 + 1) / (PetscReal)n, c = PetscCosReal(angle),
+                    s = PetscSinReal(angle);
+    PetscReal turn[2] = {1, 0}, a[2] = {0, 0};
+    for (PetscInt k = 0; k < n; k++) {
+      const PetscReal next = c * turn[0] - s * turn[1];
+      a[0] += (turn[0] * X[2 * k] - turn[1] * X[2 * k + 1]) / (PetscReal)n;
+      a[1] += (turn[1] * X[2 * k] + turn[0] * X[2 * k + 1]) / (PetscReal)n;
+      turn[1] = s * turn[0] + c * turn[1];
+      turn[0] = next;
+    }
+    size[q] = PetscSqrtReal(a[0] * a[0] + a[1] * a[1]);
+    rest -= size[q] * size[q];
+  }
+  size[POSE_SIZES - 1] = PetscSqrtReal(PetscMax(rest, 0));
+}
+
+PetscReal PoseLeast(const PetscReal a[POSE_SIZES], const PetscReal b[POSE_SIZES]) {
+  PetscReal sum = 0;
+  for (int q = 0; q < POSE_SIZES; q++) sum += PetscSqr(a[q] - b[q]);
+  return PetscSqrtReal(sum);
+}
+
 /* SUM_k conj(y_k) x_k: real, imaginary. */
 static inline void AddProduct(PetscInt n, const PetscReal X[], const PetscReal Y[], PetscReal c[2]) {
   PetscReal xx = 0, xy = 0, yx = 0, yy = 0;

@@ -11,6 +11,13 @@ typedef struct {
 /* PoseCentred - y = X less the mean of its n markers: [2n], interlaced x, y. Not collective. */
 PETSC_EXTERN void PoseCentred(PetscInt n, const PetscReal X[], PetscReal Y[]);
 
+/* PoseSizes - of a centred curve what no turn and no shift of labels changes: |a_m| of the modes a_m = (1/n) SUM x_k
+   e^{-i m k 2 pi/n}, m = 1, -1, 2, -2, .., and the root of the sum of squares of all others. PoseLeast - of two curves'
+   sizes: the distance of PoseFit is not less. Not collective. */
+#define POSE_SIZES 9
+PETSC_EXTERN void PoseSizes(PetscInt n, const PetscReal X[], PetscReal size[POSE_SIZES]);
+PETSC_EXTERN PetscReal PoseLeast(const PetscReal a[POSE_SIZES], const PetscReal b[POSE_SIZES]);
+
 /* PoseFit - of the centred curve X to the centred curve Y, n markers each: in complex numbers the j with the largest
    |c_j|, c_j = SUM_k conj(y_k) x_{k+j}, and e^{i theta} = c_j/|c_j|, which leave the least SUM |x_{k+j} - e^{i theta}
    y_k|^2. Not collective. */
