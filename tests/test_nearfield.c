@@ -345,6 +345,48 @@ static PetscErrorCode CheckReach(void) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Eighteen vesicles, from one number of which on blocks are in single precision: pairs of different ones up to the
+   reach of sums against these, in blocks of both precisions. */
+static PetscErrorCode CheckMany(const OffsetTable *t) {
+  TestWorld w;
+  PetscReal worst[2] = {0, 0}, C[4], *all;
+  PetscInt pairs[2] = {0, 0};
+  PetscFunctionBeginUser;
+  PetscCall(TestWorldCreate(EXACT PERIODIC
+                            "-scheme_type coupled -domain_cells 192,96 -domain_box 0,6,0,3 -vesicle_count 18 "
+                            "-vesicle_packing .3 -vesicle_packing_seed 3 -vesicle_reduced_area .8 -vesicle_markers 35",
+                            &w));
+  const NearField f = w.coupling->near;
+  const PetscReal h = w.fluid->grid->h, *X = w.coupling->markers->X;
+  const Layout l = w.layout;
+  const PetscInt N = 2 * l->M;
+  PetscCall(PetscCalloc1(N * N, &all));
+  PetscCall(NearFieldAdd(f, 1, PETSC_TRUE, 0, l->M, all));
+  for (PetscInt b = 0; b < f->blocks; b++) {
+    const NearBlock *block = &f->block[b];
+    const PetscInt v = block->row, u = block->column;
+    if (v == u || block->shift[0] != 0 || block->shift[1] != 0 || Gap(&w, v, u) < 1.5 * w.membrane->ds[v]) continue;
+    for (PetscInt i = l->start[v]; i < l->start[v + 1]; i++)
+      for (PetscInt j = l->start[u]; j < l->start[u + 1]; j++) {
+        const PetscReal d[2] = {X[2 * i] - X[2 * j], X[2 * i + 1] - X[2 * j + 1]}, *at = all + 2 * j * N + 2 * i;
+        const PetscReal found[4] = {at[0], at[N + 1], at[N], at[1]};
+        if (d[0] * d[0] + d[1] * d[1] > PetscSqr(f->far[NEAR_TWO].reach * h)) continue;
+        BySums(t, f, i, j, d, C);
+        pairs[block->single]++;
+        for (int c = 0; c < 4; c++)
+          worst[block->single] = PetscMax(worst[block->single], PetscAbsReal(found[c] - C[c]) * f->nu);
+      }
+  }
+  PetscCall(PetscFree(all));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, worst, 2, MPIU_REAL, MPI_MAX, PETSC_COMM_WORLD));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, pairs, 2, MPIU_INT, MPI_SUM, PETSC_COMM_WORLD));
+  CHECK(worst[0] < 1e-12 && worst[1] < 1e-9 && pairs[0] > 50 && pairs[1] > 50,
+        "18 vesicles: %d pairs in double precision to %.1e, %d in single precision to %.1e", (int)pairs[0], worst[0],
+        (int)pairs[1], worst[1]);
+  PetscCall(TestWorldDestroy(&w));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode Facts(void) {
   static const char *const kernels[] = {"cbs43", "cbs54", "cbs65", "ib6"};
   OffsetTable table;
@@ -353,6 +395,7 @@ static PetscErrorCode Facts(void) {
   PetscCall(CheckTable(&table));
   PetscCall(CheckPeriodicGrid(&table));
   PetscCall(CheckReach());
+  PetscCall(CheckMany(&table));
   for (int k = 0; k < 4; k++) {
     PetscCall(CheckClosedForm(&table, kernels[k], k ? 0.006 : 0.2));
     PetscCall(CheckSymmetry("two, walls", TWO_WALLS, kernels[k]));

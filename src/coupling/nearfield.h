@@ -18,7 +18,8 @@
 typedef struct {
   PetscInt row, column; /* vesicles */
   PetscReal shift[2];
-  size_t at; /* in `value` */
+  PetscBool single; /* in single precision */
+  size_t at;        /* in `value`, or `single` */
 } NearBlock;
 
 /* An image of the block's column so near to its row that both need finer points. */
@@ -33,6 +34,7 @@ struct _p_NearField {
   Membrane membrane; /* borrowed */
   PetscReal nu;
   PetscBool free; /* unbounded fluid: C = S */
+  PetscBool many; /* more than NEAR_MANY vesicles: distant pairs are as exact as the range, and no more */
   OffsetTable lattice;
   NearImage image;        /* what the walls add to each pair */
   NearFar far[2];         /* distant pairs of one vesicle, of two */
@@ -43,8 +45,9 @@ struct _p_NearField {
   NearBlock *block;
   NearClose *close;
   PetscReal *value;
+  float *single;
   PetscInt blocks, block_room, closes, close_room; /* in use, and made */
-  size_t values, value_room;
+  size_t values, value_room, singles, single_room;
   PetscBool crossed;     /* whether any rank has a pair with another rank's marker */
   PetscScalar *force;    /* [2M] work */
   PetscScalar *velocity; /* [2n] work */
