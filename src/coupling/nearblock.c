@@ -187,9 +187,9 @@ static void Write(NearField f, const Chunk *c, size_t at, PetscInt stride) {
   Interlace(c, row);
   for (int dir = 0; dir < 2; dir++, at += stride)
     if (c->block->single)
-      for (PetscInt q = 0; q < 2 * c->n; q++) f->single[at + q] = (float)row[dir][q];
+      for (PetscInt q = 0; q < 2 * c->n; q++) f->store.single[at + q] = (float)row[dir][q];
     else
-      for (PetscInt q = 0; q < 2 * c->n; q++) f->value[at + q] = row[dir][q];
+      for (PetscInt q = 0; q < 2 * c->n; q++) f->store.value[at + q] = row[dir][q];
 }
 
 static void FillRow(NearField f, const NearRow *r, Chunk *c) {
@@ -206,9 +206,9 @@ static void FillRow(NearField f, const NearRow *r, Chunk *c) {
     for (int dir = 0; dir < 2; dir++) {
       const size_t at = r->at + dir * r->stride + k;
       if (c->block->single)
-        f->single[at] = 0;
+        f->store.single[at] = 0;
       else
-        f->value[at] = 0;
+        f->store.value[at] = 0;
     }
 }
 
@@ -222,7 +222,7 @@ static PetscErrorCode AddSelf(NearField f, const NearBlock *b) {
   PetscCall(PetscCalloc1(2 * r.count, &T));
   SpectralDerivative(m->spectral[b->row], 1, 1, f->markers->X + 2 * first, T);
   do {
-    PetscReal *x = f->value + r.at, *y = x + r.stride;
+    PetscReal *x = f->store.value + r.at, *y = x + r.stride;
     for (PetscInt k = 0; k < r.count; k++) {
       const PetscReal part = k ? 1 : 0.5;
       SelfPart(f, b->row, k, T + 2 * (r.row - first), S);

@@ -16,7 +16,7 @@ static inline PetscBool NearBlockIsSelf(const NearBlock *b) {
 typedef struct {
   PetscInt row, column, count; /* marker; the first of the columns' markers, how many */
   PetscInt stride;             /* whole vectors, zeros behind the last marker */
-  size_t at;                   /* in `value`, or `single` */
+  size_t at;                   /* in the store's value, or single */
 } NearRow;
 
 /* NearBlockBegin - of a block's first marker; NearBlockNext - of the next one; false when there is none. */
@@ -39,13 +39,13 @@ static inline PetscBool NearBlockNext(Layout l, const NearBlock *b, NearRow *r) 
 
 /* NearValue - a block's value at this place. NearValueAdd - it += x. */
 static inline PetscReal NearValue(NearField f, const NearBlock *b, size_t at) {
-  return b->single ? f->single[at] : f->value[at];
+  return b->single ? f->store.single[at] : f->store.value[at];
 }
 static inline void NearValueAdd(NearField f, const NearBlock *b, size_t at, PetscReal x) {
   if (b->single)
-    f->single[at] = (float)(f->single[at] + x);
+    f->store.single[at] = (float)(f->store.single[at] + x);
   else
-    f->value[at] += x;
+    f->store.value[at] += x;
 }
 
 /* NearBlockFill - the values of the block at the present markers, close curves not yet refined (nearclose.h). Not

@@ -50,8 +50,8 @@ PetscErrorCode NearFieldDestroy(NearField *near) {
   if (!f) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscFree(f->block));
   PetscCall(PetscFree(f->close));
-  PetscCall(PetscFree(f->value));
-  PetscCall(PetscFree(f->single));
+  PetscCall(PetscFree(f->store.value));
+  PetscCall(PetscFree(f->store.single));
   for (PetscInt v = 0; v < f->membrane->layout->bodies; v++) PetscCall(PetscFree(f->kress[v]));
   PetscCall(PetscFree(f->kress));
   PetscCall(PetscFree2(f->stencil, f->bounds));
@@ -105,8 +105,8 @@ PetscErrorCode NearFieldPlace(NearField f) {
   PetscFunctionBeginUser;
   PetscCall(PetscLogEventBegin(f->place, 0, 0, 0, 0));
   PetscCall(NearPairsFind(f));
-  PetscCall(Room(f->values, sizeof(PetscReal), &f->value_room, (void **)&f->value));
-  PetscCall(Room(f->singles, sizeof(float), &f->single_room, (void **)&f->single));
+  PetscCall(Room(f->store.values, sizeof(PetscReal), &f->store.value_room, (void **)&f->store.value));
+  PetscCall(Room(f->store.singles, sizeof(float), &f->store.single_room, (void **)&f->store.single));
   if (!f->free) PetscCall(PlaceStencils(f));
   if (f->image) PetscCall(NearImagePlace(f->image, f->stencil));
   for (PetscInt k = 0; k < f->blocks; k++) {
@@ -176,9 +176,9 @@ PetscErrorCode NearFieldApply(NearField f, PetscReal alpha, const PetscScalar F[
   for (PetscInt k = 0; k < f->blocks; k++) {
     const NearBlock *b = &f->block[k];
     if (b->single)
-      ApplyBlock(f, b, PETSC_TRUE, f->single, alpha, f->force, f->velocity);
+      ApplyBlock(f, b, PETSC_TRUE, f->store.single, alpha, f->force, f->velocity);
     else
-      ApplyBlock(f, b, PETSC_FALSE, f->value, alpha, f->force, f->velocity);
+      ApplyBlock(f, b, PETSC_FALSE, f->store.value, alpha, f->force, f->velocity);
   }
   for (PetscInt k = 0; k < 2 * l->n; k++) U[k] += f->velocity[k];
   if (f->box) PetscCall(BoxPartApply(f->box, alpha, F, U));

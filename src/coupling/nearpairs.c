@@ -45,7 +45,7 @@ static PetscErrorCode Grow(PetscInt count, size_t size, PetscInt *room, void **a
 static PetscErrorCode AddBlock(NearField f, PetscInt v, PetscInt w, const PetscReal shift[2], PetscReal gap) {
   const Layout l = f->membrane->layout;
   const PetscBool single = f->many && !f->free && gap >= NEAR_SINGLE * f->markers->grid->h ? PETSC_TRUE : PETSC_FALSE;
-  size_t *values = single ? &f->singles : &f->values;
+  size_t *values = single ? &f->store.singles : &f->store.values;
   NearBlock *b;
   NearRow r;
   PetscFunctionBeginUser;
@@ -186,7 +186,7 @@ PetscErrorCode NearPairsFind(NearField f) {
   PetscInt k = 0;
   PetscFunctionBeginUser;
   f->blocks = f->closes = 0;
-  f->values = f->singles = 0;
+  f->store.values = f->store.singles = 0;
   FindBounds(f);
   PetscCall(FindCandidates(f, &c));
   qsort(c.pair, (size_t)c.count, sizeof(*c.pair), ByRow);
