@@ -51,7 +51,7 @@ static PetscErrorCode Create(const FluidSpec *spec, const char kernel[], const O
   PetscCall(WallsCreate(b->fluid, &b->walls));
   PetscCall(PlaceMarkers(b, kernel));
   b->near = (struct _p_NearField){.markers = b->markers, .nu = spec->nu, .lattice = *lattice, .stencil = b->stencil};
-  NearFarMake(b->markers->kernel, b->near.far);
+  NearFarMake(b->markers->kernel, PETSC_FALSE, b->near.far);
   PetscCall(NearImageCreate(b->markers, spec->nu, lattice, &b->image));
   PetscCall(NearImagePlace(b->image, b->stencil));
   PetscCall(DMCreateGlobalVector(b->fluid->grid->velocity, &b->force));

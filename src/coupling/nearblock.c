@@ -171,37 +171,45 @@ static void FillChunk(NearField f, Chunk *c) {
   }
 }
 
-/* The chunk's pairs, from the k-th of the row on. */
-static void Write(const Chunk *c, PetscInt k, PetscInt stride, PetscReal row[]) {
-  PetscReal *x = row + 2 * k, *y = x + stride;
+/* The chunk's pairs to rows[2][2n], its marker's x and y velocity. */
+static void Interlace(const Chunk *c, PetscReal *const row[2]) {
   const int xy = c->back ? 3 : 2, yx = 5 - xy;
-  PetscInt q = 0;
-  for (; q + LANES <= c->n; q += LANES) {
+  for (PetscInt q = 0; q < c->n; q += LANES) {
     const Lanes part = LanesAt(c->part + q);
-    LanesInterlace(part * LanesAt(c->C[0] + q), part * LanesAt(c->C[xy] + q), x + 2 * q);
-    LanesInterlace(part * LanesAt(c->C[yx] + q), part * LanesAt(c->C[1] + q), y + 2 * q);
+    LanesInterlace(part * LanesAt(c->C[0] + q), part * LanesAt(c->C[xy] + q), row[0] + 2 * q);
+    LanesInterlace(part * LanesAt(c->C[yx] + q), part * LanesAt(c->C[1] + q), row[1] + 2 * q);
   }
-  for (; q < c->n; q++) {
-    const PetscReal part = c->part[q];
-    x[2 * q] = part * c->C[0][q];
-    x[2 * q + 1] = part * c->C[xy][q];
-    y[2 * q] = part * c->C[yx][q];
-    y[2 * q + 1] = part * c->C[1][q];
-  }
+}
+
+/* The chunk's pairs to the block, from `at` on. */
+static void Write(NearField f, const Chunk *c, size_t at, PetscInt stride) {
+  PetscReal x[2 * CHUNK], y[2 * CHUNK], *row[2] = {x, y};
+  Interlace(c, row);
+  for (int dir = 0; dir < 2; dir++, at += stride)
+    if (c->block->single)
+      for (PetscInt q = 0; q < 2 * c->n; q++) f->store.single[at + q] = (float)row[dir][q];
+    else
+      for (PetscInt q = 0; q < 2 * c->n; q++) f->store.value[at + q] = row[dir][q];
 }
 
 static void FillRow(NearField f, const NearRow *r, Chunk *c) {
   const NearBounds *column = &f->bounds[c->block->column];
-  PetscReal *x = f->value + r->at, *y = x + r->stride;
   c->i = r->row;
   c->plain = f->image && NearImageIsFar(f->image, f->markers->X + 2 * r->row, column) ? PETSC_TRUE : PETSC_FALSE;
-  for (PetscInt k = 2 * r->count; k < r->stride; k++) x[k] = y[k] = 0;
   for (PetscInt k = 0; k < r->count; k += CHUNK) {
     c->j = r->column + k;
     c->n = PetscMin(CHUNK, r->count - k);
     FillChunk(f, c);
-    Write(c, k, r->stride, x);
+    Write(f, c, r->at + 2 * k, r->stride);
   }
+  for (PetscInt k = 2 * r->count; k < r->stride; k++) /* behind the last marker */
+    for (int dir = 0; dir < 2; dir++) {
+      const size_t at = r->at + dir * r->stride + k;
+      if (c->block->single)
+        f->store.single[at] = 0;
+      else
+        f->store.value[at] = 0;
+    }
 }
 
 /* A vesicle's own quadrature, to its block with itself. */
@@ -214,7 +222,7 @@ static PetscErrorCode AddSelf(NearField f, const NearBlock *b) {
   PetscCall(PetscCalloc1(2 * r.count, &T));
   SpectralDerivative(m->spectral[b->row], 1, 1, f->markers->X + 2 * first, T);
   do {
-    PetscReal *x = f->value + r.at, *y = x + r.stride;
+    PetscReal *x = f->store.value + r.at, *y = x + r.stride;
     for (PetscInt k = 0; k < r.count; k++) {
       const PetscReal part = k ? 1 : 0.5;
       SelfPart(f, b->row, k, T + 2 * (r.row - first), S);
@@ -233,14 +241,13 @@ void NearBlockAdd(NearField f, const NearBlock *b, PetscReal scale, PetscReal *c
   const PetscInt rows = LayoutCount(l, b->row);
   NearRow r = NearBlockBegin(l, b);
   do {
-    PetscReal *x = f->value + r.at, *y = x + r.stride;
     for (PetscInt k = 0; k < r.count; k++) {
       const PetscInt at = (r.column + k - l->start[b->column]) * rows + r.row - l->start[b->row];
       const PetscReal alpha = NearBlockIsSelf(b) && !k ? 0.5 * scale : scale;
-      x[2 * k] += alpha * part[0][at];
-      x[2 * k + 1] += alpha * part[2][at];
-      y[2 * k] += alpha * part[3][at];
-      y[2 * k + 1] += alpha * part[1][at];
+      for (int q = 0; q < 4; q++) {
+        static const int place[4] = {0, 2, 3, 1}; /* xx, xy of the x row, yx, yy of the y row */
+        NearValueAdd(f, b, r.at + q / 2 * r.stride + 2 * k + q % 2, alpha * part[place[q]][at]);
+      }
     }
   } while (NearBlockNext(l, b, &r));
 }

@@ -3,6 +3,8 @@
 #include "coupling/nearfield.h"
 
 #define NEAR_REACH 24        /* cells between two vesicles up to which they have a block */
+#define NEAR_MANY 16         /* vesicles: with more of them, */
+#define NEAR_SINGLE 4        /* cells between two from which on their block is in single precision */
 #define NEAR_IMAGE_REACH 300 /* cells between a vesicle and another one's image in a wall: beyond, none */
 
 /* NearBlockIsSelf - whether it is of a vesicle with itself, not with an image. */
@@ -14,7 +16,7 @@ static inline PetscBool NearBlockIsSelf(const NearBlock *b) {
 typedef struct {
   PetscInt row, column, count; /* marker; the first of the columns' markers, how many */
   PetscInt stride;             /* whole vectors, zeros behind the last marker */
-  size_t at;                   /* in `value` */
+  size_t at;                   /* in the store's value, or single */
 } NearRow;
 
 /* NearBlockBegin - of a block's first marker; NearBlockNext - of the next one; false when there is none. */
@@ -33,6 +35,17 @@ static inline PetscBool NearBlockNext(Layout l, const NearBlock *b, NearRow *r) 
     r->stride = NearStride(--r->count);
   }
   return PETSC_TRUE;
+}
+
+/* NearValue - a block's value at this place. NearValueAdd - it += x. */
+static inline PetscReal NearValue(NearField f, const NearBlock *b, size_t at) {
+  return b->single ? f->store.single[at] : f->store.value[at];
+}
+static inline void NearValueAdd(NearField f, const NearBlock *b, size_t at, PetscReal x) {
+  if (b->single)
+    f->store.single[at] = (float)(f->store.single[at] + x);
+  else
+    f->store.value[at] += x;
 }
 
 /* NearBlockFill - the values of the block at the present markers, close curves not yet refined (nearclose.h). Not

@@ -97,13 +97,14 @@ static void Fill(const PetscReal moment[2][TERMS], int orders, NearFar *far) {
   }
 }
 
-void NearFarMake(const Kernel *kernel, NearFar far[2]) {
+void NearFarMake(const Kernel *kernel, PetscBool many, NearFar far[2]) {
   const PetscBool third = HasThirdMoment(kernel->along) || HasThirdMoment(kernel->across) ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool all = many && !third ? PETSC_TRUE : PETSC_FALSE;
   PetscReal moment[2][TERMS];
   Moments(kernel->along, moment[0]);
   Moments(kernel->across, moment[1]);
-  far[NEAR_ONE] = (NearFar){.reach = 30};
+  far[NEAR_ONE] = (NearFar){.reach = all ? 12 : 30};
   far[NEAR_TWO] = (NearFar){.reach = third ? 16 : 10};
-  Fill(moment, 1, &far[NEAR_ONE]);
+  Fill(moment, all ? NEAR_FAR_ORDERS : 1, &far[NEAR_ONE]);
   Fill(moment, NEAR_FAR_ORDERS, &far[NEAR_TWO]);
 }

@@ -1,5 +1,5 @@
 /* C = S - L of distant markers in closed form: what smoothing by the kernel and dispersion by the lattice take from the
-   Stokeslet, to the order h^2/r^2 within one vesicle, h^6/r^6 between two (docs/method.md, Near field, Distant pairs).
+   Stokeslet, to the order h^2/r^2 or h^6/r^6 (docs/method.md, Near field, Distant pairs).
    With phi the angle of r, in cells, xx:      SUM_n p_n(1/r^2) cos n phi,     n = 2, 4 .. 14 yy:      the same with
    -p_n where n/2 is odd xy, yx:  SUM_n q_n(1/r^2) sin n phi,     n = 2, 6, 10, 14. */
 #pragma once
@@ -14,9 +14,10 @@ typedef struct {
   PetscReal reach; /* cells from which on it is taken */
 } NearFar;
 
-/* NearFarMake - of a kernel, for markers of one vesicle and for those of two. Not collective. */
+/* NearFarMake - of a kernel, for markers of one vesicle and for those of two, in runs of few or of many vesicles. Not
+   collective. */
 enum { NEAR_ONE, NEAR_TWO };
-PETSC_EXTERN void NearFarMake(const Kernel *kernel, NearFar far[2]);
+PETSC_EXTERN void NearFarMake(const Kernel *kernel, PetscBool many, NearFar far[2]);
 
 /* NearFarPairs - C of four pairs, (x, y) apart (cells), times scale: xx, yy, xy. Not collective. */
 static inline void NearFarPairs(const NearFar *f, PetscReal scale, Lanes x, Lanes y, Lanes C[3]) {

@@ -27,7 +27,8 @@ PetscErrorCode NearFieldCreate(Markers markers, Membrane m, PetscReal nu, NearFi
   f->membrane = m;
   f->nu = nu;
   f->free = markers->grid->free;
-  NearFarMake(markers->kernel, f->far);
+  f->many = l->bodies > NEAR_MANY ? PETSC_TRUE : PETSC_FALSE;
+  NearFarMake(markers->kernel, f->many, f->far);
   const PetscInt reach = (PetscInt)f->far[NEAR_ONE].reach + OFFSET_LAGS;
   if (!f->free) PetscCall(LatticeStokeslet(PetscMax(reach, IMAGE_SHIFT), &f->lattice));
   if (!f->free) PetscCall(NearImageCreate(markers, nu, &f->lattice, &f->image));
@@ -49,7 +50,8 @@ PetscErrorCode NearFieldDestroy(NearField *near) {
   if (!f) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscFree(f->block));
   PetscCall(PetscFree(f->close));
-  PetscCall(PetscFree(f->value));
+  PetscCall(PetscFree(f->store.value));
+  PetscCall(PetscFree(f->store.single));
   for (PetscInt v = 0; v < f->membrane->layout->bodies; v++) PetscCall(PetscFree(f->kress[v]));
   PetscCall(PetscFree(f->kress));
   PetscCall(PetscFree2(f->stencil, f->bounds));
@@ -87,17 +89,24 @@ static PetscErrorCode PlaceStencils(NearField f) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Room for so many values of this size, and a quarter more where it has to be made anew. */
+static PetscErrorCode Room(size_t count, size_t size, size_t *room, void **values) {
+  PetscFunctionBeginUser;
+  if (count <= *room) PetscFunctionReturn(PETSC_SUCCESS);
+  *room = count + count / 4;
+  PetscCall(PetscFree(*values));
+  PetscCall(PetscMalloc(*room * size, values));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode NearFieldPlace(NearField f) {
   const Layout l = f->membrane->layout;
   PetscBool crossed = PETSC_FALSE;
   PetscFunctionBeginUser;
   PetscCall(PetscLogEventBegin(f->place, 0, 0, 0, 0));
   PetscCall(NearPairsFind(f));
-  if (f->values > f->value_room) {
-    f->value_room = f->values + f->values / 4;
-    PetscCall(PetscFree(f->value));
-    PetscCall(PetscMalloc1(f->value_room, &f->value));
-  }
+  PetscCall(Room(f->store.values, sizeof(PetscReal), &f->store.value_room, (void **)&f->store.value));
+  PetscCall(Room(f->store.singles, sizeof(float), &f->store.single_room, (void **)&f->store.single));
   if (!f->free) PetscCall(PlaceStencils(f));
   if (f->image) PetscCall(NearImagePlace(f->image, f->stencil));
   for (PetscInt k = 0; k < f->blocks; k++) {
@@ -113,34 +122,46 @@ PetscErrorCode NearFieldPlace(NearField f) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A row's part of C F to its marker's velocity and, with `both`, to velocity[2 count] of the columns' markers; forces
-   from the row's and from the columns' on. */
-static void ApplyRow(const NearRow *r, const PetscReal value[], PetscReal alpha, PetscBool both,
-                     const PetscScalar row_force[2], const PetscScalar force[], PetscScalar row_velocity[2],
-                     PetscScalar velocity[]) {
-  const PetscReal *x = value + r->at, *y = x + r->stride, fx = alpha * row_force[0], fy = alpha * row_force[1];
-  Lanes ux = {0}, uy = {0};
+/* Four values from the k-th on. */
+static inline Lanes FourValues(const PetscBool single, const void *value, size_t k) {
+  const float *x = (const float *)value + k;
+  return single ? (Lanes){x[0], x[1], x[2], x[3]} : LanesAt((const PetscReal *)value + k);
+}
+
+/* The part of C F of one row, or of two at once, to its markers' velocity and, with `both`, to velocity[2 count] of the
+   columns' markers; forces from the rows' and from the columns' on. */
+static inline void ApplyRows(const int rows, const PetscBool single, const void *value, const NearRow *r,
+                             PetscReal alpha, PetscBool both, const PetscScalar row_force[], const PetscScalar force[],
+                             PetscScalar row_velocity[], PetscScalar velocity[]) {
+  Lanes u[4] = {{0}, {0}, {0}, {0}};
   for (PetscInt k = 0; k < r->stride; k += LANES) {
-    const Lanes F = LanesAt(force + k), cx = LanesAt(x + k), cy = LanesAt(y + k);
-    ux += cx * F;
-    uy += cy * F;
-    if (both) *(Lanes *)(velocity + k) += fx * cx + fy * cy;
+    const Lanes F = LanesAt(force + k);
+    Lanes back = {0};
+    for (int q = 0; q < 2 * rows; q++) {
+      const Lanes c = FourValues(single, value, r->at + q * r->stride + k);
+      u[q] += c * F;
+      back += (alpha * row_force[q]) * c;
+    }
+    if (both) *(Lanes *)(velocity + k) += back;
   }
-  row_velocity[0] += alpha * LanesSum(ux);
-  row_velocity[1] += alpha * LanesSum(uy);
+  for (int q = 0; q < 2 * rows; q++) row_velocity[q] += alpha * LanesSum(u[q]);
 }
 
 /* velocity[2n] += alpha C force[2M] of one block: both ways where both vesicles are own ones. */
-static void ApplyBlock(NearField f, const NearBlock *b, PetscReal alpha, const PetscScalar force[],
-                       PetscScalar velocity[]) {
+static inline void ApplyBlock(NearField f, const NearBlock *b, const PetscBool single, const void *value,
+                              PetscReal alpha, const PetscScalar force[], PetscScalar velocity[]) {
   const Layout l = f->membrane->layout;
   const PetscBool both = b->column >= l->own && b->column < l->end ? PETSC_TRUE : PETSC_FALSE;
+  PetscInt rows;
   NearRow r = NearBlockBegin(l, b);
   do {
-    PetscScalar *other = both ? velocity + 2 * (r.column - l->first) : NULL;
-    ApplyRow(&r, f->value, alpha, both, force + 2 * r.row, force + 2 * r.column, velocity + 2 * (r.row - l->first),
-             other);
-  } while (NearBlockNext(l, b, &r));
+    PetscScalar *other = both ? velocity + 2 * (r.column - l->first) : NULL, *own = velocity + 2 * (r.row - l->first);
+    rows = NearBlockIsSelf(b) || r.row + 2 > l->start[b->row + 1] ? 1 : 2;
+    if (rows == 2)
+      ApplyRows(2, single, value, &r, alpha, both, force + 2 * r.row, force + 2 * r.column, own, other);
+    else
+      ApplyRows(1, single, value, &r, alpha, both, force + 2 * r.row, force + 2 * r.column, own, other);
+  } while ((rows == 1 || NearBlockNext(l, b, &r)) && NearBlockNext(l, b, &r));
 }
 
 PetscErrorCode NearFieldApply(NearField f, PetscReal alpha, const PetscScalar F[], PetscScalar U[]) {
@@ -152,7 +173,13 @@ PetscErrorCode NearFieldApply(NearField f, PetscReal alpha, const PetscScalar F[
   else
     PetscCall(PetscArraycpy(f->force + 2 * l->first, F, 2 * l->n));
   PetscCall(PetscArrayzero(f->velocity, 2 * l->n + LANES));
-  for (PetscInt k = 0; k < f->blocks; k++) ApplyBlock(f, &f->block[k], alpha, f->force, f->velocity);
+  for (PetscInt k = 0; k < f->blocks; k++) {
+    const NearBlock *b = &f->block[k];
+    if (b->single)
+      ApplyBlock(f, b, PETSC_TRUE, f->store.single, alpha, f->force, f->velocity);
+    else
+      ApplyBlock(f, b, PETSC_FALSE, f->store.value, alpha, f->force, f->velocity);
+  }
   for (PetscInt k = 0; k < 2 * l->n; k++) U[k] += f->velocity[k];
   if (f->box) PetscCall(BoxPartApply(f->box, alpha, F, U));
   PetscCall(PetscLogEventEnd(f->apply, 0, 0, 0, 0));
@@ -168,7 +195,7 @@ static void AddBlock(NearField f, const NearBlock *b, PetscReal scale, PetscInt 
   do
     for (PetscInt k = 0; k < 2 * r.count; k++)
       for (int c = 0; c < 2; c++) {
-        const PetscReal value = scale * f->value[r.at + c * r.stride + k];
+        const PetscReal value = scale * NearValue(f, b, r.at + c * r.stride + k);
         const PetscInt i = 2 * (r.row - first) + c, j = 2 * (r.column - first) + k;
         out[j * 2 * n + i] += value;
         if (both) out[i * 2 * n + j] += value;

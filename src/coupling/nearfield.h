@@ -18,7 +18,8 @@
 typedef struct {
   PetscInt row, column; /* vesicles */
   PetscReal shift[2];
-  size_t at; /* in `value` */
+  PetscBool single; /* in single precision */
+  size_t at;        /* in the store's value, or single */
 } NearBlock;
 
 /* An image of the block's column so near to its row that both need finer points. */
@@ -27,12 +28,20 @@ typedef struct {
   PetscReal shift[2], gap; /* length */
 } NearClose;
 
+/* The blocks' values in double and in single precision: in use, and room. */
+typedef struct {
+  PetscReal *value;
+  float *single;
+  size_t values, value_room, singles, single_room;
+} NearStore;
+
 typedef struct _p_NearField *NearField;
 struct _p_NearField {
   Markers markers;   /* borrowed */
   Membrane membrane; /* borrowed */
   PetscReal nu;
   PetscBool free; /* unbounded fluid: C = S */
+  PetscBool many; /* more than NEAR_MANY vesicles: distant pairs are as exact as the range, and no more */
   OffsetTable lattice;
   NearImage image;        /* what the walls add to each pair */
   NearFar far[2];         /* distant pairs of one vesicle, of two */
@@ -42,13 +51,12 @@ struct _p_NearField {
   NearBounds *bounds;     /* [vesicles] */
   NearBlock *block;
   NearClose *close;
-  PetscReal *value;
+  NearStore store;
   PetscInt blocks, block_room, closes, close_room; /* in use, and made */
-  size_t values, value_room;
-  PetscBool crossed;     /* whether any rank has a pair with another rank's marker */
-  PetscScalar *force;    /* [2M] work */
-  PetscScalar *velocity; /* [2n] work */
-  BoxPart box;           /* NULL without */
+  PetscBool crossed;                               /* whether any rank has a pair with another rank's marker */
+  PetscScalar *force;                              /* [2M] work */
+  PetscScalar *velocity;                           /* [2n] work */
+  BoxPart box;                                     /* NULL without */
   PetscLogEvent place, apply;
 };
 

@@ -40,18 +40,21 @@ static PetscErrorCode Grow(PetscInt count, size_t size, PetscInt *room, void **a
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The block of own vesicle v and the image of w moved by shift, with room for its values. */
-static PetscErrorCode AddBlock(NearField f, PetscInt v, PetscInt w, const PetscReal shift[2]) {
+/* The block of own vesicle v and the image of w moved by shift, with room for its values. With many
+   vesicles values that are far from large are in single precision. */
+static PetscErrorCode AddBlock(NearField f, PetscInt v, PetscInt w, const PetscReal shift[2], PetscReal gap) {
   const Layout l = f->membrane->layout;
+  const PetscBool single = f->many && !f->free && gap >= NEAR_SINGLE * f->markers->grid->h ? PETSC_TRUE : PETSC_FALSE;
+  size_t *values = single ? &f->store.singles : &f->store.values;
   NearBlock *b;
   NearRow r;
   PetscFunctionBeginUser;
   PetscCall(Grow(f->blocks, sizeof(NearBlock), &f->block_room, (void **)&f->block));
   b = &f->block[f->blocks++];
-  *b = (NearBlock){.row = v, .column = w, .shift = {shift[0], shift[1]}, .at = f->values};
+  *b = (NearBlock){.row = v, .column = w, .shift = {shift[0], shift[1]}, .single = single, .at = *values};
   r = NearBlockBegin(l, b);
   while (NearBlockNext(l, b, &r)) continue;
-  f->values = r.at;
+  *values = r.at;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -127,7 +130,7 @@ static PetscErrorCode AddImages(NearField f, PetscInt v, PetscInt w) {
   PetscFunctionBeginUser;
   PetscCall(Images(f, v, w, image, &count));
   for (int k = 0; k < count; k++) {
-    if (!f->box || (!k && v != w)) PetscCall(AddBlock(f, v, w, image[k].shift));
+    if (!f->box || (!k && v != w)) PetscCall(AddBlock(f, v, w, image[k].shift, image[k].gap));
     if (image[k].close) PetscCall(AddClose(f, image[k].shift, image[k].gap));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -183,12 +186,12 @@ PetscErrorCode NearPairsFind(NearField f) {
   PetscInt k = 0;
   PetscFunctionBeginUser;
   f->blocks = f->closes = 0;
-  f->values = 0;
+  f->store.values = f->store.singles = 0;
   FindBounds(f);
   PetscCall(FindCandidates(f, &c));
   qsort(c.pair, (size_t)c.count, sizeof(*c.pair), ByRow);
   for (PetscInt v = l->own; v < l->end; v++) {
-    PetscCall(AddBlock(f, v, v, none));
+    PetscCall(AddBlock(f, v, v, none, 0));
     PetscCall(AddImages(f, v, v));
     for (; k < c.count && c.pair[k][0] == v; k++) PetscCall(AddImages(f, v, c.pair[k][1]));
   }
