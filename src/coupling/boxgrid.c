@@ -62,7 +62,8 @@ static PetscErrorCode Create(const FluidSpec *spec, const char kernel[], const B
   PetscCall(StokesCreate(b->fluid, &b->stokes));
   PetscCall(WallsCreate(b->fluid, &b->walls));
   PetscCall(PlaceMarkers(b, kernel));
-  b->near = (struct _p_NearField){.markers = b->markers, .nu = spec->nu, .lattice = lattice->stokeslet, .stencil = b->stencil};
+  b->near = (struct _p_NearField){
+      .markers = b->markers, .nu = spec->nu, .lattice = lattice->stokeslet, .stencil = b->stencil};
   NearFarMake(b->markers->kernel, b->near.far);
   if (lattice->dipoles) {
     PetscCall(DMCreateGlobalVector(b->fluid->grid->da[FIELD_P], &b->source));
@@ -94,8 +95,8 @@ static PetscErrorCode Destroy(BoxGrid *b) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* u of the force and the source on the grid; where the Stokes solve is a projection, with the wall forces that make it exact, found by
-   Richardson's iteration. */
+/* u of the force and the source on the grid; where the Stokes solve is a projection, with the wall forces that make it
+   exact, found by Richardson's iteration. */
 static PetscErrorCode Solve(BoxGrid *b) {
   const PetscInt n = b->walls->n;
   PetscReal first = 0;
@@ -150,8 +151,8 @@ static PetscBool IsSquare(const BoxAxis axis[2]) {
   return axis[0].wall == axis[1].wall && PetscAbsReal(x - y) < 1e-12 * x ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* W of the pair and of its mirror images between walls: a mirrored velocity or force changes its sign, of a tensor xy. In a
-   square also of that with x and y exchanged, of forces. */
+/* W of the pair and of its mirror images between walls: a mirrored velocity or force changes its sign, of a tensor xy.
+   In a square also of that with x and y exchanged, of forces. */
 static void AddEntry(const BoxAxis axis[2], PetscBool dipoles, int ci, int cj, const PetscInt a[2], const PetscInt s[2],
                      PetscReal value, PetscReal W[]) {
   const int parts = dipoles ? 3 : 2;
@@ -165,7 +166,10 @@ static void AddEntry(const BoxAxis axis[2], PetscBool dipoles, int ci, int cj, c
       const int turned = (ci ? my : mx) + (dipoles ? (cj == DIPOLE_XY ? mx + my : 0) : cj ? my : mx);
       const PetscReal sign = turned % 2 ? -1 : 1;
       W[((ci * parts + cj) * axis[0].pairs + pair[0]) * axis[1].pairs + pair[1]] += sign * value;
-      if (IsSquare(axis) && !dipoles) W[((3 - ci * 2 - cj) * axis[0].pairs + pair[1]) * axis[1].pairs + pair[0]] += sign * value;
+      if (IsSquare(axis) && (!dipoles || cj == DIPOLE_XX)) { /* yy from xx, forces along y from those along x */
+        const PetscInt other = dipoles ? (1 - ci) * parts + DIPOLE_YY : 3 - ci * 2 - cj;
+        W[(other * axis[0].pairs + pair[1]) * axis[1].pairs + pair[0]] += sign * value;
+      }
     }
 }
 
@@ -199,7 +203,8 @@ static PetscErrorCode AddSource(BoxGrid *b, const PetscInt s[2], PetscReal scale
   const PetscScalar *U;
   PetscReal L[2];
   PetscFunctionBeginUser;
-  for (int cj = 0; cj < (b->lattice->dipoles ? 3 : IsSquare(b->axis) ? 1 : 2); cj++) {
+  for (int cj = 0; cj < (b->lattice->dipoles ? DIPOLE_COUNT : 2); cj++) {
+    if (cj == 1 && IsSquare(b->axis)) continue;
     PetscCall(Spread(b, j, cj));
     PetscCall(Solve(b));
     PetscCall(MarkersInterpolate(b->markers, b->u, b->U));

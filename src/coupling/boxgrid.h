@@ -16,8 +16,8 @@ typedef struct {
 
 /* BoxGridAdd - W += scale times the smooth part of the grid `spec`, with the named kernel, its lattice as far as it is
    tabulated and the closed form beyond. W[2][parts][x pairs][y pairs], of a velocity component to a force component
-   (velocity per force) or to a part of a tensor (velocity per tensor), whose source is spread over the whole box as well.
-   Every rank adds the sources that are its own: the sum over ranks is the whole. Not collective. */
+   (velocity per force) or to a part of a tensor (velocity per tensor), whose source is spread over the whole box as
+   well. Every rank adds the sources that are its own: the sum over ranks is the whole. Not collective. */
 PETSC_EXTERN PetscErrorCode BoxGridAdd(const FluidSpec *spec, MPI_Comm comm, const char kernel[],
                                        const BoxLattice *lattice, const BoxAxis axis[2], PetscReal scale,
                                        PetscReal W[]);

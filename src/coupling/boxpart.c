@@ -25,8 +25,8 @@ PetscErrorCode BoxPartDestroy(BoxPart *box) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The part of D that a marker has: in unsteady flow it fades up to four cells from a wall, where the force's smear in the
-   inertia would make C + D indefinite. */
+/* The part of D that a marker has: in unsteady flow it fades up to four cells from a wall, where the force's smear in
+   the inertia would make C + D indefinite. */
 static PetscReal Fade(BoxPart b, const PetscReal X[2]) {
   const Grid g = b->markers->grid;
   PetscReal fade = BoxTableFade(&b->table, g, X);

@@ -2,11 +2,11 @@
 #include "coupling/blas.h"
 
 #define WALL_PLACES 16
-#define WALL_MARGIN 3   /* cells of the coarser grid between the places and a wall: what its kernels reach */
-#define OWN_MARGIN 2    /* the same where that is the run's own grid, whose stencils at the wall are the run's */
+#define WALL_MARGIN 3 /* cells of the coarser grid between the places and a wall: what its kernels reach */
+#define OWN_MARGIN 2  /* the same where that is the run's own grid, whose stencils at the wall are the run's */
 #define DIPOLE_MARGIN DIPOLE_WALL_CELLS /* the same of dipoles, which are not folded at walls */
-#define MODES 16        /* of a period as long as the other side */
-#define COARSE_CELLS 64 /* of the shorter side, on the coarser grid */
+#define MODES 16                        /* of a period as long as the other side */
+#define COARSE_CELLS 64                 /* of the shorter side, on the coarser grid */
 #define MOST_CELLS 80
 #define LATTICE_CELLS 30 /* of the lattice's table; beyond, its closed form is right to 2e-7 */
 #define SMALLEST 5e-4    /* of the largest: eigenvalues below it are dropped */
@@ -187,7 +187,8 @@ static void AddCouple(const BoxTable *t, int ci, int cj, Couple x, Couple y, Pet
   q->Q[column * size + row] += 0.5 * value;
 }
 
-/* The blocks' parts of D between functions, from W between places; symmetric, of dipoles with its transpose beside it. */
+/* The blocks' parts of D between functions, from W between places; symmetric, of dipoles with its transpose beside it.
+ */
 static PetscErrorCode Transform(const BoxTable *t, const PetscReal W[]) {
   const PetscInt nx = t->axis[0].pairs, ny = t->axis[1].pairs, parts = BoxParts(t);
   PetscReal *line;

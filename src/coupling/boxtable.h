@@ -11,9 +11,9 @@
 #define BOX_COMPONENTS 5 /* u, v, and of dipoles xx, yy, xy */
 typedef struct {
   PetscInt first[BOX_COMPONENTS][2]; /* [component]: its functions of x, of y, from here on */
-  PetscInt n[2];         /* so many */
-  PetscInt start, modes; /* its eigenvalues among all */
-  PetscReal *Q;          /* [components][n[0]][n[1]][modes] */
+  PetscInt n[2];                     /* so many */
+  PetscInt start, modes;             /* its eigenvalues among all */
+  PetscReal *Q;                      /* [components][n[0]][n[1]][modes] */
 } BoxBlock;
 
 typedef struct {
@@ -27,7 +27,8 @@ typedef struct {
   PetscReal H;   /* cell size of the coarser grid */
 } BoxTable;
 
-/* BoxTableCreate - for the run's grid and boundaries, of forces or of dipoles. Collective on spec->comm: ranks share the solves. BoxTableDestroy
+/* BoxTableCreate - for the run's grid and boundaries, of forces or of dipoles. Collective on spec->comm: ranks share
+   the solves. BoxTableDestroy
    - and free. */
 PETSC_EXTERN PetscErrorCode BoxTableCreate(const FluidSpec *spec, const char kernel[], PetscBool dipoles,
                                            BoxTable *table);

@@ -84,8 +84,8 @@ static void FreeParts(const PetscReal r[2], PetscReal K[2][DIPOLE_COUNT]) {
   }
 }
 
-/* D - L of distant markers, d = X_i - X_j: smoothing by the kernels and dispersion by the lattice, h^2/(48 pi r^3) times
-   these waves of the angle of d. */
+/* D - L of distant markers, d = X_i - X_j: smoothing by the kernels and dispersion by the lattice, h^2/(48 pi r^3)
+   times these waves of the angle of d. */
 static void FarParts(const PetscReal d[2], PetscReal h, PetscReal K[2][DIPOLE_COUNT]) {
   const PetscReal r = PetscHypotReal(d[0], d[1]), c = d[0] / r, s = d[1] / r, c2 = c * c - s * s, s2 = 2 * c * s;
   const PetscReal c3 = c2 * c - s2 * s, s3 = s2 * c + c2 * s, c5 = c3 * c2 - s3 * s2, s5 = s3 * c2 + c3 * s2;

@@ -24,6 +24,6 @@ PETSC_EXTERN void DoubleBoxPlace(DoubleBox box);
    Collective. */
 PETSC_EXTERN PetscErrorCode DoubleBoxApply(DoubleBox box, PetscReal alpha, const PetscReal T[], PetscScalar y[]);
 
-/* DoubleBoxMatrix - out[2M][DIPOLE_COUNT M] += scale D, columns one after another of all markers' tensors, rows of the own
-   markers. Not collective. */
+/* DoubleBoxMatrix - out[2M][DIPOLE_COUNT M] += scale D, columns one after another of all markers' tensors, rows of the
+   own markers. Not collective. */
 PETSC_EXTERN PetscErrorCode DoubleBoxMatrix(DoubleBox box, PetscReal scale, PetscReal out[]);

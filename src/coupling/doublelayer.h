@@ -46,7 +46,8 @@ struct _p_DoubleLayer {
 PETSC_EXTERN PetscErrorCode DoubleLayerCreate(NearField near, const PetscReal ratio[], DoubleLayer *layer);
 PETSC_EXTERN PetscErrorCode DoubleLayerDestroy(DoubleLayer *layer);
 
-/* DoubleLayerAddBoxPart - from here on with the box part, as the near field, for the fluid that spec makes. Collective. */
+/* DoubleLayerAddBoxPart - from here on with the box part, as the near field, for the fluid that spec makes. Collective.
+ */
 PETSC_EXTERN PetscErrorCode DoubleLayerAddBoxPart(DoubleLayer layer, const FluidSpec *spec);
 
 /* DoubleLayerPlace - C_D where the near field has been placed (NearFieldPlace). Collective. */
@@ -68,7 +69,8 @@ PETSC_EXTERN PetscErrorCode DoubleLayerSpread(DoubleLayer layer, Vec w, Vec sour
    dipoles add to the sum of force times place. Not collective. */
 PETSC_EXTERN void DoubleLayerStress(DoubleLayer layer, PetscReal sum[3]);
 
-/* DoubleLayerAdd - out += scale C_D (1 - ratio) (without box part) or, without lattice, D (1 - ratio), between the markers first .. first
+/* DoubleLayerAdd - out += scale C_D (1 - ratio) (without box part) or, without lattice, D (1 - ratio), between the
+   markers first .. first
    + n
    - 1: out[2n][2n], columns one after another, the rows of own markers only. Not collective. */
 PETSC_EXTERN PetscErrorCode DoubleLayerAdd(DoubleLayer layer, PetscReal scale, PetscBool lattice, PetscInt first,
