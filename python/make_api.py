@@ -21,6 +21,8 @@ PAGES = [
     ("petves.rheology", "area_fraction_profile", ""),
     ("petves.rheology", "centers", ""),
     ("petves.rheology", "mean_square_displacement", ""),
+    ("petves.measures", "turned_angle", "Tumbling"),
+    ("petves.measures", "half_periods", ""),
     ("petves.theory", "keller_skalak_angle", "Theory"),
     ("petves.theory", "ellipse_axes", ""),
     ("petves.errors", "Error", "Errors"),

@@ -117,6 +117,7 @@ static PetscErrorCode AddContrast(Scene scene, Coupling coupling) {
   PetscCall(PetscMalloc1(scene->shape.vesicles, &ratio));
   for (PetscInt v = 0; v < scene->shape.vesicles; v++) ratio[v] = SceneViscosityRatio(scene, v);
   PetscCall(CouplingAddContrast(coupling, ratio));
+  if (SceneHasBoxPart(scene)) PetscCall(DoubleLayerAddBoxPart(coupling->contrast, &scene->fluid));
   PetscCall(PetscFree(ratio));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,4 +1,4 @@
-"""The measures of a simulation's present state, as properties: the columns of series.csv."""
+"""The measures of a simulation's present state, as properties: the columns of series.csv; and what follows from them."""
 
 from __future__ import annotations
 
@@ -8,6 +8,38 @@ import difflib
 import numpy as np
 
 from petves.errors import Error
+
+
+def turned_angle(inclination: np.ndarray) -> np.ndarray:
+    """Return how far a vesicle has turned (radians): the column inclination without its jumps by pi.
+
+    Parameters
+    ----------
+    inclination : ndarray
+        The column of series.csv, step after step; between two steps a vesicle may turn by less than pi/2.
+    """
+    return np.unwrap(2 * np.asarray(inclination)) / 2
+
+
+def half_periods(time: np.ndarray, inclination: np.ndarray) -> np.ndarray:
+    """Return the times between passes of a tumbling vesicle's long axis through the vertical; empty for fewer than two.
+
+    Each pass is found by a cubic through the two steps before and the two after it.
+
+    Parameters
+    ----------
+    time, inclination : ndarray
+        The columns of series.csv.
+    """
+    time, angle = np.asarray(time), turned_angle(inclination)
+    half = np.floor(angle / np.pi - 0.5)
+    passes = []
+    for k in np.flatnonzero(np.diff(half)):
+        near = slice(max(k - 1, 0), k + 3)
+        vertical = np.pi * (max(half[k], half[k + 1]) + 0.5)
+        fit = np.polyfit(angle[near] - vertical, time[near] - time[k], len(time[near]) - 1)
+        passes.append(time[k] + fit[-1])
+    return np.diff(passes)
 
 
 def _column(name: str, what: str) -> property:

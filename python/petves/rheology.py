@@ -12,8 +12,9 @@ def stresslets(run: Run, frame: int) -> np.ndarray:
     """Return SUM f X over the markers of each vesicle, f its membrane's force, shape (vesicles, 2, 2).
 
     The sum of force a times place b is S_ab = -SUM ds (sigma tau_a tau_b + c_b k_a k_b), tau the tangent and k the second
-    derivative along the membrane, length^4/time^2 with density 1. Divided by minus the area of the box it is what the
-    vesicle adds to the stress (Batchelor 1970). Forces of contact between vesicles (-contact_repulsion) are not in it.
+    derivative along the membrane, length^4/time^2 with density 1. Where the viscosity inside is lam times that outside, nu (1
+    - lam) SUM (U_a n_b + n_a U_b) ds comes on top, U the markers' velocity and n the outward normal. Divided by minus the
+    area of the box it is what the vesicle adds to the stress (Batchelor 1970). Forces of contact between vesicles (-contact_repulsion) are not in it.
 
     Parameters
     ----------
@@ -35,6 +36,11 @@ def stresslets(run: Run, frame: int) -> np.ndarray:
             bend = _derivative(points, 2) / arc**2
         sigma = run.edge_tension(frame, vesicle)
         found.append(-(edges.T * sigma) @ edges / ds - run.c_b * ds * bend.T @ bend)
+        if run.viscosity_ratio[vesicle] != 1:
+            along = _derivative(points, 1)
+            U = run.velocity[frame, run.start[vesicle] : run.start[vesicle + 1]]
+            both = U.T @ np.column_stack([along[:, 1], -along[:, 0]])
+            found[-1] += run.nu * (1 - run.viscosity_ratio[vesicle]) * (both + both.T)
     return np.array(found)
 
 

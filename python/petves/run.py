@@ -49,6 +49,8 @@ class Run:
         Tension; entry k is on the edge from marker k-1 to marker k, or at marker k with spectral edges.
     start : ndarray, shape (vesicles + 1,)
         First marker of each vesicle, and the number of markers.
+    viscosity_ratio : ndarray, shape (vesicles,)
+        Viscosity inside over that outside.
     summary : dict
         summary.json; empty while the run has not ended.
 
@@ -68,6 +70,7 @@ class Run:
     velocity: np.ndarray
     tension: np.ndarray
     start: np.ndarray
+    viscosity_ratio: np.ndarray
     summary: dict[str, Any] = field(default_factory=dict)
 
     @classmethod
@@ -86,6 +89,8 @@ class Run:
         with _open(folder / "run.h5") as file:
             try:
                 none = np.zeros((len(file["time"]), 0, 2))
+                start = file.attrs.get("vesicle_start", file["vesicle_start"] if "vesicle_start" in file else None)
+                start = np.atleast_1d(start).astype(int)
                 return cls(
                     folder=folder,
                     series=read_series(folder / "series.csv"),
@@ -97,9 +102,8 @@ class Run:
                     markers=file["vesicle/markers"][:] if "vesicle" in file else none,
                     velocity=file["vesicle/velocity"][:] if "vesicle" in file else none,
                     tension=file["vesicle/tension"][:] if "vesicle" in file else none[:, :, 0],
-                    start=np.atleast_1d(
-                        file.attrs.get("vesicle_start", file["vesicle_start"] if "vesicle_start" in file else None)
-                    ).astype(int),
+                    start=start,
+                    viscosity_ratio=np.ones(len(start) - 1) * file.attrs.get("vesicle_viscosity_ratio", 1.0),
                     summary=json.loads(summary.read_text()) if summary.is_file() else {},
                 )
             except KeyError as error:

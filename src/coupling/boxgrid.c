@@ -1,4 +1,5 @@
 #include "coupling/boxgrid.h"
+#include "coupling/doubleblock.h"
 #include "coupling/nearblock.h"
 #include "fluid/walls.h"
 
@@ -18,6 +19,10 @@ typedef struct {
   Vec F, U;                 /* at the places */
   PetscScalar *d, *slip;    /* wall forces and what is left of them */
   const BoxAxis *axis;
+  const BoxLattice *lattice;
+  PaddedStencil *dipole; /* [DIPOLE_COUNT places], of dipoles */
+  PetscReal *tensor;     /* [DIPOLE_COUNT places] */
+  Vec source;            /* of dipoles */
 } BoxGrid;
 
 static PetscErrorCode PlaceMarkers(BoxGrid *b, const char kernel[]) {
@@ -39,21 +44,33 @@ static PetscErrorCode PlaceMarkers(BoxGrid *b, const char kernel[]) {
   PetscCall(PetscMalloc1(2 * start[1], &b->stencil));
   for (PetscInt k = 0; k < 2 * start[1]; k++) StencilPad(&b->markers->plain[k], &b->stencil[k]);
   for (PetscInt k = 0; k < start[1]; k++) StencilUnwrap(b->fluid->grid, b->markers->X + 2 * k, &b->stencil[2 * k]);
+  if (!b->lattice->dipoles) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscCalloc2(DIPOLE_COUNT * start[1], &b->dipole, DIPOLE_COUNT * start[1], &b->tensor));
+  for (PetscInt k = 0; k < start[1]; k++) {
+    Stencil part[DIPOLE_COUNT];
+    DipoleStencilsUnwrapped(b->fluid->grid, b->markers->X + 2 * k, part);
+    for (int c = 0; c < DIPOLE_COUNT; c++) StencilPad(&part[c], &b->dipole[DIPOLE_COUNT * k + c]);
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Create(const FluidSpec *spec, const char kernel[], const OffsetTable *lattice,
+static PetscErrorCode Create(const FluidSpec *spec, const char kernel[], const BoxLattice *lattice,
                              const BoxAxis axis[2], BoxGrid *b) {
   PetscFunctionBeginUser;
-  b->axis = axis;
+  *b = (BoxGrid){.axis = axis, .lattice = lattice};
   PetscCall(FluidCreate(spec, &b->fluid));
   PetscCall(StokesCreate(b->fluid, &b->stokes));
   PetscCall(WallsCreate(b->fluid, &b->walls));
   PetscCall(PlaceMarkers(b, kernel));
-  b->near = (struct _p_NearField){.markers = b->markers, .nu = spec->nu, .lattice = *lattice, .stencil = b->stencil};
+  b->near = (struct _p_NearField){
+      .markers = b->markers, .nu = spec->nu, .lattice = lattice->stokeslet, .stencil = b->stencil};
   NearFarMake(b->markers->kernel, PETSC_FALSE, b->near.far);
-  PetscCall(NearImageCreate(b->markers, spec->nu, lattice, &b->image));
-  PetscCall(NearImagePlace(b->image, b->stencil));
+  if (lattice->dipoles) {
+    PetscCall(DMCreateGlobalVector(b->fluid->grid->da[FIELD_P], &b->source));
+  } else {
+    PetscCall(NearImageCreate(b->markers, spec->nu, &lattice->stokeslet, &b->image));
+    PetscCall(NearImagePlace(b->image, b->stencil));
+  }
   PetscCall(DMCreateGlobalVector(b->fluid->grid->velocity, &b->force));
   PetscCall(VecDuplicate(b->force, &b->r));
   PetscCall(VecDuplicate(b->force, &b->u));
@@ -63,11 +80,12 @@ static PetscErrorCode Create(const FluidSpec *spec, const char kernel[], const O
 }
 
 static PetscErrorCode Destroy(BoxGrid *b) {
-  Vec *all[] = {&b->force, &b->r, &b->u, &b->p, &b->F, &b->U};
+  Vec *all[] = {&b->force, &b->r, &b->u, &b->p, &b->F, &b->U, &b->source};
   PetscFunctionBeginUser;
-  for (int k = 0; k < 6; k++) PetscCall(VecDestroy(all[k]));
+  for (int k = 0; k < 7; k++) PetscCall(VecDestroy(all[k]));
   PetscCall(PetscFree2(b->d, b->slip));
   PetscCall(PetscFree(b->stencil));
+  PetscCall(PetscFree2(b->dipole, b->tensor));
   PetscCall(NearImageDestroy(&b->image));
   PetscCall(MarkersDestroy(&b->markers));
   PetscCall(LayoutDestroy(&b->layout));
@@ -77,8 +95,8 @@ static PetscErrorCode Destroy(BoxGrid *b) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* u of the force on the grid; where the Stokes solve is a projection, with the wall forces that make it exact, found by
-   Richardson's iteration. */
+/* u of the force and the source on the grid; where the Stokes solve is a projection, with the wall forces that make it
+   exact, found by Richardson's iteration. */
 static PetscErrorCode Solve(BoxGrid *b) {
   const PetscInt n = b->walls->n;
   PetscReal first = 0;
@@ -88,7 +106,8 @@ static PetscErrorCode Solve(BoxGrid *b) {
     PetscReal rest = 0;
     PetscCall(VecCopy(b->force, b->r));
     PetscCall(WallsAdd(b->walls, b->d, b->r));
-    PetscCall(StokesSolve(b->stokes, b->r, NULL, b->u, b->p));
+    if (b->source) PetscCall(VecCopy(b->source, b->p));
+    PetscCall(StokesSolve(b->stokes, b->r, b->source ? b->p : NULL, b->u, b->p));
     if (!n) break;
     PetscCall(WallsSlip(b->walls, StokesPotential(b->stokes), b->slip));
     for (PetscInt k = 0; k < n; k++) {
@@ -103,15 +122,27 @@ static PetscErrorCode Solve(BoxGrid *b) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What the lattice has of places i and j, less what the near field gives of the walls: xx, yy, xy, yx. */
-static void Lattice(BoxGrid *b, PetscInt i, PetscInt j, PetscReal L[4]) {
-  const PetscReal *X = b->markers->X;
-  PetscReal d[2] = {X[2 * i] - X[2 * j], X[2 * i + 1] - X[2 * j + 1]};
-  PetscReal C[4] = {0, 0, 0, 0};
-  const PetscReal part = BoxImage(b->axis, d);
-  NearLatticePair(&b->near, i, j, d, L);
-  NearImageAdd(b->image, i, j, d, L, C);
-  for (int c = 0; c < 4; c++) L[c] = part * (L[c] - C[c]);
+/* What the lattice has of a part of place j's source at place i, less what the near field gives of the walls: the
+   velocity L[2]. */
+static void Lattice(BoxGrid *b, PetscInt i, PetscInt j, int part, PetscReal L[2]) {
+  const PetscReal *X = b->markers->X, h = b->fluid->grid->h;
+  const PetscReal plain[2] = {X[2 * i] - X[2 * j], X[2 * i + 1] - X[2 * j + 1]};
+  PetscReal d[2] = {plain[0], plain[1]}, C[4] = {0, 0, 0, 0}, S[4];
+  const PetscReal fade = BoxImage(b->axis, d);
+  if (b->lattice->dipoles) {
+    const PetscInt periods[2] = {(PetscInt)rint((d[0] - plain[0]) / h), (PetscInt)rint((d[1] - plain[1]) / h)};
+    PetscReal K[2][DIPOLE_COUNT];
+    DoubleLatticeParts(b->lattice->dipole, h, b->lattice->cells * h, &b->stencil[2 * i], &b->dipole[DIPOLE_COUNT * j],
+                       periods, d, K);
+    for (int c = 0; c < 2; c++) L[c] = fade * K[c][part];
+    return;
+  }
+  NearLatticePair(&b->near, i, j, d, S);
+  NearImageAdd(b->image, i, j, d, S, C);
+  for (int c = 0; c < 2; c++) {
+    const int at = c == part ? c : 2 + c;
+    L[c] = fade * (S[at] - C[at]);
+  }
 }
 
 /* Whether x and y are alike. */
@@ -120,10 +151,11 @@ static PetscBool IsSquare(const BoxAxis axis[2]) {
   return axis[0].wall == axis[1].wall && PetscAbsReal(x - y) < 1e-12 * x ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* W of the pair and of its mirror images between walls: a mirrored velocity or force changes its sign. In a square also
-   of that with x and y exchanged. */
-static void AddEntry(const BoxAxis axis[2], int ci, int cj, const PetscInt a[2], const PetscInt s[2], PetscReal value,
-                     PetscReal W[]) {
+/* W of the pair and of its mirror images between walls: a mirrored velocity or force changes its sign, of a tensor xy.
+   In a square also of that with x and y exchanged, of forces. */
+static void AddEntry(const BoxAxis axis[2], PetscBool dipoles, int ci, int cj, const PetscInt a[2], const PetscInt s[2],
+                     PetscReal value, PetscReal W[]) {
+  const int parts = dipoles ? 3 : 2;
   for (int my = 0; my <= (int)axis[1].wall; my++)
     for (int mx = 0; mx <= (int)axis[0].wall; mx++) {
       PetscInt pair[2];
@@ -131,41 +163,64 @@ static void AddEntry(const BoxAxis axis[2], int ci, int cj, const PetscInt a[2],
         const PetscInt n = axis[dir].places, mirror = dir ? my : mx;
         pair[dir] = !axis[dir].wall ? a[dir] : mirror ? (n - 1 - a[dir]) * n + n - 1 - s[dir] : a[dir] * n + s[dir];
       }
-      const PetscReal sign = ci != cj && mx != my ? -1 : 1; /* xx, yy keep theirs; xy, yx change it with one mirror */
-      W[((ci * 2 + cj) * axis[0].pairs + pair[0]) * axis[1].pairs + pair[1]] += sign * value;
-      if (IsSquare(axis)) W[((3 - ci * 2 - cj) * axis[0].pairs + pair[1]) * axis[1].pairs + pair[0]] += sign * value;
+      const int turned = (ci ? my : mx) + (dipoles ? (cj == DIPOLE_XY ? mx + my : 0) : cj ? my : mx);
+      const PetscReal sign = turned % 2 ? -1 : 1;
+      W[((ci * parts + cj) * axis[0].pairs + pair[0]) * axis[1].pairs + pair[1]] += sign * value;
+      if (IsSquare(axis) && (!dipoles || cj == DIPOLE_XX)) { /* yy from xx, forces along y from those along x */
+        const PetscInt other = dipoles ? (1 - ci) * parts + DIPOLE_YY : 3 - ci * 2 - cj;
+        W[(other * axis[0].pairs + pair[1]) * axis[1].pairs + pair[0]] += sign * value;
+      }
     }
 }
 
-/* All responses to unit forces at place s. */
+/* Unit part cj of place j's source, on the grid. */
+static PetscErrorCode Spread(BoxGrid *b, PetscInt j, int cj) {
+  const Grid g = b->fluid->grid;
+  PetscScalar sum;
+  PetscFunctionBeginUser;
+  PetscCall(VecSet(b->force, 0));
+  if (b->lattice->dipoles) {
+    PetscCall(VecSet(b->source, 0));
+    b->tensor[DIPOLE_COUNT * j + cj] = 1;
+    PetscCall(DipolesSpread(b->markers, b->fluid->nu, b->tensor, b->force, b->source));
+    b->tensor[DIPOLE_COUNT * j + cj] = 0;
+    PetscCall(VecSum(b->source, &sum));
+    PetscCall(VecShift(b->source, -sum / ((PetscReal)g->n[0] * g->n[1])));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(VecSet(b->F, 0));
+  PetscCall(VecSetValue(b->F, 2 * j + cj, 1, INSERT_VALUES));
+  PetscCall(VecAssemblyBegin(b->F));
+  PetscCall(VecAssemblyEnd(b->F));
+  PetscCall(MarkersSpread(b->markers, 1 / PetscSqr(g->h), b->F, b->force));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* All responses to unit sources at place s. */
 static PetscErrorCode AddSource(BoxGrid *b, const PetscInt s[2], PetscReal scale, PetscReal W[]) {
   const BoxAxis *x = &b->axis[0], *y = &b->axis[1];
   const PetscInt j = s[1] * x->places + s[0];
   const PetscScalar *U;
-  PetscReal L[4];
+  PetscReal L[2];
   PetscFunctionBeginUser;
-  for (int cj = 0; cj < (IsSquare(b->axis) ? 1 : 2); cj++) {
-    PetscCall(VecSet(b->F, 0));
-    PetscCall(VecSetValue(b->F, 2 * j + cj, 1, INSERT_VALUES));
-    PetscCall(VecAssemblyBegin(b->F));
-    PetscCall(VecAssemblyEnd(b->F));
-    PetscCall(VecSet(b->force, 0));
-    PetscCall(MarkersSpread(b->markers, 1 / PetscSqr(b->fluid->grid->h), b->F, b->force));
+  for (int cj = 0; cj < (b->lattice->dipoles ? DIPOLE_COUNT : 2); cj++) {
+    if (cj == 1 && IsSquare(b->axis)) continue;
+    PetscCall(Spread(b, j, cj));
     PetscCall(Solve(b));
     PetscCall(MarkersInterpolate(b->markers, b->u, b->U));
     PetscCall(VecGetArrayRead(b->U, &U));
     for (PetscInt i = 0; i < x->places * y->places; i++) {
       const PetscInt a[2] = {i % x->places, i / x->places};
-      Lattice(b, i, j, L);
+      Lattice(b, i, j, cj, L);
       for (int ci = 0; ci < 2; ci++)
-        AddEntry(b->axis, ci, cj, a, s, scale * (U[2 * i + ci] - L[ci == cj ? ci : 2 + ci]), W);
+        AddEntry(b->axis, b->lattice->dipoles, ci, cj, a, s, scale * (U[2 * i + ci] - L[ci]), W);
     }
     PetscCall(VecRestoreArrayRead(b->U, &U));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode BoxGridAdd(const FluidSpec *spec, MPI_Comm comm, const char kernel[], const OffsetTable *lattice,
+PetscErrorCode BoxGridAdd(const FluidSpec *spec, MPI_Comm comm, const char kernel[], const BoxLattice *lattice,
                           const BoxAxis axis[2], PetscReal scale, PetscReal W[]) {
   PetscInt sources[2];
   PetscMPIInt rank, size;

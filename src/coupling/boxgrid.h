@@ -4,12 +4,20 @@
 #pragma once
 #include "coupling/boxaxis.h"
 #include "coupling/lattice.h"
+#include "coupling/latticedipole.h"
 #include "fluid/fluid.h"
 
-/* BoxGridAdd - W += scale times the smooth part of the grid `spec`, with the named kernel, lattice Stokeslet as far as
-   it is tabulated and the closed form beyond. W[2][2][x pairs][y pairs], of a velocity component to a force component
-   (velocity per force). Every rank adds the forces that are its own: the sum over ranks is the whole. Not collective.
- */
+/* The lattice's answers to the sources, as far as they are tabulated. */
+typedef struct {
+  PetscInt cells;
+  PetscBool dipoles; /* else forces */
+  OffsetTable stokeslet, dipole[2];
+} BoxLattice;
+
+/* BoxGridAdd - W += scale times the smooth part of the grid `spec`, with the named kernel, its lattice as far as it is
+   tabulated and the closed form beyond. W[2][parts][x pairs][y pairs], of a velocity component to a force component
+   (velocity per force) or to a part of a tensor (velocity per tensor), whose source is spread over the whole box as
+   well. Every rank adds the sources that are its own: the sum over ranks is the whole. Not collective. */
 PETSC_EXTERN PetscErrorCode BoxGridAdd(const FluidSpec *spec, MPI_Comm comm, const char kernel[],
-                                       const OffsetTable *lattice, const BoxAxis axis[2], PetscReal scale,
+                                       const BoxLattice *lattice, const BoxAxis axis[2], PetscReal scale,
                                        PetscReal W[]);

@@ -2,10 +2,11 @@
 #include "coupling/blas.h"
 
 #define WALL_PLACES 16
-#define WALL_MARGIN 3   /* cells of the coarser grid between the places and a wall: what its kernels reach */
-#define OWN_MARGIN 2    /* the same where that is the run's own grid, whose stencils at the wall are the run's */
-#define MODES 16        /* of a period as long as the other side */
-#define COARSE_CELLS 64 /* of the shorter side, on the coarser grid */
+#define WALL_MARGIN 3 /* cells of the coarser grid between the places and a wall: what its kernels reach */
+#define OWN_MARGIN 2  /* the same where that is the run's own grid, whose stencils at the wall are the run's */
+#define DIPOLE_MARGIN DIPOLE_WALL_CELLS /* the same of dipoles, which are not folded at walls */
+#define MODES 16                        /* of a period as long as the other side */
+#define COARSE_CELLS 64                 /* of the shorter side, on the coarser grid */
 #define MOST_CELLS 80
 #define LATTICE_CELLS 30 /* of the lattice's table; beyond, its closed form is right to 2e-7 */
 #define SMALLEST 5e-4    /* of the largest: eigenvalues below it are dropped */
@@ -34,9 +35,10 @@ static void Stretch(PetscReal from, PetscReal factor, BoxAxis *a) {
   for (PetscInt k = 0; k < a->places; k++) a->place[k] = from + factor * (a->place[k] - from);
 }
 
-static void MakeAxis(const FluidSpec *spec, int dir, PetscReal H, BoxAxis *a) {
+static void MakeAxis(const FluidSpec *spec, PetscBool dipoles, int dir, PetscReal H, BoxAxis *a) {
   const PetscInt shorter = PetscMin(spec->cells[0], spec->cells[1]), times = (spec->cells[dir] + shorter - 1) / shorter;
-  const PetscReal margin = (H > FluidSpecCellSize(spec) * (1 + 1e-9) ? WALL_MARGIN : OWN_MARGIN) * H;
+  const PetscBool own = H > FluidSpecCellSize(spec) * (1 + 1e-9) ? PETSC_FALSE : PETSC_TRUE;
+  const PetscReal margin = (dipoles ? DIPOLE_MARGIN : own ? OWN_MARGIN : WALL_MARGIN) * H;
   a->wall = spec->bc[dir] == BC_WALL ? PETSC_TRUE : PETSC_FALSE;
   a->low = spec->box[2 * dir] + (a->wall ? margin : 0);
   a->high = spec->box[2 * dir + 1] - (a->wall ? margin : 0);
@@ -138,19 +140,23 @@ static PetscInt CountBlocks(const BoxAxis *a) {
   return a->wall ? 2 : a->modes + 1;
 }
 
+/* The velocity component like which a component behaves in a mirror across x, across y: its sign changes if it is like
+   the one across the mirror. Components: u, v, and the tensor's xx, yy, xy. */
+static const int like[BOX_COMPONENTS][2] = {{0, 0}, {1, 1}, {1, 0}, {1, 0}, {0, 1}};
+
 /* A direction's functions of block b: a cosine and its sine; between walls the even or odd half, and of the other
    component the other one, as the mirror image of a velocity changes the sign of one component. */
 static void BlockFunctions(const BoxTable *t, int dir, PetscInt b, BoxBlock *q) {
   const PetscInt half = t->functions[dir] / 2;
   const PetscBool wall = t->axis[dir].wall;
   q->n[dir] = wall ? half : b ? 2 : 1;
-  for (int c = 0; c < 2; c++) q->first[c][dir] = wall ? (b == c ? 0 : half) : b ? 2 * b - 1 : 0;
+  for (int c = 0; c < t->components; c++) q->first[c][dir] = wall ? (b == like[c][dir] ? 0 : half) : b ? 2 * b - 1 : 0;
 }
 
 /* The block that a component's function f of a direction belongs to. */
 static PetscInt BlockOf(const BoxTable *t, int dir, int c, PetscInt f) {
   if (!t->axis[dir].wall) return (f + 1) / 2;
-  return f < t->functions[dir] / 2 ? c : 1 - c;
+  return f < t->functions[dir] / 2 ? like[c][dir] : 1 - like[c][dir];
 }
 
 /* The blocks, with room for their parts of D in Q. */
@@ -163,7 +169,7 @@ static PetscErrorCode CreateBlocks(BoxTable *t) {
     BoxBlock *q = &t->block[b];
     BlockFunctions(t, 0, b / ny, q);
     BlockFunctions(t, 1, b % ny, q);
-    PetscCall(PetscCalloc1(PetscSqr(2 * q->n[0] * q->n[1]), &q->Q));
+    PetscCall(PetscCalloc1(PetscSqr(t->components * q->n[0] * q->n[1]), &q->Q));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -174,22 +180,23 @@ static void AddCouple(const BoxTable *t, int ci, int cj, Couple x, Couple y, Pet
   const PetscInt bx = BlockOf(t, 0, ci, x.f), by = BlockOf(t, 1, ci, y.f);
   if (bx != BlockOf(t, 0, cj, x.g) || by != BlockOf(t, 1, cj, y.g)) return;
   const BoxBlock *q = &t->block[bx * CountBlocks(&t->axis[1]) + by];
-  const PetscInt size = 2 * q->n[0] * q->n[1];
+  const PetscInt size = t->components * q->n[0] * q->n[1];
   const PetscInt row = (ci * q->n[0] + x.f - q->first[ci][0]) * q->n[1] + y.f - q->first[ci][1];
   const PetscInt column = (cj * q->n[0] + x.g - q->first[cj][0]) * q->n[1] + y.g - q->first[cj][1];
   q->Q[row * size + column] += 0.5 * value;
   q->Q[column * size + row] += 0.5 * value;
 }
 
-/* The blocks' parts of D between functions, from W between places; symmetric. */
+/* The blocks' parts of D between functions, from W between places; symmetric, of dipoles with its transpose beside it.
+ */
 static PetscErrorCode Transform(const BoxTable *t, const PetscReal W[]) {
-  const PetscInt nx = t->axis[0].pairs, ny = t->axis[1].pairs;
+  const PetscInt nx = t->axis[0].pairs, ny = t->axis[1].pairs, parts = BoxParts(t);
   PetscReal *line;
   Couplings c[2];
   PetscFunctionBeginUser;
   for (int dir = 0; dir < 2; dir++) PetscCall(MakeCouplings(&t->axis[dir], &c[dir]));
   PetscCall(PetscMalloc1(ny, &line));
-  for (int b = 0; b < 4; b++)
+  for (int b = 0; b < 2 * parts; b++)
     for (PetscInt p = 0; p < c[0].count; p++) {
       PetscCall(PetscArrayzero(line, ny));
       for (PetscInt k = p * c[0].terms; k < (p + 1) * c[0].terms; k++) {
@@ -199,7 +206,8 @@ static PetscErrorCode Transform(const BoxTable *t, const PetscReal W[]) {
       for (PetscInt q = 0; q < c[1].count; q++) {
         PetscReal sum = 0;
         for (PetscInt k = q * c[1].terms; k < (q + 1) * c[1].terms; k++) sum += c[1].weight[k] * line[c[1].pair[k]];
-        AddCouple(t, b / 2, b % 2, c[0].couple[p], c[1].couple[q], sum);
+        AddCouple(t, b / (int)parts, (parts == 2 ? 0 : 2) + b % (int)parts, c[0].couple[p], c[1].couple[q],
+                  parts == 2 ? sum : 2 * sum);
       }
     }
   for (int dir = 0; dir < 2; dir++) PetscCall(PetscFree3(c[dir].couple, c[dir].pair, c[dir].weight));
@@ -208,8 +216,9 @@ static PetscErrorCode Transform(const BoxTable *t, const PetscReal W[]) {
 }
 
 /* Of the block's eigenvectors Q, columns, and eigenvalues l only those larger than `least` are kept. */
-static PetscErrorCode KeepLargest(BoxBlock *q, const PetscReal l[], PetscReal least, PetscReal kept[], PetscInt *rank) {
-  const PetscInt size = 2 * q->n[0] * q->n[1];
+static PetscErrorCode KeepLargest(PetscInt components, BoxBlock *q, const PetscReal l[], PetscReal least,
+                                  PetscReal kept[], PetscInt *rank) {
+  const PetscInt size = components * q->n[0] * q->n[1];
   PetscReal *all = q->Q;
   PetscFunctionBeginUser;
   q->start = *rank;
@@ -229,14 +238,14 @@ static PetscErrorCode KeepLargest(BoxBlock *q, const PetscReal l[], PetscReal le
 /* The largest eigenvalues of D, with their vectors, block by block; the first rank's, as alike eigenvalues leave to
    rounding which vectors they have. */
 static PetscErrorCode Decompose(MPI_Comm comm, BoxTable *t) {
-  const PetscInt count = 2 * t->functions[0] * t->functions[1];
+  const PetscInt count = t->components * t->functions[0] * t->functions[1];
   PetscReal *l, most = 0;
   PetscInt at = 0;
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(count, &l));
   PetscCall(PetscMalloc1(count, &t->l));
   for (PetscInt b = 0; b < t->blocks; b++) {
-    const PetscInt size = 2 * t->block[b].n[0] * t->block[b].n[1];
+    const PetscInt size = t->components * t->block[b].n[0] * t->block[b].n[1];
     PetscCall(DenseEigen(size, t->block[b].Q, l + at));
     PetscCallMPI(MPI_Bcast(t->block[b].Q, (PetscMPIInt)(size * size), MPIU_REAL, 0, comm));
     PetscCallMPI(MPI_Bcast(l + at, (PetscMPIInt)size, MPIU_REAL, 0, comm));
@@ -246,19 +255,19 @@ static PetscErrorCode Decompose(MPI_Comm comm, BoxTable *t) {
   t->rank = at = 0;
   for (PetscInt b = 0; b < t->blocks; b++) {
     BoxBlock *q = &t->block[b];
-    PetscCall(KeepLargest(q, l + at, SMALLEST * most, t->l, &t->rank));
-    at += 2 * q->n[0] * q->n[1];
+    PetscCall(KeepLargest(t->components, q, l + at, SMALLEST * most, t->l, &t->rank));
+    at += t->components * q->n[0] * q->n[1];
   }
   PetscCall(PetscFree(l));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* 4/3 (W_{H/2} - W_H) of the pair, times (h/H)^2. */
-static PetscErrorCode Pair(const FluidSpec *run, const char kernel[], const PetscInt cells[2], const BoxAxis axis[2],
-                           PetscReal H, PetscReal W[]) {
+static PetscErrorCode Pair(const FluidSpec *run, const char kernel[], PetscBool dipoles, const PetscInt cells[2],
+                           const BoxAxis axis[2], PetscReal H, PetscReal W[]) {
   const PetscReal scale = 4. / 3 * PetscSqr(FluidSpecCellSize(run) / H);
   FluidSpec spec = *run;
-  OffsetTable lattice;
+  BoxLattice lattice = {.cells = LATTICE_CELLS, .dipoles = dipoles};
   PetscFunctionBeginUser;
   spec.comm = PETSC_COMM_SELF;
   spec.form = FORM_DISTURBANCE;
@@ -266,33 +275,36 @@ static PetscErrorCode Pair(const FluidSpec *run, const char kernel[], const Pets
   spec.plan = 0; /* the same bits in every run */
   PetscCall(PetscStrncpy(spec.helmholtz, "fftw_tridiagonal", sizeof(spec.helmholtz)));
   PetscCall(PetscStrncpy(spec.poisson, "fftw_tridiagonal", sizeof(spec.poisson)));
-  PetscCall(LatticeStokeslet(LATTICE_CELLS + OFFSET_LAGS, &lattice));
+  if (dipoles) PetscCall(LatticeDipoles(LATTICE_CELLS + OFFSET_LAGS, lattice.dipole));
+  if (!dipoles) PetscCall(LatticeStokeslet(LATTICE_CELLS + OFFSET_LAGS, &lattice.stokeslet));
   for (int times = 1; times <= 2; times++) {
     for (int d = 0; d < 2; d++) spec.cells[d] = times * cells[d];
     PetscCall(BoxGridAdd(&spec, run->comm, kernel, &lattice, axis, times == 1 ? -scale : scale, W));
   }
-  PetscCall(OffsetTableDestroy(&lattice));
+  PetscCall(OffsetTableDestroy(&lattice.stokeslet));
+  for (int c = 0; c < 2; c++) PetscCall(OffsetTableDestroy(&lattice.dipole[c]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode BoxTableCreate(const FluidSpec *spec, const char kernel[], BoxTable *t) {
-  PetscInt cells[2], size = 4;
+PetscErrorCode BoxTableCreate(const FluidSpec *spec, const char kernel[], PetscBool dipoles, BoxTable *t) {
+  PetscInt cells[2], size = dipoles ? 6 : 4;
   PetscReal *W, height = spec->box[3] - spec->box[2];
   FluidSpec pair = *spec;
   BoxAxis axis[2];
   PetscFunctionBeginUser;
+  t->components = dipoles ? BOX_COMPONENTS : 2;
   CoarseCells(spec, cells);
   t->H = (spec->box[1] - spec->box[0]) / cells[0];
   if (cells[0] * spec->cells[1] != cells[1] * spec->cells[0]) pair.box[3] = pair.box[2] + cells[1] * t->H;
   for (int d = 0; d < 2; d++) {
-    MakeAxis(&pair, d, t->H, &axis[d]);
+    MakeAxis(&pair, dipoles, d, t->H, &axis[d]);
     t->axis[d] = axis[d];
     if (d) Stretch(pair.box[2], height / (pair.box[3] - pair.box[2]), &t->axis[d]);
     t->functions[d] = t->axis[d].wall ? WALL_PLACES : 2 * t->axis[d].modes + 1;
     size *= t->axis[d].pairs;
   }
   PetscCall(PetscCalloc1(size, &W));
-  PetscCall(Pair(&pair, kernel, cells, axis, t->H, W));
+  PetscCall(Pair(&pair, kernel, dipoles, cells, axis, t->H, W));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, W, (PetscMPIInt)size, MPIU_REAL, MPI_SUM, spec->comm));
   PetscCall(CreateBlocks(t));
   PetscCall(Transform(t, W));

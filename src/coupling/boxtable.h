@@ -1,20 +1,23 @@
 /* The error of second order of a grid's smooth part W, made once for a run by Richardson's extrapolation from a coarse
    pair of grids of the box's shape (docs/method.md, Near field): D = (h/H)^2 4/3 (W_{H/2} - W_H) = phi Q diag(l) Q^T
-   phi^T, phi the values of interpolating functions at a marker. */
+   phi^T, phi the values of interpolating functions at a marker. Or the same of the double layer's dipoles, where D from
+   the tensors to the velocities stands beside its transpose in a symmetric matrix. */
 #pragma once
 #include "coupling/boxgrid.h"
 
 #define BOX_FUNCTIONS BOX_PLACES /* more than the functions of a direction */
 
 /* Functions of x and y that D couples with one another only, and what is kept of its eigenvectors in them. */
+#define BOX_COMPONENTS 5 /* u, v, and of dipoles xx, yy, xy */
 typedef struct {
-  PetscInt first[2][2];  /* [component]: its functions of x, of y, from here on */
-  PetscInt n[2];         /* so many */
-  PetscInt start, modes; /* its eigenvalues among all */
-  PetscReal *Q;          /* [2 components][n[0]][n[1]][modes] */
+  PetscInt first[BOX_COMPONENTS][2]; /* [component]: its functions of x, of y, from here on */
+  PetscInt n[2];                     /* so many */
+  PetscInt start, modes;             /* its eigenvalues among all */
+  PetscReal *Q;                      /* [components][n[0]][n[1]][modes] */
 } BoxBlock;
 
 typedef struct {
+  int components;        /* 2, or BOX_COMPONENTS with dipoles */
   BoxAxis axis[2];       /* of the places: Chebyshev's between walls, even offsets over a period */
   PetscInt functions[2]; /* in x and y: Lagrange's polynomials, or 1, cos, sin, .. over the period */
   PetscInt blocks;
@@ -24,11 +27,32 @@ typedef struct {
   PetscReal H;   /* cell size of the coarser grid */
 } BoxTable;
 
-/* BoxTableCreate - for the run's grid and boundaries. Collective on spec->comm: ranks share the solves. BoxTableDestroy
+/* BoxTableCreate - for the run's grid and boundaries, of forces or of dipoles. Collective on spec->comm: ranks share
+   the solves. BoxTableDestroy
    - and free. */
-PETSC_EXTERN PetscErrorCode BoxTableCreate(const FluidSpec *spec, const char kernel[], BoxTable *table);
+PETSC_EXTERN PetscErrorCode BoxTableCreate(const FluidSpec *spec, const char kernel[], PetscBool dipoles,
+                                           BoxTable *table);
 PETSC_EXTERN PetscErrorCode BoxTableDestroy(BoxTable *table);
+
+/* BoxParts - of a source: two of a force, three of a dipole. Not collective. */
+static inline PetscInt BoxParts(const BoxTable *table) {
+  return table->components == 2 ? 2 : 3;
+}
 
 /* BoxTableFunctions - values[functions[dir]] of a direction's functions at the coordinate x (length). Not collective.
  */
 PETSC_EXTERN void BoxTableFunctions(const BoxTable *table, int dir, PetscReal x, PetscReal values[]);
+
+/* BoxTableRows - rows[count][rank]: the components first .. first + count - 1 of the functions at X, times `fade`.
+   BoxTableFade - the part of D that a marker at X has, less where the table ends, one cell of its coarser grid from its
+   last places. Not collective. */
+PETSC_EXTERN void BoxTableRows(const BoxTable *table, const PetscReal X[2], PetscReal fade, int first, int count,
+                               PetscReal rows[]);
+PETSC_EXTERN PetscReal BoxTableFade(const BoxTable *table, Grid grid, const PetscReal X[2]);
+
+/* BoxSmoothStep - 0 up to low, 1 from high on. BoxSum - SUM l x of n, in four lanes. Not collective. */
+static inline PetscReal BoxSmoothStep(PetscReal x, PetscReal low, PetscReal high) {
+  const PetscReal t = PetscMax(0, PetscMin(1, (x - low) / (high - low)));
+  return t * t * (3 - 2 * t);
+}
+PETSC_EXTERN PetscReal BoxSum(PetscInt n, const PetscReal l[], const PetscReal x[]);

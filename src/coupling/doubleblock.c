@@ -74,30 +74,62 @@ static void Contract(const PetscReal K[2][DIPOLE_COUNT], const PetscReal N[2], P
   }
 }
 
-/* D - L of distant markers, d = X_i - X_j: smoothing by the kernels and dispersion by the lattice, h^2/(48 pi r^3)
-   times these waves of the angle of d. */
-static void FarPair(const PetscReal d[2], PetscReal h, const PetscReal N[2], PetscReal M[4]) {
-  const PetscReal r = PetscHypotReal(d[0], d[1]), c = d[0] / r, s = d[1] / r, c2 = c * c - s * s, s2 = 2 * c * s;
-  const PetscReal c3 = c2 * c - s2 * s, s3 = s2 * c + c2 * s, c5 = c3 * c2 - s3 * s2, s5 = s3 * c2 + c3 * s2;
-  const PetscReal c7 = c5 * c2 - s5 * s2, s7 = s5 * c2 + c5 * s2;
-  const PetscReal K[2][DIPOLE_COUNT] = {
-      {13 * c3 - 9 * c5 - 6 * c7, -17 * c3 - 3 * c5 + 6 * c7, 34 * s3 - 6 * s5 - 12 * s7},
-      {17 * s3 - 3 * s5 - 6 * s7, -13 * s3 - 9 * s5 + 6 * s7, -34 * c3 - 6 * c5 + 12 * c7}};
-  Contract(K, N, h * h / (48 * PETSC_PI * r * r * r), M);
+/* D of unit tensor parts, which are 2 J_x N_x, 2 J_y N_y and J_x N_y + J_y N_x of a marker; r from target to source. */
+static void FreeParts(const PetscReal r[2], PetscReal K[2][DIPOLE_COUNT]) {
+  const PetscReal r2 = r[0] * r[0] + r[1] * r[1], q = -1 / (PETSC_PI * r2 * r2);
+  for (int c = 0; c < 2; c++) {
+    K[c][DIPOLE_XX] = 0.5 * q * r[0] * r[0] * r[c];
+    K[c][DIPOLE_YY] = 0.5 * q * r[1] * r[1] * r[c];
+    K[c][DIPOLE_XY] = q * r[0] * r[1] * r[c];
+  }
 }
 
-/* L of markers i and j, d = X_i - X_j of the image meant (length). */
+/* D - L of distant markers, d = X_i - X_j: smoothing by the kernels and dispersion by the lattice, h^2/(48 pi r^3)
+   times these waves of the angle of d. */
+static void FarParts(const PetscReal d[2], PetscReal h, PetscReal K[2][DIPOLE_COUNT]) {
+  const PetscReal r = PetscHypotReal(d[0], d[1]), c = d[0] / r, s = d[1] / r, c2 = c * c - s * s, s2 = 2 * c * s;
+  const PetscReal c3 = c2 * c - s2 * s, s3 = s2 * c + c2 * s, c5 = c3 * c2 - s3 * s2, s5 = s3 * c2 + c3 * s2;
+  const PetscReal c7 = c5 * c2 - s5 * s2, s7 = s5 * c2 + c5 * s2, scale = h * h / (48 * PETSC_PI * r * r * r);
+  K[0][DIPOLE_XX] = scale * (13 * c3 - 9 * c5 - 6 * c7);
+  K[0][DIPOLE_YY] = scale * (-17 * c3 - 3 * c5 + 6 * c7);
+  K[0][DIPOLE_XY] = scale * (34 * s3 - 6 * s5 - 12 * s7);
+  K[1][DIPOLE_XX] = scale * (17 * s3 - 3 * s5 - 6 * s7);
+  K[1][DIPOLE_YY] = scale * (-13 * s3 - 9 * s5 + 6 * s7);
+  K[1][DIPOLE_XY] = scale * (-34 * c3 - 6 * c5 + 12 * c7);
+}
+
+static void FarPair(const PetscReal d[2], PetscReal h, const PetscReal N[2], PetscReal M[4]) {
+  PetscReal K[2][DIPOLE_COUNT];
+  FarParts(d, h, K);
+  Contract((const PetscReal(*)[DIPOLE_COUNT])K, N, 1, M);
+}
+
+void DoubleLatticeParts(const OffsetTable lattice[2], PetscReal h, PetscReal reach, const PaddedStencil response[2],
+                        const PaddedStencil dipole[DIPOLE_COUNT], const PetscInt cells[2], const PetscReal d[2],
+                        PetscReal K[2][DIPOLE_COUNT]) {
+  const PetscReal r[2] = {-d[0], -d[1]};
+  PetscReal far[2][DIPOLE_COUNT];
+  if (d[0] * d[0] + d[1] * d[1] <= reach * reach) {
+    for (int c = 0; c < 2; c++)
+      for (int k = 0; k < DIPOLE_COUNT; k++)
+        K[c][k] = StencilShiftedSum(&lattice[c], (OffsetBlock)k, &response[c], &dipole[k], cells) / h;
+    return;
+  }
+  FreeParts(r, K);
+  FarParts(d, h, far);
+  for (int c = 0; c < 2; c++)
+    for (int k = 0; k < DIPOLE_COUNT; k++) K[c][k] -= far[c][k];
+}
+
+/* L of near markers i and j, d = X_i - X_j of the image meant (length). */
 static void LatticePair(DoubleLayer s, PetscInt i, PetscInt j, const PetscReal d[2], PetscReal L[4]) {
   const NearField f = s->near;
-  const PetscReal *X = f->markers->X, cell = 1 / f->markers->grid->h;
+  const PetscReal *X = f->markers->X, h = f->markers->grid->h;
   PetscReal K[2][DIPOLE_COUNT];
   PetscInt cells[2];
-  for (int dir = 0; dir < 2; dir++) cells[dir] = (PetscInt)rint((d[dir] - (X[2 * i + dir] - X[2 * j + dir])) * cell);
-  for (int c = 0; c < 2; c++)
-    for (int k = 0; k < DIPOLE_COUNT; k++)
-      K[c][k] = StencilShiftedSum(&s->lattice[c], (OffsetBlock)k, &f->stencil[2 * i + c],
-                                  &s->dipole[DIPOLE_COUNT * j + k], cells);
-  Contract(K, s->normal + 2 * j, cell, L);
+  for (int dir = 0; dir < 2; dir++) cells[dir] = (PetscInt)rint((d[dir] - (X[2 * i + dir] - X[2 * j + dir])) / h);
+  DoubleLatticeParts(s->lattice, h, PETSC_MAX_REAL, &f->stencil[2 * i], &s->dipole[DIPOLE_COUNT * j], cells, d, K);
+  Contract((const PetscReal(*)[DIPOLE_COUNT])K, s->normal + 2 * j, 1, L);
 }
 
 /* C = D - L of two markers, and L; r from the target i to the source j's image, own: D(i, i) of a marker with itself;
@@ -156,18 +188,19 @@ PetscErrorCode DoubleBlockFill(DoubleLayer s, const DoubleBlock *b, PetscBool la
   for (PetscInt q = 0; q < m; q++)
     for (PetscInt p = 0; p < n; p++) {
       const PetscInt i = l->start[b->row] + p, j = l->start[b->column] + q;
-      const PetscReal r[2] = {X[2 * j] + b->shift[0] - X[2 * i], X[2 * j + 1] + b->shift[1] - X[2 * i + 1]};
+      PetscReal d[2] = {X[2 * i] - X[2 * j] - b->shift[0], X[2 * i + 1] - X[2 * j + 1] - b->shift[1]};
+      const PetscReal part = lattice && f->box ? BoxPartImage(f->box, d) : 1, r[2] = {-d[0], -d[1]};
       const PetscReal *own = self && p == q ? diagonal + 3 * p : NULL, *N = s->normal + 2 * j;
       PetscReal C[4], L[4], *at = value + 2 * q * 2 * n + 2 * p;
       if (lattice) {
         Pair(s, i, j, r, reach, own, C, L);
-        for (int c = 0; c < 2; c++) flux[2 * p + c] += (L[c] * N[0] + L[2 + c] * N[1]) / s->along[j];
+        for (int c = 0; c < 2; c++) flux[2 * p + c] += part * (L[c] * N[0] + L[2 + c] * N[1]) / s->along[j];
       } else
         Whole(s, j, r, own, C);
-      at[0] = C[0];
-      at[1] = C[1];
-      at[2 * n] = C[2];
-      at[2 * n + 1] = C[3];
+      at[0] = part * C[0];
+      at[1] = part * C[1];
+      at[2 * n] = part * C[2];
+      at[2 * n + 1] = part * C[3];
     }
   if (lattice) PutFluxBack(s, b, flux, value);
   PetscCall(PetscFree2(flux, diagonal));

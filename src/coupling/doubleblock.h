@@ -15,3 +15,10 @@ PETSC_EXTERN PetscErrorCode DoubleSelf(Spectral spectral, PetscInt n, const Pets
 /* DoubleGeometry - n w [2n] and w [n] of a curve's markers: the derivative by the label, turned. Not collective. */
 PETSC_EXTERN PetscErrorCode DoubleGeometry(Spectral spectral, PetscInt n, const PetscReal X[], PetscReal normal[],
                                            PetscReal along[]);
+
+/* DoubleLatticeParts - what the lattice's tables (LatticeDipoles) give of unit parts of a dipole at a marker,
+   K[component of the velocity][part]: responses' and dipole's stencils, `cells` added to their offset, d from source to
+   target (length); beyond `reach` by the closed form. Not collective. */
+PETSC_EXTERN void DoubleLatticeParts(const OffsetTable lattice[2], PetscReal h, PetscReal reach,
+                                     const PaddedStencil response[2], const PaddedStencil dipole[DIPOLE_COUNT],
+                                     const PetscInt cells[2], const PetscReal d[2], PetscReal K[2][DIPOLE_COUNT]);

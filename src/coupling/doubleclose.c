@@ -70,7 +70,7 @@ static PetscBool Belongs(DoubleLayer s, const DoubleBlock *b, const NearClose *c
     PetscBool same = b->row == (turned ? of->column : of->row) && b->column == (turned ? of->row : of->column);
     for (int d = 0; d < 2; d++) {
       shift[d] = turned ? -c->shift[d] : c->shift[d];
-      if (b->shift[d] != shift[d]) same = PETSC_FALSE;
+      if (b->shift[d] != shift[d] && !s->near->box) same = PETSC_FALSE; /* with a box part all images share a block */
     }
     if (same) return PETSC_TRUE;
   }

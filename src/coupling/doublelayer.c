@@ -30,9 +30,16 @@ PetscErrorCode DoubleLayerDestroy(DoubleLayer *layer) {
   PetscCall(PetscFree3(s->normal, s->along, s->dipole));
   PetscCall(PetscFree3(s->jump, s->plain, s->tensor));
   for (int c = 0; c < 2; c++) PetscCall(OffsetTableDestroy(&s->lattice[c]));
+  PetscCall(DoubleBoxDestroy(&s->box));
   PetscCall(PetscFree(s->block));
   PetscCall(PetscFree(s->value));
   PetscCall(PetscFree(*layer));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode DoubleLayerAddBoxPart(DoubleLayer s, const FluidSpec *spec) {
+  PetscFunctionBeginUser;
+  PetscCall(DoubleBoxCreate(spec, s->near->markers, &s->box));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -105,6 +112,7 @@ PetscErrorCode DoubleLayerPlace(DoubleLayer s) {
     PetscCall(DoubleBlockFill(s, b, s->near->free ? PETSC_FALSE : PETSC_TRUE, s->value + b->at));
     PetscCall(DoubleCloseAdd(s, b, s->value + b->at));
   }
+  if (s->box) DoubleBoxPlace(s->box);
   PetscCall(PetscLogEventEnd(s->place, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -124,19 +132,6 @@ PetscErrorCode DoubleLayerSet(DoubleLayer s, const PetscScalar U[]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode DoubleLayerApply(DoubleLayer s, PetscReal alpha, PetscScalar y[]) {
-  const Layout l = s->near->membrane->layout;
-  PetscFunctionBeginUser;
-  PetscCall(PetscLogEventBegin(s->apply, 0, 0, 0, 0));
-  for (PetscInt k = 0; k < s->blocks; k++) {
-    const DoubleBlock *b = &s->block[k];
-    PetscCall(DenseMultAdd(2 * LayoutCount(l, b->row), 2 * LayoutCount(l, b->column), alpha, s->value + b->at,
-                           s->plain + 2 * l->start[b->column], y + 2 * LayoutOffset(l, b->row)));
-  }
-  PetscCall(PetscLogEventEnd(s->apply, 0, 0, 0, 0));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Tensors of the dipoles, less the jump's flux; zero where there is no jump, as for a ratio of 1, which has no normals.
  */
 static void Tensors(DoubleLayer s) {
@@ -148,6 +143,23 @@ static void Tensors(DoubleLayer s) {
     T[DIPOLE_YY] = none ? 0 : 2 * J[1] * N[1];
     T[DIPOLE_XY] = none ? 0 : J[0] * N[1] + J[1] * N[0];
   }
+}
+
+PetscErrorCode DoubleLayerApply(DoubleLayer s, PetscReal alpha, PetscScalar y[]) {
+  const Layout l = s->near->membrane->layout;
+  PetscFunctionBeginUser;
+  PetscCall(PetscLogEventBegin(s->apply, 0, 0, 0, 0));
+  for (PetscInt k = 0; k < s->blocks; k++) {
+    const DoubleBlock *b = &s->block[k];
+    PetscCall(DenseMultAdd(2 * LayoutCount(l, b->row), 2 * LayoutCount(l, b->column), alpha, s->value + b->at,
+                           s->plain + 2 * l->start[b->column], y + 2 * LayoutOffset(l, b->row)));
+  }
+  if (s->box) {
+    Tensors(s);
+    PetscCall(DoubleBoxApply(s->box, alpha, s->tensor + DIPOLE_COUNT * l->first, y));
+  }
+  PetscCall(PetscLogEventEnd(s->apply, 0, 0, 0, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode DoubleLayerSpread(DoubleLayer s, Vec w, Vec source, PetscReal mean[2]) {

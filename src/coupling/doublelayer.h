@@ -9,6 +9,7 @@
    near field (nearfield.h), whose pairs of vesicles it has, and Q, which takes the net flux off a vesicle's J, as the
    spreading on the grid does. In unbounded fluid L = 0. */
 #pragma once
+#include "coupling/doublebox.h"
 #include "coupling/latticedipole.h"
 #include "coupling/nearfield.h"
 
@@ -37,6 +38,7 @@ struct _p_DoubleLayer {
   PetscScalar *plain;  /* [2M] J */
   PetscReal *tensor;   /* [DIPOLE_COUNT M] work */
   PetscScalar *column; /* [2 most markers of a vesicle] work */
+  DoubleBox box;       /* NULL without box part */
   PetscLogEvent place, apply;
 };
 
@@ -44,13 +46,18 @@ struct _p_DoubleLayer {
 PETSC_EXTERN PetscErrorCode DoubleLayerCreate(NearField near, const PetscReal ratio[], DoubleLayer *layer);
 PETSC_EXTERN PetscErrorCode DoubleLayerDestroy(DoubleLayer *layer);
 
+/* DoubleLayerAddBoxPart - from here on with the box part, as the near field, for the fluid that spec makes. Collective.
+ */
+PETSC_EXTERN PetscErrorCode DoubleLayerAddBoxPart(DoubleLayer layer, const FluidSpec *spec);
+
 /* DoubleLayerPlace - C_D where the near field has been placed (NearFieldPlace). Collective. */
 PETSC_EXTERN PetscErrorCode DoubleLayerPlace(DoubleLayer layer);
 
 /* DoubleLayerSet - the jump that the next two act on: of markers that move with U[2n], this rank's part. Collective. */
 PETSC_EXTERN PetscErrorCode DoubleLayerSet(DoubleLayer layer, const PetscScalar U[]);
 
-/* DoubleLayerApply - y += alpha C_D J, this rank's part y[2n] of a marker vector. Not collective. */
+/* DoubleLayerApply - y += alpha (C_D J and the box part of its dipoles), this rank's part y[2n] of a marker vector.
+   Collective. */
 PETSC_EXTERN PetscErrorCode DoubleLayerApply(DoubleLayer layer, PetscReal alpha, PetscScalar y[]);
 
 /* DoubleLayerSpread - w += the force of J's dipoles, source += G^T of the velocity that is their source; mean += the
@@ -62,7 +69,8 @@ PETSC_EXTERN PetscErrorCode DoubleLayerSpread(DoubleLayer layer, Vec w, Vec sour
    dipoles add to the sum of force times place. Not collective. */
 PETSC_EXTERN void DoubleLayerStress(DoubleLayer layer, PetscReal sum[3]);
 
-/* DoubleLayerAdd - out += scale C_D (1 - ratio) or, without lattice, D (1 - ratio), between the markers first .. first
+/* DoubleLayerAdd - out += scale C_D (1 - ratio) (without box part) or, without lattice, D (1 - ratio), between the
+   markers first .. first
    + n
    - 1: out[2n][2n], columns one after another, the rows of own markers only. Not collective. */
 PETSC_EXTERN PetscErrorCode DoubleLayerAdd(DoubleLayer layer, PetscReal scale, PetscBool lattice, PetscInt first,

@@ -12,6 +12,19 @@ static PetscBool IsSingle(Scheme s, PetscInt k) {
   return k < 3 && s->scene->output.precision == PRECISION_SINGLE ? PETSC_TRUE : PETSC_FALSE;
 }
 
+/* The ratios of viscosities, where they are not all 1. */
+static PetscErrorCode PutRatios(H5File *f, Scene scene) {
+  const PetscInt n = scene->shape.vesicles;
+  PetscReal *ratio;
+  PetscFunctionBeginUser;
+  if (!SceneHasContrast(scene)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMalloc1(n, &ratio));
+  for (PetscInt v = 0; v < n; v++) ratio[v] = SceneViscosityRatio(scene, v);
+  PetscCall(H5PutReals(f, "vesicle_viscosity_ratio", n, ratio));
+  PetscCall(PetscFree(ratio));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode Create(Scheme s, const char path[], H5File *f) {
   const Grid g = s->fluid->grid;
   const Layout l = s->membrane->layout;
@@ -26,6 +39,7 @@ static PetscErrorCode Create(Scheme s, const char path[], H5File *f) {
   PetscCall(H5PutReals(f, "c_b", 1, &scene->membrane.bending));
   PetscCall(H5PutInts(f, "vesicle_start", l->bodies + 1, l->start));
   if (l->bodies) PetscCall(H5PutReals(f, "vesicle_c_b", l->bodies, scene->membrane.each));
+  PetscCall(PutRatios(f, scene));
   PetscCall(H5PutString(f, "about",
                         "u, v: velocity (background included) at cell centres; p: pressure at cell centres, of the "
                         "disturbance unless -flow_form total; tension k on the edge from marker k-1 to marker k"));

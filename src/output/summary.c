@@ -38,6 +38,17 @@ static void PrintInertia(FILE *f, Scene scene, PetscReal cfl_max) {
   fprintf(f, ",\n");
 }
 
+/* The least and the largest ratio of viscosities, where they are not all 1. */
+static void PrintRatios(FILE *f, Scene scene) {
+  PetscReal low = PETSC_MAX_REAL, high = 0;
+  if (!SceneHasContrast(scene)) return;
+  for (PetscInt v = 0; v < scene->shape.vesicles; v++) {
+    low = PetscMin(low, SceneViscosityRatio(scene, v));
+    high = PetscMax(high, SceneViscosityRatio(scene, v));
+  }
+  fprintf(f, "  \"viscosity_ratio\": [%.6g, %.6g],\n", (double)low, (double)high);
+}
+
 /* What the run has warned of, in order. */
 static void PrintWarnings(FILE *f, const Warnings *w) {
   fprintf(f, "  \"warnings\": [");
@@ -89,6 +100,7 @@ static PetscErrorCode Print(FILE *f, const void *what) {
           (int)s->scheme->scene->fluid.cells[0], (int)s->scheme->scene->fluid.cells[1], s->ranks);
   fprintf(f, "  \"written\": {\"frames\": %d, \"bytes\": %.0f, \"bytes_run_h5\": %.0f},\n", (int)s->written->frames,
           s->written->all, s->written->h5);
+  PrintRatios(f, s->scheme->scene);
   PrintInertia(f, s->scheme->scene, r->cfl_max);
   PrintWarnings(f, &s->scheme->warnings);
   PrintVersions(f);

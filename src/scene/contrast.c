@@ -30,10 +30,6 @@ static PetscErrorCode CheckBox(Scene scene, PetscReal ratio) {
   PetscCheck(scene->fluid.drive != DRIVE_FLUX, scene->comm, PETSC_ERR_USER_INPUT,
              "-vesicle_viscosity_ratio %g: not with -flow_drive flux; allowed: 1, or -flow_drive pressure",
              (double)ratio);
-  PetscCheck(!scene->coupling.box_part, scene->comm, PETSC_ERR_USER_INPUT,
-             "-vesicle_viscosity_ratio %g: not with -coupling_box_part true, which is of the single layer only; "
-             "allowed: 1, or -coupling_box_part false",
-             (double)ratio);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -218,7 +218,7 @@ static PetscErrorCode CreateMatrix(DirectSolver d, Mat *A) {
   const PetscInt sigma = n - d->each * d->M;
   for (PetscInt k = sigma; k < n && g->rank == g->size - 1; k++) {
     const PetscBool U = k >= sigma + d->M && k < sigma + 3 * d->M && d->coupling->near ? PETSC_TRUE : PETSC_FALSE;
-    room[k] = 4 * FEW + 3 * longest + (U ? (d->each - 3) * d->M : 0);
+    room[k] = 4 * FEW + 3 * longest + (U ? (d->source ? 6 : 2) * d->M : 0);
   }
   PetscCall(AddInterpolation(d, NULL, room, 0, 0));
   if (d->source) PetscCall(DirectRoom(d, room));

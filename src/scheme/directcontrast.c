@@ -76,6 +76,27 @@ static PetscErrorCode AddJump(DirectSolver d, Mat A, PetscInt v, PetscInt U, Pet
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The box part in the rows of the own U: minus D of J's dipoles. */
+static PetscErrorCode AddBoxPart(DirectSolver d, Mat A, PetscInt U, PetscInt J) {
+  const DoubleLayer s = d->coupling->contrast;
+  const Layout l = d->coupling->membrane->layout;
+  PetscReal *D;
+  PetscFunctionBeginUser;
+  if (!s->box) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscCalloc1(2 * DIPOLE_COUNT * l->M * l->M, &D));
+  PetscCall(DoubleBoxMatrix(s->box, -1, D));
+  for (PetscInt i = 2 * l->first; i < 2 * (l->first + l->n); i++)
+    for (PetscInt j = 0; j < 2 * l->M; j++) {
+      PetscReal T[DIPOLE_COUNT], sum = 0;
+      if (s->ratio[LayoutBody(l, j / 2)] == 1) continue;
+      UnitTensor(s, j / 2, (int)(j % 2), T);
+      for (int q = 0; q < DIPOLE_COUNT; q++) sum += T[q] * D[(DIPOLE_COUNT * (j / 2) + q) * 2 * l->M + i];
+      PetscCall(MatSetValue(A, U + i, J + j, sum, ADD_VALUES));
+    }
+  PetscCall(PetscFree(D));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode DirectAddContrast(DirectSolver d, Mat A, PetscInt U, PetscInt J) {
   const Grid g = d->fluid->grid;
   const Layout l = d->coupling->membrane->layout;
@@ -89,6 +110,7 @@ PetscErrorCode DirectAddContrast(DirectSolver d, Mat A, PetscInt U, PetscInt J) 
     for (PetscInt j = 0; j < 2 * l->M; j++)
       if (B[i * 2 * l->M + j] != 0) PetscCall(MatSetValue(A, U + i, U + j, B[i * 2 * l->M + j], ADD_VALUES));
   PetscCall(PetscFree(B));
+  PetscCall(AddBoxPart(d, A, U, J));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

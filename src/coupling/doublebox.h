@@ -1,0 +1,29 @@
+/* The box part of the double layer, as boxpart.h of the single one: what walls and periodic images add to the dipoles'
+   velocity has an error of second order, which D takes off. */
+#pragma once
+#include "coupling/boxtable.h"
+#include "markers/markers.h"
+
+typedef struct _p_DoubleBox *DoubleBox;
+struct _p_DoubleBox {
+  Markers markers; /* borrowed */
+  BoxTable table;
+  PetscReal *response;  /* [2n][rank] of the own markers' velocities, */
+  PetscReal *source;    /* [DIPOLE_COUNT n][rank] and tensors: D = response diag(l) source^T */
+  PetscReal *amplitude; /* [rank] work */
+};
+
+/* DoubleBoxCreate - for markers on the grid that `spec` makes. Collective. */
+PETSC_EXTERN PetscErrorCode DoubleBoxCreate(const FluidSpec *spec, Markers markers, DoubleBox *box);
+PETSC_EXTERN PetscErrorCode DoubleBoxDestroy(DoubleBox *box);
+
+/* DoubleBoxPlace - where the markers have been placed. Not collective. */
+PETSC_EXTERN void DoubleBoxPlace(DoubleBox box);
+
+/* DoubleBoxApply - y += alpha D T, own part y[2n] of a marker vector, tensors T[DIPOLE_COUNT n] of the own markers.
+   Collective. */
+PETSC_EXTERN PetscErrorCode DoubleBoxApply(DoubleBox box, PetscReal alpha, const PetscReal T[], PetscScalar y[]);
+
+/* DoubleBoxMatrix - out[2M][DIPOLE_COUNT M] += scale D, columns one after another of all markers' tensors, rows of the
+   own markers. Not collective. */
+PETSC_EXTERN PetscErrorCode DoubleBoxMatrix(DoubleBox box, PetscReal scale, PetscReal out[]);
