@@ -54,10 +54,10 @@ static PetscInt Count(const char text[], char what) {
 }
 
 /* A row has room for the longest numbers of all its vesicles, and comes back from its text. Of up to 40 vesicles it has
-   14 columns each. */
+   15 columns each. */
 static PetscErrorCode CheckRows(PetscInt vesicles) {
   const PetscBool own = vesicles > 1 && vesicles <= 40 ? PETSC_TRUE : PETSC_FALSE;
-  const PetscInt columns = COLUMN_COUNT + (own ? 14 * vesicles : 0);
+  const PetscInt columns = COLUMN_COUNT + (own ? 15 * vesicles : 0);
   char number[32], *text;
   size_t used = 0;
   Record record;

@@ -80,7 +80,7 @@ static PetscErrorCode Facts(void) {
   static const char *const grids[] = {
       "-domain_box -1,1,-1,1 -domain_cells 48,48", "-domain_box -1,1,-1,1.1860465116279069 -domain_cells 43,47",
       "-domain_box 0,3,0,1.0540540540540540 -domain_cells 74,26", "-domain_box 0,1,0,2.24 -domain_cells 25,56",
-      "-domain_box 0,1,0,1.25 -domain_cells 8,10"};
+      "-domain_box 0,1,0,1.875 -domain_cells 8,15"};
   static const char *const kinds[] = {"-domain_bc_y periodic -fluid_inertia unsteady",
                                       "-domain_bc_y periodic -fluid_inertia none", "-fluid_inertia unsteady",
                                       "-fluid_inertia none", "-fluid_inertia none -flow_drive flux"};
