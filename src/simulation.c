@@ -122,6 +122,21 @@ static PetscErrorCode AddContrast(Scene scene, Coupling coupling) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Which rank has which vesicles and obstacles. */
+static PetscErrorCode CreateLayouts(MPI_Comm comm, Scene scene, Simulation s) {
+  const Shape *vesicles = &scene->shape, *solid = &scene->obstacles.outline;
+  const PetscInt n = vesicles->vesicles, all = n + solid->vesicles;
+  PetscInt *start;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(all + 1, &start));
+  PetscCall(PetscArraycpy(start, vesicles->start, n + 1));
+  for (PetscInt b = 1; b <= solid->vesicles; b++) start[n + b] = start[n] + solid->start[b];
+  PetscCall(LayoutCreate(comm, all, start, &s->all));
+  PetscCall(LayoutCreatePart(s->all, 0, n, &s->layout));
+  PetscCall(PetscFree(start));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode Build(MPI_Comm comm, PetvesFlow flow, void *ctx, Simulation s) {
   Scene scene;
   PetscFunctionBeginUser;
@@ -132,12 +147,13 @@ static PetscErrorCode Build(MPI_Comm comm, PetvesFlow flow, void *ctx, Simulatio
   PetscCall(SceneReport(scene));
   PetscCall(WisdomRead(comm, scene->wisdom));
   PetscCall(FluidCreate(&scene->fluid, &s->fluid));
-  PetscCall(LayoutCreate(comm, scene->shape.vesicles, scene->shape.start, &s->layout));
+  PetscCall(CreateLayouts(comm, scene, s));
+  PetscCall(ObstaclesCreate(scene, s->all, &s->obstacles));
   PetscCall(MembraneCreate(s->layout, scene->shape.X, scene->membrane.each, (DerivativeType)scene->membrane.derivative,
                            &s->membrane));
   PetscCall(SetWeights(scene, s->membrane));
-  PetscCall(CouplingCreate(s->fluid, s->membrane, scene->coupling.kernel, (NearFieldType)scene->coupling.near_field,
-                           &s->coupling));
+  PetscCall(CouplingCreate(s->fluid, s->membrane, s->obstacles, scene->coupling.kernel,
+                           (NearFieldType)scene->coupling.near_field, &s->coupling));
   if (s->coupling->near && SceneHasBoxPart(scene)) PetscCall(NearFieldAddBoxPart(s->coupling->near, &scene->fluid));
   PetscCall(AddContrast(scene, s->coupling));
   if (scene->repulsion.stress > 0 && scene->shape.vesicles)
@@ -183,7 +199,9 @@ PetscErrorCode SimulationDestroy(Simulation *simulation) {
   PetscCall(SchemeDestroy(&s->scheme));
   PetscCall(CouplingDestroy(&s->coupling));
   PetscCall(MembraneDestroy(&s->membrane));
+  PetscCall(ObstaclesDestroy(&s->obstacles));
   PetscCall(LayoutDestroy(&s->layout));
+  PetscCall(LayoutDestroy(&s->all));
   PetscCall(FluidDestroy(&s->fluid));
   PetscCall(SceneDestroy(&s->scene));
   PetscCall(PetscFree(s));

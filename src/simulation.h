@@ -5,7 +5,9 @@
 struct _p_Simulation {
   Scene scene;
   Fluid fluid;
-  Layout layout;
+  Layout all;          /* vesicles, then obstacles */
+  Layout layout;       /* vesicles */
+  Obstacles obstacles; /* NULL without */
   Membrane membrane;
   Coupling coupling;
   Scheme scheme;

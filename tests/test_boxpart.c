@@ -27,7 +27,7 @@ static PetscErrorCode WorldCreate(const char options[], PetscInt cells, PetscBoo
   PetscCall(LayoutCreate(s->comm, s->shape.vesicles, s->shape.start, &w->layout));
   PetscCall(
       MembraneCreate(w->layout, s->shape.X, s->membrane.each, (DerivativeType)s->membrane.derivative, &w->membrane));
-  PetscCall(CouplingCreate(w->fluid, w->membrane, s->coupling.kernel, NEAR_EXACT, &w->coupling));
+  PetscCall(CouplingCreate(w->fluid, w->membrane, NULL, s->coupling.kernel, NEAR_EXACT, &w->coupling));
   if (box) PetscCall(NearFieldAddBoxPart(w->coupling->near, &s->fluid));
   PetscCall(LayoutCreateVec(w->layout, 2, &X));
   PetscCall(VecGetArray(X, &x));

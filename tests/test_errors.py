@@ -31,6 +31,7 @@ CURVES = {
     "control character": CIRCLE[:2] + ["0.1\x1c 0.2"] + CIRCLE[2:],
     "three columns": ["0.1 0.2 0.3"] + CIRCLE,
     "repeated point": CIRCLE[:5] + CIRCLE[4:],
+    "open": ["# open", *CIRCLE],
     "flat": [f"{0.01 * k} 0" for k in range(20)],
 }
 

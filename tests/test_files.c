@@ -62,7 +62,7 @@ static PetscErrorCode CheckRows(PetscInt vesicles) {
   size_t used = 0;
   Record record;
   PetscFunctionBeginUser;
-  PetscCall(RecordCreate(vesicles, &record));
+  PetscCall(RecordCreate(vesicles, 0, &record));
   CHECK(Count(record.header, ',') == columns - 1, "%d vesicles: %d columns", (int)vesicles, (int)columns);
   PetscCall(PetscSNPrintf(number, sizeof(number), "energy_gravity_%d", (int)vesicles));
   CHECK(!strcmp(strrchr(record.header, ',') + 1, own ? number : "normal_stress"), "%d vesicles: the last column",

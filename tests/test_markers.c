@@ -231,7 +231,7 @@ static PetscErrorCode CheckMessage(TestWorld *t, PetscInt vesicle, PetscReal x, 
   for (int c = 0; c < 2 && LayoutOwner(t->layout, vesicle) == t->layout->rank; c++)
     a[2 * LayoutOffset(t->layout, vesicle) + c] = move[c];
   PetscCall(VecRestoreArray(X, &a));
-  PetscCall(MarkersCheck(t->coupling->markers, X, message));
+  PetscCall(MarkersCheck(t->coupling->markers, t->coupling->markers->layout, X, message));
   PetscCall(PetscSNPrintf(who, sizeof(who), "vesicle %" PetscInt_FMT ":", vesicle + 1));
   CHECK(what ? strstr(message, who) && strstr(message, what) : !*message,
         "a marker of vesicle %d at (%g, %g), known on all ranks: %s", (int)vesicle + 1, x, y,

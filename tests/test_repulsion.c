@@ -76,13 +76,13 @@ static PetscErrorCode CheckSprings(const Case *c, Repulsion r, Layout l, const P
 }
 
 /* With a range shorter than every film there is neither spring nor force nor energy. */
-static PetscErrorCode CheckRange(const Case *c, const TestMembrane *m, Grid grid, const PetscReal X[]) {
+static PetscErrorCode CheckRange(const Case *c, const TestMembrane *m, Bodies bodies, Grid grid, const PetscReal X[]) {
   SceneRepulsion law = c->law;
   PetscReal *F, energy, largest = 0;
   Repulsion r;
   PetscFunctionBeginUser;
   law.range = law.band = 1e-3;
-  PetscCall(RepulsionCreate(m->membrane, grid, &law, &r));
+  PetscCall(RepulsionCreate(bodies, grid, &law, &r));
   PetscCall(PetscCalloc1(2 * m->M, &F));
   PetscCall(RepulsionPlace(r, X));
   PetscCall(RepulsionAt(r, 1, X, F, &energy));
@@ -99,20 +99,23 @@ static PetscErrorCode Facts(void) {
   for (size_t k = 0; k < sizeof(cases) / sizeof(cases[0]); k++) {
     char options[1024];
     TestMembrane m;
+    Bodies bodies;
     Repulsion r;
     Grid grid;
     PetscReal *X;
     PetscCall(PetscSNPrintf(options, sizeof(options), "%s%s", scene, cases[k].centers));
     PetscCall(TestMembraneCreate(options, &m));
     PetscCall(GridCreate(&m.scene->fluid, &grid));
-    PetscCall(RepulsionCreate(m.membrane, grid, &cases[k].law, &r));
+    PetscCall(BodiesCreate(m.membrane, NULL, &bodies));
+    PetscCall(RepulsionCreate(bodies, grid, &cases[k].law, &r));
     PetscCall(PetscMalloc1(2 * m.M, &X));
     PetscCall(PetscArraycpy(X, m.scene->shape.X, 2 * m.M));
     PetscCall(CheckSlope(&cases[k], r, m.layout, X));
     PetscCall(CheckSprings(&cases[k], r, m.layout, X));
-    PetscCall(CheckRange(&cases[k], &m, grid, X));
+    PetscCall(CheckRange(&cases[k], &m, bodies, grid, X));
     PetscCall(PetscFree(X));
     PetscCall(RepulsionDestroy(&r));
+    PetscCall(BodiesDestroy(&bodies));
     PetscCall(GridDestroy(&grid));
     PetscCall(TestMembraneDestroy(&m));
   }

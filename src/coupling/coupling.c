@@ -2,6 +2,33 @@
 
 #define EXPLICIT 0.3 /* of Return, what may pull along the old edges: order 3 bears .52, order 2 .89 */
 
+/* The own part of `from`, the vesicles', to the beginning of that of `to`, all bodies', or back. */
+static PetscErrorCode CopyVesicles(Coupling c, Vec from, Vec to) {
+  const PetscScalar *a;
+  PetscScalar *b;
+  PetscFunctionBeginUser;
+  PetscCall(VecGetArrayRead(from, &a));
+  PetscCall(VecGetArray(to, &b));
+  PetscCall(PetscArraycpy(b, a, 2 * c->membrane->layout->n));
+  PetscCall(VecRestoreArray(to, &b));
+  PetscCall(VecRestoreArrayRead(from, &a));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CouplingPlaceMarkers(Coupling c, Vec X) {
+  PetscFunctionBeginUser;
+  PetscCall(CopyVesicles(c, X, c->X));
+  PetscCall(MarkersPlace(c->markers, c->X));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CouplingInterpolate(Coupling c, Vec w, Vec U) {
+  PetscFunctionBeginUser;
+  PetscCall(MarkersInterpolate(c->markers, w, c->velocity));
+  PetscCall(CopyVesicles(c, c->velocity, U));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode CouplingPlace(Coupling c, PetscReal a0, Vec X, const PetscReal treading[],
                              char message[PETVES_MAX_MESSAGE]) {
   const PetscScalar *x;
@@ -10,10 +37,10 @@ PetscErrorCode CouplingPlace(Coupling c, PetscReal a0, Vec X, const PetscReal tr
   for (PetscInt v = 0; v < c->membrane->layout->bodies; v++) c->treading[v] = treading ? treading[v] : 0;
   PetscCall(PetscArrayzero(c->turning, c->membrane->layout->n));
   PetscCall(FluidSetTimeCoefficient(c->fluid, a0));
-  if (!CouplingHasMembrane(c)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(MarkersCheck(c->markers, X, message));
+  if (!CouplingHasBodies(c)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(MarkersCheck(c->markers, c->membrane->layout, X, message));
   if (*message) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(MarkersPlace(c->markers, X));
+  PetscCall(CouplingPlaceMarkers(c, X));
   PetscCall(VecGetArrayRead(X, &x));
   MembraneTangents(c->membrane, x, c->tau);
   PetscCall(VecRestoreArrayRead(X, &x));
@@ -225,30 +252,47 @@ static PetscErrorCode CreateShell(Coupling c, int each, ShellMult mult, ShellMul
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode CouplingCreate(Fluid fluid, Membrane m, const char kernel[], NearFieldType near, Coupling *out) {
+/* The obstacles' part of X, which stays. */
+static PetscErrorCode PlaceObstacles(Coupling c) {
+  const Obstacles o = c->bodies->obstacles;
+  PetscScalar *X;
+  PetscFunctionBeginUser;
+  if (!o) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecGetArray(c->X, &X));
+  PetscCall(PetscArraycpy(X + BodiesFirstObstacle(c->bodies), o->X + 2 * o->layout->first, 2 * o->layout->n));
+  PetscCall(VecRestoreArray(c->X, &X));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CouplingCreate(Fluid fluid, Membrane m, Obstacles obstacles, const char kernel[], NearFieldType near,
+                              Coupling *out) {
   Coupling c;
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&c));
   *out = c;
   c->fluid = fluid;
   c->membrane = m;
+  PetscCall(BodiesCreate(m, obstacles, &c->bodies));
   /* walls that move with the flow are not at rest in the total form: nothing to fold there */
   const PetscBool folded = near == NEAR_EXACT && !fluid->total ? PETSC_TRUE : PETSC_FALSE;
-  PetscCall(MarkersCreate(fluid->grid, m->layout, kernel, folded, &c->markers));
+  PetscCall(MarkersCreate(fluid->grid, c->bodies->layout, kernel, folded, &c->markers));
   PetscCall(PetscMalloc1(2 * m->layout->n, &c->tau));
   PetscCall(PetscCalloc1(m->layout->n, &c->turning));
   PetscCall(PetscCalloc1(m->layout->bodies, &c->treading));
-  PetscCall(LayoutCreateVec(m->layout, 2, &c->force));
+  PetscCall(LayoutCreateVec(c->bodies->layout, 2, &c->force));
+  PetscCall(VecDuplicate(c->force, &c->X));
+  PetscCall(PlaceObstacles(c));
   PetscCall(VecDuplicate(c->force, &c->velocity));
   PetscCall(CreateShell(c, 1, Mult_S, MultTranspose_S, &c->S));
   PetscCall(CreateShell(c, 2, Mult_B, MultTranspose_B, &c->B));
-  if (near == NEAR_EXACT && CouplingHasMembrane(c)) PetscCall(NearFieldCreate(c->markers, m, fluid->nu, &c->near));
+  if (near == NEAR_EXACT && CouplingHasBodies(c))
+    PetscCall(NearFieldCreate(c->markers, c->bodies, fluid->nu, &c->near));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode CouplingAddRepulsion(Coupling c, const SceneRepulsion *law) {
   PetscFunctionBeginUser;
-  PetscCall(RepulsionCreate(c->membrane, c->fluid->grid, law, &c->repulsion));
+  PetscCall(RepulsionCreate(c->bodies, c->fluid->grid, law, &c->repulsion));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -260,9 +304,11 @@ PetscErrorCode CouplingDestroy(Coupling *coupling) {
   PetscCall(DoubleLayerDestroy(&c->contrast));
   PetscCall(NearFieldDestroy(&c->near));
   PetscCall(MarkersDestroy(&c->markers));
+  PetscCall(BodiesDestroy(&c->bodies));
   PetscCall(PetscFree(c->tau));
   PetscCall(PetscFree(c->turning));
   PetscCall(PetscFree(c->treading));
+  PetscCall(VecDestroy(&c->X));
   PetscCall(VecDestroy(&c->force));
   PetscCall(VecDestroy(&c->velocity));
   PetscCall(MatDestroy(&c->S));

@@ -8,24 +8,27 @@
 
 typedef struct _p_Coupling *Coupling;
 struct _p_Coupling {
-  Fluid fluid;       /* borrowed */
-  Membrane membrane; /* borrowed; of no vesicle when the scene has none */
-  Markers markers;
+  Fluid fluid;          /* borrowed */
+  Membrane membrane;    /* borrowed; of no vesicle when the scene has none */
+  Bodies bodies;        /* vesicles and obstacles */
+  Markers markers;      /* of all bodies */
   NearField near;       /* NULL without */
   DoubleLayer contrast; /* NULL where all viscosities are alike (contrast.h) */
   Repulsion repulsion;  /* NULL without */
   PetscReal *tau;       /* [2n] tangents of the own vesicles */
   PetscReal *turning;   /* [n] the tension whose pull turns with the edges (length^3/time^2); CouplingTurn */
   PetscReal *treading;  /* [vesicles] V, the speed of the labels in which the step is made (1/time) */
-  Vec force;            /* marker vector, work */
-  Vec velocity;         /* marker vector, work */
+  Vec X;                /* markers of all bodies */
+  Vec force;            /* marker vector of all bodies, work */
+  Vec velocity;         /* the same, work */
   Mat S;                /* (velocity x tension) S = E^T Dm^T/h^2: minus the spread tension force */
   Mat B;                /* (velocity x marker vector) B = E^T (c_b ds/h^2) D4: minus the spread bending force */
 };
 
-/* CouplingCreate - of a fluid and membranes with the named kernel and near field; not placed yet. Collective. */
-PETSC_EXTERN PetscErrorCode CouplingCreate(Fluid fluid, Membrane membrane, const char kernel[], NearFieldType near,
-                                           Coupling *coupling);
+/* CouplingCreate - of a fluid, membranes and obstacles (NULL: none) with the named kernel and near field; not placed
+   yet. Collective. */
+PETSC_EXTERN PetscErrorCode CouplingCreate(Fluid fluid, Membrane membrane, Obstacles obstacles, const char kernel[],
+                                           NearFieldType near, Coupling *coupling);
 PETSC_EXTERN PetscErrorCode CouplingDestroy(Coupling *coupling);
 
 /* CouplingAddRepulsion - from here on with a force of short range between membranes. Not collective. */
@@ -44,9 +47,18 @@ PETSC_EXTERN PetscErrorCode CouplingPlace(Coupling coupling, PetscReal a0, Vec X
    collective. */
 PETSC_EXTERN PetscErrorCode CouplingTurn(Coupling coupling, Vec expected);
 
-/* CouplingHasMembrane - whether there is a vesicle. CouplingBending - c_b, 0 without a vesicle. Not collective. */
+/* CouplingPlaceMarkers - the markers only, E at the vesicles' X. CouplingInterpolate - U = E w of the vesicles.
+   Collective. */
+PETSC_EXTERN PetscErrorCode CouplingPlaceMarkers(Coupling coupling, Vec X);
+PETSC_EXTERN PetscErrorCode CouplingInterpolate(Coupling coupling, Vec w, Vec U);
+
+/* CouplingHasMembrane - whether there is a vesicle. CouplingHasBodies - or an obstacle. CouplingBending - c_b, 0
+ * without a vesicle. Not collective. */
 static inline PetscBool CouplingHasMembrane(Coupling coupling) {
   return coupling->membrane->layout->bodies > 0 ? PETSC_TRUE : PETSC_FALSE;
+}
+static inline PetscBool CouplingHasBodies(Coupling coupling) {
+  return coupling->bodies->layout->bodies > 0 ? PETSC_TRUE : PETSC_FALSE;
 }
 static inline PetscReal CouplingBending(Coupling coupling) {
   return CouplingHasMembrane(coupling) ? coupling->membrane->bending : 0;

@@ -169,7 +169,7 @@ static void Whole(DoubleLayer s, PetscInt j, const PetscReal r[2], const PetscRe
 /* value += (L n) (n w)^T/length: L acts on what Q leaves, flux[2n] being the rows' SUM L n over the column's markers.
  */
 static void PutFluxBack(DoubleLayer s, const DoubleBlock *b, const PetscReal flux[], PetscReal value[]) {
-  const Layout l = s->near->membrane->layout;
+  const Layout l = s->near->bodies->layout;
   const PetscInt n = 2 * LayoutCount(l, b->row), first = 2 * l->start[b->column];
   for (PetscInt j = 0; j < 2 * LayoutCount(l, b->column); j++)
     for (PetscInt i = 0; i < n; i++) value[j * n + i] += flux[i] * s->normal[first + j] / s->length[b->column];
@@ -177,14 +177,14 @@ static void PutFluxBack(DoubleLayer s, const DoubleBlock *b, const PetscReal flu
 
 PetscErrorCode DoubleBlockFill(DoubleLayer s, const DoubleBlock *b, PetscBool lattice, PetscReal value[]) {
   const NearField f = s->near;
-  const Layout l = f->membrane->layout;
+  const Layout l = f->bodies->layout;
   const PetscInt n = LayoutCount(l, b->row), m = LayoutCount(l, b->column);
   const PetscBool self = b->row == b->column && b->shift[0] == 0 && b->shift[1] == 0 ? PETSC_TRUE : PETSC_FALSE;
   const PetscReal *X = f->markers->X, reach = (self ? DOUBLE_CELLS : DOUBLE_CROSS_CELLS) * f->markers->grid->h;
   PetscReal *flux, *diagonal;
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc2(2 * n, &flux, 3 * n, &diagonal));
-  if (self) PetscCall(Diagonals(f->membrane->spectral[b->row], n, X + 2 * l->start[b->row], diagonal));
+  if (self) PetscCall(Diagonals(f->bodies->spectral[b->row], n, X + 2 * l->start[b->row], diagonal));
   for (PetscInt q = 0; q < m; q++)
     for (PetscInt p = 0; p < n; p++) {
       const PetscInt i = l->start[b->row] + p, j = l->start[b->column] + q;

@@ -47,7 +47,7 @@ static PetscErrorCode AddAt(DoubleLayer s, const DoubleBlock *block, const Petsc
   PetscCall(FineCurveCreate(s->near, block->column, shift, factor, &b));
   PetscCall(FineCurvePair(&a, &b, window));
   PetscCall(PetscMalloc4(a.n * b.n, &part[0], a.n * b.n, &part[1], a.n * b.n, &part[2], 2 * b.count, &N));
-  Normals(&b, s->normal + 2 * s->near->membrane->layout->start[block->column], N);
+  Normals(&b, s->normal + 2 * s->near->bodies->layout->start[block->column], N);
   PetscCall(Project(&a, &b, N, window, part));
   for (PetscInt j = 0; j < b.n; j++)
     for (PetscInt i = 0; i < a.n; i++) {

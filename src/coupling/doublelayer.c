@@ -4,7 +4,7 @@
 #include "coupling/doubleclose.h"
 
 PetscErrorCode DoubleLayerCreate(NearField near, const PetscReal ratio[], DoubleLayer *out) {
-  const Layout l = near->membrane->layout;
+  const Layout l = near->bodies->layout;
   PetscInt most = 0;
   DoubleLayer s;
   PetscFunctionBeginUser;
@@ -46,13 +46,13 @@ PetscErrorCode DoubleLayerAddBoxPart(DoubleLayer s, const FluidSpec *spec) {
 /* Normals and dipoles' stencils of the vesicles that have a jump. */
 static PetscErrorCode PlaceDipoles(DoubleLayer s) {
   const NearField f = s->near;
-  const Layout l = f->membrane->layout;
+  const Layout l = f->bodies->layout;
   const Grid g = f->markers->grid;
   PetscFunctionBeginUser;
   for (PetscInt v = 0; v < l->bodies; v++) {
     const PetscInt first = l->start[v];
     if (s->ratio[v] == 1) continue;
-    PetscCall(DoubleGeometry(f->membrane->spectral[v], LayoutCount(l, v), f->markers->X + 2 * first,
+    PetscCall(DoubleGeometry(f->bodies->spectral[v], LayoutCount(l, v), f->markers->X + 2 * first,
                              s->normal + 2 * first, s->along + first));
     s->length[v] = 0;
     for (PetscInt k = first; k < l->start[v + 1]; k++) {
@@ -70,7 +70,7 @@ static PetscErrorCode PlaceDipoles(DoubleLayer s) {
 }
 
 static PetscErrorCode AddBlock(DoubleLayer s, PetscInt row, PetscInt column, PetscReal sign, const PetscReal shift[2]) {
-  const Layout l = s->near->membrane->layout;
+  const Layout l = s->near->bodies->layout;
   PetscFunctionBeginUser;
   if (s->ratio[column] == 1 || row < l->own || row >= l->end) PetscFunctionReturn(PETSC_SUCCESS);
   if (s->blocks == s->block_room) {
@@ -118,7 +118,7 @@ PetscErrorCode DoubleLayerPlace(DoubleLayer s) {
 }
 
 PetscErrorCode DoubleLayerSet(DoubleLayer s, const PetscScalar U[]) {
-  const Layout l = s->near->membrane->layout;
+  const Layout l = s->near->bodies->layout;
   PetscFunctionBeginUser;
   PetscCall(LayoutGather(l, 2, U, s->plain));
   for (PetscInt v = 0; v < l->bodies; v++) {
@@ -135,7 +135,7 @@ PetscErrorCode DoubleLayerSet(DoubleLayer s, const PetscScalar U[]) {
 /* Tensors of the dipoles, less the jump's flux; zero where there is no jump, as for a ratio of 1, which has no normals.
  */
 static void Tensors(DoubleLayer s) {
-  for (PetscInt k = 0; k < s->near->membrane->layout->M; k++) {
+  for (PetscInt k = 0; k < s->near->bodies->layout->M; k++) {
     const PetscReal *J = s->jump + 2 * k, *N = s->normal + 2 * k;
     const PetscBool none = J[0] == 0 && J[1] == 0 ? PETSC_TRUE : PETSC_FALSE;
     PetscReal *T = s->tensor + DIPOLE_COUNT * k;
@@ -146,7 +146,7 @@ static void Tensors(DoubleLayer s) {
 }
 
 PetscErrorCode DoubleLayerApply(DoubleLayer s, PetscReal alpha, PetscScalar y[]) {
-  const Layout l = s->near->membrane->layout;
+  const Layout l = s->near->bodies->layout;
   PetscFunctionBeginUser;
   PetscCall(PetscLogEventBegin(s->apply, 0, 0, 0, 0));
   for (PetscInt k = 0; k < s->blocks; k++) {
@@ -169,7 +169,7 @@ PetscErrorCode DoubleLayerSpread(DoubleLayer s, Vec w, Vec source, PetscReal mea
   PetscFunctionBeginUser;
   if (f->free) PetscFunctionReturn(PETSC_SUCCESS);
   Tensors(s);
-  for (PetscInt k = 0; k < 2 * f->membrane->layout->M; k++) { /* J.n is half the trace */
+  for (PetscInt k = 0; k < 2 * f->bodies->layout->M; k++) { /* J.n is half the trace */
     const PetscReal *T = s->tensor + DIPOLE_COUNT * (k / 2);
     mean[k % 2] -= f->markers->X[k] * 0.5 * (T[DIPOLE_XX] + T[DIPOLE_YY]) / area;
   }
@@ -179,13 +179,13 @@ PetscErrorCode DoubleLayerSpread(DoubleLayer s, Vec w, Vec source, PetscReal mea
 
 void DoubleLayerStress(DoubleLayer s, PetscReal sum[3]) {
   Tensors(s);
-  for (PetscInt k = 0; k < s->near->membrane->layout->M; k++)
+  for (PetscInt k = 0; k < s->near->bodies->layout->M; k++)
     for (int q = 0; q < 3; q++) sum[q] += s->near->nu * s->tensor[DIPOLE_COUNT * k + q];
 }
 
 PetscErrorCode DoubleLayerAdd(DoubleLayer s, PetscReal scale, PetscBool lattice, PetscInt first, PetscInt n,
                               PetscReal out[]) {
-  const Layout l = s->near->membrane->layout;
+  const Layout l = s->near->bodies->layout;
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < s->blocks; k++) {
     const DoubleBlock *b = &s->block[k];

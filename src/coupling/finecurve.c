@@ -7,8 +7,8 @@ static PetscReal Distance2(const PetscReal a[2], const PetscReal b[2]) {
 }
 
 PetscErrorCode FineCurveCreate(NearField f, PetscInt v, const PetscReal shift[2], PetscInt factor, FineCurve *c) {
-  const PetscInt n = LayoutCount(f->membrane->layout, v), Q = n * factor;
-  const PetscReal *X = f->markers->X + 2 * f->membrane->layout->start[v];
+  const PetscInt n = LayoutCount(f->bodies->layout, v), Q = n * factor;
+  const PetscReal *X = f->markers->X + 2 * f->bodies->layout->start[v];
   PetscFunctionBeginUser;
   *c = (FineCurve){.n = n, .f = factor};
   PetscCall(PetscMalloc3(Q, &c->weight, 2 * Q, &c->x, Q, &c->used));

@@ -10,7 +10,7 @@ PetscErrorCode MobilityCreate(const FluidSpec *spec, Coupling c, PetscReal reach
   m->coupling = c;
   m->near = c->near ? NEAR : PETSC_MAX_REAL;
   PetscCall(MobilityTableCreate(spec, c->markers->kernel, reach, &m->table));
-  PetscCall(PetscMalloc1(2 * c->membrane->layout->M, &m->stencil));
+  PetscCall(PetscMalloc1(2 * c->bodies->layout->M, &m->stencil));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -57,7 +57,7 @@ static void SelfPart(NearField f, PetscInt v, PetscInt k, const PetscReal T[2], 
     S[2] = 0;
     return;
   }
-  const PetscReal t2 = T[0] * T[0] + T[1] * T[1], n = LayoutCount(f->membrane->layout, v);
+  const PetscReal t2 = T[0] * T[0] + T[1] * T[1], n = LayoutCount(f->bodies->layout, v);
   const PetscReal logarithm = -0.5 * (f->kress[v][0] + PetscLogReal(t2 * PetscSqr(n / (2 * PETSC_PI))));
   S[0] = factor * (logarithm + T[0] * T[0] / t2);
   S[1] = factor * (logarithm + T[1] * T[1] / t2);
@@ -214,7 +214,7 @@ static void FillRow(NearField f, const NearRow *r, Chunk *c) {
 
 /* A vesicle's own quadrature, to its block with itself. */
 static PetscErrorCode AddSelf(NearField f, const NearBlock *b) {
-  const Membrane m = f->membrane;
+  const Bodies m = f->bodies;
   const PetscInt first = m->layout->start[b->row];
   NearRow r = NearBlockBegin(m->layout, b);
   PetscReal *T, S[3];
@@ -237,7 +237,7 @@ static PetscErrorCode AddSelf(NearField f, const NearBlock *b) {
 }
 
 void NearBlockAdd(NearField f, const NearBlock *b, PetscReal scale, PetscReal *const part[4]) {
-  const Layout l = f->membrane->layout;
+  const Layout l = f->bodies->layout;
   const PetscInt rows = LayoutCount(l, b->row);
   NearRow r = NearBlockBegin(l, b);
   do {
@@ -265,13 +265,13 @@ static void FindWalls(NearField f, const NearBlock *b, PetscBool walls[2][2]) {
 
 PetscErrorCode NearBlockFill(NearField f, const NearBlock *b) {
   Chunk c = {.block = b, .self = NearBlockIsSelf(b), .back = b->row > b->column ? PETSC_TRUE : PETSC_FALSE};
-  NearRow r = NearBlockBegin(f->membrane->layout, b);
+  NearRow r = NearBlockBegin(f->bodies->layout, b);
   PetscFunctionBeginUser;
   if (f->image) FindWalls(f, b, c.walls);
   c.far = &f->far[c.self ? NEAR_ONE : NEAR_TWO];
   c.reach = c.far->reach * f->markers->grid->h;
   do FillRow(f, &r, &c);
-  while (NearBlockNext(f->membrane->layout, b, &r));
+  while (NearBlockNext(f->bodies->layout, b, &r));
   if (c.self) PetscCall(AddSelf(f, b));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

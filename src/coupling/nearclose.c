@@ -46,7 +46,7 @@ static PetscErrorCode AddAt(NearField f, const NearClose *close, PetscInt factor
 
 /* The larger spacing of two vesicles' markers. */
 static PetscReal Spacing(NearField f, PetscInt v, PetscInt w) {
-  return PetscMax(f->membrane->ds[v], f->membrane->ds[w]);
+  return PetscMax(f->bodies->ds[v], f->bodies->ds[w]);
 }
 
 PetscErrorCode NearCloseGap(NearField f, PetscInt row, PetscInt column, const PetscReal shift[2], PetscReal *gap,

@@ -17,14 +17,14 @@ static void Kress(PetscInt n, PetscReal k[]) {
   }
 }
 
-PetscErrorCode NearFieldCreate(Markers markers, Membrane m, PetscReal nu, NearField *out) {
-  const Layout l = m->layout;
+PetscErrorCode NearFieldCreate(Markers markers, Bodies bodies, PetscReal nu, NearField *out) {
+  const Layout l = bodies->layout;
   NearField f;
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&f));
   *out = f;
   f->markers = markers;
-  f->membrane = m;
+  f->bodies = bodies;
   f->nu = nu;
   f->free = markers->grid->free;
   f->many = l->bodies > NEAR_MANY ? PETSC_TRUE : PETSC_FALSE;
@@ -52,7 +52,7 @@ PetscErrorCode NearFieldDestroy(NearField *near) {
   PetscCall(PetscFree(f->close));
   PetscCall(PetscFree(f->store.value));
   PetscCall(PetscFree(f->store.single));
-  for (PetscInt v = 0; v < f->membrane->layout->bodies; v++) PetscCall(PetscFree(f->kress[v]));
+  for (PetscInt v = 0; v < f->bodies->layout->bodies; v++) PetscCall(PetscFree(f->kress[v]));
   PetscCall(PetscFree(f->kress));
   PetscCall(PetscFree2(f->stencil, f->bounds));
   PetscCall(PetscFree2(f->force, f->velocity));
@@ -71,7 +71,7 @@ PetscErrorCode NearFieldAddBoxPart(NearField f, const FluidSpec *spec) {
 
 /* The stencils of the vesicles that blocks are of, each once. */
 static PetscErrorCode PlaceStencils(NearField f) {
-  const Layout l = f->membrane->layout;
+  const Layout l = f->bodies->layout;
   PetscBool *done;
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(l->bodies, &done));
@@ -100,7 +100,7 @@ static PetscErrorCode Room(size_t count, size_t size, size_t *room, void **value
 }
 
 PetscErrorCode NearFieldPlace(NearField f) {
-  const Layout l = f->membrane->layout;
+  const Layout l = f->bodies->layout;
   PetscBool crossed = PETSC_FALSE;
   PetscFunctionBeginUser;
   PetscCall(PetscLogEventBegin(f->place, 0, 0, 0, 0));
@@ -150,7 +150,7 @@ static inline void ApplyRows(const int rows, const PetscBool single, const void 
 /* velocity[2n] += alpha C force[2M] of one block: both ways where both vesicles are own ones. */
 static inline void ApplyBlock(NearField f, const NearBlock *b, const PetscBool single, const void *value,
                               PetscReal alpha, const PetscScalar force[], PetscScalar velocity[]) {
-  const Layout l = f->membrane->layout;
+  const Layout l = f->bodies->layout;
   const PetscBool both = b->column >= l->own && b->column < l->end ? PETSC_TRUE : PETSC_FALSE;
   PetscInt rows;
   NearRow r = NearBlockBegin(l, b);
@@ -165,7 +165,7 @@ static inline void ApplyBlock(NearField f, const NearBlock *b, const PetscBool s
 }
 
 PetscErrorCode NearFieldApply(NearField f, PetscReal alpha, const PetscScalar F[], PetscScalar U[]) {
-  const Layout l = f->membrane->layout;
+  const Layout l = f->bodies->layout;
   PetscFunctionBeginUser;
   PetscCall(PetscLogEventBegin(f->apply, 0, 0, 0, 0));
   if (f->crossed)
@@ -188,7 +188,7 @@ PetscErrorCode NearFieldApply(NearField f, PetscReal alpha, const PetscScalar F[
 
 /* out[2n][2n] += scale times a block, rows and columns counted from marker `first`, in its own rows. */
 static void AddBlock(NearField f, const NearBlock *b, PetscReal scale, PetscInt first, PetscInt n, PetscReal out[]) {
-  const Layout l = f->membrane->layout;
+  const Layout l = f->bodies->layout;
   const PetscBool both = b->column >= l->own && b->column < l->end ? PETSC_TRUE : PETSC_FALSE;
   NearRow r = NearBlockBegin(l, b);
   if (r.column < first || r.column >= first + n) return;
@@ -205,7 +205,7 @@ static void AddBlock(NearField f, const NearBlock *b, PetscReal scale, PetscInt 
 
 /* The first block of the vesicle that a marker belongs to, or of a later one. */
 static PetscInt FirstBlock(NearField f, PetscInt marker) {
-  const PetscInt *start = f->membrane->layout->start;
+  const PetscInt *start = f->bodies->layout->start;
   PetscInt low = 0, high = f->blocks;
   while (low < high) {
     const PetscInt middle = (low + high) / 2;
@@ -218,7 +218,7 @@ static PetscInt FirstBlock(NearField f, PetscInt marker) {
 }
 
 PetscErrorCode NearFieldAdd(NearField f, PetscReal scale, PetscBool box, PetscInt first, PetscInt n, PetscReal out[]) {
-  const Layout l = f->membrane->layout;
+  const Layout l = f->bodies->layout;
   PetscFunctionBeginUser;
   for (PetscInt b = FirstBlock(f, first); b < f->blocks && l->start[f->block[b].row] < first + n; b++)
     AddBlock(f, &f->block[b], scale, first, n, out);

@@ -9,7 +9,7 @@
 #include "coupling/lattice.h"
 #include "coupling/nearfar.h"
 #include "coupling/nearimage.h"
-#include "membrane/membrane.h"
+#include "coupling/bodies.h"
 
 /* C of an own vesicle with one that is near, moved by `shift` (length): each pair of vesicles or images once, in rows,
    two for each marker of the row's vesicle, its x and its y velocity, with columns interlaced, which are the columns of
@@ -37,8 +37,8 @@ typedef struct {
 
 typedef struct _p_NearField *NearField;
 struct _p_NearField {
-  Markers markers;   /* borrowed */
-  Membrane membrane; /* borrowed */
+  Markers markers; /* borrowed */
+  Bodies bodies;   /* borrowed */
   PetscReal nu;
   PetscBool free; /* unbounded fluid: C = S */
   PetscBool many; /* more than NEAR_MANY vesicles: distant pairs are as exact as the range, and no more */
@@ -60,8 +60,8 @@ struct _p_NearField {
   PetscLogEvent place, apply;
 };
 
-/* NearFieldCreate - for membranes whose markers are on a grid, in a fluid of viscosity nu. Collective. */
-PETSC_EXTERN PetscErrorCode NearFieldCreate(Markers markers, Membrane membrane, PetscReal nu, NearField *near);
+/* NearFieldCreate - for bodies whose markers are on a grid, in a fluid of viscosity nu. Collective. */
+PETSC_EXTERN PetscErrorCode NearFieldCreate(Markers markers, Bodies bodies, PetscReal nu, NearField *near);
 PETSC_EXTERN PetscErrorCode NearFieldDestroy(NearField *near);
 
 /* NearFieldPlace - C of the own vesicles where the markers have been placed (MarkersPlace). Collective. */

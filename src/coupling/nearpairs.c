@@ -4,7 +4,7 @@
 #include "curve/crossing.h"
 
 static void FindBounds(NearField f) {
-  const Layout l = f->membrane->layout;
+  const Layout l = f->bodies->layout;
   for (PetscInt v = 0; v < l->bodies; v++) {
     NearBounds *b = &f->bounds[v];
     *b = (NearBounds){{PETSC_MAX_REAL, PETSC_MAX_REAL}, {PETSC_MIN_REAL, PETSC_MIN_REAL}};
@@ -16,8 +16,10 @@ static void FindBounds(NearField f) {
   }
 }
 
-static PetscReal Reach(NearField f) {
-  return f->free ? PETSC_MAX_REAL : NEAR_REACH * f->markers->grid->h;
+/* Two vesicles far apart do not feel the grid in one another, as their forces add up to zero; those of obstacles do
+ * not. */
+static PetscReal Reach(NearField f, PetscInt v, PetscInt w) {
+  return f->free || PetscMax(v, w) >= f->bodies->vesicles ? PETSC_MAX_REAL : NEAR_REACH * f->markers->grid->h;
 }
 
 /* Whether b moved by shift comes as near as `reach` to a. */
@@ -43,7 +45,7 @@ static PetscErrorCode Grow(PetscInt count, size_t size, PetscInt *room, void **a
 /* The block of own vesicle v and the image of w moved by shift, with room for its values. With many
    vesicles values that are far from large are in single precision. */
 static PetscErrorCode AddBlock(NearField f, PetscInt v, PetscInt w, const PetscReal shift[2], PetscReal gap) {
-  const Layout l = f->membrane->layout;
+  const Layout l = f->bodies->layout;
   const PetscBool single = f->many && !f->free && gap >= NEAR_SINGLE * f->markers->grid->h ? PETSC_TRUE : PETSC_FALSE;
   size_t *values = single ? &f->store.singles : &f->store.values;
   NearBlock *b;
@@ -68,7 +70,7 @@ static PetscErrorCode AddClose(NearField f, const PetscReal shift[2], PetscReal 
 
 /* Least distance (length) between markers of v and of w moved by shift, where it is below reach. */
 static PetscReal Apart(NearField f, PetscInt v, PetscInt w, const PetscReal shift[2], PetscReal reach) {
-  const Layout l = f->membrane->layout;
+  const Layout l = f->bodies->layout;
   const PetscReal *X = f->markers->X, none[2] = {0, 0};
   PetscReal least = f->free ? reach : reach * reach;
   for (PetscInt i = l->start[v]; i < l->start[v + 1]; i++) {
@@ -94,7 +96,7 @@ typedef struct {
 static PetscErrorCode Images(NearField f, PetscInt v, PetscInt w, Image image[MOST_IMAGES], int *count) {
   const Grid g = f->markers->grid;
   const NearBounds *a = &f->bounds[v], *b = &f->bounds[w];
-  const PetscReal reach = Reach(f);
+  const PetscReal reach = Reach(f, v, w);
   PetscInt around[2];
   PetscReal middle[2], period[2];
   PetscFunctionBeginUser;
@@ -158,6 +160,7 @@ static PetscBool Keep(void *context, PetscInt v, PetscInt w, const PetscReal d[2
 static PetscErrorCode FindCandidates(NearField f, Candidates *c) {
   const Grid g = f->markers->grid;
   const PetscInt bodies = c->layout->bodies;
+  const PetscReal reach = Reach(f, 0, bodies - 1);
   PetscReal *middle, period[2], widest = 0;
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(2 * bodies, &middle));
@@ -167,7 +170,7 @@ static PetscErrorCode FindCandidates(NearField f, Candidates *c) {
     for (int d = 0; d < 2; d++) middle[2 * v + d] = 0.5 * (b->low[d] + b->high[d]);
     widest = PetscMax(widest, PetscHypotReal(b->high[0] - b->low[0], b->high[1] - b->low[1]));
   }
-  PetscCall(PairsWithin(bodies, middle, period, f->free ? PETSC_MAX_REAL : widest + Reach(f), Keep, c));
+  PetscCall(PairsWithin(bodies, middle, period, reach == PETSC_MAX_REAL ? reach : widest + reach, Keep, c));
   PetscCall(PetscFree(middle));
   PetscCall(c->error);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -180,7 +183,7 @@ static int ByRow(const void *a, const void *b) {
 }
 
 PetscErrorCode NearPairsFind(NearField f) {
-  const Layout l = f->membrane->layout;
+  const Layout l = f->bodies->layout;
   const PetscReal none[2] = {0, 0};
   Candidates c = {.layout = l};
   PetscInt k = 0;

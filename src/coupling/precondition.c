@@ -20,6 +20,7 @@ PetscErrorCode PreconditionerCreate(Scene scene, Unknowns u, Preconditioner *out
   p->unknowns = u;
   p->type = CouplingHasMembrane(c) ? (MobilityType)scene->coupling.mobility : MOBILITY_NONE;
   PetscCall(PetscMalloc1(u->walls->n, &p->d));
+  if (c->bodies->obstacles) PetscCall(ObstacleBlockCreate(&scene->fluid, c, &p->solid));
   PetscCall(PetscCalloc1(c->membrane->layout->bodies, &p->age.treading));
   if (p->type == MOBILITY_TABLE && c->near && c->fluid->steady && c->membrane->layout->M > DENSE_TOGETHER) {
     PetscCall(PatternsCreate(&scene->fluid, c, &p->patterns));
@@ -41,6 +42,7 @@ PetscErrorCode PreconditionerDestroy(Preconditioner *preconditioner) {
   PetscFunctionBeginUser;
   if (!p) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PatternsDestroy(&p->patterns));
+  PetscCall(ObstacleBlockDestroy(&p->solid));
   PetscCall(DenseBlocksDestroy(&p->blocks));
   PetscCall(MobilityDestroy(&p->mobility));
   PetscCall(RootPCDestroy(&p->ilu));
@@ -137,13 +139,15 @@ static PetscErrorCode SetUpChat(Preconditioner p) {
 
 PetscErrorCode PreconditionerSetUp(Preconditioner p) {
   const Coupling c = p->unknowns->coupling;
+  const Layout l = c->bodies->layout;
   const Ageing *a = &p->age;
   PetscFunctionBeginUser;
   p->now = (Application){0};
   p->failed = PETSC_FALSE;
-  if (!CouplingHasMembrane(c)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(
-      WallsSetMarkers(p->unknowns->walls, c->membrane->layout->n, c->markers->X + 2 * c->membrane->layout->first));
+  if (!CouplingHasBodies(c)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(WallsSetMarkers(p->unknowns->walls, l->n, c->markers->X + 2 * l->first));
+  if (p->solid) PetscCall(ObstacleBlockSetUp(p->solid, &p->failed));
+  if (p->failed || !CouplingHasMembrane(c)) PetscFunctionReturn(PETSC_SUCCESS);
   if (p->type == MOBILITY_ILU) PetscCall(SetUpChat(p));
   if (p->patterns) PetscCall(PatternsFollow(p->patterns, &p->failed));
   if (!p->blocks) PetscFunctionReturn(PETSC_SUCCESS);
@@ -205,14 +209,15 @@ PetscErrorCode PreconditionerApply(Preconditioner p, Vec r, Vec z) {
   p->now.applied++;
   PetscCall(VecCopy(r, z));
   PetscCall(VecGetArray(z, &V));
-  sigma = V + u->velocity;
-  d = sigma + u->tension;
+  sigma = V + UnknownsTension(u);
+  d = V + UnknownsWalls(u);
   PetscCall(UnknownsGatherWalls(u, d, p->d));
   PetscCall(WallsPrecondition(u->walls, p->d));
   PetscCall(PetscArraycpy(d, p->d + u->first_wall, u->wall));
-  if (CouplingHasMembrane(u->coupling)) {
+  if (CouplingHasBodies(u->coupling)) {
     UnknownsScale(u, PETSC_TRUE, V);
     PetscCall(WallsMarkerVelocity(u->walls, 1, V)); /* block triangular: the walls' flow moves the markers */
+    if (p->solid) PetscCall(ObstacleBlockSolve(p->solid, V + u->velocity));
     if (p->patterns) PetscCall(PatternsSolve(p->patterns, V, sigma));
     if (p->blocks) PetscCall(DenseBlocksSolve(p->blocks, V, sigma));
     if (p->type == MOBILITY_ILU) PetscCall(SolveChat(p, V, sigma));

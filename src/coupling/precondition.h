@@ -1,8 +1,9 @@
 /* The preconditioner of the reduced coupled problem, and the decision how long its dense blocks serve
    (docs/method.md, Preconditioner): of the markers' mobility among themselves, by a dense table of a periodic box or by
-   Chat, and of each pair of walls by itself. */
+   Chat, of the obstacles by themselves, and of each pair of walls by itself. */
 #pragma once
 #include "coupling/dense.h"
+#include "coupling/obstacleblock.h"
 #include "coupling/rootpc.h"
 #include "coupling/patterns.h"
 #include "coupling/unknowns.h"
@@ -29,10 +30,11 @@ typedef struct _p_Preconditioner *Preconditioner;
 struct _p_Preconditioner {
   Unknowns unknowns; /* borrowed */
   MobilityType type;
-  Mobility mobility;  /* table; NULL in unbounded fluid, where the near field is all of it */
-  DenseBlocks blocks; /* table, few vesicles */
-  Patterns patterns;  /* table, many vesicles */
-  RootPC ilu;         /* ilu: of the assembled Chat, prefix coupled_mobility_ */
+  Mobility mobility;   /* table; NULL in unbounded fluid, where the near field is all of it */
+  DenseBlocks blocks;  /* table, few vesicles */
+  Patterns patterns;   /* table, many vesicles */
+  ObstacleBlock solid; /* NULL without obstacles */
+  RootPC ilu;          /* ilu: of the assembled Chat, prefix coupled_mobility_ */
   Ageing age;
   Application now;
   PetscBool flexible; /* blocks may be made anew under way: the KSP allows a changing preconditioner */

@@ -1,7 +1,8 @@
 #include "coupling/reduced.h"
 #include "coupling/contrast.h"
 
-/* F = Dm^T sigma + (1/a0) (c_b ds D4 + K_sigma + K_rep) V, minus h^2 times the force on the markers. */
+/* F = Dm^T sigma + (1/a0) (c_b ds D4 + K_sigma + K_rep) V, minus h^2 times the force on the markers, and
+   that of obstacles. */
 static PetscErrorCode Force(Reduced s, const PetscScalar x[], Vec F) {
   const Coupling c = s->unknowns->coupling;
   const Membrane m = c->membrane;
@@ -10,7 +11,8 @@ static PetscErrorCode Force(Reduced s, const PetscScalar x[], Vec F) {
   PetscCall(VecSet(F, 0));
   PetscCall(VecGetArray(F, &f));
   PetscCall(CouplingElasticRate(c, 1 / c->fluid->a0, x, f));
-  MembraneStretchingTranspose(m, c->tau, 1, x + s->unknowns->velocity, f);
+  MembraneStretchingTranspose(m, c->tau, 1, x + UnknownsTension(s->unknowns), f);
+  PetscCall(PetscArraycpy(f + s->unknowns->velocity, x + s->unknowns->velocity, s->unknowns->solid));
   PetscCall(VecRestoreArray(F, &f));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -32,13 +34,13 @@ static PetscErrorCode AddForces(Reduced s, const PetscScalar x[], Vec r, Vec sou
   const Unknowns u = s->unknowns;
   const Coupling c = u->coupling;
   PetscFunctionBeginUser;
-  if (CouplingHasMembrane(c)) {
+  if (CouplingHasBodies(c)) {
     PetscCall(Force(s, x, s->F));
     PetscCall(MarkersSpread(c->markers, -1 / PetscSqr(c->fluid->grid->h), s->F, r));
   }
   PetscCall(Jump(s, x));
   if (s->source) PetscCall(DoubleLayerSpread(c->contrast, r, source, mean));
-  PetscCall(UnknownsGatherWalls(u, x + u->velocity + u->tension, s->d));
+  PetscCall(UnknownsGatherWalls(u, x + UnknownsWalls(u), s->d));
   PetscCall(WallsAdd(u->walls, s->d, r));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -54,16 +56,18 @@ static PetscErrorCode Subtract(Vec known, PetscInt n, PetscScalar y[]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* y = (V + (treading/a0) dV/dt - U + C F - k, Dm V/h^2 - g) of x, s->U holding U = E u, s->F F, and with viscosity
-   contrast s->motion what stands in the place of the first two; k and g may be NULL; not scaled yet. */
-static PetscErrorCode MembraneConditions(Reduced s, const PetscScalar x[], Vec known, Vec g, PetscScalar y[]) {
+/* y = (V + (treading/a0) dV/dt - U + C F - k, beta N N^T F - U + C F - k, Dm V/h^2 - g) of x, s->U holding U = E u,
+   s->F F, and with viscosity contrast s->motion what stands in the place of the first two; k and g may be NULL; not
+   scaled yet. */
+static PetscErrorCode BodyConditions(Reduced s, const PetscScalar x[], Vec known, Vec g, PetscScalar y[]) {
   const Coupling c = s->unknowns->coupling;
-  const PetscInt n = s->unknowns->velocity;
+  const Unknowns u = s->unknowns;
+  const PetscInt n = u->velocity, tension = UnknownsTension(u);
   const PetscReal h2 = PetscSqr(c->fluid->grid->h);
   const PetscScalar *U, *F;
   PetscFunctionBeginUser;
   PetscCall(VecGetArrayRead(s->U, &U));
-  for (PetscInt k = 0; k < n; k++) y[k] = x[k] - U[k];
+  for (PetscInt k = 0; k < tension; k++) y[k] = (k < n ? x[k] : 0) - U[k];
   PetscCall(VecRestoreArrayRead(s->U, &U));
   MembraneTread(c->membrane, c->treading, 1 / c->fluid->a0, x, y);
   PetscCall(VecGetArrayRead(s->F, &F));
@@ -74,20 +78,21 @@ static PetscErrorCode MembraneConditions(Reduced s, const PetscScalar x[], Vec k
     PetscCall(ContrastRest(c, U, y));
     PetscCall(VecRestoreArrayRead(s->motion, &U));
   }
-  MembraneStretching(c->membrane, c->tau, x, y + n);
-  for (PetscInt k = 0; k < s->unknowns->tension; k++) y[n + k] /= h2;
-  PetscCall(Subtract(known, n, y));
-  PetscCall(Subtract(g, s->unknowns->tension, y + n));
+  if (c->bodies->obstacles) ObstaclesPressure(c->bodies->obstacles, x + n, y + n);
+  MembraneStretching(c->membrane, c->tau, x, y + tension);
+  for (PetscInt k = 0; k < u->tension; k++) y[tension + k] /= h2;
+  PetscCall(Subtract(known, tension, y));
+  PetscCall(Subtract(g, u->tension, y + tension));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* y = scaled (V + (treading/a0) dV/dt - U + C F - k, Dm V/h^2 - g, d + slip) of x and the velocity U at the markers
-   that its forces F gave. Collective. */
+/* y = scaled (the bodies' conditions, d + slip) of x and the velocity U at the markers that its forces F gave.
+   Collective. */
 static PetscErrorCode Conditions(Reduced s, const PetscScalar x[], Vec known, Vec g, PetscScalar y[]) {
   const Unknowns u = s->unknowns;
-  const PetscInt wall = u->velocity + u->tension;
+  const PetscInt wall = UnknownsWalls(u);
   PetscFunctionBeginUser;
-  if (CouplingHasMembrane(u->coupling)) PetscCall(MembraneConditions(s, x, known, g, y));
+  if (CouplingHasBodies(u->coupling)) PetscCall(BodyConditions(s, x, known, g, y));
   UnknownsScale(u, PETSC_FALSE, y);
   if (!u->walls->n) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(WallsSlip(u->walls, StokesPotential(s->stokes), s->slip));
@@ -160,7 +165,7 @@ static PetscErrorCode RespondOnGrid(Reduced s, const PetscScalar x[], PetscInt p
   if (s->source && p) PetscCall(VecSet(p, 0));
   PetscCall(AddForces(s, x, s->r, p, mean));
   PetscCall(Solve(s, s->r, s->source ? p : NULL, mean, s->kept.w[place], p));
-  if (CouplingHasMembrane(c)) PetscCall(MarkersInterpolate(c->markers, s->kept.w[place], s->U));
+  if (CouplingHasBodies(c)) PetscCall(MarkersInterpolate(c->markers, s->kept.w[place], s->U));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -177,7 +182,7 @@ static PetscErrorCode Mult(Mat A, Vec x, Vec y) {
   PetscCall(VecGetArrayRead(x, &xa));
   if (!s->stream)
     PetscCall(RespondOnGrid(s, xa, place));
-  else if (CouplingHasMembrane(c)) {
+  else if (CouplingHasBodies(c)) {
     PetscCall(Force(s, xa, s->F));
     PetscCall(MarkersRespond(c->markers, s->stream, -1 / PetscSqr(c->fluid->grid->h), s->F, s->U));
   }
@@ -192,17 +197,17 @@ static PetscErrorCode Mult(Mat A, Vec x, Vec y) {
 /* U = E u of the force f, and u and p themselves unless they are not wanted and U can be had without. */
 static PetscErrorCode Follow(Reduced s, Vec f, PetscBool grid, Vec w, Vec p) {
   const Coupling c = s->unknowns->coupling;
-  const PetscBool membrane = CouplingHasMembrane(c);
+  const PetscBool bodies = CouplingHasBodies(c);
   PetscFunctionBeginUser;
   if (!grid && s->stream && !c->fluid->bc2) {
-    if (membrane) PetscCall(MarkersFollow(c->markers, s->stream, f, s->U));
+    if (bodies) PetscCall(MarkersFollow(c->markers, s->stream, f, s->U));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   /* p holds the right-hand side, then the solution */
   if (c->fluid->bc2) PetscCall(VecAXPBY(p, -1, 0, c->fluid->bc2));
   if (s->source) PetscCall(VecCopy(s->source, p));
   PetscCall(Solve(s, f, s->source || c->fluid->bc2 ? p : NULL, s->mean, w, p));
-  if (membrane) PetscCall(MarkersInterpolate(c->markers, w, s->U));
+  if (bodies) PetscCall(MarkersInterpolate(c->markers, w, s->U));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -215,7 +220,7 @@ PetscErrorCode ReducedResidual(Reduced s, Vec added, Vec f, Vec g, Vec k, Vec x,
   PetscCall(AddForces(s, xa, f, s->source, s->mean));
   PetscCall(VecRestoreArrayRead(added, &xa));
   PetscCall(VecGetArrayRead(x, &xa));
-  if (CouplingHasMembrane(s->unknowns->coupling) && added != x) PetscCall(Force(s, xa, s->F));
+  if (CouplingHasBodies(s->unknowns->coupling) && added != x) PetscCall(Force(s, xa, s->F));
   if (added != x) PetscCall(Jump(s, xa));
   PetscCall(Follow(s, f, grid, w, p));
   PetscCall(VecGetArray(residual, &ra));
@@ -283,7 +288,7 @@ PetscErrorCode ReducedCreate(Unknowns u, Reduced *out) {
   if (!c->fluid->grid->free) PetscCall(StokesCreate(c->fluid, &s->stokes));
   if (s->stokes && !c->contrast) s->stream = StokesStream(s->stokes);
   if (!s->stream) PetscCall(DMCreateGlobalVector(c->fluid->grid->velocity, &s->r));
-  PetscCall(LayoutCreateVec(c->membrane->layout, 2, &s->F));
+  PetscCall(LayoutCreateVec(c->bodies->layout, 2, &s->F));
   PetscCall(VecDuplicate(s->F, &s->U));
   if (c->contrast) {
     PetscCall(VecDuplicate(s->F, &s->motion));

@@ -1,12 +1,14 @@
 /* The coupled problem of one time step, for velocity, pressure and tension together (docs/method.md),
        H u + G p + E^T F/h^2 = f,   G^T u = -bc2,   F = Dm^T sigma + (1/a0) (c_b ds D4 + K_rep) V,
-       V + (v/a0) dV/dt = E u - C F + k,           Dm V/h^2 = g,
+       V + (v/a0) dV/dt = E u - C F + k,           Dm V/h^2 = g,           0 = E_w u - C F - beta N N^T F + k_w,
    V the markers' velocity without the background's, seen from labels t that turn at the speed v of their vesicle, C the
-   near field, K_rep the springs of a repulsion if there is one, k what C gives of the forces that are known, reduced to
-   its forces. A Stokes solve gives u and p for any force, so the unknowns are V, sigma, and forces d on the faces next
-   to walls, where the Stokes solve is not exact: (u, p) = Stokes(f - E^T F/h^2 + d, -bc2), V + (v/a0) dV/dt - E u + C F
-   = k,    Dm V/h^2 = g,    d + (what the Stokes solve leaves at the walls) = 0. A product costs one Stokes solve; where
-   x is periodic one for the velocity at the markers only (fluid/stream.h), u and p follow from the solution's forces.
+   near field, the last for the markers of obstacles (obstacles.h), whose F is an unknown and which C knows as well,
+   K_rep the springs of a repulsion if there is one, k what C gives of the forces that are known, reduced to its forces.
+   A Stokes solve gives u and p for any force, so the unknowns are V, F of obstacles, sigma, and forces d on the faces
+   next to walls, where the Stokes solve is not exact: (u, p) = Stokes(f - E^T F/h^2 + d, -bc2), V + (v/a0) dV/dt - E u
+   + C F = k,    Dm V/h^2 = g,    d + (what the Stokes solve leaves at the walls) = 0. A product costs one Stokes solve;
+   where x is periodic one for the velocity at the markers only (fluid/stream.h), u and p follow from the solution's
+   forces.
    In unbounded fluid there is no u on a grid (E = 0) and C is all of the mobility: a product is dense work on markers,
    and u and p stay zero. */
 #pragma once
@@ -32,7 +34,7 @@ struct _p_Reduced {
   Products kept;
   Vec r;             /* a force on the grid, NULL with stream */
   PetscInt dirty[2]; /* zero but for these rows */
-  Vec F, U;          /* marker vectors, work */
+  Vec F, U;          /* marker vectors of all bodies, work */
   Vec motion;        /* with a viscosity contrast: what the jump is of, marker vector, work */
   Vec source;        /* and what the divergence of the forces in f is, minus; NULL without */
   PetscReal mean[2]; /* and the mean velocity that goes with it in a box that is periodic both ways */
@@ -51,7 +53,7 @@ PETSC_EXTERN PetscErrorCode ReducedBegin(Reduced reduced, Vec moved, Vec f);
 
 /* ReducedResidual - the forces of `added` go into f; minus the scaled residuals at x, with u, p = w, p by one Stokes
    solve of f, f holding the forces of x. grid false: w and p are not wanted and may stay as they are. g: an edge
-   vector, k: a marker vector. Collective. */
+   vector, k: a marker vector of all bodies. Collective. */
 PETSC_EXTERN PetscErrorCode ReducedResidual(Reduced reduced, Vec added, Vec f, Vec g, Vec k, Vec x, PetscBool grid,
                                             Vec w, Vec p, Vec residual);
 

@@ -2,18 +2,19 @@
 
 #define EDGES 1.5 /* longest mean edges: the range where none is given */
 
-PetscErrorCode RepulsionCreate(Membrane membrane, Grid grid, const SceneRepulsion *law, Repulsion *out) {
+PetscErrorCode RepulsionCreate(Bodies bodies, Grid grid, const SceneRepulsion *law, Repulsion *out) {
   Repulsion r;
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&r));
   *out = r;
-  r->membrane = membrane;
+  r->membrane = bodies->membrane;
+  r->bodies = bodies;
   r->grid = grid;
   r->law = *law;
-  for (PetscInt v = 0; v < membrane->layout->bodies && law->range <= 0; v++)
-    r->law.range = PetscMax(r->law.range, EDGES * membrane->ds[v]);
+  for (PetscInt v = 0; v < bodies->layout->bodies && law->range <= 0; v++)
+    r->law.range = PetscMax(r->law.range, EDGES * bodies->ds[v]);
   if (law->band <= 0) r->law.band = r->law.range;
-  PetscCall(PetscMalloc1(2 * membrane->layout->M, &r->all));
+  PetscCall(PetscMalloc1(2 * bodies->layout->M, &r->all));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -49,14 +50,18 @@ static void SetLaw(const SceneRepulsion *law, PetscReal size, const PetscReal X[
   }
 }
 
-/* A marker and the edge nearest to it: half of what is between two membranes, as markers of both look for edges. */
+/* A marker and the edge nearest to it: half of what is between two membranes, as markers of both look for edges. What
+   is of an obstacle stays where it is. */
 static void SetEdge(Repulsion r, const PetscReal X[], const CurveContact *c, Spring *s) {
-  *s = (Spring){.n = 3,
-                .marker = {c->point, c->edge[0], c->edge[1]},
-                .weight = {1, c->at - 1, -c->at},
-                .normal = {c->normal[0], c->normal[1]},
-                .distance = c->distance};
-  SetLaw(&r->law, 0.5 * r->membrane->ds[c->curve[0]], X, s);
+  const PetscInt marker[3] = {c->point, c->edge[0], c->edge[1]};
+  const PetscReal weight[3] = {1, c->at - 1, -c->at};
+  *s = (Spring){.normal = {c->normal[0], c->normal[1]}, .distance = c->distance};
+  for (int k = 0; k < 3; k++) {
+    if (marker[k] >= r->membrane->layout->M) continue;
+    s->marker[s->n] = marker[k];
+    s->weight[s->n++] = weight[k];
+  }
+  SetLaw(&r->law, 0.5 * r->bodies->ds[c->curve[0]], X, s);
 }
 
 /* Markers near walls; room for 4 a marker. */
@@ -78,16 +83,16 @@ static PetscInt FindWalls(Repulsion r, const PetscReal X[], Spring spring[]) {
   return count;
 }
 
-/* The springs at X[2M]; to be freed. */
+/* The springs at the curves X[2(M + W)]; to be freed. */
 static PetscErrorCode Find(Repulsion r, const PetscReal X[], PetscInt *count, Spring **springs) {
   const Grid g = r->grid;
-  const Layout l = r->membrane->layout;
+  const Layout l = r->membrane->layout, all = r->bodies->layout;
   PetscReal period[2];
   CurveContact *contact;
   PetscInt n;
   PetscFunctionBeginUser;
   for (int d = 0; d < 2; d++) period[d] = g->wall[d] || g->free ? 0 : g->hi[d] - g->lo[d];
-  PetscCall(CurveContacts(l->bodies, l->start, X, period, Reach(&r->law), &n, &contact));
+  PetscCall(CurveContacts(all->bodies, l->bodies, all->start, X, period, Reach(&r->law), &n, &contact));
   PetscCall(PetscMalloc1(n + 4 * l->M, springs));
   for (PetscInt k = 0; k < n; k++) SetEdge(r, X, &contact[k], &(*springs)[k]);
   PetscCall(PetscFree(contact));
@@ -98,7 +103,8 @@ static PetscErrorCode Find(Repulsion r, const PetscReal X[], PetscInt *count, Sp
 PetscErrorCode RepulsionPlace(Repulsion r, const PetscReal X[]) {
   PetscFunctionBeginUser;
   PetscCall(PetscFree(r->spring));
-  PetscCall(Find(r, X, &r->count, &r->spring));
+  PetscCall(BodiesSee(r->bodies, X, r->all));
+  PetscCall(Find(r, r->all, &r->count, &r->spring));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -141,7 +147,7 @@ PetscErrorCode RepulsionSeams(Repulsion r, const PetscReal X[], const PetscScala
   for (PetscInt k = 0; k < r->count; k++) {
     const Spring *s = &r->spring[k];
     PetscReal apart = -s->distance * s->normal[0];
-    if (s->n == 1) continue; /* of a wall */
+    if (s->n < 3) continue; /* of a wall or an obstacle */
     for (PetscInt i = 0; i < s->n; i++) apart += s->weight[i] * X[2 * s->marker[i]];
     *sum += (s->push - s->stiffness * Stretch(s, r->all)) * s->normal[0] * apart;
   }
@@ -155,6 +161,7 @@ PetscErrorCode RepulsionAt(Repulsion r, PetscReal alpha, const PetscScalar x[], 
   PetscFunctionBeginUser;
   *energy = 0;
   PetscCall(LayoutGather(l, 2, x, r->all));
+  PetscCall(BodiesSee(r->bodies, r->all, r->all));
   PetscCall(Find(r, r->all, &count, &spring));
   for (PetscInt k = 0; k < count; k++) {
     const Spring *s = &spring[k];

@@ -1,13 +1,12 @@
-/* A force of short range between membranes, and between membranes and walls (docs/method.md, Repulsion): a stress
-   p(d) along the normal at a distance d,
-       p = K (1 - d/D)  below D,    p = -30 (W/B) x^2 (1 - x)^2,  x = (d - D)/B  between D and D + B,  0 beyond,
-   which pushes below D and, where there is adhesion W, pulls in a band of width B. In a step it is springs: who touches
-   whom, and along which normal, is found at the extrapolated markers; the pushing part is taken at the new ones, the
-   pulling one where it was found. */
+/* A force of short range between membranes, and between membranes and walls or obstacles (docs/method.md, Repulsion): a
+   stress p(d) along the normal at a distance d, p = K (1 - d/D)  below D,    p = -30 (W/B) x^2 (1 - x)^2,  x = (d -
+   D)/B  between D and D + B,  0 beyond, which pushes below D and, where there is adhesion W, pulls in a band of width
+   B. In a step it is springs: who touches whom, and along which normal, is found at the extrapolated markers; the
+   pushing part is taken at the new ones, the pulling one where it was found. */
 #pragma once
 #include "curve/contacts.h"
 #include "fluid/grid.h"
-#include "membrane/membrane.h"
+#include "coupling/bodies.h"
 
 /* A point of a membrane against an edge or a wall: the distance changes by SUM weight_i normal.(X_i - X*_i), and the
    force on X_i is (push - stiffness (the same sum of X_i instead of X_i - X*_i)) weight_i normal. */
@@ -22,17 +21,17 @@ typedef struct {
 
 typedef struct _p_Repulsion *Repulsion;
 struct _p_Repulsion {
-  Membrane membrane;  /* borrowed */
+  Bodies bodies;      /* borrowed; of them */
+  Membrane membrane;  /* the vesicles */
   Grid grid;          /* borrowed; its walls and periods */
   SceneRepulsion law; /* K, D, W and B, all resolved */
   Spring *spring;     /* of the step, the same on every rank */
   PetscInt count;
-  PetscScalar *all; /* [2M] work */
+  PetscScalar *all; /* [2(M + W)] work */
 };
 
-/* RepulsionCreate - between the vesicles of membrane on a grid. Not collective. */
-PETSC_EXTERN PetscErrorCode RepulsionCreate(Membrane membrane, Grid grid, const SceneRepulsion *law,
-                                            Repulsion *repulsion);
+/* RepulsionCreate - between vesicles, and between vesicles and obstacles or walls. Not collective. */
+PETSC_EXTERN PetscErrorCode RepulsionCreate(Bodies bodies, Grid grid, const SceneRepulsion *law, Repulsion *repulsion);
 PETSC_EXTERN PetscErrorCode RepulsionDestroy(Repulsion *repulsion);
 
 /* RepulsionPlace - the springs at the markers X[2M] of all vesicles. Not collective. */

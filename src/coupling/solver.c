@@ -2,8 +2,8 @@
 
 #define MOST_ROUNDS 4
 
-/* -coupled_ksp_rtol is relative to the norm of the step's right-hand side (f, bc2, g), not to what the initial guess
-   left of it. */
+/* -coupled_ksp_rtol is relative to the norm of the step's right-hand side (f, bc2, g, k of obstacles), not to what the
+   initial guess left of it. */
 static PetscErrorCode Converged(KSP ksp, PetscInt it, PetscReal norm, KSPConvergedReason *reason, void *ctx) {
   const CoupledSolver s = (CoupledSolver)ctx;
   PetscReal rtol, atol, dtol;
@@ -93,7 +93,7 @@ PetscErrorCode CoupledSolverDestroy(CoupledSolver *solver) {
 static PetscErrorCode Guess(CoupledSolver s, const CoupledProblem *q) {
   PetscFunctionBeginUser;
   if (s->guess)
-    PetscCall(UnknownsPack(s->unknowns, q->V, q->sigma, q->d, s->x));
+    PetscCall(UnknownsPack(s->unknowns, q->V, q->solid, q->sigma, q->d, s->x));
   else
     PetscCall(VecSet(s->x, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -107,7 +107,7 @@ static PetscErrorCode FreeReference(CoupledSolver s, const CoupledProblem *q) {
   const Layout l = m->layout;
   PetscScalar *a;
   PetscFunctionBeginUser;
-  PetscCall(UnknownsPack(s->unknowns, q->k, q->g, q->d, s->change));
+  PetscCall(UnknownsPack(s->unknowns, q->k, NULL, q->g, q->d, s->change));
   PetscCall(VecGetArray(s->change, &a));
   for (PetscInt v = l->own; v < l->end; v++) {
     const PetscReal speed = m->bending * m->part[v] / (s->coupling->fluid->nu * PetscSqr(m->L0[v] / (2 * PETSC_PI)));
@@ -120,8 +120,27 @@ static PetscErrorCode FreeReference(CoupledSolver s, const CoupledProblem *q) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Norm of (f, bc2, g with its factor). */
-static PetscErrorCode Reference(CoupledSolver s, Vec f, Vec g) {
+/* The square of the norm of k of the own obstacles with its factors. */
+static PetscErrorCode ObstacleReference(CoupledSolver s, Vec k, PetscReal *sum) {
+  const Fluid f = s->coupling->fluid;
+  const Obstacles o = s->coupling->bodies->obstacles;
+  const PetscInt n = s->unknowns->solid;
+  const PetscScalar *a;
+  PetscScalar *data;
+  PetscFunctionBeginUser;
+  if (!o) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMalloc1(n, &data));
+  PetscCall(VecGetArrayRead(k, &a));
+  PetscCall(PetscArraycpy(data, a + s->unknowns->velocity, n));
+  PetscCall(VecRestoreArrayRead(k, &a));
+  ObstaclesScale(o, 1 + f->grid->h * f->alpha, PETSC_FALSE, data);
+  for (PetscInt i = 0; i < n; i++) *sum += PetscSqr(data[i]);
+  PetscCall(PetscFree(data));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Norm of (f, bc2, g and the obstacles' k with their factors). */
+static PetscErrorCode Reference(CoupledSolver s, Vec f, Vec g, Vec k) {
   const Layout l = s->coupling->membrane->layout;
   const PetscScalar *a;
   PetscReal norm, sum = 0;
@@ -131,6 +150,7 @@ static PetscErrorCode Reference(CoupledSolver s, Vec f, Vec g) {
     for (PetscInt k = 0; k < LayoutCount(l, v); k++)
       sum += PetscSqr(a[LayoutOffset(l, v) + k] * UnknownsTensionScale(s->unknowns, v));
   PetscCall(VecRestoreArrayRead(g, &a));
+  PetscCall(ObstacleReference(s, k, &sum));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPIU_REAL, MPI_SUM, l->comm));
   PetscCall(VecNorm(f, NORM_2, &norm));
   sum += PetscSqr(norm);
@@ -175,7 +195,7 @@ PetscErrorCode CoupledSolverSolve(CoupledSolver s, const CoupledProblem *q, Solv
     report->residual = NAN;
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  PetscCall(s->reduced->stokes ? Reference(s, q->f, q->g) : FreeReference(s, q));
+  PetscCall(s->reduced->stokes ? Reference(s, q->f, q->g, q->k) : FreeReference(s, q));
   PetscCall(Guess(s, q));
   PetscCall(ReducedBegin(s->reduced, q->moved, q->f));
   PetscCall(ReducedResidual(s->reduced, s->x, q->f, q->g, q->k, s->x, PETSC_FALSE, q->w, q->p, s->b));
@@ -186,6 +206,6 @@ PetscErrorCode CoupledSolverSolve(CoupledSolver s, const CoupledProblem *q, Solv
     if (report->why < 0 || report->residual <= 2 * PetscMax(rtol * s->reference, atol)) break;
   }
   PreconditionerSolved(s->preconditioner, report->its);
-  if (report->why >= 0) PetscCall(UnknownsUnpack(s->unknowns, s->x, q->V, q->sigma, q->d));
+  if (report->why >= 0) PetscCall(UnknownsUnpack(s->unknowns, s->x, q->V, q->solid, q->sigma, q->d));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -6,8 +6,10 @@
 /* What a step asks for, and the vectors that its answer goes to. */
 typedef struct {
   Vec moved;             /* with viscosity contrast: the part of the markers' motion that is known; else NULL */
-  Vec f, g, k;           /* right-hand sides of momentum (the forces of the solution are added to it), Dm V/h^2 and V */
-  Vec w, p, sigma, d, V; /* solution; sigma, d and V hold the first guess */
+  Vec f, g, k;           /* right-hand sides of momentum (the forces of the solution are added to it), Dm V/h^2 and V,
+                            k of all bodies */
+  Vec w, p, sigma, d, V; /* solution; sigma, d and V hold the first guess, */
+  Vec solid;             /* and the force on obstacles; NULL without */
 } CoupledProblem;
 
 /* How a solve went. */

@@ -9,6 +9,7 @@ PetscErrorCode UnknownsCreate(Coupling coupling, Walls walls, Unknowns *out) {
   u->coupling = coupling;
   u->walls = walls;
   u->velocity = 2 * coupling->membrane->layout->n;
+  u->solid = BodiesObstacleNumbers(coupling->bodies);
   u->tension = coupling->membrane->layout->n;
   PetscCall(PetscMalloc2(g->size, &u->count, g->size, &u->at));
   for (PetscMPIInt r = 0; r < g->size; r++) {
@@ -37,8 +38,9 @@ static PetscErrorCode CreateVec(Unknowns u, PetscInt n, PetscInt N, Vec *x) {
 }
 
 PetscErrorCode UnknownsCreateVec(Unknowns u, Vec *x) {
+  const PetscInt numbers = 2 * u->coupling->bodies->layout->M + u->coupling->membrane->layout->M;
   PetscFunctionBeginUser;
-  PetscCall(CreateVec(u, u->velocity + u->tension + u->wall, 3 * u->coupling->membrane->layout->M + u->walls->n, x));
+  PetscCall(CreateVec(u, UnknownsWalls(u) + u->wall, numbers + u->walls->n, x));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -48,14 +50,17 @@ PetscErrorCode UnknownsCreateWallVec(Unknowns u, Vec *d) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode UnknownsPack(Unknowns u, Vec V, Vec sigma, Vec d, Vec x) {
-  const Vec part[3] = {V, sigma, d};
-  const PetscInt n[3] = {u->velocity, u->tension, u->wall};
+#define PARTS 4
+
+PetscErrorCode UnknownsPack(Unknowns u, Vec V, Vec solid, Vec sigma, Vec d, Vec x) {
+  const Vec part[PARTS] = {V, solid, sigma, d};
+  const PetscInt n[PARTS] = {u->velocity, u->solid, u->tension, u->wall};
   PetscScalar *to;
   PetscFunctionBeginUser;
   PetscCall(VecGetArrayWrite(x, &to));
-  for (PetscInt k = 0, at = 0; k < 3; at += n[k++]) {
+  for (PetscInt k = 0, at = 0; k < PARTS; at += n[k++]) {
     const PetscScalar *from;
+    if (!part[k]) continue;
     PetscCall(VecGetArrayRead(part[k], &from));
     PetscCall(PetscArraycpy(to + at, from, n[k]));
     PetscCall(VecRestoreArrayRead(part[k], &from));
@@ -64,14 +69,15 @@ PetscErrorCode UnknownsPack(Unknowns u, Vec V, Vec sigma, Vec d, Vec x) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode UnknownsUnpack(Unknowns u, Vec x, Vec V, Vec sigma, Vec d) {
-  const Vec part[3] = {V, sigma, d};
-  const PetscInt n[3] = {u->velocity, u->tension, u->wall};
+PetscErrorCode UnknownsUnpack(Unknowns u, Vec x, Vec V, Vec solid, Vec sigma, Vec d) {
+  const Vec part[PARTS] = {V, solid, sigma, d};
+  const PetscInt n[PARTS] = {u->velocity, u->solid, u->tension, u->wall};
   const PetscScalar *from;
   PetscFunctionBeginUser;
   PetscCall(VecGetArrayRead(x, &from));
-  for (PetscInt k = 0, at = 0; k < 3; at += n[k++]) {
+  for (PetscInt k = 0, at = 0; k < PARTS; at += n[k++]) {
     PetscScalar *to;
+    if (!part[k]) continue;
     PetscCall(VecGetArrayWrite(part[k], &to));
     PetscCall(PetscArraycpy(to, from + at, n[k]));
     PetscCall(VecRestoreArrayWrite(part[k], &to));
@@ -106,8 +112,10 @@ void UnknownsScale(Unknowns u, PetscBool inverse, PetscScalar y[]) {
     const PetscReal tension = UnknownsTensionScale(u, v);
     const PetscReal velocity = tension / PetscSqr(f->grid->h) * PetscSqrtReal(1 + stiffness);
     const PetscInt at = LayoutOffset(l, v), n = LayoutCount(l, v);
-    PetscScalar *V = y + 2 * at, *sigma = y + u->velocity + at;
+    PetscScalar *V = y + 2 * at, *sigma = y + UnknownsTension(u) + at;
     for (PetscInt k = 0; k < 2 * n; k++) V[k] = inverse ? V[k] / velocity : V[k] * velocity;
     for (PetscInt k = 0; k < n; k++) sigma[k] = inverse ? sigma[k] / tension : sigma[k] * tension;
   }
+  const Obstacles o = u->coupling->bodies->obstacles;
+  if (o) ObstaclesScale(o, 1 + f->grid->h * f->alpha, inverse, y + u->velocity);
 }

@@ -1,18 +1,18 @@
 /* The unknowns of the reduced coupled problem and the norm of its residuals (docs/method.md, Reduced unknowns). A
-   rank's part of the vector is V      [2n]  the solved part of its own markers' velocity, sigma  [n]   the tension of
-   its own edges, d      [m]   its share of the forces on the faces next to walls, ranks having about as many each.
-   Residuals are laid out alike. */
+   rank's part of the vector is V      [2n]  the solved part of its own markers' velocity, F [2w] the fluid's force on
+   its own obstacles' markers, sigma  [n]   the tension of its own edges, d      [m]   its share of the forces on the
+   faces next to walls, ranks having about as many each. Residuals are laid out alike. */
 #pragma once
 #include "coupling/coupling.h"
 #include "fluid/walls.h"
 
 typedef struct _p_Unknowns *Unknowns;
 struct _p_Unknowns {
-  Coupling coupling;                /* borrowed */
-  Walls walls;                      /* borrowed */
-  PetscInt velocity, tension, wall; /* own numbers of each kind */
-  PetscInt first_wall;              /* number of the first own wall force */
-  PetscMPIInt *count, *at;          /* [ranks] wall forces of each rank, and where they start */
+  Coupling coupling;                       /* borrowed */
+  Walls walls;                             /* borrowed */
+  PetscInt velocity, solid, tension, wall; /* own numbers of each kind */
+  PetscInt first_wall;                     /* number of the first own wall force */
+  PetscMPIInt *count, *at;                 /* [ranks] wall forces of each rank, and where they start */
 };
 
 PETSC_EXTERN PetscErrorCode UnknownsCreate(Coupling coupling, Walls walls, Unknowns *unknowns);
@@ -22,9 +22,9 @@ PETSC_EXTERN PetscErrorCode UnknownsDestroy(Unknowns *unknowns);
 PETSC_EXTERN PetscErrorCode UnknownsCreateVec(Unknowns unknowns, Vec *x);
 PETSC_EXTERN PetscErrorCode UnknownsCreateWallVec(Unknowns unknowns, Vec *d);
 
-/* UnknownsPack - x from its parts. UnknownsUnpack - and back. Not collective. */
-PETSC_EXTERN PetscErrorCode UnknownsPack(Unknowns unknowns, Vec V, Vec sigma, Vec d, Vec x);
-PETSC_EXTERN PetscErrorCode UnknownsUnpack(Unknowns unknowns, Vec x, Vec V, Vec sigma, Vec d);
+/* UnknownsPack - x from its parts; solid may be NULL where there is none. UnknownsUnpack - and back. Not collective. */
+PETSC_EXTERN PetscErrorCode UnknownsPack(Unknowns unknowns, Vec V, Vec solid, Vec sigma, Vec d, Vec x);
+PETSC_EXTERN PetscErrorCode UnknownsUnpack(Unknowns unknowns, Vec x, Vec V, Vec solid, Vec sigma, Vec d);
 
 /* UnknownsGatherWalls - every rank's own wall forces to all[walls->n] of every rank. Collective. */
 PETSC_EXTERN PetscErrorCode UnknownsGatherWalls(Unknowns unknowns, const PetscScalar own[], PetscScalar all[]);
@@ -32,9 +32,17 @@ PETSC_EXTERN PetscErrorCode UnknownsGatherWalls(Unknowns unknowns, const PetscSc
 /* UnknownsScale - rows of this rank's residual y times their factors (inverse: over them), by which a residual of the
    membrane is a surface divergence (1/time): (1 + h alpha) h^2/ds for Dm V/h^2 = g, 1 + h alpha weighing short steps,
    where the momentum's right-hand side u alpha would hide it; for V = E u - Theta F that over h^2, an edge's
-   difference, times the root of the force it means, bending over viscous (an energy norm). Wall rows have factor 1. Not
-   collective. */
+   difference, times the root of the force it means, bending over viscous (an energy norm); for obstacles (1 + h
+   alpha)/ds. Wall rows have factor 1. Not collective. */
 PETSC_EXTERN void UnknownsScale(Unknowns unknowns, PetscBool inverse, PetscScalar y[]);
+
+/* UnknownsTension - where the tensions start in a rank's part; UnknownsWalls - the wall forces. Not collective. */
+static inline PetscInt UnknownsTension(Unknowns u) {
+  return u->velocity + u->solid;
+}
+static inline PetscInt UnknownsWalls(Unknowns u) {
+  return u->velocity + u->solid + u->tension;
+}
 
 /* UnknownsTensionScale - the factor of the rows Dm V/h^2 = g of one vesicle. Not collective. */
 PETSC_EXTERN PetscReal UnknownsTensionScale(Unknowns unknowns, PetscInt vesicle);

@@ -58,7 +58,7 @@ static PetscErrorCode AddAt(NearField f, const NearBlock *block, int direction, 
 }
 
 PetscErrorCode NearBlockRefineAtWalls(NearField f, const NearBlock *b) {
-  const PetscReal ds = PetscMax(f->membrane->ds[b->row], f->membrane->ds[b->column]);
+  const PetscReal ds = PetscMax(f->bodies->ds[b->row], f->bodies->ds[b->column]);
   PetscFunctionBeginUser;
   for (int wall = 0; wall < 4; wall++) {
     const int direction = wall / 2, side = wall % 2;

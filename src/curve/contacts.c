@@ -8,6 +8,7 @@
 typedef struct {
   const PetscInt *start;
   const PetscReal *X;
+  PetscInt moving; /* curves */
   PetscReal reach;
   PetscReal seam;  /* an image is farther than this from where its curve is */
   PetscInt *curve; /* of each point */
@@ -96,6 +97,7 @@ static PetscErrorCode OfferBoth(ContactSearch *s, PetscInt i, PetscInt j, const 
 
 static PetscBool Near(void *context, PetscInt i, PetscInt j, const PetscReal d[2]) {
   ContactSearch *s = (ContactSearch *)context;
+  if (PetscMin(s->curve[i], s->curve[j]) >= s->moving) return PETSC_FALSE;
   if (s->curve[i] == s->curve[j]) { /* nothing but images */
     const PetscReal x = d[0] - (s->X[2 * j] - s->X[2 * i]), y = d[1] - (s->X[2 * j + 1] - s->X[2 * i + 1]);
     if (PetscAbsReal(x) + PetscAbsReal(y) < s->seam) return PETSC_FALSE;
@@ -112,12 +114,12 @@ static PetscReal LongestEdge(PetscInt curves, const PetscInt start[], const Pets
   return longest;
 }
 
-PetscErrorCode CurveContacts(PetscInt curves, const PetscInt start[], const PetscReal X[], const PetscReal period[2],
-                             PetscReal reach, PetscInt *n, CurveContact **contacts) {
+PetscErrorCode CurveContacts(PetscInt curves, PetscInt moving, const PetscInt start[], const PetscReal X[],
+                             const PetscReal period[2], PetscReal reach, PetscInt *n, CurveContact **contacts) {
   const PetscInt points = start[curves];
   /* a point near an edge is as near as this to one of its ends */
   const PetscReal apart = PetscHypotReal(reach, 0.5 * LongestEdge(curves, start, X));
-  ContactSearch s = {.start = start, .X = X, .reach = reach, .seam = PETSC_MAX_REAL};
+  ContactSearch s = {.moving = moving, .start = start, .X = X, .reach = reach, .seam = PETSC_MAX_REAL};
   PetscInt count = 0;
   PetscFunctionBeginUser;
   for (int d = 0; d < 2; d++)
@@ -147,12 +149,12 @@ static int Order(const void *first, const void *second) {
 }
 
 /* Of the polygons. */
-static PetscErrorCode PolygonGaps(PetscInt curves, const PetscInt start[], const PetscReal X[],
+static PetscErrorCode PolygonGaps(PetscInt curves, PetscInt moving, const PetscInt start[], const PetscReal X[],
                                   const PetscReal period[2], PetscReal reach, PetscInt *n, CurveGap **gaps) {
   CurveContact *c;
   PetscInt count, kept = 0;
   PetscFunctionBeginUser;
-  PetscCall(CurveContacts(curves, start, X, period, reach, &count, &c));
+  PetscCall(CurveContacts(curves, moving, start, X, period, reach, &count, &c));
   PetscCall(PetscMalloc1(count, gaps));
   for (PetscInt k = 0; k < count; k++) {
     const PetscInt v = c[k].curve[0], w = c[k].curve[1];
@@ -181,7 +183,7 @@ static PetscErrorCode Refine(const PetscInt start[], const PetscReal X[], const 
   }
   PetscCall(PetscMalloc1(2 * fine[two], &Y));
   for (int k = 0; k < two; k++) TrigonometricPoints(n[k], X + 2 * start[gap->curve[k]], FINER, Y + 2 * fine[k]);
-  PetscCall(PolygonGaps(two, fine, Y, period, PetscAbsReal(gap->distance) + 0.5 * edge, &count, &found));
+  PetscCall(PolygonGaps(two, two, fine, Y, period, PetscAbsReal(gap->distance) + 0.5 * edge, &count, &found));
   for (PetscInt k = 0; k < count; k++)
     if (two == 1 || found[k].curve[0] != found[k].curve[1]) gap->distance = found[k].distance;
   PetscCall(PetscFree(found));
@@ -189,12 +191,12 @@ static PetscErrorCode Refine(const PetscInt start[], const PetscReal X[], const 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode CurveGaps(PetscInt curves, const PetscInt start[], const PetscReal X[], const PetscReal period[2],
-                         PetscBool smooth, PetscReal reach, PetscInt *n, CurveGap **gaps) {
+PetscErrorCode CurveGaps(PetscInt curves, PetscInt moving, const PetscInt start[], const PetscReal X[],
+                         const PetscReal period[2], PetscBool smooth, PetscReal reach, PetscInt *n, CurveGap **gaps) {
   const PetscReal edge = LongestEdge(curves, start, X);
   PetscInt kept = 0;
   PetscFunctionBeginUser;
-  PetscCall(PolygonGaps(curves, start, X, period, smooth ? reach + 0.25 * edge : reach, n, gaps));
+  PetscCall(PolygonGaps(curves, moving, start, X, period, smooth ? reach + 0.25 * edge : reach, n, gaps));
   for (PetscInt k = 0; k < *n; k++) {
     if (smooth && (*gaps)[k].distance < 0.5 * edge) PetscCall(Refine(start, X, period, edge, &(*gaps)[k]));
     if ((*gaps)[k].distance < reach) (*gaps)[kept++] = (*gaps)[k];
@@ -203,8 +205,8 @@ PetscErrorCode CurveGaps(PetscInt curves, const PetscInt start[], const PetscRea
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode CurveLeastGap(PetscInt curves, const PetscInt start[], const PetscReal X[], const PetscReal period[2],
-                             PetscBool smooth, PetscReal *distance) {
+PetscErrorCode CurveLeastGap(PetscInt curves, PetscInt moving, const PetscInt start[], const PetscReal X[],
+                             const PetscReal period[2], PetscBool smooth, PetscReal *distance) {
   const PetscReal edge = LongestEdge(curves, start, X);
   PetscReal most = 0, low[2] = {PETSC_MAX_REAL, PETSC_MAX_REAL}, high[2] = {-PETSC_MAX_REAL, -PETSC_MAX_REAL};
   PetscFunctionBeginUser;
@@ -218,7 +220,7 @@ PetscErrorCode CurveLeastGap(PetscInt curves, const PetscInt start[], const Pets
   for (PetscReal reach = 2 * edge; PetscIsNanReal(*distance); reach *= 4) {
     CurveGap *gaps, *least = NULL;
     PetscInt n;
-    PetscCall(PolygonGaps(curves, start, X, period, reach, &n, &gaps));
+    PetscCall(PolygonGaps(curves, moving, start, X, period, reach, &n, &gaps));
     for (PetscInt k = 0; k < n; k++)
       if (!least || gaps[k].distance < least->distance) least = &gaps[k];
     if (least && smooth) PetscCall(Refine(start, X, period, edge, least));
@@ -247,21 +249,22 @@ static void Thinner(CurveFilm *film, PetscReal gap, PetscReal ds, PetscInt v, Pe
   *film = (CurveFilm){.thickness = gap, .spacings = gap / ds, .pair = {v, w}};
 }
 
-PetscErrorCode CurveThinnestFilm(PetscInt curves, const PetscInt start[], const PetscReal X[], const PetscReal ds[],
-                                 const CurveRoom *room, PetscBool smooth, PetscReal most, CurveFilm *film) {
+PetscErrorCode CurveThinnestFilm(PetscInt curves, PetscInt moving, const PetscInt start[], const PetscReal X[],
+                                 const PetscReal ds[], const CurveRoom *room, PetscBool smooth, PetscReal most,
+                                 CurveFilm *film) {
   PetscReal widest = 0;
   CurveGap *gap;
   PetscInt n, side;
   PetscFunctionBeginUser;
   *film = (CurveFilm){.spacings = most};
   for (PetscInt v = 0; v < curves; v++) widest = PetscMax(widest, ds[v]);
-  PetscCall(CurveGaps(curves, start, X, room->period, smooth, most * widest, &n, &gap));
+  PetscCall(CurveGaps(curves, moving, start, X, room->period, smooth, most * widest, &n, &gap));
   for (PetscInt k = 0; k < n; k++) {
     const PetscInt v = gap[k].curve[0], w = gap[k].curve[1];
     Thinner(film, gap[k].distance, PetscMax(ds[v], ds[w]), v, w);
   }
   PetscCall(PetscFree(gap));
-  for (PetscInt v = 0; v < curves; v++) {
+  for (PetscInt v = 0; v < moving; v++) {
     const PetscReal wall = CurveWallGap(start[v + 1] - start[v], X + 2 * start[v], room, &side);
     Thinner(film, wall, ds[v], v, -1 - side);
   }

@@ -1,6 +1,7 @@
 /* How near closed curves are to one another, by a list of cells, in a time in proportion to their points. Curves run
    counter-clockwise, curve v has the points start[v] .. start[v+1]-1 of X (interlaced, x0,y0,x1,y1,...); a period of 0
-   is none, else the nearest images count, a curve's own among them. */
+   is none, else the nearest images count, a curve's own among them. Of all curves the first
+   `moving` ones move: others are not compared among themselves. One that runs clockwise has its inside outside. */
 #pragma once
 #include "base/base.h"
 
@@ -15,7 +16,7 @@ typedef struct {
 
 /* CurveContacts - for each point, in order, and each other curve that has an edge nearer than reach (length) the
    nearest edge; contacts[n] is the caller's to free (PetscFree). Not collective. Errors: memory. */
-PETSC_EXTERN PetscErrorCode CurveContacts(PetscInt curves, const PetscInt start[], const PetscReal X[],
+PETSC_EXTERN PetscErrorCode CurveContacts(PetscInt curves, PetscInt moving, const PetscInt start[], const PetscReal X[],
                                           const PetscReal period[2], PetscReal reach, PetscInt *n,
                                           CurveContact **contacts);
 
@@ -28,13 +29,13 @@ typedef struct {
 /* CurveGaps - of every two curves nearer than reach, in order; gaps[n] is the caller's to free. With `smooth` points
    are those of trigonometric curves, and what is nearer than half an edge is found at eight times the points. Not
    collective. Errors: memory. */
-PETSC_EXTERN PetscErrorCode CurveGaps(PetscInt curves, const PetscInt start[], const PetscReal X[],
+PETSC_EXTERN PetscErrorCode CurveGaps(PetscInt curves, PetscInt moving, const PetscInt start[], const PetscReal X[],
                                       const PetscReal period[2], PetscBool smooth, PetscReal reach, PetscInt *n,
                                       CurveGap **gaps);
 
 /* CurveLeastGap - the least of all distances, of any size; not a number where nothing is within half a period, or where
    one curve is alone. Not collective. Errors: memory. */
-PETSC_EXTERN PetscErrorCode CurveLeastGap(PetscInt curves, const PetscInt start[], const PetscReal X[],
+PETSC_EXTERN PetscErrorCode CurveLeastGap(PetscInt curves, PetscInt moving, const PetscInt start[], const PetscReal X[],
                                           const PetscReal period[2], PetscBool smooth, PetscReal *distance);
 
 /* Where curves lie: walls at the sides of the box in the directions that have them, images in those with a period. */
@@ -58,6 +59,6 @@ typedef struct {
 /* CurveThinnestFilm - the film that is thinnest against the points, which are ds[v] apart (length) on curve v, of those
    thinner than `most` spacings; spacings is `most` where there is none. Distances are those of CurveGaps and
    CurveWallGap; curves that overlap have no film. Not collective. Errors: memory. */
-PETSC_EXTERN PetscErrorCode CurveThinnestFilm(PetscInt curves, const PetscInt start[], const PetscReal X[],
-                                              const PetscReal ds[], const CurveRoom *room, PetscBool smooth,
-                                              PetscReal most, CurveFilm *film);
+PETSC_EXTERN PetscErrorCode CurveThinnestFilm(PetscInt curves, PetscInt moving, const PetscInt start[],
+                                              const PetscReal X[], const PetscReal ds[], const CurveRoom *room,
+                                              PetscBool smooth, PetscReal most, CurveFilm *film);

@@ -16,6 +16,9 @@ PETSC_EXTERN PetscErrorCode ShapeDestroy(Shape *shape);
 /* ShapeRadius - R0 of vesicle v, its length over 2 pi. */
 PETSC_EXTERN PetscReal ShapeRadius(const Shape *shape, PetscInt v);
 
+/* ShapeHolds - whether (x, y) lies within curve v, by its polygon. Not collective. */
+PETSC_EXTERN PetscBool ShapeHolds(const Shape *shape, PetscInt v, PetscReal x, PetscReal y);
+
 /* A closed curve X(t), t in [0,1), with X(t+1) = X(t). */
 typedef struct {
   PetscInt n;          /* 0: ellipse; else number of spline knots */
@@ -43,9 +46,18 @@ PETSC_EXTERN PetscErrorCode CurveFit(PetscInt M, PetscBool spectral, PetscReal l
 /* CurveFromPoints - closed periodic cubic spline through n points xy[2n], by chord length. */
 PETSC_EXTERN PetscErrorCode CurveFromPoints(PetscInt n, const PetscReal xy[], Curve *curve);
 
+/* What a file says of a curve besides its points. */
+typedef struct {
+  PetscReal velocity[2], rotation; /* lines "# velocity u_x u_y" (length/time), "# rotation w" (1/time) before it */
+  PetscBool clockwise;             /* its points' order, before they were turned */
+  PetscBool open;                  /* a line "# open" */
+} CurveNote;
+
 /* CurvesFromFile - the closed curves of a text file ("x y" a line, # starts a comment, an empty line ends a curve),
-   turned counter-clockwise; curve[curves] to be freed, each after CurveDestroy. Collective: rank 0 reads. */
-PETSC_EXTERN PetscErrorCode CurvesFromFile(MPI_Comm comm, const char file[], PetscInt *curves, Curve **curve);
+   turned counter-clockwise; curve[curves] to be freed, each after CurveDestroy, and note[curves] (NULL: not wanted).
+   option: the one that names the file, for messages. Collective: rank 0 reads. */
+PETSC_EXTERN PetscErrorCode CurvesFromFile(MPI_Comm comm, const char option[], const char file[], PetscInt *curves,
+                                           Curve **curve, CurveNote **note);
 PETSC_EXTERN PetscErrorCode CurveDestroy(Curve *curve);
 
 /* EllipseAxes - semi-axes a >= b of the ellipse with the given area and reduced area V = 4 pi area / perimeter^2. */

@@ -6,6 +6,9 @@ typedef struct {
   PetscInt n, curves;
   PetscInt *end; /* points up to the end of each curve */
   PetscReal *xy;
+  CurveNote *note; /* [curves] */
+  CurveNote next;  /* of the curve under way */
+  const char *option, *file;
   char error[PETVES_MAX_MESSAGE];
 } Points;
 
@@ -14,64 +17,84 @@ static PetscErrorCode EndCurve(Points *p) {
   PetscFunctionBeginUser;
   if (p->n == last) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscRealloc((size_t)(p->curves + 1) * sizeof(PetscInt), &p->end));
+  PetscCall(PetscRealloc((size_t)(p->curves + 1) * sizeof(CurveNote), &p->note));
+  p->note[p->curves] = p->next;
   p->end[p->curves++] = p->n;
+  p->next = (CurveNote){0};
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A comment that says something of the curve. */
+static void ReadNote(const char comment[], CurveNote *note) {
+  double u[2];
+  if (sscanf(comment, " velocity %lf %lf", &u[0], &u[1]) == 2)
+    for (int c = 0; c < 2; c++) note->velocity[c] = u[c];
+  if (sscanf(comment, " rotation %lf", &u[0]) == 1) note->rotation = u[0];
+  if (!strncmp(comment + strspn(comment, " \t"), "open", 4)) note->open = PETSC_TRUE;
+}
+
+/* One line, `number` of the file. */
+static PetscErrorCode ReadLine(char line[], PetscInt number, PetscInt *capacity, Points *points) {
+  const char *start = line + strspn(line, " \t");
+  const PetscBool comment = *start == '#' ? PETSC_TRUE : PETSC_FALSE;
+  double x, y;
+  char rest[8];
+  PetscFunctionBeginUser;
+  if (comment) ReadNote(start + 1, &points->next);
+  line[strcspn(line, "#\r\n")] = 0;
+  if (line[strspn(line, " \t,")] == 0) {
+    if (!comment) PetscCall(EndCurve(points));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  for (char *p = line; *p; p++)
+    if (*p == ',') *p = ' ';
+  if (sscanf(line, "%lf %lf %7s", &x, &y, rest) != 2 || PetscIsInfOrNanReal(x) || PetscIsInfOrNanReal(y)) {
+    PetscCall(PetscSNPrintf(points->error, sizeof(points->error),
+                            "%s %s: line %" PetscInt_FMT " is \"%.60s\"; allowed: two finite numbers, x y",
+                            points->option, points->file, number, line));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  if (points->n == *capacity) {
+    *capacity = *capacity ? 2 * *capacity : 256;
+    PetscCall(PetscRealloc(2 * *capacity * sizeof(PetscReal), &points->xy));
+  }
+  points->xy[2 * points->n] = x;
+  points->xy[2 * points->n++ + 1] = y;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Read the lines on one rank; what is wrong goes into points->error. */
-static PetscErrorCode ReadPoints(const char file[], Points *points) {
-  FILE *f = fopen(file, "r");
+static PetscErrorCode ReadPoints(Points *points) {
+  FILE *f = fopen(points->file, "r");
   char line[1024];
   PetscInt number = 0, capacity = 0;
   PetscFunctionBeginUser;
   if (!f) {
     PetscCall(PetscSNPrintf(points->error, sizeof(points->error),
-                            "-vesicle_file %s: cannot be opened (%s); allowed: a readable text file", file,
+                            "%s %s: cannot be opened (%s); allowed: a readable text file", points->option, points->file,
                             strerror(errno)));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  while (fgets(line, sizeof(line), f) && !*points->error) {
-    double x, y;
-    char rest[8];
-    const PetscBool comment = line[strspn(line, " \t")] == '#' ? PETSC_TRUE : PETSC_FALSE;
-    number++;
-    line[strcspn(line, "#\r\n")] = 0;
-    if (line[strspn(line, " \t,")] == 0) {
-      if (!comment) PetscCall(EndCurve(points));
-      continue;
-    }
-    for (char *p = line; *p; p++)
-      if (*p == ',') *p = ' ';
-    if (sscanf(line, "%lf %lf %7s", &x, &y, rest) != 2 || PetscIsInfOrNanReal(x) || PetscIsInfOrNanReal(y)) {
-      PetscCall(PetscSNPrintf(points->error, sizeof(points->error),
-                              "-vesicle_file %s: line %" PetscInt_FMT " is \"%.60s\"; allowed: two finite numbers, x y",
-                              file, number, line));
-      break;
-    }
-    if (points->n == capacity) {
-      capacity = capacity ? 2 * capacity : 256;
-      PetscCall(PetscRealloc(2 * capacity * sizeof(PetscReal), &points->xy));
-    }
-    points->xy[2 * points->n] = x;
-    points->xy[2 * points->n++ + 1] = y;
-  }
+  while (fgets(line, sizeof(line), f) && !*points->error) PetscCall(ReadLine(line, ++number, &capacity, points));
   fclose(f);
   PetscCall(EndCurve(points));
   if (!points->curves && !*points->error)
-    PetscCall(PetscSNPrintf(points->error, sizeof(points->error),
-                            "-vesicle_file %s: 0 points; allowed: at least 8 a curve", file));
+    PetscCall(PetscSNPrintf(points->error, sizeof(points->error), "%s %s: 0 points; allowed: at least 8 a curve",
+                            points->option, points->file));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Number of points of one curve after dropping a repeated last one; turned counter-clockwise; what makes the curve
-   unusable goes into error. */
-static PetscErrorCode CleanCurve(const char file[], PetscInt *n, PetscReal xy[], char error[], size_t length_of_error) {
+   unusable goes into the error. */
+static PetscErrorCode CleanCurve(Points *p, PetscInt *n, PetscReal xy[], CurveNote *note) {
+  char *error = p->error;
+  const size_t length_of_error = sizeof(p->error);
   PetscReal area = 0, length = 0;
   PetscFunctionBeginUser;
   if (*n > 1 && xy[0] == xy[2 * *n - 2] && xy[1] == xy[2 * *n - 1]) (*n)--;
   if (*n < 8) {
-    PetscCall(PetscSNPrintf(error, length_of_error,
-                            "-vesicle_file %s: %" PetscInt_FMT " points; allowed: at least 8 a curve", file, *n));
+    PetscCall(PetscSNPrintf(error, length_of_error, "%s %s: %" PetscInt_FMT " points; allowed: at least 8 a curve",
+                            p->option, p->file, *n));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   for (PetscInt i = 0; i < *n; i++) {
@@ -79,9 +102,8 @@ static PetscErrorCode CleanCurve(const char file[], PetscInt *n, PetscReal xy[],
     const PetscReal d = PetscSqrtReal(PetscSqr(b[0] - a[0]) + PetscSqr(b[1] - a[1]));
     if (d == 0) {
       PetscCall(PetscSNPrintf(error, length_of_error,
-                              "-vesicle_file %s: point %" PetscInt_FMT
-                              " (%g %g) is given twice; allowed: distinct points",
-                              file, i + 1, (double)a[0], (double)a[1]));
+                              "%s %s: point %" PetscInt_FMT " (%g %g) is given twice; allowed: distinct points",
+                              p->option, p->file, i + 1, (double)a[0], (double)a[1]));
       PetscFunctionReturn(PETSC_SUCCESS);
     }
     area += 0.5 * (a[0] * b[1] - b[0] * a[1]);
@@ -89,8 +111,9 @@ static PetscErrorCode CleanCurve(const char file[], PetscInt *n, PetscReal xy[],
   }
   if (PetscAbsReal(area) < 1e-6 * length * length)
     PetscCall(PetscSNPrintf(error, length_of_error,
-                            "-vesicle_file %s: the curve encloses an area of %g; allowed: a closed simple curve", file,
-                            (double)area));
+                            "%s %s: the curve encloses an area of %g; allowed: a closed simple curve", p->option,
+                            p->file, (double)area));
+  note->clockwise = area < 0 ? PETSC_TRUE : PETSC_FALSE;
   for (PetscInt i = 1, k = *n - 1; area < 0 && i < k; i++, k--)
     for (int c = 0; c < 2; c++) {
       const PetscReal swap = xy[2 * i + c];
@@ -100,29 +123,45 @@ static PetscErrorCode CleanCurve(const char file[], PetscInt *n, PetscReal xy[],
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode CurvesFromFile(MPI_Comm comm, const char file[], PetscInt *curves, Curve **curve) {
-  Points p = {0};
+/* What rank 0 has read, to all ranks. */
+static PetscErrorCode Share(MPI_Comm comm, PetscMPIInt rank, Points *p) {
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Bcast(p->error, sizeof(p->error), MPI_CHAR, 0, comm));
+  PetscCallMPI(MPI_Bcast(&p->n, 1, MPIU_INT, 0, comm));
+  PetscCallMPI(MPI_Bcast(&p->curves, 1, MPIU_INT, 0, comm));
+  PetscCheck(!*p->error, comm, PETSC_ERR_USER_INPUT, "%s", p->error);
+  if (rank) {
+    PetscCall(PetscRealloc((size_t)p->curves * sizeof(PetscInt), &p->end));
+    PetscCall(PetscRealloc((size_t)p->curves * sizeof(CurveNote), &p->note));
+    PetscCall(PetscRealloc(2 * (size_t)p->n * sizeof(PetscReal), &p->xy));
+  }
+  PetscCallMPI(MPI_Bcast(p->end, (PetscMPIInt)p->curves, MPIU_INT, 0, comm));
+  PetscCallMPI(MPI_Bcast(p->note, (PetscMPIInt)((size_t)p->curves * sizeof(CurveNote)), MPI_BYTE, 0, comm));
+  PetscCallMPI(MPI_Bcast(p->xy, (PetscMPIInt)(2 * p->n), MPIU_REAL, 0, comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CurvesFromFile(MPI_Comm comm, const char option[], const char file[], PetscInt *curves, Curve **curve,
+                              CurveNote **note) {
+  Points p = {.option = option, .file = file};
   PetscMPIInt rank;
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
-  if (!rank) PetscCall(ReadPoints(file, &p));
-  PetscCallMPI(MPI_Bcast(p.error, sizeof(p.error), MPI_CHAR, 0, comm));
-  PetscCallMPI(MPI_Bcast(&p.n, 1, MPIU_INT, 0, comm));
-  PetscCallMPI(MPI_Bcast(&p.curves, 1, MPIU_INT, 0, comm));
-  PetscCheck(!*p.error, comm, PETSC_ERR_USER_INPUT, "%s", p.error);
-  if (rank) PetscCall(PetscRealloc((size_t)p.curves * sizeof(PetscInt), &p.end));
-  if (rank) PetscCall(PetscRealloc(2 * (size_t)p.n * sizeof(PetscReal), &p.xy));
-  PetscCallMPI(MPI_Bcast(p.end, (PetscMPIInt)p.curves, MPIU_INT, 0, comm));
-  PetscCallMPI(MPI_Bcast(p.xy, (PetscMPIInt)(2 * p.n), MPIU_REAL, 0, comm));
+  if (!rank) PetscCall(ReadPoints(&p));
+  PetscCall(Share(comm, rank, &p));
   *curves = p.curves;
   PetscCall(PetscCalloc1(p.curves, curve));
   for (PetscInt k = 0; k < p.curves; k++) {
     const PetscInt first = k ? p.end[k - 1] : 0;
     PetscInt n = p.end[k] - first;
-    PetscCall(CleanCurve(file, &n, p.xy + 2 * first, p.error, sizeof(p.error)));
+    PetscCall(CleanCurve(&p, &n, p.xy + 2 * first, &p.note[k]));
     PetscCheck(!*p.error, comm, PETSC_ERR_USER_INPUT, "%s", p.error);
     PetscCall(CurveFromPoints(n, p.xy + 2 * first, *curve + k));
   }
+  if (note)
+    *note = p.note;
+  else
+    PetscCall(PetscFree(p.note));
   PetscCall(PetscFree(p.end));
   PetscCall(PetscFree(p.xy));
   PetscFunctionReturn(PETSC_SUCCESS);

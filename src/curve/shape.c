@@ -18,3 +18,15 @@ PetscReal ShapeRadius(const Shape *shape, PetscInt v) {
   }
   return length / (2 * PETSC_PI);
 }
+
+/* Crossings of a ray. */
+PetscBool ShapeHolds(const Shape *shape, PetscInt v, PetscReal x, PetscReal y) {
+  const PetscInt M = shape->start[v + 1] - shape->start[v];
+  const PetscReal *X = shape->X + 2 * shape->start[v];
+  PetscBool inside = PETSC_FALSE;
+  for (PetscInt k = 0, p = M - 1; k < M; p = k++)
+    if ((X[2 * k + 1] > y) != (X[2 * p + 1] > y) &&
+        x < (X[2 * p] - X[2 * k]) * (y - X[2 * k + 1]) / (X[2 * p + 1] - X[2 * k + 1]) + X[2 * k])
+      inside = !inside;
+  return inside;
+}

@@ -58,6 +58,17 @@ PetscErrorCode LayoutCreateLike(Layout like, const PetscInt start[], Layout *lay
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode LayoutCreatePart(Layout all, PetscInt first, PetscInt end, Layout *layout) {
+  PetscInt *start, *body;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(end - first + 1, &start, all->size + 1, &body));
+  for (PetscInt b = first; b <= end; b++) start[b - first] = all->start[b] - all->start[first];
+  for (PetscMPIInt r = 0; r <= all->size; r++) body[r] = PetscMax(first, PetscMin(all->body[r], end)) - first;
+  PetscCall(Create(all->comm, end - first, start, body, layout));
+  PetscCall(PetscFree2(start, body));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode LayoutDestroy(Layout *layout) {
   Layout l = *layout;
   PetscFunctionBeginUser;

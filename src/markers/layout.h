@@ -23,6 +23,10 @@ PETSC_EXTERN PetscErrorCode LayoutCreate(MPI_Comm comm, PetscInt bodies, const P
 
 /* LayoutCreateLike - of the same bodies on the same ranks with other markers, start[bodies+1]. Not collective. */
 PETSC_EXTERN PetscErrorCode LayoutCreateLike(Layout like, const PetscInt start[], Layout *layout);
+
+/* LayoutCreatePart - of the bodies first .. end - 1 of another one on the same ranks, numbered from 0 on. Not
+   collective. */
+PETSC_EXTERN PetscErrorCode LayoutCreatePart(Layout all, PetscInt first, PetscInt end, Layout *layout);
 PETSC_EXTERN PetscErrorCode LayoutDestroy(Layout *layout);
 
 /* LayoutCreateVec - zero vector with `each` (1 or 2) numbers a marker. Collective. */

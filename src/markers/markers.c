@@ -18,11 +18,12 @@ static PetscErrorCode WrongPlace(PetscInt b, const PetscReal X[2], PetscReal dis
 }
 
 /* What is wrong with the own body b's markers X[2n], if anything. */
-static PetscErrorCode CheckBody(Markers m, PetscInt b, const PetscScalar X[], char message[PETVES_MAX_MESSAGE]) {
+static PetscErrorCode CheckBody(Markers m, PetscInt b, PetscInt n, const PetscScalar X[],
+                                char message[PETVES_MAX_MESSAGE]) {
   static const char *const names[2][2] = {{"x_min", "x_max"}, {"y_min", "y_max"}};
   const Grid g = m->grid;
   PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < LayoutCount(m->layout, b); k++)
+  for (PetscInt k = 0; k < n; k++)
     for (int dir = 0; dir < 2; dir++) {
       const PetscReal x = X[2 * k + dir];
       if (PetscIsInfOrNanReal(x)) {
@@ -41,15 +42,15 @@ static PetscErrorCode CheckBody(Markers m, PetscInt b, const PetscScalar X[], ch
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode MarkersCheck(Markers m, Vec X, char message[PETVES_MAX_MESSAGE]) {
+PetscErrorCode MarkersCheck(Markers m, Layout layout, Vec X, char message[PETVES_MAX_MESSAGE]) {
   const PetscScalar *x;
   PetscFunctionBeginUser;
   message[0] = 0;
   PetscCall(VecGetArrayRead(X, &x));
-  for (PetscInt b = m->layout->own; b < m->layout->end && !*message; b++)
-    PetscCall(CheckBody(m, b, x + 2 * LayoutOffset(m->layout, b), message));
+  for (PetscInt b = layout->own; b < layout->end && !*message; b++)
+    PetscCall(CheckBody(m, b, LayoutCount(layout, b), x + 2 * LayoutOffset(layout, b), message));
   PetscCall(VecRestoreArrayRead(X, &x));
-  PetscCall(AgreeMessage(m->layout->comm, message));
+  PetscCall(AgreeMessage(layout->comm, message));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

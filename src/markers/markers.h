@@ -34,9 +34,10 @@ PETSC_EXTERN PetscErrorCode MarkersCreate(Grid grid, Layout layout, const char k
                                           Markers *markers);
 PETSC_EXTERN PetscErrorCode MarkersDestroy(Markers *markers);
 
-/* MarkersCheck - message[PETVES_MAX_MESSAGE] is empty when every marker of X is finite and at least `least` cells from
-   every wall (not in unbounded fluid), else it names the vesicle and the wall; the same on every rank. Collective. */
-PETSC_EXTERN PetscErrorCode MarkersCheck(Markers markers, Vec X, char message[PETVES_MAX_MESSAGE]);
+/* MarkersCheck - message[PETVES_MAX_MESSAGE] is empty when every marker of X, of the vesicles of `layout`, is finite
+   and at least `least` cells from every wall (not in unbounded fluid), else it names the vesicle and the wall; the same
+   on every rank. Collective. */
+PETSC_EXTERN PetscErrorCode MarkersCheck(Markers markers, Layout layout, Vec X, char message[PETVES_MAX_MESSAGE]);
 
 /* MarkersPlace - put E at the markers X (checked by MarkersCheck before). Collective. */
 PETSC_EXTERN PetscErrorCode MarkersPlace(Markers markers, Vec X);

@@ -57,12 +57,25 @@ static PetscErrorCode WriteVectors(Scheme s, H5File *file, const char prefix[], 
     PetscCall(WriteOnly(file, prefix, "vesicle/velocity", 2, markers, now.velocity));
     PetscCall(WriteOnly(file, prefix, "vesicle/tension", 1, markers, now.tension));
   }
+  if (now.W) PetscCall(WriteOnly(file, prefix, "obstacle/force", 2, (const PetscInt[]){now.W, 2}, now.solid));
   if (now.walls) PetscCall(WriteOnly(file, prefix, "fluid/walls", 1, &now.walls, now.wall_force));
   PetscCall(GatheredDestroy(&now));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The scene's options, and what its vesicles are, by which a restart knows the scene. */
+/* What the obstacles are, by which a restart knows their curves. */
+static PetscErrorCode WriteObstacles(Scheme s, H5File *file) {
+  const Obstacles o = s->coupling->bodies->obstacles;
+  PetscFunctionBeginUser;
+  if (!o) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(H5PutInts(file, "obstacles", 1, &o->layout->bodies));
+  PetscCall(H5PutInts(file, "obstacle_start", o->layout->bodies + 1, o->layout->start));
+  PetscCall(H5PutReals(file, "obstacle_center", 2 * o->layout->bodies, o->center));
+  PetscCall(H5PutReals(file, "obstacle_ds", o->layout->bodies, o->ds));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The scene's options, and what its bodies are, by which a restart knows the scene. */
 static PetscErrorCode WriteScene(Scheme s, H5File *file) {
   const Membrane m = s->membrane;
   const Layout l = m->layout;
@@ -73,6 +86,7 @@ static PetscErrorCode WriteScene(Scheme s, H5File *file) {
     PetscCall(SceneOptionValue(s->scene, i, value, sizeof(value)));
     PetscCall(H5PutString(file, SceneOptionName(i), value));
   }
+  PetscCall(WriteObstacles(s, file));
   if (!l->bodies) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(H5PutInts(file, "vesicles", 1, &l->bodies));
   PetscCall(H5PutInts(file, "vesicle_start", l->bodies + 1, l->start));

@@ -6,10 +6,12 @@
 /* Arrays of all vesicles, the same on every rank. */
 typedef struct {
   PetscInt M;            /* markers */
+  PetscInt W;            /* markers of obstacles */
   PetscInt walls;        /* wall forces; 0 without */
   PetscReal *markers;    /* [M][2] */
   PetscReal *velocity;   /* [M][2], background included */
   PetscReal *tension;    /* [M] */
+  PetscReal *solid;      /* [W][2] force on obstacles */
   PetscReal *wall_force; /* [walls] */
 } Gathered;
 

@@ -1,4 +1,5 @@
 #include "output/record.h"
+#include "output/obstaclerow.h"
 #include "scheme/films.h"
 
 const char *const SeriesColumns[] = {"step",
@@ -59,23 +60,29 @@ static PetscErrorCode WriteHeader(Record *r) {
     for (int c = 0; c < Repeated(r); c++)
       used += (size_t)snprintf(r->header + used, r->room - used, ",%s_%d", SeriesColumns[RecordVesicleColumns[c]],
                                (int)v);
+  for (PetscInt k = 0; k < r->solids; k++) {
+    char name[OBSTACLE_ROW_NAME];
+    ObstacleRowName(k, name);
+    used += (size_t)snprintf(r->header + used, r->room - used, ",%s", name);
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode RecordCreate(PetscInt vesicles, Record *r) {
+PetscErrorCode RecordCreate(PetscInt vesicles, PetscInt obstacles, Record *r) {
   PetscFunctionBeginUser;
   PetscCall(PetscMemzero(r, sizeof(*r)));
   r->vesicles = vesicles;
-  r->room = (size_t)(COLUMN_COUNT + vesicles * Repeated(r)) * ENTRY;
-  PetscCall(
-      PetscCalloc3(vesicles * COLUMN_COUNT, &r->each, (PetscInt)r->room, &r->header, (PetscInt)r->room, &r->text));
+  r->solids = ObstacleRowCount(obstacles);
+  r->room = (size_t)(COLUMN_COUNT + vesicles * Repeated(r) + r->solids) * ENTRY;
+  PetscCall(PetscCalloc4(vesicles * COLUMN_COUNT, &r->each, r->solids, &r->solid, (PetscInt)r->room, &r->header,
+                         (PetscInt)r->room, &r->text));
   PetscCall(WriteHeader(r));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode RecordDestroy(Record *r) {
   PetscFunctionBeginUser;
-  PetscCall(PetscFree3(r->each, r->header, r->text));
+  PetscCall(PetscFree4(r->each, r->solid, r->header, r->text));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -192,6 +199,8 @@ PetscErrorCode RecordTake(Record *r, Scheme s) {
   for (int c = 0; c < COLUMN_COUNT; c++) AddNumber(r, &used, row[c]);
   for (PetscInt v = 0; v < r->vesicles; v++)
     for (int c = 0; c < Repeated(r); c++) AddNumber(r, &used, r->each[v * COLUMN_COUNT + RecordVesicleColumns[c]]);
+  PetscCall(ObstacleRowTake(s, r->solid));
+  for (PetscInt k = 0; k < r->solids; k++) AddNumber(r, &used, r->solid[k]);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -46,17 +46,18 @@ enum {
 PETSC_EXTERN const int RecordVesicleColumns[];
 
 typedef struct {
-  PetscInt vesicles;
+  PetscInt vesicles, solids;    /* vesicles; columns of obstacles */
   PetscReal last[COLUMN_COUNT]; /* the last row, over all vesicles */
   PetscReal *each;              /* [vesicles][COLUMN_COUNT] the vesicles' own columns of it */
+  PetscReal *solid;             /* [solids] the obstacles' columns of it, the last ones in series.csv */
   char *header, *text;          /* the names and the last row as lines of series.csv, without the line's end */
   size_t room;                  /* of each of the two: it grows with the vesicles */
   PetscInt solves, tension, bending, coupled; /* sums over the run */
   PetscReal cfl_max;                          /* largest of a step */
 } Record;
 
-/* RecordCreate - zero, with the header for so many vesicles. */
-PETSC_EXTERN PetscErrorCode RecordCreate(PetscInt vesicles, Record *record);
+/* RecordCreate - zero, with the header for so many vesicles and obstacles. */
+PETSC_EXTERN PetscErrorCode RecordCreate(PetscInt vesicles, PetscInt obstacles, Record *record);
 PETSC_EXTERN PetscErrorCode RecordDestroy(Record *record);
 
 /* RecordMeasure - the vesicles' own columns of the present state, into `each`, and the least gap of all. Collective. */

@@ -101,6 +101,35 @@ static PetscErrorCode CompareVesicles(Scheme s, H5File *file) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Obstacles, whose file may have changed as well. */
+static PetscErrorCode CompareObstacles(Scheme s, H5File *file) {
+  const Obstacles o = s->coupling->bodies->obstacles;
+  PetscInt curves = 0, *start, same = 1;
+  PetscReal *center, *ds;
+  PetscFunctionBeginUser;
+  if (!o) PetscFunctionReturn(PETSC_SUCCESS);
+  const PetscInt n = o->layout->bodies;
+  PetscCall(H5GetInts(file, "obstacles", 1, &curves));
+  if (curves == n) {
+    PetscCall(PetscCalloc3(n + 1, &start, 2 * n, &center, n, &ds));
+    PetscCall(H5GetInts(file, "obstacle_start", n + 1, start));
+    PetscCall(H5GetReals(file, "obstacle_center", 2 * n, center));
+    PetscCall(H5GetReals(file, "obstacle_ds", n, ds));
+    for (PetscInt b = 0; b <= n; b++) same = same && start[b] == o->layout->start[b];
+    for (PetscInt b = 0; b < n; b++) {
+      same = same && PetscAbsReal(ds[b] / o->ds[b] - 1) < 1e-10;
+      for (int c = 0; c < 2; c++) same = same && PetscAbsReal(center[2 * b + c] - o->center[2 * b + c]) < 1e-10 * ds[b];
+    }
+    PetscCall(PetscFree3(start, center, ds));
+  }
+  same = same && curves == n;
+  PetscCallMPI(MPI_Bcast(&same, 1, MPIU_INT, 0, s->scene->comm)); /* rank 0 decides */
+  PetvesCheck(same, s->scene->comm,
+              "-obstacle_shape: the checkpoint of -restart %s has other obstacles; allowed: the same curves",
+              s->scene->output.restart);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode ReadFluid(Scheme s, H5File *file, const char prefix[], State *q) {
   static const char *const names[3] = {"u", "v", "p"};
   const Grid g = s->fluid->grid;
@@ -168,6 +197,7 @@ static PetscErrorCode ReadVectors(Scheme s, H5File *file, const char prefix[], S
   PetscCall(ReadOnly(file, prefix, "vesicle/markers", there.M, 2, there.markers));
   PetscCall(ReadOnly(file, prefix, "vesicle/velocity", there.M, 2, there.velocity));
   PetscCall(ReadOnly(file, prefix, "vesicle/tension", there.M, 1, there.tension));
+  PetscCall(ReadOnly(file, prefix, "obstacle/force", there.W, 2, there.solid));
   PetscCall(H5GetInts(file, "walls", 1, &walls));
   if (walls == there.walls) PetscCall(ReadOnly(file, prefix, "fluid/walls", walls, 1, there.wall_force));
   PetscCall(ScatterState(&there, q));
@@ -305,6 +335,7 @@ static PetscErrorCode ReadAll(Scheme s, H5File *file, Record *record, PetscInt *
   PetscCall(CheckNumbers(s->scene, file));
   PetscCall(CheckEntries(s->scene, file));
   PetscCall(CompareVesicles(s, file));
+  PetscCall(CompareObstacles(s, file));
   PetscCall(ReadState(s, file));
   PetscCall(H5GetInts(file, "frames", 1, frames));
   PetscCall(ReadRecord(s, file, record));

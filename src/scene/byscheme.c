@@ -35,7 +35,8 @@ PetscErrorCode SceneChooseByScheme(Draft scene) {
   if (SceneIsProjection(scene) || scene->membrane.derivative != DERIVATIVE_SPECTRAL)
     PetscCall(SceneChoose(scene, "-time_frame", "none"));
   /* the box part is the grid's, nothing without the rest of the near field, and small in a large box */
-  if (scene->coupling.near_field == NEAR_NONE || FluidSpecIsFree(&scene->fluid) || IsLarge(scene))
+  if (scene->coupling.near_field == NEAR_NONE || FluidSpecIsFree(&scene->fluid) ||
+      (IsLarge(scene) && scene->obstacles.shape == OBSTACLE_NONE))
     PetscCall(SceneChoose(scene, "-coupling_box_part", "false"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

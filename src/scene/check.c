@@ -34,6 +34,15 @@ static PetscErrorCode CheckFlow(Scene scene) {
   PetscCheck(
       scene->fluid.inertia != INERTIA_CONVECTIVE || type != FLOW_CUSTOM, scene->comm, PETSC_ERR_USER_INPUT,
       "-fluid_inertia convective: not with -flow_type custom, whose gradient is not known; allowed: none, unsteady");
+  PetscCheck(scene->flow.velocity.n == 2, scene->comm, PETSC_ERR_USER_INPUT,
+             "-flow_velocity: %" PetscInt_FMT " numbers given; allowed: two, u_x,u_y", scene->flow.velocity.n);
+  for (int d = 0; d < 2; d++)
+    PetscCheck(
+        type != FLOW_UNIFORM || scene->flow.velocity.v[d] == 0 || scene->fluid.bc[d] != BC_WALL, scene->comm,
+        PETSC_ERR_USER_INPUT,
+        "-flow_velocity %g,%g: into the walls at %c_min and %c_max; allowed: along walls, which move with it, or "
+        "-domain_bc_%c periodic",
+        (double)scene->flow.velocity.v[0], (double)scene->flow.velocity.v[1], "xy"[d], "xy"[d], "xy"[d]);
   if (scene->fluid.form != FORM_TOTAL || type == FLOW_QUIESCENT) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCheck(type != FLOW_CUSTOM, scene->comm, PETSC_ERR_USER_INPUT,
              "-flow_form total: not with -flow_type custom; allowed: -flow_form disturbance");

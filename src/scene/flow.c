@@ -15,6 +15,9 @@ void FlowVelocity(const Flow *flow, PetscReal t, PetscReal x, PetscReal y, Petsc
     u[0] = flow->rate * dx;
     u[1] = -flow->rate * dy;
     break;
+  case FLOW_UNIFORM:
+    for (int c = 0; c < 2; c++) u[c] = flow->velocity.v[c];
+    break;
   case FLOW_CUSTOM: {
     const PetscReal X[2] = {x, y};
     if (flow->function(t, 1, X, u, flow->ctx)) u[0] = u[1] = NAN;

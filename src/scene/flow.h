@@ -1,13 +1,14 @@
 /* Background flow u_inf, an exact solution of the Stokes equations, or of a caller's own. Lengths and times are in the
    user's units. */
 #pragma once
-#include "base/base.h"
+#include "options/options.h"
 
-typedef enum { FLOW_QUIESCENT, FLOW_SHEAR, FLOW_POISEUILLE, FLOW_EXTENSION, FLOW_CUSTOM } FlowType;
+typedef enum { FLOW_QUIESCENT, FLOW_SHEAR, FLOW_POISEUILLE, FLOW_EXTENSION, FLOW_UNIFORM, FLOW_CUSTOM } FlowType;
 
 typedef struct {
   PetscInt type; /* FlowType */
   PetscReal rate, peak, half_width, center[2];
+  RealList velocity;   /* FLOW_UNIFORM: u_x, u_y */
   PetscReal chi, ca;   /* what the user gives in place of rate or peak */
   PetvesFlow function; /* FLOW_CUSTOM: the caller's, with its context */
   void *ctx;

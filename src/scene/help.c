@@ -8,6 +8,7 @@ static const struct {
               {"-flow_type", "Background flow"},
               {"-fluid_viscosity", "Fluid"},
               {"-vesicle_shape", "Vesicles"},
+              {"-obstacle_shape", "Obstacles"},
               {"-delta_type", "Scheme"},
               {"-time_step", "Time"},
               {"-helmholtz_type", "Fast solvers"},

@@ -20,6 +20,7 @@ static PetscReal Reynolds(Scene scene) {
   if (R0 == 0) return 0;
   if (flow->type == FLOW_SHEAR || flow->type == FLOW_EXTENSION) speed = PetscAbsReal(flow->rate) * R0;
   if (flow->type == FLOW_POISEUILLE) speed = PetscAbsReal(flow->peak);
+  if (flow->type == FLOW_UNIFORM) speed = PetscHypotReal(flow->velocity.v[0], flow->velocity.v[1]);
   if (flow->type == FLOW_QUIESCENT) speed = scene->membrane.bending / (scene->fluid.nu * PetscSqr(R0));
   for (PetscInt v = 0; v < scene->shape.vesicles; v++) /* settling */
     speed = PetscMax(speed, PetscHypotReal(SceneWeight(scene, v, 0), SceneWeight(scene, v, 1)) * PetscSqr(R0) /
@@ -100,7 +101,10 @@ PetscErrorCode SceneChooseInertia(Draft scene) {
                                     scene->flow.type == FLOW_CUSTOM
                                 ? PETSC_TRUE
                                 : PETSC_FALSE;
-    const PetscBool none = FluidSpecIsFree(&scene->fluid) || SceneHasContrast(scene) ? PETSC_TRUE : PETSC_FALSE;
+    const PetscBool none = FluidSpecIsFree(&scene->fluid) || SceneHasContrast(scene) ||
+                                   scene->obstacles.outline.vesicles > 0
+                               ? PETSC_TRUE
+                               : PETSC_FALSE;
     scene->fluid.inertia = none ? INERTIA_NONE : INERTIA_UNSTEADY;
     if (!baseline && scene->shape.vesicles && !paper && !none) {
       if (scene->reynolds < SMALL_REYNOLDS)

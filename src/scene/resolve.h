@@ -87,6 +87,15 @@ PETSC_EXTERN PetscErrorCode SceneCheckContrast(Scene scene);
 PETSC_EXTERN PetscErrorCode SceneMakeShape(Draft scene);
 PETSC_EXTERN PetscErrorCode SceneDropShape(Draft scene);
 
+/* SceneMakeObstacles - the markers of the scene's obstacles, equally spaced, and what their surfaces do; that the rest
+   of the scene goes with them. The vesicles are known. Collective; stops with the user's message. SceneDropObstacles -
+   free them. */
+PETSC_EXTERN PetscErrorCode SceneMakeObstacles(Draft scene);
+PETSC_EXTERN PetscErrorCode SceneDropObstacles(Draft scene);
+
+/* SceneCheckObstacles - method, places and sizes of the obstacles and of the vesicles among them. Collective. */
+PETSC_EXTERN PetscErrorCode SceneCheckObstacles(Scene scene);
+
 /* SceneChooseInertia - the Reynolds number (speed R0/nu with R0 of the largest vesicle and the speed of the scene: rate
    R0 of shear and extension, u_max of poiseuille, c_b/(nu R0^2) of a quiescent fluid; 0 without vesicles), the model
    that -fluid_inertia auto stands for, and the warning that goes with it. Stops with the user's message when the model

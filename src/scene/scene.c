@@ -30,11 +30,12 @@ PetscErrorCode SceneCreate(MPI_Comm comm, PetvesFlow flow, void *ctx, Scene *out
   s->flow.function = flow;
   s->flow.ctx = ctx;
   DescribeFluid(s);
-  /* 5  the vesicles, the flow from numbers that go by their size, the markers with the kernel's spacing if none is
-   * given
+  /* 5  the vesicles, the obstacles, the flow from numbers that go by their size, the markers with the kernel's spacing
+   * if none is given
    */
   PetscCall(SceneMakeShape(s));
   PetscCall(SceneChooseMarkers(s));
+  PetscCall(SceneMakeObstacles(s));
   PetscCall(SceneCheckFree(s));
   PetscCall(SceneCheckDivergence(s));
   PetscCall(SceneCheckGravity(s));
@@ -56,6 +57,7 @@ PetscErrorCode SceneDestroy(Scene *scene) {
   PetscFunctionBeginUser;
   if (!s) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SceneDropShape(s));
+  PetscCall(SceneDropObstacles(s));
   PetscCall(OptionsDestroy(&s->options, s));
   PetscCall(PetscFree(s));
   *scene = NULL;

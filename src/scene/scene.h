@@ -14,6 +14,7 @@ typedef enum { FRAME_TREADING, FRAME_NONE } FrameType;
 typedef enum { PRECISION_DOUBLE, PRECISION_SINGLE } PrecisionType;
 typedef enum { STARTUP_EULER, STARTUP_GRADED } StartUp;
 typedef enum { SHAPE_ELLIPSE, SHAPE_BICONCAVE, SHAPE_FILE, SHAPE_NONE } ShapeType;
+typedef enum { OBSTACLE_NONE, OBSTACLE_POSTS, OBSTACLE_COUETTE, OBSTACLE_FILE } ObstacleShape;
 typedef enum { PACKING_RANDOM, PACKING_LATTICE } PackingType;
 
 /* The domain as the user gives it: fluid.box and fluid.cells when their lengths are right. */
@@ -53,6 +54,19 @@ typedef struct {
   RealList g;       /* g_x, g_y (length/time^2) */
   RealList density; /* difference over the outer density, one for all or one a vesicle */
 } SceneGravity;
+
+/* Solid bodies in the fluid. */
+typedef struct {
+  PetscInt shape; /* ObstacleShape */
+  RealList radius, center, move, rotation;
+  IntList lattice;               /* columns and rows; 0, 0: none */
+  PetscReal shift;               /* of a row against the one below, over the distance of columns */
+  char file[PETSC_MAX_PATH_LEN]; /* curve file */
+  PetscReal spacing;             /* ds/h */
+  Shape outline;                 /* their markers, the same on every rank */
+  PetscReal *velocity, *turn;    /* [2 curves], [curves] of their surfaces */
+  PetscBool *container;          /* [curves] the fluid is inside */
+} SceneObstacles;
 
 typedef struct {
   char kernel[OPTION_MAX_NAME]; /* between grid and markers */
@@ -117,6 +131,7 @@ struct _p_Scene {
   Flow flow;
   SceneVesicles vesicles;
   SceneMembrane membrane;
+  SceneObstacles obstacles;
   SceneGravity gravity;
   SceneCoupling coupling;
   SceneRepulsion repulsion;

@@ -27,7 +27,13 @@ typedef enum {
   BY_CONVECTION,
   BY_GRID,
   BY_GRAVITY,
-  BY_PERIOD
+  BY_PERIOD,
+  BY_UNIFORM,
+  BY_BODIES,
+  BY_OBSTACLES,
+  BY_CIRCLES,
+  BY_POSTS,
+  BY_OBSTACLE_FILE
 } Need;
 
 static const char *const needs[] = {"-flow_type shear or extension",
@@ -54,7 +60,13 @@ static const char *const needs[] = {"-flow_type shear or extension",
                                     "-fluid_inertia convective",
                                     "walls or periodic boundaries (-domain_bc_x)",
                                     "a -fluid_gravity that is not 0,0",
-                                    "-domain_bc_x periodic and -domain_bc_y wall"};
+                                    "-domain_bc_x periodic and -domain_bc_y wall",
+                                    "-flow_type uniform",
+                                    "vesicles (-vesicle_shape) or obstacles (-obstacle_shape)",
+                                    "obstacles (-obstacle_shape)",
+                                    "-obstacle_shape posts or couette",
+                                    "-obstacle_shape posts",
+                                    "-obstacle_shape file"};
 
 /* Options that are not listed are used by every scene. */
 static const struct {
@@ -69,6 +81,7 @@ static const struct {
              {"-flow_center_y", BY_SHEARED},
              {"-flow_form", BY_FLOW},
              {"-flow_drive", BY_PERIOD},
+             {"-flow_velocity", BY_UNIFORM},
              {"-fluid_gravity", BY_UNSPLIT},
              {"-vesicle_count", BY_VESICLES},
              {"-vesicle_semi_axes", BY_ELLIPSES},
@@ -88,14 +101,22 @@ static const struct {
              {"-vesicle_spacing", BY_VESICLES},
              {"-vesicle_markers", BY_VESICLES},
              {"-vesicle_allow_close_markers", BY_VESICLES},
-             {"-delta_type", BY_VESICLES},
+             {"-obstacle_radius", BY_CIRCLES},
+             {"-obstacle_center", BY_CIRCLES},
+             {"-obstacle_lattice", BY_POSTS},
+             {"-obstacle_shift", BY_POSTS},
+             {"-obstacle_velocity", BY_CIRCLES},
+             {"-obstacle_rotation", BY_CIRCLES},
+             {"-obstacle_file", BY_OBSTACLE_FILE},
+             {"-obstacle_spacing", BY_OBSTACLES},
+             {"-delta_type", BY_BODIES},
              {"-scheme_auto", BY_VESICLES},
              {"-scheme_bending", BY_VESICLES},
              {"-penalty_stiffness", BY_PENALTY},
              {"-scheme_length_target", BY_UNSPLIT},
              {"-scheme_area_target", BY_VESICLES},
-             {"-coupling_near_field", BY_VESICLES},
-             {"-coupling_box_part", BY_VESICLES},
+             {"-coupling_near_field", BY_BODIES},
+             {"-coupling_box_part", BY_BODIES},
              {"-contact_repulsion", BY_UNSPLIT},
              {"-contact_repulsion_range", BY_REPULSION},
              {"-contact_adhesion", BY_REPULSION},
@@ -157,12 +178,23 @@ static PetscBool UsesDensity(Scene s) {
                                                                                               : PETSC_FALSE;
 }
 
+static PetscBool MetByObstacles(Scene s, Need need) {
+  const PetscInt shape = s->obstacles.shape;
+  if (need == BY_BODIES) return s->shape.vesicles > 0 || shape != OBSTACLE_NONE ? PETSC_TRUE : PETSC_FALSE;
+  if (need == BY_OBSTACLES) return shape != OBSTACLE_NONE ? PETSC_TRUE : PETSC_FALSE;
+  if (need == BY_OBSTACLE_FILE) return shape == OBSTACLE_FILE ? PETSC_TRUE : PETSC_FALSE;
+  return shape == OBSTACLE_POSTS || (need == BY_CIRCLES && shape == OBSTACLE_COUETTE) ? PETSC_TRUE : PETSC_FALSE;
+}
+
 static PetscBool Met(Scene s, Need need) {
   const PetscBool any = s->shape.vesicles > 0 ? PETSC_TRUE : PETSC_FALSE;
   if (need <= BY_FLOW) return MetByFlow(s, need);
   if (need >= BY_ELLIPSES && need <= BY_FILE) return MetByShape(s, need);
   if (need >= BY_PACKING && need <= BY_ANGLES) return MetByPlaces(s, need);
+  if (need >= BY_BODIES) return MetByObstacles(s, need);
   switch (need) {
+  case BY_UNIFORM:
+    return IsFlow(s, FLOW_UNIFORM, FLOW_UNIFORM);
   case BY_UNSPLIT:
     return IsScheme(s, "coupled") || IsScheme(s, "direct");
   case BY_COUPLED:

@@ -60,16 +60,6 @@ static PetscErrorCode CheckRoom(Scene scene, const Kind *kind, const Pose *at, P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether (x, y) is inside the polygon X[2M]: crossings of a ray. */
-static PetscBool Inside(PetscInt M, const PetscReal X[], PetscReal x, PetscReal y) {
-  PetscBool inside = PETSC_FALSE;
-  for (PetscInt k = 0, p = M - 1; k < M; p = k++)
-    if ((X[2 * k + 1] > y) != (X[2 * p + 1] > y) &&
-        x < (X[2 * p] - X[2 * k]) * (y - X[2 * k + 1]) / (X[2 * p + 1] - X[2 * k + 1]) + X[2 * k])
-      inside = !inside;
-  return inside;
-}
-
 static void Bounds(const Shape *s, PetscInt v, PetscReal box[2][2]) {
   for (int d = 0; d < 2; d++) {
     box[d][0] = PETSC_MAX_REAL;
@@ -83,13 +73,13 @@ static void Bounds(const Shape *s, PetscInt v, PetscReal box[2][2]) {
 
 /* Whether vesicle b, or an image of it, lies inside vesicle a, given that they do not cross. box[2][2] holds a. */
 static PetscBool Encloses(const Shape *s, PetscInt a, PetscInt b, PetscReal box[2][2], const PetscReal period[2]) {
-  const PetscReal *X = s->X + 2 * s->start[a], *at = s->X + 2 * s->start[b];
+  const PetscReal *at = s->X + 2 * s->start[b];
   for (int p = -1; p <= 1; p++)
     for (int q = -1; q <= 1; q++) {
       if ((p && period[0] == 0) || (q && period[1] == 0)) continue;
       const PetscReal x = at[0] + p * period[0], y = at[1] + q * period[1];
       if (x < box[0][0] || x > box[0][1] || y < box[1][0] || y > box[1][1]) continue;
-      if (Inside(s->start[a + 1] - s->start[a], X, x, y)) return PETSC_TRUE;
+      if (ShapeHolds(s, a, x, y)) return PETSC_TRUE;
     }
   return PETSC_FALSE;
 }

@@ -40,7 +40,7 @@ static PetscErrorCode ViewFluid(Scene scene, PetscViewer v) {
 
 /* The background flow, and its dimensionless number where it has one. */
 static PetscErrorCode ViewFlow(Scene scene, PetscViewer v) {
-  static const char *const names[] = {"quiescent", "shear", "poiseuille", "extension", "custom"};
+  static const char *const names[] = {"quiescent", "shear", "poiseuille", "extension", "uniform", "custom"};
   const PetscInt type = scene->flow.type;
   const PetscBool channel = type == FLOW_POISEUILLE ? PETSC_TRUE : PETSC_FALSE;
   const PetscReal R0 = scene->shape.longest / (2 * PETSC_PI), c_b = scene->membrane.bending;

@@ -51,7 +51,9 @@ static const OptionWish wishes[] = {
     {"*shear_modulus", "the membrane is a fluid, inextensible and without shear elasticity" NO},
     {"*elastic", "the membrane is a fluid, inextensible and without shear elasticity" NO},
     {"*permeability", "the membrane lets no fluid through" NO},
-    {"*obstacle", "walls are those of the box" NO},
+    {"*obstacle", "-obstacle_shape is meant?"},
+    {"*constriction", "solid bodies are closed curves, -obstacle_shape" NO},
+    {"*stenosis", "solid bodies are closed curves, -obstacle_shape" NO},
     {"*3d", "two dimensions only" NO},
     {"*dimension", "two dimensions only" NO},
     {NULL, NULL}};

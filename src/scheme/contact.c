@@ -35,7 +35,7 @@ static PetscBool IsContact(void *context, PetscInt k, PetscInt l, const PetscRea
   return PETSC_TRUE;
 }
 
-/* The first contact; X[2M]. */
+/* The first contact of vesicles; X begins with theirs. */
 static PetscErrorCode FindContact(Scheme s, const PetscScalar X[], const PetscReal period[2], PetscMPIInt pair[2]) {
   const Layout l = s->membrane->layout;
   ContactSearch search = {.scheme = s};
@@ -47,21 +47,11 @@ static PetscErrorCode FindContact(Scheme s, const PetscScalar X[], const PetscRe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Vesicles by their numbers from 1. */
-static PetscErrorCode Name(PetscMPIInt v, PetscMPIInt w, size_t room, char who[]) {
-  PetscFunctionBeginUser;
-  if (v == w)
-    PetscCall(PetscSNPrintf(who, room, "parts of vesicle %d", v));
-  else
-    PetscCall(PetscSNPrintf(who, room, "vesicles %d and %d", v, w));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 static PetscErrorCode Warn(Scheme s, const PetscMPIInt pair[2]) {
   const PetscBool exact = s->coupling->near ? PETSC_TRUE : PETSC_FALSE;
   char who[64];
   PetscFunctionBeginUser;
-  PetscCall(Name(pair[0], pair[1], sizeof(who), who));
+  PetscCall(SchemeNamePair(s, pair[0] - 1, pair[1] - 1, "parts of vesicle %" PetscInt_FMT, sizeof(who), who));
   PetscCall(SchemeWarn(
       s,
       "%s are closer than %.3g %s after step %" PetscInt_FMT ", time %g; %s not resolve the fluid between them: try %s",
@@ -76,7 +66,7 @@ static PetscErrorCode CheckCrossing(Scheme s, const PetscScalar X[]) {
   PetscFunctionBeginUser;
   PetscCall(FilmsCross(s, X, pair));
   if (pair[0] < 0) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(Name((PetscMPIInt)pair[0] + 1, (PetscMPIInt)pair[1] + 1, sizeof(who), who));
+  PetscCall(SchemeNamePair(s, pair[0], pair[1], "parts of vesicle %" PetscInt_FMT, sizeof(who), who));
   PetscCall(PetscSNPrintf(s->report.failure, sizeof(s->report.failure), "%s cross", who));
   PetscCall(SchemeAdvise(s, "a smaller -time_step, more -vesicle_markers or finer -domain_cells"));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -90,7 +80,7 @@ PetscErrorCode SchemeCheckContact(Scheme s) {
   PetscMPIInt pair[2] = {0, 0};
   PetscFunctionBeginUser;
   SchemePeriods(s, period);
-  PetscCall(LayoutGatherVec(l, s->state.X, s->work_all));
+  PetscCall(SchemeCurves(s, s->state.X));
   if (!l->rank) {
     if (s->scene->limits.crossing) PetscCall(CheckCrossing(s, s->work_all));
     PetscCall(FindContact(s, s->work_all, period, pair));

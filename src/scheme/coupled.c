@@ -242,7 +242,7 @@ static PetscErrorCode SetUp_Coupled(Scheme s) {
   PetscCall(VecDuplicate(q->X, &d->Xstar));
   PetscCall(VecDuplicate(q->X, &d->Xhat));
   PetscCall(VecDuplicate(q->X, &d->V));
-  PetscCall(VecDuplicate(q->X, &d->known));
+  PetscCall(LayoutCreateVec(s->coupling->bodies->layout, 2, &d->known));
   PetscCall(VecDuplicate(q->X, &d->Y));
   if (s->coupling->contrast) {
     PetscCall(VecDuplicate(q->X, &d->moved));

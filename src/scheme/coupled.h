@@ -21,7 +21,7 @@ typedef struct {
   Vec f;                 /* momentum's right-hand side */
   Vec Xstar, Xhat;       /* extrapolated markers, BDF history of the markers */
   Vec moved, source;     /* viscosity contrast: known part of the markers' motion, divergence; else NULL */
-  Vec V, known, Y;       /* solved part of the markers' velocity, and what is known of it; marker vector, work */
+  Vec V, known, Y;       /* solved part of the markers' velocity, what is known of it, and of obstacles; work */
   Vec P;                 /* the markers' velocity as the labels of the step see it */
   PetscScalar *edges;    /* [4n] work */
 } Coupled;

@@ -1,4 +1,4 @@
-#include "scheme/direct.h"
+#include "scheme/directrows.h"
 
 PetscErrorCode DirectSolverCreate(Coupling coupling, DirectSolver *out) {
   const Grid g = coupling->fluid->grid;
@@ -10,11 +10,11 @@ PetscErrorCode DirectSolverCreate(Coupling coupling, DirectSolver *out) {
   d->fluid = coupling->fluid;
   d->coupling = coupling;
   d->M = coupling->membrane->layout->M;
-  d->each = coupling->contrast ? 7 : 5;
-  PetscCall(PetscMalloc1(2 * d->M, &d->all));
+  d->W = coupling->bodies->layout->M - d->M;
+  PetscCall(PetscMalloc1(2 * (d->M + d->W), &d->all));
   PetscCall(PetscCalloc1(g->size + 1, &d->start));
   for (PetscInt r = 0; r < g->size; r++) {
-    d->start[r + 1] = d->start[r] + (r == g->size - 1 ? d->each * d->M : 0);
+    d->start[r + 1] = d->start[r] + (r == g->size - 1 ? Others(d) : 0);
     for (int f = 0; f < 3; f++) d->start[r + 1] += g->columns[f] * DirectRows(g, r, f);
   }
   PetscCall(VecCreateMPI(g->comm, d->start[g->rank + 1] - d->start[g->rank], PETSC_DETERMINE, &d->x));
@@ -41,12 +41,6 @@ PetscErrorCode DirectSolverDestroy(DirectSolver *solver) {
   PetscCall(VecDestroy(&(*solver)->source));
   PetscCall(PetscFree(*solver));
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Quasi-steady flow in a periodic box: the forces add up to zero and leave the mean velocity free. */
-static PetscBool NoMean(DirectSolver d) {
-  const Grid g = d->fluid->grid;
-  return d->fluid->alpha == 0 && !g->wall[0] && !g->wall[1] ? PETSC_TRUE : PETSC_FALSE;
 }
 
 /* H and G, G^T: each rank its own rows. */
@@ -83,16 +77,28 @@ static PetscErrorCode AddFluid(DirectSolver d, Mat A) {
   if (!g->rank)
     PetscCall(
         MatSetValue(A, DirectIndex(d, FIELD_P, 0, 0), DirectIndex(d, FIELD_P, 0, 0), -1, ADD_VALUES)); /* p_0 = 0 */
-  for (int f = FIELD_U; f <= FIELD_V && NoMean(d) && !d->source && !g->rank; f++)
-    PetscCall(MatSetValue(A, DirectIndex(d, f, 0, 0), DirectIndex(d, f, 0, 0), off, ADD_VALUES)); /* u_0 = v_0 = 0 */
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* E: -E w in the rows of U, E^T F in the momentum. Without a matrix: entries of the own momentum rows, into room. */
-static PetscErrorCode AddInterpolation(DirectSolver d, Mat A, PetscInt room[], PetscInt U, PetscInt F) {
+/* g in the momentum's rows, and its own rows, the sum of all velocities. */
+static PetscErrorCode AddMean(DirectSolver d, Mat A) {
   const Grid g = d->fluid->grid;
   PetscFunctionBeginUser;
-  for (PetscInt q = 0; q < 2 * d->M; q++) {
+  for (int f = FIELD_U; f <= FIELD_V && MeanForces(d); f++)
+    for (PetscInt j = g->first; j < g->first + g->rows[f]; j++)
+      for (PetscInt i = 0; i < g->columns[f]; i++) {
+        PetscCall(MatSetValue(A, DirectIndex(d, f, i, j), FirstMean(d) + f, 1, ADD_VALUES));
+        PetscCall(MatSetValue(A, FirstMean(d) + f, DirectIndex(d, f, i, j), 1, ADD_VALUES));
+      }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* E: -E w in the rows of velocities, E^T F in the momentum. Without a matrix: entries of the own momentum rows, into
+ * room. */
+static PetscErrorCode AddInterpolation(DirectSolver d, Mat A, PetscInt room[]) {
+  const Grid g = d->fluid->grid;
+  PetscFunctionBeginUser;
+  for (PetscInt q = 0; q < 2 * (d->M + d->W); q++) {
     const Stencil *s = &d->coupling->markers->stencil[q];
     const int c = q % 2;
     for (PetscInt b = 0; b < s->n[1]; b++)
@@ -107,8 +113,8 @@ static PetscErrorCode AddInterpolation(DirectSolver d, Mat A, PetscInt room[], P
           if (row >= d->start[g->rank] && row < d->start[g->rank + 1]) room[row - d->start[g->rank]]++;
           continue;
         }
-        PetscCall(MatSetValue(A, U + q, DirectIndex(d, c, i, j), -weight, ADD_VALUES));
-        PetscCall(MatSetValue(A, DirectIndex(d, c, i, j), F + q, weight, ADD_VALUES));
+        PetscCall(MatSetValue(A, RowOf(d, q), DirectIndex(d, c, i, j), -weight, ADD_VALUES));
+        PetscCall(MatSetValue(A, DirectIndex(d, c, i, j), FirstF(d) + q, weight, ADD_VALUES));
       }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -173,39 +179,52 @@ static PetscErrorCode AddSprings(DirectSolver d, Mat A, PetscInt U, PetscInt F) 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The near field: h^2 (C + D) F in the rows of the own vesicles' U. */
-static PetscErrorCode AddNearField(DirectSolver d, Mat A, PetscInt U, PetscInt F) {
-  const Layout l = d->coupling->membrane->layout;
+/* The near field: h^2 (C + D) F in the rows of the own bodies' velocities. */
+static PetscErrorCode AddNearField(DirectSolver d, Mat A) {
+  const Layout l = d->coupling->bodies->layout;
   PetscReal *C;
   PetscFunctionBeginUser;
   if (!d->coupling->near) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscCalloc1(PetscSqr(2 * l->M), &C));
   PetscCall(NearFieldAdd(d->coupling->near, PetscSqr(d->fluid->grid->h), PETSC_TRUE, 0, l->M, C));
   for (PetscInt i = 2 * l->first; i < 2 * (l->first + l->n); i++) /* a row's columns in order */
-    for (PetscInt j = 0; j < 2 * l->M; j++) PetscCall(AddNonzero(A, U + i, F + j, C[j * 2 * l->M + i]));
+    for (PetscInt j = 0; j < 2 * l->M; j++) PetscCall(AddNonzero(A, RowOf(d, i), FirstF(d) + j, C[j * 2 * l->M + i]));
   PetscCall(PetscFree(C));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* h^2 beta N N^T F in the own obstacles' rows. */
+static PetscErrorCode AddPressure(DirectSolver d, Mat A) {
+  const Obstacles o = d->coupling->bodies->obstacles;
+  const PetscReal h2 = PetscSqr(d->fluid->grid->h);
+  PetscFunctionBeginUser;
+  for (PetscInt b = o ? o->layout->own : 0; o && b < o->layout->end; b++)
+    for (PetscInt i = 2 * o->layout->start[b]; i < 2 * o->layout->start[b + 1]; i++)
+      for (PetscInt j = 2 * o->layout->start[b]; j < 2 * o->layout->start[b + 1]; j++)
+        PetscCall(AddNonzero(A, RowOf(d, 2 * d->M + i), FirstF(d) + 2 * d->M + j, h2 * o->beta * o->N[i] * o->N[j]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* sigma, U, F and J are the last rank's rows: it adds E, and every owner its vesicles. */
-static PetscErrorCode AddMembranes(DirectSolver d, Mat A) {
+static PetscErrorCode AddBodies(DirectSolver d, Mat A) {
   const Grid g = d->fluid->grid;
   const Layout l = d->coupling->membrane->layout;
-  const PetscInt sigma = d->start[g->size] - d->each * d->M, U = sigma + d->M, F = U + 2 * d->M, J = F + 2 * d->M;
+  const PetscInt sigma = FirstSigma(d), U = FirstU(d), F = FirstF(d);
   PetscFunctionBeginUser;
-  if (g->rank == g->size - 1) PetscCall(AddInterpolation(d, A, NULL, U, F));
+  if (g->rank == g->size - 1) PetscCall(AddInterpolation(d, A, NULL));
   if (g->rank == g->size - 1) PetscCall(AddSprings(d, A, U, F));
   for (PetscInt v = l->own; v < l->end; v++) PetscCall(AddVesicle(d, A, v, sigma, U, F));
-  PetscCall(AddNearField(d, A, U, F));
-  if (d->source) PetscCall(DirectAddContrast(d, A, U, J));
-  if (d->source && NoMean(d)) PetscCall(DirectContrastMean(d, A, J, d->fluid->nu / PetscSqr(g->h)));
+  PetscCall(AddNearField(d, A));
+  PetscCall(AddPressure(d, A));
+  if (d->source) PetscCall(DirectAddContrast(d, A, U, FirstJ(d)));
+  if (d->source && NoMean(d)) PetscCall(DirectContrastMean(d, A, FirstJ(d), d->fluid->nu / PetscSqr(g->h)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 #define FEW 24 /* entries of a row of the fluid */
 
-/* An empty matrix with room for its rows: those of sigma, U and F, the last rank's, are coupled to all of their vesicle
-   by spectral derivatives, U to all F by the near field. */
+/* An empty matrix with room for its rows: those of sigma, U, F and g, the last rank's, are coupled to all of their
+   vesicle by spectral derivatives, U to all F by the near field. */
 static PetscErrorCode CreateMatrix(DirectSolver d, Mat *A) {
   const Grid g = d->fluid->grid;
   const Layout l = d->coupling->membrane->layout;
@@ -215,12 +234,13 @@ static PetscErrorCode CreateMatrix(DirectSolver d, Mat *A) {
   PetscCall(PetscMalloc1(n, &room));
   for (PetscInt k = 0; k < n; k++) room[k] = FEW;
   for (PetscInt v = 0; v < l->bodies; v++) longest = PetscMax(longest, LayoutCount(l, v));
-  const PetscInt sigma = n - d->each * d->M;
-  for (PetscInt k = sigma; k < n && g->rank == g->size - 1; k++) {
-    const PetscBool U = k >= sigma + d->M && k < sigma + 3 * d->M && d->coupling->near ? PETSC_TRUE : PETSC_FALSE;
-    room[k] = 4 * FEW + 3 * longest + (U ? (d->source ? 6 : 2) * d->M : 0);
+  for (PetscInt k = n - Others(d); k < n && g->rank == g->size - 1; k++) {
+    const PetscInt row = k - n + Others(d), bodies = 2 * (d->M + d->W);
+    const PetscBool U = (row >= d->M && row < 3 * d->M) || row >= 5 * d->M ? PETSC_TRUE : PETSC_FALSE;
+    room[k] = 4 * FEW + 3 * longest + (U && d->coupling->near ? bodies + (d->source ? 4 * d->M : 0) : 0);
+    if (k >= n - MeanForces(d)) room[k] = g->n[0] * g->n[1];
   }
-  PetscCall(AddInterpolation(d, NULL, room, 0, 0));
+  PetscCall(AddInterpolation(d, NULL, room));
   if (d->source) PetscCall(DirectRoom(d, room));
   for (PetscInt k = 0; k < n; k++) room[k] = PetscMin(n, room[k]);
   PetscCall(MatCreateAIJ(g->comm, n, n, PETSC_DETERMINE, PETSC_DETERMINE, 0, room, FEW, NULL, A));
@@ -233,7 +253,8 @@ static PetscErrorCode Assemble(DirectSolver d, Mat *A) {
   PetscCall(CreateMatrix(d, A));
   PetscCall(MatSetOption(*A, MAT_NEW_NONZERO_ALLOCATION_ERR, PETSC_FALSE));
   PetscCall(AddFluid(d, *A));
-  PetscCall(AddMembranes(d, *A));
+  PetscCall(AddMean(d, *A));
+  PetscCall(AddBodies(d, *A));
   PetscCall(MatAssemblyBegin(*A, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(*A, MAT_FINAL_ASSEMBLY));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -279,8 +300,11 @@ static PetscErrorCode RightHandSide(DirectSolver d, const CoupledProblem *q) {
   }
   PetscCall(LayoutGatherVec(d->coupling->membrane->layout, q->g, d->all));
   if (g->rank == g->size - 1) PetscCall(PetscArraycpy(b + nw + np, d->all, d->M));
-  PetscCall(LayoutGatherVec(d->coupling->membrane->layout, q->k, d->all));
-  if (g->rank == g->size - 1) PetscCall(PetscArraycpy(b + nw + np + d->M, d->all, 2 * d->M));
+  PetscCall(VecGetArrayRead(q->k, &a));
+  PetscCall(LayoutGather(d->coupling->bodies->layout, 2, a, d->all));
+  PetscCall(VecRestoreArrayRead(q->k, &a));
+  for (PetscInt k = 0; k < 2 * (d->M + d->W) && g->rank == g->size - 1; k++)
+    b[RowOf(d, k) - d->start[g->rank]] = d->all[k];
   PetscCall(VecRestoreArray(d->b, &b));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -294,14 +318,14 @@ static PetscErrorCode CopyPart(Vec to, const PetscScalar from[], PetscInt n) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The last rank's part `from` of the solution, `each` numbers a marker, to the owners. */
-static PetscErrorCode FromLastRank(DirectSolver d, int each, const PetscScalar from[], Vec to) {
+/* The last rank's part of the solution x from index `first` on, `each` numbers a marker, to the owners in a layout. */
+static PetscErrorCode FromLastRank(DirectSolver d, Layout l, int each, PetscInt first, const PetscScalar x[], Vec to) {
   const Grid g = d->fluid->grid;
   PetscScalar *own;
   PetscFunctionBeginUser;
-  if (g->rank == g->size - 1) PetscCall(PetscArraycpy(d->all, from, each * d->M));
+  if (g->rank == g->size - 1) PetscCall(PetscArraycpy(d->all, x + first - d->start[g->rank], each * l->M));
   PetscCall(VecGetArray(to, &own));
-  PetscCall(LayoutFromRank(d->coupling->membrane->layout, g->size - 1, each, d->all, own));
+  PetscCall(LayoutFromRank(l, g->size - 1, each, d->all, own));
   PetscCall(VecRestoreArray(to, &own));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -321,26 +345,9 @@ static PetscErrorCode SetUpFactor(DirectSolver d) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Take the mean off the fluid's velocity, and as much off the markers', which interpolate it. */
-static PetscErrorCode RemoveMean(DirectSolver d, Vec w, Vec V) {
-  const PetscInt n = GridLocalU(d->fluid->grid);
-  const PetscScalar *a;
-  PetscScalar *own, before[2];
-  PetscFunctionBeginUser;
-  PetscCall(VecGetArrayRead(w, &a));
-  for (int c = 0; c < 2; c++) before[c] = a[c * n];
-  PetscCall(VecRestoreArrayRead(w, &a));
-  PetscCall(FluidRemoveMean(d->fluid, w));
-  PetscCall(VecGetArrayRead(w, &a));
-  PetscCall(VecGetArray(V, &own));
-  for (PetscInt k = 0; k < 2 * d->coupling->membrane->layout->n; k++) own[k] += a[k % 2 * n] - before[k % 2];
-  PetscCall(VecRestoreArray(V, &own));
-  PetscCall(VecRestoreArrayRead(w, &a));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode DirectSolverSolve(DirectSolver d, const CoupledProblem *q) {
   const Grid g = d->fluid->grid;
+  const Layout l = d->coupling->membrane->layout;
   const PetscInt nw = GridLocalU(g) + g->columns[FIELD_V] * g->rows[FIELD_V],
                  np = g->columns[FIELD_P] * g->rows[FIELD_P];
   const PetscScalar *x;
@@ -361,9 +368,12 @@ PetscErrorCode DirectSolverSolve(DirectSolver d, const CoupledProblem *q) {
   PetscCall(CopyPart(q->p, x + nw, np));
   PetscCall(VecSum(q->p, &mean));
   PetscCall(VecShift(q->p, -mean / ((PetscReal)g->n[0] * g->n[1])));
-  PetscCall(FromLastRank(d, 1, x + nw + np, q->sigma));
-  PetscCall(FromLastRank(d, 2, x + nw + np + d->M, q->V));
-  if (NoMean(d) && !d->source) PetscCall(RemoveMean(d, q->w, q->V));
+  PetscCall(FromLastRank(d, l, 1, FirstSigma(d), x, q->sigma));
+  PetscCall(FromLastRank(d, l, 2, FirstU(d), x, q->V));
+  if (q->solid) {
+    PetscCall(FromLastRank(d, d->coupling->bodies->obstacles->layout, 2, FirstF(d) + 2 * d->M, x, q->solid));
+    PetscCall(VecScale(q->solid, PetscSqr(g->h)));
+  }
   PetscCall(VecRestoreArrayRead(d->x, &x));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -6,13 +6,12 @@ typedef struct _p_DirectSolver *DirectSolver;
 struct _p_DirectSolver {
   Coupling coupling; /* borrowed, and its fluid: */
   Fluid fluid;
-  PetscInt M;
-  PetscInt each;   /* unknowns a marker: sigma, U, F, and with viscosity contrast the jump J */
-  PetscInt *start; /* [ranks+1] first global index of each rank; sigma, U, F and J come last, on the last rank */
+  PetscInt M, W;   /* markers of vesicles, of obstacles */
+  PetscInt *start; /* [ranks+1] first global index of each rank; what is not the fluid's comes last, on the last rank */
   KSP ksp;
   Vec x, b;
   Vec source;             /* with viscosity contrast: G^T of the velocity; else NULL */
-  PetscScalar *all;       /* [2M] of all markers, work */
+  PetscScalar *all;       /* [2M + 2W] of all markers, work */
   KSPConvergedReason why; /* how the last solve ended; < 0: failed */
 };
 
@@ -22,8 +21,9 @@ PETSC_EXTERN PetscErrorCode DirectSolverDestroy(DirectSolver *solver);
 
 /* DirectSolverSolve - [H + B E/a0, G, S; G^T; S^T] with the near field, at the coupling's markers, p of zero mean (and
    w in a periodic box with alpha = 0). The markers' velocity V and the force F = Dm^T sigma/h^2 + (c_b ds/(h^2 a0)) D4
-   V on them are unknowns of their own, so that the matrix stays sparse. Takes f, g and k of the problem (and moved,
-   whose dipoles are added to f), gives w, p, sigma and V. Afterwards solver->why says how it went. Collective. */
+   V on them are unknowns of their own, as are the obstacles' F, so that the matrix stays sparse. Takes f, g and k of
+   the problem (and moved, whose dipoles are added to f), gives w, p, sigma, V and solid. Afterwards solver->why says
+   how it went. Collective. */
 PETSC_EXTERN PetscErrorCode DirectSolverSolve(DirectSolver solver, const CoupledProblem *problem);
 
 /* DirectIndex - global index of entry (i, j) of a field. DirectRows - rows of a field on a rank. Not collective. */

@@ -34,23 +34,24 @@ static CurveRoom Room(Scheme s) {
 static PetscReal Thin(Scheme s) {
   PetscReal ds = 0;
   if (!s->coupling->near) return s->fluid->grid->h;
-  for (PetscInt v = 0; v < s->membrane->layout->bodies; v++) ds = PetscMax(ds, s->membrane->ds[v]);
+  for (PetscInt v = 0; v < s->coupling->bodies->layout->bodies; v++) ds = PetscMax(ds, s->coupling->bodies->ds[v]);
   return THIN * ds;
 }
 
-/* All films thinner than reach at the markers X[2M], in order; those of walls come last, as of a curve that comes
-   behind all vesicles. To be freed. */
+/* All films of vesicles thinner than reach at the curves X[2(M + W)], in order; those of walls come last, as of a curve
+   that comes behind all bodies. To be freed. */
 static PetscErrorCode Find(Scheme s, const PetscScalar X[], PetscReal reach, PetscInt *n, CurveGap **films) {
-  const Layout l = s->membrane->layout;
+  const Layout l = s->coupling->bodies->layout;
+  const PetscInt vesicles = s->coupling->bodies->vesicles;
   const CurveRoom room = Room(s);
   CurveGap *between;
   PetscInt count, side;
   PetscFunctionBeginUser;
-  PetscCall(CurveGaps(l->bodies, l->start, X, room.period, SchemeIsSmooth(s), reach, &count, &between));
+  PetscCall(CurveGaps(l->bodies, vesicles, l->start, X, room.period, SchemeIsSmooth(s), reach, &count, &between));
   PetscCall(PetscMalloc1(count + l->bodies, films));
   PetscCall(PetscArraycpy(*films, between, count));
   PetscCall(PetscFree(between));
-  for (PetscInt v = 0; v < l->bodies; v++) {
+  for (PetscInt v = 0; v < vesicles; v++) {
     const PetscReal gap = CurveWallGap(LayoutCount(l, v), X + 2 * l->start[v], &room, &side);
     if (gap < reach) (*films)[count++] = (CurveGap){.curve = {l->bodies, v}, .distance = gap};
   }
@@ -81,14 +82,14 @@ static PetscErrorCode FindDrained(Scheme s, Vec X_old, Vec X_new, PetscReal limi
   PetscInt n = 0, m;
   PetscFunctionBeginUser;
   *worst = (Drained){0};
-  PetscCall(LayoutGatherVec(l, X_new, s->work_all));
+  PetscCall(SchemeCurves(s, X_new));
   if (!l->rank) PetscCall(Find(s, s->work_all, thin, &n, &now));
   PetscCallMPI(MPI_Bcast(&n, 1, MPIU_INT, 0, l->comm));
   if (!n) {
     PetscCall(PetscFree(now));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  PetscCall(LayoutGatherVec(l, X_old, s->work_all));
+  PetscCall(SchemeCurves(s, X_old));
   if (!l->rank) {
     PetscCall(Find(s, s->work_all, thick, &m, &before));
     Compare(n, now, m, before, thick, limit, worst);
@@ -100,14 +101,14 @@ static PetscErrorCode FindDrained(Scheme s, Vec X_old, Vec X_new, PetscReal limi
 }
 
 PetscErrorCode FilmsCross(Scheme s, const PetscScalar X[], PetscInt pair[2]) {
-  const Layout l = s->membrane->layout;
+  const Layout l = s->coupling->bodies->layout;
   const CurveRoom room = Room(s);
   CurveGap *gaps;
   PetscInt n;
   PetscFunctionBeginUser;
   PetscCall(CurvesCross(l->bodies, l->start, X, room.period, SchemeIsSmooth(s), pair));
   if (pair[0] >= 0 || !SchemeIsSmooth(s)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(CurveGaps(l->bodies, l->start, X, room.period, PETSC_TRUE, 0, &n, &gaps));
+  PetscCall(CurveGaps(l->bodies, s->coupling->bodies->vesicles, l->start, X, room.period, PETSC_TRUE, 0, &n, &gaps));
   if (n) PetscCall(PetscArraycpy(pair, gaps[0].curve, 2));
   PetscCall(PetscFree(gaps));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -124,7 +125,7 @@ PetscErrorCode FilmsLoss(Scheme s, Vec X_old, Vec X_new, PetscReal *loss) {
     *loss = worst.loss;
   }
   if (!s->scene->limits.crossing) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(LayoutGatherVec(l, X_new, s->work_all));
+  PetscCall(SchemeCurves(s, X_new));
   if (!l->rank) PetscCall(FilmsCross(s, s->work_all, pair));
   PetscCallMPI(MPI_Bcast(pair, 1, MPIU_INT, 0, l->comm));
   if (pair[0] >= 0) *loss = PetscMax(*loss, 2);
@@ -139,12 +140,10 @@ PetscErrorCode FilmsCheck(Scheme s) {
   PetscCall(FindDrained(s, s->before.state.X, s->state.X, s->scene->limits.gap_loss, &worst));
   if (worst.loss <= 1) PetscFunctionReturn(PETSC_SUCCESS);
   const PetscInt v = worst.after.curve[0], w = worst.after.curve[1];
-  if (v == s->membrane->layout->bodies)
+  if (v == s->coupling->bodies->layout->bodies)
     PetscCall(PetscSNPrintf(who, sizeof(who), "vesicle %" PetscInt_FMT " and a wall", w + 1));
-  else if (v == w)
-    PetscCall(PetscSNPrintf(who, sizeof(who), "vesicle %" PetscInt_FMT " and its image", v + 1));
   else
-    PetscCall(PetscSNPrintf(who, sizeof(who), "vesicles %" PetscInt_FMT " and %" PetscInt_FMT, v + 1, w + 1));
+    PetscCall(SchemeNamePair(s, v, w, "vesicle %" PetscInt_FMT " and its image", sizeof(who), who));
   PetscCall(PetscSNPrintf(s->report.failure, sizeof(s->report.failure),
                           "the film between %s went from %s%.3g to %.3g in one step, which is more than "
                           "-limit_gap_loss %g allows",
@@ -177,7 +176,7 @@ static PetscErrorCode ThinnestOfEach(Scheme s, const PetscScalar X[], PetscReal 
 }
 
 PetscErrorCode FilmsGaps(Scheme s, PetscReal *least, PetscReal each[]) {
-  const Layout l = s->membrane->layout;
+  const Layout l = s->membrane->layout, all = s->coupling->bodies->layout;
   const CurveRoom room = Room(s);
   PetscMPIInt vesicles;
   PetscInt side;
@@ -185,9 +184,9 @@ PetscErrorCode FilmsGaps(Scheme s, PetscReal *least, PetscReal each[]) {
   *least = NAN;
   if (!l->bodies) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMPIIntCast(l->bodies, &vesicles));
-  PetscCall(LayoutGatherVec(l, s->state.X, s->work_all));
+  PetscCall(SchemeCurves(s, s->state.X));
   if (!l->rank) {
-    PetscCall(CurveLeastGap(l->bodies, l->start, s->work_all, room.period, SchemeIsSmooth(s), least));
+    PetscCall(CurveLeastGap(all->bodies, l->bodies, all->start, s->work_all, room.period, SchemeIsSmooth(s), least));
     const PetscReal wall = CurveWallGap(l->M, s->work_all, &room, &side);
     if (wall < PETSC_MAX_REAL && !(*least < wall)) *least = wall;
     PetscCall(ThinnestOfEach(s, s->work_all, each));
@@ -197,39 +196,52 @@ PetscErrorCode FilmsGaps(Scheme s, PetscReal *least, PetscReal each[]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* What makes the markers of a body so many times closer. */
+static PetscErrorCode Remedy(Scheme s, PetscInt body, PetscReal times, size_t room, char text[]) {
+  const Bodies b = s->coupling->bodies;
+  const PetscReal wanted = times * LayoutCount(b->layout, body);
+  PetscFunctionBeginUser;
+  if (body < b->vesicles)
+    PetscCall(PetscSNPrintf(text, room, "-vesicle_markers %" PetscInt_FMT,
+                            2 * (PetscInt)PetscCeilReal((PetscMin(wanted, 1e4) - 1) / 2) + 1));
+  else
+    PetscCall(PetscSNPrintf(text, room, "-obstacle_spacing %.2g",
+                            (double)PetscMax(NEAR_LEAST_SPACING, s->scene->obstacles.spacing / times)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode Warn(Scheme s, const CurveFilm *film) {
   static const char *const walls[] = {"the wall x_min", "the wall x_max", "the wall y_min", "the wall y_max"};
-  const Membrane m = s->membrane;
-  const PetscInt v = film->pair[0], w = film->pair[1], coarse = w < 0 || m->ds[v] >= m->ds[w] ? v : w;
-  const PetscReal wanted = RESOLVED / film->spacings * LayoutCount(m->layout, coarse);
-  char other[64];
+  const Bodies b = s->coupling->bodies;
+  const PetscInt v = film->pair[0], w = film->pair[1], coarse = w < 0 || b->ds[v] >= b->ds[w] ? v : w;
+  char other[64], remedy[64];
   PetscFunctionBeginUser;
   if (w < 0)
     PetscCall(PetscStrncpy(other, walls[-1 - w], sizeof(other)));
   else if (v == w)
     PetscCall(PetscStrncpy(other, "its periodic image", sizeof(other)));
   else
-    PetscCall(PetscSNPrintf(other, sizeof(other), "vesicle %" PetscInt_FMT, w + 1));
+    PetscCall(PetscSNPrintf(other, sizeof(other), "%s %" PetscInt_FMT, w < b->vesicles ? "vesicle" : "obstacle",
+                            (w < b->vesicles ? w : w - b->vesicles) + 1));
+  PetscCall(Remedy(s, coarse, RESOLVED / film->spacings, sizeof(remedy), remedy));
   PetscCall(SchemeWarn(s,
                        "the film between vesicle %" PetscInt_FMT " and %s is %.2g marker spacings thick after "
-                       "step %" PetscInt_FMT ", time %g; below %g its thickness is off by 1 %% or more: try "
-                       "-vesicle_markers %" PetscInt_FMT,
-                       v + 1, other, (double)film->spacings, s->state.step, (double)s->state.t, COARSE,
-                       2 * (PetscInt)PetscCeilReal((PetscMin(wanted, 1e4) - 1) / 2) + 1));
+                       "step %" PetscInt_FMT ", time %g; below %g its thickness is off by 1 %% or more: try %s",
+                       v + 1, other, (double)film->spacings, s->state.step, (double)s->state.t, COARSE, remedy));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Rank 0 looks and tells the others. */
 PetscErrorCode FilmsWarn(Scheme s) {
-  const Layout l = s->membrane->layout;
+  const Layout l = s->membrane->layout, all = s->coupling->bodies->layout;
   const CurveRoom room = Room(s);
   CurveFilm film;
   PetscFunctionBeginUser;
   if (!s->coupling->near || s->warnings.film) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(LayoutGatherVec(l, s->state.X, s->work_all));
+  PetscCall(SchemeCurves(s, s->state.X));
   if (!l->rank)
-    PetscCall(
-        CurveThinnestFilm(l->bodies, l->start, s->work_all, s->membrane->ds, &room, SchemeIsSmooth(s), COARSE, &film));
+    PetscCall(CurveThinnestFilm(all->bodies, l->bodies, all->start, s->work_all, s->coupling->bodies->ds, &room,
+                                SchemeIsSmooth(s), COARSE, &film));
   PetscCallMPI(MPI_Bcast(&film, sizeof(film), MPI_BYTE, 0, l->comm));
   s->warnings.film = film.spacings < COARSE ? PETSC_TRUE : PETSC_FALSE;
   if (s->warnings.film) PetscCall(Warn(s, &film));

@@ -41,6 +41,26 @@ void SchemePeriods(Scheme s, PetscReal period[2]) {
   for (int d = 0; d < 2; d++) period[d] = g->wall[d] ? 0 : g->hi[d] - g->lo[d];
 }
 
+PetscErrorCode SchemeCurves(Scheme s, Vec X) {
+  PetscFunctionBeginUser;
+  PetscCall(LayoutGatherVec(s->membrane->layout, X, s->work_all));
+  PetscCall(BodiesSee(s->coupling->bodies, s->work_all, s->work_all));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SchemeNamePair(Scheme s, PetscInt v, PetscInt w, const char same[], size_t length, char text[]) {
+  const PetscInt vesicles = s->coupling->bodies->vesicles;
+  PetscFunctionBeginUser;
+  if (v == w)
+    PetscCall(PetscSNPrintf(text, length, same, v + 1));
+  else if (w < vesicles)
+    PetscCall(PetscSNPrintf(text, length, "vesicles %" PetscInt_FMT " and %" PetscInt_FMT, v + 1, w + 1));
+  else
+    PetscCall(
+        PetscSNPrintf(text, length, "vesicle %" PetscInt_FMT " and obstacle %" PetscInt_FMT, v + 1, w - vesicles + 1));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscBool SchemeIsSmooth(Scheme s) {
   return s->membrane->derivative == DERIVATIVE_SPECTRAL ? PETSC_TRUE : PETSC_FALSE;
 }

@@ -38,13 +38,13 @@ static PetscErrorCode PlaceFirst(Scheme s, const PetscReal X[]) {
   PetscCall(VecGetArray(q->X, &x));
   PetscCall(PetscArraycpy(x, X + 2 * l->first, 2 * l->n));
   PetscCall(VecRestoreArray(q->X, &x));
-  PetscCall(MarkersCheck(s->coupling->markers, q->X, message));
+  PetscCall(MarkersCheck(s->coupling->markers, l, q->X, message));
   PetscCheck(!*message, s->scene->comm, PETSC_ERR_USER_INPUT,
              "-vesicle_center %g,%g: %s; allowed: a vesicle inside -domain_box, %s cells from its walls",
              (double)s->scene->vesicles.center.v[0], (double)s->scene->vesicles.center.v[1], message,
              s->coupling->markers->needs);
-  PetscCall(MarkersPlace(s->coupling->markers, q->X));
-  PetscCall(MarkersInterpolate(s->coupling->markers, q->w, q->U));
+  PetscCall(CouplingPlaceMarkers(s->coupling, q->X));
+  PetscCall(CouplingInterpolate(s->coupling, q->w, q->U));
   PetscCall(SchemeBackground(s, q->X, q->t));
   PetscCheck(!*s->report.failure, s->scene->comm, PETSC_ERR_USER_INPUT, "%s", s->report.failure);
   PetscCall(VecAXPY(q->U, 1, s->background));
@@ -60,7 +60,7 @@ static PetscErrorCode CreateState(Scheme s, const PetscReal X[]) {
   PetscCall(VecDuplicate(q->X, &s->background));
   PetscCall(VecDuplicate(q->sigma, &s->g));
   PetscCall(VecDuplicate(q->sigma, &s->work_tension));
-  PetscCall(PetscMalloc1(2 * s->membrane->layout->M, &s->work_all));
+  PetscCall(PetscMalloc1(2 * s->coupling->bodies->layout->M, &s->work_all));
   if (CouplingHasMembrane(s->coupling)) PetscCall(PlaceFirst(s, X));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -84,7 +84,7 @@ struct _p_Scheme {
                        form */
   Vec g;            /* edge vector: S^T u = g, minus the background's stretching, Dm u_inf/h^2 */
   Vec work_tension; /* edge vector, for use inside one function */
-  PetscScalar *work_all; /* [2M] likewise, of all markers */
+  PetscScalar *work_all; /* [2(M + W)] likewise, of all curves */
   void *data;            /* the scheme's own */
   SchemeOps ops;
 };

@@ -107,7 +107,7 @@ static PetscErrorCode Step_Split(Scheme s, PetscReal most) {
   /* 7  X += dt (u_inf + E u),  p += dp,  sigma += dsigma */
   PetscCall(VecAXPY(q->p, 1, d->dp));
   if (!any) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(MarkersInterpolate(c->markers, q->w, q->U));
+  PetscCall(CouplingInterpolate(c, q->w, q->U));
   PetscCall(SchemeMarkerVelocity(s, q->U, q->U));
   PetscCall(VecAXPY(q->X, q->dt, q->U));
   PetscCall(VecAXPY(q->sigma, 1, d->dsigma));

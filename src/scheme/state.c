@@ -1,6 +1,6 @@
 #include "scheme/state.h"
 
-#define VECTORS 6
+#define VECTORS 7
 
 static void List(State *q, Vec *all[VECTORS]) {
   all[0] = &q->w;
@@ -9,6 +9,7 @@ static void List(State *q, Vec *all[VECTORS]) {
   all[3] = &q->X;
   all[4] = &q->U;
   all[5] = &q->walls;
+  all[6] = &q->solid;
 }
 
 PetscErrorCode StateCreate(Coupling c, State *q) {
@@ -20,6 +21,7 @@ PetscErrorCode StateCreate(Coupling c, State *q) {
   PetscCall(LayoutCreateVec(l, 2, &q->X));
   PetscCall(VecDuplicate(q->X, &q->U));
   PetscCall(LayoutCreateVec(l, 1, &q->sigma));
+  if (c->bodies->obstacles) PetscCall(LayoutCreateVec(c->bodies->obstacles->layout, 2, &q->solid));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -13,6 +13,7 @@ typedef struct {
   Vec X;             /* markers, a marker vector */
   Vec U;             /* markers' velocity, background included */
   Vec walls;         /* scheme coupled's wall forces; else NULL */
+  Vec solid;         /* the fluid's force on the markers of obstacles (length^3/time^2); NULL without */
 } State;
 
 /* StateCreate - at rest: zero vectors, without wall forces. StateDuplicate - zero vectors of the same kinds, times not

@@ -160,7 +160,7 @@ PetscErrorCode SchemeCheck(Scheme s) {
   PetscFunctionBeginUser;
   PetscCall(CheckFinite(s));
   if (*failure || !CouplingHasMembrane(s->coupling)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(MarkersCheck(s->coupling->markers, s->state.X, failure));
+  PetscCall(MarkersCheck(s->coupling->markers, s->membrane->layout, s->state.X, failure));
   if (*failure)
     PetscCall(SchemeAdvise(s, "a larger -domain_box, or a smaller -time_step if it should not have come there"));
   if (!*failure) PetscCall(CheckVesicles(s));

@@ -1,0 +1,40 @@
+#include "coupling/bodies.h"
+
+PetscErrorCode BodiesCreate(Membrane m, Obstacles obstacles, Bodies *out) {
+  const PetscInt vesicles = m->layout->bodies;
+  Bodies b;
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&b));
+  *out = b;
+  b->layout = obstacles ? obstacles->all : m->layout;
+  b->membrane = m;
+  b->vesicles = vesicles;
+  b->obstacles = obstacles;
+  PetscCall(PetscMalloc2(b->layout->bodies, &b->ds, b->layout->bodies, &b->spectral));
+  PetscCall(PetscArraycpy(b->ds, m->ds, vesicles));
+  PetscCall(PetscArraycpy(b->spectral, m->spectral, vesicles));
+  if (obstacles) {
+    PetscCall(PetscArraycpy(b->ds + vesicles, obstacles->ds, obstacles->layout->bodies));
+    PetscCall(PetscArraycpy(b->spectral + vesicles, obstacles->spectral, obstacles->layout->bodies));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode BodiesDestroy(Bodies *bodies) {
+  PetscFunctionBeginUser;
+  if (!*bodies) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscFree2((*bodies)->ds, (*bodies)->spectral));
+  PetscCall(PetscFree(*bodies));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode BodiesSee(Bodies b, const PetscReal X[], PetscReal all[]) {
+  const Obstacles o = b->obstacles;
+  const PetscInt M = b->layout->start[b->vesicles];
+  PetscFunctionBeginUser;
+  if (X != all) PetscCall(PetscArraycpy(all, X, 2 * M));
+  for (PetscInt v = 0; o && v < o->layout->bodies; v++)
+    for (PetscInt first = o->layout->start[v], end = o->layout->start[v + 1], k = first; k < end; k++)
+      for (int c = 0; c < 2; c++) all[2 * (M + k) + c] = o->X[2 * (o->container[v] ? first + end - 1 - k : k) + c];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

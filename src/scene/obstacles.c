@@ -1,0 +1,183 @@
+/* The obstacles of a scene: circles or curves of a file, markers at equal distances on them, and what their surfaces
+   do. */
+#include "kernel/kernel.h"
+#include "scene/mixture.h"
+#include "scene/resolve.h"
+
+/* The curves before they have markers. */
+typedef struct {
+  PetscInt count;
+  Curve *curve;
+  PetscReal *center; /* [2 count] added to the curve's points */
+  CurveNote *note;
+} Outlines;
+
+/* A list has `each` numbers for all curves, or `each` a curve. */
+static PetscErrorCode CheckList(Scene scene, const char name[], PetscInt n, PetscInt each, PetscInt curves) {
+  PetscFunctionBeginUser;
+  PetscCheck(n == each || n == each * curves, scene->comm, PETSC_ERR_USER_INPUT,
+             "%s: %" PetscInt_FMT " numbers given for %" PetscInt_FMT " obstacles; allowed: %s for all or %s each",
+             name, n, curves, each == 1 ? "one" : "two", each == 1 ? "one" : "two");
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Columns and rows of posts over the whole box, each row a part of a column further than the one below. */
+static void PlaceLattice(Scene scene, PetscReal center[]) {
+  const SceneObstacles *own = &scene->obstacles;
+  const PetscReal *b = scene->fluid.box;
+  const PetscInt columns = own->lattice.v[0], rows = own->lattice.v[1];
+  const PetscReal dx = (b[1] - b[0]) / columns, dy = (b[3] - b[2]) / rows;
+  for (PetscInt k = 0; k < columns * rows; k++) {
+    const PetscReal at = k % columns + 0.5 + k / columns * own->shift;
+    center[2 * k] = b[0] + dx * (at - columns * PetscFloorReal(at / columns));
+    center[2 * k + 1] = b[2] + dy * (k / columns + 0.5);
+  }
+}
+
+static PetscErrorCode CheckLattice(Scene scene) {
+  const SceneObstacles *own = &scene->obstacles;
+  PetscFunctionBeginUser;
+  PetscCheck(own->lattice.n == 2 && (own->lattice.v[0] > 0) == (own->lattice.v[1] > 0), scene->comm,
+             PETSC_ERR_USER_INPUT,
+             "-obstacle_lattice: %" PetscInt_FMT " numbers given; allowed: columns,rows, both above 0, or 0,0 for none",
+             own->lattice.n);
+  const PetscReal turns = own->shift * own->lattice.v[1];
+  PetscCheck(scene->fluid.bc[1] != BC_PERIODIC || PetscAbsReal(turns - PetscFloorReal(turns + 0.5)) < 1e-9, scene->comm,
+             PETSC_ERR_USER_INPUT,
+             "-obstacle_shift %g: %" PetscInt_FMT " rows are shifted by %g columns, so that the lattice breaks where "
+             "the box repeats; allowed: rows times shift a whole number",
+             (double)own->shift, own->lattice.v[1], (double)turns);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CreateOutlines(Scene scene, PetscInt count, Outlines *o) {
+  PetscFunctionBeginUser;
+  o->count = count;
+  PetscCall(PetscCalloc1(count, &o->curve));
+  PetscCall(PetscCalloc1(2 * count, &o->center));
+  PetscCall(PetscCalloc1(count, &o->note));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Circles with what the options say of each. */
+static PetscErrorCode MakeCircles(Scene scene, PetscInt count, Outlines *o) {
+  const SceneObstacles *own = &scene->obstacles;
+  const PetscBool lattice = own->lattice.n == 2 && own->lattice.v[0] > 0 ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionBeginUser;
+  PetscCall(CreateOutlines(scene, count, o));
+  PetscCall(CheckList(scene, "-obstacle_radius", own->radius.n, 1, count));
+  PetscCall(CheckList(scene, "-obstacle_velocity", own->move.n, 2, count));
+  PetscCall(CheckList(scene, "-obstacle_rotation", own->rotation.n, 1, count));
+  if (lattice) PlaceLattice(scene, o->center);
+  for (PetscInt k = 0; k < count; k++)
+    for (int c = 0; c < 2; c++) {
+      o->curve[k].axes[c] = ListEntry(&own->radius, 1, k, 0);
+      if (!lattice) o->center[2 * k + c] = ListEntry(&own->center, 2, k, c);
+      o->note[k].velocity[c] = ListEntry(&own->move, 2, k, c);
+      o->note[k].rotation = ListEntry(&own->rotation, 1, k, 0);
+    }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode MakePosts(Scene scene, Outlines *o) {
+  const SceneObstacles *own = &scene->obstacles;
+  PetscFunctionBeginUser;
+  PetscCall(CheckLattice(scene));
+  const PetscInt count = own->lattice.v[0] * own->lattice.v[1];
+  PetscCheck(!count || !SceneGiven(scene, "-obstacle_center"), scene->comm, PETSC_ERR_USER_INPUT,
+             "-obstacle_center: given together with -obstacle_lattice; allowed: one of them");
+  PetscCheck(count || own->center.n % 2 == 0, scene->comm, PETSC_ERR_USER_INPUT,
+             "-obstacle_center: %" PetscInt_FMT " numbers given; allowed: x,y of each post", own->center.n);
+  PetscCall(MakeCircles(scene, count ? count : own->center.n / 2, o));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode MakeCouette(Scene scene, Outlines *o) {
+  const SceneObstacles *own = &scene->obstacles;
+  PetscFunctionBeginUser;
+  PetscCheck(own->radius.n == 2 && own->radius.v[0] < own->radius.v[1], scene->comm, PETSC_ERR_USER_INPUT,
+             "-obstacle_shape couette: -obstacle_radius has %" PetscInt_FMT
+             " numbers; allowed: two, the inner and the outer radius",
+             own->radius.n);
+  PetscCall(CheckList(scene, "-obstacle_center", own->center.n, 2, 2));
+  PetscCall(MakeCircles(scene, 2, o));
+  o->note[1].clockwise = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode MakeFromFile(Scene scene, Outlines *o) {
+  const SceneObstacles *own = &scene->obstacles;
+  PetscFunctionBeginUser;
+  PetscCheck(*own->file, scene->comm, PETSC_ERR_USER_INPUT,
+             "-obstacle_shape file: no -obstacle_file given; allowed: a text file with x y a line");
+  PetscCall(CurvesFromFile(scene->comm, "-obstacle_file", own->file, &o->count, &o->curve, &o->note));
+  PetscCall(PetscCalloc1(2 * o->count, &o->center));
+  for (PetscInt k = 0; k < o->count; k++)
+    PetscCheck(!o->note[k].open, scene->comm, PETSC_ERR_USER_INPUT,
+               "-obstacle_file %s: curve %" PetscInt_FMT " is marked open; allowed: closed curves only", own->file,
+               k + 1);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+#define LEAST_MARKERS 15
+#define MOST_MARKERS 4000 /* of all: the preconditioner has a dense block of them */
+
+/* An odd number of markers on each curve. */
+static PetscErrorCode Number(Scene scene, const Outlines *o, Shape *shape) {
+  const PetscReal spacing = scene->obstacles.spacing * FluidSpecCellSize(&scene->fluid);
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < o->count; k++) {
+    const PetscReal wanted = CurveLength(&o->curve[k]) / spacing;
+    PetscCheck(shape->start[k] + wanted <= MOST_MARKERS, scene->comm, PETSC_ERR_USER_INPUT,
+               "-obstacle_spacing %g: more than %d markers on the obstacles; allowed: at most that many, so a larger "
+               "spacing, fewer obstacles or coarser -domain_cells",
+               (double)scene->obstacles.spacing, MOST_MARKERS);
+    shape->start[k + 1] = shape->start[k] + PetscMax(LEAST_MARKERS, 2 * (PetscInt)PetscFloorReal(wanted / 2) + 1);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode PlaceMarkers(Scene scene, const Outlines *o, SceneObstacles *own) {
+  Shape *shape = &own->outline;
+  PetscFunctionBeginUser;
+  shape->vesicles = o->count;
+  PetscCall(PetscCalloc1(o->count + 1, &shape->start));
+  PetscCall(Number(scene, o, shape));
+  PetscCall(PetscMalloc1(2 * shape->start[o->count], &shape->X));
+  PetscCall(PetscCalloc3(2 * o->count, &own->velocity, o->count, &own->turn, o->count, &own->container));
+  for (PetscInt k = 0; k < o->count; k++) {
+    PetscReal *X = shape->X + 2 * shape->start[k];
+    const PetscInt n = shape->start[k + 1] - shape->start[k];
+    PetscCall(CurveEqualArcs(&o->curve[k], n, X));
+    for (PetscInt j = 0; j < 2 * n; j++) X[j] += o->center[2 * k + j % 2];
+    for (int c = 0; c < 2; c++) own->velocity[2 * k + c] = o->note[k].velocity[c];
+    own->turn[k] = o->note[k].rotation;
+    own->container[k] = o->note[k].clockwise;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SceneMakeObstacles(Draft scene) {
+  Outlines o = {0};
+  PetscFunctionBeginUser;
+  if (scene->obstacles.shape == OBSTACLE_NONE) PetscFunctionReturn(PETSC_SUCCESS);
+  if (scene->obstacles.shape == OBSTACLE_POSTS) PetscCall(MakePosts(scene, &o));
+  if (scene->obstacles.shape == OBSTACLE_COUETTE) PetscCall(MakeCouette(scene, &o));
+  if (scene->obstacles.shape == OBSTACLE_FILE) PetscCall(MakeFromFile(scene, &o));
+  PetscCall(PlaceMarkers(scene, &o, &scene->obstacles));
+  for (PetscInt k = 0; k < o.count; k++) PetscCall(CurveDestroy(&o.curve[k]));
+  PetscCall(PetscFree(o.curve));
+  PetscCall(PetscFree(o.center));
+  PetscCall(PetscFree(o.note));
+  PetscCall(SceneCheckObstacles(scene));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SceneDropObstacles(Draft scene) {
+  SceneObstacles *own = &scene->obstacles;
+  PetscFunctionBeginUser;
+  if (!own->outline.vesicles) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ShapeDestroy(&own->outline));
+  PetscCall(PetscFree3(own->velocity, own->turn, own->container));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,39 @@
+/* Where the unknowns of the scheme direct that are not the fluid's stand among the rows. Not collective. */
+#pragma once
+#include "scheme/direct.h"
+
+/* Quasi-steady flow in a periodic box: forces leave the mean velocity free. */
+static inline PetscBool NoMean(DirectSolver d) {
+  const Grid g = d->fluid->grid;
+  return d->fluid->steady && !g->wall[0] && !g->wall[1] ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* Uniform forces g hold it at zero, but where dipoles have a mean. */
+static inline PetscInt MeanForces(DirectSolver d) {
+  return NoMean(d) && !d->coupling->contrast ? 2 : 0;
+}
+
+/* Unknowns besides the fluid's: sigma, U, F, the obstacles' F, J, g. */
+static inline PetscInt Others(DirectSolver d) {
+  return (d->coupling->contrast ? 7 : 5) * d->M + 2 * d->W + MeanForces(d);
+}
+
+/* Where these start, and the row of the q-th velocity of all bodies: the obstacles' stand beside their F. */
+static inline PetscInt FirstSigma(DirectSolver d) {
+  return d->start[d->fluid->grid->size] - Others(d);
+}
+static inline PetscInt FirstU(DirectSolver d) {
+  return FirstSigma(d) + d->M;
+}
+static inline PetscInt FirstF(DirectSolver d) {
+  return FirstSigma(d) + 3 * d->M;
+}
+static inline PetscInt FirstJ(DirectSolver d) {
+  return FirstF(d) + 2 * (d->M + d->W);
+}
+static inline PetscInt FirstMean(DirectSolver d) {
+  return d->start[d->fluid->grid->size] - MeanForces(d);
+}
+static inline PetscInt RowOf(DirectSolver d, PetscInt q) {
+  return (q < 2 * d->M ? FirstU(d) : FirstF(d)) + q;
+}

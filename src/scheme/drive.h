@@ -1,0 +1,14 @@
+/* What drives the flow past obstacles. */
+#pragma once
+#include "scheme/scheme.h"
+
+/* Along x, in a box that is periodic in x. */
+typedef struct {
+  PetscReal pressure_drop; /* from x_min to x_max, background's included (length^2/time^2, density 1) */
+  PetscReal flux;          /* through a line across the box, background's included (length^2/time) */
+} Drive;
+
+/* DriveMeasure - at the present state, in quasi-steady flow; not a number where x has walls. The mean of momentum over
+   the box gives the mean pressure gradient g: H u + g = f, of forces f of obstacles, gravity and contact with solids.
+   Collective. */
+PETSC_EXTERN PetscErrorCode DriveMeasure(Scheme scheme, Drive *drive);

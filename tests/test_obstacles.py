@@ -1,0 +1,129 @@
+"""Obstacles: drag, torque and pressure drop against exact numbers, vesicles among them, ranks, restarts, the sparse LU."""
+
+import json
+
+import numpy as np
+import pytest
+from conftest import ROOT, run_petves
+
+EXACT = json.loads((ROOT / "tests" / "references.json").read_text())["obstacles"]
+PERIODIC = "-domain_bc_x periodic -domain_bc_y periodic"
+STILL = "-vesicle_shape none -scheme_type coupled -coupled_ksp_rtol 1e-10 -time_step .01 -time_end .01"
+ARRAY = f"{STILL} {PERIODIC} -domain_box 0,1,0,1 -obstacle_shape posts -obstacle_center .5,.5 -flow_type uniform"
+CHANNEL = f"{STILL} -domain_box 0,3,0,1 -domain_bc_x periodic -obstacle_shape posts -obstacle_center 1.5,.5"
+POISEUILLE = "-flow_type poiseuille -flow_half_width .5 -flow_center_y .5"
+#: A vesicle that lies across the stream in front of a post, in a periodic square of four units.
+POST = f"-vesicle_area .13744468 -vesicle_reduced_area .7 -vesicle_angle 90 -vesicle_center .3,1 {PERIODIC}"
+POST += " -domain_box 0,2,0,2 -domain_cells 32,32 -obstacle_shape posts -obstacle_radius .3 -obstacle_center 1,1"
+POST += " -obstacle_spacing .75 -flow_type uniform -vesicle_bending .01 -scheme_type coupled -delta_type cbs54"
+POST += " -membrane_derivative spectral -coupling_near_field exact -scheme_area_target true -scheme_order 3"
+
+
+def last(folder, options, ranks=1):
+    """The last row of series.csv."""
+    return {name: column[-1] for name, column in run_petves(folder, options, ranks=ranks).series.items()}
+
+
+@pytest.mark.parametrize(
+    "radius, cells, within", [(0.2, 32, 1e-5), (0.2, 64, 2e-6), (0.2, 128, 2e-6), (0.4, 32, 1e-4), (0.4, 64, 1e-5)]
+)
+def test_drag_of_a_square_array(radius, cells, within, tmp_path):
+    """The exact force at mean flow 1, which is the pressure drop as well; the flux is 1 to rounding."""
+    row = last(tmp_path, f"{ARRAY} -obstacle_radius {radius} -domain_cells {cells},{cells}")
+    assert row["obstacle_force_x"] == pytest.approx(EXACT["drag"][str(radius)], rel=within)
+    assert row["pressure_drop"] == pytest.approx(row["obstacle_force_x"], rel=1e-12)
+    assert abs(row["flux"] - 1) < 1e-12 and abs(row["obstacle_force_y"]) < 1e-6
+    assert row["coupled_its"] <= 3
+
+
+@pytest.mark.parametrize(
+    "option", ["-obstacle_spacing .5", "-obstacle_spacing 2", "-delta_type ib6", "-delta_type cbs43"]
+)
+def test_drag_is_the_same_with_other_markers_and_kernels(option, tmp_path):
+    row = last(tmp_path, f"{ARRAY} -obstacle_radius .2 -domain_cells 32,32 {option}")
+    assert row["obstacle_force_x"] == pytest.approx(EXACT["drag"]["0.2"], rel=1e-5)
+
+
+def test_torque_between_two_circles(tmp_path):
+    """The inner one turns at rate 1: 4 pi a^2 R^2/(R^2 - a^2), on the outer one the same the other way round."""
+    options = f"{STILL} {PERIODIC} -domain_box 0,1,0,1 -domain_cells 32,32 -obstacle_shape couette"
+    row = last(tmp_path, f"{options} -obstacle_radius .2,.4 -obstacle_center .5,.5 -obstacle_rotation 1,0")
+    exact = 4 * np.pi * 0.04 * 0.16 / (0.16 - 0.04)
+    assert row["obstacle_torque_1"] == pytest.approx(-exact, rel=1e-5)
+    assert row["obstacle_torque_2"] == pytest.approx(exact, rel=1e-5)
+
+
+def test_drag_in_a_channel_without_flux(tmp_path):
+    """A moving circle a fifth as wide as its channel; a curve of a file gives the same."""
+    circle = [f"{1.5 + 0.1 * np.cos(t):.15g} {0.5 + 0.1 * np.sin(t):.15g}" for t in np.arange(80) * np.pi / 40]
+    (tmp_path / "circle.txt").write_text("\n".join(["# velocity 1 0", *circle]) + "\n")
+    options = f"{STILL} -domain_box 0,3,0,1 -domain_cells 96,32 -domain_bc_x periodic -flow_drive flux"
+    posts = "-obstacle_shape posts -obstacle_radius .1 -obstacle_center 1.5,.5 -obstacle_velocity 1,0"
+    row = last(tmp_path / "post", f"{options} {posts}")
+    assert row["obstacle_force_x"] == pytest.approx(-EXACT["faxen"], rel=2e-4)
+    assert abs(row["flux"]) < 1e-12
+    other = last(tmp_path / "file", f"{options} -obstacle_shape file -obstacle_file {tmp_path / 'circle.txt'}")
+    assert other["obstacle_force_x"] == pytest.approx(row["obstacle_force_x"], rel=1e-5)
+
+
+def test_drive_of_a_channel(tmp_path):
+    """A post in Poiseuille flow: the pressure drop given and the flux lower, or the flux kept and the drop higher; at
+    low flux both belong to one resistance."""
+    rows = []
+    for drive in ("pressure", "flux"):
+        options = f"{CHANNEL} -domain_cells 96,32 -obstacle_radius .2 {POISEUILLE} -flow_drive {drive}"
+        rows.append(last(tmp_path / drive, options))
+    assert rows[0]["pressure_drop"] == pytest.approx(24, rel=1e-12) and rows[0]["flux"] < 0.5
+    assert rows[1]["flux"] == pytest.approx(2 / 3, rel=1e-12)
+    assert rows[1]["pressure_drop"] / rows[1]["flux"] == pytest.approx(24 / rows[0]["flux"], rel=2e-3)
+
+
+def test_direct_ranks_and_restart(tmp_path):
+    """A vesicle before a post: the sparse LU agrees, so do 2 and 3 ranks; a restart has the same bits."""
+    short = f"{POST} -time_step .04 -time_end .12"
+    whole = run_petves(tmp_path / "whole", f"{short} -coupled_ksp_rtol 1e-11").series
+    cases = {"direct": ("-scheme_type direct", 1), "two": ("-coupled_ksp_rtol 1e-11", 2)}
+    cases["three"] = ("-coupled_ksp_rtol 1e-11", 3)
+    for name, (options, ranks) in cases.items():
+        other = run_petves(tmp_path / name, f"{short} {options}", ranks=ranks).series
+        for column in ("center_x", "gap", "obstacle_force_x"):
+            assert other[column] == pytest.approx(whole[column], rel=1e-9)
+    run_petves(tmp_path / "half", f"{POST} -time_step .04 -time_end .08 -coupled_ksp_rtol 1e-11")
+    checkpoint = tmp_path / "half" / "checkpoint.h5"
+    rest = run_petves(tmp_path / "rest", f"{short} -coupled_ksp_rtol 1e-11 -restart {checkpoint}").series
+    for column in ("center_x", "obstacle_force_x", "obstacle_torque_1"):
+        assert rest[column][-1] == whole[column][-1]
+
+
+def test_film_on_a_post(tmp_path):
+    """A vesicle drapes round a post: its film is that of a grid twice as fine to .5 %, in 5 iterations a step."""
+    series = run_petves(tmp_path, f"{POST} -time_step .04 -time_end 1.2").series
+    assert series["gap"][-1] / 0.25 == pytest.approx(EXACT["film"]["1.2"], rel=5e-3)
+    assert series["coupled_its"][5:].mean() <= 5
+    assert np.abs(series["length_error"]).max() < 3e-4
+
+
+def test_a_post_is_not_crossed(tmp_path):
+    """A step that takes more of the film than allowed is refused, and names who; a push keeps it open."""
+    options = f"{POST} -flow_velocity 10,0 -time_step .1 -time_end 1.5 -limit_gap_loss .1"
+    run = run_petves(tmp_path / "long", options, good=False)
+    assert run.status == 2 and "vesicle 1 and obstacle 1" in run.errors[0]
+    pushed = run_petves(
+        tmp_path / "pushed", f"{POST} -time_step .04 -time_end 1.2 -contact_repulsion 400 -contact_repulsion_range .12"
+    ).series
+    free = EXACT["film"]["1.2"] * 0.25
+    assert pushed["gap"][-1] > 1.05 * free and (pushed["energy_contact"][-1] > 0)
+
+
+def test_other_curves_are_no_restart(tmp_path):
+    """A curve file that has changed since the checkpoint."""
+    t = np.arange(60) * np.pi / 30
+    for size in (0.3, 0.31):
+        lines = [f"{size * np.cos(a):.15g} {size * np.sin(a):.15g}" for a in t]
+        (tmp_path / "curve.txt").write_text("\n".join(lines) + "\n")
+        options = f"{STILL} {PERIODIC} -domain_cells 32,32 -flow_type uniform -obstacle_shape file"
+        options += f" -obstacle_file {tmp_path / 'curve.txt'}"
+        if size == 0.3:
+            run_petves(tmp_path / "first", options)
+    run = run_petves(tmp_path / "then", f"{options} -restart {tmp_path / 'first' / 'checkpoint.h5'}", good=False)
+    assert run.status == 1 and "has other obstacles" in run.errors[0]
