@@ -127,3 +127,14 @@ def test_other_curves_are_no_restart(tmp_path):
             run_petves(tmp_path / "first", options)
     run = run_petves(tmp_path / "then", f"{options} -restart {tmp_path / 'first' / 'checkpoint.h5'}", good=False)
     assert run.status == 1 and "has other obstacles" in run.errors[0]
+
+
+def test_the_scenes_of_runs(tmp_path):
+    """runs/posts.opts keeps the film of a grid twice as fine to 1 %, runs/couette.opts shows what its header says."""
+    coupled = "-scheme_type coupled -membrane_derivative spectral -delta_type cbs54 -coupling_near_field exact"
+    coupled += " -scheme_area_target true -scheme_order 3"
+    series = run_petves(tmp_path / "posts", f"{coupled} -options_file {ROOT / 'runs' / 'posts.opts'}").series
+    assert series["gap"][-1] / 0.25 == pytest.approx(EXACT["film"]["1.8"], rel=0.01)
+    row = last(tmp_path / "couette", f"{coupled} -options_file {ROOT / 'runs' / 'couette.opts'} -domain_cells 32,32")
+    assert row["obstacle_torque_1"] == pytest.approx(-0.6469, rel=1e-3)
+    assert row["obstacle_torque_2"] == pytest.approx(0.6469, rel=1e-3)

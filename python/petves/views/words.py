@@ -12,6 +12,7 @@ FLOWS = {
     "shear": "The background is a shear flow of rate {flow_rate}",
     "poiseuille": "The background is a Poiseuille flow of peak velocity {flow_peak_velocity} and half width {flow_half_width}",
     "extension": "The background is an extension of rate {flow_rate}",
+    "uniform": "The background is a uniform flow of velocity {flow_velocity}",
     "custom": "The background flow is a function of the caller's",
 }
 INERTIA = {
