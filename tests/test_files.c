@@ -64,7 +64,7 @@ static PetscErrorCode CheckRows(PetscInt vesicles) {
   PetscFunctionBeginUser;
   PetscCall(RecordCreate(vesicles, 0, &record));
   CHECK(Count(record.header, ',') == columns - 1, "%d vesicles: %d columns", (int)vesicles, (int)columns);
-  PetscCall(PetscSNPrintf(number, sizeof(number), "energy_gravity_%d", (int)vesicles));
+  PetscCall(PetscSNPrintf(number, sizeof(number), "gap_%d", (int)vesicles));
   CHECK(!strcmp(strrchr(record.header, ',') + 1, own ? number : "normal_stress"), "%d vesicles: the last column",
         (int)vesicles);
   PetscCall(PetscMalloc1(32 * columns, &text));
