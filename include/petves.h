@@ -105,6 +105,11 @@ PETSC_EXTERN PetscErrorCode SimulationGetObject(Simulation simulation, const cha
 PETSC_EXTERN PetscErrorCode SimulationGetSizes(Simulation simulation, PetscInt *vesicles, PetscInt start[],
                                                PetscInt sizes[7]);
 
+/* SimulationGetObstacles - number of obstacles; start[obstacles+1], first marker of each, and markers[2
+   start[obstacles]], counter-clockwise around solids, clockwise around fluid (either may be NULL). Not collective. */
+PETSC_EXTERN PetscErrorCode SimulationGetObstacles(Simulation simulation, PetscInt *obstacles, PetscInt start[],
+                                                   PetscReal markers[]);
+
 /* SimulationGetOption - name ("-time_step") and value in force of the i-th option; name NULL past the last. Not
    collective. */
 PETSC_EXTERN PetscErrorCode SimulationGetOption(Simulation simulation, PetscInt i, const char **name, char value[],

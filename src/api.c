@@ -84,6 +84,15 @@ PetscErrorCode SimulationGetSizes(Simulation s, PetscInt *vesicles, PetscInt sta
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode SimulationGetObstacles(Simulation s, PetscInt *obstacles, PetscInt start[], PetscReal markers[]) {
+  const Obstacles o = s->coupling->bodies->obstacles;
+  PetscFunctionBeginUser;
+  *obstacles = o ? o->layout->bodies : 0;
+  for (PetscInt v = 0; start && v <= *obstacles; v++) start[v] = o ? o->layout->start[v] : 0;
+  if (o && markers) ObstaclesCurves(o, markers);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode SimulationGetOption(Simulation s, PetscInt i, const char **name, char value[], size_t length) {
   PetscFunctionBeginUser;
   *name = SceneOptionName(i);

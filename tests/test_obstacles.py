@@ -1,10 +1,16 @@
-"""Obstacles: drag, torque and pressure drop against exact numbers, vesicles among them, ranks, restarts, the sparse LU."""
+"""Obstacles: drag, torque and pressure drop against exact numbers, vesicles among them, ranks, restarts, the sparse LU, files."""
 
 import json
+import re
+import xml.etree.ElementTree as ET
 
+import h5py
 import numpy as np
 import pytest
 from conftest import ROOT, run_petves
+
+import petves
+from petves.views.report import report
 
 EXACT = json.loads((ROOT / "tests" / "references.json").read_text())["obstacles"]
 PERIODIC = "-domain_bc_x periodic -domain_bc_y periodic"
@@ -51,6 +57,40 @@ def test_torque_between_two_circles(tmp_path):
     exact = 4 * np.pi * 0.04 * 0.16 / (0.16 - 0.04)
     assert row["obstacle_torque_1"] == pytest.approx(-exact, rel=1e-5)
     assert row["obstacle_torque_2"] == pytest.approx(exact, rel=1e-5)
+
+
+def test_files_have_the_curves(tmp_path):
+    """run.h5 and run.xmf have them, also where a restart goes on; the outer circle runs clockwise, as the fluid is in it."""
+    options = f"{STILL} {PERIODIC} -domain_box 0,1,0,1 -domain_cells 24,24 -obstacle_shape couette"
+    options += " -obstacle_radius .2,.4 -obstacle_center .5,.5 -obstacle_rotation 1,0"
+    run_petves(tmp_path, options, ranks=2)
+    curves = petves.load(tmp_path, "numpy").obstacles
+    assert len(curves) == 2
+    for points, radius, turn in zip(curves, (0.2, 0.4), (1, -1)):
+        x, y = (points - 0.5).T
+        np.testing.assert_allclose(np.hypot(x, y), radius, rtol=1e-12)
+        steps = np.diff(np.unwrap(np.arctan2(y, x)))
+        np.testing.assert_allclose(steps, turn * 2 * np.pi / len(points), rtol=1e-8)
+    run_petves(tmp_path, f"{options} -time_end .02 -restart {tmp_path / 'checkpoint.h5'}")
+    for own, other in zip(petves.load(tmp_path, "numpy").obstacles, curves, strict=True):
+        np.testing.assert_array_equal(own, other)
+    data = petves.load(tmp_path, "xarray")
+    assert data.obstacles.units == "length" and data.obstacle_torque_2.units == "length^4/time^2"
+    assert list(np.bincount(data.obstacle)) == [len(points) for points in curves]
+    root, rows = ET.parse(tmp_path / "run.xmf").getroot(), []
+    with h5py.File(tmp_path / "run.h5") as file:
+        for item in root.iter("DataItem"):
+            parts = list(item)
+            if len(parts) == 2 and (parts[1].text or "").strip() == "run.h5:/obstacle/markers":
+                start, _, count = np.array(parts[0].text.split(), int).reshape(3, 2)
+                assert file["obstacle/markers"].shape == tuple(int(n) for n in parts[1].get("Dimensions").split())
+                rows.append(file["obstacle/markers"][start[0] : start[0] + count[0]])
+    assert len(rows) == 2 * len(list(root.iter("Time"))), "both in each frame"
+    for own, other in zip(rows, 3 * curves):
+        np.testing.assert_array_equal(own, other)
+    page = report(tmp_path).read_text()
+    solids = json.loads(re.search(r'id="data" type="application/json">(.*?)</script>', page, re.S)[1])["solids"]
+    assert len(solids) == 3, "a frame around the box, and both circles"
 
 
 def test_drag_in_a_channel_without_flux(tmp_path):

@@ -1,5 +1,7 @@
 """Pictures of runs: curves through markers, windows that go along, sheets without overlaps, what a look refuses."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 from conftest import run_petves
@@ -7,6 +9,7 @@ from conftest import run_petves
 import petves
 from petves.curves import trigonometric
 from petves.run import CURVE, Run
+from petves.views.field import SOLID, draw_solids
 from petves.views.figures import Look, legend_above, new_figure, new_sheet
 from petves.views.plot import plot_run, steady_value
 from petves.views.report import report
@@ -62,6 +65,30 @@ def test_window_goes_along(run):
     still = Window(run, -1)
     np.testing.assert_array_equal(still.fields()[0], own_u)
     assert all(-0.8 < points[:, 0].min() and points[:, 0].max() < 4.8 for points in still.images(0))
+
+
+@pytest.mark.parametrize("follow", [None, 1])
+def test_solids_are_filled(follow, run):
+    """A ring of fluid across the seam, solid around it and in its middle; then the middle one alone."""
+    from matplotlib.colors import to_rgb
+
+    t = np.arange(30) * np.pi / 15
+    circle = lambda radius: np.stack([3.9 + radius * np.cos(t), 1 + radius * np.sin(t)], axis=1)
+    inner, outer = circle(0.3), circle(0.8)[::-1]
+    places = {3.9: True, 0.1: True, 0.4: False, 3.3: False, 2.0: True}
+    for obstacles, around in (([inner, outer], True), ([inner], False), ([], None)):
+        window = Window(dataclasses.replace(run, obstacles=obstacles), -1, follow)
+        figure, (axes,) = new_figure(8, 4)
+        axes.set(xlim=window.limits[:2], ylim=window.limits[2:])
+        draw_solids(axes, window)
+        figure.canvas.draw()
+        pixels = np.asarray(figure.canvas.buffer_rgba())[::-1, :, :3] / 255
+        for x, solid in places.items():
+            middle = sum(window.limits[:2]) / 2
+            seen = (x - window.origin[0] - middle + 2) % 4 + middle - 2  # its image in the window
+            column, row = axes.transData.transform((seen, 1.05)).astype(int)
+            expected = bool(obstacles) and (around if x == 2.0 else solid)
+            assert np.allclose(pixels[row, column], to_rgb(SOLID), atol=0.01) == expected, (x, len(obstacles))
 
 
 @pytest.mark.parametrize("form, first", [("svg", b"<?xml"), ("pdf", b"%PDF")])

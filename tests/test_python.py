@@ -11,7 +11,7 @@ LIBRARY = str(Path(PETVES).parent.parent / "lib" / "libpetves.so")
 FACTS = [
     ("interface", ["state", "measures", "solvers"], 1),
     ("interface", ["running", "several", "quiet"], 1),
-    ("interface", ["state", "measures", "running", "several"], 2),
+    ("interface", ["state", "measures", "running", "several", "solids"], 2),
     ("interface", ["restarting"], 1),
     ("interface", ["memory"], 1),
     ("flow", ["same_as_built_in", "right_time", "failures"], 1),

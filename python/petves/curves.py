@@ -28,3 +28,9 @@ def trigonometric(values: np.ndarray, count: int, shift: float = 0.0) -> np.ndar
         modes[-1] *= 0.5  # its other half is at minus n/2
     waves = np.arange(len(modes)).reshape(-1, *[1] * (values.ndim - 1))
     return np.fft.irfft(modes * np.exp(2j * np.pi * waves * shift / n), count, axis=0) * (count / n)
+
+
+def smooth_curve(points: np.ndarray, fold: int) -> np.ndarray:
+    """Return the closed curve through points (n, 2): `fold` places for each, the first repeated at the end."""
+    smooth = trigonometric(points, fold * len(points))
+    return np.vstack([smooth, smooth[:1]])

@@ -18,13 +18,13 @@ _HAVE = {
     "1": "viscosity_wall viscosity step area_error length_error edge_ratio tension_its bending_its coupled_its nsolve",
     "s": "wall",
     "time": "time dt",
-    "length": "gap length center_x center_y area_shift markers x y h",
+    "length": "gap length center_x center_y area_shift markers obstacles x y h",
     "length^2": "area",
     "length/time": "u v velocity normal_speed velocity_x velocity_y",
-    "length^2/time": "nu",
-    "length^2/time^2": "p normal_stress_wall normal_stress",
-    "length^3/time^2": "tension",
-    "length^4/time^2": "energy_kinetic energy_bending energy_gravity energy_contact",
+    "length^2/time": "nu flux",
+    "length^2/time^2": "p normal_stress_wall normal_stress pressure_drop",
+    "length^3/time^2": "tension obstacle_force_x obstacle_force_y",
+    "length^4/time^2": "energy_kinetic energy_bending energy_gravity energy_contact obstacle_torque",
     "length^5/time^2": "c_b",
     "1/time": "div_max surface_div_max",
     "radian": "inclination",
@@ -53,7 +53,8 @@ def load(folder: str | Path, kind: str = "auto") -> Run | xarray.Dataset:
     xarray.Dataset or Run
         Dataset: variables of the steps (dimension step) are the columns of series.csv, with the coordinate step_time;
         variables of the saved times (dimension time) are u, v, p (time, y, x), markers and
-        velocity (time, marker, xy) and tension (time, marker), with the coordinate vesicle of each marker. Every variable
+        velocity (time, marker, xy) and tension (time, marker), with the coordinate vesicle of each marker; obstacles
+        (obstacle_marker, xy), where there are any, with the coordinate obstacle. Every variable
         has ``attrs["units"]``; above 40 vesicles each_area, each_center_x, ... (step, member) are those of vesicles.h5; the dataset's attributes are h, nu, c_b and the run's summary. Run: see there, and `unit`.
 
     Raises
@@ -97,5 +98,9 @@ def _dataset(run: Run, xarray: Any) -> xarray.Dataset:
     }
     attributes = {"h": run.h, "nu": run.nu, "c_b": run.c_b, "box": run.box, "folder": str(run.folder)}
     attributes |= {"reason": run.summary.get("reason", "")}
+    if run.obstacles:
+        variables["obstacles"] = (("obstacle_marker", "xy"), np.concatenate(run.obstacles))
+        sizes = [len(points) for points in run.obstacles]
+        coordinates["obstacle"] = ("obstacle_marker", np.repeat(np.arange(len(sizes)), sizes))
     data = xarray.Dataset({k: (*v, {"units": unit(k)}) for k, v in variables.items()}, coordinates, attributes)
     return data

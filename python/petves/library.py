@@ -57,6 +57,7 @@ SIGNATURES = {
     "SimulationGetTime": (Handle, _pointer(Int), _pointer(_double)),
     "SimulationGetObject": (Handle, _text, _pointer(Handle)),
     "SimulationGetSizes": (Handle, _pointer(Int), _pointer(Int), _pointer(Int)),
+    "SimulationGetObstacles": (Handle, _pointer(Int), _pointer(Int), _pointer(_double)),
     "SimulationGetOption": (Handle, Int, _pointer(_text), _text, ctypes.c_size_t),
     "SimulationGetColumn": (Handle, Int, _pointer(_text)),
     "SimulationGetRow": (Handle, Int, _pointer(_double)),

@@ -12,7 +12,7 @@ from typing import Any
 import h5py
 import numpy as np
 
-from petves.curves import trigonometric
+from petves.curves import smooth_curve, trigonometric
 from petves.errors import Error
 
 
@@ -51,6 +51,8 @@ class Run:
         First marker of each vesicle, and the number of markers.
     viscosity_ratio : ndarray, shape (vesicles,)
         Viscosity inside over that outside.
+    obstacles : list of ndarray, each of shape (n, 2)
+        Markers of each obstacle (length), counter-clockwise around a solid, clockwise around fluid in one.
     summary : dict
         summary.json; empty while the run has not ended.
 
@@ -71,6 +73,7 @@ class Run:
     tension: np.ndarray
     start: np.ndarray
     viscosity_ratio: np.ndarray
+    obstacles: list[np.ndarray] = field(default_factory=list)
     summary: dict[str, Any] = field(default_factory=dict)
 
     @classmethod
@@ -104,6 +107,7 @@ class Run:
                     tension=file["vesicle/tension"][:] if "vesicle" in file else none[:, :, 0],
                     start=start,
                     viscosity_ratio=np.ones(len(start) - 1) * file.attrs.get("vesicle_viscosity_ratio", 1.0),
+                    obstacles=_obstacles(file),
                     summary=json.loads(summary.read_text()) if summary.is_file() else {},
                 )
             except KeyError as error:
@@ -163,6 +167,15 @@ class Run:
         the smooth curve through them. `limits` (4,) stand in place of the box, `origin` (2,) is taken off all places.
         """
         outline = self.curve(frame, vesicle) if curve else self.outline(frame, vesicle)
+        return self.images_of(outline, limits, origin)
+
+    def images_of(
+        self, outline: np.ndarray, limits: np.ndarray | None = None, origin: np.ndarray | None = None
+    ) -> list[np.ndarray]:
+        """Return every image of the closed `outline`, shape (n + 1, 2), that reaches into the box.
+
+        `limits` and `origin` are those of `images`.
+        """
         if origin is not None:
             outline = outline - origin
         box = self.box if limits is None else limits
@@ -216,9 +229,11 @@ class Run:
 
         Shape (CURVE n + 1, 2) for n markers: CURVE points a marker, the marker first; the first point is repeated at the end.
         """
-        points = self.outline(frame, vesicle)[:-1]
-        smooth = trigonometric(points, CURVE * len(points))
-        return np.vstack([smooth, smooth[:1]])
+        return smooth_curve(self.outline(frame, vesicle)[:-1], CURVE)
+
+    def obstacle_curve(self, obstacle: int) -> np.ndarray:
+        """Return the smooth closed curve of an obstacle, numbered from 0, as `curve` does a vesicle's."""
+        return smooth_curve(self.obstacles[obstacle], CURVE)
 
     def curve_tension(self, frame: int, vesicle: int = 0) -> np.ndarray:
         """Return the tension between the points of `curve`, shape (CURVE n,), by its Fourier series."""
@@ -284,6 +299,12 @@ def _open(path: Path) -> h5py.File:
         return h5py.File(path, "r", locking=False)  # the run may be going on
     except OSError as error:
         raise RunError(f"{path}: not a readable HDF5 file ({str(error).splitlines()[0]})") from None
+
+
+def _obstacles(file: h5py.File) -> list[np.ndarray]:
+    if "obstacle" not in file:
+        return []
+    return np.split(file["obstacle/markers"][:], file.attrs["obstacle_start"][1:-1])
 
 
 def _number(file: h5py.File, name: str) -> float:

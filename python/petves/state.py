@@ -9,7 +9,7 @@ import numpy as np
 from petsc4py import PETSc
 
 from petves.errors import Error
-from petves.library import Handle, wrap
+from petves.library import Handle, Int, wrap
 from petves.measures import Measures
 
 KSP_NAMES = ("coupled", "direct", "tension", "bending")
@@ -70,6 +70,18 @@ class State(Measures):
     def tension(self) -> np.ndarray:
         """Tension (length^3/time^2), shape (M,), entry k on the edge from marker k-1 to marker k; a view."""
         return self._gathered["tension"]
+
+    @property
+    def obstacles(self) -> list[np.ndarray]:
+        """Markers of each obstacle (length), new arrays (n, 2), the same on every rank: counter-clockwise around a solid,
+        clockwise around fluid in one."""
+        count, ask = Int(), self._lib.SimulationGetObstacles
+        ask(self._open(), ctypes.byref(count), None, None)
+        start = (Int * (count.value + 1))()
+        ask(self._open(), ctypes.byref(count), start, None)
+        markers = np.empty((start[-1], 2))
+        ask(self._open(), ctypes.byref(count), start, markers.ctypes.data_as(ctypes.POINTER(ctypes.c_double)))
+        return np.split(markers, start[1:-1]) if count.value else []
 
     @property
     def pressure(self) -> np.ndarray:

@@ -29,12 +29,9 @@ PetscErrorCode BodiesDestroy(Bodies *bodies) {
 }
 
 PetscErrorCode BodiesSee(Bodies b, const PetscReal X[], PetscReal all[]) {
-  const Obstacles o = b->obstacles;
   const PetscInt M = b->layout->start[b->vesicles];
   PetscFunctionBeginUser;
   if (X != all) PetscCall(PetscArraycpy(all, X, 2 * M));
-  for (PetscInt v = 0; o && v < o->layout->bodies; v++)
-    for (PetscInt first = o->layout->start[v], end = o->layout->start[v + 1], k = first; k < end; k++)
-      for (int c = 0; c < 2; c++) all[2 * (M + k) + c] = o->X[2 * (o->container[v] ? first + end - 1 - k : k) + c];
+  if (b->obstacles) ObstaclesCurves(b->obstacles, all + 2 * M);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

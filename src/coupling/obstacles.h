@@ -28,6 +28,10 @@ struct _p_Obstacles {
 PETSC_EXTERN PetscErrorCode ObstaclesCreate(Scene scene, Layout all, Obstacles *obstacles);
 PETSC_EXTERN PetscErrorCode ObstaclesDestroy(Obstacles *obstacles);
 
+/* ObstaclesCurves - markers of all obstacles as others see them, X[2W]: clockwise the curves that have the fluid
+   inside. Not collective. */
+PETSC_EXTERN void ObstaclesCurves(Obstacles obstacles, PetscReal X[]);
+
 /* ObstaclesPressure - y += beta N N^T F, own parts F[2w], y[2w]. Not collective. */
 PETSC_EXTERN void ObstaclesPressure(Obstacles obstacles, const PetscScalar F[], PetscScalar y[]);
 

@@ -25,6 +25,19 @@ static PetscErrorCode PutRatios(H5File *f, Scene scene) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The curves of solids, which stay where they are. */
+static PetscErrorCode PutObstacles(H5File *f, Obstacles o) {
+  PetscReal *X;
+  PetscFunctionBeginUser;
+  if (!o) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMalloc1(2 * o->layout->M, &X));
+  ObstaclesCurves(o, X);
+  PetscCall(H5PutInts(f, "obstacle_start", o->layout->bodies + 1, o->layout->start));
+  PetscCall(H5PutRows(f, "/obstacle/markers", o->layout->M, 2, X));
+  PetscCall(PetscFree(X));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode Create(Scheme s, const char path[], H5File *f) {
   const Grid g = s->fluid->grid;
   const Layout l = s->membrane->layout;
@@ -40,6 +53,7 @@ static PetscErrorCode Create(Scheme s, const char path[], H5File *f) {
   PetscCall(H5PutInts(f, "vesicle_start", l->bodies + 1, l->start));
   if (l->bodies) PetscCall(H5PutReals(f, "vesicle_c_b", l->bodies, scene->membrane.each));
   PetscCall(PutRatios(f, scene));
+  PetscCall(PutObstacles(f, s->coupling->bodies->obstacles));
   PetscCall(H5PutString(f, "about",
                         "u, v: velocity (background included) at cell centres; p: pressure at cell centres, of the "
                         "disturbance unless -flow_form total; tension k on the edge from marker k-1 to marker k"));

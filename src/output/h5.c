@@ -92,13 +92,16 @@ static hid_t IntType(void) {
 /* Numbers that an attribute may have: HDF5 keeps no more than 64 KiB with an object. More are a dataset of the name. */
 #define ATTRIBUTE_NUMBERS 8000
 
-static void PutDataset(H5File *f, const char name[], hid_t type, hsize_t size, const void *values) {
+static void PutDataset(H5File *f, const char name[], hid_t type, int ndims, const hsize_t size[], const void *values) {
+  const hid_t link = H5Pcreate(H5P_LINK_CREATE);
   hid_t space = -1, set = -1;
-  Try(f, space = H5Screate_simple(1, &size, NULL));
-  Try(f, set = H5Dcreate2(f->id, name, type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
+  Try(f, H5Pset_create_intermediate_group(link, 1));
+  Try(f, space = H5Screate_simple(ndims, size, NULL));
+  Try(f, set = H5Dcreate2(f->id, name, type, space, link, H5P_DEFAULT, H5P_DEFAULT));
   Try(f, H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values));
   if (set >= 0) Try(f, H5Dclose(set));
   if (space >= 0) Try(f, H5Sclose(space));
+  (void)H5Pclose(link);
 }
 
 static void GetDataset(H5File *f, const char name[], hid_t type, PetscInt n, void *values) {
@@ -117,7 +120,7 @@ static PetscErrorCode PutAttribute(H5File *f, const char name[], hid_t type, Pet
   PetscFunctionBeginUser;
   if (f->rank || f->failed) PetscFunctionReturn(PETSC_SUCCESS);
   if (n > ATTRIBUTE_NUMBERS) {
-    PutDataset(f, name, type, size, values);
+    PutDataset(f, name, type, 1, &size, values);
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   Try(f, space = n == 1 ? H5Screate(H5S_SCALAR) : H5Screate_simple(1, &size, NULL));
@@ -134,6 +137,12 @@ PetscErrorCode H5PutReals(H5File *f, const char name[], PetscInt n, const PetscR
 
 PetscErrorCode H5PutInts(H5File *f, const char name[], PetscInt n, const PetscInt values[]) {
   return PutAttribute(f, name, IntType(), n, values);
+}
+
+PetscErrorCode H5PutRows(H5File *f, const char name[], PetscInt rows, PetscInt n, const PetscReal values[]) {
+  const hsize_t size[2] = {(hsize_t)rows, (hsize_t)n};
+  if (!f->rank && !f->failed) PutDataset(f, name, H5T_NATIVE_DOUBLE, 2, size, values);
+  return PETSC_SUCCESS;
 }
 
 PetscErrorCode H5PutString(H5File *f, const char name[], const char value[]) {

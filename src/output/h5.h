@@ -35,6 +35,10 @@ PETSC_EXTERN PetscErrorCode H5GetReals(H5File *file, const char name[], PetscInt
 PETSC_EXTERN PetscErrorCode H5GetInts(H5File *file, const char name[], PetscInt n, PetscInt values[]);
 PETSC_EXTERN PetscErrorCode H5GetString(H5File *file, const char name[], size_t length, char value[]);
 
+/* H5PutRows - a dataset of its own that does not grow, values[rows][n]: rank 0's. */
+PETSC_EXTERN PetscErrorCode H5PutRows(H5File *file, const char name[], PetscInt rows, PetscInt n,
+                                      const PetscReal values[]);
+
 /* H5PutText, H5GetText - a string of any length, in several attributes where it is longer than one may be. What is read
    is to be freed with PetscFree; empty when it is not there. Reading is collective. */
 PETSC_EXTERN PetscErrorCode H5PutText(H5File *file, const char name[], const char value[]);

@@ -73,18 +73,43 @@ static void Wrap(Grid g, PetscInt n, const PetscReal X[], PetscReal shift[2]) {
   }
 }
 
-static void PrintVesicle(Scheme s, FILE *f, PetscInt t, PetscInt v, const PetscReal X[]) {
-  const Membrane m = s->membrane;
-  const PetscInt first = m->layout->start[v], n = LayoutCount(m->layout, v);
-  PetscReal shift[2];
-  Wrap(s->fluid->grid, n, X + 2 * first, shift);
-  fprintf(f, "<Grid Name=\"vesicle %d\" GridType=\"Uniform\">", (int)v + 1);
+/* A closed line through n points; its geometry follows. */
+static void PrintLoop(FILE *f, const char what[], PetscInt number, PetscInt n) {
+  fprintf(f, "<Grid Name=\"%s %d\" GridType=\"Uniform\">", what, (int)number);
   fprintf(f,
           "<Topology TopologyType=\"Polyline\" NumberOfElements=\"1\" NodesPerElement=\"%d\"><DataItem "
           "Dimensions=\"1 %d\" NumberType=\"Int\">",
           (int)n + 1, (int)n + 1);
   for (PetscInt k = 0; k <= n; k++) fprintf(f, "%d ", (int)(k % n));
   fprintf(f, "</DataItem></Topology>\n<Geometry GeometryType=\"XY\">\n");
+}
+
+/* The number of a body, and the end of its grid. */
+static void PrintNumber(FILE *f, const char what[], PetscInt number) {
+  fprintf(f, "<Attribute Name=\"%s\" AttributeType=\"Scalar\" Center=\"Cell\">", what);
+  fprintf(f, "<DataItem Dimensions=\"1\" NumberType=\"Int\">%d</DataItem></Attribute></Grid>\n", (int)number);
+}
+
+static void PrintObstacle(FILE *f, Layout l, PetscInt v) {
+  const PetscInt n = LayoutCount(l, v);
+  PrintLoop(f, "obstacle", v + 1, n);
+  fprintf(f,
+          "<DataItem ItemType=\"HyperSlab\" Dimensions=\"%d 2\"><DataItem Dimensions=\"3 2\" Format=\"XML\">%d 0 1 1 "
+          "%d 2</DataItem>",
+          (int)n, (int)l->start[v], (int)n);
+  fprintf(f,
+          "<DataItem Dimensions=\"%d 2\" NumberType=\"Float\" Precision=\"8\" "
+          "Format=\"HDF\">run.h5:/obstacle/markers</DataItem></DataItem>\n</Geometry>\n",
+          (int)l->M);
+  PrintNumber(f, "obstacle", v + 1);
+}
+
+static void PrintVesicle(Scheme s, FILE *f, PetscInt t, PetscInt v, const PetscReal X[]) {
+  const Membrane m = s->membrane;
+  const PetscInt first = m->layout->start[v], n = LayoutCount(m->layout, v);
+  PetscReal shift[2];
+  Wrap(s->fluid->grid, n, X + 2 * first, shift);
+  PrintLoop(f, "vesicle", v + 1, n);
   if (shift[0] || shift[1])
     PrintShifted(f, t, first, n, m->layout->M, shift);
   else
@@ -98,15 +123,17 @@ static void PrintVesicle(Scheme s, FILE *f, PetscInt t, PetscInt v, const PetscR
           "<DataItem Dimensions=\"&frames; %d\" NumberType=\"Float\" Precision=\"8\" "
           "Format=\"HDF\">run.h5:/vesicle/tension</DataItem></DataItem>\n",
           (int)m->layout->M);
-  fprintf(f, "</Attribute>\n<Attribute Name=\"vesicle\" AttributeType=\"Scalar\" Center=\"Cell\">");
-  fprintf(f, "<DataItem Dimensions=\"1\" NumberType=\"Int\">%d</DataItem></Attribute></Grid>\n", (int)v + 1);
+  fprintf(f, "</Attribute>\n");
+  PrintNumber(f, "vesicle", v + 1);
 }
 
 static void PrintFrame(Scheme s, FILE *f, PetscInt t, PetscReal time, const PetscReal X[]) {
+  const Obstacles solids = s->coupling->bodies->obstacles;
   fprintf(f, "<Grid Name=\"frame %d\" GridType=\"Collection\" CollectionType=\"Spatial\"><Time Value=\"%.17g\"/>\n",
           (int)t, (double)time);
   PrintFluid(s->fluid->grid, f, t, s->scene->output.precision == PRECISION_SINGLE ? 4 : 8);
   for (PetscInt v = 0; v < s->membrane->layout->bodies; v++) PrintVesicle(s, f, t, v, X);
+  for (PetscInt v = 0; solids && v < solids->layout->bodies; v++) PrintObstacle(f, solids->layout, v);
   fprintf(f, "</Grid>\n");
 }
 

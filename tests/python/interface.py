@@ -62,6 +62,19 @@ def state():
     assert np.isfinite(kept).all(), "a view outlives its simulation"
 
 
+def solids():
+    """Curves of obstacles, as run.h5 has them: counter-clockwise around a solid, clockwise around fluid."""
+    with petves.Simulation(**SMALL) as sim:
+        assert sim.obstacles == []
+    ring = dict(SMALL, flow_type="quiescent", vesicle_shape="none", domain_bc_x="periodic", domain_bc_y="periodic")
+    ring |= dict(scheme_type="coupled", obstacle_shape="couette", obstacle_radius=(0.3, 0.8))
+    ring.pop("vesicle_semi_axes", None)
+    with petves.Simulation(**ring) as sim:
+        for points, radius, turn in zip(sim.obstacles, (0.3, 0.8), (1, -1), strict=True):
+            assert np.allclose(np.hypot(*points.T), radius)
+            assert np.sign(np.cross(points[0], points[1])) == turn
+
+
 def measures():
     """Properties are the series' columns; energies add up; of several vesicles each has its own."""
     two = dict(SMALL, vesicle_count=2, vesicle_center=(-0.45, 0.1, 0.45, -0.1), vesicle_semi_axes=(0.15, 0.3))

@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     from matplotlib.image import AxesImage
 
 STREAMS = 1.1  # density of streamlines
+OVER_FIELD, OVER_STREAMS = 1.2, 1.5  # matplotlib's order: streamlines, solids; membranes at its 2
+SOLID = "#9a9a9a"  # colour of obstacles
 CROWD = 200  # vesicles from which outlines are thin
 
 
@@ -58,7 +60,8 @@ def draw_membranes(
 ) -> list[Artist]:
     """Draw the smooth outlines coloured by tension over a wider line of one colour, the first outline dotted.
 
-    More than MANY vesicles are areas instead, each of a colour that it keeps. Images across a periodic seam are there too.
+    More than MANY vesicles are areas instead, each of a colour that it keeps. Obstacles are areas in grey. Images across a
+    periodic seam are there too.
 
     Returns
     -------
@@ -68,9 +71,10 @@ def draw_membranes(
     from matplotlib.collections import LineCollection
 
     drawn: list[Artist] = []
-    if run.vesicles > MANY:
-        return [draw_members(axes, run, frame, follow)]
     window = Window(run, frame, follow)
+    drawn += draw_solids(axes, window)
+    if run.vesicles > MANY:
+        return [*drawn, draw_members(axes, run, frame, follow)]
     first = Window(run, 0, follow)
     for vesicle in range(run.vesicles):
         for initial in first.images(vesicle):
@@ -83,6 +87,19 @@ def draw_membranes(
             lines.set_clim(*limits)
             drawn.append(axes.add_collection(lines))
     return drawn
+
+
+def draw_solids(axes: Axes, window: Window) -> list[Artist]:
+    """Draw the obstacles as grey areas over field and streamlines, below the membranes; return what was drawn."""
+    from matplotlib.patches import PathPatch
+    from matplotlib.path import Path as Outline
+
+    curves = window.solids()
+    if not curves:
+        return []
+    codes = [[Outline.MOVETO] + [Outline.LINETO] * (len(points) - 2) + [Outline.CLOSEPOLY] for points in curves]
+    path = Outline(np.concatenate(curves), np.concatenate(codes))
+    return [axes.add_patch(PathPatch(path, facecolor=SOLID, edgecolor="black", lw=0.8, zorder=OVER_STREAMS))]
 
 
 def draw_members(axes: Axes, run: Run, frame: int, follow: int | None = None) -> Artist:
@@ -133,6 +150,6 @@ def _draw_streamlines(axes: Axes, window: Window) -> None:
     if np.hypot(u, v).max() > 0:
         sides = window.limits[1::2] - window.limits[::2]
         density = STREAMS * np.clip(2 * sides / sides.max(), 0.4, 1.0)
-        style = dict(color="white", linewidth=0.6, arrowsize=0.7, density=tuple(density))
+        style = dict(color="white", linewidth=0.6, arrowsize=0.7, density=tuple(density), zorder=OVER_FIELD)
         axes.streamplot(*window.cell_centers(), u, v, **style).lines.set_alpha(0.7)
         axes.set(xlim=window.limits[:2], ylim=window.limits[2:])

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from petves.run import Run
-from petves.views.field import box_sheet, draw_members, plot_field
+from petves.views.field import box_sheet, draw_members, draw_solids, plot_field
 from petves.views.figures import MANY, PLAIN, Look, Sheet, dress, legend_above, new_figure, new_sheet, save_figure
 from petves.views.window import Window
 
@@ -178,7 +178,7 @@ def _left_the_box(run: Run) -> bool:
 def plot_shapes(run: Run, look: Look = PLAIN) -> Path:
     """Draw outlines at evenly spread saved times in the colours of time, with marker 0 as a dot.
 
-    Where a vesicle has left a periodic box all outlines are drawn in the box, cut at the seam.
+    With obstacles, which are grey, or where a vesicle has left a periodic box, the whole box is drawn, outlines cut at the seam.
     """
     import matplotlib
     from matplotlib.cm import ScalarMappable
@@ -186,12 +186,14 @@ def plot_shapes(run: Run, look: Look = PLAIN) -> Path:
 
     if run.vesicles > MANY:
         return _plot_first_and_last(run, look)
-    whole = _left_the_box(run) and look.follow is None
+    whole = look.follow is None and (bool(run.obstacles) or _left_the_box(run))
     frames = np.unique(np.linspace(0, len(run.time) - 1, min(OUTLINES, len(run.time))).round().astype(int))
     colors = matplotlib.colormaps["viridis"](np.linspace(0, 0.9, len(frames)))
     sheet, limits = _sheet_of_shapes(run, frames, whole, look)
     for frame, color in zip(frames, colors):
         draw_outlines(sheet.panels[0], run, frame, color, "-", look.follow)
+    if look.follow is None:  # seen from a vesicle they are elsewhere at each time
+        draw_solids(sheet.panels[0], Window(run, 0))
     names = dict(xlabel="$x$ (length)", ylabel="$y$ (length)", xlim=limits[:2], ylim=limits[2:])
     dress(sheet.panels[0], aspect="equal", **names)
     scale = ScalarMappable(
@@ -220,6 +222,7 @@ def _plot_first_and_last(run: Run, look: Look) -> Path:
     sheet = box_sheet(Window(run, 0), look, panels=2, bars=False)
     for panel, frame in zip(sheet.panels, (0, -1)):
         draw_members(panel, run, frame, look.follow)
+        draw_solids(panel, Window(run, frame, look.follow))
         limits = Window(run, frame, look.follow).limits
         panel.set(xlim=limits[:2], ylim=limits[2:], aspect="equal", xlabel="$x$ (length)", ylabel="$y$ (length)")
         panel.set_title(f"$t$ = {run.time[frame]:.4g}", fontsize=10)

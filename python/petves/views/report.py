@@ -16,6 +16,7 @@ import numpy as np
 from petves.run import Run
 from petves.views.figures import MANY
 from petves.views.plot import plot_conservation, plot_energy, plot_motion, plot_shapes, plot_tension
+from petves.views.window import Window
 from petves.views.words import key_numbers, scene_in_words
 
 FRAMES = 81  # saved times kept at most
@@ -110,6 +111,7 @@ def _data(run: Run) -> dict[str, Any]:
         "box": [float(x) for x in run.box],
         "time": [float(t) for t in run.time[frames]],
         "start": [int(k) for k in run.start],
+        "solids": [np.round(points, digits).tolist() for points in Window(run, 0).solids()],
         "periods": [float(period) for period in run.periods],
         "shift": 0.0 if run.options().get("membrane_derivative") == "spectral" else 0.5,
         "markers": np.round(run.markers[frames], digits).tolist(),

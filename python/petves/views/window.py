@@ -75,7 +75,25 @@ class Window:
         extent, h = self.extent, self.run.h
         return tuple(extent[2 * d] + h * (0.5 + np.arange(u.shape[1 - d])) for d in range(2))
 
+    def solids(self) -> list[np.ndarray]:
+        """Return closed curves, each of shape (n + 1, 2), that are solid within by the nonzero rule.
+
+        Obstacles with their images that are seen; where one has fluid within, a frame around the window runs the other way.
+        """
+        curves = [self.run.obstacle_curve(k) for k in range(len(self.run.obstacles))]
+        seen = [image for curve in curves for image in self.run.images_of(curve, self.limits, self.origin)]
+        if all(_turns_left(curve) for curve in curves):
+            return seen
+        x0, x1, y0, y1 = self.limits + np.tile([-1.0, 1.0], 2) * np.ptp(self.limits)
+        return [np.array([(x0, y0), (x1, y0), (x1, y1), (x0, y1), (x0, y0)]), *seen]
+
     def images(self, vesicle: int, frame: int | None = None, curve: bool = True) -> list[np.ndarray]:
         """Return a vesicle's outlines that are seen, of the window's time or of another, each of shape (n + 1, 2)."""
         at = self.frame if frame is None else frame
         return self.run.images(at, vesicle, curve, self.limits, self.origin)
+
+
+def _turns_left(curve: np.ndarray) -> bool:
+    """Return whether a closed curve, shape (n + 1, 2), is counter-clockwise."""
+    (x, y), (xn, yn) = (curve - curve[0])[:-1].T, (curve - curve[0])[1:].T
+    return float(np.sum(x * yn - xn * y)) > 0
