@@ -2,6 +2,7 @@
 #include "coupling/doubleblock.h"
 #include "coupling/doublecurve.h"
 #include "coupling/lattice.h"
+#include "coupling/nearcells.h"
 
 #define CELLS 4         /* distance from a marker up to which a cell is corrected, */
 #define SPACINGS 2      /* and the same in spacings of the markers */
@@ -45,18 +46,6 @@ static PetscErrorCode PressureTable(PetscInt reach, OffsetTable *t) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The weights by which a field's entries make its value at the centre of a cell. */
-static void CellStencil(Field f, const PetscInt cell[2], PaddedStencil *padded) {
-  Stencil stencil;
-  for (int dir = 0; dir < 2; dir++) {
-    const PetscBool faces = (int)f == dir ? PETSC_TRUE : PETSC_FALSE;
-    stencil.n[dir] = faces ? 2 : 1;
-    stencil.first[dir] = cell[dir] - (faces ? 1 : 0);
-    stencil.weight[dir][0] = stencil.weight[dir][1] = faces ? 0.5 : 1;
-  }
-  StencilPad(&stencil, padded);
-}
-
 /* Take off what the lattice has of the dipoles at a cell. */
 static void TakeLattice(const DoubleCells *s, const PetscInt cell[2], const PetscReal x[2], PetscReal f[3]) {
   const DoubleLayer d = s->coupling->contrast;
@@ -64,7 +53,7 @@ static void TakeLattice(const DoubleCells *s, const PetscInt cell[2], const Pets
   const OffsetTable *table[3] = {&d->lattice[0], &d->lattice[1], &s->pressure};
   const PetscReal scale[3] = {1 / h, 1 / h, nu / (h * h)};
   PaddedStencil weights[3];
-  for (int c = 0; c < 3; c++) CellStencil((Field)c, cell, &weights[c]);
+  for (int c = 0; c < 3; c++) NearCellStencil((Field)c, cell, &weights[c]);
   for (PetscInt k = 0; k < s->n; k++) {
     if (PetscHypotReal(x[0] - s->X[2 * k], x[1] - s->X[2 * k + 1]) > SUMMED_CELLS * h) continue;
     for (int c = 0; c < 3; c++)
@@ -114,28 +103,18 @@ static PetscErrorCode SetVesicle(DoubleCells *s, PetscInt v, const PetscReal X[]
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Cells from box[dir][0] to box[dir][1] hold the vesicle and all that is near it, indices beyond the grid where it is
-   periodic; in unbounded fluid all of the window. */
+/* Cells from box[dir][0] to box[dir][1] hold the vesicle and all that is near it; in unbounded fluid all of the window.
+ */
 static void FindBox(const DoubleCells *s, PetscInt box[2][2]) {
   const Grid g = s->coupling->fluid->grid;
-  for (int dir = 0; dir < 2; dir++) {
-    PetscReal low = PETSC_MAX_REAL, high = -PETSC_MAX_REAL;
-    for (PetscInt k = 0; k < s->n; k++) {
-      low = PetscMin(low, s->X[2 * k + dir]);
-      high = PetscMax(high, s->X[2 * k + dir]);
-    }
-    box[dir][0] = g->free ? 0 : (PetscInt)PetscFloorReal((low - s->reach - g->lo[dir]) / g->h);
-    box[dir][1] = g->free ? g->n[dir] - 1 : (PetscInt)PetscFloorReal((high + s->reach - g->lo[dir]) / g->h);
-    if (!g->wall[dir]) continue;
-    box[dir][0] = PetscMax(box[dir][0], 0);
-    box[dir][1] = PetscMin(box[dir][1], g->n[dir] - 1);
+  if (!g->free) {
+    NearCellsBox(g, s->n, s->X, s->reach, box);
+    return;
   }
-}
-
-static PetscBool IsNear(const DoubleCells *s, const PetscReal x[2]) {
-  for (PetscInt k = 0; k < s->n; k++)
-    if (PetscHypotReal(x[0] - s->X[2 * k], x[1] - s->X[2 * k + 1]) < s->reach) return PETSC_TRUE;
-  return PETSC_FALSE;
+  for (int dir = 0; dir < 2; dir++) {
+    box[dir][0] = 0;
+    box[dir][1] = g->n[dir] - 1;
+  }
 }
 
 /* One vesicle's part, added; over[] becomes 1/ratio inside it. */
@@ -153,7 +132,7 @@ static void CorrectVesicle(const DoubleCells *s, PetscReal *const field[3], Pets
       GridPosition(g, FIELD_P, cell[0], cell[1], x);
       DoubleCurveAdd(s->curve, x, f, &f[2], &inside);
       if (inside) over[at] = 1 / s->ratio;
-      if (!g->free && !IsNear(s, x)) continue;
+      if (!g->free && !NearCellIs(s->n, s->X, s->reach, x)) continue;
       if (!g->free) TakeLattice(s, cell, x, f);
       if (!g->free) TakeFar(s, x, f);
       for (int c = 0; c < 3; c++)

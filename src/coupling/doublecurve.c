@@ -1,11 +1,9 @@
 #include "coupling/doublecurve.h"
-#include <complex.h>
+#include "curve/modes.h"
 
 #define FINE 4    /* points a marker */
 #define CLOSE 4   /* spacings of the points within which the trapezoidal rule is corrected */
 #define NEWTON 12 /* most steps */
-
-typedef double complex Point;
 
 struct _p_DoubleCurve {
   PetscInt n;
@@ -13,32 +11,6 @@ struct _p_DoubleCurve {
   Point *curve, *density;      /* [n + 1] modes -n/2 .. n/2 of X and of J */
   Point *fine, *slope, *value; /* [FINE n] points, X' and J there */
 };
-
-/* The modes of a[2n]; the last of an even n belongs to both ends by halves. */
-static void Modes(PetscInt n, const PetscReal a[], Point hat[]) {
-  const PetscInt half = n / 2;
-  for (PetscInt k = -half; k <= half; k++) {
-    Point sum = 0;
-    for (PetscInt j = 0; j < n; j++)
-      sum += (a[2 * j] + I * a[2 * j + 1]) * cexp(-2 * PETSC_PI * I * (PetscReal)((k * j) % n) / (PetscReal)n);
-    hat[half + k] = sum / (PetscReal)(2 * PetscAbsInt(k) == n ? 2 * n : n);
-  }
-}
-
-/* SUM hat_k e^{ikt}, and its derivative. */
-static Point Series(PetscInt n, const Point hat[], Point t, Point *slope) {
-  const PetscInt half = n / 2;
-  const Point up = cexp(I * t), down = 1 / up;
-  Point sum = hat[half], plus = 1, minus = 1;
-  *slope = 0;
-  for (PetscInt k = 1; k <= half; k++) {
-    plus *= up;
-    minus *= down;
-    sum += hat[half + k] * plus + hat[half - k] * minus;
-    *slope += I * (PetscReal)k * (hat[half + k] * plus - hat[half - k] * minus);
-  }
-  return sum;
-}
 
 PetscErrorCode DoubleCurveCreate(PetscInt n, PetscReal nu, const PetscReal X[], const PetscReal J[], DoubleCurve *out) {
   const PetscInt N = FINE * n;
@@ -49,12 +21,12 @@ PetscErrorCode DoubleCurveCreate(PetscInt n, PetscReal nu, const PetscReal X[], 
   c->n = n;
   c->nu = nu;
   PetscCall(PetscMalloc5(n + 1, &c->curve, n + 1, &c->density, N, &c->fine, N, &c->slope, N, &c->value));
-  Modes(n, X, c->curve);
-  Modes(n, J, c->density);
+  CurveModes(n, X, c->curve);
+  CurveModes(n, J, c->density);
   for (PetscInt j = 0; j < N; j++) {
     Point other;
-    c->fine[j] = Series(n, c->curve, 2 * PETSC_PI * (PetscReal)j / (PetscReal)N, &c->slope[j]);
-    c->value[j] = Series(n, c->density, 2 * PETSC_PI * (PetscReal)j / (PetscReal)N, &other);
+    c->fine[j] = CurveSeries(n, c->curve, 2 * PETSC_PI * (PetscReal)j / (PetscReal)N, &c->slope[j]);
+    c->value[j] = CurveSeries(n, c->density, 2 * PETSC_PI * (PetscReal)j / (PetscReal)N, &other);
     c->spacing = PetscMax(c->spacing, cabs(c->slope[j]) * 2 * PETSC_PI / (PetscReal)N);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -113,14 +85,15 @@ static void CorrectClose(DoubleCurve c, Point z, PetscInt nearest, Sums *s) {
   const PetscInt N = FINE * c->n;
   Point t0 = 2 * PETSC_PI * (PetscReal)nearest / (PetscReal)N, slope, step = 1, other, turned;
   for (int k = 0; k < NEWTON && cabs(step) > 1e-13; k++) {
-    const Point off = z - Series(c->n, c->curve, t0, &slope);
+    const Point off = z - CurveSeries(c->n, c->curve, t0, &slope);
     step = off / slope;
     t0 += step;
   }
   if (!(cabs(step) < 1e-8) || PetscAbsReal(cimag(t0)) * N > 2 * 2 * PETSC_PI * CLOSE) return;
-  (void)Series(c->n, c->curve, t0, &slope);
-  const Point mirror = conj(Series(c->n, c->curve, conj(t0), &turned) - z);
-  const Point J = Series(c->n, c->density, t0, &other), bar = conj(Series(c->n, c->density, conj(t0), &(Point){0}));
+  (void)CurveSeries(c->n, c->curve, t0, &slope);
+  const Point mirror = conj(CurveSeries(c->n, c->curve, conj(t0), &turned) - z);
+  const Point J = CurveSeries(c->n, c->density, t0, &other),
+              bar = conj(CurveSeries(c->n, c->density, conj(t0), &(Point){0}));
   const Point h = mirror * J, dh = conj(turned) * J + mirror * other;
   const Point direct = PoleError(N, t0, 0, J), back = PoleError(N, t0, 0, bar);
   const Point across = PoleError(N, t0, 0, J * conj(turned) / slope), last = PoleError(N, t0, h / slope, dh / slope);

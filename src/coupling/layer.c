@@ -1,13 +1,10 @@
 #include "coupling/layer.h"
-#include <complex.h>
+#include "curve/modes.h"
 
 #define FINE 4   /* points of the finer curve a marker */
 #define NEAR 6   /* spacings of markers from a membrane, within which the finer curve is summed */
 #define CLOSE 3  /* spacings of its points, within which the trapezoidal rule is corrected */
 #define NEWTON 8 /* most steps */
-
-/* Points of a plane as complex numbers. */
-typedef double complex Point;
 
 /* One membrane, a trigonometric polynomial of the parameter t: marker k at t = 2 pi k/n. */
 struct _p_LayerCurve {
@@ -18,32 +15,6 @@ struct _p_LayerCurve {
   Point *fine, *fine_force; /* [FINE n] the finer curve; forces, 1/FINE of a marker's */
 };
 
-/* SUM hat_k e^{ikt}, and its derivative. */
-static Point Series(PetscInt n, const Point hat[], Point t, Point *slope) {
-  const PetscInt half = n / 2;
-  const Point up = cexp(I * t), down = 1 / up;
-  Point sum = hat[half], plus = 1, minus = 1;
-  *slope = 0;
-  for (PetscInt k = 1; k <= half; k++) {
-    plus *= up;
-    minus *= down;
-    sum += hat[half + k] * plus + hat[half - k] * minus;
-    *slope += I * (PetscReal)k * (hat[half + k] * plus - hat[half - k] * minus);
-  }
-  return sum;
-}
-
-/* The modes of a[2n]; the last of an even n belongs to both ends by halves. */
-static void Modes(PetscInt n, const PetscReal a[], Point hat[]) {
-  const PetscInt half = n / 2;
-  for (PetscInt k = -half; k <= half; k++) {
-    Point sum = 0;
-    for (PetscInt j = 0; j < n; j++)
-      sum += (a[2 * j] + I * a[2 * j + 1]) * cexp(-2 * PETSC_PI * I * (PetscReal)((k * j) % n) / (PetscReal)n);
-    hat[half + k] = sum / (PetscReal)(2 * PetscAbsInt(k) == n ? 2 * n : n);
-  }
-}
-
 static PetscErrorCode CreateCurve(LayerCurve *c, PetscInt n, const PetscReal X[], const PetscReal F[]) {
   PetscReal length = 0;
   PetscFunctionBeginUser;
@@ -51,13 +22,13 @@ static PetscErrorCode CreateCurve(LayerCurve *c, PetscInt n, const PetscReal X[]
   c->X = X;
   c->F = F;
   PetscCall(PetscMalloc4(n + 1, &c->curve, n + 1, &c->force, FINE * n, &c->fine, FINE * n, &c->fine_force));
-  Modes(n, X, c->curve);
-  Modes(n, F, c->force);
+  CurveModes(n, X, c->curve);
+  CurveModes(n, F, c->force);
   for (PetscInt j = 0; j < FINE * n; j++) {
     const PetscReal t = 2 * PETSC_PI * (PetscReal)j / (PetscReal)(FINE * n);
     Point slope;
-    c->fine_force[j] = Series(n, c->force, t, &slope) / FINE;
-    c->fine[j] = Series(n, c->curve, t, &slope);
+    c->fine_force[j] = CurveSeries(n, c->force, t, &slope) / FINE;
+    c->fine[j] = CurveSeries(n, c->curve, t, &slope);
     length += cabs(slope) * 2 * PETSC_PI / (PetscReal)(FINE * n);
   }
   c->spacing = length / (PetscReal)n;
@@ -171,15 +142,15 @@ static void CorrectClose(const LayerCurve *c, Point z, PetscInt nearest, Point *
   const PetscReal per = (PetscReal)c->n / (2 * PETSC_PI);
   Point t0 = 2 * PETSC_PI * (PetscReal)nearest / (PetscReal)N, slope, mirror, other, step = 1;
   for (int k = 0; k < NEWTON && cabs(step) > 1e-13; k++) {
-    const Point off = z - Series(c->n, c->curve, t0, &slope);
+    const Point off = z - CurveSeries(c->n, c->curve, t0, &slope);
     step = off / slope;
     t0 += step;
   }
   if (!(cabs(step) < 1e-8) || PetscAbsReal(cimag(t0)) * N > 2 * 2 * PETSC_PI * CLOSE) return;
-  (void)Series(c->n, c->curve, t0, &slope);
-  mirror = conj(Series(c->n, c->curve, conj(t0), &other));
-  const Point F = Series(c->n, c->force, t0, &other), residue = -F / slope;
-  const Point density = Series(c->n, c->force, creal(t0), &other);
+  (void)CurveSeries(c->n, c->curve, t0, &slope);
+  mirror = conj(CurveSeries(c->n, c->curve, conj(t0), &other));
+  const Point F = CurveSeries(c->n, c->force, t0, &other), residue = -F / slope;
+  const Point density = CurveSeries(c->n, c->force, creal(t0), &other);
   const PetscReal side = cimag(t0) >= 0 ? 1 : -1;
   const PetscReal logarithm = PetscLogReal(cabs(1 - cexp(I * side * (PetscReal)N * t0)));
   *p += per * creal(PoleError(N, t0, residue));

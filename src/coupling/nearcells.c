@@ -59,9 +59,7 @@ static void SetVesicle(NearCells *s, PetscInt v) {
   }
 }
 
-/* The weights by which a field's entries make its value at the centre of cell (i, j): the two faces' mean, or the
- * entry. */
-static void CellStencil(Field f, const PetscInt cell[2], PaddedStencil *padded) {
+void NearCellStencil(Field f, const PetscInt cell[2], PaddedStencil *padded) {
   Stencil stencil;
   for (int dir = 0; dir < 2; dir++) {
     const PetscBool faces = (int)f == dir ? PETSC_TRUE : PETSC_FALSE;
@@ -107,7 +105,7 @@ static void TakeFar(const NearCells *s, const PetscReal F[2], const PetscReal d[
 static void Difference(const NearCells *s, const PetscInt cell[2], const PetscReal x[2], PetscReal u[2], PetscReal *p) {
   const PetscReal near = SUMMED_CELLS * s->coupling->fluid->grid->h;
   PaddedStencil weights[3];
-  for (int f = 0; f < 3; f++) CellStencil((Field)f, cell, &weights[f]);
+  for (int f = 0; f < 3; f++) NearCellStencil((Field)f, cell, &weights[f]);
   u[0] = u[1] = *p = 0;
   LayerAdd(s->layer, s->vesicle, x, u, p);
   for (PetscInt k = 0; k < s->n; k++) {
@@ -119,25 +117,23 @@ static void Difference(const NearCells *s, const PetscInt cell[2], const PetscRe
   }
 }
 
-static PetscBool IsNear(const NearCells *s, const PetscReal x[2]) {
-  for (PetscInt k = 0; k < s->n; k++) {
-    const PetscReal dx = x[0] - s->X[2 * k], dy = x[1] - s->X[2 * k + 1];
-    if (dx * dx + dy * dy < s->reach * s->reach) return PETSC_TRUE;
+PetscBool NearCellIs(PetscInt n, const PetscReal X[], PetscReal reach, const PetscReal x[2]) {
+  for (PetscInt k = 0; k < n; k++) {
+    const PetscReal dx = x[0] - X[2 * k], dy = x[1] - X[2 * k + 1];
+    if (dx * dx + dy * dy < reach * reach) return PETSC_TRUE;
   }
   return PETSC_FALSE;
 }
 
-/* Cells from box[dir][0] to box[dir][1] hold all that is near, indices beyond the grid where it is periodic. */
-static void FindBox(const NearCells *s, PetscInt box[2][2]) {
-  const Grid g = s->coupling->fluid->grid;
+void NearCellsBox(Grid g, PetscInt n, const PetscReal X[], PetscReal reach, PetscInt box[2][2]) {
   for (int dir = 0; dir < 2; dir++) {
     PetscReal low = PETSC_MAX_REAL, high = -PETSC_MAX_REAL;
-    for (PetscInt k = 0; k < s->n; k++) {
-      low = PetscMin(low, s->X[2 * k + dir]);
-      high = PetscMax(high, s->X[2 * k + dir]);
+    for (PetscInt k = 0; k < n; k++) {
+      low = PetscMin(low, X[2 * k + dir]);
+      high = PetscMax(high, X[2 * k + dir]);
     }
-    box[dir][0] = (PetscInt)PetscFloorReal((low - s->reach - g->lo[dir]) / g->h);
-    box[dir][1] = (PetscInt)PetscFloorReal((high + s->reach - g->lo[dir]) / g->h);
+    box[dir][0] = (PetscInt)PetscFloorReal((low - reach - g->lo[dir]) / g->h);
+    box[dir][1] = (PetscInt)PetscFloorReal((high + reach - g->lo[dir]) / g->h);
     if (!g->wall[dir]) continue;
     box[dir][0] = PetscMax(box[dir][0], 0);
     box[dir][1] = PetscMin(box[dir][1], g->n[dir] - 1);
@@ -147,7 +143,7 @@ static void FindBox(const NearCells *s, PetscInt box[2][2]) {
 static void CorrectVesicle(const NearCells *s, PetscReal *const field[3]) {
   const Grid g = s->coupling->fluid->grid;
   PetscInt box[2][2], cell[2];
-  FindBox(s, box);
+  NearCellsBox(g, s->n, s->X, s->reach, box);
   for (cell[1] = box[1][0]; cell[1] <= box[1][1]; cell[1]++) {
     const PetscInt row = ((cell[1] % g->n[1]) + g->n[1]) % g->n[1] - g->first;
     if (row < 0 || row >= g->rows[FIELD_P]) continue;
@@ -155,7 +151,7 @@ static void CorrectVesicle(const NearCells *s, PetscReal *const field[3]) {
       const PetscInt at = row * g->n[0] + ((cell[0] % g->n[0]) + g->n[0]) % g->n[0];
       PetscReal x[2], found[3];
       GridPosition(g, FIELD_P, cell[0], cell[1], x);
-      if (!IsNear(s, x)) continue;
+      if (!NearCellIs(s->n, s->X, s->reach, x)) continue;
       Difference(s, cell, x, found, &found[2]);
       for (int f = 0; f < 3; f++)
         if (field[f]) field[f][at] += found[f];
