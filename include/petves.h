@@ -36,7 +36,7 @@ PETSC_EXTERN PetscErrorCode PetvesCatchSignals(void);
    checkpoint's, output files open. */
 PETSC_EXTERN PetscErrorCode SimulationCreate(MPI_Comm comm, Simulation *simulation);
 
-/* SimulationCreateWithFlow - the same with a function for -flow_type custom (docs/method.md says what it
+/* SimulationCreateWithFlow - the same with a function for -flow_type custom (docs/fluid.md says what it
    must satisfy). */
 PETSC_EXTERN PetscErrorCode SimulationCreateWithFlow(MPI_Comm comm, PetvesFlow flow, void *ctx, Simulation *simulation);
 PETSC_EXTERN PetscErrorCode SimulationDestroy(Simulation *simulation);

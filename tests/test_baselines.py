@@ -15,7 +15,7 @@ END = 0.125
 TENSION = "-tension_ksp_rtol 1e-12"
 BOTH = f"{TENSION} -bending_ksp_rtol 1e-12"
 
-#: Bounds of docs/method.md with ib6, nu = 1.
+#: Bounds of docs/split.md with ib6, nu = 1.
 SPRINGS = lambda dt: 50 * H / dt + 100 * H**3 / dt**2  # noqa: E731
 BENDING = lambda dt: 43 * H**3 / dt + 45 * H**5 / dt**2  # noqa: E731
 

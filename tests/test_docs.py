@@ -54,12 +54,21 @@ def test_a_broken_link_is_found():
     ]
 
 
+def has_heading(page: str, words: str) -> bool:
+    """Return whether a page has a heading that the words begin with, or that begins with the words."""
+    heads = re.findall(r"^#+ (.*)$", (ROOT / page).read_text(), re.MULTILINE)
+    return any(head.startswith(words) or words.startswith(head) for head in heads)
+
+
 def test_pages_that_the_source_names_are_there():
-    """A comment's docs/method.md, Near field is a page and a heading that begins so."""
+    """A comment's docs/nearfield.md, Box part is a page and a heading that begins so."""
     files = [path for folder in ("src", "include", "python", "tests", "runs") for path in (ROOT / folder).rglob("*.*")]
     text = "\n".join(path.read_text() for path in files if path.suffix in (".c", ".h", ".py", ".opts", ".sh"))
     named = set(re.findall(r"\bdocs/\w+(?:/\w+)?\.(?:md|csv|json|ipynb)\b", text))
     assert len(named) > 10 and not [name for name in named if not (ROOT / name).is_file()]
+    text = re.sub(r"\n[ *#]*", " ", text)
+    headings = re.findall(r"\b(docs/\w+\.md), \"?([A-Z][\w ]+)", text)
+    assert len(headings) > 30 and not [found for found in headings if not has_heading(*found)]
 
 
 def test_every_page_is_in_the_index_and_in_the_site():

@@ -1,4 +1,4 @@
-/* Kernels: values and moments (docs/method.md, Kernels), at many positions of a marker in its cell. */
+/* Kernels: values and moments (docs/membrane.md, Kernels), at many positions of a marker in its cell. */
 #include "world.h"
 
 #define POSITIONS 997

@@ -1,5 +1,5 @@
-/* Patterns of many vesicles (docs/method.md, Many vesicles): how a curve lies, the exact mobility of one curve, and a
-   vesicle's problem solved by another's pattern. */
+/* Patterns of many vesicles (docs/suspensions.md, Many vesicles): how a curve lies, the exact mobility of one curve,
+   and a vesicle's problem solved by another's pattern. */
 #include "coupling/panels.h"
 #include "coupling/patterns.h"
 #include "coupling/selflayer.h"

@@ -1,4 +1,4 @@
-"""Many vesicles, whose dense problems are those of a few shapes (docs/method.md, Many vesicles): iterations, ranks, restart."""
+"""Many vesicles, whose dense problems are those of a few shapes (docs/suspensions.md, Many vesicles): iterations, ranks, restart."""
 
 import numpy as np
 import pytest

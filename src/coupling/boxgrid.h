@@ -1,5 +1,5 @@
 /* The smooth part W = E A^-1 E^T/h^2 - L of a grid's mobility between places: what walls and periodic images add to the
-   infinite lattice, L of the nearest image times a window over a period (docs/method.md, Near field). In quasi-steady
+   infinite lattice, L of the nearest image times a window over a period (docs/nearfield.md, Box part). In quasi-steady
    flow, whatever the run's. */
 #pragma once
 #include "coupling/boxaxis.h"

@@ -1,5 +1,5 @@
 /* The error of second order of a grid's smooth part W, made once for a run by Richardson's extrapolation from a coarse
-   pair of grids of the box's shape (docs/method.md, Near field): D = (h/H)^2 4/3 (W_{H/2} - W_H) = phi Q diag(l) Q^T
+   pair of grids of the box's shape (docs/nearfield.md, Box part): D = (h/H)^2 4/3 (W_{H/2} - W_H) = phi Q diag(l) Q^T
    phi^T, phi the values of interpolating functions at a marker. Or the same of the double layer's dipoles, where D from
    the tensors to the velocities stands beside its transpose in a symmetric matrix. */
 #pragma once

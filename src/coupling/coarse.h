@@ -1,5 +1,5 @@
 /* What vesicles do to one another, on a grid of cells some four times as large and with a few points a vesicle: for the
-   preconditioner (docs/method.md, Preconditioner). */
+   preconditioner (docs/suspensions.md, Coarse grid). */
 #pragma once
 #include "coupling/mobilitytable.h"
 #include "fluid/stokes.h"

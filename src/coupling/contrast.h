@@ -1,4 +1,4 @@
-/* Viscosity contrast in the equations of a step (docs/method.md, Viscosity contrast): what stands in the place of the
+/* Viscosity contrast in the equations of a step (docs/contrast.md): what stands in the place of the
    markers' velocity U where the inner viscosity is another than the outer one,
 
        B U - E v' + C F = ...,      B U = (1 + ratio)/2 U - C_D (1 - ratio) U,      U = V + (treading/a0) dV/dt + known.

@@ -42,9 +42,9 @@ PETSC_EXTERN PetscErrorCode CouplingPlace(Coupling coupling, PetscReal a0, Vec X
                                           char message[PETVES_MAX_MESSAGE]);
 
 /* CouplingTurn - from here on, until the next CouplingPlace, a tension expected (edge vector) pulls along the new edges
-   where it is positive, as much of it as waves of the membrane would otherwise swing by (docs/method.md), and only the
-   rest along those of the markers placed: K_sigma X - Dm^T sigma joins the elastic forces, K_sigma = MembranePull. Not
-   collective. */
+   where it is positive, as much of it as waves of the membrane would otherwise swing by (docs/membrane.md), and only
+   the rest along those of the markers placed: K_sigma X - Dm^T sigma joins the elastic forces, K_sigma = MembranePull.
+   Not collective. */
 PETSC_EXTERN PetscErrorCode CouplingTurn(Coupling coupling, Vec expected);
 
 /* CouplingPlaceMarkers - the markers only, E at the vesicles' X. CouplingInterpolate - U = E w of the vesicles.

@@ -1,5 +1,5 @@
 /* The small problem of the membranes inside the coupled preconditioner, one dense block for all vesicles or, when their
-   markers are many, one a vesicle (docs/method.md, Preconditioner), with M = Mob + h^2 C, C the near
+   markers are many, one a vesicle (docs/solver.md, Preconditioner), with M = Mob + h^2 C, C the near
    field:
        N = I + (v/a0) d/dt + (c_b ds/(h^2 a0)) M D4 (v: the labels' speed),   C = Dm N^-1 M Dm^T/h^4,
        U1 = N^-1 U,   sigma = C^-1 (Dm U1/h^2 - r_s),   U3 = U1 - N^-1 M Dm^T sigma/h^2.

@@ -1,4 +1,4 @@
-/* The dense problem of one or several vesicles (docs/method.md, Preconditioner), M their mobility times h^2:
+/* The dense problem of one or several vesicles (docs/solver.md, Preconditioner), M their mobility times h^2:
        N = I + (v/a0) d/dt + (c_b ds/(h^2 a0)) M D4 (v: the labels' speed),   C = Dm N^-1 M Dm^T/h^4,
        U1 = N^-1 U,   sigma = C^-1 (Dm U1/h^2 - r_s),   U3 = U1 - N^-1 M Dm^T sigma/h^2. */
 #pragma once

@@ -1,4 +1,4 @@
-/* Velocity and pressure of a viscosity contrast at cell centres (docs/method.md, Viscosity contrast): the double layer
+/* Velocity and pressure of a viscosity contrast at cell centres (docs/contrast.md, Output): the double layer
    next to the membranes as it is, in the place of what the grid has of it, and inside a vesicle the fluid's own
    velocity, the solved one over the ratio. */
 #pragma once

@@ -1,4 +1,4 @@
-/* The double layer of curves near one another, on finer points (docs/method.md, Close membranes). */
+/* The double layer of curves near one another, on finer points (docs/nearfield.md, Close membranes). */
 #pragma once
 #include "coupling/doublelayer.h"
 

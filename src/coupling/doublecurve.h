@@ -1,4 +1,4 @@
-/* The exact double layer of one closed curve at any point, in unbounded fluid (docs/method.md, Viscosity contrast):
+/* The exact double layer of one closed curve at any point, in unbounded fluid (docs/contrast.md, Output):
    with the density J and the curve X(t) as complex numbers, r = X - z,
 
        u + i v = -(1/4 pi i) INT J X'/r - J conj(X'/r) + conj(J) X'/conj(r) - r conj(J X'/r^2) dt

@@ -1,7 +1,7 @@
-/* The double layer of membranes whose inner fluid has another viscosity than the outer one (docs/method.md, Viscosity
-   contrast). v, the velocity outside and the ratio times the velocity inside, is a field of the outer viscosity that
-   jumps by J = (1 - ratio) U at a membrane that moves with U: a sheet of tensor dipoles J n + n J with the source J.n.
-   The markers' velocities obey
+/* The double layer of membranes whose inner fluid has another viscosity than the outer one (docs/contrast.md). v, the
+   velocity outside and the ratio times the velocity inside, is a field of the outer viscosity that jumps by J = (1 -
+   ratio) U at a membrane that moves with U: a sheet of tensor dipoles J n + n J with the source J.n. The markers'
+   velocities obey
 
        (1 + ratio)/2 U = u_inf + E v' + C_S f + C_D J,      C_D = D - L Q
 

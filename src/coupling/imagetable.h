@@ -1,5 +1,5 @@
 /* The Stokeslet of the half-space lattice, h = nu = 1: what the grid's Stokes solve gives at a face per unit force on a
-   face above one wall, without inertia (docs/method.md, Near field). */
+   face above one wall, without inertia (docs/nearfield.md, Walls). */
 #pragma once
 #include "coupling/offsets.h"
 

@@ -1,5 +1,5 @@
 /* The Stokeslet of the infinite staggered lattice, h = nu = 1: what the grid's Stokes solve gives at a face per unit
-   force on a face, without box and without inertia (docs/method.md, Near field). */
+   force on a face, without box and without inertia (docs/nearfield.md, The lattice). */
 #pragma once
 #include "coupling/offsets.h"
 

@@ -1,5 +1,5 @@
 /* The lattice's answer to tensor dipoles in cells and at nodes, spread as markers/dipoles.h does, h = 1
-   (docs/method.md, Viscosity contrast). */
+   (docs/contrast.md, Near field). */
 #pragma once
 #include "coupling/offsets.h"
 #include "markers/dipoles.h"

@@ -1,5 +1,5 @@
 /* Mob, the membranes' mobility on the grid: an approximation of E A^-1 E^T, A^-1 the Stokes solution operator of the
-   grid, by a periodic box of the same cells (docs/method.md, Preconditioner). Near markers are exact there: the two
+   grid, by a periodic box of the same cells (docs/solver.md, Preconditioner). Near markers are exact there: the two
    kernels' weights are summed against the grid's Green's function, which is tabulated. With the near field, whose C
    takes what depends on the place in a cell off them, distant markers have a smooth table: the mean of these sums over
    the places in a cell, by whole cells between two markers, interpolated. */

@@ -1,6 +1,6 @@
 /* The grid's Green's function in a periodic box of the run's cells, by offsets of faces, and the mean over places in a
    cell of what two kernels make of it: the mobility of two markers as a smooth function of their distance
-   (docs/method.md, Preconditioner). */
+   (docs/solver.md, Preconditioner). */
 #pragma once
 #include "coupling/offsets.h"
 #include "fluid/fluid.h"

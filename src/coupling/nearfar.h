@@ -1,5 +1,5 @@
 /* C = S - L of distant markers in closed form: what smoothing by the kernel and dispersion by the lattice take from the
-   Stokeslet, to the order h^2/r^2 or h^6/r^6 (docs/method.md, Near field, Distant pairs).
+   Stokeslet, to the order h^2/r^2 or h^6/r^6 (docs/nearfield.md, Distant pairs).
    With phi the angle of r, in cells, xx:      SUM_n p_n(1/r^2) cos n phi,     n = 2, 4 .. 14 yy:      the same with
    -p_n where n/2 is odd xy, yx:  SUM_n q_n(1/r^2) sin n phi,     n = 2, 6, 10, 14. */
 #pragma once

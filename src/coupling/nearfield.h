@@ -1,9 +1,9 @@
-/* The near field: what the grid's kernel and lattice take from the markers' velocity is given back (docs/method.md,
-   Near field), U = u_inf + E u + C (f ds),      C = S - L, S the exact free-space single layer, L = E G E^T/h^2 the
-   mobility of the same kernel on the infinite lattice. The grid's own mobility is L and a smooth part of walls and
-   images, so kernel, angle to the grid, place in the cells and spacing of the markers cancel. Pairs of markers of one
-   vesicle, and of vesicles near one another, images included; each pair with its images in the grid's walls
-   (nearimage.h). In unbounded fluid there is no grid to take from: C = S, of all pairs. */
+/* The near field: what the grid's kernel and lattice take from the markers' velocity is given back (docs/nearfield.md),
+   U = u_inf + E u + C (f ds),      C = S - L, S the exact free-space single layer, L = E G E^T/h^2 the mobility of the
+   same kernel on the infinite lattice. The grid's own mobility is L and a smooth part of walls and images, so kernel,
+   angle to the grid, place in the cells and spacing of the markers cancel. Pairs of markers of one vesicle, and of
+   vesicles near one another, images included; each pair with its images in the grid's walls (nearimage.h). In unbounded
+   fluid there is no grid to take from: C = S, of all pairs. */
 #pragma once
 #include "coupling/boxpart.h"
 #include "coupling/lattice.h"

@@ -1,5 +1,5 @@
 /* What a wall of the grid adds to the near field's C = S - L of a pair of markers: Blake's image of the Stokeslet in
-   the wall less the image that kernel and lattice make of it (docs/method.md, Near field). One term for each wall and
+   the wall less the image that kernel and lattice make of it (docs/nearfield.md, Walls). One term for each wall and
    pair; two walls' terms are added, so that images of images, and what a corner's walls do to one another, stay the
    grid's. */
 #pragma once

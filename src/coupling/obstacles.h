@@ -1,4 +1,4 @@
-/* Solid closed curves in the fluid (docs/method.md, Obstacles). Their markers Y carry forces Phi on the fluid that hold
+/* Solid closed curves in the fluid (docs/obstacles.md). Their markers Y carry forces Phi on the fluid that hold
    its velocity there at U_w:
        u_inf(Y) + E u - C F - beta N N^T F = U_w,     F = -Phi,
    C the near field, of vesicles and obstacles together, N one unit vector a curve that enclosed fluid's pressure alone

@@ -1,8 +1,7 @@
-/* What vesicles and walls do to one another, inside the preconditioner (docs/method.md, Many vesicles). With B^-1 the
-   patterns' answers, F(.) their forces and K the mobility of others and walls, by the coarse grid and what that lacks
-   between near markers, the velocities W that the others make obey
-       W + K F(B^-1 (W, 0)) = -K F(B^-1 r);
-   a few iterations of GMRES solve for most of it. */
+/* What vesicles and walls do to one another, inside the preconditioner (docs/suspensions.md, Vesicles among
+   themselves). With B^-1 the patterns' answers, F(.) their forces and K the mobility of others and walls, by the coarse
+   grid and what that lacks between near markers, the velocities W that the others make obey W + K F(B^-1 (W, 0)) = -K
+   F(B^-1 r); a few iterations of GMRES solve for most of it. */
 #pragma once
 #include "coupling/patterns.h"
 #include "coupling/shortrange.h"

@@ -1,4 +1,4 @@
-/* The membranes' problems inside the coupled preconditioner for many vesicles (docs/method.md, Preconditioner). A
+/* The membranes' problems inside the coupled preconditioner for many vesicles (docs/suspensions.md, Patterns). A
    vesicle's exact mobility in unbounded fluid is that of any other of its shape, turned, moved and with its labels
    shifted. So the dense problem (denseblock.h) is inverted for a few shapes only, and each vesicle takes that of the
    shape it is nearest to, in its own frame. For quasi-steady flow: with inertia the mobility of short steps depends on

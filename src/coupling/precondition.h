@@ -1,5 +1,5 @@
 /* The preconditioner of the reduced coupled problem, and the decision how long its dense blocks serve
-   (docs/method.md, Preconditioner): of the markers' mobility among themselves, by a dense table of a periodic box or by
+   (docs/solver.md, Preconditioner): of the markers' mobility among themselves, by a dense table of a periodic box or by
    Chat, of the obstacles by themselves, and of each pair of walls by itself. */
 #pragma once
 #include "coupling/dense.h"

@@ -1,4 +1,4 @@
-/* The coupled problem of one time step, for velocity, pressure and tension together (docs/method.md),
+/* The coupled problem of one time step, for velocity, pressure and tension together (docs/solver.md),
        H u + G p + E^T F/h^2 = f,   G^T u = -bc2,   F = Dm^T sigma + (1/a0) (c_b ds D4 + K_rep) V,
        V + (v/a0) dV/dt = E u - C F + k,           Dm V/h^2 = g,           0 = E_w u - C F - beta N N^T F + k_w,
    V the markers' velocity without the background's, seen from labels t that turn at the speed v of their vesicle, C the

@@ -1,5 +1,5 @@
 /* The exact mobility of one closed curve in unbounded fluid: the free-space single layer by Kress' quadrature
-   (docs/method.md, Near field). */
+   (docs/nearfield.md, Pairs of markers). */
 #pragma once
 #include "curve/spectral.h"
 

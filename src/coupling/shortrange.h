@@ -1,6 +1,6 @@
 /* What the coarse grid does not know of two vesicles next to one another: between markers nearer than a few of its
-   cells, the Stokeslet less the mean of what its kernel and lattice make of it (docs/method.md, Many vesicles). For the
-   preconditioner. */
+   cells, the Stokeslet less the mean of what its kernel and lattice make of it (docs/suspensions.md, Near markers). For
+   the preconditioner. */
 #pragma once
 #include "coupling/coarse.h"
 #include "coupling/coupling.h"

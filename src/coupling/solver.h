@@ -1,4 +1,4 @@
-/* The coupled solve of one step: FGMRES, prefix coupled_, on the reduced problem (docs/method.md, Reduced unknowns). */
+/* The coupled solve of one step: FGMRES, prefix coupled_, on the reduced problem (docs/solver.md, Reduced unknowns). */
 #pragma once
 #include "coupling/precondition.h"
 #include "coupling/reduced.h"

@@ -1,4 +1,4 @@
-/* The unknowns of the reduced coupled problem and the norm of its residuals (docs/method.md, Reduced unknowns). A
+/* The unknowns of the reduced coupled problem and the norm of its residuals (docs/solver.md, Reduced unknowns). A
    rank's part of the vector is V      [2n]  the solved part of its own markers' velocity, F [2w] the fluid's force on
    its own obstacles' markers, sigma  [n]   the tension of its own edges, d      [m]   its share of the forces on the
    faces next to walls, ranks having about as many each. Residuals are laid out alike. */

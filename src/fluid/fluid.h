@@ -1,4 +1,4 @@
-/* The fluid: grid, operators as PETSc objects, fast solves, and the data of moving walls. docs/method.md has the
+/* The fluid: grid, operators as PETSc objects, fast solves, and the data of moving walls. docs/fluid.md has the
    symbols. */
 #pragma once
 #include "fluid/fastsolver.h"

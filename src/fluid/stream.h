@@ -3,7 +3,7 @@
    time, so that neither is ever an array over the grid.
 
    On the nodes between faces, chi with u = d_y chi, v = -d_x chi has no divergence, and the curl of the momentum
-   equation has no pressure (docs/method.md, Stream function):
+   equation has no pressure (docs/fluid.md, Stream function):
        (alpha - nu (d_xx + d_yy)) (-(d_xx + d_yy)) chi = d_x r_v - d_y r_u,
    with chi = 0 and d_y chi = 0 on walls. One Fourier transform along x there and one back, a fourth-order recurrence in
    y between them. The mean flow, mode 0, is a tridiagonal problem by itself. */

@@ -1,5 +1,5 @@
 /* Wall forces: tangential forces on the faces next to the walls that make the projection exact, where StokesSolve is
-   not (channel.c tells why, docs/method.md, "Wall forces", how they are found). One unknown a face, in one array that
+   not (channel.c tells why, docs/fluid.md, "Wall forces", how they are found). One unknown a face, in one array that
    all ranks hold: the rows of u along the bottom and the top wall, then the columns of v along the left and the right
    wall. Unit: a force per volume, length/time^2. */
 #pragma once

@@ -1,5 +1,5 @@
 /* Regularised delta functions between grid and markers: tensor products of 1-D weights, one along a component's own
-   direction, one across (docs/method.md, Kernels). */
+   direction, one across (docs/membrane.md, Kernels). */
 #pragma once
 #include "base/base.h"
 
@@ -9,7 +9,7 @@
 
 /* The kernels: ib6 of Bao, Kaye and Peskin (2016), the composite B-splines of Gruninger and Griffith (2025). Name;
    weights along and across; marker spacing ds/h that suits it; spacing below which the tension problem is near
-   singular; a, b of the stiffest springs a nu h/dt + b h^3/dt^2 that explicit steps bear, as measured (docs/method.md:
+   singular; a, b of the stiffest springs a nu h/dt + b h^3/dt^2 that explicit steps bear, as measured (docs/split.md:
    ib6 smooths the markers' own motion more than the others, of which cbs32 bears least). */
 /* clang-format off */
 #define KERNELS(ROW, BETWEEN)                                    \

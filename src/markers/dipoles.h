@@ -1,5 +1,5 @@
-/* Tensor dipoles of markers on the grid, for the double layer of a membrane between two viscosities (docs/method.md,
-   Viscosity contrast). A marker's symmetric tensor T goes to cells (xx, yy) and nodes (xy) with the kernel cbs54
+/* Tensor dipoles of markers on the grid, for the double layer of a membrane between two viscosities (docs/contrast.md,
+   Dipoles on the grid). A marker's symmetric tensor T goes to cells (xx, yy) and nodes (xy) with the kernel cbs54
    convolved by one cell along the derivatives that follow,
 
        T_xx: B6(x) B4(y),   T_yy: B4(x) B6(y)   cells,      T_xy: B5(x) B5(y)   nodes,

@@ -1,4 +1,4 @@
-/* What becomes of a stencil that reaches across a wall (docs/method.md, Near field): weights beyond it go to the mirror
+/* What becomes of a stencil that reaches across a wall (docs/nearfield.md, Walls): weights beyond it go to the mirror
    image's face, with the sign of the velocity that continues the flow across a wall at rest: the component along the
    wall is odd, the one across it even. */
 #pragma once

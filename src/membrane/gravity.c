@@ -1,5 +1,6 @@
-/* Gravity as a force on membranes (docs/method.md, Gravity): with the hydrostatic pressure of each fluid taken off, its
-   jump across the membrane is a normal force, whose sum is the weight of what is inside less that of what it displaces.
+/* Gravity as a force on membranes (docs/membrane.md, Gravity): with the hydrostatic pressure of each fluid taken off,
+   its jump across the membrane is a normal force, whose sum is the weight of what is inside less that of what it
+   displaces.
  */
 #include "membrane/membrane.h"
 

@@ -1,4 +1,4 @@
-/* Markers moved back to their membrane's area and edge lengths after a step (docs/method.md). */
+/* Markers moved back to their membrane's area and edge lengths after a step (docs/membrane.md, After the step). */
 #include "membrane/membrane.h"
 
 #define MAX_NEWTON 20

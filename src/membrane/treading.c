@@ -1,4 +1,4 @@
-/* Labels that turn with a tank-treading membrane (docs/method.md, Frame of the labels). */
+/* Labels that turn with a tank-treading membrane (docs/membrane.md, Frame of the labels). */
 #include "membrane/membrane.h"
 
 #define DISTINCT                                                                                                       \

@@ -142,7 +142,7 @@ struct _p_Scene {
   char wisdom[PETSC_MAX_PATH_LEN]; /* file of FFTW's wisdom; empty: none */
   PetscBool view, allow_unused;
   Shape shape;                      /* the initial markers, the same on every rank */
-  PetscReal reynolds;               /* speed R0/nu, see docs/method.md; 0 without vesicles */
+  PetscReal reynolds;               /* speed R0/nu, see docs/fluid.md; 0 without vesicles */
   char warning[PETVES_MAX_MESSAGE]; /* of the model chosen; empty when there is none */
 };
 typedef const struct _p_Scene *Scene;

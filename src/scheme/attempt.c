@@ -1,4 +1,4 @@
-/* One unsplit step, backward Euler or BDF2 (docs/method.md, One step). */
+/* One unsplit step, backward Euler or BDF2 (docs/membrane.md, One step). */
 #include "base/agree.h"
 #include "coupling/contrast.h"
 #include "scheme/coupled.h"
@@ -42,7 +42,7 @@ static PetscErrorCode LengthTarget(Scheme s, Coupled *d, PetscReal a0) {
     (s)->state.which, (s)->old[0].which, (s)->old[1].which                                                             \
   }
 
-/* The tension of the last two states, extrapolated, pulls along the new edges (docs/method.md, The tension turns with
+/* The tension of the last two states, extrapolated, pulls along the new edges (docs/membrane.md, The tension turns with
    the membrane). next.sigma is used for it. */
 static PetscErrorCode TurnTension(Scheme s, Coupled *d) {
   History *h = &d->history;

@@ -1,4 +1,4 @@
-/* What schemes coupled and direct share: the parts of one unsplit step of backward Euler or BDF2 (docs/method.md). */
+/* What schemes coupled and direct share: the parts of one unsplit step of backward Euler or BDF2 (docs/membrane.md). */
 #pragma once
 #include "coupling/solver.h"
 #include "fluid/convection.h"

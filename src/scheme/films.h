@@ -1,6 +1,6 @@
 /* The films of fluid between two vesicles, images included, and between a vesicle and a wall: how thin they are, and
-   what a step does to them (docs/method.md, Contact). A film drains slowly; where it is thinner than half an edge (a
-   cell without near field) and has lost half of that in one step, the step's error has drained it. */
+   what a step does to them (docs/suspensions.md, Contact). A film drains slowly; where it is thinner than half an edge
+   (a cell without near field) and has lost half of that in one step, the step's error has drained it. */
 #pragma once
 #include "scheme/scheme.h"
 

@@ -1,5 +1,6 @@
 /* What a step goes on from: the present state and those before it, carried along by labels that turn with the
-   tank-treading membranes (docs/method.md, Frame of the labels), so that a steady shape is the same in all of them. */
+   tank-treading membranes (docs/membrane.md, Frame of the labels), so that a steady shape is the same in all of them.
+ */
 #pragma once
 #include "scheme/bdf.h"
 #include "scheme/scheme.h"

@@ -1,4 +1,4 @@
-/* The stress that membranes add to a sheared channel (docs/method.md, Stress): walls in y, periodic in x. */
+/* The stress that membranes add to a sheared channel (docs/suspensions.md, Stress): walls in y, periodic in x. */
 #pragma once
 #include "scheme/scheme.h"
 

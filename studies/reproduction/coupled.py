@@ -90,7 +90,7 @@ def _energy(results: Results, folder: Path) -> list[str]:
     about = (
         f"h = 1/32, 36 markers, {study.STEPS_OF_ENERGY_RUN} steps; on and off: the length target; tolerances 1e-12 unless given. In brackets an independent\n"
         "NumPy prototype (its coupled runs stop at 1e-8 or so and start with backward Euler). `stopped`: a solve failed.\n"
-        "Runs of split that have blown up depend on rounding. The energy that never rises with order 2 is the G-norm's (docs/method.md),\n"
+        "Runs of split that have blown up depend on rounding. The energy that never rises with order 2 is the G-norm's (docs/membrane.md),\n"
         "which series.csv does not have.\n\n"
         "Largest change of E/E_0 in a step (negative: it fell in every step):\n"
     )
