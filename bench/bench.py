@@ -1,4 +1,4 @@
-"""`make bench`: measure, keep every number in bench/results, write the tables and pictures of docs/performance.md.
+"""`make bench`: measure, keep every number in bench/results, write the tables and pictures of docs/performance.md and docs/performance.
 
 Each item is a file of results. Runs that are in it are not made again, so a stopped bench goes on; `make bench` after
 `rm bench/results/size.json` repeats that item. Runs of an item are made in turn, round by round.
@@ -138,7 +138,7 @@ def main() -> int:
     scratch.mkdir(parents=True, exist_ok=True)
     for name, runs in items(quick, scratch).items():
         run_item(name, runs, results)
-    for path in report(results, ROOT / "docs" / "performance.md", pages):
+    for path in report(results, ROOT / "docs", pages):
         print(path)
     return 0
 

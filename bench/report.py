@@ -1,4 +1,5 @@
-"""Tables and pictures of docs/performance.md, from bench/results. A table replaces what is between its two marks."""
+"""Tables and pictures of docs/performance.md and docs/performance, from bench/results. A table replaces what is between
+its two marks."""
 
 from __future__ import annotations
 
@@ -43,8 +44,11 @@ def share(one: dict) -> float:
     return float(np.sum(one["rest"]) / (np.sum(one["rest"]) + np.sum(one["fast"])))
 
 
-def report(results: Path, page: Path, folder: Path) -> list[Path]:
-    """Write the page with its tables filled in, and the pictures, into a folder; return the paths."""
+PAGES = ("performance.md", "performance/tables.md", "performance/model.md")
+
+
+def report(results: Path, docs: Path, folder: Path) -> list[Path]:
+    """Write the pages of docs with their tables filled in, and the pictures, into a folder; return the paths."""
     pictures = folder / "performance"
     pictures.mkdir(parents=True, exist_ok=True)
     rates, blocks = _fitted(results)
@@ -59,15 +63,20 @@ def report(results: Path, page: Path, folder: Path) -> list[Path]:
         "startup": _startup(results),
         "predictions": _predictions(rates),
     }
-    text = page.read_text()
-    for name, lines in blocks.items():
-        mark = rf"(<!-- {name} -->\n).*?(<!-- end -->)"
-        body = "\n" + "\n".join(lines).strip() + "\n\n"
-        text, count = re.subn(mark, lambda m: m[1] + body + m[2], text, flags=re.DOTALL)
-        assert count == 1, f"{page.name}: no marks for {name}"
-    written = folder / "performance.md"
-    written.write_text(text)
-    return [written, _draw_solves(results, pictures), _draw_size(results, pictures), _draw_model(rates, pictures)]
+    texts = {name: (docs / name).read_text() for name in PAGES}
+    marks = [mark for text in texts.values() for mark in re.findall(r"<!-- (\w+) -->\n", text) if mark != "end"]
+    assert sorted(marks) == sorted(blocks), f"marks of {docs}: {sorted(set(marks) ^ set(blocks)) or marks}"
+    for name, text in texts.items():
+        (folder / name).write_text(_filled(text, blocks))
+    written = [folder / name for name in PAGES]
+    return [*written, _draw_solves(results, pictures), _draw_size(results, pictures), _draw_model(rates, pictures)]
+
+
+def _filled(text: str, blocks: dict[str, list[str]]) -> str:
+    """Return a page with the lines of a block between each pair of marks."""
+    mark = r"(<!-- (\w+) -->\n).*?(<!-- end -->)"
+    body = lambda m: f"{m[1]}\n" + "\n".join(blocks[m[2]]).strip() + f"\n\n{m[3]}"  # noqa: E731
+    return re.sub(mark, body, text, flags=re.DOTALL)
 
 
 def _machine(results: Path) -> list[str]:

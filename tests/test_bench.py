@@ -99,6 +99,13 @@ def test_items_have_the_sizes_of_the_targets():
     assert {run.name for run in full["share"]} >= {f"{s} 512 {b} {r}" for s in ("split", "coupled") for b in bench.BOXES for r in (1, 2)}  # fmt: skip
 
 
+def test_pages_have_what_was_measured(tmp_path):
+    """The tables of docs/ are those of bench/results."""
+    for path in report.report(ROOT / "bench" / "results", ROOT / "docs", tmp_path):
+        page = ROOT / "docs" / path.relative_to(tmp_path)
+        assert page.is_file() and (path.suffix != ".md" or path.read_text() == page.read_text()), page
+
+
 def test_fits_find_what_they_are_given():
     """N log N has no deviation from itself; rates put into the model come out of the fit."""
     cells = np.array([128, 256, 512, 1024])
