@@ -39,6 +39,20 @@ def test_walls_agree_with_stresslets(options, ranks, tmp_path):
         assert abs(total[0, 0] - total[1, 1] - series["normal_stress"][-1]) < 5e-3
 
 
+#: Vesicles .4, .5 and 1.3 cells from a wall, and one in the middle.
+BOTTOM, TOP = "-vesicle_center 0.8,0.55,2.7,2.4 ", "-vesicle_center 0.8,2,2.7,3.45 "
+BOTH = "-vesicle_center 0.8,0.5,2.7,3.5 -vesicle_angle 3 -contact_repulsion 5 "
+
+
+@pytest.mark.parametrize("options, ranks", [(BOTTOM, 1), (TOP, 3), (BOTH, 2), (TOP + "-scheme_type direct", 1)])
+def test_walls_agree_with_stresslets_next_to_walls(options, ranks, tmp_path):
+    """Where stencils are folded and scaled: what the fluid on the grid does not feel of a force acts on the wall."""
+    series = run_petves(tmp_path / "run", CHANNEL + options + " -time_end 0.04", ranks).series
+    assert 0 < series["gap"][-1] < 1.5 / 8 and len(series["gap"]) == 3
+    for name in ("viscosity", "normal_stress"):
+        np.testing.assert_allclose(series[f"{name}_wall"][1:], series[name][1:], rtol=1e-12)
+
+
 def test_contact_over_the_seam_is_contact_inside(tmp_path):
     """The same scene moved along the channel has the same stress."""
     there = run_petves(tmp_path / "there", CHANNEL + SEAM + "-coupled_ksp_rtol 1e-10").series

@@ -111,6 +111,17 @@ PetscErrorCode MarkersPlace(Markers m, Vec X) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscReal MarkersShortfall(Markers m, PetscInt k, int comp, int dir) {
+  const Grid g = m->grid;
+  const PetscReal middle = 0.5 * (g->lo[dir] + g->hi[dir]), x = m->X[2 * k + dir];
+  const Stencil *s = &m->stencil[2 * k + comp];
+  PetscReal short_of = x - middle;
+  if (!m->folded || !g->wall[dir] || PetscMin(x - g->lo[dir], g->hi[dir] - x) >= KERNEL_WALL_CELLS * g->h) return 0;
+  for (PetscInt q = 0; q < s->n[dir]; q++)
+    short_of -= s->weight[dir][q] * (g->lo[dir] + (s->first[dir] + q + (comp == dir ? 1 : 0.5)) * g->h - middle);
+  return short_of;
+}
+
 PetscErrorCode MarkersSpread(Markers m, PetscReal alpha, Vec F, Vec w) {
   PetscScalar *wa;
   PetscFunctionBeginUser;

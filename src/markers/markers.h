@@ -42,6 +42,12 @@ PETSC_EXTERN PetscErrorCode MarkersCheck(Markers markers, Layout layout, Vec X, 
 /* MarkersPlace - put E at the markers X (checked by MarkersCheck before). Collective. */
 PETSC_EXTERN PetscErrorCode MarkersPlace(Markers markers, Vec X);
 
+/* MarkersShortfall - what component comp of a unit force at the own or another's marker k has as its first moment
+   across the box along dir, about the middle, less what its stencil makes of it (length): stencils reproduce linear
+   functions, but not those that are folded or scaled at walls along dir; 0 from the kernel's reach on. Not collective.
+ */
+PETSC_EXTERN PetscReal MarkersShortfall(Markers markers, PetscInt k, int comp, int dir);
+
 /* MarkersClear - w (a velocity or a pressure) is zero but for rows dirty[2], which are zeroed; dirty becomes the
    window, where the caller may write. Not collective. */
 PETSC_EXTERN PetscErrorCode MarkersClear(Markers markers, Vec w, PetscInt dirty[2]);

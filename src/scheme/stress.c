@@ -68,19 +68,35 @@ static PetscErrorCode Stresslets(Scheme s, Vec F, Vec X, PetscReal sum[3]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* SUM of force times what its stencil's first moment across the channel falls short of, of u and of v: the near field's
+   own stress at the walls, as the fluid on the grid does not feel all of a force that stands next to a wall. */
+static PetscErrorCode Shortfall(Scheme s, Vec F, PetscReal sum[2]) {
+  const Layout l = s->membrane->layout;
+  const PetscScalar *a;
+  PetscFunctionBeginUser;
+  sum[0] = sum[1] = 0;
+  PetscCall(VecGetArrayRead(F, &a));
+  for (PetscInt k = 0; k < 2 * l->n; k++)
+    sum[k % 2] -= a[k] * MarkersShortfall(s->coupling->markers, l->first + k / 2, k % 2, 1);
+  PetscCall(VecRestoreArrayRead(F, &a));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPIU_REAL, MPI_SUM, l->comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode StressMeasure(Scheme s, Vec w, Vec p, Vec F, Vec X) {
   const Grid g = s->fluid->grid;
   const PetscReal area = (g->hi[0] - g->lo[0]) * (g->hi[1] - g->lo[1]);
   const PetscReal scale = s->fluid->nu * s->scene->flow.rate;
   Stress *out = &s->report.stress;
-  PetscReal sum[3], shear = 0, pressure = 0;
+  PetscReal sum[3], near[2], shear = 0, pressure = 0;
   PetscFunctionBeginUser;
   if (!StressApplies(s)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(WallStress(s, w, p, &shear, &pressure));
   PetscCall(Stresslets(s, F, X, sum));
-  out->viscosity[0] = 1 + shear / scale;
+  PetscCall(Shortfall(s, F, near));
+  out->viscosity[0] = 1 + (shear - near[0] / area) / scale;
   out->viscosity[1] = 1 - sum[2] / area / scale;
-  out->normal[0] = pressure - sum[0] / area;
+  out->normal[0] = pressure + (near[1] - sum[0]) / area;
   out->normal[1] = (sum[1] - sum[0]) / area;
   out->known = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
