@@ -6,7 +6,7 @@
 
 /* Levels of PCILU at which its fill is complete, with nested dissection, up to a few hundred markers: markers numbered
    along a curve make Chat a cyclic band, whose fill runs along the whole curve. Only a complete one has the paper's
-   iterations (docs/tension_iterations.md). */
+   iterations (docs/reproduction/tension.md). */
 #define COMPLETE_FILL 200
 
 typedef struct _p_LagrangianSolver *LagrangianSolver;

@@ -18,7 +18,7 @@ static const struct {
 };
 
 /* Worst error of angle and frequency in steady tank-treading (V = 0.5 to 0.9, chi = 1 and 10), by R0/h and finer, with
-   markers 1.5 h apart: on coarse grids it is that of too few markers (an earlier calibration's, docs/choosing.md). */
+   markers 1.5 h apart: on coarse grids it is that of too few markers (an earlier calibration's, docs/settings.md). */
 static const struct { PetscReal cells, error; } grids[] = {{12.8, 1.4e-4}, {7, 1.4e-4}, {5.3, 3.6e-4}, {3.9, 4.2e-2}};
 
 static PetscInt Row(Scene scene) {
@@ -48,7 +48,7 @@ PetscErrorCode SceneChooseByError(Draft scene) {
 }
 
 /* Where the flow compresses a vesicle and it wrinkles: order 3, and a tolerance of a hundredth of the error wanted,
-   whose steps leave up to a third of it (docs/choosing.md). */
+   whose steps leave up to a third of it (docs/settings.md). */
 #define OF_WRINKLES 100
 
 #define OF_TURNING 10 /* where it is compressed without that: a third of the table's */
@@ -166,7 +166,7 @@ static PetscErrorCode PrintChoice(Scene scene, PetscInt row, PetscBool timed) {
   PetscReal slow, fast;
   PetscFunctionBeginUser;
   SceneTimes(scene, &slow, &fast);
-  PetscCall(PetvesSay(scene->comm, "petves: -scheme_auto %g, by the worst errors measured (docs/speed_accuracy.md)\n",
+  PetscCall(PetvesSay(scene->comm, "petves: -scheme_auto %g, by the worst errors measured (docs/settings.md)\n",
                       (double)scene->scheme.wanted));
   PetscCall(PrintSetting(scene, "-scheme_type", "the membrane and the fluid in one solve"));
   PetscCall(PrintSetting(scene, "-scheme_order", squeezed ? "better where a vesicle wrinkles" : "what was calibrated"));

@@ -1,5 +1,5 @@
 /* -scheme_auto: what the start of a scene asks for. A vesicle that the flow compresses along its length wrinkles, and
-   errors of its steps grow with the wrinkles; thin shapes and thin films need more markers (docs/choosing.md). */
+   errors of its steps grow with the wrinkles; thin shapes and thin films need more markers (docs/settings.md). */
 #include "curve/contacts.h"
 #include "curve/spectral.h"
 #include "scene/resolve.h"
@@ -14,7 +14,7 @@
 #define TAIL 0.15
 #define MOST_TAIL 0.3
 
-/* What films leave of the thickness, by spacings (docs/choosing.md, Films). */
+/* What films leave of the thickness, by spacings (docs/settings.md, Films). */
 static const struct {
   PetscReal spacings, error;
 } films[] = {{WIDE, 1e-5}, {1.5, 2e-4}, {1, 4e-3}, {.7, 1e-2}, {.5, 4e-2}, {.3, 1}};

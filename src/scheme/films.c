@@ -7,7 +7,7 @@
 #define THIN 0.5 /* edges below which a film that loses much is drained by the step's error */
 
 /* Marker spacings below which a film's thickness is off by 1 % or will be as it thins (measured: from .3 to .65,
-   docs/choosing.md), and those at which it is off by .1 to .4 %. */
+   docs/settings.md), and those at which it is off by .1 to .4 %. */
 #define COARSE 0.6
 #define RESOLVED 1.0
 

@@ -22,6 +22,6 @@ PETSC_EXTERN PetscErrorCode FilmsLoss(Scheme scheme, Vec X_old, Vec X_new, Petsc
 PETSC_EXTERN PetscErrorCode FilmsCheck(Scheme scheme);
 
 /* FilmsWarn - with the exact near field a warning, once a run, where two vesicles, a vesicle and a periodic image, or a
-   vesicle and a wall are closer than .6 marker spacings: markers no longer resolve the film there (docs/choosing.md).
+   vesicle and a wall are closer than .6 marker spacings: markers no longer resolve the film there (docs/settings.md).
    In a time in proportion to the markers. Collective. */
 PETSC_EXTERN PetscErrorCode FilmsWarn(Scheme scheme);
