@@ -90,7 +90,7 @@ static PetscErrorCode CheckGap(PetscReal gap, PetscReal period, PetscReal tolera
   PetscInt n;
   PetscFunctionBeginUser;
   Place(2, circles, POINTS, X);
-  PetscCall(CurveGaps(2, 2, start, X, periods, PETSC_TRUE, 0.2, &n, &gaps));
+  PetscCall(CurveGaps(2, 2, start, X, NULL, periods, PETSC_TRUE, 0.2, &n, &gaps));
   PetscCall(CurveLeastGap(2, 2, start, X, periods, PETSC_TRUE, &least));
   const PetscReal found = n ? gaps[0].distance : NAN;
   CHECK(n == (gap < 0.2) && (!n || PetscAbsReal(found - gap) < tolerance) && PetscAbsReal(least - gap) < tolerance,
@@ -128,13 +128,13 @@ static PetscErrorCode CheckFilm(PetscBool images, PetscReal coarse, PetscInt v, 
   PetscFunctionBeginUser;
   Place(4, circles, POINTS, X);
   for (int k = 0; k < 4; k++) ds[k] = (k == 2 ? 1 : coarse) * 2 * PETSC_PI * circles[k].radius / POINTS;
-  PetscCall(CurveThinnestFilm(4, 4, start, X, ds, &room, PETSC_TRUE, 2, &film));
+  PetscCall(CurveThinnestFilm(4, 4, start, X, NULL, ds, &room, PETSC_TRUE, 2, &film));
   const PetscReal spacing = PetscMax(ds[v], w < 0 ? 0 : ds[w]);
   CHECK(film.pair[0] == v && film.pair[1] == w && PetscAbsReal(film.thickness - thickness) < 6e-3 &&
             PetscAbsReal(film.spacings * spacing - film.thickness) < 1e-14,
         "film of %d and %d: %g thick, %g spacings", (int)film.pair[0], (int)film.pair[1], film.thickness,
         film.spacings);
-  PetscCall(CurveThinnestFilm(4, 4, start, X, ds, &room, PETSC_TRUE, 0.9 * film.spacings, &film));
+  PetscCall(CurveThinnestFilm(4, 4, start, X, NULL, ds, &room, PETSC_TRUE, 0.9 * film.spacings, &film));
   CHECK(film.pair[0] == 0 && film.pair[1] == 0 && film.thickness == 0, "   none below that");
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -35,9 +35,16 @@ static PetscErrorCode CheckPairs(PetscInt n, PetscReal period_x, PetscReal perio
       }
       if (square < reach * reach) wanted++;
     }
-  PetscCall(PairsWithin(n, X, period, reach, CountPair, &c));
+  PetscCall(PairsWithin(n, X, NULL, period, reach, CountPair, &c));
   CHECK(c.pairs == wanted && !c.repeated, "%d points, periods %g and %g: %d pairs nearer than %g, %d by the cells",
         (int)n, period_x, period_y, (int)wanted, reach, (int)c.pairs);
+  PetscCall(PetscArrayzero(c.seen, n * n));
+  c.pairs = 0;
+  for (int half = 0; half < 2; half++) {
+    const PetscInt part[2] = {half * (n / 3), half ? n : n / 3};
+    PetscCall(PairsWithin(n, X, part, period, reach, CountPair, &c));
+  }
+  CHECK(c.pairs == wanted && !c.repeated, "%d points in two parts: %d pairs", (int)n, (int)c.pairs);
   PetscCall(PetscFree(X));
   PetscCall(PetscFree(c.seen));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -67,7 +74,7 @@ static PetscErrorCode CheckLoops(const char what[], const Loop loop[2], PetscRea
   PetscInt pair[2];
   PetscFunctionBeginUser;
   for (int v = 0; v < 2; v++) Place(&loop[v], 0, X + 2 * v * POINTS);
-  PetscCall(CurvesCross(2, start, X, period, smooth, pair));
+  PetscCall(CurvesCross(2, start, X, NULL, period, smooth, pair));
   const PetscInt low = PetscMin(pair[0], pair[1]), high = PetscMax(pair[0], pair[1]);
   CHECK(low == first && high == second, "%s, %s: %d and %d cross", what, smooth ? "curves" : "polygons", (int)low,
         (int)high);
@@ -82,7 +89,7 @@ static PetscErrorCode CheckBehind(const Loop nested[2], const Loop over[2]) {
   PetscInt pair[2];
   PetscFunctionBeginUser;
   for (int v = 0; v < 4; v++) Place(v < 2 ? &nested[v] : &over[v - 2], v < 2 ? 0 : 9, X + 2 * v * POINTS);
-  PetscCall(CurvesCross(4, start, X, period, PETSC_TRUE, pair));
+  PetscCall(CurvesCross(4, start, X, NULL, period, PETSC_TRUE, pair));
   CHECK(PetscMin(pair[0], pair[1]) == 2 && PetscMax(pair[0], pair[1]) == 3, "behind a tip in a hollow: %d and %d cross",
         (int)pair[0], (int)pair[1]);
   PetscFunctionReturn(PETSC_SUCCESS);

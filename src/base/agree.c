@@ -19,3 +19,16 @@ PetscErrorCode AgreeMessage(MPI_Comm comm, char message[PETVES_MAX_MESSAGE]) {
   if (first < size) PetscCallMPI(MPI_Bcast(message, PETVES_MAX_MESSAGE, MPI_CHAR, first, comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+PetscErrorCode AgreeLargest(MPI_Comm comm, PetscReal *value, PetscMPIInt *rank) {
+  struct {
+    double value;
+    int rank;
+  } mine = {.value = *value};
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(comm, &mine.rank));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &mine, 1, MPI_DOUBLE_INT, MPI_MAXLOC, comm));
+  *value = mine.value;
+  if (rank) *rank = mine.rank;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -8,3 +8,6 @@ PETSC_EXTERN PetscErrorCode AgreeFlag(MPI_Comm comm, PetscBool mine, PetscBool *
 /* AgreeMessage - the message of the lowest rank that has one; empty when none has. message[PETVES_MAX_MESSAGE].
    Collective. */
 PETSC_EXTERN PetscErrorCode AgreeMessage(MPI_Comm comm, char message[PETVES_MAX_MESSAGE]);
+
+/* AgreeLargest - the largest of all ranks' values, and the lowest rank that has it (NULL: not wanted). Collective. */
+PETSC_EXTERN PetscErrorCode AgreeLargest(MPI_Comm comm, PetscReal *value, PetscMPIInt *rank);

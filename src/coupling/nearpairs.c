@@ -170,7 +170,7 @@ static PetscErrorCode FindCandidates(NearField f, Candidates *c) {
     for (int d = 0; d < 2; d++) middle[2 * v + d] = 0.5 * (b->low[d] + b->high[d]);
     widest = PetscMax(widest, PetscHypotReal(b->high[0] - b->low[0], b->high[1] - b->low[1]));
   }
-  PetscCall(PairsWithin(bodies, middle, period, reach == PETSC_MAX_REAL ? reach : widest + reach, Keep, c));
+  PetscCall(PairsWithin(bodies, middle, NULL, period, reach == PETSC_MAX_REAL ? reach : widest + reach, Keep, c));
   PetscCall(PetscFree(middle));
   PetscCall(c->error);
   PetscFunctionReturn(PETSC_SUCCESS);

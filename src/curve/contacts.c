@@ -114,9 +114,11 @@ static PetscReal LongestEdge(PetscInt curves, const PetscInt start[], const Pets
   return longest;
 }
 
-PetscErrorCode CurveContacts(PetscInt curves, PetscInt moving, const PetscInt start[], const PetscReal X[],
-                             const PetscReal period[2], PetscReal reach, PetscInt *n, CurveContact **contacts) {
-  const PetscInt points = start[curves];
+/* Of pairs of points the first of which is on a curve part[0] .. part[1] - 1; NULL: of all. */
+static PetscErrorCode Contacts(PetscInt curves, PetscInt moving, const PetscInt start[], const PetscReal X[],
+                               const PetscInt part[2], const PetscReal period[2], PetscReal reach, PetscInt *n,
+                               CurveContact **contacts) {
+  const PetscInt points = start[curves], first[2] = {part ? start[part[0]] : 0, part ? start[part[1]] : points};
   /* a point near an edge is as near as this to one of its ends */
   const PetscReal apart = PetscHypotReal(reach, 0.5 * LongestEdge(curves, start, X));
   ContactSearch s = {.moving = moving, .start = start, .X = X, .reach = reach, .seam = PETSC_MAX_REAL};
@@ -128,7 +130,7 @@ PetscErrorCode CurveContacts(PetscInt curves, PetscInt moving, const PetscInt st
   for (PetscInt v = 0; v < curves; v++)
     for (PetscInt k = start[v]; k < start[v + 1]; k++) s.curve[k] = v;
   for (PetscInt k = 0; k < points; k++) s.head[k] = -1;
-  PetscCall(PairsWithin(points, X, period, apart, Near, &s));
+  PetscCall(PairsWithin(points, X, first, period, apart, Near, &s));
   PetscCall(s.error);
   PetscCall(PetscMalloc1(s.count, contacts));
   for (PetscInt p = 0; p < points; p++)
@@ -137,6 +139,13 @@ PetscErrorCode CurveContacts(PetscInt curves, PetscInt moving, const PetscInt st
   PetscCall(PetscFree2(s.curve, s.head));
   PetscCall(PetscFree(s.next));
   PetscCall(PetscFree(s.contact));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CurveContacts(PetscInt curves, PetscInt moving, const PetscInt start[], const PetscReal X[],
+                             const PetscReal period[2], PetscReal reach, PetscInt *n, CurveContact **contacts) {
+  PetscFunctionBeginUser;
+  PetscCall(Contacts(curves, moving, start, X, NULL, period, reach, n, contacts));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -150,11 +159,12 @@ static int Order(const void *first, const void *second) {
 
 /* Of the polygons. */
 static PetscErrorCode PolygonGaps(PetscInt curves, PetscInt moving, const PetscInt start[], const PetscReal X[],
-                                  const PetscReal period[2], PetscReal reach, PetscInt *n, CurveGap **gaps) {
+                                  const PetscInt part[2], const PetscReal period[2], PetscReal reach, PetscInt *n,
+                                  CurveGap **gaps) {
   CurveContact *c;
   PetscInt count, kept = 0;
   PetscFunctionBeginUser;
-  PetscCall(CurveContacts(curves, moving, start, X, period, reach, &count, &c));
+  PetscCall(Contacts(curves, moving, start, X, part, period, reach, &count, &c));
   PetscCall(PetscMalloc1(count, gaps));
   for (PetscInt k = 0; k < count; k++) {
     const PetscInt v = c[k].curve[0], w = c[k].curve[1];
@@ -183,7 +193,7 @@ static PetscErrorCode Refine(const PetscInt start[], const PetscReal X[], const 
   }
   PetscCall(PetscMalloc1(2 * fine[two], &Y));
   for (int k = 0; k < two; k++) TrigonometricPoints(n[k], X + 2 * start[gap->curve[k]], FINER, Y + 2 * fine[k]);
-  PetscCall(PolygonGaps(two, two, fine, Y, period, PetscAbsReal(gap->distance) + 0.5 * edge, &count, &found));
+  PetscCall(PolygonGaps(two, two, fine, Y, NULL, period, PetscAbsReal(gap->distance) + 0.5 * edge, &count, &found));
   for (PetscInt k = 0; k < count; k++)
     if (two == 1 || found[k].curve[0] != found[k].curve[1]) gap->distance = found[k].distance;
   PetscCall(PetscFree(found));
@@ -192,11 +202,12 @@ static PetscErrorCode Refine(const PetscInt start[], const PetscReal X[], const 
 }
 
 PetscErrorCode CurveGaps(PetscInt curves, PetscInt moving, const PetscInt start[], const PetscReal X[],
-                         const PetscReal period[2], PetscBool smooth, PetscReal reach, PetscInt *n, CurveGap **gaps) {
+                         const PetscInt part[2], const PetscReal period[2], PetscBool smooth, PetscReal reach,
+                         PetscInt *n, CurveGap **gaps) {
   const PetscReal edge = LongestEdge(curves, start, X);
   PetscInt kept = 0;
   PetscFunctionBeginUser;
-  PetscCall(PolygonGaps(curves, moving, start, X, period, smooth ? reach + 0.25 * edge : reach, n, gaps));
+  PetscCall(PolygonGaps(curves, moving, start, X, part, period, smooth ? reach + 0.25 * edge : reach, n, gaps));
   for (PetscInt k = 0; k < *n; k++) {
     if (smooth && (*gaps)[k].distance < 0.5 * edge) PetscCall(Refine(start, X, period, edge, &(*gaps)[k]));
     if ((*gaps)[k].distance < reach) (*gaps)[kept++] = (*gaps)[k];
@@ -220,7 +231,7 @@ PetscErrorCode CurveLeastGap(PetscInt curves, PetscInt moving, const PetscInt st
   for (PetscReal reach = 2 * edge; PetscIsNanReal(*distance); reach *= 4) {
     CurveGap *gaps, *least = NULL;
     PetscInt n;
-    PetscCall(PolygonGaps(curves, moving, start, X, period, reach, &n, &gaps));
+    PetscCall(PolygonGaps(curves, moving, start, X, NULL, period, reach, &n, &gaps));
     for (PetscInt k = 0; k < n; k++)
       if (!least || gaps[k].distance < least->distance) least = &gaps[k];
     if (least && smooth) PetscCall(Refine(start, X, period, edge, least));
@@ -250,21 +261,21 @@ static void Thinner(CurveFilm *film, PetscReal gap, PetscReal ds, PetscInt v, Pe
 }
 
 PetscErrorCode CurveThinnestFilm(PetscInt curves, PetscInt moving, const PetscInt start[], const PetscReal X[],
-                                 const PetscReal ds[], const CurveRoom *room, PetscBool smooth, PetscReal most,
-                                 CurveFilm *film) {
+                                 const PetscInt part[2], const PetscReal ds[], const CurveRoom *room, PetscBool smooth,
+                                 PetscReal most, CurveFilm *film) {
   PetscReal widest = 0;
   CurveGap *gap;
   PetscInt n, side;
   PetscFunctionBeginUser;
   *film = (CurveFilm){.spacings = most};
   for (PetscInt v = 0; v < curves; v++) widest = PetscMax(widest, ds[v]);
-  PetscCall(CurveGaps(curves, moving, start, X, room->period, smooth, most * widest, &n, &gap));
+  PetscCall(CurveGaps(curves, moving, start, X, part, room->period, smooth, most * widest, &n, &gap));
   for (PetscInt k = 0; k < n; k++) {
     const PetscInt v = gap[k].curve[0], w = gap[k].curve[1];
     Thinner(film, gap[k].distance, PetscMax(ds[v], ds[w]), v, w);
   }
   PetscCall(PetscFree(gap));
-  for (PetscInt v = 0; v < moving; v++) {
+  for (PetscInt v = part ? part[0] : 0; v < (part ? part[1] : moving); v++) {
     const PetscReal wall = CurveWallGap(start[v + 1] - start[v], X + 2 * start[v], room, &side);
     Thinner(film, wall, ds[v], v, -1 - side);
   }

@@ -1,7 +1,9 @@
 /* How near closed curves are to one another, by a list of cells, in a time in proportion to their points. Curves run
    counter-clockwise, curve v has the points start[v] .. start[v+1]-1 of X (interlaced, x0,y0,x1,y1,...); a period of 0
    is none, else the nearest images count, a curve's own among them. Of all curves the first
-   `moving` ones move: others are not compared among themselves. One that runs clockwise has its inside outside. */
+   `moving` ones move: others are not compared among themselves. One that runs clockwise has its inside outside. With
+   part[2] only pairs are looked at whose first curve, or whose curve at a wall, is one of part[0] .. part[1] - 1, of
+   the moving ones, so that ranks can share the search; NULL: all. */
 #pragma once
 #include "base/base.h"
 
@@ -30,8 +32,8 @@ typedef struct {
    are those of trigonometric curves, and what is nearer than half an edge is found at eight times the points. Not
    collective. Errors: memory. */
 PETSC_EXTERN PetscErrorCode CurveGaps(PetscInt curves, PetscInt moving, const PetscInt start[], const PetscReal X[],
-                                      const PetscReal period[2], PetscBool smooth, PetscReal reach, PetscInt *n,
-                                      CurveGap **gaps);
+                                      const PetscInt part[2], const PetscReal period[2], PetscBool smooth,
+                                      PetscReal reach, PetscInt *n, CurveGap **gaps);
 
 /* CurveLeastGap - the least of all distances, of any size; not a number where nothing is within half a period, or where
    one curve is alone. Not collective. Errors: memory. */
@@ -60,5 +62,5 @@ typedef struct {
    thinner than `most` spacings; spacings is `most` where there is none. Distances are those of CurveGaps and
    CurveWallGap; curves that overlap have no film. Not collective. Errors: memory. */
 PETSC_EXTERN PetscErrorCode CurveThinnestFilm(PetscInt curves, PetscInt moving, const PetscInt start[],
-                                              const PetscReal X[], const PetscReal ds[], const CurveRoom *room,
-                                              PetscBool smooth, PetscReal most, CurveFilm *film);
+                                              const PetscReal X[], const PetscInt part[2], const PetscReal ds[],
+                                              const CurveRoom *room, PetscBool smooth, PetscReal most, CurveFilm *film);

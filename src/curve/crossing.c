@@ -2,23 +2,28 @@
 #include "curve/spectral.h"
 
 #define FINER 8 /* times the points, where polygons of smooth curves cross */
-#define MOST 64 /* pairs of curves whose polygons cross and that do not themselves; more are too close to tell */
 
-/* Points sorted into cells at least `reach` wide: those of cell c are next[first[c]], ... up to -1. */
+/* Points sorted into cells at least `reach` wide: those of cell c are point[first[c]] .. point[first[c + 1] - 1], in
+   order, and x has their positions. */
 typedef struct {
-  PetscInt cells[2], *first, *next;
-  PetscReal low[2], width[2];
+  PetscInt cells[2], *first, *point;
+  PetscReal *x, low[2], width[2];
   const PetscReal *period;
 } CellList;
 
-static PetscInt CellOf(const CellList *c, int dir, PetscReal x) {
+static PetscInt CellAlong(const CellList *c, int dir, PetscReal x) {
   const PetscReal at = PetscFloorReal((x - c->low[dir]) / c->width[dir]);
   const PetscInt cells = c->cells[dir];
   if (c->period[dir] > 0) return (PetscInt)(at - cells * PetscFloorReal(at / cells));
   return PetscMax(0, PetscMin(cells - 1, (PetscInt)at));
 }
 
+static PetscInt CellOf(const CellList *c, const PetscReal x[2]) {
+  return CellAlong(c, 1, x[1]) * c->cells[0] + CellAlong(c, 0, x[0]);
+}
+
 static PetscErrorCode CellListCreate(PetscInt n, const PetscReal X[], PetscReal reach, CellList *c) {
+  PetscInt *cell;
   PetscFunctionBeginUser;
   for (int dir = 0; dir < 2; dir++) {
     PetscReal low = PETSC_MAX_REAL, high = -PETSC_MAX_REAL;
@@ -32,13 +37,25 @@ static PetscErrorCode CellListCreate(PetscInt n, const PetscReal X[], PetscReal 
     c->low[dir] = low;
     c->width[dir] = extent / c->cells[dir];
   }
-  PetscCall(PetscMalloc2(c->cells[0] * c->cells[1], &c->first, n, &c->next));
-  for (PetscInt k = 0; k < c->cells[0] * c->cells[1]; k++) c->first[k] = -1;
-  for (PetscInt k = n - 1; k >= 0; k--) {
-    const PetscInt cell = CellOf(c, 1, X[2 * k + 1]) * c->cells[0] + CellOf(c, 0, X[2 * k]);
-    c->next[k] = c->first[cell];
-    c->first[cell] = k;
+  const PetscInt cells = c->cells[0] * c->cells[1];
+  PetscCall(PetscCalloc1(cells + 2, &c->first));
+  PetscCall(PetscMalloc2(n, &c->point, 2 * n, &c->x));
+  PetscCall(PetscMalloc1(n, &cell));
+  for (PetscInt k = 0; k < n; k++) c->first[(cell[k] = CellOf(c, X + 2 * k)) + 2]++;
+  for (PetscInt k = 0; k < cells; k++) c->first[k + 2] += c->first[k + 1];
+  for (PetscInt k = 0; k < n; k++) {
+    const PetscInt at = c->first[cell[k] + 1]++; /* in the end each has become its own cell's first again */
+    c->point[at] = k;
+    for (int dir = 0; dir < 2; dir++) c->x[2 * at + dir] = X[2 * k + dir];
   }
+  PetscCall(PetscFree(cell));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CellListDestroy(CellList *c) {
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(c->first));
+  PetscCall(PetscFree2(c->point, c->x));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -63,35 +80,42 @@ static void Apart(const PetscReal period[2], const PetscReal a[2], const PetscRe
   }
 }
 
-PetscErrorCode PairsWithin(PetscInt n, const PetscReal X[], const PetscReal period[2], PetscReal reach, PairFound found,
-                           void *context) {
+PetscErrorCode PairsWithin(PetscInt n, const PetscReal X[], const PetscInt part[2], const PetscReal period[2],
+                           PetscReal reach, PairFound found, void *context) {
   CellList c = {.period = period};
   PetscInt around[2][3];
-  PetscBool done = n < 2 || reach <= 0 ? PETSC_TRUE : PETSC_FALSE;
+  const PetscInt begin = part ? part[0] : 0, end = part ? part[1] : n;
+  PetscBool done = n < 2 || begin >= end || reach <= 0 ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionBeginUser;
   if (done) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(CellListCreate(n, X, reach, &c));
-  for (PetscInt i = 0; i < n && !done; i++) {
-    const int columns = Around(&c, 0, CellOf(&c, 0, X[2 * i]), around[0]),
-              rows = Around(&c, 1, CellOf(&c, 1, X[2 * i + 1]), around[1]);
-    for (int k = 0; k < columns * rows && !done; k++)
-      for (PetscInt j = c.first[around[1][k / columns] * c.cells[0] + around[0][k % columns]]; j >= 0 && !done;
-           j = c.next[j]) {
+  for (PetscInt i = begin; i < end && !done; i++) {
+    const int columns = Around(&c, 0, CellAlong(&c, 0, X[2 * i]), around[0]),
+              rows = Around(&c, 1, CellAlong(&c, 1, X[2 * i + 1]), around[1]);
+    for (int k = 0; k < columns * rows && !done; k++) {
+      const PetscInt cell = around[1][k / columns] * c.cells[0] + around[0][k % columns];
+      for (PetscInt at = c.first[cell]; at < c.first[cell + 1] && !done; at++) {
         PetscReal d[2];
-        if (j <= i) continue;
-        Apart(period, X + 2 * i, X + 2 * j, d);
-        if (d[0] * d[0] + d[1] * d[1] < reach * reach) done = found(context, i, j, d);
+        if (c.point[at] <= i) continue;
+        Apart(period, X + 2 * i, c.x + 2 * at, d);
+        if (d[0] * d[0] + d[1] * d[1] < reach * reach) done = found(context, i, c.point[at], d);
       }
+    }
   }
-  PetscCall(PetscFree2(c.first, c.next));
+  PetscCall(CellListDestroy(&c));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Edges by their middles: those that cross have them as near as the longest is long. */
 typedef struct {
-  const PetscInt *curve, *next; /* of each point; where its edge ends */
-  const PetscReal *X, *middle;
-  PetscInt passed[MOST][2], count; /* pairs of curves that do not cross, whatever their polygons do */
-  PetscInt pair[2];                /* of curves that cross */
+  PetscInt *curve, *next; /* of each point; where its edge ends */
+  const PetscInt *start;
+  const PetscReal *X, *period;
+  PetscReal *middle, longest;
+  PetscBool smooth;
+  PetscInt (*passed)[2], count, room; /* pairs of curves that do not cross, whatever their polygons do */
+  PetscInt pair[2];                   /* of curves that cross */
+  PetscErrorCode error;
 } EdgeSearch;
 
 /* Twice the area of the triangle a, b, c. */
@@ -99,55 +123,10 @@ static PetscReal Turn(const PetscReal a[2], const PetscReal b[2], const PetscRea
   return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
 }
 
-static PetscBool EdgesCross(void *context, PetscInt i, PetscInt j, const PetscReal d[2]) {
-  EdgeSearch *s = (EdgeSearch *)context;
-  const PetscReal *a = s->X + 2 * i, *b = s->X + 2 * s->next[i];
-  PetscReal p[2], q[2];
-  if (s->next[i] == j || s->next[j] == i) return PETSC_FALSE;
-  for (int dir = 0; dir < 2; dir++) { /* the image of edge j that is nearest to edge i */
-    const PetscReal shift = s->middle[2 * i + dir] + d[dir] - s->middle[2 * j + dir];
-    p[dir] = s->X[2 * j + dir] + shift;
-    q[dir] = s->X[2 * s->next[j] + dir] + shift;
-  }
-  if (Turn(a, b, p) * Turn(a, b, q) >= 0 || Turn(p, q, a) * Turn(p, q, b) >= 0) return PETSC_FALSE;
-  for (PetscInt k = 0; k < s->count; k++)
-    if (s->curve[i] == s->passed[k][0] && s->curve[j] == s->passed[k][1]) return PETSC_FALSE;
-  s->pair[0] = s->curve[i];
-  s->pair[1] = s->curve[j];
-  return PETSC_TRUE;
-}
-
-/* The first pair of polygons that cross, but for those passed. */
-static PetscErrorCode PolygonsCross(PetscInt curves, const PetscInt start[], const PetscReal X[],
-                                    const PetscReal period[2], EdgeSearch *s) {
-  const PetscInt n = start[curves];
-  PetscInt *curve, *next;
-  PetscReal *middle, longest = 0;
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc3(n, &curve, n, &next, 2 * n, &middle));
-  for (PetscInt v = 0; v < curves; v++)
-    for (PetscInt k = start[v]; k < start[v + 1]; k++) {
-      curve[k] = v;
-      next[k] = k + 1 < start[v + 1] ? k + 1 : start[v];
-      for (int dir = 0; dir < 2; dir++) middle[2 * k + dir] = 0.5 * (X[2 * k + dir] + X[2 * next[k] + dir]);
-      longest = PetscMax(longest, PetscHypotReal(X[2 * next[k]] - X[2 * k], X[2 * next[k] + 1] - X[2 * k + 1]));
-    }
-  s->curve = curve;
-  s->next = next;
-  s->X = X;
-  s->middle = middle;
-  s->pair[0] = s->pair[1] = -1;
-  PetscCall(PairsWithin(n, middle, period, longest, EdgesCross, s)); /* edges that cross have their middles so near */
-  PetscCall(PetscFree3(curve, next, middle));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Whether two curves cross at FINER times their points. */
-static PetscErrorCode FinerCross(const PetscInt start[], const PetscReal X[], const PetscReal period[2],
-                                 const PetscInt pair[2], PetscBool *cross) {
-  const PetscInt two = pair[0] == pair[1] ? 1 : 2;
-  PetscInt fine[3] = {0}, n[2];
-  EdgeSearch search = {.count = 0};
+static PetscErrorCode FinerCross(const EdgeSearch *s, const PetscInt pair[2], PetscBool *cross) {
+  const PetscInt two = pair[0] == pair[1] ? 1 : 2, *start = s->start;
+  PetscInt fine[3] = {0}, n[2], found[2];
   PetscReal *Y;
   PetscFunctionBeginUser;
   for (int k = 0; k < two; k++) {
@@ -155,24 +134,64 @@ static PetscErrorCode FinerCross(const PetscInt start[], const PetscReal X[], co
     fine[k + 1] = fine[k] + FINER * n[k];
   }
   PetscCall(PetscMalloc1(2 * fine[two], &Y));
-  for (int k = 0; k < two; k++) TrigonometricPoints(n[k], X + 2 * start[pair[k]], FINER, Y + 2 * fine[k]);
-  PetscCall(PolygonsCross(two, fine, Y, period, &search));
-  *cross = search.pair[0] < 0 ? PETSC_FALSE : PETSC_TRUE;
+  for (int k = 0; k < two; k++) TrigonometricPoints(n[k], s->X + 2 * start[pair[k]], FINER, Y + 2 * fine[k]);
+  PetscCall(CurvesCross(two, fine, Y, NULL, s->period, PETSC_FALSE, found));
+  *cross = found[0] < 0 ? PETSC_FALSE : PETSC_TRUE;
   PetscCall(PetscFree(Y));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode CurvesCross(PetscInt curves, const PetscInt start[], const PetscReal X[], const PetscReal period[2],
-                           PetscBool smooth, PetscInt pair[2]) {
-  EdgeSearch search = {.count = 0};
-  PetscBool cross = PETSC_TRUE;
+/* Curves whose polygons cross: s->pair if they cross themselves, else those passed. */
+static PetscErrorCode LookAgain(EdgeSearch *s, const PetscInt pair[2], PetscBool *cross) {
   PetscFunctionBeginUser;
-  do {
-    PetscCall(PolygonsCross(curves, start, X, period, &search));
-    if (search.pair[0] < 0 || !smooth || search.count == MOST) break;
-    PetscCall(FinerCross(start, X, period, search.pair, &cross));
-    if (!cross) PetscCall(PetscArraycpy(search.passed[search.count++], search.pair, 2));
-  } while (!cross);
-  PetscCall(PetscArraycpy(pair, search.pair, 2));
+  *cross = PETSC_FALSE;
+  for (PetscInt k = 0; k < s->count; k++)
+    if (pair[0] == s->passed[k][0] && pair[1] == s->passed[k][1]) PetscFunctionReturn(PETSC_SUCCESS);
+  *cross = PETSC_TRUE;
+  if (s->smooth) PetscCall(FinerCross(s, pair, cross));
+  if (!*cross && s->count == s->room) {
+    s->room = 2 * s->room + 16;
+    PetscCall(PetscRealloc((size_t)s->room * sizeof(*s->passed), &s->passed));
+  }
+  PetscCall(PetscArraycpy(*cross ? s->pair : s->passed[s->count++], pair, 2));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscBool EdgesCross(void *context, PetscInt i, PetscInt j, const PetscReal d[2]) {
+  EdgeSearch *s = (EdgeSearch *)context;
+  const PetscReal *a = s->X + 2 * i, *b = s->X + 2 * s->next[i];
+  const PetscInt pair[2] = {s->curve[i], s->curve[j]};
+  PetscReal p[2], q[2];
+  PetscBool cross;
+  if (s->next[i] == j || s->next[j] == i) return PETSC_FALSE;
+  for (int dir = 0; dir < 2; dir++) { /* the image of edge j that is nearest to edge i */
+    const PetscReal shift = s->middle[2 * i + dir] + d[dir] - s->middle[2 * j + dir];
+    p[dir] = s->X[2 * j + dir] + shift;
+    q[dir] = s->X[2 * s->next[j] + dir] + shift;
+  }
+  if (Turn(a, b, p) * Turn(a, b, q) >= 0 || Turn(p, q, a) * Turn(p, q, b) >= 0) return PETSC_FALSE;
+  s->error = LookAgain(s, pair, &cross);
+  return s->error || cross ? PETSC_TRUE : PETSC_FALSE;
+}
+
+PetscErrorCode CurvesCross(PetscInt curves, const PetscInt start[], const PetscReal X[], const PetscInt part[2],
+                           const PetscReal period[2], PetscBool smooth, PetscInt pair[2]) {
+  const PetscInt n = start[curves], points[2] = {part ? start[part[0]] : 0, part ? start[part[1]] : n};
+  EdgeSearch s = {.start = start, .X = X, .period = period, .smooth = smooth, .pair = {-1, -1}};
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc3(n, &s.curve, n, &s.next, 2 * n, &s.middle));
+  for (PetscInt v = 0; v < curves; v++)
+    for (PetscInt k = start[v]; k < start[v + 1]; k++) {
+      const PetscInt next = k + 1 < start[v + 1] ? k + 1 : start[v];
+      s.curve[k] = v;
+      s.next[k] = next;
+      for (int dir = 0; dir < 2; dir++) s.middle[2 * k + dir] = 0.5 * (X[2 * k + dir] + X[2 * next + dir]);
+      s.longest = PetscMax(s.longest, PetscHypotReal(X[2 * next] - X[2 * k], X[2 * next + 1] - X[2 * k + 1]));
+    }
+  PetscCall(PairsWithin(n, s.middle, points, period, s.longest, EdgesCross, &s));
+  PetscCall(s.error);
+  PetscCall(PetscFree3(s.curve, s.next, s.middle));
+  PetscCall(PetscFree(s.passed));
+  PetscCall(PetscArraycpy(pair, s.pair, 2));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

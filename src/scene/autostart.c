@@ -73,7 +73,7 @@ PetscErrorCode SceneThinnestFilm(Scene scene, PetscReal *spacings, PetscReal *er
     room.wall[dir] = f->bc[dir] == BC_WALL ? PETSC_TRUE : PETSC_FALSE;
     room.period[dir] = f->bc[dir] == BC_PERIODIC ? f->box[2 * dir + 1] - f->box[2 * dir] : 0;
   }
-  PetscCall(CurveThinnestFilm(s->vesicles, s->vesicles, s->start, s->X, ds, &room, smooth, WIDE, &film));
+  PetscCall(CurveThinnestFilm(s->vesicles, s->vesicles, s->start, s->X, NULL, ds, &room, smooth, WIDE, &film));
   PetscCall(PetscFree(ds));
   *spacings = film.spacings;
   *error = film.spacings < WIDE ? FilmError(film.spacings) * film.thickness / SceneSmallestRadius(scene) : 0;

@@ -100,7 +100,7 @@ static PetscErrorCode CheckCrossing(Scene scene, const PetscReal period[2]) {
   for (PetscInt b = 0; b <= s->vesicles; b++) start[n + b] = M + s->start[b];
   PetscCall(PetscArraycpy(X, v->X, 2 * M));
   PetscCall(PetscArraycpy(X + 2 * M, s->X, 2 * s->start[s->vesicles]));
-  PetscCall(CurvesCross(all, start, X, period, PETSC_TRUE, pair));
+  PetscCall(CurvesCross(all, start, X, NULL, period, PETSC_TRUE, pair));
   PetscCall(PetscFree2(start, X));
   const PetscInt b = pair[1] - n + 1;
   PetscCheck(pair[0] < 0 || pair[0] >= n, scene->comm, PETSC_ERR_USER_INPUT,

@@ -1,6 +1,7 @@
 /* Where vesicles lie: at the centres given, or packed into the box. */
 #include "kernel/kernel.h"
 #include "scene/kinds.h"
+#include <stdlib.h>
 
 #define GAP_CELLS 1    /* of the default gap of a packing, */
 #define LEEWAY 0.25    /* cells that markers fitted to an ellipse may lie beside it */
@@ -62,6 +63,38 @@ static PetscErrorCode Turned(Scene scene, PetscInt v, PetscReal along[2]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+typedef struct {
+  PetscInt kind;
+  Pose pose;
+} Place;
+
+/* By kind, then from the bottom up. */
+static int ByHeight(const void *first, const void *second) {
+  const Place *a = (const Place *)first, *b = (const Place *)second;
+  if (a->kind != b->kind) return a->kind < b->kind ? -1 : 1;
+  return (a->pose.center[1] > b->pose.center[1]) - (a->pose.center[1] < b->pose.center[1]);
+}
+
+/* Number the vesicles of each kind from the bottom up: ranks own ranges of vesicles and of the grid's rows, so that
+   vesicles that are near one another, and the rows that they are in, are mostly on one rank. */
+static PetscErrorCode NumberByHeight(const Kinds *kinds, Pose pose[]) {
+  PetscInt *next;
+  Place *place;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(kinds->vesicles, &place));
+  PetscCall(PetscCalloc1(kinds->kinds + 1, &next));
+  for (PetscInt v = 0; v < kinds->vesicles; v++) {
+    place[v] = (Place){kinds->of[v], pose[v]};
+    next[kinds->of[v] + 1]++;
+  }
+  qsort(place, (size_t)kinds->vesicles, sizeof(Place), ByHeight);
+  for (PetscInt k = 0; k < kinds->kinds; k++) next[k + 1] += next[k];
+  for (PetscInt v = 0; v < kinds->vesicles; v++) pose[v] = place[next[kinds->of[v]]++].pose;
+  PetscCall(PetscFree(next));
+  PetscCall(PetscFree(place));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Rank 0 packs and tells the others. */
 static PetscErrorCode Pack(Scene scene, const Kinds *kinds, Pose pose[]) {
   const SceneVesicles *own = &scene->vesicles;
@@ -81,6 +114,7 @@ static PetscErrorCode Pack(Scene scene, const Kinds *kinds, Pose pose[]) {
   PetscCall(Turned(scene, 0, along));
   if (!rank && lattice) PetscCall(PackLattice(&spec, kinds->vesicles, axes, along, pose, &part));
   if (!rank && !lattice) PetscCall(PackRandomly(&spec, kinds->vesicles, axes, pose, &part));
+  if (!rank && !lattice && part >= 1) PetscCall(NumberByHeight(kinds, pose));
   PetscCall(PetscFree(axes));
   PetscCallMPI(MPI_Bcast(&part, 1, MPIU_REAL, 0, scene->comm));
   PetscCallMPI(MPI_Bcast(pose, (PetscMPIInt)(sizeof(Pose) / sizeof(PetscReal) * (size_t)kinds->vesicles), MPIU_REAL, 0,

@@ -119,7 +119,7 @@ static PetscErrorCode FindWithin(const Shape *s, const PetscReal period[2], Pets
     }
     reach = PetscMax(reach, PetscHypotReal(box[0][1] - box[0][0], box[1][1] - box[1][0]) / 2);
   }
-  PetscCall(PairsWithin(2 * s->vesicles, points, period, reach * (1 + 1e-12), FindEnclosed, &search));
+  PetscCall(PairsWithin(2 * s->vesicles, points, NULL, period, reach * (1 + 1e-12), FindEnclosed, &search));
   PetscCall(PetscFree(points));
   PetscCall(PetscArraycpy(pair, search.pair, 2));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -133,7 +133,7 @@ static PetscErrorCode CheckOverlap(Scene scene, const Shape *s) {
   PetscFunctionBeginUser;
   for (int d = 0; d < 2; d++)
     period[d] = scene->fluid.bc[d] == BC_PERIODIC ? scene->fluid.box[2 * d + 1] - scene->fluid.box[2 * d] : 0;
-  PetscCall(CurvesCross(s->vesicles, s->start, s->X, period, smooth, pair));
+  PetscCall(CurvesCross(s->vesicles, s->start, s->X, NULL, period, smooth, pair));
   PetscCheck(pair[0] < 0 || pair[0] != pair[1], scene->comm, PETSC_ERR_USER_INPUT,
              "%s: vesicle %" PetscInt_FMT
              " crosses itself or its periodic image; allowed: curves that do not, in a box that holds them",

@@ -35,14 +35,15 @@ static PetscBool IsContact(void *context, PetscInt k, PetscInt l, const PetscRea
   return PETSC_TRUE;
 }
 
-/* The first contact of vesicles; X begins with theirs. */
+/* The first contact of vesicles, the first of them an own one; X begins with theirs. */
 static PetscErrorCode FindContact(Scheme s, const PetscScalar X[], const PetscReal period[2], PetscMPIInt pair[2]) {
   const Layout l = s->membrane->layout;
   ContactSearch search = {.scheme = s};
+  const PetscInt own[2] = {l->first, l->first + l->n};
   PetscReal reach = 0;
   PetscFunctionBeginUser;
   for (PetscInt v = 0; v < l->bodies; v++) reach = PetscMax(reach, Unresolved(s, v, v));
-  PetscCall(PairsWithin(l->M, X, period, reach, IsContact, &search));
+  PetscCall(PairsWithin(l->M, X, own, period, reach, IsContact, &search));
   PetscCall(PetscArraycpy(pair, search.pair, 2));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -72,21 +73,21 @@ static PetscErrorCode CheckCrossing(Scheme s, const PetscScalar X[]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Rank 0 looks and tells the others. */
+/* Each rank looks at pairs whose first vesicle it owns; the first of all counts. */
 PetscErrorCode SchemeCheckContact(Scheme s) {
   const Layout l = s->membrane->layout;
   const PetscBool before = s->warnings.contact;
-  PetscReal period[2];
-  PetscMPIInt pair[2] = {0, 0};
+  PetscReal period[2], found;
+  PetscMPIInt pair[2], whose;
   PetscFunctionBeginUser;
   SchemePeriods(s, period);
   PetscCall(SchemeCurves(s, s->state.X));
-  if (!l->rank) {
-    if (s->scene->limits.crossing) PetscCall(CheckCrossing(s, s->work_all));
-    PetscCall(FindContact(s, s->work_all, period, pair));
-  }
+  if (s->scene->limits.crossing) PetscCall(CheckCrossing(s, s->work_all));
+  PetscCall(FindContact(s, s->work_all, period, pair));
   PetscCall(AgreeMessage(l->comm, s->report.failure));
-  PetscCallMPI(MPI_Bcast(pair, 2, MPI_INT, 0, l->comm));
+  found = pair[0] ? 1 : 0;
+  PetscCall(AgreeLargest(l->comm, &found, &whose));
+  PetscCallMPI(MPI_Bcast(pair, 2, MPI_INT, whose, l->comm));
   s->warnings.contact = pair[0] ? PETSC_TRUE : PETSC_FALSE;
   if (!*s->report.failure && !s->policy.adaptive) PetscCall(FilmsCheck(s)); /* else judged before it was accepted */
   if (s->warnings.contact && !before && !*s->report.failure) PetscCall(Warn(s, pair));

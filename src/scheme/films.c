@@ -38,8 +38,14 @@ static PetscReal Thin(Scheme s) {
   return THIN * ds;
 }
 
-/* All films of vesicles thinner than reach at the curves X[2(M + W)], in order; those of walls come last, as of a curve
-   that comes behind all bodies. To be freed. */
+/* The own vesicles: of every two curves the first one's owner looks at what is between them. */
+#define OWN(s)                                                                                                         \
+  (const PetscInt[]) {                                                                                                 \
+    (s)->membrane->layout->own, (s)->membrane->layout->end                                                             \
+  }
+
+/* The films of own vesicles thinner than reach at the curves X[2(M + W)], in order; those of walls come last, as of a
+   curve that comes behind all bodies. To be freed. */
 static PetscErrorCode Find(Scheme s, const PetscScalar X[], PetscReal reach, PetscInt *n, CurveGap **films) {
   const Layout l = s->coupling->bodies->layout;
   const PetscInt vesicles = s->coupling->bodies->vesicles;
@@ -47,11 +53,12 @@ static PetscErrorCode Find(Scheme s, const PetscScalar X[], PetscReal reach, Pet
   CurveGap *between;
   PetscInt count, side;
   PetscFunctionBeginUser;
-  PetscCall(CurveGaps(l->bodies, vesicles, l->start, X, room.period, SchemeIsSmooth(s), reach, &count, &between));
-  PetscCall(PetscMalloc1(count + l->bodies, films));
+  PetscCall(
+      CurveGaps(l->bodies, vesicles, l->start, X, OWN(s), room.period, SchemeIsSmooth(s), reach, &count, &between));
+  PetscCall(PetscMalloc1(count + vesicles, films));
   PetscCall(PetscArraycpy(*films, between, count));
   PetscCall(PetscFree(between));
-  for (PetscInt v = 0; v < vesicles; v++) {
+  for (PetscInt v = OWN(s)[0]; v < OWN(s)[1]; v++) {
     const PetscReal gap = CurveWallGap(LayoutCount(l, v), X + 2 * l->start[v], &room, &side);
     if (gap < reach) (*films)[count++] = (CurveGap){.curve = {l->bodies, v}, .distance = gap};
   }
@@ -74,29 +81,29 @@ static void Compare(PetscInt n, const CurveGap now[], PetscInt m, const CurveGap
   }
 }
 
-/* On rank 0, for all. */
+/* Each rank its own, the worst for all. */
 static PetscErrorCode FindDrained(Scheme s, Vec X_old, Vec X_new, PetscReal limit, Drained *worst) {
   const Layout l = s->membrane->layout;
   const PetscReal thin = Thin(s), thick = thin / PetscMax(1 - limit, 0.25);
-  CurveGap *now = NULL, *before = NULL;
-  PetscInt n = 0, m;
+  CurveGap *now, *before = NULL;
+  PetscMPIInt whose;
+  PetscInt n, m;
+  PetscBool any;
   PetscFunctionBeginUser;
   *worst = (Drained){0};
   PetscCall(SchemeCurves(s, X_new));
-  if (!l->rank) PetscCall(Find(s, s->work_all, thin, &n, &now));
-  PetscCallMPI(MPI_Bcast(&n, 1, MPIU_INT, 0, l->comm));
-  if (!n) {
-    PetscCall(PetscFree(now));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  PetscCall(SchemeCurves(s, X_old));
-  if (!l->rank) {
+  PetscCall(Find(s, s->work_all, thin, &n, &now));
+  PetscCall(AgreeFlag(l->comm, n ? PETSC_TRUE : PETSC_FALSE, &any));
+  if (any) PetscCall(SchemeCurves(s, X_old));
+  if (n) {
     PetscCall(Find(s, s->work_all, thick, &m, &before));
     Compare(n, now, m, before, thick, limit, worst);
   }
   PetscCall(PetscFree(now));
   PetscCall(PetscFree(before));
-  PetscCallMPI(MPI_Bcast(worst, sizeof(*worst), MPI_BYTE, 0, l->comm));
+  PetscReal loss = worst->loss;
+  PetscCall(AgreeLargest(l->comm, &loss, &whose));
+  PetscCallMPI(MPI_Bcast(worst, sizeof(*worst), MPI_BYTE, whose, l->comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -106,17 +113,18 @@ PetscErrorCode FilmsCross(Scheme s, const PetscScalar X[], PetscInt pair[2]) {
   CurveGap *gaps;
   PetscInt n;
   PetscFunctionBeginUser;
-  PetscCall(CurvesCross(l->bodies, l->start, X, room.period, SchemeIsSmooth(s), pair));
+  PetscCall(CurvesCross(l->bodies, l->start, X, OWN(s), room.period, SchemeIsSmooth(s), pair));
   if (pair[0] >= 0 || !SchemeIsSmooth(s)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(CurveGaps(l->bodies, s->coupling->bodies->vesicles, l->start, X, room.period, PETSC_TRUE, 0, &n, &gaps));
+  PetscCall(
+      CurveGaps(l->bodies, s->coupling->bodies->vesicles, l->start, X, OWN(s), room.period, PETSC_TRUE, 0, &n, &gaps));
   if (n) PetscCall(PetscArraycpy(pair, gaps[0].curve, 2));
   PetscCall(PetscFree(gaps));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode FilmsLoss(Scheme s, Vec X_old, Vec X_new, PetscReal *loss) {
-  const Layout l = s->membrane->layout;
   PetscInt pair[2] = {-1, -1};
+  PetscBool cross;
   PetscFunctionBeginUser;
   *loss = 0;
   if (s->scene->limits.gap_loss > 0) {
@@ -126,9 +134,9 @@ PetscErrorCode FilmsLoss(Scheme s, Vec X_old, Vec X_new, PetscReal *loss) {
   }
   if (!s->scene->limits.crossing) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SchemeCurves(s, X_new));
-  if (!l->rank) PetscCall(FilmsCross(s, s->work_all, pair));
-  PetscCallMPI(MPI_Bcast(pair, 1, MPIU_INT, 0, l->comm));
-  if (pair[0] >= 0) *loss = PetscMax(*loss, 2);
+  PetscCall(FilmsCross(s, s->work_all, pair));
+  PetscCall(AgreeFlag(s->membrane->layout->comm, pair[0] >= 0 ? PETSC_TRUE : PETSC_FALSE, &cross));
+  if (cross) *loss = PetscMax(*loss, 2);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -153,46 +161,75 @@ PetscErrorCode FilmsCheck(Scheme s) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* On rank 0: each vesicle's thinnest film of those thinner than FAR edges, not a number where there is none. */
-static PetscErrorCode ThinnestOfEach(Scheme s, const PetscScalar X[], PetscReal each[]) {
+/* Each vesicle's thinnest film of those thinner than FAR edges, PETSC_MAX_REAL where there is none, of the films that
+   this rank looks at; and the thinnest that is not at a wall, its distance PETSC_MAX_REAL where there is none. */
+static PetscErrorCode ThinnestOfEach(Scheme s, const PetscScalar X[], PetscReal each[], CurveGap *thinnest) {
   const Membrane m = s->membrane;
-  const PetscInt vesicles = m->layout->bodies;
+  const PetscInt vesicles = m->layout->bodies, bodies = s->coupling->bodies->layout->bodies;
   PetscReal edge = 0;
   CurveGap *films;
   PetscInt n;
   PetscFunctionBeginUser;
+  *thinnest = (CurveGap){.distance = PETSC_MAX_REAL};
   for (PetscInt v = 0; v < vesicles; v++) {
-    each[v] = NAN;
+    each[v] = PETSC_MAX_REAL;
     edge = PetscMax(edge, m->ds[v]);
   }
   PetscCall(Find(s, X, FAR * edge, &n, &films));
-  for (PetscInt k = 0; k < n; k++)
+  for (PetscInt k = 0; k < n; k++) {
+    if (films[k].curve[0] < bodies && films[k].distance < thinnest->distance) *thinnest = films[k];
     for (int side = 0; side < 2; side++) {
       const PetscInt v = films[k].curve[side];
-      if (v < vesicles && !(each[v] <= films[k].distance)) each[v] = films[k].distance;
+      if (v < vesicles) each[v] = PetscMin(each[v], films[k].distance);
     }
+  }
   PetscCall(PetscFree(films));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode FilmsGaps(Scheme s, PetscReal *least, PetscReal each[]) {
+/* Least distance of two vesicles, or of a vesicle and an obstacle: of the two curves of the thinnest film, of all on
+   rank 0 where there is none. */
+static PetscErrorCode LeastGap(Scheme s, const PetscScalar X[], const CurveGap *thinnest, PetscReal *least) {
   const Layout l = s->membrane->layout, all = s->coupling->bodies->layout;
+  const PetscInt *pair = thinnest->curve, two = pair[0] == pair[1] ? 1 : 2;
+  const CurveRoom room = Room(s);
+  PetscReal nearness = -thinnest->distance, *Y;
+  PetscInt start[3] = {0};
+  PetscMPIInt whose;
+  PetscFunctionBeginUser;
+  PetscCall(AgreeLargest(l->comm, &nearness, &whose));
+  if (nearness == -PETSC_MAX_REAL && !l->rank)
+    PetscCall(CurveLeastGap(all->bodies, l->bodies, all->start, X, room.period, SchemeIsSmooth(s), least));
+  else if (nearness > -PETSC_MAX_REAL && l->rank == whose) {
+    for (PetscInt k = 0; k < two; k++) start[k + 1] = start[k] + LayoutCount(all, pair[k]);
+    PetscCall(PetscMalloc1(2 * start[two], &Y));
+    for (PetscInt k = 0; k < two; k++)
+      PetscCall(PetscArraycpy(Y + 2 * start[k], X + 2 * all->start[pair[k]], 2 * LayoutCount(all, pair[k])));
+    PetscCall(CurveLeastGap(two, 1, start, Y, room.period, SchemeIsSmooth(s), least));
+    PetscCall(PetscFree(Y));
+  }
+  PetscCallMPI(MPI_Bcast(least, 1, MPIU_REAL, whose, l->comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode FilmsGaps(Scheme s, PetscReal *least, PetscReal each[]) {
+  const Layout l = s->membrane->layout;
   const CurveRoom room = Room(s);
   PetscMPIInt vesicles;
+  CurveGap thinnest;
   PetscInt side;
   PetscFunctionBeginUser;
   *least = NAN;
   if (!l->bodies) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMPIIntCast(l->bodies, &vesicles));
   PetscCall(SchemeCurves(s, s->state.X));
-  if (!l->rank) {
-    PetscCall(CurveLeastGap(all->bodies, l->bodies, all->start, s->work_all, room.period, SchemeIsSmooth(s), least));
-    const PetscReal wall = CurveWallGap(l->M, s->work_all, &room, &side);
-    if (wall < PETSC_MAX_REAL && !(*least < wall)) *least = wall;
-    PetscCall(ThinnestOfEach(s, s->work_all, each));
-  }
-  PetscCallMPI(MPI_Bcast(least, 1, MPIU_REAL, 0, l->comm));
-  PetscCallMPI(MPI_Bcast(each, vesicles, MPIU_REAL, 0, l->comm));
+  PetscCall(ThinnestOfEach(s, s->work_all, each, &thinnest));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, each, vesicles, MPIU_REAL, MPI_MIN, l->comm));
+  for (PetscInt v = 0; v < l->bodies; v++)
+    if (each[v] == PETSC_MAX_REAL) each[v] = NAN;
+  PetscCall(LeastGap(s, s->work_all, &thinnest, least));
+  const PetscReal wall = CurveWallGap(l->M, s->work_all, &room, &side);
+  if (wall < PETSC_MAX_REAL && !(*least < wall)) *least = wall;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -231,18 +268,19 @@ static PetscErrorCode Warn(Scheme s, const CurveFilm *film) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Rank 0 looks and tells the others. */
 PetscErrorCode FilmsWarn(Scheme s) {
   const Layout l = s->membrane->layout, all = s->coupling->bodies->layout;
   const CurveRoom room = Room(s);
+  PetscMPIInt whose;
   CurveFilm film;
   PetscFunctionBeginUser;
   if (!s->coupling->near || s->warnings.film) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SchemeCurves(s, s->state.X));
-  if (!l->rank)
-    PetscCall(CurveThinnestFilm(all->bodies, l->bodies, all->start, s->work_all, s->coupling->bodies->ds, &room,
-                                SchemeIsSmooth(s), COARSE, &film));
-  PetscCallMPI(MPI_Bcast(&film, sizeof(film), MPI_BYTE, 0, l->comm));
+  PetscCall(CurveThinnestFilm(all->bodies, l->bodies, all->start, s->work_all, OWN(s), s->coupling->bodies->ds, &room,
+                              SchemeIsSmooth(s), COARSE, &film));
+  PetscReal thinness = -film.spacings;
+  PetscCall(AgreeLargest(l->comm, &thinness, &whose));
+  PetscCallMPI(MPI_Bcast(&film, sizeof(film), MPI_BYTE, whose, l->comm));
   s->warnings.film = film.spacings < COARSE ? PETSC_TRUE : PETSC_FALSE;
   if (s->warnings.film) PetscCall(Warn(s, &film));
   PetscFunctionReturn(PETSC_SUCCESS);

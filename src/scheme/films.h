@@ -9,8 +9,8 @@
    that a vesicle may touch, and in each where nothing is within four mean edges. Collective. */
 PETSC_EXTERN PetscErrorCode FilmsGaps(Scheme scheme, PetscReal *least, PetscReal each[]);
 
-/* FilmsCross - the first two vesicles (the same twice: one and itself) that cross at the curves X[2(M + W)]: their
-   polygons do, or smooth outlines whose polygons do not; -1, -1: none. Not collective. */
+/* FilmsCross - the first two vesicles (the same twice: one and itself), the first of them an own one, that cross at the
+   curves X[2(M + W)]: their polygons do, or smooth outlines whose polygons do not; -1, -1: none. Not collective. */
 PETSC_EXTERN PetscErrorCode FilmsCross(Scheme scheme, const PetscScalar X[], PetscInt pair[2]);
 
 /* FilmsLoss - what a step from the markers X_old to X_new does: the largest part of its thickness that a thin film has
