@@ -20,6 +20,24 @@ PetscErrorCode DenseSolve(PetscInt n, const PetscReal A[], const PetscBLASInt pi
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* PETSc names the routines of its own precision only. */
+extern void sgetrs_(const char *, const PetscBLASInt *, const PetscBLASInt *, const float *, const PetscBLASInt *,
+                    const PetscBLASInt *, float *, const PetscBLASInt *, PetscBLASInt *);
+
+PetscErrorCode DenseSolveSingle(PetscInt n, const float A[], const PetscBLASInt pivot[], PetscReal x[]) {
+  PetscBLASInt size, info;
+  const PetscBLASInt one = 1;
+  float *single;
+  PetscFunctionBeginUser;
+  PetscCall(PetscBLASIntCast(n, &size));
+  PetscCall(PetscMalloc1(n, &single));
+  for (PetscInt k = 0; k < n; k++) single[k] = (float)x[k];
+  PetscCallBLAS("sgetrs", sgetrs_("N", &size, &one, A, &size, pivot, single, &size, &info));
+  for (PetscInt k = 0; k < n; k++) x[k] = single[k];
+  PetscCall(PetscFree(single));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode DenseMultAdd(PetscInt m, PetscInt n, PetscReal alpha, const PetscReal A[], const PetscReal x[],
                             PetscReal y[]) {
   PetscBLASInt rows, columns;

@@ -10,6 +10,9 @@ PETSC_EXTERN PetscErrorCode DenseFactor(PetscInt n, PetscReal A[], PetscBLASInt 
 PETSC_EXTERN PetscErrorCode DenseSolve(PetscInt n, const PetscReal A[], const PetscBLASInt pivot[], PetscBool transpose,
                                        PetscInt nrhs, PetscReal X[]);
 
+/* DenseSolveSingle - x := A^-1 x for the factored A in single precision, which takes half the time; x in double. */
+PETSC_EXTERN PetscErrorCode DenseSolveSingle(PetscInt n, const float A[], const PetscBLASInt pivot[], PetscReal x[]);
+
 /* DenseMultAdd - y += alpha A x, A (m x n). */
 PETSC_EXTERN PetscErrorCode DenseMultAdd(PetscInt m, PetscInt n, PetscReal alpha, const PetscReal A[],
                                          const PetscReal x[], PetscReal y[]);

@@ -12,7 +12,9 @@ PetscErrorCode BoxPartCreate(const FluidSpec *spec, Markers markers, BoxPart *ou
   PetscCall(PetscLogEventBegin(event, 0, 0, 0, 0));
   PetscCall(BoxTableCreate(spec, markers->kernel->name, PETSC_FALSE, &b->table));
   PetscCall(PetscLogEventEnd(event, 0, 0, 0, 0));
-  PetscCall(PetscMalloc2(2 * markers->layout->n * b->table.rank, &b->A, b->table.rank, &b->amplitude));
+  PetscCall(PetscMalloc3(2 * markers->layout->n * b->table.rank, &b->A, b->table.rank, &b->amplitude,
+                         2 * markers->layout->n, &b->X));
+  for (PetscInt k = 0; k < 2 * markers->layout->n; k++) b->X[k] = NAN;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -20,7 +22,7 @@ PetscErrorCode BoxPartDestroy(BoxPart *box) {
   PetscFunctionBeginUser;
   if (!*box) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(BoxTableDestroy(&(*box)->table));
-  PetscCall(PetscFree2((*box)->A, (*box)->amplitude));
+  PetscCall(PetscFree3((*box)->A, (*box)->amplitude, (*box)->X));
   PetscCall(PetscFree(*box));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -43,7 +45,13 @@ static void PlaceMarker(BoxPart b, PetscInt k, PetscReal A[]) {
 
 void BoxPartPlace(BoxPart b) {
   const Layout l = b->markers->layout;
-  for (PetscInt k = 0; k < l->n; k++) PlaceMarker(b, l->first + k, b->A + 2 * k * b->table.rank);
+  for (PetscInt k = 0; k < l->n; k++) {
+    const PetscReal *now = b->markers->X + 2 * (l->first + k), *then = b->X + 2 * k;
+    if (now[0] == then[0] && now[1] == then[1]) continue; /* at rest, on an obstacle */
+    PlaceMarker(b, l->first + k, b->A + 2 * k * b->table.rank);
+    b->X[2 * k] = now[0];
+    b->X[2 * k + 1] = now[1];
+  }
 }
 
 PetscErrorCode BoxPartApply(BoxPart b, PetscReal alpha, const PetscScalar F[], PetscScalar U[]) {

@@ -11,6 +11,7 @@ struct _p_BoxPart {
   BoxTable table;
   PetscBool ramp;       /* unsteady flow: D fades next to walls */
   PetscReal *A;         /* [2n][rank] of the own markers, D = A diag(l) A^T */
+  PetscReal *X;         /* [2n] where they are in A */
   PetscReal *amplitude; /* [rank] work */
 };
 

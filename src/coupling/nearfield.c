@@ -38,6 +38,7 @@ PetscErrorCode NearFieldCreate(Markers markers, Bodies bodies, PetscReal nu, Nea
     Kress(LayoutCount(l, v), f->kress[v]);
   }
   PetscCall(PetscMalloc2(2 * l->M, &f->stencil, l->bodies, &f->bounds));
+  PetscCall(PetscMalloc1(2 * (l->M - l->start[bodies->vesicles]), &f->fixed.X));
   PetscCall(PetscCalloc2(2 * l->M + LANES, &f->force, 2 * l->n + LANES, &f->velocity)); /* whole vectors */
   PetscCall(PetvesEvent("NearField", &f->place));
   PetscCall(PetvesEvent("NearFieldApply", &f->apply));
@@ -55,6 +56,7 @@ PetscErrorCode NearFieldDestroy(NearField *near) {
   for (PetscInt v = 0; v < f->bodies->layout->bodies; v++) PetscCall(PetscFree(f->kress[v]));
   PetscCall(PetscFree(f->kress));
   PetscCall(PetscFree2(f->stencil, f->bounds));
+  PetscCall(PetscFree(f->fixed.X));
   PetscCall(PetscFree2(f->force, f->velocity));
   PetscCall(NearImageDestroy(&f->image));
   PetscCall(OffsetTableDestroy(&f->lattice));
@@ -89,33 +91,40 @@ static PetscErrorCode PlaceStencils(NearField f) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Room for so many values of this size, and a quarter more where it has to be made anew. */
-static PetscErrorCode Room(size_t count, size_t size, size_t *room, void **values) {
+/* Room for so many values of this size, and a quarter more where it has to be made anew; the first `kept` stay. */
+static PetscErrorCode Room(size_t count, size_t kept, size_t size, size_t *room, void **values) {
+  void *more;
   PetscFunctionBeginUser;
   if (count <= *room) PetscFunctionReturn(PETSC_SUCCESS);
-  *room = count + count / 4;
+  PetscCall(PetscMalloc((count + count / 4) * size, &more));
+  PetscCall(PetscMemcpy(more, *values, PetscMin(kept, *room) * size));
   PetscCall(PetscFree(*values));
-  PetscCall(PetscMalloc(*room * size, values));
+  *room = count + count / 4;
+  *values = more;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode NearFieldPlace(NearField f) {
   const Layout l = f->bodies->layout;
+  NearStore *s = &f->store;
   PetscBool crossed = PETSC_FALSE;
+  PetscInt first;
   PetscFunctionBeginUser;
   PetscCall(PetscLogEventBegin(f->place, 0, 0, 0, 0));
-  PetscCall(NearPairsFind(f));
-  PetscCall(Room(f->store.values, sizeof(PetscReal), &f->store.value_room, (void **)&f->store.value));
-  PetscCall(Room(f->store.singles, sizeof(float), &f->store.single_room, (void **)&f->store.single));
+  PetscCall(NearPairsFind(f, &first));
+  PetscCall(Room(s->values, f->fixed.values, sizeof(PetscReal), &s->value_room, (void **)&s->value));
+  PetscCall(Room(s->singles, f->fixed.singles, sizeof(float), &s->single_room, (void **)&s->single));
   if (!f->free) PetscCall(PlaceStencils(f));
   if (f->image) PetscCall(NearImagePlace(f->image, f->stencil));
   for (PetscInt k = 0; k < f->blocks; k++) {
     const NearBlock *b = &f->block[k];
+    if (b->column < l->own || b->column >= l->end) crossed = PETSC_TRUE;
+    if (k < first) continue;
     PetscCall(NearBlockFill(f, b));
     if (f->image) PetscCall(NearBlockRefineAtWalls(f, b));
-    if (b->column < l->own || b->column >= l->end) crossed = PETSC_TRUE;
   }
-  for (PetscInt k = 0; k < f->closes; k++) PetscCall(NearCloseAdd(f, &f->close[k]));
+  for (PetscInt k = 0; k < f->closes; k++)
+    if (f->close[k].block >= first) PetscCall(NearCloseAdd(f, &f->close[k]));
   if (f->box) BoxPartPlace(f->box);
   PetscCall(AgreeFlag(l->comm, crossed, &f->crossed));
   PetscCall(PetscLogEventEnd(f->place, 0, 0, 0, 0));
@@ -203,10 +212,10 @@ static void AddBlock(NearField f, const NearBlock *b, PetscReal scale, PetscInt 
   while (NearBlockNext(l, b, &r));
 }
 
-/* The first block of the vesicle that a marker belongs to, or of a later one. */
+/* The first block, after the fixed ones, of the vesicle that a marker belongs to, or of a later one. */
 static PetscInt FirstBlock(NearField f, PetscInt marker) {
   const PetscInt *start = f->bodies->layout->start;
-  PetscInt low = 0, high = f->blocks;
+  PetscInt low = f->fixed.blocks, high = f->blocks;
   while (low < high) {
     const PetscInt middle = (low + high) / 2;
     if (start[f->block[middle].row] < marker)
@@ -220,6 +229,10 @@ static PetscInt FirstBlock(NearField f, PetscInt marker) {
 PetscErrorCode NearFieldAdd(NearField f, PetscReal scale, PetscBool box, PetscInt first, PetscInt n, PetscReal out[]) {
   const Layout l = f->bodies->layout;
   PetscFunctionBeginUser;
+  for (PetscInt b = 0; b < f->fixed.blocks; b++) {
+    const PetscInt row = l->start[f->block[b].row];
+    if (row >= first && row < first + n) AddBlock(f, &f->block[b], scale, first, n, out);
+  }
   for (PetscInt b = FirstBlock(f, first); b < f->blocks && l->start[f->block[b].row] < first + n; b++)
     AddBlock(f, &f->block[b], scale, first, n, out);
   const PetscInt begin = PetscMax(l->first, first), end = PetscMin(l->first + l->n, first + n);

@@ -35,6 +35,15 @@ typedef struct {
   size_t values, value_room, singles, single_room;
 } NearStore;
 
+/* The blocks of two obstacles, which stay as they are while obstacles rest: the first ones of the list, with their
+   close images and values. */
+typedef struct {
+  PetscInt blocks, closes;
+  size_t values, singles;
+  PetscReal *X; /* [2 markers of obstacles] where they were made */
+  PetscBool made;
+} NearFixed;
+
 typedef struct _p_NearField *NearField;
 struct _p_NearField {
   Markers markers; /* borrowed */
@@ -49,9 +58,10 @@ struct _p_NearField {
                              at 0 its weight; NULL for others' vesicles */
   PaddedStencil *stencil; /* [2M] */
   NearBounds *bounds;     /* [vesicles] */
-  NearBlock *block;
+  NearBlock *block;       /* fixed ones, then others in the order of their rows */
   NearClose *close;
   NearStore store;
+  NearFixed fixed;
   PetscInt blocks, block_room, closes, close_room; /* in use, and made */
   PetscBool crossed;                               /* whether any rank has a pair with another rank's marker */
   PetscScalar *force;                              /* [2M] work */

@@ -138,9 +138,11 @@ static PetscErrorCode AddImages(NearField f, PetscInt v, PetscInt w) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Pairs of vesicles with an own one among them. */
+/* Pairs of bodies with an own one among them: of two obstacles, or all others. */
 typedef struct {
   Layout layout;
+  PetscInt vesicles;
+  PetscBool fixed;
   PetscInt (*pair)[2], count, room;
   PetscErrorCode error;
 } Candidates;
@@ -150,6 +152,7 @@ static PetscBool Keep(void *context, PetscInt v, PetscInt w, const PetscReal d[2
   const Layout l = c->layout;
   const PetscBool first = v >= l->own && v < l->end ? PETSC_TRUE : PETSC_FALSE;
   if (!first && (w < l->own || w >= l->end)) return PETSC_FALSE;
+  if ((PetscMin(v, w) >= c->vesicles) != c->fixed) return PETSC_FALSE;
   c->error = Grow(c->count, sizeof(*c->pair), &c->room, (void **)&c->pair);
   if (c->error) return PETSC_TRUE;
   c->pair[c->count][0] = first ? v : w;
@@ -182,22 +185,58 @@ static int ByRow(const void *a, const void *b) {
   return (first > 0) - (first < 0);
 }
 
-PetscErrorCode NearPairsFind(NearField f) {
+/* The fixed blocks, or the others, behind those there are. */
+static PetscErrorCode AddBlocks(NearField f, PetscBool fixed) {
   const Layout l = f->bodies->layout;
   const PetscReal none[2] = {0, 0};
-  Candidates c = {.layout = l};
+  Candidates c = {.layout = l, .vesicles = f->bodies->vesicles, .fixed = fixed};
   PetscInt k = 0;
   PetscFunctionBeginUser;
-  f->blocks = f->closes = 0;
-  f->store.values = f->store.singles = 0;
-  FindBounds(f);
   PetscCall(FindCandidates(f, &c));
   qsort(c.pair, (size_t)c.count, sizeof(*c.pair), ByRow);
   for (PetscInt v = l->own; v < l->end; v++) {
-    PetscCall(AddBlock(f, v, v, none, 0));
-    PetscCall(AddImages(f, v, v));
+    if ((v >= c.vesicles) == fixed) {
+      PetscCall(AddBlock(f, v, v, none, 0));
+      PetscCall(AddImages(f, v, v));
+    }
     for (; k < c.count && c.pair[k][0] == v; k++) PetscCall(AddImages(f, v, c.pair[k][1]));
   }
   PetscCall(PetscFree(c.pair));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The fixed blocks, anew if obstacles are not where these were made; the first of all that has to get its values. */
+static PetscErrorCode FindFixed(NearField f, PetscInt *first) {
+  NearFixed *fixed = &f->fixed;
+  const PetscInt at = f->bodies->layout->start[f->bodies->vesicles], n = 2 * (f->bodies->layout->M - at);
+  const PetscReal *X = f->markers->X + 2 * at;
+  PetscBool same;
+  PetscFunctionBeginUser;
+  PetscCall(PetscArraycmp(fixed->X, X, n, &same));
+  *first = fixed->blocks;
+  if (fixed->made && same) PetscFunctionReturn(PETSC_SUCCESS);
+  *first = 0;
+  *fixed = (NearFixed){.X = fixed->X, .made = PETSC_TRUE};
+  f->blocks = f->closes = 0;
+  f->store.values = f->store.singles = 0;
+  PetscCall(PetscArraycpy(fixed->X, X, n));
+  PetscCall(AddBlocks(f, PETSC_TRUE));
+  fixed->blocks = f->blocks;
+  fixed->closes = f->closes;
+  fixed->values = f->store.values;
+  fixed->singles = f->store.singles;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode NearPairsFind(NearField f, PetscInt *first) {
+  const NearFixed *fixed = &f->fixed;
+  PetscFunctionBeginUser;
+  FindBounds(f);
+  PetscCall(FindFixed(f, first));
+  f->blocks = fixed->blocks;
+  f->closes = fixed->closes;
+  f->store.values = fixed->values;
+  f->store.singles = fixed->singles;
+  PetscCall(AddBlocks(f, PETSC_FALSE));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -2,7 +2,8 @@
 #pragma once
 #include "coupling/nearfield.h"
 
-/* NearPairsFind - the blocks of the own vesicles where the markers are, without their values. Every pair of
-   vesicles, or of images, once: two own ones' in the first one's rows. Blocks are in the order of their rows. Not
-   collective. */
-PETSC_EXTERN PetscErrorCode NearPairsFind(NearField near);
+/* NearPairsFind - the blocks of the own bodies where the markers are, without their values. Every pair of bodies, or of
+   images, once: two own ones' in the first one's rows. Those of two obstacles are looked for where obstacles have moved
+   since the last time, or never been; else they, and their values, are as they were. `first`: the first of all blocks
+   that has to get its values. Not collective. */
+PETSC_EXTERN PetscErrorCode NearPairsFind(NearField near, PetscInt *first);

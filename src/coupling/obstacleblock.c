@@ -8,7 +8,7 @@ struct _p_ObstacleBlock {
   Obstacles obstacles;   /* borrowed */
   PetscMPIInt root;      /* the rank that has the factor */
   PetscReal alpha;       /* that it is for; negative: none yet */
-  PetscReal *factor;     /* [2W][2W], on root */
+  float *factor;         /* [2W][2W], on root */
   PetscBLASInt *pivot;   /* [2W] */
   PetscScalar *all;      /* [2W] */
 };
@@ -63,7 +63,7 @@ PetscErrorCode ObstacleBlockSetUp(ObstacleBlock b, PetscBool *failed) {
   const PetscInt n = 2 * l->M;
   const PetscReal over = 1 / PetscSqr(b->coupling->fluid->grid->h);
   PetscBool factored = PETSC_TRUE;
-  PetscReal *A = b->factor;
+  PetscReal *A;
   Mobility mobility;
   PetscLogEvent event;
   PetscFunctionBeginUser;
@@ -73,14 +73,15 @@ PetscErrorCode ObstacleBlockSetUp(ObstacleBlock b, PetscBool *failed) {
   b->alpha = b->coupling->fluid->alpha;
   PetscCall(MobilityCreate(b->spec, b->coupling, PETSC_MAX_REAL, &mobility));
   PetscCall(MobilitySetUp(mobility, b->alpha));
-  if (l->rank != b->root) PetscCall(PetscMalloc1(n * n, &A));
+  PetscCall(PetscMalloc1(n * n, &A));
   PetscCall(Assemble(b, mobility, A));
   PetscCall(MobilityDestroy(&mobility));
   if (l->rank == b->root) {
     for (PetscInt k = 0; k < n * n; k++) A[k] *= over;
     PetscCall(DenseFactor(n, A, b->pivot, &factored));
-  } else
-    PetscCall(PetscFree(A));
+    for (PetscInt k = 0; k < n * n; k++) b->factor[k] = (float)A[k];
+  }
+  PetscCall(PetscFree(A));
   PetscCall(AgreeFlag(l->comm, factored ? PETSC_FALSE : PETSC_TRUE, failed));
   PetscCall(PetscLogEventEnd(event, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -90,7 +91,7 @@ PetscErrorCode ObstacleBlockSolve(ObstacleBlock b, PetscScalar F[]) {
   const Layout l = b->obstacles->layout;
   PetscFunctionBeginUser;
   PetscCall(LayoutToRank(l, b->root, 2, F, b->all));
-  if (l->rank == b->root) PetscCall(DenseSolve(2 * l->M, b->factor, b->pivot, PETSC_FALSE, 1, b->all));
+  if (l->rank == b->root) PetscCall(DenseSolveSingle(2 * l->M, b->factor, b->pivot, b->all));
   PetscCall(LayoutFromRank(l, b->root, 2, b->all, F));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
