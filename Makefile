@@ -67,7 +67,7 @@ export OMPI_MCA_mpi_yield_when_idle := 1
 export OMPI_MCA_btl_vader_single_copy_mechanism := none
 export OMP_NUM_THREADS := 1
 
-.PHONY: all help deps test-deps run test coverage reproduce stability time chart calibrate unseen bench fuzz memcheck install uninstall manual docs dist arch format check-format clean tests benches FORCE
+.PHONY: all help deps test-deps run test coverage reproduce stability time chart gallery calibrate unseen bench fuzz memcheck install uninstall manual docs dist arch format check-format clean tests benches FORCE
 all: $(BIN)/petves ## build bin/petves and lib/libpetves.so
 
 help: ## list the targets
@@ -164,6 +164,10 @@ chart: deps ## error against CPU time of every scheme, into docs/speed_accuracy 
 time: deps ## what the time step leaves, by order and frame of the labels, into docs/time (ten minutes; QUICK=1: one, into out/time)
 	@$(MAKE) --no-print-directory all
 	PETVES=$(CURDIR)/$(BIN)/petves PYTHONPATH=python:. $(PYTHON) -m studies time $(if $(QUICK),out/time,docs/time)
+
+gallery: deps ## what the field runs, beside published results: docs/gallery.md (ten minutes; QUICK=1: two, into out/gallery.md)
+	@$(MAKE) --no-print-directory all
+	PETVES=$(CURDIR)/$(BIN)/petves PYTHONPATH=python:. $(PYTHON) -m studies gallery $(if $(QUICK),out/gallery,docs/gallery)
 
 calibrate: deps ## what -scheme_auto chooses by: docs/speed_accuracy/calibration.csv (ten minutes)
 	@$(MAKE) --no-print-directory all

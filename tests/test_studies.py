@@ -12,6 +12,7 @@ HOMES = {
     "accuracy": "accuracy",
     "inertia": "inertia",
     "time": "time",
+    "gallery": "gallery",
     "stability": "stability",
     "chart": "speed_accuracy",
     "calibrate": "speed_accuracy",

@@ -126,9 +126,9 @@ def _made(case: Case, ranks: int) -> dict[str, object]:
     words = [word for pair in case.options.items() for word in pair]
     limits = [word for name in ("edge_ratio", "area_error", "length_error") for word in (f"-limit_{name}", "0")]
     with tempfile.TemporaryDirectory() as name:
-        folder, before = Path(name), _cpu_seconds()
+        folder, before = Path(name), cpu_seconds()
         status, line = run_program([*limits, *words, "-output_dir", name], ranks)  # a study measures bad answers too
-        spent = round(_cpu_seconds() - before, 3)
+        spent = round(cpu_seconds() - before, 3)
         if status and not (case.may_fail and status == 2):
             raise RunError(f"{case.name}: exit status {status}: {line}")
         failed = {"failed": line.partition("; the last good state is in")[0]}
@@ -138,7 +138,7 @@ def _made(case: Case, ranks: int) -> dict[str, object]:
     return {"options": case.options, "ranks": ranks, "commit": commit, "measures": measures}
 
 
-def _cpu_seconds() -> float:
+def cpu_seconds() -> float:
     """Return the processor time of the programs run so far, all ranks, start and output included."""
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
     return used.ru_utime + used.ru_stime

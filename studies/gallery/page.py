@@ -1,0 +1,51 @@
+"""Run the scenes of the gallery that have not run yet and write docs/gallery.md from page.md."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+from studies.common.engine import Results
+from studies.gallery.passing import SCENE as PASSING
+from studies.gallery.pressed import SCENE as PRESSED
+from studies.gallery.scene import Scene
+from studies.gallery.tumbling import SCENE as TUMBLING
+
+SCENES = (TUMBLING, PASSING, PRESSED)
+TEMPLATE = Path(__file__).with_name("page.md")
+BLOCK = re.compile(r"^<!-- scene (\w+) -->\n", re.MULTILINE)
+PLACE = re.compile(r"\{(\w+)\}")
+
+
+def write(folder: str | Path, quick: bool = False, scenes: tuple[Scene, ...] = SCENES) -> list[Path]:
+    """Run what is not there yet; write gallery.json and the pictures into the folder, and the page beside it.
+
+    Quick: without the scenes that are long, which the page says.
+    """
+    folder = Path(folder)
+    results = Results(folder / "gallery.json")
+    head, *blocks = BLOCK.split(TEMPLATE.read_text())
+    text = [head.replace("FOLDER", folder.name)]
+    known = {scene.name: scene for scene in scenes}
+    for name, block in zip(blocks[::2], blocks[1::2]):
+        scene = known[name]
+        if quick and scene.long and not scene_is_there(results, name):
+            text.append(f"{block.splitlines()[0]}\n\nLeft out by QUICK=1.\n\n")
+            continue
+        text.append(filled(block.replace("FOLDER", folder.name), scene.fill(results)))
+    page = folder.with_suffix(".md")
+    page.write_text("".join(text).rstrip() + "\n")
+    return [page, results.path, *sorted(path for path in folder.iterdir() if path.suffix in (".png", ".gif", ".mp4"))]
+
+
+def scene_is_there(results: Results, name: str) -> bool:
+    """Return whether any run of a scene is among the results."""
+    return any(entry.split("_")[0] == name for entry in results.entries)
+
+
+def filled(block: str, values: dict[str, str]) -> str:
+    """Return a block of the template with its places filled; each place has a value and each value a place."""
+    places = set(PLACE.findall(block))
+    if places != set(values):
+        raise ValueError(f"page.md and the scene differ in {', '.join(sorted(places ^ set(values)))}")
+    return PLACE.sub(lambda found: values[found[1]], block)

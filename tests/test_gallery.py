@@ -1,0 +1,77 @@
+"""runs/gallery: every file says how it is run and what it is compared with; a quick version of each reaches its number."""
+
+import re
+
+import numpy as np
+import pytest
+from conftest import PETVES, ROOT, Run, mpirun
+
+from petves.measures import half_periods
+from studies.gallery import passing, tumbling
+from studies.gallery.page import SCENES, TEMPLATE, filled
+from studies.gallery.scene import least
+
+FILES = sorted((ROOT / "runs" / "gallery").glob("*.opts"))
+
+
+def run_file(name, folder, options="", ranks=1):
+    """Run a file of runs/gallery as it is, but for the options given; return its series."""
+    words = ["-options_file", str(ROOT / "runs" / "gallery" / f"{name}.opts"), "-output_dir", str(folder)]
+    done = mpirun([PETVES, *words, "-output_every", "1e9", *options.split()], ranks, 300)
+    assert done.returncode == 0, f"{name}\n{done.stdout}\n{done.stderr}"
+    return Run(folder, done.returncode, done.stdout, done.stderr).series
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
+def test_header(path):
+    """Command, ranks, seconds, expected numbers and whose they are compared with; output in a folder of its own."""
+    text = path.read_text()
+    command = rf"# mpirun -n \d bin/petves -options_file runs/gallery/{path.name}      \d ranks?, [\d.]+ (s|minutes?)\n"
+    python = rf"# PYTHONPATH=python:. python3 -m studies.gallery.vortices {path.stem} out/gallery_{path.stem}      1 rank, [\d.]+ s"
+    assert re.search(command, text) or re.search(python, text)
+    assert "# Expected: " in text and "# Compared with: " in text
+    assert f"-output_dir out/gallery_{path.stem}\n" in text
+
+
+def test_template_and_scenes_agree():
+    """Each scene has one block; a place without a value, or a value without a place, is an error."""
+    blocks = re.findall(r"^<!-- scene (\w+) -->$", TEMPLATE.read_text(), re.MULTILINE)
+    assert blocks == [scene.name for scene in SCENES]
+    assert filled("a {b} c", {"b": "1"}) == "a 1 c"
+    for values in ({}, {"b": "1", "c": "2"}):
+        with pytest.raises(ValueError, match="differ in"):
+            filled("a {b}", values)
+
+
+def test_tumbling(tmp_path):
+    """The first half period of the boundary integral, to 2e-4 of it; Keller and Skalak's is shorter."""
+    series = run_file("tumbling", tmp_path, "-time_step .1 -time_end 19")
+    half = half_periods(series["time"], series["inclination"])
+    assert half == pytest.approx([tumbling.EXACT["free", 10][0]], rel=5e-4)
+    assert tumbling.keller_skalak_half(0.7, 10) < half[0]
+
+
+def test_keller_skalak():
+    """With ratio 1 the steady angle is petves.theory's, with a large one the ellipse is Jeffery's rigid one."""
+    from petves.theory import ellipse_axes, keller_skalak_angle
+
+    a, b = ellipse_axes(0.7)
+    steady = np.arccos(1 / tumbling.keller_skalak(0.7, 1)) / 2
+    assert steady == pytest.approx(keller_skalak_angle(a, b), rel=1e-12)
+    assert tumbling.keller_skalak(0.7, tumbling.keller_skalak_critical(0.7)) == pytest.approx(1, rel=1e-12)
+    assert tumbling.keller_skalak(0.7, 1e9) == pytest.approx((a * a - b * b) / (a * a + b * b), rel=1e-8), "Jeffery"
+
+
+def test_passing(tmp_path):
+    """The least gap of the boundary integral to 1 %, the centre's height to 1.5e-3, on 32^2 with long steps."""
+    series = run_file("passing", tmp_path, "-domain_cells 32,32 -time_step .1")
+    assert least(series)[0] == pytest.approx(passing.EXACT["gap"], rel=0.01)
+    assert series["center_y_1"][-1] == pytest.approx(passing.EXACT["center"][1], abs=1.5e-3)
+
+
+def test_pressed(tmp_path):
+    """The film of 96^2 with 151 markers to .2 %, on 32^2 with 49 to t = 4; it thins ever more slowly."""
+    series = run_file("pressed", tmp_path, "-domain_cells 32,32 -vesicle_markers 49 -time_step .1 -time_end 4")
+    film = [np.interp(t, series["time"], series["gap"]) for t in (2, 4)]
+    assert film == pytest.approx([0.16056, 0.11008], rel=2e-3)
+    assert 0.45 < np.log(film[0] / film[1]) / np.log(2) < 0.66
