@@ -136,17 +136,17 @@ def _conservation(results: Results, kind: str, found: dict[int, dict], number: i
 
 def _norms(kind: str, finer: int, cells: list[int]) -> str:
     """Say what the numbers beside the paper's are."""
-    about = (
-        f"Differences from the same method on h = 1/{finer} (the paper: 1/512), in brackets the paper's. Fields at cell\n"
-        "centres. The paper does not say more of its norms. With L2 norms of u, v, p and sigma they cannot be: at rest its\n"
-        "difference in u at h = 1/32 is three times the L2 norm of u itself (2.7e-3), and in shear its pressures are thousands of\n"
-        "times smaller than the differences here. They fit, in size and rate, when\n"
-        "- p is the last step's increment dp (step 5 of the method), not the pressure: in shear the flow is nearly steady;\n"
-        "- sigma, which belongs to edges, is compared with a reference taken at markers, half an edge off: first order with\n"
-        "  norm ds/2 of the derivative, whatever the method's own error;\n"
-    )
-    if kind == "relax":
+    about = f"Differences from the same method on h = 1/{finer} (the paper: 1/512), in brackets the paper's. Fields at cell centres.\n"
+    if kind == "shear":
+        about += "The norms are those found for Tables 1 to 3, without the factor h^(1/2).\n"
+    else:
         about += (
+            "The paper does not say more of its norms. With L2 norms of u, v, p and sigma they cannot be: at rest its difference in u at\n"
+            "h = 1/32 is three times the L2 norm of u itself (2.7e-3), and in shear its pressures are thousands of times smaller than the\n"
+            "differences here. They fit, in size and rate, when\n\n"
+            "- p is the last step's increment dp (step 5 of the method), not the pressure: in shear the flow is nearly steady;\n"
+            "- sigma, which belongs to edges, is compared with a reference taken at markers, half an edge off: first order with\n"
+            "  norm ds/2 of the derivative, whatever the method's own error;\n"
             "- the sums over cells at rest carry h, not h^2 (not so in shear): L2 norms over h^(1/2). The paper's v at 1/64 repeats\n"
             "  the number of u.\n"
         )

@@ -59,8 +59,7 @@ def _head(quick: bool) -> str:
     return (
         "# The coupled scheme, measured\n\n"
         "Ellipse with semi-axes 0.2 and 0.5 in [-1,1]^2, nu = 1, c_b = 0.01 unless given, walls unless given; the paper's\n"
-        "membrane (kernel ib6, finite differences, no near field, no area target). Measured before the exact near field, on which\n"
-        "nothing here depends.\n"
+        "membrane (kernel ib6, finite differences, no near field, no area target).\n"
         f"Written by `{command}` (`python3 -m studies reproduce DIR --only coupled`); coupled.json holds every run's options.\n"
     )
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Callable
 
 from petves.tables import table, write_csv
 from petves.views.plot import dress, new_figure, save_figure
@@ -33,7 +34,8 @@ ENERGY_CELLS = {True: 32, False: 64}
 def write(
     folder: str | Path, quick: bool = False, ranks: int = 2, only: str | None = None, run: bool = True
 ) -> list[Path]:
-    """Run what is not there yet; write tables and pictures, the page FOLDER.md beside the folder, coupled.md in it.
+    """Run what is not there yet; write tables and pictures, the page FOLDER.md beside the folder, tables.md and coupled.md
+    in it.
 
     Quick: coarse grids only, minutes. `ranks`: of the split scheme's runs. `only`: "paper" or "coupled". Without `run`
     nothing of the paper's part is run; a section whose runs are missing says so.
@@ -48,42 +50,59 @@ def write(
 
 
 def _paper(folder: Path, quick: bool, ranks: int, run: bool) -> Path:
-    """Run the paper's studies; return the page, FOLDER.md beside the folder."""
+    """Run the paper's studies; write tables.md and return the page, FOLDER.md beside the folder."""
     results = Results(folder / "results.json", ranks, run)
-    sections = [
-        ("Less error in less time", lambda: race(results, folder, quick)),
-        ("Figure 2", lambda: _energy(results, folder, ENERGY_CELLS[quick])),
-        ("Tables 1 to 3", lambda: _convergence(results, folder, "relax", quick)),
-        ("Table 4", lambda: _iterations(results, folder, "relax", quick)),
-        ("Tables 5 to 7", lambda: _convergence(results, folder, "shear", quick)),
-        ("Table 8", lambda: _iterations(results, folder, "shear", quick)),
-        ("Figure 5", lambda: cost(results, folder, quick)),
-        ("Section 5.4", lambda: equilibrium(results, folder, quick)),
-        ("Section 5.5", lambda: channel(results, folder, quick)),
-        ("Section 5.6", lambda: tank_treading(results, folder, quick)),
-    ]
-    text = [_head(quick, ranks, folder.name)]
-    for title, lines in sections:
+    first = {
+        "Figure 2": lambda: _energy(results, folder, ENERGY_CELLS[quick]),
+        "Tables 1 to 3": lambda: _convergence(results, folder, "relax", quick),
+        "Table 4": lambda: _iterations(results, folder, "relax", quick),
+        "Tables 5 to 7": lambda: _convergence(results, folder, "shear", quick),
+        "Table 8": lambda: _iterations(results, folder, "shear", quick),
+        "Figure 5": lambda: cost(results, folder, quick),
+    }
+    second = {
+        "Less error in less time": lambda: race(results, folder, quick),
+        "Section 5.4": lambda: equilibrium(results, folder, quick),
+        "Section 5.5": lambda: channel(results, folder, quick),
+        "Section 5.6": lambda: tank_treading(results, folder, quick),
+    }
+    text = "\n".join([_tables_head(), *_sections(first)]) + "\n"
+    (folder / "tables.md").write_text(text.replace(f"]({folder.name}/", "]("))
+    path = folder.with_suffix(".md")
+    path.write_text("\n".join([_head(quick, ranks, folder.name), *_sections(second)]) + "\n")
+    return path
+
+
+def _sections(sections: dict[str, Callable[[], list[str]]]) -> list[str]:
+    """Return the lines of sections; of one whose runs are missing, which."""
+    text = []
+    for title, lines in sections.items():
         try:
             text += lines()
         except NotRun as missing:
             text.append(f"## {title}\n\nNot run yet: {missing}.\n")
-    path = folder.with_suffix(".md")
-    path.write_text("\n".join(text) + "\n")
-    return path
+    return text
 
 
 def _head(quick: bool, ranks: int, name: str) -> str:
     command = "make reproduce QUICK=1" if quick else "make reproduce"
     return (
         "# The paper's scenes, tables and figures, repeated\n\n"
-        "Ong and Lai, J. Comput. Phys. 408 (2020) 109277, beside petves. The paper's method: `-scheme_type split`, kernel ib6,\n"
-        "backward Euler, unsteady Stokes flow, PCILU with 200 levels in nested dissection; sections 5.1 to 5.3: ellipse with semi-axes\n"
-        "0.2 and 0.5 in [-1,1]^2 with walls, nu = 1, c_b = 0.01, disturbance form, start with sigma = 0. Ours: runs/*.opts.\n"
-        f"Written by `{command}`, split on {ranks} ranks and ours on one; {name}/results.json holds every run's options and\n"
-        f"commit. Longer runs than the command makes are shown where results.json has them. {name}/coupled.md: the\n"
-        "coupled scheme by itself, also where split fails. Ours, and the fine coupled runs, were measured before the exact near field\n"
-        "(docs/accuracy.md).\n"
+        "The scenes of Ong and Lai, J. Comput. Phys. 408 (2020) 109277, by the paper's method and by the default of petves. The paper's\n"
+        "method is `-scheme_type split`, kernel ib6, backward Euler, unsteady Stokes flow, PCILU with 200 levels in nested dissection.\n"
+        "Ours are the files of runs/.\n\n"
+        f"Sections 5.1 to 5.3, with Tables 1 to 8 and Figures 2 to 5, are in [{name}/tables.md]({name}/tables.md), sections 5.4 to 5.6 below.\n"
+        f"[{name}/coupled.md]({name}/coupled.md) measures the coupled scheme by itself, also where split fails. Written by `{command}`, split on\n"
+        f"{ranks} ranks and ours on one; {name}/results.json holds every run's options and commit. Longer runs than the command makes are\n"
+        "shown where results.json has them.\n"
+    )
+
+
+def _tables_head() -> str:
+    return (
+        "# Sections 5.1 to 5.3 of the paper, repeated\n\n"
+        "Figures 2 to 5 and Tables 1 to 8 of Ong and Lai (2020), by their method: an ellipse with semi-axes 0.2 and 0.5 in [-1,1]^2 with\n"
+        "walls, nu = 1, c_b = 0.01, disturbance form, start with sigma = 0. [reproduction.md](../reproduction.md) says how the page is made.\n"
     )
 
 
@@ -111,11 +130,15 @@ def _iterations(results: Results, folder: Path, kind: str, quick: bool) -> list[
         rows += [[f"1/{n}", test, x, y] for n, x, y in zip(cells, found, paper) if x is not None]
         shown.append([label, *(f"not run ({y})" if x is None else f"{x:.1f} ({y})" for x, y in zip(found, paper))])
     write_csv(folder / f"table{number}.csv", ["h", "stopping_test", "tension_its", "paper"], rows)
-    about = (
-        f"{how}, 1/h markers (2.3 h apart). Mean iterations of a tension solve; in brackets the paper's column that the\n"
-        "line stands beside. Relative and absolute: of the residual that GMRES sees, preconditioned from the left. L2 norm:\n"
-        "(SUM a_k^2 ds)^(1/2) over the edges. These runs say `-tension_ksp_pc_side left`; the program's default is right.\n"
-    )
+    about = f"{how}, 1/h markers (2.3 h apart). "
+    if kind == "shear":
+        about += "Rows as in Table 4.\n"
+    else:
+        about += (
+            "Mean iterations of a tension solve; in brackets the paper's column that the\n"
+            "line stands beside. Relative and absolute: of the residual that GMRES sees, preconditioned from the left. L2 norm:\n"
+            "(SUM a_k^2 ds)^(1/2) over the edges. These runs say `-tension_ksp_pc_side left`; the program's default is right.\n"
+        )
     return [f"## Table {number}: tension iterations\n", about, *table(["", *(f"h = 1/{n}" for n in cells)], shown)]
 
 
