@@ -1,6 +1,7 @@
 /* Fields next to a membrane: the lattice's pressure, and a circle under tension, inside of which nothing moves and the
    pressure is higher by tension over radius. */
 #include "world.h"
+#include "base/lanes.h"
 #include "coupling/lattice.h"
 #include "coupling/nearcells.h"
 #include "fluid/stokes.h"
@@ -31,6 +32,19 @@ static PetscErrorCode CheckTable(const OffsetTable *t) {
     }
   CHECK(worst < 1e-13, "the pressure's Laplacian is the force's divergence: off by %.1e", worst);
   CHECK(far < 0.1, "far away it is x/(2 pi r^2), but for %.3f/r^3", far);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Against the library's, over many powers of two and next to 1. */
+static PetscErrorCode CheckLogarithm(void) {
+  PetscReal worst = 0;
+  PetscFunctionBeginUser;
+  for (int k = 0; k < 4000; k++) {
+    const PetscReal wide = PetscPowReal(10, -300 + 0.1503 * k), x = k % 2 ? wide : 1 + (k - 2000) * 1e-4;
+    const PetscReal exact = PetscLogReal(x), found = LanesLog((Lanes){x, 1, x, x})[2];
+    worst = PetscMax(worst, PetscAbsReal(found - exact) / PetscMax(PetscAbsReal(exact), 1e-3));
+  }
+  CHECK(worst < 1e-15, "logarithms of four numbers at once: off by %.1e of themselves", worst);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -176,6 +190,7 @@ static PetscErrorCode Facts(void) {
   OffsetTable pressure;
   PetscFunctionBeginUser;
   PetscCall(LatticePressure(20, &pressure));
+  PetscCall(CheckLogarithm());
   PetscCall(CheckTable(&pressure));
   PetscCall(CheckAgainstGrid(&pressure));
   PetscCall(OffsetTableDestroy(&pressure));

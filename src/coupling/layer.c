@@ -1,5 +1,7 @@
 #include "coupling/layer.h"
+#include "base/lanes.h"
 #include "curve/modes.h"
+#include "curve/spectral.h"
 
 #define FINE 4   /* points of the finer curve a marker */
 #define NEAR 6   /* spacings of markers from a membrane, within which the finer curve is summed */
@@ -9,28 +11,29 @@
 /* One membrane, a trigonometric polynomial of the parameter t: marker k at t = 2 pi k/n. */
 struct _p_LayerCurve {
   PetscInt n;
-  PetscReal spacing;        /* of the markers, the mean */
-  const PetscReal *X, *F;   /* [2n] markers and forces */
-  Point *curve, *force;     /* [n + 1] modes -n/2 .. n/2, of X and of F */
-  Point *fine, *fine_force; /* [FINE n] the finer curve; forces, 1/FINE of a marker's */
+  PetscReal spacing;            /* of the markers, the mean */
+  const PetscReal *X, *F;       /* [2n] markers and forces */
+  Point *curve, *force;         /* [n + 1] modes -n/2 .. n/2, of X and of F; NULL: not made */
+  PetscReal *fine, *fine_force; /* [2 FINE n] the finer curve; forces, 1/FINE of a marker's; whole vectors */
 };
 
 static PetscErrorCode CreateCurve(LayerCurve *c, PetscInt n, const PetscReal X[], const PetscReal F[]) {
+  const PetscInt N = FINE * n;
   PetscReal length = 0;
   PetscFunctionBeginUser;
   c->n = n;
   c->X = X;
   c->F = F;
-  PetscCall(PetscMalloc4(n + 1, &c->curve, n + 1, &c->force, FINE * n, &c->fine, FINE * n, &c->fine_force));
+  PetscCall(
+      PetscMalloc4(n + 1, &c->curve, n + 1, &c->force, 2 * (N + LANES), &c->fine, 2 * (N + LANES), &c->fine_force));
   CurveModes(n, X, c->curve);
   CurveModes(n, F, c->force);
-  for (PetscInt j = 0; j < FINE * n; j++) {
-    const PetscReal t = 2 * PETSC_PI * (PetscReal)j / (PetscReal)(FINE * n);
-    Point slope;
-    c->fine_force[j] = CurveSeries(n, c->force, t, &slope) / FINE;
-    c->fine[j] = CurveSeries(n, c->curve, t, &slope);
-    length += cabs(slope) * 2 * PETSC_PI / (PetscReal)(FINE * n);
-  }
+  TrigonometricPoints(n, X, FINE, c->fine);
+  TrigonometricPoints(n, F, FINE, c->fine_force);
+  for (PetscInt j = 0; j < 2 * N; j++) c->fine_force[j] /= FINE;
+  for (PetscInt j = 2 * N; j < 2 * (N + LANES); j++) c->fine[j] = c->fine_force[j] = 0;
+  for (PetscInt j = 0, k = N - 1; j < N; k = j++)
+    length += PetscHypotReal(c->fine[2 * j] - c->fine[2 * k], c->fine[2 * j + 1] - c->fine[2 * k + 1]);
   c->spacing = length / (PetscReal)n;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -63,8 +66,9 @@ PetscErrorCode LayerCreate(Coupling coupling, Vec sigma, Vec X, Layer *out) {
   *out = s;
   s->nu = coupling->fluid->nu;
   s->count = l->bodies;
+  s->start = l->start;
   PetscCall(PetscCalloc1(l->bodies, &s->curve));
-  PetscCall(PetscMalloc2(2 * l->M, &s->X, 2 * l->M, &s->F));
+  PetscCall(PetscCalloc2(2 * (l->M + LANES), &s->X, 2 * (l->M + LANES), &s->F));
   PetscCall(PetscMalloc1(2 * l->n, &f));
   PetscCall(VecGetArrayRead(X, &x));
   PetscCall(Forces(coupling->membrane, sigma, x, f));
@@ -73,8 +77,14 @@ PetscErrorCode LayerCreate(Coupling coupling, Vec sigma, Vec X, Layer *out) {
   PetscCall(LayoutGather(l, 2, f, s->F));
   PetscCall(VecRestoreArrayRead(X, &x));
   PetscCall(PetscFree(f));
-  for (PetscInt v = 0; v < l->bodies; v++)
-    PetscCall(CreateCurve(&s->curve[v], LayoutCount(l, v), s->X + 2 * l->start[v], s->F + 2 * l->start[v]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode LayerUse(Layer s, PetscInt v) {
+  const PetscInt first = s->start[v];
+  PetscFunctionBeginUser;
+  if (!s->curve[v].curve)
+    PetscCall(CreateCurve(&s->curve[v], s->start[v + 1] - first, s->X + 2 * first, s->F + 2 * first));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -92,37 +102,38 @@ PetscErrorCode LayerDestroy(Layer *layer) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Sums of the markers, 4 pi nu u and 2 pi p added; the least distance. */
-static PetscReal CoarseSums(const LayerCurve *c, Point z, Point *u, PetscReal *p) {
-  PetscReal least = PETSC_MAX_REAL, sum[3] = {0, 0, 0};
-  for (PetscInt j = 0; j < c->n; j++) {
-    const PetscReal x = creal(z) - c->X[2 * j], y = cimag(z) - c->X[2 * j + 1], r2 = x * x + y * y;
-    const PetscReal along = (x * c->F[2 * j] + y * c->F[2 * j + 1]) / r2, logarithm = 0.5 * PetscLogReal(r2);
-    sum[0] += x * along - logarithm * c->F[2 * j];
-    sum[1] += y * along - logarithm * c->F[2 * j + 1];
-    sum[2] += along;
-    least = PetscMin(least, r2);
+/* Sums of n points X[2n] with forces F[2n], whole vectors: 4 pi nu u and 2 pi p. Those of a point at z itself are lost.
+ */
+static void Sums(PetscInt n, const PetscReal X[], const PetscReal F[], Point z, Point *u, PetscReal *p) {
+  const Lanes order = {0, 1, 2, 3};
+  Lanes sum[3] = {{0}, {0}, {0}};
+  for (PetscInt j = 0; j < n; j += LANES) {
+    const LanesBits so = (LanesBits)(order < (Lanes){0} + (PetscReal)(n - j));
+    Lanes x, y, f, g;
+    LanesPairs(X + 2 * j, &x, &y);
+    LanesPairs(F + 2 * j, &f, &g);
+    x = creal(z) - x;
+    y = cimag(z) - y;
+    const Lanes r2 = x * x + y * y, along = (x * f + y * g) / r2, logarithm = 0.5 * LanesLog(r2);
+    sum[0] += LanesWhere(so, x * along - logarithm * f);
+    sum[1] += LanesWhere(so, y * along - logarithm * g);
+    sum[2] += LanesWhere(so, along);
   }
-  *u = sum[0] + I * sum[1];
-  *p = sum[2];
-  return PetscSqrtReal(least);
+  *u = LanesSum(sum[0]) + I * LanesSum(sum[1]);
+  *p = LanesSum(sum[2]);
 }
 
-/* The same of the finer curve, and its point nearest to z. */
-static PetscInt FineSums(const LayerCurve *c, Point z, Point *u, PetscReal *p) {
+/* The point of n, X[2n], that is nearest to z, and how far it is. */
+static PetscInt Nearest(PetscInt n, const PetscReal X[], Point z, PetscReal *distance) {
   PetscReal least = PETSC_MAX_REAL;
   PetscInt nearest = 0;
-  *u = *p = 0;
-  for (PetscInt j = 0; j < FINE * c->n; j++) {
-    const Point r = z - c->fine[j], F = c->fine_force[j];
-    const PetscReal r2 = creal(r) * creal(r) + cimag(r) * cimag(r);
-    const PetscReal along = (creal(r) * creal(F) + cimag(r) * cimag(F)) / r2;
-    *u += r * along - 0.5 * PetscLogReal(r2) * F;
-    *p += along;
+  for (PetscInt j = 0; j < n; j++) {
+    const PetscReal x = creal(z) - X[2 * j], y = cimag(z) - X[2 * j + 1], r2 = x * x + y * y;
     if (r2 >= least) continue;
     least = r2;
     nearest = j;
   }
+  *distance = PetscSqrtReal(least);
   return nearest;
 }
 
@@ -160,15 +171,16 @@ static void CorrectClose(const LayerCurve *c, Point z, PetscInt nearest, Point *
 void LayerAdd(Layer s, PetscInt v, const PetscReal x[2], PetscReal u[2], PetscReal *p) {
   const LayerCurve *c = &s->curve[v];
   Point z = x[0] + I * x[1], velocity;
-  PetscReal pressure;
-  if (CoarseSums(c, z, &velocity, &pressure) < NEAR * c->spacing) {
-    PetscInt nearest = FineSums(c, z, &velocity, &pressure);
-    if (cabs(z - c->fine[nearest]) < 1e-7 * c->spacing) { /* a point of the curve: next to it */
-      z = c->fine[nearest] + 1e-7 * c->spacing;
-      nearest = FineSums(c, z, &velocity, &pressure);
-    }
-    if (cabs(z - c->fine[nearest]) < CLOSE * c->spacing / FINE) CorrectClose(c, z, nearest, &velocity, &pressure);
-  }
+  PetscReal pressure, distance;
+  (void)Nearest(c->n, c->X, z, &distance);
+  if (distance < NEAR * c->spacing) {
+    const PetscInt nearest = Nearest(FINE * c->n, c->fine, z, &distance);
+    if (distance < 1e-7 * c->spacing) /* a point of the curve: next to it */
+      z = c->fine[2 * nearest] + 1e-7 * c->spacing + I * c->fine[2 * nearest + 1];
+    Sums(FINE * c->n, c->fine, c->fine_force, z, &velocity, &pressure);
+    if (distance < CLOSE * c->spacing / FINE) CorrectClose(c, z, nearest, &velocity, &pressure);
+  } else
+    Sums(c->n, c->X, c->F, z, &velocity, &pressure);
   u[0] += creal(velocity) / (4 * PETSC_PI * s->nu);
   u[1] += cimag(velocity) / (4 * PETSC_PI * s->nu);
   *p += pressure / (2 * PETSC_PI);

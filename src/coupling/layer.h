@@ -9,20 +9,22 @@ typedef struct _p_LayerCurve LayerCurve;
 typedef struct _p_Layer *Layer;
 struct _p_Layer {
   PetscReal nu;
-  PetscInt count;    /* membranes */
-  LayerCurve *curve; /* [count] */
-  PetscReal *X, *F;  /* [2M] all markers, and the forces times ds on them */
+  PetscInt count;        /* membranes */
+  LayerCurve *curve;     /* [count] */
+  const PetscInt *start; /* [count + 1] their first markers: borrowed */
+  PetscReal *X, *F;      /* [2M] all markers, and the forces times ds on them; whole vectors */
 };
 
-/* LayerCreate - of the coupling's membranes at the markers X with tension sigma; every rank gets all of it. Collective.
- */
+/* LayerCreate - of the coupling's membranes at the markers X with tension sigma; every rank gets all forces.
+   Collective. LayerUse - make the finer curve of a vesicle, before LayerAdd is called for it. Not collective. */
 PETSC_EXTERN PetscErrorCode LayerCreate(Coupling coupling, Vec sigma, Vec X, Layer *layer);
 PETSC_EXTERN PetscErrorCode LayerDestroy(Layer *layer);
+PETSC_EXTERN PetscErrorCode LayerUse(Layer layer, PetscInt vesicle);
 
 /* LayerAdd - add one vesicle's part to the velocity u[2] (length/time) and the pressure p (length^2/time^2) at x[2].
    Not collective. */
 PETSC_EXTERN void LayerAdd(Layer layer, PetscInt vesicle, const PetscReal x[2], PetscReal u[2], PetscReal *p);
 
-/* LayerEvaluate - velocity u[2] (length/time) and pressure p (length^2/time^2; zero far away) at x[2]. A point on a
-   membrane gets the velocity there, and the pressure of one of the sides. Not collective. */
+/* LayerEvaluate - all vesicles' (LayerUse) velocity u[2] (length/time) and pressure p (length^2/time^2; zero far away)
+   at x[2]. A point on a membrane gets the velocity there, and the pressure of one of the sides. Not collective. */
 PETSC_EXTERN void LayerEvaluate(Layer layer, const PetscReal x[2], PetscReal u[2], PetscReal *p);

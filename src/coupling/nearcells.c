@@ -1,4 +1,5 @@
 #include "coupling/nearcells.h"
+#include "base/lanes.h"
 #include "coupling/layer.h"
 #include "coupling/nearblock.h"
 
@@ -48,6 +49,10 @@ static void SetVesicle(NearCells *s, PetscInt v) {
   s->reach = PetscMax(CELLS * m->grid->h, SPACINGS * s->coupling->membrane->ds[v]);
   s->X = s->layer->X + 2 * l->start[v];
   s->F = s->layer->F + 2 * l->start[v];
+}
+
+static void SetStencils(NearCells *s) {
+  const Markers m = s->coupling->markers;
   for (PetscInt k = 0; k < 2 * s->n; k++) {
     Stencil stencil;
     for (int dir = 0; dir < 2; dir++) {
@@ -86,35 +91,53 @@ static void TakeLattice(const NearCells *s, PetscInt k, const PaddedStencil cell
         h;
 }
 
-/* The same of a distant marker, d from it to the cell: the Stokeslet, and the closed form of its difference. */
-static void TakeFar(const NearCells *s, const PetscReal F[2], const PetscReal d[2], PetscReal u[2], PetscReal *p) {
-  const FarCell *f = &s->far;
+/* The same of four distant markers, (x, y) from them to the cell, with forces (f, g): the Stokeslet, and the closed
+   form of its difference. */
+static void TakeFar(const NearCells *s, Lanes x, Lanes y, Lanes f, Lanes g, Lanes sum[3]) {
+  const FarCell *far = &s->far;
   const PetscReal h = s->coupling->fluid->grid->h, nu = s->coupling->fluid->nu;
-  const PetscReal r2 = d[0] * d[0] + d[1] * d[1], along = (d[0] * F[0] + d[1] * F[1]) / r2;
-  const PetscReal c2 = (d[0] * d[0] - d[1] * d[1]) / r2, s2 = 2 * d[0] * d[1] / r2, c4 = c2 * c2 - s2 * s2,
-                  s4 = 2 * c2 * s2, c6 = c4 * c2 - s4 * s2, s6 = s4 * c2 + c4 * s2;
-  const PetscReal factor = h * h / (2 * PETSC_PI * nu * r2), even = 4 * f->a4 * c4,
-                  odd = 2 * f->a2 * c2 + 6 * f->a6 * c6, both = -2 * f->b2 * s2 - 6 * f->b6 * s6, ends = 4 * f->b4 * s4;
-  for (int c = 0; c < 2; c++) u[c] -= (d[c] * along - 0.5 * PetscLogReal(r2) * F[c]) / (4 * PETSC_PI * nu);
-  u[0] += factor * ((even - odd) * F[0] + (both + ends) * F[1]);
-  u[1] += factor * ((both - ends) * F[0] + (even + odd) * F[1]);
-  *p -= along / (2 * PETSC_PI); /* but for h^2/r^3 */
+  const Lanes r2 = x * x + y * y, over = 1 / r2, along = (x * f + y * g) * over, logarithm = 0.5 * LanesLog(r2);
+  const Lanes c2 = (x * x - y * y) * over, s2 = 2 * x * y * over, c4 = c2 * c2 - s2 * s2, s4 = 2 * c2 * s2,
+              c6 = c4 * c2 - s4 * s2, s6 = s4 * c2 + c4 * s2;
+  const Lanes factor = h * h / (2 * PETSC_PI * nu) * over, even = 4 * far->a4 * c4,
+              odd = 2 * far->a2 * c2 + 6 * far->a6 * c6, both = -2 * far->b2 * s2 - 6 * far->b6 * s6,
+              ends = 4 * far->b4 * s4;
+  const PetscReal single = 1 / (4 * PETSC_PI * nu);
+  sum[0] = factor * ((even - odd) * f + (both + ends) * g) - single * (x * along - logarithm * f);
+  sum[1] = factor * ((both - ends) * f + (even + odd) * g) - single * (y * along - logarithm * g);
+  sum[2] = along * (-1 / (2 * PETSC_PI)); /* but for h^2/r^3 */
+}
+
+/* All markers of the vesicle: those near the cell by the lattice's sums. */
+static void TakeAll(const NearCells *s, const PaddedStencil cell[3], const PetscReal at[2], PetscReal u[2],
+                    PetscReal *p) {
+  const PetscReal near = SUMMED_CELLS * s->coupling->fluid->grid->h;
+  const Lanes order = {0, 1, 2, 3};
+  Lanes sum[3] = {{0}, {0}, {0}}, four[3];
+  for (PetscInt k = 0; k < s->n; k += LANES) {
+    Lanes x, y, f, g;
+    LanesPairs(s->X + 2 * k, &x, &y);
+    LanesPairs(s->F + 2 * k, &f, &g);
+    x = at[0] - x;
+    y = at[1] - y;
+    const Lanes left = (Lanes){0} + (PetscReal)(s->n - k), r2 = x * x + y * y;
+    const LanesBits is = (LanesBits)(order < left), far = is & (LanesBits)(r2 >= (Lanes){0} + near * near);
+    TakeFar(s, x, y, f, g, four);
+    for (int q = 0; q < 3; q++) sum[q] += LanesWhere(far, four[q]);
+    for (PetscInt q = 0; q < LANES; q++)
+      if (is[q] && !far[q]) TakeLattice(s, k + q, cell, u, p);
+  }
+  for (int c = 0; c < 2; c++) u[c] += LanesSum(sum[c]);
+  *p += LanesSum(sum[2]);
 }
 
 /* The exact layer less the lattice's at the centre x of a cell, whose indices are not wrapped into the grid. */
 static void Difference(const NearCells *s, const PetscInt cell[2], const PetscReal x[2], PetscReal u[2], PetscReal *p) {
-  const PetscReal near = SUMMED_CELLS * s->coupling->fluid->grid->h;
   PaddedStencil weights[3];
   for (int f = 0; f < 3; f++) NearCellStencil((Field)f, cell, &weights[f]);
   u[0] = u[1] = *p = 0;
   LayerAdd(s->layer, s->vesicle, x, u, p);
-  for (PetscInt k = 0; k < s->n; k++) {
-    const PetscReal d[2] = {x[0] - s->X[2 * k], x[1] - s->X[2 * k + 1]};
-    if (d[0] * d[0] + d[1] * d[1] < near * near)
-      TakeLattice(s, k, weights, u, p);
-    else
-      TakeFar(s, &s->F[2 * k], d, u, p);
-  }
+  TakeAll(s, weights, x, u, p);
 }
 
 PetscBool NearCellIs(PetscInt n, const PetscReal X[], PetscReal reach, const PetscReal x[2]) {
@@ -140,10 +163,24 @@ void NearCellsBox(Grid g, PetscInt n, const PetscReal X[], PetscReal reach, Pets
   }
 }
 
-static void CorrectVesicle(const NearCells *s, PetscReal *const field[3]) {
+/* Whether the cells of a box, whose indices are not wrapped into the grid, have any in this rank's rows. */
+static PetscBool HasOwnRows(Grid g, PetscInt box[2][2]) {
+  for (PetscInt cell = box[1][0]; cell <= box[1][1]; cell++) {
+    const PetscInt row = ((cell % g->n[1]) + g->n[1]) % g->n[1] - g->first;
+    if (row >= 0 && row < g->rows[FIELD_P]) return PETSC_TRUE;
+  }
+  return PETSC_FALSE;
+}
+
+static PetscErrorCode CorrectVesicle(NearCells *s, PetscInt v, PetscReal *const field[3]) {
   const Grid g = s->coupling->fluid->grid;
   PetscInt box[2][2], cell[2];
+  PetscFunctionBeginUser;
+  SetVesicle(s, v);
   NearCellsBox(g, s->n, s->X, s->reach, box);
+  if (!HasOwnRows(g, box)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(LayerUse(s->layer, v));
+  SetStencils(s);
   for (cell[1] = box[1][0]; cell[1] <= box[1][1]; cell[1]++) {
     const PetscInt row = ((cell[1] % g->n[1]) + g->n[1]) % g->n[1] - g->first;
     if (row < 0 || row >= g->rows[FIELD_P]) continue;
@@ -157,6 +194,7 @@ static void CorrectVesicle(const NearCells *s, PetscReal *const field[3]) {
         if (field[f]) field[f][at] += found[f];
     }
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode NearCellsCorrect(Coupling coupling, Vec sigma, Vec X, PetscReal u[], PetscReal v[], PetscReal p[]) {
@@ -169,10 +207,7 @@ PetscErrorCode NearCellsCorrect(Coupling coupling, Vec sigma, Vec X, PetscReal u
   s.far = FarCoefficients(coupling->markers->kernel);
   PetscCall(LatticePressure(SUMMED_CELLS + OFFSET_LAGS, &s.pressure));
   PetscCall(PetscMalloc1(2 * l->M, &s.source));
-  for (PetscInt b = 0; b < l->bodies; b++) {
-    SetVesicle(&s, b);
-    CorrectVesicle(&s, field);
-  }
+  for (PetscInt b = 0; b < l->bodies; b++) PetscCall(CorrectVesicle(&s, b, field));
   PetscCall(PetscFree(s.source));
   PetscCall(OffsetTableDestroy(&s.pressure));
   PetscCall(LayerDestroy(&s.layer));

@@ -55,6 +55,7 @@ static PetscErrorCode FromLayer(Scheme s, PetscReal u[], PetscReal v[], PetscRea
   Layer layer;
   PetscFunctionBeginUser;
   PetscCall(LayerCreate(s->coupling, s->state.sigma, s->state.X, &layer));
+  for (PetscInt v = 0; v < layer->count; v++) PetscCall(LayerUse(layer, v));
   for (PetscInt j = 0; j < g->rows[FIELD_P]; j++)
     for (PetscInt i = 0; i < g->n[0]; i++) {
       const PetscInt k = j * g->n[0] + i;
