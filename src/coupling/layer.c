@@ -123,8 +123,26 @@ static void Sums(PetscInt n, const PetscReal X[], const PetscReal F[], Point z, 
   *p = LanesSum(sum[2]);
 }
 
-/* The point of n, X[2n], that is nearest to z, and how far it is. */
-static PetscInt Nearest(PetscInt n, const PetscReal X[], Point z, PetscReal *distance) {
+static inline Lanes Squares(const PetscReal X[], Point z) {
+  Lanes x, y;
+  LanesPairs(X, &x, &y);
+  x = creal(z) - x;
+  y = cimag(z) - y;
+  return x * x + y * y;
+}
+
+/* How far z is from the nearest of n points X[2n], whole vectors. */
+static PetscReal Distance(PetscInt n, const PetscReal X[], Point z) {
+  Lanes least = (Lanes){0} + PETSC_MAX_REAL;
+  PetscReal one = PETSC_MAX_REAL;
+  PetscInt j = 0;
+  for (; j + LANES <= n; j += LANES) least = LanesMin(least, Squares(X + 2 * j, z));
+  for (PetscInt k = 0; k < n - j; k++) one = PetscMin(one, Squares(X + 2 * j, z)[k]);
+  for (PetscInt k = 0; k < LANES; k++) one = PetscMin(one, least[k]);
+  return PetscSqrtReal(one);
+}
+
+static PetscInt Nearest(PetscInt n, const PetscReal X[], Point z) {
   PetscReal least = PETSC_MAX_REAL;
   PetscInt nearest = 0;
   for (PetscInt j = 0; j < n; j++) {
@@ -133,7 +151,6 @@ static PetscInt Nearest(PetscInt n, const PetscReal X[], Point z, PetscReal *dis
     least = r2;
     nearest = j;
   }
-  *distance = PetscSqrtReal(least);
   return nearest;
 }
 
@@ -170,15 +187,17 @@ static void CorrectClose(const LayerCurve *c, Point z, PetscInt nearest, Point *
 
 void LayerAdd(Layer s, PetscInt v, const PetscReal x[2], PetscReal u[2], PetscReal *p) {
   const LayerCurve *c = &s->curve[v];
+  const PetscInt N = FINE * c->n;
   Point z = x[0] + I * x[1], velocity;
-  PetscReal pressure, distance;
-  (void)Nearest(c->n, c->X, z, &distance);
-  if (distance < NEAR * c->spacing) {
-    const PetscInt nearest = Nearest(FINE * c->n, c->fine, z, &distance);
+  PetscReal pressure;
+  if (Distance(c->n, c->X, z) < NEAR * c->spacing) {
+    const PetscReal distance = Distance(N, c->fine, z);
+    const PetscBool close = distance < CLOSE * c->spacing / FINE ? PETSC_TRUE : PETSC_FALSE;
+    const PetscInt nearest = close ? Nearest(N, c->fine, z) : 0;
     if (distance < 1e-7 * c->spacing) /* a point of the curve: next to it */
       z = c->fine[2 * nearest] + 1e-7 * c->spacing + I * c->fine[2 * nearest + 1];
-    Sums(FINE * c->n, c->fine, c->fine_force, z, &velocity, &pressure);
-    if (distance < CLOSE * c->spacing / FINE) CorrectClose(c, z, nearest, &velocity, &pressure);
+    Sums(N, c->fine, c->fine_force, z, &velocity, &pressure);
+    if (close) CorrectClose(c, z, nearest, &velocity, &pressure);
   } else
     Sums(c->n, c->X, c->F, z, &velocity, &pressure);
   u[0] += creal(velocity) / (4 * PETSC_PI * s->nu);
