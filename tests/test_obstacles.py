@@ -7,6 +7,7 @@ import xml.etree.ElementTree as ET
 import h5py
 import numpy as np
 import pytest
+from boundary_integral import finer, pressed, single_layer
 from conftest import ROOT, run_petves
 
 import petves
@@ -50,6 +51,41 @@ def test_drag_is_the_same_with_other_markers_and_kernels(option, tmp_path):
     assert row["obstacle_force_x"] == pytest.approx(EXACT["drag"]["0.2"], rel=1e-5)
 
 
+def test_forces_of_a_wall(tmp_path):
+    """They add up to what series.csv says, have no part that is the pressure inside, and make a flow, by boundary
+    integrals on three times the markers, that nowhere goes through the wall."""
+    options = f"{ARRAY} -obstacle_radius .2 -domain_cells 64,64 -obstacle_spacing 1.5 -coupled_ksp_rtol 1e-11"
+    row = last(tmp_path, options)
+    run = petves.load(tmp_path, "numpy")
+    curve, force = run.obstacles[0], run.obstacle_force[-1]
+    assert force.sum(0) == pytest.approx([row["obstacle_force_x"], row["obstacle_force_y"]], rel=1e-12, abs=1e-10)
+    normal = (curve - 0.5) / 0.2
+    assert abs((normal * force).sum()) < 1e-6 * np.sqrt(len(curve) * (force**2).sum())
+    flow = -single_layer([curve], 1.0, 3) @ finer(force, 3 * len(curve)).ravel() / 3
+    normal = (finer(curve, 3 * len(curve)) - 0.5) / 0.2
+    through = ((flow.reshape(-1, 2) + [1, 0]) * normal).sum(1)
+    assert np.abs(through).max() < 1e-5
+
+
+@pytest.mark.parametrize("gap, times", [(10, 1), (2, 3), (0.3, 5)])
+def test_vesicle_pressed_on_a_post(gap, times, tmp_path):
+    """The first velocity of an ellipse that a stream presses on a post, so many cells off, and the force on the post,
+    against boundary integrals on so many times the markers, 83 and 67."""
+    h, step = 8 / 128, 1e-6
+    options = f"-vesicle_semi_axes .4,.8 -vesicle_center {4 - 0.5 - gap * h - 0.4:.15g},4 -vesicle_markers 83"
+    options += f" -vesicle_bending 0 {PERIODIC} -domain_box 0,8,0,8 -domain_cells 128,128 -flow_type uniform"
+    options += " -obstacle_shape posts -obstacle_radius .5 -obstacle_center 4,4 -obstacle_spacing .75"
+    options += " -scheme_type coupled -delta_type cbs54 -membrane_derivative spectral -coupling_near_field exact"
+    options += f" -scheme_area_target false -scheme_order 1 -time_step {step} -time_end {step} -coupled_ksp_rtol 1e-10"
+    row = last(tmp_path, options)
+    run = petves.load(tmp_path, "numpy")
+    assert [len(run.markers[0]), len(run.obstacles[0])] == [83, 67]
+    exact, force = pressed(run.markers[0], run.obstacles[0], 8.0, (1.0, 0.0), times)
+    error = np.linalg.norm((run.markers[-1] - run.markers[0]) / step - exact, axis=1)
+    assert error.max() < 1e-3 * np.sqrt((exact**2).sum(1).mean())
+    assert row["obstacle_force_x"] == pytest.approx(force[0], rel=1e-5)
+
+
 def test_torque_between_two_circles(tmp_path):
     """The inner one turns at rate 1: 4 pi a^2 R^2/(R^2 - a^2), on the outer one the same the other way round."""
     options = f"{STILL} {PERIODIC} -domain_box 0,1,0,1 -domain_cells 32,32 -obstacle_shape couette"
@@ -88,6 +124,15 @@ def test_files_have_the_curves(tmp_path):
     assert len(rows) == 2 * len(list(root.iter("Time"))), "both in each frame"
     for own, other in zip(rows, 3 * curves):
         np.testing.assert_array_equal(own, other)
+    with h5py.File(tmp_path / "run.h5") as file:
+        forces = np.split(file["obstacle/force"][-1], [len(curves[0])])
+    for points, force, turn in zip(curves, forces, (-1, 1)):
+        x, y = (points - 0.5).T
+        assert (
+            turn * (x * force[:, 1] - y * force[:, 0]) > 0
+        ).all(), "each at its marker: against the turn, and with it"
+    text = (tmp_path / "run.xmf").read_text()
+    assert text.count("run.h5:/obstacle/force") == 2 * len(rows), "x and y of both in each frame"
     page = report(tmp_path).read_text()
     solids = json.loads(re.search(r'id="data" type="application/json">(.*?)</script>', page, re.S)[1])["solids"]
     assert len(solids) == 3, "a frame around the box, and both circles"

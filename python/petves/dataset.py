@@ -23,7 +23,7 @@ _HAVE = {
     "length/time": "u v velocity normal_speed velocity_x velocity_y",
     "length^2/time": "nu flux",
     "length^2/time^2": "p normal_stress_wall normal_stress pressure_drop",
-    "length^3/time^2": "tension obstacle_force_x obstacle_force_y",
+    "length^3/time^2": "tension obstacle_force obstacle_force_x obstacle_force_y",
     "length^4/time^2": "energy_kinetic energy_bending energy_gravity energy_contact obstacle_torque",
     "length^5/time^2": "c_b",
     "1/time": "div_max surface_div_max",
@@ -54,7 +54,8 @@ def load(folder: str | Path, kind: str = "auto") -> Run | xarray.Dataset:
         Dataset: variables of the steps (dimension step) are the columns of series.csv, with the coordinate step_time;
         variables of the saved times (dimension time) are u, v, p (time, y, x), markers and
         velocity (time, marker, xy) and tension (time, marker), with the coordinate vesicle of each marker; obstacles
-        (obstacle_marker, xy), where there are any, with the coordinate obstacle. Every variable
+        (obstacle_marker, xy) and obstacle_force (time, obstacle_marker, xy), where there are any, with the coordinate
+        obstacle. Every variable
         has ``attrs["units"]``; above 40 vesicles each_area, each_center_x, ... (step, member) are those of vesicles.h5; the dataset's attributes are h, nu, c_b and the run's summary. Run: see there, and `unit`.
 
     Raises
@@ -100,6 +101,7 @@ def _dataset(run: Run, xarray: Any) -> xarray.Dataset:
     attributes |= {"reason": run.summary.get("reason", "")}
     if run.obstacles:
         variables["obstacles"] = (("obstacle_marker", "xy"), np.concatenate(run.obstacles))
+        variables["obstacle_force"] = (("time", "obstacle_marker", "xy"), run.obstacle_force)
         sizes = [len(points) for points in run.obstacles]
         coordinates["obstacle"] = ("obstacle_marker", np.repeat(np.arange(len(sizes)), sizes))
     data = xarray.Dataset({k: (*v, {"units": unit(k)}) for k, v in variables.items()}, coordinates, attributes)

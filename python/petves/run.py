@@ -53,6 +53,8 @@ class Run:
         Viscosity inside over that outside.
     obstacles : list of ndarray, each of shape (n, 2)
         Markers of each obstacle (length), counter-clockwise around a solid, clockwise around fluid in one.
+    obstacle_force : ndarray, shape (T, W, 2)
+        Force of the fluid on the markers of all obstacles, one obstacle after another (length^3/time^2).
     summary : dict
         summary.json; empty while the run has not ended.
 
@@ -74,6 +76,7 @@ class Run:
     start: np.ndarray
     viscosity_ratio: np.ndarray
     obstacles: list[np.ndarray] = field(default_factory=list)
+    obstacle_force: np.ndarray = field(default_factory=lambda: np.zeros((0, 0, 2)))
     summary: dict[str, Any] = field(default_factory=dict)
 
     @classmethod
@@ -108,6 +111,7 @@ class Run:
                     start=start,
                     viscosity_ratio=np.ones(len(start) - 1) * file.attrs.get("vesicle_viscosity_ratio", 1.0),
                     obstacles=_obstacles(file),
+                    obstacle_force=file["obstacle/force"][:] if "obstacle" in file else none,
                     summary=json.loads(summary.read_text()) if summary.is_file() else {},
                 )
             except KeyError as error:

@@ -67,10 +67,14 @@ PetscErrorCode ObstaclesDestroy(Obstacles *obstacles) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-void ObstaclesCurves(Obstacles o, PetscReal X[]) {
+void ObstaclesOrder(Obstacles o, const PetscReal own[], PetscReal seen[]) {
   for (PetscInt v = 0; v < o->layout->bodies; v++)
     for (PetscInt first = o->layout->start[v], end = o->layout->start[v + 1], k = first; k < end; k++)
-      for (int c = 0; c < 2; c++) X[2 * k + c] = o->X[2 * (o->container[v] ? first + end - 1 - k : k) + c];
+      for (int c = 0; c < 2; c++) seen[2 * k + c] = own[2 * (o->container[v] ? first + end - 1 - k : k) + c];
+}
+
+void ObstaclesCurves(Obstacles o, PetscReal X[]) {
+  ObstaclesOrder(o, o->X, X);
 }
 
 void ObstaclesPressure(Obstacles o, const PetscScalar F[], PetscScalar y[]) {

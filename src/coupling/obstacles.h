@@ -29,8 +29,9 @@ PETSC_EXTERN PetscErrorCode ObstaclesCreate(Scene scene, Layout all, Obstacles *
 PETSC_EXTERN PetscErrorCode ObstaclesDestroy(Obstacles *obstacles);
 
 /* ObstaclesCurves - markers of all obstacles as others see them, X[2W]: clockwise the curves that have the fluid
-   inside. Not collective. */
+   inside. ObstaclesOrder - other numbers of all markers in that order, seen[2W]. Not collective. */
 PETSC_EXTERN void ObstaclesCurves(Obstacles obstacles, PetscReal X[]);
+PETSC_EXTERN void ObstaclesOrder(Obstacles obstacles, const PetscReal own[], PetscReal seen[]);
 
 /* ObstaclesPressure - y += beta N N^T F, own parts F[2w], y[2w]. Not collective. */
 PETSC_EXTERN void ObstaclesPressure(Obstacles obstacles, const PetscScalar F[], PetscScalar y[]);

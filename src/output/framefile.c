@@ -1,15 +1,27 @@
 #include "output/framefile.h"
 
-const char *const FrameSeries[FRAME_SERIES] = {"/fluid/u",         "/fluid/v",          "/fluid/p",
-                                               "/vesicle/markers", "/vesicle/velocity", "/vesicle/tension"};
+const char *const FrameSeries[FRAME_SERIES] = {
+    "/fluid/u", "/fluid/v", "/fluid/p", "/vesicle/markers", "/vesicle/velocity", "/vesicle/tension", "/obstacle/force"};
+static const char *const SolidsAlone[] = {"/fluid/u", "/fluid/v", "/fluid/p", "/obstacle/force"};
 
-static PetscInt Count(Scheme s) {
-  return s->membrane->layout->M ? FRAME_SERIES : 3;
+static PetscInt Obstacle(Scheme s) {
+  return s->coupling->bodies->obstacles ? s->coupling->bodies->obstacles->layout->M : 0;
 }
 
-/* Whether series k is in single precision. */
-static PetscBool IsSingle(Scheme s, PetscInt k) {
-  return k < 3 && s->scene->output.precision == PRECISION_SINGLE ? PETSC_TRUE : PETSC_FALSE;
+/* Fills `kind` with the series of this scene, and what an entry of each is: dims[2] numbers. */
+static void ListSeries(Scheme s, GrowingKind *kind, PetscInt dims[][2]) {
+  const Grid g = s->fluid->grid;
+  const PetscInt M = s->membrane->layout->M, W = Obstacle(s);
+  kind->path = M ? FrameSeries : SolidsAlone;
+  kind->series = FRAME_VESICLES + (M ? 3 : 0) + (W ? 1 : 0);
+  for (PetscInt k = 0; k < kind->series; k++) {
+    const PetscBool fluid = k < FRAME_VESICLES ? PETSC_TRUE : PETSC_FALSE;
+    const PetscBool solid = W && k == kind->series - 1 ? PETSC_TRUE : PETSC_FALSE;
+    dims[k][0] = fluid ? g->n[1] : solid ? W : M;
+    dims[k][1] = fluid ? g->n[0] : !solid && k == FRAME_FORCE - 1 ? 1 : 2;
+    kind->entries[k] = dims[k][0] * dims[k][1];
+    kind->single[k] = fluid && s->scene->output.precision == PRECISION_SINGLE ? PETSC_TRUE : PETSC_FALSE;
+  }
 }
 
 /* The ratios of viscosities, where they are not all 1. */
@@ -42,8 +54,10 @@ static PetscErrorCode Create(Scheme s, const char path[], H5File *f) {
   const Grid g = s->fluid->grid;
   const Layout l = s->membrane->layout;
   const Scene scene = s->scene;
-  const PetscInt cells[2] = {g->n[1], g->n[0]}, markers[2] = {l->M, 2};
+  GrowingKind kind;
+  PetscInt dims[FRAME_SERIES][2];
   PetscFunctionBeginUser;
+  ListSeries(s, &kind, dims);
   PetscCall(H5FileCreate(scene->comm, path, f));
   PetscCall(H5PutReals(f, "box", 4, scene->fluid.box));
   PetscCall(H5PutInts(f, "cells", 2, g->n));
@@ -58,23 +72,18 @@ static PetscErrorCode Create(Scheme s, const char path[], H5File *f) {
                         "u, v: velocity (background included) at cell centres; p: pressure at cell centres, of the "
                         "disturbance unless -flow_form total; tension k on the edge from marker k-1 to marker k"));
   PetscCall(H5CreateSeries(f, "/time", 0, NULL));
-  for (int k = 0; k < Count(s); k++)
-    PetscCall((IsSingle(s, k) ? H5CreateSingleSeries : H5CreateSeries)(f, FrameSeries[k], k < 5 ? 2 : 1,
-                                                                       k < 3 ? cells : markers));
+  for (PetscInt k = 0; k < kind.series; k++)
+    PetscCall(
+        (kind.single[k] ? H5CreateSingleSeries : H5CreateSeries)(f, kind.path[k], dims[k][1] > 1 ? 2 : 1, dims[k]));
   PetscCall(H5FileFlush(f));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode FrameKind(Scheme s, GrowingKind *kind) {
-  const Grid g = s->fluid->grid;
+  PetscInt dims[FRAME_SERIES][2];
   PetscFunctionBeginUser;
   kind->name = "run.h5";
-  kind->series = Count(s);
-  kind->path = FrameSeries;
-  for (PetscInt k = 0; k < kind->series; k++) {
-    kind->entries[k] = k < 3 ? g->n[0] * g->n[1] : s->membrane->layout->M * (k < 5 ? 2 : 1);
-    kind->single[k] = IsSingle(s, k);
-  }
+  ListSeries(s, kind, dims);
   kind->scheme = s;
   kind->create = Create;
   PetscFunctionReturn(PETSC_SUCCESS);

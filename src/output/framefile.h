@@ -2,8 +2,9 @@
 #pragma once
 #include "output/growing.h"
 
-/* The series of a frame; without vesicles the fluid's three. FRAME_SERIES - the most that there are. */
-#define FRAME_SERIES 6
+/* All series that a frame may have: three of the fluid, then three of vesicles, then one of obstacles where there are
+   any. */
+enum { FRAME_FLUID, FRAME_VESICLES = 3, FRAME_FORCE = 6, FRAME_SERIES };
 PETSC_EXTERN const char *const FrameSeries[FRAME_SERIES];
 
 /* FrameKind - run.h5 for this scheme: its series, and how an empty one is made. */

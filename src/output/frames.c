@@ -5,8 +5,9 @@ static PetscErrorCode Begin(Frames *f, Scheme scheme) {
   const Grid g = scheme->fluid->grid;
   const PetscInt n = g->n[0] * g->rows[FIELD_P];
   PetscFunctionBeginUser;
+  const Obstacles o = scheme->coupling->bodies->obstacles;
   f->scheme = scheme;
-  PetscCall(PetscMalloc3(n, &f->cells[0], n, &f->cells[1], n, &f->cells[2]));
+  PetscCall(PetscMalloc4(n, &f->cells[0], n, &f->cells[1], n, &f->cells[2], o ? 2 * o->layout->M : 0, &f->force));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -42,7 +43,11 @@ static PetscErrorCode WriteValues(Frames *f, const Gathered *now) {
   PetscCall(CellFields(f->scheme, f->cells[0], f->cells[1], f->cells[2]));
   for (int c = 0; c < 3; c++) PetscCall(H5WriteField(file, FrameSeries[c], count, g, FIELD_P, f->cells[c]));
   for (int k = 0; k < 3 && now->M; k++)
-    PetscCall(H5WriteArray(file, FrameSeries[3 + k], count, k < 2 ? 2 * now->M : now->M, marker[k]));
+    PetscCall(H5WriteArray(file, FrameSeries[FRAME_VESICLES + k], count, k < 2 ? 2 * now->M : now->M, marker[k]));
+  if (now->W) {
+    ObstaclesOrder(f->scheme->coupling->bodies->obstacles, now->solid, f->force);
+    PetscCall(H5WriteArray(file, FrameSeries[FRAME_FORCE], count, 2 * now->W, f->force));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -64,7 +69,7 @@ PetscErrorCode FramesMarkers(Frames *f, PetscReal **markers) {
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(2 * M * f->grown.count, markers));
   for (PetscInt t = 0; t < f->grown.count && M; t++)
-    PetscCall(H5ReadArray(&f->grown.file, FrameSeries[3], t, 2 * M, *markers + 2 * M * t));
+    PetscCall(H5ReadArray(&f->grown.file, FrameSeries[FRAME_VESICLES], t, 2 * M, *markers + 2 * M * t));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -77,6 +82,6 @@ PetscErrorCode FramesSync(Frames *f) {
 PetscErrorCode FramesClose(Frames *f, PetscBool *good) {
   PetscFunctionBeginUser;
   PetscCall(GrowingClose(&f->grown, good));
-  PetscCall(PetscFree3(f->cells[0], f->cells[1], f->cells[2]));
+  PetscCall(PetscFree4(f->cells[0], f->cells[1], f->cells[2], f->force));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -43,23 +43,23 @@ static void PrintFluid(Grid g, FILE *f, PetscInt t, int bytes) {
   fprintf(f, "</DataItem></Attribute></Grid>\n");
 }
 
-/* Coordinate c of one vesicle's markers. */
-static void PrintCoordinate(FILE *f, PetscInt t, PetscInt first, PetscInt n, PetscInt M, int c) {
+/* Component c of a series [frames,all,2] at n markers. */
+static void PrintComponent(FILE *f, PetscInt t, const char name[], PetscInt first, PetscInt n, PetscInt all, int c) {
   fprintf(f,
           "<DataItem ItemType=\"HyperSlab\" Dimensions=\"%d\"><DataItem Dimensions=\"3 3\" Format=\"XML\">%d %d %d 1 1 "
           "1 1 %d 1</DataItem>",
           (int)n, (int)t, (int)first, c, (int)n);
   fprintf(f,
           "<DataItem Dimensions=\"&frames; %d 2\" NumberType=\"Float\" Precision=\"8\" "
-          "Format=\"HDF\">run.h5:/vesicle/markers</DataItem></DataItem>\n",
-          (int)M);
+          "Format=\"HDF\">run.h5:%s</DataItem></DataItem>\n",
+          (int)all, name);
 }
 
 /* One vesicle's markers, shifted. */
 static void PrintShifted(FILE *f, PetscInt t, PetscInt first, PetscInt n, PetscInt M, const PetscReal shift[2]) {
   fprintf(f, "<DataItem ItemType=\"Function\" Function=\"JOIN($0 + (%.17g), $1 + (%.17g))\" Dimensions=\"%d 2\">\n",
           (double)shift[0], (double)shift[1], (int)n);
-  for (int c = 0; c < 2; c++) PrintCoordinate(f, t, first, n, M, c);
+  for (int c = 0; c < 2; c++) PrintComponent(f, t, "/vesicle/markers", first, n, M, c);
   fprintf(f, "</DataItem>\n");
 }
 
@@ -90,7 +90,7 @@ static void PrintNumber(FILE *f, const char what[], PetscInt number) {
   fprintf(f, "<DataItem Dimensions=\"1\" NumberType=\"Int\">%d</DataItem></Attribute></Grid>\n", (int)number);
 }
 
-static void PrintObstacle(FILE *f, Layout l, PetscInt v) {
+static void PrintObstacle(FILE *f, PetscInt t, Layout l, PetscInt v) {
   const PetscInt n = LayoutCount(l, v);
   PrintLoop(f, "obstacle", v + 1, n);
   fprintf(f,
@@ -101,6 +101,10 @@ static void PrintObstacle(FILE *f, Layout l, PetscInt v) {
           "<DataItem Dimensions=\"%d 2\" NumberType=\"Float\" Precision=\"8\" "
           "Format=\"HDF\">run.h5:/obstacle/markers</DataItem></DataItem>\n</Geometry>\n",
           (int)l->M);
+  fprintf(f, "<Attribute Name=\"force\" AttributeType=\"Vector\" Center=\"Node\">\n");
+  fprintf(f, "<DataItem ItemType=\"Function\" Function=\"JOIN($0, $1, 0*$0)\" Dimensions=\"%d 3\">\n", (int)n);
+  for (int c = 0; c < 2; c++) PrintComponent(f, t, "/obstacle/force", l->start[v], n, l->M, c);
+  fprintf(f, "</DataItem></Attribute>\n");
   PrintNumber(f, "obstacle", v + 1);
 }
 
@@ -133,7 +137,7 @@ static void PrintFrame(Scheme s, FILE *f, PetscInt t, PetscReal time, const Pets
           (int)t, (double)time);
   PrintFluid(s->fluid->grid, f, t, s->scene->output.precision == PRECISION_SINGLE ? 4 : 8);
   for (PetscInt v = 0; v < s->membrane->layout->bodies; v++) PrintVesicle(s, f, t, v, X);
-  for (PetscInt v = 0; solids && v < solids->layout->bodies; v++) PrintObstacle(f, solids->layout, v);
+  for (PetscInt v = 0; solids && v < solids->layout->bodies; v++) PrintObstacle(f, t, solids->layout, v);
   fprintf(f, "</Grid>\n");
 }
 
