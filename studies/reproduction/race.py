@@ -66,6 +66,7 @@ def race(results: Results, folder: Path, quick: bool) -> list[str]:
         "h = 1/96, 1e-5, in shear), at equal material points. Height: largest over R0 at t = 24, 48, 96 from quasi-steady flow on\n"
         "h = 1/24. E_B at rest, angle and frequency (the larger): relative, from the boundary integral. In 5.5 the\n"
         "paper's method needs inertia: at Re = 0.89 (nu = 1, c_b = .01) it goes outwards, at 0.089 (nu = 10, c_b = .1) inwards.\n"
+        "On its coarsest grids the paper's method takes about as long as ours, for errors 47 to 5000 times larger.\n"
     )
     return ["## Less error in less time\n", about, *table(HEADER, rows)]
 
