@@ -1,13 +1,15 @@
 """runs/gallery: every file says how it is run and what it is compared with; a quick version of each reaches its number."""
 
+import os
 import re
+import sys
 
 import numpy as np
 import pytest
 from conftest import PETVES, ROOT, Run, mpirun
 
 from petves.measures import half_periods
-from studies.gallery import passing, tumbling
+from studies.gallery import couette, passing, settling, tumbling, vortices
 from studies.gallery.page import SCENES, TEMPLATE, filled
 from studies.gallery.scene import least
 
@@ -75,3 +77,44 @@ def test_pressed(tmp_path):
     film = [np.interp(t, series["time"], series["gap"]) for t in (2, 4)]
     assert film == pytest.approx([0.16056, 0.11008], rel=2e-3)
     assert 0.45 < np.log(film[0] / film[1]) / np.log(2) < 0.66
+
+
+def test_vortex(tmp_path):
+    """A Taylor-Green flow from Python: four vesicles turned by quarters stay so, whatever they do otherwise."""
+    command = [sys.executable, "-m", "studies.gallery.vortices", "vortex", str(tmp_path)]
+    command += "-domain_cells 32,32 -vesicle_markers 31 -time_step .1 -time_end 1 -output_every 1".split()
+    done = mpirun(command, 1, PYTHONPATH=os.pathsep.join([str(ROOT / "python"), str(ROOT)]))
+    assert done.returncode == 0, done.stderr
+    found = vortices.measures(tmp_path)
+    assert vortices.turned(found["middle"]) < 1e-6 and max(found["area"], found["length"]) < 1e-10
+    assert np.abs(np.array(found["middle"][0]) - np.pi / 2 - (0.7, 0)).max() > 0.1, "they move"
+
+
+def test_what_the_lattice_is_judged_by():
+    """Places moved by half a period both ways, and not."""
+    place = np.array([[0.1, 0.2], [0.1 + np.pi, 0.2 - np.pi], [1, 2], [1 - np.pi, 2 + 3 * np.pi]])
+    assert vortices.shifted(place) < 1e-12 < 0.1 < vortices.shifted(place + [[0.1, 0], [0, 0], [0, 0.1], [0, 0]])
+
+
+def test_settling(tmp_path):
+    """The boundary integral's height at t = 1 to 1e-4."""
+    series = run_file("settling", tmp_path, "-time_step .1 -time_end 1")
+    assert series["center_y"][-1] == pytest.approx(settling.EXACT[1], abs=1e-4)
+
+
+def test_tandem(tmp_path):
+    """Distance at t = 10 of a grid twice as fine to 1e-3; the one above is slower at first."""
+    series = run_file("tandem", tmp_path, "-time_step .2 -time_end 10")
+    assert series["center_y_2"][-1] - series["center_y_1"][-1] == pytest.approx(5.1676, abs=1e-3)
+
+
+def test_couette(tmp_path):
+    """The exact torque without vesicles, from a grid half as fine; one vesicle adds less than a rigid disc, 2."""
+    options = "-domain_cells 32,32 -time_step .1 -time_end .2"
+    series = run_file("couette", tmp_path / "none", f"{couette.WHAT['none']} {options}")
+    assert -series["obstacle_torque_1"][-1] == pytest.approx(couette.EXACT, rel=1e-5)
+    series = run_file(
+        "couette", tmp_path / "one", f"{couette.ONE} -domain_cells 32,32 -time_end 2 -vesicle_allow_close_markers true"
+    )
+    added = (-series["obstacle_torque_1"][-1] / couette.EXACT - 1) / 0.003 * np.pi * (0.45**2 - 0.2**2)
+    assert 0.5 < added < 2

@@ -6,12 +6,15 @@ import re
 from pathlib import Path
 
 from studies.common.engine import Results
+from studies.gallery.couette import SCENE as COUETTE
 from studies.gallery.passing import SCENE as PASSING
 from studies.gallery.pressed import SCENE as PRESSED
 from studies.gallery.scene import Scene
+from studies.gallery.settling import SCENE as SETTLING
 from studies.gallery.tumbling import SCENE as TUMBLING
+from studies.gallery.vortices import SCENE as VORTICES
 
-SCENES = (TUMBLING, PASSING, PRESSED)
+SCENES = (TUMBLING, PASSING, PRESSED, VORTICES, SETTLING, COUETTE)
 TEMPLATE = Path(__file__).with_name("page.md")
 BLOCK = re.compile(r"^<!-- scene (\w+) -->\n", re.MULTILINE)
 PLACE = re.compile(r"\{(\w+)\}")
