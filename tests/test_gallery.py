@@ -9,7 +9,9 @@ import pytest
 from conftest import PETVES, ROOT, Run, mpirun
 
 from petves.measures import half_periods
-from studies.gallery import couette, passing, settling, tumbling, vortices
+from petves.run import Run as Files
+from studies.common.curves import trigonometric
+from studies.gallery import capillary, couette, passing, settling, tumbling, vortices
 from studies.gallery.page import SCENES, TEMPLATE, filled
 from studies.gallery.scene import least
 
@@ -118,3 +120,39 @@ def test_couette(tmp_path):
     )
     added = (-series["obstacle_torque_1"][-1] / couette.EXACT - 1) / 0.003 * np.pi * (0.45**2 - 0.2**2)
     assert 0.5 < added < 2
+
+
+def test_posts(tmp_path):
+    """On both sides of the critical size of rigid spheres: after three rows the small one has changed lanes, the large one has not."""
+    aside = {}
+    for diameter in (0.2, 0.4):
+        area = 0.95 * np.pi * diameter**2 / 4
+        series = run_file("posts", tmp_path / f"{diameter}", f"-vesicle_area {area!r} -time_step .04 -time_end 3.2")
+        at = np.interp(3.3, series["center_y"], series["center_x"])
+        assert series["center_y"][-1] > 3.3
+        aside[diameter] = at - 0.95
+    assert aside[0.2] < 0 and aside[0.4] > 0.4
+
+
+def test_reynolds(tmp_path):
+    """Inertia raises the angle: .16929 of pi at Re = 1 on 64^2, here on 32^2 to 2 %; without inertia it is .1177."""
+    angle = {}
+    for name, options in (("one", "-time_step .025"), ("none", "-fluid_inertia none -time_step .2")):
+        series = run_file("reynolds", tmp_path / name, f"-domain_cells 32,32 -time_end 12 {options}")
+        angle[name] = series["inclination"][-1] / np.pi
+    assert angle["one"] == pytest.approx(0.16929, rel=0.02) and angle["none"] == pytest.approx(0.11773, rel=1e-3)
+
+
+def test_capillary(tmp_path):
+    """Fast flow in a narrow channel makes a parachute, slower flow in a wide one a slipper, which lags less."""
+    found = {}
+    for what, options in (
+        ("parachute", "-flow_ca 40"),
+        ("slipper", "-time_step .2 -flow_half_width 2.5 -domain_box 0,8,-2.5,2.5 -domain_cells 48,30"),
+    ):
+        series = run_file("capillary", tmp_path / what, f"{options} -time_end 30")
+        peak = 4 if what == "parachute" else 1
+        outline = trigonometric(Files.read(tmp_path / what).markers[-1], 64)
+        found[what] = (capillary.asymmetry(outline), 1 - series["velocity_x"][-1] / peak)
+    assert found["parachute"][0] < 0.05 < 0.5 < found["slipper"][0]
+    assert found["slipper"][1] < found["parachute"][1]

@@ -6,15 +6,18 @@ import re
 from pathlib import Path
 
 from studies.common.engine import Results
+from studies.gallery.capillary import SCENE as CAPILLARY
 from studies.gallery.couette import SCENE as COUETTE
 from studies.gallery.passing import SCENE as PASSING
+from studies.gallery.posts import SCENE as POSTS
 from studies.gallery.pressed import SCENE as PRESSED
+from studies.gallery.reynolds import SCENE as REYNOLDS
 from studies.gallery.scene import Scene
 from studies.gallery.settling import SCENE as SETTLING
 from studies.gallery.tumbling import SCENE as TUMBLING
 from studies.gallery.vortices import SCENE as VORTICES
 
-SCENES = (TUMBLING, PASSING, PRESSED, VORTICES, SETTLING, COUETTE)
+SCENES = (TUMBLING, PASSING, PRESSED, VORTICES, SETTLING, COUETTE, POSTS, REYNOLDS, CAPILLARY)
 TEMPLATE = Path(__file__).with_name("page.md")
 BLOCK = re.compile(r"^<!-- scene (\w+) -->\n", re.MULTILINE)
 PLACE = re.compile(r"\{(\w+)\}")
