@@ -100,6 +100,12 @@ def test_container_file_is_sound(tmp_path):
         run(["dpkg-query", "-W", *(name for name in packages if name != "ca-certificates")])
 
 
+@pytest.mark.skipif(not shutil.which("hadolint"), reason="hadolint is not installed")
+def test_container_file_has_no_lint():
+    """But that Debian's packages are not pinned (DL3008): a release's security updates are wanted."""
+    run(["hadolint", "--ignore", "DL3008", PACKAGING / "Containerfile"])
+
+
 @pytest.mark.skipif(not shutil.which("podman"), reason="podman is not installed")
 def test_container_is_built():
     run(["podman", "build", "-f", PACKAGING / "Containerfile", "-t", "petves-test", ROOT])
