@@ -117,15 +117,18 @@ def test_what_is_given_stays(tmp_path):
 
 
 def test_coarse_grid_is_called_so(tmp_path):
-    """32 cells in a box of 8, markers 1.5 h apart, are too coarse for 1 percent: the cells a radius that it takes are named,
+    """32 cells in a box of 8, markers 1.5 h apart, are too coarse for 1 percent: the square cells that it takes are named,
     and the markers with which it would do."""
     options = f"{BOX} {QUIET} -vesicle_area 1 -time_end 0 -scheme_auto 1e-2"
     run = run_plain(tmp_path / "coarse", f"{options} -domain_cells 32,32 -vesicle_spacing 1.5")
     assert "or this grid and -vesicle_markers 45\n" in run.stdout
-    needs = float(re.search(r"TOO COARSE for 0.01, take R0/h = (\S+)", run.stdout)[1])
-    cells = 8 * int(np.ceil(needs * 8 / radius(0.7) / 8))
-    fine = run_plain(tmp_path / "fine", f"{options} -domain_cells {cells},{cells}")
+    named = re.search(r"TOO COARSE for 0.01, take R0/h = (\S+), -domain_cells (\d+),(\d+)", run.stdout).groups()
+    assert named[1] == named[2] and int(named[1]) * radius(0.7) / 8 >= float(named[0])
+    fine = run_plain(tmp_path / "fine", f"{options} -domain_cells {named[1]},{named[2]}")
     assert ": enough\n" in fine.stdout
+    wide = f"{options.replace('0,8,0,8', '0,16,0,8')} -domain_cells 56,28 -vesicle_spacing 1.5"
+    named = re.search(r"-domain_cells (\d+),(\d+)", run_plain(tmp_path / "wide", wide).stdout).groups()
+    assert int(named[0]) == 2 * int(named[1]) > 56
 
 
 def test_last_steps_are_of_one_size(tmp_path):

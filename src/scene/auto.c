@@ -119,6 +119,26 @@ static PetscInt FewestMarkers(const Shape *shape) {
   return fewest;
 }
 
+/* Whether n has no prime factor above 5: what Fourier transforms like. */
+static PetscBool IsSmooth(PetscInt n) {
+  for (PetscInt prime = 2; prime <= 5; prime++)
+    while (n % prime == 0) n /= prime;
+  return n == 1 ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* The fewest cells that make the grid finer by a factor, square as they are. */
+static void FinerCells(const FluidSpec *spec, PetscReal factor, PetscInt cells[2]) {
+  PetscInt common = spec->cells[0], rest = spec->cells[1];
+  while (rest > 0) {
+    const PetscInt next = common % rest;
+    common = rest;
+    rest = next;
+  }
+  PetscInt finer = (PetscInt)PetscCeilReal(common * factor * (1 - 1e-9));
+  while (!IsSmooth(finer)) finer++;
+  for (int d = 0; d < 2; d++) cells[d] = spec->cells[d] / common * finer;
+}
+
 /* What the grid leaves, and what it would take. */
 static PetscErrorCode PrintGrid(Scene scene, PetscReal cells) {
   const PetscInt n = (PetscInt)(sizeof(grids) / sizeof(grids[0]));
@@ -138,11 +158,14 @@ static PetscErrorCode PrintGrid(Scene scene, PetscReal cells) {
     PetscCall(PetvesSay(scene->comm, ", coarser than any that was measured"));
   if (error <= wanted)
     PetscCall(PetvesSay(scene->comm, ": enough\n"));
-  else if (enough >= 0)
-    PetscCall(PetvesSay(scene->comm, ": TOO COARSE for %g, take R0/h = %g (-domain_cells)%s\n",
-                        (double)scene->scheme.wanted, (double)grids[enough].cells,
+  else if (enough >= 0) {
+    PetscInt finer[2];
+    FinerCells(&scene->fluid, grids[enough].cells / cells, finer);
+    PetscCall(PetvesSay(scene->comm,
+                        ": TOO COARSE for %g, take R0/h = %g, -domain_cells %" PetscInt_FMT ",%" PetscInt_FMT "%s\n",
+                        (double)scene->scheme.wanted, (double)grids[enough].cells, finer[0], finer[1],
                         !many && ErrorWithMarkers(cells) <= wanted ? ", or this grid and -vesicle_markers 45" : ""));
-  else
+  } else
     PetscCall(PetvesSay(scene->comm, ": no grid up to R0/h = %g reached %g\n", (double)grids[0].cells,
                         (double)scene->scheme.wanted));
   PetscFunctionReturn(PETSC_SUCCESS);
