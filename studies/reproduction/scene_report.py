@@ -125,8 +125,9 @@ def _settled(results: Results, quick: bool) -> list[str]:
     header = ["c_0", "h", "V", "t = 240", "t = 480", "t = 960", "t = 1440", "slip", "aspect"]
     about = (
         "Longer runs: height over R0. At V = 0.7 the symmetric parachute is no stable end state in quasi-steady flow at w = 60. Released\n"
-        "beside the middle the vesicle ends as a slight slipper, .043 R0 from it. Released in the middle it stays there for long: what\n"
-        "rounding leaves of an offset has grown to .0004 R0 at t = 1440. The paper's runs end at t = 96.\n"
+        "beside the middle the vesicle ends as a slight slipper, .0427 R0 from it. Released in the middle it stays there for long: what\n"
+        "the solver leaves of an offset grows some 16 times in 480. At V = 0.9 the parachute is the end of both. The paper's runs end at\n"
+        "t = 96.\n"
     )
     return [about, *table(header, rows)]
 
