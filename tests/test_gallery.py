@@ -11,7 +11,7 @@ from conftest import PETVES, ROOT, Run, mpirun
 from petves.measures import half_periods
 from petves.run import Run as Files
 from studies.common.curves import trigonometric
-from studies.gallery import capillary, couette, passing, settling, tumbling, vortices
+from studies.gallery import bifurcation, capillary, couette, passing, settling, suspension, tumbling, vortices
 from studies.gallery.page import SCENES, TEMPLATE, filled
 from studies.gallery.scene import least
 
@@ -156,3 +156,24 @@ def test_capillary(tmp_path):
         found[what] = (capillary.asymmetry(outline), 1 - series["velocity_x"][-1] / peak)
     assert found["parachute"][0] < 0.05 < 0.5 < found["slipper"][0]
     assert found["slipper"][1] < found["parachute"][1]
+
+
+def test_bifurcation(tmp_path):
+    """Fluxes of the branches of a grid twice as fine to 1 %; the fit of islands' lengths finds the limit it was given."""
+    one = bifurcation.split(2.0, 32)
+    (tmp_path / "island.txt").write_text(one.files["-obstacle_file"])
+    own = (ROOT / "runs" / "gallery" / "island.txt").read_text()
+    np.testing.assert_allclose(np.loadtxt(own.splitlines()), bifurcation.island(2.0), atol=1e-6)
+    words = "-vesicle_shape none -allow_unused_options true -time_end .02 -output_every .02"
+    run_file("bifurcation", tmp_path / "run", f"{words} -obstacle_file {tmp_path / 'island.txt'}")
+    assert one.measure({"pressure_drop": [0]}, tmp_path / "run")["flux"] == pytest.approx([0.1933, 0.8067], rel=0.01)
+    assert bifurcation.limit({x: 0.2 * (x + 0.1) / (x + 0.3) for x in (1, 2, 3)}) == pytest.approx(0.2)
+    assert bifurcation.dividing_streamline(0.5) == pytest.approx(0.5)
+
+
+def test_suspension(tmp_path):
+    """One vesicle adds 1.62 times its fraction to the viscosity of a channel 32 R0 high, less than a rigid disc's 2."""
+    words = f"{suspension.ALONE} -vesicle_packing 0.0024543693 -time_step .2 -time_end 10"
+    series = run_file("suspension", tmp_path, words)
+    added = (series["viscosity"][-1] - 1) / (series["area"][-1] / 32**2)
+    assert added == pytest.approx(1.62, rel=0.01)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import resource
 import tempfile
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from itertools import product
 from pathlib import Path
 from threading import Lock
@@ -61,6 +61,7 @@ class Case:
     measure: Measure
     ranks: int = 1  # 0 takes the study's
     may_fail: bool = False  # a run that stops (exit status 2) is a result: its measures are {"failed": line}
+    files: dict[str, str] = field(default_factory=dict)  # texts of files that options name; `options` says which ones
 
 
 class NotRun(RunError):
@@ -127,6 +128,9 @@ def _made(case: Case, ranks: int) -> dict[str, object]:
     limits = [word for name in ("edge_ratio", "area_error", "length_error") for word in (f"-limit_{name}", "0")]
     with tempfile.TemporaryDirectory() as name:
         folder, before = Path(name), cpu_seconds()
+        for number, (option, text) in enumerate(case.files.items()):
+            (folder / f"input_{number}.txt").write_text(text)
+            words += [option, str(folder / f"input_{number}.txt")]
         status, line = run_program([*limits, *words, "-output_dir", name], ranks)  # a study measures bad answers too
         spent = round(cpu_seconds() - before, 3)
         if status and not (case.may_fail and status == 2):

@@ -6,6 +6,7 @@ import re
 from pathlib import Path
 
 from studies.common.engine import Results
+from studies.gallery.bifurcation import SCENE as BIFURCATION
 from studies.gallery.capillary import SCENE as CAPILLARY
 from studies.gallery.couette import SCENE as COUETTE
 from studies.gallery.passing import SCENE as PASSING
@@ -14,10 +15,11 @@ from studies.gallery.pressed import SCENE as PRESSED
 from studies.gallery.reynolds import SCENE as REYNOLDS
 from studies.gallery.scene import Scene
 from studies.gallery.settling import SCENE as SETTLING
+from studies.gallery.suspension import SCENE as SUSPENSION
 from studies.gallery.tumbling import SCENE as TUMBLING
 from studies.gallery.vortices import SCENE as VORTICES
 
-SCENES = (TUMBLING, PASSING, PRESSED, VORTICES, SETTLING, COUETTE, POSTS, REYNOLDS, CAPILLARY)
+SCENES = (TUMBLING, PASSING, PRESSED, VORTICES, SETTLING, COUETTE, POSTS, BIFURCATION, SUSPENSION, REYNOLDS, CAPILLARY)
 TEMPLATE = Path(__file__).with_name("page.md")
 BLOCK = re.compile(r"^<!-- scene (\w+) -->\n", re.MULTILINE)
 PLACE = re.compile(r"\{(\w+)\}")

@@ -1,0 +1,89 @@
+"""A suspension of 256 vesicles in a sheared channel: effective viscosity, cell-free layer, profile."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from petves.rheology import area_fraction_profile, velocity_profile
+from petves.run import Run
+from petves.views.figures import new_figure, save_figure
+from petves.views.plot import dress
+from studies.common.engine import Case, Results, Series
+from studies.gallery.scene import Scene, Values, case, moments, seconds, with_pictures
+
+BOXES = {0.2: ("0,100,0,32", "400,128"), 0.4: ("0,50,0,32", "200,128")}
+"""Box and cells by area fraction: as high, half as long."""
+ALONE = "-allow_unused_options true -domain_box 0,32,0,32 -domain_cells 128,128 -vesicle_packing_type lattice -vesicle_angle 22 -vesicle_count 1"
+
+
+def suspension(fraction: float, pictures: Path | None = None) -> Case:
+    """Return 256 vesicles: viscosity over the last fifth, distance from a wall to the first vesicle, profiles at the end."""
+
+    def measure(series: Series, folder: Path) -> dict[str, object]:
+        if pictures:
+            moments(folder, pictures / "suspension.png", (series["time"][-1],), (0, 50, 0, 32))
+        run = Run.read(folder)
+        late = series["time"] > 0.8 * series["time"][-1]
+        y, u = velocity_profile(run, -1)
+        layers, part = area_fraction_profile(run, -1, 32)
+        heights = run.markers[-1, :, 1]
+        return {
+            "viscosity": series["viscosity"][late].mean(),
+            "first": series["viscosity"][1],
+            "still": np.ptp(series["viscosity"][late]),
+            "layer": min(heights.min() - run.box[2], run.box[3] - heights.max()),
+            "gap": np.nanmin(series["gap"]),
+            "errors": [np.abs(series[f"{name}_error"]).max() for name in ("area", "length")],
+            "strain": series["time"][-1],
+            "profile": [np.round(u, 4).tolist()[::4], np.round(part, 4).tolist()],
+            "wall_rate": float((u[1] - u[0]) / (y[1] - y[0])),
+        }
+
+    box, cells = BOXES[fraction]
+    return case(
+        f"{fraction}", "suspension", f"-domain_box {box} -domain_cells {cells} -vesicle_packing {fraction}", measure
+    )
+
+
+def alone() -> Case:
+    """Return one vesicle in a channel as high: what it adds to the viscosity over its fraction."""
+
+    def measure(series: Series, folder: Path) -> dict[str, object]:
+        fraction = series["area"][-1] / 32**2
+        return {"intrinsic": (series["viscosity"][-1] - 1) / fraction}
+
+    return case("alone", "suspension", f"{ALONE} -vesicle_packing 0.0024543693 -time_end 20", measure)
+
+
+def fill(results: Results) -> Values:
+    """Make the runs; return the values."""
+    one, home = results.get(alone()), results.path.parent
+    runs = {0.2: results.get(suspension(0.2))}
+    runs[0.4] = with_pictures(results, suspension(0.4, home), "suspension.png")
+    figure, (left, right) = new_figure(9, 3.4, columns=2)
+    for fraction, found in runs.items():
+        velocity, part = (np.array(values) for values in found["profile"])
+        heights = (np.arange(len(velocity)) + 0.125) * 32 / len(velocity)
+        left.plot(velocity - (heights - 16), heights, lw=1.2, label=f"{100 * fraction:.0f} %")
+        right.plot(part, (np.arange(len(part)) + 0.5) * 32 / len(part), lw=1.2, label=f"{100 * fraction:.0f} %")
+    dress(left, grid="both", xlabel="u - rate (y - 16)", ylabel="y over R0")
+    dress(right, grid="both", xlabel="area fraction", ylabel="y over R0")
+    left.legend(frameon=False, fontsize=8)
+    save_figure(figure, home / "suspension_profile.png")
+    rows = [
+        f"| {fraction:g} | {found['strain']:g} | {found['viscosity']:.3f} | {1 + one['intrinsic'] * fraction:.3f} "
+        f"| {(found['viscosity'] - 1) / fraction:.2f} | {found['layer']:.2f} | {found['wall_rate']:.2f} | {found['gap']:.3f} "
+        f"| {seconds(found)} |"
+        for fraction, found in runs.items()
+    ]
+    worst = [max(found["errors"][k] for found in runs.values()) for k in (0, 1)]
+    return {
+        "suspension_rows": "\n".join(rows),
+        "intrinsic": f"{one['intrinsic']:.2f}",
+        "suspension_errors": f"{worst[0]:.0e}, {worst[1]:.0e}",
+    }
+
+
+SCENE = Scene("suspension", fill, long=True)
