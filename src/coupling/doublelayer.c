@@ -13,7 +13,7 @@ PetscErrorCode DoubleLayerCreate(NearField near, const PetscReal ratio[], Double
   s->near = near;
   for (PetscInt v = 0; v < l->bodies; v++) most = PetscMax(most, LayoutCount(l, v));
   PetscCall(PetscMalloc3(l->bodies, &s->ratio, l->bodies, &s->length, 2 * most, &s->column));
-  PetscCall(PetscArraycpy(s->ratio, ratio, l->bodies));
+  for (PetscInt v = 0; v < l->bodies; v++) s->ratio[v] = v < near->bodies->vesicles ? ratio[v] : 1;
   PetscCall(PetscMalloc3(2 * l->M, &s->normal, l->M, &s->along, DIPOLE_COUNT * l->M, &s->dipole));
   PetscCall(PetscCalloc3(2 * l->M, &s->jump, 2 * l->M, &s->plain, DIPOLE_COUNT * l->M, &s->tensor));
   if (!near->free) PetscCall(LatticeDipoles(DOUBLE_CELLS + OFFSET_LAGS, s->lattice));
@@ -118,7 +118,7 @@ PetscErrorCode DoubleLayerPlace(DoubleLayer s) {
 }
 
 PetscErrorCode DoubleLayerSet(DoubleLayer s, const PetscScalar U[]) {
-  const Layout l = s->near->bodies->layout;
+  const Layout l = s->near->bodies->membrane->layout; /* obstacles, whose J is zero, come behind */
   PetscFunctionBeginUser;
   PetscCall(LayoutGather(l, 2, U, s->plain));
   for (PetscInt v = 0; v < l->bodies; v++) {
@@ -162,17 +162,22 @@ PetscErrorCode DoubleLayerApply(DoubleLayer s, PetscReal alpha, PetscScalar y[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode DoubleLayerSpread(DoubleLayer s, Vec w, Vec source, PetscReal mean[2]) {
+void DoubleLayerMean(DoubleLayer s, PetscReal mean[2]) {
   const NearField f = s->near;
   const Grid g = f->markers->grid;
   const PetscReal area = (g->hi[0] - g->lo[0]) * (g->hi[1] - g->lo[1]);
-  PetscFunctionBeginUser;
-  if (f->free) PetscFunctionReturn(PETSC_SUCCESS);
   Tensors(s);
   for (PetscInt k = 0; k < 2 * f->bodies->layout->M; k++) { /* J.n is half the trace */
     const PetscReal *T = s->tensor + DIPOLE_COUNT * (k / 2);
     mean[k % 2] -= f->markers->X[k] * 0.5 * (T[DIPOLE_XX] + T[DIPOLE_YY]) / area;
   }
+}
+
+PetscErrorCode DoubleLayerSpread(DoubleLayer s, Vec w, Vec source, PetscReal mean[2]) {
+  const NearField f = s->near;
+  PetscFunctionBeginUser;
+  if (f->free) PetscFunctionReturn(PETSC_SUCCESS);
+  DoubleLayerMean(s, mean);
   PetscCall(DipolesSpread(f->markers, f->nu, s->tensor, w, source));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
