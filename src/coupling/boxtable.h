@@ -27,10 +27,9 @@ typedef struct {
   PetscReal H;   /* cell size of the coarser grid */
 } BoxTable;
 
-/* BoxTableCreate - for the run's grid and boundaries, of forces or of dipoles. Collective on spec->comm: ranks share
-   the solves. BoxTableDestroy
-   - and free. */
-PETSC_EXTERN PetscErrorCode BoxTableCreate(const FluidSpec *spec, const char kernel[], PetscBool dipoles,
+/* BoxTableCreate - for the run's grid and boundaries, of forces or of dipoles, as the lattice is, which is used here
+   only. Collective on spec->comm: ranks share the solves. BoxTableDestroy - and free. */
+PETSC_EXTERN PetscErrorCode BoxTableCreate(const FluidSpec *spec, const char kernel[], const BoxLattice *lattice,
                                            BoxTable *table);
 PETSC_EXTERN PetscErrorCode BoxTableDestroy(BoxTable *table);
 

@@ -17,6 +17,19 @@ static void Kress(PetscInt n, PetscReal k[]) {
   }
 }
 
+/* The lattice's tables, for pairs, their images in walls and the box part. */
+static PetscErrorCode MakeLattice(NearField f) {
+  const Grid g = f->markers->grid;
+  PetscFunctionBeginUser;
+  PetscCall(LatticeStokeslet(BOX_LATTICE_CELLS + OFFSET_LAGS, &f->lattice));
+  if (g->wall[0] || g->wall[1]) {
+    PetscCall(PetscNew(&f->half));
+    PetscCall(ImageTableFill(&f->lattice, f->half));
+  }
+  PetscCall(NearImageCreate(f->markers, f->nu, f->half, &f->image));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode NearFieldCreate(Markers markers, Bodies bodies, PetscReal nu, NearField *out) {
   const Layout l = bodies->layout;
   NearField f;
@@ -29,9 +42,7 @@ PetscErrorCode NearFieldCreate(Markers markers, Bodies bodies, PetscReal nu, Nea
   f->free = markers->grid->free;
   f->many = l->bodies > NEAR_MANY ? PETSC_TRUE : PETSC_FALSE;
   NearFarMake(markers->kernel, f->many, f->far);
-  const PetscInt reach = (PetscInt)f->far[NEAR_ONE].reach + OFFSET_LAGS;
-  if (!f->free) PetscCall(LatticeStokeslet(PetscMax(reach, IMAGE_SHIFT), &f->lattice));
-  if (!f->free) PetscCall(NearImageCreate(markers, nu, &f->lattice, &f->image));
+  if (!f->free) PetscCall(MakeLattice(f));
   PetscCall(PetscCalloc1(l->bodies, &f->kress));
   for (PetscInt v = l->own; v < l->end; v++) {
     PetscCall(PetscMalloc1(LayoutCount(l, v), &f->kress[v]));
@@ -59,6 +70,7 @@ PetscErrorCode NearFieldDestroy(NearField *near) {
   PetscCall(PetscFree(f->fixed.X));
   PetscCall(PetscFree2(f->force, f->velocity));
   PetscCall(NearImageDestroy(&f->image));
+  PetscCall(PetscFree(f->half));
   PetscCall(OffsetTableDestroy(&f->lattice));
   PetscCall(BoxPartDestroy(&f->box));
   PetscCall(PetscFree(*near));
@@ -66,8 +78,9 @@ PetscErrorCode NearFieldDestroy(NearField *near) {
 }
 
 PetscErrorCode NearFieldAddBoxPart(NearField f, const FluidSpec *spec) {
+  const BoxLattice lattice = {.stokeslet = &f->lattice, .half = f->half};
   PetscFunctionBeginUser;
-  PetscCall(BoxPartCreate(spec, f->markers, &f->box));
+  PetscCall(BoxPartCreate(spec, f->markers, &lattice, &f->box));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

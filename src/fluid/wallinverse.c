@@ -11,8 +11,6 @@
 #include "fluid/walls.h"
 #include "fluid/wallprofile.h"
 
-#define SWEEPS 5
-
 /* Mode k of pair dir: its share in the slip along the other pair's walls. A force sin(pi (k + 1) x/L) has the potential
    sqrt(lambda) psi(y) cos(pi (k + 1) x/L), to be taken half a cell from the wall in x. */
 static void FillCross(Walls w, int dir, PetscInt k, PetscReal lambda, const PetscReal psi[]) {
@@ -114,13 +112,13 @@ static void TakeForces(Walls w, int dir, PetscScalar d[]) {
   }
 }
 
-PetscErrorCode WallsPrecondition(Walls w, PetscScalar d[]) {
+PetscErrorCode WallsInvert(Walls w, int sweeps, PetscScalar d[]) {
   const PetscBool two = w->pair[0].cross.value ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionBeginUser;
   if (!w->n) PetscFunctionReturn(PETSC_SUCCESS);
   SetUp(w);
   PetscCall(PetscArrayzero(w->slip, w->n));
-  for (int sweep = 0; sweep < (two ? SWEEPS : 1); sweep++)
+  for (int sweep = 0; sweep < (two ? sweeps : 1); sweep++)
     for (int dir = 1; dir >= 0; dir--) {
       WallPair *p = &w->pair[dir];
       if (!p->length) continue;
