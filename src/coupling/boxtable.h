@@ -6,6 +6,7 @@
 #include "coupling/boxgrid.h"
 
 #define BOX_FUNCTIONS BOX_PLACES /* more than the functions of a direction */
+#define BOX_BLOCK_FUNCTIONS 64   /* at most, of a component in a block: 8 x 8 between four walls */
 
 /* Functions of x and y that D couples with one another only, and what is kept of its eigenvectors in them. */
 #define BOX_COMPONENTS 5 /* u, v, and of dipoles xx, yy, xy */
