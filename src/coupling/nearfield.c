@@ -20,13 +20,14 @@ static void Kress(PetscInt n, PetscReal k[]) {
 /* The lattice's tables, for pairs, their images in walls and the box part. */
 static PetscErrorCode MakeLattice(NearField f) {
   const Grid g = f->markers->grid;
+  ImageTable *half = NULL;
   PetscFunctionBeginUser;
   PetscCall(LatticeStokeslet(BOX_LATTICE_CELLS + OFFSET_LAGS, &f->lattice));
   if (g->wall[0] || g->wall[1]) {
-    PetscCall(PetscNew(&f->half));
-    PetscCall(ImageTableFill(&f->lattice, f->half));
+    PetscCall(PetscNew(&half));
+    PetscCall(ImageTableFill(&f->lattice, half));
   }
-  PetscCall(NearImageCreate(f->markers, f->nu, f->half, &f->image));
+  PetscCall(NearImageCreate(f->markers, f->nu, half, &f->image));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -69,8 +70,8 @@ PetscErrorCode NearFieldDestroy(NearField *near) {
   PetscCall(PetscFree2(f->stencil, f->bounds));
   PetscCall(PetscFree(f->fixed.X));
   PetscCall(PetscFree2(f->force, f->velocity));
+  if (f->image) PetscCall(PetscFree(f->image->table));
   PetscCall(NearImageDestroy(&f->image));
-  PetscCall(PetscFree(f->half));
   PetscCall(OffsetTableDestroy(&f->lattice));
   PetscCall(BoxPartDestroy(&f->box));
   PetscCall(PetscFree(*near));
@@ -78,7 +79,7 @@ PetscErrorCode NearFieldDestroy(NearField *near) {
 }
 
 PetscErrorCode NearFieldAddBoxPart(NearField f, const FluidSpec *spec) {
-  const BoxLattice lattice = {.stokeslet = &f->lattice, .half = f->half};
+  const BoxLattice lattice = {.stokeslet = &f->lattice, .half = f->image ? f->image->table : NULL};
   PetscFunctionBeginUser;
   PetscCall(BoxPartCreate(spec, f->markers, &lattice, &f->box));
   PetscFunctionReturn(PETSC_SUCCESS);
