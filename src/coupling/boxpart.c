@@ -1,6 +1,6 @@
 #include "coupling/boxpart.h"
 
-PetscErrorCode BoxPartCreate(const FluidSpec *spec, Markers markers, BoxPart *out) {
+PetscErrorCode BoxPartCreate(const FluidSpec *spec, Markers markers, const BoxLattice *lattice, BoxPart *out) {
   BoxPart b;
   PetscLogEvent event;
   PetscFunctionBeginUser;
@@ -10,7 +10,7 @@ PetscErrorCode BoxPartCreate(const FluidSpec *spec, Markers markers, BoxPart *ou
   b->ramp = spec->inertia == INERTIA_NONE ? PETSC_FALSE : PETSC_TRUE;
   PetscCall(PetvesEvent("BoxTable", &event));
   PetscCall(PetscLogEventBegin(event, 0, 0, 0, 0));
-  PetscCall(BoxTableCreate(spec, markers->kernel->name, PETSC_FALSE, &b->table));
+  PetscCall(BoxTableCreate(spec, markers->kernel->name, lattice, &b->table));
   PetscCall(PetscLogEventEnd(event, 0, 0, 0, 0));
   PetscCall(PetscMalloc3(2 * markers->layout->n * b->table.rank, &b->A, b->table.rank, &b->amplitude,
                          2 * markers->layout->n, &b->X));

@@ -1,4 +1,5 @@
 /* What a marker has of a box table. */
+#include "base/lanes.h"
 #include "coupling/boxtable.h"
 
 PetscReal BoxTableFade(const BoxTable *t, Grid g, const PetscReal X[2]) {
@@ -13,32 +14,46 @@ PetscReal BoxTableFade(const BoxTable *t, Grid g, const PetscReal X[2]) {
   return fade;
 }
 
-/* a[modes] += weights of one velocity component's functions times the block's vectors. */
-static void AddBlock(const BoxBlock *q, int c, const PetscReal vx[], const PetscReal vy[], PetscReal fade,
-                     PetscReal a[]) {
-  const PetscInt modes = q->modes;
-  const PetscReal *row = q->Q + c * q->n[0] * q->n[1] * modes, *y = vy + q->first[c][1];
-  for (PetscInt i = 0; i < q->n[0]; i++) {
-    const PetscReal x = fade * vx[q->first[c][0] + i];
-    PetscInt j = 0;
-    for (; j + 4 <= q->n[1]; j += 4, row += 4 * modes) /* four at once: a is read and written a quarter as often */
-      for (PetscInt m = 0; m < modes; m++)
-        a[m] += x * (y[j] * row[m] + y[j + 1] * row[modes + m] + y[j + 2] * row[2 * modes + m] +
-                     y[j + 3] * row[3 * modes + m]);
-    for (; j < q->n[1]; j++, row += modes)
-      for (PetscInt m = 0; m < modes; m++) a[m] += x * y[j] * row[m];
+/* a[4 n] = weights of count functions times their rows of vectors, 4 n of the `modes` that a row has: in registers. */
+static inline void Sums(const int n, PetscInt count, const PetscReal weight[], const PetscReal *row, PetscInt modes,
+                        PetscReal a[]) {
+  Lanes sum[4] = {{0}, {0}, {0}, {0}};
+  for (PetscInt f = 0; f < count; f++, row += modes)
+    for (int k = 0; k < n; k++) sum[k] += weight[f] * LanesAt(row + LANES * k);
+  for (int k = 0; k < n; k++) LanesPut(sum[k], a + LANES * k);
+}
+
+/* a[modes] of the block: weights of one component's functions times its vectors. The last four overlap others. */
+static void BlockRow(const BoxBlock *q, int c, const PetscReal weight[], PetscReal a[]) {
+  const PetscInt modes = q->modes, count = q->n[0] * q->n[1];
+  const PetscReal *Q = q->Q + c * count * modes;
+  PetscInt m = 0;
+  for (; m + 4 * LANES <= modes; m += 4 * LANES) Sums(4, count, weight, Q + m, modes, a + m);
+  for (; m + LANES <= modes; m += LANES) Sums(1, count, weight, Q + m, modes, a + m);
+  if (m < modes && modes >= LANES) {
+    m = modes - LANES;
+    Sums(1, count, weight, Q + m, modes, a + m);
+    m = modes;
+  }
+  for (; m < modes; m++) {
+    a[m] = 0;
+    for (PetscInt f = 0; f < count; f++) a[m] += weight[f] * Q[f * modes + m];
   }
 }
 
 void BoxTableRows(const BoxTable *t, const PetscReal X[2], PetscReal fade, int first, int count, PetscReal rows[]) {
-  PetscReal vx[BOX_FUNCTIONS], vy[BOX_FUNCTIONS];
+  PetscReal vx[BOX_FUNCTIONS], vy[BOX_FUNCTIONS], weight[BOX_BLOCK_FUNCTIONS];
   (void)PetscArrayzero(rows, count * t->rank);
   if (fade == 0) return;
   BoxTableFunctions(t, 0, X[0], vx);
   BoxTableFunctions(t, 1, X[1], vy);
   for (PetscInt q = 0; q < t->blocks; q++)
-    for (int c = 0; c < count; c++)
-      AddBlock(&t->block[q], first + c, vx, vy, fade, rows + c * t->rank + t->block[q].start);
+    for (int c = 0; c < count; c++) {
+      const BoxBlock *b = &t->block[q];
+      const PetscReal *x = vx + b->first[first + c][0], *y = vy + b->first[first + c][1];
+      for (PetscInt k = 0; k < b->n[0] * b->n[1]; k++) weight[k] = fade * x[k / b->n[1]] * y[k % b->n[1]];
+      BlockRow(b, first + c, weight, rows + c * t->rank + b->start);
+    }
 }
 
 PetscReal BoxSum(PetscInt r, const PetscReal l[], const PetscReal x[]) {

@@ -6,6 +6,7 @@
 #include "coupling/boxgrid.h"
 
 #define BOX_FUNCTIONS BOX_PLACES /* more than the functions of a direction */
+#define BOX_BLOCK_FUNCTIONS 64   /* at most, of a component in a block: 8 x 8 between four walls */
 
 /* Functions of x and y that D couples with one another only, and what is kept of its eigenvectors in them. */
 #define BOX_COMPONENTS 5 /* u, v, and of dipoles xx, yy, xy */
@@ -27,10 +28,9 @@ typedef struct {
   PetscReal H;   /* cell size of the coarser grid */
 } BoxTable;
 
-/* BoxTableCreate - for the run's grid and boundaries, of forces or of dipoles. Collective on spec->comm: ranks share
-   the solves. BoxTableDestroy
-   - and free. */
-PETSC_EXTERN PetscErrorCode BoxTableCreate(const FluidSpec *spec, const char kernel[], PetscBool dipoles,
+/* BoxTableCreate - for the run's grid and boundaries, of forces or of dipoles, as the lattice is, which is used here
+   only. Collective on spec->comm: ranks share the solves. BoxTableDestroy - and free. */
+PETSC_EXTERN PetscErrorCode BoxTableCreate(const FluidSpec *spec, const char kernel[], const BoxLattice *lattice,
                                            BoxTable *table);
 PETSC_EXTERN PetscErrorCode BoxTableDestroy(BoxTable *table);
 

@@ -1,7 +1,8 @@
 #include "coupling/doublebox.h"
 
-PetscErrorCode DoubleBoxCreate(const FluidSpec *spec, Markers markers, DoubleBox *out) {
+PetscErrorCode DoubleBoxCreate(const FluidSpec *spec, Markers markers, const OffsetTable lattice[2], DoubleBox *out) {
   const PetscInt n = markers->layout->n;
+  const BoxLattice dipoles = {.dipole = lattice};
   DoubleBox b;
   PetscLogEvent event;
   PetscFunctionBeginUser;
@@ -10,7 +11,7 @@ PetscErrorCode DoubleBoxCreate(const FluidSpec *spec, Markers markers, DoubleBox
   b->markers = markers;
   PetscCall(PetvesEvent("BoxTable", &event));
   PetscCall(PetscLogEventBegin(event, 0, 0, 0, 0));
-  PetscCall(BoxTableCreate(spec, markers->kernel->name, PETSC_TRUE, &b->table));
+  PetscCall(BoxTableCreate(spec, markers->kernel->name, &dipoles, &b->table));
   PetscCall(PetscLogEventEnd(event, 0, 0, 0, 0));
   PetscCall(PetscMalloc3(2 * n * b->table.rank, &b->response, DIPOLE_COUNT * n * b->table.rank, &b->source,
                          b->table.rank, &b->amplitude));

@@ -39,7 +39,7 @@ PetscErrorCode DoubleLayerDestroy(DoubleLayer *layer) {
 
 PetscErrorCode DoubleLayerAddBoxPart(DoubleLayer s, const FluidSpec *spec) {
   PetscFunctionBeginUser;
-  PetscCall(DoubleBoxCreate(spec, s->near->markers, &s->box));
+  PetscCall(DoubleBoxCreate(spec, s->near->markers, s->lattice, &s->box));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
