@@ -28,29 +28,44 @@ static PetscErrorCode CheckMethod(Scene scene) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* That a curve is large enough for the grid, fits into the box and is off its walls. */
-static PetscErrorCode CheckPlace(Scene scene, PetscInt b) {
-  const Shape *s = &scene->obstacles.outline;
+/* That a curve fits into the box and is off the walls that it does not stand on: with finer points next to a wall for
+   closed curves only (wallclose.h), others keep a marker spacing. */
+static PetscErrorCode CheckRoom(Scene scene, PetscInt b, int d, PetscReal low, PetscReal high) {
+  const SceneObstacles *own = &scene->obstacles;
   const FluidSpec *f = &scene->fluid;
-  const PetscReal h = FluidSpecCellSize(f);
+  const PetscReal h = FluidSpecCellSize(f), room[2] = {low - f->box[2 * d], f->box[2 * d + 1] - high};
+  const PetscReal least = own->outline.kind[b].type == CURVE_CLOSED ? KERNEL_FOLDED_CELLS : own->spacing;
+  PetscFunctionBeginUser;
+  PetscCheck(high - low < f->box[2 * d + 1] - f->box[2 * d], scene->comm, PETSC_ERR_USER_INPUT,
+             "-obstacle_shape: obstacle %" PetscInt_FMT " is %g long in %c; allowed: one that fits into -domain_box",
+             b + 1, (double)(high - low), "xy"[d]);
+  for (int side = 0; side < 2; side++)
+    PetscCheck(f->bc[d] != BC_WALL || own->wall[b] == 2 * d + side || room[side] >= least * h * (1 - 1e-12),
+               scene->comm, PETSC_ERR_USER_INPUT,
+               "-obstacle_shape: obstacle %" PetscInt_FMT " comes to %.3g cells of a wall in %c; allowed: at least %g",
+               b + 1, (double)(room[side] / h), "xy"[d], (double)least);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* And large enough for the grid: a bump along its wall, a spanning curve anyway. */
+static PetscErrorCode CheckPlace(Scene scene, PetscInt b) {
+  const SceneObstacles *own = &scene->obstacles;
+  const Shape *s = &own->outline;
+  const PetscReal h = FluidSpecCellSize(&scene->fluid);
   PetscFunctionBeginUser;
   for (int d = 0; d < 2; d++) {
+    const PetscBool along = own->wall[b] < 0 || own->wall[b] / 2 != d ? PETSC_TRUE : PETSC_FALSE;
     PetscReal low = PETSC_MAX_REAL, high = -PETSC_MAX_REAL;
     for (PetscInt k = s->start[b]; k < s->start[b + 1]; k++) {
       low = PetscMin(low, s->X[2 * k + d]);
       high = PetscMax(high, s->X[2 * k + d]);
     }
-    PetscCheck(high - low >= LEAST_ACROSS * h * (1 - 1e-2), scene->comm, PETSC_ERR_USER_INPUT,
+    PetscCheck(!along || s->kind[b].type == CURVE_SPANNING || high - low >= LEAST_ACROSS * h * (1 - 1e-2), scene->comm,
+               PETSC_ERR_USER_INPUT,
                "-obstacle_shape: obstacle %" PetscInt_FMT " is %.3g cells across in %c; allowed: at least %d, so finer "
                "-domain_cells or a larger one",
                b + 1, (double)((high - low) / h), "xy"[d], LEAST_ACROSS);
-    PetscCheck(high - low < f->box[2 * d + 1] - f->box[2 * d], scene->comm, PETSC_ERR_USER_INPUT,
-               "-obstacle_shape: obstacle %" PetscInt_FMT " is %g long in %c; allowed: one that fits into -domain_box",
-               b + 1, (double)(high - low), "xy"[d]);
-    const PetscReal room = PetscMin(low - f->box[2 * d], f->box[2 * d + 1] - high);
-    PetscCheck(f->bc[d] != BC_WALL || room >= KERNEL_FOLDED_CELLS * h * (1 - 1e-12), scene->comm, PETSC_ERR_USER_INPUT,
-               "-obstacle_shape: obstacle %" PetscInt_FMT " comes to %.3g cells of a wall in %c; allowed: at least %g",
-               b + 1, (double)(room / h), "xy"[d], (double)KERNEL_FOLDED_CELLS);
+    PetscCall(CheckRoom(scene, b, d, low, high));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -118,8 +133,7 @@ PetscErrorCode SceneCheckObstacles(Scene scene) {
   PetscReal period[2];
   PetscFunctionBeginUser;
   PetscCall(CheckMethod(scene));
-  for (int d = 0; d < 2; d++)
-    period[d] = scene->fluid.bc[d] == BC_PERIODIC ? scene->fluid.box[2 * d + 1] - scene->fluid.box[2 * d] : 0;
+  FluidSpecPeriods(&scene->fluid, period);
   for (PetscInt b = 0; b < scene->obstacles.outline.vesicles; b++) PetscCall(CheckPlace(scene, b));
   PetscCall(CheckCrossing(scene, period));
   PetscCall(CheckInside(scene, period));
