@@ -83,3 +83,45 @@ void CurveOpenWeights(PetscInt n, PetscInt times, PetscInt q, PetscReal weight[]
   const PetscInt first = Lagrange(n, t, PETSC_FALSE, part);
   for (int i = 0; i < ORDER; i++) weight[first + i] = part[i];
 }
+
+PetscBool CurveSetWalk(const CurveSet *set, PetscInt v, PetscInt k, PetscInt steps, PetscReal X[2]) {
+  const CurveKind kind = CurveSetKind(set, v);
+  const PetscInt first = set->start[v], n = set->start[v + 1] - first, to = k - first + steps;
+  const PetscInt turns = to < 0 ? -((n - 1 - to) / n) : to / n;
+  if (turns && kind.type == CURVE_OPEN) return PETSC_FALSE;
+  for (int c = 0; c < 2; c++) X[c] = set->X[2 * (first + to - turns * n) + c] + (PetscReal)turns * kind.span[c];
+  return PETSC_TRUE;
+}
+
+PetscErrorCode CurveFineCreate(const CurveSet *set, PetscInt n, const PetscInt which[], PetscInt times,
+                               CurveFine *fine) {
+  PetscFunctionBeginUser;
+  *fine = (CurveFine){.set = *set};
+  for (PetscInt k = 0; k < n; k++) {
+    const PetscInt *start = set->start + which[k];
+    fine->start[k + 1] = fine->start[k] + times * (start[1] - start[0]);
+    fine->kind[k] = CurveSetKind(set, which[k]);
+  }
+  PetscCall(PetscMalloc1(2 * fine->start[n], &fine->X));
+  for (PetscInt k = 0; k < n; k++) {
+    const PetscInt *start = set->start + which[k];
+    if (times == 1)
+      PetscCall(PetscArraycpy(fine->X + 2 * fine->start[k], set->X + 2 * start[0], 2 * (start[1] - start[0])));
+    else
+      PetscCall(CurveFinePoints(&fine->kind[k], start[1] - start[0], set->X + 2 * start[0], times,
+                                fine->X + 2 * fine->start[k]));
+  }
+  fine->set.curves = fine->set.moving = n;
+  fine->set.start = fine->start;
+  fine->set.kind = fine->kind;
+  fine->set.X = fine->X;
+  fine->set.smooth = PETSC_FALSE;
+  fine->set.part = NULL;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CurveFineDestroy(CurveFine *fine) {
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(fine->X));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

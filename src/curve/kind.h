@@ -11,6 +11,39 @@ typedef struct {
   PetscReal span[2]; /* from marker 0 to where marker n would be: a period of a spanning curve, else zero */
 } CurveKind;
 
+/* Curves as contacts see them: curve v has the points start[v] .. start[v+1]-1. */
+typedef struct {
+  PetscInt curves;
+  PetscInt moving; /* the first ones; others are not compared among themselves */
+  const PetscInt *start;
+  const CurveKind *kind; /* [curves]; NULL: all closed */
+  const PetscReal *X;
+  const PetscReal *period; /* [2] 0 is none, else the nearest images count */
+  PetscBool smooth;        /* the points are those of smooth curves, else of polygons */
+  const PetscInt *part;    /* [2] only pairs are looked at whose first curve, or whose curve at a wall, is one of part[0]
+                              .. part[1] - 1, of the moving ones, so that ranks can share the search; NULL: all */
+} CurveSet;
+
+/* CurveSetKind - of curve v. CurveSetWalk - the place X of the point `steps` on from point k of curve v, a period
+   further where that leads over the end of a spanning curve; false beyond an open end. Not
+   collective. */
+static inline CurveKind CurveSetKind(const CurveSet *set, PetscInt v) {
+  return set->kind ? set->kind[v] : (CurveKind){0};
+}
+PETSC_EXTERN PetscBool CurveSetWalk(const CurveSet *set, PetscInt v, PetscInt k, PetscInt steps, PetscReal X[2]);
+
+/* CurveFineCreate - one or two curves of a set, which[n], as a set of polygons of their own, all moving, at `times`
+   their points. Not collective. */
+typedef struct {
+  CurveSet set;
+  PetscInt start[3];
+  CurveKind kind[2];
+  PetscReal *X;
+} CurveFine;
+PETSC_EXTERN PetscErrorCode CurveFineCreate(const CurveSet *set, PetscInt n, const PetscInt which[], PetscInt times,
+                                            CurveFine *fine);
+PETSC_EXTERN PetscErrorCode CurveFineDestroy(CurveFine *fine);
+
 /* CurveTangents - T[2n] = dX/dk: spectral where the curve repeats, else of polynomials through six markers. s is of n
    markers. Not collective. */
 PETSC_EXTERN PetscErrorCode CurveTangents(const CurveKind *kind, Spectral s, PetscInt n, const PetscReal X[],
