@@ -10,8 +10,7 @@ PetscErrorCode BodiesCreate(Membrane m, Obstacles obstacles, Bodies *out) {
   b->membrane = m;
   b->vesicles = vesicles;
   b->obstacles = obstacles;
-  PetscCall(
-      PetscCalloc3(b->layout->bodies, &b->ds, b->layout->bodies, &b->spectral, b->layout->bodies, &b->kind));
+  PetscCall(PetscCalloc3(b->layout->bodies, &b->ds, b->layout->bodies, &b->spectral, b->layout->bodies, &b->kind));
   PetscCall(PetscArraycpy(b->ds, m->ds, vesicles));
   PetscCall(PetscArraycpy(b->spectral, m->spectral, vesicles));
   if (obstacles) {

@@ -23,8 +23,8 @@ typedef struct {
   PetscReal distance;
 } CurveGap;
 
-/* CurveGaps - of every two curves nearer than reach, in order; gaps[n] is the caller's to free. Of smooth curves what is
-   nearer than half an edge is found at eight times the points. Not collective. Errors: memory. */
+/* CurveGaps - of every two curves nearer than reach, in order; gaps[n] is the caller's to free. Of smooth curves what
+   is nearer than half an edge is found at eight times the points. Not collective. Errors: memory. */
 PETSC_EXTERN PetscErrorCode CurveGaps(const CurveSet *set, PetscReal reach, PetscInt *n, CurveGap **gaps);
 
 /* CurveLeastGap - the least of all distances, of any size; not a number where nothing is within half a period, or where

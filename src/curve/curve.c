@@ -201,8 +201,8 @@ PetscErrorCode EllipseAxes(PetscReal area, PetscReal reduced_area, PetscReal axe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Second derivatives of the cubic spline by two passes of the cyclic Thomas algorithm (Sherman-Morrison). Of an open one
-   that of the first and the last point, which are one unknown, is zero. */
+/* Second derivatives of the cubic spline by two passes of the cyclic Thomas algorithm (Sherman-Morrison). Of an open
+   one that of the first and the last point, which are one unknown, is zero. */
 static PetscErrorCode SplineSetUp(Curve *c) {
   const PetscInt n = c->n;
   PetscReal *diag, *low, *up, *rhs, *z;

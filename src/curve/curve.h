@@ -1,10 +1,11 @@
-/* Curves in the plane, most of them closed: ellipses, splines through points, curves of a file, markers at equal distances on them.
-   What a scene and a membrane both need. Markers are interlaced, x0,y0,x1,y1,...; lengths are in the user's units. */
+/* Curves in the plane, most of them closed: ellipses, splines through points, curves of a file, markers at equal
+   distances on them. What a scene and a membrane both need. Markers are interlaced, x0,y0,x1,y1,...; lengths are in the
+   user's units. */
 #pragma once
 #include "curve/kind.h"
 
-/* Curves as equal-edge markers, closed ones counter-clockwise. X holds x0,y0,x1,y1,... of all vesicles one after another;
-   vesicle v owns markers start[v] .. start[v+1]-1. */
+/* Curves as equal-edge markers, closed ones counter-clockwise. X holds x0,y0,x1,y1,... of all vesicles one after
+   another; vesicle v owns markers start[v] .. start[v+1]-1. */
 typedef struct {
   PetscInt vesicles;
   PetscInt *start;   /* [vesicles+1] */

@@ -20,8 +20,8 @@ typedef struct {
   const PetscReal *X;
   const PetscReal *period; /* [2] 0 is none, else the nearest images count */
   PetscBool smooth;        /* the points are those of smooth curves, else of polygons */
-  const PetscInt *part;    /* [2] only pairs are looked at whose first curve, or whose curve at a wall, is one of part[0]
-                              .. part[1] - 1, of the moving ones, so that ranks can share the search; NULL: all */
+  const PetscInt *part; /* [2] only pairs are looked at whose first curve, or whose curve at a wall, is one of part[0]
+                           .. part[1] - 1, of the moving ones, so that ranks can share the search; NULL: all */
 } CurveSet;
 
 /* CurveSetKind - of curve v. CurveSetWalk - the place X of the point `steps` on from point k of curve v, a period

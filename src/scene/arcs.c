@@ -1,9 +1,9 @@
 #include "scene/arcs.h"
 #include "kernel/kernel.h"
 
-#define SAMPLES 4000  /* of a curve, where it is looked for its places off a wall */
-#define HALVINGS 50   /* of a sample, to find the place */
-#define LEAST_RISE 2  /* cells off its wall, in its middle */
+#define SAMPLES 4000 /* of a curve, where it is looked for its places off a wall */
+#define HALVINGS 50  /* of a sample, to find the place */
+#define LEAST_RISE 2 /* cells off its wall, in its middle */
 #define BUMP_POINTS 257
 
 /* Distance (length) of X from a wall, negative behind it. */

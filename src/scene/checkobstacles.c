@@ -200,10 +200,11 @@ static PetscErrorCode CheckFlux(Scene scene, PetscInt b) {
     flux += U[0] * edge[1] - U[1] * edge[0];
     all += PetscHypotReal(U[0], U[1]) * PetscHypotReal(edge[0], edge[1]);
   }
-  PetscCheck(PetscAbsReal(flux) <= MOST_FLUX * all, scene->comm, PETSC_ERR_USER_INPUT,
-             "-obstacle_shape: obstacle %" PetscInt_FMT " has a flux of %.3g through it, of its surface's velocity less "
-             "a uniform flow's, which no fluid can follow; allowed on a wall and across a period: velocities along them",
-             b + 1, (double)flux);
+  PetscCheck(
+      PetscAbsReal(flux) <= MOST_FLUX * all, scene->comm, PETSC_ERR_USER_INPUT,
+      "-obstacle_shape: obstacle %" PetscInt_FMT " has a flux of %.3g through it, of its surface's velocity less "
+      "a uniform flow's, which no fluid can follow; allowed on a wall and across a period: velocities along them",
+      b + 1, (double)flux);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

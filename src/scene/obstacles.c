@@ -1,5 +1,5 @@
-/* The obstacles of a scene: circles, bumps or curves of a file, markers at equal distances on them, and what their surfaces
-   do. */
+/* The obstacles of a scene: circles, bumps or curves of a file, markers at equal distances on them, and what their
+   surfaces do. */
 #include "kernel/kernel.h"
 #include "scene/arcs.h"
 
@@ -140,8 +140,7 @@ static PetscErrorCode Cut(Scene scene, Outlines *o) {
   PetscCall(PetscMalloc2(2 * o->count, &o->part, o->count, &o->wall));
   for (PetscInt k = 0; k < o->count; k++) {
     o->wall[k] = -1;
-    if (o->curve[k].kind.type == CURVE_OPEN)
-      PetscCall(ArcCut(scene, k, &o->curve[k], o->part + 2 * k, &o->wall[k]));
+    if (o->curve[k].kind.type == CURVE_OPEN) PetscCall(ArcCut(scene, k, &o->curve[k], o->part + 2 * k, &o->wall[k]));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -51,8 +51,8 @@ static void Look(Scheme s, const PetscReal X[], View *view) {
   view->room = Room(s);
   view->own[0] = s->membrane->layout->own;
   view->own[1] = s->membrane->layout->end;
-  view->set = (CurveSet){b->layout->bodies, b->vesicles,       b->layout->start,  b->kind,
-                         X,                 view->room.period, SchemeIsSmooth(s), view->own};
+  view->set = (CurveSet){b->layout->bodies, b->vesicles,       b->layout->start, b->kind, X,
+                         view->room.period, SchemeIsSmooth(s), view->own};
 }
 
 /* The films of own vesicles thinner than reach at the curves X[2(M + W)], in order; those of walls come last, as of a
