@@ -54,7 +54,8 @@ static PetscErrorCode CheckNearest(PetscReal period_x, PetscReal period_y, Petsc
   CurveContact *c;
   PetscFunctionBeginUser;
   Place(CURVES, circles, POINTS, X);
-  PetscCall(CurveContacts(CURVES, CURVES, start, X, period, reach, &n, &c));
+  const CurveSet set = {CURVES, CURVES, start, NULL, X, period, PETSC_FALSE};
+  PetscCall(CurveContacts(&set, reach, &n, &c));
   for (PetscInt p = 0; p < CURVES * POINTS; p++)
     for (PetscInt w = 0; w < CURVES; w++)
       wanted += Distance(X + 2 * p, POINTS, X + 2 * start[w], period, p / POINTS == w ? PETSC_TRUE : PETSC_FALSE) <
@@ -90,8 +91,9 @@ static PetscErrorCode CheckGap(PetscReal gap, PetscReal period, PetscReal tolera
   PetscInt n;
   PetscFunctionBeginUser;
   Place(2, circles, POINTS, X);
-  PetscCall(CurveGaps(2, 2, start, X, NULL, periods, PETSC_TRUE, 0.2, &n, &gaps));
-  PetscCall(CurveLeastGap(2, 2, start, X, periods, PETSC_TRUE, &least));
+  const CurveSet set = {2, 2, start, NULL, X, periods, PETSC_TRUE};
+  PetscCall(CurveGaps(&set, 0.2, &n, &gaps));
+  PetscCall(CurveLeastGap(&set, &least));
   const PetscReal found = n ? gaps[0].distance : NAN;
   CHECK(n == (gap < 0.2) && (!n || PetscAbsReal(found - gap) < tolerance) && PetscAbsReal(least - gap) < tolerance,
         "circles %g apart, period %g: %g, least of all %g", gap, period, found, least);
@@ -108,8 +110,8 @@ static PetscErrorCode CheckAlone(void) {
   PetscReal X[2 * POINTS], gap[2];
   PetscFunctionBeginUser;
   Place(1, &circle, POINTS, X);
-  PetscCall(CurveLeastGap(1, 1, start, X, none, PETSC_TRUE, &gap[0]));
-  PetscCall(CurveLeastGap(1, 1, start, X, box, PETSC_TRUE, &gap[1]));
+  const CurveSet sets[2] = {{1, 1, start, NULL, X, none, PETSC_TRUE}, {1, 1, start, NULL, X, box, PETSC_TRUE}};
+  for (int k = 0; k < 2; k++) PetscCall(CurveLeastGap(&sets[k], &gap[k]));
   CHECK(PetscIsNanReal(gap[0]) && PetscAbsReal(gap[1] - 0.25) < 1e-3, "one circle: %g alone, %g to its image", gap[0],
         gap[1]);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -128,13 +130,14 @@ static PetscErrorCode CheckFilm(PetscBool images, PetscReal coarse, PetscInt v, 
   PetscFunctionBeginUser;
   Place(4, circles, POINTS, X);
   for (int k = 0; k < 4; k++) ds[k] = (k == 2 ? 1 : coarse) * 2 * PETSC_PI * circles[k].radius / POINTS;
-  PetscCall(CurveThinnestFilm(4, 4, start, X, NULL, ds, &room, PETSC_TRUE, 2, &film));
+  const CurveSet set = {4, 4, start, NULL, X, room.period, PETSC_TRUE};
+  PetscCall(CurveThinnestFilm(&set, ds, &room, 2, &film));
   const PetscReal spacing = PetscMax(ds[v], w < 0 ? 0 : ds[w]);
   CHECK(film.pair[0] == v && film.pair[1] == w && PetscAbsReal(film.thickness - thickness) < 6e-3 &&
             PetscAbsReal(film.spacings * spacing - film.thickness) < 1e-14,
         "film of %d and %d: %g thick, %g spacings", (int)film.pair[0], (int)film.pair[1], film.thickness,
         film.spacings);
-  PetscCall(CurveThinnestFilm(4, 4, start, X, NULL, ds, &room, PETSC_TRUE, 0.9 * film.spacings, &film));
+  PetscCall(CurveThinnestFilm(&set, ds, &room, 0.9 * film.spacings, &film));
   CHECK(film.pair[0] == 0 && film.pair[1] == 0 && film.thickness == 0, "   none below that");
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -60,6 +60,8 @@ static PetscErrorCode AddAt(NearField f, const NearBlock *block, int direction, 
 PetscErrorCode NearBlockRefineAtWalls(NearField f, const NearBlock *b) {
   const PetscReal ds = PetscMax(f->bodies->ds[b->row], f->bodies->ds[b->column]);
   PetscFunctionBeginUser;
+  for (int end = 0; end < 2; end++)
+    if (f->bodies->kind[end ? b->column : b->row].type != CURVE_CLOSED) PetscFunctionReturn(PETSC_SUCCESS);
   for (int wall = 0; wall < 4; wall++) {
     const int direction = wall / 2, side = wall % 2;
     if (!f->image->end[direction][side]) continue;

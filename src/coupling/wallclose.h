@@ -4,5 +4,6 @@
 
 /* NearBlockRefineAtWalls - to the block between two curves, or of one with itself, whose images in a wall are nearer
    than two marker spacings, the difference between Blake's image on finer points of both and on the markers; nothing
-   elsewhere. Not collective. */
+   elsewhere, nor for curves that are not closed: the first marker of an open one is half a spacing off its wall. Not
+   collective. */
 PETSC_EXTERN PetscErrorCode NearBlockRefineAtWalls(NearField near, const NearBlock *block);

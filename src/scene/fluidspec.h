@@ -32,6 +32,11 @@ static inline PetscReal FluidSpecCellSize(const FluidSpec *spec) {
   return (spec->box[1] - spec->box[0]) / spec->cells[0];
 }
 
+/* FluidSpecPeriods - of both directions (length), 0 without. */
+static inline void FluidSpecPeriods(const FluidSpec *spec, PetscReal period[2]) {
+  for (int d = 0; d < 2; d++) period[d] = spec->bc[d] == BC_PERIODIC ? spec->box[2 * d + 1] - spec->box[2 * d] : 0;
+}
+
 /* FluidSpecIsFree - whether the fluid is unbounded: the box is only the window in which fields are written. */
 static inline PetscBool FluidSpecIsFree(const FluidSpec *spec) {
   return spec->bc[0] == BC_FREE ? PETSC_TRUE : PETSC_FALSE;
