@@ -177,3 +177,12 @@ def test_suspension(tmp_path):
     series = run_file("suspension", tmp_path, words)
     added = (series["viscosity"][-1] - 1) / (series["area"][-1] / 32**2)
     assert added == pytest.approx(1.62, rel=0.01)
+
+
+def test_hundred(tmp_path):
+    """Ten of the hundred in a tenth of the box: bending, contact and gravity together fall in every step, centres sink."""
+    words = "-domain_box 0,9,0,12.8 -domain_cells 45,64 -vesicle_count 10 -time_step .5 -time_end 4"
+    series = run_file("hundred", tmp_path, words)
+    energy = sum(series[f"energy_{name}"] for name in ("bending", "contact", "gravity"))
+    assert np.diff(energy).max() < 0 and series["center_y"][-1] < series["center_y"][0] - 0.1
+    assert max(np.abs(series[f"{name}_error"]).max() for name in ("area", "length")) < 1e-10
