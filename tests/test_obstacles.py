@@ -156,6 +156,67 @@ def test_drag_in_a_channel_without_flux(tmp_path):
     assert other["obstacle_force_x"] == pytest.approx(row["obstacle_force_x"], rel=1e-5)
 
 
+def swinging_torque(radius, outer, omega):
+    """The amplitude of the torque on a circle that swings with exp(i omega t) at speed r, viscosity 1, of the fluid
+    up to a circle at rest and of that inside: u'' + u'/r - u/r^2 = i omega u by Chebyshev's points."""
+    n = 40
+    x = np.cos(np.pi * np.arange(n + 1) / n)
+    c = np.r_[2, np.ones(n - 1), 2] * (-1.0) ** np.arange(n + 1)
+    D = np.outer(c, 1 / c) / (np.subtract.outer(x, x) + np.eye(n + 1))
+    D -= np.diag(D.sum(1))
+    total = 0
+    for low, high in ((radius, outer), (1e-3 * radius, radius)):
+        r, d = low + (high - low) * (x + 1) / 2, 2 * D / (high - low)
+        A = (d @ d + d / r[:, None] - np.diag(1 / r**2 + 1j * omega)).astype(complex)
+        A[0], A[n] = np.eye(n + 1)[[0, n]]
+        b = np.zeros(n + 1, complex)
+        inner = high == radius
+        b[0 if inner else n] = radius
+        slope = (d @ np.linalg.solve(A, b))[0 if inner else n]
+        total += (-1 if inner else 1) * 2 * np.pi * radius**2 * (slope - 1)
+    return total
+
+
+def test_a_swinging_circle(tmp_path):
+    """Unsteady flow between two circles: the torque's amplitude to 1 %, to second order in time, without ringing."""
+    omega, torque = 40, []
+    for steps in (20, 40, 80):
+        cycle = 2 * np.pi / omega
+        options = STILL.replace("-time_step .01 -time_end .01", "")
+        options += f" {PERIODIC} -domain_box 0,1,0,1 -domain_cells 32,32 -obstacle_shape couette -obstacle_radius .2,.4"
+        options += f" -obstacle_center .5,.5 -obstacle_rotation 1,0 -obstacle_frequency {omega}"
+        options += f" -fluid_inertia unsteady -time_step {cycle / steps:.17g} -time_end {2 * cycle:.17g}"
+        series = run_petves(tmp_path / str(steps), options).series
+        t, found = series["time"][-steps:], series["obstacle_torque_1"]
+        torque.append(2 * np.mean(found[-steps:] * np.exp(-1j * omega * t)))
+        kink = np.abs(np.diff(found[-steps:], 2)).max()
+        assert kink < 1.05 * (2 * np.pi / steps) ** 2 * abs(torque[-1])
+    assert abs(torque[1] / swinging_torque(0.2, 0.4, omega) - 1) < 0.01
+    assert 3.5 < abs(torque[0] - torque[1]) / abs(torque[1] - torque[2]) < 4.5
+
+
+def test_flow_with_inertia(tmp_path):
+    """Past a held post the flow starts steady and stays. With a vesicle the sparse LU, two ranks and a restart agree."""
+    options = f"{ARRAY} -obstacle_radius .2 -domain_cells 32,32 -fluid_inertia unsteady -time_end .03"
+    series = run_petves(tmp_path / "post", options).series
+    assert series["obstacle_force_x"][1:] == pytest.approx(EXACT["drag"]["0.2"], rel=1e-5)
+    assert series["pressure_drop"][1:] == pytest.approx(EXACT["drag"]["0.2"], rel=1e-5)
+    assert series["flux"][1:] == pytest.approx(1, rel=1e-12)
+    short = f"{POST} -fluid_inertia unsteady -time_step .04"
+    tight, end = "-coupled_ksp_rtol 1e-11", "-time_end .12"
+    one = last(tmp_path / "one", f"{short} {tight} {end}")
+    run_petves(tmp_path / "half", f"{short} {tight} -time_end .08")
+    go_on = f"{tight} -restart {tmp_path / 'half' / 'checkpoint.h5'}"
+    for name, more, ranks, within in (
+        ("direct", "-scheme_type direct", 1, 1e-9),
+        ("two", tight, 2, 1e-9),
+        ("rest", go_on, 1, 0),
+    ):
+        other = last(tmp_path / name, f"{short} {end} {more}", ranks)
+        for column in ("center_x", "gap", "obstacle_force_x", "obstacle_torque_1"):
+            assert other[column] == pytest.approx(one[column], rel=within, abs=1e-9 if within else 0)
+
+
 def test_drive_of_a_channel(tmp_path):
     """A post in Poiseuille flow: the pressure drop given and the flux lower, or the flux kept and the drop higher; at
     low flux both belong to one resistance. The sparse LU keeps the flux as well."""

@@ -41,6 +41,7 @@ PetscErrorCode ObstaclesCreate(Scene scene, Layout all, Obstacles *out) {
   PetscCall(PetscNew(&o));
   *out = o;
   o->all = all;
+  o->frequency = own->frequency;
   o->beta = 1 / (4 * scene->fluid.nu);
   PetscCall(LayoutCreatePart(all, all->bodies - curves, all->bodies, &o->layout));
   const PetscInt W = o->layout->M;
@@ -103,11 +104,12 @@ void ObstaclesScale(Obstacles o, PetscReal weight, PetscBool inverse, PetscScala
 PetscErrorCode ObstaclesData(Obstacles o, const Flow *flow, PetscReal t, PetscScalar y[],
                              char message[PETVES_MAX_MESSAGE]) {
   const Layout l = o->layout;
+  const PetscReal swing = PetscCosReal(o->frequency * t);
   PetscReal *u;
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(2 * l->n, &u));
   PetscCall(FlowVelocities(flow, t, l->n, o->X + 2 * l->first, u, message));
-  for (PetscInt k = 0; k < 2 * l->n; k++) y[k] += u[k] - o->U[2 * l->first + k];
+  for (PetscInt k = 0; k < 2 * l->n; k++) y[k] += u[k] - swing * o->U[2 * l->first + k];
   PetscCall(PetscFree(u));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -13,7 +13,8 @@ struct _p_Obstacles {
   Layout all;           /* borrowed: vesicles and obstacles */
   Layout layout;        /* obstacles alone, on the same ranks */
   PetscReal *X;         /* [2W] markers of all obstacles */
-  PetscReal *U;         /* [2W] prescribed velocity there, U_w */
+  PetscReal *U;         /* [2W] prescribed velocity there, U_w, at time 0 */
+  PetscReal frequency;  /* U_w swings with its cosine (1/time) */
   PetscReal *N;         /* [2W] unit vector of each curve's normals, dX/dk turned outwards */
   PetscReal *center;    /* [2 curves] about which torques are taken: the mean of the markers */
   PetscReal *ds;        /* [curves] mean edge */

@@ -3,7 +3,8 @@
 #include "kernel/kernel.h"
 #include "scene/mixture.h"
 
-#define LEAST_ACROSS 6 /* cells */
+#define LEAST_ACROSS 6   /* cells */
+#define MOST_SPACING 1.5 /* ds/h with inertia, where the mobility of markers farther apart is indefinite */
 
 static PetscErrorCode CheckMethod(Scene scene) {
   PetscFunctionBeginUser;
@@ -14,9 +15,12 @@ static PetscErrorCode CheckMethod(Scene scene) {
              "-obstacle_shape: not with -scheme_type %s; allowed: coupled, direct", scene->scheme.type);
   PetscCheck(scene->fluid.form != FORM_TOTAL, scene->comm, PETSC_ERR_USER_INPUT,
              "-obstacle_shape: not with -flow_form total; allowed: disturbance");
-  PetscCheck(scene->fluid.inertia == INERTIA_AUTO || scene->fluid.inertia == INERTIA_NONE, scene->comm,
-             PETSC_ERR_USER_INPUT, "-obstacle_shape: not with -fluid_inertia %s; allowed: none",
-             scene->fluid.inertia == INERTIA_UNSTEADY ? "unsteady" : "convective");
+  PetscCheck(scene->fluid.inertia == INERTIA_AUTO || scene->fluid.inertia == INERTIA_NONE ||
+                 scene->obstacles.spacing <= MOST_SPACING,
+             scene->comm, PETSC_ERR_USER_INPUT,
+             "-obstacle_spacing %g: with inertia of the fluid obstacles so far apart leak; allowed: at most %g, or "
+             "-fluid_inertia none",
+             (double)scene->obstacles.spacing, MOST_SPACING);
   PetscCheck(scene->coupling.near_field == NEAR_EXACT, scene->comm, PETSC_ERR_USER_INPUT,
              "-obstacle_shape: not with -coupling_near_field none; allowed: exact");
   PetscCheck(SceneHasBoxPart(scene), scene->comm, PETSC_ERR_USER_INPUT,

@@ -16,6 +16,8 @@ typedef struct {
   PetscReal nu;      /* viscosity (density is 1) */
   PetscInt inertia;  /* InertiaType, never INERTIA_AUTO */
   PetscInt drive;    /* DriveType: in a channel no mean pressure gradient, or no flux, of what is solved for */
+  PetscBool held;    /* in a box that is periodic both ways the mean of what is solved for stays zero, whatever forces
+                        there are: with obstacles */
   PetscInt form;     /* FlowForm: of the total form the walls move with the flow */
   const Flow *flow;  /* background flow, borrowed */
   char helmholtz[OPTION_MAX_NAME]; /* back end of the Helmholtz solves */

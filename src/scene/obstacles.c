@@ -205,6 +205,7 @@ PetscErrorCode SceneMakeObstacles(Draft scene) {
   if (scene->obstacles.shape == OBSTACLE_FILE) PetscCall(MakeFromFile(scene, &o));
   PetscCall(Cut(scene, &o));
   PetscCall(PlaceMarkers(scene, &o, &scene->obstacles));
+  scene->fluid.held = PETSC_TRUE;
   for (PetscInt k = 0; k < o.count; k++) PetscCall(CurveDestroy(&o.curve[k]));
   PetscCall(PetscFree(o.curve));
   PetscCall(PetscFree(o.center));

@@ -59,6 +59,7 @@ typedef struct {
 typedef struct {
   PetscInt shape; /* ObstacleShape */
   RealList radius, center, move, rotation;
+  PetscReal frequency;           /* angular, of the surfaces' velocities (1/time); 0: steady */
   IntList lattice;               /* columns and rows; 0, 0: none */
   PetscReal shift;               /* of a row against the one below, over the distance of columns */
   PetscReal throat, length;      /* of a constriction: narrowest width over the channel's; along x, 0: the width */

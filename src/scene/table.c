@@ -51,6 +51,7 @@ static const OptionRow table[] = {
   {"-obstacle_length", OPT_REAL, AT(obstacles.length), "0", ">=0", "constriction: its length along x, a whole wave of a cosine; 0: as long as the channel is wide (length)"},
   {"-obstacle_velocity", OPT_REALS, AT(obstacles.move), "0,0", "any", "u_x,u_y of the fluid at the obstacles' surfaces, one for all or one each; the curves stay where they are (length/time)"},
   {"-obstacle_rotation", OPT_REALS, AT(obstacles.rotation), "0", "any", "rate at which the surfaces turn about their curves' middles, counter-clockwise, one for all or one each (1/time)"},
+  {"-obstacle_frequency", OPT_REAL, AT(obstacles.frequency), "0", ">=0", "the surfaces' velocities are those given times the cosine of this times the time: they swing (1/time)"},
   {"-obstacle_file", OPT_PATH, AT(obstacles.file), "", "", "curves as -vesicle_file's, a clockwise one a container of the fluid; one after a line # open has its ends on a wall, one whose last point is the first but for a period spans the box, its solid on the left; lines # velocity u_x u_y and # rotation w before a curve are its own"},
   {"-obstacle_spacing", OPT_REAL, AT(obstacles.spacing), "1", "[0.3,2]", "spacing ds/h of the obstacles' markers, without influence on the flow from 0.5 to 2 but for films thinner than it"},
   {"-delta_type", OPT_NAME, AT(coupling.kernel), "cbs54", KERNEL_NAMES, "kernel between grid and markers; split, penalty: ib6"},

@@ -113,6 +113,7 @@ static const struct {
              {"-obstacle_length", BY_CONSTRICTION},
              {"-obstacle_velocity", BY_CIRCLES},
              {"-obstacle_rotation", BY_CIRCLES},
+             {"-obstacle_frequency", BY_OBSTACLES},
              {"-obstacle_file", BY_OBSTACLE_FILE},
              {"-obstacle_spacing", BY_OBSTACLES},
              {"-delta_type", BY_BODIES},

@@ -134,6 +134,7 @@ PetscErrorCode DriveMeasure(Scheme s, Drive *drive) {
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 4, MPIU_REAL, MPI_SUM, g->comm));
   FlowPressureGradient(&s->scene->flow, s->fluid->nu, background);
   gradient = sum[2] / faces - sum[0] / area;
+  if (g->wall[1] && !s->fluid->zero_flux) gradient = 0; /* none but the background's */
   if (s->coupling->contrast) PetscCall(InnerMean(s, mean));
   drive->flux = (sum[3] / faces - mean[0]) * (g->hi[1] - g->lo[1]) + BackgroundFlux(s);
   GiveBack(s, sum[1], &gradient, &drive->flux);
