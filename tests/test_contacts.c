@@ -1,7 +1,8 @@
 /* The edge nearest to each point, the gaps of curves and the thinnest film, against the search of all pairs and of
- * circles. */
+   circles; curves that are open or span a period. */
 #include "check.h"
 #include "curve/contacts.h"
+#include "curve/crossing.h"
 
 #define POINTS 24
 #define CURVES 6
@@ -142,6 +143,88 @@ static PetscErrorCode CheckFilm(PetscBool images, PetscReal coarse, PetscInt v, 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* A circle against a curve that does not move, `gap` below its lowest point: half a circle, open, with its solid
+   within, or a line across the period, with its solid below or (back) above, near whose end the circle is. */
+static PetscErrorCode CheckSolid(CurveType type, PetscBool back, PetscReal gap) {
+  const Circle circle = {type == CURVE_OPEN ? 0.3 : 2.9, 0, 1};
+  const PetscInt start[3] = {0, POINTS, 2 * POINTS};
+  const PetscReal period[2] = {type == CURVE_OPEN ? 0 : 6, 0}, along = back ? 6 : -6;
+  const CurveKind kind[2] = {{CURVE_CLOSED}, {type, {type == CURVE_OPEN ? 0 : along, 0}}};
+  PetscReal X[4 * POINTS];
+  CurveGap *gaps;
+  PetscInt n;
+  PetscFunctionBeginUser;
+  Place(1, &circle, POINTS, X);
+  for (PetscInt k = 0; k < POINTS; k++) {
+    const PetscReal t = PETSC_PI * (PetscReal)k / (POINTS - 1);
+    X[2 * (POINTS + k)] = type == CURVE_OPEN ? 0.3 + 2 * PetscCosReal(t) : along * ((PetscReal)k / POINTS - 0.5);
+    X[2 * (POINTS + k) + 1] = -1 - gap - (type == CURVE_OPEN ? 2 - 2 * PetscSinReal(t) : 0);
+  }
+  const CurveSet set = {2, 1, start, kind, X, period, PETSC_TRUE};
+  PetscCall(CurveGaps(&set, 0.2, &n, &gaps));
+  const PetscReal found = n ? gaps[0].distance : NAN;
+  CHECK(n == 1 && gaps[0].curve[0] == 0 && gaps[0].curve[1] == 1 &&
+            (back ? found < -gap + 1e-3 : PetscAbsReal(found - gap) < 6e-3),
+        "a circle %g from a curve that %s%s: %g", gap, type == CURVE_OPEN ? "is open" : "spans the period",
+        back ? ", on its solid's side" : "", found);
+  PetscCall(PetscFree(gaps));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A line that comes back over itself crosses itself, one across a period does not cross its image. */
+static PetscErrorCode CheckLine(PetscReal swing, PetscBool crosses) {
+  const PetscInt start[2] = {0, POINTS};
+  const PetscReal period[2] = {6, 0};
+  const CurveKind kind = {CURVE_SPANNING, {6, 0}};
+  PetscReal X[2 * POINTS];
+  PetscInt pair[2];
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < POINTS; k++) {
+    const PetscReal t = 2 * PETSC_PI * (PetscReal)k / POINTS;
+    X[2 * k] = 6 * (PetscReal)k / POINTS + swing * PetscSinReal(2 * t);
+    X[2 * k + 1] = PetscCosReal(t);
+  }
+  const CurveSet set = {1, 1, start, &kind, X, period, PETSC_TRUE};
+  PetscCall(CurvesCross(&set, pair));
+  CHECK((pair[0] >= 0) == crosses, "a line across a period that swings by %g %s itself", swing,
+        pair[0] >= 0 ? "crosses" : "does not cross");
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+#define TIMES 5
+
+/* Of an open curve polynomials of fifth degree are exact; forces on finer points keep their sum. */
+static PetscErrorCode CheckOpen(void) {
+  const CurveKind open = {.type = CURVE_OPEN};
+  PetscReal X[2 * POINTS], T[2 * POINTS], Y[2 * POINTS * TIMES], weight[POINTS];
+  PetscReal off[2] = {0, 0}, sums = 0, least = 0;
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < POINTS; k++) {
+    X[2 * k] = PetscPowRealInt(0.1 * (PetscReal)k, 5);
+    X[2 * k + 1] = (PetscReal)k;
+  }
+  PetscCall(CurveTangents(&open, NULL, POINTS, X, T));
+  PetscCall(CurveFinePoints(&open, POINTS, X, TIMES, Y));
+  for (PetscInt k = 0; k < POINTS; k++)
+    off[0] = PetscMax(off[0], PetscAbsReal(T[2 * k] - 0.5 * PetscPowRealInt(0.1 * (PetscReal)k, 4)) +
+                                  PetscAbsReal(T[2 * k + 1] - 1));
+  for (PetscInt q = 0; q < POINTS * TIMES; q++) {
+    const PetscReal t = CurveFinePlace(&open, TIMES, q);
+    PetscReal sum = 0;
+    off[1] = PetscMax(off[1], PetscAbsReal(Y[2 * q] - PetscPowRealInt(0.1 * t, 5)) + PetscAbsReal(Y[2 * q + 1] - t));
+    CurveOpenWeights(POINTS, TIMES, q, weight);
+    for (PetscInt k = 0; k < POINTS; k++) {
+      sum += weight[k];
+      if (t < 4 || t > POINTS - 5) least = PetscMin(least, weight[k]);
+    }
+    sums = PetscMax(sums, PetscAbsReal(sum - 1));
+  }
+  CHECK(off[0] < 1e-9 && off[1] < 1e-9 && sums < 1e-13 && least >= 0,
+        "an open curve: tangents off by %.1e, points by %.1e, sums of weights by %.1e, least one near ends %g", off[0],
+        off[1], sums, least);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode Facts(void) {
   PetscFunctionBeginUser;
   for (int k = 0; k < 4; k++) PetscCall(CheckNearest(k & 1 ? 5.3 : 0, k & 2 ? 6.5 : 0, k < 2 ? 0.4 : 0.15));
@@ -151,6 +234,13 @@ static PetscErrorCode Facts(void) {
     PetscCall(CheckGap(-0.02, k ? 7 : 0, 2e-3));
     PetscCall(CheckGap(1.5, k ? 9 : 0, 2e-3));
   }
+  for (int k = 0; k < 2; k++) {
+    PetscCall(CheckSolid(CURVE_OPEN, PETSC_FALSE, k ? 0.15 : 0.02));
+    PetscCall(CheckSolid(CURVE_SPANNING, PETSC_FALSE, k ? 0.15 : 0.02));
+    PetscCall(CheckLine(k ? 2.5 : 0.3, k ? PETSC_TRUE : PETSC_FALSE));
+  }
+  PetscCall(CheckSolid(CURVE_SPANNING, PETSC_TRUE, 0.02));
+  PetscCall(CheckOpen());
   PetscCall(CheckAlone());
   PetscCall(CheckFilm(PETSC_FALSE, 1, 0, 1, 0.1));
   PetscCall(CheckFilm(PETSC_TRUE, 1, 0, 3, 0.05));

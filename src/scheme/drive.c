@@ -116,11 +116,10 @@ static void GiveBack(Scheme s, PetscReal smeared, PetscReal *gradient, PetscReal
 PetscErrorCode DriveMeasure(Scheme s, Drive *drive) {
   const Grid g = s->fluid->grid;
   const PetscReal area = (g->hi[0] - g->lo[0]) * (g->hi[1] - g->lo[1]), faces = (PetscReal)g->n[0] * g->n[1];
-  PetscReal sum[4], background[2], gradient;
+  PetscReal sum[4], background[2], mean[2] = {0, 0}, gradient;
   Forces forces;
   Vec Hu;
   PetscFunctionBeginUser;
-  PetscReal mean[2] = {0, 0};
   *drive = (Drive){NAN, NAN};
   if (g->wall[0]) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(DMGetGlobalVector(g->velocity, &Hu));
