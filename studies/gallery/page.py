@@ -8,6 +8,7 @@ from pathlib import Path
 from studies.common.engine import Results
 from studies.gallery.bifurcation import SCENE as BIFURCATION
 from studies.gallery.capillary import SCENE as CAPILLARY
+from studies.gallery.constriction import SCENE as CONSTRICTION
 from studies.gallery.couette import SCENE as COUETTE
 from studies.gallery.hundred import SCENE as HUNDRED
 from studies.gallery.passing import SCENE as PASSING
@@ -29,6 +30,7 @@ SCENES = (
     HUNDRED,
     COUETTE,
     POSTS,
+    CONSTRICTION,
     BIFURCATION,
     SUSPENSION,
     REYNOLDS,
