@@ -1,8 +1,7 @@
 #include "coupling/doublebox.h"
 
-PetscErrorCode DoubleBoxCreate(const FluidSpec *spec, Markers markers, const OffsetTable lattice[2], DoubleBox *out) {
+PetscErrorCode DoubleBoxCreate(const FluidSpec *spec, Markers markers, const BoxLattice *lattice, DoubleBox *out) {
   const PetscInt n = markers->layout->n;
-  const BoxLattice dipoles = {.dipole = lattice};
   DoubleBox b;
   PetscLogEvent event;
   PetscFunctionBeginUser;
@@ -11,7 +10,7 @@ PetscErrorCode DoubleBoxCreate(const FluidSpec *spec, Markers markers, const Off
   b->markers = markers;
   PetscCall(PetvesEvent("BoxTable", &event));
   PetscCall(PetscLogEventBegin(event, 0, 0, 0, 0));
-  PetscCall(BoxTableCreate(spec, markers->kernel->name, &dipoles, &b->table));
+  PetscCall(BoxTableCreate(spec, markers->kernel->name, lattice, &b->table));
   PetscCall(PetscLogEventEnd(event, 0, 0, 0, 0));
   PetscCall(PetscMalloc3(2 * n * b->table.rank, &b->response, DIPOLE_COUNT * n * b->table.rank, &b->source,
                          b->table.rank, &b->amplitude));
@@ -31,9 +30,9 @@ void DoubleBoxPlace(DoubleBox b) {
   const Layout l = b->markers->layout;
   const PetscInt r = b->table.rank;
   for (PetscInt k = 0; k < l->n; k++) {
-    const PetscReal *X = b->markers->X + 2 * (l->first + k), fade = BoxTableFade(&b->table, b->markers->grid, X);
-    BoxTableRows(&b->table, X, fade, 0, 2, b->response + 2 * k * r);
-    BoxTableRows(&b->table, X, fade, 2, DIPOLE_COUNT, b->source + DIPOLE_COUNT * k * r);
+    const PetscReal *X = b->markers->X + 2 * (l->first + k);
+    BoxTableRows(&b->table, b->markers->grid, X, 1, 0, 2, b->response + 2 * k * r);
+    BoxTableRows(&b->table, b->markers->grid, X, 1, 2, DIPOLE_COUNT, b->source + DIPOLE_COUNT * k * r);
   }
 }
 
@@ -58,7 +57,7 @@ PetscErrorCode DoubleBoxMatrix(DoubleBox b, PetscReal scale, PetscReal out[]) {
   PetscCall(PetscMalloc1(DIPOLE_COUNT * r, &source));
   for (PetscInt j = 0; j < l->M; j++) {
     const PetscReal *X = b->markers->X + 2 * j;
-    BoxTableRows(&b->table, X, scale * BoxTableFade(&b->table, b->markers->grid, X), 2, DIPOLE_COUNT, source);
+    BoxTableRows(&b->table, b->markers->grid, X, scale, 2, DIPOLE_COUNT, source);
     for (PetscInt k = 0; k < DIPOLE_COUNT * r; k++) source[k] *= b->table.l[k % r];
     for (int c = 0; c < DIPOLE_COUNT; c++)
       for (PetscInt i = 0; i < 2 * l->n; i++)
