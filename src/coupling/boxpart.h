@@ -20,7 +20,7 @@ PETSC_EXTERN PetscErrorCode BoxPartCreate(const FluidSpec *spec, Markers markers
 PETSC_EXTERN PetscErrorCode BoxPartDestroy(BoxPart *box);
 
 /* BoxPartPlace - where the markers have been placed. Not collective. */
-PETSC_EXTERN void BoxPartPlace(BoxPart box);
+PETSC_EXTERN PetscErrorCode BoxPartPlace(BoxPart box);
 
 /* BoxPartImage - BoxImage of the box. Not collective. */
 static inline PetscReal BoxPartImage(BoxPart box, PetscReal d[2]) {

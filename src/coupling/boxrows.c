@@ -1,5 +1,6 @@
 /* What a marker has of a box table. */
 #include "coupling/boxtable.h"
+#include "coupling/panels.h"
 
 PetscReal BoxTableFade(const BoxTable *t, Grid g, const PetscReal X[2]) {
   const PetscReal last = t->H > g->h * (1 + 1e-9) ? t->H
@@ -13,32 +14,50 @@ PetscReal BoxTableFade(const BoxTable *t, Grid g, const PetscReal X[2]) {
   return fade;
 }
 
-/* a[modes] += weights of one velocity component's functions times the block's vectors. */
-static void AddBlock(const BoxBlock *q, int c, const PetscReal vx[], const PetscReal vy[], PetscReal fade,
-                     PetscReal a[]) {
-  const PetscInt modes = q->modes;
-  const PetscReal *row = q->Q + c * q->n[0] * q->n[1] * modes, *y = vy + q->first[c][1];
-  for (PetscInt i = 0; i < q->n[0]; i++) {
-    const PetscReal x = fade * vx[q->first[c][0] + i];
-    PetscInt j = 0;
-    for (; j + 4 <= q->n[1]; j += 4, row += 4 * modes) /* four at once: a is read and written a quarter as often */
-      for (PetscInt m = 0; m < modes; m++)
-        a[m] += x * (y[j] * row[m] + y[j + 1] * row[modes + m] + y[j + 2] * row[2 * modes + m] +
-                     y[j + 3] * row[3 * modes + m]);
-    for (; j < q->n[1]; j++, row += modes)
-      for (PetscInt m = 0; m < modes; m++) a[m] += x * y[j] * row[m];
-  }
+/* Markers whose rows are made together. */
+#define TOGETHER 32
+typedef struct {
+  PetscInt n;
+  PetscReal x[TOGETHER][BOX_FUNCTIONS], y[TOGETHER][BOX_FUNCTIONS]; /* their functions, x times fade */
+  PetscReal *weight, *sum;                                          /* [n][functions of a block], [n][its modes] */
+} Batch;
+
+/* Block q's part of component c of the rows, which are `apart` numbers from one marker to the next. */
+static void FillBlock(const BoxBlock *q, int c, Batch *b, PetscInt apart, PetscReal rows[]) {
+  const PetscInt functions = q->n[0] * q->n[1], columns[2] = {functions, PanelsRows(q->modes)};
+  for (PetscInt k = 0; k < b->n; k++)
+    for (PetscInt i = 0; i < q->n[0]; i++)
+      for (PetscInt j = 0; j < q->n[1]; j++)
+        b->weight[(k * q->n[0] + i) * q->n[1] + j] = b->x[k][q->first[c][0] + i] * b->y[k][q->first[c][1] + j];
+  PanelsProduct(q->modes, functions, q->Q + c * PanelsSize(q->modes, functions), functions, b->n, columns, b->weight,
+                b->sum);
+  for (PetscInt k = 0; k < b->n; k++)
+    (void)PetscArraycpy(rows + k * apart + q->start, b->sum + k * columns[1], q->modes);
 }
 
-void BoxTableRows(const BoxTable *t, const PetscReal X[2], PetscReal fade, int first, int count, PetscReal rows[]) {
-  PetscReal vx[BOX_FUNCTIONS], vy[BOX_FUNCTIONS];
-  (void)PetscArrayzero(rows, count * t->rank);
-  if (fade == 0) return;
-  BoxTableFunctions(t, 0, X[0], vx);
-  BoxTableFunctions(t, 1, X[1], vy);
-  for (PetscInt q = 0; q < t->blocks; q++)
-    for (int c = 0; c < count; c++)
-      AddBlock(&t->block[q], first + c, vx, vy, fade, rows + c * t->rank + t->block[q].start);
+PetscErrorCode BoxTableRows(const BoxTable *t, PetscInt n, const PetscReal X[], const PetscReal fade[], int first,
+                            int count, PetscReal rows[]) {
+  PetscInt functions = 0, modes = 0;
+  Batch b;
+  PetscFunctionBeginUser;
+  for (PetscInt q = 0; q < t->blocks; q++) {
+    functions = PetscMax(functions, t->block[q].n[0] * t->block[q].n[1]);
+    modes = PetscMax(modes, PanelsRows(t->block[q].modes));
+  }
+  PetscCall(PetscMalloc2(TOGETHER * functions, &b.weight, TOGETHER * modes, &b.sum));
+  for (PetscInt begin = 0; begin < n; begin += TOGETHER) {
+    b.n = PetscMin(TOGETHER, n - begin);
+    for (PetscInt k = 0; k < b.n; k++) {
+      BoxTableFunctions(t, 0, X[2 * (begin + k)], b.x[k]);
+      BoxTableFunctions(t, 1, X[2 * (begin + k) + 1], b.y[k]);
+      for (PetscInt i = 0; i < t->functions[0]; i++) b.x[k][i] *= fade[begin + k];
+    }
+    for (PetscInt q = 0; q < t->blocks; q++)
+      for (int c = 0; c < count; c++)
+        FillBlock(&t->block[q], first + c, &b, count * t->rank, rows + (begin * count + c) * t->rank);
+  }
+  PetscCall(PetscFree2(b.weight, b.sum));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscReal BoxSum(PetscInt r, const PetscReal l[], const PetscReal x[]) {

@@ -8,8 +8,7 @@ typedef struct _p_DoubleBox *DoubleBox;
 struct _p_DoubleBox {
   Markers markers; /* borrowed */
   BoxTable table;
-  PetscReal *response;  /* [2n][rank] of the own markers' velocities, */
-  PetscReal *source;    /* [DIPOLE_COUNT n][rank] and tensors: D = response diag(l) source^T */
+  PetscReal *rows;      /* [n][BOX_COMPONENTS][rank] of the own markers: velocities diag(l) tensors^T is D */
   PetscReal *amplitude; /* [rank] work */
 };
 
@@ -18,7 +17,7 @@ PETSC_EXTERN PetscErrorCode DoubleBoxCreate(const FluidSpec *spec, Markers marke
 PETSC_EXTERN PetscErrorCode DoubleBoxDestroy(DoubleBox *box);
 
 /* DoubleBoxPlace - where the markers have been placed. Not collective. */
-PETSC_EXTERN void DoubleBoxPlace(DoubleBox box);
+PETSC_EXTERN PetscErrorCode DoubleBoxPlace(DoubleBox box);
 
 /* DoubleBoxApply - y += alpha D T, own part y[2n] of a marker vector, tensors T[DIPOLE_COUNT n] of the own markers.
    Collective. */

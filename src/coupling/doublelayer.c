@@ -30,6 +30,7 @@ PetscErrorCode DoubleLayerDestroy(DoubleLayer *layer) {
   PetscCall(PetscFree3(s->normal, s->along, s->dipole));
   PetscCall(PetscFree3(s->jump, s->plain, s->tensor));
   for (int c = 0; c < 2; c++) PetscCall(OffsetTableDestroy(&s->lattice[c]));
+  PetscCall(OffsetTableDestroy(&s->pressure));
   PetscCall(DoubleBoxDestroy(&s->box));
   PetscCall(PetscFree(s->block));
   PetscCall(PetscFree(s->value));
@@ -112,7 +113,7 @@ PetscErrorCode DoubleLayerPlace(DoubleLayer s) {
     PetscCall(DoubleBlockFill(s, b, s->near->free ? PETSC_FALSE : PETSC_TRUE, s->value + b->at));
     PetscCall(DoubleCloseAdd(s, b, s->value + b->at));
   }
-  if (s->box) DoubleBoxPlace(s->box);
+  if (s->box) PetscCall(DoubleBoxPlace(s->box));
   PetscCall(PetscLogEventEnd(s->place, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

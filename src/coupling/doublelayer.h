@@ -26,6 +26,7 @@ struct _p_DoubleLayer {
   NearField near;   /* borrowed: markers, membranes, their pairs and stencils */
   PetscReal *ratio; /* [vesicles] viscosity inside over that outside */
   OffsetTable lattice[2];
+  OffsetTable pressure;  /* of the lattice's dipoles in cells, viscosity 1, over h^2; empty before the first output */
   PaddedStencil *dipole; /* [DIPOLE_COUNT M] */
   PetscReal *normal;     /* [2M] outward n times the marker's share w of the length */
   PetscReal *along;      /* [M] w (length); of vesicles of ratio 1 these are not made */
