@@ -163,18 +163,30 @@ PetscErrorCode DoubleLayerApply(DoubleLayer s, PetscReal alpha, PetscScalar y[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode DoubleLayerSpread(DoubleLayer s, Vec w, Vec source, PetscReal mean[2]) {
+/* The tensors, and the mean velocity with them: J.n is half the trace. */
+static void TensorsAndMean(DoubleLayer s, PetscReal mean[2]) {
   const NearField f = s->near;
   const Grid g = f->markers->grid;
   const PetscReal area = (g->hi[0] - g->lo[0]) * (g->hi[1] - g->lo[1]);
-  PetscFunctionBeginUser;
-  if (f->free) PetscFunctionReturn(PETSC_SUCCESS);
   Tensors(s);
-  for (PetscInt k = 0; k < 2 * f->bodies->layout->M; k++) { /* J.n is half the trace */
+  for (PetscInt k = 0; k < 2 * f->bodies->layout->M; k++) {
     const PetscReal *T = s->tensor + DIPOLE_COUNT * (k / 2);
     mean[k % 2] -= f->markers->X[k] * 0.5 * (T[DIPOLE_XX] + T[DIPOLE_YY]) / area;
   }
-  PetscCall(DipolesSpread(f->markers, f->nu, s->tensor, w, source));
+}
+
+PetscErrorCode DoubleLayerSpread(DoubleLayer s, Vec w, Vec source, PetscReal mean[2]) {
+  PetscFunctionBeginUser;
+  if (s->near->free) PetscFunctionReturn(PETSC_SUCCESS);
+  TensorsAndMean(s, mean);
+  PetscCall(DipolesSpread(s->near->markers, s->near->nu, s->tensor, w, source));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode DoubleLayerRows(DoubleLayer s, DipoleRows rows, PetscReal mean[2]) {
+  PetscFunctionBeginUser;
+  TensorsAndMean(s, mean);
+  PetscCall(DipoleRowsSet(rows, s->near->markers, s->tensor));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -12,6 +12,7 @@
 #include "coupling/doublebox.h"
 #include "coupling/latticedipole.h"
 #include "coupling/nearfield.h"
+#include "markers/dipolerows.h"
 
 /* Response of own vesicle `row` to an image of `column`, moved by `shift` (length): a matrix of 2n rows, columns one
    after another, entries interlaced. */
@@ -65,6 +66,9 @@ PETSC_EXTERN PetscErrorCode DoubleLayerApply(DoubleLayer layer, PetscReal alpha,
    mean velocity v' that a box which is periodic both ways has with them, -(1/box) SUM w X (J.n), the one without flow
    outside a moving rigid body. Nothing in unbounded fluid. Not collective. */
 PETSC_EXTERN PetscErrorCode DoubleLayerSpread(DoubleLayer layer, Vec w, Vec source, PetscReal mean[2]);
+
+/* DoubleLayerRows - the same dipoles as rows of a solve by stream function. Not collective. */
+PETSC_EXTERN PetscErrorCode DoubleLayerRows(DoubleLayer layer, DipoleRows rows, PetscReal mean[2]);
 
 /* DoubleLayerStress - sum[3] (xx, yy, xy) += minus nu INT (J n + n J) ds of the jump last set, less its flux: what the
    dipoles add to the sum of force times place. Not collective. */

@@ -1,5 +1,6 @@
 #include "coupling/reduced.h"
 #include "coupling/contrast.h"
+#include "markers/respond.h"
 
 /* F = Dm^T sigma + (1/a0) (c_b ds D4 + K_sigma + K_rep) V, minus h^2 times the force on the markers, and
    that of obstacles. */
@@ -129,6 +130,20 @@ static PetscErrorCode AddMean(Reduced s, const PetscReal mean[2], Vec w) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The same of velocities at the markers. */
+static PetscErrorCode AddMeanAtMarkers(Reduced s, const PetscReal mean[2], Vec U) {
+  const Grid g = s->unknowns->coupling->fluid->grid;
+  PetscScalar *a;
+  PetscInt n;
+  PetscFunctionBeginUser;
+  if (!s->source || g->wall[0] || g->wall[1]) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecGetLocalSize(U, &n));
+  PetscCall(VecGetArray(U, &a));
+  for (PetscInt k = 0; k < n; k++) a[k] += mean[k % 2];
+  PetscCall(VecRestoreArray(U, &a));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* (w, p) = Stokes(r, source), source NULL (zero) or p. */
 static PetscErrorCode Solve(Reduced s, Vec r, Vec source, const PetscReal mean[2], Vec w, Vec p) {
   PetscFunctionBeginUser;
@@ -143,6 +158,7 @@ PetscErrorCode ReducedBegin(Reduced s, Vec moved, Vec f) {
   const PetscScalar *U;
   PetscFunctionBeginUser;
   if (!s->source) PetscFunctionReturn(PETSC_SUCCESS);
+  s->moved = moved;
   PetscCall(VecSet(s->source, 0));
   s->mean[0] = s->mean[1] = 0;
   PetscCall(VecGetArrayRead(moved, &U));
@@ -169,6 +185,19 @@ static PetscErrorCode RespondOnGrid(Reduced s, const PetscScalar x[], PetscInt p
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* U = E u of the forces of x alone, row by row. */
+static PetscErrorCode RespondByRows(Reduced s, const PetscScalar x[]) {
+  const Coupling c = s->unknowns->coupling;
+  PetscReal mean[2] = {0, 0};
+  PetscFunctionBeginUser;
+  PetscCall(Force(s, x, s->F));
+  PetscCall(Jump(s, x));
+  if (s->source) PetscCall(DoubleLayerRows(c->contrast, s->dipoles, mean));
+  PetscCall(MarkersRespond(c->markers, s->stream, s->dipoles, -1 / PetscSqr(c->fluid->grid->h), s->F, s->U));
+  PetscCall(AddMeanAtMarkers(s, mean, s->U));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode Mult(Mat A, Vec x, Vec y) {
   Reduced s;
   const PetscScalar *xa;
@@ -182,15 +211,31 @@ static PetscErrorCode Mult(Mat A, Vec x, Vec y) {
   PetscCall(VecGetArrayRead(x, &xa));
   if (!s->stream)
     PetscCall(RespondOnGrid(s, xa, place));
-  else if (CouplingHasBodies(c)) {
-    PetscCall(Force(s, xa, s->F));
-    PetscCall(MarkersRespond(c->markers, s->stream, -1 / PetscSqr(c->fluid->grid->h), s->F, s->U));
-  }
+  else if (CouplingHasBodies(c))
+    PetscCall(RespondByRows(s, xa));
   PetscCall(VecGetArray(y, &ya));
   PetscCall(Conditions(s, xa, NULL, NULL, ya));
   PetscCall(VecRestoreArray(y, &ya));
   PetscCall(VecRestoreArrayRead(x, &xa));
   if (place < REDUCED_KEPT) PetscCall(VecCopy(y, s->kept.Az[place]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* U = E u of the force f, row by row; leaves another jump than that of x. */
+static PetscErrorCode FollowByRows(Reduced s, Vec f) {
+  const Coupling c = s->unknowns->coupling;
+  PetscReal mean[2] = {0, 0};
+  const PetscScalar *G;
+  PetscFunctionBeginUser;
+  if (s->source) {
+    PetscCall(VecAXPY(s->motion, 1, s->moved)); /* all of the motion, whose dipoles' forces f has */
+    PetscCall(VecGetArrayRead(s->motion, &G));
+    PetscCall(DoubleLayerSet(c->contrast, G));
+    PetscCall(VecRestoreArrayRead(s->motion, &G));
+    PetscCall(DoubleLayerRows(c->contrast, s->dipoles, mean));
+  }
+  PetscCall(MarkersFollow(c->markers, s->stream, s->dipoles, f, s->U));
+  PetscCall(AddMeanAtMarkers(s, mean, s->U));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -200,7 +245,7 @@ static PetscErrorCode Follow(Reduced s, Vec f, PetscBool grid, Vec w, Vec p) {
   const PetscBool bodies = CouplingHasBodies(c);
   PetscFunctionBeginUser;
   if (!grid && s->stream && !c->fluid->bc2) {
-    if (bodies) PetscCall(MarkersFollow(c->markers, s->stream, f, s->U));
+    if (bodies) PetscCall(FollowByRows(s, f));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   /* p holds the right-hand side, then the solution */
@@ -223,6 +268,7 @@ PetscErrorCode ReducedResidual(Reduced s, Vec added, Vec f, Vec g, Vec k, Vec x,
   if (CouplingHasBodies(s->unknowns->coupling) && added != x) PetscCall(Force(s, xa, s->F));
   if (added != x) PetscCall(Jump(s, xa));
   PetscCall(Follow(s, f, grid, w, p));
+  PetscCall(Jump(s, xa)); /* of x alone again */
   PetscCall(VecGetArray(residual, &ra));
   PetscCall(Conditions(s, xa, k, g, ra));
   PetscCall(VecRestoreArray(residual, &ra));
@@ -286,13 +332,14 @@ PetscErrorCode ReducedCreate(Unknowns u, Reduced *out) {
   *out = s;
   s->unknowns = u;
   if (!c->fluid->grid->free) PetscCall(StokesCreate(c->fluid, &s->stokes));
-  if (s->stokes && !c->contrast) s->stream = StokesStream(s->stokes);
+  if (s->stokes) s->stream = StokesStream(s->stokes);
   if (!s->stream) PetscCall(DMCreateGlobalVector(c->fluid->grid->velocity, &s->r));
   PetscCall(LayoutCreateVec(c->bodies->layout, 2, &s->F));
   PetscCall(VecDuplicate(s->F, &s->U));
   if (c->contrast) {
     PetscCall(VecDuplicate(s->F, &s->motion));
     PetscCall(DMCreateGlobalVector(c->fluid->grid->da[FIELD_P], &s->source));
+    if (s->stream) PetscCall(DipoleRowsCreate(c->fluid->grid, c->fluid->nu, &s->dipoles));
   }
   PetscCall(UnknownsCreateVec(u, &s->rest));
   PetscCall(PetscMalloc2(u->walls->n, &s->d, u->walls->n, &s->slip));
@@ -319,6 +366,7 @@ PetscErrorCode ReducedDestroy(Reduced *reduced) {
   PetscCall(VecDestroy(&s->U));
   PetscCall(VecDestroy(&s->motion));
   PetscCall(VecDestroy(&s->source));
+  PetscCall(DipoleRowsDestroy(&s->dipoles));
   PetscCall(VecDestroy(&s->rest));
   PetscCall(PetscFree2(s->d, s->slip));
   PetscCall(MatDestroy(&s->A));

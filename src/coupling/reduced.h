@@ -36,6 +36,8 @@ struct _p_Reduced {
   PetscInt dirty[2]; /* zero but for these rows */
   Vec F, U;          /* marker vectors of all bodies, work */
   Vec motion;        /* with a viscosity contrast: what the jump is of, marker vector, work */
+  Vec moved;         /* borrowed: of the motion what is known */
+  DipoleRows dipoles; /* of the jump, with stream */
   Vec source;        /* and what the divergence of the forces in f is, minus; NULL without */
   PetscReal mean[2]; /* and the mean velocity that goes with it in a box that is periodic both ways */
   Vec rest;          /* unknowns, work */
