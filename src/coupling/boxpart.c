@@ -60,6 +60,7 @@ PetscErrorCode BoxPartPlace(BoxPart b) {
   PetscFunctionBeginUser;
   for (PetscInt k = 0, end; k < l->n; k = end + 1) { /* markers that have moved; others are at rest, on obstacles */
     for (end = k; end < l->n && Moved(b, end); end++) continue;
+    if (end == k) continue;
     PetscCall(PlaceMarkers(b, l->first + k, end - k, b->A + 2 * k * b->table.rank));
     PetscCall(PetscArraycpy(b->X + 2 * k, b->markers->X + 2 * (l->first + k), 2 * (end - k)));
   }

@@ -14,8 +14,9 @@ PetscReal BoxTableFade(const BoxTable *t, Grid g, const PetscReal X[2]) {
   return fade;
 }
 
-/* Markers whose rows are made together. */
+/* Markers whose rows are made together, in whole groups of columns: a marker's row has the same bits in any company. */
 #define TOGETHER 32
+#define GROUP 4
 typedef struct {
   PetscInt n;
   PetscReal x[TOGETHER][BOX_FUNCTIONS], y[TOGETHER][BOX_FUNCTIONS]; /* their functions, x times fade */
@@ -29,8 +30,8 @@ static void FillBlock(const BoxBlock *q, int c, Batch *b, PetscInt apart, PetscR
     for (PetscInt i = 0; i < q->n[0]; i++)
       for (PetscInt j = 0; j < q->n[1]; j++)
         b->weight[(k * q->n[0] + i) * q->n[1] + j] = b->x[k][q->first[c][0] + i] * b->y[k][q->first[c][1] + j];
-  PanelsProduct(q->modes, functions, q->Q + c * PanelsSize(q->modes, functions), functions, b->n, columns, b->weight,
-                b->sum);
+  PanelsProduct(q->modes, functions, q->Q + c * PanelsSize(q->modes, functions), functions,
+                (b->n + GROUP - 1) / GROUP * GROUP, columns, b->weight, b->sum);
   for (PetscInt k = 0; k < b->n; k++)
     (void)PetscArraycpy(rows + k * apart + q->start, b->sum + k * columns[1], q->modes);
 }
@@ -44,7 +45,7 @@ PetscErrorCode BoxTableRows(const BoxTable *t, PetscInt n, const PetscReal X[], 
     functions = PetscMax(functions, t->block[q].n[0] * t->block[q].n[1]);
     modes = PetscMax(modes, PanelsRows(t->block[q].modes));
   }
-  PetscCall(PetscMalloc2(TOGETHER * functions, &b.weight, TOGETHER * modes, &b.sum));
+  PetscCall(PetscCalloc2(TOGETHER * functions, &b.weight, TOGETHER * modes, &b.sum));
   for (PetscInt begin = 0; begin < n; begin += TOGETHER) {
     b.n = PetscMin(TOGETHER, n - begin);
     for (PetscInt k = 0; k < b.n; k++) {

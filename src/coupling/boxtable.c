@@ -221,8 +221,8 @@ static PetscErrorCode Transform(const BoxTable *t, const PetscReal W[]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether an eigenvalue is kept. With dipoles they come in pairs of either sign, whose vectors differ in the sign of the
-   tensors' part: the positive one, doubled, is the pair in what tensors do to velocities. */
+/* Whether an eigenvalue is kept. With dipoles they come in pairs of either sign, whose vectors differ in the sign of
+   the tensors' part: the positive one, doubled, is the pair in what tensors do to velocities. */
 static PetscBool IsKept(const BoxTable *t, PetscReal l, PetscReal least) {
   return (BoxParts(t) == 2 ? PetscAbsReal(l) : l) > least ? PETSC_TRUE : PETSC_FALSE;
 }

@@ -44,8 +44,8 @@ static inline PetscInt BoxParts(const BoxTable *table) {
 PETSC_EXTERN void BoxTableFunctions(const BoxTable *table, int dir, PetscReal x, PetscReal values[]);
 
 /* BoxTableRows - rows[n][count][rank]: the components first .. first + count - 1 of the functions at n places X[2n],
-   times fade[n]. BoxTableFade - the part of D that a marker at X has, less where the table ends, one cell of its coarser
-   grid from its last places. Not collective. */
+   times fade[n]. BoxTableFade - the part of D that a marker at X has, less where the table ends, one cell of its
+   coarser grid from its last places. Not collective. */
 PETSC_EXTERN PetscErrorCode BoxTableRows(const BoxTable *table, PetscInt n, const PetscReal X[], const PetscReal fade[],
                                          int first, int count, PetscReal rows[]);
 PETSC_EXTERN PetscReal BoxTableFade(const BoxTable *table, Grid grid, const PetscReal X[2]);

@@ -8,10 +8,10 @@
 
 struct _p_DoubleCurve {
   PetscInt n;
-  PetscReal nu, spacing;       /* spacing: of the points, the largest */
-  Point *curve, *density;      /* [n + 1] modes -n/2 .. n/2 of X and of J */
-  Point *fine, *slope;         /* [FINE n] points, X' there */
-  PetscReal *each[6];          /* [FINE n] the same and J there, x and y apart: for sums */
+  PetscReal nu, spacing;  /* spacing: of the points, the largest */
+  Point *curve, *density; /* [n + 1] modes -n/2 .. n/2 of X and of J */
+  Point *fine, *slope;    /* [FINE n] points, X' there */
+  PetscReal *each[6];     /* [FINE n] the same and J there, x and y apart: for sums */
 };
 
 enum { AT, SLOPE = 2, JUMP = 4 };
@@ -98,8 +98,8 @@ static void FineSums(DoubleCurve c, Point z, Sums *s) {
     }
     const Lanes over = 1 / (r[0] * r[0] + r[1] * r[1]);
     const Lanes along = (t[0] * r[0] + t[1] * r[1]) * over, turn = (t[1] * r[0] - t[0] * r[1]) * over; /* X'/r */
-    const Lanes c2 = (r[0] * r[0] - r[1] * r[1]) * over, s2 = 2 * r[0] * r[1] * over; /* r/conj(r) */
-    const Lanes p[2] = {J[0] * along - J[1] * turn, J[0] * turn + J[1] * along};      /* J X'/r */
+    const Lanes c2 = (r[0] * r[0] - r[1] * r[1]) * over, s2 = 2 * r[0] * r[1] * over;                  /* r/conj(r) */
+    const Lanes p[2] = {J[0] * along - J[1] * turn, J[0] * turn + J[1] * along};                       /* J X'/r */
     sum[0] += turn * (J[0] + c2 * J[0] + s2 * J[1]);
     sum[1] += turn * (J[1] + s2 * J[0] - c2 * J[1]);
     sum[2] += (p[0] * r[0] + p[1] * r[1]) * over;

@@ -16,7 +16,8 @@ PetscErrorCode DipoleRowsCreate(Grid g, PetscReal nu, DipoleRows *out) {
   *out = d;
   d->grid = g;
   d->nu = nu;
-  PetscCall(PetscCalloc5(size, &d->field[0], size, &d->field[1], size, &d->field[2], g->n[1], &d->mean, g->n[0], &d->row));
+  PetscCall(
+      PetscCalloc5(size, &d->field[0], size, &d->field[1], size, &d->field[2], g->n[1], &d->mean, g->n[0], &d->row));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
