@@ -19,6 +19,7 @@ typedef struct {
 typedef struct {
   Coupling coupling;
   Layer layer;
+  OffsetTable pressure;
   PetscInt vesicle, n;
   FarCell far;
   PetscReal reach;        /* of the correction (length) */
@@ -77,7 +78,7 @@ void NearCellStencil(Field f, const PetscInt cell[2], PaddedStencil *padded) {
 /* Velocity and pressure of marker k on the lattice, taken off those of a cell with these weights. */
 static void TakeLattice(const NearCells *s, PetscInt k, const PaddedStencil cell[3], PetscReal u[2], PetscReal *p) {
   static const PetscInt none[2] = {0, 0};
-  const OffsetTable *t = &s->coupling->near->lattice, *pressure = &s->coupling->near->pressure;
+  const OffsetTable *t = &s->coupling->near->lattice;
   const PaddedStencil *source = &s->source[2 * k];
   const PetscReal *F = &s->F[2 * k], h = s->coupling->fluid->grid->h, nu = s->coupling->fluid->nu;
   const PetscReal constant = PetscLogReal(h) / (4 * PETSC_PI);
@@ -85,8 +86,8 @@ static void TakeLattice(const NearCells *s, PetscInt k, const PaddedStencil cell
   StencilFourSums(t, cell, source, none, sum);
   u[0] -= ((sum[0] - constant) * F[0] + sum[2] * F[1]) / nu;
   u[1] -= (sum[3] * F[0] + (sum[1] - constant) * F[1]) / nu;
-  *p -= (StencilNearSum(pressure, OFFSET_UU, &cell[2], &source[0]) * F[0] +
-         StencilNearSum(pressure, OFFSET_VV, &cell[2], &source[1]) * F[1]) /
+  *p -= (StencilNearSum(&s->pressure, OFFSET_UU, &cell[2], &source[0]) * F[0] +
+         StencilNearSum(&s->pressure, OFFSET_VV, &cell[2], &source[1]) * F[1]) /
         h;
 }
 
@@ -204,11 +205,11 @@ PetscErrorCode NearCellsCorrect(Coupling coupling, Vec sigma, Vec X, PetscReal u
   if (!coupling->near || coupling->near->free) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(LayerCreate(coupling, sigma, X, &s.layer));
   s.far = FarCoefficients(coupling->markers->kernel);
-  if (!coupling->near->pressure.value[0])
-    PetscCall(LatticePressure(SUMMED_CELLS + OFFSET_LAGS, &coupling->near->pressure));
+  PetscCall(LatticePressure(SUMMED_CELLS + OFFSET_LAGS, &s.pressure));
   PetscCall(PetscMalloc1(2 * l->M, &s.source));
   for (PetscInt b = 0; b < l->bodies; b++) PetscCall(CorrectVesicle(&s, b, field));
   PetscCall(PetscFree(s.source));
+  PetscCall(OffsetTableDestroy(&s.pressure));
   PetscCall(LayerDestroy(&s.layer));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -60,7 +60,6 @@ PetscErrorCode NearFieldDestroy(NearField *near) {
   PetscCall(PetscFree2(f->force, f->velocity));
   PetscCall(NearImageDestroy(&f->image));
   PetscCall(OffsetTableDestroy(&f->lattice));
-  PetscCall(OffsetTableDestroy(&f->pressure));
   PetscCall(BoxPartDestroy(&f->box));
   PetscCall(PetscFree(*near));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -52,7 +52,6 @@ struct _p_NearField {
   PetscBool free; /* unbounded fluid: C = S */
   PetscBool many; /* more than NEAR_MANY vesicles: distant pairs are as exact as the range, and no more */
   OffsetTable lattice;
-  OffsetTable pressure;   /* in cells, of the lattice's forces; empty before the first output */
   NearImage image;        /* what the walls add to each pair */
   NearFar far[2];         /* distant pairs of one vesicle, of two */
   PetscReal **kress;      /* [vesicles][n] by index difference, what Kress' quadrature has besides the plain logarithm,
