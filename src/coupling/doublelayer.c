@@ -183,10 +183,11 @@ PetscErrorCode DoubleLayerSpread(DoubleLayer s, Vec w, Vec source, PetscReal mea
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode DoubleLayerRows(DoubleLayer s, DipoleRows rows, PetscReal mean[2]) {
+PetscErrorCode DoubleLayerRows(DoubleLayer s, const PetscReal profile[], DipoleRows rows) {
+  PetscReal mean[2] = {0, 0};
   PetscFunctionBeginUser;
   TensorsAndMean(s, mean);
-  PetscCall(DipoleRowsSet(rows, s->near->markers, s->tensor));
+  PetscCall(DipoleRowsSet(rows, s->near->markers, s->tensor, profile, mean));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -63,12 +63,13 @@ PETSC_EXTERN PetscErrorCode DoubleLayerSet(DoubleLayer layer, const PetscScalar 
 PETSC_EXTERN PetscErrorCode DoubleLayerApply(DoubleLayer layer, PetscReal alpha, PetscScalar y[]);
 
 /* DoubleLayerSpread - w += the force of J's dipoles, source += G^T of the velocity that is their source; mean += the
-   mean velocity v' that a box which is periodic both ways has with them, -(1/box) SUM w X (J.n), the one without flow
-   outside a moving rigid body. Nothing in unbounded fluid. Not collective. */
+   mean velocity v' that a box which is periodic both ways, or a channel without flux, has with them, -(1/box) SUM w X
+   (J.n), the one without flow outside a moving rigid body. Nothing in unbounded fluid. Not collective. */
 PETSC_EXTERN PetscErrorCode DoubleLayerSpread(DoubleLayer layer, Vec w, Vec source, PetscReal mean[2]);
 
-/* DoubleLayerRows - the same dipoles as rows of a solve by stream function. Not collective. */
-PETSC_EXTERN PetscErrorCode DoubleLayerRows(DoubleLayer layer, DipoleRows rows, PetscReal mean[2]);
+/* DoubleLayerRows - the same dipoles as rows of a solve by stream function, with their mean velocity; profile: that of
+   the Stokes solve (StokesProfile). Not collective. */
+PETSC_EXTERN PetscErrorCode DoubleLayerRows(DoubleLayer layer, const PetscReal profile[], DipoleRows rows);
 
 /* DoubleLayerStress - sum[3] (xx, yy, xy) += minus nu INT (J n + n J) ds of the jump last set, less its flux: what the
    dipoles add to the sum of force times place. Not collective. */

@@ -117,30 +117,20 @@ static PetscErrorCode NextPlace(Reduced s, PetscInt *place) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* In a box that is periodic both ways the solve leaves w without a mean, which dipoles have. */
+/* In a box that is periodic both ways, and in a channel without flux, the solve leaves w without a mean, which dipoles
+   have. */
 static PetscErrorCode AddMean(Reduced s, const PetscReal mean[2], Vec w) {
   const Grid g = s->unknowns->coupling->fluid->grid;
-  const PetscInt n = GridLocalU(g);
+  const PetscReal *profile = StokesProfile(s->stokes);
   PetscScalar *a;
   PetscFunctionBeginUser;
-  if (!s->source || g->wall[0] || g->wall[1]) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!s->source || g->wall[0] || (g->wall[1] && !profile)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecGetArray(w, &a));
-  for (PetscInt k = 0; k < 2 * n; k++) a[k] += mean[k / n];
+  for (int f = FIELD_U; f <= (g->wall[1] ? FIELD_U : FIELD_V); f++)
+    for (PetscInt j = 0; j < g->rows[f]; j++)
+      for (PetscInt i = 0; i < g->n[0]; i++)
+        a[GridRowStart(g, (Field)f, j) + i] += mean[f] * (profile ? profile[g->first + j] : 1);
   PetscCall(VecRestoreArray(w, &a));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The same of velocities at the markers. */
-static PetscErrorCode AddMeanAtMarkers(Reduced s, const PetscReal mean[2], Vec U) {
-  const Grid g = s->unknowns->coupling->fluid->grid;
-  PetscScalar *a;
-  PetscInt n;
-  PetscFunctionBeginUser;
-  if (!s->source || g->wall[0] || g->wall[1]) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(VecGetLocalSize(U, &n));
-  PetscCall(VecGetArray(U, &a));
-  for (PetscInt k = 0; k < n; k++) a[k] += mean[k % 2];
-  PetscCall(VecRestoreArray(U, &a));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -188,13 +178,11 @@ static PetscErrorCode RespondOnGrid(Reduced s, const PetscScalar x[], PetscInt p
 /* U = E u of the forces of x alone, row by row. */
 static PetscErrorCode RespondByRows(Reduced s, const PetscScalar x[]) {
   const Coupling c = s->unknowns->coupling;
-  PetscReal mean[2] = {0, 0};
   PetscFunctionBeginUser;
   PetscCall(Force(s, x, s->F));
   PetscCall(Jump(s, x));
-  if (s->source) PetscCall(DoubleLayerRows(c->contrast, s->dipoles, mean));
+  if (s->source) PetscCall(DoubleLayerRows(c->contrast, StokesProfile(s->stokes), s->dipoles));
   PetscCall(MarkersRespond(c->markers, s->stream, s->dipoles, -1 / PetscSqr(c->fluid->grid->h), s->F, s->U));
-  PetscCall(AddMeanAtMarkers(s, mean, s->U));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -224,7 +212,6 @@ static PetscErrorCode Mult(Mat A, Vec x, Vec y) {
 /* U = E u of the force f, row by row; leaves another jump than that of x. */
 static PetscErrorCode FollowByRows(Reduced s, Vec f) {
   const Coupling c = s->unknowns->coupling;
-  PetscReal mean[2] = {0, 0};
   const PetscScalar *G;
   PetscFunctionBeginUser;
   if (s->source) {
@@ -232,10 +219,9 @@ static PetscErrorCode FollowByRows(Reduced s, Vec f) {
     PetscCall(VecGetArrayRead(s->motion, &G));
     PetscCall(DoubleLayerSet(c->contrast, G));
     PetscCall(VecRestoreArrayRead(s->motion, &G));
-    PetscCall(DoubleLayerRows(c->contrast, s->dipoles, mean));
+    PetscCall(DoubleLayerRows(c->contrast, StokesProfile(s->stokes), s->dipoles));
   }
   PetscCall(MarkersFollow(c->markers, s->stream, s->dipoles, f, s->U));
-  PetscCall(AddMeanAtMarkers(s, mean, s->U));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -16,8 +16,8 @@ PetscErrorCode DipoleRowsCreate(Grid g, PetscReal nu, DipoleRows *out) {
   *out = d;
   d->grid = g;
   d->nu = nu;
-  PetscCall(
-      PetscCalloc5(size, &d->field[0], size, &d->field[1], size, &d->field[2], g->n[1], &d->mean, g->n[0], &d->row));
+  PetscCall(PetscCalloc6(size, &d->field[0], size, &d->field[1], size, &d->field[2], g->n[1], &d->mean, g->n[1],
+                         &d->flow, g->n[0], &d->row));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -25,7 +25,7 @@ PetscErrorCode DipoleRowsDestroy(DipoleRows *rows) {
   DipoleRows d = *rows;
   PetscFunctionBeginUser;
   if (!d) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscFree5(d->field[0], d->field[1], d->field[2], d->mean, d->row));
+  PetscCall(PetscFree6(d->field[0], d->field[1], d->field[2], d->mean, d->flow, d->row));
   PetscCall(PetscFree(*rows));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -83,7 +83,8 @@ static void SumMeans(const Grid g, PetscScalar mean[]) {
   for (PetscInt j = 0; j < g->n[1] && !g->wall[1]; j++) mean[j] -= sum / (PetscReal)g->n[1];
 }
 
-PetscErrorCode DipoleRowsSet(DipoleRows d, Markers m, const PetscReal T[]) {
+PetscErrorCode DipoleRowsSet(DipoleRows d, Markers m, const PetscReal T[], const PetscReal profile[],
+                             const PetscReal mean[2]) {
   const Grid g = d->grid;
   PetscFunctionBeginUser;
   Clear(d);
@@ -97,6 +98,10 @@ PetscErrorCode DipoleRowsSet(DipoleRows d, Markers m, const PetscReal T[]) {
   for (PetscInt j = d->window[0]; j < d->window[1]; j++)
     SumRow(g, d->mean[(j + g->first + g->n[1]) % g->n[1]], Row(d, FIELD_P, j));
   SumMeans(g, d->mean);
+  for (PetscInt j = 0; j < g->n[1]; j++) {
+    d->flow[j] = mean[0] * (profile ? profile[j] : g->wall[1] ? 0 : 1);
+    if (!g->wall[1]) d->mean[j] += mean[1];
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -114,8 +119,8 @@ void DipoleRowsAddForce(DipoleRows d, PetscBool own, Field f, PetscInt j, PetscS
 
 const PetscScalar *DipoleRowsAddVelocity(DipoleRows d, Field f, PetscInt j, const PetscScalar row[]) {
   const PetscScalar *b = Row(d, FIELD_P, j);
-  const PetscReal mean = f == FIELD_V ? d->mean[d->grid->first + j] : 0;
-  if (f == FIELD_U ? j < d->window[0] || j >= d->window[1] : mean == 0) return row;
-  for (PetscInt i = 0; i < d->grid->n[0]; i++) d->row[i] = row[i] + (f == FIELD_U ? b[i] : mean);
+  const PetscReal mean = (f == FIELD_U ? d->flow : d->mean)[d->grid->first + j];
+  if (mean == 0 && (f == FIELD_V || j < d->window[0] || j >= d->window[1])) return row;
+  for (PetscInt i = 0; i < d->grid->n[0]; i++) d->row[i] = row[i] + mean + (f == FIELD_U ? b[i] : 0);
   return d->row;
 }

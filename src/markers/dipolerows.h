@@ -16,6 +16,7 @@ struct _p_DipoleRows {
   PetscInt window[2];    /* of these local rows: any others are zero */
   PetscScalar *field[3]; /* forces on u (with the row above) and v, b along x: from the row below on */
   PetscScalar *mean;     /* [all rows of v] b along y */
+  PetscScalar *flow;     /* [all rows of u] mean flow along x */
   PetscScalar *row;      /* [n_x] work */
 };
 
@@ -23,8 +24,11 @@ struct _p_DipoleRows {
 PETSC_EXTERN PetscErrorCode DipoleRowsCreate(Grid grid, PetscReal nu, DipoleRows *rows);
 PETSC_EXTERN PetscErrorCode DipoleRowsDestroy(DipoleRows *rows);
 
-/* DipoleRowsSet - those of all markers with tensors T[3M], which add up to a source of zero. Not collective. */
-PETSC_EXTERN PetscErrorCode DipoleRowsSet(DipoleRows rows, Markers markers, const PetscReal T[]);
+/* DipoleRowsSet - those of all markers with tensors T[3M], which add up to a source of zero; u has the mean flow
+   mean[0] times the profile[rows of all], or, NULL, in a box that is periodic both ways u and v have mean[2]. Not
+   collective. */
+PETSC_EXTERN PetscErrorCode DipoleRowsSet(DipoleRows rows, Markers markers, const PetscReal T[],
+                                          const PetscReal profile[], const PetscReal mean[2]);
 
 /* DipoleRowsAddForce - row += nu L_u b and, if `own`, the dipoles' force, in local row j of u or v; of u the row above
    the last, too. DipoleRowsAddVelocity - the row plus b, in work space of the rows. Not collective. */
