@@ -5,7 +5,7 @@
        b_i - b_{i-1} = h (mean - source_i),      v_j - v_{j-1} = -h mean_j,
 
    source = G^T of the velocity. Then u = w + b, w being the flow of the forces + nu L_u b, and v's mean flow adds to
-   the pressure only (docs/method.md, Stream function). */
+   the pressure only (docs/fluid.md, Stream function). */
 #pragma once
 #include "markers/dipoles.h"
 
