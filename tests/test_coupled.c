@@ -178,7 +178,7 @@ static PetscErrorCode CheckWalls(const char options[], const char name[], PetscR
     off = PetscMax(off, PetscAbsReal(ya[k]));
     ya[k] += da[k];
   }
-  PetscCall(WallsPrecondition(walls, ya));
+  PetscCall(WallsInvert(walls, WALLS_SWEEPS, ya));
   for (PetscInt k = 0; k < walls->n; k++) error = PetscMax(error, PetscAbsReal(ya[k] - da[k]));
   PetscCall(VecRestoreArray(y, &ya));
   PetscCall(VecRestoreArray(d, &da));

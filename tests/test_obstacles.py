@@ -153,11 +153,14 @@ def test_drag_in_a_channel_without_flux(tmp_path):
 
 def test_drive_of_a_channel(tmp_path):
     """A post in Poiseuille flow: the pressure drop given and the flux lower, or the flux kept and the drop higher; at
-    low flux both belong to one resistance."""
+    low flux both belong to one resistance. The sparse LU keeps the flux as well."""
     rows = []
     for drive in ("pressure", "flux"):
         options = f"{CHANNEL} -domain_cells 96,32 -obstacle_radius .2 {POISEUILLE} -flow_drive {drive}"
         rows.append(last(tmp_path / drive, options))
+    other = last(tmp_path / "direct", f"{options.replace('-coupled_ksp_rtol 1e-10', '')} -scheme_type direct")
+    for column in ("flux", "pressure_drop", "obstacle_force_x"):
+        assert other[column] == pytest.approx(rows[1][column], rel=1e-8)
     assert rows[0]["pressure_drop"] == pytest.approx(24, rel=1e-12) and rows[0]["flux"] < 0.5
     assert rows[1]["flux"] == pytest.approx(2 / 3, rel=1e-12)
     assert rows[1]["pressure_drop"] / rows[1]["flux"] == pytest.approx(24 / rows[0]["flux"], rel=2e-3)
@@ -178,6 +181,19 @@ def test_direct_ranks_and_restart(tmp_path):
     rest = run_petves(tmp_path / "rest", f"{short} -coupled_ksp_rtol 1e-11 -restart {checkpoint}").series
     for column in ("center_x", "obstacle_force_x", "obstacle_torque_1"):
         assert rest[column][-1] == whole[column][-1]
+
+
+def test_viscosity_contrast(tmp_path):
+    """A vesicle of another viscosity before a post: the sparse LU and two ranks agree; the mean flow is 1."""
+    short = f"{POST} -time_step .04 -time_end .08 -vesicle_viscosity_ratio 5"
+    tight = "-coupled_ksp_rtol 1e-11"
+    one = last(tmp_path / "one", f"{short} {tight}")
+    for name, options, ranks in (("direct", "-scheme_type direct", 1), ("two", tight, 2)):
+        other = last(tmp_path / name, f"{short} {options}", ranks)
+        for column in ("center_x", "gap", "obstacle_force_x", "pressure_drop"):
+            assert other[column] == pytest.approx(one[column], rel=1e-9)
+    assert one["flux"] == pytest.approx(2, rel=1e-12)
+    assert one["pressure_drop"] == pytest.approx(one["obstacle_force_x"] / 2, rel=1e-9)
 
 
 def test_film_on_a_post(tmp_path):

@@ -1,5 +1,11 @@
 #include "coupling/blas.h"
 
+/* Divide and conquer, which PETSc does not declare. */
+#define LAPACKsyevd_ PETSCBLAS(syevd, SYEVD)
+BLAS_EXTERN void LAPACKsyevd_(const char *, const char *, const PetscBLASInt *, PetscReal *, const PetscBLASInt *,
+                              PetscReal *, PetscReal *, const PetscBLASInt *, PetscBLASInt *, const PetscBLASInt *,
+                              PetscBLASInt *);
+
 PetscErrorCode DenseFactor(PetscInt n, PetscReal A[], PetscBLASInt pivot[], PetscBool *factored) {
   PetscBLASInt size, info;
   PetscFunctionBeginUser;
@@ -67,15 +73,16 @@ PetscErrorCode DenseProduct(PetscBool transpose, PetscInt m, PetscInt n, PetscIn
 }
 
 PetscErrorCode DenseEigen(PetscInt n, PetscReal A[], PetscReal l[]) {
-  PetscBLASInt size, room, info;
+  PetscBLASInt size, room, integers, info, *iwork;
   PetscReal *work;
   PetscFunctionBeginUser;
   PetscCall(PetscBLASIntCast(n, &size));
-  PetscCall(PetscBLASIntCast(40 * n, &room));
-  PetscCall(PetscMalloc1(room, &work));
-  PetscCallBLAS("LAPACKsyev", LAPACKsyev_("V", "L", &size, A, &size, l, work, &room, &info));
+  PetscCall(PetscBLASIntCast(1 + 6 * n + 2 * n * n, &room)); /* as LAPACK wants it, at least */
+  PetscCall(PetscBLASIntCast(3 + 5 * n, &integers));
+  PetscCall(PetscMalloc2(room, &work, integers, &iwork));
+  PetscCallBLAS("LAPACKsyevd", LAPACKsyevd_("V", "L", &size, A, &size, l, work, &room, iwork, &integers, &info));
   PetscCheck(!info, PETSC_COMM_SELF, PETSC_ERR_LIB, "eigenvalues of a matrix of %d rows: LAPACK says %d", (int)n,
              (int)info);
-  PetscCall(PetscFree(work));
+  PetscCall(PetscFree2(work, iwork));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -3,8 +3,7 @@
 #include "coupling/nearblock.h"
 #include "fluid/walls.h"
 
-#define WALL_ROUNDS 12
-#define WALL_TOLERANCE 1e-5 /* of the wall forces: what it leaves in W is a thousandth of the error looked for */
+#define WALL_SWEEPS 12 /* leave 1e-6 of the wall forces */
 
 typedef struct {
   Fluid fluid;
@@ -17,7 +16,7 @@ typedef struct {
   NearImage image;          /* what the near field has of the walls */
   Vec force, r, u, p;       /* on the grid */
   Vec F, U;                 /* at the places */
-  PetscScalar *d, *slip;    /* wall forces and what is left of them */
+  PetscScalar *d;           /* wall forces */
   const BoxAxis *axis;
   const BoxLattice *lattice;
   PaddedStencil *dipole; /* [DIPOLE_COUNT places], of dipoles */
@@ -44,7 +43,7 @@ static PetscErrorCode PlaceMarkers(BoxGrid *b, const char kernel[]) {
   PetscCall(PetscMalloc1(2 * start[1], &b->stencil));
   for (PetscInt k = 0; k < 2 * start[1]; k++) StencilPad(&b->markers->plain[k], &b->stencil[k]);
   for (PetscInt k = 0; k < start[1]; k++) StencilUnwrap(b->fluid->grid, b->markers->X + 2 * k, &b->stencil[2 * k]);
-  if (!b->lattice->dipoles) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!b->lattice->dipole) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscCalloc2(DIPOLE_COUNT * start[1], &b->dipole, DIPOLE_COUNT * start[1], &b->tensor));
   for (PetscInt k = 0; k < start[1]; k++) {
     Stencil part[DIPOLE_COUNT];
@@ -62,20 +61,20 @@ static PetscErrorCode Create(const FluidSpec *spec, const char kernel[], const B
   PetscCall(StokesCreate(b->fluid, &b->stokes));
   PetscCall(WallsCreate(b->fluid, &b->walls));
   PetscCall(PlaceMarkers(b, kernel));
-  b->near = (struct _p_NearField){
-      .markers = b->markers, .nu = spec->nu, .lattice = lattice->stokeslet, .stencil = b->stencil};
+  b->near = (struct _p_NearField){.markers = b->markers, .nu = spec->nu, .stencil = b->stencil};
+  if (lattice->stokeslet) b->near.lattice = *lattice->stokeslet;
   NearFarMake(b->markers->kernel, PETSC_FALSE, b->near.far);
-  if (lattice->dipoles) {
+  if (lattice->dipole) {
     PetscCall(DMCreateGlobalVector(b->fluid->grid->da[FIELD_P], &b->source));
   } else {
-    PetscCall(NearImageCreate(b->markers, spec->nu, &lattice->stokeslet, &b->image));
+    PetscCall(NearImageCreate(b->markers, spec->nu, lattice->half, &b->image));
     PetscCall(NearImagePlace(b->image, b->stencil));
   }
   PetscCall(DMCreateGlobalVector(b->fluid->grid->velocity, &b->force));
   PetscCall(VecDuplicate(b->force, &b->r));
   PetscCall(VecDuplicate(b->force, &b->u));
   PetscCall(DMCreateGlobalVector(b->fluid->grid->da[FIELD_P], &b->p));
-  PetscCall(PetscMalloc2(b->walls->n, &b->d, b->walls->n, &b->slip));
+  PetscCall(PetscMalloc1(b->walls->n, &b->d));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -83,7 +82,7 @@ static PetscErrorCode Destroy(BoxGrid *b) {
   Vec *all[] = {&b->force, &b->r, &b->u, &b->p, &b->F, &b->U, &b->source};
   PetscFunctionBeginUser;
   for (int k = 0; k < 7; k++) PetscCall(VecDestroy(all[k]));
-  PetscCall(PetscFree2(b->d, b->slip));
+  PetscCall(PetscFree(b->d));
   PetscCall(PetscFree(b->stencil));
   PetscCall(PetscFree2(b->dipole, b->tensor));
   PetscCall(NearImageDestroy(&b->image));
@@ -95,30 +94,26 @@ static PetscErrorCode Destroy(BoxGrid *b) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* u of the force and the source on the grid; where the Stokes solve is a projection, with the wall forces that make it
-   exact, found by Richardson's iteration. */
+/* u of the force and the source on the grid, and of wall forces d. */
+static PetscErrorCode SolveWith(BoxGrid *b, const PetscScalar d[]) {
+  PetscFunctionBeginUser;
+  PetscCall(VecCopy(b->force, b->r));
+  if (d) PetscCall(WallsAdd(b->walls, d, b->r));
+  if (b->source) PetscCall(VecCopy(b->source, b->p));
+  PetscCall(StokesSolve(b->stokes, b->r, b->source ? b->p : NULL, b->u, b->p));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* u of the force and the source; where the Stokes solve is a projection, with the wall forces that make it exact. */
 static PetscErrorCode Solve(BoxGrid *b) {
   const PetscInt n = b->walls->n;
-  PetscReal first = 0;
   PetscFunctionBeginUser;
-  PetscCall(PetscArrayzero(b->d, n));
-  for (int round = 0; round < WALL_ROUNDS; round++) {
-    PetscReal rest = 0;
-    PetscCall(VecCopy(b->force, b->r));
-    PetscCall(WallsAdd(b->walls, b->d, b->r));
-    if (b->source) PetscCall(VecCopy(b->source, b->p));
-    PetscCall(StokesSolve(b->stokes, b->r, b->source ? b->p : NULL, b->u, b->p));
-    if (!n) break;
-    PetscCall(WallsSlip(b->walls, StokesPotential(b->stokes), b->slip));
-    for (PetscInt k = 0; k < n; k++) {
-      b->slip[k] += b->d[k];
-      rest = PetscMax(rest, PetscAbsReal(b->slip[k]));
-    }
-    if (!round) first = rest;
-    if (rest <= WALL_TOLERANCE * first) break;
-    PetscCall(WallsPrecondition(b->walls, b->slip));
-    for (PetscInt k = 0; k < n; k++) b->d[k] -= b->slip[k];
-  }
+  PetscCall(SolveWith(b, NULL));
+  if (!n) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(WallsSlip(b->walls, StokesPotential(b->stokes), b->d));
+  PetscCall(WallsInvert(b->walls, WALL_SWEEPS, b->d));
+  for (PetscInt k = 0; k < n; k++) b->d[k] = -b->d[k];
+  PetscCall(SolveWith(b, b->d));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -129,10 +124,10 @@ static void Lattice(BoxGrid *b, PetscInt i, PetscInt j, int part, PetscReal L[2]
   const PetscReal plain[2] = {X[2 * i] - X[2 * j], X[2 * i + 1] - X[2 * j + 1]};
   PetscReal d[2] = {plain[0], plain[1]}, C[4] = {0, 0, 0, 0}, S[4];
   const PetscReal fade = BoxImage(b->axis, d);
-  if (b->lattice->dipoles) {
+  if (b->lattice->dipole) {
     const PetscInt periods[2] = {(PetscInt)rint((d[0] - plain[0]) / h), (PetscInt)rint((d[1] - plain[1]) / h)};
     PetscReal K[2][DIPOLE_COUNT];
-    DoubleLatticeParts(b->lattice->dipole, h, b->lattice->cells * h, &b->stencil[2 * i], &b->dipole[DIPOLE_COUNT * j],
+    DoubleLatticeParts(b->lattice->dipole, h, BOX_LATTICE_CELLS * h, &b->stencil[2 * i], &b->dipole[DIPOLE_COUNT * j],
                        periods, d, K);
     for (int c = 0; c < 2; c++) L[c] = fade * K[c][part];
     return;
@@ -179,7 +174,7 @@ static PetscErrorCode Spread(BoxGrid *b, PetscInt j, int cj) {
   PetscScalar sum;
   PetscFunctionBeginUser;
   PetscCall(VecSet(b->force, 0));
-  if (b->lattice->dipoles) {
+  if (b->lattice->dipole) {
     PetscCall(VecSet(b->source, 0));
     b->tensor[DIPOLE_COUNT * j + cj] = 1;
     PetscCall(DipolesSpread(b->markers, b->fluid->nu, b->tensor, b->force, b->source));
@@ -200,10 +195,11 @@ static PetscErrorCode Spread(BoxGrid *b, PetscInt j, int cj) {
 static PetscErrorCode AddSource(BoxGrid *b, const PetscInt s[2], PetscReal scale, PetscReal W[]) {
   const BoxAxis *x = &b->axis[0], *y = &b->axis[1];
   const PetscInt j = s[1] * x->places + s[0];
+  const PetscBool dipoles = b->lattice->dipole ? PETSC_TRUE : PETSC_FALSE;
   const PetscScalar *U;
   PetscReal L[2];
   PetscFunctionBeginUser;
-  for (int cj = 0; cj < (b->lattice->dipoles ? DIPOLE_COUNT : 2); cj++) {
+  for (int cj = 0; cj < (dipoles ? DIPOLE_COUNT : 2); cj++) {
     if (cj == 1 && IsSquare(b->axis)) continue;
     PetscCall(Spread(b, j, cj));
     PetscCall(Solve(b));
@@ -212,8 +208,7 @@ static PetscErrorCode AddSource(BoxGrid *b, const PetscInt s[2], PetscReal scale
     for (PetscInt i = 0; i < x->places * y->places; i++) {
       const PetscInt a[2] = {i % x->places, i / x->places};
       Lattice(b, i, j, cj, L);
-      for (int ci = 0; ci < 2; ci++)
-        AddEntry(b->axis, b->lattice->dipoles, ci, cj, a, s, scale * (U[2 * i + ci] - L[ci]), W);
+      for (int ci = 0; ci < 2; ci++) AddEntry(b->axis, dipoles, ci, cj, a, s, scale * (U[2 * i + ci] - L[ci]), W);
     }
     PetscCall(VecRestoreArrayRead(b->U, &U));
   }

@@ -3,15 +3,19 @@
    flow, whatever the run's. */
 #pragma once
 #include "coupling/boxaxis.h"
+#include "coupling/imagetable.h"
 #include "coupling/lattice.h"
 #include "coupling/latticedipole.h"
 #include "fluid/fluid.h"
 
-/* The lattice's answers to the sources, as far as they are tabulated. */
+#define BOX_LATTICE_CELLS 30 /* of the lattice's tables; beyond, its closed form is right to 2e-7 */
+
+/* The lattice's answers to the sources, borrowed: of forces, or (dipole not NULL) of dipoles. Tables reach
+   BOX_LATTICE_CELLS and OFFSET_LAGS. */
 typedef struct {
-  PetscInt cells;
-  PetscBool dipoles; /* else forces */
-  OffsetTable stokeslet, dipole[2];
+  const OffsetTable *stokeslet;
+  const ImageTable *half;    /* in front of a wall; NULL without walls */
+  const OffsetTable *dipole; /* [2] */
 } BoxLattice;
 
 /* BoxGridAdd - W += scale times the smooth part of the grid `spec`, with the named kernel, its lattice as far as it is

@@ -1,6 +1,6 @@
 #include "coupling/boxpart.h"
 
-PetscErrorCode BoxPartCreate(const FluidSpec *spec, Markers markers, BoxPart *out) {
+PetscErrorCode BoxPartCreate(const FluidSpec *spec, Markers markers, const BoxLattice *lattice, BoxPart *out) {
   BoxPart b;
   PetscLogEvent event;
   PetscFunctionBeginUser;
@@ -10,7 +10,7 @@ PetscErrorCode BoxPartCreate(const FluidSpec *spec, Markers markers, BoxPart *ou
   b->ramp = spec->inertia == INERTIA_NONE ? PETSC_FALSE : PETSC_TRUE;
   PetscCall(PetvesEvent("BoxTable", &event));
   PetscCall(PetscLogEventBegin(event, 0, 0, 0, 0));
-  PetscCall(BoxTableCreate(spec, markers->kernel->name, PETSC_FALSE, &b->table));
+  PetscCall(BoxTableCreate(spec, markers->kernel->name, lattice, &b->table));
   PetscCall(PetscLogEventEnd(event, 0, 0, 0, 0));
   PetscCall(PetscMalloc3(2 * markers->layout->n * b->table.rank, &b->A, b->table.rank, &b->amplitude,
                          2 * markers->layout->n, &b->X));
@@ -37,34 +37,21 @@ static PetscReal Fade(BoxPart b, const PetscReal X[2]) {
   return fade;
 }
 
-/* The rows A[n][2][rank] of the markers from `first` on. */
-static PetscErrorCode PlaceMarkers(BoxPart b, PetscInt first, PetscInt n, PetscReal A[]) {
-  const PetscReal *X = b->markers->X + 2 * first;
-  PetscReal *fade;
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(n, &fade));
-  for (PetscInt k = 0; k < n; k++) fade[k] = Fade(b, X + 2 * k);
-  PetscCall(BoxTableRows(&b->table, n, X, fade, 0, 2, A));
-  PetscCall(PetscFree(fade));
-  PetscFunctionReturn(PETSC_SUCCESS);
+/* The rows A[2][rank] of marker k, from its functions' values. */
+static void PlaceMarker(BoxPart b, PetscInt k, PetscReal A[]) {
+  const PetscReal *X = b->markers->X + 2 * k;
+  BoxTableRows(&b->table, X, Fade(b, X), 0, 2, A);
 }
 
-/* Whether own marker k is elsewhere than when it was placed last. */
-static PetscBool Moved(BoxPart b, PetscInt k) {
-  const PetscReal *now = b->markers->X + 2 * (b->markers->layout->first + k), *then = b->X + 2 * k;
-  return now[0] == then[0] && now[1] == then[1] ? PETSC_FALSE : PETSC_TRUE;
-}
-
-PetscErrorCode BoxPartPlace(BoxPart b) {
+void BoxPartPlace(BoxPart b) {
   const Layout l = b->markers->layout;
-  PetscFunctionBeginUser;
-  for (PetscInt k = 0, end; k < l->n; k = end + 1) { /* markers that have moved; others are at rest, on obstacles */
-    for (end = k; end < l->n && Moved(b, end); end++) continue;
-    if (end == k) continue;
-    PetscCall(PlaceMarkers(b, l->first + k, end - k, b->A + 2 * k * b->table.rank));
-    PetscCall(PetscArraycpy(b->X + 2 * k, b->markers->X + 2 * (l->first + k), 2 * (end - k)));
+  for (PetscInt k = 0; k < l->n; k++) {
+    const PetscReal *now = b->markers->X + 2 * (l->first + k), *then = b->X + 2 * k;
+    if (now[0] == then[0] && now[1] == then[1]) continue; /* at rest, on an obstacle */
+    PlaceMarker(b, l->first + k, b->A + 2 * k * b->table.rank);
+    b->X[2 * k] = now[0];
+    b->X[2 * k + 1] = now[1];
   }
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode BoxPartApply(BoxPart b, PetscReal alpha, const PetscScalar F[], PetscScalar U[]) {
@@ -97,10 +84,8 @@ PetscErrorCode BoxPartAdd(BoxPart b, PetscReal scale, PetscInt first, PetscInt n
   const PetscBool own = first >= l->first && first + n <= l->first + l->n ? PETSC_TRUE : PETSC_FALSE;
   PetscReal *all = own ? b->A + 2 * (first - l->first) * r : NULL;
   PetscFunctionBeginUser;
-  if (!own) {
-    PetscCall(PetscMalloc1(2 * n * r, &all));
-    PetscCall(PlaceMarkers(b, first, n, all));
-  }
+  if (!own) PetscCall(PetscMalloc1(2 * n * r, &all));
+  for (PetscInt k = 0; k < n && !own; k++) PlaceMarker(b, first + k, all + 2 * k * r);
   for (PetscInt j = 0; j < 2 * n; j++)
     for (PetscInt i = 2 * (begin - first); i < 2 * (end - first); i++)
       out[j * 2 * n + i] += scale * Product(r, b->table.l, all + i * r, all + j * r);

@@ -15,12 +15,14 @@ struct _p_BoxPart {
   PetscReal *amplitude; /* [rank] work */
 };
 
-/* BoxPartCreate - for markers on the grid that `spec` makes. Collective. */
-PETSC_EXTERN PetscErrorCode BoxPartCreate(const FluidSpec *spec, Markers markers, BoxPart *box);
+/* BoxPartCreate - for markers on the grid that `spec` makes; the lattice's tables of forces are used here only.
+   Collective. */
+PETSC_EXTERN PetscErrorCode BoxPartCreate(const FluidSpec *spec, Markers markers, const BoxLattice *lattice,
+                                          BoxPart *box);
 PETSC_EXTERN PetscErrorCode BoxPartDestroy(BoxPart *box);
 
 /* BoxPartPlace - where the markers have been placed. Not collective. */
-PETSC_EXTERN PetscErrorCode BoxPartPlace(BoxPart box);
+PETSC_EXTERN void BoxPartPlace(BoxPart box);
 
 /* BoxPartImage - BoxImage of the box. Not collective. */
 static inline PetscReal BoxPartImage(BoxPart box, PetscReal d[2]) {

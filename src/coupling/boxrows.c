@@ -1,6 +1,6 @@
 /* What a marker has of a box table. */
+#include "base/lanes.h"
 #include "coupling/boxtable.h"
-#include "coupling/panels.h"
 
 PetscReal BoxTableFade(const BoxTable *t, Grid g, const PetscReal X[2]) {
   const PetscReal last = t->H > g->h * (1 + 1e-9) ? t->H
@@ -14,51 +14,46 @@ PetscReal BoxTableFade(const BoxTable *t, Grid g, const PetscReal X[2]) {
   return fade;
 }
 
-/* Markers whose rows are made together, in whole groups of columns: a marker's row has the same bits in any company. */
-#define TOGETHER 32
-#define GROUP 4
-typedef struct {
-  PetscInt n;
-  PetscReal x[TOGETHER][BOX_FUNCTIONS], y[TOGETHER][BOX_FUNCTIONS]; /* their functions, x times fade */
-  PetscReal *weight, *sum;                                          /* [n][functions of a block], [n][its modes] */
-} Batch;
-
-/* Block q's part of component c of the rows, which are `apart` numbers from one marker to the next. */
-static void FillBlock(const BoxBlock *q, int c, Batch *b, PetscInt apart, PetscReal rows[]) {
-  const PetscInt functions = q->n[0] * q->n[1], columns[2] = {functions, PanelsRows(q->modes)};
-  for (PetscInt k = 0; k < b->n; k++)
-    for (PetscInt i = 0; i < q->n[0]; i++)
-      for (PetscInt j = 0; j < q->n[1]; j++)
-        b->weight[(k * q->n[0] + i) * q->n[1] + j] = b->x[k][q->first[c][0] + i] * b->y[k][q->first[c][1] + j];
-  PanelsProduct(q->modes, functions, q->Q + c * PanelsSize(q->modes, functions), functions,
-                (b->n + GROUP - 1) / GROUP * GROUP, columns, b->weight, b->sum);
-  for (PetscInt k = 0; k < b->n; k++)
-    (void)PetscArraycpy(rows + k * apart + q->start, b->sum + k * columns[1], q->modes);
+/* a[4 n] = weights of count functions times their rows of vectors, 4 n of the `modes` that a row has: in registers. */
+static inline void Sums(const int n, PetscInt count, const PetscReal weight[], const PetscReal *row, PetscInt modes,
+                        PetscReal a[]) {
+  Lanes sum[4] = {{0}, {0}, {0}, {0}};
+  for (PetscInt f = 0; f < count; f++, row += modes)
+    for (int k = 0; k < n; k++) sum[k] += weight[f] * LanesAt(row + LANES * k);
+  for (int k = 0; k < n; k++) LanesPut(sum[k], a + LANES * k);
 }
 
-PetscErrorCode BoxTableRows(const BoxTable *t, PetscInt n, const PetscReal X[], const PetscReal fade[], int first,
-                            int count, PetscReal rows[]) {
-  PetscInt functions = 0, modes = 0;
-  Batch b;
-  PetscFunctionBeginUser;
-  for (PetscInt q = 0; q < t->blocks; q++) {
-    functions = PetscMax(functions, t->block[q].n[0] * t->block[q].n[1]);
-    modes = PetscMax(modes, PanelsRows(t->block[q].modes));
+/* a[modes] of the block: weights of one component's functions times its vectors. The last four overlap others. */
+static void BlockRow(const BoxBlock *q, int c, const PetscReal weight[], PetscReal a[]) {
+  const PetscInt modes = q->modes, count = q->n[0] * q->n[1];
+  const PetscReal *Q = q->Q + c * count * modes;
+  PetscInt m = 0;
+  for (; m + 4 * LANES <= modes; m += 4 * LANES) Sums(4, count, weight, Q + m, modes, a + m);
+  for (; m + LANES <= modes; m += LANES) Sums(1, count, weight, Q + m, modes, a + m);
+  if (m < modes && modes >= LANES) {
+    m = modes - LANES;
+    Sums(1, count, weight, Q + m, modes, a + m);
+    m = modes;
   }
-  PetscCall(PetscCalloc2(TOGETHER * functions, &b.weight, TOGETHER * modes, &b.sum));
-  for (PetscInt begin = 0; begin < n; begin += TOGETHER) {
-    b.n = PetscMin(TOGETHER, n - begin);
-    for (PetscInt k = 0; k < b.n; k++) {
-      BoxTableFunctions(t, 0, X[2 * (begin + k)], b.x[k]);
-      BoxTableFunctions(t, 1, X[2 * (begin + k) + 1], b.y[k]);
-      for (PetscInt i = 0; i < t->functions[0]; i++) b.x[k][i] *= fade[begin + k];
+  for (; m < modes; m++) {
+    a[m] = 0;
+    for (PetscInt f = 0; f < count; f++) a[m] += weight[f] * Q[f * modes + m];
+  }
+}
+
+void BoxTableRows(const BoxTable *t, const PetscReal X[2], PetscReal fade, int first, int count, PetscReal rows[]) {
+  PetscReal vx[BOX_FUNCTIONS], vy[BOX_FUNCTIONS], weight[BOX_BLOCK_FUNCTIONS];
+  (void)PetscArrayzero(rows, count * t->rank);
+  if (fade == 0) return;
+  BoxTableFunctions(t, 0, X[0], vx);
+  BoxTableFunctions(t, 1, X[1], vy);
+  for (PetscInt q = 0; q < t->blocks; q++)
+    for (int c = 0; c < count; c++) {
+      const BoxBlock *b = &t->block[q];
+      const PetscReal *x = vx + b->first[first + c][0], *y = vy + b->first[first + c][1];
+      for (PetscInt k = 0; k < b->n[0] * b->n[1]; k++) weight[k] = fade * x[k / b->n[1]] * y[k % b->n[1]];
+      BlockRow(b, first + c, weight, rows + c * t->rank + b->start);
     }
-    for (PetscInt q = 0; q < t->blocks; q++)
-      for (int c = 0; c < count; c++)
-        FillBlock(&t->block[q], first + c, &b, count * t->rank, rows + (begin * count + c) * t->rank);
-  }
-  PetscCall(PetscFree2(b.weight, b.sum));
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscReal BoxSum(PetscInt r, const PetscReal l[], const PetscReal x[]) {

@@ -1,6 +1,5 @@
 #include "coupling/boxtable.h"
 #include "coupling/blas.h"
-#include "coupling/panels.h"
 
 #define WALL_PLACES 16
 #define WALL_MARGIN 3 /* cells of the coarser grid between the places and a wall: what its kernels reach */
@@ -9,8 +8,8 @@
 #define MODES 16                        /* of a period as long as the other side */
 #define COARSE_CELLS 64                 /* of the shorter side, on the coarser grid */
 #define MOST_CELLS 80
-#define LATTICE_CELLS 30 /* of the lattice's table; beyond, its closed form is right to 2e-7 */
-#define SMALLEST 5e-4    /* of the largest: eigenvalues below it are dropped */
+#define RATIO_CELLS 48 /* of the shorter side, from which on the pair's ratio is 3/2 */
+#define SMALLEST 5e-4  /* of the largest: eigenvalues below it are dropped */
 
 /* The coarser grid, its cells square: the run's own or, where that has more than COARSE_CELLS across, the fewest from
    there up to MOST_CELLS that fit the box, or else fit it best: within a half of 1/COARSE_CELLS, which D is smooth
@@ -230,22 +229,19 @@ static PetscBool IsKept(const BoxTable *t, PetscReal l, PetscReal least) {
 /* Of the block's eigenvectors Q, columns, and eigenvalues l only those larger than `least` are kept. */
 static PetscErrorCode KeepLargest(const BoxTable *t, BoxBlock *q, const PetscReal l[], PetscReal least,
                                   PetscReal kept[], PetscInt *rank) {
-  const PetscInt functions = q->n[0] * q->n[1], size = t->components * functions;
-  PetscReal *all = q->Q, *row;
+  const PetscInt size = t->components * q->n[0] * q->n[1];
+  PetscReal *all = q->Q;
   PetscFunctionBeginUser;
   q->start = *rank;
   q->modes = 0;
   for (PetscInt k = 0; k < size; k++) q->modes += IsKept(t, l[k], least);
-  PetscCall(PetscMalloc1(PanelsSize(q->modes, size), &q->Q));
-  PetscCall(PetscMalloc1(q->modes, &row));
-  for (PetscInt k = 0; k < size; k++)
-    if (IsKept(t, l[k], least)) kept[(*rank)++] = (BoxParts(t) == 2 ? 1 : 2) * l[k];
-  for (PetscInt i = 0; i < size; i++) {
-    for (PetscInt k = 0, m = 0; k < size; k++)
-      if (IsKept(t, l[k], least)) row[m++] = all[k * size + i];
-    PanelsSetColumn(q->modes, functions, i % functions, row, q->Q + i / functions * PanelsSize(q->modes, functions));
+  PetscCall(PetscMalloc1(size * q->modes, &q->Q));
+  for (PetscInt k = 0, m = 0; k < size; k++) {
+    if (!IsKept(t, l[k], least)) continue;
+    kept[(*rank)++] = (BoxParts(t) == 2 ? 1 : 2) * l[k];
+    for (PetscInt i = 0; i < size; i++) q->Q[i * q->modes + m] = all[k * size + i];
+    m++;
   }
-  PetscCall(PetscFree(row));
   PetscCall(PetscFree(all));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -277,12 +273,14 @@ static PetscErrorCode Decompose(MPI_Comm comm, BoxTable *t) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* 4/3 (W_{H/2} - W_H) of the pair, times (h/H)^2. */
-static PetscErrorCode Pair(const FluidSpec *run, const char kernel[], PetscBool dipoles, const PetscInt cells[2],
-                           const BoxAxis axis[2], PetscReal H, PetscReal W[]) {
-  const PetscReal scale = 4. / 3 * PetscSqr(FluidSpecCellSize(run) / H);
+/* r^2/(r^2 - 1) (W_{H/r} - W_H) of the pair, times (h/H)^2; r = 3/2 on many cells, where that
+   makes whole numbers of them, else 2: its leftover of fourth order is 1.8 times as large. */
+static PetscErrorCode Pair(const FluidSpec *run, const char kernel[], const BoxLattice *lattice,
+                           const PetscInt cells[2], const BoxAxis axis[2], PetscReal H, PetscReal W[]) {
+  const PetscBool few = PetscMin(cells[0], cells[1]) < RATIO_CELLS ? PETSC_TRUE : PETSC_FALSE;
+  const PetscInt halves = few || cells[0] % 2 || cells[1] % 2 ? 4 : 3; /* 2 r */
+  const PetscReal scale = PetscSqr(halves * FluidSpecCellSize(run) / H) / (halves * halves - 4);
   FluidSpec spec = *run;
-  BoxLattice lattice = {.cells = LATTICE_CELLS, .dipoles = dipoles};
   PetscFunctionBeginUser;
   spec.comm = PETSC_COMM_SELF;
   spec.form = FORM_DISTURBANCE;
@@ -290,18 +288,15 @@ static PetscErrorCode Pair(const FluidSpec *run, const char kernel[], PetscBool 
   spec.plan = 0; /* the same bits in every run */
   PetscCall(PetscStrncpy(spec.helmholtz, "fftw_tridiagonal", sizeof(spec.helmholtz)));
   PetscCall(PetscStrncpy(spec.poisson, "fftw_tridiagonal", sizeof(spec.poisson)));
-  if (dipoles) PetscCall(LatticeDipoles(LATTICE_CELLS + OFFSET_LAGS, lattice.dipole));
-  if (!dipoles) PetscCall(LatticeStokeslet(LATTICE_CELLS + OFFSET_LAGS, &lattice.stokeslet));
-  for (int times = 1; times <= 2; times++) {
-    for (int d = 0; d < 2; d++) spec.cells[d] = times * cells[d];
-    PetscCall(BoxGridAdd(&spec, run->comm, kernel, &lattice, axis, times == 1 ? -scale : scale, W));
+  for (int fine = 0; fine < 2; fine++) {
+    for (int d = 0; d < 2; d++) spec.cells[d] = fine ? halves * cells[d] / 2 : cells[d];
+    PetscCall(BoxGridAdd(&spec, run->comm, kernel, lattice, axis, fine ? scale : -scale, W));
   }
-  PetscCall(OffsetTableDestroy(&lattice.stokeslet));
-  for (int c = 0; c < 2; c++) PetscCall(OffsetTableDestroy(&lattice.dipole[c]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode BoxTableCreate(const FluidSpec *spec, const char kernel[], PetscBool dipoles, BoxTable *t) {
+PetscErrorCode BoxTableCreate(const FluidSpec *spec, const char kernel[], const BoxLattice *lattice, BoxTable *t) {
+  const PetscBool dipoles = lattice->dipole ? PETSC_TRUE : PETSC_FALSE;
   PetscInt cells[2], size = dipoles ? 6 : 4;
   PetscReal *W, height = spec->box[3] - spec->box[2];
   FluidSpec pair = *spec;
@@ -319,7 +314,7 @@ PetscErrorCode BoxTableCreate(const FluidSpec *spec, const char kernel[], PetscB
     size *= t->axis[d].pairs;
   }
   PetscCall(PetscCalloc1(size, &W));
-  PetscCall(Pair(&pair, kernel, dipoles, cells, axis, t->H, W));
+  PetscCall(Pair(&pair, kernel, lattice, cells, axis, t->H, W));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, W, (PetscMPIInt)size, MPIU_REAL, MPI_SUM, spec->comm));
   PetscCall(CreateBlocks(t));
   PetscCall(Transform(t, W));

@@ -6,6 +6,7 @@
 #include "coupling/boxgrid.h"
 
 #define BOX_FUNCTIONS BOX_PLACES /* more than the functions of a direction */
+#define BOX_BLOCK_FUNCTIONS 64   /* at most, of a component in a block: 8 x 8 between four walls */
 
 /* Functions of x and y that D couples with one another only, and what is kept of its eigenvectors in them. */
 #define BOX_COMPONENTS 5 /* u, v, and of dipoles xx, yy, xy */
@@ -13,7 +14,7 @@ typedef struct {
   PetscInt first[BOX_COMPONENTS][2]; /* [component]: its functions of x, of y, from here on */
   PetscInt n[2];                     /* so many */
   PetscInt start, modes;             /* its eigenvalues among all */
-  PetscReal *Q;                      /* [components] panels (panels.h), modes x n[0] n[1] */
+  PetscReal *Q;                      /* [components][n[0]][n[1]][modes] */
 } BoxBlock;
 
 typedef struct {
@@ -27,10 +28,9 @@ typedef struct {
   PetscReal H;   /* cell size of the coarser grid */
 } BoxTable;
 
-/* BoxTableCreate - for the run's grid and boundaries, of forces or of dipoles. Collective on spec->comm: ranks share
-   the solves. BoxTableDestroy
-   - and free. */
-PETSC_EXTERN PetscErrorCode BoxTableCreate(const FluidSpec *spec, const char kernel[], PetscBool dipoles,
+/* BoxTableCreate - for the run's grid and boundaries, of forces or of dipoles, as the lattice is, which is used here
+   only. Collective on spec->comm: ranks share the solves. BoxTableDestroy - and free. */
+PETSC_EXTERN PetscErrorCode BoxTableCreate(const FluidSpec *spec, const char kernel[], const BoxLattice *lattice,
                                            BoxTable *table);
 PETSC_EXTERN PetscErrorCode BoxTableDestroy(BoxTable *table);
 
@@ -43,11 +43,11 @@ static inline PetscInt BoxParts(const BoxTable *table) {
  */
 PETSC_EXTERN void BoxTableFunctions(const BoxTable *table, int dir, PetscReal x, PetscReal values[]);
 
-/* BoxTableRows - rows[n][count][rank]: the components first .. first + count - 1 of the functions at n places X[2n],
-   times fade[n]. BoxTableFade - the part of D that a marker at X has, less where the table ends, one cell of its
-   coarser grid from its last places. Not collective. */
-PETSC_EXTERN PetscErrorCode BoxTableRows(const BoxTable *table, PetscInt n, const PetscReal X[], const PetscReal fade[],
-                                         int first, int count, PetscReal rows[]);
+/* BoxTableRows - rows[count][rank]: the components first .. first + count - 1 of the functions at X, times `fade`.
+   BoxTableFade - the part of D that a marker at X has, less where the table ends, one cell of its coarser grid from its
+   last places. Not collective. */
+PETSC_EXTERN void BoxTableRows(const BoxTable *table, const PetscReal X[2], PetscReal fade, int first, int count,
+                               PetscReal rows[]);
 PETSC_EXTERN PetscReal BoxTableFade(const BoxTable *table, Grid grid, const PetscReal X[2]);
 
 /* BoxSmoothStep - 0 up to low, 1 from high on. BoxSum - SUM l x of n, in four lanes. Not collective. */

@@ -38,9 +38,11 @@ PetscErrorCode ContrastKnown(Coupling c, Vec background, Vec Y, Vec moved, Vec k
   PetscFunctionBeginUser;
   PetscCall(VecCopy(background, moved));
   PetscCall(CouplingTread(c, 1, Y, moved));
-  PetscCall(VecAXPY(k, 1, background));
-  PetscCall(VecGetArrayRead(moved, &U));
   PetscCall(VecGetArray(k, &y));
+  PetscCall(VecGetArrayRead(background, &U));
+  for (PetscInt q = 0; q < 2 * c->membrane->layout->n; q++) y[q] += U[q];
+  PetscCall(VecRestoreArrayRead(background, &U));
+  PetscCall(VecGetArrayRead(moved, &U));
   PetscCall(DoubleLayerSet(c->contrast, U));
   AddMean(c, -1, U, y);
   PetscCall(DoubleLayerApply(c->contrast, 1, y));

@@ -1,5 +1,5 @@
 /* Viscosity contrast in the equations of a step (docs/contrast.md): what stands in the place of the
-   markers' velocity U where the inner viscosity is another than the outer one,
+   vesicles' velocity U where the inner viscosity is another than the outer one,
 
        B U - E v' + C F = ...,      B U = (1 + ratio)/2 U - C_D (1 - ratio) U,      U = V + (treading/a0) dV/dt + known.
  */
@@ -10,7 +10,7 @@
 PETSC_EXTERN PetscErrorCode CouplingAddContrast(Coupling coupling, const PetscReal ratio[]);
 
 /* ContrastKnown - of the part of the motion that is known before the step, the background's and what the labels' speed
-   makes of Y: moved = background + treading dY/dt, and k += background - B moved. Collective. */
+   makes of Y: moved = background + treading dY/dt, and k += background - B moved, k of all bodies. Collective. */
 PETSC_EXTERN PetscErrorCode ContrastKnown(Coupling coupling, Vec background, Vec Y, Vec moved, Vec k);
 
 /* ContrastJump - set the jump of the motion V + (treading/a0) dV/dt of own V[2n], G[2n] being room for it. ContrastRest

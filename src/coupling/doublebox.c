@@ -1,7 +1,8 @@
 #include "coupling/doublebox.h"
 
-PetscErrorCode DoubleBoxCreate(const FluidSpec *spec, Markers markers, DoubleBox *out) {
+PetscErrorCode DoubleBoxCreate(const FluidSpec *spec, Markers markers, const OffsetTable lattice[2], DoubleBox *out) {
   const PetscInt n = markers->layout->n;
+  const BoxLattice dipoles = {.dipole = lattice};
   DoubleBox b;
   PetscLogEvent event;
   PetscFunctionBeginUser;
@@ -10,7 +11,7 @@ PetscErrorCode DoubleBoxCreate(const FluidSpec *spec, Markers markers, DoubleBox
   b->markers = markers;
   PetscCall(PetvesEvent("BoxTable", &event));
   PetscCall(PetscLogEventBegin(event, 0, 0, 0, 0));
-  PetscCall(BoxTableCreate(spec, markers->kernel->name, PETSC_TRUE, &b->table));
+  PetscCall(BoxTableCreate(spec, markers->kernel->name, &dipoles, &b->table));
   PetscCall(PetscLogEventEnd(event, 0, 0, 0, 0));
   PetscCall(PetscMalloc2(BOX_COMPONENTS * n * b->table.rank, &b->rows, b->table.rank, &b->amplitude));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -25,16 +26,12 @@ PetscErrorCode DoubleBoxDestroy(DoubleBox *box) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode DoubleBoxPlace(DoubleBox b) {
+void DoubleBoxPlace(DoubleBox b) {
   const Layout l = b->markers->layout;
-  const PetscReal *X = b->markers->X + 2 * l->first;
-  PetscReal *fade;
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(l->n, &fade));
-  for (PetscInt k = 0; k < l->n; k++) fade[k] = BoxTableFade(&b->table, b->markers->grid, X + 2 * k);
-  PetscCall(BoxTableRows(&b->table, l->n, X, fade, 0, BOX_COMPONENTS, b->rows));
-  PetscCall(PetscFree(fade));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt k = 0; k < l->n; k++) {
+    const PetscReal *X = b->markers->X + 2 * (l->first + k), fade = BoxTableFade(&b->table, b->markers->grid, X);
+    BoxTableRows(&b->table, X, fade, 0, BOX_COMPONENTS, b->rows + BOX_COMPONENTS * k * b->table.rank);
+  }
 }
 
 /* Of own marker k: a component of its velocity (0, 1) or of its tensor (from 2 on). */
@@ -65,7 +62,7 @@ PetscErrorCode DoubleBoxMatrix(DoubleBox b, PetscReal scale, PetscReal out[]) {
   PetscCall(PetscMalloc1(DIPOLE_COUNT * r, &source));
   for (PetscInt j = 0; j < l->M; j++) {
     const PetscReal *X = b->markers->X + 2 * j, fade = scale * BoxTableFade(&b->table, b->markers->grid, X);
-    PetscCall(BoxTableRows(&b->table, 1, X, &fade, 2, DIPOLE_COUNT, source));
+    BoxTableRows(&b->table, X, fade, 2, DIPOLE_COUNT, source);
     for (PetscInt k = 0; k < DIPOLE_COUNT * r; k++) source[k] *= b->table.l[k % r];
     for (int c = 0; c < DIPOLE_COUNT; c++)
       for (PetscInt i = 0; i < 2 * l->n; i++)

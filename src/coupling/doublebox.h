@@ -12,12 +12,14 @@ struct _p_DoubleBox {
   PetscReal *amplitude; /* [rank] work */
 };
 
-/* DoubleBoxCreate - for markers on the grid that `spec` makes. Collective. */
-PETSC_EXTERN PetscErrorCode DoubleBoxCreate(const FluidSpec *spec, Markers markers, DoubleBox *box);
+/* DoubleBoxCreate - for markers on the grid that `spec` makes; the lattice's tables of dipoles (LatticeDipoles) are
+   used here only. Collective. */
+PETSC_EXTERN PetscErrorCode DoubleBoxCreate(const FluidSpec *spec, Markers markers, const OffsetTable lattice[2],
+                                            DoubleBox *box);
 PETSC_EXTERN PetscErrorCode DoubleBoxDestroy(DoubleBox *box);
 
 /* DoubleBoxPlace - where the markers have been placed. Not collective. */
-PETSC_EXTERN PetscErrorCode DoubleBoxPlace(DoubleBox box);
+PETSC_EXTERN void DoubleBoxPlace(DoubleBox box);
 
 /* DoubleBoxApply - y += alpha D T, own part y[2n] of a marker vector, tensors T[DIPOLE_COUNT n] of the own markers.
    Collective. */

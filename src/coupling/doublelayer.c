@@ -13,7 +13,7 @@ PetscErrorCode DoubleLayerCreate(NearField near, const PetscReal ratio[], Double
   s->near = near;
   for (PetscInt v = 0; v < l->bodies; v++) most = PetscMax(most, LayoutCount(l, v));
   PetscCall(PetscMalloc3(l->bodies, &s->ratio, l->bodies, &s->length, 2 * most, &s->column));
-  PetscCall(PetscArraycpy(s->ratio, ratio, l->bodies));
+  for (PetscInt v = 0; v < l->bodies; v++) s->ratio[v] = v < near->bodies->vesicles ? ratio[v] : 1;
   PetscCall(PetscMalloc3(2 * l->M, &s->normal, l->M, &s->along, DIPOLE_COUNT * l->M, &s->dipole));
   PetscCall(PetscCalloc3(2 * l->M, &s->jump, 2 * l->M, &s->plain, DIPOLE_COUNT * l->M, &s->tensor));
   if (!near->free) PetscCall(LatticeDipoles(DOUBLE_CELLS + OFFSET_LAGS, s->lattice));
@@ -40,7 +40,7 @@ PetscErrorCode DoubleLayerDestroy(DoubleLayer *layer) {
 
 PetscErrorCode DoubleLayerAddBoxPart(DoubleLayer s, const FluidSpec *spec) {
   PetscFunctionBeginUser;
-  PetscCall(DoubleBoxCreate(spec, s->near->markers, &s->box));
+  PetscCall(DoubleBoxCreate(spec, s->near->markers, s->lattice, &s->box));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -113,13 +113,13 @@ PetscErrorCode DoubleLayerPlace(DoubleLayer s) {
     PetscCall(DoubleBlockFill(s, b, s->near->free ? PETSC_FALSE : PETSC_TRUE, s->value + b->at));
     PetscCall(DoubleCloseAdd(s, b, s->value + b->at));
   }
-  if (s->box) PetscCall(DoubleBoxPlace(s->box));
+  if (s->box) DoubleBoxPlace(s->box);
   PetscCall(PetscLogEventEnd(s->place, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode DoubleLayerSet(DoubleLayer s, const PetscScalar U[]) {
-  const Layout l = s->near->bodies->layout;
+  const Layout l = s->near->bodies->membrane->layout; /* obstacles, whose J is zero, come behind */
   PetscFunctionBeginUser;
   PetscCall(LayoutGather(l, 2, U, s->plain));
   for (PetscInt v = 0; v < l->bodies; v++) {
@@ -163,8 +163,7 @@ PetscErrorCode DoubleLayerApply(DoubleLayer s, PetscReal alpha, PetscScalar y[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The tensors, and the mean velocity with them: J.n is half the trace. */
-static void TensorsAndMean(DoubleLayer s, PetscReal mean[2]) {
+void DoubleLayerMean(DoubleLayer s, PetscReal mean[2]) {
   const NearField f = s->near;
   const Grid g = f->markers->grid;
   const PetscReal area = (g->hi[0] - g->lo[0]) * (g->hi[1] - g->lo[1]);
@@ -176,17 +175,18 @@ static void TensorsAndMean(DoubleLayer s, PetscReal mean[2]) {
 }
 
 PetscErrorCode DoubleLayerSpread(DoubleLayer s, Vec w, Vec source, PetscReal mean[2]) {
+  const NearField f = s->near;
   PetscFunctionBeginUser;
-  if (s->near->free) PetscFunctionReturn(PETSC_SUCCESS);
-  TensorsAndMean(s, mean);
-  PetscCall(DipolesSpread(s->near->markers, s->near->nu, s->tensor, w, source));
+  if (f->free) PetscFunctionReturn(PETSC_SUCCESS);
+  DoubleLayerMean(s, mean);
+  PetscCall(DipolesSpread(f->markers, f->nu, s->tensor, w, source));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode DoubleLayerRows(DoubleLayer s, const PetscReal profile[], DipoleRows rows) {
   PetscReal mean[2] = {0, 0};
   PetscFunctionBeginUser;
-  TensorsAndMean(s, mean);
+  DoubleLayerMean(s, mean);
   PetscCall(DipoleRowsSet(rows, s->near->markers, s->tensor, profile, mean));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

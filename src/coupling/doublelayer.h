@@ -55,16 +55,21 @@ PETSC_EXTERN PetscErrorCode DoubleLayerAddBoxPart(DoubleLayer layer, const Fluid
 /* DoubleLayerPlace - C_D where the near field has been placed (NearFieldPlace). Collective. */
 PETSC_EXTERN PetscErrorCode DoubleLayerPlace(DoubleLayer layer);
 
-/* DoubleLayerSet - the jump that the next two act on: of markers that move with U[2n], this rank's part. Collective. */
+/* DoubleLayerSet - the jump that the next ones act on: of vesicles' markers that move with U[2n], this rank's part.
+   Collective. */
 PETSC_EXTERN PetscErrorCode DoubleLayerSet(DoubleLayer layer, const PetscScalar U[]);
 
-/* DoubleLayerApply - y += alpha (C_D J and the box part of its dipoles), this rank's part y[2n] of a marker vector.
-   Collective. */
+/* DoubleLayerApply - y += alpha (C_D J and the box part of its dipoles), this rank's part y[2n] of a marker vector of
+   all bodies. Collective. */
 PETSC_EXTERN PetscErrorCode DoubleLayerApply(DoubleLayer layer, PetscReal alpha, PetscScalar y[]);
 
-/* DoubleLayerSpread - w += the force of J's dipoles, source += G^T of the velocity that is their source; mean += the
-   mean velocity v' that a box which is periodic both ways, or a channel without flux, has with them, -(1/box) SUM w X
-   (J.n), the one without flow outside a moving rigid body. Nothing in unbounded fluid. Not collective. */
+/* DoubleLayerMean - mean += the mean velocity v' that goes with no mean of the fluid's own, -(1/box) SUM w X (J.n); not
+   in unbounded fluid. Not collective. */
+PETSC_EXTERN void DoubleLayerMean(DoubleLayer layer, PetscReal mean[2]);
+
+/* DoubleLayerSpread - w += the force of J's dipoles, source += G^T of the velocity that is their source; mean +=
+   DoubleLayerMean, which a box that is periodic both ways, or a channel without flux, has with them: the one without
+   flow outside a moving rigid body. Nothing in unbounded fluid. Not collective. */
 PETSC_EXTERN PetscErrorCode DoubleLayerSpread(DoubleLayer layer, Vec w, Vec source, PetscReal mean[2]);
 
 /* DoubleLayerRows - the same dipoles as rows of a solve by stream function, with their mean velocity; profile: that of

@@ -54,7 +54,7 @@ static PetscReal Square(PetscReal mu, PetscInt j) {
 
 /* uu and vu of offsets 0 .. reach: arrays [i][j], i fastest in memory order [j * (reach + 1) + i]. */
 static PetscErrorCode Quadrant(PetscInt reach, PetscReal uu[], PetscReal vu[]) {
-  const PetscInt nodes = 3 * reach + 60, n = reach + 1;
+  const PetscInt nodes = reach + 40, n = reach + 1; /* reach + 20 give the same to rounding */
   PetscReal *theta, *weight, *cosine, *sine;
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc4(nodes, &theta, nodes, &weight, n, &cosine, n, &sine));
@@ -104,7 +104,7 @@ PetscErrorCode LatticeStokeslet(PetscInt reach, OffsetTable *t) {
    has 2 sin(theta/2)/(2 sinh mu) = 1/(2 cosh(mu/2)), so it is (1/(2 pi)) INT sin((i - 1/2) theta) e^{-mu j}/cosh(mu/2)
    dtheta. quadrant[j * (reach + 2) + i] for i from 1, j from 0. */
 static PetscErrorCode PressureQuadrant(PetscInt reach, PetscReal quadrant[]) {
-  const PetscInt nodes = 3 * reach + 60, n = reach + 2;
+  const PetscInt nodes = reach + 40, n = reach + 2;
   PetscReal *theta, *weight;
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(nodes, &theta, nodes, &weight));

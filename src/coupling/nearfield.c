@@ -17,6 +17,20 @@ static void Kress(PetscInt n, PetscReal k[]) {
   }
 }
 
+/* The lattice's tables, for pairs, their images in walls and the box part. */
+static PetscErrorCode MakeLattice(NearField f) {
+  const Grid g = f->markers->grid;
+  ImageTable *half = NULL;
+  PetscFunctionBeginUser;
+  PetscCall(LatticeStokeslet(BOX_LATTICE_CELLS + OFFSET_LAGS, &f->lattice));
+  if (g->wall[0] || g->wall[1]) {
+    PetscCall(PetscNew(&half));
+    PetscCall(ImageTableFill(&f->lattice, half));
+  }
+  PetscCall(NearImageCreate(f->markers, f->nu, half, &f->image));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode NearFieldCreate(Markers markers, Bodies bodies, PetscReal nu, NearField *out) {
   const Layout l = bodies->layout;
   NearField f;
@@ -29,9 +43,7 @@ PetscErrorCode NearFieldCreate(Markers markers, Bodies bodies, PetscReal nu, Nea
   f->free = markers->grid->free;
   f->many = l->bodies > NEAR_MANY ? PETSC_TRUE : PETSC_FALSE;
   NearFarMake(markers->kernel, f->many, f->far);
-  const PetscInt reach = (PetscInt)f->far[NEAR_ONE].reach + OFFSET_LAGS;
-  if (!f->free) PetscCall(LatticeStokeslet(PetscMax(reach, IMAGE_SHIFT), &f->lattice));
-  if (!f->free) PetscCall(NearImageCreate(markers, nu, &f->lattice, &f->image));
+  if (!f->free) PetscCall(MakeLattice(f));
   PetscCall(PetscCalloc1(l->bodies, &f->kress));
   for (PetscInt v = l->own; v < l->end; v++) {
     PetscCall(PetscMalloc1(LayoutCount(l, v), &f->kress[v]));
@@ -58,6 +70,7 @@ PetscErrorCode NearFieldDestroy(NearField *near) {
   PetscCall(PetscFree2(f->stencil, f->bounds));
   PetscCall(PetscFree(f->fixed.X));
   PetscCall(PetscFree2(f->force, f->velocity));
+  if (f->image) PetscCall(PetscFree(f->image->table));
   PetscCall(NearImageDestroy(&f->image));
   PetscCall(OffsetTableDestroy(&f->lattice));
   PetscCall(BoxPartDestroy(&f->box));
@@ -66,8 +79,9 @@ PetscErrorCode NearFieldDestroy(NearField *near) {
 }
 
 PetscErrorCode NearFieldAddBoxPart(NearField f, const FluidSpec *spec) {
+  const BoxLattice lattice = {.stokeslet = &f->lattice, .half = f->image ? f->image->table : NULL};
   PetscFunctionBeginUser;
-  PetscCall(BoxPartCreate(spec, f->markers, &f->box));
+  PetscCall(BoxPartCreate(spec, f->markers, &lattice, &f->box));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -125,7 +139,7 @@ PetscErrorCode NearFieldPlace(NearField f) {
   }
   for (PetscInt k = 0; k < f->closes; k++)
     if (f->close[k].block >= first) PetscCall(NearCloseAdd(f, &f->close[k]));
-  if (f->box) PetscCall(BoxPartPlace(f->box));
+  if (f->box) BoxPartPlace(f->box);
   PetscCall(AgreeFlag(l->comm, crossed, &f->crossed));
   PetscCall(PetscLogEventEnd(f->place, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -52,7 +52,7 @@ struct _p_NearField {
   PetscBool free; /* unbounded fluid: C = S */
   PetscBool many; /* more than NEAR_MANY vesicles: distant pairs are as exact as the range, and no more */
   OffsetTable lattice;
-  NearImage image;        /* what the walls add to each pair */
+  NearImage image;        /* what the walls add to each pair, from a table that is this one's */
   NearFar far[2];         /* distant pairs of one vesicle, of two */
   PetscReal **kress;      /* [vesicles][n] by index difference, what Kress' quadrature has besides the plain logarithm,
                              at 0 its weight; NULL for others' vesicles */

@@ -176,7 +176,7 @@ PetscErrorCode NearImagePlace(NearImage m, const PaddedStencil stencil[]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode NearImageCreate(Markers markers, PetscReal nu, const OffsetTable *lattice, NearImage *out) {
+PetscErrorCode NearImageCreate(Markers markers, PetscReal nu, const ImageTable *table, NearImage *out) {
   const PetscInt M = markers->layout->M;
   NearImage m;
   PetscFunctionBeginUser;
@@ -184,13 +184,12 @@ PetscErrorCode NearImageCreate(Markers markers, PetscReal nu, const OffsetTable 
   *out = m;
   m->markers = markers;
   m->nu = nu;
+  m->table = table;
   ImageKernelMake(KernelSecondMoment(markers->kernel->along), KernelSecondMoment(markers->kernel->across), &m->kernel);
   if (!markers->grid->wall[0] && !markers->grid->wall[1]) PetscFunctionReturn(PETSC_SUCCESS);
   for (int direction = 0; direction < 2; direction++)
     for (int side = 0; side < 2 && markers->grid->wall[direction]; side++)
       PetscCall(PetscMalloc2(M, &m->end[direction][side], M + LANES, &m->y[direction][side]));
-  PetscCall(PetscNew(&m->table));
-  PetscCall(ImageTableFill(lattice, m->table));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -200,7 +199,6 @@ PetscErrorCode NearImageDestroy(NearImage *image) {
   if (!m) PetscFunctionReturn(PETSC_SUCCESS);
   for (int direction = 0; direction < 2; direction++)
     for (int side = 0; side < 2; side++) PetscCall(PetscFree2(m->end[direction][side], m->y[direction][side]));
-  PetscCall(PetscFree(m->table));
   PetscCall(PetscFree(*image));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -24,16 +24,15 @@ struct _p_NearImage {
   Markers markers; /* borrowed */
   PetscReal nu;
   ImageKernel kernel;
-  ImageTable *table;
+  const ImageTable *table;      /* borrowed */
   const PaddedStencil *stencil; /* [2M] unfolded, borrowed */
   ImageEnd *end[2][2];          /* [M] by direction of the normal and side; NULL without a wall */
   PetscReal *y[2][2];           /* [M] cells from the wall, with room for whole vectors */
 };
 
-/* NearImageCreate - for markers on a grid with any walls, in a fluid of viscosity nu; lattice: the free lattice's
-   table, used here only. Collective. */
-PETSC_EXTERN PetscErrorCode NearImageCreate(Markers markers, PetscReal nu, const OffsetTable *lattice,
-                                            NearImage *image);
+/* NearImageCreate - for markers on a grid with any walls, in a fluid of viscosity nu; table: the half-space lattice's,
+   kept by the caller, NULL without walls. Collective. */
+PETSC_EXTERN PetscErrorCode NearImageCreate(Markers markers, PetscReal nu, const ImageTable *table, NearImage *image);
 PETSC_EXTERN PetscErrorCode NearImageDestroy(NearImage *image);
 
 /* NearImagePlace - where the markers have been placed, whose unfolded stencils are stencil[2M] (kept by the caller).

@@ -212,7 +212,7 @@ PetscErrorCode PreconditionerApply(Preconditioner p, Vec r, Vec z) {
   sigma = V + UnknownsTension(u);
   d = V + UnknownsWalls(u);
   PetscCall(UnknownsGatherWalls(u, d, p->d));
-  PetscCall(WallsPrecondition(u->walls, p->d));
+  PetscCall(WallsInvert(u->walls, WALLS_SWEEPS, p->d));
   PetscCall(PetscArraycpy(d, p->d + u->first_wall, u->wall));
   if (CouplingHasBodies(u->coupling)) {
     UnknownsScale(u, PETSC_TRUE, V);

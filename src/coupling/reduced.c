@@ -212,13 +212,16 @@ static PetscErrorCode Mult(Mat A, Vec x, Vec y) {
 /* U = E u of the force f, row by row; leaves another jump than that of x. */
 static PetscErrorCode FollowByRows(Reduced s, Vec f) {
   const Coupling c = s->unknowns->coupling;
-  const PetscScalar *G;
+  const PetscScalar *moved;
+  PetscScalar *G;
   PetscFunctionBeginUser;
-  if (s->source) {
-    PetscCall(VecAXPY(s->motion, 1, s->moved)); /* all of the motion, whose dipoles' forces f has */
-    PetscCall(VecGetArrayRead(s->motion, &G));
+  if (s->source) { /* all of the motion, whose dipoles' forces f has; obstacles come behind the vesicles */
+    PetscCall(VecGetArray(s->motion, &G));
+    PetscCall(VecGetArrayRead(s->moved, &moved));
+    for (PetscInt k = 0; k < 2 * c->membrane->layout->n; k++) G[k] += moved[k];
     PetscCall(DoubleLayerSet(c->contrast, G));
-    PetscCall(VecRestoreArrayRead(s->motion, &G));
+    PetscCall(VecRestoreArrayRead(s->moved, &moved));
+    PetscCall(VecRestoreArray(s->motion, &G));
     PetscCall(DoubleLayerRows(c->contrast, StokesProfile(s->stokes), s->dipoles));
   }
   PetscCall(MarkersFollow(c->markers, s->stream, s->dipoles, f, s->U));

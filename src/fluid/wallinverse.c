@@ -11,8 +11,6 @@
 #include "fluid/walls.h"
 #include "fluid/wallprofile.h"
 
-#define SWEEPS 5
-
 /* Mode k of pair dir: its share in the slip along the other pair's walls. A force sin(pi (k + 1) x/L) has the potential
    sqrt(lambda) psi(y) cos(pi (k + 1) x/L), to be taken half a cell from the wall in x. */
 static void FillCross(Walls w, int dir, PetscInt k, PetscReal lambda, const PetscReal psi[]) {
@@ -114,13 +112,13 @@ static void TakeForces(Walls w, int dir, PetscScalar d[]) {
   }
 }
 
-PetscErrorCode WallsPrecondition(Walls w, PetscScalar d[]) {
+PetscErrorCode WallsInvert(Walls w, int sweeps, PetscScalar d[]) {
   const PetscBool two = w->pair[0].cross.value ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionBeginUser;
   if (!w->n) PetscFunctionReturn(PETSC_SUCCESS);
   SetUp(w);
   PetscCall(PetscArrayzero(w->slip, w->n));
-  for (int sweep = 0; sweep < (two ? SWEEPS : 1); sweep++)
+  for (int sweep = 0; sweep < (two ? sweeps : 1); sweep++)
     for (int dir = 1; dir >= 0; dir--) {
       WallPair *p = &w->pair[dir];
       if (!p->length) continue;
@@ -144,33 +142,38 @@ static PetscReal Interpolated(PetscInt n, const PetscReal a[], PetscReal offset,
   return a[j] + (at - j) * (a[j + 1] - a[j]);
 }
 
-/* Velocity of wave k on a wall of pair dir at the markers X[2M], for the amplitude 1. */
-static void WaveAtMarkers(Walls w, int dir, int side, PetscInt k, PetscInt M, const PetscScalar X[], PetscReal U[]) {
+/* Velocity at marker m of 2M numbers a column, X its place, of all waves of pair dir for the amplitude 1: columns of
+   the first wall, then of the second one. Sines by the angles' sum. */
+static void WavesAtMarker(Walls w, int dir, PetscInt m, const PetscScalar X[2], PetscReal U[]) {
   const Grid g = w->fluid->grid;
+  const LongWaves *waves = &w->pair[dir].waves;
   const PetscInt n = g->n[dir];
-  const PetscReal *along = w->pair[dir].waves.profile + 2 * k * n, *away = along + n;
-  const PetscReal wave = PETSC_PI * (k + 1) / (g->hi[1 - dir] - g->lo[1 - dir]);
-  for (PetscInt m = 0; m < M; m++) {
-    const PetscReal x = wave * (X[2 * m + 1 - dir] - g->lo[1 - dir]);
-    const PetscReal eta = (side ? g->hi[dir] - X[2 * m + dir] : X[2 * m + dir] - g->lo[dir]) / g->h;
-    U[2 * m + 1 - dir] = PetscSinReal(x) * Interpolated(n, along, 0.5, eta);
-    U[2 * m + dir] = (side ? -1 : 1) * PetscCosReal(x) * Interpolated(n, away, 1, eta);
+  const PetscReal angle = PETSC_PI * (X[1 - dir] - g->lo[1 - dir]) / (g->hi[1 - dir] - g->lo[1 - dir]);
+  const PetscReal first[2] = {PetscCosReal(angle), PetscSinReal(angle)};
+  const PetscReal eta[2] = {(X[dir] - g->lo[dir]) / g->h, (g->hi[dir] - X[dir]) / g->h};
+  PetscReal cosine = first[0], sine = first[1];
+  for (PetscInt k = 0; k < waves->modes; k++) {
+    const PetscReal *along = waves->profile + 2 * k * n, *away = along + n, before = cosine;
+    for (int side = 0; side < 2; side++) {
+      PetscReal *at = U + 2 * ((side * waves->modes + k) * w->markers + m);
+      at[1 - dir] = sine * Interpolated(n, along, 0.5, eta[side]);
+      at[dir] = (side ? -1 : 1) * cosine * Interpolated(n, away, 1, eta[side]);
+    }
+    cosine = cosine * first[0] - sine * first[1];
+    sine = sine * first[0] + before * first[1];
   }
 }
 
 PetscErrorCode WallsSetMarkers(Walls w, PetscInt M, const PetscScalar X[]) {
   const PetscInt modes[2] = {w->pair[0].waves.modes, w->pair[1].waves.modes};
-  PetscReal *column;
   PetscFunctionBeginUser;
   if (!modes[0]) PetscFunctionReturn(PETSC_SUCCESS);
   SetUp(w);
   if (w->markers != M) PetscCall(PetscFree(w->flow));
   if (!w->flow) PetscCall(PetscMalloc1(4 * (modes[0] + modes[1]) * M, &w->flow));
   w->markers = M;
-  column = w->flow;
   for (int dir = 0; dir < 2; dir++)
-    for (int side = 0; side < 2; side++)
-      for (PetscInt k = 0; k < modes[dir]; k++, column += 2 * M) WaveAtMarkers(w, dir, side, k, M, X, column);
+    for (PetscInt m = 0; m < M; m++) WavesAtMarker(w, dir, m, X + 2 * m, w->flow + (dir ? 4 * modes[0] * M : 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

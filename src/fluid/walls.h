@@ -54,14 +54,16 @@ PETSC_EXTERN PetscErrorCode WallsAdd(Walls walls, const PetscScalar d[], Vec r);
    leaves there. The same bits on every rank. Collective. */
 PETSC_EXTERN PetscErrorCode WallsSlip(Walls walls, Vec psi, PetscScalar y[]);
 
-/* WallsPrecondition - d := approximate inverse of d -> d + slip of the projected force d: exact for one pair of walls,
-   for two pairs by sweeps of block Gauss-Seidel. Every rank computes the whole. Not collective. */
-PETSC_EXTERN PetscErrorCode WallsPrecondition(Walls walls, PetscScalar d[]);
+#define WALLS_SWEEPS 5 /* leave 1e-3 in a box of equal sides: a preconditioner's */
+
+/* WallsInvert - d := inverse of d -> d + slip of the projected force d: exact for one pair of walls, for two pairs by
+   sweeps of block Gauss-Seidel, of which one leaves about a third. Every rank computes the whole. Not collective. */
+PETSC_EXTERN PetscErrorCode WallsInvert(Walls walls, int sweeps, PetscScalar d[]);
 
 /* WallsSetMarkers - the flow of the wall forces' long waves at markers X[2M], for WallsMarkerVelocity. Where only one
    direction has walls there is none. Not collective. */
 PETSC_EXTERN PetscErrorCode WallsSetMarkers(Walls walls, PetscInt M, const PetscScalar X[]);
 
-/* WallsMarkerVelocity - U[2M] += alpha times the velocity at the markers of the forces that WallsPrecondition found
+/* WallsMarkerVelocity - U[2M] += alpha times the velocity at the markers of the forces that WallsInvert found
    last. Not collective. */
 PETSC_EXTERN PetscErrorCode WallsMarkerVelocity(Walls walls, PetscReal alpha, PetscScalar U[]);

@@ -17,8 +17,6 @@ static PetscErrorCode CheckMethod(Scene scene) {
   PetscCheck(scene->fluid.inertia == INERTIA_AUTO || scene->fluid.inertia == INERTIA_NONE, scene->comm,
              PETSC_ERR_USER_INPUT, "-obstacle_shape: not with -fluid_inertia %s; allowed: none",
              scene->fluid.inertia == INERTIA_UNSTEADY ? "unsteady" : "convective");
-  PetscCheck(!SceneHasContrast(scene), scene->comm, PETSC_ERR_USER_INPUT,
-             "-obstacle_shape: not with a -vesicle_viscosity_ratio that is not 1; allowed: 1");
   PetscCheck(scene->coupling.near_field == NEAR_EXACT, scene->comm, PETSC_ERR_USER_INPUT,
              "-obstacle_shape: not with -coupling_near_field none; allowed: exact");
   PetscCheck(SceneHasBoxPart(scene), scene->comm, PETSC_ERR_USER_INPUT,

@@ -84,7 +84,7 @@ static PetscErrorCode AddFluid(DirectSolver d, Mat A) {
 static PetscErrorCode AddMean(DirectSolver d, Mat A) {
   const Grid g = d->fluid->grid;
   PetscFunctionBeginUser;
-  for (int f = FIELD_U; f <= FIELD_V && MeanForces(d); f++)
+  for (int f = FIELD_U; f < MeanForces(d); f++)
     for (PetscInt j = g->first; j < g->first + g->rows[f]; j++)
       for (PetscInt i = 0; i < g->columns[f]; i++) {
         PetscCall(MatSetValue(A, DirectIndex(d, f, i, j), FirstMean(d) + f, 1, ADD_VALUES));
@@ -217,7 +217,7 @@ static PetscErrorCode AddBodies(DirectSolver d, Mat A) {
   PetscCall(AddNearField(d, A));
   PetscCall(AddPressure(d, A));
   if (d->source) PetscCall(DirectAddContrast(d, A, U, FirstJ(d)));
-  if (d->source && NoMean(d)) PetscCall(DirectContrastMean(d, A, FirstJ(d), d->fluid->nu / PetscSqr(g->h)));
+  if (d->source && g->rank == g->size - 1) PetscCall(DirectContrastMean(d, A, FirstJ(d)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -238,7 +238,7 @@ static PetscErrorCode CreateMatrix(DirectSolver d, Mat *A) {
     const PetscInt row = k - n + Others(d), bodies = 2 * (d->M + d->W);
     const PetscBool U = (row >= d->M && row < 3 * d->M) || row >= 5 * d->M ? PETSC_TRUE : PETSC_FALSE;
     room[k] = 4 * FEW + 3 * longest + (U && d->coupling->near ? bodies + (d->source ? 4 * d->M : 0) : 0);
-    if (k >= n - MeanForces(d)) room[k] = g->n[0] * g->n[1];
+    if (k >= n - MeanForces(d)) room[k] = g->n[0] * g->n[1] + 2 * d->M;
   }
   PetscCall(AddInterpolation(d, NULL, room));
   if (d->source) PetscCall(DirectRoom(d, room));
@@ -295,8 +295,8 @@ static PetscErrorCode RightHandSide(DirectSolver d, const CoupledProblem *q) {
     PetscCall(VecGetArrayRead(d->source, &a));
     PetscCall(PetscArraycpy(b + nw, a, np));
     PetscCall(VecRestoreArrayRead(d->source, &a));
-    for (int f = FIELD_U; f <= FIELD_V && NoMean(d) && !g->rank; f++)
-      b[f ? GridLocalU(g) : 0] += d->fluid->nu / PetscSqr(g->h) * mean[f];
+    for (PetscInt f = 0; f < MeanForces(d) && g->rank == g->size - 1; f++)
+      b[FirstMean(d) + f - d->start[g->rank]] = mean[f] * g->n[0] * g->n[1];
   }
   PetscCall(LayoutGatherVec(d->coupling->membrane->layout, q->g, d->all));
   if (g->rank == g->size - 1) PetscCall(PetscArraycpy(b + nw + np, d->all, d->M));

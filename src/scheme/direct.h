@@ -31,9 +31,9 @@ PETSC_EXTERN PetscInt DirectIndex(DirectSolver solver, int field, PetscInt i, Pe
 PETSC_EXTERN PetscInt DirectRows(Grid grid, PetscInt rank, int field);
 
 /* DirectAddContrast - viscosity contrast in the matrix, U and J the first rows of these unknowns: B U in the rows of U,
-   J - Q (1 - ratio) (U + (treading/a0) dU/dt) = 0, the dipoles of J in the momentum and the divergence. DirectRoom -
-   entries that they need in the rank's own rows, added to room. DirectContrastMean - in a box periodic both ways the
-   row of the first u and v: `scale` times the mean velocity less that of the dipoles. Collective. */
+   the double layer in those of obstacles, J - Q (1 - ratio) (U + (treading/a0) dU/dt) = 0, the dipoles of J in the
+   momentum and the divergence. DirectRoom - entries that they need in the rank's own rows, added to room.
+   DirectContrastMean - in the rows of the mean velocity what dipoles have of it; on the last rank. Collective. */
 PETSC_EXTERN PetscErrorCode DirectAddContrast(DirectSolver solver, Mat A, PetscInt U, PetscInt J);
 PETSC_EXTERN PetscErrorCode DirectRoom(DirectSolver solver, PetscInt room[]);
-PETSC_EXTERN PetscErrorCode DirectContrastMean(DirectSolver solver, Mat A, PetscInt J, PetscReal scale);
+PETSC_EXTERN PetscErrorCode DirectContrastMean(DirectSolver solver, Mat A, PetscInt J);

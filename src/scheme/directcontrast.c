@@ -1,7 +1,7 @@
 /* Viscosity contrast in the matrix of the scheme direct (coupling/contrast.h). The jump J, less its flux, is an unknown
    of its own, so that the fluid's rows have the few markers near them only. */
 #include "coupling/contrast.h"
-#include "scheme/direct.h"
+#include "scheme/directrows.h"
 
 /* The tensor of the unit jump of marker k in direction c. */
 static void UnitTensor(DoubleLayer s, PetscInt k, int c, PetscReal T[DIPOLE_COUNT]) {
@@ -76,24 +76,44 @@ static PetscErrorCode AddJump(DirectSolver d, Mat A, PetscInt v, PetscInt U, Pet
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The box part in the rows of the own U: minus D of J's dipoles. */
-static PetscErrorCode AddBoxPart(DirectSolver d, Mat A, PetscInt U, PetscInt J) {
+/* The box part in the rows of the own bodies' velocities: minus D of J's dipoles. */
+static PetscErrorCode AddBoxPart(DirectSolver d, Mat A, PetscInt J) {
   const DoubleLayer s = d->coupling->contrast;
-  const Layout l = d->coupling->membrane->layout;
+  const Layout all = d->coupling->bodies->layout, l = d->coupling->membrane->layout;
   PetscReal *D;
   PetscFunctionBeginUser;
   if (!s->box) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscCalloc1(2 * DIPOLE_COUNT * l->M * l->M, &D));
+  PetscCall(PetscCalloc1(2 * DIPOLE_COUNT * all->M * all->M, &D));
   PetscCall(DoubleBoxMatrix(s->box, -1, D));
-  for (PetscInt i = 2 * l->first; i < 2 * (l->first + l->n); i++)
+  for (PetscInt i = 2 * all->first; i < 2 * (all->first + all->n); i++)
     for (PetscInt j = 0; j < 2 * l->M; j++) {
       PetscReal T[DIPOLE_COUNT], sum = 0;
       if (s->ratio[LayoutBody(l, j / 2)] == 1) continue;
       UnitTensor(s, j / 2, (int)(j % 2), T);
-      for (int q = 0; q < DIPOLE_COUNT; q++) sum += T[q] * D[(DIPOLE_COUNT * (j / 2) + q) * 2 * l->M + i];
-      PetscCall(MatSetValue(A, U + i, J + j, sum, ADD_VALUES));
+      for (int q = 0; q < DIPOLE_COUNT; q++) sum += T[q] * D[(DIPOLE_COUNT * (j / 2) + q) * 2 * all->M + i];
+      PetscCall(MatSetValue(A, RowOf(d, i), J + j, sum, ADD_VALUES));
     }
   PetscCall(PetscFree(D));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Minus C_D of the vesicles' motion in the rows of the own obstacles. */
+static PetscErrorCode AddToObstacles(DirectSolver d, Mat A, PetscInt U) {
+  const Membrane m = d->coupling->membrane;
+  const Layout all = d->coupling->bodies->layout;
+  const PetscInt M = 2 * m->layout->M, n = 2 * all->M;
+  PetscReal *C, *row;
+  PetscFunctionBeginUser;
+  if (n == M) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscCalloc2(n * n, &C, M, &row));
+  PetscCall(DoubleLayerAdd(d->coupling->contrast, -1, PETSC_TRUE, 0, all->M, C));
+  for (PetscInt i = PetscMax(M, 2 * all->first); i < 2 * (all->first + all->n); i++) {
+    for (PetscInt j = 0; j < M; j++) row[j] = C[j * n + i];
+    PetscCall(ContrastTread(m, 0, m->layout->bodies, d->coupling->treading, d->fluid->a0, 1, row));
+    for (PetscInt j = 0; j < M; j++)
+      if (row[j] != 0) PetscCall(MatSetValue(A, RowOf(d, i), U + j, row[j], ADD_VALUES));
+  }
+  PetscCall(PetscFree2(C, row));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -110,25 +130,19 @@ PetscErrorCode DirectAddContrast(DirectSolver d, Mat A, PetscInt U, PetscInt J) 
     for (PetscInt j = 0; j < 2 * l->M; j++)
       if (B[i * 2 * l->M + j] != 0) PetscCall(MatSetValue(A, U + i, U + j, B[i * 2 * l->M + j], ADD_VALUES));
   PetscCall(PetscFree(B));
-  PetscCall(AddBoxPart(d, A, U, J));
+  PetscCall(AddToObstacles(d, A, U));
+  PetscCall(AddBoxPart(d, A, J));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode DirectContrastMean(DirectSolver d, Mat A, PetscInt J, PetscReal scale) {
-  const Grid g = d->fluid->grid;
+PetscErrorCode DirectContrastMean(DirectSolver d, Mat A, PetscInt J) {
   const DoubleLayer s = d->coupling->contrast;
   const Layout l = d->coupling->membrane->layout;
-  const PetscReal cells = (PetscReal)g->n[0] * g->n[1], area = cells * PetscSqr(g->h);
+  const PetscReal h2 = PetscSqr(d->fluid->grid->h);
   PetscFunctionBeginUser;
-  for (int f = FIELD_U; f <= FIELD_V && !g->rank; f++) {
-    const PetscInt row = DirectIndex(d, f, 0, 0);
-    for (PetscInt j = 0; j < g->all_rows[f]; j++)
-      for (PetscInt i = 0; i < g->columns[f]; i++)
-        PetscCall(MatSetValue(A, row, DirectIndex(d, f, i, j), scale / cells, ADD_VALUES));
-    for (PetscInt k = 0; k < 2 * l->M; k++)
-      if (s->ratio[LayoutBody(l, k / 2)] != 1)
-        PetscCall(MatSetValue(A, row, J + k, scale * d->coupling->markers->X[2 * (k / 2) + f] * s->normal[k] / area,
-                              ADD_VALUES));
-  }
+  for (PetscInt k = 0; k < 2 * l->M; k++)
+    for (PetscInt f = 0; f < MeanForces(d) && s->ratio[LayoutBody(l, k / 2)] != 1; f++)
+      PetscCall(MatSetValue(A, FirstMean(d) + f, J + k, d->coupling->markers->X[2 * (k / 2) + f] * s->normal[k] / h2,
+                            ADD_VALUES));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -2,15 +2,12 @@
 #pragma once
 #include "scheme/direct.h"
 
-/* Quasi-steady flow in a periodic box: forces leave the mean velocity free. */
-static inline PetscBool NoMean(DirectSolver d) {
-  const Grid g = d->fluid->grid;
-  return d->fluid->steady && !g->wall[0] && !g->wall[1] ? PETSC_TRUE : PETSC_FALSE;
-}
-
-/* Uniform forces g hold it at zero, but where dipoles have a mean. */
+/* Uniform forces g, of x first, that hold the mean velocity: in quasi-steady flow of a periodic box, where forces leave
+   it free, and in a channel without flux. */
 static inline PetscInt MeanForces(DirectSolver d) {
-  return NoMean(d) && !d->coupling->contrast ? 2 : 0;
+  const Grid g = d->fluid->grid;
+  if (g->wall[0]) return 0;
+  return g->wall[1] ? d->fluid->zero_flux : 2 * d->fluid->steady;
 }
 
 /* Unknowns besides the fluid's: sigma, U, F, the obstacles' F, J, g. */

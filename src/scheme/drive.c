@@ -52,12 +52,25 @@ static PetscReal BackgroundFlux(Scheme s) {
   return flux;
 }
 
+/* What the mean of the solved field has more than that of the velocity, where it is not the velocity inside vesicles.
+ */
+static PetscErrorCode InnerMean(Scheme s, PetscReal mean[2]) {
+  const PetscScalar *U;
+  PetscFunctionBeginUser;
+  PetscCall(VecGetArrayRead(s->state.U, &U));
+  PetscCall(DoubleLayerSet(s->coupling->contrast, U));
+  PetscCall(VecRestoreArrayRead(s->state.U, &U));
+  DoubleLayerMean(s->coupling->contrast, mean);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode DriveMeasure(Scheme s, Drive *drive) {
   const Grid g = s->fluid->grid;
   const PetscReal area = (g->hi[0] - g->lo[0]) * (g->hi[1] - g->lo[1]), faces = (PetscReal)g->n[0] * g->n[1];
   PetscReal sum[3], gradient[2];
   Vec Hu;
   PetscFunctionBeginUser;
+  PetscReal mean[2] = {0, 0};
   *drive = (Drive){NAN, NAN};
   if (g->wall[0]) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(DMGetGlobalVector(g->velocity, &Hu));
@@ -69,6 +82,7 @@ PetscErrorCode DriveMeasure(Scheme s, Drive *drive) {
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 3, MPIU_REAL, MPI_SUM, g->comm));
   FlowPressureGradient(&s->scene->flow, s->fluid->nu, gradient);
   drive->pressure_drop = -(g->hi[0] - g->lo[0]) * (sum[0] / area - sum[1] / faces + gradient[0]);
-  drive->flux = sum[2] / faces * (g->hi[1] - g->lo[1]) + BackgroundFlux(s);
+  if (s->coupling->contrast) PetscCall(InnerMean(s, mean));
+  drive->flux = (sum[2] / faces - mean[0]) * (g->hi[1] - g->lo[1]) + BackgroundFlux(s);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

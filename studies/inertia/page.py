@@ -6,6 +6,7 @@ from itertools import product
 from pathlib import Path
 
 import numpy as np
+from matplotlib.ticker import NullLocator
 
 from petves.tables import table, write_csv
 from petves.views.plot import dress, new_figure, save_figure
@@ -93,6 +94,8 @@ def _galilean(results: Results, folder: Path) -> list[str]:
             panel.loglog([2 / n for n in cells], errors[key], style, ms=4, lw=1.2, label=label)
     for panel, key in zip(axes, keys):
         dress(panel, grid="both", xlabel="cell size $h$ (length)", ylabel=f"deviation of the {key}")
+        panel.set_xticks([2 / n for n in cells], [f"1/{n // 2}" for n in cells])
+        panel.xaxis.set_minor_locator(NullLocator())
     axes[0].legend(frameon=False, fontsize=8)
     save_figure(figure, folder / "galilean.png")
     write_csv(folder / "inertia_galilean.csv", ["vesicle", "cells", *keys], rows)
