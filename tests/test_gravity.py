@@ -67,6 +67,19 @@ def test_drag_of_a_nearly_rigid_circle(tmp_path):
     assert found[1] + (found[1] - found[0]) / 9 == pytest.approx(16.5328, rel=5e-3)
 
 
+def test_rigid_circles_do_not_feel_what_is_inside(tmp_path):
+    """A nearly round membrane of ratio 20 has the drag of the one above, and no flux beside it."""
+    found = [
+        drag(tmp_path / f"{V}", f"-flow_drive flux -vesicle_reduced_area {V} -vesicle_viscosity_ratio 20")
+        for V in (0.99, 0.999)
+    ]
+    assert found[1] + (found[1] - found[0]) / 9 == pytest.approx(16.5328, rel=5e-3)
+    with h5py.File(tmp_path / "0.99" / "90" / "checkpoint.h5") as file:
+        u = file["fluid/u"][:]
+    assert abs(u[..., 0].mean()) < 1e-10 * np.abs(u).max()
+    assert abs(u.mean()) > 1e-3 * np.abs(u).max()
+
+
 def test_periodic_box_has_no_mean_flow(tmp_path):
     """Periodic both ways: the weight's mean is taken off, the vesicle sinks at a finite speed, also with inertia."""
     box = "-domain_bc_x periodic -domain_bc_y periodic -time_step .2"

@@ -75,11 +75,16 @@ void BoxTableFunctions(const BoxTable *t, int dir, PetscReal x, PetscReal values
     Polynomials(a, x, values);
     return;
   }
+  const PetscReal angle = 2 * PETSC_PI * (x - a->low) / (a->high - a->low), c = PetscCosReal(angle),
+                  s = PetscSinReal(angle);
+  PetscReal cosine = 1, sine = 0;
   values[0] = 1;
-  for (PetscInt m = 1; m <= a->modes; m++) {
-    const PetscReal angle = 2 * PETSC_PI * m * (x - a->low) / (a->high - a->low);
-    values[2 * m - 1] = PetscCosReal(angle);
-    values[2 * m] = PetscSinReal(angle);
+  for (PetscInt m = 1; m <= a->modes; m++) { /* by addition of angles: rounding grows with m only */
+    const PetscReal before = cosine;
+    cosine = c * before - s * sine;
+    sine = s * before + c * sine;
+    values[2 * m - 1] = cosine;
+    values[2 * m] = sine;
   }
 }
 
@@ -214,19 +219,25 @@ static PetscErrorCode Transform(const BoxTable *t, const PetscReal W[]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Whether an eigenvalue is kept. With dipoles they come in pairs of either sign, whose vectors differ in the sign of
+   the tensors' part: the positive one, doubled, is the pair in what tensors do to velocities. */
+static PetscBool IsKept(const BoxTable *t, PetscReal l, PetscReal least) {
+  return (BoxParts(t) == 2 ? PetscAbsReal(l) : l) > least ? PETSC_TRUE : PETSC_FALSE;
+}
+
 /* Of the block's eigenvectors Q, columns, and eigenvalues l only those larger than `least` are kept. */
-static PetscErrorCode KeepLargest(PetscInt components, BoxBlock *q, const PetscReal l[], PetscReal least,
+static PetscErrorCode KeepLargest(const BoxTable *t, BoxBlock *q, const PetscReal l[], PetscReal least,
                                   PetscReal kept[], PetscInt *rank) {
-  const PetscInt size = components * q->n[0] * q->n[1];
+  const PetscInt size = t->components * q->n[0] * q->n[1];
   PetscReal *all = q->Q;
   PetscFunctionBeginUser;
   q->start = *rank;
   q->modes = 0;
-  for (PetscInt k = 0; k < size; k++) q->modes += PetscAbsReal(l[k]) > least;
+  for (PetscInt k = 0; k < size; k++) q->modes += IsKept(t, l[k], least);
   PetscCall(PetscMalloc1(size * q->modes, &q->Q));
   for (PetscInt k = 0, m = 0; k < size; k++) {
-    if (PetscAbsReal(l[k]) <= least) continue;
-    kept[(*rank)++] = l[k];
+    if (!IsKept(t, l[k], least)) continue;
+    kept[(*rank)++] = (BoxParts(t) == 2 ? 1 : 2) * l[k];
     for (PetscInt i = 0; i < size; i++) q->Q[i * q->modes + m] = all[k * size + i];
     m++;
   }
@@ -254,7 +265,7 @@ static PetscErrorCode Decompose(MPI_Comm comm, BoxTable *t) {
   t->rank = at = 0;
   for (PetscInt b = 0; b < t->blocks; b++) {
     BoxBlock *q = &t->block[b];
-    PetscCall(KeepLargest(t->components, q, l + at, SMALLEST * most, t->l, &t->rank));
+    PetscCall(KeepLargest(t, q, l + at, SMALLEST * most, t->l, &t->rank));
     at += t->components * q->n[0] * q->n[1];
   }
   PetscCall(PetscFree(l));

@@ -1,4 +1,5 @@
 #include "coupling/coarse.h"
+#include "markers/respond.h"
 
 #define SPACING 1.2 /* coarse cells between the points of a vesicle, at most */
 
@@ -108,7 +109,7 @@ PetscErrorCode CoarseApply(Coarse c, PetscScalar F[]) {
   PetscFunctionBeginUser;
   PetscCall(Gather(c, F, c->F));
   if (StokesStream(c->stokes))
-    PetscCall(MarkersRespond(c->markers, StokesStream(c->stokes), alpha, c->F, c->F));
+    PetscCall(MarkersRespond(c->markers, StokesStream(c->stokes), NULL, alpha, c->F, c->F));
   else {
     PetscCall(MarkersClear(c->markers, c->r, c->dirty));
     PetscCall(MarkersSpread(c->markers, alpha, c->F, c->r));

@@ -95,9 +95,9 @@ void DoubleLatticeParts(const OffsetTable lattice[2], PetscReal h, PetscReal rea
   const PetscReal r[2] = {-d[0], -d[1]};
   PetscReal far[2][DIPOLE_COUNT];
   if (d[0] * d[0] + d[1] * d[1] <= reach * reach) {
+    StencilDipoleSums(lattice, response, dipole, cells, K);
     for (int c = 0; c < 2; c++)
-      for (int k = 0; k < DIPOLE_COUNT; k++)
-        K[c][k] = StencilShiftedSum(&lattice[c], (OffsetBlock)k, &response[c], &dipole[k], cells) / h;
+      for (int k = 0; k < DIPOLE_COUNT; k++) K[c][k] /= h;
     return;
   }
   FreeParts(r, K);

@@ -8,8 +8,7 @@ typedef struct _p_DoubleBox *DoubleBox;
 struct _p_DoubleBox {
   Markers markers; /* borrowed */
   BoxTable table;
-  PetscReal *response;  /* [2n][rank] of the own markers' velocities, */
-  PetscReal *source;    /* [DIPOLE_COUNT n][rank] and tensors: D = response diag(l) source^T */
+  PetscReal *rows;      /* [n][BOX_COMPONENTS][rank] of the own markers: velocities diag(l) tensors^T is D */
   PetscReal *amplitude; /* [rank] work */
 };
 

@@ -11,7 +11,6 @@
 /* One vesicle, and what all cells need. */
 typedef struct {
   Coupling coupling;
-  OffsetTable pressure; /* of dipoles, in cells, viscosity 1, over h^2 */
   DoubleCurve curve;
   PetscInt n;
   PetscReal reach; /* of the correction (length); everywhere in unbounded fluid */
@@ -50,7 +49,7 @@ static PetscErrorCode PressureTable(PetscInt reach, OffsetTable *t) {
 static void TakeLattice(const DoubleCells *s, const PetscInt cell[2], const PetscReal x[2], PetscReal f[3]) {
   const DoubleLayer d = s->coupling->contrast;
   const PetscReal h = s->coupling->fluid->grid->h, nu = s->coupling->fluid->nu;
-  const OffsetTable *table[3] = {&d->lattice[0], &d->lattice[1], &s->pressure};
+  const OffsetTable *table[3] = {&d->lattice[0], &d->lattice[1], &d->pressure};
   const PetscReal scale[3] = {1 / h, 1 / h, nu / (h * h)};
   PaddedStencil weights[3];
   for (int c = 0; c < 3; c++) NearCellStencil((Field)c, cell, &weights[c]);
@@ -130,9 +129,13 @@ static void CorrectVesicle(const DoubleCells *s, PetscReal *const field[3], Pets
       PetscReal x[2], f[3] = {0, 0, 0};
       PetscBool inside;
       GridPosition(g, FIELD_P, cell[0], cell[1], x);
-      DoubleCurveAdd(s->curve, x, f, &f[2], &inside);
+      const PetscBool near = g->free || NearCellIs(s->n, s->X, s->reach, x) ? PETSC_TRUE : PETSC_FALSE;
+      if (near)
+        DoubleCurveAdd(s->curve, x, f, &f[2], &inside);
+      else
+        inside = DoubleCurveContains(s->curve, x);
       if (inside) over[at] = 1 / s->ratio;
-      if (!g->free && !NearCellIs(s->n, s->X, s->reach, x)) continue;
+      if (!near) continue;
       if (!g->free) TakeLattice(s, cell, x, f);
       if (!g->free) TakeFar(s, x, f);
       for (int c = 0; c < 3; c++)
@@ -153,7 +156,7 @@ PetscErrorCode DoubleCellsCorrect(Coupling c, Vec U, Vec X, PetscReal u[], Petsc
   PetscCall(PetscMalloc2(DIPOLE_COUNT * l->M, &s.tensor, DIPOLE_COUNT * l->M, &s.dipole));
   PetscCall(LayoutGatherVec(l, X, x));
   PetscCall(LayoutGatherVec(l, U, velocity));
-  PetscCall(PressureTable(SUMMED_CELLS + OFFSET_LAGS, &s.pressure));
+  if (!c->contrast->pressure.value[0]) PetscCall(PressureTable(SUMMED_CELLS + OFFSET_LAGS, &c->contrast->pressure));
   for (PetscInt k = 0; k < cells; k++) over[k] = 1;
   for (PetscInt b = 0; b < l->bodies; b++) {
     if (c->contrast->ratio[b] == 1) continue;
@@ -163,7 +166,6 @@ PetscErrorCode DoubleCellsCorrect(Coupling c, Vec U, Vec X, PetscReal u[], Petsc
   }
   for (int f = 0; f < 2; f++)
     for (PetscInt k = 0; k < cells && field[f]; k++) field[f][k] *= over[k];
-  PetscCall(OffsetTableDestroy(&s.pressure));
   PetscCall(PetscFree2(s.tensor, s.dipole));
   PetscCall(PetscFree3(x, velocity, over));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -1,4 +1,5 @@
 #include "coupling/doublecurve.h"
+#include "base/lanes.h"
 #include "curve/modes.h"
 
 #define FINE 4    /* points a marker */
@@ -7,10 +8,18 @@
 
 struct _p_DoubleCurve {
   PetscInt n;
-  PetscReal nu, spacing;       /* spacing: of the points, the largest */
-  Point *curve, *density;      /* [n + 1] modes -n/2 .. n/2 of X and of J */
-  Point *fine, *slope, *value; /* [FINE n] points, X' and J there */
+  PetscReal nu, spacing;  /* spacing: of the points, the largest */
+  Point *curve, *density; /* [n + 1] modes -n/2 .. n/2 of X and of J */
+  Point *fine, *slope;    /* [FINE n] points, X' there */
+  PetscReal *each[6];     /* [FINE n] the same and J there, x and y apart: for sums */
 };
+
+enum { AT, SLOPE = 2, JUMP = 4 };
+
+static void Put(DoubleCurve c, int what, PetscInt j, Point value) {
+  c->each[what][j] = creal(value);
+  c->each[what + 1][j] = cimag(value);
+}
 
 PetscErrorCode DoubleCurveCreate(PetscInt n, PetscReal nu, const PetscReal X[], const PetscReal J[], DoubleCurve *out) {
   const PetscInt N = FINE * n;
@@ -20,13 +29,17 @@ PetscErrorCode DoubleCurveCreate(PetscInt n, PetscReal nu, const PetscReal X[], 
   *out = c;
   c->n = n;
   c->nu = nu;
-  PetscCall(PetscMalloc5(n + 1, &c->curve, n + 1, &c->density, N, &c->fine, N, &c->slope, N, &c->value));
+  PetscCall(PetscMalloc4(n + 1, &c->curve, n + 1, &c->density, N, &c->fine, N, &c->slope));
+  PetscCall(PetscMalloc1(6 * N, &c->each[0]));
+  for (int k = 1; k < 6; k++) c->each[k] = c->each[0] + k * N;
   CurveModes(n, X, c->curve);
   CurveModes(n, J, c->density);
   for (PetscInt j = 0; j < N; j++) {
     Point other;
     c->fine[j] = CurveSeries(n, c->curve, 2 * PETSC_PI * (PetscReal)j / (PetscReal)N, &c->slope[j]);
-    c->value[j] = CurveSeries(n, c->density, 2 * PETSC_PI * (PetscReal)j / (PetscReal)N, &other);
+    Put(c, AT, j, c->fine[j]);
+    Put(c, SLOPE, j, c->slope[j]);
+    Put(c, JUMP, j, CurveSeries(n, c->density, 2 * PETSC_PI * (PetscReal)j / (PetscReal)N, &other));
     c->spacing = PetscMax(c->spacing, cabs(c->slope[j]) * 2 * PETSC_PI / (PetscReal)N);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -35,7 +48,8 @@ PetscErrorCode DoubleCurveCreate(PetscInt n, PetscReal nu, const PetscReal X[], 
 PetscErrorCode DoubleCurveDestroy(DoubleCurve *curve) {
   PetscFunctionBeginUser;
   if (!*curve) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscFree5((*curve)->curve, (*curve)->density, (*curve)->fine, (*curve)->slope, (*curve)->value));
+  PetscCall(PetscFree4((*curve)->curve, (*curve)->density, (*curve)->fine, (*curve)->slope));
+  PetscCall(PetscFree((*curve)->each[0]));
   PetscCall(PetscFree(*curve));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -56,26 +70,45 @@ typedef struct {
   PetscReal winding;
 } Sums;
 
-/* By the finer points; the one nearest to z. */
-static PetscInt FineSums(DoubleCurve c, Point z, Sums *s, PetscReal *distance) {
-  const PetscInt N = FINE * c->n;
+/* The finer point nearest to z. */
+static PetscInt Nearest(DoubleCurve c, Point z, PetscReal *distance) {
   PetscInt nearest = 0;
   PetscReal least = PETSC_MAX_REAL;
-  *s = (Sums){0};
-  for (PetscInt j = 0; j < N; j++) {
-    const Point r = c->fine[j] - z, J = c->value[j], turn = c->slope[j] / r;
-    s->velocity += cimag(turn) * (J + r / conj(r) * conj(J));
-    s->pressure += J * turn / r;
-    s->winding += cimag(turn);
-    if (cabs(r) >= least) continue;
-    least = cabs(r);
+  for (PetscInt j = 0; j < FINE * c->n; j++) {
+    const PetscReal r2 = PetscSqr(c->each[AT][j] - creal(z)) + PetscSqr(c->each[AT + 1][j] - cimag(z));
+    if (r2 >= least) continue;
+    least = r2;
     nearest = j;
   }
-  s->velocity *= 2 * PETSC_PI / N;
-  s->pressure *= 2 * PETSC_PI / N;
-  s->winding *= 2 * PETSC_PI / N;
-  *distance = least;
+  *distance = PetscSqrtReal(least);
   return nearest;
+}
+
+/* By the finer points, LANES of them at once. */
+static void FineSums(DoubleCurve c, Point z, Sums *s) {
+  const PetscInt N = FINE * c->n;
+  const PetscReal step = 2 * PETSC_PI / N;
+  Lanes sum[5] = {{0}, {0}, {0}, {0}, {0}};
+  for (PetscInt j = 0; j < N; j += LANES) {
+    Lanes r[2], t[2], J[2];
+    for (int d = 0; d < 2; d++) {
+      r[d] = LanesAt(c->each[AT + d] + j) - (d ? cimag(z) : creal(z));
+      t[d] = LanesAt(c->each[SLOPE + d] + j);
+      J[d] = LanesAt(c->each[JUMP + d] + j);
+    }
+    const Lanes over = 1 / (r[0] * r[0] + r[1] * r[1]);
+    const Lanes along = (t[0] * r[0] + t[1] * r[1]) * over, turn = (t[1] * r[0] - t[0] * r[1]) * over; /* X'/r */
+    const Lanes c2 = (r[0] * r[0] - r[1] * r[1]) * over, s2 = 2 * r[0] * r[1] * over;                  /* r/conj(r) */
+    const Lanes p[2] = {J[0] * along - J[1] * turn, J[0] * turn + J[1] * along};                       /* J X'/r */
+    sum[0] += turn * (J[0] + c2 * J[0] + s2 * J[1]);
+    sum[1] += turn * (J[1] + s2 * J[0] - c2 * J[1]);
+    sum[2] += (p[0] * r[0] + p[1] * r[1]) * over;
+    sum[3] += (p[1] * r[0] - p[0] * r[1]) * over;
+    sum[4] += turn;
+  }
+  s->velocity = step * (LanesSum(sum[0]) + I * LanesSum(sum[1]));
+  s->pressure = step * (LanesSum(sum[2]) + I * LanesSum(sum[3]));
+  s->winding = step * LanesSum(sum[4]);
 }
 
 /* What they lack at the complex t0 where the curve is at z, for z close to the point `nearest`. Of the velocity, 2i
@@ -106,14 +139,22 @@ void DoubleCurveAdd(DoubleCurve c, const PetscReal x[2], PetscReal u[2], PetscRe
   Point z = x[0] + I * x[1];
   PetscReal distance;
   Sums s;
-  PetscInt nearest = FineSums(c, z, &s, &distance);
-  if (distance < 1e-7 * c->spacing) { /* a point of the curve: next to it, outside */
+  const PetscInt nearest = Nearest(c, z, &distance);
+  if (distance < 1e-7 * c->spacing) /* a point of the curve: next to it, outside */
     z = c->fine[nearest] - I * 1e-7 * c->spacing * c->slope[nearest] / cabs(c->slope[nearest]);
-    nearest = FineSums(c, z, &s, &distance);
-  }
+  FineSums(c, z, &s);
   if (distance < CLOSE * c->spacing) CorrectClose(c, z, nearest, &s);
   u[0] -= creal(s.velocity) / (2 * PETSC_PI);
   u[1] -= cimag(s.velocity) / (2 * PETSC_PI);
   *p += c->nu / PETSC_PI * cimag(s.pressure);
   *inside = s.winding > PETSC_PI ? PETSC_TRUE : PETSC_FALSE;
+}
+
+PetscBool DoubleCurveContains(DoubleCurve c, const PetscReal x[2]) {
+  const PetscInt N = FINE * c->n;
+  const PetscReal *X = c->each[AT], *Y = c->each[AT + 1];
+  PetscBool inside = PETSC_FALSE;
+  for (PetscInt j = 0, k = N - 1; j < N; k = j++)
+    if ((Y[j] > x[1]) != (Y[k] > x[1]) && x[0] < X[j] + (X[k] - X[j]) * (x[1] - Y[j]) / (Y[k] - Y[j])) inside = !inside;
+  return inside;
 }

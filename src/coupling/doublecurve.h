@@ -20,3 +20,7 @@ PETSC_EXTERN PetscErrorCode DoubleCurveDestroy(DoubleCurve *curve);
    whether x is inside the curve. Not collective. */
 PETSC_EXTERN void DoubleCurveAdd(DoubleCurve curve, const PetscReal x[2], PetscReal u[2], PetscReal *p,
                                  PetscBool *inside);
+
+/* DoubleCurveContains - whether x, farther from the curve than its points are from one another, is inside. Not
+   collective. */
+PETSC_EXTERN PetscBool DoubleCurveContains(DoubleCurve curve, const PetscReal x[2]);

@@ -35,6 +35,7 @@ PetscErrorCode DoubleLayerDestroy(DoubleLayer *layer) {
   PetscCall(PetscFree3(s->jump, s->plain, s->tensor));
   for (int c = 0; c < 2; c++) PetscCall(OffsetTableDestroy(&s->lattice[c]));
   PetscCall(DoubleImageDestroy(&s->image));
+  PetscCall(OffsetTableDestroy(&s->pressure));
   PetscCall(DoubleBoxDestroy(&s->box));
   PetscCall(PetscFree(s->block));
   PetscCall(PetscFree(s->value));
@@ -173,7 +174,7 @@ void DoubleLayerMean(DoubleLayer s, PetscReal mean[2]) {
   const Grid g = f->markers->grid;
   const PetscReal area = (g->hi[0] - g->lo[0]) * (g->hi[1] - g->lo[1]);
   Tensors(s);
-  for (PetscInt k = 0; k < 2 * f->bodies->layout->M; k++) { /* J.n is half the trace */
+  for (PetscInt k = 0; k < 2 * f->bodies->layout->M; k++) {
     const PetscReal *T = s->tensor + DIPOLE_COUNT * (k / 2);
     mean[k % 2] -= f->markers->X[k] * 0.5 * (T[DIPOLE_XX] + T[DIPOLE_YY]) / area;
   }
@@ -185,6 +186,14 @@ PetscErrorCode DoubleLayerSpread(DoubleLayer s, Vec w, Vec source, PetscReal mea
   if (f->free) PetscFunctionReturn(PETSC_SUCCESS);
   DoubleLayerMean(s, mean);
   PetscCall(DipolesSpread(f->markers, f->nu, s->tensor, w, source));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode DoubleLayerRows(DoubleLayer s, const PetscReal profile[], DipoleRows rows) {
+  PetscReal mean[2] = {0, 0};
+  PetscFunctionBeginUser;
+  DoubleLayerMean(s, mean);
+  PetscCall(DipoleRowsSet(rows, s->near->markers, s->tensor, profile, mean));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

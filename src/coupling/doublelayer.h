@@ -13,6 +13,7 @@
 #include "coupling/doubleimage.h"
 #include "coupling/latticedipole.h"
 #include "coupling/nearfield.h"
+#include "markers/dipolerows.h"
 
 /* Response of own vesicle `row` to an image of `column`, moved by `shift` (length): a matrix of 2n rows, columns one
    after another, entries interlaced. */
@@ -28,6 +29,7 @@ struct _p_DoubleLayer {
   PetscReal *ratio; /* [vesicles] viscosity inside over that outside */
   OffsetTable lattice[2];
   DoubleImage image;     /* what the walls add to each pair; NULL in unbounded fluid */
+  OffsetTable pressure;  /* of the lattice's dipoles in cells, viscosity 1, over h^2; empty before the first output */
   PaddedStencil *dipole; /* [DIPOLE_COUNT M] */
   PetscReal *normal;     /* [2M] outward n times the marker's share w of the length */
   PetscReal *along;      /* [M] w (length); of vesicles of ratio 1 these are not made */
@@ -68,9 +70,13 @@ PETSC_EXTERN PetscErrorCode DoubleLayerApply(DoubleLayer layer, PetscReal alpha,
 PETSC_EXTERN void DoubleLayerMean(DoubleLayer layer, PetscReal mean[2]);
 
 /* DoubleLayerSpread - w += the force of J's dipoles, source += G^T of the velocity that is their source; mean +=
-   DoubleLayerMean, which a box that is periodic both ways has with them: the one without flow outside a moving rigid
-   body. Nothing in unbounded fluid. Not collective. */
+   DoubleLayerMean, which a box that is periodic both ways, or a channel without flux, has with them: the one without
+   flow outside a moving rigid body. Nothing in unbounded fluid. Not collective. */
 PETSC_EXTERN PetscErrorCode DoubleLayerSpread(DoubleLayer layer, Vec w, Vec source, PetscReal mean[2]);
+
+/* DoubleLayerRows - the same dipoles as rows of a solve by stream function, with their mean velocity; profile: that of
+   the Stokes solve (StokesProfile). Not collective. */
+PETSC_EXTERN PetscErrorCode DoubleLayerRows(DoubleLayer layer, const PetscReal profile[], DipoleRows rows);
 
 /* DoubleLayerStress - sum[3] (xx, yy, xy) += minus nu INT (J n + n J) ds of the jump last set, less its flux: what the
    dipoles add to the sum of force times place; shortfall[2] (u, v) += what their stencils lack of it across a channel

@@ -1,5 +1,6 @@
 #include "coupling/mobilitysolves.h"
 #include "fluid/stokes.h"
+#include "markers/respond.h"
 
 /* Where a column is made. */
 typedef struct {
@@ -39,7 +40,7 @@ static PetscErrorCode Respond(Solves *s) {
   const Markers m = s->coupling->markers;
   PetscFunctionBeginUser;
   if (s->stream) {
-    PetscCall(MarkersRespond(m, s->stream, 1, s->F, s->U));
+    PetscCall(MarkersRespond(m, s->stream, NULL, 1, s->F, s->U));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(VecSet(s->w, 0));

@@ -113,6 +113,49 @@ static inline PetscReal TableSum(const PetscReal *value, PetscInt width, const P
                                             : RowSum(3, value, width, a, b, cells);
 }
 
+/* The same of stencils whose numbers of points are known to the compiler: r and s along x and y. */
+static inline PetscReal FixedSum(const int rx, const int ry, const int sx, const int sy, const PetscReal *value,
+                                 PetscInt width, const PaddedStencil *response, const PaddedStencil *source,
+                                 const PetscInt cells[2]) {
+  const int vectors = (rx + sx - 1 + LANES - 1) / LANES, rows = ry + sy - 1;
+  const PetscReal *ax = response->weight[0] + KERNEL_MAX_POINTS + 1 - sx, *bx = source->weight[0] + KERNEL_MAX_POINTS;
+  const PetscReal *ay = response->weight[1] + KERNEL_MAX_POINTS + 1 - sy, *by = source->weight[1] + KERNEL_MAX_POINTS;
+  const PetscInt i0 = response->first[0] - source->first[0] - (sx - 1) + cells[0];
+  const PetscInt j0 = response->first[1] - source->first[1] - (sy - 1) + cells[1];
+  const PetscReal *row = value + j0 * width + i0;
+  Lanes line[3] = {{0}, {0}, {0}}, sum = {0};
+  union {
+    Lanes lanes[3];
+    PetscReal weight[3 * LANES];
+  } wy;
+  for (int q = 0; q < (rows + LANES - 1) / LANES; q++) {
+    wy.lanes[q] = by[0] * LanesAt(ay + q * LANES);
+    for (int j = 1; j < sy; j++) wy.lanes[q] += by[j] * LanesAt(ay + j + q * LANES);
+  }
+  for (int j = 0; j < rows; j++, row += width)
+    for (int q = 0; q < vectors; q++) line[q] += wy.weight[j] * LanesAt(row + q * LANES);
+  for (int q = 0; q < vectors; q++) {
+    Lanes wx = bx[0] * LanesAt(ax + q * LANES);
+    for (int j = 1; j < sx; j++) wx += bx[j] * LanesAt(ax + j + q * LANES);
+    sum += wx * line[q];
+  }
+  return LanesSum(sum);
+}
+
+void StencilDipoleSums(const OffsetTable table[2], const PaddedStencil response[2], const PaddedStencil dipole[3],
+                       const PetscInt cells[2], PetscReal sum[2][3]) {
+  const PetscInt width = 2 * table[0].size[0] + 1, middle = table[0].size[1] * width + table[0].size[0];
+  const PetscReal *t[2][3];
+  for (int c = 0; c < 2; c++)
+    for (int k = 0; k < 3; k++) t[c][k] = table[c].value[k] + middle;
+  sum[0][0] = FixedSum(5, 4, 6, 4, t[0][0], width, &response[0], &dipole[0], cells);
+  sum[0][1] = FixedSum(5, 4, 4, 6, t[0][1], width, &response[0], &dipole[1], cells);
+  sum[0][2] = FixedSum(5, 4, 5, 5, t[0][2], width, &response[0], &dipole[2], cells);
+  sum[1][0] = FixedSum(4, 5, 6, 4, t[1][0], width, &response[1], &dipole[0], cells);
+  sum[1][1] = FixedSum(4, 5, 4, 6, t[1][1], width, &response[1], &dipole[1], cells);
+  sum[1][2] = FixedSum(4, 5, 5, 5, t[1][2], width, &response[1], &dipole[2], cells);
+}
+
 PetscReal StencilShiftedSum(const OffsetTable *t, OffsetBlock b, const PaddedStencil *response,
                             const PaddedStencil *source, const PetscInt cells[2]) {
   const PetscInt width = 2 * t->size[0] + 1;

@@ -43,6 +43,10 @@ PETSC_EXTERN PetscReal StencilImageSum(Grid grid, const OffsetTable *table, Offs
    from the grid. StencilFourSums - the sums of markers a and b, so unwrapped, `cells` being added to the offset: xx,
    yy, xy (x of a to a force along y of b), yx. StencilShiftedSum - one block's sum, with `cells` added; StencilNearSum
    - with nothing added. All far within the table. Not collective. */
+/* StencilDipoleSums - the sums of a marker's u and v (points 5 x 4 and 4 x 5, those of cbs54) and of a dipole's parts
+   xx, yy, xy (6 x 4, 4 x 6, 5 x 5) at another, tables of the same size. Not collective. */
+PETSC_EXTERN void StencilDipoleSums(const OffsetTable table[2], const PaddedStencil response[2],
+                                    const PaddedStencil dipole[3], const PetscInt cells[2], PetscReal sum[2][3]);
 PETSC_EXTERN PetscReal StencilShiftedSum(const OffsetTable *table, OffsetBlock block, const PaddedStencil *response,
                                          const PaddedStencil *source, const PetscInt cells[2]);
 PETSC_EXTERN PetscReal StencilNearSum(const OffsetTable *table, OffsetBlock block, const PaddedStencil *response,

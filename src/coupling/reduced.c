@@ -1,5 +1,6 @@
 #include "coupling/reduced.h"
 #include "coupling/contrast.h"
+#include "markers/respond.h"
 
 /* F = Dm^T sigma + (1/a0) (c_b ds D4 + K_sigma + K_rep) V, minus h^2 times the force on the markers, and
    that of obstacles. */
@@ -116,15 +117,19 @@ static PetscErrorCode NextPlace(Reduced s, PetscInt *place) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* In a box that is periodic both ways the solve leaves w without a mean, which dipoles have. */
+/* In a box that is periodic both ways, and in a channel without flux, the solve leaves w without a mean, which dipoles
+   have. */
 static PetscErrorCode AddMean(Reduced s, const PetscReal mean[2], Vec w) {
   const Grid g = s->unknowns->coupling->fluid->grid;
-  const PetscInt n = GridLocalU(g);
+  const PetscReal *profile = StokesProfile(s->stokes);
   PetscScalar *a;
   PetscFunctionBeginUser;
-  if (!s->source || g->wall[0] || g->wall[1]) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!s->source || g->wall[0] || (g->wall[1] && !profile)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecGetArray(w, &a));
-  for (PetscInt k = 0; k < 2 * n; k++) a[k] += mean[k / n];
+  for (int f = FIELD_U; f <= (g->wall[1] ? FIELD_U : FIELD_V); f++)
+    for (PetscInt j = 0; j < g->rows[f]; j++)
+      for (PetscInt i = 0; i < g->n[0]; i++)
+        a[GridRowStart(g, (Field)f, j) + i] += mean[f] * (profile ? profile[g->first + j] : 1);
   PetscCall(VecRestoreArray(w, &a));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -143,6 +148,7 @@ PetscErrorCode ReducedBegin(Reduced s, Vec moved, Vec f) {
   const PetscScalar *U;
   PetscFunctionBeginUser;
   if (!s->source) PetscFunctionReturn(PETSC_SUCCESS);
+  s->moved = moved;
   PetscCall(VecSet(s->source, 0));
   s->mean[0] = s->mean[1] = 0;
   PetscCall(VecGetArrayRead(moved, &U));
@@ -169,6 +175,17 @@ static PetscErrorCode RespondOnGrid(Reduced s, const PetscScalar x[], PetscInt p
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* U = E u of the forces of x alone, row by row. */
+static PetscErrorCode RespondByRows(Reduced s, const PetscScalar x[]) {
+  const Coupling c = s->unknowns->coupling;
+  PetscFunctionBeginUser;
+  PetscCall(Force(s, x, s->F));
+  PetscCall(Jump(s, x));
+  if (s->source) PetscCall(DoubleLayerRows(c->contrast, StokesProfile(s->stokes), s->dipoles));
+  PetscCall(MarkersRespond(c->markers, s->stream, s->dipoles, -1 / PetscSqr(c->fluid->grid->h), s->F, s->U));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode Mult(Mat A, Vec x, Vec y) {
   Reduced s;
   const PetscScalar *xa;
@@ -182,15 +199,32 @@ static PetscErrorCode Mult(Mat A, Vec x, Vec y) {
   PetscCall(VecGetArrayRead(x, &xa));
   if (!s->stream)
     PetscCall(RespondOnGrid(s, xa, place));
-  else if (CouplingHasBodies(c)) {
-    PetscCall(Force(s, xa, s->F));
-    PetscCall(MarkersRespond(c->markers, s->stream, -1 / PetscSqr(c->fluid->grid->h), s->F, s->U));
-  }
+  else if (CouplingHasBodies(c))
+    PetscCall(RespondByRows(s, xa));
   PetscCall(VecGetArray(y, &ya));
   PetscCall(Conditions(s, xa, NULL, NULL, ya));
   PetscCall(VecRestoreArray(y, &ya));
   PetscCall(VecRestoreArrayRead(x, &xa));
   if (place < REDUCED_KEPT) PetscCall(VecCopy(y, s->kept.Az[place]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* U = E u of the force f, row by row; leaves another jump than that of x. */
+static PetscErrorCode FollowByRows(Reduced s, Vec f) {
+  const Coupling c = s->unknowns->coupling;
+  const PetscScalar *moved;
+  PetscScalar *G;
+  PetscFunctionBeginUser;
+  if (s->source) { /* all of the motion, whose dipoles' forces f has; obstacles come behind the vesicles */
+    PetscCall(VecGetArray(s->motion, &G));
+    PetscCall(VecGetArrayRead(s->moved, &moved));
+    for (PetscInt k = 0; k < 2 * c->membrane->layout->n; k++) G[k] += moved[k];
+    PetscCall(DoubleLayerSet(c->contrast, G));
+    PetscCall(VecRestoreArrayRead(s->moved, &moved));
+    PetscCall(VecRestoreArray(s->motion, &G));
+    PetscCall(DoubleLayerRows(c->contrast, StokesProfile(s->stokes), s->dipoles));
+  }
+  PetscCall(MarkersFollow(c->markers, s->stream, s->dipoles, f, s->U));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -200,7 +234,7 @@ static PetscErrorCode Follow(Reduced s, Vec f, PetscBool grid, Vec w, Vec p) {
   const PetscBool bodies = CouplingHasBodies(c);
   PetscFunctionBeginUser;
   if (!grid && s->stream && !c->fluid->bc2) {
-    if (bodies) PetscCall(MarkersFollow(c->markers, s->stream, f, s->U));
+    if (bodies) PetscCall(FollowByRows(s, f));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   /* p holds the right-hand side, then the solution */
@@ -223,6 +257,7 @@ PetscErrorCode ReducedResidual(Reduced s, Vec added, Vec f, Vec g, Vec k, Vec x,
   if (CouplingHasBodies(s->unknowns->coupling) && added != x) PetscCall(Force(s, xa, s->F));
   if (added != x) PetscCall(Jump(s, xa));
   PetscCall(Follow(s, f, grid, w, p));
+  PetscCall(Jump(s, xa)); /* of x alone again */
   PetscCall(VecGetArray(residual, &ra));
   PetscCall(Conditions(s, xa, k, g, ra));
   PetscCall(VecRestoreArray(residual, &ra));
@@ -286,13 +321,14 @@ PetscErrorCode ReducedCreate(Unknowns u, Reduced *out) {
   *out = s;
   s->unknowns = u;
   if (!c->fluid->grid->free) PetscCall(StokesCreate(c->fluid, &s->stokes));
-  if (s->stokes && !c->contrast) s->stream = StokesStream(s->stokes);
+  if (s->stokes) s->stream = StokesStream(s->stokes);
   if (!s->stream) PetscCall(DMCreateGlobalVector(c->fluid->grid->velocity, &s->r));
   PetscCall(LayoutCreateVec(c->bodies->layout, 2, &s->F));
   PetscCall(VecDuplicate(s->F, &s->U));
   if (c->contrast) {
     PetscCall(VecDuplicate(s->F, &s->motion));
     PetscCall(DMCreateGlobalVector(c->fluid->grid->da[FIELD_P], &s->source));
+    if (s->stream) PetscCall(DipoleRowsCreate(c->fluid->grid, c->fluid->nu, &s->dipoles));
   }
   PetscCall(UnknownsCreateVec(u, &s->rest));
   PetscCall(PetscMalloc2(u->walls->n, &s->d, u->walls->n, &s->slip));
@@ -319,6 +355,7 @@ PetscErrorCode ReducedDestroy(Reduced *reduced) {
   PetscCall(VecDestroy(&s->U));
   PetscCall(VecDestroy(&s->motion));
   PetscCall(VecDestroy(&s->source));
+  PetscCall(DipoleRowsDestroy(&s->dipoles));
   PetscCall(VecDestroy(&s->rest));
   PetscCall(PetscFree2(s->d, s->slip));
   PetscCall(MatDestroy(&s->A));

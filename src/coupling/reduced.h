@@ -32,15 +32,17 @@ struct _p_Reduced {
   Stream stream;     /* borrowed; NULL where products are made on the grid, and kept */
   Mat A;             /* the residuals' derivative, scaled */
   Products kept;
-  Vec r;             /* a force on the grid, NULL with stream */
-  PetscInt dirty[2]; /* zero but for these rows */
-  Vec F, U;          /* marker vectors of all bodies, work */
-  Vec motion;        /* with a viscosity contrast: what the jump is of, marker vector, work */
-  Vec source;        /* and what the divergence of the forces in f is, minus; NULL without */
-  PetscReal mean[2]; /* and the mean velocity that goes with it in a box that is periodic both ways */
-  Vec rest;          /* unknowns, work */
-  PetscScalar *d;    /* [walls->n] all wall forces, work */
-  PetscScalar *slip; /* [walls->n] work */
+  Vec r;              /* a force on the grid, NULL with stream */
+  PetscInt dirty[2];  /* zero but for these rows */
+  Vec F, U;           /* marker vectors of all bodies, work */
+  Vec motion;         /* with a viscosity contrast: what the jump is of, marker vector, work */
+  Vec moved;          /* borrowed: of the motion what is known */
+  DipoleRows dipoles; /* of the jump, with stream */
+  Vec source;         /* and what the divergence of the forces in f is, minus; NULL without */
+  PetscReal mean[2];  /* and the mean velocity that goes with it in a box that is periodic both ways */
+  Vec rest;           /* unknowns, work */
+  PetscScalar *d;     /* [walls->n] all wall forces, work */
+  PetscScalar *slip;  /* [walls->n] work */
 };
 
 /* ReducedCreate - the problem for these unknowns. Collective. */

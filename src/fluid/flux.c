@@ -2,9 +2,9 @@
 
 struct _p_ZeroFlux {
   Fluid fluid;
-  PetscReal alpha;         /* coefficient that the profile is for; -1 none yet */
-  PetscReal *profile;      /* [rows of all] b */
-  PetscReal *factor, mean; /* work of its solve; mean of b */
+  PetscReal alpha;    /* coefficient that the profile is for; -1 none yet */
+  PetscReal *profile; /* [rows of all] b over its mean */
+  PetscReal *factor;  /* work of its solve */
 };
 
 PetscErrorCode ZeroFluxCreate(Fluid fluid, ZeroFlux *out) {
@@ -31,7 +31,7 @@ static void SetUp(ZeroFlux z) {
   const Fluid f = z->fluid;
   const PetscInt n = f->grid->n[1];
   const PetscReal off = -f->nu / PetscSqr(f->grid->h);
-  PetscReal *b = z->profile, *c = z->factor;
+  PetscReal *b = z->profile, *c = z->factor, mean = 0;
   if (z->alpha == f->alpha) return;
   z->alpha = f->alpha;
   for (PetscInt j = 0; j < n; j++) {
@@ -41,17 +41,21 @@ static void SetUp(ZeroFlux z) {
     b[j] = (1 - (j ? off * b[j - 1] : 0)) / pivot;
   }
   for (PetscInt j = n - 2; j >= 0; j--) b[j] -= c[j] * b[j + 1];
-  z->mean = 0;
-  for (PetscInt j = 0; j < n; j++) z->mean += b[j] / n;
+  for (PetscInt j = 0; j < n; j++) mean += b[j] / n;
+  for (PetscInt j = 0; j < n; j++) b[j] /= mean;
+}
+
+const PetscReal *ZeroFluxProfile(ZeroFlux z) {
+  SetUp(z);
+  return z->profile;
 }
 
 /* On every rank: what times the profile has a mean whose own part of the sum over rows is given, row means of u. */
 static PetscErrorCode Factor(ZeroFlux z, PetscReal sum, PetscReal *factor) {
   const Grid g = z->fluid->grid;
   PetscFunctionBeginUser;
-  SetUp(z);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPIU_REAL, MPI_SUM, g->comm));
-  *factor = sum / g->n[1] / z->mean;
+  *factor = sum / g->n[1];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -61,7 +65,7 @@ PetscErrorCode ZeroFluxCorrectMeans(ZeroFlux z, PetscReal means[]) {
   PetscFunctionBeginUser;
   for (PetscInt j = 0; j < g->rows[FIELD_U]; j++) sum += means[j];
   PetscCall(Factor(z, sum, &factor));
-  for (PetscInt j = 0; j < g->rows[FIELD_U]; j++) means[j] -= factor * z->profile[g->first + j];
+  for (PetscInt j = 0; j < g->rows[FIELD_U]; j++) means[j] -= factor * ZeroFluxProfile(z)[g->first + j];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -75,7 +79,7 @@ PetscErrorCode ZeroFluxCorrect(ZeroFlux z, Vec u) {
   for (PetscInt k = 0; k < n * rows; k++) sum += a[k];
   PetscCall(Factor(z, sum / n, &factor));
   for (PetscInt j = 0; j < rows; j++) {
-    const PetscReal off = factor * z->profile[g->first + j];
+    const PetscReal off = factor * ZeroFluxProfile(z)[g->first + j];
     for (PetscInt i = 0; i < n; i++) a[j * n + i] -= off;
   }
   PetscCall(VecRestoreArray(u, &a));

@@ -12,6 +12,9 @@ typedef struct _p_ZeroFlux *ZeroFlux;
 PETSC_EXTERN PetscErrorCode ZeroFluxCreate(Fluid fluid, ZeroFlux *flux);
 PETSC_EXTERN PetscErrorCode ZeroFluxDestroy(ZeroFlux *flux);
 
+/* ZeroFluxProfile - b over its mean, [rows of all]. Not collective. */
+PETSC_EXTERN const PetscReal *ZeroFluxProfile(ZeroFlux flux);
+
 /* ZeroFluxCorrect - take the profile off the velocity of a Stokes solve, as much as makes its mean along x zero.
    Collective. */
 PETSC_EXTERN PetscErrorCode ZeroFluxCorrect(ZeroFlux flux, Vec u);

@@ -18,6 +18,10 @@ Vec StokesPotential(Stokes s) {
   return s->psi;
 }
 
+const PetscReal *StokesProfile(Stokes s) {
+  return s->flux ? ZeroFluxProfile(s->flux) : NULL;
+}
+
 Stream StokesStream(Stokes s) {
   return s->stream;
 }

@@ -18,6 +18,10 @@ PETSC_EXTERN PetscErrorCode StokesSolve(Stokes stokes, Vec r_u, Vec r_p, Vec u, 
 /* StokesIsExact - whether StokesSolve is: x is periodic. Not collective. */
 PETSC_EXTERN PetscBool StokesIsExact(Fluid fluid);
 
+/* StokesProfile - of u along the channel, [rows of all], with a mean of 1: what the solve leaves out where the fluid
+   may carry no flux; borrowed, NULL elsewhere. Not collective. */
+PETSC_EXTERN const PetscReal *StokesProfile(Stokes stokes);
+
 /* StokesPotential - psi of the last solve, u = w - G psi; borrowed. NULL where the banded solve is used, which keeps
    psi in Fourier modes. Not collective. */
 PETSC_EXTERN Vec StokesPotential(Stokes stokes);

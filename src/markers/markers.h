@@ -55,9 +55,3 @@ PETSC_EXTERN PetscErrorCode MarkersClear(Markers markers, Vec w, PetscInt dirty[
 /* MarkersSpread - w += alpha E^T F; F a marker vector, w a velocity. MarkersInterpolate - U = E w. Collective. */
 PETSC_EXTERN PetscErrorCode MarkersSpread(Markers markers, PetscReal alpha, Vec F, Vec w);
 PETSC_EXTERN PetscErrorCode MarkersInterpolate(Markers markers, Vec w, Vec U);
-
-/* MarkersRespond - U = E u, u the Stokes solve's velocity for the force alpha E^T F; MarkersFollow - for the force f on
-   the grid. Forces and velocities go row by row between markers and stream, which must be of the markers' grid: nothing
-   is made on the grid. U may be F. Collective. */
-PETSC_EXTERN PetscErrorCode MarkersRespond(Markers markers, Stream stream, PetscReal alpha, Vec F, Vec U);
-PETSC_EXTERN PetscErrorCode MarkersFollow(Markers markers, Stream stream, Vec f, Vec U);

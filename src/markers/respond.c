@@ -1,8 +1,9 @@
 /* Markers between which only the fluid is: forces spread and velocities interpolated row by row of a Stokes solve. */
-#include "markers/markers.h"
+#include "markers/respond.h"
 
 typedef struct {
   Markers m;
+  DipoleRows dipoles;
   PetscReal alpha;      /* of the markers' forces */
   const PetscScalar *f; /* or a force on the grid, */
   Rows u;               /* whose u has a row above */
@@ -14,17 +15,23 @@ static const PetscScalar *SpreadForce(void *ctx, Field f, PetscInt j, PetscScala
   const PetscInt row = j == g->rows[f] && g->size == 1 ? 0 : j; /* across the seam */
   (void)PetscArrayzero(work, g->columns[f]);
   MarkerRowSpread(r->m->rows, f, row, r->alpha, r->m->force, work);
+  if (r->dipoles) DipoleRowsAddForce(r->dipoles, PETSC_TRUE, f, j, work);
   return work;
 }
 
 static const PetscScalar *GridForce(void *ctx, Field f, PetscInt j, PetscScalar work[]) {
   const Response *r = (const Response *)ctx;
-  return f == FIELD_U ? RowAt(&r->u, j) : r->f + GridRowStart(r->m->grid, f, j);
+  const PetscScalar *row = f == FIELD_U ? RowAt(&r->u, j) : r->f + GridRowStart(r->m->grid, f, j);
+  if (!r->dipoles) return row;
+  (void)PetscArraycpy(work, row, r->m->grid->columns[f]);
+  DipoleRowsAddForce(r->dipoles, PETSC_FALSE, f, j, work);
+  return work;
 }
 
 static void TakeVelocity(void *ctx, Field f, PetscInt j, const PetscScalar row[]) {
   const Response *r = (const Response *)ctx;
-  MarkerRowInterpolate(r->m->rows, f, j, row, r->m->part);
+  const PetscScalar *u = r->dipoles ? DipoleRowsAddVelocity(r->dipoles, f, j, row) : row;
+  MarkerRowInterpolate(r->m->rows, f, j, u, r->m->part);
 }
 
 static PetscErrorCode Solve(Response *r, Stream stream, Vec U) {
@@ -40,8 +47,8 @@ static PetscErrorCode Solve(Response *r, Stream stream, Vec U) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode MarkersRespond(Markers m, Stream stream, PetscReal alpha, Vec F, Vec U) {
-  Response r = {.m = m, .alpha = alpha};
+PetscErrorCode MarkersRespond(Markers m, Stream stream, DipoleRows dipoles, PetscReal alpha, Vec F, Vec U) {
+  Response r = {.m = m, .dipoles = dipoles, .alpha = alpha};
   PetscFunctionBeginUser;
   PetscCall(PetscLogEventBegin(m->respond, 0, 0, 0, 0));
   PetscCall(LayoutGatherVec(m->layout, F, m->force));
@@ -50,8 +57,8 @@ PetscErrorCode MarkersRespond(Markers m, Stream stream, PetscReal alpha, Vec F, 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode MarkersFollow(Markers m, Stream stream, Vec f, Vec U) {
-  Response r = {.m = m};
+PetscErrorCode MarkersFollow(Markers m, Stream stream, DipoleRows dipoles, Vec f, Vec U) {
+  Response r = {.m = m, .dipoles = dipoles};
   PetscFunctionBeginUser;
   PetscCall(PetscLogEventBegin(m->respond, 0, 0, 0, 0));
   PetscCall(VecGetArrayRead(f, &r.f));

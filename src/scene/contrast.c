@@ -27,9 +27,6 @@ static PetscErrorCode CheckBox(Scene scene, PetscReal ratio) {
   PetscCheck(scene->fluid.form != FORM_TOTAL, scene->comm, PETSC_ERR_USER_INPUT,
              "-vesicle_viscosity_ratio %g: not with -flow_form total; allowed: 1, or -flow_form disturbance",
              (double)ratio);
-  PetscCheck(scene->fluid.drive != DRIVE_FLUX, scene->comm, PETSC_ERR_USER_INPUT,
-             "-vesicle_viscosity_ratio %g: not with -flow_drive flux; allowed: 1, or -flow_drive pressure",
-             (double)ratio);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -1,0 +1,126 @@
+#include "markers/dipolerows.h"
+
+#define BELOW 1 /* rows below the own ones, */
+#define ABOVE 2 /* and above them, of which the force on the row above has to know */
+
+/* A field's row j, which may be up to BELOW below the own ones or ABOVE above them. */
+static PetscScalar *Row(DipoleRows d, Field f, PetscInt j) {
+  return d->field[f] + (j + BELOW) * d->grid->n[0];
+}
+
+PetscErrorCode DipoleRowsCreate(Grid g, PetscReal nu, DipoleRows *out) {
+  const PetscInt size = (g->rows[FIELD_U] + BELOW + ABOVE) * g->n[0];
+  DipoleRows d;
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&d));
+  *out = d;
+  d->grid = g;
+  d->nu = nu;
+  PetscCall(PetscCalloc6(size, &d->field[0], size, &d->field[1], size, &d->field[2], g->n[1], &d->mean, g->n[1],
+                         &d->flow, g->n[0], &d->row));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode DipoleRowsDestroy(DipoleRows *rows) {
+  DipoleRows d = *rows;
+  PetscFunctionBeginUser;
+  if (!d) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscFree6(d->field[0], d->field[1], d->field[2], d->mean, d->flow, d->row));
+  PetscCall(PetscFree(*rows));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static void Clear(DipoleRows d) {
+  const PetscInt n = (d->window[1] - d->window[0]) * d->grid->n[0];
+  for (int f = 0; f < 3 && n > 0; f++) (void)PetscArrayzero(Row(d, (Field)f, d->window[0]), n);
+  d->window[0] = d->grid->rows[FIELD_U] + ABOVE;
+  d->window[1] = -BELOW;
+  (void)PetscArrayzero(d->mean, d->grid->n[1]);
+}
+
+/* A spot's row of values on all local rows that are this row of the grid. */
+static void AddLine(DipoleRows d, const DipoleSpot *s, PetscInt entry, PetscReal value) {
+  const Grid g = d->grid;
+  for (PetscInt j = entry - g->first - g->n[1]; j < g->rows[FIELD_U] + ABOVE; j += g->n[1]) {
+    if (j < -BELOW || (g->wall[1] && j != entry - g->first)) continue;
+    PetscScalar *row = Row(d, s->field, j);
+    for (PetscInt k = 0; k < s->line[0].n; k++) row[DipoleEntry(g, s, 0, k)] += value * s->line[0].weight[k];
+    d->window[0] = PetscMin(d->window[0], j);
+    d->window[1] = PetscMax(d->window[1], j + 1);
+  }
+}
+
+static void Add(DipoleRows d, const DipoleSpot *s) {
+  PetscReal all = 0;
+  for (PetscInt k = 0; k < s->line[0].n; k++) all += s->line[0].weight[k] / (PetscReal)d->grid->n[0];
+  for (PetscInt q = 0; q < s->line[1].n; q++) {
+    const PetscInt j = DipoleEntry(d->grid, s, 1, q);
+    const PetscReal value = s->value * s->line[1].weight[q];
+    if (s->field == FIELD_P) d->mean[j] += all * value;
+    AddLine(d, s, j, value);
+  }
+}
+
+/* From a row's source to b, whose mean is zero. */
+static void SumRow(const Grid g, PetscReal mean, PetscScalar row[]) {
+  PetscReal b = 0, sum = 0;
+  for (PetscInt i = 0; i < g->n[0]; i++) {
+    b += g->h * (mean - row[i]);
+    row[i] = b;
+    sum += b;
+  }
+  for (PetscInt i = 0; i < g->n[0]; i++) row[i] -= sum / (PetscReal)g->n[0];
+}
+
+/* From the rows' mean sources to v, zero at a wall and else of zero mean. */
+static void SumMeans(const Grid g, PetscScalar mean[]) {
+  PetscReal v = 0, sum = 0;
+  for (PetscInt j = 0; j < g->n[1]; j++) {
+    v -= g->h * mean[j];
+    mean[j] = v;
+    sum += v;
+  }
+  for (PetscInt j = 0; j < g->n[1] && !g->wall[1]; j++) mean[j] -= sum / (PetscReal)g->n[1];
+}
+
+PetscErrorCode DipoleRowsSet(DipoleRows d, Markers m, const PetscReal T[], const PetscReal profile[],
+                             const PetscReal mean[2]) {
+  const Grid g = d->grid;
+  PetscFunctionBeginUser;
+  Clear(d);
+  for (PetscInt k = 0; k < m->layout->M; k++) {
+    const PetscReal *t = T + DIPOLE_COUNT * k;
+    DipoleSpot spot[DIPOLE_SPOTS];
+    if (t[0] == 0 && t[1] == 0 && t[2] == 0) continue;
+    DipoleSpots(g, d->nu, m->X + 2 * k, t, spot);
+    for (int q = 0; q < DIPOLE_SPOTS; q++) Add(d, &spot[q]);
+  }
+  for (PetscInt j = d->window[0]; j < d->window[1]; j++)
+    SumRow(g, d->mean[(j + g->first + g->n[1]) % g->n[1]], Row(d, FIELD_P, j));
+  SumMeans(g, d->mean);
+  for (PetscInt j = 0; j < g->n[1]; j++) {
+    d->flow[j] = mean[0] * (profile ? profile[j] : g->wall[1] ? 0 : 1);
+    if (!g->wall[1]) d->mean[j] += mean[1];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+void DipoleRowsAddForce(DipoleRows d, PetscBool own, Field f, PetscInt j, PetscScalar row[]) {
+  const PetscInt n = d->grid->n[0];
+  const PetscReal factor = d->nu / PetscSqr(d->grid->h);
+  if (j < d->window[0] - 1 || j > d->window[1]) return;
+  const PetscScalar *force = Row(d, f, j), *b = Row(d, FIELD_P, j);
+  for (PetscInt i = 0; i < n && own; i++) row[i] += force[i];
+  if (f == FIELD_V) return;
+  const PetscScalar *low = Row(d, FIELD_P, j - 1), *high = Row(d, FIELD_P, j + 1);
+  for (PetscInt i = 0; i < n; i++)
+    row[i] += factor * (b[i ? i - 1 : n - 1] + b[i + 1 < n ? i + 1 : 0] + low[i] + high[i] - 4 * b[i]);
+}
+
+const PetscScalar *DipoleRowsAddVelocity(DipoleRows d, Field f, PetscInt j, const PetscScalar row[]) {
+  const PetscScalar *b = Row(d, FIELD_P, j);
+  const PetscReal mean = (f == FIELD_U ? d->flow : d->mean)[d->grid->first + j];
+  if (mean == 0 && (f == FIELD_V || j < d->window[0] || j >= d->window[1])) return row;
+  for (PetscInt i = 0; i < d->grid->n[0]; i++) d->row[i] = row[i] + mean + (f == FIELD_U ? b[i] : 0);
+  return d->row;
+}

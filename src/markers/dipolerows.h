@@ -1,0 +1,37 @@
+/* Dipoles of markers in the rows of a solve by stream function (fluid/stream.h), whose velocity w has no divergence.
+   Where x is periodic a velocity b whose divergence is the dipoles' source is found row by row: along x by sums of the
+   source less its row's mean, along y by sums of these means,
+
+       b_i - b_{i-1} = h (mean - source_i),      v_j - v_{j-1} = -h mean_j,
+
+   source = G^T of the velocity. Then u = w + b, w being the flow of the forces + nu L_u b, and v's mean flow adds to
+   the pressure only (docs/fluid.md, Stream function). */
+#pragma once
+#include "markers/dipoles.h"
+
+typedef struct _p_DipoleRows *DipoleRows;
+struct _p_DipoleRows {
+  Grid grid; /* borrowed */
+  PetscReal nu;
+  PetscInt window[2];    /* of these local rows: any others are zero */
+  PetscScalar *field[3]; /* forces on u (with the row above) and v, b along x: from the row below on */
+  PetscScalar *mean;     /* [all rows of v] b along y */
+  PetscScalar *flow;     /* [all rows of u] mean flow along x */
+  PetscScalar *row;      /* [n_x] work */
+};
+
+/* DipoleRowsCreate - none yet. Not collective. */
+PETSC_EXTERN PetscErrorCode DipoleRowsCreate(Grid grid, PetscReal nu, DipoleRows *rows);
+PETSC_EXTERN PetscErrorCode DipoleRowsDestroy(DipoleRows *rows);
+
+/* DipoleRowsSet - those of all markers with tensors T[3M], which add up to a source of zero; u has the mean flow
+   mean[0] times the profile[rows of all], or, NULL, in a box that is periodic both ways u and v have mean[2]. Not
+   collective. */
+PETSC_EXTERN PetscErrorCode DipoleRowsSet(DipoleRows rows, Markers markers, const PetscReal T[],
+                                          const PetscReal profile[], const PetscReal mean[2]);
+
+/* DipoleRowsAddForce - row += nu L_u b and, if `own`, the dipoles' force, in local row j of u or v; of u the row above
+   the last, too. DipoleRowsAddVelocity - the row plus b, in work space of the rows. Not collective. */
+PETSC_EXTERN void DipoleRowsAddForce(DipoleRows rows, PetscBool own, Field field, PetscInt j, PetscScalar row[]);
+PETSC_EXTERN const PetscScalar *DipoleRowsAddVelocity(DipoleRows rows, Field field, PetscInt j,
+                                                      const PetscScalar row[]);

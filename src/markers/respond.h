@@ -1,0 +1,12 @@
+/* What a solve by stream function does to markers. Forces and velocities go row by row between markers and stream,
+   which must be of the markers' grid: nothing is made on the grid. */
+#pragma once
+#include "markers/dipolerows.h"
+
+/* MarkersRespond - U = E u, u the Stokes solve's velocity for the force alpha E^T F and the dipoles (NULL: none);
+   MarkersFollow - for the force f on the grid, in which the dipoles' force is, and their source. U may be F.
+   Collective.
+ */
+PETSC_EXTERN PetscErrorCode MarkersRespond(Markers markers, Stream stream, DipoleRows dipoles, PetscReal alpha, Vec F,
+                                           Vec U);
+PETSC_EXTERN PetscErrorCode MarkersFollow(Markers markers, Stream stream, DipoleRows dipoles, Vec f, Vec U);
