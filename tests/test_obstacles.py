@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from boundary_integral import finer, pressed, single_layer
 from conftest import ROOT, run_petves
+from swinging_circle import swinging_torque
 
 import petves
 from petves.views.report import report
@@ -154,27 +155,6 @@ def test_drag_in_a_channel_without_flux(tmp_path):
     assert abs(row["flux"]) < 1e-12
     other = last(tmp_path / "file", f"{options} -obstacle_shape file -obstacle_file {tmp_path / 'circle.txt'}")
     assert other["obstacle_force_x"] == pytest.approx(row["obstacle_force_x"], rel=1e-5)
-
-
-def swinging_torque(radius, outer, omega):
-    """The amplitude of the torque on a circle that swings with exp(i omega t) at speed r, viscosity 1, of the fluid
-    up to a circle at rest and of that inside: u'' + u'/r - u/r^2 = i omega u by Chebyshev's points."""
-    n = 40
-    x = np.cos(np.pi * np.arange(n + 1) / n)
-    c = np.r_[2, np.ones(n - 1), 2] * (-1.0) ** np.arange(n + 1)
-    D = np.outer(c, 1 / c) / (np.subtract.outer(x, x) + np.eye(n + 1))
-    D -= np.diag(D.sum(1))
-    total = 0
-    for low, high in ((radius, outer), (1e-3 * radius, radius)):
-        r, d = low + (high - low) * (x + 1) / 2, 2 * D / (high - low)
-        A = (d @ d + d / r[:, None] - np.diag(1 / r**2 + 1j * omega)).astype(complex)
-        A[0], A[n] = np.eye(n + 1)[[0, n]]
-        b = np.zeros(n + 1, complex)
-        inner = high == radius
-        b[0 if inner else n] = radius
-        slope = (d @ np.linalg.solve(A, b))[0 if inner else n]
-        total += (-1 if inner else 1) * 2 * np.pi * radius**2 * (slope - 1)
-    return total
 
 
 def test_a_swinging_circle(tmp_path):
@@ -325,6 +305,23 @@ def test_viscosity_contrast(tmp_path):
             assert other[column] == pytest.approx(one[column], rel=1e-9)
     assert one["flux"] == pytest.approx(2, rel=1e-12)
     assert one["pressure_drop"] == pytest.approx(one["obstacle_force_x"] / 2, rel=1e-9)
+
+
+def test_many_vesicles_among_posts(tmp_path):
+    """So many that each has a preconditioner of its own: two ranks and a restart agree."""
+    places = ",".join(f"{2 * i},{2.6 + 2.8 * j:g}" for i in range(4) for j in range(2)) + ",1,4,5,4"
+    scene = f"-vesicle_count 10 -vesicle_markers 35 -vesicle_area .8 -vesicle_reduced_area .8 -vesicle_angle 60 -vesicle_center {places}"
+    scene += f" {PERIODIC} -domain_box 0,8,0,8 -domain_cells 64,64 -flow_type uniform -obstacle_shape posts"
+    scene += " -obstacle_radius .6 -obstacle_center 3,1,7,1 -vesicle_bending .05 -scheme_type coupled -delta_type cbs54"
+    scene += " -membrane_derivative spectral -coupling_near_field exact -scheme_area_target true -scheme_order 3"
+    scene += " -time_step .02 -coupled_ksp_rtol 1e-11"
+    one = last(tmp_path / "one", f"{scene} -time_end .06")
+    two = last(tmp_path / "two", f"{scene} -time_end .06", ranks=2)
+    run_petves(tmp_path / "half", f"{scene} -time_end .04")
+    rest = last(tmp_path / "rest", f"{scene} -time_end .06 -restart {tmp_path / 'half' / 'checkpoint.h5'}")
+    for column in ("center_x", "gap", "obstacle_force_x", "obstacle_torque_2"):
+        assert two[column] == pytest.approx(one[column], rel=1e-9, abs=1e-9)
+        assert rest[column] == one[column]
 
 
 def test_film_on_a_post(tmp_path):

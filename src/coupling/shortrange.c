@@ -117,7 +117,7 @@ PetscErrorCode ShortRangePlace(ShortRange s) {
   s->pairs = 0;
   for (PetscInt b = 0; b < f->blocks; b++) {
     const NearBlock *block = &f->block[b];
-    if (NearBlockIsSelf(block)) continue;
+    if (NearBlockIsSelf(block) || PetscMax(block->row, block->column) >= l->bodies) continue; /* vesicles' only */
     for (PetscInt i = l->start[block->row]; i < l->start[block->row + 1]; i++) PetscCall(AddRow(s, block, i));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
