@@ -165,7 +165,7 @@ time: deps ## what the time step leaves, by order and frame of the labels, into 
 	@$(MAKE) --no-print-directory all
 	PETVES=$(CURDIR)/$(BIN)/petves PYTHONPATH=python:. $(PYTHON) -m studies time $(if $(QUICK),out/time,docs/time)
 
-gallery: deps ## what the field runs, beside published results: docs/gallery.md (ten minutes; QUICK=1: two, into out/gallery.md)
+gallery: deps ## what the field runs, beside published results: docs/gallery.md (ten minutes; QUICK=1: four, into out/gallery.md)
 	@$(MAKE) --no-print-directory all
 	PETVES=$(CURDIR)/$(BIN)/petves PYTHONPATH=python:. $(PYTHON) -m studies gallery $(if $(QUICK),out/gallery,docs/gallery)
 

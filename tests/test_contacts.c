@@ -1,7 +1,8 @@
 /* The edge nearest to each point, the gaps of curves and the thinnest film, against the search of all pairs and of
- * circles. */
+   circles; curves that are open or span a period. */
 #include "check.h"
 #include "curve/contacts.h"
+#include "curve/crossing.h"
 
 #define POINTS 24
 #define CURVES 6
@@ -54,7 +55,8 @@ static PetscErrorCode CheckNearest(PetscReal period_x, PetscReal period_y, Petsc
   CurveContact *c;
   PetscFunctionBeginUser;
   Place(CURVES, circles, POINTS, X);
-  PetscCall(CurveContacts(CURVES, CURVES, start, X, period, reach, &n, &c));
+  const CurveSet set = {CURVES, CURVES, start, NULL, X, period, PETSC_FALSE};
+  PetscCall(CurveContacts(&set, reach, &n, &c));
   for (PetscInt p = 0; p < CURVES * POINTS; p++)
     for (PetscInt w = 0; w < CURVES; w++)
       wanted += Distance(X + 2 * p, POINTS, X + 2 * start[w], period, p / POINTS == w ? PETSC_TRUE : PETSC_FALSE) <
@@ -90,8 +92,9 @@ static PetscErrorCode CheckGap(PetscReal gap, PetscReal period, PetscReal tolera
   PetscInt n;
   PetscFunctionBeginUser;
   Place(2, circles, POINTS, X);
-  PetscCall(CurveGaps(2, 2, start, X, NULL, periods, PETSC_TRUE, 0.2, &n, &gaps));
-  PetscCall(CurveLeastGap(2, 2, start, X, periods, PETSC_TRUE, &least));
+  const CurveSet set = {2, 2, start, NULL, X, periods, PETSC_TRUE};
+  PetscCall(CurveGaps(&set, 0.2, &n, &gaps));
+  PetscCall(CurveLeastGap(&set, &least));
   const PetscReal found = n ? gaps[0].distance : NAN;
   CHECK(n == (gap < 0.2) && (!n || PetscAbsReal(found - gap) < tolerance) && PetscAbsReal(least - gap) < tolerance,
         "circles %g apart, period %g: %g, least of all %g", gap, period, found, least);
@@ -108,8 +111,8 @@ static PetscErrorCode CheckAlone(void) {
   PetscReal X[2 * POINTS], gap[2];
   PetscFunctionBeginUser;
   Place(1, &circle, POINTS, X);
-  PetscCall(CurveLeastGap(1, 1, start, X, none, PETSC_TRUE, &gap[0]));
-  PetscCall(CurveLeastGap(1, 1, start, X, box, PETSC_TRUE, &gap[1]));
+  const CurveSet sets[2] = {{1, 1, start, NULL, X, none, PETSC_TRUE}, {1, 1, start, NULL, X, box, PETSC_TRUE}};
+  for (int k = 0; k < 2; k++) PetscCall(CurveLeastGap(&sets[k], &gap[k]));
   CHECK(PetscIsNanReal(gap[0]) && PetscAbsReal(gap[1] - 0.25) < 1e-3, "one circle: %g alone, %g to its image", gap[0],
         gap[1]);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -128,14 +131,97 @@ static PetscErrorCode CheckFilm(PetscBool images, PetscReal coarse, PetscInt v, 
   PetscFunctionBeginUser;
   Place(4, circles, POINTS, X);
   for (int k = 0; k < 4; k++) ds[k] = (k == 2 ? 1 : coarse) * 2 * PETSC_PI * circles[k].radius / POINTS;
-  PetscCall(CurveThinnestFilm(4, 4, start, X, NULL, ds, &room, PETSC_TRUE, 2, &film));
+  const CurveSet set = {4, 4, start, NULL, X, room.period, PETSC_TRUE};
+  PetscCall(CurveThinnestFilm(&set, ds, &room, 2, &film));
   const PetscReal spacing = PetscMax(ds[v], w < 0 ? 0 : ds[w]);
   CHECK(film.pair[0] == v && film.pair[1] == w && PetscAbsReal(film.thickness - thickness) < 6e-3 &&
             PetscAbsReal(film.spacings * spacing - film.thickness) < 1e-14,
         "film of %d and %d: %g thick, %g spacings", (int)film.pair[0], (int)film.pair[1], film.thickness,
         film.spacings);
-  PetscCall(CurveThinnestFilm(4, 4, start, X, NULL, ds, &room, PETSC_TRUE, 0.9 * film.spacings, &film));
+  PetscCall(CurveThinnestFilm(&set, ds, &room, 0.9 * film.spacings, &film));
   CHECK(film.pair[0] == 0 && film.pair[1] == 0 && film.thickness == 0, "   none below that");
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A circle against a curve that does not move, `gap` below its lowest point: half a circle, open, with its solid
+   within, or a line across the period, with its solid below or (back) above, near whose end the circle is. */
+static PetscErrorCode CheckSolid(CurveType type, PetscBool back, PetscReal gap) {
+  const Circle circle = {type == CURVE_OPEN ? 0.3 : 2.9, 0, 1};
+  const PetscInt start[3] = {0, POINTS, 2 * POINTS};
+  const PetscReal period[2] = {type == CURVE_OPEN ? 0 : 6, 0}, along = back ? 6 : -6;
+  const CurveKind kind[2] = {{CURVE_CLOSED}, {type, {type == CURVE_OPEN ? 0 : along, 0}}};
+  PetscReal X[4 * POINTS];
+  CurveGap *gaps;
+  PetscInt n;
+  PetscFunctionBeginUser;
+  Place(1, &circle, POINTS, X);
+  for (PetscInt k = 0; k < POINTS; k++) {
+    const PetscReal t = PETSC_PI * (PetscReal)k / (POINTS - 1);
+    X[2 * (POINTS + k)] = type == CURVE_OPEN ? 0.3 + 2 * PetscCosReal(t) : along * ((PetscReal)k / POINTS - 0.5);
+    X[2 * (POINTS + k) + 1] = -1 - gap - (type == CURVE_OPEN ? 2 - 2 * PetscSinReal(t) : 0);
+  }
+  const CurveSet set = {2, 1, start, kind, X, period, PETSC_TRUE};
+  PetscCall(CurveGaps(&set, 0.2, &n, &gaps));
+  const PetscReal found = n ? gaps[0].distance : NAN;
+  CHECK(n == 1 && gaps[0].curve[0] == 0 && gaps[0].curve[1] == 1 &&
+            (back ? found < -gap + 1e-3 : PetscAbsReal(found - gap) < 6e-3),
+        "a circle %g from a curve that %s%s: %g", gap, type == CURVE_OPEN ? "is open" : "spans the period",
+        back ? ", on its solid's side" : "", found);
+  PetscCall(PetscFree(gaps));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A line that comes back over itself crosses itself, one across a period does not cross its image. */
+static PetscErrorCode CheckLine(PetscReal swing, PetscBool crosses) {
+  const PetscInt start[2] = {0, POINTS};
+  const PetscReal period[2] = {6, 0};
+  const CurveKind kind = {CURVE_SPANNING, {6, 0}};
+  PetscReal X[2 * POINTS];
+  PetscInt pair[2];
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < POINTS; k++) {
+    const PetscReal t = 2 * PETSC_PI * (PetscReal)k / POINTS;
+    X[2 * k] = 6 * (PetscReal)k / POINTS + swing * PetscSinReal(2 * t);
+    X[2 * k + 1] = PetscCosReal(t);
+  }
+  const CurveSet set = {1, 1, start, &kind, X, period, PETSC_TRUE};
+  PetscCall(CurvesCross(&set, pair));
+  CHECK((pair[0] >= 0) == crosses, "a line across a period that swings by %g %s itself", swing,
+        pair[0] >= 0 ? "crosses" : "does not cross");
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+#define TIMES 5
+
+/* Of an open curve polynomials of fifth degree are exact; forces on finer points keep their sum. */
+static PetscErrorCode CheckOpen(void) {
+  const CurveKind open = {.type = CURVE_OPEN};
+  PetscReal X[2 * POINTS], T[2 * POINTS], Y[2 * POINTS * TIMES], weight[POINTS];
+  PetscReal off[2] = {0, 0}, sums = 0, least = 0;
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < POINTS; k++) {
+    X[2 * k] = PetscPowRealInt(0.1 * (PetscReal)k, 5);
+    X[2 * k + 1] = (PetscReal)k;
+  }
+  PetscCall(CurveTangents(&open, NULL, POINTS, X, T));
+  PetscCall(CurveFinePoints(&open, POINTS, X, TIMES, Y));
+  for (PetscInt k = 0; k < POINTS; k++)
+    off[0] = PetscMax(off[0], PetscAbsReal(T[2 * k] - 0.5 * PetscPowRealInt(0.1 * (PetscReal)k, 4)) +
+                                  PetscAbsReal(T[2 * k + 1] - 1));
+  for (PetscInt q = 0; q < POINTS * TIMES; q++) {
+    const PetscReal t = CurveFinePlace(&open, TIMES, q);
+    PetscReal sum = 0;
+    off[1] = PetscMax(off[1], PetscAbsReal(Y[2 * q] - PetscPowRealInt(0.1 * t, 5)) + PetscAbsReal(Y[2 * q + 1] - t));
+    CurveOpenWeights(POINTS, TIMES, q, weight);
+    for (PetscInt k = 0; k < POINTS; k++) {
+      sum += weight[k];
+      if (t < 4 || t > POINTS - 5) least = PetscMin(least, weight[k]);
+    }
+    sums = PetscMax(sums, PetscAbsReal(sum - 1));
+  }
+  CHECK(off[0] < 1e-9 && off[1] < 1e-9 && sums < 1e-13 && least >= 0,
+        "an open curve: tangents off by %.1e, points by %.1e, sums of weights by %.1e, least one near ends %g", off[0],
+        off[1], sums, least);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -148,6 +234,13 @@ static PetscErrorCode Facts(void) {
     PetscCall(CheckGap(-0.02, k ? 7 : 0, 2e-3));
     PetscCall(CheckGap(1.5, k ? 9 : 0, 2e-3));
   }
+  for (int k = 0; k < 2; k++) {
+    PetscCall(CheckSolid(CURVE_OPEN, PETSC_FALSE, k ? 0.15 : 0.02));
+    PetscCall(CheckSolid(CURVE_SPANNING, PETSC_FALSE, k ? 0.15 : 0.02));
+    PetscCall(CheckLine(k ? 2.5 : 0.3, k ? PETSC_TRUE : PETSC_FALSE));
+  }
+  PetscCall(CheckSolid(CURVE_SPANNING, PETSC_TRUE, 0.02));
+  PetscCall(CheckOpen());
   PetscCall(CheckAlone());
   PetscCall(CheckFilm(PETSC_FALSE, 1, 0, 1, 0.1));
   PetscCall(CheckFilm(PETSC_TRUE, 1, 0, 3, 0.05));

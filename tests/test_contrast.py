@@ -21,6 +21,7 @@ REFERENCES = json.loads((ROOT / "tests" / "references.json").read_text())["visco
 SMALL = f"{COUPLED} -domain_box -2,2,-2,2 -domain_cells 32,32 -flow_type shear -vesicle_area 0.5 -vesicle_markers 25"
 SMALL += " -vesicle_count 2 -vesicle_center -.6,.2,.6,-.2 -vesicle_angle 60 -vesicle_bending .03 -time_step .1"
 SMALL += " -vesicle_viscosity_ratio 5,.3 -time_end .3"
+NEAR = "-vesicle_center -.8,-1.58,.8,1.6 -vesicle_angle 5"  # 1.3 cells from one wall, 1.2 from the other
 PLAIN = "-coupling_box_part false"  # whose table takes longer than the steps
 TIGHT = "-coupled_ksp_rtol 1e-12"
 
@@ -100,7 +101,7 @@ def test_velocity_is_of_two_fluids(tmp_path):
 
 @pytest.mark.parametrize(
     "walls",
-    ["", "-domain_bc_x periodic", "-domain_bc_x periodic -domain_bc_y periodic"],
+    ["", f"{NEAR} -domain_bc_x periodic", "-domain_bc_x periodic -domain_bc_y periodic"],
     ids=["walls", "channel", "periodic"],
 )
 def test_sparse_lu(tmp_path, walls):
@@ -112,8 +113,8 @@ def test_sparse_lu(tmp_path, walls):
 
 
 def test_ranks_and_restart(tmp_path):
-    """The same on 1, 2 and 3 ranks; a restart has the same bits."""
-    small = f"{SMALL} {TIGHT} -domain_bc_x periodic"
+    """The same on 1, 2 and 3 ranks, next to walls; a restart has the same bits."""
+    small = f"{SMALL} {NEAR} {TIGHT} -domain_bc_x periodic"
     whole = markers(run_petves(tmp_path / "whole", small))
     for ranks in (2, 3):
         other = markers(run_petves(tmp_path / str(ranks), small, ranks))
@@ -121,6 +122,27 @@ def test_ranks_and_restart(tmp_path):
     run_petves(tmp_path / "half", f"{small} -time_end .2")
     rest = run_petves(tmp_path / "rest", f"{small} -restart {tmp_path / 'half' / 'checkpoint.h5'}")
     assert np.array_equal(markers(rest), whole)
+
+
+def first_velocity(folder, cells: int, ratio: float, options="") -> np.ndarray:
+    """Of an ellipse .04 from the bottom of a channel of height 2, which shear takes along."""
+    scene = f"{COUPLED} {PLAIN} -domain_box -1,1,-1,1 -domain_cells {cells},{cells} -domain_bc_x periodic"
+    scene += (
+        " -flow_type shear -vesicle_semi_axes .35,.2 -vesicle_angle 10 -vesicle_center 0,-.7539 -vesicle_markers 91"
+    )
+    scene += f" -vesicle_bending .02 -vesicle_viscosity_ratio {ratio} -vesicle_allow_close_markers {options}"
+    run = run_petves(folder, f"{scene} -time_step 1e-6 -time_end 1e-6 -scheme_startup euler -output_every 1 {TIGHT}")
+    assert abs(run.series["gap"][-1] - 0.04) < 1e-3
+    with h5py.File(run.folder / "run.h5") as file:
+        return file["vesicle/velocity"][-1]
+
+
+@pytest.mark.parametrize("ratio", [5, 0.2])
+def test_next_to_a_wall(tmp_path, ratio):
+    """With .64 cells between membrane and wall the velocity is that of a grid with 2.6 (measured: 1e-4)."""
+    fine = first_velocity(tmp_path / "fine", 128, ratio)
+    off = first_velocity(tmp_path / "coarse", 32, ratio) - fine
+    assert np.abs(off).max() < 5e-4 * np.sqrt((fine**2).sum(axis=1).mean())
 
 
 def test_scaled_problem(tmp_path):

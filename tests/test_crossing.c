@@ -74,7 +74,8 @@ static PetscErrorCode CheckLoops(const char what[], const Loop loop[2], PetscRea
   PetscInt pair[2];
   PetscFunctionBeginUser;
   for (int v = 0; v < 2; v++) Place(&loop[v], 0, X + 2 * v * POINTS);
-  PetscCall(CurvesCross(2, start, X, NULL, period, smooth, pair));
+  const CurveSet set = {2, 2, start, NULL, X, period, smooth};
+  PetscCall(CurvesCross(&set, pair));
   const PetscInt low = PetscMin(pair[0], pair[1]), high = PetscMax(pair[0], pair[1]);
   CHECK(low == first && high == second, "%s, %s: %d and %d cross", what, smooth ? "curves" : "polygons", (int)low,
         (int)high);
@@ -89,7 +90,8 @@ static PetscErrorCode CheckBehind(const Loop nested[2], const Loop over[2]) {
   PetscInt pair[2];
   PetscFunctionBeginUser;
   for (int v = 0; v < 4; v++) Place(v < 2 ? &nested[v] : &over[v - 2], v < 2 ? 0 : 9, X + 2 * v * POINTS);
-  PetscCall(CurvesCross(4, start, X, NULL, period, PETSC_TRUE, pair));
+  const CurveSet set = {4, 4, start, NULL, X, period, PETSC_TRUE};
+  PetscCall(CurvesCross(&set, pair));
   CHECK(PetscMin(pair[0], pair[1]) == 2 && PetscMax(pair[0], pair[1]) == 3, "behind a tip in a hollow: %d and %d cross",
         (int)pair[0], (int)pair[1]);
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -20,6 +20,12 @@ def circle(n: int) -> list[str]:
     return [f"{0.3 * np.cos(a):.15g} {0.3 * np.sin(a):.15g}" for a in t]
 
 
+def bump(height: float, waves: int = 1) -> list[str]:
+    """Lines of a curve that stands on the wall y = -1 and comes back to it between its waves."""
+    t = np.pi * np.arange(25) / 24
+    return [f"{0.8 * np.cos(a):.15g} {-1 + height * abs(np.sin(waves * a)):.15g}" for a in t]
+
+
 CIRCLE = circle(20)
 CURVES = {
     "circle": CIRCLE,
@@ -32,6 +38,12 @@ CURVES = {
     "three columns": ["0.1 0.2 0.3"] + CIRCLE,
     "repeated point": CIRCLE[:5] + CIRCLE[4:],
     "open": ["# open", *CIRCLE],
+    "bump": ["# open", *bump(0.5)],
+    "low bump": ["# open", *bump(0.05)],
+    "rising bump": ["# open", "# velocity 0 1", *bump(0.5)],
+    "two bumps": ["# open", *bump(0.5, 2)],
+    "corner": ["# open", *(f"{np.cos(a) - 1} {np.sin(a) - 1}" for a in np.pi * np.arange(13) / 24)],
+    "line": [f"{0.1 * k - 1:.15g} 0" for k in range(21)],
     "flat": [f"{0.01 * k} 0" for k in range(20)],
 }
 

@@ -11,7 +11,17 @@ from conftest import PETVES, ROOT, Run, mpirun
 from petves.measures import half_periods
 from petves.run import Run as Files
 from studies.common.curves import trigonometric
-from studies.gallery import bifurcation, capillary, couette, passing, settling, suspension, tumbling, vortices
+from studies.gallery import (
+    bifurcation,
+    capillary,
+    constriction,
+    couette,
+    passing,
+    settling,
+    suspension,
+    tumbling,
+    vortices,
+)
 from studies.gallery.page import SCENES, TEMPLATE, filled
 from studies.gallery.scene import least
 
@@ -177,3 +187,23 @@ def test_suspension(tmp_path):
     series = run_file("suspension", tmp_path, words)
     added = (series["viscosity"][-1] - 1) / (series["area"][-1] / 32**2)
     assert added == pytest.approx(1.62, rel=0.01)
+
+
+def test_hundred(tmp_path):
+    """Ten of the hundred in a tenth of the box: bending, contact and gravity together fall in every step, centres sink."""
+    words = "-domain_box 0,9,0,12.8 -domain_cells 45,64 -vesicle_count 10 -time_step .5 -time_end 4"
+    series = run_file("hundred", tmp_path, words)
+    energy = sum(series[f"energy_{name}"] for name in ("bending", "contact", "gravity"))
+    assert np.diff(energy).max() < 0 and series["center_y"][-1] < series["center_y"][0] - 0.1
+    assert max(np.abs(series[f"{name}_error"]).max() for name in ("area", "length")) < 1e-10
+
+
+def test_constriction(tmp_path):
+    """The exact pressure drop of a throat without a vesicle, to .1 %; with one it takes more."""
+    words = f"-obstacle_throat {constriction.EMPTY}"
+    empty = f"{words} -vesicle_shape none -allow_unused_options true -time_end .01"
+    series = run_file("constriction", tmp_path / "empty", empty)
+    assert series["pressure_drop"][-1] == pytest.approx(constriction.EXACT, rel=1e-3)
+    assert constriction.lubrication(0.999999) == pytest.approx(36, rel=1e-5), "a channel without bumps"
+    series = run_file("constriction", tmp_path / "vesicle", f"{words} -vesicle_markers 45 -time_step .02 -time_end .1")
+    assert series["pressure_drop"][-1] > constriction.EXACT

@@ -273,11 +273,11 @@ static PetscErrorCode CheckFold(void) {
       const PetscReal y = 0.075 * step;
       PetscReal w[KERNEL_MAX_POINTS], sum = 0;
       PetscInt first, n = kernel->along(y - 1, &first, w);
-      FoldLow(PETSC_TRUE, &first, &n, w);
+      FoldLow(FOLD_EVEN, &first, &n, w);
       for (PetscInt q = 0; q < n; q++) sum += WallScale(kernel, y) * w[q] * PetscSqr(first + q + 1);
       if (y <= FOLD_SCALED - 1) error = PetscMax(error, PetscAbsReal(sum - y * y));
       n = kernel->across(y - 0.5, &first, w);
-      FoldLow(PETSC_FALSE, &first, &n, w);
+      FoldLow(FOLD_ODD, &first, &n, w);
       sum = 0;
       for (PetscInt q = 0; q < n; q++) sum += w[q] * (first + q + 0.5);
       error = PetscMax(error, PetscAbsReal(sum - y));

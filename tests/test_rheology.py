@@ -43,8 +43,13 @@ def test_walls_agree_with_stresslets(options, ranks, tmp_path):
 BOTTOM, TOP = "-vesicle_center 0.8,0.55,2.7,2.4 ", "-vesicle_center 0.8,2,2.7,3.45 "
 BOTH = "-vesicle_center 0.8,0.5,2.7,3.5 -vesicle_angle 3 -contact_repulsion 5 "
 
+#: Of two ratios of the viscosities.
+UNLIKE = "-vesicle_viscosity_ratio 5,.3"
 
-@pytest.mark.parametrize("options, ranks", [(BOTTOM, 1), (TOP, 3), (BOTH, 2), (TOP + "-scheme_type direct", 1)])
+
+@pytest.mark.parametrize(
+    "options, ranks", [(BOTTOM, 1), (TOP + UNLIKE, 3), (BOTH, 2), (TOP + "-scheme_type direct", 1)]
+)
 def test_walls_agree_with_stresslets_next_to_walls(options, ranks, tmp_path):
     """Where stencils are folded and scaled: what the fluid on the grid does not feel of a force acts on the wall."""
     series = run_petves(tmp_path / "run", CHANNEL + options + " -time_end 0.04", ranks).series

@@ -221,7 +221,7 @@ static PetscErrorCode CheckStart(const char *cells) {
   char options[512];
   TestMembrane w;
   Measures measures;
-  Curve curve = {0, {0.15, 0.6}, NULL, {NULL, NULL}, {NULL, NULL}};
+  Curve curve = {.axes = {0.15, 0.6}};
   PetscReal asymmetry = 0;
   PetscFunctionBeginUser;
   PetscCall(PetscSNPrintf(options, sizeof(options),

@@ -14,6 +14,7 @@ import numpy as np
 
 from petves.curves import smooth_curve, trigonometric
 from petves.errors import Error
+from petves.solids import KINDS, solid_outline
 
 
 #: Vesicles up to which series.csv has columns of each.
@@ -52,9 +53,12 @@ class Run:
     viscosity_ratio : ndarray, shape (vesicles,)
         Viscosity inside over that outside.
     obstacles : list of ndarray, each of shape (n, 2)
-        Markers of each obstacle (length), counter-clockwise around a solid, clockwise around fluid in one.
+        Markers of each obstacle (length), counter-clockwise around a solid, clockwise around fluid in one; the solid is on
+        the left of curves that are not closed.
     obstacle_force : ndarray, shape (T, W, 2)
         Force of the fluid on the markers of all obstacles, one obstacle after another (length^3/time^2).
+    obstacle_kinds : list of str
+        "closed"; "open", with both ends at a wall; or "spanning" a period of the box.
     summary : dict
         summary.json; empty while the run has not ended.
 
@@ -77,6 +81,7 @@ class Run:
     viscosity_ratio: np.ndarray
     obstacles: list[np.ndarray] = field(default_factory=list)
     obstacle_force: np.ndarray = field(default_factory=lambda: np.zeros((0, 0, 2)))
+    obstacle_kinds: list[str] = field(default_factory=list)
     summary: dict[str, Any] = field(default_factory=dict)
 
     @classmethod
@@ -112,6 +117,7 @@ class Run:
                     viscosity_ratio=np.ones(len(start) - 1) * file.attrs.get("vesicle_viscosity_ratio", 1.0),
                     obstacles=_obstacles(file),
                     obstacle_force=file["obstacle/force"][:] if "obstacle" in file else none,
+                    obstacle_kinds=[KINDS[kind] for kind in np.atleast_1d(file.attrs.get("obstacle_kind", []))],
                     summary=json.loads(summary.read_text()) if summary.is_file() else {},
                 )
             except KeyError as error:
@@ -236,8 +242,11 @@ class Run:
         return smooth_curve(self.outline(frame, vesicle)[:-1], CURVE)
 
     def obstacle_curve(self, obstacle: int) -> np.ndarray:
-        """Return the smooth closed curve of an obstacle, numbered from 0, as `curve` does a vesicle's."""
-        return smooth_curve(self.obstacles[obstacle], CURVE)
+        """Return the smooth closed outline of the solid at an obstacle, numbered from 0, as `curve` does a vesicle's.
+
+        A curve that is not closed goes on along its wall, or along the next one or the side of the box on its left.
+        """
+        return solid_outline(self.obstacles, self.obstacle_kinds, obstacle, self.box, CURVE)
 
     def curve_tension(self, frame: int, vesicle: int = 0) -> np.ndarray:
         """Return the tension between the points of `curve`, shape (CURVE n,), by its Fourier series."""

@@ -10,12 +10,13 @@ PetscErrorCode BodiesCreate(Membrane m, Obstacles obstacles, Bodies *out) {
   b->membrane = m;
   b->vesicles = vesicles;
   b->obstacles = obstacles;
-  PetscCall(PetscMalloc2(b->layout->bodies, &b->ds, b->layout->bodies, &b->spectral));
+  PetscCall(PetscCalloc3(b->layout->bodies, &b->ds, b->layout->bodies, &b->spectral, b->layout->bodies, &b->kind));
   PetscCall(PetscArraycpy(b->ds, m->ds, vesicles));
   PetscCall(PetscArraycpy(b->spectral, m->spectral, vesicles));
   if (obstacles) {
     PetscCall(PetscArraycpy(b->ds + vesicles, obstacles->ds, obstacles->layout->bodies));
     PetscCall(PetscArraycpy(b->spectral + vesicles, obstacles->spectral, obstacles->layout->bodies));
+    PetscCall(PetscArraycpy(b->kind + vesicles, obstacles->kind, obstacles->layout->bodies));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -23,7 +24,7 @@ PetscErrorCode BodiesCreate(Membrane m, Obstacles obstacles, Bodies *out) {
 PetscErrorCode BodiesDestroy(Bodies *bodies) {
   PetscFunctionBeginUser;
   if (!*bodies) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscFree2((*bodies)->ds, (*bodies)->spectral));
+  PetscCall(PetscFree3((*bodies)->ds, (*bodies)->spectral, (*bodies)->kind));
   PetscCall(PetscFree(*bodies));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,4 +1,4 @@
-/* All closed curves whose markers act on the fluid, vesicles first, then obstacles: the layout of markers, forces and
+/* All curves whose markers act on the fluid, vesicles first, then obstacles: the layout of markers, forces and
    velocities that coupling and near field know. Without obstacles it is the membranes' own. */
 #pragma once
 #include "coupling/obstacles.h"
@@ -11,6 +11,7 @@ struct _p_Bodies {
   PetscInt vesicles;   /* so many of the bodies, the first ones */
   PetscReal *ds;       /* [bodies] mean edge (length) */
   Spectral *spectral;  /* [bodies], borrowed */
+  CurveKind *kind;     /* [bodies] */
   Obstacles obstacles; /* borrowed; NULL without */
 };
 

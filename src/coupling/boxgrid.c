@@ -13,7 +13,8 @@ typedef struct {
   Markers markers;
   PaddedStencil *stencil;   /* [2 places] */
   struct _p_NearField near; /* of it only what the lattice's mobility needs */
-  NearImage image;          /* what the near field has of the walls */
+  NearImage image;          /* what the near field has of the walls, */
+  DoubleImage twice;        /* and of dipoles */
   Vec force, r, u, p;       /* on the grid */
   Vec F, U;                 /* at the places */
   PetscScalar *d;           /* wall forces */
@@ -64,11 +65,12 @@ static PetscErrorCode Create(const FluidSpec *spec, const char kernel[], const B
   b->near = (struct _p_NearField){.markers = b->markers, .nu = spec->nu, .stencil = b->stencil};
   if (lattice->stokeslet) b->near.lattice = *lattice->stokeslet;
   NearFarMake(b->markers->kernel, PETSC_FALSE, b->near.far);
+  PetscCall(NearImageCreate(b->markers, spec->nu, lattice->half, &b->image));
+  PetscCall(NearImagePlace(b->image, b->stencil));
   if (lattice->dipole) {
     PetscCall(DMCreateGlobalVector(b->fluid->grid->da[FIELD_P], &b->source));
-  } else {
-    PetscCall(NearImageCreate(b->markers, spec->nu, lattice->half, &b->image));
-    PetscCall(NearImagePlace(b->image, b->stencil));
+    PetscCall(DoubleImageCreate(b->image, lattice->dipole, &b->twice));
+    DoubleImagePlace(b->twice, b->dipole);
   }
   PetscCall(DMCreateGlobalVector(b->fluid->grid->velocity, &b->force));
   PetscCall(VecDuplicate(b->force, &b->r));
@@ -85,6 +87,7 @@ static PetscErrorCode Destroy(BoxGrid *b) {
   PetscCall(PetscFree(b->d));
   PetscCall(PetscFree(b->stencil));
   PetscCall(PetscFree2(b->dipole, b->tensor));
+  PetscCall(DoubleImageDestroy(&b->twice));
   PetscCall(NearImageDestroy(&b->image));
   PetscCall(MarkersDestroy(&b->markers));
   PetscCall(LayoutDestroy(&b->layout));
@@ -126,10 +129,11 @@ static void Lattice(BoxGrid *b, PetscInt i, PetscInt j, int part, PetscReal L[2]
   const PetscReal fade = BoxImage(b->axis, d);
   if (b->lattice->dipole) {
     const PetscInt periods[2] = {(PetscInt)rint((d[0] - plain[0]) / h), (PetscInt)rint((d[1] - plain[1]) / h)};
-    PetscReal K[2][DIPOLE_COUNT];
+    PetscReal K[2][DIPOLE_COUNT], exact[2][DIPOLE_COUNT] = {{0}};
     DoubleLatticeParts(b->lattice->dipole, h, BOX_LATTICE_CELLS * h, &b->stencil[2 * i], &b->dipole[DIPOLE_COUNT * j],
                        periods, d, K);
-    for (int c = 0; c < 2; c++) L[c] = fade * K[c][part];
+    DoubleImageAdd(b->twice, i, j, d, PETSC_MAX_REAL, exact, K);
+    for (int c = 0; c < 2; c++) L[c] = fade * (K[c][part] - exact[c][part]);
     return;
   }
   NearLatticePair(&b->near, i, j, d, S);

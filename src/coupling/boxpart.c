@@ -31,7 +31,7 @@ PetscErrorCode BoxPartDestroy(BoxPart *box) {
    the inertia would make C + D indefinite. */
 static PetscReal Fade(BoxPart b, const PetscReal X[2]) {
   const Grid g = b->markers->grid;
-  PetscReal fade = BoxTableFade(&b->table, g, X);
+  PetscReal fade = 1;
   for (int d = 0; d < 2 && b->ramp; d++)
     if (g->wall[d]) fade *= BoxSmoothStep(PetscMin(X[d] - g->lo[d], g->hi[d] - X[d]), g->h, 4 * g->h);
   return fade;
@@ -40,7 +40,7 @@ static PetscReal Fade(BoxPart b, const PetscReal X[2]) {
 /* The rows A[2][rank] of marker k, from its functions' values. */
 static void PlaceMarker(BoxPart b, PetscInt k, PetscReal A[]) {
   const PetscReal *X = b->markers->X + 2 * k;
-  BoxTableRows(&b->table, X, Fade(b, X), 0, 2, A);
+  BoxTableRows(&b->table, b->markers->grid, X, Fade(b, X), 0, 2, A);
 }
 
 void BoxPartPlace(BoxPart b) {

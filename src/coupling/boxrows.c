@@ -2,16 +2,21 @@
 #include "base/lanes.h"
 #include "coupling/boxtable.h"
 
-PetscReal BoxTableFade(const BoxTable *t, Grid g, const PetscReal X[2]) {
-  const PetscReal last = t->H > g->h * (1 + 1e-9) ? t->H
-                                                  : 0.5 * g->h; /* the table of the run's own grid ends at its limit */
-  PetscReal fade = 1;
+/* Nearer to a wall than the table reaches it goes on as flows next to walls do: the velocity along a wall falls like
+   the distance, the one across like its square, and the stress, which tensors feel, stays. x[2] becomes a place in the
+   table. */
+static void GoOn(const BoxTable *t, Grid g, PetscReal x[2], PetscReal factor[BOX_COMPONENTS]) {
+  for (int c = 0; c < BOX_COMPONENTS; c++) factor[c] = 1;
   for (int d = 0; d < 2; d++) {
-    const PetscReal *x = &X[d], end = t->axis[d].low - g->lo[d] - (last < t->H ? last : 0);
-    if (!g->wall[d]) continue;
-    fade *= BoxSmoothStep(PetscMin(*x - g->lo[d], g->hi[d] - *x), end, end + last);
+    const PetscReal end[2] = {t->axis[d].low, t->axis[d].high}, wall[2] = {g->lo[d], g->hi[d]};
+    for (int side = 0; side < 2 && g->wall[d]; side++) {
+      const PetscReal part = (x[d] - wall[side]) / (end[side] - wall[side]);
+      if (part >= 1) continue;
+      x[d] = end[side];
+      factor[d] *= PetscSqr(part);
+      factor[1 - d] *= part;
+    }
   }
-  return fade;
 }
 
 /* a[4 n] = weights of count functions times their rows of vectors, 4 n of the `modes` that a row has: in registers. */
@@ -41,17 +46,21 @@ static void BlockRow(const BoxBlock *q, int c, const PetscReal weight[], PetscRe
   }
 }
 
-void BoxTableRows(const BoxTable *t, const PetscReal X[2], PetscReal fade, int first, int count, PetscReal rows[]) {
-  PetscReal vx[BOX_FUNCTIONS], vy[BOX_FUNCTIONS], weight[BOX_BLOCK_FUNCTIONS];
+void BoxTableRows(const BoxTable *t, Grid g, const PetscReal X[2], PetscReal part, int first, int count,
+                  PetscReal rows[]) {
+  PetscReal vx[BOX_FUNCTIONS], vy[BOX_FUNCTIONS], x[2] = {X[0], X[1]}, factor[BOX_COMPONENTS];
+  PetscReal weight[BOX_BLOCK_FUNCTIONS];
   (void)PetscArrayzero(rows, count * t->rank);
-  if (fade == 0) return;
-  BoxTableFunctions(t, 0, X[0], vx);
-  BoxTableFunctions(t, 1, X[1], vy);
+  if (part == 0) return;
+  GoOn(t, g, x, factor);
+  BoxTableFunctions(t, 0, x[0], vx);
+  BoxTableFunctions(t, 1, x[1], vy);
   for (PetscInt q = 0; q < t->blocks; q++)
     for (int c = 0; c < count; c++) {
       const BoxBlock *b = &t->block[q];
-      const PetscReal *x = vx + b->first[first + c][0], *y = vy + b->first[first + c][1];
-      for (PetscInt k = 0; k < b->n[0] * b->n[1]; k++) weight[k] = fade * x[k / b->n[1]] * y[k % b->n[1]];
+      const PetscReal scale = part * factor[first + c], *fx = vx + b->first[first + c][0],
+                      *fy = vy + b->first[first + c][1];
+      for (PetscInt k = 0; k < b->n[0] * b->n[1]; k++) weight[k] = scale * fx[k / b->n[1]] * fy[k % b->n[1]];
       BlockRow(b, first + c, weight, rows + c * t->rank + b->start);
     }
 }

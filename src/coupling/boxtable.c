@@ -2,11 +2,10 @@
 #include "coupling/blas.h"
 
 #define WALL_PLACES 16
-#define WALL_MARGIN 3 /* cells of the coarser grid between the places and a wall: what its kernels reach */
-#define OWN_MARGIN 2  /* the same where that is the run's own grid, whose stencils at the wall are the run's */
-#define DIPOLE_MARGIN DIPOLE_WALL_CELLS /* the same of dipoles, which are not folded at walls */
-#define MODES 16                        /* of a period as long as the other side */
-#define COARSE_CELLS 64                 /* of the shorter side, on the coarser grid */
+#define WALL_MARGIN 3   /* cells of the coarser grid between the places and a wall: what its kernels reach */
+#define OWN_MARGIN 2    /* the same where that is the run's own grid, whose stencils at the wall are the run's */
+#define MODES 16        /* of a period as long as the other side */
+#define COARSE_CELLS 64 /* of the shorter side, on the coarser grid */
 #define MOST_CELLS 80
 #define RATIO_CELLS 48 /* of the shorter side, from which on the pair's ratio is 3/2 */
 #define SMALLEST 5e-4  /* of the largest: eigenvalues below it are dropped */
@@ -35,10 +34,10 @@ static void Stretch(PetscReal from, PetscReal factor, BoxAxis *a) {
   for (PetscInt k = 0; k < a->places; k++) a->place[k] = from + factor * (a->place[k] - from);
 }
 
-static void MakeAxis(const FluidSpec *spec, PetscBool dipoles, int dir, PetscReal H, BoxAxis *a) {
+static void MakeAxis(const FluidSpec *spec, int dir, PetscReal H, BoxAxis *a) {
   const PetscInt shorter = PetscMin(spec->cells[0], spec->cells[1]), times = (spec->cells[dir] + shorter - 1) / shorter;
   const PetscBool own = H > FluidSpecCellSize(spec) * (1 + 1e-9) ? PETSC_FALSE : PETSC_TRUE;
-  const PetscReal margin = (dipoles ? DIPOLE_MARGIN : own ? OWN_MARGIN : WALL_MARGIN) * H;
+  const PetscReal margin = (own ? OWN_MARGIN : WALL_MARGIN) * H;
   a->wall = spec->bc[dir] == BC_WALL ? PETSC_TRUE : PETSC_FALSE;
   a->low = spec->box[2 * dir] + (a->wall ? margin : 0);
   a->high = spec->box[2 * dir + 1] - (a->wall ? margin : 0);
@@ -307,7 +306,7 @@ PetscErrorCode BoxTableCreate(const FluidSpec *spec, const char kernel[], const 
   t->H = (spec->box[1] - spec->box[0]) / cells[0];
   if (cells[0] * spec->cells[1] != cells[1] * spec->cells[0]) pair.box[3] = pair.box[2] + cells[1] * t->H;
   for (int d = 0; d < 2; d++) {
-    MakeAxis(&pair, dipoles, d, t->H, &axis[d]);
+    MakeAxis(&pair, d, t->H, &axis[d]);
     t->axis[d] = axis[d];
     if (d) Stretch(pair.box[2], height / (pair.box[3] - pair.box[2]), &t->axis[d]);
     t->functions[d] = t->axis[d].wall ? WALL_PLACES : 2 * t->axis[d].modes + 1;

@@ -43,12 +43,10 @@ static inline PetscInt BoxParts(const BoxTable *table) {
  */
 PETSC_EXTERN void BoxTableFunctions(const BoxTable *table, int dir, PetscReal x, PetscReal values[]);
 
-/* BoxTableRows - rows[count][rank]: the components first .. first + count - 1 of the functions at X, times `fade`.
-   BoxTableFade - the part of D that a marker at X has, less where the table ends, one cell of its coarser grid from its
-   last places. Not collective. */
-PETSC_EXTERN void BoxTableRows(const BoxTable *table, const PetscReal X[2], PetscReal fade, int first, int count,
-                               PetscReal rows[]);
-PETSC_EXTERN PetscReal BoxTableFade(const BoxTable *table, Grid grid, const PetscReal X[2]);
+/* BoxTableRows - rows[count][rank]: `part` of the components first .. first + count - 1 of the functions at X in the
+   run's grid. Not collective. */
+PETSC_EXTERN void BoxTableRows(const BoxTable *table, Grid grid, const PetscReal X[2], PetscReal part, int first,
+                               int count, PetscReal rows[]);
 
 /* BoxSmoothStep - 0 up to low, 1 from high on. BoxSum - SUM l x of n, in four lanes. Not collective. */
 static inline PetscReal BoxSmoothStep(PetscReal x, PetscReal low, PetscReal high) {

@@ -3,8 +3,6 @@
 PetscErrorCode CouplingAddContrast(Coupling c, const PetscReal ratio[]) {
   PetscFunctionBeginUser;
   PetscCall(DoubleLayerCreate(c->near, ratio, &c->contrast));
-  c->markers->least = DIPOLE_WALL_CELLS;
-  c->markers->needs = "4";
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

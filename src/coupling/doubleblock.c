@@ -65,15 +65,6 @@ PetscErrorCode DoubleSelf(Spectral spectral, PetscInt n, const PetscReal X[], Pe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A pair's response to J of parts that respond with K to tensors, N = n w: T = (2 J_x N_x, 2 J_y N_y, J_x N_y + J_y
-   N_x). M[4]: x from J_x, y from J_x, x from J_y, y from J_y. */
-static void Contract(const PetscReal K[2][DIPOLE_COUNT], const PetscReal N[2], PetscReal scale, PetscReal M[4]) {
-  for (int c = 0; c < 2; c++) {
-    M[c] = scale * (2 * N[0] * K[c][DIPOLE_XX] + N[1] * K[c][DIPOLE_XY]);
-    M[2 + c] = scale * (2 * N[1] * K[c][DIPOLE_YY] + N[0] * K[c][DIPOLE_XY]);
-  }
-}
-
 /* D of unit tensor parts, which are 2 J_x N_x, 2 J_y N_y and J_x N_y + J_y N_x of a marker; r from target to source. */
 static void FreeParts(const PetscReal r[2], PetscReal K[2][DIPOLE_COUNT]) {
   const PetscReal r2 = r[0] * r[0] + r[1] * r[1], q = -1 / (PETSC_PI * r2 * r2);
@@ -98,12 +89,6 @@ static void FarParts(const PetscReal d[2], PetscReal h, PetscReal K[2][DIPOLE_CO
   K[1][DIPOLE_XY] = scale * (-34 * c3 - 6 * c5 + 12 * c7);
 }
 
-static void FarPair(const PetscReal d[2], PetscReal h, const PetscReal N[2], PetscReal M[4]) {
-  PetscReal K[2][DIPOLE_COUNT];
-  FarParts(d, h, K);
-  Contract((const PetscReal(*)[DIPOLE_COUNT])K, N, 1, M);
-}
-
 void DoubleLatticeParts(const OffsetTable lattice[2], PetscReal h, PetscReal reach, const PaddedStencil response[2],
                         const PaddedStencil dipole[DIPOLE_COUNT], const PetscInt cells[2], const PetscReal d[2],
                         PetscReal K[2][DIPOLE_COUNT]) {
@@ -121,49 +106,48 @@ void DoubleLatticeParts(const OffsetTable lattice[2], PetscReal h, PetscReal rea
     for (int k = 0; k < DIPOLE_COUNT; k++) K[c][k] -= far[c][k];
 }
 
-/* L of near markers i and j, d = X_i - X_j of the image meant (length). */
-static void LatticePair(DoubleLayer s, PetscInt i, PetscInt j, const PetscReal d[2], PetscReal L[4]) {
+/* M = D of two markers, N = n w of the source j; r from the target to the source's image, own: D(i, i) of a marker
+   with itself. */
+static void Whole(const PetscReal r[2], const PetscReal N[2], const PetscReal *own, PetscReal M[4]) {
+  PetscReal D[3];
+  if (!own) Free(r, N, D);
+  for (int k = 0; k < 3 && own; k++) D[k] = own[k];
+  M[0] = D[0];
+  M[1] = M[2] = D[2];
+  M[3] = D[1];
+}
+
+/* Images in walls that are left out, cells; with a box part, which is made with all, none. */
+static PetscReal ImageReach(DoubleLayer s) {
+  return s->near->box ? PETSC_MAX_REAL : DOUBLE_IMAGE_REACH;
+}
+
+/* C = D - L of two markers, and L, walls included; d = X_i - X_j of the image meant (length), own: D(i, i) of a marker
+   with itself; by stencils up to `reach` (length). */
+static void Pair(DoubleLayer s, PetscInt i, PetscInt j, const PetscReal d[2], PetscReal reach, const PetscReal *own,
+                 PetscReal C[4], PetscReal L[4]) {
   const NearField f = s->near;
-  const PetscReal *X = f->markers->X, h = f->markers->grid->h;
-  PetscReal K[2][DIPOLE_COUNT];
+  const PetscReal *X = f->markers->X, h = f->markers->grid->h, r[2] = {-d[0], -d[1]}, *N = s->normal + 2 * j;
+  PetscReal K[2][DIPOLE_COUNT], image[2][DIPOLE_COUNT] = {{0}}, D[4];
   PetscInt cells[2];
   for (int dir = 0; dir < 2; dir++) cells[dir] = (PetscInt)rint((d[dir] - (X[2 * i + dir] - X[2 * j + dir])) / h);
-  DoubleLatticeParts(s->lattice, h, PETSC_MAX_REAL, &f->stencil[2 * i], &s->dipole[DIPOLE_COUNT * j], cells, d, K);
-  Contract((const PetscReal(*)[DIPOLE_COUNT])K, s->normal + 2 * j, 1, L);
+  DoubleLatticeParts(s->lattice, h, reach, &f->stencil[2 * i], &s->dipole[DIPOLE_COUNT * j], cells, d, K);
+  DoubleImageAdd(s->image, i, j, d, ImageReach(s), image, K);
+  Whole(r, N, own, D);
+  DipoleContract((const PetscReal(*)[DIPOLE_COUNT])K, N, 1, L);
+  DipoleContract((const PetscReal(*)[DIPOLE_COUNT])image, N, 1, C);
+  for (int k = 0; k < 4; k++) C[k] += D[k] - L[k];
 }
 
-/* C = D - L of two markers, and L; r from the target i to the source j's image, own: D(i, i) of a marker with itself;
-   by stencils up to `reach` (length). */
-static void Pair(DoubleLayer s, PetscInt i, PetscInt j, const PetscReal r[2], PetscReal reach, const PetscReal *own,
-                 PetscReal C[4], PetscReal L[4]) {
-  const PetscReal h = s->near->markers->grid->h, d[2] = {-r[0], -r[1]}, *N = s->normal + 2 * j;
-  const PetscBool far = r[0] * r[0] + r[1] * r[1] > reach * reach ? PETSC_TRUE : PETSC_FALSE;
-  PetscReal D[3];
-  if (own)
-    for (int k = 0; k < 3; k++) D[k] = own[k];
-  else
-    Free(r, N, D);
-  const PetscReal whole[4] = {D[0], D[2], D[2], D[1]};
-  if (far)
-    FarPair(d, h, N, C);
-  else
-    LatticePair(s, i, j, d, L);
-  for (int k = 0; k < 4; k++) {
-    if (far)
-      L[k] = whole[k] - C[k];
-    else
-      C[k] = whole[k] - L[k];
-  }
-}
-
-/* D alone. */
-static void Whole(DoubleLayer s, PetscInt j, const PetscReal r[2], const PetscReal *own, PetscReal C[4]) {
-  PetscReal D[3];
-  if (!own) Free(r, s->normal + 2 * j, D);
-  for (int k = 0; k < 3 && own; k++) D[k] = own[k];
-  C[0] = D[0];
-  C[1] = C[2] = D[2];
-  C[3] = D[1];
+/* D alone, walls included. */
+static void WithoutLattice(DoubleLayer s, PetscInt i, PetscInt j, const PetscReal d[2], const PetscReal *own,
+                           PetscReal C[4]) {
+  const PetscReal r[2] = {-d[0], -d[1]}, *N = s->normal + 2 * j;
+  PetscReal image[2][DIPOLE_COUNT] = {{0}}, D[4];
+  Whole(r, N, own, D);
+  if (s->image) DoubleImageExactAll(s->image, i, j, d, ImageReach(s), image);
+  DipoleContract((const PetscReal(*)[DIPOLE_COUNT])image, N, 1, C);
+  for (int k = 0; k < 4; k++) C[k] += D[k];
 }
 
 /* value += (L n) (n w)^T/length: L acts on what Q leaves, flux[2n] being the rows' SUM L n over the column's markers.
@@ -189,14 +173,14 @@ PetscErrorCode DoubleBlockFill(DoubleLayer s, const DoubleBlock *b, PetscBool la
     for (PetscInt p = 0; p < n; p++) {
       const PetscInt i = l->start[b->row] + p, j = l->start[b->column] + q;
       PetscReal d[2] = {X[2 * i] - X[2 * j] - b->shift[0], X[2 * i + 1] - X[2 * j + 1] - b->shift[1]};
-      const PetscReal part = lattice && f->box ? BoxPartImage(f->box, d) : 1, r[2] = {-d[0], -d[1]};
+      const PetscReal part = lattice && f->box ? BoxPartImage(f->box, d) : 1;
       const PetscReal *own = self && p == q ? diagonal + 3 * p : NULL, *N = s->normal + 2 * j;
       PetscReal C[4], L[4], *at = value + 2 * q * 2 * n + 2 * p;
       if (lattice) {
-        Pair(s, i, j, r, reach, own, C, L);
+        Pair(s, i, j, d, reach, own, C, L);
         for (int c = 0; c < 2; c++) flux[2 * p + c] += part * (L[c] * N[0] + L[2 + c] * N[1]) / s->along[j];
       } else
-        Whole(s, j, r, own, C);
+        WithoutLattice(s, i, j, d, own, C);
       at[0] = part * C[0];
       at[1] = part * C[1];
       at[2 * n] = part * C[2];

@@ -1,8 +1,7 @@
 #include "coupling/doublebox.h"
 
-PetscErrorCode DoubleBoxCreate(const FluidSpec *spec, Markers markers, const OffsetTable lattice[2], DoubleBox *out) {
+PetscErrorCode DoubleBoxCreate(const FluidSpec *spec, Markers markers, const BoxLattice *lattice, DoubleBox *out) {
   const PetscInt n = markers->layout->n;
-  const BoxLattice dipoles = {.dipole = lattice};
   DoubleBox b;
   PetscLogEvent event;
   PetscFunctionBeginUser;
@@ -11,7 +10,7 @@ PetscErrorCode DoubleBoxCreate(const FluidSpec *spec, Markers markers, const Off
   b->markers = markers;
   PetscCall(PetvesEvent("BoxTable", &event));
   PetscCall(PetscLogEventBegin(event, 0, 0, 0, 0));
-  PetscCall(BoxTableCreate(spec, markers->kernel->name, &dipoles, &b->table));
+  PetscCall(BoxTableCreate(spec, markers->kernel->name, lattice, &b->table));
   PetscCall(PetscLogEventEnd(event, 0, 0, 0, 0));
   PetscCall(PetscMalloc2(BOX_COMPONENTS * n * b->table.rank, &b->rows, b->table.rank, &b->amplitude));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -29,8 +28,8 @@ PetscErrorCode DoubleBoxDestroy(DoubleBox *box) {
 void DoubleBoxPlace(DoubleBox b) {
   const Layout l = b->markers->layout;
   for (PetscInt k = 0; k < l->n; k++) {
-    const PetscReal *X = b->markers->X + 2 * (l->first + k), fade = BoxTableFade(&b->table, b->markers->grid, X);
-    BoxTableRows(&b->table, X, fade, 0, BOX_COMPONENTS, b->rows + BOX_COMPONENTS * k * b->table.rank);
+    const PetscReal *X = b->markers->X + 2 * (l->first + k);
+    BoxTableRows(&b->table, b->markers->grid, X, 1, 0, BOX_COMPONENTS, b->rows + BOX_COMPONENTS * k * b->table.rank);
   }
 }
 
@@ -61,8 +60,8 @@ PetscErrorCode DoubleBoxMatrix(DoubleBox b, PetscReal scale, PetscReal out[]) {
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(DIPOLE_COUNT * r, &source));
   for (PetscInt j = 0; j < l->M; j++) {
-    const PetscReal *X = b->markers->X + 2 * j, fade = scale * BoxTableFade(&b->table, b->markers->grid, X);
-    BoxTableRows(&b->table, X, fade, 2, DIPOLE_COUNT, source);
+    const PetscReal *X = b->markers->X + 2 * j;
+    BoxTableRows(&b->table, b->markers->grid, X, scale, 2, DIPOLE_COUNT, source);
     for (PetscInt k = 0; k < DIPOLE_COUNT * r; k++) source[k] *= b->table.l[k % r];
     for (int c = 0; c < DIPOLE_COUNT; c++)
       for (PetscInt i = 0; i < 2 * l->n; i++)

@@ -14,7 +14,7 @@ struct _p_DoubleBox {
 
 /* DoubleBoxCreate - for markers on the grid that `spec` makes; the lattice's tables of dipoles (LatticeDipoles) are
    used here only. Collective. */
-PETSC_EXTERN PetscErrorCode DoubleBoxCreate(const FluidSpec *spec, Markers markers, const OffsetTable lattice[2],
+PETSC_EXTERN PetscErrorCode DoubleBoxCreate(const FluidSpec *spec, Markers markers, const BoxLattice *lattice,
                                             DoubleBox *box);
 PETSC_EXTERN PetscErrorCode DoubleBoxDestroy(DoubleBox *box);
 

@@ -3,8 +3,7 @@
 #include "coupling/finecurve.h"
 #include "coupling/nearclose.h"
 
-/* n w of the marker's spacing at the points of a curve in use: [2 count]. */
-static void Normals(const FineCurve *c, const PetscReal normal[], PetscReal N[]) {
+void DoubleCloseNormals(const FineCurve *c, const PetscReal normal[], PetscReal N[]) {
   const PetscInt Q = c->n * c->f;
   for (PetscInt q = 0; q < c->count; q++)
     for (int d = 0; d < 2; d++) {
@@ -47,7 +46,7 @@ static PetscErrorCode AddAt(DoubleLayer s, const DoubleBlock *block, const Petsc
   PetscCall(FineCurveCreate(s->near, block->column, shift, factor, &b));
   PetscCall(FineCurvePair(&a, &b, window));
   PetscCall(PetscMalloc4(a.n * b.n, &part[0], a.n * b.n, &part[1], a.n * b.n, &part[2], 2 * b.count, &N));
-  Normals(&b, s->normal + 2 * s->near->bodies->layout->start[block->column], N);
+  DoubleCloseNormals(&b, s->normal + 2 * s->near->bodies->layout->start[block->column], N);
   PetscCall(Project(&a, &b, N, window, part));
   for (PetscInt j = 0; j < b.n; j++)
     for (PetscInt i = 0; i < a.n; i++) {

@@ -2,6 +2,7 @@
 #include "coupling/blas.h"
 #include "coupling/doubleblock.h"
 #include "coupling/doubleclose.h"
+#include "coupling/doublewall.h"
 
 PetscErrorCode DoubleLayerCreate(NearField near, const PetscReal ratio[], DoubleLayer *out) {
   const Layout l = near->bodies->layout;
@@ -16,7 +17,10 @@ PetscErrorCode DoubleLayerCreate(NearField near, const PetscReal ratio[], Double
   for (PetscInt v = 0; v < l->bodies; v++) s->ratio[v] = v < near->bodies->vesicles ? ratio[v] : 1;
   PetscCall(PetscMalloc3(2 * l->M, &s->normal, l->M, &s->along, DIPOLE_COUNT * l->M, &s->dipole));
   PetscCall(PetscCalloc3(2 * l->M, &s->jump, 2 * l->M, &s->plain, DIPOLE_COUNT * l->M, &s->tensor));
-  if (!near->free) PetscCall(LatticeDipoles(DOUBLE_CELLS + OFFSET_LAGS, s->lattice));
+  if (!near->free) {
+    PetscCall(LatticeDipoles(DOUBLE_CELLS + OFFSET_LAGS, s->lattice));
+    PetscCall(DoubleImageCreate(near->image, s->lattice, &s->image));
+  }
   PetscCall(PetvesEvent("DoubleLayer", &s->place));
   PetscCall(PetvesEvent("DoubleLayerApply", &s->apply));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -31,6 +35,7 @@ PetscErrorCode DoubleLayerDestroy(DoubleLayer *layer) {
   PetscCall(PetscFree3(s->jump, s->plain, s->tensor));
   for (int c = 0; c < 2; c++) PetscCall(OffsetTableDestroy(&s->lattice[c]));
   PetscCall(OffsetTableDestroy(&s->pressure));
+  PetscCall(DoubleImageDestroy(&s->image));
   PetscCall(DoubleBoxDestroy(&s->box));
   PetscCall(PetscFree(s->block));
   PetscCall(PetscFree(s->value));
@@ -39,8 +44,9 @@ PetscErrorCode DoubleLayerDestroy(DoubleLayer *layer) {
 }
 
 PetscErrorCode DoubleLayerAddBoxPart(DoubleLayer s, const FluidSpec *spec) {
+  const BoxLattice lattice = {.dipole = s->lattice, .half = s->near->image->table};
   PetscFunctionBeginUser;
-  PetscCall(DoubleBoxCreate(spec, s->near->markers, s->lattice, &s->box));
+  PetscCall(DoubleBoxCreate(spec, s->near->markers, &lattice, &s->box));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -61,10 +67,8 @@ static PetscErrorCode PlaceDipoles(DoubleLayer s) {
       Stencil part[DIPOLE_COUNT];
       s->length[v] += s->along[k];
       if (f->free) continue;
-      DipoleStencils(g, f->markers->X + 2 * k, part);
+      DipoleStencilsUnwrapped(g, f->markers->X + 2 * k, part);
       for (int c = 0; c < DIPOLE_COUNT; c++) StencilPad(&part[c], &p[c]);
-      StencilUnwrap(g, f->markers->X + 2 * k, p);
-      StencilUnwrap(g, f->markers->X + 2 * k, p + 1); /* two at a time */
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -107,11 +111,13 @@ PetscErrorCode DoubleLayerPlace(DoubleLayer s) {
   PetscFunctionBeginUser;
   PetscCall(PetscLogEventBegin(s->place, 0, 0, 0, 0));
   PetscCall(PlaceDipoles(s));
+  if (s->image) DoubleImagePlace(s->image, s->dipole);
   PetscCall(FindBlocks(s));
   for (PetscInt k = 0; k < s->blocks; k++) {
     const DoubleBlock *b = &s->block[k];
     PetscCall(DoubleBlockFill(s, b, s->near->free ? PETSC_FALSE : PETSC_TRUE, s->value + b->at));
     PetscCall(DoubleCloseAdd(s, b, s->value + b->at));
+    PetscCall(DoubleWallAdd(s, b, s->value + b->at));
   }
   if (s->box) DoubleBoxPlace(s->box);
   PetscCall(PetscLogEventEnd(s->place, 0, 0, 0, 0));
@@ -191,10 +197,16 @@ PetscErrorCode DoubleLayerRows(DoubleLayer s, const PetscReal profile[], DipoleR
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-void DoubleLayerStress(DoubleLayer s, PetscReal sum[3]) {
+void DoubleLayerStress(DoubleLayer s, PetscReal sum[3], PetscReal shortfall[2]) {
+  const Markers m = s->near->markers;
   Tensors(s);
-  for (PetscInt k = 0; k < s->near->bodies->layout->M; k++)
-    for (int q = 0; q < 3; q++) sum[q] += s->near->nu * s->tensor[DIPOLE_COUNT * k + q];
+  for (PetscInt k = 0; k < s->near->bodies->layout->M; k++) {
+    const PetscReal *T = s->tensor + DIPOLE_COUNT * k;
+    PetscReal part[2];
+    DipoleShortfall(m->grid, s->near->nu, m->X + 2 * k, T, 1, part);
+    for (int q = 0; q < 3; q++) sum[q] += s->near->nu * T[q];
+    for (int c = 0; c < 2; c++) shortfall[c] += part[c];
+  }
 }
 
 PetscErrorCode DoubleLayerAdd(DoubleLayer s, PetscReal scale, PetscBool lattice, PetscInt first, PetscInt n,
@@ -211,6 +223,7 @@ PetscErrorCode DoubleLayerAdd(DoubleLayer s, PetscReal scale, PetscBool lattice,
       PetscCall(PetscMalloc1(rows * columns, &free));
       PetscCall(DoubleBlockFill(s, b, PETSC_FALSE, free));
       PetscCall(DoubleCloseAdd(s, b, free));
+      PetscCall(DoubleWallAdd(s, b, free));
       value = free;
     }
     for (PetscInt j = 0; j < columns; j++)

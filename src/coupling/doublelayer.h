@@ -10,6 +10,7 @@
    spreading on the grid does. In unbounded fluid L = 0. */
 #pragma once
 #include "coupling/doublebox.h"
+#include "coupling/doubleimage.h"
 #include "coupling/latticedipole.h"
 #include "coupling/nearfield.h"
 #include "markers/dipolerows.h"
@@ -28,6 +29,7 @@ struct _p_DoubleLayer {
   PetscReal *ratio; /* [vesicles] viscosity inside over that outside */
   OffsetTable lattice[2];
   OffsetTable pressure;  /* of the lattice's dipoles in cells, viscosity 1, over h^2; empty before the first output */
+  DoubleImage image;     /* what the walls add to each pair; NULL in unbounded fluid */
   PaddedStencil *dipole; /* [DIPOLE_COUNT M] */
   PetscReal *normal;     /* [2M] outward n times the marker's share w of the length */
   PetscReal *along;      /* [M] w (length); of vesicles of ratio 1 these are not made */
@@ -77,8 +79,9 @@ PETSC_EXTERN PetscErrorCode DoubleLayerSpread(DoubleLayer layer, Vec w, Vec sour
 PETSC_EXTERN PetscErrorCode DoubleLayerRows(DoubleLayer layer, const PetscReal profile[], DipoleRows rows);
 
 /* DoubleLayerStress - sum[3] (xx, yy, xy) += minus nu INT (J n + n J) ds of the jump last set, less its flux: what the
-   dipoles add to the sum of force times place. Not collective. */
-PETSC_EXTERN void DoubleLayerStress(DoubleLayer layer, PetscReal sum[3]);
+   dipoles add to the sum of force times place; shortfall[2] (u, v) += what their stencils lack of it across a channel
+   along x (DipoleShortfall). Not collective. */
+PETSC_EXTERN void DoubleLayerStress(DoubleLayer layer, PetscReal sum[3], PetscReal shortfall[2]);
 
 /* DoubleLayerAdd - out += scale C_D (1 - ratio) (without box part) or, without lattice, D (1 - ratio), between the
    markers first .. first

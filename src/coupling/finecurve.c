@@ -10,12 +10,13 @@ PetscErrorCode FineCurveCreate(NearField f, PetscInt v, const PetscReal shift[2]
   const PetscInt n = LayoutCount(f->bodies->layout, v), Q = n * factor;
   const PetscReal *X = f->markers->X + 2 * f->bodies->layout->start[v];
   PetscFunctionBeginUser;
-  *c = (FineCurve){.n = n, .f = factor};
+  *c = (FineCurve){.kind = &f->bodies->kind[v], .n = n, .f = factor};
   PetscCall(PetscMalloc3(Q, &c->weight, 2 * Q, &c->x, Q, &c->used));
-  for (PetscInt q = 0; q < Q; q++) c->weight[q] = TrigonometricCardinal(n, 2 * PETSC_PI * q / Q);
-  TrigonometricPoints(n, X, factor, c->x);
+  for (PetscInt q = 0; q < Q && c->kind->type != CURVE_OPEN; q++)
+    c->weight[q] = TrigonometricCardinal(n, 2 * PETSC_PI * q / Q);
+  PetscCall(CurveFinePoints(c->kind, n, X, factor, c->x));
   for (PetscInt q = 0; q < 2 * Q; q++) c->x[q] += shift[q % 2];
-  for (PetscInt q = 0; q < Q; q++) c->edge = PetscMax(c->edge, Distance2(c->x + 2 * q, c->x + 2 * ((q + 1) % Q)));
+  for (PetscInt q = 0; q + 1 < Q; q++) c->edge = PetscMax(c->edge, Distance2(c->x + 2 * q, c->x + 2 * (q + 1)));
   c->edge = PetscSqrtReal(c->edge);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -49,16 +50,34 @@ PetscReal FineCurveGap(const FineCurve *a, const FineCurve *b) {
   return least;
 }
 
+/* P/f of the points in use. */
+static PetscErrorCode Weigh(FineCurve *a) {
+  const PetscInt Q = a->n * a->f;
+  PetscReal *weight;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(a->n * a->count, &a->P));
+  if (a->kind->type != CURVE_OPEN) {
+    for (PetscInt k = 0; k < a->n; k++)
+      for (PetscInt p = 0; p < a->count; p++)
+        a->P[k * a->count + p] = a->weight[a->used[p] - a->f * k + (a->used[p] < a->f * k ? Q : 0)] / a->f;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(PetscMalloc1(a->n, &weight));
+  for (PetscInt p = 0; p < a->count; p++) {
+    CurveOpenWeights(a->n, a->f, a->used[p], weight);
+    for (PetscInt k = 0; k < a->n; k++) a->P[k * a->count + p] = weight[k] / a->f;
+  }
+  PetscCall(PetscFree(weight));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* The points of a with a point of b in the window, and their rows of P. */
 static PetscErrorCode Use(FineCurve *a, const FineCurve *b, PetscReal window) {
   const PetscInt Q = a->n * a->f;
   PetscFunctionBeginUser;
   for (PetscInt p = 0; p < Q; p++)
     if (DistanceBelow(a->x + 2 * p, b, window) < window) a->used[a->count++] = p;
-  PetscCall(PetscMalloc1(a->n * a->count, &a->P));
-  for (PetscInt k = 0; k < a->n; k++)
-    for (PetscInt p = 0; p < a->count; p++)
-      a->P[k * a->count + p] = a->weight[a->used[p] - a->f * k + (a->used[p] < a->f * k ? Q : 0)] / a->f;
+  PetscCall(Weigh(a));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

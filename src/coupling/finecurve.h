@@ -1,21 +1,23 @@
-/* A curve at more points than its markers, by trigonometric interpolation P from n markers to f n points. A matrix K
-   between two curves becomes P_a^T K_fine P_b/(f_a f_b): symmetric under exchange of the curves where K is. */
+/* A curve at more points than its markers, by an interpolation P from n markers to f n points (curve/kind.h),
+   trigonometric where the curve repeats. A matrix K between two curves becomes P_a^T K_fine P_b/(f_a f_b): symmetric
+   under exchange of the curves where K is. */
 #pragma once
 #include "coupling/nearfield.h"
 
 typedef struct {
-  PetscInt n, f;     /* markers, factor */
-  PetscReal *weight; /* [f n] P by index difference: P_qk = weight[(q - f k) mod f n] */
-  PetscReal *x;      /* [f n][2] the points (length) */
-  PetscReal edge;    /* the longest distance from one point to the next */
-  PetscInt *used;    /* [count] points in use */
+  const CurveKind *kind; /* borrowed */
+  PetscInt n, f;         /* markers, factor */
+  PetscReal *weight;     /* closed and spanning: [f n] P by index difference: P_qk = weight[(q - f k) mod f n] */
+  PetscReal *x;          /* [f n][2] the points (length) */
+  PetscReal edge;        /* the longest distance from one point to the next */
+  PetscInt *used;        /* [count] points in use */
   PetscInt count;
   PetscReal *P; /* [n][count] rows of P/f that are in use, columns one after another */
 } FineCurve;
 
-/* FineCurveCreate - of a vesicle moved by shift (length). FineCurveReflect - its points mirrored at a wall whose normal
+/* FineCurveCreate - of a body moved by shift (length). FineCurveReflect - its points mirrored at a wall whose normal
    is in `direction`. Not collective. */
-PETSC_EXTERN PetscErrorCode FineCurveCreate(NearField near, PetscInt vesicle, const PetscReal shift[2], PetscInt factor,
+PETSC_EXTERN PetscErrorCode FineCurveCreate(NearField near, PetscInt body, const PetscReal shift[2], PetscInt factor,
                                             FineCurve *curve);
 PETSC_EXTERN PetscErrorCode FineCurveDestroy(FineCurve *curve);
 PETSC_EXTERN void FineCurveReflect(FineCurve *curve, int direction, PetscReal wall);

@@ -8,18 +8,10 @@
 #include "coupling/imagetable.h"
 #include "coupling/lattice.h"
 
-#define NODES 64 /* 50 give the same to rounding, 40 to 6e-13 */
-#define LINES (IMAGE_ROWS + 2)
-
-/* One mode's decay: g1 - s g2, g2 and e^{-mu j} by row, from row 0. */
-typedef struct {
-  PetscReal k, s, sinh, cosh, F[LINES], g2[LINES], e[LINES];
-} Mode;
-
-static Mode MakeMode(PetscReal theta) {
+ImageMode ImageModeMake(PetscReal theta) {
   const PetscReal half = PetscSinReal(0.5 * theta), mu = 2 * PetscAsinhReal(half);
-  Mode m = {.k = 2 * half, .s = 4 * half * half, .sinh = PetscSinhReal(mu), .cosh = PetscCoshReal(mu)};
-  for (int j = 0; j < LINES; j++) {
+  ImageMode m = {.k = 2 * half, .s = 4 * half * half, .sinh = PetscSinhReal(mu), .cosh = PetscCoshReal(mu)};
+  for (int j = 0; j < IMAGE_LINES; j++) {
     m.e[j] = PetscExpReal(-mu * j);
     m.g2[j] = m.e[j] * (j * m.sinh + m.cosh) / (4 * m.sinh * m.sinh * m.sinh);
     m.F[j] = m.e[j] / (2 * m.sinh) - m.s * m.g2[j];
@@ -27,20 +19,24 @@ static Mode MakeMode(PetscReal theta) {
   return m;
 }
 
+void ImagePsi(const ImageMode *m, PetscReal A, PetscReal jump, PetscReal psi[IMAGE_LINES]) {
+  const PetscReal B = (-0.5 * jump + A * m->sinh) / m->cosh;
+  for (int q = 0; q < IMAGE_LINES; q++) psi[q] = (A + B * q) * m->e[q];
+}
+
 /* psi of a source in row j, t or n. */
-static void Psi(const Mode *m, PetscBool normal, int j, PetscReal psi[LINES]) {
+static void Psi(const ImageMode *m, PetscBool normal, int j, PetscReal psi[IMAGE_LINES]) {
   const PetscReal before = m->g2[j > 0 ? j - 1 : 1];
   const PetscReal A = normal ? m->g2[j] : m->g2[j] - m->g2[j + 1];
   const PetscReal jump = normal ? m->g2[j + 1] - before : m->F[j + 1] + m->F[j];
-  const PetscReal B = (-0.5 * jump + A * m->sinh) / m->cosh;
-  for (int q = 0; q < LINES; q++) psi[q] = (A + B * q) * m->e[q];
+  ImagePsi(m, A, jump, psi);
 }
 
 /* Add one node of the quadrature to offsets 0 .. IMAGE_SHIFT. */
 static void AddNode(PetscReal theta, PetscReal weight, ImageTable *t) {
-  const Mode m = MakeMode(theta);
+  const ImageMode m = ImageModeMake(theta);
   const PetscReal w = weight / PETSC_PI;
-  PetscReal even[IMAGE_SHIFT + 1], odd[IMAGE_SHIFT + 1], tangent[LINES], normal[LINES];
+  PetscReal even[IMAGE_SHIFT + 1], odd[IMAGE_SHIFT + 1], tangent[IMAGE_LINES], normal[IMAGE_LINES];
   for (int i = 0; i <= IMAGE_SHIFT; i++) {
     even[i] = w * PetscCosReal(i * theta);
     odd[i] = w * m.k * PetscSinReal((i + 0.5) * theta);
@@ -85,8 +81,8 @@ PetscErrorCode ImageTableFill(const OffsetTable *lattice, ImageTable *t) {
   const PetscReal constant = LatticeConstant();
   PetscReal *theta, *weight;
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(NODES, &theta, NODES, &weight));
-  GaussLegendre(NODES, theta, weight);
+  PetscCall(PetscMalloc2(IMAGE_NODES, &theta, IMAGE_NODES, &weight));
+  GaussLegendre(IMAGE_NODES, theta, weight);
   PetscCall(PetscMemzero(t, sizeof(*t)));
   for (int row = 0; row < IMAGE_ROWS; row++)
     for (int source = 0; source < IMAGE_ROWS; source++)
@@ -94,9 +90,28 @@ PetscErrorCode ImageTableFill(const OffsetTable *lattice, ImageTable *t) {
         t->value[OFFSET_UU][row][source][IMAGE_SHIFT + i] = -constant;
         t->value[OFFSET_VV][row][source][IMAGE_SHIFT + i] = 1 / (4 * PETSC_PI) - constant;
       }
-  for (int q = 0; q < NODES; q++) AddNode(theta[q], weight[q], t);
+  for (int q = 0; q < IMAGE_NODES; q++) AddNode(theta[q], weight[q], t);
   for (int row = 0; row < IMAGE_ROWS; row++)
     for (int source = 0; source < IMAGE_ROWS; source++) Complete(lattice, row, source, t);
   PetscCall(PetscFree2(theta, weight));
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscReal ImageSum(const PetscReal (*table)[IMAGE_ROWS][IMAGE_WIDTH], Grid g, int t, PetscReal x,
+                   const PaddedStencil *from, const ImageRows *row, const PaddedStencil *to, const ImageRows *source) {
+  PetscReal lag[OFFSET_LAGS], line[OFFSET_LAGS] = {0}, sum = 0;
+  PetscInt first = StencilLagWeights(t, from, to, lag);
+  if (!g->wall[t]) {
+    const PetscReal off = x - (PetscReal)(from->first[t] - to->first[t]);
+    first += g->n[t] * (PetscInt)PetscFloorReal(off / g->n[t] + 0.5);
+  }
+  first = PetscMax(-IMAGE_SHIFT, PetscMin(first, IMAGE_SHIFT - OFFSET_LAGS + 1));
+  for (PetscInt q = 0; q < row->n; q++)
+    for (PetscInt k = 0; k < source->n; k++) {
+      const PetscReal w = row->weight[q] * source->weight[k];
+      const PetscReal *value = table[row->first + q][source->first + k] + IMAGE_SHIFT + first;
+      for (int a = 0; a < OFFSET_LAGS; a++) line[a] += w * value[a];
+    }
+  for (int a = 0; a < OFFSET_LAGS; a++) sum += lag[a] * line[a];
+  return sum;
 }

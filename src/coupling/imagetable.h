@@ -15,5 +15,30 @@ typedef struct {
   PetscReal value[OFFSET_COUNT][IMAGE_ROWS][IMAGE_ROWS][IMAGE_WIDTH];
 } ImageTable;
 
+/* A mode along the wall: k, s, sinh mu, cosh mu, and by row from row 0 F = g1 - s g2, g2 and e^{-mu j} (imagetable.c).
+ */
+#define IMAGE_LINES (IMAGE_ROWS + 2)
+#define IMAGE_NODES 64 /* of Gauss and Legendre; 50 give the same to rounding, 40 to 6e-13 */
+typedef struct {
+  PetscReal k, s, sinh, cosh, F[IMAGE_LINES], g2[IMAGE_LINES], e[IMAGE_LINES];
+} ImageMode;
+
+/* ImageModeMake - of the wave number theta. ImagePsi - psi(j) = (A + B j) e^{-mu j} of A and of minus the sum of psi's
+   next neighbours, psi(1) - psi(-1) = -jump. Not collective. */
+PETSC_EXTERN ImageMode ImageModeMake(PetscReal theta);
+PETSC_EXTERN void ImagePsi(const ImageMode *mode, PetscReal A, PetscReal jump, PetscReal psi[IMAGE_LINES]);
+
+/* A stencil's rows at a wall, folded. */
+typedef struct {
+  PetscInt first, n;
+  const PetscReal *weight;
+} ImageRows;
+
+/* ImageSum - the sum of a table over the rows of a response and a source and over their stencils along the wall, in
+   direction t, whose markers are x cells apart there. Not collective. */
+PETSC_EXTERN PetscReal ImageSum(const PetscReal (*table)[IMAGE_ROWS][IMAGE_WIDTH], Grid grid, int t, PetscReal x,
+                                const PaddedStencil *from, const ImageRows *row, const PaddedStencil *to,
+                                const ImageRows *source);
+
 /* ImageTableFill - from the free lattice's table (lattice.h), of a reach of IMAGE_SHIFT at least. Not collective. */
 PETSC_EXTERN PetscErrorCode ImageTableFill(const OffsetTable *lattice, ImageTable *table);

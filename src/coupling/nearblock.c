@@ -48,7 +48,7 @@ void NearLatticePair(NearField f, PetscInt i, PetscInt j, const PetscReal d[2], 
     Pair(f, &f->far[NEAR_ONE], i, j, d, L, C);
 }
 
-/* What Kress' quadrature has besides the plain logarithm, for two markers of one curve of n that are k apart; on the
+/* What a curve's quadrature has besides the plain logarithm, for two markers of one curve of n that are k apart; on the
    diagonal the whole of S, from the derivative T = dX/dk: xx, yy, xy. */
 static void SelfPart(NearField f, PetscInt v, PetscInt k, const PetscReal T[2], PetscReal S[3]) {
   const PetscReal factor = 1 / (4 * PETSC_PI * f->nu);
@@ -58,7 +58,8 @@ static void SelfPart(NearField f, PetscInt v, PetscInt k, const PetscReal T[2], 
     return;
   }
   const PetscReal t2 = T[0] * T[0] + T[1] * T[1], n = LayoutCount(f->bodies->layout, v);
-  const PetscReal logarithm = -0.5 * (f->kress[v][0] + PetscLogReal(t2 * PetscSqr(n / (2 * PETSC_PI))));
+  const PetscReal part = f->bodies->kind[v].type == CURVE_OPEN ? 1 : n; /* of a turn: see NearField's Kress, Zeta */
+  const PetscReal logarithm = -0.5 * (f->kress[v][0] + PetscLogReal(t2 * PetscSqr(part / (2 * PETSC_PI))));
   S[0] = factor * (logarithm + T[0] * T[0] / t2);
   S[1] = factor * (logarithm + T[1] * T[1] / t2);
   S[2] = factor * T[0] * T[1] / t2;
@@ -219,8 +220,8 @@ static PetscErrorCode AddSelf(NearField f, const NearBlock *b) {
   NearRow r = NearBlockBegin(m->layout, b);
   PetscReal *T, S[3];
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(2 * r.count, &T));
-  SpectralDerivative(m->spectral[b->row], 1, 1, f->markers->X + 2 * first, T);
+  PetscCall(PetscMalloc1(2 * r.count, &T));
+  PetscCall(CurveTangents(&m->kind[b->row], m->spectral[b->row], r.count, f->markers->X + 2 * first, T));
   do {
     PetscReal *x = f->store.value + r.at, *y = x + r.stride;
     for (PetscInt k = 0; k < r.count; k++) {

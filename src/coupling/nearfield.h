@@ -54,8 +54,8 @@ struct _p_NearField {
   OffsetTable lattice;
   NearImage image;        /* what the walls add to each pair, from a table that is this one's */
   NearFar far[2];         /* distant pairs of one vesicle, of two */
-  PetscReal **kress;      /* [vesicles][n] by index difference, what Kress' quadrature has besides the plain logarithm,
-                             at 0 its weight; NULL for others' vesicles */
+  PetscReal **kress;      /* [bodies][n] by index difference, what the curve's quadrature has besides the plain
+                             logarithm, at 0 its weight; NULL for others' bodies */
   PaddedStencil *stencil; /* [2M] */
   NearBounds *bounds;     /* [vesicles] */
   NearBlock *block;       /* fixed ones, then others in the order of their rows */

@@ -26,24 +26,10 @@ void NearImageTurn(int direction, int side, PetscReal alpha, const PetscReal par
  */
 static PetscReal HalfSum(NearImage m, int direction, OffsetBlock b, const ImageEnd *e, PetscInt i, int r,
                          const ImageEnd *f, PetscInt j, int s, PetscReal x) {
-  const Grid g = m->markers->grid;
   const int t = 1 - direction;
-  const PaddedStencil *from = &m->stencil[2 * i + (r ? direction : t)], *to = &m->stencil[2 * j + (s ? direction : t)];
-  PetscReal weight[OFFSET_LAGS], line[OFFSET_LAGS] = {0}, sum = 0;
-  PetscInt first = StencilLagWeights(t, from, to, weight);
-  if (!g->wall[t]) {
-    const PetscReal off = x - (PetscReal)(from->first[t] - to->first[t]);
-    first += g->n[t] * (PetscInt)PetscFloorReal(off / g->n[t] + 0.5);
-  }
-  first = PetscMax(-IMAGE_SHIFT, PetscMin(first, IMAGE_SHIFT - OFFSET_LAGS + 1));
-  for (PetscInt q = 0; q < e->n[r]; q++)
-    for (PetscInt k = 0; k < f->n[s]; k++) {
-      const PetscReal w = e->weight[r][q] * f->weight[s][k];
-      const PetscReal *row = m->table->value[b][e->first[r] + q][f->first[s] + k] + IMAGE_SHIFT + first;
-      for (int a = 0; a < OFFSET_LAGS; a++) line[a] += w * row[a];
-    }
-  for (int a = 0; a < OFFSET_LAGS; a++) sum += weight[a] * line[a];
-  return sum;
+  const ImageRows row = {e->first[r], e->n[r], e->weight[r]}, source = {f->first[s], f->n[s], f->weight[s]};
+  return ImageSum(m->table->value[b], m->markers->grid, t, x, &m->stencil[2 * i + (r ? direction : t)], &row,
+                  &m->stencil[2 * j + (s ? direction : t)], &source);
 }
 
 /* The half-space lattice's mobility of a pair near the wall. */
@@ -152,7 +138,7 @@ static ImageEnd MakeEnd(Markers m, PetscReal y, PetscReal across) {
   for (int comp = 0; comp < 2; comp++) { /* entries as in the grid: t at j + 1/2, n at j + 1, row j + 1 of the table */
     e.n[comp] = (comp ? m->kernel->along : m->kernel->across)(y - (comp ? 1 : 0.5), &e.first[comp], e.weight[comp]);
     if (!comp && e.first[0] < 0) e.moment = OddMoment(y, e.first[0], e.n[0], e.weight[0]);
-    FoldLow(comp ? PETSC_TRUE : PETSC_FALSE, &e.first[comp], &e.n[comp], e.weight[comp]);
+    FoldLow(comp ? FOLD_EVEN : FOLD_ODD, &e.first[comp], &e.n[comp], e.weight[comp]);
     if (comp) e.first[1]++;
   }
   for (PetscInt k = 0; k < e.n[1]; k++) e.weight[1][k] *= e.scale;

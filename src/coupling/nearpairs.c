@@ -92,6 +92,13 @@ typedef struct {
 } Image;
 #define MOST_IMAGES 9
 
+/* Whether the image of a spanning curve p, q periods away goes on where the curve ends. */
+static PetscBool Continues(NearField f, PetscInt v, PetscInt p, PetscInt q) {
+  const CurveKind *kind = &f->bodies->kind[v];
+  if (kind->type != CURVE_SPANNING) return PETSC_FALSE;
+  return (kind->span[0] != 0 ? q == 0 : p == 0) ? PETSC_TRUE : PETSC_FALSE;
+}
+
 /* The images of w near v, the nearest first; of v's own without a box part one of each two that are opposite. */
 static PetscErrorCode Images(NearField f, PetscInt v, PetscInt w, Image image[MOST_IMAGES], int *count) {
   const Grid g = f->markers->grid;
@@ -109,6 +116,7 @@ static PetscErrorCode Images(NearField f, PetscInt v, PetscInt w, Image image[MO
   for (PetscInt q = -around[1]; q <= around[1]; q++)
     for (PetscInt p = -around[0]; p <= around[0]; p++) {
       Image one = {.shift = {(middle[0] + p) * period[0], (middle[1] + q) * period[1]}};
+      if (v == w && Continues(f, v, p, q)) continue;
       if (v == w && ((!p && !q) || (!f->box && (q < 0 || (q == 0 && p < 0))))) continue;
       if (!Meet(a, b, one.shift, reach)) continue;
       one.gap = Apart(f, v, w, one.shift, reach);

@@ -1,6 +1,7 @@
 #include "coupling/obstacleblock.h"
 #include "base/agree.h"
 #include "coupling/blas.h"
+#include "coupling/mobilitysolves.h"
 
 struct _p_ObstacleBlock {
   const FluidSpec *spec; /* borrowed */
@@ -39,14 +40,38 @@ PetscErrorCode ObstacleBlockDestroy(ObstacleBlock *block) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The block times h^2, on root: every rank makes a part of the table's sums and its own rows of the near field. */
-static PetscErrorCode Assemble(ObstacleBlock b, Mobility mobility, PetscReal A[]) {
+/* Whether an obstacle stands on a wall, which the table of a periodic box does not know. */
+static PetscBool OnWall(Obstacles o) {
+  for (PetscInt v = 0; v < o->layout->bodies; v++)
+    if (o->kind[v].type == CURVE_OPEN) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+/* E A^-1 E^T: every rank makes a part of the table's sums, or root has all from solves. */
+static PetscErrorCode AssembleMobility(ObstacleBlock b, PetscReal A[]) {
+  const Layout l = b->obstacles->layout;
+  Mobility mobility;
+  PetscFunctionBeginUser;
+  if (OnWall(b->obstacles)) {
+    if (l->rank != b->root) PetscCall(PetscArrayzero(A, 4 * l->M * l->M));
+    PetscCall(MobilitySolves(b->coupling, b->root, A));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(MobilityCreate(b->spec, b->coupling, PETSC_MAX_REAL, &mobility));
+  PetscCall(MobilitySetUp(mobility, b->alpha));
+  PetscCall(MobilityAssemble(mobility, b->obstacles->all->M - l->M, l->M, l->rank, l->size, A));
+  PetscCall(MobilityDestroy(&mobility));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The block times h^2, on root: every rank adds its own rows of the near field. */
+static PetscErrorCode Assemble(ObstacleBlock b, PetscReal A[]) {
   const Layout l = b->obstacles->layout;
   const PetscInt n = 2 * l->M, first = b->obstacles->all->M - l->M;
   const PetscReal h2 = PetscSqr(b->coupling->fluid->grid->h);
   PetscMPIInt size;
   PetscFunctionBeginUser;
-  PetscCall(MobilityAssemble(mobility, first, l->M, l->rank, l->size, A));
+  PetscCall(AssembleMobility(b, A));
   PetscCall(NearFieldAdd(b->coupling->near, h2, PETSC_TRUE, first, l->M, A));
   for (PetscInt v = l->own; v < l->end; v++)
     for (PetscInt i = 2 * l->start[v]; i < 2 * l->start[v + 1]; i++)
@@ -64,18 +89,14 @@ PetscErrorCode ObstacleBlockSetUp(ObstacleBlock b, PetscBool *failed) {
   const PetscReal over = 1 / PetscSqr(b->coupling->fluid->grid->h);
   PetscBool factored = PETSC_TRUE;
   PetscReal *A;
-  Mobility mobility;
   PetscLogEvent event;
   PetscFunctionBeginUser;
   if (b->alpha == b->coupling->fluid->alpha) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetvesEvent("FactorObstacles", &event));
   PetscCall(PetscLogEventBegin(event, 0, 0, 0, 0));
   b->alpha = b->coupling->fluid->alpha;
-  PetscCall(MobilityCreate(b->spec, b->coupling, PETSC_MAX_REAL, &mobility));
-  PetscCall(MobilitySetUp(mobility, b->alpha));
   PetscCall(PetscMalloc1(n * n, &A));
-  PetscCall(Assemble(b, mobility, A));
-  PetscCall(MobilityDestroy(&mobility));
+  PetscCall(Assemble(b, A));
   if (l->rank == b->root) {
     for (PetscInt k = 0; k < n * n; k++) A[k] *= over;
     PetscCall(DenseFactor(n, A, b->pivot, &factored));

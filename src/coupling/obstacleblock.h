@@ -1,6 +1,7 @@
 /* The obstacles' block of the reduced problem, E A^-1 E^T/h^2 + C + D + beta N N^T between their markers, as a dense
    factor in single precision: part of the preconditioner (docs/obstacles.md, Preconditioner). E A^-1 E^T is that of a
-   periodic box of the same cells (mobility.h). Obstacles rest, so that in quasi-steady flow it is made once. */
+   periodic box of the same cells (mobility.h), or, where an obstacle stands on a wall, the grid's own
+   (mobilitysolves.h). Obstacles rest, so that in quasi-steady flow it is made once. */
 #pragma once
 #include "coupling/mobility.h"
 

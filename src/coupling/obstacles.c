@@ -6,8 +6,8 @@ static PetscErrorCode Describe(Obstacles o, PetscInt b) {
   const PetscReal *X = o->X + first;
   PetscReal *T, *N = o->N + first, sum = 0, length = 0;
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(2 * n, &T));
-  SpectralDerivative(o->spectral[b], 1, 1, X, T);
+  PetscCall(PetscMalloc1(2 * n, &T));
+  PetscCall(CurveTangents(&o->kind[b], o->spectral[b], n, X, T));
   for (PetscInt k = 0; k < n; k++) {
     N[2 * k] = T[2 * k + 1];
     N[2 * k + 1] = -T[2 * k];
@@ -41,11 +41,14 @@ PetscErrorCode ObstaclesCreate(Scene scene, Layout all, Obstacles *out) {
   PetscCall(PetscNew(&o));
   *out = o;
   o->all = all;
+  o->frequency = own->frequency;
   o->beta = 1 / (4 * scene->fluid.nu);
   PetscCall(LayoutCreatePart(all, all->bodies - curves, all->bodies, &o->layout));
   const PetscInt W = o->layout->M;
   PetscCall(PetscCalloc7(2 * W, &o->X, 2 * W, &o->U, 2 * W, &o->N, 2 * curves, &o->center, curves, &o->ds, curves,
                          &o->spectral, curves, &o->container));
+  PetscCall(PetscMalloc1(curves, &o->kind));
+  PetscCall(PetscArraycpy(o->kind, own->outline.kind, curves));
   PetscCall(PetscArraycpy(o->X, own->outline.X, 2 * W));
   PetscCall(PetscArraycpy(o->container, own->container, curves));
   for (PetscInt b = 0; b < curves; b++) {
@@ -62,6 +65,7 @@ PetscErrorCode ObstaclesDestroy(Obstacles *obstacles) {
   if (!o) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt b = 0; b < o->layout->bodies; b++) PetscCall(SpectralDestroy(&o->spectral[b]));
   PetscCall(PetscFree7(o->X, o->U, o->N, o->center, o->ds, o->spectral, o->container));
+  PetscCall(PetscFree(o->kind));
   PetscCall(LayoutDestroy(&o->layout));
   PetscCall(PetscFree(*obstacles));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -100,11 +104,12 @@ void ObstaclesScale(Obstacles o, PetscReal weight, PetscBool inverse, PetscScala
 PetscErrorCode ObstaclesData(Obstacles o, const Flow *flow, PetscReal t, PetscScalar y[],
                              char message[PETVES_MAX_MESSAGE]) {
   const Layout l = o->layout;
+  const PetscReal swing = PetscCosReal(o->frequency * t);
   PetscReal *u;
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(2 * l->n, &u));
   PetscCall(FlowVelocities(flow, t, l->n, o->X + 2 * l->first, u, message));
-  for (PetscInt k = 0; k < 2 * l->n; k++) y[k] += u[k] - o->U[2 * l->first + k];
+  for (PetscInt k = 0; k < 2 * l->n; k++) y[k] += u[k] - swing * o->U[2 * l->first + k];
   PetscCall(PetscFree(u));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

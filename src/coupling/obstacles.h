@@ -1,11 +1,10 @@
-/* Solid closed curves in the fluid (docs/obstacles.md). Their markers Y carry forces Phi on the fluid that hold
-   its velocity there at U_w:
-       u_inf(Y) + E u - C F - beta N N^T F = U_w,     F = -Phi,
-   C the near field, of vesicles and obstacles together, N one unit vector a curve that enclosed fluid's pressure alone
-   can feel, beta = 1/(4 nu), which leaves that pressure at the mean of the one outside. Every rank has all curves; the
-   unknowns are distributed as the layout says. */
+/* Solid curves in the fluid: closed, spanning a period, or with both ends on a wall (docs/obstacles.md). Their markers
+   Y carry forces Phi on the fluid that hold its velocity there at U_w: u_inf(Y) + E u - C F - beta N N^T F = U_w,     F
+   = -Phi, C the near field, of vesicles and obstacles together, N one unit vector a curve that enclosed fluid's
+   pressure alone can feel, beta = 1/(4 nu), which leaves that pressure at the mean of the one outside. Every rank has
+   all curves; the unknowns are distributed as the layout says. */
 #pragma once
-#include "curve/spectral.h"
+#include "curve/kind.h"
 #include "markers/layout.h"
 #include "scene/scene.h"
 
@@ -14,12 +13,14 @@ struct _p_Obstacles {
   Layout all;           /* borrowed: vesicles and obstacles */
   Layout layout;        /* obstacles alone, on the same ranks */
   PetscReal *X;         /* [2W] markers of all obstacles */
-  PetscReal *U;         /* [2W] prescribed velocity there, U_w */
+  PetscReal *U;         /* [2W] prescribed velocity there, U_w, at time 0 */
+  PetscReal frequency;  /* U_w swings with its cosine (1/time) */
   PetscReal *N;         /* [2W] unit vector of each curve's normals, dX/dk turned outwards */
   PetscReal *center;    /* [2 curves] about which torques are taken: the mean of the markers */
   PetscReal *ds;        /* [curves] mean edge */
   PetscBool *container; /* [curves] the fluid is inside */
   Spectral *spectral;   /* [curves] */
+  CurveKind *kind;      /* [curves] */
   PetscReal beta;       /* 1/(4 nu) */
 };
 

@@ -92,7 +92,8 @@ static PetscErrorCode Find(Repulsion r, const PetscReal X[], PetscInt *count, Sp
   PetscInt n;
   PetscFunctionBeginUser;
   for (int d = 0; d < 2; d++) period[d] = g->wall[d] || g->free ? 0 : g->hi[d] - g->lo[d];
-  PetscCall(CurveContacts(all->bodies, l->bodies, all->start, X, period, Reach(&r->law), &n, &contact));
+  const CurveSet set = {all->bodies, l->bodies, all->start, r->bodies->kind, X, period, PETSC_FALSE};
+  PetscCall(CurveContacts(&set, Reach(&r->law), &n, &contact));
   PetscCall(PetscMalloc1(n + 4 * l->M, springs));
   for (PetscInt k = 0; k < n; k++) SetEdge(r, X, &contact[k], &(*springs)[k]);
   PetscCall(PetscFree(contact));

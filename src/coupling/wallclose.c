@@ -57,17 +57,26 @@ static PetscErrorCode AddAt(NearField f, const NearBlock *block, int direction, 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscBool WallIsClose(NearField f, PetscInt row, PetscInt column, int direction, int side, WallCloseness *close) {
+  const PetscReal ds = PetscMax(f->bodies->ds[row], f->bodies->ds[column]);
+  const PetscReal gap = NearImageGap(f->markers->grid, direction, side, &f->bounds[row], &f->bounds[column]);
+  *close = (WallCloseness){1, WINDOW * ds};
+  if (gap > CLOSE * ds) return PETSC_FALSE;
+  close->factor = (PetscInt)PetscMin(MOST_FINE, PetscCeilReal(FINE * ds / gap));
+  return PETSC_TRUE;
+}
+
 PetscErrorCode NearBlockRefineAtWalls(NearField f, const NearBlock *b) {
-  const PetscReal ds = PetscMax(f->bodies->ds[b->row], f->bodies->ds[b->column]);
+  WallCloseness close;
   PetscFunctionBeginUser;
+  for (int end = 0; end < 2; end++)
+    if (f->bodies->kind[end ? b->column : b->row].type != CURVE_CLOSED) PetscFunctionReturn(PETSC_SUCCESS);
   for (int wall = 0; wall < 4; wall++) {
     const int direction = wall / 2, side = wall % 2;
     if (!f->image->end[direction][side]) continue;
-    const PetscReal gap = NearImageGap(f->markers->grid, direction, side, &f->bounds[b->row], &f->bounds[b->column]);
-    if (gap > CLOSE * ds) continue;
-    const PetscInt factor = (PetscInt)PetscMin(MOST_FINE, PetscCeilReal(FINE * ds / gap));
-    PetscCall(AddAt(f, b, direction, side, factor, WINDOW * ds, 1));
-    PetscCall(AddAt(f, b, direction, side, 1, WINDOW * ds, -1));
+    if (!WallIsClose(f, b->row, b->column, direction, side, &close)) continue;
+    PetscCall(AddAt(f, b, direction, side, close.factor, close.window, 1));
+    PetscCall(AddAt(f, b, direction, side, 1, close.window, -1));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,14 +1,11 @@
 #include "curve/contacts.h"
 #include "curve/crossing.h"
-#include "curve/spectral.h"
 #include <stdlib.h>
 
 #define FINER 8 /* times the points, where smooth curves are near */
 
 typedef struct {
-  const PetscInt *start;
-  const PetscReal *X;
-  PetscInt moving; /* curves */
+  const CurveSet *set;
   PetscReal reach;
   PetscReal seam;  /* an image is farther than this from where its curve is */
   PetscInt *curve; /* of each point */
@@ -19,38 +16,40 @@ typedef struct {
   PetscErrorCode error;
 } ContactSearch;
 
-static PetscInt After(const ContactSearch *s, PetscInt k) {
-  const PetscInt v = s->curve[k];
-  return k + 1 < s->start[v + 1] ? k + 1 : s->start[v];
+/* The point `steps` from k along its curve, by its number. */
+static PetscInt Step(const ContactSearch *s, PetscInt k, PetscInt steps) {
+  const PetscInt *start = s->set->start + s->curve[k], n = start[1] - start[0];
+  return start[0] + (k - start[0] + steps + n) % n;
 }
 
-static PetscInt Before(const ContactSearch *s, PetscInt k) {
-  const PetscInt v = s->curve[k];
-  return k > s->start[v] ? k - 1 : s->start[v + 1] - 1;
-}
-
-/* The point p seen from the edge that starts at a, all moved by `shift`: distance and where. At an end of the edge the
-   outside is that of both edges that meet there. */
-static CurveContact Measure(const ContactSearch *s, PetscInt p, PetscInt a, const PetscReal shift[2]) {
-  const PetscInt b = After(s, a);
-  const PetscReal *A = s->X + 2 * a, *B = s->X + 2 * b, edge[2] = {B[0] - A[0], B[1] - A[1]};
-  const PetscReal d[2] = {s->X[2 * p] - A[0] - shift[0], s->X[2 * p + 1] - A[1] - shift[1]};
+/* The point p seen from the edge that starts at q, or (back) ends there, q moved by `shift`: distance and where; false
+   where an open curve ends. At an end of the edge the outside is that of both edges that meet there. */
+static PetscBool Measure(const ContactSearch *s, PetscInt p, PetscInt q, PetscBool back, const PetscReal shift[2],
+                         CurveContact *c) {
+  const PetscInt v = s->curve[q], a = back ? -1 : 0;
+  PetscReal A[2], B[2], P[2], Q[2], d[2], edge[2], size;
+  if (!CurveSetWalk(s->set, v, q, a, A) || !CurveSetWalk(s->set, v, q, a + 1, B)) return PETSC_FALSE;
+  for (int k = 0; k < 2; k++) {
+    edge[k] = B[k] - A[k];
+    d[k] = s->set->X[2 * p + k] - A[k] - shift[k];
+  }
   const PetscReal square = edge[0] * edge[0] + edge[1] * edge[1];
   const PetscReal along = square > 0 ? (d[0] * edge[0] + d[1] * edge[1]) / square : 0;
-  CurveContact c = {.point = p, .edge = {a, b}, .curve = {s->curve[p], s->curve[a]}};
-  PetscReal out[2] = {edge[1], -edge[0]}, size;
-  c.at = PetscMax(0, PetscMin(1, along));
-  if (c.at == 0 || c.at == 1) {
-    const PetscReal *P = s->X + 2 * (c.at == 0 ? Before(s, a) : a), *Q = s->X + 2 * (c.at == 0 ? b : After(s, b));
+  *c = (CurveContact){.point = p, .edge = {Step(s, q, a), Step(s, q, a + 1)}, .curve = {s->curve[p], v}};
+  PetscReal out[2] = {edge[1], -edge[0]};
+  c->at = PetscMax(0, PetscMin(1, along));
+  const PetscInt corner = c->at == 1 ? a + 1 : a;
+  if ((c->at == 0 || c->at == 1) && CurveSetWalk(s->set, v, q, corner - 1, P) &&
+      CurveSetWalk(s->set, v, q, corner + 1, Q)) {
     out[0] = Q[1] - P[1];
     out[1] = P[0] - Q[0];
   }
-  for (int k = 0; k < 2; k++) c.normal[k] = d[k] - c.at * edge[k];
-  c.distance = PetscSqrtReal(PetscSqr(c.normal[0]) + PetscSqr(c.normal[1]));
-  if (c.normal[0] * out[0] + c.normal[1] * out[1] < 0) c.distance = -c.distance;
-  size = PetscAbsReal(c.distance) > 0 ? c.distance : PetscSqrtReal(PetscSqr(out[0]) + PetscSqr(out[1]));
-  for (int k = 0; k < 2; k++) c.normal[k] = (PetscAbsReal(c.distance) > 0 ? c.normal[k] : out[k]) / size;
-  return c;
+  for (int k = 0; k < 2; k++) c->normal[k] = d[k] - c->at * edge[k];
+  c->distance = PetscSqrtReal(PetscSqr(c->normal[0]) + PetscSqr(c->normal[1]));
+  if (c->normal[0] * out[0] + c->normal[1] * out[1] < 0) c->distance = -c->distance;
+  size = PetscAbsReal(c->distance) > 0 ? c->distance : PetscSqrtReal(PetscSqr(out[0]) + PetscSqr(out[1]));
+  for (int k = 0; k < 2; k++) c->normal[k] = (PetscAbsReal(c->distance) > 0 ? c->normal[k] : out[k]) / size;
+  return PETSC_TRUE;
 }
 
 static PetscErrorCode Append(ContactSearch *s, const CurveContact *c) {
@@ -86,10 +85,10 @@ static PetscErrorCode OfferBoth(ContactSearch *s, PetscInt i, PetscInt j, const 
   for (int side = 0; side < 2; side++) {
     const PetscInt p = pair[side][0], q = pair[side][1];
     PetscReal shift[2];
-    for (int k = 0; k < 2; k++) shift[k] = (side ? -d[k] : d[k]) - (s->X[2 * q + k] - s->X[2 * p + k]);
-    for (int edge = 0; edge < 2; edge++) {
-      const CurveContact c = Measure(s, p, edge ? Before(s, q) : q, shift);
-      PetscCall(Offer(s, &c));
+    for (int k = 0; k < 2; k++) shift[k] = (side ? -d[k] : d[k]) - (s->set->X[2 * q + k] - s->set->X[2 * p + k]);
+    for (int back = 0; back < 2; back++) {
+      CurveContact c;
+      if (Measure(s, p, q, back ? PETSC_TRUE : PETSC_FALSE, shift, &c)) PetscCall(Offer(s, &c));
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -97,40 +96,40 @@ static PetscErrorCode OfferBoth(ContactSearch *s, PetscInt i, PetscInt j, const 
 
 static PetscBool Near(void *context, PetscInt i, PetscInt j, const PetscReal d[2]) {
   ContactSearch *s = (ContactSearch *)context;
-  if (PetscMin(s->curve[i], s->curve[j]) >= s->moving) return PETSC_FALSE;
+  const PetscReal *X = s->set->X;
+  if (PetscMin(s->curve[i], s->curve[j]) >= s->set->moving) return PETSC_FALSE;
   if (s->curve[i] == s->curve[j]) { /* nothing but images */
-    const PetscReal x = d[0] - (s->X[2 * j] - s->X[2 * i]), y = d[1] - (s->X[2 * j + 1] - s->X[2 * i + 1]);
+    const PetscReal x = d[0] - (X[2 * j] - X[2 * i]), y = d[1] - (X[2 * j + 1] - X[2 * i + 1]);
     if (PetscAbsReal(x) + PetscAbsReal(y) < s->seam) return PETSC_FALSE;
   }
   s->error = OfferBoth(s, i, j, d);
   return s->error ? PETSC_TRUE : PETSC_FALSE;
 }
 
-static PetscReal LongestEdge(PetscInt curves, const PetscInt start[], const PetscReal X[]) {
-  PetscReal longest = 0;
-  for (PetscInt v = 0; v < curves; v++)
-    for (PetscInt k = start[v], l = start[v + 1] - 1; k < start[v + 1]; l = k++)
-      longest = PetscMax(longest, PetscHypotReal(X[2 * k] - X[2 * l], X[2 * k + 1] - X[2 * l + 1]));
+static PetscReal LongestEdge(const CurveSet *set) {
+  PetscReal longest = 0, to[2];
+  for (PetscInt v = 0; v < set->curves; v++)
+    for (PetscInt k = set->start[v]; k < set->start[v + 1]; k++)
+      if (CurveSetWalk(set, v, k, 1, to))
+        longest = PetscMax(longest, PetscHypotReal(to[0] - set->X[2 * k], to[1] - set->X[2 * k + 1]));
   return longest;
 }
 
-/* Of pairs of points the first of which is on a curve part[0] .. part[1] - 1; NULL: of all. */
-static PetscErrorCode Contacts(PetscInt curves, PetscInt moving, const PetscInt start[], const PetscReal X[],
-                               const PetscInt part[2], const PetscReal period[2], PetscReal reach, PetscInt *n,
-                               CurveContact **contacts) {
-  const PetscInt points = start[curves], first[2] = {part ? start[part[0]] : 0, part ? start[part[1]] : points};
+PetscErrorCode CurveContacts(const CurveSet *set, PetscReal reach, PetscInt *n, CurveContact **contacts) {
+  const PetscInt points = set->start[set->curves], *part = set->part;
+  const PetscInt first[2] = {part ? set->start[part[0]] : 0, part ? set->start[part[1]] : points};
   /* a point near an edge is as near as this to one of its ends */
-  const PetscReal apart = PetscHypotReal(reach, 0.5 * LongestEdge(curves, start, X));
-  ContactSearch s = {.moving = moving, .start = start, .X = X, .reach = reach, .seam = PETSC_MAX_REAL};
+  const PetscReal apart = PetscHypotReal(reach, 0.5 * LongestEdge(set));
+  ContactSearch s = {.set = set, .reach = reach, .seam = PETSC_MAX_REAL};
   PetscInt count = 0;
   PetscFunctionBeginUser;
   for (int d = 0; d < 2; d++)
-    if (period[d] > 0) s.seam = PetscMin(s.seam, 0.5 * period[d]);
+    if (set->period[d] > 0) s.seam = PetscMin(s.seam, 0.5 * set->period[d]);
   PetscCall(PetscMalloc2(points, &s.curve, points, &s.head));
-  for (PetscInt v = 0; v < curves; v++)
-    for (PetscInt k = start[v]; k < start[v + 1]; k++) s.curve[k] = v;
+  for (PetscInt v = 0; v < set->curves; v++)
+    for (PetscInt k = set->start[v]; k < set->start[v + 1]; k++) s.curve[k] = v;
   for (PetscInt k = 0; k < points; k++) s.head[k] = -1;
-  PetscCall(PairsWithin(points, X, first, period, apart, Near, &s));
+  PetscCall(PairsWithin(points, set->X, first, set->period, apart, Near, &s));
   PetscCall(s.error);
   PetscCall(PetscMalloc1(s.count, contacts));
   for (PetscInt p = 0; p < points; p++)
@@ -139,13 +138,6 @@ static PetscErrorCode Contacts(PetscInt curves, PetscInt moving, const PetscInt 
   PetscCall(PetscFree2(s.curve, s.head));
   PetscCall(PetscFree(s.next));
   PetscCall(PetscFree(s.contact));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode CurveContacts(PetscInt curves, PetscInt moving, const PetscInt start[], const PetscReal X[],
-                             const PetscReal period[2], PetscReal reach, PetscInt *n, CurveContact **contacts) {
-  PetscFunctionBeginUser;
-  PetscCall(Contacts(curves, moving, start, X, NULL, period, reach, n, contacts));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -158,13 +150,11 @@ static int Order(const void *first, const void *second) {
 }
 
 /* Of the polygons. */
-static PetscErrorCode PolygonGaps(PetscInt curves, PetscInt moving, const PetscInt start[], const PetscReal X[],
-                                  const PetscInt part[2], const PetscReal period[2], PetscReal reach, PetscInt *n,
-                                  CurveGap **gaps) {
+static PetscErrorCode PolygonGaps(const CurveSet *set, PetscReal reach, PetscInt *n, CurveGap **gaps) {
   CurveContact *c;
   PetscInt count, kept = 0;
   PetscFunctionBeginUser;
-  PetscCall(Contacts(curves, moving, start, X, part, period, reach, &count, &c));
+  PetscCall(CurveContacts(set, reach, &count, &c));
   PetscCall(PetscMalloc1(count, gaps));
   for (PetscInt k = 0; k < count; k++) {
     const PetscInt v = c[k].curve[0], w = c[k].curve[1];
@@ -180,61 +170,52 @@ static PetscErrorCode PolygonGaps(PetscInt curves, PetscInt moving, const PetscI
 }
 
 /* The gap of two polygons becomes that of the curves, which bulge beyond their chords. */
-static PetscErrorCode Refine(const PetscInt start[], const PetscReal X[], const PetscReal period[2], PetscReal edge,
-                             CurveGap *gap) {
+static PetscErrorCode Refine(const CurveSet *set, PetscReal edge, CurveGap *gap) {
   const PetscInt two = gap->curve[0] == gap->curve[1] ? 1 : 2;
-  PetscInt fine[3] = {0}, n[2], count;
+  PetscInt count;
   CurveGap *found;
-  PetscReal *Y;
+  CurveFine fine;
   PetscFunctionBeginUser;
-  for (int k = 0; k < two; k++) {
-    n[k] = start[gap->curve[k] + 1] - start[gap->curve[k]];
-    fine[k + 1] = fine[k] + FINER * n[k];
-  }
-  PetscCall(PetscMalloc1(2 * fine[two], &Y));
-  for (int k = 0; k < two; k++) TrigonometricPoints(n[k], X + 2 * start[gap->curve[k]], FINER, Y + 2 * fine[k]);
-  PetscCall(PolygonGaps(two, two, fine, Y, NULL, period, PetscAbsReal(gap->distance) + 0.5 * edge, &count, &found));
+  PetscCall(CurveFineCreate(set, two, gap->curve, FINER, &fine));
+  PetscCall(PolygonGaps(&fine.set, PetscAbsReal(gap->distance) + 0.5 * edge, &count, &found));
   for (PetscInt k = 0; k < count; k++)
     if (two == 1 || found[k].curve[0] != found[k].curve[1]) gap->distance = found[k].distance;
   PetscCall(PetscFree(found));
-  PetscCall(PetscFree(Y));
+  PetscCall(CurveFineDestroy(&fine));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode CurveGaps(PetscInt curves, PetscInt moving, const PetscInt start[], const PetscReal X[],
-                         const PetscInt part[2], const PetscReal period[2], PetscBool smooth, PetscReal reach,
-                         PetscInt *n, CurveGap **gaps) {
-  const PetscReal edge = LongestEdge(curves, start, X);
+PetscErrorCode CurveGaps(const CurveSet *set, PetscReal reach, PetscInt *n, CurveGap **gaps) {
+  const PetscReal edge = LongestEdge(set);
   PetscInt kept = 0;
   PetscFunctionBeginUser;
-  PetscCall(PolygonGaps(curves, moving, start, X, part, period, smooth ? reach + 0.25 * edge : reach, n, gaps));
+  PetscCall(PolygonGaps(set, set->smooth ? reach + 0.25 * edge : reach, n, gaps));
   for (PetscInt k = 0; k < *n; k++) {
-    if (smooth && (*gaps)[k].distance < 0.5 * edge) PetscCall(Refine(start, X, period, edge, &(*gaps)[k]));
+    if (set->smooth && (*gaps)[k].distance < 0.5 * edge) PetscCall(Refine(set, edge, &(*gaps)[k]));
     if ((*gaps)[k].distance < reach) (*gaps)[kept++] = (*gaps)[k];
   }
   *n = kept;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode CurveLeastGap(PetscInt curves, PetscInt moving, const PetscInt start[], const PetscReal X[],
-                             const PetscReal period[2], PetscBool smooth, PetscReal *distance) {
-  const PetscReal edge = LongestEdge(curves, start, X);
+PetscErrorCode CurveLeastGap(const CurveSet *set, PetscReal *distance) {
+  const PetscReal edge = LongestEdge(set), *X = set->X, *period = set->period;
   PetscReal most = 0, low[2] = {PETSC_MAX_REAL, PETSC_MAX_REAL}, high[2] = {-PETSC_MAX_REAL, -PETSC_MAX_REAL};
   PetscFunctionBeginUser;
   *distance = NAN;
-  for (PetscInt k = 0; k < 2 * start[curves]; k++) {
+  for (PetscInt k = 0; k < 2 * set->start[set->curves]; k++) {
     low[k % 2] = PetscMin(low[k % 2], X[k]);
     high[k % 2] = PetscMax(high[k % 2], X[k]);
   }
   for (int d = 0; d < 2; d++) most += period[d] > 0 ? period[d] : high[d] - low[d]; /* no two points are farther */
-  if (curves < 2 && period[0] <= 0 && period[1] <= 0) PetscFunctionReturn(PETSC_SUCCESS);
+  if (set->curves < 2 && period[0] <= 0 && period[1] <= 0) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscReal reach = 2 * edge; PetscIsNanReal(*distance); reach *= 4) {
     CurveGap *gaps, *least = NULL;
     PetscInt n;
-    PetscCall(PolygonGaps(curves, moving, start, X, NULL, period, reach, &n, &gaps));
+    PetscCall(PolygonGaps(set, reach, &n, &gaps));
     for (PetscInt k = 0; k < n; k++)
       if (!least || gaps[k].distance < least->distance) least = &gaps[k];
-    if (least && smooth) PetscCall(Refine(start, X, period, edge, least));
+    if (least && set->smooth) PetscCall(Refine(set, edge, least));
     if (least) *distance = least->distance;
     PetscCall(PetscFree(gaps));
     if (reach > most) break;
@@ -260,23 +241,23 @@ static void Thinner(CurveFilm *film, PetscReal gap, PetscReal ds, PetscInt v, Pe
   *film = (CurveFilm){.thickness = gap, .spacings = gap / ds, .pair = {v, w}};
 }
 
-PetscErrorCode CurveThinnestFilm(PetscInt curves, PetscInt moving, const PetscInt start[], const PetscReal X[],
-                                 const PetscInt part[2], const PetscReal ds[], const CurveRoom *room, PetscBool smooth,
-                                 PetscReal most, CurveFilm *film) {
+PetscErrorCode CurveThinnestFilm(const CurveSet *set, const PetscReal ds[], const CurveRoom *room, PetscReal most,
+                                 CurveFilm *film) {
+  const PetscInt *start = set->start;
   PetscReal widest = 0;
   CurveGap *gap;
   PetscInt n, side;
   PetscFunctionBeginUser;
   *film = (CurveFilm){.spacings = most};
-  for (PetscInt v = 0; v < curves; v++) widest = PetscMax(widest, ds[v]);
-  PetscCall(CurveGaps(curves, moving, start, X, part, room->period, smooth, most * widest, &n, &gap));
+  for (PetscInt v = 0; v < set->curves; v++) widest = PetscMax(widest, ds[v]);
+  PetscCall(CurveGaps(set, most * widest, &n, &gap));
   for (PetscInt k = 0; k < n; k++) {
     const PetscInt v = gap[k].curve[0], w = gap[k].curve[1];
     Thinner(film, gap[k].distance, PetscMax(ds[v], ds[w]), v, w);
   }
   PetscCall(PetscFree(gap));
-  for (PetscInt v = part ? part[0] : 0; v < (part ? part[1] : moving); v++) {
-    const PetscReal wall = CurveWallGap(start[v + 1] - start[v], X + 2 * start[v], room, &side);
+  for (PetscInt v = set->part ? set->part[0] : 0; v < (set->part ? set->part[1] : set->moving); v++) {
+    const PetscReal wall = CurveWallGap(start[v + 1] - start[v], set->X + 2 * start[v], room, &side);
     Thinner(film, wall, ds[v], v, -1 - side);
   }
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -1,11 +1,8 @@
-/* How near closed curves are to one another, by a list of cells, in a time in proportion to their points. Curves run
-   counter-clockwise, curve v has the points start[v] .. start[v+1]-1 of X (interlaced, x0,y0,x1,y1,...); a period of 0
-   is none, else the nearest images count, a curve's own among them. Of all curves the first
-   `moving` ones move: others are not compared among themselves. One that runs clockwise has its inside outside. With
-   part[2] only pairs are looked at whose first curve, or whose curve at a wall, is one of part[0] .. part[1] - 1, of
-   the moving ones, so that ranks can share the search; NULL: all. */
+/* How near curves are to one another, images of themselves among them, by a list of cells, in a time in proportion to
+   their points. A curve's inside is on its left: closed curves run counter-clockwise, one that runs clockwise has its
+   inside outside. */
 #pragma once
-#include "base/base.h"
+#include "curve/kind.h"
 
 /* A point and the edge of another curve that is nearest to it. Distances are negative for a point inside. */
 typedef struct {
@@ -18,9 +15,7 @@ typedef struct {
 
 /* CurveContacts - for each point, in order, and each other curve that has an edge nearer than reach (length) the
    nearest edge; contacts[n] is the caller's to free (PetscFree). Not collective. Errors: memory. */
-PETSC_EXTERN PetscErrorCode CurveContacts(PetscInt curves, PetscInt moving, const PetscInt start[], const PetscReal X[],
-                                          const PetscReal period[2], PetscReal reach, PetscInt *n,
-                                          CurveContact **contacts);
+PETSC_EXTERN PetscErrorCode CurveContacts(const CurveSet *set, PetscReal reach, PetscInt *n, CurveContact **contacts);
 
 /* The least distance of two curves, negative where a point of one is inside of the other. */
 typedef struct {
@@ -28,17 +23,13 @@ typedef struct {
   PetscReal distance;
 } CurveGap;
 
-/* CurveGaps - of every two curves nearer than reach, in order; gaps[n] is the caller's to free. With `smooth` points
-   are those of trigonometric curves, and what is nearer than half an edge is found at eight times the points. Not
-   collective. Errors: memory. */
-PETSC_EXTERN PetscErrorCode CurveGaps(PetscInt curves, PetscInt moving, const PetscInt start[], const PetscReal X[],
-                                      const PetscInt part[2], const PetscReal period[2], PetscBool smooth,
-                                      PetscReal reach, PetscInt *n, CurveGap **gaps);
+/* CurveGaps - of every two curves nearer than reach, in order; gaps[n] is the caller's to free. Of smooth curves what
+   is nearer than half an edge is found at eight times the points. Not collective. Errors: memory. */
+PETSC_EXTERN PetscErrorCode CurveGaps(const CurveSet *set, PetscReal reach, PetscInt *n, CurveGap **gaps);
 
 /* CurveLeastGap - the least of all distances, of any size; not a number where nothing is within half a period, or where
    one curve is alone. Not collective. Errors: memory. */
-PETSC_EXTERN PetscErrorCode CurveLeastGap(PetscInt curves, PetscInt moving, const PetscInt start[], const PetscReal X[],
-                                          const PetscReal period[2], PetscBool smooth, PetscReal *distance);
+PETSC_EXTERN PetscErrorCode CurveLeastGap(const CurveSet *set, PetscReal *distance);
 
 /* Where curves lie: walls at the sides of the box in the directions that have them, images in those with a period. */
 typedef struct {
@@ -61,6 +52,5 @@ typedef struct {
 /* CurveThinnestFilm - the film that is thinnest against the points, which are ds[v] apart (length) on curve v, of those
    thinner than `most` spacings; spacings is `most` where there is none. Distances are those of CurveGaps and
    CurveWallGap; curves that overlap have no film. Not collective. Errors: memory. */
-PETSC_EXTERN PetscErrorCode CurveThinnestFilm(PetscInt curves, PetscInt moving, const PetscInt start[],
-                                              const PetscReal X[], const PetscInt part[2], const PetscReal ds[],
-                                              const CurveRoom *room, PetscBool smooth, PetscReal most, CurveFilm *film);
+PETSC_EXTERN PetscErrorCode CurveThinnestFilm(const CurveSet *set, const PetscReal ds[], const CurveRoom *room,
+                                              PetscReal most, CurveFilm *film);

@@ -1,5 +1,4 @@
 #include "curve/crossing.h"
-#include "curve/spectral.h"
 
 #define FINER 8 /* times the points, where polygons of smooth curves cross */
 
@@ -108,11 +107,10 @@ PetscErrorCode PairsWithin(PetscInt n, const PetscReal X[], const PetscInt part[
 
 /* Edges by their middles: those that cross have them as near as the longest is long. */
 typedef struct {
-  PetscInt *curve, *next; /* of each point; where its edge ends */
-  const PetscInt *start;
-  const PetscReal *X, *period;
+  const CurveSet *set;
+  PetscInt *curve, *next; /* of each point; where its edge ends, */
+  PetscReal *end;         /* seen from its start; at the last point of an open curve there */
   PetscReal *middle, longest;
-  PetscBool smooth;
   PetscInt (*passed)[2], count, room; /* pairs of curves that do not cross, whatever their polygons do */
   PetscInt pair[2];                   /* of curves that cross */
   PetscErrorCode error;
@@ -125,19 +123,13 @@ static PetscReal Turn(const PetscReal a[2], const PetscReal b[2], const PetscRea
 
 /* Whether two curves cross at FINER times their points. */
 static PetscErrorCode FinerCross(const EdgeSearch *s, const PetscInt pair[2], PetscBool *cross) {
-  const PetscInt two = pair[0] == pair[1] ? 1 : 2, *start = s->start;
-  PetscInt fine[3] = {0}, n[2], found[2];
-  PetscReal *Y;
+  CurveFine fine;
+  PetscInt found[2];
   PetscFunctionBeginUser;
-  for (int k = 0; k < two; k++) {
-    n[k] = start[pair[k] + 1] - start[pair[k]];
-    fine[k + 1] = fine[k] + FINER * n[k];
-  }
-  PetscCall(PetscMalloc1(2 * fine[two], &Y));
-  for (int k = 0; k < two; k++) TrigonometricPoints(n[k], s->X + 2 * start[pair[k]], FINER, Y + 2 * fine[k]);
-  PetscCall(CurvesCross(two, fine, Y, NULL, s->period, PETSC_FALSE, found));
+  PetscCall(CurveFineCreate(s->set, pair[0] == pair[1] ? 1 : 2, pair, FINER, &fine));
+  PetscCall(CurvesCross(&fine.set, found));
   *cross = found[0] < 0 ? PETSC_FALSE : PETSC_TRUE;
-  PetscCall(PetscFree(Y));
+  PetscCall(CurveFineDestroy(&fine));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -148,7 +140,7 @@ static PetscErrorCode LookAgain(EdgeSearch *s, const PetscInt pair[2], PetscBool
   for (PetscInt k = 0; k < s->count; k++)
     if (pair[0] == s->passed[k][0] && pair[1] == s->passed[k][1]) PetscFunctionReturn(PETSC_SUCCESS);
   *cross = PETSC_TRUE;
-  if (s->smooth) PetscCall(FinerCross(s, pair, cross));
+  if (s->set->smooth) PetscCall(FinerCross(s, pair, cross));
   if (!*cross && s->count == s->room) {
     s->room = 2 * s->room + 16;
     PetscCall(PetscRealloc((size_t)s->room * sizeof(*s->passed), &s->passed));
@@ -159,38 +151,40 @@ static PetscErrorCode LookAgain(EdgeSearch *s, const PetscInt pair[2], PetscBool
 
 static PetscBool EdgesCross(void *context, PetscInt i, PetscInt j, const PetscReal d[2]) {
   EdgeSearch *s = (EdgeSearch *)context;
-  const PetscReal *a = s->X + 2 * i, *b = s->X + 2 * s->next[i];
+  const PetscReal *X = s->set->X, *a = X + 2 * i, *b = s->end + 2 * i;
   const PetscInt pair[2] = {s->curve[i], s->curve[j]};
   PetscReal p[2], q[2];
   PetscBool cross;
   if (s->next[i] == j || s->next[j] == i) return PETSC_FALSE;
   for (int dir = 0; dir < 2; dir++) { /* the image of edge j that is nearest to edge i */
     const PetscReal shift = s->middle[2 * i + dir] + d[dir] - s->middle[2 * j + dir];
-    p[dir] = s->X[2 * j + dir] + shift;
-    q[dir] = s->X[2 * s->next[j] + dir] + shift;
+    p[dir] = X[2 * j + dir] + shift;
+    q[dir] = s->end[2 * j + dir] + shift;
   }
   if (Turn(a, b, p) * Turn(a, b, q) >= 0 || Turn(p, q, a) * Turn(p, q, b) >= 0) return PETSC_FALSE;
   s->error = LookAgain(s, pair, &cross);
   return s->error || cross ? PETSC_TRUE : PETSC_FALSE;
 }
 
-PetscErrorCode CurvesCross(PetscInt curves, const PetscInt start[], const PetscReal X[], const PetscInt part[2],
-                           const PetscReal period[2], PetscBool smooth, PetscInt pair[2]) {
-  const PetscInt n = start[curves], points[2] = {part ? start[part[0]] : 0, part ? start[part[1]] : n};
-  EdgeSearch s = {.start = start, .X = X, .period = period, .smooth = smooth, .pair = {-1, -1}};
+PetscErrorCode CurvesCross(const CurveSet *set, PetscInt pair[2]) {
+  const PetscInt *start = set->start, *part = set->part, n = start[set->curves];
+  const PetscInt points[2] = {part ? start[part[0]] : 0, part ? start[part[1]] : n};
+  const PetscReal *X = set->X;
+  EdgeSearch s = {.set = set, .pair = {-1, -1}};
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc3(n, &s.curve, n, &s.next, 2 * n, &s.middle));
-  for (PetscInt v = 0; v < curves; v++)
+  PetscCall(PetscMalloc4(n, &s.curve, n, &s.next, 2 * n, &s.end, 2 * n, &s.middle));
+  for (PetscInt v = 0; v < set->curves; v++)
     for (PetscInt k = start[v]; k < start[v + 1]; k++) {
-      const PetscInt next = k + 1 < start[v + 1] ? k + 1 : start[v];
+      PetscReal *end = s.end + 2 * k;
       s.curve[k] = v;
-      s.next[k] = next;
-      for (int dir = 0; dir < 2; dir++) s.middle[2 * k + dir] = 0.5 * (X[2 * k + dir] + X[2 * next + dir]);
-      s.longest = PetscMax(s.longest, PetscHypotReal(X[2 * next] - X[2 * k], X[2 * next + 1] - X[2 * k + 1]));
+      s.next[k] = k + 1 < start[v + 1] ? k + 1 : start[v];
+      if (!CurveSetWalk(set, v, k, 1, end)) PetscCall(PetscArraycpy(end, X + 2 * k, 2));
+      for (int dir = 0; dir < 2; dir++) s.middle[2 * k + dir] = 0.5 * (X[2 * k + dir] + end[dir]);
+      s.longest = PetscMax(s.longest, PetscHypotReal(end[0] - X[2 * k], end[1] - X[2 * k + 1]));
     }
-  PetscCall(PairsWithin(n, s.middle, points, period, s.longest, EdgesCross, &s));
+  PetscCall(PairsWithin(n, s.middle, points, set->period, s.longest, EdgesCross, &s));
   PetscCall(s.error);
-  PetscCall(PetscFree3(s.curve, s.next, s.middle));
+  PetscCall(PetscFree4(s.curve, s.next, s.end, s.middle));
   PetscCall(PetscFree(s.passed));
   PetscCall(PetscArraycpy(pair, s.pair, 2));
   PetscFunctionReturn(PETSC_SUCCESS);

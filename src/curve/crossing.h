@@ -1,7 +1,7 @@
-/* Which of many points are near one another, and which closed curves cross: by a list of cells, in a time in proportion
+/* Which of many points are near one another, and which curves cross: by a list of cells, in a time in proportion
    to the points. Positions are interlaced, x0,y0,x1,y1,...; a period of 0 is none, else the nearest images count. */
 #pragma once
-#include "base/base.h"
+#include "curve/kind.h"
 
 /* PairFound - told of points i < j, the nearest image of j being d from i; true ends the search. */
 typedef PetscBool (*PairFound)(void *context, PetscInt i, PetscInt j, const PetscReal d[2]);
@@ -12,10 +12,7 @@ typedef PetscBool (*PairFound)(void *context, PetscInt i, PetscInt j, const Pets
 PETSC_EXTERN PetscErrorCode PairsWithin(PetscInt n, const PetscReal X[], const PetscInt part[2],
                                         const PetscReal period[2], PetscReal reach, PairFound found, void *context);
 
-/* CurvesCross - the first two of the closed polygons, curve v with points start[v] .. start[v+1]-1 of X,
-   that have edges which cross (the same twice: it crosses itself); pair -1, -1 if none. Polygons that touch do not
-   cross. With `smooth` points are those of trigonometric curves, and polygons that cross are looked at again at eight
-   times the points. part: only pairs whose first curve is one of part[0] .. part[1] - 1; NULL: all. Not collective. */
-PETSC_EXTERN PetscErrorCode CurvesCross(PetscInt curves, const PetscInt start[], const PetscReal X[],
-                                        const PetscInt part[2], const PetscReal period[2], PetscBool smooth,
-                                        PetscInt pair[2]);
+/* CurvesCross - the first two curves of a set, moving or not, that have edges which cross (the same twice: it crosses
+   itself); pair -1, -1 if none. Polygons that touch do not cross. Of smooth curves polygons that cross are looked at
+   again at eight times the points. Not collective. */
+PETSC_EXTERN PetscErrorCode CurvesCross(const CurveSet *set, PetscInt pair[2]);

@@ -1,10 +1,14 @@
-/* Closed curves: ellipses and periodic cubic splines, and equal chords along them. */
+/* Curves: ellipses and cubic splines, and equal chords along them. */
 #include "curve/curve.h"
 
 #define CURVE_SAMPLES 4000 /* parts of a curve, of which integrals along it are summed */
 
 void CurveEvaluate(const Curve *c, PetscReal t, PetscReal X[2]) {
-  t -= PetscFloorReal(t);
+  const PetscReal all = t;
+  if (c->kind.type == CURVE_OPEN)
+    t = PetscMax(0, PetscMin(1, t));
+  else
+    t -= PetscFloorReal(t);
   if (!c->n) {
     X[0] = c->axes[0] * PetscCosReal(2 * PETSC_PI * t);
     X[1] = c->axes[1] * PetscSinReal(2 * PETSC_PI * t);
@@ -19,9 +23,11 @@ void CurveEvaluate(const Curve *c, PetscReal t, PetscReal X[2]) {
       hi = mid;
   }
   const PetscReal d = c->t[hi] - c->t[lo], a = (c->t[hi] - t) / d, b = 1 - a;
-  for (int k = 0; k < 2; k++)
+  for (int k = 0; k < 2; k++) {
     X[k] = a * c->x[k][lo] + b * c->x[k][hi] +
            ((a * a * a - a) * c->m[k][lo] + (b * b * b - b) * c->m[k][hi]) * d * d / 6;
+    if (c->kind.type == CURVE_SPANNING) X[k] += c->kind.span[k] * all;
+  }
 }
 
 /* Perimeter of an ellipse by arithmetic-geometric means: 2 pi (a^2 - SUM 2^(n-1) c_n^2)/M(a, b), c_0^2 = a^2 - b^2,
@@ -40,15 +46,18 @@ static PetscReal EllipsePerimeter(PetscReal x, PetscReal y) {
 }
 
 PetscReal CurveLength(const Curve *c) {
+  return c->n ? CurvePartLength(c, 0, 1) : EllipsePerimeter(c->axes[0], c->axes[1]);
+}
+
+PetscReal CurvePartLength(const Curve *c, PetscReal from, PetscReal to) {
   /* Richardson on chord sums: error h^4 for a smooth curve */
   PetscReal sum[2] = {0, 0};
-  if (!c->n) return EllipsePerimeter(c->axes[0], c->axes[1]);
   for (int level = 0; level < 2; level++) {
     const PetscInt n = CURVE_SAMPLES << level;
     PetscReal last[2], X[2];
-    CurveEvaluate(c, 0, last);
+    CurveEvaluate(c, from, last);
     for (PetscInt i = 1; i <= n; i++) {
-      CurveEvaluate(c, (PetscReal)i / n, X);
+      CurveEvaluate(c, from + (to - from) * (PetscReal)i / n, X);
       sum[level] += PetscSqrtReal(PetscSqr(X[0] - last[0]) + PetscSqr(X[1] - last[1]));
       last[0] = X[0];
       last[1] = X[1];
@@ -120,15 +129,16 @@ PetscErrorCode CurveEqualChords(const Curve *c, PetscInt M, PetscReal X[]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Arc length up to the end of each of n equal parts of the parameter, s[n+1], and up to its middle, middle[n]: chords
-   and half chords by Richardson, relative error h^4. */
-static void Arcs(const Curve *c, PetscInt n, PetscReal s[], PetscReal middle[]) {
+/* Arc length up to the end of each of n equal parts of the parameter between two, s[n+1], and up to its middle,
+   middle[n]: chords and half chords by Richardson, relative error h^4. */
+static void Arcs(const Curve *c, const PetscReal between[2], PetscInt n, PetscReal s[], PetscReal middle[]) {
+  const PetscReal from = between[0], all = between[1] - from;
   PetscReal a[2], b[2], m[2];
-  CurveEvaluate(c, 0, a);
+  CurveEvaluate(c, from, a);
   s[0] = 0;
   for (PetscInt i = 0; i < n; i++) {
-    CurveEvaluate(c, (i + 0.5) / n, m);
-    CurveEvaluate(c, (i + 1.) / n, b);
+    CurveEvaluate(c, from + all * ((i + 0.5) / n), m);
+    CurveEvaluate(c, from + all * ((i + 1.) / n), b);
     const PetscReal first = PetscHypotReal(m[0] - a[0], m[1] - a[1]), second = PetscHypotReal(b[0] - m[0], b[1] - m[1]);
     const PetscReal whole = (4 * (first + second) - PetscHypotReal(b[0] - a[0], b[1] - a[1])) / 3;
     middle[i] = s[i] + whole * first / (first + second);
@@ -137,22 +147,37 @@ static void Arcs(const Curve *c, PetscInt n, PetscReal s[], PetscReal middle[]) 
   }
 }
 
-PetscErrorCode CurveEqualArcs(const Curve *c, PetscInt M, PetscReal X[]) {
+/* M points of which `arcs` arcs go into the part of the curve. */
+static PetscErrorCode EqualArcs(const Curve *c, const PetscReal between[2], PetscInt M, PetscInt arcs, PetscReal X[]) {
   const PetscInt n = PetscMax(CURVE_SAMPLES, 20 * M);
   PetscReal *s, *middle;
   PetscInt i = 0;
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(n + 1, &s, n, &middle));
-  Arcs(c, n, s, middle);
+  Arcs(c, between, n, s, middle);
   for (PetscInt k = 0; k < M; k++) {
-    const PetscReal want = s[n] * k / M;
+    const PetscReal want = s[n] * k / arcs;
     while (i < n - 1 && s[i + 1] < want) i++;
     /* the parabola through the part's two ends and middle, as t(s) */
     const PetscReal x = (want - s[i]) / (s[i + 1] - s[i]), m = (middle[i] - s[i]) / (s[i + 1] - s[i]);
     const PetscReal bend = (0.5 - m) / (m * (m - 1));
-    CurveEvaluate(c, (i + x + bend * x * (x - 1)) / n, &X[2 * k]);
+    CurveEvaluate(c, between[0] + (between[1] - between[0]) * ((i + x + bend * x * (x - 1)) / n), &X[2 * k]);
   }
   PetscCall(PetscFree2(s, middle));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CurveEqualArcs(const Curve *c, PetscInt M, PetscReal X[]) {
+  const PetscReal all[2] = {0, 1};
+  PetscFunctionBeginUser;
+  PetscCall(EqualArcs(c, all, M, M, X));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CurvePartEqualArcs(const Curve *c, PetscReal from, PetscReal to, PetscInt M, PetscReal X[]) {
+  const PetscReal between[2] = {from, to};
+  PetscFunctionBeginUser;
+  PetscCall(EqualArcs(c, between, M, M - 1, X));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -176,7 +201,8 @@ PetscErrorCode EllipseAxes(PetscReal area, PetscReal reduced_area, PetscReal axe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Second derivatives of the periodic cubic spline by two passes of the cyclic Thomas algorithm (Sherman-Morrison). */
+/* Second derivatives of the cubic spline by two passes of the cyclic Thomas algorithm (Sherman-Morrison). Of an open
+   one that of the first and the last point, which are one unknown, is zero. */
 static PetscErrorCode SplineSetUp(Curve *c) {
   const PetscInt n = c->n;
   PetscReal *diag, *low, *up, *rhs, *z;
@@ -190,7 +216,11 @@ static PetscErrorCode SplineSetUp(Curve *c) {
       low[i] = dm / 6;
       diag[i] = (dm + dp) / 3;
       up[i] = dp / 6;
-      rhs[i] = (c->x[k][i + 1] - c->x[k][i]) / dp - (c->x[k][i] - c->x[k][p]) / dm;
+      rhs[i] = (c->x[k][i + 1] - c->x[k][i]) / dp - (c->x[k][p + 1] - c->x[k][p]) / dm;
+    }
+    if (c->kind.type == CURVE_OPEN) {
+      low[0] = up[0] = rhs[0] = 0;
+      diag[0] = 1;
     }
     corner_low = low[0];
     corner_up = up[n - 1];
@@ -223,19 +253,22 @@ PetscErrorCode CurveDestroy(Curve *c) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode CurveFromPoints(PetscInt n, const PetscReal xy[], Curve *c) {
+PetscErrorCode CurveFromPoints(const CurveKind *kind, PetscInt points, const PetscReal xy[], Curve *c) {
+  const PetscInt n = kind->type == CURVE_OPEN ? points - 1 : points;
   PetscReal length = 0;
   PetscFunctionBeginUser;
   c->n = n;
+  c->kind = *kind;
   PetscCall(PetscMalloc5(n + 1, &c->t, n + 1, &c->x[0], n + 1, &c->x[1], n + 1, &c->m[0], n + 1, &c->m[1]));
   for (PetscInt i = 0; i <= n; i++) {
-    const PetscInt k = i % n;
-    c->x[0][i] = xy[2 * k];
-    c->x[1][i] = xy[2 * k + 1];
+    const PetscInt k = i % points;
+    for (int d = 0; d < 2; d++) c->x[d][i] = xy[2 * k + d] + (i == points ? kind->span[d] : 0);
     if (i) length += PetscSqrtReal(PetscSqr(c->x[0][i] - c->x[0][i - 1]) + PetscSqr(c->x[1][i] - c->x[1][i - 1]));
     c->t[i] = length;
   }
   for (PetscInt i = 0; i <= n; i++) c->t[i] /= length;
+  for (PetscInt i = 0; i <= n; i++)
+    for (int d = 0; d < 2; d++) c->x[d][i] -= kind->span[d] * c->t[i];
   PetscCall(SplineSetUp(c));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

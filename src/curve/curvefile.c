@@ -1,6 +1,8 @@
-/* Closed curves from a text file: "x y" a line, # starts a comment, an empty line ends a curve. */
+/* Curves from a text file: "x y" a line, # starts a comment, an empty line ends a curve. */
 #include "curve/curve.h"
 #include <errno.h>
+
+#define SAME 1e-6 /* of a period: a curve's last point is its first */
 
 typedef struct {
   PetscInt n, curves;
@@ -9,6 +11,7 @@ typedef struct {
   CurveNote *note; /* [curves] */
   CurveNote next;  /* of the curve under way */
   const char *option, *file;
+  const PetscReal *period; /* NULL: closed curves only */
   char error[PETVES_MAX_MESSAGE];
 } Points;
 
@@ -84,14 +87,39 @@ static PetscErrorCode ReadPoints(Points *points) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Number of points of one curve after dropping a repeated last one; turned counter-clockwise; what makes the curve
-   unusable goes into the error. */
-static PetscErrorCode CleanCurve(Points *p, PetscInt *n, PetscReal xy[], CurveNote *note) {
+/* What kind a curve of n points is; a last point that closes it, or is its first a period on, is dropped. */
+static CurveKind FindKind(const Points *p, PetscInt *n, const PetscReal xy[], const CurveNote *note) {
+  const PetscReal d[2] = {xy[2 * *n - 2] - xy[0], xy[2 * *n - 1] - xy[1]};
+  CurveKind kind = {.type = p->period && note->open ? CURVE_OPEN : CURVE_CLOSED};
+  if (kind.type == CURVE_OPEN) return kind;
+  for (int c = 0; c < 2 && p->period; c++)
+    if (p->period[c] > 0 && PetscAbsReal(PetscAbsReal(d[c]) - p->period[c]) < SAME * p->period[c] &&
+        PetscAbsReal(d[1 - c]) < SAME * p->period[c]) {
+      kind.type = CURVE_SPANNING;
+      kind.span[c] = d[c] < 0 ? -p->period[c] : p->period[c];
+    }
+  if (*n > 1 && (kind.type == CURVE_SPANNING || (d[0] == 0 && d[1] == 0))) (*n)--;
+  return kind;
+}
+
+/* The points the other way round; a closed curve still starts at the first. */
+static void Reverse(const CurveKind *kind, PetscInt n, PetscReal xy[]) {
+  for (PetscInt i = kind->type == CURVE_OPEN ? 0 : 1, k = n - 1; i < k; i++, k--)
+    for (int c = 0; c < 2; c++) {
+      const PetscReal swap = xy[2 * i + c];
+      xy[2 * i + c] = xy[2 * k + c];
+      xy[2 * k + c] = swap;
+    }
+}
+
+/* The kind of one curve, the number of its points without a repeated one, and its points turned counter-clockwise; what
+   makes the curve unusable goes into the error. */
+static PetscErrorCode CleanCurve(Points *p, PetscInt *n, PetscReal xy[], CurveNote *note, CurveKind *kind) {
   char *error = p->error;
   const size_t length_of_error = sizeof(p->error);
   PetscReal area = 0, length = 0;
   PetscFunctionBeginUser;
-  if (*n > 1 && xy[0] == xy[2 * *n - 2] && xy[1] == xy[2 * *n - 1]) (*n)--;
+  *kind = FindKind(p, n, xy, note);
   if (*n < 8) {
     PetscCall(PetscSNPrintf(error, length_of_error, "%s %s: %" PetscInt_FMT " points; allowed: at least 8 a curve",
                             p->option, p->file, *n));
@@ -109,17 +137,13 @@ static PetscErrorCode CleanCurve(Points *p, PetscInt *n, PetscReal xy[], CurveNo
     area += 0.5 * (a[0] * b[1] - b[0] * a[1]);
     length += d;
   }
+  if (kind->type == CURVE_SPANNING) PetscFunctionReturn(PETSC_SUCCESS);
   if (PetscAbsReal(area) < 1e-6 * length * length)
-    PetscCall(PetscSNPrintf(error, length_of_error,
-                            "%s %s: the curve encloses an area of %g; allowed: a closed simple curve", p->option,
-                            p->file, (double)area));
+    PetscCall(PetscSNPrintf(error, length_of_error, "%s %s: the curve encloses an area of %g; allowed: a %s", p->option,
+                            p->file, (double)area,
+                            kind->type == CURVE_OPEN ? "curve off the chord between its ends" : "closed simple curve"));
   note->clockwise = area < 0 ? PETSC_TRUE : PETSC_FALSE;
-  for (PetscInt i = 1, k = *n - 1; area < 0 && i < k; i++, k--)
-    for (int c = 0; c < 2; c++) {
-      const PetscReal swap = xy[2 * i + c];
-      xy[2 * i + c] = xy[2 * k + c];
-      xy[2 * k + c] = swap;
-    }
+  if (area < 0) Reverse(kind, *n, xy);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -141,9 +165,9 @@ static PetscErrorCode Share(MPI_Comm comm, PetscMPIInt rank, Points *p) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode CurvesFromFile(MPI_Comm comm, const char option[], const char file[], PetscInt *curves, Curve **curve,
-                              CurveNote **note) {
-  Points p = {.option = option, .file = file};
+PetscErrorCode CurvesFromFile(MPI_Comm comm, const char option[], const char file[], const PetscReal period[2],
+                              PetscInt *curves, Curve **curve, CurveNote **note) {
+  Points p = {.option = option, .file = file, .period = period};
   PetscMPIInt rank;
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
@@ -154,9 +178,10 @@ PetscErrorCode CurvesFromFile(MPI_Comm comm, const char option[], const char fil
   for (PetscInt k = 0; k < p.curves; k++) {
     const PetscInt first = k ? p.end[k - 1] : 0;
     PetscInt n = p.end[k] - first;
-    PetscCall(CleanCurve(&p, &n, p.xy + 2 * first, &p.note[k]));
+    CurveKind kind;
+    PetscCall(CleanCurve(&p, &n, p.xy + 2 * first, &p.note[k], &kind));
     PetscCheck(!*p.error, comm, PETSC_ERR_USER_INPUT, "%s", p.error);
-    PetscCall(CurveFromPoints(n, p.xy + 2 * first, *curve + k));
+    PetscCall(CurveFromPoints(&kind, n, p.xy + 2 * first, *curve + k));
   }
   if (note)
     *note = p.note;

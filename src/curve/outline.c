@@ -41,7 +41,7 @@ PetscErrorCode BiconcaveCurve(PetscReal area, PetscReal reduced_area, Curve *cur
     Outline((low + high) / 2, 2 * PETSC_PI * k / POINTS, xy + 2 * k, slope);
     for (int d = 0; d < 2; d++) xy[2 * k + d] *= PetscSqrtReal(area / unit);
   }
-  PetscCall(CurveFromPoints(POINTS, xy, curve));
+  PetscCall(CurveFromPoints(&(CurveKind){0}, POINTS, xy, curve));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

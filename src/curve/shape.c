@@ -1,10 +1,11 @@
-/* Closed curves as markers. */
+/* Curves as markers. */
 #include "curve/curve.h"
 
 PetscErrorCode ShapeDestroy(Shape *shape) {
   PetscFunctionBeginUser;
   PetscCall(PetscFree(shape->start));
   PetscCall(PetscFree(shape->X));
+  PetscCall(PetscFree(shape->kind));
   shape->vesicles = 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -155,6 +155,7 @@ PetscErrorCode FluidCreate(const FluidSpec *spec, Fluid *out) {
   f->steady = spec->inertia == INERTIA_NONE ? PETSC_TRUE : PETSC_FALSE;
   f->plan = spec->plan;
   f->zero_flux = spec->drive == DRIVE_FLUX ? PETSC_TRUE : PETSC_FALSE;
+  f->held = spec->held && spec->bc[0] == BC_PERIODIC && spec->bc[1] == BC_PERIODIC ? PETSC_TRUE : PETSC_FALSE;
   f->tridiagonal = !strcmp(spec->helmholtz, "fftw_tridiagonal") && !strcmp(spec->poisson, "fftw_tridiagonal");
   PetscCall(GridCreateG(f->grid, &f->G));
   PetscCall(GridCreateD(f->grid, &f->D));

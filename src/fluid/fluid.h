@@ -16,6 +16,7 @@ struct _p_Fluid {
   PetscBool tridiagonal; /* all of them by fftw_tridiagonal */
   PetscInt plan;         /* FFTW's effort: 0 estimate, 1 measure, 2 patient */
   PetscBool zero_flux;   /* a uniform pressure gradient along x holds the mean of u at zero */
+  PetscBool held;        /* in a box periodic both ways one holds the means of u and v */
   PetscBool total;       /* total form: walls move with the background flow */
   Vec background;        /* u_inf on the faces; NULL unless total */
   Vec bc1;               /* what moving walls add to the momentum's right-hand side, and the driving -grad p_inf */

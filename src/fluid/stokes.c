@@ -81,5 +81,6 @@ PetscErrorCode StokesSolve(Stokes s, Vec r_u, Vec r_p, Vec u, Vec p) {
   PetscFunctionBeginUser;
   PetscCall(Solve(s, r_u, r_p, u, p));
   if (s->flux) PetscCall(ZeroFluxCorrect(s->flux, u));
+  if (s->fluid->held) PetscCall(FluidRemoveMean(s->fluid, u));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

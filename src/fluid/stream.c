@@ -253,6 +253,18 @@ static void AddBelow(Stream s, const PetscReal below[]) {
   }
 }
 
+/* Both means of a box that is periodic both ways to zero. */
+static PetscErrorCode HoldMean(Stream s, PetscReal *sum_v) {
+  const Grid g = s->fluid->grid;
+  PetscReal mean = 0;
+  PetscFunctionBeginUser;
+  for (PetscInt j = 0; j < g->rows[FIELD_U]; j++) mean += s->means[j] / g->n[1];
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &mean, 1, MPIU_REAL, MPI_SUM, g->comm));
+  for (PetscInt j = 0; j < g->rows[FIELD_U]; j++) s->means[j] -= mean;
+  *sum_v = 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Mode 0: the row means of u, and v's, which is the same everywhere. */
 static PetscErrorCode MeanFlow(Stream s) {
   const Grid g = s->fluid->grid;
@@ -262,6 +274,7 @@ static PetscErrorCode MeanFlow(Stream s) {
   for (PetscInt j = g->rows[FIELD_U] - 1; j >= 0; j--) TridiagonalDown(s->mean, j, &s->means[j]);
   if (s->flux) PetscCall(ZeroFluxCorrectMeans(s->flux, s->means));
   for (PetscMPIInt q = 0; q < g->size; q++) sum += s->all[q * s->message + 4 * s->width];
+  if (s->fluid->held) PetscCall(HoldMean(s, &sum));
   s->mean_v = s->fluid->alpha > 0 ? sum / ((PetscReal)g->n[0] * g->n[1] * s->fluid->alpha) : 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,4 +1,5 @@
 #include "markers/dipoles.h"
+#include "markers/fold.h"
 
 void DipoleStencilsUnwrapped(Grid g, const PetscReal X[2], Stencil s[DIPOLE_COUNT]) {
   const Kernel *five = KernelFind("cbs54"), *six = KernelFind("cbs65");
@@ -11,39 +12,100 @@ void DipoleStencilsUnwrapped(Grid g, const PetscReal X[2], Stencil s[DIPOLE_COUN
     }
 }
 
-void DipoleStencils(Grid g, const PetscReal X[2], Stencil s[DIPOLE_COUNT]) {
+/* On the grid: entries within a period, folded at walls. */
+static void OnGrid(Grid g, const PetscReal X[2], Stencil s[DIPOLE_COUNT]) {
   DipoleStencilsUnwrapped(g, X, s);
   for (int k = 0; k < DIPOLE_COUNT; k++)
-    for (int dir = 0; dir < 2; dir++)
-      if (!g->wall[dir]) s[k].first[dir] = ((s[k].first[dir] % g->n[dir]) + g->n[dir]) % g->n[dir];
+    for (int dir = 0; dir < 2; dir++) {
+      PetscInt *first = &s[k].first[dir];
+      if (g->wall[dir]) {
+        FoldLow(FOLD_SMOOTH, first, &s[k].n[dir], s[k].weight[dir]);
+        FoldHigh(FOLD_SMOOTH, g->n[dir] - (k == DIPOLE_XY ? 2 : 1), first, &s[k].n[dir], s[k].weight[dir]);
+      } else
+        *first = ((*first % g->n[dir]) + g->n[dir]) % g->n[dir];
+    }
 }
 
-static DipoleLine Plain(const Stencil *s, int dir) {
+/* The entries of a line of a field's that are unknowns: between walls the faces on them are none. */
+static DipoleLine Inside(Grid g, Field field, int dir, DipoleLine line) {
+  const PetscInt end = (int)field == dir ? g->n[dir] - 1 : g->n[dir];
+  PetscInt skip = 0;
+  if (!g->wall[dir]) return line;
+  while (skip < line.n && line.first + skip < 0) skip++;
+  while (line.n > skip && line.first + line.n > end) line.n--;
+  line.n -= skip;
+  line.first += skip;
+  for (PetscInt k = 0; k < line.n; k++) line.weight[k] = line.weight[k + skip];
+  return line;
+}
+
+static DipoleLine Plain(Grid g, Field field, const Stencil *s, int dir) {
   DipoleLine line = {.first = s->first[dir], .n = s->n[dir]};
   for (PetscInt k = 0; k < line.n; k++) line.weight[k] = s->weight[dir][k];
-  return line;
+  return Inside(g, field, dir, line);
 }
 
 /* Differences of neighbours: from entry `first` on, which is the stencil's own or the one before it. */
-static DipoleLine Difference(const Stencil *s, int dir, PetscInt before) {
+static DipoleLine Difference(Grid g, Field field, const Stencil *s, int dir, PetscInt before) {
   DipoleLine line = {.first = s->first[dir] - before, .n = s->n[dir] + 1};
   for (PetscInt k = 0; k <= s->n[dir]; k++)
     line.weight[k] = (k < s->n[dir] ? s->weight[dir][k] : 0) - (k ? s->weight[dir][k - 1] : 0);
-  return line;
+  return Inside(g, field, dir, line);
 }
 
 void DipoleSpots(Grid g, PetscReal nu, const PetscReal X[2], const PetscReal T[DIPOLE_COUNT],
                  DipoleSpot spot[DIPOLE_SPOTS]) {
   const PetscReal force = -nu / PetscPowRealInt(g->h, 3), half = -0.5 / PetscSqr(g->h);
   Stencil s[DIPOLE_COUNT];
-  DipoleStencils(g, X, s);
+  OnGrid(g, X, s);
   const Stencil *xx = &s[DIPOLE_XX], *yy = &s[DIPOLE_YY], *xy = &s[DIPOLE_XY];
-  spot[0] = (DipoleSpot){FIELD_U, force * T[DIPOLE_XX], {Difference(xx, 0, 1), Plain(xx, 1)}};
-  spot[1] = (DipoleSpot){FIELD_U, force * T[DIPOLE_XY], {Plain(xy, 0), Difference(xy, 1, 0)}};
-  spot[2] = (DipoleSpot){FIELD_V, force * T[DIPOLE_XY], {Difference(xy, 0, 0), Plain(xy, 1)}};
-  spot[3] = (DipoleSpot){FIELD_V, force * T[DIPOLE_YY], {Plain(yy, 0), Difference(yy, 1, 1)}};
-  spot[4] = (DipoleSpot){FIELD_P, half * T[DIPOLE_XX], {Plain(xx, 0), Plain(xx, 1)}};
-  spot[5] = (DipoleSpot){FIELD_P, half * T[DIPOLE_YY], {Plain(yy, 0), Plain(yy, 1)}};
+  spot[0] = (DipoleSpot){FIELD_U, force * T[DIPOLE_XX], {Difference(g, FIELD_U, xx, 0, 1), Plain(g, FIELD_U, xx, 1)}};
+  spot[1] = (DipoleSpot){FIELD_U, force * T[DIPOLE_XY], {Plain(g, FIELD_U, xy, 0), Difference(g, FIELD_U, xy, 1, 0)}};
+  spot[2] = (DipoleSpot){FIELD_V, force * T[DIPOLE_XY], {Difference(g, FIELD_V, xy, 0, 0), Plain(g, FIELD_V, xy, 1)}};
+  spot[3] = (DipoleSpot){FIELD_V, force * T[DIPOLE_YY], {Plain(g, FIELD_V, yy, 0), Difference(g, FIELD_V, yy, 1, 1)}};
+  spot[4] = (DipoleSpot){FIELD_P, half * T[DIPOLE_XX], {Plain(g, FIELD_P, xx, 0), Plain(g, FIELD_P, xx, 1)}};
+  spot[5] = (DipoleSpot){FIELD_P, half * T[DIPOLE_YY], {Plain(g, FIELD_P, yy, 0), Plain(g, FIELD_P, yy, 1)}};
+}
+
+/* SUM of a line's weights, and of them times the places of its entries along dir (length), from the middle. */
+static PetscReal LineMoment(Grid g, const DipoleSpot *s, int dir, PetscReal *sum) {
+  const DipoleLine *line = &s->line[dir];
+  const PetscReal half = (int)s->field == dir ? 1 : 0.5;
+  PetscReal moment = 0;
+  *sum = 0;
+  for (PetscInt k = 0; k < line->n; k++) {
+    *sum += line->weight[k];
+    moment += line->weight[k] * (line->first + k + half - 0.5 * g->n[dir]) * g->h;
+  }
+  return moment;
+}
+
+/* The weights of a line in the rows next to the walls along dir. */
+static PetscReal LineEnds(Grid g, const DipoleLine *line, int dir) {
+  PetscReal sum = 0;
+  for (PetscInt k = 0; k < line->n; k++)
+    if (line->first + k == 0 || line->first + k == g->n[dir] - 1) sum += line->weight[k];
+  return sum;
+}
+
+void DipoleShortfall(Grid g, PetscReal nu, const PetscReal X[2], const PetscReal T[DIPOLE_COUNT], int dir,
+                     PetscReal shortfall[2]) {
+  const PetscReal cell = PetscSqr(g->h);
+  DipoleSpot spot[DIPOLE_SPOTS];
+  shortfall[0] = shortfall[1] = 0;
+  if (!g->wall[dir] || PetscMin(X[dir] - g->lo[dir], g->hi[dir] - X[dir]) >= (KERNEL_WALL_CELLS + 1) * g->h) return;
+  shortfall[1 - dir] = nu * T[DIPOLE_XY];
+  shortfall[dir] = nu * T[dir ? DIPOLE_YY : DIPOLE_XX];
+  DipoleSpots(g, nu, X, T, spot);
+  for (int q = 0; q < DIPOLE_SPOTS; q++) {
+    PetscReal along, sum;
+    (void)LineMoment(g, &spot[q], 1 - dir, &along);
+    const PetscReal moment = LineMoment(g, &spot[q], dir, &sum), part = cell * spot[q].value * along;
+    if (spot[q].field == FIELD_P)
+      shortfall[dir] += 0.5 * nu * part * LineEnds(g, &spot[q].line[dir], dir) * g->n[dir];
+    else
+      shortfall[spot[q].field] -= part * moment;
+  }
 }
 
 /* a += the spot on this rank's rows of its field. */

@@ -5,17 +5,15 @@
        T_xx: B6(x) B4(y),   T_yy: B4(x) B6(y)   cells,      T_xy: B5(x) B5(y)   nodes,
 
    so that the force -nu DIV T and the source of a closed curve moving as a rigid body give a smoothed rigid motion
-   inside it and nothing outside. Markers keep DIPOLE_WALL_CELLS from walls. */
+   inside it and nothing outside. At a wall weights are folded smoothly (fold.h). */
 #pragma once
 #include "markers/markers.h"
 
 typedef enum { DIPOLE_XX, DIPOLE_YY, DIPOLE_XY, DIPOLE_COUNT } DipolePart;
-#define DIPOLE_WALL_CELLS 4
 
-/* DipoleStencils - of a marker at X: where its three parts are. Entry (i, j) of xy is the upper right corner of cell
-   (i, j). DipoleStencilsUnwrapped - the same, entries beyond a periodic grid as they are. Not collective. */
+/* DipoleStencilsUnwrapped - of a marker at X: where its three parts are, entries beyond the grid as they are. Entry (i,
+   j) of xy is the upper right corner of cell (i, j). Not collective. */
 PETSC_EXTERN void DipoleStencilsUnwrapped(Grid grid, const PetscReal X[2], Stencil stencil[DIPOLE_COUNT]);
-PETSC_EXTERN void DipoleStencils(Grid grid, const PetscReal X[2], Stencil stencil[DIPOLE_COUNT]);
 
 /* What a marker's tensor adds to the entries of a field: value times a product of weights along x and y. */
 typedef struct {
@@ -38,6 +36,12 @@ static inline PetscInt DipoleEntry(Grid g, const DipoleSpot *s, int direction, P
   const PetscInt entry = s->line[direction].first + k, n = g->n[direction];
   return g->wall[direction] ? entry : (entry + n) % n;
 }
+
+/* DipoleShortfall - as MarkersShortfall, of a dipole: nu T less the first moments of its force across the box along
+   dir, of the x and the y component; and in the component across, what its source adds to the pressure in the rows next
+   to the walls, times the box's length there (length^4/time^2). Not collective. */
+PETSC_EXTERN void DipoleShortfall(Grid grid, PetscReal nu, const PetscReal X[2], const PetscReal T[DIPOLE_COUNT],
+                                  int dir, PetscReal shortfall[2]);
 
 /* DipolesSpread - of the M markers of all bodies with tensors T[3M], the same on every rank: their spots added to w and
    source. Not collective. */

@@ -81,8 +81,8 @@ static void FoldStencil(Markers m, int comp, const PetscReal X[2], Stencil *s) {
       const PetscReal scale = WallScale(m->kernel, y) * WallScale(m->kernel, g->n[dir] - y);
       for (PetscInt k = 0; k < s->n[dir]; k++) s->weight[dir][k] *= scale;
     }
-    FoldLow(normal, &s->first[dir], &s->n[dir], s->weight[dir]);
-    FoldHigh(normal, g->n[dir], &s->first[dir], &s->n[dir], s->weight[dir]);
+    FoldLow(normal ? FOLD_EVEN : FOLD_ODD, &s->first[dir], &s->n[dir], s->weight[dir]);
+    FoldHigh(normal ? FOLD_EVEN : FOLD_ODD, g->n[dir] - (normal ? 2 : 1), &s->first[dir], &s->n[dir], s->weight[dir]);
   }
 }
 

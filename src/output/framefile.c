@@ -40,13 +40,16 @@ static PetscErrorCode PutRatios(H5File *f, Scene scene) {
 /* The curves of solids, which stay where they are. */
 static PetscErrorCode PutObstacles(H5File *f, Obstacles o) {
   PetscReal *X;
+  PetscInt *kind;
   PetscFunctionBeginUser;
   if (!o) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscMalloc1(2 * o->layout->M, &X));
+  PetscCall(PetscMalloc2(2 * o->layout->M, &X, o->layout->bodies, &kind));
   ObstaclesCurves(o, X);
+  for (PetscInt v = 0; v < o->layout->bodies; v++) kind[v] = o->kind[v].type;
+  PetscCall(H5PutInts(f, "obstacle_kind", o->layout->bodies, kind));
   PetscCall(H5PutInts(f, "obstacle_start", o->layout->bodies + 1, o->layout->start));
   PetscCall(H5PutRows(f, "/obstacle/markers", o->layout->M, 2, X));
-  PetscCall(PetscFree(X));
+  PetscCall(PetscFree2(X, kind));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -73,14 +73,14 @@ static void Wrap(Grid g, PetscInt n, const PetscReal X[], PetscReal shift[2]) {
   }
 }
 
-/* A closed line through n points; its geometry follows. */
-static void PrintLoop(FILE *f, const char what[], PetscInt number, PetscInt n) {
+/* A line through n points, closed or not; its geometry follows. */
+static void PrintLine(FILE *f, const char what[], PetscInt number, PetscInt n, PetscBool closed) {
   fprintf(f, "<Grid Name=\"%s %d\" GridType=\"Uniform\">", what, (int)number);
   fprintf(f,
           "<Topology TopologyType=\"Polyline\" NumberOfElements=\"1\" NodesPerElement=\"%d\"><DataItem "
           "Dimensions=\"1 %d\" NumberType=\"Int\">",
-          (int)n + 1, (int)n + 1);
-  for (PetscInt k = 0; k <= n; k++) fprintf(f, "%d ", (int)(k % n));
+          (int)(n + closed), (int)(n + closed));
+  for (PetscInt k = 0; k < n + (PetscInt)closed; k++) fprintf(f, "%d ", (int)(k % n));
   fprintf(f, "</DataItem></Topology>\n<Geometry GeometryType=\"XY\">\n");
 }
 
@@ -90,9 +90,10 @@ static void PrintNumber(FILE *f, const char what[], PetscInt number) {
   fprintf(f, "<DataItem Dimensions=\"1\" NumberType=\"Int\">%d</DataItem></Attribute></Grid>\n", (int)number);
 }
 
-static void PrintObstacle(FILE *f, PetscInt t, Layout l, PetscInt v) {
+static void PrintObstacle(FILE *f, PetscInt t, Obstacles o, PetscInt v) {
+  const Layout l = o->layout;
   const PetscInt n = LayoutCount(l, v);
-  PrintLoop(f, "obstacle", v + 1, n);
+  PrintLine(f, "obstacle", v + 1, n, o->kind[v].type == CURVE_CLOSED ? PETSC_TRUE : PETSC_FALSE);
   fprintf(f,
           "<DataItem ItemType=\"HyperSlab\" Dimensions=\"%d 2\"><DataItem Dimensions=\"3 2\" Format=\"XML\">%d 0 1 1 "
           "%d 2</DataItem>",
@@ -113,7 +114,7 @@ static void PrintVesicle(Scheme s, FILE *f, PetscInt t, PetscInt v, const PetscR
   const PetscInt first = m->layout->start[v], n = LayoutCount(m->layout, v);
   PetscReal shift[2];
   Wrap(s->fluid->grid, n, X + 2 * first, shift);
-  PrintLoop(f, "vesicle", v + 1, n);
+  PrintLine(f, "vesicle", v + 1, n, PETSC_TRUE);
   if (shift[0] || shift[1])
     PrintShifted(f, t, first, n, m->layout->M, shift);
   else
@@ -137,7 +138,7 @@ static void PrintFrame(Scheme s, FILE *f, PetscInt t, PetscReal time, const Pets
           (int)t, (double)time);
   PrintFluid(s->fluid->grid, f, t, s->scene->output.precision == PRECISION_SINGLE ? 4 : 8);
   for (PetscInt v = 0; v < s->membrane->layout->bodies; v++) PrintVesicle(s, f, t, v, X);
-  for (PetscInt v = 0; solids && v < solids->layout->bodies; v++) PrintObstacle(f, t, solids->layout, v);
+  for (PetscInt v = 0; solids && v < solids->layout->bodies; v++) PrintObstacle(f, t, solids, v);
   fprintf(f, "</Grid>\n");
 }
 

@@ -69,11 +69,10 @@ PetscErrorCode SceneThinnestFilm(Scene scene, PetscReal *spacings, PetscReal *er
   PetscCall(PetscMalloc1(s->vesicles, &ds));
   for (PetscInt v = 0; v < s->vesicles; v++) ds[v] = 2 * PETSC_PI * ShapeRadius(s, v) / (s->start[v + 1] - s->start[v]);
   PetscCall(PetscArraycpy(room.box, f->box, 4));
-  for (int dir = 0; dir < 2; dir++) {
-    room.wall[dir] = f->bc[dir] == BC_WALL ? PETSC_TRUE : PETSC_FALSE;
-    room.period[dir] = f->bc[dir] == BC_PERIODIC ? f->box[2 * dir + 1] - f->box[2 * dir] : 0;
-  }
-  PetscCall(CurveThinnestFilm(s->vesicles, s->vesicles, s->start, s->X, NULL, ds, &room, smooth, WIDE, &film));
+  FluidSpecPeriods(f, room.period);
+  for (int dir = 0; dir < 2; dir++) room.wall[dir] = f->bc[dir] == BC_WALL ? PETSC_TRUE : PETSC_FALSE;
+  const CurveSet set = {s->vesicles, s->vesicles, s->start, NULL, s->X, room.period, smooth};
+  PetscCall(CurveThinnestFilm(&set, ds, &room, WIDE, &film));
   PetscCall(PetscFree(ds));
   *spacings = film.spacings;
   *error = film.spacings < WIDE ? FilmError(film.spacings) * film.thickness / SceneSmallestRadius(scene) : 0;

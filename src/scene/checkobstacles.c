@@ -1,9 +1,10 @@
 /* What goes with obstacles, and where they and the vesicles among them may be. */
 #include "curve/crossing.h"
 #include "kernel/kernel.h"
-#include "scene/resolve.h"
+#include "scene/mixture.h"
 
-#define LEAST_ACROSS 6 /* cells */
+#define LEAST_ACROSS 6   /* cells */
+#define MOST_SPACING 1.5 /* ds/h with inertia, where the mobility of markers farther apart is indefinite */
 
 static PetscErrorCode CheckMethod(Scene scene) {
   PetscFunctionBeginUser;
@@ -14,9 +15,12 @@ static PetscErrorCode CheckMethod(Scene scene) {
              "-obstacle_shape: not with -scheme_type %s; allowed: coupled, direct", scene->scheme.type);
   PetscCheck(scene->fluid.form != FORM_TOTAL, scene->comm, PETSC_ERR_USER_INPUT,
              "-obstacle_shape: not with -flow_form total; allowed: disturbance");
-  PetscCheck(scene->fluid.inertia == INERTIA_AUTO || scene->fluid.inertia == INERTIA_NONE, scene->comm,
-             PETSC_ERR_USER_INPUT, "-obstacle_shape: not with -fluid_inertia %s; allowed: none",
-             scene->fluid.inertia == INERTIA_UNSTEADY ? "unsteady" : "convective");
+  PetscCheck(scene->fluid.inertia == INERTIA_AUTO || scene->fluid.inertia == INERTIA_NONE ||
+                 scene->obstacles.spacing <= MOST_SPACING,
+             scene->comm, PETSC_ERR_USER_INPUT,
+             "-obstacle_spacing %g: with inertia of the fluid obstacles so far apart leak; allowed: at most %g, or "
+             "-fluid_inertia none",
+             (double)scene->obstacles.spacing, MOST_SPACING);
   PetscCheck(scene->coupling.near_field == NEAR_EXACT, scene->comm, PETSC_ERR_USER_INPUT,
              "-obstacle_shape: not with -coupling_near_field none; allowed: exact");
   PetscCheck(SceneHasBoxPart(scene), scene->comm, PETSC_ERR_USER_INPUT,
@@ -26,35 +30,51 @@ static PetscErrorCode CheckMethod(Scene scene) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* That a curve is large enough for the grid, fits into the box and is off its walls. */
-static PetscErrorCode CheckPlace(Scene scene, PetscInt b) {
-  const Shape *s = &scene->obstacles.outline;
+/* That a curve fits into the box and is off the walls that it does not stand on: with finer points next to a wall for
+   closed curves only (wallclose.h), others keep a marker spacing. */
+static PetscErrorCode CheckRoom(Scene scene, PetscInt b, int d, PetscReal low, PetscReal high) {
+  const SceneObstacles *own = &scene->obstacles;
   const FluidSpec *f = &scene->fluid;
-  const PetscReal h = FluidSpecCellSize(f);
+  const PetscReal h = FluidSpecCellSize(f), room[2] = {low - f->box[2 * d], f->box[2 * d + 1] - high};
+  const PetscReal least = own->outline.kind[b].type == CURVE_CLOSED ? KERNEL_FOLDED_CELLS : own->spacing;
+  PetscFunctionBeginUser;
+  PetscCheck(high - low < f->box[2 * d + 1] - f->box[2 * d], scene->comm, PETSC_ERR_USER_INPUT,
+             "-obstacle_shape: obstacle %" PetscInt_FMT " is %g long in %c; allowed: one that fits into -domain_box",
+             b + 1, (double)(high - low), "xy"[d]);
+  for (int side = 0; side < 2; side++)
+    PetscCheck(f->bc[d] != BC_WALL || own->wall[b] == 2 * d + side || room[side] >= least * h * (1 - 1e-12),
+               scene->comm, PETSC_ERR_USER_INPUT,
+               "-obstacle_shape: obstacle %" PetscInt_FMT " comes to %.3g cells of a wall in %c; allowed: at least %g",
+               b + 1, (double)(room[side] / h), "xy"[d], (double)least);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* And large enough for the grid: a bump along its wall, a spanning curve anyway. */
+static PetscErrorCode CheckPlace(Scene scene, PetscInt b) {
+  const SceneObstacles *own = &scene->obstacles;
+  const Shape *s = &own->outline;
+  const PetscReal h = FluidSpecCellSize(&scene->fluid);
   PetscFunctionBeginUser;
   for (int d = 0; d < 2; d++) {
+    const PetscBool along = own->wall[b] < 0 || own->wall[b] / 2 != d ? PETSC_TRUE : PETSC_FALSE;
     PetscReal low = PETSC_MAX_REAL, high = -PETSC_MAX_REAL;
     for (PetscInt k = s->start[b]; k < s->start[b + 1]; k++) {
       low = PetscMin(low, s->X[2 * k + d]);
       high = PetscMax(high, s->X[2 * k + d]);
     }
-    PetscCheck(high - low >= LEAST_ACROSS * h * (1 - 1e-2), scene->comm, PETSC_ERR_USER_INPUT,
+    PetscCheck(!along || s->kind[b].type == CURVE_SPANNING || high - low >= LEAST_ACROSS * h * (1 - 1e-2), scene->comm,
+               PETSC_ERR_USER_INPUT,
                "-obstacle_shape: obstacle %" PetscInt_FMT " is %.3g cells across in %c; allowed: at least %d, so finer "
                "-domain_cells or a larger one",
                b + 1, (double)((high - low) / h), "xy"[d], LEAST_ACROSS);
-    PetscCheck(high - low < f->box[2 * d + 1] - f->box[2 * d], scene->comm, PETSC_ERR_USER_INPUT,
-               "-obstacle_shape: obstacle %" PetscInt_FMT " is %g long in %c; allowed: one that fits into -domain_box",
-               b + 1, (double)(high - low), "xy"[d]);
-    const PetscReal room = PetscMin(low - f->box[2 * d], f->box[2 * d + 1] - high);
-    PetscCheck(f->bc[d] != BC_WALL || room >= KERNEL_FOLDED_CELLS * h * (1 - 1e-12), scene->comm, PETSC_ERR_USER_INPUT,
-               "-obstacle_shape: obstacle %" PetscInt_FMT " comes to %.3g cells of a wall in %c; allowed: at least %g",
-               b + 1, (double)(room / h), "xy"[d], (double)KERNEL_FOLDED_CELLS);
+    PetscCall(CheckRoom(scene, b, d, low, high));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether curve b, or an image of it, holds the point. */
+/* Whether curve b, or an image of it, holds the point; a spanning one holds none. */
 static PetscBool Holds(const Shape *s, PetscInt b, const PetscReal X[2], const PetscReal period[2]) {
+  if (s->kind[b].type == CURVE_SPANNING) return PETSC_FALSE;
   for (int p = -1; p <= 1; p++)
     for (int q = -1; q <= 1; q++) {
       if ((p && period[0] == 0) || (q && period[1] == 0)) continue;
@@ -63,11 +83,50 @@ static PetscBool Holds(const Shape *s, PetscInt b, const PetscReal X[2], const P
   return PETSC_FALSE;
 }
 
+/* The spanning curve that a ray from X, upwards (1) or downwards (-1) in direction d, meets first and whose solid is
+   towards X, or -1. Curves are looked at over their own period and its neighbours. */
+static PetscInt SolidAlong(const Shape *s, int d, int up, const PetscReal X[2], const PetscReal period[2]) {
+  PetscReal least = PETSC_MAX_REAL;
+  PetscInt found = -1;
+  for (PetscInt b = 0; b < s->vesicles; b++)
+    for (PetscInt k = s->start[b]; k < s->start[b + 1] && s->kind[b].span[1 - d] != 0; k++) {
+      const PetscReal *A = s->X + 2 * k, *span = s->kind[b].span;
+      const PetscBool last = k + 1 == s->start[b + 1] ? PETSC_TRUE : PETSC_FALSE;
+      const PetscReal *B = last ? s->X + 2 * s->start[b] : A + 2;
+      const PetscReal along = B[1 - d] + (last ? span[1 - d] : 0) - A[1 - d];
+      PetscReal x = X[1 - d] - A[1 - d], off;
+      x -= period[1 - d] * PetscFloorReal(x / period[1 - d] + (along < 0 ? 1 : 0)); /* 0 .. period, -period .. 0 */
+      if (along == 0 || x / along < 0 || x / along >= 1) continue;
+      off = up * (A[d] + (B[d] - A[d]) * x / along - X[d]);
+      if (period[d] > 0) off -= period[d] * PetscFloorReal(off / period[d]);
+      if (off < 0 || off >= least) continue;
+      least = off;
+      /* the solid is on the left of the curve's direction: above one that runs along +x, below one along +y */
+      found = (along > 0) == (d == 1) ? (up < 0 ? b : -1) : (up > 0 ? b : -1);
+    }
+  return found;
+}
+
+/* That vesicle v is on the fluid's side of the spanning curves around it. */
+static PetscErrorCode CheckSides(Scene scene, PetscInt v, const PetscReal period[2]) {
+  const PetscReal *X = scene->shape.X + 2 * scene->shape.start[v];
+  PetscFunctionBeginUser;
+  for (int ray = 0; ray < 4; ray++) {
+    const PetscInt b = SolidAlong(&scene->obstacles.outline, ray / 2, ray % 2 ? 1 : -1, X, period);
+    PetscCheck(b < 0, scene->comm, PETSC_ERR_USER_INPUT,
+               "-vesicle_center: vesicle %" PetscInt_FMT " lies on the solid's side of obstacle %" PetscInt_FMT
+               ", which is on its left; allowed: vesicles in the fluid",
+               v + 1, b + 1);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* That no vesicle is in a solid, and no obstacle within another one's. */
 static PetscErrorCode CheckInside(Scene scene, const PetscReal period[2]) {
   const SceneObstacles *own = &scene->obstacles;
   const Shape *s = &own->outline, *vesicles = &scene->shape;
   PetscFunctionBeginUser;
+  for (PetscInt v = 0; v < vesicles->vesicles; v++) PetscCall(CheckSides(scene, v, period));
   for (PetscInt b = 0; b < s->vesicles; b++) {
     for (PetscInt v = 0; v < vesicles->vesicles; v++) {
       const PetscBool held = Holds(s, b, vesicles->X + 2 * vesicles->start[v], period);
@@ -91,15 +150,18 @@ static PetscErrorCode CheckCrossing(Scene scene, const PetscReal period[2]) {
   const Shape *s = &scene->obstacles.outline, *v = &scene->shape;
   const PetscInt n = v->vesicles, M = v->start[n], all = n + s->vesicles;
   PetscInt *start, pair[2];
+  CurveKind *kind;
   PetscReal *X;
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(all + 1, &start, 2 * (M + s->start[s->vesicles]), &X));
+  PetscCall(PetscCalloc3(all + 1, &start, all, &kind, 2 * (M + s->start[s->vesicles]), &X));
+  PetscCall(PetscArraycpy(kind + n, s->kind, s->vesicles));
   PetscCall(PetscArraycpy(start, v->start, n));
   for (PetscInt b = 0; b <= s->vesicles; b++) start[n + b] = M + s->start[b];
   PetscCall(PetscArraycpy(X, v->X, 2 * M));
   PetscCall(PetscArraycpy(X + 2 * M, s->X, 2 * s->start[s->vesicles]));
-  PetscCall(CurvesCross(all, start, X, NULL, period, PETSC_TRUE, pair));
-  PetscCall(PetscFree2(start, X));
+  const CurveSet set = {all, n, start, kind, X, period, PETSC_TRUE};
+  PetscCall(CurvesCross(&set, pair));
+  PetscCall(PetscFree3(start, kind, X));
   const PetscInt b = pair[1] - n + 1;
   PetscCheck(pair[0] < 0 || pair[0] >= n, scene->comm, PETSC_ERR_USER_INPUT,
              "-vesicle_center: vesicle %" PetscInt_FMT " crosses obstacle %" PetscInt_FMT
@@ -112,14 +174,50 @@ static PetscErrorCode CheckCrossing(Scene scene, const PetscReal period[2]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+#define MOST_FLUX 1e-6 /* of the sum of |U| ds */
+
+/* That what a curve's surface does, less a uniform flow, moves no fluid through it where it is not closed. Other flows
+   have no flux through walls and across periods. */
+static PetscErrorCode CheckFlux(Scene scene, PetscInt b) {
+  const SceneObstacles *own = &scene->obstacles;
+  const Shape *s = &own->outline;
+  const PetscInt first = s->start[b], n = s->start[b + 1] - first;
+  const CurveSet set = {s->vesicles, 0, s->start, s->kind, s->X, NULL, PETSC_FALSE};
+  PetscReal flux = 0, all = 0, middle[2] = {0, 0}, shift[2];
+  PetscFunctionBeginUser;
+  if (s->kind[b].type == CURVE_CLOSED) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt k = 0; k < 2 * n; k++) middle[k % 2] += s->X[2 * first + k] / (PetscReal)n;
+  for (int c = 0; c < 2; c++)
+    shift[c] = own->velocity[2 * b + c] -
+               (scene->flow.type == FLOW_UNIFORM ? ListEntry(&scene->flow.velocity, 2, 0, c) : 0);
+  for (PetscInt k = 0; k < n; k++) { /* edges, exact for velocities that are linear in the place */
+    PetscReal to[2], off[2], edge[2];
+    if (!CurveSetWalk(&set, b, first + k, 1, to)) continue;
+    for (int c = 0; c < 2; c++) {
+      const PetscReal at = s->X[2 * (first + k) + c];
+      off[c] = 0.5 * (at + to[c]) - middle[c];
+      edge[c] = to[c] - at;
+    }
+    const PetscReal U[2] = {shift[0] - own->turn[b] * off[1], shift[1] + own->turn[b] * off[0]};
+    flux += U[0] * edge[1] - U[1] * edge[0];
+    all += PetscHypotReal(U[0], U[1]) * PetscHypotReal(edge[0], edge[1]);
+  }
+  PetscCheck(
+      PetscAbsReal(flux) <= MOST_FLUX * all, scene->comm, PETSC_ERR_USER_INPUT,
+      "-obstacle_shape: obstacle %" PetscInt_FMT " has a flux of %.3g through it, of its surface's velocity less "
+      "a uniform flow's, which no fluid can follow; allowed on a wall and across a period: velocities along them",
+      b + 1, (double)flux);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode SceneCheckObstacles(Scene scene) {
   PetscReal period[2];
   PetscFunctionBeginUser;
   PetscCall(CheckMethod(scene));
-  for (int d = 0; d < 2; d++)
-    period[d] = scene->fluid.bc[d] == BC_PERIODIC ? scene->fluid.box[2 * d + 1] - scene->fluid.box[2 * d] : 0;
+  FluidSpecPeriods(&scene->fluid, period);
   for (PetscInt b = 0; b < scene->obstacles.outline.vesicles; b++) PetscCall(CheckPlace(scene, b));
   PetscCall(CheckCrossing(scene, period));
   PetscCall(CheckInside(scene, period));
+  for (PetscInt b = 0; b < scene->obstacles.outline.vesicles; b++) PetscCall(CheckFlux(scene, b));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -16,6 +16,8 @@ typedef struct {
   PetscReal nu;      /* viscosity (density is 1) */
   PetscInt inertia;  /* InertiaType, never INERTIA_AUTO */
   PetscInt drive;    /* DriveType: in a channel no mean pressure gradient, or no flux, of what is solved for */
+  PetscBool held;    /* in a box that is periodic both ways the mean of what is solved for stays zero, whatever forces
+                        there are: with obstacles */
   PetscInt form;     /* FlowForm: of the total form the walls move with the flow */
   const Flow *flow;  /* background flow, borrowed */
   char helmholtz[OPTION_MAX_NAME]; /* back end of the Helmholtz solves */
@@ -30,6 +32,11 @@ typedef struct {
 /* FluidSpecCellSize - h, the edge of the square cells. */
 static inline PetscReal FluidSpecCellSize(const FluidSpec *spec) {
   return (spec->box[1] - spec->box[0]) / spec->cells[0];
+}
+
+/* FluidSpecPeriods - of both directions (length), 0 without. */
+static inline void FluidSpecPeriods(const FluidSpec *spec, PetscReal period[2]) {
+  for (int d = 0; d < 2; d++) period[d] = spec->bc[d] == BC_PERIODIC ? spec->box[2 * d + 1] - spec->box[2 * d] : 0;
 }
 
 /* FluidSpecIsFree - whether the fluid is unbounded: the box is only the window in which fields are written. */

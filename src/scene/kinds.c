@@ -177,7 +177,7 @@ static PetscErrorCode FileKinds(Scene scene, Kinds *all) {
   const SceneVesicles *own = &scene->vesicles;
   Curve *curve;
   PetscFunctionBeginUser;
-  PetscCall(CurvesFromFile(scene->comm, "-vesicle_file", own->file, &all->vesicles, &curve, NULL));
+  PetscCall(CurvesFromFile(scene->comm, "-vesicle_file", own->file, NULL, &all->vesicles, &curve, NULL));
   all->kinds = all->vesicles;
   PetscCall(PetscMalloc1(all->vesicles, &all->of));
   PetscCall(PetscCalloc1(all->kinds, &all->kind));

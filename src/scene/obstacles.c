@@ -1,8 +1,7 @@
-/* The obstacles of a scene: circles or curves of a file, markers at equal distances on them, and what their surfaces
-   do. */
+/* The obstacles of a scene: circles, bumps or curves of a file, markers at equal distances on them, and what their
+   surfaces do. */
 #include "kernel/kernel.h"
-#include "scene/mixture.h"
-#include "scene/resolve.h"
+#include "scene/arcs.h"
 
 /* The curves before they have markers. */
 typedef struct {
@@ -10,6 +9,8 @@ typedef struct {
   Curve *curve;
   PetscReal *center; /* [2 count] added to the curve's points */
   CurveNote *note;
+  PetscReal *part; /* [2 count] of the parameter of open ones, that markers are on */
+  PetscInt *wall;  /* [count] that open ones are on */
 } Outlines;
 
 /* A list has `each` numbers for all curves, or `each` a curve. */
@@ -105,34 +106,64 @@ static PetscErrorCode MakeCouette(Scene scene, Outlines *o) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Two bumps that face one another. */
+static PetscErrorCode MakeConstriction(Scene scene, Outlines *o) {
+  const SceneObstacles *own = &scene->obstacles;
+  const FluidSpec *f = &scene->fluid;
+  PetscFunctionBeginUser;
+  PetscCheck(f->bc[1] == BC_WALL, scene->comm, PETSC_ERR_USER_INPUT,
+             "-obstacle_shape constriction: its bumps are on the walls y_min and y_max; allowed: -domain_bc_y wall");
+  PetscCheck(own->length < f->box[1] - f->box[0], scene->comm, PETSC_ERR_USER_INPUT,
+             "-obstacle_length %g: the box is %g long; allowed: less than that", (double)own->length,
+             (double)(f->box[1] - f->box[0]));
+  PetscCall(CheckList(scene, "-obstacle_center", own->center.n, 2, 1));
+  PetscCall(CreateOutlines(scene, 2, o));
+  for (int side = 0; side < 2; side++) PetscCall(ArcBump(scene, side, &o->curve[side]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode MakeFromFile(Scene scene, Outlines *o) {
   const SceneObstacles *own = &scene->obstacles;
+  PetscReal period[2];
   PetscFunctionBeginUser;
   PetscCheck(*own->file, scene->comm, PETSC_ERR_USER_INPUT,
              "-obstacle_shape file: no -obstacle_file given; allowed: a text file with x y a line");
-  PetscCall(CurvesFromFile(scene->comm, "-obstacle_file", own->file, &o->count, &o->curve, &o->note));
+  FluidSpecPeriods(&scene->fluid, period);
+  PetscCall(CurvesFromFile(scene->comm, "-obstacle_file", own->file, period, &o->count, &o->curve, &o->note));
   PetscCall(PetscCalloc1(2 * o->count, &o->center));
-  for (PetscInt k = 0; k < o->count; k++)
-    PetscCheck(!o->note[k].open, scene->comm, PETSC_ERR_USER_INPUT,
-               "-obstacle_file %s: curve %" PetscInt_FMT " is marked open; allowed: closed curves only", own->file,
-               k + 1);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Which parts of open curves count. */
+static PetscErrorCode Cut(Scene scene, Outlines *o) {
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(2 * o->count, &o->part, o->count, &o->wall));
+  for (PetscInt k = 0; k < o->count; k++) {
+    o->wall[k] = -1;
+    if (o->curve[k].kind.type == CURVE_OPEN) PetscCall(ArcCut(scene, k, &o->curve[k], o->part + 2 * k, &o->wall[k]));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 #define LEAST_MARKERS 15
 #define MOST_MARKERS 4000 /* of all: the preconditioner has a dense block of them */
 
-/* An odd number of markers on each curve. */
+/* An odd number of markers on each curve that repeats; on open ones none farther apart than wanted, so that the first
+   is half a spacing off its wall. */
 static PetscErrorCode Number(Scene scene, const Outlines *o, Shape *shape) {
   const PetscReal spacing = scene->obstacles.spacing * FluidSpecCellSize(&scene->fluid);
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < o->count; k++) {
-    const PetscReal wanted = CurveLength(&o->curve[k]) / spacing;
+    const PetscBool open = o->curve[k].kind.type == CURVE_OPEN ? PETSC_TRUE : PETSC_FALSE;
+    const PetscReal *part = o->part + 2 * k;
+    const PetscReal length = open ? CurvePartLength(&o->curve[k], part[0], part[1]) : CurveLength(&o->curve[k]);
+    const PetscReal wanted = length / spacing;
     PetscCheck(shape->start[k] + wanted <= MOST_MARKERS, scene->comm, PETSC_ERR_USER_INPUT,
                "-obstacle_spacing %g: more than %d markers on the obstacles; allowed: at most that many, so a larger "
                "spacing, fewer obstacles or coarser -domain_cells",
                (double)scene->obstacles.spacing, MOST_MARKERS);
-    shape->start[k + 1] = shape->start[k] + PetscMax(LEAST_MARKERS, 2 * (PetscInt)PetscFloorReal(wanted / 2) + 1);
+    const PetscInt n = open ? 1 + (PetscInt)PetscCeilReal(wanted) : 2 * (PetscInt)PetscFloorReal(wanted / 2) + 1;
+    shape->start[k + 1] = shape->start[k] + PetscMax(LEAST_MARKERS, n);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -144,15 +175,22 @@ static PetscErrorCode PlaceMarkers(Scene scene, const Outlines *o, SceneObstacle
   PetscCall(PetscCalloc1(o->count + 1, &shape->start));
   PetscCall(Number(scene, o, shape));
   PetscCall(PetscMalloc1(2 * shape->start[o->count], &shape->X));
-  PetscCall(PetscCalloc3(2 * o->count, &own->velocity, o->count, &own->turn, o->count, &own->container));
+  PetscCall(PetscMalloc1(o->count, &shape->kind));
+  PetscCall(PetscCalloc4(2 * o->count, &own->velocity, o->count, &own->turn, o->count, &own->container, o->count,
+                         &own->wall));
   for (PetscInt k = 0; k < o->count; k++) {
     PetscReal *X = shape->X + 2 * shape->start[k];
     const PetscInt n = shape->start[k + 1] - shape->start[k];
-    PetscCall(CurveEqualArcs(&o->curve[k], n, X));
+    shape->kind[k] = o->curve[k].kind;
+    own->wall[k] = o->wall[k];
+    if (o->curve[k].kind.type == CURVE_OPEN)
+      PetscCall(CurvePartEqualArcs(&o->curve[k], o->part[2 * k], o->part[2 * k + 1], n, X));
+    else
+      PetscCall(CurveEqualArcs(&o->curve[k], n, X));
     for (PetscInt j = 0; j < 2 * n; j++) X[j] += o->center[2 * k + j % 2];
     for (int c = 0; c < 2; c++) own->velocity[2 * k + c] = o->note[k].velocity[c];
     own->turn[k] = o->note[k].rotation;
-    own->container[k] = o->note[k].clockwise;
+    own->container[k] = o->curve[k].kind.type == CURVE_CLOSED ? o->note[k].clockwise : PETSC_FALSE;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -163,12 +201,16 @@ PetscErrorCode SceneMakeObstacles(Draft scene) {
   if (scene->obstacles.shape == OBSTACLE_NONE) PetscFunctionReturn(PETSC_SUCCESS);
   if (scene->obstacles.shape == OBSTACLE_POSTS) PetscCall(MakePosts(scene, &o));
   if (scene->obstacles.shape == OBSTACLE_COUETTE) PetscCall(MakeCouette(scene, &o));
+  if (scene->obstacles.shape == OBSTACLE_CONSTRICTION) PetscCall(MakeConstriction(scene, &o));
   if (scene->obstacles.shape == OBSTACLE_FILE) PetscCall(MakeFromFile(scene, &o));
+  PetscCall(Cut(scene, &o));
   PetscCall(PlaceMarkers(scene, &o, &scene->obstacles));
+  scene->fluid.held = PETSC_TRUE;
   for (PetscInt k = 0; k < o.count; k++) PetscCall(CurveDestroy(&o.curve[k]));
   PetscCall(PetscFree(o.curve));
   PetscCall(PetscFree(o.center));
   PetscCall(PetscFree(o.note));
+  PetscCall(PetscFree2(o.part, o.wall));
   PetscCall(SceneCheckObstacles(scene));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -178,6 +220,6 @@ PetscErrorCode SceneDropObstacles(Draft scene) {
   PetscFunctionBeginUser;
   if (!own->outline.vesicles) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ShapeDestroy(&own->outline));
-  PetscCall(PetscFree3(own->velocity, own->turn, own->container));
+  PetscCall(PetscFree4(own->velocity, own->turn, own->container, own->wall));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -14,7 +14,7 @@ typedef enum { FRAME_TREADING, FRAME_NONE } FrameType;
 typedef enum { PRECISION_DOUBLE, PRECISION_SINGLE } PrecisionType;
 typedef enum { STARTUP_EULER, STARTUP_GRADED } StartUp;
 typedef enum { SHAPE_ELLIPSE, SHAPE_BICONCAVE, SHAPE_FILE, SHAPE_NONE } ShapeType;
-typedef enum { OBSTACLE_NONE, OBSTACLE_POSTS, OBSTACLE_COUETTE, OBSTACLE_FILE } ObstacleShape;
+typedef enum { OBSTACLE_NONE, OBSTACLE_POSTS, OBSTACLE_COUETTE, OBSTACLE_CONSTRICTION, OBSTACLE_FILE } ObstacleShape;
 typedef enum { PACKING_RANDOM, PACKING_LATTICE } PackingType;
 
 /* The domain as the user gives it: fluid.box and fluid.cells when their lengths are right. */
@@ -59,13 +59,16 @@ typedef struct {
 typedef struct {
   PetscInt shape; /* ObstacleShape */
   RealList radius, center, move, rotation;
+  PetscReal frequency;           /* angular, of the surfaces' velocities (1/time); 0: steady */
   IntList lattice;               /* columns and rows; 0, 0: none */
   PetscReal shift;               /* of a row against the one below, over the distance of columns */
+  PetscReal throat, length;      /* of a constriction: narrowest width over the channel's; along x, 0: the width */
   char file[PETSC_MAX_PATH_LEN]; /* curve file */
   PetscReal spacing;             /* ds/h */
   Shape outline;                 /* their markers, the same on every rank */
   PetscReal *velocity, *turn;    /* [2 curves], [curves] of their surfaces */
   PetscBool *container;          /* [curves] the fluid is inside */
+  PetscInt *wall;                /* [curves] 2 direction + side of the wall that an open one is on; -1 of others */
 } SceneObstacles;
 
 typedef struct {

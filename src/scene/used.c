@@ -33,6 +33,8 @@ typedef enum {
   BY_OBSTACLES,
   BY_CIRCLES,
   BY_POSTS,
+  BY_CONSTRICTION,
+  BY_SOLID_CENTERS,
   BY_OBSTACLE_FILE
 } Need;
 
@@ -66,6 +68,8 @@ static const char *const needs[] = {"-flow_type shear or extension",
                                     "obstacles (-obstacle_shape)",
                                     "-obstacle_shape posts or couette",
                                     "-obstacle_shape posts",
+                                    "-obstacle_shape constriction",
+                                    "-obstacle_shape posts, couette or constriction",
                                     "-obstacle_shape file"};
 
 /* Options that are not listed are used by every scene. */
@@ -102,11 +106,14 @@ static const struct {
              {"-vesicle_markers", BY_VESICLES},
              {"-vesicle_allow_close_markers", BY_VESICLES},
              {"-obstacle_radius", BY_CIRCLES},
-             {"-obstacle_center", BY_CIRCLES},
+             {"-obstacle_center", BY_SOLID_CENTERS},
              {"-obstacle_lattice", BY_POSTS},
              {"-obstacle_shift", BY_POSTS},
+             {"-obstacle_throat", BY_CONSTRICTION},
+             {"-obstacle_length", BY_CONSTRICTION},
              {"-obstacle_velocity", BY_CIRCLES},
              {"-obstacle_rotation", BY_CIRCLES},
+             {"-obstacle_frequency", BY_OBSTACLES},
              {"-obstacle_file", BY_OBSTACLE_FILE},
              {"-obstacle_spacing", BY_OBSTACLES},
              {"-delta_type", BY_BODIES},
@@ -183,6 +190,8 @@ static PetscBool MetByObstacles(Scene s, Need need) {
   if (need == BY_BODIES) return s->shape.vesicles > 0 || shape != OBSTACLE_NONE ? PETSC_TRUE : PETSC_FALSE;
   if (need == BY_OBSTACLES) return shape != OBSTACLE_NONE ? PETSC_TRUE : PETSC_FALSE;
   if (need == BY_OBSTACLE_FILE) return shape == OBSTACLE_FILE ? PETSC_TRUE : PETSC_FALSE;
+  if (need == BY_CONSTRICTION) return shape == OBSTACLE_CONSTRICTION ? PETSC_TRUE : PETSC_FALSE;
+  if (need == BY_SOLID_CENTERS) return shape != OBSTACLE_NONE && shape != OBSTACLE_FILE ? PETSC_TRUE : PETSC_FALSE;
   return shape == OBSTACLE_POSTS || (need == BY_CIRCLES && shape == OBSTACLE_COUETTE) ? PETSC_TRUE : PETSC_FALSE;
 }
 

@@ -131,9 +131,9 @@ static PetscErrorCode CheckOverlap(Scene scene, const Shape *s) {
   PetscReal period[2];
   PetscInt pair[2];
   PetscFunctionBeginUser;
-  for (int d = 0; d < 2; d++)
-    period[d] = scene->fluid.bc[d] == BC_PERIODIC ? scene->fluid.box[2 * d + 1] - scene->fluid.box[2 * d] : 0;
-  PetscCall(CurvesCross(s->vesicles, s->start, s->X, NULL, period, smooth, pair));
+  FluidSpecPeriods(&scene->fluid, period);
+  const CurveSet set = {s->vesicles, s->vesicles, s->start, NULL, s->X, period, smooth};
+  PetscCall(CurvesCross(&set, pair));
   PetscCheck(pair[0] < 0 || pair[0] != pair[1], scene->comm, PETSC_ERR_USER_INPUT,
              "%s: vesicle %" PetscInt_FMT
              " crosses itself or its periodic image; allowed: curves that do not, in a box that holds them",

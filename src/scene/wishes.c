@@ -52,8 +52,8 @@ static const OptionWish wishes[] = {
     {"*elastic", "the membrane is a fluid, inextensible and without shear elasticity" NO},
     {"*permeability", "the membrane lets no fluid through" NO},
     {"*obstacle", "-obstacle_shape is meant?"},
-    {"*constriction", "solid bodies are closed curves, -obstacle_shape" NO},
-    {"*stenosis", "solid bodies are closed curves, -obstacle_shape" NO},
+    {"*constriction", "-obstacle_shape constriction is meant?"},
+    {"*stenosis", "-obstacle_shape constriction is meant?"},
     {"*3d", "two dimensions only" NO},
     {"*dimension", "two dimensions only" NO},
     {NULL, NULL}};

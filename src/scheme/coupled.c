@@ -179,10 +179,34 @@ static PetscErrorCode CheckCourant(Scheme s, PetscReal dt, PetscReal speed) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+#define MOMENT 1e-6 /* of the first step */
+
+/* With inertia and obstacles the fluid starts from the quasi-steady flow past them, not from a jump at their surfaces:
+   one step without inertia, so short that nothing moves, of which the flow is kept. */
+static PetscErrorCode StartFlow(Scheme s, Coupled *d) {
+  State *now = &s->state, *next = &d->next;
+  const PetscReal dt = now->dt;
+  PetscBool solved;
+  PetscFunctionBeginUser;
+  if (!now->solid || s->fluid->steady || now->dt_last > 0) PetscFunctionReturn(PETSC_SUCCESS);
+  s->fluid->steady = PETSC_TRUE;
+  PetscCall(CoupledAttempt(s, MOMENT * dt, &solved));
+  s->fluid->steady = PETSC_FALSE;
+  now->dt = dt;
+  if (!solved) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecCopy(next->w, now->w));
+  PetscCall(VecCopy(next->sigma, now->sigma));
+  PetscCall(VecCopy(next->solid, now->solid));
+  if (now->walls) PetscCall(VecCopy(next->walls, now->walls));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode Step_Coupled(Scheme s, PetscReal most) {
   Coupled *d = (Coupled *)s->data;
   PetscReal speed = 0; /* max(|u| + |v|), which bounds steps with convection */
   PetscFunctionBeginUser;
+  PetscCall(StartFlow(s, d));
+  if (*s->report.failure) PetscFunctionReturn(PETSC_SUCCESS);
   if (d->convection) PetscCall(ConvectionSpeed(d->convection, s->state.w, &speed));
   if (s->policy.adaptive)
     PetscCall(JudgedStep(s, d, speed, most));

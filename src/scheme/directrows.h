@@ -2,12 +2,12 @@
 #pragma once
 #include "scheme/direct.h"
 
-/* Uniform forces g, of x first, that hold the mean velocity: in quasi-steady flow of a periodic box, where forces leave
-   it free, and in a channel without flux. */
+/* Uniform forces g, of x first, that hold the mean velocity: of a periodic box in quasi-steady flow, where forces leave
+   it free, or with obstacles, and of a channel without flux. */
 static inline PetscInt MeanForces(DirectSolver d) {
   const Grid g = d->fluid->grid;
   if (g->wall[0]) return 0;
-  return g->wall[1] ? d->fluid->zero_flux : 2 * d->fluid->steady;
+  return g->wall[1] ? d->fluid->zero_flux : 2 * (d->fluid->steady || d->fluid->held);
 }
 
 /* Unknowns besides the fluid's: sigma, U, F, the obstacles' F, J, g. */

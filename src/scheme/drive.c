@@ -1,20 +1,55 @@
 #include "scheme/drive.h"
 
-/* SUM of the x forces on the fluid in the mean of momentum: the obstacles', and where there are walls gravity's, and of
-   contact what solids give. Own parts. */
-static PetscErrorCode OwnForce(Scheme s, PetscReal *sum) {
+/* The profile b of a channel's flow under a unit pressure gradient, y from its lower wall, and that of the grid, which
+   has h^2/8 more at every place. */
+static PetscReal Profile(Scheme s, PetscReal y, PetscReal more) {
+  const Grid g = s->fluid->grid;
+  return (0.5 * y * (g->hi[1] - g->lo[1] - y) + more) / s->fluid->nu;
+}
+
+static PetscReal GridProfile(Scheme s, PetscInt row) {
+  const PetscReal h = s->fluid->grid->h;
+  return Profile(s, (row + 0.5) * h, h * h / 8);
+}
+
+/* Of the forces along x on the fluid, own parts. */
+typedef struct {
+  PetscReal spread;  /* their sum on the grid, which next to walls is less than the markers' */
+  PetscReal smeared; /* of obstacles: SUM F (b - E b) in a channel */
+} Forces;
+
+/* The obstacles' forces. */
+static PetscErrorCode AddObstacles(Scheme s, Forces *sum) {
+  const Coupling c = s->coupling;
+  const Grid g = s->fluid->grid;
+  const Layout l = c->bodies->obstacles->layout;
+  const PetscInt first = c->bodies->layout->M - l->M + l->first;
+  const PetscScalar *F;
+  PetscFunctionBeginUser;
+  PetscCall(VecGetArrayRead(s->state.solid, &F));
+  for (PetscInt k = 0; k < l->n; k++) {
+    const Stencil *e = &c->markers->stencil[2 * (first + k)];
+    PetscReal part = 0, b = 0;
+    for (PetscInt j = 0; j < e->n[1]; j++) {
+      part += e->weight[1][j];
+      if (g->wall[1]) b += e->weight[1][j] * GridProfile(s, e->first[1] + j);
+    }
+    sum->spread -= part * F[2 * k];
+    if (g->wall[1]) sum->smeared -= F[2 * k] * (Profile(s, c->markers->X[2 * (first + k) + 1] - g->lo[1], 0) - b);
+  }
+  PetscCall(VecRestoreArrayRead(s->state.solid, &F));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The obstacles' forces, and where there are walls gravity's, and of contact what solids give. */
+static PetscErrorCode OwnForces(Scheme s, Forces *sum) {
   const Membrane m = s->membrane;
   const Layout l = m->layout;
-  const PetscScalar *F;
-  PetscInt n;
   PetscFunctionBeginUser;
-  *sum = 0;
-  PetscCall(VecGetLocalSize(s->state.solid, &n));
-  PetscCall(VecGetArrayRead(s->state.solid, &F));
-  for (PetscInt k = 0; k < n; k += 2) *sum -= F[k];
-  PetscCall(VecRestoreArrayRead(s->state.solid, &F));
+  *sum = (Forces){0};
+  PetscCall(AddObstacles(s, sum));
   for (PetscInt v = l->own; v < l->end && m->weight && s->fluid->grid->wall[1]; v++)
-    *sum += m->weight[2 * v] * m->A0[v];
+    sum->spread += m->weight[2 * v] * m->A0[v];
   if (s->coupling->repulsion) {
     const PetscScalar *X;
     PetscScalar *y;
@@ -23,7 +58,7 @@ static PetscErrorCode OwnForce(Scheme s, PetscReal *sum) {
     PetscCall(VecGetArrayRead(s->state.X, &X));
     PetscCall(RepulsionAt(s->coupling->repulsion, 1, X, y, &energy));
     PetscCall(VecRestoreArrayRead(s->state.X, &X));
-    for (PetscInt k = 0; k < l->n; k++) *sum += y[2 * k];
+    for (PetscInt k = 0; k < l->n; k++) sum->spread += y[2 * k];
     PetscCall(PetscFree(y));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -64,25 +99,44 @@ static PetscErrorCode InnerMean(Scheme s, PetscReal mean[2]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Forces act on the mean flow as their spread images on the grid do, SUM F E b, which the near field does not change:
+   what is smeared by it is given back to the gradient where the flux is held, else to the flux. */
+static void GiveBack(Scheme s, PetscReal smeared, PetscReal *gradient, PetscReal *flux) {
+  const Grid g = s->fluid->grid;
+  const PetscReal height = g->hi[1] - g->lo[1], area = (g->hi[0] - g->lo[0]) * height;
+  PetscReal mean = 0;
+  if (!g->wall[1]) return;
+  for (PetscInt j = 0; j < g->n[1]; j++) mean += GridProfile(s, j) / g->n[1];
+  if (s->scene->fluid.drive == DRIVE_FLUX)
+    *gradient = (*gradient * mean - smeared / area) / (height * height / (12 * s->fluid->nu));
+  else
+    *flux += height * smeared / area;
+}
+
 PetscErrorCode DriveMeasure(Scheme s, Drive *drive) {
   const Grid g = s->fluid->grid;
   const PetscReal area = (g->hi[0] - g->lo[0]) * (g->hi[1] - g->lo[1]), faces = (PetscReal)g->n[0] * g->n[1];
-  PetscReal sum[3], gradient[2];
+  PetscReal sum[4], background[2], mean[2] = {0, 0}, gradient;
+  Forces forces;
   Vec Hu;
   PetscFunctionBeginUser;
-  PetscReal mean[2] = {0, 0};
   *drive = (Drive){NAN, NAN};
   if (g->wall[0]) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(DMGetGlobalVector(g->velocity, &Hu));
   PetscCall(GridHelmholtz(g, s->fluid->alpha, s->fluid->nu, s->state.w, Hu));
-  PetscCall(OwnForce(s, &sum[0]));
-  PetscCall(OwnSum(g, Hu, &sum[1]));
-  PetscCall(OwnSum(g, s->state.w, &sum[2]));
+  PetscCall(OwnForces(s, &forces));
+  sum[0] = forces.spread;
+  sum[1] = forces.smeared;
+  PetscCall(OwnSum(g, Hu, &sum[2]));
+  PetscCall(OwnSum(g, s->state.w, &sum[3]));
   PetscCall(DMRestoreGlobalVector(g->velocity, &Hu));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 3, MPIU_REAL, MPI_SUM, g->comm));
-  FlowPressureGradient(&s->scene->flow, s->fluid->nu, gradient);
-  drive->pressure_drop = -(g->hi[0] - g->lo[0]) * (sum[0] / area - sum[1] / faces + gradient[0]);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 4, MPIU_REAL, MPI_SUM, g->comm));
+  FlowPressureGradient(&s->scene->flow, s->fluid->nu, background);
+  gradient = sum[2] / faces - sum[0] / area;
+  if (g->wall[1] && !s->fluid->zero_flux) gradient = 0; /* none but the background's */
   if (s->coupling->contrast) PetscCall(InnerMean(s, mean));
-  drive->flux = (sum[2] / faces - mean[0]) * (g->hi[1] - g->lo[1]) + BackgroundFlux(s);
+  drive->flux = (sum[3] / faces - mean[0]) * (g->hi[1] - g->lo[1]) + BackgroundFlux(s);
+  GiveBack(s, sum[1], &gradient, &drive->flux);
+  drive->pressure_drop = (g->hi[0] - g->lo[0]) * (gradient - background[0]);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -38,28 +38,39 @@ static PetscReal Thin(Scheme s) {
   return THIN * ds;
 }
 
-/* The own vesicles: of every two curves the first one's owner looks at what is between them. */
-#define OWN(s)                                                                                                         \
-  (const PetscInt[]) {                                                                                                 \
-    (s)->membrane->layout->own, (s)->membrane->layout->end                                                             \
-  }
+/* What a rank looks at: all curves, of every two those whose first vesicle it owns. */
+typedef struct {
+  CurveRoom room;
+  PetscInt own[2];
+  CurveSet set;
+} View;
+
+/* At X[2(M + W)]. The set points into the view, which has to stay where it is. */
+static void Look(Scheme s, const PetscReal X[], View *view) {
+  const Bodies b = s->coupling->bodies;
+  view->room = Room(s);
+  view->own[0] = s->membrane->layout->own;
+  view->own[1] = s->membrane->layout->end;
+  view->set = (CurveSet){b->layout->bodies, b->vesicles,       b->layout->start, b->kind, X,
+                         view->room.period, SchemeIsSmooth(s), view->own};
+}
 
 /* The films of own vesicles thinner than reach at the curves X[2(M + W)], in order; those of walls come last, as of a
    curve that comes behind all bodies. To be freed. */
 static PetscErrorCode Find(Scheme s, const PetscScalar X[], PetscReal reach, PetscInt *n, CurveGap **films) {
   const Layout l = s->coupling->bodies->layout;
   const PetscInt vesicles = s->coupling->bodies->vesicles;
-  const CurveRoom room = Room(s);
   CurveGap *between;
   PetscInt count, side;
+  View view;
   PetscFunctionBeginUser;
-  PetscCall(
-      CurveGaps(l->bodies, vesicles, l->start, X, OWN(s), room.period, SchemeIsSmooth(s), reach, &count, &between));
+  Look(s, X, &view);
+  PetscCall(CurveGaps(&view.set, reach, &count, &between));
   PetscCall(PetscMalloc1(count + vesicles, films));
   PetscCall(PetscArraycpy(*films, between, count));
   PetscCall(PetscFree(between));
-  for (PetscInt v = OWN(s)[0]; v < OWN(s)[1]; v++) {
-    const PetscReal gap = CurveWallGap(LayoutCount(l, v), X + 2 * l->start[v], &room, &side);
+  for (PetscInt v = view.own[0]; v < view.own[1]; v++) {
+    const PetscReal gap = CurveWallGap(LayoutCount(l, v), X + 2 * l->start[v], &view.room, &side);
     if (gap < reach) (*films)[count++] = (CurveGap){.curve = {l->bodies, v}, .distance = gap};
   }
   *n = count;
@@ -108,15 +119,14 @@ static PetscErrorCode FindDrained(Scheme s, Vec X_old, Vec X_new, PetscReal limi
 }
 
 PetscErrorCode FilmsCross(Scheme s, const PetscScalar X[], PetscInt pair[2]) {
-  const Layout l = s->coupling->bodies->layout;
-  const CurveRoom room = Room(s);
   CurveGap *gaps;
   PetscInt n;
+  View view;
   PetscFunctionBeginUser;
-  PetscCall(CurvesCross(l->bodies, l->start, X, OWN(s), room.period, SchemeIsSmooth(s), pair));
-  if (pair[0] >= 0 || !SchemeIsSmooth(s)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(
-      CurveGaps(l->bodies, s->coupling->bodies->vesicles, l->start, X, OWN(s), room.period, PETSC_TRUE, 0, &n, &gaps));
+  Look(s, X, &view);
+  PetscCall(CurvesCross(&view.set, pair));
+  if (pair[0] >= 0 || !view.set.smooth) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(CurveGaps(&view.set, 0, &n, &gaps));
   if (n) PetscCall(PetscArraycpy(pair, gaps[0].curve, 2));
   PetscCall(PetscFree(gaps));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -190,23 +200,24 @@ static PetscErrorCode ThinnestOfEach(Scheme s, const PetscScalar X[], PetscReal 
 /* Least distance of two vesicles, or of a vesicle and an obstacle: of the two curves of the thinnest film, of all on
    rank 0 where there is none. */
 static PetscErrorCode LeastGap(Scheme s, const PetscScalar X[], const CurveGap *thinnest, PetscReal *least) {
-  const Layout l = s->membrane->layout, all = s->coupling->bodies->layout;
-  const PetscInt *pair = thinnest->curve, two = pair[0] == pair[1] ? 1 : 2;
-  const CurveRoom room = Room(s);
-  PetscReal nearness = -thinnest->distance, *Y;
-  PetscInt start[3] = {0};
+  const Layout l = s->membrane->layout;
+  const PetscInt *pair = thinnest->curve;
+  PetscReal nearness = -thinnest->distance;
   PetscMPIInt whose;
+  CurveFine two;
+  View view;
   PetscFunctionBeginUser;
+  Look(s, X, &view);
   PetscCall(AgreeLargest(l->comm, &nearness, &whose));
-  if (nearness == -PETSC_MAX_REAL && !l->rank)
-    PetscCall(CurveLeastGap(all->bodies, l->bodies, all->start, X, room.period, SchemeIsSmooth(s), least));
-  else if (nearness > -PETSC_MAX_REAL && l->rank == whose) {
-    for (PetscInt k = 0; k < two; k++) start[k + 1] = start[k] + LayoutCount(all, pair[k]);
-    PetscCall(PetscMalloc1(2 * start[two], &Y));
-    for (PetscInt k = 0; k < two; k++)
-      PetscCall(PetscArraycpy(Y + 2 * start[k], X + 2 * all->start[pair[k]], 2 * LayoutCount(all, pair[k])));
-    PetscCall(CurveLeastGap(two, 1, start, Y, room.period, SchemeIsSmooth(s), least));
-    PetscCall(PetscFree(Y));
+  if (nearness == -PETSC_MAX_REAL && !l->rank) {
+    view.set.part = NULL;
+    PetscCall(CurveLeastGap(&view.set, least));
+  } else if (nearness > -PETSC_MAX_REAL && l->rank == whose) {
+    PetscCall(CurveFineCreate(&view.set, pair[0] == pair[1] ? 1 : 2, pair, 1, &two));
+    two.set.moving = 1;
+    two.set.smooth = view.set.smooth;
+    PetscCall(CurveLeastGap(&two.set, least));
+    PetscCall(CurveFineDestroy(&two));
   }
   PetscCallMPI(MPI_Bcast(least, 1, MPIU_REAL, whose, l->comm));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -269,15 +280,15 @@ static PetscErrorCode Warn(Scheme s, const CurveFilm *film) {
 }
 
 PetscErrorCode FilmsWarn(Scheme s) {
-  const Layout l = s->membrane->layout, all = s->coupling->bodies->layout;
-  const CurveRoom room = Room(s);
+  const Layout l = s->membrane->layout;
   PetscMPIInt whose;
   CurveFilm film;
+  View view;
   PetscFunctionBeginUser;
   if (!s->coupling->near || s->warnings.film) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SchemeCurves(s, s->state.X));
-  PetscCall(CurveThinnestFilm(all->bodies, l->bodies, all->start, s->work_all, OWN(s), s->coupling->bodies->ds, &room,
-                              SchemeIsSmooth(s), COARSE, &film));
+  Look(s, s->work_all, &view);
+  PetscCall(CurveThinnestFilm(&view.set, s->coupling->bodies->ds, &view.room, COARSE, &film));
   PetscReal thinness = -film.spacings;
   PetscCall(AgreeLargest(l->comm, &thinness, &whose));
   PetscCallMPI(MPI_Bcast(&film, sizeof(film), MPI_BYTE, whose, l->comm));

@@ -64,7 +64,6 @@ static PetscErrorCode Stresslets(Scheme s, Vec F, Vec X, PetscReal sum[3]) {
   PetscCall(VecRestoreArrayRead(F, &a));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 3, MPIU_REAL, MPI_SUM, l->comm));
   sum[0] -= seams;
-  if (s->coupling->contrast) DoubleLayerStress(s->coupling->contrast, sum);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -94,6 +93,7 @@ PetscErrorCode StressMeasure(Scheme s, Vec w, Vec p, Vec F, Vec X) {
   PetscCall(WallStress(s, w, p, &shear, &pressure));
   PetscCall(Stresslets(s, F, X, sum));
   PetscCall(Shortfall(s, F, near));
+  if (s->coupling->contrast) DoubleLayerStress(s->coupling->contrast, sum, near);
   out->viscosity[0] = 1 + (shear - near[0] / area) / scale;
   out->viscosity[1] = 1 - sum[2] / area / scale;
   out->normal[0] = pressure + (near[1] - sum[0]) / area;

@@ -8,7 +8,9 @@ from pathlib import Path
 from studies.common.engine import Results
 from studies.gallery.bifurcation import SCENE as BIFURCATION
 from studies.gallery.capillary import SCENE as CAPILLARY
+from studies.gallery.constriction import SCENE as CONSTRICTION
 from studies.gallery.couette import SCENE as COUETTE
+from studies.gallery.hundred import SCENE as HUNDRED
 from studies.gallery.passing import SCENE as PASSING
 from studies.gallery.posts import SCENE as POSTS
 from studies.gallery.pressed import SCENE as PRESSED
@@ -19,7 +21,21 @@ from studies.gallery.suspension import SCENE as SUSPENSION
 from studies.gallery.tumbling import SCENE as TUMBLING
 from studies.gallery.vortices import SCENE as VORTICES
 
-SCENES = (TUMBLING, PASSING, PRESSED, VORTICES, SETTLING, COUETTE, POSTS, BIFURCATION, SUSPENSION, REYNOLDS, CAPILLARY)
+SCENES = (
+    TUMBLING,
+    PASSING,
+    PRESSED,
+    VORTICES,
+    SETTLING,
+    HUNDRED,
+    COUETTE,
+    POSTS,
+    CONSTRICTION,
+    BIFURCATION,
+    SUSPENSION,
+    REYNOLDS,
+    CAPILLARY,
+)
 TEMPLATE = Path(__file__).with_name("page.md")
 BLOCK = re.compile(r"^<!-- scene (\w+) -->\n", re.MULTILINE)
 PLACE = re.compile(r"\{(\w+)\}")

@@ -1,0 +1,76 @@
+"""Closed outlines of obstacles whose own curves stand on a wall or span a period."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from petves.curves import smooth_curve, trigonometric
+
+KINDS = ("closed", "spanning", "open")  # as run.h5 numbers them
+ORDER = 6  # markers of a polynomial between the markers of an open curve
+
+
+def open_curve(points: np.ndarray, fold: int) -> np.ndarray:
+    """Return points (fold (n - 1) + 1, 2) on the open curve through n points, of polynomials through six of them."""
+    n = len(points)
+    at = np.arange(fold * (n - 1) + 1) / fold
+    first = np.clip(np.floor(at).astype(int) - ORDER // 2 + 1, 0, max(n - ORDER, 0))
+    nodes = np.arange(min(ORDER, n))
+    result = np.zeros((len(at), 2))
+    for i in nodes:
+        others = nodes[nodes != i]
+        weight = np.prod(((at - first)[:, None] - others) / (i - others), axis=1)
+        result += weight[:, None] * points[first + i]
+    return result
+
+
+def spanning_curve(points: np.ndarray, span: np.ndarray, fold: int) -> np.ndarray:
+    """Return points (fold n + 1, 2) on a curve through n points that goes on after `span`."""
+    n = len(points)
+    smooth = trigonometric(points - span * np.arange(n)[:, None] / n, fold * n)
+    smooth += span * np.arange(fold * n)[:, None] / (fold * n)
+    return np.vstack([smooth, smooth[:1] + span])
+
+
+def span_of(points: np.ndarray, box: np.ndarray) -> np.ndarray:
+    """Return the period, shape (2,), that a spanning curve with these markers takes."""
+    run = points[-1] - points[0]
+    axis = int(np.argmax(np.abs(run)))
+    span = np.zeros(2)
+    span[axis] = np.copysign(box[2 * axis + 1] - box[2 * axis], run[axis])
+    return span
+
+
+def solid_outline(curves: list[np.ndarray], kinds: list[str], k: int, box: np.ndarray, fold: int) -> np.ndarray:
+    """Return the closed outline, shape (m + 1, 2), of the solid at curve k: counter-clockwise, clockwise around fluid.
+
+    An open curve is closed by its wall, a spanning one by the next spanning curve on its left that runs the other way, or
+    by the side of the box.
+    """
+    points = curves[k]
+    if kinds[k] == "closed":
+        return smooth_curve(points, fold)
+    if kinds[k] == "open":
+        curve = open_curve(points, fold)
+        ends = curve[[0, -1]]
+        side = int(np.argmin([np.abs(ends[:, side // 2] - box[side]).max() for side in range(4)]))
+        feet = ends.copy()
+        feet[:, side // 2] = box[side]
+        return np.vstack([feet[:1], curve, feet[1:], feet[:1]])
+    span = span_of(points, box)
+    curve = spanning_curve(points, span, fold)
+    across = int(span[0] != 0)  # the direction from one such curve to the next
+    left = np.sign(span[0]) if across else -np.sign(span[1])
+    beyond = []
+    for j, other in enumerate(curves):
+        if j != k and kinds[j] == "spanning" and np.dot(span_of(other, box), span) < 0:
+            away = left * (other[:, across].mean() - points[:, across].mean())
+            beyond += [(away, j)] if away > 0 else []
+    if beyond:
+        other = curves[min(beyond)[1]]
+        back = spanning_curve(other, span_of(other, box), fold)
+        back[:, 1 - across] += curve[-1, 1 - across] - back[0, 1 - across]
+    else:
+        back = curve[::-1].copy()
+        back[:, across] = box[2 * across + (left > 0)]
+    return np.vstack([curve, back, curve[:1]])

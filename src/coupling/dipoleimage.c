@@ -1,0 +1,160 @@
+/* As imagetable.c: in mode theta along the wall the wall adds psi(j) = (A + B j) e^{-mu j}, with A and B that make the
+   velocity zero there. With D the difference from one row to the next,
+
+     STRAIN, SOURCE: along -D psi sin, across k psi cos;      SHEAR: along D psi cos, across k psi sin,
+
+   and of the free lattice, J rows above the dipole (sin or cos as above; D g(J) = g(J + 1) - g(J)),
+
+     STRAIN: along k F(J), across s D g2(J);     SOURCE: along k g1(J), across -D g1(J);
+     SHEAR: along -D g1(J) + 2 s D g2(J), across k (2 s g2(J) - g1(J)).
+
+   For small k and mu that is e^{-k(a+b)}/4 times polynomials in ka and kb, a and b the distances from the wall: `lead`,
+   which is the exact fluid's image, and k^2 `dispersion`, to which kernels add k^2 [-m p + ma/2 (p - 2 p_a) + mb/2 (p -
+   2 p_b)], m their moments along the wall, ma and mb across. So the image is
+       1/(4 pi) SUM c_pq a^p b^q n!/z^{n+1},   n = p + q (+ 2),   z = a + b - i x,
+   and minus that sum of the k^2 terms is what is left of the exact one, the real part for cos, the imaginary for sin.
+ */
+#include "coupling/dipoleimage.h"
+#include "coupling/lattice.h"
+
+static PetscReal G1(const ImageMode *m, int j) {
+  return m->F[j] + m->s * m->g2[j];
+}
+
+/* psi of a part in a row of cells or nodes: xx = STRAIN + SOURCE/2, yy = -STRAIN + SOURCE/2, xy = SHEAR. */
+static void Psi(const ImageMode *m, DipolePart part, int j, PetscReal psi[IMAGE_LINES]) {
+  const int before = j ? j - 1 : 1;
+  const PetscReal strain = part == DIPOLE_XX ? m->k : -m->k;
+  if (part == DIPOLE_XY)
+    ImagePsi(m, G1(m, j) - 2 * m->s * m->g2[j],
+             G1(m, j + 1) - G1(m, before) + 2 * m->s * (m->g2[before] - m->g2[j + 1]), psi);
+  else
+    ImagePsi(m, strain * (m->g2[j + 1] - m->g2[j]) + 0.5 * (G1(m, j) - G1(m, j + 1)) / m->k,
+             -strain * (m->F[j + 1] + m->F[j]) - 0.5 * m->k * (G1(m, j + 1) + G1(m, j)), psi);
+}
+
+/* Add one node of the quadrature to offsets from 0 or 1 on. */
+static void AddNode(PetscReal theta, PetscReal weight, DipoleImageTable *t) {
+  const ImageMode m = ImageModeMake(theta);
+  PetscReal cosine[IMAGE_SHIFT + 1], right[IMAGE_SHIFT + 1], left[IMAGE_SHIFT + 1], psi[IMAGE_LINES];
+  for (int i = 0; i <= IMAGE_SHIFT; i++) {
+    cosine[i] = weight / PETSC_PI * PetscCosReal(i * theta);
+    right[i] = weight / PETSC_PI * PetscSinReal((i + 0.5) * theta);
+    left[i] = weight / PETSC_PI * PetscSinReal((i - 0.5) * theta);
+  }
+  for (int part = 0; part < DIPOLE_COUNT; part++)
+    for (int source = 0; source < IMAGE_ROWS; source++) {
+      const PetscBool shear = part == DIPOLE_XY ? PETSC_TRUE : PETSC_FALSE;
+      const PetscReal *wave[2] = {shear ? cosine : right, shear ? left : cosine};
+      Psi(&m, (DipolePart)part, source, psi);
+      for (int row = 0; row < IMAGE_ROWS; row++) {
+        const PetscReal size[2] = {(shear ? 1 : -1) * (psi[row + 1] - psi[row]), m.k * psi[row]};
+        for (int c = 0; c < 2; c++) {
+          PetscReal *line = t->value[part][c][row][source] + IMAGE_SHIFT;
+          for (int i = 0; i <= IMAGE_SHIFT; i++) line[i] += size[c] * wave[c][i];
+        }
+      }
+    }
+}
+
+/* Offsets below zero by symmetry, and the free lattice's part: in its table the across component lies above the along
+   one of the same row, a node above the cell. */
+static void Complete(const OffsetTable lattice[2], DipolePart part, int c, PetscInt row, PetscInt source,
+                     DipoleImageTable *t) {
+  PetscReal *line = t->value[part][c][row][source] + IMAGE_SHIFT;
+  const PetscInt rows = row - source - c + (part == DIPOLE_XY);
+  const PetscBool even = (part == DIPOLE_XY) != c ? PETSC_TRUE : PETSC_FALSE;
+  for (PetscInt i = 1; i <= IMAGE_SHIFT; i++) {
+    if (even)
+      line[-i] = line[i];
+    else if (c)
+      line[1 - i] = -line[i];
+    else
+      line[-i] = -line[i - 1];
+  }
+  const OffsetTable *free = &lattice[c];
+  const PetscReal *value = free->value[part] + (rows + free->size[1]) * (2 * free->size[0] + 1) + free->size[0];
+  for (PetscInt i = -IMAGE_SHIFT; i <= IMAGE_SHIFT; i++) line[i] += value[i];
+}
+
+PetscErrorCode DipoleImageFill(const OffsetTable lattice[2], DipoleImageTable *t) {
+  PetscReal *theta, *weight;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(IMAGE_NODES, &theta, IMAGE_NODES, &weight));
+  GaussLegendre(IMAGE_NODES, theta, weight);
+  PetscCall(PetscMemzero(t, sizeof(*t)));
+  for (int q = 0; q < IMAGE_NODES; q++) AddNode(theta[q], weight[q], t);
+  for (int part = 0; part < DIPOLE_COUNT; part++)
+    for (int c = 0; c < 2; c++)
+      for (int row = 0; row < IMAGE_ROWS; row++)
+        for (int source = 0; source < IMAGE_ROWS; source++) Complete(lattice, (DipolePart)part, c, row, source, t);
+  PetscCall(PetscFree2(theta, weight));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Monomials 1, a, b, aa, ab, bb, aab, abb. Of SHEAR the along polynomial is -2 times that of STRAIN, the across one
+   twice. */
+enum { ONE, A, B, AA, AB, BB, AAB, ABB };
+static const int degree[IMAGE_MONOMIALS] = {0, 1, 1, 2, 2, 2, 3, 3};
+static const PetscReal lead[2][2][IMAGE_MONOMIALS] = {{{-1, 1, 1, 0, -2}, {0, 1, -1, 0, -2}}, {{-2, 4}, {2, 4}}};
+static const PetscReal dispersion[2][2][IMAGE_MONOMIALS] = {
+    {{9. / 24, -21. / 24, -21. / 24, 2. / 24, 38. / 24, 2. / 24, -4. / 24, -4. / 24},
+     {-6. / 24, -19. / 24, 7. / 24, 2. / 24, 34. / 24, -2. / 24, -4. / 24, -4. / 24}},
+    {{30. / 24, -56. / 24, -4. / 24, 8. / 24, 8. / 24}, {-6. / 24, -48. / 24, 4. / 24, 8. / 24, 8. / 24}}};
+
+/* Add scale times the polynomials of STRAIN or SOURCE with kernels of second moments m along the wall in all, ma of the
+   response and mb of the dipole across. */
+static void AddForms(PetscReal scale, int kind, int c, PetscReal m, PetscReal ma, PetscReal mb,
+                     PetscReal exact[IMAGE_MONOMIALS], PetscReal far[IMAGE_MONOMIALS]) {
+  const PetscReal *p = lead[kind][c];
+  for (int k = 0; k < IMAGE_MONOMIALS; k++) {
+    exact[k] += scale * p[k];
+    far[k] -= scale * (dispersion[kind][c][k] + 0.5 * (ma + mb - m) * p[k]);
+  }
+  far[ONE] += scale * (ma * p[A] + mb * p[B]);
+  far[A] += scale * mb * p[AB];
+  far[B] += scale * ma * p[AB];
+}
+
+void DipoleImageFormsMake(PetscReal along, PetscReal across, DipoleImageForms *f) {
+  static const PetscReal moment[DIPOLE_COUNT][2] = {{6. / 12, 4. / 12}, {4. / 12, 6. / 12}, {5. / 12, 5. / 12}};
+  *f = (DipoleImageForms){0};
+  for (int part = 0; part < DIPOLE_COUNT; part++)
+    for (int c = 0; c < 2; c++) {
+      const PetscReal m = moment[part][0] + (c ? across : along), ma = c ? along : across, mb = moment[part][1];
+      const PetscReal strain = part == DIPOLE_XX ? 1 : part == DIPOLE_YY ? -1 : c ? 2 : -2;
+      AddForms(strain, 0, c, m, ma, mb, f->exact[part][c], f->far[part][c]);
+      if (part != DIPOLE_XY) AddForms(0.5, 1, c, m, ma, mb, f->exact[part][c], f->far[part][c]);
+    }
+}
+
+/* The sums, with n from `least` on. */
+static void Sums(const PetscReal c[DIPOLE_COUNT][2][IMAGE_MONOMIALS], int least, const ImagePair *p,
+                 PetscReal K[2][DIPOLE_COUNT]) {
+  const PetscReal a = p->a, b = p->b, H = a + b, r2 = H * H + p->x * p->x, u = H / r2, v = p->x / r2;
+  const PetscReal monomial[IMAGE_MONOMIALS] = {1, a, b, a * a, a * b, b * b, a * a * b, a * b * b};
+  PetscReal power[6][2], w[2] = {u / (4 * PETSC_PI), v / (4 * PETSC_PI)};
+  for (int n = 0; n < 6; n++) { /* n!/z^{n+1} */
+    power[n][0] = w[0];
+    power[n][1] = w[1];
+    const PetscReal next = (n + 1) * (w[0] * u - w[1] * v);
+    w[1] = (n + 1) * (w[0] * v + w[1] * u);
+    w[0] = next;
+  }
+  for (int part = 0; part < DIPOLE_COUNT; part++)
+    for (int comp = 0; comp < 2; comp++) {
+      const int sine = (part == DIPOLE_XY) == comp;
+      PetscReal sum = 0;
+      for (int k = 0; k < IMAGE_MONOMIALS; k++)
+        sum += c[part][comp][k] * monomial[k] * power[PetscMin(5, least + degree[k])][sine];
+      K[comp][part] = sum;
+    }
+}
+
+void DipoleImageExact(const DipoleImageForms *f, const ImagePair *p, PetscReal K[2][DIPOLE_COUNT]) {
+  Sums(f->exact, 0, p, K);
+}
+
+void DipoleImageFar(const DipoleImageForms *f, const ImagePair *p, PetscReal K[2][DIPOLE_COUNT]) {
+  Sums(f->far, 2, p, K);
+}

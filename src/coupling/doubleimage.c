@@ -1,0 +1,143 @@
+#include "coupling/doubleimage.h"
+#include "markers/fold.h"
+
+#define PARTS(K) ((const PetscReal(*)[DIPOLE_COUNT])(K)) /* as what is only read */
+
+PetscErrorCode DoubleImageCreate(NearImage single, const OffsetTable lattice[2], DoubleImage *out) {
+  const Markers markers = single->markers;
+  DoubleImage m;
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&m));
+  *out = m;
+  m->single = single;
+  DipoleImageFormsMake(single->kernel.moment[0], single->kernel.moment[1], &m->forms);
+  if (!single->table) PetscFunctionReturn(PETSC_SUCCESS);
+  for (int wall = 0; wall < 4; wall++)
+    if (single->end[wall / 2][wall % 2]) PetscCall(PetscMalloc1(markers->layout->M, &m->end[wall / 2][wall % 2]));
+  PetscCall(PetscNew(&m->table));
+  PetscCall(DipoleImageFill(lattice, m->table));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode DoubleImageDestroy(DoubleImage *image) {
+  DoubleImage m = *image;
+  PetscFunctionBeginUser;
+  if (!m) PetscFunctionReturn(PETSC_SUCCESS);
+  for (int wall = 0; wall < 4; wall++) PetscCall(PetscFree(m->end[wall / 2][wall % 2]));
+  PetscCall(PetscFree(m->table));
+  PetscCall(PetscFree(*image));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Rows of a dipole y cells from a wall; parts seen from it. */
+static DipoleEnd MakeEnd(PetscReal y) {
+  const Kernel *five = KernelFind("cbs54"), *six = KernelFind("cbs65");
+  const KernelWeights weights[DIPOLE_COUNT] = {five->across, six->along, five->along};
+  DipoleEnd e;
+  for (int part = 0; part < DIPOLE_COUNT; part++) {
+    const PetscBool node = part == DIPOLE_XY ? PETSC_TRUE : PETSC_FALSE; /* nodes at j + 1, cells at j + 1/2 */
+    e.n[part] = weights[part](y - (node ? 1.0 : 0.5), &e.first[part], e.weight[part]);
+    FoldLow(FOLD_SMOOTH, &e.first[part], &e.n[part], e.weight[part]);
+    if (node) e.first[part]++; /* rows of the table: 0 on the wall */
+  }
+  return e;
+}
+
+void DoubleImagePlace(DoubleImage m, const PaddedStencil dipole[]) {
+  m->dipole = dipole;
+  for (int wall = 0; wall < 4; wall++)
+    for (PetscInt k = 0; k < m->single->markers->layout->M && m->end[wall / 2][wall % 2]; k++) {
+      const PetscReal y = m->single->y[wall / 2][wall % 2][k];
+      if (y < IMAGE_CELLS) m->end[wall / 2][wall % 2][k] = MakeEnd(y);
+    }
+}
+
+/* A part, seen from a wall, in the directions of the grid, or the other way round. */
+static int Turned(int direction, int part) {
+  return direction || part == DIPOLE_XY ? part : 1 - part;
+}
+
+/* K += alpha times a pair's parts, turned from the wall with this normal and side to x and y. */
+static void Turn(int direction, int side, PetscReal alpha, const PetscReal part[2][DIPOLE_COUNT],
+                 PetscReal K[2][DIPOLE_COUNT]) {
+  for (int c = 0; c < 2; c++)
+    for (int q = 0; q < DIPOLE_COUNT; q++) {
+      const PetscBool odd = (c == 1) != (q == DIPOLE_XY) ? PETSC_TRUE : PETSC_FALSE; /* in the distance from the wall */
+      K[c ? direction : 1 - direction][Turned(direction, q)] += side && odd ? -alpha * part[c][q] : alpha * part[c][q];
+    }
+}
+
+/* The half-space lattice's answer at i to the parts of j near the wall, seen from it. */
+static void Half(DoubleImage m, int direction, PetscReal x, PetscInt i, const ImageEnd *e, PetscInt j,
+                 const DipoleEnd *f, PetscReal K[2][DIPOLE_COUNT]) {
+  const int t = 1 - direction;
+  for (int c = 0; c < 2; c++)
+    for (int part = 0; part < DIPOLE_COUNT; part++) {
+      const PaddedStencil *from = &m->single->stencil[2 * i + (c ? direction : t)];
+      const PaddedStencil *to = &m->dipole[DIPOLE_COUNT * j + Turned(direction, part)];
+      const ImageRows row = {e->first[c], e->n[c], e->weight[c]};
+      const ImageRows source = {f->first[part], f->n[part], f->weight[part]};
+      K[c][part] = ImageSum(m->table->value[part][c], m->single->markers->grid, t, x, from, &row, to, &source);
+    }
+}
+
+static void AddParts(PetscReal alpha, const PetscReal from[2][DIPOLE_COUNT], PetscReal to[2][DIPOLE_COUNT]) {
+  for (int c = 0; c < 2; c++)
+    for (int k = 0; k < DIPOLE_COUNT; k++) to[c][k] += alpha * from[c][k];
+}
+
+/* One wall's part, added; free: the free lattice's. Responses that are scaled near the wall take s of the half space's
+   free + exact - far only. */
+static void AddWall(DoubleImage m, int direction, int side, PetscInt i, PetscInt j, const ImagePair *p,
+                    const PetscReal free[2][DIPOLE_COUNT], PetscReal exact[2][DIPOLE_COUNT],
+                    PetscReal lattice[2][DIPOLE_COUNT]) {
+  const PetscReal over = 1 / m->single->markers->grid->h;
+  const ImageEnd *e = &m->single->end[direction][side][i];
+  PetscReal blake[2][DIPOLE_COUNT] = {{0}}, grid[2][DIPOLE_COUNT] = {{0}}, part[2][DIPOLE_COUNT];
+  DoubleImageExact(m, direction, side, p, blake);
+  if (p->x * p->x + PetscSqr(p->a + p->b) < PetscSqr(IMAGE_CELLS)) {
+    Half(m, direction, p->x, i, e, j, &m->end[direction][side][j], part);
+    Turn(direction, side, over, PARTS(part), grid);
+    AddParts(-1, free, grid);
+  } else {
+    DipoleImageFar(&m->forms, p, part);
+    Turn(direction, side, -over, PARTS(part), grid);
+    AddParts(1, PARTS(blake), grid);
+    for (int k = 0; k < DIPOLE_COUNT; k++)
+      grid[direction][k] -= (1 - e->scale) * (free[direction][k] + grid[direction][k]);
+  }
+  AddParts(1, PARTS(blake), exact);
+  AddParts(1, PARTS(grid), lattice);
+}
+
+/* Two markers seen from a wall; whether there is one within reach. */
+static PetscBool SeenFrom(DoubleImage m, int direction, int side, PetscInt i, PetscInt j, const PetscReal d[2],
+                          PetscReal reach, ImagePair *p) {
+  const PetscReal *y = m->single->y[direction][side];
+  if (!m->end[direction][side]) return PETSC_FALSE;
+  *p = (ImagePair){d[1 - direction] / m->single->markers->grid->h, y[i], y[j]};
+  return p->a + p->b < reach ? PETSC_TRUE : PETSC_FALSE;
+}
+
+void DoubleImageAdd(DoubleImage m, PetscInt i, PetscInt j, const PetscReal d[2], PetscReal reach,
+                    PetscReal exact[2][DIPOLE_COUNT], PetscReal lattice[2][DIPOLE_COUNT]) {
+  PetscReal free[2][DIPOLE_COUNT] = {{0}};
+  ImagePair p;
+  AddParts(1, PARTS(lattice), free);
+  for (int wall = 0; wall < 4; wall++)
+    if (SeenFrom(m, wall / 2, wall % 2, i, j, d, reach, &p))
+      AddWall(m, wall / 2, wall % 2, i, j, &p, PARTS(free), exact, lattice);
+}
+
+void DoubleImageExact(DoubleImage m, int direction, int side, const ImagePair *p, PetscReal exact[2][DIPOLE_COUNT]) {
+  PetscReal part[2][DIPOLE_COUNT];
+  DipoleImageExact(&m->forms, p, part);
+  Turn(direction, side, 1 / m->single->markers->grid->h, PARTS(part), exact);
+}
+
+void DoubleImageExactAll(DoubleImage m, PetscInt i, PetscInt j, const PetscReal d[2], PetscReal reach,
+                         PetscReal exact[2][DIPOLE_COUNT]) {
+  ImagePair p;
+  for (int wall = 0; wall < 4; wall++)
+    if (SeenFrom(m, wall / 2, wall % 2, i, j, d, reach, &p)) DoubleImageExact(m, wall / 2, wall % 2, &p, exact);
+}

@@ -1,0 +1,45 @@
+/* What a wall of the grid adds to the double layer's C = D - L of a pair of markers, as nearimage.h of the single one:
+   the exact fluid's image of a tensor dipole in the wall, less the image that kernels and lattice make of the dipole as
+   the grid has it, folded (docs/contrast.md, Walls). */
+#pragma once
+#include "coupling/dipoleimage.h"
+#include "coupling/nearimage.h"
+
+#define DOUBLE_IMAGE_REACH 100 /* cells from a marker to another's image: beyond, none without a box part */
+
+/* A dipole's rows at a wall, folded. */
+typedef struct {
+  PetscInt first[DIPOLE_COUNT], n[DIPOLE_COUNT];
+  PetscReal weight[DIPOLE_COUNT][KERNEL_MAX_POINTS];
+} DipoleEnd;
+
+typedef struct _p_DoubleImage *DoubleImage;
+struct _p_DoubleImage {
+  NearImage single; /* borrowed: where the markers see the walls, and the stencils of their velocities */
+  DipoleImageTable *table;
+  DipoleImageForms forms;
+  DipoleEnd *end[2][2];        /* [M] by direction of the normal and side; NULL without a wall */
+  const PaddedStencil *dipole; /* [DIPOLE_COUNT M] unfolded, borrowed */
+};
+
+/* DoubleImageCreate - at the walls that the single layer's images have; lattice: the free lattice's tables
+   (LatticeDipoles), used here only. Collective. */
+PETSC_EXTERN PetscErrorCode DoubleImageCreate(NearImage single, const OffsetTable lattice[2], DoubleImage *image);
+PETSC_EXTERN PetscErrorCode DoubleImageDestroy(DoubleImage *image);
+
+/* DoubleImagePlace - where the single layer's images have been placed; dipole[DIPOLE_COUNT M]: the dipoles' unfolded
+   stencils (kept by the caller). Not collective. */
+PETSC_EXTERN void DoubleImagePlace(DoubleImage image, const PaddedStencil dipole[]);
+
+/* DoubleImageAdd - the walls' parts of marker i's velocity by unit tensor parts of marker j, [component][part]
+   (1/length): exact += those of the exact fluid, lattice += those of the grid, lattice holding the free lattice's. d =
+   X_i - X_j, in periodic directions to the image meant (length); reach: of images (cells). DoubleImageExact - exact +=
+   the first alone of two points, one wall's. Not collective. */
+PETSC_EXTERN void DoubleImageAdd(DoubleImage image, PetscInt i, PetscInt j, const PetscReal d[2], PetscReal reach,
+                                 PetscReal exact[2][DIPOLE_COUNT], PetscReal lattice[2][DIPOLE_COUNT]);
+PETSC_EXTERN void DoubleImageExact(DoubleImage image, int direction, int side, const ImagePair *pair,
+                                   PetscReal exact[2][DIPOLE_COUNT]);
+
+/* DoubleImageExactAll - of all walls, of two markers. Not collective. */
+PETSC_EXTERN void DoubleImageExactAll(DoubleImage image, PetscInt i, PetscInt j, const PetscReal d[2], PetscReal reach,
+                                      PetscReal exact[2][DIPOLE_COUNT]);

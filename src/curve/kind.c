@@ -1,0 +1,127 @@
+#include "curve/kind.h"
+
+#define ORDER 6 /* markers of a polynomial */
+#define ENDS 4  /* markers from an end within which forces are interpolated linearly */
+
+/* The polynomial through markers first .. first + ORDER - 1 at t: weights of the markers, or of dX/dk. */
+static PetscInt Lagrange(PetscInt n, PetscReal t, PetscBool derivative, PetscReal weight[ORDER]) {
+  const PetscInt low = (PetscInt)PetscFloorReal(t) - ORDER / 2 + 1, first = PetscMax(0, PetscMin(n - ORDER, low));
+  const PetscReal x = t - (PetscReal)first;
+  for (int i = 0; i < ORDER; i++) {
+    PetscReal value = 1, slope = 0;
+    for (int j = 0; j < ORDER; j++) {
+      if (j == i) continue;
+      slope = (slope * (x - j) + value) / (i - j);
+      value *= (x - j) / (i - j);
+    }
+    weight[i] = derivative ? slope : value;
+  }
+  return first;
+}
+
+/* Y = SUM weight X. */
+static void Sum(PetscInt first, const PetscReal weight[ORDER], const PetscReal X[], PetscReal Y[2]) {
+  Y[0] = Y[1] = 0;
+  for (int i = 0; i < ORDER; i++)
+    for (int c = 0; c < 2; c++) Y[c] += weight[i] * X[2 * (first + i) + c];
+}
+
+/* X less the straight part of a spanning curve. */
+static PetscErrorCode Periodic(const CurveKind *kind, PetscInt n, const PetscReal X[], PetscReal **P) {
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(2 * n, P));
+  for (PetscInt k = 0; k < 2 * n; k++) (*P)[k] = X[k] - kind->span[k % 2] * (PetscReal)(k / 2) / (PetscReal)n;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CurveTangents(const CurveKind *kind, Spectral s, PetscInt n, const PetscReal X[], PetscReal T[]) {
+  PetscReal weight[ORDER], *P;
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < n && kind->type == CURVE_OPEN; k++) {
+    const PetscInt first = Lagrange(n, (PetscReal)k, PETSC_TRUE, weight);
+    Sum(first, weight, X, T + 2 * k);
+  }
+  if (kind->type == CURVE_OPEN) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(Periodic(kind, n, X, &P));
+  for (PetscInt k = 0; k < 2 * n; k++) T[k] = kind->span[k % 2] / (PetscReal)n;
+  SpectralDerivative(s, 1, 1, P, T);
+  PetscCall(PetscFree(P));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscReal CurveFinePlace(const CurveKind *kind, PetscInt times, PetscInt q) {
+  return ((PetscReal)q + (kind->type == CURVE_OPEN ? 0.5 : 0)) / (PetscReal)times -
+         (kind->type == CURVE_OPEN ? 0.5 : 0);
+}
+
+PetscErrorCode CurveFinePoints(const CurveKind *kind, PetscInt n, const PetscReal X[], PetscInt times, PetscReal Y[]) {
+  PetscReal weight[ORDER], *P;
+  PetscFunctionBeginUser;
+  for (PetscInt q = 0; q < n * times && kind->type == CURVE_OPEN; q++) {
+    const PetscInt first = Lagrange(n, CurveFinePlace(kind, times, q), PETSC_FALSE, weight);
+    Sum(first, weight, X, Y + 2 * q);
+  }
+  if (kind->type == CURVE_OPEN) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(Periodic(kind, n, X, &P));
+  TrigonometricPoints(n, P, times, Y);
+  for (PetscInt q = 0; q < 2 * n * times; q++) Y[q] += kind->span[q % 2] * (PetscReal)(q / 2) / (PetscReal)(n * times);
+  PetscCall(PetscFree(P));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+void CurveOpenWeights(PetscInt n, PetscInt times, PetscInt q, PetscReal weight[]) {
+  const CurveKind open = {.type = CURVE_OPEN};
+  const PetscReal t = PetscMax(0, PetscMin((PetscReal)(n - 1), CurveFinePlace(&open, times, q)));
+  PetscReal part[ORDER];
+  for (PetscInt k = 0; k < n; k++) weight[k] = 0;
+  if (t < ENDS || t > (PetscReal)(n - 1 - ENDS)) {
+    const PetscInt k = PetscMin(n - 2, (PetscInt)t);
+    weight[k + 1] = t - (PetscReal)k;
+    weight[k] = 1 - weight[k + 1];
+    return;
+  }
+  const PetscInt first = Lagrange(n, t, PETSC_FALSE, part);
+  for (int i = 0; i < ORDER; i++) weight[first + i] = part[i];
+}
+
+PetscBool CurveSetWalk(const CurveSet *set, PetscInt v, PetscInt k, PetscInt steps, PetscReal X[2]) {
+  const CurveKind kind = CurveSetKind(set, v);
+  const PetscInt first = set->start[v], n = set->start[v + 1] - first, to = k - first + steps;
+  const PetscInt turns = to < 0 ? -((n - 1 - to) / n) : to / n;
+  if (turns && kind.type == CURVE_OPEN) return PETSC_FALSE;
+  for (int c = 0; c < 2; c++) X[c] = set->X[2 * (first + to - turns * n) + c] + (PetscReal)turns * kind.span[c];
+  return PETSC_TRUE;
+}
+
+PetscErrorCode CurveFineCreate(const CurveSet *set, PetscInt n, const PetscInt which[], PetscInt times,
+                               CurveFine *fine) {
+  PetscFunctionBeginUser;
+  *fine = (CurveFine){.set = *set};
+  for (PetscInt k = 0; k < n; k++) {
+    const PetscInt *start = set->start + which[k];
+    fine->start[k + 1] = fine->start[k] + times * (start[1] - start[0]);
+    fine->kind[k] = CurveSetKind(set, which[k]);
+  }
+  PetscCall(PetscMalloc1(2 * fine->start[n], &fine->X));
+  for (PetscInt k = 0; k < n; k++) {
+    const PetscInt *start = set->start + which[k];
+    if (times == 1)
+      PetscCall(PetscArraycpy(fine->X + 2 * fine->start[k], set->X + 2 * start[0], 2 * (start[1] - start[0])));
+    else
+      PetscCall(CurveFinePoints(&fine->kind[k], start[1] - start[0], set->X + 2 * start[0], times,
+                                fine->X + 2 * fine->start[k]));
+  }
+  fine->set.curves = fine->set.moving = n;
+  fine->set.start = fine->start;
+  fine->set.kind = fine->kind;
+  fine->set.X = fine->X;
+  fine->set.smooth = PETSC_FALSE;
+  fine->set.part = NULL;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CurveFineDestroy(CurveFine *fine) {
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(fine->X));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
