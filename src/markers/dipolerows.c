@@ -112,9 +112,13 @@ void DipoleRowsAddForce(DipoleRows d, PetscBool own, Field f, PetscInt j, PetscS
   const PetscScalar *force = Row(d, f, j), *b = Row(d, FIELD_P, j);
   for (PetscInt i = 0; i < n && own; i++) row[i] += force[i];
   if (f == FIELD_V) return;
-  const PetscScalar *low = Row(d, FIELD_P, j - 1), *high = Row(d, FIELD_P, j + 1);
+  /* beyond a wall there is minus the row next to it */
+  const PetscBool bottom = d->grid->wall[1] && d->grid->first + j == 0 ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool top = d->grid->wall[1] && d->grid->first + j == d->grid->n[1] - 1 ? PETSC_TRUE : PETSC_FALSE;
+  const PetscScalar *low = Row(d, FIELD_P, bottom ? j : j - 1), *high = Row(d, FIELD_P, top ? j : j + 1);
+  const PetscReal below = bottom ? -1 : 1, above = top ? -1 : 1;
   for (PetscInt i = 0; i < n; i++)
-    row[i] += factor * (b[i ? i - 1 : n - 1] + b[i + 1 < n ? i + 1 : 0] + low[i] + high[i] - 4 * b[i]);
+    row[i] += factor * (b[i ? i - 1 : n - 1] + b[i + 1 < n ? i + 1 : 0] + below * low[i] + above * high[i] - 4 * b[i]);
 }
 
 const PetscScalar *DipoleRowsAddVelocity(DipoleRows d, Field f, PetscInt j, const PetscScalar row[]) {

@@ -27,6 +27,11 @@ static PetscErrorCode CheckBox(Scene scene, PetscReal ratio) {
   PetscCheck(scene->fluid.form != FORM_TOTAL, scene->comm, PETSC_ERR_USER_INPUT,
              "-vesicle_viscosity_ratio %g: not with -flow_form total; allowed: 1, or -flow_form disturbance",
              (double)ratio);
+  PetscCheck(scene->fluid.drive != DRIVE_FLUX || !strcmp(scene->scheme.type, "coupled"), scene->comm,
+             PETSC_ERR_USER_INPUT,
+             "-vesicle_viscosity_ratio %g: not with -flow_drive flux and -scheme_type direct; allowed: 1, or "
+             "-scheme_type coupled",
+             (double)ratio);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
