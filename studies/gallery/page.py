@@ -17,6 +17,7 @@ from studies.gallery.pressed import SCENE as PRESSED
 from studies.gallery.reynolds import SCENE as REYNOLDS
 from studies.gallery.scene import Scene
 from studies.gallery.settling import SCENE as SETTLING
+from studies.gallery.stenosis import SCENE as STENOSIS
 from studies.gallery.suspension import SCENE as SUSPENSION
 from studies.gallery.tumbling import SCENE as TUMBLING
 from studies.gallery.vortices import SCENE as VORTICES
@@ -31,6 +32,7 @@ SCENES = (
     COUETTE,
     POSTS,
     CONSTRICTION,
+    STENOSIS,
     BIFURCATION,
     SUSPENSION,
     REYNOLDS,
