@@ -246,9 +246,8 @@ class Run:
 
         A curve that is not closed goes on along its wall, or along the next one or the side of the box on its left.
         """
-        kinds = self.obstacle_kinds or ["closed"] * len(
-            self.obstacles
-        )  # files of earlier programs have closed ones only
+        # files of earlier programs have closed ones only
+        kinds = self.obstacle_kinds or ["closed"] * len(self.obstacles)
         return solid_outline(self.obstacles, kinds, obstacle, self.box, CURVE)
 
     def curve_tension(self, frame: int, vesicle: int = 0) -> np.ndarray:
