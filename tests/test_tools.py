@@ -25,7 +25,6 @@ OPTIONS = (
     " -vesicle_semi_axes 0.3,0.5 -time_step 0.01 -time_end 0.04 -output_every 0.02"
 )
 CHROMIUM = shutil.which("chromium-headless-shell") or shutil.which("chromium")
-SITE = PROGRAMS.parent / "site"  # Python packages of the tests that Debian does not have
 
 
 def tool(*words, good=True, folder=None):
