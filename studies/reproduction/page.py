@@ -88,13 +88,13 @@ def _head(quick: bool, ranks: int, name: str) -> str:
     command = "make reproduce QUICK=1" if quick else "make reproduce"
     return (
         "# The paper's scenes, tables and figures, repeated\n\n"
-        "The scenes of Ong and Lai, J. Comput. Phys. 408 (2020) 109277, by the paper's method and by the default of petves. The paper's\n"
-        "method is `-scheme_type split`, kernel ib6, backward Euler, unsteady Stokes flow, PCILU with 200 levels in nested dissection.\n"
-        "Ours are the files of runs/.\n\n"
-        f"Sections 5.1 to 5.3, with Tables 1 to 8 and Figures 2 to 5, are in [{name}/tables.md]({name}/tables.md), sections 5.4 to 5.6 below.\n"
-        f"[{name}/coupled.md]({name}/coupled.md) measures the coupled scheme by itself, also where split fails. Written by `{command}`, split on\n"
-        f"{ranks} ranks and ours on one; {name}/results.json holds every run's options and commit. Longer runs than the command makes are\n"
-        "shown where results.json has them.\n"
+        "The scenes of Ong and Lai, J. Comput. Phys. 408 (2020) 109277, by the paper's method and by the default of petves (the files of\n"
+        "runs/). The paper's method is `-scheme_type split`, kernel ib6, backward Euler, unsteady Stokes flow, PCILU with 200 levels in\n"
+        "nested dissection.\n\n"
+        f"[{name}/tables.md]({name}/tables.md) has sections 5.1 to 5.3 (Tables 1 to 8, Figures 2 to 5), this page sections 5.4 to 5.6,\n"
+        f"[{name}/coupled.md]({name}/coupled.md) the coupled scheme with the paper's membrane. Written by `{command}`, split on {ranks} ranks,\n"
+        f"the default on one; {name}/results.json holds every run's options and commit. Longer runs than the command makes are shown where\n"
+        "results.json has them.\n"
     )
 
 
