@@ -52,8 +52,8 @@ void DoubleBoxPlace(DoubleBox b) {
   }
 }
 
-/* Columns of tensor part c's functions, so many vectors from the j-th number on, += of markers k .. k + count - 1, which
-   have these parts of them: in registers. */
+/* Columns of tensor part c's functions, so many vectors from the j-th number on, += of markers k .. k + count - 1,
+   which have these parts of them: in registers. */
 static inline void GatherColumns(const int vectors, DoubleBox b, int c, PetscInt k, PetscInt count, PetscInt j,
                                  const PetscReal part[]) {
   const PetscInt nx = b->table.functions[0], size = nx + b->width;
