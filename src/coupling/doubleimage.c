@@ -89,8 +89,8 @@ static void AddParts(PetscReal alpha, const PetscReal from[2][DIPOLE_COUNT], Pet
 /* What the lattice has of one wall for a pair, whose answer without walls is free and whose image in exact fluid is
    blake. Responses that are scaled near the wall take s of the half space's free + exact - far only. */
 static void OnLattice(DoubleImage m, int direction, int side, PetscInt i, PetscInt j, const ImagePair *p,
-                 const PetscReal free[2][DIPOLE_COUNT], const PetscReal blake[2][DIPOLE_COUNT],
-                 PetscReal grid[2][DIPOLE_COUNT]) {
+                      const PetscReal free[2][DIPOLE_COUNT], const PetscReal blake[2][DIPOLE_COUNT],
+                      PetscReal grid[2][DIPOLE_COUNT]) {
   const PetscReal over = 1 / m->single->markers->grid->h;
   const ImageEnd *e = &m->single->end[direction][side][i];
   PetscReal part[2][DIPOLE_COUNT];
