@@ -21,7 +21,6 @@ typedef struct {
   const BoxAxis *axis;
   const BoxLattice *lattice;
   PaddedStencil *dipole; /* [DIPOLE_COUNT places], of dipoles */
-  PetscReal *tensor;     /* [DIPOLE_COUNT places] */
   Vec source;            /* of dipoles */
 } BoxGrid;
 
@@ -45,7 +44,7 @@ static PetscErrorCode PlaceMarkers(BoxGrid *b, const char kernel[]) {
   for (PetscInt k = 0; k < 2 * start[1]; k++) StencilPad(&b->markers->plain[k], &b->stencil[k]);
   for (PetscInt k = 0; k < start[1]; k++) StencilUnwrap(b->fluid->grid, b->markers->X + 2 * k, &b->stencil[2 * k]);
   if (!b->lattice->dipole) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscCalloc2(DIPOLE_COUNT * start[1], &b->dipole, DIPOLE_COUNT * start[1], &b->tensor));
+  PetscCall(PetscCalloc1(DIPOLE_COUNT * start[1], &b->dipole));
   for (PetscInt k = 0; k < start[1]; k++) {
     Stencil part[DIPOLE_COUNT];
     DipoleStencilsUnwrapped(b->fluid->grid, b->markers->X + 2 * k, part);
@@ -86,7 +85,7 @@ static PetscErrorCode Destroy(BoxGrid *b) {
   for (int k = 0; k < 7; k++) PetscCall(VecDestroy(all[k]));
   PetscCall(PetscFree(b->d));
   PetscCall(PetscFree(b->stencil));
-  PetscCall(PetscFree2(b->dipole, b->tensor));
+  PetscCall(PetscFree(b->dipole));
   PetscCall(DoubleImageDestroy(&b->twice));
   PetscCall(NearImageDestroy(&b->image));
   PetscCall(MarkersDestroy(&b->markers));
@@ -179,10 +178,12 @@ static PetscErrorCode Spread(BoxGrid *b, PetscInt j, int cj) {
   PetscFunctionBeginUser;
   PetscCall(VecSet(b->force, 0));
   if (b->lattice->dipole) {
+    PetscReal unit[DIPOLE_COUNT] = {0};
+    DipoleSpot spot[DIPOLE_SPOTS];
+    unit[cj] = 1;
+    DipoleSpots(g, b->fluid->nu, b->markers->X + 2 * j, spot);
     PetscCall(VecSet(b->source, 0));
-    b->tensor[DIPOLE_COUNT * j + cj] = 1;
-    PetscCall(DipolesSpread(b->markers, b->fluid->nu, b->tensor, b->force, b->source));
-    b->tensor[DIPOLE_COUNT * j + cj] = 0;
+    PetscCall(DipolesSpread(g, 1, spot, unit, b->force, b->source));
     PetscCall(VecSum(b->source, &sum));
     PetscCall(VecShift(b->source, -sum / ((PetscReal)g->n[0] * g->n[1])));
     PetscFunctionReturn(PETSC_SUCCESS);

@@ -2,10 +2,9 @@
 #include "base/lanes.h"
 #include "coupling/boxtable.h"
 
-/* Nearer to a wall than the table reaches it goes on as flows next to walls do: the velocity along a wall falls like
-   the distance, the one across like its square, and the stress, which tensors feel, stays. x[2] becomes a place in the
-   table. */
-static void GoOn(const BoxTable *t, Grid g, PetscReal x[2], PetscReal factor[BOX_COMPONENTS]) {
+/* The velocity along a wall falls like the distance, the one across like its square, and the stress, which tensors
+   feel, stays. */
+void BoxTableGoOn(const BoxTable *t, Grid g, PetscReal x[2], PetscReal factor[BOX_COMPONENTS]) {
   for (int c = 0; c < BOX_COMPONENTS; c++) factor[c] = 1;
   for (int d = 0; d < 2; d++) {
     const PetscReal end[2] = {t->axis[d].low, t->axis[d].high}, wall[2] = {g->lo[d], g->hi[d]};
@@ -28,10 +27,10 @@ static inline void Sums(const int n, PetscInt count, const PetscReal weight[], c
   for (int k = 0; k < n; k++) LanesPut(sum[k], a + LANES * k);
 }
 
-/* a[modes] of the block: weights of one component's functions times its vectors. The last four overlap others. */
-static void BlockRow(const BoxBlock *q, int c, const PetscReal weight[], PetscReal a[]) {
-  const PetscInt modes = q->modes, count = q->n[0] * q->n[1];
-  const PetscReal *Q = q->Q + c * count * modes;
+/* The last four overlap others. */
+void BoxBlockSum(const BoxBlock *q, int first, int components, const PetscReal weight[], PetscReal a[]) {
+  const PetscInt modes = q->modes, functions = q->n[0] * q->n[1], count = components * functions;
+  const PetscReal *Q = q->Q + first * functions * modes;
   PetscInt m = 0;
   for (; m + 4 * LANES <= modes; m += 4 * LANES) Sums(4, count, weight, Q + m, modes, a + m);
   for (; m + LANES <= modes; m += LANES) Sums(1, count, weight, Q + m, modes, a + m);
@@ -52,7 +51,7 @@ void BoxTableRows(const BoxTable *t, Grid g, const PetscReal X[2], PetscReal par
   PetscReal weight[BOX_BLOCK_FUNCTIONS];
   (void)PetscArrayzero(rows, count * t->rank);
   if (part == 0) return;
-  GoOn(t, g, x, factor);
+  BoxTableGoOn(t, g, x, factor);
   BoxTableFunctions(t, 0, x[0], vx);
   BoxTableFunctions(t, 1, x[1], vy);
   for (PetscInt q = 0; q < t->blocks; q++)
@@ -61,7 +60,7 @@ void BoxTableRows(const BoxTable *t, Grid g, const PetscReal X[2], PetscReal par
       const PetscReal scale = part * factor[first + c], *fx = vx + b->first[first + c][0],
                       *fy = vy + b->first[first + c][1];
       for (PetscInt k = 0; k < b->n[0] * b->n[1]; k++) weight[k] = scale * fx[k / b->n[1]] * fy[k % b->n[1]];
-      BlockRow(b, first + c, weight, rows + c * t->rank + b->start);
+      BoxBlockSum(b, first + c, 1, weight, rows + c * t->rank + b->start);
     }
 }
 

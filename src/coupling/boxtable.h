@@ -43,6 +43,15 @@ static inline PetscInt BoxParts(const BoxTable *table) {
  */
 PETSC_EXTERN void BoxTableFunctions(const BoxTable *table, int dir, PetscReal x, PetscReal values[]);
 
+/* BoxTableGoOn - nearer to a wall than the table reaches it goes on as flows next to walls do: x[2] becomes a place in
+   the table, factor[] what each component has of its functions there. Not collective. */
+PETSC_EXTERN void BoxTableGoOn(const BoxTable *table, Grid grid, PetscReal x[2], PetscReal factor[BOX_COMPONENTS]);
+
+/* BoxBlockSum - a[modes] of a block: the weights[components][n[0]][n[1]] of the functions of some components, `first`
+   and those behind it, times their vectors. Not collective. */
+PETSC_EXTERN void BoxBlockSum(const BoxBlock *block, int first, int components, const PetscReal weight[],
+                              PetscReal a[]);
+
 /* BoxTableRows - rows[count][rank]: `part` of the components first .. first + count - 1 of the functions at X in the
    run's grid. Not collective. */
 PETSC_EXTERN void BoxTableRows(const BoxTable *table, Grid grid, const PetscReal X[2], PetscReal part, int first,

@@ -17,6 +17,9 @@
 #include "coupling/dipoleimage.h"
 #include "coupling/lattice.h"
 
+#define DEGREES 6 /* n in n!/z^{n+1}, */
+#define DEGREES_EXACT 3
+
 static PetscReal G1(const ImageMode *m, int j) {
   return m->F[j] + m->s * m->g2[j];
 }
@@ -92,14 +95,14 @@ PetscErrorCode DipoleImageFill(const OffsetTable lattice[2], DipoleImageTable *t
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Monomials 1, a, b, aa, ab, bb, aab, abb. Of SHEAR the along polynomial is -2 times that of STRAIN, the across one
-   twice. */
-enum { ONE, A, B, AA, AB, BB, AAB, ABB };
+/* Monomials 1, a, b, ab, aa, bb, aab, abb; `lead` has the first LEAD alone. Of SHEAR the along polynomial is -2 times
+   that of STRAIN, the across one twice. */
+enum { ONE, A, B, AB, AA, BB, AAB, ABB, LEAD = AA };
 static const int degree[IMAGE_MONOMIALS] = {0, 1, 1, 2, 2, 2, 3, 3};
-static const PetscReal lead[2][2][IMAGE_MONOMIALS] = {{{-1, 1, 1, 0, -2}, {0, 1, -1, 0, -2}}, {{-2, 4}, {2, 4}}};
+static const PetscReal lead[2][2][IMAGE_MONOMIALS] = {{{-1, 1, 1, -2}, {0, 1, -1, -2}}, {{-2, 4}, {2, 4}}};
 static const PetscReal dispersion[2][2][IMAGE_MONOMIALS] = {
-    {{9. / 24, -21. / 24, -21. / 24, 2. / 24, 38. / 24, 2. / 24, -4. / 24, -4. / 24},
-     {-6. / 24, -19. / 24, 7. / 24, 2. / 24, 34. / 24, -2. / 24, -4. / 24, -4. / 24}},
+    {{9. / 24, -21. / 24, -21. / 24, 38. / 24, 2. / 24, 2. / 24, -4. / 24, -4. / 24},
+     {-6. / 24, -19. / 24, 7. / 24, 34. / 24, 2. / 24, -2. / 24, -4. / 24, -4. / 24}},
     {{30. / 24, -56. / 24, -4. / 24, 8. / 24, 8. / 24}, {-6. / 24, -48. / 24, 4. / 24, 8. / 24, 8. / 24}}};
 
 /* Add scale times the polynomials of STRAIN or SOURCE with kernels of second moments m along the wall in all, ma of the
@@ -128,33 +131,65 @@ void DipoleImageFormsMake(PetscReal along, PetscReal across, DipoleImageForms *f
     }
 }
 
-/* The sums, with n from `least` on. */
-static void Sums(const PetscReal c[DIPOLE_COUNT][2][IMAGE_MONOMIALS], int least, const ImagePair *p,
-                 PetscReal K[2][DIPOLE_COUNT]) {
-  const PetscReal a = p->a, b = p->b, H = a + b, r2 = H * H + p->x * p->x, u = H / r2, v = p->x / r2;
-  const PetscReal monomial[IMAGE_MONOMIALS] = {1, a, b, a * a, a * b, b * b, a * a * b, a * b * b};
-  PetscReal power[6][2], w[2] = {u / (4 * PETSC_PI), v / (4 * PETSC_PI)};
-  for (int n = 0; n < 6; n++) { /* n!/z^{n+1} */
-    power[n][0] = w[0];
-    power[n][1] = w[1];
-    const PetscReal next = (n + 1) * (w[0] * u - w[1] * v);
+/* Of four pairs: monomials, and n!/z^{n+1}/(4 pi), its real and its imaginary part. */
+typedef struct {
+  Lanes monomial[IMAGE_MONOMIALS], power[DEGREES][2];
+} Terms;
+
+static inline Terms MakeTerms(const int degrees, Lanes x, Lanes a, Lanes b) {
+  const Lanes H = a + b, over = 1 / (H * H + x * x), u = H * over, v = x * over, ab = a * b;
+  Terms t = {.monomial = {1 + (Lanes){0}, a, b, ab, a * a, b * b, a * ab, ab * b}};
+  Lanes w[2] = {u / (4 * PETSC_PI), v / (4 * PETSC_PI)};
+  for (int n = 0; n < degrees; n++) {
+    t.power[n][0] = w[0];
+    t.power[n][1] = w[1];
+    const Lanes next = (n + 1) * (w[0] * u - w[1] * v);
     w[1] = (n + 1) * (w[0] * v + w[1] * u);
     w[0] = next;
   }
-  for (int part = 0; part < DIPOLE_COUNT; part++)
-    for (int comp = 0; comp < 2; comp++) {
-      const int sine = (part == DIPOLE_XY) == comp;
-      PetscReal sum = 0;
-      for (int k = 0; k < IMAGE_MONOMIALS; k++)
-        sum += c[part][comp][k] * monomial[k] * power[PetscMin(5, least + degree[k])][sine];
-      K[comp][part] = sum;
+  return t;
+}
+
+/* The sums of the first of the monomials, with n from `least` on. */
+static inline void Sums(const int monomials, const int least, const PetscReal c[DIPOLE_COUNT][2][IMAGE_MONOMIALS],
+                        const Terms *t, Lanes K[2][DIPOLE_COUNT]) {
+  for (int sine = 0; sine < 2; sine++) {
+    Lanes term[IMAGE_MONOMIALS];
+    for (int k = 0; k < monomials; k++) term[k] = t->monomial[k] * t->power[least + degree[k]][sine];
+    for (int part = 0; part < DIPOLE_COUNT; part++) {
+      const int comp = part == DIPOLE_XY ? sine : 1 - sine;
+      K[comp][part] = c[part][comp][0] * term[0];
+      for (int k = 1; k < monomials; k++) K[comp][part] += c[part][comp][k] * term[k];
     }
+  }
+}
+
+void DipoleImageFourExact(const DipoleImageForms *f, Lanes x, Lanes a, Lanes b, Lanes K[2][DIPOLE_COUNT]) {
+  const Terms t = MakeTerms(DEGREES_EXACT, x, a, b);
+  Sums(LEAD, 0, f->exact, &t, K);
+}
+
+void DipoleImageFour(const DipoleImageForms *f, Lanes x, Lanes a, Lanes b, Lanes exact[2][DIPOLE_COUNT],
+                     Lanes far[2][DIPOLE_COUNT]) {
+  const Terms t = MakeTerms(DEGREES, x, a, b);
+  Sums(LEAD, 0, f->exact, &t, exact);
+  Sums(IMAGE_MONOMIALS, 2, f->far, &t, far);
+}
+
+/* The first of four. */
+static void First(const Lanes four[2][DIPOLE_COUNT], PetscReal K[2][DIPOLE_COUNT]) {
+  for (int c = 0; c < 2; c++)
+    for (int part = 0; part < DIPOLE_COUNT; part++) K[c][part] = four[c][part][0];
 }
 
 void DipoleImageExact(const DipoleImageForms *f, const ImagePair *p, PetscReal K[2][DIPOLE_COUNT]) {
-  Sums(f->exact, 0, p, K);
+  Lanes four[2][DIPOLE_COUNT];
+  DipoleImageFourExact(f, p->x + (Lanes){0}, p->a + (Lanes){0}, p->b + (Lanes){0}, four);
+  First((const Lanes(*)[DIPOLE_COUNT])four, K);
 }
 
 void DipoleImageFar(const DipoleImageForms *f, const ImagePair *p, PetscReal K[2][DIPOLE_COUNT]) {
-  Sums(f->far, 2, p, K);
+  Lanes exact[2][DIPOLE_COUNT], far[2][DIPOLE_COUNT];
+  DipoleImageFour(f, p->x + (Lanes){0}, p->a + (Lanes){0}, p->b + (Lanes){0}, exact, far);
+  First((const Lanes(*)[DIPOLE_COUNT])far, K);
 }

@@ -2,6 +2,7 @@
    wall: x along it, y across, tensor parts xx (along), yy (across), xy. Of the half-space lattice in a table, of the
    exact fluid in closed form, and what kernels and lattice take from that far away. h = 1; no viscosity. */
 #pragma once
+#include "base/lanes.h"
 #include "coupling/imagefar.h"
 #include "coupling/imagetable.h"
 #include "coupling/latticedipole.h"
@@ -23,7 +24,11 @@ typedef struct {
 
 /* DipoleImageFormsMake - for responses with these second moments along and across. DipoleImageExact - K[component]
    [part] of the exact fluid's image. DipoleImageFar - that less the lattice's, to the order 1/R^3, R the distance from
-   the image. Not collective. */
+   the image. DipoleImageFour - both, DipoleImageFourExact - the first alone, of four pairs. Not collective. */
 PETSC_EXTERN void DipoleImageFormsMake(PetscReal along, PetscReal across, DipoleImageForms *forms);
 PETSC_EXTERN void DipoleImageExact(const DipoleImageForms *forms, const ImagePair *pair, PetscReal K[2][DIPOLE_COUNT]);
 PETSC_EXTERN void DipoleImageFar(const DipoleImageForms *forms, const ImagePair *pair, PetscReal K[2][DIPOLE_COUNT]);
+PETSC_EXTERN void DipoleImageFour(const DipoleImageForms *forms, Lanes x, Lanes a, Lanes b,
+                                  Lanes exact[2][DIPOLE_COUNT], Lanes far[2][DIPOLE_COUNT]);
+PETSC_EXTERN void DipoleImageFourExact(const DipoleImageForms *forms, Lanes x, Lanes a, Lanes b,
+                                       Lanes exact[2][DIPOLE_COUNT]);

@@ -1,4 +1,5 @@
 #include "coupling/doubleblock.h"
+#include "base/lanes.h"
 #include "coupling/nearblock.h"
 
 PetscErrorCode DoubleGeometry(Spectral spectral, PetscInt n, const PetscReal X[], PetscReal normal[],
@@ -65,56 +66,41 @@ PetscErrorCode DoubleSelf(Spectral spectral, PetscInt n, const PetscReal X[], Pe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* D of unit tensor parts, which are 2 J_x N_x, 2 J_y N_y and J_x N_y + J_y N_x of a marker; r from target to source. */
-static void FreeParts(const PetscReal r[2], PetscReal K[2][DIPOLE_COUNT]) {
-  const PetscReal r2 = r[0] * r[0] + r[1] * r[1], q = -1 / (PETSC_PI * r2 * r2);
-  for (int c = 0; c < 2; c++) {
-    K[c][DIPOLE_XX] = 0.5 * q * r[0] * r[0] * r[c];
-    K[c][DIPOLE_YY] = 0.5 * q * r[1] * r[1] * r[c];
-    K[c][DIPOLE_XY] = q * r[0] * r[1] * r[c];
-  }
+/* The lattice's answer to unit tensor parts (which are 2 J_x N_x, 2 J_y N_y and J_x N_y + J_y N_x of a marker) of four
+   distant pairs, (x, y) = X_i - X_j: D less h^2/(48 pi r^3) times waves of the angle, smoothing by the kernels and
+   dispersion by the lattice. */
+static inline void FarFour(PetscReal h, Lanes x, Lanes y, Lanes K[2][DIPOLE_COUNT]) {
+  const Lanes r2 = x * x + y * y, over = 1 / r2, q = over * over / PETSC_PI, scale = h * h / 48 * q * over;
+  const Lanes c2 = (x * x - y * y) * over, s2 = 2 * x * y * over; /* times scale: of 3 phi, 5 phi and 7 phi, over r^3 */
+  const Lanes c3 = scale * x * (x * x - 3 * y * y), s3 = scale * y * (3 * x * x - y * y);
+  const Lanes c5 = c3 * c2 - s3 * s2, s5 = s3 * c2 + c3 * s2, c7 = c5 * c2 - s5 * s2, s7 = s5 * c2 + c5 * s2;
+  K[0][DIPOLE_XX] = 0.5 * q * x * x * x - (13 * c3 - 9 * c5 - 6 * c7);
+  K[0][DIPOLE_YY] = 0.5 * q * x * y * y - (-17 * c3 - 3 * c5 + 6 * c7);
+  K[0][DIPOLE_XY] = q * x * x * y - (34 * s3 - 6 * s5 - 12 * s7);
+  K[1][DIPOLE_XX] = 0.5 * q * x * x * y - (17 * s3 - 3 * s5 - 6 * s7);
+  K[1][DIPOLE_YY] = 0.5 * q * y * y * y - (-13 * s3 - 9 * s5 + 6 * s7);
+  K[1][DIPOLE_XY] = q * x * y * y - (-34 * c3 - 6 * c5 + 12 * c7);
 }
 
-/* D - L of distant markers, d = X_i - X_j: smoothing by the kernels and dispersion by the lattice, h^2/(48 pi r^3)
-   times these waves of the angle of d. */
-static void FarParts(const PetscReal d[2], PetscReal h, PetscReal K[2][DIPOLE_COUNT]) {
-  const PetscReal r = PetscHypotReal(d[0], d[1]), c = d[0] / r, s = d[1] / r, c2 = c * c - s * s, s2 = 2 * c * s;
-  const PetscReal c3 = c2 * c - s2 * s, s3 = s2 * c + c2 * s, c5 = c3 * c2 - s3 * s2, s5 = s3 * c2 + c3 * s2;
-  const PetscReal c7 = c5 * c2 - s5 * s2, s7 = s5 * c2 + c5 * s2, scale = h * h / (48 * PETSC_PI * r * r * r);
-  K[0][DIPOLE_XX] = scale * (13 * c3 - 9 * c5 - 6 * c7);
-  K[0][DIPOLE_YY] = scale * (-17 * c3 - 3 * c5 + 6 * c7);
-  K[0][DIPOLE_XY] = scale * (34 * s3 - 6 * s5 - 12 * s7);
-  K[1][DIPOLE_XX] = scale * (17 * s3 - 3 * s5 - 6 * s7);
-  K[1][DIPOLE_YY] = scale * (-13 * s3 - 9 * s5 + 6 * s7);
-  K[1][DIPOLE_XY] = scale * (-34 * c3 - 6 * c5 + 12 * c7);
+/* The same of near pairs. */
+static void NearParts(const OffsetTable lattice[2], PetscReal h, const PaddedStencil response[2],
+                      const PaddedStencil dipole[DIPOLE_COUNT], const PetscInt cells[2], PetscReal K[2][DIPOLE_COUNT]) {
+  StencilDipoleSums(lattice, response, dipole, cells, K);
+  for (int c = 0; c < 2; c++)
+    for (int k = 0; k < DIPOLE_COUNT; k++) K[c][k] /= h;
 }
 
 void DoubleLatticeParts(const OffsetTable lattice[2], PetscReal h, PetscReal reach, const PaddedStencil response[2],
                         const PaddedStencil dipole[DIPOLE_COUNT], const PetscInt cells[2], const PetscReal d[2],
                         PetscReal K[2][DIPOLE_COUNT]) {
-  const PetscReal r[2] = {-d[0], -d[1]};
-  PetscReal far[2][DIPOLE_COUNT];
+  Lanes four[2][DIPOLE_COUNT];
   if (d[0] * d[0] + d[1] * d[1] <= reach * reach) {
-    StencilDipoleSums(lattice, response, dipole, cells, K);
-    for (int c = 0; c < 2; c++)
-      for (int k = 0; k < DIPOLE_COUNT; k++) K[c][k] /= h;
+    NearParts(lattice, h, response, dipole, cells, K);
     return;
   }
-  FreeParts(r, K);
-  FarParts(d, h, far);
+  FarFour(h, d[0] + (Lanes){0}, d[1] + (Lanes){0}, four);
   for (int c = 0; c < 2; c++)
-    for (int k = 0; k < DIPOLE_COUNT; k++) K[c][k] -= far[c][k];
-}
-
-/* M = D of two markers, N = n w of the source j; r from the target to the source's image, own: D(i, i) of a marker
-   with itself. */
-static void Whole(const PetscReal r[2], const PetscReal N[2], const PetscReal *own, PetscReal M[4]) {
-  PetscReal D[3];
-  if (!own) Free(r, N, D);
-  for (int k = 0; k < 3 && own; k++) D[k] = own[k];
-  M[0] = D[0];
-  M[1] = M[2] = D[2];
-  M[3] = D[1];
+    for (int k = 0; k < DIPOLE_COUNT; k++) K[c][k] = four[c][k][0];
 }
 
 /* Images in walls that are left out, cells; with a box part, which is made with all, none. */
@@ -122,71 +108,156 @@ static PetscReal ImageReach(DoubleLayer s) {
   return s->near->box ? PETSC_MAX_REAL : DOUBLE_IMAGE_REACH;
 }
 
-/* C = D - L of two markers, and L, walls included; d = X_i - X_j of the image meant (length), own: D(i, i) of a marker
-   with itself; by stencils up to `reach` (length). */
-static void Pair(DoubleLayer s, PetscInt i, PetscInt j, const PetscReal d[2], PetscReal reach, const PetscReal *own,
-                 PetscReal C[4], PetscReal L[4]) {
-  const NearField f = s->near;
-  const PetscReal *X = f->markers->X, h = f->markers->grid->h, r[2] = {-d[0], -d[1]}, *N = s->normal + 2 * j;
-  PetscReal K[2][DIPOLE_COUNT], image[2][DIPOLE_COUNT] = {{0}}, D[4];
-  PetscInt cells[2];
-  for (int dir = 0; dir < 2; dir++) cells[dir] = (PetscInt)rint((d[dir] - (X[2 * i + dir] - X[2 * j + dir])) / h);
-  DoubleLatticeParts(s->lattice, h, reach, &f->stencil[2 * i], &s->dipole[DIPOLE_COUNT * j], cells, d, K);
-  DoubleImageAdd(s->image, i, j, d, ImageReach(s), image, K);
-  Whole(r, N, own, D);
-  DipoleContract((const PetscReal(*)[DIPOLE_COUNT])K, N, 1, L);
-  DipoleContract((const PetscReal(*)[DIPOLE_COUNT])image, N, 1, C);
-  for (int k = 0; k < 4; k++) C[k] += D[k] - L[k];
-}
+/* A block's columns, one at a time: the markers of its row respond to one of its column. */
+typedef struct {
+  DoubleLayer layer;
+  const DoubleBlock *block;
+  PetscBool self;
+  DoubleColumn to;
+  PetscReal *part;            /* [n] BoxPartImage */
+  PetscReal *D[DIPOLE_COUNT]; /* [n] the exact double layer's xx, yy, xy */
+  PetscReal *flux[2];         /* [n] SUM L n over the columns */
+  PetscReal *memory;
+} Fill;
 
-/* D alone, walls included. */
-static void WithoutLattice(DoubleLayer s, PetscInt i, PetscInt j, const PetscReal d[2], const PetscReal *own,
-                           PetscReal C[4]) {
-  const PetscReal r[2] = {-d[0], -d[1]}, *N = s->normal + 2 * j;
-  PetscReal image[2][DIPOLE_COUNT] = {{0}}, D[4];
-  Whole(r, N, own, D);
-  if (s->image) DoubleImageExactAll(s->image, i, j, d, ImageReach(s), image);
-  DipoleContract((const PetscReal(*)[DIPOLE_COUNT])image, N, 1, C);
-  for (int k = 0; k < 4; k++) C[k] += D[k];
-}
-
-/* value += (L n) (n w)^T/length: L acts on what Q leaves, flux[2n] being the rows' SUM L n over the column's markers.
- */
-static void PutFluxBack(DoubleLayer s, const DoubleBlock *b, const PetscReal flux[], PetscReal value[]) {
+/* All arrays of a Fill, one behind the other. */
+static PetscErrorCode CreateFill(DoubleLayer s, const DoubleBlock *b, PetscBool lattice, Fill *f) {
   const Layout l = s->near->bodies->layout;
-  const PetscInt n = 2 * LayoutCount(l, b->row), first = 2 * l->start[b->column];
-  for (PetscInt j = 0; j < 2 * LayoutCount(l, b->column); j++)
-    for (PetscInt i = 0; i < n; i++) value[j * n + i] += flux[i] * s->normal[first + j] / s->length[b->column];
+  const PetscInt n = LayoutCount(l, b->row), room = n + LANES;
+  PetscReal *next;
+  PetscFunctionBeginUser;
+  *f = (Fill){.layer = s, .block = b, .to = {.i = l->start[b->row], .n = n, .lattice = lattice}};
+  f->self = b->row == b->column && b->shift[0] == 0 && b->shift[1] == 0 ? PETSC_TRUE : PETSC_FALSE;
+  PetscCall(PetscCalloc1((5 + DIPOLE_COUNT + 6 * DIPOLE_COUNT) * room, &f->memory));
+  next = f->memory;
+  for (int c = 0; c < 2; c++, next += 2 * room) {
+    f->to.d[c] = next;
+    f->flux[c] = next + room;
+  }
+  f->part = next;
+  next += room;
+  for (int k = 0; k < DIPOLE_COUNT; k++, next += room) f->D[k] = next;
+  for (int q = 0; q < 2 * DIPOLE_COUNT; q++, next += 3 * room) {
+    f->to.free[q / DIPOLE_COUNT][q % DIPOLE_COUNT] = next;
+    f->to.image[q / DIPOLE_COUNT][q % DIPOLE_COUNT] = next + room;
+    f->to.exact[q / DIPOLE_COUNT][q % DIPOLE_COUNT] = next + 2 * room;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Where the column's marker is from those of the row; D, of a marker with itself as in own[3]. */
+static void Begin(Fill *f, PetscInt j, const PetscReal own[]) {
+  DoubleLayer s = f->layer;
+  const PetscReal *X = s->near->markers->X, *N = s->normal + 2 * j;
+  DoubleColumn *c = &f->to;
+  c->j = j;
+  for (PetscInt p = 0; p < c->n; p++) {
+    PetscReal d[2];
+    for (int dir = 0; dir < 2; dir++) d[dir] = X[2 * (c->i + p) + dir] - X[2 * j + dir] - f->block->shift[dir];
+    f->part[p] = c->lattice && s->near->box ? BoxPartImage(s->near->box, d) : 1;
+    for (int dir = 0; dir < 2; dir++) c->d[dir][p] = d[dir];
+  }
+  for (PetscInt p = 0; p < c->n; p += LANES) {
+    const Lanes x = LanesAt(c->d[0] + p), y = LanesAt(c->d[1] + p), r2 = x * x + y * y;
+    const Lanes q = (x * N[0] + y * N[1]) / (PETSC_PI * (r2 * r2 + LanesWhere((LanesBits)(r2 == 0), 1 + (Lanes){0})));
+    LanesPut(q * x * x, f->D[0] + p);
+    LanesPut(q * y * y, f->D[1] + p);
+    LanesPut(q * x * y, f->D[2] + p);
+  }
+  for (int k = 0; k < DIPOLE_COUNT && f->self; k++) f->D[k][j - c->i] = own[3 * (j - c->i) + k];
+  for (int q = 0; q < 2 * DIPOLE_COUNT; q++) {
+    (void)PetscArrayzero(c->exact[q / DIPOLE_COUNT][q % DIPOLE_COUNT], c->n + LANES);
+    (void)PetscArrayzero(c->image[q / DIPOLE_COUNT][q % DIPOLE_COUNT], c->n + LANES);
+  }
+}
+
+/* The lattice without walls: all pairs as if they were distant, if any are, then those by stencils. */
+static void Lattice(Fill *f) {
+  const NearField near = f->layer->near;
+  const DoubleColumn *c = &f->to;
+  const PetscReal *X = near->markers->X, h = near->markers->grid->h;
+  const PetscReal reach2 = PetscSqr((f->self ? DOUBLE_CELLS : DOUBLE_CROSS_CELLS) * h);
+  PetscInt distant = 0;
+  for (PetscInt p = 0; p < c->n; p++) distant += PetscSqr(c->d[0][p]) + PetscSqr(c->d[1][p]) > reach2;
+  for (PetscInt p = 0; p < c->n && distant; p += LANES) {
+    Lanes K[2][DIPOLE_COUNT];
+    FarFour(h, LanesAt(c->d[0] + p), LanesAt(c->d[1] + p), K);
+    for (int q = 0; q < 2 * DIPOLE_COUNT; q++)
+      LanesPut(K[q / DIPOLE_COUNT][q % DIPOLE_COUNT], c->free[q / DIPOLE_COUNT][q % DIPOLE_COUNT] + p);
+  }
+  for (PetscInt p = 0; p < c->n && distant < c->n; p++) {
+    const PetscReal d[2] = {c->d[0][p], c->d[1][p]}, *at = X + 2 * (c->i + p);
+    PetscReal K[2][DIPOLE_COUNT];
+    PetscInt cells[2];
+    if (d[0] * d[0] + d[1] * d[1] > reach2) continue;
+    for (int dir = 0; dir < 2; dir++) cells[dir] = (PetscInt)rint((d[dir] - (at[dir] - X[2 * c->j + dir])) / h);
+    NearParts(f->layer->lattice, h, &near->stencil[2 * (c->i + p)], &f->layer->dipole[DIPOLE_COUNT * c->j], cells, K);
+    for (int q = 0; q < 2 * DIPOLE_COUNT; q++)
+      c->free[q / DIPOLE_COUNT][q % DIPOLE_COUNT][p] = K[q / DIPOLE_COUNT][q % DIPOLE_COUNT];
+  }
+}
+
+/* The column's numbers of C = D - L (or D) to value, columns of J_x and of J_y, and L n added to the flux; N = n w. */
+static void End(Fill *f, PetscReal value[]) {
+  const DoubleColumn *c = &f->to;
+  const PetscReal *N = f->layer->normal + 2 * c->j, over = 1 / f->layer->along[c->j];
+  for (PetscInt p = 0; p < c->n; p += LANES) {
+    const Lanes part = LanesAt(f->part + p);
+    Lanes M[2][2]; /* [component][J] */
+    for (int comp = 0; comp < 2; comp++) {
+      Lanes L[DIPOLE_COUNT], K[DIPOLE_COUNT];
+      for (int k = 0; k < DIPOLE_COUNT; k++) {
+        L[k] = LanesAt(c->free[comp][k] + p) + LanesAt(c->image[comp][k] + p);
+        K[k] = LanesAt(c->exact[comp][k] + p) - L[k];
+      }
+      M[comp][0] = part *
+                   (LanesAt(f->D[comp ? DIPOLE_XY : DIPOLE_XX] + p) + 2 * N[0] * K[DIPOLE_XX] + N[1] * K[DIPOLE_XY]);
+      M[comp][1] = part *
+                   (LanesAt(f->D[comp ? DIPOLE_YY : DIPOLE_XY] + p) + 2 * N[1] * K[DIPOLE_YY] + N[0] * K[DIPOLE_XY]);
+      const Lanes flux = N[0] * N[0] * L[DIPOLE_XX] + N[1] * N[1] * L[DIPOLE_YY] + N[0] * N[1] * L[DIPOLE_XY];
+      LanesPut(LanesAt(f->flux[comp] + p) + 2 * over * part * flux, f->flux[comp] + p);
+    }
+    for (int k = 0; k < 2; k++) {
+      PetscReal row[2 * LANES];
+      LanesInterlace(M[0][k], M[1][k], row);
+      for (PetscInt q = 0; q < 2 * PetscMin(LANES, c->n - p); q++) value[k * 2 * c->n + 2 * p + q] = row[q];
+    }
+  }
+}
+
+/* value += (L n) (n w)^T/length: L acts on what Q leaves. */
+static void PutFluxBack(const Fill *f, PetscReal value[]) {
+  const DoubleLayer s = f->layer;
+  const Layout l = s->near->bodies->layout;
+  const PetscInt n = f->to.n, first = 2 * l->start[f->block->column];
+  for (PetscInt j = 0; j < 2 * LayoutCount(l, f->block->column); j++) {
+    const PetscReal N = s->normal[first + j] / s->length[f->block->column];
+    for (PetscInt i = 0; i < n; i++) {
+      value[j * 2 * n + 2 * i] += N * f->flux[0][i];
+      value[j * 2 * n + 2 * i + 1] += N * f->flux[1][i];
+    }
+  }
 }
 
 PetscErrorCode DoubleBlockFill(DoubleLayer s, const DoubleBlock *b, PetscBool lattice, PetscReal value[]) {
-  const NearField f = s->near;
-  const Layout l = f->bodies->layout;
-  const PetscInt n = LayoutCount(l, b->row), m = LayoutCount(l, b->column);
-  const PetscBool self = b->row == b->column && b->shift[0] == 0 && b->shift[1] == 0 ? PETSC_TRUE : PETSC_FALSE;
-  const PetscReal *X = f->markers->X, reach = (self ? DOUBLE_CELLS : DOUBLE_CROSS_CELLS) * f->markers->grid->h;
-  PetscReal *flux, *diagonal;
+  const Layout l = s->near->bodies->layout;
+  const PetscInt m = LayoutCount(l, b->column);
+  PetscReal *own = NULL;
+  Fill f;
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc2(2 * n, &flux, 3 * n, &diagonal));
-  if (self) PetscCall(Diagonals(f->bodies->spectral[b->row], n, X + 2 * l->start[b->row], diagonal));
-  for (PetscInt q = 0; q < m; q++)
-    for (PetscInt p = 0; p < n; p++) {
-      const PetscInt i = l->start[b->row] + p, j = l->start[b->column] + q;
-      PetscReal d[2] = {X[2 * i] - X[2 * j] - b->shift[0], X[2 * i + 1] - X[2 * j + 1] - b->shift[1]};
-      const PetscReal part = lattice && f->box ? BoxPartImage(f->box, d) : 1;
-      const PetscReal *own = self && p == q ? diagonal + 3 * p : NULL, *N = s->normal + 2 * j;
-      PetscReal C[4], L[4], *at = value + 2 * q * 2 * n + 2 * p;
-      if (lattice) {
-        Pair(s, i, j, d, reach, own, C, L);
-        for (int c = 0; c < 2; c++) flux[2 * p + c] += part * (L[c] * N[0] + L[2 + c] * N[1]) / s->along[j];
-      } else
-        WithoutLattice(s, i, j, d, own, C);
-      at[0] = part * C[0];
-      at[1] = part * C[1];
-      at[2 * n] = part * C[2];
-      at[2 * n + 1] = part * C[3];
-    }
-  if (lattice) PutFluxBack(s, b, flux, value);
-  PetscCall(PetscFree2(flux, diagonal));
+  PetscCall(CreateFill(s, b, lattice, &f));
+  if (f.self) {
+    PetscCall(PetscMalloc1(3 * m, &own));
+    PetscCall(Diagonals(s->near->bodies->spectral[b->row], m, s->near->markers->X + 2 * l->start[b->row], own));
+  }
+  for (PetscInt q = 0; q < m; q++) {
+    Begin(&f, l->start[b->column] + q, own);
+    if (lattice) Lattice(&f);
+    if (s->image) DoubleImageAddColumn(s->image, ImageReach(s), &f.to);
+    End(&f, value + 2 * q * 2 * f.to.n);
+  }
+  if (lattice) PutFluxBack(&f, value);
+  PetscCall(PetscFree(own));
+  PetscCall(PetscFree(f.memory));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,4 +1,7 @@
 #include "coupling/doublebox.h"
+#include "base/lanes.h"
+
+#define AT_ONCE 64 /* markers */
 
 PetscErrorCode DoubleBoxCreate(const FluidSpec *spec, Markers markers, const BoxLattice *lattice, DoubleBox *out) {
   const PetscInt n = markers->layout->n;
@@ -12,7 +15,10 @@ PetscErrorCode DoubleBoxCreate(const FluidSpec *spec, Markers markers, const Box
   PetscCall(PetscLogEventBegin(event, 0, 0, 0, 0));
   PetscCall(BoxTableCreate(spec, markers->kernel->name, lattice, &b->table));
   PetscCall(PetscLogEventEnd(event, 0, 0, 0, 0));
-  PetscCall(PetscMalloc2(BOX_COMPONENTS * n * b->table.rank, &b->rows, b->table.rank, &b->amplitude));
+  b->width = (b->table.functions[1] + LANES - 1) / LANES * LANES;
+  PetscCall(PetscCalloc4(n * (b->table.functions[0] + b->width), &b->value, n * BOX_COMPONENTS, &b->factor,
+                         BOX_COMPONENTS * b->table.functions[0] * b->width, &b->function, b->table.rank,
+                         &b->amplitude));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -20,53 +26,141 @@ PetscErrorCode DoubleBoxDestroy(DoubleBox *box) {
   PetscFunctionBeginUser;
   if (!*box) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(BoxTableDestroy(&(*box)->table));
-  PetscCall(PetscFree2((*box)->rows, (*box)->amplitude));
+  PetscCall(PetscFree4((*box)->value, (*box)->factor, (*box)->function, (*box)->amplitude));
   PetscCall(PetscFree(*box));
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Own marker k's values of the functions of x; those of y come behind. */
+static PetscReal *Values(DoubleBox b, PetscInt k) {
+  return b->value + k * (b->table.functions[0] + b->width);
+}
+
+/* A component's functions. */
+static PetscReal *Functions(DoubleBox b, int component) {
+  return b->function + component * b->table.functions[0] * b->width;
 }
 
 void DoubleBoxPlace(DoubleBox b) {
   const Layout l = b->markers->layout;
   for (PetscInt k = 0; k < l->n; k++) {
     const PetscReal *X = b->markers->X + 2 * (l->first + k);
-    BoxTableRows(&b->table, b->markers->grid, X, 1, 0, BOX_COMPONENTS, b->rows + BOX_COMPONENTS * k * b->table.rank);
+    PetscReal x[2] = {X[0], X[1]}, *value = Values(b, k);
+    BoxTableGoOn(&b->table, b->markers->grid, x, b->factor + BOX_COMPONENTS * k);
+    BoxTableFunctions(&b->table, 0, x[0], value);
+    BoxTableFunctions(&b->table, 1, x[1], value + b->table.functions[0]);
   }
 }
 
-/* Of own marker k: a component of its velocity (0, 1) or of its tensor (from 2 on). */
-static const PetscReal *Row(DoubleBox b, PetscInt k, PetscInt component) {
-  return b->rows + (BOX_COMPONENTS * k + component) * b->table.rank;
+/* Columns of tensor part c's functions, so many vectors from the j-th number on, += of markers k .. k + count - 1,
+   which have these parts of them: in registers. */
+static inline void GatherColumns(const int vectors, DoubleBox b, int c, PetscInt k, PetscInt count, PetscInt j,
+                                 const PetscReal part[]) {
+  const PetscInt nx = b->table.functions[0], size = nx + b->width;
+  PetscReal *f = Functions(b, c) + j;
+  for (PetscInt i = 0; i < nx; i++, f += b->width) {
+    const PetscReal *x = Values(b, k) + i, *y = Values(b, k) + nx + j;
+    Lanes sum[4];
+    for (int q = 0; q < vectors; q++) sum[q] = LanesAt(f + q * LANES);
+    for (PetscInt m = 0; m < count; m++, x += size, y += size) {
+      const PetscReal scale = part[m] * x[0];
+      for (int q = 0; q < vectors; q++) sum[q] += scale * LanesAt(y + q * LANES);
+    }
+    for (int q = 0; q < vectors; q++) LanesPut(sum[q], f + q * LANES);
+  }
+}
+
+/* Parts 2, 3, 4: the own markers' tensors in the functions. */
+static void Gather(DoubleBox b, const PetscReal T[]) {
+  const PetscInt n = b->markers->layout->n;
+  PetscReal part[AT_ONCE];
+  (void)PetscArrayzero(Functions(b, 2), DIPOLE_COUNT * b->table.functions[0] * b->width);
+  for (PetscInt k = 0; k < n; k += AT_ONCE)
+    for (int c = 0; c < DIPOLE_COUNT; c++) {
+      const PetscInt count = PetscMin(AT_ONCE, n - k);
+      PetscInt j = 0;
+      for (PetscInt m = 0; m < count; m++)
+        part[m] = b->factor[BOX_COMPONENTS * (k + m) + 2 + c] * T[DIPOLE_COUNT * (k + m) + c];
+      for (; j + 4 * LANES <= b->width; j += 4 * LANES) GatherColumns(4, b, 2 + c, k, count, j, part);
+      for (; j < b->width; j += LANES) GatherColumns(1, b, 2 + c, k, count, j, part);
+    }
+}
+
+/* SUM x_i SUM f_ij y_j of so many vectors of columns. */
+static inline Lanes ScatterColumns(const int vectors, PetscInt nx, PetscInt width, const PetscReal x[],
+                                   const PetscReal y[], const PetscReal f[]) {
+  Lanes column[4], sum[4] = {{0}, {0}, {0}, {0}};
+  for (int q = 0; q < vectors; q++) column[q] = LanesAt(y + q * LANES);
+  for (PetscInt i = 0; i < nx; i++, f += width)
+    for (int q = 0; q < vectors; q++) sum[q] += x[i] * LanesAt(f + q * LANES);
+  for (int q = 0; q < vectors; q++) sum[q] *= column[q];
+  for (int q = 1; q < vectors; q++) sum[0] += sum[q];
+  return sum[0];
+}
+
+/* Velocity component c of own marker k. */
+static PetscReal Scatter(DoubleBox b, PetscInt k, int c) {
+  const PetscInt nx = b->table.functions[0];
+  const PetscReal *x = Values(b, k), *y = x + nx, *f = Functions(b, c);
+  PetscInt j = 0;
+  Lanes sum = {0};
+  for (; j + 4 * LANES <= b->width; j += 4 * LANES) sum += ScatterColumns(4, nx, b->width, x, y + j, f + j);
+  for (; j < b->width; j += LANES) sum += ScatterColumns(1, nx, b->width, x, y + j, f + j);
+  return b->factor[k * BOX_COMPONENTS + c] * LanesSum(sum);
+}
+
+/* Where component c's functions of a block begin. */
+static PetscReal *InBlock(DoubleBox b, const BoxBlock *q, int c) {
+  return Functions(b, c) + q->first[c][0] * b->width + q->first[c][1];
+}
+
+/* A block's eigenvectors' amplitudes of the tensors' functions. */
+static void ToAmplitudes(DoubleBox b, const BoxBlock *q) {
+  PetscReal weight[DIPOLE_COUNT * BOX_BLOCK_FUNCTIONS], *w = weight;
+  for (int c = 2; c < BOX_COMPONENTS; c++)
+    for (PetscInt i = 0; i < q->n[0]; i++)
+      for (PetscInt j = 0; j < q->n[1]; j++) *w++ = InBlock(b, q, c)[i * b->width + j];
+  BoxBlockSum(q, 2, DIPOLE_COUNT, weight, b->amplitude + q->start);
+}
+
+/* The velocities' functions of a block. */
+static void FromAmplitudes(DoubleBox b, const BoxBlock *q) {
+  const PetscReal *Q = q->Q;
+  for (int c = 0; c < 2; c++)
+    for (PetscInt i = 0; i < q->n[0]; i++)
+      for (PetscInt j = 0; j < q->n[1]; j++, Q += q->modes)
+        InBlock(b, q, c)[i * b->width + j] = BoxSum(q->modes, b->amplitude + q->start, Q);
 }
 
 PetscErrorCode DoubleBoxApply(DoubleBox b, PetscReal alpha, const PetscReal T[], PetscScalar y[]) {
   const Layout l = b->markers->layout;
   const PetscInt r = b->table.rank;
   PetscFunctionBeginUser;
-  PetscCall(PetscArrayzero(b->amplitude, r));
-  for (PetscInt k = 0; k < DIPOLE_COUNT * l->n; k++) {
-    const PetscReal *source = Row(b, k / DIPOLE_COUNT, 2 + k % DIPOLE_COUNT);
-    for (PetscInt m = 0; m < r; m++) b->amplitude[m] += source[m] * T[k];
-  }
+  Gather(b, T);
+  for (PetscInt k = 0; k < b->table.blocks; k++) ToAmplitudes(b, &b->table.block[k]);
   if (l->size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, b->amplitude, (PetscMPIInt)r, MPIU_REAL, MPI_SUM, l->comm));
   for (PetscInt m = 0; m < r; m++) b->amplitude[m] *= alpha * b->table.l[m];
-  for (PetscInt k = 0; k < 2 * l->n; k++) y[k] += BoxSum(r, b->amplitude, Row(b, k / 2, k % 2));
+  for (PetscInt k = 0; k < b->table.blocks; k++) FromAmplitudes(b, &b->table.block[k]);
+  for (PetscInt k = 0; k < 2 * l->n; k++) y[k] += Scatter(b, k / 2, k % 2);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode DoubleBoxMatrix(DoubleBox b, PetscReal scale, PetscReal out[]) {
   const Layout l = b->markers->layout;
+  const Grid g = b->markers->grid;
   const PetscInt r = b->table.rank;
-  PetscReal *source;
+  const PetscReal *X = b->markers->X;
+  PetscReal *source, *row;
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(DIPOLE_COUNT * r, &source));
+  PetscCall(PetscMalloc2(DIPOLE_COUNT * r, &source, 2 * l->n * r, &row));
+  for (PetscInt k = 0; k < l->n; k++) BoxTableRows(&b->table, g, X + 2 * (l->first + k), 1, 0, 2, row + 2 * k * r);
   for (PetscInt j = 0; j < l->M; j++) {
-    const PetscReal *X = b->markers->X + 2 * j;
-    BoxTableRows(&b->table, b->markers->grid, X, scale, 2, DIPOLE_COUNT, source);
+    BoxTableRows(&b->table, g, X + 2 * j, scale, 2, DIPOLE_COUNT, source);
     for (PetscInt k = 0; k < DIPOLE_COUNT * r; k++) source[k] *= b->table.l[k % r];
     for (int c = 0; c < DIPOLE_COUNT; c++)
       for (PetscInt i = 0; i < 2 * l->n; i++)
-        out[(DIPOLE_COUNT * j + c) * 2 * l->M + 2 * l->first + i] += BoxSum(r, source + c * r, Row(b, i / 2, i % 2));
+        out[(DIPOLE_COUNT * j + c) * 2 * l->M + 2 * l->first + i] += BoxSum(r, source + c * r, row + i * r);
   }
-  PetscCall(PetscFree(source));
+  PetscCall(PetscFree2(source, row));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

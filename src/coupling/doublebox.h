@@ -1,5 +1,7 @@
 /* The box part of the double layer, as boxpart.h of the single one: what walls and periodic images add to the dipoles'
-   velocity has an error of second order, which D takes off. */
+   velocity has an error of second order, which D takes off. A marker has its values of the table's functions of x and
+   of y; a product sums tensors into the functions, goes through the eigenvectors once, and takes velocities out of the
+   functions. So markers cost what functions there are, not what eigenvectors, and placing them next to nothing. */
 #pragma once
 #include "coupling/boxtable.h"
 #include "markers/markers.h"
@@ -8,7 +10,10 @@ typedef struct _p_DoubleBox *DoubleBox;
 struct _p_DoubleBox {
   Markers markers; /* borrowed */
   BoxTable table;
-  PetscReal *rows;      /* [n][BOX_COMPONENTS][rank] of the own markers: velocities diag(l) tensors^T is D */
+  PetscInt width;       /* functions of y, filled up with zeros to whole vectors */
+  PetscReal *value;     /* [n][functions of x + width] of the own markers */
+  PetscReal *factor;    /* [n][BOX_COMPONENTS] what they have of these functions (BoxTableGoOn) */
+  PetscReal *function;  /* [BOX_COMPONENTS][functions of x][width] work */
   PetscReal *amplitude; /* [rank] work */
 };
 

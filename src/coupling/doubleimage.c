@@ -86,58 +86,119 @@ static void AddParts(PetscReal alpha, const PetscReal from[2][DIPOLE_COUNT], Pet
     for (int k = 0; k < DIPOLE_COUNT; k++) to[c][k] += alpha * from[c][k];
 }
 
-/* One wall's part, added; free: the free lattice's. Responses that are scaled near the wall take s of the half space's
-   free + exact - far only. */
-static void AddWall(DoubleImage m, int direction, int side, PetscInt i, PetscInt j, const ImagePair *p,
-                    const PetscReal free[2][DIPOLE_COUNT], PetscReal exact[2][DIPOLE_COUNT],
-                    PetscReal lattice[2][DIPOLE_COUNT]) {
+/* What the lattice has of one wall for a pair, whose answer without walls is free and whose image in exact fluid is
+   blake. Responses that are scaled near the wall take s of the half space's free + exact - far only. */
+static void OnLattice(DoubleImage m, int direction, int side, PetscInt i, PetscInt j, const ImagePair *p,
+                      const PetscReal free[2][DIPOLE_COUNT], const PetscReal blake[2][DIPOLE_COUNT],
+                      PetscReal grid[2][DIPOLE_COUNT]) {
   const PetscReal over = 1 / m->single->markers->grid->h;
   const ImageEnd *e = &m->single->end[direction][side][i];
-  PetscReal blake[2][DIPOLE_COUNT] = {{0}}, grid[2][DIPOLE_COUNT] = {{0}}, part[2][DIPOLE_COUNT];
-  DoubleImageExact(m, direction, side, p, blake);
+  PetscReal part[2][DIPOLE_COUNT];
   if (p->x * p->x + PetscSqr(p->a + p->b) < PetscSqr(IMAGE_CELLS)) {
     Half(m, direction, p->x, i, e, j, &m->end[direction][side][j], part);
     Turn(direction, side, over, PARTS(part), grid);
     AddParts(-1, free, grid);
-  } else {
-    DipoleImageFar(&m->forms, p, part);
-    Turn(direction, side, -over, PARTS(part), grid);
-    AddParts(1, PARTS(blake), grid);
-    for (int k = 0; k < DIPOLE_COUNT; k++)
-      grid[direction][k] -= (1 - e->scale) * (free[direction][k] + grid[direction][k]);
+    return;
   }
-  AddParts(1, PARTS(blake), exact);
-  AddParts(1, PARTS(grid), lattice);
+  DipoleImageFar(&m->forms, p, part);
+  Turn(direction, side, -over, PARTS(part), grid);
+  AddParts(1, blake, grid);
+  for (int k = 0; k < DIPOLE_COUNT; k++)
+    grid[direction][k] -= (1 - e->scale) * (free[direction][k] + grid[direction][k]);
 }
 
-/* Two markers seen from a wall; whether there is one within reach. */
-static PetscBool SeenFrom(DoubleImage m, int direction, int side, PetscInt i, PetscInt j, const PetscReal d[2],
-                          PetscReal reach, ImagePair *p) {
+/* A column's marker, from and to a pair's own numbers. */
+static void Take(PetscReal *const from[2][DIPOLE_COUNT], PetscInt k, PetscReal K[2][DIPOLE_COUNT]) {
+  for (int c = 0; c < 2; c++)
+    for (int part = 0; part < DIPOLE_COUNT; part++) K[c][part] = from[c][part][k];
+}
+static void Put(const PetscReal K[2][DIPOLE_COUNT], PetscInt k, PetscReal *const to[2][DIPOLE_COUNT]) {
+  for (int c = 0; c < 2; c++)
+    for (int part = 0; part < DIPOLE_COUNT; part++) to[c][part][k] += K[c][part];
+}
+
+/* One wall's parts, pair by pair. */
+static void AddPairs(DoubleImage m, int direction, int side, PetscReal reach, const DoubleColumn *c) {
   const PetscReal *y = m->single->y[direction][side];
-  if (!m->end[direction][side]) return PETSC_FALSE;
-  *p = (ImagePair){d[1 - direction] / m->single->markers->grid->h, y[i], y[j]};
-  return p->a + p->b < reach ? PETSC_TRUE : PETSC_FALSE;
+  for (PetscInt k = 0; k < c->n; k++) {
+    const ImagePair p = {c->d[1 - direction][k] / m->single->markers->grid->h, y[c->i + k], y[c->j]};
+    PetscReal free[2][DIPOLE_COUNT], blake[2][DIPOLE_COUNT] = {{0}}, grid[2][DIPOLE_COUNT] = {{0}};
+    if (p.a + p.b >= reach) continue;
+    DoubleImageExact(m, direction, side, &p, blake);
+    Put(PARTS(blake), k, c->exact);
+    if (!c->lattice) continue;
+    Take(c->free, k, free);
+    OnLattice(m, direction, side, c->i + k, c->j, &p, PARTS(free), PARTS(blake), grid);
+    Put(PARTS(grid), k, c->image);
+  }
+}
+
+/* As Turn, added to four markers of a column. */
+static void TurnFour(int direction, int side, PetscReal alpha, Lanes part[2][DIPOLE_COUNT], PetscInt k,
+                     PetscReal *const to[2][DIPOLE_COUNT]) {
+  for (int c = 0; c < 2; c++)
+    for (int q = 0; q < DIPOLE_COUNT; q++) {
+      const PetscBool odd = (c == 1) != (q == DIPOLE_XY) ? PETSC_TRUE : PETSC_FALSE;
+      PetscReal *at = to[c ? direction : 1 - direction][Turned(direction, q)] + k;
+      LanesPut(LanesAt(at) + (side && odd ? -alpha : alpha) * part[c][q], at);
+    }
+}
+
+/* One wall's parts in closed form, of markers that are off the wall. */
+static void AddFar(DoubleImage m, int direction, int side, const DoubleColumn *c) {
+  const PetscReal cell = 1 / m->single->markers->grid->h, *y = m->single->y[direction][side];
+  const Lanes b = y[c->j] + (Lanes){0};
+  for (PetscInt k = 0; k < c->n; k += LANES) {
+    const Lanes x = cell * LanesAt(c->d[1 - direction] + k), a = LanesAt(y + c->i + k);
+    Lanes exact[2][DIPOLE_COUNT], far[2][DIPOLE_COUNT];
+    if (c->lattice)
+      DipoleImageFour(&m->forms, x, a, b, exact, far);
+    else
+      DipoleImageFourExact(&m->forms, x, a, b, exact);
+    TurnFour(direction, side, cell, exact, k, c->exact);
+    if (!c->lattice) continue;
+    TurnFour(direction, side, cell, exact, k, c->image);
+    TurnFour(direction, side, -cell, far, k, c->image);
+  }
 }
 
 void DoubleImageAdd(DoubleImage m, PetscInt i, PetscInt j, const PetscReal d[2], PetscReal reach,
                     PetscReal exact[2][DIPOLE_COUNT], PetscReal lattice[2][DIPOLE_COUNT]) {
   PetscReal free[2][DIPOLE_COUNT] = {{0}};
-  ImagePair p;
   AddParts(1, PARTS(lattice), free);
-  for (int wall = 0; wall < 4; wall++)
-    if (SeenFrom(m, wall / 2, wall % 2, i, j, d, reach, &p))
-      AddWall(m, wall / 2, wall % 2, i, j, &p, PARTS(free), exact, lattice);
+  for (int wall = 0; wall < 4; wall++) {
+    const int direction = wall / 2, side = wall % 2;
+    const PetscReal *y = m->single->y[direction][side];
+    PetscReal blake[2][DIPOLE_COUNT] = {{0}}, grid[2][DIPOLE_COUNT] = {{0}};
+    if (!m->end[direction][side] || y[i] + y[j] >= reach) continue;
+    const ImagePair p = {d[1 - direction] / m->single->markers->grid->h, y[i], y[j]};
+    DoubleImageExact(m, direction, side, &p, blake);
+    OnLattice(m, direction, side, i, j, &p, PARTS(free), PARTS(blake), grid);
+    AddParts(1, PARTS(blake), exact);
+    AddParts(1, PARTS(grid), lattice);
+  }
+}
+
+void DoubleImageAddColumn(DoubleImage m, PetscReal reach, const DoubleColumn *c) {
+  for (int direction = 0; direction < 2; direction++)
+    for (int side = 0; side < 2; side++) {
+      const PetscReal *y = m->single->y[direction][side];
+      PetscReal low = PETSC_MAX_REAL, high = 0;
+      if (!m->end[direction][side]) continue;
+      for (PetscInt k = c->i; k < c->i + c->n; k++) {
+        low = PetscMin(low, y[k]);
+        high = PetscMax(high, y[k]);
+      }
+      if (low + y[c->j] >= reach) continue;
+      if (high + y[c->j] < reach && (!c->lattice || (low + y[c->j] >= IMAGE_CELLS && low >= FOLD_SCALED)))
+        AddFar(m, direction, side, c);
+      else
+        AddPairs(m, direction, side, reach, c);
+    }
 }
 
 void DoubleImageExact(DoubleImage m, int direction, int side, const ImagePair *p, PetscReal exact[2][DIPOLE_COUNT]) {
   PetscReal part[2][DIPOLE_COUNT];
   DipoleImageExact(&m->forms, p, part);
   Turn(direction, side, 1 / m->single->markers->grid->h, PARTS(part), exact);
-}
-
-void DoubleImageExactAll(DoubleImage m, PetscInt i, PetscInt j, const PetscReal d[2], PetscReal reach,
-                         PetscReal exact[2][DIPOLE_COUNT]) {
-  ImagePair p;
-  for (int wall = 0; wall < 4; wall++)
-    if (SeenFrom(m, wall / 2, wall % 2, i, j, d, reach, &p)) DoubleImageExact(m, wall / 2, wall % 2, &p, exact);
 }

@@ -31,15 +31,22 @@ PETSC_EXTERN PetscErrorCode DoubleImageDestroy(DoubleImage *image);
    stencils (kept by the caller). Not collective. */
 PETSC_EXTERN void DoubleImagePlace(DoubleImage image, const PaddedStencil dipole[]);
 
-/* DoubleImageAdd - the walls' parts of marker i's velocity by unit tensor parts of marker j, [component][part]
-   (1/length): exact += those of the exact fluid, lattice += those of the grid, lattice holding the free lattice's. d =
-   X_i - X_j, in periodic directions to the image meant (length); reach: of images (cells). DoubleImageExact - exact +=
-   the first alone of two points, one wall's. Not collective. */
+/* Responses of the markers i .. i + n - 1 to unit tensor parts of marker j, arrays [component][part] of n numbers
+   (1/length) with room for whole vectors behind them. */
+typedef struct {
+  PetscInt i, n, j;
+  PetscReal *d[2];                   /* X_i - X_j, in periodic directions to the image meant (length) */
+  PetscBool lattice;                 /* whether `free` and `image` are wanted */
+  PetscReal *free[2][DIPOLE_COUNT];  /* what the lattice without walls gives */
+  PetscReal *image[2][DIPOLE_COUNT]; /* what walls add to that */
+  PetscReal *exact[2][DIPOLE_COUNT]; /* what walls add in the exact fluid */
+} DoubleColumn;
+
+/* DoubleImageAddColumn - all walls' parts, added to image and exact; reach: of images (cells). DoubleImageAdd - of one
+   pair: exact +=, and lattice += image, which holds the free lattice's. DoubleImageExact - exact += that of two points
+   and one wall. Not collective. */
+PETSC_EXTERN void DoubleImageAddColumn(DoubleImage image, PetscReal reach, const DoubleColumn *column);
 PETSC_EXTERN void DoubleImageAdd(DoubleImage image, PetscInt i, PetscInt j, const PetscReal d[2], PetscReal reach,
                                  PetscReal exact[2][DIPOLE_COUNT], PetscReal lattice[2][DIPOLE_COUNT]);
 PETSC_EXTERN void DoubleImageExact(DoubleImage image, int direction, int side, const ImagePair *pair,
                                    PetscReal exact[2][DIPOLE_COUNT]);
-
-/* DoubleImageExactAll - of all walls, of two markers. Not collective. */
-PETSC_EXTERN void DoubleImageExactAll(DoubleImage image, PetscInt i, PetscInt j, const PetscReal d[2], PetscReal reach,
-                                      PetscReal exact[2][DIPOLE_COUNT]);

@@ -15,9 +15,10 @@ PetscErrorCode DoubleLayerCreate(NearField near, const PetscReal ratio[], Double
   for (PetscInt v = 0; v < l->bodies; v++) most = PetscMax(most, LayoutCount(l, v));
   PetscCall(PetscMalloc3(l->bodies, &s->ratio, l->bodies, &s->length, 2 * most, &s->column));
   for (PetscInt v = 0; v < l->bodies; v++) s->ratio[v] = v < near->bodies->vesicles ? ratio[v] : 1;
-  PetscCall(PetscMalloc3(2 * l->M, &s->normal, l->M, &s->along, DIPOLE_COUNT * l->M, &s->dipole));
+  PetscCall(PetscMalloc2(2 * l->M, &s->normal, l->M, &s->along));
   PetscCall(PetscCalloc3(2 * l->M, &s->jump, 2 * l->M, &s->plain, DIPOLE_COUNT * l->M, &s->tensor));
   if (!near->free) {
+    PetscCall(PetscMalloc2(DIPOLE_COUNT * l->M, &s->dipole, DIPOLE_SPOTS * l->M, &s->spot));
     PetscCall(LatticeDipoles(DOUBLE_CELLS + OFFSET_LAGS, s->lattice));
     PetscCall(DoubleImageCreate(near->image, s->lattice, &s->image));
   }
@@ -31,7 +32,8 @@ PetscErrorCode DoubleLayerDestroy(DoubleLayer *layer) {
   PetscFunctionBeginUser;
   if (!s) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscFree3(s->ratio, s->length, s->column));
-  PetscCall(PetscFree3(s->normal, s->along, s->dipole));
+  PetscCall(PetscFree2(s->normal, s->along));
+  PetscCall(PetscFree2(s->dipole, s->spot));
   PetscCall(PetscFree3(s->jump, s->plain, s->tensor));
   for (int c = 0; c < 2; c++) PetscCall(OffsetTableDestroy(&s->lattice[c]));
   PetscCall(DoubleImageDestroy(&s->image));
@@ -63,12 +65,12 @@ static PetscErrorCode PlaceDipoles(DoubleLayer s) {
                              s->normal + 2 * first, s->along + first));
     s->length[v] = 0;
     for (PetscInt k = first; k < l->start[v + 1]; k++) {
-      PaddedStencil *p = s->dipole + DIPOLE_COUNT * k;
       Stencil part[DIPOLE_COUNT];
       s->length[v] += s->along[k];
       if (f->free) continue;
       DipoleStencilsUnwrapped(g, f->markers->X + 2 * k, part);
-      for (int c = 0; c < DIPOLE_COUNT; c++) StencilPad(&part[c], &p[c]);
+      for (int c = 0; c < DIPOLE_COUNT; c++) StencilPad(&part[c], &s->dipole[DIPOLE_COUNT * k + c]);
+      DipoleSpots(g, f->nu, f->markers->X + 2 * k, s->spot + DIPOLE_SPOTS * k);
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -185,7 +187,7 @@ PetscErrorCode DoubleLayerSpread(DoubleLayer s, Vec w, Vec source, PetscReal mea
   PetscFunctionBeginUser;
   if (f->free) PetscFunctionReturn(PETSC_SUCCESS);
   DoubleLayerMean(s, mean);
-  PetscCall(DipolesSpread(f->markers, f->nu, s->tensor, w, source));
+  PetscCall(DipolesSpread(f->markers->grid, f->bodies->layout->M, s->spot, s->tensor, w, source));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -193,7 +195,7 @@ PetscErrorCode DoubleLayerRows(DoubleLayer s, const PetscReal profile[], DipoleR
   PetscReal mean[2] = {0, 0};
   PetscFunctionBeginUser;
   DoubleLayerMean(s, mean);
-  PetscCall(DipoleRowsSet(rows, s->near->markers, s->tensor, profile, mean));
+  PetscCall(DipoleRowsSet(rows, s->near->bodies->layout->M, s->spot, s->tensor, profile, mean));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -43,19 +43,18 @@ static void AddLine(DipoleRows d, const DipoleSpot *s, PetscInt entry, PetscReal
   const Grid g = d->grid;
   for (PetscInt j = entry - g->first - g->n[1]; j < g->rows[FIELD_U] + ABOVE; j += g->n[1]) {
     if (j < -BELOW || (g->wall[1] && j != entry - g->first)) continue;
-    PetscScalar *row = Row(d, s->field, j);
-    for (PetscInt k = 0; k < s->line[0].n; k++) row[DipoleEntry(g, s, 0, k)] += value * s->line[0].weight[k];
+    DipoleAddRow(g, s, value, Row(d, s->field, j));
     d->window[0] = PetscMin(d->window[0], j);
     d->window[1] = PetscMax(d->window[1], j + 1);
   }
 }
 
-static void Add(DipoleRows d, const DipoleSpot *s) {
+static void Add(DipoleRows d, const DipoleSpot *s, PetscReal part) {
   PetscReal all = 0;
   for (PetscInt k = 0; k < s->line[0].n; k++) all += s->line[0].weight[k] / (PetscReal)d->grid->n[0];
   for (PetscInt q = 0; q < s->line[1].n; q++) {
     const PetscInt j = DipoleEntry(d->grid, s, 1, q);
-    const PetscReal value = s->value * s->line[1].weight[q];
+    const PetscReal value = part * s->line[1].weight[q];
     if (s->field == FIELD_P) d->mean[j] += all * value;
     AddLine(d, s, j, value);
   }
@@ -83,17 +82,14 @@ static void SumMeans(const Grid g, PetscScalar mean[]) {
   for (PetscInt j = 0; j < g->n[1] && !g->wall[1]; j++) mean[j] -= sum / (PetscReal)g->n[1];
 }
 
-PetscErrorCode DipoleRowsSet(DipoleRows d, Markers m, const PetscReal T[], const PetscReal profile[],
-                             const PetscReal mean[2]) {
+PetscErrorCode DipoleRowsSet(DipoleRows d, PetscInt M, const DipoleSpot spot[], const PetscReal T[],
+                             const PetscReal profile[], const PetscReal mean[2]) {
   const Grid g = d->grid;
   PetscFunctionBeginUser;
   Clear(d);
-  for (PetscInt k = 0; k < m->layout->M; k++) {
-    const PetscReal *t = T + DIPOLE_COUNT * k;
-    DipoleSpot spot[DIPOLE_SPOTS];
-    if (t[0] == 0 && t[1] == 0 && t[2] == 0) continue;
-    DipoleSpots(g, d->nu, m->X + 2 * k, t, spot);
-    for (int q = 0; q < DIPOLE_SPOTS; q++) Add(d, &spot[q]);
+  for (PetscInt k = 0; k < DIPOLE_SPOTS * M; k++) {
+    const PetscReal *t = T + k / DIPOLE_SPOTS * DIPOLE_COUNT;
+    if (t[0] != 0 || t[1] != 0 || t[2] != 0) Add(d, &spot[k], spot[k].value * t[spot[k].part]);
   }
   for (PetscInt j = d->window[0]; j < d->window[1]; j++)
     SumRow(g, d->mean[(j + g->first + g->n[1]) % g->n[1]], Row(d, FIELD_P, j));

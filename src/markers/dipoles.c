@@ -53,18 +53,17 @@ static DipoleLine Difference(Grid g, Field field, const Stencil *s, int dir, Pet
   return Inside(g, field, dir, line);
 }
 
-void DipoleSpots(Grid g, PetscReal nu, const PetscReal X[2], const PetscReal T[DIPOLE_COUNT],
-                 DipoleSpot spot[DIPOLE_SPOTS]) {
+void DipoleSpots(Grid g, PetscReal nu, const PetscReal X[2], DipoleSpot spot[DIPOLE_SPOTS]) {
   const PetscReal force = -nu / PetscPowRealInt(g->h, 3), half = -0.5 / PetscSqr(g->h);
   Stencil s[DIPOLE_COUNT];
   OnGrid(g, X, s);
   const Stencil *xx = &s[DIPOLE_XX], *yy = &s[DIPOLE_YY], *xy = &s[DIPOLE_XY];
-  spot[0] = (DipoleSpot){FIELD_U, force * T[DIPOLE_XX], {Difference(g, FIELD_U, xx, 0, 1), Plain(g, FIELD_U, xx, 1)}};
-  spot[1] = (DipoleSpot){FIELD_U, force * T[DIPOLE_XY], {Plain(g, FIELD_U, xy, 0), Difference(g, FIELD_U, xy, 1, 0)}};
-  spot[2] = (DipoleSpot){FIELD_V, force * T[DIPOLE_XY], {Difference(g, FIELD_V, xy, 0, 0), Plain(g, FIELD_V, xy, 1)}};
-  spot[3] = (DipoleSpot){FIELD_V, force * T[DIPOLE_YY], {Plain(g, FIELD_V, yy, 0), Difference(g, FIELD_V, yy, 1, 1)}};
-  spot[4] = (DipoleSpot){FIELD_P, half * T[DIPOLE_XX], {Plain(g, FIELD_P, xx, 0), Plain(g, FIELD_P, xx, 1)}};
-  spot[5] = (DipoleSpot){FIELD_P, half * T[DIPOLE_YY], {Plain(g, FIELD_P, yy, 0), Plain(g, FIELD_P, yy, 1)}};
+  spot[0] = (DipoleSpot){FIELD_U, DIPOLE_XX, force, {Difference(g, FIELD_U, xx, 0, 1), Plain(g, FIELD_U, xx, 1)}};
+  spot[1] = (DipoleSpot){FIELD_U, DIPOLE_XY, force, {Plain(g, FIELD_U, xy, 0), Difference(g, FIELD_U, xy, 1, 0)}};
+  spot[2] = (DipoleSpot){FIELD_V, DIPOLE_XY, force, {Difference(g, FIELD_V, xy, 0, 0), Plain(g, FIELD_V, xy, 1)}};
+  spot[3] = (DipoleSpot){FIELD_V, DIPOLE_YY, force, {Plain(g, FIELD_V, yy, 0), Difference(g, FIELD_V, yy, 1, 1)}};
+  spot[4] = (DipoleSpot){FIELD_P, DIPOLE_XX, half, {Plain(g, FIELD_P, xx, 0), Plain(g, FIELD_P, xx, 1)}};
+  spot[5] = (DipoleSpot){FIELD_P, DIPOLE_YY, half, {Plain(g, FIELD_P, yy, 0), Plain(g, FIELD_P, yy, 1)}};
 }
 
 /* SUM of a line's weights, and of them times the places of its entries along dir (length), from the middle. */
@@ -96,11 +95,12 @@ void DipoleShortfall(Grid g, PetscReal nu, const PetscReal X[2], const PetscReal
   if (!g->wall[dir] || PetscMin(X[dir] - g->lo[dir], g->hi[dir] - X[dir]) >= (KERNEL_WALL_CELLS + 1) * g->h) return;
   shortfall[1 - dir] = nu * T[DIPOLE_XY];
   shortfall[dir] = nu * T[dir ? DIPOLE_YY : DIPOLE_XX];
-  DipoleSpots(g, nu, X, T, spot);
+  DipoleSpots(g, nu, X, spot);
   for (int q = 0; q < DIPOLE_SPOTS; q++) {
     PetscReal along, sum;
     (void)LineMoment(g, &spot[q], 1 - dir, &along);
-    const PetscReal moment = LineMoment(g, &spot[q], dir, &sum), part = cell * spot[q].value * along;
+    const PetscReal value = T[spot[q].part] * spot[q].value, part = cell * value * along;
+    const PetscReal moment = LineMoment(g, &spot[q], dir, &sum);
     if (spot[q].field == FIELD_P)
       shortfall[dir] += 0.5 * nu * part * LineEnds(g, &spot[q].line[dir], dir) * g->n[dir];
     else
@@ -108,31 +108,24 @@ void DipoleShortfall(Grid g, PetscReal nu, const PetscReal X[2], const PetscReal
   }
 }
 
-/* a += the spot on this rank's rows of its field. */
-static void Add(Grid g, const DipoleSpot *s, PetscScalar a[]) {
-  const PetscInt columns = g->columns[s->field];
-  const DipoleLine *x = &s->line[0], *y = &s->line[1];
+/* a += value times the spot on this rank's rows of its field. */
+static void Add(Grid g, const DipoleSpot *s, PetscReal value, PetscScalar a[]) {
+  const DipoleLine *y = &s->line[1];
   for (PetscInt q = 0; q < y->n; q++) {
     const PetscInt j = DipoleEntry(g, s, 1, q) - g->first;
-    if (j < 0 || j >= g->rows[s->field]) continue;
-    const PetscReal v = s->value * y->weight[q];
-    for (PetscInt k = 0; k < x->n; k++) a[j * columns + DipoleEntry(g, s, 0, k)] += v * x->weight[k];
+    if (j >= 0 && j < g->rows[s->field]) DipoleAddRow(g, s, value * y->weight[q], a + j * g->columns[s->field]);
   }
 }
 
-PetscErrorCode DipolesSpread(Markers m, PetscReal nu, const PetscReal T[], Vec w, Vec source) {
-  const Grid g = m->grid;
+PetscErrorCode DipolesSpread(Grid g, PetscInt M, const DipoleSpot spot[], const PetscReal T[], Vec w, Vec source) {
   PetscScalar *a[3];
   PetscFunctionBeginUser;
   PetscCall(VecGetArray(w, &a[FIELD_U]));
   PetscCall(VecGetArray(source, &a[FIELD_P]));
   a[FIELD_V] = a[FIELD_U] + GridLocalU(g);
-  for (PetscInt k = 0; k < m->layout->M; k++) {
-    const PetscReal *t = T + DIPOLE_COUNT * k;
-    DipoleSpot spot[DIPOLE_SPOTS];
-    if (t[0] == 0 && t[1] == 0 && t[2] == 0) continue;
-    DipoleSpots(g, nu, m->X + 2 * k, t, spot);
-    for (int q = 0; q < DIPOLE_SPOTS; q++) Add(g, &spot[q], a[spot[q].field]);
+  for (PetscInt k = 0; k < DIPOLE_SPOTS * M; k++) {
+    const PetscReal *t = T + k / DIPOLE_SPOTS * DIPOLE_COUNT;
+    if (t[0] != 0 || t[1] != 0 || t[2] != 0) Add(g, &spot[k], spot[k].value * t[spot[k].part], a[spot[k].field]);
   }
   PetscCall(VecRestoreArray(source, &a[FIELD_P]));
   PetscCall(VecRestoreArray(w, &a[FIELD_U]));

@@ -15,26 +15,36 @@ typedef enum { DIPOLE_XX, DIPOLE_YY, DIPOLE_XY, DIPOLE_COUNT } DipolePart;
    j) of xy is the upper right corner of cell (i, j). Not collective. */
 PETSC_EXTERN void DipoleStencilsUnwrapped(Grid grid, const PetscReal X[2], Stencil stencil[DIPOLE_COUNT]);
 
-/* What a marker's tensor adds to the entries of a field: value times a product of weights along x and y. */
+/* What a part of a marker's tensor adds to the entries of a field: value times a product of weights along x and y. */
 typedef struct {
   PetscInt first, n;
   PetscReal weight[KERNEL_MAX_POINTS + 1];
 } DipoleLine;
 typedef struct {
   Field field;
+  DipolePart part;
   PetscReal value;
   DipoleLine line[2];
 } DipoleSpot;
 #define DIPOLE_SPOTS 6
 
-/* DipoleSpots - of a marker at X with tensor T (xx, yy, xy; velocity times length): -nu DIV T/h^2 on the faces, -(T_xx
+/* DipoleSpots - of a marker at X with unit parts of a tensor (velocity times length): -nu DIV T/h^2 on the faces,
+   -(T_xx
    + T_yy)/(2 h^2), which is G^T of the velocity, in cells. DipoleEntry - row (direction 1) or column of entry k of a
-   spot, of all ranks' rows. Not collective. */
-PETSC_EXTERN void DipoleSpots(Grid grid, PetscReal nu, const PetscReal X[2], const PetscReal T[DIPOLE_COUNT],
-                              DipoleSpot spot[DIPOLE_SPOTS]);
+   spot, of all ranks' rows. DipoleAddRow - value times the spot's weights along x, added to a row of the grid. Not
+   collective. */
+PETSC_EXTERN void DipoleSpots(Grid grid, PetscReal nu, const PetscReal X[2], DipoleSpot spot[DIPOLE_SPOTS]);
 static inline PetscInt DipoleEntry(Grid g, const DipoleSpot *s, int direction, PetscInt k) {
   const PetscInt entry = s->line[direction].first + k, n = g->n[direction];
   return g->wall[direction] ? entry : (entry + n) % n;
+}
+
+static inline void DipoleAddRow(Grid g, const DipoleSpot *s, PetscReal value, PetscScalar row[]) {
+  const DipoleLine *x = &s->line[0];
+  if (x->first >= 0 && x->first + x->n <= g->n[0])
+    for (PetscInt k = 0; k < x->n; k++) row[x->first + k] += value * x->weight[k];
+  else
+    for (PetscInt k = 0; k < x->n; k++) row[DipoleEntry(g, s, 0, k)] += value * x->weight[k];
 }
 
 /* DipoleShortfall - as MarkersShortfall, of a dipole: nu T less the first moments of its force across the box along
@@ -43,6 +53,7 @@ static inline PetscInt DipoleEntry(Grid g, const DipoleSpot *s, int direction, P
 PETSC_EXTERN void DipoleShortfall(Grid grid, PetscReal nu, const PetscReal X[2], const PetscReal T[DIPOLE_COUNT],
                                   int dir, PetscReal shortfall[2]);
 
-/* DipolesSpread - of the M markers of all bodies with tensors T[3M], the same on every rank: their spots added to w and
+/* DipolesSpread - of M markers with tensors T[3M], the same on every rank: their spots[DIPOLE_SPOTS M] added to w and
    source. Not collective. */
-PETSC_EXTERN PetscErrorCode DipolesSpread(Markers markers, PetscReal nu, const PetscReal T[], Vec w, Vec source);
+PETSC_EXTERN PetscErrorCode DipolesSpread(Grid grid, PetscInt M, const DipoleSpot spot[], const PetscReal T[], Vec w,
+                                          Vec source);

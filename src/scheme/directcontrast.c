@@ -11,13 +11,15 @@ static void UnitTensor(DoubleLayer s, PetscInt k, int c, PetscReal T[DIPOLE_COUN
   T[DIPOLE_XY] = N[1 - c];
 }
 
-/* A column of J in the fluid's rows; without a matrix the entries of the own ones, into room. */
-static PetscErrorCode AddDipole(DirectSolver d, Mat A, PetscInt room[], PetscInt column, const DipoleSpot *s) {
+/* A column of J, whose tensor has T of the spot's part, in the fluid's rows; without a matrix the entries of the own
+ * ones, into room. */
+static PetscErrorCode AddDipole(DirectSolver d, Mat A, PetscInt room[], PetscInt column, PetscReal T,
+                                const DipoleSpot *s) {
   const Grid g = d->fluid->grid;
   PetscFunctionBeginUser;
   for (PetscInt b = 0; b < s->line[1].n; b++)
     for (PetscInt a = 0; a < s->line[0].n; a++) {
-      const PetscReal value = -s->value * s->line[0].weight[a] * s->line[1].weight[b];
+      const PetscReal value = -T * s->value * s->line[0].weight[a] * s->line[1].weight[b];
       const PetscInt row = DirectIndex(d, s->field, DipoleEntry(g, s, 0, a), DipoleEntry(g, s, 1, b));
       if (A)
         PetscCall(MatSetValue(A, row, column, value, ADD_VALUES));
@@ -36,9 +38,9 @@ static PetscErrorCode AddDipoles(DirectSolver d, Mat A, PetscInt room[], PetscIn
       PetscReal T[DIPOLE_COUNT];
       DipoleSpot spot[DIPOLE_SPOTS];
       UnitTensor(s, k, c, T);
-      DipoleSpots(d->fluid->grid, d->fluid->nu, d->coupling->markers->X + 2 * k, T, spot);
+      DipoleSpots(d->fluid->grid, d->fluid->nu, d->coupling->markers->X + 2 * k, spot);
       for (int q = 0; q < DIPOLE_SPOTS; q++)
-        if (spot[q].value != 0) PetscCall(AddDipole(d, A, room, J + 2 * k + c, &spot[q]));
+        if (T[spot[q].part] != 0) PetscCall(AddDipole(d, A, room, J + 2 * k + c, T[spot[q].part], &spot[q]));
     }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
