@@ -140,7 +140,7 @@ test: test-deps ## run every test; ends with "N passed, N failed"
 	PETVES=$(CURDIR)/$(BIN)/petves PETVES_TESTS=$(CURDIR)/$(BUILD)/tests PYTHONPATH=python:. SANITIZE=$(SANITIZE) \
 	  $(PYTHON) -m pytest -p no:cacheprovider -q -n $(WORKERS) --dist loadgroup tests $(TESTFLAGS)
 
-bench: deps ## speed on this machine, into bench/results and docs/performance (12 minutes; QUICK=1: 2, into out/bench)
+bench: deps ## speed on this machine, into bench/results and docs/performance (a quarter of an hour; QUICK=1: 2, into out/bench)
 	@$(MAKE) --no-print-directory all benches
 	PETVES=$(CURDIR)/$(BIN)/petves PETVES_BENCH=$(CURDIR)/$(BUILD)/bench CC="$(CC)" PYTHONPATH=python:. $(PYTHON) bench/bench.py
 

@@ -33,6 +33,11 @@ SCENE = (
     "-domain_box -4,4,-4,4 -flow_type shear -vesicle_area 1 -vesicle_reduced_area 0.7 -vesicle_bending 0.03066 "
     "-time_step 0.025"
 )
+#: 254 vesicles of 64 markers, packed at random to three tenths of a channel.
+MANY = (
+    "-domain_bc_x periodic -domain_box 0,42,0,20.16 -flow_center_y 10 -fluid_inertia none -vesicle_packing .3 "
+    "-vesicle_markers 64 -time_step .05"
+)
 
 
 @dataclass
@@ -50,6 +55,12 @@ def step(name: str, cells: int, box: str, ranks: int, options: str, warmup: int,
     """Return a run of bench_step in one of the boxes."""
     text = f"-bench_warmup {warmup} -bench_steps {steps} -domain_cells {cells},{cells} {SCENE} {BOXES[box]} {options}"
     return Run(f"{name} {cells} {box} {ranks}", "bench_step", text, ranks, rounds)
+
+
+def many(ranks: int, warmup: int, steps: int, rounds: int) -> Run:
+    """Return a run of the suspension."""
+    text = f"-bench_warmup {warmup} -bench_steps {steps} {SCENE} {MANY} -domain_cells 1000,480"
+    return Run(f"coupled 1000x480 suspension {ranks}", "bench_step", text, ranks, rounds)
 
 
 def items(quick: bool, scratch: Path) -> dict[str, list[Run]]:
@@ -73,9 +84,11 @@ def items(quick: bool, scratch: Path) -> dict[str, list[Run]]:
         step("coupled", large, box, ranks, schemes["coupled"], warmup, steps, 1 if quick else 2)
         for box, ranks in product(BOXES, (1, 2))
     ]
+    ranks += [many(count, *((5, 2, 1) if quick else (6, 6, 2))) for count in (1, 2)]
+    fewer = {2048: (12, 8, 1), 4096: (4, 3, 1)}
     size = [
-        step("coupled", n, box, 1, schemes["coupled"], min(warmup, 12 if n > 1024 else 20), steps, 1 if n > 1024 else 3)
-        for n, box in product((64, 128, 256) if quick else (128, 256, 512, 1024, 2048), ("channel", "walls"))
+        step("coupled", n, box, 1, schemes["coupled"], *fewer.get(n, (warmup, steps, rounds)))
+        for n, box in product((64, 128, 256) if quick else (128, 256, 512, 1024, 2048, 4096), ("channel", "walls"))
     ]
     settled, count = (100, 50) if quick else (400, 100)
     steady = [

@@ -11,6 +11,9 @@ BANDWIDTH = 1e9  # of a rank (bytes/s): 64 ranks of a node share 64e9
 MARKERS = 181 / 512  # a column: the scene of the bench, ds = 1.5 h
 REFRESH = 8  # steps that the dense factors last
 BYTES = 8
+NEAR = 3e-6  # near field of a marker: placing it, a step (s; half of docs/performance.md, which is of a busy machine)
+NEAR_PRODUCT = 0.3e-6  # and its product, an iteration
+SORTED = 0.6e-6  # rows and stencils of a marker sorted on every rank, a step (docs/performance.md, A thousand vesicles)
 
 
 @dataclass
@@ -55,6 +58,11 @@ def dense_flops(s: Scene) -> float:
     return s.vesicles * each
 
 
+def near_seconds(s: Scene) -> float:
+    """Seconds of the near field of all markers on one rank."""
+    return s.vesicles * s.markers * (NEAR + NEAR_PRODUCT * s.its)
+
+
 def fit(measured: list[tuple[Scene, float, float]], byte: float) -> tuple[Rates, float]:
     """Return the rates that come closest to the seconds of fast solves and of the rest, and the largest deviation.
 
@@ -68,15 +76,17 @@ def fit(measured: list[tuple[Scene, float, float]], byte: float) -> tuple[Rates,
     fast = np.array([[s.stokes * s.n**2 * f(s) for f in (solve_flops, solve_bytes)] for s, _, _ in measured])
     rest = np.array([[dense_flops(s), s.n**2 * step_bytes(s)] for s, _, _ in measured])
     rates, deviation = [], 0.0
-    for work, seconds in ((fast, [m[1] for m in measured]), (rest, [m[2] for m in measured])):
-        a, b = work[:, 0] / seconds, 1 - work[:, 1] * byte / seconds  # relative
+    known = np.array([near_seconds(s) + SORTED * s.vesicles * s.markers for s, _, _ in measured])
+    for work, seconds, other in ((fast, [m[1] for m in measured], 0), (rest, [m[2] for m in measured], known)):
+        a, b = work[:, 0] / seconds, 1 - (work[:, 1] * byte + other) / seconds  # relative
         rates.append(max(float(a @ b / (a @ a)), 0.0))
         deviation = max(deviation, np.abs(a * rates[-1] - b).max())
     return Rates(rates[0], byte, rates[1]), float(deviation)
 
 
 def parts(s: Scene, r: Rates, ranks: int, layout: str) -> dict[str, float]:
-    """Return the seconds a step by cause: the grid's work, the markers', the closing of the slabs' chain, messages.
+    """Return the seconds a step by cause: the grid's work, the markers', what every rank does of all markers, the closing of
+    the slabs' chain, messages.
 
     Parameters
     ----------
@@ -85,23 +95,24 @@ def parts(s: Scene, r: Rates, ranks: int, layout: str) -> dict[str, float]:
     ranks : int
         MPI ranks.
     layout : str
-        "slab": as it is. "shared": slabs, the work on markers shared by the ranks. "doubling": and the chain of slabs
-        closed by recursive doubling. "pencil": shared, rows transposed to columns and back.
+        "petves": as it is, slabs of the grid and whole vesicles on ranks. "shared": slabs, a vesicle's dense problem and near
+        field divided among ranks, markers known where they are. "doubling": and the chain of slabs closed by recursive
+        doubling. "pencil": shared, rows transposed to columns and back.
     """
     c, w, log = s.n**2 / ranks, s.n + 2, np.log2(max(ranks, 2))
-    alone = ranks == 1
-    work = c * (s.stokes * (r.flop * solve_flops(s) + r.byte * solve_bytes(s)) + r.byte * step_bytes(s))
-    whole = s.vesicles if layout == "slab" else max(1, s.vesicles / ranks)  # vesicles that a rank hears of
-    reductions = (s.its + 7) * 2 * log * (LATENCY + 2 * BYTES * whole * s.markers / BANDWIDTH)
-    found = {"grid": work, "markers": r.dense * dense_flops(s), "chain": 0.0, "messages": 0.0 if alone else reductions}
-    if layout != "slab":
-        found["markers"] /= ranks
+    ours, alone = layout == "petves", ranks == 1
+    grid = c * (s.stokes * (r.flop * solve_flops(s) + r.byte * solve_bytes(s)) + r.byte * step_bytes(s))
+    markers = r.dense * dense_flops(s) + near_seconds(s)
+    share = np.ceil(s.vesicles / ranks) / s.vesicles if ours else 1 / ranks
+    heard = s.vesicles if ours else max(1, s.vesicles / ranks)  # vesicles that a rank hears of
+    found = {"grid": grid, "markers": markers * share}
+    found["replicated"] = SORTED * s.vesicles * s.markers / (1 if ours else ranks)
+    found |= {"chain": 0.0, "messages": 0.0}
     if alone:
         return found
-    if layout in ("slab", "shared"):
-        found["chain"] = (
-            s.stokes * r.byte * 60 * BYTES * ranks * w
-        )  # two numbers a mode and rank, each rank all of them
+    found["messages"] = (s.its + 7) * 2 * log * (LATENCY + 2 * BYTES * heard * s.markers / BANDWIDTH)
+    if layout in ("petves", "shared"):  # two numbers a mode and rank, each rank all of them
+        found["chain"] = s.stokes * r.byte * 60 * BYTES * ranks * w
         all_of_it = 3 * ranks * (2 * w + s.n / ranks) * BYTES
         found["messages"] += s.stokes * (2 * log * LATENCY + all_of_it / BANDWIDTH)
     elif layout == "doubling":

@@ -123,7 +123,8 @@ def _ranks(results: Path) -> list[str]:
             both = gathered(kept)
             one, two = both[f"{scheme} {cells} {box} 1"], both[name]
             ratios = [median(one[k]) / median(two[k]) for k in ("step", "fast", "rest")]
-            rows.append([scheme, f"{cells}^2", box, *(f"{q:.2f}" for q in ratios)])
+            size = cells if "x" in cells else f"{cells}^2"
+            rows.append([scheme, size, box, *(f"{q:.2f}" for q in ratios)])
     return table(["scheme", "cells", "box", "step", "fast solves", "rest"], rows)
 
 
@@ -217,7 +218,7 @@ def _fitted(results: Path) -> tuple[model.Rates, dict[str, list[str]]]:
     rates, deviation = model.fit(measured, _copy_rate(results))
     for s, fast, rest in measured:
         solve = s.n**2 * s.stokes * (rates.flop * model.solve_flops(s) + rates.byte * model.solve_bytes(s))
-        other = sum(model.parts(s, rates, 1, "slab").values()) - solve
+        other = sum(model.parts(s, rates, 1, "petves").values()) - solve
         rows.append([f"{s.n}^2", *(f"{1e3 * t:.1f}" for t in (fast, solve, rest, other))])
     speed = [f"{1e-9 / rate:.1f}" if rate > 0 else "no limit found:" for rate in (rates.flop, rates.byte, rates.dense)]
     lines = [
@@ -229,20 +230,26 @@ def _fitted(results: Path) -> tuple[model.Rates, dict[str, list[str]]]:
 
 
 def _predictions(rates: model.Rates) -> list[str]:
-    layouts = ("slab", "shared", "doubling", "pencil")
+    layouts = ("petves", "shared", "doubling", "pencil")
     rows, finer, limits = [], [], []
     for n in (4096, 8192, 16384, 32768):
         for ranks in (64, 256, 1024, 4096):
             s = model.more(n)
-            p = model.parts(s, rates, ranks, "slab")
+            p = model.parts(s, rates, ranks, "petves")
             cells = [f"{model.seconds(s, rates, ranks, layout):.3g}" for layout in layouts]
             rows.append([f"{n}^2", str(ranks), f"{n / ranks:g}", *cells, *(f"{100 * v / sum(p.values()):.0f} %" for v in p.values())])  # fmt: skip
         s = model.finer(n)
         finer.append([f"{n}^2", f"{s.markers:.0f}", *(f"{model.seconds(s, rates, 1024, layout):.3g}" for layout in layouts)])  # fmt: skip
         limits.append([f"{n}^2", *(str(model.last_useful(n, rates, layout)) for layout in layouts)])
-    header = ["cells", "ranks", "rows a rank", *layouts, *("slab: grid", "markers", "chain", "messages")]
+    header = [
+        "cells",
+        "ranks",
+        "rows a rank",
+        *layouts,
+        *("petves: grid", "markers", "replicated", "chain", "messages"),
+    ]
     return [
-        "Seconds a step, vesicles as many an area as in the bench, each with 181 markers, and what slabs spend them on:\n",
+        "Seconds a step, vesicles as many an area as in the bench, each with 181 markers, and what petves spends them on:\n",
         *table(header, rows),
         "Ranks, 64 doubled as long as twice as many are 1.4 times faster (a row a rank at least):\n",
         *table(["cells", *layouts], limits),
@@ -293,10 +300,10 @@ def _draw_model(rates: model.Rates, folder: Path) -> Path:
     figure, axes = new_figure(9, 3.8, columns=2)
     for panel, n in zip(axes, (4096, 32768)):
         ranks = 2 ** np.arange(0, 13)
-        for layout, style in (("slab", "o-"), ("shared", "x-"), ("doubling", "s-"), ("pencil", "^-")):
+        for layout, style in (("petves", "o-"), ("shared", "x-"), ("doubling", "s-"), ("pencil", "^-")):
             times = [model.seconds(model.more(n), rates, int(p), layout) for p in ranks]
             panel.loglog(ranks, times, style, ms=3, lw=1, label=layout)
-        ideal = model.parts(model.more(n), rates, 1, "slab")["grid"] / ranks
+        ideal = model.parts(model.more(n), rates, 1, "petves")["grid"] / ranks
         panel.loglog(ranks, ideal, "k:", lw=0.8, label="grid's work alone")
         panel.set(xlabel="ranks", ylabel="predicted seconds a step", title=f"${n}^2$ cells")
         panel.grid(alpha=0.3)

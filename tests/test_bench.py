@@ -95,7 +95,8 @@ def test_items_have_the_sizes_of_the_targets():
     """Both ranks, every box, 128^2 to 2048^2; QUICK has the same items."""
     full, quick = (bench.items(value, Path("wisdom")) for value in (False, True))
     assert list(full) == list(quick)
-    assert {run.name for run in full["size"]} >= {f"coupled {n} channel 1" for n in (128, 256, 512, 1024, 2048)}
+    assert {run.name for run in full["size"]} >= {f"coupled {n} channel 1" for n in (128, 256, 512, 1024, 2048, 4096)}
+    assert {run.name for run in full["ranks"]} >= {f"coupled 1000x480 suspension {r}" for r in (1, 2)}
     assert {run.name for run in full["share"]} >= {f"{s} 512 {b} {r}" for s in ("split", "coupled") for b in bench.BOXES for r in (1, 2)}  # fmt: skip
 
 
@@ -115,6 +116,6 @@ def test_fits_find_what_they_are_given():
     measured = []
     for s in map(model.finer, cells):
         solve = s.stokes * s.n**2 * (rates.flop * model.solve_flops(s) + rates.byte * model.solve_bytes(s))
-        measured.append((s, solve, model.seconds(s, rates, 1, "slab") - solve))
+        measured.append((s, solve, model.seconds(s, rates, 1, "petves") - solve))
     found, deviation = model.fit(measured, rates.byte)
     assert (found.flop, found.dense) == pytest.approx((rates.flop, rates.dense)) and deviation < 1e-9
