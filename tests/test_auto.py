@@ -71,7 +71,7 @@ def test_choice_is_what_was_measured(wanted, tmp_path):
             worst = measured(table, str(multiple))
         assert printed == pytest.approx(worst, rel=0.06), name
         assert worst <= wanted / 2, name
-    assert chosen["-scheme_order"][0] == "2" and chosen["-time_adapt"][0] == "error"
+    assert chosen["-scheme_order"][0] == "3" and chosen["-time_adapt"][0] == "error"
     assert chosen["-delta_type"][0] == "cbs54" and "-vesicle_spacing" not in chosen
 
 
@@ -129,6 +129,80 @@ def test_coarse_grid_is_called_so(tmp_path):
     wide = f"{options.replace('0,8,0,8', '0,16,0,8')} -domain_cells 56,28 -vesicle_spacing 1.5"
     named = re.search(r"-domain_cells (\d+),(\d+)", run_plain(tmp_path / "wide", wide).stdout).groups()
     assert int(named[0]) == 2 * int(named[1]) > 56
+
+
+def domain(text: str, name: str) -> list[float]:
+    """Numbers of -domain_box or -domain_cells as -scheme_auto prints them."""
+    return [float(x) for x in settings(text)[name][0].split(",")]
+
+
+def test_unbounded_where_nothing_asks_for_walls(tmp_path):
+    """Neither box nor boundaries: unbounded fluid, with a window that holds both vesicles in square cells."""
+    scene = f"{QUIET} -flow_type shear -vesicle_area 1 -vesicle_count 2 -vesicle_center 3,4,6,4.3 -time_end 0"
+    run = run_plain(tmp_path / "a", f"{scene} -scheme_auto 1e-2")
+    chosen = settings(run.stdout)
+    assert [chosen[f"-domain_bc_{x}"][0] for x in "xy"] == ["free", "free"]
+    assert "quasi-steady" in chosen["-domain_bc_x"][1] and "3 R0 around" in chosen["-domain_box"][1]
+    box, cells = domain(run.stdout, "-domain_box"), domain(run.stdout, "-domain_cells")
+    assert box[0] <= 3 - 3 * radius(0.7) and box[1] >= 6 + 3 * radius(0.7)
+    assert box[2] <= 4 - 3 * radius(0.7) and box[3] >= 4.3 + 3 * radius(0.7)
+    h = (box[1] - box[0]) / cells[0]
+    assert h == pytest.approx((box[3] - box[2]) / cells[1]) and 10 <= radius(0.7) / h < 12
+    again = run_plain(tmp_path / "b", f"-options_file {run.folder}/resolved.opts -output_dir {tmp_path}/b")
+    assert settings(again.stdout)["-domain_box"][1] == "yours"
+    given = run_plain(tmp_path / "c", f"{scene} -scheme_auto 1e-2 -domain_cells 96,48").stdout
+    box = domain(given, "-domain_box")
+    assert box[1] - box[0] == pytest.approx(2 * (box[3] - box[2])) and settings(given)["-domain_cells"][1] == "yours"
+
+
+@pytest.mark.parametrize("why", ("-domain_bc_x periodic", "-scheme_type direct", "-fluid_inertia unsteady"))
+def test_box_so_large_that_images_do_not_matter(why, tmp_path):
+    """Where the fluid cannot be unbounded, the box goes by the error wanted, as 1/sqrt of it, and x is periodic."""
+    scene = f"{QUIET} -flow_type shear -time_end 0 -vesicle_area 1 -coupling_box_part false {why}"
+    half = {}
+    for wanted in (0.1, 1e-2):
+        text = run_plain(tmp_path / f"{wanted}", f"{scene} -scheme_auto {wanted}").stdout
+        box, cells = domain(text, "-domain_box"), domain(text, "-domain_cells")
+        half[wanted] = float(settings(text)["-domain_box"][1].split()[0])
+        assert settings(text)["-domain_bc_x"][0] == "periodic" and settings(text)["-domain_bc_y"][0] == "wall"
+        assert box[1] >= half[wanted] * radius(0.7) and cells[0] == cells[1]
+        assert ": enough\n" in text and f"leave up to {wanted / 2:.1e}" in settings(text)["-domain_box"][1]
+    assert half[1e-2] == pytest.approx(half[0.1] * 10**0.5, rel=0.01)
+    most = measured("half_width", "12")
+    assert most <= 1e-2 / 2 * half[1e-2] ** 2 <= 1.3 * most
+
+
+def test_box_that_is_the_question_stays(tmp_path):
+    """A channel, gravity, posts and a packing keep the box they have; its grid goes by vesicles and walls."""
+    for number, scene in enumerate(
+        (
+            "-flow_type poiseuille -flow_half_width 1",
+            "-fluid_gravity 0,-1 -vesicle_density_difference 1",
+            "-obstacle_shape posts -obstacle_center 0.7,0.7 -domain_bc_x periodic",
+            "-vesicle_packing 0.3 -vesicle_count 2 -domain_bc_x periodic -vesicle_packing_gap 0.1",
+        )
+    ):
+        text = run_plain(tmp_path / f"{number}", f"{QUIET} {scene} -time_end 0 -scheme_auto 1e-2").stdout
+        assert domain(text, "-domain_box") == [-1, 1, -1, 1] and "yours to give" in settings(text)["-domain_box"][1]
+        assert "free" not in text and domain(text, "-domain_cells")[0] < 128
+
+
+def test_grid_for_a_box(tmp_path):
+    """The fewest square cells that are enough; more of them where a vesicle begins near a wall."""
+    scene = (
+        f"{QUIET} -domain_box 0,12,0,5 -domain_bc_x periodic -flow_type poiseuille -flow_center_y 2.5 -vesicle_area 1"
+    )
+    cells = {}
+    for wanted, height in ((0.1, 2.5), (1e-2, 2.5), (1e-3, 2.5), (1e-2, 0.5), (1e-3, 0.7)):
+        text = run_plain(
+            tmp_path / f"{wanted}_{height}", f"{scene} -vesicle_center 3,{height} -time_end 0 -scheme_auto {wanted}"
+        ).stdout
+        nx, ny = domain(text, "-domain_cells")
+        assert 5 * nx == 12 * ny and "TOO" not in text and ": enough\n" in text
+        assert "nearest wall" not in text or height < 1
+        cells[wanted, height] = nx
+    assert cells[0.1, 2.5] <= cells[1e-2, 2.5] < cells[1e-3, 2.5] < cells[1e-3, 0.7]
+    assert cells[1e-2, 2.5] < cells[1e-2, 0.5]
 
 
 def test_last_steps_are_of_one_size(tmp_path):

@@ -4,6 +4,7 @@
 #include "curve/spectral.h"
 #include "scene/resolve.h"
 
+#define ALIGNED 1e-6 /* of the strain: none, but for rounding */
 #define SQUEEZED 3   /* nu R0^3/c_b times the rate of compression from which on steps are those of wrinkles */
 #define MOST_FINER 3 /* times the default's markers */
 #define WIDE 2       /* spacings: wider films are resolved */
@@ -35,7 +36,8 @@ static PetscReal Compression(Scene scene, PetscInt v) {
   }
   const PetscReal angle = 0.5 * PetscAtan2Real(2 * xy, xx - yy), c = PetscCosReal(angle), d = PetscSinReal(angle);
   FlowGradient(&scene->flow, 0, mean[0], mean[1], G);
-  return PetscMax(0, -(G[0][0] * c * c + (G[0][1] + G[1][0]) * c * d + G[1][1] * d * d));
+  const PetscReal rate = -(G[0][0] * c * c + (G[0][1] + G[1][0]) * c * d + G[1][1] * d * d);
+  return rate > ALIGNED * (PetscAbsReal(G[0][0]) + PetscAbsReal(G[0][1] + G[1][0])) ? rate : 0;
 }
 
 PetscReal SceneSqueeze(Scene scene) {

@@ -27,6 +27,15 @@ static PetscBool IsLarge(Scene scene) {
   return cells.n == 2 && PetscMin(cells.v[0], cells.v[1]) >= LARGE_BOX ? PETSC_TRUE : PETSC_FALSE;
 }
 
+/* It is the grid's, nothing without the rest of the near field, and small in a large box. */
+PetscErrorCode SceneChooseBoxPart(Draft scene) {
+  PetscFunctionBeginUser;
+  if (scene->coupling.near_field == NEAR_NONE || FluidSpecIsFree(&scene->fluid) ||
+      (IsLarge(scene) && scene->obstacles.shape == OBSTACLE_NONE))
+    PetscCall(SceneChoose(scene, "-coupling_box_part", "false"));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode SceneChooseByScheme(Draft scene) {
   PetscFunctionBeginUser;
   if (scene->vesicles.shape == SHAPE_BICONCAVE) PetscCall(SceneChoose(scene, "-vesicle_reduced_area", "0.65"));
@@ -34,10 +43,7 @@ PetscErrorCode SceneChooseByScheme(Draft scene) {
   /* labels are shifted by the spectral derivative's trigonometric polynomials, which keep the lengths of its edges */
   if (SceneIsProjection(scene) || scene->membrane.derivative != DERIVATIVE_SPECTRAL)
     PetscCall(SceneChoose(scene, "-time_frame", "none"));
-  /* the box part is the grid's, nothing without the rest of the near field, and small in a large box */
-  if (scene->coupling.near_field == NEAR_NONE || FluidSpecIsFree(&scene->fluid) ||
-      (IsLarge(scene) && scene->obstacles.shape == OBSTACLE_NONE))
-    PetscCall(SceneChoose(scene, "-coupling_box_part", "false"));
+  PetscCall(SceneChooseBoxPart(scene));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -1,10 +1,8 @@
 /* Checks that involve more than one option. */
 #include "scene/resolve.h"
 
-static PetscErrorCode CheckDomain(Scene scene) {
+static PetscErrorCode CheckBox(Scene scene) {
   const PetscReal *b = scene->domain.box.v;
-  const PetscInt *n = scene->domain.cells.v;
-  PetscReal hx, hy;
   PetscFunctionBeginUser;
   PetscCheck(scene->domain.box.n == 4, scene->comm, PETSC_ERR_USER_INPUT,
              "-domain_box: %" PetscInt_FMT " numbers given; allowed: x_min,x_max,y_min,y_max", scene->domain.box.n);
@@ -14,12 +12,18 @@ static PetscErrorCode CheckDomain(Scene scene) {
   PetscCheck(b[0] < b[1] && b[2] < b[3], scene->comm, PETSC_ERR_USER_INPUT,
              "-domain_box %g,%g,%g,%g: empty; allowed: x_min < x_max and y_min < y_max", (double)b[0], (double)b[1],
              (double)b[2], (double)b[3]);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SceneCheckCells(Scene scene) {
+  const PetscReal *b = scene->domain.box.v;
+  const PetscInt *n = scene->domain.cells.v;
+  const PetscReal hx = (b[1] - b[0]) / n[0], hy = (b[3] - b[2]) / n[1];
+  PetscFunctionBeginUser;
   PetscCheck(2. * n[0] * n[1] < (double)PETSC_MAX_INT, scene->comm, PETSC_ERR_USER_INPUT,
              "-domain_cells %" PetscInt_FMT ",%" PetscInt_FMT
              ": %.3g cells are more than this PETSc can number; allowed: at most %.3g in all",
              n[0], n[1], (double)n[0] * n[1], (double)PETSC_MAX_INT / 2);
-  hx = (b[1] - b[0]) / n[0];
-  hy = (b[3] - b[2]) / n[1];
   PetscCheck(PetscAbsReal(hx - hy) <= 1e-10 * hx, scene->comm, PETSC_ERR_USER_INPUT,
              "-domain_cells %" PetscInt_FMT ",%" PetscInt_FMT
              ": cells of %g x %g; allowed: square cells, for this -domain_box %g cells in y",
@@ -235,7 +239,7 @@ static PetscErrorCode CheckScheme(Scene scene) {
 PetscErrorCode SceneCheck(Scene scene) {
   PetscFunctionBeginUser;
   PetscCall(CheckScheme(scene));
-  PetscCall(CheckDomain(scene));
+  PetscCall(CheckBox(scene));
   PetscCall(CheckFlow(scene));
   PetscCall(CheckVesicle(scene));
   PetscCheck(scene->time.end / scene->time.dt < 1e9, scene->comm, PETSC_ERR_USER_INPUT,

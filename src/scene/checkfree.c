@@ -1,8 +1,6 @@
 /* Unbounded fluid: what a scene with -domain_bc_x free may ask for. */
 #include "scene/resolve.h"
 
-#define MOST_VESICLES 30 /* all pairs are summed: beyond it a large box is faster */
-
 /* The step is dense work on the markers alone; there is no grid on which a fluid with inertia, a total velocity or a
    projection could be. */
 static PetscErrorCode CheckMethod(Scene scene) {
@@ -34,9 +32,9 @@ PetscErrorCode SceneCheckFree(Scene scene) {
              free ? 'y' : 'x');
   if (!free) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(CheckMethod(scene));
-  PetscCheck(scene->shape.vesicles <= MOST_VESICLES, scene->comm, PETSC_ERR_USER_INPUT,
+  PetscCheck(scene->shape.vesicles <= SCENE_MOST_FREE, scene->comm, PETSC_ERR_USER_INPUT,
              "-domain_bc_x free: %" PetscInt_FMT " vesicles, every pair of which is summed; allowed: up to %d, or a "
              "large -domain_box with walls",
-             scene->shape.vesicles, MOST_VESICLES);
+             scene->shape.vesicles, SCENE_MOST_FREE);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -24,6 +24,16 @@ PETSC_EXTERN PetscErrorCode KindsCreate(Scene scene, Kinds *kinds);
 PETSC_EXTERN PetscErrorCode KindsDestroy(Kinds *kinds);
 PETSC_EXTERN PetscErrorCode KindFit(Scene scene, Kind *kind);
 
+/* SceneMakeKinds - the kinds of a scene from its options: how many a packing takes, which entries of a mixture, their
+   curves. What it leaves in the scene SceneDropShape takes. Collective; errors as KindsCreate's. */
+PETSC_EXTERN PetscErrorCode SceneMakeKinds(Draft scene, Kinds *kinds);
+
+/* KindExtend - make the rectangle around[4] (x_min, x_max, y_min, y_max; KIND_NOWHERE is empty) hold a kind's curve,
+   turned and moved. Not collective. */
+#define KIND_NOWHERE                                                                                                   \
+  { PETSC_MAX_REAL, -PETSC_MAX_REAL, PETSC_MAX_REAL, -PETSC_MAX_REAL }
+PETSC_EXTERN void KindExtend(const Kind *kind, const Pose *at, PetscReal around[4]);
+
 /* ScenePlace - where the vesicles lie: pose[vesicles] by -vesicle_center and -vesicle_angle, or packed. With
    -vesicle_packing SceneCountPacked has chosen -vesicle_count, or the area, by the fraction before. Collective; stop
    with the user's message when there is no room. */

@@ -8,7 +8,7 @@
 #define GAP_RADII 0.05 /* and at most so many R0 of the smallest vesicle */
 
 static PetscReal BoxArea(Scene scene) {
-  const PetscReal *b = scene->fluid.box;
+  const PetscReal *b = scene->domain.box.v; /* the fluid is not described yet */
   return (b[1] - b[0]) * (b[3] - b[2]);
 }
 

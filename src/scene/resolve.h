@@ -19,6 +19,11 @@ PETSC_EXTERN PetscBool SceneByArea(Scene scene);
 PETSC_EXTERN PetscErrorCode SceneChooseByError(Draft scene);
 PETSC_EXTERN PetscErrorCode SceneChooseSteps(Draft scene);
 
+/* SceneChooseDomain - with -scheme_auto, where they are not given: a box as large as the error asks for, unless walls
+   are part of the question, and a grid for the vesicles and their distance from walls. After the checks of lists,
+   before the fluid is described. Collective. Errors: no square cells, or too many of them. */
+PETSC_EXTERN PetscErrorCode SceneChooseDomain(Draft scene);
+
 /* SceneChooseFlow - rate or peak velocity from -flow_chi or -flow_ca: rate = chi c_b/(nu R0^3), u_max = Ca c_b/(nu
    R0^2), R0 of the largest vesicle and the largest c_b, both known before there are markers (shape.longest,
    membrane.bending). Collective. Errors: both given, no bending, no vesicles. */
@@ -53,17 +58,21 @@ PETSC_EXTERN PetscReal SceneFlowStep(Scene scene);
 PETSC_EXTERN PetscErrorCode SceneChooseLargestStep(Draft scene);
 
 /* SceneIsProjection - whether the scheme is one of the baselines, split or penalty, which stand on a projection step.
-   SceneChooseByScheme - their defaults. SceneChooseStiffness - penalty's springs, where none are given: half of what
-   the step bears. */
+   SceneChooseByScheme - their defaults. SceneChooseBoxPart - that of the box part, which goes by the grid.
+   SceneChooseStiffness - penalty's springs, where none are given: half of what the step bears. */
 PETSC_EXTERN PetscBool SceneIsProjection(Scene scene);
 PETSC_EXTERN PetscErrorCode SceneChooseByScheme(Draft scene);
+PETSC_EXTERN PetscErrorCode SceneChooseBoxPart(Draft scene);
 PETSC_EXTERN PetscErrorCode SceneChooseStiffness(Draft scene);
 
 /* SceneWishes - what is asked for by names that there are not. Not collective. */
 PETSC_EXTERN const OptionWish *SceneWishes(void);
 
-/* SceneCheck - checks that involve more than one option. Collective. */
+/* SceneCheck - checks that involve more than one option; SceneCheckCells - that cells are square. Collective. */
 PETSC_EXTERN PetscErrorCode SceneCheck(Scene scene);
+PETSC_EXTERN PetscErrorCode SceneCheckCells(Scene scene);
+
+#define SCENE_MOST_FREE 30 /* vesicles in unbounded fluid: all pairs are summed, beyond it a large box is faster */
 
 /* SceneCheckFree - that a scene in unbounded fluid (-domain_bc_x free) asks for nothing that needs a grid, nor for more
    vesicles than it is meant for; the vesicles are known. Collective. */

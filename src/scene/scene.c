@@ -19,18 +19,21 @@ PetscErrorCode SceneCreate(MPI_Comm comm, PetvesFlow flow, void *ctx, Scene *out
   s->vesicles.area_scale = 1;
   /* 1  what the user gives, or the table's defaults */
   PetscCall(SceneReadOptions(comm, s));
-  /* 2  -scheme_auto: all but the steps */
+  /* 2  -scheme_auto: all but box, grid and steps */
   PetscCall(SceneChooseByError(s));
   /* 3  what split and penalty have instead of the table's defaults */
   PetscCall(SceneChooseByScheme(s));
   /* 4  mistakes that involve more than one option */
   PetscCall(SceneCheck(s));
+  /* 5  -scheme_auto: the box and the grid */
+  PetscCall(SceneChooseDomain(s));
+  PetscCall(SceneCheckCells(s));
   PetscCheck(flow || s->flow.type != FLOW_CUSTOM, comm, PETSC_ERR_USER_INPUT,
              "-flow_type custom: no function given; allowed: from Python (flow=) or C (SimulationCreateWithFlow) only");
   s->flow.function = flow;
   s->flow.ctx = ctx;
   DescribeFluid(s);
-  /* 5  the vesicles, the obstacles, the flow from numbers that go by their size, the markers with the kernel's spacing
+  /* 6  the vesicles, the obstacles, the flow from numbers that go by their size, the markers with the kernel's spacing
    * if none is given
    */
   PetscCall(SceneMakeShape(s));
@@ -40,14 +43,14 @@ PetscErrorCode SceneCreate(MPI_Comm comm, PetvesFlow flow, void *ctx, Scene *out
   PetscCall(SceneCheckDivergence(s));
   PetscCall(SceneCheckGravity(s));
   PetscCall(SceneCheckContrast(s));
-  /* 6  the steps, which go by the vesicles' size */
+  /* 7  the steps, which go by the vesicles' size */
   PetscCall(SceneChooseSteps(s));
   PetscCall(SceneChooseLargestStep(s));
   PetscCall(SceneChooseOutput(s));
   s->fluid.dt = s->time.dt;
-  /* 7  Reynolds number, model of the fluid, warning */
+  /* 8  Reynolds number, model of the fluid, warning */
   PetscCall(SceneChooseInertia(s));
-  /* 8  penalty's springs, which go by the step */
+  /* 9  penalty's springs, which go by the step */
   PetscCall(SceneChooseStiffness(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -57,7 +57,7 @@ static const OptionRow table[] = {
   {"-delta_type", OPT_NAME, AT(coupling.kernel), "cbs54", KERNEL_NAMES, "kernel between grid and markers; split, penalty: ib6"},
   {"-scheme_type", OPT_NAME, AT(scheme.type), "coupled", "split|penalty|coupled|direct", "time-stepping scheme: the paper's, stiff springs, unsplit, unsplit by sparse LU"},
   {"-scheme_order", OPT_INT, AT(scheme.order), "3", "[1,3]", "order in time: backward Euler, BDF2, or BDF3 wherever it predicts better; split and penalty are of order 1"},
-  {"-scheme_auto", OPT_REAL, AT(scheme.wanted), "0", ">=0", "relative error wanted, 1e-4 to 0.1: order, steps, tolerances, markers and kernel by what was measured; 0 off"},
+  {"-scheme_auto", OPT_REAL, AT(scheme.wanted), "0", ">=0", "relative error wanted, 1e-4 to 0.1: steps, tolerances, markers, kernel, and the box and the grid that are not given, by what was measured; 0 off"},
   {"-scheme_bending", OPT_ENUM, AT(scheme.bending_at), "implicit", "implicit|explicit", "bending at the new markers, or (split only) at the old ones; penalty: explicit"},
   {"-penalty_stiffness", OPT_REAL, AT(scheme.stiffness), "0", ">=0", "penalty: sigma_0 of the springs sigma = sigma_0 (|X_s| - 1) (length^3/time^2); 0 takes half of what the step bears"},
   {"-scheme_length_target", OPT_BOOL, AT(scheme.length_target), "true", "true|false", "coupled, direct: each step aims at edges of their first length"},

@@ -31,22 +31,29 @@ static PetscErrorCode SizeOptions(Scene scene, PetscInt v, char text[], size_t l
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+void KindExtend(const Kind *kind, const Pose *at, PetscReal around[4]) {
+  for (PetscInt k = 0; k < OUTLINE; k++) {
+    PetscReal X[2];
+    CurveEvaluate(&kind->curve, (PetscReal)k / OUTLINE, X);
+    Place(kind, at, 1, X, X);
+    for (int d = 0; d < 2; d++) {
+      around[2 * d] = PetscMin(around[2 * d], X[d]);
+      around[2 * d + 1] = PetscMax(around[2 * d + 1], X[d]);
+    }
+  }
+}
+
 /* That a curve, turned and moved, is between the walls and no longer than a period: before markers are fitted to it. */
 static PetscErrorCode CheckRoom(Scene scene, const Kind *kind, const Pose *at, PetscInt v) {
   const FluidSpec *f = &scene->fluid;
-  PetscReal X[2 * OUTLINE];
+  PetscReal around[4] = KIND_NOWHERE;
   char size[256];
   PetscFunctionBeginUser;
   PetscCall(SizeOptions(scene, v, size, sizeof(size)));
-  for (PetscInt k = 0; k < OUTLINE; k++) CurveEvaluate(&kind->curve, (PetscReal)k / OUTLINE, X + 2 * k);
-  Place(kind, at, OUTLINE, X, X);
+  KindExtend(kind, at, around);
   for (int dir = 0; dir < 2 && f->bc[dir] != BC_FREE; dir++) {
     const PetscReal *wall = f->box + 2 * dir, width = wall[1] - wall[0];
-    PetscReal low = X[dir], high = X[dir];
-    for (PetscInt k = 1; k < OUTLINE; k++) {
-      low = PetscMin(low, X[2 * k + dir]);
-      high = PetscMax(high, X[2 * k + dir]);
-    }
+    const PetscReal low = around[2 * dir], high = around[2 * dir + 1];
     PetscCheck(high - low <= width, scene->comm, PETSC_ERR_USER_INPUT,
                "%s: vesicle %" PetscInt_FMT " is %g long in %c, -domain_box %g; allowed: one that fits in", size, v + 1,
                (double)(high - low), dir ? 'y' : 'x', (double)width);
@@ -161,14 +168,20 @@ static PetscErrorCode Number(Scene scene, Kinds *kinds, Shape *shape) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode SceneMakeKinds(Draft scene, Kinds *kinds) {
+  PetscFunctionBeginUser;
+  PetscCall(SceneCountPacked(scene));
+  PetscCall(SceneMixKinds(scene));
+  PetscCall(KindsCreate(scene, kinds));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode SceneMakeShape(Draft scene) {
   Shape *shape = &scene->shape;
   Kinds kinds;
   Pose *pose;
   PetscFunctionBeginUser;
-  PetscCall(SceneCountPacked(scene));
-  PetscCall(SceneMixKinds(scene));
-  PetscCall(KindsCreate(scene, &kinds));
+  PetscCall(SceneMakeKinds(scene, &kinds));
   shape->vesicles = kinds.vesicles;
   for (PetscInt k = 0; k < kinds.kinds; k++) {
     scene->membrane.bending = PetscMax(scene->membrane.bending, kinds.kind[k].bending);

@@ -1,0 +1,198 @@
+/* -scheme_auto: boundaries, box and grid, where they are not given (docs/settings.md). */
+#include "scene/auto.h"
+#include "scene/kinds.h"
+
+/* Error of a vesicle in walls or periods over (R0/W)^2, W from its middle to a side of the box, against unbounded
+   fluid, the worst of the calibration (tests/test_auto.py compares with the table). */
+#define OF_IMAGES 2.2
+#define MOST_BOX 1024 /* cells across, of a box that goes by them */
+
+#define WINDOW 3        /* R0 around the vesicles, in unbounded fluid */
+#define WINDOW_CELLS 10 /* a R0: what fields ask for */
+#define MOST_WINDOW 512 /* cells across */
+
+#define LEAST_CELLS 3      /* a R0, below which the fields show nothing */
+#define BESIDE_OBSTACLES 2 /* times the cells: they are not in the calibration */
+
+/* Whether walls are no part of the question: not in a channel, under gravity, among obstacles, with a packing, or in a
+   flow that only its author knows. */
+static PetscBool LeavesBox(Scene s) {
+  const PetscInt flow = s->flow.type;
+  if (flow == FLOW_POISEUILLE || flow == FLOW_CUSTOM || s->obstacles.shape != OBSTACLE_NONE) return PETSC_FALSE;
+  return s->vesicles.packing == 0 && s->gravity.g.n == 2 && !SceneHasGravity(s) ? PETSC_TRUE : PETSC_FALSE;
+}
+
+static PetscErrorCode CountVesicles(Scene s, PetscInt *count) {
+  Curve *curve;
+  PetscFunctionBeginUser;
+  *count = s->vesicles.count;
+  if (s->vesicles.shape != SHAPE_FILE || !*s->vesicles.file) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(CurvesFromFile(s->comm, "-vesicle_file", s->vesicles.file, NULL, count, &curve, NULL));
+  for (PetscInt k = 0; k < *count; k++) PetscCall(CurveDestroy(&curve[k]));
+  PetscCall(PetscFree(curve));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Whether something is asked for that unbounded fluid does not have. */
+static PetscErrorCode NeedsGrid(Scene s, PetscBool *needs) {
+  static const char *const backends[] = {"-helmholtz_type", "-poisson_type", "-fftw_plan", "-fftw_wisdom"};
+  const PetscBool box_part = SceneGiven(s, "-coupling_box_part") && s->coupling.box_part ? PETSC_TRUE : PETSC_FALSE;
+  PetscInt count;
+  PetscFunctionBeginUser;
+  PetscCall(CountVesicles(s, &count));
+  *needs = strcmp(s->scheme.type, "coupled") || s->coupling.near_field != NEAR_EXACT || box_part ||
+                   s->coupling.mobility == MOBILITY_ILU || s->fluid.form == FORM_TOTAL ||
+                   s->fluid.inertia == INERTIA_UNSTEADY || s->fluid.inertia == INERTIA_CONVECTIVE ||
+                   count > SCENE_MOST_FREE
+               ? PETSC_TRUE
+               : PETSC_FALSE;
+  for (size_t k = 0; k < sizeof(backends) / sizeof(backends[0]); k++)
+    if (SceneGiven(s, backends[k])) *needs = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SceneChooseBoundaries(Draft s) {
+  PetscBool needs = PETSC_TRUE;
+  PetscFunctionBeginUser;
+  if (SceneGiven(s, "-domain_box") || SceneGiven(s, "-domain_bc_x") || SceneGiven(s, "-domain_bc_y") ||
+      s->vesicles.shape == SHAPE_NONE || !LeavesBox(s))
+    PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(NeedsGrid(s, &needs));
+  if (!needs) {
+    PetscCall(SceneChoose(s, "-domain_bc_x", "free"));
+    PetscCall(SceneChoose(s, "-domain_bc_y", "free"));
+  } else if (s->flow.type != FLOW_EXTENSION) /* which is not periodic */
+    PetscCall(SceneChoose(s, "-domain_bc_x", "periodic"));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What box and grid go by: radii, the rectangle around all vesicles, and how near to a wall of a box given they are;
+   packed vesicles are as near as the grid lets them. */
+typedef struct {
+  PetscInt vesicles;
+  PetscReal small, large, around[4], gap;
+} Extent;
+
+static PetscErrorCode Measure(Draft s, Extent *e) {
+  const PetscReal *box = s->domain.box.v;
+  Kinds kinds;
+  Pose *pose;
+  PetscFunctionBeginUser;
+  PetscCall(SceneMakeKinds(s, &kinds));
+  *e = (Extent){kinds.vesicles, PETSC_MAX_REAL, 0, KIND_NOWHERE, PETSC_MAX_REAL};
+  for (PetscInt k = 0; k < kinds.kinds; k++) {
+    e->small = PetscMin(e->small, kinds.kind[k].length / (2 * PETSC_PI));
+    e->large = PetscMax(e->large, kinds.kind[k].length / (2 * PETSC_PI));
+  }
+  PetscCall(PetscMalloc1(kinds.vesicles, &pose));
+  if (s->vesicles.packing == 0) {
+    PetscCall(ScenePlace(s, &kinds, pose));
+    for (PetscInt v = 0; v < kinds.vesicles; v++) KindExtend(&kinds.kind[kinds.of[v]], &pose[v], e->around);
+    for (int d = 0; d < 2; d++)
+      if (s->fluid.bc[d] == BC_WALL)
+        e->gap = PetscMin(e->gap, PetscMin(e->around[2 * d] - box[2 * d], box[2 * d + 1] - e->around[2 * d + 1]));
+  }
+  PetscCall(PetscFree(pose));
+  PetscCall(KindsDestroy(&kinds));
+  PetscCall(SceneDropShape(s));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* x with two digits, rounded up (1), or to the nearest (0). */
+static PetscReal Rounded(PetscReal x, PetscReal unit, PetscBool up) {
+  return unit * (up ? PetscCeilReal(x / unit * (1 - 1e-9)) : PetscFloorReal(x / unit + 0.5));
+}
+
+/* Radii from a vesicle's middle to the sides of a box whose images leave half of the error. */
+static PetscReal Reach(Scene s, PetscInt vesicles) {
+  return PetscSqrtReal(2 * OF_IMAGES * vesicles / s->scheme.wanted);
+}
+
+/* About the vesicles, its shorter side twice half a side long, its sides in proportion to cells that are given. */
+static PetscErrorCode ChooseBox(Draft s, const Extent *e) {
+  const PetscBool free = FluidSpecIsFree(&s->fluid);
+  const PetscReal wide = PetscMax(e->around[1] - e->around[0], e->around[3] - e->around[2]) / 2;
+  const PetscReal half = free ? wide + WINDOW * e->large : wide + Reach(s, e->vesicles) * e->large;
+  const PetscReal unit = PetscPowReal(10, PetscFloorReal(PetscLog10Real(half)) - 1);
+  PetscReal side[2], middle[2];
+  char value[128];
+  PetscFunctionBeginUser;
+  for (int d = 0; d < 2; d++) {
+    const PetscInt n = s->domain.cells.v[d], other = s->domain.cells.v[1 - d];
+    const PetscBool longer = SceneGiven(s, "-domain_cells") && n > other ? PETSC_TRUE : PETSC_FALSE;
+    side[d] = Rounded(half, unit, PETSC_TRUE) * (longer ? (PetscReal)n / other : 1);
+    middle[d] = Rounded((e->around[2 * d] + e->around[2 * d + 1]) / 2, unit, PETSC_FALSE);
+  }
+  PetscCall(PetscSNPrintf(value, sizeof(value), "%.14g,%.14g,%.14g,%.14g", (double)(middle[0] - side[0]),
+                          (double)(middle[0] + side[0]), (double)(middle[1] - side[1]), (double)(middle[1] + side[1])));
+  PetscCall(SceneChoose(s, "-domain_box", value));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* In unbounded fluid it is that of the fields. */
+static PetscReal LargestCell(Scene s, const Extent *e) {
+  const PetscReal *box = s->domain.box.v, across = PetscMin(box[1] - box[0], box[3] - box[2]);
+  const PetscReal finer = s->obstacles.shape == OBSTACLE_NONE ? 1 : BESIDE_OBSTACLES;
+  if (FluidSpecIsFree(&s->fluid)) return PetscMax(e->small / WINDOW_CELLS, across / MOST_WINDOW);
+  return e->small / (finer * PetscMax(LEAST_CELLS, SceneCellsFor(s->scheme.wanted / 2, PETSC_TRUE)));
+}
+
+static PetscErrorCode ChooseCells(Draft s, const Extent *e) {
+  const PetscReal *box = s->domain.box.v, h = LargestCell(s, e);
+  const PetscBool free = FluidSpecIsFree(&s->fluid), by_images = !free && !SceneGiven(s, "-domain_box") && LeavesBox(s);
+  PetscInt cells[2] = {0, 0};
+  char value[64];
+  PetscFunctionBeginUser;
+  PetscCheck(SceneSquareCells(box, h, cells), s->comm, PETSC_ERR_USER_INPUT,
+             "-scheme_auto %g: no square cells of %.3g, for the smallest vesicle, fill -domain_box %g,%g,%g,%g with up "
+             "to %d in a direction; allowed: -domain_cells, or a box whose sides are in a simple ratio",
+             (double)s->scheme.wanted, (double)h, (double)box[0], (double)box[1], (double)box[2], (double)box[3],
+             SCENE_MOST_ACROSS);
+  PetscCheck(!by_images || PetscMax(cells[0], cells[1]) <= MOST_BOX, s->comm, PETSC_ERR_USER_INPUT,
+             "-scheme_auto %g: a box so large that its images leave half of it takes %" PetscInt_FMT
+             " cells across; allowed: -domain_bc_x free -domain_bc_y free, a -domain_box, or a larger error",
+             (double)s->scheme.wanted, PetscMax(cells[0], cells[1]));
+  if (!free && e->gap > 0 && e->gap < PETSC_MAX_REAL)
+    (void)SceneWallCells(box, h, e->small, e->gap, s->scheme.wanted / 2, cells);
+  PetscCall(PetscSNPrintf(value, sizeof(value), "%" PetscInt_FMT ",%" PetscInt_FMT, cells[0], cells[1]));
+  PetscCall(SceneChoose(s, "-domain_cells", value));
+  PetscCall(SceneChooseBoxPart(s));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SceneChooseDomain(Draft s) {
+  const PetscBool boxed = SceneGiven(s, "-domain_box"), gridded = SceneGiven(s, "-domain_cells");
+  Extent e;
+  PetscFunctionBeginUser;
+  if (s->scheme.wanted == 0 || s->vesicles.shape == SHAPE_NONE || (boxed && gridded))
+    PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(Measure(s, &e));
+  if (!boxed && (FluidSpecIsFree(&s->fluid) || LeavesBox(s))) PetscCall(ChooseBox(s, &e));
+  if (!gridded) PetscCall(ChooseCells(s, &e));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SceneReportDomain(Scene s) {
+  const PetscBool free = FluidSpecIsFree(&s->fluid), leaves = LeavesBox(s), bounded = SceneGiven(s, "-domain_box");
+  char box[128] = "the default: walls are part of this scene, the box is yours to give", cells[128];
+  PetscFunctionBeginUser;
+  if (free || !bounded) {
+    const char *const why = free ? "nothing asks for walls: unbounded, quasi-steady fluid"
+                                 : "the default: a place between four walls is not stable";
+    PetscCall(SceneSaySetting(s, "-domain_bc_x", s->fluid.bc[0] == BC_WALL ? "the default" : why));
+    PetscCall(SceneSaySetting(s, "-domain_bc_y", s->fluid.bc[1] == BC_WALL ? "the default" : why));
+  }
+  if (free)
+    PetscCall(PetscSNPrintf(box, sizeof(box), "the window of the fields, %d R0 around the vesicles", WINDOW));
+  else if (leaves)
+    PetscCall(PetscSNPrintf(box, sizeof(box), "%.3g R0 around the vesicles: its images leave up to %.1e",
+                            (double)Reach(s, s->shape.vesicles), (double)(s->scheme.wanted / 2)));
+  PetscCall(SceneSaySetting(s, "-domain_box", box));
+  if (free)
+    PetscCall(PetscSNPrintf(cells, sizeof(cells), "of the fields alone, R0/%d", WINDOW_CELLS));
+  else
+    PetscCall(PetscSNPrintf(cells, sizeof(cells), "the fewest square ones that are enough%s",
+                            s->obstacles.shape != OBSTACLE_NONE ? ", twice as many beside obstacles" : ""));
+  PetscCall(SceneSaySetting(s, "-domain_cells", cells));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
