@@ -35,6 +35,7 @@ PetscErrorCode SceneChooseByError(Draft scene) {
   PetscCheck(coupled || direct, scene->comm, PETSC_ERR_USER_INPUT,
              "-scheme_auto %g: with -scheme_type %s; allowed: coupled or direct", (double)scene->scheme.wanted,
              scene->scheme.type);
+  PetscCall(SceneChoose(scene, "-scheme_order", "2"));
   PetscCall(SceneChoose(scene, "-time_adapt", "error"));
   PetscCall(SceneChoose(scene, "-time_adapt_tol", settings[Row(scene)].adapt_tol));
   PetscCall(SceneChoose(scene, "-delta_type", "cbs54"));
@@ -43,8 +44,8 @@ PetscErrorCode SceneChooseByError(Draft scene) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Where the flow compresses a vesicle and it wrinkles: a tolerance of a hundredth of the error wanted, whose steps
-   leave up to a third of it (docs/settings.md). */
+/* Where the flow compresses a vesicle and it wrinkles: order 3, and a tolerance of a hundredth of the error wanted,
+   whose steps leave up to a third of it (docs/settings.md). */
 #define OF_WRINKLES 100
 
 #define OF_TURNING 10 /* where it is compressed without that: a third of the table's */
@@ -56,6 +57,7 @@ static PetscErrorCode ChooseForCompression(Draft scene) {
   if (SceneSqueeze(scene) == 0) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscSNPrintf(value, sizeof(value), "%g",
                           (double)(scene->scheme.wanted / (squeezed ? OF_WRINKLES : OF_TURNING))));
+  if (squeezed) PetscCall(SceneChoose(scene, "-scheme_order", "3"));
   PetscCall(SceneChoose(scene, "-time_adapt_tol", value));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -104,7 +106,8 @@ static PetscErrorCode PrintChoice(Scene scene, PetscInt row, PetscBool timed) {
   PetscCall(PetvesSay(scene->comm, "petves: -scheme_auto %g, by the worst errors measured (docs/settings.md)\n",
                       (double)scene->scheme.wanted));
   PetscCall(SceneSaySetting(scene, "-scheme_type", "the membrane and the fluid in one solve"));
-  PetscCall(SceneSaySetting(scene, "-scheme_order", "what was calibrated"));
+  PetscCall(
+      SceneSaySetting(scene, "-scheme_order", squeezed ? "better where a vesicle wrinkles" : "what was calibrated"));
   PetscCall(SceneSaySetting(scene, "-time_adapt", "finds the step of any scene"));
   PetscCall(
       SceneSaySetting(scene, "-time_step", timed ? "a twentieth of the fastest time of the scene" : "the default"));

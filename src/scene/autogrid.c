@@ -18,9 +18,11 @@ static const struct {
 } walls[] = {{3, 1e-4}, {2, 1e-3}, {1.6, 2e-3}, {1.2, 8e-3}, {0.8, 0.035}, {0.6, 0.09}, {0.4, 0.18}, {0.3, 0.35}};
 #define WALLS ((int)(sizeof(walls) / sizeof(walls[0])))
 
+#define LEEWAY 0.01 /* of R0, by which markers fitted to a curve may miss it */
+
 PetscReal SceneGridError(PetscReal cells, PetscBool many) {
   for (int k = 0; k < GRIDS; k++)
-    if (cells >= grids[k].cells * (1 - 1e-9)) return many ? grids[k].error : grids[k].few;
+    if (cells >= grids[k].cells * (1 - LEEWAY)) return many ? grids[k].error : grids[k].few;
   return PETSC_MAX_REAL;
 }
 
