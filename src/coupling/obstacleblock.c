@@ -147,7 +147,8 @@ PetscErrorCode ObstacleBlockSetMemory(ObstacleBlock b, const PetscReal memory[OB
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The own numbers of bodies whose markers turn: to how they were when the factor was made, or (back) to how they are. */
+/* The own numbers of bodies whose markers turn: to how they were when the factor was made, or (back) to how they are.
+ */
 static void Turn(ObstacleBlock b, PetscBool back, PetscScalar F[]) {
   const Obstacles o = b->obstacles;
   const Layout l = o->layout;

@@ -2,8 +2,8 @@
    factor in single precision: part of the preconditioner (docs/obstacles.md, Preconditioner). E A^-1 E^T is that of a
    periodic box of the same cells (mobility.h), or, where an obstacle stands on a wall, the grid's own
    (mobilitysolves.h). While obstacles rest it is made once in quasi-steady flow. Of bodies that move it is the one of
-   an earlier time, forces and velocities turned with each body, as one alone has the same block wherever it is; once the
-   iterations beyond the fewest so far have cost as much as a new one would, it is made anew. */
+   an earlier time, forces and velocities turned with each body, as one alone has the same block wherever it is; once
+   the iterations beyond the fewest so far have cost as much as a new one would, it is made anew. */
 #pragma once
 #include "coupling/mobility.h"
 
@@ -24,8 +24,7 @@ PETSC_EXTERN void ObstacleBlockSolved(ObstacleBlock block, PetscInt its);
    coupling placed at that time and for that alpha. Set is collective. */
 #define OBSTACLE_BLOCK_MEMORY 4
 PETSC_EXTERN void ObstacleBlockGetMemory(ObstacleBlock block, PetscReal memory[OBSTACLE_BLOCK_MEMORY]);
-PETSC_EXTERN PetscErrorCode ObstacleBlockSetMemory(ObstacleBlock block,
-                                                   const PetscReal memory[OBSTACLE_BLOCK_MEMORY]);
+PETSC_EXTERN PetscErrorCode ObstacleBlockSetMemory(ObstacleBlock block, const PetscReal memory[OBSTACLE_BLOCK_MEMORY]);
 
 /* ObstacleBlockSolve - F[2w] of the own obstacles from their rows' residuals, in place. Collective. */
 PETSC_EXTERN PetscErrorCode ObstacleBlockSolve(ObstacleBlock block, PetscScalar F[]);

@@ -115,7 +115,8 @@ PetscErrorCode ObstaclesDestroy(Obstacles *obstacles) {
 
 void ObstaclesOrder(Obstacles o, const PetscReal own[], PetscReal seen[]) {
   for (PetscInt v = 0; v < o->layout->bodies; v++)
-    for (PetscInt first = o->layout->start[v], last = o->layout->start[v + 1] - 1, k = first, j = last; k <= j; k++, j--)
+    for (PetscInt first = o->layout->start[v], last = o->layout->start[v + 1] - 1, k = first, j = last; k <= j;
+         k++, j--)
       for (int c = 0; c < 2; c++) {
         const PetscReal low = own[2 * k + c], high = own[2 * j + c];
         seen[2 * k + c] = o->container[v] ? high : low;
@@ -158,12 +159,12 @@ static PetscErrorCode CheckOthers(Obstacles o, const CurveRoom *room, const Pets
     if ((!o->motion[a].carried && !o->motion[b].carried) || gap[k].distance >= least) continue;
     if (a == b)
       PetscCall(PetscSNPrintf(message, PETVES_MAX_MESSAGE,
-                              "obstacle %" PetscInt_FMT " runs into its periodic image: it would come to %.3g of it",
-                              a + 1, (double)gap[k].distance));
+                              "obstacle %" PetscInt_FMT " runs into its periodic image: the gap would be %.3g", a + 1,
+                              (double)gap[k].distance));
     else
       PetscCall(PetscSNPrintf(message, PETVES_MAX_MESSAGE,
                               "obstacles %" PetscInt_FMT " and %" PetscInt_FMT
-                              " run into one another: they would come to %.3g",
+                              " run into one another: the gap would be %.3g",
                               a + 1, b + 1, (double)gap[k].distance));
   }
   PetscCall(PetscFree(gap));

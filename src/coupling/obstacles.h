@@ -37,11 +37,11 @@ struct _p_Obstacles {
   PetscReal frequency;    /* velocities swing with its cosine (1/time) */
   PetscReal *N;           /* [2W] unit vector of each curve's normals, dX/dk turned outwards, where placed */
   PetscReal *center;      /* [2 curves] the mean of the markers at time 0 */
-  PetscReal *ds;        /* [curves] mean edge */
-  PetscBool *container; /* [curves] the fluid is inside */
-  Spectral *spectral;   /* [curves] */
-  CurveKind *kind;      /* [curves] */
-  PetscReal beta;       /* 1/(4 nu) */
+  PetscReal *ds;          /* [curves] mean edge */
+  PetscBool *container;   /* [curves] the fluid is inside */
+  Spectral *spectral;     /* [curves] */
+  CurveKind *kind;        /* [curves] */
+  PetscReal beta;         /* 1/(4 nu) */
 };
 
 /* ObstaclesCreate - of the scene, as the last bodies of the layout of all; *obstacles is NULL where there are none.

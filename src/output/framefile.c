@@ -1,8 +1,8 @@
 #include "output/framefile.h"
 
-const char *const FrameSeries[FRAME_SERIES] = {
-    "/fluid/u",         "/fluid/v",        "/fluid/p",        "/vesicle/markers", "/vesicle/velocity",
-    "/vesicle/tension", "/obstacle/force", "/obstacle/markers"};
+const char *const FrameSeries[FRAME_SERIES] = {"/fluid/u",         "/fluid/v",          "/fluid/p",
+                                               "/vesicle/markers", "/vesicle/velocity", "/vesicle/tension",
+                                               "/obstacle/force",  "/obstacle/markers"};
 static const char *const SolidsAlone[] = {"/fluid/u", "/fluid/v", "/fluid/p", "/obstacle/force", "/obstacle/markers"};
 
 static PetscInt Obstacle(Scheme s) {

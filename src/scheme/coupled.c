@@ -280,76 +280,6 @@ static PetscErrorCode SetUp_Coupled(Scheme s) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The block of moving bodies; NULL where there are none. Its numbers are the last ones of the memory. */
-static ObstacleBlock MovingBlock(Scheme s) {
-  Coupled *d = (Coupled *)s->data;
-  const Obstacles o = s->coupling->bodies->obstacles;
-  return d->solver && o && o->moving ? d->solver->preconditioner->solid : NULL;
-}
-
-static PetscErrorCode Remember_Coupled(Scheme s, PetscReal memory[]) {
-  Coupled *d = (Coupled *)s->data;
-  const Layout l = s->membrane->layout;
-  PetscFunctionBeginUser;
-  if (!d->solver) PetscFunctionReturn(PETSC_SUCCESS);
-  if (MovingBlock(s)) ObstacleBlockGetMemory(MovingBlock(s), memory + SchemeMemorySize(s) - OBSTACLE_BLOCK_MEMORY);
-  PetscCall(PreconditionerGetMemory(d->solver->preconditioner, memory));
-  if (d->solver->preconditioner->patterns) {
-    PatternsGetMemory(d->solver->preconditioner->patterns, memory + PRECONDITIONER_MEMORY);
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  PetscCall(LayoutGatherVec(l, d->made_at, memory + PRECONDITIONER_MEMORY));
-  PetscCall(PetscArraycpy(memory + PRECONDITIONER_MEMORY + 2 * l->M, d->made_with, l->bodies));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode RecallPatterns(Scheme s, Patterns patterns, const PetscReal memory[]) {
-  PetscBool valid;
-  PetscFunctionBeginUser;
-  PetscCall(PatternsSetMemory(patterns, memory, &valid));
-  PetscCheck(valid, s->scene->comm, PETSC_ERR_USER_INPUT,
-             "-restart %s: its solver's memory is of other vesicles; allowed: a checkpoint of this scene",
-             s->scene->output.restart);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* All is placed for a0 and bodies of time t. */
-static PetscErrorCode PlaceAgain(Scheme s, PetscReal a0, PetscReal t, Vec X, const PetscReal treading[]) {
-  char message[PETVES_MAX_MESSAGE];
-  PetscFunctionBeginUser;
-  PetscCall(CouplingPlace(s->coupling, a0, t, X, treading, message));
-  PetscCheck(!*message, s->scene->comm, PETSC_ERR_USER_INPUT, "-restart %s: %s; allowed: a checkpoint of this scene",
-             s->scene->output.restart, message);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode RecallBlock(Scheme s, const PetscReal memory[]) {
-  PetscFunctionBeginUser;
-  if (!MovingBlock(s) || memory[1] < 0) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PlaceAgain(s, memory[1] > 0 ? memory[1] : 1, memory[0], s->state.X, NULL));
-  PetscCall(ObstacleBlockSetMemory(MovingBlock(s), memory));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode Recall_Coupled(Scheme s, const PetscReal memory[]) {
-  Coupled *d = (Coupled *)s->data;
-  const Layout l = s->membrane->layout;
-  const PetscReal a0 = memory[0];
-  PetscScalar *X;
-  PetscFunctionBeginUser;
-  PetscCall(RecallBlock(s, memory + SchemeMemorySize(s) - OBSTACLE_BLOCK_MEMORY));
-  if (d->solver && d->solver->preconditioner->patterns)
-    PetscCall(RecallPatterns(s, d->solver->preconditioner->patterns, memory + PRECONDITIONER_MEMORY));
-  if (!d->solver || !l->bodies || a0 == 0) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(VecGetArray(d->made_at, &X));
-  PetscCall(PetscArraycpy(X, memory + PRECONDITIONER_MEMORY + 2 * l->first, 2 * l->n));
-  PetscCall(VecRestoreArray(d->made_at, &X));
-  PetscCall(PetscArraycpy(d->made_with, memory + PRECONDITIONER_MEMORY + 2 * l->M, l->bodies));
-  PetscCall(PlaceAgain(s, a0, s->state.t, d->made_at, d->made_with));
-  PetscCall(PreconditionerSetMemory(d->solver->preconditioner, memory));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 static PetscErrorCode View_Coupled(Scheme s, PetscViewer viewer) {
   Coupled *d = (Coupled *)s->data;
   PetscFunctionBeginUser;
@@ -397,8 +327,8 @@ PetscErrorCode SchemeCreate_Coupled(Scheme s) {
   s->ops = (SchemeOps){.setup = SetUp_Coupled,
                        .step = Step_Coupled,
                        .undo = Undo_Coupled,
-                       .remember = Remember_Coupled,
-                       .recall = Recall_Coupled,
+                       .remember = CoupledRemember,
+                       .recall = CoupledRecall,
                        .view = View_Coupled,
                        .options = Options_Coupled,
                        .ksp = KSP_Coupled,

@@ -138,8 +138,7 @@ PetscErrorCode SchemeStep(Scheme s, PetscReal most) {
 
 PetscInt SchemeMemorySize(Scheme s) {
   const Obstacles o = s->coupling->bodies->obstacles;
-  return PRECONDITIONER_MEMORY + PatternsMemorySize(s->membrane->layout) +
-         (o && o->moving ? OBSTACLE_BLOCK_MEMORY : 0);
+  return PRECONDITIONER_MEMORY + PatternsMemorySize(s->membrane->layout) + (o && o->moving ? OBSTACLE_BLOCK_MEMORY : 0);
 }
 
 PetscErrorCode SchemeRemember(Scheme s, PetscReal memory[]) {
