@@ -106,8 +106,8 @@ PETSC_EXTERN PetscErrorCode SimulationGetSizes(Simulation simulation, PetscInt *
                                                PetscInt sizes[7]);
 
 /* SimulationGetObstacles - number of obstacles; start[obstacles+1], first marker of each, and markers[2
-   start[obstacles]], counter-clockwise around solids, clockwise around fluid; solids are on the left of
-   curves that end on a wall or span a period (either may be NULL). Not collective. */
+   start[obstacles]] where they are now, counter-clockwise around solids, clockwise around fluid; solids are on the left
+   of curves that end on a wall or span a period (either may be NULL). Not collective. */
 PETSC_EXTERN PetscErrorCode SimulationGetObstacles(Simulation simulation, PetscInt *obstacles, PetscInt start[],
                                                    PetscReal markers[]);
 

@@ -103,6 +103,24 @@ def single_layer(curves, period, times):
     return S.transpose(0, 2, 1, 3).reshape(2 * len(X), 2 * len(X)) / (4 * np.pi)
 
 
+def normals(solid):
+    """The unit vector (2w,) of a solid's normals, a force that its pressure alone feels."""
+    N = (derivative(len(solid)) @ solid @ np.array([[0, -1], [1, 0]])).ravel()
+    return N / np.linalg.norm(N)
+
+
+def driven(solid, velocity, rotation, period, times):
+    """Force and torque, about the mean of its points, of the fluid on a solid that moves in fluid without mean flow,
+    viscosity 1; solved at `times` as many points as are given, an odd number."""
+    S = single_layer([solid], period, times)
+    solid = finer(solid, times * len(solid))
+    off = solid - solid.mean(0)
+    N = normals(solid)
+    U = np.add(velocity, rotation * off @ np.array([[0, 1], [-1, 0]])).ravel()
+    f = -np.linalg.solve(S + np.outer(N, N) / 4, U).reshape(-1, 2)
+    return f.sum(0), (off[:, 0] * f[:, 1] - off[:, 1] * f[:, 0]).sum()
+
+
 def pressed(vesicle, solid, period, stream, times):
     """A vesicle without bending stiffness, which does not stretch, beside a solid at rest, given by odd numbers of
     points; the mean flow is `stream`, viscosity 1. Solved at `times` as many points. Returns the vesicle's velocity at
@@ -114,8 +132,7 @@ def pressed(vesicle, solid, period, stream, times):
     T = D @ vesicle
     stretch = np.zeros((m, 2 * m))
     stretch[:, 0::2], stretch[:, 1::2] = T[:, :1] * D, T[:, 1:] * D
-    N = (derivative(w) @ solid @ np.array([[0, -1], [1, 0]])).ravel()
-    N /= np.linalg.norm(N)
+    N = normals(solid)
     force = np.zeros((2 * (m + w), m + 2 * w))  # of the membrane's tension, and of the solid
     force[: 2 * m, :m] = -stretch.T
     force[2 * m :, m:] = np.eye(2 * w)

@@ -33,7 +33,7 @@ static PetscErrorCode WorldCreate(const char options[], PetscInt cells, PetscBoo
   PetscCall(VecGetArray(X, &x));
   PetscCall(PetscArraycpy(x, s->shape.X + 2 * w->layout->first, 2 * w->layout->n));
   PetscCall(VecRestoreArray(X, &x));
-  PetscCall(CouplingPlace(w->coupling, w->fluid->a0, X, NULL, message));
+  PetscCall(CouplingPlace(w->coupling, w->fluid->a0, 0, X, NULL, message));
   PetscCheck(!*message, s->comm, PETSC_ERR_LIB, "%s", message);
   PetscCall(VecDestroy(&X));
   PetscCall(PetscCalloc1(PetscSqr(2 * w->layout->M), &w->D));

@@ -42,9 +42,15 @@ CURVES = {
     "bump": ["# open", *bump(0.5)],
     "low bump": ["# open", *bump(0.05)],
     "rising bump": ["# open", "# velocity 0 1", *bump(0.5)],
+    "sliding bump": ["# open", "# velocity 1 0", *bump(0.5)],
     "two bumps": ["# open", *bump(0.5, 2)],
     "corner": ["# open", *(f"{np.cos(a) - 1} {np.sin(a) - 1}" for a in np.pi * np.arange(13) / 24)],
     "line": [f"{0.1 * k - 1:.15g} 0" for k in range(21)],
+    "sliding line": ["# velocity 1 0", *(f"{0.1 * k - 1:.15g} 0" for k in range(21))],
+    "long ellipse": [
+        "# rotation 40",
+        *(f"{0.8 * np.cos(a):.15g} {0.2 * np.sin(a):.15g}" for a in np.pi * np.arange(60) / 30),
+    ],
     "flat": [f"{0.01 * k} 0" for k in range(20)],
 }
 

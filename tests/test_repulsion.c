@@ -25,12 +25,12 @@ static PetscErrorCode CheckSlope(const Case *c, Repulsion r, Layout l, PetscReal
   PetscReal *F, energy, around[2], off = 0, largest = 0, sum[2] = {0, 0};
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(2 * l->M, &F));
-  PetscCall(RepulsionAt(r, 1, X, F, &energy));
+  PetscCall(RepulsionAt(r, 0, 1, X, F, &energy));
   for (PetscInt k = 0; k < 2 * l->M; k++) {
     const PetscReal x = X[k];
     for (int side = 0; side < 2; side++) {
       X[k] = x + (side ? step : -step);
-      PetscCall(RepulsionAt(r, 0, X, NULL, &around[side]));
+      PetscCall(RepulsionAt(r, 0, 0, X, NULL, &around[side]));
     }
     X[k] = x;
     off = PetscMax(off, PetscAbsReal(F[k] + (around[1] - around[0]) / (2 * step)));
@@ -51,8 +51,8 @@ static PetscErrorCode CheckSprings(const Case *c, Repulsion r, Layout l, const P
   unsigned seed = 5;
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc5(2 * l->M, &F, 2 * l->M, &x, 2 * l->M, &y, 2 * l->M, &Kx, 2 * l->M, &Ky));
-  PetscCall(RepulsionPlace(r, X));
-  PetscCall(RepulsionAt(r, 1, X, F, &energy));
+  PetscCall(RepulsionPlace(r, 0, X));
+  PetscCall(RepulsionAt(r, 0, 1, X, F, &energy));
   RepulsionPush(r, -1, F);
   PetscCall(RepulsionStiffness(r, 1, X, F));
   for (PetscInt k = 0; k < 2 * l->M; k++) {
@@ -84,8 +84,8 @@ static PetscErrorCode CheckRange(const Case *c, const TestMembrane *m, Bodies bo
   law.range = law.band = 1e-3;
   PetscCall(RepulsionCreate(bodies, grid, &law, &r));
   PetscCall(PetscCalloc1(2 * m->M, &F));
-  PetscCall(RepulsionPlace(r, X));
-  PetscCall(RepulsionAt(r, 1, X, F, &energy));
+  PetscCall(RepulsionPlace(r, 0, X));
+  PetscCall(RepulsionAt(r, 0, 1, X, F, &energy));
   for (PetscInt k = 0; k < 2 * m->M; k++) largest = PetscMax(largest, PetscAbsReal(F[k]));
   CHECK(r->count == 0 && energy == 0 && largest == 0, "%s: out of range there are %d springs and no force", c->name,
         (int)r->count);

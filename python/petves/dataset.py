@@ -18,7 +18,7 @@ _HAVE = {
     "1": "viscosity_wall viscosity step area_error length_error edge_ratio tension_its bending_its coupled_its nsolve",
     "s": "wall",
     "time": "time dt",
-    "length": "gap length center_x center_y area_shift markers obstacles x y h",
+    "length": "gap length center_x center_y area_shift markers obstacles obstacle_center_x obstacle_center_y x y h",
     "length^2": "area",
     "length/time": "u v velocity normal_speed velocity_x velocity_y",
     "length^2/time": "nu flux",
@@ -27,7 +27,7 @@ _HAVE = {
     "length^4/time^2": "energy_kinetic energy_bending energy_gravity energy_contact obstacle_torque",
     "length^5/time^2": "c_b",
     "1/time": "div_max surface_div_max",
-    "radian": "inclination",
+    "radian": "inclination obstacle_angle",
     "radian/time": "frequency",
 }
 UNITS = {name: unit for unit, names in _HAVE.items() for name in names.split()}
@@ -54,7 +54,7 @@ def load(folder: str | Path, kind: str = "auto") -> Run | xarray.Dataset:
         Dataset: variables of the steps (dimension step) are the columns of series.csv, with the coordinate step_time;
         variables of the saved times (dimension time) are u, v, p (time, y, x), markers and
         velocity (time, marker, xy) and tension (time, marker), with the coordinate vesicle of each marker; obstacles
-        (obstacle_marker, xy) and obstacle_force (time, obstacle_marker, xy), where there are any, with the coordinate
+        (obstacle_marker, xy), where they move (time, obstacle_marker, xy), and obstacle_force (time, obstacle_marker, xy), where there are any, with the coordinate
         obstacle. Every variable
         has ``attrs["units"]``; above 40 vesicles each_area, each_center_x, ... (step, member) are those of vesicles.h5; the dataset's attributes are h, nu, c_b and the run's summary. Run: see there, and `unit`.
 
@@ -100,7 +100,9 @@ def _dataset(run: Run, xarray: Any) -> xarray.Dataset:
     attributes = {"h": run.h, "nu": run.nu, "c_b": run.c_b, "box": run.box, "folder": str(run.folder)}
     attributes |= {"reason": run.summary.get("reason", "")}
     if run.obstacles:
-        variables["obstacles"] = (("obstacle_marker", "xy"), np.concatenate(run.obstacles))
+        moving = len(run.obstacle_markers) > 0
+        places = run.obstacle_markers if moving else np.concatenate(run.obstacles)
+        variables["obstacles"] = (("time", "obstacle_marker", "xy")[not moving :], places)
         variables["obstacle_force"] = (("time", "obstacle_marker", "xy"), run.obstacle_force)
         sizes = [len(points) for points in run.obstacles]
         coordinates["obstacle"] = ("obstacle_marker", np.repeat(np.arange(len(sizes)), sizes))

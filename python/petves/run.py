@@ -54,7 +54,9 @@ class Run:
         Viscosity inside over that outside.
     obstacles : list of ndarray, each of shape (n, 2)
         Markers of each obstacle (length), counter-clockwise around a solid, clockwise around fluid in one; the solid is on
-        the left of curves that are not closed.
+        the left of curves that are not closed. Where they move, those of the last saved time.
+    obstacle_markers : ndarray, shape (T, W, 2)
+        The same at each saved time where obstacles move (-obstacle_moving); else T = 0. Not wrapped, as vesicles' are not.
     obstacle_force : ndarray, shape (T, W, 2)
         Force of the fluid on the markers of all obstacles, one obstacle after another (length^3/time^2).
     obstacle_kinds : list of str
@@ -80,6 +82,7 @@ class Run:
     start: np.ndarray
     viscosity_ratio: np.ndarray
     obstacles: list[np.ndarray] = field(default_factory=list)
+    obstacle_markers: np.ndarray = field(default_factory=lambda: np.zeros((0, 0, 2)))
     obstacle_force: np.ndarray = field(default_factory=lambda: np.zeros((0, 0, 2)))
     obstacle_kinds: list[str] = field(default_factory=list)
     summary: dict[str, Any] = field(default_factory=dict)
@@ -116,6 +119,7 @@ class Run:
                     start=start,
                     viscosity_ratio=np.ones(len(start) - 1) * file.attrs.get("vesicle_viscosity_ratio", 1.0),
                     obstacles=_obstacles(file),
+                    obstacle_markers=_moving_obstacles(file),
                     obstacle_force=file["obstacle/force"][:] if "obstacle" in file else none,
                     obstacle_kinds=[KINDS[kind] for kind in np.atleast_1d(file.attrs.get("obstacle_kind", []))],
                     summary=json.loads(summary.read_text()) if summary.is_file() else {},
@@ -241,14 +245,20 @@ class Run:
         """
         return smooth_curve(self.outline(frame, vesicle)[:-1], CURVE)
 
-    def obstacle_curve(self, obstacle: int) -> np.ndarray:
+    def obstacles_at(self, frame: int) -> list[np.ndarray]:
+        """Return the markers of each obstacle at a saved time (length), as `obstacles` has them."""
+        if not len(self.obstacle_markers):
+            return self.obstacles
+        return np.split(self.obstacle_markers[frame], np.cumsum([len(points) for points in self.obstacles])[:-1])
+
+    def obstacle_curve(self, obstacle: int, frame: int = -1) -> np.ndarray:
         """Return the smooth closed outline of the solid at an obstacle, numbered from 0, as `curve` does a vesicle's.
 
         A curve that is not closed goes on along its wall, or along the next one or the side of the box on its left.
         """
         # files of earlier programs have closed ones only
         kinds = self.obstacle_kinds or ["closed"] * len(self.obstacles)
-        return solid_outline(self.obstacles, kinds, obstacle, self.box, CURVE)
+        return solid_outline(self.obstacles_at(frame), kinds, obstacle, self.box, CURVE)
 
     def curve_tension(self, frame: int, vesicle: int = 0) -> np.ndarray:
         """Return the tension between the points of `curve`, shape (CURVE n,), by its Fourier series."""
@@ -319,7 +329,14 @@ def _open(path: Path) -> h5py.File:
 def _obstacles(file: h5py.File) -> list[np.ndarray]:
     if "obstacle" not in file:
         return []
-    return np.split(file["obstacle/markers"][:], file.attrs["obstacle_start"][1:-1])
+    markers = file["obstacle/markers"]
+    return np.split(markers[-1] if markers.ndim == 3 else markers[:], file.attrs["obstacle_start"][1:-1])
+
+
+def _moving_obstacles(file: h5py.File) -> np.ndarray:
+    if "obstacle" not in file or file["obstacle/markers"].ndim < 3:
+        return np.zeros((0, 0, 2))
+    return file["obstacle/markers"][:]
 
 
 def _number(file: h5py.File, name: str) -> float:

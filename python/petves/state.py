@@ -74,7 +74,8 @@ class State(Measures):
     @property
     def obstacles(self) -> list[np.ndarray]:
         """Markers of each obstacle (length), new arrays (n, 2), the same on every rank: counter-clockwise around a solid,
-        clockwise around fluid in one; the solid is on the left of curves that end on a wall or span a period."""
+        clockwise around fluid in one; the solid is on the left of curves that end on a wall or span a period. Where they
+        move, those of the present time."""
         count, ask = Int(), self._lib.SimulationGetObstacles
         ask(self._open(), ctypes.byref(count), None, None)
         start = (Int * (count.value + 1))()

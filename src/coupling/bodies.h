@@ -12,6 +12,7 @@ struct _p_Bodies {
   PetscReal *ds;       /* [bodies] mean edge (length) */
   Spectral *spectral;  /* [bodies], borrowed */
   CurveKind *kind;     /* [bodies] */
+  PetscBool *resting;  /* [bodies] obstacles that stay where they are */
   Obstacles obstacles; /* borrowed; NULL without */
 };
 
@@ -19,9 +20,9 @@ struct _p_Bodies {
 PETSC_EXTERN PetscErrorCode BodiesCreate(Membrane membrane, Obstacles obstacles, Bodies *bodies);
 PETSC_EXTERN PetscErrorCode BodiesDestroy(Bodies *bodies);
 
-/* BodiesSee - the curves as contacts look at them (contacts.h), all[2(M + W)]: vesicles at X[2M], then the obstacles,
-   those clockwise that have the fluid inside. X may be all. Not collective. */
-PETSC_EXTERN PetscErrorCode BodiesSee(Bodies bodies, const PetscReal X[], PetscReal all[]);
+/* BodiesSee - the curves as contacts look at them (contacts.h), all[2(M + W)]: vesicles at X[2M], then the obstacles at
+   time t, those clockwise that have the fluid inside. X may be all. Not collective. */
+PETSC_EXTERN PetscErrorCode BodiesSee(Bodies bodies, PetscReal t, const PetscReal X[], PetscReal all[]);
 
 /* BodiesObstacleNumbers - this rank's numbers (two a marker) of obstacles in a marker vector of all bodies;
    BodiesFirstObstacle - where they start. Not collective. */

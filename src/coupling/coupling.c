@@ -15,6 +15,19 @@ static PetscErrorCode CopyVesicles(Coupling c, Vec from, Vec to) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The obstacles' part of X. */
+static PetscErrorCode PlaceObstacles(Coupling c, PetscReal t) {
+  const Obstacles o = c->bodies->obstacles;
+  PetscScalar *X;
+  PetscFunctionBeginUser;
+  if (!o) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ObstaclesPlace(o, t));
+  PetscCall(VecGetArray(c->X, &X));
+  PetscCall(PetscArraycpy(X + BodiesFirstObstacle(c->bodies), o->X + 2 * o->layout->first, 2 * o->layout->n));
+  PetscCall(VecRestoreArray(c->X, &X));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode CouplingPlaceMarkers(Coupling c, Vec X) {
   PetscFunctionBeginUser;
   PetscCall(CopyVesicles(c, X, c->X));
@@ -29,7 +42,7 @@ PetscErrorCode CouplingInterpolate(Coupling c, Vec w, Vec U) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode CouplingPlace(Coupling c, PetscReal a0, Vec X, const PetscReal treading[],
+PetscErrorCode CouplingPlace(Coupling c, PetscReal a0, PetscReal t, Vec X, const PetscReal treading[],
                              char message[PETVES_MAX_MESSAGE]) {
   const PetscScalar *x;
   PetscFunctionBeginUser;
@@ -40,13 +53,14 @@ PetscErrorCode CouplingPlace(Coupling c, PetscReal a0, Vec X, const PetscReal tr
   if (!CouplingHasBodies(c)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(MarkersCheck(c->markers, c->membrane->layout, X, message));
   if (*message) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PlaceObstacles(c, t));
   PetscCall(CouplingPlaceMarkers(c, X));
   PetscCall(VecGetArrayRead(X, &x));
   MembraneTangents(c->membrane, x, c->tau);
   PetscCall(VecRestoreArrayRead(X, &x));
   if (c->near) PetscCall(NearFieldPlace(c->near));
   if (c->contrast) PetscCall(DoubleLayerPlace(c->contrast));
-  if (c->repulsion) PetscCall(RepulsionPlace(c->repulsion, c->markers->X));
+  if (c->repulsion) PetscCall(RepulsionPlace(c->repulsion, t, c->markers->X));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -252,18 +266,6 @@ static PetscErrorCode CreateShell(Coupling c, int each, ShellMult mult, ShellMul
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The obstacles' part of X, which stays. */
-static PetscErrorCode PlaceObstacles(Coupling c) {
-  const Obstacles o = c->bodies->obstacles;
-  PetscScalar *X;
-  PetscFunctionBeginUser;
-  if (!o) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(VecGetArray(c->X, &X));
-  PetscCall(PetscArraycpy(X + BodiesFirstObstacle(c->bodies), o->X + 2 * o->layout->first, 2 * o->layout->n));
-  PetscCall(VecRestoreArray(c->X, &X));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode CouplingCreate(Fluid fluid, Membrane m, Obstacles obstacles, const char kernel[], NearFieldType near,
                               Coupling *out) {
   Coupling c;
@@ -281,7 +283,7 @@ PetscErrorCode CouplingCreate(Fluid fluid, Membrane m, Obstacles obstacles, cons
   PetscCall(PetscCalloc1(m->layout->bodies, &c->treading));
   PetscCall(LayoutCreateVec(c->bodies->layout, 2, &c->force));
   PetscCall(VecDuplicate(c->force, &c->X));
-  PetscCall(PlaceObstacles(c));
+  PetscCall(PlaceObstacles(c, 0));
   PetscCall(VecDuplicate(c->force, &c->velocity));
   PetscCall(CreateShell(c, 1, Mult_S, MultTranspose_S, &c->S));
   PetscCall(CreateShell(c, 2, Mult_B, MultTranspose_B, &c->B));

@@ -35,11 +35,11 @@ PETSC_EXTERN PetscErrorCode CouplingDestroy(Coupling *coupling);
 PETSC_EXTERN PetscErrorCode CouplingAddRepulsion(Coupling coupling, const SceneRepulsion *law);
 
 /* CouplingPlace - everything that a solve stands on, in one call: the time coefficient a0 (1/time) in the fluid's H; E,
-   S, B, the tangents, the near field C and the springs of a repulsion at the markers X; the labels' speeds
-   treading[vesicles] (1/time; NULL: at rest). message[PETVES_MAX_MESSAGE] is empty, or says why it cannot be: a marker
-   near a wall; the same on every rank. Collective. */
-PETSC_EXTERN PetscErrorCode CouplingPlace(Coupling coupling, PetscReal a0, Vec X, const PetscReal treading[],
-                                          char message[PETVES_MAX_MESSAGE]);
+   S, B, the tangents, the near field C and the springs of a repulsion at the markers X, and at obstacles where they are
+   at time t; the labels' speeds treading[vesicles] (1/time; NULL: at rest). message[PETVES_MAX_MESSAGE] is empty, or
+   says why it cannot be: a marker near a wall; the same on every rank. Collective. */
+PETSC_EXTERN PetscErrorCode CouplingPlace(Coupling coupling, PetscReal a0, PetscReal t, Vec X,
+                                          const PetscReal treading[], char message[PETVES_MAX_MESSAGE]);
 
 /* CouplingTurn - from here on, until the next CouplingPlace, a tension expected (edge vector) pulls along the new edges
    where it is positive, as much of it as waves of the membrane would otherwise swing by (docs/membrane.md), and only

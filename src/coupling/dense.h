@@ -12,6 +12,13 @@
 
 typedef struct _p_DenseBlocks *DenseBlocks;
 
+/* DenseRenewalCost - of so many dense blocks of n markers each, made anew, in iterations on so many cells: from the
+   operation counts and the speeds of one core; a number of the problem alone, so that iterations do not depend on the
+   machine or its load. Not collective. */
+static inline PetscReal DenseRenewalCost(PetscReal blocks, PetscReal n, PetscReal cells) {
+  return blocks * (4e-9 * n * n * n + 6e-7 * n * n) / (1.5e-8 * cells + blocks * 1e-8 * n * n + 5e-5);
+}
+
 PETSC_EXTERN PetscErrorCode DenseBlocksCreate(Coupling coupling, DenseBlocks *blocks);
 PETSC_EXTERN PetscErrorCode DenseBlocksDestroy(DenseBlocks *blocks);
 

@@ -72,7 +72,7 @@ PetscErrorCode LayerCreate(Coupling coupling, Vec sigma, Vec X, Layer *out) {
   PetscCall(PetscMalloc1(2 * l->n, &f));
   PetscCall(VecGetArrayRead(X, &x));
   PetscCall(Forces(coupling->membrane, sigma, x, f));
-  if (coupling->repulsion) PetscCall(RepulsionAt(coupling->repulsion, 1, x, f, &energy));
+  if (coupling->repulsion) PetscCall(RepulsionAt(coupling->repulsion, 0, 1, x, f, &energy));
   PetscCall(LayoutGather(l, 2, x, s->X));
   PetscCall(LayoutGather(l, 2, f, s->F));
   PetscCall(VecRestoreArrayRead(X, &x));

@@ -60,7 +60,6 @@ PetscErrorCode NearFieldCreate(Markers markers, Bodies bodies, PetscReal nu, Nea
     (bodies->kind[v].type == CURVE_OPEN ? Zeta : Kress)(LayoutCount(l, v), f->kress[v]);
   }
   PetscCall(PetscMalloc2(2 * l->M, &f->stencil, l->bodies, &f->bounds));
-  PetscCall(PetscMalloc1(2 * (l->M - l->start[bodies->vesicles]), &f->fixed.X));
   PetscCall(PetscCalloc2(2 * l->M + LANES, &f->force, 2 * l->n + LANES, &f->velocity)); /* whole vectors */
   PetscCall(PetvesEvent("NearField", &f->place));
   PetscCall(PetvesEvent("NearFieldApply", &f->apply));
@@ -78,7 +77,6 @@ PetscErrorCode NearFieldDestroy(NearField *near) {
   for (PetscInt v = 0; v < f->bodies->layout->bodies; v++) PetscCall(PetscFree(f->kress[v]));
   PetscCall(PetscFree(f->kress));
   PetscCall(PetscFree2(f->stencil, f->bounds));
-  PetscCall(PetscFree(f->fixed.X));
   PetscCall(PetscFree2(f->force, f->velocity));
   if (f->image) PetscCall(PetscFree(f->image->table));
   PetscCall(NearImageDestroy(&f->image));

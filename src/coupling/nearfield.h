@@ -35,12 +35,11 @@ typedef struct {
   size_t values, value_room, singles, single_room;
 } NearStore;
 
-/* The blocks of two obstacles, which stay as they are while obstacles rest: the first ones of the list, with their
-   close images and values. */
+/* The blocks of two obstacles that rest, which stay as they are: the first ones of the list, with their close images
+   and values. */
 typedef struct {
   PetscInt blocks, closes;
   size_t values, singles;
-  PetscReal *X; /* [2 markers of obstacles] where they were made */
   PetscBool made;
 } NearFixed;
 

@@ -146,10 +146,10 @@ static PetscErrorCode AddImages(NearField f, PetscInt v, PetscInt w) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Pairs of bodies with an own one among them: of two obstacles, or all others. */
+/* Pairs of bodies with an own one among them: of two that rest, or all others. */
 typedef struct {
   Layout layout;
-  PetscInt vesicles;
+  const PetscBool *resting; /* [bodies] */
   PetscBool fixed;
   PetscInt (*pair)[2], count, room;
   PetscErrorCode error;
@@ -160,7 +160,7 @@ static PetscBool Keep(void *context, PetscInt v, PetscInt w, const PetscReal d[2
   const Layout l = c->layout;
   const PetscBool first = v >= l->own && v < l->end ? PETSC_TRUE : PETSC_FALSE;
   if (!first && (w < l->own || w >= l->end)) return PETSC_FALSE;
-  if ((PetscMin(v, w) >= c->vesicles) != c->fixed) return PETSC_FALSE;
+  if ((c->resting[v] && c->resting[w]) != c->fixed) return PETSC_FALSE;
   c->error = Grow(c->count, sizeof(*c->pair), &c->room, (void **)&c->pair);
   if (c->error) return PETSC_TRUE;
   c->pair[c->count][0] = first ? v : w;
@@ -197,13 +197,13 @@ static int ByRow(const void *a, const void *b) {
 static PetscErrorCode AddBlocks(NearField f, PetscBool fixed) {
   const Layout l = f->bodies->layout;
   const PetscReal none[2] = {0, 0};
-  Candidates c = {.layout = l, .vesicles = f->bodies->vesicles, .fixed = fixed};
+  Candidates c = {.layout = l, .resting = f->bodies->resting, .fixed = fixed};
   PetscInt k = 0;
   PetscFunctionBeginUser;
   PetscCall(FindCandidates(f, &c));
   qsort(c.pair, (size_t)c.count, sizeof(*c.pair), ByRow);
   for (PetscInt v = l->own; v < l->end; v++) {
-    if ((v >= c.vesicles) == fixed) {
+    if (c.resting[v] == fixed) {
       PetscCall(AddBlock(f, v, v, none, 0));
       PetscCall(AddImages(f, v, v));
     }
@@ -213,38 +213,19 @@ static PetscErrorCode AddBlocks(NearField f, PetscBool fixed) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The fixed blocks, anew if obstacles are not where these were made; the first of all that has to get its values. */
-static PetscErrorCode FindFixed(NearField f, PetscInt *first) {
-  NearFixed *fixed = &f->fixed;
-  const PetscInt at = f->bodies->layout->start[f->bodies->vesicles], n = 2 * (f->bodies->layout->M - at);
-  const PetscReal *X = f->markers->X + 2 * at;
-  PetscBool same;
-  PetscFunctionBeginUser;
-  PetscCall(PetscArraycmp(fixed->X, X, n, &same));
-  *first = fixed->blocks;
-  if (fixed->made && same) PetscFunctionReturn(PETSC_SUCCESS);
-  *first = 0;
-  *fixed = (NearFixed){.X = fixed->X, .made = PETSC_TRUE};
-  f->blocks = f->closes = 0;
-  f->store.values = f->store.singles = 0;
-  PetscCall(PetscArraycpy(fixed->X, X, n));
-  PetscCall(AddBlocks(f, PETSC_TRUE));
-  fixed->blocks = f->blocks;
-  fixed->closes = f->closes;
-  fixed->values = f->store.values;
-  fixed->singles = f->store.singles;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode NearPairsFind(NearField f, PetscInt *first) {
-  const NearFixed *fixed = &f->fixed;
+  NearFixed *fixed = &f->fixed;
   PetscFunctionBeginUser;
   FindBounds(f);
-  PetscCall(FindFixed(f, first));
   f->blocks = fixed->blocks;
   f->closes = fixed->closes;
   f->store.values = fixed->values;
   f->store.singles = fixed->singles;
+  *first = fixed->blocks;
+  if (!fixed->made) {
+    PetscCall(AddBlocks(f, PETSC_TRUE));
+    *fixed = (NearFixed){f->blocks, f->closes, f->store.values, f->store.singles, PETSC_TRUE};
+  }
   PetscCall(AddBlocks(f, PETSC_FALSE));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

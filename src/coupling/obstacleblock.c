@@ -1,6 +1,7 @@
 #include "coupling/obstacleblock.h"
 #include "base/agree.h"
 #include "coupling/blas.h"
+#include "coupling/dense.h"
 #include "coupling/mobilitysolves.h"
 
 struct _p_ObstacleBlock {
@@ -9,6 +10,9 @@ struct _p_ObstacleBlock {
   Obstacles obstacles;   /* borrowed */
   PetscMPIInt root;      /* the rank that has the factor */
   PetscReal alpha;       /* that it is for; negative: none yet */
+  PetscReal made;        /* where bodies were at this time */
+  PetscReal least;       /* fewest iterations of a solve with it; negative: not known yet */
+  PetscReal excess;      /* iterations above them in all */
   float *factor;         /* [2W][2W], on root */
   PetscBLASInt *pivot;   /* [2W] */
   PetscScalar *all;      /* [2W] */
@@ -83,7 +87,14 @@ static PetscErrorCode Assemble(ObstacleBlock b, PetscReal A[]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode ObstacleBlockSetUp(ObstacleBlock b, PetscBool *failed) {
+/* Cost of a new factor in iterations, those with the grid's own mobility by 2W solves. */
+static PetscReal RenewalCost(ObstacleBlock b) {
+  const Grid g = b->coupling->fluid->grid;
+  const PetscReal cells = (PetscReal)g->n[0] * g->n[1], W = b->obstacles->layout->M;
+  return (OnWall(b->obstacles) ? 2 * W : 0) + DenseRenewalCost(1, W, cells);
+}
+
+static PetscErrorCode Make(ObstacleBlock b, PetscBool *failed) {
   const Layout l = b->obstacles->layout;
   const PetscInt n = 2 * l->M;
   const PetscReal over = 1 / PetscSqr(b->coupling->fluid->grid->h);
@@ -91,10 +102,12 @@ PetscErrorCode ObstacleBlockSetUp(ObstacleBlock b, PetscBool *failed) {
   PetscReal *A;
   PetscLogEvent event;
   PetscFunctionBeginUser;
-  if (b->alpha == b->coupling->fluid->alpha) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetvesEvent("FactorObstacles", &event));
   PetscCall(PetscLogEventBegin(event, 0, 0, 0, 0));
   b->alpha = b->coupling->fluid->alpha;
+  b->made = b->obstacles->t;
+  b->least = -1;
+  b->excess = 0;
   PetscCall(PetscMalloc1(n * n, &A));
   PetscCall(Assemble(b, A));
   if (l->rank == b->root) {
@@ -108,11 +121,56 @@ PetscErrorCode ObstacleBlockSetUp(ObstacleBlock b, PetscBool *failed) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode ObstacleBlockSetUp(ObstacleBlock b, PetscBool *failed) {
+  const PetscBool old = b->obstacles->moving && b->excess > RenewalCost(b) ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionBeginUser;
+  if (b->alpha != b->coupling->fluid->alpha || old) PetscCall(Make(b, failed));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+void ObstacleBlockSolved(ObstacleBlock b, PetscInt its) {
+  if (b->least < 0 || its < b->least) b->least = its;
+  b->excess += its - b->least;
+}
+
+void ObstacleBlockGetMemory(ObstacleBlock b, PetscReal memory[OBSTACLE_BLOCK_MEMORY]) {
+  const PetscReal own[] = {b->made, b->alpha, b->least, b->excess};
+  for (int k = 0; k < OBSTACLE_BLOCK_MEMORY; k++) memory[k] = own[k];
+}
+
+PetscErrorCode ObstacleBlockSetMemory(ObstacleBlock b, const PetscReal memory[OBSTACLE_BLOCK_MEMORY]) {
+  PetscBool failed;
+  PetscFunctionBeginUser;
+  PetscCall(Make(b, &failed));
+  b->least = memory[2];
+  b->excess = memory[3];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The own numbers of bodies whose markers turn: to how they were when the factor was made, or (back) to how they are.
+ */
+static void Turn(ObstacleBlock b, PetscBool back, PetscScalar F[]) {
+  const Obstacles o = b->obstacles;
+  const Layout l = o->layout;
+  for (PetscInt v = l->own; v < l->end; v++) {
+    if (!o->motion[v].turned) continue;
+    const PetscReal angle = ObstaclesPose(o, v, o->t).angle - ObstaclesPose(o, v, b->made).angle;
+    const PetscReal c = PetscCosReal(angle), s = (back ? 1 : -1) * PetscSinReal(angle);
+    for (PetscInt k = 2 * LayoutOffset(l, v); k < 2 * (LayoutOffset(l, v) + LayoutCount(l, v)); k += 2) {
+      const PetscScalar x = F[k], y = F[k + 1];
+      F[k] = c * x - s * y;
+      F[k + 1] = s * x + c * y;
+    }
+  }
+}
+
 PetscErrorCode ObstacleBlockSolve(ObstacleBlock b, PetscScalar F[]) {
   const Layout l = b->obstacles->layout;
   PetscFunctionBeginUser;
+  Turn(b, PETSC_FALSE, F);
   PetscCall(LayoutToRank(l, b->root, 2, F, b->all));
   if (l->rank == b->root) PetscCall(DenseSolveSingle(2 * l->M, b->factor, b->pivot, b->all));
   PetscCall(LayoutFromRank(l, b->root, 2, b->all, F));
+  Turn(b, PETSC_TRUE, F);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

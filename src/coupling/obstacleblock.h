@@ -1,7 +1,9 @@
 /* The obstacles' block of the reduced problem, E A^-1 E^T/h^2 + C + D + beta N N^T between their markers, as a dense
    factor in single precision: part of the preconditioner (docs/obstacles.md, Preconditioner). E A^-1 E^T is that of a
    periodic box of the same cells (mobility.h), or, where an obstacle stands on a wall, the grid's own
-   (mobilitysolves.h). Obstacles rest, so that in quasi-steady flow it is made once. */
+   (mobilitysolves.h). While obstacles rest it is made once in quasi-steady flow. Of bodies that move it is the one of
+   an earlier time, forces and velocities turned with each body, as one alone has the same block wherever it is; once
+   the iterations beyond the fewest so far have cost as much as a new one would, it is made anew. */
 #pragma once
 #include "coupling/mobility.h"
 
@@ -12,8 +14,17 @@ PETSC_EXTERN PetscErrorCode ObstacleBlockCreate(const FluidSpec *spec, Coupling 
 PETSC_EXTERN PetscErrorCode ObstacleBlockDestroy(ObstacleBlock *block);
 
 /* ObstacleBlockSetUp - the factor for the fluid's coefficient alpha, where the coupling has been placed; failed, on
-   every rank, when it is singular. Collective. */
+   every rank, when it is singular. Collective. ObstacleBlockSolved - a solve with it has taken so many iterations. Not
+   collective. */
 PETSC_EXTERN PetscErrorCode ObstacleBlockSetUp(ObstacleBlock block, PetscBool *failed);
+PETSC_EXTERN void ObstacleBlockSolved(ObstacleBlock block, PetscInt its);
+
+/* ObstacleBlockGetMemory, ObstacleBlockSetMemory - what is kept of moving bodies, for a checkpoint (precondition.h):
+   memory[0] is the time at which the factor was made, memory[1] its alpha, negative: none. Set makes it again, with the
+   coupling placed at that time and for that alpha. Set is collective. */
+#define OBSTACLE_BLOCK_MEMORY 4
+PETSC_EXTERN void ObstacleBlockGetMemory(ObstacleBlock block, PetscReal memory[OBSTACLE_BLOCK_MEMORY]);
+PETSC_EXTERN PetscErrorCode ObstacleBlockSetMemory(ObstacleBlock block, const PetscReal memory[OBSTACLE_BLOCK_MEMORY]);
 
 /* ObstacleBlockSolve - F[2w] of the own obstacles from their rows' residuals, in place. Collective. */
 PETSC_EXTERN PetscErrorCode ObstacleBlockSolve(ObstacleBlock block, PetscScalar F[]);

@@ -107,14 +107,13 @@ static PetscErrorCode Renew(Preconditioner p) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Cost of new dense blocks in iterations, from the operation counts and the speeds of one core; a number of the problem
-   alone, so that iterations do not depend on the machine or its load. */
+/* Cost of new dense blocks in iterations. */
 static PetscReal RenewalCost(Preconditioner p) {
   const Coupling c = p->unknowns->coupling;
   const Layout l = c->membrane->layout;
-  const PetscReal n = l->M <= DENSE_TOGETHER ? l->M : (PetscReal)l->M / l->bodies, blocks = l->M / n;
+  const PetscReal n = l->M <= DENSE_TOGETHER ? l->M : (PetscReal)l->M / l->bodies;
   const PetscReal cells = p->mobility ? (PetscReal)c->fluid->grid->n[0] * c->fluid->grid->n[1] : 0;
-  return blocks * (4e-9 * n * n * n + 6e-7 * n * n) / (1.5e-8 * cells + blocks * 1e-8 * n * n + 5e-5);
+  return DenseRenewalCost(l->M / n, n, cells);
 }
 
 /* Whether I + (v/a0) d/dt of a vesicle has moved by 10 % in its highest mode, n/2. */
@@ -160,6 +159,7 @@ PetscErrorCode PreconditionerSetUp(Preconditioner p) {
 
 void PreconditionerSolved(Preconditioner p, PetscInt its) {
   Ageing *a = &p->age;
+  if (p->solid) ObstacleBlockSolved(p->solid, its);
   if (a->solves > 0)
     a->excess += PetscMax(its - a->fresh_its, 0);
   else if (a->fresh_its < 0)

@@ -101,10 +101,10 @@ static PetscErrorCode Find(Repulsion r, const PetscReal X[], PetscInt *count, Sp
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode RepulsionPlace(Repulsion r, const PetscReal X[]) {
+PetscErrorCode RepulsionPlace(Repulsion r, PetscReal t, const PetscReal X[]) {
   PetscFunctionBeginUser;
   PetscCall(PetscFree(r->spring));
-  PetscCall(BodiesSee(r->bodies, X, r->all));
+  PetscCall(BodiesSee(r->bodies, t, X, r->all));
   PetscCall(Find(r, r->all, &r->count, &r->spring));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -155,14 +155,15 @@ PetscErrorCode RepulsionSeams(Repulsion r, const PetscReal X[], const PetscScala
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode RepulsionAt(Repulsion r, PetscReal alpha, const PetscScalar x[], PetscScalar y[], PetscReal *energy) {
+PetscErrorCode RepulsionAt(Repulsion r, PetscReal t, PetscReal alpha, const PetscScalar x[], PetscScalar y[],
+                           PetscReal *energy) {
   const Layout l = r->membrane->layout;
   Spring *spring;
   PetscInt count;
   PetscFunctionBeginUser;
   *energy = 0;
   PetscCall(LayoutGather(l, 2, x, r->all));
-  PetscCall(BodiesSee(r->bodies, r->all, r->all));
+  PetscCall(BodiesSee(r->bodies, t, r->all, r->all));
   PetscCall(Find(r, r->all, &count, &spring));
   for (PetscInt k = 0; k < count; k++) {
     const Spring *s = &spring[k];

@@ -34,8 +34,9 @@ struct _p_Repulsion {
 PETSC_EXTERN PetscErrorCode RepulsionCreate(Bodies bodies, Grid grid, const SceneRepulsion *law, Repulsion *repulsion);
 PETSC_EXTERN PetscErrorCode RepulsionDestroy(Repulsion *repulsion);
 
-/* RepulsionPlace - the springs at the markers X[2M] of all vesicles. Not collective. */
-PETSC_EXTERN PetscErrorCode RepulsionPlace(Repulsion repulsion, const PetscReal X[]);
+/* RepulsionPlace - the springs at the markers X[2M] of all vesicles, obstacles where they are at time t. Not
+   collective. */
+PETSC_EXTERN PetscErrorCode RepulsionPlace(Repulsion repulsion, PetscReal t, const PetscReal X[]);
 
 /* RepulsionStiffness - y += alpha K_rep x, minus the force of the springs that x stretches; own parts x[2n], y[2n].
    Collective. RepulsionPush - y += alpha (the force at x = 0) of the own markers. Not collective. */
@@ -50,7 +51,7 @@ PETSC_EXTERN void RepulsionPush(Repulsion repulsion, PetscReal alpha, PetscScala
 PETSC_EXTERN PetscErrorCode RepulsionSeams(Repulsion repulsion, const PetscReal X[], const PetscScalar x[],
                                            PetscReal *sum);
 
-/* RepulsionAt - what the law gives at markers x[2n] (own part) whatever the springs: y += alpha force of the own
-   markers, y NULL: not wanted; the energy, SUM over the films (length^4/time^2). Collective. */
-PETSC_EXTERN PetscErrorCode RepulsionAt(Repulsion repulsion, PetscReal alpha, const PetscScalar x[], PetscScalar y[],
-                                        PetscReal *energy);
+/* RepulsionAt - what the law gives at time t at markers x[2n] (own part) whatever the springs: y += alpha force of the
+   own markers, y NULL: not wanted; the energy, SUM over the films (length^4/time^2). Collective. */
+PETSC_EXTERN PetscErrorCode RepulsionAt(Repulsion repulsion, PetscReal t, PetscReal alpha, const PetscScalar x[],
+                                        PetscScalar y[], PetscReal *energy);

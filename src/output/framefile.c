@@ -1,8 +1,9 @@
 #include "output/framefile.h"
 
-const char *const FrameSeries[FRAME_SERIES] = {
-    "/fluid/u", "/fluid/v", "/fluid/p", "/vesicle/markers", "/vesicle/velocity", "/vesicle/tension", "/obstacle/force"};
-static const char *const SolidsAlone[] = {"/fluid/u", "/fluid/v", "/fluid/p", "/obstacle/force"};
+const char *const FrameSeries[FRAME_SERIES] = {"/fluid/u",         "/fluid/v",          "/fluid/p",
+                                               "/vesicle/markers", "/vesicle/velocity", "/vesicle/tension",
+                                               "/obstacle/force",  "/obstacle/markers"};
+static const char *const SolidsAlone[] = {"/fluid/u", "/fluid/v", "/fluid/p", "/obstacle/force", "/obstacle/markers"};
 
 static PetscInt Obstacle(Scheme s) {
   return s->coupling->bodies->obstacles ? s->coupling->bodies->obstacles->layout->M : 0;
@@ -13,10 +14,10 @@ static void ListSeries(Scheme s, GrowingKind *kind, PetscInt dims[][2]) {
   const Grid g = s->fluid->grid;
   const PetscInt M = s->membrane->layout->M, W = Obstacle(s);
   kind->path = M ? FrameSeries : SolidsAlone;
-  kind->series = FRAME_VESICLES + (M ? 3 : 0) + (W ? 1 : 0);
+  kind->series = FRAME_VESICLES + (M ? 3 : 0) + (W ? 1 : 0) + (s->scene->obstacles.moving ? 1 : 0);
   for (PetscInt k = 0; k < kind->series; k++) {
     const PetscBool fluid = k < FRAME_VESICLES ? PETSC_TRUE : PETSC_FALSE;
-    const PetscBool solid = W && k == kind->series - 1 ? PETSC_TRUE : PETSC_FALSE;
+    const PetscBool solid = k >= FRAME_VESICLES + (M ? 3 : 0) ? PETSC_TRUE : PETSC_FALSE;
     dims[k][0] = fluid ? g->n[1] : solid ? W : M;
     dims[k][1] = fluid ? g->n[0] : !solid && k == FRAME_FORCE - 1 ? 1 : 2;
     kind->entries[k] = dims[k][0] * dims[k][1];
@@ -37,18 +38,18 @@ static PetscErrorCode PutRatios(H5File *f, Scene scene) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The curves of solids, which stay where they are. */
-static PetscErrorCode PutObstacles(H5File *f, Obstacles o) {
+/* The curves of solids, where they stay where they are. */
+static PetscErrorCode PutObstacles(H5File *f, const SceneObstacles *scene, Obstacles o) {
   PetscReal *X;
   PetscInt *kind;
   PetscFunctionBeginUser;
   if (!o) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMalloc2(2 * o->layout->M, &X, o->layout->bodies, &kind));
-  ObstaclesCurves(o, X);
+  ObstaclesCurves(o, 0, X);
   for (PetscInt v = 0; v < o->layout->bodies; v++) kind[v] = o->kind[v].type;
   PetscCall(H5PutInts(f, "obstacle_kind", o->layout->bodies, kind));
   PetscCall(H5PutInts(f, "obstacle_start", o->layout->bodies + 1, o->layout->start));
-  PetscCall(H5PutRows(f, "/obstacle/markers", o->layout->M, 2, X));
+  if (!scene->moving) PetscCall(H5PutRows(f, "/obstacle/markers", o->layout->M, 2, X));
   PetscCall(PetscFree2(X, kind));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -70,7 +71,7 @@ static PetscErrorCode Create(Scheme s, const char path[], H5File *f) {
   PetscCall(H5PutInts(f, "vesicle_start", l->bodies + 1, l->start));
   if (l->bodies) PetscCall(H5PutReals(f, "vesicle_c_b", l->bodies, scene->membrane.each));
   PetscCall(PutRatios(f, scene));
-  PetscCall(PutObstacles(f, s->coupling->bodies->obstacles));
+  PetscCall(PutObstacles(f, &scene->obstacles, s->coupling->bodies->obstacles));
   PetscCall(H5PutString(f, "about",
                         "u, v: velocity (background included) at cell centres; p: pressure at cell centres, of the "
                         "disturbance unless -flow_form total; tension k on the edge from marker k-1 to marker k"));

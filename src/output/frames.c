@@ -48,6 +48,10 @@ static PetscErrorCode WriteValues(Frames *f, const Gathered *now) {
     ObstaclesOrder(f->scheme->coupling->bodies->obstacles, now->solid, f->force);
     PetscCall(H5WriteArray(file, FrameSeries[FRAME_FORCE], count, 2 * now->W, f->force));
   }
+  if (f->scheme->scene->obstacles.moving) {
+    ObstaclesCurves(f->scheme->coupling->bodies->obstacles, f->scheme->state.t, f->force);
+    PetscCall(H5WriteArray(file, FrameSeries[FRAME_SOLIDS], count, 2 * now->W, f->force));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

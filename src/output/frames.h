@@ -9,7 +9,7 @@ typedef struct {
   PetscInt scheduled;    /* frames at multiples of -output_every, the first included */
   PetscReal time;        /* of the last frame */
   PetscScalar *cells[3]; /* u, v, p at cell centres, this rank's rows */
-  PetscReal *force;      /* [W][2] on obstacles, as their curves are seen */
+  PetscReal *force;      /* [W][2] on obstacles, as their curves are seen; work */
 } Frames;
 
 /* FramesCreate - a new, empty file. FramesGoOn - the one of an earlier run, repaired where that was killed and cut to

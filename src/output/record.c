@@ -51,7 +51,7 @@ static int Repeated(const Record *r) {
 /* Room for an entry of a line: 24 characters a number and the comma; the longest name and a vesicle's number. */
 #define ENTRY 32
 
-static PetscErrorCode WriteHeader(Record *r) {
+static PetscErrorCode WriteHeader(Record *r, const SceneObstacles *obstacles) {
   size_t used = 0;
   PetscFunctionBeginUser;
   for (int c = 0; c < COLUMN_COUNT; c++)
@@ -62,13 +62,13 @@ static PetscErrorCode WriteHeader(Record *r) {
                                (int)v);
   for (PetscInt k = 0; k < r->solids; k++) {
     char name[OBSTACLE_ROW_NAME];
-    ObstacleRowName(k, name);
+    ObstacleRowName(obstacles, k, name);
     used += (size_t)snprintf(r->header + used, r->room - used, ",%s", name);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode RecordCreate(PetscInt vesicles, PetscInt obstacles, Record *r) {
+PetscErrorCode RecordCreate(PetscInt vesicles, const SceneObstacles *obstacles, Record *r) {
   PetscFunctionBeginUser;
   PetscCall(PetscMemzero(r, sizeof(*r)));
   r->vesicles = vesicles;
@@ -76,7 +76,7 @@ PetscErrorCode RecordCreate(PetscInt vesicles, PetscInt obstacles, Record *r) {
   r->room = (size_t)(COLUMN_COUNT + vesicles * Repeated(r) + r->solids) * ENTRY;
   PetscCall(PetscCalloc4(vesicles * COLUMN_COUNT, &r->each, r->solids, &r->solid, (PetscInt)r->room, &r->header,
                          (PetscInt)r->room, &r->text));
-  PetscCall(WriteHeader(r));
+  PetscCall(WriteHeader(r, obstacles));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -56,8 +56,8 @@ typedef struct {
   PetscReal cfl_max;                          /* largest of a step */
 } Record;
 
-/* RecordCreate - zero, with the header for so many vesicles and obstacles. */
-PETSC_EXTERN PetscErrorCode RecordCreate(PetscInt vesicles, PetscInt obstacles, Record *record);
+/* RecordCreate - zero, with the header for so many vesicles and for these obstacles. */
+PETSC_EXTERN PetscErrorCode RecordCreate(PetscInt vesicles, const SceneObstacles *obstacles, Record *record);
 PETSC_EXTERN PetscErrorCode RecordDestroy(Record *record);
 
 /* RecordMeasure - the vesicles' own columns of the present state, into `each`, and the least gap of all. Collective. */

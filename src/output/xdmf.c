@@ -55,15 +55,20 @@ static void PrintComponent(FILE *f, PetscInt t, const char name[], PetscInt firs
           (int)all, name);
 }
 
-/* One vesicle's markers, shifted. */
-static void PrintShifted(FILE *f, PetscInt t, PetscInt first, PetscInt n, PetscInt M, const PetscReal shift[2]) {
+/* One body's markers of a series, shifted. */
+static void PrintPlaces(FILE *f, PetscInt t, const char name[], PetscInt first, PetscInt n, PetscInt M,
+                        const PetscReal shift[2]) {
+  if (!shift[0] && !shift[1]) {
+    HyperSlab(f, t, name, first, n, M, 2, 8, "");
+    return;
+  }
   fprintf(f, "<DataItem ItemType=\"Function\" Function=\"JOIN($0 + (%.17g), $1 + (%.17g))\" Dimensions=\"%d 2\">\n",
           (double)shift[0], (double)shift[1], (int)n);
-  for (int c = 0; c < 2; c++) PrintComponent(f, t, "/vesicle/markers", first, n, M, c);
+  for (int c = 0; c < 2; c++) PrintComponent(f, t, name, first, n, M, c);
   fprintf(f, "</DataItem>\n");
 }
 
-/* Whole periods that bring the middle of a vesicle with these n markers into the box. */
+/* Whole periods that bring the middle of a body with these n markers into the box. */
 static void Wrap(Grid g, PetscInt n, const PetscReal X[], PetscReal shift[2]) {
   for (int d = 0; d < 2; d++) {
     const PetscReal period = g->hi[d] - g->lo[d];
@@ -90,19 +95,31 @@ static void PrintNumber(FILE *f, const char what[], PetscInt number) {
   fprintf(f, "<DataItem Dimensions=\"1\" NumberType=\"Int\">%d</DataItem></Attribute></Grid>\n", (int)number);
 }
 
-static void PrintObstacle(FILE *f, PetscInt t, Obstacles o, PetscInt v) {
-  const Layout l = o->layout;
-  const PetscInt n = LayoutCount(l, v);
-  PrintLine(f, "obstacle", v + 1, n, o->kind[v].type == CURVE_CLOSED ? PETSC_TRUE : PETSC_FALSE);
+/* The markers of an obstacle that rests, which are no series. */
+static void PrintResting(FILE *f, PetscInt first, PetscInt n, PetscInt M) {
   fprintf(f,
           "<DataItem ItemType=\"HyperSlab\" Dimensions=\"%d 2\"><DataItem Dimensions=\"3 2\" Format=\"XML\">%d 0 1 1 "
           "%d 2</DataItem>",
-          (int)n, (int)l->start[v], (int)n);
+          (int)n, (int)first, (int)n);
   fprintf(f,
           "<DataItem Dimensions=\"%d 2\" NumberType=\"Float\" Precision=\"8\" "
-          "Format=\"HDF\">run.h5:/obstacle/markers</DataItem></DataItem>\n</Geometry>\n",
-          (int)l->M);
-  fprintf(f, "<Attribute Name=\"force\" AttributeType=\"Vector\" Center=\"Node\">\n");
+          "Format=\"HDF\">run.h5:/obstacle/markers</DataItem></DataItem>\n",
+          (int)M);
+}
+
+static void PrintObstacle(Scheme s, FILE *f, PetscInt t, PetscReal time, PetscInt v) {
+  const Obstacles o = s->coupling->bodies->obstacles;
+  const Layout l = o->layout;
+  const PetscInt n = LayoutCount(l, v);
+  const ObstaclePose pose = ObstaclesPose(o, v, time);
+  PetscReal shift[2] = {0, 0};
+  PrintLine(f, "obstacle", v + 1, n, o->kind[v].type == CURVE_CLOSED ? PETSC_TRUE : PETSC_FALSE);
+  if (o->motion[v].carried) Wrap(s->fluid->grid, 1, pose.center, shift);
+  if (s->scene->obstacles.moving)
+    PrintPlaces(f, t, "/obstacle/markers", l->start[v], n, l->M, shift);
+  else
+    PrintResting(f, l->start[v], n, l->M);
+  fprintf(f, "</Geometry>\n<Attribute Name=\"force\" AttributeType=\"Vector\" Center=\"Node\">\n");
   fprintf(f, "<DataItem ItemType=\"Function\" Function=\"JOIN($0, $1, 0*$0)\" Dimensions=\"%d 3\">\n", (int)n);
   for (int c = 0; c < 2; c++) PrintComponent(f, t, "/obstacle/force", l->start[v], n, l->M, c);
   fprintf(f, "</DataItem></Attribute>\n");
@@ -115,10 +132,7 @@ static void PrintVesicle(Scheme s, FILE *f, PetscInt t, PetscInt v, const PetscR
   PetscReal shift[2];
   Wrap(s->fluid->grid, n, X + 2 * first, shift);
   PrintLine(f, "vesicle", v + 1, n, PETSC_TRUE);
-  if (shift[0] || shift[1])
-    PrintShifted(f, t, first, n, m->layout->M, shift);
-  else
-    HyperSlab(f, t, "/vesicle/markers", first, n, m->layout->M, 2, 8, "");
+  PrintPlaces(f, t, "/vesicle/markers", first, n, m->layout->M, shift);
   fprintf(f, "</Geometry>\n<Attribute Name=\"tension\" AttributeType=\"Scalar\" Center=\"Node\">\n");
   fprintf(f,
           "<DataItem ItemType=\"HyperSlab\" Dimensions=\"%d\"><DataItem Dimensions=\"3 2\" Format=\"XML\">%d %d 1 1 1 "
@@ -138,7 +152,7 @@ static void PrintFrame(Scheme s, FILE *f, PetscInt t, PetscReal time, const Pets
           (int)t, (double)time);
   PrintFluid(s->fluid->grid, f, t, s->scene->output.precision == PRECISION_SINGLE ? 4 : 8);
   for (PetscInt v = 0; v < s->membrane->layout->bodies; v++) PrintVesicle(s, f, t, v, X);
-  for (PetscInt v = 0; solids && v < solids->layout->bodies; v++) PrintObstacle(f, t, solids, v);
+  for (PetscInt v = 0; solids && v < solids->layout->bodies; v++) PrintObstacle(s, f, t, time, v);
   fprintf(f, "</Grid>\n");
 }
 

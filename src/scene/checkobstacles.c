@@ -210,6 +210,27 @@ static PetscErrorCode CheckFlux(Scene scene, PetscInt b) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Only closed curves move, and one of those at least. */
+static PetscErrorCode CheckMotion(Scene scene) {
+  const SceneObstacles *own = &scene->obstacles;
+  const Shape *s = &own->outline;
+  PetscBool any = PETSC_FALSE;
+  PetscFunctionBeginUser;
+  if (!own->moving) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt b = 0; b < s->vesicles; b++) {
+    if (own->velocity[2 * b] == 0 && own->velocity[2 * b + 1] == 0 && own->turn[b] == 0) continue;
+    any = PETSC_TRUE;
+    PetscCheck(s->kind[b].type == CURVE_CLOSED, scene->comm, PETSC_ERR_USER_INPUT,
+               "-obstacle_moving: obstacle %" PetscInt_FMT
+               " has a velocity and %s; allowed: closed curves that move, others at rest",
+               b + 1, s->kind[b].type == CURVE_OPEN ? "stands on a wall" : "spans the box");
+  }
+  PetscCheck(any, scene->comm, PETSC_ERR_USER_INPUT,
+             "-obstacle_moving: no obstacle has a velocity or rotation; allowed: -obstacle_velocity or "
+             "-obstacle_rotation of posts and couette, lines # velocity or # rotation in -obstacle_file");
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode SceneCheckObstacles(Scene scene) {
   PetscReal period[2];
   PetscFunctionBeginUser;
@@ -218,6 +239,7 @@ PetscErrorCode SceneCheckObstacles(Scene scene) {
   for (PetscInt b = 0; b < scene->obstacles.outline.vesicles; b++) PetscCall(CheckPlace(scene, b));
   PetscCall(CheckCrossing(scene, period));
   PetscCall(CheckInside(scene, period));
+  PetscCall(CheckMotion(scene));
   for (PetscInt b = 0; b < scene->obstacles.outline.vesicles; b++) PetscCall(CheckFlux(scene, b));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -176,8 +176,8 @@ static PetscErrorCode PlaceMarkers(Scene scene, const Outlines *o, SceneObstacle
   PetscCall(Number(scene, o, shape));
   PetscCall(PetscMalloc1(2 * shape->start[o->count], &shape->X));
   PetscCall(PetscMalloc1(o->count, &shape->kind));
-  PetscCall(PetscCalloc4(2 * o->count, &own->velocity, o->count, &own->turn, o->count, &own->container, o->count,
-                         &own->wall));
+  PetscCall(PetscCalloc5(2 * o->count, &own->velocity, o->count, &own->turn, o->count, &own->container, o->count,
+                         &own->circle, o->count, &own->wall));
   for (PetscInt k = 0; k < o->count; k++) {
     PetscReal *X = shape->X + 2 * shape->start[k];
     const PetscInt n = shape->start[k + 1] - shape->start[k];
@@ -190,6 +190,7 @@ static PetscErrorCode PlaceMarkers(Scene scene, const Outlines *o, SceneObstacle
     for (PetscInt j = 0; j < 2 * n; j++) X[j] += o->center[2 * k + j % 2];
     for (int c = 0; c < 2; c++) own->velocity[2 * k + c] = o->note[k].velocity[c];
     own->turn[k] = o->note[k].rotation;
+    own->circle[k] = own->shape == OBSTACLE_POSTS || own->shape == OBSTACLE_COUETTE ? PETSC_TRUE : PETSC_FALSE;
     own->container[k] = o->curve[k].kind.type == CURVE_CLOSED ? o->note[k].clockwise : PETSC_FALSE;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -198,6 +199,7 @@ static PetscErrorCode PlaceMarkers(Scene scene, const Outlines *o, SceneObstacle
 PetscErrorCode SceneMakeObstacles(Draft scene) {
   Outlines o = {0};
   PetscFunctionBeginUser;
+  if (scene->obstacles.shape == OBSTACLE_NONE) scene->obstacles.moving = PETSC_FALSE;
   if (scene->obstacles.shape == OBSTACLE_NONE) PetscFunctionReturn(PETSC_SUCCESS);
   if (scene->obstacles.shape == OBSTACLE_POSTS) PetscCall(MakePosts(scene, &o));
   if (scene->obstacles.shape == OBSTACLE_COUETTE) PetscCall(MakeCouette(scene, &o));
@@ -220,6 +222,6 @@ PetscErrorCode SceneDropObstacles(Draft scene) {
   PetscFunctionBeginUser;
   if (!own->outline.vesicles) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ShapeDestroy(&own->outline));
-  PetscCall(PetscFree4(own->velocity, own->turn, own->container, own->wall));
+  PetscCall(PetscFree5(own->velocity, own->turn, own->container, own->circle, own->wall));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -60,6 +60,7 @@ typedef struct {
   PetscInt shape; /* ObstacleShape */
   RealList radius, center, move, rotation;
   PetscReal frequency;           /* angular, of the surfaces' velocities (1/time); 0: steady */
+  PetscBool moving;              /* closed curves go with their velocities */
   IntList lattice;               /* columns and rows; 0, 0: none */
   PetscReal shift;               /* of a row against the one below, over the distance of columns */
   PetscReal throat, length;      /* of a constriction: narrowest width over the channel's; along x, 0: the width */
@@ -68,6 +69,7 @@ typedef struct {
   Shape outline;                 /* their markers, the same on every rank */
   PetscReal *velocity, *turn;    /* [2 curves], [curves] of their surfaces */
   PetscBool *container;          /* [curves] the fluid is inside */
+  PetscBool *circle;             /* [curves] the same curve whichever way it is turned */
   PetscInt *wall;                /* [curves] 2 direction + side of the wall that an open one is on; -1 of others */
 } SceneObstacles;
 

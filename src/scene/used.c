@@ -114,6 +114,7 @@ static const struct {
              {"-obstacle_velocity", BY_CIRCLES},
              {"-obstacle_rotation", BY_CIRCLES},
              {"-obstacle_frequency", BY_OBSTACLES},
+             {"-obstacle_moving", BY_OBSTACLES},
              {"-obstacle_file", BY_OBSTACLE_FILE},
              {"-obstacle_spacing", BY_OBSTACLES},
              {"-delta_type", BY_BODIES},

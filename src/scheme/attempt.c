@@ -56,23 +56,23 @@ static PetscErrorCode TurnTension(Scheme s, Coupled *d) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* k of obstacles += u_inf - U_w at time t; report.failure where a custom flow has no value. */
-static PetscErrorCode AddObstacleData(Scheme s, PetscReal t, Vec known) {
+/* k of obstacles += u_inf - U_w; report.failure where a custom flow has no value. */
+static PetscErrorCode AddObstacleData(Scheme s, Vec known) {
   const Bodies b = s->coupling->bodies;
   PetscScalar *k;
   PetscFunctionBeginUser;
   if (!b->obstacles) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecGetArray(known, &k));
-  PetscCall(ObstaclesData(b->obstacles, &s->scene->flow, t, k + BodiesFirstObstacle(b), s->report.failure));
+  PetscCall(ObstaclesData(b->obstacles, &s->scene->flow, k + BodiesFirstObstacle(b), s->report.failure));
   PetscCall(VecRestoreArray(known, &k));
   if (s->scene->flow.type == FLOW_CUSTOM) PetscCall(AgreeMessage(s->scene->comm, s->report.failure));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* f = uhat - B Y + bc1 - N(w*) and k = -(C c_b ds D4 + V d/dt) Y, with turning tension and a repulsion's springs beside
-   bending, Y = Xhat + u_inf/a0, V the labels' speed, and what holds obstacles in the flow of time t; no uhat in
+   bending, Y = Xhat + u_inf/a0, V the labels' speed, and what holds obstacles in the flow; no uhat in
    quasi-steady flow. next.w is used for w*. */
-static PetscErrorCode RightHandSides(Scheme s, Coupled *d, const BDF *b, PetscReal t) {
+static PetscErrorCode RightHandSides(Scheme s, Coupled *d, const BDF *b) {
   History *h = &d->history;
   PetscFunctionBeginUser;
   PetscCall(VecSet(d->known, 0));
@@ -88,7 +88,7 @@ static PetscErrorCode RightHandSides(Scheme s, Coupled *d, const BDF *b, PetscRe
     PetscCall(ContrastKnown(s->coupling, s->background, d->Y, d->moved, d->known));
   else
     PetscCall(CouplingTread(s->coupling, -1, d->Y, d->known));
-  PetscCall(AddObstacleData(s, t, d->known));
+  PetscCall(AddObstacleData(s, d->known));
   if (d->convection) {
     PetscCall(HistorySum(h, s->membrane, b->order, b->star, 1, 0, STATES(s, w), d->next.w));
     PetscCall(ConvectionAdd(d->convection, -1, d->next.w, d->f));
@@ -239,7 +239,7 @@ PetscErrorCode CoupledAttempt(Scheme s, PetscReal dt, PetscBool *solved) {
   if (!*solved) PetscFunctionReturn(PETSC_SUCCESS);
   if (s->scene->scheme.length_target) PetscCall(LengthTarget(s, d, b.a0));
   PetscCall(TurnTension(s, d));
-  PetscCall(RightHandSides(s, d, &b, s->state.t + d->done + dt));
+  PetscCall(RightHandSides(s, d, &b));
   *solved = *s->report.failure ? PETSC_FALSE : PETSC_TRUE;
   if (!*solved) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(InitialGuess(s, d));

@@ -81,7 +81,7 @@ PetscErrorCode SchemeCheckContact(Scheme s) {
   PetscMPIInt pair[2], whose;
   PetscFunctionBeginUser;
   SchemePeriods(s, period);
-  PetscCall(SchemeCurves(s, s->state.X));
+  PetscCall(SchemeCurves(s, s->state.t, s->state.X));
   if (s->scene->limits.crossing) PetscCall(CheckCrossing(s, s->work_all));
   PetscCall(FindContact(s, s->work_all, period, pair));
   PetscCall(AgreeMessage(l->comm, s->report.failure));

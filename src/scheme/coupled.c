@@ -125,7 +125,7 @@ static PetscErrorCode Advance(Scheme s, StepTrial *trial, const StepPlan *before
   StepPlan plan;
   PetscFunctionBeginUser;
   PetscCall(CoupledAdvance(s, trial->dt));
-  PetscCall(FilmsLoss(s, s->before.state.X, s->state.X, &trial->loss));
+  PetscCall(FilmsLoss(s, s->state.t + trial->dt, &trial->loss));
   if (trial->loss == 0) PetscFunctionReturn(PETSC_SUCCESS);
   s->plan.level = before->level;
   PetscCall(Decide(s, trial, verdict));
@@ -280,52 +280,6 @@ static PetscErrorCode SetUp_Coupled(Scheme s) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Remember_Coupled(Scheme s, PetscReal memory[]) {
-  Coupled *d = (Coupled *)s->data;
-  const Layout l = s->membrane->layout;
-  PetscFunctionBeginUser;
-  if (!d->solver) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PreconditionerGetMemory(d->solver->preconditioner, memory));
-  if (d->solver->preconditioner->patterns) {
-    PatternsGetMemory(d->solver->preconditioner->patterns, memory + PRECONDITIONER_MEMORY);
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  PetscCall(LayoutGatherVec(l, d->made_at, memory + PRECONDITIONER_MEMORY));
-  PetscCall(PetscArraycpy(memory + PRECONDITIONER_MEMORY + 2 * l->M, d->made_with, l->bodies));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode RecallPatterns(Scheme s, Patterns patterns, const PetscReal memory[]) {
-  PetscBool valid;
-  PetscFunctionBeginUser;
-  PetscCall(PatternsSetMemory(patterns, memory, &valid));
-  PetscCheck(valid, s->scene->comm, PETSC_ERR_USER_INPUT,
-             "-restart %s: its solver's memory is of other vesicles; allowed: a checkpoint of this scene",
-             s->scene->output.restart);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode Recall_Coupled(Scheme s, const PetscReal memory[]) {
-  Coupled *d = (Coupled *)s->data;
-  const Layout l = s->membrane->layout;
-  const PetscReal a0 = memory[0];
-  char message[PETVES_MAX_MESSAGE];
-  PetscScalar *X;
-  PetscFunctionBeginUser;
-  if (d->solver && d->solver->preconditioner->patterns)
-    PetscCall(RecallPatterns(s, d->solver->preconditioner->patterns, memory + PRECONDITIONER_MEMORY));
-  if (!d->solver || !l->bodies || a0 == 0) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(VecGetArray(d->made_at, &X));
-  PetscCall(PetscArraycpy(X, memory + PRECONDITIONER_MEMORY + 2 * l->first, 2 * l->n));
-  PetscCall(VecRestoreArray(d->made_at, &X));
-  PetscCall(PetscArraycpy(d->made_with, memory + PRECONDITIONER_MEMORY + 2 * l->M, l->bodies));
-  PetscCall(CouplingPlace(s->coupling, a0, d->made_at, d->made_with, message));
-  PetscCheck(!*message, s->scene->comm, PETSC_ERR_USER_INPUT, "-restart %s: %s; allowed: a checkpoint of this scene",
-             s->scene->output.restart, message);
-  PetscCall(PreconditionerSetMemory(d->solver->preconditioner, memory));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 static PetscErrorCode View_Coupled(Scheme s, PetscViewer viewer) {
   Coupled *d = (Coupled *)s->data;
   PetscFunctionBeginUser;
@@ -373,8 +327,8 @@ PetscErrorCode SchemeCreate_Coupled(Scheme s) {
   s->ops = (SchemeOps){.setup = SetUp_Coupled,
                        .step = Step_Coupled,
                        .undo = Undo_Coupled,
-                       .remember = Remember_Coupled,
-                       .recall = Recall_Coupled,
+                       .remember = CoupledRemember,
+                       .recall = CoupledRecall,
                        .view = View_Coupled,
                        .options = Options_Coupled,
                        .ksp = KSP_Coupled,

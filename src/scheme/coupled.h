@@ -33,3 +33,7 @@ PETSC_EXTERN PetscErrorCode CoupledAttempt(Scheme scheme, PetscReal dt, PetscBoo
 /* CoupledAdvance - next becomes the state and the state the old one; then the markers are moved to their area and
    edges. Collective. */
 PETSC_EXTERN PetscErrorCode CoupledAdvance(Scheme scheme, PetscReal dt);
+
+/* CoupledRemember, CoupledRecall - remember and recall of SchemeOps. Collective. */
+PETSC_EXTERN PetscErrorCode CoupledRemember(Scheme scheme, PetscReal memory[]);
+PETSC_EXTERN PetscErrorCode CoupledRecall(Scheme scheme, const PetscReal memory[]);

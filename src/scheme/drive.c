@@ -56,7 +56,7 @@ static PetscErrorCode OwnForces(Scheme s, Forces *sum) {
     PetscReal energy;
     PetscCall(PetscCalloc1(2 * l->n, &y));
     PetscCall(VecGetArrayRead(s->state.X, &X));
-    PetscCall(RepulsionAt(s->coupling->repulsion, 1, X, y, &energy));
+    PetscCall(RepulsionAt(s->coupling->repulsion, s->state.t, 1, X, y, &energy));
     PetscCall(VecRestoreArrayRead(s->state.X, &X));
     for (PetscInt k = 0; k < l->n; k++) sum->spread += y[2 * k];
     PetscCall(PetscFree(y));

@@ -92,8 +92,8 @@ static void Compare(PetscInt n, const CurveGap now[], PetscInt m, const CurveGap
   }
 }
 
-/* Each rank its own, the worst for all. */
-static PetscErrorCode FindDrained(Scheme s, Vec X_old, Vec X_new, PetscReal limit, Drained *worst) {
+/* Of the step to time t. Each rank its own, the worst for all. */
+static PetscErrorCode FindDrained(Scheme s, PetscReal t, PetscReal limit, Drained *worst) {
   const Layout l = s->membrane->layout;
   const PetscReal thin = Thin(s), thick = thin / PetscMax(1 - limit, 0.25);
   CurveGap *now, *before = NULL;
@@ -102,10 +102,10 @@ static PetscErrorCode FindDrained(Scheme s, Vec X_old, Vec X_new, PetscReal limi
   PetscBool any;
   PetscFunctionBeginUser;
   *worst = (Drained){0};
-  PetscCall(SchemeCurves(s, X_new));
+  PetscCall(SchemeCurves(s, t, s->state.X));
   PetscCall(Find(s, s->work_all, thin, &n, &now));
   PetscCall(AgreeFlag(l->comm, n ? PETSC_TRUE : PETSC_FALSE, &any));
-  if (any) PetscCall(SchemeCurves(s, X_old));
+  if (any) PetscCall(SchemeCurves(s, s->before.state.t, s->before.state.X));
   if (n) {
     PetscCall(Find(s, s->work_all, thick, &m, &before));
     Compare(n, now, m, before, thick, limit, worst);
@@ -132,18 +132,18 @@ PetscErrorCode FilmsCross(Scheme s, const PetscScalar X[], PetscInt pair[2]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode FilmsLoss(Scheme s, Vec X_old, Vec X_new, PetscReal *loss) {
+PetscErrorCode FilmsLoss(Scheme s, PetscReal t, PetscReal *loss) {
   PetscInt pair[2] = {-1, -1};
   PetscBool cross;
   PetscFunctionBeginUser;
   *loss = 0;
   if (s->scene->limits.gap_loss > 0) {
     Drained worst;
-    PetscCall(FindDrained(s, X_old, X_new, s->scene->limits.gap_loss, &worst));
+    PetscCall(FindDrained(s, t, s->scene->limits.gap_loss, &worst));
     *loss = worst.loss;
   }
   if (!s->scene->limits.crossing) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(SchemeCurves(s, X_new));
+  PetscCall(SchemeCurves(s, t, s->state.X));
   PetscCall(FilmsCross(s, s->work_all, pair));
   PetscCall(AgreeFlag(s->membrane->layout->comm, pair[0] >= 0 ? PETSC_TRUE : PETSC_FALSE, &cross));
   if (cross) *loss = PetscMax(*loss, 2);
@@ -155,7 +155,7 @@ PetscErrorCode FilmsCheck(Scheme s) {
   Drained worst;
   PetscFunctionBeginUser;
   if (!(s->scene->limits.gap_loss > 0)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(FindDrained(s, s->before.state.X, s->state.X, s->scene->limits.gap_loss, &worst));
+  PetscCall(FindDrained(s, s->state.t, s->scene->limits.gap_loss, &worst));
   if (worst.loss <= 1) PetscFunctionReturn(PETSC_SUCCESS);
   const PetscInt v = worst.after.curve[0], w = worst.after.curve[1];
   if (v == s->coupling->bodies->layout->bodies)
@@ -233,7 +233,7 @@ PetscErrorCode FilmsGaps(Scheme s, PetscReal *least, PetscReal each[]) {
   *least = NAN;
   if (!l->bodies) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMPIIntCast(l->bodies, &vesicles));
-  PetscCall(SchemeCurves(s, s->state.X));
+  PetscCall(SchemeCurves(s, s->state.t, s->state.X));
   PetscCall(ThinnestOfEach(s, s->work_all, each, &thinnest));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, each, vesicles, MPIU_REAL, MPI_MIN, l->comm));
   for (PetscInt v = 0; v < l->bodies; v++)
@@ -286,7 +286,7 @@ PetscErrorCode FilmsWarn(Scheme s) {
   View view;
   PetscFunctionBeginUser;
   if (!s->coupling->near || s->warnings.film) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(SchemeCurves(s, s->state.X));
+  PetscCall(SchemeCurves(s, s->state.t, s->state.X));
   Look(s, s->work_all, &view);
   PetscCall(CurveThinnestFilm(&view.set, s->coupling->bodies->ds, &view.room, COARSE, &film));
   PetscReal thinness = -film.spacings;

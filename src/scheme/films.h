@@ -13,10 +13,10 @@ PETSC_EXTERN PetscErrorCode FilmsGaps(Scheme scheme, PetscReal *least, PetscReal
    curves X[2(M + W)]: their polygons do, or smooth outlines whose polygons do not; -1, -1: none. Not collective. */
 PETSC_EXTERN PetscErrorCode FilmsCross(Scheme scheme, const PetscScalar X[], PetscInt pair[2]);
 
-/* FilmsLoss - what a step from the markers X_old to X_new does: the largest part of its thickness that a thin film has
-   lost, over -limit_gap_loss; above 1 is too much, and so are membranes that cross (-limit_crossing). 0 where no film
-   is thin, or nothing is limited. Collective. */
-PETSC_EXTERN PetscErrorCode FilmsLoss(Scheme scheme, Vec X_old, Vec X_new, PetscReal *loss);
+/* FilmsLoss - what a step from the state kept before it to the present markers, at time t, does: the largest part of
+   its thickness that a thin film has lost, over -limit_gap_loss; above 1 is too much, and so are membranes that cross
+   (-limit_crossing). 0 where no film is thin, or nothing is limited. Collective. */
+PETSC_EXTERN PetscErrorCode FilmsLoss(Scheme scheme, PetscReal t, PetscReal *loss);
 
 /* FilmsCheck - report.failure when the last step has taken too much of a film. Collective. */
 PETSC_EXTERN PetscErrorCode FilmsCheck(Scheme scheme);

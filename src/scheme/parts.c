@@ -41,10 +41,10 @@ void SchemePeriods(Scheme s, PetscReal period[2]) {
   for (int d = 0; d < 2; d++) period[d] = g->wall[d] ? 0 : g->hi[d] - g->lo[d];
 }
 
-PetscErrorCode SchemeCurves(Scheme s, Vec X) {
+PetscErrorCode SchemeCurves(Scheme s, PetscReal t, Vec X) {
   PetscFunctionBeginUser;
   PetscCall(LayoutGatherVec(s->membrane->layout, X, s->work_all));
-  PetscCall(BodiesSee(s->coupling->bodies, s->work_all, s->work_all));
+  PetscCall(BodiesSee(s->coupling->bodies, t, s->work_all, s->work_all));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -80,9 +80,23 @@ PetscErrorCode SchemeBackground(Scheme s, Vec X, PetscReal t) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* That moving bodies run into nothing that is solid. */
+static PetscErrorCode CheckBodies(Scheme s, PetscReal t) {
+  const Obstacles o = s->coupling->bodies->obstacles;
+  PetscFunctionBeginUser;
+  if (!o || !o->moving) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ObstaclesCheck(o, s->fluid->grid, t, s->report.failure));
+  PetscCall(AgreeMessage(s->scene->comm, s->report.failure));
+  if (*s->report.failure) PetscCall(SchemeAdvise(s, "a -time_end before that, or other velocities"));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode SchemePlace(Scheme s, PetscReal a0, Vec X, const PetscReal treading[], PetscReal t, PetscBool *placed) {
   PetscFunctionBeginUser;
-  PetscCall(CouplingPlace(s->coupling, a0, X, treading, s->report.failure));
+  PetscCall(CheckBodies(s, t));
+  *placed = *s->report.failure ? PETSC_FALSE : PETSC_TRUE;
+  if (!*placed) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(CouplingPlace(s->coupling, a0, t, X, treading, s->report.failure));
   *placed = *s->report.failure ? PETSC_FALSE : PETSC_TRUE;
   if (!*placed) PetscCall(Advise(s));
   if (!*placed || !CouplingHasMembrane(s->coupling)) PetscFunctionReturn(PETSC_SUCCESS);

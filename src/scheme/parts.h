@@ -29,10 +29,11 @@ PETSC_EXTERN PetscErrorCode SchemeReturn(Scheme scheme, PetscBool advanced);
 PETSC_EXTERN PetscErrorCode SchemeSolverFailed(Scheme scheme, const char prefix[], KSPConvergedReason why, PetscInt its,
                                                PetscReal residual);
 
-/* SchemeCurves - scheme->work_all: the vesicles' markers X, then the obstacles as contacts look at them (BodiesSee).
+/* SchemeCurves - scheme->work_all: the vesicles' markers X, then the obstacles at time t as contacts look at them
+   (BodiesSee).
    SchemeNamePair - two bodies in words, by their places: "vesicles 1 and 2", "vesicle 1 and obstacle 2"; `same` with
    the number of one that is both. The first is Collective. */
-PETSC_EXTERN PetscErrorCode SchemeCurves(Scheme scheme, Vec X);
+PETSC_EXTERN PetscErrorCode SchemeCurves(Scheme scheme, PetscReal t, Vec X);
 PETSC_EXTERN PetscErrorCode SchemeNamePair(Scheme scheme, PetscInt v, PetscInt w, const char same[], size_t length,
                                            char text[]);
 

@@ -137,7 +137,8 @@ PetscErrorCode SchemeStep(Scheme s, PetscReal most) {
 }
 
 PetscInt SchemeMemorySize(Scheme s) {
-  return PRECONDITIONER_MEMORY + PatternsMemorySize(s->membrane->layout);
+  const Obstacles o = s->coupling->bodies->obstacles;
+  return PRECONDITIONER_MEMORY + PatternsMemorySize(s->membrane->layout) + (o && o->moving ? OBSTACLE_BLOCK_MEMORY : 0);
 }
 
 PetscErrorCode SchemeRemember(Scheme s, PetscReal memory[]) {
@@ -165,7 +166,7 @@ PetscErrorCode SchemeContactEnergy(Scheme s, PetscReal *energy) {
   *energy = 0;
   if (!s->coupling->repulsion) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecGetArrayRead(s->state.X, &x));
-  PetscCall(RepulsionAt(s->coupling->repulsion, 0, x, NULL, energy));
+  PetscCall(RepulsionAt(s->coupling->repulsion, s->state.t, 0, x, NULL, energy));
   PetscCall(VecRestoreArrayRead(s->state.X, &x));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from petves.run import Run
-from petves.views.field import box_sheet, draw_members, draw_solids, plot_field
+from petves.views.field import OVER_STREAMS, box_sheet, draw_members, draw_solids, plot_field
 from petves.views.figures import MANY, PLAIN, Look, Sheet, dress, legend_above, new_figure, new_sheet, save_figure
 from petves.views.window import Window
 
@@ -157,12 +157,18 @@ def plot_tension(run: Run, frame: int = -1, look: Look = PLAIN) -> Path:
 
 
 def draw_outlines(axes: Axes, run: Run, frame: int, color: object, style: str, follow: int | None = None) -> None:
-    """Draw the vesicles' smooth outlines at a saved time, images across a periodic seam too, marker 0 as a dot."""
+    """Draw the vesicles' smooth outlines at a saved time, images across a periodic seam too, marker 0 as a dot.
+
+    Obstacles that move are dotted.
+    """
     window = Window(run, frame, follow)
     for vesicle in range(run.vesicles):
         for points in window.images(vesicle):
             axes.plot(*points.T, style, color=color, lw=1.5)
             axes.plot(*points[0], "o", color=color, ms=4)
+    if follow is None and len(run.obstacle_markers):
+        for points in window.solids():
+            axes.plot(*points.T, ":", color=color, lw=1.0, zorder=OVER_STREAMS)
 
 
 def _left_the_box(run: Run) -> bool:
@@ -178,7 +184,7 @@ def _left_the_box(run: Run) -> bool:
 def plot_shapes(run: Run, look: Look = PLAIN) -> Path:
     """Draw outlines at evenly spread saved times in the colours of time, with marker 0 as a dot.
 
-    With obstacles, which are grey, or where a vesicle has left a periodic box, the whole box is drawn, outlines cut at the seam.
+    With obstacles, which are grey where they are last, or where a vesicle has left a periodic box, the whole box is drawn, outlines cut at the seam.
     """
     import matplotlib
     from matplotlib.cm import ScalarMappable
@@ -193,7 +199,7 @@ def plot_shapes(run: Run, look: Look = PLAIN) -> Path:
     for frame, color in zip(frames, colors):
         draw_outlines(sheet.panels[0], run, frame, color, "-", look.follow)
     if look.follow is None:  # seen from a vesicle they are elsewhere at each time
-        draw_solids(sheet.panels[0], Window(run, 0))
+        draw_solids(sheet.panels[0], Window(run, -1))
     names = dict(xlabel="$x$ (length)", ylabel="$y$ (length)", xlim=limits[:2], ylim=limits[2:])
     dress(sheet.panels[0], aspect="equal", **names)
     scale = ScalarMappable(

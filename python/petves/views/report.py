@@ -107,11 +107,16 @@ def _data(run: Run) -> dict[str, Any]:
     speed = np.stack([coarsen(np.hypot(u, v)) for u, v, _ in raw])
     pressure = np.stack([coarsen(p) for _, _, p in raw])
     tension = run.tension[frames]
+
+    def solids(frame: int) -> list[Any]:
+        return [np.round(points, digits).tolist() for points in Window(run, frame).solids()]
+
     return {
         "box": [float(x) for x in run.box],
         "time": [float(t) for t in run.time[frames]],
         "start": [int(k) for k in run.start],
-        "solids": [np.round(points, digits).tolist() for points in Window(run, 0).solids()],
+        "solids": solids(0),
+        "solids_at": [solids(frame) for frame in frames] if len(run.obstacle_markers) else None,
         "periods": [float(period) for period in run.periods],
         "shift": 0.0 if run.options().get("membrane_derivative") == "spectral" else 0.5,
         "markers": np.round(run.markers[frames], digits).tolist(),

@@ -80,7 +80,7 @@ class Window:
 
         Obstacles with their images that are seen; where one has fluid within, a frame around the window runs the other way.
         """
-        curves = [self.run.obstacle_curve(k) for k in range(len(self.run.obstacles))]
+        curves = [self.run.obstacle_curve(k, self.frame) for k in range(len(self.run.obstacles))]
         seen = [image for curve in curves for image in self.run.images_of(curve, self.limits, self.origin)]
         if all(_turns_left(curve) for curve in curves):
             return seen

@@ -1,0 +1,84 @@
+/* What the solver of unsplit steps has kept from earlier ones, for checkpoints. */
+#include "scheme/coupled.h"
+
+/* The block of moving bodies; NULL where there are none. */
+static ObstacleBlock MovingBlock(Scheme s) {
+  Coupled *d = (Coupled *)s->data;
+  const Obstacles o = s->coupling->bodies->obstacles;
+  return d->solver && o && o->moving ? d->solver->preconditioner->solid : NULL;
+}
+
+/* Where its numbers are, the last ones of the memory. */
+static PetscInt AtBlock(Scheme s) {
+  return PRECONDITIONER_MEMORY + PatternsMemorySize(s->membrane->layout);
+}
+
+PetscErrorCode CoupledRemember(Scheme s, PetscReal memory[]) {
+  Coupled *d = (Coupled *)s->data;
+  const Layout l = s->membrane->layout;
+  PetscFunctionBeginUser;
+  if (!d->solver) PetscFunctionReturn(PETSC_SUCCESS);
+  if (MovingBlock(s)) ObstacleBlockGetMemory(MovingBlock(s), memory + AtBlock(s));
+  PetscCall(PreconditionerGetMemory(d->solver->preconditioner, memory));
+  if (d->solver->preconditioner->patterns) {
+    PatternsGetMemory(d->solver->preconditioner->patterns, memory + PRECONDITIONER_MEMORY);
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(LayoutGatherVec(l, d->made_at, memory + PRECONDITIONER_MEMORY));
+  PetscCall(PetscArraycpy(memory + PRECONDITIONER_MEMORY + 2 * l->M, d->made_with, l->bodies));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode RecallPatterns(Scheme s, Patterns patterns, const PetscReal memory[]) {
+  PetscBool valid;
+  PetscFunctionBeginUser;
+  PetscCall(PatternsSetMemory(patterns, memory, &valid));
+  PetscCheck(valid, s->scene->comm, PETSC_ERR_USER_INPUT,
+             "-restart %s: its solver's memory is of other vesicles; allowed: a checkpoint of this scene",
+             s->scene->output.restart);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* All is placed for a0 and bodies of time t. */
+static PetscErrorCode PlaceAgain(Scheme s, PetscReal a0, PetscReal t, Vec X, const PetscReal treading[]) {
+  char message[PETVES_MAX_MESSAGE];
+  PetscFunctionBeginUser;
+  PetscCall(CouplingPlace(s->coupling, a0, t, X, treading, message));
+  PetscCheck(!*message, s->scene->comm, PETSC_ERR_USER_INPUT, "-restart %s: %s; allowed: a checkpoint of this scene",
+             s->scene->output.restart, message);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+#define LATEST 1e3 /* times the present one: of an attempt at a step, so not much later */
+
+static PetscErrorCode RecallBlock(Scheme s, const PetscReal memory[]) {
+  char message[PETVES_MAX_MESSAGE];
+  PetscFunctionBeginUser;
+  if (!MovingBlock(s) || memory[1] < 0) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ObstaclesCheck(s->coupling->bodies->obstacles, s->fluid->grid, memory[0], message));
+  PetscCheck(memory[0] >= 0 && memory[0] <= LATEST * (s->state.t + s->state.dt) && !*message, s->scene->comm,
+             PETSC_ERR_USER_INPUT, "-restart %s: its solver's memory is of time %g; allowed: a checkpoint.h5 of petves",
+             s->scene->output.restart, (double)memory[0]);
+  PetscCall(PlaceAgain(s, memory[1] > 0 ? memory[1] : 1, memory[0], s->state.X, NULL));
+  PetscCall(ObstacleBlockSetMemory(MovingBlock(s), memory));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CoupledRecall(Scheme s, const PetscReal memory[]) {
+  Coupled *d = (Coupled *)s->data;
+  const Layout l = s->membrane->layout;
+  const PetscReal a0 = memory[0];
+  PetscScalar *X;
+  PetscFunctionBeginUser;
+  PetscCall(RecallBlock(s, memory + AtBlock(s)));
+  if (d->solver && d->solver->preconditioner->patterns)
+    PetscCall(RecallPatterns(s, d->solver->preconditioner->patterns, memory + PRECONDITIONER_MEMORY));
+  if (!d->solver || !l->bodies || a0 == 0) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecGetArray(d->made_at, &X));
+  PetscCall(PetscArraycpy(X, memory + PRECONDITIONER_MEMORY + 2 * l->first, 2 * l->n));
+  PetscCall(VecRestoreArray(d->made_at, &X));
+  PetscCall(PetscArraycpy(d->made_with, memory + PRECONDITIONER_MEMORY + 2 * l->M, l->bodies));
+  PetscCall(PlaceAgain(s, a0, s->state.t, d->made_at, d->made_with));
+  PetscCall(PreconditionerSetMemory(d->solver->preconditioner, memory));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
