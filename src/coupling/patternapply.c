@@ -53,14 +53,19 @@ static PetscInt Multiply(Patterns s, const Pattern *q, PetscInt rows, const Pets
   return apart[1];
 }
 
-/* F of each vesicle, from the columns gathered. */
-static void FindForces(Patterns s, const Pattern *q, PetscInt inner, PetscScalar F[]) {
+/* F and J of each vesicle, from the columns gathered. */
+static void FindSources(Patterns s, const Pattern *q, PetscInt inner, const PatternSources *sources) {
   const Layout l = s->coupling->membrane->layout;
-  const PetscInt apart = Multiply(s, q, 2 * LayoutCount(l, q->like), q->forces, inner);
+  const PetscInt n = LayoutCount(l, q->like), rows = PatternSourceRows(s, q);
+  const PetscInt apart = Multiply(s, q, rows, q->sources, inner);
   const PetscReal *y = s->to;
   for (PetscInt k = q->begin; k < q->end; k++, y += apart) {
-    const PetscInt v = s->order[k];
-    FromPattern(&s->pose[v - l->own], LayoutCount(l, v), y, F + 2 * LayoutOffset(l, v));
+    const PetscInt v = s->order[k], at = 2 * LayoutOffset(l, v);
+    FromPattern(&s->pose[v - l->own], n, y, sources->force + at);
+    if (rows > 2 * n)
+      FromPattern(&s->pose[v - l->own], n, y + 2 * n, sources->jump + at);
+    else if (sources->jump)
+      (void)PetscArrayzero(sources->jump + at, 2 * n);
   }
 }
 
@@ -75,7 +80,8 @@ static void AddAnswers(Patterns s, const Pattern *q, PetscInt inner, PetscScalar
   }
 }
 
-void PatternSolveAlone(Patterns s, const Pattern *q, PetscScalar U[], PetscScalar sigma[], PetscScalar F[]) {
+void PatternSolveAlone(Patterns s, const Pattern *q, PetscScalar U[], PetscScalar sigma[],
+                       const PatternSources *sources) {
   const Layout l = s->coupling->membrane->layout;
   const PetscInt n = LayoutCount(l, q->like);
   PetscReal *x = s->from + 2 * n;
@@ -88,13 +94,13 @@ void PatternSolveAlone(Patterns s, const Pattern *q, PetscScalar U[], PetscScala
     (void)PetscArrayzero(sigma + at, n);
   }
   AddAnswers(s, q, 3 * n, U, sigma);
-  if (F) FindForces(s, q, 3 * n, F);
+  if (sources) FindSources(s, q, 3 * n, sources);
 }
 
-void PatternForces(Patterns s, const Pattern *q, const PetscScalar W[], PetscScalar F[]) {
+void PatternAnswers(Patterns s, const Pattern *q, const PetscScalar W[], const PatternSources *sources) {
   const PetscInt inner = 2 * LayoutCount(s->coupling->membrane->layout, q->like);
   GatherColumns(s, q, inner, W);
-  FindForces(s, q, inner, F);
+  FindSources(s, q, inner, sources);
 }
 
 void PatternAddAnswer(Patterns s, const Pattern *q, const PetscScalar W[], PetscScalar U[], PetscScalar sigma[]) {

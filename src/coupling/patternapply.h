@@ -3,12 +3,13 @@
 #pragma once
 #include "coupling/patterns.h"
 
-/* PatternSolveAlone - from U[2n] and sigma[n] = r_s: V and sigma of each vesicle's dense problem, and their forces
-   F[2n] unless NULL. PatternForces - F of the answers to (W, 0). PatternAddAnswer - (U, sigma) += these answers. Not
-   collective. */
+/* PatternSolveAlone - from U[2n] and sigma[n] = r_s: V and sigma of each vesicle's dense problem, and their
+   sources unless NULL. PatternAnswers - the sources of the answers to (W, 0). PatternAddAnswer - (U, sigma) += these
+   answers. Not collective. */
 PETSC_EXTERN void PatternSolveAlone(Patterns patterns, const Pattern *pattern, PetscScalar U[], PetscScalar sigma[],
-                                    PetscScalar F[]);
-PETSC_EXTERN void PatternForces(Patterns patterns, const Pattern *pattern, const PetscScalar W[], PetscScalar F[]);
+                                    const PatternSources *sources);
+PETSC_EXTERN void PatternAnswers(Patterns patterns, const Pattern *pattern, const PetscScalar W[],
+                                 const PatternSources *sources);
 PETSC_EXTERN void PatternAddAnswer(Patterns patterns, const Pattern *pattern, const PetscScalar W[], PetscScalar U[],
                                    PetscScalar sigma[]);
 

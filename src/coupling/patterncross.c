@@ -58,8 +58,10 @@ static void TakeSelf(const Pattern *q, const Pose *pose, PetscInt points, const 
   for (PetscInt i = 0; i < 2 * points; i++) W[i] += f[i];
 }
 
-/* W = -K F: what forces F of the own vesicles, and the walls, do to the others; own parts of marker vectors. */
-static PetscErrorCode Others(PatternCross c, const PetscScalar F[], PetscScalar W[]) {
+/* W = -K F + D J: what forces F and jumps J of the own vesicles, and the walls, do to the others; own parts of marker
+   vectors. */
+static PetscErrorCode Others(PatternCross c, const PatternSources *sources, PetscScalar W[]) {
+  const PetscScalar *F = sources->force;
   const Patterns s = c->patterns;
   const Layout l = s->coupling->membrane->layout, coarse = s->coarse->layout;
   PetscFunctionBeginUser;
@@ -76,10 +78,11 @@ static PetscErrorCode Others(PatternCross c, const PetscScalar F[], PetscScalar 
     Prolong(&s->weights[q->weights], pose->shift, c->W + at, c->work, W + 2 * LayoutOffset(l, v));
   }
   PetscCall(ShortRangeApply(c->near, F, W));
+  if (c->dipoles) PetscCall(DoubleCrossApply(c->dipoles, sources->jump, W));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* y = W + K F(B^-1 (W, 0)). */
+/* y = W + (K F - D J)(B^-1 (W, 0)). */
 static PetscErrorCode Mult(Mat A, Vec W, Vec y) {
   PatternCross c;
   const PetscScalar *from;
@@ -89,8 +92,8 @@ static PetscErrorCode Mult(Mat A, Vec W, Vec y) {
   const Patterns s = c->patterns;
   PetscCall(VecGetArrayRead(W, &from));
   PetscCall(VecGetArray(y, &to));
-  for (PetscInt k = 0; k < s->count; k++) PatternForces(s, &s->pattern[k], from, c->force);
-  PetscCall(Others(c, c->force, to));
+  for (PetscInt k = 0; k < s->count; k++) PatternAnswers(s, &s->pattern[k], from, &c->answer);
+  PetscCall(Others(c, &c->answer, to));
   PetscCall(VecRestoreArray(y, &to));
   PetscCall(VecRestoreArrayRead(W, &from));
   PetscCall(VecAYPX(y, -1, W));
@@ -123,7 +126,11 @@ PetscErrorCode PatternCrossCreate(Patterns s, PatternCross *out) {
   c->patterns = s;
   for (PetscInt v = l->own; v < l->end; v++)
     most = PetscMax(most, PetscMax(2 * LayoutCount(l, v), 4 * LayoutCount(coarse, v)));
-  PetscCall(PetscMalloc4(2 * coarse->n, &c->F, 2 * coarse->n, &c->W, 2 * l->n, &c->force, most, &c->work));
+  PetscCall(PetscMalloc4(2 * coarse->n, &c->F, 2 * coarse->n, &c->W, 2 * l->n, &c->answer.force, most, &c->work));
+  if (s->coupling->contrast) {
+    PetscCall(PetscMalloc1(2 * l->n, &c->answer.jump));
+    PetscCall(DoubleCrossCreate(s->coupling->contrast, &c->dipoles));
+  }
   PetscCall(ShortRangeCreate(s->coupling, s->coarse, &c->near));
   PetscCall(CreateKSP(c, l));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -138,7 +145,9 @@ PetscErrorCode PatternCrossDestroy(PatternCross *cross) {
   PetscCall(VecDestroy(&c->known));
   PetscCall(VecDestroy(&c->velocity));
   PetscCall(ShortRangeDestroy(&c->near));
-  PetscCall(PetscFree4(c->F, c->W, c->force, c->work));
+  PetscCall(PetscFree4(c->F, c->W, c->answer.force, c->work));
+  PetscCall(PetscFree(c->answer.jump));
+  PetscCall(DoubleCrossDestroy(&c->dipoles));
   PetscCall(PetscFree(*cross));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -158,14 +167,15 @@ PetscErrorCode PatternCrossPlace(PatternCross c) {
   }
   PetscCall(CoarsePlace(s->coarse, c->W));
   PetscCall(ShortRangePlace(c->near));
+  if (c->dipoles) PetscCall(DoubleCrossPlace(c->dipoles));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode PatternCrossSolve(PatternCross c, const PetscScalar F[], Vec *W) {
+PetscErrorCode PatternCrossSolve(PatternCross c, const PatternSources *alone, Vec *W) {
   PetscScalar *known;
   PetscFunctionBeginUser;
   PetscCall(VecGetArray(c->known, &known));
-  PetscCall(Others(c, F, known));
+  PetscCall(Others(c, alone, known));
   PetscCall(VecRestoreArray(c->known, &known));
   PetscCall(KSPSolve(c->ksp, c->known, c->velocity));
   *W = c->velocity;

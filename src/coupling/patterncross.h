@@ -3,6 +3,7 @@
    grid and what that lacks between near markers, the velocities W that the others make obey W + K F(B^-1 (W, 0)) = -K
    F(B^-1 r); a few iterations of GMRES solve for most of it. */
 #pragma once
+#include "coupling/doublecross.h"
 #include "coupling/patterns.h"
 #include "coupling/shortrange.h"
 #include <petscksp.h>
@@ -12,10 +13,11 @@ struct _p_PatternCross {
   ShortRange near;
   Mat A;
   KSP ksp;
-  Vec known, velocity; /* marker vectors: right-hand side and W */
-  PetscScalar *F, *W;  /* [2 own coarse points] forces and velocities */
-  PetscScalar *force;  /* [2n] work */
-  PetscReal *work;     /* of one vesicle */
+  Vec known, velocity;   /* marker vectors: right-hand side and W */
+  PetscScalar *F, *W;    /* [2 own coarse points] forces and velocities */
+  DoubleCross dipoles;   /* NULL without viscosity contrast */
+  PatternSources answer; /* work */
+  PetscReal *work;       /* of one vesicle */
 };
 
 /* PatternCrossCreate - of patterns with a coarse grid. Collective. */
@@ -25,6 +27,7 @@ PETSC_EXTERN PetscErrorCode PatternCrossDestroy(PatternCross *cross);
 /* PatternCrossPlace - where the coupling has been placed and its vesicles have chosen their patterns. Collective. */
 PETSC_EXTERN PetscErrorCode PatternCrossPlace(PatternCross cross);
 
-/* PatternCrossSolve - from the own forces F[2n] = F(B^-1 r): the marker vector W, which stays the cross's. Collective.
+/* PatternCrossSolve - from the own forces and jumps of B^-1 r: the marker vector W, which stays the cross's.
+ * Collective.
  */
-PETSC_EXTERN PetscErrorCode PatternCrossSolve(PatternCross cross, const PetscScalar F[], Vec *W);
+PETSC_EXTERN PetscErrorCode PatternCrossSolve(PatternCross cross, const PatternSources *alone, Vec *W);

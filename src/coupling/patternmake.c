@@ -76,8 +76,9 @@ static PetscErrorCode FindWeights(Patterns s, PetscInt n, PetscInt points, Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* F = Dm^T sigma + (c_b ds/a0) D4 V of an answer (V, sigma). */
-static void Forces(Patterns s, const Pattern *q, const PetscReal tau[], const PetscReal V[], PetscReal F[]) {
+/* F = Dm^T sigma + (c_b ds/a0) D4 V of an answer (V, sigma), and behind it J = (1 - ratio) (V + (treading/a0) dV/dt).
+ */
+static void Sources(Patterns s, const Pattern *q, const PetscReal tau[], const PetscReal V[], PetscReal F[]) {
   const Membrane m = s->coupling->membrane;
   const PetscInt n = LayoutCount(m->layout, q->like);
   PetscReal *pull = s->X;
@@ -85,6 +86,11 @@ static void Forces(Patterns s, const Pattern *q, const PetscReal tau[], const Pe
   (void)PetscArrayzero(F, 2 * n);
   MembraneEdgesTranspose(m, q->like, 1, pull, F);
   if (m->bending > 0) MembraneVesicleBending(m, q->like, m->bending / s->a0, V, F);
+  if (PatternSourceRows(s, q) == 2 * n) return;
+  PetscReal *J = F + 2 * n;
+  (void)PetscArraycpy(J, V, 2 * n);
+  MembraneLabelDerivative(m, q->like, q->treading / s->a0, V, J);
+  for (PetscInt k = 0; k < 2 * n; k++) J[k] *= 1 - s->coupling->contrast->ratio[q->like];
 }
 
 /* The coarse parts of a pattern: the points of the curve through its markers, weights, self. */
@@ -103,21 +109,21 @@ static PetscErrorCode MakeCoarse(Patterns s, Pattern *q) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The inverse and its forces: the columns are the answers V, sigma to those of the identity. */
+/* The inverse and its sources: the columns are the answers V, sigma to those of the identity. */
 static PetscErrorCode Store(Patterns s, Pattern *q, const PetscReal tau[], const PetscReal V[],
                             const PetscReal sigma[]) {
-  const PetscInt n = LayoutCount(s->coupling->membrane->layout, q->like), all = 3 * n;
+  const PetscInt n = LayoutCount(s->coupling->membrane->layout, q->like), all = 3 * n, rows = PatternSourceRows(s, q);
   PetscReal *answer, *F;
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(all, &answer, 2 * n, &F));
+  PetscCall(PetscMalloc2(all, &answer, rows, &F));
   PetscCall(PetscMalloc1(PanelsSize(all, all), &q->inverse));
-  PetscCall(PetscMalloc1(PanelsSize(2 * n, all), &q->forces));
+  PetscCall(PetscMalloc1(PanelsSize(rows, all), &q->sources));
   for (PetscInt j = 0; j < all; j++) {
     PetscCall(PetscArraycpy(answer, V + j * 2 * n, 2 * n));
     PetscCall(PetscArraycpy(answer + 2 * n, sigma + j * n, n));
-    Forces(s, q, tau, answer, F);
+    Sources(s, q, tau, answer, F);
     PanelsSetColumn(all, all, j, answer, q->inverse);
-    PanelsSetColumn(2 * n, all, j, F, q->forces);
+    PanelsSetColumn(rows, all, j, F, q->sources);
   }
   PetscCall(PetscFree2(answer, F));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -153,8 +159,9 @@ PetscErrorCode PatternMake(Patterns s, Pattern *q, PetscBool *good) {
 static PetscInt Lists(Patterns s, Pattern *q, PetscReal **list[4], PetscInt size[4]) {
   const PetscInt n = LayoutCount(s->coupling->membrane->layout, q->like), all = 3 * n,
                  points = s->coarse ? LayoutCount(s->coarse->layout, q->like) : 0;
-  PetscReal **const lists[4] = {&q->inverse, &q->forces, &q->self, &q->points};
-  const PetscInt sizes[4] = {PanelsSize(all, all), PanelsSize(2 * n, all), 4 * points * points, 2 * points};
+  PetscReal **const lists[4] = {&q->inverse, &q->sources, &q->self, &q->points};
+  const PetscInt sizes[4] = {PanelsSize(all, all), PanelsSize(PatternSourceRows(s, q), all), 4 * points * points,
+                             2 * points};
   for (int k = 0; k < 4; k++) {
     list[k] = lists[k];
     size[k] = sizes[k];

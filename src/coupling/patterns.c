@@ -14,7 +14,9 @@ static PetscErrorCode CreateWork(Patterns s) {
   PetscFunctionBeginUser;
   for (PetscInt v = 0; v < l->bodies; v++) most = PetscMax(most, LayoutCount(l, v));
   PetscCall(PetscMalloc4(l->bodies, &s->of, l->end - l->own, &s->order, l->end - l->own, &s->pose, 2 * most, &s->X));
-  PetscCall(PetscMalloc3(3 * l->n, &s->from, 3 * l->n + PANEL_ROWS * (l->end - l->own), &s->to, 2 * l->n, &s->force));
+  PetscCall(
+      PetscMalloc3(3 * l->n, &s->from, 4 * l->n + PANEL_ROWS * (l->end - l->own), &s->to, 2 * l->n, &s->alone.force));
+  if (s->coupling->contrast) PetscCall(PetscMalloc1(2 * l->n, &s->alone.jump));
   for (PetscInt v = 0; v < l->bodies; v++) s->of[v] = -1;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -35,7 +37,7 @@ PetscErrorCode PatternsCreate(const FluidSpec *spec, Coupling c, Patterns *out) 
 static PetscErrorCode FreeMatrices(Pattern *q) {
   PetscFunctionBeginUser;
   PetscCall(PetscFree(q->inverse));
-  PetscCall(PetscFree(q->forces));
+  PetscCall(PetscFree(q->sources));
   PetscCall(PetscFree(q->self));
   PetscCall(PetscFree(q->points));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -62,7 +64,8 @@ PetscErrorCode PatternsDestroy(Patterns *patterns) {
   PetscCall(PatternCrossDestroy(&s->cross));
   PetscCall(CoarseDestroy(&s->coarse));
   PetscCall(PetscFree4(s->of, s->order, s->pose, s->X));
-  PetscCall(PetscFree3(s->from, s->to, s->force));
+  PetscCall(PetscFree3(s->from, s->to, s->alone.force));
+  PetscCall(PetscFree(s->alone.jump));
   PetscCall(PetscFree(*patterns));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -287,9 +290,9 @@ PetscErrorCode PatternsSolve(Patterns s, PetscScalar U[], PetscScalar sigma[]) {
   const PetscScalar *a;
   Vec W;
   PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < s->count; k++) PatternSolveAlone(s, &s->pattern[k], U, sigma, s->cross ? s->force : NULL);
+  for (PetscInt k = 0; k < s->count; k++) PatternSolveAlone(s, &s->pattern[k], U, sigma, s->cross ? &s->alone : NULL);
   if (!s->cross) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PatternCrossSolve(s->cross, s->force, &W));
+  PetscCall(PatternCrossSolve(s->cross, &s->alone, &W));
   PetscCall(VecGetArrayRead(W, &a));
   for (PetscInt k = 0; k < s->count; k++) PatternAddAnswer(s, &s->pattern[k], a, U, sigma);
   PetscCall(VecRestoreArrayRead(W, &a));

@@ -7,6 +7,7 @@
 #pragma once
 #include "coupling/coarse.h"
 #include "coupling/coupling.h"
+#include "coupling/doublelayer.h"
 #include "coupling/pose.h"
 
 /* A shape: its curve, and on ranks that need them the matrices of its dense problem. */
@@ -17,7 +18,7 @@ typedef struct {
   PetscReal size[POSE_SIZES];
   PetscInt begin, end; /* own vesicles that take it: a range of the order */
   PetscReal *inverse;  /* panels (panels.h), 3n x 3n: (r_V, r_s) to (V, sigma); NULL: not made */
-  PetscReal *forces;   /* 2n x 3n: to their forces F */
+  PetscReal *sources;  /* 2n x 3n: to their forces F; with viscosity contrast 4n x 3n, to F and their jumps J */
   PetscReal *self;     /* [2q][2q]: forces at q coarse points to what they do to the vesicle itself there, times -1 */
   PetscInt weights;    /* which */
   PetscReal *points;   /* [2q] where they are */
@@ -28,6 +29,11 @@ typedef struct {
   PetscInt n, points;
   PetscReal *to_markers, *to_points;
 } PatternWeights;
+
+/* What membranes do to the fluid: forces F and, with viscosity contrast (else NULL), jumps J, [2n] of own vesicles. */
+typedef struct {
+  PetscScalar *force, *jump;
+} PatternSources;
 
 typedef struct _p_PatternCross *PatternCross; /* patterncross.h */
 typedef struct _p_Patterns *Patterns;
@@ -44,9 +50,15 @@ struct _p_Patterns {
   Pose *pose;           /* [own vesicles] in its pattern's frame */
   PetscReal *X;         /* [2 most markers of a vesicle] work */
   PetscReal *from, *to; /* columns of own vesicles: work */
-  PetscScalar *force;   /* [2n] of own vesicles: work */
+  PatternSources alone; /* work */
   PatternCross cross;   /* NULL without coarse grid */
 };
+
+/* PatternSourceRows - of a pattern's `sources`. Not collective. */
+static inline PetscInt PatternSourceRows(Patterns s, const Pattern *q) {
+  const PetscInt n = LayoutCount(s->coupling->membrane->layout, q->like);
+  return s->coupling->contrast && s->coupling->contrast->ratio[q->like] != 1 ? 4 * n : 2 * n;
+}
 
 /* PatternsCreate - for the coupling's membranes, which have a near field, in the quasi-steady fluid that spec makes.
    Collective. */
