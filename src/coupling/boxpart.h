@@ -2,14 +2,16 @@
    markers' mobility (boxtable.h), U += D (f ds) for all pairs of markers. D is steady in every flow. Over a period C is
    of the nearest images only and fades where D takes over (BoxPartImage). */
 #pragma once
-#include "coupling/boxtable.h"
+#include "coupling/boxregion.h"
 #include "markers/markers.h"
 
 typedef struct _p_BoxPart *BoxPart;
 struct _p_BoxPart {
   Markers markers; /* borrowed */
   BoxTable table;
-  PetscBool ramp;       /* unsteady flow: D fades next to walls */
+  PetscBool ramp; /* unsteady flow: D fades next to walls */
+  BoxRegion region;
+  const BoxTable *at;   /* of the two tables, the one that A is of */
   PetscReal *A;         /* [2n][rank] of the own markers, D = A diag(l) A^T */
   PetscReal *X;         /* [2n] where they are in A */
   PetscReal *amplitude; /* [rank] work */
@@ -21,8 +23,8 @@ PETSC_EXTERN PetscErrorCode BoxPartCreate(const FluidSpec *spec, Markers markers
                                           BoxPart *box);
 PETSC_EXTERN PetscErrorCode BoxPartDestroy(BoxPart *box);
 
-/* BoxPartPlace - where the markers have been placed. Not collective. */
-PETSC_EXTERN void BoxPartPlace(BoxPart box);
+/* BoxPartPlace - where the markers have been placed. Collective. */
+PETSC_EXTERN PetscErrorCode BoxPartPlace(BoxPart box);
 
 /* BoxPartImage - BoxImage of the box. Not collective. */
 static inline PetscReal BoxPartImage(BoxPart box, PetscReal d[2]) {
