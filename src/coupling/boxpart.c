@@ -2,30 +2,34 @@
 
 PetscErrorCode BoxPartCreate(const FluidSpec *spec, Markers markers, const BoxLattice *lattice, BoxPart *out) {
   BoxPart b;
-  PetscLogEvent event;
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&b));
   *out = b;
+  b->spec = spec;
+  b->lattice = *lattice;
   b->markers = markers;
   b->ramp = spec->inertia == INERTIA_NONE ? PETSC_FALSE : PETSC_TRUE;
-  PetscCall(PetvesEvent("BoxTable", &event));
-  PetscCall(PetscLogEventBegin(event, 0, 0, 0, 0));
-  PetscCall(BoxTableCreate(spec, markers->kernel->name, lattice, &b->table));
-  PetscCall(PetscLogEventEnd(event, 0, 0, 0, 0));
-  b->region = (BoxRegion){.comm = spec->comm, .grid = markers->grid, .whole = &b->table};
-  b->at = &b->table;
-  PetscCall(PetscMalloc3(2 * markers->layout->n * b->table.rank, &b->A, b->table.rank, &b->amplitude,
-                         2 * markers->layout->n, &b->X));
+  for (int d = 0; d < 2; d++) {
+    b->axis[d].wall = markers->grid->wall[d];
+    b->axis[d].low = markers->grid->lo[d];
+    b->axis[d].high = markers->grid->hi[d];
+  }
+  PetscCall(PetvesEvent("BoxTable", &b->make));
+  PetscCall(PetscMalloc1(2 * markers->layout->n, &b->X));
   for (PetscInt k = 0; k < 2 * markers->layout->n; k++) b->X[k] = NAN;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode BoxPartDestroy(BoxPart *box) {
+  BoxPart b = *box;
   PetscFunctionBeginUser;
-  if (!*box) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(BoxRegionDestroy(&(*box)->region));
-  PetscCall(BoxTableDestroy(&(*box)->table));
-  PetscCall(PetscFree3((*box)->A, (*box)->amplitude, (*box)->X));
+  if (!b) PetscFunctionReturn(PETSC_SUCCESS);
+  for (int k = 0; k < 2; k++) {
+    PetscCall(BoxRegionDestroy(&b->region[k]));
+    PetscCall(BoxTableDestroy(&b->table[k]));
+  }
+  PetscCall(PetscFree2(b->A, b->amplitude));
+  PetscCall(PetscFree(b->X));
   PetscCall(PetscFree(*box));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -46,11 +50,44 @@ static void PlaceMarker(BoxPart b, PetscInt k, PetscReal A[]) {
   BoxTableRows(b->at, b->markers->grid, X, Fade(b, X), 0, 2, A);
 }
 
+/* Whether a box has walls and all markers are in its middle half. */
+static PetscBool AreInMiddle(BoxPart b) {
+  const Grid g = b->markers->grid;
+  for (int d = 0; d < 2; d++) {
+    const PetscReal quarter = 0.25 * (g->hi[d] - g->lo[d]);
+    for (PetscInt k = 0; k < b->markers->layout->M && g->wall[d]; k++) {
+      const PetscReal x = b->markers->X[2 * k + d];
+      if (x < g->lo[d] + quarter || x > g->hi[d] - quarter) return PETSC_FALSE;
+    }
+  }
+  return g->wall[0] || g->wall[1] ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* The table that reaches all markers, made when it is first needed. */
+static PetscErrorCode TakeTable(BoxPart b, PetscBool *moved) {
+  const Layout l = b->markers->layout;
+  const PetscBool middle = AreInMiddle(b);
+  BoxTable *t = &b->table[middle];
+  PetscFunctionBeginUser;
+  if (!t->l) {
+    PetscCall(PetscLogEventBegin(b->make, 0, 0, 0, 0));
+    PetscCall(BoxTableCreate(b->spec, b->markers->kernel->name, &b->lattice, middle, t));
+    PetscCall(PetscLogEventEnd(b->make, 0, 0, 0, 0));
+    b->region[middle] = (BoxRegion){.comm = b->spec->comm, .grid = b->markers->grid, .whole = t};
+  }
+  PetscCall(BoxRegionAt(&b->region[middle], l->M, b->markers->X, &b->at, moved));
+  if (b->at->rank <= b->room) PetscFunctionReturn(PETSC_SUCCESS);
+  b->room = b->at->rank;
+  PetscCall(PetscFree2(b->A, b->amplitude));
+  PetscCall(PetscMalloc2(2 * l->n * b->room, &b->A, b->room, &b->amplitude));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode BoxPartPlace(BoxPart b) {
   const Layout l = b->markers->layout;
   PetscBool moved;
   PetscFunctionBeginUser;
-  PetscCall(BoxRegionAt(&b->region, l->M, b->markers->X, &b->at, &moved));
+  PetscCall(TakeTable(b, &moved));
   for (PetscInt k = 0; k < l->n; k++) {
     const PetscReal *now = b->markers->X + 2 * (l->first + k), *then = b->X + 2 * k;
     if (!moved && now[0] == then[0] && now[1] == then[1]) continue; /* at rest, on an obstacle */

@@ -3,6 +3,7 @@
 
 #define WALL_MARGIN 3   /* cells of the coarser grid between the places and a wall: what its kernels reach */
 #define OWN_MARGIN 2    /* the same where that is the run's own grid, whose stencils at the wall are the run's */
+#define MIDDLE_PLACES 8 /* in the middle half of the box, far from walls */
 #define MODES 16        /* of a period as long as the other side */
 #define COARSE_CELLS 64 /* of the shorter side, on the coarser grid */
 #define MOST_CELLS 80
@@ -33,13 +34,13 @@ static void Stretch(PetscReal from, PetscReal factor, BoxAxis *a) {
   for (PetscInt k = 0; k < a->places; k++) a->place[k] = from + factor * (a->place[k] - from);
 }
 
-static void MakeAxis(const FluidSpec *spec, int dir, PetscReal H, BoxAxis *a) {
+static void MakeAxis(const FluidSpec *spec, int dir, PetscReal H, PetscBool middle, BoxAxis *a) {
   const PetscInt shorter = PetscMin(spec->cells[0], spec->cells[1]), times = (spec->cells[dir] + shorter - 1) / shorter;
   const PetscBool own = H > FluidSpecCellSize(spec) * (1 + 1e-9) ? PETSC_FALSE : PETSC_TRUE;
-  const PetscReal margin = (own ? OWN_MARGIN : WALL_MARGIN) * H;
   const PetscReal low = spec->box[2 * dir], high = spec->box[2 * dir + 1];
+  const PetscReal margin = PetscMax((own ? OWN_MARGIN : WALL_MARGIN) * H, middle ? 0.25 * (high - low) : 0);
   if (spec->bc[dir] == BC_WALL) {
-    BoxAxisChebyshev(BOX_WALL_PLACES, low + margin, high - margin, a);
+    BoxAxisChebyshev(middle ? MIDDLE_PLACES : BOX_WALL_PLACES, low + margin, high - margin, a);
     return;
   }
   a->wall = PETSC_FALSE;
@@ -274,7 +275,8 @@ static PetscErrorCode Pair(const FluidSpec *run, const char kernel[], const BoxL
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode BoxTableCreate(const FluidSpec *spec, const char kernel[], const BoxLattice *lattice, BoxTable *t) {
+PetscErrorCode BoxTableCreate(const FluidSpec *spec, const char kernel[], const BoxLattice *lattice, PetscBool middle,
+                              BoxTable *t) {
   const PetscBool dipoles = lattice->dipole ? PETSC_TRUE : PETSC_FALSE;
   PetscInt cells[2], size = dipoles ? 6 : 4;
   PetscReal *W, height = spec->box[3] - spec->box[2];
@@ -286,10 +288,10 @@ PetscErrorCode BoxTableCreate(const FluidSpec *spec, const char kernel[], const 
   t->H = (spec->box[1] - spec->box[0]) / cells[0];
   if (cells[0] * spec->cells[1] != cells[1] * spec->cells[0]) pair.box[3] = pair.box[2] + cells[1] * t->H;
   for (int d = 0; d < 2; d++) {
-    MakeAxis(&pair, d, t->H, &axis[d]);
+    MakeAxis(&pair, d, t->H, middle, &axis[d]);
     t->axis[d] = axis[d];
     if (d) Stretch(pair.box[2], height / (pair.box[3] - pair.box[2]), &t->axis[d]);
-    t->functions[d] = t->axis[d].wall ? BOX_WALL_PLACES : 2 * t->axis[d].modes + 1;
+    t->functions[d] = t->axis[d].wall ? t->axis[d].places : 2 * t->axis[d].modes + 1;
     size *= t->axis[d].pairs;
   }
   PetscCall(PetscCalloc1(size, &W));

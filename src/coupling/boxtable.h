@@ -29,9 +29,11 @@ typedef struct {
 } BoxTable;
 
 /* BoxTableCreate - for the run's grid and boundaries, of forces or of dipoles, as the lattice is, which is used here
-   only. Collective on spec->comm: ranks share the solves. BoxTableDestroy - and free, of zeros nothing. */
+   only; as near to walls as it reaches, or (middle) over the middle half of the box between walls, from a quarter of
+   the solves between four of them. Collective on spec->comm: ranks share the solves. BoxTableDestroy - and free, of
+   zeros nothing. */
 PETSC_EXTERN PetscErrorCode BoxTableCreate(const FluidSpec *spec, const char kernel[], const BoxLattice *lattice,
-                                           BoxTable *table);
+                                           PetscBool middle, BoxTable *table);
 PETSC_EXTERN PetscErrorCode BoxTableDestroy(BoxTable *table);
 
 /* BoxTableDecompose - from D between the functions of each block, symmetric, in Q[size][size] with size = components
