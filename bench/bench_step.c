@@ -14,6 +14,8 @@ static PetscErrorCode Create(TestWorld *w) {
   PetscCall(SceneCreate(PETSC_COMM_WORLD, NULL, NULL, &w->scene));
   PetscCall(WisdomRead(PETSC_COMM_WORLD, w->scene->wisdom));
   PetscCall(TestWorldBuild(w));
+  if (w->coupling->near && SceneHasBoxPart(w->scene))
+    PetscCall(NearFieldAddBoxPart(w->coupling->near, &w->scene->fluid));
   PetscCall(TestWorldScheme(w));
   PetscCall(SceneCheckUnused(w->scene));
   PetscCall(WisdomWrite(PETSC_COMM_WORLD, w->scene->wisdom));

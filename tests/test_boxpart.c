@@ -108,7 +108,7 @@ static PetscErrorCode CheckTable(const char name[], const char options[], PetscB
   PetscCall(PetscMalloc2(2 * w[0].layout->M, &normal, 2 * w[0].layout->M, &force));
   for (int k = 0; k < 2; k++) {
     CHECK(Asymmetry(&w[k]) == 0, "%s: D is symmetric to the bit, rank %d", name,
-          (int)w[k].coupling->near->box->table.rank);
+          (int)w[k].coupling->near->box->at->rank);
     Vectors(&w[k], normal, force);
     const PetscReal flux = Form(&w[k], normal, normal);
     if (walls) CHECK(PetscAbsReal(flux) < 2e-5, "%s: n.D n = %.1e", name, flux);
@@ -120,12 +120,49 @@ static PetscErrorCode CheckTable(const char name[], const char options[], PetscB
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Markers that fill a small part of the box have D from a table of that part: nearly the whole one's, from many times
+   fewer eigenvalues. Along a period it moves with them, and D stays. Farther apart they have the whole table. */
+static PetscErrorCode CheckRegion(const char name[], const char options[], const char moved[], const char wide[]) {
+  World w[3];
+  PetscReal off[2] = {0, 0}, largest = 0, *whole;
+  PetscFunctionBeginUser;
+  for (int k = 0; k < 3; k++) {
+    char all[512];
+    PetscCall(PetscSNPrintf(all, sizeof(all), "%s %s", options, k == 2 ? wide : k ? moved : ""));
+    PetscCall(WorldCreate(all, 32, PETSC_TRUE, &w[k]));
+  }
+  const BoxPart box = w[0].coupling->near->box, far = w[2].coupling->near->box;
+  const BoxTable *table = box->region[1].whole;
+  const PetscInt n = 2 * w[0].layout->M, rank = box->at->rank, all = table->rank;
+  PetscCall(PetscCalloc1(n * n, &whole));
+  box->at = table;
+  PetscCall(PetscFree2(box->A, box->amplitude));
+  PetscCall(PetscMalloc2(2 * w[0].layout->n * all, &box->A, all, &box->amplitude));
+  for (PetscInt k = 0; k < w[0].layout->n; k++)
+    BoxTableRows(table, w[0].fluid->grid, w[0].coupling->markers->X + 2 * (w[0].layout->first + k), 1, 0, 2,
+                 box->A + 2 * k * all);
+  PetscCall(BoxPartAdd(box, 1, 0, n / 2, 0, n / 2, whole));
+  for (PetscInt k = 0; k < n * n; k++) {
+    largest = PetscMax(largest, PetscAbsReal(whole[k]));
+    for (int q = 0; q < 2; q++) off[q] = PetscMax(off[q], PetscAbsReal((q ? w[1].D[k] : whole[k]) - w[0].D[k]));
+  }
+  CHECK(rank * 4 < all, "%s: %d eigenvalues where the markers are, of %d", name, (int)rank, (int)all);
+  CHECK(off[0] < 0.005 * largest && off[0] > 0, "%s: D from them within %.1e of its largest", name, off[0] / largest);
+  CHECK(off[1] < (*moved ? 5e-4 : 1e-15) * largest, "%s: moved along a period D differs by %.1e", name,
+        off[1] / largest);
+  CHECK(far->at == far->region[0].whole || far->at == far->region[1].whole,
+        "%s: markers too far apart have the whole table", name);
+  PetscCall(PetscFree(whole));
+  for (int k = 0; k < 3; k++) PetscCall(WorldDestroy(&w[k]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* 189 x 192 cells, which no coarser square ones fit: nearly the D of 63 x 64 cells, whose pair is their own. */
 static PetscErrorCode CheckUnlike(const char own[], const char unlike[]) {
   World w[2];
   PetscFunctionBeginUser;
   for (int k = 0; k < 2; k++) PetscCall(WorldCreate(k ? unlike : own, 63, PETSC_TRUE, &w[k]));
-  const PetscReal off = OffBy(&w[0], &w[1], 9), H = w[1].coupling->near->box->table.H / w[1].fluid->grid->h;
+  const PetscReal off = OffBy(&w[0], &w[1], 9), H = w[1].coupling->near->box->at->H / w[1].fluid->grid->h;
   CHECK(off < 0.05 && H > 2 && H < 3, "189 x 192 cells: from cells %.2f times as large, D within %.3f", H, off);
   for (int k = 0; k < 2; k++) PetscCall(WorldDestroy(&w[k]));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -224,6 +261,10 @@ static PetscErrorCode CheckOwnImages(const char name[], const char options[]) {
 #define OWN                                                                                                            \
   "-domain_box 0,2,0,2 -fluid_inertia none -vesicle_semi_axes 0.988,0.4 -vesicle_center 1,0.9 -vesicle_markers 45 "    \
   "-vesicle_allow_close_markers true "
+#define SMALL                                                                                                          \
+  "-domain_box 0,8,0,8 -fluid_inertia none -vesicle_semi_axes 0.4,0.6 -vesicle_markers 35 "                            \
+  "-vesicle_allow_close_markers true -vesicle_count 1 -vesicle_center 3.4,4.3 "
+#define APART "-vesicle_count 2 -vesicle_center 1.9,4,6.1,4 "
 #define UNLIKE "-domain_box 0,5,0,5.079365079365079 "
 #define CHANNEL "-domain_bc_x periodic "
 #define PERIODIC "-domain_bc_x periodic -domain_bc_y periodic "
@@ -261,6 +302,8 @@ static PetscErrorCode Facts(void) {
   PetscCall(CheckTable("channel in y", ONE "-domain_bc_y periodic ", PETSC_FALSE));
   PetscCall(CheckTable("periodic", ONE PERIODIC, PETSC_FALSE));
   PetscCall(CheckUnlike(ONE UNLIKE "-domain_cells 63,64 ", ONE UNLIKE "-domain_cells 189,192 "));
+  PetscCall(CheckRegion("walls", SMALL, "", APART));
+  PetscCall(CheckRegion("channel", SMALL CHANNEL, "-vesicle_center 7.7654321,4.3", APART CHANNEL));
   PetscCall(CheckVelocity("channel", ONE CHANNEL, 5e-5));
   PetscCall(CheckVelocity("periodic", ONE PERIODIC, 5e-5));
   PetscCall(CheckVelocity("two in a channel", TWO CHANNEL, 2e-4));

@@ -9,6 +9,7 @@ from conftest import run_petves
 
 from studies.common.curves import last_markers
 from studies.common.paper import SHEAR_FREE
+from studies.time.page import step_for
 
 FREE = (
     "-scheme_type coupled -delta_type cbs54 -membrane_derivative spectral -coupling_near_field exact "
@@ -129,3 +130,11 @@ def test_without_a_rate_the_membranes_time_is_the_limit(tmp_path):
         run = run_petves(tmp_path / f"{limit}", f"{options} -time_adapt_tol 1e-2 {given}")
         largest = run.series["dt"].max()
         assert largest <= limit * 1.01 and largest > min(limit, 4) / 1.5, (given, largest)
+
+
+def test_step_for_an_error():
+    """Errors of second order: the step is exact between those known, the largest where all are below, none above all."""
+    errors = {dt: 5 * dt**2 for dt in (0.4, 0.1, 0.2)}
+    assert step_for(errors, 5 * 0.15**2) == pytest.approx(0.15, rel=1e-12)
+    assert step_for(errors, 1) == 0.4
+    assert step_for(errors, 1e-3) is None

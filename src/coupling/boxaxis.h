@@ -3,6 +3,7 @@
 #include "scene/fluidspec.h"
 
 #define BOX_PLACES (64 * FLUID_LONGEST_PERIOD) /* largest number of places in a direction */
+#define BOX_WALL_PLACES 16                     /* the same where they are Chebyshev's */
 
 /* Places in one direction. Between walls a force may be at any of them; where the box is periodic it is at the first
    one, and W depends on the offset alone. */
@@ -12,8 +13,15 @@ typedef struct {
   PetscInt modes;      /* of a period: that are kept of W; 0 between walls */
   PetscInt places;     /* an even number: mirror images in pairs */
   PetscReal place[BOX_PLACES];
-  PetscInt pairs; /* of a response's place a and a force's b: a * places + b, or the offset a */
+  PetscReal weight[BOX_WALL_PLACES]; /* of Chebyshev's places in the barycentric formula */
+  PetscInt pairs;                    /* of a response's place a and a force's b: a * places + b, or the offset a */
 } BoxAxis;
+
+/* BoxAxisChebyshev - the axis with so many of Chebyshev's places (even, at most BOX_WALL_PLACES) from low to high
+   (length). BoxAxisPolynomials - values[places] at x of the even halves of Lagrange's polynomials on them, then of the
+   odd ones, which the mirror images of a box keep apart: an orthogonal change of the polynomials. Not collective. */
+PETSC_EXTERN void BoxAxisChebyshev(PetscInt places, PetscReal low, PetscReal high, BoxAxis *axis);
+PETSC_EXTERN void BoxAxisPolynomials(const BoxAxis *axis, PetscReal x, PetscReal values[]);
 
 /* BoxImage - d[2] (length) between two points becomes that of the nearest image; returns the part of the infinite
    lattice's mobility that W leaves out: from 1 it falls to 0 at half a period, where images change, so that W is smooth

@@ -2,27 +2,34 @@
 
 PetscErrorCode BoxPartCreate(const FluidSpec *spec, Markers markers, const BoxLattice *lattice, BoxPart *out) {
   BoxPart b;
-  PetscLogEvent event;
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&b));
   *out = b;
+  b->spec = spec;
+  b->lattice = *lattice;
   b->markers = markers;
   b->ramp = spec->inertia == INERTIA_NONE ? PETSC_FALSE : PETSC_TRUE;
-  PetscCall(PetvesEvent("BoxTable", &event));
-  PetscCall(PetscLogEventBegin(event, 0, 0, 0, 0));
-  PetscCall(BoxTableCreate(spec, markers->kernel->name, lattice, &b->table));
-  PetscCall(PetscLogEventEnd(event, 0, 0, 0, 0));
-  PetscCall(PetscMalloc3(2 * markers->layout->n * b->table.rank, &b->A, b->table.rank, &b->amplitude,
-                         2 * markers->layout->n, &b->X));
+  for (int d = 0; d < 2; d++) {
+    b->axis[d].wall = markers->grid->wall[d];
+    b->axis[d].low = markers->grid->lo[d];
+    b->axis[d].high = markers->grid->hi[d];
+  }
+  PetscCall(PetvesEvent("BoxTable", &b->make));
+  PetscCall(PetscMalloc1(2 * markers->layout->n, &b->X));
   for (PetscInt k = 0; k < 2 * markers->layout->n; k++) b->X[k] = NAN;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode BoxPartDestroy(BoxPart *box) {
+  BoxPart b = *box;
   PetscFunctionBeginUser;
-  if (!*box) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(BoxTableDestroy(&(*box)->table));
-  PetscCall(PetscFree3((*box)->A, (*box)->amplitude, (*box)->X));
+  if (!b) PetscFunctionReturn(PETSC_SUCCESS);
+  for (int k = 0; k < 2; k++) {
+    PetscCall(BoxRegionDestroy(&b->region[k]));
+    PetscCall(BoxTableDestroy(&b->table[k]));
+  }
+  PetscCall(PetscFree2(b->A, b->amplitude));
+  PetscCall(PetscFree(b->X));
   PetscCall(PetscFree(*box));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -40,47 +47,74 @@ static PetscReal Fade(BoxPart b, const PetscReal X[2]) {
 /* The rows A[2][rank] of marker k, from its functions' values. */
 static void PlaceMarker(BoxPart b, PetscInt k, PetscReal A[]) {
   const PetscReal *X = b->markers->X + 2 * k;
-  BoxTableRows(&b->table, b->markers->grid, X, Fade(b, X), 0, 2, A);
+  BoxTableRows(b->at, b->markers->grid, X, Fade(b, X), 0, 2, A);
 }
 
-void BoxPartPlace(BoxPart b) {
+/* Whether a box has walls and all markers are in its middle half. */
+static PetscBool AreInMiddle(BoxPart b) {
+  const Grid g = b->markers->grid;
+  for (int d = 0; d < 2; d++) {
+    const PetscReal quarter = 0.25 * (g->hi[d] - g->lo[d]);
+    for (PetscInt k = 0; k < b->markers->layout->M && g->wall[d]; k++) {
+      const PetscReal x = b->markers->X[2 * k + d];
+      if (x < g->lo[d] + quarter || x > g->hi[d] - quarter) return PETSC_FALSE;
+    }
+  }
+  return g->wall[0] || g->wall[1] ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* The table that reaches all markers, made when it is first needed. */
+static PetscErrorCode TakeTable(BoxPart b, PetscBool *moved) {
   const Layout l = b->markers->layout;
+  const PetscBool middle = AreInMiddle(b);
+  BoxTable *t = &b->table[middle];
+  PetscFunctionBeginUser;
+  if (!t->l) {
+    PetscCall(PetscLogEventBegin(b->make, 0, 0, 0, 0));
+    PetscCall(BoxTableCreate(b->spec, b->markers->kernel->name, &b->lattice, middle, t));
+    PetscCall(PetscLogEventEnd(b->make, 0, 0, 0, 0));
+    b->region[middle] = (BoxRegion){.comm = b->spec->comm, .grid = b->markers->grid, .whole = t};
+  }
+  PetscCall(BoxRegionAt(&b->region[middle], l->M, b->markers->X, &b->at, moved));
+  if (b->at->rank <= b->room) PetscFunctionReturn(PETSC_SUCCESS);
+  b->room = b->at->rank;
+  PetscCall(PetscFree2(b->A, b->amplitude));
+  PetscCall(PetscMalloc2(2 * l->n * b->room, &b->A, b->room, &b->amplitude));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode BoxPartPlace(BoxPart b) {
+  const Layout l = b->markers->layout;
+  PetscBool moved;
+  PetscFunctionBeginUser;
+  PetscCall(TakeTable(b, &moved));
   for (PetscInt k = 0; k < l->n; k++) {
     const PetscReal *now = b->markers->X + 2 * (l->first + k), *then = b->X + 2 * k;
-    if (now[0] == then[0] && now[1] == then[1]) continue; /* at rest, on an obstacle */
-    PlaceMarker(b, l->first + k, b->A + 2 * k * b->table.rank);
+    if (!moved && now[0] == then[0] && now[1] == then[1]) continue; /* at rest, on an obstacle */
+    PlaceMarker(b, l->first + k, b->A + 2 * k * b->at->rank);
     b->X[2 * k] = now[0];
     b->X[2 * k + 1] = now[1];
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode BoxPartApply(BoxPart b, PetscReal alpha, const PetscScalar F[], PetscScalar U[]) {
   const Layout l = b->markers->layout;
-  const PetscInt r = b->table.rank;
+  const PetscInt r = b->at->rank;
   PetscFunctionBeginUser;
   PetscCall(PetscArrayzero(b->amplitude, r));
   for (PetscInt k = 0; k < 2 * l->n; k++)
     for (PetscInt m = 0; m < r; m++) b->amplitude[m] += b->A[k * r + m] * F[k];
   if (l->size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, b->amplitude, (PetscMPIInt)r, MPIU_REAL, MPI_SUM, l->comm));
-  for (PetscInt m = 0; m < r; m++) b->amplitude[m] *= alpha * b->table.l[m];
+  for (PetscInt m = 0; m < r; m++) b->amplitude[m] *= alpha * b->at->l[m];
   for (PetscInt k = 0; k < 2 * l->n; k++) U[k] += BoxSum(r, b->amplitude, b->A + k * r);
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* SUM l x y in four lanes, the same bits with x and y exchanged. */
-static PetscReal Product(PetscInt r, const PetscReal l[], const PetscReal x[], const PetscReal y[]) {
-  PetscReal sum[4] = {0}, rest = 0;
-  PetscInt m = 0;
-  for (; m + 4 <= r; m += 4)
-    for (int q = 0; q < 4; q++) sum[q] += l[m + q] * (x[m + q] * y[m + q]);
-  for (; m < r; m++) rest += l[m] * (x[m] * y[m]);
-  return sum[0] + sum[1] + sum[2] + sum[3] + rest;
 }
 
 PetscErrorCode BoxPartAdd(BoxPart b, PetscReal scale, PetscInt first, PetscInt n, PetscInt begin, PetscInt end,
                           PetscReal out[]) {
   const Layout l = b->markers->layout;
-  const PetscInt r = b->table.rank;
+  const PetscInt r = b->at->rank;
   const PetscBool own = first >= l->first && first + n <= l->first + l->n ? PETSC_TRUE : PETSC_FALSE;
   PetscReal *all = own ? b->A + 2 * (first - l->first) * r : NULL;
   PetscFunctionBeginUser;
@@ -88,7 +122,7 @@ PetscErrorCode BoxPartAdd(BoxPart b, PetscReal scale, PetscInt first, PetscInt n
   for (PetscInt k = 0; k < n && !own; k++) PlaceMarker(b, first + k, all + 2 * k * r);
   for (PetscInt j = 0; j < 2 * n; j++)
     for (PetscInt i = 2 * (begin - first); i < 2 * (end - first); i++)
-      out[j * 2 * n + i] += scale * Product(r, b->table.l, all + i * r, all + j * r);
+      out[j * 2 * n + i] += scale * BoxProduct(r, b->at->l, all + i * r, all + j * r);
   if (!own) PetscCall(PetscFree(all));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

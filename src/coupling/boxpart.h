@@ -2,31 +2,38 @@
    markers' mobility (boxtable.h), U += D (f ds) for all pairs of markers. D is steady in every flow. Over a period C is
    of the nearest images only and fades where D takes over (BoxPartImage). */
 #pragma once
-#include "coupling/boxtable.h"
+#include "coupling/boxregion.h"
 #include "markers/markers.h"
 
 typedef struct _p_BoxPart *BoxPart;
 struct _p_BoxPart {
-  Markers markers; /* borrowed */
-  BoxTable table;
+  const FluidSpec *spec; /* borrowed */
+  BoxLattice lattice;
+  Markers markers;      /* borrowed */
+  BoxAxis axis[2];      /* of the box: what BoxImage needs */
   PetscBool ramp;       /* unsteady flow: D fades next to walls */
+  BoxTable table[2];    /* of all the box; of its middle, where all markers are in that. Made when needed */
+  BoxRegion region[2];  /* of each */
+  const BoxTable *at;   /* of all these tables, the one that A is of */
   PetscReal *A;         /* [2n][rank] of the own markers, D = A diag(l) A^T */
   PetscReal *X;         /* [2n] where they are in A */
   PetscReal *amplitude; /* [rank] work */
+  PetscInt room;        /* for ranks */
+  PetscLogEvent make;
 };
 
-/* BoxPartCreate - for markers on the grid that `spec` makes; the lattice's tables of forces are used here only.
+/* BoxPartCreate - for markers on the grid that `spec` makes, which is borrowed as the lattice's tables of forces are.
    Collective. */
 PETSC_EXTERN PetscErrorCode BoxPartCreate(const FluidSpec *spec, Markers markers, const BoxLattice *lattice,
                                           BoxPart *box);
 PETSC_EXTERN PetscErrorCode BoxPartDestroy(BoxPart *box);
 
-/* BoxPartPlace - where the markers have been placed. Not collective. */
-PETSC_EXTERN void BoxPartPlace(BoxPart box);
+/* BoxPartPlace - where the markers have been placed. Collective. */
+PETSC_EXTERN PetscErrorCode BoxPartPlace(BoxPart box);
 
 /* BoxPartImage - BoxImage of the box. Not collective. */
 static inline PetscReal BoxPartImage(BoxPart box, PetscReal d[2]) {
-  return BoxImage(box->table.axis, d);
+  return BoxImage(box->axis, d);
 }
 
 /* BoxPartApply - U += alpha D F, own parts F[2n] and U[2n] of marker vectors, F as NearFieldApply's. Collective. */

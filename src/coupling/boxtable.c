@@ -1,9 +1,9 @@
 #include "coupling/boxtable.h"
 #include "coupling/blas.h"
 
-#define WALL_PLACES 16
 #define WALL_MARGIN 3   /* cells of the coarser grid between the places and a wall: what its kernels reach */
 #define OWN_MARGIN 2    /* the same where that is the run's own grid, whose stencils at the wall are the run's */
+#define MIDDLE_PLACES 8 /* in the middle half of the box, far from walls */
 #define MODES 16        /* of a period as long as the other side */
 #define COARSE_CELLS 64 /* of the shorter side, on the coarser grid */
 #define MOST_CELLS 80
@@ -34,45 +34,28 @@ static void Stretch(PetscReal from, PetscReal factor, BoxAxis *a) {
   for (PetscInt k = 0; k < a->places; k++) a->place[k] = from + factor * (a->place[k] - from);
 }
 
-static void MakeAxis(const FluidSpec *spec, int dir, PetscReal H, BoxAxis *a) {
+static void MakeAxis(const FluidSpec *spec, int dir, PetscReal H, PetscBool middle, BoxAxis *a) {
   const PetscInt shorter = PetscMin(spec->cells[0], spec->cells[1]), times = (spec->cells[dir] + shorter - 1) / shorter;
   const PetscBool own = H > FluidSpecCellSize(spec) * (1 + 1e-9) ? PETSC_FALSE : PETSC_TRUE;
-  const PetscReal margin = (own ? OWN_MARGIN : WALL_MARGIN) * H;
-  a->wall = spec->bc[dir] == BC_WALL ? PETSC_TRUE : PETSC_FALSE;
-  a->low = spec->box[2 * dir] + (a->wall ? margin : 0);
-  a->high = spec->box[2 * dir + 1] - (a->wall ? margin : 0);
-  a->places = a->wall ? WALL_PLACES : times * BOX_PLACES / FLUID_LONGEST_PERIOD;
-  a->modes = a->wall ? 0 : times * MODES;
-  a->pairs = a->wall ? a->places * a->places : a->places;
-  for (PetscInt k = 0; k < a->places; k++) {
-    const PetscReal z = -PetscCosReal(PETSC_PI * (k + 0.5) / a->places);
-    a->place[k] = a->wall ? 0.5 * (a->low + a->high) + 0.5 * (a->high - a->low) * z
-                          : a->low + (a->high - a->low) * k / a->places;
+  const PetscReal low = spec->box[2 * dir], high = spec->box[2 * dir + 1];
+  const PetscReal margin = PetscMax((own ? OWN_MARGIN : WALL_MARGIN) * H, middle ? 0.25 * (high - low) : 0);
+  if (spec->bc[dir] == BC_WALL) {
+    BoxAxisChebyshev(middle ? MIDDLE_PLACES : BOX_WALL_PLACES, low + margin, high - margin, a);
+    return;
   }
-}
-
-/* Lagrange's polynomials, then their even and odd halves, which the mirror images of a box keep apart. */
-static void Polynomials(const BoxAxis *a, PetscReal x, PetscReal values[]) {
-  const PetscInt n = a->places;
-  PetscReal plain[WALL_PLACES], sum = 0;
-  PetscInt at = -1;
-  for (PetscInt k = 0; k < n; k++) { /* the second barycentric formula */
-    const PetscReal off = x - a->place[k];
-    if (PetscAbsReal(off) < 1e-14 * (a->high - a->low)) at = k;
-    plain[k] = (k % 2 ? -1 : 1) * PetscSinReal(PETSC_PI * (k + 0.5) / n) / off;
-    sum += plain[k];
-  }
-  for (PetscInt k = 0; k < n; k++) plain[k] = at < 0 ? plain[k] / sum : k == at;
-  for (PetscInt k = 0; k < n / 2; k++) {
-    values[k] = PetscSqrtReal(0.5) * (plain[k] + plain[n - 1 - k]);
-    values[n / 2 + k] = PetscSqrtReal(0.5) * (plain[k] - plain[n - 1 - k]);
-  }
+  a->wall = PETSC_FALSE;
+  a->low = low;
+  a->high = high;
+  a->places = times * BOX_PLACES / FLUID_LONGEST_PERIOD;
+  a->modes = times * MODES;
+  a->pairs = a->places;
+  for (PetscInt k = 0; k < a->places; k++) a->place[k] = low + (high - low) * k / a->places;
 }
 
 void BoxTableFunctions(const BoxTable *t, int dir, PetscReal x, PetscReal values[]) {
   const BoxAxis *a = &t->axis[dir];
   if (a->wall) {
-    Polynomials(a, x, values);
+    BoxAxisPolynomials(a, x, values);
     return;
   }
   const PetscReal angle = 2 * PETSC_PI * (x - a->low) / (a->high - a->low), c = PetscCosReal(angle),
@@ -245,9 +228,7 @@ static PetscErrorCode KeepLargest(const BoxTable *t, BoxBlock *q, const PetscRea
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The largest eigenvalues of D, with their vectors, block by block; the first rank's, as alike eigenvalues leave to
-   rounding which vectors they have. */
-static PetscErrorCode Decompose(MPI_Comm comm, BoxTable *t) {
+PetscErrorCode BoxTableDecompose(MPI_Comm comm, PetscReal smallest, BoxTable *t) {
   const PetscInt count = t->components * t->functions[0] * t->functions[1];
   PetscReal *l, most = 0;
   PetscInt at = 0;
@@ -265,7 +246,7 @@ static PetscErrorCode Decompose(MPI_Comm comm, BoxTable *t) {
   t->rank = at = 0;
   for (PetscInt b = 0; b < t->blocks; b++) {
     BoxBlock *q = &t->block[b];
-    PetscCall(KeepLargest(t, q, l + at, SMALLEST * most, t->l, &t->rank));
+    PetscCall(KeepLargest(t, q, l + at, smallest * most, t->l, &t->rank));
     at += t->components * q->n[0] * q->n[1];
   }
   PetscCall(PetscFree(l));
@@ -294,7 +275,8 @@ static PetscErrorCode Pair(const FluidSpec *run, const char kernel[], const BoxL
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode BoxTableCreate(const FluidSpec *spec, const char kernel[], const BoxLattice *lattice, BoxTable *t) {
+PetscErrorCode BoxTableCreate(const FluidSpec *spec, const char kernel[], const BoxLattice *lattice, PetscBool middle,
+                              BoxTable *t) {
   const PetscBool dipoles = lattice->dipole ? PETSC_TRUE : PETSC_FALSE;
   PetscInt cells[2], size = dipoles ? 6 : 4;
   PetscReal *W, height = spec->box[3] - spec->box[2];
@@ -306,10 +288,10 @@ PetscErrorCode BoxTableCreate(const FluidSpec *spec, const char kernel[], const 
   t->H = (spec->box[1] - spec->box[0]) / cells[0];
   if (cells[0] * spec->cells[1] != cells[1] * spec->cells[0]) pair.box[3] = pair.box[2] + cells[1] * t->H;
   for (int d = 0; d < 2; d++) {
-    MakeAxis(&pair, d, t->H, &axis[d]);
+    MakeAxis(&pair, d, t->H, middle, &axis[d]);
     t->axis[d] = axis[d];
     if (d) Stretch(pair.box[2], height / (pair.box[3] - pair.box[2]), &t->axis[d]);
-    t->functions[d] = t->axis[d].wall ? WALL_PLACES : 2 * t->axis[d].modes + 1;
+    t->functions[d] = t->axis[d].wall ? t->axis[d].places : 2 * t->axis[d].modes + 1;
     size *= t->axis[d].pairs;
   }
   PetscCall(PetscCalloc1(size, &W));
@@ -317,7 +299,7 @@ PetscErrorCode BoxTableCreate(const FluidSpec *spec, const char kernel[], const 
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, W, (PetscMPIInt)size, MPIU_REAL, MPI_SUM, spec->comm));
   PetscCall(CreateBlocks(t));
   PetscCall(Transform(t, W));
-  PetscCall(Decompose(spec->comm, t));
+  PetscCall(BoxTableDecompose(spec->comm, SMALLEST, t));
   PetscCall(PetscFree(W));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

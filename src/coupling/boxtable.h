@@ -29,10 +29,17 @@ typedef struct {
 } BoxTable;
 
 /* BoxTableCreate - for the run's grid and boundaries, of forces or of dipoles, as the lattice is, which is used here
-   only. Collective on spec->comm: ranks share the solves. BoxTableDestroy - and free. */
+   only; as near to walls as it reaches, or (middle) over the middle half of the box between walls, from a quarter of
+   the solves between four of them. Collective on spec->comm: ranks share the solves. BoxTableDestroy - and free, of
+   zeros nothing. */
 PETSC_EXTERN PetscErrorCode BoxTableCreate(const FluidSpec *spec, const char kernel[], const BoxLattice *lattice,
-                                           BoxTable *table);
+                                           PetscBool middle, BoxTable *table);
 PETSC_EXTERN PetscErrorCode BoxTableDestroy(BoxTable *table);
+
+/* BoxTableDecompose - from D between the functions of each block, symmetric, in Q[size][size] with size = components
+   n[0] n[1], the largest eigenvalues, down to the part `smallest` of the largest of all, and their vectors; the first
+   rank's, as alike eigenvalues leave to rounding which vectors they have. Collective. */
+PETSC_EXTERN PetscErrorCode BoxTableDecompose(MPI_Comm comm, PetscReal smallest, BoxTable *table);
 
 /* BoxParts - of a source: two of a force, three of a dipole. Not collective. */
 static inline PetscInt BoxParts(const BoxTable *table) {
@@ -57,9 +64,11 @@ PETSC_EXTERN void BoxBlockSum(const BoxBlock *block, int first, int components, 
 PETSC_EXTERN void BoxTableRows(const BoxTable *table, Grid grid, const PetscReal X[2], PetscReal part, int first,
                                int count, PetscReal rows[]);
 
-/* BoxSmoothStep - 0 up to low, 1 from high on. BoxSum - SUM l x of n, in four lanes. Not collective. */
+/* BoxSmoothStep - 0 up to low, 1 from high on. BoxSum - SUM l x of n, in four lanes. BoxProduct - SUM l x y, the same
+   bits with x and y exchanged. Not collective. */
 static inline PetscReal BoxSmoothStep(PetscReal x, PetscReal low, PetscReal high) {
   const PetscReal t = PetscMax(0, PetscMin(1, (x - low) / (high - low)));
   return t * t * (3 - 2 * t);
 }
 PETSC_EXTERN PetscReal BoxSum(PetscInt n, const PetscReal l[], const PetscReal x[]);
+PETSC_EXTERN PetscReal BoxProduct(PetscInt n, const PetscReal l[], const PetscReal x[], const PetscReal y[]);

@@ -13,7 +13,7 @@ PetscErrorCode DoubleBoxCreate(const FluidSpec *spec, Markers markers, const Box
   b->markers = markers;
   PetscCall(PetvesEvent("BoxTable", &event));
   PetscCall(PetscLogEventBegin(event, 0, 0, 0, 0));
-  PetscCall(BoxTableCreate(spec, markers->kernel->name, lattice, &b->table));
+  PetscCall(BoxTableCreate(spec, markers->kernel->name, lattice, PETSC_FALSE, &b->table));
   PetscCall(PetscLogEventEnd(event, 0, 0, 0, 0));
   b->width = (b->table.functions[1] + LANES - 1) / LANES * LANES;
   PetscCall(PetscCalloc4(n * (b->table.functions[0] + b->width), &b->value, n * BOX_COMPONENTS, &b->factor,

@@ -147,7 +147,7 @@ PetscErrorCode NearFieldPlace(NearField f) {
   }
   for (PetscInt k = 0; k < f->closes; k++)
     if (f->close[k].block >= first) PetscCall(NearCloseAdd(f, &f->close[k]));
-  if (f->box) BoxPartPlace(f->box);
+  if (f->box) PetscCall(BoxPartPlace(f->box));
   PetscCall(AgreeFlag(l->comm, crossed, &f->crossed));
   PetscCall(PetscLogEventEnd(f->place, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -115,6 +115,22 @@ static PetscReal LongestEdge(const CurveSet *set) {
   return longest;
 }
 
+/* Whether one curve has no contact with its images: they are farther than `apart`, or over half a period away from all
+   of it. */
+static PetscBool IsAlone(const CurveSet *set, PetscReal apart) {
+  if (set->curves > 1) return PETSC_FALSE;
+  for (int d = 0; d < 2; d++) {
+    PetscReal low = PETSC_MAX_REAL, high = -PETSC_MAX_REAL;
+    for (PetscInt k = set->start[0]; k < set->start[set->curves]; k++) {
+      low = PetscMin(low, set->X[2 * k + d]);
+      high = PetscMax(high, set->X[2 * k + d]);
+    }
+    const PetscReal extent = high - low, period = set->period[d];
+    if (period > 0 && extent + apart >= period && 2 * extent >= period) return PETSC_FALSE;
+  }
+  return PETSC_TRUE;
+}
+
 PetscErrorCode CurveContacts(const CurveSet *set, PetscReal reach, PetscInt *n, CurveContact **contacts) {
   const PetscInt points = set->start[set->curves], *part = set->part;
   const PetscInt first[2] = {part ? set->start[part[0]] : 0, part ? set->start[part[1]] : points};
@@ -123,6 +139,9 @@ PetscErrorCode CurveContacts(const CurveSet *set, PetscReal reach, PetscInt *n, 
   ContactSearch s = {.set = set, .reach = reach, .seam = PETSC_MAX_REAL};
   PetscInt count = 0;
   PetscFunctionBeginUser;
+  *n = 0;
+  *contacts = NULL;
+  if (IsAlone(set, apart)) PetscFunctionReturn(PETSC_SUCCESS);
   for (int d = 0; d < 2; d++)
     if (set->period[d] > 0) s.seam = PetscMin(s.seam, 0.5 * set->period[d]);
   PetscCall(PetscMalloc2(points, &s.curve, points, &s.head));

@@ -15,6 +15,7 @@ from studies.time import runs as study
 STEPS = (0.05, 0.1, 0.2, 0.4)
 BEST, WITHOUT = "treading 3", "none 2"
 LOST = 10  # times the first energy
+WANTED = 1e-2, 1e-3, 1e-4  # errors of markers
 
 
 def write(folder: str | Path, quick: bool = False) -> list[Path]:
@@ -23,7 +24,12 @@ def write(folder: str | Path, quick: bool = False) -> list[Path]:
     results = Results(folder / "time.json")
     text = _steady(results, folder, ("free",) if quick else tuple(study.BOXES))
     if not quick:
-        text += _transients(results, folder) + _controlled(results, folder) + _maps(results, folder)
+        text += (
+            _transients(results, folder)
+            + _orders(results, folder)
+            + _controlled(results, folder)
+            + _maps(results, folder)
+        )
     text += _large(results, folder) + _energy(results, folder)
     path = folder / "tables.md"
     path.write_text("\n".join(text))
@@ -85,6 +91,48 @@ def _transients(results: Results, folder: Path) -> list[str]:
     write_csv(folder / "time_transients.csv", header, rows)
     title = "### Transients: largest error of a marker at the end (iterations in all), by step\n"
     return [title, *table(["scene", "", "errors", "order"], shown)]
+
+
+def step_for(errors: dict[float, float], wanted: float) -> float | None:
+    """Return the step with the wanted error by log-log interpolation; the largest if its error is below, None if none."""
+    steps = sorted(errors, reverse=True)
+    if errors[steps[0]] <= wanted:
+        return steps[0]
+    for large, small in zip(steps, steps[1:]):
+        if errors[small] <= wanted:
+            part = np.log(wanted / errors[small]) / np.log(errors[large] / errors[small])
+            return float(small * (large / small) ** part)
+    return None
+
+
+def _orders(results: Results, folder: Path) -> list[str]:
+    """Which order pays: the step that each may take for an error, and what that costs."""
+    rows, shown = [], []
+    for scene, (what, _, _, steps) in study.TRANSIENTS.items():
+        fine = results.get(study.transient(scene, BEST, min(steps) / study.FINER))
+        found = {
+            name: {dt: results.get(study.transient(scene, name, dt)) for dt in steps} for name in ("treading 2", BEST)
+        }
+        errors = {name: {dt: _distance(one, fine) for dt, one in each.items()} for name, each in found.items()}
+        line = [what]
+        for wanted in WANTED:
+            allowed = {name: step_for(each, wanted) for name, each in errors.items()}
+            cell = []
+            for name, dt in allowed.items():
+                known = sorted(steps)
+                its = np.interp(np.log(dt), np.log(known), [found[name][k]["its"] for k in known]) if dt else np.nan
+                rows.append([scene, name, wanted, dt if dt else np.nan, its])
+                mark = "> " if dt == max(steps) else ""
+                cell.append(f"{mark}{dt:.2g} ({its:.0f})" if dt else f"< {min(steps):g}")
+            line.append("; ".join(cell))
+        better = [dt for dt in steps if errors[BEST][dt] <= errors["treading 2"][dt]]
+        worse = [dt for dt in steps if dt not in better]
+        line.append(f"below {min(worse):g}" if worse else "all")
+        shown.append(line)
+    write_csv(folder / "time_orders.csv", ["scene", "way", "error", "dt", "its"], rows)
+    title = "### Which order pays: the step (iterations in all) for an error of a marker, order 2; order 3\n"
+    heads = [f"{wanted:.0e}" for wanted in WANTED]
+    return [title, *table(["scene", *heads, "steps at which order 3 is the better"], shown)]
 
 
 def _controlled(results: Results, folder: Path) -> list[str]:

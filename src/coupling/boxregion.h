@@ -1,0 +1,28 @@
+/* The box part where the markers are. They often fill a small part of the box, in which D is so smooth that 8 x 8 of
+   Chebyshev's places tell it: a table of some 40 eigenvalues in place of several hundred. */
+#pragma once
+#include "coupling/boxtable.h"
+
+#define BOX_REGION_PLACES 8 /* in a direction */
+
+/* A square about the markers, its centre and side from coarse sets of numbers: most steps find theirs made. */
+typedef struct {
+  PetscReal centre[2], side; /* (length); side 0: none */
+  PetscBool right;           /* the table is D there, to a part of what the whole one's own error is */
+  BoxTable table;
+} BoxSquare;
+
+typedef struct {
+  MPI_Comm comm;
+  Grid grid;             /* borrowed, */
+  const BoxTable *whole; /* of forces */
+  BoxSquare square[2];   /* the last, and the one before */
+} BoxRegion;
+
+/* BoxRegionAt - the table for M markers at X[2M], all ranks' own the same: of the square about them, or the whole one
+   where that is not right or none is made, as it would reach too near to walls or over half of the box. Another table,
+   or the same one moved along a period, is said by `moved`. Its bits depend on X alone. Collective. BoxRegionDestroy -
+   free. */
+PETSC_EXTERN PetscErrorCode BoxRegionAt(BoxRegion *region, PetscInt M, const PetscReal X[], const BoxTable **table,
+                                        PetscBool *moved);
+PETSC_EXTERN PetscErrorCode BoxRegionDestroy(BoxRegion *region);
