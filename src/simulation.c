@@ -158,6 +158,7 @@ static PetscErrorCode Build(MPI_Comm comm, PetvesFlow flow, void *ctx, Simulatio
   PetscCall(AddContrast(scene, s->coupling));
   if (scene->repulsion.stress > 0 && scene->shape.vesicles)
     PetscCall(CouplingAddRepulsion(s->coupling, &scene->repulsion));
+  if (scene->scheme.area_target && scene->shape.vesicles) PetscCall(CouplingAddAreaTarget(s->coupling));
   PetscCall(SchemeCreate(scene, s->coupling, scene->shape.X, &s->scheme));
   PetscCall(SceneCheckUnused(scene));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -298,10 +298,17 @@ PetscErrorCode CouplingAddRepulsion(Coupling c, const SceneRepulsion *law) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode CouplingAddAreaTarget(Coupling c) {
+  PetscFunctionBeginUser;
+  PetscCall(AreaRowCreate(c->membrane, c->contrast ? c->contrast->ratio : NULL, &c->area));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode CouplingDestroy(Coupling *coupling) {
   Coupling c = *coupling;
   PetscFunctionBeginUser;
   if (!c) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(AreaRowDestroy(&c->area));
   PetscCall(RepulsionDestroy(&c->repulsion));
   PetscCall(DoubleLayerDestroy(&c->contrast));
   PetscCall(NearFieldDestroy(&c->near));

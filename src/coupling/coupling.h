@@ -1,6 +1,7 @@
 /* Fluid and membranes joined: where the membranes are in a step, their tangents, what gives back the kernel's
    smoothing, and the operators S and B of the momentum equation. */
 #pragma once
+#include "coupling/arearow.h"
 #include "coupling/doublelayer.h"
 #include "coupling/nearfield.h"
 #include "coupling/repulsion.h"
@@ -15,6 +16,7 @@ struct _p_Coupling {
   NearField near;       /* NULL without */
   DoubleLayer contrast; /* NULL where all viscosities are alike (contrast.h) */
   Repulsion repulsion;  /* NULL without */
+  AreaRow area;         /* NULL without area target */
   PetscReal *tau;       /* [2n] tangents of the own vesicles */
   PetscReal *turning;   /* [n] the tension whose pull turns with the edges (length^3/time^2); CouplingTurn */
   PetscReal *treading;  /* [vesicles] V, the speed of the labels in which the step is made (1/time) */
@@ -33,6 +35,10 @@ PETSC_EXTERN PetscErrorCode CouplingDestroy(Coupling *coupling);
 
 /* CouplingAddRepulsion - from here on with a force of short range between membranes. Not collective. */
 PETSC_EXTERN PetscErrorCode CouplingAddRepulsion(Coupling coupling, const SceneRepulsion *law);
+
+/* CouplingAddAreaTarget - from here on steps aim at the vesicles' first areas; after CouplingAddContrast. Not
+   collective. */
+PETSC_EXTERN PetscErrorCode CouplingAddAreaTarget(Coupling coupling);
 
 /* CouplingPlace - everything that a solve stands on, in one call: the time coefficient a0 (1/time) in the fluid's H; E,
    S, B, the tangents, the near field C and the springs of a repulsion at the markers X, and at obstacles where they are

@@ -58,8 +58,8 @@ static PetscErrorCode Subtract(Vec known, PetscInt n, PetscScalar y[]) {
 }
 
 /* y = (V + (treading/a0) dV/dt - U + C F - k, beta N N^T F - U + C F - k, Dm V/h^2 - g) of x, s->U holding U = E u,
-   s->F F, and with viscosity contrast s->motion what stands in the place of the first two; k and g may be NULL; not
-   scaled yet. */
+   s->F F, and with viscosity contrast s->motion what stands in the place of the first two; where an area is aimed at
+   the first has its row; k and g may be NULL; not scaled yet. */
 static PetscErrorCode BodyConditions(Reduced s, const PetscScalar x[], Vec known, Vec g, PetscScalar y[]) {
   const Coupling c = s->unknowns->coupling;
   const Unknowns u = s->unknowns;
@@ -83,6 +83,7 @@ static PetscErrorCode BodyConditions(Reduced s, const PetscScalar x[], Vec known
   MembraneStretching(c->membrane, c->tau, x, y + tension);
   for (PetscInt k = 0; k < u->tension; k++) y[tension + k] /= h2;
   PetscCall(Subtract(known, tension, y));
+  if (c->area) AreaRowReplace(c->area, known ? PETSC_TRUE : PETSC_FALSE, x, y);
   PetscCall(Subtract(g, u->tension, y + tension));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -119,13 +119,11 @@ PETSC_EXTERN PetscErrorCode MembraneRestoreLength(Membrane membrane, PetscInt ve
                                                   PetscScalar X[]);
 
 /* MembraneRestoreArea - shift one vesicle's markers by a uniform distance along the vertex normals (of the chord from
-   X_{k-1} to X_{k+1}, or of the spectral edge) until its area is A0: Newton on the area. The markers of `count` old
-   states move alike. Returns the shift (length). */
-PETSC_EXTERN PetscReal MembraneRestoreArea(Membrane membrane, PetscInt vesicle, PetscScalar X[], PetscInt count,
-                                           PetscScalar *const X_old[]);
+   X_{k-1} to X_{k+1}, or of the spectral edge) until its area is A0: Newton on the area. Returns the shift (length). */
+PETSC_EXTERN PetscReal MembraneRestoreArea(Membrane membrane, PetscInt vesicle, PetscScalar X[]);
 
-/* MembraneMoveNormally - shift one vesicle's markers by a distance along their own vertex normals, outwards. */
-PETSC_EXTERN void MembraneMoveNormally(Membrane membrane, PetscInt vesicle, PetscReal distance, PetscScalar X[]);
+/* MembraneAreaGradient - of one vesicle's area by its markers X[2n]: z[2n], the vertex normals, outwards (length). */
+PETSC_EXTERN void MembraneAreaGradient(Membrane membrane, PetscInt vesicle, const PetscScalar X[], PetscReal z[]);
 
 /* MembraneTreading - how fast the shape of one vesicle turns in its labels t, which run from 0 to 2 pi: V (1/time) of
    the least squares fit U ~ c + omega J (X - mean) + V dX/dt. Where a turn and a shift of labels are the same to 5 %,

@@ -19,16 +19,7 @@ static PetscReal VertexEdges(Membrane m, PetscInt v, const PetscScalar X[], Pets
   return size;
 }
 
-/* X += d times the normals of the edges e. */
-static void MoveAlong(PetscInt n, PetscReal d, const PetscScalar e[], PetscScalar X[]) {
-  for (PetscInt k = 0; k < n; k++) {
-    const PetscReal length = PetscSqrtReal(PetscSqr(e[2 * k]) + PetscSqr(e[2 * k + 1]));
-    const PetscReal normal[2] = {e[2 * k + 1] / length, -e[2 * k] / length};
-    for (int c = 0; c < 2; c++) X[2 * k + c] += d * normal[c];
-  }
-}
-
-PetscReal MembraneRestoreArea(Membrane m, PetscInt v, PetscScalar X[], PetscInt count, PetscScalar *const X_old[]) {
+PetscReal MembraneRestoreArea(Membrane m, PetscInt v, PetscScalar X[]) {
   const PetscInt n = LayoutCount(m->layout, v);
   PetscScalar *e = m->work.restore;
   PetscReal shift = 0;
@@ -37,16 +28,23 @@ PetscReal MembraneRestoreArea(Membrane m, PetscInt v, PetscScalar X[], PetscInt 
     MembraneMeasure(m, v, X, &measures);
     if (PetscAbsReal(measures.area / m->A0[v] - 1) < 1e-13) break;
     const PetscReal size = VertexEdges(m, v, X, e), d = (m->A0[v] - measures.area) / size; /* dA/dshift = SUM |e| */
-    MoveAlong(n, d, e, X);
-    for (PetscInt j = 0; j < count; j++) MoveAlong(n, d, e, X_old[j]);
+    for (PetscInt k = 0; k < n; k++) {
+      const PetscReal length = PetscSqrtReal(PetscSqr(e[2 * k]) + PetscSqr(e[2 * k + 1]));
+      X[2 * k] += d * e[2 * k + 1] / length;
+      X[2 * k + 1] -= d * e[2 * k] / length;
+    }
     shift += d;
   }
   return shift;
 }
 
-void MembraneMoveNormally(Membrane m, PetscInt v, PetscReal distance, PetscScalar X[]) {
-  (void)VertexEdges(m, v, X, m->work.restore);
-  MoveAlong(LayoutCount(m->layout, v), distance, m->work.restore, X);
+void MembraneAreaGradient(Membrane m, PetscInt v, const PetscScalar X[], PetscReal z[]) {
+  PetscScalar *e = m->work.restore;
+  (void)VertexEdges(m, v, X, e);
+  for (PetscInt k = 0; k < LayoutCount(m->layout, v); k++) {
+    z[2 * k] = e[2 * k + 1];
+    z[2 * k + 1] = -e[2 * k];
+  }
 }
 
 /* Largest relative error of an edge. */
@@ -85,11 +83,7 @@ PetscErrorCode MembraneRestoreEdges(Membrane m, PetscInt v, PetscReal tolerance,
 static void Gradients(Membrane m, PetscInt v, const PetscScalar X[], PetscScalar area[], PetscScalar length[]) {
   const PetscInt n = LayoutCount(m->layout, v);
   PetscScalar *e = m->work.restore;
-  (void)VertexEdges(m, v, X, e);
-  for (PetscInt k = 0; k < n; k++) {
-    area[2 * k] = e[2 * k + 1];
-    area[2 * k + 1] = -e[2 * k];
-  }
+  MembraneAreaGradient(m, v, X, area);
   MembraneEdges(m, v, X, e);
   for (PetscInt k = 0; k < n; k++) {
     const PetscReal size = PetscSqrtReal(PetscSqr(e[2 * k]) + PetscSqr(e[2 * k + 1]));

@@ -96,7 +96,7 @@ typedef struct {
   PetscInt bending_at;     /* BendingType */
   PetscReal stiffness;     /* penalty: sigma_0 of the springs */
   PetscBool length_target; /* coupled: new edges get the length ds */
-  PetscBool area_target;   /* coupled: markers shifted to their first area after each step */
+  PetscBool area_target;   /* coupled: each step aims at the first areas */
   PetscInt startup;        /* StartUp */
 } SceneScheme;
 

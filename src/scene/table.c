@@ -62,7 +62,7 @@ static const OptionRow table[] = {
   {"-scheme_bending", OPT_ENUM, AT(scheme.bending_at), "implicit", "implicit|explicit", "bending at the new markers, or (split only) at the old ones; penalty: explicit"},
   {"-penalty_stiffness", OPT_REAL, AT(scheme.stiffness), "0", ">=0", "penalty: sigma_0 of the springs sigma = sigma_0 (|X_s| - 1) (length^3/time^2); 0 takes half of what the step bears"},
   {"-scheme_length_target", OPT_BOOL, AT(scheme.length_target), "true", "true|false", "coupled, direct: each step aims at edges of their first length"},
-  {"-scheme_area_target", OPT_BOOL, AT(scheme.area_target), "true", "true|false", "coupled, direct: shift the markers to their first area after each step"},
+  {"-scheme_area_target", OPT_BOOL, AT(scheme.area_target), "true", "true|false", "coupled, direct: each step aims at the first areas of the vesicles"},
   {"-coupling_near_field", OPT_ENUM, AT(coupling.near_field), "exact", "exact|none", "coupled, direct: correct the markers' velocity for the smoothing by kernel and grid, to the exact single layer; none: do not"},
   {"-coupling_box_part", OPT_BOOL, AT(coupling.box_part), "true", "true|false", "with the exact near field: the grid's error of second order in what walls and periodic images do is taken off; default false from 256 cells across on"},
   {"-contact_repulsion", OPT_REAL, AT(repulsion.stress), "0", ">=0", "coupled, direct: K, stress that pushes membranes from one another and from walls, K (1 - d/D) at a distance d (length^2/time^2); 0: none"},

@@ -28,31 +28,18 @@ static PetscErrorCode WarnOfEdges(Scheme s, Coupled *d, const Restored *r) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The area target: X and the old states move by one distance, each along its own normals where labels turn, since the
-   same marker is then elsewhere on the shape, else alike. */
-static PetscReal RestoreArea(Scheme s, PetscInt v, PetscScalar X[], PetscInt count, PetscScalar *const X_old[]) {
-  if (s->scene->time.frame == FRAME_NONE) return MembraneRestoreArea(s->membrane, v, X, count, X_old);
-  const PetscReal shift = MembraneRestoreArea(s->membrane, v, X, 0, NULL);
-  for (PetscInt j = 0; j < count; j++) MembraneMoveNormally(s->membrane, v, shift, X_old[j]);
-  return shift;
-}
-
-/* The area target of one vesicle, and what the length target leaves of large steps. There the old markers stay: X* and
-   Xhat then go along the constraints and do not carry on what was corrected. A shift by half an edge has lost the
-   shape, and correcting edges would find another one. unmoved: room for the old markers. */
-static PetscErrorCode RestoreVesicle(Scheme s, PetscInt v, PetscScalar X[], PetscScalar *const X_old[],
-                                     PetscScalar unmoved[], Restored *r) {
+/* What linearised targets leave of one vesicle's area and lengths, largest in steps that do not resolve the motion. The
+   old markers stay: X* and Xhat then go along the constraints and do not carry on what was corrected. A shift by half
+   an edge has lost the shape, and correcting edges would find another one. */
+static PetscErrorCode RestoreVesicle(Scheme s, PetscInt v, PetscScalar X[], Restored *r) {
   const Membrane m = s->membrane;
-  const PetscInt n2 = 2 * LayoutCount(m->layout, v);
   PetscReal error, shift = 0;
   PetscFunctionBeginUser;
-  for (PetscInt j = 0; j < s->past; j++) PetscCall(PetscArraycpy(unmoved + j * n2, X_old[j], n2));
-  if (s->scene->scheme.area_target) shift = RestoreArea(s, v, X, s->past, X_old);
+  if (s->scene->scheme.area_target) shift = MembraneRestoreArea(m, v, X);
   r->most = PetscMax(r->most, shift);
   r->least = PetscMin(r->least, shift);
   if (!s->scene->scheme.length_target || PetscAbsReal(shift) > 0.5 * m->ds[v]) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(MembraneRestoreEdges(m, v, EDGE_TOLERANCE, X, &error));
-  for (PetscInt j = 0; j < s->past && error > 0; j++) PetscCall(PetscArraycpy(X_old[j], unmoved + j * n2, n2));
   if (error == 0 && s->scene->scheme.area_target) PetscCall(MembraneRestoreLength(m, v, EDGE_TOLERANCE, X));
   if (error > r->error) {
     r->error = error;
@@ -64,19 +51,12 @@ static PetscErrorCode RestoreVesicle(Scheme s, PetscInt v, PetscScalar X[], Pets
 /* Each owner its vesicles. */
 static PetscErrorCode RestoreMarkers(Scheme s, Coupled *d) {
   const Layout l = s->membrane->layout;
-  PetscScalar *X, *X_old[SCHEME_PAST];
+  PetscScalar *X;
   PetscReal largest[3];
   Restored r = {0};
   PetscFunctionBeginUser;
   PetscCall(VecGetArray(s->state.X, &X));
-  for (PetscInt j = 0; j < s->past; j++) PetscCall(VecGetArray(s->old[j].X, &X_old[j]));
-  for (PetscInt v = l->own; v < l->end; v++) {
-    const PetscInt at = 2 * LayoutOffset(l, v);
-    PetscScalar *own[SCHEME_PAST];
-    for (PetscInt j = 0; j < s->past; j++) own[j] = X_old[j] + at;
-    PetscCall(RestoreVesicle(s, v, X + at, own, d->edges, &r));
-  }
-  for (PetscInt j = 0; j < s->past; j++) PetscCall(VecRestoreArray(s->old[j].X, &X_old[j]));
+  for (PetscInt v = l->own; v < l->end; v++) PetscCall(RestoreVesicle(s, v, X + 2 * LayoutOffset(l, v), &r));
   PetscCall(VecRestoreArray(s->state.X, &X));
   largest[0] = r.most;
   largest[1] = -r.least;

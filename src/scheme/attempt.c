@@ -4,6 +4,7 @@
 #include "scheme/coupled.h"
 #include "scheme/stress.h"
 
+#define STILL 1e-5 /* of R0: less than this is not looked at, steady shapes miss by rounding */
 #define SMOOTH 0.7 /* least gain of a predictor through three states over that through two for order 3 */
 
 /* S^T u = g: the new edges get the length ds, linearised at the extrapolated edge e*:
@@ -191,19 +192,26 @@ static PetscInt Order(Scheme s, const History *h) {
   return PetscMin(PetscMin(s->plan.order, h->n), even ? 3 : 2);
 }
 
+/* Largest |x - y| on this rank, of marker vectors; y is overwritten. */
+static PetscErrorCode Apart(Scheme s, Vec x, Vec y, PetscReal *largest) {
+  const PetscScalar *d;
+  PetscFunctionBeginUser;
+  *largest = 0;
+  PetscCall(VecAXPY(y, -1, x));
+  PetscCall(VecGetArrayRead(y, &d));
+  for (PetscInt k = 0; k < s->membrane->layout->n; k++)
+    *largest = PetscMax(*largest, PetscSqrtReal(PetscSqr(d[2 * k]) + PetscSqr(d[2 * k + 1])));
+  PetscCall(VecRestoreArrayRead(y, &d));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Largest |x - x*| on this rank, x* the extrapolation of a marker vector of the states through `count` of them. */
 static PetscErrorCode Miss(Scheme s, Coupled *d, PetscInt count, const Vec states[], Vec x, PetscReal *largest) {
   PetscReal star[BDF_MOST];
-  const PetscScalar *y;
   PetscFunctionBeginUser;
-  *largest = 0;
   BDFExtrapolation(count, d->history.step, star);
   PetscCall(HistorySum(&d->history, s->membrane, count, star, 1, 2, states, d->Y));
-  PetscCall(VecAXPY(d->Y, -1, x));
-  PetscCall(VecGetArrayRead(d->Y, &y));
-  for (PetscInt k = 0; k < s->membrane->layout->n; k++)
-    *largest = PetscMax(*largest, PetscSqrtReal(PetscSqr(y[2 * k]) + PetscSqr(y[2 * k + 1])));
-  PetscCall(VecRestoreArrayRead(d->Y, &y));
+  PetscCall(Apart(s, x, d->Y, largest));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -238,6 +246,7 @@ PetscErrorCode CoupledAttempt(Scheme s, PetscReal dt, PetscBool *solved) {
   PetscCall(SchemePlace(s, b.a0, d->Xstar, h->treading, s->state.t + d->done + dt, solved));
   if (!*solved) PetscFunctionReturn(PETSC_SUCCESS);
   if (s->scene->scheme.length_target) PetscCall(LengthTarget(s, d, b.a0));
+  if (s->coupling->area) PetscCall(AreaRowPlace(s->coupling->area, b.a0, d->Xstar, d->Xhat, s->background));
   PetscCall(TurnTension(s, d));
   PetscCall(RightHandSides(s, d, &b));
   *solved = *s->report.failure ? PETSC_FALSE : PETSC_TRUE;
@@ -248,5 +257,35 @@ PetscErrorCode CoupledAttempt(Scheme s, PetscReal dt, PetscBool *solved) {
   if (*solved) PetscCall(MoveMarkers(s, d, b.a0));
   if (*solved) PetscCall(MeasureStress(s, d));
   if (*solved) PetscCall(ChooseNext(s, d));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Whether the attempt has ended farther from its extrapolation X* than from the state it began with: a motion that
+   stops within the step, which an extrapolation only carries on. */
+static PetscErrorCode Overshot(Scheme s, Coupled *d, PetscBool *overshot) {
+  const Membrane m = s->membrane;
+  PetscReal R0 = PETSC_MAX_REAL, off[2];
+  PetscFunctionBeginUser;
+  *overshot = PETSC_FALSE;
+  if (d->order == 1) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(Miss(s, d, 1, STATES(s, X), d->next.X, &off[0]));
+  PetscCall(VecCopy(d->Xstar, d->Y));
+  PetscCall(Apart(s, d->next.X, d->Y, &off[1]));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, off, 2, MPIU_REAL, MPI_MAX, m->layout->comm));
+  for (PetscInt v = 0; v < m->layout->bodies; v++) R0 = PetscMin(R0, m->L0[v] / (2 * PETSC_PI));
+  *overshot = off[1] > off[0] && off[1] > STILL * R0 ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CoupledFixedAttempt(Scheme s, PetscReal dt, PetscBool *solved) {
+  Coupled *d = (Coupled *)s->data;
+  PetscBool overshot;
+  PetscFunctionBeginUser;
+  PetscCall(CoupledAttempt(s, dt, solved));
+  if (!*solved || !CouplingHasMembrane(s->coupling)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(Overshot(s, d, &overshot));
+  if (!overshot) PetscFunctionReturn(PETSC_SUCCESS);
+  s->plan.order = 1; /* of this step: CoupledAdvance says the next one's */
+  PetscCall(CoupledAttempt(s, dt, solved));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -11,7 +11,7 @@ static PetscErrorCode GradedStart(Scheme s, Coupled *d, PetscReal dt) {
   PetscFunctionBeginUser;
   d->done = 0;
   for (int k = 0; k < 5 && solved; k++) {
-    PetscCall(CoupledAttempt(s, parts[k] * dt, &solved));
+    PetscCall(CoupledFixedAttempt(s, parts[k] * dt, &solved));
     if (solved) PetscCall(CoupledAdvance(s, parts[k] * dt));
     d->done += parts[k] * dt;
   }
@@ -56,7 +56,7 @@ static PetscErrorCode FixedStep(Scheme s, Coupled *d, PetscReal dt) {
     PetscCall(GradedStart(s, d, dt));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  PetscCall(CoupledAttempt(s, dt, &solved));
+  PetscCall(CoupledFixedAttempt(s, dt, &solved));
   if (solved && s->state.dt_last > 0 && CouplingHasMembrane(s->coupling))
     PetscCall(Estimate(s, d, &s->report.estimate));
   if (solved) PetscCall(CoupledAdvance(s, dt));
@@ -275,7 +275,7 @@ static PetscErrorCode SetUp_Coupled(Scheme s) {
   PetscCall(VecDuplicate(q->X, &d->P));
   PetscCall(VecDuplicate(q->X, &d->made_at));
   PetscCall(PetscCalloc1(s->membrane->layout->bodies, &d->made_with));
-  PetscCall(PetscMalloc1(4 * s->membrane->layout->n, &d->edges));
+  PetscCall(PetscMalloc1(2 * s->membrane->layout->n, &d->edges));
   PetscCall(SetUpConvection(s, d));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -23,12 +23,16 @@ typedef struct {
   Vec moved, source;     /* viscosity contrast: known part of the markers' motion, divergence; else NULL */
   Vec V, known, Y;       /* solved part of the markers' velocity, what is known of it, and of obstacles; work */
   Vec P;                 /* the markers' velocity as the labels of the step see it */
-  PetscScalar *edges;    /* [4n] work */
+  PetscScalar *edges;    /* [2n] work */
 } Coupled;
 
 /* CoupledAttempt - solve one step of size dt from the state into next; false with report.failure when it cannot be.
    Collective. */
 PETSC_EXTERN PetscErrorCode CoupledAttempt(Scheme scheme, PetscReal dt, PetscBool *solved);
+
+/* CoupledFixedAttempt - the same; a step whose motion stops within it is made again by backward Euler, from the state
+   itself in place of an extrapolation. Collective. */
+PETSC_EXTERN PetscErrorCode CoupledFixedAttempt(Scheme scheme, PetscReal dt, PetscBool *solved);
 
 /* CoupledAdvance - next becomes the state and the state the old one; then the markers are moved to their area and
    edges. Collective. */

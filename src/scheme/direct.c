@@ -205,7 +205,7 @@ static PetscErrorCode AddPressure(DirectSolver d, Mat A) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* sigma, U, F and J are the last rank's rows: it adds E, and every owner its vesicles. */
+/* sigma, U, F, J and areas are the last rank's rows: it adds E, and every owner its vesicles. */
 static PetscErrorCode AddBodies(DirectSolver d, Mat A) {
   const Grid g = d->fluid->grid;
   const Layout l = d->coupling->membrane->layout;
@@ -216,6 +216,7 @@ static PetscErrorCode AddBodies(DirectSolver d, Mat A) {
   for (PetscInt v = l->own; v < l->end; v++) PetscCall(AddVesicle(d, A, v, sigma, U, F));
   PetscCall(AddNearField(d, A));
   PetscCall(AddPressure(d, A));
+  PetscCall(DirectAddArea(d, A, U));
   if (d->source) PetscCall(DirectAddContrast(d, A, U, FirstJ(d)));
   if (d->source && g->rank == g->size - 1) PetscCall(DirectContrastMean(d, A, FirstJ(d)));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -306,6 +307,7 @@ static PetscErrorCode RightHandSide(DirectSolver d, const CoupledProblem *q) {
   for (PetscInt k = 0; k < 2 * (d->M + d->W) && g->rank == g->size - 1; k++)
     b[RowOf(d, k) - d->start[g->rank]] = d->all[k];
   PetscCall(VecRestoreArray(d->b, &b));
+  PetscCall(DirectAreaTarget(d));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -37,3 +37,8 @@ PETSC_EXTERN PetscInt DirectRows(Grid grid, PetscInt rank, int field);
 PETSC_EXTERN PetscErrorCode DirectAddContrast(DirectSolver solver, Mat A, PetscInt U, PetscInt J);
 PETSC_EXTERN PetscErrorCode DirectRoom(DirectSolver solver, PetscInt room[]);
 PETSC_EXTERN PetscErrorCode DirectContrastMean(DirectSolver solver, Mat A, PetscInt J);
+
+/* DirectAddArea - the rows of the areas, and their unknowns in the rows of U. DirectAreaTarget - their right-hand
+   sides. Nothing without area target. Collective. */
+PETSC_EXTERN PetscErrorCode DirectAddArea(DirectSolver solver, Mat A, PetscInt U);
+PETSC_EXTERN PetscErrorCode DirectAreaTarget(DirectSolver solver);

@@ -10,9 +10,14 @@ static inline PetscInt MeanForces(DirectSolver d) {
   return g->wall[1] ? d->fluid->zero_flux : 2 * (d->fluid->steady || d->fluid->held);
 }
 
-/* Unknowns besides the fluid's: sigma, U, F, the obstacles' F, J, g. */
+/* Rows of the vesicles' areas (directarea.c). */
+static inline PetscInt AreaRows(DirectSolver d) {
+  return d->coupling->area ? d->coupling->membrane->layout->bodies : 0;
+}
+
+/* Unknowns besides the fluid's: sigma, U, F, the obstacles' F, J, those of the areas, g. */
 static inline PetscInt Others(DirectSolver d) {
-  return (d->coupling->contrast ? 7 : 5) * d->M + 2 * d->W + MeanForces(d);
+  return (d->coupling->contrast ? 7 : 5) * d->M + 2 * d->W + AreaRows(d) + MeanForces(d);
 }
 
 /* Where these start, and the row of the q-th velocity of all bodies: the obstacles' stand beside their F. */
@@ -30,6 +35,9 @@ static inline PetscInt FirstJ(DirectSolver d) {
 }
 static inline PetscInt FirstMean(DirectSolver d) {
   return d->start[d->fluid->grid->size] - MeanForces(d);
+}
+static inline PetscInt FirstArea(DirectSolver d) {
+  return FirstMean(d) - AreaRows(d);
 }
 static inline PetscInt RowOf(DirectSolver d, PetscInt q) {
   return (q < 2 * d->M ? FirstU(d) : FirstF(d)) + q;
