@@ -1,17 +1,19 @@
 """The stability maps: marks, resuming, the largest step and its power, and what a handful of cells must show."""
 
 import csv
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from conftest import PETVES, run_petves
 
 from petves.run import RunError
+from studies.stability import bodies, maps
 from studies.stability import cells as study
 from studies.stability import page as report
 
-DT_CB, CHANGE = (next(one for one in study.MAPS if one.name == name) for name in ("dt_cb", "dt_change"))
-SPACING = next(one for one in study.MAPS if one.name == "spacing_kernel")
+DT_CB, CHANGE = (next(one for one in maps.MAPS if one.name == name) for name in ("dt_cb", "dt_change"))
+SPACING = next(one for one in maps.MAPS if one.name == "spacing_kernel")
 
 
 def some(one: study.Map, xs: tuple, ys: tuple) -> study.Map:
@@ -39,6 +41,9 @@ def read(folder) -> dict[tuple[str, str, float, float], dict[str, str]]:
         (2, "the solve with prefix bending_ failed in step 1 at time 1: DIVERGED_NANORINF after 0", "NaN"),
         (2, "the tension is not finite after step 1", "NaN"),
         (2, "vesicle 1: a marker at (7,0) is -9 cells from the wall x_max = 1", "left the box"),
+        (2, "vesicle 1: a marker at (7,0) is beyond the wall x_max = 1. after step 4", "left the box"),
+        (2, "the film between vesicles 1 and 2 went from 0.1 to 0.01 in one step", "film drained"),
+        (2, "vesicle 1 and obstacle 2 cross after step 7, time 0.3", "membranes cross"),
         (2, "something else", "no clean stop"),
         (-1, "status 139: ", "no clean stop"),
     ],
@@ -55,7 +60,7 @@ def test_powers_are_fitted():
 
 def test_largest_step_is_bisected(tmp_path, monkeypatch):
     """A bound of h^3: found to the eighth of an octave, and its power; no bound, no bisection."""
-    one = study.STEP_MAP
+    one = maps.STEP_MAP
 
     def run_cell(scheme, stages):
         n, dt = map(float, stages[0].split())
@@ -76,21 +81,41 @@ def test_largest_step_is_bisected(tmp_path, monkeypatch):
 
 
 def test_quick_is_the_corners():
-    for one in study.MAPS:
+    for one in maps.MAPS + bodies.MAPS:
         cells = one.quick().cells()
-        assert len(cells) == 12 and set(cells) <= set(one.cells())
+        assert len(cells) == 4 * len(one.panels) and set(cells) <= set(one.cells())
+
+
+def test_panels_have_options_of_their_own(tmp_path, monkeypatch):
+    """Other panels than schemes: their options come after the map's; what the program said is in tables.md."""
+    one = next(one for one in bodies.MAPS if one.name == "throat")
+    one = replace(
+        one, xs=(0.4,), ys=(0.0448,), panels={name: one.panels[name] for name in ("no repulsion", "repulsion")}
+    )
+    monkeypatch.setenv("PETVES", PETVES)
+    report.write(tmp_path, maps=(one,))
+    rows = read(tmp_path)
+    assert [key[1] for key in rows] == ["no repulsion", "repulsion"]
+    plain, pushed = rows.values()
+    assert plain["mark"] == "membranes cross" and "vesicle 1 and obstacle 2 cross" in plain["message"]
+    assert pushed["mark"] == "film drained" and pushed["options"].endswith("-contact_repulsion 2000")
+    text = (tmp_path / "tables.md").read_text()
+    assert (
+        f"| throat | no repulsion | membranes cross | 1 | {plain['message']} |" in text
+        and "| repulsion | 0 of 1 |" in text
+    )
 
 
 def test_a_handful_of_cells(tmp_path, monkeypatch):
     """Stiff membrane, large step: penalty and split fail, coupled does not; a small step is good for all; a changed
     step; a refused spacing. What has run is not run again, unless its options have changed."""
     monkeypatch.setenv("PETVES", PETVES)
-    maps = (
+    chosen = (
         some(DT_CB, (1.0,), (2**-5, 2**-13)),
         some(CHANGE, (1 / 64, 64.0), (1 / 512,)),
         some(SPACING, ("ib6",), (0.75,)),
     )
-    paths = report.write(tmp_path, maps=maps)
+    paths = report.write(tmp_path, maps=chosen)
     assert {p.name for p in paths} == {"stability.csv", "tables.md", "dt_cb.png", "dt_change.png", "spacing_kernel.png"}
     assert all(p.stat().st_size for p in paths)
     rows = read(tmp_path)
@@ -109,11 +134,11 @@ def test_a_handful_of_cells(tmp_path, monkeypatch):
 
     ran = []
     monkeypatch.setattr(report, "run_cell", lambda scheme, stages: ran.append(stages) or study.run_cell(scheme, stages))
-    report.write(tmp_path, maps=maps)
+    report.write(tmp_path, maps=chosen)
     assert not ran and read(tmp_path) == rows
     text = (tmp_path / "stability.csv").read_text()
     (tmp_path / "stability.csv").write_text(text.replace("-vesicle_bending 1.0 -time_step 0.03125", "other", 1))
-    report.write(tmp_path, maps=maps)
+    report.write(tmp_path, maps=chosen)
     assert len(ran) == 1 and read(tmp_path) == rows
 
 
@@ -148,7 +173,7 @@ def test_stiff_membranes_keep_area_length_and_shape(stiffness, dt, rise, tmp_pat
 def test_strong_shear_at_a_quarter_of_the_rate(monkeypatch):
     """chi = 1000, a strain of 1/4 a step, once stopped by the limit of the length."""
     monkeypatch.setenv("PETVES", PETVES)
-    cell = study.run_cell("coupled", (study.shear(1 / 4, 0.7, 1000),))
+    cell = study.run_cell("coupled", (maps.shear(1 / 4, 0.7, 1000),))
     assert cell["mark"] == "ok" and cell["steps"] == study.STEPS
     assert cell["drift"] < 1e-12 and cell["length_error"] < 2e-3  # 1e-3 is what is left alone
 

@@ -13,7 +13,9 @@ import numpy as np
 from petves.tables import csv_text, table, write_csv
 from petves.views.plot import dress, new_figure, save_figure
 from studies.common.engine import Kept
-from studies.stability.cells import MAPS, MARKS, SCHEMES, STEP_MAP, Map, run_cell
+from studies.stability import bodies
+from studies.stability.cells import MARKS, SCHEMES, Map, run_cell
+from studies.stability.maps import MAPS, STEP_MAP
 
 COLUMNS = "map scheme x y mark steps energy_rise area_error length_error drift edge_ratio its message options".split()
 UNSETTLED = ("too slow", "no clean stop")  # run again by the next call: a busy machine may be to blame
@@ -22,7 +24,7 @@ HALVINGS = 3  # of the octave in which the largest stable step lies
 
 
 class Cells(Kept):
-    """Cells that have run, rows of one CSV file."""
+    """Cells that have run, rows of one CSV file. Column scheme: the panel."""
 
     def __init__(self, path: Path, minutes: float = MINUTES) -> None:
         super().__init__(path)
@@ -49,7 +51,7 @@ class Cells(Kept):
         """Run those cells of a map that are not there with the same options, two at a time, while time is left."""
 
         def work(cell: tuple[str, object, object]) -> None:
-            stages = one.options(*cell[1:])
+            stages = one.stages(*cell)
             place, options = (one.name, *map(_text, cell)), " + ".join(stages)
             known = self.entries.get(place)
             if known and known["options"] == options and known["mark"] not in UNSETTLED:
@@ -72,7 +74,7 @@ def write(folder: str | Path, quick: bool = False, maps: tuple[Map, ...] | None 
     """Run what is not there yet; write stability.csv, which keeps the cells that have run, tables.md, a picture a map
     and largest_step.csv, .png. Quick: only the corners of each map; `maps`: these in place of all."""
     folder = Path(folder)
-    maps = MAPS if maps is None else maps
+    maps = MAPS + bodies.MAPS if maps is None else maps
     maps = tuple(one.quick() for one in maps) if quick else maps
     cells = Cells(folder / "stability.csv")
     paths, text = [cells.path], []
@@ -86,40 +88,65 @@ def write(folder: str | Path, quick: bool = False, maps: tuple[Map, ...] | None 
     if cells.left_out:
         text.append(f"{cells.left_out} cells did not run within {MINUTES} minutes; another call goes on with them.\n")
     tables = folder / "tables.md"
-    tables.write_text("\n".join(_counts(cells, maps) + text))
+    tables.write_text("\n".join(_counts(cells, maps) + _stops(cells, maps) + text))
     return [*paths, tables]
 
 
+def _ok(cells: Cells, one: Map, panel: str) -> str:
+    """Return how many cells of a panel are ok."""
+    marks = [cells.mark(one.name, *cell) for cell in one.cells() if cell[0] == panel]
+    ran = [m for m in marks if m and m != "refused"]
+    rest = f" ({len(marks) - len(ran)} refused or not run)" if len(ran) < len(marks) else ""
+    return f"{ran.count('ok')} of {len(ran)}{rest}"
+
+
 def _counts(cells: Cells, maps: tuple[Map, ...]) -> list[str]:
-    """How many cells of each map are ok, a scheme."""
-    rows = []
+    """How many cells of each map are ok, a panel: those of schemes in one table, the others below."""
+    schemes = [one for one in maps if tuple(one.panels) == SCHEMES]
+    rows = [[one.name, one.title, *(_ok(cells, one, scheme) for scheme in SCHEMES)] for one in schemes]
+    text = ["### Cells that are ok\n", *table(["map", "scene", *SCHEMES], rows)]
+    rest = [
+        [one.name, one.title, panel, _ok(cells, one, panel)]
+        for one in maps
+        if one not in schemes
+        for panel in one.panels
+    ]
+    return text + (table(["map", "scene, scheme coupled", "panel", "ok"], rest) if rest else [])
+
+
+def _stops(cells: Cells, maps: tuple[Map, ...]) -> list[str]:
+    """How often each mark was given, and what the program says in the first cell that has it, maps without schemes."""
+    found: dict[tuple[str, str, str], list[str]] = {}
     for one in maps:
-        line = [one.name, one.title]
-        for scheme in SCHEMES:
-            marks = [cells.mark(one.name, s, x, y) for s, x, y in one.cells() if s == scheme]
-            ran = [m for m in marks if m and m != "refused"]
-            rest = f" ({len(marks) - len(ran)} refused or not run)" if len(ran) < len(marks) else ""
-            line.append(f"{ran.count('ok')} of {len(ran)}{rest}")
-        rows.append(line)
-    return ["### Cells that are ok\n", *table(["map", "scene", *SCHEMES], rows)]
+        for panel, x, y in one.cells() if tuple(one.panels) != SCHEMES else []:
+            row = cells.entries.get((one.name, panel, _text(x), _text(y)))
+            if row and row["mark"] != "ok":
+                found.setdefault((one.name, panel, row["mark"]), []).append(row["message"] or "(it ran to its end)")
+    rows = [[*key, str(len(said)), said[0].replace("|", "\\|")] for key, said in found.items()]
+    return (
+        ["### What the program says\n", *table(["map", "panel", "mark", "cells", "message of the first"], rows)]
+        if rows
+        else []
+    )
 
 
 def _lines(cells: Cells, one: Map) -> list[str]:
-    """A map as a table: for each y and scheme the letters along x."""
-    header = [one.y_label, "scheme", *(f"{one.x_label} = {_text(x)}" for x in one.xs)]
-    marks = lambda scheme, y: [cells.mark(one.name, scheme, x, y) or "not run" for x in one.xs]  # noqa: E731
-    rows = [[_text(y), scheme, *marks(scheme, y)] for y in one.ys for scheme in SCHEMES]
+    """A map as a table: for each y and panel the marks along x."""
+    kind = "scheme" if tuple(one.panels) == SCHEMES else "panel"
+    header = [one.y_label, kind, *(f"{one.x_label} = {_text(x)}" for x in one.xs)]
+    marks = lambda panel, y: [cells.mark(one.name, panel, x, y) or "not run" for x in one.xs]  # noqa: E731
+    rows = [[_text(y), panel, *marks(panel, y)] for y in one.ys for panel in one.panels]
     return [f"### {one.name}: {one.title}\n", *table(header, rows)]
 
 
 def _picture(cells: Cells, one: Map, folder: Path) -> Path:
-    """Draw a map, the schemes side by side."""
+    """Draw a map, its panels side by side."""
     from matplotlib.patches import Patch, Rectangle
 
     height = 1.6 + 0.32 * len(one.ys)
-    figure, axes = new_figure(11, height, columns=len(SCHEMES))
+    figure, axes = new_figure(11 if len(one.panels) < 4 else 14, height, columns=len(one.panels))
     seen = set()
-    for panel, scheme in zip(axes, SCHEMES):
+    for panel, scheme in zip(axes, one.panels):
         for i, x in enumerate(one.xs):
             for j, y in enumerate(one.ys):
                 name = cells.mark(one.name, scheme, x, y)
