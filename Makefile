@@ -159,8 +159,8 @@ stability: deps ## the maps of where each scheme fails, into docs/stability (at 
 	PETVES=$(CURDIR)/$(BIN)/petves PYTHONPATH=python:. $(PYTHON) -m studies stability $(if $(QUICK),out/stability,docs/stability)
 
 chart: deps ## error against CPU time of every scheme, into docs/speed_accuracy (40 minutes; QUICK=1: two minutes)
-	@$(MAKE) --no-print-directory all
-	PETVES=$(CURDIR)/$(BIN)/petves PYTHONPATH=python:. $(PYTHON) -m studies chart $(if $(QUICK),out/chart,docs/speed_accuracy)
+	@$(MAKE) --no-print-directory all benches
+	PETVES=$(CURDIR)/$(BIN)/petves PETVES_BENCH=$(CURDIR)/$(BUILD)/bench PYTHONPATH=python:. $(PYTHON) -m studies chart $(if $(QUICK),out/chart,docs/speed_accuracy)
 
 time: deps ## what the time step leaves, by order and frame of the labels, into docs/time (ten minutes; QUICK=1: one, into out/time)
 	@$(MAKE) --no-print-directory all

@@ -9,6 +9,7 @@ import numpy as np
 
 from petves.views.plot import new_figure, save_figure
 from studies.common.paper import BOUNDARY_INTEGRAL_CODES, SHEAR
+from studies.speed_accuracy.bodies import UNCERTAIN
 from studies.speed_accuracy.scenes import SCHEMES, Scene
 
 if TYPE_CHECKING:
@@ -27,8 +28,12 @@ NAMES = {
     "area": "area, relative",
     "length": "length, relative",
     "velocity": "migration velocity, relative",
+    "place": "place of the first at the end, over $R_0$",
+    "gap": "gap, relative",
+    "viscosity": "effective viscosity, relative",
+    "force": "force on the post, relative",
 }
-LOWEST, HIGHEST = 1e-7, 2.0  # errors drawn
+LOWEST, HIGHEST = 1e-8, 2.0  # errors drawn
 UNCERTAINTY = 2e-5  # of SHEAR
 
 
@@ -62,7 +67,7 @@ def picture(folder: Path, one: Scene, rows: list[dict], cost: str, floor: dict[s
                 panel.loglog(costs[best], errors[best], f"{marker}-", color=color, ms=5.5, lw=1.6, label=scheme)
         if cost == "cpu_seconds":
             panel.axvline(start, color="#999999", lw=0.8, ls="--", label="start of the program")
-            if one.name == "shear":
+            if one.name == "free":
                 _codes(panel, name)
         _floor(panel, one, name, floor)
         panel.set(xlabel=LABELS[cost], ylabel="error", title=NAMES[name])
@@ -86,17 +91,17 @@ def _decades(panel: Axes) -> None:
 
 
 def _codes(panel: Axes, name: str) -> None:
-    """Draw the boundary integral codes, which solve an unbounded flow."""
+    """Draw the boundary integral codes, which solve the same unbounded flow."""
     column = {"angle": 1, "frequency": 2}.get(name)
     for (code, values), marker in zip(BOUNDARY_INTEGRAL_CODES.items(), "*p<"):
         if column and values[column]:
-            label = f"{code},\n  boundary integral, unbounded"
+            label = f"{code},\n  boundary integral"
             panel.loglog(values[0], values[column], marker, mfc="white", mec="black", ms=9, ls="", label=label)
 
 
 def _floor(panel: Axes, one: Scene, name: str, floor: dict[str, float]) -> None:
     """Draw what the reference is good for."""
-    level = floor.get(name, 0)
+    level = UNCERTAIN.get(one.name, {}).get(name) or floor.get(name, 0)
     if one.name == "shear" and name in ("angle", "frequency"):
         level = UNCERTAINTY / SHEAR["box"][0.7, 10][("angle", "frequency").index(name)]
     if name not in ("area", "length") and level:

@@ -8,7 +8,8 @@ from typing import Callable
 
 import numpy as np
 
-from studies.common.curves import last_markers, material_distance, outline_distance, radius
+from petves.run import Run
+from studies.common.curves import material_distance, outline_distance, radius
 from studies.common.engine import Case, Series
 from studies.common.paper import shear_errors
 from studies.common.scenes import CHANNEL_V, LAST_ONLY, PAPER_MEMBRANE, PEAK, cells, ellipse, fine_options, option_file
@@ -22,14 +23,16 @@ SCHEMES = {
     "split": words("-scheme_type split"),
     "coupled 1, uncorrected": FIRST_ORDER | PAPER_MEMBRANE,
     "coupled 2, uncorrected": SECOND_ORDER | PAPER_MEMBRANE,
-    "coupled 2, corrected": SECOND_ORDER,
-    "coupled 2, corrected, ib6": SECOND_ORDER | words("-delta_type ib6 -vesicle_spacing 1.5"),
-    "direct, corrected": words("-scheme_type direct -scheme_order 2"),
+    "coupled 2, exact": SECOND_ORDER,
+    "coupled 3, exact": words("-scheme_type coupled"),
+    "direct, exact": words("-scheme_type direct"),
 }
-BEST, WIDE = "coupled 2, corrected", "coupled 2, corrected, ib6"
-CORRECTED = (BEST, WIDE)
+BEST, DEFAULT, DIRECT = tuple(SCHEMES)[5:]
+EXACT = (BEST, DEFAULT)
+"""Those with the exact near field, among which settings are recommended."""
 FIRST = tuple(SCHEMES)[:3]  # those of the paper and before, whose points are chosen by dt/h
-ERRORS = ("largest", "shape", "energy", "angle", "frequency", "velocity", "area", "length")
+ERRORS = tuple("largest shape energy angle frequency velocity place gap viscosity force area length".split())
+KEPT = ("steps", "solves", "step_seconds")
 ADAPTIVE_STEPS = 60  # for the estimate of work
 
 
@@ -38,7 +41,7 @@ class Point:
     """One point: a scheme on one grid with one step, or one tolerance of the step's control; the other is 0."""
 
     scheme: str  # key of SCHEMES
-    cells: int  # of the scene's measure: across the box, or a unit of length (channel)
+    cells: int  # of the scene's measure: across the box, or a unit of length (channel); free: markers
     dt: float = 0.0
     tolerance: float = 0.0  # -time_adapt_tol
 
@@ -69,13 +72,18 @@ class Scene:
     reference: dict[str, str] = field(default_factory=dict)  # the fine run; empty: errors against boundary integrals
     other: dict[str, str] = field(default_factory=dict)  # changed in another, which shows how far that has converged
     quick: dict[str, str] = field(default_factory=dict)  # changed in the reference of a quick call
+    more: Callable[[Series], dict[str, object]] = lambda series: {}  # what the errors need besides `_measure`
+
+    def measure(self, series: Series, folder: Path) -> dict[str, object]:
+        """Return what the errors of the scene need of a run."""
+        return _measure(series, folder) | self.more(series)
 
     def case(self, point: Point, repeat: int, fine: dict) -> Case:
         """Return the run of a point; fine: the measures of the reference."""
 
         def measure(series: Series, folder: Path) -> dict[str, object]:
-            found = _measure(series, folder)
-            return {key: found[key] for key in ("steps", "solves")} | {"errors": self.errors(found, fine)}
+            found = self.measure(series, folder)
+            return {key: found[key] for key in KEPT} | {"errors": self.errors(found, fine)}
 
         options = self.options(point) | LAST_ONLY | LIMITS | SCHEMES[point.scheme] | point.step()
         return Case(f"{self.name}_{point.label()}_{repeat}", options, measure, may_fail=True)
@@ -87,7 +95,7 @@ class Scene:
     def fine(self, other: bool = False) -> Case:
         """Return the reference run, or the other fine one."""
         options = self.reference | (self.other if other else {}) | LAST_ONLY
-        return Case(f"{self.name}_{'other' if other else 'reference'}", options, _measure)
+        return Case(f"{self.name}_{'other' if other else 'reference'}", options, self.measure)
 
     def work(self, point: Point) -> float:
         """Return an estimate of the work of a point: cells times steps."""
@@ -96,43 +104,45 @@ class Scene:
 
 
 def _measure(series: Series, folder: Path) -> dict[str, object]:
-    """Return what the errors of every scene need of a run."""
-    markers = last_markers(folder)
+    """Return what the errors of most scenes need of a run."""
+    run = Run.read(folder)
     return {
         "steps": len(series["time"]) - 1,
         "solves": float(series["nsolve"].sum()),
+        "step_seconds": float(series["wall"].sum()),
         "energy": series["energy_bending"][-1],
         "angle": series["inclination"][-1] / np.pi,
         "frequency": series["frequency"][-1],
         "area": abs(series["area_error"][-1]),
         "length": abs(series["length_error"][-1]),
-        "rise": series["center_y"][-1] - series["center_y"][0],
-        "radius": series["length"][0] / (2 * np.pi),
-        "markers": np.round(markers, 9).ravel().tolist(),
+        "radius": series["length"][0] / (2 * np.pi * run.vesicles),
+        "outlines": [np.round(run.outline(-1, k)[:-1], 10).tolist() for k in range(run.vesicles)],
     }
 
 
-def _markers(found: dict) -> np.ndarray:
-    return np.reshape(found["markers"], (-1, 2))
+def shape_error(found: dict, fine: dict) -> float:
+    """Return the root mean square distance over R0 of all markers from a fine run's, at equal material points."""
+    apart = [material_distance(np.array(a), np.array(b)) for a, b in zip(found["outlines"], fine["outlines"])]
+    return float(np.mean(np.square(apart)) ** 0.5 / fine["radius"])
 
 
-def _drift(found: dict) -> dict[str, float]:
+def drift(found: dict) -> dict[str, float]:
+    """Return the errors of area and length."""
     return {key: found[key] for key in ("area", "length")}
 
 
 def _relax_errors(found: dict, fine: dict) -> dict[str, float]:
-    shape = material_distance(_markers(found), _markers(fine)) / fine["radius"]
-    return {"shape": shape, "energy": abs(found["energy"] / fine["energy"] - 1)} | _drift(found)
+    return {"shape": shape_error(found, fine), "energy": abs(found["energy"] / fine["energy"] - 1)} | drift(found)
 
 
 def _shear_errors(found: dict, fine: dict) -> dict[str, float]:
     errors = map(abs, shear_errors(found["angle"], found["frequency"], 0.7, 10))
-    return dict(zip(("angle", "frequency"), errors)) | _drift(found)
+    return dict(zip(("angle", "frequency"), errors)) | drift(found)
 
 
 def _channel_errors(found: dict, fine: dict) -> dict[str, float]:
-    shape = outline_distance(_markers(found), _markers(fine)) / fine["radius"]
-    return {"velocity": abs(found["rise"] / fine["rise"] - 1), "shape": shape} | _drift(found)
+    shape = outline_distance(*(np.array(one["outlines"][0]) for one in (found, fine))) / fine["radius"]
+    return {"velocity": abs(found["rise"] / fine["rise"] - 1), "shape": shape} | drift(found)
 
 
 def relax_options(point: Point) -> dict[str, str]:
@@ -167,10 +177,10 @@ def _relax_points() -> list[Point]:
     points += over_h("split", 2, (512,), (2,))
     points += grid("coupled 1, uncorrected", (32, 64, 128, 256), dts=(1 / 16, 1 / 64, 1 / 256))
     points += grid("coupled 2, uncorrected", (32, 64, 128, 256), tolerances=(1e-2, 1e-3, 1e-4))
-    points += grid(BEST, (16, 20, 24, 28, 32), tolerances=(1e-2, 1e-3, 1e-4))
-    points += grid(BEST, (40, 48, 64, 96, 128), tolerances=(1e-3, 1e-4, 1e-5))
-    points += grid(WIDE, (32, 48, 64, 96), tolerances=(1e-3, 1e-4))
-    return points + grid("direct, corrected", (24, 32, 48), tolerances=(1e-3,))
+    points += grid(BEST, (16, 24, 32, 48, 64), tolerances=(1e-2, 1e-3, 1e-4))
+    points += grid(DEFAULT, (16, 24, 32, 48, 64, 128, 256), tolerances=(1e-2, 1e-3, 1e-4))
+    points += grid(DEFAULT, (32, 48, 64), tolerances=(1e-5,))
+    return points + grid(DIRECT, (24, 32), tolerances=(1e-3,))
 
 
 def _shear_points() -> list[Point]:
@@ -179,9 +189,9 @@ def _shear_points() -> list[Point]:
     points += over_h("split", 8, (64, 128), (2, 8, 32)) + over_h("split", 8, (256,), (2, 8))
     for name in ("coupled 1, uncorrected", "coupled 2, uncorrected"):
         points += grid(name, (48, 64, 128), dts=(0.1, 0.05, 0.0125)) + grid(name, (256,), dts=(0.05,))
-    points += grid(BEST, (32, 40, 48, 64, 96, 128), dts=(0.1, 0.05, 0.025, 0.0125))
-    points += grid(BEST, (192, 256), dts=(0.05, 0.025)) + grid(WIDE, (48, 64, 96, 128, 192, 256), dts=(0.05,))
-    return points + grid("direct, corrected", (48, 64), dts=(0.1,))
+    points += grid(BEST, (24, 32, 64, 128), dts=(0.1, 0.05, 0.025))
+    points += grid(DEFAULT, (16, 24, 32, 48, 64, 96, 128, 192, 256), dts=(0.2, 0.1, 0.05))
+    return points + grid(DIRECT, (32,), dts=(0.1,))
 
 
 def _channel_points() -> list[Point]:
@@ -190,9 +200,9 @@ def _channel_points() -> list[Point]:
     points += over_h("split", 1 / PEAK, (8, 16), (2, 8, 32)) + over_h("split", 1 / PEAK, (32,), (2,))
     for name in ("coupled 1, uncorrected", "coupled 2, uncorrected"):
         points += grid(name, (8, 16), dts=(0.12, 0.03, 0.0075)) + grid(name, (32,), dts=(0.03,))
-    points += grid(BEST, (5, 6, 8, 12), dts=(0.12, 0.06, 0.03, 0.015, 0.0075)) + grid(BEST, (16,), dts=(0.03, 0.0075))
-    points += grid(WIDE, (6, 8, 12), dts=(0.03, 0.0075))
-    return points + grid("direct, corrected", (6,), dts=(0.12,))
+    points += grid(BEST, (5, 8, 12), dts=(0.12, 0.06, 0.03))
+    points += grid(DEFAULT, (3, 4, 5, 6, 8, 12, 16), dts=(0.12, 0.06, 0.03))
+    return points + grid(DIRECT, (4,), dts=(0.12,))
 
 
 # fmt: off
@@ -205,7 +215,8 @@ SCENES = (
           ("angle", "frequency", "area", "length"), tuple(_shear_points())),
     Scene("channel", "migration in a channel, section 5.5, window 12 x 6, $t = 24$", channel_options, 1, 24,
           _channel_errors, ("velocity", "shape"), tuple(_channel_points()),
-          channel_options(Point(BEST, 56)) | SCHEMES[BEST] | {"-time_step": "0.0025"},
-          words("-domain_cells 480,240"), words("-domain_cells 240,120 -time_step 0.00375")),
+          channel_options(Point(DEFAULT, 40)) | {"-time_step": "0.015"}, words("-domain_cells 336,168 -time_step 0.02"),
+          words("-domain_cells 120,60 -time_step 0.03"),
+          more=lambda series: {"rise": series["center_y"][-1] - series["center_y"][0]}),
 )
 # fmt: on
