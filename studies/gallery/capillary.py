@@ -16,6 +16,8 @@ from studies.gallery.scene import Scene, Values, case, seconds
 STRENGTHS = (2, 10, 20, 40)
 HEIGHTS = {3.0: 18, 10 / 3: 20, 5.0: 30}
 """Height of the channel over R0, and its cells."""
+ALONG = tuple(product((5, 10, 15, 20), {2.5: 15, 3.0: 18, 10 / 3: 20}.items()))
+"""Strength, height and cells of the runs whose cell starts along the flow."""
 
 
 def capillary(strength: float, height: float) -> Case:
@@ -37,6 +39,36 @@ def capillary(strength: float, height: float) -> Case:
     options = f"-flow_ca {strength} -flow_half_width {half!r} -domain_box 0,8,{-half!r},{half!r}"
     name = f"{strength}_{height:.3g}"
     return case(name, "capillary", f"{options} -domain_cells 48,{HEIGHTS[height]}", measure, may_fail=True)
+
+
+def along(strength: float, height: float, cells: int) -> Case:
+    """Return an ellipse that starts along the flow: the last turns of its centre's height, and their times."""
+
+    def measure(series: Series, folder: Path) -> dict[str, object]:
+        turns = turning_points(series["time"], series["center_y"])[-4:]
+        return {"height": series["center_y"][-1], "turns": np.round(turns, 4).tolist()}
+
+    half = height / 2
+    options = (
+        f"-flow_ca {strength} -flow_half_width {half!r} -domain_box 0,8,{-half!r},{half!r} -domain_cells 48,{cells}"
+    )
+    start = "-vesicle_shape ellipse -vesicle_angle 0 -vesicle_center 2,.2 -time_end 400"
+    return case(f"along_{strength}_{height:.3g}", "capillary", f"{options} {start}", measure)
+
+
+def turning_points(time: np.ndarray, height: np.ndarray) -> np.ndarray:
+    """Return time and height where a height turns round by more than a hundredth: array (n, 2)."""
+    inner = np.flatnonzero(np.diff(height)[1:] * np.diff(height)[:-1] < 0) + 1
+    kept = [k for k in inner if abs(height[k]) > 0.01]
+    return np.column_stack([time[kept], height[kept]])
+
+
+def swing(found: dict, peak: float) -> str:
+    """Return what a cell that started along the flow does: amplitude over R0 and period times peak over R0 of the last swing, or its height."""
+    time, height = np.array(found["turns"]).reshape(-1, 2).T
+    if len(height) < 3 or np.any(height[1:] * height[:-1] > 0):
+        return f"settled, {found['height']:+.2f}"
+    return f"snaking, {np.abs(height[-2:]).mean():.3f}, {2 * (time[-1] - time[-2]) * peak:.0f}"
 
 
 def asymmetry(outline: np.ndarray) -> float:
@@ -76,8 +108,17 @@ def fill(results: Results) -> Values:
             for one in ones
         ]
         rows.append(f"| {strength:g} | {' | '.join(cells)} |")
+    snakes = {(key[0], key[1][0]): results.get(along(key[0], *key[1])) for key in ALONG}
+    snaking = []
+    for strength in sorted({key[0] for key in snakes}):
+        cells = [swing(one, strength * 0.1) for (other, _), one in snakes.items() if other == strength]
+        snaking.append(f"| {strength:g} | {' | '.join(cells)} |")
     lag = {name: f"{runs[strength, 5.0]['lag']:.3f}" for name, strength in (("slipper_lag", 10), ("parachute_lag", 40))}
-    return lag | {"capillary_rows": "\n".join(rows), "capillary_seconds": seconds(*runs.values())}
+    return lag | {
+        "capillary_rows": "\n".join(rows),
+        "snaking_rows": "\n".join(snaking),
+        "capillary_seconds": seconds(*runs.values(), *snakes.values()),
+    }
 
 
 SCENE = Scene("capillary", fill)
