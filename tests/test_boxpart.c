@@ -37,7 +37,8 @@ static PetscErrorCode WorldCreate(const char options[], PetscInt cells, PetscBoo
   PetscCheck(!*message, s->comm, PETSC_ERR_LIB, "%s", message);
   PetscCall(VecDestroy(&X));
   PetscCall(PetscCalloc1(PetscSqr(2 * w->layout->M), &w->D));
-  if (box) PetscCall(BoxPartAdd(w->coupling->near->box, 1, 0, w->layout->M, 0, w->layout->M, w->D));
+  const MarkerRange all = {0, w->layout->M};
+  if (box) PetscCall(BoxPartAdd(w->coupling->near->box, 1, &all, &all, w->D));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
