@@ -13,6 +13,15 @@ typedef struct {
   PetscReal *D; /* [2M][2M] */
 } World;
 
+/* D of all markers, on every rank. */
+static PetscErrorCode AddAll(BoxPart box, Layout l, PetscReal D[]) {
+  const MarkerRange all = {0, l->M};
+  PetscFunctionBeginUser;
+  PetscCall(BoxPartAdd(box, 1, &all, &all, D));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, D, (PetscMPIInt)(4 * l->M * l->M), MPIU_REAL, MPI_SUM, l->comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode WorldCreate(const char options[], PetscInt cells, PetscBool box, World *w) {
   char all[1024], message[PETVES_MAX_MESSAGE];
   PetscScalar *x;
@@ -37,7 +46,7 @@ static PetscErrorCode WorldCreate(const char options[], PetscInt cells, PetscBoo
   PetscCheck(!*message, s->comm, PETSC_ERR_LIB, "%s", message);
   PetscCall(VecDestroy(&X));
   PetscCall(PetscCalloc1(PetscSqr(2 * w->layout->M), &w->D));
-  if (box) PetscCall(BoxPartAdd(w->coupling->near->box, 1, 0, w->layout->M, 0, w->layout->M, w->D));
+  if (box) PetscCall(AddAll(w->coupling->near->box, w->layout, w->D));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -141,7 +150,7 @@ static PetscErrorCode CheckRegion(const char name[], const char options[], const
   for (PetscInt k = 0; k < w[0].layout->n; k++)
     BoxTableRows(table, w[0].fluid->grid, w[0].coupling->markers->X + 2 * (w[0].layout->first + k), 1, 0, 2,
                  box->A + 2 * k * all);
-  PetscCall(BoxPartAdd(box, 1, 0, n / 2, 0, n / 2, whole));
+  PetscCall(AddAll(box, w[0].layout, whole));
   for (PetscInt k = 0; k < n * n; k++) {
     largest = PetscMax(largest, PetscAbsReal(whole[k]));
     for (int q = 0; q < 2; q++) off[q] = PetscMax(off[q], PetscAbsReal((q ? w[1].D[k] : whole[k]) - w[0].D[k]));

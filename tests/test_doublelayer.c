@@ -279,7 +279,7 @@ static PetscErrorCode ForcesOf(const Double *d, PetscReal ratio, const PetscReal
   for (PetscInt k = 0; k < m; k++) {
     for (PetscInt i = 0; i < n; i++) F[k * size + i] = (1 + ratio) / 2 * U[k * n + i];
     F[k * size + n] = 0;
-    PetscCall(DenseMultAdd(n, n, ratio - 1, D, U + k * n, F + k * size));
+    PetscCall(DenseMultAdd(PETSC_FALSE, n, n, ratio - 1, D, U + k * n, F + k * size));
   }
   PetscCall(DenseFactor(size, A, pivot, &factored));
   CHECK(factored, "the forces of a motion, ratio %g", ratio);

@@ -30,29 +30,30 @@ PetscErrorCode DenseSolve(PetscInt n, const PetscReal A[], const PetscBLASInt pi
 extern void sgetrs_(const char *, const PetscBLASInt *, const PetscBLASInt *, const float *, const PetscBLASInt *,
                     const PetscBLASInt *, float *, const PetscBLASInt *, PetscBLASInt *);
 
-PetscErrorCode DenseSolveSingle(PetscInt n, const float A[], const PetscBLASInt pivot[], PetscReal x[]) {
-  PetscBLASInt size, info;
-  const PetscBLASInt one = 1;
+PetscErrorCode DenseSolveSingle(PetscInt n, const float A[], const PetscBLASInt pivot[], PetscInt nrhs, PetscReal X[]) {
+  PetscBLASInt size, columns, info;
   float *single;
   PetscFunctionBeginUser;
   PetscCall(PetscBLASIntCast(n, &size));
-  PetscCall(PetscMalloc1(n, &single));
-  for (PetscInt k = 0; k < n; k++) single[k] = (float)x[k];
-  PetscCallBLAS("sgetrs", sgetrs_("N", &size, &one, A, &size, pivot, single, &size, &info));
-  for (PetscInt k = 0; k < n; k++) x[k] = single[k];
+  PetscCall(PetscBLASIntCast(nrhs, &columns));
+  PetscCall(PetscMalloc1(n * nrhs, &single));
+  for (PetscInt k = 0; k < n * nrhs; k++) single[k] = (float)X[k];
+  PetscCallBLAS("sgetrs", sgetrs_("N", &size, &columns, A, &size, pivot, single, &size, &info));
+  for (PetscInt k = 0; k < n * nrhs; k++) X[k] = single[k];
   PetscCall(PetscFree(single));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode DenseMultAdd(PetscInt m, PetscInt n, PetscReal alpha, const PetscReal A[], const PetscReal x[],
-                            PetscReal y[]) {
+PetscErrorCode DenseMultAdd(PetscBool transpose, PetscInt m, PetscInt n, PetscReal alpha, const PetscReal A[],
+                            const PetscReal x[], PetscReal y[]) {
   PetscBLASInt rows, columns;
   const PetscBLASInt step = 1;
   const PetscReal one = 1;
   PetscFunctionBeginUser;
   PetscCall(PetscBLASIntCast(m, &rows));
   PetscCall(PetscBLASIntCast(n, &columns));
-  PetscCallBLAS("BLASgemv", BLASgemv_("N", &rows, &columns, &alpha, A, &rows, x, &step, &one, y, &step));
+  PetscCallBLAS("BLASgemv",
+                BLASgemv_(transpose ? "T" : "N", &rows, &columns, &alpha, A, &rows, x, &step, &one, y, &step));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -10,12 +10,14 @@ PETSC_EXTERN PetscErrorCode DenseFactor(PetscInt n, PetscReal A[], PetscBLASInt 
 PETSC_EXTERN PetscErrorCode DenseSolve(PetscInt n, const PetscReal A[], const PetscBLASInt pivot[], PetscBool transpose,
                                        PetscInt nrhs, PetscReal X[]);
 
-/* DenseSolveSingle - x := A^-1 x for the factored A in single precision, which takes half the time; x in double. */
-PETSC_EXTERN PetscErrorCode DenseSolveSingle(PetscInt n, const float A[], const PetscBLASInt pivot[], PetscReal x[]);
+/* DenseSolveSingle - X := A^-1 X for the factored A in single precision, which takes half the time; X of nrhs columns,
+   in double. */
+PETSC_EXTERN PetscErrorCode DenseSolveSingle(PetscInt n, const float A[], const PetscBLASInt pivot[], PetscInt nrhs,
+                                             PetscReal X[]);
 
-/* DenseMultAdd - y += alpha A x, A (m x n). */
-PETSC_EXTERN PetscErrorCode DenseMultAdd(PetscInt m, PetscInt n, PetscReal alpha, const PetscReal A[],
-                                         const PetscReal x[], PetscReal y[]);
+/* DenseMultAdd - y += alpha A x, or (transpose) alpha A^T x, A (m x n). */
+PETSC_EXTERN PetscErrorCode DenseMultAdd(PetscBool transpose, PetscInt m, PetscInt n, PetscReal alpha,
+                                         const PetscReal A[], const PetscReal x[], PetscReal y[]);
 
 /* DenseProduct - C = A B, or (transpose) A^T B: C (m x n), B (k x n), A (m x k) or (k x m). */
 PETSC_EXTERN PetscErrorCode DenseProduct(PetscBool transpose, PetscInt m, PetscInt n, PetscInt k, const PetscReal A[],

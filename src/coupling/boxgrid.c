@@ -120,7 +120,7 @@ static PetscErrorCode Solve(BoxGrid *b) {
 }
 
 /* What the lattice has of a part of place j's source at place i, less what the near field gives of the walls: the
-   velocity L[2]. */
+   velocity L[2]; with the exact images where the smooth part itself is wanted. */
 static void Lattice(BoxGrid *b, PetscInt i, PetscInt j, int part, PetscReal L[2]) {
   const PetscReal *X = b->markers->X, h = b->fluid->grid->h;
   const PetscReal plain[2] = {X[2 * i] - X[2 * j], X[2 * i + 1] - X[2 * j + 1]};
@@ -137,6 +137,7 @@ static void Lattice(BoxGrid *b, PetscInt i, PetscInt j, int part, PetscReal L[2]
   }
   NearLatticePair(&b->near, i, j, d, S);
   NearImageAdd(b->image, i, j, d, S, C);
+  if (b->lattice->whole) NearImageAddBlake(b->image, i, j, d, -1, C);
   for (int c = 0; c < 2; c++) {
     const int at = c == part ? c : 2 + c;
     L[c] = fade * (S[at] - C[at]);

@@ -16,6 +16,7 @@ typedef struct {
   const OffsetTable *stokeslet;
   const ImageTable *half;    /* in front of a wall; NULL without walls */
   const OffsetTable *dipole; /* [2] */
+  PetscBool whole;           /* the smooth part itself is wanted: less the exact images in walls */
 } BoxLattice;
 
 /* BoxGridAdd - W += scale times the smooth part of the grid `spec`, with the named kernel, its lattice as far as it is

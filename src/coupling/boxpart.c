@@ -111,18 +111,34 @@ PetscErrorCode BoxPartApply(BoxPart b, PetscReal alpha, const PetscScalar F[], P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode BoxPartAdd(BoxPart b, PetscReal scale, PetscInt first, PetscInt n, PetscInt begin, PetscInt end,
-                          PetscReal out[]) {
+/* Rows of A of the markers in a range: the own ones, or made here and to be freed. */
+static PetscErrorCode RangeRows(BoxPart b, const MarkerRange *range, PetscReal **rows, PetscBool *made) {
   const Layout l = b->markers->layout;
   const PetscInt r = b->at->rank;
-  const PetscBool own = first >= l->first && first + n <= l->first + l->n ? PETSC_TRUE : PETSC_FALSE;
-  PetscReal *all = own ? b->A + 2 * (first - l->first) * r : NULL;
   PetscFunctionBeginUser;
-  if (!own) PetscCall(PetscMalloc1(2 * n * r, &all));
-  for (PetscInt k = 0; k < n && !own; k++) PlaceMarker(b, first + k, all + 2 * k * r);
-  for (PetscInt j = 0; j < 2 * n; j++)
-    for (PetscInt i = 2 * (begin - first); i < 2 * (end - first); i++)
-      out[j * 2 * n + i] += scale * BoxProduct(r, b->at->l, all + i * r, all + j * r);
-  if (!own) PetscCall(PetscFree(all));
+  *made = range->first < l->first || range->first + range->n > l->first + l->n ? PETSC_TRUE : PETSC_FALSE;
+  if (!*made)
+    *rows = b->A + 2 * (range->first - l->first) * r;
+  else
+    PetscCall(PetscMalloc1(2 * range->n * r, rows));
+  for (PetscInt k = 0; k < range->n && *made; k++) PlaceMarker(b, range->first + k, *rows + 2 * k * r);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode BoxPartAdd(BoxPart b, PetscReal scale, const MarkerRange *rows, const MarkerRange *columns,
+                          PetscReal out[]) {
+  const Layout l = b->markers->layout;
+  const PetscInt r = b->at->rank, begin = PetscMax(l->first, rows->first),
+                 end = PetscMin(l->first + l->n, rows->first + rows->n);
+  PetscReal *x, *y;
+  PetscBool made[2];
+  PetscFunctionBeginUser;
+  PetscCall(RangeRows(b, rows, &x, &made[0]));
+  PetscCall(RangeRows(b, columns, &y, &made[1]));
+  for (PetscInt j = 0; j < 2 * columns->n; j++)
+    for (PetscInt i = 2 * (begin - rows->first); i < 2 * (end - rows->first); i++)
+      out[j * 2 * rows->n + i] += scale * BoxProduct(r, b->at->l, x + i * r, y + j * r);
+  if (made[0]) PetscCall(PetscFree(x));
+  if (made[1]) PetscCall(PetscFree(y));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -22,8 +22,9 @@ struct _p_BoxPart {
   PetscLogEvent make;
 };
 
-/* BoxPartCreate - for markers on the grid that `spec` makes, which is borrowed as the lattice's tables of forces are.
-   Collective. */
+/* BoxPartCreate - for markers on the grid that `spec` makes, which is borrowed as the lattice's tables of forces are. A
+   lattice that is whole makes it the smooth part W_H of the coarser grid, less the exact images in walls. Collective.
+ */
 PETSC_EXTERN PetscErrorCode BoxPartCreate(const FluidSpec *spec, Markers markers, const BoxLattice *lattice,
                                           BoxPart *box);
 PETSC_EXTERN PetscErrorCode BoxPartDestroy(BoxPart *box);
@@ -39,7 +40,7 @@ static inline PetscReal BoxPartImage(BoxPart box, PetscReal d[2]) {
 /* BoxPartApply - U += alpha D F, own parts F[2n] and U[2n] of marker vectors, F as NearFieldApply's. Collective. */
 PETSC_EXTERN PetscErrorCode BoxPartApply(BoxPart box, PetscReal alpha, const PetscScalar F[], PetscScalar U[]);
 
-/* BoxPartAdd - out += scale D between the markers first .. first + n - 1, out[2n][2n], rows of the markers begin .. end
-   - 1 only. Not collective. */
-PETSC_EXTERN PetscErrorCode BoxPartAdd(BoxPart box, PetscReal scale, PetscInt first, PetscInt n, PetscInt begin,
-                                       PetscInt end, PetscReal out[]);
+/* BoxPartAdd - out += scale D, from forces on the markers in columns to the own ones in rows, out[2 n of columns][2 n
+   of rows]. Not collective. */
+PETSC_EXTERN PetscErrorCode BoxPartAdd(BoxPart box, PetscReal scale, const MarkerRange *rows,
+                                       const MarkerRange *columns, PetscReal out[]);

@@ -45,15 +45,30 @@ void BoxBlockSum(const BoxBlock *q, int first, int components, const PetscReal w
   }
 }
 
+/* Functions at a place in the table, or beyond its end of their straight line. */
+static void StraightOn(const BoxTable *t, int dir, PetscReal x, PetscReal values[]) {
+  const PetscReal low = t->axis[dir].low, high = t->axis[dir].high, inner = PetscMax(low, PetscMin(high, x));
+  PetscReal next[BOX_FUNCTIONS];
+  if (!t->axis[dir].wall || inner == x) {
+    BoxTableFunctions(t, dir, x, values);
+    return;
+  }
+  BoxTableFunctions(t, dir, inner, values);
+  BoxTableFunctions(t, dir, inner == low ? low + t->H : high - t->H, next);
+  const PetscReal part = -PetscAbsReal(x - inner) / t->H;
+  for (PetscInt f = 0; f < t->functions[dir]; f++) values[f] += part * (next[f] - values[f]);
+}
+
 void BoxTableRows(const BoxTable *t, Grid g, const PetscReal X[2], PetscReal part, int first, int count,
                   PetscReal rows[]) {
   PetscReal vx[BOX_FUNCTIONS], vy[BOX_FUNCTIONS], x[2] = {X[0], X[1]}, factor[BOX_COMPONENTS];
   PetscReal weight[BOX_BLOCK_FUNCTIONS];
   (void)PetscArrayzero(rows, count * t->rank);
   if (part == 0) return;
-  BoxTableGoOn(t, g, x, factor);
-  BoxTableFunctions(t, 0, x[0], vx);
-  BoxTableFunctions(t, 1, x[1], vy);
+  if (!t->whole) BoxTableGoOn(t, g, x, factor);
+  for (int c = 0; c < BOX_COMPONENTS && t->whole; c++) factor[c] = 1;
+  (t->whole ? StraightOn : BoxTableFunctions)(t, 0, x[0], vx);
+  (t->whole ? StraightOn : BoxTableFunctions)(t, 1, x[1], vy);
   for (PetscInt q = 0; q < t->blocks; q++)
     for (int c = 0; c < count; c++) {
       const BoxBlock *b = &t->block[q];

@@ -268,9 +268,9 @@ static PetscErrorCode Pair(const FluidSpec *run, const char kernel[], const BoxL
   spec.plan = 0; /* the same bits in every run */
   PetscCall(PetscStrncpy(spec.helmholtz, "fftw_tridiagonal", sizeof(spec.helmholtz)));
   PetscCall(PetscStrncpy(spec.poisson, "fftw_tridiagonal", sizeof(spec.poisson)));
-  for (int fine = 0; fine < 2; fine++) {
+  for (int fine = 0; fine < (lattice->whole ? 1 : 2); fine++) {
     for (int d = 0; d < 2; d++) spec.cells[d] = fine ? halves * cells[d] / 2 : cells[d];
-    PetscCall(BoxGridAdd(&spec, run->comm, kernel, lattice, axis, fine ? scale : -scale, W));
+    PetscCall(BoxGridAdd(&spec, run->comm, kernel, lattice, axis, lattice->whole ? 1 : fine ? scale : -scale, W));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -283,6 +283,7 @@ PetscErrorCode BoxTableCreate(const FluidSpec *spec, const char kernel[], const 
   FluidSpec pair = *spec;
   BoxAxis axis[2];
   PetscFunctionBeginUser;
+  t->whole = lattice->whole;
   t->components = dipoles ? BOX_COMPONENTS : 2;
   CoarseCells(spec, cells);
   t->H = (spec->box[1] - spec->box[0]) / cells[0];

@@ -61,7 +61,8 @@ static PetscErrorCode AssembleTogether(DenseBlocks b, Mobility mobility, PetscRe
   PetscCall(PetscMPIIntCast(4 * l->M * l->M, &size));
   PetscCall(AssembleTable(mobility, 0, l->M, l->rank, l->size, Mob));
   if (b->coupling->near)
-    PetscCall(NearFieldAdd(b->coupling->near, PetscSqr(b->coupling->fluid->grid->h), PETSC_TRUE, 0, l->M, Mob));
+    PetscCall(NearFieldAdd(b->coupling->near, PetscSqr(b->coupling->fluid->grid->h),
+                           MobilityHasBoxPart(mobility) ? PETSC_FALSE : PETSC_TRUE, 0, l->M, Mob));
   if (l->size > 1)
     PetscCallMPI(MPI_Reduce(l->rank == b->root ? MPI_IN_PLACE : Mob, Mob, size, MPIU_REAL, MPI_SUM, b->root, l->comm));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -95,10 +96,11 @@ void DenseBlocksPlace(DenseBlocks b) {
   }
 }
 
-PetscErrorCode DenseBlocksFactor(DenseBlocks b, Mobility mobility, PetscReal a0, PetscBool *factored) {
+PetscErrorCode DenseBlocksFactor(DenseBlocks b, Mobility mobility, ObstacleBlock solid, PetscReal a0,
+                                 PetscBool *factored) {
   const Membrane m = b->coupling->membrane;
   const PetscReal h2 = PetscSqr(b->coupling->fluid->grid->h);
-  PetscBool good = PETSC_TRUE, failed;
+  PetscBool good = PETSC_TRUE, singular = PETSC_FALSE, failed;
   PetscReal *Mob, *motion = NULL;
   PetscInt most = b->together ? m->layout->M : 0;
   PetscLogEvent event;
@@ -109,6 +111,8 @@ PetscErrorCode DenseBlocksFactor(DenseBlocks b, Mobility mobility, PetscReal a0,
   PetscCall(PetscMalloc1(4 * most * most, &Mob));
   if (b->together) {
     PetscCall(AssembleTogether(b, mobility, Mob));
+    if (solid) PetscCall(ObstacleBlockCouple(solid, mobility, Mob, &singular));
+    if (singular) good = PETSC_FALSE;
     PetscCall(AssembleMotion(b, a0, 0, m->layout->M, &motion));
   }
   for (PetscInt k = 0; k < b->count && good; k++) {

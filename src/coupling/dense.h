@@ -5,19 +5,12 @@
        U1 = N^-1 U,   sigma = C^-1 (Dm U1/h^2 - r_s),   U3 = U1 - N^-1 M Dm^T sigma/h^2.
    A block is one rank's, the owner of its first vesicle. */
 #pragma once
-#include "coupling/mobility.h"
+#include "coupling/obstacleblock.h"
 
 /* Vesicles whose markers together are at most this many share one block, which knows how they move one another. */
 #define DENSE_TOGETHER 300
 
 typedef struct _p_DenseBlocks *DenseBlocks;
-
-/* DenseRenewalCost - of so many dense blocks of n markers each, made anew, in iterations on so many cells: from the
-   operation counts and the speeds of one core; a number of the problem alone, so that iterations do not depend on the
-   machine or its load. Not collective. */
-static inline PetscReal DenseRenewalCost(PetscReal blocks, PetscReal n, PetscReal cells) {
-  return blocks * (4e-9 * n * n * n + 6e-7 * n * n) / (1.5e-8 * cells + blocks * 1e-8 * n * n + 5e-5);
-}
 
 PETSC_EXTERN PetscErrorCode DenseBlocksCreate(Coupling coupling, DenseBlocks *blocks);
 PETSC_EXTERN PetscErrorCode DenseBlocksDestroy(DenseBlocks *blocks);
@@ -27,9 +20,11 @@ PETSC_EXTERN PetscErrorCode DenseBlocksDestroy(DenseBlocks *blocks);
 PETSC_EXTERN void DenseBlocksPlace(DenseBlocks blocks);
 
 /* DenseBlocksFactor - assemble Mob (mobility NULL: zero, the near field is all) at the coupling's markers, factor N and
-   C for a0 and the coupling's label speeds. Ranks share the sums of Mob of a block for all, its owner does the rest.
-   factored is false, on every rank, when a matrix is singular. Collective. */
-PETSC_EXTERN PetscErrorCode DenseBlocksFactor(DenseBlocks blocks, Mobility mobility, PetscReal a0, PetscBool *factored);
+   C for a0 and the coupling's label speeds. A block for all is that in the presence of the obstacles, whose own block
+   is `solid`, or NULL. Ranks share the sums of Mob of a block for all, its owner does the rest. factored is false, on
+   every rank, when a matrix is singular. Collective. */
+PETSC_EXTERN PetscErrorCode DenseBlocksFactor(DenseBlocks blocks, Mobility mobility, ObstacleBlock solid, PetscReal a0,
+                                              PetscBool *factored);
 
 /* DenseBlocksSolve - from the own U[2n] and sigma[n] = r_s: sigma, and U overwritten by U3. Collective. */
 PETSC_EXTERN PetscErrorCode DenseBlocksSolve(DenseBlocks blocks, PetscScalar U[], PetscScalar sigma[]);

@@ -105,6 +105,7 @@ PetscErrorCode DenseBlockSolve(Membrane m, PetscReal h2, const DenseBlock *q, Pe
     for (PetscInt k = 0; k < n; k++) sigma[j * n + k] = d[k] / h2 - sigma[j * n + k];
   }
   PetscCall(DenseSolve(n, q->C, q->pivot_C, PETSC_FALSE, nrhs, sigma));
-  for (PetscInt j = 0; j < nrhs; j++) PetscCall(DenseMultAdd(2 * n, n, -1, q->K, sigma + j * n, U + j * 2 * n));
+  for (PetscInt j = 0; j < nrhs; j++)
+    PetscCall(DenseMultAdd(PETSC_FALSE, 2 * n, n, -1, q->K, sigma + j * n, U + j * 2 * n));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

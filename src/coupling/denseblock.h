@@ -29,3 +29,12 @@ PETSC_EXTERN PetscErrorCode DenseBlockFactor(Membrane membrane, PetscReal h2, De
 /* DenseBlockSolve - from nrhs columns of U[2n] and sigma[n] = r_s: sigma, and U overwritten by U3. Not collective. */
 PETSC_EXTERN PetscErrorCode DenseBlockSolve(Membrane membrane, PetscReal h2, const DenseBlock *block, PetscInt nrhs,
                                             PetscScalar U[], PetscScalar sigma[]);
+
+/* DenseRenewalCost - of so many dense blocks of n markers each, made anew, in iterations on so many cells; w: markers
+   of the obstacles that the block knows. From the operation counts and the speeds of one core; a number of the problem
+   alone, so that iterations do not depend on the machine or its load. Not collective. */
+static inline PetscReal DenseRenewalCost(PetscReal blocks, PetscReal n, PetscReal w, PetscReal cells) {
+  const PetscReal own = blocks * n * n, cross = n * w;
+  return (own * (4e-9 * n + 6e-7) + cross * (4e-10 * w + 6e-7)) /
+         (1.5e-8 * cells + 1e-8 * (own + 2 * cross + w * w) + 5e-5);
+}

@@ -160,8 +160,8 @@ PetscErrorCode DoubleLayerApply(DoubleLayer s, PetscReal alpha, PetscScalar y[])
   PetscCall(PetscLogEventBegin(s->apply, 0, 0, 0, 0));
   for (PetscInt k = 0; k < s->blocks; k++) {
     const DoubleBlock *b = &s->block[k];
-    PetscCall(DenseMultAdd(2 * LayoutCount(l, b->row), 2 * LayoutCount(l, b->column), alpha, s->value + b->at,
-                           s->plain + 2 * l->start[b->column], y + 2 * LayoutOffset(l, b->row)));
+    PetscCall(DenseMultAdd(PETSC_FALSE, 2 * LayoutCount(l, b->row), 2 * LayoutCount(l, b->column), alpha,
+                           s->value + b->at, s->plain + 2 * l->start[b->column], y + 2 * LayoutOffset(l, b->row)));
   }
   if (s->box) {
     Tensors(s);

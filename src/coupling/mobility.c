@@ -2,6 +2,12 @@
 
 #define NEAR 14 /* cells up to which stencils are summed where the near field is exact */
 
+/* Whether the mobility between walls can be had from the box part's grids. */
+static PetscBool HasBox(Coupling c) {
+  const Grid g = c->fluid->grid;
+  return c->fluid->steady && c->near && c->near->box && (g->wall[0] || g->wall[1]) ? PETSC_TRUE : PETSC_FALSE;
+}
+
 PetscErrorCode MobilityCreate(const FluidSpec *spec, Coupling c, PetscReal reach, Mobility *out) {
   Mobility m;
   PetscFunctionBeginUser;
@@ -9,7 +15,10 @@ PetscErrorCode MobilityCreate(const FluidSpec *spec, Coupling c, PetscReal reach
   *out = m;
   m->coupling = c;
   m->near = c->near ? NEAR : PETSC_MAX_REAL;
-  PetscCall(MobilityTableCreate(spec, c->markers->kernel, reach, &m->table));
+  if (HasBox(c))
+    PetscCall(MobilityBoxCreate(spec, c, &m->box));
+  else
+    PetscCall(MobilityTableCreate(spec, c->markers->kernel, reach, &m->table));
   PetscCall(PetscMalloc1(2 * c->bodies->layout->M, &m->stencil));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -17,7 +26,8 @@ PetscErrorCode MobilityCreate(const FluidSpec *spec, Coupling c, PetscReal reach
 PetscErrorCode MobilityDestroy(Mobility *mobility) {
   PetscFunctionBeginUser;
   if (!*mobility) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(MobilityTableDestroy(&(*mobility)->table));
+  if ((*mobility)->table) PetscCall(MobilityTableDestroy(&(*mobility)->table));
+  PetscCall(MobilityBoxDestroy(&(*mobility)->box));
   PetscCall(PetscFree((*mobility)->stencil));
   PetscCall(PetscFree(*mobility));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -25,7 +35,7 @@ PetscErrorCode MobilityDestroy(Mobility *mobility) {
 
 PetscErrorCode MobilitySetUp(Mobility m, PetscReal alpha) {
   PetscFunctionBeginUser;
-  PetscCall(MobilityTableSetUp(m->table, alpha));
+  if (m->table) PetscCall(MobilityTableSetUp(m->table, alpha));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -55,7 +65,12 @@ static void Pair(Mobility m, PetscInt i, PetscInt j, PetscReal Mob[4]) {
 
 PetscErrorCode MobilityAssemble(Mobility m, PetscInt first, PetscInt n, PetscInt part, PetscInt parts,
                                 PetscReal Mob[]) {
+  const MarkerRange range = {first, n};
   PetscFunctionBeginUser;
+  if (m->box) {
+    PetscCall(MobilityAssembleBetween(m, &range, &range, part, parts, Mob));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   for (PetscInt k = 2 * first; k < 2 * (first + n); k++) StencilPad(&m->coupling->markers->plain[k], &m->stencil[k]);
   if (parts > 1) PetscCall(PetscArrayzero(Mob, 4 * n * n));
   for (PetscInt i = part; i < n; i += parts)
@@ -66,6 +81,27 @@ PetscErrorCode MobilityAssemble(Mobility m, PetscInt first, PetscInt n, PetscInt
       block[2 * n + 1] = mirror[2 * n + 1] = one[1];
       block[1] = mirror[2 * n] = one[2];
       block[2 * n] = mirror[1] = one[3];
+    }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode MobilityAssembleBetween(Mobility m, const MarkerRange *rows, const MarkerRange *columns, PetscInt part,
+                                       PetscInt parts, PetscReal Mob[]) {
+  const MarkerRange *range[2] = {rows, columns};
+  PetscFunctionBeginUser;
+  for (int q = 0; q < 2; q++)
+    for (PetscInt k = 2 * range[q]->first; k < 2 * (range[q]->first + range[q]->n); k++)
+      StencilPad(&m->coupling->markers->plain[k], &m->stencil[k]);
+  if (parts > 1 || m->box) PetscCall(PetscArrayzero(Mob, 4 * rows->n * columns->n));
+  if (m->box) PetscCall(MobilityBoxAdd(m->box, rows, columns, Mob));
+  for (PetscInt j = part; j < columns->n && !m->box; j += parts)
+    for (PetscInt i = 0; i < rows->n; i++) {
+      PetscReal *x = Mob + 2 * j * 2 * rows->n + 2 * i, *y = x + 2 * rows->n, one[4];
+      Pair(m, rows->first + i, columns->first + j, one);
+      x[0] = one[0];
+      y[1] = one[1];
+      y[0] = one[2];
+      x[1] = one[3];
     }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

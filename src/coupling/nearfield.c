@@ -86,10 +86,16 @@ PetscErrorCode NearFieldDestroy(NearField *near) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode NearFieldAddBoxPart(NearField f, const FluidSpec *spec) {
-  const BoxLattice lattice = {.stokeslet = &f->lattice, .half = f->image ? f->image->table : NULL};
+PetscErrorCode NearFieldCreateBoxPart(NearField f, const FluidSpec *spec, PetscBool whole, BoxPart *box) {
+  const BoxLattice lattice = {.stokeslet = &f->lattice, .half = f->image ? f->image->table : NULL, .whole = whole};
   PetscFunctionBeginUser;
-  PetscCall(BoxPartCreate(spec, f->markers, &lattice, &f->box));
+  PetscCall(BoxPartCreate(spec, f->markers, &lattice, box));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode NearFieldAddBoxPart(NearField f, const FluidSpec *spec) {
+  PetscFunctionBeginUser;
+  PetscCall(NearFieldCreateBoxPart(f, spec, PETSC_FALSE, &f->box));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -217,19 +223,32 @@ PetscErrorCode NearFieldApply(NearField f, PetscReal alpha, const PetscScalar F[
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* out[2n][2n] += scale times a block, rows and columns counted from marker `first`, in its own rows. */
-static void AddBlock(NearField f, const NearBlock *b, PetscReal scale, PetscInt first, PetscInt n, PetscReal out[]) {
+/* The place of row i and column j in a matrix between two ranges. */
+static inline PetscInt Place(const MarkerRange *rows, const MarkerRange *columns, PetscInt i, PetscInt j) {
+  return (j - 2 * columns->first) * 2 * rows->n + i - 2 * rows->first;
+}
+
+/* Whether a body is in a range, which is of whole bodies. */
+static inline PetscBool Within(Layout l, PetscInt body, const MarkerRange *range) {
+  return l->start[body] >= range->first && l->start[body] < range->first + range->n ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* out += scale times a block, in its own rows. */
+static void AddBlock(NearField f, const NearBlock *b, PetscReal scale, const MarkerRange *rows,
+                     const MarkerRange *columns, PetscReal out[]) {
   const Layout l = f->bodies->layout;
   const PetscBool both = b->column >= l->own && b->column < l->end ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool there = Within(l, b->row, rows) && Within(l, b->column, columns) ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool back = both && Within(l, b->column, rows) && Within(l, b->row, columns) ? PETSC_TRUE : PETSC_FALSE;
   NearRow r = NearBlockBegin(l, b);
-  if (r.column < first || r.column >= first + n) return;
+  if (!there && !back) return;
   do
     for (PetscInt k = 0; k < 2 * r.count; k++)
       for (int c = 0; c < 2; c++) {
         const PetscReal value = scale * NearValue(f, b, r.at + c * r.stride + k);
-        const PetscInt i = 2 * (r.row - first) + c, j = 2 * (r.column - first) + k;
-        out[j * 2 * n + i] += value;
-        if (both) out[i * 2 * n + j] += value;
+        const PetscInt i = 2 * r.row + c, j = 2 * r.column + k;
+        if (there) out[Place(rows, columns, i, j)] += value;
+        if (back) out[Place(rows, columns, j, i)] += value;
       }
   while (NearBlockNext(l, b, &r));
 }
@@ -248,16 +267,22 @@ static PetscInt FirstBlock(NearField f, PetscInt marker) {
   return low;
 }
 
-PetscErrorCode NearFieldAdd(NearField f, PetscReal scale, PetscBool box, PetscInt first, PetscInt n, PetscReal out[]) {
+PetscErrorCode NearFieldAddBetween(NearField f, PetscReal scale, PetscBool box, const MarkerRange *rows,
+                                   const MarkerRange *columns, PetscReal out[]) {
   const Layout l = f->bodies->layout;
+  const PetscInt from = PetscMin(rows->first, columns->first);
+  const PetscInt to = PetscMax(rows->first + rows->n, columns->first + columns->n);
   PetscFunctionBeginUser;
-  for (PetscInt b = 0; b < f->fixed.blocks; b++) {
-    const PetscInt row = l->start[f->block[b].row];
-    if (row >= first && row < first + n) AddBlock(f, &f->block[b], scale, first, n, out);
-  }
-  for (PetscInt b = FirstBlock(f, first); b < f->blocks && l->start[f->block[b].row] < first + n; b++)
-    AddBlock(f, &f->block[b], scale, first, n, out);
-  const PetscInt begin = PetscMax(l->first, first), end = PetscMin(l->first + l->n, first + n);
-  if (f->box && box) PetscCall(BoxPartAdd(f->box, scale, first, n, begin, end, out));
+  for (PetscInt b = 0; b < f->fixed.blocks; b++) AddBlock(f, &f->block[b], scale, rows, columns, out);
+  for (PetscInt b = FirstBlock(f, from); b < f->blocks && l->start[f->block[b].row] < to; b++)
+    AddBlock(f, &f->block[b], scale, rows, columns, out);
+  if (f->box && box) PetscCall(BoxPartAdd(f->box, scale, rows, columns, out));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode NearFieldAdd(NearField f, PetscReal scale, PetscBool box, PetscInt first, PetscInt n, PetscReal out[]) {
+  const MarkerRange range = {first, n};
+  PetscFunctionBeginUser;
+  PetscCall(NearFieldAddBetween(f, scale, box, &range, &range, out));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -79,6 +79,10 @@ PETSC_EXTERN PetscErrorCode NearFieldPlace(NearField near);
 /* NearFieldAddBoxPart - from here on with the box part, for the fluid that spec makes. Collective. */
 PETSC_EXTERN PetscErrorCode NearFieldAddBoxPart(NearField near, const FluidSpec *spec);
 
+/* NearFieldCreateBoxPart - BoxPartCreate with the near field's markers and lattice. Collective. */
+PETSC_EXTERN PetscErrorCode NearFieldCreateBoxPart(NearField near, const FluidSpec *spec, PetscBool whole,
+                                                   BoxPart *box);
+
 /* NearFieldApply - U += alpha (C + D) F, D the box part if there is one, own parts F[2n] and U[2n] of marker vectors; F
    is a force times ds (length^3/time^2 with density 1). Collective. */
 PETSC_EXTERN PetscErrorCode NearFieldApply(NearField near, PetscReal alpha, const PetscScalar F[], PetscScalar U[]);
@@ -87,3 +91,8 @@ PETSC_EXTERN PetscErrorCode NearFieldApply(NearField near, PetscReal alpha, cons
    first + n - 1, out[2n][2n] entries interlaced, the rows of own markers only. Not collective. */
 PETSC_EXTERN PetscErrorCode NearFieldAdd(NearField near, PetscReal scale, PetscBool box, PetscInt first, PetscInt n,
                                          PetscReal out[]);
+
+/* NearFieldAddBetween - the same of the velocity of the markers in rows by forces on those in columns, out[2 n of
+   columns][2 n of rows], each a range of whole bodies. Not collective. */
+PETSC_EXTERN PetscErrorCode NearFieldAddBetween(NearField near, PetscReal scale, PetscBool box, const MarkerRange *rows,
+                                                const MarkerRange *columns, PetscReal out[]);

@@ -80,6 +80,20 @@ void NearImageAdd(NearImage m, PetscInt i, PetscInt j, const PetscReal d[2], con
       if (m->end[direction][side]) AddWall(m, direction, side, i, j, d, L, C);
 }
 
+void NearImageAddBlake(NearImage m, PetscInt i, PetscInt j, const PetscReal d[2], PetscReal alpha, PetscReal C[4]) {
+  const PetscReal h = m->markers->grid->h;
+  for (int direction = 0; direction < 2; direction++)
+    for (int side = 0; side < 2; side++) {
+      const PetscReal *y = m->y[direction][side];
+      PetscReal blake[IMAGE_PARTS];
+      if (!y) continue;
+      NearImageBlake(&(ImagePair){d[1 - direction] / h, y[i], y[j]}, blake);
+      blake[IMAGE_TT] += PetscLogReal(h) / (4 * PETSC_PI); /* of lengths, not of cells */
+      blake[IMAGE_NN] += PetscLogReal(h) / (4 * PETSC_PI);
+      NearImageTurn(direction, side, alpha / m->nu, blake, C);
+    }
+}
+
 PetscReal NearImageGap(Grid g, int direction, int side, const NearBounds *a, const NearBounds *b) {
   if (side) return 2 * g->hi[direction] - a->high[direction] - b->high[direction];
   return a->low[direction] + b->low[direction] - 2 * g->lo[direction];

@@ -45,6 +45,11 @@ PETSC_EXTERN PetscErrorCode NearImagePlace(NearImage image, const PaddedStencil 
 PETSC_EXTERN void NearImageAdd(NearImage image, PetscInt i, PetscInt j, const PetscReal d[2], const PetscReal L[4],
                                PetscReal C[4]);
 
+/* NearImageAddBlake - C += alpha times all walls' exact images of the Stokeslet, (length), in the same form. Not
+   collective. */
+PETSC_EXTERN void NearImageAddBlake(NearImage image, PetscInt i, PetscInt j, const PetscReal d[2], PetscReal alpha,
+                                    PetscReal C[4]);
+
 /* NearImageGap - the least distance there can be between markers within `one` and images in a wall of markers within
    `other` (length). Not collective. */
 PETSC_EXTERN PetscReal NearImageGap(Grid grid, int direction, int side, const NearBounds *one, const NearBounds *other);

@@ -1,7 +1,7 @@
 #include "coupling/obstacleblock.h"
 #include "base/agree.h"
 #include "coupling/blas.h"
-#include "coupling/dense.h"
+#include "coupling/denseblock.h"
 #include "coupling/mobilitysolves.h"
 
 struct _p_ObstacleBlock {
@@ -16,6 +16,9 @@ struct _p_ObstacleBlock {
   float *factor;         /* [2W][2W], on root */
   PetscBLASInt *pivot;   /* [2W] */
   PetscScalar *all;      /* [2W] */
+  PetscBool coupled;     /* to the vesicles, by */
+  PetscReal *response;   /* [2M][2W] X, on root */
+  PetscScalar *force;    /* [2M] of vesicles, work */
 };
 
 PetscErrorCode ObstacleBlockCreate(const FluidSpec *spec, Coupling coupling, ObstacleBlock *out) {
@@ -29,7 +32,7 @@ PetscErrorCode ObstacleBlockCreate(const FluidSpec *spec, Coupling coupling, Obs
   b->coupling = coupling;
   b->obstacles = o;
   b->alpha = -1;
-  b->root = LayoutOwner(o->layout, 0);
+  b->root = LayoutOwner(coupling->bodies->layout, 0);
   PetscCall(PetscMalloc1(n, &b->all));
   if (o->layout->rank == b->root) PetscCall(PetscMalloc2(n * n, &b->factor, n, &b->pivot));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -39,6 +42,7 @@ PetscErrorCode ObstacleBlockDestroy(ObstacleBlock *block) {
   PetscFunctionBeginUser;
   if (!*block) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscFree2((*block)->factor, (*block)->pivot));
+  PetscCall(PetscFree2((*block)->response, (*block)->force));
   PetscCall(PetscFree((*block)->all));
   PetscCall(PetscFree(*block));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -91,7 +95,7 @@ static PetscErrorCode Assemble(ObstacleBlock b, PetscReal A[]) {
 static PetscReal RenewalCost(ObstacleBlock b) {
   const Grid g = b->coupling->fluid->grid;
   const PetscReal cells = (PetscReal)g->n[0] * g->n[1], W = b->obstacles->layout->M;
-  return (OnWall(b->obstacles) ? 2 * W : 0) + DenseRenewalCost(1, W, cells);
+  return (OnWall(b->obstacles) ? 2 * W : 0) + DenseRenewalCost(1, W, 0, cells);
 }
 
 static PetscErrorCode Make(ObstacleBlock b, PetscBool *failed) {
@@ -164,13 +168,70 @@ static void Turn(ObstacleBlock b, PetscBool back, PetscScalar F[]) {
   }
 }
 
-PetscErrorCode ObstacleBlockSolve(ObstacleBlock b, PetscScalar F[]) {
+/* h^2 times the velocity of the obstacles by forces on the vesicles, [2M][2W] on root. */
+static PetscErrorCode AssembleCross(ObstacleBlock b, Mobility mobility, PetscReal K[]) {
   const Layout l = b->obstacles->layout;
+  const MarkerRange vesicles = {0, b->coupling->membrane->layout->M}, solid = {vesicles.n, l->M};
+  const PetscReal h2 = PetscSqr(b->coupling->fluid->grid->h);
+  PetscMPIInt size;
   PetscFunctionBeginUser;
-  Turn(b, PETSC_FALSE, F);
-  PetscCall(LayoutToRank(l, b->root, 2, F, b->all));
-  if (l->rank == b->root) PetscCall(DenseSolveSingle(2 * l->M, b->factor, b->pivot, b->all));
-  PetscCall(LayoutFromRank(l, b->root, 2, b->all, F));
-  Turn(b, PETSC_TRUE, F);
+  PetscCall(MobilityAssembleBetween(mobility, &solid, &vesicles, l->rank, l->size, K));
+  PetscCall(NearFieldAddBetween(b->coupling->near, h2, MobilityHasBoxPart(mobility) ? PETSC_FALSE : PETSC_TRUE, &solid,
+                                &vesicles, K));
+  PetscCall(PetscMPIIntCast(4 * solid.n * vesicles.n, &size));
+  if (l->size > 1)
+    PetscCallMPI(MPI_Reduce(l->rank == b->root ? MPI_IN_PLACE : K, K, size, MPIU_REAL, MPI_SUM, b->root, l->comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ObstacleBlockCouple(ObstacleBlock b, Mobility mobility, PetscReal Mob[], PetscBool *failed) {
+  const PetscInt m = 2 * b->coupling->membrane->layout->M, w = 2 * b->obstacles->layout->M;
+  const PetscReal over = 1 / PetscSqr(b->coupling->fluid->grid->h);
+  PetscReal *K, *part;
+  PetscFunctionBeginUser;
+  if (b->obstacles->moving) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ObstacleBlockSetUp(b, failed)); /* a restart comes here first */
+  if (*failed) PetscFunctionReturn(PETSC_SUCCESS);
+  b->coupled = PETSC_TRUE;
+  PetscCall(PetscMalloc1(w * m, &K));
+  PetscCall(AssembleCross(b, mobility, K));
+  if (b->obstacles->layout->rank == b->root) {
+    if (!b->response) PetscCall(PetscMalloc2(w * m, &b->response, m, &b->force));
+    for (PetscInt k = 0; k < w * m; k++) b->response[k] = over * K[k];
+    PetscCall(DenseSolveSingle(w, b->factor, b->pivot, m, b->response));
+    PetscCall(PetscMalloc1(m * m, &part));
+    PetscCall(DenseProduct(PETSC_TRUE, m, m, w, K, b->response, part));
+    for (PetscInt k = 0; k < m * m; k++) Mob[k] -= part[k];
+    PetscCall(PetscFree(part));
+  }
+  PetscCall(PetscFree(K));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ObstacleBlockBegin(ObstacleBlock b, PetscScalar r[], PetscScalar U[]) {
+  const Layout l = b->obstacles->layout, vesicles = b->coupling->membrane->layout;
+  const PetscInt w = 2 * l->M, m = 2 * vesicles->M;
+  PetscFunctionBeginUser;
+  Turn(b, PETSC_FALSE, r);
+  PetscCall(LayoutToRank(l, b->root, 2, r, b->all));
+  if (b->coupled) {
+    PetscCall(LayoutToRank(vesicles, b->root, 2, U, b->force));
+    if (l->rank == b->root) PetscCall(DenseMultAdd(PETSC_TRUE, w, m, -1, b->response, b->all, b->force));
+    PetscCall(LayoutFromRank(vesicles, b->root, 2, b->force, U));
+  }
+  if (l->rank == b->root) PetscCall(DenseSolveSingle(w, b->factor, b->pivot, 1, b->all));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ObstacleBlockEnd(ObstacleBlock b, const PetscScalar F[], PetscScalar solid[]) {
+  const Layout l = b->obstacles->layout, vesicles = b->coupling->membrane->layout;
+  PetscFunctionBeginUser;
+  if (b->coupled) {
+    PetscCall(LayoutToRank(vesicles, b->root, 2, F, b->force));
+    if (l->rank == b->root)
+      PetscCall(DenseMultAdd(PETSC_FALSE, 2 * l->M, 2 * vesicles->M, -1, b->response, b->force, b->all));
+  }
+  PetscCall(LayoutFromRank(l, b->root, 2, b->all, solid));
+  Turn(b, PETSC_TRUE, solid);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -26,5 +26,15 @@ PETSC_EXTERN void ObstacleBlockSolved(ObstacleBlock block, PetscInt its);
 PETSC_EXTERN void ObstacleBlockGetMemory(ObstacleBlock block, PetscReal memory[OBSTACLE_BLOCK_MEMORY]);
 PETSC_EXTERN PetscErrorCode ObstacleBlockSetMemory(ObstacleBlock block, const PetscReal memory[OBSTACLE_BLOCK_MEMORY]);
 
-/* ObstacleBlockSolve - F[2w] of the own obstacles from their rows' residuals, in place. Collective. */
-PETSC_EXTERN PetscErrorCode ObstacleBlockSolve(ObstacleBlock block, PetscScalar F[]);
+/* ObstacleBlockCouple - from here on with what vesicles and obstacles do to one another where the coupling has been
+   placed: X = A^-1 K, A the obstacles' block, K their velocity by forces on the vesicles, and Mob[2M][2M], the
+   vesicles' mobility times h^2 on the owner of the first one, becomes that in the presence of the obstacles, Mob - h^2
+   K^T X. Nothing where obstacles move. failed: as ObstacleBlockSetUp, left alone otherwise. Collective. */
+PETSC_EXTERN PetscErrorCode ObstacleBlockCouple(ObstacleBlock block, Mobility mobility, PetscReal Mob[],
+                                                PetscBool *failed);
+
+/* ObstacleBlockBegin - A^-1 r of the own obstacles' residuals r[2w], kept in the block; U[2n] -= X^T r of the own
+   vesicles. ObstacleBlockEnd - and with the own vesicles' forces F[2n]: F_w = A^-1 r - X F to solid[2w]. Uncoupled, X =
+   0. Collective. */
+PETSC_EXTERN PetscErrorCode ObstacleBlockBegin(ObstacleBlock block, PetscScalar r[], PetscScalar U[]);
+PETSC_EXTERN PetscErrorCode ObstacleBlockEnd(ObstacleBlock block, const PetscScalar F[], PetscScalar solid[]);

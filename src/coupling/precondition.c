@@ -1,14 +1,16 @@
 #include "coupling/precondition.h"
+#include "coupling/denseblock.h"
 #include "coupling/lagrangian.h"
 
 #define MOST_EXCESS 5 /* iterations more than with new blocks, in one solve */
 #define NO_LIMIT 1000 /* solves that blocks may serve */
 
 /* How far apart markers of one block are: half a contour, or anywhere. */
-static PetscReal Reach(Membrane m) {
+static PetscReal Reach(Coupling c) {
+  const Membrane m = c->membrane;
   PetscReal reach = 0;
   for (PetscInt v = 0; v < m->layout->bodies; v++) reach = PetscMax(reach, m->L0[v] / 2);
-  return m->layout->bodies > 1 && m->layout->M <= DENSE_TOGETHER ? PETSC_MAX_REAL : reach;
+  return c->bodies->layout->bodies > 1 && m->layout->M <= DENSE_TOGETHER ? PETSC_MAX_REAL : reach;
 }
 
 PetscErrorCode PreconditionerCreate(Scene scene, Unknowns u, Preconditioner *out) {
@@ -25,7 +27,7 @@ PetscErrorCode PreconditionerCreate(Scene scene, Unknowns u, Preconditioner *out
   if (p->type == MOBILITY_TABLE && c->near && c->fluid->steady && c->membrane->layout->M > DENSE_TOGETHER) {
     PetscCall(PatternsCreate(&scene->fluid, c, &p->patterns));
   } else if (p->type == MOBILITY_TABLE) {
-    if (!c->fluid->grid->free) PetscCall(MobilityCreate(&scene->fluid, c, Reach(c->membrane), &p->mobility));
+    if (!c->fluid->grid->free) PetscCall(MobilityCreate(&scene->fluid, c, Reach(c), &p->mobility));
     PetscCall(DenseBlocksCreate(c, &p->blocks));
   }
   if (p->type == MOBILITY_ILU) {
@@ -66,7 +68,7 @@ static PetscErrorCode MakeBlocks(Preconditioner p) {
   PetscBool factored;
   PetscFunctionBeginUser;
   if (p->mobility) PetscCall(MobilitySetUp(p->mobility, f->alpha));
-  PetscCall(DenseBlocksFactor(p->blocks, p->mobility, f->a0, &factored));
+  PetscCall(DenseBlocksFactor(p->blocks, p->mobility, p->solid, f->a0, &factored));
   p->failed = factored ? PETSC_FALSE : PETSC_TRUE;
   PetscCall(PetscArraycpy(p->age.treading, c->treading, c->membrane->layout->bodies));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -111,9 +113,9 @@ static PetscErrorCode Renew(Preconditioner p) {
 static PetscReal RenewalCost(Preconditioner p) {
   const Coupling c = p->unknowns->coupling;
   const Layout l = c->membrane->layout;
-  const PetscReal n = l->M <= DENSE_TOGETHER ? l->M : (PetscReal)l->M / l->bodies;
+  const PetscReal n = l->M <= DENSE_TOGETHER ? l->M : (PetscReal)l->M / l->bodies, blocks = l->M / n;
   const PetscReal cells = p->mobility ? (PetscReal)c->fluid->grid->n[0] * c->fluid->grid->n[1] : 0;
-  return DenseRenewalCost(l->M / n, n, cells);
+  return DenseRenewalCost(blocks, n, blocks == 1 ? (PetscReal)BodiesObstacleMarkers(c->bodies) : 0, cells);
 }
 
 /* Whether I + (v/a0) d/dt of a vesicle has moved by 10 % in its highest mode, n/2. */
@@ -201,6 +203,19 @@ static PetscErrorCode RenewUnderWay(Preconditioner p) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The obstacles' forces that go with the vesicles'. */
+static PetscErrorCode SolveObstacles(Preconditioner p, PetscScalar V[], const PetscScalar sigma[]) {
+  const Coupling c = p->unknowns->coupling;
+  PetscScalar *F;
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(p->unknowns->velocity, &F));
+  PetscCall(CouplingElasticRate(c, 1 / c->fluid->a0, V, F));
+  MembraneStretchingTranspose(c->membrane, c->tau, 1, sigma, F);
+  PetscCall(ObstacleBlockEnd(p->solid, F, V + p->unknowns->velocity));
+  PetscCall(PetscFree(F));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode PreconditionerApply(Preconditioner p, Vec r, Vec z) {
   const Unknowns u = p->unknowns;
   PetscScalar *V, *sigma, *d;
@@ -217,12 +232,13 @@ PetscErrorCode PreconditionerApply(Preconditioner p, Vec r, Vec z) {
   if (CouplingHasBodies(u->coupling)) {
     UnknownsScale(u, PETSC_TRUE, V);
     PetscCall(WallsMarkerVelocity(u->walls, 1, V)); /* block triangular: the walls' flow moves the markers */
-    if (p->solid) PetscCall(ObstacleBlockSolve(p->solid, V + u->velocity));
+    if (p->solid) PetscCall(ObstacleBlockBegin(p->solid, V + u->velocity, V));
     if (p->patterns) PetscCall(PatternsSolve(p->patterns, V, sigma));
     if (p->blocks) PetscCall(DenseBlocksSolve(p->blocks, V, sigma));
     if (p->type == MOBILITY_ILU) PetscCall(SolveChat(p, V, sigma));
     if (p->type == MOBILITY_NONE)
       for (PetscInt k = 0; k < u->tension; k++) sigma[k] *= -1;
+    if (p->solid) PetscCall(SolveObstacles(p, V, sigma));
   }
   PetscCall(VecRestoreArray(z, &V));
   if (p->failed) PetscCall(VecSet(z, NAN)); /* the solve ends as diverged */

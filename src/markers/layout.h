@@ -44,6 +44,11 @@ static inline PetscInt LayoutOffset(Layout layout, PetscInt body) {
   return layout->start[body] - layout->first;
 }
 
+/* Markers first .. first + n - 1. */
+typedef struct {
+  PetscInt first, n;
+} MarkerRange;
+
 /* LayoutBody - the body that a marker belongs to. Not collective. */
 static inline PetscInt LayoutBody(Layout layout, PetscInt marker) {
   PetscInt low = 0, high = layout->bodies; /* start[low] <= marker < start[high] */

@@ -1,0 +1,71 @@
+#include "coupling/mobilitybox.h"
+#include "coupling/nearblock.h"
+
+#define NEAR 8 /* cells up to which a pair has the lattice's sums */
+
+struct _p_MobilityBox {
+  Coupling coupling; /* borrowed */
+  BoxPart smooth;    /* W */
+};
+
+PetscErrorCode MobilityBoxCreate(const FluidSpec *spec, Coupling c, MobilityBox *out) {
+  MobilityBox b;
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&b));
+  *out = b;
+  b->coupling = c;
+  PetscCall(NearFieldCreateBoxPart(c->near, spec, PETSC_TRUE, &b->smooth));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode MobilityBoxDestroy(MobilityBox *box) {
+  PetscFunctionBeginUser;
+  if (!*box) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(BoxPartDestroy(&(*box)->smooth));
+  PetscCall(PetscFree(*box));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The Stokeslet, which L tends to far away. */
+static void Stokeslet(PetscReal nu, const PetscReal d[2], PetscReal S[4]) {
+  const PetscReal r2 = d[0] * d[0] + d[1] * d[1], over = 1 / (4 * PETSC_PI * nu), logarithm = -0.5 * PetscLogReal(r2);
+  S[0] = over * (logarithm + d[0] * d[0] / r2);
+  S[1] = over * (logarithm + d[1] * d[1] / r2);
+  S[2] = S[3] = over * d[0] * d[1] / r2;
+}
+
+/* L - C_image and the exact images of markers i and j, the nearest image: xx, yy, xy, yx. Pairs far from one another
+   and from walls take those of S, which leaves out a C of the order h^2/r^2. */
+static void Lattice(NearField f, PetscInt i, PetscInt j, PetscReal value[4]) {
+  const PetscReal *X = f->markers->X, h = f->markers->grid->h;
+  PetscReal d[2] = {X[2 * i] - X[2 * j], X[2 * i + 1] - X[2 * j + 1]}, L[4], C[4] = {0, 0, 0, 0};
+  const PetscReal fade = BoxPartImage(f->box, d);
+  if (d[0] * d[0] + d[1] * d[1] < PetscSqr(NEAR * h)) {
+    NearLatticePair(f, i, j, d, L);
+    NearImageAdd(f->image, i, j, d, L, C);
+  } else
+    Stokeslet(f->nu, d, L);
+  NearImageAddBlake(f->image, i, j, d, -1, C);
+  for (int q = 0; q < 4; q++) value[q] = fade * (L[q] - C[q]);
+}
+
+PetscErrorCode MobilityBoxAdd(MobilityBox b, const MarkerRange *rows, const MarkerRange *columns, PetscReal out[]) {
+  const NearField f = b->coupling->near;
+  const Layout l = b->coupling->bodies->layout;
+  const PetscReal h2 = PetscSqr(b->coupling->fluid->grid->h);
+  const PetscInt begin = PetscMax(l->first, rows->first), end = PetscMin(l->first + l->n, rows->first + rows->n);
+  const PetscInt stride = 2 * rows->n;
+  PetscFunctionBeginUser;
+  PetscCall(BoxPartPlace(b->smooth));
+  PetscCall(BoxPartAdd(b->smooth, h2, rows, columns, out));
+  for (PetscInt j = 0; j < columns->n; j++)
+    for (PetscInt i = begin; i < end; i++) {
+      PetscReal *x = out + 2 * j * stride + 2 * (i - rows->first), *y = x + stride, L[4];
+      Lattice(f, i, columns->first + j, L);
+      x[0] += h2 * L[0];
+      y[1] += h2 * L[1];
+      y[0] += h2 * L[2];
+      x[1] += h2 * L[3];
+    }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
