@@ -63,12 +63,12 @@ def starts(results: Results, best: dict[str, Case], paper: dict[str, dict], per_
     rows = [["a program of PETSc that does nothing", "", _two(nothing), "", "", "", "", "", ""]]
     for name, found in runs.items():
         whole, steps = [one["cpu_seconds"] for one in found], [one["step_seconds"] for one in found]
-        own = [a - b for a, b in zip(whole, nothing)]
-        line = [name, "", _two(whole), _two(own), "", "", _two(steps), "", str(found[0]["steps"])]
+        own = [median(whole) - median(nothing), min(whole) - min(nothing)]
+        line = [name, "", _two(whole), f"{own[0]:.3f}, {own[1]:.3f}", "", "", _two(steps), "", str(found[0]["steps"])]
         if name in paper:
             cpu, step = paper[name]["cpu_seconds"], paper[name]["solves"] * per_solve[name]
             line[4] = f"{cpu / median(whole):.0f}, {cpu / min(whole):.0f}"
-            line[5] = f"{(cpu - median(nothing)) / median(own):.0f}, {(cpu - min(nothing)) / min(own):.0f}"
+            line[5] = f"{(cpu - median(nothing)) / own[0]:.0f}, {(cpu - min(nothing)) / own[1]:.0f}"
             line[7] = f"{step / median(steps):.0f}, {step / min(steps):.0f}"
         else:
             exact = FREE[0] if "unbounded" in name else BOX[0]
