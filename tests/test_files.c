@@ -60,9 +60,10 @@ static PetscErrorCode CheckRows(PetscInt vesicles) {
   const PetscInt columns = COLUMN_COUNT + (own ? 15 * vesicles : 0);
   char number[32], *text;
   size_t used = 0;
+  const SceneObstacles none = {0};
   Record record;
   PetscFunctionBeginUser;
-  PetscCall(RecordCreate(vesicles, 0, &record));
+  PetscCall(RecordCreate(vesicles, &none, &record));
   CHECK(Count(record.header, ',') == columns - 1, "%d vesicles: %d columns", (int)vesicles, (int)columns);
   PetscCall(PetscSNPrintf(number, sizeof(number), "gap_%d", (int)vesicles));
   CHECK(!strcmp(strrchr(record.header, ',') + 1, own ? number : "normal_stress"), "%d vesicles: the last column",
