@@ -71,7 +71,7 @@ def test_choice_is_what_was_measured(wanted, tmp_path):
             worst = measured(table, str(multiple))
         assert printed == pytest.approx(worst, rel=0.06), name
         assert worst <= wanted / 2, name
-    assert chosen["-scheme_order"][0] == "2" and chosen["-time_adapt"][0] == "error"
+    assert chosen["-scheme_order"][0] == "3" and chosen["-time_adapt"][0] == "error"
     assert chosen["-delta_type"][0] == "cbs54" and "-vesicle_spacing" not in chosen
 
 
@@ -168,6 +168,8 @@ def test_box_so_large_that_images_do_not_matter(why, tmp_path):
         assert box[1] >= half[wanted] * radius(0.7) and cells[0] == cells[1]
         assert ": enough\n" in text and f"leave up to {wanted / 2:.1e}" in settings(text)["-domain_box"][1]
     assert half[1e-2] == pytest.approx(half[0.1] * 10**0.5, rel=0.01)
+    most = measured("half_width", "8")
+    assert most <= 1e-2 / 2 * half[1e-2] ** 2 <= 1.3 * most
 
 
 def test_box_that_is_the_question_stays(tmp_path):
@@ -201,6 +203,29 @@ def test_grid_for_a_box(tmp_path):
         cells[wanted, height] = nx
     assert cells[0.1, 2.5] <= cells[1e-2, 2.5] < cells[1e-3, 2.5] < cells[1e-3, 0.7]
     assert cells[1e-2, 2.5] < cells[1e-2, 0.5]
+
+
+def within(found: float, table: str, values: list[str]) -> None:
+    """What is printed is the worst of the calibration at a value and at finer ones, rounded up but for a digit in print."""
+    worst = max(measured(table, value) for value in values)
+    assert 0.99 * measured(table, values[0]) <= found <= 1.15 * worst, (table, values[0])
+
+
+@pytest.mark.parametrize("first", range(5))
+def test_grid_and_walls_are_what_was_measured(first, tmp_path):
+    """What a grid and a wall of the calibration are said to leave."""
+    cells = ["2", "3", "4", "6", "8"]
+    scene = (
+        f"{QUIET} -vesicle_area {0.7 * np.pi} -vesicle_center 0,0 -time_end 0 -coupling_box_part false -scheme_auto 0.1"
+    )
+    n = 10 * int(cells[first])
+    text = run_plain(tmp_path / "a", f"{scene} -domain_box -5,5,-5,5 -domain_cells {n},{n}").stdout
+    within(float(re.search(r"leaves up to (\S+):", text)[1]), "cells_a_radius", cells[first:])
+    gaps = ["0.4", "0.6", "0.8", "1.2", "1.6", "2.4"]
+    low = unseen.Scene("box", 1, 0.7, 1, 0, 0.5, 8).ellipse()[:, 1].min() - 1.02 * float(gaps[first]) / 8
+    text = run_plain(tmp_path / "b", f"{scene} -domain_box -5,5,{low},{low + 10} -domain_cells 80,80").stdout
+    near, found = re.search(r"nearest wall: (\S+) cells, which leaves up to (\S+) of R0", text).groups()
+    within(float(found) / (float(near) / 8), "cells_to_wall", gaps[first:])
 
 
 def test_last_steps_are_of_one_size(tmp_path):

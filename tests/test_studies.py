@@ -16,6 +16,7 @@ HOMES = {
     "stability": "stability",
     "chart": "speed_accuracy",
     "calibrate": "speed_accuracy",
+    "unseen": "speed_accuracy",
     "reproduce": "reproduction",
 }
 

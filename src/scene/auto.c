@@ -6,15 +6,16 @@
 static const struct {
   PetscReal wanted;
   const char *adapt_tol;
-  PetscReal of_steps; /* 14 scenes: tank-treading, turning, relaxing, a channel, a pair */
+  PetscReal of_steps; /* 32 scenes: tank-treading, turning, relaxing, a channel, pairs */
   const char *ksp_rtol;
   PetscReal of_solver; /* the same */
   PetscReal max_step;  /* over nu R0^3/c_b */
   PetscReal of_rest;   /* energy of shapes at rest */
 } settings[] = {
-    {1e-1, "3e-2", 1.1e-2, "1e-4", 3.1e-5, 4, 1.2e-4},   {1e-2, "3e-3", 2.5e-3, "1e-4", 3.1e-5, 4, 1.2e-4},
-    {1e-3, "3e-4", 3.7e-4, "1e-5", 5.8e-6, 2, 6.3e-5},   {3e-4, "1e-4", 1.3e-4, "1e-6", 4.8e-7, 1, 3.7e-5},
-    {1e-4, "3e-5", 4.0e-5, "1e-6", 4.8e-7, 0.5, 1.2e-5},
+    {1e-1, "1e-2", 3.1e-2, "1e-4", 2.1e-4, 4, 1.1e-5},
+    {1e-2, "1e-3", 4.3e-3, "1e-4", 2.1e-4, 4, 1.1e-5},
+    {1e-3, "3e-5", 1.6e-4, "1e-5", 4.1e-6, 4, 1.1e-5},
+    {1e-4, "7e-6", 4.1e-5, "1e-6", 2.4e-7, 2, 3.8e-6},
 };
 
 static PetscInt Row(Scene scene) {
@@ -35,7 +36,6 @@ PetscErrorCode SceneChooseByError(Draft scene) {
   PetscCheck(coupled || direct, scene->comm, PETSC_ERR_USER_INPUT,
              "-scheme_auto %g: with -scheme_type %s; allowed: coupled or direct", (double)scene->scheme.wanted,
              scene->scheme.type);
-  PetscCall(SceneChoose(scene, "-scheme_order", "2"));
   PetscCall(SceneChoose(scene, "-time_adapt", "error"));
   PetscCall(SceneChoose(scene, "-time_adapt_tol", settings[Row(scene)].adapt_tol));
   PetscCall(SceneChoose(scene, "-delta_type", "cbs54"));
@@ -44,20 +44,16 @@ PetscErrorCode SceneChooseByError(Draft scene) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Where the flow compresses a vesicle and it wrinkles: order 3, and a tolerance of a hundredth of the error wanted,
-   whose steps leave up to a third of it (docs/settings.md). */
+/* Where the flow compresses a vesicle so fast that it wrinkles: a tolerance of a hundredth of the error wanted, whose
+   steps leave up to a third of it, by the worst measured. */
 #define OF_WRINKLES 100
-
-#define OF_TURNING 10 /* where it is compressed without that: a third of the table's */
+#define WRINKLES_LEAVE 0.3
 
 static PetscErrorCode ChooseForCompression(Draft scene) {
-  const PetscBool squeezed = SceneIsSqueezed(scene);
   char value[32];
   PetscFunctionBeginUser;
-  if (SceneSqueeze(scene) == 0) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscSNPrintf(value, sizeof(value), "%g",
-                          (double)(scene->scheme.wanted / (squeezed ? OF_WRINKLES : OF_TURNING))));
-  if (squeezed) PetscCall(SceneChoose(scene, "-scheme_order", "3"));
+  if (!SceneIsSqueezed(scene)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscSNPrintf(value, sizeof(value), "%g", (double)(scene->scheme.wanted / OF_WRINKLES)));
   PetscCall(SceneChoose(scene, "-time_adapt_tol", value));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -98,7 +94,6 @@ static PetscErrorCode PrintFilm(Scene scene) {
 }
 
 static PetscErrorCode PrintChoice(Scene scene, PetscInt row, PetscBool timed) {
-  const PetscBool squeezed = SceneIsSqueezed(scene);
   char why[128];
   PetscReal slow, fast;
   PetscFunctionBeginUser;
@@ -106,17 +101,15 @@ static PetscErrorCode PrintChoice(Scene scene, PetscInt row, PetscBool timed) {
   PetscCall(PetvesSay(scene->comm, "petves: -scheme_auto %g, by the worst errors measured (docs/settings.md)\n",
                       (double)scene->scheme.wanted));
   PetscCall(SceneSaySetting(scene, "-scheme_type", "the membrane and the fluid in one solve"));
-  PetscCall(
-      SceneSaySetting(scene, "-scheme_order", squeezed ? "better where a vesicle wrinkles" : "what was calibrated"));
+  PetscCall(SceneSaySetting(scene, "-scheme_order", "what was calibrated"));
   PetscCall(SceneSaySetting(scene, "-time_adapt", "finds the step of any scene"));
   PetscCall(
       SceneSaySetting(scene, "-time_step", timed ? "a twentieth of the fastest time of the scene" : "the default"));
   if (scene->time.adapt == ADAPT_ERROR) {
     PetscCall(PetscSNPrintf(why, sizeof(why), "steps leave up to %.1e", (double)settings[row].of_steps));
-    if (SceneSqueeze(scene) > 0)
-      PetscCall(PetscSNPrintf(why, sizeof(why), "a vesicle is compressed (chi = %.2g) and %s: leaves up to %.1e",
-                              (double)SceneSqueeze(scene), squeezed ? "wrinkles" : "turns",
-                              (double)(scene->scheme.wanted / 3)));
+    if (SceneIsSqueezed(scene))
+      PetscCall(PetscSNPrintf(why, sizeof(why), "a vesicle is compressed (chi = %.2g) and wrinkles: leaves up to %.1e",
+                              (double)SceneSqueeze(scene), (double)(WRINKLES_LEAVE * scene->scheme.wanted)));
     PetscCall(SceneSaySetting(scene, "-time_adapt_tol", why));
     if (SceneFlowStep(scene) < settings[row].max_step * slow)
       PetscCall(PetscSNPrintf(why, sizeof(why), "what this flow bears"));

@@ -5,7 +5,8 @@
 /* SceneGridError - what a grid of so many cells a R0 leaves, of markers or energy over R0, by the worst of the
    calibration; many: with 45 markers a vesicle or more. PETSC_MAX_REAL on grids coarser than any that was measured.
    SceneCellsFor - the fewest cells a R0 that leave no more, or the most that were measured. SceneWallError - what the
-   grid leaves of R0 when a membrane begins `gap` from a wall (all lengths in R0). Not collective. */
+   grid leaves of R0 when a membrane begins `gap` from a wall (all lengths in R0), beside that of a grid without walls
+   near it. Not collective. */
 PETSC_EXTERN PetscReal SceneGridError(PetscReal cells, PetscBool many);
 PETSC_EXTERN PetscReal SceneCellsFor(PetscReal error, PetscBool many);
 PETSC_EXTERN PetscReal SceneWallError(PetscReal gap, PetscReal h);

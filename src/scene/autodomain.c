@@ -4,7 +4,7 @@
 
 /* Error of a vesicle in walls or periods over (R0/W)^2, W from its middle to a side of the box, against unbounded
    fluid, the worst of the calibration (tests/test_auto.py compares with the table). */
-#define OF_IMAGES 2.2
+#define OF_IMAGES 1.9
 #define MOST_BOX 1024 /* cells across, of a box that goes by them */
 
 #define WINDOW 3        /* R0 around the vesicles, in unbounded fluid */

@@ -1,7 +1,8 @@
-"""The measurements behind ``-scheme_auto``: errors of step-size control, solver tolerance, spacing, grid and largest step."""
+"""The measurements behind ``-scheme_auto``: errors of step-size control, solver, largest step, grid, walls and box."""
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import product
 from pathlib import Path
 
@@ -12,15 +13,24 @@ from petves.tables import write_csv
 from studies.common import paper
 from studies.common.curves import radius
 from studies.common.engine import Case, Results, Series
-from studies.common.scenes import NEAR_FIELD_KERNELS, tank_treading, words
+from studies.common.scenes import tank_treading, words
+from studies.speed_accuracy import unseen
 
 TOLERANCES = ("1e-1", "3e-2", "1e-2", "3e-3", "1e-3", "3e-4", "1e-4", "3e-5")
 RTOLS = ("1e-3", "1e-4", "1e-5", "1e-6", "1e-7")
 FINE_TOLERANCE, FINE_RTOL = "3e-6", "1e-10"
-SPACINGS = (1.25, 1.5, 2.0)
-GRIDS = (40, 48, 64, 96, 128)
-KERNEL_GRIDS = (64, 96, 128, 192)
-MAX_STEPS = (4, 2, 1, 0.5, 0.25, 0.125, 0.0625, 0.03125)
+FINEST, BESIDE_FINEST = "7e-6", "5e-7"
+"""The tolerance for an error of 1e-4, and that of its references, in the scenes that are worst at 3e-5."""
+
+GRIDS, FINE_GRID = (2, 3, 4, 6, 8), 12
+"""Cells a R0."""
+FEW_SPACING = 1.5
+WALL_GAPS, WALL_GRIDS, FINE_WALL_GRID = (0.1, 0.2, 0.4), (3, 4, 6, 8, 12), 24
+"""Gaps in R0 and cells a R0; gaps of so many cells are measured: nearer to a wall a vesicle does not stay apart from it."""
+WALL_CELLS = (0.39, 3.3)
+HALF_WIDTHS = (8,)
+"""Of boxes, in R0."""
+MAX_STEPS = (4, 2, 1, 0.5)
 """Largest step over nu R0^3/c_b."""
 
 
@@ -46,11 +56,21 @@ REST = COMMON | words(
     "-domain_box -1.5,1.5,-1.5,1.5 -domain_cells 48,48 -domain_bc_x periodic -domain_bc_y periodic "
     "-vesicle_area 1 -vesicle_angle 90 -time_step 2"
 )
+CONTRAST = unseen.Scene("box", 1, 0.7, 10, 20, 0.5, 5, 5)
+PRESSED = unseen.Scene("press", 2, 0.8, 5, 90, 0.2, 4, 1)
 SCENES = (
     {f"shear V={v:g} chi={chi:g}": _shear(v, chi) for v, chi in product((0.5, 0.7, 0.9), (1, 10, 100))}
     | {f"turning V=0.7 chi={chi:g}": _shear(0.7, chi, 2) for chi in (1, 10)}
+    | {
+        f"turning V={v:g} chi={chi:g} from {angle} ratio={ratio:g}": unseen.Scene(
+            "free", 1, v, chi, angle, 0.5, 3, ratio
+        ).options()
+        for v, (chi, ratio), angle in product((0.55, 0.9), ((1.5, 1), (1.5, 0.2), (15, 1), (15, 5)), (35, 60))
+    }
     | {"relaxing": RELAX, "channel": CHANNEL, "pair in shear": PAIR}
+    | {"ratio 5": CONTRAST.options() | CONTRAST.grid(), "pair pressed together": PRESSED.options() | PRESSED.grid()}
 )
+WORST = [scene for scene in SCENES if "V=0.55 chi=1.5" in scene] + ["turning V=0.7 chi=1", "pair in shear"]
 """Steady: errors of angle and frequency. The others, which end on the way: of the markers and the energy."""
 
 
@@ -66,7 +86,7 @@ def _measure(series: Series, folder: Path) -> dict[str, object]:
 
 
 def _measure_markers(series: Series, folder: Path) -> dict[str, object]:
-    return _measure(series, folder) | {"markers": np.round(Run.read(folder).markers[-1], 10).tolist()}
+    return _measure(series, folder) | {"markers": np.round(Run.read(folder).markers[-1], 8).tolist()}
 
 
 def _steady(scene: str) -> bool:
@@ -96,42 +116,140 @@ def _times(results: Results) -> list[dict[str, object]]:
     rows = []
     for scene in SCENES:
         fine = results.get(_case(scene, FINE_TOLERANCE, FINE_RTOL))
-        for kind, values in (("adapt_tol", TOLERANCES), ("ksp_rtol", RTOLS)):
-            exact = fine if kind == "adapt_tol" else results.get(_case(scene, "1e-3", FINE_RTOL))
+        for kind, values in (("adapt_tol", TOLERANCES), ("ksp_rtol", () if "from" in scene else RTOLS)):
             for value in values:
                 pair = (value, FINE_RTOL) if kind == "adapt_tol" else ("1e-3", value)
+                exact = fine if kind == "adapt_tol" else results.get(_case(scene, "1e-3", FINE_RTOL))
                 found = results.get(_case(scene, *pair))
                 row = {"table": kind, "scene": scene, "value": value, "error": _error(scene, found, exact)}
                 rows.append(row | {"steps": found["steps"], "solves": found["solves"]})
+        if scene in WORST:
+            fine, found = (results.get(_case(scene, tolerance, FINE_RTOL)) for tolerance in (BESIDE_FINEST, FINEST))
+            row = {"table": "adapt_tol", "scene": scene, "value": FINEST, "error": _error(scene, found, fine)}
+            rows.append(row | {"steps": found["steps"], "solves": found["solves"]})
     return rows
 
 
-def _against_targets(results: Results, cells: int, reduced_area: float, chi: float, **extra: str) -> dict[str, object]:
-    """Return the error in angle or frequency, whichever is larger, against the boundary integral in the same box."""
-    tolerance = "3e-4" if extra else "3e-5"  # the grids' own errors are smaller than what 3e-4 leaves
-    options = _shear(reduced_area, chi, 12, cells) | {"-time_adapt": "error", "-time_adapt_tol": tolerance} | extra
-    label = "_".join(value for value in extra.values())
-    found = results.get(Case(f"grid_{cells}_{reduced_area:g}_{chi:g}_{label}", options, _measure))
-    error = max(map(abs, paper.shear_errors(found["theta"] / np.pi, found["omega"], reduced_area, chi)))
-    return {"error": error, "steps": found["steps"], "solves": found["solves"]}
+GRID_SCENES = {
+    f"{scene.place}, {scene.count} of V={scene.reduced_area:g} chi={scene.chi:g} ratio={scene.ratio:g} gap={scene.gap:g}": scene
+    for scene in (
+        unseen.Scene("box", 1, 0.5, 10, 20, 0.5, 1, 1),
+        unseen.Scene("box", 1, 0.7, 10, 20, 0.5, 1, 5),
+        unseen.Scene("channel", 2, 0.7, 10, 20, 0.3, 1, 1),
+        unseen.Scene("channel", 2, 0.7, 10, 20, 0.1, 1, 5),
+        unseen.Scene("pipe", 2, 0.6, 20, 30, 0.2, 1, 1),
+        unseen.Scene("press", 2, 0.8, 5, 90, 0.2, 1, 1),
+    )
+}
+"""All vesicles are a R0 and more from walls."""
+WALL_SCENES = {
+    "V=0.7 chi=10": unseen.Scene("channel", 1, 0.7, 10, 20, 0.5, 1, 1),
+    "V=0.9 chi=3": unseen.Scene("channel", 1, 0.9, 3, 45, 0.5, 1, 1),
+    "V=0.7 chi=10 ratio=5": unseen.Scene("channel", 1, 0.7, 10, 20, 0.5, 1, 5),
+}
+STEPS = words("-time_step 0.05 -coupled_ksp_rtol 1e-7")
+"""The same on every grid, so that grids are all that differs."""
+
+
+def _on_grid(results: Results, scene: unseen.Scene, label: str, cells: int, markers: str) -> dict:
+    options = scene.options() | replace(scene, cells=cells).grid() | STEPS | words(markers)
+    return results.get(Case(f"grid_{label}_{cells}_{markers.split()[-1]}", options, unseen.measure))
+
+
+def _row(table: str, scene: str, value: float, error: float, found: dict) -> dict[str, object]:
+    return {
+        "table": table,
+        "scene": scene,
+        "value": f"{value:g}",
+        "error": error,
+        "steps": found["steps"],
+        "solves": "",
+    }
 
 
 def _grids(results: Results) -> list[dict[str, object]]:
+    """Errors of cells a R0: with enough markers, and with so few that they are 1.5 h apart."""
     rows = []
-    for reduced_area, chi in product((0.5, 0.7, 0.9), (1, 10)):
-        scene = f"shear V={reduced_area:g} chi={chi:g}"
+    for label, scene in GRID_SCENES.items():
+        many = "-vesicle_allow_close_markers true -vesicle_markers 65"
+        fine = _on_grid(results, scene, label, FINE_GRID, many)
         for cells in GRIDS:
-            row = {"table": "cells_a_radius", "scene": scene, "value": f"{radius(reduced_area) * cells / 8:.3g}"}
-            rows.append(row | _against_targets(results, cells, reduced_area, chi))
-        for cells in KERNEL_GRIDS:
-            extra = words("-delta_type ib6 -vesicle_spacing 1.5")
-            row = {"table": "ib6_cells_a_radius", "scene": scene, "value": f"{radius(reduced_area) * cells / 8:.3g}"}
-            rows.append(row | _against_targets(results, cells, reduced_area, chi, **extra))
-    for cells, kernel, spacing in product((64, 128), NEAR_FIELD_KERNELS, SPACINGS):
-        extra = words(f"-delta_type {kernel} -vesicle_spacing {spacing:g}")
-        scene = f"shear V=0.7 chi=10, {cells}^2, {kernel}"
-        row = {"table": "spacing", "scene": scene, "value": f"{spacing:g}"}
-        rows.append(row | _against_targets(results, cells, 0.7, 10, **extra))
+            found = _on_grid(results, scene, label, cells, many)
+            rows.append(_row("cells_a_radius", label, cells, unseen.error(found, fine), found))
+        for cells in GRIDS[2:] if scene.count == 1 else ():
+            found = _on_grid(results, scene, label, cells, f"-vesicle_spacing {FEW_SPACING}")
+            rows.append(_row("cells_few_markers", label, cells, unseen.error(found, fine), found))
+    return rows
+
+
+def _walls(results: Results) -> list[dict[str, object]]:
+    """Errors over the gap in which a vesicle begins beside a wall, by the gap's cells."""
+    rows = []
+    for (label, scene), gap in product(WALL_SCENES.items(), WALL_GAPS):
+        near, name = replace(scene, gap=gap), f"{label}_{gap:g}"
+        fine = _on_grid(results, near, name, FINE_WALL_GRID, "-vesicle_markers 91")
+        for cells in WALL_GRIDS:
+            if WALL_CELLS[0] <= gap * cells <= WALL_CELLS[1]:
+                found = _on_grid(results, near, name, cells, "-vesicle_markers 91 -vesicle_allow_close_markers true")
+                error = unseen.error(found, fine) / gap
+                rows.append(_row("cells_to_wall", f"{label} gap={gap:g}", gap * cells, error, found))
+    return rows
+
+
+def _box_error(found: dict, free: dict) -> float:
+    """Return the worst of markers, energy, angle and frequency."""
+    steady = [abs(found[name] / free[name] - 1) for name in ("theta", "omega")]
+    return max(unseen.error(found, free), *steady)
+
+
+def _measure_place(series: Series, folder: Path) -> dict[str, object]:
+    return unseen.measure(series, folder) | {"theta": series["inclination"][-1], "omega": series["frequency"][-1]}
+
+
+def _boxes(results: Results) -> list[dict[str, object]]:
+    """Errors of boxes against unbounded fluid, over (R0/W)^2, by their half width W over R0."""
+    rows = []
+    sides = {"walls": "", "channel": "-domain_bc_x periodic", "periodic": "-domain_bc_x periodic -domain_bc_y periodic"}
+    for reduced_area, chi in product((0.5, 0.9), (1, 10)):
+        scene = unseen.Scene("free", 1, reduced_area, chi, 20, 0.5, 3, 1)
+        label = f"V={reduced_area:g} chi={chi:g}"
+        free = results.get(Case(f"box_{label}_free", scene.options() | scene.grid() | STEPS, _measure_place))
+        for (kind, text), width in product(sides.items(), HALF_WIDTHS):
+            box = words(f"-domain_box {-width},{width},{-width},{width} -domain_cells {6 * width},{6 * width} {text}")
+            options = {name: value for name, value in scene.options().items() if not name.startswith("-domain")}
+            found = results.get(Case(f"box_{label}_{kind}_{width}", options | box | STEPS, _measure_place))
+            rows.append(_row("half_width", f"{kind} {label}", width, _box_error(found, free) * width**2, found))
+    return rows
+
+
+COMPRESSED = {
+    f"V={v:g} chi={chi:g} from {angle}": unseen.Scene("free", 1, v, chi, angle, 0.5, 3, 1)
+    for v, chi, angle in (*product((0.55, 0.8), (1.5, 15, 60), (-20, -42)), (0.65, 100, -20))
+}
+SQUEEZED = 3
+"""nu R0^3/c_b times the rate at which the flow shortens a vesicle, from which on it wrinkles."""
+
+
+def _compressed(results: Results) -> list[dict[str, object]]:
+    """Errors over the tolerance, where the flow compresses a vesicle at the start: one that turns, one that wrinkles."""
+    rows = []
+    for label, scene in COMPRESSED.items():
+        squeeze = scene.chi * abs(np.sin(2 * np.deg2rad(scene.angle))) / 2
+        table = "compressed_wrinkles" if squeeze > SQUEEZED else "compressed_turns"
+        options = (
+            scene.options()
+            | scene.grid()
+            | words("-vesicle_markers 91 -vesicle_allow_close_markers true -time_adapt error")
+        )
+
+        def run(tolerance: str) -> dict:
+            extra = words(f"-time_adapt_tol {tolerance} -coupled_ksp_rtol 1e-7")
+            return results.get(Case(f"compressed_{label}_{tolerance}", options | extra, unseen.measure))
+
+        fine = run("3e-6" if table == "compressed_turns" else "3e-7")
+        for tolerance in ("1e-3", "1e-4") if table == "compressed_turns" else ("1e-4", "1e-5"):
+            found = run(tolerance)
+            rows.append(_row(table, label, float(tolerance), unseen.error(found, fine) / float(tolerance), found))
     return rows
 
 
@@ -155,10 +273,11 @@ def _rest(results: Results) -> list[dict[str, object]]:
 def write(folder: str | Path, quick: bool = False) -> list[Path]:
     """Run what is not there yet and write calibration.csv, which src/scene/auto.c quotes; there is no quicker form.
 
-    Columns: table, scene, value of what the table varies, error, steps and scalar solves.
+    Columns: table, scene, value of what the table varies, error, steps and scalar solves (of the first three tables).
     """
     folder = Path(folder)
     results = Results(folder / "calibration.json")
-    rows = _times(results) + _grids(results) + _rest(results)
+    rows = _times(results) + _compressed(results) + _rest(results)
+    rows += _grids(results) + _walls(results) + _boxes(results)
     shown = [[f"{x:.3e}" if isinstance(x, float) else x for x in row.values()] for row in rows]
     return [write_csv(folder / "calibration.csv", list(rows[0]), shown)]
