@@ -9,7 +9,8 @@ import numpy as np
 
 from petves.tables import table, write_csv
 from studies.common.engine import Results
-from studies.stability.cells import MAPS, run_cell
+from studies.stability.cells import run_cell
+from studies.stability.maps import MAPS
 from studies.time import runs as study
 
 STEPS = (0.05, 0.1, 0.2, 0.4)
