@@ -12,7 +12,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
-from conftest import ENVIRONMENT, PETVES, PROGRAMS, ROOT, read_series, run_petves
+from conftest import ENVIRONMENT, PETVES, PROGRAMS, ROOT, SITE, read_series, run_petves
 
 import petves
 from petves.run import Run

@@ -5,6 +5,7 @@
 #include "scheme/stress.h"
 
 #define STILL 1e-5 /* of R0: less than this is not looked at, steady shapes miss by rounding */
+#define FAR 1.1    /* times as far from its extrapolation as from where it began: its motion has stopped */
 #define SMOOTH 0.7 /* least gain of a predictor through three states over that through two for order 3 */
 
 /* S^T u = g: the new edges get the length ds, linearised at the extrapolated edge e*:
@@ -260,7 +261,7 @@ PetscErrorCode CoupledAttempt(Scheme s, PetscReal dt, PetscBool *solved) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether the attempt has ended farther from its extrapolation X* than from the state it began with: a motion that
+/* Whether the attempt has ended FAR times farther from its extrapolation X* than from the state it began with: a motion that
    stops within the step, which an extrapolation only carries on. */
 static PetscErrorCode Overshot(Scheme s, Coupled *d, PetscBool *overshot) {
   const Membrane m = s->membrane;
@@ -273,7 +274,7 @@ static PetscErrorCode Overshot(Scheme s, Coupled *d, PetscBool *overshot) {
   PetscCall(Apart(s, d->next.X, d->Y, &off[1]));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, off, 2, MPIU_REAL, MPI_MAX, m->layout->comm));
   for (PetscInt v = 0; v < m->layout->bodies; v++) R0 = PetscMin(R0, m->L0[v] / (2 * PETSC_PI));
-  *overshot = off[1] > off[0] && off[1] > STILL * R0 ? PETSC_TRUE : PETSC_FALSE;
+  *overshot = off[1] > FAR * off[0] && off[1] > STILL * R0 ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
