@@ -261,8 +261,8 @@ PetscErrorCode CoupledAttempt(Scheme s, PetscReal dt, PetscBool *solved) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether the attempt has ended FAR times farther from its extrapolation X* than from the state it began with: a motion that
-   stops within the step, which an extrapolation only carries on. */
+/* Whether the attempt has ended FAR times as far from its extrapolation X* as from the state it began with: a motion
+   that stops within the step, which an extrapolation only carries on. */
 static PetscErrorCode Overshot(Scheme s, Coupled *d, PetscBool *overshot) {
   const Membrane m = s->membrane;
   PetscReal R0 = PETSC_MAX_REAL, off[2];
