@@ -164,6 +164,7 @@ class Simulation(State):
         while not self._lib.SimulationGetColumn(self._handle, len(self._columns), ctypes.byref(name)) and name.value:
             self._columns[name.value.decode()] = len(self._columns)
         self._row = (ctypes.c_double * len(self._columns))()
+        self._places: list[int | None] | None = None  # where the gathered markers are
 
     def _call(self, function: str, *arguments: Any) -> None:
         """Call a C function with this simulation's options database; raise what went wrong."""
@@ -198,13 +199,17 @@ class Simulation(State):
 
     def _record(self) -> None:
         """Keep the row and show the markers of the state that has just been reached. Collective."""
-        found = [ctypes.POINTER(ctypes.c_double)() for _ in range(3)]
-        self._call("SimulationGatherMarkers", self._open(), *(ctypes.byref(pointer) for pointer in found))
-        count = int(self._start[-1])
-        for name, pointer, each in zip(("markers", "marker_velocity", "tension"), found, (2, 2, 1)):
-            array = np.ctypeslib.as_array(pointer, (each * count,)) if count else np.empty(0)
-            array.flags.writeable = False
-            self._gathered[name] = array
+        found = [ctypes.c_void_p() for _ in range(3)]
+        self._call("SimulationGatherMarkers", self._open(), *(ctypes.byref(place) for place in found))
+        places = [place.value for place in found]
+        if places != self._places:  # they stay where they are: making arrays of them each time is dear
+            self._places = places
+            count = int(self._start[-1])
+            for name, place, each in zip(("markers", "marker_velocity", "tension"), found, (2, 2, 1)):
+                pointer = ctypes.cast(place, ctypes.POINTER(ctypes.c_double))
+                array = np.ctypeslib.as_array(pointer, (each * count,)) if count else np.empty(0)
+                array.flags.writeable = False
+                self._gathered[name] = array
         self._lib.SimulationGetRow(self._handle, -1, self._row)
         self._rows.append(tuple(self._row))
 
