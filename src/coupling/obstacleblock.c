@@ -208,6 +208,10 @@ PetscErrorCode ObstacleBlockCouple(ObstacleBlock b, Mobility mobility, PetscReal
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscBool ObstacleBlockCoupled(ObstacleBlock b) {
+  return b->coupled;
+}
+
 PetscErrorCode ObstacleBlockBegin(ObstacleBlock b, PetscScalar r[], PetscScalar U[]) {
   const Layout l = b->obstacles->layout, vesicles = b->coupling->membrane->layout;
   const PetscInt w = 2 * l->M, m = 2 * vesicles->M;

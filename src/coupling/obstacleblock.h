@@ -34,7 +34,9 @@ PETSC_EXTERN PetscErrorCode ObstacleBlockCouple(ObstacleBlock block, Mobility mo
                                                 PetscBool *failed);
 
 /* ObstacleBlockBegin - A^-1 r of the own obstacles' residuals r[2w], kept in the block; U[2n] -= X^T r of the own
-   vesicles. ObstacleBlockEnd - and with the own vesicles' forces F[2n]: F_w = A^-1 r - X F to solid[2w]. Uncoupled, X =
-   0. Collective. */
+   vesicles. ObstacleBlockEnd - and with the own vesicles' forces F[2n]: F_w = A^-1 r - X F to solid[2w]; F is not
+   looked at where nothing has been coupled, X = 0. Collective.
+   ObstacleBlockCoupled - whether it has been. Not collective. */
 PETSC_EXTERN PetscErrorCode ObstacleBlockBegin(ObstacleBlock block, PetscScalar r[], PetscScalar U[]);
+PETSC_EXTERN PetscBool ObstacleBlockCoupled(ObstacleBlock block);
 PETSC_EXTERN PetscErrorCode ObstacleBlockEnd(ObstacleBlock block, const PetscScalar F[], PetscScalar solid[]);

@@ -21,7 +21,7 @@ PetscErrorCode PreconditionerCreate(Scene scene, Unknowns u, Preconditioner *out
   *out = p;
   p->unknowns = u;
   p->type = CouplingHasMembrane(c) ? (MobilityType)scene->coupling.mobility : MOBILITY_NONE;
-  PetscCall(PetscMalloc1(u->walls->n, &p->d));
+  PetscCall(PetscMalloc2(u->walls->n, &p->d, u->velocity, &p->force));
   if (c->bodies->obstacles) PetscCall(ObstacleBlockCreate(&scene->fluid, c, &p->solid));
   PetscCall(PetscCalloc1(c->membrane->layout->bodies, &p->age.treading));
   if (p->type == MOBILITY_TABLE && c->near && c->fluid->steady && c->membrane->layout->M > DENSE_TOGETHER) {
@@ -50,7 +50,7 @@ PetscErrorCode PreconditionerDestroy(Preconditioner *preconditioner) {
   PetscCall(RootPCDestroy(&p->ilu));
   PetscCall(VecDestroy(&p->rhs));
   PetscCall(VecDestroy(&p->sigma));
-  PetscCall(PetscFree(p->d));
+  PetscCall(PetscFree2(p->d, p->force));
   PetscCall(PetscFree(p->age.treading));
   PetscCall(PetscFree(*preconditioner));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -206,13 +206,13 @@ static PetscErrorCode RenewUnderWay(Preconditioner p) {
 /* The obstacles' forces that go with the vesicles'. */
 static PetscErrorCode SolveObstacles(Preconditioner p, PetscScalar V[], const PetscScalar sigma[]) {
   const Coupling c = p->unknowns->coupling;
-  PetscScalar *F;
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(p->unknowns->velocity, &F));
-  PetscCall(CouplingElasticRate(c, 1 / c->fluid->a0, V, F));
-  MembraneStretchingTranspose(c->membrane, c->tau, 1, sigma, F);
-  PetscCall(ObstacleBlockEnd(p->solid, F, V + p->unknowns->velocity));
-  PetscCall(PetscFree(F));
+  if (ObstacleBlockCoupled(p->solid)) {
+    PetscCall(PetscArrayzero(p->force, p->unknowns->velocity));
+    PetscCall(CouplingElasticRate(c, 1 / c->fluid->a0, V, p->force));
+    MembraneStretchingTranspose(c->membrane, c->tau, 1, sigma, p->force);
+  }
+  PetscCall(ObstacleBlockEnd(p->solid, p->force, V + p->unknowns->velocity));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

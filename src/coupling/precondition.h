@@ -41,6 +41,7 @@ struct _p_Preconditioner {
   PetscBool failed;   /* a block could not be factored */
   Vec rhs, sigma;     /* ilu: edge vectors, work */
   PetscScalar *d;     /* [walls->n] all wall forces, work */
+  PetscScalar *force; /* [2n] of the own vesicles, work */
 };
 
 /* PreconditionerCreate - for the scene's type. Collective. */
