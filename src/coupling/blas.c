@@ -27,20 +27,37 @@ PetscErrorCode DenseSolve(PetscInt n, const PetscReal A[], const PetscBLASInt pi
 }
 
 /* PETSc names the routines of its own precision only. */
-extern void sgetrs_(const char *, const PetscBLASInt *, const PetscBLASInt *, const float *, const PetscBLASInt *,
-                    const PetscBLASInt *, float *, const PetscBLASInt *, PetscBLASInt *);
+extern void sgetrf_(const PetscBLASInt *, const PetscBLASInt *, float *, const PetscBLASInt *, PetscBLASInt *,
+                    PetscBLASInt *);
+extern void sgetri_(const PetscBLASInt *, float *, const PetscBLASInt *, const PetscBLASInt *, float *,
+                    const PetscBLASInt *, PetscBLASInt *);
+extern void sgemv_(const char *, const PetscBLASInt *, const PetscBLASInt *, const float *, const float *,
+                   const PetscBLASInt *, const float *, const PetscBLASInt *, const float *, float *,
+                   const PetscBLASInt *);
 
-PetscErrorCode DenseSolveSingle(PetscInt n, const float A[], const PetscBLASInt pivot[], PetscInt nrhs, PetscReal X[]) {
-  PetscBLASInt size, columns, info;
-  float *single;
+PetscErrorCode DenseInverse(PetscInt n, float A[], PetscBool *done) {
+  PetscBLASInt size, room, info, *pivot;
+  float *work;
   PetscFunctionBeginUser;
   PetscCall(PetscBLASIntCast(n, &size));
-  PetscCall(PetscBLASIntCast(nrhs, &columns));
-  PetscCall(PetscMalloc1(n * nrhs, &single));
-  for (PetscInt k = 0; k < n * nrhs; k++) single[k] = (float)X[k];
-  PetscCallBLAS("sgetrs", sgetrs_("N", &size, &columns, A, &size, pivot, single, &size, &info));
-  for (PetscInt k = 0; k < n * nrhs; k++) X[k] = single[k];
-  PetscCall(PetscFree(single));
+  PetscCall(PetscBLASIntCast(64 * n, &room));
+  PetscCall(PetscMalloc2(n, &pivot, 64 * n, &work));
+  PetscCallBLAS("sgetrf", sgetrf_(&size, &size, A, &size, pivot, &info));
+  *done = info ? PETSC_FALSE : PETSC_TRUE;
+  if (*done) PetscCallBLAS("sgetri", sgetri_(&size, A, &size, pivot, work, &room, &info));
+  PetscCall(PetscFree2(pivot, work));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode DenseSingleMultAdd(PetscBool transpose, PetscInt m, PetscInt n, float alpha, const float A[],
+                                  const float x[], float y[]) {
+  PetscBLASInt rows, columns;
+  const PetscBLASInt step = 1;
+  const float one = 1;
+  PetscFunctionBeginUser;
+  PetscCall(PetscBLASIntCast(m, &rows));
+  PetscCall(PetscBLASIntCast(n, &columns));
+  PetscCallBLAS("sgemv", sgemv_(transpose ? "T" : "N", &rows, &columns, &alpha, A, &rows, x, &step, &one, y, &step));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

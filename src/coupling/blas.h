@@ -10,14 +10,21 @@ PETSC_EXTERN PetscErrorCode DenseFactor(PetscInt n, PetscReal A[], PetscBLASInt 
 PETSC_EXTERN PetscErrorCode DenseSolve(PetscInt n, const PetscReal A[], const PetscBLASInt pivot[], PetscBool transpose,
                                        PetscInt nrhs, PetscReal X[]);
 
-/* DenseSolveSingle - X := A^-1 X for the factored A in single precision, which takes half the time; X of nrhs columns,
-   in double. */
-PETSC_EXTERN PetscErrorCode DenseSolveSingle(PetscInt n, const float A[], const PetscBLASInt pivot[], PetscInt nrhs,
-                                             PetscReal X[]);
+/* DenseInverse - A (n x n) in single precision becomes its inverse; done is false when it is singular. */
+PETSC_EXTERN PetscErrorCode DenseInverse(PetscInt n, float A[], PetscBool *done);
+
+/* DenseSingle - single[n] = x[n]. */
+static inline void DenseSingle(PetscInt n, const PetscReal x[], float single[]) {
+  for (PetscInt k = 0; k < n; k++) single[k] = (float)x[k];
+}
 
 /* DenseMultAdd - y += alpha A x, or (transpose) alpha A^T x, A (m x n). */
 PETSC_EXTERN PetscErrorCode DenseMultAdd(PetscBool transpose, PetscInt m, PetscInt n, PetscReal alpha,
                                          const PetscReal A[], const PetscReal x[], PetscReal y[]);
+
+/* DenseSingleMultAdd - the same in single precision. */
+PETSC_EXTERN PetscErrorCode DenseSingleMultAdd(PetscBool transpose, PetscInt m, PetscInt n, float alpha,
+                                               const float A[], const float x[], float y[]);
 
 /* DenseProduct - C = A B, or (transpose) A^T B: C (m x n), B (k x n), A (m x k) or (k x m). */
 PETSC_EXTERN PetscErrorCode DenseProduct(PetscBool transpose, PetscInt m, PetscInt n, PetscInt k, const PetscReal A[],

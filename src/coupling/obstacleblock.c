@@ -3,6 +3,7 @@
 #include "coupling/blas.h"
 #include "coupling/denseblock.h"
 #include "coupling/mobilitysolves.h"
+#include "coupling/symmetric.h"
 
 struct _p_ObstacleBlock {
   const FluidSpec *spec; /* borrowed */
@@ -13,12 +14,13 @@ struct _p_ObstacleBlock {
   PetscReal made;        /* where bodies were at this time */
   PetscReal least;       /* fewest iterations of a solve with it; negative: not known yet */
   PetscReal excess;      /* iterations above them in all */
-  float *factor;         /* [2W][2W], on root */
-  PetscBLASInt *pivot;   /* [2W] */
-  PetscScalar *all;      /* [2W] */
+  float *inverse;        /* 2W x 2W (symmetric.h), on root */
+  PetscScalar *all;      /* [2W] work */
+  float *from, *to;      /* [2W] on root: work, what has been found */
   PetscBool coupled;     /* to the vesicles, by */
-  PetscReal *response;   /* [2M][2W] X, on root */
+  float *response;       /* [2M][2W] X, on root */
   PetscScalar *force;    /* [2M] of vesicles, work */
+  float *single;         /* [2M] the same */
 };
 
 PetscErrorCode ObstacleBlockCreate(const FluidSpec *spec, Coupling coupling, ObstacleBlock *out) {
@@ -34,15 +36,16 @@ PetscErrorCode ObstacleBlockCreate(const FluidSpec *spec, Coupling coupling, Obs
   b->alpha = -1;
   b->root = LayoutOwner(coupling->bodies->layout, 0);
   PetscCall(PetscMalloc1(n, &b->all));
-  if (o->layout->rank == b->root) PetscCall(PetscMalloc2(n * n, &b->factor, n, &b->pivot));
+  if (o->layout->rank == b->root) PetscCall(PetscMalloc3(SymmetricSize(n), &b->inverse, n, &b->from, n, &b->to));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode ObstacleBlockDestroy(ObstacleBlock *block) {
   PetscFunctionBeginUser;
   if (!*block) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscFree2((*block)->factor, (*block)->pivot));
-  PetscCall(PetscFree2((*block)->response, (*block)->force));
+  PetscCall(PetscFree3((*block)->inverse, (*block)->from, (*block)->to));
+  PetscCall(PetscFree((*block)->response));
+  PetscCall(PetscFree2((*block)->force, (*block)->single));
   PetscCall(PetscFree((*block)->all));
   PetscCall(PetscFree(*block));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -102,8 +105,9 @@ static PetscErrorCode Make(ObstacleBlock b, PetscBool *failed) {
   const Layout l = b->obstacles->layout;
   const PetscInt n = 2 * l->M;
   const PetscReal over = 1 / PetscSqr(b->coupling->fluid->grid->h);
-  PetscBool factored = PETSC_TRUE;
+  PetscBool done = PETSC_TRUE;
   PetscReal *A;
+  float *single;
   PetscLogEvent event;
   PetscFunctionBeginUser;
   PetscCall(PetvesEvent("FactorObstacles", &event));
@@ -115,12 +119,13 @@ static PetscErrorCode Make(ObstacleBlock b, PetscBool *failed) {
   PetscCall(PetscMalloc1(n * n, &A));
   PetscCall(Assemble(b, A));
   if (l->rank == b->root) {
-    for (PetscInt k = 0; k < n * n; k++) A[k] *= over;
-    PetscCall(DenseFactor(n, A, b->pivot, &factored));
-    for (PetscInt k = 0; k < n * n; k++) b->factor[k] = (float)A[k];
+    PetscCall(PetscMalloc1(n * n, &single));
+    for (PetscInt k = 0; k < n * n; k++) single[k] = (float)(over * A[k]);
+    PetscCall(SymmetricInvert(n, single, b->inverse, &done));
+    PetscCall(PetscFree(single));
   }
   PetscCall(PetscFree(A));
-  PetscCall(AgreeFlag(l->comm, factored ? PETSC_FALSE : PETSC_TRUE, failed));
+  PetscCall(AgreeFlag(l->comm, done ? PETSC_FALSE : PETSC_TRUE, failed));
   PetscCall(PetscLogEventEnd(event, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -184,26 +189,37 @@ static PetscErrorCode AssembleCross(ObstacleBlock b, Mobility mobility, PetscRea
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode ObstacleBlockCouple(ObstacleBlock b, Mobility mobility, PetscReal Mob[], PetscBool *failed) {
-  const PetscInt m = 2 * b->coupling->membrane->layout->M, w = 2 * b->obstacles->layout->M;
+/* X = A^-1 K to response, and Mob -= h^2 K^T X of K h^2, on root. */
+static PetscErrorCode Eliminate(ObstacleBlock b, PetscInt m, PetscReal K[], PetscReal Mob[]) {
+  const PetscInt w = 2 * b->obstacles->layout->M;
   const PetscReal over = 1 / PetscSqr(b->coupling->fluid->grid->h);
-  PetscReal *K, *part;
+  PetscReal *X, *part;
+  PetscFunctionBeginUser;
+  if (!b->response) PetscCall(PetscMalloc1(w * m, &b->response));
+  PetscCall(PetscMalloc2(w * m, &X, m * m, &part));
+  for (PetscInt j = 0; j < m; j++) {
+    for (PetscInt k = 0; k < w; k++) b->from[k] = (float)(over * K[j * w + k]);
+    SymmetricMult(w, b->inverse, b->from, b->response + j * w);
+  }
+  for (PetscInt k = 0; k < w * m; k++) X[k] = b->response[k];
+  PetscCall(DenseProduct(PETSC_TRUE, m, m, w, K, X, part));
+  for (PetscInt k = 0; k < m * m; k++) Mob[k] -= part[k];
+  PetscCall(PetscFree2(X, part));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ObstacleBlockCouple(ObstacleBlock b, Mobility mobility, PetscReal Mob[], PetscBool *failed) {
+  const PetscInt m = 2 * b->coupling->membrane->layout->M;
+  PetscReal *K;
   PetscFunctionBeginUser;
   if (b->obstacles->moving) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ObstacleBlockSetUp(b, failed)); /* a restart comes here first */
   if (*failed) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!b->coupled) PetscCall(PetscMalloc2(m, &b->force, m, &b->single));
   b->coupled = PETSC_TRUE;
-  PetscCall(PetscMalloc1(w * m, &K));
+  PetscCall(PetscMalloc1(2 * b->obstacles->layout->M * m, &K));
   PetscCall(AssembleCross(b, mobility, K));
-  if (b->obstacles->layout->rank == b->root) {
-    if (!b->response) PetscCall(PetscMalloc2(w * m, &b->response, m, &b->force));
-    for (PetscInt k = 0; k < w * m; k++) b->response[k] = over * K[k];
-    PetscCall(DenseSolveSingle(w, b->factor, b->pivot, m, b->response));
-    PetscCall(PetscMalloc1(m * m, &part));
-    PetscCall(DenseProduct(PETSC_TRUE, m, m, w, K, b->response, part));
-    for (PetscInt k = 0; k < m * m; k++) Mob[k] -= part[k];
-    PetscCall(PetscFree(part));
-  }
+  if (b->obstacles->layout->rank == b->root) PetscCall(Eliminate(b, m, K, Mob));
   PetscCall(PetscFree(K));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -215,26 +231,35 @@ PetscBool ObstacleBlockCoupled(ObstacleBlock b) {
 PetscErrorCode ObstacleBlockBegin(ObstacleBlock b, PetscScalar r[], PetscScalar U[]) {
   const Layout l = b->obstacles->layout, vesicles = b->coupling->membrane->layout;
   const PetscInt w = 2 * l->M, m = 2 * vesicles->M;
+  const PetscBool root = l->rank == b->root ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionBeginUser;
   Turn(b, PETSC_FALSE, r);
   PetscCall(LayoutToRank(l, b->root, 2, r, b->all));
+  if (root) DenseSingle(w, b->all, b->from);
   if (b->coupled) {
     PetscCall(LayoutToRank(vesicles, b->root, 2, U, b->force));
-    if (l->rank == b->root) PetscCall(DenseMultAdd(PETSC_TRUE, w, m, -1, b->response, b->all, b->force));
+    if (root) {
+      PetscCall(PetscArrayzero(b->single, m));
+      PetscCall(DenseSingleMultAdd(PETSC_TRUE, w, m, -1, b->response, b->from, b->single));
+      for (PetscInt k = 0; k < m; k++) b->force[k] += b->single[k];
+    }
     PetscCall(LayoutFromRank(vesicles, b->root, 2, b->force, U));
   }
-  if (l->rank == b->root) PetscCall(DenseSolveSingle(w, b->factor, b->pivot, 1, b->all));
+  if (root) SymmetricMult(w, b->inverse, b->from, b->to);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode ObstacleBlockEnd(ObstacleBlock b, const PetscScalar F[], PetscScalar solid[]) {
   const Layout l = b->obstacles->layout, vesicles = b->coupling->membrane->layout;
+  const PetscInt w = 2 * l->M, m = 2 * vesicles->M;
+  const PetscBool root = l->rank == b->root ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionBeginUser;
   if (b->coupled) {
     PetscCall(LayoutToRank(vesicles, b->root, 2, F, b->force));
-    if (l->rank == b->root)
-      PetscCall(DenseMultAdd(PETSC_FALSE, 2 * l->M, 2 * vesicles->M, -1, b->response, b->force, b->all));
+    if (root) DenseSingle(m, b->force, b->single);
+    if (root) PetscCall(DenseSingleMultAdd(PETSC_FALSE, w, m, -1, b->response, b->single, b->to));
   }
+  for (PetscInt k = 0; k < w && root; k++) b->all[k] = b->to[k];
   PetscCall(LayoutFromRank(l, b->root, 2, b->all, solid));
   Turn(b, PETSC_TRUE, solid);
   PetscFunctionReturn(PETSC_SUCCESS);
