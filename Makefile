@@ -95,9 +95,14 @@ $(LIBRARY): $(OBJECTS)
 	@mkdir -p $(@D)
 	$(CC) $(OPTIMISE) -shared -o $@ $^ $(LIBS)
 
+# The loader looks each name that a library asks for up in one library after the other. Those that Debian's PETSc brings with
+# most names stand first: a fifth of the start.
+MANY_NAMES := openblas $(addprefix trilinos_,teuchosparameterlist ifpack epetraext epetra teuchoscomm ml)
+LOADED = $(if $(PETSC_DIR),,$(shell ldd $(LIBRARY)))
+FIRST = $(foreach name,$(MANY_NAMES),$(foreach file,$(filter /%,$(LOADED)),$(if $(findstring /lib$(name).so,$(file)),$(file))))
 $(BIN)/petves: $(BUILD)/main.o $(LIBRARY)
 	@mkdir -p $(@D)
-	$(CC) $(OPTIMISE) -o $@ $< -L$(LIBDIR) -lpetves -Wl,-rpath,'$$ORIGIN/../$(LIBDIR)' $(LIBS)
+	$(CC) $(OPTIMISE) -o $@ $< -Wl,--push-state,--no-as-needed $(FIRST) -Wl,--pop-state -L$(LIBDIR) -lpetves -Wl,-rpath,'$$ORIGIN/../$(LIBDIR)' $(LIBS)
 
 $(BUILD)/tests/%: tests/%.c $(wildcard tests/*.h) $(CODE) | $(LIBRARY)
 	@mkdir -p $(@D)

@@ -52,10 +52,18 @@ static PetscBool IsFirst(void) {
 }
 
 /* A process started alone talks to nobody: Open MPI need not start a daemon beside it nor look for a network, which
-   takes .3 s. What the environment says already stays. */
+   takes .3 s, nor load what only several ranks use, and hwloc need not look for screens and graphics cards. What the
+   environment says already stays. */
 static void StartAlone(void) {
   static const char *const names[][2] = {
-      {"OMPI_MCA_ess_singleton_isolated", "1"}, {"OMPI_MCA_pml", "ob1"}, {"OMPI_MCA_btl", "self"}};
+      {"OMPI_MCA_ess_singleton_isolated", "1"},
+      {"OMPI_MCA_pml", "ob1"},
+      {"OMPI_MCA_btl", "self"},
+      {"OMPI_MCA_mtl", "^psm,psm2,ofi"},
+      {"OMPI_MCA_coll", "self,basic,libnbc"},
+      {"OMPI_MCA_osc", "^sm,monitoring,rdma,pt2pt,ucx"},
+      {"HWLOC_PLUGINS_PATH", "/"},
+  };
   if (RankGiven()) return;
   for (size_t k = 0; k < sizeof(names) / sizeof(names[0]); k++) (void)setenv(names[k][0], names[k][1], 0);
 }
