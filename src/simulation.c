@@ -176,6 +176,7 @@ PetscErrorCode SimulationCreateWithFlow(MPI_Comm comm, PetvesFlow flow, void *ct
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&s));
   *out = s;
+  StopClock(); /* where others have started PETSc: Python */
   PetscCall(PhaseBegin(PHASE_SETUP));
   PetscCall(PetvesSetupErrors(PETSC_TRUE));
   PetscCall(Build(comm, flow, ctx, s));
@@ -239,16 +240,17 @@ static PetscErrorCode IsSteady(Simulation s, PetscBool *steady) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* One step, of at most `most`, its row of series.csv and the files that are due. */
-static PetscErrorCode TakeStep(Simulation s, PetscReal most, const char **failure) {
+/* One step, of at most `most`, its row of series.csv and the files that are due. A first step may stop between its
+   parts (SchemeStep). */
+static PetscErrorCode TakeStep(Simulation s, PetscReal most, PetscReal reserve, const char **failure) {
   const StepReport *report = &s->scheme->report;
   PetscLogDouble start, end;
   PetscFunctionBeginUser;
   PetscCall(SimulationBegin(s));
   PetscCall(PetscTime(&start));
-  PetscCall(SchemeStep(s->scheme, most));
+  PetscCall(SchemeStep(s->scheme, most, reserve));
   *failure = *report->failure ? report->failure : NULL;
-  if (*failure) PetscFunctionReturn(PETSC_SUCCESS);
+  if (*failure || report->stopped) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(OutputStep(s->output));
   PetscCall(IsSteady(s, &s->steady));
   PetscCall(PetscTime(&end));
@@ -268,28 +270,35 @@ PetscErrorCode SimulationBegin(Simulation s) {
 PetscErrorCode SimulationStep(Simulation s, const char **failure) {
   const PetscReal t = s->scheme->state.t, end = s->scene->time.end;
   PetscFunctionBeginUser;
-  PetscCall(TakeStep(s, StepFinished(&s->scheme->policy, t, end) ? PETSC_MAX_REAL : end - t, failure));
+  PetscCall(TakeStep(s, StepFinished(&s->scheme->policy, t, end) ? PETSC_MAX_REAL : end - t, -1, failure));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Stop(Simulation s, const char why[]) {
+  PetscFunctionBeginUser;
+  s->reason = "stopped";
+  PetscCall(
+      PetvesSay(s->scene->comm, "petves: stopping after step %" PetscInt_FMT ": %s\n", s->scheme->state.step, why));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode SimulationAdvance(Simulation s, PetscReal until, PetscBool *stepped, const char **failure) {
-  const State *q = &s->scheme->state;
+  const PetscReal t = s->scheme->state.t;
   const char *why = NULL;
   PetscFunctionBeginUser;
   *failure = NULL;
   *stepped = PETSC_FALSE;
   PetscCall(SimulationBegin(s));
+  const PetscReal reserve = 1 + 1.5 * s->output->checkpoint_seconds;
   s->reason = s->steady ? "steady" : "finished";
-  if (s->steady || StepFinished(&s->scheme->policy, q->t, until)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(StopRequested(s->scene->comm, s->scene->time.wall_limit,
-                          1 + 1.5 * (s->longest_step + s->output->checkpoint_seconds), &why));
-  if (why) {
-    s->reason = "stopped";
-    PetscCall(PetvesSay(s->scene->comm, "petves: stopping after step %" PetscInt_FMT ": %s\n", q->step, why));
-    PetscFunctionReturn(PETSC_SUCCESS);
+  if (s->steady || StepFinished(&s->scheme->policy, t, until)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(StopRequested(s->scene->comm, s->scene->time.wall_limit, reserve + 1.5 * s->longest_step, &why));
+  if (!why) {
+    PetscCall(TakeStep(s, until - t, reserve, failure));
+    why = s->scheme->report.stopped;
+    *stepped = why ? PETSC_FALSE : PETSC_TRUE;
   }
-  *stepped = PETSC_TRUE;
-  PetscCall(TakeStep(s, until - q->t, failure));
+  if (why) PetscCall(Stop(s, why));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -153,6 +153,22 @@ def test_earlier_steps_of_no_length_are_refused(tmp_path):
     one_line(run, f"-restart {path}: ", "its dt_earlier is 0", "allowed: ")
 
 
+def test_a_memory_of_another_time_is_refused(tmp_path):
+    """Moving obstacles were where the preconditioner's factor was made at a time that the checkpoint has."""
+    scene = "-vesicle_shape none -domain_cells 16,16 -domain_bc_x periodic -domain_bc_y periodic -time_step 0.01"
+    scene += " -scheme_type coupled -obstacle_shape posts -obstacle_radius .5 -obstacle_moving -obstacle_velocity 1,0"
+    good = run_petves(tmp_path / "run", f"{scene} -time_end 0.02").folder / "checkpoint.h5"
+
+    def later(file, name, values, place):
+        assert 0 < values.flat[-4] < 0.02, "the time is the first of the four last numbers"
+        values.flat[-4] = 1e6
+        file.create_dataset(name, **plain(values))
+
+    path = forge(good, tmp_path, dataset("solver", later))
+    run = run_petves(tmp_path / "new", f"{scene} -time_end 0.03 -restart {path}", 2, good=False, timeout=60)
+    one_line(run, f"-restart {path}: ", "its solver's memory is of time 1e+06; allowed: a checkpoint.h5 of petves")
+
+
 def test_a_copy_without_a_change_is_taken(good, tmp_path):
     """The forger's own work is not what is refused."""
     path = forge(good, tmp_path, dataset("fluid/u", lambda f, n, v, _: f.create_dataset(n, **plain(v))))

@@ -60,7 +60,7 @@ PETSC_EXTERN PetscErrorCode PetvesEvent(const char name[], PetscLogEvent *event)
    would wait for it without end. Does nothing when it has been done. Collective. */
 PETSC_EXTERN PetscErrorCode PetvesWarmUpBlas(MPI_Comm comm);
 
-/* StopClock - the wall time of -time_wall_limit starts here. */
+/* StopClock - the wall time of -time_wall_limit starts here, the first time that this is called. */
 PETSC_EXTERN void StopClock(void);
 
 /* StopRequested - whether a rank has caught SIGTERM or SIGUSR1 (PetvesCatchSignals), or less than `reserve` seconds are

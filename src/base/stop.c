@@ -9,7 +9,7 @@
 static volatile sig_atomic_t caught;
 static volatile sig_atomic_t stepping; /* somebody asks between steps whether a signal has come */
 static double caught_at;
-static double began;
+static double began; /* 0: not yet */
 
 /* Seconds of a clock that nobody sets. */
 static double Now(void) {
@@ -30,7 +30,7 @@ static void Catch(int number) {
 }
 
 void StopClock(void) {
-  began = Now();
+  if (began == 0) began = Now();
 }
 
 PetscErrorCode PetvesCatchSignals(void) {

@@ -107,7 +107,7 @@ PetscErrorCode SchemeDestroy(Scheme *scheme) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SchemeStep(Scheme s, PetscReal most) {
+PetscErrorCode SchemeStep(Scheme s, PetscReal most, PetscReal reserve) {
   const PetscInt solves = FluidCountSolves(s->fluid);
   PetscLogDouble start, end;
   PetscFunctionBeginUser;
@@ -115,11 +115,14 @@ PetscErrorCode SchemeStep(Scheme s, PetscReal most) {
   PetscCall(PhaseBegin(PHASE_STEP));
   PetscCall(PetscMemzero(&s->report, sizeof(s->report)));
   PetscCall(SchemeKeep(s));
+  s->reserve = reserve;
   FluidClearFailure(s->fluid);
   s->state.dt = s->policy.adaptive ? s->policy.base : StepFixed(&s->policy, s->state.t, most);
   PetscCall(s->ops.step(s, most));
   s->report.solves = FluidCountSolves(s->fluid) - solves;
-  if (!*s->report.failure) {
+  if (s->report.stopped)
+    PetscCall(SchemeReturn(s, PETSC_FALSE));
+  else if (!*s->report.failure) {
     s->state.t += s->state.dt;
     s->state.dt_last = s->state.dt_last > 0 ? s->state.dt_last : s->state.dt;
     s->state.step++;
@@ -144,13 +147,13 @@ PetscInt SchemeMemorySize(Scheme s) {
 PetscErrorCode SchemeRemember(Scheme s, PetscReal memory[]) {
   PetscFunctionBeginUser;
   PetscCall(PetscArrayzero(memory, SchemeMemorySize(s)));
-  if (s->ops.remember) PetscCall(s->ops.remember(s, memory));
+  if (s->ops.remember && s->state.dt_last > 0) PetscCall(s->ops.remember(s, memory)); /* before a step: nothing */
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode SchemeRecall(Scheme s, const PetscReal memory[]) {
   PetscFunctionBeginUser;
-  if (s->ops.recall) PetscCall(s->ops.recall(s, memory));
+  if (s->ops.recall && s->state.dt_last > 0) PetscCall(s->ops.recall(s, memory));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

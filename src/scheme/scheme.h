@@ -21,6 +21,7 @@ typedef struct {
   PetscReal cfl;             /* dt max(|u| + |v|)/h; 0 without convection */
   PetscReal seconds;         /* wall, output excluded */
   Stress stress;
+  const char *stopped; /* why a first step was left undone between two of its parts (StopRequested); NULL: it was not */
   char failure[PETVES_MAX_MESSAGE]; /* why the step could not be taken; empty when it was */
 } StepReport;
 
@@ -79,6 +80,7 @@ struct _p_Scheme {
   PetscInt past;          /* how many of them are known */
   Snapshot before;        /* what SchemeStep goes back to when a step fails */
   Warnings warnings;
+  PetscReal reserve; /* SchemeStep's, of the step under way (seconds) */
   StepReport report;
   Vec background;   /* marker vector: what the markers' velocity has besides the solved part: u_inf, zero in the total
                        form */
@@ -99,8 +101,10 @@ PETSC_EXTERN PetscErrorCode SchemeDestroy(Scheme *scheme);
 
 /* SchemeStep - one time step: the policy's, at most `most`, the time that is left (PETSC_MAX_REAL: no end). Afterwards
    scheme->report says what was done; when report.failure is not empty the step could not be taken, or led to a state
-   that is refused, and the state is the last good one. Collective. */
-PETSC_EXTERN PetscErrorCode SchemeStep(Scheme scheme, PetscReal most);
+   that is refused, and the state is the last good one. A first step stops between its parts, or attempts, at a signal
+   or where less than `reserve` seconds of -time_wall_limit would be left after another one: report.stopped says why,
+   and the state is as before; negative: it does not. Collective. */
+PETSC_EXTERN PetscErrorCode SchemeStep(Scheme scheme, PetscReal most, PetscReal reserve);
 
 /* SchemeRemember, SchemeRecall - what the solvers have kept from earlier steps (when their blocks were made, and where
    the markers were), as SchemeMemorySize numbers for a checkpoint, and made again from them. Collective. */
