@@ -3,7 +3,7 @@
 #include "kernel/kernel.h"
 #include "scene/mixture.h"
 
-#define LEAST_ACROSS 6   /* cells */
+#define LEAST_ACROSS 6   /* cells: the drag of such a circle is right to 6e-5 (docs/obstacles.md) */
 #define MOST_SPACING 1.5 /* ds/h with inertia, where the mobility of markers farther apart is indefinite */
 
 static PetscErrorCode CheckMethod(Scene scene) {
