@@ -38,7 +38,8 @@ def last(folder, options, ranks=1):
 
 
 @pytest.mark.parametrize(
-    "radius, cells, within", [(0.2, 15, 7e-5), (0.2, 32, 1e-5), (0.2, 64, 2e-6), (0.2, 128, 2e-6), (0.4, 32, 1e-4), (0.4, 64, 1e-5)]
+    "radius, cells, within",
+    [(0.2, 15, 7e-5), (0.2, 32, 1e-5), (0.2, 64, 2e-6), (0.2, 128, 2e-6), (0.4, 32, 1e-4), (0.4, 64, 1e-5)],
 )
 def test_drag_of_a_square_array(radius, cells, within, tmp_path):
     """The exact force at mean flow 1, which is the pressure drop as well; the flux is 1 to rounding."""

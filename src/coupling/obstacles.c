@@ -152,10 +152,10 @@ static PetscErrorCode CheckOthers(Obstacles o, const CurveRoom *room, const Pets
   PetscInt n;
   PetscFunctionBeginUser;
   for (PetscInt b = 0; b < l->bodies; b++) edge = PetscMax(edge, o->ds[b]);
-  PetscCall(CurveGaps(&set, OBSTACLE_LEAST_GAP * edge, &n, &gap));
+  PetscCall(CurveGaps(&set, SCENE_LEAST_GAP * edge, &n, &gap));
   for (PetscInt k = 0; k < n && !*message; k++) {
     const PetscInt a = gap[k].curve[0], b = gap[k].curve[1];
-    const PetscReal least = OBSTACLE_LEAST_GAP * PetscMax(o->ds[a], o->ds[b]);
+    const PetscReal least = SCENE_LEAST_GAP * PetscMax(o->ds[a], o->ds[b]);
     if ((!o->motion[a].carried && !o->motion[b].carried) || gap[k].distance >= least) continue;
     if (a == b)
       PetscCall(PetscSNPrintf(message, PETVES_MAX_MESSAGE,

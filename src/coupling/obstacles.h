@@ -56,9 +56,8 @@ PETSC_EXTERN PetscErrorCode ObstaclesPlace(Obstacles obstacles, PetscReal t);
 PETSC_EXTERN ObstaclePose ObstaclesPose(Obstacles obstacles, PetscInt curve, PetscReal t);
 
 /* ObstaclesCheck - whether moving bodies at time t keep the distance from walls and from other obstacles, images among
-   them, down to which their forces are right: KERNEL_FOLDED_CELLS cells and OBSTACLE_LEAST_GAP edges. message is empty,
+   them, down to which their forces are right: KERNEL_FOLDED_CELLS cells and SCENE_LEAST_GAP edges. message is empty,
    or says which do not. Not collective. */
-#define OBSTACLE_LEAST_GAP 0.3
 PETSC_EXTERN PetscErrorCode ObstaclesCheck(Obstacles obstacles, Grid grid, PetscReal t,
                                            char message[PETVES_MAX_MESSAGE]);
 

@@ -1,6 +1,7 @@
 /* Curves from a text file: "x y" a line, # starts a comment, an empty line ends a curve. */
 #include "curve/curve.h"
 #include <errno.h>
+#include <strings.h>
 
 #define SAME 1e-6 /* of a period: a curve's last point is its first */
 
@@ -27,42 +28,76 @@ static PetscErrorCode EndCurve(Points *p) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A comment that says something of the curve. */
-static void ReadNote(const char comment[], CurveNote *note) {
-  double u[2];
-  if (sscanf(comment, " velocity %lf %lf", &u[0], &u[1]) == 2)
-    for (int c = 0; c < 2; c++) note->velocity[c] = u[c];
-  if (sscanf(comment, " rotation %lf", &u[0]) == 1) note->rotation = u[0];
-  if (!strncmp(comment + strspn(comment, " \t"), "open", 4)) note->open = PETSC_TRUE;
+/* How many finite numbers a text consists of, blanks or commas between them; -1: more than `most`, or others. */
+static int Numbers(const char text[], int most, PetscReal x[]) {
+  int n = 0;
+  while (text[strspn(text, " \t\r\n,")]) {
+    char *end;
+    text += strspn(text, " \t\r\n,");
+    const double value = strtod(text, &end);
+    if (end == text || n == most || PetscIsInfOrNanReal(value)) return -1;
+    x[n++] = value;
+    text = end;
+  }
+  return n;
+}
+
+static PetscErrorCode Refuse(Points *points, PetscInt number, const char line[], const char allowed[]) {
+  PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(points->error, sizeof(points->error),
+                          "%s %s: line %" PetscInt_FMT " is \"%.60s\"; allowed: %s", points->option, points->file,
+                          number, line, allowed));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A comment whose first word says something of an obstacle's curve: "# velocity x y" and so on. */
+static PetscErrorCode ReadNote(const char line[], PetscInt number, Points *points) {
+  const char *start = line + 1 + strspn(line + 1, " \t");
+  const size_t length = strcspn(start, " \t,:=");
+  CurveNote *note = &points->next;
+  const struct {
+    const char *word;
+    int numbers;
+    PetscReal *value;
+  } known[] = {{"open", 0, NULL}, {"velocity", 2, note->velocity}, {"rotation", 1, &note->rotation}};
+  PetscReal x[2];
+  PetscFunctionBeginUser;
+  for (int k = 0; k < 3; k++) {
+    if (length != strlen(known[k].word) || strncasecmp(start, known[k].word, length)) continue;
+    if (Numbers(start + length, 2, x) != known[k].numbers)
+      PetscCall(Refuse(points, number, line, "# velocity and two finite numbers, # rotation and one, # open and none"));
+    else if (known[k].value)
+      PetscCall(PetscArraycpy(known[k].value, x, known[k].numbers));
+    else
+      note->open = PETSC_TRUE;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* One line, `number` of the file. */
 static PetscErrorCode ReadLine(char line[], PetscInt number, PetscInt *capacity, Points *points) {
   const char *start = line + strspn(line, " \t");
   const PetscBool comment = *start == '#' ? PETSC_TRUE : PETSC_FALSE;
-  double x, y;
-  char rest[8];
+  PetscReal x[2];
   PetscFunctionBeginUser;
-  if (comment) ReadNote(start + 1, &points->next);
-  line[strcspn(line, "#\r\n")] = 0;
-  if (line[strspn(line, " \t,")] == 0) {
-    if (!comment) PetscCall(EndCurve(points));
+  line[strcspn(line, "\r\n")] = 0;
+  if (comment) {
+    if (points->period) PetscCall(ReadNote(start, number, points));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  for (char *p = line; *p; p++)
-    if (*p == ',') *p = ' ';
-  if (sscanf(line, "%lf %lf %7s", &x, &y, rest) != 2 || PetscIsInfOrNanReal(x) || PetscIsInfOrNanReal(y)) {
-    PetscCall(PetscSNPrintf(points->error, sizeof(points->error),
-                            "%s %s: line %" PetscInt_FMT " is \"%.60s\"; allowed: two finite numbers, x y",
-                            points->option, points->file, number, line));
+  line[strcspn(line, "#")] = 0;
+  const int n = Numbers(line, 2, x);
+  if (n == 0) PetscCall(EndCurve(points));
+  if (n == 0) PetscFunctionReturn(PETSC_SUCCESS);
+  if (n != 2) {
+    PetscCall(Refuse(points, number, line, "two finite numbers, x y"));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   if (points->n == *capacity) {
     *capacity = *capacity ? 2 * *capacity : 256;
     PetscCall(PetscRealloc(2 * *capacity * sizeof(PetscReal), &points->xy));
   }
-  points->xy[2 * points->n] = x;
-  points->xy[2 * points->n++ + 1] = y;
+  PetscCall(PetscArraycpy(points->xy + 2 * points->n++, x, 2));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -79,6 +114,9 @@ static PetscErrorCode ReadPoints(Points *points) {
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   while (fgets(line, sizeof(line), f) && !*points->error) PetscCall(ReadLine(line, ++number, &capacity, points));
+  if (ferror(f))
+    PetscCall(PetscSNPrintf(points->error, sizeof(points->error),
+                            "%s %s: cannot be read; allowed: a readable text file", points->option, points->file));
   fclose(f);
   PetscCall(EndCurve(points));
   if (!points->curves && !*points->error)

@@ -1,4 +1,5 @@
 /* What goes with obstacles, and where they and the vesicles among them may be. */
+#include "curve/contacts.h"
 #include "curve/crossing.h"
 #include "kernel/kernel.h"
 #include "scene/mixture.h"
@@ -145,6 +146,33 @@ static PetscErrorCode CheckInside(Scene scene, const PetscReal period[2]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* That between obstacles, and between one and its images, markers resolve a gap. */
+static PetscErrorCode CheckGaps(Scene scene, const PetscReal period[2]) {
+  const SceneObstacles *own = &scene->obstacles;
+  const Shape *s = &own->outline;
+  const PetscReal spacing = own->spacing * FluidSpecCellSize(&scene->fluid);
+  PetscReal *X;
+  CurveGap *gap;
+  PetscInt n;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(2 * s->start[s->vesicles], &X));
+  for (PetscInt b = 0; b < s->vesicles; b++) /* clockwise where the fluid is inside */
+    for (PetscInt k = s->start[b]; k < s->start[b + 1]; k++)
+      PetscCall(
+          PetscArraycpy(X + 2 * k, s->X + 2 * (own->container[b] ? s->start[b] + s->start[b + 1] - 1 - k : k), 2));
+  const CurveSet set = {s->vesicles, s->vesicles, s->start, s->kind, X, period, PETSC_TRUE, NULL};
+  PetscCall(CurveGaps(&set, SCENE_LEAST_GAP * spacing, &n, &gap));
+  const CurveGap first = n ? gap[0] : (CurveGap){.curve = {0, 0}};
+  PetscCall(PetscFree(gap));
+  PetscCall(PetscFree(X));
+  PetscCheck(!n, scene->comm, PETSC_ERR_USER_INPUT,
+             "-obstacle_shape: the gap between obstacles %" PetscInt_FMT " and %" PetscInt_FMT
+             " is %.3g, %.2g marker spacings; allowed: at least %g, so farther apart or a smaller -obstacle_spacing",
+             first.curve[0] + 1, first.curve[1] + 1, (double)first.distance, (double)(first.distance / spacing),
+             SCENE_LEAST_GAP);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* That no obstacle crosses another one, itself or a vesicle. */
 static PetscErrorCode CheckCrossing(Scene scene, const PetscReal period[2]) {
   const Shape *s = &scene->obstacles.outline, *v = &scene->shape;
@@ -239,6 +267,7 @@ PetscErrorCode SceneCheckObstacles(Scene scene) {
   for (PetscInt b = 0; b < scene->obstacles.outline.vesicles; b++) PetscCall(CheckPlace(scene, b));
   PetscCall(CheckCrossing(scene, period));
   PetscCall(CheckInside(scene, period));
+  PetscCall(CheckGaps(scene, period));
   PetscCall(CheckMotion(scene));
   for (PetscInt b = 0; b < scene->obstacles.outline.vesicles; b++) PetscCall(CheckFlux(scene, b));
   PetscFunctionReturn(PETSC_SUCCESS);

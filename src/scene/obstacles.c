@@ -96,10 +96,14 @@ static PetscErrorCode MakePosts(Scene scene, Outlines *o) {
 static PetscErrorCode MakeCouette(Scene scene, Outlines *o) {
   const SceneObstacles *own = &scene->obstacles;
   PetscFunctionBeginUser;
-  PetscCheck(own->radius.n == 2 && own->radius.v[0] < own->radius.v[1], scene->comm, PETSC_ERR_USER_INPUT,
+  PetscCheck(own->radius.n == 2, scene->comm, PETSC_ERR_USER_INPUT,
              "-obstacle_shape couette: -obstacle_radius has %" PetscInt_FMT
              " numbers; allowed: two, the inner and the outer radius",
              own->radius.n);
+  PetscCheck(
+      own->radius.v[0] < own->radius.v[1], scene->comm, PETSC_ERR_USER_INPUT,
+      "-obstacle_shape couette: -obstacle_radius %g,%g; allowed: the inner radius first, smaller than the outer one",
+      (double)own->radius.v[0], (double)own->radius.v[1]);
   PetscCall(CheckList(scene, "-obstacle_center", own->center.n, 2, 2));
   PetscCall(MakeCircles(scene, 2, o));
   o->note[1].clockwise = PETSC_TRUE;
