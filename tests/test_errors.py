@@ -50,7 +50,7 @@ CURVES = {
     "line": [f"{0.1 * k - 1:.15g} 0" for k in range(21)],
     "sliding line": ["# velocity 1 0", *(f"{0.1 * k - 1:.15g} 0" for k in range(21))],
     "long ellipse": [
-        "# rotation 20",
+        "# rotation 30",
         *(f"{0.8 * np.cos(a):.15g} {0.2 * np.sin(a):.15g}" for a in np.pi * np.arange(60) / 30),
     ],
     "flat": [f"{0.01 * k} 0" for k in range(20)],
