@@ -43,6 +43,16 @@ def test_steady_angle_and_frequency(tmp_path, ratio):
         assert run.series["coupled_its"][6:].mean() <= 5
 
 
+def test_a_block_turns_with_its_vesicle(tmp_path):
+    """One that tumbles; blocks that stay where they are made take 3 to 7 iterations a step."""
+    scene = f"{COUPLED} -vesicle_area 1 -vesicle_reduced_area .8 -vesicle_bending 1 -vesicle_viscosity_ratio 20"
+    box = "-domain_box -2,2,-2,2 -domain_cells 32,32 -domain_bc_x periodic -flow_type shear -vesicle_angle 110"
+    run = run_petves(tmp_path / "run", f"{scene} {box} -time_step .05 -time_end 1.5")
+    angle, its = run.series["inclination"], run.series["coupled_its"][11:]
+    assert abs(angle[-1] - angle[0]) > 0.5
+    assert its.mean() <= 3.5 and its.max() <= 4, its
+
+
 def test_second_order_without_box_part(tmp_path):
     """The angle at 32^2 is off by .1 % then, four times less at 64^2."""
     error = []

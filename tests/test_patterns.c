@@ -30,7 +30,7 @@ static void TurnCurve(PetscReal angle, PetscInt shift, const PetscReal X[], Pets
 
 /* A curve without symmetry is found again wherever it lies. */
 static PetscErrorCode CheckPose(PetscReal angle, PetscInt shift) {
-  PetscReal X[2 * N], Y[2 * N], x[2 * N], y[2 * N], a[POSE_SIZES], b[POSE_SIZES];
+  PetscReal X[2 * N], Y[2 * N], x[2 * N], y[2 * N], z[2 * N], a[POSE_SIZES], b[POSE_SIZES], most = 0;
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < N; k++) {
     const PetscReal t = 2 * PETSC_PI * (PetscReal)k / N;
@@ -44,6 +44,14 @@ static PetscErrorCode CheckPose(PetscReal angle, PetscInt shift) {
   CHECK((p.shift + shift) % N == 0, "labels shifted by %d are shifted back by %d", (int)shift, (int)p.shift);
   CHECK(fabs(p.turn[0] - cos(angle)) + fabs(p.turn[1] - sin(angle)) < 1e-13, "a turn of %g is found", (double)angle);
   CHECK(p.distance < 1e-7, "nothing is left, %.1e", (double)p.distance);
+  PoseInto(&p, 2, N, x, z);
+  for (PetscInt k = 0; k < 2 * N; k++) most = PetscMax(most, fabs(z[k] - y[k]));
+  CHECK(most < 1e-13, "the curve is the other one in its frame, %.1e", (double)most);
+  PoseBack(&p, 2, N, y, z);
+  for (PetscInt k = 0; k < 2 * N; k++) most = PetscMax(most, fabs(z[k] - x[k]));
+  PoseInto(&p, 1, N, x, z);
+  PoseBack(&p, 1, N, z, z + N);
+  CHECK(most < 1e-13 && !memcmp(z + N, x, N * sizeof(*x)), "there and back, %.1e", (double)most);
   PoseSizes(N, x, a);
   PoseSizes(N, y, b);
   CHECK(PoseLeast(a, b) < 1e-13, "sizes know no turn and no labels, %.1e", (double)PoseLeast(a, b));

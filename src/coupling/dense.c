@@ -2,6 +2,16 @@
 #include "base/agree.h"
 #include "coupling/contrast.h"
 #include "coupling/denseblock.h"
+#include "coupling/pose.h"
+
+/* The frame of the one curve that a block was made for. */
+typedef struct {
+  PetscBool turns; /* false: a block of several vesicles, or one that knows obstacles, stays where it was made */
+  PetscBool made;
+  PetscReal *X;         /* [2n] the curve, centred */
+  PetscReal *U, *sigma; /* [2n], [n] work */
+  Pose pose;            /* of the present curve */
+} BlockFrame;
 
 struct _p_DenseBlocks {
   Coupling coupling;
@@ -9,6 +19,7 @@ struct _p_DenseBlocks {
   PetscMPIInt root;
   PetscInt count; /* blocks of this rank */
   DenseBlock *block;
+  BlockFrame *frame;      /* of each block */
   PetscScalar *U, *sigma; /* together: [2M], [M] of all markers, on root */
 };
 
@@ -22,10 +33,14 @@ PetscErrorCode DenseBlocksCreate(Coupling coupling, DenseBlocks *out) {
   b->together = l->M <= DENSE_TOGETHER ? PETSC_TRUE : PETSC_FALSE;
   b->root = LayoutOwner(l, 0);
   b->count = b->together ? l->rank == b->root : l->end - l->own;
-  PetscCall(PetscCalloc1(b->count, &b->block));
+  PetscCall(PetscCalloc2(b->count, &b->block, b->count, &b->frame));
   for (PetscInt k = 0; k < b->count; k++) {
     const PetscInt v = b->together ? 0 : l->own + k;
+    BlockFrame *f = &b->frame[k];
     PetscCall(DenseBlockCreate(l, v, b->together ? l->bodies : v + 1, &b->block[k]));
+    f->turns = b->block[k].end - v == 1 && !(b->together && coupling->bodies->obstacles) ? PETSC_TRUE : PETSC_FALSE;
+    const PetscInt n = f->turns ? b->block[k].n : 0;
+    PetscCall(PetscMalloc3(2 * n, &f->X, 2 * n, &f->U, n, &f->sigma));
   }
   PetscCall(PetscMalloc2(2 * l->M, &b->U, l->M, &b->sigma));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -35,8 +50,11 @@ PetscErrorCode DenseBlocksDestroy(DenseBlocks *blocks) {
   DenseBlocks b = *blocks;
   PetscFunctionBeginUser;
   if (!b) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt k = 0; k < b->count; k++) { PetscCall(DenseBlockDestroy(&b->block[k])); }
-  PetscCall(PetscFree(b->block));
+  for (PetscInt k = 0; k < b->count; k++) {
+    PetscCall(DenseBlockDestroy(&b->block[k]));
+    PetscCall(PetscFree3(b->frame[k].X, b->frame[k].U, b->frame[k].sigma));
+  }
+  PetscCall(PetscFree2(b->block, b->frame));
   PetscCall(PetscFree2(b->U, b->sigma));
   PetscCall(PetscFree(*blocks));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -85,14 +103,42 @@ static PetscErrorCode AssembleMotion(DenseBlocks b, PetscReal a0, PetscInt first
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-void DenseBlocksPlace(DenseBlocks b) {
+/* Tangents of the present markers in block k's frame. */
+static void PlaceTangents(DenseBlocks b, PetscInt k) {
   const Membrane m = b->coupling->membrane;
+  const DenseBlock *q = &b->block[k];
+  const BlockFrame *f = &b->frame[k];
+  const PetscReal *X = b->coupling->markers->X + 2 * q->first;
+  if (f->turns && f->made) {
+    PoseInto(&f->pose, 2, q->n, X, f->U);
+    X = f->U;
+  }
+  for (PetscInt v = q->vesicle; v < q->end; v++) {
+    const PetscInt at = 2 * (m->layout->start[v] - q->first);
+    MembraneVesicleTangents(m, v, X + at, q->tau + at);
+  }
+}
+
+void DenseBlocksPlace(DenseBlocks b) {
   for (PetscInt k = 0; k < b->count; k++) {
     const DenseBlock *q = &b->block[k];
-    for (PetscInt v = q->vesicle; v < q->end; v++) {
-      const PetscInt first = m->layout->start[v];
-      MembraneVesicleTangents(m, v, b->coupling->markers->X + 2 * first, q->tau + 2 * (first - q->first));
+    BlockFrame *f = &b->frame[k];
+    if (f->turns && f->made) {
+      PoseCentred(q->n, b->coupling->markers->X + 2 * q->first, f->U);
+      f->pose = PoseFit(q->n, f->U, f->X);
     }
+    PlaceTangents(b, k);
+  }
+}
+
+/* The frames of blocks made for the present markers. */
+static void BeginFrames(DenseBlocks b) {
+  for (PetscInt k = 0; k < b->count; k++) {
+    BlockFrame *f = &b->frame[k];
+    f->made = PETSC_TRUE;
+    f->pose = (Pose){.turn = {1, 0}};
+    if (f->turns) PoseCentred(b->block[k].n, b->coupling->markers->X + 2 * b->block[k].first, f->X);
+    PlaceTangents(b, k);
   }
 }
 
@@ -107,6 +153,7 @@ PetscErrorCode DenseBlocksFactor(DenseBlocks b, Mobility mobility, ObstacleBlock
   PetscFunctionBeginUser;
   PetscCall(PetvesEvent("FactorMobility", &event));
   PetscCall(PetscLogEventBegin(event, 0, 0, 0, 0));
+  BeginFrames(b);
   for (PetscInt k = 0; k < b->count; k++) most = PetscMax(most, b->block[k].n);
   PetscCall(PetscMalloc1(4 * most * most, &Mob));
   if (b->together) {
@@ -134,22 +181,38 @@ PetscErrorCode DenseBlocksFactor(DenseBlocks b, Mobility mobility, ObstacleBlock
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode DenseBlocksSolve(DenseBlocks b, PetscScalar U[], PetscScalar sigma[]) {
-  const Membrane m = b->coupling->membrane;
-  const Layout l = m->layout;
+/* Block k's problem, in its frame. */
+static PetscErrorCode SolveBlock(DenseBlocks b, PetscInt k, PetscScalar U[], PetscScalar sigma[]) {
   const PetscReal h2 = PetscSqr(b->coupling->fluid->grid->h);
+  const DenseBlock *q = &b->block[k];
+  BlockFrame *f = &b->frame[k];
+  PetscFunctionBeginUser;
+  if (!f->turns) {
+    PetscCall(DenseBlockSolve(b->coupling->membrane, h2, q, 1, U, sigma));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PoseInto(&f->pose, 2, q->n, U, f->U);
+  PoseInto(&f->pose, 1, q->n, sigma, f->sigma);
+  PetscCall(DenseBlockSolve(b->coupling->membrane, h2, q, 1, f->U, f->sigma));
+  PoseBack(&f->pose, 2, q->n, f->U, U);
+  PoseBack(&f->pose, 1, q->n, f->sigma, sigma);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode DenseBlocksSolve(DenseBlocks b, PetscScalar U[], PetscScalar sigma[]) {
+  const Layout l = b->coupling->membrane->layout;
   PetscFunctionBeginUser;
   if (b->together) {
     PetscCall(LayoutToRank(l, b->root, 2, U, b->U));
     PetscCall(LayoutToRank(l, b->root, 1, sigma, b->sigma));
-    for (PetscInt k = 0; k < b->count; k++) PetscCall(DenseBlockSolve(m, h2, &b->block[k], 1, b->U, b->sigma));
+    for (PetscInt k = 0; k < b->count; k++) PetscCall(SolveBlock(b, k, b->U, b->sigma));
     PetscCall(LayoutFromRank(l, b->root, 2, b->U, U));
     PetscCall(LayoutFromRank(l, b->root, 1, b->sigma, sigma));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   for (PetscInt k = 0; k < b->count; k++) {
-    const DenseBlock *q = &b->block[k];
-    PetscCall(DenseBlockSolve(m, h2, q, 1, U + 2 * (q->first - l->first), sigma + q->first - l->first));
+    const PetscInt at = b->block[k].first - l->first;
+    PetscCall(SolveBlock(b, k, U + 2 * at, sigma + at));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -2,28 +2,6 @@
 #include "coupling/patternapply.h"
 #include "coupling/panels.h"
 
-void PoseTurn(const Pose *p, PetscBool back, PetscInt n, const PetscReal x[], PetscReal y[]) {
-  const PetscReal c = p->turn[0], s = back ? -p->turn[1] : p->turn[1];
-  for (PetscInt k = 0; k < n; k++) {
-    y[2 * k] = c * x[2 * k] - s * x[2 * k + 1];
-    y[2 * k + 1] = s * x[2 * k] + c * x[2 * k + 1];
-  }
-}
-
-/* y = the velocities or forces U of a vesicle's n markers in its pattern's frame. */
-static void ToPattern(const Pose *p, PetscInt n, const PetscScalar U[], PetscReal y[]) {
-  const PetscInt j = p->shift;
-  PoseTurn(p, PETSC_TRUE, n - j, U + 2 * j, y);
-  PoseTurn(p, PETSC_TRUE, j, U, y + 2 * (n - j));
-}
-
-/* And back. */
-static void FromPattern(const Pose *p, PetscInt n, const PetscReal y[], PetscScalar U[]) {
-  const PetscInt j = p->shift;
-  PoseTurn(p, PETSC_FALSE, n - j, y, U + 2 * j);
-  PoseTurn(p, PETSC_FALSE, j, y + 2 * (n - j), U);
-}
-
 /* (U, sigma) += y, back from the pattern's frame. */
 static void AddFromPattern(const Pose *p, PetscInt n, const PetscReal y[], PetscScalar U[], PetscScalar sigma[]) {
   const PetscReal c = p->turn[0], s = p->turn[1];
@@ -41,7 +19,7 @@ static void GatherColumns(Patterns s, const Pattern *q, PetscInt each, const Pet
   PetscReal *x = s->from;
   for (PetscInt k = q->begin; k < q->end; k++, x += each) {
     const PetscInt v = s->order[k];
-    ToPattern(&s->pose[v - l->own], LayoutCount(l, v), W + 2 * LayoutOffset(l, v), x);
+    PoseInto(&s->pose[v - l->own], 2, LayoutCount(l, v), W + 2 * LayoutOffset(l, v), x);
   }
 }
 
@@ -61,9 +39,9 @@ static void FindSources(Patterns s, const Pattern *q, PetscInt inner, const Patt
   const PetscReal *y = s->to;
   for (PetscInt k = q->begin; k < q->end; k++, y += apart) {
     const PetscInt v = s->order[k], at = 2 * LayoutOffset(l, v);
-    FromPattern(&s->pose[v - l->own], n, y, sources->force + at);
+    PoseBack(&s->pose[v - l->own], 2, n, y, sources->force + at);
     if (rows > 2 * n)
-      FromPattern(&s->pose[v - l->own], n, y + 2 * n, sources->jump + at);
+      PoseBack(&s->pose[v - l->own], 2, n, y + 2 * n, sources->jump + at);
     else if (sources->jump)
       (void)PetscArrayzero(sources->jump + at, 2 * n);
   }
@@ -87,9 +65,8 @@ void PatternSolveAlone(Patterns s, const Pattern *q, PetscScalar U[], PetscScala
   PetscReal *x = s->from + 2 * n;
   GatherColumns(s, q, 3 * n, U);
   for (PetscInt k = q->begin; k < q->end; k++, x += 3 * n) {
-    const PetscInt v = s->order[k], at = LayoutOffset(l, v), shift = s->pose[v - l->own].shift;
-    (void)PetscArraycpy(x, sigma + at + shift, n - shift);
-    (void)PetscArraycpy(x + n - shift, sigma + at, shift);
+    const PetscInt v = s->order[k], at = LayoutOffset(l, v);
+    PoseInto(&s->pose[v - l->own], 1, n, sigma + at, x);
     (void)PetscArrayzero(U + 2 * at, 2 * n);
     (void)PetscArrayzero(sigma + at, n);
   }

@@ -12,6 +12,3 @@ PETSC_EXTERN void PatternAnswers(Patterns patterns, const Pattern *pattern, cons
                                  const PatternSources *sources);
 PETSC_EXTERN void PatternAddAnswer(Patterns patterns, const Pattern *pattern, const PetscScalar W[], PetscScalar U[],
                                    PetscScalar sigma[]);
-
-/* PoseTurn - n vectors x turned from the other curve's frame to this one's, or (back) the other way. */
-PETSC_EXTERN void PoseTurn(const Pose *pose, PetscBool back, PetscInt n, const PetscReal x[], PetscReal y[]);

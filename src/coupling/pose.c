@@ -67,3 +67,31 @@ Pose PoseFit(PetscInt n, const PetscReal X[], const PetscReal Y[]) {
   pose.distance = PetscSqrtReal(PetscMax(squares - 2 * size, 0) / (PetscReal)n);
   return pose;
 }
+
+void PoseTurn(const Pose *p, PetscBool back, PetscInt n, const PetscReal x[], PetscReal y[]) {
+  const PetscReal c = p->turn[0], s = back ? -p->turn[1] : p->turn[1];
+  for (PetscInt k = 0; k < n; k++) {
+    y[2 * k] = c * x[2 * k] - s * x[2 * k + 1];
+    y[2 * k + 1] = s * x[2 * k] + c * x[2 * k + 1];
+  }
+}
+
+/* y = x of n markers, vectors turned. */
+static void Copy(const Pose *p, PetscBool back, int each, PetscInt n, const PetscReal x[], PetscReal y[]) {
+  if (each == 2)
+    PoseTurn(p, back, n, x, y);
+  else
+    (void)PetscArraycpy(y, x, n);
+}
+
+void PoseInto(const Pose *p, int each, PetscInt n, const PetscReal x[], PetscReal y[]) {
+  const PetscInt j = p->shift;
+  Copy(p, PETSC_TRUE, each, n - j, x + each * j, y);
+  Copy(p, PETSC_TRUE, each, j, x, y + each * (n - j));
+}
+
+void PoseBack(const Pose *p, int each, PetscInt n, const PetscReal x[], PetscReal y[]) {
+  const PetscInt j = p->shift;
+  Copy(p, PETSC_FALSE, each, n - j, x, y + each * j);
+  Copy(p, PETSC_FALSE, each, j, x + each * (n - j), y);
+}

@@ -22,3 +22,10 @@ PETSC_EXTERN PetscReal PoseLeast(const PetscReal a[POSE_SIZES], const PetscReal 
    |c_j|, c_j = SUM_k conj(y_k) x_{k+j}, and e^{i theta} = c_j/|c_j|, which leave the least SUM |x_{k+j} - e^{i theta}
    y_k|^2. Not collective. */
 PETSC_EXTERN Pose PoseFit(PetscInt n, const PetscReal X[], const PetscReal Y[]);
+
+/* PoseTurn - n vectors x turned from the other curve's frame to this one's, or (back) the other way. PoseInto - y is in
+   the other curve's frame what x is at the n markers of this one: vectors (each = 2) turned, numbers (1) as they are.
+   PoseBack - the other way round. Not collective. */
+PETSC_EXTERN void PoseTurn(const Pose *pose, PetscBool back, PetscInt n, const PetscReal x[], PetscReal y[]);
+PETSC_EXTERN void PoseInto(const Pose *pose, int each, PetscInt n, const PetscReal x[], PetscReal y[]);
+PETSC_EXTERN void PoseBack(const Pose *pose, int each, PetscInt n, const PetscReal x[], PetscReal y[]);
