@@ -148,8 +148,7 @@ static PetscErrorCode CheckRegion(const char name[], const char options[], const
   PetscCall(PetscFree2(box->A, box->amplitude));
   PetscCall(PetscMalloc2(2 * w[0].layout->n * all, &box->A, all, &box->amplitude));
   for (PetscInt k = 0; k < w[0].layout->n; k++)
-    BoxTableRows(table, w[0].fluid->grid, w[0].coupling->markers->X + 2 * (w[0].layout->first + k), 1, 0, 2,
-                 box->A + 2 * k * all);
+    BoxTableRows(table, w[0].coupling->markers->X + 2 * (w[0].layout->first + k), 1, 0, 2, box->A + 2 * k * all);
   PetscCall(AddAll(box, w[0].layout, whole));
   for (PetscInt k = 0; k < n * n; k++) {
     largest = PetscMax(largest, PetscAbsReal(whole[k]));
@@ -270,6 +269,9 @@ static PetscErrorCode CheckOwnImages(const char name[], const char options[]) {
 #define OWN                                                                                                            \
   "-domain_box 0,2,0,2 -fluid_inertia none -vesicle_semi_axes 0.988,0.4 -vesicle_center 1,0.9 -vesicle_markers 45 "    \
   "-vesicle_allow_close_markers true "
+#define WALL                                                                                                           \
+  "-domain_box 0,5,0,5 -fluid_inertia none -vesicle_semi_axes 1.6,1 -vesicle_center 2.6,1.08 -vesicle_markers 45 "     \
+  "-vesicle_allow_close_markers true "
 #define SMALL                                                                                                          \
   "-domain_box 0,8,0,8 -fluid_inertia none -vesicle_semi_axes 0.4,0.6 -vesicle_markers 35 "                            \
   "-vesicle_allow_close_markers true -vesicle_count 1 -vesicle_center 3.4,4.3 "
@@ -314,6 +316,7 @@ static PetscErrorCode Facts(void) {
   PetscCall(CheckRegion("walls", SMALL, "", APART));
   PetscCall(CheckRegion("channel", SMALL CHANNEL, "-vesicle_center 7.7654321,4.3", APART CHANNEL));
   PetscCall(CheckVelocity("channel", ONE CHANNEL, 5e-5));
+  PetscCall(CheckVelocity("half a cell from a wall", WALL CHANNEL, 4e-4));
   PetscCall(CheckVelocity("periodic", ONE PERIODIC, 5e-5));
   PetscCall(CheckVelocity("two in a channel", TWO CHANNEL, 2e-4));
   PetscCall(CheckVelocity("two in a periodic box", TWO PERIODIC, 2e-4));

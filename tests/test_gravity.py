@@ -99,13 +99,15 @@ def test_zero_flux(tmp_path):
     assert means[0] < 1e-12 and means[1] > 0.1
 
 
-@pytest.mark.parametrize("ratio", [1, 5])
-def test_heavy_vesicle_on_a_wall(tmp_path, ratio):
-    """It presses out the film under it and does not go through: 1.2 and 2.4 cells of it are left, equally thick."""
+@pytest.mark.parametrize("ratio, thick", [(1, 0.03082), (5, 0.03049)])
+def test_heavy_vesicle_on_a_wall(tmp_path, ratio, thick):
+    """It presses out the film under it and does not go through: half a cell and one cell of it are left, 1.6 % and .1 %
+    (measured) more than on 64 cells, which is `thick`."""
     scene = f"{COUPLED} -fluid_inertia none -domain_box 0,1,0,1 -domain_bc_x periodic -fluid_gravity 0,-1"
-    scene += f" -vesicle_density_difference 200 -vesicle_area {np.pi / 16!r} -vesicle_reduced_area .8 -vesicle_angle 0"
-    scene += f" -vesicle_center .5,.35 -vesicle_bending .05 -vesicle_markers 45 -vesicle_viscosity_ratio {ratio}"
-    scene += " -vesicle_allow_close_markers -time_step .04 -time_end 1 -output_every 1"
+    scene += f" -vesicle_density_difference 300 -vesicle_area {np.pi / 16!r} -vesicle_reduced_area .8 -vesicle_angle 0"
+    scene += f" -vesicle_center .5,.35 -vesicle_bending .02 -vesicle_markers 45 -vesicle_viscosity_ratio {ratio}"
+    scene += " -vesicle_allow_close_markers -time_step .04 -time_end 2 -output_every 2"
     film = [run_petves(tmp_path / f"{n}", f"{scene} -domain_cells {n},{n}").series["gap"] for n in (16, 32)]
-    assert film[0].min() > 0.06 and (np.diff(film[0]) < 0).all() and film[0][0] > 0.18
-    assert film[0][-1] == pytest.approx(film[1][-1], rel=0.03)
+    assert (np.diff(film[0]) < 0).all() and film[0][0] > 0.18
+    assert film[0][-1] == pytest.approx(thick, rel=0.02)
+    assert film[1][-1] == pytest.approx(thick, rel=0.002)

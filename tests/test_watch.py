@@ -131,14 +131,15 @@ def test_step_that_drains_a_film(tmp_path):
 
 
 def test_corner_is_warned_of_once(tmp_path):
-    """2 cells from two walls that meet, and from one of them only."""
+    """2 cells from two walls that meet, and from one of them only; the box part of quasi-steady flow holds there."""
     scene = (
         "-scheme_type coupled -coupling_near_field exact -delta_type cbs54 -membrane_derivative spectral "
         "-fluid_inertia none -domain_cells 32,32 -domain_box 0,2,0,2 -vesicle_semi_axes 0.3,0.3 -vesicle_markers 45 "
         "-time_step 1e-4 -time_end 3e-4"
     )
-    for centre, count in (("0.425,0.425", 1), ("0.425,1", 0)):
-        run = run_petves(tmp_path / str(count), f"{scene} -vesicle_center {centre}")
+    for part, centre, count in (("false", "0.425,0.425", 1), ("false", "0.425,1", 0), ("true", "0.425,0.425", 0)):
+        options = f"-coupling_box_part {part} -vesicle_center {centre} -output_overwrite"
+        run = run_petves(tmp_path / "run", f"{scene} {options}")
         assert run.stdout.count("within 3 cells of two walls that meet after step 1,") == count, run.stdout
 
 

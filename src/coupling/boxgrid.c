@@ -31,6 +31,7 @@ static PetscErrorCode PlaceMarkers(BoxGrid *b, const char kernel[]) {
   PetscFunctionBeginUser;
   PetscCall(LayoutCreate(PETSC_COMM_SELF, 1, start, &b->layout));
   PetscCall(MarkersCreate(b->fluid->grid, b->layout, kernel, PETSC_TRUE, &b->markers));
+  MarkersLeaveUnscaled(b->markers);
   PetscCall(LayoutCreateVec(b->layout, 2, &b->F));
   PetscCall(VecDuplicate(b->F, &b->U));
   PetscCall(VecGetArray(b->U, &a));

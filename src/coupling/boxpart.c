@@ -47,7 +47,7 @@ static PetscReal Fade(BoxPart b, const PetscReal X[2]) {
 /* The rows A[2][rank] of marker k, from its functions' values. */
 static void PlaceMarker(BoxPart b, PetscInt k, PetscReal A[]) {
   const PetscReal *X = b->markers->X + 2 * k;
-  BoxTableRows(b->at, b->markers->grid, X, Fade(b, X), 0, 2, A);
+  BoxTableRows(b->at, X, Fade(b, X), 0, 2, A);
 }
 
 /* Whether a box has walls and all markers are in its middle half. */

@@ -44,7 +44,7 @@ static PetscErrorCode FunctionRows(const BoxRegion *r, const BoxTable *t, PetscR
   PetscCall(PetscMalloc1(2 * rank, &rows));
   for (PetscInt k = 0; k < n * n; k++) {
     const PetscReal X[2] = {t->axis[0].place[k / n], t->axis[1].place[k % n]};
-    BoxTableRows(r->whole, r->grid, X, 1, 0, 2, rows);
+    BoxTableRows(r->whole, X, 1, 0, 2, rows);
     for (int d = 0; d < 2; d++) BoxTableFunctions(t, d, X[d], value[d]);
     for (PetscInt f = 0; f < n * n; f++) {
       const PetscReal weight = value[0][f / n] * value[1][f % n];
@@ -83,7 +83,7 @@ static PetscErrorCode OffBy(const BoxRegion *r, const BoxTable *t, PetscReal *of
       const PetscReal part = (PetscReal)(d ? k % CHECKS : k / CHECKS) / (CHECKS - 1);
       X[d] = t->axis[d].low + part * (t->axis[d].high - t->axis[d].low);
     }
-    for (int q = 0; q < 2; q++) BoxTableRows(of[q], r->grid, X, 1, 0, 2, rows[q] + 2 * k * of[q]->rank);
+    for (int q = 0; q < 2; q++) BoxTableRows(of[q], X, 1, 0, 2, rows[q] + 2 * k * of[q]->rank);
   }
   for (PetscInt i = 0; i < 2 * points; i++)
     for (PetscInt j = 0; j <= i; j++) {

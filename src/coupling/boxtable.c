@@ -1,8 +1,7 @@
 #include "coupling/boxtable.h"
 #include "coupling/blas.h"
 
-#define WALL_MARGIN 3   /* cells of the coarser grid between the places and a wall: what its kernels reach */
-#define OWN_MARGIN 2    /* the same where that is the run's own grid, whose stencils at the wall are the run's */
+#define WALL_MARGIN 0.5 /* cells of the coarser grid between the places and a wall */
 #define MIDDLE_PLACES 8 /* in the middle half of the box, far from walls */
 #define MODES 16        /* of a period as long as the other side */
 #define COARSE_CELLS 64 /* of the shorter side, on the coarser grid */
@@ -36,9 +35,8 @@ static void Stretch(PetscReal from, PetscReal factor, BoxAxis *a) {
 
 static void MakeAxis(const FluidSpec *spec, int dir, PetscReal H, PetscBool middle, BoxAxis *a) {
   const PetscInt shorter = PetscMin(spec->cells[0], spec->cells[1]), times = (spec->cells[dir] + shorter - 1) / shorter;
-  const PetscBool own = H > FluidSpecCellSize(spec) * (1 + 1e-9) ? PETSC_FALSE : PETSC_TRUE;
   const PetscReal low = spec->box[2 * dir], high = spec->box[2 * dir + 1];
-  const PetscReal margin = PetscMax((own ? OWN_MARGIN : WALL_MARGIN) * H, middle ? 0.25 * (high - low) : 0);
+  const PetscReal margin = PetscMax(WALL_MARGIN * H, middle ? 0.25 * (high - low) : 0);
   if (spec->bc[dir] == BC_WALL) {
     BoxAxisChebyshev(middle ? MIDDLE_PLACES : BOX_WALL_PLACES, low + margin, high - margin, a);
     return;
@@ -52,10 +50,22 @@ static void MakeAxis(const FluidSpec *spec, int dir, PetscReal H, PetscBool midd
   for (PetscInt k = 0; k < a->places; k++) a->place[k] = low + (high - low) * k / a->places;
 }
 
+/* Between walls: nearer to one than the table reaches, of the straight line on from its end. */
+static void WallFunctions(const BoxTable *t, int dir, PetscReal x, PetscReal values[]) {
+  const BoxAxis *a = &t->axis[dir];
+  const PetscReal inner = PetscMax(a->low, PetscMin(a->high, x));
+  PetscReal next[BOX_WALL_PLACES];
+  BoxAxisPolynomials(a, inner, values);
+  if (inner == x) return;
+  BoxAxisPolynomials(a, inner == a->low ? a->low + t->H : a->high - t->H, next);
+  const PetscReal part = -PetscAbsReal(x - inner) / t->H;
+  for (PetscInt f = 0; f < a->places; f++) values[f] += part * (next[f] - values[f]);
+}
+
 void BoxTableFunctions(const BoxTable *t, int dir, PetscReal x, PetscReal values[]) {
   const BoxAxis *a = &t->axis[dir];
   if (a->wall) {
-    BoxAxisPolynomials(a, x, values);
+    WallFunctions(t, dir, x, values);
     return;
   }
   const PetscReal angle = 2 * PETSC_PI * (x - a->low) / (a->high - a->low), c = PetscCosReal(angle),
@@ -283,7 +293,6 @@ PetscErrorCode BoxTableCreate(const FluidSpec *spec, const char kernel[], const 
   FluidSpec pair = *spec;
   BoxAxis axis[2];
   PetscFunctionBeginUser;
-  t->whole = lattice->whole;
   t->components = dipoles ? BOX_COMPONENTS : 2;
   CoarseCells(spec, cells);
   t->H = (spec->box[1] - spec->box[0]) / cells[0];

@@ -23,10 +23,9 @@ typedef struct {
   PetscInt functions[2]; /* in x and y: Lagrange's polynomials, or 1, cos, sin, .. over the period */
   PetscInt blocks;
   BoxBlock *block;
-  PetscInt rank;   /* eigenvalues kept */
-  PetscReal *l;    /* [rank] velocity per force */
-  PetscReal H;     /* cell size of the coarser grid */
-  PetscBool whole; /* of W_H, not of its error */
+  PetscInt rank; /* eigenvalues kept */
+  PetscReal *l;  /* [rank] velocity per force */
+  PetscReal H;   /* cell size of the coarser grid */
 } BoxTable;
 
 /* BoxTableCreate - for the run's grid and boundaries, of forces or of dipoles, as the lattice is, which is used here
@@ -47,23 +46,19 @@ static inline PetscInt BoxParts(const BoxTable *table) {
   return table->components == 2 ? 2 : 3;
 }
 
-/* BoxTableFunctions - values[functions[dir]] of a direction's functions at the coordinate x (length). Not collective.
- */
+/* BoxTableFunctions - values[functions[dir]] of a direction's functions at the coordinate x (length); nearer to a wall
+   than the table reaches they go straight on. Not collective. */
 PETSC_EXTERN void BoxTableFunctions(const BoxTable *table, int dir, PetscReal x, PetscReal values[]);
-
-/* BoxTableGoOn - nearer to a wall than the table reaches it goes on as flows next to walls do: x[2] becomes a place in
-   the table, factor[] what each component has of its functions there. Not collective. */
-PETSC_EXTERN void BoxTableGoOn(const BoxTable *table, Grid grid, PetscReal x[2], PetscReal factor[BOX_COMPONENTS]);
 
 /* BoxBlockSum - a[modes] of a block: the weights[components][n[0]][n[1]] of the functions of some components, `first`
    and those behind it, times their vectors. Not collective. */
 PETSC_EXTERN void BoxBlockSum(const BoxBlock *block, int first, int components, const PetscReal weight[],
                               PetscReal a[]);
 
-/* BoxTableRows - rows[count][rank]: `part` of the components first .. first + count - 1 of the functions at X in the
-   run's grid. Not collective. */
-PETSC_EXTERN void BoxTableRows(const BoxTable *table, Grid grid, const PetscReal X[2], PetscReal part, int first,
-                               int count, PetscReal rows[]);
+/* BoxTableRows - rows[count][rank]: `part` of the components first .. first + count - 1 of the functions at X.
+   Not collective. */
+PETSC_EXTERN void BoxTableRows(const BoxTable *table, const PetscReal X[2], PetscReal part, int first, int count,
+                               PetscReal rows[]);
 
 /* BoxSmoothStep - 0 up to low, 1 from high on. BoxSum - SUM l x of n, in four lanes. BoxProduct - SUM l x y, the same
    bits with x and y exchanged. Not collective. */

@@ -16,7 +16,7 @@ PetscErrorCode DoubleBoxCreate(const FluidSpec *spec, Markers markers, const Box
   PetscCall(BoxTableCreate(spec, markers->kernel->name, lattice, PETSC_FALSE, &b->table));
   PetscCall(PetscLogEventEnd(event, 0, 0, 0, 0));
   b->width = (b->table.functions[1] + LANES - 1) / LANES * LANES;
-  PetscCall(PetscCalloc4(n * (b->table.functions[0] + b->width), &b->value, n * BOX_COMPONENTS, &b->factor,
+  PetscCall(PetscCalloc3(n * (b->table.functions[0] + b->width), &b->value,
                          BOX_COMPONENTS * b->table.functions[0] * b->width, &b->function, b->table.rank,
                          &b->amplitude));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -26,7 +26,7 @@ PetscErrorCode DoubleBoxDestroy(DoubleBox *box) {
   PetscFunctionBeginUser;
   if (!*box) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(BoxTableDestroy(&(*box)->table));
-  PetscCall(PetscFree4((*box)->value, (*box)->factor, (*box)->function, (*box)->amplitude));
+  PetscCall(PetscFree3((*box)->value, (*box)->function, (*box)->amplitude));
   PetscCall(PetscFree(*box));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -45,10 +45,9 @@ void DoubleBoxPlace(DoubleBox b) {
   const Layout l = b->markers->layout;
   for (PetscInt k = 0; k < l->n; k++) {
     const PetscReal *X = b->markers->X + 2 * (l->first + k);
-    PetscReal x[2] = {X[0], X[1]}, *value = Values(b, k);
-    BoxTableGoOn(&b->table, b->markers->grid, x, b->factor + BOX_COMPONENTS * k);
-    BoxTableFunctions(&b->table, 0, x[0], value);
-    BoxTableFunctions(&b->table, 1, x[1], value + b->table.functions[0]);
+    PetscReal *value = Values(b, k);
+    BoxTableFunctions(&b->table, 0, X[0], value);
+    BoxTableFunctions(&b->table, 1, X[1], value + b->table.functions[0]);
   }
 }
 
@@ -79,8 +78,7 @@ static void Gather(DoubleBox b, const PetscReal T[]) {
     for (int c = 0; c < DIPOLE_COUNT; c++) {
       const PetscInt count = PetscMin(AT_ONCE, n - k);
       PetscInt j = 0;
-      for (PetscInt m = 0; m < count; m++)
-        part[m] = b->factor[BOX_COMPONENTS * (k + m) + 2 + c] * T[DIPOLE_COUNT * (k + m) + c];
+      for (PetscInt m = 0; m < count; m++) part[m] = T[DIPOLE_COUNT * (k + m) + c];
       for (; j + 4 * LANES <= b->width; j += 4 * LANES) GatherColumns(4, b, 2 + c, k, count, j, part);
       for (; j < b->width; j += LANES) GatherColumns(1, b, 2 + c, k, count, j, part);
     }
@@ -106,7 +104,7 @@ static PetscReal Scatter(DoubleBox b, PetscInt k, int c) {
   Lanes sum = {0};
   for (; j + 4 * LANES <= b->width; j += 4 * LANES) sum += ScatterColumns(4, nx, b->width, x, y + j, f + j);
   for (; j < b->width; j += LANES) sum += ScatterColumns(1, nx, b->width, x, y + j, f + j);
-  return b->factor[k * BOX_COMPONENTS + c] * LanesSum(sum);
+  return LanesSum(sum);
 }
 
 /* Where component c's functions of a block begin. */
@@ -147,15 +145,14 @@ PetscErrorCode DoubleBoxApply(DoubleBox b, PetscReal alpha, const PetscReal T[],
 
 PetscErrorCode DoubleBoxMatrix(DoubleBox b, PetscReal scale, PetscReal out[]) {
   const Layout l = b->markers->layout;
-  const Grid g = b->markers->grid;
   const PetscInt r = b->table.rank;
   const PetscReal *X = b->markers->X;
   PetscReal *source, *row;
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(DIPOLE_COUNT * r, &source, 2 * l->n * r, &row));
-  for (PetscInt k = 0; k < l->n; k++) BoxTableRows(&b->table, g, X + 2 * (l->first + k), 1, 0, 2, row + 2 * k * r);
+  for (PetscInt k = 0; k < l->n; k++) BoxTableRows(&b->table, X + 2 * (l->first + k), 1, 0, 2, row + 2 * k * r);
   for (PetscInt j = 0; j < l->M; j++) {
-    BoxTableRows(&b->table, g, X + 2 * j, scale, 2, DIPOLE_COUNT, source);
+    BoxTableRows(&b->table, X + 2 * j, scale, 2, DIPOLE_COUNT, source);
     for (PetscInt k = 0; k < DIPOLE_COUNT * r; k++) source[k] *= b->table.l[k % r];
     for (int c = 0; c < DIPOLE_COUNT; c++)
       for (PetscInt i = 0; i < 2 * l->n; i++)

@@ -12,7 +12,6 @@ struct _p_DoubleBox {
   BoxTable table;
   PetscInt width;       /* functions of y, filled up with zeros to whole vectors */
   PetscReal *value;     /* [n][functions of x + width] of the own markers */
-  PetscReal *factor;    /* [n][BOX_COMPONENTS] what they have of these functions (BoxTableGoOn) */
   PetscReal *function;  /* [BOX_COMPONENTS][functions of x][width] work */
   PetscReal *amplitude; /* [rank] work */
 };

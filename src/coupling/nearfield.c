@@ -96,6 +96,7 @@ PetscErrorCode NearFieldCreateBoxPart(NearField f, const FluidSpec *spec, PetscB
 PetscErrorCode NearFieldAddBoxPart(NearField f, const FluidSpec *spec) {
   PetscFunctionBeginUser;
   PetscCall(NearFieldCreateBoxPart(f, spec, PETSC_FALSE, &f->box));
+  if (spec->inertia == INERTIA_NONE) MarkersLeaveUnscaled(f->markers);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

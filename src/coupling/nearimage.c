@@ -147,7 +147,7 @@ static PetscReal OddMoment(PetscReal y, PetscInt first, PetscInt n, const PetscR
 
 /* Where marker k, y cells away, sees a wall. */
 static ImageEnd MakeEnd(Markers m, PetscReal y, PetscReal across) {
-  ImageEnd e = {.y = y, .scale = m->folded ? WallScale(m->kernel, y) : 1, .moment = across};
+  ImageEnd e = {.y = y, .scale = m->scaled ? WallScale(m->kernel, y) : 1, .moment = across};
   if (y >= IMAGE_CELLS) return e;
   for (int comp = 0; comp < 2; comp++) { /* entries as in the grid: t at j + 1/2, n at j + 1, row j + 1 of the table */
     e.n[comp] = (comp ? m->kernel->along : m->kernel->across)(y - (comp ? 1 : 0.5), &e.first[comp], e.weight[comp]);

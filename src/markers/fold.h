@@ -4,7 +4,7 @@
 #pragma once
 #include "kernel/kernel.h"
 
-#define FOLD_SCALED 3 /* cells from a wall up to which WallScale is not 1: where the box part ends */
+#define FOLD_SCALED 3 /* cells from a wall up to which WallScale is not 1 */
 
 typedef enum {
   FOLD_ODD,    /* entries half a cell from the wall and on */

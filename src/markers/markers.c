@@ -76,7 +76,7 @@ static void FoldStencil(Markers m, int comp, const PetscReal X[2], Stencil *s) {
   for (int dir = 0; dir < 2; dir++) {
     const PetscBool normal = comp == dir ? PETSC_TRUE : PETSC_FALSE;
     if (!g->wall[dir]) continue;
-    if (normal) {
+    if (normal && m->scaled) {
       const PetscReal y = (X[dir] - g->lo[dir]) / g->h;
       const PetscReal scale = WallScale(m->kernel, y) * WallScale(m->kernel, g->n[dir] - y);
       for (PetscInt k = 0; k < s->n[dir]; k++) s->weight[dir][k] *= scale;
@@ -194,7 +194,7 @@ PetscErrorCode MarkersCreate(Grid g, Layout l, const char kernel[], PetscBool fo
   m->kernel = KernelFind(kernel);
   PetscCheck(m->kernel, g->comm, PETSC_ERR_USER_INPUT, "-delta_type %s: unknown kernel", kernel);
   PetscCall(PetscMalloc4(2 * l->M, &m->X, 2 * l->M, &m->plain, 2 * l->M, &m->force, 2 * l->M, &m->part));
-  m->folded = folded && (g->wall[0] || g->wall[1]) ? PETSC_TRUE : PETSC_FALSE;
+  m->folded = m->scaled = folded && (g->wall[0] || g->wall[1]) ? PETSC_TRUE : PETSC_FALSE;
   m->least = folded
                  ? KERNEL_FOLDED_CELLS
                  : KERNEL_WALL_CELLS; /* nearer, mobility with the near field may not be positive; the kernels' reach */
@@ -209,6 +209,10 @@ PetscErrorCode MarkersCreate(Grid g, Layout l, const char kernel[], PetscBool fo
   PetscCall(PetvesEvent("Interpolate", &m->interpolate));
   PetscCall(PetvesEvent("Respond", &m->respond));
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+void MarkersLeaveUnscaled(Markers m) {
+  m->scaled = PETSC_FALSE;
 }
 
 PetscErrorCode MarkersDestroy(Markers *markers) {

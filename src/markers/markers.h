@@ -15,7 +15,8 @@ struct _p_Markers {
   Layout layout; /* borrowed */
   const Kernel *kernel;
   PetscReal *X;       /* [2M] positions of all markers */
-  PetscBool folded;   /* stencils are folded at walls and scaled near them (fold.h) */
+  PetscBool folded;   /* stencils are folded at walls (fold.h) */
+  PetscBool scaled;   /* and scaled near them */
   PetscReal least;    /* cells that markers keep from walls */
   const char *needs;  /* the same as text */
   Stencil *stencil;   /* [2M]: component c of marker k at 2k + c */
@@ -29,9 +30,12 @@ struct _p_Markers {
 };
 
 /* MarkersCreate - for the bodies of a layout over a grid with the named kernel; not placed yet. folded: stencils are
-   folded at walls at rest and scaled near them, and markers may come to a quarter of a cell from walls. Collective. */
+   folded at walls at rest and scaled near them, and markers may come to a quarter of a cell from walls. Collective.
+   MarkersLeaveUnscaled - from here on they are folded only: for the box part, whose error then is smooth up to a wall,
+   and which takes off what scaling would. Not collective. */
 PETSC_EXTERN PetscErrorCode MarkersCreate(Grid grid, Layout layout, const char kernel[], PetscBool folded,
                                           Markers *markers);
+PETSC_EXTERN void MarkersLeaveUnscaled(Markers markers);
 PETSC_EXTERN PetscErrorCode MarkersDestroy(Markers *markers);
 
 /* MarkersCheck - message[PETVES_MAX_MESSAGE] is empty when every marker of X, of the vesicles of `layout`, is finite

@@ -13,7 +13,8 @@
    before, an ellipse lets go of high modes, which die out whatever the step. */
 #define COARSE_STEP 0.02
 #define FIRST_JUDGED 4
-#define CORNER 3 /* cells from each of two walls that meet, below which the near field does not hold */
+#define CORNER                                                                                                         \
+  3 /* cells from each of two walls that meet, below which the near field does not hold without the box part */
 
 static PetscErrorCode CheckFinite(Scheme s) {
   static const char *const names[] = {"velocity", "pressure", "tension", "marker velocity"};
@@ -112,14 +113,16 @@ static PetscReal FromWall(Grid g, int dir, PetscInt n, const PetscScalar X[]) {
   return least;
 }
 
-/* Once, of the first vesicle near two walls that meet. Each owner looks at its vesicles. */
+/* Once, of the first vesicle near two walls that meet, where stencils are scaled: elsewhere the box part holds there.
+   Each owner looks at its vesicles. */
 static PetscErrorCode WarnOfCorner(Scheme s) {
   const Layout l = s->membrane->layout;
   const Grid g = s->fluid->grid;
   char text[PETVES_MAX_MESSAGE] = "";
   const PetscScalar *X;
   PetscFunctionBeginUser;
-  if (!s->coupling->near || g->free || !g->wall[0] || !g->wall[1] || s->warnings.corner)
+  if (!s->coupling->near || g->free || !g->wall[0] || !g->wall[1] || !s->coupling->markers->scaled ||
+      s->warnings.corner)
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecGetArrayRead(s->state.X, &X));
   for (PetscInt v = l->own; v < l->end && !*text; v++) {
