@@ -14,22 +14,6 @@ static void AddMean(Coupling c, PetscReal alpha, const PetscScalar U[], PetscSca
       y[k] += alpha * 0.5 * (1 + c->contrast->ratio[v]) * U[k];
 }
 
-PetscErrorCode ContrastJump(Coupling c, const PetscScalar V[], PetscScalar G[]) {
-  PetscFunctionBeginUser;
-  PetscCall(PetscArraycpy(G, V, 2 * c->membrane->layout->n));
-  MembraneTread(c->membrane, c->treading, 1 / c->fluid->a0, V, G);
-  PetscCall(DoubleLayerSet(c->contrast, G));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode ContrastRest(Coupling c, const PetscScalar G[], PetscScalar y[]) {
-  PetscFunctionBeginUser;
-  AddMean(c, 1, G, y);
-  for (PetscInt k = 0; k < 2 * c->membrane->layout->n; k++) y[k] -= G[k];
-  PetscCall(DoubleLayerApply(c->contrast, -1, y));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode ContrastKnown(Coupling c, Vec background, Vec Y, Vec moved, Vec k) {
   const PetscScalar *U;
   PetscScalar *y;
@@ -40,11 +24,33 @@ PetscErrorCode ContrastKnown(Coupling c, Vec background, Vec Y, Vec moved, Vec k
   PetscCall(VecGetArrayRead(background, &U));
   for (PetscInt q = 0; q < 2 * c->membrane->layout->n; q++) y[q] += U[q];
   PetscCall(VecRestoreArrayRead(background, &U));
+  PetscCall(VecRestoreArray(k, &y));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ContrastMotion(Coupling c, const PetscScalar V[], const PetscScalar known[], PetscScalar G[]) {
+  const PetscInt n = 2 * c->membrane->layout->n;
+  PetscFunctionBeginUser;
+  PetscCall(PetscArraycpy(G, V, n));
+  MembraneTread(c->membrane, c->treading, 1 / c->fluid->a0, V, G);
+  for (PetscInt k = 0; k < n && known; k++) G[k] += known[k];
+  PetscCall(DoubleLayerSet(c->contrast, G));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ContrastAdd(Coupling c, PetscReal alpha, const PetscScalar G[], PetscScalar y[]) {
+  PetscFunctionBeginUser;
+  AddMean(c, alpha, G, y);
+  PetscCall(DoubleLayerApply(c->contrast, -alpha, y));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ContrastKnownAdd(Coupling c, PetscReal alpha, Vec moved, PetscScalar y[]) {
+  const PetscScalar *U;
+  PetscFunctionBeginUser;
   PetscCall(VecGetArrayRead(moved, &U));
   PetscCall(DoubleLayerSet(c->contrast, U));
-  AddMean(c, -1, U, y);
-  PetscCall(DoubleLayerApply(c->contrast, 1, y));
-  PetscCall(VecRestoreArray(k, &y));
+  PetscCall(ContrastAdd(c, alpha, U, y));
   PetscCall(VecRestoreArrayRead(moved, &U));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -9,14 +9,17 @@
 /* CouplingAddContrast - from here on with ratio[vesicles] of viscosities; the coupling has a near field. Collective. */
 PETSC_EXTERN PetscErrorCode CouplingAddContrast(Coupling coupling, const PetscReal ratio[]);
 
-/* ContrastKnown - of the part of the motion that is known before the step, the background's and what the labels' speed
-   makes of Y: moved = background + treading dY/dt, and k += background - B moved, k of all bodies. Collective. */
+/* ContrastKnown - the part of the motion that is known before the step, the background's and what the labels' speed
+   makes of Y: moved = background + treading dY/dt, and k += background. Collective. */
 PETSC_EXTERN PetscErrorCode ContrastKnown(Coupling coupling, Vec background, Vec Y, Vec moved, Vec k);
 
-/* ContrastJump - set the jump of the motion V + (treading/a0) dV/dt of own V[2n], G[2n] being room for it. ContrastRest
-   - y += (B - 1) G for the motion G whose jump is set. Collective; not collective. */
-PETSC_EXTERN PetscErrorCode ContrastJump(Coupling coupling, const PetscScalar V[], PetscScalar G[]);
-PETSC_EXTERN PetscErrorCode ContrastRest(Coupling coupling, const PetscScalar G[], PetscScalar y[]);
+/* ContrastMotion - the motion G = V + (treading/a0) dV/dt + known (or NULL) of own V[2n], and its jump set. ContrastAdd
+   - y += alpha B G, of all bodies, for the G whose jump is set. ContrastKnownAdd - the same of `moved`, whose jump is
+   set. Collective. */
+PETSC_EXTERN PetscErrorCode ContrastMotion(Coupling coupling, const PetscScalar V[], const PetscScalar known[],
+                                           PetscScalar G[]);
+PETSC_EXTERN PetscErrorCode ContrastAdd(Coupling coupling, PetscReal alpha, const PetscScalar G[], PetscScalar y[]);
+PETSC_EXTERN PetscErrorCode ContrastKnownAdd(Coupling coupling, PetscReal alpha, Vec moved, PetscScalar y[]);
 
 /* ContrastSource - source = G^T of the solved velocity where markers move with U: nothing but of dipoles. Collective.
  */

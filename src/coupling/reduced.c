@@ -18,20 +18,24 @@ static PetscErrorCode Force(Reduced s, const PetscScalar x[], Vec F) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The jump of the motion that x gives the markers, which is left in s->motion. */
-static PetscErrorCode Jump(Reduced s, const PetscScalar x[]) {
+/* The motion that x gives the markers, or (whole) all of it with what is known, in s->motion, and its jump. */
+static PetscErrorCode Motion(Reduced s, const PetscScalar x[], PetscBool whole) {
+  const PetscScalar *known = NULL;
   PetscScalar *G;
   PetscFunctionBeginUser;
   if (!s->source) PetscFunctionReturn(PETSC_SUCCESS);
+  if (whole) PetscCall(VecGetArrayRead(s->moved, &known));
   PetscCall(VecGetArray(s->motion, &G));
-  PetscCall(ContrastJump(s->unknowns->coupling, x, G));
+  PetscCall(ContrastMotion(s->unknowns->coupling, x, known, G));
   PetscCall(VecRestoreArray(s->motion, &G));
+  if (whole) PetscCall(VecRestoreArrayRead(s->moved, &known));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* r += -E^T F/h^2 + d and the dipoles' force, source and mean += their divergence and mean velocity; leaves F and the
-   jump. */
-static PetscErrorCode AddForces(Reduced s, const PetscScalar x[], Vec r, Vec source, PetscReal mean[2]) {
+/* r += -E^T F/h^2 + d and the force of the motion's dipoles, source and mean += their divergence and mean velocity;
+   leaves F and the motion. */
+static PetscErrorCode AddForces(Reduced s, const PetscScalar x[], PetscBool whole, Vec r, Vec source,
+                                PetscReal mean[2]) {
   const Unknowns u = s->unknowns;
   const Coupling c = u->coupling;
   PetscFunctionBeginUser;
@@ -39,7 +43,7 @@ static PetscErrorCode AddForces(Reduced s, const PetscScalar x[], Vec r, Vec sou
     PetscCall(Force(s, x, s->F));
     PetscCall(MarkersSpread(c->markers, -1 / PetscSqr(c->fluid->grid->h), s->F, r));
   }
-  PetscCall(Jump(s, x));
+  PetscCall(Motion(s, x, whole));
   if (s->source) PetscCall(DoubleLayerSpread(c->contrast, r, source, mean));
   PetscCall(UnknownsGatherWalls(u, x + UnknownsWalls(u), s->d));
   PetscCall(WallsAdd(u->walls, s->d, r));
@@ -58,8 +62,8 @@ static PetscErrorCode Subtract(Vec known, PetscInt n, PetscScalar y[]) {
 }
 
 /* y = (V + (treading/a0) dV/dt - U + C F - k, beta N N^T F - U + C F - k, Dm V/h^2 - g) of x, s->U holding U = E u,
-   s->F F, and with viscosity contrast s->motion what stands in the place of the first two; where an area is aimed at
-   the first has its row; k and g may be NULL; not scaled yet. */
+   s->F F, and with viscosity contrast s->motion the G of B G, which stands in the place of the first two; where an area
+   is aimed at the first has its row; k and g may be NULL; not scaled yet. */
 static PetscErrorCode BodyConditions(Reduced s, const PetscScalar x[], Vec known, Vec g, PetscScalar y[]) {
   const Coupling c = s->unknowns->coupling;
   const Unknowns u = s->unknowns;
@@ -68,15 +72,15 @@ static PetscErrorCode BodyConditions(Reduced s, const PetscScalar x[], Vec known
   const PetscScalar *U, *F;
   PetscFunctionBeginUser;
   PetscCall(VecGetArrayRead(s->U, &U));
-  for (PetscInt k = 0; k < tension; k++) y[k] = (k < n ? x[k] : 0) - U[k];
+  for (PetscInt k = 0; k < tension; k++) y[k] = (k < n && !s->source ? x[k] : 0) - U[k];
   PetscCall(VecRestoreArrayRead(s->U, &U));
-  MembraneTread(c->membrane, c->treading, 1 / c->fluid->a0, x, y);
+  if (!s->source) MembraneTread(c->membrane, c->treading, 1 / c->fluid->a0, x, y);
   PetscCall(VecGetArrayRead(s->F, &F));
   if (c->near) PetscCall(NearFieldApply(c->near, 1, F, y));
   PetscCall(VecRestoreArrayRead(s->F, &F));
   if (s->source) {
     PetscCall(VecGetArrayRead(s->motion, &U));
-    PetscCall(ContrastRest(c, U, y));
+    PetscCall(ContrastAdd(c, 1, U, y));
     PetscCall(VecRestoreArrayRead(s->motion, &U));
   }
   if (c->bodies->obstacles) ObstaclesPressure(c->bodies->obstacles, x + n, y + n);
@@ -144,18 +148,11 @@ static PetscErrorCode Solve(Reduced s, Vec r, Vec source, const PetscReal mean[2
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode ReducedBegin(Reduced s, Vec moved, Vec f) {
-  const Coupling c = s->unknowns->coupling;
-  const PetscScalar *U;
+PetscErrorCode ReducedBegin(Reduced s, Vec moved) {
   PetscFunctionBeginUser;
-  if (!s->source) PetscFunctionReturn(PETSC_SUCCESS);
   s->moved = moved;
-  PetscCall(VecSet(s->source, 0));
   s->mean[0] = s->mean[1] = 0;
-  PetscCall(VecGetArrayRead(moved, &U));
-  PetscCall(DoubleLayerSet(c->contrast, U));
-  PetscCall(VecRestoreArrayRead(moved, &U));
-  PetscCall(DoubleLayerSpread(c->contrast, f, s->source, s->mean));
+  if (s->source) PetscCall(VecSet(s->source, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -170,7 +167,7 @@ static PetscErrorCode RespondOnGrid(Reduced s, const PetscScalar x[], PetscInt p
   else
     PetscCall(MarkersClear(c->markers, s->r, s->dirty));
   if (s->source && p) PetscCall(VecSet(p, 0));
-  PetscCall(AddForces(s, x, s->r, p, mean));
+  PetscCall(AddForces(s, x, PETSC_FALSE, s->r, p, mean));
   PetscCall(Solve(s, s->r, s->source ? p : NULL, mean, s->kept.w[place], p));
   if (CouplingHasBodies(c)) PetscCall(MarkersInterpolate(c->markers, s->kept.w[place], s->U));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -181,7 +178,7 @@ static PetscErrorCode RespondByRows(Reduced s, const PetscScalar x[]) {
   const Coupling c = s->unknowns->coupling;
   PetscFunctionBeginUser;
   PetscCall(Force(s, x, s->F));
-  PetscCall(Jump(s, x));
+  PetscCall(Motion(s, x, PETSC_FALSE));
   if (s->source) PetscCall(DoubleLayerRows(c->contrast, StokesProfile(s->stokes), s->dipoles));
   PetscCall(MarkersRespond(c->markers, s->stream, s->dipoles, -1 / PetscSqr(c->fluid->grid->h), s->F, s->U));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -210,21 +207,11 @@ static PetscErrorCode Mult(Mat A, Vec x, Vec y) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* U = E u of the force f, row by row; leaves another jump than that of x. */
+/* U = E u of the force f, which has the dipoles' forces, row by row. */
 static PetscErrorCode FollowByRows(Reduced s, Vec f) {
   const Coupling c = s->unknowns->coupling;
-  const PetscScalar *moved;
-  PetscScalar *G;
   PetscFunctionBeginUser;
-  if (s->source) { /* all of the motion, whose dipoles' forces f has; obstacles come behind the vesicles */
-    PetscCall(VecGetArray(s->motion, &G));
-    PetscCall(VecGetArrayRead(s->moved, &moved));
-    for (PetscInt k = 0; k < 2 * c->membrane->layout->n; k++) G[k] += moved[k];
-    PetscCall(DoubleLayerSet(c->contrast, G));
-    PetscCall(VecRestoreArrayRead(s->moved, &moved));
-    PetscCall(VecRestoreArray(s->motion, &G));
-    PetscCall(DoubleLayerRows(c->contrast, StokesProfile(s->stokes), s->dipoles));
-  }
+  if (s->source) PetscCall(DoubleLayerRows(c->contrast, StokesProfile(s->stokes), s->dipoles));
   PetscCall(MarkersFollow(c->markers, s->stream, s->dipoles, f, s->U));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -248,17 +235,19 @@ static PetscErrorCode Follow(Reduced s, Vec f, PetscBool grid, Vec w, Vec p) {
 
 PetscErrorCode ReducedResidual(Reduced s, Vec added, Vec f, Vec g, Vec k, Vec x, PetscBool grid, Vec w, Vec p,
                                Vec residual) {
+  const PetscBool all = added == x ? PETSC_TRUE : PETSC_FALSE;
   const PetscScalar *xa;
   PetscScalar *ra;
   PetscFunctionBeginUser;
   PetscCall(VecGetArrayRead(added, &xa));
-  PetscCall(AddForces(s, xa, f, s->source, s->mean));
+  PetscCall(AddForces(s, xa, all, f, s->source, s->mean));
   PetscCall(VecRestoreArrayRead(added, &xa));
   PetscCall(VecGetArrayRead(x, &xa));
-  if (CouplingHasBodies(s->unknowns->coupling) && added != x) PetscCall(Force(s, xa, s->F));
-  if (added != x) PetscCall(Jump(s, xa));
+  if (!all && CouplingHasBodies(s->unknowns->coupling)) {
+    PetscCall(Force(s, xa, s->F));
+    PetscCall(Motion(s, xa, PETSC_TRUE));
+  }
   PetscCall(Follow(s, f, grid, w, p));
-  PetscCall(Jump(s, xa)); /* of x alone again */
   PetscCall(VecGetArray(residual, &ra));
   PetscCall(Conditions(s, xa, k, g, ra));
   PetscCall(VecRestoreArray(residual, &ra));

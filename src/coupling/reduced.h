@@ -49,13 +49,13 @@ struct _p_Reduced {
 PETSC_EXTERN PetscErrorCode ReducedCreate(Unknowns unknowns, Reduced *reduced);
 PETSC_EXTERN PetscErrorCode ReducedDestroy(Reduced *reduced);
 
-/* ReducedBegin - a problem begins: the dipoles of the part `moved` of the markers' motion that is known go into f, and
-   into the source of the divergence that goes with f; nothing without viscosity contrast. Collective. */
-PETSC_EXTERN PetscErrorCode ReducedBegin(Reduced reduced, Vec moved, Vec f);
+/* ReducedBegin - a problem begins, in which the part `moved` of the markers' motion is known; NULL without viscosity
+   contrast. Not collective. */
+PETSC_EXTERN PetscErrorCode ReducedBegin(Reduced reduced, Vec moved);
 
-/* ReducedResidual - the forces of `added` go into f; minus the scaled residuals at x, with u, p = w, p by one Stokes
-   solve of f, f holding the forces of x. grid false: w and p are not wanted and may stay as they are. g: an edge
-   vector, k: a marker vector of all bodies. Collective. */
+/* ReducedResidual - the forces of `added` go into f, those of x itself with the dipoles of `moved`; minus the scaled
+   residuals at x, with u, p = w, p by one Stokes solve of f, f holding the forces of x. grid false: w and p are not
+   wanted and may stay as they are. g: an edge vector, k: a marker vector of all bodies. Collective. */
 PETSC_EXTERN PetscErrorCode ReducedResidual(Reduced reduced, Vec added, Vec f, Vec g, Vec k, Vec x, PetscBool grid,
                                             Vec w, Vec p, Vec residual);
 

@@ -1,4 +1,5 @@
 #include "coupling/solver.h"
+#include "coupling/contrast.h"
 
 #define MOST_ROUNDS 4
 
@@ -109,6 +110,7 @@ static PetscErrorCode FreeReference(CoupledSolver s, const CoupledProblem *q) {
   PetscFunctionBeginUser;
   PetscCall(UnknownsPack(s->unknowns, q->k, NULL, q->g, q->d, s->change));
   PetscCall(VecGetArray(s->change, &a));
+  if (q->moved) PetscCall(ContrastKnownAdd(s->coupling, -1, q->moved, a));
   for (PetscInt v = l->own; v < l->end; v++) {
     const PetscReal speed = m->bending * m->part[v] / (s->coupling->fluid->nu * PetscSqr(m->L0[v] / (2 * PETSC_PI)));
     const PetscInt at = 2 * LayoutOffset(l, v);
@@ -197,7 +199,7 @@ PetscErrorCode CoupledSolverSolve(CoupledSolver s, const CoupledProblem *q, Solv
   }
   PetscCall(s->reduced->stokes ? Reference(s, q->f, q->g, q->k) : FreeReference(s, q));
   PetscCall(Guess(s, q));
-  PetscCall(ReducedBegin(s->reduced, q->moved, q->f));
+  PetscCall(ReducedBegin(s->reduced, q->moved));
   PetscCall(ReducedResidual(s->reduced, s->x, q->f, q->g, q->k, s->x, PETSC_FALSE, q->w, q->p, s->b));
   PetscCall(KSPGetTolerances(s->ksp, &rtol, &atol, NULL, NULL));
   PetscCall(VecSet(s->pending, 0));

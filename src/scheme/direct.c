@@ -1,3 +1,4 @@
+#include "coupling/contrast.h"
 #include "scheme/directrows.h"
 
 PetscErrorCode DirectSolverCreate(Coupling coupling, DirectSolver *out) {
@@ -261,14 +262,15 @@ static PetscErrorCode Assemble(DirectSolver d, Mat *A) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The dipoles of the motion that is known, to f and the source, and the mean velocity that goes with them. */
-static PetscErrorCode KnownDipoles(DirectSolver d, const CoupledProblem *q, PetscReal mean[2]) {
-  const PetscScalar *U;
+/* The motion that is known: -B of it to k; its dipoles to f and the source, and the mean velocity that goes with them.
+ */
+static PetscErrorCode KnownMotion(DirectSolver d, const CoupledProblem *q, PetscReal mean[2]) {
+  PetscScalar *k;
   PetscFunctionBeginUser;
   PetscCall(VecSet(d->source, 0));
-  PetscCall(VecGetArrayRead(q->moved, &U));
-  PetscCall(DoubleLayerSet(d->coupling->contrast, U));
-  PetscCall(VecRestoreArrayRead(q->moved, &U));
+  PetscCall(VecGetArray(q->k, &k));
+  PetscCall(ContrastKnownAdd(d->coupling, -1, q->moved, k));
+  PetscCall(VecRestoreArray(q->k, &k));
   PetscCall(DoubleLayerSpread(d->coupling->contrast, q->f, d->source, mean));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -281,7 +283,7 @@ static PetscErrorCode RightHandSide(DirectSolver d, const CoupledProblem *q) {
   PetscScalar *b;
   PetscReal mean[2] = {0, 0};
   PetscFunctionBeginUser;
-  if (d->source) PetscCall(KnownDipoles(d, q, mean));
+  if (d->source) PetscCall(KnownMotion(d, q, mean));
   PetscCall(VecSet(d->b, 0));
   PetscCall(VecGetArray(d->b, &b));
   PetscCall(VecGetArrayRead(q->f, &a));
