@@ -1,9 +1,9 @@
 #include "coupling/nearfield.h"
 #include "base/agree.h"
-#include "base/lanes.h"
 #include "coupling/nearblock.h"
 #include "coupling/nearclose.h"
 #include "coupling/nearpairs.h"
+#include "coupling/nearrows.h"
 #include "coupling/wallclose.h"
 
 /* Weights of ln(4 sin^2(t/2)) in Kress' quadrature on n points, by index difference; less that logarithm and times -1/2
@@ -59,6 +59,7 @@ PetscErrorCode NearFieldCreate(Markers markers, Bodies bodies, PetscReal nu, Nea
     PetscCall(PetscMalloc1(LayoutCount(l, v), &f->kress[v]));
     (bodies->kind[v].type == CURVE_OPEN ? Zeta : Kress)(LayoutCount(l, v), f->kress[v]);
   }
+  PetscCall(NearDistantCreate(l, &f->fixed.distant));
   PetscCall(PetscMalloc2(2 * l->M, &f->stencil, l->bodies, &f->bounds));
   PetscCall(PetscCalloc2(2 * l->M + LANES, &f->force, 2 * l->n + LANES, &f->velocity)); /* whole vectors */
   PetscCall(PetvesEvent("NearField", &f->place));
@@ -72,6 +73,7 @@ PetscErrorCode NearFieldDestroy(NearField *near) {
   if (!f) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscFree(f->block));
   PetscCall(PetscFree(f->close));
+  PetscCall(NearDistantDestroy(&f->fixed.distant));
   PetscCall(PetscFree(f->store.value));
   PetscCall(PetscFree(f->store.single));
   for (PetscInt v = 0; v < f->bodies->layout->bodies; v++) PetscCall(PetscFree(f->kress[v]));
@@ -133,6 +135,34 @@ static PetscErrorCode Room(size_t count, size_t kept, size_t size, size_t *room,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* C of a distant pair as a block in double precision, and where it is: in a store of its own. */
+static PetscErrorCode FillDistant(NearField f, PetscInt pair) {
+  const NearDistantPair *p = &f->fixed.distant->pair[pair];
+  const NearBlock block = {.row = p->row, .column = p->column, .shift = {p->shift[0], p->shift[1]}};
+  const NearStore kept = f->store;
+  const NearRow r = NearBlockBegin(f->bodies->layout, &block);
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(2 * LayoutCount(f->bodies->layout, p->row) * r.stride, &f->store.value));
+  PetscCall(NearBlockFill(f, &block));
+  PetscCall(NearDistantFill(f->fixed.distant, pair, r.stride, f->store.value));
+  PetscCall(PetscFree(f->store.value));
+  f->store = kept;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Distant pairs, once; crossed: with another rank's marker. */
+static PetscErrorCode PlaceDistant(NearField f, PetscBool *crossed) {
+  const Layout l = f->bodies->layout;
+  NearDistant d = f->fixed.distant;
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < d->pairs; k++)
+    if (d->pair[k].column < l->own || d->pair[k].column >= l->end) *crossed = PETSC_TRUE;
+  if (d->value || !d->pairs) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(NearDistantMake(d));
+  for (PetscInt k = 0; k < d->pairs; k++) PetscCall(FillDistant(f, k));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode NearFieldPlace(NearField f) {
   const Layout l = f->bodies->layout;
   NearStore *s = &f->store;
@@ -154,35 +184,11 @@ PetscErrorCode NearFieldPlace(NearField f) {
   }
   for (PetscInt k = 0; k < f->closes; k++)
     if (f->close[k].block >= first) PetscCall(NearCloseAdd(f, &f->close[k]));
+  PetscCall(PlaceDistant(f, &crossed));
   if (f->box) PetscCall(BoxPartPlace(f->box));
   PetscCall(AgreeFlag(l->comm, crossed, &f->crossed));
   PetscCall(PetscLogEventEnd(f->place, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Four values from the k-th on. */
-static inline Lanes FourValues(const PetscBool single, const void *value, size_t k) {
-  const float *x = (const float *)value + k;
-  return single ? (Lanes){x[0], x[1], x[2], x[3]} : LanesAt((const PetscReal *)value + k);
-}
-
-/* The part of C F of one row, or of two at once, to its markers' velocity and, with `both`, to velocity[2 count] of the
-   columns' markers; forces from the rows' and from the columns' on. */
-static inline void ApplyRows(const int rows, const PetscBool single, const void *value, const NearRow *r,
-                             PetscReal alpha, PetscBool both, const PetscScalar row_force[], const PetscScalar force[],
-                             PetscScalar row_velocity[], PetscScalar velocity[]) {
-  Lanes u[4] = {{0}, {0}, {0}, {0}};
-  for (PetscInt k = 0; k < r->stride; k += LANES) {
-    const Lanes F = LanesAt(force + k);
-    Lanes back = {0};
-    for (int q = 0; q < 2 * rows; q++) {
-      const Lanes c = FourValues(single, value, r->at + q * r->stride + k);
-      u[q] += c * F;
-      back += (alpha * row_force[q]) * c;
-    }
-    if (both) *(Lanes *)(velocity + k) += back;
-  }
-  for (int q = 0; q < 2 * rows; q++) row_velocity[q] += alpha * LanesSum(u[q]);
 }
 
 /* velocity[2n] += alpha C force[2M] of one block: both ways where both vesicles are own ones. */
@@ -196,9 +202,9 @@ static inline void ApplyBlock(NearField f, const NearBlock *b, const PetscBool s
     PetscScalar *other = both ? velocity + 2 * (r.column - l->first) : NULL, *own = velocity + 2 * (r.row - l->first);
     rows = NearBlockIsSelf(b) || r.row + 2 > l->start[b->row + 1] ? 1 : 2;
     if (rows == 2)
-      ApplyRows(2, single, value, &r, alpha, both, force + 2 * r.row, force + 2 * r.column, own, other);
+      ApplyRows(2, single, value, r.at, r.stride, alpha, both, force + 2 * r.row, force + 2 * r.column, own, other);
     else
-      ApplyRows(1, single, value, &r, alpha, both, force + 2 * r.row, force + 2 * r.column, own, other);
+      ApplyRows(1, single, value, r.at, r.stride, alpha, both, force + 2 * r.row, force + 2 * r.column, own, other);
   } while ((rows == 1 || NearBlockNext(l, b, &r)) && NearBlockNext(l, b, &r));
 }
 
@@ -218,6 +224,7 @@ PetscErrorCode NearFieldApply(NearField f, PetscReal alpha, const PetscScalar F[
     else
       ApplyBlock(f, b, PETSC_FALSE, f->store.value, alpha, f->force, f->velocity);
   }
+  PetscCall(NearDistantApply(f->fixed.distant, alpha, f->force, f->velocity));
   for (PetscInt k = 0; k < 2 * l->n; k++) U[k] += f->velocity[k];
   if (f->box) PetscCall(BoxPartApply(f->box, alpha, F, U));
   PetscCall(PetscLogEventEnd(f->apply, 0, 0, 0, 0));
@@ -254,6 +261,26 @@ static void AddBlock(NearField f, const NearBlock *b, PetscReal scale, const Mar
   while (NearBlockNext(l, b, &r));
 }
 
+/* The same of a distant pair, whose block is made for that. */
+static PetscErrorCode AddDistant(NearField f, PetscInt pair, PetscReal scale, const MarkerRange *rows,
+                                 const MarkerRange *columns, PetscReal out[]) {
+  const Layout l = f->bodies->layout;
+  const NearDistantPair *p = &f->fixed.distant->pair[pair];
+  const NearBlock block = {.row = p->row, .column = p->column, .shift = {p->shift[0], p->shift[1]}};
+  const NearStore kept = f->store;
+  const NearRow r = NearBlockBegin(l, &block);
+  PetscFunctionBeginUser;
+  if (!(Within(l, p->row, rows) && Within(l, p->column, columns)) &&
+      !(Within(l, p->row, columns) && Within(l, p->column, rows)))
+    PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMalloc1(2 * LayoutCount(l, p->row) * r.stride, &f->store.value));
+  PetscCall(NearDistantExpand(f->fixed.distant, pair, r.stride, f->store.value));
+  AddBlock(f, &block, scale, rows, columns, out);
+  PetscCall(PetscFree(f->store.value));
+  f->store = kept;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* The first block, after the fixed ones, of the vesicle that a marker belongs to, or of a later one. */
 static PetscInt FirstBlock(NearField f, PetscInt marker) {
   const PetscInt *start = f->bodies->layout->start;
@@ -277,6 +304,7 @@ PetscErrorCode NearFieldAddBetween(NearField f, PetscReal scale, PetscBool box, 
   for (PetscInt b = 0; b < f->fixed.blocks; b++) AddBlock(f, &f->block[b], scale, rows, columns, out);
   for (PetscInt b = FirstBlock(f, from); b < f->blocks && l->start[f->block[b].row] < to; b++)
     AddBlock(f, &f->block[b], scale, rows, columns, out);
+  for (PetscInt k = 0; k < f->fixed.distant->pairs; k++) PetscCall(AddDistant(f, k, scale, rows, columns, out));
   if (f->box && box) PetscCall(BoxPartAdd(f->box, scale, rows, columns, out));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

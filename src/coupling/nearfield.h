@@ -7,6 +7,7 @@
 #pragma once
 #include "coupling/boxpart.h"
 #include "coupling/lattice.h"
+#include "coupling/neardistant.h"
 #include "coupling/nearfar.h"
 #include "coupling/nearimage.h"
 #include "coupling/bodies.h"
@@ -35,11 +36,12 @@ typedef struct {
   size_t values, value_room, singles, single_room;
 } NearStore;
 
-/* The blocks of two obstacles that rest, which stay as they are: the first ones of the list, with their close images
-   and values. */
+/* What two obstacles that rest do to one another, which stays as it is: the first blocks of the list, with their close
+   images and values, and distant pairs. */
 typedef struct {
   PetscInt blocks, closes;
   size_t values, singles;
+  NearDistant distant;
   PetscBool made;
 } NearFixed;
 

@@ -132,13 +132,35 @@ static PetscErrorCode Images(NearField f, PetscInt v, PetscInt w, Image image[MO
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Whether what w does to v is smooth along both: obstacles that rest, as far from one another as the larger one is
+   wide, and off walls. */
+static PetscBool AreDistant(NearField f, PetscInt v, PetscInt w, PetscReal gap) {
+  const Bodies m = f->bodies;
+  const PetscInt body[2] = {v, w};
+  PetscReal least = f->far[NEAR_TWO].reach * f->markers->grid->h;
+  if (v == w || !f->box || !m->resting[v] || !m->resting[w]) return PETSC_FALSE;
+  for (int end = 0; end < 2; end++) {
+    const PetscInt one = body[end];
+    const NearBounds *b = &f->bounds[one];
+    if (m->kind[one].type != CURVE_CLOSED) return PETSC_FALSE;
+    least = PetscMax(least, PetscHypotReal(b->high[0] - b->low[0], b->high[1] - b->low[1]));
+    for (PetscInt k = m->layout->start[one]; k < m->layout->start[one + 1]; k++)
+      if (!NearImageIsFar(f->image, f->markers->X + 2 * k, &f->bounds[body[1 - end]])) return PETSC_FALSE;
+  }
+  return gap >= least ? PETSC_TRUE : PETSC_FALSE;
+}
+
 /* A block for each image of w; with a box part one, of the images nearest to each marker, named after the nearest, in
    which all close images are refined; v's own are in its block with itself. */
 static PetscErrorCode AddImages(NearField f, PetscInt v, PetscInt w) {
   Image image[MOST_IMAGES];
+  PetscBool distant = PETSC_FALSE;
   int count;
   PetscFunctionBeginUser;
   PetscCall(Images(f, v, w, image, &count));
+  if (count && AreDistant(f, v, w, image[0].gap))
+    PetscCall(NearDistantAdd(f->fixed.distant, f->markers->X, v, w, image[0].shift, &distant));
+  if (distant) PetscFunctionReturn(PETSC_SUCCESS);
   for (int k = 0; k < count; k++) {
     if (!f->box || (!k && v != w)) PetscCall(AddBlock(f, v, w, image[k].shift, image[k].gap));
     if (image[k].close) PetscCall(AddClose(f, image[k].shift, image[k].gap));
@@ -224,7 +246,7 @@ PetscErrorCode NearPairsFind(NearField f, PetscInt *first) {
   *first = fixed->blocks;
   if (!fixed->made) {
     PetscCall(AddBlocks(f, PETSC_TRUE));
-    *fixed = (NearFixed){f->blocks, f->closes, f->store.values, f->store.singles, PETSC_TRUE};
+    *fixed = (NearFixed){f->blocks, f->closes, f->store.values, f->store.singles, f->fixed.distant, PETSC_TRUE};
   }
   PetscCall(AddBlocks(f, PETSC_FALSE));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -3,6 +3,7 @@
 #include "coupling/blas.h"
 #include "coupling/denseblock.h"
 #include "coupling/mobilitysolves.h"
+#include "coupling/obstaclemodes.h"
 #include "coupling/symmetric.h"
 
 struct _p_ObstacleBlock {
@@ -14,7 +15,8 @@ struct _p_ObstacleBlock {
   PetscReal made;        /* where bodies were at this time */
   PetscReal least;       /* fewest iterations of a solve with it; negative: not known yet */
   PetscReal excess;      /* iterations above them in all */
-  float *inverse;        /* 2W x 2W (symmetric.h), on root */
+  float *inverse;        /* 2W x 2W (symmetric.h), on root; or */
+  ObstacleModes modes;   /* NULL: dense */
   PetscScalar *all;      /* [2W] work */
   float *from, *to;      /* [2W] on root: work, what has been found */
   PetscBool coupled;     /* to the vesicles, by */
@@ -36,14 +38,19 @@ PetscErrorCode ObstacleBlockCreate(const FluidSpec *spec, Coupling coupling, Obs
   b->alpha = -1;
   b->root = LayoutOwner(coupling->bodies->layout, 0);
   PetscCall(PetscMalloc1(n, &b->all));
-  if (o->layout->rank == b->root) PetscCall(PetscMalloc3(SymmetricSize(n), &b->inverse, n, &b->from, n, &b->to));
+  if (o->modes) PetscCall(ObstacleModesCreate(spec, coupling, b->root, &b->modes));
+  if (o->layout->rank != b->root) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMalloc2(n, &b->from, n, &b->to));
+  if (!b->modes) PetscCall(PetscMalloc1(SymmetricSize(n), &b->inverse));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode ObstacleBlockDestroy(ObstacleBlock *block) {
   PetscFunctionBeginUser;
   if (!*block) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscFree3((*block)->inverse, (*block)->from, (*block)->to));
+  PetscCall(ObstacleModesDestroy(&(*block)->modes));
+  PetscCall(PetscFree((*block)->inverse));
+  PetscCall(PetscFree2((*block)->from, (*block)->to));
   PetscCall(PetscFree((*block)->response));
   PetscCall(PetscFree2((*block)->force, (*block)->single));
   PetscCall(PetscFree((*block)->all));
@@ -98,24 +105,19 @@ static PetscErrorCode Assemble(ObstacleBlock b, PetscReal A[]) {
 static PetscReal RenewalCost(ObstacleBlock b) {
   const Grid g = b->coupling->fluid->grid;
   const PetscReal cells = (PetscReal)g->n[0] * g->n[1], W = b->obstacles->layout->M;
+  if (b->modes) return DenseRenewalCost(1, 0.5 * (PetscReal)ObstacleModesCount(b->modes), 0, cells);
   return (OnWall(b->obstacles) ? 2 * W : 0) + DenseRenewalCost(1, W, 0, cells);
 }
 
-static PetscErrorCode Make(ObstacleBlock b, PetscBool *failed) {
+/* The whole block's inverse, on root. */
+static PetscErrorCode MakeDense(ObstacleBlock b, PetscBool *failed) {
   const Layout l = b->obstacles->layout;
   const PetscInt n = 2 * l->M;
   const PetscReal over = 1 / PetscSqr(b->coupling->fluid->grid->h);
   PetscBool done = PETSC_TRUE;
   PetscReal *A;
   float *single;
-  PetscLogEvent event;
   PetscFunctionBeginUser;
-  PetscCall(PetvesEvent("FactorObstacles", &event));
-  PetscCall(PetscLogEventBegin(event, 0, 0, 0, 0));
-  b->alpha = b->coupling->fluid->alpha;
-  b->made = b->obstacles->t;
-  b->least = -1;
-  b->excess = 0;
   PetscCall(PetscMalloc1(n * n, &A));
   PetscCall(Assemble(b, A));
   if (l->rank == b->root) {
@@ -126,7 +128,33 @@ static PetscErrorCode Make(ObstacleBlock b, PetscBool *failed) {
   }
   PetscCall(PetscFree(A));
   PetscCall(AgreeFlag(l->comm, done ? PETSC_FALSE : PETSC_TRUE, failed));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Make(ObstacleBlock b, PetscBool *failed) {
+  PetscLogEvent event;
+  PetscFunctionBeginUser;
+  PetscCall(PetvesEvent("FactorObstacles", &event));
+  PetscCall(PetscLogEventBegin(event, 0, 0, 0, 0));
+  b->alpha = b->coupling->fluid->alpha;
+  b->made = b->obstacles->t;
+  b->least = -1;
+  b->excess = 0;
+  if (b->modes)
+    PetscCall(ObstacleModesSetUp(b->modes, b->alpha, failed));
+  else
+    PetscCall(MakeDense(b, failed));
   PetscCall(PetscLogEventEnd(event, 0, 0, 0, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* y = A^-1 x of the block's approximation, on root. */
+static PetscErrorCode Invert(ObstacleBlock b, const float x[], float y[]) {
+  PetscFunctionBeginUser;
+  if (b->modes)
+    PetscCall(ObstacleModesApply(b->modes, x, y));
+  else
+    SymmetricMult(2 * b->obstacles->layout->M, b->inverse, x, y);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -199,7 +227,7 @@ static PetscErrorCode Eliminate(ObstacleBlock b, PetscInt m, PetscReal K[], Pets
   PetscCall(PetscMalloc2(w * m, &X, m * m, &part));
   for (PetscInt j = 0; j < m; j++) {
     for (PetscInt k = 0; k < w; k++) b->from[k] = (float)(over * K[j * w + k]);
-    SymmetricMult(w, b->inverse, b->from, b->response + j * w);
+    PetscCall(Invert(b, b->from, b->response + j * w));
   }
   for (PetscInt k = 0; k < w * m; k++) X[k] = b->response[k];
   PetscCall(DenseProduct(PETSC_TRUE, m, m, w, K, X, part));
@@ -245,7 +273,7 @@ PetscErrorCode ObstacleBlockBegin(ObstacleBlock b, PetscScalar r[], PetscScalar 
     }
     PetscCall(LayoutFromRank(vesicles, b->root, 2, b->force, U));
   }
-  if (root) SymmetricMult(w, b->inverse, b->from, b->to);
+  if (root) PetscCall(Invert(b, b->from, b->to));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -49,6 +49,7 @@ PetscErrorCode ObstaclesCreate(Scene scene, Layout all, Obstacles *out) {
   *out = o;
   o->all = all;
   o->frequency = own->frequency;
+  o->modes = own->modes;
   o->beta = 1 / (4 * scene->fluid.nu);
   PetscCall(LayoutCreatePart(all, all->bodies - curves, all->bodies, &o->layout));
   const PetscInt W = o->layout->M;

@@ -42,6 +42,7 @@ struct _p_Obstacles {
   Spectral *spectral;     /* [curves] */
   CurveKind *kind;        /* [curves] */
   PetscReal beta;         /* 1/(4 nu) */
+  PetscBool modes;        /* the preconditioner takes their block apart (obstaclemodes.h) */
 };
 
 /* ObstaclesCreate - of the scene, as the last bodies of the layout of all; *obstacles is NULL where there are none.

@@ -150,7 +150,9 @@ static PetscErrorCode Cut(Scene scene, Outlines *o) {
 }
 
 #define LEAST_MARKERS 15
-#define MOST_MARKERS 4000 /* of all: the preconditioner has a dense block of them */
+#define MOST_MARKERS 40000
+#define MOST_DENSE 4000    /* of which the preconditioner may have a dense block, */
+#define MOST_TOGETHER 2000 /* and has one where it can do without */
 
 /* An odd number of markers on each curve that repeats; on open ones none farther apart than wanted, so that the first
    is half a spacing off its wall. */
@@ -172,12 +174,31 @@ static PetscErrorCode Number(Scene scene, const Outlines *o, Shape *shape) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Whether the preconditioner takes its block of the obstacles apart (-obstacle_factor). */
+static PetscErrorCode ChooseFactor(Scene scene, const Outlines *o, SceneObstacles *own) {
+  const FluidSpec *f = &scene->fluid;
+  const PetscInt markers = own->outline.start[o->count];
+  const PetscBool periodic = f->bc[0] == BC_PERIODIC && f->bc[1] == BC_PERIODIC ? PETSC_TRUE : PETSC_FALSE;
+  PetscInt most = 0;
+  PetscFunctionBeginUser;
+  own->modes = own->factor == OBSTACLE_FACTOR_MODES ? PETSC_TRUE : PETSC_FALSE;
+  if (own->factor == OBSTACLE_FACTOR_AUTO && markers > MOST_TOGETHER && periodic) own->modes = PETSC_TRUE;
+  for (PetscInt k = 0; k < o->count; k++) most = PetscMax(most, own->outline.start[k + 1] - own->outline.start[k]);
+  if (!own->modes) most = markers;
+  PetscCheck(most <= MOST_DENSE, scene->comm, PETSC_ERR_USER_INPUT,
+             "-obstacle_spacing %g: %" PetscInt_FMT " markers on %s; allowed: at most %d, so a larger spacing%s",
+             (double)own->spacing, most, own->modes ? "one obstacle" : "the obstacles", MOST_DENSE,
+             own->modes ? " or coarser -domain_cells" : ", coarser -domain_cells, or -obstacle_factor modes");
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode PlaceMarkers(Scene scene, const Outlines *o, SceneObstacles *own) {
   Shape *shape = &own->outline;
   PetscFunctionBeginUser;
   shape->vesicles = o->count;
   PetscCall(PetscCalloc1(o->count + 1, &shape->start));
   PetscCall(Number(scene, o, shape));
+  PetscCall(ChooseFactor(scene, o, own));
   PetscCall(PetscMalloc1(2 * shape->start[o->count], &shape->X));
   PetscCall(PetscMalloc1(o->count, &shape->kind));
   PetscCall(PetscCalloc5(2 * o->count, &own->velocity, o->count, &own->turn, o->count, &own->container, o->count,

@@ -16,6 +16,7 @@ typedef enum { PRECISION_DOUBLE, PRECISION_SINGLE } PrecisionType;
 typedef enum { STARTUP_EULER, STARTUP_GRADED } StartUp;
 typedef enum { SHAPE_ELLIPSE, SHAPE_BICONCAVE, SHAPE_FILE, SHAPE_NONE } ShapeType;
 typedef enum { OBSTACLE_NONE, OBSTACLE_POSTS, OBSTACLE_COUETTE, OBSTACLE_CONSTRICTION, OBSTACLE_FILE } ObstacleShape;
+typedef enum { OBSTACLE_FACTOR_AUTO, OBSTACLE_FACTOR_DENSE, OBSTACLE_FACTOR_MODES } ObstacleFactor;
 typedef enum { PACKING_RANDOM, PACKING_LATTICE } PackingType;
 
 /* The domain as the user gives it: fluid.box and fluid.cells when their lengths are right. */
@@ -67,6 +68,8 @@ typedef struct {
   PetscReal throat, length;      /* of a constriction: narrowest width over the channel's; along x, 0: the width */
   char file[PETSC_MAX_PATH_LEN]; /* curve file */
   PetscReal spacing;             /* ds/h */
+  PetscInt factor;               /* ObstacleFactor */
+  PetscBool modes;               /* what has come of it */
   Shape outline;                 /* their markers, the same on every rank */
   PetscReal *velocity, *turn;    /* [2 curves], [curves] of their surfaces */
   PetscBool *container;          /* [curves] the fluid is inside */

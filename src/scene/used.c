@@ -117,6 +117,7 @@ static const struct {
              {"-obstacle_moving", BY_OBSTACLES},
              {"-obstacle_file", BY_OBSTACLE_FILE},
              {"-obstacle_spacing", BY_OBSTACLES},
+             {"-obstacle_factor", BY_OBSTACLES},
              {"-delta_type", BY_BODIES},
              {"-scheme_auto", BY_VESICLES},
              {"-scheme_bending", BY_VESICLES},

@@ -1,0 +1,312 @@
+#include "coupling/obstaclemodes.h"
+#include "base/agree.h"
+#include "coupling/blas.h"
+#include "coupling/symmetric.h"
+#include "coupling/waves.h"
+
+#define MOST_WAVES 9   /* of a curve with few markers */
+#define WAVE_MARKERS 8 /* of a curve with many: one for so many markers */
+#define SAME 1e-6      /* cells that markers of curves of one shape differ by, at most */
+
+/* A curve that others are equal to but for their place. */
+typedef struct {
+  PetscInt like; /* the first of them */
+  Waves waves;
+  float *inverse; /* D^-1 (symmetric.h), on root */
+  float *answer;  /* D^-1 Q, [2 waves][2n], on root */
+  PetscReal *G;   /* [2 waves][2 waves], on root */
+} CurveShape;
+
+struct _p_ObstacleModes {
+  const FluidSpec *spec; /* borrowed */
+  Coupling coupling;     /* borrowed */
+  PetscMPIInt root;
+  PetscInt *of;    /* [curves] shape of each */
+  PetscInt *start; /* [curves + 1] first mode of each */
+  PetscInt shapes;
+  CurveShape *shape;
+  float *K;                      /* (symmetric.h), on root */
+  float *amplitude, *correction; /* [modes] work */
+};
+
+/* How many waves a curve has when one of few markers has `least`. */
+static PetscInt Count(PetscInt n, PetscInt least) {
+  const PetscInt many = n * least / (WAVE_MARKERS * MOST_WAVES);
+  return PetscMin(n - 1 + n % 2, PetscMax(least, many - 1 + many % 2));
+}
+
+/* Waves for every curve, as many as K has room for. */
+static PetscErrorCode Share(ObstacleModes s) {
+  const Layout l = s->coupling->bodies->obstacles->layout;
+  PetscFunctionBeginUser;
+  for (PetscInt least = MOST_WAVES; least >= 1; least -= 2) {
+    for (PetscInt v = 0; v < l->bodies; v++) s->start[v + 1] = s->start[v] + 2 * Count(LayoutCount(l, v), least);
+    if (s->start[l->bodies] <= OBSTACLE_MODES) break;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ObstacleModesCreate(const FluidSpec *spec, Coupling c, PetscMPIInt root, ObstacleModes *out) {
+  const PetscInt curves = c->bodies->obstacles->layout->bodies;
+  ObstacleModes s;
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&s));
+  *out = s;
+  s->spec = spec;
+  s->coupling = c;
+  s->root = root;
+  PetscCall(PetscCalloc3(curves, &s->of, curves + 1, &s->start, curves, &s->shape));
+  PetscCall(Share(s));
+  const PetscInt n = s->start[curves];
+  PetscCall(PetscMalloc2(n, &s->amplitude, n, &s->correction));
+  if (c->bodies->layout->rank == root) PetscCall(PetscMalloc1(SymmetricSize(n), &s->K));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode FreeShapes(ObstacleModes s) {
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < s->shapes; k++) {
+    PetscCall(WavesDestroy(&s->shape[k].waves));
+    PetscCall(PetscFree3(s->shape[k].inverse, s->shape[k].answer, s->shape[k].G));
+  }
+  s->shapes = 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ObstacleModesDestroy(ObstacleModes *modes) {
+  ObstacleModes s = *modes;
+  PetscFunctionBeginUser;
+  if (!s) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(FreeShapes(s));
+  PetscCall(PetscFree(s->K));
+  PetscCall(PetscFree2(s->amplitude, s->correction));
+  PetscCall(PetscFree3(s->of, s->start, s->shape));
+  PetscCall(PetscFree(*modes));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscInt ObstacleModesCount(ObstacleModes s) {
+  return s->start[s->coupling->bodies->obstacles->layout->bodies];
+}
+
+/* Whether two curves are equal but for their place, and as far from the walls. */
+static PetscBool Equal(ObstacleModes s, PetscInt v, PetscInt w) {
+  const Obstacles o = s->coupling->bodies->obstacles;
+  const Grid g = s->coupling->fluid->grid;
+  const PetscReal *X = o->X + 2 * o->layout->start[v], *Y = o->X + 2 * o->layout->start[w];
+  if (LayoutCount(o->layout, v) != LayoutCount(o->layout, w) || o->kind[v].type != o->kind[w].type) return PETSC_FALSE;
+  for (PetscInt k = 0; k < 2 * LayoutCount(o->layout, v); k++) {
+    const PetscReal apart = g->wall[k % 2] ? 0 : X[k % 2] - Y[k % 2];
+    if (PetscAbsReal(X[k] - Y[k] - apart) > SAME * g->h) return PETSC_FALSE;
+  }
+  return PETSC_TRUE;
+}
+
+static void FindShapes(ObstacleModes s) {
+  const Layout l = s->coupling->bodies->obstacles->layout;
+  for (PetscInt v = 0; v < l->bodies; v++) {
+    PetscInt k = 0;
+    while (k < s->shapes && !Equal(s, v, s->shape[k].like)) k++;
+    if (k == s->shapes) s->shape[s->shapes++] = (CurveShape){.like = v};
+    s->of[v] = k;
+  }
+}
+
+/* D of a curve, [2n][2n], on root: every rank makes a part of the table's sums and adds its own rows of the near field.
+ */
+static PetscErrorCode AssembleCurve(ObstacleModes s, Mobility mobility, PetscInt v, PetscReal D[]) {
+  const Obstacles o = s->coupling->bodies->obstacles;
+  const Layout l = o->layout;
+  const PetscInt n = 2 * LayoutCount(l, v), first = o->all->M - l->M + l->start[v];
+  const PetscReal h2 = PetscSqr(s->coupling->fluid->grid->h), *N = o->N + 2 * l->start[v];
+  PetscMPIInt size;
+  PetscFunctionBeginUser;
+  PetscCall(MobilityAssemble(mobility, first, n / 2, l->rank, l->size, D));
+  PetscCall(
+      NearFieldAdd(s->coupling->near, h2, MobilityHasBoxPart(mobility) ? PETSC_FALSE : PETSC_TRUE, first, n / 2, D));
+  for (PetscInt j = 0; j < n && v >= l->own && v < l->end; j++)
+    for (PetscInt i = 0; i < n; i++) D[j * n + i] += h2 * o->beta * N[i] * N[j];
+  PetscCall(PetscMPIIntCast(n * n, &size));
+  if (l->size > 1)
+    PetscCallMPI(MPI_Reduce(l->rank == s->root ? MPI_IN_PLACE : D, D, size, MPIU_REAL, MPI_SUM, s->root, l->comm));
+  for (PetscInt k = 0; k < n * n; k++) D[k] /= h2;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* D^-1, D^-1 Q and G of a shape from D, on root. */
+static PetscErrorCode InvertCurve(CurveShape *q, const PetscReal D[], PetscBool *done) {
+  const PetscInt n = 2 * q->waves.n, m = 2 * q->waves.count;
+  float *single;
+  PetscReal *x, *a;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc3(SymmetricSize(n), &q->inverse, m * n, &q->answer, m * m, &q->G));
+  PetscCall(PetscMalloc3(n * n, &single, n, &x, m, &a));
+  DenseSingle(n * n, D, single);
+  PetscCall(SymmetricInvert(n, single, q->inverse, done));
+  for (PetscInt j = 0; j < m && *done; j++) {
+    for (PetscInt k = 0; k < m; k++) a[k] = k == j;
+    WavesSum(&q->waves, a, x);
+    DenseSingle(n, x, single);
+    SymmetricMult(n, q->inverse, single, q->answer + j * n);
+    for (PetscInt k = 0; k < n; k++) x[k] = q->answer[j * n + k];
+    WavesOf(&q->waves, x, q->G + j * m);
+  }
+  PetscCall(PetscFree3(single, x, a));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode MakeShapes(ObstacleModes s, PetscReal alpha, PetscBool *done) {
+  const Obstacles o = s->coupling->bodies->obstacles;
+  Mobility mobility;
+  PetscReal *D;
+  PetscFunctionBeginUser;
+  *done = PETSC_TRUE;
+  PetscCall(FreeShapes(s));
+  FindShapes(s);
+  PetscCall(MobilityCreate(s->spec, s->coupling, PETSC_MAX_REAL, &mobility));
+  PetscCall(MobilitySetUp(mobility, alpha));
+  for (PetscInt k = 0; k < s->shapes; k++) {
+    CurveShape *q = &s->shape[k];
+    const PetscInt n = LayoutCount(o->layout, q->like);
+    PetscBool good = PETSC_TRUE;
+    PetscCall(WavesCreate(o->kind[q->like].type == CURVE_OPEN ? PETSC_TRUE : PETSC_FALSE, n,
+                          (s->start[q->like + 1] - s->start[q->like]) / 2, &q->waves));
+    PetscCall(PetscMalloc1(4 * n * n, &D));
+    PetscCall(AssembleCurve(s, mobility, q->like, D));
+    if (o->layout->rank == s->root) PetscCall(InvertCurve(q, D, &good));
+    if (!good) *done = PETSC_FALSE;
+    PetscCall(PetscFree(D));
+  }
+  PetscCall(MobilityDestroy(&mobility));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The grid's mobility between the places of two curves, T[2 places of w][2 places of v]. */
+static void Between(ObstacleModes s, MobilityTable table, PetscInt v, PetscInt w, PetscReal T[]) {
+  const Obstacles o = s->coupling->bodies->obstacles;
+  const Grid g = s->coupling->fluid->grid;
+  const Waves *a = &s->shape[s->of[v]].waves, *b = &s->shape[s->of[w]].waves;
+  const PetscReal *X = o->X + 2 * o->layout->start[v], *Y = o->X + 2 * o->layout->start[w];
+  const PetscReal over = 1 / PetscSqr(g->h);
+  const PetscInt stride = 2 * a->places;
+  for (PetscInt j = 0; j < b->places; j++)
+    for (PetscInt i = 0; i < a->places; i++) {
+      PetscReal d[2], one[3], *x = T + 2 * j * stride + 2 * i, *y = x + stride;
+      for (int c = 0; c < 2; c++) {
+        const PetscReal period = g->hi[c] - g->lo[c];
+        d[c] = X[2 * a->place[i] + c] - Y[2 * b->place[j] + c];
+        d[c] -= period * PetscFloorReal(d[c] / period + 0.5);
+      }
+      MobilityTableMean(table, d, one);
+      x[0] = over * one[0];
+      y[1] = over * one[1];
+      x[1] = y[0] = over * one[2];
+    }
+}
+
+/* out[columns][2 count] = the coefficients of columns of values at the places, [columns][2 places]. */
+static void FitColumns(const Waves *w, PetscInt columns, const PetscReal values[], PetscReal out[]) {
+  for (PetscInt j = 0; j < columns; j++, values += 2 * w->places, out += 2 * w->count)
+    for (PetscInt m = 0; m < w->count; m++)
+      for (int c = 0; c < 2; c++) {
+        out[2 * m + c] = 0;
+        for (PetscInt k = 0; k < w->places; k++) out[2 * m + c] += w->fit[m * w->places + k] * values[2 * k + c];
+      }
+}
+
+static void Transpose(PetscInt rows, PetscInt columns, const PetscReal A[], PetscReal B[]) {
+  for (PetscInt j = 0; j < columns; j++)
+    for (PetscInt i = 0; i < rows; i++) B[i * columns + j] = A[j * rows + i];
+}
+
+/* M[modes][modes] on root: every rank makes a part of the pairs. */
+static PetscErrorCode AssembleModes(ObstacleModes s, PetscReal alpha, PetscReal M[]) {
+  const Layout l = s->coupling->bodies->obstacles->layout;
+  const PetscInt n = ObstacleModesCount(s);
+  MobilityTable table;
+  PetscInt most = 0, pair = 0;
+  PetscReal *T, *half, *turned, *block;
+  PetscMPIInt size;
+  PetscFunctionBeginUser;
+  PetscCall(MobilityTableCreate(s->spec, s->coupling->markers->kernel, PETSC_MAX_REAL, &table));
+  PetscCall(MobilityTableSetUp(table, alpha));
+  for (PetscInt k = 0; k < s->shapes; k++) most = PetscMax(most, 2 * s->shape[k].waves.places);
+  PetscCall(PetscMalloc4(most * most, &T, most * most, &half, most * most, &turned, most * most, &block));
+  PetscCall(PetscArrayzero(M, n * n));
+  for (PetscInt v = 0; v < l->bodies; v++)
+    for (PetscInt w = v + 1; w < l->bodies; w++) {
+      const Waves *a = &s->shape[s->of[v]].waves, *b = &s->shape[s->of[w]].waves;
+      if (pair++ % l->size != l->rank) continue;
+      Between(s, table, v, w, T);
+      FitColumns(a, 2 * b->places, T, half);
+      Transpose(2 * a->count, 2 * b->places, half, turned);
+      FitColumns(b, 2 * a->count, turned, block);
+      for (PetscInt j = 0; j < 2 * a->count; j++)
+        for (PetscInt i = 0; i < 2 * b->count; i++)
+          M[(s->start[v] + j) * n + s->start[w] + i] = M[(s->start[w] + i) * n + s->start[v] + j] =
+              block[j * 2 * b->count + i];
+    }
+  PetscCall(PetscFree4(T, half, turned, block));
+  PetscCall(MobilityTableDestroy(&table));
+  PetscCall(PetscMPIIntCast(n * n, &size));
+  if (l->size > 1)
+    PetscCallMPI(MPI_Reduce(l->rank == s->root ? MPI_IN_PLACE : M, M, size, MPIU_REAL, MPI_SUM, s->root, l->comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* K = (I + M G)^-1 M, on root; M is overwritten. */
+static PetscErrorCode MakeK(ObstacleModes s, PetscReal M[], PetscBool *done) {
+  const PetscInt n = ObstacleModesCount(s), curves = s->coupling->bodies->obstacles->layout->bodies;
+  PetscBLASInt *pivot;
+  PetscReal *B;
+  float *single;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(n * n, &B, n, &pivot));
+  for (PetscInt v = 0; v < curves; v++) {
+    const PetscInt first = s->start[v], m = s->start[v + 1] - first;
+    PetscCall(DenseProduct(PETSC_FALSE, n, m, m, M + first * n, s->shape[s->of[v]].G, B + first * n));
+  }
+  for (PetscInt k = 0; k < n; k++) B[k * n + k] += 1;
+  PetscCall(DenseFactor(n, B, pivot, done));
+  if (*done) PetscCall(DenseSolve(n, B, pivot, PETSC_FALSE, n, M));
+  PetscCall(PetscFree2(B, pivot));
+  PetscCall(PetscMalloc1(n * n, &single));
+  DenseSingle(n * n, M, single);
+  SymmetricPack(n, single, s->K);
+  PetscCall(PetscFree(single));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ObstacleModesSetUp(ObstacleModes s, PetscReal alpha, PetscBool *failed) {
+  const Layout l = s->coupling->bodies->obstacles->layout;
+  const PetscInt n = ObstacleModesCount(s);
+  PetscBool done;
+  PetscReal *M;
+  PetscFunctionBeginUser;
+  PetscCall(MakeShapes(s, alpha, &done));
+  PetscCall(PetscMalloc1(n * n, &M));
+  PetscCall(AssembleModes(s, alpha, M));
+  if (l->rank == s->root && done) PetscCall(MakeK(s, M, &done));
+  PetscCall(PetscFree(M));
+  PetscCall(AgreeFlag(l->comm, done ? PETSC_FALSE : PETSC_TRUE, failed));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ObstacleModesApply(ObstacleModes s, const float x[], float y[]) {
+  const Layout l = s->coupling->bodies->obstacles->layout;
+  PetscFunctionBeginUser;
+  PetscCall(PetscArrayzero(s->amplitude, ObstacleModesCount(s)));
+  for (PetscInt v = 0; v < l->bodies; v++) {
+    const CurveShape *q = &s->shape[s->of[v]];
+    const PetscInt n = 2 * q->waves.n, at = 2 * l->start[v];
+    SymmetricMult(n, q->inverse, x + at, y + at);
+    PetscCall(DenseSingleMultAdd(PETSC_TRUE, n, 2 * q->waves.count, 1, q->answer, x + at, s->amplitude + s->start[v]));
+  }
+  SymmetricMult(ObstacleModesCount(s), s->K, s->amplitude, s->correction);
+  for (PetscInt v = 0; v < l->bodies; v++) {
+    const CurveShape *q = &s->shape[s->of[v]];
+    PetscCall(DenseSingleMultAdd(PETSC_FALSE, 2 * q->waves.n, 2 * q->waves.count, -1, q->answer,
+                                 s->correction + s->start[v], y + 2 * l->start[v]));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
