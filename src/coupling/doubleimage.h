@@ -5,7 +5,7 @@
 #include "coupling/dipoleimage.h"
 #include "coupling/nearimage.h"
 
-#define DOUBLE_IMAGE_REACH 100 /* cells from a marker to another's image: beyond, none without a box part */
+#define DOUBLE_IMAGE_REACH 300 /* cells from a marker to another's image: beyond, none without a box part */
 
 /* A dipole's rows at a wall, folded. */
 typedef struct {
