@@ -155,6 +155,7 @@ static PetscErrorCode Build(MPI_Comm comm, PetvesFlow flow, void *ctx, Simulatio
   PetscCall(CouplingCreate(s->fluid, s->membrane, s->obstacles, scene->coupling.kernel,
                            (NearFieldType)scene->coupling.near_field, &s->coupling));
   if (s->coupling->near && SceneHasBoxPart(scene)) PetscCall(NearFieldAddBoxPart(s->coupling->near, &scene->fluid));
+  if (s->coupling->near && scene->fluid.inertia == INERTIA_UNSTEADY) PetscCall(CouplingAddLag(s->coupling));
   PetscCall(AddContrast(scene, s->coupling));
   if (scene->repulsion.stress > 0 && scene->shape.vesicles)
     PetscCall(CouplingAddRepulsion(s->coupling, &scene->repulsion));

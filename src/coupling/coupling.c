@@ -304,6 +304,22 @@ PetscErrorCode CouplingAddAreaTarget(Coupling c) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode CouplingAddLag(Coupling c) {
+  const Kernel *k = c->markers->kernel;
+  const PetscReal cells = (KernelSecondMoment(k->along) + 3 * KernelSecondMoment(k->across)) / 4 - 1. / 8;
+  PetscFunctionBeginUser;
+  c->lag = cells * PetscSqr(c->fluid->grid->h) / c->fluid->nu;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CouplingAddPast(Coupling c, Vec uhat, Vec U) {
+  PetscFunctionBeginUser;
+  if (c->lag == 0) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(MarkersInterpolate(c->markers, uhat, c->velocity));
+  PetscCall(VecAXPY(U, c->lag, c->velocity));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode CouplingDestroy(Coupling *coupling) {
   Coupling c = *coupling;
   PetscFunctionBeginUser;

@@ -20,6 +20,7 @@ struct _p_Coupling {
   PetscReal *tau;       /* [2n] tangents of the own vesicles */
   PetscReal *turning;   /* [n] the tension whose pull turns with the edges (length^3/time^2); CouplingTurn */
   PetscReal *treading;  /* [vesicles] V, the speed of the labels in which the step is made (1/time) */
+  PetscReal lag;        /* of the grid's inertia at the markers (time); 0 without */
   Vec X;                /* markers of all bodies */
   Vec force;            /* marker vector of all bodies, work */
   Vec velocity;         /* the same, work */
@@ -39,6 +40,13 @@ PETSC_EXTERN PetscErrorCode CouplingAddRepulsion(Coupling coupling, const SceneR
 /* CouplingAddAreaTarget - from here on steps aim at the vesicles' first areas; after CouplingAddContrast. Not
    collective. */
 PETSC_EXTERN PetscErrorCode CouplingAddAreaTarget(Coupling coupling);
+
+/* CouplingAddLag - from here on markers have the velocity of the grid less lag times its rate of change, in unsteady
+   flow: what kernel and lattice take from the fluid's inertia, where the near field is that of quasi-steady flow
+   (docs/nearfield.md, Unsteady flow). CouplingAddPast - U += lag E uhat, marker vector of all bodies, of the history
+   uhat in du/dt = alpha u - uhat. Collective. */
+PETSC_EXTERN PetscErrorCode CouplingAddLag(Coupling coupling);
+PETSC_EXTERN PetscErrorCode CouplingAddPast(Coupling coupling, Vec uhat, Vec U);
 
 /* CouplingPlace - everything that a solve stands on, in one call: the time coefficient a0 (1/time) in the fluid's H; E,
    S, B, the tangents, the near field C and the springs of a repulsion at the markers X, and at obstacles where they are
@@ -68,6 +76,11 @@ static inline PetscBool CouplingHasBodies(Coupling coupling) {
 }
 static inline PetscReal CouplingBending(Coupling coupling) {
   return CouplingHasMembrane(coupling) ? coupling->membrane->bending : 0;
+}
+
+/* CouplingGridPart - what of a step's new velocity E u the markers have: 1 - lag alpha. Not collective. */
+static inline PetscReal CouplingGridPart(Coupling coupling) {
+  return 1 - coupling->lag * coupling->fluid->alpha;
 }
 
 /* CouplingSpreadTension - w += alpha S sigma. CouplingSpreadBending - w += alpha B X. Collective. */

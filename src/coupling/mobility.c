@@ -35,8 +35,20 @@ PetscErrorCode MobilityDestroy(Mobility *mobility) {
 
 PetscErrorCode MobilitySetUp(Mobility m, PetscReal alpha) {
   PetscFunctionBeginUser;
+  m->part = 1 - m->coupling->lag * alpha;
   if (m->table) PetscCall(MobilityTableSetUp(m->table, alpha));
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Mob of two markers by the sums over both stencils; d from the second to the first, back the other way. */
+static void SumStencils(Mobility m, const PaddedStencil a[2], const PaddedStencil b[2], const PetscReal d[2],
+                        const PetscReal back[2], PetscReal Mob[4]) {
+  const Grid g = m->coupling->fluid->grid;
+  Mob[0] = StencilImageSum(g, &m->table->green, OFFSET_UU, &a[0], &b[0], d);
+  Mob[1] = StencilImageSum(g, &m->table->green, OFFSET_VV, &a[1], &b[1], d);
+  Mob[2] = StencilImageSum(g, &m->table->green, OFFSET_VU, &b[1], &a[0],
+                           back); /* u from v is v from u the other way round */
+  Mob[3] = StencilImageSum(g, &m->table->green, OFFSET_VU, &a[1], &b[0], d);
 }
 
 /* Mob of markers i and j, the nearest image: xx, yy, xy, yx. */
@@ -54,13 +66,9 @@ static void Pair(Mobility m, PetscInt i, PetscInt j, PetscReal Mob[4]) {
   if (d[0] * d[0] + d[1] * d[1] > PetscSqr(m->near * g->h)) {
     MobilityTableMean(m->table, d, Mob);
     Mob[3] = Mob[2];
-    return;
-  }
-  Mob[0] = StencilImageSum(g, &m->table->green, OFFSET_UU, &a[0], &b[0], d);
-  Mob[1] = StencilImageSum(g, &m->table->green, OFFSET_VV, &a[1], &b[1], d);
-  Mob[2] = StencilImageSum(g, &m->table->green, OFFSET_VU, &b[1], &a[0],
-                           back); /* u from v is v from u the other way round */
-  Mob[3] = StencilImageSum(g, &m->table->green, OFFSET_VU, &a[1], &b[0], d);
+  } else
+    SumStencils(m, a, b, d, back, Mob);
+  for (int q = 0; q < 4; q++) Mob[q] *= m->part;
 }
 
 PetscErrorCode MobilityAssemble(Mobility m, PetscInt first, PetscInt n, PetscInt part, PetscInt parts,

@@ -14,6 +14,7 @@ struct _p_Mobility {
   MobilityTable table;    /* NULL with */
   MobilityBox box;        /* between walls, in quasi-steady flow with box part */
   PetscReal near;         /* cells up to which a pair's stencils are summed */
+  PetscReal part;         /* what the markers have of the grid's velocity, CouplingGridPart */
   PaddedStencil *stencil; /* [2M] work */
 };
 

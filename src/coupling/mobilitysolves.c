@@ -35,16 +35,17 @@ static PetscErrorCode Destroy(Solves *s) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* U = E A^-1 E^T F. */
+/* U = E A^-1 E^T F, the part of it that the markers have. */
 static PetscErrorCode Respond(Solves *s) {
   const Markers m = s->coupling->markers;
+  const PetscReal part = CouplingGridPart(s->coupling);
   PetscFunctionBeginUser;
   if (s->stream) {
-    PetscCall(MarkersRespond(m, s->stream, NULL, 1, s->F, s->U));
+    PetscCall(MarkersRespond(m, s->stream, NULL, part, s->F, s->U));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(VecSet(s->w, 0));
-  PetscCall(MarkersSpread(m, 1, s->F, s->w));
+  PetscCall(MarkersSpread(m, part, s->F, s->w));
   PetscCall(StokesSolve(s->stokes, s->w, NULL, s->w, s->p));
   PetscCall(MarkersInterpolate(m, s->w, s->U));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -231,7 +231,8 @@ PetscErrorCode PreconditionerApply(Preconditioner p, Vec r, Vec z) {
   PetscCall(PetscArraycpy(d, p->d + u->first_wall, u->wall));
   if (CouplingHasBodies(u->coupling)) {
     UnknownsScale(u, PETSC_TRUE, V);
-    PetscCall(WallsMarkerVelocity(u->walls, 1, V)); /* block triangular: the walls' flow moves the markers */
+    PetscCall(WallsMarkerVelocity(u->walls, CouplingGridPart(u->coupling),
+                                  V)); /* block triangular: the walls' flow moves the markers */
     if (p->solid) PetscCall(ObstacleBlockBegin(p->solid, V + u->velocity, V));
     if (p->patterns) PetscCall(PatternsSolve(p->patterns, V, sigma));
     if (p->blocks) PetscCall(DenseBlocksSolve(p->blocks, V, sigma));

@@ -61,18 +61,18 @@ static PetscErrorCode Subtract(Vec known, PetscInt n, PetscScalar y[]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* y = (V + (treading/a0) dV/dt - U + C F - k, beta N N^T F - U + C F - k, Dm V/h^2 - g) of x, s->U holding U = E u,
-   s->F F, and with viscosity contrast s->motion the G of B G, which stands in the place of the first two; where an area
-   is aimed at the first has its row; k and g may be NULL; not scaled yet. */
+/* y = (V + (treading/a0) dV/dt - part U + C F - k, beta N N^T F - part U + C F - k, Dm V/h^2 - g) of x, s->U holding
+   U = E u, part what the markers have of it, s->F F, and with viscosity contrast s->motion the G of B G, which stands in
+   the place of the first two; where an area is aimed at the first has its row; k and g may be NULL; not scaled yet. */
 static PetscErrorCode BodyConditions(Reduced s, const PetscScalar x[], Vec known, Vec g, PetscScalar y[]) {
   const Coupling c = s->unknowns->coupling;
   const Unknowns u = s->unknowns;
   const PetscInt n = u->velocity, tension = UnknownsTension(u);
-  const PetscReal h2 = PetscSqr(c->fluid->grid->h);
+  const PetscReal h2 = PetscSqr(c->fluid->grid->h), part = CouplingGridPart(c);
   const PetscScalar *U, *F;
   PetscFunctionBeginUser;
   PetscCall(VecGetArrayRead(s->U, &U));
-  for (PetscInt k = 0; k < tension; k++) y[k] = (k < n && !s->source ? x[k] : 0) - U[k];
+  for (PetscInt k = 0; k < tension; k++) y[k] = (k < n && !s->source ? x[k] : 0) - part * U[k];
   PetscCall(VecRestoreArrayRead(s->U, &U));
   if (!s->source) MembraneTread(c->membrane, c->treading, 1 / c->fluid->a0, x, y);
   PetscCall(VecGetArrayRead(s->F, &F));

@@ -71,8 +71,8 @@ static PetscErrorCode AddObstacleData(Scheme s, Vec known) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* f = uhat - B Y + bc1 - N(w*) and k = -(C c_b ds D4 + V d/dt) Y, with turning tension and a repulsion's springs beside
-   bending, Y = Xhat + u_inf/a0, V the labels' speed, and what holds obstacles in the flow; no uhat in
+/* f = uhat - B Y + bc1 - N(w*) and k = lag E uhat - (C c_b ds D4 + V d/dt) Y, with turning tension and a repulsion's
+   springs beside bending, Y = Xhat + u_inf/a0, V the labels' speed, and what holds obstacles in the flow; no uhat in
    quasi-steady flow. next.w is used for w*. */
 static PetscErrorCode RightHandSides(Scheme s, Coupled *d, const BDF *b) {
   History *h = &d->history;
@@ -80,8 +80,10 @@ static PetscErrorCode RightHandSides(Scheme s, Coupled *d, const BDF *b) {
   PetscCall(VecSet(d->known, 0));
   if (s->fluid->steady)
     PetscCall(VecSet(d->f, 0));
-  else
+  else {
     PetscCall(HistorySum(h, s->membrane, b->order, b->history, 1, 0, STATES(s, w), d->f));
+    PetscCall(CouplingAddPast(s->coupling, d->f, d->known));
+  }
   if (s->fluid->bc1) PetscCall(VecAXPY(d->f, 1, s->fluid->bc1));
   PetscCall(VecWAXPY(d->Y, 1 / b->a0, s->background, d->Xhat));
   if (CouplingHasMembrane(s->coupling)) PetscCall(CouplingElastic(s->coupling, -1, d->Y, d->f, d->known));

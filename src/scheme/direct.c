@@ -94,10 +94,11 @@ static PetscErrorCode AddMean(DirectSolver d, Mat A) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* E: -E w in the rows of velocities, E^T F in the momentum. Without a matrix: entries of the own momentum rows, into
- * room. */
+/* E: -E w, what the markers have of it, in the rows of velocities, E^T F in the momentum. Without a matrix: entries of
+ * the own momentum rows, into room. */
 static PetscErrorCode AddInterpolation(DirectSolver d, Mat A, PetscInt room[]) {
   const Grid g = d->fluid->grid;
+  const PetscReal part = CouplingGridPart(d->coupling);
   PetscFunctionBeginUser;
   for (PetscInt q = 0; q < 2 * (d->M + d->W); q++) {
     const Stencil *s = &d->coupling->markers->stencil[q];
@@ -114,7 +115,7 @@ static PetscErrorCode AddInterpolation(DirectSolver d, Mat A, PetscInt room[]) {
           if (row >= d->start[g->rank] && row < d->start[g->rank + 1]) room[row - d->start[g->rank]]++;
           continue;
         }
-        PetscCall(MatSetValue(A, RowOf(d, q), DirectIndex(d, c, i, j), -weight, ADD_VALUES));
+        PetscCall(MatSetValue(A, RowOf(d, q), DirectIndex(d, c, i, j), -part * weight, ADD_VALUES));
         PetscCall(MatSetValue(A, DirectIndex(d, c, i, j), FirstF(d) + q, weight, ADD_VALUES));
       }
   }
