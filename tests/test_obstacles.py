@@ -159,7 +159,10 @@ def test_drag_in_a_channel_without_flux(tmp_path):
 
 
 def test_a_swinging_circle(tmp_path):
-    """Unsteady flow between two circles: the torque's amplitude to 1 %, to second order in time, without ringing."""
+    """Unsteady flow between two circles: the torque's amplitude to 1 %, to second order in time, without ringing.
+
+    With steps extrapolated away it is off by 1.1e-3, 8.6e-3 without the lag of the inertia at the surfaces.
+    """
     omega, torque = 40, []
     for steps in (20, 40, 80):
         cycle = 2 * np.pi / omega
@@ -174,6 +177,8 @@ def test_a_swinging_circle(tmp_path):
         assert kink < 1.05 * (2 * np.pi / steps) ** 2 * abs(torque[-1])
     assert abs(torque[1] / swinging_torque(0.2, 0.4, omega) - 1) < 0.01
     assert 3.5 < abs(torque[0] - torque[1]) / abs(torque[1] - torque[2]) < 4.5
+    limit = torque[2] + (torque[2] - torque[1]) / 3
+    assert abs(limit / swinging_torque(0.2, 0.4, omega) - 1) < 1.5e-3
 
 
 def test_flow_with_inertia(tmp_path):
