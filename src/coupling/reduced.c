@@ -62,8 +62,9 @@ static PetscErrorCode Subtract(Vec known, PetscInt n, PetscScalar y[]) {
 }
 
 /* y = (V + (treading/a0) dV/dt - part U + C F - k, beta N N^T F - part U + C F - k, Dm V/h^2 - g) of x, s->U holding
-   U = E u, part what the markers have of it, s->F F, and with viscosity contrast s->motion the G of B G, which stands in
-   the place of the first two; where an area is aimed at the first has its row; k and g may be NULL; not scaled yet. */
+   U = E u, part what the markers have of it, s->F F, and with viscosity contrast s->motion the G of B G, which stands
+   in the place of the first two; where an area is aimed at the first has its row; k and g may be NULL; not scaled yet.
+ */
 static PetscErrorCode BodyConditions(Reduced s, const PetscScalar x[], Vec known, Vec g, PetscScalar y[]) {
   const Coupling c = s->unknowns->coupling;
   const Unknowns u = s->unknowns;
