@@ -1,8 +1,12 @@
-"""The box part of the near field: tank-treading on a coarse grid is that on a finer one, between walls and in a channel."""
+"""The box part of the near field: tank-treading on a coarse grid is that on a finer one, between walls and in a channel;
+an obstacle beside a corner."""
 
 import math
 
+import numpy as np
 import pytest
+from test_obstacles import STILL
+from test_obstacles import last as obstacle_row
 
 R0 = math.sqrt(1 / (0.7 * math.pi))  # of the channel's vesicle: area 1, V = .7
 
@@ -71,3 +75,16 @@ def test_ranks_and_direct(cached_run, bc):
     for column in ("inclination", "energy_bending"):
         assert two.series[column][-1] == pytest.approx(one.series[column][-1], rel=1e-9)
         assert direct.series[column][-1] == pytest.approx(one.series[column][-1], rel=1e-8)
+
+
+def test_a_bump_beside_a_corner(tmp_path):
+    """A bump with its foot half a cell from a corner of four walls: the sparse LU and 3 ranks agree."""
+    t = np.linspace(-0.5, 0.5, 81)
+    np.savetxt(
+        tmp_path / "bump.txt", np.column_stack([0.28 + 0.5 * t, 0.15 * (1 + np.cos(2 * np.pi * t))]), header="open"
+    )
+    own = f"{STILL} -domain_box 0,1,0,1 -domain_cells 16,16 -flow_type shear -obstacle_shape file -obstacle_file {tmp_path}"
+    direct = own.replace("coupled -coupled_ksp_rtol 1e-10", "direct")
+    rows = [obstacle_row(tmp_path / str(n), f"{x}/bump.txt", n) for n, x in ((1, own), (2, direct), (3, own))]
+    for column in ("obstacle_force_x", "obstacle_torque_1"):
+        assert [row[column] for row in rows] == pytest.approx(3 * [rows[0][column]], rel=1e-7)
