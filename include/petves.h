@@ -84,7 +84,7 @@ PETSC_EXTERN PetscErrorCode SimulationGetTime(Simulation simulation, PetscInt *s
 /* SimulationGetState - borrowed vectors: velocity on the faces (the local part is the rank's rows of u, then of v) and
    pressure (both zero in unbounded fluid, which is not solved for on the grid: SimulationGetCellVelocity has it),
    tension [M], markers [2M] and their velocity [2M], distributed by vesicle: each vesicle's part is on one rank. Any
-   may be NULL. Not collective. */
+   may be NULL. Collective if velocity or pressure is asked for: they may have to be made first. */
 PETSC_EXTERN PetscErrorCode SimulationGetState(Simulation simulation, Vec *velocity, Vec *pressure, Vec *tension,
                                                Vec *markers, Vec *marker_velocity);
 
@@ -97,7 +97,8 @@ PETSC_EXTERN PetscErrorCode SimulationGatherMarkers(Simulation simulation, const
 /* SimulationGetObject - borrowed PETSc object by name, NULL when the simulation has none of that name: Vecs velocity,
    pressure, tension, markers, marker_velocity; DMs dm_velocity, dm_u, dm_v, dm_pressure; Mats mat_G, mat_D, mat_L,
    mat_H, mat_E, mat_S, mat_B (docs/method.md); PCs pc_helmholtz, pc_poisson (fast solves); KSPs coupled_, direct_,
-   tension_, bending_. Vecs change places from step to step: ask again after each. Not collective. */
+   tension_, bending_. Vecs change places from step to step, and velocity and pressure may have to be made when they are
+   asked for: ask again after each. Collective for these two. */
 PETSC_EXTERN PetscErrorCode SimulationGetObject(Simulation simulation, const char name[], PetscObject *object);
 
 /* SimulationGetSizes - number of vesicles; start[vesicles+1], first marker of each (may be NULL); sizes: this rank's

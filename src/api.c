@@ -13,6 +13,7 @@ PetscErrorCode SimulationGetTime(Simulation s, PetscInt *step, PetscReal *time) 
 
 PetscErrorCode SimulationGetState(Simulation s, Vec *w, Vec *p, Vec *sigma, Vec *X, Vec *U) {
   PetscFunctionBeginUser;
+  if (w || p) PetscCall(SchemeFields(s->scheme));
   if (w) *w = s->scheme->state.w;
   if (p) *p = s->scheme->state.p;
   if (sigma) *sigma = s->scheme->state.sigma;
@@ -66,6 +67,7 @@ static PetscObject FindObject(Simulation s, const char name[]) {
 
 PetscErrorCode SimulationGetObject(Simulation s, const char name[], PetscObject *object) {
   PetscFunctionBeginUser;
+  if (!strcmp(name, "velocity") || !strcmp(name, "pressure")) PetscCall(SchemeFields(s->scheme));
   *object = FindObject(s, name);
   if (!*object && s->scheme->ops.ksp) PetscCall(s->scheme->ops.ksp(s->scheme, name, (KSP *)object));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -87,6 +87,7 @@ class State(Measures):
     @property
     def pressure(self) -> np.ndarray:
         """The solved pressure of this rank's rows at cell centres (length^2/time^2), shape (rows, cells in x); a view.
+        Collective.
 
         Of the disturbance unless ``flow_form`` is total. In unbounded fluid it is zero: nothing is solved for on the
         grid, and `cell_pressure` has it.
@@ -96,6 +97,7 @@ class State(Measures):
     @property
     def velocity(self) -> tuple[np.ndarray, np.ndarray]:
         """The solved velocity of this rank's faces (length/time): u on vertical faces, v on horizontal ones; views.
+        Collective.
 
         u has shape (rows, cells in x), one column less with walls in x; v (rows, cells in x), one row less in all with
         walls in y. Entry (j, i) lies on the right (u) or top (v) face of cell (j, i). It is the disturbance of the

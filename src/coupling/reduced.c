@@ -208,22 +208,22 @@ static PetscErrorCode Mult(Mat A, Vec x, Vec y) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* U = E u of the force f, which has the dipoles' forces, row by row. */
-static PetscErrorCode FollowByRows(Reduced s, Vec f) {
+/* U = E u of the force f, which has the dipoles' forces, row by row. all: f is not the markers' alone. */
+static PetscErrorCode FollowByRows(Reduced s, PetscBool all, Vec f, StreamMeasures *measures) {
   const Coupling c = s->unknowns->coupling;
   PetscFunctionBeginUser;
   if (s->source) PetscCall(DoubleLayerRows(c->contrast, StokesProfile(s->stokes), s->dipoles));
-  PetscCall(MarkersFollow(c->markers, s->stream, s->dipoles, f, s->U));
+  PetscCall(MarkersFollow(c->markers, s->stream, s->dipoles, all, f, s->U, measures));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* U = E u of the force f, and u and p themselves unless they are not wanted and U can be had without. */
-static PetscErrorCode Follow(Reduced s, Vec f, PetscBool grid, Vec w, Vec p) {
+static PetscErrorCode Follow(Reduced s, Vec f, PetscBool grid, Vec w, Vec p, StreamMeasures *measures) {
   const Coupling c = s->unknowns->coupling;
   const PetscBool bodies = CouplingHasBodies(c);
   PetscFunctionBeginUser;
   if (!grid && s->stream && !c->fluid->bc2) {
-    if (bodies) PetscCall(FollowByRows(s, f));
+    if (bodies) PetscCall(FollowByRows(s, w ? PETSC_TRUE : PETSC_FALSE, f, measures));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   /* p holds the right-hand side, then the solution */
@@ -235,7 +235,7 @@ static PetscErrorCode Follow(Reduced s, Vec f, PetscBool grid, Vec w, Vec p) {
 }
 
 PetscErrorCode ReducedResidual(Reduced s, Vec added, Vec f, Vec g, Vec k, Vec x, PetscBool grid, Vec w, Vec p,
-                               Vec residual) {
+                               Vec residual, StreamMeasures *measures) {
   const PetscBool all = added == x ? PETSC_TRUE : PETSC_FALSE;
   const PetscScalar *xa;
   PetscScalar *ra;
@@ -248,7 +248,7 @@ PetscErrorCode ReducedResidual(Reduced s, Vec added, Vec f, Vec g, Vec k, Vec x,
     PetscCall(Force(s, xa, s->F));
     PetscCall(Motion(s, xa, PETSC_TRUE));
   }
-  PetscCall(Follow(s, f, grid, w, p));
+  PetscCall(Follow(s, f, grid, w, p, measures));
   PetscCall(VecGetArray(residual, &ra));
   PetscCall(Conditions(s, xa, k, g, ra));
   PetscCall(VecRestoreArray(residual, &ra));
@@ -300,6 +300,18 @@ PetscErrorCode ReducedCombine(Reduced s, Vec x, Vec w, Vec p, Vec residual, Pets
     PetscCall(VecMAXPY(p, q->count, y, q->p));
   }
   for (PetscInt j = 0; j < q->count; j++) PetscCall(VecAXPY(residual, -y[j], q->Az[j]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscBool ReducedNeedsNoFields(Reduced s) {
+  const Coupling c = s->unknowns->coupling;
+  return s->stream && c->fluid->steady && !c->fluid->total && !c->contrast && CouplingHasBodies(c) ? PETSC_TRUE
+                                                                                                   : PETSC_FALSE;
+}
+
+PetscErrorCode ReducedFields(Reduced s, Vec f, Vec w, Vec p) {
+  PetscFunctionBeginUser;
+  PetscCall(StokesSolve(s->stokes, f, NULL, w, p));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

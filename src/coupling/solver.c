@@ -180,7 +180,8 @@ static PetscErrorCode Correct(CoupledSolver s, const CoupledProblem *q, SolveRep
   PetscCall(VecAXPY(s->x, 1, s->change));
   PetscCall(VecAXPY(s->pending, 1, s->change));
   if (!combined) {
-    PetscCall(ReducedResidual(s->reduced, s->pending, q->f, q->g, q->k, s->x, PETSC_TRUE, q->w, q->p, s->b));
+    PetscCall(ReducedResidual(s->reduced, s->pending, q->f, q->g, q->k, s->x, q->w ? PETSC_TRUE : PETSC_FALSE, q->w,
+                              q->p, s->b, q->w ? NULL : &report->measures));
     PetscCall(VecSet(s->pending, 0));
   }
   PetscCall(VecNorm(s->b, NORM_2, &report->residual));
@@ -200,7 +201,7 @@ PetscErrorCode CoupledSolverSolve(CoupledSolver s, const CoupledProblem *q, Solv
   PetscCall(s->reduced->stokes ? Reference(s, q->f, q->g, q->k) : FreeReference(s, q));
   PetscCall(Guess(s, q));
   PetscCall(ReducedBegin(s->reduced, q->moved));
-  PetscCall(ReducedResidual(s->reduced, s->x, q->f, q->g, q->k, s->x, PETSC_FALSE, q->w, q->p, s->b));
+  PetscCall(ReducedResidual(s->reduced, s->x, q->f, q->g, q->k, s->x, PETSC_FALSE, q->w, q->p, s->b, NULL));
   PetscCall(KSPGetTolerances(s->ksp, &rtol, &atol, NULL, NULL));
   PetscCall(VecSet(s->pending, 0));
   for (int round = 0; round < MOST_ROUNDS; round++) { /* rounding may spoil GMRES's own residual in stiff cases */

@@ -8,7 +8,8 @@ typedef struct {
   Vec moved;             /* with viscosity contrast: the part of the markers' motion that is known; else NULL */
   Vec f, g, k;           /* right-hand sides of momentum (the forces of the solution are added to it), Dm V/h^2 and V,
                             k of all bodies */
-  Vec w, p, sigma, d, V; /* solution; sigma, d and V hold the first guess, */
+  Vec w, p, sigma, d, V; /* solution; sigma, d and V hold the first guess; w and p may be NULL where
+                            ReducedNeedsNoFields and f is zero outside the markers' window, */
   Vec solid;             /* and the force on obstacles; NULL without */
 } CoupledProblem;
 
@@ -17,6 +18,7 @@ typedef struct {
   PetscInt its;
   KSPConvergedReason why; /* < 0: failed */
   PetscReal residual;
+  StreamMeasures measures; /* of the velocity, where w is NULL */
 } SolveReport;
 
 typedef struct _p_CoupledSolver *CoupledSolver;

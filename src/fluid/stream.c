@@ -9,8 +9,8 @@
    slabs say by themselves, as in tridiagonal.c: Y leaves a slab of m rows as its own and M^m times what came in, Z as
    its own, the gain times Y from below and M^m times Z from above. */
 #include "fluid/stream.h"
-#include "base/lanes.h"
 #include "fluid/streamfactors.h"
+#include "fluid/streamloops.h"
 #include "fluid/tridiagonal.h"
 
 #define BLOCK TRIDIAGONAL_BLOCK
@@ -21,7 +21,9 @@ struct _p_Stream {
   RowTransform t;           /* along the nodes of a row */
   StreamFactors factors;    /* of the recurrences */
   PetscInt rows, width;     /* of nodes on this rank; modes, rounded up to whole blocks */
-  PetscReal *y;             /* [rows][width] y2, NULL before the first solve */
+  PetscReal *y;             /* [rows][width] y2, NULL before the first solve, */
+  PetscInt *alive;          /* [rows] of whose blocks of modes so many are stored; the others are zero */
+  PetscInt *fed;            /* [blocks] the last row with y of a block, on the way down */
   PetscReal *state;         /* [2][width] Y on the way up, then Z on the way down */
   PetscReal *below, *above; /* [ranks][2][width] Y below each slab, Z above it */
   PetscReal *last, *first;  /* [2][width] Y above all rows, Z in the first one */
@@ -32,6 +34,7 @@ struct _p_Stream {
   Tridiagonal mean;         /* of u's row means: one mode */
   PetscReal one[2];         /* its eigenvalue and its scale */
   PetscReal *means, mean_v; /* [rows of u] mode 0 of u, and of v */
+  StreamMeter meter;
 };
 
 PetscErrorCode StreamCreate(Fluid f, ZeroFlux flux, Stream *out) {
@@ -50,7 +53,8 @@ PetscErrorCode StreamCreate(Fluid f, ZeroFlux flux, Stream *out) {
   const PetscInt w = s->width = s->factors->width;
   s->message = 4 * w + 1;
   PetscCall(PetscCalloc4(2 * w, &s->state, 2 * w, &s->last, 2 * w, &s->first, s->message, &s->own));
-  PetscCall(PetscCalloc3(2 * g->size * w, &s->below, 2 * g->size * w, &s->above, g->rows[FIELD_U], &s->means));
+  PetscCall(PetscCalloc5(2 * g->size * w, &s->below, 2 * g->size * w, &s->above, g->rows[FIELD_U], &s->means, s->rows,
+                         &s->alive, w / BLOCK, &s->fed));
   s->all = s->own;
   if (g->size > 1) PetscCall(PetscCalloc1(g->size * s->message, &s->all));
   for (int k = 0; k < 3; k++) s->row[k] = fftw_alloc_real(n);
@@ -59,6 +63,7 @@ PetscErrorCode StreamCreate(Fluid f, ZeroFlux flux, Stream *out) {
   PetscCall(PetscArrayzero(s->zero, PetscMax((PetscInt)n, w)));
   s->one[1] = 1 / (PetscReal)n;
   PetscCall(TridiagonalCreate(g, FIELD_U, 1, &s->one[0], &s->one[1], &s->mean));
+  PetscCall(StreamMeterCreate(g, s->t, &s->meter));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -72,7 +77,8 @@ PetscErrorCode StreamDestroy(Stream *stream) {
   fftw_free(s->zero);
   if (s->fluid->grid->size > 1) PetscCall(PetscFree(s->all));
   PetscCall(PetscFree4(s->state, s->last, s->first, s->own));
-  PetscCall(PetscFree3(s->below, s->above, s->means));
+  PetscCall(PetscFree5(s->below, s->above, s->means, s->alive, s->fed));
+  PetscCall(StreamMeterDestroy(&s->meter));
   PetscCall(PetscFree(s->y));
   PetscCall(StreamFactorsDestroy(&s->factors));
   PetscCall(RowTransformDestroy(&s->t));
@@ -91,68 +97,57 @@ static PetscErrorCode SetUp(Stream s) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* h times the curl of a force on the nodes of a row: v of the row, u of the rows below and above it. */
-static void Curl(PetscInt n, const PetscScalar *restrict low, const PetscScalar *restrict high,
-                 const PetscScalar *restrict v, PetscScalar *restrict curl) {
-  for (PetscInt i = 0; i + 1 < n; i++) curl[i] = v[i + 1] - v[i] + low[i] - high[i];
-  curl[n - 1] = v[0] - v[n - 1] + low[n - 1] - high[n - 1];
+/* y of row j from its force, u's below and above it and v's, and from y below it. */
+static void ForcedRow(Stream s, PetscInt j, const PetscScalar low[], const PetscScalar high[], const PetscScalar v[],
+                      const PetscReal below[]) {
+  const PetscInt modes = s->t->width, w = s->width;
+  PetscReal *y = s->y + j * w;
+  Curl(s->fluid->grid->n[0], low, high, v, s->curl);
+  RowTransformForward(s->t, s->curl);
+  Up(modes, s->factors->r[0], s->factors->r[1], s->t->modes, below, s->state, y);
+  for (PetscInt k = modes; k < w; k++) y[k] = 0;
+  s->alive[j] = w / BLOCK;
 }
 
-static PetscReal Sum(PetscInt n, const PetscScalar x[]) {
-  Lanes sum[2] = {{0}, {0}};
-  PetscReal rest = 0;
-  PetscInt i = 0;
-  for (; i + 2 * LANES <= n; i += 2 * LANES) {
-    sum[0] += LanesAt(x + i);
-    sum[1] += LanesAt(x + i + LANES);
-  }
-  for (; i < n; i++) rest += x[i];
-  return LanesSum(sum[0] + sum[1]) + rest;
+/* y of row j, which is so many rows above the last force: of the blocks that are still felt. */
+static void FreeRow(Stream s, PetscInt j, PetscInt since) {
+  PetscInt blocks = j > 0 ? s->alive[j - 1] : 0;
+  for (; blocks > 0 && s->factors->reach[blocks - 1] <= since; blocks--)
+    (void)PetscArrayzero(s->state + (blocks - 1) * BLOCK, BLOCK);
+  s->alive[j] = blocks;
+  if (blocks)
+    Up(blocks * BLOCK, s->factors->r[0], s->factors->r[1], s->zero, s->y + (j - 1) * s->width, s->state,
+       s->y + j * s->width);
 }
 
-/* One row upwards: y of the row, from its modes b and y of the row below; y1 goes along. */
-static void Up(PetscInt width, const PetscReal *restrict r1, const PetscReal *restrict r2, const PetscReal *restrict b,
-               const PetscReal *restrict below, PetscReal *restrict y1, PetscReal *restrict y) {
-  for (PetscInt k = 0; k < width; k++) {
-    y1[k] = b[k] + r1[k] * y1[k];
-    y[k] = y1[k] + r2[k] * below[k];
-  }
-}
-
-/* One row downwards: its chi, in modes. */
-static void Down(PetscInt width, const PetscReal *restrict r1, const PetscReal *restrict r2,
-                 const PetscReal *restrict factor, const PetscReal *restrict y, PetscReal *restrict z1,
-                 PetscReal *restrict z2, PetscReal *restrict chi) {
-  for (PetscInt k = 0; k < width; k++) {
-    z1[k] = y[k] + r1[k] * z1[k];
-    z2[k] = z1[k] + r2[k] * z2[k];
-    chi[k] = factor[k] * z2[k];
-  }
-}
-
-/* Up all rows, with nothing coming in from below. */
-static void Gather(Stream s, const StreamRows *rows) {
+/* Up all rows, with nothing coming in from below. The nodes below the first row of u with a force feel it. */
+static void Gather(Stream s, const StreamRows *rows, PetscBool measured) {
   const Grid g = s->fluid->grid;
-  const PetscInt n = g->n[0], w = s->width, modes = s->t->width;
-  const PetscScalar *low = rows->force(rows->ctx, FIELD_U, 0, s->row[0]), *below = s->zero;
+  const PetscInt n = g->n[0], w = s->width, first = PetscMax(rows->forced[0] - 1, 0), end = rows->forced[1];
+  const PetscScalar *low = s->zero, *high;
   s->mean_v = 0;
   (void)PetscArrayzero(s->state, 2 * w);
-  for (PetscInt j = 0; j < g->rows[FIELD_U]; j++) {
-    const PetscReal sum = Sum(n, low);
+  for (PetscInt j = 0; j < g->rows[FIELD_U]; j++, low = high) {
+    const PetscBool forced = j >= first && j < end ? PETSC_TRUE : PETSC_FALSE;
+    if (forced && j == first) low = rows->force(rows->ctx, FIELD_U, j, s->row[j % 2]);
+    const PetscReal sum = forced ? Sum(n, low) : 0;
     TridiagonalUp(s->mean, j, &sum);
+    high = s->zero;
     if (j == s->rows) break; /* no nodes on the upper wall */
-    const PetscScalar *high = rows->force(rows->ctx, FIELD_U, j + 1, s->row[(j + 1) % 2]);
+    if (!forced) {
+      FreeRow(s, j, j - end + 1);
+      continue;
+    }
+    if (j + 1 < end || end == g->rows[FIELD_U]) high = rows->force(rows->ctx, FIELD_U, j + 1, s->row[(j + 1) % 2]);
     const PetscScalar *v = rows->force(rows->ctx, FIELD_V, j, s->row[2]);
-    PetscReal *y = s->y + j * w;
-    if (!g->wall[1]) s->mean_v += Sum(n, v);
-    Curl(n, low, high, v, s->curl);
-    RowTransformForward(s->t, s->curl);
-    Up(modes, s->factors->r[0], s->factors->r[1], s->t->modes, below, s->state, y);
-    for (PetscInt k = modes; k < w; k++) y[k] = 0;
-    below = y;
-    low = high;
+    if (!g->wall[1])
+      s->mean_v += Sum(n, v);
+    else if (measured)
+      StreamMeterForce(s->meter, j, Sum(n, v));
+    ForcedRow(s, j, low, high, v, j > first ? s->y + (j - 1) * w : s->zero);
   }
-  (void)PetscArraycpy(s->state + w, below, w);
+  const PetscInt felt = s->rows > 0 ? s->alive[s->rows - 1] * BLOCK : 0;
+  if (felt) (void)PetscArraycpy(s->state + w, s->y + (s->rows - 1) * w, felt);
 }
 
 /* What this slab tells the others: its first Z and its last Y, both for nothing coming in from outside. */
@@ -161,8 +156,10 @@ static void Summarise(Stream s) {
   for (PetscInt b = 0; b < w / BLOCK; b++) {
     const PetscReal *restrict r1 = s->factors->r[0] + b * BLOCK, *restrict r2 = s->factors->r[1] + b * BLOCK;
     PetscReal z1[BLOCK] = {0}, z2[BLOCK] = {0};
-    for (PetscInt j = PetscMin(s->factors->reach[b], s->rows) - 1; j >= 0; j--) {
-      const PetscReal *restrict y = s->y + j * w + b * BLOCK;
+    PetscInt j = PetscMin(s->factors->reach[b], s->rows) - 1;
+    while (j >= 0 && s->alive[j] <= b) j--;
+    for (; j >= 0; j--) {
+      const PetscReal *restrict y = s->alive[j] > b ? s->y + j * w + b * BLOCK : s->zero;
       for (int k = 0; k < BLOCK; k++) {
         z1[k] = y[k] + r1[k] * z1[k];
         z2[k] = z1[k] + r2[k] * z2[k];
@@ -244,12 +241,17 @@ static void AddBelow(Stream s, const PetscReal below[]) {
     (void)PetscArraycpy(y2, below + w + b * BLOCK, BLOCK);
     for (PetscInt j = 0; j < PetscMin(s->factors->reach[b], s->rows); j++) {
       PetscReal *restrict y = s->y + j * w + b * BLOCK;
+      if (s->alive[j] <= b) (void)PetscArrayzero(y, BLOCK);
       for (int k = 0; k < BLOCK; k++) {
         y1[k] *= r1[k];
         y2[k] = y1[k] + r2[k] * y2[k];
         y[k] += y2[k];
       }
     }
+  }
+  for (PetscInt j = 0, b = w / BLOCK; j < s->rows; j++) {
+    while (b > 0 && s->factors->reach[b - 1] <= j) b--;
+    s->alive[j] = PetscMax(s->alive[j], b);
   }
 }
 
@@ -279,57 +281,78 @@ static PetscErrorCode MeanFlow(Stream s) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* chi/h in a row of nodes, whose y2 is given. */
-static void NodeRow(Stream s, const PetscReal y[], PetscScalar row[]) {
-  Down(s->t->width, s->factors->r[0], s->factors->r[1], s->factors->factor, y, s->state, s->state + s->width,
-       s->t->modes);
+/* Blocks of Z that are felt in row j, where `stored` of them have y: Z is zero beyond. */
+static PetscInt FeltBlocks(Stream s, PetscInt j, PetscInt stored, PetscInt before) {
+  PetscInt blocks = PetscMax(before, stored);
+  for (PetscInt b = 0; b < stored; b++) s->fed[b] = j;
+  for (; blocks > stored && s->factors->reach[blocks - 1] <= s->fed[blocks - 1] - j; blocks--)
+    for (int c = 0; c < 2; c++) (void)PetscArrayzero(s->state + c * s->width + (blocks - 1) * BLOCK, BLOCK);
+  return blocks;
+}
+
+/* The next row of nodes downwards, j: chi/h in `row` unless that is NULL. felt: blocks of Z in the row before, then in
+   this one. */
+static void NodeRow(Stream s, PetscInt j, PetscBool measured, PetscInt *felt, PetscScalar row[]) {
+  const PetscInt w = s->width, modes = s->t->width, stored = j < 0 ? w / BLOCK : s->alive[j];
+  const PetscReal *y = j < 0 ? s->below + (2 * s->fluid->grid->rank + 1) * w : s->y + j * w;
+  *felt = FeltBlocks(s, j, stored, *felt);
+  const PetscInt fed = PetscMin(stored * BLOCK, modes), count = PetscMin(*felt * BLOCK, modes);
+  PetscReal *chi = measured ? StreamMeterNodes(s->meter, count) : s->t->modes;
+  Down(fed, s->factors->r[0], s->factors->r[1], s->factors->factor, y, s->state, s->state + w, chi);
+  DownFree(fed, count, s->factors->r[0], s->factors->r[1], s->factors->factor, s->state, s->state + w, chi);
+  if (!row) return;
+  if (measured) (void)PetscArraycpy(s->t->modes, chi, count);
+  for (PetscInt k = count; k < modes; k++) s->t->modes[k] = 0;
   RowTransformBackward(s->t, row);
 }
 
-/* u = d_y chi and v = -d_x chi, of chi/h, and the mean flow. */
-static void VelocityU(PetscInt n, const PetscScalar *restrict low, const PetscScalar *restrict high, PetscReal mean,
-                      PetscScalar *restrict u) {
-  for (PetscInt i = 0; i < n; i++) u[i] = high[i] - low[i] + mean;
-}
-static void VelocityV(PetscInt n, const PetscScalar *restrict chi, PetscReal mean, PetscScalar *restrict v) {
-  v[0] = chi[n - 1] - chi[0] + mean;
-  for (PetscInt i = 1; i < n; i++) v[i] = chi[i - 1] - chi[i] + mean;
+/* A row of u between two rows of nodes, and of v in the upper one. */
+static void VelocityRows(Stream s, const StreamRows *rows, PetscBool measured, PetscInt j, const PetscScalar low[],
+                         const PetscScalar high[]) {
+  const PetscInt n = s->fluid->grid->n[0];
+  VelocityU(n, low, high, s->means[j], s->curl);
+  if (measured) StreamMeterDivergence(s->meter, s->curl, low, high);
+  rows->velocity(rows->ctx, FIELD_U, j, s->curl);
+  if (j >= s->rows) return;
+  VelocityV(n, high, s->mean_v, s->row[2]);
+  rows->velocity(rows->ctx, FIELD_V, j, s->row[2]);
 }
 
-/* Down all rows. */
-static void Scatter(Stream s, const StreamRows *rows) {
+/* Down all rows, or to the last one that is wanted. */
+static void Scatter(Stream s, const StreamRows *rows, PetscBool measured) {
   const Grid g = s->fluid->grid;
-  const PetscInt n = g->n[0], w = s->width;
+  const PetscInt w = s->width, first = rows->wanted[0], end = rows->wanted[1];
   const PetscScalar *high = s->zero;
+  PetscInt felt = w / BLOCK;
   (void)PetscArraycpy(s->state, s->above + 2 * g->rank * w, 2 * w);
+  for (PetscInt b = 0; b < felt; b++) s->fed[b] = s->rows;
   if (s->rows == g->rows[FIELD_U]) { /* not on the upper wall, where chi = 0 */
-    NodeRow(s, s->y + (s->rows - 1) * w, s->row[s->rows % 2]);
     high = s->row[s->rows % 2];
-  }
-  for (PetscInt j = g->rows[FIELD_U] - 1; j >= 0; j--) {
+    NodeRow(s, s->rows - 1, measured, &felt, s->rows <= end ? s->row[s->rows % 2] : NULL);
+  } else if (measured)
+    (void)StreamMeterNodes(s->meter, 0);
+  for (PetscInt j = g->rows[FIELD_U] - 1; j >= 0 && (measured || j >= first); j--) {
     const PetscScalar *low = s->row[j % 2];
-    if (j > 0)
-      NodeRow(s, s->y + (j - 1) * w, s->row[j % 2]);
-    else if (g->below != MPI_PROC_NULL || !g->wall[1])
-      NodeRow(s, s->below + (2 * g->rank + 1) * w, s->row[0]);
-    else
+    if (j > 0 || g->below != MPI_PROC_NULL || !g->wall[1])
+      NodeRow(s, j - 1, measured, &felt, j >= first && j <= end ? s->row[j % 2] : NULL);
+    else {
       low = s->zero;
-    VelocityU(n, low, high, s->means[j], s->curl);
-    rows->velocity(rows->ctx, FIELD_U, j, s->curl);
-    if (j < s->rows) {
-      VelocityV(n, high, s->mean_v, s->row[2]);
-      rows->velocity(rows->ctx, FIELD_V, j, s->row[2]);
+      if (measured) (void)StreamMeterNodes(s->meter, 0);
     }
+    if (measured) StreamMeterSquares(s->meter, j, s->means[j], j < s->rows ? PETSC_TRUE : PETSC_FALSE, s->mean_v);
+    if (j >= first && j < end) VelocityRows(s, rows, measured, j, low, high);
     high = low;
   }
 }
 
-PetscErrorCode StreamSolve(Stream s, const StreamRows *rows) {
+PetscErrorCode StreamSolve(Stream s, const StreamRows *rows, StreamMeasures *measures) {
+  const PetscBool measured = measures ? PETSC_TRUE : PETSC_FALSE;
   MPI_Request request;
   PetscFunctionBeginUser;
   PetscCall(PhaseBegin(PHASE_FAST_SOLVE));
   PetscCall(SetUp(s));
-  Gather(s, rows);
+  if (measured) StreamMeterBegin(s->meter);
+  Gather(s, rows, measured);
   PetscCall(TridiagonalBegin(s->mean));
   Summarise(s);
   if (s->fluid->grid->size > 1) {
@@ -340,7 +363,8 @@ PetscErrorCode StreamSolve(Stream s, const StreamRows *rows) {
   PetscCall(MeanFlow(s));
   Close(s);
   AddBelow(s, s->below + 2 * s->fluid->grid->rank * s->width);
-  Scatter(s, rows);
+  Scatter(s, rows, measured);
+  if (measured) PetscCall(StreamMeterEnd(s->meter, measures));
   s->fluid->solver[FIELD_P]->solves++;
   PetscCall(PhaseEnd());
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -9,6 +9,7 @@
    y between them. The mean flow, mode 0, is a tridiagonal problem by itself. */
 #pragma once
 #include "fluid/flux.h"
+#include "fluid/streammeter.h"
 
 typedef struct _p_Stream *Stream;
 
@@ -17,6 +18,9 @@ typedef struct _p_Stream *Stream;
    next rank's first; row 0 on one rank). */
 typedef struct {
   void *ctx;
+  PetscInt forced[2]; /* forces are zero outside rows forced[0] .. forced[1] - 1 of u and v, and are not asked for but
+                         in the row below; all rows where there is one next to a seam in y */
+  PetscInt wanted[2]; /* velocities are not wanted outside rows wanted[0] .. wanted[1] - 1; all: 0, rows of u */
   const PetscScalar *(*force)(void *ctx, Field f, PetscInt j,
                               PetscScalar work[]);                           /* may be work[n_x], which it fills */
   void (*velocity)(void *ctx, Field f, PetscInt j, const PetscScalar row[]); /* downwards */
@@ -28,5 +32,8 @@ PETSC_EXTERN PetscErrorCode StreamCreate(Fluid fluid, ZeroFlux flux, Stream *str
 PETSC_EXTERN PetscErrorCode StreamDestroy(Stream *stream);
 
 /* StreamSolve - velocity for these forces, zero mean in quasi-steady flow in a box that is periodic both ways. Counted
-   as one scalar solve, whose transforms it has. Collective. */
-PETSC_EXTERN PetscErrorCode StreamSolve(Stream stream, const StreamRows *rows);
+   as one scalar solve, whose transforms it has. Modes are followed from forces no farther than they are felt, 2e-22 of
+   them. measures: of this velocity on all of the grid (its divergence in the wanted rows), NULL: not wanted.
+   Collective.
+ */
+PETSC_EXTERN PetscErrorCode StreamSolve(Stream stream, const StreamRows *rows, StreamMeasures *measures);

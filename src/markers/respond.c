@@ -34,13 +34,18 @@ static void TakeVelocity(void *ctx, Field f, PetscInt j, const PetscScalar row[]
   MarkerRowInterpolate(r->m->rows, f, j, u, r->m->part);
 }
 
-static PetscErrorCode Solve(Response *r, Stream stream, Vec U) {
+/* all: forces may be anywhere, not only where the markers are. */
+static PetscErrorCode Solve(Response *r, Stream stream, PetscBool all, Vec U, StreamMeasures *measures) {
   const Markers m = r->m;
-  const StreamRows rows = {.ctx = r, .force = r->f ? GridForce : SpreadForce, .velocity = TakeVelocity};
+  const StreamRows rows = {.ctx = r,
+                           .forced = {all ? 0 : m->window[0], all ? m->grid->rows[FIELD_U] : m->window[1]},
+                           .wanted = {m->window[0], m->window[1]},
+                           .force = r->f ? GridForce : SpreadForce,
+                           .velocity = TakeVelocity};
   PetscScalar *own;
   PetscFunctionBeginUser;
   PetscCall(PetscArrayzero(m->part, 2 * m->layout->M));
-  PetscCall(StreamSolve(stream, &rows));
+  PetscCall(StreamSolve(stream, &rows, measures));
   PetscCall(VecGetArray(U, &own));
   PetscCall(LayoutSum(m->layout, 2, m->part, own));
   PetscCall(VecRestoreArray(U, &own));
@@ -52,18 +57,19 @@ PetscErrorCode MarkersRespond(Markers m, Stream stream, DipoleRows dipoles, Pets
   PetscFunctionBeginUser;
   PetscCall(PetscLogEventBegin(m->respond, 0, 0, 0, 0));
   PetscCall(LayoutGatherVec(m->layout, F, m->force));
-  PetscCall(Solve(&r, stream, U));
+  PetscCall(Solve(&r, stream, PETSC_FALSE, U, NULL));
   PetscCall(PetscLogEventEnd(m->respond, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode MarkersFollow(Markers m, Stream stream, DipoleRows dipoles, Vec f, Vec U) {
+PetscErrorCode MarkersFollow(Markers m, Stream stream, DipoleRows dipoles, PetscBool all, Vec f, Vec U,
+                             StreamMeasures *measures) {
   Response r = {.m = m, .dipoles = dipoles};
   PetscFunctionBeginUser;
   PetscCall(PetscLogEventBegin(m->respond, 0, 0, 0, 0));
   PetscCall(VecGetArrayRead(f, &r.f));
   PetscCall(GridRows(m->grid, FIELD_U, r.f, &r.u));
-  PetscCall(Solve(&r, stream, U));
+  PetscCall(Solve(&r, stream, all, U, measures));
   PetscCall(VecRestoreArrayRead(f, &r.f));
   PetscCall(PetscLogEventEnd(m->respond, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);

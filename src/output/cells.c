@@ -86,6 +86,7 @@ PetscErrorCode CellFields(Scheme s, PetscReal u[], PetscReal v[], PetscReal p[])
   const Grid g = s->fluid->grid;
   const PetscScalar *a;
   PetscFunctionBeginUser;
+  PetscCall(SchemeFields(s));
   PetscCall(VecGetArrayRead(s->state.w, &a));
   if (u) PetscCall(Component(s, 0, a, u));
   if (v) PetscCall(Component(s, 1, a, v));

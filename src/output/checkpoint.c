@@ -221,6 +221,7 @@ PetscErrorCode CheckpointWrite(Checkpoint *c, Scheme s, const Record *record, Pe
   PetscBool done = PETSC_TRUE;
   PetscErrorCode error;
   PetscFunctionBeginUser;
+  PetscCall(SchemeFields(s));
   PetscCall(FolderPath(c->folder, TEMPORARY, path));
   PetscCall(H5FileCreate(c->folder->comm, path, &file));
   PetscCall(WriteNumbers(s, &file, record, frames));

@@ -77,6 +77,7 @@ PetscErrorCode CoupledAdvance(Scheme s, PetscReal dt) {
   s->old[1].dt_last = s->old[0].dt_last;
   s->old[0].dt_last = s->state.dt_last;
   s->state.dt_last = dt;
+  s->state.pending = d->next.force ? PETSC_TRUE : PETSC_FALSE;
   s->past = PetscMin(s->past + 1, SCHEME_PAST);
   s->plan.order = d->next_plan.order;
   s->plan.guess = d->next_plan.guess;

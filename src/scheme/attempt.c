@@ -71,23 +71,31 @@ static PetscErrorCode AddObstacleData(Scheme s, Vec known) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* f, the momentum's right-hand side. */
+static Vec Momentum(const Coupled *d) {
+  return d->next.force ? d->next.force : d->f;
+}
+
 /* f = uhat - B Y + bc1 - N(w*) and k = lag E uhat - (C c_b ds D4 + V d/dt) Y, with turning tension and a repulsion's
    springs beside bending, Y = Xhat + u_inf/a0, V the labels' speed, and what holds obstacles in the flow; no uhat in
    quasi-steady flow. next.w is used for w*. */
 static PetscErrorCode RightHandSides(Scheme s, Coupled *d, const BDF *b) {
   History *h = &d->history;
+  const Vec f = Momentum(d);
   PetscFunctionBeginUser;
   PetscCall(VecSet(d->known, 0));
-  if (s->fluid->steady)
-    PetscCall(VecSet(d->f, 0));
+  if (d->next.force)
+    PetscCall(MarkersClear(s->coupling->markers, f, d->next.rows));
+  else if (s->fluid->steady)
+    PetscCall(VecSet(f, 0));
   else {
-    PetscCall(HistorySum(h, s->membrane, b->order, b->history, 1, 0, STATES(s, w), d->f));
-    PetscCall(CouplingAddPast(s->coupling, d->f, d->known));
+    PetscCall(HistorySum(h, s->membrane, b->order, b->history, 1, 0, STATES(s, w), f));
+    PetscCall(CouplingAddPast(s->coupling, f, d->known));
   }
-  if (s->fluid->bc1) PetscCall(VecAXPY(d->f, 1, s->fluid->bc1));
+  if (s->fluid->bc1) PetscCall(VecAXPY(f, 1, s->fluid->bc1));
   PetscCall(VecWAXPY(d->Y, 1 / b->a0, s->background, d->Xhat));
-  if (CouplingHasMembrane(s->coupling)) PetscCall(CouplingElastic(s->coupling, -1, d->Y, d->f, d->known));
-  PetscCall(CouplingAddGravity(s->coupling, d->Xstar, d->f, d->known));
+  if (CouplingHasMembrane(s->coupling)) PetscCall(CouplingElastic(s->coupling, -1, d->Y, f, d->known));
+  PetscCall(CouplingAddGravity(s->coupling, d->Xstar, f, d->known));
   if (d->moved)
     PetscCall(ContrastKnown(s->coupling, s->background, d->Y, d->moved, d->known));
   else
@@ -95,7 +103,7 @@ static PetscErrorCode RightHandSides(Scheme s, Coupled *d, const BDF *b) {
   PetscCall(AddObstacleData(s, d->known));
   if (d->convection) {
     PetscCall(HistorySum(h, s->membrane, b->order, b->star, 1, 0, STATES(s, w), d->next.w));
-    PetscCall(ConvectionAdd(d->convection, -1, d->next.w, d->f));
+    PetscCall(ConvectionAdd(d->convection, -1, d->next.w, f));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -122,7 +130,7 @@ static PetscErrorCode InitialGuess(Scheme s, Coupled *d) {
 static PetscErrorCode Solve(Scheme s, Coupled *d) {
   State *n = &d->next;
   const CoupledProblem problem = {.moved = d->moved,
-                                  .f = d->f,
+                                  .f = Momentum(d),
                                   .g = s->g,
                                   .k = d->known,
                                   .w = n->w,
@@ -140,6 +148,7 @@ static PetscErrorCode Solve(Scheme s, Coupled *d) {
   }
   PetscCall(CoupledSolverSolve(d->solver, &problem, &report));
   s->report.coupled_its += report.its;
+  s->report.measures = report.measures;
   if (PreconditionerIsNew(d->solver->preconditioner)) {
     PetscCall(VecCopy(d->Xstar, d->made_at));
     PetscCall(PetscArraycpy(d->made_with, d->history.treading, s->membrane->layout->bodies));
@@ -148,12 +157,22 @@ static PetscErrorCode Solve(Scheme s, Coupled *d) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The largest divergence of the velocity of the step, whose sources D u = bc2 are where there are any. */
+static PetscErrorCode MeasureDivergence(Scheme s, Coupled *d, Vec sources) {
+  PetscFunctionBeginUser;
+  if (d->next.w)
+    PetscCall(SchemeMeasureDivergence(s, d->next.w, sources));
+  else
+    s->report.div_max = s->report.measures.divergence;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* P = u_inf(X*) + V,  X = Xhat + P/a0,  U = P + (labels' speed) dX/dt. */
 static PetscErrorCode MoveMarkers(Scheme s, Coupled *d, PetscReal a0) {
   State *n = &d->next;
   PetscFunctionBeginUser;
   if (!CouplingHasMembrane(s->coupling)) {
-    PetscCall(SchemeMeasureDivergence(s, n->w, s->fluid->bc2));
+    PetscCall(MeasureDivergence(s, d, s->fluid->bc2));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(SchemeMarkerVelocity(s, d->V, d->P));
@@ -164,7 +183,7 @@ static PetscErrorCode MoveMarkers(Scheme s, Coupled *d, PetscReal a0) {
     PetscCall(ContrastSource(s->coupling, n->U, d->source));
     PetscCall(VecScale(d->source, -1));
   }
-  PetscCall(SchemeMeasureDivergence(s, n->w, d->source ? d->source : s->fluid->bc2));
+  PetscCall(MeasureDivergence(s, d, d->source ? d->source : s->fluid->bc2));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -260,12 +260,33 @@ static PetscErrorCode SetUpConvection(Scheme s, Coupled *d) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The older state has the velocity where order 3 needs it, and no pressure. */
-static PetscErrorCode CreatePast(Scheme s) {
+/* The states before the present one have the velocity where it is a history: in fluid with inertia, of the older one
+   for order 3. Of the next one both fields are needed unless the state's own are made when they are asked for, from the
+   force that each of the two has. */
+static PetscErrorCode CreateStates(Scheme s, Coupled *d) {
+  const PetscBool later = d->solver && ReducedNeedsNoFields(d->solver->reduced) ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionBeginUser;
-  for (int j = 0; j < SCHEME_PAST; j++) PetscCall(StateDuplicate(&s->state, &s->old[j]));
-  PetscCall(VecDestroy(&s->old[1].p));
-  if (s->fluid->steady || s->scene->scheme.order < 3) PetscCall(VecDestroy(&s->old[1].w));
+  for (int j = 0; j < SCHEME_PAST; j++) {
+    PetscCall(StateDuplicate(&s->state, &s->old[j]));
+    PetscCall(VecDestroy(&s->old[j].p));
+    if (s->fluid->steady || (j && s->scene->scheme.order < 3)) PetscCall(VecDestroy(&s->old[j].w));
+  }
+  PetscCall(StateDuplicate(&s->state, &d->next));
+  if (!later) {
+    PetscCall(VecDuplicate(s->state.w, &d->f));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(VecDuplicate(s->state.w, &s->state.force));
+  PetscCall(VecDuplicate(s->state.w, &d->next.force));
+  PetscCall(VecDestroy(&d->next.w));
+  PetscCall(VecDestroy(&d->next.p));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Fields_Coupled(Scheme s) {
+  const State *q = &s->state;
+  PetscFunctionBeginUser;
+  PetscCall(ReducedFields(((Coupled *)s->data)->solver->reduced, q->force, q->w, q->p));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -279,10 +300,8 @@ static PetscErrorCode SetUp_Coupled(Scheme s) {
     PetscCall(CoupledSolverCreate(s->scene, s->coupling, &d->solver));
     PetscCall(UnknownsCreateWallVec(d->solver->unknowns, &q->walls));
   }
-  PetscCall(CreatePast(s));
-  PetscCall(StateDuplicate(q, &d->next));
+  PetscCall(CreateStates(s, d));
   PetscCall(HistoryCreate(s, &d->history));
-  PetscCall(VecDuplicate(q->w, &d->f));
   PetscCall(VecDuplicate(q->X, &d->Xstar));
   PetscCall(VecDuplicate(q->X, &d->Xhat));
   PetscCall(VecDuplicate(q->X, &d->V));
@@ -347,6 +366,7 @@ PetscErrorCode SchemeCreate_Coupled(Scheme s) {
   s->ops = (SchemeOps){.setup = SetUp_Coupled,
                        .step = Step_Coupled,
                        .undo = Undo_Coupled,
+                       .fields = Fields_Coupled,
                        .remember = CoupledRemember,
                        .recall = CoupledRecall,
                        .view = View_Coupled,

@@ -18,7 +18,7 @@ typedef struct {
   PetscBool warned;      /* of edges that were off */
   Vec made_at;           /* markers at which the preconditioner's dense blocks were made, */
   PetscReal *made_with;  /* [vesicles] and the label speeds */
-  Vec f;                 /* momentum's right-hand side */
+  Vec f;                 /* momentum's right-hand side; NULL where that is next.force */
   Vec Xstar, Xhat;       /* extrapolated markers, BDF history of the markers */
   Vec moved, source;     /* viscosity contrast: known part of the markers' motion, divergence; else NULL */
   Vec V, known, Y;       /* solved part of the markers' velocity, what is known of it, and of obstacles; work */

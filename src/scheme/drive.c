@@ -122,6 +122,7 @@ PetscErrorCode DriveMeasure(Scheme s, Drive *drive) {
   PetscFunctionBeginUser;
   *drive = (Drive){NAN, NAN};
   if (g->wall[0]) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(SchemeFields(s));
   PetscCall(DMGetGlobalVector(g->velocity, &Hu));
   PetscCall(GridHelmholtz(g, s->fluid->alpha, s->fluid->nu, s->state.w, Hu));
   PetscCall(OwnForces(s, &forces));

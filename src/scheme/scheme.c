@@ -174,10 +174,20 @@ PetscErrorCode SchemeContactEnergy(Scheme s, PetscReal *energy) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode SchemeFields(Scheme s) {
+  PetscFunctionBeginUser;
+  if (!s->state.pending) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(s->ops.fields(s));
+  s->state.pending = PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode SchemeKineticEnergy(Scheme s, PetscReal *energy) {
   PetscReal norm;
   PetscFunctionBeginUser;
-  if (s->fluid->total) {
+  if (s->state.pending)
+    norm = PetscSqrtReal(s->report.measures.square);
+  else if (s->fluid->total) {
     Vec difference;
     PetscCall(DMGetGlobalVector(s->fluid->grid->velocity, &difference));
     PetscCall(VecWAXPY(difference, -1, s->fluid->background, s->state.w));

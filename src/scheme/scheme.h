@@ -2,6 +2,7 @@
 #pragma once
 #include "scheme/judge.h"
 #include "scheme/state.h"
+#include "fluid/stream.h"
 
 /* Of a sheared channel after a step, from the walls [0] and from the membranes' forces [1] (src/scheme/stress.h). */
 typedef struct {
@@ -20,6 +21,7 @@ typedef struct {
   PetscReal estimate;        /* of a fixed step of coupled or direct: max |X - X*|/R0, 0 in the first one */
   PetscReal cfl;             /* dt max(|u| + |v|)/h; 0 without convection */
   PetscReal seconds;         /* wall, output excluded */
+  StreamMeasures measures;   /* of the velocity of a step that leaves it pending */
   Stress stress;
   const char *stopped; /* why a first step was left undone between two of its parts (StopRequested); NULL: it was not */
   char failure[PETVES_MAX_MESSAGE]; /* why the step could not be taken; empty when it was */
@@ -57,6 +59,8 @@ typedef struct {
   /* put back the velocities and pressures of state and old that a step with a past has changed; NULL: they are copied
      before each step */
   PetscErrorCode (*undo)(Scheme);
+  /* make the velocity and the pressure of the state; NULL: steps make them */
+  PetscErrorCode (*fields)(Scheme);
   /* what solvers keep from step to step, as SchemeMemorySize numbers, the same on every rank, and made again from them;
      NULL: they keep nothing */
   PetscErrorCode (*remember)(Scheme, PetscReal memory[]);
@@ -105,6 +109,10 @@ PETSC_EXTERN PetscErrorCode SchemeDestroy(Scheme *scheme);
    or where less than `reserve` seconds of -time_wall_limit would be left after another one: report.stopped says why,
    and the state is as before; negative: it does not. Collective. */
 PETSC_EXTERN PetscErrorCode SchemeStep(Scheme scheme, PetscReal most, PetscReal reserve);
+
+/* SchemeFields - make the velocity and the pressure of the state, w and p, where the step has not: a quasi-steady step
+   needs neither (docs/membrane.md, One step). To be called before they are read. Collective. */
+PETSC_EXTERN PetscErrorCode SchemeFields(Scheme scheme);
 
 /* SchemeRemember, SchemeRecall - what the solvers have kept from earlier steps (when their blocks were made, and where
    the markers were), as SchemeMemorySize numbers for a checkpoint, and made again from them. Collective. */

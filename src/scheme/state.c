@@ -1,15 +1,17 @@
 #include "scheme/state.h"
 
-#define VECTORS 7
+#define VECTORS 8
+#define ON_GRID 3 /* the first ones */
 
 static void List(State *q, Vec *all[VECTORS]) {
   all[0] = &q->w;
   all[1] = &q->p;
-  all[2] = &q->sigma;
-  all[3] = &q->X;
-  all[4] = &q->U;
-  all[5] = &q->walls;
-  all[6] = &q->solid;
+  all[2] = &q->force;
+  all[3] = &q->sigma;
+  all[4] = &q->X;
+  all[5] = &q->U;
+  all[6] = &q->walls;
+  all[7] = &q->solid;
 }
 
 PetscErrorCode StateCreate(Coupling c, State *q) {
@@ -50,11 +52,13 @@ PetscErrorCode StateCopy(const State *q, State *copy, PetscBool fields) {
   PetscFunctionBeginUser;
   List(&source, from);
   List(copy, to);
-  for (int k = fields ? 0 : 2; k < VECTORS; k++) {
+  for (int k = fields ? 0 : ON_GRID; k < VECTORS; k++) {
     if (!*from[k]) continue;
     if (!*to[k]) PetscCall(VecDuplicate(*from[k], to[k]));
     PetscCall(VecCopy(*from[k], *to[k]));
   }
+  if (fields) PetscCall(PetscArraycpy(copy->rows, q->rows, 2));
+  copy->pending = q->pending;
   copy->step = q->step;
   copy->t = q->t;
   copy->dt = q->dt;
@@ -64,6 +68,12 @@ PetscErrorCode StateCopy(const State *q, State *copy, PetscBool fields) {
 
 void StateSwap(State *a, State *b) {
   Vec *one[VECTORS], *other[VECTORS];
+  if (a->force && b->force)
+    for (int k = 0; k < 2; k++) {
+      const PetscInt row = a->rows[k];
+      a->rows[k] = b->rows[k];
+      b->rows[k] = row;
+    }
   List(a, one);
   List(b, other);
   for (int k = 0; k < VECTORS; k++) {

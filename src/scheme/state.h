@@ -9,6 +9,9 @@ typedef struct {
   PetscReal dt_last; /* the step that led here; 0 at the start */
   Vec w;             /* velocity on the faces: the disturbance, or the whole in the total form */
   Vec p;             /* pressure, zero mean */
+  Vec force;         /* on the faces, of which w and p are the Stokes solve; NULL where they are made in each step */
+  PetscInt rows[2];  /* force is zero outside these of this rank */
+  PetscBool pending; /* w and p are not made yet: SchemeFields */
   Vec sigma;         /* tension, an edge vector */
   Vec X;             /* markers, a marker vector */
   Vec U;             /* markers' velocity, background included */
@@ -22,9 +25,9 @@ PETSC_EXTERN PetscErrorCode StateCreate(Coupling coupling, State *state);
 PETSC_EXTERN PetscErrorCode StateDuplicate(const State *state, State *copy);
 PETSC_EXTERN PetscErrorCode StateDestroy(State *state);
 
-/* StateCopy - times and vectors; the target's missing vectors are made. fields: the velocity and the pressure too, else
-   they stay. Collective. */
+/* StateCopy - times, vectors and `pending`; the target's missing vectors are made. fields: what is on the grid too,
+   else it stays. Collective. */
 PETSC_EXTERN PetscErrorCode StateCopy(const State *from, State *to, PetscBool fields);
 
-/* StateSwap - the vectors that two states both have change places; times stay. Not collective. */
+/* StateSwap - the vectors that two states both have change places; times and `pending` stay. Not collective. */
 PETSC_EXTERN void StateSwap(State *a, State *b);

@@ -1,0 +1,82 @@
+#include "fluid/streammeter.h"
+#include "base/lanes.h"
+
+PetscErrorCode StreamMeterCreate(Grid g, RowTransform t, StreamMeter *out) {
+  StreamMeter m;
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&m));
+  *out = m;
+  m->grid = g;
+  m->width = t->width;
+  PetscCall(PetscCalloc3(t->width + LANES, &m->chi[0], t->width + LANES, &m->chi[1], t->width + LANES, &m->wave));
+  PetscCall(PetscArraycpy(m->wave, t->lambda, t->width));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode StreamMeterDestroy(StreamMeter *meter) {
+  PetscFunctionBeginUser;
+  if (!*meter) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscFree3((*meter)->chi[0], (*meter)->chi[1], (*meter)->wave));
+  PetscCall(PetscFree(*meter));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+void StreamMeterBegin(StreamMeter m) {
+  m->own = (StreamMeasures){0};
+  for (int k = 0; k < 2; k++) (void)StreamMeterNodes(m, 0);
+}
+
+PetscErrorCode StreamMeterEnd(StreamMeter m, StreamMeasures *all) {
+  PetscReal sum[3] = {m->own.square, m->own.slip, m->own.pressure};
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 3, MPIU_REAL, MPI_SUM, m->grid->comm));
+  PetscCallMPI(MPI_Allreduce(&m->own.divergence, &all->divergence, 1, MPIU_REAL, MPI_MAX, m->grid->comm));
+  all->square = sum[0];
+  all->slip = sum[1];
+  all->pressure = sum[2];
+  if (PetscIsInfOrNanReal(sum[0])) all->divergence = NAN; /* which may get lost in MPI_MAX */
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The mean of v is zero in all rows, so that of its force is the pressure's step from row j to the next one. */
+void StreamMeterForce(StreamMeter m, PetscInt j, PetscReal sum) {
+  const Grid g = m->grid;
+  const PetscInt above = g->n[1] - 1 - (g->first + j); /* rows of cells, which have the step in them */
+  m->own.pressure += g->h * sum / (PetscReal)g->n[0] * (0.5 - above / (PetscReal)g->n[1]);
+}
+
+PetscReal *StreamMeterNodes(StreamMeter m, PetscInt count) {
+  m->now = 1 - m->now;
+  for (PetscInt k = count; k < m->count[m->now]; k++) m->chi[m->now][k] = 0;
+  m->count[m->now] = count;
+  return m->chi[m->now];
+}
+
+/* By Parseval: all modes count twice but the mean, which chi has not, and one that alternates from entry to entry. */
+void StreamMeterSquares(StreamMeter m, PetscInt j, PetscReal mean_u, PetscBool has_v, PetscReal mean_v) {
+  const Grid g = m->grid;
+  const PetscReal *low = m->chi[m->now], *high = m->chi[1 - m->now];
+  const PetscInt count = PetscMax(m->count[0], m->count[1]), single = g->n[0] % 2 ? m->width : m->width - 2;
+  Lanes u = {0}, v = {0};
+  for (PetscInt k = 0; k < count; k += LANES) {
+    const Lanes of_u = LanesAt(high + k) - LanesAt(low + k), chi = LanesAt(high + k);
+    u += of_u * of_u;
+    v += LanesAt(m->wave + k) * chi * chi;
+  }
+  PetscReal sum = 2 * (LanesSum(u) + (has_v ? LanesSum(v) : 0)) + PetscSqr(mean_u) + (has_v ? PetscSqr(mean_v) : 0);
+  for (PetscInt k = single; k < count; k++)
+    sum -= PetscSqr(high[k] - low[k]) + (has_v ? m->wave[k] * PetscSqr(high[k]) : 0);
+  m->own.square += (PetscReal)g->n[0] * sum;
+  if (!(g->first + j)) m->own.slip += mean_u;
+  if (g->first + j == g->n[1] - 1) m->own.slip -= mean_u;
+}
+
+void StreamMeterDivergence(StreamMeter m, const PetscScalar u[], const PetscScalar low[], const PetscScalar high[]) {
+  const PetscInt n = m->grid->n[0];
+  PetscReal most = m->own.divergence * m->grid->h;
+  for (PetscInt i = 0, last = n - 1; i < n; last = i++) {
+    const PetscReal d = u[i] - u[last] + (high[last] - high[i]) - (low[last] - low[i]);
+    most = PetscMax(most, PetscAbsReal(d));
+  }
+  m->own.divergence = most / m->grid->h;
+}
