@@ -110,8 +110,8 @@ PetscBool NearImageIsFar(NearImage m, const PetscReal X[2], const NearBounds *bo
       const PetscBool near = off < 2 * FOLD_SCALED * g->h || NearImageGap(g, dir, side, &at, box) < IMAGE_CELLS * g->h
                                  ? PETSC_TRUE
                                  : PETSC_FALSE;
-      far[dir][side] = g->wall[dir] && near ? PETSC_FALSE : PETSC_TRUE;
-      if (!far[dir][side]) all = PETSC_FALSE;
+      if (g->wall[dir] && near) all = PETSC_FALSE;
+      if (far) far[dir][side] = g->wall[dir] && near ? PETSC_FALSE : PETSC_TRUE;
     }
   return all;
 }

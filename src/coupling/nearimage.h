@@ -56,10 +56,10 @@ PETSC_EXTERN void NearImageAddBlake(NearImage image, PetscInt i, PetscInt j, con
 PETSC_EXTERN PetscReal NearImageGap(Grid grid, int direction, int side, const NearBounds *one, const NearBounds *other);
 
 /* NearImageIsFar - by which walls a marker at X and all in a box are off them, and so far from one another's images
-   that no stencils are summed: far[direction][side]; returns whether by all. NearImageAddFar - the same as NearImageAdd
-   for such a marker i and the n markers from j on, d = (x, y)[n] with room for whole vectors behind n, by the walls
-   that are far and among `walls`: C[4][n] of i's response to them, or, with back, of theirs to it, d turned. n at most
-   IMAGE_ROW. Not collective. */
+   that no stencils are summed: far[direction][side], or NULL; returns whether by all. NearImageAddFar - the same as
+   NearImageAdd for such a marker i and the n markers from j on, d = (x, y)[n] with room for whole vectors behind n, by
+   the walls that are far and among `walls`: C[4][n] of i's response to them, or, with back, of theirs to it, d turned.
+   n at most IMAGE_ROW. Not collective. */
 #define IMAGE_ROW 96
 PETSC_EXTERN PetscBool NearImageIsFar(NearImage image, const PetscReal X[2], const NearBounds *box,
                                       PetscBool far[2][2]);
