@@ -137,7 +137,7 @@ static void Lattice(BoxGrid *b, PetscInt i, PetscInt j, int part, PetscReal L[2]
     return;
   }
   NearLatticePair(&b->near, i, j, d, S);
-  NearImageAdd(b->image, i, j, d, S, C);
+  NearImageAdd(b->image, NULL, i, j, d, S, C);
   if (b->lattice->whole) NearImageAddBlake(b->image, i, j, d, -1, C);
   for (int c = 0; c < 2; c++) {
     const int at = c == part ? c : 2 + c;

@@ -6,6 +6,7 @@
    g2(j' - 1))/2 + A sinh mu]/cosh mu. The image of the free constant comes with its sign turned, and 1/(4 theta) as
    there. */
 #include "coupling/imagetable.h"
+#include "base/lanes.h"
 #include "coupling/lattice.h"
 
 ImageMode ImageModeMake(PetscReal theta) {
@@ -99,7 +100,9 @@ PetscErrorCode ImageTableFill(const OffsetTable *lattice, ImageTable *t) {
 
 PetscReal ImageSum(const PetscReal (*table)[IMAGE_ROWS][IMAGE_WIDTH], Grid g, int t, PetscReal x,
                    const PaddedStencil *from, const ImageRows *row, const PaddedStencil *to, const ImageRows *source) {
-  PetscReal lag[OFFSET_LAGS], line[OFFSET_LAGS] = {0}, sum = 0;
+  enum { VECTORS = OFFSET_LAGS / LANES };
+  PetscReal lag[OFFSET_LAGS];
+  Lanes line[VECTORS] = {{0}};
   PetscInt first = StencilLagWeights(t, from, to, lag);
   if (!g->wall[t]) {
     const PetscReal off = x - (PetscReal)(from->first[t] - to->first[t]);
@@ -110,8 +113,9 @@ PetscReal ImageSum(const PetscReal (*table)[IMAGE_ROWS][IMAGE_WIDTH], Grid g, in
     for (PetscInt k = 0; k < source->n; k++) {
       const PetscReal w = row->weight[q] * source->weight[k];
       const PetscReal *value = table[row->first + q][source->first + k] + IMAGE_SHIFT + first;
-      for (int a = 0; a < OFFSET_LAGS; a++) line[a] += w * value[a];
+      for (int v = 0; v < VECTORS; v++) line[v] += w * LanesAt(value + v * LANES);
     }
-  for (int a = 0; a < OFFSET_LAGS; a++) sum += lag[a] * line[a];
-  return sum;
+  line[0] *= LanesAt(lag);
+  for (int v = 1; v < VECTORS; v++) line[0] += line[v] * LanesAt(lag + v * LANES);
+  return LanesSum(line[0]);
 }

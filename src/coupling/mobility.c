@@ -40,35 +40,42 @@ PetscErrorCode MobilitySetUp(Mobility m, PetscReal alpha) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Mob of two markers by the sums over both stencils; d from the second to the first, back the other way. */
-static void SumStencils(Mobility m, const PaddedStencil a[2], const PaddedStencil b[2], const PetscReal d[2],
-                        const PetscReal back[2], PetscReal Mob[4]) {
-  const Grid g = m->coupling->fluid->grid;
-  Mob[0] = StencilImageSum(g, &m->table->green, OFFSET_UU, &a[0], &b[0], d);
-  Mob[1] = StencilImageSum(g, &m->table->green, OFFSET_VV, &a[1], &b[1], d);
-  Mob[2] = StencilImageSum(g, &m->table->green, OFFSET_VU, &b[1], &a[0],
-                           back); /* u from v is v from u the other way round */
-  Mob[3] = StencilImageSum(g, &m->table->green, OFFSET_VU, &a[1], &b[0], d);
+/* Whether a pair's stencils are summed: near, and with all of their offsets in the table. */
+static PetscBool IsNear(Mobility m, const PetscReal cells[2]) {
+  for (int dir = 0; dir < 2; dir++)
+    if (PetscAbsReal(cells[dir]) > (PetscReal)(m->table->green.size[dir] - OFFSET_LAGS)) return PETSC_FALSE;
+  return cells[0] * cells[0] + cells[1] * cells[1] <= m->near * m->near ? PETSC_TRUE : PETSC_FALSE;
 }
 
 /* Mob of markers i and j, the nearest image: xx, yy, xy, yx. */
 static void Pair(Mobility m, PetscInt i, PetscInt j, PetscReal Mob[4]) {
   const Grid g = m->coupling->fluid->grid;
   const PetscReal *X = m->coupling->markers->X;
-  const PaddedStencil *a = &m->stencil[2 * i], *b = &m->stencil[2 * j];
-  PetscReal d[2], back[2];
+  PetscReal d[2], cells[2];
+  PetscInt periods[2]; /* in cells */
   for (int dir = 0; dir < 2; dir++) {
-    const PetscReal period = g->hi[dir] - g->lo[dir];
-    d[dir] = X[2 * i + dir] - X[2 * j + dir];
-    d[dir] -= period * PetscFloorReal(d[dir] / period + 0.5);
-    back[dir] = -d[dir];
+    const PetscReal period = g->hi[dir] - g->lo[dir], apart = X[2 * i + dir] - X[2 * j + dir];
+    const PetscInt back = (PetscInt)PetscFloorReal(apart / period + 0.5);
+    d[dir] = apart - period * (PetscReal)back;
+    periods[dir] = -back * g->n[dir];
+    cells[dir] = d[dir] / g->h;
   }
-  if (d[0] * d[0] + d[1] * d[1] > PetscSqr(m->near * g->h)) {
+  if (IsNear(m, cells))
+    StencilFourSums(&m->table->green, &m->stencil[2 * i], &m->stencil[2 * j], periods, Mob);
+  else {
     MobilityTableMean(m->table, d, Mob);
     Mob[3] = Mob[2];
-  } else
-    SumStencils(m, a, b, d, back, Mob);
+  }
   for (int q = 0; q < 4; q++) Mob[q] *= m->part;
+}
+
+/* The stencils of markers, which count from the markers' own places. */
+static void Pad(Mobility m, const MarkerRange *range) {
+  const Markers markers = m->coupling->markers;
+  for (PetscInt k = range->first; k < range->first + range->n; k++) {
+    for (PetscInt q = 2 * k; q < 2 * k + 2; q++) StencilPad(&markers->plain[q], &m->stencil[q]);
+    StencilUnwrap(markers->grid, markers->X + 2 * k, &m->stencil[2 * k]);
+  }
 }
 
 PetscErrorCode MobilityAssemble(Mobility m, PetscInt first, PetscInt n, PetscInt part, PetscInt parts,
@@ -79,7 +86,7 @@ PetscErrorCode MobilityAssemble(Mobility m, PetscInt first, PetscInt n, PetscInt
     PetscCall(MobilityAssembleBetween(m, &range, &range, part, parts, Mob));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  for (PetscInt k = 2 * first; k < 2 * (first + n); k++) StencilPad(&m->coupling->markers->plain[k], &m->stencil[k]);
+  Pad(m, &range);
   if (parts > 1) PetscCall(PetscArrayzero(Mob, 4 * n * n));
   for (PetscInt i = part; i < n; i += parts)
     for (PetscInt j = i; j < n; j++) { /* symmetric */
@@ -97,9 +104,7 @@ PetscErrorCode MobilityAssembleBetween(Mobility m, const MarkerRange *rows, cons
                                        PetscInt parts, PetscReal Mob[]) {
   const MarkerRange *range[2] = {rows, columns};
   PetscFunctionBeginUser;
-  for (int q = 0; q < 2; q++)
-    for (PetscInt k = 2 * range[q]->first; k < 2 * (range[q]->first + range[q]->n); k++)
-      StencilPad(&m->coupling->markers->plain[k], &m->stencil[k]);
+  for (int q = 0; q < 2; q++) Pad(m, range[q]);
   if (parts > 1 || m->box) PetscCall(PetscArrayzero(Mob, 4 * rows->n * columns->n));
   if (m->box) PetscCall(MobilityBoxAdd(m->box, rows, columns, Mob));
   for (PetscInt j = part; j < columns->n && !m->box; j += parts)

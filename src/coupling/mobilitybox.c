@@ -42,7 +42,7 @@ static void Lattice(NearField f, PetscInt i, PetscInt j, PetscReal value[4]) {
   const PetscReal fade = BoxPartImage(f->box, d);
   if (d[0] * d[0] + d[1] * d[1] < PetscSqr(NEAR * h)) {
     NearLatticePair(f, i, j, d, L);
-    NearImageAdd(f->image, i, j, d, L, C);
+    NearImageAdd(f->image, NULL, i, j, d, L, C);
   } else
     Stokeslet(f->nu, d, L);
   NearImageAddBlake(f->image, i, j, d, -1, C);

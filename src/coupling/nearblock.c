@@ -71,8 +71,8 @@ static void SelfPart(NearField f, PetscInt v, PetscInt k, const PetscReal T[2], 
 typedef struct {
   const NearBlock *block;
   PetscInt i, j, n;
-  PetscBool self, back, plain; /* plain: far from all walls */
-  PetscBool walls[2][2];       /* whose images count */
+  PetscBool self, back, plain;      /* plain: far from all walls */
+  PetscBool walls[2][2], off[2][2]; /* whose images count; from which it is far */
   const NearFar *far;
   PetscReal reach; /* of stencils' sums (length) */
   PetscReal d[2][CHUNK], part[CHUNK], L[4][CHUNK], C[4][CHUNK];
@@ -148,13 +148,13 @@ static void FillNear(NearField f, PetscReal farthest2, Chunk *c) {
   }
 }
 
-/* The walls' images of pairs near a wall. */
+/* The images of pairs in walls that are near. */
 static void AddImages(NearField f, Chunk *c) {
   for (PetscInt k = 0; k < c->n; k++) {
     const PetscInt from = c->back ? c->i : c->j + k, to = c->back ? c->j + k : c->i;
     const PetscReal d[2] = {c->d[0][k], c->d[1][k]}, L[4] = {c->L[0][k], c->L[1][k], c->L[2][k], c->L[3][k]};
     PetscReal C[4] = {0, 0, 0, 0};
-    NearImageAdd(f->image, to, from, d, L, C);
+    NearImageAdd(f->image, c->off, to, from, d, L, C);
     for (int q = 0; q < 4; q++) c->C[q][k] += C[q];
   }
 }
@@ -164,12 +164,13 @@ static void FillChunk(NearField f, Chunk *c) {
   if (c->plain) {
     FillFar(f, c);
     if (!IsAlone(f, c)) FillNear(f, c->reach * c->reach, c);
-    NearImageAddFar(f->image, c->walls, c->i, c->j, c->n, c->back, c->d[0], c->d[1],
-                    (PetscReal *[]){c->C[0], c->C[1], c->C[2], c->C[3]});
   } else {
     FillNear(f, PETSC_MAX_REAL, c);
     if (f->image) AddImages(f, c);
   }
+  if (f->image)
+    NearImageAddFar(f->image, c->walls, c->off, c->i, c->j, c->n, c->back, c->d[0], c->d[1],
+                    (PetscReal *[]){c->C[0], c->C[1], c->C[2], c->C[3]});
 }
 
 /* The chunk's pairs to rows[2][2n], its marker's x and y velocity. */
@@ -196,7 +197,8 @@ static void Write(NearField f, const Chunk *c, size_t at, PetscInt stride) {
 static void FillRow(NearField f, const NearRow *r, Chunk *c) {
   const NearBounds *column = &f->bounds[c->block->column];
   c->i = r->row;
-  c->plain = f->image && NearImageIsFar(f->image, f->markers->X + 2 * r->row, column) ? PETSC_TRUE : PETSC_FALSE;
+  c->plain = f->image && NearImageIsFar(f->image, f->markers->X + 2 * r->row, column, c->off) ? PETSC_TRUE
+                                                                                              : PETSC_FALSE;
   for (PetscInt k = 0; k < r->count; k += CHUNK) {
     c->j = r->column + k;
     c->n = PetscMin(CHUNK, r->count - k);

@@ -74,10 +74,11 @@ static void AddWall(NearImage m, int direction, int side, PetscInt i, PetscInt j
   NearImageTurn(direction, side, 1 / m->nu, part, C);
 }
 
-void NearImageAdd(NearImage m, PetscInt i, PetscInt j, const PetscReal d[2], const PetscReal L[4], PetscReal C[4]) {
+void NearImageAdd(NearImage m, const PetscBool without[2][2], PetscInt i, PetscInt j, const PetscReal d[2],
+                  const PetscReal L[4], PetscReal C[4]) {
   for (int direction = 0; direction < 2; direction++)
     for (int side = 0; side < 2; side++)
-      if (m->end[direction][side]) AddWall(m, direction, side, i, j, d, L, C);
+      if (m->end[direction][side] && !(without && without[direction][side])) AddWall(m, direction, side, i, j, d, L, C);
 }
 
 void NearImageAddBlake(NearImage m, PetscInt i, PetscInt j, const PetscReal d[2], PetscReal alpha, PetscReal C[4]) {
@@ -99,16 +100,20 @@ PetscReal NearImageGap(Grid g, int direction, int side, const NearBounds *a, con
   return a->low[direction] + b->low[direction] - 2 * g->lo[direction];
 }
 
-PetscBool NearImageIsFar(NearImage m, const PetscReal X[2], const NearBounds *box) {
+PetscBool NearImageIsFar(NearImage m, const PetscReal X[2], const NearBounds *box, PetscBool far[2][2]) {
   const Grid g = m->markers->grid;
   const NearBounds at = {{X[0], X[1]}, {X[0], X[1]}};
+  PetscBool all = PETSC_TRUE;
   for (int dir = 0; dir < 2; dir++)
-    for (int side = 0; side < 2 && g->wall[dir]; side++)
-      if (PetscMin(NearImageGap(g, dir, side, &at, &at), NearImageGap(g, dir, side, box, box)) <
-              2 * FOLD_SCALED * g->h ||
-          NearImageGap(g, dir, side, &at, box) < IMAGE_CELLS * g->h)
-        return PETSC_FALSE;
-  return PETSC_TRUE;
+    for (int side = 0; side < 2; side++) {
+      const PetscReal off = PetscMin(NearImageGap(g, dir, side, &at, &at), NearImageGap(g, dir, side, box, box));
+      const PetscBool near = off < 2 * FOLD_SCALED * g->h || NearImageGap(g, dir, side, &at, box) < IMAGE_CELLS * g->h
+                                 ? PETSC_TRUE
+                                 : PETSC_FALSE;
+      if (g->wall[dir] && near) all = PETSC_FALSE;
+      if (far) far[dir][side] = g->wall[dir] && near ? PETSC_FALSE : PETSC_TRUE;
+    }
+  return all;
 }
 
 /* One wall's part, added; d along the wall. */
@@ -129,10 +134,11 @@ static void AddFarWall(NearImage m, int direction, int side, PetscInt i, PetscIn
   }
 }
 
-void NearImageAddFar(NearImage m, const PetscBool walls[2][2], PetscInt i, PetscInt j, PetscInt n, PetscBool back,
-                     const PetscReal x[], const PetscReal y[], PetscReal *const C[4]) {
+void NearImageAddFar(NearImage m, const PetscBool walls[2][2], const PetscBool far[2][2], PetscInt i, PetscInt j,
+                     PetscInt n, PetscBool back, const PetscReal x[], const PetscReal y[], PetscReal *const C[4]) {
   for (int wall = 0; wall < 4; wall++)
-    if (walls[wall / 2][wall % 2]) AddFarWall(m, wall / 2, wall % 2, i, j, n, back, wall / 2 ? x : y, C);
+    if (walls[wall / 2][wall % 2] && far[wall / 2][wall % 2])
+      AddFarWall(m, wall / 2, wall % 2, i, j, n, back, wall / 2 ? x : y, C);
 }
 
 /* SUM w [c|c| - sgn(c)/4] - y^2 + 1/4 over the tangential stencil's rows at c from the wall, before it is folded. */

@@ -39,11 +39,12 @@ PETSC_EXTERN PetscErrorCode NearImageDestroy(NearImage *image);
    Not collective. */
 PETSC_EXTERN PetscErrorCode NearImagePlace(NearImage image, const PaddedStencil stencil[]);
 
-/* NearImageAdd - add all walls' parts to C of the response of marker i to marker j: xx, yy, xy (x to a force in y) and
-   yx. d = X_i - X_j, in periodic directions to the image meant (length). L: the pair's free lattice mobility, which is
-   S - C_free where that is known in closed form. Not collective. */
-PETSC_EXTERN void NearImageAdd(NearImage image, PetscInt i, PetscInt j, const PetscReal d[2], const PetscReal L[4],
-                               PetscReal C[4]);
+/* NearImageAdd - add all walls' parts, or all but those `without` by direction and side, to C of the response of marker
+   i to marker j: xx, yy, xy (x to a force in y) and yx. d = X_i - X_j, in periodic directions to the image meant
+   (length). L: the pair's free lattice mobility, which is S - C_free where that is known in closed form. Not
+   collective. */
+PETSC_EXTERN void NearImageAdd(NearImage image, const PetscBool without[2][2], PetscInt i, PetscInt j,
+                               const PetscReal d[2], const PetscReal L[4], PetscReal C[4]);
 
 /* NearImageAddBlake - C += alpha times all walls' exact images of the Stokeslet, (length), in the same form. Not
    collective. */
@@ -54,14 +55,17 @@ PETSC_EXTERN void NearImageAddBlake(NearImage image, PetscInt i, PetscInt j, con
    `other` (length). Not collective. */
 PETSC_EXTERN PetscReal NearImageGap(Grid grid, int direction, int side, const NearBounds *one, const NearBounds *other);
 
-/* NearImageIsFar - whether a marker at X and all in a box are off all walls, and so far from one another's images that
-   no stencils are summed. NearImageAddFar - the same as NearImageAdd for such a marker i and the n markers from j on, d
-   = (x, y)[n] with room for whole vectors behind n, by walls[direction][side] only: C[4][n] of i's response to them,
-   or, with back, of theirs to it, d turned. n at most IMAGE_ROW. Not collective. */
+/* NearImageIsFar - by which walls a marker at X and all in a box are off them, and so far from one another's images
+   that no stencils are summed: far[direction][side], or NULL; returns whether by all. NearImageAddFar - the same as
+   NearImageAdd for such a marker i and the n markers from j on, d = (x, y)[n] with room for whole vectors behind n, by
+   the walls that are far and among `walls`: C[4][n] of i's response to them, or, with back, of theirs to it, d turned.
+   n at most IMAGE_ROW. Not collective. */
 #define IMAGE_ROW 96
-PETSC_EXTERN PetscBool NearImageIsFar(NearImage image, const PetscReal X[2], const NearBounds *box);
-PETSC_EXTERN void NearImageAddFar(NearImage image, const PetscBool walls[2][2], PetscInt i, PetscInt j, PetscInt n,
-                                  PetscBool back, const PetscReal x[], const PetscReal y[], PetscReal *const C[4]);
+PETSC_EXTERN PetscBool NearImageIsFar(NearImage image, const PetscReal X[2], const NearBounds *box,
+                                      PetscBool far[2][2]);
+PETSC_EXTERN void NearImageAddFar(NearImage image, const PetscBool walls[2][2], const PetscBool far[2][2], PetscInt i,
+                                  PetscInt j, PetscInt n, PetscBool back, const PetscReal x[], const PetscReal y[],
+                                  PetscReal *const C[4]);
 
 /* NearImageBlake - Blake's image part of the Stokeslet in a wall, cells, viscosity 1. NearImageTurn - C += alpha times
    a pair's parts, turned from the wall with this normal and side to x and y. Not collective. */

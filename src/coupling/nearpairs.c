@@ -145,7 +145,7 @@ static PetscBool AreDistant(NearField f, PetscInt v, PetscInt w, PetscReal gap) 
     if (m->kind[one].type != CURVE_CLOSED) return PETSC_FALSE;
     least = PetscMax(least, PetscHypotReal(b->high[0] - b->low[0], b->high[1] - b->low[1]));
     for (PetscInt k = m->layout->start[one]; k < m->layout->start[one + 1]; k++)
-      if (!NearImageIsFar(f->image, f->markers->X + 2 * k, &f->bounds[body[1 - end]])) return PETSC_FALSE;
+      if (!NearImageIsFar(f->image, f->markers->X + 2 * k, &f->bounds[body[1 - end]], NULL)) return PETSC_FALSE;
   }
   return gap >= least ? PETSC_TRUE : PETSC_FALSE;
 }

@@ -54,16 +54,6 @@ PetscReal StencilPairSum(const OffsetTable *t, OffsetBlock b, const PaddedStenci
   return sum;
 }
 
-PetscReal StencilImageSum(Grid g, const OffsetTable *t, OffsetBlock block, const PaddedStencil *a,
-                          const PaddedStencil *b, const PetscReal d[2]) {
-  PetscInt cells[2];
-  for (int dir = 0; dir < 2; dir++) {
-    const PetscReal off = d[dir] / g->h - (PetscReal)(a->first[dir] - b->first[dir]);
-    cells[dir] = g->n[dir] * (PetscInt)PetscFloorReal(off / g->n[dir] + 0.5);
-  }
-  return StencilPairSum(t, block, a, b, cells);
-}
-
 void StencilUnwrap(Grid g, const PetscReal X[2], PaddedStencil s[2]) {
   for (int comp = 0; comp < 2; comp++)
     for (int dir = 0; dir < 2; dir++) {
@@ -168,11 +158,23 @@ PetscReal StencilNearSum(const OffsetTable *t, OffsetBlock b, const PaddedStenci
   return StencilShiftedSum(t, b, response, source, none);
 }
 
+/* Whether a marker's u and v have the points of cbs54. */
+static inline PetscBool HasFixed(const PaddedStencil s[2]) {
+  return s[0].n[0] == 5 && s[0].n[1] == 4 && s[1].n[0] == 4 && s[1].n[1] == 5 ? PETSC_TRUE : PETSC_FALSE;
+}
+
 /* u from v at an offset is v from u the other way round, which is even in the distance of the two: the table of v from
    u one entry to the right and one below. */
 void StencilFourSums(const OffsetTable *t, const PaddedStencil a[2], const PaddedStencil b[2], const PetscInt cells[2],
                      PetscReal sum[4]) {
   const PetscInt width = 2 * t->size[0] + 1, middle = t->size[1] * width + t->size[0];
+  if (HasFixed(a) && HasFixed(b)) {
+    sum[0] = FixedSum(5, 4, 5, 4, t->value[OFFSET_UU] + middle, width, &a[0], &b[0], cells);
+    sum[1] = FixedSum(4, 5, 4, 5, t->value[OFFSET_VV] + middle, width, &a[1], &b[1], cells);
+    sum[2] = FixedSum(5, 4, 4, 5, t->value[OFFSET_VU] + middle + 1 - width, width, &a[0], &b[1], cells);
+    sum[3] = FixedSum(4, 5, 5, 4, t->value[OFFSET_VU] + middle, width, &a[1], &b[0], cells);
+    return;
+  }
   sum[0] = TableSum(t->value[OFFSET_UU] + middle, width, &a[0], &b[0], cells);
   sum[1] = TableSum(t->value[OFFSET_VV] + middle, width, &a[1], &b[1], cells);
   sum[2] = TableSum(t->value[OFFSET_VU] + middle + 1 - width, width, &a[0], &b[1], cells);

@@ -33,12 +33,6 @@ PETSC_EXTERN PetscInt StencilLagWeights(int dir, const PaddedStencil *response, 
 PETSC_EXTERN PetscReal StencilPairSum(const OffsetTable *table, OffsetBlock block, const PaddedStencil *response,
                                       const PaddedStencil *source, const PetscInt shift[2]);
 
-/* StencilImageSum - the same of the image for which the response's marker is d (length) from the source's. Not
-   collective. */
-PETSC_EXTERN PetscReal StencilImageSum(Grid grid, const OffsetTable *table, OffsetBlock block,
-                                       const PaddedStencil *response, const PaddedStencil *source,
-                                       const PetscReal d[2]);
-
 /* StencilUnwrap - the two components' stencils of a marker at X count from its own place, however many periods that is
    from the grid. StencilFourSums - the sums of markers a and b, so unwrapped, `cells` being added to the offset: xx,
    yy, xy (x of a to a force along y of b), yx. StencilShiftedSum - one block's sum, with `cells` added; StencilNearSum

@@ -2,8 +2,9 @@
 #include "coupling/denseblock.h"
 #include "coupling/lagrangian.h"
 
-#define MOST_EXCESS 5 /* iterations more than with new blocks, in one solve */
-#define NO_LIMIT 1000 /* solves that blocks may serve */
+#define MOST_EXCESS 5  /* iterations more than with new blocks, in one solve */
+#define STEP_RATIO 2.2 /* of two steps whose blocks are the same: a factor of 2 costs half an iteration */
+#define NO_LIMIT 1000  /* solves that blocks may serve */
 
 /* How far apart markers of one block are: half a contour, or anywhere. */
 static PetscReal Reach(Coupling c) {
@@ -129,6 +130,12 @@ static PetscBool LabelsMoved(Preconditioner p) {
   return PETSC_FALSE;
 }
 
+/* Whether a step is so many times as long as that of the blocks, or as short. None are made yet: a0 = 0. */
+static PetscBool StepChanged(Preconditioner p) {
+  const PetscReal ratio = p->age.a0 / p->unknowns->coupling->fluid->a0;
+  return ratio < STEP_RATIO && ratio * STEP_RATIO > 1 ? PETSC_FALSE : PETSC_TRUE;
+}
+
 static PetscErrorCode SetUpChat(Preconditioner p) {
   Mat Chat;
   PetscFunctionBeginUser;
@@ -153,9 +160,7 @@ PetscErrorCode PreconditionerSetUp(Preconditioner p) {
   if (p->patterns) PetscCall(PatternsFollow(p->patterns, &p->failed));
   if (!p->blocks) PetscFunctionReturn(PETSC_SUCCESS);
   DenseBlocksPlace(p->blocks);
-  if (a->excess > RenewalCost(p) || a->solves >= a->most || !(PetscAbsReal(a->a0 / c->fluid->a0 - 1) < 0.1) ||
-      LabelsMoved(p))
-    PetscCall(Renew(p));
+  if (a->excess > RenewalCost(p) || a->solves >= a->most || StepChanged(p) || LabelsMoved(p)) PetscCall(Renew(p));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
