@@ -86,7 +86,7 @@ def test_a_handful_of_points(tmp_path, monkeypatch):
     coarse = {"-domain_cells": "64,64", "-time_adapt_tol": "1e-4"}
     monkeypatch.setattr(chart_claim, "fine_options", lambda kind: fine(kind) | coarse)
     points = (
-        study.Point(study.BEST, 24, tolerance=1e-3),
+        study.Point(study.BEST, 24, tolerance=5e-4),
         study.Point("split", 64, dt=1 / 64),
         study.Point("penalty", 64, dt=1 / 4),
     )

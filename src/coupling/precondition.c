@@ -2,9 +2,10 @@
 #include "coupling/denseblock.h"
 #include "coupling/lagrangian.h"
 
-#define MOST_EXCESS 5  /* iterations more than with new blocks, in one solve */
-#define STEP_RATIO 2.2 /* of two steps whose blocks are the same: a factor of 2 costs half an iteration */
-#define NO_LIMIT 1000  /* solves that blocks may serve */
+#define MOST_EXCESS 5     /* iterations more than with new blocks, in one solve */
+#define FIXED_RATIO 1.1   /* of two steps whose blocks are the same, where few are to come that differ */
+#define ADAPTED_RATIO 2.2 /* the same where each differs: a factor of 2 costs half an iteration */
+#define NO_LIMIT 1000     /* solves that blocks may serve */
 
 /* How far apart markers of one block are: half a contour, or anywhere. */
 static PetscReal Reach(Coupling c) {
@@ -21,6 +22,7 @@ PetscErrorCode PreconditionerCreate(Scene scene, Unknowns u, Preconditioner *out
   PetscCall(PetscNew(&p));
   *out = p;
   p->unknowns = u;
+  p->step_ratio = scene->time.adapt == ADAPT_ERROR ? ADAPTED_RATIO : FIXED_RATIO;
   p->type = CouplingHasMembrane(c) ? (MobilityType)scene->coupling.mobility : MOBILITY_NONE;
   PetscCall(PetscMalloc2(u->walls->n, &p->d, u->velocity, &p->force));
   if (c->bodies->obstacles) PetscCall(ObstacleBlockCreate(&scene->fluid, c, &p->solid));
@@ -133,7 +135,7 @@ static PetscBool LabelsMoved(Preconditioner p) {
 /* Whether a step is so many times as long as that of the blocks, or as short. None are made yet: a0 = 0. */
 static PetscBool StepChanged(Preconditioner p) {
   const PetscReal ratio = p->age.a0 / p->unknowns->coupling->fluid->a0;
-  return ratio < STEP_RATIO && ratio * STEP_RATIO > 1 ? PETSC_FALSE : PETSC_TRUE;
+  return ratio < p->step_ratio && ratio * p->step_ratio > 1 ? PETSC_FALSE : PETSC_TRUE;
 }
 
 static PetscErrorCode SetUpChat(Preconditioner p) {

@@ -30,11 +30,12 @@ typedef struct _p_Preconditioner *Preconditioner;
 struct _p_Preconditioner {
   Unknowns unknowns; /* borrowed */
   MobilityType type;
-  Mobility mobility;   /* table; NULL in unbounded fluid, where the near field is all of it */
-  DenseBlocks blocks;  /* table, few vesicles */
-  Patterns patterns;   /* table, many vesicles */
-  ObstacleBlock solid; /* NULL without obstacles */
-  RootPC ilu;          /* ilu: of the assembled Chat, prefix coupled_mobility_ */
+  Mobility mobility;    /* table; NULL in unbounded fluid, where the near field is all of it */
+  DenseBlocks blocks;   /* table, few vesicles */
+  Patterns patterns;    /* table, many vesicles */
+  ObstacleBlock solid;  /* NULL without obstacles */
+  RootPC ilu;           /* ilu: of the assembled Chat, prefix coupled_mobility_ */
+  PetscReal step_ratio; /* of two steps whose dense blocks are the same */
   Ageing age;
   Application now;
   PetscBool flexible; /* blocks may be made anew under way: the KSP allows a changing preconditioner */
@@ -49,8 +50,8 @@ PETSC_EXTERN PetscErrorCode PreconditionerCreate(Scene scene, Unknowns unknowns,
 PETSC_EXTERN PetscErrorCode PreconditionerDestroy(Preconditioner *preconditioner);
 
 /* PreconditionerSetUp - follow the coupling's a0 and markers; a solve begins. The dense blocks are kept while a0 moves
-   by less than 10 % and until the iterations beyond those of the first solve with them have cost as much as new ones
-   would, and while I + (v/a0) d/dt of the labels' speeds v moves by less than 10 %; a solve that needs many more
+   by less than step_ratio and until the iterations beyond those of the first solve with them have cost as much as new
+   ones would, and while I + (v/a0) d/dt of the labels' speeds v moves by less than 10 %; a solve that needs many more
    iterations makes them anew and goes on. Collective. */
 PETSC_EXTERN PetscErrorCode PreconditionerSetUp(Preconditioner preconditioner);
 
