@@ -1,7 +1,12 @@
-"""Many obstacles: the preconditioner's block by each curve's own and waves, and the near field of distant ones."""
+"""The preconditioner's block of obstacles: by each curve's own and waves, and in steps of many sizes; the near field of
+distant ones."""
+
+import re
 
 import pytest
-from test_obstacles import COUPLED, PERIODIC, STILL, agree, last
+from conftest import run_petves
+from test_obstacles import COUPLED, PERIODIC, POST, STILL, agree, last
+from test_restart import at_step
 
 
 def lattice(posts, radius=0.25, shift=0.5):
@@ -20,6 +25,8 @@ def test_factor_by_modes(tmp_path):
         for n, factor in ((4, "dense"), (4, "modes"), (8, "modes"))
     }
     dense, modes = posts[4, "dense"], posts[4, "modes"]
+    two = last(tmp_path / "two", f"{STILL} {lattice(4)}", ranks=2)
+    assert two["obstacle_force_x"] == pytest.approx(dense["obstacle_force_x"], rel=1e-13), "posts half a period apart"
     assert modes["obstacle_force_x"] == pytest.approx(dense["obstacle_force_x"], rel=1e-9)
     assert modes["obstacle_force_x"] != dense["obstacle_force_x"], "both took the same way"
     assert modes["coupled_its"] <= 5 and posts[8, "modes"]["coupled_its"] <= modes["coupled_its"] + 1
@@ -44,3 +51,17 @@ def test_direct_ranks_and_restart_with_modes(tmp_path):
     """A vesicle among posts whose block is taken apart: as test_direct_ranks_and_restart."""
     vesicle = "-vesicle_semi_axes .1,.2 -vesicle_markers 25 -vesicle_center 1,.6 -vesicle_bending .01"
     agree(f"{lattice(3, 0.25, 0)} {vesicle} {COUPLED} -obstacle_factor modes -time_step .02", 0.02, tmp_path)
+
+
+def test_adaptive_steps_with_inertia(tmp_path):
+    """Steps of many sizes: the factors of earlier ones serve, and a restart has the same bits."""
+    options = (
+        f"{POST} -fluid_inertia unsteady -time_adapt error -time_adapt_tol 1e-3 -time_step .01 -checkpoint_every 20"
+    )
+    whole = run_petves(tmp_path / "whole", f"{options} -time_end .6 -log_view :{tmp_path / 'log'}").series
+    made = re.search(r"FactorObstacles +(\d+)", (tmp_path / "log").read_text())[1]
+    assert int(made) < 0.6 * len(whole["dt"]) and whole["coupled_its"][2:].mean() <= 4, "made for half of the steps"
+    again = f"-restart {tmp_path / 'whole' / at_step(tmp_path / 'whole', 20)}"
+    rest = run_petves(tmp_path / "rest", f"{options} -time_end .6 {again}").series
+    for column in ("center_x", "gap", "obstacle_force_x", "obstacle_torque_1", "coupled_its"):
+        assert rest[column][-1] == whole[column][-1]

@@ -30,6 +30,12 @@ PETSC_EXTERN PetscErrorCode DenseBlockFactor(Membrane membrane, PetscReal h2, De
 PETSC_EXTERN PetscErrorCode DenseBlockSolve(Membrane membrane, PetscReal h2, const DenseBlock *block, PetscInt nrhs,
                                             PetscScalar U[], PetscScalar sigma[]);
 
+/* DenseStepChanged - whether a factor made for one coefficient of the time step no longer serves the present one: they
+   differ by more than this ratio, or one of them is zero. Not collective. */
+static inline PetscBool DenseStepChanged(PetscReal made, PetscReal now, PetscReal ratio) {
+  return made == now || (now < ratio * made && made < ratio * now) ? PETSC_FALSE : PETSC_TRUE;
+}
+
 /* DenseRenewalCost - of so many dense blocks of n markers each, made anew, in iterations on so many cells; w: markers
    of the obstacles that the block knows. From the operation counts and the speeds of one core; a number of the problem
    alone, so that iterations do not depend on the machine or its load. Not collective. */

@@ -19,6 +19,7 @@ struct _p_ObstacleBlock {
   ObstacleModes modes;   /* NULL: dense */
   PetscScalar *all;      /* [2W] work */
   float *from, *to;      /* [2W] on root: work, what has been found */
+  PetscBool renewed;     /* since it was last coupled */
   PetscBool coupled;     /* to the vesicles, by */
   float *response;       /* [2M][2W] X, on root */
   PetscScalar *force;    /* [2M] of vesicles, work */
@@ -140,6 +141,8 @@ static PetscErrorCode Make(ObstacleBlock b, PetscBool *failed) {
   b->made = b->obstacles->t;
   b->least = -1;
   b->excess = 0;
+  if (b->coupled) b->renewed = PETSC_TRUE;
+  b->coupled = PETSC_FALSE;
   if (b->modes)
     PetscCall(ObstacleModesSetUp(b->modes, b->alpha, failed));
   else
@@ -158,16 +161,27 @@ static PetscErrorCode Invert(ObstacleBlock b, const float x[], float y[]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Whether the factor is of another place of bodies or of another time step. */
+static PetscBool IsOld(ObstacleBlock b) {
+  return b->obstacles->moving || b->alpha != b->coupling->fluid->alpha ? PETSC_TRUE : PETSC_FALSE;
+}
+
 PetscErrorCode ObstacleBlockSetUp(ObstacleBlock b, PetscBool *failed) {
-  const PetscBool old = b->obstacles->moving && b->excess > RenewalCost(b) ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionBeginUser;
-  if (b->alpha != b->coupling->fluid->alpha || old) PetscCall(Make(b, failed));
+  if (DenseStepChanged(b->alpha, b->coupling->fluid->alpha, OBSTACLE_STEP_RATIO) ||
+      (IsOld(b) && b->excess > RenewalCost(b)))
+    PetscCall(Make(b, failed));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 void ObstacleBlockSolved(ObstacleBlock b, PetscInt its) {
   if (b->least < 0 || its < b->least) b->least = its;
-  b->excess += its - b->least;
+  if (IsOld(b)) b->excess += its - b->least;
+}
+
+PetscBool ObstacleBlockIsOlder(Coupling c) {
+  const Obstacles o = c->bodies->obstacles;
+  return o && (o->moving || !c->fluid->steady) ? PETSC_TRUE : PETSC_FALSE;
 }
 
 void ObstacleBlockGetMemory(ObstacleBlock b, PetscReal memory[OBSTACLE_BLOCK_MEMORY]) {
@@ -241,10 +255,11 @@ PetscErrorCode ObstacleBlockCouple(ObstacleBlock b, Mobility mobility, PetscReal
   PetscReal *K;
   PetscFunctionBeginUser;
   if (b->obstacles->moving) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(ObstacleBlockSetUp(b, failed)); /* a restart comes here first */
+  if (b->alpha < 0) PetscCall(Make(b, failed)); /* a restart comes here first */
   if (*failed) PetscFunctionReturn(PETSC_SUCCESS);
-  if (!b->coupled) PetscCall(PetscMalloc2(m, &b->force, m, &b->single));
+  if (!b->force) PetscCall(PetscMalloc2(m, &b->force, m, &b->single));
   b->coupled = PETSC_TRUE;
+  b->renewed = PETSC_FALSE;
   PetscCall(PetscMalloc1(2 * b->obstacles->layout->M * m, &K));
   PetscCall(AssembleCross(b, mobility, K));
   if (b->obstacles->layout->rank == b->root) PetscCall(Eliminate(b, m, K, Mob));
@@ -254,6 +269,10 @@ PetscErrorCode ObstacleBlockCouple(ObstacleBlock b, Mobility mobility, PetscReal
 
 PetscBool ObstacleBlockCoupled(ObstacleBlock b) {
   return b->coupled;
+}
+
+PetscBool ObstacleBlockRenewed(ObstacleBlock b) {
+  return b->renewed;
 }
 
 PetscErrorCode ObstacleBlockBegin(ObstacleBlock b, PetscScalar r[], PetscScalar U[]) {

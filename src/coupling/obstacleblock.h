@@ -2,12 +2,17 @@
    inverse in single precision: part of the preconditioner (docs/obstacles.md, Preconditioner). E A^-1 E^T is that of a
    periodic box of the same cells (mobility.h), or, where an obstacle stands on a wall, the grid's own
    (mobilitysolves.h). While obstacles rest it is made once in quasi-steady flow. Of bodies that move it is the one of
-   an earlier time, forces and velocities turned with each body, as one alone has the same block wherever it is; once
-   the iterations beyond the fewest so far have cost as much as a new one would, it is made anew. */
+   an earlier time, forces and velocities turned with each body, as one alone has the same block wherever it is; in
+   unsteady flow it may be that of a time step of another size (DenseStepChanged). Once the iterations beyond the fewest
+   so far have cost as much as a new one would, it is made anew. */
 #pragma once
 #include "coupling/mobility.h"
 
 typedef struct _p_ObstacleBlock *ObstacleBlock;
+
+/* Of two steps whose factor is the same, and, where error control chooses steps, the blocks of vesicles among
+   obstacles: a factor of 2 costs a stiff vesicle before a throat four iterations. */
+#define OBSTACLE_STEP_RATIO 1.45
 
 /* ObstacleBlockCreate - for the coupling's obstacles in the fluid that spec makes. Collective. */
 PETSC_EXTERN PetscErrorCode ObstacleBlockCreate(const FluidSpec *spec, Coupling coupling, ObstacleBlock *block);
@@ -19,7 +24,15 @@ PETSC_EXTERN PetscErrorCode ObstacleBlockDestroy(ObstacleBlock *block);
 PETSC_EXTERN PetscErrorCode ObstacleBlockSetUp(ObstacleBlock block, PetscBool *failed);
 PETSC_EXTERN void ObstacleBlockSolved(ObstacleBlock block, PetscInt its);
 
-/* ObstacleBlockGetMemory, ObstacleBlockSetMemory - what is kept of moving bodies, for a checkpoint (precondition.h):
+/* ObstacleBlockRenewed - whether the factor has been made anew since ObstacleBlockCouple, whose X has been dropped with
+   the old one. Not collective. */
+PETSC_EXTERN PetscBool ObstacleBlockRenewed(ObstacleBlock block);
+
+/* ObstacleBlockIsOlder - whether a factor may be of an earlier time or of another time step: with moving bodies or in
+   unsteady flow. Not collective. */
+PETSC_EXTERN PetscBool ObstacleBlockIsOlder(Coupling coupling);
+
+/* ObstacleBlockGetMemory, ObstacleBlockSetMemory - what is kept of such factors, for a checkpoint (precondition.h):
    memory[0] is the time at which the factor was made, memory[1] its alpha, negative: none. Set makes it again, with the
    coupling placed at that time and for that alpha. Set is collective. */
 #define OBSTACLE_BLOCK_MEMORY 4

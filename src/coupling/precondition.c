@@ -7,6 +7,12 @@
 #define ADAPTED_RATIO 2.2 /* the same where each differs: a factor of 2 costs half an iteration */
 #define NO_LIMIT 1000     /* solves that blocks may serve */
 
+/* Of two steps whose blocks are the same. */
+static PetscReal StepRatio(Scene scene, Coupling c) {
+  if (scene->time.adapt != ADAPT_ERROR) return FIXED_RATIO;
+  return c->bodies->obstacles ? OBSTACLE_STEP_RATIO : ADAPTED_RATIO;
+}
+
 /* How far apart markers of one block are: half a contour, or anywhere. */
 static PetscReal Reach(Coupling c) {
   const Membrane m = c->membrane;
@@ -22,7 +28,7 @@ PetscErrorCode PreconditionerCreate(Scene scene, Unknowns u, Preconditioner *out
   PetscCall(PetscNew(&p));
   *out = p;
   p->unknowns = u;
-  p->step_ratio = scene->time.adapt == ADAPT_ERROR ? ADAPTED_RATIO : FIXED_RATIO;
+  p->step_ratio = StepRatio(scene, c);
   p->type = CouplingHasMembrane(c) ? (MobilityType)scene->coupling.mobility : MOBILITY_NONE;
   PetscCall(PetscMalloc2(u->walls->n, &p->d, u->velocity, &p->force));
   if (c->bodies->obstacles) PetscCall(ObstacleBlockCreate(&scene->fluid, c, &p->solid));
@@ -132,10 +138,11 @@ static PetscBool LabelsMoved(Preconditioner p) {
   return PETSC_FALSE;
 }
 
-/* Whether a step is so many times as long as that of the blocks, or as short. None are made yet: a0 = 0. */
-static PetscBool StepChanged(Preconditioner p) {
-  const PetscReal ratio = p->age.a0 / p->unknowns->coupling->fluid->a0;
-  return ratio < p->step_ratio && ratio * p->step_ratio > 1 ? PETSC_FALSE : PETSC_TRUE;
+/* Whether the blocks are no longer those of what they were made for. None are made yet: a0 = 0. */
+static PetscBool Changed(Preconditioner p) {
+  const PetscReal a0 = p->unknowns->coupling->fluid->a0;
+  if (DenseStepChanged(p->age.a0, a0, p->step_ratio) || LabelsMoved(p)) return PETSC_TRUE;
+  return p->solid ? ObstacleBlockRenewed(p->solid) : PETSC_FALSE;
 }
 
 static PetscErrorCode SetUpChat(Preconditioner p) {
@@ -162,7 +169,7 @@ PetscErrorCode PreconditionerSetUp(Preconditioner p) {
   if (p->patterns) PetscCall(PatternsFollow(p->patterns, &p->failed));
   if (!p->blocks) PetscFunctionReturn(PETSC_SUCCESS);
   DenseBlocksPlace(p->blocks);
-  if (a->excess > RenewalCost(p) || a->solves >= a->most || StepChanged(p) || LabelsMoved(p)) PetscCall(Renew(p));
+  if (a->excess > RenewalCost(p) || a->solves >= a->most || Changed(p)) PetscCall(Renew(p));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

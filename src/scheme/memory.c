@@ -1,11 +1,10 @@
 /* What the solver of unsplit steps has kept from earlier ones, for checkpoints. */
 #include "scheme/coupled.h"
 
-/* The block of moving bodies; NULL where there are none. */
-static ObstacleBlock MovingBlock(Scheme s) {
+/* The obstacles' block where its factor may be of an earlier time or time step; else NULL. */
+static ObstacleBlock OlderBlock(Scheme s) {
   Coupled *d = (Coupled *)s->data;
-  const Obstacles o = s->coupling->bodies->obstacles;
-  return d->solver && o && o->moving ? d->solver->preconditioner->solid : NULL;
+  return d->solver && ObstacleBlockIsOlder(s->coupling) ? d->solver->preconditioner->solid : NULL;
 }
 
 /* Where its numbers are, the last ones of the memory. */
@@ -18,7 +17,7 @@ PetscErrorCode CoupledRemember(Scheme s, PetscReal memory[]) {
   const Layout l = s->membrane->layout;
   PetscFunctionBeginUser;
   if (!d->solver) PetscFunctionReturn(PETSC_SUCCESS);
-  if (MovingBlock(s)) ObstacleBlockGetMemory(MovingBlock(s), memory + AtBlock(s));
+  if (OlderBlock(s)) ObstacleBlockGetMemory(OlderBlock(s), memory + AtBlock(s));
   PetscCall(PreconditionerGetMemory(d->solver->preconditioner, memory));
   if (d->solver->preconditioner->patterns) {
     PatternsGetMemory(d->solver->preconditioner->patterns, memory + PRECONDITIONER_MEMORY);
@@ -54,13 +53,13 @@ static PetscErrorCode PlaceAgain(Scheme s, PetscReal a0, PetscReal t, Vec X, con
 static PetscErrorCode RecallBlock(Scheme s, const PetscReal memory[]) {
   char message[PETVES_MAX_MESSAGE];
   PetscFunctionBeginUser;
-  if (!MovingBlock(s) || memory[1] < 0) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!OlderBlock(s) || memory[1] < 0) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ObstaclesCheck(s->coupling->bodies->obstacles, s->fluid->grid, memory[0], message));
   PetscCheck(memory[0] >= 0 && memory[0] <= LATEST * (s->state.t + s->state.dt) && !*message, s->scene->comm,
              PETSC_ERR_USER_INPUT, "-restart %s: its solver's memory is of time %g; allowed: a checkpoint.h5 of petves",
              s->scene->output.restart, (double)memory[0]);
   PetscCall(PlaceAgain(s, memory[1] > 0 ? memory[1] : 1, memory[0], s->state.X, NULL));
-  PetscCall(ObstacleBlockSetMemory(MovingBlock(s), memory));
+  PetscCall(ObstacleBlockSetMemory(OlderBlock(s), memory));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -140,8 +140,8 @@ PetscErrorCode SchemeStep(Scheme s, PetscReal most, PetscReal reserve) {
 }
 
 PetscInt SchemeMemorySize(Scheme s) {
-  const Obstacles o = s->coupling->bodies->obstacles;
-  return PRECONDITIONER_MEMORY + PatternsMemorySize(s->membrane->layout) + (o && o->moving ? OBSTACLE_BLOCK_MEMORY : 0);
+  const PetscInt block = ObstacleBlockIsOlder(s->coupling) ? OBSTACLE_BLOCK_MEMORY : 0;
+  return PRECONDITIONER_MEMORY + PatternsMemorySize(s->membrane->layout) + block;
 }
 
 PetscErrorCode SchemeRemember(Scheme s, PetscReal memory[]) {
