@@ -109,6 +109,15 @@ def test_stress(tmp_path):
     assert json.loads((run.folder / "summary.json").read_text())["viscosity_ratio"] == [0.3, 5]
 
 
+@pytest.mark.parametrize("box", ["", "-domain_bc_y periodic", "-flow_drive flux"], ids=["channel", "periodic", "flux"])
+def test_kinetic_energy_is_of_the_saved_velocity(tmp_path, box):
+    """Measured in the solve of a step, whose velocity is made afterwards; 3 ranks, vesicles on a seam or near walls."""
+    run = run_petves(tmp_path / "run", f"{SMALL} {NEAR} {PLAIN} -domain_bc_x periodic {box}", 3)
+    with h5py.File(run.folder / "checkpoint.h5") as file:
+        squares = sum((np.array(file[f"fluid/{name}"]) ** 2).sum() for name in "uv")
+    assert run.series["energy_kinetic"][-1] == pytest.approx(squares / 2 * 0.125**2, rel=1e-11)
+
+
 def test_velocity_is_of_two_fluids(tmp_path):
     """Continuous across the membrane: next to it cells of 32^2 have what 128^2 has, inside and outside."""
     scene = f"{SHEAR} {PLAIN} -vesicle_viscosity_ratio 10 -time_step .05 -time_end .1 -output_every .1"

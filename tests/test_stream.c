@@ -17,7 +17,7 @@ static const PetscScalar *Force(void *ctx, Field f, PetscInt j, PetscScalar work
   return f == FIELD_U ? RowAt(&a->u, j) : a->force + GridLocalU(a->grid) + j * a->grid->columns[f];
 }
 
-static void Velocity(void *ctx, Field f, PetscInt j, const PetscScalar row[]) {
+static void Velocity(void *ctx, Field f, PetscInt j, PetscScalar row[]) {
   Arrays *a = (Arrays *)ctx;
   const PetscInt n = a->grid->columns[f];
   (void)PetscArraycpy(a->velocity + (f == FIELD_V ? GridLocalU(a->grid) : 0) + j * n, row, n);

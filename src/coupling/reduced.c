@@ -130,7 +130,7 @@ static PetscErrorCode AddMean(Reduced s, const PetscReal mean[2], Vec w) {
   const PetscReal *profile = StokesProfile(s->stokes);
   PetscScalar *a;
   PetscFunctionBeginUser;
-  if (!s->source || g->wall[0] || (g->wall[1] && !profile)) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!s->unknowns->coupling->contrast || g->wall[0] || (g->wall[1] && !profile)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecGetArray(w, &a));
   for (int f = FIELD_U; f <= (g->wall[1] ? FIELD_U : FIELD_V); f++)
     for (PetscInt j = 0; j < g->rows[f]; j++)
@@ -149,12 +149,10 @@ static PetscErrorCode Solve(Reduced s, Vec r, Vec source, const PetscReal mean[2
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode ReducedBegin(Reduced s, Vec moved) {
-  PetscFunctionBeginUser;
+void ReducedBegin(Reduced s, Vec moved, Vec source) {
   s->moved = moved;
+  s->source = source;
   s->mean[0] = s->mean[1] = 0;
-  if (s->source) PetscCall(VecSet(s->source, 0));
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* U = E u of the forces of x alone, on the grid; the product is kept. */
@@ -213,7 +211,7 @@ static PetscErrorCode FollowByRows(Reduced s, PetscBool all, Vec f, StreamMeasur
   const Coupling c = s->unknowns->coupling;
   PetscFunctionBeginUser;
   if (s->source) PetscCall(DoubleLayerRows(c->contrast, StokesProfile(s->stokes), s->dipoles));
-  PetscCall(MarkersFollow(c->markers, s->stream, s->dipoles, all, f, s->U, measures));
+  PetscCall(MarkersFollow(c->markers, s->stream, s->dipoles, all, f, s->source, s->U, measures));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -305,13 +303,12 @@ PetscErrorCode ReducedCombine(Reduced s, Vec x, Vec w, Vec p, Vec residual, Pets
 
 PetscBool ReducedNeedsNoFields(Reduced s) {
   const Coupling c = s->unknowns->coupling;
-  return s->stream && c->fluid->steady && !c->fluid->total && !c->contrast && CouplingHasBodies(c) ? PETSC_TRUE
-                                                                                                   : PETSC_FALSE;
+  return s->stream && c->fluid->steady && !c->fluid->total && CouplingHasBodies(c) ? PETSC_TRUE : PETSC_FALSE;
 }
 
-PetscErrorCode ReducedFields(Reduced s, Vec f, Vec w, Vec p) {
+PetscErrorCode ReducedFields(Reduced s, Vec f, Vec source, const PetscReal mean[2], Vec w, Vec p) {
   PetscFunctionBeginUser;
-  PetscCall(StokesSolve(s->stokes, f, NULL, w, p));
+  PetscCall(Solve(s, f, source, mean, w, p));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -330,7 +327,6 @@ PetscErrorCode ReducedCreate(Unknowns u, Reduced *out) {
   PetscCall(VecDuplicate(s->F, &s->U));
   if (c->contrast) {
     PetscCall(VecDuplicate(s->F, &s->motion));
-    PetscCall(DMCreateGlobalVector(c->fluid->grid->da[FIELD_P], &s->source));
     if (s->stream) PetscCall(DipoleRowsCreate(c->fluid->grid, c->fluid->nu, &s->dipoles));
   }
   PetscCall(UnknownsCreateVec(u, &s->rest));
@@ -357,7 +353,6 @@ PetscErrorCode ReducedDestroy(Reduced *reduced) {
   PetscCall(VecDestroy(&s->F));
   PetscCall(VecDestroy(&s->U));
   PetscCall(VecDestroy(&s->motion));
-  PetscCall(VecDestroy(&s->source));
   PetscCall(DipoleRowsDestroy(&s->dipoles));
   PetscCall(VecDestroy(&s->rest));
   PetscCall(PetscFree2(s->d, s->slip));

@@ -38,7 +38,7 @@ struct _p_Reduced {
   Vec motion;         /* with a viscosity contrast: what the jump is of, marker vector, work */
   Vec moved;          /* borrowed: of the motion what is known */
   DipoleRows dipoles; /* of the jump, with stream */
-  Vec source;         /* and what the divergence of the forces in f is, minus; NULL without */
+  Vec source;         /* borrowed: and what the divergence of the forces in f is, minus; NULL without */
   PetscReal mean[2];  /* and the mean velocity that goes with it in a box that is periodic both ways */
   Vec rest;           /* unknowns, work */
   PetscScalar *d;     /* [walls->n] all wall forces, work */
@@ -49,9 +49,10 @@ struct _p_Reduced {
 PETSC_EXTERN PetscErrorCode ReducedCreate(Unknowns unknowns, Reduced *reduced);
 PETSC_EXTERN PetscErrorCode ReducedDestroy(Reduced *reduced);
 
-/* ReducedBegin - a problem begins, in which the part `moved` of the markers' motion is known; NULL without viscosity
-   contrast. Not collective. */
-PETSC_EXTERN PetscErrorCode ReducedBegin(Reduced reduced, Vec moved);
+/* ReducedBegin - a problem begins, in which the part `moved` of the markers' motion is known, and the dipoles' source
+   is added to `source`, zero now, with the mean velocity in reduced->mean; both NULL without viscosity contrast. Not
+   collective. */
+PETSC_EXTERN void ReducedBegin(Reduced reduced, Vec moved, Vec source);
 
 /* ReducedResidual - the forces of `added` go into f, those of x itself with the dipoles of `moved`; minus the scaled
    residuals at x, with u, p = w, p by one Stokes solve of f, f holding the forces of x. grid false: w and p are not
@@ -61,10 +62,10 @@ PETSC_EXTERN PetscErrorCode ReducedResidual(Reduced reduced, Vec added, Vec f, V
                                             Vec w, Vec p, Vec residual, StreamMeasures *measures);
 
 /* ReducedNeedsNoFields - whether a problem with forces of markers alone can be solved without u and p on the grid:
-   quasi-steady disturbances where x is periodic, without viscosity contrast. ReducedFields - then they are the Stokes
-   solve's for f as ReducedResidual left it. Not collective; collective. */
+   quasi-steady disturbances where x is periodic. ReducedFields - then they are the Stokes solve's for f, source and
+   mean as ReducedResidual left them. Not collective; collective. */
 PETSC_EXTERN PetscBool ReducedNeedsNoFields(Reduced reduced);
-PETSC_EXTERN PetscErrorCode ReducedFields(Reduced reduced, Vec f, Vec w, Vec p);
+PETSC_EXTERN PetscErrorCode ReducedFields(Reduced reduced, Vec f, Vec source, const PetscReal mean[2], Vec w, Vec p);
 
 /* ReducedForgetProducts - a solve begins: products with A are kept from here on. Not collective. */
 PETSC_EXTERN PetscErrorCode ReducedForgetProducts(Reduced reduced);

@@ -200,7 +200,7 @@ PetscErrorCode CoupledSolverSolve(CoupledSolver s, const CoupledProblem *q, Solv
   }
   PetscCall(s->reduced->stokes ? Reference(s, q->f, q->g, q->k) : FreeReference(s, q));
   PetscCall(Guess(s, q));
-  PetscCall(ReducedBegin(s->reduced, q->moved));
+  ReducedBegin(s->reduced, q->moved, q->source);
   PetscCall(ReducedResidual(s->reduced, s->x, q->f, q->g, q->k, s->x, PETSC_FALSE, q->w, q->p, s->b, NULL));
   PetscCall(KSPGetTolerances(s->ksp, &rtol, &atol, NULL, NULL));
   PetscCall(VecSet(s->pending, 0));

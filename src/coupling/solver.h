@@ -5,7 +5,8 @@
 
 /* What a step asks for, and the vectors that its answer goes to. */
 typedef struct {
-  Vec moved;             /* with viscosity contrast: the part of the markers' motion that is known; else NULL */
+  Vec moved, source;     /* with viscosity contrast: the part of the markers' motion that is known, and zero, to which
+                            the dipoles' source is added (scheme coupled); else NULL */
   Vec f, g, k;           /* right-hand sides of momentum (the forces of the solution are added to it), Dm V/h^2 and V,
                             k of all bodies */
   Vec w, p, sigma, d, V; /* solution; sigma, d and V hold the first guess; w and p may be NULL where

@@ -120,6 +120,20 @@ static void FreeRow(Stream s, PetscInt j, PetscInt since) {
        s->y + j * s->width);
 }
 
+/* What is added to the mean of row `at` of all. */
+static PetscReal Given(const StreamRows *rows, Field f, PetscInt at) {
+  return rows->mean[f] ? rows->mean[f][at] : 0;
+}
+
+/* n_x nu d_yy of the v that is added to row j between walls: what it is to the pressure. */
+static PetscReal GivenForce(Stream s, const StreamRows *rows, PetscInt j) {
+  const Grid g = s->fluid->grid;
+  const PetscInt at = g->first + j;
+  const PetscReal below = at > 0 ? Given(rows, FIELD_V, at - 1) : 0;
+  const PetscReal bend = below - 2 * Given(rows, FIELD_V, at) + Given(rows, FIELD_V, at + 1);
+  return (PetscReal)g->n[0] * s->fluid->nu / PetscSqr(g->h) * bend;
+}
+
 /* Up all rows, with nothing coming in from below. The nodes below the first row of u with a force feel it. */
 static void Gather(Stream s, const StreamRows *rows, PetscBool measured) {
   const Grid g = s->fluid->grid;
@@ -143,7 +157,7 @@ static void Gather(Stream s, const StreamRows *rows, PetscBool measured) {
     if (!g->wall[1])
       s->mean_v += Sum(n, v);
     else if (measured)
-      StreamMeterForce(s->meter, j, Sum(n, v));
+      StreamMeterForce(s->meter, j, Sum(n, v) + GivenForce(s, rows, j));
     ForcedRow(s, j, low, high, v, j > first ? s->y + (j - 1) * w : s->zero);
   }
   const PetscInt felt = s->rows > 0 ? s->alive[s->rows - 1] * BLOCK : 0;
@@ -306,15 +320,18 @@ static void NodeRow(Stream s, PetscInt j, PetscBool measured, PetscInt *felt, Pe
   RowTransformBackward(s->t, row);
 }
 
-/* A row of u between two rows of nodes, and of v in the upper one. */
+/* A row of u between two rows of nodes, which stays in s->curl, and of v in the upper one. */
 static void VelocityRows(Stream s, const StreamRows *rows, PetscBool measured, PetscInt j, const PetscScalar low[],
                          const PetscScalar high[]) {
-  const PetscInt n = s->fluid->grid->n[0];
-  VelocityU(n, low, high, s->means[j], s->curl);
-  if (measured) StreamMeterDivergence(s->meter, s->curl, low, high);
+  const Grid g = s->fluid->grid;
+  const PetscInt n = g->n[0], at = g->first + j;
+  const PetscReal given = Given(rows, FIELD_V, at), below = Given(rows, FIELD_V, (at + g->n[1] - 1) % g->n[1]);
+  VelocityU(n, low, high, s->means[j] + Given(rows, FIELD_U, at), s->curl);
   rows->velocity(rows->ctx, FIELD_U, j, s->curl);
+  if (measured)
+    StreamMeterDivergence(s->meter, s->curl, low, high, given - below, rows->source ? rows->source + j * n : NULL);
   if (j >= s->rows) return;
-  VelocityV(n, high, s->mean_v, s->row[2]);
+  VelocityV(n, high, s->mean_v + given, s->row[2]);
   rows->velocity(rows->ctx, FIELD_V, j, s->row[2]);
 }
 
@@ -339,8 +356,11 @@ static void Scatter(Stream s, const StreamRows *rows, PetscBool measured) {
       low = s->zero;
       if (measured) (void)StreamMeterNodes(s->meter, 0);
     }
-    if (measured) StreamMeterSquares(s->meter, j, s->means[j], j < s->rows ? PETSC_TRUE : PETSC_FALSE, s->mean_v);
-    if (j >= first && j < end) VelocityRows(s, rows, measured, j, low, high);
+    const PetscBool wanted = j >= first && j < end ? PETSC_TRUE : PETSC_FALSE;
+    if (wanted) VelocityRows(s, rows, measured, j, low, high);
+    if (measured)
+      StreamMeterSquares(s->meter, j, wanted ? s->curl : NULL, s->means[j] + Given(rows, FIELD_U, g->first + j),
+                         j < s->rows ? PETSC_TRUE : PETSC_FALSE, s->mean_v + Given(rows, FIELD_V, g->first + j));
     high = low;
   }
 }

@@ -22,8 +22,11 @@ typedef struct {
                          in the row below; all rows where there is one next to a seam in y */
   PetscInt wanted[2]; /* velocities are not wanted outside rows wanted[0] .. wanted[1] - 1; all: 0, rows of u */
   const PetscScalar *(*force)(void *ctx, Field f, PetscInt j,
-                              PetscScalar work[]);                           /* may be work[n_x], which it fills */
-  void (*velocity)(void *ctx, Field f, PetscInt j, const PetscScalar row[]); /* downwards */
+                              PetscScalar work[]);                     /* may be work[n_x], which it fills */
+  void (*velocity)(void *ctx, Field f, PetscInt j, PetscScalar row[]); /* downwards; to u it may add what it has */
+  const PetscReal *mean[2];  /* [rows of the whole grid] added to every u and v of a row, of v zero on walls; may be
+                                NULL, */
+  const PetscScalar *source; /* [rows][n_x] G^T of these and of what `velocity` adds; NULL: zero */
 } StreamRows;
 
 /* StreamCreate - for a fluid in a box that is periodic in x, whose alpha it follows; flux: borrowed, NULL unless the
@@ -33,7 +36,6 @@ PETSC_EXTERN PetscErrorCode StreamDestroy(Stream *stream);
 
 /* StreamSolve - velocity for these forces, zero mean in quasi-steady flow in a box that is periodic both ways. Counted
    as one scalar solve, whose transforms it has. Modes are followed from forces no farther than they are felt, 2e-22 of
-   them. measures: of this velocity on all of the grid (its divergence in the wanted rows), NULL: not wanted.
-   Collective.
- */
+   them. measures: of this velocity with all that is added on all of the grid (its divergence less `source` in the
+   wanted rows), NULL: not wanted. Collective. */
 PETSC_EXTERN PetscErrorCode StreamSolve(Stream stream, const StreamRows *rows, StreamMeasures *measures);

@@ -52,8 +52,18 @@ PetscReal *StreamMeterNodes(StreamMeter m, PetscInt count) {
   return m->chi[m->now];
 }
 
+static PetscReal SumSquares(PetscInt n, const PetscScalar x[]) {
+  Lanes sum = {0};
+  PetscReal rest = 0;
+  PetscInt i = 0;
+  for (; i + LANES <= n; i += LANES) sum += LanesAt(x + i) * LanesAt(x + i);
+  for (; i < n; i++) rest += PetscSqr(x[i]);
+  return LanesSum(sum) + rest;
+}
+
 /* By Parseval: all modes count twice but the mean, which chi has not, and one that alternates from entry to entry. */
-void StreamMeterSquares(StreamMeter m, PetscInt j, PetscReal mean_u, PetscBool has_v, PetscReal mean_v) {
+void StreamMeterSquares(StreamMeter m, PetscInt j, const PetscScalar row[], PetscReal mean_u, PetscBool has_v,
+                        PetscReal mean_v) {
   const Grid g = m->grid;
   const PetscReal *low = m->chi[m->now], *high = m->chi[1 - m->now];
   const PetscInt count = PetscMax(m->count[0], m->count[1]), single = g->n[0] % 2 ? m->width : m->width - 2;
@@ -63,20 +73,24 @@ void StreamMeterSquares(StreamMeter m, PetscInt j, PetscReal mean_u, PetscBool h
     u += of_u * of_u;
     v += LanesAt(m->wave + k) * chi * chi;
   }
-  PetscReal sum = 2 * (LanesSum(u) + (has_v ? LanesSum(v) : 0)) + PetscSqr(mean_u) + (has_v ? PetscSqr(mean_v) : 0);
-  for (PetscInt k = single; k < count; k++)
-    sum -= PetscSqr(high[k] - low[k]) + (has_v ? m->wave[k] * PetscSqr(high[k]) : 0);
-  m->own.square += (PetscReal)g->n[0] * sum;
+  PetscReal sum[2] = {2 * LanesSum(u) + PetscSqr(mean_u), 2 * LanesSum(v) + PetscSqr(mean_v)};
+  for (PetscInt k = single; k < count; k++) {
+    sum[0] -= PetscSqr(high[k] - low[k]);
+    sum[1] -= m->wave[k] * PetscSqr(high[k]);
+  }
+  m->own.square += row ? SumSquares(g->n[0], row) : (PetscReal)g->n[0] * sum[0];
+  if (has_v) m->own.square += (PetscReal)g->n[0] * sum[1];
   if (!(g->first + j)) m->own.slip += mean_u;
   if (g->first + j == g->n[1] - 1) m->own.slip -= mean_u;
 }
 
-void StreamMeterDivergence(StreamMeter m, const PetscScalar u[], const PetscScalar low[], const PetscScalar high[]) {
+void StreamMeterDivergence(StreamMeter m, const PetscScalar u[], const PetscScalar low[], const PetscScalar high[],
+                           PetscReal rise, const PetscScalar source[]) {
   const PetscInt n = m->grid->n[0];
   PetscReal most = m->own.divergence * m->grid->h;
   for (PetscInt i = 0, last = n - 1; i < n; last = i++) {
-    const PetscReal d = u[i] - u[last] + (high[last] - high[i]) - (low[last] - low[i]);
-    most = PetscMax(most, PetscAbsReal(d));
+    const PetscReal d = u[i] - u[last] + (high[last] - high[i]) - (low[last] - low[i]) + rise;
+    most = PetscMax(most, PetscAbsReal(source ? d + m->grid->h * source[i] : d));
   }
   m->own.divergence = most / m->grid->h;
 }

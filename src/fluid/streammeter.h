@@ -4,10 +4,11 @@
 #include "fluid/rowtransform.h"
 
 typedef struct {
-  PetscReal square;     /* SUM u^2 + v^2 over all faces (length^2/time^2) */
-  PetscReal divergence; /* largest |G^T u| of the cells whose velocity is made (1/time); NaN where one is not finite */
-  PetscReal slip;       /* mean of u in the first row less that in the last (length/time) */
-  PetscReal pressure;   /* mean over the rows of cells next to both walls less that of all; 0 without walls */
+  PetscReal square; /* SUM u^2 + v^2 over all faces (length^2/time^2) */
+  PetscReal
+      divergence; /* largest |G^T u - source| of the cells whose velocity is made (1/time); NaN if one is not finite */
+  PetscReal slip; /* mean of u in the first row less that in the last (length/time) */
+  PetscReal pressure; /* mean over the rows of cells next to both walls less that of all; 0 without walls */
 } StreamMeasures;
 
 /* Rows come in downwards. */
@@ -35,11 +36,13 @@ PETSC_EXTERN void StreamMeterForce(StreamMeter meter, PetscInt j, PetscReal sum)
 /* StreamMeterNodes - room for `count` modes of the next row of nodes; any others are zero. Not collective. */
 PETSC_EXTERN PetscReal *StreamMeterNodes(StreamMeter meter, PetscInt count);
 
-/* StreamMeterSquares - of local row j of u with this mean between the last two rows of nodes, and of v in the upper one
-   with its mean; has_v: whether there is one. Not collective. */
-PETSC_EXTERN void StreamMeterSquares(StreamMeter meter, PetscInt j, PetscReal mean_u, PetscBool has_v,
-                                     PetscReal mean_v);
+/* StreamMeterSquares - of local row j of u with this mean between the last two rows of nodes (u: the row itself, which
+   may have more than the nodes give; NULL: not made), and of v in the upper one with its mean; has_v: whether there is
+   one. Not collective. */
+PETSC_EXTERN void StreamMeterSquares(StreamMeter meter, PetscInt j, const PetscScalar u[], PetscReal mean_u,
+                                     PetscBool has_v, PetscReal mean_v);
 
-/* StreamMeterDivergence - of a row of cells, between the rows of u and of chi/h below and above it. Not collective. */
+/* StreamMeterDivergence - of a row of cells, from the rows of u and of chi/h below and above it and what is added to v
+   above less that below, less the source that it should have (NULL: none). Not collective. */
 PETSC_EXTERN void StreamMeterDivergence(StreamMeter meter, const PetscScalar u[], const PetscScalar low[],
-                                        const PetscScalar high[]);
+                                        const PetscScalar high[], PetscReal rise, const PetscScalar source[]);

@@ -16,8 +16,8 @@ PetscErrorCode DipoleRowsCreate(Grid g, PetscReal nu, DipoleRows *out) {
   *out = d;
   d->grid = g;
   d->nu = nu;
-  PetscCall(PetscCalloc6(size, &d->field[0], size, &d->field[1], size, &d->field[2], g->n[1], &d->mean, g->n[1],
-                         &d->flow, g->n[0], &d->row));
+  PetscCall(
+      PetscCalloc5(size, &d->field[0], size, &d->field[1], size, &d->field[2], g->n[1], &d->mean, g->n[1], &d->flow));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -25,7 +25,7 @@ PetscErrorCode DipoleRowsDestroy(DipoleRows *rows) {
   DipoleRows d = *rows;
   PetscFunctionBeginUser;
   if (!d) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscFree6(d->field[0], d->field[1], d->field[2], d->mean, d->flow, d->row));
+  PetscCall(PetscFree5(d->field[0], d->field[1], d->field[2], d->mean, d->flow));
   PetscCall(PetscFree(*rows));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -117,10 +117,8 @@ void DipoleRowsAddForce(DipoleRows d, PetscBool own, Field f, PetscInt j, PetscS
     row[i] += factor * (b[i ? i - 1 : n - 1] + b[i + 1 < n ? i + 1 : 0] + below * low[i] + above * high[i] - 4 * b[i]);
 }
 
-const PetscScalar *DipoleRowsAddVelocity(DipoleRows d, Field f, PetscInt j, const PetscScalar row[]) {
+void DipoleRowsAddVelocity(DipoleRows d, PetscInt j, PetscScalar row[]) {
   const PetscScalar *b = Row(d, FIELD_P, j);
-  const PetscReal mean = (f == FIELD_U ? d->flow : d->mean)[d->grid->first + j];
-  if (mean == 0 && (f == FIELD_V || j < d->window[0] || j >= d->window[1])) return row;
-  for (PetscInt i = 0; i < d->grid->n[0]; i++) d->row[i] = row[i] + mean + (f == FIELD_U ? b[i] : 0);
-  return d->row;
+  if (j < d->window[0] || j >= d->window[1]) return;
+  for (PetscInt i = 0; i < d->grid->n[0]; i++) row[i] += b[i];
 }

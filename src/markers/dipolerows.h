@@ -15,9 +15,8 @@ struct _p_DipoleRows {
   PetscReal nu;
   PetscInt window[2];    /* of these local rows: any others are zero */
   PetscScalar *field[3]; /* forces on u (with the row above) and v, b along x: from the row below on */
-  PetscScalar *mean;     /* [all rows of v] b along y */
+  PetscScalar *mean;     /* [all rows of v] b along y, with the mean flow; zero on walls */
   PetscScalar *flow;     /* [all rows of u] mean flow along x */
-  PetscScalar *row;      /* [n_x] work */
 };
 
 /* DipoleRowsCreate - none yet. Not collective. */
@@ -31,7 +30,6 @@ PETSC_EXTERN PetscErrorCode DipoleRowsSet(DipoleRows rows, PetscInt M, const Dip
                                           const PetscReal profile[], const PetscReal mean[2]);
 
 /* DipoleRowsAddForce - row += nu L_u b and, if `own`, the dipoles' force, in local row j of u or v; of u the row above
-   the last, too. DipoleRowsAddVelocity - the row plus b, in work space of the rows. Not collective. */
+   the last, too. DipoleRowsAddVelocity - local row j of u += b along x. Not collective. */
 PETSC_EXTERN void DipoleRowsAddForce(DipoleRows rows, PetscBool own, Field field, PetscInt j, PetscScalar row[]);
-PETSC_EXTERN const PetscScalar *DipoleRowsAddVelocity(DipoleRows rows, Field field, PetscInt j,
-                                                      const PetscScalar row[]);
+PETSC_EXTERN void DipoleRowsAddVelocity(DipoleRows rows, PetscInt j, PetscScalar row[]);

@@ -4,9 +4,10 @@
 typedef struct {
   Markers m;
   DipoleRows dipoles;
-  PetscReal alpha;      /* of the markers' forces */
-  const PetscScalar *f; /* or a force on the grid, */
-  Rows u;               /* whose u has a row above */
+  PetscReal alpha;           /* of the markers' forces */
+  const PetscScalar *f;      /* or a force on the grid, */
+  Rows u;                    /* whose u has a row above, */
+  const PetscScalar *source; /* and the dipoles' source on it */
 } Response;
 
 static const PetscScalar *SpreadForce(void *ctx, Field f, PetscInt j, PetscScalar work[]) {
@@ -28,10 +29,10 @@ static const PetscScalar *GridForce(void *ctx, Field f, PetscInt j, PetscScalar 
   return work;
 }
 
-static void TakeVelocity(void *ctx, Field f, PetscInt j, const PetscScalar row[]) {
+static void TakeVelocity(void *ctx, Field f, PetscInt j, PetscScalar row[]) {
   const Response *r = (const Response *)ctx;
-  const PetscScalar *u = r->dipoles ? DipoleRowsAddVelocity(r->dipoles, f, j, row) : row;
-  MarkerRowInterpolate(r->m->rows, f, j, u, r->m->part);
+  if (r->dipoles && f == FIELD_U) DipoleRowsAddVelocity(r->dipoles, j, row);
+  MarkerRowInterpolate(r->m->rows, f, j, row, r->m->part);
 }
 
 /* all: forces may be anywhere, not only where the markers are. */
@@ -41,7 +42,9 @@ static PetscErrorCode Solve(Response *r, Stream stream, PetscBool all, Vec U, St
                            .forced = {all ? 0 : m->window[0], all ? m->grid->rows[FIELD_U] : m->window[1]},
                            .wanted = {m->window[0], m->window[1]},
                            .force = r->f ? GridForce : SpreadForce,
-                           .velocity = TakeVelocity};
+                           .velocity = TakeVelocity,
+                           .mean = {r->dipoles ? r->dipoles->flow : NULL, r->dipoles ? r->dipoles->mean : NULL},
+                           .source = r->source};
   PetscScalar *own;
   PetscFunctionBeginUser;
   PetscCall(PetscArrayzero(m->part, 2 * m->layout->M));
@@ -62,14 +65,16 @@ PetscErrorCode MarkersRespond(Markers m, Stream stream, DipoleRows dipoles, Pets
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode MarkersFollow(Markers m, Stream stream, DipoleRows dipoles, PetscBool all, Vec f, Vec U,
+PetscErrorCode MarkersFollow(Markers m, Stream stream, DipoleRows dipoles, PetscBool all, Vec f, Vec source, Vec U,
                              StreamMeasures *measures) {
   Response r = {.m = m, .dipoles = dipoles};
   PetscFunctionBeginUser;
   PetscCall(PetscLogEventBegin(m->respond, 0, 0, 0, 0));
   PetscCall(VecGetArrayRead(f, &r.f));
+  if (source) PetscCall(VecGetArrayRead(source, &r.source));
   PetscCall(GridRows(m->grid, FIELD_U, r.f, &r.u));
   PetscCall(Solve(&r, stream, all, U, measures));
+  if (source) PetscCall(VecRestoreArrayRead(source, &r.source));
   PetscCall(VecRestoreArrayRead(f, &r.f));
   PetscCall(PetscLogEventEnd(m->respond, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -4,10 +4,10 @@
 #include "markers/dipolerows.h"
 
 /* MarkersRespond - U = E u, u the Stokes solve's velocity for the force alpha E^T F and the dipoles (NULL: none);
-   MarkersFollow - for the force f on the grid, in which the dipoles' force is, and their source; all: f may be
-   anywhere, else it is zero outside the markers' window; measures: of u on the whole grid, without what the dipoles add
-   to it; NULL: not wanted. U may be F. Collective. */
+   MarkersFollow - for the force f on the grid, in which the dipoles' force is, and their source (NULL without them);
+   all: f may be anywhere, else it is zero outside the markers' window; measures: of u on the whole grid, NULL: not
+   wanted. U may be F. Collective. */
 PETSC_EXTERN PetscErrorCode MarkersRespond(Markers markers, Stream stream, DipoleRows dipoles, PetscReal alpha, Vec F,
                                            Vec U);
 PETSC_EXTERN PetscErrorCode MarkersFollow(Markers markers, Stream stream, DipoleRows dipoles, PetscBool all, Vec f,
-                                          Vec U, StreamMeasures *measures);
+                                          Vec source, Vec U, StreamMeasures *measures);

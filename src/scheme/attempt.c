@@ -84,6 +84,8 @@ static PetscErrorCode RightHandSides(Scheme s, Coupled *d, const BDF *b) {
   const Vec f = Momentum(d);
   PetscFunctionBeginUser;
   PetscCall(VecSet(d->known, 0));
+  if (d->source) PetscCall(VecSet(d->source, 0));
+  if (d->next.source) PetscCall(GridClearRows(s->fluid->grid, d->next.rows, d->next.source));
   if (d->next.force)
     PetscCall(MarkersClear(s->coupling->markers, f, d->next.rows));
   else if (s->fluid->steady)
@@ -130,6 +132,7 @@ static PetscErrorCode InitialGuess(Scheme s, Coupled *d) {
 static PetscErrorCode Solve(Scheme s, Coupled *d) {
   State *n = &d->next;
   const CoupledProblem problem = {.moved = d->moved,
+                                  .source = n->source ? n->source : d->source,
                                   .f = Momentum(d),
                                   .g = s->g,
                                   .k = d->known,
@@ -149,6 +152,7 @@ static PetscErrorCode Solve(Scheme s, Coupled *d) {
   PetscCall(CoupledSolverSolve(d->solver, &problem, &report));
   s->report.coupled_its += report.its;
   s->report.measures = report.measures;
+  PetscCall(PetscArraycpy(n->mean, d->solver->reduced->mean, 2));
   if (PreconditionerIsNew(d->solver->preconditioner)) {
     PetscCall(VecCopy(d->Xstar, d->made_at));
     PetscCall(PetscArraycpy(d->made_with, d->history.treading, s->membrane->layout->bodies));

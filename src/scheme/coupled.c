@@ -278,6 +278,10 @@ static PetscErrorCode CreateStates(Scheme s, Coupled *d) {
   }
   PetscCall(VecDuplicate(s->state.w, &s->state.force));
   PetscCall(VecDuplicate(s->state.w, &d->next.force));
+  if (s->coupling->contrast) {
+    PetscCall(VecDuplicate(s->state.p, &s->state.source));
+    PetscCall(VecDuplicate(s->state.p, &d->next.source));
+  }
   PetscCall(VecDestroy(&d->next.w));
   PetscCall(VecDestroy(&d->next.p));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -286,7 +290,7 @@ static PetscErrorCode CreateStates(Scheme s, Coupled *d) {
 static PetscErrorCode Fields_Coupled(Scheme s) {
   const State *q = &s->state;
   PetscFunctionBeginUser;
-  PetscCall(ReducedFields(((Coupled *)s->data)->solver->reduced, q->force, q->w, q->p));
+  PetscCall(ReducedFields(((Coupled *)s->data)->solver->reduced, q->force, q->source, q->mean, q->w, q->p));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -309,7 +313,7 @@ static PetscErrorCode SetUp_Coupled(Scheme s) {
   PetscCall(VecDuplicate(q->X, &d->Y));
   if (s->coupling->contrast) {
     PetscCall(VecDuplicate(q->X, &d->moved));
-    PetscCall(VecDuplicate(q->p, &d->source));
+    if (!q->source) PetscCall(VecDuplicate(q->p, &d->source));
   }
   PetscCall(VecDuplicate(q->X, &d->P));
   PetscCall(VecDuplicate(q->X, &d->made_at));

@@ -20,7 +20,7 @@ typedef struct {
   PetscReal *made_with;  /* [vesicles] and the label speeds */
   Vec f;                 /* momentum's right-hand side; NULL where that is next.force */
   Vec Xstar, Xhat;       /* extrapolated markers, BDF history of the markers */
-  Vec moved, source;     /* viscosity contrast: known part of the markers' motion, divergence; else NULL */
+  Vec moved, source;     /* viscosity contrast: known part of the markers' motion, divergence unless next has it */
   Vec V, known, Y;       /* solved part of the markers' velocity, what is known of it, and of obstacles; work */
   Vec P;                 /* the markers' velocity as the labels of the step see it */
   PetscScalar *edges;    /* [2n] work */

@@ -1,17 +1,18 @@
 #include "scheme/state.h"
 
-#define VECTORS 8
-#define ON_GRID 3 /* the first ones */
+#define VECTORS 9
+#define ON_GRID 4 /* the first ones */
 
 static void List(State *q, Vec *all[VECTORS]) {
   all[0] = &q->w;
   all[1] = &q->p;
   all[2] = &q->force;
-  all[3] = &q->sigma;
-  all[4] = &q->X;
-  all[5] = &q->U;
-  all[6] = &q->walls;
-  all[7] = &q->solid;
+  all[3] = &q->source;
+  all[4] = &q->sigma;
+  all[5] = &q->X;
+  all[6] = &q->U;
+  all[7] = &q->walls;
+  all[8] = &q->solid;
 }
 
 PetscErrorCode StateCreate(Coupling c, State *q) {
@@ -58,6 +59,7 @@ PetscErrorCode StateCopy(const State *q, State *copy, PetscBool fields) {
     PetscCall(VecCopy(*from[k], *to[k]));
   }
   if (fields) PetscCall(PetscArraycpy(copy->rows, q->rows, 2));
+  if (fields) PetscCall(PetscArraycpy(copy->mean, q->mean, 2));
   copy->pending = q->pending;
   copy->step = q->step;
   copy->t = q->t;
@@ -71,8 +73,11 @@ void StateSwap(State *a, State *b) {
   if (a->force && b->force)
     for (int k = 0; k < 2; k++) {
       const PetscInt row = a->rows[k];
+      const PetscReal mean = a->mean[k];
       a->rows[k] = b->rows[k];
       b->rows[k] = row;
+      a->mean[k] = b->mean[k];
+      b->mean[k] = mean;
     }
   List(a, one);
   List(b, other);

@@ -10,7 +10,9 @@ typedef struct {
   Vec w;             /* velocity on the faces: the disturbance, or the whole in the total form */
   Vec p;             /* pressure, zero mean */
   Vec force;         /* on the faces, of which w and p are the Stokes solve; NULL where they are made in each step */
-  PetscInt rows[2];  /* force is zero outside these of this rank */
+  Vec source;        /* with it, the viscosity contrast's source of the divergence; NULL without */
+  PetscReal mean[2]; /* and the mean velocity that goes with that */
+  PetscInt rows[2];  /* force and source are zero outside these of this rank */
   PetscBool pending; /* w and p are not made yet: SchemeFields */
   Vec sigma;         /* tension, an edge vector */
   Vec X;             /* markers, a marker vector */
