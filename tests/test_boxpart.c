@@ -305,8 +305,33 @@ static PetscErrorCode CheckDefault(void) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Nearest images and their part by the library's erfc, at rows of pairs that are no whole vectors; half a period is
+   minus half. */
+static PetscErrorCode CheckImage(void) {
+  enum { PAIRS = 61 };
+  const BoxAxis axis[2] = {{.low = -2, .high = 2}, {.low = 0, .high = 3}};
+  PetscReal d[2][PAIRS + 3] = {{0}}, part[PAIRS + 3], off = 0;
+  PetscFunctionBeginUser;
+  for (int k = 0; k < PAIRS; k++)
+    for (int dir = 0; dir < 2; dir++) d[dir][k] = (k - PAIRS / 2) * (dir ? 0.11 : 0.25);
+  BoxImageRow(axis, PAIRS, (PetscReal *[2]){d[0], d[1]}, part);
+  for (int k = 0; k < PAIRS; k++) {
+    PetscReal right = 1;
+    for (int dir = 0; dir < 2; dir++) {
+      const PetscReal period = dir ? 3 : 4, x = (k - PAIRS / 2) * (dir ? 0.11 : 0.25);
+      const PetscReal nearest = x - period * PetscFloorReal(x / period + 0.5);
+      off = PetscMax(off, PetscAbsReal(d[dir][k] - nearest));
+      right *= 0.5 * erfc(2.3 * (PetscAbsReal(nearest) / period - 0.3) / 0.2);
+    }
+    off = PetscMax(off, PetscAbsReal(part[k] - right));
+  }
+  CHECK(off < 1e-14, "nearest images and their part: off by %.1e", (double)off);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode Facts(void) {
   PetscFunctionBeginUser;
+  PetscCall(CheckImage());
   PetscCall(CheckDefault());
   PetscCall(CheckTable("walls", ONE, PETSC_TRUE));
   PetscCall(CheckTable("channel", ONE CHANNEL, PETSC_FALSE));

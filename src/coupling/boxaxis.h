@@ -25,5 +25,7 @@ PETSC_EXTERN void BoxAxisPolynomials(const BoxAxis *axis, PetscReal x, PetscReal
 
 /* BoxImage - d[2] (length) between two points becomes that of the nearest image; returns the part of the infinite
    lattice's mobility that W leaves out: from 1 it falls to 0 at half a period, where images change, so that W is smooth
-   and periodic. 1 between walls. Not collective. */
+   and periodic. 1 between walls. BoxImageRow - the same of n, with room for whole vectors in d[2][] and part[]. Not
+   collective. */
 PETSC_EXTERN PetscReal BoxImage(const BoxAxis axis[2], PetscReal d[2]);
+PETSC_EXTERN void BoxImageRow(const BoxAxis axis[2], PetscInt n, PetscReal *const d[2], PetscReal part[]);

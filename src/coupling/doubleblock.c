@@ -114,7 +114,7 @@ typedef struct {
   const DoubleBlock *block;
   PetscBool self;
   DoubleColumn to;
-  PetscReal *part;            /* [n] BoxPartImage */
+  PetscReal *part;            /* [n] BoxImageRow */
   PetscReal *D[DIPOLE_COUNT]; /* [n] the exact double layer's xx, yy, xy */
   PetscReal *flux[2];         /* [n] SUM L n over the columns */
   PetscReal *memory;
@@ -152,11 +152,10 @@ static void Begin(Fill *f, PetscInt j, const PetscReal own[]) {
   DoubleColumn *c = &f->to;
   c->j = j;
   for (PetscInt p = 0; p < c->n; p++) {
-    PetscReal d[2];
-    for (int dir = 0; dir < 2; dir++) d[dir] = X[2 * (c->i + p) + dir] - X[2 * j + dir] - f->block->shift[dir];
-    f->part[p] = c->lattice && s->near->box ? BoxPartImage(s->near->box, d) : 1;
-    for (int dir = 0; dir < 2; dir++) c->d[dir][p] = d[dir];
+    for (int dir = 0; dir < 2; dir++) c->d[dir][p] = X[2 * (c->i + p) + dir] - X[2 * j + dir] - f->block->shift[dir];
+    f->part[p] = 1;
   }
+  if (c->lattice && s->near->box) BoxImageRow(s->near->box->axis, c->n, c->d, f->part);
   for (PetscInt p = 0; p < c->n; p += LANES) {
     const Lanes x = LanesAt(c->d[0] + p), y = LanesAt(c->d[1] + p), r2 = x * x + y * y;
     const Lanes q = (x * N[0] + y * N[1]) / (PETSC_PI * (r2 * r2 + LanesWhere((LanesBits)(r2 == 0), 1 + (Lanes){0})));

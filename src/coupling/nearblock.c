@@ -99,11 +99,7 @@ static void Distances(NearField f, Chunk *c) {
     for (int dir = 0; dir < 2; dir++) c->d[dir][k] = sign * (own[dir] - X[2 * k + dir]);
     c->part[k] = 1;
   }
-  for (k = 0; k < c->n && f->box; k++) {
-    PetscReal d[2] = {c->d[0][k], c->d[1][k]};
-    c->part[k] = BoxPartImage(f->box, d);
-    for (int dir = 0; dir < 2; dir++) c->d[dir][k] = d[dir];
-  }
+  if (f->box) BoxImageRow(f->box->axis, c->n, (PetscReal *[2]){c->d[0], c->d[1]}, c->part);
   for (k = c->n; k < CHUNK && k < c->n + LANES; k++) c->d[0][k] = c->d[1][k] = c->part[k] = 1;
 }
 
