@@ -84,18 +84,27 @@ def test_tumbling_half_period(tmp_path):
 
 @pytest.mark.parametrize(
     ("cells", "bending", "ratio", "step"),
-    [(64, 0.1, 0.1, 0.05), (64, 0.1, 50, 4), (64, 1000, 50, 0.05), (64, 1000, 0.1, 4), (32, 1000, 0.1, 4)],
+    [
+        (64, 0.1, 0.1, 0.05),
+        (64, 0.1, 50, 4),
+        (64, 0.1, 10, 4),
+        (64, 10, 10, 0.05),
+        (64, 1000, 50, 0.05),
+        (64, 1000, 0.1, 4),
+        (32, 1000, 0.1, 4),
+    ],
 )
 def test_relaxing(tmp_path, cells, bending, ratio, step):
-    """Without a flow, soft and stiff, short and long steps: the area stays, the bending energy falls to that of rest."""
-    scene = f"{COUPLED} {PLAIN} -coupled_ksp_rtol 1e-9 -domain_box -2,2,-2,2 -domain_cells {cells},{cells}"
+    """Without a flow, soft and stiff, short and long steps, by the default tolerance: the area stays, the bending energy
+    falls to that of rest."""
+    scene = f"{COUPLED} {PLAIN} -domain_box -4,4,-4,4 -domain_cells {cells},{cells}"
     scene += " -vesicle_area 1 -vesicle_reduced_area 0.7"
     scene += f" -vesicle_bending {bending} -vesicle_viscosity_ratio {ratio} -time_step {step} -time_end {8 * step}"
     series = run_petves(tmp_path / "run", scene).series
     energy = series["energy_bending"] / bending
     assert series["area"] == pytest.approx(series["area"][0], rel=1e-10)
     assert energy[0] == pytest.approx(12.119, rel=1e-4) and energy[-1] == pytest.approx(9.256, rel=1e-3)
-    assert np.diff(energy).max() < 2e-6 * energy[0]
+    assert np.diff(energy).max() < 2e-7 * energy[0]
 
 
 def test_stress(tmp_path):

@@ -50,39 +50,51 @@ static PetscReal Residual(PetscInt M, const PetscReal X[], PetscReal ds, PetscRe
   return PetscMax(worst, PetscAbsReal(r[M]) / (2 * area));
 }
 
-/* The rows' gradient C[M+1][2M]: 2 e_k . D, and 2 (a_y, -a_x) because the derivative of a is antisymmetric. */
-static void Gradient(PetscInt M, const PetscReal d[], const PetscReal e[], const PetscReal a[], PetscReal C[]) {
+/* CC = C C^T, its lower triangle by columns, C the rows' gradient: 2 e_k . D, and 2 z, z = (a_y, -a_x), because the
+   derivative of a is antisymmetric. D is circulant, so (D D^T)_kl is one function of k - l. Dz is work. */
+static void GradientProducts(PetscInt M, const PetscReal d[], const PetscReal e[], const PetscReal z[], PetscReal Dz[],
+                             PetscReal CC[]) {
+  const PetscInt rows = M + 1;
+  for (PetscInt j = 0; j < M; j++) {
+    PetscReal product = 0; /* of rows 0 and j of D */
+    for (PetscInt l = 0; l < M; l++) product += d[-l] * d[j - l];
+    for (PetscInt k = 0; k + j < M; k++)
+      CC[k * rows + k + j] = 4 * product * (e[2 * k] * e[2 * (k + j)] + e[2 * k + 1] * e[2 * (k + j) + 1]);
+  }
+  Derivative(M, d, z, Dz);
+  CC[M * rows + M] = 0;
   for (PetscInt k = 0; k < M; k++) {
-    for (PetscInt l = 0; l < M; l++)
-      for (int c = 0; c < 2; c++) C[k * 2 * M + 2 * l + c] = 2 * e[2 * k + c] * d[k - l];
-    C[M * 2 * M + 2 * k] = 2 * a[2 * k + 1];
-    C[M * 2 * M + 2 * k + 1] = -2 * a[2 * k];
+    CC[k * rows + M] = 4 * (e[2 * k] * Dz[2 * k] + e[2 * k + 1] * Dz[2 * k + 1]);
+    CC[M * rows + M] += 4 * (z[2 * k] * z[2 * k] + z[2 * k + 1] * z[2 * k + 1]);
   }
 }
 
-/* X -= C^T (C C^T)^-1 r, the least change; false when the rows do not determine it. */
-static PetscErrorCode LeastChange(PetscInt M, const PetscReal C[], PetscReal CC[], PetscReal r[], PetscReal X[],
-                                  PetscBool *solved) {
-  const PetscBLASInt rows = (PetscBLASInt)M + 1, columns = 2 * (PetscBLASInt)M, one = 1;
-  const PetscReal plus = 1, minus = -1, zero = 0;
+/* X -= C^T (C C^T)^-1 r, the least change; false when the rows do not determine it. Dz is work. */
+static PetscErrorCode LeastChange(PetscInt M, const PetscReal d[], const PetscReal e[], const PetscReal z[],
+                                  PetscReal Dz[], PetscReal CC[], PetscReal r[], PetscReal X[], PetscBool *solved) {
+  const PetscBLASInt rows = (PetscBLASInt)M + 1, one = 1;
   PetscBLASInt info;
   PetscFunctionBeginUser;
-  PetscCallBLAS("BLASgemm",
-                BLASgemm_("T", "N", &rows, &rows, &columns, &plus, C, &columns, C, &columns, &zero, CC, &rows));
+  GradientProducts(M, d, e, z, Dz, CC);
   PetscCallBLAS("LAPACKpotrf", LAPACKpotrf_("L", &rows, CC, &rows, &info));
   *solved = info ? PETSC_FALSE : PETSC_TRUE;
   if (info) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCallBLAS("LAPACKpotrs", LAPACKpotrs_("L", &rows, &one, CC, &rows, r, &rows, &info));
-  PetscCallBLAS("BLASgemv", BLASgemv_("N", &columns, &rows, &minus, C, &columns, r, &one, &plus, X, &one));
+  for (PetscInt l = 0; l < M; l++) {
+    PetscReal change[2] = {r[M] * z[2 * l], r[M] * z[2 * l + 1]};
+    for (PetscInt k = 0; k < M; k++)
+      for (int c = 0; c < 2; c++) change[c] += d[k - l] * r[k] * e[2 * k + c];
+    for (int c = 0; c < 2; c++) X[2 * l + c] -= 2 * change[c];
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode CurveFit(PetscInt M, PetscBool spectral, PetscReal length, PetscReal area, PetscReal X[], PetscInt most,
                         PetscReal *left) {
-  PetscReal *memory[2], *e, *a, *r, *C, *CC;
+  PetscReal *memory[2], *e, *a, *z, *r, *CC;
   IndexDerivative edge, central;
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc7(2 * M, &memory[0], 2 * M, &memory[1], 2 * M, &e, 2 * M, &a, M + 1, &r, (M + 1) * 2 * M, &C,
+  PetscCall(PetscMalloc7(2 * M, &memory[0], 2 * M, &memory[1], 2 * M, &e, 2 * M, &a, 2 * M, &z, M + 1, &r,
                          (M + 1) * (M + 1), &CC));
   edge = memory[0] + M - 1;
   central = memory[1] + M - 1;
@@ -99,10 +111,13 @@ PetscErrorCode CurveFit(PetscInt M, PetscBool spectral, PetscReal length, PetscR
     Derivative(M, central, X, a);
     *left = Residual(M, X, length / M, area, e, a, r);
     if (it == most || *left < CONVERGED) break;
-    Gradient(M, edge, e, a, C);
-    PetscCall(LeastChange(M, C, CC, r, X, &solved));
+    for (PetscInt k = 0; k < M; k++) {
+      z[2 * k] = a[2 * k + 1];
+      z[2 * k + 1] = -a[2 * k];
+    }
+    PetscCall(LeastChange(M, edge, e, z, a, CC, r, X, &solved));
     if (!solved) break; /* a circle has no freedom left: it stays as it is */
   }
-  PetscCall(PetscFree7(memory[0], memory[1], e, a, r, C, CC));
+  PetscCall(PetscFree7(memory[0], memory[1], e, a, z, r, CC));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

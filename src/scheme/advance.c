@@ -2,9 +2,13 @@
 #include "base/agree.h"
 #include "scheme/coupled.h"
 
-/* Relative errors of an edge above which all are corrected after a step, and above which that is worth a warning. */
-#define EDGE_TOLERANCE 1e-3
+/* Relative errors of an edge above which all are corrected after a step, with the area target and without, and above
+   which that is worth a warning; those of a length that is corrected alone. Bending energy changes by up to half of
+   what edges are uneven by. */
+#define EDGE_TOLERANCE 1e-7
+#define EDGE_TOLERANCE_WITHOUT_AREA 1e-3
 #define EDGE_WARNING 0.01
+#define LENGTH_TOLERANCE 1e-3
 
 /* What happened to the vesicles; `who` has the largest error of an edge. */
 typedef struct {
@@ -33,14 +37,15 @@ static PetscErrorCode WarnOfEdges(Scheme s, Coupled *d, const Restored *r) {
    an edge has lost the shape, and correcting edges would find another one. */
 static PetscErrorCode RestoreVesicle(Scheme s, PetscInt v, PetscScalar X[], Restored *r) {
   const Membrane m = s->membrane;
+  const PetscBool area = s->scene->scheme.area_target;
   PetscReal error, shift = 0;
   PetscFunctionBeginUser;
-  if (s->scene->scheme.area_target) shift = MembraneRestoreArea(m, v, X);
+  if (area) shift = MembraneRestoreArea(m, v, X);
   r->most = PetscMax(r->most, shift);
   r->least = PetscMin(r->least, shift);
   if (!s->scene->scheme.length_target || PetscAbsReal(shift) > 0.5 * m->ds[v]) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(MembraneRestoreEdges(m, v, EDGE_TOLERANCE, X, &error));
-  if (error == 0 && s->scene->scheme.area_target) PetscCall(MembraneRestoreLength(m, v, EDGE_TOLERANCE, X));
+  PetscCall(MembraneRestoreEdges(m, v, area ? EDGE_TOLERANCE : EDGE_TOLERANCE_WITHOUT_AREA, X, &error));
+  if (error == 0 && area) PetscCall(MembraneRestoreLength(m, v, LENGTH_TOLERANCE, X));
   if (error > r->error) {
     r->error = error;
     r->who = v;
