@@ -3,7 +3,7 @@
 #include "coupling/lagrangian.h"
 
 #define MOST_EXCESS 5     /* iterations more than with new blocks, in one solve */
-#define FIXED_RATIO 1.1   /* of two steps whose blocks are the same, where few are to come that differ */
+#define FIXED_RATIO 1.3   /* of two steps whose blocks are the same: those of order 2 and 3 are 1.22 apart */
 #define ADAPTED_RATIO 2.2 /* the same where each differs: a factor of 2 costs half an iteration */
 #define NO_LIMIT 1000     /* solves that blocks may serve */
 
