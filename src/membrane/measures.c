@@ -1,6 +1,8 @@
 /* Measures of a vesicle (docs/method.md, Diagnostics). */
 #include "membrane/membrane.h"
 
+#define ROUNDING 1e-12 /* of the largest tangential speed: a smaller one has no sign */
+
 /* Area, first and second moments of the polygon about `about`, by Green's theorem over its edges. */
 static void PolygonMoments(PetscInt markers, const PetscScalar X[], const PetscReal about[2], PetscReal *area,
                            PetscReal first[2], PetscReal second[3]) {
@@ -64,8 +66,7 @@ void MembraneMeasure(Membrane m, PetscInt v, const PetscScalar X[], Measures *ou
 
 PetscReal MembraneFrequency(Membrane m, PetscInt v, const PetscScalar X[], const PetscScalar U[]) {
   const PetscInt n = LayoutCount(m->layout, v);
-  PetscReal mean[2] = {0, 0}, *T = m->work.measures, sum = 0;
-  PetscInt positive = 0, negative = 0;
+  PetscReal mean[2] = {0, 0}, *T = m->work.measures, sum = 0, least = PETSC_MAX_REAL, most = -PETSC_MAX_REAL;
   (void)PetscArrayzero(T, 2 * n);
   SpectralDerivative(m->spectral[v], 1, n / (2 * PETSC_PI), X, T);
   for (PetscInt k = 0; k < n; k++)
@@ -73,11 +74,12 @@ PetscReal MembraneFrequency(Membrane m, PetscInt v, const PetscScalar X[], const
   for (PetscInt k = 0; k < n; k++) {
     const PetscReal speed = PetscSqrtReal(PetscSqr(T[2 * k]) + PetscSqr(T[2 * k + 1]));
     const PetscReal tangential = ((U[2 * k] - mean[0]) * T[2 * k] + (U[2 * k + 1] - mean[1]) * T[2 * k + 1]) / speed;
-    positive += tangential > 0;
-    negative += tangential < 0;
+    least = PetscMin(least, tangential);
+    most = PetscMax(most, tangential);
     sum += speed / tangential; /* dl = speed 2 pi/n a marker */
   }
-  return positive == n || negative == n ? n / PetscAbsReal(sum) : NAN;
+  const PetscReal rounding = ROUNDING * PetscMax(most, -least);
+  return least > rounding || most < -rounding ? n / PetscAbsReal(sum) : NAN;
 }
 
 PetscReal MembraneNormalSpeed(Membrane m, PetscInt v, const PetscScalar X[], const PetscScalar U[]) {

@@ -82,7 +82,8 @@ typedef struct {
 PETSC_EXTERN void MembraneMeasure(Membrane membrane, PetscInt vesicle, const PetscScalar X[], Measures *measures);
 
 /* MembraneFrequency - tank-treading frequency 2 pi/|CLOSED INT dl/(u.tau)| (radians a time) of one vesicle, u relative
-   to the markers' mean velocity, by spectral derivatives of X; NaN unless u.tau has one sign all round. */
+   to the markers' mean velocity, by spectral derivatives of X; NaN unless u.tau has one sign all round, and more than
+   rounding. */
 PETSC_EXTERN PetscReal MembraneFrequency(Membrane membrane, PetscInt vesicle, const PetscScalar X[],
                                          const PetscScalar U[]);
 
