@@ -2,7 +2,8 @@
 #include "coupling/blas.h"
 
 #define MARGIN 1.15   /* of a square's side over its markers' extent */
-#define RATIO 1.26    /* of one side to the next */
+#define RATIO 1.26    /* of one side to the next, */
+#define FINER 1.1225  /* and of dipoles, whose D is less smooth */
 #define CENTRES 8     /* in a side: what a centre is off by goes into the margin */
 #define LARGEST 0.5   /* side, of the box's */
 #define SMALLEST 1e-4 /* of the largest: eigenvalues below it are dropped */
@@ -18,7 +19,8 @@ static void Around(const BoxRegion *r, PetscInt M, const PetscReal X[], PetscRea
       high[d] = PetscMax(high[d], X[2 * k + d]);
     }
   const PetscReal least = MARGIN * PetscMax(high[0] - low[0], high[1] - low[1]), h = r->grid->h;
-  *side = h * PetscPowReal(RATIO, PetscCeilReal(PetscLogReal(PetscMax(least / h, 1)) / PetscLogReal(RATIO)));
+  const PetscReal ratio = BoxParts(r->whole) == 2 ? RATIO : FINER;
+  *side = h * PetscPowReal(ratio, PetscCeilReal(PetscLogReal(PetscMax(least / h, 1)) / PetscLogReal(ratio)));
   for (int d = 0; d < 2; d++) {
     const PetscReal spacing = *side / CENTRES, from = r->grid->lo[d];
     centre[d] = from + spacing * PetscFloorReal(0.5 + (0.5 * (low[d] + high[d]) - from) / spacing);
@@ -35,20 +37,21 @@ static PetscBool IsWithin(const BoxRegion *r, const PetscReal centre[2], PetscRe
   return PETSC_TRUE;
 }
 
-/* Rows [2][functions][rank of the whole] of the square's functions, from those of its places. */
-static PetscErrorCode FunctionRows(const BoxRegion *r, const BoxTable *t, PetscReal A[]) {
+/* Rows [count][functions][rank of the whole] of the square's functions, of the components from `first` on, from those
+   of its places. */
+static PetscErrorCode FunctionRows(const BoxRegion *r, const BoxTable *t, int first, int count, PetscReal A[]) {
   const PetscInt n = BOX_REGION_PLACES, rank = r->whole->rank;
   PetscReal *rows, value[2][BOX_REGION_PLACES];
   PetscFunctionBeginUser;
-  PetscCall(PetscArrayzero(A, 2 * n * n * rank));
-  PetscCall(PetscMalloc1(2 * rank, &rows));
+  PetscCall(PetscArrayzero(A, count * n * n * rank));
+  PetscCall(PetscMalloc1(count * rank, &rows));
   for (PetscInt k = 0; k < n * n; k++) {
     const PetscReal X[2] = {t->axis[0].place[k / n], t->axis[1].place[k % n]};
-    BoxTableRows(r->whole, X, 1, 0, 2, rows);
+    BoxTableRows(r->whole, X, 1, first, count, rows);
     for (int d = 0; d < 2; d++) BoxTableFunctions(t, d, X[d], value[d]);
     for (PetscInt f = 0; f < n * n; f++) {
       const PetscReal weight = value[0][f / n] * value[1][f % n];
-      for (int c = 0; c < 2 && weight != 0; c++)
+      for (int c = 0; c < count && weight != 0; c++)
         for (PetscInt m = 0; m < rank; m++) A[(c * n * n + f) * rank + m] += weight * rows[c * rank + m];
     }
   }
@@ -56,46 +59,54 @@ static PetscErrorCode FunctionRows(const BoxRegion *r, const BoxTable *t, PetscR
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* D = A l A^T between the square's functions, into Q of its one block. */
+/* D = A l B^T from the square's functions of a source to those of a velocity, into Q of its one block. */
 static PetscErrorCode BetweenFunctions(const BoxRegion *r, BoxTable *t) {
-  const PetscInt size = 2 * t->functions[0] * t->functions[1], rank = r->whole->rank;
-  PetscReal *A, *lA;
+  const PetscInt n = t->functions[0] * t->functions[1], rank = r->whole->rank, parts = BoxParts(t);
+  PetscReal *A, *B;
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(size * rank, &A, size * rank, &lA));
-  PetscCall(FunctionRows(r, t, A));
-  for (PetscInt k = 0; k < size * rank; k++) lA[k] = r->whole->l[k % rank] * A[k];
-  PetscCall(DenseProduct(PETSC_TRUE, size, size, rank, A, lA, t->block->Q));
-  PetscCall(PetscFree2(A, lA));
+  PetscCall(PetscMalloc2(2 * n * rank, &A, parts * n * rank, &B));
+  PetscCall(FunctionRows(r, t, 0, 2, A));
+  PetscCall(FunctionRows(r, t, BoxFirstPart(t), (int)parts, B));
+  for (PetscInt k = 0; k < parts * n * rank; k++) B[k] *= r->whole->l[k % rank];
+  PetscCall(DenseProduct(PETSC_TRUE, 2 * n, parts * n, rank, A, B, t->block->Q));
+  PetscCall(PetscFree2(A, B));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Largest D_whole - D_square between CHECKS x CHECKS points of the square where interpolation is worst, over the
-   largest D_whole. */
-static PetscErrorCode OffBy(const BoxRegion *r, const BoxTable *t, PetscReal *off) {
-  const PetscInt points = CHECKS * CHECKS;
-  const BoxTable *of[2] = {r->whole, t};
-  PetscReal *rows[2], most = 0, largest = 0;
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(2 * points * of[0]->rank, &rows[0], 2 * points * of[1]->rank, &rows[1]));
-  for (PetscInt k = 0; k < points; k++) {
-    PetscReal X[2];
-    for (int d = 0; d < 2; d++) {
-      const PetscReal part = (PetscReal)(d ? k % CHECKS : k / CHECKS) / (CHECKS - 1);
-      X[d] = t->axis[d].low + part * (t->axis[d].high - t->axis[d].low);
-    }
-    for (int q = 0; q < 2; q++) BoxTableRows(of[q], X, 1, 0, 2, rows[q] + 2 * k * of[q]->rank);
+/* Point k of CHECKS x CHECKS of the square where interpolation is worst. */
+static void Check(const BoxTable *t, PetscInt k, PetscReal X[2]) {
+  for (int d = 0; d < 2; d++) {
+    const PetscReal part = (PetscReal)(d ? k % CHECKS : k / CHECKS) / (CHECKS - 1);
+    X[d] = t->axis[d].low + part * (t->axis[d].high - t->axis[d].low);
   }
-  for (PetscInt i = 0; i < 2 * points; i++)
-    for (PetscInt j = 0; j <= i; j++) {
-      PetscReal D[2];
-      for (int q = 0; q < 2; q++) {
-        const PetscInt n = of[q]->rank;
-        D[q] = BoxProduct(n, of[q]->l, rows[q] + i * n, rows[q] + j * n);
-      }
-      most = PetscMax(most, PetscAbsReal(D[0] - D[1]));
-      largest = PetscMax(largest, PetscAbsReal(D[0]));
+}
+
+/* Largest D_whole - D_square between the points, over the largest D_whole; D_square is between functions, in Q. */
+static PetscErrorCode OffBy(const BoxRegion *r, const BoxTable *t, PetscReal *off) {
+  const PetscInt n = t->functions[0] * t->functions[1], rank = r->whole->rank, parts = BoxParts(t);
+  PetscReal *row[CHECKS * CHECKS], *value[CHECKS * CHECKS], *column, most = 0, largest = 0;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(2 * n, &column));
+  for (PetscInt k = 0; k < CHECKS * CHECKS; k++) {
+    PetscReal X[2], v[2][BOX_REGION_PLACES];
+    PetscCall(PetscMalloc2(r->whole->components * rank, &row[k], n, &value[k]));
+    Check(t, k, X);
+    BoxTableRows(r->whole, X, 1, 0, r->whole->components, row[k]);
+    for (int d = 0; d < 2; d++) BoxTableFunctions(t, d, X[d], v[d]);
+    for (PetscInt f = 0; f < n; f++) value[k][f] = v[0][f / BOX_REGION_PLACES] * v[1][f % BOX_REGION_PLACES];
+  }
+  for (PetscInt j = 0; j < CHECKS * CHECKS * parts; j++) {
+    const PetscReal *source = row[j / parts] + (BoxFirstPart(t) + j % parts) * rank;
+    PetscCall(PetscArrayzero(column, 2 * n));
+    PetscCall(DenseMultAdd(PETSC_FALSE, 2 * n, n, 1, t->block->Q + j % parts * n * 2 * n, value[j / parts], column));
+    for (PetscInt i = 0; i < 2 * CHECKS * CHECKS; i++) {
+      const PetscReal D = BoxProduct(rank, r->whole->l, row[i / 2] + i % 2 * rank, source);
+      most = PetscMax(most, PetscAbsReal(D - BoxSum(n, column + i % 2 * n, value[i / 2])));
+      largest = PetscMax(largest, PetscAbsReal(D));
     }
-  PetscCall(PetscFree2(rows[0], rows[1]));
+  }
+  for (PetscInt k = 0; k < CHECKS * CHECKS; k++) PetscCall(PetscFree2(row[k], value[k]));
+  PetscCall(PetscFree(column));
   *off = most / largest;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -106,22 +117,35 @@ static void MakeAxes(const PetscReal centre[2], PetscReal side, BoxTable *t) {
     BoxAxisChebyshev(BOX_REGION_PLACES, centre[d] - 0.5 * side, centre[d] + 0.5 * side, &t->axis[d]);
 }
 
-/* The square's table. D depends on offsets along a period alone, so there it is made about the same place always. */
+/* Whether a product with the square's table is cheaper than one with the whole one. */
+static PetscBool IsCheaper(const BoxTable *whole, const BoxTable *t) {
+  const PetscInt n = t->functions[0] * t->functions[1];
+  PetscInt entries = 0;
+  if (BoxParts(t) == 2) return t->rank < whole->rank ? PETSC_TRUE : PETSC_FALSE;
+  for (PetscInt k = 0; k < whole->blocks; k++) {
+    const BoxBlock *b = &whole->block[k];
+    entries += whole->components * b->n[0] * b->n[1] * b->modes;
+  }
+  return 2 * n * BoxParts(t) * n < entries ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* The square's table; of dipoles D itself stays in Q, a matrix without eigenvalues. D depends on offsets along a period
+   alone, so there it is made about the same place always. */
 static PetscErrorCode MakeTable(const BoxRegion *r, BoxSquare *s) {
   const PetscInt n = BOX_REGION_PLACES;
   BoxTable *t = &s->table;
   PetscReal fixed[2], off = 0;
   PetscFunctionBeginUser;
   for (int d = 0; d < 2; d++) fixed[d] = r->whole->axis[d].wall ? s->centre[d] : r->grid->lo[d];
-  *t = (BoxTable){.components = 2, .functions = {n, n}, .blocks = 1, .H = r->whole->H};
+  *t = (BoxTable){.components = r->whole->components, .functions = {n, n}, .blocks = 1, .H = r->whole->H};
   MakeAxes(fixed, s->side, t);
   PetscCall(PetscCalloc1(1, &t->block));
   t->block->n[0] = t->block->n[1] = n;
-  PetscCall(PetscMalloc1(PetscSqr(2 * n * n), &t->block->Q));
+  PetscCall(PetscMalloc1(2 * n * n * BoxParts(t) * n * n, &t->block->Q));
   PetscCall(BetweenFunctions(r, t));
-  PetscCall(BoxTableDecompose(r->comm, SMALLEST, t));
   PetscCall(OffBy(r, t, &off));
-  s->right = off < OFF && t->rank < r->whole->rank ? PETSC_TRUE : PETSC_FALSE;
+  if (BoxParts(t) == 2) PetscCall(BoxTableDecompose(r->comm, SMALLEST, t));
+  s->right = off < OFF ? IsCheaper(r->whole, t) : PETSC_FALSE;
   MakeAxes(s->centre, s->side, t);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -139,19 +163,23 @@ static PetscBool IsThere(const BoxRegion *r, const PetscReal centre[2], PetscRea
   return PETSC_TRUE;
 }
 
-/* The square that is there becomes the first; if it is new, in the place of the older one. */
+/* The square that is there becomes the first; if it is new, in the place of the one that was not used for longest. */
 static PetscErrorCode Take(BoxRegion *r, const PetscReal centre[2], PetscReal side, PetscBool *moved) {
   BoxSquare *s = r->square;
+  PetscInt k = 0;
   PetscFunctionBeginUser;
-  if (IsThere(r, centre, side, &s[0], moved)) PetscFunctionReturn(PETSC_SUCCESS);
-  const BoxSquare other = s[1];
+  while (k < BOX_REGION_SQUARES && !IsThere(r, centre, side, &s[k], moved)) k++;
+  if (!k) PetscFunctionReturn(PETSC_SUCCESS);
   *moved = PETSC_TRUE;
-  s[1] = s[0];
-  s[0] = other;
-  if (IsThere(r, centre, side, &s[0], moved)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(BoxTableDestroy(&s[0].table));
-  s[0] = (BoxSquare){.centre = {centre[0], centre[1]}, .side = side};
-  PetscCall(MakeTable(r, &s[0]));
+  const PetscBool found = k < BOX_REGION_SQUARES ? PETSC_TRUE : PETSC_FALSE;
+  BoxSquare taken = s[found ? k : BOX_REGION_SQUARES - 1];
+  if (!found) {
+    PetscCall(BoxTableDestroy(&taken.table));
+    taken = (BoxSquare){.centre = {centre[0], centre[1]}, .side = side};
+    PetscCall(MakeTable(r, &taken));
+  }
+  for (k = found ? k : BOX_REGION_SQUARES - 1; k > 0; k--) s[k] = s[k - 1];
+  s[0] = taken;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -174,6 +202,6 @@ PetscErrorCode BoxRegionAt(BoxRegion *r, PetscInt M, const PetscReal X[], const 
 
 PetscErrorCode BoxRegionDestroy(BoxRegion *r) {
   PetscFunctionBeginUser;
-  for (int k = 0; k < 2; k++) PetscCall(BoxTableDestroy(&r->square[k].table));
+  for (int k = 0; k < BOX_REGION_SQUARES; k++) PetscCall(BoxTableDestroy(&r->square[k].table));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,9 +1,11 @@
 /* The box part where the markers are. They often fill a small part of the box, in which D is so smooth that 8 x 8 of
-   Chebyshev's places tell it: a table of some 40 eigenvalues in place of several hundred. */
+   Chebyshev's places tell it: a table of some 40 eigenvalues in place of several hundred, or, of dipoles, a matrix
+   between their functions. */
 #pragma once
 #include "coupling/boxtable.h"
 
-#define BOX_REGION_PLACES 8 /* in a direction */
+#define BOX_REGION_PLACES 8  /* in a direction */
+#define BOX_REGION_SQUARES 6 /* kept: a vesicle that tumbles comes back to all of its */
 
 /* A square about the markers, its centre and side from coarse sets of numbers: most steps find theirs made. */
 typedef struct {
@@ -14,9 +16,9 @@ typedef struct {
 
 typedef struct {
   MPI_Comm comm;
-  Grid grid;             /* borrowed, */
-  const BoxTable *whole; /* of forces */
-  BoxSquare square[2];   /* the last, and the one before */
+  Grid grid;                            /* borrowed, */
+  const BoxTable *whole;                /* of forces or of dipoles */
+  BoxSquare square[BOX_REGION_SQUARES]; /* the last used first */
 } BoxRegion;
 
 /* BoxRegionAt - the table for M markers at X[2M], all ranks' own the same: of the square about them, or the whole one

@@ -14,7 +14,7 @@ typedef struct {
   PetscInt first[BOX_COMPONENTS][2]; /* [component]: its functions of x, of y, from here on */
   PetscInt n[2];                     /* so many */
   PetscInt start, modes;             /* its eigenvalues among all */
-  PetscReal *Q;                      /* [components][n[0]][n[1]][modes] */
+  PetscReal *Q;                      /* [components][n[0]][n[1]][modes]; without modes D, [parts n n][2 n n] */
 } BoxBlock;
 
 typedef struct {
@@ -41,9 +41,13 @@ PETSC_EXTERN PetscErrorCode BoxTableDestroy(BoxTable *table);
    rank's, as alike eigenvalues leave to rounding which vectors they have. Collective. */
 PETSC_EXTERN PetscErrorCode BoxTableDecompose(MPI_Comm comm, PetscReal smallest, BoxTable *table);
 
-/* BoxParts - of a source: two of a force, three of a dipole. Not collective. */
+/* BoxParts - of a source: two of a force, three of a dipole. BoxFirstPart - the component that is its first. Not
+   collective. */
 static inline PetscInt BoxParts(const BoxTable *table) {
   return table->components == 2 ? 2 : 3;
+}
+static inline int BoxFirstPart(const BoxTable *table) {
+  return table->components == 2 ? 0 : 2;
 }
 
 /* BoxTableFunctions - values[functions[dir]] of a direction's functions at the coordinate x (length); nearer to a wall

@@ -1,7 +1,13 @@
 #include "coupling/doublebox.h"
 #include "base/lanes.h"
+#include "coupling/blas.h"
 
 #define AT_ONCE 64 /* markers */
+
+static void TakeTable(DoubleBox b, const BoxTable *t) {
+  b->at = t;
+  b->width = (t->functions[1] + LANES - 1) / LANES * LANES;
+}
 
 PetscErrorCode DoubleBoxCreate(const FluidSpec *spec, Markers markers, const BoxLattice *lattice, DoubleBox *out) {
   const PetscInt n = markers->layout->n;
@@ -15,7 +21,8 @@ PetscErrorCode DoubleBoxCreate(const FluidSpec *spec, Markers markers, const Box
   PetscCall(PetscLogEventBegin(event, 0, 0, 0, 0));
   PetscCall(BoxTableCreate(spec, markers->kernel->name, lattice, PETSC_FALSE, &b->table));
   PetscCall(PetscLogEventEnd(event, 0, 0, 0, 0));
-  b->width = (b->table.functions[1] + LANES - 1) / LANES * LANES;
+  b->region = (BoxRegion){.comm = spec->comm, .grid = markers->grid, .whole = &b->table};
+  TakeTable(b, &b->table); /* squares have fewer functions */
   PetscCall(PetscCalloc3(n * (b->table.functions[0] + b->width), &b->value,
                          BOX_COMPONENTS * b->table.functions[0] * b->width, &b->function, b->table.rank,
                          &b->amplitude));
@@ -25,6 +32,7 @@ PetscErrorCode DoubleBoxCreate(const FluidSpec *spec, Markers markers, const Box
 PetscErrorCode DoubleBoxDestroy(DoubleBox *box) {
   PetscFunctionBeginUser;
   if (!*box) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(BoxRegionDestroy(&(*box)->region));
   PetscCall(BoxTableDestroy(&(*box)->table));
   PetscCall(PetscFree3((*box)->value, (*box)->function, (*box)->amplitude));
   PetscCall(PetscFree(*box));
@@ -33,29 +41,36 @@ PetscErrorCode DoubleBoxDestroy(DoubleBox *box) {
 
 /* Own marker k's values of the functions of x; those of y come behind. */
 static PetscReal *Values(DoubleBox b, PetscInt k) {
-  return b->value + k * (b->table.functions[0] + b->width);
+  return b->value + k * (b->at->functions[0] + b->width);
 }
 
 /* A component's functions. */
 static PetscReal *Functions(DoubleBox b, int component) {
-  return b->function + component * b->table.functions[0] * b->width;
+  return b->function + component * b->at->functions[0] * b->width;
 }
 
-void DoubleBoxPlace(DoubleBox b) {
+PetscErrorCode DoubleBoxPlace(DoubleBox b) {
   const Layout l = b->markers->layout;
+  const BoxTable *at = b->at;
+  PetscBool moved;
+  PetscFunctionBeginUser;
+  PetscCall(BoxRegionAt(&b->region, l->M, b->markers->X, &at, &moved));
+  TakeTable(b, at);
   for (PetscInt k = 0; k < l->n; k++) {
     const PetscReal *X = b->markers->X + 2 * (l->first + k);
     PetscReal *value = Values(b, k);
-    BoxTableFunctions(&b->table, 0, X[0], value);
-    BoxTableFunctions(&b->table, 1, X[1], value + b->table.functions[0]);
+    BoxTableFunctions(at, 0, X[0], value);
+    BoxTableFunctions(at, 1, X[1], value + at->functions[0]);
+    for (PetscInt j = at->functions[1]; j < b->width; j++) value[at->functions[0] + j] = 0;
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Columns of tensor part c's functions, so many vectors from the j-th number on, += of markers k .. k + count - 1,
    which have these parts of them: in registers. */
 static inline void GatherColumns(const int vectors, DoubleBox b, int c, PetscInt k, PetscInt count, PetscInt j,
                                  const PetscReal part[]) {
-  const PetscInt nx = b->table.functions[0], size = nx + b->width;
+  const PetscInt nx = b->at->functions[0], size = nx + b->width;
   PetscReal *f = Functions(b, c) + j;
   for (PetscInt i = 0; i < nx; i++, f += b->width) {
     const PetscReal *x = Values(b, k) + i, *y = Values(b, k) + nx + j;
@@ -73,7 +88,7 @@ static inline void GatherColumns(const int vectors, DoubleBox b, int c, PetscInt
 static void Gather(DoubleBox b, const PetscReal T[]) {
   const PetscInt n = b->markers->layout->n;
   PetscReal part[AT_ONCE];
-  (void)PetscArrayzero(Functions(b, 2), DIPOLE_COUNT * b->table.functions[0] * b->width);
+  (void)PetscArrayzero(Functions(b, 2), DIPOLE_COUNT * b->at->functions[0] * b->width);
   for (PetscInt k = 0; k < n; k += AT_ONCE)
     for (int c = 0; c < DIPOLE_COUNT; c++) {
       const PetscInt count = PetscMin(AT_ONCE, n - k);
@@ -98,7 +113,7 @@ static inline Lanes ScatterColumns(const int vectors, PetscInt nx, PetscInt widt
 
 /* Velocity component c of own marker k. */
 static PetscReal Scatter(DoubleBox b, PetscInt k, int c) {
-  const PetscInt nx = b->table.functions[0];
+  const PetscInt nx = b->at->functions[0];
   const PetscReal *x = Values(b, k), *y = x + nx, *f = Functions(b, c);
   PetscInt j = 0;
   Lanes sum = {0};
@@ -130,34 +145,53 @@ static void FromAmplitudes(DoubleBox b, const BoxBlock *q) {
         InBlock(b, q, c)[i * b->width + j] = BoxSum(q->modes, b->amplitude + q->start, Q);
 }
 
+/* The velocities' functions = alpha D of the tensors', which (add) all ranks have a part of. */
+static PetscErrorCode Respond(DoubleBox b, PetscBool add, PetscReal alpha) {
+  const BoxTable *t = b->at;
+  const PetscMPIInt size = (PetscMPIInt)(t->functions[0] * b->width), r = (PetscMPIInt)t->rank;
+  const MPI_Comm comm = b->markers->layout->comm;
+  PetscFunctionBeginUser;
+  add = add && b->markers->layout->size > 1 ? PETSC_TRUE : PETSC_FALSE;
+  if (t != &b->table) {
+    if (add) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, Functions(b, 2), DIPOLE_COUNT * size, MPIU_REAL, MPI_SUM, comm));
+    PetscCall(PetscArrayzero(Functions(b, 0), 2 * size));
+    PetscCall(
+        DenseMultAdd(PETSC_FALSE, 2 * size, DIPOLE_COUNT * size, alpha, t->block->Q, Functions(b, 2), Functions(b, 0)));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  for (PetscInt k = 0; k < t->blocks; k++) ToAmplitudes(b, &t->block[k]);
+  if (add) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, b->amplitude, r, MPIU_REAL, MPI_SUM, comm));
+  for (PetscInt m = 0; m < r; m++) b->amplitude[m] *= alpha * t->l[m];
+  for (PetscInt k = 0; k < t->blocks; k++) FromAmplitudes(b, &t->block[k]);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode DoubleBoxApply(DoubleBox b, PetscReal alpha, const PetscReal T[], PetscScalar y[]) {
-  const Layout l = b->markers->layout;
-  const PetscInt r = b->table.rank;
   PetscFunctionBeginUser;
   Gather(b, T);
-  for (PetscInt k = 0; k < b->table.blocks; k++) ToAmplitudes(b, &b->table.block[k]);
-  if (l->size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, b->amplitude, (PetscMPIInt)r, MPIU_REAL, MPI_SUM, l->comm));
-  for (PetscInt m = 0; m < r; m++) b->amplitude[m] *= alpha * b->table.l[m];
-  for (PetscInt k = 0; k < b->table.blocks; k++) FromAmplitudes(b, &b->table.block[k]);
-  for (PetscInt k = 0; k < 2 * l->n; k++) y[k] += Scatter(b, k / 2, k % 2);
+  PetscCall(Respond(b, PETSC_TRUE, alpha));
+  for (PetscInt k = 0; k < 2 * b->markers->layout->n; k++) y[k] += Scatter(b, k / 2, k % 2);
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Part c of a tensor at X, one, in the functions. */
+static void Put(DoubleBox b, const PetscReal X[2], int c) {
+  const PetscInt nx = b->at->functions[0], ny = b->at->functions[1];
+  PetscReal x[BOX_FUNCTIONS], y[BOX_FUNCTIONS], *f = Functions(b, 2 + c);
+  (void)PetscArrayzero(Functions(b, 2), DIPOLE_COUNT * nx * b->width);
+  BoxTableFunctions(b->at, 0, X[0], x);
+  BoxTableFunctions(b->at, 1, X[1], y);
+  for (PetscInt i = 0; i < nx; i++)
+    for (PetscInt j = 0; j < ny; j++) f[i * b->width + j] = x[i] * y[j];
 }
 
 PetscErrorCode DoubleBoxMatrix(DoubleBox b, PetscReal scale, PetscReal out[]) {
   const Layout l = b->markers->layout;
-  const PetscInt r = b->table.rank;
-  const PetscReal *X = b->markers->X;
-  PetscReal *source, *row;
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(DIPOLE_COUNT * r, &source, 2 * l->n * r, &row));
-  for (PetscInt k = 0; k < l->n; k++) BoxTableRows(&b->table, X + 2 * (l->first + k), 1, 0, 2, row + 2 * k * r);
-  for (PetscInt j = 0; j < l->M; j++) {
-    BoxTableRows(&b->table, X + 2 * j, scale, 2, DIPOLE_COUNT, source);
-    for (PetscInt k = 0; k < DIPOLE_COUNT * r; k++) source[k] *= b->table.l[k % r];
-    for (int c = 0; c < DIPOLE_COUNT; c++)
-      for (PetscInt i = 0; i < 2 * l->n; i++)
-        out[(DIPOLE_COUNT * j + c) * 2 * l->M + 2 * l->first + i] += BoxSum(r, source + c * r, row + i * r);
+  for (PetscInt j = 0; j < DIPOLE_COUNT * l->M; j++) {
+    Put(b, b->markers->X + 2 * (j / DIPOLE_COUNT), (int)(j % DIPOLE_COUNT));
+    PetscCall(Respond(b, PETSC_FALSE, scale));
+    for (PetscInt k = 0; k < 2 * l->n; k++) out[2 * (j * l->M + l->first) + k] += Scatter(b, k / 2, k % 2);
   }
-  PetscCall(PetscFree2(source, row));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

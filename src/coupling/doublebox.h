@@ -1,15 +1,18 @@
 /* The box part of the double layer, as boxpart.h of the single one: what walls and periodic images add to the dipoles'
    velocity has an error of second order, which D takes off. A marker has its values of the table's functions of x and
-   of y; a product sums tensors into the functions, goes through the eigenvectors once, and takes velocities out of the
-   functions. So markers cost what functions there are, not what eigenvectors, and placing them next to nothing. */
+   of y; a product sums tensors into the functions, goes through the eigenvectors once, or through the matrix D between
+   the functions of a square about the markers, and takes velocities out of the functions. So markers cost what
+   functions there are, not what eigenvectors, and placing them next to nothing. */
 #pragma once
-#include "coupling/boxtable.h"
+#include "coupling/boxregion.h"
 #include "markers/markers.h"
 
 typedef struct _p_DoubleBox *DoubleBox;
 struct _p_DoubleBox {
   Markers markers; /* borrowed */
-  BoxTable table;
+  BoxTable table;  /* of all the box */
+  BoxRegion region;
+  const BoxTable *at;   /* of these tables, the one that the next are of */
   PetscInt width;       /* functions of y, filled up with zeros to whole vectors */
   PetscReal *value;     /* [n][functions of x + width] of the own markers */
   PetscReal *function;  /* [BOX_COMPONENTS][functions of x][width] work */
@@ -22,8 +25,8 @@ PETSC_EXTERN PetscErrorCode DoubleBoxCreate(const FluidSpec *spec, Markers marke
                                             DoubleBox *box);
 PETSC_EXTERN PetscErrorCode DoubleBoxDestroy(DoubleBox *box);
 
-/* DoubleBoxPlace - where the markers have been placed. Not collective. */
-PETSC_EXTERN void DoubleBoxPlace(DoubleBox box);
+/* DoubleBoxPlace - where the markers have been placed. Collective. */
+PETSC_EXTERN PetscErrorCode DoubleBoxPlace(DoubleBox box);
 
 /* DoubleBoxApply - y += alpha D T, own part y[2n] of a marker vector, tensors T[DIPOLE_COUNT n] of the own markers.
    Collective. */

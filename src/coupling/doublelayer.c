@@ -121,7 +121,7 @@ PetscErrorCode DoubleLayerPlace(DoubleLayer s) {
     PetscCall(DoubleCloseAdd(s, b, s->value + b->at));
     PetscCall(DoubleWallAdd(s, b, s->value + b->at));
   }
-  if (s->box) DoubleBoxPlace(s->box);
+  if (s->box) PetscCall(DoubleBoxPlace(s->box));
   PetscCall(PetscLogEventEnd(s->place, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
