@@ -87,7 +87,7 @@ def _energy(results: Results, folder: Path) -> list[str]:
 
     about = (
         f"h = 1/32, 36 markers, {study.STEPS_OF_ENERGY_RUN} steps, tolerances 1e-12 unless given. On and off: the length target. In brackets an\n"
-        "independent NumPy prototype (its coupled runs stop at 1e-8 or so). `stopped`: a solve failed. Runs of split that blow up depend on\n"
+        "independent NumPy prototype (its coupled runs stop at 1e-8 or so). `stopped`: a solve failed, or the membrane crossed itself. Runs of split that blow up depend on\n"
         "rounding. With order 2 the energy that never rises is the G-norm's ([membrane.md](../membrane.md#energy)), not this one.\n"
         "coupled_energy.csv also has lengths and areas.\n\n"
         "Largest change of E/E_0 in a step (negative: it fell in every step):\n"
@@ -97,8 +97,8 @@ def _energy(results: Results, folder: Path) -> list[str]:
         about,
         *block("rise", ("split", "1_loose", "1", "1_target"), "+.1e"),
         *block("rise", ("2", "2_euler", "2_target", "2_target_euler"), "+.1e"),
-        "Where dt is far above the membrane's own time, order 2 with the graded start (the columns without `euler start`) extrapolates the\n"
-        "fast first part of the relaxation in its first whole step. With such steps use `-scheme_startup euler` or `-time_adapt error`.\n",
+        "Where dt is far above the membrane's own time, a step of order 2 extrapolates a motion that has ended within it. Such steps are made\n"
+        "again by backward Euler ([membrane.md](../membrane.md#which-order)); the prototype does not do that.\n",
         "E/E_0 after the last step:\n",
         *block("ratio", ("split", "1", "1_target", "2", "2_target"), ".3g"),
     ]
@@ -189,9 +189,9 @@ def _iterations(results: Results, folder: Path, sizes: tuple[int, ...]) -> list[
     write_csv(folder / "coupled_iterations.csv", ["case", "box", "mobility", "h", "mean", "least", "largest"], rows)
     about = (
         "FGMRES to 1e-6 from a zero guess (`-coupled_ksp_initial_guess_nonzero false`), order 2, markers 1.75 h apart, six\n"
-        "steps: mean, least and largest of steps 2 to 6. table: the dense factors are kept over steps until they take two\n"
-        "iterations more than new ones, and those iterations count; new ones take the least. `> 200`: a solve did not end in 200\n"
-        "(restart 60). ilu: complete fill, 200 levels in nested dissection; none: no Lagrangian solve.\n"
+        "steps: mean, least and largest of steps 2 to 6. table: the dense factors are kept over steps until the\n"
+        "iterations that they cost more than new ones add up to the price of new ones. A step made again by backward Euler has the\n"
+        "iterations of both. `> 200`: a solve did not end in 200 (restart 60). ilu: complete fill, 200 levels in nested dissection; none: no Lagrangian solve.\n"
     )
     return ["## Iterations\n", about, *lines]
 

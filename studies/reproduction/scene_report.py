@@ -124,8 +124,8 @@ def _settled(results: Results, quick: bool) -> list[str]:
     header = ["c_0", "h", "V", "t = 240", "t = 480", "t = 960", "t = 1440", "slip", "aspect"]
     about = (
         "Longer runs: height over R0. At V = 0.7, w = 60 the symmetric parachute is not stable in quasi-steady flow. A vesicle released\n"
-        "beside the middle ends as a slight slipper, .0427 R0 off it. One released in the middle stays for long, as the offset that\n"
-        "rounding makes grows some 16 times in 480. At V = 0.9 both end as the parachute. The paper's runs end at t = 96.\n"
+        "beside the middle ends as a slight slipper, .0427 R0 off it. One released in the middle stays for long: its offset, 4e-6 R0\n"
+        "at the start, grows 17 times in 480. At V = 0.9 both end as the parachute. The paper's runs end at t = 96.\n"
     )
     return [about, *table(header, rows)]
 
