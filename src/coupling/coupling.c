@@ -316,7 +316,7 @@ PetscErrorCode CouplingAddPast(Coupling c, Vec uhat, Vec U) {
   PetscFunctionBeginUser;
   if (c->lag == 0) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(MarkersInterpolate(c->markers, uhat, c->velocity));
-  PetscCall(VecAXPY(U, c->lag, c->velocity));
+  PetscCall(VecAXPY(U, CouplingLag(c, c->fluid->alpha), c->velocity));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -78,9 +78,15 @@ static inline PetscReal CouplingBending(Coupling coupling) {
   return CouplingHasMembrane(coupling) ? coupling->membrane->bending : 0;
 }
 
-/* CouplingGridPart - what of a step's new velocity E u the markers have: 1 - lag alpha. Not collective. */
-static inline PetscReal CouplingGridPart(Coupling coupling) {
-  return 1 - coupling->lag * coupling->fluid->alpha;
+/* CouplingLag - the lag in a step with the time coefficient alpha (time): at most 1/alpha. Not collective. */
+static inline PetscReal CouplingLag(Coupling coupling, PetscReal alpha) {
+  return coupling->lag * alpha > 1 ? 1 / alpha : coupling->lag;
+}
+
+/* CouplingGridPart - what of a step's new velocity E u the markers have: 1 - CouplingLag alpha, never below zero, where
+   stiff membranes would be driven by what should slow them. Not collective. */
+static inline PetscReal CouplingGridPart(Coupling coupling, PetscReal alpha) {
+  return 1 - CouplingLag(coupling, alpha) * alpha;
 }
 
 /* CouplingSpreadTension - w += alpha S sigma. CouplingSpreadBending - w += alpha B X. Collective. */

@@ -35,7 +35,7 @@ PetscErrorCode MobilityDestroy(Mobility *mobility) {
 
 PetscErrorCode MobilitySetUp(Mobility m, PetscReal alpha) {
   PetscFunctionBeginUser;
-  m->part = 1 - m->coupling->lag * alpha;
+  m->part = CouplingGridPart(m->coupling, alpha);
   if (m->table) PetscCall(MobilityTableSetUp(m->table, alpha));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -38,7 +38,7 @@ static PetscErrorCode Destroy(Solves *s) {
 /* U = E A^-1 E^T F, the part of it that the markers have. */
 static PetscErrorCode Respond(Solves *s) {
   const Markers m = s->coupling->markers;
-  const PetscReal part = CouplingGridPart(s->coupling);
+  const PetscReal part = CouplingGridPart(s->coupling, s->coupling->fluid->alpha);
   PetscFunctionBeginUser;
   if (s->stream) {
     PetscCall(MarkersRespond(m, s->stream, NULL, part, s->F, s->U));

@@ -245,7 +245,7 @@ PetscErrorCode PreconditionerApply(Preconditioner p, Vec r, Vec z) {
   PetscCall(PetscArraycpy(d, p->d + u->first_wall, u->wall));
   if (CouplingHasBodies(u->coupling)) {
     UnknownsScale(u, PETSC_TRUE, V);
-    PetscCall(WallsMarkerVelocity(u->walls, CouplingGridPart(u->coupling),
+    PetscCall(WallsMarkerVelocity(u->walls, CouplingGridPart(u->coupling, u->coupling->fluid->alpha),
                                   V)); /* block triangular: the walls' flow moves the markers */
     if (p->solid) PetscCall(ObstacleBlockBegin(p->solid, V + u->velocity, V));
     if (p->patterns) PetscCall(PatternsSolve(p->patterns, V, sigma));

@@ -69,7 +69,7 @@ static PetscErrorCode BodyConditions(Reduced s, const PetscScalar x[], Vec known
   const Coupling c = s->unknowns->coupling;
   const Unknowns u = s->unknowns;
   const PetscInt n = u->velocity, tension = UnknownsTension(u);
-  const PetscReal h2 = PetscSqr(c->fluid->grid->h), part = CouplingGridPart(c);
+  const PetscReal h2 = PetscSqr(c->fluid->grid->h), part = CouplingGridPart(c, c->fluid->alpha);
   const PetscScalar *U, *F;
   PetscFunctionBeginUser;
   PetscCall(VecGetArrayRead(s->U, &U));

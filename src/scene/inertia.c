@@ -85,6 +85,18 @@ static PetscErrorCode CheckStiffness(Scene scene) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* A copy beyond a periodic boundary moves as its vesicle does. Where the flow there is another one, the copies of a
+   packing, which fills the box, run into vesicles at once. */
+static PetscErrorCode CheckPacking(Scene scene, PetscBool seamless, int dir) {
+  PetscFunctionBeginUser;
+  PetscCheck(
+      seamless || scene->vesicles.packing == 0, scene->comm, PETSC_ERR_USER_INPUT,
+      "-vesicle_packing %g: the background flow is not periodic in %c, so vesicles and the copies of others across "
+      "that boundary would run into each other; allowed: -domain_bc_%c wall",
+      (double)scene->vesicles.packing, dir ? 'y' : 'x', dir ? 'y' : 'x');
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode SceneChooseInertia(Draft scene) {
   const PetscReal carried = CarriedReynolds(scene);
   const PetscBool baseline = SceneIsProjection(scene);
@@ -93,6 +105,7 @@ PetscErrorCode SceneChooseInertia(Draft scene) {
   PetscFunctionBeginUser;
   PetscCall(CheckStiffness(scene));
   seamless = Seamless(scene, &dir);
+  PetscCall(CheckPacking(scene, seamless, dir));
   scene->reynolds = Reynolds(scene);
   if (scene->fluid.inertia == INERTIA_AUTO) {
     /* at rest, or steady in the end: scenes of the paper, whose model does them no harm (a vesicle off the middle of

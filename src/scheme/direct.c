@@ -98,7 +98,7 @@ static PetscErrorCode AddMean(DirectSolver d, Mat A) {
  * the own momentum rows, into room. */
 static PetscErrorCode AddInterpolation(DirectSolver d, Mat A, PetscInt room[]) {
   const Grid g = d->fluid->grid;
-  const PetscReal part = CouplingGridPart(d->coupling);
+  const PetscReal part = CouplingGridPart(d->coupling, d->fluid->alpha);
   PetscFunctionBeginUser;
   for (PetscInt q = 0; q < 2 * (d->M + d->W); q++) {
     const Stencil *s = &d->coupling->markers->stencil[q];
