@@ -7,7 +7,8 @@
 typedef PetscReal Lanes __attribute__((vector_size(LANES * sizeof(PetscReal)), aligned(sizeof(PetscReal)), may_alias));
 
 /* LanesAt - the four numbers from x on. LanesPut - to x on. LanesSum - their sum. LanesPairs - four pairs x[8],
-   interlaced, become their first and their second numbers; LanesInterlace - the other way round. LanesTwoSums - as LanesSum, of two. */
+   interlaced, become their first and their second numbers; LanesInterlace - the other way round. LanesTwoSums - as
+   LanesSum, of two. */
 static inline Lanes LanesAt(const PetscReal x[]) {
   return *(const Lanes *)x;
 }

@@ -1,5 +1,5 @@
-/* A dipole's part has weights b_x b_y. In each run of faces its column of weights is summed first, which leaves one line
-   of the table's numbers, then its row; of the parts the second sums make the answers to J_x and J_y. */
+/* A dipole's part has weights b_x b_y. In each run of faces its column of weights is summed first, which leaves one
+   line of the table's numbers, then its row; of the parts the second sums make the answers to J_x and J_y. */
 #include "coupling/dipolefaces.h"
 
 enum { U_ROWS = 4, U_VECTORS = 2, V_ROWS = 5 };
@@ -50,7 +50,8 @@ PetscErrorCode DipoleFacesCreate(PetscInt n, const PaddedStencil stencil[], Dipo
     room = PetscMax(room, (f->runs[c] + 1) * f->stride[c]);
     lines = PetscMax(lines, last->line + (last->vectors + 2) * LANES);
   }
-  PetscCall(PetscMalloc4(DIPOLE_FACE_WEIGHTS * n, &f->weight, lines, &f->line[0], lines, &f->line[1], lines, &f->line[2]));
+  PetscCall(
+      PetscMalloc4(DIPOLE_FACE_WEIGHTS * n, &f->weight, lines, &f->line[0], lines, &f->line[1], lines, &f->line[2]));
   PetscCall(PetscCalloc2(room, &f->field[0], room, &f->field[1])); /* beside the runs weights are zero */
   for (PetscInt k = 0; k < n; k++) {
     const PaddedStencil *u = &stencil[2 * k], *v = &stencil[2 * k + 1];
@@ -78,12 +79,14 @@ static inline void SumColumns(const int rows, const int more, const DipoleFaces 
                               int part, const PaddedStencil *s, const PetscInt cells[2]) {
   const PetscInt width = 2 * t->size[0] + 1, x = t->size[0] - s->first[0] - (s->n[0] - 1) + cells[0],
                  y = t->size[1] - s->first[1] + cells[1];
-  const PetscReal *b = s->weight[1] + KERNEL_MAX_POINTS;
+  Lanes b[KERNEL_MAX_POINTS];
+  for (int j = 0; j < rows; j++) b[j] = s->weight[1][KERNEL_MAX_POINTS + j] + (Lanes){0};
   for (PetscInt r = 0; r < f->runs[c]; r++) {
     const FaceRun *run = &f->run[c][r];
     const PetscReal *at = t->value[part] + (run->row + y) * width + run->first + x;
     PetscReal *line = f->line[part] + run->line;
-    for (PetscInt q = 0; q < (run->vectors + more) * LANES && run->vectors; q += LANES) {
+    const PetscInt end = run->vectors ? (run->vectors + more) * LANES : 0;
+    for (PetscInt q = 0; q < end; q += LANES) {
       Lanes sum = b[0] * LanesAt(at + q);
       for (int j = 1; j < rows; j++) sum += b[j] * LanesAt(at + q - j * width);
       LanesPut(sum, line + q);
@@ -92,21 +95,28 @@ static inline void SumColumns(const int rows, const int more, const DipoleFaces 
 }
 
 /* A part's row of weights times a factor, turned. */
-static inline void Turned(const int n, PetscReal factor, const PaddedStencil *s, PetscReal w[KERNEL_MAX_POINTS]) {
-  for (int k = 0; k < n; k++) w[k] = factor * s->weight[0][KERNEL_MAX_POINTS + n - 1 - k];
+static inline void Turned(const int n, PetscReal factor, const PaddedStencil *s, Lanes w[KERNEL_MAX_POINTS]) {
+  for (int k = 0; k < n; k++) w[k] = factor * s->weight[0][KERNEL_MAX_POINTS + n - 1 - k] + (Lanes){0};
 }
 
-/* The answer to J along one direction: of a part with n points along x, a, and of xy, b, which has five. */
-static inline void SumRows(const int n, const DipoleFaces *f, int c, int part, const PetscReal a[], const PetscReal b[],
-                           PetscReal field[]) {
+/* The answer to J along one direction: of a part with n points along x and of xy, which has five. */
+static inline void SumRows(const int n, const DipoleFaces *f, int c, int J, const PaddedStencil dipole[DIPOLE_COUNT],
+                           const PetscReal N[2], PetscReal scale) {
+  const int part = J ? DIPOLE_YY : DIPOLE_XX;
+  PetscReal *field = f->field[J];
+  Lanes a[KERNEL_MAX_POINTS], b[KERNEL_MAX_POINTS];
+  Turned(n, 2 * scale * N[J], &dipole[part], a);
+  Turned(5, scale * N[1 - J], &dipole[DIPOLE_XY], b);
   for (PetscInt r = 0; r < f->runs[c]; r++) {
     const FaceRun *run = &f->run[c][r];
     const PetscReal *own = f->line[part] + run->line, *xy = f->line[DIPOLE_XY] + run->line;
-    for (PetscInt q = 0; q < run->vectors * LANES; q += LANES) {
+    PetscReal *to = field + run->at;
+    const PetscInt end = run->vectors * LANES;
+    for (PetscInt q = 0; q < end; q += LANES) {
       Lanes sum = a[0] * LanesAt(own + q), other = b[0] * LanesAt(xy + q);
       for (int k = 1; k < n; k++) sum += a[k] * LanesAt(own + q + k);
       for (int k = 1; k < 5; k++) other += b[k] * LanesAt(xy + q + k);
-      LanesPut(sum + other, field + run->at + q);
+      LanesPut(sum + other, to + q);
     }
   }
 }
@@ -114,15 +124,11 @@ static inline void SumRows(const int n, const DipoleFaces *f, int c, int part, c
 /* Both of a component. */
 static void MakeFields(const DipoleFaces *f, int c, const OffsetTable *t, const PaddedStencil dipole[DIPOLE_COUNT],
                        const PetscInt cells[2], const PetscReal N[2], PetscReal scale) {
-  PetscReal xx[KERNEL_MAX_POINTS], yy[KERNEL_MAX_POINTS], xy[2][KERNEL_MAX_POINTS];
   SumColumns(4, 2, f, c, t, DIPOLE_XX, &dipole[DIPOLE_XX], cells);
   SumColumns(6, 1, f, c, t, DIPOLE_YY, &dipole[DIPOLE_YY], cells);
   SumColumns(5, 1, f, c, t, DIPOLE_XY, &dipole[DIPOLE_XY], cells);
-  Turned(6, 2 * scale * N[0], &dipole[DIPOLE_XX], xx);
-  Turned(4, 2 * scale * N[1], &dipole[DIPOLE_YY], yy);
-  for (int J = 0; J < 2; J++) Turned(5, scale * N[1 - J], &dipole[DIPOLE_XY], xy[J]);
-  SumRows(6, f, c, DIPOLE_XX, xx, xy[0], f->field[0]);
-  SumRows(4, f, c, DIPOLE_YY, yy, xy[1], f->field[1]);
+  SumRows(6, f, c, 0, dipole, N, scale);
+  SumRows(4, f, c, 1, dipole, N, scale);
 }
 
 /* What a marker reads of both fields, of rows of so many vectors. */

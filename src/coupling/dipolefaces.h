@@ -21,9 +21,9 @@ typedef struct {
   PetscReal *line[DIPOLE_COUNT], *field[2];
 } DipoleFaces;
 
-/* DipoleFacesCreate - those of n markers whose unfolded stencils (cbs54) are stencil[2n]. DipoleFacesAnswer - free[4][n],
-   as DipoleContract, of the dipole's stencils and N, times scale; `cells` are added to offsets, which lie within the
-   tables but for OFFSET_LAGS. Not collective. */
+/* DipoleFacesCreate - those of n markers whose unfolded stencils (cbs54) are stencil[2n]. DipoleFacesAnswer -
+   free[4][n], as DipoleContract, of the dipole's stencils and N, times scale; `cells` are added to offsets, which lie
+   within the tables but for OFFSET_LAGS. Not collective. */
 PETSC_EXTERN PetscErrorCode DipoleFacesCreate(PetscInt n, const PaddedStencil stencil[], DipoleFaces *faces);
 PETSC_EXTERN PetscErrorCode DipoleFacesDestroy(DipoleFaces *faces);
 PETSC_EXTERN void DipoleFacesAnswer(const DipoleFaces *faces, const OffsetTable lattice[2],

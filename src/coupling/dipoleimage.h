@@ -33,15 +33,14 @@ PETSC_EXTERN void DipoleImageFar(const DipoleImageForms *forms, const ImagePair 
 /* One marker's dipoles seen from a wall, with the polynomials of the exact image of J = n. */
 typedef struct {
   const DipoleImageForms *forms;
-  PetscReal N[2], unit[2]; /* times the factor; over the length */
+  PetscReal N[2], unit[2];           /* times the factor; over the length */
   Lanes flux[2][2][IMAGE_MONOMIALS]; /* component, real and imaginary part, monomial */
 } DipoleImageSource;
 
-/* DipoleImageSourceMake - N = n times the marker's length, over: 1 over that; factor: of all answers. DipoleImageFour - of four
-   pairs with this source, the exact image less the lattice's, as DipoleContract, M[4], and the lattice's answer to J =
-   n, L[2]. DipoleImageFourExact - the exact image alone, M[4]. Not collective. */
+/* DipoleImageSourceMake - N = n times the marker's length, over: 1 over that; factor: of all answers. DipoleImageFour -
+   of four pairs with this source, the exact image less the lattice's, as DipoleContract, M[4], and the lattice's answer
+   to J = n, L[2]. DipoleImageFourExact - the exact image alone, M[4]. Not collective. */
 PETSC_EXTERN void DipoleImageSourceMake(const DipoleImageForms *forms, const PetscReal N[2], PetscReal factor,
                                         PetscReal over, DipoleImageSource *source);
-PETSC_EXTERN void DipoleImageFour(const DipoleImageSource *source, Lanes x, Lanes a, Lanes b, Lanes M[4],
-                                  Lanes L[2]);
+PETSC_EXTERN void DipoleImageFour(const DipoleImageSource *source, Lanes x, Lanes a, Lanes b, Lanes M[4], Lanes L[2]);
 PETSC_EXTERN void DipoleImageFourExact(const DipoleImageSource *source, Lanes x, Lanes a, Lanes b, Lanes M[4]);

@@ -228,8 +228,8 @@ static void Lattice(Fill *f) {
   }
 }
 
-/* The column's numbers of C = D - L (or D) to value, columns of J_x and of J_y, and L n added to the flux. D of a marker
-   with itself is not among them. */
+/* The column's numbers of C = D - L (or D) to value, columns of J_x and of J_y, and L n added to the flux. D of a
+   marker with itself is not among them. */
 static void End(Fill *f, PetscReal value[]) {
   const DoubleColumn *c = &f->to;
   const PetscReal *N = c->N, n[2] = {c->over * N[0], c->over * N[1]};
@@ -285,6 +285,7 @@ PetscErrorCode DoubleBlockFill(DoubleLayer s, const DoubleBlock *b, PetscBool la
   PetscFunctionBeginUser;
   PetscCall(CreateFill(s, b, lattice, &f));
   PetscCall(ChooseWay(&f));
+  if (s->image) DoubleImageRange(s->image, &f.to);
   if (f.self) {
     PetscCall(PetscMalloc1(3 * m, &own));
     PetscCall(Diagonals(s->near->bodies->spectral[b->row], m, s->near->markers->X + 2 * l->start[b->row], own));

@@ -136,7 +136,7 @@ static inline void AddFour(PetscBool turned, Lanes a, PetscReal x[]) {
 }
 
 /* One wall's parts in closed form, of markers that are off the wall, seen from which x is along it. */
-static void AddFar(DoubleImage m, int direction, int side, const DoubleColumn *c) {
+static inline void AddFar(DoubleImage m, const int direction, const int side, const DoubleColumn *c) {
   const PetscReal cell = 1 / m->single->markers->grid->h, *y = m->single->y[direction][side];
   const PetscReal N[2] = {c->N[1 - direction], side ? -c->N[direction] : c->N[direction]};
   const Lanes b = y[c->j] + (Lanes){0};
@@ -158,6 +158,21 @@ static void AddFar(DoubleImage m, int direction, int side, const DoubleColumn *c
   }
 }
 
+static void AddFarLeft(DoubleImage m, const DoubleColumn *c) {
+  AddFar(m, 0, 0, c);
+}
+static void AddFarRight(DoubleImage m, const DoubleColumn *c) {
+  AddFar(m, 0, 1, c);
+}
+static void AddFarBottom(DoubleImage m, const DoubleColumn *c) {
+  AddFar(m, 1, 0, c);
+}
+static void AddFarTop(DoubleImage m, const DoubleColumn *c) {
+  AddFar(m, 1, 1, c);
+}
+static void (*const AddFarFrom[4])(DoubleImage, const DoubleColumn *) = {AddFarLeft, AddFarRight, AddFarBottom,
+                                                                         AddFarTop};
+
 void DoubleImageAdd(DoubleImage m, PetscInt i, PetscInt j, const PetscReal d[2], PetscReal reach,
                     PetscReal exact[2][DIPOLE_COUNT], PetscReal lattice[2][DIPOLE_COUNT]) {
   PetscReal free[2][DIPOLE_COUNT] = {{0}};
@@ -178,21 +193,27 @@ void DoubleImageAdd(DoubleImage m, PetscInt i, PetscInt j, const PetscReal d[2],
 }
 
 void DoubleImageAddColumn(DoubleImage m, PetscReal reach, const DoubleColumn *c) {
-  for (int direction = 0; direction < 2; direction++)
-    for (int side = 0; side < 2; side++) {
-      const PetscReal *y = m->single->y[direction][side];
-      PetscReal low = PETSC_MAX_REAL, high = 0;
-      if (!m->end[direction][side]) continue;
-      for (PetscInt k = c->i; k < c->i + c->n; k++) {
-        low = PetscMin(low, y[k]);
-        high = PetscMax(high, y[k]);
-      }
-      if (low + y[c->j] >= reach) continue;
-      if (high + y[c->j] < reach && (!c->lattice || (low + y[c->j] >= IMAGE_CELLS && low >= FOLD_SCALED)))
-        AddFar(m, direction, side, c);
-      else
-        AddPairs(m, direction, side, reach, c);
+  for (int wall = 0; wall < 4; wall++) {
+    const int direction = wall / 2, side = wall % 2;
+    const PetscReal *y = m->single->y[direction][side], low = c->near[wall], high = c->off[wall];
+    if (!m->end[direction][side] || low + y[c->j] >= reach) continue;
+    if (high + y[c->j] < reach && (!c->lattice || (low + y[c->j] >= IMAGE_CELLS && low >= FOLD_SCALED)))
+      AddFarFrom[wall](m, c);
+    else
+      AddPairs(m, direction, side, reach, c);
+  }
+}
+
+void DoubleImageRange(DoubleImage m, DoubleColumn *c) {
+  for (int wall = 0; wall < 4; wall++) {
+    const PetscReal *y = m->single->y[wall / 2][wall % 2];
+    c->near[wall] = PETSC_MAX_REAL;
+    c->off[wall] = 0;
+    for (PetscInt k = c->i; k < c->i + c->n && m->end[wall / 2][wall % 2]; k++) {
+      c->near[wall] = PetscMin(c->near[wall], y[k]);
+      c->off[wall] = PetscMax(c->off[wall], y[k]);
     }
+  }
 }
 
 void DoubleImageExact(DoubleImage m, int direction, int side, const ImagePair *p, PetscReal exact[2][DIPOLE_COUNT]) {
