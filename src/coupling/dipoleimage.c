@@ -95,6 +95,8 @@ PetscErrorCode DipoleImageFill(const OffsetTable lattice[2], DipoleImageTable *t
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+enum { FORM_EXACT, FORM_FAR };
+
 /* Monomials 1, a, b, ab, aa, bb, aab, abb; `lead` has the first LEAD alone. Of SHEAR the along polynomial is -2 times
    that of STRAIN, the across one twice. */
 enum { ONE, A, B, AB, AA, BB, AAB, ABB, LEAD = AA };
@@ -128,6 +130,10 @@ void DipoleImageFormsMake(PetscReal along, PetscReal across, DipoleImageForms *f
       const PetscReal strain = part == DIPOLE_XX ? 1 : part == DIPOLE_YY ? -1 : c ? 2 : -2;
       AddForms(strain, 0, c, m, ma, mb, f->exact[part][c], f->far[part][c]);
       if (part != DIPOLE_XY) AddForms(0.5, 1, c, m, ma, mb, f->exact[part][c], f->far[part][c]);
+      for (int k = 0; k < IMAGE_MONOMIALS; k++) {
+        f->four[FORM_EXACT][part][c][k] = f->exact[part][c][k] + (Lanes){0};
+        f->four[FORM_FAR][part][c][k] = f->far[part][c][k] + (Lanes){0};
+      }
     }
 }
 
@@ -150,46 +156,78 @@ static inline Terms MakeTerms(const int degrees, Lanes x, Lanes a, Lanes b) {
   return t;
 }
 
-/* The sums of the first of the monomials, with n from `least` on. */
-static inline void Sums(const int monomials, const int least, const PetscReal c[DIPOLE_COUNT][2][IMAGE_MONOMIALS],
+/* Monomials times powers, with n from `least` on. */
+static inline void MakeProducts(const int monomials, const int least, const Terms *t, Lanes term[2][IMAGE_MONOMIALS]) {
+  for (int sine = 0; sine < 2; sine++)
+    for (int k = 0; k < monomials; k++) term[sine][k] = t->monomial[k] * t->power[least + degree[k]][sine];
+}
+
+static inline Lanes Sum(const int monomials, const Lanes c[], const Lanes term[]) {
+  Lanes sum = c[0] * term[0];
+  for (int k = 1; k < monomials; k++) sum += c[k] * term[k];
+  return sum;
+}
+
+/* The sums of the first of the monomials. */
+static inline void Sums(const int monomials, const int least, const Lanes c[DIPOLE_COUNT][2][IMAGE_MONOMIALS],
                         const Terms *t, Lanes K[2][DIPOLE_COUNT]) {
-  for (int sine = 0; sine < 2; sine++) {
-    Lanes term[IMAGE_MONOMIALS];
-    for (int k = 0; k < monomials; k++) term[k] = t->monomial[k] * t->power[least + degree[k]][sine];
+  Lanes term[2][IMAGE_MONOMIALS];
+  MakeProducts(monomials, least, t, term);
+  for (int sine = 0; sine < 2; sine++)
     for (int part = 0; part < DIPOLE_COUNT; part++) {
       const int comp = part == DIPOLE_XY ? sine : 1 - sine;
-      K[comp][part] = c[part][comp][0] * term[0];
-      for (int k = 1; k < monomials; k++) K[comp][part] += c[part][comp][k] * term[k];
+      K[comp][part] = Sum(monomials, c[part][comp], term[sine]);
+    }
+}
+
+void DipoleImageSourceMake(const DipoleImageForms *f, const PetscReal N[2], PetscReal factor, PetscReal over,
+                           DipoleImageSource *s) {
+  const PetscReal part[DIPOLE_COUNT] = {2 * N[0] * N[0], 2 * N[1] * N[1], 2 * N[0] * N[1]};
+  s->forms = f;
+  for (int c = 0; c < 2; c++) {
+    s->N[c] = factor * N[c];
+    s->unit[c] = over * N[c];
+    for (int k = 0; k < LEAD; k++) {
+      const Lanes both = part[DIPOLE_XX] * f->four[FORM_EXACT][DIPOLE_XX][c][k] +
+                         part[DIPOLE_YY] * f->four[FORM_EXACT][DIPOLE_YY][c][k];
+      s->flux[c][1 - c][k] = factor * over * both;
+      s->flux[c][c][k] = factor * over * part[DIPOLE_XY] * f->four[FORM_EXACT][DIPOLE_XY][c][k];
     }
   }
 }
 
-void DipoleImageFourExact(const DipoleImageForms *f, Lanes x, Lanes a, Lanes b, Lanes K[2][DIPOLE_COUNT]) {
+void DipoleImageFourExact(const DipoleImageSource *s, Lanes x, Lanes a, Lanes b, Lanes M[4]) {
   const Terms t = MakeTerms(DEGREES_EXACT, x, a, b);
-  Sums(LEAD, 0, f->exact, &t, K);
+  Lanes K[2][DIPOLE_COUNT];
+  Sums(LEAD, 0, s->forms->four[FORM_EXACT], &t, K);
+  DipoleContractFour(K, s->N, M);
 }
 
-void DipoleImageFour(const DipoleImageForms *f, Lanes x, Lanes a, Lanes b, Lanes exact[2][DIPOLE_COUNT],
-                     Lanes far[2][DIPOLE_COUNT]) {
+void DipoleImageFour(const DipoleImageSource *s, Lanes x, Lanes a, Lanes b, Lanes M[4], Lanes L[2]) {
   const Terms t = MakeTerms(DEGREES, x, a, b);
-  Sums(LEAD, 0, f->exact, &t, exact);
-  Sums(IMAGE_MONOMIALS, 2, f->far, &t, far);
+  Lanes K[2][DIPOLE_COUNT], term[2][IMAGE_MONOMIALS];
+  Sums(IMAGE_MONOMIALS, 2, s->forms->four[FORM_FAR], &t, K);
+  DipoleContractFour(K, s->N, M);
+  MakeProducts(LEAD, 0, &t, term);
+  for (int c = 0; c < 2; c++)
+    L[c] = Sum(LEAD, s->flux[c][0], term[0]) + Sum(LEAD, s->flux[c][1], term[1]) -
+           (s->unit[0] * M[c] + s->unit[1] * M[2 + c]);
 }
 
-/* The first of four. */
-static void First(const Lanes four[2][DIPOLE_COUNT], PetscReal K[2][DIPOLE_COUNT]) {
+/* One pair's numbers of a form. */
+static void One(const int monomials, const int least, int form, const DipoleImageForms *f, const ImagePair *p,
+                PetscReal K[2][DIPOLE_COUNT]) {
+  const Terms t = MakeTerms(DEGREES, p->x + (Lanes){0}, p->a + (Lanes){0}, p->b + (Lanes){0});
+  Lanes four[2][DIPOLE_COUNT];
+  Sums(monomials, least, f->four[form], &t, four);
   for (int c = 0; c < 2; c++)
     for (int part = 0; part < DIPOLE_COUNT; part++) K[c][part] = four[c][part][0];
 }
 
 void DipoleImageExact(const DipoleImageForms *f, const ImagePair *p, PetscReal K[2][DIPOLE_COUNT]) {
-  Lanes four[2][DIPOLE_COUNT];
-  DipoleImageFourExact(f, p->x + (Lanes){0}, p->a + (Lanes){0}, p->b + (Lanes){0}, four);
-  First((const Lanes(*)[DIPOLE_COUNT])four, K);
+  One(LEAD, 0, FORM_EXACT, f, p, K);
 }
 
 void DipoleImageFar(const DipoleImageForms *f, const ImagePair *p, PetscReal K[2][DIPOLE_COUNT]) {
-  Lanes exact[2][DIPOLE_COUNT], far[2][DIPOLE_COUNT];
-  DipoleImageFour(f, p->x + (Lanes){0}, p->a + (Lanes){0}, p->b + (Lanes){0}, exact, far);
-  First((const Lanes(*)[DIPOLE_COUNT])far, K);
+  One(IMAGE_MONOMIALS, 2, FORM_FAR, f, p, K);
 }

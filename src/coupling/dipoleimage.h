@@ -20,15 +20,27 @@ PETSC_EXTERN PetscErrorCode DipoleImageFill(const OffsetTable lattice[2], Dipole
 /* Polynomials of the closed forms, by part and component. */
 typedef struct {
   PetscReal exact[DIPOLE_COUNT][2][IMAGE_MONOMIALS], far[DIPOLE_COUNT][2][IMAGE_MONOMIALS];
+  Lanes four[2][DIPOLE_COUNT][2][IMAGE_MONOMIALS]; /* both, four times each */
 } DipoleImageForms;
 
 /* DipoleImageFormsMake - for responses with these second moments along and across. DipoleImageExact - K[component]
    [part] of the exact fluid's image. DipoleImageFar - that less the lattice's, to the order 1/R^3, R the distance from
-   the image. DipoleImageFour - both, DipoleImageFourExact - the first alone, of four pairs. Not collective. */
+   the image. Not collective. */
 PETSC_EXTERN void DipoleImageFormsMake(PetscReal along, PetscReal across, DipoleImageForms *forms);
 PETSC_EXTERN void DipoleImageExact(const DipoleImageForms *forms, const ImagePair *pair, PetscReal K[2][DIPOLE_COUNT]);
 PETSC_EXTERN void DipoleImageFar(const DipoleImageForms *forms, const ImagePair *pair, PetscReal K[2][DIPOLE_COUNT]);
-PETSC_EXTERN void DipoleImageFour(const DipoleImageForms *forms, Lanes x, Lanes a, Lanes b,
-                                  Lanes exact[2][DIPOLE_COUNT], Lanes far[2][DIPOLE_COUNT]);
-PETSC_EXTERN void DipoleImageFourExact(const DipoleImageForms *forms, Lanes x, Lanes a, Lanes b,
-                                       Lanes exact[2][DIPOLE_COUNT]);
+
+/* One marker's dipoles seen from a wall, with the polynomials of the exact image of J = n. */
+typedef struct {
+  const DipoleImageForms *forms;
+  PetscReal N[2], unit[2];           /* times the factor; over the length */
+  Lanes flux[2][2][IMAGE_MONOMIALS]; /* component, real and imaginary part, monomial */
+} DipoleImageSource;
+
+/* DipoleImageSourceMake - N = n times the marker's length, over: 1 over that; factor: of all answers. DipoleImageFour -
+   of four pairs with this source, the exact image less the lattice's, as DipoleContract, M[4], and the lattice's answer
+   to J = n, L[2]. DipoleImageFourExact - the exact image alone, M[4]. Not collective. */
+PETSC_EXTERN void DipoleImageSourceMake(const DipoleImageForms *forms, const PetscReal N[2], PetscReal factor,
+                                        PetscReal over, DipoleImageSource *source);
+PETSC_EXTERN void DipoleImageFour(const DipoleImageSource *source, Lanes x, Lanes a, Lanes b, Lanes M[4], Lanes L[2]);
+PETSC_EXTERN void DipoleImageFourExact(const DipoleImageSource *source, Lanes x, Lanes a, Lanes b, Lanes M[4]);

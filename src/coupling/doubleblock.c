@@ -1,5 +1,6 @@
 #include "coupling/doubleblock.h"
 #include "base/lanes.h"
+#include "coupling/dipolefaces.h"
 #include "coupling/nearblock.h"
 
 PetscErrorCode DoubleGeometry(Spectral spectral, PetscInt n, const PetscReal X[], PetscReal normal[],
@@ -114,60 +115,85 @@ typedef struct {
   const DoubleBlock *block;
   PetscBool self;
   DoubleColumn to;
-  PetscReal *part;            /* [n] BoxImageRow */
-  PetscReal *D[DIPOLE_COUNT]; /* [n] the exact double layer's xx, yy, xy */
-  PetscReal *flux[2];         /* [n] SUM L n over the columns */
+  PetscReal *part;    /* [n] BoxImageRow */
+  PetscReal *flux[2]; /* [n] SUM L n over the columns */
   PetscReal *memory;
+  PetscBool by_faces; /* all pairs by stencils, together: */
+  DipoleFaces faces;
+  PetscInt cells[2]; /* added to their offsets */
 } Fill;
 
-/* All arrays of a Fill, one behind the other. */
+/* All arrays of a Fill, one behind the other: those of the walls first. */
 static PetscErrorCode CreateFill(DoubleLayer s, const DoubleBlock *b, PetscBool lattice, Fill *f) {
   const Layout l = s->near->bodies->layout;
   const PetscInt n = LayoutCount(l, b->row), room = n + LANES;
+  DoubleColumn *c = &f->to;
   PetscReal *next;
   PetscFunctionBeginUser;
   *f = (Fill){.layer = s, .block = b, .to = {.i = l->start[b->row], .n = n, .lattice = lattice}};
   f->self = b->row == b->column && b->shift[0] == 0 && b->shift[1] == 0 ? PETSC_TRUE : PETSC_FALSE;
-  PetscCall(PetscCalloc1((5 + DIPOLE_COUNT + 6 * DIPOLE_COUNT) * room, &f->memory));
+  PetscCall(PetscCalloc1(15 * room, &f->memory));
   next = f->memory;
-  for (int c = 0; c < 2; c++, next += 2 * room) {
-    f->to.d[c] = next;
-    f->flux[c] = next + room;
-  }
-  f->part = next;
-  next += room;
-  for (int k = 0; k < DIPOLE_COUNT; k++, next += room) f->D[k] = next;
-  for (int q = 0; q < 2 * DIPOLE_COUNT; q++, next += 3 * room) {
-    f->to.free[q / DIPOLE_COUNT][q % DIPOLE_COUNT] = next;
-    f->to.image[q / DIPOLE_COUNT][q % DIPOLE_COUNT] = next + room;
-    f->to.exact[q / DIPOLE_COUNT][q % DIPOLE_COUNT] = next + 2 * room;
-  }
+  PetscReal **const arrays[] = {&c->wall[0], &c->wall[1], &c->wall[2], &c->wall[3], &c->flux[0],
+                                &c->flux[1], &c->free[0], &c->free[1], &c->free[2], &c->free[3],
+                                &c->d[0],    &c->d[1],    &f->flux[0], &f->flux[1], &f->part};
+  for (int k = 0; k < 15; k++, next += room) *arrays[k] = next;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Where the column's marker is from those of the row; D, of a marker with itself as in own[3]. */
-static void Begin(Fill *f, PetscInt j, const PetscReal own[]) {
+/* The least box of some markers. */
+static void Bounds(PetscInt n, const PetscReal X[], PetscReal low[2], PetscReal high[2]) {
+  for (int c = 0; c < 2; c++) low[c] = high[c] = X[c];
+  for (PetscInt k = 0; k < 2 * n; k++) {
+    low[k % 2] = PetscMin(low[k % 2], X[k]);
+    high[k % 2] = PetscMax(high[k % 2], X[k]);
+  }
+}
+
+/* Whether no pair is farther apart than stencils are summed, nor has another image for the nearest one. */
+static PetscBool AreNear(Fill *f) {
+  const NearField near = f->layer->near;
+  const Layout l = near->bodies->layout;
+  const Grid g = near->markers->grid;
+  const PetscReal *X = near->markers->X, reach = (f->self ? DOUBLE_CELLS : DOUBLE_CROSS_CELLS) * g->h;
+  PetscReal low[2][2], high[2][2];
+  Bounds(f->to.n, X + 2 * f->to.i, low[0], high[0]);
+  Bounds(LayoutCount(l, f->block->column), X + 2 * l->start[f->block->column], low[1], high[1]);
+  for (int dir = 0; dir < 2; dir++) {
+    const PetscReal shift = f->block->shift[dir], half = 0.49 * (g->hi[dir] - g->lo[dir]);
+    const PetscReal most = PetscMax(high[0][dir] - low[1][dir] - shift, high[1][dir] + shift - low[0][dir]);
+    if (most > reach || (near->box && !g->wall[dir] && most > half)) return PETSC_FALSE;
+    f->cells[dir] = (PetscInt)rint(-shift / g->h);
+  }
+  return PETSC_TRUE;
+}
+
+/* Which way takes less: a marker's double sums cost as much as some vectors of faces. */
+static PetscErrorCode ChooseWay(Fill *f) {
+  enum { VECTORS_PER_MARKER = 6 };
+  PetscFunctionBeginUser;
+  if (!f->to.lattice || !AreNear(f)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(DipoleFacesCreate(f->to.n, f->layer->near->stencil + 2 * f->to.i, &f->faces));
+  f->by_faces = f->faces.vectors <= VECTORS_PER_MARKER * f->to.n ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Where the column's marker is from those of the row; nothing of walls. */
+static void Begin(Fill *f, PetscInt j) {
   DoubleLayer s = f->layer;
-  const PetscReal *X = s->near->markers->X, *N = s->normal + 2 * j;
   DoubleColumn *c = &f->to;
+  const PetscReal *X = s->near->markers->X;
+  const Lanes from = {X[2 * j] + f->block->shift[0], X[2 * j + 1] + f->block->shift[1]};
   c->j = j;
+  c->over = 1 / s->along[j];
+  for (int dir = 0; dir < 2; dir++) c->N[dir] = s->normal[2 * j + dir];
   for (PetscInt p = 0; p < c->n; p++) {
-    for (int dir = 0; dir < 2; dir++) c->d[dir][p] = X[2 * (c->i + p) + dir] - X[2 * j + dir] - f->block->shift[dir];
+    c->d[0][p] = X[2 * (c->i + p)] - from[0];
+    c->d[1][p] = X[2 * (c->i + p) + 1] - from[1];
     f->part[p] = 1;
   }
   if (c->lattice && s->near->box) BoxImageRow(s->near->box->axis, c->n, c->d, f->part);
-  for (PetscInt p = 0; p < c->n; p += LANES) {
-    const Lanes x = LanesAt(c->d[0] + p), y = LanesAt(c->d[1] + p), r2 = x * x + y * y;
-    const Lanes q = (x * N[0] + y * N[1]) / (PETSC_PI * (r2 * r2 + LanesWhere((LanesBits)(r2 == 0), 1 + (Lanes){0})));
-    LanesPut(q * x * x, f->D[0] + p);
-    LanesPut(q * y * y, f->D[1] + p);
-    LanesPut(q * x * y, f->D[2] + p);
-  }
-  for (int k = 0; k < DIPOLE_COUNT && f->self; k++) f->D[k][j - c->i] = own[3 * (j - c->i) + k];
-  for (int q = 0; q < 2 * DIPOLE_COUNT; q++) {
-    (void)PetscArrayzero(c->exact[q / DIPOLE_COUNT][q % DIPOLE_COUNT], c->n + LANES);
-    (void)PetscArrayzero(c->image[q / DIPOLE_COUNT][q % DIPOLE_COUNT], c->n + LANES);
-  }
+  (void)PetscArrayzero(c->wall[0], 6 * (c->n + LANES));
 }
 
 /* The lattice without walls: all pairs as if they were distant, if any are, then those by stencils. */
@@ -177,51 +203,65 @@ static void Lattice(Fill *f) {
   const PetscReal *X = near->markers->X, h = near->markers->grid->h;
   const PetscReal reach2 = PetscSqr((f->self ? DOUBLE_CELLS : DOUBLE_CROSS_CELLS) * h);
   PetscInt distant = 0;
+  if (f->by_faces) {
+    DipoleFacesAnswer(&f->faces, f->layer->lattice, &f->layer->dipole[DIPOLE_COUNT * c->j], f->cells, c->N, 1 / h,
+                      c->free);
+    return;
+  }
   for (PetscInt p = 0; p < c->n; p++) distant += PetscSqr(c->d[0][p]) + PetscSqr(c->d[1][p]) > reach2;
   for (PetscInt p = 0; p < c->n && distant; p += LANES) {
-    Lanes K[2][DIPOLE_COUNT];
+    Lanes K[2][DIPOLE_COUNT], M[4];
     FarFour(h, LanesAt(c->d[0] + p), LanesAt(c->d[1] + p), K);
-    for (int q = 0; q < 2 * DIPOLE_COUNT; q++)
-      LanesPut(K[q / DIPOLE_COUNT][q % DIPOLE_COUNT], c->free[q / DIPOLE_COUNT][q % DIPOLE_COUNT] + p);
+    DipoleContractFour(K, c->N, M);
+    for (int q = 0; q < 4; q++) LanesPut(M[q], c->free[q] + p);
   }
   for (PetscInt p = 0; p < c->n && distant < c->n; p++) {
     const PetscReal d[2] = {c->d[0][p], c->d[1][p]}, *at = X + 2 * (c->i + p);
-    PetscReal K[2][DIPOLE_COUNT];
+    PetscReal K[2][DIPOLE_COUNT], M[4];
     PetscInt cells[2];
     if (d[0] * d[0] + d[1] * d[1] > reach2) continue;
     for (int dir = 0; dir < 2; dir++) cells[dir] = (PetscInt)rint((d[dir] - (at[dir] - X[2 * c->j + dir])) / h);
-    NearParts(f->layer->lattice, h, &near->stencil[2 * (c->i + p)], &f->layer->dipole[DIPOLE_COUNT * c->j], cells, K);
-    for (int q = 0; q < 2 * DIPOLE_COUNT; q++)
-      c->free[q / DIPOLE_COUNT][q % DIPOLE_COUNT][p] = K[q / DIPOLE_COUNT][q % DIPOLE_COUNT];
+    StencilDipoleSums(f->layer->lattice, &near->stencil[2 * (c->i + p)], &f->layer->dipole[DIPOLE_COUNT * c->j], cells,
+                      K);
+    DipoleContract((const PetscReal(*)[DIPOLE_COUNT])K, c->N, 1 / h, M);
+    for (int q = 0; q < 4; q++) c->free[q][p] = M[q];
   }
 }
 
-/* The column's numbers of C = D - L (or D) to value, columns of J_x and of J_y, and L n added to the flux; N = n w. */
+/* The column's numbers of C = D - L (or D) to value, columns of J_x and of J_y, and L n added to the flux. D of a
+   marker with itself is not among them. */
 static void End(Fill *f, PetscReal value[]) {
   const DoubleColumn *c = &f->to;
-  const PetscReal *N = f->layer->normal + 2 * c->j, over = 1 / f->layer->along[c->j];
+  const PetscReal *N = c->N, n[2] = {c->over * N[0], c->over * N[1]};
   for (PetscInt p = 0; p < c->n; p += LANES) {
-    const Lanes part = LanesAt(f->part + p);
-    Lanes M[2][2]; /* [component][J] */
+    const Lanes part = LanesAt(f->part + p), x = LanesAt(c->d[0] + p), y = LanesAt(c->d[1] + p), r2 = x * x + y * y;
+    const Lanes q = (x * N[0] + y * N[1]) / (PETSC_PI * (r2 * r2 + LanesWhere((LanesBits)(r2 == 0), 1 + (Lanes){0})));
+    const Lanes qx = q * x, D[4] = {qx * x, qx * y, qx * y, q * y * y};
+    Lanes M[4], free[4];
+    for (int k = 0; k < 4; k++) {
+      free[k] = LanesAt(c->free[k] + p);
+      M[k] = part * (D[k] + (LanesAt(c->wall[k] + p) - free[k]));
+    }
     for (int comp = 0; comp < 2; comp++) {
-      Lanes L[DIPOLE_COUNT], K[DIPOLE_COUNT];
-      for (int k = 0; k < DIPOLE_COUNT; k++) {
-        L[k] = LanesAt(c->free[comp][k] + p) + LanesAt(c->image[comp][k] + p);
-        K[k] = LanesAt(c->exact[comp][k] + p) - L[k];
-      }
-      M[comp][0] = part *
-                   (LanesAt(f->D[comp ? DIPOLE_XY : DIPOLE_XX] + p) + 2 * N[0] * K[DIPOLE_XX] + N[1] * K[DIPOLE_XY]);
-      M[comp][1] = part *
-                   (LanesAt(f->D[comp ? DIPOLE_YY : DIPOLE_XY] + p) + 2 * N[1] * K[DIPOLE_YY] + N[0] * K[DIPOLE_XY]);
-      const Lanes flux = N[0] * N[0] * L[DIPOLE_XX] + N[1] * N[1] * L[DIPOLE_YY] + N[0] * N[1] * L[DIPOLE_XY];
-      LanesPut(LanesAt(f->flux[comp] + p) + 2 * over * part * flux, f->flux[comp] + p);
+      const Lanes flux = n[0] * free[comp] + n[1] * free[2 + comp] + LanesAt(c->flux[comp] + p);
+      LanesPut(LanesAt(f->flux[comp] + p) + part * flux, f->flux[comp] + p);
     }
     for (int k = 0; k < 2; k++) {
-      PetscReal row[2 * LANES];
-      LanesInterlace(M[0][k], M[1][k], row);
-      for (PetscInt q = 0; q < 2 * PetscMin(LANES, c->n - p); q++) value[k * 2 * c->n + 2 * p + q] = row[q];
+      PetscReal row[2 * LANES], *to = value + k * 2 * c->n + 2 * p;
+      LanesInterlace(M[2 * k], M[2 * k + 1], p + LANES <= c->n ? to : row);
+      for (PetscInt i = 0; i < 2 * (c->n - p) && p + LANES > c->n; i++) to[i] = row[i];
     }
   }
+}
+
+/* D of the column's marker with itself, own[3], added to its own block's column. */
+static void AddOwn(const Fill *f, const PetscReal own[3], PetscReal value[]) {
+  const PetscInt k = f->to.j - f->to.i;
+  PetscReal *at = value + 2 * k, *next = at + 2 * f->to.n;
+  at[0] += f->part[k] * own[0];
+  next[1] += f->part[k] * own[1];
+  at[1] += f->part[k] * own[2];
+  next[0] += f->part[k] * own[2];
 }
 
 /* value += (L n) (n w)^T/length: L acts on what Q leaves. */
@@ -229,12 +269,11 @@ static void PutFluxBack(const Fill *f, PetscReal value[]) {
   const DoubleLayer s = f->layer;
   const Layout l = s->near->bodies->layout;
   const PetscInt n = f->to.n, first = 2 * l->start[f->block->column];
+  for (PetscInt i = 0; i < n; i++)
+    for (int c = 0; c < 2; c++) s->column[2 * i + c] = f->flux[c][i];
   for (PetscInt j = 0; j < 2 * LayoutCount(l, f->block->column); j++) {
     const PetscReal N = s->normal[first + j] / s->length[f->block->column];
-    for (PetscInt i = 0; i < n; i++) {
-      value[j * 2 * n + 2 * i] += N * f->flux[0][i];
-      value[j * 2 * n + 2 * i + 1] += N * f->flux[1][i];
-    }
+    for (PetscInt i = 0; i < 2 * n; i++) value[j * 2 * n + i] += N * s->column[i];
   }
 }
 
@@ -245,18 +284,22 @@ PetscErrorCode DoubleBlockFill(DoubleLayer s, const DoubleBlock *b, PetscBool la
   Fill f;
   PetscFunctionBeginUser;
   PetscCall(CreateFill(s, b, lattice, &f));
+  PetscCall(ChooseWay(&f));
+  if (s->image) DoubleImageRange(s->image, &f.to);
   if (f.self) {
     PetscCall(PetscMalloc1(3 * m, &own));
     PetscCall(Diagonals(s->near->bodies->spectral[b->row], m, s->near->markers->X + 2 * l->start[b->row], own));
   }
   for (PetscInt q = 0; q < m; q++) {
-    Begin(&f, l->start[b->column] + q, own);
+    Begin(&f, l->start[b->column] + q);
     if (lattice) Lattice(&f);
     if (s->image) DoubleImageAddColumn(s->image, ImageReach(s), &f.to);
     End(&f, value + 2 * q * 2 * f.to.n);
+    if (f.self) AddOwn(&f, own + 3 * q, value + 2 * q * 2 * f.to.n);
   }
   if (lattice) PutFluxBack(&f, value);
   PetscCall(PetscFree(own));
+  PetscCall(DipoleFacesDestroy(&f.faces));
   PetscCall(PetscFree(f.memory));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -86,35 +86,27 @@ static void AddParts(PetscReal alpha, const PetscReal from[2][DIPOLE_COUNT], Pet
     for (int k = 0; k < DIPOLE_COUNT; k++) to[c][k] += alpha * from[c][k];
 }
 
-/* What the lattice has of one wall for a pair, whose answer without walls is free and whose image in exact fluid is
-   blake. Responses that are scaled near the wall take s of the half space's free + exact - far only. */
+/* What the lattice has of one wall for a pair, whose image in exact fluid is blake, and how much of each component of
+   its answer without walls is to be taken off. Responses that are scaled near the wall take s of the half space's free
+   + exact - far only. */
 static void OnLattice(DoubleImage m, int direction, int side, PetscInt i, PetscInt j, const ImagePair *p,
-                      const PetscReal free[2][DIPOLE_COUNT], const PetscReal blake[2][DIPOLE_COUNT],
-                      PetscReal grid[2][DIPOLE_COUNT]) {
+                      const PetscReal blake[2][DIPOLE_COUNT], PetscReal grid[2][DIPOLE_COUNT], PetscReal less[2]) {
   const PetscReal over = 1 / m->single->markers->grid->h;
   const ImageEnd *e = &m->single->end[direction][side][i];
   PetscReal part[2][DIPOLE_COUNT];
+  less[0] = less[1] = 1;
   if (p->x * p->x + PetscSqr(p->a + p->b) < PetscSqr(IMAGE_CELLS)) {
     Half(m, direction, p->x, i, e, j, &m->end[direction][side][j], part);
     Turn(direction, side, over, PARTS(part), grid);
-    AddParts(-1, free, grid);
     return;
   }
   DipoleImageFar(&m->forms, p, part);
   Turn(direction, side, -over, PARTS(part), grid);
-  AddParts(1, blake, grid);
-  for (int k = 0; k < DIPOLE_COUNT; k++)
-    grid[direction][k] -= (1 - e->scale) * (free[direction][k] + grid[direction][k]);
-}
-
-/* A column's marker, from and to a pair's own numbers. */
-static void Take(PetscReal *const from[2][DIPOLE_COUNT], PetscInt k, PetscReal K[2][DIPOLE_COUNT]) {
-  for (int c = 0; c < 2; c++)
-    for (int part = 0; part < DIPOLE_COUNT; part++) K[c][part] = from[c][part][k];
-}
-static void Put(const PetscReal K[2][DIPOLE_COUNT], PetscInt k, PetscReal *const to[2][DIPOLE_COUNT]) {
-  for (int c = 0; c < 2; c++)
-    for (int part = 0; part < DIPOLE_COUNT; part++) to[c][part][k] += K[c][part];
+  for (int c = 0; c < 2; c++) {
+    const PetscReal scale = c == direction ? e->scale : 1;
+    less[c] = 1 - scale;
+    for (int k = 0; k < DIPOLE_COUNT; k++) grid[c][k] = scale * (grid[c][k] + blake[c][k]);
+  }
 }
 
 /* One wall's parts, pair by pair. */
@@ -122,45 +114,64 @@ static void AddPairs(DoubleImage m, int direction, int side, PetscReal reach, co
   const PetscReal *y = m->single->y[direction][side];
   for (PetscInt k = 0; k < c->n; k++) {
     const ImagePair p = {c->d[1 - direction][k] / m->single->markers->grid->h, y[c->i + k], y[c->j]};
-    PetscReal free[2][DIPOLE_COUNT], blake[2][DIPOLE_COUNT] = {{0}}, grid[2][DIPOLE_COUNT] = {{0}};
+    PetscReal blake[2][DIPOLE_COUNT] = {{0}}, grid[2][DIPOLE_COUNT] = {{0}}, less[2], exact[4], L[4];
     if (p.a + p.b >= reach) continue;
     DoubleImageExact(m, direction, side, &p, blake);
-    Put(PARTS(blake), k, c->exact);
+    DipoleContract(PARTS(blake), c->N, 1, exact);
+    for (int q = 0; q < 4; q++) c->wall[q][k] += exact[q];
     if (!c->lattice) continue;
-    Take(c->free, k, free);
-    OnLattice(m, direction, side, c->i + k, c->j, &p, PARTS(free), PARTS(blake), grid);
-    Put(PARTS(grid), k, c->image);
+    OnLattice(m, direction, side, c->i + k, c->j, &p, PARTS(blake), grid, less);
+    DipoleContract(PARTS(grid), c->N, 1, L);
+    for (int q = 0; q < 4; q++) {
+      L[q] -= less[q % 2] * c->free[q][k];
+      c->wall[q][k] -= L[q];
+      c->flux[q % 2][k] += c->over * c->N[q / 2] * L[q];
+    }
   }
 }
 
-/* As Turn, added to four markers of a column. */
-static void TurnFour(int direction, int side, PetscReal alpha, Lanes part[2][DIPOLE_COUNT], PetscInt k,
-                     PetscReal *const to[2][DIPOLE_COUNT]) {
-  for (int c = 0; c < 2; c++)
-    for (int q = 0; q < DIPOLE_COUNT; q++) {
-      const PetscBool odd = (c == 1) != (q == DIPOLE_XY) ? PETSC_TRUE : PETSC_FALSE;
-      PetscReal *at = to[c ? direction : 1 - direction][Turned(direction, q)] + k;
-      LanesPut(LanesAt(at) + (side && odd ? -alpha : alpha) * part[c][q], at);
-    }
+/* x += a, or -a. */
+static inline void AddFour(PetscBool turned, Lanes a, PetscReal x[]) {
+  LanesPut(turned ? LanesAt(x) - a : LanesAt(x) + a, x);
 }
 
-/* One wall's parts in closed form, of markers that are off the wall. */
-static void AddFar(DoubleImage m, int direction, int side, const DoubleColumn *c) {
+/* One wall's parts in closed form, of markers that are off the wall, seen from which x is along it. */
+static inline void AddFar(DoubleImage m, const int direction, const int side, const DoubleColumn *c) {
   const PetscReal cell = 1 / m->single->markers->grid->h, *y = m->single->y[direction][side];
+  const PetscReal N[2] = {c->N[1 - direction], side ? -c->N[direction] : c->N[direction]};
   const Lanes b = y[c->j] + (Lanes){0};
+  DipoleImageSource source;
+  DipoleImageSourceMake(&m->forms, N, cell, c->over, &source);
   for (PetscInt k = 0; k < c->n; k += LANES) {
     const Lanes x = cell * LanesAt(c->d[1 - direction] + k), a = LanesAt(y + c->i + k);
-    Lanes exact[2][DIPOLE_COUNT], far[2][DIPOLE_COUNT];
+    Lanes M[4], L[2];
     if (c->lattice)
-      DipoleImageFour(&m->forms, x, a, b, exact, far);
+      DipoleImageFour(&source, x, a, b, M, L);
     else
-      DipoleImageFourExact(&m->forms, x, a, b, exact);
-    TurnFour(direction, side, cell, exact, k, c->exact);
-    if (!c->lattice) continue;
-    TurnFour(direction, side, cell, exact, k, c->image);
-    TurnFour(direction, side, -cell, far, k, c->image);
+      DipoleImageFourExact(&source, x, a, b, M);
+    for (int to = 0; to < 2; to++) {
+      const int comp = to ? direction : 1 - direction;
+      for (int from = 0; from < 2; from++)
+        AddFour(side && to != from, M[2 * from + to], c->wall[2 * (from ? direction : 1 - direction) + comp] + k);
+      if (c->lattice) AddFour(side && to, L[to], c->flux[comp] + k);
+    }
   }
 }
+
+static void AddFarLeft(DoubleImage m, const DoubleColumn *c) {
+  AddFar(m, 0, 0, c);
+}
+static void AddFarRight(DoubleImage m, const DoubleColumn *c) {
+  AddFar(m, 0, 1, c);
+}
+static void AddFarBottom(DoubleImage m, const DoubleColumn *c) {
+  AddFar(m, 1, 0, c);
+}
+static void AddFarTop(DoubleImage m, const DoubleColumn *c) {
+  AddFar(m, 1, 1, c);
+}
+static void (*const AddFarFrom[4])(DoubleImage, const DoubleColumn *) = {AddFarLeft, AddFarRight, AddFarBottom,
+                                                                         AddFarTop};
 
 void DoubleImageAdd(DoubleImage m, PetscInt i, PetscInt j, const PetscReal d[2], PetscReal reach,
                     PetscReal exact[2][DIPOLE_COUNT], PetscReal lattice[2][DIPOLE_COUNT]) {
@@ -169,32 +180,40 @@ void DoubleImageAdd(DoubleImage m, PetscInt i, PetscInt j, const PetscReal d[2],
   for (int wall = 0; wall < 4; wall++) {
     const int direction = wall / 2, side = wall % 2;
     const PetscReal *y = m->single->y[direction][side];
-    PetscReal blake[2][DIPOLE_COUNT] = {{0}}, grid[2][DIPOLE_COUNT] = {{0}};
+    PetscReal blake[2][DIPOLE_COUNT] = {{0}}, grid[2][DIPOLE_COUNT] = {{0}}, less[2];
     if (!m->end[direction][side] || y[i] + y[j] >= reach) continue;
     const ImagePair p = {d[1 - direction] / m->single->markers->grid->h, y[i], y[j]};
     DoubleImageExact(m, direction, side, &p, blake);
-    OnLattice(m, direction, side, i, j, &p, PARTS(free), PARTS(blake), grid);
+    OnLattice(m, direction, side, i, j, &p, PARTS(blake), grid, less);
     AddParts(1, PARTS(blake), exact);
     AddParts(1, PARTS(grid), lattice);
+    for (int q = 0; q < 2 * DIPOLE_COUNT; q++)
+      lattice[q / DIPOLE_COUNT][q % DIPOLE_COUNT] -= less[q / DIPOLE_COUNT] * free[q / DIPOLE_COUNT][q % DIPOLE_COUNT];
   }
 }
 
 void DoubleImageAddColumn(DoubleImage m, PetscReal reach, const DoubleColumn *c) {
-  for (int direction = 0; direction < 2; direction++)
-    for (int side = 0; side < 2; side++) {
-      const PetscReal *y = m->single->y[direction][side];
-      PetscReal low = PETSC_MAX_REAL, high = 0;
-      if (!m->end[direction][side]) continue;
-      for (PetscInt k = c->i; k < c->i + c->n; k++) {
-        low = PetscMin(low, y[k]);
-        high = PetscMax(high, y[k]);
-      }
-      if (low + y[c->j] >= reach) continue;
-      if (high + y[c->j] < reach && (!c->lattice || (low + y[c->j] >= IMAGE_CELLS && low >= FOLD_SCALED)))
-        AddFar(m, direction, side, c);
-      else
-        AddPairs(m, direction, side, reach, c);
+  for (int wall = 0; wall < 4; wall++) {
+    const int direction = wall / 2, side = wall % 2;
+    const PetscReal *y = m->single->y[direction][side], low = c->near[wall], high = c->off[wall];
+    if (!m->end[direction][side] || low + y[c->j] >= reach) continue;
+    if (high + y[c->j] < reach && (!c->lattice || (low + y[c->j] >= IMAGE_CELLS && low >= FOLD_SCALED)))
+      AddFarFrom[wall](m, c);
+    else
+      AddPairs(m, direction, side, reach, c);
+  }
+}
+
+void DoubleImageRange(DoubleImage m, DoubleColumn *c) {
+  for (int wall = 0; wall < 4; wall++) {
+    const PetscReal *y = m->single->y[wall / 2][wall % 2];
+    c->near[wall] = PETSC_MAX_REAL;
+    c->off[wall] = 0;
+    for (PetscInt k = c->i; k < c->i + c->n && m->end[wall / 2][wall % 2]; k++) {
+      c->near[wall] = PetscMin(c->near[wall], y[k]);
+      c->off[wall] = PetscMax(c->off[wall], y[k]);
     }
+  }
 }
 
 void DoubleImageExact(DoubleImage m, int direction, int side, const ImagePair *p, PetscReal exact[2][DIPOLE_COUNT]) {

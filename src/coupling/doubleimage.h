@@ -31,20 +31,24 @@ PETSC_EXTERN PetscErrorCode DoubleImageDestroy(DoubleImage *image);
    stencils (kept by the caller). Not collective. */
 PETSC_EXTERN void DoubleImagePlace(DoubleImage image, const PaddedStencil dipole[]);
 
-/* Responses of the markers i .. i + n - 1 to unit tensor parts of marker j, arrays [component][part] of n numbers
-   (1/length) with room for whole vectors behind them. */
+/* Responses of the markers i .. i + n - 1 to J of marker j, whose normal times its length is N (DipoleContract: x and y
+   of J_x, then of J_y), arrays of n numbers with room for whole vectors behind them. */
 typedef struct {
   PetscInt i, n, j;
-  PetscReal *d[2];                   /* X_i - X_j, in periodic directions to the image meant (length) */
-  PetscBool lattice;                 /* whether `free` and `image` are wanted */
-  PetscReal *free[2][DIPOLE_COUNT];  /* what the lattice without walls gives */
-  PetscReal *image[2][DIPOLE_COUNT]; /* what walls add to that */
-  PetscReal *exact[2][DIPOLE_COUNT]; /* what walls add in the exact fluid */
+  PetscReal near[4], off[4]; /* least and largest distance of the row's markers from each wall (cells) */
+  PetscReal N[2], over;      /* 1 over the length that N has */
+  PetscReal *d[2];           /* X_i - X_j, in periodic directions to the image meant (length) */
+  PetscBool lattice;         /* whether the lattice is meant too, or the exact fluid only */
+  PetscReal *free[4];        /* what the lattice without walls gives */
+  PetscReal *wall[4];        /* what walls add to the exact fluid's response, less what they add to the lattice's */
+  PetscReal *flux[2];        /* what walls add to the lattice's response to J = n */
 } DoubleColumn;
 
-/* DoubleImageAddColumn - all walls' parts, added to image and exact; reach: of images (cells). DoubleImageAdd - of one
-   pair: exact +=, and lattice += image, which holds the free lattice's. DoubleImageExact - exact += that of two points
-   and one wall. Not collective. */
+/* DoubleImageRange - the distances of a column's row from walls. DoubleImageAddColumn - with these, all walls' parts,
+   added to `wall` and `flux`; reach: of images (cells). DoubleImageAdd - of one pair, to unit tensor parts: exact +=,
+   and lattice += image, which holds the free lattice's. DoubleImageExact - exact
+   += that of two points and one wall. Not collective. */
+PETSC_EXTERN void DoubleImageRange(DoubleImage image, DoubleColumn *column);
 PETSC_EXTERN void DoubleImageAddColumn(DoubleImage image, PetscReal reach, const DoubleColumn *column);
 PETSC_EXTERN void DoubleImageAdd(DoubleImage image, PetscInt i, PetscInt j, const PetscReal d[2], PetscReal reach,
                                  PetscReal exact[2][DIPOLE_COUNT], PetscReal lattice[2][DIPOLE_COUNT]);

@@ -1,6 +1,7 @@
 /* The lattice's answer to tensor dipoles in cells and at nodes, spread as markers/dipoles.h does, h = 1
    (docs/contrast.md, Near field). */
 #pragma once
+#include "base/lanes.h"
 #include "coupling/offsets.h"
 #include "markers/dipoles.h"
 
@@ -16,5 +17,13 @@ static inline void DipoleContract(const PetscReal K[2][DIPOLE_COUNT], const Pets
   for (int c = 0; c < 2; c++) {
     M[c] = scale * (2 * N[0] * K[c][DIPOLE_XX] + N[1] * K[c][DIPOLE_XY]);
     M[2 + c] = scale * (2 * N[1] * K[c][DIPOLE_YY] + N[0] * K[c][DIPOLE_XY]);
+  }
+}
+
+/* DipoleContractFour - the same of four pairs. Not collective. */
+static inline void DipoleContractFour(Lanes K[2][DIPOLE_COUNT], const PetscReal N[2], Lanes M[4]) {
+  for (int c = 0; c < 2; c++) {
+    M[c] = 2 * N[0] * K[c][DIPOLE_XX] + N[1] * K[c][DIPOLE_XY];
+    M[2 + c] = 2 * N[1] * K[c][DIPOLE_YY] + N[0] * K[c][DIPOLE_XY];
   }
 }
