@@ -89,8 +89,10 @@ def test_matrix_without_factor_ends_the_run(ranks, tmp_path):
     library = str(tmp_path / "failing.so")
     done = mpirun([shutil.which("gcc"), "-shared", "-fPIC", "-o", library, str(tmp_path / "failing.c"), "-ldl"], 1)
     assert done.returncode == 0, done.stderr
-    options = "-domain_cells 32,32 -flow_type shear -time_step 0.02 -time_end 2 -checkpoint_every 0".split()
-    environment = {"LD_PRELOAD": library, "FAIL": "13"}
+    options = (
+        "-domain_cells 32,32 -flow_type shear -flow_rate 10 -time_step 0.02 -time_end 2 -checkpoint_every 0".split()
+    )
+    environment = {"LD_PRELOAD": library, "FAIL": "7"}
     wrapper = ("env", *(f"{name}={value}" for name, value in environment.items()))
     done = mpirun([PETVES, "-output_dir", str(tmp_path / "out"), *options], ranks, 60, wrapper)
     run = Run(tmp_path / "out", done.returncode, done.stdout, without_mpirun(done.stderr))

@@ -74,19 +74,24 @@ PetscErrorCode DenseMultAdd(PetscBool transpose, PetscInt m, PetscInt n, PetscRe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode DenseProduct(PetscBool transpose, PetscInt m, PetscInt n, PetscInt k, const PetscReal A[],
-                            const PetscReal B[], PetscReal C[]) {
-  PetscBLASInt rows, columns, inner, lda;
-  const PetscReal one = 1, zero = 0;
+PetscErrorCode DenseProductWithin(PetscBool transpose, PetscInt m, PetscInt n, PetscInt k, const PetscReal A[],
+                                  PetscInt lda, const PetscReal B[], PetscInt ldb, PetscReal beta, PetscReal C[],
+                                  PetscInt ldc) {
+  const PetscInt sizes[] = {m, n, k, PetscMax(1, lda), PetscMax(1, ldb), PetscMax(1, ldc)};
+  const PetscReal one = 1;
+  PetscBLASInt size[6];
   PetscFunctionBeginUser;
   if (!m || !n) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscBLASIntCast(m, &rows));
-  PetscCall(PetscBLASIntCast(n, &columns));
-  PetscCall(PetscBLASIntCast(k, &inner));
-  PetscCall(PetscBLASIntCast(PetscMax(1, transpose ? k : m), &lda));
-  const PetscBLASInt ldb = PetscMax(1, inner);
-  PetscCallBLAS("BLASgemm", BLASgemm_(transpose ? "T" : "N", "N", &rows, &columns, &inner, &one, A, &lda, B, &ldb,
-                                      &zero, C, &rows));
+  for (int q = 0; q < 6; q++) PetscCall(PetscBLASIntCast(sizes[q], &size[q]));
+  PetscCallBLAS("BLASgemm", BLASgemm_(transpose ? "T" : "N", "N", &size[0], &size[1], &size[2], &one, A, &size[3], B,
+                                      &size[4], &beta, C, &size[5]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode DenseProduct(PetscBool transpose, PetscInt m, PetscInt n, PetscInt k, const PetscReal A[],
+                            const PetscReal B[], PetscReal C[]) {
+  PetscFunctionBeginUser;
+  PetscCall(DenseProductWithin(transpose, m, n, k, A, transpose ? k : m, B, k, 0, C, m));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

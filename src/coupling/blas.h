@@ -30,5 +30,11 @@ PETSC_EXTERN PetscErrorCode DenseSingleMultAdd(PetscBool transpose, PetscInt m, 
 PETSC_EXTERN PetscErrorCode DenseProduct(PetscBool transpose, PetscInt m, PetscInt n, PetscInt k, const PetscReal A[],
                                          const PetscReal B[], PetscReal C[]);
 
+/* DenseProductWithin - C = A B + beta C, or (transpose) A^T B + beta C, of parts of matrices: their columns are lda,
+   ldb and ldc apart. */
+PETSC_EXTERN PetscErrorCode DenseProductWithin(PetscBool transpose, PetscInt m, PetscInt n, PetscInt k,
+                                               const PetscReal A[], PetscInt lda, const PetscReal B[], PetscInt ldb,
+                                               PetscReal beta, PetscReal C[], PetscInt ldc);
+
 /* DenseEigen - eigenvalues l[n], ascending, of the symmetric A (n x n), whose columns become the eigenvectors. */
 PETSC_EXTERN PetscErrorCode DenseEigen(PetscInt n, PetscReal A[], PetscReal l[]);

@@ -27,70 +27,81 @@ static void Stretching(Membrane m, const DenseBlock *q, const PetscReal U[], Pet
   }
 }
 
-/* F += alpha ds D4 X of a block's own arrays. */
-static void Bending(Membrane m, const DenseBlock *q, PetscReal alpha, const PetscReal X[], PetscReal F[]) {
-  for (PetscInt v = q->vesicle; v < q->end; v++) {
-    const PetscInt own = 2 * (m->layout->start[v] - q->first);
-    MembraneVesicleBending(m, v, alpha, X + own, F + own);
-  }
+/* A linear map of a vesicle's markers that is the same for both components and at all markers, by first[2n], what it
+   makes of a unit at marker 0: A[2n][2n] += it, columns lda apart. */
+static void AddCirculant(PetscInt n, const PetscReal first[], PetscInt lda, PetscReal A[]) {
+  for (PetscInt j = 0; j < n; j++)
+    for (PetscInt k = 0; k < n; k++)
+      for (int c = 0; c < 2; c++) A[(2 * j + c) * lda + 2 * k + c] += first[2 * (k < j ? k - j + n : k - j)];
 }
 
-/* N^T = I + (c_b ds/(h^2 a0)) D4 M, or with motion in the place of I, column by column, and D = Dm M/h^2 (n x 2n). */
-static void AssembleBlock(Membrane m, PetscReal h2, DenseBlock *q, PetscReal a0, const PetscReal Mob[],
-                          const PetscReal motion[], PetscReal D[]) {
-  const PetscInt n = q->n;
-  for (PetscInt c = 0; c < 2 * n; c++) {
-    PetscReal *column = q->N + c * 2 * n;
-    (void)PetscArrayzero(column, 2 * n);
-    if (m->bending > 0) Bending(m, q, m->bending / (h2 * a0), Mob + c * 2 * n, column);
-    if (!motion) column[c] += 1;
-    for (PetscInt k = 0; motion && k < 2 * n; k++) column[k] += motion[c * 2 * n + k];
-    Stretching(m, q, Mob + c * 2 * n, D + c * n);
-    for (PetscInt k = 0; k < n; k++) D[c * n + k] /= h2;
-  }
+/* D[n][2n] = Dm/h^2 of vesicle v, whose tangents are tau: rows are contiguous. first[2n] is work. */
+static void StretchingMatrix(Membrane m, PetscInt v, PetscReal h2, const PetscReal unit[], const PetscReal tau[],
+                             PetscReal first[], PetscReal D[]) {
+  const PetscInt n = LayoutCount(m->layout, v);
+  MembraneEdges(m, v, unit, first);
+  for (PetscInt k = 0; k < n; k++)
+    for (PetscInt j = 0; j < n; j++)
+      for (int c = 0; c < 2; c++) D[(k * n + j) * 2 + c] = tau[2 * k + c] * first[2 * (k < j ? k - j + n : k - j)] / h2;
 }
 
-/* N^T += ((v/a0) d/dt)^T, the labels' own motion: antisymmetric. */
-static PetscErrorCode AddTreading(Membrane m, DenseBlock *q, PetscReal a0, const PetscReal treading[]) {
-  PetscReal *unit;
+/* Of vesicle v alone: K = M Dm^T/h^2, N = M D4 c_b ds/(h^2 a0), and without motion the labels' own one, (v/a0) d/dt. M
+   is symmetric. */
+static PetscErrorCode AssembleVesicle(Membrane m, PetscReal h2, DenseBlock *q, PetscReal a0, PetscInt v,
+                                      PetscReal treading, const PetscReal Mob[]) {
+  const PetscInt rows = 2 * q->n, n = LayoutCount(m->layout, v), own = m->layout->start[v] - q->first;
+  const PetscReal *M = Mob + 2 * own * rows;
+  PetscReal *unit, *first, *D, *D4, *N = q->N + 2 * own * rows;
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(2 * q->n, &unit));
-  for (PetscInt v = q->vesicle; v < q->end; v++) {
-    const PetscInt at = 2 * (m->layout->start[v] - q->first);
-    for (PetscInt c = 0; c < 2 * LayoutCount(m->layout, v) && treading[v - q->vesicle] != 0; c++) {
-      unit[c] = 1;
-      MembraneLabelDerivative(m, v, -treading[v - q->vesicle] / a0, unit, q->N + (at + c) * 2 * q->n + at);
-      unit[c] = 0;
-    }
+  PetscCall(PetscCalloc4(2 * n, &unit, 2 * n, &first, 2 * n * n, &D, 4 * n * n, &D4));
+  unit[0] = 1;
+  StretchingMatrix(m, v, h2, unit, q->tau + 2 * own, first, D);
+  PetscCall(DenseProductWithin(PETSC_FALSE, rows, n, 2 * n, M, rows, D, 2 * n, 0, q->K + own * rows, rows));
+  PetscCall(PetscArrayzero(first, 2 * n));
+  MembraneVesicleBending(m, v, m->bending / (h2 * a0), unit, first);
+  AddCirculant(n, first, 2 * n, D4);
+  PetscCall(DenseProductWithin(PETSC_FALSE, rows, 2 * n, 2 * n, M, rows, D4, 2 * n, 0, N, rows));
+  if (treading != 0) {
+    PetscCall(PetscArrayzero(first, 2 * n));
+    MembraneLabelDerivative(m, v, treading / a0, unit, first);
+    AddCirculant(n, first, rows, N + 2 * own);
   }
-  PetscCall(PetscFree(unit));
+  PetscCall(PetscFree4(unit, first, D, D4));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* C = Dm K/h^2, nearly singular for near circles, where constant tension is pressure. */
+static PetscErrorCode AssembleTension(Membrane m, PetscReal h2, DenseBlock *q) {
+  const PetscInt n = q->n;
+  PetscReal *unit, *first, *D, trace = 0;
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc3(2 * n, &unit, 2 * n, &first, 2 * n * n, &D));
+  unit[0] = 1;
+  for (PetscInt v = q->vesicle; v < q->end; v++) {
+    const PetscInt own = m->layout->start[v] - q->first, nv = LayoutCount(m->layout, v);
+    StretchingMatrix(m, v, h2, unit, q->tau + 2 * own, first, D);
+    PetscCall(DenseProductWithin(PETSC_TRUE, nv, n, 2 * nv, D, 2 * nv, q->K + 2 * own, 2 * n, 0, q->C + own, n));
+  }
+  for (PetscInt k = 0; k < n; k++) trace += q->C[k * n + k];
+  for (PetscInt k = 0; k < n; k++) q->C[k * n + k] += 1e-9 * trace / n;
+  PetscCall(PetscFree3(unit, first, D));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode DenseBlockFactor(Membrane m, PetscReal h2, DenseBlock *q, PetscReal a0, const PetscReal treading[],
                                 const PetscReal Mob[], const PetscReal motion[], PetscBool *factored) {
-  const PetscInt n = q->n;
-  PetscReal *D, trace = 0;
+  const PetscInt n = q->n, rows = 2 * n;
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(2 * n * n, &D));
-  AssembleBlock(m, h2, q, a0, Mob, motion, D);
-  if (!motion) PetscCall(AddTreading(m, q, a0, treading));
-  PetscCall(DenseFactor(2 * n, q->N, q->pivot_N, factored));
-  if (*factored) {
-    /* K = N^-1 M Dm^T/h^2; M is symmetric, so M Dm^T is D^T */
-    for (PetscInt k = 0; k < n; k++)
-      for (PetscInt c = 0; c < 2 * n; c++) q->K[k * 2 * n + c] = D[c * n + k];
-    PetscCall(DenseSolve(2 * n, q->N, q->pivot_N, PETSC_TRUE, n, q->K));
-    /* C = Dm K/h^2, nearly singular for near circles: constant tension is pressure there */
-    for (PetscInt k = 0; k < n; k++) {
-      Stretching(m, q, q->K + k * 2 * n, q->C + k * n);
-      for (PetscInt r = 0; r < n; r++) q->C[k * n + r] /= h2;
-    }
-    for (PetscInt k = 0; k < n; k++) trace += q->C[k * n + k];
-    for (PetscInt k = 0; k < n; k++) q->C[k * n + k] += 1e-9 * trace / n;
-    PetscCall(DenseFactor(n, q->C, q->pivot_C, factored));
-  }
-  PetscCall(PetscFree(D));
+  for (PetscInt v = q->vesicle; v < q->end; v++)
+    PetscCall(AssembleVesicle(m, h2, q, a0, v, motion ? 0 : treading[v - q->vesicle], Mob));
+  for (PetscInt c = 0; c < rows && !motion; c++) q->N[c * rows + c] += 1;
+  for (PetscInt c = 0; c < rows && motion; c++)
+    for (PetscInt k = 0; k < rows; k++) q->N[c * rows + k] += motion[k * rows + c];
+  PetscCall(DenseFactor(rows, q->N, q->pivot_N, factored));
+  if (!*factored) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(DenseSolve(rows, q->N, q->pivot_N, PETSC_FALSE, n, q->K));
+  PetscCall(AssembleTension(m, h2, q));
+  PetscCall(DenseFactor(n, q->C, q->pivot_C, factored));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -99,7 +110,7 @@ PetscErrorCode DenseBlockSolve(Membrane m, PetscReal h2, const DenseBlock *q, Pe
   const PetscInt n = q->n;
   PetscScalar *d = q->d;
   PetscFunctionBeginUser;
-  PetscCall(DenseSolve(2 * n, q->N, q->pivot_N, PETSC_TRUE, nrhs, U));
+  PetscCall(DenseSolve(2 * n, q->N, q->pivot_N, PETSC_FALSE, nrhs, U));
   for (PetscInt j = 0; j < nrhs; j++) {
     Stretching(m, q, U + j * 2 * n, d);
     for (PetscInt k = 0; k < n; k++) sigma[j * n + k] = d[k] / h2 - sigma[j * n + k];

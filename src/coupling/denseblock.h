@@ -8,7 +8,7 @@
 typedef struct {
   PetscInt vesicle, end; /* its vesicles: vesicle .. end - 1 */
   PetscInt first, n;     /* its markers */
-  PetscReal *N, *C;      /* LU factors of N^T (2n x 2n) and C (n x n) */
+  PetscReal *N, *C;      /* LU factors of N (2n x 2n) and C (n x n) */
   PetscReal *K;          /* N^-1 M Dm^T/h^2, (2n x n), columns contiguous */
   PetscReal *tau;        /* [2n] tangents */
   PetscReal *d;          /* [n] work */
@@ -19,9 +19,9 @@ typedef struct {
 PETSC_EXTERN PetscErrorCode DenseBlockCreate(Layout layout, PetscInt vesicle, PetscInt end, DenseBlock *block);
 PETSC_EXTERN PetscErrorCode DenseBlockDestroy(DenseBlock *block);
 
-/* DenseBlockFactor - N and C for M = Mob[2n][2n], the block's tangents, a0 and its vesicles' label speeds treading[];
-   h2 = h^2. motion: with viscosity contrast what stands in the place of (I + (v/a0) d/dt)^T (ContrastMatrix), else
-   NULL. factored is false when a matrix is singular. Not collective. */
+/* DenseBlockFactor - N and C for M = Mob[2n][2n], symmetric, the block's tangents, a0 and its vesicles' label speeds
+   treading[]; h2 = h^2. motion: with viscosity contrast what stands in the place of (I + (v/a0) d/dt)^T
+   (ContrastMatrix), else NULL. factored is false when a matrix is singular. Not collective. */
 PETSC_EXTERN PetscErrorCode DenseBlockFactor(Membrane membrane, PetscReal h2, DenseBlock *block, PetscReal a0,
                                              const PetscReal treading[], const PetscReal Mob[],
                                              const PetscReal motion[], PetscBool *factored);

@@ -7,6 +7,7 @@
    there. */
 #include "coupling/imagetable.h"
 #include "base/lanes.h"
+#include "coupling/blas.h"
 #include "coupling/lattice.h"
 
 ImageMode ImageModeMake(PetscReal theta) {
@@ -33,30 +34,48 @@ static void Psi(const ImageMode *m, PetscBool normal, int j, PetscReal psi[IMAGE
   ImagePsi(m, A, jump, psi);
 }
 
-/* Add one node of the quadrature to offsets 0 .. IMAGE_SHIFT. */
-static void AddNode(PetscReal theta, PetscReal weight, ImageTable *t) {
+#define SHIFTS (IMAGE_SHIFT + 1)
+#define PAIRS (IMAGE_ROWS * IMAGE_ROWS)
+
+/* Node by node the waves along the wall, at offsets 0 .. IMAGE_SHIFT, and what a source in one row does in another. */
+typedef struct {
+  PetscReal even[IMAGE_NODES][SHIFTS], odd[IMAGE_NODES][SHIFTS], across[OFFSET_COUNT][PAIRS][IMAGE_NODES];
+} Nodes;
+
+static void SetNode(PetscReal theta, PetscReal weight, PetscInt q, Nodes *a) {
   const ImageMode m = ImageModeMake(theta);
   const PetscReal w = weight / PETSC_PI;
-  PetscReal even[IMAGE_SHIFT + 1], odd[IMAGE_SHIFT + 1], tangent[IMAGE_LINES], normal[IMAGE_LINES];
+  PetscReal tangent[IMAGE_LINES], normal[IMAGE_LINES];
   for (int i = 0; i <= IMAGE_SHIFT; i++) {
-    even[i] = w * PetscCosReal(i * theta);
-    odd[i] = w * m.k * PetscSinReal((i + 0.5) * theta);
+    a->even[q][i] = w * PetscCosReal(i * theta);
+    a->odd[q][i] = w * m.k * PetscSinReal((i + 0.5) * theta);
   }
   for (int source = 0; source < IMAGE_ROWS; source++) {
     Psi(&m, PETSC_FALSE, source, tangent);
     Psi(&m, PETSC_TRUE, source, normal);
     for (int row = 0; row < IMAGE_ROWS; row++) {
-      PetscReal *uu = t->value[OFFSET_UU][row][source] + IMAGE_SHIFT,
-                *vv = t->value[OFFSET_VV][row][source] + IMAGE_SHIFT;
-      PetscReal *vu = t->value[OFFSET_VU][row][source] + IMAGE_SHIFT + 1;
-      const PetscReal level = w / (4 * theta), along = tangent[row + 1] - tangent[row], across = -m.s * normal[row];
-      for (int i = 0; i <= IMAGE_SHIFT; i++) {
-        uu[i] += even[i] * along + level;
-        vv[i] += even[i] * across + level;
-        if (i < IMAGE_SHIFT) vu[i] += odd[i] * tangent[row];
-      }
+      const int pair = row * IMAGE_ROWS + source;
+      a->across[OFFSET_UU][pair][q] = tangent[row + 1] - tangent[row];
+      a->across[OFFSET_VV][pair][q] = -m.s * normal[row];
+      a->across[OFFSET_VU][pair][q] = tangent[row];
     }
   }
+}
+
+/* The quadrature's sums, added to offsets 0 .. IMAGE_SHIFT. */
+static PetscErrorCode AddNodes(const PetscReal theta[], const PetscReal weight[], ImageTable *t) {
+  Nodes *a;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(1, &a));
+  for (int q = 0; q < IMAGE_NODES; q++) SetNode(theta[q], weight[q], q, a);
+  for (int b = 0; b < OFFSET_COUNT; b++) {
+    PetscReal *first = t->value[b][0][0] + IMAGE_SHIFT + (b == OFFSET_VU ? 1 : 0);
+    PetscCall(DenseProductWithin(PETSC_FALSE, b == OFFSET_VU ? IMAGE_SHIFT : SHIFTS, PAIRS, IMAGE_NODES,
+                                 b == OFFSET_VU ? a->odd[0] : a->even[0], SHIFTS, a->across[b][0], IMAGE_NODES, 1,
+                                 first, IMAGE_WIDTH));
+  }
+  PetscCall(PetscFree(a));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* The free lattice's part, and offsets below zero by symmetry. */
@@ -77,24 +96,23 @@ static void Complete(const OffsetTable *lattice, PetscInt row, PetscInt source, 
     for (int b = 0; b < OFFSET_COUNT; b++) line[b][i] += free[b][i];
 }
 
-/* All rows, from a lattice's table that reaches far enough. */
+/* All rows, from a lattice's table that reaches far enough. The quadrature's part that is the same everywhere goes with
+   the constants. */
 PetscErrorCode ImageTableFill(const OffsetTable *lattice, ImageTable *t) {
-  const PetscReal constant = LatticeConstant();
-  PetscReal *theta, *weight;
+  PetscReal theta[IMAGE_NODES], weight[IMAGE_NODES], level = -LatticeConstant();
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(IMAGE_NODES, &theta, IMAGE_NODES, &weight));
   GaussLegendre(IMAGE_NODES, theta, weight);
+  for (int q = 0; q < IMAGE_NODES; q++) level += weight[q] / (4 * PETSC_PI * theta[q]);
   PetscCall(PetscMemzero(t, sizeof(*t)));
   for (int row = 0; row < IMAGE_ROWS; row++)
     for (int source = 0; source < IMAGE_ROWS; source++)
       for (int i = 0; i <= IMAGE_SHIFT; i++) {
-        t->value[OFFSET_UU][row][source][IMAGE_SHIFT + i] = -constant;
-        t->value[OFFSET_VV][row][source][IMAGE_SHIFT + i] = 1 / (4 * PETSC_PI) - constant;
+        t->value[OFFSET_UU][row][source][IMAGE_SHIFT + i] = level;
+        t->value[OFFSET_VV][row][source][IMAGE_SHIFT + i] = 1 / (4 * PETSC_PI) + level;
       }
-  for (int q = 0; q < IMAGE_NODES; q++) AddNode(theta[q], weight[q], t);
+  PetscCall(AddNodes(theta, weight, t));
   for (int row = 0; row < IMAGE_ROWS; row++)
     for (int source = 0; source < IMAGE_ROWS; source++) Complete(lattice, row, source, t);
-  PetscCall(PetscFree2(theta, weight));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -41,23 +41,22 @@ void GaussLegendre(PetscInt n, PetscReal theta[], PetscReal weight[]) {
   }
 }
 
-/* (g1 - s g2)(j), and g2(j). */
-static PetscReal Along(PetscReal mu, PetscReal s, PetscInt j) {
-  const PetscReal S = PetscSinhReal(mu), C = PetscCoshReal(mu), e = PetscExpReal(-mu * j);
-  return e / (2 * S) - s * e * (j * S + C) / (4 * S * S * S);
-}
-
-static PetscReal Square(PetscReal mu, PetscInt j) {
+/* (g1 - s g2)(j) and g2(j) for j = 0 .. n. */
+static void Along(PetscReal mu, PetscReal s, PetscInt n, PetscReal along[], PetscReal square[]) {
   const PetscReal S = PetscSinhReal(mu), C = PetscCoshReal(mu);
-  return PetscExpReal(-mu * j) * (j * S + C) / (4 * S * S * S);
+  for (PetscInt j = 0; j <= n; j++) {
+    const PetscReal e = PetscExpReal(-mu * j);
+    square[j] = e * (j * S + C) / (4 * S * S * S);
+    along[j] = e / (2 * S) - s * square[j];
+  }
 }
 
 /* uu and vu of offsets 0 .. reach: arrays [i][j], i fastest in memory order [j * (reach + 1) + i]. */
 static PetscErrorCode Quadrant(PetscInt reach, PetscReal uu[], PetscReal vu[]) {
   const PetscInt nodes = reach + 40, n = reach + 1; /* reach + 20 give the same to rounding */
-  PetscReal *theta, *weight, *cosine, *sine;
+  PetscReal *theta, *weight, *cosine, *sine, *along, *square;
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc4(nodes, &theta, nodes, &weight, n, &cosine, n, &sine));
+  PetscCall(PetscMalloc6(nodes, &theta, nodes, &weight, n, &cosine, n, &sine, n + 1, &along, n + 1, &square));
   GaussLegendre(nodes, theta, weight);
   PetscCall(PetscArrayzero(vu, n * n));
   for (PetscInt k = 0; k < n * n; k++) uu[k] = LatticeConstant();
@@ -68,15 +67,16 @@ static PetscErrorCode Quadrant(PetscInt reach, PetscReal uu[], PetscReal vu[]) {
       cosine[i] = PetscCosReal(i * theta[q]);
       sine[i] = PetscSinReal((i + 0.5) * theta[q]);
     }
+    Along(mu, s, n, along, square);
     for (PetscInt j = 0; j < n; j++) {
-      const PetscReal along = Along(mu, s, j), across = Square(mu, j + 1) - Square(mu, j);
+      const PetscReal across = w * 2 * half * (square[j + 1] - square[j]), level = 1 / (4 * theta[q]);
       for (PetscInt i = 0; i < n; i++) {
-        uu[j * n + i] += w * (cosine[i] * along - 1 / (4 * theta[q]));
-        vu[j * n + i] -= w * 2 * half * sine[i] * across;
+        uu[j * n + i] += w * (cosine[i] * along[j] - level);
+        vu[j * n + i] -= sine[i] * across;
       }
     }
   }
-  PetscCall(PetscFree4(theta, weight, cosine, sine));
+  PetscCall(PetscFree6(theta, weight, cosine, sine, along, square));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -105,19 +105,20 @@ PetscErrorCode LatticeStokeslet(PetscInt reach, OffsetTable *t) {
    dtheta. quadrant[j * (reach + 2) + i] for i from 1, j from 0. */
 static PetscErrorCode PressureQuadrant(PetscInt reach, PetscReal quadrant[]) {
   const PetscInt nodes = reach + 40, n = reach + 2;
-  PetscReal *theta, *weight;
+  PetscReal *theta, *weight, *sine;
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(nodes, &theta, nodes, &weight));
+  PetscCall(PetscMalloc3(nodes, &theta, nodes, &weight, n, &sine));
   GaussLegendre(nodes, theta, weight);
   PetscCall(PetscArrayzero(quadrant, n * n));
   for (PetscInt q = 0; q < nodes; q++) {
     const PetscReal half = PetscSinReal(0.5 * theta[q]), mu = 2 * PetscAsinhReal(half);
+    for (PetscInt i = 1; i < n; i++) sine[i] = PetscSinReal((i - 0.5) * theta[q]);
     for (PetscInt j = 0; j < n; j++) {
       const PetscReal along = weight[q] / (2 * PETSC_PI) * PetscExpReal(-mu * j) / PetscSqrtReal(1 + half * half);
-      for (PetscInt i = 1; i < n; i++) quadrant[j * n + i] += along * PetscSinReal((i - 0.5) * theta[q]);
+      for (PetscInt i = 1; i < n; i++) quadrant[j * n + i] += along * sine[i];
     }
   }
-  PetscCall(PetscFree2(theta, weight));
+  PetscCall(PetscFree3(theta, weight, sine));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -1,11 +1,11 @@
 /* The grid's periodic Green's function, and the mean mobility of two markers made from it. */
 #include "coupling/mobilitytable.h"
-#include "fluid/stokes.h"
 
 #define LAG KERNEL_MAX_POINTS /* most cells between the entries of two stencils at one place */
 #define LAGS (2 * LAG + 1)
-#define PLACES 4 /* in a cell, in each direction */
-#define POINTS 6 /* of an interpolation */
+#define PLACES 4         /* in a cell, in each direction */
+#define POINTS 6         /* of an interpolation */
+#define KEPT_CELLS 65536 /* in all, up to which the solver is kept: its plans cost as much as its solves there */
 
 /* Weights by lag of the double sum over two kernels at one place, mean over the places; entry m is at m + 1, or at m +
    1/2 where the kernel is the one across. */
@@ -80,6 +80,7 @@ PetscErrorCode MobilityTableDestroy(MobilityTable *table) {
   if (!m) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(OffsetTableDestroy(&m->mean));
   PetscCall(OffsetTableDestroy(&m->green));
+  PetscCall(StokesDestroy(&m->stokes));
   PetscCall(FluidDestroy(&m->periodic));
   PetscCall(PetscFree(*table));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -104,7 +105,7 @@ static PetscErrorCode Gather(Grid g, Field f, const PetscScalar a[], const Petsc
 }
 
 /* The periodic box's responses to a unit force on a u face, or on a v face. */
-static PetscErrorCode UnitResponse(MobilityTable m, Stokes stokes, int source, Vec u, Vec p) {
+static PetscErrorCode UnitResponse(MobilityTable m, int source, Vec u, Vec p) {
   const OffsetTable *G = &m->green;
   const Grid g = m->periodic->grid;
   const PetscScalar *a;
@@ -114,7 +115,7 @@ static PetscErrorCode UnitResponse(MobilityTable m, Stokes stokes, int source, V
   PetscCall(VecGetArray(u, &r));
   if (!g->rank) r[source ? GridLocalU(g) : 0] = 1;
   PetscCall(VecRestoreArray(u, &r));
-  PetscCall(StokesSolve(stokes, u, NULL, u, p));
+  PetscCall(StokesSolve(m->stokes, u, NULL, u, p));
   PetscCall(VecGetArrayRead(u, &a));
   if (!source) PetscCall(Gather(g, FIELD_U, a, G->size, G->value[OFFSET_UU]));
   PetscCall(Gather(g, FIELD_V, a + GridLocalU(g), G->size, G->value[source ? OFFSET_VV : OFFSET_VU]));
@@ -123,20 +124,20 @@ static PetscErrorCode UnitResponse(MobilityTable m, Stokes stokes, int source, V
 }
 
 PetscErrorCode MobilityTableSetUp(MobilityTable m, PetscReal alpha) {
-  Stokes stokes;
+  const PetscInt *n = m->periodic->grid->n;
   Vec u, p;
   PetscFunctionBeginUser;
   if (alpha == m->alpha) PetscFunctionReturn(PETSC_SUCCESS);
   m->alpha = alpha;
   PetscCall(FluidSetTimeCoefficient(m->periodic, alpha));
-  PetscCall(StokesCreate(m->periodic, &stokes));
+  if (!m->stokes) PetscCall(StokesCreate(m->periodic, &m->stokes));
   PetscCall(DMCreateGlobalVector(m->periodic->grid->velocity, &u));
   PetscCall(DMCreateGlobalVector(m->periodic->grid->da[FIELD_P], &p));
-  for (int source = 0; source < 2; source++) PetscCall(UnitResponse(m, stokes, source, u, p));
+  for (int source = 0; source < 2; source++) PetscCall(UnitResponse(m, source, u, p));
   PetscCall(Average(m));
   PetscCall(VecDestroy(&u));
   PetscCall(VecDestroy(&p));
-  PetscCall(StokesDestroy(&stokes));
+  if ((PetscReal)n[0] * n[1] > KEPT_CELLS) PetscCall(StokesDestroy(&m->stokes));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

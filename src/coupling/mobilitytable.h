@@ -3,12 +3,13 @@
    (docs/solver.md, Preconditioner). */
 #pragma once
 #include "coupling/offsets.h"
-#include "fluid/fluid.h"
+#include "fluid/stokes.h"
 
 typedef struct _p_MobilityTable *MobilityTable;
 struct _p_MobilityTable {
   const Kernel *kernel;
   Fluid periodic;    /* a periodic box of the same cells */
+  Stokes stokes;     /* its solver, kept on few cells; else NULL between set-ups */
   PetscReal alpha;   /* coefficient of H that the tables are for; negative: none yet */
   OffsetTable green; /* its Green's function, by offsets of faces */
   OffsetTable mean;  /* of two markers' mobility, by whole cells between them */

@@ -5,6 +5,9 @@
 #define MOST_EXCESS 5     /* iterations more than with new blocks, in one solve */
 #define FIXED_RATIO 1.3   /* of two steps whose blocks are the same: those of order 2 and 3 are 1.22 apart */
 #define ADAPTED_RATIO 2.2 /* the same where each differs: a factor of 2 costs half an iteration */
+#define LABELS_MOVED 0.1  /* change of the labels' own motion in the highest mode, the same */
+#define DEAR 4            /* iterations that new blocks cost, from which on they serve more: the parts of a graded */
+#define DEAR_MOVED 0.5    /* start, as steps that differ each time, and labels that have moved by this */
 #define NO_LIMIT 1000     /* solves that blocks may serve */
 
 /* Of two steps whose blocks are the same. */
@@ -127,21 +130,23 @@ static PetscReal RenewalCost(Preconditioner p) {
   return DenseRenewalCost(blocks, n, blocks == 1 ? (PetscReal)BodiesObstacleMarkers(c->bodies) : 0, cells);
 }
 
-/* Whether I + (v/a0) d/dt of a vesicle has moved by 10 % in its highest mode, n/2. */
-static PetscBool LabelsMoved(Preconditioner p) {
+/* Whether I + (v/a0) d/dt of a vesicle has moved by this part in its highest mode, n/2. */
+static PetscBool LabelsMoved(Preconditioner p, PetscReal part) {
   const Coupling c = p->unknowns->coupling;
   for (PetscInt v = 0; v < c->membrane->layout->bodies; v++) {
     const PetscReal mode = 0.5 * (PetscReal)LayoutCount(c->membrane->layout, v) / c->fluid->a0;
     const PetscReal now = mode * c->treading[v], made = mode * p->age.treading[v];
-    if (PetscAbsReal(now - made) > 0.1 * (1 + PetscAbsReal(made))) return PETSC_TRUE;
+    if (PetscAbsReal(now - made) > part * (1 + PetscAbsReal(made))) return PETSC_TRUE;
   }
   return PETSC_FALSE;
 }
 
 /* Whether the blocks are no longer those of what they were made for. None are made yet: a0 = 0. */
-static PetscBool Changed(Preconditioner p) {
+static PetscBool Changed(Preconditioner p, PetscReal cost) {
   const PetscReal a0 = p->unknowns->coupling->fluid->a0;
-  if (DenseStepChanged(p->age.a0, a0, p->step_ratio) || LabelsMoved(p)) return PETSC_TRUE;
+  const PetscBool dear = cost > DEAR && !p->solid ? PETSC_TRUE : PETSC_FALSE;
+  const PetscReal ratio = dear && p->graded ? ADAPTED_RATIO : p->step_ratio;
+  if (DenseStepChanged(p->age.a0, a0, ratio) || LabelsMoved(p, dear ? DEAR_MOVED : LABELS_MOVED)) return PETSC_TRUE;
   return p->solid ? ObstacleBlockRenewed(p->solid) : PETSC_FALSE;
 }
 
@@ -169,7 +174,8 @@ PetscErrorCode PreconditionerSetUp(Preconditioner p) {
   if (p->patterns) PetscCall(PatternsFollow(p->patterns, &p->failed));
   if (!p->blocks) PetscFunctionReturn(PETSC_SUCCESS);
   DenseBlocksPlace(p->blocks);
-  if (a->excess > RenewalCost(p) || a->solves >= a->most || Changed(p)) PetscCall(Renew(p));
+  const PetscReal cost = RenewalCost(p);
+  if (a->excess > cost || a->solves >= a->most || Changed(p, cost)) PetscCall(Renew(p));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -70,7 +70,7 @@ static void SetUp(Walls w) {
 
 /* The lines of a pair: from residuals to the modes of the forces that cancel them, not transformed back yet. */
 static void Invert(WallPair *p) {
-  for (int side = 0; side < 2; side++) fftw_execute(p->forward[side]);
+  for (int side = 0; side < 2; side++) fftw_execute_r2r(p->forward, p->line[side], p->line[side]);
   for (PetscInt k = 0; k < p->length; k++) {
     const PetscReal one = p->line[0][k], two = p->line[1][k];
     p->line[0][k] = p->own[k] * one + p->other[k] * two;
@@ -107,7 +107,7 @@ static void TakeForces(Walls w, int dir, PetscScalar d[]) {
   for (int side = 0; side < 2 && p->length; side++) {
     PetscScalar *to = d + p->start + side * p->length;
     for (PetscInt k = 0; k < p->waves.modes; k++) p->waves.amplitude[side][k] = 2 * p->line[side][k];
-    fftw_execute(p->backward[side]);
+    fftw_execute_r2r(p->backward, p->line[side], p->line[side]);
     for (PetscInt i = 0; i < p->length; i++) to[i] = p->line[side][i];
   }
 }

@@ -21,11 +21,10 @@ static PetscErrorCode CreatePair(Walls w, int dir) {
   p->start = w->n;
   w->n += 2 * p->length;
   PetscCall(PetscMalloc2(p->length, &p->own, p->length, &p->other));
-  for (int side = 0; side < 2; side++) {
-    double *line = p->line[side] = fftw_alloc_real((size_t)p->length);
-    p->forward[side] = fftw_plan_r2r_1d((int)p->length, line, line, forward, FFTW_ESTIMATE);
-    p->backward[side] = fftw_plan_r2r_1d((int)p->length, line, line, backward, FFTW_ESTIMATE);
-  }
+  for (int side = 0; side < 2; side++) p->line[side] = fftw_alloc_real((size_t)p->length);
+  double *line = p->line[0];
+  p->forward = p->backward = fftw_plan_r2r_1d((int)p->length, line, line, forward, FFTW_ESTIMATE);
+  if (backward != forward) p->backward = fftw_plan_r2r_1d((int)p->length, line, line, backward, FFTW_ESTIMATE);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -75,11 +74,10 @@ static PetscErrorCode DestroyPair(WallPair *p) {
   PetscCall(PetscFree(p->waves.profile));
   for (int side = 0; side < 2; side++) {
     PetscCall(PetscFree(p->waves.amplitude[side]));
-    if (!p->length) continue;
-    fftw_destroy_plan(p->forward[side]);
-    fftw_destroy_plan(p->backward[side]);
-    fftw_free(p->line[side]);
+    if (p->length) fftw_free(p->line[side]);
   }
+  if (p->backward != p->forward) fftw_destroy_plan(p->backward);
+  if (p->forward) fftw_destroy_plan(p->forward);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

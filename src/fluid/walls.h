@@ -22,11 +22,11 @@ typedef struct {
 
 /* Two walls that face one another: a line is one number for each face next to one of them. */
 typedef struct {
-  PetscInt length;        /* of a line; 0: no such walls */
-  PetscInt start;         /* of the first wall's line among the unknowns; the other one's follows */
-  PetscReal *own, *other; /* [length] a mode's force per residual on the same wall, and on the facing one */
-  double *line[2];        /* [side][length] residuals, then the modes of the forces that cancel them */
-  fftw_plan forward[2], backward[2];
+  PetscInt length;             /* of a line; 0: no such walls */
+  PetscInt start;              /* of the first wall's line among the unknowns; the other one's follows */
+  PetscReal *own, *other;      /* [length] a mode's force per residual on the same wall, and on the facing one */
+  double *line[2];             /* [side][length] residuals, then the modes of the forces that cancel them */
+  fftw_plan forward, backward; /* of either line; the same one where they do the same */
   CrossSlip cross;
   LongWaves waves;
 } WallPair;

@@ -24,6 +24,7 @@ static PetscErrorCode GradedStart(Scheme s, Coupled *d, PetscReal dt) {
   PetscLogDouble began;
   PetscFunctionBeginUser;
   d->done = 0;
+  if (d->solver) d->solver->preconditioner->graded = PETSC_TRUE;
   for (int k = 0; k < 5 && solved && !stops; k++) {
     PetscCall(PetscTime(&began));
     PetscCall(CoupledFixedAttempt(s, parts[k] * dt, &solved));
@@ -31,6 +32,7 @@ static PetscErrorCode GradedStart(Scheme s, Coupled *d, PetscReal dt) {
     d->done += parts[k] * dt;
     if (k < 4) PetscCall(Stops(s, began, &stops));
   }
+  if (d->solver) d->solver->preconditioner->graded = PETSC_FALSE;
   d->done = 0;
   s->state.dt = dt;
   PetscFunctionReturn(PETSC_SUCCESS);
