@@ -35,7 +35,7 @@ static DipoleLine Inside(Grid g, Field field, int dir, DipoleLine line) {
   while (line.n > skip && line.first + line.n > end) line.n--;
   line.n -= skip;
   line.first += skip;
-  for (PetscInt k = 0; k < line.n; k++) line.weight[k] = line.weight[k + skip];
+  for (PetscInt k = 0; k < DIPOLE_POINTS; k++) line.weight[k] = k < line.n ? line.weight[k + skip] : 0;
   return line;
 }
 

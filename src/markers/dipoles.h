@@ -7,6 +7,7 @@
    so that the force -nu DIV T and the source of a closed curve moving as a rigid body give a smoothed rigid motion
    inside it and nothing outside. At a wall weights are folded smoothly (fold.h). */
 #pragma once
+#include "base/lanes.h"
 #include "markers/markers.h"
 
 typedef enum { DIPOLE_XX, DIPOLE_YY, DIPOLE_XY, DIPOLE_COUNT } DipolePart;
@@ -15,10 +16,12 @@ typedef enum { DIPOLE_XX, DIPOLE_YY, DIPOLE_XY, DIPOLE_COUNT } DipolePart;
    j) of xy is the upper right corner of cell (i, j). Not collective. */
 PETSC_EXTERN void DipoleStencilsUnwrapped(Grid grid, const PetscReal X[2], Stencil stencil[DIPOLE_COUNT]);
 
-/* What a part of a marker's tensor adds to the entries of a field: value times a product of weights along x and y. */
+/* What a part of a marker's tensor adds to the entries of a field: value times a product of weights along x and y, zero
+   from the n-th on. */
+#define DIPOLE_POINTS (2 * LANES) /* one more than KERNEL_MAX_POINTS, in whole vectors */
 typedef struct {
   PetscInt first, n;
-  PetscReal weight[KERNEL_MAX_POINTS + 1];
+  PetscReal weight[DIPOLE_POINTS];
 } DipoleLine;
 typedef struct {
   Field field;
@@ -41,9 +44,11 @@ static inline PetscInt DipoleEntry(Grid g, const DipoleSpot *s, int direction, P
 
 static inline void DipoleAddRow(Grid g, const DipoleSpot *s, PetscReal value, PetscScalar row[]) {
   const DipoleLine *x = &s->line[0];
-  if (x->first >= 0 && x->first + x->n <= g->n[0])
-    for (PetscInt k = 0; k < x->n; k++) row[x->first + k] += value * x->weight[k];
-  else
+  PetscScalar *at = row + x->first;
+  if (x->first >= 0 && x->first + DIPOLE_POINTS <= g->columns[s->field]) {
+    LanesPut(LanesAt(at) + value * LanesAt(x->weight), at);
+    LanesPut(LanesAt(at + LANES) + value * LanesAt(x->weight + LANES), at + LANES);
+  } else
     for (PetscInt k = 0; k < x->n; k++) row[DipoleEntry(g, s, 0, k)] += value * x->weight[k];
 }
 
