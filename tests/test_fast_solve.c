@@ -37,6 +37,18 @@ static PetscErrorCode Residual(FastSolver s, PetscReal *error, PetscReal *mean) 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Every second row keeps its ends alone, as wall forces leave most rows. */
+static PetscErrorCode KeepEnds(FastSolver s, Vec b) {
+  const PetscInt n = s->grid->columns[s->field];
+  PetscScalar *a;
+  PetscFunctionBeginUser;
+  PetscCall(VecGetArray(b, &a));
+  for (PetscInt j = 0; j < s->grid->rows[s->field]; j += 2)
+    for (PetscInt i = 1; i < n - 1; i++) a[j * n + i] = 0;
+  PetscCall(VecRestoreArray(b, &a));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* |x_fftw - x_hypre|_inf / |x_fftw|_inf */
 static PetscErrorCode Difference(FastSolver one, FastSolver two, PetscReal *error) {
   Vec b, x, y;
@@ -47,6 +59,7 @@ static PetscErrorCode Difference(FastSolver one, FastSolver two, PetscReal *erro
   PetscCall(VecDuplicate(b, &x));
   PetscCall(VecDuplicate(b, &y));
   PetscCall(TestRandomVec(12, b));
+  PetscCall(KeepEnds(one, b));
   PetscCall(VecGetSize(b, &n));
   PetscCall(VecSum(b, &sum));
   if (one->singular) PetscCall(VecShift(b, -sum / n));

@@ -1,39 +1,48 @@
 #include "coupling/nearblock.h"
 
-/* The free-space Stokeslet: xx, yy, xy. */
-static void Stokeslet(PetscReal nu, const PetscReal d[2], PetscReal S[3]) {
-  const PetscReal r2 = d[0] * d[0] + d[1] * d[1], logarithm = -0.5 * PetscLogReal(r2), factor = 1 / (4 * PETSC_PI * nu);
-  S[0] = factor * (logarithm + d[0] * d[0] / r2);
-  S[1] = factor * (logarithm + d[1] * d[1] / r2);
-  S[2] = factor * d[0] * d[1] / r2;
+/* The free-space Stokeslet of four pairs: xx, yy, xy. */
+static void Stokeslets(PetscReal nu, Lanes x, Lanes y, Lanes S[3]) {
+  const Lanes r2 = x * x + y * y, logarithm = -0.5 * LanesLog(r2);
+  const PetscReal factor = 1 / (4 * PETSC_PI * nu);
+  S[0] = factor * (logarithm + x * x / r2);
+  S[1] = factor * (logarithm + y * y / r2);
+  S[2] = factor * x * y / r2;
+}
+
+/* What all pairs of a block have in common. */
+typedef struct {
+  const NearFar *far;
+  PetscReal logarithm; /* of h, over 4 pi: the lattice's table is without it */
+} PairRule;
+
+static PairRule MakeRule(NearField f, int far) {
+  return (PairRule){&f->far[far], PetscLogReal(f->markers->grid->h) / (4 * PETSC_PI)};
 }
 
 /* L of markers i and j, d = X_i - X_j: xx, yy, xy and yx. */
-static void LatticePair(NearField f, PetscInt i, PetscInt j, const PetscReal d[2], PetscReal L[4]) {
+static void LatticePair(NearField f, PetscReal logarithm, PetscInt i, PetscInt j, const PetscReal d[2],
+                        PetscReal L[4]) {
   const PetscReal *X = f->markers->X, cell = 1 / f->markers->grid->h, over = 1 / f->nu;
-  const PetscReal constant = PetscLogReal(f->markers->grid->h) / (4 * PETSC_PI);
   PetscInt periods[2];
   for (int dir = 0; dir < 2; dir++) /* in cells */
     periods[dir] = (PetscInt)rint((d[dir] - (X[2 * i + dir] - X[2 * j + dir])) * cell);
   StencilFourSums(&f->lattice, &f->stencil[2 * i], &f->stencil[2 * j], periods, L);
-  L[0] -= constant;
-  L[1] -= constant;
+  L[0] -= logarithm;
+  L[1] -= logarithm;
   for (int c = 0; c < 4; c++) L[c] *= over;
 }
 
-/* L and C = S - L of two markers; by stencils up to the reach of `far`. */
-static void Pair(NearField f, const NearFar *far, PetscInt i, PetscInt j, const PetscReal d[2], PetscReal L[4],
-                 PetscReal C[4]) {
+/* L and C = S - L of two markers whose S is known; by stencils up to the reach of rule->far. */
+static void Pair(NearField f, const PairRule *rule, PetscInt i, PetscInt j, const PetscReal d[2], const PetscReal S[3],
+                 PetscReal L[4], PetscReal C[4]) {
   const PetscReal cell = 1 / f->markers->grid->h, r2 = d[0] * d[0] + d[1] * d[1];
-  PetscReal S[3];
   Lanes four[3];
-  Stokeslet(f->nu, d, S);
-  if (f->free || r2 * cell * cell <= far->reach * far->reach) {
-    if (!f->free) LatticePair(f, i, j, d, L);
+  if (f->free || r2 * cell * cell <= PetscSqr(rule->far->reach)) {
+    if (!f->free) LatticePair(f, rule->logarithm, i, j, d, L);
     for (int c = 0; c < 4; c++) C[c] = S[PetscMin(c, 2)] - L[c];
     return;
   }
-  NearFarPairs(far, 1 / f->nu, cell * d[0] - (Lanes){0}, cell * d[1] - (Lanes){0}, four);
+  NearFarPairs(rule->far, 1 / f->nu, cell * d[0] - (Lanes){0}, cell * d[1] - (Lanes){0}, four);
   for (int c = 0; c < 4; c++) {
     C[c] = four[PetscMin(c, 2)][0];
     L[c] = S[PetscMin(c, 2)] - C[c];
@@ -41,11 +50,15 @@ static void Pair(NearField f, const NearFar *far, PetscInt i, PetscInt j, const 
 }
 
 void NearLatticePair(NearField f, PetscInt i, PetscInt j, const PetscReal d[2], PetscReal L[4]) {
+  const PairRule rule = MakeRule(f, NEAR_ONE);
   PetscReal C[4];
-  if (d[0] == 0 && d[1] == 0)
-    LatticePair(f, i, j, d, L);
-  else
-    Pair(f, &f->far[NEAR_ONE], i, j, d, L, C);
+  Lanes S[3];
+  if (d[0] == 0 && d[1] == 0) {
+    LatticePair(f, rule.logarithm, i, j, d, L);
+    return;
+  }
+  Stokeslets(f->nu, d[0] - (Lanes){0}, d[1] - (Lanes){0}, S);
+  Pair(f, &rule, i, j, d, (PetscReal[]){S[0][0], S[1][0], S[2][0]}, L, C);
 }
 
 /* What a curve's quadrature has besides the plain logarithm, for two markers of one curve of n that are k apart; on the
@@ -73,7 +86,7 @@ typedef struct {
   PetscInt i, j, n;
   PetscBool self, back, plain;      /* plain: far from all walls */
   PetscBool walls[2][2], off[2][2]; /* whose images count; from which it is far */
-  const NearFar *far;
+  PairRule rule;
   PetscReal reach; /* of stencils' sums (length) */
   PetscReal d[2][CHUNK], part[CHUNK], L[4][CHUNK], C[4][CHUNK];
 } Chunk;
@@ -108,7 +121,7 @@ static void FillFar(NearField f, Chunk *c) {
   const PetscReal cell = 1 / f->markers->grid->h;
   Lanes C[3];
   for (PetscInt k = 0; k < c->n; k += LANES) {
-    NearFarPairs(c->far, 1 / f->nu, cell * LanesAt(c->d[0] + k), cell * LanesAt(c->d[1] + k), C);
+    NearFarPairs(c->rule.far, 1 / f->nu, cell * LanesAt(c->d[0] + k), cell * LanesAt(c->d[1] + k), C);
     for (int q = 0; q < 4; q++) *(Lanes *)(c->C[q] + k) = C[PetscMin(q, 2)];
   }
 }
@@ -126,17 +139,19 @@ static PetscBool IsAlone(NearField f, const Chunk *c) {
 /* Pairs up to so far apart (its square) one by one; without walls nearby those within the stencils' reach are enough.
  */
 static void FillNear(NearField f, PetscReal farthest2, Chunk *c) {
+  Lanes S[3] = {{0}};
   for (PetscInt k = 0; k < c->n; k++) {
+    if (k % LANES == 0) Stokeslets(f->nu, LanesAt(c->d[0] + k), LanesAt(c->d[1] + k), S);
     const PetscInt j = c->j + k, from = c->back ? c->i : j, to = c->back ? j : c->i;
     const PetscReal d[2] = {c->d[0][k], c->d[1][k]};
     PetscReal L[4] = {0, 0, 0, 0}, C[4];
     if (d[0] * d[0] + d[1] * d[1] > farthest2) continue;
     if (j == c->i && c->self) {
-      if (!f->free) LatticePair(f, to, from, d, L);
+      if (!f->free) LatticePair(f, c->rule.logarithm, to, from, d, L);
       for (int q = 0; q < 4; q++) C[q] = -L[q];
       c->part[k] *= 0.5;
     } else
-      Pair(f, c->far, to, from, d, L, C);
+      Pair(f, &c->rule, to, from, d, (PetscReal[]){S[0][k % LANES], S[1][k % LANES], S[2][k % LANES]}, L, C);
     for (int q = 0; q < 4; q++) {
       c->L[q][k] = L[q];
       c->C[q][k] = C[q];
@@ -267,8 +282,8 @@ PetscErrorCode NearBlockFill(NearField f, const NearBlock *b) {
   NearRow r = NearBlockBegin(f->bodies->layout, b);
   PetscFunctionBeginUser;
   if (f->image) FindWalls(f, b, c.walls);
-  c.far = &f->far[c.self ? NEAR_ONE : NEAR_TWO];
-  c.reach = c.far->reach * f->markers->grid->h;
+  c.rule = MakeRule(f, c.self ? NEAR_ONE : NEAR_TWO);
+  c.reach = c.rule.far->reach * f->markers->grid->h;
   do FillRow(f, &r, &c);
   while (NearBlockNext(f->bodies->layout, b, &r));
   if (c.self) PetscCall(AddSelf(f, b));

@@ -1,39 +1,30 @@
 #include "curve/spectral.h"
+#include "base/lanes.h"
 #include <fftw3.h>
+
+#define CONVOLVED 128        /* most markers whose sums take less time than transforms */
+#define CONVOLVED_ROUGH 1024 /* with a prime factor above 13, for which a transform takes many times longer */
+#define TURNS 3              /* a step turns the states before it by as many different angles */
+#define ROUND (4 * LANES)
 
 struct _p_Spectral {
   PetscInt n;
   fftw_complex *line, *hat; /* x + i y of the points, and its modes */
   fftw_plan forward, backward;
+  PetscReal *derivative[3], *turn[TURNS], phi[TURNS]; /* weights [n], where sums are taken, else NULL; of which phi */
+  PetscReal *twice, *sum;                             /* rooms of the sums */
+  int next;                                           /* turn to be replaced */
 };
 
-PetscErrorCode SpectralCreate(PetscInt n, Spectral *out) {
-  Spectral s;
-  PetscFunctionBeginUser;
-  PetscCall(PetscNew(&s));
-  *out = s;
-  s->n = n;
-  s->hat = fftw_alloc_complex((size_t)n);
-  s->line = fftw_alloc_complex((size_t)n);
-  s->forward = fftw_plan_dft_1d((int)n, s->line, s->hat, FFTW_FORWARD, FFTW_ESTIMATE);
-  s->backward = fftw_plan_dft_1d((int)n, s->hat, s->line, FFTW_BACKWARD, FFTW_ESTIMATE);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode SpectralDestroy(Spectral *spectral) {
-  Spectral s = *spectral;
-  PetscFunctionBeginUser;
-  if (!s) PetscFunctionReturn(PETSC_SUCCESS);
-  fftw_destroy_plan(s->forward);
-  fftw_destroy_plan(s->backward);
-  fftw_free(s->hat);
-  fftw_free(s->line);
-  PetscCall(PetscFree(*spectral));
-  PetscFunctionReturn(PETSC_SUCCESS);
+static PetscBool IsConvolved(PetscInt n) {
+  PetscInt rest = n;
+  for (PetscInt prime = 2; prime <= 13; prime++)
+    while (rest % prime == 0) rest /= prime;
+  return n <= (rest > 1 ? CONVOLVED_ROUGH : CONVOLVED) ? PETSC_TRUE : PETSC_FALSE;
 }
 
 /* Both coordinates at once: x + i y is an array of complex numbers as it is, and a derivative is linear. */
-void SpectralDerivative(Spectral s, int power, PetscReal scale, const PetscScalar X[], PetscScalar Y[]) {
+static void Transformed(Spectral s, int power, PetscReal scale, const PetscScalar X[], PetscScalar Y[]) {
   const PetscInt n = s->n;
   double *line = (double *)s->line, *hat = (double *)s->hat;
   memcpy(line, X, 2 * (size_t)n * sizeof(double));
@@ -52,6 +43,80 @@ void SpectralDerivative(Spectral s, int power, PetscReal scale, const PetscScala
   }
   fftw_execute(s->backward);
   for (PetscInt k = 0; k < 2 * n; k++) Y[k] += line[k];
+}
+
+/* What a 1 at marker 0 has at marker q; the first derivative of it is odd, the others are even. */
+static PetscErrorCode DerivativeWeights(Spectral s) {
+  const PetscInt n = s->n;
+  PetscReal *one, *found;
+  PetscFunctionBeginUser;
+  for (int p = 0; p < 3; p++) {
+    PetscCall(PetscCalloc2(2 * n, &one, 2 * n, &found));
+    one[0] = 1;
+    Transformed(s, 1 << p, 1, one, found);
+    for (PetscInt q = 0; q < n; q++)
+      s->derivative[p][q] = 0.5 * (found[2 * q] + (p ? 1 : -1) * found[2 * ((n - q) % n)]);
+    PetscCall(PetscFree2(one, found));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SpectralCreate(PetscInt n, Spectral *out) {
+  Spectral s;
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&s));
+  *out = s;
+  s->n = n;
+  s->hat = fftw_alloc_complex((size_t)n);
+  s->line = fftw_alloc_complex((size_t)n);
+  s->forward = fftw_plan_dft_1d((int)n, s->line, s->hat, FFTW_FORWARD, FFTW_ESTIMATE);
+  s->backward = fftw_plan_dft_1d((int)n, s->hat, s->line, FFTW_BACKWARD, FFTW_ESTIMATE);
+  if (!IsConvolved(n)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscCalloc2(4 * n + ROUND, &s->twice, 2 * n + ROUND, &s->sum));
+  for (int p = 0; p < 3; p++) PetscCall(PetscMalloc1(n, &s->derivative[p]));
+  for (int t = 0; t < TURNS; t++) {
+    PetscCall(PetscMalloc1(n, &s->turn[t]));
+    s->phi[t] = NAN;
+  }
+  PetscCall(DerivativeWeights(s));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SpectralDestroy(Spectral *spectral) {
+  Spectral s = *spectral;
+  PetscFunctionBeginUser;
+  if (!s) PetscFunctionReturn(PETSC_SUCCESS);
+  fftw_destroy_plan(s->forward);
+  fftw_destroy_plan(s->backward);
+  fftw_free(s->hat);
+  fftw_free(s->line);
+  for (int p = 0; p < 3; p++) PetscCall(PetscFree(s->derivative[p]));
+  for (int t = 0; t < TURNS; t++) PetscCall(PetscFree(s->turn[t]));
+  PetscCall(PetscFree2(s->twice, s->sum));
+  PetscCall(PetscFree(*spectral));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* sum_k = SUM_q weight_q (X_{k-q} - X_0), with markers counted round the curve. */
+static void Convolve(Spectral s, int each, const PetscReal weight[], const PetscScalar X[]) {
+  const PetscInt width = each * s->n;
+  for (PetscInt i = 0; i < width; i++) s->twice[i] = s->twice[width + i] = X[i] - X[i % each];
+  for (PetscInt i = 0; i < width; i += ROUND) {
+    const PetscReal *x = s->twice + width + i;
+    Lanes sum[ROUND / LANES] = {{0}};
+    for (PetscInt q = 0; q < s->n; q++, x -= each)
+      for (int r = 0; r < ROUND / LANES; r++) sum[r] += weight[q] * LanesAt(x + LANES * r);
+    for (int r = 0; r < ROUND / LANES; r++) LanesPut(sum[r], s->sum + i + LANES * r);
+  }
+}
+
+void SpectralDerivative(Spectral s, int power, PetscReal scale, const PetscScalar X[], PetscScalar Y[]) {
+  if (!s->sum) {
+    Transformed(s, power, scale, X, Y);
+    return;
+  }
+  Convolve(s, 2, s->derivative[power / 2], X);
+  for (PetscInt k = 0; k < 2 * s->n; k++) Y[k] += scale * s->sum[k];
 }
 
 PetscReal SpectralTail(Spectral s, PetscReal part, const PetscScalar X[]) {
@@ -90,7 +155,7 @@ void TrigonometricPoints(PetscInt n, const PetscReal X[], PetscInt times, PetscR
     }
 }
 
-void SpectralShift(Spectral s, int each, PetscReal phi, const PetscScalar X[], PetscScalar Y[]) {
+static void ShiftTransformed(Spectral s, int each, PetscReal phi, const PetscScalar X[], PetscScalar Y[]) {
   const PetscInt n = s->n;
   double *line = (double *)s->line, *hat = (double *)s->hat;
   for (PetscInt k = 0; k < n; k++)
@@ -105,4 +170,34 @@ void SpectralShift(Spectral s, int each, PetscReal phi, const PetscScalar X[], P
   fftw_execute(s->backward);
   for (PetscInt k = 0; k < n; k++)
     for (int c = 0; c < each; c++) Y[each * k + c] = line[2 * k + c];
+}
+
+/* The trigonometric cardinal function at phi and the markers' labels before it. With phi = d + 2 pi m/n, d at most half
+   a label, that at d + 2 pi j/n is sin(n d/2) (-1)^j/(n sin(d/2 + pi j/n)), for even n by the tangent: no small
+   differences. */
+static const PetscReal *TurnWeights(Spectral s, PetscReal phi) {
+  const PetscReal labels = PetscFloorReal(phi * s->n / (2 * PETSC_PI) + 0.5);
+  const PetscInt n = s->n, m = PetscAbsReal(labels) < 1e9 ? (PetscInt)labels : 0;
+  const PetscReal half = 0.5 * phi - PETSC_PI * m / n, top = PetscSinReal(n * half) / n;
+  PetscReal *weight = s->turn[s->next];
+  for (int t = 0; t < TURNS; t++)
+    if (s->phi[t] == phi) return s->turn[t];
+  s->phi[s->next] = phi;
+  s->next = (s->next + 1) % TURNS;
+  for (PetscInt j = (1 - n) / 2; j <= n / 2; j++) {
+    const PetscReal at = half + PETSC_PI * j / n, value = top / (n % 2 ? PetscSinReal(at) : PetscTanReal(at));
+    const PetscInt q = (((j - m) % n) + n) % n;
+    weight[q] = !j && half == 0 ? 1 : (j % 2 ? -value : value);
+  }
+  return weight;
+}
+
+void SpectralShift(Spectral s, int each, PetscReal phi, const PetscScalar X[], PetscScalar Y[]) {
+  if (!s->sum) {
+    ShiftTransformed(s, each, phi, X, Y);
+    return;
+  }
+  Convolve(s, each, TurnWeights(s, phi), X);
+  const PetscReal first[2] = {X[0], X[each - 1]};
+  for (PetscInt i = 0; i < each * s->n; i++) Y[i] = first[i % each] + s->sum[i];
 }

@@ -128,9 +128,18 @@ static PetscBool IsZero(PetscInt n, const PetscScalar x[]) {
   return PETSC_TRUE;
 }
 
+/* Nor does one with entries at its ends alone: wall forces along the walls in x. */
+static void FromEnds(RowTransform t, double first, double last) {
+  for (PetscInt k = 0; k < t->width; k++) t->modes[k] = first * t->ends[0][k] + last * t->ends[1][k];
+}
+
 void RowTransformForward(RowTransform t, const PetscScalar x[]) {
-  if (IsZero(t->n, x))
+  const PetscInt n = t->n;
+  const PetscBool inner = IsZero(n - 2, x + 1) ? PETSC_FALSE : PETSC_TRUE;
+  if (!inner && x[0] == 0 && x[n - 1] == 0)
     memset(t->modes, 0, (size_t)t->width * sizeof(double));
+  else if (!inner && t->ends[0])
+    FromEnds(t, x[0], x[n - 1]);
   else if (t->base)
     SineForward(t, x);
   else if (t->sign != 0)
@@ -138,7 +147,7 @@ void RowTransformForward(RowTransform t, const PetscScalar x[]) {
   else if (fftw_alignment_of((double *)x) == fftw_alignment_of(t->line))
     fftw_execute_dft_r2c(t->f[0].forward, (double *)x, (fftw_complex *)t->modes);
   else {
-    memcpy(t->line, x, (size_t)t->n * sizeof(double));
+    memcpy(t->line, x, (size_t)n * sizeof(double));
     fftw_execute(t->f[0].forward);
   }
 }
@@ -161,6 +170,22 @@ static PetscReal Eigenvalue(PetscReal argument) {
   return 4 * PetscSqr(PetscSinReal(argument));
 }
 
+static PetscErrorCode CreateEnds(RowTransform t) {
+  PetscScalar *x;
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(t->n, &x));
+  for (int end = 0; end < 2; end++) {
+    const PetscInt at = end ? t->n - 1 : 0;
+    x[at] = 1;
+    HalfSampleForward(t, x);
+    x[at] = 0;
+    PetscCall(PetscMalloc1(t->width, &t->ends[end]));
+    PetscCall(PetscArraycpy(t->ends[end], t->modes, t->width));
+  }
+  PetscCall(PetscFree(x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Periodic, and walls half a cell off. */
 static PetscErrorCode CreateWhole(RowTransform t, PetscBool periodic, unsigned plan) {
   const PetscInt n = t->n;
@@ -176,6 +201,7 @@ static PetscErrorCode CreateWhole(RowTransform t, PetscBool periodic, unsigned p
     if (k == 1) t->lambda[k] = 4; /* no mode: zero, whatever is done to it */
     t->scale[k] = 1.0 / n;
   }
+  if (!periodic) PetscCall(CreateEnds(t));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -241,6 +267,7 @@ PetscErrorCode RowTransformDestroy(RowTransform *transform) {
   fftw_free(t->modes);
   fftw_free(t->line);
   fftw_free(t->rest);
+  for (int end = 0; end < 2; end++) PetscCall(PetscFree(t->ends[end]));
   PetscCall(PetscFree2(t->lambda, t->scale));
   PetscCall(PetscFree(*transform));
   PetscFunctionReturn(PETSC_SUCCESS);

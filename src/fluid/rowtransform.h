@@ -28,6 +28,7 @@ struct _p_RowTransform {
   PetscReal *scale;  /* [width] what makes backward(scale forward) the identity */
   double *modes;     /* [width] what Forward makes and Backward takes */
   double *line;      /* work, the other end of the Fourier transforms */
+  double *ends[2];   /* half samples: [width] each, modes of a 1 at the first entry, at the last */
   PetscReal sign;    /* 1 cosines, -1 sines of half samples, 0 others */
   PetscInt levels;   /* sines on the entries: halvings */
   Fourier f[ROW_LEVELS];
