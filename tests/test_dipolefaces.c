@@ -4,10 +4,17 @@
 
 #define MARKERS 11
 
-/* Stencils of cbs54 and of a dipole at places on an ellipse in a plane without box. */
-static void Place(PetscInt k, PaddedStencil response[2], PaddedStencil dipole[DIPOLE_COUNT]) {
+/* An ellipse's half axes (cells); what is added to offsets; the dipole's normal. */
+typedef struct {
+  PetscReal half[2];
+  PetscInt cells[2];
+  PetscReal N[2];
+} Case;
+
+/* Stencils of cbs54 and of a dipole at places on the ellipse in a plane without box. */
+static void Place(const Case *a, PetscInt k, PaddedStencil response[2], PaddedStencil dipole[DIPOLE_COUNT]) {
   const PetscReal angle = 2 * PETSC_PI * k / MARKERS;
-  const PetscReal X[2] = {3.1 + 5 * PetscCosReal(angle), -1.7 + 3 * PetscSinReal(angle + 0.4)};
+  const PetscReal X[2] = {3.1 + a->half[0] * PetscCosReal(angle), -1.7 + a->half[1] * PetscSinReal(angle + 0.4)};
   const Kernel *five = KernelFind("cbs54");
   struct _p_Grid grid = {.h = 1};
   Stencil s[DIPOLE_COUNT];
@@ -22,32 +29,48 @@ static void Place(PetscInt k, PaddedStencil response[2], PaddedStencil dipole[DI
   }
 }
 
-static PetscErrorCode Facts(void) {
-  const PetscInt cells[2] = {4, -3};
-  const PetscReal N[2] = {0.3, -0.8}, scale = 2.5;
+/* Every pair of the ellipse's markers, each marker with itself too. */
+static PetscErrorCode Compare(const OffsetTable lattice[2], const Case *a) {
+  const PetscReal scale = 2.5;
   PaddedStencil response[2 * MARKERS], dipole[MARKERS][DIPOLE_COUNT];
   PetscReal answer[4][MARKERS], *const free[4] = {answer[0], answer[1], answer[2], answer[3]}, worst = 0, most = 0;
-  OffsetTable lattice[2];
   DipoleFaces faces;
   PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < MARKERS; k++) Place(k, &response[2 * k], dipole[k]);
-  PetscCall(LatticeDipoles(16 + OFFSET_LAGS, lattice));
+  for (PetscInt k = 0; k < MARKERS; k++) Place(a, k, &response[2 * k], dipole[k]);
   PetscCall(DipoleFacesCreate(MARKERS, response, &faces));
   for (PetscInt j = 0; j < MARKERS; j++) {
-    DipoleFacesAnswer(&faces, lattice, dipole[j], cells, N, scale, free);
+    DipoleFacesAnswer(&faces, lattice, dipole[j], a->cells, a->N, scale, free);
     for (PetscInt i = 0; i < MARKERS; i++) {
       PetscReal K[2][DIPOLE_COUNT], M[4];
-      StencilDipoleSums(lattice, &response[2 * i], dipole[j], cells, K);
-      DipoleContract((const PetscReal(*)[DIPOLE_COUNT])K, N, scale, M);
+      StencilDipoleSums(lattice, &response[2 * i], dipole[j], a->cells, K);
+      DipoleContract((const PetscReal(*)[DIPOLE_COUNT])K, a->N, scale, M);
       for (int q = 0; q < 4; q++) {
         worst = PetscMax(worst, PetscAbsReal(answer[q][i] - M[q]));
         most = PetscMax(most, PetscAbsReal(M[q]));
       }
     }
   }
-  CHECK(most > 0.01 && worst < 1e-14, "a dipole's field read by markers is the pairs' sums: off by %.0e of %.2f", worst,
-        most);
+  CHECK(
+      most > 0.01 && worst < 1e-14,
+      "a dipole's field read by markers of an ellipse %g x %g is the pairs' sums, %+d, %+d cells off: to %.0e of %.2f",
+      (double)a->half[0], (double)a->half[1], (int)a->cells[0], (int)a->cells[1], (double)worst, (double)most);
   PetscCall(DipoleFacesDestroy(&faces));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Facts(void) {
+  const PetscReal half[4][2] = {{5, 3}, {0.2, 0.3}, {1, 6}, {7, 0.6}};
+  const PetscInt cells[3][2] = {{0, 0}, {4, -3}, {-1, 5}};
+  const PetscReal N[2][2] = {{0.3, -0.8}, {-1, 0}};
+  OffsetTable lattice[2];
+  PetscFunctionBeginUser;
+  PetscCall(LatticeDipoles(20 + OFFSET_LAGS, lattice));
+  for (int q = 0; q < 24; q++) {
+    const Case a = {.half = {half[q / 6][0], half[q / 6][1]},
+                    .cells = {cells[q / 2 % 3][0], cells[q / 2 % 3][1]},
+                    .N = {N[q % 2][0], N[q % 2][1]}};
+    PetscCall(Compare(lattice, &a));
+  }
   for (int c = 0; c < 2; c++) PetscCall(OffsetTableDestroy(&lattice[c]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
