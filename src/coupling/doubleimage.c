@@ -135,8 +135,9 @@ static inline void AddFour(PetscBool turned, Lanes a, PetscReal x[]) {
   LanesPut(turned ? LanesAt(x) - a : LanesAt(x) + a, x);
 }
 
-/* One wall's parts in closed form, of markers that are off the wall, seen from which x is along it. */
-static inline void AddFar(DoubleImage m, const int direction, const int side, const DoubleColumn *c) {
+/* One wall's parts in closed form, of markers that are off the wall, seen from which x is along it; none of images
+   beyond the reach. */
+static inline void AddFar(DoubleImage m, const int direction, const int side, PetscReal reach, const DoubleColumn *c) {
   const PetscReal cell = 1 / m->single->markers->grid->h, *y = m->single->y[direction][side];
   const PetscReal N[2] = {c->N[1 - direction], side ? -c->N[direction] : c->N[direction]};
   const Lanes b = y[c->j] + (Lanes){0};
@@ -149,29 +150,31 @@ static inline void AddFar(DoubleImage m, const int direction, const int side, co
       DipoleImageFour(&source, x, a, b, M, L);
     else
       DipoleImageFourExact(&source, x, a, b, M);
+    const LanesBits meant = (LanesBits)(a + b < reach);
     for (int to = 0; to < 2; to++) {
       const int comp = to ? direction : 1 - direction;
       for (int from = 0; from < 2; from++)
-        AddFour(side && to != from, M[2 * from + to], c->wall[2 * (from ? direction : 1 - direction) + comp] + k);
-      if (c->lattice) AddFour(side && to, L[to], c->flux[comp] + k);
+        AddFour(side && to != from, LanesWhere(meant, M[2 * from + to]),
+                c->wall[2 * (from ? direction : 1 - direction) + comp] + k);
+      if (c->lattice) AddFour(side && to, LanesWhere(meant, L[to]), c->flux[comp] + k);
     }
   }
 }
 
-static void AddFarLeft(DoubleImage m, const DoubleColumn *c) {
-  AddFar(m, 0, 0, c);
+static void AddFarLeft(DoubleImage m, PetscReal reach, const DoubleColumn *c) {
+  AddFar(m, 0, 0, reach, c);
 }
-static void AddFarRight(DoubleImage m, const DoubleColumn *c) {
-  AddFar(m, 0, 1, c);
+static void AddFarRight(DoubleImage m, PetscReal reach, const DoubleColumn *c) {
+  AddFar(m, 0, 1, reach, c);
 }
-static void AddFarBottom(DoubleImage m, const DoubleColumn *c) {
-  AddFar(m, 1, 0, c);
+static void AddFarBottom(DoubleImage m, PetscReal reach, const DoubleColumn *c) {
+  AddFar(m, 1, 0, reach, c);
 }
-static void AddFarTop(DoubleImage m, const DoubleColumn *c) {
-  AddFar(m, 1, 1, c);
+static void AddFarTop(DoubleImage m, PetscReal reach, const DoubleColumn *c) {
+  AddFar(m, 1, 1, reach, c);
 }
-static void (*const AddFarFrom[4])(DoubleImage, const DoubleColumn *) = {AddFarLeft, AddFarRight, AddFarBottom,
-                                                                         AddFarTop};
+static void (*const AddFarFrom[4])(DoubleImage, PetscReal, const DoubleColumn *) = {AddFarLeft, AddFarRight,
+                                                                                    AddFarBottom, AddFarTop};
 
 void DoubleImageAdd(DoubleImage m, PetscInt i, PetscInt j, const PetscReal d[2], PetscReal reach,
                     PetscReal exact[2][DIPOLE_COUNT], PetscReal lattice[2][DIPOLE_COUNT]) {
@@ -195,10 +198,10 @@ void DoubleImageAdd(DoubleImage m, PetscInt i, PetscInt j, const PetscReal d[2],
 void DoubleImageAddColumn(DoubleImage m, PetscReal reach, const DoubleColumn *c) {
   for (int wall = 0; wall < 4; wall++) {
     const int direction = wall / 2, side = wall % 2;
-    const PetscReal *y = m->single->y[direction][side], low = c->near[wall], high = c->off[wall];
+    const PetscReal *y = m->single->y[direction][side], low = c->near[wall];
     if (!m->end[direction][side] || low + y[c->j] >= reach) continue;
-    if (high + y[c->j] < reach && (!c->lattice || (low + y[c->j] >= IMAGE_CELLS && low >= FOLD_SCALED)))
-      AddFarFrom[wall](m, c);
+    if (!c->lattice || (low + y[c->j] >= IMAGE_CELLS && low >= FOLD_SCALED))
+      AddFarFrom[wall](m, reach, c);
     else
       AddPairs(m, direction, side, reach, c);
   }
@@ -208,11 +211,8 @@ void DoubleImageRange(DoubleImage m, DoubleColumn *c) {
   for (int wall = 0; wall < 4; wall++) {
     const PetscReal *y = m->single->y[wall / 2][wall % 2];
     c->near[wall] = PETSC_MAX_REAL;
-    c->off[wall] = 0;
-    for (PetscInt k = c->i; k < c->i + c->n && m->end[wall / 2][wall % 2]; k++) {
+    for (PetscInt k = c->i; k < c->i + c->n && m->end[wall / 2][wall % 2]; k++)
       c->near[wall] = PetscMin(c->near[wall], y[k]);
-      c->off[wall] = PetscMax(c->off[wall], y[k]);
-    }
   }
 }
 

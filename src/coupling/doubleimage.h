@@ -35,18 +35,18 @@ PETSC_EXTERN void DoubleImagePlace(DoubleImage image, const PaddedStencil dipole
    of J_x, then of J_y), arrays of n numbers with room for whole vectors behind them. */
 typedef struct {
   PetscInt i, n, j;
-  PetscReal near[4], off[4]; /* least and largest distance of the row's markers from each wall (cells) */
-  PetscReal N[2], over;      /* 1 over the length that N has */
-  PetscReal *d[2];           /* X_i - X_j, in periodic directions to the image meant (length) */
-  PetscBool lattice;         /* whether the lattice is meant too, or the exact fluid only */
-  PetscReal *free[4];        /* what the lattice without walls gives */
-  PetscReal *wall[4];        /* what walls add to the exact fluid's response, less what they add to the lattice's */
-  PetscReal *flux[2];        /* what walls add to the lattice's response to J = n */
+  PetscReal near[4];    /* least distance of the row's markers from each wall (cells) */
+  PetscReal N[2], over; /* 1 over the length that N has */
+  PetscReal *d[2];      /* X_i - X_j, in periodic directions to the image meant (length) */
+  PetscBool lattice;    /* whether the lattice is meant too, or the exact fluid only */
+  PetscReal *free[4];   /* what the lattice without walls gives */
+  PetscReal *wall[4];   /* what walls add to the exact fluid's response, less what they add to the lattice's */
+  PetscReal *flux[2];   /* what walls add to the lattice's response to J = n */
 } DoubleColumn;
 
-/* DoubleImageRange - the distances of a column's row from walls. DoubleImageAddColumn - with these, all walls' parts,
-   added to `wall` and `flux`; reach: of images (cells). DoubleImageAdd - of one pair, to unit tensor parts: exact +=,
-   and lattice += image, which holds the free lattice's. DoubleImageExact - exact
+/* DoubleImageRange - the least distances of a column's row from walls. DoubleImageAddColumn - with these, all walls'
+   parts, added to `wall` and `flux`; reach: of images (cells). DoubleImageAdd - of one pair, to unit tensor parts:
+   exact +=, and lattice += image, which holds the free lattice's. DoubleImageExact - exact
    += that of two points and one wall. Not collective. */
 PETSC_EXTERN void DoubleImageRange(DoubleImage image, DoubleColumn *column);
 PETSC_EXTERN void DoubleImageAddColumn(DoubleImage image, PetscReal reach, const DoubleColumn *column);

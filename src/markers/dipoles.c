@@ -2,7 +2,11 @@
 #include "markers/fold.h"
 
 void DipoleStencilsUnwrapped(Grid g, const PetscReal X[2], Stencil s[DIPOLE_COUNT]) {
-  const Kernel *five = KernelFind("cbs54"), *six = KernelFind("cbs65");
+  static const Kernel *five = NULL, *six = NULL; /* names are looked up once */
+  if (!six) {
+    five = KernelFind("cbs54");
+    six = KernelFind("cbs65");
+  }
   const KernelWeights weights[DIPOLE_COUNT][2] = {
       {six->along, five->across}, {five->across, six->along}, {five->along, five->along}};
   for (int k = 0; k < DIPOLE_COUNT; k++)
@@ -26,44 +30,49 @@ static void OnGrid(Grid g, const PetscReal X[2], Stencil s[DIPOLE_COUNT]) {
     }
 }
 
-/* The entries of a line of a field's that are unknowns: between walls the faces on them are none. */
-static DipoleLine Inside(Grid g, Field field, int dir, DipoleLine line) {
+/* Leaves the entries of a line of a field's that are unknowns: between walls the faces on them are none. */
+static void Inside(Grid g, Field field, int dir, DipoleLine *line) {
   const PetscInt end = (int)field == dir ? g->n[dir] - 1 : g->n[dir];
   PetscInt skip = 0;
-  if (!g->wall[dir]) return line;
-  while (skip < line.n && line.first + skip < 0) skip++;
-  while (line.n > skip && line.first + line.n > end) line.n--;
-  line.n -= skip;
-  line.first += skip;
-  for (PetscInt k = 0; k < DIPOLE_POINTS; k++) line.weight[k] = k < line.n ? line.weight[k + skip] : 0;
-  return line;
+  if (!g->wall[dir] || (line->first >= 0 && line->first + line->n <= end)) return;
+  while (skip < line->n && line->first + skip < 0) skip++;
+  while (line->n > skip && line->first + line->n > end) line->n--;
+  line->n -= skip;
+  line->first += skip;
+  for (PetscInt k = 0; k < DIPOLE_POINTS; k++) line->weight[k] = k < line->n ? line->weight[k + skip] : 0;
 }
 
-static DipoleLine Plain(Grid g, Field field, const Stencil *s, int dir) {
-  DipoleLine line = {.first = s->first[dir], .n = s->n[dir]};
-  for (PetscInt k = 0; k < line.n; k++) line.weight[k] = s->weight[dir][k];
-  return Inside(g, field, dir, line);
-}
-
-/* Differences of neighbours: from entry `first` on, which is the stencil's own or the one before it. */
-static DipoleLine Difference(Grid g, Field field, const Stencil *s, int dir, PetscInt before) {
-  DipoleLine line = {.first = s->first[dir] - before, .n = s->n[dir] + 1};
-  for (PetscInt k = 0; k <= s->n[dir]; k++)
-    line.weight[k] = (k < s->n[dir] ? s->weight[dir][k] : 0) - (k ? s->weight[dir][k - 1] : 0);
-  return Inside(g, field, dir, line);
+/* A stencil's weights along dir (before < 0), or the differences of neighbours: from entry `first` on, which is the
+   stencil's own (before = 0) or the one before it (1). */
+static void MakeLine(Grid g, Field field, const Stencil *s, int dir, PetscInt before, DipoleLine *line) {
+  const PetscInt difference = before >= 0 ? 1 : 0;
+  PetscReal w[DIPOLE_POINTS + 1] = {0};
+  for (PetscInt k = 0; k < s->n[dir]; k++) w[k + 1] = s->weight[dir][k];
+  line->first = s->first[dir] - (before > 0);
+  line->n = s->n[dir] + difference;
+  for (PetscInt k = 0; k < DIPOLE_POINTS; k++) line->weight[k] = w[k + 1] - difference * w[k];
+  Inside(g, field, dir, line);
 }
 
 void DipoleSpots(Grid g, PetscReal nu, const PetscReal X[2], DipoleSpot spot[DIPOLE_SPOTS]) {
   const PetscReal force = -nu / PetscPowRealInt(g->h, 3), half = -0.5 / PetscSqr(g->h);
+  enum { PLAIN = -1 };
+  static const struct {
+    Field field;
+    DipolePart part;
+    PetscInt before[2]; /* of the lines along x and y: MakeLine */
+  } form[DIPOLE_SPOTS] = {{FIELD_U, DIPOLE_XX, {1, PLAIN}},     {FIELD_U, DIPOLE_XY, {PLAIN, 0}},
+                          {FIELD_V, DIPOLE_XY, {0, PLAIN}},     {FIELD_V, DIPOLE_YY, {PLAIN, 1}},
+                          {FIELD_P, DIPOLE_XX, {PLAIN, PLAIN}}, {FIELD_P, DIPOLE_YY, {PLAIN, PLAIN}}};
   Stencil s[DIPOLE_COUNT];
   OnGrid(g, X, s);
-  const Stencil *xx = &s[DIPOLE_XX], *yy = &s[DIPOLE_YY], *xy = &s[DIPOLE_XY];
-  spot[0] = (DipoleSpot){FIELD_U, DIPOLE_XX, force, {Difference(g, FIELD_U, xx, 0, 1), Plain(g, FIELD_U, xx, 1)}};
-  spot[1] = (DipoleSpot){FIELD_U, DIPOLE_XY, force, {Plain(g, FIELD_U, xy, 0), Difference(g, FIELD_U, xy, 1, 0)}};
-  spot[2] = (DipoleSpot){FIELD_V, DIPOLE_XY, force, {Difference(g, FIELD_V, xy, 0, 0), Plain(g, FIELD_V, xy, 1)}};
-  spot[3] = (DipoleSpot){FIELD_V, DIPOLE_YY, force, {Plain(g, FIELD_V, yy, 0), Difference(g, FIELD_V, yy, 1, 1)}};
-  spot[4] = (DipoleSpot){FIELD_P, DIPOLE_XX, half, {Plain(g, FIELD_P, xx, 0), Plain(g, FIELD_P, xx, 1)}};
-  spot[5] = (DipoleSpot){FIELD_P, DIPOLE_YY, half, {Plain(g, FIELD_P, yy, 0), Plain(g, FIELD_P, yy, 1)}};
+  for (int q = 0; q < DIPOLE_SPOTS; q++) {
+    spot[q].field = form[q].field;
+    spot[q].part = form[q].part;
+    spot[q].value = form[q].field == FIELD_P ? half : force;
+    for (int dir = 0; dir < 2; dir++)
+      MakeLine(g, form[q].field, &s[form[q].part], dir, form[q].before[dir], &spot[q].line[dir]);
+  }
 }
 
 /* SUM of a line's weights, and of them times the places of its entries along dir (length), from the middle. */
