@@ -5,7 +5,8 @@
 
 /* Where a checkpoint has the states before the present one. */
 static inline const char *CheckpointGroup(PetscInt j) {
-  return j ? "/previous_1" : "/previous";
+  static const char *const groups[] = {"/previous", "/previous_1", "/previous_2"};
+  return groups[j];
 }
 
 typedef struct {

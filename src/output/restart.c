@@ -231,7 +231,7 @@ static PetscErrorCode CheckNumbers(Scene scene, H5File *file) {
              {"dt", 0, 1e300, PETSC_FALSE},
              {"dt_last", 0, 1e300, PETSC_FALSE},
              {"step_order", 0, BDF_MOST, PETSC_TRUE},
-             {"step_guess", 0, BDF_MOST, PETSC_TRUE}};
+             {"step_guess", 0, BDF_STATES, PETSC_TRUE}};
   PetscReal x[9] = {0};
   PetscFunctionBeginUser;
   for (int k = 0; k < 9; k++) {

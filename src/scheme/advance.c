@@ -76,10 +76,12 @@ static PetscErrorCode RestoreMarkers(Scheme s, Coupled *d) {
 PetscErrorCode CoupledAdvance(Scheme s, PetscReal dt) {
   Coupled *d = (Coupled *)s->data;
   PetscFunctionBeginUser;
-  StateSwap(&s->old[1], &s->old[0]);
+  for (int j = SCHEME_PAST - 1; j > 0; j--) {
+    StateSwap(&s->old[j], &s->old[j - 1]);
+    s->old[j].dt_last = s->old[j - 1].dt_last;
+  }
   StateSwap(&s->old[0], &s->state);
   StateSwap(&s->state, &d->next);
-  s->old[1].dt_last = s->old[0].dt_last;
   s->old[0].dt_last = s->state.dt_last;
   s->state.dt_last = dt;
   s->state.pending = d->next.force ? PETSC_TRUE : PETSC_FALSE;

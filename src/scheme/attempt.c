@@ -41,7 +41,7 @@ static PetscErrorCode LengthTarget(Scheme s, Coupled *d, PetscReal a0) {
 /* Vectors of the states that the step goes on from. */
 #define STATES(s, which)                                                                                               \
   (const Vec[]) {                                                                                                      \
-    (s)->state.which, (s)->old[0].which, (s)->old[1].which                                                             \
+    (s)->state.which, (s)->old[0].which, (s)->old[1].which, (s)->old[2].which                                          \
   }
 
 /* The tension of the last two states, extrapolated, pulls along the new edges (docs/membrane.md, The tension turns with
@@ -49,7 +49,7 @@ static PetscErrorCode LengthTarget(Scheme s, Coupled *d, PetscReal a0) {
 static PetscErrorCode TurnTension(Scheme s, Coupled *d) {
   History *h = &d->history;
   const PetscInt count = PetscMin(2, h->solved);
-  PetscReal weight[BDF_MOST];
+  PetscReal weight[BDF_STATES];
   PetscFunctionBeginUser;
   if (!count) PetscFunctionReturn(PETSC_SUCCESS);
   BDFExtrapolation(count, h->step, weight);
@@ -115,7 +115,7 @@ static PetscErrorCode InitialGuess(Scheme s, Coupled *d) {
   State *n = &d->next;
   History *h = &d->history;
   const PetscInt count = PetscMax(1, PetscMin(h->solved, s->plan.guess));
-  PetscReal weight[BDF_MOST];
+  PetscReal weight[BDF_STATES];
   PetscFunctionBeginUser;
   if (!d->solver) PetscFunctionReturn(PETSC_SUCCESS);
   BDFExtrapolation(count, h->step, weight);
@@ -233,7 +233,7 @@ static PetscErrorCode Apart(Scheme s, Vec x, Vec y, PetscReal *largest) {
 
 /* Largest |x - x*| on this rank, x* the extrapolation of a marker vector of the states through `count` of them. */
 static PetscErrorCode Miss(Scheme s, Coupled *d, PetscInt count, const Vec states[], Vec x, PetscReal *largest) {
-  PetscReal star[BDF_MOST];
+  PetscReal star[BDF_STATES];
   PetscFunctionBeginUser;
   BDFExtrapolation(count, d->history.step, star);
   PetscCall(HistorySum(&d->history, s->membrane, count, star, 1, 2, states, d->Y));
@@ -247,12 +247,13 @@ static PetscErrorCode ChooseNext(Scheme s, Coupled *d) {
   const Vec *const X = STATES(s, X), *const U = STATES(s, U);
   const PetscInt solved = s->scene->time.frame == FRAME_NONE ? 0 : d->history.solved;
   StepPlan *next = &d->next_plan;
-  PetscReal miss[BDF_MOST - 1 + BDF_MOST] = {0}, *of_U = miss + BDF_MOST - 1;
+  PetscReal miss[BDF_MOST - 1 + BDF_STATES] = {0}, *of_U = miss + BDF_MOST - 1;
   PetscFunctionBeginUser;
   for (PetscInt k = 2; k <= BDF_MOST && d->history.n == BDF_MOST && s->scene->scheme.order > 2; k++)
     PetscCall(Miss(s, d, k, X, d->next.X, &miss[k - 2]));
   for (PetscInt k = 1; k <= solved; k++) PetscCall(Miss(s, d, k, U, d->next.U, &of_U[k - 1]));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, miss, 2 * BDF_MOST - 1, MPIU_REAL, MPI_MAX, s->membrane->layout->comm));
+  PetscCallMPI(
+      MPI_Allreduce(MPI_IN_PLACE, miss, BDF_MOST - 1 + BDF_STATES, MPIU_REAL, MPI_MAX, s->membrane->layout->comm));
   next->order = miss[1] < SMOOTH * miss[0] ? 3 : PetscMin(s->scene->scheme.order, 2);
   next->guess = solved ? 1 : 2;
   for (PetscInt k = 2; k <= solved; k++)

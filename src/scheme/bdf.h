@@ -4,6 +4,7 @@
 #include "base/base.h"
 
 #define BDF_MOST 3
+#define BDF_STATES 4 /* that an extrapolation goes by at most */
 
 typedef struct {
   PetscInt order;              /* 1 to BDF_MOST: the number of states that are used */
@@ -19,10 +20,11 @@ static inline void BDFExtrapolation(PetscInt n, const PetscReal step[], PetscRea
   star[0] = 1 + r;
   if (n > 1) star[1] = -r;
   if (n < 3) return;
-  const PetscReal back[] = {step[0], step[0] + step[1], step[0] + step[1] + step[2]};
-  for (int j = 0; j < 3; j++) {
+  PetscReal back[BDF_STATES] = {step[0]};
+  for (PetscInt j = 1; j < n; j++) back[j] = back[j - 1] + step[j];
+  for (PetscInt j = 0; j < n; j++) {
     star[j] = 1;
-    for (int i = 0; i < 3; i++)
+    for (PetscInt i = 0; i < n; i++)
       if (i != j) star[j] *= back[i] / (back[i] - back[j]);
   }
 }

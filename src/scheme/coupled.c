@@ -247,7 +247,7 @@ static PetscErrorCode Undo_Coupled(Scheme s) {
   PetscFunctionBeginUser;
   StateSwap(&s->state, &d->next);
   StateSwap(&s->old[0], &s->state);
-  StateSwap(&s->old[1], &s->old[0]);
+  for (int j = 1; j < SCHEME_PAST; j++) StateSwap(&s->old[j], &s->old[j - 1]);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -271,7 +271,7 @@ static PetscErrorCode CreateStates(Scheme s, Coupled *d) {
   for (int j = 0; j < SCHEME_PAST; j++) {
     PetscCall(StateDuplicate(&s->state, &s->old[j]));
     PetscCall(VecDestroy(&s->old[j].p));
-    if (s->fluid->steady || (j && s->scene->scheme.order < 3)) PetscCall(VecDestroy(&s->old[j].w));
+    if (s->fluid->steady || j >= s->scene->scheme.order - 1) PetscCall(VecDestroy(&s->old[j].w));
   }
   PetscCall(StateDuplicate(&s->state, &d->next));
   if (!later) {

@@ -58,14 +58,13 @@ static PetscErrorCode Carry(const History *h, Membrane m, PetscInt j, int each, 
 }
 
 PetscErrorCode HistoryCarry(History *h, Scheme s, PetscReal dt) {
-  const Vec X[] = {s->state.X, s->old[0].X, s->old[1].X};
+  const Vec X[BDF_MOST] = {s->state.X, s->old[0].X, s->old[1].X};
+  const PetscReal led[BDF_STATES] = {s->state.dt_last, s->old[0].dt_last, s->old[1].dt_last, s->old[2].dt_last};
   PetscFunctionBeginUser;
-  h->n = s->past + 1;
+  h->n = PetscMin(s->past + 1, BDF_MOST);
   h->step[0] = dt;
-  h->step[1] = s->state.dt_last;
-  h->step[2] = s->old[0].dt_last;
-  const PetscReal led[] = {s->state.dt_last, s->old[0].dt_last, s->old[1].dt_last};
-  for (h->solved = 0; h->solved < h->n && led[h->solved] > 0;) h->solved++;
+  for (int j = 1; j < BDF_STATES; j++) h->step[j] = led[j - 1];
+  for (h->solved = 0; h->solved <= s->past && led[h->solved] > 0;) h->solved++;
   PetscCall(Fit(h, s));
   for (PetscInt j = 0; j < h->n; j++) {
     h->X[j] = h->moving ? h->room[j] : X[j];

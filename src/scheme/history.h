@@ -6,14 +6,15 @@
 #include "scheme/scheme.h"
 
 typedef struct {
-  PetscInt n;               /* states: 1 to BDF_MOST */
-  PetscInt solved;          /* of them that a step has led to: a run's first one has no velocity nor tension yet */
-  PetscReal step[BDF_MOST]; /* the step to be made, the one before it, ... (time) */
-  PetscReal *treading;      /* [vesicles] V, speed of the labels (1/time) */
-  PetscBool moving;         /* one of them is not zero */
-  Vec X[BDF_MOST];          /* markers of the states, carried; borrowed */
-  Vec room[BDF_MOST];       /* marker vectors, where they are when labels move */
-  Vec carried[2];           /* edge vector, marker vector: work */
+  PetscInt n;                 /* states whose markers are carried: 1 to BDF_MOST */
+  PetscInt solved;            /* states that a step has led to, up to BDF_STATES: a run's first one has no velocity nor
+                                 tension yet */
+  PetscReal step[BDF_STATES]; /* the step to be made, the one before it, ... (time) */
+  PetscReal *treading;        /* [vesicles] V, speed of the labels (1/time) */
+  PetscBool moving;           /* one of them is not zero */
+  Vec X[BDF_MOST];            /* markers of the states, carried; borrowed */
+  Vec room[BDF_MOST];         /* marker vectors, where they are when labels move */
+  Vec carried[2];             /* edge vector, marker vector: work */
 } History;
 
 /* HistoryCreate - for the scheme's vectors. Collective. */
