@@ -53,7 +53,7 @@ static PetscErrorCode TurnTension(Scheme s, Coupled *d) {
   PetscFunctionBeginUser;
   if (!count) PetscFunctionReturn(PETSC_SUCCESS);
   BDFExtrapolation(count, h->step, weight);
-  PetscCall(HistorySum(h, s->membrane, count, weight, 1, 1, STATES(s, sigma), d->next.sigma));
+  PetscCall(HistoryEdges(h, s->membrane, count, weight, STATES(s, sigma), d->next.sigma));
   PetscCall(CouplingTurn(s->coupling, d->next.sigma));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -80,7 +80,6 @@ static Vec Momentum(const Coupled *d) {
    springs beside bending, Y = Xhat + u_inf/a0, V the labels' speed, and what holds obstacles in the flow; no uhat in
    quasi-steady flow. next.w is used for w*. */
 static PetscErrorCode RightHandSides(Scheme s, Coupled *d, const BDF *b) {
-  History *h = &d->history;
   const Vec f = Momentum(d);
   PetscFunctionBeginUser;
   PetscCall(VecSet(d->known, 0));
@@ -91,7 +90,7 @@ static PetscErrorCode RightHandSides(Scheme s, Coupled *d, const BDF *b) {
   else if (s->fluid->steady)
     PetscCall(VecSet(f, 0));
   else {
-    PetscCall(HistorySum(h, s->membrane, b->order, b->history, 1, 0, STATES(s, w), f));
+    PetscCall(HistorySum(b->order, b->history, 1, STATES(s, w), f));
     PetscCall(CouplingAddPast(s->coupling, f, d->known));
   }
   if (s->fluid->bc1) PetscCall(VecAXPY(f, 1, s->fluid->bc1));
@@ -104,7 +103,7 @@ static PetscErrorCode RightHandSides(Scheme s, Coupled *d, const BDF *b) {
     PetscCall(CouplingTread(s->coupling, -1, d->Y, d->known));
   PetscCall(AddObstacleData(s, d->known));
   if (d->convection) {
-    PetscCall(HistorySum(h, s->membrane, b->order, b->star, 1, 0, STATES(s, w), d->next.w));
+    PetscCall(HistorySum(b->order, b->star, 1, STATES(s, w), d->next.w));
     PetscCall(ConvectionAdd(d->convection, -1, d->next.w, f));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -119,10 +118,10 @@ static PetscErrorCode InitialGuess(Scheme s, Coupled *d) {
   PetscFunctionBeginUser;
   if (!d->solver) PetscFunctionReturn(PETSC_SUCCESS);
   BDFExtrapolation(count, h->step, weight);
-  PetscCall(HistorySum(h, s->membrane, count, weight, 1, 0, STATES(s, walls), n->walls));
-  if (n->solid) PetscCall(HistorySum(h, s->membrane, count, weight, 1, 0, STATES(s, solid), n->solid));
-  PetscCall(HistorySum(h, s->membrane, count, weight, 1, 1, STATES(s, sigma), n->sigma));
-  PetscCall(HistorySum(h, s->membrane, count, weight, 1, 2, STATES(s, U), d->V));
+  PetscCall(HistorySum(count, weight, 1, STATES(s, walls), n->walls));
+  if (n->solid) PetscCall(HistorySum(count, weight, 1, STATES(s, solid), n->solid));
+  PetscCall(HistoryEdges(h, s->membrane, count, weight, STATES(s, sigma), n->sigma));
+  PetscCall(HistorySum(count, weight, 1, h->U, d->V));
   PetscCall(VecAXPY(d->V, -1, s->background));
   PetscCall(CouplingTread(s->coupling, -1, d->Xstar, d->V));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -231,12 +230,12 @@ static PetscErrorCode Apart(Scheme s, Vec x, Vec y, PetscReal *largest) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Largest |x - x*| on this rank, x* the extrapolation of a marker vector of the states through `count` of them. */
+/* Largest |x - x*| on this rank, x* the extrapolation of a carried marker vector through `count` of them. */
 static PetscErrorCode Miss(Scheme s, Coupled *d, PetscInt count, const Vec states[], Vec x, PetscReal *largest) {
   PetscReal star[BDF_STATES];
   PetscFunctionBeginUser;
   BDFExtrapolation(count, d->history.step, star);
-  PetscCall(HistorySum(&d->history, s->membrane, count, star, 1, 2, states, d->Y));
+  PetscCall(HistorySum(count, star, 1, states, d->Y));
   PetscCall(Apart(s, x, d->Y, largest));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -244,14 +243,14 @@ static PetscErrorCode Miss(Scheme s, Coupled *d, PetscInt count, const Vec state
 /* Order 3 where the motion is so smooth that three states tell the next one better than two; and a guess through as
    many states as would have told this one's velocity best, of those whose velocity is known. */
 static PetscErrorCode ChooseNext(Scheme s, Coupled *d) {
-  const Vec *const X = STATES(s, X), *const U = STATES(s, U);
+  const History *h = &d->history;
   const PetscInt solved = s->scene->time.frame == FRAME_NONE ? 0 : d->history.solved;
   StepPlan *next = &d->next_plan;
   PetscReal miss[BDF_MOST - 1 + BDF_STATES] = {0}, *of_U = miss + BDF_MOST - 1;
   PetscFunctionBeginUser;
   for (PetscInt k = 2; k <= BDF_MOST && d->history.n == BDF_MOST && s->scene->scheme.order > 2; k++)
-    PetscCall(Miss(s, d, k, X, d->next.X, &miss[k - 2]));
-  for (PetscInt k = 1; k <= solved; k++) PetscCall(Miss(s, d, k, U, d->next.U, &of_U[k - 1]));
+    PetscCall(Miss(s, d, k, h->X, d->next.X, &miss[k - 2]));
+  for (PetscInt k = 1; k <= solved; k++) PetscCall(Miss(s, d, k, h->U, d->next.U, &of_U[k - 1]));
   PetscCallMPI(
       MPI_Allreduce(MPI_IN_PLACE, miss, BDF_MOST - 1 + BDF_STATES, MPIU_REAL, MPI_MAX, s->membrane->layout->comm));
   next->order = miss[1] < SMOOTH * miss[0] ? 3 : PetscMin(s->scene->scheme.order, 2);
@@ -268,8 +267,8 @@ PetscErrorCode CoupledAttempt(Scheme s, PetscReal dt, PetscBool *solved) {
   s->state.dt = dt;
   PetscCall(HistoryCarry(h, s, dt));
   const BDF b = BDFCoefficients(d->order = Order(s, h), h->step);
-  PetscCall(HistoryMarkers(h, b.order, b.star, 1, d->Xstar));
-  PetscCall(HistoryMarkers(h, b.order, b.history, 1 / b.a0, d->Xhat));
+  PetscCall(HistorySum(b.order, b.star, 1, h->X, d->Xstar));
+  PetscCall(HistorySum(b.order, b.history, 1 / b.a0, h->X, d->Xhat));
   PetscCall(SchemePlace(s, b.a0, d->Xstar, h->treading, s->state.t + d->done + dt, solved));
   if (!*solved) PetscFunctionReturn(PETSC_SUCCESS);
   if (s->scene->scheme.length_target) PetscCall(LengthTarget(s, d, b.a0));
@@ -295,7 +294,7 @@ static PetscErrorCode Overshot(Scheme s, Coupled *d, PetscBool *overshot) {
   PetscFunctionBeginUser;
   *overshot = PETSC_FALSE;
   if (d->order == 1) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(Miss(s, d, 1, STATES(s, X), d->next.X, &off[0]));
+  PetscCall(Miss(s, d, 1, d->history.X, d->next.X, &off[0]));
   PetscCall(VecCopy(d->Xstar, d->Y));
   PetscCall(Apart(s, d->next.X, d->Y, &off[1]));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, off, 2, MPIU_REAL, MPI_MAX, m->layout->comm));

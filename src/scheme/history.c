@@ -3,17 +3,16 @@
 PetscErrorCode HistoryCreate(Scheme s, History *h) {
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(s->membrane->layout->bodies, &h->treading));
-  for (int j = 0; j < BDF_MOST; j++) PetscCall(VecDuplicate(s->state.X, &h->room[j]));
-  PetscCall(VecDuplicate(s->state.sigma, &h->carried[0]));
-  PetscCall(VecDuplicate(s->state.X, &h->carried[1]));
+  for (int j = 0; j < BDF_MOST + BDF_STATES; j++) PetscCall(VecDuplicate(s->state.X, &h->room[j]));
+  PetscCall(VecDuplicate(s->state.sigma, &h->carried));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode HistoryDestroy(History *h) {
   PetscFunctionBeginUser;
   PetscCall(PetscFree(h->treading));
-  for (int j = 0; j < BDF_MOST; j++) PetscCall(VecDestroy(&h->room[j]));
-  for (int each = 0; each < 2; each++) PetscCall(VecDestroy(&h->carried[each]));
+  for (int j = 0; j < BDF_MOST + BDF_STATES; j++) PetscCall(VecDestroy(&h->room[j]));
+  PetscCall(VecDestroy(&h->carried));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -57,8 +56,19 @@ static PetscErrorCode Carry(const History *h, Membrane m, PetscInt j, int each, 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Marker vectors x of the first `count` states, in the rooms where labels move. */
+static PetscErrorCode CarryAll(const History *h, Membrane m, PetscInt count, const Vec x[], const Vec room[], Vec y[]) {
+  PetscFunctionBeginUser;
+  for (PetscInt j = 0; j < count; j++) {
+    y[j] = h->moving ? room[j] : x[j];
+    if (h->moving) PetscCall(Carry(h, m, j, 2, x[j], room[j]));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode HistoryCarry(History *h, Scheme s, PetscReal dt) {
   const Vec X[BDF_MOST] = {s->state.X, s->old[0].X, s->old[1].X};
+  const Vec U[BDF_STATES] = {s->state.U, s->old[0].U, s->old[1].U, s->old[2].U};
   const PetscReal led[BDF_STATES] = {s->state.dt_last, s->old[0].dt_last, s->old[1].dt_last, s->old[2].dt_last};
   PetscFunctionBeginUser;
   h->n = PetscMin(s->past + 1, BDF_MOST);
@@ -66,15 +76,12 @@ PetscErrorCode HistoryCarry(History *h, Scheme s, PetscReal dt) {
   for (int j = 1; j < BDF_STATES; j++) h->step[j] = led[j - 1];
   for (h->solved = 0; h->solved <= s->past && led[h->solved] > 0;) h->solved++;
   PetscCall(Fit(h, s));
-  for (PetscInt j = 0; j < h->n; j++) {
-    h->X[j] = h->moving ? h->room[j] : X[j];
-    if (h->moving) PetscCall(Carry(h, s->membrane, j, 2, X[j], h->room[j]));
-  }
+  PetscCall(CarryAll(h, s->membrane, h->n, X, h->room, h->X));
+  PetscCall(CarryAll(h, s->membrane, PetscMax(1, h->solved), U, h->room + BDF_MOST, h->U));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* y = scale SUM_j weight_j x_j */
-static PetscErrorCode Sum(PetscInt count, const PetscReal weight[], PetscReal scale, const Vec x[], Vec y) {
+PetscErrorCode HistorySum(PetscInt count, const PetscReal weight[], PetscReal scale, const Vec x[], Vec y) {
   PetscFunctionBeginUser;
   if (count > 1)
     PetscCall(VecAXPBYPCZ(y, scale * weight[0], scale * weight[1], 0, x[0], x[1]));
@@ -84,23 +91,16 @@ static PetscErrorCode Sum(PetscInt count, const PetscReal weight[], PetscReal sc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode HistorySum(History *h, Membrane m, PetscInt count, const PetscReal weight[], PetscReal scale, int each,
-                          const Vec x[], Vec y) {
+PetscErrorCode HistoryEdges(History *h, Membrane m, PetscInt count, const PetscReal weight[], const Vec x[], Vec y) {
   PetscFunctionBeginUser;
-  if (!each || !h->moving) {
-    PetscCall(Sum(count, weight, scale, x, y));
+  if (!h->moving) {
+    PetscCall(HistorySum(count, weight, 1, x, y));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(VecSet(y, 0));
   for (PetscInt j = 0; j < count; j++) {
-    PetscCall(Carry(h, m, j, each, x[j], h->carried[each - 1]));
-    PetscCall(VecAXPY(y, scale * weight[j], h->carried[each - 1]));
+    PetscCall(Carry(h, m, j, 1, x[j], h->carried));
+    PetscCall(VecAXPY(y, weight[j], h->carried));
   }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode HistoryMarkers(const History *h, PetscInt count, const PetscReal weight[], PetscReal scale, Vec y) {
-  PetscFunctionBeginUser;
-  PetscCall(Sum(count, weight, scale, h->X, y));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

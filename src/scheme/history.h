@@ -13,8 +13,9 @@ typedef struct {
   PetscReal *treading;        /* [vesicles] V, speed of the labels (1/time) */
   PetscBool moving;           /* one of them is not zero */
   Vec X[BDF_MOST];            /* markers of the states, carried; borrowed */
-  Vec room[BDF_MOST];         /* marker vectors, where they are when labels move */
-  Vec carried[2];             /* edge vector, marker vector: work */
+  Vec U[BDF_STATES];          /* velocities of those solved, of one at least, likewise */
+  Vec room[BDF_MOST + BDF_STATES]; /* marker vectors, where they are when labels move */
+  Vec carried;                     /* edge vector: work */
 } History;
 
 /* HistoryCreate - for the scheme's vectors. Collective. */
@@ -22,14 +23,11 @@ PETSC_EXTERN PetscErrorCode HistoryCreate(Scheme scheme, History *history);
 PETSC_EXTERN PetscErrorCode HistoryDestroy(History *history);
 
 /* HistoryCarry - before a step of size dt: fit V of each vesicle to the present velocity of its markers (zero in a
-   first step, and with -time_frame none), and carry the markers of all states known. Collective. */
+   first step, and with -time_frame none), and carry markers and velocities of the states. Collective. */
 PETSC_EXTERN PetscErrorCode HistoryCarry(History *history, Scheme scheme, PetscReal dt);
 
-/* HistorySum - y = scale SUM_j weight_j x_j over the first `count` states, x_j their vectors. Those of markers (each =
-   2) and of edges (each = 1) are carried, others (each = 0) are taken as they are. Not collective. */
-PETSC_EXTERN PetscErrorCode HistorySum(History *history, Membrane membrane, PetscInt count, const PetscReal weight[],
-                                       PetscReal scale, int each, const Vec x[], Vec y);
-
-/* HistoryMarkers - y = scale SUM_j weight_j X_j of the carried markers. Not collective. */
-PETSC_EXTERN PetscErrorCode HistoryMarkers(const History *history, PetscInt count, const PetscReal weight[],
-                                           PetscReal scale, Vec y);
+/* HistorySum - y = scale SUM_j weight_j x_j over the first `count` states, of vectors x_j that are carried or need not
+   be. HistoryEdges - y = SUM_j weight_j x_j of the states' own edge vectors, which are carried here. Not collective. */
+PETSC_EXTERN PetscErrorCode HistorySum(PetscInt count, const PetscReal weight[], PetscReal scale, const Vec x[], Vec y);
+PETSC_EXTERN PetscErrorCode HistoryEdges(History *history, Membrane membrane, PetscInt count, const PetscReal weight[],
+                                         const Vec x[], Vec y);
