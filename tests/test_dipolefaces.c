@@ -1,6 +1,8 @@
-/* The lattice's answer of a dipole by faces that markers share, against the double sums of each pair. */
+/* The lattice's answer of a dipole by faces that markers share, and in closed form, against the double sums of each
+   pair. */
 #include "world.h"
 #include "coupling/dipolefaces.h"
+#include "coupling/doubleblock.h"
 
 #define MARKERS 11
 
@@ -12,12 +14,14 @@ typedef struct {
 } Case;
 
 /* Stencils of cbs54 and of a dipole at places on the ellipse in a plane without box. */
-static void Place(const Case *a, PetscInt k, PaddedStencil response[2], PaddedStencil dipole[DIPOLE_COUNT]) {
+static void Place(const Case *a, PetscInt k, PaddedStencil response[2], PaddedStencil dipole[DIPOLE_COUNT],
+                  PetscReal X[2]) {
   const PetscReal angle = 2 * PETSC_PI * k / MARKERS;
-  const PetscReal X[2] = {3.1 + a->half[0] * PetscCosReal(angle), -1.7 + a->half[1] * PetscSinReal(angle + 0.4)};
   const Kernel *five = KernelFind("cbs54");
   struct _p_Grid grid = {.h = 1};
   Stencil s[DIPOLE_COUNT];
+  X[0] = 3.1 + a->half[0] * PetscCosReal(angle);
+  X[1] = -1.7 + a->half[1] * PetscSinReal(angle + 0.4);
   DipoleStencilsUnwrapped(&grid, X, s);
   for (int part = 0; part < DIPOLE_COUNT; part++) StencilPad(&s[part], &dipole[part]);
   for (int c = 0; c < 2; c++) {
@@ -33,10 +37,11 @@ static void Place(const Case *a, PetscInt k, PaddedStencil response[2], PaddedSt
 static PetscErrorCode Compare(const OffsetTable lattice[2], const Case *a) {
   const PetscReal scale = 2.5;
   PaddedStencil response[2 * MARKERS], dipole[MARKERS][DIPOLE_COUNT];
-  PetscReal answer[4][MARKERS], *const free[4] = {answer[0], answer[1], answer[2], answer[3]}, worst = 0, most = 0;
+  PetscReal answer[4][MARKERS], *const free[4] = {answer[0], answer[1], answer[2], answer[3]}, worst = 0, most = 0,
+                                       X[2];
   DipoleFaces faces;
   PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < MARKERS; k++) Place(a, k, &response[2 * k], dipole[k]);
+  for (PetscInt k = 0; k < MARKERS; k++) Place(a, k, &response[2 * k], dipole[k], X);
   PetscCall(DipoleFacesCreate(MARKERS, response, &faces));
   for (PetscInt j = 0; j < MARKERS; j++) {
     DipoleFacesAnswer(&faces, lattice, dipole[j], a->cells, a->N, scale, free);
@@ -58,19 +63,48 @@ static PetscErrorCode Compare(const OffsetTable lattice[2], const Case *a) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Pairs across an ellipse, .78 to 1.18 times this apart (cells), by both. */
+static PetscErrorCode CompareFar(const OffsetTable lattice[2], PetscReal diameter, PetscReal bound) {
+  const Case a = {.half = {0.5 * diameter, 0.5 * diameter}};
+  const PetscInt none[2] = {0, 0};
+  PetscReal worst = 0, most = 0;
+  PetscFunctionBeginUser;
+  for (PetscInt j = 0; j < MARKERS; j++)
+    for (int half = 0; half < 2; half++) {
+      const PetscInt i = (j + MARKERS / 2 + half) % MARKERS;
+      PaddedStencil response[2], dipole[DIPOLE_COUNT], other[2], unused[DIPOLE_COUNT];
+      PetscReal X[2][2], sum[2][DIPOLE_COUNT], form[2][DIPOLE_COUNT];
+      Place(&a, i, response, unused, X[0]);
+      Place(&a, j, other, dipole, X[1]);
+      const PetscReal d[2] = {X[0][0] - X[1][0], X[0][1] - X[1][1]};
+      DoubleLatticeParts(lattice, 1, 100, response, dipole, none, d, sum);
+      DoubleLatticeParts(lattice, 1, 0, response, dipole, none, d, form);
+      for (int c = 0; c < 2; c++)
+        for (int k = 0; k < DIPOLE_COUNT; k++) {
+          worst = PetscMax(worst, PetscAbsReal(form[c][k] - sum[c][k]));
+          most = PetscMax(most, PetscAbsReal(sum[c][k]));
+        }
+    }
+  CHECK(worst < bound * most, "pairs about %g cells apart have the closed form: to %.1e of the largest",
+        (double)diameter, (double)(worst / most));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode Facts(void) {
   const PetscReal half[4][2] = {{5, 3}, {0.2, 0.3}, {1, 6}, {7, 0.6}};
   const PetscInt cells[3][2] = {{0, 0}, {4, -3}, {-1, 5}};
   const PetscReal N[2][2] = {{0.3, -0.8}, {-1, 0}};
   OffsetTable lattice[2];
   PetscFunctionBeginUser;
-  PetscCall(LatticeDipoles(20 + OFFSET_LAGS, lattice));
+  PetscCall(LatticeDipoles(24 + OFFSET_LAGS, lattice));
   for (int q = 0; q < 24; q++) {
     const Case a = {.half = {half[q / 6][0], half[q / 6][1]},
                     .cells = {cells[q / 2 % 3][0], cells[q / 2 % 3][1]},
                     .N = {N[q % 2][0], N[q % 2][1]}};
     PetscCall(Compare(lattice, &a));
   }
+  PetscCall(CompareFar(lattice, 16, 6e-5));
+  PetscCall(CompareFar(lattice, 24, 1e-5));
   for (int c = 0; c < 2; c++) PetscCall(OffsetTableDestroy(&lattice[c]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -68,19 +68,21 @@ PetscErrorCode DoubleSelf(Spectral spectral, PetscInt n, const PetscReal X[], Pe
 }
 
 /* The lattice's answer to unit tensor parts (which are 2 J_x N_x, 2 J_y N_y and J_x N_y + J_y N_x of a marker) of four
-   distant pairs, (x, y) = X_i - X_j: D less h^2/(48 pi r^3) times waves of the angle, smoothing by the kernels and
-   dispersion by the lattice. */
+   distant pairs, (x, y) = X_i - X_j: D less h^2/(48 pi r^3) and h^4/(64 pi r^5) times waves of the angle, smoothing by
+   the kernels and dispersion by the lattice. */
 static inline void FarFour(PetscReal h, Lanes x, Lanes y, Lanes K[2][DIPOLE_COUNT]) {
   const Lanes r2 = x * x + y * y, over = 1 / r2, q = over * over / PETSC_PI, scale = h * h / 48 * q * over;
   const Lanes c2 = (x * x - y * y) * over, s2 = 2 * x * y * over; /* times scale: of 3 phi, 5 phi and 7 phi, over r^3 */
   const Lanes c3 = scale * x * (x * x - 3 * y * y), s3 = scale * y * (3 * x * x - y * y);
   const Lanes c5 = c3 * c2 - s3 * s2, s5 = s3 * c2 + c3 * s2, c7 = c5 * c2 - s5 * s2, s7 = s5 * c2 + c5 * s2;
-  K[0][DIPOLE_XX] = 0.5 * q * x * x * x - (13 * c3 - 9 * c5 - 6 * c7);
-  K[0][DIPOLE_YY] = 0.5 * q * x * y * y - (-17 * c3 - 3 * c5 + 6 * c7);
-  K[0][DIPOLE_XY] = q * x * x * y - (34 * s3 - 6 * s5 - 12 * s7);
-  K[1][DIPOLE_XX] = 0.5 * q * x * x * y - (17 * s3 - 3 * s5 - 6 * s7);
-  K[1][DIPOLE_YY] = 0.5 * q * y * y * y - (-13 * s3 - 9 * s5 + 6 * s7);
-  K[1][DIPOLE_XY] = q * x * y * y - (-34 * c3 - 6 * c5 + 12 * c7);
+  const Lanes next = 0.75 * h * h * over, C5 = next * c5, S5 = next * s5, C7 = next * c7, S7 = next * s7;
+  const Lanes C9 = C7 * c2 - S7 * s2, S9 = S7 * c2 + C7 * s2, C11 = C9 * c2 - S9 * s2, S11 = S9 * c2 + C9 * s2;
+  K[0][DIPOLE_XX] = 0.5 * q * x * x * x - (13 * c3 - 9 * c5 - 6 * c7) - (65 * C5 + 95 * C7 - 45 * C9 - 35 * C11);
+  K[0][DIPOLE_YY] = 0.5 * q * x * y * y - (-17 * c3 - 3 * c5 + 6 * c7) - (23 * C5 - 115 * C7 - 15 * C9 + 35 * C11);
+  K[0][DIPOLE_XY] = q * x * x * y - (34 * s3 - 6 * s5 - 12 * s7) - (46 * S5 + 230 * S7 - 30 * S9 - 70 * S11);
+  K[1][DIPOLE_XX] = 0.5 * q * x * x * y - (17 * s3 - 3 * s5 - 6 * s7) - (23 * S5 + 115 * S7 - 15 * S9 - 35 * S11);
+  K[1][DIPOLE_YY] = 0.5 * q * y * y * y - (-13 * s3 - 9 * s5 + 6 * s7) - (65 * S5 - 95 * S7 - 45 * S9 + 35 * S11);
+  K[1][DIPOLE_XY] = q * x * y * y - (-34 * c3 - 6 * c5 + 12 * c7) - (46 * C5 - 230 * C7 - 30 * C9 + 70 * C11);
 }
 
 /* The same of near pairs. */
@@ -150,12 +152,12 @@ static void Bounds(PetscInt n, const PetscReal X[], PetscReal low[2], PetscReal 
   }
 }
 
-/* Whether no pair is farther apart than stencils are summed, nor has another image for the nearest one. */
+/* Whether no pair is farther apart than faces are shared, nor has another image for the nearest one. */
 static PetscBool AreNear(Fill *f) {
   const NearField near = f->layer->near;
   const Layout l = near->bodies->layout;
   const Grid g = near->markers->grid;
-  const PetscReal *X = near->markers->X, reach = (f->self ? DOUBLE_CELLS : DOUBLE_CROSS_CELLS) * g->h;
+  const PetscReal *X = near->markers->X, reach = DOUBLE_FACE_CELLS * g->h;
   PetscReal low[2][2], high[2][2];
   Bounds(f->to.n, X + 2 * f->to.i, low[0], high[0]);
   Bounds(LayoutCount(l, f->block->column), X + 2 * l->start[f->block->column], low[1], high[1]);
@@ -201,7 +203,7 @@ static void Lattice(Fill *f) {
   const NearField near = f->layer->near;
   const DoubleColumn *c = &f->to;
   const PetscReal *X = near->markers->X, h = near->markers->grid->h;
-  const PetscReal reach2 = PetscSqr((f->self ? DOUBLE_CELLS : DOUBLE_CROSS_CELLS) * h);
+  const PetscReal reach2 = PetscSqr(DOUBLE_CELLS * h);
   PetscInt distant = 0;
   if (f->by_faces) {
     DipoleFacesAnswer(&f->faces, f->layer->lattice, &f->layer->dipole[DIPOLE_COUNT * c->j], f->cells, c->N, 1 / h,

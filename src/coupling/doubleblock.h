@@ -2,8 +2,8 @@
 #pragma once
 #include "coupling/doublelayer.h"
 
-#define DOUBLE_CELLS 30 /* up to which stencils of one vesicle are summed; farther, a closed form, right to 1e-8 */
-#define DOUBLE_CROSS_CELLS 16 /* the same of two vesicles */
+#define DOUBLE_CELLS 16      /* up to which pairs' stencils are summed; farther, a closed form, right to 2e-5 of D */
+#define DOUBLE_FACE_CELLS 30 /* up to which markers share a dipole's faces */
 
 /* DoubleBlockFill - C_D (or, without lattice, D) of a block, [2 n_column][2 n_row]. Not collective. */
 PETSC_EXTERN PetscErrorCode DoubleBlockFill(DoubleLayer layer, const DoubleBlock *block, PetscBool lattice,

@@ -19,7 +19,7 @@ PetscErrorCode DoubleLayerCreate(NearField near, const PetscReal ratio[], Double
   PetscCall(PetscCalloc3(2 * l->M, &s->jump, 2 * l->M, &s->plain, DIPOLE_COUNT * l->M, &s->tensor));
   if (!near->free) {
     PetscCall(PetscMalloc2(DIPOLE_COUNT * l->M, &s->dipole, DIPOLE_SPOTS * l->M, &s->spot));
-    PetscCall(LatticeDipoles(DOUBLE_CELLS + OFFSET_LAGS, s->lattice));
+    PetscCall(LatticeDipoles(DOUBLE_FACE_CELLS + OFFSET_LAGS, s->lattice));
     PetscCall(DoubleImageCreate(near->image, s->lattice, &s->image));
   }
   PetscCall(PetvesEvent("DoubleLayer", &s->place));
