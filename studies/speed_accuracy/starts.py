@@ -47,6 +47,11 @@ def _nothing(results: Results, number: int) -> float:
     return results.derive(f"start_nothing_{number}", {}, spent)["cpu_seconds"]
 
 
+def _over(paper: float, own: float) -> str:
+    """Return their quotient, if the clock shows a difference (seconds) between the program and one that does nothing."""
+    return f"{paper / own:.0f}" if own > 5e-4 else "none left"
+
+
 def _two(values: list[float], digits: int = 3) -> str:
     """Return the median and the least."""
     return f"{median(values):.{digits}f}, {min(values):.{digits}f}"
@@ -68,7 +73,7 @@ def starts(results: Results, best: dict[str, Case], paper: dict[str, dict], per_
         if name in paper:
             cpu, step = paper[name]["cpu_seconds"], paper[name]["solves"] * per_solve[name]
             line[4] = f"{cpu / median(whole):.0f}, {cpu / min(whole):.0f}"
-            line[5] = f"{(cpu - median(nothing)) / own[0]:.0f}, {(cpu - min(nothing)) / own[1]:.0f}"
+            line[5] = f"{_over(cpu - median(nothing), own[0])}, {_over(cpu - min(nothing), own[1])}"
             line[7] = f"{step / median(steps):.0f}, {step / min(steps):.0f}"
         else:
             exact = FREE[0] if "unbounded" in name else BOX[0]
