@@ -5,7 +5,7 @@ import re
 import shutil
 
 import pytest
-from conftest import PETVES, SANITIZE, Run, mpirun, run_petves, without_mpirun
+from conftest import PETVES, ROOT, SANITIZE, Run, mpirun, run_petves, without_mpirun
 from test_errors import SMALL, leaves_files
 
 
@@ -80,21 +80,33 @@ void dgetrf_(int *m, int *n, double *A, int *lda, int *pivot, int *info) {
 """
 
 
+def failing_from(call: int, folder) -> tuple[str, ...]:
+    """Return the words before a program whose factorisations fail from this call on."""
+    (folder / "failing.c").write_text(FAILING)
+    library = str(folder / "failing.so")
+    command = [shutil.which("gcc"), "-shared", "-fPIC", "-o", library, str(folder / "failing.c"), "-ldl"]
+    done = mpirun(command, 1)
+    assert done.returncode == 0, done.stderr
+    return ("env", f"LD_PRELOAD={library}", f"FAIL={call}")
+
+
+@pytest.mark.skipif(SANITIZE, reason="the sanitizers' library must be the first to be loaded")
+def test_dense_blocks_serve_many_steps(tmp_path):
+    """120 steps of runs/free.opts, whose first one is dear, make fewer than 20 factors; they once made one or two each."""
+    options = f"-options_file {ROOT}/runs/free.opts -time_end 18.4 -output_every 1e9 -checkpoint_every 0"
+    done = mpirun([PETVES, "-output_dir", str(tmp_path / "out"), *options.split()], 1, 60, failing_from(20, tmp_path))
+    assert done.returncode == 0, done.stderr
+
+
 @pytest.mark.skipif(SANITIZE, reason="the sanitizers' library must be the first to be loaded")
 @pytest.mark.parametrize("ranks", [1, 2, 3])
 def test_matrix_without_factor_ends_the_run(ranks, tmp_path):
     """The dense blocks of the preconditioner, on the one rank that owns the vesicle: every rank ends, one line, status 2,
     the last good state on disk."""
-    (tmp_path / "failing.c").write_text(FAILING)
-    library = str(tmp_path / "failing.so")
-    done = mpirun([shutil.which("gcc"), "-shared", "-fPIC", "-o", library, str(tmp_path / "failing.c"), "-ldl"], 1)
-    assert done.returncode == 0, done.stderr
     options = (
         "-domain_cells 32,32 -flow_type shear -flow_rate 10 -time_step 0.02 -time_end 2 -checkpoint_every 0".split()
     )
-    environment = {"LD_PRELOAD": library, "FAIL": "7"}
-    wrapper = ("env", *(f"{name}={value}" for name, value in environment.items()))
-    done = mpirun([PETVES, "-output_dir", str(tmp_path / "out"), *options], ranks, 60, wrapper)
+    done = mpirun([PETVES, "-output_dir", str(tmp_path / "out"), *options], ranks, 60, failing_from(7, tmp_path))
     run = Run(tmp_path / "out", done.returncode, done.stdout, without_mpirun(done.stderr))
     line = reason("coupled_", 0).replace("ITS", "PC_FAILED")
     _, series = leaves_files(run, line.replace(r"[\d.e-]+;", r"\S+;"))

@@ -211,13 +211,14 @@ static PetscErrorCode SolveChat(Preconditioner p, const PetscScalar V[], PetscSc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Dense blocks far too old: new ones from here on, and the next time before this happens. */
+/* Dense blocks far too old: new ones from here on, and the next time before this happens; the parts of a graded start
+   say nothing of later steps. */
 static PetscErrorCode RenewUnderWay(Preconditioner p) {
   Ageing *a = &p->age;
   PetscFunctionBeginUser;
   if (!p->flexible || !p->blocks || a->solves == 0 || p->now.applied != a->fresh_its + MOST_EXCESS)
     PetscFunctionReturn(PETSC_SUCCESS);
-  a->most = a->solves;
+  if (!p->graded) a->most = a->solves;
   PetscCall(Renew(p));
   p->now.renewed = p->now.applied;
   PetscFunctionReturn(PETSC_SUCCESS);
