@@ -1,7 +1,7 @@
 #include "coupling/boxregion.h"
 #include "coupling/blas.h"
 
-#define MARGIN 1.15   /* of a square's side over its markers' extent */
+#define MARGIN 1.15   /* of a square's side over the diameter of the markers' circle, which turns with them */
 #define RATIO 1.26    /* of one side to the next, */
 #define FINER 1.1225  /* and of dipoles, whose D is less smooth */
 #define CENTRES 8     /* in a side: what a centre is off by goes into the margin */
@@ -12,18 +12,21 @@
 
 /* The square about the markers. */
 static void Around(const BoxRegion *r, PetscInt M, const PetscReal X[], PetscReal centre[2], PetscReal *side) {
-  PetscReal low[2] = {X[0], X[1]}, high[2] = {X[0], X[1]};
+  PetscReal low[2] = {X[0], X[1]}, high[2] = {X[0], X[1]}, radius2 = 0;
   for (PetscInt k = 1; k < M; k++)
     for (int d = 0; d < 2; d++) {
       low[d] = PetscMin(low[d], X[2 * k + d]);
       high[d] = PetscMax(high[d], X[2 * k + d]);
     }
-  const PetscReal least = MARGIN * PetscMax(high[0] - low[0], high[1] - low[1]), h = r->grid->h;
+  const PetscReal middle[2] = {0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1])}, h = r->grid->h;
+  for (PetscInt k = 0; k < M; k++)
+    radius2 = PetscMax(radius2, PetscSqr(X[2 * k] - middle[0]) + PetscSqr(X[2 * k + 1] - middle[1]));
+  const PetscReal least = MARGIN * 2 * PetscSqrtReal(radius2);
   const PetscReal ratio = BoxParts(r->whole) == 2 ? RATIO : FINER;
   *side = h * PetscPowReal(ratio, PetscCeilReal(PetscLogReal(PetscMax(least / h, 1)) / PetscLogReal(ratio)));
   for (int d = 0; d < 2; d++) {
     const PetscReal spacing = *side / CENTRES, from = r->grid->lo[d];
-    centre[d] = from + spacing * PetscFloorReal(0.5 + (0.5 * (low[d] + high[d]) - from) / spacing);
+    centre[d] = from + spacing * PetscFloorReal(0.5 + (middle[d] - from) / spacing);
   }
 }
 
@@ -37,25 +40,46 @@ static PetscBool IsWithin(const BoxRegion *r, const PetscReal centre[2], PetscRe
   return PETSC_TRUE;
 }
 
-/* Rows [count][functions][rank of the whole] of the square's functions, of the components from `first` on, from those
-   of its places. */
+/* What the square's functions [BOX_REGION_PLACES] have of those of the whole table in a direction, [functions][n]: sums
+   over places. */
+static void OnFunctions(const BoxRegion *r, const BoxTable *t, int d, PetscReal part[]) {
+  const PetscInt n = BOX_REGION_PLACES, functions = r->whole->functions[d];
+  PetscReal whole[BOX_FUNCTIONS], own[BOX_REGION_PLACES];
+  (void)PetscArrayzero(part, functions * n);
+  for (PetscInt k = 0; k < n; k++) {
+    BoxTableFunctions(r->whole, d, t->axis[d].place[k], whole);
+    BoxTableFunctions(t, d, t->axis[d].place[k], own);
+    for (PetscInt f = 0; f < functions * n; f++) part[f] += whole[f / n] * own[f % n];
+  }
+}
+
+/* to[n][width] = SUM part[k][n] from[k][width] of `count` k. */
+static void ToSquare(PetscInt count, const PetscReal part[], PetscInt width, const PetscReal from[], PetscReal to[]) {
+  (void)PetscArrayzero(to, BOX_REGION_PLACES * width);
+  for (PetscInt f = 0; f < BOX_REGION_PLACES; f++, to += width)
+    for (PetscInt k = 0; k < count; k++)
+      for (PetscInt m = 0; m < width; m++) to[m] += part[k * BOX_REGION_PLACES + f] * from[k * width + m];
+}
+
+/* Rows [count][functions][rank of the whole] of the square's functions, of the components from `first` on: first in y,
+   then in x. */
 static PetscErrorCode FunctionRows(const BoxRegion *r, const BoxTable *t, int first, int count, PetscReal A[]) {
   const PetscInt n = BOX_REGION_PLACES, rank = r->whole->rank;
-  PetscReal *rows, value[2][BOX_REGION_PLACES];
+  PetscReal part[2][BOX_FUNCTIONS * BOX_REGION_PLACES], *line, *rows;
   PetscFunctionBeginUser;
-  PetscCall(PetscArrayzero(A, count * n * n * rank));
-  PetscCall(PetscMalloc1(count * rank, &rows));
-  for (PetscInt k = 0; k < n * n; k++) {
-    const PetscReal X[2] = {t->axis[0].place[k / n], t->axis[1].place[k % n]};
-    BoxTableRows(r->whole, X, 1, first, count, rows);
-    for (int d = 0; d < 2; d++) BoxTableFunctions(t, d, X[d], value[d]);
-    for (PetscInt f = 0; f < n * n; f++) {
-      const PetscReal weight = value[0][f / n] * value[1][f % n];
-      for (int c = 0; c < count && weight != 0; c++)
-        for (PetscInt m = 0; m < rank; m++) A[(c * n * n + f) * rank + m] += weight * rows[c * rank + m];
-    }
+  for (int d = 0; d < 2; d++) OnFunctions(r, t, d, part[d]);
+  PetscCall(PetscMalloc2(BOX_FUNCTIONS * n * rank, &line, n * n * rank, &rows));
+  for (PetscInt q = 0; q < r->whole->blocks * count; q++) {
+    const BoxBlock *b = &r->whole->block[q / count];
+    const PetscInt c = q % count, *from = b->first[first + c], modes = b->modes;
+    for (PetscInt i = 0; i < b->n[0]; i++)
+      ToSquare(b->n[1], part[1] + from[1] * n, modes, b->Q + ((first + c) * b->n[0] + i) * b->n[1] * modes,
+               line + i * n * modes);
+    ToSquare(b->n[0], part[0] + from[0] * n, n * modes, line, rows);
+    for (PetscInt f = 0; f < n * n; f++)
+      PetscCall(PetscArraycpy(A + (c * n * n + f) * rank + b->start, rows + f * modes, modes));
   }
-  PetscCall(PetscFree(rows));
+  PetscCall(PetscFree2(line, rows));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -145,6 +169,8 @@ static PetscErrorCode MakeTable(const BoxRegion *r, BoxSquare *s) {
   PetscCall(BetweenFunctions(r, t));
   PetscCall(OffBy(r, t, &off));
   if (BoxParts(t) == 2) PetscCall(BoxTableDecompose(r->comm, SMALLEST, t));
+  fprintf(stderr, "SQ parts %d side %g centre %g %g off %g\n", (int)BoxParts(t), s->side, s->centre[0], s->centre[1],
+          off);
   s->right = off < OFF ? IsCheaper(r->whole, t) : PETSC_FALSE;
   MakeAxes(s->centre, s->side, t);
   PetscFunctionReturn(PETSC_SUCCESS);
