@@ -74,23 +74,40 @@ PetscErrorCode DipoleFacesDestroy(DipoleFaces *f) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A part's columns of weights, `rows` each, summed for all runs, in so many vectors more than they have. */
-static inline void SumColumns(const int rows, const int more, const DipoleFaces *f, int c, const OffsetTable *t,
-                              int part, const PaddedStencil *s, const PetscInt cells[2]) {
+/* A part's column of weights, and where its table has the entry that the first of them takes at a face (0, 0). */
+static inline const PetscReal *Column(const int n, const OffsetTable *t, int part, const PaddedStencil *s,
+                                      const PetscInt cells[2], Lanes w[KERNEL_MAX_POINTS]) {
   const PetscInt width = 2 * t->size[0] + 1, x = t->size[0] - s->first[0] - (s->n[0] - 1) + cells[0],
                  y = t->size[1] - s->first[1] + cells[1];
-  Lanes b[KERNEL_MAX_POINTS];
-  for (int j = 0; j < rows; j++) b[j] = s->weight[1][KERNEL_MAX_POINTS + j] + (Lanes){0};
-  for (PetscInt r = 0; r < f->runs[c]; r++) {
-    const FaceRun *run = &f->run[c][r];
-    const PetscReal *at = t->value[part] + (run->row + y) * width + run->first + x;
-    PetscReal *line = f->line[part] + run->line;
-    const PetscInt end = run->vectors ? (run->vectors + more) * LANES : 0;
-    for (PetscInt q = 0; q < end; q += LANES) {
-      Lanes sum = b[0] * LanesAt(at + q);
-      for (int j = 1; j < rows; j++) sum += b[j] * LanesAt(at + q - j * width);
-      LanesPut(sum, line + q);
-    }
+  for (int j = 0; j < n; j++) w[j] = s->weight[1][KERNEL_MAX_POINTS + j] + (Lanes){0};
+  return t->value[part] + y * width + x;
+}
+
+/* So many numbers of a line: SUM w_j at[-j width]. */
+static inline void ColumnSums(const int n, const Lanes w[], PetscInt width, const PetscReal *at, PetscInt count,
+                              PetscReal *line) {
+  for (PetscInt q = 0; q < count; q += LANES) {
+    Lanes sum = w[0] * LanesAt(at + q);
+    for (int j = 1; j < n; j++) sum += w[j] * LanesAt(at + q - j * width);
+    LanesPut(sum, line + q);
+  }
+}
+
+/* All runs' lines, with as much behind them as their rows of weights are long. */
+static void SumColumns(const DipoleFaces *f, int c, const OffsetTable *t, const PaddedStencil dipole[DIPOLE_COUNT],
+                       const PetscInt cells[2]) {
+  const PetscInt width = 2 * t->size[0] + 1, runs = f->runs[c];
+  PetscReal *const lx = f->line[DIPOLE_XX], *const ly = f->line[DIPOLE_YY], *const lxy = f->line[DIPOLE_XY];
+  Lanes xx[KERNEL_MAX_POINTS], yy[KERNEL_MAX_POINTS], xy[KERNEL_MAX_POINTS];
+  const PetscReal *tx = Column(4, t, DIPOLE_XX, &dipole[DIPOLE_XX], cells, xx);
+  const PetscReal *ty = Column(6, t, DIPOLE_YY, &dipole[DIPOLE_YY], cells, yy);
+  const PetscReal *txy = Column(5, t, DIPOLE_XY, &dipole[DIPOLE_XY], cells, xy);
+  for (const FaceRun *run = f->run[c]; run < f->run[c] + runs; run++) {
+    const PetscInt at = run->row * width + run->first, line = run->line, count = (run->vectors + 1) * LANES;
+    if (!run->vectors) continue;
+    ColumnSums(4, xx, width, tx + at, count + LANES, lx + line);
+    ColumnSums(6, yy, width, ty + at, count, ly + line);
+    ColumnSums(5, xy, width, txy + at, count, lxy + line);
   }
 }
 
@@ -99,53 +116,52 @@ static inline void Turned(const int n, PetscReal factor, const PaddedStencil *s,
   for (int k = 0; k < n; k++) w[k] = factor * s->weight[0][KERNEL_MAX_POINTS + n - 1 - k] + (Lanes){0};
 }
 
-/* The answer to J along one direction: of a part with n points along x and of xy, which has five. */
-static inline void SumRows(const int n, const DipoleFaces *f, int c, int J, const PaddedStencil dipole[DIPOLE_COUNT],
-                           const PetscReal N[2], PetscReal scale) {
-  const int part = J ? DIPOLE_YY : DIPOLE_XX;
-  PetscReal *field = f->field[J];
-  Lanes a[KERNEL_MAX_POINTS], b[KERNEL_MAX_POINTS];
-  Turned(n, 2 * scale * N[J], &dipole[part], a);
-  Turned(5, scale * N[1 - J], &dipole[DIPOLE_XY], b);
-  for (PetscInt r = 0; r < f->runs[c]; r++) {
-    const FaceRun *run = &f->run[c][r];
-    const PetscReal *own = f->line[part] + run->line, *xy = f->line[DIPOLE_XY] + run->line;
-    PetscReal *to = field + run->at;
-    const PetscInt end = run->vectors * LANES;
-    for (PetscInt q = 0; q < end; q += LANES) {
-      Lanes sum = a[0] * LanesAt(own + q), other = b[0] * LanesAt(xy + q);
-      for (int k = 1; k < n; k++) sum += a[k] * LanesAt(own + q + k);
-      for (int k = 1; k < 5; k++) other += b[k] * LanesAt(xy + q + k);
-      LanesPut(sum + other, to + q);
-    }
-  }
+/* SUM w_k line[k] of a row of n weights. */
+static inline Lanes RowSum(const int n, const Lanes w[], const PetscReal *line) {
+  Lanes sum = w[0] * LanesAt(line);
+  for (int k = 1; k < n; k++) sum += w[k] * LanesAt(line + k);
+  return sum;
 }
 
-/* Both of a component. */
-static void MakeFields(const DipoleFaces *f, int c, const OffsetTable *t, const PaddedStencil dipole[DIPOLE_COUNT],
-                       const PetscInt cells[2], const PetscReal N[2], PetscReal scale) {
-  SumColumns(4, 2, f, c, t, DIPOLE_XX, &dipole[DIPOLE_XX], cells);
-  SumColumns(6, 1, f, c, t, DIPOLE_YY, &dipole[DIPOLE_YY], cells);
-  SumColumns(5, 1, f, c, t, DIPOLE_XY, &dipole[DIPOLE_XY], cells);
-  SumRows(6, f, c, 0, dipole, N, scale);
-  SumRows(4, f, c, 1, dipole, N, scale);
+/* The answers to J_x and J_y, which share xy's sums. */
+static void SumRows(const DipoleFaces *f, int c, const PaddedStencil dipole[DIPOLE_COUNT], const PetscReal N[2],
+                    PetscReal scale) {
+  Lanes xx[KERNEL_MAX_POINTS], yy[KERNEL_MAX_POINTS], xy[KERNEL_MAX_POINTS];
+  Turned(6, 2 * scale * N[0], &dipole[DIPOLE_XX], xx);
+  Turned(4, 2 * scale * N[1], &dipole[DIPOLE_YY], yy);
+  Turned(5, scale, &dipole[DIPOLE_XY], xy);
+  const PetscReal *const lx = f->line[DIPOLE_XX], *const ly = f->line[DIPOLE_YY], *const lxy = f->line[DIPOLE_XY];
+  const PetscInt runs = f->runs[c];
+  for (const FaceRun *run = f->run[c]; run < f->run[c] + runs; run++) {
+    const PetscInt end = run->line + run->vectors * LANES;
+    PetscReal *x = f->field[0] + run->at, *y = f->field[1] + run->at;
+    for (PetscInt q = run->line; q < end; q += LANES, x += LANES, y += LANES) {
+      const Lanes both = RowSum(5, xy, lxy + q);
+      LanesPut(RowSum(6, xx, lx + q) + N[1] * both, x);
+      LanesPut(RowSum(4, yy, ly + q) + N[0] * both, y);
+    }
+  }
 }
 
 /* What a marker reads of both fields, of rows of so many vectors. */
 static inline void Read(const int rows, const int vectors, const DipoleFaces *f, int c, PetscInt k, const Lanes w[],
                         Lanes sum[2]) {
   const PetscInt stride = f->stride[c];
-  for (int J = 0; J < 2; J++) {
-    const PetscReal *at = f->field[J] + f->at[c][k];
-    sum[J] = (Lanes){0};
-    for (int r = 0; r < rows * vectors; r++) sum[J] += w[r] * LanesAt(at + r / vectors * stride + r % vectors * LANES);
+  const PetscReal *x = f->field[0] + f->at[c][k], *y = f->field[1] + f->at[c][k];
+  sum[0] = sum[1] = (Lanes){0};
+  for (int r = 0; r < rows * vectors; r++) {
+    const PetscInt at = r / vectors * stride + r % vectors * LANES;
+    const Lanes weight = w[r];
+    sum[0] += weight * LanesAt(x + at);
+    sum[1] += weight * LanesAt(y + at);
   }
 }
 
 void DipoleFacesAnswer(const DipoleFaces *f, const OffsetTable lattice[2], const PaddedStencil dipole[DIPOLE_COUNT],
                        const PetscInt cells[2], const PetscReal N[2], PetscReal scale, PetscReal *const free[4]) {
   for (int c = 0; c < 2; c++) {
-    MakeFields(f, c, &lattice[c], dipole, cells, N, scale);
+    SumColumns(f, c, &lattice[c], dipole, cells);
+    SumRows(f, c, dipole, N, scale);
     for (PetscInt k = 0; k < f->n; k++) {
       const Lanes *w = f->weight + DIPOLE_FACE_WEIGHTS * k;
       Lanes sum[2];
