@@ -49,23 +49,32 @@ static void Lattice(NearField f, PetscInt i, PetscInt j, PetscReal value[4]) {
   for (int q = 0; q < 4; q++) value[q] = fade * (L[q] - C[q]);
 }
 
+/* out += scale times a pair's block, from column j to row i of so many. */
+static void AddPair(PetscReal scale, PetscInt rows, PetscInt i, PetscInt j, const PetscReal L[4], PetscReal out[]) {
+  PetscReal *x = out + 4 * j * rows + 2 * i, *y = x + 2 * rows;
+  x[0] += scale * L[0];
+  y[1] += scale * L[1];
+  y[0] += scale * L[2];
+  x[1] += scale * L[3];
+}
+
 PetscErrorCode MobilityBoxAdd(MobilityBox b, const MarkerRange *rows, const MarkerRange *columns, PetscReal out[]) {
   const NearField f = b->coupling->near;
   const Layout l = b->coupling->bodies->layout;
   const PetscReal h2 = PetscSqr(b->coupling->fluid->grid->h);
   const PetscInt begin = PetscMax(l->first, rows->first), end = PetscMin(l->first + l->n, rows->first + rows->n);
-  const PetscInt stride = 2 * rows->n;
+  /* of the own markers among themselves a pair and its mirror image are one another's transposes */
+  const PetscBool same = rows->first == columns->first && rows->n == columns->n && end - begin == rows->n ? PETSC_TRUE
+                                                                                                          : PETSC_FALSE;
   PetscFunctionBeginUser;
   PetscCall(BoxPartPlace(b->smooth));
   PetscCall(BoxPartAdd(b->smooth, h2, rows, columns, out));
   for (PetscInt j = 0; j < columns->n; j++)
-    for (PetscInt i = begin; i < end; i++) {
-      PetscReal *x = out + 2 * j * stride + 2 * (i - rows->first), *y = x + stride, L[4];
-      Lattice(f, i, columns->first + j, L);
-      x[0] += h2 * L[0];
-      y[1] += h2 * L[1];
-      y[0] += h2 * L[2];
-      x[1] += h2 * L[3];
+    for (PetscInt i = same ? j : begin - rows->first; i < end - rows->first; i++) {
+      PetscReal L[4];
+      Lattice(f, rows->first + i, columns->first + j, L);
+      AddPair(h2, rows->n, i, j, L, out);
+      if (same && i > j) AddPair(h2, rows->n, j, i, (PetscReal[]){L[0], L[1], L[3], L[2]}, out);
     }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

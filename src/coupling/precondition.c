@@ -182,9 +182,10 @@ PetscErrorCode PreconditionerSetUp(Preconditioner p) {
 void PreconditionerSolved(Preconditioner p, PetscInt its) {
   Ageing *a = &p->age;
   if (p->solid) ObstacleBlockSolved(p->solid, its);
-  if (a->solves > 0)
+  if (a->solves > 0) { /* the first solve's guess may have been a bad one, as a start's is */
+    a->fresh_its = PetscMin(a->fresh_its, PetscMax(its, 1));
     a->excess += PetscMax(its - a->fresh_its, 0);
-  else if (a->fresh_its < 0)
+  } else if (a->fresh_its < 0)
     a->fresh_its = its - p->now.renewed;
   a->solves++;
 }

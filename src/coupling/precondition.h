@@ -13,7 +13,7 @@
 typedef struct {
   PetscReal a0;        /* that they were made for; 0: none yet */
   PetscReal *treading; /* [vesicles] label speeds that they were made for */
-  PetscInt fresh_its;  /* iterations of the first solve with them; -1: not known yet */
+  PetscInt fresh_its;  /* least iterations of a solve with them, one at least if not the first; -1: not known yet */
   PetscInt solves;     /* that they have served */
   PetscReal excess;    /* iterations above fresh_its in all of these */
   PetscInt most;       /* solves that they may serve */
@@ -51,8 +51,8 @@ PETSC_EXTERN PetscErrorCode PreconditionerCreate(Scene scene, Unknowns unknowns,
 PETSC_EXTERN PetscErrorCode PreconditionerDestroy(Preconditioner *preconditioner);
 
 /* PreconditionerSetUp - follow the coupling's a0 and markers; a solve begins. The dense blocks are kept while a0 moves
-   by less than step_ratio and until the iterations beyond those of the first solve with them have cost as much as new
-   ones would, and while I + (v/a0) d/dt of the labels' speeds v moves by less than 10 %; those that cost many
+   by less than step_ratio and until the iterations beyond the least of a solve with them have cost as much as new ones
+   would, and while I + (v/a0) d/dt of the labels' speeds v moves by less than 10 %; those that cost many
    iterations also while a0 moves by less than 2.2 within a graded start, and the labels' motion by less than half. A
    solve that needs many more iterations makes them anew and goes on. Collective. */
 PETSC_EXTERN PetscErrorCode PreconditionerSetUp(Preconditioner preconditioner);
