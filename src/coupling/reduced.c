@@ -161,10 +161,8 @@ static PetscErrorCode RespondOnGrid(Reduced s, const PetscScalar x[], PetscInt p
   const Vec p = s->kept.p[place];
   PetscReal mean[2] = {0, 0};
   PetscFunctionBeginUser;
-  if (s->unknowns->walls->n) /* wall forces are everywhere */
-    PetscCall(VecSet(s->r, 0));
-  else
-    PetscCall(MarkersClear(c->markers, s->r, s->dirty));
+  PetscCall(MarkersClear(c->markers, s->r, s->dirty));
+  PetscCall(WallsClear(s->unknowns->walls, s->r));
   if (s->source && p) PetscCall(VecSet(p, 0));
   PetscCall(AddForces(s, x, PETSC_FALSE, s->r, p, mean));
   PetscCall(Solve(s, s->r, s->source ? p : NULL, mean, s->kept.w[place], p));

@@ -107,19 +107,28 @@ static LocalPart FindLocalPart(Walls w, int dir, int side) {
   return (LocalPart){g->rows[f], g->first, side ? g->columns[f] - 1 : 0, g->columns[f]};
 }
 
-PetscErrorCode WallsAdd(Walls w, const PetscScalar d[], Vec r) {
+/* r += d, or r = 0 where d is NULL, on the faces next to the walls. */
+static PetscErrorCode PutForces(Walls w, const PetscScalar d[], Vec r) {
   PetscScalar *a;
   PetscFunctionBeginUser;
   PetscCall(VecGetArray(r, &a));
   for (int dir = 0; dir < 2; dir++)
     for (int side = 0; side < 2 && w->pair[dir].length; side++) {
       const LocalPart part = FindLocalPart(w, dir, side);
-      const PetscScalar *from = d + w->pair[dir].start + side * w->pair[dir].length + part.first;
+      const PetscInt from = w->pair[dir].start + side * w->pair[dir].length + part.first;
       PetscScalar *to = a + (dir ? 0 : GridLocalU(w->fluid->grid)) + part.at;
-      for (PetscInt i = 0; i < part.n; i++) to[i * part.stride] += from[i];
+      for (PetscInt i = 0; i < part.n; i++) to[i * part.stride] = d ? to[i * part.stride] + d[from + i] : 0;
     }
   PetscCall(VecRestoreArray(r, &a));
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode WallsAdd(Walls w, const PetscScalar d[], Vec r) {
+  return PutForces(w, d, r);
+}
+
+PetscErrorCode WallsClear(Walls w, Vec r) {
+  return PutForces(w, NULL, r);
 }
 
 /* The slope of psi along a wall, on this rank's faces of it, times kappa h. */
