@@ -169,7 +169,6 @@ static PetscErrorCode MakeTable(const BoxRegion *r, BoxSquare *s) {
   PetscCall(BetweenFunctions(r, t));
   PetscCall(OffBy(r, t, &off));
   if (BoxParts(t) == 2) PetscCall(BoxTableDecompose(r->comm, SMALLEST, t));
-  fprintf(stderr, "SQ parts %d side %g centre %g %g off %g\n", (int)BoxParts(t), s->side, s->centre[0], s->centre[1],
           off);
   s->right = off < OFF ? IsCheaper(r->whole, t) : PETSC_FALSE;
   MakeAxes(s->centre, s->side, t);
