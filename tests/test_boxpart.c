@@ -10,7 +10,8 @@ typedef struct {
   Layout layout;
   Membrane membrane;
   Coupling coupling;
-  PetscReal *D; /* [2M][2M] */
+  PetscReal *D;     /* [2M][2M] */
+  PetscBool images; /* of walls may be in squares' tables */
 } World;
 
 /* D of all markers, on every rank. */
@@ -38,6 +39,7 @@ static PetscErrorCode WorldCreate(const char options[], PetscInt cells, PetscBoo
       MembraneCreate(w->layout, s->shape.X, s->membrane.each, (DerivativeType)s->membrane.derivative, &w->membrane));
   PetscCall(CouplingCreate(w->fluid, w->membrane, NULL, s->coupling.kernel, NEAR_EXACT, &w->coupling));
   if (box) PetscCall(NearFieldAddBoxPart(w->coupling->near, &s->fluid));
+  if (box && !w->images) BoxPartTakeImages(w->coupling->near->box, NULL, NULL);
   PetscCall(LayoutCreateVec(w->layout, 2, &X));
   PetscCall(VecGetArray(X, &x));
   PetscCall(PetscArraycpy(x, s->shape.X + 2 * w->layout->first, 2 * w->layout->n));
@@ -111,7 +113,7 @@ static void Vectors(World *w, PetscReal normal[], PetscReal force[]) {
    over a period the flux is that of C + D. */
 static PetscErrorCode CheckTable(const char name[], const char options[], PetscBool walls) {
   PetscReal *normal, *force, off;
-  World w[2];
+  World w[2] = {{0}};
   PetscFunctionBeginUser;
   for (int k = 0; k < 2; k++) PetscCall(WorldCreate(options, k ? 64 : 32, PETSC_TRUE, &w[k]));
   PetscCall(PetscMalloc2(2 * w[0].layout->M, &normal, 2 * w[0].layout->M, &force));
@@ -132,7 +134,7 @@ static PetscErrorCode CheckTable(const char name[], const char options[], PetscB
 /* Markers that fill a small part of the box have D from a table of that part: nearly the whole one's, from many times
    fewer eigenvalues. Along a period it moves with them, and D stays. Farther apart they have the whole table. */
 static PetscErrorCode CheckRegion(const char name[], const char options[], const char moved[], const char wide[]) {
-  World w[3];
+  World w[3] = {{0}};
   PetscReal off[2] = {0, 0}, largest = 0, *whole;
   PetscFunctionBeginUser;
   for (int k = 0; k < 3; k++) {
@@ -165,9 +167,30 @@ static PetscErrorCode CheckRegion(const char name[], const char options[], const
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* C + D with the walls' images in a square's table, and with images of pairs of markers. */
+static PetscErrorCode CheckImages(const char name[], const char options[]) {
+  PetscReal off = 0, largest = 0;
+  World w[2] = {{0}};
+  PetscFunctionBeginUser;
+  for (int k = 0; k < 2; k++) {
+    const MarkerRange all = {0, 35};
+    w[k].images = (PetscBool)k;
+    PetscCall(WorldCreate(options, 32, PETSC_TRUE, &w[k]));
+    CHECK((int)BoxPartHasImages(w[k].coupling->near->box) == k, "%s: a square %s images", name, k ? "with" : "without");
+    for (PetscInt q = 0; q < PetscSqr(2 * all.n) && !k; q++) largest = PetscMax(largest, PetscAbsReal(w[k].D[q]));
+    PetscCall(PetscArrayzero(w[k].D, PetscSqr(2 * all.n)));
+    PetscCall(NearFieldAddBetween(w[k].coupling->near, 1, PETSC_TRUE, &all, &all, w[k].D));
+  }
+  for (PetscInt q = 0; q < PetscSqr(2 * w[0].layout->M); q++) off = PetscMax(off, PetscAbsReal(w[0].D[q] - w[1].D[q]));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &off, 1, MPIU_REAL, MPI_MAX, w[0].layout->comm));
+  CHECK(off < 0.005 * largest && off > 0, "%s: C + D differ by %.1e of the largest D", name, off / largest);
+  for (int k = 0; k < 2; k++) PetscCall(WorldDestroy(&w[k]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* 189 x 192 cells, which no coarser square ones fit: nearly the D of 63 x 64 cells, whose pair is their own. */
 static PetscErrorCode CheckUnlike(const char own[], const char unlike[]) {
-  World w[2];
+  World w[2] = {{0}};
   PetscFunctionBeginUser;
   for (int k = 0; k < 2; k++) PetscCall(WorldCreate(k ? unlike : own, 63, PETSC_TRUE, &w[k]));
   const PetscReal off = OffBy(&w[0], &w[1], 9), H = w[1].coupling->near->box->at->H / w[1].fluid->grid->h;
@@ -222,7 +245,7 @@ static PetscReal Difference(PetscInt n, const PetscReal a[], const PetscReal b[]
 /* The markers' velocity on two grids, with D and without. */
 static PetscErrorCode CheckVelocity(const char name[], const char options[], PetscReal most) {
   PetscReal *normal, *force, *U[2][2], with, without;
-  World w[2];
+  World w[2] = {{0}};
   PetscFunctionBeginUser;
   for (int k = 0; k < 2; k++) {
     PetscCall(WorldCreate(options, k ? 64 : 32, PETSC_TRUE, &w[k]));
@@ -244,7 +267,7 @@ static PetscErrorCode CheckVelocity(const char name[], const char options[], Pet
    without it: unrefined they differ by 2.4e-2. */
 static PetscErrorCode CheckOwnImages(const char name[], const char options[]) {
   PetscReal *normal, *force, *U[2];
-  World w[2];
+  World w[2] = {{0}};
   PetscFunctionBeginUser;
   for (int k = 0; k < 2; k++) {
     PetscCall(WorldCreate(options, 64, (PetscBool)k, &w[k]));
@@ -338,6 +361,9 @@ static PetscErrorCode Facts(void) {
   PetscCall(CheckTable("channel in y", ONE "-domain_bc_y periodic ", PETSC_FALSE));
   PetscCall(CheckTable("periodic", ONE PERIODIC, PETSC_FALSE));
   PetscCall(CheckUnlike(ONE UNLIKE "-domain_cells 63,64 ", ONE UNLIKE "-domain_cells 189,192 "));
+  PetscCall(CheckImages("walls", SMALL));
+  PetscCall(CheckImages("channel", SMALL CHANNEL));
+  PetscCall(CheckImages("channel, on the seam", SMALL CHANNEL "-vesicle_center 7.7654321,4.3"));
   PetscCall(CheckRegion("walls", SMALL, "", APART));
   PetscCall(CheckRegion("channel", SMALL CHANNEL, "-vesicle_center 7.7654321,4.3", APART CHANNEL));
   PetscCall(CheckVelocity("channel", ONE CHANNEL, 5e-5));

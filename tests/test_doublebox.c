@@ -62,6 +62,7 @@ static PetscErrorCode CheckRegion(const char name[], const char options[], Petsc
   PetscCall(CouplingAddContrast(w.coupling, &ratio));
   const DoubleLayer s = w.coupling->contrast;
   PetscCall(DoubleLayerAddBoxPart(s, &w.scene->fluid));
+  DoubleBoxTakeImages(s->box, NULL, NULL);
   PetscCall(DoubleLayerPlace(s));
   PetscCall(PetscCalloc1(2 * DIPOLE_COUNT * PetscSqr(w.layout->M), &D));
   PetscCall(DoubleBoxMatrix(s->box, 1, D));
@@ -75,8 +76,51 @@ static PetscErrorCode CheckRegion(const char name[], const char options[], Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* y = C_D J and the box part of its dipoles, of a jump in a flow without divergence, so that it has no flux: with the
+   walls' images in a square's table, beside D T of that alone, and with images of pairs of markers. */
+static PetscErrorCode CheckImages(const char name[], const char options[]) {
+  PetscReal *y[2], *D, ratio = 10, off[2] = {0, 0};
+  PetscScalar *U;
+  TestWorld w;
+  PetscFunctionBeginUser;
+  PetscCall(TestWorldCreate(options, &w));
+  PetscCall(CouplingAddContrast(w.coupling, &ratio));
+  const DoubleLayer s = w.coupling->contrast;
+  const PetscInt n = 2 * w.layout->n;
+  PetscCall(DoubleLayerAddBoxPart(s, &w.scene->fluid));
+  PetscCall(PetscCalloc4(n, &y[0], n, &y[1], n, &D, n, &U));
+  for (PetscInt k = 0; k < n; k++) {
+    const PetscReal *X = s->near->markers->X + 2 * (w.layout->first + k / 2);
+    U[k] = k % 2 ? X[0] - 3.4 : 3 * (X[1] - 4.3);
+  }
+  for (int images = 1; images >= 0; images--) {
+    if (!images) {
+      PetscCall(BoxRegionDestroy(&s->box->region));
+      DoubleBoxTakeImages(s->box, NULL, NULL);
+      for (int k = 0; k < BOX_REGION_SQUARES; k++) s->box->region.square[k] = (BoxSquare){.side = 0};
+    }
+    PetscCall(DoubleLayerPlace(s));
+    CHECK((int)DoubleBoxHasImages(s->box) == images, "%s: a square %s images", name, images ? "with" : "without");
+    PetscCall(DoubleLayerSet(s, U));
+    PetscCall(DoubleLayerApply(s, 1, y[images]));
+    if (images) PetscCall(DoubleBoxApply(s->box, 1, s->tensor + DIPOLE_COUNT * w.layout->first, D));
+  }
+  for (PetscInt k = 0; k < n; k++) {
+    off[0] = PetscMax(off[0], PetscAbsReal(y[1][k] - y[0][k]));
+    off[1] = PetscMax(off[1], PetscAbsReal(D[k]));
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, off, 2, MPIU_REAL, MPI_MAX, w.layout->comm));
+  CHECK(off[0] < 0.01 * off[1] && off[0] > 0, "%s: answers differ by %.1e of the largest D T", name, off[0] / off[1]);
+  PetscCall(PetscFree4(y[0], y[1], D, U));
+  PetscCall(TestWorldDestroy(&w));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode Facts(void) {
   PetscFunctionBeginUser;
+  PetscCall(CheckImages("walls", SCENE "-vesicle_center 3.4,4.3"));
+  PetscCall(CheckImages("channel", SCENE CHANNEL "-vesicle_center 3.4,4.3"));
+  PetscCall(CheckImages("channel in y", SCENE "-domain_bc_y periodic -vesicle_center 3.4,4.3"));
   PetscCall(CheckRegion("walls", SCENE "-vesicle_center 3.4,4.3", PETSC_TRUE));
   PetscCall(CheckRegion("near a wall", SCENE "-vesicle_center 3.4,.7", PETSC_FALSE));
   PetscCall(CheckRegion("channel", SCENE CHANNEL "-vesicle_center 3.4,4.3", PETSC_TRUE));

@@ -73,7 +73,8 @@ static PetscErrorCode TakeTable(BoxPart b, PetscBool *moved) {
     PetscCall(PetscLogEventBegin(b->make, 0, 0, 0, 0));
     PetscCall(BoxTableCreate(b->spec, b->markers->kernel->name, &b->lattice, middle, t));
     PetscCall(PetscLogEventEnd(b->make, 0, 0, 0, 0));
-    b->region[middle] = (BoxRegion){.comm = b->spec->comm, .grid = b->markers->grid, .whole = t};
+    b->region[middle] = (BoxRegion){
+        .comm = b->spec->comm, .grid = b->markers->grid, .whole = t, .image = b->image, .images = b->images};
   }
   PetscCall(BoxRegionAt(&b->region[middle], l->M, b->markers->X, &b->at, moved));
   if (b->at->rank <= b->room) PetscFunctionReturn(PETSC_SUCCESS);

@@ -1,5 +1,7 @@
 #include "coupling/boxregion.h"
 #include "coupling/blas.h"
+#include "coupling/imagetable.h"
+#include "base/lanes.h"
 
 #define MARGIN 1.15   /* of a square's side over the diameter of the markers' circle, which turns with them */
 #define RATIO 1.26    /* of one side to the next, */
@@ -97,6 +99,72 @@ static PetscErrorCode BetweenFunctions(const BoxRegion *r, BoxTable *t) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Whether all pairs in the square are so far from one another's images in walls that these have a closed form. */
+static PetscBool HasFarImages(const BoxRegion *r, const BoxSquare *s) {
+  if (!r->images) return PETSC_FALSE;
+  for (int dir = 0; dir < 2; dir++) {
+    const PetscReal low = s->centre[dir] - 0.5 * s->side - r->grid->lo[dir];
+    const PetscReal high = r->grid->hi[dir] - s->centre[dir] - 0.5 * s->side;
+    if (r->grid->wall[dir] && 2 * PetscMin(low, high) < IMAGE_CELLS * r->grid->h) return PETSC_FALSE;
+  }
+  return PETSC_TRUE;
+}
+
+/* The images as the near field has them: over a period, of the nearest ones and fading. */
+static void Images(const BoxRegion *r, int parts, PetscInt n, const PetscReal X[], const PetscReal Y[2],
+                   PetscReal V[]) {
+  PetscReal d[2][BOX_IMAGE_ROW], part[BOX_IMAGE_ROW];
+  for (PetscInt k = 0; k < 2 * n; k++) d[k % 2][k / 2] = X[k] - Y[k % 2];
+  BoxImageRow(r->whole->axis, n, (PetscReal *[]){d[0], d[1]}, part);
+  r->images(r->image, n, X, Y, V);
+  for (PetscInt k = 0; k < 2 * parts * n; k++) V[k] *= part[k % n];
+}
+
+/* A place's functions of the square that are not zero there. */
+enum { AT_PLACE = 4 };
+typedef struct {
+  PetscInt count, f[AT_PLACE];
+  PetscReal weight[AT_PLACE];
+} AtPlace;
+
+static void MakeAtPlaces(const BoxTable *t, PetscReal X[], AtPlace at[]) {
+  const PetscInt n = BOX_REGION_PLACES;
+  PetscReal value[2][BOX_REGION_PLACES];
+  for (PetscInt k = 0; k < n * n; k++) {
+    at[k].count = 0;
+    for (int d = 0; d < 2; d++) {
+      X[2 * k + d] = t->axis[d].place[d ? k % n : k / n];
+      BoxTableFunctions(t, d, X[2 * k + d], value[d]);
+    }
+    for (PetscInt f = 0; f < n * n; f++) {
+      const PetscReal weight = value[0][f / n] * value[1][f % n];
+      if (weight == 0 || at[k].count == AT_PLACE) continue;
+      at[k].f[at[k].count] = f;
+      at[k].weight[at[k].count++] = weight;
+    }
+  }
+}
+
+/* The walls' images between places, to the square's D between functions. */
+static void AddFarImages(const BoxRegion *r, BoxTable *t) {
+  const PetscInt n = BOX_IMAGE_ROW, parts = BoxParts(t);
+  PetscReal X[2 * BOX_IMAGE_ROW], V[2 * DIPOLE_COUNT * BOX_IMAGE_ROW], sum[BOX_IMAGE_ROW];
+  AtPlace at[BOX_IMAGE_ROW];
+  MakeAtPlaces(t, X, at);
+  for (PetscInt l = 0; l < n; l++) {
+    Images(r, (int)parts, n, X, X + 2 * l, V);
+    for (PetscInt q = 0; q < 2 * parts; q++) {
+      (void)PetscArrayzero(sum, n);
+      for (PetscInt k = 0; k < n; k++)
+        for (PetscInt m = 0; m < at[k].count; m++) sum[at[k].f[m]] += at[k].weight[m] * V[q * n + k];
+      for (PetscInt m = 0; m < at[l].count; m++) {
+        PetscReal *to = t->block->Q + (q % parts * n + at[l].f[m]) * 2 * n + q / parts * n;
+        for (PetscInt f = 0; f < n; f++) to[f] += at[l].weight[m] * sum[f];
+      }
+    }
+  }
+}
+
 /* Point k of CHECKS x CHECKS of the square where interpolation is worst. */
 static void Check(const BoxTable *t, PetscInt k, PetscReal X[2]) {
   for (int d = 0; d < 2; d++) {
@@ -105,14 +173,17 @@ static void Check(const BoxTable *t, PetscInt k, PetscReal X[2]) {
   }
 }
 
-/* Largest D_whole - D_square between the points, over the largest D_whole; D_square is between functions, in Q. */
+/* Largest D_whole - D_square between the points, over the largest D_whole, images in either if they are in the
+   square's, which is between functions, in Q. */
 static PetscErrorCode OffBy(const BoxRegion *r, const BoxTable *t, PetscReal *off) {
   const PetscInt n = t->functions[0] * t->functions[1], rank = r->whole->rank, parts = BoxParts(t);
+  const PetscInt points = (CHECKS * CHECKS + LANES - 1) / LANES * LANES;
   PetscReal *row[CHECKS * CHECKS], *value[CHECKS * CHECKS], *column, most = 0, largest = 0;
+  PetscReal at[2 * BOX_IMAGE_ROW] = {0}, V[2 * DIPOLE_COUNT * BOX_IMAGE_ROW] = {0};
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(2 * n, &column));
   for (PetscInt k = 0; k < CHECKS * CHECKS; k++) {
-    PetscReal X[2], v[2][BOX_REGION_PLACES];
+    PetscReal *X = at + 2 * k, v[2][BOX_REGION_PLACES];
     PetscCall(PetscMalloc2(r->whole->components * rank, &row[k], n, &value[k]));
     Check(t, k, X);
     BoxTableRows(r->whole, X, 1, 0, r->whole->components, row[k]);
@@ -120,11 +191,13 @@ static PetscErrorCode OffBy(const BoxRegion *r, const BoxTable *t, PetscReal *of
     for (PetscInt f = 0; f < n; f++) value[k][f] = v[0][f / BOX_REGION_PLACES] * v[1][f % BOX_REGION_PLACES];
   }
   for (PetscInt j = 0; j < CHECKS * CHECKS * parts; j++) {
+    if (t->images && j % parts == 0) Images(r, (int)parts, points, at, at + 2 * (j / parts), V);
     const PetscReal *source = row[j / parts] + (BoxFirstPart(t) + j % parts) * rank;
     PetscCall(PetscArrayzero(column, 2 * n));
     PetscCall(DenseMultAdd(PETSC_FALSE, 2 * n, n, 1, t->block->Q + j % parts * n * 2 * n, value[j / parts], column));
     for (PetscInt i = 0; i < 2 * CHECKS * CHECKS; i++) {
-      const PetscReal D = BoxProduct(rank, r->whole->l, row[i / 2] + i % 2 * rank, source);
+      const PetscReal D = BoxProduct(rank, r->whole->l, row[i / 2] + i % 2 * rank, source) +
+                          V[(i % 2 * parts + j % parts) * points + i / 2];
       most = PetscMax(most, PetscAbsReal(D - BoxSum(n, column + i % 2 * n, value[i / 2])));
       largest = PetscMax(largest, PetscAbsReal(D));
     }
@@ -167,9 +240,10 @@ static PetscErrorCode MakeTable(const BoxRegion *r, BoxSquare *s) {
   t->block->n[0] = t->block->n[1] = n;
   PetscCall(PetscMalloc1(2 * n * n * BoxParts(t) * n * n, &t->block->Q));
   PetscCall(BetweenFunctions(r, t));
+  t->images = HasFarImages(r, s);
+  if (t->images) AddFarImages(r, t);
   PetscCall(OffBy(r, t, &off));
   if (BoxParts(t) == 2) PetscCall(BoxTableDecompose(r->comm, SMALLEST, t));
-          off);
   s->right = off < OFF ? IsCheaper(r->whole, t) : PETSC_FALSE;
   MakeAxes(s->centre, s->side, t);
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -1,6 +1,7 @@
 /* The box part where the markers are. They often fill a small part of the box, in which D is so smooth that 8 x 8 of
    Chebyshev's places tell it: a table of some 40 eigenvalues in place of several hundred, or, of dipoles, a matrix
-   between their functions. */
+   between their functions. In a square far from walls images are as smooth: its table has them, and pairs of markers
+   need not. */
 #pragma once
 #include "coupling/boxtable.h"
 
@@ -14,10 +15,17 @@ typedef struct {
   BoxTable table;
 } BoxSquare;
 
+/* What the near field's C has of all walls' images, in closed form, at n points X[2n] from unit parts of a source at Y,
+   none of them near a wall: V[2 components][parts][n], n a number of whole vectors, BOX_IMAGE_ROW at most. */
+typedef void (*BoxImages)(const void *image, PetscInt n, const PetscReal X[], const PetscReal Y[2], PetscReal V[]);
+#define BOX_IMAGE_ROW (BOX_REGION_PLACES * BOX_REGION_PLACES)
+
 typedef struct {
   MPI_Comm comm;
   Grid grid;                            /* borrowed, */
-  const BoxTable *whole;                /* of forces or of dipoles */
+  const BoxTable *whole;                /* of forces or of dipoles, */
+  const void *image;                    /* for: */
+  BoxImages images;                     /* NULL: they are not in squares' tables */
   BoxSquare square[BOX_REGION_SQUARES]; /* the last used first */
 } BoxRegion;
 

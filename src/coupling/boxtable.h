@@ -23,9 +23,10 @@ typedef struct {
   PetscInt functions[2]; /* in x and y: Lagrange's polynomials, or 1, cos, sin, .. over the period */
   PetscInt blocks;
   BoxBlock *block;
-  PetscInt rank; /* eigenvalues kept */
-  PetscReal *l;  /* [rank] velocity per force */
-  PetscReal H;   /* cell size of the coarser grid */
+  PetscInt rank;    /* eigenvalues kept */
+  PetscReal *l;     /* [rank] velocity per force */
+  PetscReal H;      /* cell size of the coarser grid */
+  PetscBool images; /* of a square: the distant walls' images are in D as well (boxregion.h) */
 } BoxTable;
 
 /* BoxTableCreate - for the run's grid and boundaries, of forces or of dipoles, as the lattice is, which is used here

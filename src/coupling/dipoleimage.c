@@ -231,3 +231,8 @@ void DipoleImageExact(const DipoleImageForms *f, const ImagePair *p, PetscReal K
 void DipoleImageFar(const DipoleImageForms *f, const ImagePair *p, PetscReal K[2][DIPOLE_COUNT]) {
   One(IMAGE_MONOMIALS, 2, FORM_FAR, f, p, K);
 }
+
+void DipoleImageFarFour(const DipoleImageForms *f, Lanes x, Lanes a, Lanes b, Lanes K[2][DIPOLE_COUNT]) {
+  const Terms t = MakeTerms(DEGREES, x, a, b);
+  Sums(IMAGE_MONOMIALS, 2, f->four[FORM_FAR], &t, K);
+}

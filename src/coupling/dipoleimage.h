@@ -25,10 +25,12 @@ typedef struct {
 
 /* DipoleImageFormsMake - for responses with these second moments along and across. DipoleImageExact - K[component]
    [part] of the exact fluid's image. DipoleImageFar - that less the lattice's, to the order 1/R^3, R the distance from
-   the image. Not collective. */
+   the image; of four pairs. Not collective. */
 PETSC_EXTERN void DipoleImageFormsMake(PetscReal along, PetscReal across, DipoleImageForms *forms);
 PETSC_EXTERN void DipoleImageExact(const DipoleImageForms *forms, const ImagePair *pair, PetscReal K[2][DIPOLE_COUNT]);
 PETSC_EXTERN void DipoleImageFar(const DipoleImageForms *forms, const ImagePair *pair, PetscReal K[2][DIPOLE_COUNT]);
+PETSC_EXTERN void DipoleImageFarFour(const DipoleImageForms *forms, Lanes x, Lanes a, Lanes b,
+                                     Lanes K[2][DIPOLE_COUNT]);
 
 /* One marker's dipoles seen from a wall, with the polynomials of the exact image of J = n. */
 typedef struct {

@@ -106,8 +106,10 @@ void DoubleLatticeParts(const OffsetTable lattice[2], PetscReal h, PetscReal rea
     for (int k = 0; k < DIPOLE_COUNT; k++) K[c][k] = four[c][k][0];
 }
 
-/* Images in walls that are left out, cells; with a box part, which is made with all, none. */
-static PetscReal ImageReach(DoubleLayer s) {
+/* Images in walls that are left out, from so many cells on; with a box part, which is made with all, none, or, of what
+   the lattice has less than the exact fluid, all where it has them. */
+static PetscReal ImageReach(DoubleLayer s, PetscBool lattice) {
+  if (lattice && s->box && DoubleBoxHasImages(s->box)) return 0;
   return s->near->box ? PETSC_MAX_REAL : DOUBLE_IMAGE_REACH;
 }
 
@@ -295,7 +297,7 @@ PetscErrorCode DoubleBlockFill(DoubleLayer s, const DoubleBlock *b, PetscBool la
   for (PetscInt q = 0; q < m; q++) {
     Begin(&f, l->start[b->column] + q);
     if (lattice) Lattice(&f);
-    if (s->image) DoubleImageAddColumn(s->image, ImageReach(s), &f.to);
+    if (s->image) DoubleImageAddColumn(s->image, ImageReach(s, lattice), &f.to);
     End(&f, value + 2 * q * 2 * f.to.n);
     if (f.self) AddOwn(&f, own + 3 * q, value + 2 * q * 2 * f.to.n);
   }

@@ -25,6 +25,16 @@ PETSC_EXTERN PetscErrorCode DoubleBoxCreate(const FluidSpec *spec, Markers marke
                                             DoubleBox *box);
 PETSC_EXTERN PetscErrorCode DoubleBoxDestroy(DoubleBox *box);
 
+/* DoubleBoxTakeImages - from here on squares have the images of these walls. DoubleBoxHasImages - whether the one where
+   the markers are placed has them. Not collective. */
+static inline void DoubleBoxTakeImages(DoubleBox box, const void *image, BoxImages images) {
+  box->region.image = image;
+  box->region.images = images;
+}
+static inline PetscBool DoubleBoxHasImages(DoubleBox box) {
+  return box->at->images;
+}
+
 /* DoubleBoxPlace - where the markers have been placed. Collective. */
 PETSC_EXTERN PetscErrorCode DoubleBoxPlace(DoubleBox box);
 

@@ -221,3 +221,34 @@ void DoubleImageExact(DoubleImage m, int direction, int side, const ImagePair *p
   DipoleImageExact(&m->forms, p, part);
   Turn(direction, side, 1 / m->single->markers->grid->h, PARTS(part), exact);
 }
+
+/* Cells from a wall. */
+static PetscReal Off(Grid g, int direction, int side, const PetscReal X[2]) {
+  return (side ? g->hi[direction] - X[direction] : X[direction] - g->lo[direction]) / g->h;
+}
+
+void DoubleImageFar(const void *image, PetscInt n, const PetscReal X[], const PetscReal Y[2], PetscReal V[]) {
+  const struct _p_DoubleImage *m = image;
+  const Grid g = m->single->markers->grid;
+  (void)PetscArrayzero(V, 2 * DIPOLE_COUNT * n);
+  for (int wall = 0; wall < 4; wall++) {
+    const int direction = wall / 2, side = wall % 2, t = 1 - direction;
+    if (!g->wall[direction]) continue;
+    for (PetscInt k = 0; k < n; k += LANES) {
+      const Lanes b = Off(g, direction, side, Y) + (Lanes){0};
+      Lanes x, a, K[2][DIPOLE_COUNT];
+      for (int q = 0; q < LANES; q++) {
+        x[q] = (X[2 * (k + q) + t] - Y[t]) / g->h;
+        a[q] = Off(g, direction, side, X + 2 * (k + q));
+      }
+      DipoleImageFarFour(&m->forms, x, a, b, K);
+      for (int q = 0; q < LANES; q++) {
+        PetscReal part[2][DIPOLE_COUNT], turned[2][DIPOLE_COUNT] = {{0}};
+        for (int c = 0; c < 2 * DIPOLE_COUNT; c++)
+          part[c / DIPOLE_COUNT][c % DIPOLE_COUNT] = K[c / DIPOLE_COUNT][c % DIPOLE_COUNT][q];
+        Turn(direction, side, 1 / g->h, PARTS(part), turned);
+        for (int c = 0; c < 2 * DIPOLE_COUNT; c++) V[c * n + k + q] += turned[c / DIPOLE_COUNT][c % DIPOLE_COUNT];
+      }
+    }
+  }
+}

@@ -52,5 +52,8 @@ PETSC_EXTERN void DoubleImageRange(DoubleImage image, DoubleColumn *column);
 PETSC_EXTERN void DoubleImageAddColumn(DoubleImage image, PetscReal reach, const DoubleColumn *column);
 PETSC_EXTERN void DoubleImageAdd(DoubleImage image, PetscInt i, PetscInt j, const PetscReal d[2], PetscReal reach,
                                  PetscReal exact[2][DIPOLE_COUNT], PetscReal lattice[2][DIPOLE_COUNT]);
+/* DoubleImageFar - BoxImages of the double layer, image: a DoubleImage. Not collective. */
+PETSC_EXTERN void DoubleImageFar(const void *image, PetscInt n, const PetscReal X[], const PetscReal Y[2],
+                                 PetscReal V[]);
 PETSC_EXTERN void DoubleImageExact(DoubleImage image, int direction, int side, const ImagePair *pair,
                                    PetscReal exact[2][DIPOLE_COUNT]);

@@ -49,6 +49,7 @@ PetscErrorCode DoubleLayerAddBoxPart(DoubleLayer s, const FluidSpec *spec) {
   const BoxLattice lattice = {.dipole = s->lattice, .half = s->near->image->table};
   PetscFunctionBeginUser;
   PetscCall(DoubleBoxCreate(spec, s->near->markers, &lattice, &s->box));
+  if (s->image) DoubleBoxTakeImages(s->box, s->image, DoubleImageFar);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -114,6 +115,7 @@ PetscErrorCode DoubleLayerPlace(DoubleLayer s) {
   PetscCall(PetscLogEventBegin(s->place, 0, 0, 0, 0));
   PetscCall(PlaceDipoles(s));
   if (s->image) DoubleImagePlace(s->image, s->dipole);
+  if (s->box) PetscCall(DoubleBoxPlace(s->box)); /* before the blocks, which may leave images to it */
   PetscCall(FindBlocks(s));
   for (PetscInt k = 0; k < s->blocks; k++) {
     const DoubleBlock *b = &s->block[k];
@@ -121,7 +123,6 @@ PetscErrorCode DoubleLayerPlace(DoubleLayer s) {
     PetscCall(DoubleCloseAdd(s, b, s->value + b->at));
     PetscCall(DoubleWallAdd(s, b, s->value + b->at));
   }
-  if (s->box) PetscCall(DoubleBoxPlace(s->box));
   PetscCall(PetscLogEventEnd(s->place, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

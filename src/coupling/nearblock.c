@@ -266,14 +266,16 @@ void NearBlockAdd(NearField f, const NearBlock *b, PetscReal scale, PetscReal *c
   } while (NearBlockNext(l, b, &r));
 }
 
-/* The walls whose images of the one vesicle count for the other; with a box part all, as it was found with all. */
+/* The walls whose images of the one vesicle count for the other; with a box part all, as it was found with all, or
+   none, where it has them. */
 static void FindWalls(NearField f, const NearBlock *b, PetscBool walls[2][2]) {
   const Grid g = f->markers->grid;
+  const PetscBool none = f->box && BoxPartHasImages(f->box) ? PETSC_TRUE : PETSC_FALSE;
   for (int direction = 0; direction < 2; direction++)
     for (int side = 0; side < 2; side++) {
       const PetscReal gap = NearImageGap(g, direction, side, &f->bounds[b->row], &f->bounds[b->column]);
-      walls[direction][side] = g->wall[direction] && (f->box || gap < NEAR_IMAGE_REACH * g->h) ? PETSC_TRUE
-                                                                                               : PETSC_FALSE;
+      walls[direction][side] = !none && g->wall[direction] && (f->box || gap < NEAR_IMAGE_REACH * g->h) ? PETSC_TRUE
+                                                                                                        : PETSC_FALSE;
     }
 }
 

@@ -98,6 +98,8 @@ PetscErrorCode NearFieldCreateBoxPart(NearField f, const FluidSpec *spec, PetscB
 PetscErrorCode NearFieldAddBoxPart(NearField f, const FluidSpec *spec) {
   PetscFunctionBeginUser;
   PetscCall(NearFieldCreateBoxPart(f, spec, PETSC_FALSE, &f->box));
+  /* not with obstacles, whose pairs are made once */
+  if (f->image && f->bodies->vesicles == f->bodies->layout->bodies) BoxPartTakeImages(f->box, f->image, NearImageFar);
   if (spec->inertia == INERTIA_NONE) MarkersLeaveUnscaled(f->markers);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -175,6 +177,7 @@ PetscErrorCode NearFieldPlace(NearField f) {
   PetscCall(Room(s->singles, f->fixed.singles, sizeof(float), &s->single_room, (void **)&s->single));
   if (!f->free) PetscCall(PlaceStencils(f));
   if (f->image) PetscCall(NearImagePlace(f->image, f->stencil));
+  if (f->box) PetscCall(BoxPartPlace(f->box)); /* before the blocks, which may leave images to it */
   for (PetscInt k = 0; k < f->blocks; k++) {
     const NearBlock *b = &f->block[k];
     if (b->column < l->own || b->column >= l->end) crossed = PETSC_TRUE;
@@ -185,7 +188,6 @@ PetscErrorCode NearFieldPlace(NearField f) {
   for (PetscInt k = 0; k < f->closes; k++)
     if (f->close[k].block >= first) PetscCall(NearCloseAdd(f, &f->close[k]));
   PetscCall(PlaceDistant(f, &crossed));
-  if (f->box) PetscCall(BoxPartPlace(f->box));
   PetscCall(AgreeFlag(l->comm, crossed, &f->crossed));
   PetscCall(PetscLogEventEnd(f->place, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);

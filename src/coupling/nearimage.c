@@ -141,6 +141,31 @@ void NearImageAddFar(NearImage m, const PetscBool walls[2][2], const PetscBool f
       AddFarWall(m, wall / 2, wall % 2, i, j, n, back, wall / 2 ? x : y, C);
 }
 
+/* Cells from a wall. */
+static PetscReal Off(Grid g, int direction, int side, const PetscReal X[2]) {
+  return (side ? g->hi[direction] - X[direction] : X[direction] - g->lo[direction]) / g->h;
+}
+
+void NearImageFar(const void *image, PetscInt n, const PetscReal X[], const PetscReal Y[2], PetscReal V[]) {
+  const struct _p_NearImage *m = image;
+  const Grid g = m->markers->grid;
+  PetscReal x[IMAGE_ROW], a[IMAGE_ROW], b[IMAGE_ROW], part[IMAGE_PARTS][IMAGE_ROW];
+  (void)PetscArrayzero(V, 4 * n);
+  for (int wall = 0; wall < 4; wall++) {
+    const int direction = wall / 2, side = wall % 2, t = 1 - direction;
+    const int place[IMAGE_PARTS] = {t * 3, direction * 3, direction ? 2 : 1, direction ? 1 : 2}; /* response, source */
+    if (!g->wall[direction]) continue;
+    for (PetscInt k = 0; k < n; k++) {
+      x[k] = (X[2 * k + t] - Y[t]) / g->h;
+      a[k] = Off(g, direction, side, X + 2 * k);
+      b[k] = Off(g, direction, side, Y);
+    }
+    ImageFarRow(n, x, a, b, &m->kernel, (PetscReal *[]){part[0], part[1], part[2], part[3]});
+    for (int q = 0; q < IMAGE_PARTS; q++)
+      for (PetscInt k = 0; k < n; k++) V[place[q] * n + k] += (side && q >= IMAGE_NT ? -1 : 1) / m->nu * part[q][k];
+  }
+}
+
 /* SUM w [c|c| - sgn(c)/4] - y^2 + 1/4 over the tangential stencil's rows at c from the wall, before it is folded. */
 static PetscReal OddMoment(PetscReal y, PetscInt first, PetscInt n, const PetscReal w[]) {
   PetscReal sum = 0.25 - y * y;

@@ -67,6 +67,9 @@ PETSC_EXTERN void NearImageAddFar(NearImage image, const PetscBool walls[2][2], 
                                   PetscInt j, PetscInt n, PetscBool back, const PetscReal x[], const PetscReal y[],
                                   PetscReal *const C[4]);
 
+/* NearImageFar - BoxImages of the single layer, image: a NearImage. Not collective. */
+PETSC_EXTERN void NearImageFar(const void *image, PetscInt n, const PetscReal X[], const PetscReal Y[2], PetscReal V[]);
+
 /* NearImageBlake - Blake's image part of the Stokeslet in a wall, cells, viscosity 1. NearImageTurn - C += alpha times
    a pair's parts, turned from the wall with this normal and side to x and y. Not collective. */
 PETSC_EXTERN void NearImageBlake(const ImagePair *pair, PetscReal image[IMAGE_PARTS]);
