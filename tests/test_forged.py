@@ -87,7 +87,7 @@ FORGED = {
     "negative frames": (attribute("frames", np.int32(-5)), "its frames is -5"),
     "more frames than steps": (attribute("frames", np.int32(100)), "it has 100. frames"),
     "level": (attribute("step_level", np.int32(2**31 - 1)), "its step_level is"),
-    "none of one to four states": (attribute("past", np.int32(7)), "its past is 7"),
+    "none of one to six states": (attribute("past", np.int32(7)), "its past is 7"),
     "no order": (attribute("step_order", np.int32(0)), "its step_order is 0"),
     "an order that there is not": (attribute("step_order", np.int32(4)), "its step_order is 4"),
     "a guess that there is not": (attribute("step_guess", np.int32(9)), "its step_guess is 9"),
@@ -148,7 +148,7 @@ def test_earlier_steps_of_no_length_are_refused(tmp_path):
     """The steps between the states that coupled goes on from divide what it makes of them."""
     scene = f"{SCENE} -scheme_type coupled -coupling_near_field none"
     good = run_petves(tmp_path / "run", f"{scene} -time_end 0.06").folder / "checkpoint.h5"
-    path = forge(good, tmp_path, attribute("dt_earlier", np.zeros(3)))
+    path = forge(good, tmp_path, attribute("dt_earlier", np.zeros(5)))
     run = run_petves(tmp_path / "new", f"{scene} -time_end 0.1 -restart {path}", good=False, timeout=60)
     one_line(run, f"-restart {path}: ", "its dt_earlier is 0", "allowed: ")
 

@@ -5,7 +5,7 @@
 
 /* Where a checkpoint has the states before the present one. */
 static inline const char *CheckpointGroup(PetscInt j) {
-  static const char *const groups[] = {"/previous", "/previous_1", "/previous_2"};
+  static const char *const groups[] = {"/previous", "/previous_1", "/previous_2", "/previous_3", "/previous_4"};
   return groups[j];
 }
 

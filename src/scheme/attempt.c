@@ -41,7 +41,7 @@ static PetscErrorCode LengthTarget(Scheme s, Coupled *d, PetscReal a0) {
 /* Vectors of the states that the step goes on from. */
 #define STATES(s, which)                                                                                               \
   (const Vec[]) {                                                                                                      \
-    (s)->state.which, (s)->old[0].which, (s)->old[1].which, (s)->old[2].which                                          \
+    (s)->state.which, (s)->old[0].which, (s)->old[1].which, (s)->old[2].which, (s)->old[3].which, (s)->old[4].which    \
   }
 
 /* The tension of the last two states, extrapolated, pulls along the new edges (docs/membrane.md, The tension turns with
@@ -117,7 +117,7 @@ static PetscErrorCode InitialGuess(Scheme s, Coupled *d) {
   PetscReal weight[BDF_STATES];
   PetscFunctionBeginUser;
   if (!d->solver) PetscFunctionReturn(PETSC_SUCCESS);
-  BDFExtrapolation(count, h->step, weight);
+  BDFGuess(count, h->step, weight);
   PetscCall(HistorySum(count, weight, 1, STATES(s, walls), n->walls));
   if (n->solid) PetscCall(HistorySum(count, weight, 1, STATES(s, solid), n->solid));
   PetscCall(HistoryEdges(h, s->membrane, count, weight, STATES(s, sigma), n->sigma));
@@ -230,17 +230,17 @@ static PetscErrorCode Apart(Scheme s, Vec x, Vec y, PetscReal *largest) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Largest |x - x*| on this rank, x* the extrapolation of a carried marker vector through `count` of them. */
+/* Largest |x - x*| on this rank, x* the extrapolation of a carried marker vector by `count` of them. */
 static PetscErrorCode Miss(Scheme s, Coupled *d, PetscInt count, const Vec states[], Vec x, PetscReal *largest) {
   PetscReal star[BDF_STATES];
   PetscFunctionBeginUser;
-  BDFExtrapolation(count, d->history.step, star);
+  BDFGuess(count, d->history.step, star);
   PetscCall(HistorySum(count, star, 1, states, d->Y));
   PetscCall(Apart(s, x, d->Y, largest));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Order 3 where the motion is so smooth that three states tell the next one better than two; and a guess through as
+/* Order 3 where the motion is so smooth that three states tell the next one better than two; and a guess by as
    many states as would have told this one's velocity best, of those whose velocity is known. */
 static PetscErrorCode ChooseNext(Scheme s, Coupled *d) {
   const History *h = &d->history;

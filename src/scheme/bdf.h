@@ -4,7 +4,7 @@
 #include "base/base.h"
 
 #define BDF_MOST 3
-#define BDF_STATES 4 /* that an extrapolation goes by at most */
+#define BDF_STATES 6 /* that an extrapolation goes by at most */
 
 typedef struct {
   PetscInt order;              /* 1 to BDF_MOST: the number of states that are used */
@@ -27,6 +27,44 @@ static inline void BDFExtrapolation(PetscInt n, const PetscReal step[], PetscRea
     for (PetscInt i = 0; i < n; i++)
       if (i != j) star[j] *= back[i] / (back[i] - back[j]);
   }
+}
+
+/* BDFFit - the same of the cubic that is closest to n > 4 states in the mean square: the sum of its orthogonal
+   polynomials p at the states, q at the end of the step, by their recurrence. */
+static inline void BDFFit(PetscInt n, const PetscReal step[], PetscReal star[]) {
+  PetscReal back[BDF_STATES] = {0}, p[BDF_STATES], p_last[BDF_STATES] = {0}, q = 1, q_last = 0, norm_last = 1;
+  for (PetscInt j = 0; j < n; j++) {
+    back[j] = step[j] / step[0] + (j > 0 ? back[j - 1] : 0);
+    p[j] = 1;
+    star[j] = 0;
+  }
+  for (PetscInt degree = 0; degree <= 3; degree++) {
+    PetscReal norm = 0, mean = 0;
+    for (PetscInt j = 0; j < n; j++) {
+      norm += p[j] * p[j];
+      mean += back[j] * p[j] * p[j];
+    }
+    mean /= norm;
+    const PetscReal lower = degree > 0 ? norm / norm_last : 0, q_now = q;
+    for (PetscInt j = 0; j < n; j++) {
+      const PetscReal now = p[j];
+      star[j] += q * now / norm;
+      p[j] = (back[j] - mean) * now - lower * p_last[j];
+      p_last[j] = now;
+    }
+    q = -mean * q_now - lower * q_last;
+    q_last = q_now;
+    norm_last = norm;
+  }
+}
+
+/* BDFGuess - weights star[n] of a first guess that goes by n states: by all that an extrapolation goes by at most, the
+   cubic that is closest to them, as the states' own errors weigh less in it; by fewer, the polynomial through them. */
+static inline void BDFGuess(PetscInt n, const PetscReal step[], PetscReal star[]) {
+  if (n == BDF_STATES)
+    BDFFit(n, step, star);
+  else
+    BDFExtrapolation(n, step, star);
 }
 
 /* BDFCoefficients - exact for polynomials of degree `order` through the new time and that many states. For equal steps

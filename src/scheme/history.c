@@ -68,9 +68,13 @@ static PetscErrorCode CarryAll(const History *h, Membrane m, PetscInt count, con
 
 PetscErrorCode HistoryCarry(History *h, Scheme s, PetscReal dt) {
   const Vec X[BDF_MOST] = {s->state.X, s->old[0].X, s->old[1].X};
-  const Vec U[BDF_STATES] = {s->state.U, s->old[0].U, s->old[1].U, s->old[2].U};
-  const PetscReal led[BDF_STATES] = {s->state.dt_last, s->old[0].dt_last, s->old[1].dt_last, s->old[2].dt_last};
+  Vec U[BDF_STATES] = {s->state.U};
+  PetscReal led[BDF_STATES] = {s->state.dt_last};
   PetscFunctionBeginUser;
+  for (int j = 1; j < BDF_STATES; j++) {
+    U[j] = s->old[j - 1].U;
+    led[j] = s->old[j - 1].dt_last;
+  }
   h->n = PetscMin(s->past + 1, BDF_MOST);
   h->step[0] = dt;
   for (int j = 1; j < BDF_STATES; j++) h->step[j] = led[j - 1];

@@ -28,7 +28,7 @@ typedef struct {
 } StepReport;
 
 /* The states before the present one that are kept. */
-#define SCHEME_PAST 3
+#define SCHEME_PAST 5
 
 /* All that a step changes and the next one needs; State and this are what a checkpoint holds. */
 typedef struct {
