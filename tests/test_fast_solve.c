@@ -131,7 +131,8 @@ static PetscErrorCode Facts(void) {
   static const char *const bc[] = {"-domain_bc_x wall -domain_bc_y wall", "-domain_bc_x wall -domain_bc_y periodic",
                                    "-domain_bc_x periodic -domain_bc_y wall",
                                    "-domain_bc_x periodic -domain_bc_y periodic"};
-  static const Size sizes[] = {{"-1,1,-1,1", "64,64"}, {"0,5,0,3.7", "50,37"}, {"0,4,0,3", "128,96"}};
+  static const Size sizes[] = {
+      {"-1,1,-1,1", "64,64"}, {"0,5,0,3.7", "50,37"}, {"0,5.3,0,3.7", "53,37"}, {"0,4,0,3", "128,96"}};
   static const Size small[] = {{"-1,1,-1,1", "32,32"}, {"0,2.5,0,1.9", "25,19"}};
   PetscFunctionBeginUser;
   for (int b = 0; b < 4; b++) {

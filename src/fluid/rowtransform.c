@@ -147,6 +147,8 @@ void RowTransformForward(RowTransform t, const PetscScalar x[]) {
     memset(t->modes, 0, (size_t)t->width * sizeof(double));
   else if (!inner && t->ends[0])
     FromEnds(t, x[0], x[n - 1]);
+  else if (t->matrix.matrix[0])
+    SineMatrixApply(&t->matrix, 0, x, t->modes);
   else if (t->base)
     SineForward(t, x);
   else if (t->sign != 0)
@@ -160,7 +162,9 @@ void RowTransformForward(RowTransform t, const PetscScalar x[]) {
 }
 
 void RowTransformBackward(RowTransform t, PetscScalar x[]) {
-  if (t->base)
+  if (t->matrix.matrix[1])
+    SineMatrixApply(&t->matrix, 1, t->modes, x);
+  else if (t->base)
     SineBackward(t, x);
   else if (t->sign != 0)
     HalfSampleBackward(t, x);
@@ -244,6 +248,22 @@ static PetscErrorCode CreateSines(RowTransform t, unsigned plan) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* A short row between walls. */
+static PetscErrorCode CreateMatrix(RowTransform t, SineMatrixKind kind) {
+  const PetscInt n = t->n;
+  PetscFunctionBeginUser;
+  t->width = n;
+  PetscCall(SineMatrixCreate(kind, n, 1, &t->matrix));
+  for (int end = 0; end < 2; end++) t->ends[end] = t->matrix.matrix[0] + (end ? (n - 1) * t->matrix.stride : 0);
+  t->modes = fftw_alloc_real((size_t)n);
+  PetscCall(PetscMalloc2(n, &t->lambda, n, &t->scale));
+  for (PetscInt k = 0; k < n; k++) {
+    t->lambda[k] = Eigenvalue(PETSC_PI / 2 * SineMatrixWave(kind, n, k));
+    t->scale[k] = 1;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode RowTransformCreate(Grid g, Field field, unsigned plan, RowTransform *out) {
   const PetscReal c = GridWallFactor(field, 0);
   RowTransform t;
@@ -251,7 +271,11 @@ PetscErrorCode RowTransformCreate(Grid g, Field field, unsigned plan, RowTransfo
   PetscCall(PetscNew(&t));
   *out = t;
   t->n = g->columns[field];
-  if (g->wall[0] && c == 0)
+  if (g->wall[0] && t->n <= SINE_MATRIX_MOST)
+    PetscCall(CreateMatrix(t, c == 0  ? SINE_MATRIX_ENTRIES
+                              : c > 0 ? SINE_MATRIX_HALF_COSINES
+                                      : SINE_MATRIX_HALF_SINES));
+  else if (g->wall[0] && c == 0)
     PetscCall(CreateSines(t, plan));
   else {
     t->sign = g->wall[0] ? c : 0;
@@ -274,7 +298,8 @@ PetscErrorCode RowTransformDestroy(RowTransform *transform) {
   fftw_free(t->modes);
   fftw_free(t->line);
   fftw_free(t->rest);
-  for (int end = 0; end < 2; end++) PetscCall(PetscFree(t->ends[end]));
+  for (int end = 0; end < 2 && !t->matrix.matrix[0]; end++) PetscCall(PetscFree(t->ends[end]));
+  PetscCall(SineMatrixDestroy(&t->matrix));
   PetscCall(PetscFree2(t->lambda, t->scale));
   PetscCall(PetscFree(*transform));
   PetscFunctionReturn(PETSC_SUCCESS);

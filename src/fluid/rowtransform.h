@@ -7,9 +7,12 @@
      wall on an entry (u)     sines: the odd wave numbers by a half-sample sine transform of half the length, the even
                               ones by a transform of the same kind and half the length, and so on down
 
+   Short rows between walls are multiplied by the transform's matrix (sinematrix.h).
+
    Modes come in an order of the transform's own, and lambda is in that order. rowtransform.c has the formulas. */
 #pragma once
 #include "fluid/grid.h"
+#include "fluid/sinematrix.h"
 #include <fftw3.h>
 
 #define ROW_LEVELS 24 /* halvings of a row, at most: 4 2^24 cells */
@@ -28,8 +31,9 @@ struct _p_RowTransform {
   PetscReal *scale;  /* [width] what makes backward(scale forward) the identity */
   double *modes;     /* [width] what Forward makes and Backward takes */
   double *line;      /* work, the other end of the Fourier transforms */
-  double *ends[2];   /* half samples: [width] each, modes of a 1 at the first entry, at the last */
-  PetscReal sign;    /* 1 cosines, -1 sines of half samples, 0 others */
+  double *ends[2]; /* [width] each, modes of a 1 at the first entry, at the last; NULL for long rows but half samples */
+  PetscReal sign;  /* 1 cosines, -1 sines of half samples, 0 others */
+  SineMatrix matrix; /* of a short row between walls, which has nothing of what follows */
   PetscInt levels;   /* sines on the entries: halvings */
   Fourier f[ROW_LEVELS];
   PetscInt base; /* sines on the entries: cells left after the halvings, base - 1 entries; 0: another kind */

@@ -9,6 +9,7 @@
    Two pairs: the forces of each also leave slip along the other pair's walls (CrossSlip). Gauss-Seidel sweeps take
    turns: invert one pair for what the other one has left. */
 #include "fluid/walls.h"
+#include "base/lanes.h"
 #include "fluid/wallprofile.h"
 
 /* Mode k of pair dir: its share in the slip along the other pair's walls. A force sin(pi (k + 1) x/L) has the potential
@@ -68,9 +69,21 @@ static void SetUp(Walls w) {
   for (int dir = 0; dir < 2; dir++) SetUpPair(w, dir);
 }
 
+/* One line of a pair, there (way 0) or back. */
+static void Transform(WallPair *p, int way, int side) {
+  double *line = p->line[side];
+  if (!p->sines.matrix[0]) {
+    fftw_execute_r2r(way ? p->backward : p->forward, line, line);
+    return;
+  }
+  SineMatrixApply(&p->sines, way, line, p->spare);
+  p->line[side] = p->spare;
+  p->spare = line;
+}
+
 /* The lines of a pair: from residuals to the modes of the forces that cancel them, not transformed back yet. */
 static void Invert(WallPair *p) {
-  for (int side = 0; side < 2; side++) fftw_execute_r2r(p->forward, p->line[side], p->line[side]);
+  for (int side = 0; side < 2; side++) Transform(p, 0, side);
   for (PetscInt k = 0; k < p->length; k++) {
     const PetscReal one = p->line[0][k], two = p->line[1][k];
     p->line[0][k] = p->own[k] * one + p->other[k] * two;
@@ -90,9 +103,12 @@ static void SlipAcross(const WallPair *pair, PetscInt n, PetscScalar slip[]) {
     const PetscInt reach = pair->cross.row[j + 1] - pair->cross.row[j];
     for (int side = 0; side < 2; side++) {
       const double *force = pair->line[side];
-      PetscReal odd = 0, even = 0; /* entry k has wave number k + 1 */
-      for (PetscInt k = 0; k < reach; k += 2) odd += row[k] * force[k];
-      for (PetscInt k = 1; k < reach; k += 2) even += row[k] * force[k];
+      Lanes sum = {0}; /* entry k has wave number k + 1 */
+      PetscInt k = 0;
+      for (; k + LANES <= reach; k += LANES) sum += LanesAt(row + k) * LanesAt(force + k);
+      PetscReal odd = sum[0] + sum[2], even = sum[1] + sum[3];
+      for (; k < reach; k += 2) odd += row[k] * force[k];
+      for (k = reach / LANES * LANES + 1; k < reach; k += 2) even += row[k] * force[k];
       const PetscInt face = side ? n - 1 - j : j;
       const PetscReal sign = side ? -2 : 2; /* 2: FFTW's sine transforms are twice the sum */
       slip[face] += sign * (even + odd);
@@ -103,11 +119,11 @@ static void SlipAcross(const WallPair *pair, PetscInt n, PetscScalar slip[]) {
 
 /* Forces from the modes in the lines of pair dir, into d; the long waves' amplitudes are kept. */
 static void TakeForces(Walls w, int dir, PetscScalar d[]) {
-  const WallPair *p = &w->pair[dir];
+  WallPair *p = &w->pair[dir];
   for (int side = 0; side < 2 && p->length; side++) {
     PetscScalar *to = d + p->start + side * p->length;
     for (PetscInt k = 0; k < p->waves.modes; k++) p->waves.amplitude[side][k] = 2 * p->line[side][k];
-    fftw_execute_r2r(p->backward, p->line[side], p->line[side]);
+    Transform(p, 1, side);
     for (PetscInt i = 0; i < p->length; i++) to[i] = p->line[side][i];
   }
 }

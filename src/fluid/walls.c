@@ -22,6 +22,12 @@ static PetscErrorCode CreatePair(Walls w, int dir) {
   w->n += 2 * p->length;
   PetscCall(PetscMalloc2(p->length, &p->own, p->length, &p->other));
   for (int side = 0; side < 2; side++) p->line[side] = fftw_alloc_real((size_t)p->length);
+  if (g->wall[1 - dir])
+    PetscCall(SineMatrixCreate(SINE_MATRIX_ENTRIES, p->length, PetscSqrtReal(2.0 * (p->length + 1)), &p->sines));
+  if (p->sines.matrix[0]) {
+    p->spare = fftw_alloc_real((size_t)p->length);
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   double *line = p->line[0];
   p->forward = p->backward = fftw_plan_r2r_1d((int)p->length, line, line, forward, FFTW_ESTIMATE);
   if (backward != forward) p->backward = fftw_plan_r2r_1d((int)p->length, line, line, backward, FFTW_ESTIMATE);
@@ -76,6 +82,8 @@ static PetscErrorCode DestroyPair(WallPair *p) {
     PetscCall(PetscFree(p->waves.amplitude[side]));
     if (p->length) fftw_free(p->line[side]);
   }
+  fftw_free(p->spare);
+  PetscCall(SineMatrixDestroy(&p->sines));
   if (p->backward != p->forward) fftw_destroy_plan(p->backward);
   if (p->forward) fftw_destroy_plan(p->forward);
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -3,6 +3,7 @@
    all ranks hold: the rows of u along the bottom and the top wall, then the columns of v along the left and the right
    wall. Unit: a force per volume, length/time^2. */
 #pragma once
+#include "fluid/sinematrix.h"
 #include "fluid/stokes.h"
 #include <fftw3.h>
 
@@ -25,7 +26,9 @@ typedef struct {
   PetscInt length;             /* of a line; 0: no such walls */
   PetscInt start;              /* of the first wall's line among the unknowns; the other one's follows */
   PetscReal *own, *other;      /* [length] a mode's force per residual on the same wall, and on the facing one */
+  double *spare;               /* [length] takes a line's place at its transform by a matrix */
   double *line[2];             /* [side][length] residuals, then the modes of the forces that cancel them */
+  SineMatrix sines;            /* of short lines, in the place of the plans; twice the sums, as FFTW's */
   fftw_plan forward, backward; /* of either line; the same one where they do the same */
   CrossSlip cross;
   LongWaves waves;
