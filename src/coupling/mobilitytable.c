@@ -41,9 +41,9 @@ static PetscErrorCode Average(MobilityTable m) {
       PetscCall(PetscArrayzero(line, gx));
       PetscCall(PetscArrayzero(out, nx));
       for (int q = 0; q < LAGS; q++)
-        for (PetscInt i = 0; i < gx; i++) line[i] += wy[q] * m->green.value[b][(j + q) * gx + i];
+        for (PetscInt i = 0; wy[q] != 0 && i < gx; i++) line[i] += wy[q] * m->green.value[b][(j + q) * gx + i];
       for (int p = 0; p < LAGS; p++)
-        for (PetscInt i = 0; i < nx; i++) out[i] += wx[p] * line[i + p];
+        for (PetscInt i = 0; wx[p] != 0 && i < nx; i++) out[i] += wx[p] * line[i + p];
     }
   }
   PetscCall(PetscFree(line));

@@ -5,7 +5,7 @@
 #define CONVOLVED 128        /* most markers whose sums take less time than transforms */
 #define CONVOLVED_ROUGH 1024 /* with a prime factor above 13, for which a transform takes many times longer */
 #define TURNS 3              /* a step turns the states before it by as many different angles */
-#define ROUND (4 * LANES)
+#define ROUND CONVOLVE_ROUND
 
 struct _p_Spectral {
   PetscInt n;
@@ -97,17 +97,23 @@ PetscErrorCode SpectralDestroy(Spectral *spectral) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+void ConvolveRound(PetscInt n, int each, PetscBool ahead, const PetscReal weight[], const PetscReal twice[],
+                   PetscReal sum[]) {
+  const PetscInt width = each * n, step = ahead ? each : -each;
+  for (PetscInt i = 0; i < width; i += ROUND) {
+    const PetscReal *x = twice + (ahead ? 0 : width) + i;
+    Lanes part[ROUND / LANES] = {{0}};
+    for (PetscInt q = 0; q < n; q++, x += step)
+      for (int r = 0; r < ROUND / LANES; r++) part[r] += weight[q] * LanesAt(x + LANES * r);
+    for (int r = 0; r < ROUND / LANES; r++) LanesPut(part[r], sum + i + LANES * r);
+  }
+}
+
 /* sum_k = SUM_q weight_q (X_{k-q} - X_0), with markers counted round the curve. */
 static void Convolve(Spectral s, int each, const PetscReal weight[], const PetscScalar X[]) {
   const PetscInt width = each * s->n;
   for (PetscInt i = 0; i < width; i++) s->twice[i] = s->twice[width + i] = X[i] - X[i % each];
-  for (PetscInt i = 0; i < width; i += ROUND) {
-    const PetscReal *x = s->twice + width + i;
-    Lanes sum[ROUND / LANES] = {{0}};
-    for (PetscInt q = 0; q < s->n; q++, x -= each)
-      for (int r = 0; r < ROUND / LANES; r++) sum[r] += weight[q] * LanesAt(x + LANES * r);
-    for (int r = 0; r < ROUND / LANES; r++) LanesPut(sum[r], s->sum + i + LANES * r);
-  }
+  ConvolveRound(s->n, each, PETSC_FALSE, weight, s->twice, s->sum);
 }
 
 void SpectralDerivative(Spectral s, int power, PetscReal scale, const PetscScalar X[], PetscScalar Y[]) {
