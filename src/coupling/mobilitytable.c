@@ -50,6 +50,11 @@ static PetscErrorCode Average(MobilityTable m) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Whether the solver is made for each table. */
+static PetscBool IsLarge(Grid g) {
+  return (PetscReal)g->n[0] * g->n[1] > KEPT_CELLS ? PETSC_TRUE : PETSC_FALSE;
+}
+
 PetscErrorCode MobilityTableCreate(const FluidSpec *spec, const Kernel *kernel, PetscReal reach, MobilityTable *out) {
   FluidSpec box = *spec;
   MobilityTable m;
@@ -71,6 +76,7 @@ PetscErrorCode MobilityTableCreate(const FluidSpec *spec, const Kernel *kernel, 
   PetscCall(OffsetTableCreate(size, &m->mean));
   for (int d = 0; d < 2; d++) size[d] += LAG;
   PetscCall(OffsetTableCreate(size, &m->green));
+  if (!IsLarge(g)) PetscCall(StokesCreate(m->periodic, &m->stokes));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -98,7 +104,8 @@ static PetscErrorCode Gather(Grid g, Field f, const PetscScalar a[], const Petsc
   for (PetscInt j = -sy; j <= sy; j++) {
     const PetscInt row = Modulo(j, g->n[1]) - g->first;
     if (row < 0 || row >= g->rows[f]) continue;
-    for (PetscInt i = -sx; i <= sx; i++) window[(j + sy) * nx + i + sx] = a[row * g->columns[f] + Modulo(i, g->n[0])];
+    for (PetscInt i = 0, at = Modulo(-sx, g->n[0]); i < nx; i++, at = at + 1 < g->n[0] ? at + 1 : 0)
+      window[(j + sy) * nx + i] = a[row * g->columns[f] + at];
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, window, (PetscMPIInt)(nx * ny), MPIU_REAL, MPI_SUM, g->comm));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -124,7 +131,6 @@ static PetscErrorCode UnitResponse(MobilityTable m, int source, Vec u, Vec p) {
 }
 
 PetscErrorCode MobilityTableSetUp(MobilityTable m, PetscReal alpha) {
-  const PetscInt *n = m->periodic->grid->n;
   Vec u, p;
   PetscFunctionBeginUser;
   if (alpha == m->alpha) PetscFunctionReturn(PETSC_SUCCESS);
@@ -137,7 +143,7 @@ PetscErrorCode MobilityTableSetUp(MobilityTable m, PetscReal alpha) {
   PetscCall(Average(m));
   PetscCall(VecDestroy(&u));
   PetscCall(VecDestroy(&p));
-  if ((PetscReal)n[0] * n[1] > KEPT_CELLS) PetscCall(StokesDestroy(&m->stokes));
+  if (IsLarge(m->periodic->grid)) PetscCall(StokesDestroy(&m->stokes));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

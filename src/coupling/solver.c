@@ -51,6 +51,7 @@ static PetscErrorCode CreateKSP(CoupledSolver s, PetscReal rtol) {
   PetscCall(KSPGetInitialGuessNonzero(s->ksp, &s->guess)); /* KSP itself solves for the change */
   PetscCall(KSPSetInitialGuessNonzero(s->ksp, PETSC_FALSE));
   PetscCall(KSPSetConvergenceTest(s->ksp, Converged, s, NULL));
+  PetscCall(KSPSetUp(s->ksp));
   PetscCall(PetscObjectTypeCompare((PetscObject)s->ksp, KSPFGMRES, &s->preconditioner->flexible));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -101,16 +101,13 @@ static void SlipAcross(const WallPair *pair, PetscInt n, PetscScalar slip[]) {
   for (PetscInt j = 0; j < n; j++) {
     const PetscReal *row = pair->cross.value + pair->cross.row[j];
     const PetscInt reach = pair->cross.row[j + 1] - pair->cross.row[j];
+    Lanes sum[2] = {{0}, {0}}; /* entry k has wave number k + 1 */
+    for (PetscInt k = 0; k < reach; k += LANES)
+      for (int side = 0; side < 2; side++) sum[side] += LanesAt(row + k) * LanesAt(pair->line[side] + k);
     for (int side = 0; side < 2; side++) {
-      const double *force = pair->line[side];
-      Lanes sum = {0}; /* entry k has wave number k + 1 */
-      PetscInt k = 0;
-      for (; k + LANES <= reach; k += LANES) sum += LanesAt(row + k) * LanesAt(force + k);
-      PetscReal odd = sum[0] + sum[2], even = sum[1] + sum[3];
-      for (; k < reach; k += 2) odd += row[k] * force[k];
-      for (k = reach / LANES * LANES + 1; k < reach; k += 2) even += row[k] * force[k];
       const PetscInt face = side ? n - 1 - j : j;
       const PetscReal sign = side ? -2 : 2; /* 2: FFTW's sine transforms are twice the sum */
+      const PetscReal odd = sum[side][0] + sum[side][2], even = sum[side][1] + sum[side][3];
       slip[face] += sign * (even + odd);
       slip[n + face] += sign * (even - odd);
     }
@@ -150,12 +147,21 @@ PetscErrorCode WallsInvert(Walls w, int sweeps, PetscScalar d[]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A profile a[n], whose entry j is j + offset cells from the wall, at eta cells from it: linear between the entries and
-   beyond the last, constant closer to the wall than the first. */
-static PetscReal Interpolated(PetscInt n, const PetscReal a[], PetscReal offset, PetscReal eta) {
+/* Where a profile a[n], whose entry j is j + offset cells from the wall, is read at eta cells from it: linear between
+   the entries and beyond the last, constant closer to the wall than the first. */
+typedef struct {
+  PetscInt j;
+  PetscReal part;
+} ProfilePlace;
+
+static ProfilePlace FindPlace(PetscInt n, PetscReal offset, PetscReal eta) {
   const PetscReal at = PetscMax(eta - offset, 0);
   const PetscInt j = PetscMin((PetscInt)at, n - 2);
-  return a[j] + (at - j) * (a[j + 1] - a[j]);
+  return (ProfilePlace){j, at - j};
+}
+
+static inline PetscReal Interpolated(const PetscReal a[], ProfilePlace at) {
+  return a[at.j] + at.part * (a[at.j + 1] - a[at.j]);
 }
 
 /* Velocity at marker m of 2M numbers a column, X its place, of all waves of pair dir for the amplitude 1: columns of
@@ -167,14 +173,15 @@ static void WavesAtMarker(Walls w, int dir, PetscInt m, const PetscScalar X[2], 
   const PetscReal angle = PETSC_PI * (X[1 - dir] - g->lo[1 - dir]) / (g->hi[1 - dir] - g->lo[1 - dir]);
   const PetscReal first[2] = {PetscCosReal(angle), PetscSinReal(angle)};
   const PetscReal eta[2] = {(X[dir] - g->lo[dir]) / g->h, (g->hi[dir] - X[dir]) / g->h};
-  PetscReal cosine = first[0], sine = first[1];
-  for (PetscInt k = 0; k < waves->modes; k++) {
-    const PetscReal *along = waves->profile + 2 * k * n, *away = along + n, before = cosine;
-    for (int side = 0; side < 2; side++) {
-      PetscReal *at = U + 2 * ((side * waves->modes + k) * w->markers + m);
-      at[1 - dir] = sine * Interpolated(n, along, 0.5, eta[side]);
-      at[dir] = (side ? -1 : 1) * cosine * Interpolated(n, away, 1, eta[side]);
-    }
+  const ProfilePlace along[2] = {FindPlace(n, 0.5, eta[0]), FindPlace(n, 0.5, eta[1])};
+  const ProfilePlace away[2] = {FindPlace(n, 1, eta[0]), FindPlace(n, 1, eta[1])};
+  PetscReal cosine = first[0], sine = first[1], *one = U + 2 * m, *two = one + 2 * waves->modes * w->markers;
+  for (PetscInt k = 0; k < waves->modes; k++, one += 2 * w->markers, two += 2 * w->markers) {
+    const PetscReal *profile = waves->profile + 2 * k * n, before = cosine;
+    one[1 - dir] = sine * Interpolated(profile, along[0]);
+    one[dir] = cosine * Interpolated(profile + n, away[0]);
+    two[1 - dir] = sine * Interpolated(profile, along[1]);
+    two[dir] = -cosine * Interpolated(profile + n, away[1]);
     cosine = cosine * first[0] - sine * first[1];
     sine = sine * first[0] + before * first[1];
   }

@@ -1,5 +1,6 @@
 /* Wall forces: their place on the grid. wallinverse.c finds them. */
 #include "fluid/walls.h"
+#include "base/lanes.h"
 
 #define DECAY 20      /* e^-20: a mode that has decayed so far is not felt */
 #define LONG_WAVES 48 /* modes of a pair whose flow at the markers is kept */
@@ -7,6 +8,14 @@
 /* The velocity component along the walls of pair dir (0 walls in x, 1 walls in y). */
 static Field Tangential(int dir) {
   return dir ? FIELD_U : FIELD_V;
+}
+
+/* Of whole vectors, with zeros behind the line's end. */
+static PetscErrorCode AllocateLine(const WallPair *p, double **line) {
+  PetscFunctionBeginUser;
+  *line = fftw_alloc_real((size_t)p->length + LANES);
+  PetscCall(PetscArrayzero(*line, p->length + LANES));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* The lines of pair dir and their transforms: sines between the other pair's walls, Fourier modes where that direction
@@ -21,11 +30,11 @@ static PetscErrorCode CreatePair(Walls w, int dir) {
   p->start = w->n;
   w->n += 2 * p->length;
   PetscCall(PetscMalloc2(p->length, &p->own, p->length, &p->other));
-  for (int side = 0; side < 2; side++) p->line[side] = fftw_alloc_real((size_t)p->length);
+  for (int side = 0; side < 2; side++) PetscCall(AllocateLine(p, &p->line[side]));
   if (g->wall[1 - dir])
     PetscCall(SineMatrixCreate(SINE_MATRIX_ENTRIES, p->length, PetscSqrtReal(2.0 * (p->length + 1)), &p->sines));
   if (p->sines.matrix[0]) {
-    p->spare = fftw_alloc_real((size_t)p->length);
+    PetscCall(AllocateLine(p, &p->spare));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   double *line = p->line[0];
@@ -46,9 +55,9 @@ static PetscErrorCode CreateReach(Walls w, int dir) {
   cross->row[0] = 0;
   for (PetscInt j = 0, reach = modes; j < faces; j++) {
     while (reach > 1 && 2 * PetscSinReal(PETSC_PI * reach / (2.0 * g->n[1 - dir])) * j > DECAY) reach--;
-    cross->row[j + 1] = cross->row[j] + reach;
+    cross->row[j + 1] = cross->row[j] + (reach + LANES - 1) / LANES * LANES;
   }
-  PetscCall(PetscMalloc1(cross->row[faces], &cross->value));
+  PetscCall(PetscCalloc1(cross->row[faces], &cross->value));
   waves->modes = PetscMin(modes, LONG_WAVES);
   PetscCall(PetscMalloc1(2 * waves->modes * g->n[dir], &waves->profile));
   for (int side = 0; side < 2; side++) PetscCall(PetscCalloc1(waves->modes, &waves->amplitude[side]));

@@ -11,7 +11,7 @@
    which keeps of each face the modes that reach it. Empty where only one pair exists. */
 typedef struct {
   PetscReal *value; /* row by row */
-  PetscInt *row;    /* [faces + 1] where a face's row starts */
+  PetscInt *row;    /* [faces + 1] where a face's row starts; rows are whole vectors (LANES) */
 } CrossSlip;
 
 /* Flow that the longest waves of a pair's forces drive inside the box. None where only one pair exists. */
@@ -27,7 +27,7 @@ typedef struct {
   PetscInt start;              /* of the first wall's line among the unknowns; the other one's follows */
   PetscReal *own, *other;      /* [length] a mode's force per residual on the same wall, and on the facing one */
   double *spare;               /* [length] takes a line's place at its transform by a matrix */
-  double *line[2];             /* [side][length] residuals, then the modes of the forces that cancel them */
+  double *line[2];             /* [side][length and zeros] residuals, then the modes of the forces that cancel them */
   SineMatrix sines;            /* of short lines, in the place of the plans; twice the sums, as FFTW's */
   fftw_plan forward, backward; /* of either line; the same one where they do the same */
   CrossSlip cross;
