@@ -63,10 +63,27 @@ static void SetUpPair(Walls w, int dir) {
   }
 }
 
-static void SetUp(Walls w) {
-  if (w->alpha == w->fluid->alpha) return;
+/* The walls in y of a square box do what those in x do. */
+static PetscErrorCode CopyPair(Walls w) {
+  const WallPair *from = &w->pair[0];
+  WallPair *to = &w->pair[1];
+  PetscFunctionBeginUser;
+  PetscCall(PetscArraycpy(to->own, from->own, from->length));
+  PetscCall(PetscArraycpy(to->other, from->other, from->length));
+  PetscCall(PetscArraycpy(to->cross.value, from->cross.value, from->cross.row[from->length]));
+  PetscCall(PetscArraycpy(to->waves.profile, from->waves.profile, 2 * from->waves.modes * w->fluid->grid->n[0]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode SetUp(Walls w) {
+  const Grid g = w->fluid->grid;
+  const PetscBool square = g->wall[0] && g->wall[1] && g->n[0] == g->n[1] ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionBeginUser;
+  if (w->alpha == w->fluid->alpha) PetscFunctionReturn(PETSC_SUCCESS);
   w->alpha = w->fluid->alpha;
-  for (int dir = 0; dir < 2; dir++) SetUpPair(w, dir);
+  for (int dir = 0; dir < (square ? 1 : 2); dir++) SetUpPair(w, dir);
+  if (square) PetscCall(CopyPair(w));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* One line of a pair, there (way 0) or back. */
@@ -129,7 +146,7 @@ PetscErrorCode WallsInvert(Walls w, int sweeps, PetscScalar d[]) {
   const PetscBool two = w->pair[0].cross.value ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionBeginUser;
   if (!w->n) PetscFunctionReturn(PETSC_SUCCESS);
-  SetUp(w);
+  PetscCall(SetUp(w));
   PetscCall(PetscArrayzero(w->slip, w->n));
   for (int sweep = 0; sweep < (two ? sweeps : 1); sweep++)
     for (int dir = 1; dir >= 0; dir--) {
@@ -191,7 +208,7 @@ PetscErrorCode WallsSetMarkers(Walls w, PetscInt M, const PetscScalar X[]) {
   const PetscInt modes[2] = {w->pair[0].waves.modes, w->pair[1].waves.modes};
   PetscFunctionBeginUser;
   if (!modes[0]) PetscFunctionReturn(PETSC_SUCCESS);
-  SetUp(w);
+  PetscCall(SetUp(w));
   if (w->markers != M) PetscCall(PetscFree(w->flow));
   if (!w->flow) PetscCall(PetscMalloc1(4 * (modes[0] + modes[1]) * M, &w->flow));
   w->markers = M;
