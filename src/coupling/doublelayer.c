@@ -18,7 +18,9 @@ PetscErrorCode DoubleLayerCreate(NearField near, const PetscReal ratio[], Double
   PetscCall(PetscMalloc2(2 * l->M, &s->normal, l->M, &s->along));
   PetscCall(PetscCalloc3(2 * l->M, &s->jump, 2 * l->M, &s->plain, DIPOLE_COUNT * l->M, &s->tensor));
   if (!near->free) {
-    PetscCall(PetscMalloc2(DIPOLE_COUNT * l->M, &s->dipole, DIPOLE_SPOTS * l->M, &s->spot));
+    PetscCall(PetscMalloc1(DIPOLE_COUNT * l->M, &s->dipole));
+    PetscCall(PetscCalloc1(DIPOLE_SPOTS * l->M, &s->spot));
+    PetscCall(DipoleListCreate(near->markers->grid, &s->list));
     PetscCall(LatticeDipoles(DOUBLE_FACE_CELLS + OFFSET_LAGS, s->lattice));
     PetscCall(DoubleImageCreate(near->image, s->lattice, &s->image));
   }
@@ -33,7 +35,9 @@ PetscErrorCode DoubleLayerDestroy(DoubleLayer *layer) {
   if (!s) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscFree3(s->ratio, s->length, s->column));
   PetscCall(PetscFree2(s->normal, s->along));
-  PetscCall(PetscFree2(s->dipole, s->spot));
+  PetscCall(PetscFree(s->dipole));
+  PetscCall(PetscFree(s->spot));
+  if (s->list) PetscCall(DipoleListDestroy(&s->list));
   PetscCall(PetscFree3(s->jump, s->plain, s->tensor));
   for (int c = 0; c < 2; c++) PetscCall(OffsetTableDestroy(&s->lattice[c]));
   PetscCall(DoubleImageDestroy(&s->image));
@@ -71,9 +75,10 @@ static PetscErrorCode PlaceDipoles(DoubleLayer s) {
       if (f->free) continue;
       DipoleStencilsUnwrapped(g, f->markers->X + 2 * k, part);
       for (int c = 0; c < DIPOLE_COUNT; c++) StencilPad(&part[c], &s->dipole[DIPOLE_COUNT * k + c]);
-      DipoleSpots(g, f->nu, f->markers->X + 2 * k, s->spot + DIPOLE_SPOTS * k);
+      DipoleSpotsOf(g, f->nu, part, s->spot + DIPOLE_SPOTS * k);
     }
   }
+  if (!f->free) PetscCall(DipoleListPlace(s->list, l->M, s->spot));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -184,11 +189,10 @@ void DoubleLayerMean(DoubleLayer s, PetscReal mean[2]) {
 }
 
 PetscErrorCode DoubleLayerSpread(DoubleLayer s, Vec w, Vec source, PetscReal mean[2]) {
-  const NearField f = s->near;
   PetscFunctionBeginUser;
-  if (f->free) PetscFunctionReturn(PETSC_SUCCESS);
+  if (s->near->free) PetscFunctionReturn(PETSC_SUCCESS);
   DoubleLayerMean(s, mean);
-  PetscCall(DipolesSpread(f->markers->grid, f->bodies->layout->M, s->spot, s->tensor, w, source));
+  PetscCall(DipoleListSpread(s->list, s->tensor, w, source));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -196,7 +200,7 @@ PetscErrorCode DoubleLayerRows(DoubleLayer s, const PetscReal profile[], DipoleR
   PetscReal mean[2] = {0, 0};
   PetscFunctionBeginUser;
   DoubleLayerMean(s, mean);
-  PetscCall(DipoleRowsSet(rows, s->near->bodies->layout->M, s->spot, s->tensor, profile, mean));
+  PetscCall(DipoleRowsSet(rows, s->list, s->tensor, profile, mean));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

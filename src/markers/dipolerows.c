@@ -1,15 +1,12 @@
 #include "markers/dipolerows.h"
 
-#define BELOW 1 /* rows below the own ones, */
-#define ABOVE 2 /* and above them, of which the force on the row above has to know */
-
-/* A field's row j, which may be up to BELOW below the own ones or ABOVE above them. */
+/* A field's row j, which may be up to DIPOLE_BELOW below the own ones or DIPOLE_ABOVE above them. */
 static PetscScalar *Row(DipoleRows d, Field f, PetscInt j) {
-  return d->field[f] + (j + BELOW) * d->grid->n[0];
+  return d->field[f] + (j + DIPOLE_BELOW) * d->grid->n[0];
 }
 
 PetscErrorCode DipoleRowsCreate(Grid g, PetscReal nu, DipoleRows *out) {
-  const PetscInt size = (g->rows[FIELD_U] + BELOW + ABOVE) * g->n[0];
+  const PetscInt size = (g->rows[FIELD_U] + DIPOLE_BELOW + DIPOLE_ABOVE) * g->n[0];
   DipoleRows d;
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&d));
@@ -30,41 +27,20 @@ PetscErrorCode DipoleRowsDestroy(DipoleRows *rows) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static void Clear(DipoleRows d) {
-  const PetscInt n = (d->window[1] - d->window[0]) * d->grid->n[0];
-  for (int f = 0; f < 3 && n > 0; f++) (void)PetscArrayzero(Row(d, (Field)f, d->window[0]), n);
-  d->window[0] = d->grid->rows[FIELD_U] + ABOVE;
-  d->window[1] = -BELOW;
-  (void)PetscArrayzero(d->mean, d->grid->n[1]);
-}
-
-/* The first local row that is this row of the grid; others follow after a period. */
-static inline PetscInt FirstRow(const Grid g, PetscInt entry) {
-  PetscInt j = entry - g->first;
-  if (g->wall[1]) return j;
-  while (j - g->n[1] >= -BELOW) j -= g->n[1];
-  while (j < -BELOW) j += g->n[1];
-  return j;
-}
-
-static void Add(DipoleRows d, const DipoleSpot *s, PetscReal part) {
-  const Grid g = d->grid;
-  const PetscReal *weight = s->line[0].weight;
-  const PetscReal mean = LanesSum(LanesAt(weight) + LanesAt(weight + LANES)) / (PetscReal)g->n[0];
-  const PetscInt end = g->rows[FIELD_U] + ABOVE, n = g->n[1];
-  PetscInt low = d->window[0], high = d->window[1];
-  for (PetscInt q = 0; q < s->line[1].n; q++) {
-    const PetscInt entry = s->line[1].first + q;
-    const PetscReal value = part * s->line[1].weight[q];
-    if (s->field == FIELD_P) d->mean[entry < 0 ? entry + n : entry < n ? entry : entry - n] += mean * value;
-    for (PetscInt j = FirstRow(g, entry); j >= -BELOW && j < end; j += g->wall[1] ? end + BELOW : n) {
-      DipoleAddRow(g, s, value, Row(d, s->field, j));
-      low = PetscMin(low, j);
-      high = PetscMax(high, j + 1);
-    }
+/* The mean sources of all rows of v. */
+static void Means(DipoleRows d, const DipoleList list, const PetscReal T[]) {
+  const PetscInt n = d->grid->n[1];
+  (void)PetscArrayzero(d->mean, n);
+  for (PetscInt k = 0; k < DIPOLE_SPOTS * list->M; k++) {
+    const DipoleSpot *s = &list->spot[k];
+    const DipoleLine *y = &s->line[1];
+    if (s->field != FIELD_P || !y->n) continue;
+    const PetscReal *weight = s->line[0].weight;
+    const PetscReal along = LanesSum(LanesAt(weight) + LanesAt(weight + LANES)) / (PetscReal)d->grid->n[0];
+    const PetscReal value = along * s->value * T[k / DIPOLE_SPOTS * DIPOLE_COUNT + (PetscInt)s->part];
+    for (PetscInt q = 0, j = y->first; q < y->n; q++, j++)
+      d->mean[j < 0 ? j + n : j < n ? j : j - n] += value * y->weight[q];
   }
-  d->window[0] = low;
-  d->window[1] = high;
 }
 
 /* From a row's source to b, whose mean is zero. */
@@ -90,17 +66,20 @@ static void SumMeans(const Grid g, PetscScalar mean[]) {
   for (PetscInt j = 0; j < g->n[1] && !g->wall[1]; j++) mean[j] -= sum / (PetscReal)g->n[1];
 }
 
-PetscErrorCode DipoleRowsSet(DipoleRows d, PetscInt M, const DipoleSpot spot[], const PetscReal T[],
-                             const PetscReal profile[], const PetscReal mean[2]) {
+PetscErrorCode DipoleRowsSet(DipoleRows d, const DipoleList list, const PetscReal T[], const PetscReal profile[],
+                             const PetscReal mean[2]) {
   const Grid g = d->grid;
   PetscFunctionBeginUser;
-  Clear(d);
-  for (PetscInt k = 0; k < DIPOLE_SPOTS * M; k++) {
-    const PetscReal *t = T + k / DIPOLE_SPOTS * DIPOLE_COUNT;
-    if (t[0] != 0 || t[1] != 0 || t[2] != 0) Add(d, &spot[k], spot[k].value * t[spot[k].part]);
-  }
-  for (PetscInt j = d->window[0]; j < d->window[1]; j++)
+  Means(d, list, T);
+  for (int c = 0; c < 2; c++) d->window[c] = list->window[c];
+  for (PetscInt j = d->window[0]; j < d->window[1]; j++) {
+    for (int f = 0; f < 3; f++) {
+      PetscScalar *row = Row(d, (Field)f, j);
+      for (PetscInt i = 0; i < g->n[0]; i++) row[i] = 0;
+      DipoleListAddRow(list, (Field)f, j, T, row);
+    }
     SumRow(g->n[0], g->h, d->mean[(j + g->first + g->n[1]) % g->n[1]], Row(d, FIELD_P, j));
+  }
   SumMeans(g, d->mean);
   for (PetscInt j = 0; j < g->n[1]; j++) {
     d->flow[j] = mean[0] * (profile ? profile[j] : g->wall[1] ? 0 : 1);

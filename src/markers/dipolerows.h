@@ -7,7 +7,7 @@
    source = G^T of the velocity. Then u = w + b, w being the flow of the forces + nu L_u b, and v's mean flow adds to
    the pressure only (docs/fluid.md, Stream function). */
 #pragma once
-#include "markers/dipoles.h"
+#include "markers/dipolelist.h"
 
 typedef struct _p_DipoleRows *DipoleRows;
 struct _p_DipoleRows {
@@ -23,10 +23,10 @@ struct _p_DipoleRows {
 PETSC_EXTERN PetscErrorCode DipoleRowsCreate(Grid grid, PetscReal nu, DipoleRows *rows);
 PETSC_EXTERN PetscErrorCode DipoleRowsDestroy(DipoleRows *rows);
 
-/* DipoleRowsSet - those of M markers with spots[DIPOLE_SPOTS M] and tensors T[3M], which add up to a source of zero; u
-   has the mean flow mean[0] times the profile[rows of all], or, NULL, in a box that is periodic both ways u and v have
-   mean[2]. Not collective. */
-PETSC_EXTERN PetscErrorCode DipoleRowsSet(DipoleRows rows, PetscInt M, const DipoleSpot spot[], const PetscReal T[],
+/* DipoleRowsSet - those of the list with tensors T[3M], which add up to a source of zero; u has the mean flow mean[0]
+   times the profile[rows of all], or, NULL, in a box that is periodic both ways u and v have mean[2]. Not collective.
+ */
+PETSC_EXTERN PetscErrorCode DipoleRowsSet(DipoleRows rows, const DipoleList list, const PetscReal T[],
                                           const PetscReal profile[], const PetscReal mean[2]);
 
 /* DipoleRowsAddForce - row += nu L_u b and, if `own`, the dipoles' force, in local row j of u or v; of u the row above

@@ -17,8 +17,7 @@ void DipoleStencilsUnwrapped(Grid g, const PetscReal X[2], Stencil s[DIPOLE_COUN
 }
 
 /* On the grid: entries within a period, folded at walls. */
-static void OnGrid(Grid g, const PetscReal X[2], Stencil s[DIPOLE_COUNT]) {
-  DipoleStencilsUnwrapped(g, X, s);
+static void Wrap(Grid g, Stencil s[DIPOLE_COUNT]) {
   for (int k = 0; k < DIPOLE_COUNT; k++)
     for (int dir = 0; dir < 2; dir++) {
       PetscInt *first = &s[k].first[dir];
@@ -54,7 +53,7 @@ static void MakeLine(Grid g, Field field, const Stencil *s, int dir, PetscInt be
   Inside(g, field, dir, line);
 }
 
-void DipoleSpots(Grid g, PetscReal nu, const PetscReal X[2], DipoleSpot spot[DIPOLE_SPOTS]) {
+void DipoleSpotsOf(Grid g, PetscReal nu, Stencil s[DIPOLE_COUNT], DipoleSpot spot[DIPOLE_SPOTS]) {
   const PetscReal force = -nu / PetscPowRealInt(g->h, 3), half = -0.5 / PetscSqr(g->h);
   enum { PLAIN = -1 };
   static const struct {
@@ -64,8 +63,7 @@ void DipoleSpots(Grid g, PetscReal nu, const PetscReal X[2], DipoleSpot spot[DIP
   } form[DIPOLE_SPOTS] = {{FIELD_U, DIPOLE_XX, {1, PLAIN}},     {FIELD_U, DIPOLE_XY, {PLAIN, 0}},
                           {FIELD_V, DIPOLE_XY, {0, PLAIN}},     {FIELD_V, DIPOLE_YY, {PLAIN, 1}},
                           {FIELD_P, DIPOLE_XX, {PLAIN, PLAIN}}, {FIELD_P, DIPOLE_YY, {PLAIN, PLAIN}}};
-  Stencil s[DIPOLE_COUNT];
-  OnGrid(g, X, s);
+  Wrap(g, s);
   for (int q = 0; q < DIPOLE_SPOTS; q++) {
     spot[q].field = form[q].field;
     spot[q].part = form[q].part;
@@ -73,6 +71,12 @@ void DipoleSpots(Grid g, PetscReal nu, const PetscReal X[2], DipoleSpot spot[DIP
     for (int dir = 0; dir < 2; dir++)
       MakeLine(g, form[q].field, &s[form[q].part], dir, form[q].before[dir], &spot[q].line[dir]);
   }
+}
+
+void DipoleSpots(Grid g, PetscReal nu, const PetscReal X[2], DipoleSpot spot[DIPOLE_SPOTS]) {
+  Stencil s[DIPOLE_COUNT];
+  DipoleStencilsUnwrapped(g, X, s);
+  DipoleSpotsOf(g, nu, s, spot);
 }
 
 /* SUM of a line's weights, and of them times the places of its entries along dir (length), from the middle. */

@@ -33,10 +33,12 @@ typedef struct {
 
 /* DipoleSpots - of a marker at X with unit parts of a tensor (velocity times length): -nu DIV T/h^2 on the faces,
    -(T_xx
-   + T_yy)/(2 h^2), which is G^T of the velocity, in cells. DipoleEntry - row (direction 1) or column of entry k of a
+   + T_yy)/(2 h^2), which is G^T of the velocity, in cells. DipoleSpotsOf - from its unwrapped stencils, which are
+   overwritten. DipoleEntry - row (direction 1) or column of entry k of a
    spot, of all ranks' rows. DipoleAddRow - value times the spot's weights along x, added to a row of the grid. Not
    collective. */
 PETSC_EXTERN void DipoleSpots(Grid grid, PetscReal nu, const PetscReal X[2], DipoleSpot spot[DIPOLE_SPOTS]);
+PETSC_EXTERN void DipoleSpotsOf(Grid grid, PetscReal nu, Stencil stencil[DIPOLE_COUNT], DipoleSpot spot[DIPOLE_SPOTS]);
 static inline PetscInt DipoleEntry(Grid g, const DipoleSpot *s, int direction, PetscInt k) {
   const PetscInt entry = s->line[direction].first + k, n = g->n[direction];
   return g->wall[direction] ? entry : (entry + n) % n;

@@ -1,0 +1,101 @@
+#include "markers/dipolelist.h"
+
+static PetscInt AllRows(DipoleList d) {
+  return d->grid->rows[FIELD_U] + DIPOLE_BELOW + DIPOLE_ABOVE;
+}
+
+PetscErrorCode DipoleListCreate(Grid g, DipoleList *out) {
+  DipoleList d;
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&d));
+  *out = d;
+  d->grid = g;
+  for (int f = 0; f < 3; f++) PetscCall(PetscCalloc1(AllRows(d) + 2, &d->start[f]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode DipoleListDestroy(DipoleList *list) {
+  PetscFunctionBeginUser;
+  if (!*list) PetscFunctionReturn(PETSC_SUCCESS);
+  for (int f = 0; f < 3; f++) {
+    PetscCall(PetscFree((*list)->start[f]));
+    PetscCall(PetscFree((*list)->hit[f]));
+  }
+  PetscCall(PetscFree(*list));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The first row from the lowest on that is this row of the grid; others follow after a period. */
+static inline PetscInt FirstRow(const Grid g, PetscInt entry) {
+  PetscInt j = entry - g->first + DIPOLE_BELOW;
+  if (g->wall[1]) return j;
+  while (j >= g->n[1]) j -= g->n[1];
+  while (j < 0) j += g->n[1];
+  return j;
+}
+
+/* Counts a spot's rows in start[j + 2], or (hit) puts them where start[j + 1] says. */
+static void Visit(DipoleList d, PetscInt k, PetscInt rows, PetscInt start[], DipoleHit hit[]) {
+  const Grid g = d->grid;
+  const DipoleSpot *s = &d->spot[k];
+  const PetscInt period = g->wall[1] ? rows : g->n[1], part = k / DIPOLE_SPOTS * DIPOLE_COUNT + (PetscInt)s->part;
+  for (PetscInt q = 0; q < s->line[1].n; q++)
+    for (PetscInt j = FirstRow(g, s->line[1].first + q); j >= 0 && j < rows; j += period)
+      if (hit)
+        hit[start[j + 1]++] = (DipoleHit){k, part, s->value * s->line[1].weight[q]};
+      else
+        start[j + 2]++;
+}
+
+/* The rows that any spot reaches. */
+static void FindWindow(DipoleList d) {
+  const PetscInt rows = AllRows(d);
+  d->window[0] = rows - DIPOLE_BELOW;
+  d->window[1] = -DIPOLE_BELOW;
+  for (int f = 0; f < 3; f++)
+    for (PetscInt j = 0; j < rows; j++) {
+      if (d->start[f][j] == d->start[f][j + 1]) continue;
+      d->window[0] = PetscMin(d->window[0], j - DIPOLE_BELOW);
+      d->window[1] = PetscMax(d->window[1], j - DIPOLE_BELOW + 1);
+    }
+}
+
+PetscErrorCode DipoleListPlace(DipoleList d, PetscInt M, const DipoleSpot spot[]) {
+  const PetscInt rows = AllRows(d);
+  PetscFunctionBeginUser;
+  d->M = M;
+  d->spot = spot;
+  for (int f = 0; f < 3; f++) PetscCall(PetscArrayzero(d->start[f], rows + 2));
+  for (PetscInt k = 0; k < DIPOLE_SPOTS * M; k++) Visit(d, k, rows, d->start[spot[k].field], NULL);
+  for (int f = 0; f < 3; f++) {
+    for (PetscInt j = 0; j < rows; j++) d->start[f][j + 2] += d->start[f][j + 1];
+    if (d->start[f][rows + 1] <= d->room[f]) continue;
+    d->room[f] = d->start[f][rows + 1] * 11 / 10;
+    PetscCall(PetscFree(d->hit[f]));
+    PetscCall(PetscMalloc1(d->room[f], &d->hit[f]));
+  }
+  for (PetscInt k = 0; k < DIPOLE_SPOTS * M; k++) Visit(d, k, rows, d->start[spot[k].field], d->hit[spot[k].field]);
+  FindWindow(d);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+void DipoleListAddRow(DipoleList d, Field f, PetscInt j, const PetscReal T[], PetscScalar row[]) {
+  const PetscInt *start = d->start[f] + j + DIPOLE_BELOW;
+  for (const DipoleHit *hit = d->hit[f] + start[0], *end = d->hit[f] + start[1]; hit < end; hit++)
+    DipoleAddRow(d->grid, &d->spot[hit->spot], hit->value * T[hit->part], row);
+}
+
+PetscErrorCode DipoleListSpread(DipoleList d, const PetscReal T[], Vec w, Vec source) {
+  const Grid g = d->grid;
+  PetscScalar *a[3];
+  PetscFunctionBeginUser;
+  PetscCall(VecGetArray(w, &a[FIELD_U]));
+  PetscCall(VecGetArray(source, &a[FIELD_P]));
+  a[FIELD_V] = a[FIELD_U] + GridLocalU(g);
+  for (int f = 0; f < 3; f++)
+    for (PetscInt j = PetscMax(0, d->window[0]); j < PetscMin(g->rows[f], d->window[1]); j++)
+      DipoleListAddRow(d, (Field)f, j, T, a[f] + j * g->columns[f]);
+  PetscCall(VecRestoreArray(source, &a[FIELD_P]));
+  PetscCall(VecRestoreArray(w, &a[FIELD_U]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
