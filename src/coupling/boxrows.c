@@ -39,7 +39,8 @@ void BoxTableRows(const BoxTable *t, const PetscReal X[2], PetscReal part, int f
     for (int c = 0; c < count; c++) {
       const BoxBlock *b = &t->block[q];
       const PetscReal *fx = vx + b->first[first + c][0], *fy = vy + b->first[first + c][1];
-      for (PetscInt k = 0; k < b->n[0] * b->n[1]; k++) weight[k] = part * fx[k / b->n[1]] * fy[k % b->n[1]];
+      for (PetscInt i = 0; i < b->n[0]; i++)
+        for (PetscInt j = 0; j < b->n[1]; j++) weight[i * b->n[1] + j] = part * fx[i] * fy[j];
       BoxBlockSum(b, first + c, 1, weight, rows + c * t->rank + b->start);
     }
 }
