@@ -78,13 +78,15 @@ static inline PetscReal CouplingBending(Coupling coupling) {
   return CouplingHasMembrane(coupling) ? coupling->membrane->bending : 0;
 }
 
-/* CouplingLag - the lag in a step with the time coefficient alpha (time): at most 1/alpha. Not collective. */
+/* CouplingLag - the lag in a step with the time coefficient alpha (time): at most COUPLING_MOST_LAG/alpha. Not
+   collective. */
+#define COUPLING_MOST_LAG 1.25
 static inline PetscReal CouplingLag(Coupling coupling, PetscReal alpha) {
-  return coupling->lag * alpha > 1 ? 1 / alpha : coupling->lag;
+  return PetscMin(coupling->lag, COUPLING_MOST_LAG / alpha);
 }
 
-/* CouplingGridPart - what of a step's new velocity E u the markers have: 1 - CouplingLag alpha, never below zero, where
-   stiff membranes would be driven by what should slow them. Not collective. */
+/* CouplingGridPart - what of a step's new velocity E u the markers have: 1 - CouplingLag alpha. Down to -1/4 C makes
+   up for it; below, stiff membranes would be driven by what should slow them. Not collective. */
 static inline PetscReal CouplingGridPart(Coupling coupling, PetscReal alpha) {
   return 1 - CouplingLag(coupling, alpha) * alpha;
 }
