@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import ctypes
 import functools
+import os
+from typing import Any, Callable
 
 import numpy as np
 from petsc4py import PETSc
@@ -17,6 +19,9 @@ from petves.program import LIBRARY, candidates
 
 MAX_MESSAGE = 512  # PETVES_MAX_MESSAGE
 MAX_PATH = 4096  # PETSC_MAX_PATH_LEN
+
+PETSC_ERR_USER = 83
+FlowFunction = Callable[[np.ndarray, np.ndarray, float], "tuple[Any, Any]"]
 
 Int = ctypes.c_int64 if np.dtype(PETSc.IntType).itemsize == 8 else ctypes.c_int32
 Handle = ctypes.c_void_p
@@ -122,3 +127,32 @@ def wrap(kind: str, handle: int) -> PETSc.Object:
 def communicator(comm: PETSc.Comm) -> int:
     """Return a petsc4py communicator as C functions take it."""
     return ctypes.c_void_p.from_address(_petsc4py("PyPetscComm_GetPtr", ctypes.c_void_p, ctypes.py_object)(comm)).value
+
+
+def flow_function(flow: FlowFunction, failed: list[BaseException]) -> Flow:
+    """Return a Python flow as C calls it; an exception is kept for the caller of the step."""
+
+    def call(time: float, n: int, positions: Any, velocities: Any, _context: Any) -> int:
+        try:
+            points = np.ctypeslib.as_array(positions, (n, 2))
+            out = np.ctypeslib.as_array(velocities, (n, 2))
+            out[:, 0], out[:, 1] = flow(points[:, 0].copy(), points[:, 1].copy(), time)
+        except BaseException as error:
+            failed.append(error)
+            return PETSC_ERR_USER
+        return 0
+
+    return Flow(call)
+
+
+def option_text(value: Any) -> bytes | None:
+    """Return a Python value as the program reads it: None stands for no value."""
+    if value is True:
+        return None
+    if value is False:
+        return b"false"
+    if isinstance(value, (list, tuple, np.ndarray)):
+        return b",".join(option_text(item) or b"true" for item in np.ravel(np.asarray(value, dtype=object)))
+    if isinstance(value, (float, np.floating)):
+        return repr(float(value)).encode()
+    return os.fsencode(value) if isinstance(value, os.PathLike) else str(value).encode()

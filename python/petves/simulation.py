@@ -15,14 +15,23 @@ import numpy as np
 from petsc4py import PETSc
 
 from petves.errors import Error
-from petves.library import MAX_MESSAGE, MAX_PATH, Flow, Handle, Int, communicator, library
+from petves.library import (
+    MAX_MESSAGE,
+    MAX_PATH,
+    Flow,
+    FlowFunction,
+    Handle,
+    Int,
+    communicator,
+    flow_function,
+    library,
+    option_text,
+)
 from petves.progress import progress_bar
 from petves.state import State
 
 Callback = Callable[["Simulation"], Any]
-FlowFunction = Callable[[np.ndarray, np.ndarray, float], "tuple[Any, Any]"]
 
-PETSC_ERR_USER = 83
 GO_ON, STOP, FAILED = range(3)
 """What a callback wants; the largest of all ranks' wishes counts."""
 
@@ -88,15 +97,14 @@ class Simulation(State):
         self._rows: list[tuple[float, ...]] = []
         self._gathered: dict[str, np.ndarray] = {}
         self._comm = comm or PETSc.COMM_WORLD
-        self._flow = Flow(0) if flow is None else _flow_function(flow, self._failed)
+        self._communicator = communicator(self._comm)
+        self._flow = Flow(0) if flow is None else flow_function(flow, self._failed)
         if flow is not None:
             options["flow_type"] = "custom"
         try:
             self._lib.PetscOptionsCreate(ctypes.byref(self._options))
             self._set_options(options_file, options)
-            self._call(
-                "SimulationCreateWithFlow", communicator(self._comm), self._flow, None, ctypes.byref(self._handle)
-            )
+            self._call("SimulationCreateWithFlow", self._communicator, self._flow, None, ctypes.byref(self._handle))
             self._learn()
             self._call("SimulationBegin", self._handle)
         except BaseException:
@@ -130,7 +138,7 @@ class Simulation(State):
 
     def _set_options(self, options_file: str | Path | None, options: dict[str, Any]) -> None:
         """Fill the simulation's own options database."""
-        comm = communicator(self._comm)
+        comm = self._communicator
         if options_file is not None:
             self._call("PetvesReadOptions", comm, self._options, os.fsencode(options_file))
         for name, value in options.items():
@@ -164,23 +172,34 @@ class Simulation(State):
         while not self._lib.SimulationGetColumn(self._handle, len(self._columns), ctypes.byref(name)) and name.value:
             self._columns[name.value.decode()] = len(self._columns)
         self._row = (ctypes.c_double * len(self._columns))()
-        self._places: list[int | None] | None = None  # where the gathered markers are
+        self._places: list[int | None] | None = None  # where the gathered markers are, which C says in:
+        self._found = [ctypes.c_void_p() for _ in range(3)]
+        self._found_by = [ctypes.byref(place) for place in self._found]
 
     def _call(self, function: str, *arguments: Any) -> None:
         """Call a C function with this simulation's options database; raise what went wrong."""
+        self._call_all((function, arguments))
+
+    def _call_all(self, *calls: tuple[str, Any]) -> None:
+        """Call C functions one after another, as `_call` does one: entered and left once, which a step feels."""
         if self._inside:
             raise Error("a simulation cannot be used inside its own step; copy what the flow needs beforehand")
         depth, code, cause = Int(), 0, None
         self._lib.PetvesEnter(self._options, self._message, ctypes.byref(depth))
-        self._lib.PetvesSetQuiet(int(self._quiet))
+        if self._quiet:
+            self._lib.PetvesSetQuiet(1)
         self._inside = True
         try:
-            code = getattr(self._lib, function)(*arguments)
+            for function, arguments in calls:
+                code = getattr(self._lib, function)(*arguments)
+                if code:
+                    break
         except SystemError as error:  # an exception in a Python callback of petsc4py, a KSP monitor for instance
             cause = error.__cause__ or error
         finally:
             self._inside = False
-            self._lib.PetvesSetQuiet(0)
+            if self._quiet:
+                self._lib.PetvesSetQuiet(0)
             self._lib.PetvesLeave(depth)
         if code and self._failed:  # without a code all ranks have agreed that the step failed: _stop_on raises it
             cause = self._failed.pop()
@@ -199,9 +218,13 @@ class Simulation(State):
 
     def _record(self) -> None:
         """Keep the row and show the markers of the state that has just been reached. Collective."""
-        found = [ctypes.c_void_p() for _ in range(3)]
-        self._call("SimulationGatherMarkers", self._open(), *(ctypes.byref(place) for place in found))
-        places = [place.value for place in found]
+        self._call("SimulationGatherMarkers", self._open(), *self._found_by)
+        self._keep()
+
+    def _keep(self) -> None:
+        """Keep the row and show the markers that have been gathered. Not collective."""
+        found = self._found
+        places = [found[0].value, found[1].value, found[2].value]
         if places != self._places:  # they stay where they are: making arrays of them each time is dear
             self._places = places
             count = int(self._start[-1])
@@ -264,15 +287,19 @@ class Simulation(State):
         end = float(self._in_force["time_end"]) if until is None else until
         stepped, failure, word = ctypes.c_int(), ctypes.c_char_p(), ctypes.c_char_p()
         with progress_bar(end, self.time, progress if self._comm.getRank() == 0 else False) as bar:
+            handle = self._open()
+            advance = ("SimulationAdvance", (handle, end, ctypes.byref(stepped), ctypes.byref(failure)))
+            gather = ("SimulationGatherMarkers", (handle, *self._found_by))
             while True:
-                self._call("SimulationAdvance", self._open(), end, ctypes.byref(stepped), ctypes.byref(failure))
+                self._open()  # a callback may have closed it
+                self._call_all(advance, gather)
                 if not stepped.value:
                     self._lib.SimulationGetReason(self._handle, ctypes.byref(word))
                     reason = word.value.decode()
                     break
                 self._ended = False
                 self._stop_on(failure)
-                self._record()
+                self._keep()
                 bar(self.time)
                 if self._wants_to_stop(callback):
                     reason = "callback"
@@ -288,7 +315,7 @@ class Simulation(State):
             wish = STOP if callback is not None and callback(self) is True else GO_ON
         except BaseException as error:
             wish, cause = FAILED, error
-        self._lib.PetvesAgree(communicator(self._comm), wish, ctypes.byref(agreed))
+        self._lib.PetvesAgree(self._communicator, wish, ctypes.byref(agreed))
         if agreed.value == FAILED:
             self._end(b"a callback raised an exception")
             raise cause or Error("the callback raised an exception on another rank")
@@ -353,35 +380,6 @@ class Simulation(State):
     def __del__(self) -> None:
         if getattr(self, "_handle", None) and not sys.is_finalizing():
             self.close()
-
-
-def option_text(value: Any) -> bytes | None:
-    """Return a Python value as the program reads it: None stands for no value."""
-    if value is True:
-        return None
-    if value is False:
-        return b"false"
-    if isinstance(value, (list, tuple, np.ndarray)):
-        return b",".join(option_text(item) or b"true" for item in np.ravel(np.asarray(value, dtype=object)))
-    if isinstance(value, (float, np.floating)):
-        return repr(float(value)).encode()
-    return os.fsencode(value) if isinstance(value, os.PathLike) else str(value).encode()
-
-
-def _flow_function(flow: FlowFunction, failed: list[BaseException]) -> Flow:
-    """Return a Python flow as C calls it; an exception is kept for the caller of the step."""
-
-    def call(time: float, n: int, positions: Any, velocities: Any, _context: Any) -> int:
-        try:
-            points = np.ctypeslib.as_array(positions, (n, 2))
-            out = np.ctypeslib.as_array(velocities, (n, 2))
-            out[:, 0], out[:, 1] = flow(points[:, 0].copy(), points[:, 1].copy(), time)
-        except BaseException as error:
-            failed.append(error)
-            return PETSC_ERR_USER
-        return 0
-
-    return Flow(call)
 
 
 @atexit.register
