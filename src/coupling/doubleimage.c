@@ -222,11 +222,6 @@ void DoubleImageExact(DoubleImage m, int direction, int side, const ImagePair *p
   Turn(direction, side, 1 / m->single->markers->grid->h, PARTS(part), exact);
 }
 
-/* Cells from a wall. */
-static PetscReal Off(Grid g, int direction, int side, const PetscReal X[2]) {
-  return (side ? g->hi[direction] - X[direction] : X[direction] - g->lo[direction]) / g->h;
-}
-
 void DoubleImageFar(const void *image, PetscInt n, const PetscReal X[], const PetscReal Y[2], PetscReal V[]) {
   const struct _p_DoubleImage *m = image;
   const Grid g = m->single->markers->grid;
@@ -235,11 +230,11 @@ void DoubleImageFar(const void *image, PetscInt n, const PetscReal X[], const Pe
     const int direction = wall / 2, side = wall % 2, t = 1 - direction;
     if (!g->wall[direction]) continue;
     for (PetscInt k = 0; k < n; k += LANES) {
-      const Lanes b = Off(g, direction, side, Y) + (Lanes){0};
+      const Lanes b = NearImageOff(g, direction, side, Y) + (Lanes){0};
       Lanes x, a, K[2][DIPOLE_COUNT];
       for (int q = 0; q < LANES; q++) {
         x[q] = (X[2 * (k + q) + t] - Y[t]) / g->h;
-        a[q] = Off(g, direction, side, X + 2 * (k + q));
+        a[q] = NearImageOff(g, direction, side, X + 2 * (k + q));
       }
       DipoleImageFarFour(&m->forms, x, a, b, K);
       for (int q = 0; q < LANES; q++) {

@@ -141,11 +141,6 @@ void NearImageAddFar(NearImage m, const PetscBool walls[2][2], const PetscBool f
       AddFarWall(m, wall / 2, wall % 2, i, j, n, back, wall / 2 ? x : y, C);
 }
 
-/* Cells from a wall. */
-static PetscReal Off(Grid g, int direction, int side, const PetscReal X[2]) {
-  return (side ? g->hi[direction] - X[direction] : X[direction] - g->lo[direction]) / g->h;
-}
-
 void NearImageFar(const void *image, PetscInt n, const PetscReal X[], const PetscReal Y[2], PetscReal V[]) {
   const struct _p_NearImage *m = image;
   const Grid g = m->markers->grid;
@@ -157,8 +152,8 @@ void NearImageFar(const void *image, PetscInt n, const PetscReal X[], const Pets
     if (!g->wall[direction]) continue;
     for (PetscInt k = 0; k < n; k++) {
       x[k] = (X[2 * k + t] - Y[t]) / g->h;
-      a[k] = Off(g, direction, side, X + 2 * k);
-      b[k] = Off(g, direction, side, Y);
+      a[k] = NearImageOff(g, direction, side, X + 2 * k);
+      b[k] = NearImageOff(g, direction, side, Y);
     }
     ImageFarRow(n, x, a, b, &m->kernel, (PetscReal *[]){part[0], part[1], part[2], part[3]});
     for (int q = 0; q < IMAGE_PARTS; q++)
@@ -199,8 +194,7 @@ PetscErrorCode NearImagePlace(NearImage m, const PaddedStencil stencil[]) {
   for (int direction = 0; direction < 2; direction++)
     for (int side = 0; side < 2 && g->wall[direction]; side++)
       for (PetscInt k = 0; k < M; k++) {
-        const PetscReal x = m->markers->X[2 * k + direction];
-        const PetscReal y = (side ? g->hi[direction] - x : x - g->lo[direction]) / g->h;
+        const PetscReal y = NearImageOff(g, direction, side, m->markers->X + 2 * k);
         m->y[direction][side][k] = y;
         m->end[direction][side][k] = MakeEnd(m->markers, y, m->kernel.moment[1]);
       }

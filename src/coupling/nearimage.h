@@ -51,6 +51,11 @@ PETSC_EXTERN void NearImageAdd(NearImage image, const PetscBool without[2][2], P
 PETSC_EXTERN void NearImageAddBlake(NearImage image, PetscInt i, PetscInt j, const PetscReal d[2], PetscReal alpha,
                                     PetscReal C[4]);
 
+/* NearImageOff - how far X is from a wall (cells). Not collective. */
+static inline PetscReal NearImageOff(Grid g, int direction, int side, const PetscReal X[2]) {
+  return (side ? g->hi[direction] - X[direction] : X[direction] - g->lo[direction]) / g->h;
+}
+
 /* NearImageGap - the least distance there can be between markers within `one` and images in a wall of markers within
    `other` (length). Not collective. */
 PETSC_EXTERN PetscReal NearImageGap(Grid grid, int direction, int side, const NearBounds *one, const NearBounds *other);
