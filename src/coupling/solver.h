@@ -9,8 +9,8 @@ typedef struct {
                             the dipoles' source is added (scheme coupled); else NULL */
   Vec f, g, k;           /* right-hand sides of momentum (the forces of the solution are added to it), Dm V/h^2 and V,
                             k of all bodies */
-  Vec w, p, sigma, d, V; /* solution; sigma, d and V hold the first guess; w and p may be NULL where
-                            ReducedNeedsNoFields and f is zero outside the markers' window, */
+  Vec w, p, sigma, d, V; /* solution; sigma, d and V hold the first guess; p may be NULL where
+                            ReducedNeedsNoPressure, w too where f is zero outside the markers' window, */
   Vec solid;             /* and the force on obstacles; NULL without */
 } CoupledProblem;
 
@@ -19,8 +19,21 @@ typedef struct {
   PetscInt its;
   KSPConvergedReason why; /* < 0: failed */
   PetscReal residual;
-  StreamMeasures measures; /* of the velocity, where w is NULL */
+  StreamMeasures measures; /* of the velocity, where p is NULL */
 } SolveReport;
+
+typedef enum { TRIAL_NONE, TRIAL_WANTED, TRIAL_MADE } TrialState;
+
+/* What the first product of a solve leaves behind where x is periodic: the whole residual at x + scale z, the forces of
+   which are in f then. */
+typedef struct {
+  TrialState state;
+  const CoupledProblem *problem; /* borrowed, of the solve */
+  PetscBool begun;               /* nothing is left to be done where the first guess is good enough */
+  PetscReal scale, residual;     /* norms of the residual before and at it */
+  Vec x, b;                      /* the unknowns and the residual there */
+  StreamMeasures measures;       /* of its velocity, where p is NULL */
+} Trial;
 
 typedef struct _p_CoupledSolver *CoupledSolver;
 struct _p_CoupledSolver {
@@ -29,7 +42,9 @@ struct _p_CoupledSolver {
   Unknowns unknowns;
   Reduced reduced;
   Preconditioner preconditioner;
+  Mat A; /* the reduced problem's */
   KSP ksp;
+  Trial trial;
   PetscBool guess;     /* -coupled_ksp_initial_guess_nonzero: start from the guess */
   Vec x, b;            /* unknowns, residual */
   Vec change;          /* of one KSPSolve */
