@@ -38,6 +38,10 @@ typedef unsigned long long LanesBits __attribute__((vector_size(LANES * sizeof(P
 static inline Lanes LanesWhere(LanesBits so, Lanes a) {
   return (Lanes)(so & (LanesBits)a);
 }
+static inline Lanes LanesMax(Lanes a, Lanes b) {
+  const LanesBits so = (LanesBits)(a > b);
+  return (Lanes)((so & (LanesBits)a) | (~so & (LanesBits)b));
+}
 static inline Lanes LanesMin(Lanes a, Lanes b) {
   const LanesBits so = (LanesBits)(a < b);
   return (Lanes)((so & (LanesBits)a) | (~so & (LanesBits)b));

@@ -1,4 +1,5 @@
 /* The operators G, G^T and H on local arrays, row by row, and their MatShells. */
+#include "base/lanes.h"
 #include "fluid/grid.h"
 
 PetscErrorCode GridGradientRows(Grid g, PetscReal alpha, Vec p, PetscBool add, const PetscInt window[2], Vec w) {
@@ -73,14 +74,22 @@ PetscErrorCode GridLargestDivergence(Grid g, Vec w, Vec bc2, PetscReal *largest)
   if (bc2) PetscCall(VecGetArrayRead(bc2, &b));
   PetscCall(GridRows(g, FIELD_V, wa + GridLocalU(g), &rows));
   for (PetscInt j = 0; j < g->rows[FIELD_P]; j++) {
+    Lanes four = {0}, sums = {0};
     PetscReal sum = 0;
+    PetscInt i = 0;
     DivergenceRow(g, 1 / g->h, wa, &rows, j, row);
-    for (PetscInt i = 0; i < n && b; i++) row[i] += b[j * n + i];
-    for (PetscInt i = 0; i < n; i++) {
+    for (PetscInt k = 0; k < n && b; k++) row[k] += b[j * n + k];
+    for (; i + LANES <= n; i += LANES) {
+      const Lanes d = LanesAt(row + i);
+      four = LanesMax(four, LanesMax(d, -d));
+      sums += d;
+    }
+    for (; i < n; i++) {
       most = PetscMax(most, PetscAbsReal(row[i]));
       sum += row[i];
     }
-    if (PetscIsInfOrNanReal(sum)) bad = 1;
+    for (int k = 0; k < LANES; k++) most = PetscMax(most, four[k]);
+    if (PetscIsInfOrNanReal(sum + LanesSum(sums))) bad = 1;
   }
   if (bc2) PetscCall(VecRestoreArrayRead(bc2, &b));
   PetscCall(VecRestoreArrayRead(w, &wa));

@@ -85,13 +85,27 @@ PetscErrorCode HistoryCarry(History *h, Scheme s, PetscReal dt) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* One piece after the other, so that y comes from memory once. */
 PetscErrorCode HistorySum(PetscInt count, const PetscReal weight[], PetscReal scale, const Vec x[], Vec y) {
+  enum { PIECE = 1024 };
+  const PetscScalar *from[BDF_STATES];
+  PetscScalar *sum;
+  PetscInt n;
   PetscFunctionBeginUser;
-  if (count > 1)
-    PetscCall(VecAXPBYPCZ(y, scale * weight[0], scale * weight[1], 0, x[0], x[1]));
-  else
-    PetscCall(VecAXPBY(y, scale * weight[0], 0, x[0]));
-  for (PetscInt j = 2; j < count; j++) PetscCall(VecAXPY(y, scale * weight[j], x[j]));
+  PetscCall(VecGetLocalSize(y, &n));
+  PetscCall(VecGetArrayWrite(y, &sum));
+  for (PetscInt j = 0; j < count; j++) PetscCall(VecGetArrayRead(x[j], &from[j]));
+  for (PetscInt first = 0; first < n; first += PIECE) {
+    const PetscInt end = PetscMin(first + PIECE, n);
+    for (PetscInt j = 0; j < count; j++) {
+      const PetscReal w = scale * weight[j];
+      const PetscScalar *restrict part = from[j];
+      PetscScalar *restrict to = sum;
+      for (PetscInt k = first; k < end; k++) to[k] = j ? to[k] + w * part[k] : w * part[k];
+    }
+  }
+  for (PetscInt j = 0; j < count; j++) PetscCall(VecRestoreArrayRead(x[j], &from[j]));
+  PetscCall(VecRestoreArrayWrite(y, &sum));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
