@@ -204,22 +204,23 @@ static PetscErrorCode Mult(Mat A, Vec x, Vec y) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* U = E u of the force f, which has the dipoles' forces, row by row. all: f is not the markers' alone. */
-static PetscErrorCode FollowByRows(Reduced s, PetscBool all, Vec f, StreamMeasures *measures) {
+/* U = E u of the force f, which has the dipoles' forces, row by row, and u in w if that is not NULL. all: f is not the
+   markers' alone. */
+static PetscErrorCode FollowByRows(Reduced s, PetscBool all, Vec f, Vec w, StreamMeasures *measures) {
   const Coupling c = s->unknowns->coupling;
   PetscFunctionBeginUser;
   if (s->source) PetscCall(DoubleLayerRows(c->contrast, StokesProfile(s->stokes), s->dipoles));
-  PetscCall(MarkersFollow(c->markers, s->stream, s->dipoles, all, f, s->source, s->U, measures));
+  PetscCall(MarkersFollow(c->markers, s->stream, s->dipoles, all, f, s->source, s->U, w, measures));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* U = E u of the force f, and u and p themselves unless they are not wanted and U can be had without. */
+/* U = E u of the force f, and u and p themselves unless they are not wanted or not p and U can be had without. */
 static PetscErrorCode Follow(Reduced s, Vec f, PetscBool grid, Vec w, Vec p, StreamMeasures *measures) {
   const Coupling c = s->unknowns->coupling;
   const PetscBool bodies = CouplingHasBodies(c);
   PetscFunctionBeginUser;
-  if (!grid && s->stream && !c->fluid->bc2) {
-    if (bodies) PetscCall(FollowByRows(s, w ? PETSC_TRUE : PETSC_FALSE, f, measures));
+  if ((!grid || !p) && s->stream && !c->fluid->bc2) {
+    if (bodies) PetscCall(FollowByRows(s, w ? PETSC_TRUE : PETSC_FALSE, f, grid ? w : NULL, measures));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   /* p holds the right-hand side, then the solution */
@@ -299,9 +300,9 @@ PetscErrorCode ReducedCombine(Reduced s, Vec x, Vec w, Vec p, Vec residual, Pets
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscBool ReducedNeedsNoFields(Reduced s) {
+PetscBool ReducedNeedsNoPressure(Reduced s) {
   const Coupling c = s->unknowns->coupling;
-  return s->stream && c->fluid->steady && !c->fluid->total && CouplingHasBodies(c) ? PETSC_TRUE : PETSC_FALSE;
+  return s->stream && !c->fluid->total && CouplingHasBodies(c) ? PETSC_TRUE : PETSC_FALSE;
 }
 
 PetscErrorCode ReducedFields(Reduced s, Vec f, Vec source, const PetscReal mean[2], Vec w, Vec p) {

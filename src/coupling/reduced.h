@@ -56,15 +56,16 @@ PETSC_EXTERN void ReducedBegin(Reduced reduced, Vec moved, Vec source);
 
 /* ReducedResidual - the forces of `added` go into f, those of x itself with the dipoles of `moved`; minus the scaled
    residuals at x, with u, p = w, p by one Stokes solve of f, f holding the forces of x. grid false: w and p are not
-   wanted and may stay as they are, and measures is of u unless it is NULL, where ReducedNeedsNoFields. w NULL: f is
-   zero outside the markers' window. g: an edge vector, k: a marker vector of all bodies. Collective. */
+   wanted and may stay as they are. p, or both, may be NULL where ReducedNeedsNoPressure, and measures is then of u
+   unless it is NULL. w NULL: f is zero outside the markers' window. g: an edge vector, k: a marker vector of all
+   bodies. Collective. */
 PETSC_EXTERN PetscErrorCode ReducedResidual(Reduced reduced, Vec added, Vec f, Vec g, Vec k, Vec x, PetscBool grid,
                                             Vec w, Vec p, Vec residual, StreamMeasures *measures);
 
-/* ReducedNeedsNoFields - whether a problem with forces of markers alone can be solved without u and p on the grid:
-   quasi-steady disturbances where x is periodic. ReducedFields - then they are the Stokes solve's for f, source and
-   mean as ReducedResidual left them. Not collective; collective. */
-PETSC_EXTERN PetscBool ReducedNeedsNoFields(Reduced reduced);
+/* ReducedNeedsNoPressure - whether a problem can be solved without p on the grid, and without u where its forces are
+   those of markers alone, as in quasi-steady flow: disturbances where x is periodic. ReducedFields - then they are the
+   Stokes solve's for f, source and mean as ReducedResidual left them. Not collective; collective. */
+PETSC_EXTERN PetscBool ReducedNeedsNoPressure(Reduced reduced);
 PETSC_EXTERN PetscErrorCode ReducedFields(Reduced reduced, Vec f, Vec source, const PetscReal mean[2], Vec w, Vec p);
 
 /* ReducedForgetProducts - a solve begins: products with A are kept from here on. Not collective. */

@@ -8,6 +8,7 @@ typedef struct {
   const PetscScalar *f;      /* or a force on the grid, */
   Rows u;                    /* whose u has a row above, */
   const PetscScalar *source; /* and the dipoles' source on it */
+  PetscScalar *w;            /* where the rows of u and v are put, or NULL */
 } Response;
 
 static const PetscScalar *SpreadForce(void *ctx, Field f, PetscInt j, PetscScalar work[]) {
@@ -33,6 +34,7 @@ static void TakeVelocity(void *ctx, Field f, PetscInt j, PetscScalar row[]) {
   const Response *r = (const Response *)ctx;
   if (r->dipoles && f == FIELD_U) DipoleRowsAddVelocity(r->dipoles, j, row);
   MarkerRowInterpolate(r->m->rows, f, j, row, r->m->part);
+  if (r->w) (void)PetscArraycpy(r->w + GridRowStart(r->m->grid, f, j), row, r->m->grid->columns[f]);
 }
 
 /* all: forces may be anywhere, not only where the markers are. */
@@ -40,7 +42,7 @@ static PetscErrorCode Solve(Response *r, Stream stream, PetscBool all, Vec U, St
   const Markers m = r->m;
   const StreamRows rows = {.ctx = r,
                            .forced = {all ? 0 : m->window[0], all ? m->grid->rows[FIELD_U] : m->window[1]},
-                           .wanted = {m->window[0], m->window[1]},
+                           .wanted = {r->w ? 0 : m->window[0], r->w ? m->grid->rows[FIELD_U] : m->window[1]},
                            .force = r->f ? GridForce : SpreadForce,
                            .velocity = TakeVelocity,
                            .mean = {r->dipoles ? r->dipoles->flow : NULL, r->dipoles ? r->dipoles->mean : NULL},
@@ -66,14 +68,16 @@ PetscErrorCode MarkersRespond(Markers m, Stream stream, DipoleRows dipoles, Pets
 }
 
 PetscErrorCode MarkersFollow(Markers m, Stream stream, DipoleRows dipoles, PetscBool all, Vec f, Vec source, Vec U,
-                             StreamMeasures *measures) {
+                             Vec w, StreamMeasures *measures) {
   Response r = {.m = m, .dipoles = dipoles};
   PetscFunctionBeginUser;
   PetscCall(PetscLogEventBegin(m->respond, 0, 0, 0, 0));
   PetscCall(VecGetArrayRead(f, &r.f));
   if (source) PetscCall(VecGetArrayRead(source, &r.source));
   PetscCall(GridRows(m->grid, FIELD_U, r.f, &r.u));
+  if (w) PetscCall(VecGetArrayWrite(w, &r.w));
   PetscCall(Solve(&r, stream, all, U, measures));
+  if (w) PetscCall(VecRestoreArrayWrite(w, &r.w));
   if (source) PetscCall(VecRestoreArrayRead(source, &r.source));
   PetscCall(VecRestoreArrayRead(f, &r.f));
   PetscCall(PetscLogEventEnd(m->respond, 0, 0, 0, 0));

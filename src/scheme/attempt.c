@@ -85,7 +85,7 @@ static PetscErrorCode RightHandSides(Scheme s, Coupled *d, const BDF *b) {
   PetscCall(VecSet(d->known, 0));
   if (d->source) PetscCall(VecSet(d->source, 0));
   if (d->next.source) PetscCall(GridClearRows(s->fluid->grid, d->next.rows, d->next.source));
-  if (d->next.force)
+  if (d->next.force && s->fluid->steady)
     PetscCall(MarkersClear(s->coupling->markers, f, d->next.rows));
   else if (s->fluid->steady)
     PetscCall(VecSet(f, 0));
@@ -152,6 +152,7 @@ static PetscErrorCode Solve(Scheme s, Coupled *d) {
   s->report.coupled_its += report.its;
   s->report.measures = report.measures;
   PetscCall(PetscArraycpy(n->mean, d->solver->reduced->mean, 2));
+  n->a0 = s->fluid->a0;
   if (PreconditionerIsNew(d->solver->preconditioner)) {
     PetscCall(VecCopy(d->Xstar, d->made_at));
     PetscCall(PetscArraycpy(d->made_with, d->history.treading, s->membrane->layout->bodies));
@@ -163,10 +164,10 @@ static PetscErrorCode Solve(Scheme s, Coupled *d) {
 /* The largest divergence of the velocity of the step, whose sources D u = bc2 are where there are any. */
 static PetscErrorCode MeasureDivergence(Scheme s, Coupled *d, Vec sources) {
   PetscFunctionBeginUser;
-  if (d->next.w)
-    PetscCall(SchemeMeasureDivergence(s, d->next.w, sources));
-  else
+  if (d->next.force)
     s->report.div_max = s->report.measures.divergence;
+  else
+    PetscCall(SchemeMeasureDivergence(s, d->next.w, sources));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

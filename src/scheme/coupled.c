@@ -263,10 +263,10 @@ static PetscErrorCode SetUpConvection(Scheme s, Coupled *d) {
 }
 
 /* The states before the present one have the velocity where it is a history: in fluid with inertia, of the older one
-   for order 3. Of the next one both fields are needed unless the state's own are made when they are asked for, from the
-   force that each of the two has. */
+   for order 3. Of the next one both fields are needed unless the state's own pressure, and in quasi-steady flow its
+   velocity, are made when they are asked for, from the force that each of the two has. */
 static PetscErrorCode CreateStates(Scheme s, Coupled *d) {
-  const PetscBool later = d->solver && ReducedNeedsNoFields(d->solver->reduced) ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool later = d->solver && ReducedNeedsNoPressure(d->solver->reduced) ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionBeginUser;
   for (int j = 0; j < SCHEME_PAST; j++) {
     PetscCall(StateDuplicate(&s->state, &s->old[j]));
@@ -284,15 +284,23 @@ static PetscErrorCode CreateStates(Scheme s, Coupled *d) {
     PetscCall(VecDuplicate(s->state.p, &s->state.source));
     PetscCall(VecDuplicate(s->state.p, &d->next.source));
   }
-  PetscCall(VecDestroy(&d->next.w));
   PetscCall(VecDestroy(&d->next.p));
+  if (s->fluid->steady) PetscCall(VecDestroy(&d->next.w));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* By the state's time coefficient, which a step that has failed may have changed. A velocity that is made in each step
+   stays as it is. */
 static PetscErrorCode Fields_Coupled(Scheme s) {
   const State *q = &s->state;
+  const PetscReal now = s->fluid->a0;
+  Vec w = q->w;
   PetscFunctionBeginUser;
-  PetscCall(ReducedFields(((Coupled *)s->data)->solver->reduced, q->force, q->source, q->mean, q->w, q->p));
+  if (!s->fluid->steady) PetscCall(DMGetGlobalVector(s->fluid->grid->velocity, &w));
+  if (now != q->a0) PetscCall(FluidSetTimeCoefficient(s->fluid, q->a0));
+  PetscCall(ReducedFields(((Coupled *)s->data)->solver->reduced, q->force, q->source, q->mean, w, q->p));
+  if (now != q->a0) PetscCall(FluidSetTimeCoefficient(s->fluid, now));
+  if (!s->fluid->steady) PetscCall(DMRestoreGlobalVector(s->fluid->grid->velocity, &w));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

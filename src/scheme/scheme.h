@@ -110,8 +110,9 @@ PETSC_EXTERN PetscErrorCode SchemeDestroy(Scheme *scheme);
    and the state is as before; negative: it does not. Collective. */
 PETSC_EXTERN PetscErrorCode SchemeStep(Scheme scheme, PetscReal most, PetscReal reserve);
 
-/* SchemeFields - make the velocity and the pressure of the state, w and p, where the step has not: a quasi-steady step
-   needs neither (docs/membrane.md, One step). To be called before they are read. Collective. */
+/* SchemeFields - make the velocity and the pressure of the state, w and p, where the step has not: a step needs no
+   pressure where x is periodic, and a quasi-steady one no velocity (docs/membrane.md, One step). To be called before
+   they are read. Collective. */
 PETSC_EXTERN PetscErrorCode SchemeFields(Scheme scheme);
 
 /* SchemeRemember, SchemeRecall - what the solvers have kept from earlier steps (when their blocks were made, and where

@@ -60,6 +60,7 @@ PetscErrorCode StateCopy(const State *q, State *copy, PetscBool fields) {
   }
   if (fields) PetscCall(PetscArraycpy(copy->rows, q->rows, 2));
   if (fields) PetscCall(PetscArraycpy(copy->mean, q->mean, 2));
+  if (fields) copy->a0 = q->a0;
   copy->pending = q->pending;
   copy->step = q->step;
   copy->t = q->t;
@@ -68,17 +69,24 @@ PetscErrorCode StateCopy(const State *q, State *copy, PetscBool fields) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* What goes with the forces of two states. */
+static void SwapForced(State *a, State *b) {
+  const PetscReal a0 = a->a0;
+  a->a0 = b->a0;
+  b->a0 = a0;
+  for (int k = 0; k < 2; k++) {
+    const PetscInt row = a->rows[k];
+    const PetscReal mean = a->mean[k];
+    a->rows[k] = b->rows[k];
+    b->rows[k] = row;
+    a->mean[k] = b->mean[k];
+    b->mean[k] = mean;
+  }
+}
+
 void StateSwap(State *a, State *b) {
   Vec *one[VECTORS], *other[VECTORS];
-  if (a->force && b->force)
-    for (int k = 0; k < 2; k++) {
-      const PetscInt row = a->rows[k];
-      const PetscReal mean = a->mean[k];
-      a->rows[k] = b->rows[k];
-      b->rows[k] = row;
-      a->mean[k] = b->mean[k];
-      b->mean[k] = mean;
-    }
+  if (a->force && b->force) SwapForced(a, b);
   List(a, one);
   List(b, other);
   for (int k = 0; k < VECTORS; k++) {

@@ -9,11 +9,12 @@ typedef struct {
   PetscReal dt_last; /* the step that led here; 0 at the start */
   Vec w;             /* velocity on the faces: the disturbance, or the whole in the total form */
   Vec p;             /* pressure, zero mean */
-  Vec force;         /* on the faces, of which w and p are the Stokes solve; NULL where they are made in each step */
+  Vec force;         /* on the faces, of which w and p are the Stokes solve; NULL where both are made in each step */
   Vec source;        /* with it, the viscosity contrast's source of the divergence; NULL without */
   PetscReal mean[2]; /* and the mean velocity that goes with that */
-  PetscInt rows[2];  /* force and source are zero outside these of this rank */
-  PetscBool pending; /* w and p are not made yet: SchemeFields */
+  PetscReal a0;      /* and the solve's time coefficient */
+  PetscInt rows[2];  /* force and source are zero outside these of this rank, in quasi-steady flow */
+  PetscBool pending; /* p is not made yet, and in quasi-steady flow w neither: SchemeFields */
   Vec sigma;         /* tension, an edge vector */
   Vec X;             /* markers, a marker vector */
   Vec U;             /* markers' velocity, background included */

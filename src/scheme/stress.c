@@ -24,7 +24,7 @@ static PetscErrorCode EndRows(Grid g, Field field, Vec x, PetscReal sum[2]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Mean over both walls of the disturbance's shear stress nu du/dy, and of its pressure less the mean of all; w NULL: as
+/* Mean over both walls of the disturbance's shear stress nu du/dy, and of its pressure less the mean of all; p NULL: as
    the solve has measured them. */
 static PetscErrorCode WallStress(Scheme s, Vec w, Vec p, PetscReal *shear, PetscReal *pressure) {
   const Fluid f = s->fluid;
@@ -32,7 +32,7 @@ static PetscErrorCode WallStress(Scheme s, Vec w, Vec p, PetscReal *shear, Petsc
   PetscReal u[2], background[2] = {0, 0}, q[2];
   PetscScalar all;
   PetscFunctionBeginUser;
-  if (!w) {
+  if (!p) {
     *shear = f->nu / g->h * s->report.measures.slip;
     *pressure = s->report.measures.pressure;
     PetscFunctionReturn(PETSC_SUCCESS);
