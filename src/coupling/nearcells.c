@@ -6,7 +6,9 @@
 /* Distance from a marker up to which a cell is corrected, in cells; and in spacings of markers, whose single forces the
    lattice shows a little farther where they are more than 2 h apart. */
 #define CELLS 4
-#define SUMMED_CELLS 10 /* from a marker to a cell; beyond, its closed form is right to 1e-5 */
+#define SUMMED_CELLS                                                                                                   \
+  10 /* from a marker to a cell; beyond, its closed form is right to 1e-5. Less than STENCIL_ROW/2                     \
+      */
 #define SPACINGS 2
 
 /* Coefficients of the velocity of distant markers, as in nearblock.c, of two ends that differ: a kernel, and a cell's
@@ -25,6 +27,10 @@ typedef struct {
   PetscReal reach;        /* of the correction (length) */
   const PetscReal *X, *F; /* [2n] of the vesicle */
   PaddedStencil *source;  /* [2n] */
+  /* A row of cells: those from `from` to `to` count along x, and of marker k those from first[k] to last[k] (whole
+     numbers, whole vectors) have the lattice's sums, in u, v and p, from the cell `from` on. */
+  PetscInt from, to;
+  PetscReal *first, *last, *row[3];
 } NearCells;
 
 /* Second moments along and across are averaged over both ends where one component meets itself; from one to the other
@@ -75,20 +81,43 @@ void NearCellStencil(Field f, const PetscInt cell[2], PaddedStencil *padded) {
   StencilPad(&stencil, padded);
 }
 
-/* Velocity and pressure of marker k on the lattice, taken off those of a cell with these weights. */
-static void TakeLattice(const NearCells *s, PetscInt k, const PaddedStencil cell[3], PetscReal u[2], PetscReal *p) {
-  static const PetscInt none[2] = {0, 0};
+/* Velocity and pressure of marker k on the lattice, taken off those of `n` cells of a row from cell[0] on. */
+static void TakeLattice(NearCells *s, PetscInt k, const PetscInt cell[2], PetscInt n) {
+  static const PetscInt none[2] = {0, 0}, turned[2] = {1, -1}; /* u of a force along y: StencilFourSums */
   const OffsetTable *t = &s->coupling->near->lattice;
   const PaddedStencil *source = &s->source[2 * k];
   const PetscReal *F = &s->F[2 * k], h = s->coupling->fluid->grid->h, nu = s->coupling->fluid->nu;
-  const PetscReal constant = PetscLogReal(h) / (4 * PETSC_PI);
-  PetscReal sum[4];
-  StencilFourSums(t, cell, source, none, sum);
-  u[0] -= ((sum[0] - constant) * F[0] + sum[2] * F[1]) / nu;
-  u[1] -= (sum[3] * F[0] + (sum[1] - constant) * F[1]) / nu;
-  *p -= (StencilNearSum(&s->pressure, OFFSET_UU, &cell[2], &source[0]) * F[0] +
-         StencilNearSum(&s->pressure, OFFSET_VV, &cell[2], &source[1]) * F[1]) /
-        h;
+  const PetscReal constant = PetscLogReal(h) / (4 * PETSC_PI * nu);
+  PetscReal *at[3];
+  PaddedStencil weights[3];
+  for (int f = 0; f < 3; f++) {
+    NearCellStencil((Field)f, cell, &weights[f]);
+    at[f] = s->row[f] + cell[0] - s->from;
+  }
+  StencilRowAdd(t, OFFSET_UU, &weights[0], &source[0], none, -F[0] / nu, n, at[0]);
+  StencilRowAdd(t, OFFSET_VU, &weights[0], &source[1], turned, -F[1] / nu, n, at[0]);
+  StencilRowAdd(t, OFFSET_VU, &weights[1], &source[0], none, -F[0] / nu, n, at[1]);
+  StencilRowAdd(t, OFFSET_VV, &weights[1], &source[1], none, -F[1] / nu, n, at[1]);
+  StencilRowAdd(&s->pressure, OFFSET_UU, &weights[2], &source[0], none, -F[0] / h, n, at[2]);
+  StencilRowAdd(&s->pressure, OFFSET_VV, &weights[2], &source[1], none, -F[1] / h, n, at[2]);
+  for (int c = 0; c < 2; c++)
+    for (PetscInt i = 0; i < n; i++) at[c][i] += constant * F[c];
+}
+
+/* Which cells of row j are near each marker, and what the lattice gives them. */
+static void StartRow(NearCells *s, PetscInt j) {
+  const Grid g = s->coupling->fluid->grid;
+  const PetscReal near = SUMMED_CELLS * g->h;
+  for (int f = 0; f < 3; f++) (void)PetscArrayzero(s->row[f], s->to - s->from + 1 + LANES);
+  for (PetscInt k = 0; k < s->n; k++) {
+    const PetscReal y = g->lo[1] + (j + 0.5) * g->h - s->X[2 * k + 1], half = near * near - y * y;
+    const PetscReal middle = (s->X[2 * k] - g->lo[0]) / g->h - 0.5, wide = half > 0 ? PetscSqrtReal(half) / g->h : -1;
+    s->first[k] = PetscCeilReal(middle - wide);
+    s->last[k] = PetscFloorReal(middle + wide);
+    const PetscInt cell[2] = {PetscMax((PetscInt)s->first[k], s->from), j};
+    const PetscInt n = PetscMin((PetscInt)s->last[k], s->to) - cell[0] + 1;
+    if (n > 0) TakeLattice(s, k, cell, n);
+  }
 }
 
 /* The same of four distant markers, (x, y) from them to the cell, with forces (f, g): the Stokeslet, and the closed
@@ -108,36 +137,28 @@ static void TakeFar(const NearCells *s, Lanes x, Lanes y, Lanes f, Lanes g, Lane
   sum[2] = along * (-1 / (2 * PETSC_PI)); /* but for h^2/r^3 */
 }
 
-/* All markers of the vesicle: those near the cell by the lattice's sums. */
-static void TakeAll(const NearCells *s, const PaddedStencil cell[3], const PetscReal at[2], PetscReal u[2],
-                    PetscReal *p) {
-  const PetscReal near = SUMMED_CELLS * s->coupling->fluid->grid->h;
-  const Lanes order = {0, 1, 2, 3};
+/* All markers of the vesicle that are not near cell i of the row. */
+static void TakeDistant(const NearCells *s, PetscInt i, const PetscReal at[2], PetscReal u[2], PetscReal *p) {
+  const Lanes order = {0, 1, 2, 3}, cell = (Lanes){0} + (PetscReal)i;
   Lanes sum[3] = {{0}, {0}, {0}}, four[3];
   for (PetscInt k = 0; k < s->n; k += LANES) {
     Lanes x, y, f, g;
     LanesPairs(s->X + 2 * k, &x, &y);
     LanesPairs(s->F + 2 * k, &f, &g);
-    x = at[0] - x;
-    y = at[1] - y;
-    const Lanes left = (Lanes){0} + (PetscReal)(s->n - k), r2 = x * x + y * y;
-    const LanesBits is = (LanesBits)(order < left), far = is & (LanesBits)(r2 >= (Lanes){0} + near * near);
-    TakeFar(s, x, y, f, g, four);
+    const LanesBits is = (LanesBits)(order < (Lanes){0} + (PetscReal)(s->n - k));
+    const LanesBits far = is & (LanesBits)((cell < LanesAt(s->first + k)) | (cell > LanesAt(s->last + k)));
+    TakeFar(s, at[0] - x, at[1] - y, f, g, four);
     for (int q = 0; q < 3; q++) sum[q] += LanesWhere(far, four[q]);
-    for (PetscInt q = 0; q < LANES; q++)
-      if (is[q] && !far[q]) TakeLattice(s, k + q, cell, u, p);
   }
   for (int c = 0; c < 2; c++) u[c] += LanesSum(sum[c]);
   *p += LanesSum(sum[2]);
 }
 
-/* The exact layer less the lattice's at the centre x of a cell, whose indices are not wrapped into the grid. */
-static void Difference(const NearCells *s, const PetscInt cell[2], const PetscReal x[2], PetscReal u[2], PetscReal *p) {
-  PaddedStencil weights[3];
-  for (int f = 0; f < 3; f++) NearCellStencil((Field)f, cell, &weights[f]);
-  u[0] = u[1] = *p = 0;
-  LayerAdd(s->layer, s->vesicle, x, u, p);
-  TakeAll(s, weights, x, u, p);
+/* The exact layer less the lattice's at the centre x of cell i of the row. */
+static void Difference(const NearCells *s, PetscInt i, const PetscReal x[2], PetscReal found[3]) {
+  for (int f = 0; f < 3; f++) found[f] = s->row[f][i - s->from];
+  LayerAdd(s->layer, s->vesicle, x, found, &found[2]);
+  TakeDistant(s, i, x, found, &found[2]);
 }
 
 PetscBool NearCellIs(PetscInt n, const PetscReal X[], PetscReal reach, const PetscReal x[2]) {
@@ -172,28 +193,47 @@ static PetscBool HasOwnRows(Grid g, PetscInt box[2][2]) {
   return PETSC_FALSE;
 }
 
+/* Row j of a box's cells, whose indices are not wrapped into the grid; to the fields from `field` on. */
+static void CorrectRow(NearCells *s, PetscInt box[2], PetscInt j, PetscReal *const field[3], PetscInt start) {
+  const Grid g = s->coupling->fluid->grid;
+  PetscReal x[2];
+  s->from = box[1] + 1;
+  for (PetscInt i = box[0]; i <= box[1]; i++) {
+    GridPosition(g, FIELD_P, i, j, x);
+    if (!NearCellIs(s->n, s->X, s->reach, x)) continue;
+    s->from = PetscMin(s->from, i);
+    s->to = i;
+  }
+  if (s->from > box[1]) return;
+  StartRow(s, j);
+  for (PetscInt i = s->from; i <= s->to; i++) {
+    const PetscInt at = start + ((i % g->n[0]) + g->n[0]) % g->n[0];
+    PetscReal found[3];
+    GridPosition(g, FIELD_P, i, j, x);
+    if (!NearCellIs(s->n, s->X, s->reach, x)) continue;
+    Difference(s, i, x, found);
+    for (int f = 0; f < 3; f++)
+      if (field[f]) field[f][at] += found[f];
+  }
+}
+
 static PetscErrorCode CorrectVesicle(NearCells *s, PetscInt v, PetscReal *const field[3]) {
   const Grid g = s->coupling->fluid->grid;
-  PetscInt box[2][2], cell[2];
+  PetscInt box[2][2];
   PetscFunctionBeginUser;
   SetVesicle(s, v);
   NearCellsBox(g, s->n, s->X, s->reach, box);
   if (!HasOwnRows(g, box)) PetscFunctionReturn(PETSC_SUCCESS);
+  const PetscInt width = box[0][1] - box[0][0] + 1 + LANES;
   PetscCall(LayerUse(s->layer, v));
   SetStencils(s);
-  for (cell[1] = box[1][0]; cell[1] <= box[1][1]; cell[1]++) {
-    const PetscInt row = ((cell[1] % g->n[1]) + g->n[1]) % g->n[1] - g->first;
-    if (row < 0 || row >= g->rows[FIELD_P]) continue;
-    for (cell[0] = box[0][0]; cell[0] <= box[0][1]; cell[0]++) {
-      const PetscInt at = row * g->n[0] + ((cell[0] % g->n[0]) + g->n[0]) % g->n[0];
-      PetscReal x[2], found[3];
-      GridPosition(g, FIELD_P, cell[0], cell[1], x);
-      if (!NearCellIs(s->n, s->X, s->reach, x)) continue;
-      Difference(s, cell, x, found, &found[2]);
-      for (int f = 0; f < 3; f++)
-        if (field[f]) field[f][at] += found[f];
-    }
+  PetscCall(PetscCalloc5(s->n + LANES, &s->first, s->n + LANES, &s->last, width, &s->row[0], width, &s->row[1], width,
+                         &s->row[2]));
+  for (PetscInt j = box[1][0]; j <= box[1][1]; j++) {
+    const PetscInt row = ((j % g->n[1]) + g->n[1]) % g->n[1] - g->first;
+    if (row >= 0 && row < g->rows[FIELD_P]) CorrectRow(s, box[0], j, field, row * g->n[0]);
   }
+  PetscCall(PetscFree5(s->first, s->last, s->row[0], s->row[1], s->row[2]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -158,6 +158,30 @@ PetscReal StencilNearSum(const OffsetTable *t, OffsetBlock b, const PaddedStenci
   return StencilShiftedSum(t, b, response, source, none);
 }
 
+void StencilRowAdd(const OffsetTable *t, OffsetBlock b, const PaddedStencil *response, const PaddedStencil *source,
+                   const PetscInt cells[2], PetscReal factor, PetscInt n, PetscReal sum[]) {
+  const PetscInt width = 2 * t->size[0] + 1, rows = response->n[1] + source->n[1] - 1;
+  const PetscInt lags = response->n[0] + source->n[0] - 1;
+  PetscReal line[STENCIL_ROW + 4 * LANES];
+  union {
+    Lanes lanes[3];
+    PetscReal weight[3 * LANES];
+  } wx, wy;
+  const PetscInt i0 = Lags(3, 0, response, source, wx.lanes) + cells[0];
+  const PetscInt j0 = Lags(3, 1, response, source, wy.lanes) + cells[1];
+  const PetscReal *value = t->value[b] + (t->size[1] + j0) * width + t->size[0] + i0;
+  for (PetscInt q = 0; q < n + lags - 1; q += LANES) {
+    Lanes all = {0};
+    for (PetscInt j = 0; j < rows; j++) all += wy.weight[j] * LanesAt(value + j * width + q);
+    LanesPut(factor * all, line + q);
+  }
+  for (PetscInt i = 0; i < n; i += LANES) {
+    Lanes all = {0};
+    for (PetscInt q = 0; q < lags; q++) all += wx.weight[q] * LanesAt(line + i + q);
+    for (PetscInt k = 0; k < PetscMin(LANES, n - i); k++) sum[i + k] += all[k];
+  }
+}
+
 /* Whether a marker's u and v have the points of cbs54. */
 static inline PetscBool HasFixed(const PaddedStencil s[2]) {
   return s[0].n[0] == 5 && s[0].n[1] == 4 && s[1].n[0] == 4 && s[1].n[1] == 5 ? PETSC_TRUE : PETSC_FALSE;

@@ -45,6 +45,12 @@ PETSC_EXTERN PetscReal StencilShiftedSum(const OffsetTable *table, OffsetBlock b
                                          const PaddedStencil *source, const PetscInt cells[2]);
 PETSC_EXTERN PetscReal StencilNearSum(const OffsetTable *table, OffsetBlock block, const PaddedStencil *response,
                                       const PaddedStencil *source);
+/* StencilRowAdd - sum[i] += factor StencilShiftedSum of the response moved by i cells along x, i = 0 .. n - 1, n at
+   most STENCIL_ROW. Not collective. */
+#define STENCIL_ROW 32
+PETSC_EXTERN void StencilRowAdd(const OffsetTable *table, OffsetBlock block, const PaddedStencil *response,
+                                const PaddedStencil *source, const PetscInt cells[2], PetscReal factor, PetscInt n,
+                                PetscReal sum[]);
 PETSC_EXTERN void StencilUnwrap(Grid grid, const PetscReal X[2], PaddedStencil stencil[2]);
 PETSC_EXTERN void StencilFourSums(const OffsetTable *table, const PaddedStencil a[2], const PaddedStencil b[2],
                                   const PetscInt cells[2], PetscReal sum[4]);
