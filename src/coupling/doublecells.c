@@ -1,8 +1,8 @@
 #include "coupling/doublecells.h"
+#include "coupling/cellrow.h"
 #include "coupling/doubleblock.h"
 #include "coupling/doublecurve.h"
 #include "coupling/lattice.h"
-#include "coupling/nearcells.h"
 
 #define CELLS 4         /* distance from a marker up to which a cell is corrected, */
 #define SPACINGS 2      /* and the same in spacings of the markers */
@@ -16,8 +16,9 @@ typedef struct {
   PetscReal reach; /* of the correction (length); everywhere in unbounded fluid */
   PetscReal ratio;
   const PetscReal *X;    /* [2n] */
-  PetscReal *tensor;     /* [DIPOLE_COUNT n] */
+  PetscReal *tensor;     /* [DIPOLE_COUNT n]; whole vectors, as X */
   PaddedStencil *dipole; /* [DIPOLE_COUNT n], not wrapped into the grid */
+  CellRow row;           /* the cells under way; none in unbounded fluid */
 } DoubleCells;
 
 static PetscReal At(const OffsetTable *t, OffsetBlock b, PetscInt i, PetscInt j) {
@@ -45,35 +46,44 @@ static PetscErrorCode PressureTable(PetscInt reach, OffsetTable *t) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Take off what the lattice has of the dipoles at a cell. */
-static void TakeLattice(const DoubleCells *s, const PetscInt cell[2], const PetscReal x[2], PetscReal f[3]) {
+/* What the lattice has of the dipoles of marker k at `n` cells of a row from cell[0] on, taken off. */
+static void TakeLattice(DoubleCells *s, PetscInt k, const PetscInt cell[2], PetscInt n) {
+  static const PetscInt none[2] = {0, 0};
   const DoubleLayer d = s->coupling->contrast;
   const PetscReal h = s->coupling->fluid->grid->h, nu = s->coupling->fluid->nu;
   const OffsetTable *table[3] = {&d->lattice[0], &d->lattice[1], &d->pressure};
   const PetscReal scale[3] = {1 / h, 1 / h, nu / (h * h)};
-  PaddedStencil weights[3];
-  for (int c = 0; c < 3; c++) NearCellStencil((Field)c, cell, &weights[c]);
-  for (PetscInt k = 0; k < s->n; k++) {
-    if (PetscHypotReal(x[0] - s->X[2 * k], x[1] - s->X[2 * k + 1]) > SUMMED_CELLS * h) continue;
-    for (int c = 0; c < 3; c++)
-      for (PetscInt q = DIPOLE_COUNT * k; q < DIPOLE_COUNT * (k + 1); q++)
-        f[c] -= scale[c] * s->tensor[q] *
-                StencilNearSum(table[c], (OffsetBlock)(q % DIPOLE_COUNT), &weights[c], &s->dipole[q]);
+  for (int c = 0; c < 3; c++) {
+    PaddedStencil weights;
+    CellStencil((Field)c, cell, &weights);
+    for (PetscInt q = DIPOLE_COUNT * k; q < DIPOLE_COUNT * (k + 1); q++)
+      StencilRowAdd(table[c], (OffsetBlock)(q % DIPOLE_COUNT), &weights, &s->dipole[q], none, -scale[c] * s->tensor[q],
+                    n, s->row.sum[c] + cell[0] - s->row.from);
   }
 }
 
-/* The same of distant markers: the double layer itself. */
-static void TakeFar(const DoubleCells *s, const PetscReal x[2], PetscReal f[3]) {
-  const PetscReal h = s->coupling->fluid->grid->h, nu = s->coupling->fluid->nu;
-  for (PetscInt k = 0; k < s->n; k++) {
-    const PetscReal r[2] = {s->X[2 * k] - x[0], s->X[2 * k + 1] - x[1]}, r2 = r[0] * r[0] + r[1] * r[1];
+/* The same of markers that are distant from cell i: the double layer itself. */
+static void TakeDistant(const DoubleCells *s, PetscInt i, const PetscReal at[2], PetscReal f[3]) {
+  const PetscReal nu = s->coupling->fluid->nu;
+  Lanes sum[3] = {{0}, {0}, {0}};
+  for (PetscInt k = 0; k < s->n; k += LANES) {
+    const LanesBits far = CellRowDistant(&s->row, s->n, k, i);
     const PetscReal *T = s->tensor + DIPOLE_COUNT * k;
-    if (r2 <= PetscSqr(SUMMED_CELLS * h)) continue;
-    const PetscReal through = 0.5 * (T[DIPOLE_XX] * r[0] * r[0] + T[DIPOLE_YY] * r[1] * r[1]) +
-                              T[DIPOLE_XY] * r[0] * r[1];
-    for (int c = 0; c < 2; c++) f[c] += through * r[c] / (PETSC_PI * r2 * r2);
-    f[2] += nu / PETSC_PI * (0.5 * (T[DIPOLE_XX] + T[DIPOLE_YY]) / r2 - 2 * through / (r2 * r2));
+    Lanes x, y, part[DIPOLE_COUNT];
+    LanesPairs(s->X + 2 * k, &x, &y);
+    for (int c = 0; c < DIPOLE_COUNT; c++)
+      part[c] = (Lanes){T[c], T[DIPOLE_COUNT + c], T[2 * DIPOLE_COUNT + c], T[3 * DIPOLE_COUNT + c]};
+    x -= at[0];
+    y -= at[1];
+    const Lanes over = 1 / (x * x + y * y);
+    const Lanes through = 0.5 * (part[DIPOLE_XX] * x * x + part[DIPOLE_YY] * y * y) + part[DIPOLE_XY] * x * y;
+    const Lanes factor = through * over * over;
+    sum[0] += LanesWhere(far, factor * x);
+    sum[1] += LanesWhere(far, factor * y);
+    sum[2] += LanesWhere(far, 0.5 * (part[DIPOLE_XX] + part[DIPOLE_YY]) * over - 2 * factor);
   }
+  for (int c = 0; c < 2; c++) f[c] += LanesSum(sum[c]) / PETSC_PI;
+  f[2] += nu / PETSC_PI * LanesSum(sum[2]);
 }
 
 static PetscErrorCode SetVesicle(DoubleCells *s, PetscInt v, const PetscReal X[], const PetscReal U[]) {
@@ -107,7 +117,7 @@ static PetscErrorCode SetVesicle(DoubleCells *s, PetscInt v, const PetscReal X[]
 static void FindBox(const DoubleCells *s, PetscInt box[2][2]) {
   const Grid g = s->coupling->fluid->grid;
   if (!g->free) {
-    NearCellsBox(g, s->n, s->X, s->reach, box);
+    CellBox(g, s->n, s->X, s->reach, box);
     return;
   }
   for (int dir = 0; dir < 2; dir++) {
@@ -116,32 +126,47 @@ static void FindBox(const DoubleCells *s, PetscInt box[2][2]) {
   }
 }
 
-/* One vesicle's part, added; over[] becomes 1/ratio inside it. */
-static void CorrectVesicle(const DoubleCells *s, PetscReal *const field[3], PetscReal over[]) {
+/* Row j of the cells from box[0] to box[1]; to the fields from `start` on, over[] becomes 1/ratio inside. */
+static void CorrectRow(DoubleCells *s, const PetscInt box[2], PetscInt j, PetscReal *const field[3], PetscInt start,
+                       PetscReal over[]) {
   const Grid g = s->coupling->fluid->grid;
-  PetscInt box[2][2], cell[2];
-  FindBox(s, box);
-  for (cell[1] = box[1][0]; cell[1] <= box[1][1]; cell[1]++) {
-    const PetscInt row = ((cell[1] % g->n[1]) + g->n[1]) % g->n[1] - g->first;
-    if (row < 0 || row >= g->rows[FIELD_P]) continue;
-    for (cell[0] = box[0][0]; cell[0] <= box[0][1]; cell[0]++) {
-      const PetscInt at = row * g->n[0] + ((cell[0] % g->n[0]) + g->n[0]) % g->n[0];
-      PetscReal x[2], f[3] = {0, 0, 0};
-      PetscBool inside;
-      GridPosition(g, FIELD_P, cell[0], cell[1], x);
-      const PetscBool near = g->free || NearCellIs(s->n, s->X, s->reach, x) ? PETSC_TRUE : PETSC_FALSE;
-      if (near)
-        DoubleCurveAdd(s->curve, x, f, &f[2], &inside);
-      else
-        inside = DoubleCurveContains(s->curve, x);
-      if (inside) over[at] = 1 / s->ratio;
-      if (!near) continue;
-      if (!g->free) TakeLattice(s, cell, x, f);
-      if (!g->free) TakeFar(s, x, f);
-      for (int c = 0; c < 3; c++)
-        if (field[c]) field[c][at] += f[c];
-    }
+  PetscInt cell[2];
+  const PetscBool any = g->free || CellRowPlace(&s->row, g, s->n, s->X, s->reach, box, j) ? PETSC_TRUE : PETSC_FALSE;
+  for (PetscInt k = 0; k < s->n && any && !g->free; k++) {
+    const PetscInt n = CellRowNear(&s->row, g, k, s->X + 2 * k, SUMMED_CELLS, j, cell);
+    if (n) TakeLattice(s, k, cell, n);
   }
+  for (PetscInt i = box[0]; i <= box[1]; i++) {
+    const PetscInt at = start + ((i % g->n[0]) + g->n[0]) % g->n[0];
+    PetscReal x[2], f[3] = {0, 0, 0};
+    PetscBool inside;
+    GridPosition(g, FIELD_P, i, j, x);
+    const PetscBool near = any && (g->free || CellIsNear(s->n, s->X, s->reach, x)) ? PETSC_TRUE : PETSC_FALSE;
+    if (near)
+      DoubleCurveAdd(s->curve, x, f, &f[2], &inside);
+    else
+      inside = DoubleCurveContains(s->curve, x);
+    if (inside) over[at] = 1 / s->ratio;
+    if (!near) continue;
+    if (!g->free) TakeDistant(s, i, x, f);
+    for (int c = 0; c < 3; c++)
+      if (field[c]) field[c][at] += f[c] + (g->free ? 0 : s->row.sum[c][i - s->row.from]);
+  }
+}
+
+/* One vesicle's part, added. */
+static PetscErrorCode CorrectVesicle(DoubleCells *s, PetscReal *const field[3], PetscReal over[]) {
+  const Grid g = s->coupling->fluid->grid;
+  PetscInt box[2][2];
+  PetscFunctionBeginUser;
+  FindBox(s, box);
+  PetscCall(CellRowCreate(s->n, box[0][1] - box[0][0] + 1, &s->row));
+  for (PetscInt j = box[1][0]; j <= box[1][1]; j++) {
+    const PetscInt row = ((j % g->n[1]) + g->n[1]) % g->n[1] - g->first;
+    if (row >= 0 && row < g->rows[FIELD_P]) CorrectRow(s, box[0], j, field, row * g->n[0], over);
+  }
+  PetscCall(CellRowDestroy(&s->row));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode DoubleCellsCorrect(Coupling c, Vec U, Vec X, PetscReal u[], PetscReal v[], PetscReal p[]) {
@@ -152,8 +177,8 @@ PetscErrorCode DoubleCellsCorrect(Coupling c, Vec U, Vec X, PetscReal u[], Petsc
   DoubleCells s = {.coupling = c};
   PetscFunctionBeginUser;
   if (!c->contrast) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscMalloc3(2 * l->M, &x, 2 * l->M, &velocity, cells, &over));
-  PetscCall(PetscMalloc2(DIPOLE_COUNT * l->M, &s.tensor, DIPOLE_COUNT * l->M, &s.dipole));
+  PetscCall(PetscCalloc3(2 * (l->M + LANES), &x, 2 * l->M, &velocity, cells, &over));
+  PetscCall(PetscCalloc2(DIPOLE_COUNT * (l->M + LANES), &s.tensor, DIPOLE_COUNT * l->M, &s.dipole));
   PetscCall(LayoutGatherVec(l, X, x));
   PetscCall(LayoutGatherVec(l, U, velocity));
   if (!c->contrast->pressure.value[0]) PetscCall(PressureTable(SUMMED_CELLS + OFFSET_LAGS, &c->contrast->pressure));
@@ -161,7 +186,7 @@ PetscErrorCode DoubleCellsCorrect(Coupling c, Vec U, Vec X, PetscReal u[], Petsc
   for (PetscInt b = 0; b < l->bodies; b++) {
     if (c->contrast->ratio[b] == 1) continue;
     PetscCall(SetVesicle(&s, b, x, velocity));
-    CorrectVesicle(&s, field, over);
+    PetscCall(CorrectVesicle(&s, field, over));
     PetscCall(DoubleCurveDestroy(&s.curve));
   }
   for (int f = 0; f < 2; f++)

@@ -1,5 +1,6 @@
 #include "coupling/nearcells.h"
 #include "base/lanes.h"
+#include "coupling/cellrow.h"
 #include "coupling/layer.h"
 #include "coupling/nearblock.h"
 
@@ -27,10 +28,7 @@ typedef struct {
   PetscReal reach;        /* of the correction (length) */
   const PetscReal *X, *F; /* [2n] of the vesicle */
   PaddedStencil *source;  /* [2n] */
-  /* A row of cells: those from `from` to `to` count along x, and of marker k those from first[k] to last[k] (whole
-     numbers, whole vectors) have the lattice's sums, in u, v and p, from the cell `from` on. */
-  PetscInt from, to;
-  PetscReal *first, *last, *row[3];
+  CellRow row;            /* the cells under way */
 } NearCells;
 
 /* Second moments along and across are averaged over both ends where one component meets itself; from one to the other
@@ -70,17 +68,6 @@ static void SetStencils(NearCells *s) {
   }
 }
 
-void NearCellStencil(Field f, const PetscInt cell[2], PaddedStencil *padded) {
-  Stencil stencil;
-  for (int dir = 0; dir < 2; dir++) {
-    const PetscBool faces = (int)f == dir ? PETSC_TRUE : PETSC_FALSE;
-    stencil.n[dir] = faces ? 2 : 1;
-    stencil.first[dir] = cell[dir] - (faces ? 1 : 0);
-    stencil.weight[dir][0] = stencil.weight[dir][1] = faces ? 0.5 : 1;
-  }
-  StencilPad(&stencil, padded);
-}
-
 /* Velocity and pressure of marker k on the lattice, taken off those of `n` cells of a row from cell[0] on. */
 static void TakeLattice(NearCells *s, PetscInt k, const PetscInt cell[2], PetscInt n) {
   static const PetscInt none[2] = {0, 0}, turned[2] = {1, -1}; /* u of a force along y: StencilFourSums */
@@ -91,8 +78,8 @@ static void TakeLattice(NearCells *s, PetscInt k, const PetscInt cell[2], PetscI
   PetscReal *at[3];
   PaddedStencil weights[3];
   for (int f = 0; f < 3; f++) {
-    NearCellStencil((Field)f, cell, &weights[f]);
-    at[f] = s->row[f] + cell[0] - s->from;
+    CellStencil((Field)f, cell, &weights[f]);
+    at[f] = s->row.sum[f] + cell[0] - s->row.from;
   }
   StencilRowAdd(t, OFFSET_UU, &weights[0], &source[0], none, -F[0] / nu, n, at[0]);
   StencilRowAdd(t, OFFSET_VU, &weights[0], &source[1], turned, -F[1] / nu, n, at[0]);
@@ -102,22 +89,6 @@ static void TakeLattice(NearCells *s, PetscInt k, const PetscInt cell[2], PetscI
   StencilRowAdd(&s->pressure, OFFSET_VV, &weights[2], &source[1], none, -F[1] / h, n, at[2]);
   for (int c = 0; c < 2; c++)
     for (PetscInt i = 0; i < n; i++) at[c][i] += constant * F[c];
-}
-
-/* Which cells of row j are near each marker, and what the lattice gives them. */
-static void StartRow(NearCells *s, PetscInt j) {
-  const Grid g = s->coupling->fluid->grid;
-  const PetscReal near = SUMMED_CELLS * g->h;
-  for (int f = 0; f < 3; f++) (void)PetscArrayzero(s->row[f], s->to - s->from + 1 + LANES);
-  for (PetscInt k = 0; k < s->n; k++) {
-    const PetscReal y = g->lo[1] + (j + 0.5) * g->h - s->X[2 * k + 1], half = near * near - y * y;
-    const PetscReal middle = (s->X[2 * k] - g->lo[0]) / g->h - 0.5, wide = half > 0 ? PetscSqrtReal(half) / g->h : -1;
-    s->first[k] = PetscCeilReal(middle - wide);
-    s->last[k] = PetscFloorReal(middle + wide);
-    const PetscInt cell[2] = {PetscMax((PetscInt)s->first[k], s->from), j};
-    const PetscInt n = PetscMin((PetscInt)s->last[k], s->to) - cell[0] + 1;
-    if (n > 0) TakeLattice(s, k, cell, n);
-  }
 }
 
 /* The same of four distant markers, (x, y) from them to the cell, with forces (f, g): the Stokeslet, and the closed
@@ -139,14 +110,12 @@ static void TakeFar(const NearCells *s, Lanes x, Lanes y, Lanes f, Lanes g, Lane
 
 /* All markers of the vesicle that are not near cell i of the row. */
 static void TakeDistant(const NearCells *s, PetscInt i, const PetscReal at[2], PetscReal u[2], PetscReal *p) {
-  const Lanes order = {0, 1, 2, 3}, cell = (Lanes){0} + (PetscReal)i;
   Lanes sum[3] = {{0}, {0}, {0}}, four[3];
   for (PetscInt k = 0; k < s->n; k += LANES) {
     Lanes x, y, f, g;
     LanesPairs(s->X + 2 * k, &x, &y);
     LanesPairs(s->F + 2 * k, &f, &g);
-    const LanesBits is = (LanesBits)(order < (Lanes){0} + (PetscReal)(s->n - k));
-    const LanesBits far = is & (LanesBits)((cell < LanesAt(s->first + k)) | (cell > LanesAt(s->last + k)));
+    const LanesBits far = CellRowDistant(&s->row, s->n, k, i);
     TakeFar(s, at[0] - x, at[1] - y, f, g, four);
     for (int q = 0; q < 3; q++) sum[q] += LanesWhere(far, four[q]);
   }
@@ -156,32 +125,9 @@ static void TakeDistant(const NearCells *s, PetscInt i, const PetscReal at[2], P
 
 /* The exact layer less the lattice's at the centre x of cell i of the row. */
 static void Difference(const NearCells *s, PetscInt i, const PetscReal x[2], PetscReal found[3]) {
-  for (int f = 0; f < 3; f++) found[f] = s->row[f][i - s->from];
+  for (int f = 0; f < 3; f++) found[f] = s->row.sum[f][i - s->row.from];
   LayerAdd(s->layer, s->vesicle, x, found, &found[2]);
   TakeDistant(s, i, x, found, &found[2]);
-}
-
-PetscBool NearCellIs(PetscInt n, const PetscReal X[], PetscReal reach, const PetscReal x[2]) {
-  for (PetscInt k = 0; k < n; k++) {
-    const PetscReal dx = x[0] - X[2 * k], dy = x[1] - X[2 * k + 1];
-    if (dx * dx + dy * dy < reach * reach) return PETSC_TRUE;
-  }
-  return PETSC_FALSE;
-}
-
-void NearCellsBox(Grid g, PetscInt n, const PetscReal X[], PetscReal reach, PetscInt box[2][2]) {
-  for (int dir = 0; dir < 2; dir++) {
-    PetscReal low = PETSC_MAX_REAL, high = -PETSC_MAX_REAL;
-    for (PetscInt k = 0; k < n; k++) {
-      low = PetscMin(low, X[2 * k + dir]);
-      high = PetscMax(high, X[2 * k + dir]);
-    }
-    box[dir][0] = (PetscInt)PetscFloorReal((low - reach - g->lo[dir]) / g->h);
-    box[dir][1] = (PetscInt)PetscFloorReal((high + reach - g->lo[dir]) / g->h);
-    if (!g->wall[dir]) continue;
-    box[dir][0] = PetscMax(box[dir][0], 0);
-    box[dir][1] = PetscMin(box[dir][1], g->n[dir] - 1);
-  }
 }
 
 /* Whether the cells of a box, whose indices are not wrapped into the grid, have any in this rank's rows. */
@@ -193,24 +139,20 @@ static PetscBool HasOwnRows(Grid g, PetscInt box[2][2]) {
   return PETSC_FALSE;
 }
 
-/* Row j of a box's cells, whose indices are not wrapped into the grid; to the fields from `field` on. */
-static void CorrectRow(NearCells *s, PetscInt box[2], PetscInt j, PetscReal *const field[3], PetscInt start) {
+/* Row j of the cells from box[0] to box[1]; to the fields from `start` on. */
+static void CorrectRow(NearCells *s, const PetscInt box[2], PetscInt j, PetscReal *const field[3], PetscInt start) {
   const Grid g = s->coupling->fluid->grid;
-  PetscReal x[2];
-  s->from = box[1] + 1;
-  for (PetscInt i = box[0]; i <= box[1]; i++) {
-    GridPosition(g, FIELD_P, i, j, x);
-    if (!NearCellIs(s->n, s->X, s->reach, x)) continue;
-    s->from = PetscMin(s->from, i);
-    s->to = i;
+  PetscInt cell[2];
+  if (!CellRowPlace(&s->row, g, s->n, s->X, s->reach, box, j)) return;
+  for (PetscInt k = 0; k < s->n; k++) {
+    const PetscInt n = CellRowNear(&s->row, g, k, s->X + 2 * k, SUMMED_CELLS, j, cell);
+    if (n) TakeLattice(s, k, cell, n);
   }
-  if (s->from > box[1]) return;
-  StartRow(s, j);
-  for (PetscInt i = s->from; i <= s->to; i++) {
+  for (PetscInt i = s->row.from; i <= s->row.to; i++) {
     const PetscInt at = start + ((i % g->n[0]) + g->n[0]) % g->n[0];
-    PetscReal found[3];
+    PetscReal x[2], found[3];
     GridPosition(g, FIELD_P, i, j, x);
-    if (!NearCellIs(s->n, s->X, s->reach, x)) continue;
+    if (!CellIsNear(s->n, s->X, s->reach, x)) continue;
     Difference(s, i, x, found);
     for (int f = 0; f < 3; f++)
       if (field[f]) field[f][at] += found[f];
@@ -222,18 +164,16 @@ static PetscErrorCode CorrectVesicle(NearCells *s, PetscInt v, PetscReal *const 
   PetscInt box[2][2];
   PetscFunctionBeginUser;
   SetVesicle(s, v);
-  NearCellsBox(g, s->n, s->X, s->reach, box);
+  CellBox(g, s->n, s->X, s->reach, box);
   if (!HasOwnRows(g, box)) PetscFunctionReturn(PETSC_SUCCESS);
-  const PetscInt width = box[0][1] - box[0][0] + 1 + LANES;
   PetscCall(LayerUse(s->layer, v));
   SetStencils(s);
-  PetscCall(PetscCalloc5(s->n + LANES, &s->first, s->n + LANES, &s->last, width, &s->row[0], width, &s->row[1], width,
-                         &s->row[2]));
+  PetscCall(CellRowCreate(s->n, box[0][1] - box[0][0] + 1, &s->row));
   for (PetscInt j = box[1][0]; j <= box[1][1]; j++) {
     const PetscInt row = ((j % g->n[1]) + g->n[1]) % g->n[1] - g->first;
     if (row >= 0 && row < g->rows[FIELD_P]) CorrectRow(s, box[0], j, field, row * g->n[0]);
   }
-  PetscCall(PetscFree5(s->first, s->last, s->row[0], s->row[1], s->row[2]));
+  PetscCall(CellRowDestroy(&s->row));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

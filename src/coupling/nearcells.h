@@ -9,13 +9,3 @@
    Collective. */
 PETSC_EXTERN PetscErrorCode NearCellsCorrect(Coupling coupling, Vec sigma, Vec X, PetscReal u[], PetscReal v[],
                                              PetscReal p[]);
-
-/* NearCellStencil - the weights by which a field's entries make its value at the centre of a cell: the two faces' mean,
-   or the entry. Not collective. */
-PETSC_EXTERN void NearCellStencil(Field field, const PetscInt cell[2], PaddedStencil *padded);
-
-/* NearCellsBox - cells from box[dir][0] to box[dir][1] hold n markers X[2n] and all within reach (length) of them;
-   indices go beyond the grid where it is periodic. NearCellIs - whether x is within reach of a marker. Not collective.
- */
-PETSC_EXTERN void NearCellsBox(Grid grid, PetscInt n, const PetscReal X[], PetscReal reach, PetscInt box[2][2]);
-PETSC_EXTERN PetscBool NearCellIs(PetscInt n, const PetscReal X[], PetscReal reach, const PetscReal x[2]);

@@ -146,18 +146,6 @@ void StencilDipoleSums(const OffsetTable table[2], const PaddedStencil response[
   sum[1][2] = FixedSum(4, 5, 5, 5, t[1][2], width, &response[1], &dipole[2], cells);
 }
 
-PetscReal StencilShiftedSum(const OffsetTable *t, OffsetBlock b, const PaddedStencil *response,
-                            const PaddedStencil *source, const PetscInt cells[2]) {
-  const PetscInt width = 2 * t->size[0] + 1;
-  return TableSum(t->value[b] + t->size[1] * width + t->size[0], width, response, source, cells);
-}
-
-PetscReal StencilNearSum(const OffsetTable *t, OffsetBlock b, const PaddedStencil *response,
-                         const PaddedStencil *source) {
-  static const PetscInt none[2] = {0, 0};
-  return StencilShiftedSum(t, b, response, source, none);
-}
-
 void StencilRowAdd(const OffsetTable *t, OffsetBlock b, const PaddedStencil *response, const PaddedStencil *source,
                    const PetscInt cells[2], PetscReal factor, PetscInt n, PetscReal sum[]) {
   const PetscInt width = 2 * t->size[0] + 1, rows = response->n[1] + source->n[1] - 1;

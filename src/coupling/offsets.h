@@ -35,22 +35,18 @@ PETSC_EXTERN PetscReal StencilPairSum(const OffsetTable *table, OffsetBlock bloc
 
 /* StencilUnwrap - the two components' stencils of a marker at X count from its own place, however many periods that is
    from the grid. StencilFourSums - the sums of markers a and b, so unwrapped, `cells` being added to the offset: xx,
-   yy, xy (x of a to a force along y of b), yx. StencilShiftedSum - one block's sum, with `cells` added; StencilNearSum
-   - with nothing added. All far within the table. Not collective. */
-/* StencilDipoleSums - the sums of a marker's u and v (points 5 x 4 and 4 x 5, those of cbs54) and of a dipole's parts
+   yy, xy (x of a to a force along y of b), yx. Far within the table. Not collective.
+   StencilDipoleSums - the sums of a marker's u and v (points 5 x 4 and 4 x 5, those of cbs54) and of a dipole's parts
    xx, yy, xy (6 x 4, 4 x 6, 5 x 5) at another, tables of the same size. Not collective. */
-PETSC_EXTERN void StencilDipoleSums(const OffsetTable table[2], const PaddedStencil response[2],
-                                    const PaddedStencil dipole[3], const PetscInt cells[2], PetscReal sum[2][3]);
-PETSC_EXTERN PetscReal StencilShiftedSum(const OffsetTable *table, OffsetBlock block, const PaddedStencil *response,
-                                         const PaddedStencil *source, const PetscInt cells[2]);
-PETSC_EXTERN PetscReal StencilNearSum(const OffsetTable *table, OffsetBlock block, const PaddedStencil *response,
-                                      const PaddedStencil *source);
-/* StencilRowAdd - sum[i] += factor StencilShiftedSum of the response moved by i cells along x, i = 0 .. n - 1, n at
-   most STENCIL_ROW. Not collective. */
-#define STENCIL_ROW 32
-PETSC_EXTERN void StencilRowAdd(const OffsetTable *table, OffsetBlock block, const PaddedStencil *response,
-                                const PaddedStencil *source, const PetscInt cells[2], PetscReal factor, PetscInt n,
-                                PetscReal sum[]);
 PETSC_EXTERN void StencilUnwrap(Grid grid, const PetscReal X[2], PaddedStencil stencil[2]);
 PETSC_EXTERN void StencilFourSums(const OffsetTable *table, const PaddedStencil a[2], const PaddedStencil b[2],
                                   const PetscInt cells[2], PetscReal sum[4]);
+PETSC_EXTERN void StencilDipoleSums(const OffsetTable table[2], const PaddedStencil response[2],
+                                    const PaddedStencil dipole[3], const PetscInt cells[2], PetscReal sum[2][3]);
+
+/* StencilRowAdd - sum[i] += factor times one block's double sum, `cells` being added to the offset, of the response
+   moved by i cells along x, i = 0 .. n - 1, n at most STENCIL_ROW. Far within the table. Not collective. */
+#define STENCIL_ROW 48
+PETSC_EXTERN void StencilRowAdd(const OffsetTable *table, OffsetBlock block, const PaddedStencil *response,
+                                const PaddedStencil *source, const PetscInt cells[2], PetscReal factor, PetscInt n,
+                                PetscReal sum[]);
