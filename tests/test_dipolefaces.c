@@ -1,8 +1,9 @@
 /* The lattice's answer of a dipole by faces that markers share, and in closed form, against the double sums of each
-   pair. */
+   pair; dipoles by rows of a grid. */
 #include "world.h"
 #include "coupling/dipolefaces.h"
 #include "coupling/doubleblock.h"
+#include "markers/dipolerows.h"
 
 #define MARKERS 11
 
@@ -90,7 +91,58 @@ static PetscErrorCode CompareFar(const OffsetTable lattice[2], PetscReal diamete
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+#define COLUMNS 16
+#define ROWS 32
+
+/* The rows of two dipoles at these heights, into `rows`. */
+static PetscErrorCode SetRows(Grid g, const PetscReal height[2], DipoleRows rows) {
+  const PetscReal T[2 * DIPOLE_COUNT] = {0.7, -0.4, 0.3, -0.2, 0.9, 0.5}, none[2] = {0, 0};
+  DipoleSpot spot[2 * DIPOLE_SPOTS];
+  DipoleList list;
+  PetscFunctionBeginUser;
+  PetscCall(PetscArrayzero(spot, 2 * DIPOLE_SPOTS));
+  PetscCall(DipoleListCreate(g, &list));
+  for (int k = 0; k < 2; k++) DipoleSpots(g, 1, (PetscReal[]){6.3 + 2 * k, height[k]}, spot + k * DIPOLE_SPOTS);
+  PetscCall(DipoleListPlace(list, 2, spot));
+  PetscCall(DipoleRowsSet(rows, list, T, NULL, none));
+  PetscCall(DipoleListDestroy(&list));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Dipoles that have moved: force and velocity of all rows are those of rows that had none before. */
+static PetscErrorCode CompareRows(const PetscReal before[2], const PetscReal now[2]) {
+  struct _p_Grid grid = {.h = 1,
+                         .n = {COLUMNS, ROWS},
+                         .wall = {PETSC_FALSE, PETSC_TRUE},
+                         .columns = {COLUMNS, COLUMNS, COLUMNS},
+                         .rows = {ROWS, ROWS - 1, ROWS},
+                         .size = 1};
+  PetscReal worst = 0, most = 0;
+  DipoleRows rows[2];
+  PetscFunctionBeginUser;
+  for (int k = 0; k < 2; k++) PetscCall(DipoleRowsCreate(&grid, 1, &rows[k]));
+  PetscCall(SetRows(&grid, before, rows[0]));
+  for (int k = 0; k < 2; k++) PetscCall(SetRows(&grid, now, rows[k]));
+  for (int f = FIELD_U; f <= FIELD_V; f++)
+    for (PetscInt j = 0; j < grid.rows[f]; j++) {
+      PetscScalar row[2][2 * COLUMNS] = {{0}};
+      for (int k = 0; k < 2; k++) {
+        DipoleRowsAddForce(rows[k], PETSC_TRUE, (Field)f, j, row[k]);
+        if (f == FIELD_U) DipoleRowsAddVelocity(rows[k], j, row[k] + COLUMNS);
+      }
+      for (PetscInt i = 0; i < 2 * COLUMNS; i++) {
+        worst = PetscMax(worst, PetscAbsReal(row[0][i] - row[1][i]));
+        most = PetscMax(most, PetscAbsReal(row[1][i]));
+      }
+    }
+  CHECK(worst == 0 && most > 0.1, "dipoles moved from rows %g and %g to %g and %g leave nothing behind: %.1e of %.2f",
+        (double)before[0], (double)before[1], (double)now[0], (double)now[1], (double)worst, (double)most);
+  for (int k = 0; k < 2; k++) PetscCall(DipoleRowsDestroy(&rows[k]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode Facts(void) {
+  const PetscReal height[4][2] = {{6.4, 25.1}, {12.2, 17.6}, {15.3, 15.8}, {9.7, 28.9}};
   const PetscReal half[4][2] = {{5, 3}, {0.2, 0.3}, {1, 6}, {7, 0.6}};
   const PetscInt cells[3][2] = {{0, 0}, {4, -3}, {-1, 5}};
   const PetscReal N[2][2] = {{0.3, -0.8}, {-1, 0}};
@@ -106,6 +158,7 @@ static PetscErrorCode Facts(void) {
   PetscCall(CompareFar(lattice, 16, 6e-5));
   PetscCall(CompareFar(lattice, 24, 1e-5));
   for (int c = 0; c < 2; c++) PetscCall(OffsetTableDestroy(&lattice[c]));
+  for (int k = 0; k < 4; k++) PetscCall(CompareRows(height[k], height[(k + 1) % 4]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -66,12 +66,21 @@ static void SumMeans(const Grid g, PetscScalar mean[]) {
   for (PetscInt j = 0; j < g->n[1] && !g->wall[1]; j++) mean[j] -= sum / (PetscReal)g->n[1];
 }
 
+/* The rows of `window` become the ones that are set; those that were and are none of them any more become zero, as
+   their neighbours look at them. */
+static void SetWindow(DipoleRows d, const PetscInt window[2]) {
+  for (PetscInt j = d->window[0]; j < d->window[1]; j++)
+    for (int f = 0; f < 3 && (j < window[0] || j >= window[1]); f++)
+      (void)PetscArrayzero(Row(d, (Field)f, j), d->grid->n[0]);
+  for (int c = 0; c < 2; c++) d->window[c] = window[c];
+}
+
 PetscErrorCode DipoleRowsSet(DipoleRows d, const DipoleList list, const PetscReal T[], const PetscReal profile[],
                              const PetscReal mean[2]) {
   const Grid g = d->grid;
   PetscFunctionBeginUser;
   Means(d, list, T);
-  for (int c = 0; c < 2; c++) d->window[c] = list->window[c];
+  SetWindow(d, list->window);
   for (PetscInt j = d->window[0]; j < d->window[1]; j++) {
     for (int f = 0; f < 3; f++) {
       PetscScalar *row = Row(d, (Field)f, j);
