@@ -8,17 +8,11 @@
      STRAIN: along k F(J), across s D g2(J);     SOURCE: along k g1(J), across -D g1(J);
      SHEAR: along -D g1(J) + 2 s D g2(J), across k (2 s g2(J) - g1(J)).
 
-   For small k and mu that is e^{-k(a+b)}/4 times polynomials in ka and kb, a and b the distances from the wall: `lead`,
-   which is the exact fluid's image, and k^2 `dispersion`, to which kernels add k^2 [-m p + ma/2 (p - 2 p_a) + mb/2 (p -
-   2 p_b)], m their moments along the wall, ma and mb across. So the image is
-       1/(4 pi) SUM c_pq a^p b^q n!/z^{n+1},   n = p + q (+ 2),   z = a + b - i x,
-   and minus that sum of the k^2 terms is what is left of the exact one, the real part for cos, the imaginary for sin.
+   Expanded in theta these are the forms of imageform.h with n0 = 0: p is the exact fluid's image, and minus the orders
+   above it is what is left of that. Of SHEAR the along form is -2 times that of STRAIN, the across one twice.
  */
 #include "coupling/dipoleimage.h"
 #include "coupling/lattice.h"
-
-#define DEGREES 6 /* n in n!/z^{n+1}, */
-#define DEGREES_EXACT 3
 
 static PetscReal G1(const ImageMode *m, int j) {
   return m->F[j] + m->s * m->g2[j];
@@ -95,144 +89,116 @@ PetscErrorCode DipoleImageFill(const OffsetTable lattice[2], DipoleImageTable *t
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-enum { FORM_EXACT, FORM_FAR };
+static const PetscReal over[IMAGE_ORDERS] = {1, 24, 5760};
+static const ImageNumbers strain_form[2] = {{{{-1, 1, 1, -2},
+                                              {9, -21, -21, 38, 2, 2, -4, -4},
+                                              {-1575, 3303, 3303, -6022, -460, -460, 860, 860, 20, 20, -40, -80, -40}}},
+                                            {{{0, 1, -1, -2},
+                                              {-6, -19, 7, 34, 2, -2, -4, -4},
+                                              {660, 2943, -663, -5342, -440, 200, 820, 780, 20, -20, -40, -80, -40}}}};
+static const ImageNumbers source_form[2] = {
+    {{{-2, 4}, {30, -56, -4, 8, 8}, {-4470, 7932, 720, -1360, -1320, -40, 160, 80, 80}}},
+    {{{2, 4}, {-6, -48, 4, 8, 8}, {390, 6972, -240, -1200, -1240, 40, 160, 80, 80}}}};
 
-/* Monomials 1, a, b, ab, aa, bb, aab, abb; `lead` has the first LEAD alone. Of SHEAR the along polynomial is -2 times
-   that of STRAIN, the across one twice. */
-enum { ONE, A, B, AB, AA, BB, AAB, ABB, LEAD = AA };
-static const int degree[IMAGE_MONOMIALS] = {0, 1, 1, 2, 2, 2, 3, 3};
-static const PetscReal lead[2][2][IMAGE_MONOMIALS] = {{{-1, 1, 1, -2}, {0, 1, -1, -2}}, {{-2, 4}, {2, 4}}};
-static const PetscReal dispersion[2][2][IMAGE_MONOMIALS] = {
-    {{9. / 24, -21. / 24, -21. / 24, 38. / 24, 2. / 24, 2. / 24, -4. / 24, -4. / 24},
-     {-6. / 24, -19. / 24, 7. / 24, 34. / 24, 2. / 24, -2. / 24, -4. / 24, -4. / 24}},
-    {{30. / 24, -56. / 24, -4. / 24, 8. / 24, 8. / 24}, {-6. / 24, -48. / 24, 4. / 24, 8. / 24, 8. / 24}}};
-
-/* Add scale times the polynomials of STRAIN or SOURCE with kernels of second moments m along the wall in all, ma of the
-   response and mb of the dipole across. */
-static void AddForms(PetscReal scale, int kind, int c, PetscReal m, PetscReal ma, PetscReal mb,
-                     PetscReal exact[IMAGE_MONOMIALS], PetscReal far[IMAGE_MONOMIALS]) {
-  const PetscReal *p = lead[kind][c];
-  for (int k = 0; k < IMAGE_MONOMIALS; k++) {
-    exact[k] += scale * p[k];
-    far[k] -= scale * (dispersion[kind][c][k] + 0.5 * (ma + mb - m) * p[k]);
-  }
-  far[ONE] += scale * (ma * p[A] + mb * p[B]);
-  far[A] += scale * mb * p[AB];
-  far[B] += scale * ma * p[AB];
-}
-
-void DipoleImageFormsMake(PetscReal along, PetscReal across, DipoleImageForms *f) {
-  static const PetscReal moment[DIPOLE_COUNT][2] = {{6. / 12, 4. / 12}, {4. / 12, 6. / 12}, {5. / 12, 5. / 12}};
+void DipoleImageFormsMake(const ImageMoments kernel[2], DipoleImageForms *f) {
+  const Kernel *five = KernelFind("cbs54"), *six = KernelFind("cbs65");
+  const ImageMoments four = ImageMomentsOf(five->across), m5 = ImageMomentsOf(five->along),
+                     m6 = ImageMomentsOf(six->along);
+  const ImageMoments moment[DIPOLE_COUNT][2] = {{m6, four}, {four, m6}, {m5, m5}};
   *f = (DipoleImageForms){0};
   for (int part = 0; part < DIPOLE_COUNT; part++)
     for (int c = 0; c < 2; c++) {
-      const PetscReal m = moment[part][0] + (c ? across : along), ma = c ? along : across, mb = moment[part][1];
       const PetscReal strain = part == DIPOLE_XX ? 1 : part == DIPOLE_YY ? -1 : c ? 2 : -2;
-      AddForms(strain, 0, c, m, ma, mb, f->exact[part][c], f->far[part][c]);
-      if (part != DIPOLE_XY) AddForms(0.5, 1, c, m, ma, mb, f->exact[part][c], f->far[part][c]);
-      for (int k = 0; k < IMAGE_MONOMIALS; k++) {
-        f->four[FORM_EXACT][part][c][k] = f->exact[part][c][k] + (Lanes){0};
-        f->four[FORM_FAR][part][c][k] = f->far[part][c][k] + (Lanes){0};
-      }
+      ImageForm *form = &f->form[part][c];
+      ImageFormAdd(strain, &strain_form[c], over, form);
+      if (part != DIPOLE_XY) ImageFormAdd(0.5, &source_form[c], over, form);
+      ImageFormSmooth(ImageMomentsBoth(kernel[c], moment[part][0]), kernel[1 - c], moment[part][1], form);
+      for (int m = 1; m < IMAGE_ORDERS; m++)
+        for (int k = 0; k < IMAGE_MONOMIALS; k++) form->c[m][k] = -form->c[m][k];
     }
 }
 
-/* Of four pairs: monomials, and n!/z^{n+1}/(4 pi), its real and its imaginary part. */
-typedef struct {
-  Lanes monomial[IMAGE_MONOMIALS], power[DEGREES][2];
-} Terms;
+/* Add the sums of an order where they are meant. */
+static inline void AddSums(const int order, const DipoleImageForms *f, const ImageTerms *t, LanesBits meant,
+                           Lanes K[2][DIPOLE_COUNT]) {
+  for (int sine = 0; sine < 2; sine++) {
+    Lanes term[IMAGE_MONOMIALS];
+    ImageProducts(order, 0, sine, t, term);
+    for (int part = 0; part < DIPOLE_COUNT; part++) {
+      const int comp = part == DIPOLE_XY ? sine : 1 - sine;
+      K[comp][part] += LanesWhere(meant, ImageSumOf(order, f->form[part][comp].c[order], term));
+    }
+  }
+}
 
-static inline Terms MakeTerms(const int degrees, Lanes x, Lanes a, Lanes b) {
-  const Lanes H = a + b, over = 1 / (H * H + x * x), u = H * over, v = x * over, ab = a * b;
-  Terms t = {.monomial = {1 + (Lanes){0}, a, b, ab, a * a, b * b, a * ab, ab * b}};
-  Lanes w[2] = {u / (4 * PETSC_PI), v / (4 * PETSC_PI)};
-  for (int n = 0; n < degrees; n++) {
-    t.power[n][0] = w[0];
-    t.power[n][1] = w[1];
-    const Lanes next = (n + 1) * (w[0] * u - w[1] * v);
-    w[1] = (n + 1) * (w[0] * v + w[1] * u);
-    w[0] = next;
+/* What is left of the exact image, with the terms. */
+static inline ImageTerms AddFarSums(const DipoleImageForms *f, Lanes x, Lanes a, Lanes b, Lanes K[2][DIPOLE_COUNT]) {
+  const LanesBits close = ImageIsClose(x, a, b), all = ~(LanesBits){0};
+  ImageTerms t;
+  if (close[0] | close[1] | close[2] | close[3]) {
+    t = ImageTermsMake(2, x, a, b);
+    AddSums(1, f, &t, all, K);
+    AddSums(2, f, &t, close, K);
+  } else {
+    t = ImageTermsMake(1, x, a, b);
+    AddSums(1, f, &t, all, K);
   }
   return t;
 }
 
-/* Monomials times powers, with n from `least` on. */
-static inline void MakeProducts(const int monomials, const int least, const Terms *t, Lanes term[2][IMAGE_MONOMIALS]) {
-  for (int sine = 0; sine < 2; sine++)
-    for (int k = 0; k < monomials; k++) term[sine][k] = t->monomial[k] * t->power[least + degree[k]][sine];
-}
-
-static inline Lanes Sum(const int monomials, const Lanes c[], const Lanes term[]) {
-  Lanes sum = c[0] * term[0];
-  for (int k = 1; k < monomials; k++) sum += c[k] * term[k];
-  return sum;
-}
-
-/* The sums of the first of the monomials. */
-static inline void Sums(const int monomials, const int least, const Lanes c[DIPOLE_COUNT][2][IMAGE_MONOMIALS],
-                        const Terms *t, Lanes K[2][DIPOLE_COUNT]) {
-  Lanes term[2][IMAGE_MONOMIALS];
-  MakeProducts(monomials, least, t, term);
-  for (int sine = 0; sine < 2; sine++)
-    for (int part = 0; part < DIPOLE_COUNT; part++) {
-      const int comp = part == DIPOLE_XY ? sine : 1 - sine;
-      K[comp][part] = Sum(monomials, c[part][comp], term[sine]);
-    }
-}
-
-void DipoleImageSourceMake(const DipoleImageForms *f, const PetscReal N[2], PetscReal factor, PetscReal over,
+void DipoleImageSourceMake(const DipoleImageForms *f, const PetscReal N[2], PetscReal factor, PetscReal over_length,
                            DipoleImageSource *s) {
   const PetscReal part[DIPOLE_COUNT] = {2 * N[0] * N[0], 2 * N[1] * N[1], 2 * N[0] * N[1]};
   s->forms = f;
   for (int c = 0; c < 2; c++) {
     s->N[c] = factor * N[c];
-    s->unit[c] = over * N[c];
-    for (int k = 0; k < LEAD; k++) {
-      const Lanes both = part[DIPOLE_XX] * f->four[FORM_EXACT][DIPOLE_XX][c][k] +
-                         part[DIPOLE_YY] * f->four[FORM_EXACT][DIPOLE_YY][c][k];
-      s->flux[c][1 - c][k] = factor * over * both;
-      s->flux[c][c][k] = factor * over * part[DIPOLE_XY] * f->four[FORM_EXACT][DIPOLE_XY][c][k];
+    s->unit[c] = over_length * N[c];
+    for (int k = 0; k < image_monomials[0]; k++) {
+      s->flux[c][1 - c][k] = factor * over_length *
+                             (part[DIPOLE_XX] * f->form[DIPOLE_XX][c].c[0][k] +
+                              part[DIPOLE_YY] * f->form[DIPOLE_YY][c].c[0][k]);
+      s->flux[c][c][k] = factor * over_length * part[DIPOLE_XY] * f->form[DIPOLE_XY][c].c[0][k];
     }
   }
 }
 
 void DipoleImageFourExact(const DipoleImageSource *s, Lanes x, Lanes a, Lanes b, Lanes M[4]) {
-  const Terms t = MakeTerms(DEGREES_EXACT, x, a, b);
-  Lanes K[2][DIPOLE_COUNT];
-  Sums(LEAD, 0, s->forms->four[FORM_EXACT], &t, K);
+  const ImageTerms t = ImageTermsMake(0, x, a, b);
+  Lanes K[2][DIPOLE_COUNT] = {{{0}}};
+  AddSums(0, s->forms, &t, ~(LanesBits){0}, K);
   DipoleContractFour(K, s->N, M);
 }
 
 void DipoleImageFour(const DipoleImageSource *s, Lanes x, Lanes a, Lanes b, Lanes M[4], Lanes L[2]) {
-  const Terms t = MakeTerms(DEGREES, x, a, b);
-  Lanes K[2][DIPOLE_COUNT], term[2][IMAGE_MONOMIALS];
-  Sums(IMAGE_MONOMIALS, 2, s->forms->four[FORM_FAR], &t, K);
+  Lanes K[2][DIPOLE_COUNT] = {{{0}}}, term[2][IMAGE_MONOMIALS];
+  const ImageTerms t = AddFarSums(s->forms, x, a, b, K);
   DipoleContractFour(K, s->N, M);
-  MakeProducts(LEAD, 0, &t, term);
+  for (int sine = 0; sine < 2; sine++) ImageProducts(0, 0, sine, &t, term[sine]);
   for (int c = 0; c < 2; c++)
-    L[c] = Sum(LEAD, s->flux[c][0], term[0]) + Sum(LEAD, s->flux[c][1], term[1]) -
+    L[c] = ImageSumOf(0, s->flux[c][0], term[0]) + ImageSumOf(0, s->flux[c][1], term[1]) -
            (s->unit[0] * M[c] + s->unit[1] * M[2 + c]);
 }
 
-/* One pair's numbers of a form. */
-static void One(const int monomials, const int least, int form, const DipoleImageForms *f, const ImagePair *p,
-                PetscReal K[2][DIPOLE_COUNT]) {
-  const Terms t = MakeTerms(DEGREES, p->x + (Lanes){0}, p->a + (Lanes){0}, p->b + (Lanes){0});
-  Lanes four[2][DIPOLE_COUNT];
-  Sums(monomials, least, f->four[form], &t, four);
+/* One pair's numbers, of four that are the same. */
+static void First(const Lanes four[2][DIPOLE_COUNT], PetscReal K[2][DIPOLE_COUNT]) {
   for (int c = 0; c < 2; c++)
     for (int part = 0; part < DIPOLE_COUNT; part++) K[c][part] = four[c][part][0];
 }
 
 void DipoleImageExact(const DipoleImageForms *f, const ImagePair *p, PetscReal K[2][DIPOLE_COUNT]) {
-  One(LEAD, 0, FORM_EXACT, f, p, K);
-}
-
-void DipoleImageFar(const DipoleImageForms *f, const ImagePair *p, PetscReal K[2][DIPOLE_COUNT]) {
-  One(IMAGE_MONOMIALS, 2, FORM_FAR, f, p, K);
+  const ImageTerms t = ImageTermsMake(0, p->x + (Lanes){0}, p->a + (Lanes){0}, p->b + (Lanes){0});
+  Lanes four[2][DIPOLE_COUNT] = {{{0}}};
+  AddSums(0, f, &t, ~(LanesBits){0}, four);
+  First((const Lanes(*)[DIPOLE_COUNT])four, K);
 }
 
 void DipoleImageFarFour(const DipoleImageForms *f, Lanes x, Lanes a, Lanes b, Lanes K[2][DIPOLE_COUNT]) {
-  const Terms t = MakeTerms(DEGREES, x, a, b);
-  Sums(IMAGE_MONOMIALS, 2, f->four[FORM_FAR], &t, K);
+  for (int k = 0; k < 2 * DIPOLE_COUNT; k++) K[k / DIPOLE_COUNT][k % DIPOLE_COUNT] = (Lanes){0};
+  (void)AddFarSums(f, x, a, b, K);
+}
+
+void DipoleImageFar(const DipoleImageForms *f, const ImagePair *p, PetscReal K[2][DIPOLE_COUNT]) {
+  Lanes four[2][DIPOLE_COUNT];
+  DipoleImageFarFour(f, p->x + (Lanes){0}, p->a + (Lanes){0}, p->b + (Lanes){0}, four);
+  First((const Lanes(*)[DIPOLE_COUNT])four, K);
 }

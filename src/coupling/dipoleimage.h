@@ -17,16 +17,15 @@ typedef struct {
    collective. */
 PETSC_EXTERN PetscErrorCode DipoleImageFill(const OffsetTable lattice[2], DipoleImageTable *table);
 
-/* Polynomials of the closed forms, by part and component. */
+/* The closed forms by part and component: the exact fluid's image, and what is left of it by order. */
 typedef struct {
-  PetscReal exact[DIPOLE_COUNT][2][IMAGE_MONOMIALS], far[DIPOLE_COUNT][2][IMAGE_MONOMIALS];
-  Lanes four[2][DIPOLE_COUNT][2][IMAGE_MONOMIALS]; /* both, four times each */
+  ImageForm form[DIPOLE_COUNT][2];
 } DipoleImageForms;
 
-/* DipoleImageFormsMake - for responses with these second moments along and across. DipoleImageExact - K[component]
-   [part] of the exact fluid's image. DipoleImageFar - that less the lattice's, to the order 1/R^3, R the distance from
-   the image; of four pairs. Not collective. */
-PETSC_EXTERN void DipoleImageFormsMake(PetscReal along, PetscReal across, DipoleImageForms *forms);
+/* DipoleImageFormsMake - for responses with a kernel of these moments along and across. DipoleImageExact -
+   K[component][part] of the exact fluid's image. DipoleImageFar - that less the lattice's, to the order 1/R^5 up to
+   IMAGE_SECOND cells and 1/R^3 beyond, R the distance from the image; of four pairs. Not collective. */
+PETSC_EXTERN void DipoleImageFormsMake(const ImageMoments kernel[2], DipoleImageForms *forms);
 PETSC_EXTERN void DipoleImageExact(const DipoleImageForms *forms, const ImagePair *pair, PetscReal K[2][DIPOLE_COUNT]);
 PETSC_EXTERN void DipoleImageFar(const DipoleImageForms *forms, const ImagePair *pair, PetscReal K[2][DIPOLE_COUNT]);
 PETSC_EXTERN void DipoleImageFarFour(const DipoleImageForms *forms, Lanes x, Lanes a, Lanes b,
@@ -35,8 +34,8 @@ PETSC_EXTERN void DipoleImageFarFour(const DipoleImageForms *forms, Lanes x, Lan
 /* One marker's dipoles seen from a wall, with the polynomials of the exact image of J = n. */
 typedef struct {
   const DipoleImageForms *forms;
-  PetscReal N[2], unit[2];           /* times the factor; over the length */
-  Lanes flux[2][2][IMAGE_MONOMIALS]; /* component, real and imaginary part, monomial */
+  PetscReal N[2], unit[2];               /* times the factor; over the length */
+  PetscReal flux[2][2][IMAGE_MONOMIALS]; /* component, real and imaginary part, monomial */
 } DipoleImageSource;
 
 /* DipoleImageSourceMake - N = n times the marker's length, over: 1 over that; factor: of all answers. DipoleImageFour -

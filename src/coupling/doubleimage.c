@@ -10,7 +10,7 @@ PetscErrorCode DoubleImageCreate(NearImage single, const OffsetTable lattice[2],
   PetscCall(PetscNew(&m));
   *out = m;
   m->single = single;
-  DipoleImageFormsMake(single->kernel.moment[0], single->kernel.moment[1], &m->forms);
+  DipoleImageFormsMake(single->kernel.moment, &m->forms);
   if (!single->table) PetscFunctionReturn(PETSC_SUCCESS);
   for (int wall = 0; wall < 4; wall++)
     if (single->end[wall / 2][wall % 2]) PetscCall(PetscMalloc1(markers->layout->M, &m->end[wall / 2][wall % 2]));

@@ -1,85 +1,88 @@
-/* In mode k along the wall the lattice's image is e^{-k(a + b)}/(4k) [p + k^2 P], p and P polynomials in ka and kb: p
-   is Blake's image, P the dispersion by the lattice (both from imagetable.c's modes for small k), and a kernel of
-   second moments m along the wall, ma and mb across it, smooths with k^2 [-m p + ma/2 (p - 2 p_a) + mb/2 (p - 2 p_b)],
-   subscripts derivatives. What is left of C_image is minus the k^2 terms:
-       C_image = -1/(4 pi) SUM c_pq a^p b^q n!/z^{n+1},   n = 1 + p + q,   z = a + b - i x,
-   the real part for tt and nn, the imaginary part for nt. */
+/* The forms (imageform.h, n0 = -1) of the lattice's image are imagetable.c's modes expanded in theta: p is Blake's
+   image, so what is left of C_image is minus the orders above it. */
 #include "coupling/imagefar.h"
-#include "base/lanes.h"
 
-/* Monomials 1, a, b, aa, ab, bb, aab, abb. */
-enum { ONE, A, B, AA, AB, BB, AAB, ABB };
+#define N0 (-1)
 
-static const PetscReal leading[3][IMAGE_MONOMIALS] = {{-1, 1, 1, 0, -2}, {-1, -1, -1, 0, -2}, {0, -1, 1, 0, 2}};
-static const PetscReal dispersion[3][IMAGE_MONOMIALS] = {
-    {4. / 12, -10. / 12, -10. / 12, 1. / 12, 18. / 12, 1. / 12, -2. / 12, -2. / 12},
-    {-2. / 12, 2. / 12, 2. / 12, -1. / 12, 14. / 12, -1. / 12, -2. / 12, -2. / 12},
-    {3. / 12, 9. / 12, -3. / 12, -1. / 12, -16. / 12, 1. / 12, 2. / 12, 2. / 12}};
+static const PetscReal over[IMAGE_ORDERS] = {1, 12, 1440};
+static const ImageNumbers lattice[3] = {
+    {{{-1, 1, 1, -2},
+      {4, -10, -10, 18, 1, 1, -2, -2},
+      {-373, 775, 775, -1414, -110, -110, 205, 205, 5, 5, -10, -20, -10}}},
+    {{{-1, -1, -1, -2},
+      {-2, 2, 2, 14, -1, -1, -2, -2},
+      {107, -125, -125, -1114, 40, 40, 175, 175, -5, -5, -10, -20, -10}}},
+    {{{0, -1, 1, 2}, {3, 9, -3, -16, -1, 1, 2, 2}, {-150, -690, 150, 1254, 105, -45, -195, -185, -5, 5, 10, 20, 10}}},
+};
 
-/* A part's polynomial k^2 [P + smoothing]. */
-static void Polynomial(int part, const PetscReal kernel[2], PetscReal ma, PetscReal mb, PetscReal c[IMAGE_MONOMIALS]) {
-  const PetscReal along[3] = {kernel[0], kernel[1], 0.5 * (kernel[0] + kernel[1])}, *lead = leading[part];
-  if (part != IMAGE_TT) ma = kernel[0]; /* across the wall the normal component has the moment along itself */
-  if (part == IMAGE_NN) mb = kernel[0];
-  for (int k = 0; k < IMAGE_MONOMIALS; k++) c[k] = dispersion[part][k] + (0.5 * (ma + mb) - along[part]) * lead[k];
-  c[ONE] -= ma * lead[A] + mb * lead[B];
-  c[A] -= mb * lead[AB];
-  c[B] -= ma * lead[AB];
-}
-
-void ImageKernelMake(PetscReal along, PetscReal across, ImageKernel *kernel) {
-  kernel->moment[0] = along;
-  kernel->moment[1] = across;
-  for (int part = 0; part < 3; part++) Polynomial(part, kernel->moment, across, across, kernel->c[part]);
-}
-
-/* One at a and b against the powers of 1/z. */
-static inline Lanes Sum(const PetscReal c[IMAGE_MONOMIALS], Lanes a, Lanes b, const Lanes power[4]) {
-  return c[ONE] * power[0] + (c[A] * a + c[B] * b) * power[1] +
-         (a * (c[AA] * a + c[AB] * b) + c[BB] * b * b) * power[2] + a * b * (c[AAB] * a + c[ABB] * b) * power[3];
-}
-
-/* The sums of the three polynomials, that of nt for the source's tangential component and for the response's, of four
-   pairs. */
-static inline void Sums(Lanes x, Lanes a, Lanes b, const PetscReal *const c[IMAGE_PARTS], Lanes part[IMAGE_PARTS]) {
-  const Lanes H = a + b, over = 1 / (H * H + x * x), u = H * over, v = x * over;
-  Lanes real[4], imaginary[4], w[2] = {u, v};
-  PetscReal factor = -1 / (4 * PETSC_PI);
-  for (int n = 0; n < 4; n++) {
-    const Lanes next = w[0] * u - w[1] * v;
-    w[1] = w[0] * v + w[1] * u;
-    w[0] = next;
-    factor *= n + 1;
-    real[n] = factor * w[0];
-    imaginary[n] = factor * w[1];
+/* The forms for stencils of tangential components with these moments across the wall: normal ones there have those of
+   their own direction. */
+static void MakeForms(const ImageMoments kernel[2], ImageMoments ma, ImageMoments mb, ImageForm form[3]) {
+  const ImageMoments t = kernel[0], n = kernel[1]; /* along the wall */
+  for (int part = 0; part < 3; part++) {
+    form[part] = (ImageForm){{{0}}};
+    ImageFormAdd(-1, &lattice[part], over, &form[part]);
   }
-  part[IMAGE_TT] = Sum(c[IMAGE_TT], a, b, real);
-  part[IMAGE_NN] = Sum(c[IMAGE_NN], a, b, real);
-  part[IMAGE_NT] = Sum(c[IMAGE_NT], a, b, imaginary);
-  part[IMAGE_TN] = -Sum(c[IMAGE_TN], b, a, imaginary); /* t from n is n from t the other way round */
+  ImageFormSmooth(ImageMomentsBoth(t, t), ma, mb, &form[IMAGE_TT]);
+  ImageFormSmooth(ImageMomentsBoth(n, n), kernel[0], kernel[0], &form[IMAGE_NN]);
+  ImageFormSmooth(ImageMomentsBoth(n, t), kernel[0], mb, &form[IMAGE_NT]);
+}
+
+/* t from n is n from t the other way round: a and b are exchanged, and x turned. */
+static void Exchange(const ImageForm *from, ImageForm *to) {
+  static const int other[IMAGE_MONOMIALS] = {0, 2, 1, 3, 5, 4, 7, 6, 9, 8, 12, 11, 10};
+  for (int m = 0; m < IMAGE_ORDERS; m++)
+    for (int k = 0; k < image_monomials[m]; k++) to->c[m][k] = -from->c[m][other[k]];
+}
+
+void ImageKernelMake(const Kernel *kernel, ImageKernel *image) {
+  image->moment[0] = ImageMomentsOf(kernel->along);
+  image->moment[1] = ImageMomentsOf(kernel->across);
+  MakeForms(image->moment, image->moment[1], image->moment[1], image->form);
+  Exchange(&image->form[IMAGE_NT], &image->form[IMAGE_TN]);
+}
+
+/* An order's four parts, added where meant. */
+static inline void AddOrder(const int order, const ImageForm form[IMAGE_PARTS], const ImageTerms *t, LanesBits meant,
+                            Lanes part[IMAGE_PARTS]) {
+  Lanes term[2][IMAGE_MONOMIALS];
+  for (int sine = 0; sine < 2; sine++) ImageProducts(order, N0, sine, t, term[sine]);
+  for (int q = 0; q < IMAGE_PARTS; q++)
+    part[q] += LanesWhere(meant, ImageSumOf(order, form[q].c[order], term[q >= IMAGE_NT]));
+}
+
+static inline void Sums(Lanes x, Lanes a, Lanes b, const ImageForm form[IMAGE_PARTS], Lanes part[IMAGE_PARTS]) {
+  const LanesBits close = ImageIsClose(x, a, b);
+  for (int q = 0; q < IMAGE_PARTS; q++) part[q] = (Lanes){0};
+  if (close[0] | close[1] | close[2] | close[3]) {
+    const ImageTerms t = ImageTermsMake(2, x, a, b);
+    AddOrder(1, form, &t, ~(LanesBits){0}, part);
+    AddOrder(2, form, &t, close, part);
+  } else {
+    const ImageTerms t = ImageTermsMake(1, x, a, b);
+    AddOrder(1, form, &t, ~(LanesBits){0}, part);
+  }
 }
 
 void ImageFarRow(PetscInt n, const PetscReal x[], const PetscReal a[], const PetscReal b[], const ImageKernel *kernel,
                  PetscReal *const part[IMAGE_PARTS]) {
-  const PetscReal *c[IMAGE_PARTS] = {kernel->c[0], kernel->c[1], kernel->c[2], kernel->c[2]};
   Lanes four[IMAGE_PARTS];
   for (PetscInt k = 0; k < n; k += LANES) {
-    Sums(LanesAt(x + k), LanesAt(a + k), LanesAt(b + k), c, four);
+    Sums(LanesAt(x + k), LanesAt(a + k), LanesAt(b + k), kernel->form, four);
     for (int q = 0; q < IMAGE_PARTS; q++) *(Lanes *)(part[q] + k) = four[q];
   }
 }
 
 void ImageFar(const ImagePair *p, const ImageKernel *kernel, PetscReal ma, PetscReal mb, PetscReal part[IMAGE_PARTS]) {
-  const PetscReal *c[IMAGE_PARTS] = {kernel->c[0], kernel->c[1], kernel->c[2], kernel->c[2]};
-  PetscReal own[IMAGE_PARTS][IMAGE_MONOMIALS];
-  if (ma != kernel->moment[1] || mb != kernel->moment[1]) {
-    Polynomial(IMAGE_TT, kernel->moment, ma, mb, own[IMAGE_TT]);
-    Polynomial(IMAGE_NT, kernel->moment, ma, mb, own[IMAGE_NT]);
-    Polynomial(IMAGE_NT, kernel->moment, mb, ma, own[IMAGE_TN]);
-    for (int q = 0; q < IMAGE_PARTS; q++)
-      if (q != IMAGE_NN) c[q] = own[q];
-  }
+  const ImageMoments across = kernel->moment[1], a = {ma, across.fourth}, b = {mb, across.fourth};
+  const PetscBool off = ma == across.second && mb == across.second ? PETSC_TRUE : PETSC_FALSE;
+  ImageForm own[IMAGE_PARTS], back[3];
   Lanes four[IMAGE_PARTS];
-  Sums(p->x - (Lanes){0}, p->a - (Lanes){0}, p->b - (Lanes){0}, c, four);
+  if (!off) {
+    MakeForms(kernel->moment, a, b, own);
+    MakeForms(kernel->moment, b, a, back);
+    Exchange(&back[IMAGE_NT], &own[IMAGE_TN]);
+  }
+  Sums(p->x - (Lanes){0}, p->a - (Lanes){0}, p->b - (Lanes){0}, off ? kernel->form : own, four);
   for (int q = 0; q < IMAGE_PARTS; q++) part[q] = four[q][0];
 }

@@ -1,6 +1,7 @@
-/* C_image of distant pairs of markers in closed form (nearimage.h), to the order h^2/R^2, R from the source's image. */
+/* C_image of distant pairs of markers in closed form (nearimage.h): to the order h^4/R^4 of itself up to IMAGE_SECOND
+   cells, R from the source's image, to h^2/R^2 beyond. */
 #pragma once
-#include "base/base.h"
+#include "coupling/imageform.h"
 
 /* Parts of a pair seen from a wall, response and source: tangential and normal to it. */
 enum { IMAGE_TT, IMAGE_NN, IMAGE_NT, IMAGE_TN, IMAGE_PARTS };
@@ -11,18 +12,18 @@ typedef struct {
   PetscReal x, a, b;
 } ImagePair;
 
-#define IMAGE_MONOMIALS 8
-
-/* A kernel's second moments along and across, and the polynomials of pairs off the wall. */
+/* A kernel's moments along and across, and the forms of pairs off the wall. */
 typedef struct {
-  PetscReal moment[2], c[3][IMAGE_MONOMIALS];
+  ImageMoments moment[2];
+  ImageForm form[IMAGE_PARTS];
 } ImageKernel;
 
-/* ImageKernelMake - of second moments along and across. Not collective. */
-PETSC_EXTERN void ImageKernelMake(PetscReal along, PetscReal across, ImageKernel *kernel);
+/* ImageKernelMake - of a kernel. Not collective. */
+PETSC_EXTERN void ImageKernelMake(const Kernel *kernel, ImageKernel *image);
 
-/* ImageFar - for viscosity 1; ma, mb: the moments across the wall of the tangential stencils of response and source,
-   continued oddly across it (kernel->moment[1] off the wall). Stencils are folded, not scaled. Not collective. */
+/* ImageFar - for viscosity 1; ma, mb: the second moments across the wall of the tangential stencils of response and
+   source, continued oddly across it (kernel->moment[1].second off the wall). Stencils are folded, not scaled. Not
+   collective. */
 PETSC_EXTERN void ImageFar(const ImagePair *pair, const ImageKernel *kernel, PetscReal ma, PetscReal mb,
                            PetscReal part[IMAGE_PARTS]);
 

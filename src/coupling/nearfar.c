@@ -38,20 +38,6 @@ static Series Cosine(const PetscReal moment[TERMS], PetscReal x) {
   return s;
 }
 
-/* The mean over all places in a cell of SUM phi(x - j) (x - j)^{2m}. */
-static void Moments(KernelWeights weights, PetscReal moment[TERMS]) {
-  enum { PLACES = 64 };
-  PetscReal w[KERNEL_MAX_POINTS];
-  for (int m = 0; m < TERMS; m++) moment[m] = 0;
-  for (int place = 0; place < PLACES; place++) {
-    const PetscReal x = (place + 0.5) / PLACES;
-    PetscInt first;
-    const PetscInt n = weights(x, &first, w);
-    for (PetscInt k = 0; k < n; k++)
-      for (int m = 0; m < TERMS; m++) moment[m] += w[k] * PetscPowRealInt(first + k - x, 2 * m) / PLACES;
-  }
-}
-
 /* SUM phi(x - j) (x - j)^3 is not zero at all places. */
 static PetscBool HasThirdMoment(KernelWeights weights) {
   const PetscReal x = 0.25;
@@ -101,8 +87,8 @@ void NearFarMake(const Kernel *kernel, PetscBool many, NearFar far[2]) {
   const PetscBool third = HasThirdMoment(kernel->along) || HasThirdMoment(kernel->across) ? PETSC_TRUE : PETSC_FALSE;
   const PetscBool all = many && !third ? PETSC_TRUE : PETSC_FALSE;
   PetscReal moment[2][TERMS];
-  Moments(kernel->along, moment[0]);
-  Moments(kernel->across, moment[1]);
+  KernelMoments(kernel->along, TERMS, moment[0]);
+  KernelMoments(kernel->across, TERMS, moment[1]);
   far[NEAR_ONE] = (NearFar){.reach = all ? 12 : 30};
   far[NEAR_TWO] = (NearFar){.reach = third ? 16 : 10};
   Fill(moment, all ? NEAR_FAR_ORDERS : 1, &far[NEAR_ONE]);

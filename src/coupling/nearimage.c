@@ -196,7 +196,7 @@ PetscErrorCode NearImagePlace(NearImage m, const PaddedStencil stencil[]) {
       for (PetscInt k = 0; k < M; k++) {
         const PetscReal y = NearImageOff(g, direction, side, m->markers->X + 2 * k);
         m->y[direction][side][k] = y;
-        m->end[direction][side][k] = MakeEnd(m->markers, y, m->kernel.moment[1]);
+        m->end[direction][side][k] = MakeEnd(m->markers, y, m->kernel.moment[1].second);
       }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -210,7 +210,7 @@ PetscErrorCode NearImageCreate(Markers markers, PetscReal nu, const ImageTable *
   m->markers = markers;
   m->nu = nu;
   m->table = table;
-  ImageKernelMake(KernelSecondMoment(markers->kernel->along), KernelSecondMoment(markers->kernel->across), &m->kernel);
+  ImageKernelMake(markers->kernel, &m->kernel);
   if (!markers->grid->wall[0] && !markers->grid->wall[1]) PetscFunctionReturn(PETSC_SUCCESS);
   for (int direction = 0; direction < 2; direction++)
     for (int side = 0; side < 2 && markers->grid->wall[direction]; side++)

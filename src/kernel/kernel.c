@@ -70,3 +70,16 @@ PetscReal KernelSecondMoment(KernelWeights weights) {
   for (PetscInt k = 0; k < n; k++) sum += w[k] * PetscSqr(first + k - x);
   return sum;
 }
+
+void KernelMoments(KernelWeights weights, int count, PetscReal moment[]) {
+  enum { PLACES = 64 };
+  PetscReal w[KERNEL_MAX_POINTS];
+  for (int m = 0; m < count; m++) moment[m] = 0;
+  for (int place = 0; place < PLACES; place++) {
+    const PetscReal x = (place + 0.5) / PLACES;
+    PetscInt first;
+    const PetscInt n = weights(x, &first, w);
+    for (PetscInt k = 0; k < n; k++)
+      for (int m = 0; m < count; m++) moment[m] += w[k] * PetscPowRealInt(first + k - x, 2 * m) / PLACES;
+  }
+}

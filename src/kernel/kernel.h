@@ -44,3 +44,7 @@ PETSC_EXTERN const Kernel *KernelFind(const char name[]);
 
 /* KernelSecondMoment - SUM phi(x - j) (x - j)^2, the same at every place x but for cbs32. Not collective. */
 PETSC_EXTERN PetscReal KernelSecondMoment(KernelWeights weights);
+
+/* KernelMoments - moment[m], m < count, the mean over all places x in a cell of SUM phi(x - j) (x - j)^{2m}. Not
+   collective. */
+PETSC_EXTERN void KernelMoments(KernelWeights weights, int count, PetscReal moment[]);
