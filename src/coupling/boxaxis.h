@@ -3,7 +3,7 @@
 #include "scene/fluidspec.h"
 
 #define BOX_PLACES (64 * FLUID_LONGEST_PERIOD) /* largest number of places in a direction */
-#define BOX_WALL_PLACES 20                     /* the same where they are Chebyshev's */
+#define BOX_WALL_PLACES 16                     /* the same where they are Chebyshev's */
 
 /* Places in one direction. Between walls a force may be at any of them; where the box is periodic it is at the first
    one, and W depends on the offset alone. */

@@ -1,13 +1,10 @@
 #include "coupling/boxtable.h"
 #include "coupling/blas.h"
 
-#define WALL_MARGIN 0.5               /* cells of the coarser grid between the places and a wall, */
-#define DIPOLE_MARGIN 0.75            /* and of dipoles, whose D bends more next to a wall: */
-#define WALL_PLACES 16                /* between four walls, and of forces, */
-#define DIPOLE_PLACES BOX_WALL_PLACES /* of dipoles where x or y is periodic: more of them cost little there */
-#define MIDDLE_PLACES 8               /* in the middle half of the box, far from walls */
-#define MODES 16                      /* of a period as long as the other side */
-#define COARSE_CELLS 64               /* of the shorter side, on the coarser grid */
+#define WALL_MARGIN 0.5 /* cells of the coarser grid between the places and a wall */
+#define MIDDLE_PLACES 8 /* in the middle half of the box, far from walls */
+#define MODES 16        /* of a period as long as the other side */
+#define COARSE_CELLS 64 /* of the shorter side, on the coarser grid */
 #define MOST_CELLS 80
 #define RATIO_CELLS 48 /* of the shorter side, from which on the pair's ratio is 3/2 */
 #define SMALLEST 5e-4  /* of the largest: eigenvalues below it are dropped */
@@ -36,14 +33,12 @@ static void Stretch(PetscReal from, PetscReal factor, BoxAxis *a) {
   for (PetscInt k = 0; k < a->places; k++) a->place[k] = from + factor * (a->place[k] - from);
 }
 
-static void MakeAxis(const FluidSpec *spec, int dir, PetscReal H, PetscBool dipoles, PetscBool middle, BoxAxis *a) {
+static void MakeAxis(const FluidSpec *spec, int dir, PetscReal H, PetscBool middle, BoxAxis *a) {
   const PetscInt shorter = PetscMin(spec->cells[0], spec->cells[1]), times = (spec->cells[dir] + shorter - 1) / shorter;
   const PetscReal low = spec->box[2 * dir], high = spec->box[2 * dir + 1];
-  const PetscReal least = (dipoles ? DIPOLE_MARGIN : WALL_MARGIN) * H;
-  const PetscReal margin = PetscMax(least, middle ? 0.25 * (high - low) : 0);
+  const PetscReal margin = PetscMax(WALL_MARGIN * H, middle ? 0.25 * (high - low) : 0);
   if (spec->bc[dir] == BC_WALL) {
-    const PetscInt most = dipoles && spec->bc[1 - dir] != BC_WALL ? DIPOLE_PLACES : WALL_PLACES;
-    BoxAxisChebyshev(middle ? MIDDLE_PLACES : most, low + margin, high - margin, a);
+    BoxAxisChebyshev(middle ? MIDDLE_PLACES : BOX_WALL_PLACES, low + margin, high - margin, a);
     return;
   }
   a->wall = PETSC_FALSE;
@@ -303,7 +298,7 @@ PetscErrorCode BoxTableCreate(const FluidSpec *spec, const char kernel[], const 
   t->H = (spec->box[1] - spec->box[0]) / cells[0];
   if (cells[0] * spec->cells[1] != cells[1] * spec->cells[0]) pair.box[3] = pair.box[2] + cells[1] * t->H;
   for (int d = 0; d < 2; d++) {
-    MakeAxis(&pair, d, t->H, dipoles, middle, &axis[d]);
+    MakeAxis(&pair, d, t->H, middle, &axis[d]);
     t->axis[d] = axis[d];
     if (d) Stretch(pair.box[2], height / (pair.box[3] - pair.box[2]), &t->axis[d]);
     t->functions[d] = t->axis[d].wall ? t->axis[d].places : 2 * t->axis[d].modes + 1;

@@ -1,5 +1,7 @@
 #include "markers/fold.h"
 
+#define FOLD_ENTRIES 5 /* that a smooth fold goes to */
+
 /* Take the first `cut` entries off. */
 static void Cut(PetscInt cut, PetscInt *first, PetscInt *n, PetscReal w[]) {
   *n -= cut;
@@ -7,18 +9,19 @@ static void Cut(PetscInt cut, PetscInt *first, PetscInt *n, PetscReal w[]) {
   *first += cut;
 }
 
-/* The parabola through entries 0, 1 and 2 at an entry below them: 3, -3 and 1 of them at entry -1. */
+/* The polynomial through entries 0 to 4 at an entry below them: 5, -10, 10, -5 and 1 of them at entry -1. */
 static void FoldSmoothly(PetscInt cut, PetscInt *first, PetscInt *n, PetscReal w[]) {
-  PetscReal add[3] = {0, 0, 0};
-  for (PetscInt k = 0; k < cut; k++) {
-    const PetscReal c = *first + k;
-    add[0] += w[k] * (c - 1) * (c - 2) / 2;
-    add[1] -= w[k] * c * (c - 2);
-    add[2] += w[k] * c * (c - 1) / 2;
-  }
+  PetscReal add[FOLD_ENTRIES] = {0};
+  for (PetscInt k = 0; k < cut; k++)
+    for (int j = 0; j < FOLD_ENTRIES; j++) {
+      PetscReal value = w[k];
+      for (int i = 0; i < FOLD_ENTRIES; i++)
+        if (i != j) value *= (PetscReal)(*first + k - i) / (j - i);
+      add[j] += value;
+    }
   Cut(cut, first, n, w);
-  for (; *n < 3; (*n)++) w[*n] = 0;
-  for (int k = 0; k < 3; k++) w[k] += add[k];
+  for (; *n < FOLD_ENTRIES; (*n)++) w[*n] = 0;
+  for (int j = 0; j < FOLD_ENTRIES; j++) w[j] += add[j];
 }
 
 void FoldLow(FoldKind kind, PetscInt *first, PetscInt *n, PetscReal w[]) {

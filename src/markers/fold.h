@@ -9,7 +9,7 @@
 typedef enum {
   FOLD_ODD,    /* entries half a cell from the wall and on */
   FOLD_EVEN,   /* entries on the wall, which drop out, and whole cells away */
-  FOLD_SMOOTH, /* weights beyond the wall, or on it, go to the three entries next to it by the parabola through them */
+  FOLD_SMOOTH, /* weights beyond the wall, or on it, go to the five entries next to it by the polynomial through them */
 } FoldKind;
 
 /* FoldLow - fold the weights [n], with room for KERNEL_MAX_POINTS, of entries first .. first + n - 1 at a wall below
