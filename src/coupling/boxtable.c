@@ -6,7 +6,8 @@
 #define MODES 16        /* of a period as long as the other side */
 #define COARSE_CELLS 64 /* of the shorter side, on the coarser grid */
 #define MOST_CELLS 80
-#define RATIO_CELLS 48 /* of the shorter side, from which on the pair's ratio is 3/2 */
+#define RATIO_CELLS 48 /* of the shorter side, from which on the pair's ratio is 3/2, */
+#define FEW_CELLS 24   /* and below which it is 3 */
 #define SMALLEST 5e-4  /* of the largest: eigenvalues below it are dropped */
 
 /* The coarser grid, its cells square: the run's own or, where that has more than COARSE_CELLS across, the fewest from
@@ -263,12 +264,12 @@ PetscErrorCode BoxTableDecompose(MPI_Comm comm, PetscReal smallest, BoxTable *t)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* r^2/(r^2 - 1) (W_{H/r} - W_H) of the pair, times (h/H)^2; r = 3/2 on many cells, where that
-   makes whole numbers of them, else 2: its leftover of fourth order is 1.8 times as large. */
+/* r^2/(r^2 - 1) (W_{H/r} - W_H) of the pair, times (h/H)^2, leaves 1/r^2 of what W_H has of fourth order; r = 3/2 on
+   many cells, where that makes whole numbers of them, else 2 or, on few, 3. */
 static PetscErrorCode Pair(const FluidSpec *run, const char kernel[], const BoxLattice *lattice,
                            const PetscInt cells[2], const BoxAxis axis[2], PetscReal H, PetscReal W[]) {
-  const PetscBool few = PetscMin(cells[0], cells[1]) < RATIO_CELLS ? PETSC_TRUE : PETSC_FALSE;
-  const PetscInt halves = few || cells[0] % 2 || cells[1] % 2 ? 4 : 3; /* 2 r */
+  const PetscInt shorter = PetscMin(cells[0], cells[1]), odd = cells[0] % 2 || cells[1] % 2;
+  const PetscInt halves = shorter < FEW_CELLS ? 6 : shorter < RATIO_CELLS || odd ? 4 : 3; /* 2 r */
   const PetscReal scale = PetscSqr(halves * FluidSpecCellSize(run) / H) / (halves * halves - 4);
   FluidSpec spec = *run;
   PetscFunctionBeginUser;
