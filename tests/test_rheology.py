@@ -41,7 +41,7 @@ def test_walls_agree_with_stresslets(options, ranks, tmp_path):
 
 #: Vesicles .4, .5 and 1.3 cells from a wall, and one in the middle.
 BOTTOM, TOP = "-vesicle_center 0.8,0.55,2.7,2.4 ", "-vesicle_center 0.8,2,2.7,3.45 "
-BOTH = "-vesicle_center 0.8,0.5,2.7,3.5 -vesicle_angle 3 -contact_repulsion 5 "
+BOTH = "-vesicle_center 0.8,0.5,2.7,3.5 -vesicle_angle 6 -contact_repulsion 5 "
 
 #: Of two ratios of the viscosities.
 UNLIKE = "-vesicle_viscosity_ratio 5,.3"
