@@ -5,6 +5,7 @@ import math
 
 import numpy as np
 import pytest
+from conftest import run_plain
 from test_obstacles import STILL
 from test_obstacles import last as obstacle_row
 
@@ -88,3 +89,15 @@ def test_a_bump_beside_a_corner(tmp_path):
     rows = [obstacle_row(tmp_path / str(n), f"{x}/bump.txt", n) for n, x in ((1, own), (2, direct), (3, own))]
     for column in ("obstacle_force_x", "obstacle_torque_1"):
         assert [row[column] for row in rows] == pytest.approx(3 * [rows[0][column]], rel=1e-7)
+
+
+def test_two_at_rest_between_walls_stay_apart(tmp_path):
+    """Stiff membranes, so that what a step in the walls' images leaves would move them: measured -4e-4 a unit of time, and
+    -.011 with images farther than 20 cells right to the order (h/R)^2 only."""
+    run = run_plain(
+        tmp_path / "run",
+        "-domain_cells 32,32 -vesicle_semi_axes 0.2,0.5 -vesicle_count 2 -vesicle_center -0.3,0,0.3,0 -vesicle_bending 100 "
+        "-time_step 0.5 -time_end 12",
+    )
+    gap = run.series["gap"]
+    assert abs(gap[-1] - gap[1]) < 0.02

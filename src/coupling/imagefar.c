@@ -15,19 +15,6 @@ static const ImageNumbers lattice[3] = {
     {{{0, -1, 1, 2}, {3, 9, -3, -16, -1, 1, 2, 2}, {-150, -690, 150, 1254, 105, -45, -195, -185, -5, 5, 10, 20, 10}}},
 };
 
-/* The forms for stencils of tangential components with these moments across the wall: normal ones there have those of
-   their own direction. */
-static void MakeForms(const ImageMoments kernel[2], ImageMoments ma, ImageMoments mb, ImageForm form[3]) {
-  const ImageMoments t = kernel[0], n = kernel[1]; /* along the wall */
-  for (int part = 0; part < 3; part++) {
-    form[part] = (ImageForm){{{0}}};
-    ImageFormAdd(-1, &lattice[part], over, &form[part]);
-  }
-  ImageFormSmooth(ImageMomentsBoth(t, t), ma, mb, &form[IMAGE_TT]);
-  ImageFormSmooth(ImageMomentsBoth(n, n), kernel[0], kernel[0], &form[IMAGE_NN]);
-  ImageFormSmooth(ImageMomentsBoth(n, t), kernel[0], mb, &form[IMAGE_NT]);
-}
-
 /* t from n is n from t the other way round: a and b are exchanged, and x turned. */
 static void Exchange(const ImageForm *from, ImageForm *to) {
   static const int other[IMAGE_MONOMIALS] = {0, 2, 1, 3, 5, 4, 7, 6, 9, 8, 12, 11, 10};
@@ -35,11 +22,20 @@ static void Exchange(const ImageForm *from, ImageForm *to) {
     for (int k = 0; k < image_monomials[m]; k++) to->c[m][k] = -from->c[m][other[k]];
 }
 
+/* Components along the wall have the moments along it that they have along themselves, and across it those across
+   themselves; normal ones the other way round. */
 void ImageKernelMake(const Kernel *kernel, ImageKernel *image) {
-  image->moment[0] = ImageMomentsOf(kernel->along);
-  image->moment[1] = ImageMomentsOf(kernel->across);
-  MakeForms(image->moment, image->moment[1], image->moment[1], image->form);
+  const ImageMoments t = ImageMomentsOf(kernel->along), n = ImageMomentsOf(kernel->across);
+  const ImageMoments along[IMAGE_PARTS] = {ImageMomentsBoth(t, t), ImageMomentsBoth(n, n), ImageMomentsBoth(n, t),
+                                           ImageMomentsBoth(t, n)};
+  const ImageMoments response[IMAGE_PARTS] = {n, t, t, n}, source[IMAGE_PARTS] = {n, t, n, t};
+  *image = (ImageKernel){.moment = {t, n}};
+  for (int part = 0; part < IMAGE_TN; part++) ImageFormAdd(-1, &lattice[part], over, &image->form[part]);
   Exchange(&image->form[IMAGE_NT], &image->form[IMAGE_TN]);
+  for (int part = 0; part < IMAGE_PARTS; part++) {
+    for (int end = 0; end < 2; end++) ImageFormBend(&image->form[part], end, image->bend[part][end]);
+    ImageFormSmooth(along[part], response[part], source[part], &image->form[part]);
+  }
 }
 
 /* An order's four parts, added where meant. */
@@ -73,16 +69,24 @@ void ImageFarRow(PetscInt n, const PetscReal x[], const PetscReal a[], const Pet
   }
 }
 
+/* Normal components have no other moments next to the wall. */
+static void AddBends(const ImagePair *p, const ImageKernel *kernel, const PetscReal more[2],
+                     PetscReal part[IMAGE_PARTS]) {
+  static const PetscBool tangential[IMAGE_PARTS][2] = {
+      [IMAGE_TT] = {PETSC_TRUE, PETSC_TRUE}, [IMAGE_NT] = {PETSC_FALSE, PETSC_TRUE}, [IMAGE_TN] = {PETSC_TRUE}};
+  const ImageTerms t = ImageTermsMake(1, p->x + (Lanes){0}, p->a + (Lanes){0}, p->b + (Lanes){0});
+  Lanes term[2][IMAGE_MONOMIALS];
+  for (int sine = 0; sine < 2; sine++) ImageProducts(1, N0, sine, &t, term[sine]);
+  for (int q = 0; q < IMAGE_PARTS; q++)
+    for (int end = 0; end < 2; end++)
+      if (tangential[q][end] && more[end] != 0)
+        part[q] += more[end] * ImageSumOf(1, kernel->bend[q][end], term[q >= IMAGE_NT])[0];
+}
+
 void ImageFar(const ImagePair *p, const ImageKernel *kernel, PetscReal ma, PetscReal mb, PetscReal part[IMAGE_PARTS]) {
-  const ImageMoments across = kernel->moment[1], a = {ma, across.fourth}, b = {mb, across.fourth};
-  const PetscBool off = ma == across.second && mb == across.second ? PETSC_TRUE : PETSC_FALSE;
-  ImageForm own[IMAGE_PARTS], back[3];
+  const PetscReal across = kernel->moment[1].second, more[2] = {ma - across, mb - across};
   Lanes four[IMAGE_PARTS];
-  if (!off) {
-    MakeForms(kernel->moment, a, b, own);
-    MakeForms(kernel->moment, b, a, back);
-    Exchange(&back[IMAGE_NT], &own[IMAGE_TN]);
-  }
-  Sums(p->x - (Lanes){0}, p->a - (Lanes){0}, p->b - (Lanes){0}, off ? kernel->form : own, four);
+  Sums(p->x - (Lanes){0}, p->a - (Lanes){0}, p->b - (Lanes){0}, kernel->form, four);
   for (int q = 0; q < IMAGE_PARTS; q++) part[q] = four[q][0];
+  if (more[0] != 0 || more[1] != 0) AddBends(p, kernel, more, part);
 }

@@ -12,18 +12,20 @@ typedef struct {
   PetscReal x, a, b;
 } ImagePair;
 
-/* A kernel's moments along and across, and the forms of pairs off the wall. */
+/* A kernel's moments along and across, the forms of pairs off the wall, and what the first order has of a response's
+   and a source's second moment across the wall. */
 typedef struct {
   ImageMoments moment[2];
   ImageForm form[IMAGE_PARTS];
+  PetscReal bend[IMAGE_PARTS][2][IMAGE_MONOMIALS];
 } ImageKernel;
 
 /* ImageKernelMake - of a kernel. Not collective. */
 PETSC_EXTERN void ImageKernelMake(const Kernel *kernel, ImageKernel *image);
 
 /* ImageFar - for viscosity 1; ma, mb: the second moments across the wall of the tangential stencils of response and
-   source, continued oddly across it (kernel->moment[1].second off the wall). Stencils are folded, not scaled. Not
-   collective. */
+   source, continued oddly across it (kernel->moment[1].second off the wall), which count in the first order. Stencils
+   are folded, not scaled. Not collective. */
 PETSC_EXTERN void ImageFar(const ImagePair *pair, const ImageKernel *kernel, PetscReal ma, PetscReal mb,
                            PetscReal part[IMAGE_PARTS]);
 

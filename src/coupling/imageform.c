@@ -66,16 +66,31 @@ static Polynomial Fourth(ImageMoments along, const ImageMoments end[2], const Po
   return sum;
 }
 
+static Polynomial Get(const ImageForm *f, int order) {
+  Polynomial p = {{{0}}};
+  for (int k = 0; k < image_monomials[order]; k++) p.c[degree_a[k]][image_degree[k] - degree_a[k]] = f->c[order][k];
+  return p;
+}
+
+static void Put(const Polynomial *p, int order, PetscReal c[IMAGE_MONOMIALS]) {
+  for (int k = 0; k < image_monomials[order]; k++) c[k] = p->c[degree_a[k]][image_degree[k] - degree_a[k]];
+}
+
 void ImageFormSmooth(ImageMoments along, ImageMoments response, ImageMoments source, ImageForm *f) {
   const ImageMoments end[2] = {response, source};
-  Polynomial p[IMAGE_ORDERS] = {{{{0}}}};
-  for (int m = 0; m < IMAGE_ORDERS; m++)
-    for (int k = 0; k < image_monomials[m]; k++) p[m].c[degree_a[k]][image_degree[k] - degree_a[k]] = f->c[m][k];
+  Polynomial p[IMAGE_ORDERS];
+  for (int m = 0; m < IMAGE_ORDERS; m++) p[m] = Get(f, m);
   const Polynomial first = Second(along, end, &p[0]), second = Second(along, end, &p[1]),
                    fourth = Fourth(along, end, &p[0]);
   Add(1, &first, &p[1]);
   Add(1, &second, &p[2]);
   Add(1, &fourth, &p[2]);
-  for (int m = 0; m < IMAGE_ORDERS; m++)
-    for (int k = 0; k < image_monomials[m]; k++) f->c[m][k] = p[m].c[degree_a[k]][image_degree[k] - degree_a[k]];
+  for (int m = 0; m < IMAGE_ORDERS; m++) Put(&p[m], m, f->c[m]);
+}
+
+void ImageFormBend(const ImageForm *f, int end, PetscReal c[IMAGE_MONOMIALS]) {
+  const Polynomial twice = Across(end, Get(f, 0));
+  Polynomial half = {{{0}}};
+  Add(0.5, &twice, &half);
+  Put(&half, 1, c);
 }

@@ -32,12 +32,14 @@ typedef struct {
 
 /* ImageMomentsOf - of weights. ImageMomentsBoth - of one kernel after the other. ImageFormAdd - to += alpha times the
    form of these numbers. ImageFormSmooth - the form through kernels of these moments: along the wall those of both ends
-   together, across it of the response and of the source. Not collective. */
+   together, across it of the response and of the source. ImageFormBend - what a second moment of 1 of the response (end
+   0) or of the source (1) across the wall adds to the first order of p. Not collective. */
 PETSC_EXTERN ImageMoments ImageMomentsOf(KernelWeights weights);
 PETSC_EXTERN ImageMoments ImageMomentsBoth(ImageMoments one, ImageMoments other);
 PETSC_EXTERN void ImageFormAdd(PetscReal alpha, const ImageNumbers *number, const PetscReal over[IMAGE_ORDERS],
                                ImageForm *to);
 PETSC_EXTERN void ImageFormSmooth(ImageMoments along, ImageMoments response, ImageMoments source, ImageForm *form);
+PETSC_EXTERN void ImageFormBend(const ImageForm *form, int end, PetscReal c[IMAGE_MONOMIALS]);
 
 /* Of four pairs: monomials, and n!/z^{n+1}/(4 pi), its real and its imaginary part. */
 typedef struct {
