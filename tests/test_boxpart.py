@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 import pytest
-from conftest import run_plain
+from test_auto import run_plain
 from test_obstacles import STILL
 from test_obstacles import last as obstacle_row
 
