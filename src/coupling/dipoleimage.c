@@ -115,35 +115,45 @@ void DipoleImageFormsMake(const ImageMoments kernel[2], DipoleImageForms *f) {
       ImageFormSmooth(ImageMomentsBoth(kernel[c], moment[part][0]), kernel[1 - c], moment[part][1], form);
       for (int m = 1; m < IMAGE_ORDERS; m++)
         for (int k = 0; k < IMAGE_MONOMIALS; k++) form->c[m][k] = -form->c[m][k];
+      for (int k = 0; k < IMAGE_ORDERS * IMAGE_MONOMIALS; k++)
+        f->four[k / IMAGE_MONOMIALS][part][c][k % IMAGE_MONOMIALS] = form->c[k / IMAGE_MONOMIALS][k % IMAGE_MONOMIALS] +
+                                                                     (Lanes){0};
     }
 }
 
-/* Add the sums of an order where they are meant. */
-static inline void AddSums(const int order, const DipoleImageForms *f, const ImageTerms *t, LanesBits meant,
-                           Lanes K[2][DIPOLE_COUNT]) {
+static inline Lanes SumOf(const int order, const Lanes c[], const Lanes term[]) {
+  Lanes sum = c[0] * term[0];
+  for (int k = 1; k < image_monomials[order]; k++) sum += c[k] * term[k];
+  return sum;
+}
+
+/* The sums of an order. */
+static inline void Sums(const int order, const DipoleImageForms *f, const ImageTerms *t, Lanes K[2][DIPOLE_COUNT]) {
   for (int sine = 0; sine < 2; sine++) {
     Lanes term[IMAGE_MONOMIALS];
     ImageProducts(order, 0, sine, t, term);
     for (int part = 0; part < DIPOLE_COUNT; part++) {
       const int comp = part == DIPOLE_XY ? sine : 1 - sine;
-      K[comp][part] += LanesWhere(meant, ImageSumOf(order, f->form[part][comp].c[order], term));
+      K[comp][part] = SumOf(order, f->four[order][part][comp], term);
     }
   }
 }
 
-/* What is left of the exact image, with the terms. */
-static inline ImageTerms AddFarSums(const DipoleImageForms *f, Lanes x, Lanes a, Lanes b, Lanes K[2][DIPOLE_COUNT]) {
-  const LanesBits close = ImageIsClose(x, a, b), all = ~(LanesBits){0};
-  ImageTerms t;
-  if (close[0] | close[1] | close[2] | close[3]) {
-    t = ImageTermsMake(2, x, a, b);
-    AddSums(1, f, &t, all, K);
-    AddSums(2, f, &t, close, K);
-  } else {
-    t = ImageTermsMake(1, x, a, b);
-    AddSums(1, f, &t, all, K);
-  }
-  return t;
+/* What is left of the exact image in the second order, added to pairs that are close. */
+static void AddSecond(const DipoleImageForms *f, Lanes x, Lanes a, Lanes b, LanesBits close, Lanes K[2][DIPOLE_COUNT]) {
+  const ImageTerms t = ImageTermsMake(2, x, a, b);
+  Lanes second[2][DIPOLE_COUNT];
+  Sums(2, f, &t, second);
+  for (int k = 0; k < 2 * DIPOLE_COUNT; k++)
+    K[k / DIPOLE_COUNT][k % DIPOLE_COUNT] += LanesWhere(close, second[k / DIPOLE_COUNT][k % DIPOLE_COUNT]);
+}
+
+/* What is left of it, with the terms of the first order. */
+static inline void FarSums(const DipoleImageForms *f, Lanes x, Lanes a, Lanes b, const ImageTerms *t,
+                           Lanes K[2][DIPOLE_COUNT]) {
+  const LanesBits close = ImageIsClose(x, a, b);
+  Sums(1, f, t, K);
+  if (close[0] | close[1] | close[2] | close[3]) AddSecond(f, x, a, b, close, K);
 }
 
 void DipoleImageSourceMake(const DipoleImageForms *f, const PetscReal N[2], PetscReal factor, PetscReal over_length,
@@ -154,28 +164,28 @@ void DipoleImageSourceMake(const DipoleImageForms *f, const PetscReal N[2], Pets
     s->N[c] = factor * N[c];
     s->unit[c] = over_length * N[c];
     for (int k = 0; k < image_monomials[0]; k++) {
-      s->flux[c][1 - c][k] = factor * over_length *
-                             (part[DIPOLE_XX] * f->form[DIPOLE_XX][c].c[0][k] +
-                              part[DIPOLE_YY] * f->form[DIPOLE_YY][c].c[0][k]);
-      s->flux[c][c][k] = factor * over_length * part[DIPOLE_XY] * f->form[DIPOLE_XY][c].c[0][k];
+      const Lanes both = part[DIPOLE_XX] * f->four[0][DIPOLE_XX][c][k] + part[DIPOLE_YY] * f->four[0][DIPOLE_YY][c][k];
+      s->flux[c][1 - c][k] = factor * over_length * both;
+      s->flux[c][c][k] = factor * over_length * part[DIPOLE_XY] * f->four[0][DIPOLE_XY][c][k];
     }
   }
 }
 
 void DipoleImageFourExact(const DipoleImageSource *s, Lanes x, Lanes a, Lanes b, Lanes M[4]) {
   const ImageTerms t = ImageTermsMake(0, x, a, b);
-  Lanes K[2][DIPOLE_COUNT] = {{{0}}};
-  AddSums(0, s->forms, &t, ~(LanesBits){0}, K);
+  Lanes K[2][DIPOLE_COUNT];
+  Sums(0, s->forms, &t, K);
   DipoleContractFour(K, s->N, M);
 }
 
 void DipoleImageFour(const DipoleImageSource *s, Lanes x, Lanes a, Lanes b, Lanes M[4], Lanes L[2]) {
-  Lanes K[2][DIPOLE_COUNT] = {{{0}}}, term[2][IMAGE_MONOMIALS];
-  const ImageTerms t = AddFarSums(s->forms, x, a, b, K);
+  const ImageTerms t = ImageTermsMake(1, x, a, b);
+  Lanes K[2][DIPOLE_COUNT], term[2][IMAGE_MONOMIALS];
+  FarSums(s->forms, x, a, b, &t, K);
   DipoleContractFour(K, s->N, M);
   for (int sine = 0; sine < 2; sine++) ImageProducts(0, 0, sine, &t, term[sine]);
   for (int c = 0; c < 2; c++)
-    L[c] = ImageSumOf(0, s->flux[c][0], term[0]) + ImageSumOf(0, s->flux[c][1], term[1]) -
+    L[c] = SumOf(0, s->flux[c][0], term[0]) + SumOf(0, s->flux[c][1], term[1]) -
            (s->unit[0] * M[c] + s->unit[1] * M[2 + c]);
 }
 
@@ -187,14 +197,14 @@ static void First(const Lanes four[2][DIPOLE_COUNT], PetscReal K[2][DIPOLE_COUNT
 
 void DipoleImageExact(const DipoleImageForms *f, const ImagePair *p, PetscReal K[2][DIPOLE_COUNT]) {
   const ImageTerms t = ImageTermsMake(0, p->x + (Lanes){0}, p->a + (Lanes){0}, p->b + (Lanes){0});
-  Lanes four[2][DIPOLE_COUNT] = {{{0}}};
-  AddSums(0, f, &t, ~(LanesBits){0}, four);
+  Lanes four[2][DIPOLE_COUNT];
+  Sums(0, f, &t, four);
   First((const Lanes(*)[DIPOLE_COUNT])four, K);
 }
 
 void DipoleImageFarFour(const DipoleImageForms *f, Lanes x, Lanes a, Lanes b, Lanes K[2][DIPOLE_COUNT]) {
-  for (int k = 0; k < 2 * DIPOLE_COUNT; k++) K[k / DIPOLE_COUNT][k % DIPOLE_COUNT] = (Lanes){0};
-  (void)AddFarSums(f, x, a, b, K);
+  const ImageTerms t = ImageTermsMake(1, x, a, b);
+  FarSums(f, x, a, b, &t, K);
 }
 
 void DipoleImageFar(const DipoleImageForms *f, const ImagePair *p, PetscReal K[2][DIPOLE_COUNT]) {

@@ -20,6 +20,7 @@ PETSC_EXTERN PetscErrorCode DipoleImageFill(const OffsetTable lattice[2], Dipole
 /* The closed forms by part and component: the exact fluid's image, and what is left of it by order. */
 typedef struct {
   ImageForm form[DIPOLE_COUNT][2];
+  Lanes four[IMAGE_ORDERS][DIPOLE_COUNT][2][IMAGE_MONOMIALS]; /* the same, four times each */
 } DipoleImageForms;
 
 /* DipoleImageFormsMake - for responses with a kernel of these moments along and across. DipoleImageExact -
@@ -34,8 +35,8 @@ PETSC_EXTERN void DipoleImageFarFour(const DipoleImageForms *forms, Lanes x, Lan
 /* One marker's dipoles seen from a wall, with the polynomials of the exact image of J = n. */
 typedef struct {
   const DipoleImageForms *forms;
-  PetscReal N[2], unit[2];               /* times the factor; over the length */
-  PetscReal flux[2][2][IMAGE_MONOMIALS]; /* component, real and imaginary part, monomial */
+  PetscReal N[2], unit[2];           /* times the factor; over the length */
+  Lanes flux[2][2][IMAGE_MONOMIALS]; /* component, real and imaginary part, monomial */
 } DipoleImageSource;
 
 /* DipoleImageSourceMake - N = n times the marker's length, over: 1 over that; factor: of all answers. DipoleImageFour -
