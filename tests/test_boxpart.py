@@ -45,8 +45,8 @@ def last(run) -> tuple[float, float]:
     ids=["walls", "channel", "wider"],
 )
 def test_coarse_grid_is_enough(cached_run, scene, cells, angle, frequency, without):
-    """Measured: walls 2e-6, without the box part 3.6e-4; channel with walls 1.5 and 2 R0 away 1.3e-5 and 1.4e-5 in the
-    angle, 9.5e-5 in the frequency, without it 9.2e-3 and 4e-3 in the angle."""
+    """Measured: walls 1.5e-6, without the box part 3.7e-4; channel with walls 1.5 and 2 R0 away 2.9e-5 and 1.4e-5 in the
+    angle, 1.5e-6 in the frequency, without it 9.1e-3 and 4.4e-3 in the angle."""
     coarse, fine = (last(cached_run(f"{scene} -domain_cells {n}")) for n in cells)
     plain = [last(cached_run(f"{scene} -coupling_box_part false -domain_cells {n}")) for n in cells]
     assert abs(coarse[0] / fine[0] - 1) < angle

@@ -186,7 +186,7 @@ static PetscErrorCode CheckMotions(const char name[], const char options[]) {
 }
 
 /* The same next to walls: a rigid motion inside a vesicle and none outside obeys the no-slip condition too. What is off
-   is the closed form's from 20 cells on, nearer than a cell that of scaled stencils. */
+   is the closed form's from 20 cells on, and nearer than a cell what the markers' spacing leaves. */
 static PetscErrorCode CheckAtWall(const char name[], const char options[], PetscReal bound) {
   PetscReal rigid, gap = PETSC_MAX_REAL;
   Double d;
@@ -374,6 +374,7 @@ static PetscErrorCode Facts(void) {
   PetscCall(CheckHalfTable());
   PetscCall(CheckAtWall("bottom", CHANNEL "-vesicle_markers 69 -vesicle_center .013,-1.435 ", 4e-6));
   PetscCall(CheckAtWall("top", CHANNEL "-vesicle_markers 69 -vesicle_center .013,1.5 ", 4e-4));
+  PetscCall(CheckAtWall("top, twice the markers", CHANNEL "-vesicle_markers 137 -vesicle_center .013,1.5 ", 5e-5));
   PetscCall(CheckMatrices());
   PetscFunctionReturn(PETSC_SUCCESS);
 }

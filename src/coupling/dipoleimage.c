@@ -109,18 +109,16 @@ void DipoleImageFormsMake(const ImageMoments kernel[2], DipoleImageForms *f) {
   for (int part = 0; part < DIPOLE_COUNT; part++)
     for (int c = 0; c < 2; c++) {
       const PetscReal strain = part == DIPOLE_XX ? 1 : part == DIPOLE_YY ? -1 : c ? 2 : -2;
-      ImageForm *form = &f->form[part][c];
-      ImageFormAdd(strain, &strain_form[c], over, form);
-      if (part != DIPOLE_XY) ImageFormAdd(0.5, &source_form[c], over, form);
-      ImageFormSmooth(ImageMomentsBoth(kernel[c], moment[part][0]), kernel[1 - c], moment[part][1], form);
-      for (int m = 1; m < IMAGE_ORDERS; m++)
-        for (int k = 0; k < IMAGE_MONOMIALS; k++) form->c[m][k] = -form->c[m][k];
-      for (int k = 0; k < IMAGE_ORDERS * IMAGE_MONOMIALS; k++)
-        f->four[k / IMAGE_MONOMIALS][part][c][k % IMAGE_MONOMIALS] = form->c[k / IMAGE_MONOMIALS][k % IMAGE_MONOMIALS] +
-                                                                     (Lanes){0};
+      ImageForm form = {{{0}}};
+      ImageFormAdd(strain, &strain_form[c], over, &form);
+      if (part != DIPOLE_XY) ImageFormAdd(0.5, &source_form[c], over, &form);
+      ImageFormSmooth(ImageMomentsBoth(kernel[c], moment[part][0]), kernel[1 - c], moment[part][1], &form);
+      for (int m = 0; m < IMAGE_ORDERS; m++)
+        for (int k = 0; k < IMAGE_MONOMIALS; k++) f->c[m][part][c][k] = (m ? -1 : 1) * form.c[m][k] + (Lanes){0};
     }
 }
 
+/* ImageSumOf, of coefficients that are four times each. */
 static inline Lanes SumOf(const int order, const Lanes c[], const Lanes term[]) {
   Lanes sum = c[0] * term[0];
   for (int k = 1; k < image_monomials[order]; k++) sum += c[k] * term[k];
@@ -134,7 +132,7 @@ static inline void Sums(const int order, const DipoleImageForms *f, const ImageT
     ImageProducts(order, 0, sine, t, term);
     for (int part = 0; part < DIPOLE_COUNT; part++) {
       const int comp = part == DIPOLE_XY ? sine : 1 - sine;
-      K[comp][part] = SumOf(order, f->four[order][part][comp], term);
+      K[comp][part] = SumOf(order, f->c[order][part][comp], term);
     }
   }
 }
@@ -164,9 +162,9 @@ void DipoleImageSourceMake(const DipoleImageForms *f, const PetscReal N[2], Pets
     s->N[c] = factor * N[c];
     s->unit[c] = over_length * N[c];
     for (int k = 0; k < image_monomials[0]; k++) {
-      const Lanes both = part[DIPOLE_XX] * f->four[0][DIPOLE_XX][c][k] + part[DIPOLE_YY] * f->four[0][DIPOLE_YY][c][k];
+      const Lanes both = part[DIPOLE_XX] * f->c[0][DIPOLE_XX][c][k] + part[DIPOLE_YY] * f->c[0][DIPOLE_YY][c][k];
       s->flux[c][1 - c][k] = factor * over_length * both;
-      s->flux[c][c][k] = factor * over_length * part[DIPOLE_XY] * f->four[0][DIPOLE_XY][c][k];
+      s->flux[c][c][k] = factor * over_length * part[DIPOLE_XY] * f->c[0][DIPOLE_XY][c][k];
     }
   }
 }

@@ -17,10 +17,9 @@ typedef struct {
    collective. */
 PETSC_EXTERN PetscErrorCode DipoleImageFill(const OffsetTable lattice[2], DipoleImageTable *table);
 
-/* The closed forms by part and component: the exact fluid's image, and what is left of it by order. */
+/* The closed forms by order, part and component: the exact fluid's image, then what is left of it. */
 typedef struct {
-  ImageForm form[DIPOLE_COUNT][2];
-  Lanes four[IMAGE_ORDERS][DIPOLE_COUNT][2][IMAGE_MONOMIALS]; /* the same, four times each */
+  Lanes c[IMAGE_ORDERS][DIPOLE_COUNT][2][IMAGE_MONOMIALS]; /* each four times */
 } DipoleImageForms;
 
 /* DipoleImageFormsMake - for responses with a kernel of these moments along and across. DipoleImageExact -
