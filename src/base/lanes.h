@@ -33,8 +33,12 @@ static inline void LanesInterlace(Lanes a, Lanes b, PetscReal x[]) {
   *(Lanes *)(x + LANES) = (Lanes){a[2], b[2], a[3], b[3]};
 }
 
-/* The bits of four numbers. Comparisons of Lanes give all ones or zeros; LanesWhere - a where so, else 0. */
+/* The bits of four numbers. Comparisons of Lanes give all ones or zeros; LanesWhere - a where so, else 0.
+   LanesAny - whether one is so. */
 typedef unsigned long long LanesBits __attribute__((vector_size(LANES * sizeof(PetscReal)), may_alias));
+static inline int LanesAny(LanesBits so) {
+  return (so[0] | so[1] | so[2] | so[3]) != 0;
+}
 static inline Lanes LanesWhere(LanesBits so, Lanes a) {
   return (Lanes)(so & (LanesBits)a);
 }

@@ -105,7 +105,7 @@ static PetscBool HasFarImages(const BoxRegion *r, const BoxSquare *s) {
   for (int dir = 0; dir < 2; dir++) {
     const PetscReal low = s->centre[dir] - 0.5 * s->side - r->grid->lo[dir];
     const PetscReal high = r->grid->hi[dir] - s->centre[dir] - 0.5 * s->side;
-    if (r->grid->wall[dir] && 2 * PetscMin(low, high) < IMAGE_CELLS * r->grid->h) return PETSC_FALSE;
+    if (r->grid->wall[dir] && 2 * PetscMin(low, high) < IMAGE_OFF * r->grid->h) return PETSC_FALSE;
   }
   return PETSC_TRUE;
 }

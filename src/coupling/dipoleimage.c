@@ -89,16 +89,27 @@ PetscErrorCode DipoleImageFill(const OffsetTable lattice[2], DipoleImageTable *t
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static const PetscReal over[IMAGE_ORDERS] = {1, 24, 5760};
-static const ImageNumbers strain_form[2] = {{{{-1, 1, 1, -2},
-                                              {9, -21, -21, 38, 2, 2, -4, -4},
-                                              {-1575, 3303, 3303, -6022, -460, -460, 860, 860, 20, 20, -40, -80, -40}}},
-                                            {{{0, 1, -1, -2},
-                                              {-6, -19, 7, 34, 2, -2, -4, -4},
-                                              {660, 2943, -663, -5342, -440, 200, 820, 780, 20, -20, -40, -80, -40}}}};
+static const PetscReal over[IMAGE_ORDERS] = {1, 24, 5760, 2903040};
+static const ImageNumbers strain_form[2] = {
+    {{{-1, 1, 1, -2},
+      {9, -21, -21, 38, 2, 2, -4, -4},
+      {-1575, 3303, 3303, -6022, -460, -460, 860, 860, 20, 20, -40, -80, -40},
+      {536949, -1042929, -1042929, 1866006, 164574, 164574, -300840, -300840, -10780, -10780, 20440, 40320, 20440, 280,
+       280, -560, -1680, -1680, -560}}},
+    {{{0, 1, -1, -2},
+      {-6, -19, 7, 34, 2, -2, -4, -4},
+      {660, 2943, -663, -5342, -440, 200, 820, 780, 20, -20, -40, -80, -40},
+      {-132426, -924471, 123363, 1652778, 155754, -39834, -284040, -268080, -10500, 5460, 19880, 38640, 18760, 280,
+       -280, -560, -1680, -1680, -560}}}};
 static const ImageNumbers source_form[2] = {
-    {{{-2, 4}, {30, -56, -4, 8, 8}, {-4470, 7932, 720, -1360, -1320, -40, 160, 80, 80}}},
-    {{{2, 4}, {-6, -48, 4, 8, 8}, {390, 6972, -240, -1200, -1240, 40, 160, 80, 80}}}};
+    {{{-2, 4},
+      {30, -56, -4, 8, 8},
+      {-4470, 7932, 720, -1360, -1320, -40, 160, 80, 80},
+      {1338750, -2332584, -236916, 426456, 408816, 17640, -65520, -33600, -32480, -560, 3360, 3360, 1120, 1120}}},
+    {{{2, 4},
+      {-6, -48, 4, 8, 8},
+      {390, 6972, -240, -1200, -1240, 40, 160, 80, 80},
+      {-53046, -2060352, 35316, 376056, 383616, -7560, -62160, -30240, -31360, 560, 3360, 3360, 1120, 1120}}}};
 
 void DipoleImageFormsMake(const ImageMoments kernel[2], DipoleImageForms *f) {
   const Kernel *five = KernelFind("cbs54"), *six = KernelFind("cbs65");
@@ -137,21 +148,35 @@ static inline void Sums(const int order, const DipoleImageForms *f, const ImageT
   }
 }
 
-/* What is left of the exact image in the second order, added to pairs that are close. */
-static void AddSecond(const DipoleImageForms *f, Lanes x, Lanes a, Lanes b, LanesBits close, Lanes K[2][DIPOLE_COUNT]) {
-  const ImageTerms t = ImageTermsMake(2, x, a, b);
-  Lanes second[2][DIPOLE_COUNT];
-  Sums(2, f, &t, second);
+/* An order of it, added to pairs that are within these cells. */
+static inline void AddOrder(const int order, const int cells, const DipoleImageForms *f, Lanes x, Lanes a, Lanes b,
+                            const ImageTerms *t, Lanes K[2][DIPOLE_COUNT]) {
+  const LanesBits within = ImageWithin(cells, x, a, b);
+  Lanes more[2][DIPOLE_COUNT];
+  Sums(order, f, t, more);
   for (int k = 0; k < 2 * DIPOLE_COUNT; k++)
-    K[k / DIPOLE_COUNT][k % DIPOLE_COUNT] += LanesWhere(close, second[k / DIPOLE_COUNT][k % DIPOLE_COUNT]);
+    K[k / DIPOLE_COUNT][k % DIPOLE_COUNT] += LanesWhere(within, more[k / DIPOLE_COUNT][k % DIPOLE_COUNT]);
 }
 
-/* What is left of it, with the terms of the first order. */
+/* The second order; the second and the third. */
+static void AddSecond(const DipoleImageForms *f, Lanes x, Lanes a, Lanes b, Lanes K[2][DIPOLE_COUNT]) {
+  const ImageTerms t = ImageTermsMake(2, x, a, b);
+  AddOrder(2, IMAGE_SECOND, f, x, a, b, &t, K);
+}
+static void AddBoth(const DipoleImageForms *f, Lanes x, Lanes a, Lanes b, Lanes K[2][DIPOLE_COUNT]) {
+  const ImageTerms t = ImageTermsMake(3, x, a, b);
+  AddOrder(2, IMAGE_SECOND, f, x, a, b, &t, K);
+  AddOrder(3, IMAGE_THIRD, f, x, a, b, &t, K);
+}
+
+/* What is left of the exact image, with the terms of the first order. */
 static inline void FarSums(const DipoleImageForms *f, Lanes x, Lanes a, Lanes b, const ImageTerms *t,
                            Lanes K[2][DIPOLE_COUNT]) {
-  const LanesBits close = ImageIsClose(x, a, b);
   Sums(1, f, t, K);
-  if (close[0] | close[1] | close[2] | close[3]) AddSecond(f, x, a, b, close, K);
+  if (LanesAny(ImageWithin(IMAGE_THIRD, x, a, b)))
+    AddBoth(f, x, a, b, K);
+  else if (LanesAny(ImageWithin(IMAGE_SECOND, x, a, b)))
+    AddSecond(f, x, a, b, K);
 }
 
 void DipoleImageSourceMake(const DipoleImageForms *f, const PetscReal N[2], PetscReal factor, PetscReal over_length,

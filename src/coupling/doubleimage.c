@@ -1,5 +1,4 @@
 #include "coupling/doubleimage.h"
-#include "markers/fold.h"
 
 #define PARTS(K) ((const PetscReal(*)[DIPOLE_COUNT])(K)) /* as what is only read */
 
@@ -95,7 +94,7 @@ static void OnLattice(DoubleImage m, int direction, int side, PetscInt i, PetscI
   const ImageEnd *e = &m->single->end[direction][side][i];
   PetscReal part[2][DIPOLE_COUNT];
   less[0] = less[1] = 1;
-  if (p->x * p->x + PetscSqr(p->a + p->b) < PetscSqr(IMAGE_CELLS)) {
+  if (NearImageIsNear(p)) {
     Half(m, direction, p->x, i, e, j, &m->end[direction][side][j], part);
     Turn(direction, side, over, PARTS(part), grid);
     return;
@@ -200,7 +199,7 @@ void DoubleImageAddColumn(DoubleImage m, PetscReal reach, const DoubleColumn *c)
     const int direction = wall / 2, side = wall % 2;
     const PetscReal *y = m->single->y[direction][side], low = c->near[wall];
     if (!m->end[direction][side] || low + y[c->j] >= reach) continue;
-    if (!c->lattice || (low + y[c->j] >= IMAGE_CELLS && low >= FOLD_SCALED))
+    if (!c->lattice || (low + y[c->j] >= IMAGE_OFF && PetscMin(low, y[c->j]) >= FOLD_SCALED))
       AddFarFrom[wall](m, reach, c);
     else
       AddPairs(m, direction, side, reach, c);

@@ -1,5 +1,5 @@
-/* C_image of distant pairs of markers in closed form (nearimage.h): to the order h^4/R^4 of itself up to IMAGE_SECOND
-   cells, R from the source's image, to h^2/R^2 beyond. */
+/* C_image of distant pairs of markers in closed form (nearimage.h): to the order h^6/R^6 of itself up to IMAGE_THIRD
+   cells, R from the source's image, to h^4/R^4 up to IMAGE_SECOND, to h^2/R^2 beyond. */
 #pragma once
 #include "coupling/imageform.h"
 
@@ -12,11 +12,17 @@ typedef struct {
   PetscReal x, a, b;
 } ImagePair;
 
-/* A kernel's moments along and across, the forms of pairs off the wall, and what the first order has of a response's
-   and a source's second moment across the wall. */
+/* Forms that stay the same when response and source are exchanged, by monomials and their mirror images together, and
+   those that change their sign, by a monomial less its mirror image. Each number four times. */
+#define IMAGE_EVEN 11
+#define IMAGE_ODD 8
+
+/* A kernel's moments along and across, the forms of pairs off the wall (of NT and TN the even and the odd part: NT is
+   their sum, TN the odd part less the even one), and what the first order has of a response's and a source's second
+   moment across the wall. */
 typedef struct {
   ImageMoments moment[2];
-  ImageForm form[IMAGE_PARTS];
+  Lanes even[IMAGE_TN][IMAGE_ORDERS][IMAGE_EVEN], odd[IMAGE_ORDERS][IMAGE_ODD];
   PetscReal bend[IMAGE_PARTS][2][IMAGE_MONOMIALS];
 } ImageKernel;
 
@@ -29,7 +35,5 @@ PETSC_EXTERN void ImageKernelMake(const Kernel *kernel, ImageKernel *image);
 PETSC_EXTERN void ImageFar(const ImagePair *pair, const ImageKernel *kernel, PetscReal ma, PetscReal mb,
                            PetscReal part[IMAGE_PARTS]);
 
-/* ImageFarRow - the same of n pairs off the wall: part[IMAGE_PARTS][n] of x, a and b [n], all with room for whole
-   vectors behind n. Not collective. */
-PETSC_EXTERN void ImageFarRow(PetscInt n, const PetscReal x[], const PetscReal a[], const PetscReal b[],
-                              const ImageKernel *kernel, PetscReal *const part[IMAGE_PARTS]);
+/* ImageFarFour - the same of four pairs off the wall. Not collective. */
+PETSC_EXTERN void ImageFarFour(const ImageKernel *kernel, Lanes x, Lanes a, Lanes b, Lanes part[IMAGE_PARTS]);

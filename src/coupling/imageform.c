@@ -1,10 +1,10 @@
-/* A kernel of even moments m2, m4 takes 1 + m2/2 d^2 + m4/24 d^4 of what it is applied to. Along the wall d^2 is
-   -theta^2; across it d acts on e^{-theta a} p(theta a) as theta (p' - p). */
+/* A kernel of even moments m2, m4, m6 takes 1 + m2/2 d^2 + m4/24 d^4 + m6/720 d^6 of what it is applied to. Along the
+   wall d^2 is -theta^2; across it d acts on e^{-theta a} p(theta a) as theta (p' - p). */
 #include "coupling/imageform.h"
 
-#define DEGREES 4 /* more than the largest in a or b alone */
+#define DEGREES 5 /* more than the largest in a or b alone */
 
-static const int degree_a[IMAGE_MONOMIALS] = {0, 1, 0, 1, 2, 0, 2, 1, 3, 0, 3, 2, 1};
+static const int degree_a[IMAGE_MONOMIALS] = {0, 1, 0, 1, 2, 0, 2, 1, 3, 0, 3, 2, 1, 4, 0, 4, 3, 2, 1};
 
 /* A polynomial in theta a and theta b. */
 typedef struct {
@@ -12,13 +12,14 @@ typedef struct {
 } Polynomial;
 
 ImageMoments ImageMomentsOf(KernelWeights weights) {
-  PetscReal moment[3];
-  KernelMoments(weights, 3, moment);
-  return (ImageMoments){moment[1], moment[2]};
+  PetscReal moment[4];
+  KernelMoments(weights, 4, moment);
+  return (ImageMoments){moment[1], moment[2], moment[3]};
 }
 
 ImageMoments ImageMomentsBoth(ImageMoments one, ImageMoments other) {
-  return (ImageMoments){one.second + other.second, one.fourth + 6 * one.second * other.second + other.fourth};
+  return (ImageMoments){one.second + other.second, one.fourth + 6 * one.second * other.second + other.fourth,
+                        one.sixth + 15 * (one.fourth * other.second + one.second * other.fourth) + other.sixth};
 }
 
 void ImageFormAdd(PetscReal alpha, const ImageNumbers *number, const PetscReal over[IMAGE_ORDERS], ImageForm *to) {
@@ -42,28 +43,18 @@ static Polynomial Across(int end, Polynomial p) {
   return p;
 }
 
-/* Second and fourth order of the three kernels. */
-static Polynomial Second(ImageMoments along, const ImageMoments end[2], const Polynomial *p) {
-  Polynomial sum = {{{0}}};
-  Add(-0.5 * along.second, p, &sum);
-  for (int e = 0; e < 2; e++) {
-    const Polynomial at = Across(e, *p);
-    Add(0.5 * end[e].second, &at, &sum);
+/* What one kernel makes of the orders of p: along the wall (across < 0), or across it at that end. */
+static void Smooth(int across, ImageMoments kernel, Polynomial p[IMAGE_ORDERS]) {
+  const PetscReal part[IMAGE_ORDERS] = {1, kernel.second / 2, kernel.fourth / 24, kernel.sixth / 720};
+  for (int m = IMAGE_ORDERS - 1; m >= 0; m--) {
+    Polynomial sum = p[m];
+    for (int k = 1; k <= m; k++) {
+      Polynomial at = p[m - k];
+      for (int twice = 0; twice < k && across >= 0; twice++) at = Across(across, at);
+      Add(across < 0 && k % 2 ? -part[k] : part[k], &at, &sum);
+    }
+    p[m] = sum;
   }
-  return sum;
-}
-
-static Polynomial Fourth(ImageMoments along, const ImageMoments end[2], const Polynomial *p) {
-  const Polynomial at = Across(0, *p), both = Across(1, at);
-  Polynomial sum = {{{0}}};
-  Add(along.fourth / 24, p, &sum);
-  Add(0.25 * end[0].second * end[1].second, &both, &sum);
-  for (int e = 0; e < 2; e++) {
-    const Polynomial one = Across(e, *p), two = Across(e, one);
-    Add(end[e].fourth / 24, &two, &sum);
-    Add(-0.25 * along.second * end[e].second, &one, &sum);
-  }
-  return sum;
 }
 
 static Polynomial Get(const ImageForm *f, int order) {
@@ -77,14 +68,11 @@ static void Put(const Polynomial *p, int order, PetscReal c[IMAGE_MONOMIALS]) {
 }
 
 void ImageFormSmooth(ImageMoments along, ImageMoments response, ImageMoments source, ImageForm *f) {
-  const ImageMoments end[2] = {response, source};
   Polynomial p[IMAGE_ORDERS];
   for (int m = 0; m < IMAGE_ORDERS; m++) p[m] = Get(f, m);
-  const Polynomial first = Second(along, end, &p[0]), second = Second(along, end, &p[1]),
-                   fourth = Fourth(along, end, &p[0]);
-  Add(1, &first, &p[1]);
-  Add(1, &second, &p[2]);
-  Add(1, &fourth, &p[2]);
+  Smooth(-1, along, p);
+  Smooth(0, response, p);
+  Smooth(1, source, p);
   for (int m = 0; m < IMAGE_ORDERS; m++) Put(&p[m], m, f->c[m]);
 }
 

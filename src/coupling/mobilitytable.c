@@ -24,13 +24,10 @@ static void Correlate(KernelWeights response, KernelWeights source, int response
 }
 
 /* The mean over places in a cell of the sums over two stencils whose markers are whole cells apart. */
-static PetscErrorCode Average(MobilityTable m) {
+static void Average(MobilityTable m) {
   const Kernel *k = m->kernel;
   const PetscInt nx = 2 * m->mean.size[0] + 1, ny = 2 * m->mean.size[1] + 1, gx = 2 * m->green.size[0] + 1;
   const KernelWeights weights[] = {k->along, k->across}; /* with faces at m + 1, m + 1/2 */
-  PetscReal *line;
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(gx, &line));
   for (int b = 0; b < OFFSET_COUNT; b++) {
     const int response = b != OFFSET_UU, source = b == OFFSET_VV; /* component */
     PetscReal wx[LAGS], wy[LAGS];
@@ -38,21 +35,36 @@ static PetscErrorCode Average(MobilityTable m) {
     Correlate(weights[!response], weights[!source], !response, !source, wy);
     for (PetscInt j = 0; j < ny; j++) {
       PetscReal *out = m->mean.value[b] + j * nx;
-      PetscCall(PetscArrayzero(line, gx));
-      PetscCall(PetscArrayzero(out, nx));
+      for (PetscInt i = 0; i < gx; i++) m->line[i] = 0;
+      for (PetscInt i = 0; i < nx; i++) out[i] = 0;
       for (int q = 0; q < LAGS; q++)
-        for (PetscInt i = 0; wy[q] != 0 && i < gx; i++) line[i] += wy[q] * m->green.value[b][(j + q) * gx + i];
+        for (PetscInt i = 0; wy[q] != 0 && i < gx; i++) m->line[i] += wy[q] * m->green.value[b][(j + q) * gx + i];
       for (int p = 0; p < LAGS; p++)
-        for (PetscInt i = 0; wx[p] != 0 && i < nx; i++) out[i] += wx[p] * line[i + p];
+        for (PetscInt i = 0; wx[p] != 0 && i < nx; i++) out[i] += wx[p] * m->line[i + p];
     }
   }
-  PetscCall(PetscFree(line));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  m->averaged = PETSC_TRUE;
 }
 
 /* Whether the solver is made for each table. */
 static PetscBool IsLarge(Grid g) {
   return (PetscReal)g->n[0] * g->n[1] > KEPT_CELLS ? PETSC_TRUE : PETSC_FALSE;
+}
+
+static PetscErrorCode CreateSolver(MobilityTable m) {
+  PetscFunctionBeginUser;
+  PetscCall(StokesCreate(m->periodic, &m->stokes));
+  PetscCall(DMCreateGlobalVector(m->periodic->grid->velocity, &m->u));
+  PetscCall(DMCreateGlobalVector(m->periodic->grid->da[FIELD_P], &m->p));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode DestroySolver(MobilityTable m) {
+  PetscFunctionBeginUser;
+  PetscCall(VecDestroy(&m->u));
+  PetscCall(VecDestroy(&m->p));
+  PetscCall(StokesDestroy(&m->stokes));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode MobilityTableCreate(const FluidSpec *spec, const Kernel *kernel, PetscReal reach, MobilityTable *out) {
@@ -76,7 +88,8 @@ PetscErrorCode MobilityTableCreate(const FluidSpec *spec, const Kernel *kernel, 
   PetscCall(OffsetTableCreate(size, &m->mean));
   for (int d = 0; d < 2; d++) size[d] += LAG;
   PetscCall(OffsetTableCreate(size, &m->green));
-  if (!IsLarge(g)) PetscCall(StokesCreate(m->periodic, &m->stokes));
+  PetscCall(PetscMalloc1(2 * size[0] + 1, &m->line));
+  if (!IsLarge(g)) PetscCall(CreateSolver(m));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -86,7 +99,8 @@ PetscErrorCode MobilityTableDestroy(MobilityTable *table) {
   if (!m) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(OffsetTableDestroy(&m->mean));
   PetscCall(OffsetTableDestroy(&m->green));
-  PetscCall(StokesDestroy(&m->stokes));
+  PetscCall(PetscFree(m->line));
+  PetscCall(DestroySolver(m));
   PetscCall(FluidDestroy(&m->periodic));
   PetscCall(PetscFree(*table));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -112,38 +126,45 @@ static PetscErrorCode Gather(Grid g, Field f, const PetscScalar a[], const Petsc
 }
 
 /* The periodic box's responses to a unit force on a u face, or on a v face. */
-static PetscErrorCode UnitResponse(MobilityTable m, int source, Vec u, Vec p) {
+static PetscErrorCode UnitResponse(MobilityTable m, int source) {
   const OffsetTable *G = &m->green;
   const Grid g = m->periodic->grid;
   const PetscScalar *a;
   PetscScalar *r;
   PetscFunctionBeginUser;
-  PetscCall(VecSet(u, 0));
-  PetscCall(VecGetArray(u, &r));
+  PetscCall(VecSet(m->u, 0));
+  PetscCall(VecGetArray(m->u, &r));
   if (!g->rank) r[source ? GridLocalU(g) : 0] = 1;
-  PetscCall(VecRestoreArray(u, &r));
-  PetscCall(StokesSolve(m->stokes, u, NULL, u, p));
-  PetscCall(VecGetArrayRead(u, &a));
+  PetscCall(VecRestoreArray(m->u, &r));
+  PetscCall(StokesSolve(m->stokes, m->u, NULL, m->u, m->p));
+  PetscCall(VecGetArrayRead(m->u, &a));
   if (!source) PetscCall(Gather(g, FIELD_U, a, G->size, G->value[OFFSET_UU]));
   PetscCall(Gather(g, FIELD_V, a + GridLocalU(g), G->size, G->value[source ? OFFSET_VV : OFFSET_VU]));
-  PetscCall(VecRestoreArrayRead(u, &a));
+  PetscCall(VecRestoreArrayRead(m->u, &a));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* In a square box v to v is u to u, turned. */
+static void Turn(OffsetTable *t) {
+  const PetscInt n = 2 * t->size[0] + 1;
+  for (PetscInt j = 0; j < n; j++)
+    for (PetscInt i = 0; i < n; i++) t->value[OFFSET_VV][j * n + i] = t->value[OFFSET_UU][i * n + j];
+}
+
 PetscErrorCode MobilityTableSetUp(MobilityTable m, PetscReal alpha) {
-  Vec u, p;
+  const Grid g = m->periodic->grid;
   PetscFunctionBeginUser;
   if (alpha == m->alpha) PetscFunctionReturn(PETSC_SUCCESS);
   m->alpha = alpha;
+  m->averaged = PETSC_FALSE;
   PetscCall(FluidSetTimeCoefficient(m->periodic, alpha));
-  if (!m->stokes) PetscCall(StokesCreate(m->periodic, &m->stokes));
-  PetscCall(DMCreateGlobalVector(m->periodic->grid->velocity, &u));
-  PetscCall(DMCreateGlobalVector(m->periodic->grid->da[FIELD_P], &p));
-  for (int source = 0; source < 2; source++) PetscCall(UnitResponse(m, source, u, p));
-  PetscCall(Average(m));
-  PetscCall(VecDestroy(&u));
-  PetscCall(VecDestroy(&p));
-  if (IsLarge(m->periodic->grid)) PetscCall(StokesDestroy(&m->stokes));
+  if (!m->stokes) PetscCall(CreateSolver(m));
+  PetscCall(UnitResponse(m, 0));
+  if (g->n[0] == g->n[1])
+    Turn(&m->green);
+  else
+    PetscCall(UnitResponse(m, 1));
+  if (IsLarge(g)) PetscCall(DestroySolver(m));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -161,6 +182,7 @@ void MobilityTableMean(MobilityTable m, const PetscReal d[2], PetscReal mean[3])
   const PetscInt nx = 2 * t->size[0] + 1;
   PetscReal w[2][POINTS];
   PetscInt at[2];
+  if (!m->averaged) Average(m);
   for (int dir = 0; dir < 2; dir++) {
     const PetscReal most = t->size[dir] - POINTS / 2, cells = d[dir] / m->periodic->grid->h;
     const PetscReal x = PetscMax(-most, PetscMin(most, cells)) + t->size[dir];

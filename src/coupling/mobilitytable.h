@@ -8,11 +8,14 @@
 typedef struct _p_MobilityTable *MobilityTable;
 struct _p_MobilityTable {
   const Kernel *kernel;
-  Fluid periodic;    /* a periodic box of the same cells */
-  Stokes stokes;     /* its solver, kept on few cells; else NULL between set-ups */
+  Fluid periodic; /* a periodic box of the same cells */
+  Stokes stokes;  /* its solver with work vectors, kept on few cells; else NULL between set-ups */
+  Vec u, p;
   PetscReal alpha;   /* coefficient of H that the tables are for; negative: none yet */
   OffsetTable green; /* its Green's function, by offsets of faces */
-  OffsetTable mean;  /* of two markers' mobility, by whole cells between them */
+  OffsetTable mean;  /* of two markers' mobility, by whole cells between them, once asked for */
+  PetscBool averaged;
+  PetscReal *line; /* work */
 };
 
 /* MobilityTableCreate - for the grid that spec makes and markers up to `reach` (length) apart. Collective. */

@@ -1,6 +1,5 @@
 #include "coupling/nearimage.h"
 #include "base/lanes.h"
-#include "markers/fold.h"
 
 /* -S(R) + 2 b^2 D - 2 b SD with R from the source's mirror image, D_ij = s_j (delta_ij/R^2 - 2 R_i R_j/R^4), SD_ij =
    R_n D_ij + s_j (delta_jn R_i - delta_in R_j)/R^2, s = (1, -1). */
@@ -56,7 +55,7 @@ static void AddWall(NearImage m, int direction, int side, PetscInt i, PetscInt j
                     const PetscReal L[4], PetscReal C[4]) {
   const ImageEnd *e = &m->end[direction][side][i], *f = &m->end[direction][side][j];
   const ImagePair p = {d[1 - direction] / m->markers->grid->h, e->y, f->y};
-  const PetscBool near = p.x * p.x + PetscSqr(p.a + p.b) < PetscSqr(IMAGE_CELLS) ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool near = NearImageIsNear(&p);
   PetscReal blake[IMAGE_PARTS] = {0}, part[IMAGE_PARTS], free[IMAGE_PARTS] = {0};
   if (near || e->scale < 1 || f->scale < 1) {
     FreePart(m, direction, side, L, free);
@@ -107,7 +106,7 @@ PetscBool NearImageIsFar(NearImage m, const PetscReal X[2], const NearBounds *bo
   for (int dir = 0; dir < 2; dir++)
     for (int side = 0; side < 2; side++) {
       const PetscReal off = PetscMin(NearImageGap(g, dir, side, &at, &at), NearImageGap(g, dir, side, box, box));
-      const PetscBool near = off < 2 * FOLD_SCALED * g->h || NearImageGap(g, dir, side, &at, box) < IMAGE_CELLS * g->h
+      const PetscBool near = off < 2 * FOLD_SCALED * g->h || NearImageGap(g, dir, side, &at, box) < IMAGE_OFF * g->h
                                  ? PETSC_TRUE
                                  : PETSC_FALSE;
       if (g->wall[dir] && near) all = PETSC_FALSE;
@@ -119,18 +118,16 @@ PetscBool NearImageIsFar(NearImage m, const PetscReal X[2], const NearBounds *bo
 /* One wall's part, added; d along the wall. */
 static void AddFarWall(NearImage m, int direction, int side, PetscInt i, PetscInt j, PetscInt n, PetscBool back,
                        const PetscReal d[], PetscReal *const C[4]) {
-  const PetscReal cell = 1 / m->markers->grid->h, over = 1 / m->nu, *y = m->y[direction][side], *other = y + j;
+  const PetscReal cell = 1 / m->markers->grid->h, over = 1 / m->nu, *y = m->y[direction][side];
+  const PetscReal alpha[2] = {over, side ? -over : over};
   const int place[IMAGE_PARTS] = {1 - direction, direction, direction ? 3 : 2, direction ? 2 : 3};
-  PetscReal x[IMAGE_ROW], own[IMAGE_ROW], part[IMAGE_PARTS][IMAGE_ROW];
-  for (PetscInt k = 0; k < IMAGE_ROW && k < n + LANES; k++) {
-    x[k] = cell * d[k];
-    own[k] = y[i];
-  }
-  ImageFarRow(n, x, back ? other : own, back ? own : other, &m->kernel,
-              (PetscReal *[]){part[0], part[1], part[2], part[3]});
-  for (int q = 0; q < IMAGE_PARTS; q++) {
-    const PetscReal alpha = side && q >= IMAGE_NT ? -over : over;
-    for (PetscInt k = 0; k < n; k++) C[place[q]][k] += alpha * part[q][k];
+  const Lanes own = y[i] + (Lanes){0};
+  for (PetscInt k = 0; k < n; k += LANES) {
+    const Lanes x = cell * LanesAt(d + k), other = LanesAt(y + j + k);
+    Lanes part[IMAGE_PARTS];
+    ImageFarFour(&m->kernel, x, back ? other : own, back ? own : other, part);
+    for (int q = 0; q < IMAGE_PARTS; q++)
+      LanesPut(LanesAt(C[place[q]] + k) + alpha[q >= IMAGE_NT] * part[q], C[place[q]] + k);
   }
 }
 
@@ -144,20 +141,24 @@ void NearImageAddFar(NearImage m, const PetscBool walls[2][2], const PetscBool f
 void NearImageFar(const void *image, PetscInt n, const PetscReal X[], const PetscReal Y[2], PetscReal V[]) {
   const struct _p_NearImage *m = image;
   const Grid g = m->markers->grid;
-  PetscReal x[IMAGE_ROW], a[IMAGE_ROW], b[IMAGE_ROW], part[IMAGE_PARTS][IMAGE_ROW];
   (void)PetscArrayzero(V, 4 * n);
   for (int wall = 0; wall < 4; wall++) {
     const int direction = wall / 2, side = wall % 2, t = 1 - direction;
     const int place[IMAGE_PARTS] = {t * 3, direction * 3, direction ? 2 : 1, direction ? 1 : 2}; /* response, source */
     if (!g->wall[direction]) continue;
-    for (PetscInt k = 0; k < n; k++) {
-      x[k] = (X[2 * k + t] - Y[t]) / g->h;
-      a[k] = NearImageOff(g, direction, side, X + 2 * k);
-      b[k] = NearImageOff(g, direction, side, Y);
+    for (PetscInt k = 0; k < n; k += LANES) {
+      const Lanes b = NearImageOff(g, direction, side, Y) + (Lanes){0};
+      Lanes x, a, part[IMAGE_PARTS];
+      for (int q = 0; q < LANES; q++) {
+        const PetscReal *at = X + 2 * PetscMin(k + q, n - 1);
+        x[q] = (at[t] - Y[t]) / g->h;
+        a[q] = NearImageOff(g, direction, side, at);
+      }
+      ImageFarFour(&m->kernel, x, a, b, part);
+      for (int q = 0; q < IMAGE_PARTS; q++)
+        for (PetscInt l = 0; l < LANES && k + l < n; l++)
+          V[place[q] * n + k + l] += (side && q >= IMAGE_NT ? -1 : 1) / m->nu * part[q][l];
     }
-    ImageFarRow(n, x, a, b, &m->kernel, (PetscReal *[]){part[0], part[1], part[2], part[3]});
-    for (int q = 0; q < IMAGE_PARTS; q++)
-      for (PetscInt k = 0; k < n; k++) V[place[q] * n + k] += (side && q >= IMAGE_NT ? -1 : 1) / m->nu * part[q][k];
   }
 }
 

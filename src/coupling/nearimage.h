@@ -5,6 +5,7 @@
 #pragma once
 #include "coupling/imagefar.h"
 #include "coupling/imagetable.h"
+#include "markers/fold.h"
 
 typedef struct {
   PetscReal y;             /* cells from the wall */
@@ -56,13 +57,19 @@ static inline PetscReal NearImageOff(Grid g, int direction, int side, const Pets
   return (side ? g->hi[direction] - X[direction] : X[direction] - g->lo[direction]) / g->h;
 }
 
+/* NearImageIsNear - whether stencils of a pair are summed. Not collective. */
+static inline PetscBool NearImageIsNear(const ImagePair *p) {
+  const PetscReal reach = PetscMin(p->a, p->b) < FOLD_SCALED ? IMAGE_CELLS : IMAGE_OFF;
+  return p->x * p->x + PetscSqr(p->a + p->b) < reach * reach ? PETSC_TRUE : PETSC_FALSE;
+}
+
 /* NearImageGap - the least distance there can be between markers within `one` and images in a wall of markers within
    `other` (length). Not collective. */
 PETSC_EXTERN PetscReal NearImageGap(Grid grid, int direction, int side, const NearBounds *one, const NearBounds *other);
 
 /* NearImageIsFar - by which walls a marker at X and all in a box are off them, and so far from one another's images
    that no stencils are summed: far[direction][side], or NULL; returns whether by all. NearImageAddFar - the same as
-   NearImageAdd for such a marker i and the n markers from j on, d = (x, y)[n] with room for whole vectors behind n, by
+   NearImageAdd for such a marker i and the n markers from j on, d = (x, y)[n] (and C with room for whole vectors), by
    the walls that are far and among `walls`: C[4][n] of i's response to them, or, with back, of theirs to it, d turned.
    n at most IMAGE_ROW. Not collective. */
 #define IMAGE_ROW 96

@@ -27,11 +27,12 @@ static void FillCross(Walls w, int dir, PetscInt k, PetscReal lambda, const Pets
    wall, away from it -sqrt(lambda) psi' cos, on the rows' edges. */
 static void FillProfile(Walls w, int dir, PetscInt k, PetscReal lambda, const PetscReal force[],
                         const PetscReal psi[]) {
-  const PetscInt n = w->fluid->grid->n[dir];
-  PetscReal *along = w->pair[dir].waves.profile + 2 * k * n, *away = along + n;
-  for (PetscInt j = 0; j < n; j++) {
-    along[j] = force[j] + lambda * psi[j];
-    away[j] = j + 1 < n ? -PetscSqrtReal(lambda) * (psi[j + 1] - psi[j]) / w->fluid->grid->h : 0;
+  const PetscInt n = w->fluid->grid->n[dir], room = w->pair[dir].waves.room;
+  const PetscReal slope = -PetscSqrtReal(lambda) / w->fluid->grid->h;
+  PetscReal *along = w->pair[dir].waves.profile + k;
+  for (PetscInt j = 0; j < n; j++, along += 2 * room) {
+    along[0] = force[j] + lambda * psi[j];
+    along[room] = j + 1 < n ? slope * (psi[j + 1] - psi[j]) : 0;
   }
 }
 
@@ -71,7 +72,7 @@ static PetscErrorCode CopyPair(Walls w) {
   PetscCall(PetscArraycpy(to->own, from->own, from->length));
   PetscCall(PetscArraycpy(to->other, from->other, from->length));
   PetscCall(PetscArraycpy(to->cross.value, from->cross.value, from->cross.row[from->length]));
-  PetscCall(PetscArraycpy(to->waves.profile, from->waves.profile, 2 * from->waves.modes * w->fluid->grid->n[0]));
+  PetscCall(PetscArraycpy(to->waves.profile, from->waves.profile, 2 * from->waves.room * w->fluid->grid->n[0]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -164,67 +165,86 @@ PetscErrorCode WallsInvert(Walls w, int sweeps, PetscScalar d[]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Where a profile a[n], whose entry j is j + offset cells from the wall, is read at eta cells from it: linear between
-   the entries and beyond the last, constant closer to the wall than the first. */
+/* Where profiles whose rows j are j + offset cells from the wall are read at eta cells from it: linear between the rows
+   and beyond the last, constant closer to the wall than the first. */
 typedef struct {
-  PetscInt j;
+  const PetscReal *row;
+  PetscInt next;
   PetscReal part;
 } ProfilePlace;
 
-static ProfilePlace FindPlace(PetscInt n, PetscReal offset, PetscReal eta) {
+static ProfilePlace FindPlace(const LongWaves *w, PetscInt n, int component, PetscReal offset, PetscReal eta) {
   const PetscReal at = PetscMax(eta - offset, 0);
   const PetscInt j = PetscMin((PetscInt)at, n - 2);
-  return (ProfilePlace){j, at - j};
+  return (ProfilePlace){w->profile + (2 * j + component) * w->room, 2 * w->room, at - j};
 }
 
-static inline PetscReal Interpolated(const PetscReal a[], ProfilePlace at) {
-  return a[at.j] + at.part * (a[at.j + 1] - a[at.j]);
+static inline Lanes Interpolated(ProfilePlace at, PetscInt k) {
+  const Lanes one = LanesAt(at.row + k);
+  return one + at.part * (LanesAt(at.row + at.next + k) - one);
 }
 
-/* Velocity at marker m of 2M numbers a column, X its place, of all waves of pair dir for the amplitude 1: columns of
-   the first wall, then of the second one. Sines by the angles' sum. */
-static void WavesAtMarker(Walls w, int dir, PetscInt m, const PetscScalar X[2], PetscReal U[]) {
+/* Velocity at X of all waves of pair dir for the amplitude 1: of the first wall, then of the second one. Sines by the
+   angles' sum. */
+static void WavesAtMarker(Walls w, int dir, const PetscScalar X[2], PetscReal U[]) {
   const Grid g = w->fluid->grid;
   const LongWaves *waves = &w->pair[dir].waves;
-  const PetscInt n = g->n[dir];
+  const PetscInt n = g->n[dir], room = waves->room;
   const PetscReal angle = PETSC_PI * (X[1 - dir] - g->lo[1 - dir]) / (g->hi[1 - dir] - g->lo[1 - dir]);
-  const PetscReal first[2] = {PetscCosReal(angle), PetscSinReal(angle)};
+  const PetscReal c = PetscCosReal(angle), s = PetscSinReal(angle), c2 = c * c - s * s, s2 = 2 * c * s;
+  const PetscReal c4 = c2 * c2 - s2 * s2, s4 = 2 * c2 * s2;
   const PetscReal eta[2] = {(X[dir] - g->lo[dir]) / g->h, (g->hi[dir] - X[dir]) / g->h};
-  const ProfilePlace along[2] = {FindPlace(n, 0.5, eta[0]), FindPlace(n, 0.5, eta[1])};
-  const ProfilePlace away[2] = {FindPlace(n, 1, eta[0]), FindPlace(n, 1, eta[1])};
-  PetscReal cosine = first[0], sine = first[1], *one = U + 2 * m, *two = one + 2 * waves->modes * w->markers;
-  for (PetscInt k = 0; k < waves->modes; k++, one += 2 * w->markers, two += 2 * w->markers) {
-    const PetscReal *profile = waves->profile + 2 * k * n, before = cosine;
-    one[1 - dir] = sine * Interpolated(profile, along[0]);
-    one[dir] = cosine * Interpolated(profile + n, away[0]);
-    two[1 - dir] = sine * Interpolated(profile, along[1]);
-    two[dir] = -cosine * Interpolated(profile + n, away[1]);
-    cosine = cosine * first[0] - sine * first[1];
-    sine = sine * first[0] + before * first[1];
+  const ProfilePlace along[2] = {FindPlace(waves, n, 0, 0.5, eta[0]), FindPlace(waves, n, 0, 0.5, eta[1])};
+  const ProfilePlace away[2] = {FindPlace(waves, n, 1, 1, eta[0]), FindPlace(waves, n, 1, 1, eta[1])};
+  PetscReal *one[2] = {U + (1 - dir) * room, U + dir * room};
+  Lanes cosine = {c, c2, c * c2 - s * s2, c4}, sine = {s, s2, c * s2 + s * c2, s4};
+  for (PetscInt k = 0; k < room; k += LANES) {
+    LanesPut(sine * Interpolated(along[0], k), one[0] + k);
+    LanesPut(cosine * Interpolated(away[0], k), one[1] + k);
+    LanesPut(sine * Interpolated(along[1], k), one[0] + 2 * room + k);
+    LanesPut(-cosine * Interpolated(away[1], k), one[1] + 2 * room + k);
+    const Lanes before = cosine;
+    cosine = cosine * c4 - sine * s4;
+    sine = sine * c4 + before * s4;
   }
 }
 
 PetscErrorCode WallsSetMarkers(Walls w, PetscInt M, const PetscScalar X[]) {
-  const PetscInt modes[2] = {w->pair[0].waves.modes, w->pair[1].waves.modes};
+  const PetscInt room[2] = {w->pair[0].waves.room, w->pair[1].waves.room};
   PetscFunctionBeginUser;
-  if (!modes[0]) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!room[0]) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SetUp(w));
   if (w->markers != M) PetscCall(PetscFree(w->flow));
-  if (!w->flow) PetscCall(PetscMalloc1(4 * (modes[0] + modes[1]) * M, &w->flow));
+  if (!w->flow) PetscCall(PetscMalloc1(4 * (room[0] + room[1]) * M, &w->flow));
   w->markers = M;
-  for (int dir = 0; dir < 2; dir++)
-    for (PetscInt m = 0; m < M; m++) WavesAtMarker(w, dir, m, X + 2 * m, w->flow + (dir ? 4 * modes[0] * M : 0));
+  PetscReal *flow = w->flow;
+  for (PetscInt m = 0; m < M; m++)
+    for (int dir = 0; dir < 2; dir++) {
+      WavesAtMarker(w, dir, X + 2 * m, flow);
+      flow += 4 * room[dir];
+    }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode WallsMarkerVelocity(Walls w, PetscReal alpha, PetscScalar U[]) {
-  const PetscReal *column = w->flow;
+  const PetscReal *flow = w->flow;
   PetscFunctionBeginUser;
-  for (int dir = 0; dir < 2; dir++)
-    for (int side = 0; side < 2; side++) {
-      const LongWaves *waves = &w->pair[dir].waves;
-      for (PetscInt k = 0; k < waves->modes; k++, column += 2 * w->markers)
-        for (PetscInt i = 0; i < 2 * w->markers; i++) U[i] += alpha * waves->amplitude[side][k] * column[i];
+  if (!flow) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt m = 0; m < w->markers; m++) {
+    Lanes sum[2] = {{0}, {0}};
+    PetscReal u, v;
+    for (int wall = 0; wall < 4; wall++) {
+      const LongWaves *waves = &w->pair[wall / 2].waves;
+      for (PetscInt k = 0; k < waves->room; k += LANES) {
+        const Lanes amplitude = LanesAt(waves->amplitude[wall % 2] + k);
+        sum[0] += amplitude * LanesAt(flow + k);
+        sum[1] += amplitude * LanesAt(flow + waves->room + k);
+      }
+      flow += 2 * waves->room;
     }
+    LanesTwoSums(sum[0], sum[1], &u, &v);
+    U[2 * m] += alpha * u;
+    U[2 * m + 1] += alpha * v;
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -59,8 +59,9 @@ static PetscErrorCode CreateReach(Walls w, int dir) {
   }
   PetscCall(PetscCalloc1(cross->row[faces], &cross->value));
   waves->modes = PetscMin(modes, LONG_WAVES);
-  PetscCall(PetscMalloc1(2 * waves->modes * g->n[dir], &waves->profile));
-  for (int side = 0; side < 2; side++) PetscCall(PetscCalloc1(waves->modes, &waves->amplitude[side]));
+  waves->room = (waves->modes + LANES - 1) / LANES * LANES;
+  PetscCall(PetscCalloc1(2 * waves->room * g->n[dir], &waves->profile));
+  for (int side = 0; side < 2; side++) PetscCall(PetscCalloc1(waves->room, &waves->amplitude[side]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -16,9 +16,9 @@ typedef struct {
 
 /* Flow that the longest waves of a pair's forces drive inside the box. None where only one pair exists. */
 typedef struct {
-  PetscInt modes;       /* that are kept */
-  PetscReal *profile;   /* [modes][2][n] velocity by the distance from the wall: along it, away from it */
-  double *amplitude[2]; /* [side][modes] sine amplitudes of the forces last found */
+  PetscInt modes, room; /* that are kept; in whole vectors (LANES), of which the rest is zero */
+  PetscReal *profile;   /* [n][2][room] velocity by the distance from the wall: along it, away from it */
+  double *amplitude[2]; /* [side][room] sine amplitudes of the forces last found */
 } LongWaves;
 
 /* Two walls that face one another: a line is one number for each face next to one of them. */
@@ -43,7 +43,7 @@ struct _p_Walls {
   PetscReal *slip;    /* [n] work */
   PetscReal *work[3]; /* [n_x or n_y, the larger one] */
   PetscInt markers;
-  PetscReal *flow; /* [modes of all walls][2 markers] velocity of each long wave at the markers */
+  PetscReal *flow; /* [markers][walls][2][room] velocity of each long wave at the markers */
 };
 
 /* WallsCreate - the unknowns of a fluid: none where the Stokes solve is exact (StokesIsExact). Not collective. */
