@@ -3,9 +3,8 @@
 #pragma once
 #include "coupling/offsets.h"
 
-#define IMAGE_CELLS 20 /* from a marker to another one's image, up to which stencils are summed where one is folded,   \
-                        */
-#define IMAGE_OFF 14   /* and where both are off the wall */
+#define IMAGE_CELLS 20 /* from a marker to another one's image, up to which stencils are summed if one is folded, */
+#define IMAGE_OFF 14   /* and if both are off the wall */
 #define IMAGE_ROWS 25  /* rows from the wall: t at row + 1/2, n at row (0 on the wall, zero) */
 #define IMAGE_SHIFT 28 /* largest offset along the wall */
 #define IMAGE_WIDTH (2 * IMAGE_SHIFT + 1)
