@@ -187,22 +187,42 @@ def test_box_that_is_the_question_stays(tmp_path):
         assert "free" not in text and domain(text, "-domain_cells")[0] < 128
 
 
-def test_grid_for_a_box(tmp_path):
-    """The fewest square cells that are enough; more of them where a vesicle begins near a wall."""
+@pytest.mark.parametrize("inertia", ("none", "unsteady"))
+def test_grid_for_a_box(inertia, tmp_path):
+    """The fewest square cells that are enough; with inertia more of them where a vesicle begins near a wall."""
     scene = (
-        f"{QUIET} -domain_box 0,12,0,5 -domain_bc_x periodic -flow_type poiseuille -flow_center_y 2.5 -vesicle_area 1"
+        f"{QUIET} -domain_box 0,12,0,5 -domain_bc_x periodic -flow_type poiseuille -flow_center_y 2.5 -vesicle_area 1 "
+        f"-fluid_inertia {inertia}"
     )
     cells = {}
-    for wanted, height in ((0.1, 2.5), (1e-2, 2.5), (1e-3, 2.5), (1e-2, 0.5), (1e-3, 0.7)):
+    near = (1e-2, 0.5)
+    for wanted, height in ((0.1, 2.5), (1e-2, 2.5), (1e-3, 2.5), near, (1e-3, 0.6)):
         text = run_plain(
             tmp_path / f"{wanted}_{height}", f"{scene} -vesicle_center 3,{height} -time_end 0 -scheme_auto {wanted}"
         ).stdout
         nx, ny = domain(text, "-domain_cells")
-        assert 5 * nx == 12 * ny and "TOO" not in text and ": enough\n" in text
-        assert "nearest wall" not in text or height < 1
+        beyond = inertia == "unsteady" and (wanted, height) == (1e-3, 0.6)
+        assert 5 * nx == 12 * ny and ": enough\n" in text
+        assert ("TOO NEAR for 0.001, and for any grid up to R0/h = 24" in text) == beyond
+        assert "TOO" not in text or beyond
+        assert "nearest wall" not in text or height < 1 or inertia == "unsteady"
         cells[wanted, height] = nx
-    assert cells[0.1, 2.5] <= cells[1e-2, 2.5] < cells[1e-3, 2.5] < cells[1e-3, 0.7]
-    assert cells[1e-2, 2.5] < cells[1e-2, 0.5]
+    if inertia == "none":
+        assert cells[0.1, 2.5] <= cells[1e-2, 2.5] <= cells[1e-3, 2.5] <= cells[1e-3, 0.6]
+    else:
+        assert cells[0.1, 2.5] < cells[1e-2, 2.5] < cells[1e-3, 2.5]
+        assert cells[1e-2, 2.5] < cells[near]
+
+
+@pytest.mark.parametrize("peak, inertia", ((1e-3, False), (1, True)))
+def test_grid_goes_by_what_inertia_stands_for(peak, inertia, tmp_path):
+    """-fluid_inertia auto in a channel has inertia by the Reynolds number, and so has the choice of the grid."""
+    scene = f"{QUIET} -domain_box 0,12,0,6 -domain_bc_x periodic -flow_type poiseuille -flow_center_y 3 -vesicle_area 1"
+    text = run_plain(
+        tmp_path, f"{scene} -vesicle_center 3,3 -flow_peak_velocity {peak} -time_end 0 -scheme_auto 0.01"
+    ).stdout
+    assert (" with inertia: enough" in text) == inertia and "TOO" not in text
+    assert (domain(text, "-domain_cells")[1] > 40) == inertia
 
 
 def within(found: float, table: str, values: list[str]) -> None:
@@ -211,21 +231,39 @@ def within(found: float, table: str, values: list[str]) -> None:
     assert 0.99 * measured(table, values[0]) <= found <= 1.15 * worst, (table, values[0])
 
 
+FLUIDS = {
+    "-fluid_inertia none": ("cells_a_radius", "cells_to_wall"),
+    "-fluid_inertia none -coupling_box_part false": ("cells_a_radius", "cells_to_wall_plain"),
+    "-fluid_inertia unsteady": ("cells_with_inertia", "cells_to_wall_plain"),
+}
+
+
+@pytest.mark.parametrize("fluid", FLUIDS)
 @pytest.mark.parametrize("first", range(5))
-def test_grid_and_walls_are_what_was_measured(first, tmp_path):
+def test_grid_and_walls_are_what_was_measured(first, fluid, tmp_path):
     """What a grid and a wall of the calibration are said to leave."""
     cells = ["2", "3", "4", "6", "8"]
-    scene = (
-        f"{QUIET} -vesicle_area {0.7 * np.pi} -vesicle_center 0,0 -time_end 0 -coupling_box_part false -scheme_auto 0.1"
-    )
+    scene = f"{QUIET} -vesicle_area {0.7 * np.pi} -vesicle_center 0,0 -time_end 0 {fluid} -scheme_auto 0.1"
     n = 10 * int(cells[first])
     text = run_plain(tmp_path / "a", f"{scene} -domain_box -5,5,-5,5 -domain_cells {n},{n}").stdout
-    within(float(re.search(r"leaves up to (\S+):", text)[1]), "cells_a_radius", cells[first:])
+    within(float(re.search(r"R0/h = .*leaves up to ([^\s:]+)", text)[1]), FLUIDS[fluid][0], cells[first:])
     gaps = ["0.4", "0.6", "0.8", "1.2", "1.6", "2.4"]
     low = unseen.Scene("box", 1, 0.7, 1, 0, 0.5, 8).ellipse()[:, 1].min() - 1.02 * float(gaps[first]) / 8
     text = run_plain(tmp_path / "b", f"{scene} -domain_box -5,5,{low},{low + 10} -domain_cells 80,80").stdout
     near, found = re.search(r"nearest wall: (\S+) cells, which leaves up to (\S+) of R0", text).groups()
-    within(float(found) / (float(near) / 8), "cells_to_wall", gaps[first:])
+    within(float(found) / (float(near) / 8), FLUIDS[fluid][1], gaps[first:])
+
+
+def test_walls_farther_than_measured(tmp_path):
+    """Without the box part what the grid leaves of a wall goes on as h^2 over the gap, from the last that was measured."""
+    scene = (
+        f"{QUIET} -vesicle_area {0.7 * np.pi} -vesicle_center 0,0 -time_end 0 -fluid_inertia unsteady -scheme_auto 0.1"
+    )
+    low = unseen.Scene("box", 1, 0.7, 1, 0, 0.5, 8).ellipse()[:, 1].min() - 0.8
+    text = run_plain(tmp_path, f"{scene} -domain_box -5,5,{low},{low + 10} -domain_cells 80,80").stdout
+    near, found = re.search(r"nearest wall: (\S+) cells, which leaves up to (\S+) of R0", text).groups()
+    last = measured("cells_to_wall_plain", "3.2")
+    assert float(found) == pytest.approx(last * 3.2**2 / 8 / float(near), rel=0.05)
 
 
 def test_last_steps_are_of_one_size(tmp_path):

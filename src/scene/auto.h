@@ -2,14 +2,18 @@
 #pragma once
 #include "scene/resolve.h"
 
-/* SceneGridError - what a grid of so many cells a R0 leaves, of markers or energy over R0, by the worst of the
-   calibration; many: with 45 markers a vesicle or more. PETSC_MAX_REAL on grids coarser than any that was measured.
-   SceneCellsFor - the fewest cells a R0 that leave no more, or the most that were measured. SceneWallError - what the
-   grid leaves of R0 when a membrane begins `gap` from a wall (all lengths in R0), beside that of a grid without walls
-   near it. Not collective. */
-PETSC_EXTERN PetscReal SceneGridError(PetscReal cells, PetscBool many);
-PETSC_EXTERN PetscReal SceneCellsFor(PetscReal error, PetscBool many);
-PETSC_EXTERN PetscReal SceneWallError(PetscReal gap, PetscReal h);
+/* What a grid leaves goes by the fluid: quasi-steady with the near field's box part, or without it, or with inertia. */
+typedef enum { AUTO_BOX_PART, AUTO_NO_BOX_PART, AUTO_INERTIA } AutoFluid;
+
+/* SceneAutoFluid - which it is when the largest vesicle has this radius. SceneGridError - what a grid of so many cells
+   a R0 leaves, of markers or energy over R0, by the worst of the calibration; many: with 45 markers a vesicle or more.
+   PETSC_MAX_REAL on grids coarser than any that was measured. SceneCellsFor - the fewest cells a R0 that leave no more,
+   or the most that were measured. SceneWallError - what the grid leaves of R0 when a membrane begins `gap` from a wall
+   (all lengths in R0), beside that of a grid without walls near it. Not collective. */
+PETSC_EXTERN AutoFluid SceneAutoFluid(Scene scene, PetscReal R0);
+PETSC_EXTERN PetscReal SceneGridError(AutoFluid fluid, PetscReal cells, PetscBool many);
+PETSC_EXTERN PetscReal SceneCellsFor(AutoFluid fluid, PetscReal error, PetscBool many);
+PETSC_EXTERN PetscReal SceneWallError(AutoFluid fluid, PetscReal gap, PetscReal h);
 
 /* SceneSquareCells - the fewest square cells that fill a box, no larger than h, with a common divisor of their numbers
    that Fourier transforms like; false where it takes more than SCENE_MOST_ACROSS in a direction. SceneWallCells - those
@@ -17,8 +21,8 @@ PETSC_EXTERN PetscReal SceneWallError(PetscReal gap, PetscReal h);
    finest that was measured. Not collective. */
 #define SCENE_MOST_ACROSS 4096
 PETSC_EXTERN PetscBool SceneSquareCells(const PetscReal box[4], PetscReal h, PetscInt cells[2]);
-PETSC_EXTERN PetscBool SceneWallCells(const PetscReal box[4], PetscReal h, PetscReal R0, PetscReal gap, PetscReal error,
-                                      PetscInt cells[2]);
+PETSC_EXTERN PetscBool SceneWallCells(AutoFluid fluid, const PetscReal box[4], PetscReal h, PetscReal R0, PetscReal gap,
+                                      PetscReal error, PetscInt cells[2]);
 
 /* SceneChooseBoundaries - where neither box nor boundaries are given, and walls are no part of the question: unbounded
    fluid, or with what needs a grid a period in x. SceneReportDomain - boundaries, box and cells, each with its reason.

@@ -134,7 +134,8 @@ static PetscReal LargestCell(Scene s, const Extent *e) {
   const PetscReal *box = s->domain.box.v, across = PetscMin(box[1] - box[0], box[3] - box[2]);
   const PetscReal finer = s->obstacles.shape == OBSTACLE_NONE ? 1 : BESIDE_OBSTACLES;
   if (FluidSpecIsFree(&s->fluid)) return PetscMax(e->small / WINDOW_CELLS, across / MOST_WINDOW);
-  return e->small / (finer * PetscMax(LEAST_CELLS, SceneCellsFor(s->scheme.wanted / 2, PETSC_TRUE)));
+  return e->small /
+         (finer * PetscMax(LEAST_CELLS, SceneCellsFor(SceneAutoFluid(s, e->large), s->scheme.wanted / 2, PETSC_TRUE)));
 }
 
 static PetscErrorCode ChooseCells(Draft s, const Extent *e) {
@@ -153,7 +154,7 @@ static PetscErrorCode ChooseCells(Draft s, const Extent *e) {
              " cells across; allowed: -domain_bc_x free -domain_bc_y free, a -domain_box, or a larger error",
              (double)s->scheme.wanted, PetscMax(cells[0], cells[1]));
   if (!free && e->gap > 0 && e->gap < PETSC_MAX_REAL)
-    (void)SceneWallCells(box, h, e->small, e->gap, s->scheme.wanted / 2, cells);
+    (void)SceneWallCells(SceneAutoFluid(s, e->large), box, h, e->small, e->gap, s->scheme.wanted / 2, cells);
   PetscCall(PetscSNPrintf(value, sizeof(value), "%" PetscInt_FMT ",%" PetscInt_FMT, cells[0], cells[1]));
   PetscCall(SceneChoose(s, "-domain_cells", value));
   PetscCall(SceneChooseBoxPart(s));

@@ -5,37 +5,56 @@
    few: with markers 1.5 h apart, whose number is what fails first (tests/test_auto.py compares with the table). */
 static const struct {
   PetscReal cells, error, few;
-} grids[] = {{8, 6.5e-5, 7.3e-4},
-             {6, 1.1e-4, 4.1e-3},
-             {4, 2.1e-4, 4.3e-2},
-             {3, 7.7e-4, PETSC_MAX_REAL},
-             {2, 2.2e-3, PETSC_MAX_REAL}};
+} grids[] = {{8, 2.5e-5, 8.1e-4},
+             {6, 4.1e-5, 4.0e-3},
+             {4, 4.4e-5, 4.3e-2},
+             {3, 1.1e-4, PETSC_MAX_REAL},
+             {2, 1.8e-4, PETSC_MAX_REAL}};
 #define GRIDS ((int)(sizeof(grids) / sizeof(grids[0])))
 
-/* Worst errors over the gap of a vesicle that begins so many cells from a wall. */
+/* In unsteady and convective flow, up to Reynolds numbers of 1. */
 static const struct {
   PetscReal cells, error;
-} walls[] = {{3.2, 2.3e-4}, {2.4, 1.1e-3}, {1.6, 5.8e-3}, {1.2, 0.027}, {0.8, 0.054}, {0.6, 0.14}, {0.4, 0.17}};
+} inertia[] = {{24, 2.9e-4}, {16, 7.7e-4}, {12, 1.5e-3}, {8, 3.3e-3}, {6, 5.5e-3}, {4, 0.013}, {3, 0.021}, {2, 0.031}};
+#define INERTIA ((int)(sizeof(inertia) / sizeof(inertia[0])))
+
+/* Worst errors over the gap of a vesicle that begins so many cells from a wall: where the box part takes the grid's
+   error beside walls off, and where not. There it goes on beyond the last row as h^2 over the gap. */
+static const struct {
+  PetscReal cells, error, plain;
+} walls[] = {{3.2, 1.5e-4, 0.0235}, {2.4, 3.4e-4, 0.041}, {1.6, 3.4e-4, 0.077}, {1.2, 1.4e-3, 0.102},
+             {0.8, 1.4e-3, 0.17},   {0.6, 1.4e-3, 0.23},  {0.4, 1.4e-3, 0.41}};
 #define WALLS ((int)(sizeof(walls) / sizeof(walls[0])))
 
 #define LEEWAY 0.01 /* of R0, by which markers fitted to a curve may miss it */
 
-PetscReal SceneGridError(PetscReal cells, PetscBool many) {
-  for (int k = 0; k < GRIDS; k++)
-    if (cells >= grids[k].cells * (1 - LEEWAY)) return many ? grids[k].error : grids[k].few;
-  return PETSC_MAX_REAL;
+AutoFluid SceneAutoFluid(Scene scene, PetscReal R0) {
+  if (SceneHasInertia(scene, R0)) return AUTO_INERTIA;
+  return SceneHasBoxPart(scene) ? AUTO_BOX_PART : AUTO_NO_BOX_PART;
 }
 
-PetscReal SceneCellsFor(PetscReal error, PetscBool many) {
+PetscReal SceneGridError(AutoFluid fluid, PetscReal cells, PetscBool many) {
+  PetscReal error = PETSC_MAX_REAL, own = 0;
   for (int k = GRIDS - 1; k >= 0; k--)
-    if ((many ? grids[k].error : grids[k].few) <= error) return grids[k].cells;
-  return grids[0].cells;
+    if (cells >= grids[k].cells * (1 - LEEWAY)) error = many ? grids[k].error : grids[k].few;
+  for (int k = INERTIA - 1; k >= 0 && fluid == AUTO_INERTIA; k--)
+    if (cells >= inertia[k].cells * (1 - LEEWAY)) own = inertia[k].error;
+  return PetscMax(error, own);
 }
 
-PetscReal SceneWallError(PetscReal gap, PetscReal h) {
-  if (gap > walls[0].cells * h * (1 + LEEWAY)) return 0;
+PetscReal SceneCellsFor(AutoFluid fluid, PetscReal error, PetscBool many) {
+  for (int k = GRIDS - 1; k >= 0; k--)
+    if (SceneGridError(fluid, grids[k].cells, many) <= error) return grids[k].cells;
+  for (int k = INERTIA - 1; k >= 0 && fluid == AUTO_INERTIA; k--)
+    if (SceneGridError(fluid, inertia[k].cells, many) <= error) return inertia[k].cells;
+  return fluid == AUTO_INERTIA ? inertia[0].cells : grids[0].cells;
+}
+
+PetscReal SceneWallError(AutoFluid fluid, PetscReal gap, PetscReal h) {
+  const PetscReal last = walls[0].cells * h;
+  if (gap > last * (1 + LEEWAY)) return fluid == AUTO_BOX_PART ? 0 : walls[0].plain * last * last / gap;
   for (int k = 0; k < WALLS; k++)
-    if (gap >= walls[k].cells * h * (1 - 1e-9)) return walls[k].error * gap;
+    if (gap >= walls[k].cells * h * (1 - 1e-9)) return (fluid == AUTO_BOX_PART ? walls[k].error : walls[k].plain) * gap;
   return PETSC_MAX_REAL;
 }
 
@@ -70,17 +89,20 @@ PetscBool SceneSquareCells(const PetscReal box[4], PetscReal h, PetscInt cells[2
   return PetscMax(cells[0], cells[1]) <= SCENE_MOST_ACROSS ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* What the wall errors were measured up to, in cells a R0. */
-#define FINEST 16
+/* Cells a R0 up to which one is taken for a wall: what has the box part was measured to 12, the rest of second order.
+ */
+static int Finest(AutoFluid fluid) {
+  return fluid == AUTO_BOX_PART ? 16 : 24;
+}
 
-PetscBool SceneWallCells(const PetscReal box[4], PetscReal h, PetscReal R0, PetscReal gap, PetscReal error,
-                         PetscInt cells[2]) {
+PetscBool SceneWallCells(AutoFluid fluid, const PetscReal box[4], PetscReal h, PetscReal R0, PetscReal gap,
+                         PetscReal error, PetscInt cells[2]) {
   PetscReal next = h;
   while (SceneSquareCells(box, next, cells)) {
     const PetscReal now = (box[1] - box[0]) / cells[0];
-    if (SceneWallError(gap / R0, now / R0) <= error) return PETSC_TRUE;
+    if (SceneWallError(fluid, gap / R0, now / R0) <= error) return PETSC_TRUE;
     next = 0.999 * now;
-    if (next < R0 / FINEST) break;
+    if (next < R0 / Finest(fluid)) break;
   }
   return PETSC_FALSE;
 }
@@ -106,9 +128,9 @@ static PetscReal WallGap(Scene scene) {
 }
 
 /* What walls leave that are so near that the grid is felt, and what it would take. */
-static PetscErrorCode ReportWall(Scene scene) {
+static PetscErrorCode ReportWall(Scene scene, AutoFluid fluid) {
   const PetscReal R0 = SceneSmallestRadius(scene), h = FluidSpecCellSize(&scene->fluid), gap = WallGap(scene);
-  const PetscReal error = gap < PETSC_MAX_REAL ? SceneWallError(gap / R0, h / R0) : 0;
+  const PetscReal error = gap < PETSC_MAX_REAL ? SceneWallError(fluid, gap / R0, h / R0) : 0;
   char what[128] = "enough";
   PetscInt cells[2];
   PetscFunctionBeginUser;
@@ -117,13 +139,13 @@ static PetscErrorCode ReportWall(Scene scene) {
     if (scene->vesicles.packing > 0 && scene->vesicles.packing_gap == 0)
       PetscCall(PetscSNPrintf(what, sizeof(what), "TOO NEAR for %g, give -vesicle_packing_gap",
                               (double)scene->scheme.wanted));
-    else if (SceneWallCells(scene->fluid.box, h, R0, gap, scene->scheme.wanted, cells))
+    else if (SceneWallCells(fluid, scene->fluid.box, h, R0, gap, scene->scheme.wanted, cells))
       PetscCall(PetscSNPrintf(what, sizeof(what),
                               "TOO NEAR for %g, take -domain_cells %" PetscInt_FMT ",%" PetscInt_FMT,
                               (double)scene->scheme.wanted, cells[0], cells[1]));
     else
       PetscCall(PetscSNPrintf(what, sizeof(what), "TOO NEAR for %g, and for any grid up to R0/h = %d",
-                              (double)scene->scheme.wanted, FINEST));
+                              (double)scene->scheme.wanted, Finest(fluid)));
   }
   PetscCall(PetvesSay(scene->comm, "  nearest wall: %.3g cells, which leaves ", (double)(gap / h)));
   if (error < PETSC_MAX_REAL)
@@ -134,26 +156,27 @@ static PetscErrorCode ReportWall(Scene scene) {
 }
 
 /* What a grid that is too coarse would take. */
-static PetscErrorCode SayFiner(Scene scene, PetscReal cells, PetscBool many) {
-  const PetscReal wanted = scene->scheme.wanted, enough = SceneCellsFor(wanted, many);
+static PetscErrorCode SayFiner(Scene scene, AutoFluid fluid, PetscReal cells, PetscBool many) {
+  const PetscReal wanted = scene->scheme.wanted, enough = SceneCellsFor(fluid, wanted, many);
   PetscInt finer[2];
   PetscFunctionBeginUser;
-  if (SceneGridError(enough, many) > wanted ||
+  if (SceneGridError(fluid, enough, many) > wanted ||
       !SceneSquareCells(scene->fluid.box, SceneSmallestRadius(scene) / enough, finer)) {
-    PetscCall(PetvesSay(scene->comm, ": no grid up to R0/h = %g reached %g\n", (double)grids[0].cells, (double)wanted));
+    PetscCall(PetvesSay(scene->comm, ": no grid up to R0/h = %g reached %g\n", (double)enough, (double)wanted));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(PetvesSay(
       scene->comm, ": TOO COARSE for %g, take R0/h = %g, -domain_cells %" PetscInt_FMT ",%" PetscInt_FMT "%s\n",
       (double)wanted, (double)enough, finer[0], finer[1],
-      !many && SceneGridError(cells, PETSC_TRUE) <= wanted ? ", or this grid and -vesicle_markers 45" : ""));
+      !many && SceneGridError(fluid, cells, PETSC_TRUE) <= wanted ? ", or this grid and -vesicle_markers 45" : ""));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode SceneReportGrid(Scene scene) {
   const PetscReal cells = SceneSmallestRadius(scene) / FluidSpecCellSize(&scene->fluid);
   const PetscBool many = FewestMarkers(&scene->shape) >= MARKERS ? PETSC_TRUE : PETSC_FALSE;
-  const PetscReal error = SceneGridError(cells, many);
+  const AutoFluid fluid = SceneAutoFluid(scene, scene->shape.longest / (2 * PETSC_PI));
+  const PetscReal error = SceneGridError(fluid, cells, many);
   PetscFunctionBeginUser;
   if (FluidSpecIsFree(&scene->fluid)) {
     PetscCall(PetvesSay(scene->comm, "  grid: none, unbounded fluid: enough\n"));
@@ -161,13 +184,14 @@ PetscErrorCode SceneReportGrid(Scene scene) {
   }
   PetscCall(PetvesSay(scene->comm, "  grid: R0/h = %.3g", (double)cells));
   if (error < PETSC_MAX_REAL)
-    PetscCall(PetvesSay(scene->comm, ", which leaves up to %.2g", (double)error));
+    PetscCall(PetvesSay(scene->comm, ", which leaves up to %.2g%s", (double)error,
+                        fluid == AUTO_INERTIA ? " with inertia" : ""));
   else
     PetscCall(PetvesSay(scene->comm, ", coarser than any that was measured"));
   if (error <= scene->scheme.wanted * (1 + 1e-9))
     PetscCall(PetvesSay(scene->comm, ": enough\n"));
   else
-    PetscCall(SayFiner(scene, cells, many));
-  PetscCall(ReportWall(scene));
+    PetscCall(SayFiner(scene, fluid, cells, many));
+  PetscCall(ReportWall(scene, fluid));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

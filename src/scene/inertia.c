@@ -13,9 +13,8 @@ static PetscReal LargestRadius(const Shape *shape) {
   return largest;
 }
 
-static PetscReal Reynolds(Scene scene) {
+static PetscReal Reynolds(Scene scene, PetscReal R0) {
   const Flow *flow = &scene->flow;
-  const PetscReal R0 = LargestRadius(&scene->shape);
   PetscReal speed = 0;
   if (R0 == 0) return 0;
   if (flow->type == FLOW_SHEAR || flow->type == FLOW_EXTENSION) speed = PetscAbsReal(flow->rate) * R0;
@@ -97,34 +96,34 @@ static PetscErrorCode CheckPacking(Scene scene, PetscBool seamless, int dir) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* At rest, or steady in the end: scenes of the paper, whose model does them no harm (a vesicle off the middle of a
+   shear flow gets the warning). */
+static PetscBool IsPaper(Scene scene) {
+  const PetscInt type = scene->flow.type;
+  return type == FLOW_QUIESCENT || type == FLOW_SHEAR || type == FLOW_CUSTOM ? PETSC_TRUE : PETSC_FALSE;
+}
+
+PetscBool SceneHasInertia(Scene scene, PetscReal R0) {
+  if (scene->fluid.inertia != INERTIA_AUTO) return scene->fluid.inertia != INERTIA_NONE ? PETSC_TRUE : PETSC_FALSE;
+  if (FluidSpecIsFree(&scene->fluid) || SceneHasContrast(scene) || scene->obstacles.shape != OBSTACLE_NONE)
+    return PETSC_FALSE;
+  if (SceneIsProjection(scene) || R0 == 0 || IsPaper(scene)) return PETSC_TRUE;
+  return Reynolds(scene, R0) >= SMALL_REYNOLDS ? PETSC_TRUE : PETSC_FALSE;
+}
+
 PetscErrorCode SceneChooseInertia(Draft scene) {
-  const PetscReal carried = CarriedReynolds(scene);
-  const PetscBool baseline = SceneIsProjection(scene);
+  const PetscReal carried = CarriedReynolds(scene), R0 = LargestRadius(&scene->shape);
+  const PetscBool baseline = SceneIsProjection(scene), inertia = SceneHasInertia(scene, R0);
   PetscBool seamless;
   int dir;
   PetscFunctionBeginUser;
   PetscCall(CheckStiffness(scene));
   seamless = Seamless(scene, &dir);
   PetscCall(CheckPacking(scene, seamless, dir));
-  scene->reynolds = Reynolds(scene);
+  scene->reynolds = Reynolds(scene, R0);
   if (scene->fluid.inertia == INERTIA_AUTO) {
-    /* at rest, or steady in the end: scenes of the paper, whose model does them no harm (a vesicle off the middle of
-       a shear flow gets the warning) */
-    const PetscBool paper = scene->flow.type == FLOW_QUIESCENT || scene->flow.type == FLOW_SHEAR ||
-                                    scene->flow.type == FLOW_CUSTOM
-                                ? PETSC_TRUE
-                                : PETSC_FALSE;
-    const PetscBool none = FluidSpecIsFree(&scene->fluid) || SceneHasContrast(scene) ||
-                                   scene->obstacles.outline.vesicles > 0
-                               ? PETSC_TRUE
-                               : PETSC_FALSE;
-    scene->fluid.inertia = none ? INERTIA_NONE : INERTIA_UNSTEADY;
-    if (!baseline && scene->shape.vesicles && !paper && !none) {
-      if (scene->reynolds < SMALL_REYNOLDS)
-        scene->fluid.inertia = INERTIA_NONE;
-      else if (scene->scheme.order > 1 && seamless)
-        scene->fluid.inertia = INERTIA_CONVECTIVE;
-    }
+    const PetscBool carries = !baseline && R0 > 0 && !IsPaper(scene) && scene->scheme.order > 1 && seamless;
+    scene->fluid.inertia = !inertia ? INERTIA_NONE : carries ? INERTIA_CONVECTIVE : INERTIA_UNSTEADY;
   }
   PetscCheck(scene->fluid.inertia != INERTIA_CONVECTIVE || seamless, scene->comm, PETSC_ERR_USER_INPUT,
              "-fluid_inertia convective: the background flow is not periodic in %c, so it cannot carry the disturbance "

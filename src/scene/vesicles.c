@@ -173,6 +173,11 @@ PetscErrorCode SceneMakeKinds(Draft scene, Kinds *kinds) {
   PetscCall(SceneCountPacked(scene));
   PetscCall(SceneMixKinds(scene));
   PetscCall(KindsCreate(scene, kinds));
+  for (PetscInt k = 0; k < kinds->kinds; k++) {
+    scene->membrane.bending = PetscMax(scene->membrane.bending, kinds->kind[k].bending);
+    scene->shape.longest = PetscMax(scene->shape.longest, kinds->kind[k].length);
+  }
+  PetscCall(SceneChooseFlow(scene));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -183,11 +188,6 @@ PetscErrorCode SceneMakeShape(Draft scene) {
   PetscFunctionBeginUser;
   PetscCall(SceneMakeKinds(scene, &kinds));
   shape->vesicles = kinds.vesicles;
-  for (PetscInt k = 0; k < kinds.kinds; k++) {
-    scene->membrane.bending = PetscMax(scene->membrane.bending, kinds.kind[k].bending);
-    shape->longest = PetscMax(shape->longest, kinds.kind[k].length);
-  }
-  PetscCall(SceneChooseFlow(scene));
   PetscCall(PetscMalloc1(kinds.vesicles, &pose));
   PetscCall(PetscMalloc1(kinds.vesicles, &scene->membrane.each));
   PetscCall(ScenePlace(scene, &kinds, pose));

@@ -149,11 +149,38 @@ WALL_SCENES = {
 }
 STEPS = words("-time_step 0.05 -coupled_ksp_rtol 1e-7")
 """The same on every grid, so that grids are all that differs."""
+SLOW = 10
+"""Viscosity of the slow unsteady scenes, which have a Reynolds number of 1/SLOW."""
+PLAIN = {
+    "no box part": "-coupling_box_part false",
+    "unsteady Re=1": "-fluid_inertia unsteady",
+    f"unsteady Re={1 / SLOW:g}": f"-fluid_inertia unsteady -fluid_viscosity {SLOW} -vesicle_bending {{bending}}",
+}
+INERTIA_SCENES = {
+    "box, V=0.5 chi=10": unseen.Scene("box", 1, 0.5, 10, 20, 0.5, 1, 1),
+    "channel, 2 of V=0.7 chi=10 gap=0.3": unseen.Scene("channel", 2, 0.7, 10, 20, 0.3, 1, 1),
+    "pipe, 2 of V=0.6 chi=20 gap=0.2": unseen.Scene("pipe", 2, 0.6, 20, 30, 0.2, 1, 1),
+}
+INERTIA_GRIDS, FINE_INERTIA_GRID = (2, 3, 4, 6, 8, 12, 16, 24), 48
+CONVECTIVE_GRIDS, FINE_CONVECTIVE_GRID = (2, 3, 4, 6, 8, 12), 24
+CONVECTIVE = words("-fluid_inertia convective -time_step 0.0083")
+"""In the channel alone; its step is one that the finest grid bears."""
 
 
-def _on_grid(results: Results, scene: unseen.Scene, label: str, cells: int, markers: str) -> dict:
-    options = scene.options() | replace(scene, cells=cells).grid() | STEPS | words(markers)
+def _on_grid(
+    results: Results, scene: unseen.Scene, label: str, cells: int, markers: str, more: dict[str, str] | None = None
+) -> dict:
+    options = scene.options() | replace(scene, cells=cells).grid() | STEPS | words(markers) | (more or {})
     return results.get(Case(f"grid_{label}_{cells}_{markers.split()[-1]}", options, unseen.measure))
+
+
+def _plain(scenes: dict[str, unseen.Scene], kinds: dict[str, str]) -> list[tuple[str, unseen.Scene, dict[str, str]]]:
+    """Return name, scene and options where the grid's error beside walls is not taken off; inertia without contrast."""
+    return [
+        (f"{label} {kind}", scene, words(text.format(bending=SLOW / scene.chi)))
+        for (kind, text), (label, scene) in product(kinds.items(), scenes.items())
+        if scene.ratio == 1 or "inertia" not in text
+    ]
 
 
 def _row(table: str, scene: str, value: float, error: float, found: dict) -> dict[str, object]:
@@ -182,17 +209,41 @@ def _grids(results: Results) -> list[dict[str, object]]:
     return rows
 
 
-def _walls(results: Results) -> list[dict[str, object]]:
-    """Errors over the gap in which a vesicle begins beside a wall, by the gap's cells."""
+def _dense(cells: int) -> str:
+    """Return the option of markers 1.5 h apart, 65 at least: fluid with inertia passes between sparse ones."""
+    return f"-vesicle_allow_close_markers true -vesicle_markers {max(65, int(2 * np.pi * cells / 1.5) | 1)}"
+
+
+def _with_inertia(results: Results) -> list[dict[str, object]]:
+    """Errors of cells a R0 in unsteady and convective flow, where they are of second order."""
+    table = "cells_with_inertia"
+    channel = next(label for label in INERTIA_SCENES if label.startswith("channel"))
+    unsteady = {kind: text for kind, text in PLAIN.items() if "inertia" in text}
+    runs = [(*run, INERTIA_GRIDS, FINE_INERTIA_GRID) for run in _plain(INERTIA_SCENES, unsteady)]
+    runs.append((f"{channel} convective", INERTIA_SCENES[channel], CONVECTIVE, CONVECTIVE_GRIDS, FINE_CONVECTIVE_GRID))
     rows = []
-    for (label, scene), gap in product(WALL_SCENES.items(), WALL_GAPS):
+    for label, scene, more, grids, finest in runs:
+        fine = _on_grid(results, scene, label, finest, _dense(finest), more)
+        for cells in grids:
+            found = _on_grid(results, scene, label, cells, _dense(cells), more)
+            rows.append(_row(table, label, cells, unseen.error(found, fine), found))
+    return rows
+
+
+def _walls(results: Results) -> list[dict[str, object]]:
+    """Errors over the gap in which a vesicle begins beside a wall, by the gap's cells: with the box part, and without."""
+    plain = _plain(WALL_SCENES, PLAIN)
+    runs = [("cells_to_wall", label, scene, {}) for label, scene in WALL_SCENES.items()]
+    rows = []
+    for (table, label, scene, more), gap in product(runs + [("cells_to_wall_plain", *run) for run in plain], WALL_GAPS):
         near, name = replace(scene, gap=gap), f"{label}_{gap:g}"
-        fine = _on_grid(results, near, name, FINE_WALL_GRID, "-vesicle_markers 91")
+        fine = _on_grid(results, near, name, FINE_WALL_GRID, "-vesicle_markers 91", more)
         for cells in WALL_GRIDS:
             if WALL_CELLS[0] <= gap * cells <= WALL_CELLS[1]:
-                found = _on_grid(results, near, name, cells, "-vesicle_markers 91 -vesicle_allow_close_markers true")
+                markers = "-vesicle_markers 91 -vesicle_allow_close_markers true"
+                found = _on_grid(results, near, name, cells, markers, more)
                 error = unseen.error(found, fine) / gap
-                rows.append(_row("cells_to_wall", f"{label} gap={gap:g}", gap * cells, error, found))
+                rows.append(_row(table, f"{label} gap={gap:g}", gap * cells, error, found))
     return rows
 
 
@@ -278,6 +329,6 @@ def write(folder: str | Path, quick: bool = False) -> list[Path]:
     folder = Path(folder)
     results = Results(folder / "calibration.json")
     rows = _times(results) + _compressed(results) + _rest(results)
-    rows += _grids(results) + _walls(results) + _boxes(results)
+    rows += _grids(results) + _with_inertia(results) + _walls(results) + _boxes(results)
     shown = [[f"{x:.3e}" if isinstance(x, float) else x for x in row.values()] for row in rows]
     return [write_csv(folder / "calibration.csv", list(rows[0]), shown)]
