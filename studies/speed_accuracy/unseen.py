@@ -18,8 +18,10 @@ from studies.common.engine import Case, Results, Series
 from studies.common.scenes import words
 
 SEED = 22
-WANTED = {0.01: 24, 0.001: 12}
+WANTED = {0.01: 36, 0.001: 12}
 """Relative errors asked for, and how many of the scenes."""
+QUASI_STEADY = 24
+"""The scenes after so many have inertia, unsteady and convective in turn, and the program's grid."""
 BOXES = {
     "free": (8, 8, "-domain_bc_x free -domain_bc_y free"),
     "channel": (10, 5, "-domain_bc_x periodic"),
@@ -35,6 +37,8 @@ FINE = words(
     "-coupled_ksp_rtol 1e-8"
 )
 """Of the runs that stand for the truth."""
+FINE_INERTIA_CELLS, FINE_INERTIA_TOLERANCE = 24, "1e-4"
+"""The same with inertia: cells a R0, markers 1.5 h apart."""
 
 
 @lru_cache(maxsize=100)
@@ -62,6 +66,7 @@ class Scene:
     gap: float  # between the two vesicles, or below the one (R0)
     cells: int  # a R0; 0: the program's choice
     ratio: float = 1  # viscosity inside over outside
+    inertia: str = "none"
 
     def ellipse(self) -> np.ndarray:
         """Return points of the ellipse about the origin, turned."""
@@ -95,7 +100,7 @@ class Scene:
         if self.place == "press":  # together
             flow = "-flow_type extension -flow_rate -1"
         text = f"-domain_box {-length / 2},{length / 2},{-height / 2},{height / 2} {walls} {flow} "
-        text += f"-fluid_inertia none -vesicle_area {np.pi * self.reduced_area!r} -vesicle_reduced_area {self.reduced_area} "
+        text += f"-fluid_inertia {self.inertia} -vesicle_area {np.pi * self.reduced_area!r} -vesicle_reduced_area {self.reduced_area} "
         text += f"-vesicle_angle {self.angle} -vesicle_bending {1 / self.chi!r} -vesicle_count {self.count} "
         text += f"-vesicle_viscosity_ratio {self.ratio:g} "
         text += f"-vesicle_center {','.join(f'{x:.6f}' for x in self.centers())} -time_end {3 if self.place == 'press' else 6} "
@@ -115,9 +120,10 @@ class Scene:
 def drawn(number: int) -> Scene:
     """Return the scene of a number: place and count in turn, the rest at random; two grids of four are the program's."""
     random = np.random.default_rng([SEED, number])
-    place = list(BOXES)[number % 5]
+    inertia = number >= QUASI_STEADY
+    place = list(BOXES)[1 + number // 2 % 4 if inertia else number % 5]
     gap = 10 ** random.uniform(-1, 0)
-    return Scene(
+    scene = Scene(
         place=place,
         count={"press": 2, "box": 1}.get(place, 1 + number // 5 % 2),
         reduced_area=round(random.uniform(0.5, 0.95), 2),
@@ -127,6 +133,9 @@ def drawn(number: int) -> Scene:
         cells=number % 4 // 2 * int(random.integers(3, 6)),
         ratio=float(f"{10 ** random.uniform(-0.7, 0.7):.2g}") if random.random() < 0.5 else 1.0,
     )
+    if not inertia:
+        return scene
+    return replace(scene, cells=0, ratio=1.0, inertia="convective" if number % 2 else "unsteady")
 
 
 def measure(series: Series, folder: Path) -> dict[str, object]:
@@ -147,6 +156,11 @@ def fine(number: int) -> Case:
     It has half the cells' size or R0/8, and 2.4 cells to a wall that is near.
     """
     scene = drawn(number)
+    if number >= QUASI_STEADY:
+        options = scene.options() | replace(scene, cells=FINE_INERTIA_CELLS).grid() | FINE
+        options |= {"-time_adapt_tol": FINE_INERTIA_TOLERANCE}
+        options["-vesicle_markers"] = f"{int(2 * np.pi * FINE_INERTIA_CELLS / 1.5) | 1}"
+        return Case(f"fine_{number}", options, measure)
     finer = max(8, 2 * scene.cells, int(np.ceil(2.4 / scene.gap)) if scene.near_wall() else 0)
     markers = 2 * int(45 * max(1, 0.6 / scene.reduced_area) * (1.3 if scene.chi > 50 or scene.gap < 0.3 else 1)) + 1
     options = scene.options() | replace(scene, cells=finer).grid() | words(f"-vesicle_markers {markers}")
