@@ -224,3 +224,14 @@ def test_cfl_number_that_grows_stops_the_run(tmp_path):
     run = run_petves(tmp_path, options + "-fluid_inertia convective -time_step 0.1 -time_end 1", good=False)
     assert run.status == 2 and "-time_cfl_limit" in run.errors[0] and "at most" in run.errors[0]
     assert (run.folder / "checkpoint.h5").exists()
+
+
+@pytest.mark.parametrize("inertia", ("none", "unsteady"))
+def test_sparse_markers_with_inertia(inertia, tmp_path):
+    """With inertia the fluid passes between markers more than 2 cells apart: a warning names a number that is enough."""
+    scene = f"-domain_box -2,2,-2,2 -domain_cells 192,192 -time_end 0 -fluid_inertia {inertia} -vesicle_markers"
+    first = run_petves(tmp_path / "a", f"{scene} 45 {CORRECTED}")
+    found = re.search(r"warning: 45 markers of vesicle 0 .*take -vesicle_markers (\d+)", first.stdout)
+    assert (found is not None) == (inertia == "unsteady")
+    if found:
+        assert "passes between" not in run_petves(tmp_path / "b", f"{scene} {found[1]} {CORRECTED}").stdout

@@ -144,15 +144,16 @@ static PetscErrorCode ChooseCells(Draft s, const Extent *e) {
   PetscInt cells[2] = {0, 0};
   char value[64];
   PetscFunctionBeginUser;
+  const PetscReal across = PetscCeilReal(PetscMax(box[1] - box[0], box[3] - box[2]) / h * (1 - 1e-9));
+  PetscCheck(!by_images || across <= MOST_BOX, s->comm, PETSC_ERR_USER_INPUT,
+             "-scheme_auto %g: a box so large that its images leave half of it takes %g cells across; allowed: "
+             "-domain_bc_x free -domain_bc_y free, a -domain_box, or a larger error",
+             (double)s->scheme.wanted, (double)across);
   PetscCheck(SceneSquareCells(box, h, cells), s->comm, PETSC_ERR_USER_INPUT,
              "-scheme_auto %g: no square cells of %.3g, for the smallest vesicle, fill -domain_box %g,%g,%g,%g with up "
              "to %d in a direction; allowed: -domain_cells, or a box whose sides are in a simple ratio",
              (double)s->scheme.wanted, (double)h, (double)box[0], (double)box[1], (double)box[2], (double)box[3],
              SCENE_MOST_ACROSS);
-  PetscCheck(!by_images || PetscMax(cells[0], cells[1]) <= MOST_BOX, s->comm, PETSC_ERR_USER_INPUT,
-             "-scheme_auto %g: a box so large that its images leave half of it takes %" PetscInt_FMT
-             " cells across; allowed: -domain_bc_x free -domain_bc_y free, a -domain_box, or a larger error",
-             (double)s->scheme.wanted, PetscMax(cells[0], cells[1]));
   if (!free && e->gap > 0 && e->gap < PETSC_MAX_REAL)
     (void)SceneWallCells(SceneAutoFluid(s, e->large), box, h, e->small, e->gap, s->scheme.wanted / 2, cells);
   PetscCall(PetscSNPrintf(value, sizeof(value), "%" PetscInt_FMT ",%" PetscInt_FMT, cells[0], cells[1]));

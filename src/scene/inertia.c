@@ -111,6 +111,39 @@ PetscBool SceneHasInertia(Scene scene, PetscReal R0) {
   return Reynolds(scene, R0) >= SMALL_REYNOLDS ? PETSC_TRUE : PETSC_FALSE;
 }
 
+#define SPARSE                                                                                                         \
+  2.2 /* cells between markers, from which on fluid with inertia passes between them; the default has 2                \
+       */
+
+/* The vesicle whose markers are the farthest apart, and how far (cells). */
+static PetscReal FarthestApart(Scene scene, PetscInt *vesicle) {
+  const Shape *shape = &scene->shape;
+  PetscReal most = 0;
+  for (PetscInt v = 0; v < shape->vesicles; v++) {
+    const PetscReal length = 2 * PETSC_PI * ShapeRadius(shape, v);
+    const PetscReal apart = length / (PetscReal)(shape->start[v + 1] - shape->start[v]);
+    if (apart <= most) continue;
+    most = apart;
+    *vesicle = v;
+  }
+  return most / FluidSpecCellSize(&scene->fluid);
+}
+
+static PetscErrorCode WarnOfSparse(Draft scene) {
+  PetscInt v = 0;
+  const PetscReal apart = FarthestApart(scene, &v);
+  PetscFunctionBeginUser;
+  if (scene->fluid.inertia == INERTIA_NONE || SceneIsProjection(scene) || apart <= SPARSE || *scene->warning)
+    PetscFunctionReturn(PETSC_SUCCESS);
+  const PetscInt now = scene->shape.start[v + 1] - scene->shape.start[v];
+  PetscCall(PetscSNPrintf(scene->warning, sizeof(scene->warning),
+                          "%" PetscInt_FMT " markers of vesicle %" PetscInt_FMT
+                          " are %.2g cells apart: with inertia the fluid passes between markers more than 2 cells "
+                          "apart, and small steps do not converge; take -vesicle_markers %" PetscInt_FMT,
+                          now, v, (double)apart, (PetscInt)PetscCeilReal(now * apart / 2) | 1));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode SceneChooseInertia(Draft scene) {
   const PetscReal carried = CarriedReynolds(scene), R0 = LargestRadius(&scene->shape);
   const PetscBool baseline = SceneIsProjection(scene), inertia = SceneHasInertia(scene, R0);
@@ -136,5 +169,6 @@ PetscErrorCode SceneChooseInertia(Draft scene) {
                             "convection the flow is not Galilean invariant, the vesicle drags the fluid that it "
                             "displaces behind it and may drift the wrong way; use convective%s",
                             (double)scene->reynolds, baseline ? " with -scheme_type coupled" : ""));
+  PetscCall(WarnOfSparse(scene));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
