@@ -29,7 +29,9 @@ class Library:
         self.SimulationAdvance = watched(lib.SimulationAdvance)
 
     def __getattr__(self, name):
-        return getattr(self.lib, name)
+        function = getattr(self.lib, name)
+        setattr(self, name, function)  # found by itself from now on, as in the library
+        return function
 
 
 def look(sim):
