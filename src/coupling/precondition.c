@@ -248,11 +248,11 @@ PetscErrorCode PreconditionerApply(Preconditioner p, Vec r, Vec z) {
   PetscCall(VecGetArray(z, &V));
   sigma = V + UnknownsTension(u);
   d = V + UnknownsWalls(u);
+  UnknownsScale(u, PETSC_TRUE, V);
   PetscCall(UnknownsGatherWalls(u, d, p->d));
   PetscCall(WallsInvert(u->walls, WALLS_SWEEPS, p->d));
   PetscCall(PetscArraycpy(d, p->d + u->first_wall, u->wall));
   if (CouplingHasBodies(u->coupling)) {
-    UnknownsScale(u, PETSC_TRUE, V);
     PetscCall(WallsMarkerVelocity(u->walls, CouplingGridPart(u->coupling, u->coupling->fluid->alpha),
                                   V)); /* block triangular: the walls' flow moves the markers */
     if (p->solid) PetscCall(ObstacleBlockBegin(p->solid, V + u->velocity, V));

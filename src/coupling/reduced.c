@@ -100,10 +100,9 @@ static PetscErrorCode Conditions(Reduced s, const PetscScalar x[], Vec known, Ve
   const PetscInt wall = UnknownsWalls(u);
   PetscFunctionBeginUser;
   if (CouplingHasBodies(u->coupling)) PetscCall(BodyConditions(s, x, known, g, y));
-  UnknownsScale(u, PETSC_FALSE, y);
-  if (!u->walls->n) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(WallsSlip(u->walls, StokesPotential(s->stokes), s->slip));
+  if (u->walls->n) PetscCall(WallsSlip(u->walls, StokesPotential(s->stokes), s->slip));
   for (PetscInt k = 0; k < u->wall; k++) y[wall + k] = s->slip[u->first_wall + k] + x[wall + k];
+  UnknownsScale(u, PETSC_FALSE, y);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -103,6 +103,15 @@ PetscReal UnknownsTensionScale(Unknowns u, PetscInt v) {
   return PetscSqr(h) / u->coupling->membrane->ds[v] * (1 + h * f->alpha);
 }
 
+/* h/R0, R0 of the smallest vesicle: a force on the row of faces at a wall, where the fluid sticks, gives it a velocity of
+   the order h^2/nu, the same force on a membrane h R0/nu. */
+static PetscReal WallsScale(Unknowns u) {
+  const Membrane m = u->coupling->membrane;
+  PetscReal least = PETSC_MAX_REAL;
+  for (PetscInt v = 0; v < m->layout->bodies; v++) least = PetscMin(least, m->L0[v]);
+  return least < PETSC_MAX_REAL ? PetscMin(1, u->coupling->fluid->grid->h * 2 * PETSC_PI / least) : 1;
+}
+
 void UnknownsScale(Unknowns u, PetscBool inverse, PetscScalar y[]) {
   const Membrane m = u->coupling->membrane;
   const Layout l = m->layout;
@@ -118,4 +127,6 @@ void UnknownsScale(Unknowns u, PetscBool inverse, PetscScalar y[]) {
   }
   const Obstacles o = u->coupling->bodies->obstacles;
   if (o) ObstaclesScale(o, 1 + f->grid->h * f->alpha, inverse, y + u->velocity);
+  const PetscReal wall = WallsScale(u);
+  for (PetscInt k = UnknownsWalls(u); k < UnknownsWalls(u) + u->wall; k++) y[k] = inverse ? y[k] / wall : y[k] * wall;
 }

@@ -33,7 +33,7 @@ PETSC_EXTERN PetscErrorCode UnknownsGatherWalls(Unknowns unknowns, const PetscSc
    membrane is a surface divergence (1/time): (1 + h alpha) h^2/ds for Dm V/h^2 = g, 1 + h alpha weighing short steps,
    where the momentum's right-hand side u alpha would hide it; for V = E u - Theta F that over h^2, an edge's
    difference, times the root of the force it means, bending over viscous (an energy norm); for obstacles (1 + h
-   alpha)/ds. Wall rows have factor 1. Not collective. */
+   alpha)/ds; for wall forces h/R0, 1 at most, R0 of the smallest vesicle. Not collective. */
 PETSC_EXTERN void UnknownsScale(Unknowns unknowns, PetscBool inverse, PetscScalar y[]);
 
 /* UnknownsTension - where the tensions start in a rank's part; UnknownsWalls - the wall forces. Not collective. */
