@@ -103,8 +103,8 @@ PetscReal UnknownsTensionScale(Unknowns u, PetscInt v) {
   return PetscSqr(h) / u->coupling->membrane->ds[v] * (1 + h * f->alpha);
 }
 
-/* h/R0, R0 of the smallest vesicle: a force on the row of faces at a wall, where the fluid sticks, gives it a velocity of
-   the order h^2/nu, the same force on a membrane h R0/nu. */
+/* h/R0, R0 of the smallest vesicle: a force on the row of faces at a wall, where the fluid sticks, gives it a velocity
+   of the order h^2/nu, the same force on a membrane h R0/nu. */
 static PetscReal WallsScale(Unknowns u) {
   const Membrane m = u->coupling->membrane;
   PetscReal least = PETSC_MAX_REAL;
