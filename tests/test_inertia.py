@@ -231,7 +231,7 @@ def test_sparse_markers_with_inertia(inertia, tmp_path):
     """With inertia the fluid passes between markers more than 2 cells apart: a warning names a number that is enough."""
     scene = f"-domain_box -2,2,-2,2 -domain_cells 192,192 -time_end 0 -fluid_inertia {inertia} -vesicle_markers"
     first = run_petves(tmp_path / "a", f"{scene} 45 {CORRECTED}")
-    found = re.search(r"warning: 45 markers of vesicle 0 .*take -vesicle_markers (\d+)", first.stdout)
+    found = re.search(r"warning: 45 markers of vesicle 1 .*take -vesicle_markers (\d+)", first.stdout)
     assert (found is not None) == (inertia == "unsteady")
     if found:
         assert "passes between" not in run_petves(tmp_path / "b", f"{scene} {found[1]} {CORRECTED}").stdout

@@ -80,7 +80,7 @@ static void SelfPart(NearField f, PetscInt v, PetscInt k, const PetscReal T[2], 
 
 /* Some pairs of a row: marker i with markers j .. j + n - 1; from the column's side where its vesicle is the first. All
    arrays have room for whole vectors. */
-#define CHUNK IMAGE_ROW
+#define CHUNK 96
 typedef struct {
   const NearBlock *block;
   PetscInt i, j, n;

@@ -71,8 +71,7 @@ PETSC_EXTERN PetscReal NearImageGap(Grid grid, int direction, int side, const Ne
    that no stencils are summed: far[direction][side], or NULL; returns whether by all. NearImageAddFar - the same as
    NearImageAdd for such a marker i and the n markers from j on, d = (x, y)[n] (and C with room for whole vectors), by
    the walls that are far and among `walls`: C[4][n] of i's response to them, or, with back, of theirs to it, d turned.
-   n at most IMAGE_ROW. Not collective. */
-#define IMAGE_ROW 96
+   Not collective. */
 PETSC_EXTERN PetscBool NearImageIsFar(NearImage image, const PetscReal X[2], const NearBounds *box,
                                       PetscBool far[2][2]);
 PETSC_EXTERN void NearImageAddFar(NearImage image, const PetscBool walls[2][2], const PetscBool far[2][2], PetscInt i,

@@ -140,7 +140,7 @@ static PetscErrorCode WarnOfSparse(Draft scene) {
                           "%" PetscInt_FMT " markers of vesicle %" PetscInt_FMT
                           " are %.2g cells apart: with inertia the fluid passes between markers more than 2 cells "
                           "apart, and small steps do not converge; take -vesicle_markers %" PetscInt_FMT,
-                          now, v, (double)apart, (PetscInt)PetscCeilReal(now * apart / 2) | 1));
+                          now, v + 1, (double)apart, (PetscInt)PetscCeilReal(now * apart / 2) | 1));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
