@@ -215,7 +215,7 @@ PetscErrorCode NearImageCreate(Markers markers, PetscReal nu, const ImageTable *
   if (!markers->grid->wall[0] && !markers->grid->wall[1]) PetscFunctionReturn(PETSC_SUCCESS);
   for (int direction = 0; direction < 2; direction++)
     for (int side = 0; side < 2 && markers->grid->wall[direction]; side++)
-      PetscCall(PetscMalloc2(M, &m->end[direction][side], M + LANES, &m->y[direction][side]));
+      PetscCall(PetscCalloc2(M, &m->end[direction][side], M + LANES, &m->y[direction][side]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -28,7 +28,7 @@ struct _p_NearImage {
   const ImageTable *table;      /* borrowed */
   const PaddedStencil *stencil; /* [2M] unfolded, borrowed */
   ImageEnd *end[2][2];          /* [M] by direction of the normal and side; NULL without a wall */
-  PetscReal *y[2][2];           /* [M] cells from the wall, with room for whole vectors */
+  PetscReal *y[2][2];           /* [M] cells from the wall, in whole vectors (LANES), of which the rest is zero */
 };
 
 /* NearImageCreate - for markers on a grid with any walls, in a fluid of viscosity nu; table: the half-space lattice's,
