@@ -6,6 +6,7 @@ import shutil
 import xml.etree.ElementTree as ET
 from pathlib import Path
 
+import h5py
 import pytest
 from conftest import PAPER, PETVES, PROGRAMS, SANITIZE, mpirun, run_petves
 
@@ -26,6 +27,7 @@ SHORT = {
     "restart": (f"{COUPLED} -restart {{checkpoint}}", 0),
     "limit": (f"{COUPLED} -time_end 1 -limit_length_error 1e-14 -restart {{checkpoint}}", 2),
     "another_scene": (f"{COUPLED} -fluid_viscosity 2 -restart {{checkpoint}}", 1),
+    "images": (f"{TWO_STEPS} -domain_cells 32,32", 0),  # 17 cells between a marker and another's image
 }
 LONG = SHORT | {
     "twelve": (f"{TWO_STEPS} -domain_cells 32,32 {TWELVE}", 0),
@@ -39,6 +41,8 @@ LONG = SHORT | {
     "split": (f"{SHEAR} -scheme_type split", 0),
     "hypre": (f"{SHEAR} -scheme_type split -helmholtz_type hypre -poisson_type hypre", 0),
     "direct": (f"{TWO_STEPS} -scheme_type direct", 0),
+    "contrast": (f"{TWO_STEPS} -domain_cells 32,32 -vesicle_viscosity_ratio 5", 0),
+    "contrast_channel": (f"{TWO_STEPS} -domain_cells 32,32 -domain_bc_x periodic -vesicle_viscosity_ratio 5", 0),
     "auto": (f"{SHEAR} -scheme_auto 0.01", 0),
     "no_vesicle": ("-domain_cells 16,16 -vesicle_shape none -flow_type shear -flow_form total -time_end 0.03", 0),
 }
@@ -93,6 +97,29 @@ def test_memory_of_scenes(ranks, checkpoint, tmp_path):
     ended = [line[:1] for line in done.stdout.splitlines() if line[:2] in ("0 ", "1 ", "2 ")]
     assert ended == [str(status) for _, status in scenes.values()], done.stdout + done.stderr
     assert done.returncode == 0, done.stderr
+
+
+@pytest.mark.parametrize("contrast", ["1", "5"])
+@pytest.mark.parametrize(
+    "box", ["", "-domain_bc_x periodic", PERIODIC, FREE], ids=["walls", "channel", "periodic", "free"]
+)
+def test_bits_do_not_depend_on_what_memory_held(box, contrast, tmp_path):
+    """The C library fills what malloc gives with a byte: numbers of 0, of 32.5, and not a number. 47 markers leave
+    a lane of the last vector without one."""
+    options = f"{TWO_STEPS} {box} -vesicle_viscosity_ratio {contrast} -domain_cells 32,32 -vesicle_markers 47"
+    every = {"GLIBC_TUNABLES": "glibc.malloc.tcache_count=0"}  # small pieces too
+    final = []
+    for byte in (255, 255 - 0x40, 255 - 0xFF):
+        folder = tmp_path / str(byte)
+        assert (
+            mpirun(
+                [PETVES, *options.split(), "-output_dir", str(folder)], 1, MALLOC_PERTURB_=str(byte), **every
+            ).returncode
+            == 0
+        )
+        with h5py.File(folder / "checkpoint.h5") as file:
+            final.append(file["vesicle/markers"][()].tobytes())
+    assert len(set(final)) == 1
 
 
 def test_memory_of_the_program(checkpoint, tmp_path):
