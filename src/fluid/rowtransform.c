@@ -91,6 +91,7 @@ static void SineForward(RowTransform t, const PetscScalar x[]) {
     for (PetscInt j = 1; j < N / 2; j++) rest[j - 1] -= rest[N - j - 1]; /* o_j */
   }
   if (t->base > 1) fftw_execute(t->base_forward);
+  for (PetscInt k = 0; k < t->width && t->order; k++) t->modes[k] = t->unsorted[t->order[k]];
 }
 
 /* The way back: x_j = e_j + o_j and x_{N-j} = e_j - o_j (their halves are in `scale`), in place of the o_j in
@@ -114,6 +115,7 @@ static void TwistAndUnfold(const Fourier *f, const double *restrict modes, doubl
 }
 
 static void SineBackward(RowTransform t, PetscScalar x[]) {
+  for (PetscInt k = 0; k < t->width && t->order; k++) t->unsorted[t->order[k]] = t->modes[k];
   if (t->base > 1) fftw_execute(t->base_backward);
   for (PetscInt l = t->levels - 1; l >= 0; l--) {
     fftw_execute(t->f[l].forward);
@@ -284,6 +286,58 @@ PetscErrorCode RowTransformCreate(Grid g, Field field, unsigned plan, RowTransfo
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode RowTransformSort(RowTransform t) {
+  PetscReal *before;
+  PetscFunctionBeginUser;
+  if (!t->base || t->order) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMalloc1(t->width, &t->order));
+  for (PetscInt k = 0; k < t->width; k++) t->order[k] = k;
+  PetscCall(PetscSortRealWithArrayInt(t->width, t->lambda, t->order));
+  PetscCall(PetscMalloc1(t->width, &before));
+  PetscCall(PetscArraycpy(before, t->scale, t->width));
+  for (PetscInt k = 0; k < t->width; k++) t->scale[k] = before[t->order[k]];
+  PetscCall(PetscFree(before));
+  t->unsorted = t->modes; /* the plans' */
+  t->modes = fftw_alloc_real((size_t)t->width);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Between walls Forward's rows are c sin(pi k j/N), k = 1 .. N - 1, with c = 2, or (2/N)^(1/2) of a matrix: sums of
+   squares c^2 N/2. Backward is its inverse over `scale`, so that its columns are these rows over that and `scale`. In a
+   period modes stand for a pair each but the mean and one that alternates from entry to entry. */
+static PetscReal SquareOfSines(RowTransform t) {
+  return t->base ? 4 : 2 / (PetscReal)(t->n + 1);
+}
+
+PetscErrorCode RowTransformNorms(RowTransform t, PetscReal norm[]) {
+  const PetscInt single = t->n % 2 ? t->width : t->width - 2;
+  const PetscBool walls = t->base || t->matrix.matrix[0] ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < t->width; k++)
+    norm[k] = walls ? 2 / (SquareOfSines(t) * (t->n + 1) * PetscSqr(t->scale[k]))
+                    : (k < 2 || k >= single ? 1 : 2) * (PetscReal)t->n;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A transform's own rounding is that of the largest mode, and sines of the shortest and the longest waves are small.
+   Its sign is what Makhoul's reordering makes it. */
+PetscErrorCode RowTransformEnds(RowTransform t, PetscReal first[], PetscReal last[]) {
+  const PetscInt N = t->n + 1;
+  PetscScalar *x;
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(t->n, &x));
+  x[0] = 1;
+  RowTransformForward(t, x);
+  for (PetscInt k = 0; k < t->width; k++) {
+    const PetscInt wave = PetscMin(k + 1, N - k - 1);
+    const PetscReal sine = PetscSqrtReal(SquareOfSines(t)) * PetscSinReal(PETSC_PI * wave / N);
+    first[k] = t->modes[k] < 0 ? -sine : sine;
+    last[k] = k % 2 ? -first[k] : first[k];
+  }
+  PetscCall(PetscFree(x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode RowTransformDestroy(RowTransform *transform) {
   RowTransform t = *transform;
   PetscFunctionBeginUser;
@@ -298,6 +352,8 @@ PetscErrorCode RowTransformDestroy(RowTransform *transform) {
   fftw_free(t->modes);
   fftw_free(t->line);
   fftw_free(t->rest);
+  fftw_free(t->unsorted);
+  PetscCall(PetscFree(t->order));
   for (int end = 0; end < 2 && !t->matrix.matrix[0]; end++) PetscCall(PetscFree(t->ends[end]));
   PetscCall(SineMatrixDestroy(&t->matrix));
   PetscCall(PetscFree2(t->lambda, t->scale));

@@ -9,7 +9,8 @@
 
    Short rows between walls are multiplied by the transform's matrix (sinematrix.h).
 
-   Modes come in an order of the transform's own, and lambda is in that order. rowtransform.c has the formulas. */
+   Modes come in an order of the transform's own, and lambda is in that order, unless they are sorted. rowtransform.c
+   has the formulas. */
 #pragma once
 #include "fluid/grid.h"
 #include "fluid/sinematrix.h"
@@ -36,8 +37,10 @@ struct _p_RowTransform {
   SineMatrix matrix; /* of a short row between walls, which has nothing of what follows */
   PetscInt levels;   /* sines on the entries: halvings */
   Fourier f[ROW_LEVELS];
-  PetscInt base; /* sines on the entries: cells left after the halvings, base - 1 entries; 0: another kind */
-  double *rest;  /* [n] work: the row, then what the halvings leave of it */
+  PetscInt base;    /* sines on the entries: cells left after the halvings, base - 1 entries; 0: another kind */
+  double *rest;     /* [n] work: the row, then what the halvings leave of it */
+  PetscInt *order;  /* [width] where a mode is among those of the transforms; NULL: they are as they come */
+  double *unsorted; /* [width] then these */
   fftw_plan base_forward, base_backward;
 };
 
@@ -45,7 +48,16 @@ struct _p_RowTransform {
 PETSC_EXTERN PetscErrorCode RowTransformCreate(Grid grid, Field field, unsigned plan, RowTransform *t);
 PETSC_EXTERN PetscErrorCode RowTransformDestroy(RowTransform *t);
 
+/* RowTransformSort - from here on modes come by their wave numbers. Not collective. */
+PETSC_EXTERN PetscErrorCode RowTransformSort(RowTransform t);
+
 /* RowTransformForward - modes[width] of x[n]. RowTransformBackward - x[n] from modes[width], which are destroyed. Not
    collective. */
 PETSC_EXTERN void RowTransformForward(RowTransform t, const PetscScalar x[]);
 PETSC_EXTERN void RowTransformBackward(RowTransform t, PetscScalar x[]);
+
+/* RowTransformNorms - norm[width]: the sum of squares of the row that Backward makes of a 1 in each mode, periodic or
+   of sorted modes with walls on the entries. RowTransformEnds - of the latter first[width], last[width]: what Forward
+   makes of a 1 in the first entry, and in the last, to rounding each. Not collective. */
+PETSC_EXTERN PetscErrorCode RowTransformNorms(RowTransform t, PetscReal norm[]);
+PETSC_EXTERN PetscErrorCode RowTransformEnds(RowTransform t, PetscReal first[], PetscReal last[]);

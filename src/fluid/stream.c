@@ -9,8 +9,9 @@
    slabs say by themselves, as in tridiagonal.c: Y leaves a slab of m rows as its own and M^m times what came in, Z as
    its own, the gain times Y from below and M^m times Z from above. */
 #include "fluid/stream.h"
-#include "fluid/streamfactors.h"
+#include "fluid/sidewalls.h"
 #include "fluid/streamloops.h"
+#include "fluid/streamslabs.h"
 #include "fluid/tridiagonal.h"
 
 #define BLOCK TRIDIAGONAL_BLOCK
@@ -20,18 +21,13 @@ struct _p_Stream {
   ZeroFlux flux;            /* borrowed, or NULL */
   RowTransform t;           /* along the nodes of a row */
   StreamFactors factors;    /* of the recurrences */
-  PetscInt rows, width;     /* of nodes on this rank; modes, rounded up to whole blocks */
-  PetscReal *y;             /* [rows][width] y2, NULL before the first solve, */
-  PetscInt *alive;          /* [rows] of whose blocks of modes so many are stored; the others are zero */
+  StreamSlabs slabs;        /* what they leave */
+  SideWalls side;           /* NULL where x is periodic */
   PetscInt *fed;            /* [blocks] the last row with y of a block, on the way down */
-  PetscReal *state;         /* [2][width] Y on the way up, then Z on the way down */
-  PetscReal *below, *above; /* [ranks][2][width] Y below each slab, Z above it */
-  PetscReal *last, *first;  /* [2][width] Y above all rows, Z in the first one */
-  PetscReal *own, *all;     /* [message], [ranks][message] first Z, last Y, sum of v's force */
-  PetscInt message;         /* numbers of it */
+  PetscInt felt;            /* blocks of Z in the last row */
   PetscScalar *row[3];      /* [n_x] two rows of u's force or of chi, one of v */
   PetscScalar *curl, *zero; /* [n_x] */
-  Tridiagonal mean;         /* of u's row means: one mode */
+  Tridiagonal mean;         /* of u's row means: one mode; NULL between walls, where there are none */
   PetscReal one[2];         /* its eigenvalue and its scale */
   PetscReal *means, mean_v; /* [rows of u] mode 0 of u, and of v */
   StreamMeter meter;
@@ -47,22 +43,19 @@ PetscErrorCode StreamCreate(Fluid f, ZeroFlux flux, Stream *out) {
   *out = s;
   s->fluid = f;
   s->flux = flux;
-  s->rows = g->rows[FIELD_V]; /* nodes are level with v */
-  PetscCall(RowTransformCreate(g, FIELD_P, efforts[f->plan], &s->t));
+  PetscCall(RowTransformCreate(g, g->wall[0] ? FIELD_U : FIELD_P, efforts[f->plan], &s->t));
+  PetscCall(RowTransformSort(s->t)); /* what is felt far away comes first */
   PetscCall(StreamFactorsCreate(g, s->t, &s->factors));
-  const PetscInt w = s->width = s->factors->width;
-  s->message = 4 * w + 1;
-  PetscCall(PetscCalloc4(2 * w, &s->state, 2 * w, &s->last, 2 * w, &s->first, s->message, &s->own));
-  PetscCall(PetscCalloc5(2 * g->size * w, &s->below, 2 * g->size * w, &s->above, g->rows[FIELD_U], &s->means, s->rows,
-                         &s->alive, w / BLOCK, &s->fed));
-  s->all = s->own;
-  if (g->size > 1) PetscCall(PetscCalloc1(g->size * s->message, &s->all));
-  for (int k = 0; k < 3; k++) s->row[k] = fftw_alloc_real(n);
-  s->curl = fftw_alloc_real(n);
-  s->zero = fftw_alloc_real((size_t)PetscMax((PetscInt)n, w));
-  PetscCall(PetscArrayzero(s->zero, PetscMax((PetscInt)n, w)));
+  PetscCall(StreamSlabsCreate(g, s->factors, &s->slabs));
+  PetscCall(PetscCalloc2(g->rows[FIELD_U], &s->means, s->slabs->width / BLOCK, &s->fed));
+  for (int k = 0; k < 5; k++) {
+    PetscScalar **line[] = {&s->row[0], &s->row[1], &s->row[2], &s->curl, &s->zero};
+    *line[k] = fftw_alloc_real(n);
+    PetscCall(PetscArrayzero(*line[k], (PetscInt)n));
+  }
+  if (g->wall[0]) PetscCall(SideWallsCreate(g, s->t, s->factors, &s->side));
   s->one[1] = 1 / (PetscReal)n;
-  PetscCall(TridiagonalCreate(g, FIELD_U, 1, &s->one[0], &s->one[1], &s->mean));
+  if (!g->wall[0]) PetscCall(TridiagonalCreate(g, FIELD_U, 1, &s->one[0], &s->one[1], &s->mean));
   PetscCall(StreamMeterCreate(g, s->t, &s->meter));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -72,14 +65,13 @@ PetscErrorCode StreamDestroy(Stream *stream) {
   PetscFunctionBeginUser;
   if (!s) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(TridiagonalDestroy(&s->mean));
+  PetscCall(SideWallsDestroy(&s->side));
   for (int k = 0; k < 3; k++) fftw_free(s->row[k]);
   fftw_free(s->curl);
   fftw_free(s->zero);
-  if (s->fluid->grid->size > 1) PetscCall(PetscFree(s->all));
-  PetscCall(PetscFree4(s->state, s->last, s->first, s->own));
-  PetscCall(PetscFree5(s->below, s->above, s->means, s->alive, s->fed));
+  PetscCall(PetscFree2(s->means, s->fed));
   PetscCall(StreamMeterDestroy(&s->meter));
-  PetscCall(PetscFree(s->y));
+  PetscCall(StreamSlabsDestroy(&s->slabs));
   PetscCall(StreamFactorsDestroy(&s->factors));
   PetscCall(RowTransformDestroy(&s->t));
   PetscCall(PetscFree(*stream));
@@ -89,35 +81,38 @@ PetscErrorCode StreamDestroy(Stream *stream) {
 static PetscErrorCode SetUp(Stream s) {
   const Fluid f = s->fluid;
   PetscFunctionBeginUser;
-  if (!s->y) PetscCall(PetscMalloc1(PetscMax(s->rows, 1) * s->width, &s->y));
-  PetscCall(TridiagonalReserve(s->mean));
+  PetscCall(StreamSlabsReserve(s->slabs));
+  if (s->mean) PetscCall(TridiagonalReserve(s->mean));
   if (s->factors->alpha == f->alpha) PetscFunctionReturn(PETSC_SUCCESS);
   StreamFactorsSet(s->factors, f->alpha, f->nu);
-  PetscCall(TridiagonalSetCoefficients(s->mean, f->alpha, f->nu, f->solver[FIELD_U]->singular));
+  if (s->side) PetscCall(SideWallsSet(s->side, f->alpha, f->nu));
+  if (s->mean) PetscCall(TridiagonalSetCoefficients(s->mean, f->alpha, f->nu, f->solver[FIELD_U]->singular));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* y of row j from its force, u's below and above it and v's, and from y below it. */
 static void ForcedRow(Stream s, PetscInt j, const PetscScalar low[], const PetscScalar high[], const PetscScalar v[],
                       const PetscReal below[]) {
-  const PetscInt modes = s->t->width, w = s->width;
-  PetscReal *y = s->y + j * w;
-  Curl(s->fluid->grid->n[0], low, high, v, s->curl);
+  const StreamSlabs q = s->slabs;
+  const PetscInt modes = s->t->width, w = q->width;
+  PetscReal *y = q->y + j * w;
+  Curl(s->fluid->grid->n[0], s->fluid->grid->wall[0], low, high, v, s->curl);
   RowTransformForward(s->t, s->curl);
-  Up(modes, s->factors->r[0], s->factors->r[1], s->t->modes, below, s->state, y);
+  Up(modes, s->factors->r[0], s->factors->r[1], s->t->modes, below, q->state, y);
   for (PetscInt k = modes; k < w; k++) y[k] = 0;
-  s->alive[j] = w / BLOCK;
+  q->alive[j] = w / BLOCK;
 }
 
 /* y of row j, which is so many rows above the last force: of the blocks that are still felt. */
 static void FreeRow(Stream s, PetscInt j, PetscInt since) {
-  PetscInt blocks = j > 0 ? s->alive[j - 1] : 0;
+  const StreamSlabs q = s->slabs;
+  PetscInt blocks = j > 0 ? q->alive[j - 1] : 0;
   for (; blocks > 0 && s->factors->reach[blocks - 1] <= since; blocks--)
-    (void)PetscArrayzero(s->state + (blocks - 1) * BLOCK, BLOCK);
-  s->alive[j] = blocks;
+    (void)PetscArrayzero(q->state + (blocks - 1) * BLOCK, BLOCK);
+  q->alive[j] = blocks;
   if (blocks)
-    Up(blocks * BLOCK, s->factors->r[0], s->factors->r[1], s->zero, s->y + (j - 1) * s->width, s->state,
-       s->y + j * s->width);
+    Up(blocks * BLOCK, s->factors->r[0], s->factors->r[1], q->zero, q->y + (j - 1) * q->width, q->state,
+       q->y + j * q->width);
 }
 
 /* What is added to the mean of row `at` of all. */
@@ -137,17 +132,18 @@ static PetscReal GivenForce(Stream s, const StreamRows *rows, PetscInt j) {
 /* Up all rows, with nothing coming in from below. The nodes below the first row of u with a force feel it. */
 static void Gather(Stream s, const StreamRows *rows, PetscBool measured) {
   const Grid g = s->fluid->grid;
-  const PetscInt n = g->n[0], w = s->width, first = PetscMax(rows->forced[0] - 1, 0), end = rows->forced[1];
+  const StreamSlabs q = s->slabs;
+  const PetscInt n = g->n[0], w = q->width, first = PetscMax(rows->forced[0] - 1, 0), end = rows->forced[1];
   const PetscScalar *low = s->zero, *high;
   s->mean_v = 0;
-  (void)PetscArrayzero(s->state, 2 * w);
+  (void)PetscArrayzero(q->state, 2 * w);
   for (PetscInt j = 0; j < g->rows[FIELD_U]; j++, low = high) {
     const PetscBool forced = j >= first && j < end ? PETSC_TRUE : PETSC_FALSE;
     if (forced && j == first) low = rows->force(rows->ctx, FIELD_U, j, s->row[j % 2]);
-    const PetscReal sum = forced ? Sum(n, low) : 0;
-    TridiagonalUp(s->mean, j, &sum);
+    const PetscReal sum = forced && s->mean ? Sum(n, low) : 0;
+    if (s->mean) TridiagonalUp(s->mean, j, &sum);
     high = s->zero;
-    if (j == s->rows) break; /* no nodes on the upper wall */
+    if (j == q->rows) break; /* no nodes on the upper wall */
     if (!forced) {
       FreeRow(s, j, j - end + 1);
       continue;
@@ -158,115 +154,10 @@ static void Gather(Stream s, const StreamRows *rows, PetscBool measured) {
       s->mean_v += Sum(n, v);
     else if (measured)
       StreamMeterForce(s->meter, j, Sum(n, v) + GivenForce(s, rows, j));
-    ForcedRow(s, j, low, high, v, j > first ? s->y + (j - 1) * w : s->zero);
+    ForcedRow(s, j, low, high, v, j > first ? q->y + (j - 1) * w : q->zero);
   }
-  const PetscInt felt = s->rows > 0 ? s->alive[s->rows - 1] * BLOCK : 0;
-  if (felt) (void)PetscArraycpy(s->state + w, s->y + (s->rows - 1) * w, felt);
-}
-
-/* What this slab tells the others: its first Z and its last Y, both for nothing coming in from outside. */
-static void Summarise(Stream s) {
-  const PetscInt w = s->width;
-  for (PetscInt b = 0; b < w / BLOCK; b++) {
-    const PetscReal *restrict r1 = s->factors->r[0] + b * BLOCK, *restrict r2 = s->factors->r[1] + b * BLOCK;
-    PetscReal z1[BLOCK] = {0}, z2[BLOCK] = {0};
-    PetscInt j = PetscMin(s->factors->reach[b], s->rows) - 1;
-    while (j >= 0 && s->alive[j] <= b) j--;
-    for (; j >= 0; j--) {
-      const PetscReal *restrict y = s->alive[j] > b ? s->y + j * w + b * BLOCK : s->zero;
-      for (int k = 0; k < BLOCK; k++) {
-        z1[k] = y[k] + r1[k] * z1[k];
-        z2[k] = z1[k] + r2[k] * z2[k];
-      }
-    }
-    (void)PetscArraycpy(s->own + b * BLOCK, z1, BLOCK);
-    (void)PetscArraycpy(s->own + w + b * BLOCK, z2, BLOCK);
-  }
-  (void)PetscArraycpy(s->own + 2 * w, s->state, 2 * w);
-  s->own[4 * w] = s->mean_v;
-}
-
-/* out += A in, a matrix and a pair a mode. */
-static void AddProduct(PetscInt w, const PairMatrix A, const PetscReal in[], PetscReal out[]) {
-  for (PetscInt k = 0; k < w; k++) {
-    out[k] += A[k] * in[k] + A[w + k] * in[w + k];
-    out[w + k] += A[2 * w + k] * in[k] + A[3 * w + k] * in[w + k];
-  }
-}
-
-static void Product(PetscInt w, const PairMatrix A, const PetscReal in[], PetscReal out[]) {
-  (void)PetscArrayzero(out, 2 * w);
-  AddProduct(w, A, in, out);
-}
-
-/* From Y below the first slab to Y below every slab and above the last. */
-static void CarryUp(Stream s) {
-  const PetscMPIInt size = s->fluid->grid->size;
-  const PetscInt w = s->width;
-  for (PetscMPIInt q = 0; q < size; q++) {
-    PetscReal *out = q + 1 < size ? s->below + 2 * (q + 1) * w : s->last;
-    (void)PetscArraycpy(out, s->all + q * s->message + 2 * w, 2 * w);
-    AddProduct(w, s->factors->power[q == size - 1], s->below + 2 * q * w, out);
-  }
-}
-
-/* From Z above the last slab to Z above every slab and in the first row of all. */
-static void CarryDown(Stream s) {
-  const PetscMPIInt size = s->fluid->grid->size;
-  const PetscInt w = s->width;
-  for (PetscMPIInt q = size - 1; q >= 0; q--) {
-    PetscReal *out = q > 0 ? s->above + 2 * (q - 1) * w : s->first;
-    (void)PetscArraycpy(out, s->all + q * s->message, 2 * w);
-    AddProduct(w, s->factors->gain[q == size - 1], s->below + 2 * q * w, out);
-    AddProduct(w, s->factors->power[q == size - 1], s->above + 2 * q * w, out);
-  }
-}
-
-/* What comes into every slab. Walls: Z above all rows follows from Y there, and Y below them from Z for nothing coming
-   in at the bottom. Seam: Y below follows from Y above for nothing coming in, then Z likewise (streamfactors.c). */
-static void Close(Stream s) {
-  const PetscInt w = s->width;
-  PetscReal *Y = s->below, *Z = s->above + 2 * (s->fluid->grid->size - 1) * w;
-  (void)PetscArrayzero(Y, 2 * w);
-  CarryUp(s);
-  if (s->fluid->grid->wall[1]) {
-    Product(w, s->factors->top, s->last, Z);
-    CarryDown(s);
-    Product(w, s->factors->bottom, s->first, Y);
-    CarryUp(s);
-    Product(w, s->factors->top, s->last, Z);
-  } else {
-    Product(w, s->factors->bottom, s->last, Y);
-    CarryUp(s);
-    (void)PetscArrayzero(Z, 2 * w);
-    CarryDown(s);
-    Product(w, s->factors->top, s->first, Z);
-  }
-  CarryDown(s);
-}
-
-/* y2 of the rows += what Y from below becomes there. */
-static void AddBelow(Stream s, const PetscReal below[]) {
-  const PetscInt w = s->width;
-  for (PetscInt b = 0; b < w / BLOCK; b++) {
-    const PetscReal *restrict r1 = s->factors->r[0] + b * BLOCK, *restrict r2 = s->factors->r[1] + b * BLOCK;
-    PetscReal y1[BLOCK], y2[BLOCK];
-    (void)PetscArraycpy(y1, below + b * BLOCK, BLOCK);
-    (void)PetscArraycpy(y2, below + w + b * BLOCK, BLOCK);
-    for (PetscInt j = 0; j < PetscMin(s->factors->reach[b], s->rows); j++) {
-      PetscReal *restrict y = s->y + j * w + b * BLOCK;
-      if (s->alive[j] <= b) (void)PetscArrayzero(y, BLOCK);
-      for (int k = 0; k < BLOCK; k++) {
-        y1[k] *= r1[k];
-        y2[k] = y1[k] + r2[k] * y2[k];
-        y[k] += y2[k];
-      }
-    }
-  }
-  for (PetscInt j = 0, b = w / BLOCK; j < s->rows; j++) {
-    while (b > 0 && s->factors->reach[b - 1] <= j) b--;
-    s->alive[j] = PetscMax(s->alive[j], b);
-  }
+  const PetscInt felt = q->rows > 0 ? q->alive[q->rows - 1] * BLOCK : 0;
+  if (felt) (void)PetscArraycpy(q->state + w, q->y + (q->rows - 1) * w, felt);
 }
 
 /* Both means of a box that is periodic both ways to zero. */
@@ -281,43 +172,103 @@ static PetscErrorCode HoldMean(Stream s, PetscReal *sum_v) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Mode 0: the row means of u, and v's, which is the same everywhere. */
-static PetscErrorCode MeanFlow(Stream s) {
+/* Mode 0: the row means of u, and v's, which is the same everywhere, from the sum of its force. */
+static PetscErrorCode MeanFlow(Stream s, PetscReal sum) {
   const Grid g = s->fluid->grid;
-  PetscReal sum = 0;
   PetscFunctionBeginUser;
   PetscCall(TridiagonalEnd(s->mean));
   for (PetscInt j = g->rows[FIELD_U] - 1; j >= 0; j--) TridiagonalDown(s->mean, j, &s->means[j]);
   if (s->flux) PetscCall(ZeroFluxCorrectMeans(s->flux, s->means));
-  for (PetscMPIInt q = 0; q < g->size; q++) sum += s->all[q * s->message + 4 * s->width];
   if (s->fluid->held) PetscCall(HoldMean(s, &sum));
   s->mean_v = s->fluid->alpha > 0 ? sum / ((PetscReal)g->n[0] * g->n[1] * s->fluid->alpha) : 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* On the way down: what comes in from above. */
+static void BeginDown(Stream s) {
+  const StreamSlabs q = s->slabs;
+  s->felt = q->width / BLOCK;
+  (void)PetscArraycpy(q->state, q->above + 2 * s->fluid->grid->rank * q->width, 2 * q->width);
+  for (PetscInt b = 0; b < s->felt; b++) s->fed[b] = q->rows;
+}
+
 /* Blocks of Z that are felt in row j, where `stored` of them have y: Z is zero beyond. */
-static PetscInt FeltBlocks(Stream s, PetscInt j, PetscInt stored, PetscInt before) {
-  PetscInt blocks = PetscMax(before, stored);
+static PetscInt FeltBlocks(Stream s, PetscInt j, PetscInt stored) {
+  const StreamSlabs q = s->slabs;
+  PetscInt blocks = PetscMax(s->felt, stored);
   for (PetscInt b = 0; b < stored; b++) s->fed[b] = j;
   for (; blocks > stored && s->factors->reach[blocks - 1] <= s->fed[blocks - 1] - j; blocks--)
-    for (int c = 0; c < 2; c++) (void)PetscArrayzero(s->state + c * s->width + (blocks - 1) * BLOCK, BLOCK);
+    for (int c = 0; c < 2; c++) (void)PetscArrayzero(q->state + c * q->width + (blocks - 1) * BLOCK, BLOCK);
   return blocks;
 }
 
-/* The next row of nodes downwards, j: chi/h in `row` unless that is NULL. felt: blocks of Z in the row before, then in
-   this one. */
-static void NodeRow(Stream s, PetscInt j, PetscBool measured, PetscInt *felt, PetscScalar row[]) {
-  const PetscInt w = s->width, modes = s->t->width, stored = j < 0 ? w / BLOCK : s->alive[j];
-  const PetscReal *y = j < 0 ? s->below + (2 * s->fluid->grid->rank + 1) * w : s->y + j * w;
-  *felt = FeltBlocks(s, j, stored, *felt);
-  const PetscInt fed = PetscMin(stored * BLOCK, modes), count = PetscMin(*felt * BLOCK, modes);
-  PetscReal *chi = measured ? StreamMeterNodes(s->meter, count) : s->t->modes;
-  Down(fed, s->factors->r[0], s->factors->r[1], s->factors->factor, y, s->state, s->state + w, chi);
-  DownFree(fed, count, s->factors->r[0], s->factors->r[1], s->factors->factor, s->state, s->state + w, chi);
+/* The next row of nodes downwards, j: modes of chi/h, so many. */
+static PetscInt NodeModes(Stream s, PetscInt j, PetscBool measured, PetscReal **modes) {
+  const StreamSlabs q = s->slabs;
+  const PetscInt w = q->width, all = s->t->width, stored = j < 0 ? w / BLOCK : q->alive[j];
+  const PetscReal *y = j < 0 ? q->below + (2 * s->fluid->grid->rank + 1) * w : q->y + j * w;
+  s->felt = FeltBlocks(s, j, stored);
+  const PetscInt fed = PetscMin(stored * BLOCK, all), count = PetscMin(s->felt * BLOCK, all);
+  *modes = measured ? StreamMeterNodes(s->meter, count) : s->t->modes;
+  Down(fed, s->factors->r[0], s->factors->r[1], s->factors->factor, y, q->state, q->state + w, *modes);
+  DownFree(fed, count, s->factors->r[0], s->factors->r[1], s->factors->factor, q->state, q->state + w, *modes);
+  return count;
+}
+
+/* The same, with chi/h in `row` unless that is NULL; zero on the wall behind the last node. */
+static void NodeRow(Stream s, PetscInt j, PetscBool measured, PetscScalar row[]) {
+  const PetscInt modes = s->t->width;
+  PetscReal *chi;
+  const PetscInt count = NodeModes(s, j, measured, &chi);
   if (!row) return;
   if (measured) (void)PetscArraycpy(s->t->modes, chi, count);
   for (PetscInt k = count; k < modes; k++) s->t->modes[k] = 0;
   RowTransformBackward(s->t, row);
+  if (s->side) row[s->fluid->grid->n[0] - 1] = 0;
+}
+
+/* v on the faces next to walls in x, in all own rows. */
+static void SideVelocity(Stream s, const StreamRows *rows) {
+  const PetscInt first = s->fluid->grid->first;
+  BeginDown(s);
+  for (PetscInt j = s->slabs->rows - 1; j >= 0; j--) {
+    PetscReal *chi;
+    const PetscInt count = NodeModes(s, j, PETSC_FALSE, &chi);
+    for (int side = 0; side < 2; side++)
+      s->side->v[side][first + j] = Dot(count, s->side->velocity[side], chi) + Given(rows, FIELD_V, first + j);
+  }
+}
+
+/* y += that of the forces on these faces, with nothing coming in from below; `state` as after Gather. */
+static void AddSideForces(Stream s, PetscBool measured) {
+  const StreamSlabs q = s->slabs;
+  const SideWalls side = s->side;
+  const PetscInt w = q->width, first = s->fluid->grid->first;
+  (void)PetscArrayzero(q->state, 2 * w);
+  for (PetscInt j = 0; j < q->rows; j++) {
+    const PetscReal force[2] = {side->d[0][first + j], side->d[1][first + j]};
+    const PetscInt stored = q->alive[j] * BLOCK;
+    if (measured) StreamMeterForce(s->meter, j, force[0] + force[1]);
+    (void)PetscArrayzero(q->y + j * w + stored, w - stored);
+    q->alive[j] = w / BLOCK;
+    UpWalls(w, s->factors->r[0], s->factors->r[1], force, side->curl[0], side->curl[1], q->state, q->state + w,
+            q->y + j * w);
+  }
+}
+
+/* Walls in x hold the fluid: what came in is taken off y again, their forces are added, and all is closed anew. */
+static PetscErrorCode HoldSides(Stream s, const StreamRows *rows, PetscBool measured) {
+  const StreamSlabs q = s->slabs;
+  const PetscReal *last = q->own + 2 * q->width;
+  PetscReal none = 0;
+  PetscFunctionBeginUser;
+  SideVelocity(s, rows);
+  PetscCall(SideWallsForces(s->side, s->fluid->nu));
+  StreamSlabsReopen(q);
+  AddSideForces(s, measured);
+  for (PetscInt k = 0; k < 2 * q->width; k++) q->state[k] += last[k];
+  PetscCall(StreamSlabsClose(q, &none));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* A row of u between two rows of nodes, which stays in s->curl, and of v in the upper one. */
@@ -330,7 +281,7 @@ static void VelocityRows(Stream s, const StreamRows *rows, PetscBool measured, P
   rows->velocity(rows->ctx, FIELD_U, j, s->curl);
   if (measured)
     StreamMeterDivergence(s->meter, s->curl, low, high, given - below, rows->source ? rows->source + j * n : NULL);
-  if (j >= s->rows) return;
+  if (j >= s->slabs->rows) return;
   VelocityV(n, high, s->mean_v + given, s->row[2]);
   rows->velocity(rows->ctx, FIELD_V, j, s->row[2]);
 }
@@ -338,20 +289,18 @@ static void VelocityRows(Stream s, const StreamRows *rows, PetscBool measured, P
 /* Down all rows, or to the last one that is wanted. */
 static void Scatter(Stream s, const StreamRows *rows, PetscBool measured) {
   const Grid g = s->fluid->grid;
-  const PetscInt w = s->width, first = rows->wanted[0], end = rows->wanted[1];
+  const PetscInt nodes = s->slabs->rows, first = rows->wanted[0], end = rows->wanted[1];
   const PetscScalar *high = s->zero;
-  PetscInt felt = w / BLOCK;
-  (void)PetscArraycpy(s->state, s->above + 2 * g->rank * w, 2 * w);
-  for (PetscInt b = 0; b < felt; b++) s->fed[b] = s->rows;
-  if (s->rows == g->rows[FIELD_U]) { /* not on the upper wall, where chi = 0 */
-    high = s->row[s->rows % 2];
-    NodeRow(s, s->rows - 1, measured, &felt, s->rows <= end ? s->row[s->rows % 2] : NULL);
+  BeginDown(s);
+  if (nodes == g->rows[FIELD_U]) { /* not on the upper wall, where chi = 0 */
+    high = s->row[nodes % 2];
+    NodeRow(s, nodes - 1, measured, nodes <= end ? s->row[nodes % 2] : NULL);
   } else if (measured)
     (void)StreamMeterNodes(s->meter, 0);
   for (PetscInt j = g->rows[FIELD_U] - 1; j >= 0 && (measured || j >= first); j--) {
     const PetscScalar *low = s->row[j % 2];
     if (j > 0 || g->below != MPI_PROC_NULL || !g->wall[1])
-      NodeRow(s, j - 1, measured, &felt, j >= first && j <= end ? s->row[j % 2] : NULL);
+      NodeRow(s, j - 1, measured, j >= first && j <= end ? s->row[j % 2] : NULL);
     else {
       low = s->zero;
       if (measured) (void)StreamMeterNodes(s->meter, 0);
@@ -360,29 +309,24 @@ static void Scatter(Stream s, const StreamRows *rows, PetscBool measured) {
     if (wanted) VelocityRows(s, rows, measured, j, low, high);
     if (measured)
       StreamMeterSquares(s->meter, j, wanted ? s->curl : NULL, s->means[j] + Given(rows, FIELD_U, g->first + j),
-                         j < s->rows ? PETSC_TRUE : PETSC_FALSE, s->mean_v + Given(rows, FIELD_V, g->first + j));
+                         j < nodes ? PETSC_TRUE : PETSC_FALSE, s->mean_v + Given(rows, FIELD_V, g->first + j));
     high = low;
   }
 }
 
 PetscErrorCode StreamSolve(Stream s, const StreamRows *rows, StreamMeasures *measures) {
   const PetscBool measured = measures ? PETSC_TRUE : PETSC_FALSE;
-  MPI_Request request;
+  PetscReal sum;
   PetscFunctionBeginUser;
   PetscCall(PhaseBegin(PHASE_FAST_SOLVE));
   PetscCall(SetUp(s));
   if (measured) StreamMeterBegin(s->meter);
   Gather(s, rows, measured);
-  PetscCall(TridiagonalBegin(s->mean));
-  Summarise(s);
-  if (s->fluid->grid->size > 1) {
-    PetscCallMPI(MPI_Iallgather(s->own, (PetscMPIInt)s->message, MPIU_REAL, s->all, (PetscMPIInt)s->message, MPIU_REAL,
-                                s->fluid->grid->comm, &request));
-    PetscCallMPI(MPI_Wait(&request, MPI_STATUS_IGNORE));
-  }
-  PetscCall(MeanFlow(s));
-  Close(s);
-  AddBelow(s, s->below + 2 * s->fluid->grid->rank * s->width);
+  if (s->mean) PetscCall(TridiagonalBegin(s->mean));
+  sum = s->mean_v;
+  PetscCall(StreamSlabsClose(s->slabs, &sum));
+  if (s->mean) PetscCall(MeanFlow(s, sum));
+  if (s->side) PetscCall(HoldSides(s, rows, measured));
   Scatter(s, rows, measured);
   if (measured) PetscCall(StreamMeterEnd(s->meter, measures));
   s->fluid->solver[FIELD_P]->solves++;

@@ -99,11 +99,11 @@ static void SetReach(StreamFactors s) {
 void StreamFactorsSet(StreamFactors s, PetscReal alpha, PetscReal nu) {
   const PetscReal h2 = PetscSqr(s->grid->h);
   s->alpha = alpha;
-  for (PetscInt k = 2; k < s->modes; k++) { /* mode 0 is the mean flow */
+  for (PetscInt k = s->grid->wall[0] ? 0 : 2; k < s->modes; k++) { /* where x is periodic mode 0 is the mean flow */
     const PetscReal theta_1 = 2 * asinh(0.5 * PetscSqrtReal(s->lambda[k]));
     const PetscReal theta_2 = 2 * asinh(0.5 * PetscSqrtReal(s->lambda[k] + alpha * h2 / nu));
     SetMode(s, k, theta_1, theta_2);
-    s->factor[k] = s->scale * s->r[0][k] * s->r[1][k] * h2 / nu;
+    s->factor[k] = s->scale[k] * s->r[0][k] * s->r[1][k] * h2 / nu;
   }
   SetReach(s);
 }
@@ -118,7 +118,7 @@ PetscErrorCode StreamFactorsCreate(Grid g, RowTransform t, StreamFactors *out) {
   s->modes = t->width;
   s->width = w;
   s->lambda = t->lambda;
-  s->scale = t->scale[0];
+  s->scale = t->scale;
   s->alpha = -1;
   PetscCall(PetscCalloc4(w, &s->r[0], w, &s->r[1], w, &s->factor, w / TRIDIAGONAL_BLOCK, &s->reach));
   PetscCall(PetscCalloc6(4 * w, &s->power[0], 4 * w, &s->power[1], 4 * w, &s->gain[0], 4 * w, &s->gain[1], 4 * w,

@@ -11,7 +11,7 @@ struct _p_StreamFactors {
   Grid grid;
   PetscInt modes, width;    /* of a row's transform, and the same rounded up to whole blocks */
   const PetscReal *lambda;  /* [modes] borrowed, minus the second difference's eigenvalues times h^2 */
-  PetscReal scale;          /* of the transform */
+  const PetscReal *scale;   /* [modes] borrowed, of the transform */
   PetscReal alpha;          /* coefficient that they are for; -1 none yet */
   PetscReal *r[2], *factor; /* [width] decays; chi/h over z2 */
   PairMatrix power[2];      /* M^m */

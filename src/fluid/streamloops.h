@@ -2,11 +2,21 @@
 #pragma once
 #include "base/lanes.h"
 
-/* h times the curl of a force on the nodes of a row: v of the row, u of the rows below and above it. */
-static inline void Curl(PetscInt n, const PetscScalar *restrict low, const PetscScalar *restrict high,
+/* h times the curl of a force on the nodes of a row: v of the row, u of the rows below and above it. Where the last
+   node is on a wall it is left out. */
+static inline void Curl(PetscInt n, PetscBool wall, const PetscScalar *restrict low, const PetscScalar *restrict high,
                         const PetscScalar *restrict v, PetscScalar *restrict curl) {
   for (PetscInt i = 0; i + 1 < n; i++) curl[i] = v[i + 1] - v[i] + low[i] - high[i];
-  curl[n - 1] = v[0] - v[n - 1] + low[n - 1] - high[n - 1];
+  if (!wall) curl[n - 1] = v[0] - v[n - 1] + low[n - 1] - high[n - 1];
+}
+
+static inline PetscReal Dot(PetscInt n, const PetscReal x[], const PetscReal y[]) {
+  Lanes sum = {0};
+  PetscReal rest = 0;
+  PetscInt i = 0;
+  for (; i + LANES <= n; i += LANES) sum += LanesAt(x + i) * LanesAt(y + i);
+  for (; i < n; i++) rest += x[i] * y[i];
+  return LanesSum(sum) + rest;
 }
 
 static inline PetscReal Sum(PetscInt n, const PetscScalar x[]) {
@@ -28,6 +38,18 @@ static inline void Up(PetscInt width, const PetscReal *restrict r1, const PetscR
   for (PetscInt k = 0; k < width; k++) {
     y1[k] = b[k] + r1[k] * y1[k];
     y[k] = y1[k] + r2[k] * below[k];
+  }
+}
+
+/* The same of a force on the faces next to two walls alone, from modes a and b of its curl, y2 going along too; added
+   to y. */
+static inline void UpWalls(PetscInt width, const PetscReal *restrict r1, const PetscReal *restrict r2,
+                           const PetscReal force[2], const PetscReal *restrict a, const PetscReal *restrict b,
+                           PetscReal *restrict y1, PetscReal *restrict y2, PetscReal *restrict y) {
+  for (PetscInt k = 0; k < width; k++) {
+    y1[k] = force[0] * a[k] + force[1] * b[k] + r1[k] * y1[k];
+    y2[k] = y1[k] + r2[k] * y2[k];
+    y[k] += y2[k];
   }
 }
 

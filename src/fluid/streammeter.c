@@ -8,15 +8,17 @@ PetscErrorCode StreamMeterCreate(Grid g, RowTransform t, StreamMeter *out) {
   *out = m;
   m->grid = g;
   m->width = t->width;
-  PetscCall(PetscCalloc3(t->width + LANES, &m->chi[0], t->width + LANES, &m->chi[1], t->width + LANES, &m->wave));
-  PetscCall(PetscArraycpy(m->wave, t->lambda, t->width));
+  PetscCall(PetscCalloc4(t->width + LANES, &m->chi[0], t->width + LANES, &m->chi[1], t->width + LANES, &m->norm[0],
+                         t->width + LANES, &m->norm[1]));
+  PetscCall(RowTransformNorms(t, m->norm[0]));
+  for (PetscInt k = 0; k < t->width; k++) m->norm[1][k] = t->lambda[k] * m->norm[0][k];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode StreamMeterDestroy(StreamMeter *meter) {
   PetscFunctionBeginUser;
   if (!*meter) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscFree3((*meter)->chi[0], (*meter)->chi[1], (*meter)->wave));
+  PetscCall(PetscFree4((*meter)->chi[0], (*meter)->chi[1], (*meter)->norm[0], (*meter)->norm[1]));
   PetscCall(PetscFree(*meter));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -61,25 +63,20 @@ static PetscReal SumSquares(PetscInt n, const PetscScalar x[]) {
   return LanesSum(sum) + rest;
 }
 
-/* By Parseval: all modes count twice but the mean, which chi has not, and one that alternates from entry to entry. */
+/* By Parseval. A row of v has no other mean than what is added to it, one of u between walls in x none. */
 void StreamMeterSquares(StreamMeter m, PetscInt j, const PetscScalar row[], PetscReal mean_u, PetscBool has_v,
                         PetscReal mean_v) {
   const Grid g = m->grid;
   const PetscReal *low = m->chi[m->now], *high = m->chi[1 - m->now];
-  const PetscInt count = PetscMax(m->count[0], m->count[1]), single = g->n[0] % 2 ? m->width : m->width - 2;
+  const PetscInt count = PetscMax(m->count[0], m->count[1]);
   Lanes u = {0}, v = {0};
   for (PetscInt k = 0; k < count; k += LANES) {
     const Lanes of_u = LanesAt(high + k) - LanesAt(low + k), chi = LanesAt(high + k);
-    u += of_u * of_u;
-    v += LanesAt(m->wave + k) * chi * chi;
+    u += LanesAt(m->norm[0] + k) * of_u * of_u;
+    v += LanesAt(m->norm[1] + k) * chi * chi;
   }
-  PetscReal sum[2] = {2 * LanesSum(u) + PetscSqr(mean_u), 2 * LanesSum(v) + PetscSqr(mean_v)};
-  for (PetscInt k = single; k < count; k++) {
-    sum[0] -= PetscSqr(high[k] - low[k]);
-    sum[1] -= m->wave[k] * PetscSqr(high[k]);
-  }
-  m->own.square += row ? SumSquares(g->n[0], row) : (PetscReal)g->n[0] * sum[0];
-  if (has_v) m->own.square += (PetscReal)g->n[0] * sum[1];
+  m->own.square += row ? SumSquares(g->n[0], row) : LanesSum(u) + (PetscReal)g->n[0] * PetscSqr(mean_u);
+  if (has_v) m->own.square += LanesSum(v) + (PetscReal)g->n[0] * PetscSqr(mean_v);
   if (!(g->first + j)) m->own.slip += mean_u;
   if (g->first + j == g->n[1] - 1) m->own.slip -= mean_u;
 }

@@ -7,7 +7,7 @@ typedef struct {
   PetscReal square; /* SUM u^2 + v^2 over all faces (length^2/time^2) */
   PetscReal
       divergence; /* largest |G^T u - source| of the cells whose velocity is made (1/time); NaN if one is not finite */
-  PetscReal slip; /* mean of u in the first row less that in the last (length/time) */
+  PetscReal slip; /* mean of u in the first row less that in the last (length/time); 0 between walls in x */
   PetscReal pressure; /* mean over the rows of cells next to both walls less that of all; 0 without walls */
 } StreamMeasures;
 
@@ -15,7 +15,7 @@ typedef struct {
 typedef struct {
   Grid grid;          /* borrowed */
   PetscInt width;     /* of a row's modes */
-  PetscReal *wave;    /* [width] minus the second difference's eigenvalues times h^2 */
+  PetscReal *norm[2]; /* [width] squares of a mode of chi/h and of its difference, summed over a row */
   PetscReal *chi[2];  /* [width] modes of chi/h in the last two rows of nodes, */
   PetscInt count[2];  /* how many of them are not zero, */
   int now;            /* and which row came last */

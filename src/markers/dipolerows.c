@@ -43,16 +43,18 @@ static void Means(DipoleRows d, const DipoleList list, const PetscReal T[]) {
   }
 }
 
-/* From a row's source to b, whose mean is zero. */
-static void SumRow(PetscInt n, PetscReal h, PetscReal mean, PetscScalar row[]) {
+/* From a row's source to b, whose mean is zero, or which is zero on walls, the last entry. */
+static void SumRow(const Grid g, PetscReal mean, PetscScalar row[]) {
+  const PetscInt n = g->n[0];
   PetscReal b = 0, sum = 0;
   for (PetscInt i = 0; i < n; i++) {
-    b += h * (mean - row[i]);
+    b += g->h * (mean - row[i]);
     row[i] = b;
     sum += b;
   }
   sum /= (PetscReal)n;
-  for (PetscInt i = 0; i < n; i++) row[i] -= sum;
+  for (PetscInt i = 0; i < n && !g->wall[0]; i++) row[i] -= sum;
+  if (g->wall[0]) row[n - 1] = 0;
 }
 
 /* From the rows' mean sources to v, zero at a wall and else of zero mean. */
@@ -87,7 +89,7 @@ PetscErrorCode DipoleRowsSet(DipoleRows d, const DipoleList list, const PetscRea
       for (PetscInt i = 0; i < g->n[0]; i++) row[i] = 0;
       DipoleListAddRow(list, (Field)f, j, T, row);
     }
-    SumRow(g->n[0], g->h, d->mean[(j + g->first + g->n[1]) % g->n[1]], Row(d, FIELD_P, j));
+    SumRow(g, d->mean[(j + g->first + g->n[1]) % g->n[1]], Row(d, FIELD_P, j));
   }
   SumMeans(g, d->mean);
   for (PetscInt j = 0; j < g->n[1]; j++) {
@@ -97,14 +99,15 @@ PetscErrorCode DipoleRowsSet(DipoleRows d, const DipoleList list, const PetscRea
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* row += factor (the five-point sum of b), rows low and high beside it, over a period. */
-static void AddLaplacian(PetscInt n, PetscReal factor, const PetscScalar *restrict b, PetscReal below,
+/* row += factor (the five-point sum of b), rows low and high beside it, over a period of n entries, of which the last
+   is left out where it is on a wall. */
+static void AddLaplacian(PetscInt n, PetscBool wall, PetscReal factor, const PetscScalar *restrict b, PetscReal below,
                          const PetscScalar *restrict low, PetscReal above, const PetscScalar *restrict high,
                          PetscScalar *restrict row) {
   row[0] += factor * (b[n - 1] + b[1] + below * low[0] + above * high[0] - 4 * b[0]);
   for (PetscInt i = 1; i + 1 < n; i++)
     row[i] += factor * (b[i - 1] + b[i + 1] + below * low[i] + above * high[i] - 4 * b[i]);
-  row[n - 1] += factor * (b[n - 2] + b[0] + below * low[n - 1] + above * high[n - 1] - 4 * b[n - 1]);
+  if (!wall) row[n - 1] += factor * (b[n - 2] + b[0] + below * low[n - 1] + above * high[n - 1] - 4 * b[n - 1]);
 }
 
 /* y += x */
@@ -115,16 +118,17 @@ static void AddRow(PetscInt n, const PetscScalar *restrict x, PetscScalar *restr
 void DipoleRowsAddForce(DipoleRows d, PetscBool own, Field f, PetscInt j, PetscScalar row[]) {
   const PetscInt n = d->grid->n[0];
   if (j < d->window[0] - 1 || j > d->window[1]) return;
-  if (own) AddRow(n, Row(d, f, j), row);
+  if (own) AddRow(d->grid->columns[f], Row(d, f, j), row);
   if (f == FIELD_V) return;
   /* beyond a wall there is minus the row next to it */
   const PetscBool bottom = d->grid->wall[1] && d->grid->first + j == 0 ? PETSC_TRUE : PETSC_FALSE;
   const PetscBool top = d->grid->wall[1] && d->grid->first + j == d->grid->n[1] - 1 ? PETSC_TRUE : PETSC_FALSE;
   const PetscScalar *low = Row(d, FIELD_P, bottom ? j : j - 1), *high = Row(d, FIELD_P, top ? j : j + 1);
-  AddLaplacian(n, d->nu / PetscSqr(d->grid->h), Row(d, FIELD_P, j), bottom ? -1 : 1, low, top ? -1 : 1, high, row);
+  AddLaplacian(n, d->grid->wall[0], d->nu / PetscSqr(d->grid->h), Row(d, FIELD_P, j), bottom ? -1 : 1, low,
+               top ? -1 : 1, high, row);
 }
 
 void DipoleRowsAddVelocity(DipoleRows d, PetscInt j, PetscScalar row[]) {
   if (j < d->window[0] || j >= d->window[1]) return;
-  AddRow(d->grid->n[0], Row(d, FIELD_P, j), row);
+  AddRow(d->grid->columns[FIELD_U], Row(d, FIELD_P, j), row);
 }

@@ -1,6 +1,6 @@
 /* Dipoles of markers in the rows of a solve by stream function (fluid/stream.h), whose velocity w has no divergence.
-   Where x is periodic a velocity b whose divergence is the dipoles' source is found row by row: along x by sums of the
-   source less its row's mean, along y by sums of these means,
+   A velocity b whose divergence is the dipoles' source is found row by row: along x by sums of the source less its
+   row's mean, which are zero on walls, along y by sums of these means,
 
        b_i - b_{i-1} = h (mean - source_i),      v_j - v_{j-1} = -h mean_j,
 
