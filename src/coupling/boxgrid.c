@@ -3,8 +3,6 @@
 #include "coupling/nearblock.h"
 #include "fluid/walls.h"
 
-#define WALL_SWEEPS 12 /* leave 1e-6 of the wall forces */
-
 typedef struct {
   Fluid fluid;
   Stokes stokes;
@@ -56,9 +54,12 @@ static PetscErrorCode PlaceMarkers(BoxGrid *b, const char kernel[]) {
 
 static PetscErrorCode Create(const FluidSpec *spec, const char kernel[], const BoxLattice *lattice,
                              const BoxAxis axis[2], BoxGrid *b) {
+  FluidSpec box = *spec;
   PetscFunctionBeginUser;
   *b = (BoxGrid){.axis = axis, .lattice = lattice};
-  PetscCall(FluidCreate(spec, &b->fluid));
+  PetscCall(PetscStrncpy(box.helmholtz, "fftw_tridiagonal", sizeof(box.helmholtz)));
+  PetscCall(PetscStrncpy(box.poisson, "fftw_tridiagonal", sizeof(box.poisson)));
+  PetscCall(FluidCreate(&box, &b->fluid));
   PetscCall(StokesCreate(b->fluid, &b->stokes));
   PetscCall(WallsCreate(b->fluid, &b->walls));
   PetscCall(PlaceMarkers(b, kernel));
@@ -107,14 +108,15 @@ static PetscErrorCode SolveWith(BoxGrid *b, const PetscScalar d[]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* u of the force and the source; where the Stokes solve is a projection, with the wall forces that make it exact. */
+/* u of the force and the source; where the Stokes solve is a projection, which is next to walls in x alone, with the
+   wall forces that make it exact. */
 static PetscErrorCode Solve(BoxGrid *b) {
   const PetscInt n = b->walls->n;
   PetscFunctionBeginUser;
   PetscCall(SolveWith(b, NULL));
   if (!n) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(WallsSlip(b->walls, StokesPotential(b->stokes), b->d));
-  PetscCall(WallsInvert(b->walls, WALL_SWEEPS, b->d));
+  PetscCall(WallsInvert(b->walls, b->d));
   for (PetscInt k = 0; k < n; k++) b->d[k] = -b->d[k];
   PetscCall(SolveWith(b, b->d));
   PetscFunctionReturn(PETSC_SUCCESS);

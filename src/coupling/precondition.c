@@ -161,13 +161,11 @@ static PetscErrorCode SetUpChat(Preconditioner p) {
 
 PetscErrorCode PreconditionerSetUp(Preconditioner p) {
   const Coupling c = p->unknowns->coupling;
-  const Layout l = c->bodies->layout;
   const Ageing *a = &p->age;
   PetscFunctionBeginUser;
   p->now = (Application){0};
   p->failed = PETSC_FALSE;
   if (!CouplingHasBodies(c)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(WallsSetMarkers(p->unknowns->walls, l->n, c->markers->X + 2 * l->first));
   if (p->solid) PetscCall(ObstacleBlockSetUp(p->solid, &p->failed));
   if (p->failed || !CouplingHasMembrane(c)) PetscFunctionReturn(PETSC_SUCCESS);
   if (p->type == MOBILITY_ILU) PetscCall(SetUpChat(p));
@@ -250,11 +248,9 @@ PetscErrorCode PreconditionerApply(Preconditioner p, Vec r, Vec z) {
   d = V + UnknownsWalls(u);
   UnknownsScale(u, PETSC_TRUE, V);
   PetscCall(UnknownsGatherWalls(u, d, p->d));
-  PetscCall(WallsInvert(u->walls, WALLS_SWEEPS, p->d));
+  PetscCall(WallsInvert(u->walls, p->d));
   PetscCall(PetscArraycpy(d, p->d + u->first_wall, u->wall));
   if (CouplingHasBodies(u->coupling)) {
-    PetscCall(WallsMarkerVelocity(u->walls, CouplingGridPart(u->coupling, u->coupling->fluid->alpha),
-                                  V)); /* block triangular: the walls' flow moves the markers */
     if (p->solid) PetscCall(ObstacleBlockBegin(p->solid, V + u->velocity, V));
     if (p->patterns) PetscCall(PatternsSolve(p->patterns, V, sigma));
     if (p->blocks) PetscCall(DenseBlocksSolve(p->blocks, V, sigma));

@@ -255,7 +255,7 @@ static PetscErrorCode CreateMatrix(RowTransform t, SineMatrixKind kind) {
   const PetscInt n = t->n;
   PetscFunctionBeginUser;
   t->width = n;
-  PetscCall(SineMatrixCreate(kind, n, 1, &t->matrix));
+  PetscCall(SineMatrixCreate(kind, n, &t->matrix));
   for (int end = 0; end < 2; end++) t->ends[end] = t->matrix.matrix[0] + (end ? (n - 1) * t->matrix.stride : 0);
   t->modes = fftw_alloc_real((size_t)n);
   PetscCall(PetscMalloc2(n, &t->lambda, n, &t->scale));

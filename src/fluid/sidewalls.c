@@ -26,7 +26,6 @@ PetscErrorCode SideWallsCreate(Grid g, RowTransform t, StreamFactors factors, Si
   s->half = half;
   PetscCall(PetscCalloc5(w, &s->curl[0], w, &s->curl[1], w, &s->velocity[0], w, &s->velocity[1], w, &s->even));
   PetscCall(PetscMalloc5(n, &s->v[0], n, &s->v[1], n, &s->d[0], n, &s->d[1], 2 * half, &s->work));
-  for (int q = 0; q < SIDE_SYMMETRIES; q++) PetscCall(PetscMalloc1(half * half, &s->inverse[q]));
   PetscCall(RowTransformEnds(t, s->curl[0], s->curl[1]));
   for (PetscInt k = 0; k < t->width; k++) s->curl[0][k] *= -1; /* v_{i+1} - v_i at the nodes next to the walls */
   PetscCall(PetscMalloc1(t->width, &norm));
@@ -140,32 +139,38 @@ static PetscErrorCode Fill(SideWalls s, PetscInt even, PetscReal alpha, PetscRea
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A := (1 + c A)^-1, A of size n. */
+/* A := (1 + c A)^-1, A symmetric of size n, 1 + c A positive definite. */
 static PetscErrorCode Invert(PetscInt n, PetscReal c, PetscReal A[]) {
-  PetscBLASInt size, info, *pivot, room;
-  PetscReal *work;
+  PetscBLASInt size, info;
   PetscFunctionBeginUser;
   PetscCall(PetscBLASIntCast(n, &size));
-  PetscCall(PetscBLASIntCast(64 * n, &room));
-  PetscCall(PetscMalloc2(n, &pivot, room, &work));
   for (PetscInt k = 0; k < n * n; k++) A[k] = c * A[k] + (k % (n + 1) ? 0 : 1);
-  PetscCallBLAS("LAPACKgetrf", LAPACKgetrf_(&size, &size, A, &size, pivot, &info));
+  PetscCallBLAS("LAPACKpotrf", LAPACKpotrf_("L", &size, A, &size, &info));
   PetscCheck(!info, PETSC_COMM_SELF, PETSC_ERR_PLIB, "walls' forces: LAPACK says %d", (int)info);
-  PetscCallBLAS("LAPACKgetri", LAPACKgetri_(&size, A, &size, pivot, work, &room, &info));
-  PetscCall(PetscFree2(pivot, work));
+  PetscCallBLAS("LAPACKpotri", LAPACKpotri_("L", &size, A, &size, &info));
+  for (PetscInt j = 0; j < n; j++) /* the triangle that it leaves */
+    for (PetscInt i = j + 1; i < n; i++) A[i * n + j] = A[j * n + i];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Row j's numbers are taken times this, by which the systems are symmetric: the middle one is its own mirror image. */
+static PetscReal RowFactor(SideWalls s, PetscInt j) {
+  return 2 * j + 1 == s->faces ? 1 / PETSC_SQRT2 : 1;
+}
+
 PetscErrorCode SideWallsSet(SideWalls s, PetscReal alpha, PetscReal nu) {
-  const PetscReal c = 2 * nu / PetscSqr(s->grid->h);
+  const PetscReal c = 2 * nu / PetscSqr(s->grid->h), middle = RowFactor(s, s->half - 1);
+  const PetscInt half = s->half;
   PetscFunctionBeginUser;
   if (s->alpha == alpha) PetscFunctionReturn(PETSC_SUCCESS);
   s->alpha = alpha;
+  for (int q = 0; q < SIDE_SYMMETRIES && !s->inverse[q]; q++) PetscCall(PetscMalloc1(half * half, &s->inverse[q]));
   for (PetscInt even = 0; even < 2; even++) PetscCall(Fill(s, even, alpha, nu, &s->inverse[2 * even]));
   for (int q = 0; q < SIDE_SYMMETRIES; q++) {
-    if (s->faces % 2) /* the middle row is its own mirror image: its force once, in opposite rows none */
-      for (PetscInt a = 0; a < s->half; a++) s->inverse[q][(s->half - 1) * s->half + a] *= q % 2 ? 0 : 0.5;
-    PetscCall(Invert(s->half, c, s->inverse[q]));
+    PetscReal *last = s->inverse[q] + (half - 1) * half;
+    for (PetscInt a = 0; a < half; a++) last[a] *= middle;
+    for (PetscInt b = 0; b < half; b++) s->inverse[q][b * half + half - 1] *= middle;
+    PetscCall(Invert(half, c, s->inverse[q]));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -197,12 +202,12 @@ PetscErrorCode SideWallsForces(SideWalls s, PetscReal nu) {
     const PetscReal across = q / 2 ? -1 : 1, along = q % 2 ? -1 : 1; /* an even chi moves v up here, down there */
     for (PetscInt j = 0; j < half; j++) {
       const PetscInt m = n - 1 - j;
-      x[j] = 0.25 * (s->v[0][j] + across * s->v[1][j] + along * (s->v[0][m] + across * s->v[1][m]));
+      x[j] = RowFactor(s, j) / 4 * (s->v[0][j] + across * s->v[1][j] + along * (s->v[0][m] + across * s->v[1][m]));
     }
     Product(half, s->inverse[q], x, y);
     for (PetscInt j = 0; j < half; j++) {
       const PetscInt m = n - 1 - j;
-      const PetscReal d = -c * y[j];
+      const PetscReal d = -c * y[j] / RowFactor(s, j);
       s->d[0][j] += d;
       s->d[1][j] += across * d;
       if (m == j) continue;

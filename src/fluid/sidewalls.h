@@ -21,8 +21,8 @@ struct _p_SideWalls {
   PetscInt *even;         /* [modes] whether a mode's chi is the same next to both walls */
   PetscReal *curl[2];     /* [width] modes of h times the curl of a unit force on a face next to the left, right wall */
   PetscReal *velocity[2]; /* [width] v next to a wall of a mode of chi/h */
-  PetscReal *inverse[SIDE_SYMMETRIES]; /* [half][half] of 1 + c B: v the same on both walls or opposite, from row to row
-                                          downwards the same or opposite */
+  PetscReal *inverse[SIDE_SYMMETRIES]; /* [half][half] of 1 + c B, NULL at first: v the same on both walls or opposite,
+                                          from row to row downwards the same or opposite */
   PetscReal *v[2], *d[2];              /* [faces] at the left, right wall; forces (length/time^2) */
   PetscReal *work;                     /* [2][half] */
 };

@@ -14,7 +14,7 @@ static PetscReal Entry(SineMatrixKind kind, PetscInt n, PetscInt k, PetscInt j, 
   return sine[(k * (2 * j + 1) + n) % (4 * n)] * (k == 0 ? PETSC_SQRT2 / 2 : 1);
 }
 
-PetscErrorCode SineMatrixCreate(SineMatrixKind kind, PetscInt n, PetscReal scale, SineMatrix *m) {
+PetscErrorCode SineMatrixCreate(SineMatrixKind kind, PetscInt n, SineMatrix *m) {
   const PetscInt N = kind == SINE_MATRIX_ENTRIES ? n + 1 : n;
   PetscReal sine[4 * (SINE_MATRIX_MOST + 1)];
   PetscFunctionBeginUser;
@@ -24,7 +24,7 @@ PetscErrorCode SineMatrixCreate(SineMatrixKind kind, PetscInt n, PetscReal scale
   for (int way = 0; way < 2; way++) PetscCall(PetscCalloc1(n * m->stride, &m->matrix[way]));
   for (PetscInt k = 0; k < n; k++)
     for (PetscInt j = 0; j < n; j++)
-      m->matrix[0][j * m->stride + k] = m->matrix[1][k * m->stride + j] = scale * PetscSqrtReal(2.0 / N) *
+      m->matrix[0][j * m->stride + k] = m->matrix[1][k * m->stride + j] = PetscSqrtReal(2.0 / N) *
                                                                           Entry(kind, n, k, j, sine);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -14,9 +14,9 @@ typedef struct {
   PetscReal *matrix[2]; /* forward and backward, its transpose; NULL where there is none */
 } SineMatrix;
 
-/* SineMatrixCreate - of n entries, scale times an orthonormal one; none where they are too many. SineMatrixWave - modes
+/* SineMatrixCreate - of n entries, orthonormal; none where they are too many. SineMatrixWave - modes
    k = 0 .. n - 1 are waves of phase pi SineMatrixWave(kind, n, k) per entry. Not collective. */
-PETSC_EXTERN PetscErrorCode SineMatrixCreate(SineMatrixKind kind, PetscInt n, PetscReal scale, SineMatrix *m);
+PETSC_EXTERN PetscErrorCode SineMatrixCreate(SineMatrixKind kind, PetscInt n, SineMatrix *m);
 PETSC_EXTERN PetscErrorCode SineMatrixDestroy(SineMatrix *m);
 PETSC_EXTERN PetscReal SineMatrixWave(SineMatrixKind kind, PetscInt n, PetscInt k);
 

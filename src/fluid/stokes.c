@@ -181,23 +181,13 @@ static PetscErrorCode SolveInBox(Stokes s, Vec r_u, Vec r_p, Vec u, Vec p) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The solve without regard to the flux. */
-static PetscErrorCode Solve(Stokes s, Vec r_u, Vec r_p, Vec u, Vec p) {
-  Fluid f = s->fluid;
+/* w = H^-1 r_u;  q = r_p - G^T w;  psi = L^-1 q, the potential over alpha;  u = w - G psi;  p = alpha psi - nu q */
+static PetscErrorCode Project(Stokes s, Vec r_u, Vec r_p, Vec u, Vec p) {
+  const Fluid f = s->fluid;
   PetscFunctionBeginUser;
-  if (s->banded) {
-    PetscCall(BandedStokesSolve(s->banded, r_u, r_p, u, p));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  if (s->box) {
-    PetscCall(SolveInBox(s, r_u, r_p, u, p));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  /* w = H^-1 r_u;  q = r_p - G^T w */
   PetscCall(FluidSolveHelmholtz(f, r_u, u));
   PetscCall(GridGradientTranspose(f->grid, -1, u, s->q));
   if (r_p) PetscCall(VecAXPY(s->q, 1, r_p));
-  /* psi = L^-1 q, the potential over alpha;  u = w - G psi;  p = alpha psi - nu q */
   PetscCall(FluidSolvePoisson(f, s->q, s->psi));
   PetscCall(GridGradient(f->grid, -1, s->psi, PETSC_TRUE, u));
   PetscCall(Pressure(s, p));
@@ -207,8 +197,18 @@ static PetscErrorCode Solve(Stokes s, Vec r_u, Vec r_p, Vec u, Vec p) {
 
 PetscErrorCode StokesSolve(Stokes s, Vec r_u, Vec r_p, Vec u, Vec p) {
   PetscFunctionBeginUser;
-  PetscCall(Solve(s, r_u, r_p, u, p));
+  if (s->box) {
+    PetscCall(SolveInBox(s, r_u, r_p, u, p));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(s->banded ? BandedStokesSolve(s->banded, r_u, r_p, u, p) : Project(s, r_u, r_p, u, p));
   if (s->flux) PetscCall(ZeroFluxCorrect(s->flux, u));
   if (s->fluid->held) PetscCall(FluidRemoveMean(s->fluid, u));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode StokesProject(Stokes s, Vec r_u, Vec r_p, Vec u, Vec p) {
+  PetscFunctionBeginUser;
+  PetscCall(s->box ? Project(s, r_u, r_p, u, p) : StokesSolve(s, r_u, r_p, u, p));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

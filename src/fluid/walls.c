@@ -1,21 +1,9 @@
 /* Wall forces: their place on the grid. wallinverse.c finds them. */
 #include "fluid/walls.h"
-#include "base/lanes.h"
-
-#define DECAY 20      /* e^-20: a mode that has decayed so far is not felt */
-#define LONG_WAVES 48 /* modes of a pair whose flow at the markers is kept */
 
 /* The velocity component along the walls of pair dir (0 walls in x, 1 walls in y). */
 static Field Tangential(int dir) {
   return dir ? FIELD_U : FIELD_V;
-}
-
-/* Of whole vectors, with zeros behind the line's end. */
-static PetscErrorCode AllocateLine(const WallPair *p, double **line) {
-  PetscFunctionBeginUser;
-  *line = fftw_alloc_real((size_t)p->length + LANES);
-  PetscCall(PetscArrayzero(*line, p->length + LANES));
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* The lines of pair dir and their transforms: sines between the other pair's walls, Fourier modes where that direction
@@ -30,38 +18,10 @@ static PetscErrorCode CreatePair(Walls w, int dir) {
   p->start = w->n;
   w->n += 2 * p->length;
   PetscCall(PetscMalloc2(p->length, &p->own, p->length, &p->other));
-  for (int side = 0; side < 2; side++) PetscCall(AllocateLine(p, &p->line[side]));
-  if (g->wall[1 - dir])
-    PetscCall(SineMatrixCreate(SINE_MATRIX_ENTRIES, p->length, PetscSqrtReal(2.0 * (p->length + 1)), &p->sines));
-  if (p->sines.matrix[0]) {
-    PetscCall(AllocateLine(p, &p->spare));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
+  for (int side = 0; side < 2; side++) p->line[side] = fftw_alloc_real((size_t)p->length);
   double *line = p->line[0];
   p->forward = p->backward = fftw_plan_r2r_1d((int)p->length, line, line, forward, FFTW_ESTIMATE);
   if (backward != forward) p->backward = fftw_plan_r2r_1d((int)p->length, line, line, backward, FFTW_ESTIMATE);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Room for what pair dir does to the other pair and inside the box. Mode k decays like e^{-sqrt(lambda_k) y}, y = j h
-   at face j of the other pair. */
-static PetscErrorCode CreateReach(Walls w, int dir) {
-  const Grid g = w->fluid->grid;
-  const PetscInt faces = w->pair[1 - dir].length, modes = w->pair[dir].length;
-  CrossSlip *cross = &w->pair[dir].cross;
-  LongWaves *waves = &w->pair[dir].waves;
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(faces + 1, &cross->row));
-  cross->row[0] = 0;
-  for (PetscInt j = 0, reach = modes; j < faces; j++) {
-    while (reach > 1 && 2 * PetscSinReal(PETSC_PI * reach / (2.0 * g->n[1 - dir])) * j > DECAY) reach--;
-    cross->row[j + 1] = cross->row[j] + (reach + LANES - 1) / LANES * LANES;
-  }
-  PetscCall(PetscCalloc1(cross->row[faces], &cross->value));
-  waves->modes = PetscMin(modes, LONG_WAVES);
-  waves->room = (waves->modes + LANES - 1) / LANES * LANES;
-  PetscCall(PetscCalloc1(2 * waves->room * g->n[dir], &waves->profile));
-  for (int side = 0; side < 2; side++) PetscCall(PetscCalloc1(waves->room, &waves->amplitude[side]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -77,23 +37,14 @@ PetscErrorCode WallsCreate(Fluid fluid, Walls *out) {
   if (StokesIsExact(fluid)) PetscFunctionReturn(PETSC_SUCCESS);
   for (int dir = 1; dir >= 0; dir--)
     if (g->wall[dir]) PetscCall(CreatePair(w, dir));
-  for (int dir = 0; dir < 2 && g->wall[0] && g->wall[1]; dir++) PetscCall(CreateReach(w, dir));
-  PetscCall(PetscMalloc4(w->n, &w->slip, longest, &w->work[0], longest, &w->work[1], longest, &w->work[2]));
+  PetscCall(PetscMalloc3(longest, &w->work[0], longest, &w->work[1], longest, &w->work[2]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode DestroyPair(WallPair *p) {
   PetscFunctionBeginUser;
   PetscCall(PetscFree2(p->own, p->other));
-  PetscCall(PetscFree(p->cross.value));
-  PetscCall(PetscFree(p->cross.row));
-  PetscCall(PetscFree(p->waves.profile));
-  for (int side = 0; side < 2; side++) {
-    PetscCall(PetscFree(p->waves.amplitude[side]));
-    if (p->length) fftw_free(p->line[side]);
-  }
-  fftw_free(p->spare);
-  PetscCall(SineMatrixDestroy(&p->sines));
+  for (int side = 0; side < 2; side++) fftw_free(p->line[side]);
   if (p->backward != p->forward) fftw_destroy_plan(p->backward);
   if (p->forward) fftw_destroy_plan(p->forward);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -104,8 +55,7 @@ PetscErrorCode WallsDestroy(Walls *walls) {
   PetscFunctionBeginUser;
   if (!w) PetscFunctionReturn(PETSC_SUCCESS);
   for (int dir = 0; dir < 2; dir++) PetscCall(DestroyPair(&w->pair[dir]));
-  PetscCall(PetscFree(w->flow));
-  PetscCall(PetscFree4(w->slip, w->work[0], w->work[1], w->work[2]));
+  PetscCall(PetscFree3(w->work[0], w->work[1], w->work[2]));
   PetscCall(PetscFree(*walls));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

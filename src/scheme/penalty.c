@@ -57,7 +57,7 @@ static PetscErrorCode Step_Penalty(Scheme s, PetscReal most) {
   /* 1  forces of springs and bending at X^n */
   PetscCall(Momentum(s, d));
   /* 2  H u* = r,  L psi = -(G^T u* + bc2),  u = u* - G psi,  dp = psi/dt + nu (G^T u* + bc2) */
-  PetscCall(StokesSolve(d->stokes, d->r, d->constraint, q->w, d->dp));
+  PetscCall(StokesProject(d->stokes, d->r, d->constraint, q->w, d->dp));
   PetscCall(VecAXPY(q->p, 1, d->dp));
   PetscCall(SchemeMeasureDivergence(s, q->w, s->fluid->bc2));
   if (!CouplingHasMembrane(s->coupling)) PetscFunctionReturn(PETSC_SUCCESS);
