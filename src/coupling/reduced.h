@@ -7,7 +7,7 @@
    A Stokes solve gives u and p for any force, so the unknowns are V, F of obstacles, sigma, and forces d on the faces
    next to walls, where the Stokes solve is not exact: (u, p) = Stokes(f - E^T F/h^2 + d, -bc2), V + (v/a0) dV/dt - E u
    + C F = k,    Dm V/h^2 = g,    d + (what the Stokes solve leaves at the walls) = 0. A product costs one Stokes solve;
-   where x is periodic one for the velocity at the markers only (fluid/stream.h), u and p follow from the solution's
+   where fluid/stream.h gives it one for the velocity at the markers only, u and p follow from the solution's
    forces.
    In unbounded fluid there is no u on a grid (E = 0) and C is all of the mobility: a product is dense work on markers,
    and u and p stay zero. */
@@ -63,7 +63,7 @@ PETSC_EXTERN PetscErrorCode ReducedResidual(Reduced reduced, Vec added, Vec f, V
                                             Vec w, Vec p, Vec residual, StreamMeasures *measures);
 
 /* ReducedNeedsNoPressure - whether a problem can be solved without p on the grid, and without u where its forces are
-   those of markers alone, as in quasi-steady flow: disturbances where x is periodic. ReducedFields - then they are the
+   those of markers alone, as in quasi-steady flow: disturbances by fluid/stream.h. ReducedFields - then they are the
    Stokes solve's for f, source and mean as ReducedResidual left them. Not collective; collective. */
 PETSC_EXTERN PetscBool ReducedNeedsNoPressure(Reduced reduced);
 PETSC_EXTERN PetscErrorCode ReducedFields(Reduced reduced, Vec f, Vec source, const PetscReal mean[2], Vec w, Vec p);

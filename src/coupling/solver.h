@@ -24,8 +24,8 @@ typedef struct {
 
 typedef enum { TRIAL_NONE, TRIAL_WANTED, TRIAL_MADE } TrialState;
 
-/* What the first product of a solve leaves behind where x is periodic: the whole residual at x + scale z, the forces of
-   which are in f then. */
+/* What the first product of a solve leaves behind where fluid/stream.h makes products: the whole residual at x + scale
+   z, the forces of which are in f then. */
 typedef struct {
   TrialState state;
   const CoupledProblem *problem; /* borrowed, of the solve */

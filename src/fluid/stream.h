@@ -1,12 +1,13 @@
-/* The velocity alone of an unsteady Stokes solve, H u + G p = r_u, G^T u = 0, in a box that is periodic in x: what a
-   Krylov iteration needs of it. Rows of forces come in from below and rows of velocity go out from above, one at a
-   time, so that neither is ever an array over the grid.
+/* The velocity alone of an unsteady Stokes solve, H u + G p = r_u, G^T u = 0, in a box that is periodic in x, or
+   has walls both ways: what a Krylov iteration needs of it. Rows of forces come in from below and rows of velocity go
+   out from above, one at a time, so that neither is ever an array over the grid.
 
    On the nodes between faces, chi with u = d_y chi, v = -d_x chi has no divergence, and the curl of the momentum
    equation has no pressure (docs/fluid.md, Stream function):
        (alpha - nu (d_xx + d_yy)) (-(d_xx + d_yy)) chi = d_x r_v - d_y r_u,
    with chi = 0 and d_y chi = 0 on walls. One Fourier transform along x there and one back, a fourth-order recurrence in
-   y between them. The mean flow, mode 0, is a tridiagonal problem by itself. */
+   y between them. The mean flow, mode 0, is a tridiagonal problem by itself. Between walls in x, modes are sines, there
+   is no mean flow, and what holds the fluid at the walls is a force (sidewalls.h). */
 #pragma once
 #include "fluid/flux.h"
 #include "fluid/streammeter.h"
@@ -24,13 +25,13 @@ typedef struct {
   const PetscScalar *(*force)(void *ctx, Field f, PetscInt j,
                               PetscScalar work[]);                     /* may be work[n_x], which it fills */
   void (*velocity)(void *ctx, Field f, PetscInt j, PetscScalar row[]); /* downwards; to u it may add what it has */
-  const PetscReal *mean[2];  /* [rows of the whole grid] added to every u and v of a row, of v zero on walls; may be
-                                NULL, */
+  const PetscReal *mean[2];  /* [rows of the whole grid] added to every u and v of a row, of v zero on walls in y,
+                                of u zero between walls in x; may be NULL, */
   const PetscScalar *source; /* [rows][n_x] G^T of these and of what `velocity` adds; NULL: zero */
 } StreamRows;
 
-/* StreamCreate - for a fluid in a box that is periodic in x, whose alpha it follows; flux: borrowed, NULL unless the
-   fluid may carry no flux along x. Not collective. */
+/* StreamCreate - for a fluid in a box that is periodic in x, or has walls both ways, whose alpha it follows; flux:
+   borrowed, NULL unless the fluid may carry no flux along x. Not collective. */
 PETSC_EXTERN PetscErrorCode StreamCreate(Fluid fluid, ZeroFlux flux, Stream *stream);
 PETSC_EXTERN PetscErrorCode StreamDestroy(Stream *stream);
 

@@ -22,7 +22,7 @@ typedef struct {
   StreamMeasures own; /* of this rank so far */
 } * StreamMeter;
 
-/* StreamMeterCreate - for a grid that is periodic in x and its rows' transform. Not collective. */
+/* StreamMeterCreate - for a grid and its transform of rows of nodes. Not collective. */
 PETSC_EXTERN PetscErrorCode StreamMeterCreate(Grid grid, RowTransform t, StreamMeter *meter);
 PETSC_EXTERN PetscErrorCode StreamMeterDestroy(StreamMeter *meter);
 

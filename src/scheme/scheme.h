@@ -111,8 +111,8 @@ PETSC_EXTERN PetscErrorCode SchemeDestroy(Scheme *scheme);
 PETSC_EXTERN PetscErrorCode SchemeStep(Scheme scheme, PetscReal most, PetscReal reserve);
 
 /* SchemeFields - make the velocity and the pressure of the state, w and p, where the step has not: a step needs no
-   pressure where x is periodic, and a quasi-steady one no velocity (docs/membrane.md, One step). To be called before
-   they are read. Collective. */
+   pressure where fluid/stream.h gives the velocity, and a quasi-steady one no velocity (docs/membrane.md, One step). To
+   be called before they are read. Collective. */
 PETSC_EXTERN PetscErrorCode SchemeFields(Scheme scheme);
 
 /* SchemeRemember, SchemeRecall - what the solvers have kept from earlier steps (when their blocks were made, and where
