@@ -32,6 +32,11 @@ void dgetrs_(char *t, int *n, int *m, double *A, int *lda, int *p, double *X, in
                                                                                                    ldx, info);
   for (int k = 0; k < *n * *m; k++) X[k] = nudged(X[k]);
 }
+void dpotri_(char *t, int *n, double *A, int *lda, int *info) {
+  ((void (*)(char *, int *, double *, int *, int *))real("dpotri_"))(t, n, A, lda, info);
+  for (int j = 0; j < *n; j++)
+    for (int i = j; i < *n; i++) A[j * *lda + i] = nudged(A[j * *lda + i]);
+}
 void dpotrs_(char *t, int *n, int *m, double *A, int *lda, double *X, int *ldx, int *info) {
   ((void (*)(char *, int *, int *, double *, int *, double *, int *, int *))real("dpotrs_"))(t, n, m, A, lda, X, ldx, info);
   for (int k = 0; k < *n * *m; k++) X[k] = nudged(X[k]);
