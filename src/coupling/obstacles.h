@@ -71,7 +71,7 @@ PETSC_EXTERN void ObstaclesOrder(Obstacles obstacles, const PetscReal own[], Pet
 /* ObstaclesPressure - y += beta N N^T F, own parts F[2w], y[2w]. Not collective. */
 PETSC_EXTERN void ObstaclesPressure(Obstacles obstacles, const PetscScalar F[], PetscScalar y[]);
 
-/* ObstaclesScale - y times, or (inverse) over, the factor (1 + h alpha)/ds of the rows: of the residuals of own
+/* ObstaclesScale - y times, or (inverse) over, the factor weight/ds of the rows: of the residuals of own
    obstacles, y[2w] (unknowns.h). Not collective. */
 PETSC_EXTERN void ObstaclesScale(Obstacles obstacles, PetscReal weight, PetscBool inverse, PetscScalar y[]);
 

@@ -166,7 +166,6 @@ static PetscErrorCode FreeReference(CoupledSolver s, const CoupledProblem *q) {
 
 /* The square of the norm of k of the own obstacles with its factors. */
 static PetscErrorCode ObstacleReference(CoupledSolver s, Vec k, PetscReal *sum) {
-  const Fluid f = s->coupling->fluid;
   const Obstacles o = s->coupling->bodies->obstacles;
   const PetscInt n = s->unknowns->solid;
   const PetscScalar *a;
@@ -177,7 +176,7 @@ static PetscErrorCode ObstacleReference(CoupledSolver s, Vec k, PetscReal *sum) 
   PetscCall(VecGetArrayRead(k, &a));
   PetscCall(PetscArraycpy(data, a + s->unknowns->velocity, n));
   PetscCall(VecRestoreArrayRead(k, &a));
-  ObstaclesScale(o, 1 + f->grid->h * f->alpha, PETSC_FALSE, data);
+  ObstaclesScale(o, UnknownsWeight(s->unknowns), PETSC_FALSE, data);
   for (PetscInt i = 0; i < n; i++) *sum += PetscSqr(data[i]);
   PetscCall(PetscFree(data));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -97,10 +97,13 @@ PetscErrorCode UnknownsGatherWalls(Unknowns u, const PetscScalar own[], PetscSca
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscReal UnknownsTensionScale(Unknowns u, PetscInt v) {
+PetscReal UnknownsWeight(Unknowns u) {
   const Fluid f = u->coupling->fluid;
-  const PetscReal h = f->grid->h;
-  return PetscSqr(h) / u->coupling->membrane->ds[v] * (1 + h * f->alpha);
+  return f->nu + f->grid->h * f->alpha;
+}
+
+PetscReal UnknownsTensionScale(Unknowns u, PetscInt v) {
+  return PetscSqr(u->coupling->fluid->grid->h) / u->coupling->membrane->ds[v] * UnknownsWeight(u);
 }
 
 /* h/R0, R0 of the smallest vesicle: a force on the row of faces at a wall, where the fluid sticks, gives it a velocity
@@ -126,7 +129,7 @@ void UnknownsScale(Unknowns u, PetscBool inverse, PetscScalar y[]) {
     for (PetscInt k = 0; k < n; k++) sigma[k] = inverse ? sigma[k] / tension : sigma[k] * tension;
   }
   const Obstacles o = u->coupling->bodies->obstacles;
-  if (o) ObstaclesScale(o, 1 + f->grid->h * f->alpha, inverse, y + u->velocity);
+  if (o) ObstaclesScale(o, UnknownsWeight(u), inverse, y + u->velocity);
   const PetscReal wall = WallsScale(u);
   for (PetscInt k = UnknownsWalls(u); k < UnknownsWalls(u) + u->wall; k++) y[k] = inverse ? y[k] / wall : y[k] * wall;
 }

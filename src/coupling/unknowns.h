@@ -30,10 +30,10 @@ PETSC_EXTERN PetscErrorCode UnknownsUnpack(Unknowns unknowns, Vec x, Vec V, Vec 
 PETSC_EXTERN PetscErrorCode UnknownsGatherWalls(Unknowns unknowns, const PetscScalar own[], PetscScalar all[]);
 
 /* UnknownsScale - rows of this rank's residual y times their factors (inverse: over them), by which a residual of the
-   membrane is a surface divergence (1/time): (1 + h alpha) h^2/ds for Dm V/h^2 = g, 1 + h alpha weighing short steps,
-   where the momentum's right-hand side u alpha would hide it; for V = E u - Theta F that over h^2, an edge's
-   difference, times the root of the force it means, bending over viscous (an energy norm); for obstacles (1 + h
-   alpha)/ds; for wall forces h/R0, 1 at most, R0 of the smallest vesicle. Not collective. */
+   membrane is a surface divergence times nu, as forces are: (nu + h alpha) h^2/ds for Dm V/h^2 = g, h alpha weighing
+   short steps, where the momentum's right-hand side u alpha would hide it; for V = E u - Theta F that over h^2, an
+   edge's difference, times the root of the force it means, bending over viscous (an energy norm); for obstacles (nu +
+   h alpha)/ds; for wall forces h/R0, 1 at most, R0 of the smallest vesicle. Not collective. */
 PETSC_EXTERN void UnknownsScale(Unknowns unknowns, PetscBool inverse, PetscScalar y[]);
 
 /* UnknownsTension - where the tensions start in a rank's part; UnknownsWalls - the wall forces. Not collective. */
@@ -44,5 +44,7 @@ static inline PetscInt UnknownsWalls(Unknowns u) {
   return u->velocity + u->solid + u->tension;
 }
 
-/* UnknownsTensionScale - the factor of the rows Dm V/h^2 = g of one vesicle. Not collective. */
+/* UnknownsWeight - nu + h alpha. UnknownsTensionScale - the factor of the rows Dm V/h^2 = g of one vesicle. Not
+ * collective. */
+PETSC_EXTERN PetscReal UnknownsWeight(Unknowns unknowns);
 PETSC_EXTERN PetscReal UnknownsTensionScale(Unknowns unknowns, PetscInt vesicle);
