@@ -146,3 +146,25 @@ def test_a_file_s_curve_turns_about_its_centroid(tmp_path):
     np.testing.assert_allclose(last, 1j * (first - about) + about + (0.2 + 0.1j), rtol=0, atol=1e-6)
     ends = [spectral_measures(np.c_[z.real, z.imag])[2] for z in (first, last)]
     assert abs(ends[0] - about) < 1e-6 and abs(ends[1] - about - (0.2 + 0.1j)) < 1e-6
+
+
+#: In other units of time and mass: the same flow with a viscosity, a rate and a bending stiffness that go with them.
+UNITS = {
+    "quasi-steady": ("-fluid_inertia none -flow_rate 1 -time_step 0.1 -time_end 2", "-fluid_viscosity 64 -vesicle_bending 1.28"),
+    "unsteady": (
+        "-fluid_inertia unsteady -flow_rate 1 -time_step 0.1 -time_end 2",
+        "-fluid_viscosity 64 -vesicle_bending 81.92 -flow_rate 64 -time_step 0.0015625 -time_end 0.03125",
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("walls", ["", "-domain_bc_x periodic"], ids=["box", "channel"])
+@pytest.mark.parametrize("kind", UNITS)
+def test_other_units_take_the_same_iterations(kind, walls, tmp_path):
+    """The tolerance is relative to forces, and so are the rows that it is compared with."""
+    scene, other = UNITS[kind]
+    scene = f"{COUPLED} -domain_cells 48,48 -flow_type shear -vesicle_semi_axes 0.3,0.5 -vesicle_bending 0.02 {walls} {scene}"
+    one = run_petves(tmp_path / "one", scene).series
+    two = run_petves(tmp_path / "two", f"{scene} {other}").series
+    np.testing.assert_array_equal(two["coupled_its"], one["coupled_its"])
+    np.testing.assert_allclose(two["inclination"], one["inclination"], rtol=0, atol=1e-9)
