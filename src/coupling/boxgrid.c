@@ -2,6 +2,7 @@
 #include "coupling/doubleblock.h"
 #include "coupling/nearblock.h"
 #include "fluid/walls.h"
+#include "markers/respond.h"
 
 typedef struct {
   Fluid fluid;
@@ -175,28 +176,44 @@ static void AddEntry(const BoxAxis axis[2], PetscBool dipoles, int ci, int cj, c
     }
 }
 
-/* Unit part cj of place j's source, on the grid. */
-static PetscErrorCode Spread(BoxGrid *b, PetscInt j, int cj) {
+/* Unit part cj of a dipole at place j, on the grid. */
+static PetscErrorCode SpreadDipole(BoxGrid *b, PetscInt j, int cj) {
   const Grid g = b->fluid->grid;
+  PetscReal unit[DIPOLE_COUNT] = {0};
+  DipoleSpot spot[DIPOLE_SPOTS];
   PetscScalar sum;
   PetscFunctionBeginUser;
+  unit[cj] = 1;
+  DipoleSpots(g, b->fluid->nu, b->markers->X + 2 * j, spot);
   PetscCall(VecSet(b->force, 0));
-  if (b->lattice->dipole) {
-    PetscReal unit[DIPOLE_COUNT] = {0};
-    DipoleSpot spot[DIPOLE_SPOTS];
-    unit[cj] = 1;
-    DipoleSpots(g, b->fluid->nu, b->markers->X + 2 * j, spot);
-    PetscCall(VecSet(b->source, 0));
-    PetscCall(DipolesSpread(g, 1, spot, unit, b->force, b->source));
-    PetscCall(VecSum(b->source, &sum));
-    PetscCall(VecShift(b->source, -sum / ((PetscReal)g->n[0] * g->n[1])));
-    PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecSet(b->source, 0));
+  PetscCall(DipolesSpread(g, 1, spot, unit, b->force, b->source));
+  PetscCall(VecSum(b->source, &sum));
+  PetscCall(VecShift(b->source, -sum / ((PetscReal)g->n[0] * g->n[1])));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* U, the velocity at all places of unit part cj of place j's source: of forces row by row where that can be. */
+static PetscErrorCode Respond(BoxGrid *b, PetscInt j, int cj) {
+  const Stream stream = StokesStream(b->stokes);
+  const PetscReal over = 1 / PetscSqr(b->fluid->grid->h);
+  PetscFunctionBeginUser;
+  if (b->lattice->dipole)
+    PetscCall(SpreadDipole(b, j, cj));
+  else {
+    PetscCall(VecSet(b->F, 0));
+    PetscCall(VecSetValue(b->F, 2 * j + cj, 1, INSERT_VALUES));
+    PetscCall(VecAssemblyBegin(b->F));
+    PetscCall(VecAssemblyEnd(b->F));
+    if (stream) {
+      PetscCall(MarkersRespond(b->markers, stream, NULL, over, b->F, b->U));
+      PetscFunctionReturn(PETSC_SUCCESS);
+    }
+    PetscCall(VecSet(b->force, 0));
+    PetscCall(MarkersSpread(b->markers, over, b->F, b->force));
   }
-  PetscCall(VecSet(b->F, 0));
-  PetscCall(VecSetValue(b->F, 2 * j + cj, 1, INSERT_VALUES));
-  PetscCall(VecAssemblyBegin(b->F));
-  PetscCall(VecAssemblyEnd(b->F));
-  PetscCall(MarkersSpread(b->markers, 1 / PetscSqr(g->h), b->F, b->force));
+  PetscCall(Solve(b));
+  PetscCall(MarkersInterpolate(b->markers, b->u, b->U));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -210,9 +227,7 @@ static PetscErrorCode AddSource(BoxGrid *b, const PetscInt s[2], PetscReal scale
   PetscFunctionBeginUser;
   for (int cj = 0; cj < (dipoles ? DIPOLE_COUNT : 2); cj++) {
     if (cj == 1 && IsSquare(b->axis)) continue;
-    PetscCall(Spread(b, j, cj));
-    PetscCall(Solve(b));
-    PetscCall(MarkersInterpolate(b->markers, b->u, b->U));
+    PetscCall(Respond(b, j, cj));
     PetscCall(VecGetArrayRead(b->U, &U));
     for (PetscInt i = 0; i < x->places * y->places; i++) {
       const PetscInt a[2] = {i % x->places, i / x->places};
