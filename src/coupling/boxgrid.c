@@ -74,11 +74,12 @@ static PetscErrorCode Create(const FluidSpec *spec, const char kernel[], const B
     PetscCall(DoubleImageCreate(b->image, lattice->dipole, &b->twice));
     DoubleImagePlace(b->twice, b->dipole);
   }
+  PetscCall(PetscMalloc1(b->walls->n, &b->d));
+  if (!lattice->dipole && StokesStream(b->stokes)) PetscFunctionReturn(PETSC_SUCCESS); /* nothing on the grid */
   PetscCall(DMCreateGlobalVector(b->fluid->grid->velocity, &b->force));
   PetscCall(VecDuplicate(b->force, &b->r));
   PetscCall(VecDuplicate(b->force, &b->u));
   PetscCall(DMCreateGlobalVector(b->fluid->grid->da[FIELD_P], &b->p));
-  PetscCall(PetscMalloc1(b->walls->n, &b->d));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

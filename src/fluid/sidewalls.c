@@ -7,7 +7,6 @@
 
    and A from chi_{-1} = 0, chi_{-2} = chi_0. The sum of g over all modes is made once for each distance. */
 #include "fluid/sidewalls.h"
-#include "base/lanes.h"
 #include <petscblaslapack.h>
 
 #define NEGLIGIBLE 1e-19 /* of the largest entry */
@@ -25,7 +24,8 @@ PetscErrorCode SideWallsCreate(Grid g, RowTransform t, StreamFactors factors, Si
   s->faces = n;
   s->half = half;
   PetscCall(PetscCalloc5(w, &s->curl[0], w, &s->curl[1], w, &s->velocity[0], w, &s->velocity[1], w, &s->even));
-  PetscCall(PetscMalloc5(n, &s->v[0], n, &s->v[1], n, &s->d[0], n, &s->d[1], 2 * half, &s->work));
+  PetscCall(PetscMalloc4(2 * n, &s->v[0], n, &s->d[0], n, &s->d[1], 2 * half, &s->work));
+  s->v[1] = s->v[0] + n;
   PetscCall(RowTransformEnds(t, s->curl[0], s->curl[1]));
   for (PetscInt k = 0; k < t->width; k++) s->curl[0][k] *= -1; /* v_{i+1} - v_i at the nodes next to the walls */
   PetscCall(PetscMalloc1(t->width, &norm));
@@ -44,7 +44,7 @@ PetscErrorCode SideWallsDestroy(SideWalls *walls) {
   if (!s) PetscFunctionReturn(PETSC_SUCCESS);
   for (int q = 0; q < SIDE_SYMMETRIES; q++) PetscCall(PetscFree(s->inverse[q]));
   PetscCall(PetscFree5(s->curl[0], s->curl[1], s->velocity[0], s->velocity[1], s->even));
-  PetscCall(PetscFree5(s->v[0], s->v[1], s->d[0], s->d[1], s->work));
+  PetscCall(PetscFree4(s->v[0], s->d[0], s->d[1], s->work));
   PetscCall(PetscFree(*walls));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -99,8 +99,7 @@ static void AddWalls(SideWalls s, const ModeDecays *m, PetscReal weight, PetscRe
   for (int symmetry = 0; symmetry < 2; symmetry++) {
     const PetscReal sign = symmetry ? -1 : 1;
     for (int q = 0; q < 2; q++)
-      for (PetscInt j = 0; j < felt; j++)
-        p[q * half + j] = m->t[q][j + 1] + (m->n - j < m->reach ? sign * m->t[q][m->n - j] : 0);
+      for (PetscInt j = 0; j < felt; j++) p[q * half + j] = m->t[q][j + 1] + sign * m->t[q][m->n - j];
     for (PetscInt b = 0; b < felt; b++) {
       PetscReal A[2], *restrict to = B[symmetry] + b * half;
       const PetscReal *restrict p1 = p, *restrict p2 = p + half;
@@ -194,8 +193,8 @@ PetscErrorCode SideWallsForces(SideWalls s, PetscReal nu) {
     for (int side = 0; side < 2; side++) {
       PetscCall(PetscArrayzero(s->v[side], first));
       PetscCall(PetscArrayzero(s->v[side] + end, n - end));
-      PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, s->v[side], (PetscMPIInt)n, MPIU_REAL, MPI_SUM, s->grid->comm));
     }
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, s->v[0], (PetscMPIInt)(2 * n), MPIU_REAL, MPI_SUM, s->grid->comm));
   }
   for (int side = 0; side < 2; side++) PetscCall(PetscArrayzero(s->d[side], n));
   for (int q = 0; q < SIDE_SYMMETRIES; q++) {

@@ -6,7 +6,7 @@ struct _p_Stokes {
   Channel channel;     /* NULL unless x is periodic and y has walls */
   BandedStokes banded; /* NULL unless x is periodic and both fast solves are fftw_tridiagonal's */
   ZeroFlux flux;       /* NULL unless the fluid may carry no flux along x */
-  Stream stream;       /* NULL but where banded is not, and in boxes */
+  Stream stream;       /* where banded is, and in boxes; else NULL */
   PetscBool box;       /* walls in x and in y, and both fast solves are fftw_tridiagonal's: by the stream function */
   Vec q, psi;          /* of the solve by parts */
   Vec r, rest, w;      /* of that by the stream function: forces, and the velocity */

@@ -10,6 +10,7 @@ static inline void Curl(PetscInt n, PetscBool wall, const PetscScalar *restrict 
   if (!wall) curl[n - 1] = v[0] - v[n - 1] + low[n - 1] - high[n - 1];
 }
 
+/* SUM x_i y_i */
 static inline PetscReal Dot(PetscInt n, const PetscReal x[], const PetscReal y[]) {
   Lanes sum = {0};
   PetscReal rest = 0;

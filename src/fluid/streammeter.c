@@ -1,5 +1,5 @@
 #include "fluid/streammeter.h"
-#include "base/lanes.h"
+#include "fluid/streamloops.h"
 
 PetscErrorCode StreamMeterCreate(Grid g, RowTransform t, StreamMeter *out) {
   StreamMeter m;
@@ -54,15 +54,6 @@ PetscReal *StreamMeterNodes(StreamMeter m, PetscInt count) {
   return m->chi[m->now];
 }
 
-static PetscReal SumSquares(PetscInt n, const PetscScalar x[]) {
-  Lanes sum = {0};
-  PetscReal rest = 0;
-  PetscInt i = 0;
-  for (; i + LANES <= n; i += LANES) sum += LanesAt(x + i) * LanesAt(x + i);
-  for (; i < n; i++) rest += PetscSqr(x[i]);
-  return LanesSum(sum) + rest;
-}
-
 /* By Parseval. A row of v has no other mean than what is added to it, one of u between walls in x none. */
 void StreamMeterSquares(StreamMeter m, PetscInt j, const PetscScalar row[], PetscReal mean_u, PetscBool has_v,
                         PetscReal mean_v) {
@@ -75,7 +66,7 @@ void StreamMeterSquares(StreamMeter m, PetscInt j, const PetscScalar row[], Pets
     u += LanesAt(m->norm[0] + k) * of_u * of_u;
     v += LanesAt(m->norm[1] + k) * chi * chi;
   }
-  m->own.square += row ? SumSquares(g->n[0], row) : LanesSum(u) + (PetscReal)g->n[0] * PetscSqr(mean_u);
+  m->own.square += row ? Dot(g->n[0], row, row) : LanesSum(u) + (PetscReal)g->n[0] * PetscSqr(mean_u);
   if (has_v) m->own.square += LanesSum(v) + (PetscReal)g->n[0] * PetscSqr(mean_v);
   if (!(g->first + j)) m->own.slip += mean_u;
   if (g->first + j == g->n[1] - 1) m->own.slip -= mean_u;
