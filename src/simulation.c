@@ -117,7 +117,8 @@ static PetscErrorCode AddContrast(Scene scene, Coupling coupling) {
   PetscCall(PetscMalloc1(scene->shape.vesicles, &ratio));
   for (PetscInt v = 0; v < scene->shape.vesicles; v++) ratio[v] = SceneViscosityRatio(scene, v);
   PetscCall(CouplingAddContrast(coupling, ratio));
-  if (SceneHasBoxPart(scene)) PetscCall(DoubleLayerAddBoxPart(coupling->contrast, &scene->fluid));
+  const PetscBool error = SceneHasBoxPart(scene), all = SceneDipolesMayBeApart(scene);
+  if (error || all) PetscCall(DoubleLayerAddBoxPart(coupling->contrast, &scene->fluid, error, all));
   PetscCall(PetscFree(ratio));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

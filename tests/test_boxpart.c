@@ -336,7 +336,7 @@ static PetscErrorCode CheckDefault(void) {
    minus half. */
 static PetscErrorCode CheckImage(void) {
   enum { PAIRS = 61 };
-  const BoxAxis axis[2] = {{.low = -2, .high = 2}, {.low = 0, .high = 3}};
+  const BoxAxis axis[2] = {{.low = -2, .high = 2, .faded = BOX_FADED}, {.low = 0, .high = 3, .faded = BOX_FADED}};
   PetscReal d[2][PAIRS + 3] = {{0}}, part[PAIRS + 3], off = 0;
   PetscFunctionBeginUser;
   for (int k = 0; k < PAIRS; k++)

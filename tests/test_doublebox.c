@@ -12,7 +12,7 @@
 /* Largest D_whole - D of the double layer over the largest D_whole, between own markers and all tensors. */
 static PetscReal OffBy(const DoubleBox box, const PetscReal D[]) {
   const Layout l = box->markers->layout;
-  const BoxTable *t = &box->table;
+  const BoxTable *t = &box->table[0];
   PetscReal found[2] = {0, 0}, *a, *b;
   (void)PetscMalloc2(2 * t->rank, &a, DIPOLE_COUNT * t->rank, &b);
   for (PetscInt k = l->first; k < l->first + l->n; k++) {
@@ -61,12 +61,12 @@ static PetscErrorCode CheckRegion(const char name[], const char options[], Petsc
   PetscCall(TestWorldCreate(options, &w));
   PetscCall(CouplingAddContrast(w.coupling, &ratio));
   const DoubleLayer s = w.coupling->contrast;
-  PetscCall(DoubleLayerAddBoxPart(s, &w.scene->fluid));
+  PetscCall(DoubleLayerAddBoxPart(s, &w.scene->fluid, PETSC_TRUE, PETSC_FALSE));
   DoubleBoxTakeImages(s->box, NULL, NULL);
   PetscCall(DoubleLayerPlace(s));
   PetscCall(PetscCalloc1(2 * DIPOLE_COUNT * PetscSqr(w.layout->M), &D));
   PetscCall(DoubleBoxMatrix(s->box, 1, D));
-  CHECK((s->box->at != &s->box->table) == small, "%s: %s table", name, small ? "a square's" : "the whole");
+  CHECK((s->box->at != &s->box->table[0]) == small, "%s: %s table", name, small ? "a square's" : "the whole");
   off = OffBy(s->box, D);
   CHECK(off < (small ? 0.01 : 1e-12) && (off > 1e-6) == small, "%s: D within %.1e of its largest", name, off);
   PetscCall(ApplyOffBy(s->box, D, &off));
@@ -87,7 +87,7 @@ static PetscErrorCode CheckImages(const char name[], const char options[]) {
   PetscCall(CouplingAddContrast(w.coupling, &ratio));
   const DoubleLayer s = w.coupling->contrast;
   const PetscInt n = 2 * w.layout->n;
-  PetscCall(DoubleLayerAddBoxPart(s, &w.scene->fluid));
+  PetscCall(DoubleLayerAddBoxPart(s, &w.scene->fluid, PETSC_TRUE, PETSC_FALSE));
   PetscCall(PetscCalloc4(n, &y[0], n, &y[1], n, &D, n, &U));
   for (PetscInt k = 0; k < n; k++) {
     const PetscReal *X = s->near->markers->X + 2 * (w.layout->first + k / 2);
@@ -95,9 +95,9 @@ static PetscErrorCode CheckImages(const char name[], const char options[]) {
   }
   for (int images = 1; images >= 0; images--) {
     if (!images) {
-      PetscCall(BoxRegionDestroy(&s->box->region));
+      PetscCall(BoxRegionDestroy(&s->box->region[0]));
       DoubleBoxTakeImages(s->box, NULL, NULL);
-      for (int k = 0; k < BOX_REGION_SQUARES; k++) s->box->region.square[k] = (BoxSquare){.side = 0};
+      for (int k = 0; k < BOX_REGION_SQUARES; k++) s->box->region[0].square[k] = (BoxSquare){.side = 0};
     }
     PetscCall(DoubleLayerPlace(s));
     CHECK((int)DoubleBoxHasImages(s->box) == images, "%s: a square %s images", name, images ? "with" : "without");

@@ -3,6 +3,7 @@
 
 void BoxAxisChebyshev(PetscInt places, PetscReal low, PetscReal high, BoxAxis *a) {
   a->wall = PETSC_TRUE;
+  a->faded = BOX_FADED;
   a->low = low;
   a->high = high;
   a->modes = 0;
@@ -55,14 +56,14 @@ static inline Lanes ErrorFunction(Lanes x) {
 #define TIE 1e-10 /* of a period: of two images that are as near but for rounding, always the one at -period/2 */
 
 /* Along one period, distances d become the nearest images' and part is multiplied by erfc/2, which falls from 1 about
-   .3 of a period. */
-static inline void Nearest(Lanes period, Lanes *d, Lanes *part) {
+   `faded` of a period. */
+static inline void Nearest(Lanes period, Lanes faded, Lanes *d, Lanes *part) {
   const PetscReal whole = 6755399441055744.; /* 3 2^51: beside it the last bit is 1 */
   const Lanes one = 1 + (Lanes){0}, x = *d / period, from = x - ((x + whole) - whole);
   const Lanes off = from - LanesWhere((LanesBits)(from >= 0.5 - TIE), one);
   const Lanes size = LanesWhere((LanesBits)(off > 0), 2 * off) - off;
   *d -= period * (x - off);
-  *part *= 0.5 - 0.5 * ErrorFunction((size - 0.3) * (MOST / 0.3));
+  *part *= 0.5 - 0.5 * ErrorFunction((size - faded) * (MOST / faded));
 }
 
 void BoxImageRow(const BoxAxis axis[2], PetscInt n, PetscReal *const d[2], PetscReal part[]) {
@@ -71,7 +72,7 @@ void BoxImageRow(const BoxAxis axis[2], PetscInt n, PetscReal *const d[2], Petsc
     for (int dir = 0; dir < 2; dir++) {
       Lanes x = LanesAt(d[dir] + k);
       if (axis[dir].wall) continue;
-      Nearest(axis[dir].high - axis[dir].low + (Lanes){0}, &x, &all);
+      Nearest(axis[dir].high - axis[dir].low + (Lanes){0}, axis[dir].faded + (Lanes){0}, &x, &all);
       LanesPut(x, d[dir] + k);
     }
     LanesPut(all, part + k);
@@ -82,7 +83,7 @@ PetscReal BoxImage(const BoxAxis axis[2], PetscReal d[2]) {
   Lanes x = {d[0], d[1]}, period = {axis[0].high - axis[0].low, axis[1].high - axis[1].low, 1, 1},
         part = 1 + (Lanes){0};
   PetscReal all = 1;
-  Nearest(period, &x, &part);
+  Nearest(period, (Lanes){axis[0].faded, axis[1].faded, 1, 1}, &x, &part);
   for (int dir = 0; dir < 2; dir++) {
     if (axis[dir].wall) continue;
     d[dir] = x[dir];

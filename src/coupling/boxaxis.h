@@ -3,14 +3,16 @@
 #include "scene/fluidspec.h"
 
 #define BOX_PLACES (64 * FLUID_LONGEST_PERIOD) /* largest number of places in a direction */
-#define BOX_WALL_PLACES 16                     /* the same where they are Chebyshev's */
+#define BOX_FADED 0.3
+#define BOX_WALL_PLACES 24 /* the same where they are Chebyshev's */
 
 /* Places in one direction. Between walls a force may be at any of them; where the box is periodic it is at the first
    one, and W depends on the offset alone. */
 typedef struct {
   PetscBool wall;
   PetscReal low, high; /* of the places (length): within the walls, or the period */
-  PetscInt modes;      /* of a period: that are kept of W; 0 between walls */
+  PetscReal faded;     /* of a period: the distance where half of the lattice's mobility is left out (BoxImage), */
+  PetscInt modes;      /* and the modes that are kept of W; 0 between walls */
   PetscInt places;     /* an even number: mirror images in pairs */
   PetscReal place[BOX_PLACES];
   PetscReal weight[BOX_WALL_PLACES]; /* of Chebyshev's places in the barycentric formula */
@@ -29,3 +31,9 @@ PETSC_EXTERN void BoxAxisPolynomials(const BoxAxis *axis, PetscReal x, PetscReal
    collective. */
 PETSC_EXTERN PetscReal BoxImage(const BoxAxis axis[2], PetscReal d[2]);
 PETSC_EXTERN void BoxImageRow(const BoxAxis axis[2], PetscInt n, PetscReal *const d[2], PetscReal part[]);
+
+/* BoxSmoothStep - 0 up to low, 1 from high on. Not collective. */
+static inline PetscReal BoxSmoothStep(PetscReal x, PetscReal low, PetscReal high) {
+  const PetscReal t = PetscMax(0, PetscMin(1, (x - low) / (high - low)));
+  return t * t * (3 - 2 * t);
+}

@@ -124,9 +124,45 @@ static PetscErrorCode Solve(BoxGrid *b) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What the lattice has of a part of place j's source at place i, less what the near field gives of the walls: the
-   velocity L[2]; with the exact images where the smooth part itself is wanted. */
-static void Lattice(BoxGrid *b, PetscInt i, PetscInt j, int part, PetscReal L[2]) {
+/* The unbounded double layer. */
+static void Free(const PetscReal d[2], PetscReal D[2][DIPOLE_COUNT]) {
+  const PetscReal r2 = d[0] * d[0] + d[1] * d[1], q = r2 > 0 ? 1 / (PETSC_PI * r2 * r2) : 0;
+  for (int c = 0; c < 2; c++) {
+    D[c][DIPOLE_XX] = 0.5 * q * d[c] * d[0] * d[0];
+    D[c][DIPOLE_YY] = 0.5 * q * d[c] * d[1] * d[1];
+    D[c][DIPOLE_XY] = q * d[c] * d[0] * d[1];
+  }
+}
+
+/* What fades at d of what is whole at 0. */
+static PetscReal Lost(const BoxAxis axis[2], const PetscReal d[2]) {
+  PetscReal at[2] = {d[0], d[1]}, zero[2] = {0, 0};
+  const PetscReal whole = BoxImage(axis, zero);
+  return (whole - BoxImage(axis, at)) / whole;
+}
+
+void BoxFaded(const BoxAxis axis[2], const PetscReal d[2], PetscReal K[2][DIPOLE_COUNT]) {
+  const PetscReal lost = Lost(axis, d);
+  Free(d, K);
+  for (int k = 0; k < 2 * DIPOLE_COUNT; k++) K[k / DIPOLE_COUNT][k % DIPOLE_COUNT] *= lost;
+}
+
+/* L = K less what fades of the exact double layer D; towards half a period, where images change, (1 - lost) D. */
+static void All(const BoxAxis axis[2], const PetscReal d[2], const PetscReal K[2][DIPOLE_COUNT],
+                PetscReal L[2][DIPOLE_COUNT]) {
+  const PetscReal lost = Lost(axis, d);
+  PetscReal near = 1, D[2][DIPOLE_COUNT];
+  for (int dir = 0; dir < 2; dir++)
+    if (!axis[dir].wall)
+      near *= 1 - BoxSmoothStep(PetscAbsReal(d[dir]) / (axis[dir].high - axis[dir].low), BOX_ALL_OFFSET, 0.5);
+  Free(d, D);
+  for (int c = 0; c < 2; c++)
+    for (int part = 0; part < DIPOLE_COUNT; part++) L[c][part] = near * K[c][part] + (1 - lost - near) * D[c][part];
+}
+
+/* What the lattice has of the parts of place j's source at place i, less what the near field gives of the walls: the
+   velocities L; with the exact images where the smooth part itself is wanted. */
+static void Lattice(BoxGrid *b, PetscInt i, PetscInt j, PetscReal L[2][DIPOLE_COUNT]) {
   const PetscReal *X = b->markers->X, h = b->fluid->grid->h;
   const PetscReal plain[2] = {X[2 * i] - X[2 * j], X[2 * i + 1] - X[2 * j + 1]};
   PetscReal d[2] = {plain[0], plain[1]}, C[4] = {0, 0, 0, 0}, S[4];
@@ -136,16 +172,21 @@ static void Lattice(BoxGrid *b, PetscInt i, PetscInt j, int part, PetscReal L[2]
     PetscReal K[2][DIPOLE_COUNT], exact[2][DIPOLE_COUNT] = {{0}};
     DoubleLatticeParts(b->lattice->dipole, h, BOX_LATTICE_CELLS * h, &b->stencil[2 * i], &b->dipole[DIPOLE_COUNT * j],
                        periods, d, K);
+    if (b->lattice->all) {
+      All(b->axis, d, K, L);
+      return;
+    }
     DoubleImageAdd(b->twice, i, j, d, PETSC_MAX_REAL, exact, K);
-    for (int c = 0; c < 2; c++) L[c] = fade * (K[c][part] - exact[c][part]);
+    for (int c = 0; c < 2; c++)
+      for (int part = 0; part < DIPOLE_COUNT; part++) L[c][part] = fade * (K[c][part] - exact[c][part]);
     return;
   }
   NearLatticePair(&b->near, i, j, d, S);
   NearImageAdd(b->image, NULL, i, j, d, S, C);
   if (b->lattice->whole) NearImageAddBlake(b->image, i, j, d, -1, C);
   for (int c = 0; c < 2; c++) {
-    const int at = c == part ? c : 2 + c;
-    L[c] = fade * (S[at] - C[at]);
+    L[c][c] = fade * (S[c] - C[c]);
+    L[c][1 - c] = fade * (S[2 + c] - C[2 + c]);
   }
 }
 
@@ -224,19 +265,22 @@ static PetscErrorCode AddSource(BoxGrid *b, const PetscInt s[2], PetscReal scale
   const PetscInt j = s[1] * x->places + s[0];
   const PetscBool dipoles = b->lattice->dipole ? PETSC_TRUE : PETSC_FALSE;
   const PetscScalar *U;
-  PetscReal L[2];
+  PetscReal(*L)[2][DIPOLE_COUNT];
   PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(x->places * y->places, &L));
+  for (PetscInt i = 0; i < x->places * y->places; i++) Lattice(b, i, j, L[i]);
   for (int cj = 0; cj < (dipoles ? DIPOLE_COUNT : 2); cj++) {
     if (cj == 1 && IsSquare(b->axis)) continue;
     PetscCall(Respond(b, j, cj));
     PetscCall(VecGetArrayRead(b->U, &U));
     for (PetscInt i = 0; i < x->places * y->places; i++) {
       const PetscInt a[2] = {i % x->places, i / x->places};
-      Lattice(b, i, j, cj, L);
-      for (int ci = 0; ci < 2; ci++) AddEntry(b->axis, dipoles, ci, cj, a, s, scale * (U[2 * i + ci] - L[ci]), W);
+      for (int ci = 0; ci < 2; ci++)
+        AddEntry(b->axis, dipoles, ci, cj, a, s, scale * (U[2 * i + ci] - L[i][ci][cj]), W);
     }
     PetscCall(VecRestoreArrayRead(b->U, &U));
   }
+  PetscCall(PetscFree(L));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -11,6 +11,7 @@ PetscErrorCode BoxPartCreate(const FluidSpec *spec, Markers markers, const BoxLa
   b->ramp = spec->inertia == INERTIA_NONE ? PETSC_FALSE : PETSC_TRUE;
   for (int d = 0; d < 2; d++) {
     b->axis[d].wall = markers->grid->wall[d];
+    b->axis[d].faded = BOX_FADED;
     b->axis[d].low = markers->grid->lo[d];
     b->axis[d].high = markers->grid->hi[d];
   }
@@ -50,31 +51,23 @@ static void PlaceMarker(BoxPart b, PetscInt k, PetscReal A[]) {
   BoxTableRows(b->at, X, Fade(b, X), 0, 2, A);
 }
 
-/* Whether a box has walls and all markers are in its middle half. */
-static PetscBool AreInMiddle(BoxPart b) {
-  const Grid g = b->markers->grid;
-  for (int d = 0; d < 2; d++) {
-    const PetscReal quarter = 0.25 * (g->hi[d] - g->lo[d]);
-    for (PetscInt k = 0; k < b->markers->layout->M && g->wall[d]; k++) {
-      const PetscReal x = b->markers->X[2 * k + d];
-      if (x < g->lo[d] + quarter || x > g->hi[d] - quarter) return PETSC_FALSE;
-    }
-  }
-  return g->wall[0] || g->wall[1] ? PETSC_TRUE : PETSC_FALSE;
-}
-
 /* The table that reaches all markers, made when it is first needed. */
 static PetscErrorCode TakeTable(BoxPart b, PetscBool *moved) {
   const Layout l = b->markers->layout;
-  const PetscBool middle = AreInMiddle(b);
+  const Grid g = b->markers->grid;
+  const PetscBool middle = g->wall[0] || g->wall[1] ? BoxIsInMiddle(g, l->M, b->markers->X) : PETSC_FALSE;
   BoxTable *t = &b->table[middle];
   PetscFunctionBeginUser;
   if (!t->l) {
     PetscCall(PetscLogEventBegin(b->make, 0, 0, 0, 0));
     PetscCall(BoxTableCreate(b->spec, b->markers->kernel->name, &b->lattice, middle, t));
     PetscCall(PetscLogEventEnd(b->make, 0, 0, 0, 0));
-    b->region[middle] = (BoxRegion){
-        .comm = b->spec->comm, .grid = b->markers->grid, .whole = t, .image = b->image, .images = b->images};
+    b->region[middle] = (BoxRegion){.comm = b->spec->comm,
+                                    .grid = b->markers->grid,
+                                    .whole = t,
+                                    .image = b->image,
+                                    .images = b->images,
+                                    .off = BOX_REGION_OFF};
   }
   PetscCall(BoxRegionAt(&b->region[middle], l->M, b->markers->X, &b->at, moved));
   if (b->at->rank <= b->room) PetscFunctionReturn(PETSC_SUCCESS);

@@ -9,8 +9,16 @@
 #define CENTRES 8     /* in a side: what a centre is off by goes into the margin */
 #define LARGEST 0.5   /* side, of the box's */
 #define SMALLEST 1e-4 /* of the largest: eigenvalues below it are dropped */
-#define OFF 0.01      /* of D's largest value; tables of cells h and h/2 differ by .02 to .07 */
 #define CHECKS 3      /* points in a direction where a square is compared with the whole */
+
+PetscBool BoxIsInMiddle(Grid g, PetscInt M, const PetscReal X[]) {
+  for (int d = 0; d < 2; d++) {
+    const PetscReal quarter = 0.25 * (g->hi[d] - g->lo[d]);
+    for (PetscInt k = 0; k < M && g->wall[d]; k++)
+      if (X[2 * k + d] < g->lo[d] + quarter || X[2 * k + d] > g->hi[d] - quarter) return PETSC_FALSE;
+  }
+  return PETSC_TRUE;
+}
 
 /* The square about the markers. */
 static void Around(const BoxRegion *r, PetscInt M, const PetscReal X[], PetscReal centre[2], PetscReal *side) {
@@ -32,11 +40,25 @@ static void Around(const BoxRegion *r, PetscInt M, const PetscReal X[], PetscRea
   }
 }
 
+PetscBool BoxRegionMayBeAll(const BoxRegion *r, PetscInt M, const PetscReal X[]) {
+  PetscReal centre[2], side;
+  if (!M) return PETSC_FALSE;
+  Around(r, M, X, centre, &side);
+  for (int d = 0; d < 2; d++) {
+    const PetscReal low = r->grid->lo[d], high = r->grid->hi[d], quarter = 0.25 * (high - low);
+    if (!r->grid->wall[d] && side > BOX_ALL_OFFSET * (high - low)) return PETSC_FALSE;
+    if (r->grid->wall[d] && (centre[d] - 0.5 * side < low + quarter || centre[d] + 0.5 * side > high - quarter))
+      return PETSC_FALSE;
+  }
+  return PETSC_TRUE;
+}
+
 /* Whether the whole table, which must reach all of the square, may be made smaller there. */
 static PetscBool IsWithin(const BoxRegion *r, const PetscReal centre[2], PetscReal side) {
   for (int d = 0; d < 2; d++) {
     const BoxAxis *a = &r->whole->axis[d];
-    if (side > LARGEST * (r->grid->hi[d] - r->grid->lo[d])) return PETSC_FALSE;
+    const PetscReal most = r->all && !a->wall ? BOX_ALL_OFFSET : LARGEST;
+    if (side > most * (r->grid->hi[d] - r->grid->lo[d])) return PETSC_FALSE;
     if (a->wall && (centre[d] - 0.5 * side < a->low || centre[d] + 0.5 * side > a->high)) return PETSC_FALSE;
   }
   return PETSC_TRUE;
@@ -99,8 +121,20 @@ static PetscErrorCode BetweenFunctions(const BoxRegion *r, BoxTable *t) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Less what has faded over a period of the unbounded double layer, which is taken whole: its parts from Y to n points.
+ */
+static void Faded(const BoxRegion *r, PetscInt n, const PetscReal X[], const PetscReal Y[2], PetscReal V[]) {
+  for (PetscInt k = 0; k < n; k++) {
+    const PetscReal d[2] = {X[2 * k] - Y[0], X[2 * k + 1] - Y[1]};
+    PetscReal K[2][DIPOLE_COUNT];
+    BoxFaded(r->whole->axis, d, K);
+    for (int q = 0; q < 2 * DIPOLE_COUNT; q++) V[q * n + k] = -K[q / DIPOLE_COUNT][q % DIPOLE_COUNT];
+  }
+}
+
 /* Whether all pairs in the square are so far from one another's images in walls that these have a closed form. */
 static PetscBool HasFarImages(const BoxRegion *r, const BoxSquare *s) {
+  if (r->all) return PETSC_TRUE;
   if (!r->images) return PETSC_FALSE;
   for (int dir = 0; dir < 2; dir++) {
     const PetscReal low = s->centre[dir] - 0.5 * s->side - r->grid->lo[dir];
@@ -114,6 +148,10 @@ static PetscBool HasFarImages(const BoxRegion *r, const BoxSquare *s) {
 static void Images(const BoxRegion *r, int parts, PetscInt n, const PetscReal X[], const PetscReal Y[2],
                    PetscReal V[]) {
   PetscReal d[2][BOX_IMAGE_ROW], part[BOX_IMAGE_ROW];
+  if (r->all) {
+    Faded(r, n, X, Y, V);
+    return;
+  }
   for (PetscInt k = 0; k < 2 * n; k++) d[k % 2][k / 2] = X[k] - Y[k % 2];
   BoxImageRow(r->whole->axis, n, (PetscReal *[]){d[0], d[1]}, part);
   r->images(r->image, n, X, Y, V);
@@ -244,7 +282,7 @@ static PetscErrorCode MakeTable(const BoxRegion *r, BoxSquare *s) {
   if (t->images) AddFarImages(r, t);
   PetscCall(OffBy(r, t, &off));
   if (BoxParts(t) == 2) PetscCall(BoxTableDecompose(r->comm, SMALLEST, t));
-  s->right = off < OFF ? IsCheaper(r->whole, t) : PETSC_FALSE;
+  s->right = off < r->off && (r->all || IsCheaper(r->whole, t)) ? PETSC_TRUE : PETSC_FALSE;
   MakeAxes(s->centre, s->side, t);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

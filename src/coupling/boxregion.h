@@ -6,6 +6,7 @@
 #include "coupling/boxtable.h"
 
 #define BOX_REGION_PLACES 8  /* in a direction */
+#define BOX_REGION_OFF 0.01  /* of D's largest value; tables of cells h and h/2 differ by .02 to .07 */
 #define BOX_REGION_SQUARES 6 /* kept: a vesicle that tumbles comes back to all of its */
 
 /* A square about the markers, its centre and side from coarse sets of numbers: most steps find theirs made. */
@@ -26,8 +27,19 @@ typedef struct {
   const BoxTable *whole;                /* of forces or of dipoles, */
   const void *image;                    /* for: */
   BoxImages images;                     /* NULL: they are not in squares' tables */
+  PetscReal off;                        /* that squares may be, of the largest value */
+  PetscBool all;                        /* squares have all that the box adds to the unbounded double layer, which does
+                                           not fade over a period with them, and are always used where they are right */
   BoxSquare square[BOX_REGION_SQUARES]; /* the last used first */
 } BoxRegion;
+
+/* BoxIsInMiddle - whether M markers at X[2M] are in the middle half of the box wherever it has walls. Not collective.
+ */
+PETSC_EXTERN PetscBool BoxIsInMiddle(Grid grid, PetscInt M, const PetscReal X[]);
+
+/* BoxRegionMayBeAll - whether the square about M markers at X[2M] is in the middle half of the box wherever that has
+   walls and no wider than BOX_ALL_OFFSET of a period, before the region's whole table is made. Not collective. */
+PETSC_EXTERN PetscBool BoxRegionMayBeAll(const BoxRegion *region, PetscInt M, const PetscReal X[]);
 
 /* BoxRegionAt - the table for M markers at X[2M], all ranks' own the same: of the square about them, or the whole one
    where that is not right or none is made, as it would reach too near to walls or over half of the box. Another table,

@@ -2,13 +2,17 @@
 #include "coupling/blas.h"
 
 #define WALL_MARGIN 0.5 /* cells of the coarser grid between the places and a wall */
-#define MIDDLE_PLACES 8 /* in the middle half of the box, far from walls */
+#define PLACES 16       /* between two walls, */
+#define MIDDLE_PLACES 8 /* in the middle half of the box, far from walls, */
+#define ALL_PLACES 24   /* and of all of the smooth part, which has what has faded along a channel */
 #define MODES 16        /* of a period as long as the other side */
 #define COARSE_CELLS 64 /* of the shorter side, on the coarser grid */
 #define MOST_CELLS 80
 #define RATIO_CELLS 48 /* of the shorter side, from which on the pair's ratio is 3/2, */
 #define FEW_CELLS 24   /* and below which it is 3 */
-#define SMALLEST 5e-4  /* of the largest: eigenvalues below it are dropped */
+#define SMALLEST 5e-4  /* of the largest: eigenvalues below it are dropped, */
+#define TINIEST 1e-6   /* and where the table is all of the smooth part, */
+#define ALL_FADED 0.25 /* which is to have no kink at half a period */
 
 /* The coarser grid, its cells square: the run's own or, where that has more than COARSE_CELLS across, the fewest from
    there up to MOST_CELLS that fit the box, or else fit it best: within a half of 1/COARSE_CELLS, which D is smooth
@@ -34,15 +38,17 @@ static void Stretch(PetscReal from, PetscReal factor, BoxAxis *a) {
   for (PetscInt k = 0; k < a->places; k++) a->place[k] = from + factor * (a->place[k] - from);
 }
 
-static void MakeAxis(const FluidSpec *spec, int dir, PetscReal H, PetscBool middle, BoxAxis *a) {
+static void MakeAxis(const FluidSpec *spec, int dir, PetscReal H, PetscBool middle, PetscReal faded, PetscInt places,
+                     BoxAxis *a) {
   const PetscInt shorter = PetscMin(spec->cells[0], spec->cells[1]), times = (spec->cells[dir] + shorter - 1) / shorter;
   const PetscReal low = spec->box[2 * dir], high = spec->box[2 * dir + 1];
   const PetscReal margin = PetscMax(WALL_MARGIN * H, middle ? 0.25 * (high - low) : 0);
   if (spec->bc[dir] == BC_WALL) {
-    BoxAxisChebyshev(middle ? MIDDLE_PLACES : BOX_WALL_PLACES, low + margin, high - margin, a);
+    BoxAxisChebyshev(places, low + margin, high - margin, a);
     return;
   }
   a->wall = PETSC_FALSE;
+  a->faded = faded;
   a->low = low;
   a->high = high;
   a->places = times * BOX_PLACES / FLUID_LONGEST_PERIOD;
@@ -271,6 +277,7 @@ static PetscErrorCode Pair(const FluidSpec *run, const char kernel[], const BoxL
   const PetscInt shorter = PetscMin(cells[0], cells[1]), odd = cells[0] % 2 || cells[1] % 2;
   const PetscInt halves = shorter < FEW_CELLS ? 6 : shorter < RATIO_CELLS || odd ? 4 : 3; /* 2 r */
   const PetscReal scale = PetscSqr(halves * FluidSpecCellSize(run) / H) / (halves * halves - 4);
+  const PetscReal to_zero[2] = {-4. / (halves * halves - 4), halves * halves / (halves * halves - 4.)};
   FluidSpec spec = *run;
   PetscFunctionBeginUser;
   spec.comm = PETSC_COMM_SELF;
@@ -281,9 +288,20 @@ static PetscErrorCode Pair(const FluidSpec *run, const char kernel[], const BoxL
   PetscCall(PetscStrncpy(spec.poisson, "fftw_tridiagonal", sizeof(spec.poisson)));
   for (int fine = 0; fine < (lattice->whole ? 1 : 2); fine++) {
     for (int d = 0; d < 2; d++) spec.cells[d] = fine ? halves * cells[d] / 2 : cells[d];
-    PetscCall(BoxGridAdd(&spec, run->comm, kernel, lattice, axis, lattice->whole ? 1 : fine ? scale : -scale, W));
+    PetscCall(BoxGridAdd(&spec, run->comm, kernel, lattice, axis,
+                         lattice->all     ? to_zero[fine]
+                         : lattice->whole ? 1
+                         : fine           ? scale
+                                          : -scale,
+                         W));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscBool BoxTableFits(const FluidSpec *spec) {
+  PetscInt cells[2];
+  CoarseCells(spec, cells);
+  return cells[0] * spec->cells[1] == cells[1] * spec->cells[0] ? PETSC_TRUE : PETSC_FALSE;
 }
 
 PetscErrorCode BoxTableCreate(const FluidSpec *spec, const char kernel[], const BoxLattice *lattice, PetscBool middle,
@@ -291,6 +309,8 @@ PetscErrorCode BoxTableCreate(const FluidSpec *spec, const char kernel[], const 
   const PetscBool dipoles = lattice->dipole ? PETSC_TRUE : PETSC_FALSE;
   PetscInt cells[2], size = dipoles ? 6 : 4;
   PetscReal *W, height = spec->box[3] - spec->box[2];
+  const PetscBool closed = spec->bc[0] == BC_WALL && spec->bc[1] == BC_WALL ? PETSC_TRUE : PETSC_FALSE;
+  const PetscInt places = !middle ? PLACES : lattice->all && !closed ? ALL_PLACES : MIDDLE_PLACES;
   FluidSpec pair = *spec;
   BoxAxis axis[2];
   PetscFunctionBeginUser;
@@ -299,7 +319,7 @@ PetscErrorCode BoxTableCreate(const FluidSpec *spec, const char kernel[], const 
   t->H = (spec->box[1] - spec->box[0]) / cells[0];
   if (cells[0] * spec->cells[1] != cells[1] * spec->cells[0]) pair.box[3] = pair.box[2] + cells[1] * t->H;
   for (int d = 0; d < 2; d++) {
-    MakeAxis(&pair, d, t->H, middle, &axis[d]);
+    MakeAxis(&pair, d, t->H, middle, lattice->all ? ALL_FADED : BOX_FADED, places, &axis[d]);
     t->axis[d] = axis[d];
     if (d) Stretch(pair.box[2], height / (pair.box[3] - pair.box[2]), &t->axis[d]);
     t->functions[d] = t->axis[d].wall ? t->axis[d].places : 2 * t->axis[d].modes + 1;
@@ -310,7 +330,7 @@ PetscErrorCode BoxTableCreate(const FluidSpec *spec, const char kernel[], const 
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, W, (PetscMPIInt)size, MPIU_REAL, MPI_SUM, spec->comm));
   PetscCall(CreateBlocks(t));
   PetscCall(Transform(t, W));
-  PetscCall(BoxTableDecompose(spec->comm, SMALLEST, t));
+  PetscCall(BoxTableDecompose(spec->comm, lattice->all ? TINIEST : SMALLEST, t));
   PetscCall(PetscFree(W));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

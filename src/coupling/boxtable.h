@@ -37,6 +37,9 @@ PETSC_EXTERN PetscErrorCode BoxTableCreate(const FluidSpec *spec, const char ker
                                            PetscBool middle, BoxTable *table);
 PETSC_EXTERN PetscErrorCode BoxTableDestroy(BoxTable *table);
 
+/* BoxTableFits - whether the coarse grids are of the box's very shape. Not collective. */
+PETSC_EXTERN PetscBool BoxTableFits(const FluidSpec *spec);
+
 /* BoxTableDecompose - from D between the functions of each block, symmetric, in Q[size][size] with size = components
    n[0] n[1], the largest eigenvalues, down to the part `smallest` of the largest of all, and their vectors; the first
    rank's, as alike eigenvalues leave to rounding which vectors they have. Collective. */
@@ -65,11 +68,7 @@ PETSC_EXTERN void BoxBlockSum(const BoxBlock *block, int first, int components, 
 PETSC_EXTERN void BoxTableRows(const BoxTable *table, const PetscReal X[2], PetscReal part, int first, int count,
                                PetscReal rows[]);
 
-/* BoxSmoothStep - 0 up to low, 1 from high on. BoxSum - SUM l x of n, in four lanes. BoxProduct - SUM l x y, the same
+/* BoxSum - SUM l x of n, in four lanes. BoxProduct - SUM l x y, the same
    bits with x and y exchanged. Not collective. */
-static inline PetscReal BoxSmoothStep(PetscReal x, PetscReal low, PetscReal high) {
-  const PetscReal t = PetscMax(0, PetscMin(1, (x - low) / (high - low)));
-  return t * t * (3 - 2 * t);
-}
 PETSC_EXTERN PetscReal BoxSum(PetscInt n, const PetscReal l[], const PetscReal x[]);
 PETSC_EXTERN PetscReal BoxProduct(PetscInt n, const PetscReal l[], const PetscReal x[], const PetscReal y[]);

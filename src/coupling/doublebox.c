@@ -4,38 +4,78 @@
 
 #define AT_ONCE 64 /* markers */
 
-static void TakeTable(DoubleBox b, const BoxTable *t) {
-  b->at = t;
-  b->width = (t->functions[1] + LANES - 1) / LANES * LANES;
-}
+#define ALL_OFF 1e-4 /* of the largest value: what a square may be off by that has all that the box adds */
 
-PetscErrorCode DoubleBoxCreate(const FluidSpec *spec, Markers markers, const BoxLattice *lattice, DoubleBox *out) {
-  const PetscInt n = markers->layout->n;
+PetscErrorCode DoubleBoxCreate(const FluidSpec *spec, Markers markers, const BoxLattice *lattice, PetscBool error,
+                               PetscBool all, DoubleBox *out) {
   DoubleBox b;
-  PetscLogEvent event;
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&b));
   *out = b;
+  b->spec = spec;
   b->markers = markers;
-  PetscCall(PetvesEvent("BoxTable", &event));
-  PetscCall(PetscLogEventBegin(event, 0, 0, 0, 0));
-  PetscCall(BoxTableCreate(spec, markers->kernel->name, lattice, PETSC_FALSE, &b->table));
-  PetscCall(PetscLogEventEnd(event, 0, 0, 0, 0));
-  b->region = (BoxRegion){.comm = spec->comm, .grid = markers->grid, .whole = &b->table};
-  TakeTable(b, &b->table); /* squares have fewer functions */
-  PetscCall(PetscCalloc3(n * (b->table.functions[0] + b->width), &b->value,
-                         BOX_COMPONENTS * b->table.functions[0] * b->width, &b->function, b->table.rank,
-                         &b->amplitude));
+  b->lattice = *lattice;
+  b->error = error;
+  b->asked = all;
+  for (int k = 0; k < 2; k++) {
+    b->table[k].components = BOX_COMPONENTS;
+    b->region[k] = (BoxRegion){.comm = spec->comm,
+                               .grid = markers->grid,
+                               .whole = &b->table[k],
+                               .off = k ? ALL_OFF : BOX_REGION_OFF,
+                               .all = k ? PETSC_TRUE : PETSC_FALSE};
+  }
+  PetscCall(PetvesEvent("BoxTable", &b->make));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode DoubleBoxDestroy(DoubleBox *box) {
   PetscFunctionBeginUser;
   if (!*box) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(BoxRegionDestroy(&(*box)->region));
-  PetscCall(BoxTableDestroy(&(*box)->table));
+  for (int all = 0; all < 2; all++) {
+    PetscCall(BoxRegionDestroy(&(*box)->region[all]));
+    PetscCall(BoxTableDestroy(&(*box)->table[all]));
+  }
   PetscCall(PetscFree3((*box)->value, (*box)->function, (*box)->amplitude));
   PetscCall(PetscFree(*box));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode MakeTable(DoubleBox b, PetscBool all) {
+  BoxLattice lattice = b->lattice;
+  PetscFunctionBeginUser;
+  if (b->table[all].l) PetscFunctionReturn(PETSC_SUCCESS);
+  lattice.all = all;
+  PetscCall(PetscLogEventBegin(b->make, 0, 0, 0, 0));
+  PetscCall(BoxTableCreate(b->spec, b->markers->kernel->name, &lattice, all, &b->table[all]));
+  PetscCall(PetscLogEventEnd(b->make, 0, 0, 0, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The table where the markers are, and room for what they have of it. */
+static PetscErrorCode TakeTable(DoubleBox b) {
+  const Layout l = b->markers->layout;
+  PetscBool moved, all = b->may_be_all ? BoxRegionMayBeAll(&b->region[1], l->M, b->markers->X) : PETSC_FALSE;
+  PetscFunctionBeginUser;
+  if (all) {
+    PetscCall(MakeTable(b, PETSC_TRUE));
+    PetscCall(BoxRegionAt(&b->region[1], l->M, b->markers->X, &b->at, &moved));
+    all = DoubleBoxIsAll(b);
+  }
+  if (!all && !b->error) b->at = NULL;
+  if (!all && b->error) {
+    PetscCall(MakeTable(b, PETSC_FALSE));
+    PetscCall(BoxRegionAt(&b->region[0], l->M, b->markers->X, &b->at, &moved));
+  }
+  if (!b->at) PetscFunctionReturn(PETSC_SUCCESS);
+  b->width = (b->at->functions[1] + LANES - 1) / LANES * LANES;
+  const PetscInt values = l->n * (b->at->functions[0] + b->width), functions = b->at->functions[0] * b->width;
+  if (values <= b->room && functions <= b->rooms && b->amplitude) PetscFunctionReturn(PETSC_SUCCESS);
+  b->room = PetscMax(values, b->room);
+  b->rooms = PetscMax(functions, b->rooms);
+  PetscCall(PetscFree3(b->value, b->function, b->amplitude));
+  PetscCall(PetscCalloc3(b->room, &b->value, BOX_COMPONENTS * b->rooms, &b->function,
+                         PetscMax(b->table[0].rank, b->table[1].rank), &b->amplitude));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -51,11 +91,10 @@ static PetscReal *Functions(DoubleBox b, int component) {
 
 PetscErrorCode DoubleBoxPlace(DoubleBox b) {
   const Layout l = b->markers->layout;
-  const BoxTable *at = b->at;
-  PetscBool moved;
   PetscFunctionBeginUser;
-  PetscCall(BoxRegionAt(&b->region, l->M, b->markers->X, &at, &moved));
-  TakeTable(b, at);
+  PetscCall(TakeTable(b));
+  const BoxTable *at = b->at;
+  if (!at) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt k = 0; k < l->n; k++) {
     const PetscReal *X = b->markers->X + 2 * (l->first + k);
     PetscReal *value = Values(b, k);
@@ -152,7 +191,7 @@ static PetscErrorCode Respond(DoubleBox b, PetscBool add, PetscReal alpha) {
   const MPI_Comm comm = b->markers->layout->comm;
   PetscFunctionBeginUser;
   add = add && b->markers->layout->size > 1 ? PETSC_TRUE : PETSC_FALSE;
-  if (t != &b->table) {
+  if (!t->l) { /* of a square */
     if (add) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, Functions(b, 2), DIPOLE_COUNT * size, MPIU_REAL, MPI_SUM, comm));
     PetscCall(PetscArrayzero(Functions(b, 0), 2 * size));
     PetscCall(

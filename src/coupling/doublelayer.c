@@ -49,19 +49,22 @@ PetscErrorCode DoubleLayerDestroy(DoubleLayer *layer) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode DoubleLayerAddBoxPart(DoubleLayer s, const FluidSpec *spec) {
+PetscErrorCode DoubleLayerAddBoxPart(DoubleLayer s, const FluidSpec *spec, PetscBool error, PetscBool all) {
   const BoxLattice lattice = {.dipole = s->lattice, .half = s->near->image->table};
   PetscFunctionBeginUser;
-  PetscCall(DoubleBoxCreate(spec, s->near->markers, &lattice, &s->box));
+  PetscCall(DoubleBoxCreate(spec, s->near->markers, &lattice, error, all, &s->box));
   if (s->image) DoubleBoxTakeImages(s->box, s->image, DoubleImageFar);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Normals and dipoles' stencils of the vesicles that have a jump. */
-static PetscErrorCode PlaceDipoles(DoubleLayer s) {
+void DoubleLayerMayBeApart(DoubleLayer s) {
+  if (s->box && s->near->bodies->layout->bodies == 1) DoubleBoxMayBeAll(s->box);
+}
+
+/* Normals of the vesicles that have a jump. */
+static PetscErrorCode PlaceNormals(DoubleLayer s) {
   const NearField f = s->near;
   const Layout l = f->bodies->layout;
-  const Grid g = f->markers->grid;
   PetscFunctionBeginUser;
   for (PetscInt v = 0; v < l->bodies; v++) {
     const PetscInt first = l->start[v];
@@ -69,16 +72,28 @@ static PetscErrorCode PlaceDipoles(DoubleLayer s) {
     PetscCall(DoubleGeometry(f->bodies->spectral[v], LayoutCount(l, v), f->markers->X + 2 * first,
                              s->normal + 2 * first, s->along + first));
     s->length[v] = 0;
-    for (PetscInt k = first; k < l->start[v + 1]; k++) {
+    for (PetscInt k = first; k < l->start[v + 1]; k++) s->length[v] += s->along[k];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Their dipoles' stencils, where they are not placed. */
+static PetscErrorCode PlaceDipoles(DoubleLayer s) {
+  const NearField f = s->near;
+  const Layout l = f->bodies->layout;
+  const Grid g = f->markers->grid;
+  PetscFunctionBeginUser;
+  if (f->free || s->spread) PetscFunctionReturn(PETSC_SUCCESS);
+  s->spread = PETSC_TRUE;
+  for (PetscInt v = 0; v < l->bodies; v++)
+    for (PetscInt k = l->start[v]; k < l->start[v + 1] && s->ratio[v] != 1; k++) {
       Stencil part[DIPOLE_COUNT];
-      s->length[v] += s->along[k];
-      if (f->free) continue;
       DipoleStencilsUnwrapped(g, f->markers->X + 2 * k, part);
-      for (int c = 0; c < DIPOLE_COUNT; c++) StencilPad(&part[c], &s->dipole[DIPOLE_COUNT * k + c]);
+      for (int c = 0; c < DIPOLE_COUNT && !DoubleLayerIsApart(s); c++)
+        StencilPad(&part[c], &s->dipole[DIPOLE_COUNT * k + c]);
       DipoleSpotsOf(g, f->nu, part, s->spot + DIPOLE_SPOTS * k);
     }
-  }
-  if (!f->free) PetscCall(DipoleListPlace(s->list, l->M, s->spot));
+  PetscCall(DipoleListPlace(s->list, l->M, s->spot));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -116,14 +131,21 @@ static PetscErrorCode FindBlocks(DoubleLayer s) {
 }
 
 PetscErrorCode DoubleLayerPlace(DoubleLayer s) {
+  const Layout l = s->near->bodies->layout;
   PetscFunctionBeginUser;
   PetscCall(PetscLogEventBegin(s->place, 0, 0, 0, 0));
-  PetscCall(PlaceDipoles(s));
-  if (s->image) DoubleImagePlace(s->image, s->dipole);
+  s->spread = PETSC_FALSE;
+  PetscCall(PlaceNormals(s));
   if (s->box) PetscCall(DoubleBoxPlace(s->box)); /* before the blocks, which may leave images to it */
+  if (!DoubleLayerIsApart(s)) PetscCall(PlaceDipoles(s));
+  if (s->image && !DoubleLayerIsApart(s)) DoubleImagePlace(s->image, s->dipole);
   PetscCall(FindBlocks(s));
   for (PetscInt k = 0; k < s->blocks; k++) {
     const DoubleBlock *b = &s->block[k];
+    if (DoubleLayerIsApart(s)) { /* one vesicle, far from walls and from its images */
+      PetscCall(DoubleSelf(s->near->bodies->spectral[0], l->M, s->near->markers->X, s->value + b->at));
+      continue;
+    }
     PetscCall(DoubleBlockFill(s, b, s->near->free ? PETSC_FALSE : PETSC_TRUE, s->value + b->at));
     PetscCall(DoubleCloseAdd(s, b, s->value + b->at));
     PetscCall(DoubleWallAdd(s, b, s->value + b->at));
@@ -160,6 +182,15 @@ static void Tensors(DoubleLayer s) {
   }
 }
 
+/* y += alpha times the dipoles' mean velocity in a box that is periodic both ways. */
+static void AddMean(DoubleLayer s, PetscReal alpha, PetscScalar y[]) {
+  const Grid g = s->near->markers->grid;
+  PetscReal mean[2] = {0, 0};
+  if (g->wall[0] || g->wall[1]) return;
+  DoubleLayerMean(s, mean);
+  for (PetscInt k = 0; k < 2 * s->near->bodies->layout->n; k++) y[k] += alpha * mean[k % 2];
+}
+
 PetscErrorCode DoubleLayerApply(DoubleLayer s, PetscReal alpha, PetscScalar y[]) {
   const Layout l = s->near->bodies->layout;
   PetscFunctionBeginUser;
@@ -169,9 +200,10 @@ PetscErrorCode DoubleLayerApply(DoubleLayer s, PetscReal alpha, PetscScalar y[])
     PetscCall(DenseMultAdd(PETSC_FALSE, 2 * LayoutCount(l, b->row), 2 * LayoutCount(l, b->column), alpha,
                            s->value + b->at, s->plain + 2 * l->start[b->column], y + 2 * LayoutOffset(l, b->row)));
   }
-  if (s->box) {
+  if (DoubleBoxServes(s->box)) {
     Tensors(s);
     PetscCall(DoubleBoxApply(s->box, alpha, s->tensor + DIPOLE_COUNT * l->first, y));
+    if (DoubleLayerIsApart(s)) AddMean(s, alpha, y);
   }
   PetscCall(PetscLogEventEnd(s->apply, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -191,6 +223,7 @@ void DoubleLayerMean(DoubleLayer s, PetscReal mean[2]) {
 PetscErrorCode DoubleLayerSpread(DoubleLayer s, Vec w, Vec source, PetscReal mean[2]) {
   PetscFunctionBeginUser;
   if (s->near->free) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PlaceDipoles(s));
   DoubleLayerMean(s, mean);
   PetscCall(DipoleListSpread(s->list, s->tensor, w, source));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -199,6 +232,7 @@ PetscErrorCode DoubleLayerSpread(DoubleLayer s, Vec w, Vec source, PetscReal mea
 PetscErrorCode DoubleLayerRows(DoubleLayer s, const PetscReal profile[], DipoleRows rows) {
   PetscReal mean[2] = {0, 0};
   PetscFunctionBeginUser;
+  PetscCall(PlaceDipoles(s));
   DoubleLayerMean(s, mean);
   PetscCall(DipoleRowsSet(rows, s->list, s->tensor, profile, mean));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -216,6 +250,26 @@ void DoubleLayerStress(DoubleLayer s, PetscReal sum[3], PetscReal shortfall[2]) 
   }
 }
 
+/* out += scale (1 - ratio) times what the box part has, of one vesicle whose dipoles are apart. */
+static PetscErrorCode AddBox(DoubleLayer s, PetscReal scale, PetscReal out[]) {
+  const PetscInt M = s->near->bodies->layout->M;
+  PetscReal *W;
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(2 * M * DIPOLE_COUNT * M, &W));
+  PetscCall(DoubleBoxMatrix(s->box, scale * (1 - s->ratio[0]), W));
+  for (PetscInt j = 0; j < M; j++) {
+    const PetscReal *N = s->normal + 2 * j, *xx = W + (DIPOLE_COUNT * j + DIPOLE_XX) * 2 * M;
+    const PetscReal *yy = W + (DIPOLE_COUNT * j + DIPOLE_YY) * 2 * M, *xy = W + (DIPOLE_COUNT * j + DIPOLE_XY) * 2 * M;
+    PetscReal *x = out + 2 * j * 2 * M, *y = x + 2 * M;
+    for (PetscInt i = 0; i < 2 * M; i++) {
+      x[i] += 2 * N[0] * xx[i] + N[1] * xy[i];
+      y[i] += 2 * N[1] * yy[i] + N[0] * xy[i];
+    }
+  }
+  PetscCall(PetscFree(W));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode DoubleLayerAdd(DoubleLayer s, PetscReal scale, PetscBool lattice, PetscInt first, PetscInt n,
                               PetscReal out[]) {
   const Layout l = s->near->bodies->layout;
@@ -226,7 +280,7 @@ PetscErrorCode DoubleLayerAdd(DoubleLayer s, PetscReal scale, PetscBool lattice,
     const PetscInt i0 = 2 * (l->start[b->row] - first), j0 = 2 * (l->start[b->column] - first);
     PetscReal *value = s->value + b->at, *free = NULL;
     if (i0 < 0 || j0 < 0 || i0 >= 2 * n || j0 >= 2 * n) continue;
-    if (!lattice && !s->near->free) {
+    if (!lattice && !s->near->free && !DoubleLayerIsApart(s)) {
       PetscCall(PetscMalloc1(rows * columns, &free));
       PetscCall(DoubleBlockFill(s, b, PETSC_FALSE, free));
       PetscCall(DoubleCloseAdd(s, b, free));
@@ -238,5 +292,6 @@ PetscErrorCode DoubleLayerAdd(DoubleLayer s, PetscReal scale, PetscBool lattice,
         out[(j0 + j) * 2 * n + i0 + i] += scale * (1 - s->ratio[b->column]) * value[j * rows + i];
     PetscCall(PetscFree(free));
   }
+  if (DoubleLayerIsApart(s)) PetscCall(AddBox(s, scale, out));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -32,6 +32,11 @@ static PetscErrorCode Motion(Reduced s, const PetscScalar x[], PetscBool whole) 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Whether dipoles are in what markers have of u; else their velocity is the double layer's alone. */
+static PetscBool HasDipoles(Reduced s) {
+  return s->source && !DoubleLayerIsApart(s->unknowns->coupling->contrast) ? PETSC_TRUE : PETSC_FALSE;
+}
+
 /* r += -E^T F/h^2 + d and the force of the motion's dipoles, source and mean += their divergence and mean velocity;
    leaves F and the motion. */
 static PetscErrorCode AddForces(Reduced s, const PetscScalar x[], PetscBool whole, Vec r, Vec source,
@@ -44,7 +49,7 @@ static PetscErrorCode AddForces(Reduced s, const PetscScalar x[], PetscBool whol
     PetscCall(MarkersSpread(c->markers, -1 / PetscSqr(c->fluid->grid->h), s->F, r));
   }
   PetscCall(Motion(s, x, whole));
-  if (s->source) PetscCall(DoubleLayerSpread(c->contrast, r, source, mean));
+  if (HasDipoles(s)) PetscCall(DoubleLayerSpread(c->contrast, r, source, mean));
   PetscCall(UnknownsGatherWalls(u, x + UnknownsWalls(u), s->d));
   PetscCall(WallsAdd(u->walls, s->d, r));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -175,8 +180,9 @@ static PetscErrorCode RespondByRows(Reduced s, const PetscScalar x[]) {
   PetscFunctionBeginUser;
   PetscCall(Force(s, x, s->F));
   PetscCall(Motion(s, x, PETSC_FALSE));
-  if (s->source) PetscCall(DoubleLayerRows(c->contrast, StokesProfile(s->stokes), s->dipoles));
-  PetscCall(MarkersRespond(c->markers, s->stream, s->dipoles, -1 / PetscSqr(c->fluid->grid->h), s->F, s->U));
+  if (HasDipoles(s)) PetscCall(DoubleLayerRows(c->contrast, StokesProfile(s->stokes), s->dipoles));
+  PetscCall(MarkersRespond(c->markers, s->stream, HasDipoles(s) ? s->dipoles : NULL, -1 / PetscSqr(c->fluid->grid->h),
+                           s->F, s->U));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -207,9 +213,11 @@ static PetscErrorCode Mult(Mat A, Vec x, Vec y) {
    markers' alone. */
 static PetscErrorCode FollowByRows(Reduced s, PetscBool all, Vec f, Vec w, StreamMeasures *measures) {
   const Coupling c = s->unknowns->coupling;
+  const PetscBool dipoles = HasDipoles(s);
   PetscFunctionBeginUser;
-  if (s->source) PetscCall(DoubleLayerRows(c->contrast, StokesProfile(s->stokes), s->dipoles));
-  PetscCall(MarkersFollow(c->markers, s->stream, s->dipoles, all, f, s->source, s->U, w, measures));
+  if (dipoles) PetscCall(DoubleLayerRows(c->contrast, StokesProfile(s->stokes), s->dipoles));
+  PetscCall(MarkersFollow(c->markers, s->stream, dipoles ? s->dipoles : NULL, all, f, dipoles ? s->source : NULL, s->U,
+                          w, dipoles || !s->source ? measures : NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -250,6 +258,27 @@ PetscErrorCode ReducedResidual(Reduced s, Vec added, Vec f, Vec g, Vec k, Vec x,
   PetscCall(VecRestoreArray(residual, &ra));
   PetscCall(VecRestoreArrayRead(x, &xa));
   PetscCall(VecScale(residual, -1));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscBool ReducedIsFinished(Reduced s) {
+  return s->source && !HasDipoles(s) ? PETSC_TRUE : PETSC_FALSE;
+}
+
+PetscErrorCode ReducedFinish(Reduced s, Vec added, Vec f, Vec x, StreamMeasures *measures) {
+  const Coupling c = s->unknowns->coupling;
+  const PetscScalar *xa;
+  PetscFunctionBeginUser;
+  if (!ReducedIsFinished(s)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecGetArrayRead(added, &xa));
+  PetscCall(AddForces(s, xa, PETSC_FALSE, f, s->source, s->mean));
+  PetscCall(VecRestoreArrayRead(added, &xa));
+  PetscCall(VecGetArrayRead(x, &xa));
+  PetscCall(Motion(s, xa, PETSC_TRUE));
+  PetscCall(VecRestoreArrayRead(x, &xa));
+  PetscCall(DoubleLayerSpread(c->contrast, f, s->source, s->mean));
+  PetscCall(DoubleLayerRows(c->contrast, StokesProfile(s->stokes), s->dipoles));
+  PetscCall(MarkersFollow(c->markers, s->stream, s->dipoles, PETSC_FALSE, f, s->source, NULL, NULL, measures));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -326,6 +355,7 @@ PetscErrorCode ReducedCreate(Unknowns u, Reduced *out) {
   if (c->contrast) {
     PetscCall(VecDuplicate(s->F, &s->motion));
     if (s->stream) PetscCall(DipoleRowsCreate(c->fluid->grid, c->fluid->nu, &s->dipoles));
+    if (ReducedNeedsNoPressure(s) && !StokesProfile(s->stokes)) DoubleLayerMayBeApart(c->contrast);
   }
   PetscCall(UnknownsCreateVec(u, &s->rest));
   PetscCall(PetscMalloc2(u->walls->n, &s->d, u->walls->n, &s->slip));

@@ -2,6 +2,7 @@
 #include "coupling/contrast.h"
 
 #define MOST_ROUNDS 4
+#define ROUNDING 1e-8 /* of the first residual: what rounding leaves out of GMRES's is far below */
 
 /* -coupled_ksp_rtol is relative to the norm of the step's right-hand side (f, bc2, g, k of obstacles), not to what the
    initial guess left of it. */
@@ -205,13 +206,15 @@ static PetscErrorCode Reference(CoupledSolver s, Vec f, Vec g, Vec k) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* x + the change of a KSPSolve, with u and p or what is measured of them; b becomes the residual that is left. */
-static PetscErrorCode Follow(CoupledSolver s, const CoupledProblem *q, SolveReport *report) {
+/* x + the change of a KSPSolve, with u and p or what is measured of them; b becomes the residual that is left. Where
+   the velocity of the solution is made at the end GMRES's own residual will do. */
+static PetscErrorCode Follow(CoupledSolver s, const CoupledProblem *q, PetscReal goal, SolveReport *report) {
   PetscBool combined;
   PetscFunctionBeginUser;
   PetscCall(ReducedCombine(s->reduced, s->change, q->w, q->p, s->b, &combined));
   PetscCall(VecAXPY(s->x, 1, s->change));
   PetscCall(VecAYPX(s->pending, s->trial.state == TRIAL_MADE ? -1 : 1, s->change));
+  if (ReducedIsFinished(s->reduced) && goal > ROUNDING * s->trial.scale) PetscFunctionReturn(PETSC_SUCCESS);
   if (!combined) {
     PetscCall(ReducedResidual(s->reduced, s->pending, q->f, q->g, q->k, s->x, q->w ? PETSC_TRUE : PETSC_FALSE, q->w,
                               q->p, s->b, q->p ? NULL : &report->measures));
@@ -235,10 +238,11 @@ static PetscErrorCode Correct(CoupledSolver s, const CoupledProblem *q, PetscRea
   if (report->why < 0) PetscFunctionReturn(PETSC_SUCCESS);
   if (t->state == TRIAL_MADE && t->residual <= goal) {
     PetscCall(VecCopy(t->x, s->x));
+    PetscCall(VecSet(s->pending, 0));
     report->residual = t->residual;
     report->measures = t->measures;
   } else if (its > 0 || !t->begun)
-    PetscCall(Follow(s, q, report));
+    PetscCall(Follow(s, q, goal, report));
   t->state = TRIAL_NONE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -277,6 +281,7 @@ PetscErrorCode CoupledSolverSolve(CoupledSolver s, const CoupledProblem *q, Solv
     PetscCall(Correct(s, q, goal, report));
     if (report->why < 0 || report->residual <= 2 * goal) break;
   }
+  if (report->why >= 0) PetscCall(ReducedFinish(s->reduced, s->pending, q->f, s->x, &report->measures));
   PreconditionerSolved(s->preconditioner, report->its);
   if (report->why >= 0) PetscCall(UnknownsUnpack(s->unknowns, s->x, q->V, q->solid, q->sigma, q->d));
   PetscFunctionReturn(PETSC_SUCCESS);

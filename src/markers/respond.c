@@ -9,6 +9,7 @@ typedef struct {
   Rows u;                    /* whose u has a row above, */
   const PetscScalar *source; /* and the dipoles' source on it */
   PetscScalar *w;            /* where the rows of u and v are put, or NULL */
+  PetscBool measured;        /* not wanted at the markers */
 } Response;
 
 static const PetscScalar *SpreadForce(void *ctx, Field f, PetscInt j, PetscScalar work[]) {
@@ -33,6 +34,7 @@ static const PetscScalar *GridForce(void *ctx, Field f, PetscInt j, PetscScalar 
 static void TakeVelocity(void *ctx, Field f, PetscInt j, PetscScalar row[]) {
   const Response *r = (const Response *)ctx;
   if (r->dipoles && f == FIELD_U) DipoleRowsAddVelocity(r->dipoles, j, row);
+  if (r->measured) return;
   MarkerRowInterpolate(r->m->rows, f, j, row, r->m->part);
   if (r->w) (void)PetscArraycpy(r->w + GridRowStart(r->m->grid, f, j), row, r->m->grid->columns[f]);
 }
@@ -51,6 +53,7 @@ static PetscErrorCode Solve(Response *r, Stream stream, PetscBool all, Vec U, St
   PetscFunctionBeginUser;
   PetscCall(PetscArrayzero(m->part, 2 * m->layout->M));
   PetscCall(StreamSolve(stream, &rows, measures));
+  if (r->measured) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecGetArray(U, &own));
   PetscCall(LayoutSum(m->layout, 2, m->part, own));
   PetscCall(VecRestoreArray(U, &own));
@@ -69,7 +72,7 @@ PetscErrorCode MarkersRespond(Markers m, Stream stream, DipoleRows dipoles, Pets
 
 PetscErrorCode MarkersFollow(Markers m, Stream stream, DipoleRows dipoles, PetscBool all, Vec f, Vec source, Vec U,
                              Vec w, StreamMeasures *measures) {
-  Response r = {.m = m, .dipoles = dipoles};
+  Response r = {.m = m, .dipoles = dipoles, .measured = U ? PETSC_FALSE : PETSC_TRUE};
   PetscFunctionBeginUser;
   PetscCall(PetscLogEventBegin(m->respond, 0, 0, 0, 0));
   PetscCall(VecGetArrayRead(f, &r.f));

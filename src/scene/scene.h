@@ -80,6 +80,7 @@ typedef struct {
 typedef struct {
   char kernel[OPTION_MAX_NAME]; /* between grid and markers */
   PetscInt near_field;          /* NearFieldType */
+  PetscBool grid_dipoles;       /* always over the grid */
   PetscBool box_part;           /* of the near field: what the box adds, to fourth order */
   PetscInt mobility;            /* MobilityType */
   PetscReal ksp_rtol;           /* default of -coupled_ksp_rtol */
@@ -178,6 +179,10 @@ PETSC_EXTERN PetscReal SceneViscosityRatio(Scene scene, PetscInt vesicle);
 
 /* SceneHasBoxPart - whether the near field has its box part: asked for, and no period too long. Not collective. */
 PETSC_EXTERN PetscBool SceneHasBoxPart(Scene scene);
+
+/* SceneDipolesMayBeApart - whether the dipoles of one vesicle's viscosity contrast may take their velocity from markers
+   and box alone, without the grid. Not collective. */
+PETSC_EXTERN PetscBool SceneDipolesMayBeApart(Scene scene);
 
 /* SceneUses - whether an option of the table means something for this scene. Not collective.
    SceneCheckUsed - stop when the user gave an option of the table that the scene does not use. Collective. */

@@ -84,7 +84,7 @@ static PetscErrorCode AddBoxPart(DirectSolver d, Mat A, PetscInt J) {
   const Layout all = d->coupling->bodies->layout, l = d->coupling->membrane->layout;
   PetscReal *D;
   PetscFunctionBeginUser;
-  if (!s->box) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!DoubleBoxServes(s->box)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscCalloc1(2 * DIPOLE_COUNT * all->M * all->M, &D));
   PetscCall(DoubleBoxMatrix(s->box, -1, D));
   for (PetscInt i = 2 * all->first; i < 2 * (all->first + all->n); i++)
