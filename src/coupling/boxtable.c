@@ -10,9 +10,8 @@
 #define MOST_CELLS 80
 #define RATIO_CELLS 48 /* of the shorter side, from which on the pair's ratio is 3/2, */
 #define FEW_CELLS 24   /* and below which it is 3 */
-#define SMALLEST 5e-4  /* of the largest: eigenvalues below it are dropped, */
-#define TINIEST 1e-6   /* and where the table is all of the smooth part, */
-#define ALL_FADED 0.25 /* which is to have no kink at half a period */
+#define SMALLEST 5e-4  /* of the largest: eigenvalues below it are dropped */
+#define ALL_FADED 0.25 /* where the table is all of the smooth part, which is to have no kink at half a period */
 
 /* The coarser grid, its cells square: the run's own or, where that has more than COARSE_CELLS across, the fewest from
    there up to MOST_CELLS that fit the box, or else fit it best: within a half of 1/COARSE_CELLS, which D is smooth
@@ -270,6 +269,28 @@ PetscErrorCode BoxTableDecompose(MPI_Comm comm, PetscReal smallest, BoxTable *t)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Of dipoles, D as it is: the velocities' functions stand for eigenvectors, with D^T from them to the tensors' and
+   eigenvalues of 1. */
+static PetscErrorCode KeepAll(BoxTable *t) {
+  PetscFunctionBeginUser;
+  t->rank = 2 * t->functions[0] * t->functions[1];
+  PetscCall(PetscMalloc1(t->rank, &t->l));
+  for (PetscInt k = 0; k < t->rank; k++) t->l[k] = 1;
+  for (PetscInt b = 0, at = 0; b < t->blocks; b++) {
+    BoxBlock *q = &t->block[b];
+    const PetscInt n = 2 * q->n[0] * q->n[1], size = t->components * q->n[0] * q->n[1];
+    PetscReal *D = q->Q;
+    q->start = at;
+    q->modes = n;
+    at += n;
+    PetscCall(PetscMalloc1(size * n, &q->Q));
+    for (PetscInt i = 0; i < size; i++)
+      for (PetscInt m = 0; m < n; m++) q->Q[i * n + m] = i < n ? i == m : D[i * size + m];
+    PetscCall(PetscFree(D));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* r^2/(r^2 - 1) (W_{H/r} - W_H) of the pair, times (h/H)^2, leaves 1/r^2 of what W_H has of fourth order; r = 3/2 on
    many cells, where that makes whole numbers of them, else 2 or, on few, 3. */
 static PetscErrorCode Pair(const FluidSpec *run, const char kernel[], const BoxLattice *lattice,
@@ -330,7 +351,7 @@ PetscErrorCode BoxTableCreate(const FluidSpec *spec, const char kernel[], const 
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, W, (PetscMPIInt)size, MPIU_REAL, MPI_SUM, spec->comm));
   PetscCall(CreateBlocks(t));
   PetscCall(Transform(t, W));
-  PetscCall(BoxTableDecompose(spec->comm, lattice->all ? TINIEST : SMALLEST, t));
+  PetscCall(lattice->all ? KeepAll(t) : BoxTableDecompose(spec->comm, SMALLEST, t));
   PetscCall(PetscFree(W));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
