@@ -51,11 +51,23 @@ static void PlaceMarker(BoxPart b, PetscInt k, PetscReal A[]) {
   BoxTableRows(b->at, X, Fade(b, X), 0, 2, A);
 }
 
+/* Whether a box has walls and all markers are in its middle half. */
+static PetscBool AreInMiddle(BoxPart b) {
+  const Grid g = b->markers->grid;
+  for (int d = 0; d < 2; d++) {
+    const PetscReal quarter = 0.25 * (g->hi[d] - g->lo[d]);
+    for (PetscInt k = 0; k < b->markers->layout->M && g->wall[d]; k++) {
+      const PetscReal x = b->markers->X[2 * k + d];
+      if (x < g->lo[d] + quarter || x > g->hi[d] - quarter) return PETSC_FALSE;
+    }
+  }
+  return g->wall[0] || g->wall[1] ? PETSC_TRUE : PETSC_FALSE;
+}
+
 /* The table that reaches all markers, made when it is first needed. */
 static PetscErrorCode TakeTable(BoxPart b, PetscBool *moved) {
   const Layout l = b->markers->layout;
-  const Grid g = b->markers->grid;
-  const PetscBool middle = g->wall[0] || g->wall[1] ? BoxIsInMiddle(g, l->M, b->markers->X) : PETSC_FALSE;
+  const PetscBool middle = AreInMiddle(b);
   BoxTable *t = &b->table[middle];
   PetscFunctionBeginUser;
   if (!t->l) {

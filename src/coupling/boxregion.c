@@ -11,15 +11,6 @@
 #define SMALLEST 1e-4 /* of the largest: eigenvalues below it are dropped */
 #define CHECKS 3      /* points in a direction where a square is compared with the whole */
 
-PetscBool BoxIsInMiddle(Grid g, PetscInt M, const PetscReal X[]) {
-  for (int d = 0; d < 2; d++) {
-    const PetscReal quarter = 0.25 * (g->hi[d] - g->lo[d]);
-    for (PetscInt k = 0; k < M && g->wall[d]; k++)
-      if (X[2 * k + d] < g->lo[d] + quarter || X[2 * k + d] > g->hi[d] - quarter) return PETSC_FALSE;
-  }
-  return PETSC_TRUE;
-}
-
 /* The square about the markers. */
 static void Around(const BoxRegion *r, PetscInt M, const PetscReal X[], PetscReal centre[2], PetscReal *side) {
   PetscReal low[2] = {X[0], X[1]}, high[2] = {X[0], X[1]}, radius2 = 0;

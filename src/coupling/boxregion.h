@@ -33,10 +33,6 @@ typedef struct {
   BoxSquare square[BOX_REGION_SQUARES]; /* the last used first */
 } BoxRegion;
 
-/* BoxIsInMiddle - whether M markers at X[2M] are in the middle half of the box wherever it has walls. Not collective.
- */
-PETSC_EXTERN PetscBool BoxIsInMiddle(Grid grid, PetscInt M, const PetscReal X[]);
-
 /* BoxRegionMayBeAll - whether the square about M markers at X[2M] is in the middle half of the box wherever that has
    walls and no wider than BOX_ALL_OFFSET of a period, before the region's whole table is made. Not collective. */
 PETSC_EXTERN PetscBool BoxRegionMayBeAll(const BoxRegion *region, PetscInt M, const PetscReal X[]);

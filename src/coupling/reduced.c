@@ -270,9 +270,11 @@ PetscErrorCode ReducedFinish(Reduced s, Vec added, Vec f, Vec x, StreamMeasures 
   const PetscScalar *xa;
   PetscFunctionBeginUser;
   if (!ReducedIsFinished(s)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(VecGetArrayRead(added, &xa));
-  PetscCall(AddForces(s, xa, PETSC_FALSE, f, s->source, s->mean));
-  PetscCall(VecRestoreArrayRead(added, &xa));
+  if (added) {
+    PetscCall(VecGetArrayRead(added, &xa));
+    PetscCall(AddForces(s, xa, PETSC_FALSE, f, s->source, s->mean));
+    PetscCall(VecRestoreArrayRead(added, &xa));
+  }
   PetscCall(VecGetArrayRead(x, &xa));
   PetscCall(Motion(s, xa, PETSC_TRUE));
   PetscCall(VecRestoreArrayRead(x, &xa));

@@ -68,9 +68,9 @@ PETSC_EXTERN PetscErrorCode ReducedResidual(Reduced reduced, Vec added, Vec f, V
 PETSC_EXTERN PetscBool ReducedNeedsNoPressure(Reduced reduced);
 PETSC_EXTERN PetscErrorCode ReducedFields(Reduced reduced, Vec f, Vec source, const PetscReal mean[2], Vec w, Vec p);
 
-/* ReducedFinish - f gets the forces of `added` and the dipoles of the solution x, which source and mean get as well,
-   where the markers' rows are without them; measures is of its velocity; else nothing. Collective. ReducedIsFinished -
-   whether it does. Not collective. */
+/* ReducedFinish - f gets the forces of `added` (NULL: none) and the dipoles of the solution x, which source and mean
+   get as well, where the markers' rows are without them; measures is of its velocity; else nothing. Collective.
+   ReducedIsFinished - whether it does. Not collective. */
 PETSC_EXTERN PetscErrorCode ReducedFinish(Reduced reduced, Vec added, Vec f, Vec x, StreamMeasures *measures);
 PETSC_EXTERN PetscBool ReducedIsFinished(Reduced reduced);
 

@@ -214,7 +214,10 @@ static PetscErrorCode Follow(CoupledSolver s, const CoupledProblem *q, PetscReal
   PetscCall(ReducedCombine(s->reduced, s->change, q->w, q->p, s->b, &combined));
   PetscCall(VecAXPY(s->x, 1, s->change));
   PetscCall(VecAYPX(s->pending, s->trial.state == TRIAL_MADE ? -1 : 1, s->change));
-  if (ReducedIsFinished(s->reduced) && goal > ROUNDING * s->trial.scale) PetscFunctionReturn(PETSC_SUCCESS);
+  if (ReducedIsFinished(s->reduced) && s->preconditioner->flexible && goal > ROUNDING * s->trial.scale) {
+    s->owed = PETSC_TRUE;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   if (!combined) {
     PetscCall(ReducedResidual(s->reduced, s->pending, q->f, q->g, q->k, s->x, q->w ? PETSC_TRUE : PETSC_FALSE, q->w,
                               q->p, s->b, q->p ? NULL : &report->measures));
@@ -238,7 +241,6 @@ static PetscErrorCode Correct(CoupledSolver s, const CoupledProblem *q, PetscRea
   if (report->why < 0) PetscFunctionReturn(PETSC_SUCCESS);
   if (t->state == TRIAL_MADE && t->residual <= goal) {
     PetscCall(VecCopy(t->x, s->x));
-    PetscCall(VecSet(s->pending, 0));
     report->residual = t->residual;
     report->measures = t->measures;
   } else if (its > 0 || !t->begun)
@@ -257,6 +259,7 @@ static PetscErrorCode Begin(CoupledSolver s, const CoupledProblem *q, SolveRepor
   PetscCall(ReducedResidual(s->reduced, s->x, q->f, q->g, q->k, s->x, PETSC_FALSE, q->w, q->p, s->b,
                             t->begun ? &report->measures : NULL));
   PetscCall(VecSet(s->pending, 0));
+  s->owed = PETSC_FALSE;
   t->problem = q;
   PetscCall(VecNorm(s->b, NORM_2, &t->scale));
   t->state = s->reduced->stream && t->scale > 0 ? TRIAL_WANTED : TRIAL_NONE;
@@ -281,7 +284,8 @@ PetscErrorCode CoupledSolverSolve(CoupledSolver s, const CoupledProblem *q, Solv
     PetscCall(Correct(s, q, goal, report));
     if (report->why < 0 || report->residual <= 2 * goal) break;
   }
-  if (report->why >= 0) PetscCall(ReducedFinish(s->reduced, s->pending, q->f, s->x, &report->measures));
+  if (report->why >= 0)
+    PetscCall(ReducedFinish(s->reduced, s->owed ? s->pending : NULL, q->f, s->x, &report->measures));
   PreconditionerSolved(s->preconditioner, report->its);
   if (report->why >= 0) PetscCall(UnknownsUnpack(s->unknowns, s->x, q->V, q->solid, q->sigma, q->d));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -48,7 +48,8 @@ struct _p_CoupledSolver {
   PetscBool guess;     /* -coupled_ksp_initial_guess_nonzero: start from the guess */
   Vec x, b;            /* unknowns, residual */
   Vec change;          /* of one KSPSolve */
-  Vec pending;         /* part of x whose forces are not in the right-hand side f yet */
+  Vec pending;         /* part of x whose forces are not in the right-hand side f yet, */
+  PetscBool owed;      /* when the solve has ended, too */
   PetscReal reference; /* norm of the step's right-hand side, which the tolerance is relative to */
   PetscReal start;     /* residual norm that a KSPSolve starts from */
 };

@@ -126,6 +126,7 @@ static const struct {
              {"-scheme_area_target", BY_VESICLES},
              {"-coupling_near_field", BY_BODIES},
              {"-coupling_box_part", BY_BODIES},
+             {"-coupling_grid_dipoles", BY_COUPLED},
              {"-contact_repulsion", BY_UNSPLIT},
              {"-contact_repulsion_range", BY_REPULSION},
              {"-contact_adhesion", BY_REPULSION},
