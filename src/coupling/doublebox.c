@@ -224,9 +224,53 @@ static void Put(DoubleBox b, const PetscReal X[2], int c) {
     for (PetscInt j = 0; j < ny; j++) f[i * b->width + j] = x[i] * y[j];
 }
 
+/* Values [M][functions of x][of y] of all markers. */
+static PetscErrorCode AllValues(DoubleBox b, PetscReal **values) {
+  const Layout l = b->markers->layout;
+  const PetscInt nx = b->at->functions[0], ny = b->at->functions[1];
+  PetscReal x[BOX_FUNCTIONS], y[BOX_FUNCTIONS], *f;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(l->M * nx * ny, &f));
+  *values = f;
+  for (PetscInt k = 0; k < l->M; k++) {
+    BoxTableFunctions(b->at, 0, b->markers->X[2 * k], x);
+    BoxTableFunctions(b->at, 1, b->markers->X[2 * k + 1], y);
+    for (PetscInt i = 0; i < nx * ny; i++) *f++ = x[i / ny] * y[i % ny];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A square's matrix D between functions, from all markers' tensors to the own markers. */
+static PetscErrorCode SquareMatrix(DoubleBox b, PetscReal scale, PetscReal out[]) {
+  const Layout l = b->markers->layout;
+  const PetscInt size = b->at->functions[0] * b->at->functions[1];
+  PetscReal *value, *given, *taken;
+  PetscFunctionBeginUser;
+  PetscCall(AllValues(b, &value));
+  PetscCall(PetscMalloc2(2 * size * l->M, &given, l->n * l->M, &taken));
+  for (int q = 0; q < 2 * DIPOLE_COUNT; q++) {
+    const PetscInt part = q / 2, c = q % 2;
+    if (!c)
+      PetscCall(
+          DenseProduct(PETSC_FALSE, 2 * size, l->M, size, b->at->block->Q + part * size * 2 * size, value, given));
+    PetscCall(DenseProductWithin(PETSC_TRUE, l->n, l->M, size, value + l->first * size, size, given + c * size,
+                                 2 * size, 0, taken, l->n));
+    for (PetscInt j = 0; j < l->M; j++)
+      for (PetscInt k = 0; k < l->n; k++)
+        out[2 * ((DIPOLE_COUNT * j + part) * l->M + l->first + k) + c] += scale * taken[j * l->n + k];
+  }
+  PetscCall(PetscFree2(given, taken));
+  PetscCall(PetscFree(value));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode DoubleBoxMatrix(DoubleBox b, PetscReal scale, PetscReal out[]) {
   const Layout l = b->markers->layout;
   PetscFunctionBeginUser;
+  if (!b->at->l) {
+    PetscCall(SquareMatrix(b, scale, out));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   for (PetscInt j = 0; j < DIPOLE_COUNT * l->M; j++) {
     Put(b, b->markers->X + 2 * (j / DIPOLE_COUNT), (int)(j % DIPOLE_COUNT));
     PetscCall(Respond(b, PETSC_FALSE, scale));
