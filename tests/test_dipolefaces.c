@@ -95,7 +95,7 @@ static PetscErrorCode CompareFar(const OffsetTable lattice[2], PetscReal diamete
 #define ROWS 32
 
 /* The rows of two dipoles at these heights, into `rows`. */
-static PetscErrorCode SetRows(Grid g, const PetscReal height[2], DipoleRows rows) {
+static PetscErrorCode SetRows(Grid g, const PetscReal height[2], PetscBool own, DipoleRows rows) {
   const PetscReal T[2 * DIPOLE_COUNT] = {0.7, -0.4, 0.3, -0.2, 0.9, 0.5}, none[2] = {0, 0};
   DipoleSpot spot[2 * DIPOLE_SPOTS];
   DipoleList list;
@@ -104,7 +104,7 @@ static PetscErrorCode SetRows(Grid g, const PetscReal height[2], DipoleRows rows
   PetscCall(DipoleListCreate(g, &list));
   for (int k = 0; k < 2; k++) DipoleSpots(g, 1, (PetscReal[]){6.3 + 2 * k, height[k]}, spot + k * DIPOLE_SPOTS);
   PetscCall(DipoleListPlace(list, 2, spot));
-  PetscCall(DipoleRowsSet(rows, list, T, NULL, none));
+  PetscCall(DipoleRowsSet(rows, list, T, own, NULL, none));
   PetscCall(DipoleListDestroy(&list));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -121,13 +121,14 @@ static PetscErrorCode CompareRows(const PetscReal before[2], const PetscReal now
   DipoleRows rows[2];
   PetscFunctionBeginUser;
   for (int k = 0; k < 2; k++) PetscCall(DipoleRowsCreate(&grid, 1, &rows[k]));
-  PetscCall(SetRows(&grid, before, rows[0]));
-  for (int k = 0; k < 2; k++) PetscCall(SetRows(&grid, now, rows[k]));
+  PetscCall(SetRows(&grid, before, PETSC_TRUE, rows[0]));
+  PetscCall(SetRows(&grid, (PetscReal[]){before[0] + 2, before[1] - 1}, PETSC_FALSE, rows[0]));
+  for (int k = 0; k < 2; k++) PetscCall(SetRows(&grid, now, PETSC_TRUE, rows[k]));
   for (int f = FIELD_U; f <= FIELD_V; f++)
     for (PetscInt j = 0; j < grid.rows[f]; j++) {
       PetscScalar row[2][2 * COLUMNS] = {{0}};
       for (int k = 0; k < 2; k++) {
-        DipoleRowsAddForce(rows[k], PETSC_TRUE, (Field)f, j, row[k]);
+        DipoleRowsAddForce(rows[k], (Field)f, j, row[k]);
         if (f == FIELD_U) DipoleRowsAddVelocity(rows[k], j, row[k] + COLUMNS);
       }
       for (PetscInt i = 0; i < 2 * COLUMNS; i++) {

@@ -76,23 +76,64 @@ static void ToSquare(PetscInt count, const PetscReal part[], PetscInt width, con
       for (PetscInt m = 0; m < width; m++) to[m] += part[k * BOX_REGION_PLACES + f] * from[k * width + m];
 }
 
-/* Rows [count][functions][rank of the whole] of the square's functions, of the components from `first` on: first in y,
-   then in x. */
-static PetscErrorCode FunctionRows(const BoxRegion *r, const BoxTable *t, int first, int count, PetscReal A[]) {
+/* Rows [n n][modes] of the square's functions, of a component of a block: first in y, then in x. line: [n0][n][modes],
+   work. */
+static void BlockRows(const BoxBlock *b, int component, const PetscReal *const part[2], PetscReal line[],
+                      PetscReal rows[]) {
+  const PetscInt n = BOX_REGION_PLACES, *from = b->first[component], modes = b->modes;
+  for (PetscInt i = 0; i < b->n[0]; i++)
+    ToSquare(b->n[1], part[1] + from[1] * n, modes, b->Q + (component * b->n[0] + i) * b->n[1] * modes,
+             line + i * n * modes);
+  ToSquare(b->n[0], part[0] + from[0] * n, n * modes, line, rows);
+}
+
+/* Rows [count][n n][rank of the whole] of the square's functions, of the components from `first` on. */
+static PetscErrorCode FunctionRows(const BoxRegion *r, const PetscReal *const part[2], int first, int count,
+                                   PetscReal A[]) {
   const PetscInt n = BOX_REGION_PLACES, rank = r->whole->rank;
-  PetscReal part[2][BOX_FUNCTIONS * BOX_REGION_PLACES], *line, *rows;
+  PetscReal *line, *rows;
   PetscFunctionBeginUser;
-  for (int d = 0; d < 2; d++) OnFunctions(r, t, d, part[d]);
   PetscCall(PetscMalloc2(BOX_FUNCTIONS * n * rank, &line, n * n * rank, &rows));
   for (PetscInt q = 0; q < r->whole->blocks * count; q++) {
     const BoxBlock *b = &r->whole->block[q / count];
-    const PetscInt c = q % count, *from = b->first[first + c], modes = b->modes;
-    for (PetscInt i = 0; i < b->n[0]; i++)
-      ToSquare(b->n[1], part[1] + from[1] * n, modes, b->Q + ((first + c) * b->n[0] + i) * b->n[1] * modes,
-               line + i * n * modes);
-    ToSquare(b->n[0], part[0] + from[0] * n, n * modes, line, rows);
+    const PetscInt c = q % count;
+    BlockRows(b, first + (int)c, part, line, rows);
     for (PetscInt f = 0; f < n * n; f++)
-      PetscCall(PetscArraycpy(A + (c * n * n + f) * rank + b->start, rows + f * modes, modes));
+      PetscCall(PetscArraycpy(A + (c * n * n + f) * rank + b->start, rows + f * b->modes, b->modes));
+  }
+  PetscCall(PetscFree2(line, rows));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* to[n n] += what the square's functions have of velocity component c = row[n0][n1] in a block's. */
+static void AddVelocity(const BoxBlock *b, int c, const PetscReal *const part[2], const PetscReal row[],
+                        PetscReal to[]) {
+  enum { n = BOX_REGION_PLACES };
+  const PetscReal *x = part[0] + b->first[c][0] * n;
+  for (PetscInt i = 0; i < b->n[0]; i++, x += n) {
+    const PetscReal *y = part[1] + b->first[c][1] * n;
+    PetscReal sum[n] = {0};
+    for (PetscInt j = 0; j < b->n[1]; j++, y += n)
+      for (int f = 0; f < n; f++) sum[f] += row[i * b->n[1] + j] * y[f];
+    for (int f = 0; f < n * n; f++) to[f] += x[f / n] * sum[f % n];
+  }
+}
+
+/* The same of a table that keeps D between its functions: a mode is a velocity's function. */
+static PetscErrorCode BetweenKept(const BoxRegion *r, const PetscReal *const part[2], BoxTable *t) {
+  const PetscInt n = t->functions[0] * t->functions[1], parts = BoxParts(t);
+  PetscInt most = 0;
+  PetscReal *line, *rows;
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < r->whole->blocks; k++) most = PetscMax(most, r->whole->block[k].modes);
+  PetscCall(PetscMalloc2(BOX_FUNCTIONS * BOX_REGION_PLACES * most, &line, n * most, &rows));
+  PetscCall(PetscArrayzero(t->block->Q, 2 * n * parts * n));
+  for (PetscInt k = 0; k < r->whole->blocks * parts; k++) {
+    const BoxBlock *b = &r->whole->block[k / parts];
+    const PetscInt part_of = k % parts, half = b->modes / 2;
+    BlockRows(b, BoxFirstPart(t) + (int)part_of, part, line, rows);
+    for (PetscInt q = 0; q < 2 * n; q++)
+      AddVelocity(b, (int)(q % 2), part, rows + q * half, t->block->Q + (part_of * 2 * n + q) * n);
   }
   PetscCall(PetscFree2(line, rows));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -101,11 +142,17 @@ static PetscErrorCode FunctionRows(const BoxRegion *r, const BoxTable *t, int fi
 /* D = A l B^T from the square's functions of a source to those of a velocity, into Q of its one block. */
 static PetscErrorCode BetweenFunctions(const BoxRegion *r, BoxTable *t) {
   const PetscInt n = t->functions[0] * t->functions[1], rank = r->whole->rank, parts = BoxParts(t);
-  PetscReal *A, *B;
+  PetscReal own[2][BOX_FUNCTIONS * BOX_REGION_PLACES], *A, *B;
+  const PetscReal *const part[2] = {own[0], own[1]};
   PetscFunctionBeginUser;
+  for (int d = 0; d < 2; d++) OnFunctions(r, t, d, own[d]);
+  if (r->all) {
+    PetscCall(BetweenKept(r, part, t));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(PetscMalloc2(2 * n * rank, &A, parts * n * rank, &B));
-  PetscCall(FunctionRows(r, t, 0, 2, A));
-  PetscCall(FunctionRows(r, t, BoxFirstPart(t), (int)parts, B));
+  PetscCall(FunctionRows(r, part, 0, 2, A));
+  PetscCall(FunctionRows(r, part, BoxFirstPart(t), (int)parts, B));
   for (PetscInt k = 0; k < parts * n * rank; k++) B[k] *= r->whole->l[k % rank];
   PetscCall(DenseProduct(PETSC_TRUE, 2 * n, parts * n, rank, A, B, t->block->Q));
   PetscCall(PetscFree2(A, B));

@@ -229,12 +229,12 @@ PetscErrorCode DoubleLayerSpread(DoubleLayer s, Vec w, Vec source, PetscReal mea
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode DoubleLayerRows(DoubleLayer s, const PetscReal profile[], DipoleRows rows) {
+PetscErrorCode DoubleLayerRows(DoubleLayer s, PetscBool own, const PetscReal profile[], DipoleRows rows) {
   PetscReal mean[2] = {0, 0};
   PetscFunctionBeginUser;
   PetscCall(PlaceDipoles(s));
   DoubleLayerMean(s, mean);
-  PetscCall(DipoleRowsSet(rows, s->list, s->tensor, profile, mean));
+  PetscCall(DipoleRowsSet(rows, s->list, s->tensor, own, profile, mean));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

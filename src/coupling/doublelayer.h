@@ -85,9 +85,10 @@ PETSC_EXTERN void DoubleLayerMean(DoubleLayer layer, PetscReal mean[2]);
    flow outside a moving rigid body. Nothing in unbounded fluid. Not collective. */
 PETSC_EXTERN PetscErrorCode DoubleLayerSpread(DoubleLayer layer, Vec w, Vec source, PetscReal mean[2]);
 
-/* DoubleLayerRows - the same dipoles as rows of a solve by stream function, with their mean velocity; profile: that of
-   the Stokes solve (StokesProfile). Not collective. */
-PETSC_EXTERN PetscErrorCode DoubleLayerRows(DoubleLayer layer, const PetscReal profile[], DipoleRows rows);
+/* DoubleLayerRows - the same dipoles as rows of a solve by stream function, with their mean velocity, and unless their
+   force is spread already their own; profile: that of the Stokes solve (StokesProfile). Not collective. */
+PETSC_EXTERN PetscErrorCode DoubleLayerRows(DoubleLayer layer, PetscBool own, const PetscReal profile[],
+                                            DipoleRows rows);
 
 /* DoubleLayerStress - sum[3] (xx, yy, xy) += minus nu INT (J n + n J) ds of the jump last set, less its flux: what the
    dipoles add to the sum of force times place; shortfall[2] (u, v) += what their stencils lack of it across a channel

@@ -180,7 +180,7 @@ static PetscErrorCode RespondByRows(Reduced s, const PetscScalar x[]) {
   PetscFunctionBeginUser;
   PetscCall(Force(s, x, s->F));
   PetscCall(Motion(s, x, PETSC_FALSE));
-  if (HasDipoles(s)) PetscCall(DoubleLayerRows(c->contrast, StokesProfile(s->stokes), s->dipoles));
+  if (HasDipoles(s)) PetscCall(DoubleLayerRows(c->contrast, PETSC_TRUE, StokesProfile(s->stokes), s->dipoles));
   PetscCall(MarkersRespond(c->markers, s->stream, HasDipoles(s) ? s->dipoles : NULL, -1 / PetscSqr(c->fluid->grid->h),
                            s->F, s->U));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -215,7 +215,7 @@ static PetscErrorCode FollowByRows(Reduced s, PetscBool all, Vec f, Vec w, Strea
   const Coupling c = s->unknowns->coupling;
   const PetscBool dipoles = HasDipoles(s);
   PetscFunctionBeginUser;
-  if (dipoles) PetscCall(DoubleLayerRows(c->contrast, StokesProfile(s->stokes), s->dipoles));
+  if (dipoles) PetscCall(DoubleLayerRows(c->contrast, PETSC_FALSE, StokesProfile(s->stokes), s->dipoles));
   PetscCall(MarkersFollow(c->markers, s->stream, dipoles ? s->dipoles : NULL, all, f, dipoles ? s->source : NULL, s->U,
                           w, dipoles || !s->source ? measures : NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -279,7 +279,7 @@ PetscErrorCode ReducedFinish(Reduced s, Vec added, Vec f, Vec x, StreamMeasures 
   PetscCall(Motion(s, xa, PETSC_TRUE));
   PetscCall(VecRestoreArrayRead(x, &xa));
   PetscCall(DoubleLayerSpread(c->contrast, f, s->source, s->mean));
-  PetscCall(DoubleLayerRows(c->contrast, StokesProfile(s->stokes), s->dipoles));
+  PetscCall(DoubleLayerRows(c->contrast, PETSC_FALSE, StokesProfile(s->stokes), s->dipoles));
   PetscCall(MarkersFollow(c->markers, s->stream, s->dipoles, PETSC_FALSE, f, s->source, NULL, NULL, measures));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

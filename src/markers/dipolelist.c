@@ -27,11 +27,8 @@ PetscErrorCode DipoleListDestroy(DipoleList *list) {
 
 /* The first row from the lowest on that is this row of the grid; others follow after a period. */
 static inline PetscInt FirstRow(const Grid g, PetscInt entry) {
-  PetscInt j = entry - g->first + DIPOLE_BELOW;
-  if (g->wall[1]) return j;
-  while (j >= g->n[1]) j -= g->n[1];
-  while (j < 0) j += g->n[1];
-  return j;
+  const PetscInt j = entry - g->first + DIPOLE_BELOW;
+  return g->wall[1] ? j : (j % g->n[1] + g->n[1]) % g->n[1];
 }
 
 /* Counts a spot's rows in start[j + 2], or (hit) puts them where start[j + 1] says. */
@@ -39,8 +36,9 @@ static void Visit(DipoleList d, PetscInt k, PetscInt rows, PetscInt start[], Dip
   const Grid g = d->grid;
   const DipoleSpot *s = &d->spot[k];
   const PetscInt period = g->wall[1] ? rows : g->n[1], part = k / DIPOLE_SPOTS * DIPOLE_COUNT + (PetscInt)s->part;
-  for (PetscInt q = 0; q < s->line[1].n; q++)
-    for (PetscInt j = FirstRow(g, s->line[1].first + q); j >= 0 && j < rows; j += period)
+  const PetscInt n = s->line[1].n, first = FirstRow(g, s->line[1].first);
+  for (PetscInt q = 0; q < n; q++)
+    for (PetscInt j = g->wall[1] ? first + q : (first + q) % period; j >= 0 && j < rows; j += period)
       if (hit)
         hit[start[j + 1]++] = (DipoleHit){k, part, s->value * s->line[1].weight[q]};
       else

@@ -77,14 +77,15 @@ static void SetWindow(DipoleRows d, const PetscInt window[2]) {
   for (int c = 0; c < 2; c++) d->window[c] = window[c];
 }
 
-PetscErrorCode DipoleRowsSet(DipoleRows d, const DipoleList list, const PetscReal T[], const PetscReal profile[],
-                             const PetscReal mean[2]) {
+PetscErrorCode DipoleRowsSet(DipoleRows d, const DipoleList list, const PetscReal T[], PetscBool own,
+                             const PetscReal profile[], const PetscReal mean[2]) {
   const Grid g = d->grid;
   PetscFunctionBeginUser;
+  d->own = own;
   Means(d, list, T);
   SetWindow(d, list->window);
   for (PetscInt j = d->window[0]; j < d->window[1]; j++) {
-    for (int f = 0; f < 3; f++) {
+    for (int f = own ? FIELD_U : FIELD_P; f <= FIELD_P; f++) {
       PetscScalar *row = Row(d, (Field)f, j);
       for (PetscInt i = 0; i < g->n[0]; i++) row[i] = 0;
       DipoleListAddRow(list, (Field)f, j, T, row);
@@ -115,10 +116,10 @@ static void AddRow(PetscInt n, const PetscScalar *restrict x, PetscScalar *restr
   for (PetscInt i = 0; i < n; i++) y[i] += x[i];
 }
 
-void DipoleRowsAddForce(DipoleRows d, PetscBool own, Field f, PetscInt j, PetscScalar row[]) {
+void DipoleRowsAddForce(DipoleRows d, Field f, PetscInt j, PetscScalar row[]) {
   const PetscInt n = d->grid->n[0];
   if (j < d->window[0] - 1 || j > d->window[1]) return;
-  if (own) AddRow(d->grid->columns[f], Row(d, f, j), row);
+  if (d->own) AddRow(d->grid->columns[f], Row(d, f, j), row);
   if (f == FIELD_V) return;
   /* beyond a wall there is minus the row next to it */
   const PetscBool bottom = d->grid->wall[1] && d->grid->first + j == 0 ? PETSC_TRUE : PETSC_FALSE;

@@ -18,7 +18,7 @@ static const PetscScalar *SpreadForce(void *ctx, Field f, PetscInt j, PetscScala
   const PetscInt row = j == g->rows[f] && g->size == 1 ? 0 : j; /* across the seam */
   (void)PetscArrayzero(work, g->columns[f]);
   MarkerRowSpread(r->m->rows, f, row, r->alpha, r->m->force, work);
-  if (r->dipoles) DipoleRowsAddForce(r->dipoles, PETSC_TRUE, f, j, work);
+  if (r->dipoles) DipoleRowsAddForce(r->dipoles, f, j, work);
   return work;
 }
 
@@ -27,7 +27,7 @@ static const PetscScalar *GridForce(void *ctx, Field f, PetscInt j, PetscScalar 
   const PetscScalar *row = f == FIELD_U ? RowAt(&r->u, j) : r->f + GridRowStart(r->m->grid, f, j);
   if (!r->dipoles) return row;
   (void)PetscArraycpy(work, row, r->m->grid->columns[f]);
-  DipoleRowsAddForce(r->dipoles, PETSC_FALSE, f, j, work);
+  DipoleRowsAddForce(r->dipoles, f, j, work);
   return work;
 }
 
