@@ -18,14 +18,6 @@ PetscErrorCode DoubleGeometry(Spectral spectral, PetscInt n, const PetscReal X[]
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* D = -(1/pi) (r.n) r r/r^4 w with r from the target to the source and N = n w: xx, yy, xy. */
-static void Free(const PetscReal r[2], const PetscReal N[2], PetscReal D[3]) {
-  const PetscReal r2 = r[0] * r[0] + r[1] * r[1], q = -(r[0] * N[0] + r[1] * N[1]) / (PETSC_PI * r2 * r2);
-  D[0] = q * r[0] * r[0];
-  D[1] = q * r[1] * r[1];
-  D[2] = q * r[0] * r[1];
-}
-
 /* On the diagonal the curvature takes the place of 2 r.n/r^2: D = -(kappa/2 pi) t t w, from the label's derivatives T
    and T' : xx, yy, xy. */
 static void Diagonal(const PetscReal T[2], const PetscReal TT[2], PetscReal D[3]) {
@@ -36,34 +28,61 @@ static void Diagonal(const PetscReal T[2], const PetscReal TT[2], PetscReal D[3]
   D[2] = q * T[0] * T[1];
 }
 
-/* D(i, i) of all markers: [n][3]. */
-static PetscErrorCode Diagonals(Spectral spectral, PetscInt n, const PetscReal X[], PetscReal D[]) {
-  PetscReal *T, *TT;
+/* D(i, i) of all markers, whose n w is known: [n][3]. */
+static PetscErrorCode Diagonals(Spectral spectral, PetscInt n, const PetscReal X[], const PetscReal normal[],
+                                PetscReal D[]) {
+  PetscReal *TT;
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc2(2 * n, &T, 2 * n, &TT));
-  SpectralDerivative(spectral, 1, 1, X, T);
+  PetscCall(PetscCalloc1(2 * n, &TT));
   SpectralDerivative(spectral, 2, 1, X, TT);
-  for (PetscInt k = 0; k < n; k++) Diagonal(T + 2 * k, TT + 2 * k, D + 3 * k);
-  PetscCall(PetscFree2(T, TT));
+  for (PetscInt k = 0; k < n; k++) {
+    const PetscReal T[2] = {-normal[2 * k + 1], normal[2 * k]};
+    Diagonal(T, TT + 2 * k, D + 3 * k);
+  }
+  PetscCall(PetscFree(TT));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode DoubleSelf(Spectral spectral, PetscInt n, const PetscReal X[], PetscReal D[]) {
-  PetscReal *normal, *along, *diagonal;
+/* D of the unbounded double layer at (x, y) from a source's marker, zero there: xx, xy, yx, yy. */
+static inline void FreeFour(Lanes x, Lanes y, const PetscReal N[2], Lanes D[4]) {
+  const Lanes r2 = x * x + y * y;
+  const Lanes q = (x * N[0] + y * N[1]) / (PETSC_PI * (r2 * r2 + LanesWhere((LanesBits)(r2 == 0), 1 + (Lanes){0})));
+  const Lanes qx = q * x;
+  D[0] = qx * x;
+  D[1] = D[2] = qx * y;
+  D[3] = q * y * y;
+}
+
+/* From marker p of n on, in a source's columns of J_x and of J_y: value[2][2n]. */
+static inline void PutFour(const Lanes M[4], PetscInt p, PetscInt n, PetscReal value[]) {
+  for (int k = 0; k < 2; k++) {
+    PetscReal row[2 * LANES], *to = value + k * 2 * n + 2 * p;
+    LanesInterlace(M[2 * k], M[2 * k + 1], p + LANES <= n ? to : row);
+    for (PetscInt i = 0; i < 2 * (n - p) && p + LANES > n; i++) to[i] = row[i];
+  }
+}
+
+PetscErrorCode DoubleSelf(Spectral spectral, PetscInt n, const PetscReal X[], const PetscReal normal[], PetscReal D[]) {
+  PetscReal *x, *y, *own;
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc3(2 * n, &normal, n, &along, 3 * n, &diagonal));
-  PetscCall(DoubleGeometry(spectral, n, X, normal, along));
-  PetscCall(Diagonals(spectral, n, X, diagonal));
-  for (PetscInt j = 0; j < n; j++)
-    for (PetscInt i = 0; i < n; i++) {
-      const PetscReal r[2] = {X[2 * j] - X[2 * i], X[2 * j + 1] - X[2 * i + 1]};
-      PetscReal pair[3], *at = D + 2 * j * 2 * n + 2 * i, *d = i == j ? diagonal + 3 * i : pair;
-      if (i != j) Free(r, normal + 2 * j, pair);
-      at[0] = d[0];
-      at[2 * n + 1] = d[1];
-      at[1] = at[2 * n] = d[2];
+  PetscCall(PetscCalloc3(n + LANES, &x, n + LANES, &y, 3 * n, &own));
+  PetscCall(Diagonals(spectral, n, X, normal, own));
+  for (PetscInt k = 0; k < n; k++) {
+    x[k] = X[2 * k];
+    y[k] = X[2 * k + 1];
+  }
+  for (PetscInt j = 0; j < n; j++) {
+    PetscReal *column = D + 2 * j * 2 * n, *at = column + 2 * j;
+    for (PetscInt p = 0; p < n; p += LANES) {
+      Lanes M[4];
+      FreeFour(LanesAt(x + p) - x[j], LanesAt(y + p) - y[j], normal + 2 * j, M);
+      PutFour(M, p, n, column);
     }
-  PetscCall(PetscFree3(normal, along, diagonal));
+    at[0] = own[3 * j];
+    at[2 * n + 1] = own[3 * j + 1];
+    at[1] = at[2 * n] = own[3 * j + 2];
+  }
+  PetscCall(PetscFree3(x, y, own));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -238,10 +257,9 @@ static void End(Fill *f, PetscReal value[]) {
   const DoubleColumn *c = &f->to;
   const PetscReal *N = c->N, n[2] = {c->over * N[0], c->over * N[1]};
   for (PetscInt p = 0; p < c->n; p += LANES) {
-    const Lanes part = LanesAt(f->part + p), x = LanesAt(c->d[0] + p), y = LanesAt(c->d[1] + p), r2 = x * x + y * y;
-    const Lanes q = (x * N[0] + y * N[1]) / (PETSC_PI * (r2 * r2 + LanesWhere((LanesBits)(r2 == 0), 1 + (Lanes){0})));
-    const Lanes qx = q * x, D[4] = {qx * x, qx * y, qx * y, q * y * y};
-    Lanes M[4], free[4];
+    const Lanes part = LanesAt(f->part + p);
+    Lanes D[4], M[4], free[4];
+    FreeFour(LanesAt(c->d[0] + p), LanesAt(c->d[1] + p), N, D);
     for (int k = 0; k < 4; k++) {
       free[k] = LanesAt(c->free[k] + p);
       M[k] = part * (D[k] + (LanesAt(c->wall[k] + p) - free[k]));
@@ -250,11 +268,7 @@ static void End(Fill *f, PetscReal value[]) {
       const Lanes flux = n[0] * free[comp] + n[1] * free[2 + comp] + LanesAt(c->flux[comp] + p);
       LanesPut(LanesAt(f->flux[comp] + p) + part * flux, f->flux[comp] + p);
     }
-    for (int k = 0; k < 2; k++) {
-      PetscReal row[2 * LANES], *to = value + k * 2 * c->n + 2 * p;
-      LanesInterlace(M[2 * k], M[2 * k + 1], p + LANES <= c->n ? to : row);
-      for (PetscInt i = 0; i < 2 * (c->n - p) && p + LANES > c->n; i++) to[i] = row[i];
-    }
+    PutFour(M, p, c->n, value);
   }
 }
 
@@ -292,7 +306,8 @@ PetscErrorCode DoubleBlockFill(DoubleLayer s, const DoubleBlock *b, PetscBool la
   if (s->image) DoubleImageRange(s->image, &f.to);
   if (f.self) {
     PetscCall(PetscMalloc1(3 * m, &own));
-    PetscCall(Diagonals(s->near->bodies->spectral[b->row], m, s->near->markers->X + 2 * l->start[b->row], own));
+    PetscCall(Diagonals(s->near->bodies->spectral[b->row], m, s->near->markers->X + 2 * l->start[b->row],
+                        s->normal + 2 * l->start[b->row], own));
   }
   for (PetscInt q = 0; q < m; q++) {
     Begin(&f, l->start[b->column] + q);

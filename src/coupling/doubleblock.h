@@ -9,8 +9,9 @@
 PETSC_EXTERN PetscErrorCode DoubleBlockFill(DoubleLayer layer, const DoubleBlock *block, PetscBool lattice,
                                             PetscReal value[]);
 
-/* DoubleSelf - D of a closed curve with itself from its n markers X: [2n][2n]. Not collective. */
-PETSC_EXTERN PetscErrorCode DoubleSelf(Spectral spectral, PetscInt n, const PetscReal X[], PetscReal D[]);
+/* DoubleSelf - D of a closed curve with itself from its n markers X and their n w: [2n][2n]. Not collective. */
+PETSC_EXTERN PetscErrorCode DoubleSelf(Spectral spectral, PetscInt n, const PetscReal X[], const PetscReal normal[],
+                                       PetscReal D[]);
 
 /* DoubleGeometry - n w [2n] and w [n] of a curve's markers: the derivative by the label, turned. Not collective. */
 PETSC_EXTERN PetscErrorCode DoubleGeometry(Spectral spectral, PetscInt n, const PetscReal X[], PetscReal normal[],

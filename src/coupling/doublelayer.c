@@ -143,7 +143,7 @@ PetscErrorCode DoubleLayerPlace(DoubleLayer s) {
   for (PetscInt k = 0; k < s->blocks; k++) {
     const DoubleBlock *b = &s->block[k];
     if (DoubleLayerIsApart(s)) { /* one vesicle, far from walls and from its images */
-      PetscCall(DoubleSelf(s->near->bodies->spectral[0], l->M, s->near->markers->X, s->value + b->at));
+      PetscCall(DoubleSelf(s->near->bodies->spectral[0], l->M, s->near->markers->X, s->normal, s->value + b->at));
       continue;
     }
     PetscCall(DoubleBlockFill(s, b, s->near->free ? PETSC_FALSE : PETSC_TRUE, s->value + b->at));

@@ -34,19 +34,20 @@ static PetscErrorCode Assemble(Patterns s, const Pattern *q, PetscReal M[]) {
 static PetscErrorCode Motion(Patterns s, const Pattern *q, PetscReal **motion) {
   const Membrane m = s->coupling->membrane;
   const PetscInt n = 2 * LayoutCount(m->layout, q->like);
-  PetscReal *D;
+  PetscReal *D, *normal, *along;
   PetscFunctionBeginUser;
   *motion = NULL;
   if (!s->coupling->contrast) PetscFunctionReturn(PETSC_SUCCESS);
   const PetscReal ratio = s->coupling->contrast->ratio[q->like];
   PetscCall(PetscMalloc1(n * n, motion));
-  PetscCall(PetscMalloc1(n * n, &D));
-  PetscCall(DoubleSelf(m->spectral[q->like], n / 2, q->X, D));
+  PetscCall(PetscMalloc3(n * n, &D, n, &normal, n / 2, &along));
+  PetscCall(DoubleGeometry(m->spectral[q->like], n / 2, q->X, normal, along));
+  PetscCall(DoubleSelf(m->spectral[q->like], n / 2, q->X, normal, D));
   for (PetscInt j = 0; j < n; j++)
     for (PetscInt i = 0; i < n; i++)
       (*motion)[j * n + i] = (i == j ? 0.5 * (1 + ratio) : 0) - (1 - ratio) * D[i * n + j];
   PetscCall(ContrastTread(m, q->like, q->like + 1, &q->treading, s->a0, n, *motion));
-  PetscCall(PetscFree(D));
+  PetscCall(PetscFree3(D, normal, along));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
