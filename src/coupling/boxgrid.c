@@ -141,10 +141,21 @@ static PetscReal Lost(const BoxAxis axis[2], const PetscReal d[2]) {
   return (whole - BoxImage(axis, at)) / whole;
 }
 
-void BoxFaded(const BoxAxis axis[2], const PetscReal d[2], PetscReal K[2][DIPOLE_COUNT]) {
-  const PetscReal lost = Lost(axis, d);
-  Free(d, K);
-  for (int k = 0; k < 2 * DIPOLE_COUNT; k++) K[k / DIPOLE_COUNT][k % DIPOLE_COUNT] *= lost;
+void BoxFaded(const BoxAxis axis[2], PetscInt n, PetscReal *const d[2], PetscReal V[]) {
+  PetscReal zero[2] = {0, 0};
+  const PetscReal whole = BoxImage(axis, zero);
+  BoxImageRow(axis, n, d, V);
+  for (PetscInt k = 0; k < n; k += LANES) {
+    const Lanes r[2] = {LanesAt(d[0] + k), LanesAt(d[1] + k)}, r2 = r[0] * r[0] + r[1] * r[1];
+    const Lanes q = (whole - LanesAt(V + k)) / whole / (PETSC_PI * r2 * r2);
+    const Lanes some = LanesWhere((LanesBits)(r2 > 0), q);
+    for (int c = 0; c < 2; c++) {
+      PetscReal *K = V + c * DIPOLE_COUNT * n + k;
+      LanesPut(0.5 * some * r[c] * r[0] * r[0], K + DIPOLE_XX * n);
+      LanesPut(0.5 * some * r[c] * r[1] * r[1], K + DIPOLE_YY * n);
+      LanesPut(some * r[c] * r[0] * r[1], K + DIPOLE_XY * n);
+    }
+  }
 }
 
 /* L = K less what fades of the exact double layer D; towards half a period, where images change, (1 - lost) D. */

@@ -108,14 +108,16 @@ static PetscErrorCode FunctionRows(const BoxRegion *r, const PetscReal *const pa
 /* to[n n] += what the square's functions have of velocity component c = row[n0][n1] in a block's. */
 static void AddVelocity(const BoxBlock *b, int c, const PetscReal *const part[2], const PetscReal row[],
                         PetscReal to[]) {
-  enum { n = BOX_REGION_PLACES };
+  enum { n = BOX_REGION_PLACES, vectors = n / LANES };
   const PetscReal *x = part[0] + b->first[c][0] * n;
   for (PetscInt i = 0; i < b->n[0]; i++, x += n) {
     const PetscReal *y = part[1] + b->first[c][1] * n;
-    PetscReal sum[n] = {0};
+    Lanes sum[vectors] = {{0}};
     for (PetscInt j = 0; j < b->n[1]; j++, y += n)
-      for (int f = 0; f < n; f++) sum[f] += row[i * b->n[1] + j] * y[f];
-    for (int f = 0; f < n * n; f++) to[f] += x[f / n] * sum[f % n];
+      for (int v = 0; v < vectors; v++) sum[v] += row[i * b->n[1] + j] * LanesAt(y + v * LANES);
+    for (int f = 0; f < n; f++)
+      for (int v = 0; v < vectors; v++)
+        LanesPut(LanesAt(to + f * n + v * LANES) + x[f] * sum[v], to + f * n + v * LANES);
   }
 }
 
@@ -159,17 +161,6 @@ static PetscErrorCode BetweenFunctions(const BoxRegion *r, BoxTable *t) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Less what has faded over a period of the unbounded double layer, which is taken whole: its parts from Y to n points.
- */
-static void Faded(const BoxRegion *r, PetscInt n, const PetscReal X[], const PetscReal Y[2], PetscReal V[]) {
-  for (PetscInt k = 0; k < n; k++) {
-    const PetscReal d[2] = {X[2 * k] - Y[0], X[2 * k + 1] - Y[1]};
-    PetscReal K[2][DIPOLE_COUNT];
-    BoxFaded(r->whole->axis, d, K);
-    for (int q = 0; q < 2 * DIPOLE_COUNT; q++) V[q * n + k] = -K[q / DIPOLE_COUNT][q % DIPOLE_COUNT];
-  }
-}
-
 /* Whether all pairs in the square are so far from one another's images in walls that these have a closed form. */
 static PetscBool HasFarImages(const BoxRegion *r, const BoxSquare *s) {
   if (r->all) return PETSC_TRUE;
@@ -182,15 +173,17 @@ static PetscBool HasFarImages(const BoxRegion *r, const BoxSquare *s) {
   return PETSC_TRUE;
 }
 
-/* The images as the near field has them: over a period, of the nearest ones and fading. */
+/* The images as the near field has them: over a period, of the nearest ones and fading. Or less what has faded of the
+   unbounded double layer, which is taken whole. */
 static void Images(const BoxRegion *r, int parts, PetscInt n, const PetscReal X[], const PetscReal Y[2],
                    PetscReal V[]) {
   PetscReal d[2][BOX_IMAGE_ROW], part[BOX_IMAGE_ROW];
+  for (PetscInt k = 0; k < 2 * n; k++) d[k % 2][k / 2] = X[k] - Y[k % 2];
   if (r->all) {
-    Faded(r, n, X, Y, V);
+    BoxFaded(r->whole->axis, n, (PetscReal *[]){d[0], d[1]}, V);
+    for (PetscInt k = 0; k < 2 * parts * n; k++) V[k] = -V[k];
     return;
   }
-  for (PetscInt k = 0; k < 2 * n; k++) d[k % 2][k / 2] = X[k] - Y[k % 2];
   BoxImageRow(r->whole->axis, n, (PetscReal *[]){d[0], d[1]}, part);
   r->images(r->image, n, X, Y, V);
   for (PetscInt k = 0; k < 2 * parts * n; k++) V[k] *= part[k % n];
