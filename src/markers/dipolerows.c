@@ -1,5 +1,7 @@
 #include "markers/dipolerows.h"
 
+#define AT_ONCE 4 /* rows */
+
 /* A field's row j, which may be up to DIPOLE_BELOW below the own ones or DIPOLE_ABOVE above them. */
 static PetscScalar *Row(DipoleRows d, Field f, PetscInt j) {
   return d->field[f] + (j + DIPOLE_BELOW) * d->grid->n[0];
@@ -43,18 +45,28 @@ static void Means(DipoleRows d, const DipoleList list, const PetscReal T[]) {
   }
 }
 
-/* From a row's source to b, whose mean is zero, or which is zero on walls, the last entry. */
-static void SumRow(const Grid g, PetscReal mean, PetscScalar row[]) {
+/* From the sources of so many rows to b, whose means are zero, or which is zero on walls, the last entries: together,
+   as each sum has to wait for the one before. */
+static inline void SumRows(const int count, DipoleRows d, PetscInt j) {
+  const Grid g = d->grid;
   const PetscInt n = g->n[0];
-  PetscReal b = 0, sum = 0;
-  for (PetscInt i = 0; i < n; i++) {
-    b += g->h * (mean - row[i]);
-    row[i] = b;
-    sum += b;
+  PetscReal mean[AT_ONCE], b[AT_ONCE] = {0}, sum[AT_ONCE] = {0};
+  PetscScalar *row[AT_ONCE];
+  for (int q = 0; q < count; q++) {
+    mean[q] = d->mean[(j + q + g->first + g->n[1]) % g->n[1]];
+    row[q] = Row(d, FIELD_P, j + q);
   }
-  sum /= (PetscReal)n;
-  for (PetscInt i = 0; i < n && !g->wall[0]; i++) row[i] -= sum;
-  if (g->wall[0]) row[n - 1] = 0;
+  for (PetscInt i = 0; i < n; i++)
+    for (int q = 0; q < count; q++) {
+      b[q] += g->h * (mean[q] - row[q][i]);
+      row[q][i] = b[q];
+      sum[q] += b[q];
+    }
+  for (int q = 0; q < count; q++) {
+    sum[q] /= (PetscReal)n;
+    for (PetscInt i = 0; i < n && !g->wall[0]; i++) row[q][i] -= sum[q];
+    if (g->wall[0]) row[q][n - 1] = 0;
+  }
 }
 
 /* From the rows' mean sources to v, zero at a wall and else of zero mean. */
@@ -80,20 +92,21 @@ static void SetWindow(DipoleRows d, const PetscInt window[2]) {
 PetscErrorCode DipoleRowsSet(DipoleRows d, const DipoleList list, const PetscReal T[], PetscBool own,
                              const PetscReal profile[], const PetscReal mean[2]) {
   const Grid g = d->grid;
+  PetscInt j;
   PetscFunctionBeginUser;
   d->own = own;
   Means(d, list, T);
   SetWindow(d, list->window);
-  for (PetscInt j = d->window[0]; j < d->window[1]; j++) {
+  for (j = d->window[0]; j < d->window[1]; j++)
     for (int f = own ? FIELD_U : FIELD_P; f <= FIELD_P; f++) {
       PetscScalar *row = Row(d, (Field)f, j);
       for (PetscInt i = 0; i < g->n[0]; i++) row[i] = 0;
       DipoleListAddRow(list, (Field)f, j, T, row);
     }
-    SumRow(g, d->mean[(j + g->first + g->n[1]) % g->n[1]], Row(d, FIELD_P, j));
-  }
+  for (j = d->window[0]; j + AT_ONCE <= d->window[1]; j += AT_ONCE) SumRows(AT_ONCE, d, j);
+  for (; j < d->window[1]; j++) SumRows(1, d, j);
   SumMeans(g, d->mean);
-  for (PetscInt j = 0; j < g->n[1]; j++) {
+  for (j = 0; j < g->n[1]; j++) {
     d->flow[j] = mean[0] * (profile ? profile[j] : g->wall[1] ? 0 : 1);
     if (!g->wall[1]) d->mean[j] += mean[1];
   }
