@@ -119,11 +119,19 @@ static void Close(StreamSlabs s) {
   CarryDown(s);
 }
 
+/* Blocks that anything comes in of from below. */
+static PetscInt BlocksBelow(StreamSlabs s) {
+  const PetscReal *y1 = s->below + 2 * s->grid->rank * s->width, *y2 = y1 + s->width;
+  PetscInt k = s->width;
+  while (k > 0 && y1[k - 1] == 0 && y2[k - 1] == 0) k--;
+  return (k + BLOCK - 1) / BLOCK;
+}
+
 /* y2 of the rows += factor times what Y from below becomes there. */
 static void AddBelow(StreamSlabs s, PetscReal factor) {
-  const PetscInt w = s->width;
+  const PetscInt w = s->width, blocks = BlocksBelow(s);
   const PetscReal *below = s->below + 2 * s->grid->rank * w;
-  for (PetscInt b = 0; b < w / BLOCK; b++) {
+  for (PetscInt b = 0; b < blocks; b++) {
     const PetscReal *restrict r1 = s->factors->r[0] + b * BLOCK, *restrict r2 = s->factors->r[1] + b * BLOCK;
     PetscReal y1[BLOCK], y2[BLOCK];
     for (int k = 0; k < BLOCK; k++) {
@@ -140,7 +148,7 @@ static void AddBelow(StreamSlabs s, PetscReal factor) {
       }
     }
   }
-  for (PetscInt j = 0, b = w / BLOCK; j < s->rows; j++) {
+  for (PetscInt j = 0, b = blocks; j < s->rows; j++) {
     while (b > 0 && s->factors->reach[b - 1] <= j) b--;
     s->alive[j] = PetscMax(s->alive[j], b);
   }
