@@ -9,6 +9,7 @@
 #define COARSE_CELLS 64 /* of the shorter side, on the coarser grid */
 #define MOST_CELLS 80
 #define RATIO_CELLS 48 /* of the shorter side, from which on the pair's ratio is 3/2, */
+#define ALL_CELLS 32   /* at least nearly, where the table is all of the smooth part, */
 #define FEW_CELLS 24   /* and below which it is 3 */
 #define SMALLEST 5e-4  /* of the largest: eigenvalues below it are dropped */
 #define ALL_FADED 0.25 /* where the table is all of the smooth part, which is to have no kink at half a period */
@@ -337,6 +338,8 @@ PetscErrorCode BoxTableCreate(const FluidSpec *spec, const char kernel[], const 
   PetscFunctionBeginUser;
   t->components = dipoles ? BOX_COMPONENTS : 2;
   CoarseCells(spec, cells);
+  for (int d = 0, finer = lattice->all && PetscMin(cells[0], cells[1]) < ALL_CELLS ? 2 : 1; d < 2; d++)
+    cells[d] *= finer;
   t->H = (spec->box[1] - spec->box[0]) / cells[0];
   if (cells[0] * spec->cells[1] != cells[1] * spec->cells[0]) pair.box[3] = pair.box[2] + cells[1] * t->H;
   for (int d = 0; d < 2; d++) {
