@@ -8,8 +8,8 @@
 #define MODES 16        /* of a period as long as the other side */
 #define COARSE_CELLS 64 /* of the shorter side, on the coarser grid */
 #define MOST_CELLS 80
+#define ALL_CELLS 32   /* where the table is all of the smooth part: fewer than these are doubled */
 #define RATIO_CELLS 48 /* of the shorter side, from which on the pair's ratio is 3/2, */
-#define ALL_CELLS 32   /* at least nearly, where the table is all of the smooth part, */
 #define FEW_CELLS 24   /* and below which it is 3 */
 #define SMALLEST 5e-4  /* of the largest: eigenvalues below it are dropped */
 #define ALL_FADED 0.25 /* where the table is all of the smooth part, which is to have no kink at half a period */

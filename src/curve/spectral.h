@@ -19,7 +19,7 @@ PETSC_EXTERN PetscReal SpectralTail(Spectral spectral, PetscReal part, const Pet
 
 /* ConvolveRound - sum_k = SUM_q weight_q x_{k - q}, or (ahead) x_{k + q}, of n entries of `each` numbers round a curve,
    given twice[2 each n + CONVOLVE_ROUND], which has them twice; sum[each n + CONVOLVE_ROUND]. Not collective. */
-#define CONVOLVE_ROUND 16
+#define CONVOLVE_ROUND 32
 PETSC_EXTERN void ConvolveRound(PetscInt n, int each, PetscBool ahead, const PetscReal weight[],
                                 const PetscReal twice[], PetscReal sum[]);
 
