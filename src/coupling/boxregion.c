@@ -26,8 +26,9 @@ static void Around(const BoxRegion *r, PetscInt M, const PetscReal X[], PetscRea
   const PetscReal ratio = BoxParts(r->whole) == 2 ? RATIO : FINER;
   *side = h * PetscPowReal(ratio, PetscCeilReal(PetscLogReal(PetscMax(least / h, 1)) / PetscLogReal(ratio)));
   for (int d = 0; d < 2; d++) {
-    const PetscReal spacing = *side / CENTRES, from = r->grid->lo[d];
-    centre[d] = from + spacing * PetscFloorReal(0.5 + (middle[d] - from) / spacing);
+    const PetscReal spacing = *side / CENTRES,
+                    from = 0.5 * (r->grid->lo[d] + r->grid->hi[d]); /* which keeps symmetry */
+    centre[d] = from + spacing * rint((middle[d] - from) / spacing);
   }
 }
 

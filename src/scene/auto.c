@@ -12,10 +12,10 @@ static const struct {
   PetscReal max_step;  /* over nu R0^3/c_b */
   PetscReal of_rest;   /* energy of shapes at rest */
 } settings[] = {
-    {1e-1, "1e-2", 3.1e-2, "1e-4", 2.3e-5, 4, 2.6e-7},
-    {1e-2, "1e-3", 4.5e-3, "1e-4", 2.3e-5, 4, 2.6e-7},
-    {1e-3, "3e-5", 1.6e-4, "1e-5", 2.5e-6, 4, 2.6e-7},
-    {1e-4, "7e-6", 4.1e-5, "1e-6", 2.0e-7, 2, 2.9e-7},
+    {1e-1, "1e-2", 3.1e-2, "1e-4", 3.6e-5, 4, 2.6e-7},
+    {1e-2, "1e-3", 4.5e-3, "1e-4", 3.6e-5, 4, 2.6e-7},
+    {1e-3, "3e-5", 1.6e-4, "1e-5", 6.3e-6, 4, 2.6e-7},
+    {1e-4, "7e-6", 4.1e-5, "1e-6", 4.4e-7, 2, 2.9e-7},
 };
 
 static PetscInt Row(Scene scene) {
