@@ -15,6 +15,7 @@
 #include "fluid/tridiagonal.h"
 
 #define BLOCK TRIDIAGONAL_BLOCK
+#define KEPT 2 /* numbers that are kept of a row beside modes */
 
 struct _p_Stream {
   Fluid fluid;
@@ -27,6 +28,7 @@ struct _p_Stream {
   PetscInt felt;            /* blocks of Z in the last row */
   PetscScalar *row[3];      /* [n_x] two rows of u's force or of chi, one of v */
   PetscScalar *curl, *zero; /* [n_x] */
+  PetscReal *kept;          /* [rows][width + 2] modes of curls, sums of u's force and of v's; NULL before any are */
   Tridiagonal mean;         /* of u's row means: one mode; NULL between walls, where there are none */
   PetscReal one[2];         /* its eigenvalue and its scale */
   PetscReal *means, mean_v; /* [rows of u] mode 0 of u, and of v */
@@ -70,6 +72,7 @@ PetscErrorCode StreamDestroy(Stream *stream) {
   fftw_free(s->curl);
   fftw_free(s->zero);
   PetscCall(PetscFree2(s->means, s->fed));
+  PetscCall(PetscFree(s->kept));
   PetscCall(StreamMeterDestroy(&s->meter));
   PetscCall(StreamSlabsDestroy(&s->slabs));
   PetscCall(StreamFactorsDestroy(&s->factors));
@@ -78,10 +81,11 @@ PetscErrorCode StreamDestroy(Stream *stream) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode SetUp(Stream s) {
+static PetscErrorCode SetUp(Stream s, PetscBool keep) {
   const Fluid f = s->fluid;
   PetscFunctionBeginUser;
   PetscCall(StreamSlabsReserve(s->slabs));
+  if (keep && !s->kept) PetscCall(PetscMalloc1(PetscMax(s->slabs->rows, 1) * (s->slabs->width + KEPT), &s->kept));
   if (s->mean) PetscCall(TridiagonalReserve(s->mean));
   if (s->factors->alpha == f->alpha) PetscFunctionReturn(PETSC_SUCCESS);
   StreamFactorsSet(s->factors, f->alpha, f->nu);
@@ -90,15 +94,33 @@ static PetscErrorCode SetUp(Stream s) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* y of row j from its force, u's below and above it and v's, and from y below it. */
-static void ForcedRow(Stream s, PetscInt j, const PetscScalar low[], const PetscScalar high[], const PetscScalar v[],
-                      const PetscReal below[]) {
+/* What is kept of row j. */
+static PetscReal *KeptRow(Stream s, PetscInt j) {
+  return s->kept + j * (s->slabs->width + KEPT);
+}
+
+/* Whether row j of nodes has the forces of what is kept: u's in row j and above it, v's in row j. What is above the
+   last row, or below the first one, may be another rank's. */
+static PetscBool IsKept(Stream s, const StreamRows *rows, PetscInt j) {
+  if (!rows->changed || j == 0 || j + 1 >= s->slabs->rows) return PETSC_FALSE;
+  return j + 1 < rows->changed[0] || j >= rows->changed[1] ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* Modes of the curl of row j's force, u's below and above it and v's. */
+static const PetscReal *CurlModes(Stream s, PetscBool keep, PetscInt j, const PetscScalar low[],
+                                  const PetscScalar high[], const PetscScalar v[]) {
+  Curl(s->fluid->grid->n[0], s->fluid->grid->wall[0], low, high, v, s->curl);
+  RowTransformForward(s->t, s->curl);
+  if (!keep) return s->t->modes;
+  return memcpy(KeptRow(s, j) + KEPT, s->t->modes, (size_t)s->t->width * sizeof(PetscReal));
+}
+
+/* y of row j from the modes of its curl, and from y below it. */
+static void ForcedRow(Stream s, PetscInt j, const PetscReal curl[], const PetscReal below[]) {
   const StreamSlabs q = s->slabs;
   const PetscInt modes = s->t->width, w = q->width;
   PetscReal *y = q->y + j * w;
-  Curl(s->fluid->grid->n[0], s->fluid->grid->wall[0], low, high, v, s->curl);
-  RowTransformForward(s->t, s->curl);
-  Up(modes, s->factors->r[0], s->factors->r[1], s->t->modes, below, q->state, y);
+  Up(modes, s->factors->r[0], s->factors->r[1], curl, below, q->state, y);
   for (PetscInt k = modes; k < w; k++) y[k] = 0;
   q->alive[j] = w / BLOCK;
 }
@@ -129,32 +151,54 @@ static PetscReal GivenForce(Stream s, const StreamRows *rows, PetscInt j) {
   return (PetscReal)g->n[0] * s->fluid->nu / PetscSqr(g->h) * bend;
 }
 
+/* The force on v in row j, or its sum. */
+static void TakeSum(Stream s, const StreamRows *rows, PetscBool measured, PetscInt j, PetscReal sum) {
+  if (!s->fluid->grid->wall[1])
+    s->mean_v += sum;
+  else if (measured)
+    StreamMeterForce(s->meter, j, sum + GivenForce(s, rows, j));
+}
+
+/* Row j of nodes, with the row of u's force below it, which is asked for unless it is there; returns the one above. */
+static const PetscScalar *GatherRow(Stream s, const StreamRows *rows, PetscBool measured, PetscInt j,
+                                    const PetscScalar *low, const PetscReal below[]) {
+  const PetscInt n = s->fluid->grid->n[0], end = rows->forced[1];
+  const PetscScalar *high = s->zero, *v;
+  if (j + 1 < end || end == s->fluid->grid->rows[FIELD_U])
+    high = rows->force(rows->ctx, FIELD_U, j + 1, s->row[(j + 1) % 2]);
+  v = rows->force(rows->ctx, FIELD_V, j, s->row[2]);
+  const PetscReal sum = rows->keep || measured || !s->fluid->grid->wall[1] ? Sum(n, v) : 0;
+  if (rows->keep) KeptRow(s, j)[1] = sum;
+  TakeSum(s, rows, measured, j, sum);
+  ForcedRow(s, j, CurlModes(s, rows->keep, j, low, high, v), below);
+  return high;
+}
+
 /* Up all rows, with nothing coming in from below. The nodes below the first row of u with a force feel it. */
 static void Gather(Stream s, const StreamRows *rows, PetscBool measured) {
   const Grid g = s->fluid->grid;
   const StreamSlabs q = s->slabs;
   const PetscInt n = g->n[0], w = q->width, first = PetscMax(rows->forced[0] - 1, 0), end = rows->forced[1];
-  const PetscScalar *low = s->zero, *high;
+  const PetscScalar *low = NULL;
   s->mean_v = 0;
   (void)PetscArrayzero(q->state, 2 * w);
-  for (PetscInt j = 0; j < g->rows[FIELD_U]; j++, low = high) {
+  for (PetscInt j = 0; j < g->rows[FIELD_U]; j++) {
     const PetscBool forced = j >= first && j < end ? PETSC_TRUE : PETSC_FALSE;
-    if (forced && j == first) low = rows->force(rows->ctx, FIELD_U, j, s->row[j % 2]);
-    const PetscReal sum = forced && s->mean ? Sum(n, low) : 0;
+    const PetscBool kept = forced ? IsKept(s, rows, j) : PETSC_FALSE;
+    if (forced && !kept && !low) low = rows->force(rows->ctx, FIELD_U, j, s->row[j % 2]);
+    const PetscReal sum = !forced || !s->mean ? 0 : kept ? KeptRow(s, j)[0] : Sum(n, low);
     if (s->mean) TridiagonalUp(s->mean, j, &sum);
-    high = s->zero;
     if (j == q->rows) break; /* no nodes on the upper wall */
-    if (!forced) {
+    const PetscReal *below = j > first ? q->y + (j - 1) * w : q->zero;
+    if (rows->keep && forced) KeptRow(s, j)[0] = sum;
+    if (!forced)
       FreeRow(s, j, j - end + 1);
-      continue;
-    }
-    if (j + 1 < end || end == g->rows[FIELD_U]) high = rows->force(rows->ctx, FIELD_U, j + 1, s->row[(j + 1) % 2]);
-    const PetscScalar *v = rows->force(rows->ctx, FIELD_V, j, s->row[2]);
-    if (!g->wall[1])
-      s->mean_v += Sum(n, v);
-    else if (measured)
-      StreamMeterForce(s->meter, j, Sum(n, v) + GivenForce(s, rows, j));
-    ForcedRow(s, j, low, high, v, j > first ? q->y + (j - 1) * w : q->zero);
+    else if (kept) {
+      TakeSum(s, rows, measured, j, KeptRow(s, j)[1]);
+      ForcedRow(s, j, KeptRow(s, j) + KEPT, below);
+      low = NULL;
+    } else
+      low = GatherRow(s, rows, measured, j, low, below);
   }
   const PetscInt felt = q->rows > 0 ? q->alive[q->rows - 1] * BLOCK : 0;
   if (felt) (void)PetscArraycpy(q->state + w, q->y + (q->rows - 1) * w, felt);
@@ -319,7 +363,7 @@ PetscErrorCode StreamSolve(Stream s, const StreamRows *rows, StreamMeasures *mea
   PetscReal sum;
   PetscFunctionBeginUser;
   PetscCall(PhaseBegin(PHASE_FAST_SOLVE));
-  PetscCall(SetUp(s));
+  PetscCall(SetUp(s, rows->keep));
   if (measured) StreamMeterBegin(s->meter);
   Gather(s, rows, measured);
   if (s->mean) PetscCall(TridiagonalBegin(s->mean));

@@ -21,7 +21,9 @@ typedef struct {
   void *ctx;
   PetscInt forced[2]; /* forces are zero outside rows forced[0] .. forced[1] - 1 of u and v, and are not asked for but
                          in the row below; all rows where there is one next to a seam in y */
-  PetscInt wanted[2]; /* velocities are not wanted outside rows wanted[0] .. wanted[1] - 1; all: 0, rows of u */
+  PetscBool keep;     /* what comes of the forces' rows, for solves with the same forces */
+  const PetscInt *changed; /* [2] but in these rows; NULL: forces may differ in all of them */
+  PetscInt wanted[2];      /* velocities are not wanted outside rows wanted[0] .. wanted[1] - 1; all: 0, rows of u */
   const PetscScalar *(*force)(void *ctx, Field f, PetscInt j,
                               PetscScalar work[]);                     /* may be work[n_x], which it fills */
   void (*velocity)(void *ctx, Field f, PetscInt j, PetscScalar row[]); /* downwards; to u it may add what it has */

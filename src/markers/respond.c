@@ -43,6 +43,8 @@ static void TakeVelocity(void *ctx, Field f, PetscInt j, PetscScalar row[]) {
 static PetscErrorCode Solve(Response *r, Stream stream, PetscBool all, Vec U, StreamMeasures *measures) {
   const Markers m = r->m;
   const StreamRows rows = {.ctx = r,
+                           .keep = all && !r->w ? PETSC_TRUE : PETSC_FALSE,
+                           .changed = all && r->w ? m->window : NULL,
                            .forced = {all ? 0 : m->window[0], all ? m->grid->rows[FIELD_U] : m->window[1]},
                            .wanted = {r->w ? 0 : m->window[0], r->w ? m->grid->rows[FIELD_U] : m->window[1]},
                            .force = r->f ? GridForce : SpreadForce,

@@ -5,7 +5,8 @@
 
 /* MarkersRespond - U = E u, u the Stokes solve's velocity for the force alpha E^T F and the dipoles (NULL: none);
    MarkersFollow - for the force f on the grid, in which the dipoles' force is, and their source (NULL without them);
-   all: f may be anywhere, else it is zero outside the markers' window; w: u on the grid, NULL: not wanted; measures: of
+   all: f may be anywhere, else it is zero outside the markers' window; w: u on the grid, NULL: not wanted, and with
+   `all` f is outside the window what it was in the last such solve without; measures: of
    u on the whole grid, NULL: not wanted. U may be F. Collective. */
 PETSC_EXTERN PetscErrorCode MarkersRespond(Markers markers, Stream stream, DipoleRows dipoles, PetscReal alpha, Vec F,
                                            Vec U);
