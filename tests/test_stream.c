@@ -23,11 +23,14 @@ static void Velocity(void *ctx, Field f, PetscInt j, PetscScalar row[]) {
   (void)PetscArraycpy(a->velocity + (f == FIELD_V ? GridLocalU(a->grid) : 0) + j * n, row, n);
 }
 
-/* u of the force r by rows. */
-static PetscErrorCode Solve(Fluid fluid, Stokes stokes, const PetscInt forced[2], const PetscInt wanted[2], Vec r,
-                            Vec u, StreamMeasures *measures) {
+/* u of the force r by rows, which are kept, or differ from those in `changed` only. */
+static PetscErrorCode SolveKept(Fluid fluid, Stokes stokes, PetscBool keep, const PetscInt changed[2],
+                                const PetscInt forced[2], const PetscInt wanted[2], Vec r, Vec u,
+                                StreamMeasures *measures) {
   Arrays a = {.grid = fluid->grid};
   const StreamRows rows = {.ctx = &a,
+                           .keep = keep,
+                           .changed = changed,
                            .forced = {forced[0], forced[1]},
                            .wanted = {wanted[0], wanted[1]},
                            .force = Force,
@@ -39,6 +42,13 @@ static PetscErrorCode Solve(Fluid fluid, Stokes stokes, const PetscInt forced[2]
   PetscCall(StreamSolve(StokesStream(stokes), &rows, measures));
   PetscCall(VecRestoreArray(u, &a.velocity));
   PetscCall(VecRestoreArrayRead(r, &a.force));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Solve(Fluid fluid, Stokes stokes, const PetscInt forced[2], const PetscInt wanted[2], Vec r,
+                            Vec u, StreamMeasures *measures) {
+  PetscFunctionBeginUser;
+  PetscCall(SolveKept(fluid, stokes, PETSC_FALSE, NULL, forced, wanted, r, u, measures));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -152,6 +162,31 @@ static PetscErrorCode CheckRows(Box *b, PetscInt first, PetscInt end) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* A force that is kept, and one that differs from it between two rows of all only. */
+static PetscErrorCode CheckKept(Box *b, PetscInt first, PetscInt end) {
+  const Grid g = b->fluid->grid;
+  const PetscInt rows = g->rows[FIELD_U], low = PetscMin(PetscMax(first - g->first, 0), rows), all[2] = {0, rows},
+                 window[2] = {low, PetscMax(low, PetscMin(end - g->first, rows))};
+  PetscReal norm, error;
+  StreamMeasures measures;
+  PetscFunctionBeginUser;
+  PetscCall(TestRandomVec(3, b->r));
+  PetscCall(SolveKept(b->fluid, b->stokes, PETSC_TRUE, NULL, all, window, b->r, b->u, NULL));
+  PetscCall(TestRandomVec(5, b->exact));
+  PetscCall(Keep(g, window, b->exact));
+  PetscCall(VecAXPY(b->r, 1, b->exact));
+  PetscCall(SolveKept(b->fluid, b->stokes, PETSC_FALSE, window, all, all, b->r, b->u, &measures));
+  PetscCall(StokesSolve(b->stokes, b->r, NULL, b->exact, b->p));
+  PetscCall(CheckMeasures(b, &measures));
+  PetscCall(VecNorm(b->exact, NORM_2, &norm));
+  PetscCall(VecAXPY(b->u, -1, b->exact));
+  PetscCall(VecNorm(b->u, NORM_2, &error));
+  CHECK(error < TOLERANCE * norm,
+        "%s, other forces in rows %d to %d only, alpha = %g: the Stokes solve's velocity, %.1e", b->options, (int)first,
+        (int)end, (double)b->fluid->alpha, (double)(error / norm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode CheckBox(const char options[]) {
   static const PetscReal coefficients[] = {128, 0.75, 128};
   Box b;
@@ -162,6 +197,8 @@ static PetscErrorCode CheckBox(const char options[]) {
     PetscCall(FluidSetTimeCoefficient(b.fluid, coefficients[k]));
     PetscCall(CheckRows(&b, 0, n));
     PetscCall(CheckRows(&b, n / 3, n / 2));
+    PetscCall(CheckKept(&b, n / 3, n / 2));
+    PetscCall(CheckKept(&b, n / 2, n / 2 + 1));
   }
   PetscCall(BoxDestroy(&b));
   PetscFunctionReturn(PETSC_SUCCESS);
