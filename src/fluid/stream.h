@@ -21,8 +21,9 @@ typedef struct {
   void *ctx;
   PetscInt forced[2]; /* forces are zero outside rows forced[0] .. forced[1] - 1 of u and v, and are not asked for but
                          in the row below; all rows where there is one next to a seam in y */
-  PetscBool keep;     /* what comes of the forces' rows, for solves with the same forces */
-  const PetscInt *changed; /* [2] but in these rows; NULL: forces may differ in all of them */
+  PetscBool keep;     /* what comes of the forces' rows, all of which are forced then, */
+  const PetscInt *changed; /* [2] and this solve's forces are those of the last solve that kept them but in these rows;
+                              NULL: they may differ anywhere */
   PetscInt wanted[2];      /* velocities are not wanted outside rows wanted[0] .. wanted[1] - 1; all: 0, rows of u */
   const PetscScalar *(*force)(void *ctx, Field f, PetscInt j,
                               PetscScalar work[]);                     /* may be work[n_x], which it fills */
