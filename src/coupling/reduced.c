@@ -66,19 +66,18 @@ static PetscErrorCode Subtract(Vec known, PetscInt n, PetscScalar y[]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* y = (V + (treading/a0) dV/dt - part U + C F - k, beta N N^T F - part U + C F - k, Dm V/h^2 - g) of x, s->U holding
-   U = E u, part what the markers have of it, s->F F, and with viscosity contrast s->motion the G of B G, which stands
-   in the place of the first two; where an area is aimed at the first has its row; k and g may be NULL; not scaled yet.
- */
+/* y = (V + (treading/a0) dV/dt - U + C F - k, beta N N^T F - U + C F - k, Dm V/h^2 - g) of x, s->U holding U, s->F F,
+   and with viscosity contrast s->motion the G of B G, which stands in the place of the first two; where an area is
+   aimed at the first has its row; k and g may be NULL; not scaled yet. */
 static PetscErrorCode BodyConditions(Reduced s, const PetscScalar x[], Vec known, Vec g, PetscScalar y[]) {
   const Coupling c = s->unknowns->coupling;
   const Unknowns u = s->unknowns;
   const PetscInt n = u->velocity, tension = UnknownsTension(u);
-  const PetscReal h2 = PetscSqr(c->fluid->grid->h), part = CouplingGridPart(c, c->fluid->alpha);
+  const PetscReal h2 = PetscSqr(c->fluid->grid->h);
   const PetscScalar *U, *F;
   PetscFunctionBeginUser;
   PetscCall(VecGetArrayRead(s->U, &U));
-  for (PetscInt k = 0; k < tension; k++) y[k] = (k < n && !s->source ? x[k] : 0) - part * U[k];
+  for (PetscInt k = 0; k < tension; k++) y[k] = (k < n && !s->source ? x[k] : 0) - U[k];
   PetscCall(VecRestoreArrayRead(s->U, &U));
   if (!s->source) MembraneTread(c->membrane, c->treading, 1 / c->fluid->a0, x, y);
   PetscCall(VecGetArrayRead(s->F, &F));
@@ -98,8 +97,7 @@ static PetscErrorCode BodyConditions(Reduced s, const PetscScalar x[], Vec known
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* y = scaled (the bodies' conditions, d + slip) of x and the velocity U at the markers that its forces F gave.
-   Collective. */
+/* y = scaled (the bodies' conditions, d + slip) of x and what its forces F gave the markers. Collective. */
 static PetscErrorCode Conditions(Reduced s, const PetscScalar x[], Vec known, Vec g, PetscScalar y[]) {
   const Unknowns u = s->unknowns;
   const PetscInt wall = UnknownsWalls(u);
@@ -108,22 +106,6 @@ static PetscErrorCode Conditions(Reduced s, const PetscScalar x[], Vec known, Ve
   if (u->walls->n) PetscCall(WallsSlip(u->walls, StokesPotential(s->stokes), s->slip));
   for (PetscInt k = 0; k < u->wall; k++) y[wall + k] = s->slip[u->first_wall + k] + x[wall + k];
   UnknownsScale(u, PETSC_FALSE, y);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Room for the product to come; the last place is used again and again. */
-static PetscErrorCode NextPlace(Reduced s, PetscInt *place) {
-  Products *q = &s->kept;
-  PetscFunctionBeginUser;
-  *place = PetscMin(q->count, REDUCED_KEPT);
-  q->count++;
-  if (s->stokes && !q->w[*place]) {
-    PetscCall(VecDuplicate(s->r, &q->w[*place]));
-    PetscCall(DMCreateGlobalVector(s->unknowns->coupling->fluid->grid->da[FIELD_P], &q->p[*place]));
-  }
-  if (*place == REDUCED_KEPT || q->z[*place]) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(VecDuplicate(s->rest, &q->z[*place]));
-  PetscCall(VecDuplicate(s->rest, &q->Az[*place]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -153,13 +135,28 @@ static PetscErrorCode Solve(Reduced s, Vec r, Vec source, const PetscReal mean[2
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-void ReducedBegin(Reduced s, Vec moved, Vec source) {
+void ReducedBegin(Reduced s, Vec moved, Vec source, PetscBool local, const StreamPast *past, Vec flow) {
+  const Coupling c = s->unknowns->coupling;
   s->moved = moved;
   s->source = source;
   s->mean[0] = s->mean[1] = 0;
+  s->local = local;
+  s->flow = flow;
+  if (!flow) return;
+  s->past = *past;
+  s->past.part = CouplingGridPart(c, c->fluid->alpha);
+  s->past.lag = c->lag > 0 ? CouplingLag(c, c->fluid->alpha) : 0;
 }
 
-/* U = E u of the forces of x alone, on the grid; the product is kept. */
+/* U = E u becomes what the markers have of it. */
+static PetscErrorCode TakePart(Reduced s) {
+  const Coupling c = s->unknowns->coupling;
+  PetscFunctionBeginUser;
+  if (c->lag > 0) PetscCall(VecScale(s->U, CouplingGridPart(c, c->fluid->alpha)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* U of the forces of x alone, on the grid; the product is kept. */
 static PetscErrorCode RespondOnGrid(Reduced s, const PetscScalar x[], PetscInt place) {
   const Coupling c = s->unknowns->coupling;
   const Vec p = s->kept.p[place];
@@ -171,10 +168,11 @@ static PetscErrorCode RespondOnGrid(Reduced s, const PetscScalar x[], PetscInt p
   PetscCall(AddForces(s, x, PETSC_FALSE, s->r, p, mean));
   PetscCall(Solve(s, s->r, s->source ? p : NULL, mean, s->kept.w[place], p));
   if (CouplingHasBodies(c)) PetscCall(MarkersInterpolate(c->markers, s->kept.w[place], s->U));
+  PetscCall(TakePart(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* U = E u of the forces of x alone, row by row. */
+/* The same row by row. */
 static PetscErrorCode RespondByRows(Reduced s, const PetscScalar x[]) {
   const Coupling c = s->unknowns->coupling;
   PetscFunctionBeginUser;
@@ -183,6 +181,7 @@ static PetscErrorCode RespondByRows(Reduced s, const PetscScalar x[]) {
   if (HasDipoles(s)) PetscCall(DoubleLayerRows(c->contrast, PETSC_TRUE, StokesProfile(s->stokes), s->dipoles));
   PetscCall(MarkersRespond(c->markers, s->stream, HasDipoles(s) ? s->dipoles : NULL, -1 / PetscSqr(c->fluid->grid->h),
                            s->F, s->U));
+  PetscCall(TakePart(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -190,12 +189,13 @@ static PetscErrorCode Mult(Mat A, Vec x, Vec y) {
   Reduced s;
   const PetscScalar *xa;
   PetscScalar *ya;
-  PetscInt place = REDUCED_KEPT;
+  PetscInt place = PRODUCTS_KEPT;
   PetscFunctionBeginUser;
   PetscCall(MatShellGetContext(A, &s));
   const Coupling c = s->unknowns->coupling;
-  if (!s->stream) PetscCall(NextPlace(s, &place));
-  if (place < REDUCED_KEPT) PetscCall(VecCopy(x, s->kept.z[place]));
+  if (!s->stream)
+    PetscCall(ProductsNext(&s->kept, s->stokes ? s->r : NULL, c->fluid->grid->da[FIELD_P], s->rest, &place));
+  if (place < PRODUCTS_KEPT) PetscCall(VecCopy(x, s->kept.z[place]));
   PetscCall(VecGetArrayRead(x, &xa));
   if (!s->stream)
     PetscCall(RespondOnGrid(s, xa, place));
@@ -205,29 +205,51 @@ static PetscErrorCode Mult(Mat A, Vec x, Vec y) {
   PetscCall(Conditions(s, xa, NULL, NULL, ya));
   PetscCall(VecRestoreArray(y, &ya));
   PetscCall(VecRestoreArrayRead(x, &xa));
-  if (place < REDUCED_KEPT) PetscCall(VecCopy(y, s->kept.Az[place]));
+  if (place < PRODUCTS_KEPT) PetscCall(VecCopy(y, s->kept.Az[place]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* U = E u of the force f, which has the dipoles' forces, row by row, and u in w if that is not NULL. all: f is not the
-   markers' alone. */
-static PetscErrorCode FollowByRows(Reduced s, PetscBool all, Vec f, Vec w, StreamMeasures *measures) {
+/* U of the force f, which has the dipoles' forces, row by row. */
+static PetscErrorCode FollowByRows(Reduced s, Vec f, StreamMeasures *measures) {
   const Coupling c = s->unknowns->coupling;
   const PetscBool dipoles = HasDipoles(s);
   PetscFunctionBeginUser;
   if (dipoles) PetscCall(DoubleLayerRows(c->contrast, PETSC_FALSE, StokesProfile(s->stokes), s->dipoles));
-  PetscCall(MarkersFollow(c->markers, s->stream, dipoles ? s->dipoles : NULL, all, f, dipoles ? s->source : NULL, s->U,
-                          w, dipoles || !s->source ? measures : NULL));
+  PetscCall(MarkersFollow(c->markers, s->stream, dipoles ? s->dipoles : NULL, !s->local, f, dipoles ? s->source : NULL,
+                          NULL, s->U, NULL, dipoles || !s->source ? measures : NULL));
+  PetscCall(TakePart(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* U = E u of the force f, and u and p themselves unless they are not wanted or not p and U can be had without. */
-static PetscErrorCode Follow(Reduced s, Vec f, PetscBool grid, Vec w, Vec p, StreamMeasures *measures) {
+/* The same with a flow: of f and of the states before (all), or of the forces F that have been added to f, which go
+   beside what there is. What is measured is a sum, too, but for the divergence, which it bounds. */
+static PetscErrorCode FollowFlow(Reduced s, PetscBool all, Vec f, StreamMeasures *measures) {
+  const Coupling c = s->unknowns->coupling;
+  StreamMeasures more;
+  PetscFunctionBeginUser;
+  if (all)
+    PetscCall(MarkersFollow(c->markers, s->stream, NULL, !s->local, f, NULL, &s->past, s->sum, s->flow, &s->measures));
+  else {
+    PetscCall(MarkersAddFlow(c->markers, s->stream, -1 / PetscSqr(c->fluid->grid->h), s->F, s->U, s->flow, &more));
+    PetscCall(TakePart(s));
+    PetscCall(VecAXPY(s->sum, 1, s->U));
+    s->measures.divergence += more.divergence;
+    s->measures.slip += more.slip;
+    s->measures.pressure += more.pressure;
+  }
+  PetscCall(VecCopy(s->sum, s->U));
+  if (measures) *measures = s->measures;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* U of the force f, and u and p themselves unless they are not wanted or not p and U can be had without. all: of f, not
+   of what was added to it only. */
+static PetscErrorCode Follow(Reduced s, PetscBool all, Vec f, PetscBool grid, Vec w, Vec p, StreamMeasures *measures) {
   const Coupling c = s->unknowns->coupling;
   const PetscBool bodies = CouplingHasBodies(c);
   PetscFunctionBeginUser;
   if ((!grid || !p) && s->stream && !c->fluid->bc2) {
-    if (bodies) PetscCall(FollowByRows(s, w ? PETSC_TRUE : PETSC_FALSE, f, grid ? w : NULL, measures));
+    if (bodies) PetscCall(s->flow ? FollowFlow(s, all, f, measures) : FollowByRows(s, f, measures));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   /* p holds the right-hand side, then the solution */
@@ -235,6 +257,7 @@ static PetscErrorCode Follow(Reduced s, Vec f, PetscBool grid, Vec w, Vec p, Str
   if (s->source) PetscCall(VecCopy(s->source, p));
   PetscCall(Solve(s, f, s->source || c->fluid->bc2 ? p : NULL, s->mean, w, p));
   if (bodies) PetscCall(MarkersInterpolate(c->markers, w, s->U));
+  PetscCall(TakePart(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -248,11 +271,12 @@ PetscErrorCode ReducedResidual(Reduced s, Vec added, Vec f, Vec g, Vec k, Vec x,
   PetscCall(AddForces(s, xa, all, f, s->source, s->mean));
   PetscCall(VecRestoreArrayRead(added, &xa));
   PetscCall(VecGetArrayRead(x, &xa));
+  if (s->flow) PetscCall(Follow(s, all, f, grid, w, p, measures));
   if (!all && CouplingHasBodies(s->unknowns->coupling)) {
     PetscCall(Force(s, xa, s->F));
     PetscCall(Motion(s, xa, PETSC_TRUE));
   }
-  PetscCall(Follow(s, f, grid, w, p, measures));
+  if (!s->flow) PetscCall(Follow(s, all, f, grid, w, p, measures));
   PetscCall(VecGetArray(residual, &ra));
   PetscCall(Conditions(s, xa, k, g, ra));
   PetscCall(VecRestoreArray(residual, &ra));
@@ -280,7 +304,7 @@ PetscErrorCode ReducedFinish(Reduced s, Vec added, Vec f, Vec x, StreamMeasures 
   PetscCall(VecRestoreArrayRead(x, &xa));
   PetscCall(DoubleLayerSpread(c->contrast, f, s->source, s->mean));
   PetscCall(DoubleLayerRows(c->contrast, PETSC_FALSE, StokesProfile(s->stokes), s->dipoles));
-  PetscCall(MarkersFollow(c->markers, s->stream, s->dipoles, PETSC_FALSE, f, s->source, NULL, NULL, measures));
+  PetscCall(MarkersFollow(c->markers, s->stream, s->dipoles, PETSC_FALSE, f, s->source, NULL, NULL, NULL, measures));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -290,43 +314,10 @@ PetscErrorCode ReducedForgetProducts(Reduced s) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Least squares by modified Gram-Schmidt: x = SUM y_j z_j + rest, rest orthogonal to every z. The z are overwritten by
-   an orthonormal basis q of them, z_j = SUM_{i <= j} upper_ij q_i. */
-static PetscErrorCode Expand(PetscInt n, Vec z[], Vec rest, PetscReal y[]) {
-  PetscReal upper[REDUCED_KEPT][REDUCED_KEPT];
-  PetscFunctionBeginUser;
-  for (PetscInt j = 0; j < n; j++) {
-    for (PetscInt i = 0; i < j; i++) {
-      PetscCall(VecDot(z[j], z[i], &upper[i][j]));
-      PetscCall(VecAXPY(z[j], -upper[i][j], z[i]));
-    }
-    PetscCall(VecNormalize(z[j], &upper[j][j]));
-    PetscCall(VecDot(rest, z[j], &y[j]));
-    PetscCall(VecAXPY(rest, -y[j], z[j]));
-  }
-  for (PetscInt j = n - 1; j >= 0; j--) { /* y := upper^-1 y */
-    for (PetscInt i = j + 1; i < n; i++) y[j] -= upper[j][i] * y[i];
-    y[j] = upper[j][j] > 0 ? y[j] / upper[j][j] : 0;
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The change x is a sum of the vectors z_j whose products have left their velocities and pressures behind: the same sum
-   of those is what it changes on the grid, without a further Stokes solve. */
 PetscErrorCode ReducedCombine(Reduced s, Vec x, Vec w, Vec p, Vec residual, PetscBool *combined) {
-  Products *q = &s->kept;
-  PetscReal y[REDUCED_KEPT];
   PetscFunctionBeginUser;
-  *combined = !s->stream && q->count <= REDUCED_KEPT ? PETSC_TRUE : PETSC_FALSE;
-  if (!*combined) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(VecCopy(x, s->rest));
-  PetscCall(Expand(q->count, q->z, s->rest, y));
-  PetscCall(VecAXPY(x, -1, s->rest));
-  if (s->stokes) {
-    PetscCall(VecMAXPY(w, q->count, y, q->w));
-    PetscCall(VecMAXPY(p, q->count, y, q->p));
-  }
-  for (PetscInt j = 0; j < q->count; j++) PetscCall(VecAXPY(residual, -y[j], q->Az[j]));
+  *combined = !s->stream && s->kept.count <= PRODUCTS_KEPT ? PETSC_TRUE : PETSC_FALSE;
+  if (*combined) PetscCall(ProductsCombine(&s->kept, s->rest, x, w, p, residual));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -338,6 +329,12 @@ PetscBool ReducedNeedsNoPressure(Reduced s) {
 PetscErrorCode ReducedFields(Reduced s, Vec f, Vec source, const PetscReal mean[2], Vec w, Vec p) {
   PetscFunctionBeginUser;
   PetscCall(Solve(s, f, source, mean, w, p));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ReducedPressure(Reduced s, Vec f, Vec w, Vec p) {
+  PetscFunctionBeginUser;
+  PetscCall(StokesPressure(s->stokes, f, w, p));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -354,6 +351,7 @@ PetscErrorCode ReducedCreate(Unknowns u, Reduced *out) {
   if (!s->stream) PetscCall(DMCreateGlobalVector(c->fluid->grid->velocity, &s->r));
   PetscCall(LayoutCreateVec(c->bodies->layout, 2, &s->F));
   PetscCall(VecDuplicate(s->F, &s->U));
+  if (!c->fluid->steady) PetscCall(VecDuplicate(s->F, &s->sum));
   if (c->contrast) {
     PetscCall(VecDuplicate(s->F, &s->motion));
     if (s->stream) PetscCall(DipoleRowsCreate(c->fluid->grid, c->fluid->nu, &s->dipoles));
@@ -372,16 +370,11 @@ PetscErrorCode ReducedDestroy(Reduced *reduced) {
   Reduced s = *reduced;
   PetscFunctionBeginUser;
   if (!s) PetscFunctionReturn(PETSC_SUCCESS);
-  for (int k = 0; k <= REDUCED_KEPT; k++) {
-    PetscCall(VecDestroy(&s->kept.w[k]));
-    PetscCall(VecDestroy(&s->kept.p[k]));
-    if (k == REDUCED_KEPT) break;
-    PetscCall(VecDestroy(&s->kept.z[k]));
-    PetscCall(VecDestroy(&s->kept.Az[k]));
-  }
+  PetscCall(ProductsDestroy(&s->kept));
   PetscCall(VecDestroy(&s->r));
   PetscCall(VecDestroy(&s->F));
   PetscCall(VecDestroy(&s->U));
+  PetscCall(VecDestroy(&s->sum));
   PetscCall(VecDestroy(&s->motion));
   PetscCall(DipoleRowsDestroy(&s->dipoles));
   PetscCall(VecDestroy(&s->rest));

@@ -12,18 +12,9 @@
    In unbounded fluid there is no u on a grid (E = 0) and C is all of the mobility: a product is dense work on markers,
    and u and p stay zero. */
 #pragma once
+#include "coupling/products.h"
 #include "coupling/unknowns.h"
 #include "fluid/stokes.h"
-
-/* Products of a solve that are kept, to be combined into its velocity instead of a further Stokes solve. */
-#define REDUCED_KEPT 6
-
-typedef struct {
-  Vec w[REDUCED_KEPT + 1];               /* velocities and pressures of the products, the last for one not kept */
-  Vec p[REDUCED_KEPT + 1];               /* made when first needed */
-  Vec z[REDUCED_KEPT], Az[REDUCED_KEPT]; /* their unknowns, and what A makes of them */
-  PetscInt count;                        /* products since ReducedForgetProducts */
-} Products;
 
 typedef struct _p_Reduced *Reduced;
 struct _p_Reduced {
@@ -32,17 +23,22 @@ struct _p_Reduced {
   Stream stream;     /* borrowed; NULL where products are made on the grid, and kept */
   Mat A;             /* the residuals' derivative, scaled */
   Products kept;
-  Vec r;              /* a force on the grid, NULL with stream */
-  PetscInt dirty[2];  /* zero but for these rows */
-  Vec F, U;           /* marker vectors of all bodies, work */
-  Vec motion;         /* with a viscosity contrast: what the jump is of, marker vector, work */
-  Vec moved;          /* borrowed: of the motion what is known */
-  DipoleRows dipoles; /* of the jump, with stream */
-  Vec source;         /* borrowed: and what the divergence of the forces in f is, minus; NULL without */
-  PetscReal mean[2];  /* and the mean velocity that goes with it in a box that is periodic both ways */
-  Vec rest;           /* unknowns, work */
-  PetscScalar *d;     /* [walls->n] all wall forces, work */
-  PetscScalar *slip;  /* [walls->n] work */
+  Vec r;                   /* a force on the grid, NULL with stream */
+  PetscInt dirty[2];       /* zero but for these rows */
+  Vec F, U;                /* marker vectors of all bodies, work: forces, what the markers have of u = E u */
+  PetscBool local;         /* f is zero outside the markers' window */
+  Vec flow;                /* borrowed: of u, where the problem makes one; else NULL */
+  StreamPast past;         /* then: the states before, */
+  Vec sum;                 /* and U of all so far, */
+  StreamMeasures measures; /* and what was measured */
+  Vec motion;              /* with a viscosity contrast: what the jump is of, marker vector, work */
+  Vec moved;               /* borrowed: of the motion what is known */
+  DipoleRows dipoles;      /* of the jump, with stream */
+  Vec source;              /* borrowed: and what the divergence of the forces in f is, minus; NULL without */
+  PetscReal mean[2];       /* and the mean velocity that goes with it in a box that is periodic both ways */
+  Vec rest;                /* unknowns, work */
+  PetscScalar *d;          /* [walls->n] all wall forces, work */
+  PetscScalar *slip;       /* [walls->n] work */
 };
 
 /* ReducedCreate - the problem for these unknowns. Collective. */
@@ -50,23 +46,27 @@ PETSC_EXTERN PetscErrorCode ReducedCreate(Unknowns unknowns, Reduced *reduced);
 PETSC_EXTERN PetscErrorCode ReducedDestroy(Reduced *reduced);
 
 /* ReducedBegin - a problem begins, in which the part `moved` of the markers' motion is known, and the dipoles' source
-   is added to `source`, zero now, with the mean velocity in reduced->mean; both NULL without viscosity contrast. Not
-   collective. */
-PETSC_EXTERN void ReducedBegin(Reduced reduced, Vec moved, Vec source);
+   is added to `source`, zero now, with the mean velocity in reduced->mean; both NULL without viscosity contrast. local:
+   f is zero outside the markers' window. flow: u is kept as that (fluid/streamflow.h), and the force of
+   the states before, `past`, is beside f; else NULL. Not collective. */
+PETSC_EXTERN void ReducedBegin(Reduced reduced, Vec moved, Vec source, PetscBool local, const StreamPast *past,
+                               Vec flow);
 
 /* ReducedResidual - the forces of `added` go into f, those of x itself with the dipoles of `moved`; minus the scaled
    residuals at x, with u, p = w, p by one Stokes solve of f, f holding the forces of x. grid false: w and p are not
-   wanted and may stay as they are. p, or both, may be NULL where ReducedNeedsNoPressure, and measures is then of u
-   unless it is NULL. w NULL: f is zero outside the markers' window. g: an edge vector, k: a marker vector of all
-   bodies. Collective. */
+   wanted and may stay as they are. Both may be NULL where ReducedNeedsNoPressure, and measures is then of u unless it
+   is NULL. With a flow it is added to, and the first residual of a problem must be that of added = x. g: an edge
+   vector, k: a marker vector of all bodies. Collective. */
 PETSC_EXTERN PetscErrorCode ReducedResidual(Reduced reduced, Vec added, Vec f, Vec g, Vec k, Vec x, PetscBool grid,
                                             Vec w, Vec p, Vec residual, StreamMeasures *measures);
 
-/* ReducedNeedsNoPressure - whether a problem can be solved without p on the grid, and without u where its forces are
-   those of markers alone, as in quasi-steady flow: disturbances by fluid/stream.h. ReducedFields - then they are the
-   Stokes solve's for f, source and mean as ReducedResidual left them. Not collective; collective. */
+/* ReducedNeedsNoPressure - whether a problem can be solved without u and p on the grid: disturbances by fluid/stream.h,
+   with a flow in fluid with inertia. ReducedFields - then, without a flow, they are the Stokes solve's for f, source
+   and mean as ReducedResidual left them. ReducedPressure - with a flow p follows from f and its velocity w. Not
+   collective; collective. */
 PETSC_EXTERN PetscBool ReducedNeedsNoPressure(Reduced reduced);
 PETSC_EXTERN PetscErrorCode ReducedFields(Reduced reduced, Vec f, Vec source, const PetscReal mean[2], Vec w, Vec p);
+PETSC_EXTERN PetscErrorCode ReducedPressure(Reduced reduced, Vec f, Vec w, Vec p);
 
 /* ReducedFinish - f gets the forces of `added` (NULL: none) and the dipoles of the solution x, which source and mean
    get as well, where the markers' rows are without them; measures is of its velocity; else nothing. Collective.

@@ -183,21 +183,21 @@ static PetscErrorCode ObstacleReference(CoupledSolver s, Vec k, PetscReal *sum) 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Norm of (f, bc2, g and the obstacles' k with their factors). */
-static PetscErrorCode Reference(CoupledSolver s, Vec f, Vec g, Vec k) {
+/* Norm of (f, bc2, g and the obstacles' k with their factors). With a flow f is without the states before, whose square
+   the first residual gives (Begin). */
+static PetscErrorCode Reference(CoupledSolver s, const CoupledProblem *q) {
   const Layout l = s->coupling->membrane->layout;
   const PetscScalar *a;
   PetscReal norm, sum = 0;
   PetscFunctionBeginUser;
-  PetscCall(VecGetArrayRead(g, &a));
+  PetscCall(VecGetArrayRead(q->g, &a));
   for (PetscInt v = l->own; v < l->end; v++)
     for (PetscInt k = 0; k < LayoutCount(l, v); k++)
       sum += PetscSqr(a[LayoutOffset(l, v) + k] * UnknownsTensionScale(s->unknowns, v));
-  PetscCall(VecRestoreArrayRead(g, &a));
-  PetscCall(ObstacleReference(s, k, &sum));
+  PetscCall(VecRestoreArrayRead(q->g, &a));
+  PetscCall(ObstacleReference(s, q->k, &sum));
+  PetscCall(GridAddSquares(s->coupling->fluid->grid, q->local ? s->coupling->markers->window : NULL, q->f, &sum));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPIU_REAL, MPI_SUM, l->comm));
-  PetscCall(VecNorm(f, NORM_2, &norm));
-  sum += PetscSqr(norm);
   if (s->coupling->fluid->bc2) {
     PetscCall(VecNorm(s->coupling->fluid->bc2, NORM_2, &norm));
     sum += PetscSqr(norm);
@@ -254,10 +254,11 @@ static PetscErrorCode Begin(CoupledSolver s, const CoupledProblem *q, SolveRepor
   Trial *t = &s->trial;
   PetscFunctionBeginUser;
   PetscCall(Guess(s, q));
-  ReducedBegin(s->reduced, q->moved, q->source);
+  ReducedBegin(s->reduced, q->moved, q->source, q->local, q->past, q->flow);
   t->begun = s->reduced->stream && !q->w ? PETSC_TRUE : PETSC_FALSE;
   PetscCall(ReducedResidual(s->reduced, s->x, q->f, q->g, q->k, s->x, PETSC_FALSE, q->w, q->p, s->b,
                             t->begun ? &report->measures : NULL));
+  if (q->flow) s->reference = PetscSqrtReal(PetscSqr(s->reference) + report->measures.past);
   PetscCall(VecSet(s->pending, 0));
   s->owed = PETSC_FALSE;
   t->problem = q;
@@ -276,7 +277,7 @@ PetscErrorCode CoupledSolverSolve(CoupledSolver s, const CoupledProblem *q, Solv
     report->residual = NAN;
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  PetscCall(s->reduced->stokes ? Reference(s, q->f, q->g, q->k) : FreeReference(s, q));
+  PetscCall(s->reduced->stokes ? Reference(s, q) : FreeReference(s, q));
   PetscCall(Begin(s, q, report));
   PetscCall(KSPGetTolerances(s->ksp, &rtol, &atol, NULL, NULL));
   const PetscReal goal = PetscMax(rtol * s->reference, atol);

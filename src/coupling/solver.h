@@ -5,13 +5,16 @@
 
 /* What a step asks for, and the vectors that its answer goes to. */
 typedef struct {
-  Vec moved, source;     /* with viscosity contrast: the part of the markers' motion that is known, and zero, to which
-                            the dipoles' source is added (scheme coupled); else NULL */
-  Vec f, g, k;           /* right-hand sides of momentum (the forces of the solution are added to it), Dm V/h^2 and V,
-                            k of all bodies */
-  Vec w, p, sigma, d, V; /* solution; sigma, d and V hold the first guess; p may be NULL where
-                            ReducedNeedsNoPressure, w too where f is zero outside the markers' window, */
-  Vec solid;             /* and the force on obstacles; NULL without */
+  Vec moved, source;      /* with viscosity contrast: the part of the markers' motion that is known, and zero, to which
+                             the dipoles' source is added (scheme coupled); else NULL */
+  Vec f, g, k;            /* right-hand sides of momentum (the forces of the solution are added to it), Dm V/h^2 and V,
+                             k of all bodies */
+  PetscBool local;        /* f is zero outside the markers' window */
+  Vec w, p, sigma, d, V;  /* solution; sigma, d and V hold the first guess; w and p may be NULL where
+                             ReducedNeedsNoPressure, */
+  Vec solid;              /* and the force on obstacles; NULL without */
+  Vec flow;               /* in fluid with inertia where w is NULL: the velocity's flow, */
+  const StreamPast *past; /* and the states before, whose force is beside f */
 } CoupledProblem;
 
 /* How a solve went. */
@@ -19,7 +22,7 @@ typedef struct {
   PetscInt its;
   KSPConvergedReason why; /* < 0: failed */
   PetscReal residual;
-  StreamMeasures measures; /* of the velocity, where p is NULL */
+  StreamMeasures measures; /* of the velocity, where w is NULL */
 } SolveReport;
 
 typedef enum { TRIAL_NONE, TRIAL_WANTED, TRIAL_MADE } TrialState;
@@ -32,7 +35,7 @@ typedef struct {
   PetscBool begun;               /* nothing is left to be done where the first guess is good enough */
   PetscReal scale, residual;     /* norms of the residual before and at it */
   Vec x, b;                      /* the unknowns and the residual there */
-  StreamMeasures measures;       /* of its velocity, where p is NULL */
+  StreamMeasures measures;       /* of its velocity, where w is NULL */
 } Trial;
 
 typedef struct _p_CoupledSolver *CoupledSolver;

@@ -86,6 +86,10 @@ PETSC_EXTERN PetscErrorCode GridGradientTransposeRows(Grid grid, PetscReal alpha
 /* GridClearRows - zero in these rows of a velocity or a pressure. Not collective. */
 PETSC_EXTERN PetscErrorCode GridClearRows(Grid grid, const PetscInt window[2], Vec x);
 
+/* GridAddSquares - sum += SUM w^2 of this rank's rows window[0] .. window[1] - 1 of a velocity, NULL: of all. Not
+   collective. */
+PETSC_EXTERN PetscErrorCode GridAddSquares(Grid grid, const PetscInt window[2], Vec w, PetscReal *sum);
+
 /* GridLargestDivergence - max |G^T w + bc2| (1/time) over all cells, bc2 NULL for walls at rest; NaN when an entry is
    not finite. The same on every rank. Collective. */
 PETSC_EXTERN PetscErrorCode GridLargestDivergence(Grid grid, Vec w, Vec bc2, PetscReal *largest);

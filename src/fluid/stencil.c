@@ -1,6 +1,7 @@
 /* The operators G, G^T and H on local arrays, row by row, and their MatShells. */
 #include "base/lanes.h"
 #include "fluid/grid.h"
+#include "fluid/streamloops.h"
 
 PetscErrorCode GridGradientRows(Grid g, PetscReal alpha, Vec p, PetscBool add, const PetscInt window[2], Vec w) {
   const PetscReal c = alpha / g->h;
@@ -119,6 +120,20 @@ PetscErrorCode GridClearRows(Grid g, const PetscInt window[2], Vec w) {
     PetscCall(PetscArrayzero(a + start[f] + first * g->columns[f], (end - first) * g->columns[f]));
   }
   PetscCall(VecRestoreArray(w, &a));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode GridAddSquares(Grid g, const PetscInt window[2], Vec w, PetscReal *sum) {
+  const PetscScalar *a;
+  PetscFunctionBeginUser;
+  PetscCall(VecGetArrayRead(w, &a));
+  for (int f = FIELD_U; f <= FIELD_V; f++) {
+    const PetscInt end = window ? PetscMin(window[1], g->rows[f]) : g->rows[f];
+    const PetscInt first = window ? PetscMin(window[0], end) : 0, n = (end - first) * g->columns[f];
+    const PetscScalar *x = a + GridRowStart(g, (Field)f, first);
+    *sum += Dot(n, x, x);
+  }
+  PetscCall(VecRestoreArrayRead(w, &a));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -154,6 +154,19 @@ static PetscErrorCode TakePotential(Stokes s, Vec r_p, Vec b, Vec phi) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode StokesPressure(Stokes s, Vec r_u, Vec u, Vec p) {
+  const Fluid f = s->fluid;
+  Vec rest;
+  PetscFunctionBeginUser;
+  PetscCall(DMGetGlobalVector(f->grid->velocity, &rest));
+  PetscCall(GridHelmholtz(f->grid, 0, f->nu, u, rest));
+  PetscCall(VecAYPX(rest, -1, r_u));
+  PetscCall(GridGradientTranspose(f->grid, -1, rest, p));
+  PetscCall(DMRestoreGlobalVector(f->grid->velocity, &rest));
+  PetscCall(FluidSolvePoisson(f, p, p));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Between walls both ways: the stream function's velocity of the force, the pressure of what that leaves, which is a
    gradient. Where r_p is not zero -G L^-1 r_p has the divergence and leaves a force next to the walls. Such a force
    moves next to nothing, which comes from chi by differences of large numbers, 1e-16 (n_y)^3 of it: twice. */

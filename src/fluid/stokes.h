@@ -19,6 +19,10 @@ PETSC_EXTERN PetscErrorCode StokesSolve(Stokes stokes, Vec r_u, Vec r_p, Vec u, 
    next to walls nu (L_u G - G L) psi. Else StokesSolve. Collective. */
 PETSC_EXTERN PetscErrorCode StokesProject(Stokes stokes, Vec r_u, Vec r_p, Vec u, Vec p);
 
+/* StokesPressure - the pressure p (zero mean) of the velocity u without divergence that solves H u + G p = r_u where
+   r_u is given but for a part without divergence: one scalar solve, of L p = -G^T (r_u + nu L_u u). Collective. */
+PETSC_EXTERN PetscErrorCode StokesPressure(Stokes stokes, Vec r_u, Vec u, Vec p);
+
 /* StokesIsExact - whether StokesSolve is. Not collective. */
 PETSC_EXTERN PetscBool StokesIsExact(Fluid fluid);
 

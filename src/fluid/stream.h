@@ -10,6 +10,7 @@
    is no mean flow, and what holds the fluid at the walls is a force (sidewalls.h). */
 #pragma once
 #include "fluid/flux.h"
+#include "fluid/streamflow.h"
 #include "fluid/streammeter.h"
 
 typedef struct _p_Stream *Stream;
@@ -21,10 +22,10 @@ typedef struct {
   void *ctx;
   PetscInt forced[2]; /* forces are zero outside rows forced[0] .. forced[1] - 1 of u and v, and are not asked for but
                          in the row below; all rows where there is one next to a seam in y */
-  PetscBool keep;     /* what comes of the forces' rows, all of which are forced then, */
-  const PetscInt *changed; /* [2] and this solve's forces are those of the last solve that kept them but in these rows;
-                              NULL: they may differ anywhere */
-  PetscInt wanted[2];      /* velocities are not wanted outside rows wanted[0] .. wanted[1] - 1; all: 0, rows of u */
+  PetscInt wanted[2]; /* velocities are not wanted outside rows wanted[0] .. wanted[1] - 1; all: 0, rows of u */
+  const StreamPast *past; /* a further force, of states before, and what of it is in the velocities; NULL: none */
+  Vec flow;               /* of the velocity; NULL: not wanted, */
+  PetscBool add;          /* and it is added to what is there */
   const PetscScalar *(*force)(void *ctx, Field f, PetscInt j,
                               PetscScalar work[]);                     /* may be work[n_x], which it fills */
   void (*velocity)(void *ctx, Field f, PetscInt j, PetscScalar row[]); /* downwards; to u it may add what it has */
@@ -41,5 +42,8 @@ PETSC_EXTERN PetscErrorCode StreamDestroy(Stream *stream);
 /* StreamSolve - velocity for these forces, zero mean in quasi-steady flow in a box that is periodic both ways. Counted
    as one scalar solve, whose transforms it has. Modes are followed from forces no farther than they are felt, 2e-22 of
    them. measures: of this velocity with all that is added on all of the grid (its divergence less `source` in the
-   wanted rows), NULL: not wanted. Collective. */
+   wanted rows; no sum of squares where a flow is made), NULL: not wanted. Collective. */
 PETSC_EXTERN PetscErrorCode StreamSolve(Stream stream, const StreamRows *rows, StreamMeasures *measures);
+
+/* StreamGetFlows - what makes and reads flows of this stream; borrowed. Not collective. */
+PETSC_EXTERN StreamFlows StreamGetFlows(Stream stream);

@@ -29,14 +29,15 @@ void StreamMeterBegin(StreamMeter m) {
 }
 
 PetscErrorCode StreamMeterEnd(StreamMeter m, StreamMeasures *all) {
-  PetscReal sum[3] = {m->own.square, m->own.slip, m->own.pressure};
+  PetscReal sum[4] = {m->own.square, m->own.slip, m->own.pressure, m->own.past};
   PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 3, MPIU_REAL, MPI_SUM, m->grid->comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 4, MPIU_REAL, MPI_SUM, m->grid->comm));
   PetscCallMPI(MPI_Allreduce(&m->own.divergence, &all->divergence, 1, MPIU_REAL, MPI_MAX, m->grid->comm));
   all->square = sum[0];
   all->slip = sum[1];
   all->pressure = sum[2];
-  if (PetscIsInfOrNanReal(sum[0])) all->divergence = NAN; /* which may get lost in MPI_MAX */
+  all->past = sum[3];
+  if (PetscIsInfOrNanReal(sum[0] + sum[3])) all->divergence = NAN; /* which may get lost in MPI_MAX */
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -54,6 +55,12 @@ PetscReal *StreamMeterNodes(StreamMeter m, PetscInt count) {
   return m->chi[m->now];
 }
 
+void StreamMeterSlip(StreamMeter m, PetscInt j, PetscReal mean_u) {
+  const Grid g = m->grid;
+  if (!(g->first + j)) m->own.slip += mean_u;
+  if (g->first + j == g->n[1] - 1) m->own.slip -= mean_u;
+}
+
 /* By Parseval. A row of v has no other mean than what is added to it, one of u between walls in x none. */
 void StreamMeterSquares(StreamMeter m, PetscInt j, const PetscScalar row[], PetscReal mean_u, PetscBool has_v,
                         PetscReal mean_v) {
@@ -68,8 +75,6 @@ void StreamMeterSquares(StreamMeter m, PetscInt j, const PetscScalar row[], Pets
   }
   m->own.square += row ? Dot(g->n[0], row, row) : LanesSum(u) + (PetscReal)g->n[0] * PetscSqr(mean_u);
   if (has_v) m->own.square += LanesSum(v) + (PetscReal)g->n[0] * PetscSqr(mean_v);
-  if (!(g->first + j)) m->own.slip += mean_u;
-  if (g->first + j == g->n[1] - 1) m->own.slip -= mean_u;
 }
 
 /* h times the divergence of cell i, less its source's; `last` is the cell before it. */

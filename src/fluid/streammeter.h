@@ -9,6 +9,7 @@ typedef struct {
       divergence; /* largest |G^T u - source| of the cells whose velocity is made (1/time); NaN if one is not finite */
   PetscReal slip; /* mean of u in the first row less that in the last (length/time); 0 between walls in x */
   PetscReal pressure; /* mean over the rows of cells next to both walls less that of all; 0 without walls */
+  PetscReal past;     /* SUM uhat^2 of the states before that are a force (velocity^2/time^2); 0 without */
 } StreamMeasures;
 
 /* Rows come in downwards. */
@@ -35,6 +36,9 @@ PETSC_EXTERN void StreamMeterForce(StreamMeter meter, PetscInt j, PetscReal sum)
 
 /* StreamMeterNodes - room for `count` modes of the next row of nodes; any others are zero. Not collective. */
 PETSC_EXTERN PetscReal *StreamMeterNodes(StreamMeter meter, PetscInt count);
+
+/* StreamMeterSlip - of local row j of u with this mean. Not collective. */
+PETSC_EXTERN void StreamMeterSlip(StreamMeter meter, PetscInt j, PetscReal mean_u);
 
 /* StreamMeterSquares - of local row j of u with this mean between the last two rows of nodes (u: the row itself, which
    may have more than the nodes give; NULL: not made), and of v in the upper one with its mean; has_v: whether there is

@@ -8,8 +8,10 @@ typedef struct {
   const PetscScalar *f;      /* or a force on the grid, */
   Rows u;                    /* whose u has a row above, */
   const PetscScalar *source; /* and the dipoles' source on it */
-  PetscScalar *w;            /* where the rows of u and v are put, or NULL */
   PetscBool measured;        /* not wanted at the markers */
+  const StreamPast *past;    /* a further force, */
+  Vec flow;                  /* the velocity's flow or NULL, */
+  PetscBool add;             /* added to what is there */
 } Response;
 
 static const PetscScalar *SpreadForce(void *ctx, Field f, PetscInt j, PetscScalar work[]) {
@@ -34,19 +36,18 @@ static const PetscScalar *GridForce(void *ctx, Field f, PetscInt j, PetscScalar 
 static void TakeVelocity(void *ctx, Field f, PetscInt j, PetscScalar row[]) {
   const Response *r = (const Response *)ctx;
   if (r->dipoles && f == FIELD_U) DipoleRowsAddVelocity(r->dipoles, j, row);
-  if (r->measured) return;
-  MarkerRowInterpolate(r->m->rows, f, j, row, r->m->part);
-  if (r->w) (void)PetscArraycpy(r->w + GridRowStart(r->m->grid, f, j), row, r->m->grid->columns[f]);
+  if (!r->measured) MarkerRowInterpolate(r->m->rows, f, j, row, r->m->part);
 }
 
 /* all: forces may be anywhere, not only where the markers are. */
 static PetscErrorCode Solve(Response *r, Stream stream, PetscBool all, Vec U, StreamMeasures *measures) {
   const Markers m = r->m;
   const StreamRows rows = {.ctx = r,
-                           .keep = all && !r->w ? PETSC_TRUE : PETSC_FALSE,
-                           .changed = all && r->w ? m->window : NULL,
                            .forced = {all ? 0 : m->window[0], all ? m->grid->rows[FIELD_U] : m->window[1]},
-                           .wanted = {r->w ? 0 : m->window[0], r->w ? m->grid->rows[FIELD_U] : m->window[1]},
+                           .wanted = {m->window[0], m->window[1]},
+                           .past = r->past,
+                           .flow = r->flow,
+                           .add = r->add,
                            .force = r->f ? GridForce : SpreadForce,
                            .velocity = TakeVelocity,
                            .mean = {r->dipoles ? r->dipoles->flow : NULL, r->dipoles ? r->dipoles->mean : NULL},
@@ -62,27 +63,40 @@ static PetscErrorCode Solve(Response *r, Stream stream, PetscBool all, Vec U, St
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode MarkersRespond(Markers m, Stream stream, DipoleRows dipoles, PetscReal alpha, Vec F, Vec U) {
-  Response r = {.m = m, .dipoles = dipoles, .alpha = alpha};
+static PetscErrorCode Respond(Response *r, Stream stream, Vec F, Vec U, StreamMeasures *measures) {
+  const Markers m = r->m;
   PetscFunctionBeginUser;
   PetscCall(PetscLogEventBegin(m->respond, 0, 0, 0, 0));
   PetscCall(LayoutGatherVec(m->layout, F, m->force));
-  PetscCall(Solve(&r, stream, PETSC_FALSE, U, NULL));
+  PetscCall(Solve(r, stream, PETSC_FALSE, U, measures));
   PetscCall(PetscLogEventEnd(m->respond, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode MarkersFollow(Markers m, Stream stream, DipoleRows dipoles, PetscBool all, Vec f, Vec source, Vec U,
-                             Vec w, StreamMeasures *measures) {
-  Response r = {.m = m, .dipoles = dipoles, .measured = U ? PETSC_FALSE : PETSC_TRUE};
+PetscErrorCode MarkersRespond(Markers m, Stream stream, DipoleRows dipoles, PetscReal alpha, Vec F, Vec U) {
+  Response r = {.m = m, .dipoles = dipoles, .alpha = alpha};
+  PetscFunctionBeginUser;
+  PetscCall(Respond(&r, stream, F, U, NULL));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode MarkersAddFlow(Markers m, Stream stream, PetscReal alpha, Vec F, Vec U, Vec flow,
+                              StreamMeasures *measures) {
+  Response r = {.m = m, .alpha = alpha, .flow = flow, .add = PETSC_TRUE};
+  PetscFunctionBeginUser;
+  PetscCall(Respond(&r, stream, F, U, measures));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode MarkersFollow(Markers m, Stream stream, DipoleRows dipoles, PetscBool all, Vec f, Vec source,
+                             const StreamPast *past, Vec U, Vec flow, StreamMeasures *measures) {
+  Response r = {.m = m, .dipoles = dipoles, .measured = U ? PETSC_FALSE : PETSC_TRUE, .past = past, .flow = flow};
   PetscFunctionBeginUser;
   PetscCall(PetscLogEventBegin(m->respond, 0, 0, 0, 0));
   PetscCall(VecGetArrayRead(f, &r.f));
   if (source) PetscCall(VecGetArrayRead(source, &r.source));
   PetscCall(GridRows(m->grid, FIELD_U, r.f, &r.u));
-  if (w) PetscCall(VecGetArrayWrite(w, &r.w));
   PetscCall(Solve(&r, stream, all, U, measures));
-  if (w) PetscCall(VecRestoreArrayWrite(w, &r.w));
   if (source) PetscCall(VecRestoreArrayRead(source, &r.source));
   PetscCall(VecRestoreArrayRead(f, &r.f));
   PetscCall(PetscLogEventEnd(m->respond, 0, 0, 0, 0));

@@ -3,12 +3,16 @@
 #pragma once
 #include "markers/dipolerows.h"
 
-/* MarkersRespond - U = E u, u the Stokes solve's velocity for the force alpha E^T F and the dipoles (NULL: none);
-   MarkersFollow - for the force f on the grid, in which the dipoles' force is, and their source (NULL without them);
-   all: f may be anywhere, else it is zero outside the markers' window; w: u on the grid, NULL: not wanted, and with
-   `all` f is outside the window what it was in the last such solve without; measures: of
-   u on the whole grid, NULL: not wanted. U may be F. Collective. */
+/* MarkersRespond - U = E u, u the Stokes solve's velocity for the force alpha E^T F and the dipoles (NULL: none).
+   MarkersAddFlow - the same without dipoles, and flow += the flow of u. MarkersFollow - for the force f on the grid, in
+   which the dipoles' force is, and their source (NULL without them), and for the force of states before (past, NULL:
+   none), U then being what it says; all: f may be anywhere, else it is zero outside the markers' window; U NULL: not
+   wanted; flow: that of u, NULL: not wanted. measures: of u on the whole grid, NULL: not wanted. U may be F.
+   Collective. */
 PETSC_EXTERN PetscErrorCode MarkersRespond(Markers markers, Stream stream, DipoleRows dipoles, PetscReal alpha, Vec F,
                                            Vec U);
+PETSC_EXTERN PetscErrorCode MarkersAddFlow(Markers markers, Stream stream, PetscReal alpha, Vec F, Vec U, Vec flow,
+                                           StreamMeasures *measures);
 PETSC_EXTERN PetscErrorCode MarkersFollow(Markers markers, Stream stream, DipoleRows dipoles, PetscBool all, Vec f,
-                                          Vec source, Vec U, Vec w, StreamMeasures *measures);
+                                          Vec source, const StreamPast *past, Vec U, Vec flow,
+                                          StreamMeasures *measures);

@@ -22,15 +22,14 @@ static PetscErrorCode WriteOnly(H5File *file, const char prefix[], const char na
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What the state has: of an older one no step needs the pressure, and most not the velocity. */
-static PetscErrorCode WriteFluid(Scheme s, H5File *file, const char prefix[], const State *q) {
+/* The velocity w of a state, and its pressure: of an older one no step needs that. */
+static PetscErrorCode WriteFields(Scheme s, H5File *file, const char prefix[], const State *q, Vec w) {
   static const char *const names[3] = {"u", "v", "p"};
   const Grid g = s->fluid->grid;
   char name[64];
   const PetscScalar *a[3];
   PetscFunctionBeginUser;
-  if (!q->w) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(VecGetArrayRead(q->w, &a[0]));
+  PetscCall(VecGetArrayRead(w, &a[0]));
   a[1] = a[0] + GridLocalU(g);
   if (q->p) PetscCall(VecGetArrayRead(q->p, &a[2]));
   for (int f = 0; f < (q->p ? 3 : 2); f++) {
@@ -40,7 +39,32 @@ static PetscErrorCode WriteFluid(Scheme s, H5File *file, const char prefix[], co
     PetscCall(H5WriteField(file, name, 0, g, (Field)f, a[f]));
   }
   if (q->p) PetscCall(VecRestoreArrayRead(q->p, &a[2]));
-  PetscCall(VecRestoreArrayRead(q->w, &a[0]));
+  PetscCall(VecRestoreArrayRead(w, &a[0]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What the state has: of most older ones no step needs the velocity. A flow is written as it is, so that a restart has
+   its bits, beside the velocity, from which other solvers go on. */
+static PetscErrorCode WriteFluid(Scheme s, H5File *file, const char prefix[], const State *q) {
+  const Grid g = s->fluid->grid;
+  const PetscScalar *a;
+  char name[64];
+  Vec w = q->w;
+  PetscFunctionBeginUser;
+  if (!w && !q->flow) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!w) {
+    PetscCall(DMGetGlobalVector(g->velocity, &w));
+    PetscCall(s->ops.velocity(s, q, w));
+  }
+  PetscCall(WriteFields(s, file, prefix, q, w));
+  if (!q->w) PetscCall(DMRestoreGlobalVector(g->velocity, &w));
+  if (!q->flow) PetscFunctionReturn(PETSC_SUCCESS);
+  const PetscInt dims[2] = {g->all_rows[FIELD_U], StateFlowWidth(q, g)};
+  PetscCall(PetscSNPrintf(name, sizeof(name), "%s/fluid/flow", prefix));
+  PetscCall(H5CreateSeries(file, name, 2, dims));
+  PetscCall(VecGetArrayRead(q->flow, &a));
+  PetscCall(H5WriteRows(file, name, 0, g, FIELD_U, dims[1], a));
+  PetscCall(VecRestoreArrayRead(q->flow, &a));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -102,6 +126,7 @@ static PetscErrorCode WriteNumbers(Scheme s, H5File *file, const Record *record,
   const PetscInt format = CHECKPOINT_FORMAT, past = s->past, level = s->policy.adaptive ? s->plan.level : 0;
   const PetscInt totals[4] = {record->solves, record->tension, record->bending, record->coupled};
   PetscReal earlier[SCHEME_PAST] = {0};
+  const PetscInt flow = StateFlowWidth(q, s->fluid->grid);
   PetscInt walls = 0;
   PetscFunctionBeginUser;
   PetscCall(H5PutInts(file, "format", 1, &format));
@@ -117,6 +142,7 @@ static PetscErrorCode WriteNumbers(Scheme s, H5File *file, const Record *record,
   PetscCall(H5PutInts(file, "step_guess", 1, &s->plan.guess));
   PetscCall(GatheredWalls(q, &walls));
   PetscCall(H5PutInts(file, "walls", 1, &walls));
+  PetscCall(H5PutInts(file, "flow", 1, &flow));
   PetscCall(H5PutInts(file, "frames", 1, &frames));
   PetscCall(H5PutInts(file, "totals", 4, totals));
   PetscCall(H5PutText(file, "series_row", record->text));

@@ -365,9 +365,9 @@ static PetscInt RowsOf(Grid g, Field field, PetscInt rank) {
 }
 
 /* Rank by rank, so that rank 0 holds one slab at a time besides its own. */
-static PetscErrorCode TransferField(H5File *f, PetscBool write, const char name[], PetscInt index, Grid g, Field field,
-                                    PetscScalar values[]) {
-  const PetscInt columns = g->columns[field], own = columns * g->rows[field];
+static PetscErrorCode TransferRows(H5File *f, PetscBool write, const char name[], PetscInt index, Grid g, Field field,
+                                   PetscInt columns, PetscScalar values[]) {
+  const PetscInt own = columns * g->rows[field];
   PetscScalar *slab = NULL;
   PetscFunctionBeginUser;
   if (g->rank && write) PetscCallMPI(MPI_Send(values, (PetscMPIInt)own, MPIU_SCALAR, 0, 0, g->comm));
@@ -386,11 +386,12 @@ static PetscErrorCode TransferField(H5File *f, PetscBool write, const char name[
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode H5WriteField(H5File *f, const char name[], PetscInt index, Grid g, Field field,
-                            const PetscScalar values[]) {
-  return TransferField(f, PETSC_TRUE, name, index, g, field, (PetscScalar *)values);
+PetscErrorCode H5WriteRows(H5File *f, const char name[], PetscInt index, Grid g, Field field, PetscInt each,
+                           const PetscScalar values[]) {
+  return TransferRows(f, PETSC_TRUE, name, index, g, field, each, (PetscScalar *)values);
 }
 
-PetscErrorCode H5ReadField(H5File *f, const char name[], PetscInt index, Grid g, Field field, PetscScalar values[]) {
-  return TransferField(f, PETSC_FALSE, name, index, g, field, values);
+PetscErrorCode H5ReadRows(H5File *f, const char name[], PetscInt index, Grid g, Field field, PetscInt each,
+                          PetscScalar values[]) {
+  return TransferRows(f, PETSC_FALSE, name, index, g, field, each, values);
 }

@@ -65,8 +65,17 @@ PETSC_EXTERN PetscErrorCode H5WriteArray(H5File *file, const char name[], PetscI
 PETSC_EXTERN PetscErrorCode H5ReadArray(H5File *file, const char name[], PetscInt index, PetscInt n,
                                         PetscReal values[]);
 
-/* H5WriteField, H5ReadField - the same for a field of the grid, each rank its own rows of it. Collective. */
-PETSC_EXTERN PetscErrorCode H5WriteField(H5File *file, const char name[], PetscInt index, Grid grid, Field field,
-                                         const PetscScalar values[]);
-PETSC_EXTERN PetscErrorCode H5ReadField(H5File *file, const char name[], PetscInt index, Grid grid, Field field,
-                                        PetscScalar values[]);
+/* H5WriteRows, H5ReadRows - the same for `each` numbers in every row of a field of the grid, each rank its own rows.
+   H5WriteField, H5ReadField - for the field itself. Collective. */
+PETSC_EXTERN PetscErrorCode H5WriteRows(H5File *file, const char name[], PetscInt index, Grid grid, Field field,
+                                        PetscInt each, const PetscScalar values[]);
+PETSC_EXTERN PetscErrorCode H5ReadRows(H5File *file, const char name[], PetscInt index, Grid grid, Field field,
+                                       PetscInt each, PetscScalar values[]);
+static inline PetscErrorCode H5WriteField(H5File *file, const char name[], PetscInt index, Grid grid, Field field,
+                                          const PetscScalar values[]) {
+  return H5WriteRows(file, name, index, grid, field, grid->columns[field], values);
+}
+static inline PetscErrorCode H5ReadField(H5File *file, const char name[], PetscInt index, Grid grid, Field field,
+                                         PetscScalar values[]) {
+  return H5ReadRows(file, name, index, grid, field, grid->columns[field], values);
+}

@@ -130,14 +130,13 @@ static PetscErrorCode CompareObstacles(Scheme s, H5File *file) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode ReadFluid(Scheme s, H5File *file, const char prefix[], State *q) {
+static PetscErrorCode ReadFields(Scheme s, H5File *file, const char prefix[], State *q, Vec w) {
   static const char *const names[3] = {"u", "v", "p"};
   const Grid g = s->fluid->grid;
   char name[64];
   PetscScalar *a[3];
   PetscFunctionBeginUser;
-  if (!q->w) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(VecGetArray(q->w, &a[0]));
+  PetscCall(VecGetArray(w, &a[0]));
   a[1] = a[0] + GridLocalU(g);
   if (q->p) PetscCall(VecGetArray(q->p, &a[2]));
   for (int f = 0; f < (q->p ? 3 : 2); f++) {
@@ -147,7 +146,39 @@ static PetscErrorCode ReadFluid(Scheme s, H5File *file, const char prefix[], Sta
     PetscCall(H5ReadField(file, name, 0, g, (Field)f, a[f]));
   }
   if (q->p) PetscCall(VecRestoreArray(q->p, &a[2]));
-  PetscCall(VecRestoreArray(q->w, &a[0]));
+  PetscCall(VecRestoreArray(w, &a[0]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The flow of a state: its bits, or where the file is of other solvers that of its velocity w. */
+static PetscErrorCode ReadFlow(Scheme s, H5File *file, const char prefix[], State *q, Vec w) {
+  const Grid g = s->fluid->grid;
+  const PetscInt dims[2] = {g->all_rows[FIELD_U], StateFlowWidth(q, g)};
+  PetscInt there = 0;
+  char name[64];
+  PetscScalar *a;
+  PetscFunctionBeginUser;
+  PetscCall(H5GetInts(file, "flow", 1, &there));
+  if (there != dims[1]) {
+    PetscCall(s->ops.flow(s, w, q->flow));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(PetscSNPrintf(name, sizeof(name), "%s/fluid/flow", prefix));
+  H5CheckEntry(file, name, 2, dims);
+  PetscCall(VecGetArray(q->flow, &a));
+  PetscCall(H5ReadRows(file, name, 0, g, FIELD_U, dims[1], a));
+  PetscCall(VecRestoreArray(q->flow, &a));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ReadFluid(Scheme s, H5File *file, const char prefix[], State *q) {
+  Vec w = q->w;
+  PetscFunctionBeginUser;
+  if (!w && !q->flow) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!w) PetscCall(DMGetGlobalVector(s->fluid->grid->velocity, &w));
+  PetscCall(ReadFields(s, file, prefix, q, w));
+  if (q->flow) PetscCall(ReadFlow(s, file, prefix, q, w));
+  if (!q->w) PetscCall(DMRestoreGlobalVector(s->fluid->grid->velocity, &w));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -170,13 +201,11 @@ static PetscErrorCode CheckVectors(Scheme s, const State *q) {
     const char *name;
     Vec vector;
     PetscReal most;
-  } all[] = {{"velocity", q->w, PETSC_MAX_REAL},
-             {"pressure", q->p, PETSC_MAX_REAL},
-             {"markers", q->X, 1e9 * s->fluid->grid->h},
-             {"marker velocity", q->U, PETSC_MAX_REAL},
-             {"tension", q->sigma, PETSC_MAX_REAL}};
+  } all[] = {{"velocity", q->w, PETSC_MAX_REAL},        {"flow", q->flow, PETSC_MAX_REAL},
+             {"pressure", q->p, PETSC_MAX_REAL},        {"markers", q->X, 1e9 * s->fluid->grid->h},
+             {"marker velocity", q->U, PETSC_MAX_REAL}, {"tension", q->sigma, PETSC_MAX_REAL}};
   PetscFunctionBeginUser;
-  for (int k = 0; k < 5; k++) {
+  for (int k = 0; k < 6; k++) {
     PetscReal largest = 0;
     if (all[k].vector) PetscCall(VecNorm(all[k].vector, NORM_INFINITY, &largest));
     PetvesCheck(largest <= all[k].most, s->scene->comm,

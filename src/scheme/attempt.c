@@ -76,23 +76,36 @@ static Vec Momentum(const Coupled *d) {
   return d->next.force ? d->next.force : d->f;
 }
 
+/* The history uhat: in f, with k = lag E uhat, or as flows beside f; none in quasi-steady flow. */
+static PetscErrorCode Past(Scheme s, Coupled *d, const BDF *b) {
+  const Vec f = Momentum(d), *flow = STATES(s, flow);
+  PetscFunctionBeginUser;
+  d->past.count = d->next.flow && !s->fluid->steady ? b->order : 0;
+  for (PetscInt j = 0; j < d->past.count; j++) {
+    d->past.weight[j] = b->history[j];
+    d->past.flow[j] = flow[j];
+  }
+  if (d->next.force && !d->convection)
+    PetscCall(MarkersClear(s->coupling->markers, f, d->next.rows));
+  else if (s->fluid->steady || d->next.flow)
+    PetscCall(VecSet(f, 0));
+  else {
+    PetscCall(HistorySum(b->order, b->history, 1, STATES(s, w), f));
+    PetscCall(CouplingAddPast(s->coupling, f, d->known));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* f = uhat - B Y + bc1 - N(w*) and k = lag E uhat - (C c_b ds D4 + V d/dt) Y, with turning tension and a repulsion's
-   springs beside bending, Y = Xhat + u_inf/a0, V the labels' speed, and what holds obstacles in the flow; no uhat in
-   quasi-steady flow. next.w is used for w*. */
+   springs beside bending, Y = Xhat + u_inf/a0, V the labels' speed, and what holds obstacles in the flow. next.w is
+   used for w*. */
 static PetscErrorCode RightHandSides(Scheme s, Coupled *d, const BDF *b) {
   const Vec f = Momentum(d);
   PetscFunctionBeginUser;
   PetscCall(VecSet(d->known, 0));
   if (d->source) PetscCall(VecSet(d->source, 0));
   if (d->next.source) PetscCall(GridClearRows(s->fluid->grid, d->next.rows, d->next.source));
-  if (d->next.force && s->fluid->steady)
-    PetscCall(MarkersClear(s->coupling->markers, f, d->next.rows));
-  else if (s->fluid->steady)
-    PetscCall(VecSet(f, 0));
-  else {
-    PetscCall(HistorySum(b->order, b->history, 1, STATES(s, w), f));
-    PetscCall(CouplingAddPast(s->coupling, f, d->known));
-  }
+  PetscCall(Past(s, d, b));
   if (s->fluid->bc1) PetscCall(VecAXPY(f, 1, s->fluid->bc1));
   PetscCall(VecWAXPY(d->Y, 1 / b->a0, s->background, d->Xhat));
   if (CouplingHasMembrane(s->coupling)) PetscCall(CouplingElastic(s->coupling, -1, d->Y, f, d->known));
@@ -130,17 +143,21 @@ static PetscErrorCode InitialGuess(Scheme s, Coupled *d) {
 /* u, p, sigma of the new time (and V); report.failure when the solver fails. */
 static PetscErrorCode Solve(Scheme s, Coupled *d) {
   State *n = &d->next;
+  const Vec w = n->flow ? NULL : n->w;
   const CoupledProblem problem = {.moved = d->moved,
                                   .source = n->source ? n->source : d->source,
                                   .f = Momentum(d),
                                   .g = s->g,
                                   .k = d->known,
-                                  .w = n->w,
+                                  .local = w || d->convection ? PETSC_FALSE : PETSC_TRUE,
+                                  .w = w,
                                   .p = n->p,
                                   .sigma = n->sigma,
                                   .d = n->walls,
                                   .V = d->V,
-                                  .solid = n->solid};
+                                  .solid = n->solid,
+                                  .flow = n->flow,
+                                  .past = &d->past};
   SolveReport report;
   PetscFunctionBeginUser;
   if (d->direct) {
@@ -158,6 +175,7 @@ static PetscErrorCode Solve(Scheme s, Coupled *d) {
     PetscCall(PetscArraycpy(d->made_with, d->history.treading, s->membrane->layout->bodies));
   }
   if (report.why < 0) PetscCall(SchemeSolverFailed(s, "coupled_", report.why, report.its, report.residual));
+  if (n->flow && n->w) PetscCall(StreamFlowsVelocity(CoupledFlows(d), n->flow, n->w));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -216,7 +216,8 @@ static PetscErrorCode StartFlow(Scheme s, Coupled *d) {
   s->fluid->steady = PETSC_FALSE;
   now->dt = dt;
   if (!solved) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(VecCopy(next->w, now->w));
+  if (next->w) PetscCall(VecCopy(next->w, now->w));
+  if (next->flow) PetscCall(VecCopy(next->flow, now->flow));
   PetscCall(VecCopy(next->sigma, now->sigma));
   PetscCall(VecCopy(next->solid, now->solid));
   if (now->walls) PetscCall(VecCopy(next->walls, now->walls));
@@ -262,48 +263,6 @@ static PetscErrorCode SetUpConvection(Scheme s, Coupled *d) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The states before the present one have the velocity where it is a history: in fluid with inertia, of the older one
-   for order 3. Of the next one both fields are needed unless the state's own pressure, and in quasi-steady flow its
-   velocity, are made when they are asked for, from the force that each of the two has. */
-static PetscErrorCode CreateStates(Scheme s, Coupled *d) {
-  const PetscBool later = d->solver && ReducedNeedsNoPressure(d->solver->reduced) ? PETSC_TRUE : PETSC_FALSE;
-  PetscFunctionBeginUser;
-  for (int j = 0; j < SCHEME_PAST; j++) {
-    PetscCall(StateDuplicate(&s->state, &s->old[j]));
-    PetscCall(VecDestroy(&s->old[j].p));
-    if (s->fluid->steady || j >= s->scene->scheme.order - 1) PetscCall(VecDestroy(&s->old[j].w));
-  }
-  PetscCall(StateDuplicate(&s->state, &d->next));
-  if (!later) {
-    PetscCall(VecDuplicate(s->state.w, &d->f));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  PetscCall(VecDuplicate(s->state.w, &s->state.force));
-  PetscCall(VecDuplicate(s->state.w, &d->next.force));
-  if (s->coupling->contrast) {
-    PetscCall(VecDuplicate(s->state.p, &s->state.source));
-    PetscCall(VecDuplicate(s->state.p, &d->next.source));
-  }
-  PetscCall(VecDestroy(&d->next.p));
-  if (s->fluid->steady) PetscCall(VecDestroy(&d->next.w));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* By the state's time coefficient, which a step that has failed may have changed. A velocity that is made in each step
-   stays as it is. */
-static PetscErrorCode Fields_Coupled(Scheme s) {
-  const State *q = &s->state;
-  const PetscReal now = s->fluid->a0;
-  Vec w = q->w;
-  PetscFunctionBeginUser;
-  if (!s->fluid->steady) PetscCall(DMGetGlobalVector(s->fluid->grid->velocity, &w));
-  if (now != q->a0) PetscCall(FluidSetTimeCoefficient(s->fluid, q->a0));
-  PetscCall(ReducedFields(((Coupled *)s->data)->solver->reduced, q->force, q->source, q->mean, w, q->p));
-  if (now != q->a0) PetscCall(FluidSetTimeCoefficient(s->fluid, now));
-  if (!s->fluid->steady) PetscCall(DMRestoreGlobalVector(s->fluid->grid->velocity, &w));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 static PetscErrorCode SetUp_Coupled(Scheme s) {
   Coupled *d = (Coupled *)s->data;
   State *q = &s->state;
@@ -314,7 +273,8 @@ static PetscErrorCode SetUp_Coupled(Scheme s) {
     PetscCall(CoupledSolverCreate(s->scene, s->coupling, &d->solver));
     PetscCall(UnknownsCreateWallVec(d->solver->unknowns, &q->walls));
   }
-  PetscCall(CreateStates(s, d));
+  PetscCall(SetUpConvection(s, d));
+  PetscCall(CoupledCreateStates(s));
   PetscCall(HistoryCreate(s, &d->history));
   PetscCall(VecDuplicate(q->X, &d->Xstar));
   PetscCall(VecDuplicate(q->X, &d->Xhat));
@@ -329,7 +289,6 @@ static PetscErrorCode SetUp_Coupled(Scheme s) {
   PetscCall(VecDuplicate(q->X, &d->made_at));
   PetscCall(PetscCalloc1(s->membrane->layout->bodies, &d->made_with));
   PetscCall(PetscMalloc1(2 * s->membrane->layout->n, &d->edges));
-  PetscCall(SetUpConvection(s, d));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -380,7 +339,10 @@ PetscErrorCode SchemeCreate_Coupled(Scheme s) {
   s->ops = (SchemeOps){.setup = SetUp_Coupled,
                        .step = Step_Coupled,
                        .undo = Undo_Coupled,
-                       .fields = Fields_Coupled,
+                       .fields = CoupledFields,
+                       .velocity = CoupledVelocity,
+                       .flow = CoupledFlow,
+                       .square = CoupledSquare,
                        .remember = CoupledRemember,
                        .recall = CoupledRecall,
                        .view = View_Coupled,

@@ -19,12 +19,18 @@ typedef struct {
   Vec made_at;           /* markers at which the preconditioner's dense blocks were made, */
   PetscReal *made_with;  /* [vesicles] and the label speeds */
   Vec f;                 /* momentum's right-hand side; NULL where that is next.force */
+  StreamPast past;       /* the states before, where they are a force as flows */
   Vec Xstar, Xhat;       /* extrapolated markers, BDF history of the markers */
   Vec moved, source;     /* viscosity contrast: known part of the markers' motion, divergence unless next has it */
   Vec V, known, Y;       /* solved part of the markers' velocity, what is known of it, and of obstacles; work */
   Vec P;                 /* the markers' velocity as the labels of the step see it */
   PetscScalar *edges;    /* [2n] work */
 } Coupled;
+
+/* What makes and reads flows, of a scheme whose states have them. */
+static inline StreamFlows CoupledFlows(const Coupled *d) {
+  return StreamGetFlows(d->solver->reduced->stream);
+}
 
 /* CoupledAttempt - solve one step of size dt from the state into next; false with report.failure when it cannot be.
    Collective. */
@@ -41,3 +47,11 @@ PETSC_EXTERN PetscErrorCode CoupledAdvance(Scheme scheme, PetscReal dt);
 /* CoupledRemember, CoupledRecall - remember and recall of SchemeOps. Collective. */
 PETSC_EXTERN PetscErrorCode CoupledRemember(Scheme scheme, PetscReal memory[]);
 PETSC_EXTERN PetscErrorCode CoupledRecall(Scheme scheme, const PetscReal memory[]);
+
+/* CoupledCreateStates - the vectors of the states before the present one and of the next one. CoupledFields,
+   CoupledVelocity, CoupledFlow, CoupledSquare - fields, velocity, flow and square of SchemeOps. Collective. */
+PETSC_EXTERN PetscErrorCode CoupledCreateStates(Scheme scheme);
+PETSC_EXTERN PetscErrorCode CoupledFields(Scheme scheme);
+PETSC_EXTERN PetscErrorCode CoupledVelocity(Scheme scheme, const State *state, Vec w);
+PETSC_EXTERN PetscErrorCode CoupledFlow(Scheme scheme, Vec w, Vec flow);
+PETSC_EXTERN PetscErrorCode CoupledSquare(Scheme scheme, PetscReal *square);

@@ -122,7 +122,7 @@ PetscErrorCode DriveMeasure(Scheme s, Drive *drive) {
   PetscFunctionBeginUser;
   *drive = (Drive){NAN, NAN};
   if (g->wall[0]) PetscFunctionReturn(PETSC_SUCCESS);
-  if (s->fluid->steady) PetscCall(SchemeFields(s)); /* else the velocity is made in each step */
+  PetscCall(SchemeVelocity(s));
   PetscCall(DMGetGlobalVector(g->velocity, &Hu));
   PetscCall(GridHelmholtz(g, s->fluid->alpha, s->fluid->nu, s->state.w, Hu));
   PetscCall(OwnForces(s, &forces));

@@ -174,20 +174,33 @@ PetscErrorCode SchemeContactEnergy(Scheme s, PetscReal *energy) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode SchemeVelocity(Scheme s) {
+  PetscFunctionBeginUser;
+  if (!s->state.hidden) PetscFunctionReturn(PETSC_SUCCESS);
+  if (s->state.flow) {
+    PetscCall(s->ops.velocity(s, &s->state, s->state.w));
+    s->state.hidden = PETSC_FALSE;
+  } else
+    PetscCall(SchemeFields(s));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode SchemeFields(Scheme s) {
   PetscFunctionBeginUser;
+  if (s->state.flow) PetscCall(SchemeVelocity(s));
   if (!s->state.pending) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(s->ops.fields(s));
-  s->state.pending = PETSC_FALSE;
+  s->state.pending = s->state.hidden = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode SchemeKineticEnergy(Scheme s, PetscReal *energy) {
   PetscReal norm;
   PetscFunctionBeginUser;
-  if (s->state.pending)
-    norm = PetscSqrtReal(s->report.measures.square);
-  else if (s->fluid->total) {
+  if (s->state.hidden || s->state.flow) {
+    PetscCall(s->ops.square(s, &norm));
+    norm = PetscSqrtReal(norm);
+  } else if (s->fluid->total) {
     Vec difference;
     PetscCall(DMGetGlobalVector(s->fluid->grid->velocity, &difference));
     PetscCall(VecWAXPY(difference, -1, s->fluid->background, s->state.w));

@@ -59,8 +59,13 @@ typedef struct {
   /* put back the velocities and pressures of state and old that a step with a past has changed; NULL: they are copied
      before each step */
   PetscErrorCode (*undo)(Scheme);
-  /* make the velocity and the pressure of the state; NULL: steps make them */
+  /* make what the state has not of velocity and pressure, with a flow the pressure alone; NULL: steps make them */
   PetscErrorCode (*fields)(Scheme);
+  /* w = the velocity of a state that has a flow; the flow of w; SUM u^2 over the faces of the state's velocity, which
+     is not made */
+  PetscErrorCode (*velocity)(Scheme, const State *, Vec w);
+  PetscErrorCode (*flow)(Scheme, Vec w, Vec flow);
+  PetscErrorCode (*square)(Scheme, PetscReal *square);
   /* what solvers keep from step to step, as SchemeMemorySize numbers, the same on every rank, and made again from them;
      NULL: they keep nothing */
   PetscErrorCode (*remember)(Scheme, PetscReal memory[]);
@@ -110,10 +115,11 @@ PETSC_EXTERN PetscErrorCode SchemeDestroy(Scheme *scheme);
    and the state is as before; negative: it does not. Collective. */
 PETSC_EXTERN PetscErrorCode SchemeStep(Scheme scheme, PetscReal most, PetscReal reserve);
 
-/* SchemeFields - make the velocity and the pressure of the state, w and p, where the step has not: a step needs no
-   pressure where fluid/stream.h gives the velocity, and a quasi-steady one no velocity (docs/membrane.md, One step). To
-   be called before they are read. Collective. */
+/* SchemeFields - make the velocity and the pressure of the state, w and p, where the step has not: it needs neither on
+   the grid where fluid/stream.h gives the velocity (docs/membrane.md, One step). SchemeVelocity - w alone, if there is
+   a cheaper way. To be called before they are read. Collective. */
 PETSC_EXTERN PetscErrorCode SchemeFields(Scheme scheme);
+PETSC_EXTERN PetscErrorCode SchemeVelocity(Scheme scheme);
 
 /* SchemeRemember, SchemeRecall - what the solvers have kept from earlier steps (when their blocks were made, and where
    the markers were), as SchemeMemorySize numbers for a checkpoint, and made again from them. Collective. */

@@ -1,18 +1,19 @@
 #include "scheme/state.h"
 
-#define VECTORS 9
-#define ON_GRID 4 /* the first ones */
+#define VECTORS 10
+#define ON_GRID 5 /* the first ones */
 
 static void List(State *q, Vec *all[VECTORS]) {
   all[0] = &q->w;
   all[1] = &q->p;
   all[2] = &q->force;
   all[3] = &q->source;
-  all[4] = &q->sigma;
-  all[5] = &q->X;
-  all[6] = &q->U;
-  all[7] = &q->walls;
-  all[8] = &q->solid;
+  all[4] = &q->flow;
+  all[5] = &q->sigma;
+  all[6] = &q->X;
+  all[7] = &q->U;
+  all[8] = &q->walls;
+  all[9] = &q->solid;
 }
 
 PetscErrorCode StateCreate(Coupling c, State *q) {
@@ -62,6 +63,7 @@ PetscErrorCode StateCopy(const State *q, State *copy, PetscBool fields) {
   if (fields) PetscCall(PetscArraycpy(copy->mean, q->mean, 2));
   if (fields) copy->a0 = q->a0;
   copy->pending = q->pending;
+  copy->hidden = q->hidden;
   copy->step = q->step;
   copy->t = q->t;
   copy->dt = q->dt;
