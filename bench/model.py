@@ -8,59 +8,64 @@ import numpy as np
 
 LATENCY = 2e-6  # of a message (s)
 BANDWIDTH = 1e9  # of a rank (bytes/s): 64 ranks of a node share 64e9
-MARKERS = 181 / 512  # a column: the scene of the bench, ds = 1.5 h
-REFRESH = 8  # steps that the dense factors last
+MARKERS = 137 / 512  # a column: the scene of the bench, ds = 1.9 h
+ROWS = 0.15  # part of all rows that membranes reach: the bench's vesicle with its stencils
+FELT = 0.3  # of the modes above and below them, that feel a force there
 BYTES = 8
-NEAR = 3e-6  # near field of a marker: placing it, a step (s; half of docs/performance.md, which is of a busy machine)
-NEAR_PRODUCT = 0.3e-6  # and its product, an iteration
 SORTED = 0.6e-6  # rows and stencils of a marker sorted on every rank, a step (docs/performance.md, A thousand vesicles)
 
 
 @dataclass
 class Scene:
-    """A step to predict: n x n cells, vesicles of so many markers each, Stokes solves and iterations a step."""
+    """A step to predict: n x n cells, vesicles of so many markers each, iterations a step, part of the rows with membranes."""
 
     n: int
     markers: float
-    stokes: float = 3.0
-    its: float = 2.0
+    its: float = 1.0
     vesicles: float = 1.0
+    rows: float = ROWS
+
+    @property
+    def felt(self) -> float:
+        """Part of the modes of all rows that a solve of the membranes' forces alone goes through."""
+        return self.rows + FELT * (1 - self.rows)
+
+    @property
+    def all_markers(self) -> float:
+        """Markers of all vesicles."""
+        return self.vesicles * self.markers
 
 
 @dataclass
 class Rates:
-    """Seconds a flop of the row solves, a byte of grid data, a flop on the markers."""
+    """Seconds a flop of the solves, a byte of grid data, a marker's own work, an operation of the dense problem."""
 
     flop: float
     byte: float
+    marker: float
     dense: float
 
 
 def solve_flops(s: Scene) -> float:
-    """Flops a cell of one Stokes solve: three row transforms back, two forward once a step, recurrences and stencils."""
-    return 2.5 * (3 + 2 / s.stokes) * np.log2(s.n) + 37
+    """Flops a cell of a step's solves: the sum of the states before, its curl and the recurrences of the first, those of the
+    further ones, and two transforms of the membranes' rows in each."""
+    return 30 + 12 * s.its * s.felt + (s.its + 1) * 5 * s.rows * np.log2(s.n)
 
 
 def solve_bytes(s: Scene) -> float:
-    """Bytes a cell of one Stokes solve: rows read and written by the recurrences, the stencils and the transforms."""
-    return 24 * BYTES
+    """Bytes a cell: three states read, y written and read three times, the flow written; in a further solve y and the flow
+    where they are felt; the membranes' rows of forces."""
+    return BYTES * (3 + 4 + 1 + 4 * s.its * s.felt + 2 * s.rows)
 
 
 def step_bytes(s: Scene) -> float:
-    """Bytes a cell of a step outside the solves: history, guess, norms, and the sum of the kept products."""
-    return (40 + 5 * s.its) * BYTES
+    """Bytes a cell of a step outside the solves: forces cleared, spread and squared in the membranes' rows."""
+    return BYTES * 4 * s.rows
 
 
-def dense_flops(s: Scene) -> float:
-    """Flops on the markers: the factors of R every step, those of N and C every REFRESH steps, their use."""
-    m, log = s.markers, np.log2(max(s.markers, 2))
-    each = m**3 * (16 / 3 + 14 / REFRESH) + m**2 * (20 * log + (600 + 40 * log) / REFRESH + 22 * (s.its + 1))
-    return s.vesicles * each
-
-
-def near_seconds(s: Scene) -> float:
-    """Seconds of the near field of all markers on one rank."""
-    return s.vesicles * s.markers * (NEAR + NEAR_PRODUCT * s.its)
+def dense_operations(s: Scene) -> float:
+    """Products of the dense problem's factors and of the near field, M^2 each."""
+    return s.vesicles * s.markers**2 * (s.its + 1)
 
 
 def fit(measured: list[tuple[Scene, float, float]], byte: float) -> tuple[Rates, float]:
@@ -73,15 +78,24 @@ def fit(measured: list[tuple[Scene, float, float]], byte: float) -> tuple[Rates,
     byte : float
         Seconds a byte, from copies of an array.
     """
-    fast = np.array([[s.stokes * s.n**2 * f(s) for f in (solve_flops, solve_bytes)] for s, _, _ in measured])
-    rest = np.array([[dense_flops(s), s.n**2 * step_bytes(s)] for s, _, _ in measured])
-    rates, deviation = [], 0.0
-    known = np.array([near_seconds(s) + SORTED * s.vesicles * s.markers for s, _, _ in measured])
-    for work, seconds, other in ((fast, [m[1] for m in measured], 0), (rest, [m[2] for m in measured], known)):
-        a, b = work[:, 0] / seconds, 1 - (work[:, 1] * byte + other) / seconds  # relative
-        rates.append(max(float(a @ b / (a @ a)), 0.0))
-        deviation = max(deviation, np.abs(a * rates[-1] - b).max())
-    return Rates(rates[0], byte, rates[1]), float(deviation)
+    scenes, fast, rest = ([m[k] for m in measured] for k in range(3))
+    cells = np.array([s.n**2 for s in scenes], float)
+    grid = np.array([[c * solve_flops(s)] for s, c in zip(scenes, cells)])
+    moved = cells * byte * np.array([solve_bytes(s) for s in scenes])
+    flop, off = _closest(grid, np.array(fast), moved)
+    work = np.array([[s.all_markers, dense_operations(s)] for s in scenes], float)
+    markers = np.array([s.all_markers for s in scenes])
+    known = cells * byte * np.array([step_bytes(s) for s in scenes]) + SORTED * markers
+    (marker, dense), more = _closest(work, np.array(rest), known)
+    return Rates(float(flop[0]), byte, float(marker), float(dense)), max(off, more)
+
+
+def _closest(work: np.ndarray, seconds: np.ndarray, known: np.ndarray) -> tuple[np.ndarray, float]:
+    """Return rates above zero with work @ rates + known closest to the seconds, relatively, and the largest deviation."""
+    a, b = work / seconds[:, None], 1 - known / seconds
+    scale = np.abs(a).max(axis=0)
+    rates = np.maximum(np.linalg.lstsq(a / scale, b, rcond=None)[0], 0) / scale
+    return rates, float(np.abs(a @ rates - b).max())
 
 
 def parts(s: Scene, r: Rates, ranks: int, layout: str) -> dict[str, float]:
@@ -97,29 +111,29 @@ def parts(s: Scene, r: Rates, ranks: int, layout: str) -> dict[str, float]:
     layout : str
         "petves": as it is, slabs of the grid and whole vesicles on ranks. "shared": slabs, a vesicle's dense problem and near
         field divided among ranks, markers known where they are. "doubling": and the chain of slabs closed by recursive
-        doubling. "pencil": shared, rows transposed to columns and back.
+        doubling. "pencil": shared, the membranes' rows transposed to columns and back.
     """
-    c, w, log = s.n**2 / ranks, s.n + 2, np.log2(max(ranks, 2))
+    solves, c, w, log = s.its + 1, s.n**2 / ranks, s.n + 2, np.log2(max(ranks, 2))
     ours, alone = layout == "petves", ranks == 1
-    grid = c * (s.stokes * (r.flop * solve_flops(s) + r.byte * solve_bytes(s)) + r.byte * step_bytes(s))
-    markers = r.dense * dense_flops(s) + near_seconds(s)
+    grid = c * (r.flop * solve_flops(s) + r.byte * (solve_bytes(s) + step_bytes(s)))
+    markers = r.marker * s.all_markers + r.dense * dense_operations(s)
     share = np.ceil(s.vesicles / ranks) / s.vesicles if ours else 1 / ranks
-    heard = s.vesicles if ours else max(1, s.vesicles / ranks)  # vesicles that a rank hears of
+    heard = s.all_markers if ours else max(s.markers, s.all_markers / ranks)  # markers that a rank hears of
     found = {"grid": grid, "markers": markers * share}
-    found["replicated"] = SORTED * s.vesicles * s.markers / (1 if ours else ranks)
+    found["replicated"] = SORTED * s.all_markers / (1 if ours else ranks)
     found |= {"chain": 0.0, "messages": 0.0}
     if alone:
         return found
-    found["messages"] = (s.its + 7) * 2 * log * (LATENCY + 2 * BYTES * heard * s.markers / BANDWIDTH)
-    if layout in ("petves", "shared"):  # two numbers a mode and rank, each rank all of them
-        found["chain"] = s.stokes * r.byte * 60 * BYTES * ranks * w
-        all_of_it = 3 * ranks * (2 * w + s.n / ranks) * BYTES
-        found["messages"] += s.stokes * (2 * log * LATENCY + all_of_it / BANDWIDTH)
+    found["messages"] = (s.its + 7) * 2 * log * (LATENCY + 2 * BYTES * heard / BANDWIDTH)
+    if layout in ("petves", "shared"):  # four numbers a mode and rank, each rank all of them
+        found["chain"] = solves * r.byte * 60 * BYTES * ranks * w
+        found["messages"] += solves * (2 * log * LATENCY + ranks * (4 * w + 2 * s.n / ranks) * BYTES / BANDWIDTH)
+        found["messages"] += 2 * (LATENCY + w * BYTES / BANDWIDTH)  # the rows next to a slab
     elif layout == "doubling":
-        found["chain"] = s.stokes * r.byte * 60 * BYTES * log * w
-        found["messages"] += s.stokes * log * (2 * LATENCY + 3 * 4 * w * BYTES / BANDWIDTH)
+        found["chain"] = solves * r.byte * 60 * BYTES * log * w
+        found["messages"] += solves * log * (2 * LATENCY + 4 * w * BYTES / BANDWIDTH)
     else:
-        found["messages"] += s.stokes * 5 * (np.sqrt(ranks) * LATENCY + c * BYTES / BANDWIDTH)
+        found["messages"] += solves * 2 * (np.sqrt(ranks) * LATENCY + s.rows * c * BYTES / BANDWIDTH)
     return found
 
 
@@ -134,8 +148,10 @@ def finer(n: int) -> Scene:
 
 
 def more(n: int) -> Scene:
-    """Return a box of n x n cells that grows, with as many vesicles an area, each as on 512 x 512 cells."""
-    return Scene(n, MARKERS * 512, vesicles=(n / 512) ** 2)
+    """Return a box of n x n cells that grows, with as many vesicles an area, each as on 512 x 512 cells; membranes are in all
+    rows, and a step takes more iterations (docs/performance.md, A thousand vesicles).
+    """
+    return Scene(n, MARKERS * 512, its=6, vesicles=(n / 512) ** 2, rows=1)
 
 
 def last_useful(n: int, r: Rates, layout: str) -> int:

@@ -213,17 +213,17 @@ def _fitted(results: Path) -> tuple[model.Rates, dict[str, list[str]]]:
     """Fit the model to the sizes in the channel; the rest by its mean, which has the dense factors in it."""
     measured, rows = [], []
     for one in _sizes(results, "channel"):
-        s = model.Scene(one["cells"][0], one["markers"][0], np.mean(one["nsolve"]) / 3, np.mean(one["coupled_its"]))
+        s = model.Scene(one["cells"][0], one["markers"][0], np.mean(one["coupled_its"]))
         measured.append((s, median(one["fast"]), float(np.mean(one["rest"]))))
     rates, deviation = model.fit(measured, _copy_rate(results))
     for s, fast, rest in measured:
-        solve = s.n**2 * s.stokes * (rates.flop * model.solve_flops(s) + rates.byte * model.solve_bytes(s))
+        solve = s.n**2 * (rates.flop * model.solve_flops(s) + rates.byte * model.solve_bytes(s))
         other = sum(model.parts(s, rates, 1, "petves").values()) - solve
-        rows.append([f"{s.n}^2", *(f"{1e3 * t:.1f}" for t in (fast, solve, rest, other))])
-    speed = [f"{1e-9 / rate:.1f}" if rate > 0 else "no limit found:" for rate in (rates.flop, rates.byte, rates.dense)]
+        rows.append([f"{s.n}^2", *(f"{1e3 * t:.2f}" for t in (fast, solve, rest, other))])
     lines = [
-        f"Rates of one rank: {speed[1]} GB/s of grid data (copies, read and write), {speed[0]} Gflop/s in row solves,"
-        f" {speed[2]} Gflop/s on markers (fitted). Largest deviation of the fit: {100 * deviation:.0f} %.\n",
+        f"Rates of one rank: {1e-9 / rates.byte:.0f} GB/s of grid data (copies, read and write), "
+        f"{1e-9 / rates.flop:.1f} Gflop/s in the solves, {1e6 * rates.marker:.1f} microseconds a marker, {1e9 * rates.dense:.1f} ns"
+        f" for M^2 and solve (fitted). Largest deviation of the fit: {100 * deviation:.0f} %.\n",
         *table(["cells", "fast solves, ms", "model", "rest, ms", "model"], rows),
     ]
     return rates, {"model": lines}
@@ -249,7 +249,7 @@ def _predictions(rates: model.Rates) -> list[str]:
         *("petves: grid", "markers", "replicated", "chain", "messages"),
     ]
     return [
-        "Seconds a step, vesicles as many an area as in the bench, each with 181 markers, and what petves spends them on:\n",
+        "Seconds a step, vesicles as many an area as in the bench, each with 137 markers, and what petves spends them on:\n",
         *table(header, rows),
         "Ranks, 64 doubled as long as twice as many are 1.4 times faster (a row a rank at least):\n",
         *table(["cells", *layouts], limits),
