@@ -85,7 +85,7 @@ def items(quick: bool, scratch: Path) -> dict[str, list[Run]]:
         for box, ranks in product(BOXES, (1, 2))
     ]
     ranks += [many(count, *((5, 2, 1) if quick else (6, 6, 2))) for count in (1, 2)]
-    fewer = {2048: (12, 8, 1), 4096: (4, 3, 1)}
+    fewer = {2048: (20, 8, 2), 4096: (20, 8, 1)}
     size = [
         step("coupled", n, box, 1, schemes["coupled"], *fewer.get(n, (warmup, steps, rounds)))
         for n, box in product((64, 128, 256) if quick else (128, 256, 512, 1024, 2048, 4096), ("channel", "walls"))
