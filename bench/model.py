@@ -98,6 +98,12 @@ def _closest(work: np.ndarray, seconds: np.ndarray, known: np.ndarray) -> tuple[
     return rates, float(np.abs(a @ rates - b).max())
 
 
+def _all_to_all(ranks: int, numbers: float) -> float:
+    """Return the seconds in which each rank sends so many numbers, shared out among all: one by one, or in log2(ranks) rounds."""
+    sent, rounds = numbers * BYTES / BANDWIDTH, np.log2(ranks)
+    return min((ranks - 1) * LATENCY + sent, rounds * (LATENCY + sent / 2))
+
+
 def parts(s: Scene, r: Rates, ranks: int, layout: str) -> dict[str, float]:
     """Return the seconds a step by cause: the grid's work, the markers', what every rank does of all markers, the closing of
     the slabs' chain, messages.
@@ -110,8 +116,8 @@ def parts(s: Scene, r: Rates, ranks: int, layout: str) -> dict[str, float]:
         MPI ranks.
     layout : str
         "petves": as it is, slabs of the grid and whole vesicles on ranks. "shared": slabs, a vesicle's dense problem and near
-        field divided among ranks, markers known where they are. "doubling": and the chain of slabs closed by recursive
-        doubling. "pencil": shared, the membranes' rows transposed to columns and back.
+        field divided among ranks, markers known where they are. "pencil": shared, the membranes' rows transposed to columns
+        and back.
     """
     solves, c, w, log = s.its + 1, s.n**2 / ranks, s.n + 2, np.log2(max(ranks, 2))
     ours, alone = layout == "petves", ranks == 1
@@ -125,13 +131,12 @@ def parts(s: Scene, r: Rates, ranks: int, layout: str) -> dict[str, float]:
     if alone:
         return found
     found["messages"] = (s.its + 7) * 2 * log * (LATENCY + 2 * BYTES * heard / BANDWIDTH)
-    if layout in ("petves", "shared"):  # four numbers a mode and rank, each rank all of them
-        found["chain"] = solves * r.byte * 60 * BYTES * ranks * w
-        found["messages"] += solves * (2 * log * LATENCY + ranks * (4 * w + 2 * s.n / ranks) * BYTES / BANDWIDTH)
+    if layout in ("petves", "shared"):  # four numbers a mode to the rank that closes it, and back
+        found["chain"] = solves * r.byte * 60 * BYTES * w
+        found["messages"] += solves * (
+            2 * _all_to_all(ranks, 4 * w) + 2 * log * LATENCY + 2 * ranks * BYTES / BANDWIDTH
+        )
         found["messages"] += 2 * (LATENCY + w * BYTES / BANDWIDTH)  # the rows next to a slab
-    elif layout == "doubling":
-        found["chain"] = solves * r.byte * 60 * BYTES * log * w
-        found["messages"] += solves * log * (2 * LATENCY + 4 * w * BYTES / BANDWIDTH)
     else:
         found["messages"] += solves * 2 * (np.sqrt(ranks) * LATENCY + s.rows * c * BYTES / BANDWIDTH)
     return found

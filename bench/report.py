@@ -230,7 +230,7 @@ def _fitted(results: Path) -> tuple[model.Rates, dict[str, list[str]]]:
 
 
 def _predictions(rates: model.Rates) -> list[str]:
-    layouts = ("petves", "shared", "doubling", "pencil")
+    layouts = ("petves", "shared", "pencil")
     rows, finer, limits = [], [], []
     for n in (4096, 8192, 16384, 32768):
         for ranks in (64, 256, 1024, 4096):
@@ -300,7 +300,7 @@ def _draw_model(rates: model.Rates, folder: Path) -> Path:
     figure, axes = new_figure(9, 3.8, columns=2)
     for panel, n in zip(axes, (4096, 32768)):
         ranks = 2 ** np.arange(0, 13)
-        for layout, style in (("petves", "o-"), ("shared", "x-"), ("doubling", "s-"), ("pencil", "^-")):
+        for layout, style in (("petves", "o-"), ("shared", "x-"), ("pencil", "^-")):
             times = [model.seconds(model.more(n), rates, int(p), layout) for p in ranks]
             panel.loglog(ranks, times, style, ms=3, lw=1, label=layout)
         ideal = model.parts(model.more(n), rates, 1, "petves")["grid"] / ranks

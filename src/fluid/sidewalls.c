@@ -24,8 +24,9 @@ PetscErrorCode SideWallsCreate(Grid g, RowTransform t, StreamFactors factors, Si
   s->faces = n;
   s->half = half;
   PetscCall(PetscCalloc5(w, &s->curl[0], w, &s->curl[1], w, &s->velocity[0], w, &s->velocity[1], w, &s->even));
-  PetscCall(PetscMalloc4(2 * n, &s->v[0], n, &s->d[0], n, &s->d[1], 2 * half, &s->work));
+  PetscCall(PetscMalloc3(2 * n, &s->v[0], 2 * n, &s->d[0], 2 * half, &s->work));
   s->v[1] = s->v[0] + n;
+  s->d[1] = s->d[0] + n;
   PetscCall(RowTransformEnds(t, s->curl[0], s->curl[1]));
   for (PetscInt k = 0; k < t->width; k++) s->curl[0][k] *= -1; /* v_{i+1} - v_i at the nodes next to the walls */
   PetscCall(PetscMalloc1(t->width, &norm));
@@ -44,7 +45,7 @@ PetscErrorCode SideWallsDestroy(SideWalls *walls) {
   if (!s) PetscFunctionReturn(PETSC_SUCCESS);
   for (int q = 0; q < SIDE_SYMMETRIES; q++) PetscCall(PetscFree(s->inverse[q]));
   PetscCall(PetscFree5(s->curl[0], s->curl[1], s->velocity[0], s->velocity[1], s->even));
-  PetscCall(PetscFree4(s->v[0], s->d[0], s->d[1], s->work));
+  PetscCall(PetscFree3(s->v[0], s->d[0], s->work));
   PetscCall(PetscFree(*walls));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -174,28 +175,36 @@ PetscErrorCode SideWallsSet(SideWalls s, PetscReal alpha, PetscReal nu) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* y = A x of size n, columns contiguous. */
-static void Product(PetscInt n, const PetscReal A[], const PetscReal x[], PetscReal *restrict y) {
-  (void)PetscArrayzero(y, n);
+/* Entries begin to end - 1 of y = A x of size n, columns contiguous. */
+static void Product(PetscInt n, PetscInt begin, PetscInt end, const PetscReal A[], const PetscReal x[],
+                    PetscReal *restrict y) {
+  for (PetscInt a = begin; a < end; a++) y[a] = 0;
   for (PetscInt b = 0; b < n; b++) {
     const PetscReal *restrict column = A + b * n, f = x[b];
-    for (PetscInt a = 0; a < n; a++) y[a] += f * column[a];
+    for (PetscInt a = begin; a < end; a++) y[a] += f * column[a];
   }
 }
 
+/* Both arrays of a wall's faces, of which each entry is zero on all ranks but one: the same bits everywhere. */
+static PetscErrorCode Share(SideWalls s, PetscReal faces[]) {
+  PetscFunctionBeginUser;
+  if (s->grid->size > 1)
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, faces, (PetscMPIInt)(2 * s->faces), MPIU_REAL, MPI_SUM, s->grid->comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Each rank finds a part of the forces, and those in their mirror images. */
 PetscErrorCode SideWallsForces(SideWalls s, PetscReal nu) {
-  const PetscInt n = s->faces, half = s->half;
+  const PetscInt n = s->faces, half = s->half, first = s->grid->first, above = first + s->grid->rows[FIELD_V];
+  const PetscInt begin = half * s->grid->rank / s->grid->size, end = half * (s->grid->rank + 1) / s->grid->size;
   const PetscReal c = 2 * nu / PetscSqr(s->grid->h);
   PetscReal *x = s->work, *y = s->work + half;
   PetscFunctionBeginUser;
-  if (s->grid->size > 1) { /* rows of other ranks are zero: the same bits everywhere */
-    const PetscInt first = s->grid->first, end = first + s->grid->rows[FIELD_V];
-    for (int side = 0; side < 2; side++) {
-      PetscCall(PetscArrayzero(s->v[side], first));
-      PetscCall(PetscArrayzero(s->v[side] + end, n - end));
-    }
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, s->v[0], (PetscMPIInt)(2 * n), MPIU_REAL, MPI_SUM, s->grid->comm));
+  for (int side = 0; side < 2; side++) {
+    PetscCall(PetscArrayzero(s->v[side], first));
+    PetscCall(PetscArrayzero(s->v[side] + above, n - above));
   }
+  PetscCall(Share(s, s->v[0]));
   for (int side = 0; side < 2; side++) PetscCall(PetscArrayzero(s->d[side], n));
   for (int q = 0; q < SIDE_SYMMETRIES; q++) {
     const PetscReal across = q / 2 ? -1 : 1, along = q % 2 ? -1 : 1; /* an even chi moves v up here, down there */
@@ -203,8 +212,8 @@ PetscErrorCode SideWallsForces(SideWalls s, PetscReal nu) {
       const PetscInt m = n - 1 - j;
       x[j] = RowFactor(s, j) / 4 * (s->v[0][j] + across * s->v[1][j] + along * (s->v[0][m] + across * s->v[1][m]));
     }
-    Product(half, s->inverse[q], x, y);
-    for (PetscInt j = 0; j < half; j++) {
+    Product(half, begin, end, s->inverse[q], x, y);
+    for (PetscInt j = begin; j < end; j++) {
       const PetscInt m = n - 1 - j;
       const PetscReal d = -c * y[j] / RowFactor(s, j);
       s->d[0][j] += d;
@@ -214,5 +223,6 @@ PetscErrorCode SideWallsForces(SideWalls s, PetscReal nu) {
       s->d[1][m] += along * across * d;
     }
   }
+  PetscCall(Share(s, s->d[0]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

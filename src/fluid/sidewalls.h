@@ -23,8 +23,9 @@ struct _p_SideWalls {
   PetscReal *velocity[2]; /* [width] v next to a wall of a mode of chi/h */
   PetscReal *inverse[SIDE_SYMMETRIES]; /* [half][half] of 1 + c B, NULL at first: v the same on both walls or opposite,
                                           from row to row downwards the same or opposite */
-  PetscReal *v[2], *d[2]; /* [faces] at the left, right wall, one behind the other; forces (length/time^2) */
-  PetscReal *work;        /* [2][half] */
+  PetscReal *v[2],
+      *d[2];       /* [faces] at the left, right wall, the second behind the first; forces (length/time^2) likewise */
+  PetscReal *work; /* [2][half] */
 };
 
 /* SideWallsCreate - for rows of a grid with walls both ways, t their transform, as long as the walls are in x. Not

@@ -6,7 +6,7 @@
 void StreamBeginDown(Stream s) {
   const StreamSlabs q = s->slabs;
   s->felt = q->width / STREAM_BLOCK;
-  (void)PetscArraycpy(q->state, q->above + 2 * s->fluid->grid->rank * q->width, 2 * q->width);
+  (void)PetscArraycpy(q->state, q->above, 2 * q->width);
   for (PetscInt b = 0; b < s->felt; b++) s->fed[b] = q->rows;
 }
 
@@ -25,7 +25,7 @@ static PetscInt FeltBlocks(Stream s, PetscInt j, PetscInt stored) {
 PetscInt StreamNodeModes(Stream s, PetscInt j, PetscBool squares, PetscReal *into, PetscReal **modes) {
   const StreamSlabs q = s->slabs;
   const PetscInt w = q->width, all = s->t->width, stored = j < 0 ? w / STREAM_BLOCK : q->alive[j];
-  const PetscReal *y = j < 0 ? q->below + (2 * s->fluid->grid->rank + 1) * w : q->y + j * w;
+  const PetscReal *y = j < 0 ? q->below + w : q->y + j * w;
   s->felt = FeltBlocks(s, j, stored);
   const PetscInt fed = PetscMin(stored * STREAM_BLOCK, all), count = PetscMin(s->felt * STREAM_BLOCK, all);
   *modes = squares ? StreamMeterNodes(s->meter, count) : into ? into : s->t->modes;
