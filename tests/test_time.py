@@ -9,6 +9,7 @@ from conftest import run_petves
 
 from studies.common.curves import last_markers
 from studies.common.paper import SHEAR_FREE
+from studies.time import runs as study
 from studies.time.page import step_for
 
 FREE = (
@@ -138,3 +139,11 @@ def test_step_for_an_error():
     assert step_for(errors, 5 * 0.15**2) == pytest.approx(0.15, rel=1e-12)
     assert step_for(errors, 1) == 0.4
     assert step_for(errors, 1e-3) is None
+
+
+@pytest.mark.parametrize("order", (1, 2, 3))
+def test_cases_of_the_study_are_scenes(order, tmp_path):
+    """An option that a scene does not use stops it: a start of order 1 for instance."""
+    case = study.energy(1, order, "treading", 0.01)
+    options = case.options | {"-time_end": "0.02"}
+    run_petves(tmp_path, " ".join(f"{key} {value}" for key, value in options.items()))
