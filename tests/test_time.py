@@ -145,5 +145,5 @@ def test_step_for_an_error():
 def test_cases_of_the_study_are_scenes(order, tmp_path):
     """An option that a scene does not use stops it: a start of order 1 for instance."""
     case = study.energy(1, order, "treading", 0.01)
-    options = case.options | {"-time_end": "0.02"}
+    options = {"-scheme_type": "coupled"} | case.options | {"-time_end": "0.02"}
     run_petves(tmp_path, " ".join(f"{key} {value}" for key, value in options.items()))
