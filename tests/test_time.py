@@ -5,7 +5,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
-from conftest import run_petves
+from conftest import PETVES, mpirun, run_petves
 
 from studies.common.curves import last_markers
 from studies.common.paper import SHEAR_FREE
@@ -145,5 +145,6 @@ def test_step_for_an_error():
 def test_cases_of_the_study_are_scenes(order, tmp_path):
     """An option that a scene does not use stops it: a start of order 1 for instance."""
     case = study.energy(1, order, "treading", 0.01)
-    options = {"-scheme_type": "coupled"} | case.options | {"-time_end": "0.02"}
-    run_petves(tmp_path, " ".join(f"{key} {value}" for key, value in options.items()))
+    options = case.options | {"-time_end": "0.02", "-output_dir": str(tmp_path / "run")}
+    done = mpirun([PETVES, *(word for option in options.items() for word in option)], 1)
+    assert done.returncode == 0, done.stderr
