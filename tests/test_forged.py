@@ -12,7 +12,7 @@ from restarts import one_line
 
 pytestmark = pytest.mark.xdist_group("forged")  # its tests share a run
 
-SCENE = "-domain_cells 16,16 -domain_box -2,2,-2,2 -vesicle_semi_axes 0.8,1 -flow_type shear -time_step 0.02"
+SCENE = "-domain_cells 16,16 -domain_box -2,2,-2,2 -vesicle_semi_axes 0.8,1 -flow_type shear -time_step 0.02 -scheme_type coupled"
 
 
 @pytest.fixture(scope="module")
@@ -96,6 +96,15 @@ FORGED = {
     "row of words": (attribute("series_row", np.bytes_("a,b")), "row of series.csv"),
     "row with a line break": (attribute("series_row", np.bytes_("3,0.06\n4,")), "row of series.csv"),
     "velocity that is not a number": (dataset("fluid/u", with_entry(np.nan)), "its velocity is up to"),
+    "flow that is not a number": (dataset("fluid/flow", with_entry(np.nan)), "its flow is up to"),
+    "flow of an earlier state that is infinite": (
+        dataset("previous/fluid/flow", with_entry(np.inf)),
+        "its flow is up to",
+    ),
+    "flow of fewer modes": (
+        dataset("fluid/flow", lambda f, n, v, _: f.create_dataset(n, **plain(v[:, :, 1:]))),
+        "size or storage",
+    ),
     "markers far away": (dataset("vesicle/markers", with_entry(1e300)), "its markers is up to 1e+300"),
     "pressure that is infinite": (dataset("fluid/p", with_entry(np.inf)), "its pressure is up to"),
     "solver's memory": (dataset("solver", with_entry(np.nan)), "entries are missing"),

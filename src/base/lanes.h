@@ -33,6 +33,16 @@ static inline void LanesInterlace(Lanes a, Lanes b, PetscReal x[]) {
   *(Lanes *)(x + LANES) = (Lanes){a[2], b[2], a[3], b[3]};
 }
 
+/* LanesDot - SUM x_i y_i of n numbers. */
+static inline PetscReal LanesDot(PetscInt n, const PetscReal x[], const PetscReal y[]) {
+  Lanes sum = {0};
+  PetscReal rest = 0;
+  PetscInt i = 0;
+  for (; i + LANES <= n; i += LANES) sum += LanesAt(x + i) * LanesAt(y + i);
+  for (; i < n; i++) rest += x[i] * y[i];
+  return LanesSum(sum) + rest;
+}
+
 /* The bits of four numbers. Comparisons of Lanes give all ones or zeros; LanesWhere - a where so, else 0.
    LanesAny - whether one is so. */
 typedef unsigned long long LanesBits __attribute__((vector_size(LANES * sizeof(PetscReal)), may_alias));

@@ -271,7 +271,7 @@ PetscErrorCode ReducedResidual(Reduced s, Vec added, Vec f, Vec g, Vec k, Vec x,
   PetscCall(AddForces(s, xa, all, f, s->source, s->mean));
   PetscCall(VecRestoreArrayRead(added, &xa));
   PetscCall(VecGetArrayRead(x, &xa));
-  if (s->flow) PetscCall(Follow(s, all, f, grid, w, p, measures));
+  if (s->flow) PetscCall(Follow(s, all, f, grid, w, p, measures)); /* while F is that of `added` */
   if (!all && CouplingHasBodies(s->unknowns->coupling)) {
     PetscCall(Force(s, xa, s->F));
     PetscCall(Motion(s, xa, PETSC_TRUE));

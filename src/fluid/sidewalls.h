@@ -23,8 +23,8 @@ struct _p_SideWalls {
   PetscReal *velocity[2]; /* [width] v next to a wall of a mode of chi/h */
   PetscReal *inverse[SIDE_SYMMETRIES]; /* [half][half] of 1 + c B, NULL at first: v the same on both walls or opposite,
                                           from row to row downwards the same or opposite */
-  PetscReal *v[2],
-      *d[2];       /* [faces] at the left, right wall, the second behind the first; forces (length/time^2) likewise */
+  PetscReal *v[2]; /* [faces] v at the left, right wall (length/time), the second behind the first; */
+  PetscReal *d[2]; /* likewise forces (length/time^2) */
   PetscReal *work; /* [2][half] */
 };
 

@@ -1,7 +1,6 @@
 /* The operators G, G^T and H on local arrays, row by row, and their MatShells. */
 #include "base/lanes.h"
 #include "fluid/grid.h"
-#include "fluid/streamloops.h"
 
 PetscErrorCode GridGradientRows(Grid g, PetscReal alpha, Vec p, PetscBool add, const PetscInt window[2], Vec w) {
   const PetscReal c = alpha / g->h;
@@ -131,7 +130,7 @@ PetscErrorCode GridAddSquares(Grid g, const PetscInt window[2], Vec w, PetscReal
     const PetscInt end = window ? PetscMin(window[1], g->rows[f]) : g->rows[f];
     const PetscInt first = window ? PetscMin(window[0], end) : 0, n = (end - first) * g->columns[f];
     const PetscScalar *x = a + GridRowStart(g, (Field)f, first);
-    *sum += Dot(n, x, x);
+    *sum += LanesDot(n, x, x);
   }
   PetscCall(VecRestoreArrayRead(w, &a));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -106,7 +106,8 @@ static void SideVelocity(Stream s, const StreamRows *rows) {
     PetscReal *chi;
     const PetscInt count = StreamNodeModes(s, j, PETSC_FALSE, NULL, &chi);
     for (int side = 0; side < 2; side++)
-      s->side->v[side][first + j] = Dot(count, s->side->velocity[side], chi) + StreamGiven(rows, FIELD_V, first + j);
+      s->side->v[side][first + j] = LanesDot(count, s->side->velocity[side], chi) +
+                                    StreamGiven(rows, FIELD_V, first + j);
   }
 }
 

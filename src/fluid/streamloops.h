@@ -10,16 +10,6 @@ static inline void Curl(PetscInt n, PetscBool wall, const PetscScalar *restrict 
   if (!wall) curl[n - 1] = v[0] - v[n - 1] + low[n - 1] - high[n - 1];
 }
 
-/* SUM x_i y_i */
-static inline PetscReal Dot(PetscInt n, const PetscReal x[], const PetscReal y[]) {
-  Lanes sum = {0};
-  PetscReal rest = 0;
-  PetscInt i = 0;
-  for (; i + LANES <= n; i += LANES) sum += LanesAt(x + i) * LanesAt(y + i);
-  for (; i < n; i++) rest += x[i] * y[i];
-  return LanesSum(sum) + rest;
-}
-
 static inline PetscReal Sum(PetscInt n, const PetscScalar x[]) {
   Lanes sum[2] = {{0}, {0}};
   PetscReal rest = 0;

@@ -73,7 +73,7 @@ void StreamMeterSquares(StreamMeter m, PetscInt j, const PetscScalar row[], Pets
     u += LanesAt(m->norm[0] + k) * of_u * of_u;
     v += LanesAt(m->norm[1] + k) * chi * chi;
   }
-  m->own.square += row ? Dot(g->n[0], row, row) : LanesSum(u) + (PetscReal)g->n[0] * PetscSqr(mean_u);
+  m->own.square += row ? LanesDot(g->n[0], row, row) : LanesSum(u) + (PetscReal)g->n[0] * PetscSqr(mean_u);
   if (has_v) m->own.square += LanesSum(v) + (PetscReal)g->n[0] * PetscSqr(mean_v);
 }
 
