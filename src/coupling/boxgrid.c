@@ -66,7 +66,7 @@ static PetscErrorCode Create(const FluidSpec *spec, const char kernel[], const B
   PetscCall(PlaceMarkers(b, kernel));
   b->near = (struct _p_NearField){.markers = b->markers, .nu = spec->nu, .stencil = b->stencil};
   if (lattice->stokeslet) b->near.lattice = *lattice->stokeslet;
-  NearFarMake(b->markers->kernel, PETSC_FALSE, b->near.far);
+  NearFarMake(b->markers->kernel, b->near.far);
   PetscCall(NearImageCreate(b->markers, spec->nu, lattice->half, &b->image));
   PetscCall(NearImagePlace(b->image, b->stencil));
   if (lattice->dipole) {

@@ -32,19 +32,25 @@ static void LatticePair(NearField f, PetscReal logarithm, PetscInt i, PetscInt j
   for (int c = 0; c < 4; c++) L[c] *= over;
 }
 
+static const int respond[4] = {0, 1, 0, 1}, source[4] = {0, 1, 1, 0}; /* components that meet in xx, yy, xy, yx */
+
 /* L and C = S - L of two markers whose S is known; by stencils up to the reach of rule->far. */
 static void Pair(NearField f, const PairRule *rule, PetscInt i, PetscInt j, const PetscReal d[2], const PetscReal S[3],
                  PetscReal L[4], PetscReal C[4]) {
   const PetscReal cell = 1 / f->markers->grid->h, r2 = d[0] * d[0] + d[1] * d[1];
-  Lanes four[3];
+  Lanes fourth[4][2], four[4];
   if (f->free || r2 * cell * cell <= PetscSqr(rule->far->reach)) {
     if (!f->free) LatticePair(f, rule->logarithm, i, j, d, L);
     for (int c = 0; c < 4; c++) C[c] = S[PetscMin(c, 2)] - L[c];
     return;
   }
-  NearFarPairs(rule->far, 1 / f->nu, cell * d[0] - (Lanes){0}, cell * d[1] - (Lanes){0}, four);
+  for (int c = 0; c < 4; c++)
+    for (int dir = 0; dir < 2; dir++)
+      fourth[c][dir] = f->stencil[2 * i + respond[c]].fourth[dir] + f->stencil[2 * j + source[c]].fourth[dir] -
+                       rule->far->fourth[respond[c] != dir] - rule->far->fourth[source[c] != dir] - (Lanes){0};
+  NearFarPairs(rule->far, 1 / f->nu, cell * d[0] - (Lanes){0}, cell * d[1] - (Lanes){0}, fourth, four);
   for (int c = 0; c < 4; c++) {
-    C[c] = four[PetscMin(c, 2)][0];
+    C[c] = four[c][0];
     L[c] = S[PetscMin(c, 2)] - C[c];
   }
 }
@@ -61,15 +67,9 @@ void NearLatticePair(NearField f, PetscInt i, PetscInt j, const PetscReal d[2], 
   Pair(f, &rule, i, j, d, (PetscReal[]){S[0][0], S[1][0], S[2][0]}, L, C);
 }
 
-/* What a curve's quadrature has besides the plain logarithm, for two markers of one curve of n that are k apart; on the
-   diagonal the whole of S, from the derivative T = dX/dk: xx, yy, xy. */
-static void SelfPart(NearField f, PetscInt v, PetscInt k, const PetscReal T[2], PetscReal S[3]) {
+/* The diagonal of S in a curve's quadrature, from the derivative T = dX/dk: xx, yy, xy. */
+static void SelfPart(NearField f, PetscInt v, const PetscReal T[2], PetscReal S[3]) {
   const PetscReal factor = 1 / (4 * PETSC_PI * f->nu);
-  if (k) {
-    S[0] = S[1] = factor * f->kress[v][k];
-    S[2] = 0;
-    return;
-  }
   const PetscReal t2 = T[0] * T[0] + T[1] * T[1], n = LayoutCount(f->bodies->layout, v);
   const PetscReal part = f->bodies->kind[v].type == CURVE_OPEN ? 1 : n; /* of a turn: see NearField's Kress, Zeta */
   const PetscReal logarithm = -0.5 * (f->kress[v][0] + PetscLogReal(t2 * PetscSqr(part / (2 * PETSC_PI))));
@@ -116,13 +116,24 @@ static void Distances(NearField f, Chunk *c) {
   for (k = c->n; k < CHUNK && k < c->n + LANES; k++) c->d[0][k] = c->d[1][k] = c->part[k] = 1;
 }
 
+/* By how much the fourth moments of four pairs' stencils, from the k-th of a chunk on, are above the mean. */
+static inline void Fourth(NearField f, const Chunk *c, PetscInt k, Lanes fourth[4][2]) {
+  for (int q = 0; q < 4; q++)
+    for (int dir = 0; dir < 2; dir++) {
+      const int row = c->back ? source[q] : respond[q], column = c->back ? respond[q] : source[q];
+      fourth[q][dir] = f->fourth[row][dir][c->i] + LanesAt(f->fourth[column][dir] + c->j + k);
+    }
+}
+
 /* All pairs as if they were distant. */
 static void FillFar(NearField f, Chunk *c) {
   const PetscReal cell = 1 / f->markers->grid->h;
-  Lanes C[3];
+  Lanes C[4], fourth[4][2];
   for (PetscInt k = 0; k < c->n; k += LANES) {
-    NearFarPairs(c->rule.far, 1 / f->nu, cell * LanesAt(c->d[0] + k), cell * LanesAt(c->d[1] + k), C);
-    for (int q = 0; q < 4; q++) *(Lanes *)(c->C[q] + k) = C[PetscMin(q, 2)];
+    const Lanes x = cell * LanesAt(c->d[0] + k), y = cell * LanesAt(c->d[1] + k);
+    if (LanesAny(NearFarIsClose(x, y))) Fourth(f, c, k, fourth);
+    NearFarPairs(c->rule.far, 1 / f->nu, x, y, fourth, C);
+    for (int q = 0; q < 4; q++) LanesPut(C[q], c->C[q] + k);
   }
 }
 
@@ -136,22 +147,31 @@ static PetscBool IsAlone(NearField f, const Chunk *c) {
   return !f->box && r2 > c->reach * c->reach ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* Pairs up to so far apart (its square) one by one; without walls nearby those within the stencils' reach are enough.
- */
-static void FillNear(NearField f, PetscReal farthest2, Chunk *c) {
+/* Pairs one by one; those within the stencils' reach are enough far from walls. */
+static void FillNear(NearField f, Chunk *c) {
+  const PetscReal farthest2 = c->plain ? c->reach * c->reach : PETSC_MAX_REAL;
   Lanes S[3] = {{0}};
   for (PetscInt k = 0; k < c->n; k++) {
-    if (k % LANES == 0) Stokeslets(f->nu, LanesAt(c->d[0] + k), LanesAt(c->d[1] + k), S);
+    if (k % LANES == 0) {
+      const Lanes x = LanesAt(c->d[0] + k), y = LanesAt(c->d[1] + k);
+      if (!LanesAny((LanesBits)(x * x + y * y <= farthest2))) {
+        k += LANES - 1;
+        continue;
+      }
+      Stokeslets(f->nu, x, y, S);
+    }
     const PetscInt j = c->j + k, from = c->back ? c->i : j, to = c->back ? j : c->i;
     const PetscReal d[2] = {c->d[0][k], c->d[1][k]};
-    PetscReal L[4] = {0, 0, 0, 0}, C[4];
+    PetscReal L[4] = {0, 0, 0, 0}, C[4], own[3];
     if (d[0] * d[0] + d[1] * d[1] > farthest2) continue;
-    if (j == c->i && c->self) {
+    const PetscBool same = j == c->i && c->self ? PETSC_TRUE : PETSC_FALSE;
+    for (int q = 0; q < 3; q++) own[q] = same ? 0 : S[q][k % LANES];
+    if (same) c->part[k] *= 0.5;
+    if (same || c->plain) {
       if (!f->free) LatticePair(f, c->rule.logarithm, to, from, d, L);
-      for (int q = 0; q < 4; q++) C[q] = -L[q];
-      c->part[k] *= 0.5;
+      for (int q = 0; q < 4; q++) C[q] = own[PetscMin(q, 2)] - L[q];
     } else
-      Pair(f, &c->rule, to, from, d, (PetscReal[]){S[0][k % LANES], S[1][k % LANES], S[2][k % LANES]}, L, C);
+      Pair(f, &c->rule, to, from, d, own, L, C);
     for (int q = 0; q < 4; q++) {
       c->L[q][k] = L[q];
       c->C[q][k] = C[q];
@@ -174,9 +194,9 @@ static void FillChunk(NearField f, Chunk *c) {
   Distances(f, c);
   if (c->plain) {
     FillFar(f, c);
-    if (!IsAlone(f, c)) FillNear(f, c->reach * c->reach, c);
+    if (!IsAlone(f, c)) FillNear(f, c);
   } else {
-    FillNear(f, PETSC_MAX_REAL, c);
+    FillNear(f, c);
     if (f->image) AddImages(f, c);
   }
   if (f->image)
@@ -184,25 +204,31 @@ static void FillChunk(NearField f, Chunk *c) {
                     (PetscReal *[]){c->C[0], c->C[1], c->C[2], c->C[3]});
 }
 
-/* The chunk's pairs to rows[2][2n], its marker's x and y velocity. */
-static void Interlace(const Chunk *c, PetscReal *const row[2]) {
+/* Four of the chunk's pairs to the marker's x and y row. */
+static inline void Interlace(const Chunk *c, PetscInt k, PetscReal x[], PetscReal y[]) {
   const int xy = c->back ? 3 : 2, yx = 5 - xy;
-  for (PetscInt q = 0; q < c->n; q += LANES) {
-    const Lanes part = LanesAt(c->part + q);
-    LanesInterlace(part * LanesAt(c->C[0] + q), part * LanesAt(c->C[xy] + q), row[0] + 2 * q);
-    LanesInterlace(part * LanesAt(c->C[yx] + q), part * LanesAt(c->C[1] + q), row[1] + 2 * q);
-  }
+  const Lanes part = LanesAt(c->part + k);
+  LanesInterlace(part * LanesAt(c->C[0] + k), part * LanesAt(c->C[xy] + k), x);
+  LanesInterlace(part * LanesAt(c->C[yx] + k), part * LanesAt(c->C[1] + k), y);
 }
 
 /* The chunk's pairs to the block, from `at` on. */
 static void Write(NearField f, const Chunk *c, size_t at, PetscInt stride) {
-  PetscReal x[2 * CHUNK], y[2 * CHUNK], *row[2] = {x, y};
-  Interlace(c, row);
-  for (int dir = 0; dir < 2; dir++, at += stride)
-    if (c->block->single)
-      for (PetscInt q = 0; q < 2 * c->n; q++) f->store.single[at + q] = (float)row[dir][q];
-    else
-      for (PetscInt q = 0; q < 2 * c->n; q++) f->store.value[at + q] = row[dir][q];
+  for (PetscInt k = 0; k < c->n; k += LANES, at += 2 * LANES) {
+    const PetscInt n = 2 * PetscMin(LANES, c->n - k);
+    PetscReal row[2][2 * LANES];
+    if (!c->block->single && n == 2 * LANES) {
+      Interlace(c, k, f->store.value + at, f->store.value + at + stride);
+      continue;
+    }
+    Interlace(c, k, row[0], row[1]);
+    for (int dir = 0; dir < 2; dir++)
+      for (PetscInt q = 0; q < n; q++)
+        if (c->block->single)
+          f->store.single[at + dir * stride + q] = (float)row[dir][q];
+        else
+          f->store.value[at + dir * stride + q] = row[dir][q];
+  }
 }
 
 static void FillRow(NearField f, const NearRow *r, Chunk *c) {
@@ -226,10 +252,12 @@ static void FillRow(NearField f, const NearRow *r, Chunk *c) {
     }
 }
 
-/* A vesicle's own quadrature, to its block with itself. */
+/* A vesicle's own quadrature, to its block with itself: what it has besides the plain logarithm for two markers that
+   are k apart, and the diagonal. */
 static PetscErrorCode AddSelf(NearField f, const NearBlock *b) {
   const Bodies m = f->bodies;
   const PetscInt first = m->layout->start[b->row];
+  const PetscReal factor = 1 / (4 * PETSC_PI * f->nu), *kress = f->kress[b->row];
   NearRow r = NearBlockBegin(m->layout, b);
   PetscReal *T, S[3];
   PetscFunctionBeginUser;
@@ -237,13 +265,14 @@ static PetscErrorCode AddSelf(NearField f, const NearBlock *b) {
   PetscCall(CurveTangents(&m->kind[b->row], m->spectral[b->row], r.count, f->markers->X + 2 * first, T));
   do {
     PetscReal *x = f->store.value + r.at, *y = x + r.stride;
-    for (PetscInt k = 0; k < r.count; k++) {
-      const PetscReal part = k ? 1 : 0.5;
-      SelfPart(f, b->row, k, T + 2 * (r.row - first), S);
-      x[2 * k] += part * S[0];
-      x[2 * k + 1] += part * S[2];
-      y[2 * k] += part * S[2];
-      y[2 * k + 1] += part * S[1];
+    SelfPart(f, b->row, T + 2 * (r.row - first), S);
+    x[0] += 0.5 * S[0];
+    x[1] += 0.5 * S[2];
+    y[0] += 0.5 * S[2];
+    y[1] += 0.5 * S[1];
+    for (PetscInt k = 1; k < r.count; k++) {
+      x[2 * k] += factor * kress[k];
+      y[2 * k + 1] += factor * kress[k];
     }
   } while (NearBlockNext(m->layout, b, &r));
   PetscCall(PetscFree(T));

@@ -83,14 +83,13 @@ static void Fill(const PetscReal moment[2][TERMS], int orders, NearFar *far) {
   }
 }
 
-void NearFarMake(const Kernel *kernel, PetscBool many, NearFar far[2]) {
+void NearFarMake(const Kernel *kernel, NearFar far[2]) {
   const PetscBool third = HasThirdMoment(kernel->along) || HasThirdMoment(kernel->across) ? PETSC_TRUE : PETSC_FALSE;
-  const PetscBool all = many && !third ? PETSC_TRUE : PETSC_FALSE;
   PetscReal moment[2][TERMS];
   KernelMoments(kernel->along, TERMS, moment[0]);
   KernelMoments(kernel->across, TERMS, moment[1]);
-  far[NEAR_ONE] = (NearFar){.reach = all ? 12 : 30};
-  far[NEAR_TWO] = (NearFar){.reach = third ? 16 : 10};
-  Fill(moment, all ? NEAR_FAR_ORDERS : 1, &far[NEAR_ONE]);
+  far[NEAR_ONE] = (NearFar){.fourth = {moment[0][2], moment[1][2]}, .reach = third ? 30 : 12};
+  far[NEAR_TWO] = (NearFar){.fourth = {moment[0][2], moment[1][2]}, .reach = third ? 16 : 10};
+  Fill(moment, third ? 1 : NEAR_FAR_ORDERS, &far[NEAR_ONE]);
   Fill(moment, NEAR_FAR_ORDERS, &far[NEAR_TWO]);
 }

@@ -51,8 +51,7 @@ PetscErrorCode NearFieldCreate(Markers markers, Bodies bodies, PetscReal nu, Nea
   f->bodies = bodies;
   f->nu = nu;
   f->free = markers->grid->free;
-  f->many = l->bodies > NEAR_MANY ? PETSC_TRUE : PETSC_FALSE;
-  NearFarMake(markers->kernel, f->many, f->far);
+  NearFarMake(markers->kernel, f->far);
   if (!f->free) PetscCall(MakeLattice(f));
   PetscCall(PetscCalloc1(l->bodies, &f->kress));
   for (PetscInt v = l->own; v < l->end; v++) {
@@ -61,6 +60,7 @@ PetscErrorCode NearFieldCreate(Markers markers, Bodies bodies, PetscReal nu, Nea
   }
   PetscCall(NearDistantCreate(l, &f->fixed.distant));
   PetscCall(PetscMalloc2(2 * l->M, &f->stencil, l->bodies, &f->bounds));
+  for (int c = 0; c < 4; c++) PetscCall(PetscCalloc1(l->M + LANES, &f->fourth[c / 2][c % 2]));
   PetscCall(PetscCalloc2(2 * l->M + LANES, &f->force, 2 * l->n + LANES, &f->velocity)); /* whole vectors */
   PetscCall(PetvesEvent("NearField", &f->place));
   PetscCall(PetvesEvent("NearFieldApply", &f->apply));
@@ -79,6 +79,7 @@ PetscErrorCode NearFieldDestroy(NearField *near) {
   for (PetscInt v = 0; v < f->bodies->layout->bodies; v++) PetscCall(PetscFree(f->kress[v]));
   PetscCall(PetscFree(f->kress));
   PetscCall(PetscFree2(f->stencil, f->bounds));
+  for (int c = 0; c < 4; c++) PetscCall(PetscFree(f->fourth[c / 2][c % 2]));
   PetscCall(PetscFree2(f->force, f->velocity));
   if (f->image) PetscCall(PetscFree(f->image->table));
   PetscCall(NearImageDestroy(&f->image));
@@ -117,6 +118,8 @@ static PetscErrorCode PlaceStencils(NearField f) {
         PaddedStencil *s = &f->stencil[2 * k];
         for (int c = 0; c < 2; c++) StencilPad(&f->markers->plain[2 * k + c], &s[c]);
         StencilUnwrap(f->markers->grid, f->markers->X + 2 * k, s);
+        for (int c = 0; c < 4; c++)
+          f->fourth[c / 2][c % 2][k] = s[c / 2].fourth[c % 2] - f->far[NEAR_ONE].fourth[c / 2 != c % 2];
       }
       done[v] = PETSC_TRUE;
     }

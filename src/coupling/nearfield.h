@@ -51,15 +51,15 @@ struct _p_NearField {
   Bodies bodies;   /* borrowed */
   PetscReal nu;
   PetscBool free; /* unbounded fluid: C = S */
-  PetscBool many; /* more than NEAR_MANY vesicles: distant pairs are as exact as the range, and no more */
   OffsetTable lattice;
-  NearImage image;        /* what the walls add to each pair, from a table that is this one's */
-  NearFar far[2];         /* distant pairs of one vesicle, of two */
-  PetscReal **kress;      /* [bodies][n] by index difference, what the curve's quadrature has besides the plain
-                             logarithm, at 0 its weight; NULL for others' bodies */
-  PaddedStencil *stencil; /* [2M] */
-  NearBounds *bounds;     /* [vesicles] */
-  NearBlock *block;       /* fixed ones, then others in the order of their rows */
+  NearImage image;         /* what the walls add to each pair, from a table that is this one's */
+  NearFar far[2];          /* distant pairs of one vesicle, of two */
+  PetscReal **kress;       /* [bodies][n] by index difference, what the curve's quadrature has besides the plain
+                              logarithm, at 0 its weight; NULL for others' bodies */
+  PaddedStencil *stencil;  /* [2M] */
+  PetscReal *fourth[2][2]; /* [M], whole vectors: a component's fourth moment along x and along y, less the mean */
+  NearBounds *bounds;      /* [vesicles] */
+  NearBlock *block;        /* fixed ones, then others in the order of their rows */
   NearClose *close;
   NearStore store;
   NearFixed fixed;

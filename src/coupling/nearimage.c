@@ -172,10 +172,16 @@ static PetscReal OddMoment(PetscReal y, PetscInt first, PetscInt n, const PetscR
   return sum;
 }
 
-/* Where marker k, y cells away, sees a wall. */
-static ImageEnd MakeEnd(Markers m, PetscReal y, PetscReal across) {
+/* Where a marker, y cells away, sees a wall; without weights where it is far. */
+static void MakeEnd(Markers m, PetscReal y, PetscReal across, ImageEnd *end) {
+  if (y >= IMAGE_CELLS) {
+    end->y = y;
+    end->scale = m->scaled ? WallScale(m->kernel, y) : 1;
+    end->moment = across;
+    end->n[0] = end->n[1] = 0;
+    return;
+  }
   ImageEnd e = {.y = y, .scale = m->scaled ? WallScale(m->kernel, y) : 1, .moment = across};
-  if (y >= IMAGE_CELLS) return e;
   for (int comp = 0; comp < 2; comp++) { /* entries as in the grid: t at j + 1/2, n at j + 1, row j + 1 of the table */
     e.n[comp] = (comp ? m->kernel->along : m->kernel->across)(y - (comp ? 1 : 0.5), &e.first[comp], e.weight[comp]);
     if (!comp && e.first[0] < 0) e.moment = OddMoment(y, e.first[0], e.n[0], e.weight[0]);
@@ -183,7 +189,7 @@ static ImageEnd MakeEnd(Markers m, PetscReal y, PetscReal across) {
     if (comp) e.first[1]++;
   }
   for (PetscInt k = 0; k < e.n[1]; k++) e.weight[1][k] *= e.scale;
-  return e;
+  *end = e;
 }
 
 PetscErrorCode NearImagePlace(NearImage m, const PaddedStencil stencil[]) {
@@ -197,7 +203,7 @@ PetscErrorCode NearImagePlace(NearImage m, const PaddedStencil stencil[]) {
       for (PetscInt k = 0; k < M; k++) {
         const PetscReal y = NearImageOff(g, direction, side, m->markers->X + 2 * k);
         m->y[direction][side][k] = y;
-        m->end[direction][side][k] = MakeEnd(m->markers, y, m->kernel.moment[1].second);
+        MakeEnd(m->markers, y, m->kernel.moment[1].second, &m->end[direction][side][k]);
       }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

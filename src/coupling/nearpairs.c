@@ -46,7 +46,8 @@ static PetscErrorCode Grow(PetscInt count, size_t size, PetscInt *room, void **a
    vesicles values that are far from large are in single precision. */
 static PetscErrorCode AddBlock(NearField f, PetscInt v, PetscInt w, const PetscReal shift[2], PetscReal gap) {
   const Layout l = f->bodies->layout;
-  const PetscBool single = f->many && !f->free && gap >= NEAR_SINGLE * f->markers->grid->h ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool many = l->bodies > NEAR_MANY ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool single = many && !f->free && gap >= NEAR_SINGLE * f->markers->grid->h ? PETSC_TRUE : PETSC_FALSE;
   size_t *values = single ? &f->store.singles : &f->store.values;
   NearBlock *b;
   NearRow r;

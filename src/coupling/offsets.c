@@ -14,10 +14,24 @@ PetscErrorCode OffsetTableDestroy(OffsetTable *t) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* SUM w_i (i - SUM w_j j)^4 of the weights a, b. */
+static inline PetscReal FourthMoment(Lanes a, Lanes b) {
+  const Lanes low = {0, 1, 2, 3}, high = low + LANES;
+  const PetscReal place = LanesSum(a * low + b * high);
+  const Lanes x = (low - place) * (low - place), y = (high - place) * (high - place);
+  return LanesSum(a * x * x + b * y * y);
+}
+
+/* Six weights between six zeros on either side. */
 void StencilPad(const Stencil *s, PaddedStencil *p) {
   for (int dir = 0; dir < 2; dir++) {
-    for (int i = 0; i < 3 * KERNEL_MAX_POINTS; i++) p->weight[dir][i] = 0;
-    for (PetscInt i = 0; i < s->n[dir]; i++) p->weight[dir][KERNEL_MAX_POINTS + i] = s->weight[dir][i];
+    PetscReal *w = p->weight[dir];
+    Lanes weight[2] = {{0}, {0}};
+    for (int i = 0; i < KERNEL_MAX_POINTS; i++) weight[i / LANES][i % LANES] = i < s->n[dir] ? s->weight[dir][i] : 0;
+    for (int i = 0; i < 3 * KERNEL_MAX_POINTS - LANES; i += LANES) LanesPut((Lanes){0}, w + i);
+    LanesPut((Lanes){0}, w + 3 * KERNEL_MAX_POINTS - LANES);
+    for (int q = 0; q < 2; q++) LanesPut(weight[q], w + KERNEL_MAX_POINTS + LANES * q);
+    p->fourth[dir] = FourthMoment(weight[0], weight[1]);
     p->first[dir] = s->first[dir];
     p->n[dir] = s->n[dir];
   }

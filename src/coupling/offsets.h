@@ -20,6 +20,7 @@ PETSC_EXTERN PetscErrorCode OffsetTableDestroy(OffsetTable *table);
 /* A stencil's weights in one direction between zeros, so that sums run over whole vectors. */
 typedef struct {
   PetscReal weight[2][3 * KERNEL_MAX_POINTS];
+  PetscReal fourth[2]; /* moment about its place: SUM w_i (i - SUM w_j j)^4 */
   PetscInt first[2], n[2];
 } PaddedStencil;
 
