@@ -1,4 +1,5 @@
 #include "curve/contacts.h"
+#include "curve/apart.h"
 #include "curve/crossing.h"
 #include <stdlib.h>
 
@@ -106,42 +107,17 @@ static PetscBool Near(void *context, PetscInt i, PetscInt j, const PetscReal d[2
   return s->error ? PETSC_TRUE : PETSC_FALSE;
 }
 
-static PetscReal LongestEdge(const CurveSet *set) {
-  PetscReal longest = 0, to[2];
-  for (PetscInt v = 0; v < set->curves; v++)
-    for (PetscInt k = set->start[v]; k < set->start[v + 1]; k++)
-      if (CurveSetWalk(set, v, k, 1, to))
-        longest = PetscMax(longest, PetscHypotReal(to[0] - set->X[2 * k], to[1] - set->X[2 * k + 1]));
-  return longest;
-}
-
-/* Whether one curve has no contact with its images: they are farther than `apart`, or over half a period away from all
-   of it. */
-static PetscBool IsAlone(const CurveSet *set, PetscReal apart) {
-  if (set->curves > 1) return PETSC_FALSE;
-  for (int d = 0; d < 2; d++) {
-    PetscReal low = PETSC_MAX_REAL, high = -PETSC_MAX_REAL;
-    for (PetscInt k = set->start[0]; k < set->start[set->curves]; k++) {
-      low = PetscMin(low, set->X[2 * k + d]);
-      high = PetscMax(high, set->X[2 * k + d]);
-    }
-    const PetscReal extent = high - low, period = set->period[d];
-    if (period > 0 && extent + apart >= period && 2 * extent >= period) return PETSC_FALSE;
-  }
-  return PETSC_TRUE;
-}
-
 PetscErrorCode CurveContacts(const CurveSet *set, PetscReal reach, PetscInt *n, CurveContact **contacts) {
   const PetscInt points = set->start[set->curves], *part = set->part;
   const PetscInt first[2] = {part ? set->start[part[0]] : 0, part ? set->start[part[1]] : points};
   /* a point near an edge is as near as this to one of its ends */
-  const PetscReal apart = PetscHypotReal(reach, 0.5 * LongestEdge(set));
+  const PetscReal apart = PetscHypotReal(reach, 0.5 * CurveLongestEdge(set));
   ContactSearch s = {.set = set, .reach = reach, .seam = PETSC_MAX_REAL};
   PetscInt count = 0;
   PetscFunctionBeginUser;
   *n = 0;
   *contacts = NULL;
-  if (IsAlone(set, apart)) PetscFunctionReturn(PETSC_SUCCESS);
+  if (CurvesAreApart(set, apart)) PetscFunctionReturn(PETSC_SUCCESS);
   for (int d = 0; d < 2; d++)
     if (set->period[d] > 0) s.seam = PetscMin(s.seam, 0.5 * set->period[d]);
   PetscCall(PetscMalloc2(points, &s.curve, points, &s.head));
@@ -205,7 +181,7 @@ static PetscErrorCode Refine(const CurveSet *set, PetscReal edge, CurveGap *gap)
 }
 
 PetscErrorCode CurveGaps(const CurveSet *set, PetscReal reach, PetscInt *n, CurveGap **gaps) {
-  const PetscReal edge = LongestEdge(set);
+  const PetscReal edge = CurveLongestEdge(set);
   PetscInt kept = 0;
   PetscFunctionBeginUser;
   PetscCall(PolygonGaps(set, set->smooth ? reach + 0.25 * edge : reach, n, gaps));
@@ -218,7 +194,7 @@ PetscErrorCode CurveGaps(const CurveSet *set, PetscReal reach, PetscInt *n, Curv
 }
 
 PetscErrorCode CurveLeastGap(const CurveSet *set, PetscReal *distance) {
-  const PetscReal edge = LongestEdge(set), *X = set->X, *period = set->period;
+  const PetscReal edge = CurveLongestEdge(set), *X = set->X, *period = set->period;
   PetscReal most = 0, low[2] = {PETSC_MAX_REAL, PETSC_MAX_REAL}, high[2] = {-PETSC_MAX_REAL, -PETSC_MAX_REAL};
   PetscFunctionBeginUser;
   *distance = NAN;

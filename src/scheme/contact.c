@@ -36,13 +36,13 @@ static PetscBool IsContact(void *context, PetscInt k, PetscInt l, const PetscRea
 }
 
 /* The first contact of vesicles, the first of them an own one; X begins with theirs. */
-static PetscErrorCode FindContact(Scheme s, const PetscScalar X[], const PetscReal period[2], PetscMPIInt pair[2]) {
+static PetscErrorCode FindContact(Scheme s, const PetscScalar X[], PetscReal reach, PetscMPIInt pair[2]) {
   const Layout l = s->membrane->layout;
   ContactSearch search = {.scheme = s};
   const PetscInt own[2] = {l->first, l->first + l->n};
-  PetscReal reach = 0;
+  PetscReal period[2];
   PetscFunctionBeginUser;
-  for (PetscInt v = 0; v < l->bodies; v++) reach = PetscMax(reach, Unresolved(s, v, v));
+  SchemePeriods(s, period);
   PetscCall(PairsWithin(l->M, X, own, period, reach, IsContact, &search));
   PetscCall(PetscArraycpy(pair, search.pair, 2));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -77,13 +77,17 @@ static PetscErrorCode CheckCrossing(Scheme s, const PetscScalar X[]) {
 PetscErrorCode SchemeCheckContact(Scheme s) {
   const Layout l = s->membrane->layout;
   const PetscBool before = s->warnings.contact;
-  PetscReal period[2], found;
-  PetscMPIInt pair[2], whose;
+  PetscReal reach = 0, found;
+  PetscMPIInt pair[2] = {0, 0}, whose;
+  PetscBool clear;
   PetscFunctionBeginUser;
-  SchemePeriods(s, period);
+  for (PetscInt v = 0; v < l->bodies; v++) reach = PetscMax(reach, Unresolved(s, v, v));
   PetscCall(SchemeCurves(s, s->state.t, s->state.X));
-  if (s->scene->limits.crossing) PetscCall(CheckCrossing(s, s->work_all));
-  PetscCall(FindContact(s, s->work_all, period, pair));
+  PetscCall(FilmsNone(s, s->work_all, reach, &clear));
+  if (!clear) {
+    if (s->scene->limits.crossing) PetscCall(CheckCrossing(s, s->work_all));
+    PetscCall(FindContact(s, s->work_all, reach, pair));
+  }
   PetscCall(AgreeMessage(l->comm, s->report.failure));
   found = pair[0] ? 1 : 0;
   PetscCall(AgreeLargest(l->comm, &found, &whose));

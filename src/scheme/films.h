@@ -9,6 +9,11 @@
    that a vesicle may touch, and in each where nothing is within four mean edges. Collective. */
 PETSC_EXTERN PetscErrorCode FilmsGaps(Scheme scheme, PetscReal *least, PetscReal each[]);
 
+/* FilmsNone - true: at the curves X[2(M + W)] nothing crosses, no two bodies are nearer than reach (length) or an edge,
+   and no parts of one vesicle nearer than reach that are more than twice that apart along it (CurvesAreClear); false
+   says nothing. Not collective. */
+PETSC_EXTERN PetscErrorCode FilmsNone(Scheme scheme, const PetscScalar X[], PetscReal reach, PetscBool *none);
+
 /* FilmsCross - the first two vesicles (the same twice: one and itself), the first of them an own one, that cross at the
    curves X[2(M + W)]: their polygons do, or smooth outlines whose polygons do not; -1, -1: none. Not collective. */
 PETSC_EXTERN PetscErrorCode FilmsCross(Scheme scheme, const PetscScalar X[], PetscInt pair[2]);
