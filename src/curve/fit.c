@@ -1,7 +1,7 @@
 /* The markers of a closed curve moved as little as possible until their edges and their area are what they
    should be. */
 #include "curve/curve.h"
-#include "curve/spectral.h"
+#include "curve/round.h"
 #include <petscblaslapack.h>
 
 #define CONVERGED 1e-13 /* squared edges and area, relative */

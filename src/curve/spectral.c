@@ -1,19 +1,29 @@
 #include "curve/spectral.h"
-#include "base/lanes.h"
+#include "curve/round.h"
 #include <fftw3.h>
 
 #define CONVOLVED 128        /* most markers whose sums take less time than transforms */
 #define CONVOLVED_ROUGH 1024 /* with a prime factor above 13, for which a transform takes many times longer */
 #define TURNS 3              /* a step turns the states before it by as many different angles */
+#define KEPT 4               /* a step asks several times for the same derivative */
 #define ROUND CONVOLVE_ROUND
+
+/* Of X[2n] to some power, 0: none yet. */
+typedef struct {
+  int power;
+  PetscReal *X, *value;
+} Derivative;
 
 struct _p_Spectral {
   PetscInt n;
   fftw_complex *line, *hat; /* x + i y of the points, and its modes */
   fftw_plan forward, backward;
-  PetscReal *derivative[3], *turn[TURNS], phi[TURNS]; /* weights [n], where sums are taken, else NULL; of which phi */
-  PetscReal *twice, *sum;                             /* rooms of the sums */
-  int next;                                           /* turn to be replaced */
+  RoundWeights derivative[3];         /* where sums are taken, else NULL */
+  Derivative last[KEPT];              /* found last */
+  PetscReal *turn[TURNS], phi[TURNS]; /* weights [n] of angles phi */
+  PetscReal *round;                   /* cos and sin of pi j/n, j = 0 .. n/2, interlaced */
+  PetscReal *points, *twice, *sum;    /* rooms of the sums */
+  int next, replaced;                 /* turn and derivative to be replaced */
 };
 
 static PetscBool IsConvolved(PetscInt n) {
@@ -48,15 +58,15 @@ static void Transformed(Spectral s, int power, PetscReal scale, const PetscScala
 /* What a 1 at marker 0 has at marker q; the first derivative of it is odd, the others are even. */
 static PetscErrorCode DerivativeWeights(Spectral s) {
   const PetscInt n = s->n;
-  PetscReal *one, *found;
+  PetscReal *one, *found, *weight;
   PetscFunctionBeginUser;
   for (int p = 0; p < 3; p++) {
-    PetscCall(PetscCalloc2(2 * n, &one, 2 * n, &found));
+    PetscCall(PetscCalloc3(2 * n, &one, 2 * n, &found, n, &weight));
     one[0] = 1;
     Transformed(s, 1 << p, 1, one, found);
-    for (PetscInt q = 0; q < n; q++)
-      s->derivative[p][q] = 0.5 * (found[2 * q] + (p ? 1 : -1) * found[2 * ((n - q) % n)]);
-    PetscCall(PetscFree2(one, found));
+    for (PetscInt q = 0; q < n; q++) weight[q] = 0.5 * (found[2 * q] + (p ? 1 : -1) * found[2 * ((n - q) % n)]);
+    PetscCall(RoundWeightsCreate(n, p ? PETSC_FALSE : PETSC_TRUE, weight, &s->derivative[p]));
+    PetscCall(PetscFree3(one, found, weight));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -72,8 +82,12 @@ PetscErrorCode SpectralCreate(PetscInt n, Spectral *out) {
   s->forward = fftw_plan_dft_1d((int)n, s->line, s->hat, FFTW_FORWARD, FFTW_ESTIMATE);
   s->backward = fftw_plan_dft_1d((int)n, s->hat, s->line, FFTW_BACKWARD, FFTW_ESTIMATE);
   if (!IsConvolved(n)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscCalloc2(4 * n + ROUND, &s->twice, 2 * n + ROUND, &s->sum));
-  for (int p = 0; p < 3; p++) PetscCall(PetscMalloc1(n, &s->derivative[p]));
+  PetscCall(PetscCalloc4(4 * n + ROUND, &s->twice, RoundRoom(n), &s->points, 2 * n + ROUND, &s->sum, n + 2, &s->round));
+  for (PetscInt j = 0; j <= n / 2; j++) {
+    s->round[2 * j] = PetscCosReal(PETSC_PI * j / n);
+    s->round[2 * j + 1] = PetscSinReal(PETSC_PI * j / n);
+  }
+  for (int k = 0; k < KEPT; k++) PetscCall(PetscMalloc2(2 * n, &s->last[k].X, 2 * n + ROUND, &s->last[k].value));
   for (int t = 0; t < TURNS; t++) {
     PetscCall(PetscMalloc1(n, &s->turn[t]));
     s->phi[t] = NAN;
@@ -90,30 +104,27 @@ PetscErrorCode SpectralDestroy(Spectral *spectral) {
   fftw_destroy_plan(s->backward);
   fftw_free(s->hat);
   fftw_free(s->line);
-  for (int p = 0; p < 3; p++) PetscCall(PetscFree(s->derivative[p]));
+  for (int p = 0; p < 3; p++) PetscCall(RoundWeightsDestroy(&s->derivative[p]));
+  for (int k = 0; k < KEPT; k++) PetscCall(PetscFree2(s->last[k].X, s->last[k].value));
   for (int t = 0; t < TURNS; t++) PetscCall(PetscFree(s->turn[t]));
-  PetscCall(PetscFree2(s->twice, s->sum));
+  PetscCall(PetscFree4(s->twice, s->points, s->sum, s->round));
   PetscCall(PetscFree(*spectral));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-void ConvolveRound(PetscInt n, int each, PetscBool ahead, const PetscReal weight[], const PetscReal twice[],
-                   PetscReal sum[]) {
-  const PetscInt width = each * n, step = ahead ? each : -each;
-  for (PetscInt i = 0; i < width; i += ROUND) {
-    const PetscReal *x = twice + (ahead ? 0 : width) + i;
-    Lanes part[ROUND / LANES] = {{0}};
-    for (PetscInt q = 0; q < n; q++, x += step)
-      for (int r = 0; r < ROUND / LANES; r++) part[r] += weight[q] * LanesAt(x + LANES * r);
-    for (int r = 0; r < ROUND / LANES; r++) LanesPut(part[r], sum + i + LANES * r);
-  }
-}
-
-/* sum_k = SUM_q weight_q (X_{k-q} - X_0), with markers counted round the curve. */
-static void Convolve(Spectral s, int each, const PetscReal weight[], const PetscScalar X[]) {
-  const PetscInt width = each * s->n;
-  for (PetscInt i = 0; i < width; i++) s->twice[i] = s->twice[width + i] = X[i] - X[i % each];
-  ConvolveRound(s->n, each, PETSC_FALSE, weight, s->twice, s->sum);
+/* d^power X/dk^power, which is kept. */
+static const PetscReal *Found(Spectral s, int power, const PetscScalar X[]) {
+  const size_t bytes = 2 * (size_t)s->n * sizeof(PetscReal);
+  Derivative *d = s->last;
+  for (int k = 0; k < KEPT; k++)
+    if (d[k].power == power && !memcmp(d[k].X, X, bytes)) return d[k].value;
+  d += s->replaced;
+  s->replaced = (s->replaced + 1) % KEPT;
+  memcpy(d->X, X, bytes);
+  d->power = power;
+  RoundUnroll(s->n, X, s->points);
+  RoundSums(s->derivative[power / 2], s->points, d->value);
+  return d->value;
 }
 
 void SpectralDerivative(Spectral s, int power, PetscReal scale, const PetscScalar X[], PetscScalar Y[]) {
@@ -121,8 +132,8 @@ void SpectralDerivative(Spectral s, int power, PetscReal scale, const PetscScala
     Transformed(s, power, scale, X, Y);
     return;
   }
-  Convolve(s, 2, s->derivative[power / 2], X);
-  for (PetscInt k = 0; k < 2 * s->n; k++) Y[k] += scale * s->sum[k];
+  const PetscReal *found = Found(s, power, X);
+  for (PetscInt k = 0; k < 2 * s->n; k++) Y[k] += scale * found[k];
 }
 
 PetscReal SpectralTail(Spectral s, PetscReal part, const PetscScalar X[]) {
@@ -185,25 +196,38 @@ static const PetscReal *TurnWeights(Spectral s, PetscReal phi) {
   const PetscReal labels = PetscFloorReal(phi * s->n / (2 * PETSC_PI) + 0.5);
   const PetscInt n = s->n, m = PetscAbsReal(labels) < 1e9 ? (PetscInt)labels : 0;
   const PetscReal half = 0.5 * phi - PETSC_PI * m / n, top = PetscSinReal(n * half) / n;
+  const PetscReal sine = PetscSinReal(half), cosine = PetscCosReal(half);
   PetscReal *weight = s->turn[s->next];
   for (int t = 0; t < TURNS; t++)
     if (s->phi[t] == phi) return s->turn[t];
   s->phi[s->next] = phi;
   s->next = (s->next + 1) % TURNS;
-  for (PetscInt j = (1 - n) / 2; j <= n / 2; j++) {
-    const PetscReal at = half + PETSC_PI * j / n, value = top / (n % 2 ? PetscSinReal(at) : PetscTanReal(at));
-    const PetscInt q = (((j - m) % n) + n) % n;
-    weight[q] = !j && half == 0 ? 1 : (j % 2 ? -value : value);
+  PetscInt q = ((((1 - n) / 2 - m) % n) + n) % n;
+  for (PetscInt j = (1 - n) / 2; j <= n / 2; j++, q = q + 1 < n ? q + 1 : 0) {
+    const PetscReal a = s->round[2 * PetscAbsInt(j)], b = j < 0 ? -s->round[2 * -j + 1] : s->round[2 * j + 1];
+    const PetscReal bottom = n % 2 ? sine * a + cosine * b : (sine * a + cosine * b) / (cosine * a - sine * b);
+    weight[q] = !j && half == 0 ? 1 : (j % 2 ? -top : top) / bottom;
   }
   return weight;
 }
 
+/* `each` known to the compiler. */
+static inline void Turn(Spectral s, const int each, PetscReal phi, const PetscScalar X[], PetscScalar Y[]) {
+  const PetscInt n = s->n;
+  PetscReal first[2];
+  for (int c = 0; c < each; c++) first[c] = X[c];
+  for (PetscInt k = 0; k < n; k++)
+    for (int c = 0; c < each; c++) s->twice[each * k + c] = s->twice[each * (n + k) + c] = X[each * k + c] - first[c];
+  ConvolveRound(n, each, PETSC_FALSE, TurnWeights(s, phi), s->twice, s->sum);
+  for (PetscInt k = 0; k < n; k++)
+    for (int c = 0; c < each; c++) Y[each * k + c] = first[c] + s->sum[each * k + c];
+}
+
 void SpectralShift(Spectral s, int each, PetscReal phi, const PetscScalar X[], PetscScalar Y[]) {
-  if (!s->sum) {
+  if (!s->sum)
     ShiftTransformed(s, each, phi, X, Y);
-    return;
-  }
-  Convolve(s, each, TurnWeights(s, phi), X);
-  const PetscReal first[2] = {X[0], X[each - 1]};
-  for (PetscInt i = 0; i < each * s->n; i++) Y[i] = first[i % each] + s->sum[i];
+  else if (each == 1)
+    Turn(s, 1, phi, X, Y);
+  else
+    Turn(s, 2, phi, X, Y);
 }

@@ -17,12 +17,6 @@ PETSC_EXTERN void SpectralDerivative(Spectral spectral, int power, PetscReal sca
    SUM m^4 |X_m|^2 over |m| > part K, divided by that over all modes. Small where markers resolve the curve. */
 PETSC_EXTERN PetscReal SpectralTail(Spectral spectral, PetscReal part, const PetscScalar X[]);
 
-/* ConvolveRound - sum_k = SUM_q weight_q x_{k - q}, or (ahead) x_{k + q}, of n entries of `each` numbers round a curve,
-   given twice[2 each n + CONVOLVE_ROUND], which has them twice; sum[each n + CONVOLVE_ROUND]. Not collective. */
-#define CONVOLVE_ROUND 32
-PETSC_EXTERN void ConvolveRound(PetscInt n, int each, PetscBool ahead, const PetscReal weight[],
-                                const PetscReal twice[], PetscReal sum[]);
-
 /* TrigonometricCardinal - the function of trigonometric interpolation on n points: 1 at t = 0, 0 at the others, t the
    distance from 0 to 2 pi. TrigonometricPoints - the curve through n points X[2n] at `times` as many, Y[2 times n]. Not
    collective. */

@@ -1,5 +1,6 @@
 /* Measures of a vesicle (docs/method.md, Diagnostics). */
 #include "membrane/membrane.h"
+#include "base/lanes.h"
 
 #define ROUNDING 1e-12 /* of the largest tangential speed: a smaller one has no sign */
 
@@ -21,20 +22,32 @@ static void PolygonMoments(PetscInt markers, const PetscScalar X[], const PetscR
   }
 }
 
-/* The same moments of the spectral curve, by the trapezoidal rule on x dy - y dx and its like: spectrally accurate. */
+/* What four points add to the sums of x dy - y dx and its like. */
+static inline void AddMoments(Lanes x, Lanes y, Lanes dx, Lanes dy, Lanes sum[6]) {
+  sum[0] += x * dy - y * dx;
+  sum[1] += x * x * dy;
+  sum[2] -= y * y * dx;
+  sum[3] += x * x * x * dy;
+  sum[4] += x * y * (x * dy - y * dx);
+  sum[5] -= y * y * y * dx;
+}
+
+/* The same moments of the spectral curve, by the trapezoidal rule: spectrally accurate. */
 static void SpectralMoments(PetscInt markers, const PetscScalar X[], const PetscScalar e[], const PetscReal about[2],
                             PetscReal *area, PetscReal first[2], PetscReal second[3]) {
-  *area = first[0] = first[1] = second[0] = second[1] = second[2] = 0;
-  for (PetscInt k = 0; k < markers; k++) {
-    const PetscReal x = X[2 * k] - about[0], y = X[2 * k + 1] - about[1];
-    const PetscReal dx = e[2 * k], dy = e[2 * k + 1];
-    *area += 0.5 * (x * dy - y * dx);
-    first[0] += 0.5 * x * x * dy;
-    first[1] -= 0.5 * y * y * dx;
-    second[0] += x * x * x * dy / 3;
-    second[1] += 0.25 * (x * x * y * dy - x * y * y * dx);
-    second[2] -= y * y * y * dx / 3;
+  Lanes sum[6] = {{0}}, x, y, dx, dy;
+  PetscInt k = 0;
+  for (; k + LANES <= markers; k += LANES) {
+    LanesPairs(X + 2 * k, &x, &y);
+    LanesPairs(e + 2 * k, &dx, &dy);
+    AddMoments(x - about[0], y - about[1], dx, dy, sum);
   }
+  for (; k < markers; k++)
+    AddMoments(X[2 * k] - about[0] - (Lanes){0}, X[2 * k + 1] - about[1] - (Lanes){0}, (Lanes){e[2 * k]},
+               (Lanes){e[2 * k + 1]}, sum);
+  *area = LanesSum(sum[0]) / 2;
+  for (int c = 0; c < 2; c++) first[c] = LanesSum(sum[1 + c]) / 2;
+  for (int c = 0; c < 3; c++) second[c] = LanesSum(sum[3 + c]) / (c == 1 ? 4 : 3);
 }
 
 void MembraneMeasure(Membrane m, PetscInt v, const PetscScalar X[], Measures *out) {
