@@ -63,6 +63,32 @@ static PetscErrorCode CheckPose(PetscReal angle, PetscInt shift) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The best shift of random points is that of all sums, one by one. */
+static PetscErrorCode CheckFit(PetscInt n) {
+  PetscReal x[2 * N], y[2 * N], most = -1;
+  PetscInt best = 0;
+  unsigned seed = (unsigned)n;
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < 2 * n; k++) {
+    x[k] = TestRandom(&seed);
+    y[k] = TestRandom(&seed);
+  }
+  for (PetscInt j = 0; j < n; j++) {
+    PetscReal c[2] = {0, 0};
+    for (PetscInt k = 0; k < n; k++) {
+      const PetscReal *a = x + 2 * ((k + j) % n), *b = y + 2 * k;
+      c[0] += b[0] * a[0] + b[1] * a[1];
+      c[1] += b[0] * a[1] - b[1] * a[0];
+    }
+    if (c[0] * c[0] + c[1] * c[1] <= most) continue;
+    most = c[0] * c[0] + c[1] * c[1];
+    best = j;
+  }
+  const Pose p = PoseFit(n, x, y);
+  CHECK(p.shift == best, "%d points: shifted by %d, the best is %d", (int)n, (int)p.shift, (int)best);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* S is the near field of unbounded fluid, where that is all of the mobility. */
 static PetscErrorCode CheckSelfLayer(PetscInt n) {
   char options[256];
@@ -291,6 +317,7 @@ static PetscErrorCode Facts(void) {
   const PetscInt shift[] = {17, 44, 0, 1};
   PetscFunctionBeginUser;
   for (int k = 0; k < 4; k++) PetscCall(CheckPose(angle[k], shift[k]));
+  for (PetscInt n = 8; n < 16; n++) PetscCall(CheckFit(n));
   PetscCall(CheckSelfLayer(45));
   PetscCall(CheckSelfLayer(44));
   PetscCall(CheckPanels(8, 5, 5, 4));

@@ -1,4 +1,5 @@
 #include "coupling/pose.h"
+#include "base/lanes.h"
 
 void PoseCentred(PetscInt n, const PetscReal X[], PetscReal Y[]) {
   PetscReal mean[2] = {0, 0};
@@ -34,33 +35,61 @@ PetscReal PoseLeast(const PetscReal a[POSE_SIZES], const PetscReal b[POSE_SIZES]
   return PetscSqrtReal(sum);
 }
 
-/* SUM_k conj(y_k) x_k: real, imaginary. */
-static inline void AddProduct(PetscInt n, const PetscReal X[], const PetscReal Y[], PetscReal c[2]) {
-  PetscReal xx = 0, xy = 0, yx = 0, yy = 0;
-  for (PetscInt k = 0; k < n; k++) {
-    xx += Y[2 * k] * X[2 * k];
-    yy += Y[2 * k + 1] * X[2 * k + 1];
-    xy += Y[2 * k] * X[2 * k + 1];
-    yx += Y[2 * k + 1] * X[2 * k];
-  }
-  c[0] += xx + yy;
-  c[1] += xy - yx;
+#define SHIFTS 4
+#define SAME 1e-12
+
+/* Products conj(y) x of points, two at once or one: real and imaginary parts in sums of their own, so that the
+   imaginary part of a curve with itself is zero to the bit. */
+typedef struct {
+  Lanes same[SHIFTS], cross[SHIFTS];
+} Products;
+
+static inline void AddPoints(Lanes y, Lanes x, int shift, Products *sum) {
+  const Lanes turned = {-y[1], y[0], -y[3], y[2]};
+  sum->same[shift] += y * x;
+  sum->cross[shift] += turned * x;
+}
+
+static inline Lanes OnePoint(const PetscReal x[2]) {
+  return (Lanes){x[0], x[1], 0, 0};
+}
+
+/* += SUM_k conj(y_k) x_{k + i} of n markers, all shifts i at once. */
+static inline void AddProducts(PetscInt n, const PetscReal X[], const PetscReal Y[], Products *sum) {
+  PetscInt k = 0;
+  for (; k + 2 <= n; k += 2)
+    for (int i = 0; i < SHIFTS; i++) AddPoints(LanesAt(Y + 2 * k), LanesAt(X + 2 * (k + i)), i, sum);
+  for (; k < n; k++)
+    for (int i = 0; i < SHIFTS; i++) AddPoints(OnePoint(Y + 2 * k), OnePoint(X + 2 * (k + i)), i, sum);
+}
+
+/* c_i = SUM_k conj(y_k) x_{k + j + i}, markers counted round the curve; j + SHIFTS is at most n. */
+static void Correlate(PetscInt n, PetscInt j, const PetscReal X[], const PetscReal Y[], PetscReal c[SHIFTS][2]) {
+  const PetscInt whole = n - j - (SHIFTS - 1); /* up to here no shift goes past the last marker, from n - j on all do */
+  Products sum = {{{0}}, {{0}}};
+  AddProducts(whole, X + 2 * j, Y, &sum);
+  for (PetscInt k = whole; k < n - j; k++)
+    for (int i = 0; i < SHIFTS; i++) AddPoints(OnePoint(Y + 2 * k), OnePoint(X + 2 * ((k + j + i) % n)), i, &sum);
+  AddProducts(j, X, Y + 2 * (n - j), &sum);
+  for (int i = 0; i < SHIFTS; i++) LanesTwoSums(sum.same[i], sum.cross[i], &c[i][0], &c[i][1]);
 }
 
 Pose PoseFit(PetscInt n, const PetscReal X[], const PetscReal Y[]) {
   Pose pose = {.turn = {1, 0}};
   PetscReal squares = 0, largest = -1;
   for (PetscInt k = 0; k < 2 * n; k++) squares += X[k] * X[k] + Y[k] * Y[k];
-  for (PetscInt j = 0; j < n; j++) {
-    PetscReal c[2] = {0, 0};
-    AddProduct(n - j, X + 2 * j, Y, c);
-    AddProduct(j, X, Y + 2 * (n - j), c);
-    const PetscReal size = c[0] * c[0] + c[1] * c[1];
-    if (size <= largest) continue;
-    largest = size;
-    pose.shift = j;
-    pose.turn[0] = c[0];
-    pose.turn[1] = c[1];
+  for (PetscInt from = 0; from < n; from += SHIFTS) {
+    const PetscInt j = PetscMin(from, n - SHIFTS); /* the last ones overlap those before */
+    PetscReal c[SHIFTS][2];
+    Correlate(n, j, X, Y, c);
+    for (int i = 0; i < SHIFTS; i++) {
+      const PetscReal size = c[i][0] * c[i][0] + c[i][1] * c[i][1];
+      if (size <= (1 + SAME) * largest) continue; /* of a symmetric curve the first, whatever rounding does */
+      largest = size;
+      pose.shift = j + i;
+      pose.turn[0] = c[i][0];
+      pose.turn[1] = c[i][1];
+    }
   }
   const PetscReal size = PetscSqrtReal(PetscMax(largest, 0));
   for (int c = 0; c < 2; c++) pose.turn[c] = size > 0 ? pose.turn[c] / size : !c;
