@@ -111,7 +111,7 @@ PetscErrorCode CoarseApply(Coarse c, PetscScalar F[]) {
   if (StokesStream(c->stokes))
     PetscCall(MarkersRespond(c->markers, StokesStream(c->stokes), NULL, alpha, c->F, c->F));
   else {
-    PetscCall(MarkersClear(c->markers, c->r, c->dirty));
+    PetscCall(MarkersClear(c->markers, c->r, &c->dirty));
     PetscCall(MarkersSpread(c->markers, alpha, c->F, c->r));
     PetscCall(StokesSolve(c->stokes, c->r, NULL, c->u, c->p));
     PetscCall(MarkersInterpolate(c->markers, c->u, c->F));

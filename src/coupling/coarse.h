@@ -15,7 +15,7 @@ struct _p_Coarse {
   MobilityTable table; /* what the coarse grid does to the vesicle itself */
   Vec X, F;            /* marker vectors, of `all` if there is one */
   Vec r, u, p;         /* on the grid; NULL where the velocity is had by rows (fluid/stream.h) */
-  PetscInt dirty[2];   /* rows where r is not zero */
+  GridWindow dirty;    /* where r is not zero */
 };
 
 /* CoarseCreate - for the quasi-steady fluid that spec makes and vesicles with these initial lengths, whose layout is

@@ -7,12 +7,14 @@ static PetscErrorCode MultTension(Mat A, Vec x, Vec y) {
   PetscCall(MatShellGetContext(A, &s));
   const Coupling c = s->coupling;
   const Markers m = c->markers;
-  PetscCall(MarkersClear(m, s->w, s->dirty_w));
-  PetscCall(MarkersClear(m, s->q, s->dirty_q));
+  PetscCall(MarkersClear(m, s->w, &s->dirty_w));
+  PetscCall(MarkersClear(m, s->q, &s->dirty_q));
   PetscCall(CouplingSpreadTension(c, 1, x, s->w));
-  PetscCall(GridGradientTransposeRows(c->fluid->grid, 1, s->w, m->window, s->q));
+  s->dirty_w.columns[0] = s->dirty_q.columns[0] = 0; /* gradients are on whole rows */
+  s->dirty_w.columns[1] = s->dirty_q.columns[1] = c->fluid->grid->n[0];
+  PetscCall(GridGradientTransposeRows(c->fluid->grid, 1, s->w, m->window.rows, s->q));
   PetscCall(FluidSolvePoisson(c->fluid, s->q, s->q2));
-  PetscCall(GridGradientRows(c->fluid->grid, 1, s->q2, PETSC_TRUE, m->window, s->w));
+  PetscCall(GridGradientRows(c->fluid->grid, 1, s->q2, PETSC_TRUE, m->window.rows, s->w));
   PetscCall(MarkersInterpolate(m, s->w, s->U));
   PetscCall(CouplingStretching(c, s->U, y));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -23,7 +25,7 @@ static PetscErrorCode MultBending(Mat A, Vec x, Vec y) {
   LagrangianSolver s;
   PetscFunctionBeginUser;
   PetscCall(MatShellGetContext(A, &s));
-  PetscCall(MarkersClear(s->coupling->markers, s->w, s->dirty_w));
+  PetscCall(MarkersClear(s->coupling->markers, s->w, &s->dirty_w));
   PetscCall(CouplingSpreadBending(s->coupling, 1, x, s->w));
   PetscCall(FluidSolveHelmholtz(s->coupling->fluid, s->w, s->w2));
   PetscCall(MarkersInterpolate(s->coupling->markers, s->w2, y));

@@ -16,8 +16,8 @@ struct _p_LagrangianSolver {
   KSP ksp;
   Mat A;            /* the operator, a shell */
   RootPC chat;      /* tension: preconditioner of the assembled approximation; NULL for bending */
-  Vec w, w2, q, q2; /* work: two velocities, two pressures; w and q are zero but for their dirty rows */
-  PetscInt dirty_w[2], dirty_q[2];
+  Vec w, w2, q, q2; /* work: two velocities, two pressures; w and q are zero but in their dirty windows */
+  GridWindow dirty_w, dirty_q;
   Vec U;                  /* work: a marker vector */
   PetscBool failed;       /* the preconditioner could not be factored */
   PetscInt its;           /* iterations of the last solve */

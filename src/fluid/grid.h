@@ -83,12 +83,16 @@ PETSC_EXTERN PetscErrorCode GridGradientRows(Grid grid, PetscReal alpha, Vec p, 
 PETSC_EXTERN PetscErrorCode GridGradientTransposeRows(Grid grid, PetscReal alpha, Vec w, const PetscInt window[2],
                                                       Vec q);
 
-/* GridClearRows - zero in these rows of a velocity or a pressure. Not collective. */
-PETSC_EXTERN PetscErrorCode GridClearRows(Grid grid, const PetscInt window[2], Vec x);
+/* A part of this rank's faces or cells: rows[0] .. rows[1] - 1 and in them columns[0] .. columns[1] - 1, as far as a
+   field has them. */
+typedef struct {
+  PetscInt rows[2], columns[2];
+} GridWindow;
 
-/* GridAddSquares - sum += SUM w^2 of this rank's rows window[0] .. window[1] - 1 of a velocity, NULL: of all. Not
-   collective. */
-PETSC_EXTERN PetscErrorCode GridAddSquares(Grid grid, const PetscInt window[2], Vec w, PetscReal *sum);
+/* GridClear - zero in a window of a velocity or a pressure. GridAddSquares - sum += SUM w^2 of a velocity in a window,
+   NULL: in all. Not collective. */
+PETSC_EXTERN PetscErrorCode GridClear(Grid grid, const GridWindow *window, Vec x);
+PETSC_EXTERN PetscErrorCode GridAddSquares(Grid grid, const GridWindow *window, Vec w, PetscReal *sum);
 
 /* GridLargestDivergence - max |G^T w + bc2| (1/time) over all cells, bc2 NULL for walls at rest; NaN when an entry is
    not finite. The same on every rank. Collective. */

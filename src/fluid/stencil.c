@@ -106,31 +106,41 @@ PetscErrorCode GridGradientTranspose(Grid g, PetscReal alpha, Vec w, Vec q) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode GridClearRows(Grid g, const PetscInt window[2], Vec w) {
+/* What of n rows or columns is in a window. */
+static inline PetscInt Clip(const PetscInt window[2], PetscInt n, PetscInt *first) {
+  const PetscInt end = PetscMin(window[1], n);
+  *first = PetscMin(window[0], end);
+  return end - *first;
+}
+
+PetscErrorCode GridClear(Grid g, const GridWindow *window, Vec w) {
   const PetscInt start[3] = {0, GridLocalU(g), 0};
   PetscScalar *a;
-  PetscInt size;
+  PetscInt size, row, column;
   PetscFunctionBeginUser;
   PetscCall(VecGetLocalSize(w, &size));
   PetscCall(VecGetArray(w, &a));
   const PetscBool pressure = size == g->columns[FIELD_P] * g->rows[FIELD_P] ? PETSC_TRUE : PETSC_FALSE;
   for (int f = pressure ? FIELD_P : FIELD_U; f <= (pressure ? FIELD_P : FIELD_V); f++) {
-    const PetscInt end = PetscMin(window[1], g->rows[f]), first = PetscMin(window[0], end);
-    PetscCall(PetscArrayzero(a + start[f] + first * g->columns[f], (end - first) * g->columns[f]));
+    const PetscInt rows = Clip(window->rows, g->rows[f], &row), n = Clip(window->columns, g->columns[f], &column);
+    for (PetscInt j = row; j < row + rows; j++) PetscCall(PetscArrayzero(a + start[f] + j * g->columns[f] + column, n));
   }
   PetscCall(VecRestoreArray(w, &a));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode GridAddSquares(Grid g, const PetscInt window[2], Vec w, PetscReal *sum) {
+PetscErrorCode GridAddSquares(Grid g, const GridWindow *window, Vec w, PetscReal *sum) {
   const PetscScalar *a;
+  PetscInt row, column;
   PetscFunctionBeginUser;
   PetscCall(VecGetArrayRead(w, &a));
   for (int f = FIELD_U; f <= FIELD_V; f++) {
-    const PetscInt end = window ? PetscMin(window[1], g->rows[f]) : g->rows[f];
-    const PetscInt first = window ? PetscMin(window[0], end) : 0, n = (end - first) * g->columns[f];
-    const PetscScalar *x = a + GridRowStart(g, (Field)f, first);
-    *sum += LanesDot(n, x, x);
+    const GridWindow all = {{0, g->rows[f]}, {0, g->columns[f]}}, *part = window ? window : &all;
+    const PetscInt rows = Clip(part->rows, g->rows[f], &row), n = Clip(part->columns, g->columns[f], &column);
+    for (PetscInt j = row; j < row + rows; j++) {
+      const PetscScalar *x = a + GridRowStart(g, (Field)f, j) + column;
+      *sum += LanesDot(n, x, x);
+    }
   }
   PetscCall(VecRestoreArrayRead(w, &a));
   PetscFunctionReturn(PETSC_SUCCESS);

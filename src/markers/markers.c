@@ -54,20 +54,26 @@ PetscErrorCode MarkersCheck(Markers m, Layout layout, Vec X, char message[PETVES
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* This rank's rows under the stencils, one more on either side for G and G^T; all of them across a seam. */
+#define BESIDE 2 /* rows and columns beside the stencils: for G, G^T and dipoles */
+
+/* From `low` to `high` on a grid of n, of which a rank has `own` from `first` on; all of them across a seam. */
+static void Clip(PetscBool wall, PetscInt n, PetscInt first, PetscInt own, PetscInt low, PetscInt high,
+                 PetscInt window[2]) {
+  const PetscBool seam = !wall && (low < 0 || high > n) ? PETSC_TRUE : PETSC_FALSE;
+  window[0] = seam ? 0 : PetscMin(PetscMax(low - first, 0), own);
+  window[1] = seam ? own : PetscMax(PetscMin(high - first, own), window[0]);
+}
+
 static void SetWindow(Markers m) {
   const Grid g = m->grid;
-  const PetscInt rows = g->rows[FIELD_P];
-  PetscInt low = PETSC_MAX_INT / 2, high = -1;
-  for (PetscInt k = 0; k < 2 * m->layout->M; k++) {
-    low = PetscMin(low, m->stencil[k].first[1]);
-    high = PetscMax(high, m->stencil[k].first[1] + m->stencil[k].n[1]);
-  }
-  low -= 2 + g->first;
-  high += 2 - g->first;
-  const PetscBool seam = !g->wall[1] && (low + g->first < 0 || high + g->first > g->n[1]) ? PETSC_TRUE : PETSC_FALSE;
-  m->window[0] = seam ? 0 : PetscMin(PetscMax(low, 0), rows);
-  m->window[1] = seam ? rows : PetscMax(PetscMin(high, rows), m->window[0]);
+  PetscInt low[2] = {PETSC_MAX_INT / 2, PETSC_MAX_INT / 2}, high[2] = {-1, -1};
+  for (PetscInt k = 0; k < 2 * m->layout->M; k++)
+    for (int d = 0; d < 2; d++) {
+      low[d] = PetscMin(low[d], m->stencil[k].first[d]);
+      high[d] = PetscMax(high[d], m->stencil[k].first[d] + m->stencil[k].n[d]);
+    }
+  Clip(g->wall[0], g->n[0], 0, g->n[0], low[0] - BESIDE, high[0] + BESIDE, m->window.columns);
+  Clip(g->wall[1], g->n[1], g->first, g->rows[FIELD_P], low[1] - BESIDE, high[1] + BESIDE, m->window.rows);
 }
 
 /* The stencil of one component of a marker at X between the walls. */
@@ -98,7 +104,8 @@ PetscErrorCode MarkersPlace(Markers m, Vec X) {
         /* entry 0 of a component sits on the first right (top) face along its direction, in a cell's middle across */
         const PetscReal r = (m->X[2 * k + dir] - g->lo[dir]) / g->h - (comp == dir ? 1.0 : 0.5);
         s->n[dir] = (comp == dir ? m->kernel->along : m->kernel->across)(r, &s->first[dir], s->weight[dir]);
-        if (!g->wall[dir]) s->first[dir] = ((s->first[dir] % g->n[dir]) + g->n[dir]) % g->n[dir];
+        if (!g->wall[dir] && (s->first[dir] < 0 || s->first[dir] >= g->n[dir]))
+          s->first[dir] = ((s->first[dir] % g->n[dir]) + g->n[dir]) % g->n[dir];
       }
   if (m->folded) {
     PetscCall(PetscArraycpy(m->stencil, m->plain, 2 * m->layout->M));
@@ -130,7 +137,7 @@ PetscErrorCode MarkersSpread(Markers m, PetscReal alpha, Vec F, Vec w) {
   PetscCall(LayoutGatherVec(m->layout, F, m->force));
   PetscCall(VecGetArray(w, &wa));
   for (int f = FIELD_U; f <= FIELD_V; f++)
-    for (PetscInt j = 0; j < m->grid->rows[f]; j++)
+    for (PetscInt j = m->window.rows[0]; j < PetscMin(m->window.rows[1], m->grid->rows[f]); j++)
       MarkerRowSpread(m->rows, (Field)f, j, alpha, m->force, wa + GridRowStart(m->grid, (Field)f, j));
   PetscCall(VecRestoreArray(w, &wa));
   PetscCall(PetscLogEventEnd(m->spread, 0, 0, 0, 0));
@@ -149,7 +156,7 @@ PetscErrorCode MarkersInterpolate(Markers m, Vec w, Vec U) {
   PetscCall(VecGetArrayRead(w, &wa));
   PetscCall(PetscArrayzero(m->part, 2 * m->layout->M));
   for (int f = FIELD_U; f <= FIELD_V; f++)
-    for (PetscInt j = 0; j < m->grid->rows[f]; j++)
+    for (PetscInt j = m->window.rows[0]; j < PetscMin(m->window.rows[1], m->grid->rows[f]); j++)
       MarkerRowInterpolate(m->rows, (Field)f, j, wa + GridRowStart(m->grid, (Field)f, j), m->part);
   PetscCall(VecRestoreArrayRead(w, &wa));
   PetscCall(VecGetArray(U, &own));
@@ -159,10 +166,10 @@ PetscErrorCode MarkersInterpolate(Markers m, Vec w, Vec U) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode MarkersClear(Markers m, Vec w, PetscInt dirty[2]) {
+PetscErrorCode MarkersClear(Markers m, Vec w, GridWindow *dirty) {
   PetscFunctionBeginUser;
-  PetscCall(GridClearRows(m->grid, dirty, w));
-  for (int k = 0; k < 2; k++) dirty[k] = m->window[k];
+  PetscCall(GridClear(m->grid, dirty, w));
+  *dirty = m->window;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

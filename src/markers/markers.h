@@ -22,7 +22,7 @@ struct _p_Markers {
   Stencil *stencil;   /* [2M]: component c of marker k at 2k + c */
   Stencil *plain;     /* [2M]: the same neither folded nor scaled */
   MarkerRows rows;    /* of stencil, those of this rank */
-  PetscInt window[2]; /* this rank's rows that hold all stencils, with the rows next to them */
+  GridWindow window;  /* of this rank's faces that holds all stencils, with the rows and columns next to them */
   PetscScalar *force; /* [2M] work: all forces */
   PetscScalar *part;  /* [2M] work: this rank's part of all velocities */
   Mat E;              /* (marker vector x velocity) U_k = SUM u(x) phi phi; E^T spreads */
@@ -52,9 +52,9 @@ PETSC_EXTERN PetscErrorCode MarkersPlace(Markers markers, Vec X);
  */
 PETSC_EXTERN PetscReal MarkersShortfall(Markers markers, PetscInt k, int comp, int dir);
 
-/* MarkersClear - w (a velocity or a pressure) is zero but for rows dirty[2], which are zeroed; dirty becomes the
-   window, where the caller may write. Not collective. */
-PETSC_EXTERN PetscErrorCode MarkersClear(Markers markers, Vec w, PetscInt dirty[2]);
+/* MarkersClear - w (a velocity or a pressure) is zero but in `dirty`, which is zeroed; dirty becomes the window, where
+   the caller may write. Not collective. */
+PETSC_EXTERN PetscErrorCode MarkersClear(Markers markers, Vec w, GridWindow *dirty);
 
 /* MarkersSpread - w += alpha E^T F; F a marker vector, w a velocity. MarkersInterpolate - U = E w. Collective. */
 PETSC_EXTERN PetscErrorCode MarkersSpread(Markers markers, PetscReal alpha, Vec F, Vec w);

@@ -43,8 +43,8 @@ static void TakeVelocity(void *ctx, Field f, PetscInt j, PetscScalar row[]) {
 static PetscErrorCode Solve(Response *r, Stream stream, PetscBool all, Vec U, StreamMeasures *measures) {
   const Markers m = r->m;
   const StreamRows rows = {.ctx = r,
-                           .forced = {all ? 0 : m->window[0], all ? m->grid->rows[FIELD_U] : m->window[1]},
-                           .wanted = {m->window[0], m->window[1]},
+                           .forced = {all ? 0 : m->window.rows[0], all ? m->grid->rows[FIELD_U] : m->window.rows[1]},
+                           .wanted = {m->window.rows[0], m->window.rows[1]},
                            .past = r->past,
                            .flow = r->flow,
                            .add = r->add,

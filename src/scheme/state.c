@@ -59,7 +59,7 @@ PetscErrorCode StateCopy(const State *q, State *copy, PetscBool fields) {
     if (!*to[k]) PetscCall(VecDuplicate(*from[k], to[k]));
     PetscCall(VecCopy(*from[k], *to[k]));
   }
-  if (fields) PetscCall(PetscArraycpy(copy->rows, q->rows, 2));
+  if (fields) copy->window = q->window;
   if (fields) PetscCall(PetscArraycpy(copy->mean, q->mean, 2));
   if (fields) copy->a0 = q->a0;
   copy->pending = q->pending;
@@ -74,13 +74,13 @@ PetscErrorCode StateCopy(const State *q, State *copy, PetscBool fields) {
 /* What goes with the forces of two states. */
 static void SwapForced(State *a, State *b) {
   const PetscReal a0 = a->a0;
+  const GridWindow window = a->window;
   a->a0 = b->a0;
   b->a0 = a0;
+  a->window = b->window;
+  b->window = window;
   for (int k = 0; k < 2; k++) {
-    const PetscInt row = a->rows[k];
     const PetscReal mean = a->mean[k];
-    a->rows[k] = b->rows[k];
-    b->rows[k] = row;
     a->mean[k] = b->mean[k];
     b->mean[k] = mean;
   }

@@ -14,7 +14,7 @@ typedef struct {
   Vec source; /* with it, the viscosity contrast's source of the divergence; NULL without */
   PetscReal mean[2]; /* and the mean velocity that goes with that */
   PetscReal a0;      /* and the solve's time coefficient */
-  PetscInt rows[2];  /* force and source are zero outside these of this rank, in quasi-steady flow */
+  GridWindow window; /* force and source are zero outside it, without convection */
   PetscBool pending; /* p is not made yet: SchemeFields; */
   PetscBool hidden;  /* w neither: SchemeVelocity */
   Vec sigma;         /* tension, an edge vector */
