@@ -151,42 +151,38 @@ PetscErrorCode CouplingElasticForce(Coupling c, Vec X, Vec F) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The force in c->force, alpha times: spread to w, and its near field to U. */
-static PetscErrorCode Act(Coupling c, PetscReal alpha, Vec w, Vec U) {
-  const PetscScalar *F;
-  PetscScalar *u;
-  PetscFunctionBeginUser;
-  PetscCall(MarkersSpread(c->markers, alpha / PetscSqr(c->fluid->grid->h), c->force, w));
-  if (!c->near) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(VecGetArrayRead(c->force, &F));
-  PetscCall(VecGetArray(U, &u));
-  PetscCall(NearFieldApply(c->near, alpha, F, u));
-  PetscCall(VecRestoreArray(U, &u));
-  PetscCall(VecRestoreArrayRead(c->force, &F));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode CouplingElastic(Coupling c, PetscReal alpha, Vec X, Vec w, Vec U) {
-  PetscFunctionBeginUser;
-  PetscCall(CouplingElasticForce(c, X, c->force));
-  PetscCall(Act(c, alpha, w, U));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode CouplingAddGravity(Coupling c, Vec X, Vec f, Vec U) {
-  const Grid g = c->fluid->grid;
+PetscErrorCode CouplingKnownForce(Coupling c, Vec Y, Vec X, Vec F) {
   const PetscScalar *x;
-  PetscScalar *F;
+  PetscScalar *f;
   PetscFunctionBeginUser;
+  if (CouplingHasMembrane(c))
+    PetscCall(CouplingElasticForce(c, Y, F));
+  else
+    PetscCall(VecSet(F, 0));
   if (!c->membrane->weight) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(VecSet(c->force, 0));
   PetscCall(VecGetArrayRead(X, &x));
-  PetscCall(VecGetArray(c->force, &F));
-  MembraneGravity(c->membrane, 1, x, F);
-  PetscCall(VecRestoreArray(c->force, &F));
+  PetscCall(VecGetArray(F, &f));
+  MembraneGravity(c->membrane, -1, x, f);
+  PetscCall(VecRestoreArray(F, &f));
   PetscCall(VecRestoreArrayRead(X, &x));
-  PetscCall(Act(c, 1, f, U));
-  if (!g->wall[0] && !g->wall[1]) PetscCall(FluidRemoveMean(c->fluid, f));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CouplingSpreadForce(Coupling c, Vec F, Vec w) {
+  const Grid g = c->fluid->grid;
+  PetscFunctionBeginUser;
+  PetscCall(MarkersSpread(c->markers, -1 / PetscSqr(g->h), F, w));
+  if (c->membrane->weight && !g->wall[0] && !g->wall[1]) PetscCall(FluidRemoveMean(c->fluid, w));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CouplingNearField(Coupling c, PetscReal alpha, Vec F, PetscScalar u[]) {
+  const PetscScalar *f;
+  PetscFunctionBeginUser;
+  if (!c->near || !F) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecGetArrayRead(F, &f));
+  PetscCall(NearFieldApply(c->near, alpha, f, u));
+  PetscCall(VecRestoreArrayRead(F, &f));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

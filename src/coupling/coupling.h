@@ -97,18 +97,21 @@ PETSC_EXTERN PetscErrorCode CouplingSpreadBending(Coupling coupling, PetscReal a
 
 /* CouplingElasticForce - F = (c_b ds D4 + K_sigma + K_rep) X less the springs' push and the pull of the turning tension
    along the old edges: minus the force of bending, turning and repulsion at the markers X (length^3/time^2).
-   CouplingElastic - w += alpha E^T F/h^2, and U += alpha C F with near field. Collective. */
+   Collective. */
 PETSC_EXTERN PetscErrorCode CouplingElasticForce(Coupling coupling, Vec X, Vec F);
-PETSC_EXTERN PetscErrorCode CouplingElastic(Coupling coupling, PetscReal alpha, Vec X, Vec w, Vec U);
 
 /* CouplingElasticRate - F += alpha (c_b ds D4 + K_sigma + K_rep) V, own parts V[2n], F[2n] of marker vectors.
  * Collective. */
 PETSC_EXTERN PetscErrorCode CouplingElasticRate(Coupling coupling, PetscReal alpha, const PetscScalar V[],
                                                 PetscScalar F[]);
 
-/* CouplingAddGravity - what gravity does to the markers placed: its spread force to f, less the mean in a box that is
-   periodic both ways, and its near field to U; nothing without gravity. Collective. */
-PETSC_EXTERN PetscErrorCode CouplingAddGravity(Coupling coupling, Vec X, Vec f, Vec U);
+/* CouplingKnownForce - F = the elastic force of Y less gravity's on the markers X, a marker vector of all bodies: minus
+   what is known of the force on them. CouplingSpreadForce - w -= E^T F/h^2, less gravity's mean in a box that is
+   periodic both ways. CouplingNearField - u[2n], the bodies' own velocities, += alpha C F with near field; F NULL: 0.
+   Collective. */
+PETSC_EXTERN PetscErrorCode CouplingKnownForce(Coupling coupling, Vec Y, Vec X, Vec F);
+PETSC_EXTERN PetscErrorCode CouplingSpreadForce(Coupling coupling, Vec F, Vec w);
+PETSC_EXTERN PetscErrorCode CouplingNearField(Coupling coupling, PetscReal alpha, Vec F, PetscScalar u[]);
 
 /* CouplingTread - U += alpha V dX/dt, what the labels' own motion adds to the markers' velocity. Not collective. */
 PETSC_EXTERN PetscErrorCode CouplingTread(Coupling coupling, PetscReal alpha, Vec X, Vec U);

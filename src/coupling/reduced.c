@@ -74,15 +74,14 @@ static PetscErrorCode BodyConditions(Reduced s, const PetscScalar x[], Vec known
   const Unknowns u = s->unknowns;
   const PetscInt n = u->velocity, tension = UnknownsTension(u);
   const PetscReal h2 = PetscSqr(c->fluid->grid->h);
-  const PetscScalar *U, *F;
+  const PetscScalar *U;
   PetscFunctionBeginUser;
   PetscCall(VecGetArrayRead(s->U, &U));
   for (PetscInt k = 0; k < tension; k++) y[k] = (k < n && !s->source ? x[k] : 0) - U[k];
   PetscCall(VecRestoreArrayRead(s->U, &U));
   if (!s->source) MembraneTread(c->membrane, c->treading, 1 / c->fluid->a0, x, y);
-  PetscCall(VecGetArrayRead(s->F, &F));
-  if (c->near) PetscCall(NearFieldApply(c->near, 1, F, y));
-  PetscCall(VecRestoreArrayRead(s->F, &F));
+  if (known && s->known) PetscCall(VecWAXPY(s->all, 1, s->F, s->known));
+  PetscCall(CouplingNearField(c, 1, known && s->known ? s->all : s->F, y));
   if (s->source) {
     PetscCall(VecGetArrayRead(s->motion, &U));
     PetscCall(ContrastAdd(c, 1, U, y));
@@ -135,8 +134,9 @@ static PetscErrorCode Solve(Reduced s, Vec r, Vec source, const PetscReal mean[2
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-void ReducedBegin(Reduced s, Vec moved, Vec source, PetscBool local, const StreamPast *past, Vec flow) {
+void ReducedBegin(Reduced s, Vec known, Vec moved, Vec source, PetscBool local, const StreamPast *past, Vec flow) {
   const Coupling c = s->unknowns->coupling;
+  s->known = known;
   s->moved = moved;
   s->source = source;
   s->mean[0] = s->mean[1] = 0;
@@ -162,7 +162,7 @@ static PetscErrorCode RespondOnGrid(Reduced s, const PetscScalar x[], PetscInt p
   const Vec p = s->kept.p[place];
   PetscReal mean[2] = {0, 0};
   PetscFunctionBeginUser;
-  PetscCall(MarkersClear(c->markers, s->r, s->dirty));
+  PetscCall(MarkersClear(c->markers, s->r, &s->dirty));
   PetscCall(WallsClear(s->unknowns->walls, s->r));
   if (s->source && p) PetscCall(VecSet(p, 0));
   PetscCall(AddForces(s, x, PETSC_FALSE, s->r, p, mean));
@@ -351,6 +351,7 @@ PetscErrorCode ReducedCreate(Unknowns u, Reduced *out) {
   if (!s->stream) PetscCall(DMCreateGlobalVector(c->fluid->grid->velocity, &s->r));
   PetscCall(LayoutCreateVec(c->bodies->layout, 2, &s->F));
   PetscCall(VecDuplicate(s->F, &s->U));
+  PetscCall(VecDuplicate(s->F, &s->all));
   if (!c->fluid->steady) PetscCall(VecDuplicate(s->F, &s->sum));
   if (c->contrast) {
     PetscCall(VecDuplicate(s->F, &s->motion));
@@ -374,6 +375,7 @@ PetscErrorCode ReducedDestroy(Reduced *reduced) {
   PetscCall(VecDestroy(&s->r));
   PetscCall(VecDestroy(&s->F));
   PetscCall(VecDestroy(&s->U));
+  PetscCall(VecDestroy(&s->all));
   PetscCall(VecDestroy(&s->sum));
   PetscCall(VecDestroy(&s->motion));
   PetscCall(DipoleRowsDestroy(&s->dipoles));

@@ -24,8 +24,9 @@ struct _p_Reduced {
   Mat A;             /* the residuals' derivative, scaled */
   Products kept;
   Vec r;                   /* a force on the grid, NULL with stream */
-  PetscInt dirty[2];       /* zero but for these rows */
+  GridWindow dirty;        /* zero but there */
   Vec F, U;                /* marker vectors of all bodies, work: forces, what the markers have of u = E u */
+  Vec all, known;          /* work: forces with those that are known (borrowed) */
   PetscBool local;         /* f is zero outside the markers' window */
   Vec flow;                /* borrowed: of u, where the problem makes one; else NULL */
   StreamPast past;         /* then: the states before, */
@@ -45,12 +46,13 @@ struct _p_Reduced {
 PETSC_EXTERN PetscErrorCode ReducedCreate(Unknowns unknowns, Reduced *reduced);
 PETSC_EXTERN PetscErrorCode ReducedDestroy(Reduced *reduced);
 
-/* ReducedBegin - a problem begins, in which the part `moved` of the markers' motion is known, and the dipoles' source
+/* ReducedBegin - a problem begins, in which `known`, minus a part of the force on the bodies' markers, is in f but its
+   near field is not in k, the part `moved` of the markers' motion is known, and the dipoles' source
    is added to `source`, zero now, with the mean velocity in reduced->mean; both NULL without viscosity contrast. local:
    f is zero outside the markers' window. flow: u is kept as that (fluid/streamflow.h), and the force of
    the states before, `past`, is beside f; else NULL. Not collective. */
-PETSC_EXTERN void ReducedBegin(Reduced reduced, Vec moved, Vec source, PetscBool local, const StreamPast *past,
-                               Vec flow);
+PETSC_EXTERN void ReducedBegin(Reduced reduced, Vec known, Vec moved, Vec source, PetscBool local,
+                               const StreamPast *past, Vec flow);
 
 /* ReducedResidual - the forces of `added` go into f, those of x itself with the dipoles of `moved`; minus the scaled
    residuals at x, with u, p = w, p by one Stokes solve of f, f holding the forces of x. grid false: w and p are not

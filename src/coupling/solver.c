@@ -153,6 +153,7 @@ static PetscErrorCode FreeReference(CoupledSolver s, const CoupledProblem *q) {
   PetscFunctionBeginUser;
   PetscCall(UnknownsPack(s->unknowns, q->k, NULL, q->g, q->d, s->change));
   PetscCall(VecGetArray(s->change, &a));
+  PetscCall(CouplingNearField(s->coupling, -1, q->F, a));
   if (q->moved) PetscCall(ContrastKnownAdd(s->coupling, -1, q->moved, a));
   for (PetscInt v = l->own; v < l->end; v++) {
     const PetscReal speed = m->bending * m->part[v] / (s->coupling->fluid->nu * PetscSqr(m->L0[v] / (2 * PETSC_PI)));
@@ -166,20 +167,22 @@ static PetscErrorCode FreeReference(CoupledSolver s, const CoupledProblem *q) {
 }
 
 /* The square of the norm of k of the own obstacles with its factors. */
-static PetscErrorCode ObstacleReference(CoupledSolver s, Vec k, PetscReal *sum) {
+static PetscErrorCode ObstacleReference(CoupledSolver s, const CoupledProblem *q, PetscReal *sum) {
   const Obstacles o = s->coupling->bodies->obstacles;
   const PetscInt n = s->unknowns->solid;
+  PetscScalar *all, *data;
   const PetscScalar *a;
-  PetscScalar *data;
   PetscFunctionBeginUser;
   if (!o) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscMalloc1(n, &data));
-  PetscCall(VecGetArrayRead(k, &a));
-  PetscCall(PetscArraycpy(data, a + s->unknowns->velocity, n));
-  PetscCall(VecRestoreArrayRead(k, &a));
+  PetscCall(PetscMalloc1(s->unknowns->velocity + n, &all));
+  data = all + s->unknowns->velocity;
+  PetscCall(VecGetArrayRead(q->k, &a));
+  PetscCall(PetscArraycpy(all, a, s->unknowns->velocity + n));
+  PetscCall(VecRestoreArrayRead(q->k, &a));
+  PetscCall(CouplingNearField(s->coupling, -1, q->F, all));
   ObstaclesScale(o, UnknownsWeight(s->unknowns), PETSC_FALSE, data);
   for (PetscInt i = 0; i < n; i++) *sum += PetscSqr(data[i]);
-  PetscCall(PetscFree(data));
+  PetscCall(PetscFree(all));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -195,8 +198,8 @@ static PetscErrorCode Reference(CoupledSolver s, const CoupledProblem *q) {
     for (PetscInt k = 0; k < LayoutCount(l, v); k++)
       sum += PetscSqr(a[LayoutOffset(l, v) + k] * UnknownsTensionScale(s->unknowns, v));
   PetscCall(VecRestoreArrayRead(q->g, &a));
-  PetscCall(ObstacleReference(s, q->k, &sum));
-  PetscCall(GridAddSquares(s->coupling->fluid->grid, q->local ? s->coupling->markers->window : NULL, q->f, &sum));
+  PetscCall(ObstacleReference(s, q, &sum));
+  PetscCall(GridAddSquares(s->coupling->fluid->grid, q->local ? &s->coupling->markers->window : NULL, q->f, &sum));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPIU_REAL, MPI_SUM, l->comm));
   if (s->coupling->fluid->bc2) {
     PetscCall(VecNorm(s->coupling->fluid->bc2, NORM_2, &norm));
@@ -254,7 +257,7 @@ static PetscErrorCode Begin(CoupledSolver s, const CoupledProblem *q, SolveRepor
   Trial *t = &s->trial;
   PetscFunctionBeginUser;
   PetscCall(Guess(s, q));
-  ReducedBegin(s->reduced, q->moved, q->source, q->local, q->past, q->flow);
+  ReducedBegin(s->reduced, q->F, q->moved, q->source, q->local, q->past, q->flow);
   t->begun = s->reduced->stream && !q->w ? PETSC_TRUE : PETSC_FALSE;
   PetscCall(ReducedResidual(s->reduced, s->x, q->f, q->g, q->k, s->x, PETSC_FALSE, q->w, q->p, s->b,
                             t->begun ? &report->measures : NULL));

@@ -9,6 +9,8 @@ typedef struct {
                              the dipoles' source is added (scheme coupled); else NULL */
   Vec f, g, k;            /* right-hand sides of momentum (the forces of the solution are added to it), Dm V/h^2 and V,
                              k of all bodies */
+  Vec F;                  /* minus what is known of the force on all bodies' markers: in f, but its near field not in k;
+                             NULL: none */
   PetscBool local;        /* f is zero outside the markers' window */
   Vec w, p, sigma, d, V;  /* solution; sigma, d and V hold the first guess; w and p may be NULL where
                              ReducedNeedsNoPressure, */

@@ -86,7 +86,7 @@ static PetscErrorCode Past(Scheme s, Coupled *d, const BDF *b) {
     d->past.flow[j] = flow[j];
   }
   if (d->next.force && !d->convection)
-    PetscCall(MarkersClear(s->coupling->markers, f, d->next.rows));
+    PetscCall(MarkersClear(s->coupling->markers, f, &d->next.window));
   else if (s->fluid->steady || d->next.flow)
     PetscCall(VecSet(f, 0));
   else {
@@ -104,12 +104,12 @@ static PetscErrorCode RightHandSides(Scheme s, Coupled *d, const BDF *b) {
   PetscFunctionBeginUser;
   PetscCall(VecSet(d->known, 0));
   if (d->source) PetscCall(VecSet(d->source, 0));
-  if (d->next.source) PetscCall(GridClearRows(s->fluid->grid, d->next.rows, d->next.source));
+  if (d->next.source) PetscCall(GridClear(s->fluid->grid, &d->next.window, d->next.source));
   PetscCall(Past(s, d, b));
   if (s->fluid->bc1) PetscCall(VecAXPY(f, 1, s->fluid->bc1));
   PetscCall(VecWAXPY(d->Y, 1 / b->a0, s->background, d->Xhat));
-  if (CouplingHasMembrane(s->coupling)) PetscCall(CouplingElastic(s->coupling, -1, d->Y, f, d->known));
-  PetscCall(CouplingAddGravity(s->coupling, d->Xstar, f, d->known));
+  PetscCall(CouplingKnownForce(s->coupling, d->Y, d->Xstar, d->force));
+  PetscCall(CouplingSpreadForce(s->coupling, d->force, f));
   if (d->moved)
     PetscCall(ContrastKnown(s->coupling, s->background, d->Y, d->moved, d->known));
   else
@@ -149,6 +149,7 @@ static PetscErrorCode Solve(Scheme s, Coupled *d) {
                                   .f = Momentum(d),
                                   .g = s->g,
                                   .k = d->known,
+                                  .F = d->force,
                                   .local = w || d->convection ? PETSC_FALSE : PETSC_TRUE,
                                   .w = w,
                                   .p = n->p,

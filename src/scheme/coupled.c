@@ -280,6 +280,7 @@ static PetscErrorCode SetUp_Coupled(Scheme s) {
   PetscCall(VecDuplicate(q->X, &d->Xhat));
   PetscCall(VecDuplicate(q->X, &d->V));
   PetscCall(LayoutCreateVec(s->coupling->bodies->layout, 2, &d->known));
+  PetscCall(VecDuplicate(d->known, &d->force));
   PetscCall(VecDuplicate(q->X, &d->Y));
   if (s->coupling->contrast) {
     PetscCall(VecDuplicate(q->X, &d->moved));
@@ -317,14 +318,15 @@ static PetscErrorCode KSP_Coupled(Scheme s, const char prefix[], KSP *ksp) {
 
 static PetscErrorCode Destroy_Coupled(Scheme s) {
   Coupled *d = (Coupled *)s->data;
-  Vec *others[] = {&d->f, &d->Xstar, &d->Xhat, &d->V, &d->known, &d->Y, &d->P, &d->made_at, &d->moved, &d->source};
+  Vec *others[] = {&d->f, &d->Xstar,   &d->Xhat,  &d->V,      &d->known, &d->Y,
+                   &d->P, &d->made_at, &d->moved, &d->source, &d->force};
   PetscFunctionBeginUser;
   PetscCall(CoupledSolverDestroy(&d->solver));
   PetscCall(DirectSolverDestroy(&d->direct));
   PetscCall(ConvectionDestroy(&d->convection));
   PetscCall(StateDestroy(&d->next));
   PetscCall(HistoryDestroy(&d->history));
-  for (int i = 0; i < 10; i++) PetscCall(VecDestroy(others[i]));
+  for (int i = 0; i < 11; i++) PetscCall(VecDestroy(others[i]));
   PetscCall(PetscFree(d->made_with));
   PetscCall(PetscFree(d->edges));
   PetscCall(PetscFree(s->data));

@@ -22,6 +22,7 @@ typedef struct {
   StreamPast past;       /* the states before, where they are a force as flows */
   Vec Xstar, Xhat;       /* extrapolated markers, BDF history of the markers */
   Vec moved, source;     /* viscosity contrast: known part of the markers' motion, divergence unless next has it */
+  Vec force;             /* minus what is known of the force on all bodies' markers */
   Vec V, known, Y;       /* solved part of the markers' velocity, what is known of it, and of obstacles; work */
   Vec P;                 /* the markers' velocity as the labels of the step see it */
   PetscScalar *edges;    /* [2n] work */

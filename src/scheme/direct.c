@@ -284,6 +284,9 @@ static PetscErrorCode RightHandSide(DirectSolver d, const CoupledProblem *q) {
   PetscScalar *b;
   PetscReal mean[2] = {0, 0};
   PetscFunctionBeginUser;
+  PetscCall(VecGetArray(q->k, &b));
+  PetscCall(CouplingNearField(d->coupling, -1, q->F, b));
+  PetscCall(VecRestoreArray(q->k, &b));
   if (d->source) PetscCall(KnownMotion(d, q, mean));
   PetscCall(VecSet(d->b, 0));
   PetscCall(VecGetArray(d->b, &b));
