@@ -57,13 +57,13 @@ __attribute__((always_inline)) static inline void NearFarOrders(const int orders
    from there on by two orders without, from NEAR_FAR_FIRST on by one: what is left out is 1.1e-7 or less.
    NearFarIsClose - which of them take `fourth`, which is not looked at where none does. A pair has the same C whichever
    the others are. Not collective. */
-#define NEAR_FAR_SECOND 20
-#define NEAR_FAR_FIRST 40
+#define NEAR_FAR_SECOND 28
+#define NEAR_FAR_FIRST 60
 static inline LanesBits NearFarIsClose(Lanes x, Lanes y) {
   return (LanesBits)(x * x + y * y < NEAR_FAR_SECOND * NEAR_FAR_SECOND);
 }
-static inline void NearFarPairs(const NearFar *f, PetscReal scale, Lanes x, Lanes y, const Lanes fourth[4][2],
-                                Lanes C[4]) {
+__attribute__((always_inline)) static inline void NearFarPairs(const NearFar *f, PetscReal scale, Lanes x, Lanes y,
+                                                               const Lanes fourth[4][2], Lanes C[4]) {
   const LanesBits close = NearFarIsClose(x, y), near = (LanesBits)(x * x + y * y < NEAR_FAR_FIRST * NEAR_FAR_FIRST);
   Lanes part[4];
   if (!LanesAny(near)) {

@@ -5,7 +5,7 @@
 #define CONVOLVED 128        /* most markers whose sums take less time than transforms */
 #define CONVOLVED_ROUGH 1024 /* with a prime factor above 13, for which a transform takes many times longer */
 #define TURNS 3              /* a step turns the states before it by as many different angles */
-#define KEPT 4               /* a step asks several times for the same derivative */
+#define KEPT 6               /* a step asks several times for the same derivative */
 #define ROUND CONVOLVE_ROUND
 
 /* Of X[2n] to some power, 0: none yet. */

@@ -137,8 +137,7 @@ PetscErrorCode MarkersSpread(Markers m, PetscReal alpha, Vec F, Vec w) {
   PetscCall(LayoutGatherVec(m->layout, F, m->force));
   PetscCall(VecGetArray(w, &wa));
   for (int f = FIELD_U; f <= FIELD_V; f++)
-    for (PetscInt j = m->window.rows[0]; j < PetscMin(m->window.rows[1], m->grid->rows[f]); j++)
-      MarkerRowSpread(m->rows, (Field)f, j, alpha, m->force, wa + GridRowStart(m->grid, (Field)f, j));
+    MarkerRowsSpread(m->rows, (Field)f, alpha, m->force, wa + GridRowStart(m->grid, (Field)f, 0));
   PetscCall(VecRestoreArray(w, &wa));
   PetscCall(PetscLogEventEnd(m->spread, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);

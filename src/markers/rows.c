@@ -45,23 +45,38 @@ static inline void Prefetch(MarkerRows r, Field f, PetscInt e) {
   __builtin_prefetch(next + 64);
 }
 
+/* row += force times a stencil's weights along it. */
+static inline void AddWeights(const Grid g, PetscInt columns, const Stencil *s, PetscScalar force, PetscScalar row[]) {
+  const PetscInt i0 = s->first[0];
+  const PetscReal *weight = s->weight[0];
+  if (i0 >= 0 && i0 + LANES <= columns && i0 + s->n[0] <= columns) {
+    LanesPut(LanesAt(row + i0) + force * LanesAt(weight), row + i0);
+    for (PetscInt a = LANES; a < s->n[0]; a++) row[i0 + a] += force * weight[a];
+  } else
+    for (PetscInt a = 0; a < s->n[0]; a++) {
+      const PetscInt i = g->wall[0] ? i0 + a : (i0 + a) % columns;
+      if (i >= 0 && i < columns) row[i] += force * weight[a];
+    }
+}
+
 void MarkerRowSpread(MarkerRows r, Field f, PetscInt j, PetscReal alpha, const PetscScalar F[], PetscScalar row[]) {
-  const PetscInt columns = r->grid->columns[f];
   for (PetscInt e = r->start[f][j]; e < r->start[f][j + 1]; e++) {
     const RowEntry at = r->entry[f][e];
     const Stencil *s = &r->stencil[at.stencil];
     Prefetch(r, f, e);
-    const PetscInt i0 = s->first[0];
-    const PetscReal *weight = s->weight[0];
-    const PetscScalar force = alpha * F[at.stencil] * s->weight[1][at.entry];
-    if (i0 >= 0 && i0 + LANES <= columns && i0 + s->n[0] <= columns) {
-      LanesPut(LanesAt(row + i0) + force * LanesAt(weight), row + i0);
-      for (PetscInt a = LANES; a < s->n[0]; a++) row[i0 + a] += force * weight[a];
-    } else
-      for (PetscInt a = 0; a < s->n[0]; a++) {
-        const PetscInt i = r->grid->wall[0] ? i0 + a : (i0 + a) % columns;
-        if (i >= 0 && i < columns) row[i] += force * weight[a];
-      }
+    AddWeights(r->grid, r->grid->columns[f], s, alpha * F[at.stencil] * s->weight[1][at.entry], row);
+  }
+}
+
+void MarkerRowsSpread(MarkerRows r, Field f, PetscReal alpha, const PetscScalar F[], PetscScalar all[]) {
+  const Grid g = r->grid;
+  const PetscInt columns = g->columns[f];
+  for (PetscInt k = f; k < r->stencils; k += 2) {
+    const Stencil *s = &r->stencil[k];
+    for (PetscInt b = 0; b < s->n[1]; b++) {
+      const PetscInt j = LocalRow(g, f, s, b);
+      if (j >= 0 && j < g->rows[f]) AddWeights(g, columns, s, alpha * F[k] * s->weight[1][b], all + j * columns);
+    }
   }
 }
 

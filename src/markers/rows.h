@@ -33,8 +33,11 @@ PETSC_EXTERN PetscErrorCode MarkerRowsDestroy(MarkerRows *rows);
 PETSC_EXTERN PetscErrorCode MarkerRowsPlace(MarkerRows rows, const Stencil stencil[]);
 
 /* MarkerRowSpread - row += alpha E^T F in this rank's row j of u or v, F[stencils]; j may be the number of rows: the
-   next rank's first. MarkerRowInterpolate - U[stencils] += what row j gives. Not collective. */
+   next rank's first. MarkerRowsSpread - the same to all of this rank's rows, one after the other in `all`.
+   MarkerRowInterpolate - U[stencils] += what row j gives. Not collective. */
 PETSC_EXTERN void MarkerRowSpread(MarkerRows rows, Field field, PetscInt j, PetscReal alpha, const PetscScalar F[],
                                   PetscScalar row[]);
+PETSC_EXTERN void MarkerRowsSpread(MarkerRows rows, Field field, PetscReal alpha, const PetscScalar F[],
+                                   PetscScalar all[]);
 PETSC_EXTERN void MarkerRowInterpolate(MarkerRows rows, Field field, PetscInt j, const PetscScalar row[],
                                        PetscScalar U[]);
