@@ -22,12 +22,12 @@ static PetscInt IB6(PetscReal x, PetscInt *first, PetscReal w[KERNEL_MAX_POINTS]
 /* Cardinal B-spline with n support points (degree n - 1), centred on x, by the Cox-de Boor recursion. */
 static PetscInt BSpline(PetscInt n, PetscReal x, PetscInt *first, PetscReal w[KERNEL_MAX_POINTS]) {
   const PetscReal left = x - 0.5 * (PetscReal)n, below = PetscFloorReal(left), f = left - below;
-  PetscReal M[KERNEL_MAX_POINTS] = {1};
-  for (PetscInt m = 2; m <= n; m++)
+  PetscReal M[KERNEL_MAX_POINTS] = {1}, factorial = 1;
+  for (PetscInt m = 2; m <= n; factorial *= m - 1, m++) /* without its divisions by m - 1 */
     for (PetscInt i = m - 1; i >= 0; i--)
-      M[i] = ((i < m - 1 ? (f + i) * M[i] : 0) + (i > 0 ? (m - f - i) * M[i - 1] : 0)) / (m - 1);
+      M[i] = (i < m - 1 ? (f + i) * M[i] : 0) + (i > 0 ? (m - f - i) * M[i - 1] : 0);
   *first = (PetscInt)below + 1;
-  for (PetscInt k = 0; k < n; k++) w[k] = M[n - 1 - k];
+  for (PetscInt k = 0; k < n; k++) w[k] = M[n - 1 - k] * (1 / factorial);
   return n;
 }
 

@@ -47,11 +47,19 @@ void MembraneStretching(Membrane m, const PetscReal tau[], const PetscScalar U[]
   }
 }
 
+/* Of most vesicles no tension turns. */
+static PetscBool IsZero(PetscInt n, const PetscReal x[]) {
+  for (PetscInt k = 0; k < n; k++)
+    if (x[k] != 0) return PETSC_FALSE;
+  return PETSC_TRUE;
+}
+
 void MembraneStretchingTranspose(Membrane m, const PetscReal tau[], PetscReal alpha, const PetscScalar sigma[],
                                  PetscScalar F[]) {
   PetscScalar *pull = m->work.stretching;
   for (PetscInt v = m->layout->own; v < m->layout->end; v++) {
     const PetscInt at = LayoutOffset(m->layout, v);
+    if (IsZero(LayoutCount(m->layout, v), sigma + at)) continue;
     for (PetscInt k = 0; k < 2 * LayoutCount(m->layout, v); k++) pull[k] = tau[2 * at + k] * sigma[at + k / 2];
     MembraneEdgesTranspose(m, v, alpha, pull, F + 2 * at);
   }
@@ -68,6 +76,7 @@ void MembraneVesiclePull(Membrane m, PetscInt v, PetscReal alpha, const PetscRea
 void MembranePull(Membrane m, PetscReal alpha, const PetscReal tension[], const PetscScalar X[], PetscScalar F[]) {
   for (PetscInt v = m->layout->own; v < m->layout->end; v++) {
     const PetscInt at = LayoutOffset(m->layout, v);
+    if (IsZero(LayoutCount(m->layout, v), tension + at)) continue;
     MembraneVesiclePull(m, v, alpha, tension + at, X + 2 * at, F + 2 * at);
   }
 }

@@ -45,7 +45,7 @@ static PetscReal LargestError(Membrane m, const PetscScalar X[], const PetscScal
   for (PetscInt k = 0; k < m->layout->n; k++) {
     const PetscReal x = X[2 * k] - Xstar[2 * k], y = X[2 * k + 1] - Xstar[2 * k + 1];
     const PetscReal error = PetscSqrtReal(x * x + y * y) / R0;
-    largest = error > largest || PetscIsNanReal(error) ? error : largest;
+    largest = error > largest || error != error ? error : largest;
   }
   return largest;
 }
