@@ -58,7 +58,7 @@ __attribute__((always_inline)) static inline void NearFarOrders(const int orders
    NearFarIsClose - which of them take `fourth`, which is not looked at where none does. A pair has the same C whichever
    the others are. Not collective. */
 #define NEAR_FAR_SECOND 28
-#define NEAR_FAR_FIRST 60
+#define NEAR_FAR_FIRST 44
 static inline LanesBits NearFarIsClose(Lanes x, Lanes y) {
   return (LanesBits)(x * x + y * y < NEAR_FAR_SECOND * NEAR_FAR_SECOND);
 }
