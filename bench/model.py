@@ -10,6 +10,7 @@ LATENCY = 2e-6  # of a message (s)
 BANDWIDTH = 1e9  # of a rank (bytes/s): 64 ranks of a node share 64e9
 MARKERS = 137 / 512  # a column: the scene of the bench, ds = 1.9 h
 ROWS = 0.15  # part of all rows that membranes reach: the bench's vesicle with its stencils
+COLUMNS = 0.25  # and of the columns, within which forces are cleared, spread and squared
 FELT = 0.3  # of the modes above and below them, that feel a force there
 BYTES = 8
 SORTED = 0.6e-6  # rows and stencils of a marker sorted on every rank, a step (docs/performance.md, A thousand vesicles)
@@ -38,10 +39,12 @@ class Scene:
 
 @dataclass
 class Rates:
-    """Seconds a flop of the solves, a byte of grid data, a marker's own work, an operation of the dense problem."""
+    """Seconds a flop of the solves, a byte of grid data, a step whatever its size, a marker's own work, an operation of the
+    dense problem."""
 
     flop: float
     byte: float
+    step: float
     marker: float
     dense: float
 
@@ -59,8 +62,8 @@ def solve_bytes(s: Scene) -> float:
 
 
 def step_bytes(s: Scene) -> float:
-    """Bytes a cell of a step outside the solves: forces cleared, spread and squared in the membranes' rows."""
-    return BYTES * 4 * s.rows
+    """Bytes a cell of a step outside the solves: forces cleared, spread and squared in the membranes' window."""
+    return BYTES * 4 * s.rows * (COLUMNS if s.vesicles == 1 else 1)
 
 
 def dense_operations(s: Scene) -> float:
@@ -83,19 +86,25 @@ def fit(measured: list[tuple[Scene, float, float]], byte: float) -> tuple[Rates,
     grid = np.array([[c * solve_flops(s)] for s, c in zip(scenes, cells)])
     moved = cells * byte * np.array([solve_bytes(s) for s in scenes])
     flop, off = _closest(grid, np.array(fast), moved)
-    work = np.array([[s.all_markers, dense_operations(s)] for s in scenes], float)
+    work = np.array([[1, s.all_markers, dense_operations(s)] for s in scenes], float)
     markers = np.array([s.all_markers for s in scenes])
     known = cells * byte * np.array([step_bytes(s) for s in scenes]) + SORTED * markers
-    (marker, dense), more = _closest(work, np.array(rest), known)
-    return Rates(float(flop[0]), byte, float(marker), float(dense)), max(off, more)
+    (step, marker, dense), more = _closest(work, np.array(rest), known)
+    return Rates(float(flop[0]), byte, float(step), float(marker), float(dense)), max(off, more)
 
 
 def _closest(work: np.ndarray, seconds: np.ndarray, known: np.ndarray) -> tuple[np.ndarray, float]:
-    """Return rates above zero with work @ rates + known closest to the seconds, relatively, and the largest deviation."""
+    """Return rates not below zero with work @ rates + known close to the seconds, relatively, and the largest deviation: a
+    rate that would be negative is left out."""
     a, b = work / seconds[:, None], 1 - known / seconds
     scale = np.abs(a).max(axis=0)
-    rates = np.maximum(np.linalg.lstsq(a / scale, b, rcond=None)[0], 0) / scale
-    return rates, float(np.abs(a @ rates - b).max())
+    kept = np.full(len(scale), True)
+    while True:
+        rates = np.zeros(len(scale))
+        rates[kept] = np.linalg.lstsq(a[:, kept] / scale[kept], b, rcond=None)[0] / scale[kept]
+        if not (rates < 0).any():
+            return rates, float(np.abs(a @ rates - b).max())
+        kept &= rates >= 0
 
 
 def _all_to_all(ranks: int, numbers: float) -> float:
@@ -125,7 +134,7 @@ def parts(s: Scene, r: Rates, ranks: int, layout: str) -> dict[str, float]:
     markers = r.marker * s.all_markers + r.dense * dense_operations(s)
     share = np.ceil(s.vesicles / ranks) / s.vesicles if ours else 1 / ranks
     heard = s.all_markers if ours else max(s.markers, s.all_markers / ranks)  # markers that a rank hears of
-    found = {"grid": grid, "markers": markers * share}
+    found = {"grid": grid, "markers": r.step + markers * share}
     found["replicated"] = SORTED * s.all_markers / (1 if ours else ranks)
     found |= {"chain": 0.0, "messages": 0.0}
     if alone:

@@ -222,7 +222,7 @@ def _fitted(results: Path) -> tuple[model.Rates, dict[str, list[str]]]:
         rows.append([f"{s.n}^2", *(f"{1e3 * t:.2f}" for t in (fast, solve, rest, other))])
     lines = [
         f"Rates of one rank: {1e-9 / rates.byte:.0f} GB/s of grid data (copies, read and write), "
-        f"{1e-9 / rates.flop:.1f} Gflop/s in the solves, {1e6 * rates.marker:.1f} microseconds a marker, {1e9 * rates.dense:.1f} ns"
+        f"{1e-9 / rates.flop:.1f} Gflop/s in the solves, {1e3 * rates.step:.2f} ms a step, {1e6 * rates.marker:.1f} microseconds a marker, {1e9 * rates.dense:.1f} ns"
         f" for M^2 and solve (fitted). Largest deviation of the fit: {100 * deviation:.0f} %.\n",
         *table(["cells", "fast solves, ms", "model", "rest, ms", "model"], rows),
     ]

@@ -112,11 +112,11 @@ def test_fits_find_what_they_are_given():
     cells = np.array([128, 256, 512, 1024])
     c, deviation = report._deviation(cells, 3e-9 * cells**2 * np.log2(cells**2))
     assert c == pytest.approx(3e-9) and np.abs(deviation).max() < 1e-12
-    rates = model.Rates(2e-10, 1e-10, 3e-6, 5e-9)
+    rates = model.Rates(2e-10, 1e-10, 4e-5, 3e-6, 5e-9)
     measured = []
     for s in map(model.finer, cells):
         solve = s.n**2 * (rates.flop * model.solve_flops(s) + rates.byte * model.solve_bytes(s))
         measured.append((s, solve, model.seconds(s, rates, 1, "petves") - solve))
     found, deviation = model.fit(measured, rates.byte)
     assert found.flop == pytest.approx(rates.flop) and found.marker == pytest.approx(rates.marker)
-    assert found.dense == pytest.approx(rates.dense) and deviation < 1e-9
+    assert found.dense == pytest.approx(rates.dense) and found.step == pytest.approx(rates.step) and deviation < 1e-9
