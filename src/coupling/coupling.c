@@ -169,10 +169,9 @@ PetscErrorCode CouplingKnownForce(Coupling c, Vec Y, Vec X, Vec F) {
 }
 
 PetscErrorCode CouplingSpreadForce(Coupling c, Vec F, Vec w) {
-  const Grid g = c->fluid->grid;
   PetscFunctionBeginUser;
-  PetscCall(MarkersSpread(c->markers, -1 / PetscSqr(g->h), F, w));
-  if (c->membrane->weight && !g->wall[0] && !g->wall[1]) PetscCall(FluidRemoveMean(c->fluid, w));
+  PetscCall(MarkersSpread(c->markers, -1 / PetscSqr(c->fluid->grid->h), F, w));
+  if (CouplingRemovesMean(c)) PetscCall(FluidRemoveMean(c->fluid, w));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -105,6 +105,13 @@ PETSC_EXTERN PetscErrorCode CouplingElasticForce(Coupling coupling, Vec X, Vec F
 PETSC_EXTERN PetscErrorCode CouplingElasticRate(Coupling coupling, PetscReal alpha, const PetscScalar V[],
                                                 PetscScalar F[]);
 
+/* CouplingRemovesMean - whether CouplingSpreadForce takes gravity's mean off, everywhere on the grid. Not collective.
+ */
+static inline PetscBool CouplingRemovesMean(Coupling coupling) {
+  const Grid g = coupling->fluid->grid;
+  return coupling->membrane->weight && !g->wall[0] && !g->wall[1] ? PETSC_TRUE : PETSC_FALSE;
+}
+
 /* CouplingKnownForce - F = the elastic force of Y less gravity's on the markers X, a marker vector of all bodies: minus
    what is known of the force on them. CouplingSpreadForce - w -= E^T F/h^2, less gravity's mean in a box that is
    periodic both ways. CouplingNearField - u[2n], the bodies' own velocities, += alpha C F with near field; F NULL: 0.

@@ -76,6 +76,12 @@ static Vec Momentum(const Coupled *d) {
   return d->next.force ? d->next.force : d->f;
 }
 
+/* Whether f is zero outside the markers' window, which is remembered with it: convection is everywhere, and so is
+   gravity's mean that is taken off. */
+static PetscBool IsLocal(Scheme s, const Coupled *d) {
+  return d->next.force && !d->convection && !CouplingRemovesMean(s->coupling) ? PETSC_TRUE : PETSC_FALSE;
+}
+
 /* The history uhat: in f, with k = lag E uhat, or as flows beside f; none in quasi-steady flow. */
 static PetscErrorCode Past(Scheme s, Coupled *d, const BDF *b) {
   const Vec f = Momentum(d), *flow = STATES(s, flow);
@@ -85,7 +91,7 @@ static PetscErrorCode Past(Scheme s, Coupled *d, const BDF *b) {
     d->past.weight[j] = b->history[j];
     d->past.flow[j] = flow[j];
   }
-  if (d->next.force && !d->convection)
+  if (IsLocal(s, d))
     PetscCall(MarkersClear(s->coupling->markers, f, &d->next.window));
   else if (s->fluid->steady || d->next.flow)
     PetscCall(VecSet(f, 0));
@@ -104,7 +110,10 @@ static PetscErrorCode RightHandSides(Scheme s, Coupled *d, const BDF *b) {
   PetscFunctionBeginUser;
   PetscCall(VecSet(d->known, 0));
   if (d->source) PetscCall(VecSet(d->source, 0));
-  if (d->next.source) PetscCall(GridClear(s->fluid->grid, &d->next.window, d->next.source));
+  if (d->next.source && IsLocal(s, d))
+    PetscCall(GridClear(s->fluid->grid, &d->next.window, d->next.source));
+  else if (d->next.source)
+    PetscCall(VecSet(d->next.source, 0));
   PetscCall(Past(s, d, b));
   if (s->fluid->bc1) PetscCall(VecAXPY(f, 1, s->fluid->bc1));
   PetscCall(VecWAXPY(d->Y, 1 / b->a0, s->background, d->Xhat));
@@ -150,7 +159,7 @@ static PetscErrorCode Solve(Scheme s, Coupled *d) {
                                   .g = s->g,
                                   .k = d->known,
                                   .F = d->force,
-                                  .local = w || d->convection ? PETSC_FALSE : PETSC_TRUE,
+                                  .local = w ? PETSC_FALSE : IsLocal(s, d),
                                   .w = w,
                                   .p = n->p,
                                   .sigma = n->sigma,
