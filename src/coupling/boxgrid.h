@@ -13,6 +13,7 @@
 /* The lattice's answers to the sources, borrowed: of forces, or (dipole not NULL) of dipoles. Tables reach
    BOX_LATTICE_CELLS and OFFSET_LAGS. */
 typedef struct {
+  PetscReal unit; /* NearLogarithm */
   const OffsetTable *stokeslet;
   const ImageTable *half;    /* in front of a wall; NULL without walls */
   const OffsetTable *dipole; /* [2] */

@@ -50,7 +50,7 @@ PetscErrorCode DoubleLayerDestroy(DoubleLayer *layer) {
 }
 
 PetscErrorCode DoubleLayerAddBoxPart(DoubleLayer s, const FluidSpec *spec, PetscBool error, PetscBool all) {
-  const BoxLattice lattice = {.dipole = s->lattice, .half = s->near->image->table};
+  const BoxLattice lattice = {.unit = s->near->unit, .dipole = s->lattice, .half = s->near->image->table};
   PetscFunctionBeginUser;
   PetscCall(DoubleBoxCreate(spec, s->near->markers, &lattice, error, all, &s->box));
   if (s->image) DoubleBoxTakeImages(s->box, s->image, DoubleImageFar);

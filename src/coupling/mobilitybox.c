@@ -27,8 +27,9 @@ PetscErrorCode MobilityBoxDestroy(MobilityBox *box) {
 }
 
 /* The Stokeslet, which L tends to far away. */
-static void Stokeslet(PetscReal nu, const PetscReal d[2], PetscReal S[4]) {
-  const PetscReal r2 = d[0] * d[0] + d[1] * d[1], over = 1 / (4 * PETSC_PI * nu), logarithm = -0.5 * PetscLogReal(r2);
+static void Stokeslet(NearField f, const PetscReal d[2], PetscReal S[4]) {
+  const PetscReal r2 = d[0] * d[0] + d[1] * d[1], over = 1 / (4 * PETSC_PI * f->nu);
+  const PetscReal logarithm = -0.5 * PetscLogReal(r2 / PetscSqr(f->unit));
   S[0] = over * (logarithm + d[0] * d[0] / r2);
   S[1] = over * (logarithm + d[1] * d[1] / r2);
   S[2] = S[3] = over * d[0] * d[1] / r2;
@@ -44,7 +45,7 @@ static void Lattice(NearField f, PetscInt i, PetscInt j, PetscReal value[4]) {
     NearLatticePair(f, i, j, d, L);
     NearImageAdd(f->image, NULL, i, j, d, L, C);
   } else
-    Stokeslet(f->nu, d, L);
+    Stokeslet(f, d, L);
   NearImageAddBlake(f->image, i, j, d, -1, C);
   for (int q = 0; q < 4; q++) value[q] = fade * (L[q] - C[q]);
 }

@@ -1,54 +1,43 @@
 #include "coupling/nearblock.h"
 
-/* The free-space Stokeslet of four pairs: xx, yy, xy. */
-static void Stokeslets(PetscReal nu, Lanes x, Lanes y, Lanes S[3]) {
-  const Lanes r2 = x * x + y * y, logarithm = -0.5 * LanesLog(r2);
-  const PetscReal factor = 1 / (4 * PETSC_PI * nu);
+/* The free-space Stokeslet of four pairs: xx, yy, xy. Its logarithm is that of a length over the near field's unit. */
+static void Stokeslets(NearField f, Lanes x, Lanes y, Lanes S[3]) {
+  const PetscReal factor = 1 / (4 * PETSC_PI * f->nu), over2 = 1 / PetscSqr(f->unit);
+  const Lanes r2 = x * x + y * y, logarithm = -0.5 * LanesLog(over2 * r2);
   S[0] = factor * (logarithm + x * x / r2);
   S[1] = factor * (logarithm + y * y / r2);
   S[2] = factor * x * y / r2;
 }
 
-/* What all pairs of a block have in common. */
-typedef struct {
-  const NearFar *far;
-  PetscReal logarithm; /* of h, over 4 pi: the lattice's table is without it */
-} PairRule;
-
-static PairRule MakeRule(NearField f, int far) {
-  return (PairRule){&f->far[far], PetscLogReal(f->markers->grid->h) / (4 * PETSC_PI)};
-}
-
 /* L of markers i and j, d = X_i - X_j: xx, yy, xy and yx. */
-static void LatticePair(NearField f, PetscReal logarithm, PetscInt i, PetscInt j, const PetscReal d[2],
-                        PetscReal L[4]) {
+static void LatticePair(NearField f, PetscInt i, PetscInt j, const PetscReal d[2], PetscReal L[4]) {
   const PetscReal *X = f->markers->X, cell = 1 / f->markers->grid->h, over = 1 / f->nu;
   PetscInt periods[2];
   for (int dir = 0; dir < 2; dir++) /* in cells */
     periods[dir] = (PetscInt)rint((d[dir] - (X[2 * i + dir] - X[2 * j + dir])) * cell);
   StencilFourSums(&f->lattice, &f->stencil[2 * i], &f->stencil[2 * j], periods, L);
-  L[0] -= logarithm;
-  L[1] -= logarithm;
+  L[0] -= f->logarithm;
+  L[1] -= f->logarithm;
   for (int c = 0; c < 4; c++) L[c] *= over;
 }
 
 static const int respond[4] = {0, 1, 0, 1}, source[4] = {0, 1, 1, 0}; /* components that meet in xx, yy, xy, yx */
 
-/* L and C = S - L of two markers whose S is known; by stencils up to the reach of rule->far. */
-static void Pair(NearField f, const PairRule *rule, PetscInt i, PetscInt j, const PetscReal d[2], const PetscReal S[3],
+/* L and C = S - L of two markers whose S is known; by stencils up to the reach of far. */
+static void Pair(NearField f, const NearFar *far, PetscInt i, PetscInt j, const PetscReal d[2], const PetscReal S[3],
                  PetscReal L[4], PetscReal C[4]) {
   const PetscReal cell = 1 / f->markers->grid->h, r2 = d[0] * d[0] + d[1] * d[1];
   Lanes fourth[4][2], four[4];
-  if (f->free || r2 * cell * cell <= PetscSqr(rule->far->reach)) {
-    if (!f->free) LatticePair(f, rule->logarithm, i, j, d, L);
+  if (f->free || r2 * cell * cell <= PetscSqr(far->reach)) {
+    if (!f->free) LatticePair(f, i, j, d, L);
     for (int c = 0; c < 4; c++) C[c] = S[PetscMin(c, 2)] - L[c];
     return;
   }
   for (int c = 0; c < 4; c++)
     for (int dir = 0; dir < 2; dir++)
       fourth[c][dir] = f->stencil[2 * i + respond[c]].fourth[dir] + f->stencil[2 * j + source[c]].fourth[dir] -
-                       rule->far->fourth[respond[c] != dir] - rule->far->fourth[source[c] != dir] - (Lanes){0};
-  NearFarPairs(rule->far, 1 / f->nu, cell * d[0] - (Lanes){0}, cell * d[1] - (Lanes){0}, fourth, four);
+                       far->fourth[respond[c] != dir] - far->fourth[source[c] != dir] - (Lanes){0};
+  NearFarPairs(far, 1 / f->nu, cell * d[0] - (Lanes){0}, cell * d[1] - (Lanes){0}, fourth, four);
   for (int c = 0; c < 4; c++) {
     C[c] = four[c][0];
     L[c] = S[PetscMin(c, 2)] - C[c];
@@ -56,15 +45,14 @@ static void Pair(NearField f, const PairRule *rule, PetscInt i, PetscInt j, cons
 }
 
 void NearLatticePair(NearField f, PetscInt i, PetscInt j, const PetscReal d[2], PetscReal L[4]) {
-  const PairRule rule = MakeRule(f, NEAR_ONE);
   PetscReal C[4];
   Lanes S[3];
   if (d[0] == 0 && d[1] == 0) {
-    LatticePair(f, rule.logarithm, i, j, d, L);
+    LatticePair(f, i, j, d, L);
     return;
   }
-  Stokeslets(f->nu, d[0] - (Lanes){0}, d[1] - (Lanes){0}, S);
-  Pair(f, &rule, i, j, d, (PetscReal[]){S[0][0], S[1][0], S[2][0]}, L, C);
+  Stokeslets(f, d[0] - (Lanes){0}, d[1] - (Lanes){0}, S);
+  Pair(f, &f->far[NEAR_ONE], i, j, d, (PetscReal[]){S[0][0], S[1][0], S[2][0]}, L, C);
 }
 
 /* The diagonal of S in a curve's quadrature, from the derivative T = dX/dk: xx, yy, xy. */
@@ -72,7 +60,7 @@ static void SelfPart(NearField f, PetscInt v, const PetscReal T[2], PetscReal S[
   const PetscReal factor = 1 / (4 * PETSC_PI * f->nu);
   const PetscReal t2 = T[0] * T[0] + T[1] * T[1], n = LayoutCount(f->bodies->layout, v);
   const PetscReal part = f->bodies->kind[v].type == CURVE_OPEN ? 1 : n; /* of a turn: see NearField's Kress, Zeta */
-  const PetscReal logarithm = -0.5 * (f->kress[v][0] + PetscLogReal(t2 * PetscSqr(part / (2 * PETSC_PI))));
+  const PetscReal logarithm = -0.5 * (f->kress[v][0] + PetscLogReal(t2 * PetscSqr(part / (2 * PETSC_PI * f->unit))));
   S[0] = factor * (logarithm + T[0] * T[0] / t2);
   S[1] = factor * (logarithm + T[1] * T[1] / t2);
   S[2] = factor * T[0] * T[1] / t2;
@@ -86,7 +74,7 @@ typedef struct {
   PetscInt i, j, n;
   PetscBool self, back, plain;      /* plain: far from all walls */
   PetscBool walls[2][2], off[2][2]; /* whose images count; from which it is far */
-  PairRule rule;
+  const NearFar *far;
   PetscReal reach; /* of stencils' sums (length) */
   PetscReal d[2][CHUNK], part[CHUNK], L[4][CHUNK], C[4][CHUNK];
 } Chunk;
@@ -132,7 +120,7 @@ static void FillFar(NearField f, Chunk *c) {
   for (PetscInt k = 0; k < c->n; k += LANES) {
     const Lanes x = cell * LanesAt(c->d[0] + k), y = cell * LanesAt(c->d[1] + k);
     if (LanesAny(NearFarIsClose(x, y))) Fourth(f, c, k, fourth);
-    NearFarPairs(c->rule.far, 1 / f->nu, x, y, fourth, C);
+    NearFarPairs(c->far, 1 / f->nu, x, y, fourth, C);
     for (int q = 0; q < 4; q++) LanesPut(C[q], c->C[q] + k);
   }
 }
@@ -158,7 +146,7 @@ static void FillNear(NearField f, Chunk *c) {
         k += LANES - 1;
         continue;
       }
-      Stokeslets(f->nu, x, y, S);
+      Stokeslets(f, x, y, S);
     }
     const PetscInt j = c->j + k, from = c->back ? c->i : j, to = c->back ? j : c->i;
     const PetscReal d[2] = {c->d[0][k], c->d[1][k]};
@@ -166,12 +154,12 @@ static void FillNear(NearField f, Chunk *c) {
     if (d[0] * d[0] + d[1] * d[1] > farthest2) continue;
     const PetscBool same = j == c->i && c->self ? PETSC_TRUE : PETSC_FALSE;
     for (int q = 0; q < 3; q++) own[q] = same ? 0 : S[q][k % LANES];
-    if (same) c->part[k] *= 0.5;
+    if (same) c->part[k] = 0.5; /* whole, as S of the marker itself, which has the same logarithm */
     if (same || c->plain) {
-      if (!f->free) LatticePair(f, c->rule.logarithm, to, from, d, L);
+      if (!f->free) LatticePair(f, to, from, d, L);
       for (int q = 0; q < 4; q++) C[q] = own[PetscMin(q, 2)] - L[q];
     } else
-      Pair(f, &c->rule, to, from, d, own, L, C);
+      Pair(f, c->far, to, from, d, own, L, C);
     for (int q = 0; q < 4; q++) {
       c->L[q][k] = L[q];
       c->C[q][k] = C[q];
@@ -313,8 +301,8 @@ PetscErrorCode NearBlockFill(NearField f, const NearBlock *b) {
   NearRow r = NearBlockBegin(f->bodies->layout, b);
   PetscFunctionBeginUser;
   if (f->image) FindWalls(f, b, c.walls);
-  c.rule = MakeRule(f, c.self ? NEAR_ONE : NEAR_TWO);
-  c.reach = c.rule.far->reach * f->markers->grid->h;
+  c.far = &f->far[c.self ? NEAR_ONE : NEAR_TWO];
+  c.reach = c.far->reach * f->markers->grid->h;
   do FillRow(f, &r, &c);
   while (NearBlockNext(f->bodies->layout, b, &r));
   if (c.self) PetscCall(AddSelf(f, b));

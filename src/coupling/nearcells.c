@@ -74,7 +74,6 @@ static void TakeLattice(NearCells *s, PetscInt k, const PetscInt cell[2], PetscI
   const OffsetTable *t = &s->coupling->near->lattice;
   const PaddedStencil *source = &s->source[2 * k];
   const PetscReal *F = &s->F[2 * k], h = s->coupling->fluid->grid->h, nu = s->coupling->fluid->nu;
-  const PetscReal constant = PetscLogReal(h) / (4 * PETSC_PI * nu);
   PetscReal *at[3];
   PaddedStencil weights[3];
   for (int f = 0; f < 3; f++) {
@@ -87,8 +86,6 @@ static void TakeLattice(NearCells *s, PetscInt k, const PetscInt cell[2], PetscI
   StencilRowAdd(t, OFFSET_VV, &weights[1], &source[1], none, -F[1] / nu, n, at[1]);
   StencilRowAdd(&s->pressure, OFFSET_UU, &weights[2], &source[0], none, -F[0] / h, n, at[2]);
   StencilRowAdd(&s->pressure, OFFSET_VV, &weights[2], &source[1], none, -F[1] / h, n, at[2]);
-  for (int c = 0; c < 2; c++)
-    for (PetscInt i = 0; i < n; i++) at[c][i] += constant * F[c];
 }
 
 /* The same of four distant markers, (x, y) from them to the cell, with forces (f, g): the Stokeslet, and the closed
@@ -96,7 +93,8 @@ static void TakeLattice(NearCells *s, PetscInt k, const PetscInt cell[2], PetscI
 static void TakeFar(const NearCells *s, Lanes x, Lanes y, Lanes f, Lanes g, Lanes sum[3]) {
   const FarCell *far = &s->far;
   const PetscReal h = s->coupling->fluid->grid->h, nu = s->coupling->fluid->nu;
-  const Lanes r2 = x * x + y * y, over = 1 / r2, along = (x * f + y * g) * over, logarithm = 0.5 * LanesLog(r2);
+  const Lanes r2 = x * x + y * y, over = 1 / r2, along = (x * f + y * g) * over,
+              logarithm = 0.5 * LanesLog(r2 * (1 / (h * h)));
   const Lanes c2 = (x * x - y * y) * over, s2 = 2 * x * y * over, c4 = c2 * c2 - s2 * s2, s4 = 2 * c2 * s2,
               c6 = c4 * c2 - s4 * s2, s6 = s4 * c2 + c4 * s2;
   const Lanes factor = h * h / (2 * PETSC_PI * nu) * over, even = 4 * far->a4 * c4,

@@ -10,10 +10,10 @@
 #define WINDOW 8     /* spacings */
 
 /* chi times the Stokeslet from y to x: xx, yy, xy. */
-static void Windowed(PetscReal nu, PetscReal window, const PetscReal x[2], const PetscReal y[2], PetscReal S[3]) {
+static void Windowed(NearField f, PetscReal window, const PetscReal x[2], const PetscReal y[2], PetscReal S[3]) {
   const PetscReal d[2] = {x[0] - y[0], x[1] - y[1]}, r2 = d[0] * d[0] + d[1] * d[1];
-  const PetscReal factor = FineWindow(PetscSqrtReal(r2), window) / (4 * PETSC_PI * nu);
-  const PetscReal logarithm = -0.5 * PetscLogReal(r2);
+  const PetscReal factor = FineWindow(PetscSqrtReal(r2), window) / (4 * PETSC_PI * f->nu);
+  const PetscReal logarithm = -0.5 * PetscLogReal(r2 / PetscSqr(f->unit));
   S[0] = factor * (logarithm + d[0] * d[0] / r2);
   S[1] = factor * (logarithm + d[1] * d[1] / r2);
   S[2] = factor * d[0] * d[1] / r2;
@@ -33,7 +33,7 @@ static PetscErrorCode AddAt(NearField f, const NearClose *close, PetscInt factor
   for (PetscInt q = 0; q < b.count; q++)
     for (PetscInt p = 0; p < a.count; p++) {
       PetscReal S[3];
-      Windowed(f->nu, window, a.x + 2 * a.used[p], b.x + 2 * b.used[q], S);
+      Windowed(f, window, a.x + 2 * a.used[p], b.x + 2 * b.used[q], S);
       for (int c = 0; c < 3; c++) K[c][q * a.count + p] = S[c];
     }
   for (int c = 0; c < 3; c++) PetscCall(FineCurveProject(&a, &b, K[c], part[c]));

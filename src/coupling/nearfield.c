@@ -37,7 +37,7 @@ static PetscErrorCode MakeLattice(NearField f) {
     PetscCall(PetscNew(&half));
     PetscCall(ImageTableFill(&f->lattice, half));
   }
-  PetscCall(NearImageCreate(f->markers, f->nu, half, &f->image));
+  PetscCall(NearImageCreate(f->markers, f->nu, f->unit, half, &f->image));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -50,6 +50,7 @@ PetscErrorCode NearFieldCreate(Markers markers, Bodies bodies, PetscReal nu, Nea
   f->markers = markers;
   f->bodies = bodies;
   f->nu = nu;
+  f->unit = markers->grid->h;
   f->free = markers->grid->free;
   NearFarMake(markers->kernel, f->far);
   if (!f->free) PetscCall(MakeLattice(f));
@@ -90,7 +91,8 @@ PetscErrorCode NearFieldDestroy(NearField *near) {
 }
 
 PetscErrorCode NearFieldCreateBoxPart(NearField f, const FluidSpec *spec, PetscBool whole, BoxPart *box) {
-  const BoxLattice lattice = {.stokeslet = &f->lattice, .half = f->image ? f->image->table : NULL, .whole = whole};
+  const BoxLattice lattice = {
+      .unit = f->unit, .stokeslet = &f->lattice, .half = f->image ? f->image->table : NULL, .whole = whole};
   PetscFunctionBeginUser;
   PetscCall(BoxPartCreate(spec, f->markers, &lattice, box));
   PetscFunctionReturn(PETSC_SUCCESS);

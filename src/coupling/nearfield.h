@@ -47,10 +47,10 @@ typedef struct {
 
 typedef struct _p_NearField *NearField;
 struct _p_NearField {
-  Markers markers; /* borrowed */
-  Bodies bodies;   /* borrowed */
-  PetscReal nu;
-  PetscBool free; /* unbounded fluid: C = S */
+  Markers markers;               /* borrowed */
+  Bodies bodies;                 /* borrowed */
+  PetscReal nu, unit, logarithm; /* of Stokeslets: NearLogarithm */
+  PetscBool free;                /* unbounded fluid: C = S */
   OffsetTable lattice;
   NearImage image;         /* what the walls add to each pair, from a table that is this one's */
   NearFar far[2];          /* distant pairs of one vesicle, of two */

@@ -43,10 +43,9 @@ static void Half(NearImage m, int direction, const ImagePair *p, PetscInt i, Pet
 /* The free lattice's mobility seen from a wall, in cells and of viscosity 1. */
 static void FreePart(NearImage m, int direction, int side, const PetscReal L[4], PetscReal free[IMAGE_PARTS]) {
   const int place[IMAGE_PARTS] = {1 - direction, direction, direction ? 3 : 2, direction ? 2 : 3};
-  const PetscReal constant = PetscLogReal(m->markers->grid->h) / (4 * PETSC_PI);
   for (int q = 0; q < IMAGE_PARTS; q++) free[q] = (side && q >= IMAGE_NT ? -m->nu : m->nu) * L[place[q]];
-  free[IMAGE_TT] += constant;
-  free[IMAGE_NN] += constant;
+  free[IMAGE_TT] += m->logarithm;
+  free[IMAGE_NN] += m->logarithm;
 }
 
 /* One wall's part, added. Stencils that are scaled near the wall take s s' of the half-space's mobility S + Blake -
@@ -88,8 +87,8 @@ void NearImageAddBlake(NearImage m, PetscInt i, PetscInt j, const PetscReal d[2]
       PetscReal blake[IMAGE_PARTS];
       if (!y) continue;
       NearImageBlake(&(ImagePair){d[1 - direction] / h, y[i], y[j]}, blake);
-      blake[IMAGE_TT] += PetscLogReal(h) / (4 * PETSC_PI); /* of lengths, not of cells */
-      blake[IMAGE_NN] += PetscLogReal(h) / (4 * PETSC_PI);
+      blake[IMAGE_TT] += m->logarithm;
+      blake[IMAGE_NN] += m->logarithm;
       NearImageTurn(direction, side, alpha / m->nu, blake, C);
     }
 }
@@ -208,7 +207,7 @@ PetscErrorCode NearImagePlace(NearImage m, const PaddedStencil stencil[]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode NearImageCreate(Markers markers, PetscReal nu, const ImageTable *table, NearImage *out) {
+PetscErrorCode NearImageCreate(Markers markers, PetscReal nu, PetscReal unit, const ImageTable *table, NearImage *out) {
   const PetscInt M = markers->layout->M;
   NearImage m;
   PetscFunctionBeginUser;
@@ -216,6 +215,7 @@ PetscErrorCode NearImageCreate(Markers markers, PetscReal nu, const ImageTable *
   *out = m;
   m->markers = markers;
   m->nu = nu;
+  m->logarithm = NearLogarithm(markers, unit);
   m->table = table;
   ImageKernelMake(markers->kernel, &m->kernel);
   if (!markers->grid->wall[0] && !markers->grid->wall[1]) PetscFunctionReturn(PETSC_SUCCESS);

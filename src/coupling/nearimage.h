@@ -24,6 +24,7 @@ typedef struct _p_NearImage *NearImage;
 struct _p_NearImage {
   Markers markers; /* borrowed */
   PetscReal nu;
+  PetscReal logarithm; /* NearLogarithm */
   ImageKernel kernel;
   const ImageTable *table;      /* borrowed */
   const PaddedStencil *stencil; /* [2M] unfolded, borrowed */
@@ -31,9 +32,17 @@ struct _p_NearImage {
   PetscReal *y[2][2];           /* [M] cells from the wall, in whole vectors (LANES), of which the rest is zero */
 };
 
-/* NearImageCreate - for markers on a grid with any walls, in a fluid of viscosity nu; table: the half-space lattice's,
-   kept by the caller, NULL without walls. Collective. */
-PETSC_EXTERN PetscErrorCode NearImageCreate(Markers markers, PetscReal nu, const ImageTable *table, NearImage *image);
+/* NearLogarithm - what a Stokeslet whose logarithm is that of a length over `unit` has less than one with the length in
+   cells of the markers' grid, times nu. The unit is the h of the run's grid, also on the coarser ones of a box part, so
+   that no number depends on what lengths are measured in. */
+static inline PetscReal NearLogarithm(Markers markers, PetscReal unit) {
+  return PetscLogReal(markers->grid->h / unit) / (4 * PETSC_PI);
+}
+
+/* NearImageCreate - for markers on a grid with any walls, in a fluid of viscosity nu, with this unit (NearLogarithm);
+   table: the half-space lattice's, kept by the caller, NULL without walls. Collective. */
+PETSC_EXTERN PetscErrorCode NearImageCreate(Markers markers, PetscReal nu, PetscReal unit, const ImageTable *table,
+                                            NearImage *image);
 PETSC_EXTERN PetscErrorCode NearImageDestroy(NearImage *image);
 
 /* NearImagePlace - where the markers have been placed, whose unfolded stencils are stencil[2M] (kept by the caller).

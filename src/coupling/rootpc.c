@@ -12,6 +12,7 @@ PetscErrorCode RootPCCreate(Layout layout, const char prefix[], PetscInt levels,
   PetscCall(PCSetOptionsPrefix(p->pc, prefix));
   PetscCall(PCSetType(p->pc, PCILU));
   PetscCall(PCFactorSetLevels(p->pc, levels));
+  PetscCall(PCFactorSetZeroPivot(p->pc, 0)); /* the default is a number, entries have a unit */
   PetscCall(PCFactorSetMatOrderingType(p->pc, MATORDERINGND));
   PetscCall(PCSetFromOptions(p->pc));
   if (layout->rank != p->root) PetscFunctionReturn(PETSC_SUCCESS);

@@ -8,7 +8,8 @@ static PetscReal Logarithm(PetscInt n, PetscInt d) {
   return d ? k - PetscLogReal(4 * PetscSqr(PetscSinReal(PETSC_PI * d / n))) : k;
 }
 
-PetscErrorCode SelfLayer(Spectral spectral, PetscInt n, PetscReal nu, const PetscReal X[], PetscReal S[]) {
+PetscErrorCode SelfLayer(Spectral spectral, PetscInt n, PetscReal nu, PetscReal unit, const PetscReal X[],
+                         PetscReal S[]) {
   const PetscReal factor = 1 / (4 * PETSC_PI * nu);
   PetscReal *own, *T;
   PetscFunctionBeginUser;
@@ -20,7 +21,8 @@ PetscErrorCode SelfLayer(Spectral spectral, PetscInt n, PetscReal nu, const Pets
     for (PetscInt i = 0; i < n; i++) { /* on the diagonal the derivative takes the place of the difference */
       const PetscReal d[2] = {i == j ? T[2 * i] : X[2 * i] - X[2 * j],
                               i == j ? T[2 * i + 1] : X[2 * i + 1] - X[2 * j + 1]};
-      const PetscReal r2 = d[0] * d[0] + d[1] * d[1], logarithm = -0.5 * (PetscLogReal(r2) + own[PetscAbsInt(i - j)]);
+      const PetscReal r2 = d[0] * d[0] + d[1] * d[1],
+                      logarithm = -0.5 * (PetscLogReal(r2 / PetscSqr(unit)) + own[PetscAbsInt(i - j)]);
       PetscReal *at = S + 2 * j * 2 * n + 2 * i;
       at[0] = factor * (logarithm + d[0] * d[0] / r2);
       at[2 * n + 1] = factor * (logarithm + d[1] * d[1] / r2);

@@ -4,5 +4,6 @@
 #include "curve/spectral.h"
 
 /* SelfLayer - S[2n][2n] of the curve through the markers X[2n], entries interlaced x, y: velocity per force times ds,
-   density 1 and viscosity nu. Symmetric. Not collective. */
-PETSC_EXTERN PetscErrorCode SelfLayer(Spectral spectral, PetscInt n, PetscReal nu, const PetscReal X[], PetscReal S[]);
+   density 1 and viscosity nu; `unit`: the length whose logarithm is 0. Symmetric. Not collective. */
+PETSC_EXTERN PetscErrorCode SelfLayer(Spectral spectral, PetscInt n, PetscReal nu, PetscReal unit, const PetscReal X[],
+                                      PetscReal S[]);

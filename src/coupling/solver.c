@@ -186,12 +186,13 @@ static PetscErrorCode ObstacleReference(CoupledSolver s, const CoupledProblem *q
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Norm of (f, bc2, g and the obstacles' k with their factors). With a flow f is without the states before, whose square
-   the first residual gives (Begin). */
+/* Norm of f, bc2, g and the obstacles' k with their factors (UnknownsScale). With a flow f is without the states
+   before, whose square the first residual gives (Begin). */
 static PetscErrorCode Reference(CoupledSolver s, const CoupledProblem *q) {
   const Layout l = s->coupling->membrane->layout;
   const PetscScalar *a;
-  PetscReal norm, sum = 0;
+  const PetscReal R02 = PetscSqr(s->unknowns->R0);
+  PetscReal norm, sum = 0, squares = 0;
   PetscFunctionBeginUser;
   PetscCall(VecGetArrayRead(q->g, &a));
   for (PetscInt v = l->own; v < l->end; v++)
@@ -199,11 +200,12 @@ static PetscErrorCode Reference(CoupledSolver s, const CoupledProblem *q) {
       sum += PetscSqr(a[LayoutOffset(l, v) + k] * UnknownsTensionScale(s->unknowns, v));
   PetscCall(VecRestoreArrayRead(q->g, &a));
   PetscCall(ObstacleReference(s, q, &sum));
-  PetscCall(GridAddSquares(s->coupling->fluid->grid, q->local ? &s->coupling->markers->window : NULL, q->f, &sum));
+  PetscCall(GridAddSquares(s->coupling->fluid->grid, q->local ? &s->coupling->markers->window : NULL, q->f, &squares));
+  sum += R02 * squares;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPIU_REAL, MPI_SUM, l->comm));
   if (s->coupling->fluid->bc2) {
     PetscCall(VecNorm(s->coupling->fluid->bc2, NORM_2, &norm));
-    sum += PetscSqr(norm);
+    sum += PetscSqr(s->coupling->fluid->nu * norm);
   }
   s->reference = PetscSqrtReal(sum);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -261,7 +263,7 @@ static PetscErrorCode Begin(CoupledSolver s, const CoupledProblem *q, SolveRepor
   t->begun = s->reduced->stream && !q->w ? PETSC_TRUE : PETSC_FALSE;
   PetscCall(ReducedResidual(s->reduced, s->x, q->f, q->g, q->k, s->x, PETSC_FALSE, q->w, q->p, s->b,
                             t->begun ? &report->measures : NULL));
-  if (q->flow) s->reference = PetscSqrtReal(PetscSqr(s->reference) + report->measures.past);
+  if (q->flow) s->reference = PetscSqrtReal(PetscSqr(s->reference) + PetscSqr(s->unknowns->R0) * report->measures.past);
   PetscCall(VecSet(s->pending, 0));
   s->owed = PETSC_FALSE;
   t->problem = q;

@@ -1,5 +1,14 @@
 #include "coupling/unknowns.h"
 
+/* R0 of the smallest vesicle, without vesicles a quarter of the box's shorter side. */
+static PetscReal Radius(Coupling c) {
+  const Membrane m = c->membrane;
+  const Grid g = c->fluid->grid;
+  PetscReal least = m->layout->bodies ? PETSC_MAX_REAL : 0.5 * PETSC_PI * g->h * PetscMin(g->n[0], g->n[1]);
+  for (PetscInt v = 0; v < m->layout->bodies; v++) least = PetscMin(least, m->L0[v]);
+  return least / (2 * PETSC_PI);
+}
+
 PetscErrorCode UnknownsCreate(Coupling coupling, Walls walls, Unknowns *out) {
   const Grid g = coupling->fluid->grid;
   Unknowns u;
@@ -8,6 +17,7 @@ PetscErrorCode UnknownsCreate(Coupling coupling, Walls walls, Unknowns *out) {
   *out = u;
   u->coupling = coupling;
   u->walls = walls;
+  u->R0 = Radius(coupling);
   u->velocity = 2 * coupling->membrane->layout->n;
   u->solid = BodiesObstacleNumbers(coupling->bodies);
   u->tension = coupling->membrane->layout->n;
@@ -99,20 +109,11 @@ PetscErrorCode UnknownsGatherWalls(Unknowns u, const PetscScalar own[], PetscSca
 
 PetscReal UnknownsWeight(Unknowns u) {
   const Fluid f = u->coupling->fluid;
-  return f->nu + f->grid->h * f->alpha;
+  return f->nu + f->grid->h * u->R0 * f->alpha;
 }
 
 PetscReal UnknownsTensionScale(Unknowns u, PetscInt v) {
   return PetscSqr(u->coupling->fluid->grid->h) / u->coupling->membrane->ds[v] * UnknownsWeight(u);
-}
-
-/* h/R0, R0 of the smallest vesicle: a force on the row of faces at a wall, where the fluid sticks, gives it a velocity
-   of the order h^2/nu, the same force on a membrane h R0/nu. */
-static PetscReal WallsScale(Unknowns u) {
-  const Membrane m = u->coupling->membrane;
-  PetscReal least = PETSC_MAX_REAL;
-  for (PetscInt v = 0; v < m->layout->bodies; v++) least = PetscMin(least, m->L0[v]);
-  return least < PETSC_MAX_REAL ? PetscMin(1, u->coupling->fluid->grid->h * 2 * PETSC_PI / least) : 1;
 }
 
 void UnknownsScale(Unknowns u, PetscBool inverse, PetscScalar y[]) {
@@ -130,6 +131,6 @@ void UnknownsScale(Unknowns u, PetscBool inverse, PetscScalar y[]) {
   }
   const Obstacles o = u->coupling->bodies->obstacles;
   if (o) ObstaclesScale(o, UnknownsWeight(u), inverse, y + u->velocity);
-  const PetscReal wall = WallsScale(u);
+  const PetscReal wall = PetscMin(u->R0, f->grid->h);
   for (PetscInt k = UnknownsWalls(u); k < UnknownsWalls(u) + u->wall; k++) y[k] = inverse ? y[k] / wall : y[k] * wall;
 }
