@@ -224,7 +224,7 @@ static PetscErrorCode AddBlocks(NearField f, PetscBool fixed) {
   PetscInt k = 0;
   PetscFunctionBeginUser;
   PetscCall(FindCandidates(f, &c));
-  qsort(c.pair, (size_t)c.count, sizeof(*c.pair), ByRow);
+  if (c.count) qsort(c.pair, (size_t)c.count, sizeof(*c.pair), ByRow);
   for (PetscInt v = l->own; v < l->end; v++) {
     if (c.resting[v] == fixed) {
       PetscCall(AddBlock(f, v, v, none, 0));

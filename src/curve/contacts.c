@@ -156,7 +156,7 @@ static PetscErrorCode PolygonGaps(const CurveSet *set, PetscReal reach, PetscInt
     (*gaps)[k] = (CurveGap){.curve = {PetscMin(v, w), PetscMax(v, w)}, .distance = c[k].distance};
   }
   PetscCall(PetscFree(c));
-  qsort(*gaps, (size_t)count, sizeof(**gaps), Order);
+  if (count) qsort(*gaps, (size_t)count, sizeof(**gaps), Order);
   for (PetscInt k = 0; k < count; k++)
     if (!kept || (*gaps)[k].curve[0] != (*gaps)[kept - 1].curve[0] || (*gaps)[k].curve[1] != (*gaps)[kept - 1].curve[1])
       (*gaps)[kept++] = (*gaps)[k];
