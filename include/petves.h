@@ -135,6 +135,11 @@ PETSC_EXTERN PetscErrorCode SimulationGetCellPressure(Simulation simulation, Pet
 /* PetvesAgree - the largest of all ranks' numbers, the same on every rank: a decision taken once. Collective. */
 PETSC_EXTERN PetscErrorCode PetvesAgree(MPI_Comm comm, PetscInt mine, PetscInt *largest);
 
+/* PetvesEndTogether - after an error that may be one rank's alone, while others wait for it: returns when all ranks of
+   comm have come here. When they do not within two seconds all are ended, with status 1 and a line: `line`, or for NULL
+   what PetvesErrorHandler has left unsaid on this rank. */
+PETSC_EXTERN PetscErrorCode PetvesEndTogether(MPI_Comm comm, const char line[]);
+
 /* PetvesTemporaryFolder - make a folder in TMPDIR, path[PETSC_MAX_PATH_LEN]; all ranks get its name. */
 PETSC_EXTERN PetscErrorCode PetvesTemporaryFolder(MPI_Comm comm, char path[]);
 

@@ -153,13 +153,6 @@ static PetscErrorCode Run(PetscBool *good) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Other ranks may have had enough memory and wait for this one. */
-static void StopOthers(void) {
-  PetscMPIInt size = 1;
-  (void)MPI_Comm_size(PETSC_COMM_WORLD, &size);
-  if (size > 1) (void)MPI_Abort(PETSC_COMM_WORLD, 1);
-}
-
 static int RunOrUsage(int argc, char **argv) {
   const char *const given = getenv("PETSC_OPTIONS");
   const PetscBool asked = argc > 1 || (given && given[strspn(given, " \t\n")]) ? PETSC_TRUE : PETSC_FALSE;
@@ -170,7 +163,7 @@ static int RunOrUsage(int argc, char **argv) {
   if (error) return 1;
   if (asked) error = Run(&good);
   if (!asked) (void)PetscFPrintf(PETSC_COMM_WORLD, stderr, "%s", usage);
-  if (error == PETSC_ERR_MEM) StopOthers();
+  if (error && error != PETSC_ERR_USER_INPUT) PetvesEndTogether(PETSC_COMM_WORLD, NULL);
   if (PetvesFinalize() || error || !asked) return 1;
   return good ? 0 : 2;
 }

@@ -5,7 +5,6 @@
 #include "fluid/wisdom.h"
 #include "options/typed.h"
 #include <stdlib.h>
-#include <time.h>
 
 static const char help[] = "petves: inextensible vesicles in two-dimensional viscous flow.\n"
                            "usage: mpirun -n RANKS petves run SCENE.opts [-option value ...]\n\n";
@@ -53,22 +52,6 @@ PetscErrorCode PetvesInitialize(int *argc, char ***argv) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-#define PATIENCE 200 /* hundredths of a second */
-
-/* PETSc could not end on this rank. Where the others could not either, all come here; else they wait for this one, and
-   the run is ended. */
-static void LeaveTogether(void) {
-  const struct timespec moment = {.tv_nsec = 10000000};
-  MPI_Request all;
-  int here = 0;
-  if (MPI_Ibarrier(MPI_COMM_WORLD, &all)) return;
-  for (int k = 0; k < PATIENCE && !here; k++) {
-    if (MPI_Test(&all, &here, MPI_STATUS_IGNORE)) return;
-    if (!here) (void)nanosleep(&moment, NULL);
-  }
-  if (!here) (void)MPI_Abort(MPI_COMM_WORLD, 1);
-}
-
 PetscErrorCode PetvesFinalize(void) {
   PetscErrorCode error;
   PetscBool given = PETSC_FALSE;
@@ -78,7 +61,7 @@ PetscErrorCode PetvesFinalize(void) {
   (void)PetvesLastErrors();
   error = PetscFinalize();
   if (error)
-    LeaveTogether();
+    PetvesEndTogether(MPI_COMM_WORLD, NULL);
   else
     (void)PetscPopErrorHandler();
   if (began_mpi && MPI_Finalize()) return PETSC_ERR_MPI;

@@ -67,12 +67,19 @@ def test_fast_solve_without_vesicle(tmp_path):
     assert (run.folder / "checkpoint.h5").exists()
 
 
-#: A LAPACK whose factorisations fail from the FAIL-th call on.
+#: A LAPACK whose factorisations fail from the FAIL-th call on, and an MPI whose FAIL_MPI-th sum does.
 FAILING = r"""
 #define _GNU_SOURCE
 #include <dlfcn.h>
+#include <mpi.h>
 #include <stdlib.h>
-static int fails(void) { static int calls; return ++calls >= atoi(getenv("FAIL")); }
+int MPI_Allreduce(const void *a, void *b, int n, MPI_Datatype type, MPI_Op op, MPI_Comm comm) {
+  static int calls;
+  if (getenv("FAIL_MPI") && ++calls == atoi(getenv("FAIL_MPI"))) return MPI_ERR_OTHER;
+  return ((int (*)(const void *, void *, int, MPI_Datatype, MPI_Op, MPI_Comm))dlsym(RTLD_NEXT, "MPI_Allreduce"))(
+      a, b, n, type, op, comm);
+}
+static int fails(void) { static int calls; return getenv("FAIL") && ++calls >= atoi(getenv("FAIL")); }
 void dgetrf_(int *m, int *n, double *A, int *lda, int *pivot, int *info) {
   ((void (*)(int *, int *, double *, int *, int *, int *))dlsym(RTLD_NEXT, "dgetrf_"))(m, n, A, lda, pivot, info);
   if (fails()) *info = 7;
@@ -80,14 +87,14 @@ void dgetrf_(int *m, int *n, double *A, int *lda, int *pivot, int *info) {
 """
 
 
-def failing_from(call: int, folder) -> tuple[str, ...]:
-    """Return the words before a program whose factorisations fail from this call on."""
+def failing_from(call: int, folder, what: str = "FAIL") -> tuple[str, ...]:
+    """Return the words before a program whose factorisations fail from this call on (FAIL), or this sum of MPI (FAIL_MPI)."""
     (folder / "failing.c").write_text(FAILING)
     library = str(folder / "failing.so")
-    command = [shutil.which("gcc"), "-shared", "-fPIC", "-o", library, str(folder / "failing.c"), "-ldl"]
+    command = [shutil.which("mpicc"), "-shared", "-fPIC", "-o", library, str(folder / "failing.c"), "-ldl"]
     done = mpirun(command, 1)
     assert done.returncode == 0, done.stderr
-    return ("env", f"LD_PRELOAD={library}", f"FAIL={call}")
+    return ("env", f"LD_PRELOAD={library}", f"{what}={call}")
 
 
 @pytest.mark.skipif(SANITIZE, reason="the sanitizers' library must be the first to be loaded")
@@ -111,3 +118,17 @@ def test_matrix_without_factor_ends_the_run(ranks, tmp_path):
     line = reason("coupled_", 0).replace("ITS", "PC_FAILED")
     _, series = leaves_files(run, line.replace(r"[\d.e-]+;", r"\S+;"))
     assert series["step"][-1] > 1
+
+
+@pytest.mark.skipif(SANITIZE, reason="the sanitizers' library must be the first to be loaded")
+@pytest.mark.parametrize("call, where", [(20, ""), (300, " (")], ids=["setup", "step"])
+@pytest.mark.parametrize("failing", [0, 1])
+def test_an_error_of_one_rank_ends_all(failing, call, where, tmp_path):
+    """MPI fails in one call on one rank; the other waits for it, and would for ever. Its line says so, whichever rank."""
+    scene = "-domain_cells 16,16 -vesicle_semi_axes 0.3,0.5 -time_step 0.01 -time_end 0.1".split()
+    run = [PETVES, "-output_dir", str(tmp_path / "out"), *scene]
+    ranks = [["-n", "1", *run], ["-n", "1", *failing_from(call, tmp_path, "FAIL_MPI"), *run]]
+    done = mpirun(["mpirun", *ranks[1 - failing], ":", *ranks[failing]], 1, timeout=30)
+    lines = [line for line in without_mpirun(done.stderr) if line.startswith("petves: ")]
+    assert done.returncode == 1 and len(lines) == 1
+    assert lines[0].startswith(f"petves: error: MPI error 16 MPI_ERR_OTHER: known error not in list{where}")

@@ -130,3 +130,20 @@ with petves.Simulation(flow=flow, **SCENE | TWO) as sim:
             kind, steps, message = line.split(maxsplit=2)
             assert (kind, steps) == ("Error", "3") and matches(pattern, message), line
         assert last_good_step(tmp_path) == 3
+
+    @pytest.mark.parametrize("caught", ["with", "later", "C"])
+    def test_an_error_of_one_rank_between_steps_ends_all(caught, tmp_path):
+        """The others would wait for it in their next step: its line is said, and the program ends on all ranks."""
+        fault = "raise ValueError('mine')" if caught != "C" else "sim.vec('markers').setValue(1 << 30, 0.0)"
+        body = f"""
+sim = petves.Simulation(**SCENE | dict(time_end=1e6))
+{"with sim:" if caught == "with" else "if True:"}
+    sim.step()
+    if ALONE:
+        {fault}
+    sim.run()
+"""
+        done, _ = run_script(tmp_path, body, 2)
+        lines = [line for line in done.stderr.splitlines() if line.startswith("petves: error: ")]
+        assert done.returncode == 1 and len(lines) == 1
+        assert "mine" in lines[0] or caught == "C"

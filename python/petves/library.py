@@ -21,6 +21,7 @@ MAX_MESSAGE = 512  # PETVES_MAX_MESSAGE
 MAX_PATH = 4096  # PETSC_MAX_PATH_LEN
 
 PETSC_ERR_USER = 83
+PETSC_ERR_USER_INPUT = 95
 FlowFunction = Callable[[np.ndarray, np.ndarray, float], "tuple[Any, Any]"]
 
 Int = ctypes.c_int64 if np.dtype(PETSc.IntType).itemsize == 8 else ctypes.c_int32
@@ -47,6 +48,7 @@ SIGNATURES = {
     "PetvesEnter": (Handle, _text, _pointer(Int)),
     "PetvesLeave": (Int,),
     "PetvesAgree": (_communicator, Int, _pointer(Int)),
+    "PetvesEndTogether": (_communicator, _text),
     "PetvesReadOptions": (_communicator, Handle, _text),
     "PetvesTemporaryFolder": (_communicator, _text),
     "SimulationCreateWithFlow": (_communicator, ctypes.c_void_p, ctypes.c_void_p, _pointer(Handle)),

@@ -18,6 +18,7 @@ from petves.errors import Error
 from petves.library import (
     MAX_MESSAGE,
     MAX_PATH,
+    PETSC_ERR_USER_INPUT,
     Flow,
     FlowFunction,
     Handle,
@@ -201,6 +202,8 @@ class Simulation(State):
             if self._quiet:
                 self._lib.PetvesSetQuiet(0)
             self._lib.PetvesLeave(depth)
+        if cause is not None or code not in (0, PETSC_ERR_USER_INPUT):  # all ranks have agreed on that one
+            self._lib.PetvesEndTogether(self._communicator, self._message.value or str(cause).encode())
         if code and self._failed:  # without a code all ranks have agreed that the step failed: _stop_on raises it
             cause = self._failed.pop()
         if cause is not None or code:
@@ -373,8 +376,9 @@ class Simulation(State):
         return self
 
     def __exit__(self, kind: type | None, error: BaseException | None, trace: object) -> None:
-        if error is not None:
+        if error is not None and self._handle:
             self._ended = True
+            self._lib.PetvesEndTogether(self._communicator, f"{type(error).__name__}: {error}".encode())
         self.close()
 
     def __del__(self) -> None:
@@ -388,6 +392,4 @@ def _close_all() -> None:
     for reference in list(_alive.values()):
         simulation = reference()
         if simulation is not None:
-            if hasattr(sys, "last_value"):
-                simulation._ended = True
-            simulation.close()
+            simulation.__exit__(None, getattr(sys, "last_value", None), None)

@@ -1,13 +1,17 @@
 #define _GNU_SOURCE /* strcasestr */
 #include "base/base.h"
 #include <ctype.h>
+#include <time.h>
+
+#define PATIENCE 200 /* hundredths of a second that a rank waits for the others to fail too */
 
 /* Logging and error state of the whole program. It is kept here and nowhere else; PETSc's logging, which it feeds, is
    program-wide too. */
 static struct {
   PetscBool one_line;
-  PetscBool said, ending; /* an error has been printed; the program ends */
-  PetscBool quiet;        /* PetvesSay says nothing */
+  PetscBool said, ending;          /* an error has been printed; the program ends */
+  char unsaid[PETVES_MAX_MESSAGE]; /* the last error that was left to rank 0 to print */
+  PetscBool quiet;                 /* PetvesSay says nothing */
   PetscBool registered;
   PetscLogStage stage[PHASE_COUNT];
   PetscReal seconds[PHASE_COUNT];
@@ -78,9 +82,26 @@ PetscErrorCode PetvesErrorHandler(MPI_Comm comm, int line, const char *function,
     (void)PetscStrncpy(kept, text, PETVES_MAX_MESSAGE);
   else if (!kept && (code == PETSC_ERR_MEM || !rank || !(base.one_line || among)))
     fprintf(stderr, "petves: error: %s\n", text);
+  else if (!kept)
+    (void)PetscStrncpy(base.unsaid, text, PETVES_MAX_MESSAGE);
   if (!kept) base.said = PETSC_TRUE;
   fflush(stderr);
   return code;
+}
+
+PetscErrorCode PetvesEndTogether(MPI_Comm comm, const char line[]) {
+  const struct timespec moment = {.tv_nsec = 10000000};
+  MPI_Request all;
+  int here = 0, failed = MPI_Ibarrier(comm, &all);
+  for (int k = 0; k < PATIENCE && !here && !failed; k++) {
+    failed = MPI_Test(&all, &here, MPI_STATUS_IGNORE);
+    if (!here) (void)nanosleep(&moment, NULL);
+  }
+  if (here) return PETSC_SUCCESS;
+  if (!line) line = base.unsaid;
+  if (*line) fprintf(stderr, "petves: error: %s\n", line);
+  (void)MPI_Abort(comm, 1);
+  return PETSC_ERR_MPI;
 }
 
 PetscErrorCode PetvesLastErrors(void) {
