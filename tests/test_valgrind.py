@@ -8,7 +8,7 @@ from pathlib import Path
 
 import h5py
 import pytest
-from conftest import PAPER, PETVES, PROGRAMS, SANITIZE, mpirun, run_petves
+from conftest import PAPER, PETVES, PROGRAMS, SANITIZE, mpirun, read_series, run_petves
 
 OPENMPI = Path("/usr/share/openmpi/openmpi-valgrind.supp")
 OBJECTS = ("libpetves.so", "bin/petves", "tests/scenes")
@@ -19,6 +19,8 @@ COUPLED = f"{SHEAR} {PAPER} -scheme_type coupled -checkpoint_every 1"
 PERIODIC, FREE = (f"-domain_bc_x {bc} -domain_bc_y {bc}" for bc in ("periodic", "free"))
 ROWS = ",".join(f"{x},{y}" for x in (-0.6, -0.2, 0.2, 0.6) for y in (-0.55, 0, 0.55))
 TWELVE = f"-vesicle_count 12 -vesicle_center {ROWS} -vesicle_semi_axes 0.08,0.12 -vesicle_markers 16"
+SOLID = "-obstacle_shape posts -obstacle_radius 0.2 -obstacle_center 0.7,0.7"
+POSTS = f"-domain_bc_x periodic -flow_type poiseuille -flow_half_width 1 {SOLID}"
 
 #: Options and status. Restarts: one that goes on, one whose first step is refused, one of another scene.
 SHORT = {
@@ -43,6 +45,12 @@ LONG = SHORT | {
     "direct": (f"{TWO_STEPS} -scheme_type direct", 0),
     "contrast": (f"{TWO_STEPS} -domain_cells 32,32 -vesicle_viscosity_ratio 5", 0),
     "contrast_channel": (f"{TWO_STEPS} -domain_cells 32,32 -domain_bc_x periodic -vesicle_viscosity_ratio 5", 0),
+    "contrast_posts": (f"{TWO_STEPS} {POSTS} -domain_cells 32,32 -vesicle_viscosity_ratio 5", 0),
+    "contrast_moving_posts": (
+        f"{BASE} -domain_cells 32,32 {SOLID} {PERIODIC} -flow_type uniform -vesicle_viscosity_ratio 5 -obstacle_moving "
+        "-obstacle_velocity 1,0",
+        0,
+    ),
     "auto": (f"{SHEAR} -scheme_auto 0.01", 0),
     "no_vesicle": ("-domain_cells 16,16 -vesicle_shape none -flow_type shear -flow_form total -time_end 0.03", 0),
 }
@@ -101,14 +109,16 @@ def test_memory_of_scenes(ranks, checkpoint, tmp_path):
 
 @pytest.mark.parametrize("contrast", ["1", "5"])
 @pytest.mark.parametrize(
-    "box", ["", "-domain_bc_x periodic", PERIODIC, FREE], ids=["walls", "channel", "periodic", "free"]
+    "box",
+    ["", "-domain_bc_x periodic", PERIODIC, FREE, POSTS],
+    ids=["walls", "channel", "periodic", "free", "posts"],
 )
 def test_bits_do_not_depend_on_what_memory_held(box, contrast, tmp_path):
     """The C library fills what malloc gives with a byte: numbers of 0, of 32.5, and not a number. 47 markers leave
     a lane of the last vector without one."""
     options = f"{TWO_STEPS} {box} -vesicle_viscosity_ratio {contrast} -domain_cells 32,32 -vesicle_markers 47"
     every = {"GLIBC_TUNABLES": "glibc.malloc.tcache_count=0"}  # small pieces too
-    final = []
+    final, first = [], []
     for byte in (255, 255 - 0x40, 255 - 0xFF):
         folder = tmp_path / str(byte)
         assert (
@@ -119,7 +129,11 @@ def test_bits_do_not_depend_on_what_memory_held(box, contrast, tmp_path):
         )
         with h5py.File(folder / "checkpoint.h5") as file:
             final.append(file["vesicle/markers"][()].tobytes())
-    assert len(set(final)) == 1
+        rows = read_series(folder / "series.csv")
+        first.append({name: f"{values[0]}" for name, values in rows.items() if name != "wall"})
+    assert len(set(final)) == 1 and first[0] == first[1] == first[2]
+    if box == POSTS:
+        assert float(first[0]["flux"]) == pytest.approx(4 / 3, rel=1e-12)  # before anything acts, the background's
 
 
 def test_memory_of_the_program(checkpoint, tmp_path):

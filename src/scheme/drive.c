@@ -87,11 +87,12 @@ static PetscReal BackgroundFlux(Scheme s) {
   return flux;
 }
 
-/* What the mean of the solved field has more than that of the velocity, where it is not the velocity inside vesicles.
- */
+/* What the mean of the solved field has more than that of the velocity, where it is not the velocity inside vesicles:
+   before the first step it is. */
 static PetscErrorCode InnerMean(Scheme s, PetscReal mean[2]) {
   const PetscScalar *U;
   PetscFunctionBeginUser;
+  if (!s->coupling->contrast || !s->state.step) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecGetArrayRead(s->state.U, &U));
   PetscCall(DoubleLayerSet(s->coupling->contrast, U));
   PetscCall(VecRestoreArrayRead(s->state.U, &U));
@@ -135,7 +136,7 @@ PetscErrorCode DriveMeasure(Scheme s, Drive *drive) {
   FlowPressureGradient(&s->scene->flow, s->fluid->nu, background);
   gradient = sum[2] / faces - sum[0] / area;
   if (g->wall[1] && !s->fluid->zero_flux) gradient = 0; /* none but the background's */
-  if (s->coupling->contrast) PetscCall(InnerMean(s, mean));
+  PetscCall(InnerMean(s, mean));
   drive->flux = (sum[3] / faces - mean[0]) * (g->hi[1] - g->lo[1]) + BackgroundFlux(s);
   GiveBack(s, sum[1], &gradient, &drive->flux);
   drive->pressure_drop = (g->hi[0] - g->lo[0]) * (gradient - background[0]);
