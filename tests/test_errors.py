@@ -3,6 +3,7 @@ allowed. A step that cannot be taken stops it with the reason, and leaves checkp
 
 import json
 import re
+from pathlib import Path
 
 import h5py
 import numpy as np
@@ -67,6 +68,11 @@ OPTIONS = {
     "zero": b"-time_step 0.1\n-time_end 1\0\n",
     "itself": b"-time_step 0.1\n-options_file itself.opts\n",
     "nothing there": b"-time_step 0.1\n-options_file no.opts\n",
+    "a program": b'-time_end 1\n-Python "touch file.h5"\n',
+    "a library": b"-dll_append ./evil.so\n",
+    "a log": b"-log_view :file\n",
+    "a monitor": b"-coupled_ksp_monitor ascii:file\n",
+    "a solver": b"-coupled_pc_type python\n",
     "good": b"\xef\xbb\xbf# a comment\r\n-flow_rate 2\r\n\t-time_end\t0.02 # a comment\r\n",
 }
 
@@ -161,6 +167,20 @@ def test_environment_is_read_alike(typed, needle, tmp_path, monkeypatch):
     done = mpirun([PETVES, *SMALL.split()], 2, PETSC_OPTIONS=typed)
     lines = without_mpirun(done.stderr)
     assert done.returncode == 1 and len(lines) == 1 and needle in lines[0], done.stderr
+
+
+def test_only_the_users_own_words_start_programs_or_write_elsewhere(tmp_path, monkeypatch):
+    """No .petscrc of the folder is read, that of the home is; the command line may write a log, which resolved.opts leaves out."""
+    (tmp_path / "here").mkdir()
+    monkeypatch.chdir(tmp_path / "here")
+    for name in (".petscrc", "petscrc"):
+        Path(name).write_text("-python 'touch touched;'\n-nosuch 1\n")
+    (tmp_path / ".petscrc").write_text("-log_view :home\n")
+    done = mpirun([PETVES, *SMALL.split(), "-info", "info", "-coupled_ksp_monitor", ":monitor"], 1, HOME=str(tmp_path))
+    assert done.returncode == 0, done.stderr
+    found = {path.name for path in Path().iterdir()}
+    assert found == {".petscrc", "petscrc", "home", "info.0", "monitor", "out"}
+    assert not {"-log_view", "-info", "-coupled_ksp_monitor"} & set(Path("out/run/resolved.opts").read_text().split())
 
 
 def test_command_line_wins_over_files_over_environment(tmp_path, monkeypatch):

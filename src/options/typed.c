@@ -1,4 +1,5 @@
 /* The words that a user typed, checked one by one. Plain malloc: PETSc has not started. */
+#define _GNU_SOURCE /* strcasestr */
 #include "options/typed.h"
 #include <ctype.h>
 #include <errno.h>
@@ -91,6 +92,31 @@ static void WrongWord(Typed *t, const Source *from, const char *name, const char
 
 static void ReadFile(Typed *t, const char *path, const Source *outer);
 
+static PetscBool HasPart(const char *name, const char *const part[], PetscBool first) {
+  for (; *part; part++) {
+    const char *found = strcasestr(name, *part);
+    if (found && (found == name || !first)) return PETSC_TRUE;
+  }
+  return PETSC_FALSE;
+}
+
+PetscBool TypedIsOwn(const char *name, const char *value) {
+  static const char *const first[] = {"-citations", "-debug",   "-display",  "-dll",      "-draw",   "-glvis",
+                                      "-history",   "-info",    "-library",  "-log",      "-malloc", "-memory",
+                                      "-mpi",       "-objects", "-on_err",   "-options_", "-petsc",  "-popen",
+                                      "-saws",      "-start_",  "-stop_for", "-viewer",   "-x_",     NULL};
+  static const char *const any[] = {"python", "_dump", "_draw", "_plot", "tmpdir", NULL};
+  static const char *const shows[] = {"_view", "_monitor", "_converged_r", NULL}, *const type[] = {"_type", NULL};
+  if (HasPart(name, first, PETSC_TRUE) || HasPart(name, any, PETSC_FALSE)) return PETSC_TRUE;
+  if (!value || !*value) return PETSC_FALSE;
+  return HasPart(name, shows, PETSC_FALSE) || (HasPart(name, type, PETSC_FALSE) && !strcasecmp(value, "python"))
+             ? PETSC_TRUE
+             : PETSC_FALSE;
+}
+
+/* Ways to give options that PETSc follows without a check of their words. */
+static const char *const others[] = {"-options_file_yaml", "-options_string_yaml", "-saws", NULL};
+
 /* Pairs of names and values. files: -options_file is to be read (1), left out (-1). */
 static void TakeWords(Typed *t, const Source *from, int n, const Word word[], int files) {
   for (int k = 0; k < n && !*t->error;) {
@@ -102,8 +128,13 @@ static void TakeWords(Typed *t, const Source *from, int n, const Word word[], in
     if (!*t->error && value && *value == '=' && !word[k - 1].quoted)
       Wrong(t, from, "%.60s %.60s: an equals sign; allowed: a blank, as in %.60s %.60s", name, value, name,
             value[1] ? value + 1 : "VALUE");
+    const PetscBool file = strcasecmp(name, "-options_file") ? PETSC_FALSE : PETSC_TRUE;
+    if (!*t->error && HasPart(name, others, PETSC_TRUE))
+      Wrong(t, from, "%.60s: petves does not read options so; allowed: -options_file, or the command line", name);
+    if (!*t->error && !file && from->line && !t->own && TypedIsOwn(name, value))
+      Wrong(t, from, "%.60s: not for a file, which may come from others; allowed: on the command line", name);
     if (*t->error) return;
-    if (strcasecmp(name, "-options_file"))
+    if (!file)
       Append(t, name, value);
     else if (!value)
       Wrong(t, from, "-options_file: given without a value; allowed: a readable file of options");
@@ -219,17 +250,18 @@ void TypedFile(Typed *t, const char path[]) {
   ReadFile(t, path, NULL);
 }
 
-/* PETSc's own files, those that are there, unless the command line says -skip_petscrc. */
-static void TakePetscFiles(Typed *t, int n, char **word) {
+/* PETSc's own file of the user, if there is one, unless the command line says -skip_petscrc. Those of the folder where
+   the program starts are not read: it may come from others. */
+static void TakePetscFile(Typed *t, int n, char **word) {
   const char *const home = getenv("HOME");
-  char path[3][PETSC_MAX_PATH_LEN] = {"", ".petscrc", "petscrc"};
-  if (home) (void)snprintf(path[0], sizeof(path[0]), "%s/.petscrc", home);
+  char path[PETSC_MAX_PATH_LEN];
+  struct stat status;
   for (int k = 0; k < n; k++)
     if (!strcasecmp(word[k], "-skip_petscrc")) return;
-  for (int k = 0; k < 3 && !*t->error; k++) {
-    struct stat status;
-    if (*path[k] && !stat(path[k], &status) && S_ISREG(status.st_mode)) ReadFile(t, path[k], NULL);
-  }
+  (void)snprintf(path, sizeof(path), "%s/.petscrc", home ? home : "");
+  t->own = PETSC_TRUE;
+  if (home && !stat(path, &status) && S_ISREG(status.st_mode)) ReadFile(t, path, NULL);
+  t->own = PETSC_FALSE;
 }
 
 static void TakeEnvironment(Typed *t) {
@@ -244,13 +276,13 @@ static void TakeEnvironment(Typed *t) {
 
 void TypedCommand(Typed *t, int n, char **word) {
   const Source from = {.name = NULL};
-  Word *words = (Word *)malloc(((size_t)n + 1) * sizeof(*words));
+  Word *words = (Word *)calloc((size_t)n + 1, sizeof(*words));
   Typed rest = {0};
   if (!words) abort();
   for (int k = 0; k < n; k++) words[k] = (Word){.text = word[k]};
   TakeWords(&rest, &from, n, words, -1); /* the command line's own mistakes first */
   (void)snprintf(t->error, sizeof(t->error), "%s", rest.error);
-  if (!*t->error) TakePetscFiles(t, n, word);
+  if (!*t->error) TakePetscFile(t, n, word);
   TakeEnvironment(t);
   for (int k = 0; k + 1 < n && !*t->error; k++)
     if (!strcasecmp(word[k], "-options_file")) ReadFile(t, word[k + 1], NULL);

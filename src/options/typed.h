@@ -3,21 +3,25 @@
 
    A file has an option a line, its value behind it. A value with blanks or # in it stands in quotes, "..." or '...'.
    # at the beginning of a word starts a comment. Lines end with LF, CR LF or CR; a byte-order mark is skipped.
-   -options_file includes another file; its path is relative to where the program was started. */
+   -options_file includes another file; its path is relative to where the program was started. A file may come from
+   others: options of PETSc that start programs, load code or write files are refused in it (TypedIsOwn). */
 #pragma once
 #include "base/base.h"
 
 typedef struct {
   char *text; /* "-name\0=value\0" or "-name\0\0", one after the other; NULL when nothing was typed */
   size_t used, room;
+  PetscBool own;                  /* what is read is the user's own, as the command line is */
   char error[PETVES_MAX_MESSAGE]; /* what is wrong; empty when nothing is */
 } Typed;
 
-/* TypedCommand - what a program starts with, later words before earlier ones: PETSc's own files of options (.petscrc),
-   PETSC_OPTIONS, option files of the command line, the rest of its n words. Not collective, and before PETSc starts.
-   TypedFile - an option file and what it includes. Not collective. */
+/* TypedCommand - what a program starts with, later words before earlier ones: PETSc's file in the user's home
+   (.petscrc), PETSC_OPTIONS, option files of the command line, the rest of its n words. Not collective, and before
+   PETSc starts. TypedFile - an option file and what it includes. Not collective. TypedIsOwn - whether an option, with
+   its dash, and its value (or NULL) are for the user's own words only. */
 PETSC_EXTERN void TypedCommand(Typed *typed, int n, char **word);
 PETSC_EXTERN void TypedFile(Typed *typed, const char path[]);
+PETSC_EXTERN PetscBool TypedIsOwn(const char *name, const char *value);
 
 /* TypedShare - what rank 0 has read, or its error, becomes everybody's; returns an MPI error code. Collective.
    TypedInsert - put it into an options database (NULL: the default one). TypedDestroy - free it. */

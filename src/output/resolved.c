@@ -1,4 +1,5 @@
 #include "output/resolved.h"
+#include "options/typed.h"
 #include <ctype.h>
 
 /* Whether resolved.opts has an option of the database already, or must not have it. */
@@ -12,7 +13,7 @@ static PetscBool Skip(const char *name) {
 }
 
 /* The options of PETSc's own that the user gave: -tension_ksp_monitor, -log_view and so on. Words of values are no
-   options of the database. */
+   options of the database. Nor may a file have those that TypedIsOwn names. */
 static PetscErrorCode PrintOthers(FILE *f) {
   char *all, *word, *end = NULL;
   PetscFunctionBeginUser;
@@ -22,7 +23,7 @@ static PetscErrorCode PrintOthers(FILE *f) {
     PetscBool given = PETSC_FALSE;
     if (word[0] != '-' || !isalpha((unsigned char)word[1]) || Skip(word)) continue;
     PetscCall(PetscOptionsFindPair(NULL, NULL, word, &value, &given));
-    if (given) OptionPrint(f, word, value ? value : "");
+    if (given && !TypedIsOwn(word, value)) OptionPrint(f, word, value ? value : "");
   }
   PetscCall(PetscFree(all));
   PetscFunctionReturn(PETSC_SUCCESS);
