@@ -27,9 +27,10 @@ PETSC_EXTERN int PetvesMain(int argc, char **argv);
 PETSC_EXTERN PetscErrorCode PetvesInitialize(int *argc, char ***argv);
 PETSC_EXTERN PetscErrorCode PetvesFinalize(void);
 
-/* PetvesCatchSignals - from now on SIGTERM and SIGUSR1 end SimulationRun after the step under way, with a checkpoint,
-   and a closed standard output does not end the program. Before the first step, and more than a second after the first
-   signal, they end the process at once. Not collective. */
+/* PetvesCatchSignals - from now on SIGTERM, SIGUSR1 and SIGINT, unless it is ignored, end SimulationRun after the step
+   under way, with a checkpoint; a closed standard output or a limit on the size of files does not end the program.
+   Before the first step, and more than a second after the first signal, they end the process at once. Not collective.
+ */
 PETSC_EXTERN PetscErrorCode PetvesCatchSignals(void);
 
 /* SimulationCreate - the simulation that the options database describes, at its initial state or (-restart) at a

@@ -32,7 +32,7 @@ def wait_for_rows(folder: Path, rows: int):
     raise AssertionError("no further frame within a minute")
 
 
-@pytest.mark.parametrize("ranks, name", [(1, "SIGTERM"), (2, "SIGUSR1")])
+@pytest.mark.parametrize("ranks, name", [(1, "SIGTERM"), (2, "SIGUSR1"), (1, "SIGINT")])
 def test_signals_stop_the_run_after_a_step(ranks, name, tmp_path):
     """Status 0, checkpoint and summary of the last step; the restart ends as the run without a signal."""
     folder, options = tmp_path / "run", f"{BASE} -scheme_type split -output_every 0.02"
@@ -51,6 +51,16 @@ def test_signals_stop_the_run_after_a_step(ranks, name, tmp_path):
     run_petves(folder, f"{options} {end} -restart {folder}/checkpoint.h5", ranks)
     whole = run_petves(tmp_path / "whole", f"{options} {end}", ranks)
     assert without_wall(folder / "series.csv") == without_wall(whole.folder / "series.csv")
+
+
+def test_ctrl_c_is_ignored_where_a_shell_says_so(tmp_path):
+    """As for a background job of a script, which is to live on when its terminal stops something else."""
+    folder, line = tmp_path / "run", f"trap '' INT; exec {PETVES} -output_dir {tmp_path / 'run'} $0"
+    options = f"{PAPER} {BASE} -scheme_type split -output_every 0.02 -time_end 0.4"
+    process = subprocess.Popen(["bash", "-c", line.replace("$0", options)], stdout=subprocess.PIPE, text=True)
+    wait_for_rows(folder, 3)
+    process.send_signal(signal.SIGINT)
+    assert "finished at time 0.4" in process.communicate(timeout=60)[0]
 
 
 @pytest.mark.alone

@@ -63,6 +63,7 @@ PETSC_EXTERN PetscErrorCode PetvesWarmUpBlas(MPI_Comm comm);
 /* StopClock - the wall time of -time_wall_limit starts here, the first time that this is called. */
 PETSC_EXTERN void StopClock(void);
 
-/* StopRequested - whether a rank has caught SIGTERM or SIGUSR1 (PetvesCatchSignals), or less than `reserve` seconds are
-   left of `limit` (0: no limit) on rank 0's clock: its name, else NULL. The same on every rank. Collective. */
+/* StopRequested - whether a rank has caught SIGTERM, SIGUSR1 or SIGINT (PetvesCatchSignals), or less than `reserve`
+   seconds are left of `limit` (0: no limit) on rank 0's clock: its name, else NULL. The same on every rank. Collective.
+ */
 PETSC_EXTERN PetscErrorCode StopRequested(MPI_Comm comm, PetscReal limit, PetscReal reserve, const char **why);

@@ -34,13 +34,16 @@ void StopClock(void) {
 }
 
 PetscErrorCode PetvesCatchSignals(void) {
-  const int signals[] = {SIGTERM, SIGUSR1};
-  struct sigaction action = {.sa_handler = Catch, .sa_flags = SA_RESTART};
+  const int signals[] = {SIGTERM, SIGUSR1, SIGINT};
+  struct sigaction action = {.sa_handler = Catch, .sa_flags = SA_RESTART}, before;
   PetscFunctionBeginUser;
   sigemptyset(&action.sa_mask);
-  for (int k = 0; k < 2; k++) sigaddset(&action.sa_mask, signals[k]);
-  PetscCheck(signal(SIGPIPE, SIG_IGN) != SIG_ERR, PETSC_COMM_SELF, PETSC_ERR_SYS, "SIGPIPE cannot be ignored");
-  for (int k = 0; k < 2; k++)
+  for (int k = 0; k < 3; k++) sigaddset(&action.sa_mask, signals[k]);
+  PetscCheck(signal(SIGPIPE, SIG_IGN) != SIG_ERR && signal(SIGXFSZ, SIG_IGN) != SIG_ERR, PETSC_COMM_SELF, PETSC_ERR_SYS,
+             "SIGPIPE and SIGXFSZ cannot be ignored"); /* writes fail instead, which ends the run with a line */
+  /* a shell's background job ignores SIGINT: Ctrl-C is not meant for it */
+  const int n = !sigaction(SIGINT, NULL, &before) && before.sa_handler == SIG_IGN ? 2 : 3;
+  for (int k = 0; k < n; k++)
     PetscCheck(!sigaction(signals[k], &action, NULL), PETSC_COMM_SELF, PETSC_ERR_SYS, "no handler for signal %d",
                signals[k]);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -55,6 +58,6 @@ PetscErrorCode StopRequested(MPI_Comm comm, PetscReal limit, PetscReal reserve, 
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, stop, 2, MPI_INT, MPI_MAX, comm));
   *why = NULL;
   if (stop[1]) *why = "-time_wall_limit";
-  if (stop[0]) *why = stop[0] == SIGTERM ? "SIGTERM" : "SIGUSR1";
+  if (stop[0]) *why = stop[0] == SIGTERM ? "SIGTERM" : stop[0] == SIGINT ? "SIGINT" : "SIGUSR1";
   PetscFunctionReturn(PETSC_SUCCESS);
 }
