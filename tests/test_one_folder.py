@@ -241,6 +241,31 @@ def test_second_signal_ends_the_process(pauses, status, tmp_path):
     assert done.stdout.split() == ([] if status else ["stopped"])
 
 
+def test_files_of_limited_size_are_a_line(tmp_path):
+    """A file that may not grow further is one that cannot be written."""
+    options = f"-domain_cells 64,64 -time_end 0.02 -output_dir {tmp_path / 'run'}"
+    done = mpirun(["bash", "-c", f"ulimit -f 64; exec {PETVES} {options}"], 1, 20)
+    assert done.returncode == 1 and len(done.stderr.splitlines()) == 1, done.stderr
+    assert "petves: error: " in done.stderr and "cannot be written" in done.stderr
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_no_link_is_followed(ranks, tmp_path):
+    """Links in a folder, under the names of its files and of those under way, lead to no file that is changed."""
+    folder, victim = tmp_path / "run", tmp_path / "victim"
+    options = f"{SCENE} -time_end 0.1 -output_overwrite"
+    victim.write_text("precious")
+    folder.mkdir()
+    files = ["series.csv", "run.h5", "run.xmf", "checkpoint.h5", "summary.json", "resolved.opts"]
+    for name in [*files, *(f"{name}.tmp" for name in files), "run.h5.index", "run.h5.index.tmp"]:
+        (folder / name).symlink_to(victim)
+    run_petves(folder, options, ranks)
+    assert victim.read_text() == "precious" and not any((folder / name).is_symlink() for name in files)
+    (folder / "run.lock").symlink_to(victim)
+    run = run_petves(folder, options, ranks, good=False)
+    assert run.status == 1 and "run.lock: cannot be written (" in run.errors[0] and victim.read_text() == "precious"
+
+
 def test_too_little_memory_is_a_line(tmp_path):
     """OpenBLAS would ask for its own memory for ever."""
     options = f"-domain_cells 24,24 -time_end 0.01 -output_dir {tmp_path / 'run'}"

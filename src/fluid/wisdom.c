@@ -90,7 +90,8 @@ static PetscBool Save(const char path[]) {
   text = fftw_export_wisdom_to_string();
   if (text && (!file || HasMore(text, file))) {
     snprintf(temporary, sizeof(temporary), "%s.%d.tmp", path, (int)getpid());
-    FILE *f = fopen(temporary, "w");
+    (void)remove(temporary);
+    FILE *f = fopen(temporary, "wx");
     good = f && fputs(text, f) >= 0 ? PETSC_TRUE : PETSC_FALSE;
     if (f && fclose(f)) good = PETSC_FALSE;
     if (good && rename(temporary, path)) good = PETSC_FALSE;

@@ -24,6 +24,11 @@ int FileSync(const char path[]) {
   return (fd >= 0 && close(fd)) || failed;
 }
 
+FILE *FileNew(const char path[]) {
+  (void)unlink(path);
+  return fopen(path, "wx");
+}
+
 PetscErrorCode FolderRemove(Folder *folder, const char file[]) {
   char path[PETSC_MAX_PATH_LEN];
   PetscFunctionBeginUser;
@@ -40,7 +45,7 @@ PetscErrorCode FolderWriteText(Folder *folder, const char file[], FolderPrint pr
   PetscCall(FolderPath(folder, file, path));
   PetscCall(FolderPath(folder, name, temporary));
   if (!folder->rank) {
-    FILE *f = fopen(temporary, "w");
+    FILE *f = FileNew(temporary);
     done = f && !print(f, what) && !ferror(f) ? PETSC_TRUE : PETSC_FALSE;
     if (f && fclose(f)) done = PETSC_FALSE;
     if (done && rename(temporary, path)) done = PETSC_FALSE;

@@ -29,7 +29,7 @@ static PetscErrorCode OpenIndex(Growing *g, PetscInt count) {
   PetscCall(Path(g, ".index", path));
   PetscCall(Path(g, ".index.tmp", temporary));
   if (!g->folder->rank) {
-    g->index = fopen(temporary, "w");
+    g->index = FileNew(temporary);
     for (PetscInt t = 0; t < count && g->index; t++) PrintEntry(g, g->index, t, g->time[t]);
     done = g->index && !fflush(g->index) && !ferror(g->index) ? PETSC_TRUE : PETSC_FALSE;
     if (done) done = g->file.failed ? !unlink(temporary) : !rename(temporary, path);

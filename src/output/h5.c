@@ -35,6 +35,7 @@ PetscErrorCode H5FileCreate(MPI_Comm comm, const char path[], H5File *f) {
   PetscCall(Start(comm, path, f));
   if (!f->rank) {
     const hid_t access = Access();
+    (void)unlink(path); /* a link: what it leads to is not the run's */
     Try(f, f->id = H5Fcreate(path, H5F_ACC_TRUNC, H5P_DEFAULT, access));
     (void)H5Pclose(access);
   }

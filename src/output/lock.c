@@ -17,7 +17,7 @@ static PetscBool Same(const struct stat *a, const struct stat *b) {
 static PetscMPIInt TakeLock(const char path[], int *file) {
   struct stat mine, there;
   for (;;) {
-    *file = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    *file = open(path, O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
     if (*file < 0) return errno;
     const int error = flock(*file, LOCK_EX | LOCK_NB) ? errno : 0;
     if (!error && !fstat(*file, &mine) && !stat(path, &there) && Same(&mine, &there)) return 0;

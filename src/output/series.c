@@ -14,7 +14,7 @@ PetscErrorCode SeriesPrepare(Series *s, Folder *folder, const char header[], con
   PetscCall(FolderPath(folder, NAME, path));
   PetscCall(FolderPath(folder, TEMPORARY, temporary));
   if (!folder->rank) {
-    FILE *f = fopen(temporary, "w");
+    FILE *f = FileNew(temporary);
     if (f) fprintf(f, *row ? "%s\n%s\n" : "%s\n", header, row);
     written = f && !fclose(f) ? PETSC_TRUE : PETSC_FALSE;
   }
@@ -24,7 +24,7 @@ PetscErrorCode SeriesPrepare(Series *s, Folder *folder, const char header[], con
 
 /* The file up to the row of `step`, under the temporary name; what is wrong with it, or "". */
 static const char *CopyRows(const char path[], const char temporary[], const char header[], PetscInt step) {
-  FILE *in = fopen(path, "r"), *out = in ? fopen(temporary, "w") : NULL;
+  FILE *in = fopen(path, "r"), *out = in ? FileNew(temporary) : NULL;
   char *line = NULL;
   const char *wrong = !in ? "cannot be read" : (!out ? "cannot be written" : NULL);
   size_t room = 0;
