@@ -39,6 +39,8 @@ CURVES = {
     "control character": CIRCLE[:2] + ["0.1\x1c 0.2"] + CIRCLE[2:],
     "three columns": ["0.1 0.2 0.3"] + CIRCLE,
     "repeated point": CIRCLE[:5] + CIRCLE[4:],
+    "nearly the same point": [*CIRCLE[:3], "0.2427050983124842 0.1763355756877419", *CIRCLE[3:]],
+    "long line": [CIRCLE[0], " " * 2000 + "0.1 0.2 0.3", *CIRCLE[1:]],
     "open": ["# open", *CIRCLE],
     "bump": ["# open", *bump(0.5)],
     "low bump": ["# open", *bump(0.05)],

@@ -56,6 +56,12 @@ PETSC_EXTERN const char *const PhaseNames[PHASE_COUNT];
 /* PetvesEvent - id of a -log_view event of the given name, registered on first use. */
 PETSC_EXTERN PetscErrorCode PetvesEvent(const char name[], PetscLogEvent *event);
 
+/* FileOpen - a file to read; NULL and errno when it cannot be opened, or is no file but a folder, device or pipe, which
+   may have no end. FileNew - a new file to write, in place of what has its name: a link is not followed; NULL: it
+   cannot be made. Not collective. */
+PETSC_EXTERN FILE *FileOpen(const char path[]);
+PETSC_EXTERN FILE *FileNew(const char path[]);
+
 /* PetvesWarmUpBlas - let the BLAS take its own memory now, or stop with one line where a rank has too little: OpenBLAS
    would wait for it without end. Does nothing when it has been done. Collective. */
 PETSC_EXTERN PetscErrorCode PetvesWarmUpBlas(MPI_Comm comm);

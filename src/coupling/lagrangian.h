@@ -26,11 +26,12 @@ struct _p_LagrangianSolver {
 };
 
 /* TensionSolverCreate - C = S^T S + S^T G L^-1 G^T S (M x M), prefix tension_, GMRES with PCILU on the assembled
-   Chat = S^T S + S^T G diag(L)^-1 G^T S, relative tolerance h^2. One scalar solve an iteration. Collective. */
+   Chat = S^T S + S^T G diag(L)^-1 G^T S, relative tolerance (h over half the box's shorter side)^2. One scalar solve an
+   iteration. Collective. */
 PETSC_EXTERN PetscErrorCode TensionSolverCreate(Coupling coupling, LagrangianSolver *solver);
 
-/* BendingSolverCreate - I + E H^-1 B/a0 (2M x 2M), prefix bending_, GMRES, relative tolerance h^2. Two scalar solves an
-   iteration. Collective. */
+/* BendingSolverCreate - I + E H^-1 B/a0 (2M x 2M), prefix bending_, GMRES, the same relative tolerance. Two scalar
+   solves an iteration. Collective. */
 PETSC_EXTERN PetscErrorCode BendingSolverCreate(Coupling coupling, LagrangianSolver *solver);
 PETSC_EXTERN PetscErrorCode LagrangianSolverDestroy(LagrangianSolver *solver);
 

@@ -3,7 +3,8 @@
 #include <errno.h>
 #include <strings.h>
 
-#define SAME 1e-6 /* of a period: a curve's last point is its first */
+#define SAME 1e-6    /* of a period: a curve's last point is its first */
+#define ROUNDED 1e-9 /* of a curve's size: two points are one but for rounding */
 
 typedef struct {
   PetscInt n, curves;
@@ -103,8 +104,9 @@ static PetscErrorCode ReadLine(char line[], PetscInt number, PetscInt *capacity,
 
 /* Read the lines on one rank; what is wrong goes into points->error. */
 static PetscErrorCode ReadPoints(Points *points) {
-  FILE *f = fopen(points->file, "r");
-  char line[1024];
+  FILE *f = FileOpen(points->file);
+  char *line = NULL;
+  size_t room = 0;
   PetscInt number = 0, capacity = 0;
   PetscFunctionBeginUser;
   if (!f) {
@@ -113,10 +115,11 @@ static PetscErrorCode ReadPoints(Points *points) {
                             strerror(errno)));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  while (fgets(line, sizeof(line), f) && !*points->error) PetscCall(ReadLine(line, ++number, &capacity, points));
+  while (getline(&line, &room, f) >= 0 && !*points->error) PetscCall(ReadLine(line, ++number, &capacity, points));
   if (ferror(f))
     PetscCall(PetscSNPrintf(points->error, sizeof(points->error),
                             "%s %s: cannot be read; allowed: a readable text file", points->option, points->file));
+  free(line);
   fclose(f);
   PetscCall(EndCurve(points));
   if (!points->curves && !*points->error)
@@ -125,8 +128,16 @@ static PetscErrorCode ReadPoints(Points *points) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Points of a curve that are no further apart are one point. */
+static PetscReal Nearest(PetscInt n, const PetscReal xy[]) {
+  PetscReal size = 0;
+  for (PetscInt k = 2; k < 2 * n; k++) size = PetscMax(size, PetscAbsReal(xy[k] - xy[k % 2]));
+  return ROUNDED * size;
+}
+
 /* What kind a curve of n points is; a last point that closes it, or is its first a period on, is dropped. */
 static CurveKind FindKind(const Points *p, PetscInt *n, const PetscReal xy[], const CurveNote *note) {
+  const PetscReal near = Nearest(*n, xy);
   const PetscReal d[2] = {xy[2 * *n - 2] - xy[0], xy[2 * *n - 1] - xy[1]};
   CurveKind kind = {.type = p->period && note->open ? CURVE_OPEN : CURVE_CLOSED};
   if (kind.type == CURVE_OPEN) return kind;
@@ -136,7 +147,7 @@ static CurveKind FindKind(const Points *p, PetscInt *n, const PetscReal xy[], co
       kind.type = CURVE_SPANNING;
       kind.span[c] = d[c] < 0 ? -p->period[c] : p->period[c];
     }
-  if (*n > 1 && (kind.type == CURVE_SPANNING || (d[0] == 0 && d[1] == 0))) (*n)--;
+  if (*n > 1 && (kind.type == CURVE_SPANNING || (PetscAbsReal(d[0]) <= near && PetscAbsReal(d[1]) <= near))) (*n)--;
   return kind;
 }
 
@@ -155,6 +166,7 @@ static void Reverse(const CurveKind *kind, PetscInt n, PetscReal xy[]) {
 static PetscErrorCode CleanCurve(Points *p, PetscInt *n, PetscReal xy[], CurveNote *note, CurveKind *kind) {
   char *error = p->error;
   const size_t length_of_error = sizeof(p->error);
+  const PetscReal near = Nearest(*n, xy);
   PetscReal area = 0, length = 0;
   PetscFunctionBeginUser;
   *kind = FindKind(p, n, xy, note);
@@ -166,7 +178,7 @@ static PetscErrorCode CleanCurve(Points *p, PetscInt *n, PetscReal xy[], CurveNo
   for (PetscInt i = 0; i < *n; i++) {
     const PetscReal *a = &xy[2 * i], *b = &xy[2 * ((i + 1) % *n)];
     const PetscReal d = PetscSqrtReal(PetscSqr(b[0] - a[0]) + PetscSqr(b[1] - a[1]));
-    if (d == 0) {
+    if (d <= near) {
       PetscCall(PetscSNPrintf(error, length_of_error,
                               "%s %s: point %" PetscInt_FMT " (%g %g) is given twice; allowed: distinct points",
                               p->option, p->file, i + 1, (double)a[0], (double)a[1]));

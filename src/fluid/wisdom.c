@@ -21,7 +21,7 @@ PetscErrorCode WisdomInitialise(void) {
 
 /* The file's text, to be freed; NULL where it cannot be read or, with `missing`, where there is no file. */
 static char *ReadText(const char path[], PetscBool *missing) {
-  FILE *f = fopen(path, "r");
+  FILE *f = FileOpen(path);
   char *text = NULL;
   size_t used = 0, room = 0, n = 1;
   *missing = !f && errno == ENOENT ? PETSC_TRUE : PETSC_FALSE;
@@ -90,8 +90,7 @@ static PetscBool Save(const char path[]) {
   text = fftw_export_wisdom_to_string();
   if (text && (!file || HasMore(text, file))) {
     snprintf(temporary, sizeof(temporary), "%s.%d.tmp", path, (int)getpid());
-    (void)remove(temporary);
-    FILE *f = fopen(temporary, "wx");
+    FILE *f = FileNew(temporary);
     good = f && fputs(text, f) >= 0 ? PETSC_TRUE : PETSC_FALSE;
     if (f && fclose(f)) good = PETSC_FALSE;
     if (good && rename(temporary, path)) good = PETSC_FALSE;

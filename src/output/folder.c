@@ -24,11 +24,6 @@ int FileSync(const char path[]) {
   return (fd >= 0 && close(fd)) || failed;
 }
 
-FILE *FileNew(const char path[]) {
-  (void)unlink(path);
-  return fopen(path, "wx");
-}
-
 PetscErrorCode FolderRemove(Folder *folder, const char file[]) {
   char path[PETSC_MAX_PATH_LEN];
   PetscFunctionBeginUser;

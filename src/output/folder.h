@@ -43,7 +43,5 @@ PETSC_EXTERN PetscErrorCode FolderCheck(Folder *folder, PetscBool written, const
 typedef PetscErrorCode (*FolderPrint)(FILE *file, const void *what);
 PETSC_EXTERN PetscErrorCode FolderWriteText(Folder *folder, const char file[], FolderPrint print, const void *what);
 
-/* FileNew - a new empty file to write, in place of what has its name: a link is not followed. NULL: it cannot be made.
-   FileSync - 0 when all of a file is on the disk. Not collective. */
-PETSC_EXTERN FILE *FileNew(const char path[]);
+/* FileSync - 0 when all of a file is on the disk. Not collective. */
 PETSC_EXTERN int FileSync(const char path[]);

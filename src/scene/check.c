@@ -19,7 +19,12 @@ PetscErrorCode SceneCheckCells(Scene scene) {
   const PetscReal *b = scene->domain.box.v;
   const PetscInt *n = scene->domain.cells.v;
   const PetscReal hx = (b[1] - b[0]) / n[0], hy = (b[3] - b[2]) / n[1];
+  const PetscReal far = PetscMax(PetscMax(-b[0], b[1]), PetscMax(-b[2], b[3])) / hx;
   PetscFunctionBeginUser;
+  PetscCheck(far * PETSC_MACHINE_EPSILON < 1e-6, scene->comm, PETSC_ERR_USER_INPUT,
+             "-domain_box %g,%g,%g,%g: reaches %.2g cells from 0,0, where places are rounded to 1e-6 cells or more; "
+             "allowed: a box nearer to 0,0",
+             (double)b[0], (double)b[1], (double)b[2], (double)b[3], (double)far);
   PetscCheck(2. * n[0] * n[1] < (double)PETSC_MAX_INT, scene->comm, PETSC_ERR_USER_INPUT,
              "-domain_cells %" PetscInt_FMT ",%" PetscInt_FMT
              ": %.3g cells are more than this PETSc can number; allowed: at most %.3g in all",
