@@ -149,6 +149,8 @@ PETSC_EXTERN PetscErrorCode PetvesReadOptions(MPI_Comm comm, PetscOptions option
 
 /* PetvesEnter, PetvesLeave - around calls of a program that has started PETSc itself and handles errors itself: between
    them an error's first message goes to message[PETVES_MAX_MESSAGE], nothing is printed, and `options` is the options
-   database. PetvesLeave takes the depth that PetvesEnter gave and leaves the log stages that an error has left open. */
+   database. PetvesLeave takes the depth that PetvesEnter gave and leaves the log stages that an error has left open. In
+   between this thread has the locale C, in which numbers have points; a program with another locale that does not call
+   them sets LC_NUMERIC to C. */
 PETSC_EXTERN PetscErrorCode PetvesEnter(PetscOptions options, char message[], PetscInt *depth);
 PETSC_EXTERN PetscErrorCode PetvesLeave(PetscInt depth);

@@ -1,6 +1,7 @@
 /* Questions about a simulation, and calls from programs that handle errors themselves (Python). */
 #include "simulation.h"
 #include "output/cells.h"
+#include <locale.h>
 #include <stdlib.h>
 #include <unistd.h>
 
@@ -173,10 +174,16 @@ PetscErrorCode PetvesTemporaryFolder(MPI_Comm comm, char path[]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Of this thread: the caller's locale, and how many PetvesEnter are open. */
+static _Thread_local locale_t callers;
+static _Thread_local int entered;
+
 PetscErrorCode PetvesEnter(PetscOptions options, char message[], PetscInt *depth) {
   PetscFunctionBeginUser;
   message[0] = 0;
   *depth = PhaseDepth();
+  const locale_t before = uselocale(newlocale(LC_ALL_MASK, "C", (locale_t)0)); /* no decimal commas */
+  if (!entered++) callers = before;
   PetscCall(PetscOptionsPush(options));
   PetscCall(PetscPushErrorHandler(PetvesErrorHandler, message));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -188,5 +195,6 @@ PetscErrorCode PetvesLeave(PetscInt depth) {
   PetscCall(PetscOptionsPop());
   PetscCall(PetvesSetupErrors(PETSC_FALSE));
   while (PhaseDepth() > depth) PetscCall(PhaseEnd());
+  if (!--entered) (void)uselocale(callers);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

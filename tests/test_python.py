@@ -1,5 +1,7 @@
 """petves.Simulation: the facts of tests/python, and the same series as the program's, to the bit."""
 
+import json
+import subprocess
 from pathlib import Path
 
 import pytest
@@ -25,9 +27,42 @@ SCENES = {
 }
 
 
-def run_python(script: Path, arguments: list[str], ranks: int = 1):
+COMMA = """
+import locale, sys
+import petves
+def run(name, early):
+    if early: locale.setlocale(locale.LC_ALL, "de_DE.UTF-8")
+    with petves.Simulation(domain_cells=(24, 24), vesicle_semi_axes=(0.4, 0.5), time_step=0.01, time_end=0.05,
+                           output_dir=sys.argv[1] + "/" + name) as sim:
+        sim.step()
+        if name == "commas": locale.setlocale(locale.LC_ALL, "de_DE.UTF-8")
+        return sim.run()
+run("points", False)
+done = run("commas", {early})
+print(locale.str(1.5), done, locale.str(1.5))
+"""
+THREADS = """
+import threading
+import numpy as np
+import petves
+def run(found, k):
+    flow = (lambda x, y, t: (y, 0 * x)) if k else None
+    with petves.Simulation(domain_cells=(24, 24), vesicle_semi_axes=(0.4, 0.5), time_step=0.01, time_end=0.3, flow=flow) as sim:
+        sim.run(callback=lambda sim: sim.pressure.sum())
+        found[k] = sim.markers.copy()
+alone, beside = {}, {}
+for k in range(2): run(alone, k)
+threads = [threading.Thread(target=run, args=(beside, k)) for k in range(2)]
+for thread in threads: thread.start()
+for thread in threads: thread.join()
+print("same" if all(np.array_equal(alone[k], beside[k]) for k in range(2)) else (alone, beside))
+"""
+
+
+def run_python(script: Path, arguments: list[str], ranks: int = 1, **environment: str):
     """Run a Python script on some ranks; the library is that of the program under test."""
-    return mpirun([PYTHON, str(script), *arguments], ranks, PETVES_LIBRARY=LIBRARY, PYTHONPATH=str(ROOT / "python"))
+    package = {"PETVES_LIBRARY": LIBRARY, "PYTHONPATH": str(ROOT / "python")}
+    return mpirun([PYTHON, str(script), *arguments], ranks, **package, **environment)
 
 
 if not SANITIZE:  # a sanitized library cannot be loaded into Python
@@ -80,6 +115,28 @@ if not SANITIZE:  # a sanitized library cannot be loaded into Python
         for name in ("resolved.opts", "run.xmf"):
             texts = [(tmp_path / kind / name).read_text().replace(kind, "") for kind in ("program", "python")]
             assert texts[0] == texts[1]
+
+    @pytest.mark.parametrize("comma_from", ["the start", "the first step on"])
+    def test_decimal_commas_reach_no_file(comma_from, tmp_path):
+        """A program whose locale writes 0,5, as a window of Qt sets it, has the series of one with points."""
+        made = subprocess.run(
+            ["localedef", "-i", "de_DE", "-f", "UTF-8", tmp_path / "de_DE.UTF-8"], capture_output=True
+        )
+        if made.returncode:
+            pytest.skip("no locale with commas can be made here")
+        script = tmp_path / "script.py"
+        script.write_text(COMMA.format(early=comma_from == "the start"))
+        done = run_python(script, [str(tmp_path)], LOCPATH=str(tmp_path))
+        assert done.returncode == 0 and done.stdout == "1,5 finished 1,5\n" and not done.stderr, done.stderr
+        points, commas = ((tmp_path / name / "series.csv").read_text() for name in ("points", "commas"))
+        assert len(without_wall(points)) > 3 and without_wall(points) == without_wall(commas)
+        assert json.loads((tmp_path / "commas" / "summary.json").read_text())["last"]["time"] == pytest.approx(0.05)
+
+    def test_threads_take_turns(tmp_path):
+        """Two runs at once, one of them with a flow of Python: the numbers of one after the other."""
+        (tmp_path / "script.py").write_text(THREADS)
+        done = run_python(tmp_path / "script.py", [])
+        assert done.returncode == 0 and done.stdout == "same\n", done.stdout + done.stderr
 
 
 def without_wall(text: str) -> list[list[str]]:

@@ -9,6 +9,7 @@ from __future__ import annotations
 import ctypes
 import functools
 import os
+import threading
 from typing import Any, Callable
 
 import numpy as np
@@ -23,6 +24,9 @@ MAX_PATH = 4096  # PETSC_MAX_PATH_LEN
 PETSC_ERR_USER = 83
 PETSC_ERR_USER_INPUT = 95
 FlowFunction = Callable[[np.ndarray, np.ndarray, float], "tuple[Any, Any]"]
+
+#: Held while C runs: PETSc serves one thread at a time.
+one_thread = threading.RLock()
 
 Int = ctypes.c_int64 if np.dtype(PETSc.IntType).itemsize == 8 else ctypes.c_int32
 Handle = ctypes.c_void_p

@@ -26,6 +26,7 @@ from petves.library import (
     communicator,
     flow_function,
     library,
+    one_thread,
     option_text,
 )
 from petves.progress import progress_bar
@@ -102,15 +103,16 @@ class Simulation(State):
         self._flow = Flow(0) if flow is None else flow_function(flow, self._failed)
         if flow is not None:
             options["flow_type"] = "custom"
-        try:
-            self._lib.PetscOptionsCreate(ctypes.byref(self._options))
-            self._set_options(options_file, options)
-            self._call("SimulationCreateWithFlow", self._communicator, self._flow, None, ctypes.byref(self._handle))
-            self._learn()
-            self._call("SimulationBegin", self._handle)
-        except BaseException:
-            self._free()
-            raise
+        with one_thread:
+            try:
+                self._lib.PetscOptionsCreate(ctypes.byref(self._options))
+                self._set_options(options_file, options)
+                self._call("SimulationCreateWithFlow", self._communicator, self._flow, None, ctypes.byref(self._handle))
+                self._learn()
+                self._call("SimulationBegin", self._handle)
+            except BaseException:
+                self._free()
+                raise
         self._record()
         self._ended = False
         _alive[id(self)] = weakref.ref(self)
@@ -164,10 +166,10 @@ class Simulation(State):
         self._sizes = list(sizes)
         value = ctypes.create_string_buffer(MAX_PATH)
         self._in_force: dict[str, str] = {}
-        while (
-            not self._lib.SimulationGetOption(self._handle, len(self._in_force), ctypes.byref(name), value, MAX_PATH)
-            and name.value
-        ):
+        while True:  # by _call: it writes numbers with points
+            self._call("SimulationGetOption", self._handle, len(self._in_force), ctypes.byref(name), value, MAX_PATH)
+            if not name.value:
+                break
             self._in_force[name.value.decode()[1:]] = os.fsdecode(value.value)
         self._columns: dict[str, int] = {}
         while not self._lib.SimulationGetColumn(self._handle, len(self._columns), ctypes.byref(name)) and name.value:
@@ -183,27 +185,28 @@ class Simulation(State):
 
     def _call_all(self, *calls: tuple[str, Any]) -> None:
         """Call C functions one after another, as `_call` does one: entered and left once, which a step feels."""
-        if self._inside:
-            raise Error("a simulation cannot be used inside its own step; copy what the flow needs beforehand")
-        depth, code, cause = Int(), 0, None
-        self._lib.PetvesEnter(self._options, self._message, ctypes.byref(depth))
-        if self._quiet:
-            self._lib.PetvesSetQuiet(1)
-        self._inside = True
-        try:
-            for function, arguments in calls:
-                code = getattr(self._lib, function)(*arguments)
-                if code:
-                    break
-        except SystemError as error:  # an exception in a Python callback of petsc4py, a KSP monitor for instance
-            cause = error.__cause__ or error
-        finally:
-            self._inside = False
+        with one_thread:
+            if self._inside:
+                raise Error("a simulation cannot be used inside its own step; copy what the flow needs beforehand")
+            depth, code, cause = Int(), 0, None
+            self._lib.PetvesEnter(self._options, self._message, ctypes.byref(depth))
             if self._quiet:
-                self._lib.PetvesSetQuiet(0)
-            self._lib.PetvesLeave(depth)
-        if cause is not None or code not in (0, PETSC_ERR_USER_INPUT):  # all ranks have agreed on that one
-            self._lib.PetvesEndTogether(self._communicator, self._message.value or str(cause).encode())
+                self._lib.PetvesSetQuiet(1)
+            self._inside = True
+            try:
+                for function, arguments in calls:
+                    code = getattr(self._lib, function)(*arguments)
+                    if code:
+                        break
+            except SystemError as error:  # an exception in a Python callback of petsc4py, a KSP monitor for instance
+                cause = error.__cause__ or error
+            finally:
+                self._inside = False
+                if self._quiet:
+                    self._lib.PetvesSetQuiet(0)
+                self._lib.PetvesLeave(depth)
+            if cause is not None or code not in (0, PETSC_ERR_USER_INPUT):  # all ranks have agreed on that one
+                self._lib.PetvesEndTogether(self._communicator, self._message.value or str(cause).encode())
         if code and self._failed:  # without a code all ranks have agreed that the step failed: _stop_on raises it
             cause = self._failed.pop()
         if cause is not None or code:
@@ -318,7 +321,8 @@ class Simulation(State):
             wish = STOP if callback is not None and callback(self) is True else GO_ON
         except BaseException as error:
             wish, cause = FAILED, error
-        self._lib.PetvesAgree(self._communicator, wish, ctypes.byref(agreed))
+        with one_thread:
+            self._lib.PetvesAgree(self._communicator, wish, ctypes.byref(agreed))
         if agreed.value == FAILED:
             self._end(b"a callback raised an exception")
             raise cause or Error("the callback raised an exception on another rank")
@@ -359,18 +363,19 @@ class Simulation(State):
             self._free()
 
     def _free(self) -> None:
-        try:
-            if self._handle:
-                self._call("SimulationDestroy", ctypes.byref(self._handle))
-        finally:
-            self._handle = Handle()
-            # petsc4py keeps objects that Python has dropped, such as a KSP of a simulation closed before, until all ranks say so
-            PETSc.garbage_cleanup(self._comm)
-            if self._options:
-                self._lib.PetscOptionsDestroy(ctypes.byref(self._options))
-            if self._temporary and self._comm.getRank() == 0:
-                shutil.rmtree(self._temporary_folder, ignore_errors=True)
-            _alive.pop(id(self), None)
+        with one_thread:
+            try:
+                if self._handle:
+                    self._call("SimulationDestroy", ctypes.byref(self._handle))
+            finally:
+                self._handle = Handle()
+                # petsc4py keeps objects that Python has dropped, such as a KSP of a simulation closed before, until all ranks say so
+                PETSc.garbage_cleanup(self._comm)
+                if self._options:
+                    self._lib.PetscOptionsDestroy(ctypes.byref(self._options))
+                if self._temporary and self._comm.getRank() == 0:
+                    shutil.rmtree(self._temporary_folder, ignore_errors=True)
+                _alive.pop(id(self), None)
 
     def __enter__(self) -> Simulation:
         return self

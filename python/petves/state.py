@@ -9,7 +9,7 @@ import numpy as np
 from petsc4py import PETSc
 
 from petves.errors import Error
-from petves.library import Handle, Int, wrap
+from petves.library import Handle, Int, one_thread, wrap
 from petves.measures import Measures
 
 KSP_NAMES = ("coupled", "direct", "tension", "bending")
@@ -155,7 +155,8 @@ class State(Measures):
 
     def _find(self, name: str) -> int | None:
         found = Handle()
-        self._lib.SimulationGetObject(self._open(), name.encode(), ctypes.byref(found))
+        with one_thread:
+            self._lib.SimulationGetObject(self._open(), name.encode(), ctypes.byref(found))
         return found.value
 
     def _object(self, kind: str, asked: str, name: str) -> PETSc.Object:
