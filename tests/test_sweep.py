@@ -116,8 +116,8 @@ def test_folders_do_not_collide(sweep, tmp_path):
 
 
 def test_a_stopped_run_is_a_line(sweep):
-    status, lines, rows = sweep("limit_length_error", "0.2", "1e-9")
-    assert status == 1 and len(lines) == 1 and "limit_length_error=1e-9: stopped: vesicle 1: length error" in lines[0]
+    status, lines, rows = sweep("limit_length_error", "0.2", "1e-12")
+    assert status == 1 and len(lines) == 1 and "limit_length_error=1e-12: stopped: vesicle 1: length error" in lines[0]
     assert [row["status"] for row in rows] == ["done", "stopped"]
 
 
