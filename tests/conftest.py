@@ -67,12 +67,12 @@ def mpirun(command: list[str], ranks: int, timeout: float = 300, wrapper: tuple[
 
 
 def without_mpirun(text: str) -> list[str]:
-    """Lines of standard error that are not mpirun's own report, which it frames in dashes."""
+    """Lines of standard error that are not mpirun's own: its report, which it frames in dashes, and its event loop's."""
     lines, inside = [], False
     for line in text.splitlines():
         if line.startswith("-----"):
             inside = not inside
-        elif not inside and line.strip():
+        elif not inside and line.strip() and not line.startswith("[warn] Epoll"):
             lines.append(line)
     return lines
 

@@ -4,7 +4,7 @@ import os
 from pathlib import Path
 
 import pytest
-from conftest import PROGRAMS, mpirun
+from conftest import PROGRAMS, mpirun, without_mpirun
 
 NAMES = sorted(path.stem for path in Path(__file__).parent.glob("test_*.c"))
 CASES = [(name, ranks) for name in NAMES for ranks in (1, 2, 4)]
@@ -21,3 +21,15 @@ def test_facts_hold(name, ranks, tmp_path):
     assert not wrong, "\n".join(wrong)
     assert done.returncode == 0, done.stdout[-2000:] + done.stderr
     assert len(facts) >= 20, "a program that states nothing proves nothing"
+
+
+def test_lines_of_mpirun_are_dropped():
+    """Its report between dashes, and what its event loop says of a process that has ended."""
+    lines = [
+        "[warn] Epoll MOD(1) on fd 24 failed. Old events were 6; read change was 2 (del): Bad file descriptor",
+        "petves: error: -time_step -1: out of range",
+        "-" * 70,
+        "mpirun has exited",
+        "-" * 70,
+    ]
+    assert without_mpirun("\n".join(lines)) == lines[1:2]
