@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import io
 import os
 import sys
 from importlib import import_module
@@ -127,6 +128,8 @@ def main(arguments: list[str] | None = None) -> int:
             return become(given)
         words = vars(parser().parse_args(given))
         command = words.pop("command")
+        if isinstance(sys.stdout, io.TextIOWrapper):
+            sys.stdout.reconfigure(errors="surrogateescape")  # names of folders may be any bytes
         lines = _run(command, words)
         for line in lines:
             print(line)

@@ -44,7 +44,7 @@ def load(folder: str | Path, kind: str = "auto") -> Run | xarray.Dataset:
     Parameters
     ----------
     folder : str or Path
-        The run's ``-output_dir``; the run may still be going on.
+        The run's ``-output_dir``; the run may still be going on, or have been killed: whole rows and frames are read.
     kind : str
         "xarray"; "numpy", a `petves.Run`; or "auto", xarray where it is installed.
 
@@ -61,7 +61,7 @@ def load(folder: str | Path, kind: str = "auto") -> Run | xarray.Dataset:
     Raises
     ------
     RunError
-        When the folder or one of its files is missing or broken.
+        When the folder or one of its files is missing or broken, or has no row or saved time yet.
     """
     if kind not in ("auto", "xarray", "numpy"):
         raise RunError(f"kind {kind}: unknown; allowed: auto, xarray, numpy")

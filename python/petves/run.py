@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import csv
 import functools
-import json
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -13,8 +11,10 @@ import h5py
 import numpy as np
 
 from petves.curves import smooth_curve, trigonometric
-from petves.errors import Error
-from petves.solids import KINDS, solid_outline
+from petves.errors import RunError as RunError
+from petves.files import read_file, read_summary
+from petves.runfiles import read_frames, read_h5, read_series
+from petves.solids import solid_outline
 
 
 #: Vesicles up to which series.csv has columns of each.
@@ -23,9 +23,14 @@ FEW = 40
 #: Points of a vesicle's smooth curve for each of its markers.
 CURVE = 6
 
+#: Periods of the box that a curve may span.
+WIDEST = 1000
 
-class RunError(Error):
-    """A folder or file of a run is missing or cannot be read; the message is one line."""
+#: Columns that every run has.
+COLUMNS = (
+    "step time energy_kinetic energy_bending area_error length_error div_max inclination frequency wall nsolve tension_its"
+    " bending_its coupled_its"
+).split()
 
 
 @dataclass
@@ -91,41 +96,26 @@ class Run:
     def read(cls, folder: str | Path) -> Run:
         """Read a run's folder; fluid fields are left on disk, see `fields`.
 
+        The run may be going on, or have been killed: what its files have whole is read, series.csv to its last whole row
+        and run.h5 to its last saved time.
+
         Raises
         ------
         RunError
-            When the folder or one of its files is missing or broken.
+            When the folder or one of its files is missing or broken, or has no row or saved time yet. Where a killed run
+            has left run.h5 broken, a restart makes it anew, and `read_series` reads series.csv alone.
         """
         folder = Path(folder)
         if not folder.is_dir():
             raise RunError(f"{folder}: no such folder; give the -output_dir of a run")
-        summary = folder / "summary.json"
-        with _open(folder / "run.h5") as file:
-            try:
-                none = np.zeros((len(file["time"]), 0, 2))
-                start = file.attrs.get("vesicle_start", file["vesicle_start"] if "vesicle_start" in file else None)
-                start = np.atleast_1d(start).astype(int)
-                return cls(
-                    folder=folder,
-                    series=read_series(folder / "series.csv"),
-                    box=np.asarray(file.attrs["box"], float),
-                    h=_number(file, "h"),
-                    nu=_number(file, "nu"),
-                    c_b=_number(file, "c_b"),
-                    time=file["time"][:],
-                    markers=file["vesicle/markers"][:] if "vesicle" in file else none,
-                    velocity=file["vesicle/velocity"][:] if "vesicle" in file else none,
-                    tension=file["vesicle/tension"][:] if "vesicle" in file else none[:, :, 0],
-                    start=start,
-                    viscosity_ratio=np.ones(len(start) - 1) * file.attrs.get("vesicle_viscosity_ratio", 1.0),
-                    obstacles=_obstacles(file),
-                    obstacle_markers=_moving_obstacles(file),
-                    obstacle_force=file["obstacle/force"][:] if "obstacle" in file else none,
-                    obstacle_kinds=[KINDS[kind] for kind in np.atleast_1d(file.attrs.get("obstacle_kind", []))],
-                    summary=json.loads(summary.read_text()) if summary.is_file() else {},
-                )
-            except KeyError as error:
-                raise RunError(f"{folder / 'run.h5'}: {error.args[0]} is missing; was the run stopped?") from None
+        frames = read_h5(folder / "run.h5", read_frames)
+        series, summary = read_series(folder / "series.csv"), folder / "summary.json"
+        missing = [name for name in COLUMNS if name not in series]
+        if missing:
+            raise RunError(f"{folder / 'series.csv'}: has no column {missing[0]}")
+        return cls(
+            folder=folder, series=series, summary=read_file(summary, read_summary) if summary.exists() else {}, **frames
+        )
 
     @property
     def vesicles(self) -> int:
@@ -143,19 +133,23 @@ class Run:
             names = [name] if self.vesicles == 1 else [f"{name}_{v + 1}" for v in range(self.vesicles)]
             return np.stack([self.series[column] for column in names], axis=1)
         values = np.full((len(self.series["step"]), self.vesicles), np.nan)
-        with _open(self.folder / "vesicles.h5") as file:
+
+        def fill(file: h5py.File) -> None:
             if name not in file:
                 raise RunError(f"column {name}: vesicles have none of that name")
             rows = min(len(values), len(file["time"]))
             values[:rows] = file[name][:rows]
+
+        read_h5(self.folder / "vesicles.h5", fill)
         return values
 
     def columns_of_each(self) -> list[str]:
         """Return the names that `each` takes from vesicles.h5; none up to 40 vesicles."""
         if not (self.folder / "vesicles.h5").is_file() or self.vesicles <= FEW:
             return []
-        with _open(self.folder / "vesicles.h5") as file:
-            return [name for name in file if name not in ("step", "time")]
+        return read_h5(
+            self.folder / "vesicles.h5", lambda file: [name for name in file if name not in ("step", "time")]
+        )
 
     @functools.cached_property
     def periods(self) -> tuple[float, float]:
@@ -196,6 +190,10 @@ class Run:
         shifts = []
         for d, period in enumerate(self.periods):
             low, high = outline[:, d].min(), outline[:, d].max()
+            if period and high - low > WIDEST * period:
+                raise RunError(
+                    f"{self.folder / 'run.h5'}: a curve as wide as {(high - low) / period:.3g} periods of the box"
+                )
             first, last = (int(np.floor((box[2 * d] - x) / period)) if period else 0 for x in (high, low))
             inside = [
                 k * period
@@ -212,7 +210,7 @@ class Run:
     @functools.cached_property
     def _in_force(self) -> dict[str, str]:
         path = self.folder / "resolved.opts"
-        lines = path.read_text().splitlines() if path.is_file() else []
+        lines = read_file(path, lambda x: x.read_text(errors="replace")).splitlines() if path.exists() else []
         words = [line[1:].split(" ", maxsplit=1) for line in lines if line.startswith("-")]
         return {word[0]: word[1].strip('"') if len(word) > 1 else "" for word in words}
 
@@ -222,9 +220,8 @@ class Run:
 
     def fields(self, frame: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return u, v, p at cell centres at a saved time, each of shape (ny, nx)."""
-        with _open(self.folder / "run.h5") as file:
-            u, v, p = (file["fluid"][name][frame] for name in "uvp")
-        return u, v, p
+        place = range(len(self.time))[frame]  # a run that goes on may have more
+        return read_h5(self.folder / "run.h5", lambda file: tuple(file["fluid"][name][place] for name in "uvp"))
 
     def cell_centers(self) -> tuple[np.ndarray, np.ndarray]:
         """Return x, shape (nx,), and y, shape (ny,), of the cell centres."""
@@ -299,45 +296,3 @@ def centroid(outline: np.ndarray) -> np.ndarray:
     xn, yn = shifted[1:].T
     cross = x * yn - xn * y
     return outline[0] + np.array([np.sum(cross * (x + xn)), np.sum(cross * (y + yn))]) / (3 * np.sum(cross))
-
-
-def read_series(path: str | Path) -> dict[str, np.ndarray]:
-    """Read series.csv into one array a column; an empty entry is NaN."""
-    path = Path(path)
-    if not path.is_file():
-        raise RunError(f"{path}: no such file")
-    with path.open(newline="") as file:
-        rows = list(csv.reader(file))
-    if len(rows) < 2:
-        raise RunError(f"{path}: no steps in it")
-    try:
-        table = np.array([[float(x) if x else np.nan for x in row] for row in rows[1:]])
-    except ValueError as error:
-        raise RunError(f"{path}: {error}") from None
-    return {name: table[:, k] for k, name in enumerate(rows[0])}
-
-
-def _open(path: Path) -> h5py.File:
-    if not path.is_file():
-        raise RunError(f"{path}: no such file")
-    try:
-        return h5py.File(path, "r", locking=False)  # the run may be going on
-    except OSError as error:
-        raise RunError(f"{path}: not a readable HDF5 file ({str(error).splitlines()[0]})") from None
-
-
-def _obstacles(file: h5py.File) -> list[np.ndarray]:
-    if "obstacle" not in file:
-        return []
-    markers = file["obstacle/markers"]
-    return np.split(markers[-1] if markers.ndim == 3 else markers[:], file.attrs["obstacle_start"][1:-1])
-
-
-def _moving_obstacles(file: h5py.File) -> np.ndarray:
-    if "obstacle" not in file or file["obstacle/markers"].ndim < 3:
-        return np.zeros((0, 0, 2))
-    return file["obstacle/markers"][:]
-
-
-def _number(file: h5py.File, name: str) -> float:
-    return float(np.ravel(file.attrs[name])[0])

@@ -9,18 +9,21 @@ import hashlib
 import io
 import itertools
 import json
+import re
 from collections.abc import Iterable, Iterator, Mapping
 from concurrent.futures import Future, ThreadPoolExecutor, as_completed
 from pathlib import Path
 from urllib.parse import quote
 
-from petves.errors import Error
+from petves.errors import Error, RunError
+from petves.files import read_file, read_summary, writing
 from petves.program import command, run_program
 from petves.progress import progress_bar
 
 GOOD = ("finished", "steady")
 REMEMBERED = ("done", "stopped", "refused")
-FORBIDDEN = ("output_dir", "restart", "options_file")
+FORBIDDEN = "output_dir|restart|options_.*|python.*|dll_.*|.*debugger.*|on_error_.*|history|log_.*|malloc_.*|info.*"
+"""Options that the sweep sets, and those of PETSc that run programs or write any file; PETSc takes either case."""
 SAFE = " !$&'()*+,-.:;<>?@[]^_`{|}~"  # what a folder's name has as it is: no slash, =, # nor %
 LONGEST = 200  # characters of a folder's name
 
@@ -117,16 +120,15 @@ def _writing(path: Path) -> Iterator[None]:
 
 def _replace(path: Path, text: str) -> None:
     """Write a file that is whole or as it was."""
-    temporary = path.with_name(path.name + ".tmp")
-    temporary.write_text(text)
-    temporary.replace(path)
+    with writing(path) as fresh:
+        fresh.write_text(text, errors="surrogateescape")
 
 
 def _check(grid: dict[str, list[str]], jobs: int, ranks: int) -> None:
     if not grid or not all(grid.values()):
         raise Error("sweep: nothing to vary; allowed: at least one option with values")
     for name in grid:
-        if name in FORBIDDEN:
+        if re.fullmatch(FORBIDDEN, name.lower().lstrip("-")):
             raise Error(f"sweep: {name} cannot vary; allowed: any other option")
     if jobs < 1 or ranks < 1:
         raise Error(f"sweep: {jobs} jobs of {ranks} ranks; allowed: at least 1 each")
@@ -143,7 +145,7 @@ def _name(point: dict[str, str]) -> str:
 def _run_point(folder: Path, point: dict[str, str], ranks: int) -> Ended:
     """Run one combination unless that has been done; leave status.json beside its files where there is no more to do."""
     home = folder / _name(point)
-    with contextlib.suppress(FileNotFoundError):
+    with contextlib.suppress(FileNotFoundError, ValueError, LookupError, TypeError):
         known = json.loads((home / "status.json").read_text())
         return known["status"], known["message"]
     words = [word for name, value in point.items() for word in (f"-{name}", value)]
@@ -153,7 +155,9 @@ def _run_point(folder: Path, point: dict[str, str], ranks: int) -> Ended:
         if kind in REMEMBERED:
             home.mkdir(exist_ok=True)
             _replace(home / "status.json", json.dumps({"status": kind, "message": message}) + "\n")
-    except OSError as error:  # of what has ended well the next call finds the end state
+    except RunError as error:  # of what has ended well the next call finds the end state
+        kind, message = "failed", str(error)
+    except OSError as error:
         kind, message = "failed", f"{home}: cannot be written ({error.strerror})"
     return kind, message
 
@@ -167,7 +171,7 @@ def _launch(home: Path, words: list[str], ranks: int) -> Ended:
         _move_aside(home)
     status, message = run_program(begin, ranks)
     if status == 0:
-        reason = json.loads((home / "summary.json").read_text())["reason"]
+        reason = read_file(home / "summary.json", read_summary)["reason"]
         return ("done", "") if reason in GOOD else ("interrupted", reason)
     if status == 2:
         return "stopped", message
@@ -199,8 +203,9 @@ def _move_aside(home: Path) -> None:
 def _row(home: Path, ended: Ended) -> dict[str, object]:
     """Return what sweep.csv says of a run besides its options; the last row of its series when it has one."""
     row: dict[str, object] = {"folder": home.name, "status": ended[0], "message": ended[1]}
-    with contextlib.suppress(FileNotFoundError, ValueError), (home / "series.csv").open(newline="") as file:
-        *_, last = csv.DictReader(file)
+    with contextlib.suppress(FileNotFoundError, ValueError):
+        text = (home / "series.csv").read_text()
+        *_, last = csv.DictReader(text[: text.rfind("\n") + 1].splitlines())
         row |= last
     return row
 

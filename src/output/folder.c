@@ -43,7 +43,7 @@ PetscErrorCode FolderWriteText(Folder *folder, const char file[], FolderPrint pr
     FILE *f = FileNew(temporary);
     done = f && !print(f, what) && !ferror(f) ? PETSC_TRUE : PETSC_FALSE;
     if (f && fclose(f)) done = PETSC_FALSE;
-    if (done && rename(temporary, path)) done = PETSC_FALSE;
+    if (done && (FileSync(temporary) || rename(temporary, path))) done = PETSC_FALSE;
     if (f && !done) (void)unlink(temporary);
   }
   PetscCall(FolderCheck(folder, done, path));

@@ -70,6 +70,7 @@ PetscErrorCode SeriesOpen(Series *s) {
   PetscCall(FolderPath(s->folder, TEMPORARY, temporary));
   if (!s->folder->rank && !rename(temporary, path)) s->file = fopen(path, "a");
   PetscCall(FolderCheck(s->folder, s->file ? PETSC_TRUE : PETSC_FALSE, path));
+  if (s->file) (void)setvbuf(s->file, NULL, _IOLBF, 0); /* each row at once */
   FolderWatch(s->folder, NAME);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
+from petves.files import shown
 from petves.run import Run
 from petves.tables import table
 from petves.views.plot import draw_outlines, dress, new_figure, save_figure
@@ -48,7 +49,7 @@ def _options(a: Run, b: Run) -> list[str]:
     if not names:
         return ["The options are the same.", ""]
     rows = [["-" + name, one.get(name, "not given"), two.get(name, "not given")] for name in names]
-    return table(["option", str(a.folder), str(b.folder)], rows)
+    return table(["option", shown(a.folder), shown(b.folder)], rows)
 
 
 def _columns(a: Run, b: Run) -> list[str]:
@@ -78,7 +79,7 @@ def _markers(a: Run, b: Run) -> str:
 def _draw(runs: tuple[Run, Run], path: Path) -> Path:
     figure, axes = new_figure(13, 4, columns=3)
     for run, color, style in zip(runs, ("C0", "C1"), ("-", "--")):
-        label = str(run.folder)
+        label = shown(run.folder)
         time = run.series["time"]
         axes[0].plot(time, run.series["energy_kinetic"] + run.series["energy_bending"], style, color=color, label=label)
         axes[1].plot(time, np.unwrap(run.series["inclination"], period=np.pi), style, color=color, label=label)

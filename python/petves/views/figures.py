@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from petves.run import RunError
+from petves.errors import RunError
+from petves.files import writing
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -132,7 +133,8 @@ def save_figure(figure: Figure, path: Path, look: Look = PLAIN) -> Path:
     if look.width is not None and figure.get_layout_engine() is not None:  # sheets have it already
         figure.set_size_inches(look.width, look.width * figure.get_figheight() / figure.get_figwidth())
     dates = {"png": {}, "pdf": {"CreationDate": None}, "svg": {"Date": None}}  # the same run, the same file
-    figure.savefig(path, dpi=look.dpi, metadata=dates[look.format])
+    with writing(path) as fresh:
+        figure.savefig(fresh, dpi=look.dpi, metadata=dates[look.format])
     return path
 
 

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
+from petves.files import writing
 from petves.progress import progress_bar
 from petves.run import Run, RunError
 from petves.views.field import FIELDS, draw_field, draw_membranes
@@ -67,7 +68,8 @@ def movie(
         raise RunError(f"{path}: ffmpeg is not installed; install it, or ask for a .gif")
     if field not in FIELDS:
         raise RunError(f"field {field}: unknown; allowed: {', '.join(FIELDS)}")
-    _film(run, chosen_frames(run, every, begin, end), path, field, rate, width, look)
+    with writing(path) as fresh:
+        _film(run, chosen_frames(run, every, begin, end), fresh, field, rate, width, look)
     return path
 
 

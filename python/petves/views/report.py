@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from petves.files import read_file, shown, writing
 from petves.run import Run
 from petves.views.figures import MANY
 from petves.views.plot import plot_conservation, plot_energy, plot_motion, plot_shapes, plot_tension
@@ -52,10 +53,11 @@ def report(folder: str | Path, output: str | Path | None = None) -> Path:
     """
     run = Run.read(folder)
     options = run.options()
-    rows = "".join(f"<tr><td>{_safe(name)}</td><td>{_safe(value)}</td></tr>" for name, value in key_numbers(run))
-    words = "".join(f"<p>{_safe(text)}</p>" for text in scene_in_words(run))
+    told = read_file(run.folder / "resolved.opts", lambda _: (key_numbers(run), scene_in_words(run)))
+    rows = "".join(f"<tr><td>{_safe(name)}</td><td>{_safe(value)}</td></tr>" for name, value in told[0])
+    words = "".join(f"<p>{_safe(text)}</p>" for text in told[1])
     parts = {
-        "TITLE": _safe(f"petves: {run.folder.resolve().name}"),
+        "TITLE": _safe(f"petves: {shown(run.folder.resolve().name)}"),
         "WORDS": words,
         "NUMBERS": rows,
         "NOTE": _note(run),
@@ -66,7 +68,8 @@ def report(folder: str | Path, output: str | Path | None = None) -> Path:
     page = (Path(__file__).parent / "report.html").read_text(encoding="utf-8")
     page = re.sub(f"__({'|'.join(parts)})__", lambda found: parts[found[1]], page)  # once: a folder may be so called
     path = Path(output) if output else run.folder / "report.html"
-    path.write_text(page, encoding="utf-8")
+    with writing(path) as fresh:
+        fresh.write_text(page, encoding="utf-8")
     return path
 
 

@@ -1,0 +1,122 @@
+"""Reading what a run writes: series.csv, and HDF5 files without their fields."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, TypeVar
+
+import h5py
+import numpy as np
+
+from petves.errors import RunError
+from petves.files import read_file
+from petves.solids import KINDS
+
+T = TypeVar("T")
+
+#: A place or tension above this is no number of a run's.
+HUGE = 1e100
+
+
+def read_series(path: str | Path) -> dict[str, np.ndarray]:
+    """Read the whole rows of series.csv into one array a column; an empty entry is NaN."""
+    return read_file(Path(path), _series)
+
+
+def _series(path: Path) -> dict[str, np.ndarray]:
+    text = path.read_text()
+    names, *rows = [line.split(",") for line in text[: text.rfind("\n") + 1].split("\n")[:-1]] or [[]]
+    if rows and len(rows[-1]) != len(names):
+        rows.pop()
+    if not rows:
+        raise RunError(f"{path}: no steps in it")
+    table = np.array([[float(x) if x else np.nan for x in row] for row in rows])
+    series = {name: table[:, k] for k, name in enumerate(names)}
+    _need(all(np.isfinite(series[name]).all() for name in ("step", "time") if name in series), "no step or time")
+    return series
+
+
+def _need(good: bool | np.bool_, what: str) -> None:
+    """Refuse what no run writes."""
+    if not good:
+        raise ValueError(what)
+
+
+def read_h5(path: Path, read: Callable[[h5py.File], T]) -> T:
+    """Return what `read` makes of an HDF5 file, whose data must all be in the file itself."""
+
+    def inside(path: Path) -> T:
+        with h5py.File(path, "r", locking=False) as file:  # the run may be going on
+            _check_own(file)
+            return read(file)
+
+    return read_file(path, inside, "; of a killed run, -restart makes it anew")
+
+
+def _check_own(file: h5py.File) -> None:
+    """Refuse links, and values that HDF5 would take from other files: a folder may come from anybody."""
+    found: list[Any] = []
+    file.id.links.visit(lambda name, link: found.append((name, link.type == h5py.h5l.TYPE_HARD)), info=True)
+    file.visititems(lambda name, x: found.append((name, isinstance(x, h5py.Group) or not (x.external or x.is_virtual))))
+    for name, own in found:
+        _need(own, f"{name}: not in this file")
+
+
+def read_frames(file: h5py.File) -> dict[str, Any]:
+    """Return what a Run has of run.h5, by its names. A frame's values are written before its time, which counts it."""
+    time, box = file["time"][:], np.asarray(file.attrs["box"], float)
+    if not len(time):
+        raise RunError(f"{file.filename}: no saved time in it")
+    start = file.attrs.get("vesicle_start", file["vesicle_start"] if "vesicle_start" in file else None)
+    start, h = np.atleast_1d(start).astype(int), _number(file, "h")
+    _need(np.isfinite(time).all() and (np.diff(time) > 0).all(), "times do not increase")
+    _need(box.shape == (4,) and np.isfinite(box).all() and h > 0, "no box")
+    cells = (box[1::2] - box[::2]) / h
+    _need((cells > 0.5).all() and np.allclose(cells, np.round(cells)), "no whole cells")
+    for name in "uvp":
+        _need(file["fluid"][name].shape[1:] == tuple(np.round(cells[::-1])), f"fluid/{name}: other cells")
+    _need(start[0] == 0 and (np.diff(start) > 2).all(), "vesicle_start")
+
+    def rows(name: str, *shape: int) -> np.ndarray:
+        if name.split("/")[0] not in file:
+            return np.zeros((len(time), 0, *shape[1:]))
+        _need(file[name].shape[1:] == shape and len(file[name]) >= len(time), f"{name}: other sizes")
+        values = file[name][: len(time)]
+        _need(values.dtype.kind == "f" and (np.abs(values) < HUGE).all(), f"{name}: not finite")
+        return values
+
+    return {
+        "box": box,
+        "h": h,
+        "nu": _number(file, "nu"),
+        "c_b": _number(file, "c_b"),
+        "time": time,
+        "markers": rows("vesicle/markers", start[-1], 2),
+        "velocity": rows("vesicle/velocity", start[-1], 2),
+        "tension": rows("vesicle/tension", start[-1]),
+        "start": start,
+        "viscosity_ratio": np.ones(len(start) - 1) * file.attrs.get("vesicle_viscosity_ratio", 1.0),
+    } | _obstacles(file, rows)
+
+
+def _obstacles(file: h5py.File, rows: Callable[..., np.ndarray]) -> dict[str, Any]:
+    """Return what a Run has of obstacles, if there are any."""
+    if "obstacle" not in file:
+        return {"obstacle_force": rows("obstacle/force", 0, 2)}
+    first, places = file.attrs["obstacle_start"], file["obstacle/markers"]
+    moving = rows("obstacle/markers", first[-1], 2) if places.ndim == 3 else np.zeros((0, 0, 2))
+    places = moving[-1] if len(moving) else places[:]
+    _need(places.shape == (first[-1], 2) and np.isfinite(places).all(), "obstacle/markers")
+    return {
+        "obstacles": np.split(places, first[1:-1]),
+        "obstacle_markers": moving,
+        "obstacle_force": rows("obstacle/force", first[-1], 2),
+        "obstacle_kinds": [KINDS[kind] for kind in np.atleast_1d(file.attrs.get("obstacle_kind", []))],
+    }
+
+
+def _number(file: h5py.File, name: str) -> float:
+    number = float(np.ravel(file.attrs[name])[0])
+    _need(np.isfinite(number), name)
+    return number
