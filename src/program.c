@@ -115,7 +115,8 @@ static void FindPackage(void) {
     (void)snprintf(pattern, sizeof(pattern), "%s/%s/petves/__main__.py", path, places[k]);
     if (glob(pattern, 0, NULL, &found)) continue;
     found.gl_pathv[0][strlen(found.gl_pathv[0]) - strlen("/petves/__main__.py")] = 0;
-    (void)snprintf(pattern, sizeof(pattern), "%s%s%s", found.gl_pathv[0], before ? ":" : "", before ? before : "");
+    (void)snprintf(pattern, sizeof(pattern), "%s%s%s", found.gl_pathv[0], before && *before ? ":" : "",
+                   before ? before : "");
     (void)setenv("PYTHONPATH", pattern, 1);
     globfree(&found);
     return;
@@ -128,6 +129,7 @@ static int StartTool(int argc, char **argv) {
   if (!word) return 1;
   if (!IsFirst()) return 0;
   FindPackage();
+  (void)setenv("PYTHONSAFEPATH", "1", 1); /* the folder where one stands may be anybody's: no module from there */
   word[0] = strdup(PETVES_PYTHON);
   word[1] = strdup("-m");
   word[2] = strdup("petves");

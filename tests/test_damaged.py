@@ -171,6 +171,20 @@ def test_name_of_bytes(whole, tmp_path):
     assert (Path(folder) / "report.html").is_file()
 
 
+def test_no_module_of_the_current_folder(folder, tmp_path):
+    """Whoever stands in a folder of somebody else runs nothing from there."""
+    for name in ("h5py.py", "petves/__init__.py", "petves/__main__.py", "argparse.py"):
+        path = tmp_path / "here" / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text("import sys\nsys.exit('taken')\n")
+    for python_path in ({}, {"PYTHONPATH": ""}):
+        environment = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
+        done = subprocess.run(
+            [PETVES, "plot", folder], env=environment | python_path, cwd=tmp_path / "here", capture_output=True
+        )
+        assert done.returncode == 0, done.stderr
+
+
 def test_links_are_not_followed(folder, tmp_path):
     """A picture, a page and a film at whose name a link lies are refused, and the link's file stays."""
     mine = tmp_path / "mine"

@@ -71,6 +71,12 @@ def command() -> list[str]:
     return [str(found)] if found else [sys.executable, "-m", "petves", "run"]
 
 
+def _environment() -> dict[str, str]:
+    """Return what petves is started with: a Python takes this package, and no module from the current folder."""
+    path = os.pathsep.join(filter(None, (str(PACKAGE.parent), os.environ.get("PYTHONPATH"))))
+    return OPEN_MPI | os.environ | {"PYTHONPATH": path, "PYTHONSAFEPATH": "1"}
+
+
 def become(words: list[str]) -> int:
     """Run petves with these words in place of this process, or from the library; return its exit status."""
     found, library = _find()
@@ -90,11 +96,11 @@ def launch(words: list[str], ranks: int = 1, timeout: float | None = None) -> su
     started = [*(["mpirun", "-n", str(ranks)] if ranks > 1 else []), *command(), *words]
     kept = {"capture_output": True, "text": True, "errors": "replace", "stdin": subprocess.DEVNULL}
     try:
-        done = subprocess.run(started, env=OPEN_MPI | os.environ, timeout=timeout, **kept)
+        done = subprocess.run(started, env=_environment(), timeout=timeout, **kept)
     except FileNotFoundError:
         raise Error("mpirun: no such program; install openmpi-bin") from None
     if ranks == 1 and "An error occurred in MPI_Init" in done.stderr:  # of two that start in the same moment
-        done = subprocess.run(started, env=OPEN_MPI | os.environ, timeout=timeout, **kept)
+        done = subprocess.run(started, env=_environment(), timeout=timeout, **kept)
     return done
 
 
