@@ -183,10 +183,11 @@ unseen: deps ## -scheme_auto on scenes it was not calibrated by: docs/speed_accu
 	@$(MAKE) --no-print-directory all
 	PETVES=$(CURDIR)/$(BIN)/petves PYTHONPATH=python:. $(PYTHON) -m studies unseen $(if $(QUICK),out/unseen,docs/speed_accuracy)
 
-fuzz: test-deps ## runs with options, files and environments drawn at random (CASES=2000, SEED=1, FUZZ_RANKS="1 1 1 2")
+fuzz: test-deps ## options, files and environments at random, then scenes mirrored, moved, in other units (SEED=1 CASES=2000 SCENES=200)
 	@$(MAKE) --no-print-directory all
 	PETVES=$(CURDIR)/$(BIN)/petves PYTHONPATH=python:. $(PYTHON) tests/fuzz.py --cases $(or $(CASES),2000) --seed $(or $(SEED),1) \
 	  --ranks $(or $(FUZZ_RANKS),1 1 1 2)
+	PETVES=$(CURDIR)/$(BIN)/petves PYTHONPATH=python:. $(PYTHON) tests/metamorphic.py --scenes $(or $(SCENES),200) --seed $(or $(SEED),1)
 
 memcheck: test-deps ## every kind of scene under valgrind's memcheck, on 1 and 2 ranks (minutes; SANITIZE=1: the sanitizers instead)
 	@$(MAKE) --no-print-directory all tests

@@ -126,7 +126,7 @@ def cached_run(tmp_path_factory):
 
 
 #: Files that last longest, in the order in which their tests are handed to workers, so that none is begun last.
-LONG = "coupled_runs runs fuzz accuracy valgrind interrupted programs restart chart python tools baselines".split()
+LONG = "coupled_runs runs fuzz metamorphic accuracy valgrind interrupted programs restart chart python tools baselines".split()
 
 
 def pytest_configure(config):
