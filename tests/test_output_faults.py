@@ -118,14 +118,14 @@ def simulation(folder: Path, options: str) -> str:
     return "petves.Simulation(" + ", ".join(f"{name[1:]}={value!r}" for name, value in named.items()) + ")"
 
 
-#: No file may grow on rank 0 any more while rows wait to be written: every rank has the same error, once.
+#: No file may grow on rank 0 any more when a row is to be written: every rank has the same error, once.
 FULL = """
 import os, resource, signal, sys
 import petves
 from petsc4py import PETSc
 signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
 sim = {simulation}
-sim.step(3)
+sim.step({steps})
 if PETSc.COMM_WORLD.getRank() == 0:
     resource.setrlimit(resource.RLIMIT_FSIZE, (100, resource.RLIM_INFINITY))
 said = []
@@ -144,14 +144,16 @@ assert all("cannot be written" in line for line in said), said
 @pytest.mark.skipif(SANITIZE, reason="Python is not built with the sanitizers")
 @pytest.mark.parametrize("ranks", [1, 2, 3])
 @pytest.mark.parametrize(
-    "call, times", [("pass", 1), ("sim._ended = True", 1), ("sim.step()", 2)], ids=["end", "destroy", "step"]
+    "call, times, steps",
+    [("pass", 1, 3), ("sim._ended or sim.step(); sim._ended = True", 1, 2), ("sim.step()", 2, 3)],
+    ids=["end", "destroy", "step"],
 )
-def test_disk_that_is_full_from_python(call, times, ranks, tmp_path):
-    """At the end, when the rows that wait cannot be written as the file is closed, and in a step; calls after it return.
+def test_disk_that_is_full_from_python(call, times, steps, ranks, tmp_path):
+    """At the end, as the file is closed to which a row could not be written, and in a step; calls after it return.
     The checkpoint before it is good."""
     options = f"{PAPER} {SCENE} -time_end 0.2 -output_every {0.08 if times == 2 else 10} -checkpoint_every 2"
     folder, script = tmp_path / "run", tmp_path / "script.py"
-    script.write_text(FULL.format(simulation=simulation(folder, options), call=call, times=times))
+    script.write_text(FULL.format(simulation=simulation(folder, options), call=call, times=times, steps=steps))
     done = run_python(script, ranks)
     assert done.returncode == 0 and not without_mpirun(done.stderr), done.stdout + done.stderr
     with h5py.File(folder / "checkpoint.h5") as file:

@@ -93,8 +93,9 @@ PetscErrorCode SeriesFlush(Series *s, PetscBool sync) {
 
 PetscErrorCode SeriesClose(Series *s, PetscBool *good) {
   FILE *file = s->file;
+  const int lost = file && ferror(file); /* a row */
   PetscFunctionBeginUser;
   s->file = NULL; /* also when closing it fails: it is gone then */
-  *good = !file || !fclose(file) ? PETSC_TRUE : PETSC_FALSE;
+  *good = !file || (!fclose(file) && !lost) ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
