@@ -16,10 +16,10 @@ CELLS = "-domain_cells 32,32 "
 SMALL = f"{CELLS}-time_step 0.01 -time_end 0.05"
 
 
-def circle(n: int) -> list[str]:
+def circle(n: int, radius: float = 0.3, y: float = 0) -> list[str]:
     """Lines of a curve file."""
     t = 2 * np.pi * np.arange(n) / n
-    return [f"{0.3 * np.cos(a):.15g} {0.3 * np.sin(a):.15g}" for a in t]
+    return [f"{radius * np.cos(a):.15g} {radius * np.sin(a) + y:.15g}" for a in t]
 
 
 def bump(height: float, waves: int = 1) -> list[str]:
@@ -51,6 +51,8 @@ CURVES = {
     "two bumps": ["# open", *bump(0.5, 2)],
     "corner": ["# open", *(f"{np.cos(a) - 1} {np.sin(a) - 1}" for a in np.pi * np.arange(13) / 24)],
     "line": [f"{0.1 * k - 1:.15g} 0" for k in range(21)],
+    "above a line": [*(f"{0.1 * k - 1:.15g} 0" for k in range(21)), "", *circle(20, 0.2, 0.5)],
+    "nested": [*circle(20)[::-1], "", *circle(20, 0.8)[::-1]],
     "sliding line": ["# velocity 1 0", *(f"{0.1 * k - 1:.15g} 0" for k in range(21))],
     "long ellipse": [
         "# rotation 30",

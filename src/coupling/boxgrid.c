@@ -64,14 +64,11 @@ static PetscErrorCode Create(const FluidSpec *spec, const char kernel[], const B
   PetscCall(StokesCreate(b->fluid, &b->stokes));
   PetscCall(WallsCreate(b->fluid, &b->walls));
   PetscCall(PlaceMarkers(b, kernel));
-  b->near = (struct _p_NearField){.markers = b->markers,
-                                  .nu = spec->nu,
-                                  .unit = lattice->unit,
-                                  .logarithm = NearLogarithm(b->markers, lattice->unit),
-                                  .stencil = b->stencil};
+  PetscCall(NearImageCreate(b->markers, spec->nu, lattice->unit, lattice->half, &b->image));
+  b->near = (struct _p_NearField){
+      .markers = b->markers, .nu = spec->nu, .unit = lattice->unit, .image = b->image, .stencil = b->stencil};
   if (lattice->stokeslet) b->near.lattice = *lattice->stokeslet;
   NearFarMake(b->markers->kernel, b->near.far);
-  PetscCall(NearImageCreate(b->markers, spec->nu, lattice->unit, lattice->half, &b->image));
   PetscCall(NearImagePlace(b->image, b->stencil));
   if (lattice->dipole) {
     PetscCall(DMCreateGlobalVector(b->fluid->grid->da[FIELD_P], &b->source));

@@ -16,8 +16,8 @@ static void LatticePair(NearField f, PetscInt i, PetscInt j, const PetscReal d[2
   for (int dir = 0; dir < 2; dir++) /* in cells */
     periods[dir] = (PetscInt)rint((d[dir] - (X[2 * i + dir] - X[2 * j + dir])) * cell);
   StencilFourSums(&f->lattice, &f->stencil[2 * i], &f->stencil[2 * j], periods, L);
-  L[0] -= f->logarithm;
-  L[1] -= f->logarithm;
+  L[0] -= f->image->logarithm;
+  L[1] -= f->image->logarithm;
   for (int c = 0; c < 4; c++) L[c] *= over;
 }
 

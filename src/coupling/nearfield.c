@@ -63,8 +63,8 @@ PetscErrorCode NearFieldCreate(Markers markers, Bodies bodies, PetscReal nu, Nea
   PetscCall(PetscMalloc2(2 * l->M, &f->stencil, l->bodies, &f->bounds));
   for (int c = 0; c < 4; c++) PetscCall(PetscCalloc1(l->M + LANES, &f->fourth[c / 2][c % 2]));
   PetscCall(PetscCalloc2(2 * l->M + LANES, &f->force, 2 * l->n + LANES, &f->velocity)); /* whole vectors */
-  PetscCall(PetvesEvent("NearField", &f->place));
-  PetscCall(PetvesEvent("NearFieldApply", &f->apply));
+  PetscCall(PetvesEvent("NearField", &f->event[0]));
+  PetscCall(PetvesEvent("NearFieldApply", &f->event[1]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -176,7 +176,7 @@ PetscErrorCode NearFieldPlace(NearField f) {
   PetscBool crossed = PETSC_FALSE;
   PetscInt first;
   PetscFunctionBeginUser;
-  PetscCall(PetscLogEventBegin(f->place, 0, 0, 0, 0));
+  PetscCall(PetscLogEventBegin(f->event[0], 0, 0, 0, 0));
   PetscCall(NearPairsFind(f, &first));
   PetscCall(Room(s->values, f->fixed.values, sizeof(PetscReal), &s->value_room, (void **)&s->value));
   PetscCall(Room(s->singles, f->fixed.singles, sizeof(float), &s->single_room, (void **)&s->single));
@@ -194,7 +194,7 @@ PetscErrorCode NearFieldPlace(NearField f) {
     if (f->close[k].block >= first) PetscCall(NearCloseAdd(f, &f->close[k]));
   PetscCall(PlaceDistant(f, &crossed));
   PetscCall(AgreeFlag(l->comm, crossed, &f->crossed));
-  PetscCall(PetscLogEventEnd(f->place, 0, 0, 0, 0));
+  PetscCall(PetscLogEventEnd(f->event[0], 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -218,7 +218,7 @@ static inline void ApplyBlock(NearField f, const NearBlock *b, const PetscBool s
 PetscErrorCode NearFieldApply(NearField f, PetscReal alpha, const PetscScalar F[], PetscScalar U[]) {
   const Layout l = f->bodies->layout;
   PetscFunctionBeginUser;
-  PetscCall(PetscLogEventBegin(f->apply, 0, 0, 0, 0));
+  PetscCall(PetscLogEventBegin(f->event[1], 0, 0, 0, 0));
   if (f->crossed)
     PetscCall(LayoutGather(l, 2, F, f->force));
   else
@@ -234,7 +234,7 @@ PetscErrorCode NearFieldApply(NearField f, PetscReal alpha, const PetscScalar F[
   PetscCall(NearDistantApply(f->fixed.distant, alpha, f->force, f->velocity));
   for (PetscInt k = 0; k < 2 * l->n; k++) U[k] += f->velocity[k];
   if (f->box) PetscCall(BoxPartApply(f->box, alpha, F, U));
-  PetscCall(PetscLogEventEnd(f->apply, 0, 0, 0, 0));
+  PetscCall(PetscLogEventEnd(f->event[1], 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -47,10 +47,10 @@ typedef struct {
 
 typedef struct _p_NearField *NearField;
 struct _p_NearField {
-  Markers markers;               /* borrowed */
-  Bodies bodies;                 /* borrowed */
-  PetscReal nu, unit, logarithm; /* of Stokeslets: NearLogarithm */
-  PetscBool free;                /* unbounded fluid: C = S */
+  Markers markers;    /* borrowed */
+  Bodies bodies;      /* borrowed */
+  PetscReal nu, unit; /* NearLogarithm */
+  PetscBool free;     /* unbounded fluid: C = S */
   OffsetTable lattice;
   NearImage image;         /* what the walls add to each pair, from a table that is this one's */
   NearFar far[2];          /* distant pairs of one vesicle, of two */
@@ -68,7 +68,7 @@ struct _p_NearField {
   PetscScalar *force;                              /* [2M] work */
   PetscScalar *velocity;                           /* [2n] work */
   BoxPart box;                                     /* NULL without */
-  PetscLogEvent place, apply;
+  PetscLogEvent event[2];                          /* place, apply */
 };
 
 /* NearFieldCreate - for bodies whose markers are on a grid, in a fluid of viscosity nu. Collective. */

@@ -55,7 +55,7 @@ PetscErrorCode ObstaclesCreate(Scene scene, Layout all, Obstacles *out) {
   const PetscInt W = o->layout->M;
   PetscCall(PetscCalloc7(2 * W, &o->rest, 2 * W, &o->X, 2 * W, &o->N, 2 * curves, &o->center, curves, &o->ds, curves,
                          &o->spectral, curves, &o->container));
-  PetscCall(PetscMalloc2(curves, &o->kind, curves, &o->motion));
+  PetscCall(PetscMalloc4(curves, &o->kind, curves, &o->motion, curves, &o->vesicle, curves, &o->ratio));
   PetscCall(PetscArraycpy(o->kind, own->outline.kind, curves));
   PetscCall(PetscArraycpy(o->rest, own->outline.X, 2 * W));
   PetscCall(PetscArraycpy(o->X, own->outline.X, 2 * W));
@@ -63,6 +63,8 @@ PetscErrorCode ObstaclesCreate(Scene scene, Layout all, Obstacles *out) {
   for (PetscInt b = 0; b < curves; b++) {
     PetscCall(SpectralCreate(LayoutCount(o->layout, b), &o->spectral[b]));
     PetscCall(Describe(o, own, b));
+    o->vesicle[b] = own->vesicle[b];
+    o->ratio[b] = own->vesicle[b] < 0 ? 1 : SceneViscosityRatio(scene, own->vesicle[b]);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -108,7 +110,7 @@ PetscErrorCode ObstaclesDestroy(Obstacles *obstacles) {
   if (!o) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt b = 0; b < o->layout->bodies; b++) PetscCall(SpectralDestroy(&o->spectral[b]));
   PetscCall(PetscFree7(o->rest, o->X, o->N, o->center, o->ds, o->spectral, o->container));
-  PetscCall(PetscFree2(o->kind, o->motion));
+  PetscCall(PetscFree4(o->kind, o->motion, o->vesicle, o->ratio));
   PetscCall(LayoutDestroy(&o->layout));
   PetscCall(PetscFree(*obstacles));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -214,7 +216,6 @@ void ObstaclesScale(Obstacles o, PetscReal weight, PetscBool inverse, PetscScala
 
 PetscErrorCode ObstaclesData(Obstacles o, const Flow *flow, PetscScalar y[], char message[PETVES_MAX_MESSAGE]) {
   const Layout l = o->layout;
-  const PetscReal swing = PetscCosReal(o->frequency * o->t);
   PetscReal *u;
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(2 * l->n, &u));
@@ -222,6 +223,7 @@ PetscErrorCode ObstaclesData(Obstacles o, const Flow *flow, PetscScalar y[], cha
   for (PetscInt b = l->own; b < l->end; b++) {
     const ObstacleMotion *m = &o->motion[b];
     const ObstaclePose p = ObstaclesPose(o, b, o->t);
+    const PetscReal swing = o->ratio[b] * PetscCosReal(o->frequency * o->t);
     for (PetscInt k = l->start[b]; k < l->start[b + 1]; k++) {
       const PetscReal x = o->X[2 * k] - p.center[0], *X = o->X + 2 * k;
       const PetscReal U[2] = {m->velocity[0] - m->rotation * (X[1] - p.center[1]), m->velocity[1] + m->rotation * x};

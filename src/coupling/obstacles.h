@@ -39,6 +39,8 @@ struct _p_Obstacles {
   PetscReal *center;      /* [2 curves] the mean of the markers at time 0 */
   PetscReal *ds;          /* [curves] mean edge */
   PetscBool *container;   /* [curves] the fluid is inside */
+  PetscInt *vesicle;      /* [curves] the vesicle around each; -1: none */
+  PetscReal *ratio;       /* [curves] viscosity around each over nu */
   Spectral *spectral;     /* [curves] */
   CurveKind *kind;        /* [curves] */
   PetscReal beta;         /* 1/(4 nu) */

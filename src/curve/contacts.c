@@ -47,7 +47,8 @@ static PetscBool Measure(const ContactSearch *s, PetscInt p, PetscInt q, PetscBo
   }
   for (int k = 0; k < 2; k++) c->normal[k] = d[k] - c->at * edge[k];
   c->distance = PetscSqrtReal(PetscSqr(c->normal[0]) + PetscSqr(c->normal[1]));
-  if (c->normal[0] * out[0] + c->normal[1] * out[1] < 0) c->distance = -c->distance;
+  if ((c->normal[0] * out[0] + c->normal[1] * out[1] < 0) != (CurveSetKind(s->set, s->curve[p]).around == v + 1))
+    c->distance = -c->distance;
   size = PetscAbsReal(c->distance) > 0 ? c->distance : PetscSqrtReal(PetscSqr(out[0]) + PetscSqr(out[1]));
   for (int k = 0; k < 2; k++) c->normal[k] = (PetscAbsReal(c->distance) > 0 ? c->normal[k] : out[k]) / size;
   return PETSC_TRUE;

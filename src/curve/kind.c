@@ -101,6 +101,7 @@ PetscErrorCode CurveFineCreate(const CurveSet *set, PetscInt n, const PetscInt w
     const PetscInt *start = set->start + which[k];
     fine->start[k + 1] = fine->start[k] + times * (start[1] - start[0]);
     fine->kind[k] = CurveSetKind(set, which[k]);
+    fine->kind[k].around = n == 2 && fine->kind[k].around == which[1 - k] + 1 ? 2 - k : 0;
   }
   PetscCall(PetscMalloc1(2 * fine->start[n], &fine->X));
   for (PetscInt k = 0; k < n; k++) {

@@ -9,6 +9,8 @@ typedef enum { CURVE_CLOSED, CURVE_SPANNING, CURVE_OPEN } CurveType;
 typedef struct {
   CurveType type;
   PetscReal span[2]; /* from marker 0 to where marker n would be: a period of a spanning curve, else zero */
+  PetscInt around;   /* 1 + the closed curve of its set that it is meant to lie within, where its distance from that is
+                        positive; 0: none */
 } CurveKind;
 
 /* Curves as contacts see them: curve v has the points start[v] .. start[v+1]-1. */

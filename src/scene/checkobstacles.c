@@ -75,7 +75,7 @@ static PetscErrorCode CheckPlace(Scene scene, PetscInt b) {
 
 /* Whether curve b, or an image of it, holds the point; a spanning one holds none. */
 static PetscBool Holds(const Shape *s, PetscInt b, const PetscReal X[2], const PetscReal period[2]) {
-  if (s->kind[b].type == CURVE_SPANNING) return PETSC_FALSE;
+  if (s->kind && s->kind[b].type == CURVE_SPANNING) return PETSC_FALSE;
   for (int p = -1; p <= 1; p++)
     for (int q = -1; q <= 1; q++) {
       if ((p && period[0] == 0) || (q && period[1] == 0)) continue;
@@ -108,42 +108,63 @@ static PetscInt SolidAlong(const Shape *s, int d, int up, const PetscReal X[2], 
   return found;
 }
 
-/* That vesicle v is on the fluid's side of the spanning curves around it. */
-static PetscErrorCode CheckSides(Scene scene, PetscInt v, const PetscReal period[2]) {
-  const PetscReal *X = scene->shape.X + 2 * scene->shape.start[v];
-  PetscFunctionBeginUser;
-  for (int ray = 0; ray < 4; ray++) {
-    const PetscInt b = SolidAlong(&scene->obstacles.outline, ray / 2, ray % 2 ? 1 : -1, X, period);
-    PetscCheck(b < 0, scene->comm, PETSC_ERR_USER_INPUT,
-               "-vesicle_center: vesicle %" PetscInt_FMT " lies on the solid's side of obstacle %" PetscInt_FMT
-               ", which is on its left; allowed: vesicles in the fluid",
-               v + 1, b + 1);
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
+/* The container that holds the point, not looking at curve `self`, or -1. */
+static PetscInt Holder(const SceneObstacles *own, PetscInt self, const PetscReal X[2], const PetscReal period[2]) {
+  for (PetscInt b = 0; b < own->outline.vesicles; b++)
+    if (b != self && own->container[b] && Holds(&own->outline, b, X, period)) return b;
+  return -1;
 }
 
-/* That no vesicle is in a solid, and no obstacle within another one's. */
+/* The obstacle in whose solid the point of curve `self` (-1: of a vesicle) lies, or -1: within a closed curve, outside
+   all containers or, that of a container, inside another one, on the solid's side of a spanning curve. */
+static PetscInt SolidAt(const SceneObstacles *own, PetscInt self, const PetscReal X[2], const PetscReal period[2]) {
+  const Shape *s = &own->outline;
+  const PetscInt holder = Holder(own, self, X, period);
+  for (PetscInt b = 0; b < s->vesicles; b++) {
+    if (b == self) continue;
+    if (!own->container[b] ? Holds(s, b, X, period) : self >= 0 && own->container[self] ? b == holder : holder < 0)
+      return b;
+  }
+  for (int ray = 0; ray < 4 && (self < 0 || s->kind[self].type == CURVE_CLOSED); ray++) {
+    const PetscInt b = SolidAlong(s, ray / 2, ray % 2 ? 1 : -1, X, period);
+    if (b >= 0) return b;
+  }
+  return -1;
+}
+
+/* That no vesicle and no obstacle is in a solid. */
 static PetscErrorCode CheckInside(Scene scene, const PetscReal period[2]) {
   const SceneObstacles *own = &scene->obstacles;
   const Shape *s = &own->outline, *vesicles = &scene->shape;
   PetscFunctionBeginUser;
-  for (PetscInt v = 0; v < vesicles->vesicles; v++) PetscCall(CheckSides(scene, v, period));
-  for (PetscInt b = 0; b < s->vesicles; b++) {
-    for (PetscInt v = 0; v < vesicles->vesicles; v++) {
-      const PetscBool held = Holds(s, b, vesicles->X + 2 * vesicles->start[v], period);
-      PetscCheck(held == own->container[b], scene->comm, PETSC_ERR_USER_INPUT,
-                 "-vesicle_center: vesicle %" PetscInt_FMT " lies in the solid of obstacle %" PetscInt_FMT
-                 "; allowed: vesicles in the fluid",
-                 v + 1, b + 1);
-    }
-    for (PetscInt c = 0; c < s->vesicles; c++)
-      PetscCheck(c == b || own->container[b] || !Holds(s, b, s->X + 2 * s->start[c], period), scene->comm,
-                 PETSC_ERR_USER_INPUT,
-                 "-obstacle_shape: obstacle %" PetscInt_FMT " lies within obstacle %" PetscInt_FMT
-                 "; allowed: obstacles apart from one another",
-                 c + 1, b + 1);
+  for (PetscInt v = 0; v < vesicles->vesicles; v++) {
+    const PetscInt b = SolidAt(own, -1, vesicles->X + 2 * vesicles->start[v], period);
+    PetscCheck(b < 0, scene->comm, PETSC_ERR_USER_INPUT,
+               "-vesicle_center: vesicle %" PetscInt_FMT " lies in the solid of obstacle %" PetscInt_FMT
+               "; allowed: vesicles in the fluid",
+               v + 1, b + 1);
+  }
+  for (PetscInt c = 0; c < s->vesicles; c++) {
+    const PetscInt b = SolidAt(own, c, s->X + 2 * s->start[c], period);
+    PetscCheck(b < 0, scene->comm, PETSC_ERR_USER_INPUT,
+               "-obstacle_shape: obstacle %" PetscInt_FMT " lies in the solid of obstacle %" PetscInt_FMT
+               "; allowed: obstacles in the fluid, apart from one another",
+               c + 1, b + 1);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What is around the obstacles and the vesicles, which cross none. */
+static void FindAround(const Shape *vesicles, const PetscReal period[2], SceneObstacles *own) {
+  const Shape *s = &own->outline;
+  for (PetscInt v = 0; v < vesicles->vesicles; v++)
+    own->holder[v] = Holder(own, -1, vesicles->X + 2 * vesicles->start[v], period);
+  for (PetscInt b = 0; b < s->vesicles; b++) {
+    own->holder[vesicles->vesicles + b] = Holder(own, b, s->X + 2 * s->start[b], period);
+    own->vesicle[b] = -1;
+    for (PetscInt v = 0; v < vesicles->vesicles; v++)
+      if (Holds(vesicles, v, s->X + 2 * s->start[b], period)) own->vesicle[b] = v;
+  }
 }
 
 /* That between obstacles, and between one and its images, markers resolve a gap. */
@@ -259,7 +280,7 @@ static PetscErrorCode CheckMotion(Scene scene) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SceneCheckObstacles(Scene scene) {
+PetscErrorCode SceneCheckObstacles(Draft scene) {
   PetscReal period[2];
   PetscFunctionBeginUser;
   PetscCall(CheckMethod(scene));
@@ -267,6 +288,7 @@ PetscErrorCode SceneCheckObstacles(Scene scene) {
   for (PetscInt b = 0; b < scene->obstacles.outline.vesicles; b++) PetscCall(CheckPlace(scene, b));
   PetscCall(CheckCrossing(scene, period));
   PetscCall(CheckInside(scene, period));
+  FindAround(&scene->shape, period, &scene->obstacles);
   PetscCall(CheckGaps(scene, period));
   PetscCall(CheckMotion(scene));
   for (PetscInt b = 0; b < scene->obstacles.outline.vesicles; b++) PetscCall(CheckFlux(scene, b));

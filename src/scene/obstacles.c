@@ -201,6 +201,7 @@ static PetscErrorCode PlaceMarkers(Scene scene, const Outlines *o, SceneObstacle
   PetscCall(ChooseFactor(scene, o, own));
   PetscCall(PetscMalloc1(2 * shape->start[o->count], &shape->X));
   PetscCall(PetscMalloc1(o->count, &shape->kind));
+  PetscCall(PetscMalloc2(scene->shape.vesicles + o->count, &own->holder, o->count, &own->vesicle));
   PetscCall(PetscCalloc5(2 * o->count, &own->velocity, o->count, &own->turn, o->count, &own->container, o->count,
                          &own->circle, o->count, &own->wall));
   for (PetscInt k = 0; k < o->count; k++) {
@@ -247,6 +248,7 @@ PetscErrorCode SceneDropObstacles(Draft scene) {
   PetscFunctionBeginUser;
   if (!own->outline.vesicles) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ShapeDestroy(&own->outline));
+  PetscCall(PetscFree2(own->holder, own->vesicle));
   PetscCall(PetscFree5(own->velocity, own->turn, own->container, own->circle, own->wall));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

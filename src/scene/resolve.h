@@ -102,8 +102,9 @@ PETSC_EXTERN PetscErrorCode SceneDropShape(Draft scene);
 PETSC_EXTERN PetscErrorCode SceneMakeObstacles(Draft scene);
 PETSC_EXTERN PetscErrorCode SceneDropObstacles(Draft scene);
 
-/* SceneCheckObstacles - method, places and sizes of the obstacles and of the vesicles among them. Collective. */
-PETSC_EXTERN PetscErrorCode SceneCheckObstacles(Scene scene);
+/* SceneCheckObstacles - method, places and sizes of the obstacles and of the vesicles among them; finds what is around
+   each. Collective. */
+PETSC_EXTERN PetscErrorCode SceneCheckObstacles(Draft scene);
 
 /* SceneChooseInertia - the Reynolds number (speed R0/nu with R0 of the largest vesicle and the speed of the scene: rate
    R0 of shear and extension, u_max of poiseuille, c_b/(nu R0^2) of a quiescent fluid; 0 without vesicles), the model

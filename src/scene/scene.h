@@ -73,6 +73,8 @@ typedef struct {
   Shape outline;                 /* their markers, the same on every rank */
   PetscReal *velocity, *turn;    /* [2 curves], [curves] of their surfaces */
   PetscBool *container;          /* [curves] the fluid is inside */
+  PetscInt *holder;              /* [vesicles + curves] the container around each; -1: none */
+  PetscInt *vesicle;             /* [curves] the vesicle around each; -1: none */
   PetscBool *circle;             /* [curves] the same curve whichever way it is turned */
   PetscInt *wall;                /* [curves] 2 direction + side of the wall that an open one is on; -1 of others */
 } SceneObstacles;

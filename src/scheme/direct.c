@@ -276,32 +276,6 @@ static PetscErrorCode KnownMotion(DirectSolver d, const CoupledProblem *q, Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Factors of the rows (side 0) and of the unknowns (side 1), which make all entries numbers without a unit, velocities
-   staying as they are: pivots do not depend on what lengths and times are measured in. */
-static PetscErrorCode Factors(DirectSolver d, int side, Vec factors) {
-  const Grid g = d->fluid->grid;
-  const PetscReal h = g->h, force = side ? d->fluid->nu / (h * h) : h * h / d->fluid->nu;
-  const PetscInt there = g->rank == g->size - 1, mean = MeanForces(d);
-  const struct {
-    PetscInt n;
-    PetscReal factor;
-  } part[] = {{GridLocalU(g) + g->columns[FIELD_V] * g->rows[FIELD_V], side ? 1 : force},
-              {g->columns[FIELD_P] * g->rows[FIELD_P], side ? force * h : h},
-              {there * d->M, side ? force * h * h : h * h},
-              {there * 2 * d->M, 1},
-              {there * 2 * d->M, force},
-              {there * 2 * d->W, side ? force : 1},
-              {there * (Others(d) - 5 * d->M - 2 * d->W - mean), 1},
-              {there * mean, side ? force : 1}};
-  PetscScalar *a;
-  PetscFunctionBeginUser;
-  PetscCall(VecGetArrayWrite(factors, &a));
-  for (size_t k = 0, at = 0; k < PETSC_STATIC_ARRAY_LENGTH(part); k++)
-    for (PetscInt i = 0; i < part[k].n; i++) a[at++] = part[k].factor;
-  PetscCall(VecRestoreArrayWrite(factors, &a));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 static PetscErrorCode RightHandSide(DirectSolver d, const CoupledProblem *q) {
   const Grid g = d->fluid->grid;
   const PetscInt nw = GridLocalU(g) + g->columns[FIELD_V] * g->rows[FIELD_V],
@@ -389,18 +363,18 @@ PetscErrorCode DirectSolverSolve(DirectSolver d, const CoupledProblem *q) {
   Mat A;
   PetscFunctionBeginUser;
   PetscCall(Assemble(d, &A));
-  PetscCall(Factors(d, 0, d->b));
-  PetscCall(Factors(d, 1, d->x));
+  PetscCall(DirectFactors(d, 0, d->b));
+  PetscCall(DirectFactors(d, 1, d->x));
   PetscCall(MatDiagonalScale(A, d->b, d->x));
   PetscCall(KSPReset(d->ksp)); /* a new factor, which keeps the settings made on it below */
   PetscCall(KSPSetOperators(d->ksp, A, A));
   PetscCall(MatDestroy(&A)); /* the KSP keeps it */
   PetscCall(SetUpFactor(d));
   PetscCall(RightHandSide(d, q));
-  PetscCall(Factors(d, 0, d->x));
+  PetscCall(DirectFactors(d, 0, d->x));
   PetscCall(VecPointwiseMult(d->b, d->b, d->x));
   PetscCall(KSPSolve(d->ksp, d->b, d->x));
-  PetscCall(Factors(d, 1, d->b));
+  PetscCall(DirectFactors(d, 1, d->b));
   PetscCall(VecPointwiseMult(d->x, d->x, d->b));
   PetscCall(KSPGetConvergedReason(d->ksp, &d->why));
   if (d->why < 0) PetscFunctionReturn(PETSC_SUCCESS);

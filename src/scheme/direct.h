@@ -30,6 +30,11 @@ PETSC_EXTERN PetscErrorCode DirectSolverSolve(DirectSolver solver, const Coupled
 PETSC_EXTERN PetscInt DirectIndex(DirectSolver solver, int field, PetscInt i, PetscInt j);
 PETSC_EXTERN PetscInt DirectRows(Grid grid, PetscInt rank, int field);
 
+/* DirectFactors - factors of the rows (side 0) and of the unknowns (side 1), which make all entries numbers without a
+   unit, velocities staying as they are: pivots do not depend on what lengths and times are measured in. Not collective.
+ */
+PETSC_EXTERN PetscErrorCode DirectFactors(DirectSolver solver, int side, Vec factors);
+
 /* DirectAddContrast - viscosity contrast in the matrix, U and J the first rows of these unknowns: B U in the rows of U,
    the double layer in those of obstacles, J - Q (1 - ratio) (U + (treading/a0) dU/dt) = 0, the dipoles of J in the
    momentum and the divergence. DirectRoom - entries that they need in the rank's own rows, added to room.
