@@ -41,9 +41,9 @@ def plain(values):
     return {"data": values, "chunks": values.shape, "maxshape": (None, *values.shape[1:])}
 
 
-def with_entry(value):
+def with_entry(value, at=5):
     def change(file, name, values, place):
-        values.flat[5] = value
+        values.flat[at] = value
         file.create_dataset(name, **plain(values))
 
     return change
@@ -151,6 +151,17 @@ def test_forged_checkpoints_are_refused(name, good, tmp_path):
     run = run_petves(tmp_path / "new", f"{SCENE} -time_end 0.1 -restart {path}", ranks, good=False, timeout=60)
     one_line(run, f"-restart {path}: ", needle, "allowed: ")
     assert not (tmp_path / "new").exists()
+
+
+@pytest.mark.parametrize("state", ["", "previous_2/"])
+def test_numbers_of_the_last_rank_are_finite(state, tmp_path):
+    """A largest number over ranks may lose one rank's NaN."""
+    scene = f"{SCENE} -fluid_inertia none -vesicle_semi_axes 0.4,0.5 -vesicle_count 3 -vesicle_center -1,-1,1,-1,0,1 "
+    scene += "-delta_type cbs54 -membrane_derivative spectral -coupling_near_field exact"
+    good = run_petves(tmp_path / "run", f"{scene} -time_end 0.06").folder / "checkpoint.h5"
+    path = forge(good, tmp_path, dataset(f"{state}vesicle/markers", with_entry(np.nan, -3)))
+    run = run_petves(tmp_path / "new", f"{scene} -time_end 0.1 -restart {path}", 3, good=False, timeout=60)
+    one_line(run, f"-restart {path}: ", "its markers is up to nan", "allowed: ")
 
 
 def test_earlier_steps_of_no_length_are_refused(tmp_path):

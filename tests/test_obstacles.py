@@ -350,20 +350,6 @@ def test_a_post_is_not_crossed(tmp_path):
     assert pushed["gap"][-1] > 1.05 * free and (pushed["energy_contact"][-1] > 0)
 
 
-def test_other_curves_are_no_restart(tmp_path):
-    """A curve file that has changed since the checkpoint."""
-    t = np.arange(60) * np.pi / 30
-    for size in (0.3, 0.31):
-        lines = [f"{size * np.cos(a):.15g} {size * np.sin(a):.15g}" for a in t]
-        (tmp_path / "curve.txt").write_text("\n".join(lines) + "\n")
-        options = f"{STILL} {PERIODIC} -domain_cells 32,32 -flow_type uniform -obstacle_shape file"
-        options += f" -obstacle_file {tmp_path / 'curve.txt'}"
-        if size == 0.3:
-            run_petves(tmp_path / "first", options)
-    run = run_petves(tmp_path / "then", f"{options} -restart {tmp_path / 'first' / 'checkpoint.h5'}", good=False)
-    assert run.status == 1 and "has other obstacles" in run.errors[0]
-
-
 def test_the_scenes_of_runs(tmp_path):
     """runs/posts.opts keeps the film of another program to 1 %, runs/couette.opts shows what its header says."""
     series = run_petves(tmp_path / "posts", f"{COUPLED} -options_file {ROOT / 'runs' / 'posts.opts'}").series

@@ -104,16 +104,52 @@ def test_another_scene_is_refused(change, straight, tmp_path):
     one_line(run, change, f"has {there.get(change.split()[0], '0')};", "checkpoint.h5", "allowed: the same value")
 
 
-def test_another_curve_is_refused(tmp_path):
-    """The same options, but what the curve file holds has changed."""
-    angle = np.linspace(0, 2 * np.pi, 60, endpoint=False)
-    curve = tmp_path / "curve.txt"
-    options = f"-domain_cells 32,32 -vesicle_shape file -vesicle_file {curve} -time_step 0.02 -time_end 0.02"
-    np.savetxt(curve, 0.4 * np.c_[np.cos(angle), np.sin(angle)])
-    run_petves(tmp_path / "run", options)
-    np.savetxt(curve, 0.41 * np.c_[np.cos(angle), np.sin(angle)])
-    run = run_petves(tmp_path / "new", f"{options} -restart {tmp_path}/run/checkpoint.h5", good=False)
-    one_line(run, "vesicle 1", "length", "allowed: the same vesicles")
+def outline(a, b, note="", n=60):
+    """Text of a curve file: an ellipse about (-0.4, 0)."""
+    angle = 2 * np.pi * np.arange(n) / n
+    return note + "".join(f"{x - 0.4:.15g} {y:.15g}\n" for x, y in np.c_[a * np.cos(angle), b * np.sin(angle)])
+
+
+@pytest.mark.parametrize(
+    "solid, began, then",
+    [
+        (False, outline(0.3, 0.3), outline(0.31, 0.31)),
+        (False, outline(0.2, 0.35), outline(0.2801379, 0.2801379)),
+        (True, outline(0.3, 0.3), outline(0.31, 0.31)),
+        (True, outline(0.2, 0.3, "# rotation 1\n"), outline(0.2, 0.3, "# rotation 5\n")),
+        (True, outline(0.2, 0.3, "# rotation 1\n"), outline(0.2, 0.3, "# rotation 1\n# velocity 3 0\n")),
+    ],
+    ids=["size", "area of one length", "solid size", "rotation", "velocity"],
+)
+def test_another_curve_is_refused(solid, began, then, tmp_path):
+    """The same options, but what the curve file holds has changed. What it holds may be elsewhere, with other comments."""
+    curve, moved = tmp_path / "curve.txt", tmp_path / "moved.txt"
+    kind = "obstacle" if solid else "vesicle"
+    options = "-domain_cells 32,32 -time_step 0.02 -time_end 0 -scheme_type coupled -fluid_inertia none -coupling_near_field exact "
+    options += "-delta_type cbs54 -membrane_derivative spectral "
+    options += "-domain_bc_x periodic -domain_bc_y periodic -vesicle_semi_axes 0.2,0.3 " * solid
+    options += "-vesicle_center 0.5,0 " * solid + f"-{kind}_shape file -{kind}_file "
+    curve.write_text(began)
+    run_petves(tmp_path / "run", options + str(curve))
+    restart = f" -time_end 0.02 -restart {tmp_path}/run/checkpoint.h5"
+    curve.write_text(then)
+    one_line(
+        run_petves(tmp_path / "new", f"{options}{curve}{restart}", 2, good=False), f"-{kind}_file {curve}: its curves"
+    )
+    moved.write_text("# a circle\n" + began)
+    run_petves(tmp_path / "new", f"{options}{moved}{restart}")
+
+
+def test_the_end_of_a_long_list_is_compared(tmp_path):
+    """4200 characters: the message begins with the entry that differs."""
+    places = [f"{x:.16f},{y:.16f}" for x in np.linspace(0.15, 7.85, 15) for y in np.linspace(0.15, 3.85, 8)]
+    scene = "-domain_box 0,8,0,4 -domain_cells 256,128 -domain_bc_x periodic -domain_bc_y periodic -flow_type uniform -vesicle_shape none"
+    scene += " -time_end 0 -scheme_type coupled -obstacle_shape posts -obstacle_radius 0.1 -obstacle_center "
+    run_petves(tmp_path / "run", scene + ",".join(places))
+    places[-1] = "7.85,3.75"
+    scene += f"{','.join(places)} -restart {tmp_path}/run/checkpoint.h5"
+    run = run_petves(tmp_path / "new", scene, 2, good=False)
+    one_line(run, "-obstacle_center ...,3.75:", "has ...,3.85", "allowed: the same value")
 
 
 def seal(path: Path):
@@ -132,7 +168,7 @@ def test_another_format_is_refused(straight, tmp_path):
         file.attrs["format"] = np.int32(99)
     for _ in range(2):
         run = run_petves(tmp_path / "new", f"{SCHEMES['split']} -restart {path}", good=False)
-        one_line(run, str(path), "format is 99", "allowed: 6")
+        one_line(run, str(path), "format is 99", "allowed: 7")
         seal(path)
 
 

@@ -8,6 +8,21 @@ PetscErrorCode AgreeFlag(MPI_Comm comm, PetscBool mine, PetscBool *any) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode AgreeFinite(Vec x, PetscBool *finite) {
+  const PetscScalar *a;
+  PetscInt n;
+  PetscBool bad = PETSC_FALSE;
+  PetscFunctionBeginUser;
+  PetscCall(VecGetLocalSize(x, &n));
+  PetscCall(VecGetArrayRead(x, &a));
+  for (PetscInt k = 0; k < n; k++)
+    if (PetscIsInfOrNanReal(a[k])) bad = PETSC_TRUE;
+  PetscCall(VecRestoreArrayRead(x, &a));
+  PetscCall(AgreeFlag(PetscObjectComm((PetscObject)x), bad, &bad));
+  *finite = bad ? PETSC_FALSE : PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode AgreeMessage(MPI_Comm comm, char message[PETVES_MAX_MESSAGE]) {
   PetscMPIInt rank, size, first;
   PetscFunctionBeginUser;

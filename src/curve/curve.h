@@ -4,14 +4,17 @@
 #pragma once
 #include "curve/kind.h"
 
+#define DIGEST 17 /* 64 bits as text */
+
 /* Curves as equal-edge markers, closed ones counter-clockwise. X holds x0,y0,x1,y1,... of all vesicles one after
    another; vesicle v owns markers start[v] .. start[v+1]-1. */
 typedef struct {
   PetscInt vesicles;
-  PetscInt *start;   /* [vesicles+1] */
-  PetscReal *X;      /* [2*start[vesicles]] */
-  PetscReal longest; /* length of the longest of the curves that they are on */
-  CurveKind *kind;   /* [vesicles]; NULL: all closed */
+  PetscInt *start;     /* [vesicles+1] */
+  PetscReal *X;        /* [2*start[vesicles]] */
+  PetscReal longest;   /* length of the longest of the curves that they are on */
+  CurveKind *kind;     /* [vesicles]; NULL: all closed */
+  char digest[DIGEST]; /* of what their file says; empty without */
 } Shape;
 PETSC_EXTERN PetscErrorCode ShapeDestroy(Shape *shape);
 
@@ -28,6 +31,7 @@ typedef struct {
   PetscReal axes[2];   /* ellipse */
   PetscReal *t, *x[2]; /* knots [n+1], values [n+1] less span t */
   PetscReal *m[2];     /* second derivatives [n+1] */
+  char digest[DIGEST]; /* of what its file says (CurvesFromFile) */
 } Curve;
 PETSC_EXTERN void CurveEvaluate(const Curve *curve, PetscReal t, PetscReal X[2]);
 PETSC_EXTERN PetscReal CurveLength(const Curve *curve);
@@ -66,7 +70,7 @@ typedef struct {
    counter-clockwise, open ones as if the chord closed them. Where period[2] is given, 0 without, one whose last point
    is its first but for a period spans it, as it runs, and a note makes one open; else all are closed. curve[curves] to
    be freed, each after CurveDestroy, and note[curves] (NULL: not wanted). option: the one that names the file, for
-   messages. Collective: rank 0 reads. */
+   messages. All have one digest, of the points and notes of all. Collective: rank 0 reads. */
 PETSC_EXTERN PetscErrorCode CurvesFromFile(MPI_Comm comm, const char option[], const char file[],
                                            const PetscReal period[2], PetscInt *curves, Curve **curve,
                                            CurveNote **note);

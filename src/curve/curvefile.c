@@ -1,6 +1,7 @@
 /* Curves from a text file: "x y" a line, # starts a comment, an empty line ends a curve. */
 #include "curve/curve.h"
 #include <errno.h>
+#include <inttypes.h>
 #include <strings.h>
 
 #define SAME 1e-6    /* of a period: a curve's last point is its first */
@@ -215,9 +216,17 @@ static PetscErrorCode Share(MPI_Comm comm, PetscMPIInt rank, Points *p) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* FNV-1a: h goes on with n numbers. */
+static uint64_t Digest(uint64_t h, PetscInt n, const PetscReal x[]) {
+  const unsigned char *bytes = (const unsigned char *)x;
+  for (size_t k = 0; k < (size_t)n * sizeof(*x); k++) h = (h ^ bytes[k]) * 0x100000001b3u;
+  return h;
+}
+
 PetscErrorCode CurvesFromFile(MPI_Comm comm, const char option[], const char file[], const PetscReal period[2],
                               PetscInt *curves, Curve **curve, CurveNote **note) {
   Points p = {.option = option, .file = file, .period = period};
+  uint64_t digest = 0xcbf29ce484222325u;
   PetscMPIInt rank;
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
@@ -229,10 +238,14 @@ PetscErrorCode CurvesFromFile(MPI_Comm comm, const char option[], const char fil
     const PetscInt first = k ? p.end[k - 1] : 0;
     PetscInt n = p.end[k] - first;
     CurveKind kind;
+    const CurveNote *said = &p.note[k];
+    const PetscReal says[] = {n, said->open, said->velocity[0], said->velocity[1], said->rotation};
+    digest = Digest(Digest(digest, 5, says), 2 * n, p.xy + 2 * first);
     PetscCall(CleanCurve(&p, &n, p.xy + 2 * first, &p.note[k], &kind));
     PetscCheck(!*p.error, comm, PETSC_ERR_USER_INPUT, "%s", p.error);
     PetscCall(CurveFromPoints(&kind, n, p.xy + 2 * first, *curve + k));
   }
+  for (PetscInt k = 0; k < p.curves; k++) (void)snprintf((*curve)[k].digest, DIGEST, "%016" PRIx64, digest);
   if (note)
     *note = p.note;
   else

@@ -50,7 +50,9 @@ PETSC_EXTERN PetscBool OptionGiven(const OptionTable *table, const char name[]);
 /* OptionChoose - give an option a value that the user has not given: what was given stays. */
 PETSC_EXTERN PetscErrorCode OptionChoose(const OptionTable *table, void *values, const char name[], const char text[]);
 
-/* OptionValue - the i-th option's value in force as text, cut to length - 1 characters. Not collective. */
+/* OptionText - the i-th option's value in force as text, to be freed with PetscFree. OptionValue - the same, cut to
+   length - 1 characters. Not collective. */
+PETSC_EXTERN PetscErrorCode OptionText(const OptionTable *table, const void *values, PetscInt i, char **text);
 PETSC_EXTERN PetscErrorCode OptionValue(const OptionTable *table, const void *values, PetscInt i, char text[],
                                         size_t length);
 

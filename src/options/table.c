@@ -68,10 +68,16 @@ PetscErrorCode OptionChoose(const OptionTable *t, void *values, const char name[
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode OptionText(const OptionTable *t, const void *values, PetscInt i, char **text) {
+  PetscFunctionBeginUser;
+  PetscCall(OptionFormat(&t->row[i], Place(t, values, i), text));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode OptionValue(const OptionTable *t, const void *values, PetscInt i, char text[], size_t length) {
   char *all;
   PetscFunctionBeginUser;
-  PetscCall(OptionFormat(&t->row[i], Place(t, values, i), &all));
+  PetscCall(OptionText(t, values, i, &all));
   PetscCall(PetscStrncpy(text, all, length));
   PetscCall(PetscFree(all));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -87,30 +87,20 @@ static PetscErrorCode WriteVectors(Scheme s, H5File *file, const char prefix[], 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What the obstacles are, by which a restart knows their curves. */
-static PetscErrorCode WriteObstacles(Scheme s, H5File *file) {
-  const Obstacles o = s->coupling->bodies->obstacles;
-  PetscFunctionBeginUser;
-  if (!o) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(H5PutInts(file, "obstacles", 1, &o->layout->bodies));
-  PetscCall(H5PutInts(file, "obstacle_start", o->layout->bodies + 1, o->layout->start));
-  PetscCall(H5PutReals(file, "obstacle_center", 2 * o->layout->bodies, o->center));
-  PetscCall(H5PutReals(file, "obstacle_ds", o->layout->bodies, o->ds));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The scene's options, and what its bodies are, by which a restart knows the scene. */
+/* The scene's options and digests of its files, by which a restart knows the scene, and what the vesicles are. */
 static PetscErrorCode WriteScene(Scheme s, H5File *file) {
   const Membrane m = s->membrane;
   const Layout l = m->layout;
-  char value[PETSC_MAX_PATH_LEN];
   PetscFunctionBeginUser;
   PetscCall(H5PutString(file, "version", PETVES_VERSION));
   for (PetscInt i = 0; SceneOptionName(i); i++) {
-    PetscCall(SceneOptionValue(s->scene, i, value, sizeof(value)));
-    PetscCall(H5PutString(file, SceneOptionName(i), value));
+    char *value;
+    PetscCall(SceneOptionText(s->scene, i, &value));
+    PetscCall(H5PutText(file, SceneOptionName(i), value));
+    PetscCall(PetscFree(value));
   }
-  PetscCall(WriteObstacles(s, file));
+  PetscCall(H5PutString(file, "vesicle_digest", s->scene->shape.digest));
+  PetscCall(H5PutString(file, "obstacle_digest", s->scene->obstacles.outline.digest));
   if (!l->bodies) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(H5PutInts(file, "vesicles", 1, &l->bodies));
   PetscCall(H5PutInts(file, "vesicle_start", l->bodies + 1, l->start));

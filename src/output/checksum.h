@@ -2,7 +2,7 @@
 #pragma once
 #include "base/base.h"
 
-#define CHECKPOINT_FORMAT 6
+#define CHECKPOINT_FORMAT 7
 #define CHECKPOINT_TAIL "petves checkpoint, crc32 %08x\n"
 #define CHECKPOINT_TAIL_LENGTH 34
 

@@ -1,3 +1,4 @@
+#include "base/agree.h"
 #include "base/version.h"
 #include "output/gathered.h"
 #include "output/restart.h"
@@ -54,79 +55,47 @@ static PetscErrorCode CheckFile(Scene scene) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Texts that differ are shown from the first entry of a list that does. */
+static PetscErrorCode CompareOption(Scene scene, const char name[], const char here[], const char there[]) {
+  size_t from = 0;
+  PetscFunctionBeginUser;
+  for (size_t k = 0; here[k] && here[k] == there[k]; k++)
+    if (here[k] == ',' && k > 100) from = k;
+  PetvesCheck(!*there || !strcmp(here, there), scene->comm,
+              "%s %s%.100s: the checkpoint of -restart %s has %s%.100s; allowed: the same value", name,
+              from ? "..." : "", here + from, scene->output.restart, from ? "..." : "", there + from);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode CompareOptions(Scene scene, H5File *file) {
-  char here[PETSC_MAX_PATH_LEN], there[PETSC_MAX_PATH_LEN];
   PetscFunctionBeginUser;
   for (PetscInt i = 0; SceneOptionName(i); i++) {
-    const char *name = SceneOptionName(i);
-    if (SceneOptionMayChange(name)) continue;
-    PetscCall(SceneOptionValue(scene, i, here, sizeof(here)));
-    PetscCall(H5GetString(file, name, sizeof(there), there));
-    PetvesCheck(!*there || !strcmp(here, there), scene->comm,
-                "%s %s: the checkpoint of -restart %s has %s; allowed: the same value", name, here,
-                scene->output.restart, there);
+    char *here, *there;
+    if (SceneOptionMayChange(SceneOptionName(i))) continue;
+    PetscCall(SceneOptionText(scene, i, &here));
+    PetscCall(H5GetText(file, SceneOptionName(i), &there));
+    PetscCall(CompareOption(scene, SceneOptionName(i), here, there));
+    PetscCall(PetscFree(here));
+    PetscCall(PetscFree(there));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Vesicles from a curve file that has changed since would have the same options. */
-static PetscErrorCode CompareVesicles(Scheme s, H5File *file) {
-  const Membrane m = s->membrane;
-  const Layout l = m->layout;
-  PetscInt vesicles = 0, *start, bad = 0, n, have;
-  PetscReal *length, there;
+/* The files of curves may have other names or places, but not other numbers. */
+static PetscErrorCode CompareFiles(Scene scene, H5File *file) {
+  const struct {
+    const char *option, *file, *name, *digest;
+  } all[] = {{"-vesicle_file", scene->vesicles.file, "vesicle_digest", scene->shape.digest},
+             {"-obstacle_file", scene->obstacles.file, "obstacle_digest", scene->obstacles.outline.digest}};
+  char there[DIGEST];
   PetscFunctionBeginUser;
-  if (!l->bodies) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(H5GetInts(file, "vesicles", 1, &vesicles));
-  PetvesCheck(vesicles == l->bodies, s->scene->comm,
-              "-vesicle_file %s: %" PetscInt_FMT " curves, the checkpoint of -restart %s has %" PetscInt_FMT
-              " vesicles; allowed: the same curves",
-              s->scene->vesicles.file, l->bodies, s->scene->output.restart, vesicles);
-  PetscCall(PetscCalloc2(vesicles + 1, &start, vesicles, &length));
-  PetscCall(H5GetInts(file, "vesicle_start", vesicles + 1, start));
-  PetscCall(H5GetReals(file, "vesicle_length", vesicles, length));
-  for (; bad < vesicles; bad++)
-    if (start[bad + 1] - start[bad] != LayoutCount(l, bad) || !(PetscAbsReal(length[bad] / m->L0[bad] - 1) < 1e-10))
-      break;
-  PetscCallMPI(MPI_Bcast(&bad, 1, MPIU_INT, 0, s->scene->comm)); /* rank 0 decides */
-  const PetscInt v = PetscMin(bad, vesicles - 1);
-  n = start[v + 1] - start[v];
-  have = LayoutCount(l, v);
-  there = length[v];
-  PetscCall(PetscFree2(start, length));
-  PetvesCheck(bad == vesicles, s->scene->comm,
-              "vesicle %" PetscInt_FMT " has %" PetscInt_FMT " markers and the length %.12g, the checkpoint of "
-              "-restart %s %" PetscInt_FMT " and %.12g; allowed: the same vesicles",
-              v + 1, have, (double)m->L0[v], s->scene->output.restart, n, (double)there);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Obstacles, whose file may have changed as well. */
-static PetscErrorCode CompareObstacles(Scheme s, H5File *file) {
-  const Obstacles o = s->coupling->bodies->obstacles;
-  PetscInt curves = 0, *start, same = 1;
-  PetscReal *center, *ds;
-  PetscFunctionBeginUser;
-  if (!o) PetscFunctionReturn(PETSC_SUCCESS);
-  const PetscInt n = o->layout->bodies;
-  PetscCall(H5GetInts(file, "obstacles", 1, &curves));
-  if (curves == n) {
-    PetscCall(PetscCalloc3(n + 1, &start, 2 * n, &center, n, &ds));
-    PetscCall(H5GetInts(file, "obstacle_start", n + 1, start));
-    PetscCall(H5GetReals(file, "obstacle_center", 2 * n, center));
-    PetscCall(H5GetReals(file, "obstacle_ds", n, ds));
-    for (PetscInt b = 0; b <= n; b++) same = same && start[b] == o->layout->start[b];
-    for (PetscInt b = 0; b < n; b++) {
-      same = same && PetscAbsReal(ds[b] / o->ds[b] - 1) < 1e-10;
-      for (int c = 0; c < 2; c++) same = same && PetscAbsReal(center[2 * b + c] - o->center[2 * b + c]) < 1e-10 * ds[b];
-    }
-    PetscCall(PetscFree3(start, center, ds));
+  for (int k = 0; k < 2; k++) {
+    PetscCall(H5GetString(file, all[k].name, sizeof(there), there));
+    PetvesCheck(!strcmp(there, all[k].digest), scene->comm,
+                "%s %s: its curves are not those that the run of -restart %s began with; allowed: the same points, "
+                "velocities and rotations",
+                all[k].option, all[k].file, scene->output.restart);
   }
-  same = same && curves == n;
-  PetscCallMPI(MPI_Bcast(&same, 1, MPIU_INT, 0, s->scene->comm)); /* rank 0 decides */
-  PetvesCheck(same, s->scene->comm,
-              "-obstacle_shape: the checkpoint of -restart %s has other obstacles; allowed: the same curves",
-              s->scene->output.restart);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -207,10 +176,13 @@ static PetscErrorCode CheckVectors(Scheme s, const State *q) {
   PetscFunctionBeginUser;
   for (int k = 0; k < 6; k++) {
     PetscReal largest = 0;
-    if (all[k].vector) PetscCall(VecNorm(all[k].vector, NORM_INFINITY, &largest));
-    PetvesCheck(largest <= all[k].most, s->scene->comm,
+    PetscBool finite = PETSC_TRUE;
+    if (!all[k].vector) continue;
+    PetscCall(AgreeFinite(all[k].vector, &finite));
+    PetscCall(VecNorm(all[k].vector, NORM_INFINITY, &largest));
+    PetvesCheck(finite && largest <= all[k].most, s->scene->comm,
                 "-restart %s: its %s is up to %g; allowed: a checkpoint.h5 of petves", s->scene->output.restart,
-                all[k].name, (double)largest);
+                all[k].name, finite ? (double)largest : (double)NAN);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -363,8 +335,7 @@ static PetscErrorCode ReadAll(Scheme s, H5File *file, Record *record, PetscInt *
   PetscCall(CompareOptions(s->scene, file));
   PetscCall(CheckNumbers(s->scene, file));
   PetscCall(CheckEntries(s->scene, file));
-  PetscCall(CompareVesicles(s, file));
-  PetscCall(CompareObstacles(s, file));
+  PetscCall(CompareFiles(s->scene, file));
   PetscCall(ReadState(s, file));
   PetscCall(H5GetInts(file, "frames", 1, frames));
   PetscCall(ReadRecord(s, file, record));

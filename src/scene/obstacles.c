@@ -196,6 +196,7 @@ static PetscErrorCode PlaceMarkers(Scene scene, const Outlines *o, SceneObstacle
   Shape *shape = &own->outline;
   PetscFunctionBeginUser;
   shape->vesicles = o->count;
+  PetscCall(PetscStrncpy(shape->digest, o->curve[0].digest, DIGEST));
   PetscCall(PetscCalloc1(o->count + 1, &shape->start));
   PetscCall(Number(scene, o, shape));
   PetscCall(ChooseFactor(scene, o, own));

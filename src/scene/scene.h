@@ -201,10 +201,12 @@ PETSC_EXTERN PetscErrorCode SceneWriteOptions(Scene scene, FILE *file);
 
 /* SceneOptionRow - the i-th option of the table, NULL past the last one. SceneHelp - print the table by groups; with a
    word, the options that have it in their name: false when there is none. Not collective, and also before PETSc starts.
-   SceneOptionName, SceneOptionValue - its name, and its value in force as text cut to length - 1. */
+   SceneOptionName - its name. SceneOptionText, SceneOptionValue - its value in force as text, to be freed with
+   PetscFree, or cut to length - 1. */
 PETSC_EXTERN const OptionRow *SceneOptionRow(PetscInt i);
 PETSC_EXTERN const char *SceneOptionName(PetscInt i);
 PETSC_EXTERN PetscBool SceneHelp(FILE *file, const char word[]);
+PETSC_EXTERN PetscErrorCode SceneOptionText(Scene scene, PetscInt i, char **text);
 PETSC_EXTERN PetscErrorCode SceneOptionValue(Scene scene, PetscInt i, char value[], size_t length);
 
 /* SceneOptionMayChange - whether a restart may have another value of this option than its checkpoint: the end,

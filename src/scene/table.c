@@ -177,6 +177,12 @@ PetscBool SceneOptionMayChange(const char name[]) {
   return PETSC_FALSE;
 }
 
+PetscErrorCode SceneOptionText(Scene scene, PetscInt i, char **text) {
+  PetscFunctionBeginUser;
+  PetscCall(OptionText(&scene->options, scene, i, text));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode SceneOptionValue(Scene scene, PetscInt i, char value[], size_t length) {
   PetscFunctionBeginUser;
   PetscCall(OptionValue(&scene->options, scene, i, value, length));

@@ -188,6 +188,7 @@ PetscErrorCode SceneMakeShape(Draft scene) {
   PetscFunctionBeginUser;
   PetscCall(SceneMakeKinds(scene, &kinds));
   shape->vesicles = kinds.vesicles;
+  if (kinds.kinds) PetscCall(PetscStrncpy(shape->digest, kinds.kind[0].curve.digest, DIGEST));
   PetscCall(PetscMalloc1(kinds.vesicles, &pose));
   PetscCall(PetscMalloc1(kinds.vesicles, &scene->membrane.each));
   PetscCall(ScenePlace(scene, &kinds, pose));
