@@ -38,6 +38,9 @@ ENVIRONMENT = {
     "UBSAN_OPTIONS": "halt_on_error=1:print_stacktrace=1",
 }
 
+if SANITIZE:  # also programs that the package or a study starts
+    os.environ.update({name: ENVIRONMENT[name] for name in ("ASAN_OPTIONS", "UBSAN_OPTIONS")})
+
 #: The paper's scheme and discretisation, which most tests start from: options given after them win.
 PAPER = "-scheme_type split -delta_type ib6 -membrane_derivative fd -coupling_near_field none -scheme_area_target false"
 

@@ -62,6 +62,7 @@ def test_help_of_a_word_that_no_option_has(ranks, here):
     assert done.returncode == 1 and without_mpirun(done.stderr) == [line]
 
 
+@pytest.mark.skipif(SANITIZE, reason="PETSc 3.18 frees the value of its -help before it copies it")
 def test_help_all_sets_the_scene_up_and_has_the_solvers(here):
     done = mpirun([PETVES, *SMALL, "-help", "all"], 1)
     assert done.returncode == 0 and not list(here.iterdir())

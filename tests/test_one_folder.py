@@ -266,6 +266,7 @@ def test_no_link_is_followed(ranks, tmp_path):
     assert run.status == 1 and "run.lock: cannot be written (" in run.errors[0] and victim.read_text() == "precious"
 
 
+@pytest.mark.skipif(SANITIZE, reason="the sanitizers take memory of their own")
 def test_too_little_memory_is_a_line(tmp_path):
     """OpenBLAS would ask for its own memory for ever."""
     options = f"-domain_cells 24,24 -time_end 0.01 -output_dir {tmp_path / 'run'}"
