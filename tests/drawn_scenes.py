@@ -208,7 +208,7 @@ class Draw:
     def bodies(self, kind: str, found: list, rate: float) -> None:
         """What obstacles do."""
         pick, moving = self.random.choice, kind in ("posts", "closed", "container") and self.chance(0.7)
-        turns = [[pick([0, 1, -1]), pick([0, 1]), pick([0, 1, -1])] for _ in found]
+        turns = [[pick([0, 1, -1]), pick([0, 1]), pick([1, -1])] for _ in found]
         self.numbers["obstacle_velocity"] = 2 * self.h * rate * moving * np.array([turn[:2] for turn in turns])
         self.numbers["obstacle_rotation"] = rate * moving * np.array([turn[2] for turn in turns])
         self.text |= {"obstacle_spacing": "0.5"} if kind == "open" else {}

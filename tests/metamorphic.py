@@ -60,12 +60,11 @@ COLUMNS = units(
 COUNTS = ("step", "tension_its", "bending_its", "coupled_its", "nsolve")
 RESIDUALS = ("div_max", "surface_div_max")
 
-#: Bounds of a difference over its column's scale (scale).
-OF_UNITS = 1e-9  # powers of two leave the digits of all numbers as they are
+#: Bounds of a difference over the scale of its column.
+OF_UNITS = 1e-8  # powers of two change no digits, but those of logarithms of lengths, and the pivots of a sparse LU
 OF_ROUNDING = 1e-4  # what solves to 1e-11 leave of small torques, in films and where a membrane hardly turns
 OF_TOLERANCE = 1e-3  # solves to the default, 1e-6
 OF_BUMPS = 2e-3  # polynomials through six markers, at spacings of half a cell: not the same from the left and right
-DIRECT_POWERS = 4  # of two in direct: rows of other units are in one sparse LU, whose pivots go by size
 
 
 @dataclass
@@ -156,8 +155,7 @@ def changes(scene: Scene, draw: random.Random, ranks: list[int]) -> list[Change]
     vesicles, solids = list(range(len(scene.vesicles))), list(range(len(scene.numbers.get("obstacle_rotation", ()))))
     if max(len(vesicles), len(solids)) > 1:
         found.append(Change("order", vesicles=vesicles[::-1], solids=solids[::-1]))
-    most = DIRECT_POWERS if scene.text["scheme_type"] == "direct" else 40
-    length, time = (2.0 ** (draw.choice([-1, 1]) * draw.randint(1, most)) for _ in range(2))
+    length, time = (2.0 ** (draw.choice([-1, 1]) * draw.randint(1, 40)) for _ in range(2))
     found += [Change("time", time=time), Change("length", length=length), Change("both", length=length, time=time)]
     return found + [Change(f"{n} ranks", ranks=n) for n in ranks if n > 1]
 
@@ -233,7 +231,7 @@ def difference(scene: Scene, base: dict, changed: dict, change: Change) -> tuple
 
 def bound(scene: Scene, change: Change) -> float:
     if change.rescales:
-        return OF_UNITS if scene.text["scheme_type"] != "direct" else OF_ROUNDING
+        return OF_UNITS
     if scene.kind == "open":
         return OF_BUMPS
     loose = scene.text["scheme_type"] == "coupled" and "coupled_ksp_rtol" not in scene.text
