@@ -100,3 +100,10 @@ def test_shipped_scenes_do_not_warn(name, tmp_path):
     options = (ROOT / "runs" / f"{name}.opts").read_text()
     end = float(re.search(r"^-time_end (\S+)", options, re.M)[1])
     assert not warnings(tmp_path / "run", f"-options_file {ROOT}/runs/{name}.opts -time_end {end / 10}")
+
+
+def test_many_markers_say_what_they_cost(tmp_path):
+    options = f"{FREE} -vesicle_semi_axes 0.5,0.9 -vesicle_allow_close_markers -time_end 0 -vesicle_markers"
+    said = [mpirun([PETVES, "-output_dir", str(tmp_path / n), *options.split(), n], 1).stdout for n in ("601", "2001")]
+    assert "warning" not in said[0]
+    assert "petves: warning: 2001 markers on a vesicle: its dense block in the solve takes about 3e+01 s" in said[1]

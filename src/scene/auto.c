@@ -128,6 +128,25 @@ static PetscErrorCode PrintChoice(Scene scene, PetscInt row, PetscBool timed) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+#define MANY_MARKERS 700     /* from which on the block of a vesicle takes a second and more, */
+#define BLOCK_SECONDS 3.5e-9 /* times the third power of the markers */
+
+/* That the dense blocks of the solve take long. */
+static PetscErrorCode ReportMarkers(Scene scene) {
+  PetscInt most = 0;
+  PetscFunctionBeginUser;
+  for (PetscInt v = 0; v < scene->shape.vesicles && !SceneIsProjection(scene); v++)
+    most = PetscMax(most, scene->shape.start[v + 1] - scene->shape.start[v]);
+  if (most < MANY_MARKERS) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetvesSay(scene->comm,
+                      "petves: warning: %" PetscInt_FMT
+                      " markers on a vesicle: its dense block in the solve takes about "
+                      "%.1g s to make, some five times in the first step, in proportion to markers^3; fewer "
+                      "-vesicle_markers or a larger -vesicle_spacing take less\n",
+                      most, BLOCK_SECONDS * PetscPowRealInt((PetscReal)most, 3)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode SceneReport(Scene scene) {
   PetscReal slow, fast;
   PetscFunctionBeginUser;
@@ -138,5 +157,6 @@ PetscErrorCode SceneReport(Scene scene) {
     PetscCall(SceneReportGrid(scene));
   }
   if (*scene->warning) PetscCall(PetvesSay(scene->comm, "petves: warning: %s\n", scene->warning));
+  PetscCall(ReportMarkers(scene));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
