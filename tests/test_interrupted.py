@@ -19,7 +19,8 @@ def start(folder: Path, options: str, ranks: int = 1, **streams) -> subprocess.P
     """petves in the background."""
     command = ["mpirun", "-n", str(ranks)] if ranks > 1 else []
     command += [PETVES, "-output_dir", str(folder), *PAPER.split(), *options.split()]
-    return subprocess.Popen(command, env={**os.environ, **ENVIRONMENT}, text=True, **streams)
+    heed = lambda: signal.signal(signal.SIGINT, signal.SIG_DFL)  # which tests in the background ignore
+    return subprocess.Popen(command, env={**os.environ, **ENVIRONMENT}, text=True, preexec_fn=heed, **streams)
 
 
 def wait_for_rows(folder: Path, rows: int):

@@ -191,7 +191,7 @@ static PetscErrorCode ObstacleReference(CoupledSolver s, const CoupledProblem *q
 static PetscErrorCode Reference(CoupledSolver s, const CoupledProblem *q) {
   const Layout l = s->coupling->membrane->layout;
   const PetscScalar *a;
-  const PetscReal R02 = PetscSqr(s->unknowns->R0);
+  const PetscReal l2 = PetscSqr(s->unknowns->length);
   PetscReal norm, sum = 0, squares = 0;
   PetscFunctionBeginUser;
   PetscCall(VecGetArrayRead(q->g, &a));
@@ -201,7 +201,7 @@ static PetscErrorCode Reference(CoupledSolver s, const CoupledProblem *q) {
   PetscCall(VecRestoreArrayRead(q->g, &a));
   PetscCall(ObstacleReference(s, q, &sum));
   PetscCall(GridAddSquares(s->coupling->fluid->grid, q->local ? &s->coupling->markers->window : NULL, q->f, &squares));
-  sum += R02 * squares;
+  sum += l2 * squares;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPIU_REAL, MPI_SUM, l->comm));
   if (s->coupling->fluid->bc2) {
     PetscCall(VecNorm(s->coupling->fluid->bc2, NORM_2, &norm));
@@ -263,7 +263,8 @@ static PetscErrorCode Begin(CoupledSolver s, const CoupledProblem *q, SolveRepor
   t->begun = s->reduced->stream && !q->w ? PETSC_TRUE : PETSC_FALSE;
   PetscCall(ReducedResidual(s->reduced, s->x, q->f, q->g, q->k, s->x, PETSC_FALSE, q->w, q->p, s->b,
                             t->begun ? &report->measures : NULL));
-  if (q->flow) s->reference = PetscSqrtReal(PetscSqr(s->reference) + PetscSqr(s->unknowns->R0) * report->measures.past);
+  if (q->flow)
+    s->reference = PetscSqrtReal(PetscSqr(s->reference) + PetscSqr(s->unknowns->length) * report->measures.past);
   PetscCall(VecSet(s->pending, 0));
   s->owed = PETSC_FALSE;
   t->problem = q;

@@ -1,12 +1,12 @@
 #include "coupling/unknowns.h"
 
-/* R0 of the smallest vesicle, without vesicles a quarter of the box's shorter side. */
-static PetscReal Radius(Coupling c) {
+/* 2 R0 of the smallest vesicle, without vesicles half of the box's shorter side. */
+static PetscReal Length(Coupling c) {
   const Membrane m = c->membrane;
   const Grid g = c->fluid->grid;
   PetscReal least = m->layout->bodies ? PETSC_MAX_REAL : 0.5 * PETSC_PI * g->h * PetscMin(g->n[0], g->n[1]);
   for (PetscInt v = 0; v < m->layout->bodies; v++) least = PetscMin(least, m->L0[v]);
-  return least / (2 * PETSC_PI);
+  return least / PETSC_PI;
 }
 
 PetscErrorCode UnknownsCreate(Coupling coupling, Walls walls, Unknowns *out) {
@@ -17,7 +17,7 @@ PetscErrorCode UnknownsCreate(Coupling coupling, Walls walls, Unknowns *out) {
   *out = u;
   u->coupling = coupling;
   u->walls = walls;
-  u->R0 = Radius(coupling);
+  u->length = Length(coupling);
   u->velocity = 2 * coupling->membrane->layout->n;
   u->solid = BodiesObstacleNumbers(coupling->bodies);
   u->tension = coupling->membrane->layout->n;
@@ -109,7 +109,7 @@ PetscErrorCode UnknownsGatherWalls(Unknowns u, const PetscScalar own[], PetscSca
 
 PetscReal UnknownsWeight(Unknowns u) {
   const Fluid f = u->coupling->fluid;
-  return f->nu + f->grid->h * u->R0 * f->alpha;
+  return f->nu + f->grid->h * u->length * f->alpha;
 }
 
 PetscReal UnknownsTensionScale(Unknowns u, PetscInt v) {
@@ -131,6 +131,6 @@ void UnknownsScale(Unknowns u, PetscBool inverse, PetscScalar y[]) {
   }
   const Obstacles o = u->coupling->bodies->obstacles;
   if (o) ObstaclesScale(o, UnknownsWeight(u), inverse, y + u->velocity);
-  const PetscReal wall = PetscMin(u->R0, f->grid->h);
+  const PetscReal wall = PetscMin(u->length, 2 * f->grid->h);
   for (PetscInt k = UnknownsWalls(u); k < UnknownsWalls(u) + u->wall; k++) y[k] = inverse ? y[k] / wall : y[k] * wall;
 }

@@ -10,7 +10,7 @@ typedef struct _p_Unknowns *Unknowns;
 struct _p_Unknowns {
   Coupling coupling;                       /* borrowed */
   Walls walls;                             /* borrowed */
-  PetscReal R0;                            /* of the smallest vesicle: the length that residuals are weighed with */
+  PetscReal length;                        /* l, that residuals are weighed with: 2 R0 of the smallest vesicle */
   PetscInt velocity, solid, tension, wall; /* own numbers of each kind */
   PetscInt first_wall;                     /* number of the first own wall force */
   PetscMPIInt *count, *at;                 /* [ranks] wall forces of each rank, and where they start */
@@ -32,16 +32,12 @@ PETSC_EXTERN PetscErrorCode UnknownsGatherWalls(Unknowns unknowns, const PetscSc
 
 /* UnknownsScale - rows of this rank's residual y times their factors (inverse: over them), which give every row the
    unit length^2/time^2, so that the norm does not depend on the units. A residual f of the momentum equation
-   (length/time^2) is weighed with R0, that of the smallest vesicle. The other rows, by which a residual of the membrane
-   is a surface divergence times nu:
-     Dm V/h^2 = g           (nu + h R0 alpha) h^2/ds; h R0 alpha weighs short steps, where the momentum's right-hand
-                            side u alpha would hide the row
-     V = E u - Theta F      that over h^2, an edge's difference, times the root of the force it means, bending over
-                            viscous (an energy norm)
-     obstacles              (nu + h R0 alpha)/ds
-     wall forces            h, at most R0: a force on the row of faces at a wall, where the fluid sticks, gives it a
-                            velocity of the order h^2/nu, the same force on a membrane h R0/nu
-   Not collective. */
+   (length/time^2) is weighed with the length l, 2 R0 of the smallest vesicle. The other rows, by which a residual of
+   the membrane is a surface divergence times nu: Dm V/h^2 = g           (nu + h l alpha) h^2/ds; h l alpha weighs short
+   steps, where the momentum's right-hand side u alpha would hide the row V = E u - Theta F      that over h^2, an
+   edge's difference, times the root of the force it means, bending over viscous (an energy norm) obstacles (nu + h l
+   alpha)/ds wall forces            2 h, at most l: a force on the row of faces at a wall, where the fluid sticks, gives
+   it a velocity of the order h^2/nu, the same force on a membrane h R0/nu Not collective. */
 PETSC_EXTERN void UnknownsScale(Unknowns unknowns, PetscBool inverse, PetscScalar y[]);
 
 /* UnknownsTension - where the tensions start in a rank's part; UnknownsWalls - the wall forces. Not collective. */
@@ -52,7 +48,7 @@ static inline PetscInt UnknownsWalls(Unknowns u) {
   return u->velocity + u->solid + u->tension;
 }
 
-/* UnknownsWeight - nu + h R0 alpha. UnknownsTensionScale - the factor of the rows Dm V/h^2 = g of one vesicle. Not
+/* UnknownsWeight - nu + h l alpha. UnknownsTensionScale - the factor of the rows Dm V/h^2 = g of one vesicle. Not
  * collective. */
 PETSC_EXTERN PetscReal UnknownsWeight(Unknowns unknowns);
 PETSC_EXTERN PetscReal UnknownsTensionScale(Unknowns unknowns, PetscInt vesicle);

@@ -74,9 +74,10 @@ static PetscErrorCode CompareOptions(Scene scene, H5File *file) {
     if (SceneOptionMayChange(SceneOptionName(i))) continue;
     PetscCall(SceneOptionText(scene, i, &here));
     PetscCall(H5GetText(file, SceneOptionName(i), &there));
-    PetscCall(CompareOption(scene, SceneOptionName(i), here, there));
+    const PetscErrorCode same = CompareOption(scene, SceneOptionName(i), here, there);
     PetscCall(PetscFree(here));
     PetscCall(PetscFree(there));
+    PetscCall(same);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
