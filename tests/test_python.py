@@ -81,6 +81,13 @@ if not SANITIZE:  # a sanitized library cannot be loaded into Python
         assert done.returncode == 0 and "facts hold" in done.stdout, done.stdout + done.stderr
         assert not without_mpirun(done.stderr), "nothing is printed: the exception has the message"
 
+    def test_no_options_of_the_current_folder(tmp_path, monkeypatch):
+        monkeypatch.chdir(tmp_path)
+        (tmp_path / ".petscrc").write_text(f'-python "touch {tmp_path}/made"\n')
+        (tmp_path / "script.py").write_text("import petves\nprint(petves.Simulation)\n")
+        done = run_python(tmp_path / "script.py", [])
+        assert done.returncode == 0 and not (tmp_path / "made").exists(), done.stderr
+
     @pytest.mark.alone
     def test_a_callback_costs_less_than_two_per_cent():
         done = run_python(SCRIPTS / "overhead.py", [])

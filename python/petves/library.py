@@ -13,9 +13,9 @@ import threading
 from typing import Any, Callable
 
 import numpy as np
-from petsc4py import PETSc
 
 from petves.errors import Error
+from petves.petsc import PETSc
 from petves.program import LIBRARY, candidates
 
 MAX_MESSAGE = 512  # PETVES_MAX_MESSAGE

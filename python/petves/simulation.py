@@ -12,7 +12,6 @@ from pathlib import Path
 from typing import Any, Callable
 
 import numpy as np
-from petsc4py import PETSc
 
 from petves.errors import Error
 from petves.library import (
@@ -29,6 +28,7 @@ from petves.library import (
     one_thread,
     option_text,
 )
+from petves.petsc import PETSc
 from petves.progress import progress_bar
 from petves.state import State
 
