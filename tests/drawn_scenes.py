@@ -156,6 +156,12 @@ class Draw:
         else:
             self.unsplit(len(vesicles), bending)
             self.forces(len(vesicles), nu * rate / R0, bending)
+        if kind == "container" and self.text["fluid_inertia"] != "none":  # shorter steps than this grow
+            self.numbers |= {
+                name: value * max(1, 0.64 * h**2 / (nu * step))
+                for name, value in self.numbers.items()
+                if name in ("time_step", "time_end", "output_every", "time_adapt_max_step")
+            }
         if kind != "none":
             self.bodies(kind, found, rate)
         return Scene(self.numbers, self.text, vesicles, [] if kind in ("none", "posts") else found, kind)
