@@ -78,7 +78,7 @@ static PetscBool IsOneOf(const char *word, const char *const list[]) {
  */
 static int Answer(int n, char **word) {
   static const char *const help[] = {"-help", "--help", "-h", NULL}, *const version[] = {"-version", "--version", NULL};
-  static char plain[] = "-help", yes[] = "true"; /* as PETSc reads it */
+  static char plain[] = "-help"; /* without a value, which PETSc 3.18 would read after it has freed it */
   char line[PETVES_MAX_MESSAGE];
   for (int k = 0; k < n; k++) {
     const char *topic = k + 1 < n && word[k + 1][0] != '-' ? word[k + 1] : NULL;
@@ -88,8 +88,7 @@ static int Answer(int n, char **word) {
     }
     if (!IsOneOf(word[k], help)) continue;
     if (topic && !strcmp(topic, "all")) {
-      word[k] = plain;
-      word[k + 1] = yes;
+      word[k] = word[k + 1] = plain;
       return -1;
     }
     if (!IsFirst()) return 0;

@@ -6,7 +6,7 @@ import sys
 
 import numpy as np
 import pytest
-from conftest import PETVES, ROOT, Run, mpirun
+from conftest import PETVES, ROOT, SANITIZE, Run, mpirun
 
 from petves.measures import half_periods
 from petves.run import Run as Files
@@ -92,6 +92,7 @@ def test_pressed(tmp_path):
     assert 0.45 < np.log(film[0] / film[1]) / np.log(2) < 0.66
 
 
+@pytest.mark.skipif(SANITIZE, reason="a sanitized library cannot be loaded into Python")
 def test_vortex(tmp_path):
     """A Taylor-Green flow from Python: four vesicles turned by quarters stay so, whatever they do otherwise."""
     command = [sys.executable, "-m", "studies.gallery.vortices", "vortex", str(tmp_path)]
