@@ -156,7 +156,7 @@ class Draw:
         else:
             self.unsplit(len(vesicles), bending)
             self.forces(len(vesicles), nu * rate / R0, bending)
-        if kind == "container" and self.text["fluid_inertia"] != "none":  # shorter steps than this grow
+        if kind != "none" and self.text["fluid_inertia"] != "none":  # with shorter steps vesicles beside solids grow
             self.numbers |= {
                 name: value * max(1, 0.64 * h**2 / (nu * step))
                 for name, value in self.numbers.items()
