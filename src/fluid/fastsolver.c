@@ -2,15 +2,16 @@
 
 static PetscFunctionList back_ends;
 
-PetscErrorCode FastSolverRegister(const char type[], PetscErrorCode (*create)(FastSolver, PetscInt)) {
-  PetscFunctionBeginUser;
-  PetscCall(PetscFunctionListAdd(&back_ends, type, create));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 static PetscErrorCode ForgetBackEnds(void) {
   PetscFunctionBeginUser;
   PetscCall(PetscFunctionListDestroy(&back_ends));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode FastSolverRegister(const char type[], PetscErrorCode (*create)(FastSolver, PetscInt)) {
+  PetscFunctionBeginUser;
+  if (!back_ends) PetscCall(PetscRegisterFinalize(ForgetBackEnds));
+  PetscCall(PetscFunctionListAdd(&back_ends, type, create));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -48,12 +49,6 @@ PetscErrorCode FastSolverCreate(Grid grid, Field field, const char type[], Petsc
   FastSolver s;
   PetscErrorCode (*create)(FastSolver, PetscInt);
   PetscFunctionBeginUser;
-  if (!back_ends) {
-    PetscCall(FastSolverRegister("fftw", FastSolverCreate_FFTW));
-    PetscCall(FastSolverRegister("fftw_tridiagonal", FastSolverCreate_Tridiagonal));
-    PetscCall(FastSolverRegister("hypre", FastSolverCreate_Hypre));
-    PetscCall(PetscRegisterFinalize(ForgetBackEnds));
-  }
   PetscCall(PetscFunctionListFind(back_ends, type, &create));
   PetscCheck(create, grid->comm, PETSC_ERR_USER_INPUT, "fast solver %s: not registered", type);
   PetscCall(PetscNew(&s));

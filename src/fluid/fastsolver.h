@@ -55,10 +55,11 @@ PETSC_EXTERN PetscErrorCode FastSolverEnd(FastSolver s, PetscScalar x[]);
 /* FastSolverGetPC - the PCSHELL that applies this solver to vectors of the field's DMDA. Borrowed. */
 PETSC_EXTERN PetscErrorCode FastSolverGetPC(FastSolver s, PC *pc);
 
-/* FastSolverRegister - add a back end. */
+/* FastSolverRegister - add a back end under a name of -helmholtz_type and -poisson_type. Not collective. */
 PETSC_EXTERN PetscErrorCode FastSolverRegister(const char type[], PetscErrorCode (*create)(FastSolver, PetscInt plan));
 
-/* Back ends */
-PETSC_EXTERN PetscErrorCode FastSolverCreate_FFTW(FastSolver, PetscInt);
-PETSC_EXTERN PetscErrorCode FastSolverCreate_Tridiagonal(FastSolver, PetscInt);
-PETSC_EXTERN PetscErrorCode FastSolverCreate_Hypre(FastSolver, PetscInt);
+/* The back ends of petves, which FastSolversRegister adds: FFTW's transforms both ways; transforms along the rows with
+   tridiagonal solves across them; conjugate gradients with algebraic multigrid. Collective. */
+PETSC_EXTERN PetscErrorCode FastSolverCreate_FFTW(FastSolver, PetscInt plan);
+PETSC_EXTERN PetscErrorCode FastSolverCreate_Tridiagonal(FastSolver, PetscInt plan);
+PETSC_EXTERN PetscErrorCode FastSolverCreate_Hypre(FastSolver, PetscInt plan);

@@ -1,4 +1,5 @@
 #include "fluid/fluid.h"
+#include "fluid/fastsolvers.h"
 
 PetscErrorCode FluidSolveHelmholtz(Fluid f, Vec b, Vec w) {
   const PetscInt v = GridLocalU(f->grid);
@@ -135,6 +136,7 @@ static PetscErrorCode CreateWallData(const FluidSpec *spec, Fluid f) {
 
 static PetscErrorCode CreateSolvers(const FluidSpec *spec, Fluid f) {
   PetscFunctionBeginUser;
+  PetscCall(FastSolversRegister());
   for (int k = FIELD_U; k <= FIELD_P; k++)
     PetscCall(
         FastSolverCreate(f->grid, (Field)k, k == FIELD_P ? spec->poisson : spec->helmholtz, spec->plan, &f->solver[k]));

@@ -8,8 +8,10 @@
    Y_{j-1} + (b_j, b_j),      Z_j = M Z_{j+1} + (y2_j, y2_j). What comes into a slab of rows is known from what all
    slabs say by themselves, as in tridiagonal.c: Y leaves a slab of m rows as its own and M^m times what came in, Z as
    its own, the gain times Y from below and M^m times Z from above. */
+#include "fluid/stream.h"
+#include "fluid/streamdown.h"
 #include "fluid/streamloops.h"
-#include "fluid/streamsolve.h"
+#include "fluid/streamup.h"
 
 PetscErrorCode StreamCreate(Fluid f, ZeroFlux flux, Stream *out) {
   const unsigned efforts[] = {FFTW_ESTIMATE, FFTW_MEASURE, FFTW_PATIENT};

@@ -9,30 +9,7 @@
    y between them. The mean flow, mode 0, is a tridiagonal problem by itself. Between walls in x, modes are sines, there
    is no mean flow, and what holds the fluid at the walls is a force (sidewalls.h). */
 #pragma once
-#include "fluid/flux.h"
-#include "fluid/streamflow.h"
-#include "fluid/streammeter.h"
-
-typedef struct _p_Stream *Stream;
-
-/* Where rows come from and where they go to. Rows are this rank's; row j of a field of forces is asked for once, in
-   order, each row of u before that of v with the same number; of u the row above the last, too, if there is one (the
-   next rank's first; row 0 on one rank). */
-typedef struct {
-  void *ctx;
-  PetscInt forced[2]; /* forces are zero outside rows forced[0] .. forced[1] - 1 of u and v, and are not asked for but
-                         in the row below; all rows where there is one next to a seam in y */
-  PetscInt wanted[2]; /* velocities are not wanted outside rows wanted[0] .. wanted[1] - 1; all: 0, rows of u */
-  const StreamPast *past; /* a further force, of states before, and what of it is in the velocities; NULL: none */
-  Vec flow;               /* of the velocity; NULL: not wanted, */
-  PetscBool add;          /* and it is added to what is there */
-  const PetscScalar *(*force)(void *ctx, Field f, PetscInt j,
-                              PetscScalar work[]);                     /* may be work[n_x], which it fills */
-  void (*velocity)(void *ctx, Field f, PetscInt j, PetscScalar row[]); /* downwards; to u it may add what it has */
-  const PetscReal *mean[2];  /* [rows of the whole grid] added to every u and v of a row, of v zero on walls in y,
-                                of u zero between walls in x; may be NULL, */
-  const PetscScalar *source; /* [rows][n_x] G^T of these and of what `velocity` adds; NULL: zero */
-} StreamRows;
+#include "fluid/streamstate.h"
 
 /* StreamCreate - for a fluid in a box that is periodic in x, or has walls both ways, whose alpha it follows; flux:
    borrowed, NULL unless the fluid may carry no flux along x. Not collective. */

@@ -1,6 +1,6 @@
 /* Down all rows of a solve by stream function: the nodes' chi, rows of velocity, its flow and what is measured. */
+#include "fluid/streamdown.h"
 #include "fluid/streamloops.h"
-#include "fluid/streamsolve.h"
 
 /* On the way down: what comes in from above. */
 void StreamBeginDown(Stream s) {

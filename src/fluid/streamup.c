@@ -1,6 +1,6 @@
 /* Up all rows of a solve by stream function: y of the modes from the rows of forces and the states before. */
+#include "fluid/streamup.h"
 #include "fluid/streamloops.h"
-#include "fluid/streamsolve.h"
 
 /* Modes of the curl of row j's forces: u's below and above it and v's, and of the states before (NULL: none). */
 static const PetscReal *CurlModes(Stream s, const PetscScalar low[], const PetscScalar high[], const PetscScalar v[],
