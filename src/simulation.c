@@ -1,6 +1,7 @@
 /* A whole run: build everything from the options, step, write. */
 #include "simulation.h"
 #include "base/agree.h"
+#include "baselines/baselines.h"
 #include "coupling/contrast.h"
 #include "fluid/wisdom.h"
 #include "options/typed.h"
@@ -144,6 +145,7 @@ static PetscErrorCode Build(MPI_Comm comm, PetvesFlow flow, void *ctx, Simulatio
   if (scene->repulsion.stress > 0 && scene->shape.vesicles)
     PetscCall(CouplingAddRepulsion(s->coupling, &scene->repulsion));
   if (scene->scheme.area_target && scene->shape.vesicles) PetscCall(CouplingAddAreaTarget(s->coupling));
+  PetscCall(BaselinesRegister());
   PetscCall(SchemeCreate(scene, s->coupling, scene->shape.X, &s->scheme));
   PetscCall(SceneCheckUnused(scene));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -1,6 +1,7 @@
 /* The tension problem: the assembled Chat is S^T S + S^T G diag(L)^-1 G^T S, and the operator is symmetric positive. */
 #include "world.h"
-#include "coupling/lagrangian.h"
+#include "baselines/lagrangian.h"
+#include "baselines/tensionmatrix.h"
 
 /* 1/diag(L), from the assembled L. */
 static PetscErrorCode InverseDiagonal(Grid g, Vec *d) {

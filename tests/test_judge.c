@@ -1,6 +1,6 @@
 /* Step sizes: what StepJudge makes of an attempt and StepSize of a plan, both pure functions, as tables of cases. */
 #include "world.h"
-#include "scheme/judge.h"
+#include "scheme/stepcontrol.h"
 
 #define TOL 1e-4 /* of the error */
 #define MOVE 0.1 /* that a marker may move */

@@ -1,6 +1,7 @@
 /* A scene and what is made from it, from an options text: what C tests and benches start from. */
 #pragma once
 #include "check.h"
+#include "baselines/baselines.h"
 #include "scheme/scheme.h"
 
 /* The paper's discretisation of the membrane and its model of the fluid, which tests start from: options given after
@@ -98,6 +99,7 @@ static inline PetscErrorCode TestWorldShare(TestWorld *w, PetscMPIInt n, PetscRe
 /* TestWorldScheme - the scheme, at its initial state. */
 static inline PetscErrorCode TestWorldScheme(TestWorld *w) {
   PetscFunctionBeginUser;
+  PetscCall(BaselinesRegister());
   PetscCall(SchemeCreate(w->scene, w->coupling, w->scene->shape.X, &w->scheme));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

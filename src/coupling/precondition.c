@@ -1,6 +1,7 @@
 #include "coupling/precondition.h"
 #include "coupling/denseblock.h"
-#include "coupling/lagrangian.h"
+#include "baselines/lagrangian.h"
+#include "baselines/tensionmatrix.h"
 
 #define MOST_EXCESS 5     /* iterations more than with new blocks, in one solve */
 #define FIXED_RATIO 1.3   /* of two steps whose blocks are the same: those of order 2 and 3 are 1.22 apart */

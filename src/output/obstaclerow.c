@@ -1,5 +1,5 @@
 #include "output/obstaclerow.h"
-#include "scheme/drive.h"
+#include "scheme/pressuredrop.h"
 
 #define TOTALS 4 /* columns of all obstacles together */
 

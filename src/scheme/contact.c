@@ -2,7 +2,7 @@
 #include "base/agree.h"
 #include "curve/crossing.h"
 #include "scheme/films.h"
-#include "scheme/parts.h"
+#include "scheme/stepcommon.h"
 
 #define CONTACT 2       /* cells between membranes below which a warning is due */
 #define CLOSE_PARTS 1.5 /* edges between parts of one membrane, likewise with the exact near field */

@@ -1,7 +1,7 @@
 /* Schemes "coupled" and "direct": the unsplit step, first or second order, unconditionally stable. `coupled` solves it
    by preconditioned FGMRES on its forces, `direct` by a sparse LU factorisation. Here: which steps are taken. */
 #include "scheme/coupled.h"
-#include "coupling/lagrangian.h"
+#include "coupling/kspoptions.h"
 #include "scheme/films.h"
 
 /* Whether a first step stops after a part of it that began at `began`: another one may take as long. */

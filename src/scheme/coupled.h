@@ -4,7 +4,7 @@
 #include "fluid/convection.h"
 #include "scheme/direct.h"
 #include "scheme/history.h"
-#include "scheme/parts.h"
+#include "scheme/stepcommon.h"
 
 typedef struct {
   CoupledSolver solver;  /* scheme coupled: FGMRES */

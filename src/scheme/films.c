@@ -3,7 +3,7 @@
 #include "curve/apart.h"
 #include "curve/contacts.h"
 #include "curve/crossing.h"
-#include "scheme/parts.h"
+#include "scheme/stepcommon.h"
 
 #define THIN 0.5 /* edges below which a film that loses much is drained by the step's error */
 

@@ -2,7 +2,7 @@
    what a step does to them (docs/suspensions.md, Contact). A film drains slowly; where it is thinner than half an edge
    (a cell without near field) and has lost half of that in one step, the step's error has drained it. */
 #pragma once
-#include "scheme/scheme.h"
+#include "scheme/stepcommon.h"
 
 /* FilmsGaps - least distance (length) of any two vesicles, or of one and a wall, at the present state, and
    each[vesicles], that of every vesicle from others; negative where they overlap; not a number where there is nothing

@@ -3,7 +3,7 @@
  */
 #pragma once
 #include "scheme/bdf.h"
-#include "scheme/scheme.h"
+#include "scheme/stepcommon.h"
 
 typedef struct {
   PetscInt n;                 /* states whose markers are carried: 1 to BDF_MOST */

@@ -1,15 +1,8 @@
 #include "scheme/scheme.h"
 #include "coupling/precondition.h"
-#include "scheme/parts.h"
-#include "scheme/watch.h"
+#include "scheme/statechecks.h"
 
 static PetscFunctionList schemes;
-
-PetscErrorCode SchemeRegister(const char type[], PetscErrorCode (*create)(Scheme)) {
-  PetscFunctionBeginUser;
-  PetscCall(PetscFunctionListAdd(&schemes, type, create));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
 
 static PetscErrorCode ForgetSchemes(void) {
   PetscFunctionBeginUser;
@@ -17,14 +10,10 @@ static PetscErrorCode ForgetSchemes(void) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode RegisterSchemes(void) {
+PetscErrorCode SchemeRegister(const char type[], PetscErrorCode (*create)(Scheme)) {
   PetscFunctionBeginUser;
-  if (schemes) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(SchemeRegister("split", SchemeCreate_Split));
-  PetscCall(SchemeRegister("penalty", SchemeCreate_Penalty));
-  PetscCall(SchemeRegister("coupled", SchemeCreate_Coupled));
-  PetscCall(SchemeRegister("direct", SchemeCreate_Coupled));
-  PetscCall(PetscRegisterFinalize(ForgetSchemes));
+  if (!schemes) PetscCall(PetscRegisterFinalize(ForgetSchemes));
+  PetscCall(PetscFunctionListAdd(&schemes, type, create));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -69,7 +58,8 @@ PetscErrorCode SchemeCreate(Scene scene, Coupling coupling, const PetscReal X[],
   Scheme s;
   PetscErrorCode (*create)(Scheme);
   PetscFunctionBeginUser;
-  PetscCall(RegisterSchemes());
+  PetscCall(SchemeRegister("coupled", SchemeCreate_Coupled));
+  PetscCall(SchemeRegister("direct", SchemeCreate_Coupled));
   PetscCall(PetscFunctionListFind(schemes, scene->scheme.type, &create));
   PetscCheck(create, scene->comm, PETSC_ERR_USER_INPUT, "-scheme_type %s: not registered", scene->scheme.type);
   PetscCall(PetscNew(&s));
@@ -171,26 +161,6 @@ PetscErrorCode SchemeContactEnergy(Scheme s, PetscReal *energy) {
   PetscCall(VecGetArrayRead(s->state.X, &x));
   PetscCall(RepulsionAt(s->coupling->repulsion, s->state.t, 0, x, NULL, energy));
   PetscCall(VecRestoreArrayRead(s->state.X, &x));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode SchemeVelocity(Scheme s) {
-  PetscFunctionBeginUser;
-  if (!s->state.hidden) PetscFunctionReturn(PETSC_SUCCESS);
-  if (s->state.flow) {
-    PetscCall(s->ops.velocity(s, &s->state, s->state.w));
-    s->state.hidden = PETSC_FALSE;
-  } else
-    PetscCall(SchemeFields(s));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode SchemeFields(Scheme s) {
-  PetscFunctionBeginUser;
-  if (s->state.flow) PetscCall(SchemeVelocity(s));
-  if (!s->state.pending) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(s->ops.fields(s));
-  s->state.pending = s->state.hidden = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

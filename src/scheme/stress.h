@@ -1,6 +1,6 @@
 /* The stress that membranes add to a sheared channel (docs/suspensions.md, Stress): walls in y, periodic in x. */
 #pragma once
-#include "scheme/scheme.h"
+#include "scheme/stepcommon.h"
 
 /* StressApplies - whether the scene is a sheared channel with vesicles. Not collective. */
 PETSC_EXTERN PetscBool StressApplies(Scheme scheme);

@@ -1,4 +1,4 @@
-#include "scheme/drive.h"
+#include "scheme/pressuredrop.h"
 
 /* The profile b of a channel's flow under a unit pressure gradient, y from its lower wall, and that of the grid, which
    has h^2/8 more at every place. */

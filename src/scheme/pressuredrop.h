@@ -1,6 +1,6 @@
 /* What drives the flow past obstacles. */
 #pragma once
-#include "scheme/scheme.h"
+#include "scheme/stepcommon.h"
 
 /* Along x, in a box that is periodic in x. */
 typedef struct {

@@ -1,4 +1,4 @@
-#include "scheme/judge.h"
+#include "scheme/stepcontrol.h"
 
 #define FIRST_LEVEL (-10) /* the first step is base/32 */
 #define LEAST_LEVEL (-80)

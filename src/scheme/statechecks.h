@@ -1,6 +1,6 @@
 /* What is looked at after a step. */
 #pragma once
-#include "scheme/scheme.h"
+#include "scheme/stepcommon.h"
 
 /* SchemeCheck - finite values, markers away from walls, edge ratio, area and length within -limit_*, membranes that do
    not cross; what is wrong and what to try goes into report.failure. Warns of membranes in contact, of markers that

@@ -1,7 +1,8 @@
 /* Scheme "split": the immersed boundary projection method of Ong and Lai, J. Comput. Phys. 408 (2020) 109277,
    sections 4.1 (no bending) and 4.2. First order in time. */
-#include "coupling/lagrangian.h"
-#include "scheme/parts.h"
+#include "baselines/lagrangian.h"
+#include "coupling/kspoptions.h"
+#include "scheme/stepcommon.h"
 
 typedef struct {
   LagrangianSolver tension, bending; /* NULL where the scene has no such part; bending: or is explicit */

@@ -1,6 +1,4 @@
-/* Chat = S^T S + S^T G diag(L)^-1 G^T S, assembled. Each column of S is zero outside a small window of cells around its
-   edge: entry (Chat)_kl is the product of two windows where they overlap. */
-#include "coupling/lagrangian.h"
+#include "baselines/tensionmatrix.h"
 
 typedef struct {
   PetscInt n[2];      /* cells of a window, the same for all edges */

@@ -38,11 +38,3 @@ PETSC_EXTERN PetscErrorCode LagrangianSolverDestroy(LagrangianSolver *solver);
 /* LagrangianSolverSolve - A x = b from a zero guess, where the coupling has been placed; its, why and residual say how
    it went (why < 0: failed). A tension solve assembles Chat first, where the preconditioner wants it. Collective. */
 PETSC_EXTERN PetscErrorCode LagrangianSolverSolve(LagrangianSolver solver, Vec b, Vec x);
-
-/* TensionAssemble - Chat at the coupling's markers, a sequential matrix on rank root, NULL elsewhere.
-   Not collective. */
-PETSC_EXTERN PetscErrorCode TensionAssemble(Coupling coupling, PetscMPIInt root, Mat *Chat);
-
-/* KSPWriteOptions - a KSP's settings in force as options with this prefix, one a line; pc: its preconditioner where the
-   KSP's own is a shell around it, else NULL. */
-PETSC_EXTERN PetscErrorCode KSPWriteOptions(KSP ksp, PC pc, const char prefix[], FILE *file);

@@ -1,4 +1,5 @@
-#include "coupling/lagrangian.h"
+#include "baselines/lagrangian.h"
+#include "baselines/tensionmatrix.h"
 
 /* y = (S^T S + S^T G L^-1 G^T S) x */
 static PetscErrorCode MultTension(Mat A, Vec x, Vec y) {
@@ -157,29 +158,5 @@ PetscErrorCode LagrangianSolverSolve(LagrangianSolver s, Vec b, Vec x) {
   PetscCall(KSPGetIterationNumber(s->ksp, &s->its));
   PetscCall(KSPGetConvergedReason(s->ksp, &s->why));
   PetscCall(KSPGetResidualNorm(s->ksp, &s->residual));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode KSPWriteOptions(KSP ksp, PC pc, const char prefix[], FILE *file) {
-  KSPType type;
-  PCType pc_type;
-  PetscReal rtol, atol, dtol;
-  PetscInt max_it;
-  PetscBool ilu, shell;
-  PetscFunctionBeginUser;
-  PetscCall(KSPGetType(ksp, &type));
-  PetscCall(KSPGetTolerances(ksp, &rtol, &atol, &dtol, &max_it));
-  if (!pc) PetscCall(KSPGetPC(ksp, &pc));
-  PetscCall(PCGetType(pc, &pc_type));
-  fprintf(file, "-%sksp_type %s\n-%sksp_rtol %.17g\n-%sksp_atol %.17g\n-%sksp_max_it %" PetscInt_FMT "\n", prefix, type,
-          prefix, (double)rtol, prefix, (double)atol, prefix, max_it);
-  PetscCall(PetscObjectTypeCompare((PetscObject)pc, PCSHELL, &shell));
-  if (!shell) fprintf(file, "-%spc_type %s\n", prefix, pc_type);
-  PetscCall(PetscObjectTypeCompare((PetscObject)pc, PCILU, &ilu));
-  if (ilu) {
-    PetscInt levels;
-    PetscCall(PCFactorGetLevels(pc, &levels));
-    fprintf(file, "-%spc_factor_levels %" PetscInt_FMT "\n", prefix, levels);
-  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

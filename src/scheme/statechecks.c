@@ -1,8 +1,8 @@
-#include "scheme/watch.h"
+#include "scheme/statechecks.h"
 #include "base/agree.h"
 #include "scheme/contact.h"
 #include "scheme/films.h"
-#include "scheme/parts.h"
+#include "scheme/stepcommon.h"
 
 /* A shape's tail, what it has of its bending in the last third of its modes. Above ROUGH the steady angle or
    frequency is off by .05 % or more, below SMOOTH by less than .001 % (V = .35 to .9, chi = 1 to 30, 17 to 91

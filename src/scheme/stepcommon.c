@@ -1,4 +1,4 @@
-#include "scheme/parts.h"
+#include "scheme/stepcommon.h"
 #include "base/agree.h"
 
 PetscErrorCode SchemeKeep(Scheme s) {
@@ -212,5 +212,25 @@ PetscErrorCode SchemeWarn(Scheme s, const char format[], ...) {
   va_end(arguments);
   PetscCall(PetvesSay(s->scene->comm, "petves: warning: %s\n", text));
   if (s->warnings.n < SCHEME_WARNINGS) PetscCall(PetscStrallocpy(text, &s->warnings.text[s->warnings.n++]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SchemeVelocity(Scheme s) {
+  PetscFunctionBeginUser;
+  if (!s->state.hidden) PetscFunctionReturn(PETSC_SUCCESS);
+  if (s->state.flow) {
+    PetscCall(s->ops.velocity(s, &s->state, s->state.w));
+    s->state.hidden = PETSC_FALSE;
+  } else
+    PetscCall(SchemeFields(s));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SchemeFields(Scheme s) {
+  PetscFunctionBeginUser;
+  if (s->state.flow) PetscCall(SchemeVelocity(s));
+  if (!s->state.pending) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(s->ops.fields(s));
+  s->state.pending = s->state.hidden = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,0 +1,161 @@
+/* What the steps of all schemes share: the scheme with its state, what a step reports, and the parts that steps are put
+   together from. */
+#pragma once
+#include "scheme/state.h"
+#include "scheme/stepcontrol.h"
+#include "fluid/stream.h"
+
+/* Of a sheared channel after a step, from the walls [0] and from the membranes' forces [1] (src/scheme/stress.h). */
+typedef struct {
+  PetscBool known;        /* whether the scene is one, and a step has been made */
+  PetscReal viscosity[2]; /* effective, over nu */
+  PetscReal normal[2];    /* first normal stress difference (length^2/time^2) */
+} Stress;
+
+/* What the last step did. */
+typedef struct {
+  PetscInt tension_its, bending_its, coupled_its;
+  PetscInt solves;           /* scalar fast solves */
+  PetscReal div_max;         /* max |G^T u + bc2|, what the solver left of the divergence */
+  PetscReal surface_div_max; /* max |h^2 (Dm V/h^2 - g)/ds|, what it left of the surface divergence */
+  PetscReal area_shift;      /* largest shift that restored a vesicle's area (length) */
+  PetscReal estimate;        /* of a fixed step of coupled or direct: max |X - X*|/R0, 0 in the first one */
+  PetscReal cfl;             /* dt max(|u| + |v|)/h; 0 without convection */
+  PetscReal seconds;         /* wall, output excluded */
+  StreamMeasures measures;   /* of the velocity of a step that leaves it pending */
+  Stress stress;
+  const char *stopped; /* why a first step was left undone between two of its parts (StopRequested); NULL: it was not */
+  char failure[PETVES_MAX_MESSAGE]; /* why the step could not be taken; empty when it was */
+} StepReport;
+
+/* The states before the present one that are kept. */
+#define SCHEME_PAST 5
+
+/* All that a step changes and the next one needs; State and this are what a checkpoint holds. */
+typedef struct {
+  State state, old[SCHEME_PAST]; /* old without vectors where the scheme has none */
+  PetscInt past;
+  StepPlan plan;
+  PetscBool fields; /* velocities and pressures too; without, the scheme's undo brings them back */
+} Snapshot;
+
+/* Warnings of the run, for summary.json: the first ones, and which have been given. */
+#define SCHEME_WARNINGS 16
+typedef struct {
+  PetscInt n;
+  char *text[SCHEME_WARNINGS];
+  PetscBool contact; /* whether parts of membranes are close, as last warned of */
+  PetscBool rough;   /* whether it was warned that markers do not resolve a membrane */
+  PetscBool film;    /* likewise that they do not resolve a film, */
+  PetscBool step;    /* that a step was too large, */
+  PetscBool corner;  /* and of a vesicle in a corner of two walls */
+} Warnings;
+
+typedef struct _p_Scheme *Scheme;
+
+typedef struct {
+  PetscErrorCode (*setup)(Scheme);
+  PetscErrorCode (*step)(Scheme, PetscReal most); /* advance the state by state.dt, which step-size control chooses up
+                                                     to `most`; or fill in report.failure and leave it */
+  /* put back the velocities and pressures of state and old that a step with a past has changed; NULL: they are copied
+     before each step */
+  PetscErrorCode (*undo)(Scheme);
+  /* make what the state has not of velocity and pressure, with a flow the pressure alone; NULL: steps make them */
+  PetscErrorCode (*fields)(Scheme);
+  /* w = the velocity of a state that has a flow; the flow of w; SUM u^2 over the faces of the state's velocity, which
+     is not made */
+  PetscErrorCode (*velocity)(Scheme, const State *, Vec w);
+  PetscErrorCode (*flow)(Scheme, Vec w, Vec flow);
+  PetscErrorCode (*square)(Scheme, PetscReal *square);
+  /* what solvers keep from step to step, as SchemeMemorySize numbers, the same on every rank, and made again from them;
+     NULL: they keep nothing */
+  PetscErrorCode (*remember)(Scheme, PetscReal memory[]);
+  PetscErrorCode (*recall)(Scheme, const PetscReal memory[]);
+  PetscErrorCode (*view)(Scheme, PetscViewer);
+  PetscErrorCode (*options)(Scheme, FILE *);                 /* write the solvers' settings in force as options */
+  PetscErrorCode (*ksp)(Scheme, const char prefix[], KSP *); /* borrowed; NULL when there is none of this prefix */
+  PetscErrorCode (*destroy)(Scheme);
+} SchemeOps;
+
+struct _p_Scheme {
+  char type[OPTION_MAX_NAME];
+  Scene scene;       /* borrowed */
+  Coupling coupling; /* borrowed; what is below is its own */
+  Fluid fluid;
+  Membrane membrane; /* of no vesicle when the scene has none */
+  StepPolicy policy;
+  StepPlan plan;
+  State state;
+  State old[SCHEME_PAST]; /* the states before it, the newest first, of schemes that go on from several; else empty */
+  PetscInt past;          /* how many of them are known */
+  Snapshot before;        /* what SchemeStep goes back to when a step fails */
+  Warnings warnings;
+  PetscReal reserve; /* SchemeStep's, of the step under way (seconds) */
+  StepReport report;
+  Vec background;   /* marker vector: what the markers' velocity has besides the solved part: u_inf, zero in the total
+                       form */
+  Vec g;            /* edge vector: S^T u = g, minus the background's stretching, Dm u_inf/h^2 */
+  Vec work_tension; /* edge vector, for use inside one function */
+  PetscScalar *work_all; /* [2(M + W)] likewise, of all curves */
+  void *data;            /* the scheme's own */
+  SchemeOps ops;
+};
+
+/* SchemePlace - put everything that a solve stands on at the markers X, with label speeds treading[vesicles] or NULL
+   (CouplingPlace), and the background of time t there: background = u_inf(X), g = -Dm background/h^2. placed is false
+   with report.failure when a marker is too close to a wall or the flow has no value. Collective. */
+PETSC_EXTERN PetscErrorCode SchemePlace(Scheme scheme, PetscReal a0, Vec X, const PetscReal treading[], PetscReal t,
+                                        PetscBool *placed);
+
+/* SchemeBackground - the background flow's velocity at the markers X at time t, zero in the total form, where it is in
+   w; report.failure where a flow of the caller's has none. Collective. */
+PETSC_EXTERN PetscErrorCode SchemeBackground(Scheme scheme, Vec X, PetscReal t);
+
+/* SchemeMarkerVelocity - U = background + V of the solved part V at the coupling's markers; measures
+   report.surface_div_max on the way. U may be V. Collective. */
+PETSC_EXTERN PetscErrorCode SchemeMarkerVelocity(Scheme scheme, Vec V, Vec U);
+
+/* SchemeMeasureDivergence - fill in report.div_max of a solved velocity, whose divergence is to be `expected` (NULL:
+   zero). Collective. */
+PETSC_EXTERN PetscErrorCode SchemeMeasureDivergence(Scheme scheme, Vec w, Vec expected);
+
+/* SchemeKeep - copy the state into scheme->before. SchemeReturn - put back what was kept before the step; advanced: the
+   new state has taken the old one's place since. Collective. */
+PETSC_EXTERN PetscErrorCode SchemeKeep(Scheme scheme);
+PETSC_EXTERN PetscErrorCode SchemeReturn(Scheme scheme, PetscBool advanced);
+
+/* SchemeSolverFailed - record a failed solve: prefix, step, time, residual. Not collective. */
+PETSC_EXTERN PetscErrorCode SchemeSolverFailed(Scheme scheme, const char prefix[], KSPConvergedReason why, PetscInt its,
+                                               PetscReal residual);
+
+/* SchemeCurves - scheme->work_all: the vesicles' markers X, then the obstacles at time t as contacts look at them
+   (BodiesSee).
+   SchemeNamePair - two bodies in words, by their places: "vesicles 1 and 2", "vesicle 1 and obstacle 2"; `same` with
+   the number of one that is both. The first is Collective. */
+PETSC_EXTERN PetscErrorCode SchemeCurves(Scheme scheme, PetscReal t, Vec X);
+PETSC_EXTERN PetscErrorCode SchemeNamePair(Scheme scheme, PetscInt v, PetscInt w, const char same[], size_t length,
+                                           char text[]);
+
+/* SchemePeriods - the box's length in x and y (length), 0 where there are walls. SchemeIsSmooth - whether membranes are
+   curves by their markers, not polygons. Not collective. */
+PETSC_EXTERN void SchemePeriods(Scheme scheme, PetscReal period[2]);
+PETSC_EXTERN PetscBool SchemeIsSmooth(Scheme scheme);
+
+/* SchemeFields - make the velocity and the pressure of the state, w and p, where the step has not: it needs neither on
+   the grid where fluid/stream.h gives the velocity (docs/membrane.md, One step). SchemeVelocity - w alone, if there is
+   a cheaper way. To be called before they are read. Collective. */
+PETSC_EXTERN PetscErrorCode SchemeFields(Scheme scheme);
+PETSC_EXTERN PetscErrorCode SchemeVelocity(Scheme scheme);
+
+/* SchemeAdvise - step, time and what to try, behind what is wrong in report.failure. Not collective. */
+PETSC_EXTERN PetscErrorCode SchemeAdvise(Scheme scheme, const char advice[]);
+
+/* SchemeWarn - a warning on rank 0's output, one line, and among those of summary.json. Every rank gives the same text.
+   Collective. */
+PETSC_EXTERN PetscErrorCode SchemeWarn(Scheme scheme, const char format[], ...) PETSC_ATTRIBUTE_FORMAT(2, 3);
+
+/* SchemeCreate_Coupled, SchemeCreate_Split, SchemeCreate_Penalty - the schemes, as SchemeRegister takes them: each puts
+   its operations into a scheme that has none. Collective. */
+PETSC_EXTERN PetscErrorCode SchemeCreate_Coupled(Scheme);
+PETSC_EXTERN PetscErrorCode SchemeCreate_Split(Scheme);
+PETSC_EXTERN PetscErrorCode SchemeCreate_Penalty(Scheme);
