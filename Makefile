@@ -57,7 +57,8 @@ OBJECTS := $(SOURCES:src/%.c=$(BUILD)/%.o)
 CODE := $(filter-out $(BUILD)/base/version.o,$(OBJECTS))
 LIBRARY := $(LIBDIR)/libpetves.so
 BENCHES := $(patsubst bench/%.c,$(BUILD)/bench/%,$(wildcard bench/bench_*.c))
-TESTS := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/test_*.c) tests/scenes.c)
+TEST_SOURCES := $(wildcard tests/unit/*/test_*.c) tests/support/scenes.c
+TESTS := $(patsubst %.c,$(BUILD)/tests/%,$(notdir $(TEST_SOURCES)))
 
 # Open MPI: run as root, and on more ranks than cores.
 export OMPI_ALLOW_RUN_AS_ROOT := 1
@@ -104,13 +105,14 @@ $(BIN)/petves: $(BUILD)/main.o $(LIBRARY)
 	@mkdir -p $(@D)
 	$(CC) $(OPTIMISE) -o $@ $< -Wl,--push-state,--no-as-needed $(FIRST) -Wl,--pop-state -L$(LIBDIR) -lpetves -Wl,-rpath,'$$ORIGIN/../$(LIBDIR)' $(LIBS)
 
-$(BUILD)/tests/%: tests/%.c $(wildcard tests/*.h) $(CODE) | $(LIBRARY)
+vpath %.c $(sort $(dir $(TEST_SOURCES)))
+$(BUILD)/tests/%: %.c $(wildcard tests/support/*.h) $(CODE) | $(LIBRARY)
 	@mkdir -p $(@D)
-	$(CC) $(CFLAGS) -Itests -o $@ $< -L$(LIBDIR) -lpetves -Wl,-rpath,$(CURDIR)/$(LIBDIR) $(LIBS)
+	$(CC) $(CFLAGS) -Itests/support -o $@ $< -L$(LIBDIR) -lpetves -Wl,-rpath,$(CURDIR)/$(LIBDIR) $(LIBS)
 
-$(BUILD)/bench/%: bench/%.c bench/bench.h $(wildcard tests/*.h) $(CODE) | $(LIBRARY)
+$(BUILD)/bench/%: bench/%.c bench/bench.h $(wildcard tests/support/*.h) $(CODE) | $(LIBRARY)
 	@mkdir -p $(@D)
-	$(CC) $(CFLAGS) -Itests -Ibench -o $@ $< -L$(LIBDIR) -lpetves -Wl,-rpath,$(CURDIR)/$(LIBDIR) $(LIBS)
+	$(CC) $(CFLAGS) -Itests/support -Ibench -o $@ $< -L$(LIBDIR) -lpetves -Wl,-rpath,$(CURDIR)/$(LIBDIR) $(LIBS)
 
 tests: $(TESTS) $(BENCHES)
 benches: $(BENCHES)
@@ -185,14 +187,14 @@ unseen: deps ## -scheme_auto on scenes it was not calibrated by: docs/speed_accu
 
 fuzz: test-deps ## options, files and environments at random, then scenes mirrored, moved, in other units (SEED=1 CASES=2000 SCENES=200)
 	@$(MAKE) --no-print-directory all
-	PETVES=$(CURDIR)/$(BIN)/petves PYTHONPATH=python:. $(PYTHON) tests/fuzz.py --cases $(or $(CASES),2000) --seed $(or $(SEED),1) \
+	PETVES=$(CURDIR)/$(BIN)/petves PYTHONPATH=python:.:tests/support $(PYTHON) tests/robustness/fuzz.py --cases $(or $(CASES),2000) --seed $(or $(SEED),1) \
 	  --ranks $(or $(FUZZ_RANKS),1 1 1 2)
-	PETVES=$(CURDIR)/$(BIN)/petves PYTHONPATH=python:. $(PYTHON) tests/metamorphic.py --scenes $(or $(SCENES),200) --seed $(or $(SEED),1)
+	PETVES=$(CURDIR)/$(BIN)/petves PYTHONPATH=python:.:tests/support $(PYTHON) tests/robustness/metamorphic.py --scenes $(or $(SCENES),200) --seed $(or $(SEED),1)
 
 memcheck: test-deps ## every kind of scene under valgrind's memcheck, on 1 and 2 ranks (minutes; SANITIZE=1: the sanitizers instead)
 	@$(MAKE) --no-print-directory all tests
 	PETVES=$(CURDIR)/$(BIN)/petves PETVES_TESTS=$(CURDIR)/$(BUILD)/tests PYTHONPATH=python:. SANITIZE=$(SANITIZE) MEMCHECK=1 \
-	  $(PYTHON) -m pytest -p no:cacheprovider -q tests/test_valgrind.py
+	  $(PYTHON) -m pytest -p no:cacheprovider -q tests/robustness/test_valgrind.py
 
 docs: ## the pages of docs/ as a site: build/docs/index.html
 	$(call install_packages,mkdocs)
@@ -234,7 +236,7 @@ uninstall: ## remove what make install has put under PREFIX
 arch: ## print which processor the code is built for (make ARCH=... takes another)
 	@echo "$(FOR)"
 
-C_FILES = $(wildcard src/*.c src/*/*.c src/*/*.h include/*.h tests/*.c tests/*.h bench/*.c bench/*.h)
+C_FILES = $(wildcard src/*.c src/*/*.c src/*/*.h include/*.h tests/unit/*/*.c tests/support/*.[ch] bench/*.c bench/*.h)
 format: test-deps ## format C and Python
 	clang-format -i $(C_FILES)
 	black -q -l 120 python studies tests bench

@@ -2,7 +2,7 @@
 #include "scene/auto.h"
 
 /* By wanted error: the settings, and the worst error that each of them leaves by itself over the scenes of the
-   calibration (tests/test_auto.py compares with the table). */
+   calibration (tests/program/test_auto.py compares with the table). */
 static const struct {
   PetscReal wanted;
   const char *adapt_tol;

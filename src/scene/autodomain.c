@@ -3,7 +3,7 @@
 #include "scene/kinds.h"
 
 /* Error of a vesicle in walls or periods over (R0/W)^2, W from its middle to a side of the box, against unbounded
-   fluid, the worst of the calibration (tests/test_auto.py compares with the table). */
+   fluid, the worst of the calibration (tests/program/test_auto.py compares with the table). */
 #define OF_IMAGES 1.9
 #define MOST_BOX 1024 /* cells across, of a box that goes by them */
 

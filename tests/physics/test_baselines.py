@@ -1,0 +1,139 @@
+"""The baseline schemes: penalty (Kim and Lai 2010), and split with explicit bending."""
+
+import re
+
+import numpy as np
+import pytest
+from harness import COLUMNS, run_petves
+from restarts import frames
+
+pytestmark = pytest.mark.xdist_group("baselines")  # its tests share runs
+
+SCENE = "-domain_cells 32,32 -vesicle_angle 20 -flow_type shear"
+H = 2 / 32
+END = 0.125
+TENSION = "-tension_ksp_rtol 1e-12"
+BOTH = f"{TENSION} -bending_ksp_rtol 1e-12"
+
+#: Bounds of docs/split.md with ib6, nu = 1.
+SPRINGS = lambda dt: 50 * H / dt + 100 * H**3 / dt**2  # noqa: E731
+BENDING = lambda dt: 43 * H**3 / dt + 45 * H**5 / dt**2  # noqa: E731
+
+
+def markers(folder, options: str) -> np.ndarray:
+    """Markers at the end of a run with the paper's membrane."""
+    run = run_petves(folder, f"{SCENE} -time_end {END} -output_every {END} {options}")
+    return frames(run.folder)["vesicle/markers"][-1]
+
+
+@pytest.fixture(scope="module")
+def unsplit(tmp_path_factory):
+    """The coupled scheme at a fine step: what every scheme tends to on this grid."""
+    options = f"-scheme_type coupled -scheme_order 2 -time_step {END / 64} -coupled_ksp_rtol 1e-10"
+    return markers(tmp_path_factory.mktemp("unsplit"), options)
+
+
+def test_penalty_tends_to_the_unsplit_scheme_with_the_step(unsplit, tmp_path):
+    """With its default springs, which stiffen at least as 1/dt: first order or better."""
+    steps = (32, 64, 128, 256)
+    error = [np.abs(markers(tmp_path / f"{n}", f"-scheme_type penalty -time_step {END / n}") - unsplit) for n in steps]
+    error = np.array([e.max() for e in error])
+    print(f"penalty against coupled, dt = END/{steps}: {error}")
+    assert (error[:-1] / error[1:] > 1.9).all()
+    assert error[-1] < 1e-3 * H
+
+
+def test_penalty_tends_to_the_unsplit_scheme_with_the_springs(unsplit, tmp_path):
+    """What they stretch goes as 1/sigma_0 while the error of the step, of the size of the last one above, is small."""
+    stiffness = (100, 400, 1600)
+    options = f"-scheme_type penalty -time_step {END / 1024} -penalty_stiffness"
+    error = [np.abs(markers(tmp_path / f"{k}", f"{options} {k}") - unsplit).max() for k in stiffness]
+    print(f"penalty against coupled, sigma_0 = {stiffness}: {error}")
+    assert error[0] > 2.5 * error[1] > 2.5**2 * error[2]
+
+
+def test_explicit_bending_tends_to_implicit(tmp_path):
+    """The difference is of first order in the step."""
+    split, error = "-scheme_type split -vesicle_bending 0.1", []
+    for n in (32, 64, 128):
+        implicit = markers(tmp_path / f"implicit{n}", f"{split} -time_step {END / n} {BOTH}")
+        explicit = markers(
+            tmp_path / f"explicit{n}", f"{split} -time_step {END / n} {TENSION} -scheme_bending explicit"
+        )
+        error.append(np.abs(implicit - explicit).max())
+    ratios = np.array(error[:-1]) / error[1:]
+    print(f"explicit against implicit bending: {error}")
+    assert ((ratios > 1.8) & (ratios < 2.3)).all()
+
+
+@pytest.mark.parametrize("dt", [0.1 * H**2, 10 * H**2], ids=["inertial", "viscous"])
+@pytest.mark.parametrize("scheme", ["split", "penalty"])
+def test_explicit_bending_has_a_bound(scheme, dt, tmp_path):
+    """150 steps at rest: with half the stiffness of the bound bending energy is never above its first value; with half as
+    much again as the bound the run is stopped."""
+    options = f"-domain_cells 32,32 -vesicle_angle 20 -scheme_type {scheme} -scheme_bending explicit -time_step {dt} "
+    options += f"-time_end {150 * dt} -checkpoint_every 0"
+    below = run_petves(tmp_path / "below", f"{options} -vesicle_bending {0.5 * BENDING(dt)}").series
+    assert len(below["step"]) == 151 and below["energy_bending"].max() == below["energy_bending"][0]
+    above = run_petves(tmp_path / "above", f"{options} -vesicle_bending {1.5 * BENDING(dt)}", good=False)
+    assert above.status == 2 and len(above.errors) == 1 and "vesicle 1: " in above.errors[0]
+
+
+@pytest.mark.parametrize("dt", [0.1 * H**2, 10 * H**2], ids=["inertial", "viscous"])
+def test_springs_have_a_bound(dt, tmp_path):
+    """150 steps in a weak shear: edges stay equal under the bound, half of which is the default."""
+    options = f"{SCENE} -flow_rate {0.2 / (150 * dt)} -scheme_type penalty -vesicle_bending 0 -time_step {dt} "
+    options += f"-time_end {150 * dt} -checkpoint_every 0 -view"
+    default = run_petves(tmp_path / "default", options)
+    stiffness = float(re.search(r"sigma_0 = (\S+)", default.stdout)[1])
+    assert abs(stiffness / SPRINGS(dt) - 0.5) < 1e-4
+    below = run_petves(tmp_path / "below", f"{options} -penalty_stiffness {0.8 * SPRINGS(dt)}")
+    for run in (default, below):
+        assert run.series["edge_ratio"].max() < 1.05
+    above = run_petves(tmp_path / "above", f"{options} -penalty_stiffness {1.3 * SPRINGS(dt)}", good=False)
+    assert above.status == 2 and "edge ratio" in above.errors[0] or above.series["edge_ratio"].max() > 1.5
+
+
+def test_restart_with_another_step_keeps_the_springs(tmp_path):
+    """The default follows the step, so it has to be named."""
+    options = f"{SCENE} -scheme_type penalty -checkpoint_every 0"
+    first = run_petves(tmp_path / "first", f"{options} -time_step 0.004 -time_end 0.04 -view")
+    options += f" -restart {first.folder}/checkpoint.h5 -time_step 0.002 -time_end 0.06"
+    refused = run_petves(tmp_path / "refused", options, good=False)
+    assert refused.status == 1 and "-penalty_stiffness" in refused.errors[0]
+    value = re.search(r"-penalty_stiffness (\S+)", (first.folder / "resolved.opts").read_text())[1]
+    assert len(run_petves(tmp_path / "good", f"{options} -penalty_stiffness {value}").series["step"]) == 11
+
+
+@pytest.mark.parametrize("flow", ["shear -domain_bc_x periodic", "poiseuille -flow_half_width 1"])
+def test_penalty_on_ranks(flow, tmp_path):
+    """1, 2 and 4 ranks: every column but wall to 1e-10; three scalar solves a step and none for the membrane."""
+    options = (
+        f"-domain_cells 40,40 -vesicle_angle 20 -flow_type {flow} -scheme_type penalty -time_step 0.01 -time_end 0.2"
+    )
+    one, *others = (run_petves(tmp_path / f"{n}", options, n).series for n in (1, 2, 4))
+    assert len(one["step"]) == 21
+    assert (one["nsolve"][1:] == 3).all() and (one["tension_its"] + one["bending_its"] + one["coupled_its"] == 0).all()
+    for other in others:
+        for name in set(COLUMNS) - {"wall"}:
+            np.testing.assert_allclose(other[name], one[name], rtol=0, atol=1e-10, err_msg=name)
+
+
+def test_penalty_in_the_total_form(tmp_path):
+    """Walls that move with the background flow, as far from the vesicle as the disturbance form's are."""
+    series = {
+        form: run_petves(
+            tmp_path / form,
+            f"{SCENE} -flow_form {form} -scheme_type penalty -time_step {END / 64} -time_end {END} -fluid_viscosity 0.5",
+        ).series
+        for form in ("disturbance", "total")
+    }
+    for name in ("area", "length", "inclination", "energy_bending", "energy_kinetic", "edge_ratio"):
+        np.testing.assert_allclose(series["total"][name], series["disturbance"][name], rtol=0, atol=1e-9, err_msg=name)
+    assert series["total"]["div_max"].max() < 1e-10
+
+
+def test_penalty_without_vesicle_is_the_projection_step(tmp_path):
+    """No springs, nothing to move: three solves a step, and fluid at rest stays there."""
+    run = run_petves(tmp_path / "run", "-domain_cells 16,16 -vesicle_shape none -scheme_type penalty -time_end 0.02")
+    assert (run.series["nsolve"][1:] == 3).all() and (run.series["energy_kinetic"] == 0).all()

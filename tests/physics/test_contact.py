@@ -1,0 +1,59 @@
+"""Repulsion and adhesion between membranes in whole runs."""
+
+import numpy as np
+import pytest
+from harness import run_petves
+
+BASE = "-scheme_type {} -delta_type cbs54 -coupling_near_field exact -membrane_derivative spectral -fluid_inertia none "
+BASE += (
+    "-scheme_area_target true -vesicle_count 2 -vesicle_semi_axes 0.4,0.8 -vesicle_bending 0.05 -vesicle_markers 21 "
+)
+BASE += "-vesicle_allow_close_markers -domain_bc_x periodic -domain_box -1.35,1.35,-1.35,1.35 -domain_cells 24,24 "
+BASE += "-coupling_box_part false "
+#: Near one another, over the seam, and near a wall.
+TOUCHING = BASE + "-vesicle_center -0.45,0,0.45,0.3 -contact_repulsion 30 -contact_repulsion_range 0.3 "
+STICKY = "-contact_adhesion 1 -contact_adhesion_range 0.2 "
+
+
+def test_coupled_is_direct(tmp_path):
+    """The springs are in both matrices, the pull in both right-hand sides."""
+    options = TOUCHING + STICKY + "-flow_type shear -time_step 0.02 -time_end 0.06"
+    runs = [run_petves(tmp_path / name, options.format(name), ranks) for name, ranks in (("direct", 2), ("coupled", 1))]
+    exact = run_petves(tmp_path / "exact", options.format("coupled") + " -coupled_ksp_rtol 1e-12", 3)
+    assert (runs[0].series["energy_contact"] != 0).all()
+    for name in ("energy_bending", "energy_contact", "gap", "center_x_1", "center_y_2"):
+        one, other = runs[0].series[name], exact.series[name]
+        np.testing.assert_allclose(other, one, rtol=0, atol=1e-9 * max(np.abs(one).max(), 1), err_msg=name)
+        np.testing.assert_allclose(runs[1].series[name], one, rtol=0, atol=1e-5 * max(np.abs(one).max(), 1))
+
+
+@pytest.mark.parametrize("order", [1, 3])
+def test_energy_falls_at_rest(order, tmp_path):
+    """Stiff springs in long steps: bending and contact together lose energy, and the membranes part."""
+    options = TOUCHING.replace("repulsion 30", "repulsion 3000") + f"-scheme_order {order} -time_step 0.1 -time_end 0.5"
+    series = run_petves(tmp_path / "run", options.format("coupled")).series
+    energy = series["energy_bending"] + series["energy_contact"]
+    assert series["energy_contact"][0] > 10 * series["energy_bending"][0]
+    assert (np.diff(energy) < 0).all() and series["energy_contact"][-1] < 0.1 * series["energy_contact"][0]
+    assert series["gap"][1:].min() > 2 * series["gap"][0]
+
+
+def test_sticking_membranes(tmp_path):
+    """Two vesicles in the band give energy of contact away, and their centres come closer than without adhesion."""
+    options = BASE + "-vesicle_center -0.45,0,0.45,0 -contact_repulsion 30 -contact_repulsion_range 0.06 "
+    options = options.replace("-domain_bc_x periodic ", "").replace("1.35", "2.7").format("coupled")
+    options += "-time_step 0.05 -time_end 0.2 "
+    series = run_petves(tmp_path / "run", options + STICKY).series
+    free = run_petves(tmp_path / "free", options).series
+    assert series["energy_contact"][0] < 0 and (np.diff(series["energy_contact"]) < 0).all()
+    apart, freely = (s["center_x_2"] - s["center_x_1"] for s in (series, free))
+    assert apart[-1] < freely[-1] - 1e-3 and series["gap"].min() > 0.06, apart
+
+
+def test_restart_is_the_straight_run(tmp_path):
+    options = (TOUCHING + STICKY).format("coupled") + "-flow_type shear -time_step 0.02 -time_end {}"
+    whole = run_petves(tmp_path / "whole", options.format(0.08)).series
+    run_petves(tmp_path / "part", options.format(0.04))
+    part = run_petves(tmp_path / "part", options.format(0.08) + f" -restart {tmp_path}/part/checkpoint.h5", 2).series
+    for name in set(whole) - {"wall"}:
+        np.testing.assert_allclose(part[name], whole[name], rtol=1e-9, atol=1e-9, err_msg=name)

@@ -1,0 +1,229 @@
+"""Scheme coupled as runs: it is the direct solution, on any number of ranks, for any number of vesicles; what is wrong
+with its options, or with a step, is said."""
+
+import re
+
+import numpy as np
+import pytest
+from harness import COLUMNS, run_petves
+from refusals import SMALL, leaves_files, stops_with
+from restarts import last_state, same_state
+
+pytestmark = pytest.mark.xdist_group("coupled_runs")  # its tests share runs
+
+TIGHT = "-scheme_type coupled -coupled_ksp_rtol 1e-12"
+DIRECT = "-scheme_type direct"
+
+BOXES = {
+    "walls": "-domain_cells 48,48",
+    "channel": "-domain_cells 60,48 -domain_box 0,2.5,-1,1 -domain_bc_x periodic -vesicle_center 2.4,0.1",
+    "periodic": "-domain_cells 48,48 -domain_bc_x periodic -domain_bc_y periodic -vesicle_center 0,0.9",
+}
+FLOWS = {"quiescent": "", "shear": "-flow_type shear -flow_rate 2"}
+
+#: Two vesicles whose centres are 2 R0 apart, side by side.
+TWO = "-vesicle_count 2 -vesicle_semi_axes 0.2,0.4"
+
+
+@pytest.mark.parametrize("flow", FLOWS)
+@pytest.mark.parametrize("box", BOXES)
+def test_coupled_is_the_direct_solution(box, flow, tmp_path):
+    """FGMRES to 1e-12 against sparse LU: markers, velocity and tension to 1e-9 after 4 steps; both orders, with and
+    without bending; the LU on 1 rank against FGMRES on 2."""
+    for order in (1, 2):
+        for bending in (0.01, 0):
+            if bending == 0 and flow == "quiescent":
+                continue  # nothing moves
+            options = f"{BOXES[box]} {FLOWS[flow]} -vesicle_angle 20 -vesicle_bending {bending} -scheme_order {order}"
+            options += " -time_step 0.02 -time_end 0.08"
+            name = f"{order}_{bending}"
+            direct = run_petves(tmp_path / f"d{name}", f"{options} {DIRECT}", 1)
+            coupled = run_petves(tmp_path / f"c{name}", f"{options} {TIGHT}", 2)
+            assert coupled.series["step"][-1] == 4 and coupled.series["time"][-1] == pytest.approx(0.08)
+            assert coupled.series["coupled_its"][1:].min() > 0 and not direct.series["coupled_its"].any()
+            got, want = last_state(coupled.folder), last_state(direct.folder)
+            same_state(want, got, 1e-9)
+
+
+@pytest.mark.parametrize("membrane", ["", "-delta_type cbs54 -membrane_derivative spectral -coupling_near_field exact"])
+def test_total_form_is_the_disturbance_form(membrane, tmp_path):
+    """Shear with moving walls against u - u_inf, 20 steps with the length target: every column but wall to 1e-8."""
+    options = f"-scheme_type coupled {membrane} -domain_cells 48,48 -vesicle_angle 25 -flow_type shear {TIGHT} "
+    options += "-time_step 0.02 -time_end 0.4"
+    one = run_petves(tmp_path / "disturbance", f"{options} -flow_form disturbance").series
+    two = run_petves(tmp_path / "total", f"{options} -flow_form total").series
+    for name in set(one) - {"wall", "coupled_its", "nsolve"}:
+        np.testing.assert_allclose(two[name], one[name], rtol=0, atol=1e-8, err_msg=name)
+    assert abs(two["length_error"][-1]) < 1e-5
+
+
+def test_direct_on_two_ranks(tmp_path):
+    """The distributed LU, two vesicles, moving walls (-flow_form total)."""
+    options = f"-domain_cells 49,48 -domain_box -1,1,-1,0.95918367346938771 {TWO} -vesicle_center -0.35,0,0.45,0.1 "
+    options += "-flow_type shear -flow_form total -time_step 0.02 -time_end 0.06"
+    one = run_petves(tmp_path / "one", f"{options} {TIGHT}", 1)
+    for ranks in (1, 2):
+        direct = run_petves(tmp_path / f"direct{ranks}", f"{options} {DIRECT}", ranks)
+        same_state(last_state(one.folder), last_state(direct.folder), 1e-9)
+
+
+#: Scenes and their steps; two vesicles on four ranks spend most of the time waiting for one another.
+SCENES = {
+    "walls": ("-domain_cells 48,48 -vesicle_angle 20", 50),
+    "channel": (BOXES["channel"] + " -flow_type poiseuille -flow_half_width 1 -vesicle_semi_axes 0.3,0.45", 50),
+    "two_vesicles": (f"-domain_cells 60,60 -flow_type shear {TWO} -vesicle_center -0.35,0,0.35,0.05", 20),
+}
+
+
+@pytest.mark.parametrize("scene", SCENES)
+def test_ranks_agree(scene, cached_run):
+    """1, 2 and 4 ranks over 20 or 50 steps at rtol 1e-12: every physical column and the last state to 1e-9."""
+    words, steps = SCENES[scene]
+    options = f"{words} -time_step 0.02 -time_end {0.02 * steps:g} {TIGHT}"
+    one = cached_run(options, 1)
+    assert len(one.series["step"]) == steps + 1
+    for ranks in (2, 4):
+        other = cached_run(options, ranks)
+        for name in set(one.series) - {"wall", "coupled_its", "nsolve"}:
+            np.testing.assert_allclose(other.series[name], one.series[name], rtol=0, atol=1e-9, err_msg=name)
+        same_state(last_state(one.folder), last_state(other.folder), 1e-9)
+        assert np.abs(other.series["coupled_its"] - one.series["coupled_its"]).max() <= 1
+    assert one.series["div_max"].max() < 1e-9 and one.series["surface_div_max"].max() < 1e-9
+
+
+def test_two_vesicles_are_two(tmp_path):
+    """Columns of each, totals, mirror symmetry; split takes them too, and a file with two curves is the same scene."""
+    options = "-domain_cells 64,64 -flow_type shear -time_step 0.01 -time_end 0.05"
+    pair = f"{TWO} -vesicle_center -0.375,0,0.375,0"
+    t = 2 * np.pi * np.arange(200) / 200
+    curve = [f"{0.2 * np.cos(a):.15g} {0.4 * np.sin(a):.15g}" for a in t]
+    (tmp_path / "two.txt").write_text("\n".join(["# first", *curve, "", "# second", *curve]) + "\n")
+    for scheme in ("-scheme_type coupled", "-scheme_type split"):
+        run = run_petves(tmp_path / scheme[-5:], f"{options} {pair} {scheme}", 2)
+        series, state = run.series, last_state(run.folder)
+        half = len(state["vesicle/tension"][0]) // 2
+        np.testing.assert_allclose(series["area"], series["area_1"] + series["area_2"], rtol=1e-12)
+        np.testing.assert_allclose(series["length"], series["length_1"] + series["length_2"], rtol=1e-12)
+        np.testing.assert_allclose(series["center_x_1"], -series["center_x_2"], rtol=0, atol=1e-5)
+        np.testing.assert_allclose(series["inclination_1"], series["inclination_2"], rtol=0, atol=1e-4)
+        # the second vesicle is the first turned by half a turn, which moves marker k to k + M/2
+        turned = -np.roll(state["vesicle/markers"][0, half:], half // 2, axis=0)
+        np.testing.assert_allclose(turned, state["vesicle/markers"][0, :half], rtol=0, atol=1e-5)
+        file = f"-vesicle_shape file -vesicle_file {tmp_path}/two.txt -vesicle_center -0.375,0,0.375,0"
+        same = run_petves(tmp_path / f"file{scheme[-5:]}", f"{options} {file} {scheme}", 2)
+        same_state(state, last_state(same.folder), 1e-4, ("vesicle/markers",))
+        assert (
+            "vesicle 2"
+            in run_petves(tmp_path / "view", f"{options} {file} {scheme} -view -time_end 0 -output_overwrite", 1).stdout
+        )
+
+
+def test_far_vesicles_do_as_one(tmp_path):
+    """A second vesicle a long way down the channel changes nothing: the disturbance decays in 3 half widths."""
+    box = "-domain_cells 240,40 -domain_box 0,12,-1,1 -domain_bc_x periodic -time_step 0.02 -time_end 0.1"
+    one = run_petves(tmp_path / "one", f"{box} -vesicle_center 3,0 {TIGHT}")
+    two = run_petves(tmp_path / "two", f"{box} -vesicle_count 2 -vesicle_center 3,0,9,0 {TIGHT}")
+    a, b = last_state(one.folder)["vesicle/markers"][0], last_state(two.folder)["vesicle/markers"][0]
+    np.testing.assert_allclose(b[: len(a)], a, rtol=0, atol=1e-6)
+    np.testing.assert_allclose(b[len(a) :] - [6, 0], a, rtol=0, atol=1e-6)
+
+
+#: Options, ranks, and what the one line must hold.
+MISTAKES = {
+    "split_order": ("-scheme_type split -scheme_order 2", 1, ["-scheme_order 2", "split", "allowed: 1"]),
+    "split_adapts": ("-scheme_type split -time_adapt error", 2, ["-time_adapt error", "split", "coupled or direct"]),
+    "order_1_adapts": (
+        "-scheme_type coupled -scheme_order 1 -time_adapt error",
+        1,
+        ["-time_adapt error", "order 1", "-scheme_order 2"],
+    ),
+    "adapt_tol": ("-scheme_type coupled -time_adapt_tol 0", 1, ["-time_adapt_tol 0", ">0"]),
+    "no_mobility": ("-scheme_type coupled -mobility_type dense", 1, ["-mobility_type dense", "table|ilu|none"]),
+    "no_startup": ("-scheme_type coupled -scheme_startup bdf", 1, ["-scheme_startup bdf", "euler|graded"]),
+    "centres": (f"{TWO} -vesicle_center 0.3,0", 2, ["-vesicle_center", "2 numbers", "-vesicle_count 2"]),
+    "axes": (
+        "-vesicle_count 2 -vesicle_center -.4,0,.4,0 -vesicle_semi_axes 1,2,3",
+        1,
+        ["-vesicle_semi_axes", "3 num"],
+    ),
+    "angles": (f"{TWO} -vesicle_center -.4,0,.4,0 -vesicle_angle 1,2,3", 1, ["-vesicle_angle", "3 numbers"]),
+    "areas": (
+        "-vesicle_count 3 -vesicle_center -.4,0,.4,0,0,0 -vesicle_area 1,1 -vesicle_reduced_area .7",
+        1,
+        ["-vesicle_area", "2 numbers", "-vesicle_count 3"],
+    ),
+    "no_vesicles": ("-vesicle_count 0", 1, ["-vesicle_count 0", ">=1"]),
+    "overlap": (f"{TWO} -vesicle_center -0.1,0,0.1,0", 2, ["-vesicle_center", "vesicles 1 and 2", "overlap"]),
+    "inside": ("-vesicle_count 2 -vesicle_center 0,0,0,0 -vesicle_semi_axes .5,.5,.2,.2", 1, ["overlap"]),
+    "second_near_wall": (f"{TWO} -vesicle_center -0.4,0,0.7,0", 1, ["vesicle 2", "wall x_max", "needs 3"]),
+    "unused_with_coupled": ("-scheme_type coupled -tension_ksp_rtol 1e-3", 1, ["-tension_ksp_rtol", "1e-3"]),
+    "unused_with_split": ("-scheme_type split -coupled_ksp_rtol 1e-3", 1, ["-coupled_ksp_rtol", "1e-3"]),
+    "bad_ksp_type": ("-scheme_type coupled -coupled_ksp_type gmress", 2, ["gmress"]),
+}
+
+
+@pytest.mark.parametrize("name", MISTAKES)
+def test_mistake_is_named(name, tmp_path):
+    options, ranks, needles = MISTAKES[name]
+    stops_with(run_petves(tmp_path / "out", f"{SMALL} {options}", ranks, good=False, timeout=60), needles)
+
+
+def test_number_of_curves_is_checked(tmp_path):
+    t = 2 * np.pi * np.arange(40) / 40
+    curve = [f"{0.3 * np.cos(a):.15g} {0.3 * np.sin(a):.15g}" for a in t]
+    (tmp_path / "c.txt").write_text("\n".join(curve + ["", ""] + curve) + "\n")
+    file = f"{SMALL} -vesicle_shape file -vesicle_file {tmp_path}/c.txt"
+    cases = {
+        "-vesicle_count 3 -vesicle_center -.4,0,.4,0": ["-vesicle_count 3", "2", "same number"],
+        "-vesicle_center 0,0,1,0,2,0": ["-vesicle_center", "6 numbers", "2"],
+        "-vesicle_center -.4,0,.4,0 -vesicle_angle 1,2,3": ["-vesicle_angle", "3 numbers"],
+        "": ["overlap"],
+    }
+    for i, (options, needles) in enumerate(cases.items()):
+        stops_with(run_petves(tmp_path / f"out{i}", f"{file} {options}", 1, good=False), needles)
+
+
+@pytest.mark.parametrize("mobility", ["ilu", "none"])
+def test_other_preconditioners_reach_the_same(mobility, tmp_path):
+    """Quiescent, three steps at dt = h: ilu and none are slower, and end where the table does."""
+    options = f"-domain_cells 32,32 -time_step 0.0625 -time_end 0.125 {TIGHT} -coupled_ksp_max_it 1000"
+    options += " -scheme_startup euler -coupled_ksp_gmres_restart 300"
+    table = run_petves(tmp_path / "table", options)
+    other = run_petves(tmp_path / "other", f"{options} -mobility_type {mobility}", 2)
+    same_state(last_state(table.folder), last_state(other.folder), 1e-9)
+    its = other.series["coupled_its"][1:]
+    print(f"{mobility}: {its} iterations, table {table.series['coupled_its'][1:]}")
+    assert its.min() > table.series["coupled_its"][1:].max()
+
+
+@pytest.mark.parametrize("start", ["euler", "graded"])
+def test_failed_solve_stops_the_run(start, tmp_path):
+    """Prefix, step, time and residual in the message; the state left is the one before the step."""
+    options = f"{SMALL} -scheme_type coupled -coupled_ksp_max_it 1 -coupled_ksp_rtol 1e-12 -scheme_startup {start}"
+    run = run_petves(tmp_path / "out", options, ranks=2, good=False)
+    reason = r"prefix coupled_ failed in step \d+ at time [\d.e-]+: DIVERGED_ITS after 1 iterations, residual [\d.]+"
+    summary, series = leaves_files(run, reason)
+    assert int(re.search(r"in step (\d+)", summary["reason"])[1]) == series["step"][-1] + 1
+    assert float(re.search(r"at time ([\d.e-]+):", summary["reason"])[1]) > series["time"][-1]
+
+
+def test_options_of_the_solver_work(tmp_path):
+    """-coupled_ksp_type, -view and resolved.opts: another Krylov method gives the same run, and the file repeats it."""
+    options = f"{SMALL} -scheme_startup euler -coupled_ksp_rtol 1e-11 -scheme_type coupled"
+    one = run_petves(tmp_path / "one", f"{options} -view")
+    assert "fgmres" in one.stdout
+    two = run_petves(tmp_path / "two", f"{options} -coupled_ksp_type gmres -coupled_ksp_pc_side right -view")
+    assert "type: gmres" in two.stdout
+    same_state(last_state(one.folder), last_state(two.folder), 1e-8)
+    resolved = f"-options_file {one.folder}/resolved.opts -scheme_type coupled -output_dir {tmp_path}/again"
+    again = run_petves(tmp_path / "again", resolved)
+    for name in set(COLUMNS) - {"wall"}:
+        np.testing.assert_array_equal(again.series[name], one.series[name], err_msg=name)
+
+
+def test_a_run_without_vesicle_is_a_stokes_flow(tmp_path):
+    """No coupling: FGMRES still, one iteration where the Stokes solve is exact; the walls' shear stays as it is."""
+    options = "-domain_cells 32,32 -flow_type shear -flow_form total -vesicle_shape none -time_step 0.1 -time_end 0.5"
+    for extra in ("-scheme_type coupled -domain_bc_x periodic", "-scheme_type coupled", DIRECT):
+        run = run_petves(tmp_path / re.sub(r"\W", "", extra), f"{options} {extra}", 1 if extra == DIRECT else 2)
+        assert run.series["energy_kinetic"].max() < 1e-20 and run.series["div_max"].max() < 1e-9

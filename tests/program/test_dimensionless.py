@@ -1,0 +1,198 @@
+"""Flows by their dimensionless numbers, the red cell's outline, and curves of a file turned about their centroids."""
+
+import re
+import subprocess
+import sys
+
+import h5py
+import numpy as np
+import pytest
+from harness import ENVIRONMENT, PETVES, ROOT, mpirun, run_petves
+from restarts import without_wall
+
+COUPLED = "-scheme_type coupled -delta_type cbs54 -membrane_derivative spectral -coupling_near_field exact"
+SMALL = f"{COUPLED} -domain_cells 32,32 -domain_box -2,2,-2,2 -time_step 0.1 -time_end 0.1 -output_every 10"
+VIEW = re.compile(r"background flow: \w+, (?:rate|u_max) = (\S+): .* = (\S+) with R0 = (\S+), nu R0\^3/c_b = (\S+)\n")
+
+
+def options(run) -> dict[str, str]:
+    return dict(line.split(maxsplit=1) for line in (run.folder / "resolved.opts").read_text().splitlines())
+
+
+def markers(run) -> np.ndarray:
+    with h5py.File(run.folder / "run.h5") as file:
+        return file["vesicle/markers"][0]
+
+
+def spectral_measures(X: np.ndarray) -> tuple[float, float, complex]:
+    """Area, length and centroid of the trigonometric curve through markers."""
+    n = len(X)
+    k = np.fft.fftfreq(n, 1 / n)
+    fine = 8 * n
+    spectrum = np.zeros(fine, complex)
+    spectrum[k.astype(int)] = np.fft.fft(X[:, 0] + 1j * X[:, 1]) * fine / n
+    z = np.fft.ifft(spectrum)
+    dz = np.fft.ifft(spectrum * 2j * np.pi * np.fft.fftfreq(fine, 1 / fine))
+    area = np.mean((z.conj() * dz).imag) / 2
+    centroid = np.mean(z * (z.conj() * dz).imag) / 3 / area
+    return area, np.mean(np.abs(dz)), centroid
+
+
+def test_chi_is_the_rate_that_it_stands_for(tmp_path):
+    """V = 0.7, unit area: R0 = 1/sqrt(pi V), rate = chi c_b/(nu R0^3)."""
+    scene = (
+        f"{SMALL} -flow_type shear -vesicle_area 1 -vesicle_reduced_area 0.7 -fluid_viscosity 2 -vesicle_bending 0.03"
+    )
+    chi = run_petves(tmp_path / "chi", f"{scene} -flow_chi 10 -view")
+    rate = 10 * 0.03 / 2 * np.sqrt(np.pi * 0.7) ** 3
+    assert float(options(chi)["-flow_rate"]) == pytest.approx(rate, rel=1e-9)
+    shown = [float(x) for x in VIEW.search(chi.stdout).groups()]
+    assert shown == pytest.approx([rate, 10, 1 / np.sqrt(np.pi * 0.7), 10 / rate], rel=1e-5)
+    assert "-flow_chi" not in options(chi)
+    again = run_petves(tmp_path / "rate", f"{scene} -flow_rate {options(chi)['-flow_rate']}", 2)
+    first, second = chi.series, again.series
+    assert np.max(np.abs(first["inclination"] - second["inclination"])) < 1e-10
+    done = mpirun(
+        [PETVES, "-options_file", str(chi.folder / "resolved.opts"), "-output_dir", str(tmp_path / "again")], 1
+    )
+    assert done.returncode == 0, done.stderr
+    assert without_wall(tmp_path / "again" / "series.csv") == without_wall(chi.folder / "series.csv")
+
+
+@pytest.mark.parametrize(
+    "flow, power, name",
+    [("extension -flow_chi 3", 3, "-flow_rate"), ("poiseuille -flow_ca 3", 2, "-flow_peak_velocity")],
+)
+def test_numbers_go_by_the_largest_vesicle(flow, power, name, tmp_path):
+    """Circles of radius .3 and .4."""
+    two = "-vesicle_count 2 -vesicle_center -1,0,1,0 -vesicle_semi_axes 0.3,0.3,0.4,0.4 -fluid_inertia none"
+    run = run_petves(tmp_path / "run", f"{SMALL} {two} -flow_type {flow} -time_end 0 -view")
+    assert float(options(run)[name]) == pytest.approx(3 * 0.01 / 0.4**power, rel=1e-9)
+    assert float(VIEW.search(run.stdout)[2]) == pytest.approx(3, rel=1e-5)
+
+
+def test_red_cells_of_two_kinds_in_shear(tmp_path):
+    """Areas and bending by -vesicle_mixture; chi by the largest of either."""
+    scene = f"{SMALL} -domain_box -3,3,-3,3 -vesicle_shape biconcave -vesicle_count 3 -vesicle_center -1.5,0,0,0,1.5,0"
+    kinds = "-vesicle_mixture 0.7,0.3 -vesicle_area 0.5,0.8 -vesicle_bending 0.01,0.02 -vesicle_angle 90"
+    run = run_petves(tmp_path / "run", f"{scene} {kinds} -flow_type shear -flow_chi 5 -time_end 0 -view")
+    R0 = np.sqrt(0.8 / (np.pi * 0.65))
+    assert float(options(run)["-flow_rate"]) == pytest.approx(5 * 0.02 / R0**3, rel=1e-6)
+    assert float(VIEW.search(run.stdout)[2]) == pytest.approx(5, rel=1e-5)
+    with h5py.File(run.folder / "run.h5") as file:
+        start, X = file.attrs["vesicle_start"], file["vesicle/markers"][0]
+        assert list(file.attrs["vesicle_c_b"]) == [0.01, 0.02, 0.01]
+    for v, area in enumerate((0.5, 0.8, 0.5)):
+        measured, _, centroid = spectral_measures(X[start[v] : start[v + 1]])
+        assert measured == pytest.approx(area, rel=1e-6) and abs(centroid - (1.5 * v - 1.5)) < 1e-5
+
+
+def test_chi_can_be_swept(tmp_path):
+    scene = f"{SMALL} -flow_type shear -vesicle_semi_axes 0.4,0.4"
+    (tmp_path / "shared.opts").write_text(re.sub(r" (?=-[a-z])", "\n", scene) + "\n")
+    words = [
+        "sweep",
+        str(tmp_path / "s"),
+        "--options-file",
+        str(tmp_path / "shared.opts"),
+        "--vary",
+        "flow_chi",
+        "1",
+        "10",
+    ]
+    environment = {**ENVIRONMENT, "PETVES": PETVES, "PYTHONPATH": str(ROOT / "python"), "PATH": "/usr/bin:/bin"}
+    done = subprocess.run([sys.executable, "-m", "petves", *words], env=environment, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    rates = [
+        re.search(r"-flow_rate (\S+)", (tmp_path / "s" / f"flow_chi={chi}/resolved.opts").read_text())[1]
+        for chi in (1, 10)
+    ]
+    assert float(rates[1]) == pytest.approx(10 * float(rates[0]), rel=1e-12)
+
+
+@pytest.mark.parametrize("given, V", [("", 0.65), ("-vesicle_reduced_area 0.461009301", 0.461009301)])
+def test_biconcave_is_the_red_cell_s_outline(given, V, tmp_path):
+    """Area, reduced area, symmetry, and with the cell's own V the profile of Evans and Fung: .207 of its radius thick in the
+    middle, thickest, .656, at .77 of it."""
+    run = run_petves(
+        tmp_path / "run",
+        f"{SMALL} -vesicle_shape biconcave {given} -vesicle_area 0.9 -vesicle_markers 131 -vesicle_allow_close_markers -time_end 0",
+    )
+    X = markers(run)
+    area, length, centroid = spectral_measures(X)
+    assert area == pytest.approx(0.9, rel=1e-8) and 4 * np.pi * area / length**2 == pytest.approx(V, rel=1e-7)
+    assert abs(centroid) < 1e-7
+    radius = X[:, 0].max()
+    upper = X[X[:, 1] > 0]
+    upper = upper[np.argsort(upper[:, 0])]
+    middle = 2 * np.interp(0, *upper.T) / radius
+    thickest = 2 * upper[:, 1].max() / radius
+    assert middle < 0.65 * thickest, "it has dimples"
+    if given:
+        assert middle == pytest.approx(0.207, abs=1e-3) and thickest == pytest.approx(0.656, abs=1e-3)
+
+
+def test_a_file_s_curve_turns_about_its_centroid(tmp_path):
+    """An egg beside the origin, turned by 90 degrees and moved."""
+    turn = np.exp(2j * np.pi * np.arange(200) / 200)
+    egg = 0.4 * turn + 0.07 * turn**2 + (0.4 - 0.3j)
+    np.savetxt(tmp_path / "egg.txt", np.c_[egg.real, egg.imag])
+    about = spectral_measures(np.c_[egg.real, egg.imag])[2]
+    assert abs(about - (0.4 - 0.3j)) > 0.05, "its parameter's middle is another point"
+    file = f"{SMALL} -vesicle_shape file -vesicle_file {tmp_path}/egg.txt -time_end 0"
+    first = markers(run_petves(tmp_path / "still", file)) @ [1, 1j]
+    last = markers(run_petves(tmp_path / "turned", f"{file} -vesicle_angle 90 -vesicle_center 0.2,0.1")) @ [1, 1j]
+    np.testing.assert_allclose(last, 1j * (first - about) + about + (0.2 + 0.1j), rtol=0, atol=1e-6)
+    ends = [spectral_measures(np.c_[z.real, z.imag])[2] for z in (first, last)]
+    assert abs(ends[0] - about) < 1e-6 and abs(ends[1] - about - (0.2 + 0.1j)) < 1e-6
+
+
+#: In other units of time and mass: the same flow with a viscosity, a rate and a bending stiffness that go with them.
+UNITS = {
+    "quasi-steady": ("-fluid_inertia none -flow_rate 1 -time_step 0.1 -time_end 2", "-fluid_viscosity 64 -vesicle_bending 1.28"),
+    "unsteady": (
+        "-fluid_inertia unsteady -flow_rate 1 -time_step 0.1 -time_end 2",
+        "-fluid_viscosity 64 -vesicle_bending 81.92 -flow_rate 64 -time_step 0.0015625 -time_end 0.03125",
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("walls", ["", "-domain_bc_x periodic"], ids=["box", "channel"])
+@pytest.mark.parametrize("kind", UNITS)
+def test_other_units_take_the_same_iterations(kind, walls, tmp_path):
+    """The tolerance is relative to forces, and so are the rows that it is compared with."""
+    scene, other = UNITS[kind]
+    scene = f"{COUPLED} -domain_cells 48,48 -flow_type shear -vesicle_semi_axes 0.3,0.5 -vesicle_bending 0.02 {walls} {scene}"
+    one = run_petves(tmp_path / "one", scene).series
+    two = run_petves(tmp_path / "two", f"{scene} {other}").series
+    np.testing.assert_array_equal(two["coupled_its"], one["coupled_its"])
+    np.testing.assert_allclose(two["inclination"], one["inclination"], rtol=0, atol=1e-9)
+
+
+def test_curve_file_as_programs_write_it(tmp_path):
+    """The last point is the first but for rounding, and a comment is as long as it likes: the markers of the plain file."""
+    t = np.linspace(0, 2 * np.pi, 101)
+    points = np.column_stack([0.5 * np.cos(t), 0.8 * np.sin(t)])
+    assert np.any(points[-1] != points[0])
+    np.savetxt(tmp_path / "plain.txt", points[:-1], fmt="%.17g")
+    np.savetxt(tmp_path / "closed.txt", points, fmt="%.17g", header="9 " * 2000)
+    plain, closed = (
+        markers(run_petves(tmp_path / name, f"{SMALL} -vesicle_shape file -vesicle_file {tmp_path / name}.txt"))
+        for name in ("plain", "closed")
+    )
+    np.testing.assert_array_equal(plain, closed)
+
+
+@pytest.mark.parametrize("unit", [0.25, 64])
+def test_split_in_another_unit_of_length(unit, tmp_path):
+    """Cells larger than the unit too: the same run, with as many iterations."""
+    scene = (
+        "-scheme_type split -domain_cells 32,32 -domain_bc_x periodic -flow_type shear -vesicle_angle 20 -time_step 0.02 -time_end 0.1 "
+        "-domain_box -{0},{0},-{0},{0} -vesicle_semi_axes {1},{2} -fluid_viscosity {3} -vesicle_bending {4}"
+    )
+    ours, plain = (
+        run_petves(tmp_path / str(a), scene.format(2 * a, a, a / 2, a * a, 0.1 * a**5)).series for a in (unit, 1)
+    )
+    np.testing.assert_allclose(ours["inclination"], plain["inclination"], rtol=0, atol=1e-9)
+    np.testing.assert_array_equal(ours["tension_its"], plain["tension_its"])
+    np.testing.assert_array_equal(ours["bending_its"], plain["bending_its"])

@@ -1,0 +1,53 @@
+"""-time_end is reached exactly: the last steps are shortened, in the same way wherever a run was interrupted."""
+
+import shutil
+
+import h5py
+import numpy as np
+import pytest
+from harness import run_petves
+from restarts import SCHEMES, without_wall
+
+SMALL = "-domain_cells 24,24 -output_every 10"
+
+
+@pytest.mark.parametrize("name", ["split", "penalty", "order_1", "order_2", "adaptive"])
+def test_a_run_shorter_than_a_step(name, tmp_path):
+    """-time_step 0.3 -time_end 0.1 is one step of 0.1, or smaller ones where they are judged."""
+    series = run_petves(tmp_path / "run", f"{SCHEMES[name]} {SMALL} -time_step 0.3 -time_end 0.1").series
+    assert series["time"][-1] == 0.1
+    assert name == "adaptive" or series["dt"].tolist()[1:] == [0.1]
+
+
+def test_an_end_between_two_steps(tmp_path):
+    """Two equal steps at the end, or a single one of less than a step; the flow is that of a run with small steps."""
+    options = f"{SCHEMES['order_2']} {SMALL}"
+    series = run_petves(tmp_path / "run", f"{options} -time_end 0.11").series
+    np.testing.assert_allclose(series["time"], [0, 0.02, 0.04, 0.06, 0.08, 0.095, 0.11], rtol=1e-15)
+    assert series["time"][-1] == 0.11
+    finer = run_petves(tmp_path / "finer", f"{options} -time_end 0.11 -time_step 0.01").series
+    coarser = run_petves(tmp_path / "coarser", f"{options} -time_end 0.11 -time_step 0.04").series
+    errors = [abs(run["inclination"][-1] - finer["inclination"][-1]) for run in (series, coarser)]
+    assert errors[0] < 0.5 * errors[1] < 1e-3, "of second order still"
+
+
+def test_a_multiple_of_the_step_has_the_times_it_always_had(tmp_path):
+    series = run_petves(tmp_path / "run", f"{SCHEMES['split']} {SMALL} -time_step 0.1 -time_end 3").series
+    assert series["time"].tolist() == np.add.accumulate([0] + [0.1] * 30).tolist() and set(series["dt"]) == {0.1}
+
+
+@pytest.mark.parametrize("name", ["split", "order_2"])
+def test_restarts_shorten_the_same_steps(name, tmp_path):
+    """From any of the last steps the run has the bits of one that was not interrupted; from its end it goes on to a
+    later one."""
+    options = f"{SCHEMES[name]} {SMALL} -time_end 0.11 -checkpoint_every 1 -checkpoint_keep 9"
+    whole = run_petves(tmp_path / "whole", options).folder
+    for path in sorted(whole.glob("checkpoint_[123].h5")):
+        folder = tmp_path / path.stem
+        shutil.copytree(whole, folder)
+        run_petves(folder, f"{options} -restart {folder / path.name}")
+        assert without_wall(folder / "series.csv") == without_wall(whole / "series.csv"), path.name
+        with h5py.File(folder / "checkpoint.h5") as ours, h5py.File(whole / "checkpoint.h5") as theirs:
+            np.testing.assert_array_equal(ours["vesicle/markers"], theirs["vesicle/markers"])
+    on = run_petves(whole, f"{options} -time_end 0.2 -restart {whole}/checkpoint.h5").series
+    np.testing.assert_allclose(on["time"][6:], [0.11, 0.13, 0.15, 0.17, 0.185, 0.2], rtol=1e-14)

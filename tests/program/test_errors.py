@@ -1,0 +1,233 @@
+"""A user's mistake stops the run before the first step, with one line that names the option, the value and what is
+allowed. A step that cannot be taken stops it with the reason, and leaves checkpoint.h5 and summary.json."""
+
+import re
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+from harness import PETVES, ROOT, mpirun, run_petves, without_mpirun
+from refusals import CELLS, SMALL, leaves_files, matches, stops_with
+
+
+def circle(n: int, radius: float = 0.3, y: float = 0) -> list[str]:
+    """Lines of a curve file."""
+    t = 2 * np.pi * np.arange(n) / n
+    return [f"{radius * np.cos(a):.15g} {radius * np.sin(a) + y:.15g}" for a in t]
+
+
+def bump(height: float, waves: int = 1) -> list[str]:
+    """Lines of a curve that stands on the wall y = -1 and comes back to it between its waves."""
+    t = np.pi * np.arange(25) / 24
+    return [f"{0.8 * np.cos(a):.15g} {-1 + height * abs(np.sin(waves * a)):.15g}" for a in t]
+
+
+CIRCLE = circle(20)
+CURVES = {
+    "circle": CIRCLE,
+    "nan": CIRCLE[:7] + ["nan 0.1"] + CIRCLE[7:],
+    "infinite": CIRCLE[:7] + ["0.1 -inf"] + CIRCLE[7:],
+    "three points": circle(3),
+    "empty": ["# nothing"],
+    "words": CIRCLE + ["x y"],
+    "control character": CIRCLE[:2] + ["0.1\x1c 0.2"] + CIRCLE[2:],
+    "three columns": ["0.1 0.2 0.3"] + CIRCLE,
+    "repeated point": CIRCLE[:5] + CIRCLE[4:],
+    "nearly the same point": [*CIRCLE[:3], "0.2427050983124842 0.1763355756877419", *CIRCLE[3:]],
+    "long line": [CIRCLE[0], " " * 2000 + "0.1 0.2 0.3", *CIRCLE[1:]],
+    "open": ["# open", *CIRCLE],
+    "bump": ["# open", *bump(0.5)],
+    "low bump": ["# open", *bump(0.05)],
+    "rising bump": ["# open", "# velocity 0 1", *bump(0.5)],
+    "sliding bump": ["# open", "# velocity 1 0", *bump(0.5)],
+    "half a velocity": ["# velocity 1", *CIRCLE],
+    "infinite rotation": ["# rotation inf", *CIRCLE],
+    "two bumps": ["# open", *bump(0.5, 2)],
+    "corner": ["# open", *(f"{np.cos(a) - 1} {np.sin(a) - 1}" for a in np.pi * np.arange(13) / 24)],
+    "line": [f"{0.1 * k - 1:.15g} 0" for k in range(21)],
+    "above a line": [*(f"{0.1 * k - 1:.15g} 0" for k in range(21)), "", *circle(20, 0.2, 0.5)],
+    "nested": [*circle(20)[::-1], "", *circle(20, 0.8)[::-1]],
+    "sliding line": ["# velocity 1 0", *(f"{0.1 * k - 1:.15g} 0" for k in range(21))],
+    "long ellipse": [
+        "# rotation 30",
+        *(f"{0.8 * np.cos(a):.15g} {0.2 * np.sin(a):.15g}" for a in np.pi * np.arange(60) / 30),
+    ],
+    "flat": [f"{0.01 * k} 0" for k in range(20)],
+}
+
+OPTIONS = {
+    "two values": b"-time_end 1\n-vesicle_angle 45 -30\n",
+    "blank in a list": b"-domain_cells 32, 32 # cells\n",
+    "no dash": b"# a comment\n\ntime_end 1\n",
+    "equals": b"-time_step 0.1\n-time_end = 1\n",
+    "mark, crlf": b"\xef\xbb\xbf-time_step 0.1\r\n-time_end=1\r\n",
+    "cr": b"-time_step 0.1\r\r-time_end=1\r",
+    "open quote": b'-output_dir "out\n',
+    "zero": b"-time_step 0.1\n-time_end 1\0\n",
+    "itself": b"-time_step 0.1\n-options_file itself.opts\n",
+    "nothing there": b"-time_step 0.1\n-options_file no.opts\n",
+    "a program": b'-time_end 1\n-Python "touch file.h5"\n',
+    "a library": b"-dll_append ./evil.so\n",
+    "a log": b"-log_view :file\n",
+    "a monitor": b"-coupled_ksp_monitor ascii:file\n",
+    "a solver": b"-coupled_pc_type python\n",
+    "good": b"\xef\xbb\xbf# a comment\r\n-flow_rate 2\r\n\t-time_end\t0.02 # a comment\r\n",
+}
+
+
+def rows() -> list[tuple[str, str, int, str]]:
+    """Group, options, ranks and message of every row of docs/errors.md."""
+    found, group = [], ""
+    for line in (ROOT / "docs" / "errors.md").read_text().splitlines():
+        if line.startswith("## "):
+            group = line[3:]
+        elif line.startswith("| `"):
+            cells = re.split(r"(?<!\\)\|", line)[1:-1]
+            options, ranks, message = (cell.strip().replace("\\|", "|") for cell in cells)
+            found.append((group, options.strip("`"), int(ranks), message))
+    return found
+
+
+@pytest.mark.parametrize("group, options, ranks, message", rows(), ids=lambda value: str(value)[:40])
+def test_mistake_is_named(group, options, ranks, message, tmp_path, monkeypatch):
+    """A row of docs/errors.md: this line and no other; bad input before any step, a failed step with the last good
+    state."""
+    monkeypatch.chdir(tmp_path)
+    for name, lines in CURVES.items():
+        path = tmp_path / f"{name.replace(' ', '_')}.txt"
+        path.write_text("\n".join(lines) + "\n")
+        options = options.replace(f"{{curve: {name}}}", str(path))
+    for name, content in OPTIONS.items():
+        path = tmp_path / f"{name.replace(' ', '_')}.opts"
+        path.write_bytes(content)
+        options = options.replace(f"{{opts: {name}}}", path.name)
+    small = SMALL.removeprefix(CELLS) if options.startswith("-scheme_auto") else SMALL
+    run = run_petves(tmp_path / "out", f"{small} {options}", ranks, good=False, timeout=60)
+    assert matches(f"petves: error: {message}", "\n".join(run.errors)), run.errors
+    if group == "Steps":
+        leaves_files(run, "")
+    else:
+        stops_with(run, [])
+
+
+def test_page_has_rows_of_every_kind():
+    assert len(rows()) >= 80
+    groups = {"Words and option files", "Options", "Geometry", "Ranks", "Files", "Solver settings", "Steps"}
+    assert {group for group, *_ in rows()} == groups
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_no_option_prints_the_usage(ranks, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    done = mpirun([PETVES], ranks, PETSC_OPTIONS="")
+    assert done.returncode == 1 and "usage:" in done.stderr and done.stdout == "" and not list(tmp_path.iterdir())
+    assert done.stderr.count("usage:") == 1 and "runs/default.opts" in done.stderr
+
+
+def test_stray_word_alone(tmp_path, monkeypatch):
+    """An options file without -options_file used to run the default scene."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "my.opts").write_text("-time_end 1\n")
+    done = mpirun([PETVES, "my.opts"], 2)
+    line = 'petves: error: "my.opts": no option, nor the value of one; allowed: -name value, or petves run FILE'
+    assert done.returncode == 1 and without_mpirun(done.stderr) == [line] and not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize(
+    "typed, needle",
+    [
+        ("stray", 'PETSC_OPTIONS: "stray": no option'),
+        ("-time_end = 1", "PETSC_OPTIONS: -time_end = 1: an equals sign"),
+        ("-domain_cells 32, 32", "PETSC_OPTIONS: -domain_cells 32, 32: two values"),
+        ("-options_file no.opts", "PETSC_OPTIONS: -options_file no.opts: cannot be opened"),
+        ("-time_ende 1", "-time_ende 1: no such option; -time_end is meant?"),
+        ("-log_view gmres", "-log_view gmres: no viewer"),
+    ],
+)
+def test_environment_is_read_alike(typed, needle, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    done = mpirun([PETVES, *SMALL.split()], 2, PETSC_OPTIONS=typed)
+    lines = without_mpirun(done.stderr)
+    assert done.returncode == 1 and len(lines) == 1 and needle in lines[0], done.stderr
+
+
+def test_only_the_users_own_words_start_programs_or_write_elsewhere(tmp_path, monkeypatch):
+    """No .petscrc of the folder is read, that of the home is; the command line may write a log, which resolved.opts leaves out."""
+    (tmp_path / "here").mkdir()
+    monkeypatch.chdir(tmp_path / "here")
+    for name in (".petscrc", "petscrc"):
+        Path(name).write_text("-python 'touch touched;'\n-nosuch 1\n")
+    (tmp_path / ".petscrc").write_text("-log_view :home\n")
+    done = mpirun([PETVES, *SMALL.split(), "-info", "info", "-coupled_ksp_monitor", ":monitor"], 1, HOME=str(tmp_path))
+    assert done.returncode == 0, done.stderr
+    found = {path.name for path in Path().iterdir()}
+    assert found == {".petscrc", "petscrc", "home", "info.0", "monitor", "out"}
+    assert not {"-log_view", "-info", "-coupled_ksp_monitor"} & set(Path("out/run/resolved.opts").read_text().split())
+
+
+def test_command_line_wins_over_files_over_environment(tmp_path, monkeypatch):
+    """In whatever order they are given; a value in quotes may hold blanks and #."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "inner.opts").write_text("-vesicle_angle 3\n-output_dir 'out/a # b'  # a comment\n")
+    (tmp_path / "outer.opts").write_text("-options_file inner.opts\n-fluid_viscosity 2\n-vesicle_bending 0.02\n")
+    words = "-time_end 0.01 -vesicle_bending 0.03 -options_file outer.opts -domain_cells 16,16"
+    done = mpirun(
+        [PETVES, *words.split()], 1, PETSC_OPTIONS="-fluid_viscosity 3 -time_end 9 -vesicle_angle 4 -time_step 0.01"
+    )
+    assert done.returncode == 0, done.stderr
+    read = (tmp_path / "out" / "a # b" / "resolved.opts").read_text().splitlines()
+    options = dict(line.split(maxsplit=1) for line in read if line.startswith("-"))
+    wanted = {
+        "-time_end": 0.01,
+        "-vesicle_bending": 0.03,
+        "-fluid_viscosity": 2,
+        "-vesicle_angle": 3,
+        "-time_step": 0.01,
+    }
+    assert {name: float(options[name]) for name in wanted} == wanted
+
+
+@pytest.mark.parametrize("name", ["series.csv", "run.h5", "run.xmf", "resolved.opts", "checkpoint.h5", "summary.json"])
+def test_file_that_cannot_be_written_is_named(name, tmp_path):
+    """A folder is in the file's place; every rank stops."""
+    (tmp_path / "out" / name / "in the way").mkdir(parents=True)
+    run = run_petves(tmp_path / "out", f"{SMALL} -output_overwrite", ranks=2, good=False, timeout=60)
+    assert run.status == 1
+    assert len(run.errors) == 1 and run.errors[0].startswith("petves: error: "), "\n".join(run.errors)
+    assert name in run.errors[0] and "cannot be written" in run.errors[0] and "allowed" in run.errors[0]
+
+
+def test_close_markers_go_on_when_allowed(tmp_path):
+    run = run_petves(tmp_path / "out", f"{SMALL} -vesicle_spacing 1.2 -vesicle_allow_close_markers -time_end 0.01")
+    assert len(run.series["step"]) == 2
+
+
+def test_unused_options_go_on_when_allowed(tmp_path):
+    run_petves(tmp_path / "out", f"{SMALL} -vesicle_bendin 1 -allow_unused_options -time_end 0.01")
+
+
+@pytest.mark.parametrize("prefix", ["tension_", "bending_"])
+def test_failed_solve_stops_the_run(prefix, tmp_path):
+    """Prefix, step, time and residual in the message."""
+    options = f"{SMALL} -{prefix}ksp_max_it 1 -{prefix}ksp_rtol 1e-12"
+    run = run_petves(tmp_path / "out", options, ranks=2, good=False)
+    reason = rf"prefix {prefix} failed in step \d+ at time [\d.e-]+: DIVERGED_ITS after 1 iterations, residual [\d.]+"
+    summary, series = leaves_files(run, reason)
+    step = int(re.search(r"in step (\d+)", summary["reason"])[1])
+    time = float(re.search(r"at time ([\d.e-]+):", summary["reason"])[1])
+    assert step == series["step"][-1] + 1 and time == pytest.approx(series["time"][-1] + 0.01)
+
+
+def test_vesicle_carried_into_a_wall_stops_the_run(tmp_path):
+    """Extension carries the vesicle away from the centre of the flow, to the wall at x_max."""
+    options = "-domain_cells 48,48 -flow_type extension -vesicle_center 0.4,0 -time_step 0.02 -time_end 5"
+    run = run_petves(tmp_path / "out", options, ranks=2, good=False)
+    summary, series = leaves_files(
+        run, r"vesicle 1.*wall x_max = 1.*needs 3 after step \d+, time [\d.]+; try a larger -domain_box"
+    )
+    step, time = re.search(r"after step (\d+), time ([\d.]+);", summary["reason"]).groups()
+    assert int(step) == series["step"][-1] + 1 and float(time) == pytest.approx(series["time"][-1] + 0.02, rel=1e-5)
+    assert 2 <= series["step"][-1] < 100
+    with h5py.File(run.folder / "checkpoint.h5") as file:
+        assert 3 <= (1 - file["vesicle/markers"][0, :, 0].max()) / (2 / 48) < 4, "the state before is the good one"

@@ -1,0 +1,201 @@
+"""Every output file of a run is there, and they agree with one another."""
+
+import json
+import xml.etree.ElementTree as ET
+
+import h5py
+import numpy as np
+import pytest
+from harness import COLUMNS, read_series, run_petves
+
+pytestmark = pytest.mark.xdist_group("output")  # its tests share runs
+
+#: Saved times fall on steps 0, 5, 10 and, as the end state, 12. A channel: u has as many columns as cells, v one row less.
+OPTIONS = (
+    "-domain_box 0,2,-1,1 -domain_cells 40,40 -domain_bc_x periodic -flow_type shear -flow_rate 0.5 -fluid_viscosity 0.7 "
+    "-vesicle_center 1.9,0.1 -vesicle_semi_axes 0.4,0.25 -time_step 0.02 -time_end 0.24 -output_every 0.1 "
+    "-vesicle_bending 0.02 -checkpoint_every 5 -tension_ksp_rtol 1e-10 -tension_ksp_monitor_short"
+)
+FRAMES, STEPS = 4, 12
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory):
+    return run_petves(tmp_path_factory.mktemp("files") / "made" / "here", OPTIONS, ranks=2)
+
+
+def attributes(file) -> dict:
+    return {name: value for name, value in file.attrs.items()}
+
+
+def polygon_area(points: np.ndarray) -> float:
+    x, y = points.T
+    return 0.5 * float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))
+
+
+def test_folder_holds_every_file(run):
+    names = {path.name for path in run.folder.iterdir()}
+    assert names == {
+        "series.csv",
+        "run.h5",
+        "run.xmf",
+        "checkpoint.h5",
+        "checkpoint_1.h5",
+        "resolved.opts",
+        "summary.json",
+    }
+
+
+def test_series_has_its_columns(run):
+    text = (run.folder / "series.csv").read_text().splitlines()
+    assert text[0].split(",") == COLUMNS
+    assert len(text) == STEPS + 2
+    assert all(len(line.split(",")) == len(COLUMNS) for line in text)
+    series = run.series
+    np.testing.assert_array_equal(series["step"], np.arange(STEPS + 1))
+    np.testing.assert_allclose(series["time"], 0.02 * np.arange(STEPS + 1), rtol=1e-13)
+    assert (series["dt"] == 0.02).all() and (series["coupled_its"] == 0).all()
+    assert series["area_error"][0] == 0 and series["length_error"][0] == 0
+    np.testing.assert_allclose(series["area_error"], series["area"] / series["area"][0] - 1, atol=1e-14)
+    np.testing.assert_allclose(series["length_error"], series["length"] / series["length"][0] - 1, atol=1e-14)
+    assert series["wall"][0] == 0 and (series["wall"][1:] > 0).all()
+
+
+def test_run_h5_has_its_shapes_and_attributes(run):
+    markers = json.loads((run.folder / "summary.json").read_text())["markers"]
+    with h5py.File(run.folder / "run.h5") as file:
+        shapes = {name: file[name].shape for name in ("time", "fluid/u", "fluid/v", "fluid/p")}
+        assert shapes == {"time": (FRAMES,)} | {f"fluid/{c}": (FRAMES, 40, 40) for c in "uvp"}
+        assert file["vesicle/markers"].shape == file["vesicle/velocity"].shape == (FRAMES, markers, 2)
+        assert file["vesicle/tension"].shape == (FRAMES, markers)
+        found = attributes(file)
+        np.testing.assert_array_equal(found["box"], [0, 2, -1, 1])
+        np.testing.assert_array_equal(found["cells"], [40, 40])
+        np.testing.assert_array_equal(found["vesicle_start"], [0, markers])
+        assert (found["h"], found["nu"], found["c_b"]) == pytest.approx((0.05, 0.7, 0.02), rel=1e-15)
+
+
+def test_run_h5_agrees_with_series(run):
+    series = run.series
+    with h5py.File(run.folder / "run.h5") as file:
+        np.testing.assert_allclose(file["time"][:], [0, 0.1, 0.2, 0.24], atol=1e-13)
+        for frame, step in enumerate((0, 5, 10, STEPS)):
+            assert polygon_area(file["vesicle/markers"][frame]) == pytest.approx(series["area"][step], rel=1e-13)
+        y = -1 + 0.05 * (np.arange(40) + 0.5)
+        shear = np.tile(0.5 * y[:, None], 40)
+        np.testing.assert_allclose(file["fluid/u"][0], shear, atol=1e-15)  # at the start no disturbance
+        assert 1e-3 < np.abs(file["fluid/u"][-1] - shear).max() < 0.5
+        assert not file["fluid/v"][0].any() and np.abs(file["fluid/v"][-1]).max() > 1e-3
+        assert not file["vesicle/tension"][0].any() and file["vesicle/tension"][-1].any()
+        moved = file["vesicle/markers"][-1] - file["vesicle/markers"][-2]
+        np.testing.assert_allclose(moved, 0.04 * file["vesicle/velocity"][-1], atol=0.02 * 0.04)
+
+
+def test_run_xmf_refers_to_what_is_there(run):
+    """XML, one time a frame, each HDF reference with its dataset's dimensions, and hyperslabs inside them."""
+    root = ET.parse(run.folder / "run.xmf").getroot()
+    times = [float(item.get("Value")) for item in root.iter("Time")]
+    names = set()
+    with h5py.File(run.folder / "run.h5") as file:
+        np.testing.assert_array_equal(times, file["time"][:])
+        for item in root.iter("DataItem"):
+            if item.get("Format") == "HDF":
+                source, name = item.text.strip().split(":")
+                assert source == "run.h5"
+                assert file[name].shape == tuple(int(n) for n in item.get("Dimensions").split())
+                names.add(name)
+            elif item.get("ItemType") == "HyperSlab":
+                selection, data = list(item)
+                start, stride, count = np.array(selection.text.split(), dtype=int).reshape(3, -1)
+                shape = np.array(data.get("Dimensions").split(), dtype=int)
+                assert (start + stride * (count - 1) < shape).all() and (count > 0).all()
+                assert np.prod(count) == np.prod([int(n) for n in item.get("Dimensions").split()])
+    assert names == {"/fluid/u", "/fluid/v", "/fluid/p", "/vesicle/markers", "/vesicle/tension"}
+
+
+def test_checkpoint_holds_the_state(run):
+    series, h = run.series, 0.05
+    with h5py.File(run.folder / "checkpoint.h5") as check, h5py.File(run.folder / "run.h5") as fields:
+        found = attributes(check)
+        assert (found["step"], found["dt"]) == (STEPS, 0.02) and found["time"] == series["time"][-1]
+        assert found["-vesicle_bending"].decode().strip("\0") == "0.02"
+        assert found["vesicle_area"] == series["area"][0] and found["vesicle_length"] == series["length"][0]
+        for name in ("vesicle/markers", "vesicle/velocity", "vesicle/tension", "fluid/p"):
+            np.testing.assert_array_equal(check[name][0], fields[name][-1], err_msg=name)
+        u, v = check["fluid/u"][0], check["fluid/v"][0]
+        assert u.shape == (40, 40) and v.shape == (39, 40)
+        assert 0.5 * h * h * (np.sum(u**2) + np.sum(v**2)) == pytest.approx(series["energy_kinetic"][-1], rel=1e-12)
+        v = np.pad(v, ((1, 1), (0, 0)))
+        divergence = (u - np.roll(u, 1, axis=1) + np.diff(v, axis=0)) / h
+        assert np.abs(divergence).max() < 1e-11
+        background = 0.5 * (-1 + h * (np.arange(40)[:, None] + 0.5))
+        np.testing.assert_allclose(0.5 * (u + np.roll(u, 1, axis=1)) + background, fields["fluid/u"][-1], atol=1e-15)
+
+
+def test_summary_agrees_with_series(run):
+    series, summary = run.series, json.loads((run.folder / "summary.json").read_text())
+    assert summary["reason"] == "finished" and summary["ranks"] == 2 and summary["cells"] == [40, 40]
+    assert list(summary["last"]) == COLUMNS
+    for name in COLUMNS:
+        last = series[name][-1]
+        assert (summary["last"][name] is None) if np.isnan(last) else summary["last"][name] == last
+    for name in ("nsolve", "tension_its", "bending_its", "coupled_its"):
+        assert summary["totals"][name] == series[name].sum()
+    assert summary["totals"]["steps"] == STEPS
+    assert set(summary["wall_seconds"]) == {"run", "setup", "step", "fast_solve", "output"}
+    assert set(summary["versions"]) == {"petves", "petsc", "fftw", "hdf5"} and summary["git_commit"]
+
+
+def test_resolved_options_repeat_the_run(run, tmp_path):
+    """The same bits in every column but wall, and the same resolved options but the folder."""
+    folder = tmp_path / "again"
+    again = run_petves(folder, f"-options_file {run.folder / 'resolved.opts'} -output_dir {folder}", ranks=2)
+    one, two = run.series, read_series(again.folder / "series.csv")
+    for name in set(COLUMNS) - {"wall"}:
+        np.testing.assert_array_equal(two[name], one[name], err_msg=name)
+
+    def options(folder):
+        lines = (folder / "resolved.opts").read_text().splitlines()
+        return {line for line in lines if not line.startswith(("#", "-output_dir"))}
+
+    assert options(again.folder) == options(run.folder)
+    names = [line.split()[0] for line in sorted(options(run.folder))]
+    assert len(names) == len(set(names)), "an option with two values"
+    for name in ("-domain_box", "-fluid_viscosity", "-delta_type", "-tension_ksp_rtol", "-bending_ksp_max_it"):
+        assert name in names
+
+
+def test_progress_and_summary_are_printed(run):
+    assert "100 %" in run.stdout and f"step {STEPS}" in run.stdout
+    assert f"finished at time 0.24 after {STEPS} steps" in run.stdout
+    assert "files in" in run.stdout
+
+
+def test_steady_state_ends_the_run(tmp_path):
+    run = run_petves(
+        tmp_path / "out", "-domain_cells 32,32 -vesicle_semi_axes 0.4,0.4 -time_step 0.01 -time_steady_tol 0.1"
+    )
+    assert json.loads((run.folder / "summary.json").read_text())["reason"] == "steady"
+    assert len(run.series["step"]) == 2
+
+
+def test_view_prints_the_model_in_force(tmp_path):
+    run = run_petves(tmp_path / "out", "-domain_cells 32,32 -time_end 0 -view")
+    for text in ("Model in force", "32 x 32 cells", "nu = 1", "c_b = 0.01", "ib6", "tension_", "bending_", "split"):
+        assert text in run.stdout, text
+    assert len(run.series["step"]) == 1
+
+
+@pytest.mark.parametrize("scheme", ["split", "coupled", "direct"])
+def test_no_memory_is_left(scheme, tmp_path):
+    """PETSc's own account, of a run and of its restart: every PetscMalloc freed and every object destroyed."""
+    options = (
+        f"-domain_cells 32,32 -flow_type shear -flow_form total -time_step 0.01 -output_every 0.01 -scheme_type {scheme} "
+        "-malloc_debug -malloc_dump -objects_dump"
+    )
+    first = run_petves(tmp_path / "out", options + " -time_end 0.03", ranks=2)
+    second = run_petves(tmp_path / "out", f"{options} -time_end 0.04 -restart {tmp_path}/out/checkpoint.h5", ranks=2)
+    for run in (first, second):
+        assert not [line for line in run.stdout.splitlines() if " bytes " in line]
+        assert "never freed" not in run.stdout
+        assert not run.errors

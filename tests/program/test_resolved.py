@@ -1,0 +1,28 @@
+"""resolved.opts repeats the run, whatever its folder and its files are called."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from harness import PAPER, PETVES, mpirun
+from restarts import without_wall
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["two words", "out/ü 'é' ", " before", "back\\slash%s$HOME", "it's", "pipe|;*?[1]~", "a,b=c", "a #b", "#", "'"],
+)
+def test_resolved_options_repeat_the_run(name, tmp_path, monkeypatch):
+    """In a folder of any name that is not refused, and with a curve file of that name."""
+    monkeypatch.chdir(tmp_path)
+    angle = 2 * np.pi * np.arange(40) / 40
+    Path("curve").mkdir()
+    curve = Path("curve") / name.replace("/", "")
+    np.savetxt(curve, 0.4 * np.c_[np.cos(angle), np.sin(angle)])
+    words = f"-domain_cells 24,24 -output_every 10 -vesicle_shape file -time_end 0.02".split()
+    words = [*words, *PAPER.split(), "-vesicle_file", str(curve), "-output_dir", name]
+    assert mpirun([PETVES, *words], 1).returncode == 0
+    first = Path(name).rename("first")
+    done = mpirun([PETVES, "-options_file", "first/resolved.opts"], 1)
+    assert done.returncode == 0 and (Path(name) / "run.h5").is_file(), done.stderr
+    assert without_wall(Path(name) / "series.csv") == without_wall(first / "series.csv")

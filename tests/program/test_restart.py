@@ -1,0 +1,261 @@
+"""A restarted run is the run that was not interrupted: the same bits on the same ranks, 1e-10 on others; and what is
+not the run's own is refused."""
+
+import json
+import random
+import shutil
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+from harness import run_petves
+from refusals import one_line
+from restarts import SCHEMES, N, at_step, frames, without_wall
+
+pytestmark = pytest.mark.xdist_group("restart")  # its tests share runs
+
+
+@pytest.fixture(scope="module")
+def straight(tmp_path_factory):
+    """A run of 2 N steps that keeps all its checkpoints, a scheme; made once."""
+    made = {}
+
+    def get(name: str):
+        if name not in made:
+            options = f"{SCHEMES[name]} -time_end {0.02 * 2 * N} -checkpoint_every {N} -checkpoint_keep 9"
+            made[name] = run_petves(tmp_path_factory.mktemp(name) / "run", options, ranks=2)
+        return made[name]
+
+    return get
+
+
+@pytest.mark.parametrize("name", SCHEMES)
+def test_restart_gives_the_same_bits(name, straight, tmp_path):
+    """From the checkpoint of step N in the folder of the run, which went on past it: series.csv and run.h5 are those of
+    the run that was never interrupted."""
+    whole = straight(name)
+    folder = tmp_path / "run"
+    shutil.copytree(whole.folder, folder)
+    options = f"{SCHEMES[name]} -time_end {0.02 * 2 * N} -checkpoint_every {N} -checkpoint_keep 9"
+    run = run_petves(folder, f"{options} -restart {folder / at_step(folder, N)}", ranks=2)
+    assert len(without_wall(folder / "series.csv")) > N + 1
+    assert without_wall(folder / "series.csv") == without_wall(whole.folder / "series.csv")
+    ours, theirs = frames(folder), frames(whole.folder)
+    assert set(ours) == set(theirs) and len(ours) == 7
+    for key in ours:
+        np.testing.assert_array_equal(ours[key], theirs[key], err_msg=key)
+    totals = [json.loads((f / "summary.json").read_text())["totals"] for f in (folder, whole.folder)]
+    assert totals[0] == totals[1]
+    assert "closer than" not in run.stdout
+
+
+@pytest.mark.parametrize(
+    "name, ranks", [("split", 4), ("penalty", 4), ("order_1", 1), ("order_2", 4), ("adaptive", 1), ("two_vesicles", 4)]
+)
+def test_restart_on_other_ranks(name, ranks, straight, tmp_path):
+    """In a new folder, which begins with the checkpoint's state."""
+    whole = straight(name)
+    options = f"{SCHEMES[name]} -time_end {0.02 * 2 * N} -checkpoint_every {N}"
+    run = run_petves(tmp_path / "new", f"{options} -restart {whole.folder / at_step(whole.folder, N)}", ranks)
+    ours, theirs = run.series, whole.series
+    first = np.searchsorted(theirs["step"], N)
+    assert ours["step"][0] == N
+    for key in set(ours) - {"wall"}:
+        scale = np.abs(theirs[key][np.isfinite(theirs[key])]).max(initial=1)
+        np.testing.assert_allclose(ours[key], theirs[key][first:], rtol=0, atol=1e-10 * scale, err_msg=key)
+    fields = frames(run.folder)
+    assert fields["time"][0] == ours["time"][0]
+    assert (np.diff(fields["time"]) > 0).all()
+
+
+@pytest.mark.parametrize("name", ["order_2", "two_vesicles"])
+def test_a_shorter_run_goes_on_to_another_end(name, straight, tmp_path):
+    """From its end, a step at which the long run wrote no checkpoint: solvers that keep something from step to step find
+    it again. The frame that was saved because the first part ended goes."""
+    whole = straight(name)
+    folder = tmp_path / "run"
+    run_petves(folder, f"{SCHEMES[name]} -time_end 0.12", ranks=2)
+    assert frames(folder)["time"][-1] == pytest.approx(0.12)
+    run_petves(folder, f"{SCHEMES[name]} -time_end {0.02 * 2 * N} -restart {folder}/checkpoint.h5", ranks=2)
+    assert without_wall(folder / "series.csv") == without_wall(whole.folder / "series.csv")
+    np.testing.assert_array_equal(frames(folder)["time"], frames(whole.folder)["time"])
+
+
+@pytest.mark.parametrize(
+    "change",
+    ["-domain_cells 64,64", "-vesicle_bending 0.02", "-scheme_order 2", "-fluid_viscosity 2", "-vesicle_angle 10"],
+)
+def test_another_scene_is_refused(change, straight, tmp_path):
+    """The option, its value and the checkpoint's."""
+    whole = straight("order_1")
+    there = {"-domain_cells": "32,32", "-vesicle_bending": "0.01", "-scheme_order": "1", "-fluid_viscosity": "1"}
+    run = run_petves(
+        tmp_path / "new", f"{SCHEMES['order_1']} {change} -restart {whole.folder}/checkpoint.h5", good=False
+    )
+    one_line(run, change, f"has {there.get(change.split()[0], '0')};", "checkpoint.h5", "allowed: the same value")
+
+
+def outline(a, b, note="", n=60):
+    """Text of a curve file: an ellipse about (-0.4, 0)."""
+    angle = 2 * np.pi * np.arange(n) / n
+    return note + "".join(f"{x - 0.4:.15g} {y:.15g}\n" for x, y in np.c_[a * np.cos(angle), b * np.sin(angle)])
+
+
+@pytest.mark.parametrize(
+    "solid, began, then",
+    [
+        (False, outline(0.3, 0.3), outline(0.31, 0.31)),
+        (False, outline(0.2, 0.35), outline(0.2801379, 0.2801379)),
+        (True, outline(0.3, 0.3), outline(0.31, 0.31)),
+        (True, outline(0.2, 0.3, "# rotation 1\n"), outline(0.2, 0.3, "# rotation 5\n")),
+        (True, outline(0.2, 0.3, "# rotation 1\n"), outline(0.2, 0.3, "# rotation 1\n# velocity 3 0\n")),
+    ],
+    ids=["size", "area of one length", "solid size", "rotation", "velocity"],
+)
+def test_another_curve_is_refused(solid, began, then, tmp_path):
+    """The same options, but what the curve file holds has changed. What it holds may be elsewhere, with other comments."""
+    curve, moved = tmp_path / "curve.txt", tmp_path / "moved.txt"
+    kind = "obstacle" if solid else "vesicle"
+    options = "-domain_cells 32,32 -time_step 0.02 -time_end 0 -scheme_type coupled -fluid_inertia none -coupling_near_field exact "
+    options += "-delta_type cbs54 -membrane_derivative spectral "
+    options += "-domain_bc_x periodic -domain_bc_y periodic -vesicle_semi_axes 0.2,0.3 " * solid
+    options += "-vesicle_center 0.5,0 " * solid + f"-{kind}_shape file -{kind}_file "
+    curve.write_text(began)
+    run_petves(tmp_path / "run", options + str(curve))
+    restart = f" -time_end 0.02 -restart {tmp_path}/run/checkpoint.h5"
+    curve.write_text(then)
+    one_line(
+        run_petves(tmp_path / "new", f"{options}{curve}{restart}", 2, good=False), f"-{kind}_file {curve}: its curves"
+    )
+    moved.write_text("# a circle\n" + began)
+    run_petves(tmp_path / "new", f"{options}{moved}{restart}")
+
+
+def test_the_end_of_a_long_list_is_compared(tmp_path):
+    """4200 characters: the message begins with the entry that differs."""
+    places = [f"{x:.16f},{y:.16f}" for x in np.linspace(0.15, 7.85, 15) for y in np.linspace(0.15, 3.85, 8)]
+    scene = "-domain_box 0,8,0,4 -domain_cells 256,128 -domain_bc_x periodic -domain_bc_y periodic -flow_type uniform -vesicle_shape none"
+    scene += " -time_end 0 -scheme_type coupled -obstacle_shape posts -obstacle_radius 0.1 -obstacle_center "
+    run_petves(tmp_path / "run", scene + ",".join(places))
+    places[-1] = "7.85,3.75"
+    scene += f"{','.join(places)} -restart {tmp_path}/run/checkpoint.h5"
+    run = run_petves(tmp_path / "new", scene, 2, good=False)
+    one_line(run, "-obstacle_center ...,3.75:", "has ...,3.85", "allowed: the same value")
+
+
+def seal(path: Path):
+    """Give a checkpoint that was edited its checksum back."""
+    import zlib
+
+    data = path.read_bytes()
+    path.write_bytes(data + b"petves checkpoint, crc32 %08x\n" % zlib.crc32(data))
+
+
+def test_another_format_is_refused(straight, tmp_path):
+    """Both formats are named, with a good checksum or without one."""
+    path = tmp_path / "checkpoint.h5"
+    shutil.copy(straight("split").folder / "checkpoint.h5", path)
+    with h5py.File(path, "r+") as file:
+        file.attrs["format"] = np.int32(99)
+    for _ in range(2):
+        run = run_petves(tmp_path / "new", f"{SCHEMES['split']} -restart {path}", good=False)
+        one_line(run, str(path), "format is 99", "allowed: 7")
+        seal(path)
+
+
+def test_missing_entries_are_refused(straight, tmp_path):
+    path = tmp_path / "checkpoint.h5"
+    shutil.copy(straight("split").folder / "checkpoint.h5", path)
+    with h5py.File(path, "r+") as file:
+        del file["fluid/u"]
+    seal(path)
+    one_line(run_petves(tmp_path / "new", f"{SCHEMES['split']} -restart {path}", good=False), "entries are missing")
+
+
+def test_damaged_checkpoints_are_refused(straight, tmp_path):
+    """Cut off at any length, or with any one bit flipped: one line, on every rank, and no file of the run is touched."""
+    data = (straight("split").folder / "checkpoint.h5").read_bytes()
+    path, draw = tmp_path / "checkpoint.h5", random.Random(6)
+    damaged = [data[:n] for n in (0, 10, 100, len(data) // 2, len(data) - 34, len(data) - 1)] + [b"no hdf5 " * 100]
+    for place in [0, len(data) - 3, len(data) - 30] + [draw.randrange(len(data)) for _ in range(6)]:
+        damaged.append(data[:place] + bytes([data[place] ^ (1 << draw.randrange(8))]) + data[place + 1 :])
+    for number, content in enumerate(damaged):
+        path.write_bytes(content)
+        run = run_petves(tmp_path / "new", f"{SCHEMES['split']} -restart {path}", 2 if number < 2 else 1, good=False)
+        one_line(run, "-restart", str(path), "checksum", "checkpoint_1.h5")
+        assert not (tmp_path / "new").exists()
+
+
+@pytest.mark.parametrize(
+    "damage, needles",
+    [
+        ("no series", ["series.csv", "cannot be read"]),
+        ("short series", ["series.csv", "ends before"]),
+        ("other columns", ["series.csv", "other columns"]),
+        ("no fields", ["run.h5", "0 readable frames"]),
+        ("cut fields", ["run.h5", "readable frames"]),
+    ],
+)
+def test_files_that_do_not_fit_are_refused(damage, needles, straight, tmp_path):
+    """The restart stops with one line, and leaves the files as they are."""
+    folder = tmp_path / "run"
+    shutil.copytree(straight("split").folder, folder)
+    series, fields = folder / "series.csv", folder / "run.h5"
+    lines = series.read_text().splitlines(keepends=True)
+    if damage == "no series":
+        series.unlink()
+    elif damage == "short series":
+        series.write_text("".join(lines[:-3]) + lines[-3][:20])
+    elif damage == "other columns":
+        series.write_text("".join(["step,time\n"] + lines[1:]))
+    elif damage == "no fields":
+        fields.unlink()
+    else:
+        fields.write_bytes(fields.read_bytes()[:3000])
+    before = {path.name: path.read_bytes() for path in folder.iterdir() if path.name != "summary.json"}
+    run = run_petves(folder, f"{SCHEMES['split']} -restart {folder}/checkpoint.h5", good=False)
+    one_line(run, *needles, "new -output_dir")
+    after = {path.name: path.read_bytes() for path in folder.iterdir() if path.name != "summary.json"}
+    after.pop("series.csv.tmp", None)
+    assert after == before
+
+
+def test_results_are_not_overwritten_unasked(straight, tmp_path):
+    folder = tmp_path / "run"
+    shutil.copytree(straight("split").folder, folder)
+    options = f"{SCHEMES['split']} -time_end 0.02"
+    one_line(run_petves(folder, options, 2, good=False), f"-output_dir {folder}", "-output_overwrite", "-restart")
+    other = straight("split").folder / "checkpoint.h5"
+    one_line(
+        run_petves(folder, f"{options} -restart {other}", good=False), f"-output_dir {folder}", "-output_overwrite"
+    )
+    assert without_wall(folder / "series.csv") == without_wall(straight("split").folder / "series.csv")
+    run = run_petves(folder, f"{options} -output_overwrite")
+    assert len(run.series["step"]) == 2
+    assert not (folder / "checkpoint_1.h5").exists(), "of the run that was there before"
+
+
+def test_same_bits_twice(tmp_path):
+    """The same options, ranks and binary: the same series.csv but for wall, the same run.h5 and checkpoint."""
+    for name in ("order_2", "two_vesicles"):
+        runs = [run_petves(tmp_path / f"{name}{k}", f"{SCHEMES[name]} -time_end 0.1", ranks=2) for k in range(2)]
+        assert without_wall(runs[0].folder / "series.csv") == without_wall(runs[1].folder / "series.csv")
+        one, two = (frames(run.folder) for run in runs)
+        for key in one:
+            np.testing.assert_array_equal(one[key], two[key], err_msg=key)
+
+
+@pytest.mark.parametrize("first, then", [("fftw", "fftw_tridiagonal"), ("fftw_tridiagonal", "fftw")])
+def test_goes_on_with_another_back_end(first, then, tmp_path):
+    """States are kept as flows with one and as velocities with the other: each goes on from what the other has written."""
+    scene = (
+        "-domain_cells 32,32 -domain_bc_x periodic -flow_type shear -scheme_type coupled -scheme_order 3 -time_step 0.02 "
+        "-fluid_inertia unsteady -vesicle_semi_axes 0.3,0.5 -coupled_ksp_rtol 1e-11"
+    )
+    backs = {name: f"{scene} -helmholtz_type {name} -poisson_type {name}" for name in (first, then)}
+    whole = run_petves(tmp_path / "whole", f"{backs[then]} -time_end 0.2").series
+    run_petves(tmp_path / "part", f"{backs[first]} -time_end 0.1")
+    rest = run_petves(tmp_path / "rest", f"{backs[then]} -time_end 0.2 -restart {tmp_path}/part/checkpoint.h5").series
+    for name in ("energy_kinetic", "energy_bending", "inclination"):
+        assert rest[name][-1] == pytest.approx(whole[name][-1], rel=1e-9), name

@@ -1,0 +1,127 @@
+"""python3 -m petves sweep: what a run has left is never deleted, what is remembered, and what is not."""
+
+import csv
+import json
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+from harness import ENVIRONMENT, PETVES, ROOT, read_series
+from restarts import without_wall
+
+from petves.sweep import _name
+
+pytestmark = pytest.mark.xdist_group("sweep")
+
+SHARED = (
+    "-domain_cells 16,16\n-domain_box -2,2,-2,2\n-vesicle_semi_axes 0.8,1\n-scheme_type split\n-time_step 0.02\n"
+    "-time_end 0.4\n-output_every 0.02\n-checkpoint_every 2\n"
+)
+
+
+@pytest.fixture
+def sweep(tmp_path):
+    """A function that runs a sweep in tmp_path/grid; the status, the lines of standard error, rows of sweep.csv."""
+    (tmp_path / "shared.opts").write_text(SHARED)
+
+    def run(*vary: str, program: str = PETVES, ranks: int = 1, path: str = ""):
+        words = ["sweep", str(tmp_path / "grid"), "--options-file", str(tmp_path / "shared.opts"), "--jobs", "2"]
+        words += ["--ranks", str(ranks), "--vary", *vary]
+        environment = {**os.environ, **ENVIRONMENT, "PETVES": program, "PYTHONPATH": str(ROOT / "python")}
+        environment["PATH"] = path + environment["PATH"]
+        done = subprocess.run(
+            [sys.executable, "-m", "petves", *words], env=environment, capture_output=True, text=True, timeout=120
+        )
+        table = tmp_path / "grid" / "sweep.csv"
+        rows = list(csv.DictReader(table.open(newline=""))) if table.is_file() else []
+        return done.returncode, done.stderr.splitlines(), rows
+
+    return run
+
+
+def script(path: Path, text: str) -> str:
+    path.write_text(f"#!/bin/bash\n{text}\n")
+    path.chmod(0o755)
+    return str(path)
+
+
+def test_full_disk_deletes_nothing_and_goes_on(sweep, tmp_path):
+    """No file grows beyond a size that the runs reach after some steps: each keeps its checkpoint and its rows. The next
+    call goes on from there, to the rows of runs that had room."""
+    values = ("fluid_viscosity", "1", "2")
+    small = script(tmp_path / "small", f"trap '' XFSZ; ulimit -f 60; exec {PETVES} \"$@\"")
+    status, lines, rows = sweep(*values, program=small)
+    assert status == 1 and len(lines) == 2, lines
+    assert all(line.startswith("petves: error: fluid_viscosity=") and "cannot be written" in line for line in lines)
+    assert [row["status"] for row in rows] == ["failed", "failed"] and int(rows[0]["step"]) > 2
+    homes = [tmp_path / "grid" / row["folder"] for row in rows]
+    kept = [(home / "series.csv").read_text() for home in homes]
+    assert all((home / "checkpoint.h5").is_file() and not (home / "status.json").exists() for home in homes)
+    assert sweep(*values, program=small)[0] == 1, "again, and still nothing is lost"
+    assert all((home / "checkpoint.h5").is_file() for home in homes)
+    status, lines, rows = sweep(*values)
+    assert status == 0 and not lines and [row["status"] for row in rows] == ["done", "done"]
+    for home, value, text in zip(homes, "12", kept):
+        assert read_series(home / "series.csv")["step"].tolist() == list(range(21))
+        assert (home / "series.csv").read_text().startswith("".join(text.splitlines(True)[:3])), "it went on"
+        words = ["-options_file", tmp_path / "shared.opts", "-fluid_viscosity", value, "-output_dir", tmp_path / value]
+        subprocess.run([PETVES, *words], env={**os.environ, **ENVIRONMENT}, check=True, stdout=subprocess.DEVNULL)
+        assert without_wall(home / "series.csv") == without_wall(tmp_path / value / "series.csv")
+
+
+def test_only_bad_options_are_remembered(sweep, tmp_path):
+    """No slots for the ranks, or a program that is killed, says nothing of the options; a value that is refused does."""
+    (tmp_path / "bin").mkdir()
+    script(tmp_path / "bin" / "mpirun", "echo 'There are not enough slots available in the system' >&2; exit 1")
+    status, lines, rows = sweep("fluid_viscosity", "1", "-1", ranks=2, path=f"{tmp_path / 'bin'}:")
+    assert status == 1 and len(lines) == 2 and all("not enough slots" in line for line in lines), lines
+    assert [row["status"] for row in rows] == ["failed", "failed"]
+    killed = script(tmp_path / "killed", "kill -9 $$")
+    assert [row["status"] for row in sweep("fluid_viscosity", "1", program=killed)[2]] == ["failed"]
+    status, lines, rows = sweep("fluid_viscosity", "1", "-1")
+    assert status == 1 and len(lines) == 1 and "refused: -fluid_viscosity -1: out of range" in lines[0], lines
+    assert [row["status"] for row in rows] == ["done", "refused"] and rows[1]["area"] == "" != rows[0]["area"]
+    assert sweep("fluid_viscosity", "1", "-1", program=killed)[1] == lines, "neither is run again"
+
+
+def test_runs_without_a_checkpoint_are_moved_aside(sweep, tmp_path):
+    """What a run left that was killed before its first checkpoint, but never the folder of a live one."""
+    home = tmp_path / "grid" / "checkpoint_every=0"
+    live = [PETVES, *SHARED.split(), "-checkpoint_every", "0", "-time_end", "1000", "-output_dir", str(home)]
+    process = subprocess.Popen(live, env={**os.environ, **ENVIRONMENT}, stdout=subprocess.DEVNULL)
+    while not (home / "run.xmf").exists():
+        time.sleep(0.01)
+    status, lines, _ = sweep("checkpoint_every", "0")
+    assert status == 1 and f"in use by process {process.pid}" in lines[0] and process.poll() is None, lines
+    process.kill()
+    process.wait()
+    rows = (home / "series.csv").read_text()
+    assert sweep("checkpoint_every", "0")[0] == 0
+    assert (tmp_path / "grid" / "checkpoint_every=0~1" / "series.csv").read_text() == rows
+    assert json.loads((home / "summary.json").read_text())["reason"] == "finished"
+
+
+def test_folders_do_not_collide(sweep, tmp_path):
+    """a/b and a_b are two runs, and so are values with an equals sign or of any length; the same one twice is one."""
+    status, lines, rows = sweep("vesicle_file", "a/b", "a_b", "a_b")
+    assert status == 1 and len(lines) == 2, "each is refused, and once"
+    assert [row["vesicle_file"] for row in rows] == ["a/b", "a_b"] and rows[0]["folder"] != rows[1]["folder"]
+    values = ["a/b", "a_b", "a%2Fb", "c=d", "c%3Dd", "e#f", "e", "1,p=2", f"{'x' * 300}1", f"{'x' * 300}2"]
+    names = {_name(point) for point in [{"o": value} for value in values] + [{"o": "1", "p": "2"}]}
+    assert len(names) == len(values) + 1
+    assert all(len(name) < 255 and not set(name) & set('/#"') for name in names)
+
+
+def test_a_stopped_run_is_a_line(sweep):
+    status, lines, rows = sweep("limit_length_error", "0.2", "1e-12")
+    assert status == 1 and len(lines) == 1 and "limit_length_error=1e-12: stopped: vesicle 1: length error" in lines[0]
+    assert [row["status"] for row in rows] == ["done", "stopped"]
+
+
+def test_a_full_disk_of_the_sweep_itself_is_a_line(sweep, tmp_path):
+    (tmp_path / "grid" / "shared.opts").mkdir(parents=True)
+    status, lines, _ = sweep("fluid_viscosity", "1")
+    assert status == 1 and len(lines) == 1 and "cannot be written" in lines[0], lines

@@ -1,0 +1,87 @@
+"""How much a run writes: frames by default, their precision, and what the run says of it."""
+
+import json
+import re
+
+import h5py
+import numpy as np
+import pytest
+from harness import run_petves
+from restarts import without_wall
+
+SMALL = "-domain_cells 32,32 -vesicle_semi_axes 0.4,0.5 -flow_type shear"
+FIELDS = ("fluid/u", "fluid/v", "fluid/p", "vesicle/markers", "vesicle/velocity", "vesicle/tension")
+
+
+def frames(path) -> dict[str, np.ndarray]:
+    with h5py.File(path / "run.h5") as file:
+        return {name: file[name][:] for name in ("time", *FIELDS)}
+
+
+@pytest.mark.parametrize(
+    "end, every, count",
+    [(0.25, 0.1, 4), (9.9, 0.1, 100), (9.91, 0.2, 51), (36, 0.5, 73), (99, 1, 100), (2.1e4, 500, 43)],
+)
+def test_a_run_has_at_most_100_frames(end, every, count, tmp_path):
+    """Without vesicles, at rest, in steps that the times saved are multiples of; the end is saved too."""
+    options = f"-vesicle_shape none -domain_cells 8,8 -time_step {every / 2} -time_end {end} -view"
+    run = run_petves(tmp_path / "run", options)
+    assert f"-output_every {every:g}\n" in re.sub(
+        r"(\.\d*?[1-9])0{5,}\d*", r"\1", (run.folder / "resolved.opts").read_text()
+    )
+    with h5py.File(run.folder / "run.h5") as file:
+        times = file["time"][:]
+    assert len(times) == count and times[-1] == pytest.approx(end, rel=1e-12)
+    assert json.loads((run.folder / "summary.json").read_text())["written"]["frames"] == count
+
+
+def test_what_was_written_is_said(tmp_path):
+    run = run_petves(tmp_path / "run", f"{SMALL} -time_step 0.01 -time_end 0.03 -output_every 0.01 -checkpoint_every 1")
+    written = json.loads((run.folder / "summary.json").read_text())["written"]
+    sizes = {path.name: path.stat().st_size for path in run.folder.iterdir()}
+    names = ("run.h5", "run.xmf", "series.csv", "checkpoint.h5", "checkpoint_1.h5")
+    assert set(sizes) - set(names) <= {"resolved.opts", "summary.json"}
+    assert written == {"frames": 4, "bytes": sum(sizes[name] for name in names), "bytes_run_h5": sizes["run.h5"]}
+    line = f"files in {run.folder}: {written['bytes'] / 1e6:.3g} MB, {sizes['run.h5'] / 1e6:.3g} MB of them run.h5 with 4 frames"
+    assert line in run.stdout
+
+
+def test_single_precision(tmp_path):
+    """The fields alone, rounded, on any number of ranks; the run is the same."""
+    options = f"{SMALL} -time_step 0.01 -time_end 0.03 -output_every 0.01"
+    double = run_petves(tmp_path / "double", options)
+    single = run_petves(tmp_path / "single", f"{options} -output_precision single", 2)
+    one = run_petves(tmp_path / "one", f"{options} -output_precision single")
+    assert without_wall(one.folder / "series.csv") == without_wall(double.folder / "series.csv")
+    exact, rounded, others = frames(double.folder), frames(one.folder), frames(single.folder)
+    for name in FIELDS:
+        small = name.startswith("fluid")
+        assert rounded[name].dtype == (np.float32 if small else np.float64), name
+        np.testing.assert_array_equal(rounded[name], exact[name].astype(np.float32) if small else exact[name])
+        np.testing.assert_allclose(others[name], exact[name], rtol=1e-6, atol=1e-7 * np.abs(exact[name]).max())
+    assert (one.folder / "run.h5").stat().st_size < 0.62 * (double.folder / "run.h5").stat().st_size
+    text = (one.folder / "run.xmf").read_text()
+    assert text.count('Precision="4"') == 3 * 4 and text.count('Precision="8"') == 2 * 4
+
+
+def test_single_precision_after_a_kill(tmp_path):
+    """run.h5 made anew from its index has the numbers that it had; a restart keeps the precision."""
+    options = f"{SMALL} -time_step 0.01 -output_every 0.01 -output_precision single"
+    whole = run_petves(tmp_path / "whole", f"{options} -time_end 0.04")
+    half = run_petves(tmp_path / "half", f"{options} -time_end 0.02")
+    folder, before = half.folder, frames(half.folder)
+    with h5py.File(folder / "run.h5") as file:
+        series = [file[name] for name in FIELDS]
+        places = [[s.id.get_chunk_info(t).byte_offset for s in series] for t in range(3)]
+    lines = [f"{t} {before['time'][t]:.17g} {' '.join(map(str, place))}\n" for t, place in enumerate(places)]
+    (folder / "run.h5.index").write_text("".join(lines))  # as a killed run leaves it
+    with (folder / "run.h5").open("r+b") as file:
+        file.write(bytes(8))  # no HDF5 file any more
+    restart = f"-restart {folder}/checkpoint.h5"
+    refused = run_petves(folder, f"{options} -time_end 0.04 {restart} -output_precision double", good=False)
+    assert refused.status == 1 and "-output_precision double: the checkpoint of" in refused.errors[0]
+    run_petves(folder, f"{options} -time_end 0.04 {restart}", 2)
+    again, straight = frames(folder), frames(whole.folder)
+    for name in FIELDS:
+        np.testing.assert_array_equal(again[name][:3], before[name], err_msg=name)
+        assert again[name].dtype == straight[name].dtype and len(again[name]) == 5

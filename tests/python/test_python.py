@@ -1,0 +1,153 @@
+"""petves.Simulation: the facts of tests/python, and the same series as the program's, to the bit."""
+
+import json
+import subprocess
+from pathlib import Path
+
+import pytest
+from harness import PETVES, ROOT, SANITIZE, mpirun, without_mpirun
+
+SCRIPTS = ROOT / "tests" / "python"
+PYTHON = "/usr/bin/python3"
+LIBRARY = str(Path(PETVES).parent.parent / "lib" / "libpetves.so")
+FACTS = [
+    ("interface", ["state", "measures", "solvers"], 1),
+    ("interface", ["running", "several", "quiet"], 1),
+    ("interface", ["state", "measures", "running", "several", "solids"], 2),
+    ("interface", ["restarting"], 1),
+    ("interface", ["memory"], 1),
+    ("flow", ["same_as_built_in", "right_time", "failures"], 1),
+    ("flow", ["same_as_built_in"], 2),
+]
+SCENES = {
+    "default": "-domain_cells 48,48 -flow_type shear -time_step 0.01 -time_end 0.05 -output_every 0.02",
+    "split": "-domain_cells 48,48 -scheme_type split -flow_type extension -time_step 0.005 -time_end 0.02",
+    "adaptive": "-domain_cells 48,48 -time_adapt error -time_step 0.02 -time_end 0.05 -output_every 0.01",
+    "steady": "-domain_cells 32,32 -vesicle_semi_axes 0.4,0.5 -time_steady_tol 0.002 -time_step 0.05 -time_end 5",
+}
+
+
+COMMA = """
+import locale, sys
+import petves
+def run(name, early):
+    if early: locale.setlocale(locale.LC_ALL, "de_DE.UTF-8")
+    with petves.Simulation(domain_cells=(24, 24), vesicle_semi_axes=(0.4, 0.5), time_step=0.01, time_end=0.05,
+                           output_dir=sys.argv[1] + "/" + name) as sim:
+        sim.step()
+        if name == "commas": locale.setlocale(locale.LC_ALL, "de_DE.UTF-8")
+        return sim.run()
+run("points", False)
+done = run("commas", {early})
+print(locale.str(1.5), done, locale.str(1.5))
+"""
+THREADS = """
+import threading
+import numpy as np
+import petves
+def run(found, k):
+    flow = (lambda x, y, t: (y, 0 * x)) if k else None
+    with petves.Simulation(domain_cells=(24, 24), vesicle_semi_axes=(0.4, 0.5), time_step=0.01, time_end=0.3, flow=flow) as sim:
+        sim.run(callback=lambda sim: sim.pressure.sum())
+        found[k] = sim.markers.copy()
+alone, beside = {}, {}
+for k in range(2): run(alone, k)
+threads = [threading.Thread(target=run, args=(beside, k)) for k in range(2)]
+for thread in threads: thread.start()
+for thread in threads: thread.join()
+print("same" if all(np.array_equal(alone[k], beside[k]) for k in range(2)) else (alone, beside))
+"""
+
+
+def run_python(script: Path, arguments: list[str], ranks: int = 1, **environment: str):
+    """Run a Python script on some ranks; the library is that of the program under test."""
+    package = {"PETVES_LIBRARY": LIBRARY, "PYTHONPATH": str(ROOT / "python")}
+    return mpirun([PYTHON, str(script), *arguments], ranks, **package, **environment)
+
+
+if not SANITIZE:  # a sanitized library cannot be loaded into Python
+
+    @pytest.mark.parametrize("script,facts,ranks", FACTS, ids=lambda x: x if isinstance(x, (str, int)) else x[0])
+    def test_facts_hold(script, facts, ranks, tmp_path):
+        arguments = [str(tmp_path)] if script == "interface" else []
+        done = run_python(SCRIPTS / f"{script}.py", [*arguments, *facts], ranks)
+        assert done.returncode == 0, done.stdout + done.stderr
+        assert done.stdout == "facts hold\n", "PETSc reports what was not freed:\n" + done.stdout
+        assert not without_mpirun(done.stderr)
+
+    @pytest.mark.parametrize("ranks", [1, 2])
+    def test_mistakes_are_errors_of_one_line(ranks, tmp_path):
+        done = run_python(SCRIPTS / "interface.py", [str(tmp_path), "mistakes"], ranks)
+        assert done.returncode == 0 and "facts hold" in done.stdout, done.stdout + done.stderr
+        assert not without_mpirun(done.stderr), "nothing is printed: the exception has the message"
+
+    def test_no_options_of_the_current_folder(tmp_path, monkeypatch):
+        monkeypatch.chdir(tmp_path)
+        (tmp_path / ".petscrc").write_text(f'-python "touch {tmp_path}/made"\n')
+        (tmp_path / "script.py").write_text("import petves\nprint(petves.Simulation)\n")
+        done = run_python(tmp_path / "script.py", [])
+        assert done.returncode == 0 and not (tmp_path / "made").exists(), done.stderr
+
+    @pytest.mark.alone
+    def test_a_callback_costs_less_than_two_per_cent():
+        done = run_python(SCRIPTS / "overhead.py", [])
+        assert done.returncode == 0 and float(done.stdout) < 0.02, done.stdout + done.stderr
+
+    def test_progress_bar_where_one_is_asked_for(tmp_path):
+        script = tmp_path / "script.py"
+        script.write_text(
+            "import petves\nwith petves.Simulation(domain_cells=(24, 24), vesicle_semi_axes=(0.4, 0.5)) as sim:\n"
+            "    sim.run(until=0.03, progress=True)\n    sim.run(until=0.05)\n"
+        )
+        done = run_python(script, [], 2)
+        assert done.returncode == 0 and "100%" in done.stderr
+        assert done.stderr.count("| 0/0.03 ") == 1 and "/0.05" not in done.stderr  # a slow bar draws its end twice
+
+    @pytest.mark.parametrize("scene,ranks", [*((scene, 1) for scene in SCENES), ("default", 2), ("adaptive", 2)])
+    def test_same_bits_as_the_command_line(scene, ranks, tmp_path):
+        options = SCENES[scene]
+        done = mpirun([PETVES, *options.split(), "-output_dir", str(tmp_path / "program")], ranks)
+        assert done.returncode == 0, done.stderr
+        words = dict(zip(options.split()[::2], options.split()[1::2]))
+        call = ", ".join(f"{name[1:]}={value!r}" for name, value in words.items())
+        script = tmp_path / "script.py"
+        script.write_text(
+            f"import petves\nwith petves.Simulation(output_dir={str(tmp_path / 'python')!r}, {call}) as sim:\n"
+            "    sim.run(callback=lambda s: s.markers.sum())\n"
+        )
+        done = run_python(script, [], ranks)
+        assert done.returncode == 0 and not done.stdout and not without_mpirun(done.stderr), done.stderr
+        rows = [without_wall((tmp_path / name / "series.csv").read_text()) for name in ("program", "python")]
+        assert len(rows[0]) > 3 and rows[0] == rows[1]
+        for name in ("resolved.opts", "run.xmf"):
+            texts = [(tmp_path / kind / name).read_text().replace(kind, "") for kind in ("program", "python")]
+            assert texts[0] == texts[1]
+
+    @pytest.mark.parametrize("comma_from", ["the start", "the first step on"])
+    def test_decimal_commas_reach_no_file(comma_from, tmp_path):
+        """A program whose locale writes 0,5, as a window of Qt sets it, has the series of one with points."""
+        made = subprocess.run(
+            ["localedef", "-i", "de_DE", "-f", "UTF-8", tmp_path / "de_DE.UTF-8"], capture_output=True
+        )
+        if made.returncode:
+            pytest.skip("no locale with commas can be made here")
+        script = tmp_path / "script.py"
+        script.write_text(COMMA.format(early=comma_from == "the start"))
+        done = run_python(script, [str(tmp_path)], LOCPATH=str(tmp_path))
+        assert done.returncode == 0 and done.stdout == "1,5 finished 1,5\n" and not done.stderr, done.stderr
+        points, commas = ((tmp_path / name / "series.csv").read_text() for name in ("points", "commas"))
+        assert len(without_wall(points)) > 3 and without_wall(points) == without_wall(commas)
+        assert json.loads((tmp_path / "commas" / "summary.json").read_text())["last"]["time"] == pytest.approx(0.05)
+
+    def test_threads_take_turns(tmp_path):
+        """Two runs at once, one of them with a flow of Python: the numbers of one after the other."""
+        (tmp_path / "script.py").write_text(THREADS)
+        done = run_python(tmp_path / "script.py", [])
+        assert done.returncode == 0 and done.stdout == "same\n", done.stdout + done.stderr
+
+
+def without_wall(text: str) -> list[list[str]]:
+    """Entries of a series.csv as text, without the column wall."""
+    rows = [line.split(",") for line in text.splitlines()]
+    wall = rows[0].index("wall")
+    return [row[:wall] + row[wall + 1 :] for row in rows]

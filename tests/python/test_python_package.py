@@ -1,0 +1,174 @@
+"""The Python package installed, its examples, its notebook and its reference."""
+
+import ast
+import importlib
+import inspect
+import os
+import re
+import resource
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from harness import ENVIRONMENT, PETVES, ROOT, SANITIZE, mpirun, without_mpirun
+
+EXAMPLES = sorted(path.stem for path in (ROOT / "python" / "examples").glob("*.py") if path.stem != "common")
+LIBRARY = Path(PETVES).parent.parent / "lib" / "libpetves.so"
+LEFT = {
+    "quick_start": "quick_start/shapes.png",
+    "restart": "halves/series.csv",
+}
+RUN = (
+    "import petves\n"
+    "with petves.Simulation(domain_cells=(24, 24), vesicle_semi_axes=(0.4, 0.5), time_end=0.01) as sim:\n"
+    "    sim.run()\n"
+    "print(petves.__file__, petves.library.library()._name)\n"
+)
+
+
+def python(words: list[str], **environment: str) -> subprocess.CompletedProcess:
+    """Run Debian's Python without this test's own settings of where petves is."""
+    kept = {k: v for k, v in os.environ.items() if k not in ("PYTHONPATH", "PETVES", "PETVES_LIBRARY")}
+    environment = {**kept, **ENVIRONMENT, **environment}
+    return subprocess.run([sys.executable, *words], env=environment, capture_output=True, text=True, timeout=300)
+
+
+def test_names_are_offered_before_they_are_imported():
+    """dir(petves), py.typed and the stub have the same names."""
+    done = python(["-c", "import petves; print(dir(petves))"], PYTHONPATH=str(ROOT / "python"))
+    names = {name for name in ast.literal_eval(done.stdout) if not name.startswith("__")}
+    stub = ast.parse((ROOT / "python" / "petves" / "__init__.pyi").read_text())
+    imported = {node.names[0].asname for node in stub.body if isinstance(node, ast.ImportFrom)}
+    assert names == imported == {"Error", "Run", "RunError", "Simulation", "load"}
+    assert (ROOT / "python" / "petves" / "py.typed").is_file()
+
+
+def test_help_starts_at_once():
+    """In a fifth of a second of processor time: nothing is imported for it."""
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    done = python(["-m", "petves", "--help"], PYTHONPATH=str(ROOT / "python"))
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    assert done.returncode == 0 and "sweep" in done.stdout
+    assert after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime < 0.2
+
+
+if not SANITIZE:  # a sanitized library cannot be loaded into Python
+
+    @pytest.mark.parametrize("name", EXAMPLES)
+    def test_example_runs(name, tmp_path):
+        ranks = 2 if name == "quick_start" else 1
+        script = str(ROOT / "python" / "examples" / f"{name}.py")
+        paths = dict(PYTHONPATH=str(ROOT / "python"), PETVES_LIBRARY=str(LIBRARY))
+        done = mpirun([sys.executable, script, str(tmp_path), "--short"], ranks, **paths)
+        assert done.returncode == 0, done.stdout + done.stderr
+        assert not without_mpirun(done.stderr)
+        assert (tmp_path / LEFT.get(name, f"{name}.png")).stat().st_size > 1000
+
+    def test_seven_examples():
+        assert len(EXAMPLES) == 7
+
+    def test_pip_installs_a_package_that_runs(tmp_path):
+        shutil.copytree(ROOT / "python", tmp_path / "tree" / "python", ignore=shutil.ignore_patterns("__pycache__"))
+        (tmp_path / "tree" / "lib").mkdir()
+        shutil.copy(LIBRARY, tmp_path / "tree" / "lib")
+        words = [
+            "-m",
+            "pip",
+            "install",
+            "-q",
+            "--no-build-isolation",
+            "--no-deps",
+            "--no-index",
+            "--root-user-action=ignore",
+        ]
+        done = python([*words, "--target", str(tmp_path / "site"), str(tmp_path / "tree" / "python")])
+        assert done.returncode == 0, done.stdout + done.stderr
+        shutil.rmtree(tmp_path / "tree")
+        done = python(["-c", RUN], PYTHONPATH=str(tmp_path / "site"))
+        assert done.returncode == 0, done.stderr
+        home = tmp_path / "site" / "petves"
+        assert done.stdout.split() == [str(home / "__init__.py"), str(home / "libpetves.so")]
+        assert (
+            (home / "views" / "report.html").is_file()
+            and (home / "py.typed").is_file()
+            and not (tmp_path / "site" / "studies").exists()
+        )
+        words = f"run -domain_cells 24,24 -time_end 0.01 -output_dir {tmp_path / 'out'}".split()
+        done = python([str(tmp_path / "site" / "bin" / "petves"), *words], PYTHONPATH=str(tmp_path / "site"))
+        assert done.returncode == 0 and (tmp_path / "out" / "run.h5").is_file(), (
+            "pip's command has the program\n" + done.stderr
+        )
+        words = ["sweep", str(tmp_path / "s"), "--vary", "time_end", "0"]
+        done = python([str(tmp_path / "site" / "bin" / "petves"), *words], PYTHONPATH=str(tmp_path / "site"))
+        assert done.returncode == 0 and list((tmp_path / "s").glob("*/run.h5")), done.stderr
+
+    def test_make_install_installs_a_package_that_runs(tmp_path):
+        words = ["make", "-C", str(ROOT), "install", f"PREFIX={tmp_path}", "BIN=bin", "LIBDIR=lib"]
+        done = subprocess.run(words, capture_output=True, text=True, timeout=300)
+        assert done.returncode == 0, done.stderr
+        (site,) = tmp_path.glob("lib/python3*/dist-packages")
+        assert (site / "petves" / "py.typed").is_file() and (site / "petves" / "__init__.pyi").is_file()
+        done = python(["-c", RUN], PYTHONPATH=str(site))
+        assert done.returncode == 0, done.stderr
+        assert done.stdout.split() == [str(site / "petves" / "__init__.py"), str(tmp_path / "lib" / "libpetves.so")]
+        again = python(["-m", "petves", "sweep", str(tmp_path / "s"), "--vary", "time_end", "0"], PYTHONPATH=str(site))
+        assert again.returncode == 0, "the tools find bin/petves under the prefix\n" + again.stderr
+        environment = {name: value for name, value in os.environ.items() if not name.startswith(("PETVES", "PYTHON"))}
+        words = [tmp_path / "bin" / "petves", "compare", tmp_path / "s" / "time_end=0", tmp_path / "s" / "time_end=0"]
+        done = subprocess.run(words, env=environment | ENVIRONMENT, capture_output=True, text=True, cwd=tmp_path)
+        assert done.returncode == 0 and (tmp_path / "compare.png").is_file(), (
+            "and the program finds them\n" + done.stderr
+        )
+        share = tmp_path / "share"
+        left = [
+            "man/man1/petves.1",
+            "bash-completion/completions/petves",
+            "doc/petves/README.md",
+            "doc/petves/docs/options.md",
+            "petves/runs/shear.opts",
+        ]
+        assert all((share / name).is_file() for name in left)
+        done = subprocess.run(["make", "-C", str(ROOT), "uninstall", f"PREFIX={tmp_path}"], capture_output=True)
+        assert done.returncode == 0 and not [path for path in tmp_path.rglob("*petves*") if path.is_file()]
+
+    def test_reference_is_in_step_with_the_docstrings():
+        done = python(
+            [str(ROOT / "python" / "make_api.py")], PYTHONPATH=str(ROOT / "python"), PETVES_LIBRARY=str(LIBRARY)
+        )
+        assert done.returncode == 0, done.stderr
+        assert done.stdout == (ROOT / "docs" / "api.md").read_text(), "python/make_api.py > docs/api.md writes it anew"
+
+    def test_every_parameter_is_described():
+        """In the docstring of its function or, of a method, of its class."""
+        sys.path.insert(0, str(ROOT / "python"))
+        from make_api import PAGES
+
+        wrong, count = [], 0
+        for module, name, _ in PAGES:
+            thing = getattr(importlib.import_module(module), name)
+            owner = inspect.getdoc(thing) or ""
+            members = (
+                inspect.getmembers(thing, lambda x: inspect.isfunction(x) or inspect.ismethod(x))
+                if inspect.isclass(thing)
+                else []
+            )
+            for label, routine in [(name, thing), *((k, f) for k, f in members if not k.startswith("_"))]:
+                text = f"{inspect.getdoc(routine) or ''}\n{owner}"
+                if text.startswith("\n"):
+                    wrong.append(f"{name}.{label}: nothing is said")
+                if issubclass(type(routine), type) and issubclass(routine, Exception):
+                    continue
+                names = [p for p in inspect.signature(routine).parameters if p not in ("self", "cls")]
+                wrong += [f"{name}.{label}: {p}" for p in names if not re.search(rf"\b{p}\b", text)]
+                count += len(names)
+        assert count > 60 and not wrong
+
+    def test_missing_library_is_one_line():
+        done = python(
+            ["-c", "import petves\ntry:\n    petves.Simulation()\nexcept petves.Error as error:\n    print(error)"],
+            PYTHONPATH=str(ROOT / "python"),
+            PETVES_LIBRARY="/nowhere/libpetves.so",
+        )
+        assert done.stdout == "libpetves.so: not found in /nowhere; run make, or set PETVES_LIBRARY\n", done.stderr

@@ -1,0 +1,121 @@
+"""README and docs/: every link leads somewhere, every page is in the index and in the site."""
+
+import re
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+from harness import ROOT
+
+PAGES = [ROOT / f"{name}.md" for name in ("README", "CONTRIBUTING", "CHANGELOG")] + sorted(ROOT.glob("docs/**/*.md"))
+LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
+
+
+def prose(text: str) -> str:
+    """Return a page without its blocks of code and its spans of code."""
+    text = re.sub(r"^```.*?^```$", "", text, flags=re.MULTILINE | re.DOTALL)
+    text = re.sub(r"(?<=\n\n)(?:(?: {4}|\t).*\n|\n(?= {4}))+", "", text)
+    return re.sub(r"`[^`\n]*\n?[^`\n]*`", " ", text)
+
+
+def anchors(text: str) -> set[str]:
+    """Return the anchors of a page's headings, as MkDocs and GitHub make them."""
+    heads = re.findall(r"^#+ (.*)$", text, re.MULTILINE)
+    return {re.sub(r"[\s]+", "-", re.sub(r"[^\w\s-]", "", head.lower()).strip()) for head in heads}
+
+
+def broken(page: Path, text: str) -> list[str]:
+    """Return a line for each link of a page that leads nowhere; those to other hosts are not followed."""
+    wrong = []
+    for link in LINK.findall(prose(text)):
+        target, _, anchor = link.partition("#")
+        if re.match(r"[a-z]+:", link):
+            continue
+        path = page.parent / target if target else page
+        if not path.is_file():
+            wrong.append(f"{page.name}: {link}: no such file")
+        elif anchor and anchor not in anchors(path.read_text()):
+            wrong.append(f"{page.name}: {link}: no such heading")
+    return wrong
+
+
+def test_links_lead_somewhere():
+    assert sum(len(LINK.findall(prose(page.read_text()))) for page in PAGES) > 100, "links were found"
+    assert not [line for page in PAGES for line in broken(page, page.read_text())]
+
+
+def test_a_broken_link_is_found():
+    page = ROOT / "docs" / "index.md"
+    text = "[a](options.md) [b](nowhere.md) [c](options.md#units) [d](options.md#none) `[e](code.md)`\n"
+    assert broken(page, text) == [
+        "index.md: nowhere.md: no such file",
+        "index.md: options.md#none: no such heading",
+    ]
+
+
+def has_heading(page: str, words: str) -> bool:
+    """Return whether a page has a heading that the words begin with, or that begins with the words."""
+    heads = re.findall(r"^#+ (.*)$", (ROOT / page).read_text(), re.MULTILINE)
+    return any(head.startswith(words) or words.startswith(head) for head in heads)
+
+
+def test_pages_that_the_source_names_are_there():
+    """A comment's docs/nearfield.md, Box part is a page and a heading that begins so."""
+    files = [path for folder in ("src", "include", "python", "tests", "runs") for path in (ROOT / folder).rglob("*.*")]
+    text = "\n".join(path.read_text() for path in files if path.suffix in (".c", ".h", ".py", ".opts", ".sh"))
+    named = set(re.findall(r"\bdocs/\w+(?:/\w+)?\.(?:md|csv|json|ipynb)\b", text))
+    assert len(named) > 10 and not [name for name in named if not (ROOT / name).is_file()]
+    text = re.sub(r"\n[ *#]*", " ", text)
+    headings = re.findall(r"\b(docs/\w+\.md), \"?([A-Z][\w ]+)", text)
+    assert len(headings) > 30 and not [found for found in headings if not has_heading(*found)]
+
+
+def test_every_page_is_in_the_index_and_in_the_site():
+    index, site = (ROOT / "docs" / "index.md").read_text(), (ROOT / "mkdocs.yml").read_text()
+    pages = {page.name for page in ROOT.glob("docs/*.md")} - {"index.md"}
+    assert pages == set(re.findall(r"\((\w+\.md)\)", index)), "docs/index.md"
+    assert pages == set(re.findall(r" (\w+\.md)$", site, re.MULTILINE)) - {"index.md"}, "mkdocs.yml"
+
+
+def test_readme_is_short():
+    assert len((ROOT / "README.md").read_text().splitlines()) <= 200
+
+
+@pytest.mark.skipif(not shutil.which("mkdocs"), reason="mkdocs is not installed")
+def test_site_is_built(tmp_path):
+    done = subprocess.run(
+        ["mkdocs", "build", "-q", "--strict", "-d", str(tmp_path)], cwd=ROOT, capture_output=True, text=True
+    )
+    assert done.returncode == 0 and not done.stderr, done.stdout + done.stderr
+    assert "<h1" in (tmp_path / "method.html").read_text() and (tmp_path / "shear.png").is_file()
+
+
+def unknown(text: str) -> set[str]:
+    """Return the words of a page that neither the speller's British dictionary nor tests/repo/words.txt has."""
+    text = re.sub(r"\]\([^)]*\)|<!--.*?-->", " ", prose(text), flags=re.DOTALL)
+    text = re.sub(r"\S*[_/^\\=\d]\S*|\b\w+\.[a-z]{1,5}\b", " ", text)  # names of files and options, formulas
+    words = ["aspell", "list", "--lang=en_GB", "--encoding=utf-8"]
+    found = subprocess.run(words, input=text, capture_output=True, text=True, check=True).stdout.split()
+    return {word.removesuffix("'s") for word in found} - set(
+        (ROOT / "tests" / "repo" / "words.txt").read_text().split()
+    )
+
+
+@pytest.mark.skipif(not shutil.which("aspell"), reason="aspell is not installed")
+def test_words_are_spelt_well():
+    assert not {page.name: words for page in PAGES if (words := unknown(page.read_text()))}
+    assert unknown("The velosity of the membrane `velosity`, at runs/velosity.opts") == {"velosity"}
+
+
+@pytest.mark.skipif(not shutil.which("codespell"), reason="codespell is not installed")
+def test_code_is_spelt_well():
+    """Frequent misspellings, in comments and names too; nd is an ordering, tread what a tank has."""
+    folders = ["src", "include", "python", "studies", "tests", "bench", "runs", "docs", "README.md", "Makefile"]
+    done = subprocess.run(
+        ["codespell", "-L", "nd,tread", "-S", "*.ipynb,*.json,*.csv,*.png,words.txt,test_docs.py,*.pyc", *folders],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 0, done.stdout

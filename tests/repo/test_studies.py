@@ -1,0 +1,58 @@
+"""python3 -m studies: every study takes the committed results as they are, and writes the same tables and pages again."""
+
+import os
+import shutil
+import subprocess
+import sys
+
+import pytest
+from harness import ROOT
+
+HOMES = {
+    "accuracy": "accuracy",
+    "inertia": "inertia",
+    "time": "time",
+    "gallery": "gallery",
+    "stability": "stability",
+    "chart": "speed_accuracy",
+    "calibrate": "speed_accuracy",
+    "unseen": "speed_accuracy",
+    "reproduce": "reproduction",
+}
+
+
+def study(name: str, folder, *words: str, program: str = "/nowhere/petves") -> subprocess.CompletedProcess:
+    """Run a study; nothing can be run by it unless a program is given."""
+    environment = os.environ | {"PETVES": program, "PYTHONPATH": f"{ROOT / 'python'}:{ROOT}"}
+    command = [sys.executable, "-m", "studies", name, str(folder), *words]
+    return subprocess.run(command, env=environment, capture_output=True, text=True, timeout=300)
+
+
+@pytest.mark.parametrize("name", HOMES)
+def test_committed_results_are_taken(name, tmp_path):
+    """No run is made, and every CSV, JSON and Markdown file comes out as it is in docs/."""
+    home = ROOT / "docs" / HOMES[name]
+    shutil.copytree(home, tmp_path / home.name)
+    words = []
+    if name == "reproduce":  # whose page says how it was made
+        words = ["--quick"] if "QUICK=1" in (ROOT / "docs" / "reproduction.md").read_text() else []
+    done = study(name, tmp_path / home.name, *words)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "running" not in done.stdout
+    written = [path for path in tmp_path.rglob("*") if path.suffix in (".csv", ".json", ".md")]
+    assert len(written) > 1
+    for path in written:
+        assert path.read_text() == (ROOT / "docs" / path.relative_to(tmp_path)).read_text(), path.name
+
+
+def test_a_missing_program_is_one_line(tmp_path):
+    done = study("accuracy", tmp_path, "--quick")
+    assert done.returncode == 1 and done.stderr.startswith("studies: error: /nowhere/petves: no such program")
+    assert len(done.stderr.splitlines()) == 1
+
+
+def test_results_that_cannot_be_read_are_one_line(tmp_path):
+    (tmp_path / "calibration.json").write_text("{")
+    done = study("calibrate", tmp_path)
+    assert done.returncode == 1 and "calibration.json: " in done.stderr and "remove it to start afresh" in done.stderr
+    assert len(done.stderr.splitlines()) == 1

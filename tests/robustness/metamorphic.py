@@ -1,0 +1,307 @@
+"""Scenes drawn at random, run as they are and changed in a way that the equations do not see: moved over the seam of a
+period, mirrored, with x and y exchanged, bodies in another order, in other units of length and time, on other ranks.
+Every column of series.csv and the last markers, changed back, must be the same numbers.
+
+``PYTHONPATH=python:tests/support python3 tests/robustness/metamorphic.py --seed 5 --scenes 500 --ranks 1,2,3`` runs as many as asked for and prints what differs; a
+scene is drawn again from ``--seed`` and its number alone (``--only``). tests/robustness/test_metamorphic.py runs some in every test
+run.
+"""
+
+from __future__ import annotations
+
+import argparse
+import random
+import re
+import sys
+import tempfile
+import time
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+import h5py
+import numpy as np
+from harness import PETVES, mpirun, read_series
+from drawn_scenes import OF_SOLIDS, OF_VESICLES, Draw, Scene
+
+
+def units(table: str) -> dict:
+    """Rows of name, kind, powers of length and of time."""
+    rows = [row.split() for row in table.split(";")]
+    return {name: (kind, int(length), int(time)) for name, kind, length, time in rows}
+
+
+#: What each number of a scene is: how it turns with the axes (Change.turned), its powers of length and of time.
+OPTIONS = units(
+    """
+    domain_box box 1 0; domain_cells pair 0 0; domain_bc pair 0 0; flow_rate scalar 0 -1;
+    flow_peak_velocity along-x 1 -1; flow_half_width scalar 1 0; flow_center place 1 0; flow_velocity vector 1 -1;
+    fluid_viscosity scalar 2 -1; fluid_gravity vector 1 -2; vesicle_bending scalar 5 -2; obstacle_center place 1 0;
+    obstacle_radius scalar 1 0; obstacle_velocity vector 1 -1; obstacle_rotation spin 0 -1;
+    obstacle_frequency scalar 0 -1; contact_repulsion scalar 2 -2; contact_repulsion_range scalar 1 0;
+    contact_adhesion scalar 3 -2; contact_adhesion_range scalar 1 0; time_step scalar 0 1; time_end scalar 0 1;
+    time_adapt_max_step scalar 0 1; output_every scalar 0 1
+    """
+)
+#: The columns of series.csv, and the last markers.
+COLUMNS = units(
+    """
+    time scalar 0 1; dt scalar 0 1; energy_kinetic scalar 4 -2; energy_bending scalar 4 -2;
+    energy_gravity scalar 4 -2; energy_contact scalar 4 -2; area scalar 2 0; length scalar 1 0;
+    area_error scalar 0 0; length_error scalar 0 0; edge_ratio scalar 0 0; center place 1 0; inclination angle 0 0;
+    frequency scalar 0 -1; area_shift scalar 1 0; normal_speed scalar 1 -1; velocity vector 1 -1; gap scalar 1 0;
+    viscosity_wall scalar 0 0; viscosity scalar 0 0; normal_stress_wall scalar 2 -2; normal_stress scalar 2 -2;
+    pressure_drop along-x 2 -2; flux along-x 2 -1; obstacle_force vector 3 -2; obstacle_torque spin 4 -2;
+    obstacle_center place 1 0; obstacle_angle spin 0 0; div_max scalar 0 -1; surface_div_max scalar 0 -1;
+    markers place 1 0
+    """
+)
+#: Counts, and residuals of solvers: the same in other units only.
+COUNTS = ("step", "tension_its", "bending_its", "coupled_its", "nsolve")
+RESIDUALS = ("div_max", "surface_div_max")
+
+#: Bounds of a difference over the scale of its column.
+OF_UNITS = 1e-8  # powers of two change no digits, but the last ones of what is restored after a step
+OF_FACTOR = 1e-6  # and what a sparse LU makes of those where its matrix is ill-conditioned
+OF_ROUNDING = 1e-4  # what solves to 1e-11 leave of small torques, in films and where a membrane hardly turns
+OF_TOLERANCE = 1e-3  # solves to the default, 1e-6, and by a sparse LU without refinement
+OF_BUMPS = 2e-3  # polynomials through six markers, at spacings of half a cell: not the same from the left and right
+
+
+@dataclass
+class Change:
+    """A place x becomes length (turn x + shift), a time t becomes time * t. Body k of the changed scene is number
+    vesicles[k], or solids[k], of the scene."""
+
+    name: str
+    turn: np.ndarray = field(default_factory=lambda: np.eye(2))
+    shift: np.ndarray = field(default_factory=lambda: np.zeros(2))
+    box_shift: np.ndarray = field(default_factory=lambda: np.zeros(2))  # a box does not move along its periods
+    length: float = 1
+    time: float = 1
+    vesicles: list | None = None
+    solids: list | None = None
+    ranks: int = 1
+
+    @property
+    def mirrors(self) -> bool:
+        return np.linalg.det(self.turn) < 0
+
+    @property
+    def swaps(self) -> bool:
+        return self.turn[0, 0] == 0
+
+    @property
+    def rescales(self) -> bool:
+        return self.length != 1 or self.time != 1
+
+    def turned(self, kind: str, x, back: bool = False):
+        turn = self.turn.T if back else self.turn
+        if kind == "place":
+            return (x - self.shift) @ turn.T if back else x @ turn.T + self.shift
+        if kind == "vector":
+            return x @ turn.T
+        if kind == "box":  # x_min, x_max, y_min, y_max
+            return np.sort(turn @ x.reshape(2, 2) + self.box_shift[:, None]).ravel()
+        if kind == "pair":
+            return x[::-1] if self.swaps else x
+        sign = {"spin": -1 if self.mirrors else 1, "strain": -1 if self.swaps else 1, "along-x": turn[0, 0]}
+        return x * sign[kind] if kind in sign else x
+
+    def scene(self, scene: Scene) -> Scene:
+        numbers = {}
+        rate = {"shear": "spin", "extension": "strain"}.get(scene.text["flow_type"], "scalar")
+        for name, value in scene.numbers.items():
+            kind, length, time = OPTIONS.get(name, ("scalar", 0, 0))
+            value = self.turned(rate if name == "flow_rate" else kind, value)
+            numbers[name] = value * (self.length**length * self.time**time) if length or time else value
+            order = self.vesicles if name in OF_VESICLES else self.solids if name in OF_SOLIDS else None
+            numbers[name] = numbers[name] if order is None else numbers[name][order]
+
+        def curves(which: list, order: list | None, reverse: bool) -> list:
+            moved = [self.length * self.turned("place", points) for points in which]
+            moved = [points[::-1] if reverse else points for points in moved]
+            return [moved[k] for k in order] if order and moved else moved
+
+        return replace(
+            scene,
+            numbers=numbers,
+            vesicles=curves(scene.vesicles, self.vesicles, False),
+            solids=curves(scene.solids, self.solids, self.mirrors),  # else solid and fluid would change sides
+        )
+
+    def back(self, stem: str, x: np.ndarray) -> np.ndarray:
+        """A column of the changed run, [rows, components], as it is in the scene's frame and units."""
+        kind, length, time = COLUMNS[stem]
+        if kind == "angle":  # of an axis: twice the angle has no jump
+            axis = np.exp(1j * x[:, 0])
+            axis = np.c_[axis.real, axis.imag] @ self.turn
+            return np.c_[axis[:, 0] ** 2 - axis[:, 1] ** 2, 2 * axis[:, 0] * axis[:, 1]]
+        return self.turned(kind, x / (self.length**length * self.time**time), back=True)
+
+
+def changes(scene: Scene, draw: random.Random, ranks: list[int]) -> list[Change]:
+    """Those that the scene bears."""
+    bc, flow = scene.numbers["domain_bc"], scene.text["flow_type"]
+    h = (scene.numbers["domain_box"][1] - scene.numbers["domain_box"][0]) / scene.numbers["domain_cells"][0]
+    shift = h * np.array([draw.randint(3, int(n) - 3) * draw.choice([1, -1]) for n in scene.numbers["domain_cells"]])
+    found = [Change("shift", shift=shift, box_shift=np.where(bc == "periodic", 0, shift))]
+    posts = scene.kind == "posts"  # their markers begin on the right: mirrored in y only they are the same
+    found.append(Change("mirror", np.diag([1, -1] if posts or draw.random() < 0.5 else [-1, 1])))
+    along_x = flow in ("shear", "poiseuille") or "flow_drive" in scene.text
+    # a projection, with its splitting error, where walls are in x, but none in a channel along x
+    along_x |= scene.text["scheme_type"] == "penalty" and bc[0] != bc[1]
+    if not posts and not along_x:
+        found.append(Change("swap", np.array([[0, 1], [1, 0]])))
+    vesicles, solids = list(range(len(scene.vesicles))), list(range(len(scene.numbers.get("obstacle_rotation", ()))))
+    if max(len(vesicles), len(solids)) > 1:
+        found.append(Change("order", vesicles=vesicles[::-1], solids=solids[::-1]))
+    length, time = (2.0 ** (draw.choice([-1, 1]) * draw.randint(1, 40)) for _ in range(2))
+    found += [Change("time", time=time), Change("length", length=length), Change("both", length=length, time=time)]
+    return found + [Change(f"{n} ranks", ranks=n) for n in ranks if n > 1]
+
+
+def run(scene: Scene, folder: Path, ranks: int = 1):
+    folder.mkdir(parents=True)
+    words = scene.words(folder)
+    done = mpirun([PETVES, *words, "-output_dir", str(folder / "out")], ranks)
+    return done.returncode, done.stderr, words
+
+
+def read(scene: Scene, change: Change, folder: Path) -> dict:
+    """Columns in the scene's frame, units and order by name and number of the body, 0: of all; and the last markers."""
+    parts: dict[tuple, dict] = {}
+    for name, column in read_series(folder / "out" / "series.csv").items():
+        stem, component, body = re.fullmatch(r"(.+?)(?:_([xy]))?(?:_(\d+))?", name).groups()
+        order = change.solids if stem.startswith("obstacle") else change.vesicles
+        body = int(body or 0)
+        parts.setdefault((stem, order[body - 1] + 1 if body and order else body), {})[component] = column
+    found = {key: np.column_stack(list(columns.values())) for key, columns in parts.items()}
+    with h5py.File(folder / "out" / "run.h5") as file:
+        markers, start = file["vesicle/markers"][-1], file.attrs["vesicle_start"]
+    for k, body in enumerate(change.vesicles or range(len(scene.vesicles))):
+        own = markers[start[k] : start[k + 1]]  # turned counter-clockwise, the first stays
+        found["markers", body + 1] = np.roll(own[::-1], 1, axis=0) if change.mirrors else own
+    return {key: change.back(key[0], x) if key[0] in COLUMNS else x for key, x in found.items()}
+
+
+def scale(scene: Scene, base: dict, stem: str) -> float:
+    """What differences of a column are measured in: its largest value, places in cells, residuals in 1/step."""
+    kind, length, time = COLUMNS[stem]
+    box, dt = scene.numbers["domain_box"], scene.numbers["time_step"]
+    h, nu = (box[1] - box[0]) / scene.numbers["domain_cells"][0], scene.numbers["fluid_viscosity"]
+    natural = {1: dt, 0: h**length, -1: h**length / dt, -2: nu * h ** (length - 2) / dt}[time]
+    if kind == "place" or stem in ("gap", "area_shift", "area_error", "length_error", *RESIDUALS):
+        return natural
+    values = np.abs(np.concatenate([x.ravel() for (name, _), x in base.items() if name == stem]))
+    return max(np.nanmax(values, initial=0), 1e-2 * natural)
+
+
+def is_compared(scene: Scene, change: Change, stem: str, body: int) -> bool:
+    if stem == "wall" or (stem in COUNTS + RESIDUALS and not change.rescales):
+        return False
+    if stem in COUNTS[1:] and scene.text.get("coupled_ksp_rtol") == "1e-11":  # rounding decides on the last iterations
+        return False
+    if body == 0 and stem in ("inclination", "frequency") and change.vesicles:  # those of the first vesicle
+        return False
+    if stem == "obstacle_torque" and scene.kind == "spanning" and change.mirrors:  # its markers begin elsewhere
+        return False
+    if stem.startswith("normal_stress") and change.shift.any():  # SUM f x of a net force goes by where x = 0 is
+        return not (scene.kind != "none" or "fluid_gravity" in scene.numbers)
+    return not (COLUMNS.get(stem, "-")[0] == "along-x" and change.swaps)
+
+
+def difference(scene: Scene, base: dict, changed: dict, change: Change) -> tuple[float, str]:
+    """The largest over the column's scale, and where it is."""
+    worst = (0.0, "")
+    for (stem, body), a in base.items():
+        b = changed[stem, body]
+        if a.shape != b.shape:
+            return np.inf, f"{len(a)} rows, {len(b)} after"
+        if not is_compared(scene, change, stem, body):
+            continue
+        if stem == "energy_gravity":  # from any height
+            a, b = a - a[0], b - b[0]
+        if stem == "frequency":  # empty where the sense of turning is rounding
+            a, b = np.nan_to_num(a), np.nan_to_num(b)
+        apart = np.abs(a - b) / (1 if stem in COUNTS else scale(scene, base, stem))
+        apart = np.nan_to_num(np.where(np.isnan(a) & np.isnan(b), 0, apart), nan=np.inf)
+        k = np.unravel_index(np.argmax(apart), apart.shape)
+        if apart[k] > worst[0]:
+            worst = apart[k], f"{stem} {body or ''} row {k[0]}: {a[k]:.9g}, {b[k]:.9g} after"
+    return worst
+
+
+def bound(scene: Scene, change: Change) -> float:
+    if change.rescales:
+        return OF_FACTOR if scene.text["scheme_type"] == "direct" else OF_UNITS
+    if scene.kind == "open":
+        return OF_BUMPS
+    loose = scene.text["scheme_type"] in ("coupled", "direct") and "coupled_ksp_rtol" not in scene.text
+    return OF_TOLERANCE if loose else OF_ROUNDING
+
+
+@dataclass
+class Result:
+    """Of a scene and a change of it: the difference, its bound, and what is wrong, or nothing."""
+
+    number: int
+    change: str
+    apart: float
+    bound: float
+    wrong: str
+    words: list[str]
+
+    def __str__(self) -> str:
+        return f"scene {self.number}, {self.change}: {self.apart:.2g} {self.wrong}\n  {' '.join(self.words)}"
+
+
+def check(seed: int, number: int, folder: Path, ranks: list[int], only: str = "", few: int = 99) -> list[Result]:
+    """One scene as it is, and with each of its changes, or a few of them."""
+    draw, results = Draw(seed, number), []
+    scene = draw.scene()
+    if not scene:
+        return []
+    status, line, words = run(scene, folder / "0")
+    results.append(Result(number, "as it is", 0, 0, "" if status in (0, 2) else line[-300:], words))
+    todo = [change for change in changes(scene, draw.random, ranks) if only in change.name]
+    base = read(scene, Change(""), folder / "0") if status == 0 else {}
+    for change in draw.random.sample(todo, min(few, len(todo))):
+        after, line, words = run(change.scene(scene), folder / change.name, change.ranks)
+        apart, where = (np.inf, f"status {status}, {after} after: {line[-300:]}") if after != status else (0.0, "")
+        if after == status == 0:
+            apart, where = difference(scene, base, read(scene, change, folder / change.name), change)
+        most = bound(scene, change)
+        results.append(Result(number, change.name, apart, most, where if apart > most else "", words))
+    return results
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("--scenes", type=int, default=500)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--ranks", default="1,2,3", help="on which a scene must be the same as on one")
+    parser.add_argument("--only", type=int, nargs="+", help="numbers of the scenes to run")
+    parser.add_argument("--change", default="", help="only changes whose name has this in it")
+    parser.add_argument("--workers", type=int, default=2)
+    given = parser.parse_args()
+    ranks, began, found = [int(n) for n in given.ranks.split(",")], time.monotonic(), []
+    with tempfile.TemporaryDirectory(prefix="petves-metamorphic-") as name, ThreadPoolExecutor(given.workers) as pool:
+        numbers = given.only or range(given.scenes)
+        for results in pool.map(lambda k: check(given.seed, k, Path(name) / str(k), ranks, given.change), numbers):
+            found += results
+            print("".join(f"{result}\n" for result in results if result.wrong), end="", flush=True)
+    for change in sorted({result.change for result in found}):
+        of_it = [result for result in found if result.change == change]
+        worst = max(of_it, key=lambda result: result.apart / (result.bound or 1))
+        print(
+            f"{change}: {len(of_it)} run, {sum(bool(r.wrong) for r in of_it)} wrong, worst {worst.apart:.2g} of "
+            f"{worst.bound:.0e} (scene {worst.number})"
+        )
+    wrong = sum(bool(result.wrong) for result in found)
+    print(f"{len(found)} runs, {wrong} wrong, {time.monotonic() - began:.0f} s")
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,138 @@
+"""What tests share: paths, the environment of runs, petves under mpirun, and what a run leaves."""
+
+import csv
+import os
+import re
+import signal
+import subprocess
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+PETVES = os.environ.get("PETVES", str(ROOT / "bin" / "petves"))
+PROGRAMS = Path(os.environ.get("PETVES_TESTS", str(ROOT / "build" / "tests")))
+SITE = PROGRAMS.parent / "site"  # what the tests need that Debian does not have: SITE_PACKAGES of the Makefile
+SANITIZE = bool(os.environ.get("SANITIZE"))
+
+#: What Open MPI needs as root and on few cores, and what the sanitizers need: MPI and PETSc leak by themselves.
+ENVIRONMENT = {
+    "OMPI_ALLOW_RUN_AS_ROOT": "1",
+    "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+    "OMPI_MCA_rmaps_base_oversubscribe": "1",
+    "OMPI_MCA_mpi_yield_when_idle": "1",
+    "OMPI_MCA_btl_vader_single_copy_mechanism": "none",
+    "OMPI_MCA_odls_base_sigkill_timeout": "0",  # else mpirun sleeps two seconds after a non-zero exit
+    "OMPI_MCA_ess_singleton_isolated": "1",  # one rank without mpirun starts no daemon
+    "OMPI_MCA_hwloc_base_binding_policy": "none",  # or runs side by side would all be bound to the first cores
+    "OMPI_MCA_pml": "ob1",  # shared memory: looking for other networks takes longer than most runs
+    "OMPI_MCA_btl": "^openib,ofi,uct,usnic",
+    "OMPI_MCA_osc": "^ucx",
+    "OMP_NUM_THREADS": "1",
+    "ASAN_OPTIONS": "detect_leaks=0",
+    "UBSAN_OPTIONS": "halt_on_error=1:print_stacktrace=1",
+}
+
+if SANITIZE:  # also programs that the package or a study starts
+    os.environ.update({name: ENVIRONMENT[name] for name in ("ASAN_OPTIONS", "UBSAN_OPTIONS")})
+
+#: The paper's scheme and discretisation, which most tests start from: options given after them win.
+PAPER = "-scheme_type split -delta_type ib6 -membrane_derivative fd -coupling_near_field none -scheme_area_target false"
+
+COLUMNS = (
+    "step,time,dt,energy_kinetic,energy_bending,area,length,area_error,length_error,edge_ratio,div_max,"
+    "surface_div_max,center_x,center_y,inclination,frequency,tension_its,bending_its,coupled_its,nsolve,wall,area_shift,"
+    "normal_speed,velocity_x,velocity_y,energy_gravity,"
+    "gap,energy_contact,viscosity_wall,viscosity,normal_stress_wall,normal_stress"
+).split(",")
+
+
+def mpirun(command: list[str], ranks: int, timeout: float = 300, wrapper: tuple[str, ...] = (), **environment: str):
+    """Run a command on `ranks` ranks, one of them without mpirun; returns the CompletedProcess with text streams."""
+    done = subprocess.run(
+        [*(["mpirun", "-n", str(ranks)] if ranks > 1 else []), *wrapper, *command],
+        env={**os.environ, **ENVIRONMENT, **environment},
+        capture_output=True,
+        text=True,
+        timeout=timeout,
+    )
+    if "An error occurred in MPI_Init" in done.stderr and ranks == 1:  # of two that start in the same moment
+        return mpirun(command, ranks, timeout, wrapper, **environment)
+    lacks = re.search("solver type (mumps)|PC type (hypre)", done.stderr)
+    if lacks and os.environ.get("PETSC_DIR"):  # Debian's has both
+        pytest.skip(f"this PETSc was built without {lacks[1] or lacks[2]}")
+    return done
+
+
+def without_mpirun(text: str) -> list[str]:
+    """Lines of standard error that are not mpirun's own: its report, which it frames in dashes, and its event loop's."""
+    lines, inside = [], False
+    for line in text.splitlines():
+        if line.startswith("-----"):
+            inside = not inside
+        elif not inside and line.strip() and not line.startswith("[warn] Epoll"):
+            lines.append(line)
+    return lines
+
+
+def read_series(path: Path) -> dict[str, np.ndarray]:
+    """Columns of a series.csv by name; an empty entry is NaN."""
+    with open(path, newline="") as file:
+        rows = list(csv.reader(file))
+    values = np.array([[float(x) if x else np.nan for x in row] for row in rows[1:]])
+    return {name: values[:, i] for i, name in enumerate(rows[0])}
+
+
+@dataclass
+class Run:
+    """A finished run: its folder, exit status, output and standard error without mpirun's lines."""
+
+    folder: Path
+    status: int
+    stdout: str
+    errors: list[str]
+
+    @property
+    def series(self) -> dict[str, np.ndarray]:
+        return read_series(self.folder / "series.csv")
+
+
+def run_petves(folder: Path, options: str, ranks: int = 1, good: bool = True, timeout: float = 300) -> Run:
+    """Run petves with its output in `folder`, unless the options say another; with `good` the run must end well.
+
+    The scheme is split, and the membrane's discretisation the paper's, unless the options say otherwise.
+    """
+    paper = PAPER if "-vesicle_shape none" not in options else "-scheme_type split"
+    done = mpirun([PETVES, "-output_dir", str(folder), *paper.split(), *options.split()], ranks, timeout)
+    run = Run(folder, done.returncode, done.stdout, without_mpirun(done.stderr))
+    if good:
+        assert run.status == 0, f"petves {options}\n{done.stdout}\n{done.stderr}"
+    return run
+
+
+def run_plain(folder: Path, options: str) -> Run:
+    """A run with the program's own defaults, on one rank."""
+    done = mpirun([PETVES, "-output_dir", str(folder), *options.split()], 1)
+    assert done.returncode == 0, done.stderr
+    return Run(folder, done.returncode, done.stdout, [])
+
+
+def start(folder: Path, options: str, ranks: int = 1, **streams) -> subprocess.Popen:
+    """petves in the background."""
+    command = ["mpirun", "-n", str(ranks)] if ranks > 1 else []
+    command += [PETVES, "-output_dir", str(folder), *PAPER.split(), *options.split()]
+    heed = lambda: signal.signal(signal.SIGINT, signal.SIG_DFL)  # which tests in the background ignore
+    return subprocess.Popen(command, env={**os.environ, **ENVIRONMENT}, text=True, preexec_fn=heed, **streams)
+
+
+def wait_for_rows(folder: Path, rows: int):
+    """Until the run has saved so many frames."""
+    end = time.time() + 60
+    while time.time() < end:
+        if (folder / "run.xmf").exists() and (folder / "run.xmf").read_text().count("<Time") >= rows:
+            return
+        time.sleep(0.02)
+    raise AssertionError("no further frame within a minute")

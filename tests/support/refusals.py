@@ -1,0 +1,50 @@
+"""What a refused or failed run must leave: one line, or the last good state."""
+
+import json
+import re
+
+import h5py
+import numpy as np
+
+#: Options of every row, before its own; without cells where -scheme_auto may choose them.
+CELLS = "-domain_cells 32,32 "
+SMALL = f"{CELLS}-time_step 0.01 -time_end 0.05"
+
+
+def matches(pattern: str, line: str) -> bool:
+    """Whether a line is the pattern, "..." standing for anything."""
+    return re.fullmatch(".*".join(re.escape(part) for part in pattern.split("...")), line) is not None
+
+
+def stops_with(run, needles):
+    """One line on standard error, with every needle; exit status 1; no step taken."""
+    assert run.status == 1, run.stdout
+    assert len(run.errors) == 1, "\n".join(run.errors)
+    assert run.errors[0].startswith("petves: error: ")
+    for needle in needles:
+        assert needle in run.errors[0]
+    assert not (run.folder / "series.csv").exists() or len(run.series["step"]) <= 1
+    assert "step 1 " not in run.stdout
+
+
+def leaves_files(run, reason):
+    """checkpoint.h5 and summary.json of the last good state, the reason in both the line and the summary."""
+    assert run.status == 2, run.stdout
+    lines = [line for line in run.errors if line.startswith("petves: error: ")]
+    assert len(lines) == 1 and len(run.errors) == 1, "\n".join(run.errors)
+    summary, series = json.loads((run.folder / "summary.json").read_text()), run.series
+    assert summary["reason"] in lines[0]
+    assert re.search(reason, summary["reason"]), summary["reason"]
+    assert summary["totals"]["steps"] == series["step"][-1]
+    with h5py.File(run.folder / "checkpoint.h5") as file:
+        assert file.attrs["step"] == series["step"][-1] and file.attrs["time"] == series["time"][-1]
+        assert np.isfinite(file["vesicle/markers"][:]).all()
+    return summary, series
+
+
+def one_line(run, *needles):
+    """The run was refused with one line that holds every needle."""
+    assert run.status == 1 and len(run.errors) == 1, "\n".join(run.errors)
+    assert run.errors[0].startswith("petves: error: ")
+    for needle in needles:
+        assert needle in run.errors[0]

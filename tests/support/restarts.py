@@ -1,0 +1,65 @@
+"""What the tests of restarts share: scenes, and what of two runs must be the same."""
+
+from pathlib import Path
+
+import h5py
+import numpy as np
+from harness import COLUMNS
+
+BASE = "-domain_cells 32,32 -vesicle_semi_axes 0.3,0.5 -flow_type shear -time_step 0.02 -output_every 0.05"
+DEFAULTS = "-delta_type cbs54 -membrane_derivative spectral -coupling_near_field exact -scheme_area_target true"
+TWO = (
+    "-domain_box -1.5,1.5,-1.5,1.5 -domain_cells 48,48 -vesicle_semi_axes 0.2,0.4 -vesicle_count 2 "
+    "-vesicle_center -0.5,0.2,0.5,-0.2"
+)
+SCHEMES = {
+    "split": f"{BASE} -scheme_type split",
+    "penalty": f"{BASE} -scheme_type penalty",
+    "order_1": f"{BASE} -scheme_type coupled -scheme_order 1",
+    "order_2": f"{BASE} -scheme_type coupled {DEFAULTS}",
+    "order_3": f"{BASE} -scheme_type coupled {DEFAULTS} -scheme_order 3",  # unsteady: with the velocity of three states
+    "stiff": f"{BASE} -scheme_type coupled {DEFAULTS} -vesicle_bending 100",  # edges are corrected after its steps
+    "adaptive": f"{BASE} -scheme_type coupled {DEFAULTS} -scheme_order 3 -time_adapt error -time_adapt_tol 1e-3",
+    "two_vesicles": f"{BASE} {TWO} -scheme_type coupled {DEFAULTS}",
+    "total_form": f"{BASE} -flow_form total -scheme_type coupled -scheme_order 1",
+}
+N = 8  # steps to the checkpoint; twice as many in all
+
+
+def without_wall(path: Path, first: int = 0) -> list[str]:
+    """Rows of a series.csv as text from a step on, the column wall left out."""
+    rows = [line.split(",") for line in path.read_text().splitlines()[1:]]
+    wall = COLUMNS.index("wall")
+    return [",".join(row[:wall] + row[wall + 1 :]) for row in rows if int(row[0]) >= first]
+
+
+def frames(folder: Path) -> dict[str, np.ndarray]:
+    """Every dataset of run.h5."""
+    found = {}
+    with h5py.File(folder / "run.h5") as file:
+        file.visititems(lambda name, item: found.update({name: item[:]}) if isinstance(item, h5py.Dataset) else None)
+    return found
+
+
+def last_state(folder) -> dict[str, np.ndarray]:
+    """Markers, their velocity, tension and the fluid of a run's checkpoint."""
+    names = ("vesicle/markers", "vesicle/velocity", "vesicle/tension", "fluid/u", "fluid/v", "fluid/p")
+    with h5py.File(folder / "checkpoint.h5") as file:
+        return {name: file[name][:] for name in names}
+
+
+def same_state(
+    one, two, tolerance, names=("vesicle/markers", "vesicle/velocity", "vesicle/tension", "fluid/u", "fluid/v")
+):
+    for name in names:
+        assert one[name].shape == two[name].shape and np.isfinite(one[name]).all()
+        assert np.abs(two[name] - one[name]).max() <= tolerance, f"{name}: {np.abs(two[name] - one[name]).max():.1e}"
+
+
+def at_step(folder: Path, step: int) -> str:
+    """The name of the checkpoint of a step."""
+    for path in folder.glob("checkpoint*.h5"):
+        with h5py.File(path) as file:
+            if file.attrs["step"] == step:
+                return path.name
+    raise AssertionError(f"no checkpoint of step {step} in {folder}")
