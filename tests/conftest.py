@@ -46,6 +46,13 @@ def pytest_collection_modifyitems(items):
     items.sort(key=lambda item: order.get(item.path.stem, len(LONG)))
 
 
+def pytest_terminal_summary(terminalreporter):
+    """The rules of the house that are still broken, after a run of the test that reads the list."""
+    if any("test_no_rule_is_broken" in node for node in _passed | _failed):
+        terminalreporter.section("house_exceptions.txt")
+        terminalreporter.write((ROOT / "tests" / "repo" / "house_exceptions.txt").read_text())
+
+
 @pytest.hookimpl(hookwrapper=True)
 def pytest_runtest_protocol(item):
     """Tests of two workers share the machine, but for those marked alone. The gate lets tests in one after
