@@ -1,6 +1,6 @@
 /* -scheme_auto: boundaries, box and grid, where they are not given (docs/settings.md). */
 #include "scene/auto.h"
-#include "scene/kinds.h"
+#include "scene/vesiclekinds.h"
 
 /* Error of a vesicle in walls or periods over (R0/W)^2, W from its middle to a side of the box, against unbounded
    fluid, the worst of the calibration (tests/program/test_auto.py compares with the table). */

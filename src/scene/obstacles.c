@@ -1,7 +1,7 @@
 /* The obstacles of a scene: circles, bumps or curves of a file, markers at equal distances on them, and what their
    surfaces do. */
 #include "kernel/kernel.h"
-#include "scene/arcs.h"
+#include "scene/openbodies.h"
 
 /* The curves before they have markers. */
 typedef struct {

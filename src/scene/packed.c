@@ -1,6 +1,6 @@
 /* Where vesicles lie: at the centres given, or packed into the box. */
 #include "kernel/kernel.h"
-#include "scene/kinds.h"
+#include "scene/vesiclekinds.h"
 #include <stdlib.h>
 
 #define GAP_CELLS 1    /* of the default gap of a packing, */

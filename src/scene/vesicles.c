@@ -1,6 +1,6 @@
 /* The initial markers of a scene: equal edges on ellipses or on curves from a file, each where it belongs. */
 #include "curve/crossing.h"
-#include "scene/kinds.h"
+#include "scene/vesiclekinds.h"
 
 /* Markers X on a kind's curve, turned and moved, as Y, which may be X. */
 static void Place(const Kind *kind, const Pose *at, PetscInt M, const PetscReal X[], PetscReal Y[]) {

@@ -1,6 +1,6 @@
 /* The kinds of vesicles of a scene: which vesicle is of which, and the markers that all of a kind share. */
 #include "kernel/kernel.h"
-#include "scene/kinds.h"
+#include "scene/vesiclekinds.h"
 #include <stdlib.h>
 
 #define MAX_NEWTON 20 /* of the first markers; four are usual */

@@ -1,4 +1,4 @@
-#include "scene/arcs.h"
+#include "scene/openbodies.h"
 #include "kernel/kernel.h"
 
 #define SAMPLES 4000 /* of a curve, where it is looked for its places off a wall */
