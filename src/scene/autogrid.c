@@ -2,7 +2,8 @@
 #include "scene/auto.h"
 
 /* Worst errors over vesicles in shear, in a channel, between four walls, in pairs and with viscosity contrast, by R0/h;
-   few: with markers 1.5 h apart, whose number is what fails first (tests/program/test_auto.py compares with the table). */
+   few: with markers 1.5 h apart, whose number is what fails first (tests/program/test_auto.py compares with the table).
+ */
 static const struct {
   PetscReal cells, error, few;
 } grids[] = {{8, 2.5e-5, 8.1e-4},

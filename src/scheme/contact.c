@@ -4,12 +4,13 @@
 #include "scheme/films.h"
 #include "scheme/stepcommon.h"
 
-#define CONTACT 2       /* cells between membranes below which a warning is due */
-#define CLOSE_PARTS 1.5 /* edges between parts of one membrane, likewise with the exact near field */
+#define CONTACT 2 /* cells between membranes below which a warning is due */
+#define CLOSE_PARTS                                                                                                    \
+  1.5 /* edges between parts of one membrane below which a warning is due, with the exact near field */
 
-/* Distance of markers below which the fluid between two membranes, or two parts of one, is not resolved: two cells;
-   with the exact near field vesicles have no such distance, as finer points resolve what is between them, parts of one
-   vesicle that of their markers. */
+/* Distance of markers below which the fluid between vesicles v and w is not resolved: two cells. With the exact near
+   field there is no such distance between two vesicles, as finer points resolve the fluid between them, and parts of
+   one vesicle are resolved down to 1.5 edges. */
 static PetscReal Unresolved(Scheme s, PetscInt v, PetscInt w) {
   if (!s->coupling->near) return CONTACT * s->fluid->grid->h;
   return v == w ? CLOSE_PARTS * s->membrane->ds[v] : 0;
@@ -20,8 +21,8 @@ typedef struct {
   PetscMPIInt pair[2]; /* vesicles in contact, numbered from 1; 0, 0: none */
 } ContactSearch;
 
-/* Whether two markers that are near are a contact: nearer than Unresolved, and on one vesicle more than twice that
-   apart along it. */
+/* Whether two near markers are a contact: nearer than Unresolved, and on one vesicle farther apart along the membrane
+   than twice that distance. */
 static PetscBool IsContact(void *context, PetscInt k, PetscInt l, const PetscReal d[2]) {
   ContactSearch *c = (ContactSearch *)context;
   const Scheme s = c->scheme;
@@ -35,7 +36,7 @@ static PetscBool IsContact(void *context, PetscInt k, PetscInt l, const PetscRea
   return PETSC_TRUE;
 }
 
-/* The first contact of vesicles, the first of them an own one; X begins with theirs. */
+/* The first contact of an own vesicle with another or with itself; X begins with the vesicles' markers. */
 static PetscErrorCode FindContact(Scheme s, const PetscScalar X[], PetscReal reach, PetscMPIInt pair[2]) {
   const Layout l = s->membrane->layout;
   ContactSearch search = {.scheme = s};
@@ -48,7 +49,7 @@ static PetscErrorCode FindContact(Scheme s, const PetscScalar X[], PetscReal rea
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Warn(Scheme s, const PetscMPIInt pair[2]) {
+static PetscErrorCode WarnOfContact(Scheme s, const PetscMPIInt pair[2]) {
   const PetscBool exact = s->coupling->near ? PETSC_TRUE : PETSC_FALSE;
   char who[64];
   PetscFunctionBeginUser;
@@ -73,7 +74,7 @@ static PetscErrorCode CheckCrossing(Scheme s, const PetscScalar X[]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Each rank looks at pairs whose first vesicle it owns; the first of all counts. */
+/* Each rank looks at the pairs whose first vesicle it owns; the first contact of all ranks counts. */
 PetscErrorCode SchemeCheckContact(Scheme s) {
   const Layout l = s->membrane->layout;
   const PetscBool before = s->warnings.contact;
@@ -94,6 +95,6 @@ PetscErrorCode SchemeCheckContact(Scheme s) {
   PetscCallMPI(MPI_Bcast(pair, 2, MPI_INT, whose, l->comm));
   s->warnings.contact = pair[0] ? PETSC_TRUE : PETSC_FALSE;
   if (!*s->report.failure && !s->policy.adaptive) PetscCall(FilmsCheck(s)); /* else judged before it was accepted */
-  if (s->warnings.contact && !before && !*s->report.failure) PetscCall(Warn(s, pair));
+  if (s->warnings.contact && !before && !*s->report.failure) PetscCall(WarnOfContact(s, pair));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -7,20 +7,20 @@
 
 #define THIN 0.5 /* edges below which a film that loses much is drained by the step's error */
 
-/* Marker spacings below which a film's thickness is off by 1 % or will be as it thins (measured: from .3 to .65,
-   docs/settings.md), and those at which it is off by .1 to .4 %. */
+/* Films thinner than COARSE marker spacings have a thickness that is off by 1 %, now or as they thin (measured: from
+   0.3 to 0.65 spacings, docs/settings.md). At RESOLVED spacings the thickness is off by 0.1 to 0.4 %. */
 #define COARSE 0.6
 #define RESOLVED 1.0
 
-#define FAR 4 /* longest mean edges up to which each vesicle's own films are told */
+#define FAR 4 /* longest mean edges up to which the distance of each vesicle is measured */
 
-/* The film that a step takes most of. */
+/* The film that has lost most in a step. */
 typedef struct {
-  PetscReal loss; /* part of its thickness, over what is allowed */
+  PetscReal loss; /* lost part of its thickness, over what is allowed */
   CurveGap before, after;
 } Drained;
 
-static CurveRoom Room(Scheme s) {
+static CurveRoom BoxOfCurves(Scheme s) {
   const Grid g = s->fluid->grid;
   CurveRoom room;
   SchemePeriods(s, room.period);
@@ -39,33 +39,33 @@ static PetscReal Thin(Scheme s) {
   return THIN * ds;
 }
 
-/* What a rank looks at: all curves, of every two those whose first vesicle it owns. */
+/* The pairs of curves that a rank looks at: those whose first vesicle it owns. */
 typedef struct {
   CurveRoom room;
   PetscInt own[2];
   CurveSet set;
 } View;
 
-/* At X[2(M + W)]. The set points into the view, which has to stay where it is. */
-static void Look(Scheme s, const PetscReal X[], View *view) {
+/* Fill in a view of the curves X[2(M + W)]. The set points into the view, which must not be moved in memory. */
+static void SeeCurves(Scheme s, const PetscReal X[], View *view) {
   const Bodies b = s->coupling->bodies;
-  view->room = Room(s);
+  view->room = BoxOfCurves(s);
   view->own[0] = s->membrane->layout->own;
   view->own[1] = s->membrane->layout->end;
   view->set = (CurveSet){b->layout->bodies, b->vesicles,       b->layout->start, b->kind, X,
                          view->room.period, SchemeIsSmooth(s), view->own};
 }
 
-/* The films of own vesicles thinner than reach at the curves X[2(M + W)], in order; those of walls come last, as of a
-   curve that comes behind all bodies. To be freed. */
-static PetscErrorCode Find(Scheme s, const PetscScalar X[], PetscReal reach, PetscInt *n, CurveGap **films) {
+/* The films of own vesicles thinner than reach at the curves X[2(M + W)], in the order of the pairs, then those at
+   walls, whose first curve is the number of bodies. The caller frees them. */
+static PetscErrorCode FindFilms(Scheme s, const PetscScalar X[], PetscReal reach, PetscInt *n, CurveGap **films) {
   const Layout l = s->coupling->bodies->layout;
   const PetscInt vesicles = s->coupling->bodies->vesicles;
   CurveGap *between;
   PetscInt count, side;
   View view;
   PetscFunctionBeginUser;
-  Look(s, X, &view);
+  SeeCurves(s, X, &view);
   PetscCall(CurveGaps(&view.set, reach, &count, &between));
   PetscCall(PetscMalloc1(count + vesicles, films));
   PetscCall(PetscArraycpy(*films, between, count));
@@ -78,22 +78,23 @@ static PetscErrorCode Find(Scheme s, const PetscScalar X[], PetscReal reach, Pet
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The films that are thin now against what they were. One that was not among those found was thicker than all. */
-static void Compare(PetscInt n, const CurveGap now[], PetscInt m, const CurveGap before[], PetscReal reach,
-                    PetscReal limit, Drained *worst) {
+/* Compare the films that are thin now with the films before the step. A film that is not among those before was thicker
+   than reach. */
+static void CompareFilms(PetscInt n, const CurveGap now[], PetscInt m, const CurveGap before[], PetscReal reach,
+                         PetscReal limit, Drained *worst) {
   for (PetscInt k = 0, j = 0; k < n; k++) {
     CurveGap old = {.curve = {now[k].curve[0], now[k].curve[1]}, .distance = reach};
     while (j < m && (before[j].curve[0] < old.curve[0] ||
                      (before[j].curve[0] == old.curve[0] && before[j].curve[1] < old.curve[1])))
       j++;
     if (j < m && before[j].curve[0] == old.curve[0] && before[j].curve[1] == old.curve[1]) old = before[j];
-    if (old.distance <= 0) continue; /* crossed before: not this step's doing */
+    if (old.distance <= 0) continue; /* the two crossed before this step */
     const PetscReal loss = (1 - now[k].distance / old.distance) / limit;
     if (loss > worst->loss) *worst = (Drained){loss, old, now[k]};
   }
 }
 
-/* Of the step to time t. Each rank its own, the worst for all. */
+/* The film that has lost most in the step to time t, of all ranks. */
 static PetscErrorCode FindDrained(Scheme s, PetscReal t, PetscReal limit, Drained *worst) {
   const Layout l = s->membrane->layout;
   const PetscReal thin = Thin(s), thick = thin / PetscMax(1 - limit, 0.25);
@@ -104,12 +105,12 @@ static PetscErrorCode FindDrained(Scheme s, PetscReal t, PetscReal limit, Draine
   PetscFunctionBeginUser;
   *worst = (Drained){0};
   PetscCall(SchemeCurves(s, t, s->state.X));
-  PetscCall(Find(s, s->work_all, thin, &n, &now));
+  PetscCall(FindFilms(s, s->work_all, thin, &n, &now));
   PetscCall(AgreeFlag(l->comm, n ? PETSC_TRUE : PETSC_FALSE, &any));
   if (any) PetscCall(SchemeCurves(s, s->before.state.t, s->before.state.X));
   if (n) {
-    PetscCall(Find(s, s->work_all, thick, &m, &before));
-    Compare(n, now, m, before, thick, limit, worst);
+    PetscCall(FindFilms(s, s->work_all, thick, &m, &before));
+    CompareFilms(n, now, m, before, thick, limit, worst);
   }
   PetscCall(PetscFree(now));
   PetscCall(PetscFree(before));
@@ -122,7 +123,7 @@ static PetscErrorCode FindDrained(Scheme s, PetscReal t, PetscReal limit, Draine
 PetscErrorCode FilmsNone(Scheme s, const PetscScalar X[], PetscReal reach, PetscBool *none) {
   View view;
   PetscFunctionBeginUser;
-  Look(s, X, &view);
+  SeeCurves(s, X, &view);
   PetscCall(CurvesAreClear(&view.set, s->membrane->ds, PetscMax(reach, CurveLongestEdge(&view.set)), none));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -136,7 +137,7 @@ PetscErrorCode FilmsCross(Scheme s, const PetscScalar X[], PetscInt pair[2]) {
   pair[0] = pair[1] = -1;
   PetscCall(FilmsNone(s, X, 0, &none));
   if (none) PetscFunctionReturn(PETSC_SUCCESS);
-  Look(s, X, &view);
+  SeeCurves(s, X, &view);
   PetscCall(CurvesCross(&view.set, pair));
   if (pair[0] >= 0 || !view.set.smooth) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(CurveGaps(&view.set, 0, &n, &gaps));
@@ -184,8 +185,8 @@ PetscErrorCode FilmsCheck(Scheme s) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Each vesicle's thinnest film of those thinner than FAR edges, PETSC_MAX_REAL where there is none, of the films that
-   this rank looks at; and the thinnest that is not at a wall, its distance PETSC_MAX_REAL where there is none. */
+/* Of the films that this rank looks at and that are thinner than FAR edges: each[v], the thickness of vesicle v's
+   thinnest film, and the thinnest film that is not at a wall. PETSC_MAX_REAL where there is none. */
 static PetscErrorCode ThinnestOfEach(Scheme s, const PetscScalar X[], PetscReal each[], CurveGap *thinnest) {
   const Membrane m = s->membrane;
   const PetscInt vesicles = m->layout->bodies, bodies = s->coupling->bodies->layout->bodies;
@@ -198,7 +199,7 @@ static PetscErrorCode ThinnestOfEach(Scheme s, const PetscScalar X[], PetscReal 
     each[v] = PETSC_MAX_REAL;
     edge = PetscMax(edge, m->ds[v]);
   }
-  PetscCall(Find(s, X, FAR * edge, &n, &films));
+  PetscCall(FindFilms(s, X, FAR * edge, &n, &films));
   for (PetscInt k = 0; k < n; k++) {
     if (films[k].curve[0] < bodies && films[k].distance < thinnest->distance) *thinnest = films[k];
     for (int side = 0; side < 2; side++) {
@@ -210,8 +211,8 @@ static PetscErrorCode ThinnestOfEach(Scheme s, const PetscScalar X[], PetscReal 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Least distance of two vesicles, or of a vesicle and an obstacle: of the two curves of the thinnest film, of all on
-   rank 0 where there is none. */
+/* The least distance between two vesicles or a vesicle and an obstacle: that of the two curves of the thinnest film,
+   measured by their owner, or, where there is no film, that of all curves, measured by rank 0. */
 static PetscErrorCode LeastGap(Scheme s, const PetscScalar X[], const CurveGap *thinnest, PetscReal *least) {
   const Layout l = s->membrane->layout;
   const PetscInt *pair = thinnest->curve;
@@ -220,7 +221,7 @@ static PetscErrorCode LeastGap(Scheme s, const PetscScalar X[], const CurveGap *
   CurveFine two;
   View view;
   PetscFunctionBeginUser;
-  Look(s, X, &view);
+  SeeCurves(s, X, &view);
   PetscCall(AgreeLargest(l->comm, &nearness, &whose));
   if (nearness == -PETSC_MAX_REAL && !l->rank) {
     view.set.part = NULL;
@@ -238,7 +239,7 @@ static PetscErrorCode LeastGap(Scheme s, const PetscScalar X[], const CurveGap *
 
 PetscErrorCode FilmsGaps(Scheme s, PetscReal *least, PetscReal each[]) {
   const Layout l = s->membrane->layout;
-  const CurveRoom room = Room(s);
+  const CurveRoom room = BoxOfCurves(s);
   PetscMPIInt vesicles;
   CurveGap thinnest;
   PetscInt side;
@@ -257,7 +258,7 @@ PetscErrorCode FilmsGaps(Scheme s, PetscReal *least, PetscReal each[]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What makes the markers of a body so many times closer. */
+/* The option that makes the markers of a body `times` closer. */
 static PetscErrorCode Remedy(Scheme s, PetscInt body, PetscReal times, size_t room, char text[]) {
   const Bodies b = s->coupling->bodies;
   const PetscReal wanted = times * LayoutCount(b->layout, body);
@@ -271,7 +272,7 @@ static PetscErrorCode Remedy(Scheme s, PetscInt body, PetscReal times, size_t ro
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Warn(Scheme s, const CurveFilm *film) {
+static PetscErrorCode WarnOfFilm(Scheme s, const CurveFilm *film) {
   static const char *const walls[] = {"the wall x_min", "the wall x_max", "the wall y_min", "the wall y_max"};
   const Bodies b = s->coupling->bodies;
   const PetscInt v = film->pair[0], w = film->pair[1], coarse = w < 0 || b->ds[v] >= b->ds[w] ? v : w;
@@ -300,12 +301,12 @@ PetscErrorCode FilmsWarn(Scheme s) {
   PetscFunctionBeginUser;
   if (!s->coupling->near || s->warnings.film) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SchemeCurves(s, s->state.t, s->state.X));
-  Look(s, s->work_all, &view);
+  SeeCurves(s, s->work_all, &view);
   PetscCall(CurveThinnestFilm(&view.set, s->coupling->bodies->ds, &view.room, COARSE, &film));
   PetscReal thinness = -film.spacings;
   PetscCall(AgreeLargest(l->comm, &thinness, &whose));
   PetscCallMPI(MPI_Bcast(&film, sizeof(film), MPI_BYTE, whose, l->comm));
   s->warnings.film = film.spacings < COARSE ? PETSC_TRUE : PETSC_FALSE;
-  if (s->warnings.film) PetscCall(Warn(s, &film));
+  if (s->warnings.film) PetscCall(WarnOfFilm(s, &film));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

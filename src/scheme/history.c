@@ -16,8 +16,8 @@ PetscErrorCode HistoryDestroy(History *h) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* V of every vesicle, on all ranks. */
-static PetscErrorCode Fit(History *h, Scheme s) {
+/* Fit the label speed V of every vesicle, on all ranks. */
+static PetscErrorCode FitLabelSpeeds(History *h, Scheme s) {
   const Membrane m = s->membrane;
   const Layout l = m->layout;
   const PetscScalar *X, *U;
@@ -41,8 +41,8 @@ static PetscErrorCode Fit(History *h, Scheme s) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* y = x of state j at the labels of the new time. */
-static PetscErrorCode Carry(const History *h, Membrane m, PetscInt j, int each, Vec x, Vec y) {
+/* y(label) = x of state j at the label that this marker had then: labels turn by V times the time since state j. */
+static PetscErrorCode CarryState(const History *h, Membrane m, PetscInt j, int each, Vec x, Vec y) {
   const PetscScalar *from;
   PetscScalar *to;
   PetscReal back = 0;
@@ -56,12 +56,12 @@ static PetscErrorCode Carry(const History *h, Membrane m, PetscInt j, int each, 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Marker vectors x of the first `count` states, in the rooms where labels move. */
+/* Carry the marker vectors x of the first `count` states; copies are made only where labels move. */
 static PetscErrorCode CarryAll(const History *h, Membrane m, PetscInt count, const Vec x[], const Vec room[], Vec y[]) {
   PetscFunctionBeginUser;
   for (PetscInt j = 0; j < count; j++) {
     y[j] = h->moving ? room[j] : x[j];
-    if (h->moving) PetscCall(Carry(h, m, j, 2, x[j], room[j]));
+    if (h->moving) PetscCall(CarryState(h, m, j, 2, x[j], room[j]));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -79,13 +79,13 @@ PetscErrorCode HistoryCarry(History *h, Scheme s, PetscReal dt) {
   h->step[0] = dt;
   for (int j = 1; j < BDF_STATES; j++) h->step[j] = led[j - 1];
   for (h->solved = 0; h->solved <= s->past && led[h->solved] > 0;) h->solved++;
-  PetscCall(Fit(h, s));
+  PetscCall(FitLabelSpeeds(h, s));
   PetscCall(CarryAll(h, s->membrane, h->n, X, h->room, h->X));
   PetscCall(CarryAll(h, s->membrane, PetscMax(1, h->solved), U, h->room + BDF_MOST, h->U));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* One piece after the other, so that y comes from memory once. */
+/* The sum is made piece by piece, so that y is read from memory once. */
 PetscErrorCode HistorySum(PetscInt count, const PetscReal weight[], PetscReal scale, const Vec x[], Vec y) {
   enum { PIECE = 1024 };
   const PetscScalar *from[BDF_STATES];
@@ -117,7 +117,7 @@ PetscErrorCode HistoryEdges(History *h, Membrane m, PetscInt count, const PetscR
   }
   PetscCall(VecSet(y, 0));
   for (PetscInt j = 0; j < count; j++) {
-    PetscCall(Carry(h, m, j, 1, x[j], h->carried));
+    PetscCall(CarryState(h, m, j, 1, x[j], h->carried));
     PetscCall(VecAXPY(y, weight[j], h->carried));
   }
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -1,20 +1,19 @@
-/* What a step goes on from: the present state and those before it, carried along by labels that turn with the
-   tank-treading membranes (docs/membrane.md, Frame of the labels), so that a steady shape is the same in all of them.
- */
+/* The states that a step goes on from: the present state and those before it. Labels turn with the tank-treading
+   membranes (docs/membrane.md, Frame of the labels), so that a steady shape is the same in all states. */
 #pragma once
 #include "scheme/bdf.h"
 #include "scheme/stepcommon.h"
 
 typedef struct {
-  PetscInt n;                 /* states whose markers are carried: 1 to BDF_MOST */
-  PetscInt solved;            /* states that a step has led to, up to BDF_STATES: a run's first one has no velocity nor
-                                 tension yet */
-  PetscReal step[BDF_STATES]; /* the step to be made, the one before it, ... (time) */
-  PetscReal *treading;        /* [vesicles] V, speed of the labels (1/time) */
-  PetscBool moving;           /* one of them is not zero */
-  Vec X[BDF_MOST];            /* markers of the states, carried; borrowed */
-  Vec U[BDF_STATES];          /* velocities of those solved, of one at least, likewise */
-  Vec room[BDF_MOST + BDF_STATES]; /* marker vectors, where they are when labels move */
+  PetscInt n;                      /* states whose markers are carried: 1 to BDF_MOST */
+  PetscInt solved;                 /* states that a step has led to, at most BDF_STATES; the first state of a run has no
+                                      velocity and no tension */
+  PetscReal step[BDF_STATES];      /* the step to be made, the step before it, and so on (time) */
+  PetscReal *treading;             /* [vesicles] V, speed of the labels (1/time) */
+  PetscBool moving;                /* the labels of a vesicle turn */
+  Vec X[BDF_MOST];                 /* markers of the states, carried along; borrowed */
+  Vec U[BDF_STATES];               /* velocities of the solved states, of one at least, carried along; borrowed */
+  Vec room[BDF_MOST + BDF_STATES]; /* where X and U are when labels turn */
   Vec carried;                     /* edge vector: work */
 } History;
 

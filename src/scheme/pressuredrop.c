@@ -1,7 +1,8 @@
 #include "scheme/pressuredrop.h"
 
-/* The profile b of a channel's flow under a unit pressure gradient, y from its lower wall, and that of the grid, which
-   has h^2/8 more at every place. */
+/* The profile b(y) of a channel's flow under a unit pressure gradient, y from its lower wall,
+     b = (y (H - y)/2 + more)/nu.
+   The grid's profile has more = h^2/8, the exact one 0. */
 static PetscReal Profile(Scheme s, PetscReal y, PetscReal more) {
   const Grid g = s->fluid->grid;
   return (0.5 * y * (g->hi[1] - g->lo[1] - y) + more) / s->fluid->nu;
@@ -12,13 +13,13 @@ static PetscReal GridProfile(Scheme s, PetscInt row) {
   return Profile(s, (row + 0.5) * h, h * h / 8);
 }
 
-/* Of the forces along x on the fluid, own parts. */
+/* This rank's parts of the forces along x on the fluid. */
 typedef struct {
-  PetscReal spread;  /* their sum on the grid, which next to walls is less than the markers' */
-  PetscReal smeared; /* of obstacles: SUM F (b - E b) in a channel */
+  PetscReal spread;  /* sum of the forces on the grid, which next to walls is less than that at the markers */
+  PetscReal smeared; /* SUM F (b - E b) of obstacles in a channel */
 } Forces;
 
-/* The obstacles' forces. */
+/* Add the obstacles' forces. */
 static PetscErrorCode AddObstacles(Scheme s, Forces *sum) {
   const Coupling c = s->coupling;
   const Grid g = s->fluid->grid;
@@ -41,7 +42,7 @@ static PetscErrorCode AddObstacles(Scheme s, Forces *sum) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The obstacles' forces, and where there are walls gravity's, and of contact what solids give. */
+/* The obstacles' forces, gravity's forces where there are walls, and the contact forces that solids give. */
 static PetscErrorCode OwnForces(Scheme s, Forces *sum) {
   const Membrane m = s->membrane;
   const Layout l = m->layout;
@@ -64,7 +65,7 @@ static PetscErrorCode OwnForces(Scheme s, Forces *sum) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The sum over own u faces. */
+/* The sum over this rank's u faces. */
 static PetscErrorCode OwnSum(Grid g, Vec w, PetscReal *sum) {
   const PetscScalar *a;
   PetscFunctionBeginUser;
@@ -75,7 +76,7 @@ static PetscErrorCode OwnSum(Grid g, Vec w, PetscReal *sum) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Flux of the background: midpoints, exact to h^2/8 of the walls' shear for poiseuille, so by Simpson's rule. */
+/* Flux of the background by Simpson's rule, which is exact for poiseuille. */
 static PetscReal BackgroundFlux(Scheme s) {
   const Grid g = s->fluid->grid;
   PetscReal flux = 0, u[2];
@@ -87,8 +88,8 @@ static PetscReal BackgroundFlux(Scheme s) {
   return flux;
 }
 
-/* What the mean of the solved field has more than that of the velocity, where it is not the velocity inside vesicles:
-   before the first step it is. */
+/* Mean of the solved field minus that of the velocity. They differ inside vesicles with a viscosity contrast, after the
+   first step. */
 static PetscErrorCode InnerMean(Scheme s, PetscReal mean[2]) {
   const PetscScalar *U;
   PetscFunctionBeginUser;
@@ -100,8 +101,8 @@ static PetscErrorCode InnerMean(Scheme s, PetscReal mean[2]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Forces act on the mean flow as their spread images on the grid do, SUM F E b, which the near field does not change:
-   what is smeared by it is given back to the gradient where the flux is held, else to the flux. */
+/* Forces act on the mean flow as SUM F E b, by their images on the grid, and the near field does not change that. The
+   difference to SUM F b is given back to the gradient where the flux is held, and to the flux elsewhere. */
 static void GiveBack(Scheme s, PetscReal smeared, PetscReal *gradient, PetscReal *flux) {
   const Grid g = s->fluid->grid;
   const PetscReal height = g->hi[1] - g->lo[1], area = (g->hi[0] - g->lo[0]) * height;

@@ -1,4 +1,5 @@
-/* What drives the flow past obstacles. */
+/* The pressure drop and the flux of a flow past obstacles (docs/obstacles.md): from the mean momentum balance along x.
+   Sums cross ranks. */
 #pragma once
 #include "scheme/stepcommon.h"
 

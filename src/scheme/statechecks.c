@@ -4,13 +4,13 @@
 #include "scheme/films.h"
 #include "scheme/stepcommon.h"
 
-/* A shape's tail, what it has of its bending in the last third of its modes. Above ROUGH the steady angle or
-   frequency is off by .05 % or more, below SMOOTH by less than .001 % (V = .35 to .9, chi = 1 to 30, 17 to 91
-   markers, against 91). */
+/* Limits of a shape's spectral tail: the part of its bending that is in the last third of its modes. With a tail above
+   ROUGH the steady angle or frequency is off by 0.05 % or more, with a tail below SMOOTH by less than 0.001 % (reduced
+   areas of 0.35 to 0.9, chi of 1 to 30, 17 to 91 markers, compared with 91 markers). */
 #define ROUGH 0.15
 #define SMOOTH 0.03
-/* |X - X*|/R0 of a fixed step above which markers are off by 1 % of R0 or more (docs/time.md), and from which step on:
-   before, an ellipse lets go of high modes, which die out whatever the step. */
+/* Above this |X - X*|/R0 of a fixed step, markers are off by 1 % of R0 or more (docs/time.md). It is looked at from
+   step FIRST_JUDGED on: in the first steps the high modes of an ellipse die out, whatever the step. */
 #define COARSE_STEP 0.02
 #define FIRST_JUDGED 4
 #define CORNER                                                                                                         \
@@ -22,7 +22,7 @@ static PetscErrorCode CheckFinite(Scheme s) {
   PetscFunctionBeginUser;
   for (int k = 0; k < (CouplingHasMembrane(s->coupling) ? 4 : 2); k++) {
     PetscBool finite = PetscIsInfOrNanReal(s->report.div_max) ? PETSC_FALSE : PETSC_TRUE; /* the velocity */
-    if (k == 1 && s->state.pending) continue; /* follows from the forces, as the velocity does */
+    if (k == 1 && s->state.pending) continue; /* the pressure follows from the forces, which are checked by div_max */
     if (k) PetscCall(AgreeFinite(all[k], &finite));
     if (finite) continue;
     PetscCall(PetscSNPrintf(s->report.failure, sizeof(s->report.failure), "the %s is not finite", names[k]));
@@ -32,7 +32,7 @@ static PetscErrorCode CheckFinite(Scheme s) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Edge ratio, area and length of one own vesicle, its markers X[2n]. */
+/* Check edge ratio, area and length of one own vesicle with markers X[2n]. */
 static PetscErrorCode CheckLimits(Scheme s, PetscInt v, const PetscScalar X[]) {
   const Membrane m = s->membrane;
   const Scene scene = s->scene;
@@ -58,7 +58,7 @@ static PetscErrorCode CheckLimits(Scheme s, PetscInt v, const PetscScalar X[]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Each owner looks at its vesicles. */
+/* Check the limits of all vesicles, each on its owner. */
 static PetscErrorCode CheckVesicles(Scheme s) {
   const Layout l = s->membrane->layout;
   const PetscScalar *X;
@@ -71,15 +71,16 @@ static PetscErrorCode CheckVesicles(Scheme s) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* An odd number of markers that is likely to resolve what n do not: the decay of the spectrum from one third of the
-   modes to two goes on, and if it is slow twice as many. */
+/* An odd number of markers that is likely to resolve a shape that n markers do not resolve. The spectrum is assumed to
+   decay further as it does from one third of the modes to two thirds; where it decays slowly, twice as many are
+   returned. */
 static PetscInt Resolving(PetscInt n, PetscReal third, PetscReal tail) {
   const PetscReal decay = PetscLogReal(third / tail), missing = PetscLogReal(tail / SMOOTH);
   const PetscReal more = missing < 2 * decay ? 1 + 0.5 * missing / decay : 2;
   return 2 * (PetscInt)PetscCeilReal((more * n - 1) / 2) + 1;
 }
 
-/* Once a run, when markers do not resolve a membrane: the first one, and how many may. */
+/* Warn, once a run, of the first vesicle that its markers do not resolve, and name a number of markers that may. */
 static PetscErrorCode WarnOfSpectrum(Scheme s) {
   const Membrane m = s->membrane;
   const Layout l = m->layout;
@@ -114,8 +115,8 @@ static PetscReal FromWall(Grid g, int dir, PetscInt n, const PetscScalar X[]) {
   return least;
 }
 
-/* Once, of the first vesicle near two walls that meet, where stencils are scaled: elsewhere the box part holds there.
-   Each owner looks at its vesicles. */
+/* Warn, once a run, of the first vesicle near two walls that meet, where stencils are scaled; without scaled stencils
+   the box part is right in corners too. */
 static PetscErrorCode WarnOfCorner(Scheme s) {
   const Layout l = s->membrane->layout;
   const Grid g = s->fluid->grid;
@@ -142,9 +143,8 @@ static PetscErrorCode WarnOfCorner(Scheme s) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Once a run, of a fixed step that does not follow what moves. The estimate falls with the square of the step or
- * faster.
- */
+/* Warn, once a run, of a fixed step that is too long for the motion. The estimate falls with the square of the step or
+   faster, which gives the step to try. */
 static PetscErrorCode WarnOfStep(Scheme s) {
   const PetscReal found = s->report.estimate;
   PetscFunctionBeginUser;

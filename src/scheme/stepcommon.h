@@ -5,54 +5,56 @@
 #include "scheme/stepcontrol.h"
 #include "fluid/stream.h"
 
-/* Of a sheared channel after a step, from the walls [0] and from the membranes' forces [1] (src/scheme/stress.h). */
+/* Stresses of a sheared channel after a step, measured at the walls [0] and from the membranes' forces [1] (stress.h).
+ */
 typedef struct {
-  PetscBool known;        /* whether the scene is one, and a step has been made */
-  PetscReal viscosity[2]; /* effective, over nu */
+  PetscBool known;        /* the scene is a sheared channel, and a step has been made */
+  PetscReal viscosity[2]; /* effective viscosity over nu */
   PetscReal normal[2];    /* first normal stress difference (length^2/time^2) */
 } Stress;
 
 /* What the last step did. */
 typedef struct {
   PetscInt tension_its, bending_its, coupled_its;
-  PetscInt solves;           /* scalar fast solves */
-  PetscReal div_max;         /* max |G^T u + bc2|, what the solver left of the divergence */
-  PetscReal surface_div_max; /* max |h^2 (Dm V/h^2 - g)/ds|, what it left of the surface divergence */
-  PetscReal area_shift;      /* largest shift that restored a vesicle's area (length) */
-  PetscReal estimate;        /* of a fixed step of coupled or direct: max |X - X*|/R0, 0 in the first one */
+  PetscInt solves;           /* scalar fast solves of the step */
+  PetscReal div_max;         /* max |G^T u + bc2|, the divergence that the solver left (1/time) */
+  PetscReal surface_div_max; /* max |h^2 (Dm V/h^2 - g)/ds|, the surface divergence that the solver left (1/time) */
+  PetscReal area_shift;      /* largest shift of markers that restored a vesicle's area (length) */
+  PetscReal estimate;        /* error estimate of a fixed step: max |X - X*|/R0; 0 in a first step and in baselines */
   PetscReal cfl;             /* dt max(|u| + |v|)/h; 0 without convection */
-  PetscReal seconds;         /* wall, output excluded */
-  StreamMeasures measures;   /* of the velocity of a step that leaves it pending */
+  PetscReal seconds;         /* wall time of the step without output */
+  StreamMeasures measures;   /* measures of the velocity where a step does not make it on the grid */
   Stress stress;
-  const char *stopped; /* why a first step was left undone between two of its parts (StopRequested); NULL: it was not */
-  char failure[PETVES_MAX_MESSAGE]; /* why the step could not be taken; empty when it was */
+  const char *stopped; /* why a first step was stopped between two of its parts (StopRequested); NULL: it was not */
+  char failure[PETVES_MAX_MESSAGE]; /* why the step was not taken; empty: it was taken */
 } StepReport;
 
-/* The states before the present one that are kept. */
+/* Number of states before the present one that are kept. */
 #define SCHEME_PAST 5
 
-/* All that a step changes and the next one needs; State and this are what a checkpoint holds. */
+/* All that a step changes and that the next step needs. A checkpoint holds the same. */
 typedef struct {
-  State state, old[SCHEME_PAST]; /* old without vectors where the scheme has none */
-  PetscInt past;
+  State state, old[SCHEME_PAST]; /* the present state and those before it; old is empty in schemes of one state */
+  PetscInt past;                 /* number of old states that are known */
   StepPlan plan;
-  PetscBool fields; /* velocities and pressures too; without, the scheme's undo brings them back */
+  PetscBool fields; /* velocities and pressures are in it; else the scheme's undo restores them */
 } Snapshot;
 
-/* Warnings of the run, for summary.json: the first ones, and which have been given. */
+/* Warnings of a run: the first texts, for summary.json, and which warnings have been given. */
 #define SCHEME_WARNINGS 16
 typedef struct {
   PetscInt n;
   char *text[SCHEME_WARNINGS];
-  PetscBool contact; /* whether parts of membranes are close, as last warned of */
-  PetscBool rough;   /* whether it was warned that markers do not resolve a membrane */
-  PetscBool film;    /* likewise that they do not resolve a film, */
-  PetscBool step;    /* that a step was too large, */
-  PetscBool corner;  /* and of a vesicle in a corner of two walls */
+  PetscBool contact; /* parts of membranes are close */
+  PetscBool rough;   /* markers do not resolve a membrane */
+  PetscBool film;    /* markers do not resolve a film */
+  PetscBool step;    /* a step is too large */
+  PetscBool corner;  /* a vesicle is in a corner of two walls */
 } Warnings;
 
 typedef struct _p_Scheme *Scheme;
 
+/* What a scheme does. All operations are collective; an operation may be NULL where its comment says so. */
 typedef struct {
   PetscErrorCode (*setup)(Scheme);
   PetscErrorCode (*step)(Scheme, PetscReal most); /* advance the state by state.dt, which step-size control chooses up

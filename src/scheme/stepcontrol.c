@@ -4,7 +4,8 @@
 #define LEAST_LEVEL (-80)
 #define MOST_LEVEL 40
 #define SAFETY 0.9
-#define GROWTH 2 /* levels a step, a factor of 2; one less at order 3, which bears 1.53 in a row */
+#define GROWTH 2 /* levels that a step may grow by; 1 at order 3, which is stable for steps that grow by 1.53 at most  \
+                  */
 #define HALF 2   /* levels of a factor of 2 */
 
 StepPolicy StepPolicyCreate(Scene scene, PetscInt vesicles) {
@@ -19,7 +20,7 @@ PetscInt StepFirstLevel(void) {
   return FIRST_LEVEL;
 }
 
-/* n steps of the same size, added up, may all be rounded the same way: n^2 eps/4 of a step at most. */
+/* The rounding of a sum of n equal steps, which may all be rounded the same way: at most n^2 eps/4 of a step. */
 static PetscReal Rounding(const StepPolicy *p, PetscReal until) {
   const PetscReal steps = p->adaptive ? 0 : until / p->base;
   return p->base * PetscMin(0.25, PetscMax(1e-9, PETSC_MACHINE_EPSILON * steps * steps));
@@ -32,7 +33,7 @@ PetscBool StepFinished(const StepPolicy *p, PetscReal t, PetscReal until) {
 PetscReal StepFixed(const StepPolicy *p, PetscReal t, PetscReal most) {
   const PetscReal rounding = Rounding(p, t + most);
   if (most >= 2 * p->base - rounding || PetscAbsReal(most - p->base) <= rounding) return p->base;
-  return most > p->base ? most / 2 : most; /* as in StepSize, no step is far shorter than the one before */
+  return most > p->base ? most / 2 : most; /* a step that is far shorter than the one before adds noise (StepSize) */
 }
 
 static PetscReal SizeOfLevel(const StepPolicy *p, PetscInt level) {
@@ -50,13 +51,13 @@ PetscReal StepSize(const StepPolicy *p, StepPlan *plan, PetscReal courant, Petsc
   if (limit < PETSC_MAX_REAL) plan->level = PetscMin(plan->level, LevelOfSize(p, limit, 1e-9));
   dt = SizeOfLevel(p, plan->level);
   if (most <= dt * (1 + 1e-12)) return most;
-  /* a last step far shorter than the one before leaves noise in the velocity, a difference over the step */
+  /* a last step that is far shorter than the one before leaves noise in the velocity, a difference over the step */
   return most < 2 * dt ? most / 2 : dt;
 }
 
-/* The error X - X* is of the formula's order in dt; in a first step X* = X, and it is the whole movement, so not
-   tested. An error that a smaller step has not lowered is not the step's, but what the length target corrects at the
-   start, or the solver's tolerance. One that is not finite is always the step's. */
+/* The error X - X* is of the formula's order in dt. In a first step X* = X, and the error is not tested, as it is the
+   whole motion. An error that a smaller step has not lowered does not come from the step: it is the correction of edge
+   lengths at the start, or the solver's tolerance. An error that is not finite always counts as the step's. */
 StepVerdict StepJudge(const StepPolicy *p, const StepTrial *t, StepPlan *plan) {
   const PetscBool lost = PetscIsInfOrNanReal(t->error) ? PETSC_TRUE : PETSC_FALSE;
   const PetscBool fixed = !lost && t->error > 0.9 * plan->before ? PETSC_TRUE : PETSC_FALSE;
@@ -82,7 +83,7 @@ StepVerdict StepJudge(const StepPolicy *p, const StepTrial *t, StepPlan *plan) {
     return plan->level < LEAST_LEVEL ? STEP_GIVE_UP : STEP_REPEAT;
   }
   const PetscBool whole = t->dt >= SizeOfLevel(p, plan->level) * (1 - 1e-12) ? PETSC_TRUE : PETSC_FALSE;
-  if (t->first || fixed || !whole) return STEP_ACCEPT; /* says nothing of a larger step */
+  if (t->first || fixed || !whole) return STEP_ACCEPT; /* the attempt does not tell what a larger step would do */
   wanted = PetscMin(PetscMin(wanted, plan->level + GROWTH - (t->order > 2)), MOST_LEVEL);
   if (p->max_move > 0 && t->speed > 0) wanted = PetscMin(wanted, LevelOfSize(p, SAFETY * p->max_move / t->speed, 0));
   if (t->loss > 0) wanted = PetscMin(wanted, LevelOfSize(p, SAFETY / t->loss * t->dt, 0));
