@@ -7,16 +7,17 @@ static PetscErrorCode MultTension(Mat A, Vec x, Vec y) {
   PetscFunctionBeginUser;
   PetscCall(MatShellGetContext(A, &s));
   const Coupling c = s->coupling;
-  const Markers m = c->markers;
-  PetscCall(MarkersClear(m, s->w, &s->dirty_w));
-  PetscCall(MarkersClear(m, s->q, &s->dirty_q));
-  PetscCall(CouplingSpreadTension(c, 1, x, s->w));
-  s->dirty_w.columns[0] = s->dirty_q.columns[0] = 0; /* gradients are on whole rows */
-  s->dirty_w.columns[1] = s->dirty_q.columns[1] = c->fluid->grid->n[0];
-  PetscCall(GridGradientTransposeRows(c->fluid->grid, 1, s->w, m->window.rows, s->q));
-  PetscCall(FluidSolvePoisson(c->fluid, s->q, s->q2));
-  PetscCall(GridGradientRows(c->fluid->grid, 1, s->q2, PETSC_TRUE, m->window.rows, s->w));
-  PetscCall(MarkersInterpolate(m, s->w, s->U));
+  const Grid g = c->fluid->grid;
+  GridWindow rows = c->markers->window; /* gradients are on whole rows */
+  rows.columns[0] = 0;
+  rows.columns[1] = g->n[0];
+  PetscCall(ForcingClear(&s->r));
+  ForcingNote(&s->r, &rows);
+  PetscCall(CouplingSpreadTension(c, 1, x, s->r.values));
+  PetscCall(GridGradientTransposeRows(g, 1, s->r.values, rows.rows, s->r.source));
+  PetscCall(FluidSolvePoisson(c->fluid, s->r.source, s->q2));
+  PetscCall(GridGradientRows(g, 1, s->q2, PETSC_TRUE, rows.rows, s->r.values));
+  PetscCall(MarkersInterpolate(c->markers, s->r.values, s->U));
   PetscCall(CouplingStretching(c, s->U, y));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -26,9 +27,10 @@ static PetscErrorCode MultBending(Mat A, Vec x, Vec y) {
   LagrangianSolver s;
   PetscFunctionBeginUser;
   PetscCall(MatShellGetContext(A, &s));
-  PetscCall(MarkersClear(s->coupling->markers, s->w, &s->dirty_w));
-  PetscCall(CouplingSpreadBending(s->coupling, 1, x, s->w));
-  PetscCall(FluidSolveHelmholtz(s->coupling->fluid, s->w, s->w2));
+  PetscCall(ForcingClear(&s->r));
+  ForcingNote(&s->r, &s->coupling->markers->window);
+  PetscCall(CouplingSpreadBending(s->coupling, 1, x, s->r.values));
+  PetscCall(FluidSolveHelmholtz(s->coupling->fluid, s->r.values, s->w2));
   PetscCall(MarkersInterpolate(s->coupling->markers, s->w2, y));
   PetscCall(VecAYPX(y, 1 / s->coupling->fluid->a0, x));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -52,7 +54,7 @@ static PetscErrorCode Create(Coupling coupling, const char prefix[], int each, P
   *out = s;
   s->coupling = coupling;
   s->prefix = prefix;
-  PetscCall(DMCreateGlobalVector(g->velocity, &s->w));
+  PetscCall(ForcingCreate(g, each == 1 ? PETSC_TRUE : PETSC_FALSE, &s->r));
   PetscCall(LayoutCreateVec(l, 2, &s->U));
   PetscCall(MatCreateShell(g->comm, each * l->n, each * l->n, each * l->M, each * l->M, s, &s->A));
   PetscCall(MatShellSetOperation(s->A, MATOP_MULT, (void (*)(void))mult));
@@ -86,8 +88,7 @@ PetscErrorCode TensionSolverCreate(Coupling coupling, LagrangianSolver *out) {
   PetscFunctionBeginUser;
   PetscCall(Create(coupling, "tension_", 1, MultTension, out));
   s = *out;
-  PetscCall(DMCreateGlobalVector(coupling->fluid->grid->da[FIELD_P], &s->q));
-  PetscCall(VecDuplicate(s->q, &s->q2));
+  PetscCall(VecDuplicate(s->r.source, &s->q2));
   PetscCall(RootPCCreate(coupling->membrane->layout, s->prefix, COMPLETE_FILL, &s->chat));
   PetscCall(RootPCIsNone(s->chat, &none));
   PetscCall(KSPGetPC(s->ksp, &pc));
@@ -107,7 +108,7 @@ PetscErrorCode BendingSolverCreate(Coupling coupling, LagrangianSolver *s) {
   PC pc;
   PetscFunctionBeginUser;
   PetscCall(Create(coupling, "bending_", 2, MultBending, s));
-  PetscCall(VecDuplicate((*s)->w, &(*s)->w2));
+  PetscCall(VecDuplicate((*s)->r.values, &(*s)->w2));
   PetscCall(KSPGetPC((*s)->ksp, &pc));
   PetscCall(PCSetType(pc, PCNONE));
   PetscCall(KSPSetFromOptions((*s)->ksp));
@@ -121,9 +122,8 @@ PetscErrorCode LagrangianSolverDestroy(LagrangianSolver *solver) {
   PetscCall(KSPDestroy(&s->ksp));
   PetscCall(RootPCDestroy(&s->chat));
   PetscCall(MatDestroy(&s->A));
-  PetscCall(VecDestroy(&s->w));
+  PetscCall(ForcingDestroy(&s->r));
   PetscCall(VecDestroy(&s->w2));
-  PetscCall(VecDestroy(&s->q));
   PetscCall(VecDestroy(&s->q2));
   PetscCall(VecDestroy(&s->U));
   PetscCall(PetscFree(*solver));

@@ -14,10 +14,10 @@ struct _p_LagrangianSolver {
   Coupling coupling; /* borrowed */
   const char *prefix;
   KSP ksp;
-  Mat A;            /* the operator, a shell */
-  RootPC chat;      /* tension: preconditioner of the assembled approximation; NULL for bending */
-  Vec w, w2, q, q2; /* work: two velocities, two pressures; w and q are zero but in their dirty windows */
-  GridWindow dirty_w, dirty_q;
+  Mat A;                  /* the operator, a shell */
+  RootPC chat;            /* tension: preconditioner of the assembled approximation; NULL for bending */
+  Forcing r;              /* work: S sigma or B X; for the tension with its divergence */
+  Vec w2, q2;             /* work: a velocity and a pressure */
   Vec U;                  /* work: a marker vector */
   PetscBool failed;       /* the preconditioner could not be factored */
   PetscInt its;           /* iterations of the last solve */

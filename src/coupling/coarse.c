@@ -55,8 +55,8 @@ PetscErrorCode CoarseCreate(const FluidSpec *run, Layout fine, const PetscReal l
   PetscCall(LayoutCreateVec(points, 2, &c->X));
   PetscCall(VecDuplicate(c->X, &c->F));
   if (StokesStream(c->stokes)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(DMCreateGlobalVector(c->fluid->grid->velocity, &c->r));
-  PetscCall(VecDuplicate(c->r, &c->u));
+  PetscCall(ForcingCreate(c->fluid->grid, PETSC_FALSE, &c->r));
+  PetscCall(VecDuplicate(c->r.values, &c->u));
   PetscCall(DMCreateGlobalVector(c->fluid->grid->da[FIELD_P], &c->p));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -65,8 +65,9 @@ PetscErrorCode CoarseDestroy(Coarse *coarse) {
   Coarse c = *coarse;
   PetscFunctionBeginUser;
   if (!c) PetscFunctionReturn(PETSC_SUCCESS);
-  Vec *vecs[] = {&c->X, &c->F, &c->r, &c->u, &c->p};
-  for (int k = 0; k < 5; k++) PetscCall(VecDestroy(vecs[k]));
+  Vec *vecs[] = {&c->X, &c->F, &c->u, &c->p};
+  for (int k = 0; k < 4; k++) PetscCall(VecDestroy(vecs[k]));
+  PetscCall(ForcingDestroy(&c->r));
   PetscCall(MobilityTableDestroy(&c->table));
   PetscCall(MarkersDestroy(&c->markers));
   PetscCall(LayoutDestroy(&c->layout));
@@ -111,9 +112,9 @@ PetscErrorCode CoarseApply(Coarse c, PetscScalar F[]) {
   if (StokesStream(c->stokes))
     PetscCall(MarkersRespond(c->markers, StokesStream(c->stokes), NULL, alpha, c->F, c->F));
   else {
-    PetscCall(MarkersClear(c->markers, c->r, &c->dirty));
-    PetscCall(MarkersSpread(c->markers, alpha, c->F, c->r));
-    PetscCall(StokesSolve(c->stokes, c->r, NULL, c->u, c->p));
+    PetscCall(ForcingClear(&c->r));
+    PetscCall(ForcingSpread(&c->r, c->markers, alpha, c->F));
+    PetscCall(StokesSolve(c->stokes, c->r.values, NULL, c->u, c->p));
     PetscCall(MarkersInterpolate(c->markers, c->u, c->F));
   }
   PetscCall(VecGetArrayRead(c->F, &U));

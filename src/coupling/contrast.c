@@ -55,18 +55,14 @@ PetscErrorCode ContrastKnownAdd(Coupling c, PetscReal alpha, Vec moved, PetscSca
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode ContrastSource(Coupling c, Vec U, Vec source) {
+PetscErrorCode ContrastSource(Coupling c, Vec U, Forcing *f) {
   const PetscScalar *u;
-  PetscReal mean[2];
-  Vec w;
   PetscFunctionBeginUser;
-  PetscCall(VecSet(source, 0));
   PetscCall(VecGetArrayRead(U, &u));
   PetscCall(DoubleLayerSet(c->contrast, u));
   PetscCall(VecRestoreArrayRead(U, &u));
-  PetscCall(DMGetGlobalVector(c->fluid->grid->velocity, &w));
-  PetscCall(DoubleLayerSpread(c->contrast, w, source, mean));
-  PetscCall(DMRestoreGlobalVector(c->fluid->grid->velocity, &w));
+  PetscCall(ForcingClear(f));
+  PetscCall(DoubleLayerSpread(c->contrast, f));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

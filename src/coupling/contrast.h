@@ -21,9 +21,9 @@ PETSC_EXTERN PetscErrorCode ContrastMotion(Coupling coupling, const PetscScalar 
 PETSC_EXTERN PetscErrorCode ContrastAdd(Coupling coupling, PetscReal alpha, const PetscScalar G[], PetscScalar y[]);
 PETSC_EXTERN PetscErrorCode ContrastKnownAdd(Coupling coupling, PetscReal alpha, Vec moved, PetscScalar y[]);
 
-/* ContrastSource - source = G^T of the solved velocity where markers move with U: nothing but of dipoles. Collective.
- */
-PETSC_EXTERN PetscErrorCode ContrastSource(Coupling coupling, Vec U, Vec source);
+/* ContrastSource - f becomes the dipoles alone of markers that move with U, its source G^T of the solved velocity.
+   Collective. */
+PETSC_EXTERN PetscErrorCode ContrastSource(Coupling coupling, Vec U, Forcing *f);
 
 /* ContrastMatrix - out[2n][2n], zero before, of the markers first .. first + n - 1, which are whole vesicles: its
    column r is row r of B (1 + (treading/a0) d/dt), of own markers; lattice false: with D in the place of C_D. Not

@@ -168,10 +168,11 @@ PetscErrorCode CouplingKnownForce(Coupling c, Vec Y, Vec X, Vec F) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode CouplingSpreadForce(Coupling c, Vec F, Vec w) {
+PetscErrorCode CouplingSpreadForce(Coupling c, Vec F, Forcing *f) {
+  const Grid g = c->fluid->grid;
   PetscFunctionBeginUser;
-  PetscCall(MarkersSpread(c->markers, -1 / PetscSqr(c->fluid->grid->h), F, w));
-  if (CouplingRemovesMean(c)) PetscCall(FluidRemoveMean(c->fluid, w));
+  PetscCall(ForcingSpread(f, c->markers, -1 / PetscSqr(g->h), F));
+  if (c->membrane->weight && !g->wall[0] && !g->wall[1]) PetscCall(ForcingRemoveMean(f, c->fluid));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

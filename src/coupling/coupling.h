@@ -105,19 +105,12 @@ PETSC_EXTERN PetscErrorCode CouplingElasticForce(Coupling coupling, Vec X, Vec F
 PETSC_EXTERN PetscErrorCode CouplingElasticRate(Coupling coupling, PetscReal alpha, const PetscScalar V[],
                                                 PetscScalar F[]);
 
-/* CouplingRemovesMean - whether CouplingSpreadForce takes gravity's mean off, everywhere on the grid. Not collective.
- */
-static inline PetscBool CouplingRemovesMean(Coupling coupling) {
-  const Grid g = coupling->fluid->grid;
-  return coupling->membrane->weight && !g->wall[0] && !g->wall[1] ? PETSC_TRUE : PETSC_FALSE;
-}
-
 /* CouplingKnownForce - F = the elastic force of Y less gravity's on the markers X, a marker vector of all bodies: minus
-   what is known of the force on them. CouplingSpreadForce - w -= E^T F/h^2, less gravity's mean in a box that is
+   what is known of the force on them. CouplingSpreadForce - f -= E^T F/h^2, less gravity's mean in a box that is
    periodic both ways. CouplingNearField - u[2n], the bodies' own velocities, += alpha C F with near field; F NULL: 0.
    Collective. */
 PETSC_EXTERN PetscErrorCode CouplingKnownForce(Coupling coupling, Vec Y, Vec X, Vec F);
-PETSC_EXTERN PetscErrorCode CouplingSpreadForce(Coupling coupling, Vec F, Vec w);
+PETSC_EXTERN PetscErrorCode CouplingSpreadForce(Coupling coupling, Vec F, Forcing *f);
 PETSC_EXTERN PetscErrorCode CouplingNearField(Coupling coupling, PetscReal alpha, Vec F, PetscScalar u[]);
 
 /* CouplingTread - U += alpha V dX/dt, what the labels' own motion adds to the markers' velocity. Not collective. */

@@ -220,12 +220,13 @@ void DoubleLayerMean(DoubleLayer s, PetscReal mean[2]) {
   }
 }
 
-PetscErrorCode DoubleLayerSpread(DoubleLayer s, Vec w, Vec source, PetscReal mean[2]) {
+PetscErrorCode DoubleLayerSpread(DoubleLayer s, Forcing *f) {
   PetscFunctionBeginUser;
   if (s->near->free) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PlaceDipoles(s));
-  DoubleLayerMean(s, mean);
-  PetscCall(DipoleListSpread(s->list, s->tensor, w, source));
+  DoubleLayerMean(s, f->mean);
+  ForcingNote(f, &s->near->markers->window);
+  PetscCall(DipoleListSpread(s->list, s->tensor, f->values, f->source));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -80,10 +80,10 @@ PETSC_EXTERN PetscErrorCode DoubleLayerApply(DoubleLayer layer, PetscReal alpha,
    in unbounded fluid. Not collective. */
 PETSC_EXTERN void DoubleLayerMean(DoubleLayer layer, PetscReal mean[2]);
 
-/* DoubleLayerSpread - w += the force of J's dipoles, source += G^T of the velocity that is their source; mean +=
-   DoubleLayerMean, which a box that is periodic both ways, or a channel without flux, has with them: the one without
+/* DoubleLayerSpread - f += the force of J's dipoles, its source += G^T of the velocity that is their source, its mean
+   += DoubleLayerMean, which a box that is periodic both ways, or a channel without flux, has with them: the one without
    flow outside a moving rigid body. Nothing in unbounded fluid. Not collective. */
-PETSC_EXTERN PetscErrorCode DoubleLayerSpread(DoubleLayer layer, Vec w, Vec source, PetscReal mean[2]);
+PETSC_EXTERN PetscErrorCode DoubleLayerSpread(DoubleLayer layer, Forcing *f);
 
 /* DoubleLayerRows - the same dipoles as rows of a solve by stream function, with their mean velocity, and unless their
    force is spread already their own; profile: that of the Stokes solve (StokesProfile). Not collective. */

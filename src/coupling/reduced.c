@@ -23,7 +23,7 @@ static PetscErrorCode Motion(Reduced s, const PetscScalar x[], PetscBool whole) 
   const PetscScalar *known = NULL;
   PetscScalar *G;
   PetscFunctionBeginUser;
-  if (!s->source) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!s->motion) PetscFunctionReturn(PETSC_SUCCESS);
   if (whole) PetscCall(VecGetArrayRead(s->moved, &known));
   PetscCall(VecGetArray(s->motion, &G));
   PetscCall(ContrastMotion(s->unknowns->coupling, x, known, G));
@@ -34,24 +34,24 @@ static PetscErrorCode Motion(Reduced s, const PetscScalar x[], PetscBool whole) 
 
 /* Whether dipoles are in what markers have of u; else their velocity is the double layer's alone. */
 static PetscBool HasDipoles(Reduced s) {
-  return s->source && !DoubleLayerIsApart(s->unknowns->coupling->contrast) ? PETSC_TRUE : PETSC_FALSE;
+  return s->motion && !DoubleLayerIsApart(s->unknowns->coupling->contrast) ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* r += -E^T F/h^2 + d and the force of the motion's dipoles, source and mean += their divergence and mean velocity;
-   leaves F and the motion. */
-static PetscErrorCode AddForces(Reduced s, const PetscScalar x[], PetscBool whole, Vec r, Vec source,
-                                PetscReal mean[2]) {
+/* r += -E^T F/h^2 + d and the motion's dipoles; leaves F and the motion. */
+static PetscErrorCode AddForces(Reduced s, const PetscScalar x[], PetscBool whole, Forcing *r) {
   const Unknowns u = s->unknowns;
   const Coupling c = u->coupling;
   PetscFunctionBeginUser;
   if (CouplingHasBodies(c)) {
     PetscCall(Force(s, x, s->F));
-    PetscCall(MarkersSpread(c->markers, -1 / PetscSqr(c->fluid->grid->h), s->F, r));
+    PetscCall(ForcingSpread(r, c->markers, -1 / PetscSqr(c->fluid->grid->h), s->F));
   }
   PetscCall(Motion(s, x, whole));
-  if (HasDipoles(s)) PetscCall(DoubleLayerSpread(c->contrast, r, source, mean));
+  if (HasDipoles(s)) PetscCall(DoubleLayerSpread(c->contrast, r));
+  if (!u->walls->n) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(UnknownsGatherWalls(u, x + UnknownsWalls(u), s->d));
-  PetscCall(WallsAdd(u->walls, s->d, r));
+  ForcingNote(r, NULL);
+  PetscCall(WallsAdd(u->walls, s->d, r->values));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -77,12 +77,12 @@ static PetscErrorCode BodyConditions(Reduced s, const PetscScalar x[], Vec known
   const PetscScalar *U;
   PetscFunctionBeginUser;
   PetscCall(VecGetArrayRead(s->U, &U));
-  for (PetscInt k = 0; k < tension; k++) y[k] = (k < n && !s->source ? x[k] : 0) - U[k];
+  for (PetscInt k = 0; k < tension; k++) y[k] = (k < n && !s->motion ? x[k] : 0) - U[k];
   PetscCall(VecRestoreArrayRead(s->U, &U));
-  if (!s->source) MembraneTread(c->membrane, c->treading, 1 / c->fluid->a0, x, y);
+  if (!s->motion) MembraneTread(c->membrane, c->treading, 1 / c->fluid->a0, x, y);
   if (known && s->known) PetscCall(VecWAXPY(s->all, 1, s->F, s->known));
   PetscCall(CouplingNearField(c, 1, known && s->known ? s->all : s->F, y));
-  if (s->source) {
+  if (s->motion) {
     PetscCall(VecGetArrayRead(s->motion, &U));
     PetscCall(ContrastAdd(c, 1, U, y));
     PetscCall(VecRestoreArrayRead(s->motion, &U));
@@ -125,22 +125,19 @@ static PetscErrorCode AddMean(Reduced s, const PetscReal mean[2], Vec w) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* (w, p) = Stokes(r, source), source NULL (zero) or p. */
-static PetscErrorCode Solve(Reduced s, Vec r, Vec source, const PetscReal mean[2], Vec w, Vec p) {
+/* (w, p) = Stokes(r, source), source may be p. */
+static PetscErrorCode Solve(Reduced s, const Forcing *r, Vec source, Vec w, Vec p) {
   PetscFunctionBeginUser;
   if (!s->stokes) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(StokesSolve(s->stokes, r, source, w, p));
-  PetscCall(AddMean(s, mean, w));
+  PetscCall(StokesSolve(s->stokes, r->values, source, w, p));
+  PetscCall(AddMean(s, r->mean, w));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-void ReducedBegin(Reduced s, Vec known, Vec moved, Vec source, PetscBool local, const StreamPast *past, Vec flow) {
+void ReducedBegin(Reduced s, Vec known, Vec moved, const StreamPast *past, Vec flow) {
   const Coupling c = s->unknowns->coupling;
   s->known = known;
   s->moved = moved;
-  s->source = source;
-  s->mean[0] = s->mean[1] = 0;
-  s->local = local;
   s->flow = flow;
   if (!flow) return;
   s->past = *past;
@@ -159,14 +156,10 @@ static PetscErrorCode TakePart(Reduced s) {
 /* U of the forces of x alone, on the grid; the product is kept. */
 static PetscErrorCode RespondOnGrid(Reduced s, const PetscScalar x[], PetscInt place) {
   const Coupling c = s->unknowns->coupling;
-  const Vec p = s->kept.p[place];
-  PetscReal mean[2] = {0, 0};
   PetscFunctionBeginUser;
-  PetscCall(MarkersClear(c->markers, s->r, &s->dirty));
-  PetscCall(WallsClear(s->unknowns->walls, s->r));
-  if (s->source && p) PetscCall(VecSet(p, 0));
-  PetscCall(AddForces(s, x, PETSC_FALSE, s->r, p, mean));
-  PetscCall(Solve(s, s->r, s->source ? p : NULL, mean, s->kept.w[place], p));
+  PetscCall(ForcingClear(&s->r));
+  PetscCall(AddForces(s, x, PETSC_FALSE, &s->r));
+  PetscCall(Solve(s, &s->r, s->r.source, s->kept.w[place], s->kept.p[place]));
   if (CouplingHasBodies(c)) PetscCall(MarkersInterpolate(c->markers, s->kept.w[place], s->U));
   PetscCall(TakePart(s));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -194,7 +187,7 @@ static PetscErrorCode Mult(Mat A, Vec x, Vec y) {
   PetscCall(MatShellGetContext(A, &s));
   const Coupling c = s->unknowns->coupling;
   if (!s->stream)
-    PetscCall(ProductsNext(&s->kept, s->stokes ? s->r : NULL, c->fluid->grid->da[FIELD_P], s->rest, &place));
+    PetscCall(ProductsNext(&s->kept, s->stokes ? s->r.values : NULL, c->fluid->grid->da[FIELD_P], s->rest, &place));
   if (place < PRODUCTS_KEPT) PetscCall(VecCopy(x, s->kept.z[place]));
   PetscCall(VecGetArrayRead(x, &xa));
   if (!s->stream)
@@ -210,25 +203,25 @@ static PetscErrorCode Mult(Mat A, Vec x, Vec y) {
 }
 
 /* U of the force f, which has the dipoles' forces, row by row. */
-static PetscErrorCode FollowByRows(Reduced s, Vec f, StreamMeasures *measures) {
+static PetscErrorCode FollowByRows(Reduced s, const Forcing *f, StreamMeasures *measures) {
   const Coupling c = s->unknowns->coupling;
   const PetscBool dipoles = HasDipoles(s);
   PetscFunctionBeginUser;
   if (dipoles) PetscCall(DoubleLayerRows(c->contrast, PETSC_FALSE, StokesProfile(s->stokes), s->dipoles));
-  PetscCall(MarkersFollow(c->markers, s->stream, dipoles ? s->dipoles : NULL, !s->local, f, dipoles ? s->source : NULL,
-                          NULL, s->U, NULL, dipoles || !s->source ? measures : NULL));
+  PetscCall(MarkersFollow(c->markers, s->stream, dipoles ? s->dipoles : NULL, f, NULL, s->U, NULL,
+                          dipoles || !s->motion ? measures : NULL));
   PetscCall(TakePart(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* The same with a flow: of f and of the states before (all), or of the forces F that have been added to f, which go
    beside what there is. What is measured is a sum, too, but for the divergence, which it bounds. */
-static PetscErrorCode FollowFlow(Reduced s, PetscBool all, Vec f, StreamMeasures *measures) {
+static PetscErrorCode FollowFlow(Reduced s, PetscBool all, const Forcing *f, StreamMeasures *measures) {
   const Coupling c = s->unknowns->coupling;
   StreamMeasures more;
   PetscFunctionBeginUser;
   if (all)
-    PetscCall(MarkersFollow(c->markers, s->stream, NULL, !s->local, f, NULL, &s->past, s->sum, s->flow, &s->measures));
+    PetscCall(MarkersFollow(c->markers, s->stream, NULL, f, &s->past, s->sum, s->flow, &s->measures));
   else {
     PetscCall(MarkersAddFlow(c->markers, s->stream, -1 / PetscSqr(c->fluid->grid->h), s->F, s->U, s->flow, &more));
     PetscCall(TakePart(s));
@@ -244,7 +237,8 @@ static PetscErrorCode FollowFlow(Reduced s, PetscBool all, Vec f, StreamMeasures
 
 /* U of the force f, and u and p themselves unless they are not wanted or not p and U can be had without. all: of f, not
    of what was added to it only. */
-static PetscErrorCode Follow(Reduced s, PetscBool all, Vec f, PetscBool grid, Vec w, Vec p, StreamMeasures *measures) {
+static PetscErrorCode Follow(Reduced s, PetscBool all, const Forcing *f, PetscBool grid, Vec w, Vec p,
+                             StreamMeasures *measures) {
   const Coupling c = s->unknowns->coupling;
   const PetscBool bodies = CouplingHasBodies(c);
   PetscFunctionBeginUser;
@@ -252,23 +246,21 @@ static PetscErrorCode Follow(Reduced s, PetscBool all, Vec f, PetscBool grid, Ve
     if (bodies) PetscCall(s->flow ? FollowFlow(s, all, f, measures) : FollowByRows(s, f, measures));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  /* p holds the right-hand side, then the solution */
-  if (c->fluid->bc2) PetscCall(VecAXPBY(p, -1, 0, c->fluid->bc2));
-  if (s->source) PetscCall(VecCopy(s->source, p));
-  PetscCall(Solve(s, f, s->source || c->fluid->bc2 ? p : NULL, s->mean, w, p));
+  if (c->fluid->bc2) PetscCall(VecAXPBY(p, -1, 0, c->fluid->bc2)); /* moving walls, which go without dipoles */
+  PetscCall(Solve(s, f, c->fluid->bc2 ? p : f->source, w, p));
   if (bodies) PetscCall(MarkersInterpolate(c->markers, w, s->U));
   PetscCall(TakePart(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode ReducedResidual(Reduced s, Vec added, Vec f, Vec g, Vec k, Vec x, PetscBool grid, Vec w, Vec p,
+PetscErrorCode ReducedResidual(Reduced s, Vec added, Forcing *f, Vec g, Vec k, Vec x, PetscBool grid, Vec w, Vec p,
                                Vec residual, StreamMeasures *measures) {
   const PetscBool all = added == x ? PETSC_TRUE : PETSC_FALSE;
   const PetscScalar *xa;
   PetscScalar *ra;
   PetscFunctionBeginUser;
   PetscCall(VecGetArrayRead(added, &xa));
-  PetscCall(AddForces(s, xa, all, f, s->source, s->mean));
+  PetscCall(AddForces(s, xa, all, f));
   PetscCall(VecRestoreArrayRead(added, &xa));
   PetscCall(VecGetArrayRead(x, &xa));
   if (s->flow) PetscCall(Follow(s, all, f, grid, w, p, measures)); /* while F is that of `added` */
@@ -286,25 +278,25 @@ PetscErrorCode ReducedResidual(Reduced s, Vec added, Vec f, Vec g, Vec k, Vec x,
 }
 
 PetscBool ReducedIsFinished(Reduced s) {
-  return s->source && !HasDipoles(s) ? PETSC_TRUE : PETSC_FALSE;
+  return s->motion && !HasDipoles(s) ? PETSC_TRUE : PETSC_FALSE;
 }
 
-PetscErrorCode ReducedFinish(Reduced s, Vec added, Vec f, Vec x, StreamMeasures *measures) {
+PetscErrorCode ReducedFinish(Reduced s, Vec added, Forcing *f, Vec x, StreamMeasures *measures) {
   const Coupling c = s->unknowns->coupling;
   const PetscScalar *xa;
   PetscFunctionBeginUser;
   if (!ReducedIsFinished(s)) PetscFunctionReturn(PETSC_SUCCESS);
   if (added) {
     PetscCall(VecGetArrayRead(added, &xa));
-    PetscCall(AddForces(s, xa, PETSC_FALSE, f, s->source, s->mean));
+    PetscCall(AddForces(s, xa, PETSC_FALSE, f));
     PetscCall(VecRestoreArrayRead(added, &xa));
   }
   PetscCall(VecGetArrayRead(x, &xa));
   PetscCall(Motion(s, xa, PETSC_TRUE));
   PetscCall(VecRestoreArrayRead(x, &xa));
-  PetscCall(DoubleLayerSpread(c->contrast, f, s->source, s->mean));
+  PetscCall(DoubleLayerSpread(c->contrast, f));
   PetscCall(DoubleLayerRows(c->contrast, PETSC_FALSE, StokesProfile(s->stokes), s->dipoles));
-  PetscCall(MarkersFollow(c->markers, s->stream, s->dipoles, PETSC_FALSE, f, s->source, NULL, NULL, NULL, measures));
+  PetscCall(MarkersFollow(c->markers, s->stream, s->dipoles, f, NULL, NULL, NULL, measures));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -326,15 +318,15 @@ PetscBool ReducedNeedsNoPressure(Reduced s) {
   return s->stream && !c->fluid->total && CouplingHasBodies(c) ? PETSC_TRUE : PETSC_FALSE;
 }
 
-PetscErrorCode ReducedFields(Reduced s, Vec f, Vec source, const PetscReal mean[2], Vec w, Vec p) {
+PetscErrorCode ReducedFields(Reduced s, const Forcing *f, Vec w, Vec p) {
   PetscFunctionBeginUser;
-  PetscCall(Solve(s, f, source, mean, w, p));
+  PetscCall(Solve(s, f, f->source, w, p));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode ReducedPressure(Reduced s, Vec f, Vec w, Vec p) {
+PetscErrorCode ReducedPressure(Reduced s, const Forcing *f, Vec w, Vec p) {
   PetscFunctionBeginUser;
-  PetscCall(StokesPressure(s->stokes, f, w, p));
+  PetscCall(StokesPressure(s->stokes, f->values, w, p));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -348,7 +340,7 @@ PetscErrorCode ReducedCreate(Unknowns u, Reduced *out) {
   s->unknowns = u;
   if (!c->fluid->grid->free) PetscCall(StokesCreate(c->fluid, &s->stokes));
   if (s->stokes) s->stream = StokesStream(s->stokes);
-  if (!s->stream) PetscCall(DMCreateGlobalVector(c->fluid->grid->velocity, &s->r));
+  if (!s->stream) PetscCall(ForcingCreate(c->fluid->grid, c->contrast ? PETSC_TRUE : PETSC_FALSE, &s->r));
   PetscCall(LayoutCreateVec(c->bodies->layout, 2, &s->F));
   PetscCall(VecDuplicate(s->F, &s->U));
   PetscCall(VecDuplicate(s->F, &s->all));
@@ -372,7 +364,7 @@ PetscErrorCode ReducedDestroy(Reduced *reduced) {
   PetscFunctionBeginUser;
   if (!s) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ProductsDestroy(&s->kept));
-  PetscCall(VecDestroy(&s->r));
+  PetscCall(ForcingDestroy(&s->r));
   PetscCall(VecDestroy(&s->F));
   PetscCall(VecDestroy(&s->U));
   PetscCall(VecDestroy(&s->all));

@@ -23,11 +23,9 @@ struct _p_Reduced {
   Stream stream;     /* borrowed; NULL where products are made on the grid, and kept */
   Mat A;             /* the residuals' derivative, scaled */
   Products kept;
-  Vec r;                   /* a force on the grid, NULL with stream */
-  GridWindow dirty;        /* zero but there */
+  Forcing r;               /* of a product; not made with stream */
   Vec F, U;                /* marker vectors of all bodies, work: forces, what the markers have of u = E u */
   Vec all, known;          /* work: forces with those that are known (borrowed) */
-  PetscBool local;         /* f is zero outside the markers' window */
   Vec flow;                /* borrowed: of u, where the problem makes one; else NULL */
   StreamPast past;         /* then: the states before, */
   Vec sum;                 /* and U of all so far, */
@@ -35,8 +33,6 @@ struct _p_Reduced {
   Vec motion;              /* with a viscosity contrast: what the jump is of, marker vector, work */
   Vec moved;               /* borrowed: of the motion what is known */
   DipoleRows dipoles;      /* of the jump, with stream */
-  Vec source;              /* borrowed: and what the divergence of the forces in f is, minus; NULL without */
-  PetscReal mean[2];       /* and the mean velocity that goes with it in a box that is periodic both ways */
   Vec rest;                /* unknowns, work */
   PetscScalar *d;          /* [walls->n] all wall forces, work */
   PetscScalar *slip;       /* [walls->n] work */
@@ -47,33 +43,31 @@ PETSC_EXTERN PetscErrorCode ReducedCreate(Unknowns unknowns, Reduced *reduced);
 PETSC_EXTERN PetscErrorCode ReducedDestroy(Reduced *reduced);
 
 /* ReducedBegin - a problem begins, in which `known`, minus a part of the force on the bodies' markers, is in f but its
-   near field is not in k, the part `moved` of the markers' motion is known, and the dipoles' source
-   is added to `source`, zero now, with the mean velocity in reduced->mean; both NULL without viscosity contrast. local:
-   f is zero outside the markers' window. flow: u is kept as that (fluid/streamflow.h), and the force of
-   the states before, `past`, is beside f; else NULL. Not collective. */
-PETSC_EXTERN void ReducedBegin(Reduced reduced, Vec known, Vec moved, Vec source, PetscBool local,
-                               const StreamPast *past, Vec flow);
+   near field is not in k, and the part `moved` of the markers' motion is known (NULL without viscosity contrast). flow:
+   u is kept as that (fluid/streamflow.h), and the force of the states before, `past`, is beside f; else NULL. Not
+   collective. */
+PETSC_EXTERN void ReducedBegin(Reduced reduced, Vec known, Vec moved, const StreamPast *past, Vec flow);
 
 /* ReducedResidual - the forces of `added` go into f, those of x itself with the dipoles of `moved`; minus the scaled
    residuals at x, with u, p = w, p by one Stokes solve of f, f holding the forces of x. grid false: w and p are not
    wanted and may stay as they are. Both may be NULL where ReducedNeedsNoPressure, and measures is then of u unless it
    is NULL. With a flow it is added to, and the first residual of a problem must be that of added = x. g: an edge
    vector, k: a marker vector of all bodies. Collective. */
-PETSC_EXTERN PetscErrorCode ReducedResidual(Reduced reduced, Vec added, Vec f, Vec g, Vec k, Vec x, PetscBool grid,
+PETSC_EXTERN PetscErrorCode ReducedResidual(Reduced reduced, Vec added, Forcing *f, Vec g, Vec k, Vec x, PetscBool grid,
                                             Vec w, Vec p, Vec residual, StreamMeasures *measures);
 
 /* ReducedNeedsNoPressure - whether a problem can be solved without u and p on the grid: disturbances by fluid/stream.h,
-   with a flow in fluid with inertia. ReducedFields - then, without a flow, they are the Stokes solve's for f, source
-   and mean as ReducedResidual left them. ReducedPressure - with a flow p follows from f and its velocity w. Not
-   collective; collective. */
+   with a flow in fluid with inertia. ReducedFields - then, without a flow, they are the Stokes solve's for f as
+   ReducedResidual left it. ReducedPressure - with a flow p follows from f and its velocity w. Not collective;
+   collective. */
 PETSC_EXTERN PetscBool ReducedNeedsNoPressure(Reduced reduced);
-PETSC_EXTERN PetscErrorCode ReducedFields(Reduced reduced, Vec f, Vec source, const PetscReal mean[2], Vec w, Vec p);
-PETSC_EXTERN PetscErrorCode ReducedPressure(Reduced reduced, Vec f, Vec w, Vec p);
+PETSC_EXTERN PetscErrorCode ReducedFields(Reduced reduced, const Forcing *f, Vec w, Vec p);
+PETSC_EXTERN PetscErrorCode ReducedPressure(Reduced reduced, const Forcing *f, Vec w, Vec p);
 
-/* ReducedFinish - f gets the forces of `added` (NULL: none) and the dipoles of the solution x, which source and mean
-   get as well, where the markers' rows are without them; measures is of its velocity; else nothing. Collective.
+/* ReducedFinish - f gets the forces of `added` (NULL: none) and the dipoles of the solution x where the markers' rows
+   are without them; measures is of its velocity; else nothing. Collective.
    ReducedIsFinished - whether it does. Not collective. */
-PETSC_EXTERN PetscErrorCode ReducedFinish(Reduced reduced, Vec added, Vec f, Vec x, StreamMeasures *measures);
+PETSC_EXTERN PetscErrorCode ReducedFinish(Reduced reduced, Vec added, Forcing *f, Vec x, StreamMeasures *measures);
 PETSC_EXTERN PetscBool ReducedIsFinished(Reduced reduced);
 
 /* ReducedForgetProducts - a solve begins: products with A are kept from here on. Not collective. */

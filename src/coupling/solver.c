@@ -200,7 +200,7 @@ static PetscErrorCode Reference(CoupledSolver s, const CoupledProblem *q) {
       sum += PetscSqr(a[LayoutOffset(l, v) + k] * UnknownsTensionScale(s->unknowns, v));
   PetscCall(VecRestoreArrayRead(q->g, &a));
   PetscCall(ObstacleReference(s, q, &sum));
-  PetscCall(GridAddSquares(s->coupling->fluid->grid, q->local ? &s->coupling->markers->window : NULL, q->f, &squares));
+  PetscCall(GridAddSquares(q->f->grid, q->f->everywhere ? NULL : &q->f->window, q->f->values, &squares));
   sum += l2 * squares;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPIU_REAL, MPI_SUM, l->comm));
   if (s->coupling->fluid->bc2) {
@@ -259,7 +259,7 @@ static PetscErrorCode Begin(CoupledSolver s, const CoupledProblem *q, SolveRepor
   Trial *t = &s->trial;
   PetscFunctionBeginUser;
   PetscCall(Guess(s, q));
-  ReducedBegin(s->reduced, q->F, q->moved, q->source, q->local, q->past, q->flow);
+  ReducedBegin(s->reduced, q->F, q->moved, q->past, q->flow);
   t->begun = s->reduced->stream && !q->w ? PETSC_TRUE : PETSC_FALSE;
   PetscCall(ReducedResidual(s->reduced, s->x, q->f, q->g, q->k, s->x, PETSC_FALSE, q->w, q->p, s->b,
                             t->begun ? &report->measures : NULL));

@@ -5,13 +5,11 @@
 
 /* What a step asks for, and the vectors that its answer goes to. */
 typedef struct {
-  Vec moved, source;      /* with viscosity contrast: the part of the markers' motion that is known, and zero, to which
-                             the dipoles' source is added (scheme coupled); else NULL */
-  Vec f, g, k;            /* right-hand sides of momentum (the forces of the solution are added to it), Dm V/h^2 and V,
-                             k of all bodies */
+  Vec moved;              /* with viscosity contrast: the part of the markers' motion that is known; else NULL */
+  Forcing *f;             /* right-hand side of momentum, to which the forces of the solution are added, */
+  Vec g, k;               /* of Dm V/h^2, and of V of all bodies */
   Vec F;                  /* minus what is known of the force on all bodies' markers: in f, but its near field not in k;
                              NULL: none */
-  PetscBool local;        /* f is zero outside the markers' window */
   Vec w, p, sigma, d, V;  /* solution; sigma, d and V hold the first guess; w and p may be NULL where
                              ReducedNeedsNoPressure, */
   Vec solid;              /* and the force on obstacles; NULL without */

@@ -97,14 +97,15 @@ static PetscReal Sheared(const Convection c, int f, PetscInt k, const PetscReal 
   return c->own[f][k] * gradient[f][f] + mean * gradient[f][1 - f];
 }
 
-PetscErrorCode ConvectionAdd(Convection c, PetscReal alpha, Vec w, Vec r) {
+PetscErrorCode ConvectionAdd(Convection c, PetscReal alpha, Vec w, Forcing *forcing) {
   const Grid g = c->fluid->grid;
   const PetscBool flow = c->flow.type != FLOW_QUIESCENT ? PETSC_TRUE : PETSC_FALSE;
   PetscScalar *a;
   PetscReal X[2];
   PetscFunctionBeginUser;
   PetscCall(Pad(c, w));
-  PetscCall(VecGetArray(r, &a));
+  ForcingNote(forcing, NULL);
+  PetscCall(VecGetArray(forcing->values, &a));
   for (int f = 0; f < 2; f++)
     for (PetscInt j = 0; j < g->rows[f]; j++)
       for (PetscInt i = 0; i < g->columns[f]; i++) {
@@ -113,7 +114,7 @@ PetscErrorCode ConvectionAdd(Convection c, PetscReal alpha, Vec w, Vec r) {
         a[(f ? GridLocalU(g) : 0) + j * g->columns[f] + i] += alpha *
                                                               (Carried(c, f, k) + (flow ? Sheared(c, f, k, X) : 0));
       }
-  PetscCall(VecRestoreArray(r, &a));
+  PetscCall(VecRestoreArray(forcing->values, &a));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

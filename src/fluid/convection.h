@@ -4,7 +4,7 @@
    the carrying flow has a divergence. u_inf.grad u_inf is a gradient for the flows offered; the pressure takes
    it up. */
 #pragma once
-#include "fluid/fluid.h"
+#include "fluid/forcing.h"
 
 typedef struct _p_Convection *Convection;
 struct _p_Convection {
@@ -21,9 +21,9 @@ struct _p_Convection {
 PETSC_EXTERN PetscErrorCode ConvectionCreate(const Flow *flow, Fluid fluid, Convection *convection);
 PETSC_EXTERN PetscErrorCode ConvectionDestroy(Convection *convection);
 
-/* ConvectionAdd - r += alpha N (length/time^2), from the solved velocity w (u', or u' + u_inf in the total form); r
-   must not be w. Collective. */
-PETSC_EXTERN PetscErrorCode ConvectionAdd(Convection convection, PetscReal alpha, Vec w, Vec r);
+/* ConvectionAdd - f += alpha N (length/time^2), from the solved velocity w (u', or u' + u_inf in the total form), which
+   must not be the values of f. Collective. */
+PETSC_EXTERN PetscErrorCode ConvectionAdd(Convection convection, PetscReal alpha, Vec w, Forcing *f);
 
 /* ConvectionSpeed - max over cells of |u| + |v| of the whole velocity u' + u_inf, which times dt/h is the CFL number;
    NaN when a velocity is not finite. The same on every rank. Collective. */

@@ -75,8 +75,7 @@ static LocalPart FindLocalPart(Walls w, int dir, int side) {
   return (LocalPart){g->rows[f], g->first, side ? g->columns[f] - 1 : 0, g->columns[f]};
 }
 
-/* r += d, or r = 0 where d is NULL, on the faces next to the walls. */
-static PetscErrorCode PutForces(Walls w, const PetscScalar d[], Vec r) {
+PetscErrorCode WallsAdd(Walls w, const PetscScalar d[], Vec r) {
   PetscScalar *a;
   PetscFunctionBeginUser;
   PetscCall(VecGetArray(r, &a));
@@ -85,18 +84,10 @@ static PetscErrorCode PutForces(Walls w, const PetscScalar d[], Vec r) {
       const LocalPart part = FindLocalPart(w, dir, side);
       const PetscInt from = w->pair[dir].start + side * w->pair[dir].length + part.first;
       PetscScalar *to = a + (dir ? 0 : GridLocalU(w->fluid->grid)) + part.at;
-      for (PetscInt i = 0; i < part.n; i++) to[i * part.stride] = d ? to[i * part.stride] + d[from + i] : 0;
+      for (PetscInt i = 0; i < part.n; i++) to[i * part.stride] += d[from + i];
     }
   PetscCall(VecRestoreArray(r, &a));
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode WallsAdd(Walls w, const PetscScalar d[], Vec r) {
-  return PutForces(w, d, r);
-}
-
-PetscErrorCode WallsClear(Walls w, Vec r) {
-  return PutForces(w, NULL, r);
 }
 
 /* The slope of psi along a wall, on this rank's faces of it, times kappa h. */

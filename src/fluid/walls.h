@@ -28,9 +28,8 @@ struct _p_Walls {
 PETSC_EXTERN PetscErrorCode WallsCreate(Fluid fluid, Walls *walls);
 PETSC_EXTERN PetscErrorCode WallsDestroy(Walls *walls);
 
-/* WallsAdd - r += the force d[n] on the faces next to the walls. WallsClear - r = 0 there. Not collective. */
+/* WallsAdd - r += the force d[n] on the faces next to the walls. Not collective. */
 PETSC_EXTERN PetscErrorCode WallsAdd(Walls walls, const PetscScalar d[], Vec r);
-PETSC_EXTERN PetscErrorCode WallsClear(Walls walls, Vec r);
 
 /* WallsSlip - y[n] = -2 nu/h^2 times the slope of the potential psi along the walls: the momentum that the projection
    leaves there. The same bits on every rank. Collective. */

@@ -165,10 +165,10 @@ PetscErrorCode MarkersInterpolate(Markers m, Vec w, Vec U) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode MarkersClear(Markers m, Vec w, GridWindow *dirty) {
+PetscErrorCode ForcingSpread(Forcing *f, Markers m, PetscReal alpha, Vec F) {
   PetscFunctionBeginUser;
-  PetscCall(GridClear(m->grid, dirty, w));
-  *dirty = m->window;
+  ForcingNote(f, &m->window);
+  PetscCall(MarkersSpread(m, alpha, F, f->values));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -5,6 +5,7 @@
    that goes to the bodies' owners. In unbounded fluid (grid->free) nothing is on the grid: markers may be anywhere, E =
    0. */
 #pragma once
+#include "fluid/forcing.h"
 #include "fluid/stream.h"
 #include "markers/layout.h"
 #include "markers/rows.h"
@@ -52,10 +53,8 @@ PETSC_EXTERN PetscErrorCode MarkersPlace(Markers markers, Vec X);
  */
 PETSC_EXTERN PetscReal MarkersShortfall(Markers markers, PetscInt k, int comp, int dir);
 
-/* MarkersClear - w (a velocity or a pressure) is zero but in `dirty`, which is zeroed; dirty becomes the window, where
-   the caller may write. Not collective. */
-PETSC_EXTERN PetscErrorCode MarkersClear(Markers markers, Vec w, GridWindow *dirty);
-
-/* MarkersSpread - w += alpha E^T F; F a marker vector, w a velocity. MarkersInterpolate - U = E w. Collective. */
+/* MarkersSpread - w += alpha E^T F; F a marker vector, w a velocity. ForcingSpread - to the forcing's values, in the
+   markers' window. MarkersInterpolate - U = E w. Collective. */
 PETSC_EXTERN PetscErrorCode MarkersSpread(Markers markers, PetscReal alpha, Vec F, Vec w);
+PETSC_EXTERN PetscErrorCode ForcingSpread(Forcing *forcing, Markers markers, PetscReal alpha, Vec F);
 PETSC_EXTERN PetscErrorCode MarkersInterpolate(Markers markers, Vec w, Vec U);

@@ -39,11 +39,11 @@ static void TakeVelocity(void *ctx, Field f, PetscInt j, PetscScalar row[]) {
   if (!r->measured) MarkerRowInterpolate(r->m->rows, f, j, row, r->m->part);
 }
 
-/* all: forces may be anywhere, not only where the markers are. */
-static PetscErrorCode Solve(Response *r, Stream stream, PetscBool all, Vec U, StreamMeasures *measures) {
+/* window: forces are zero outside it; NULL: they may be anywhere. */
+static PetscErrorCode Solve(Response *r, Stream stream, const GridWindow *window, Vec U, StreamMeasures *measures) {
   const Markers m = r->m;
   const StreamRows rows = {.ctx = r,
-                           .forced = {all ? 0 : m->window.rows[0], all ? m->grid->rows[FIELD_U] : m->window.rows[1]},
+                           .forced = {window ? window->rows[0] : 0, window ? window->rows[1] : m->grid->rows[FIELD_U]},
                            .wanted = {m->window.rows[0], m->window.rows[1]},
                            .past = r->past,
                            .flow = r->flow,
@@ -68,7 +68,7 @@ static PetscErrorCode Respond(Response *r, Stream stream, Vec F, Vec U, StreamMe
   PetscFunctionBeginUser;
   PetscCall(PetscLogEventBegin(m->respond, 0, 0, 0, 0));
   PetscCall(LayoutGatherVec(m->layout, F, m->force));
-  PetscCall(Solve(r, stream, PETSC_FALSE, U, measures));
+  PetscCall(Solve(r, stream, &m->window, U, measures));
   PetscCall(PetscLogEventEnd(m->respond, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -88,17 +88,18 @@ PetscErrorCode MarkersAddFlow(Markers m, Stream stream, PetscReal alpha, Vec F, 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode MarkersFollow(Markers m, Stream stream, DipoleRows dipoles, PetscBool all, Vec f, Vec source,
-                             const StreamPast *past, Vec U, Vec flow, StreamMeasures *measures) {
+PetscErrorCode MarkersFollow(Markers m, Stream stream, DipoleRows dipoles, const Forcing *f, const StreamPast *past,
+                             Vec U, Vec flow, StreamMeasures *measures) {
+  const Vec source = dipoles ? f->source : NULL;
   Response r = {.m = m, .dipoles = dipoles, .measured = U ? PETSC_FALSE : PETSC_TRUE, .past = past, .flow = flow};
   PetscFunctionBeginUser;
   PetscCall(PetscLogEventBegin(m->respond, 0, 0, 0, 0));
-  PetscCall(VecGetArrayRead(f, &r.f));
+  PetscCall(VecGetArrayRead(f->values, &r.f));
   if (source) PetscCall(VecGetArrayRead(source, &r.source));
   PetscCall(GridRows(m->grid, FIELD_U, r.f, &r.u));
-  PetscCall(Solve(&r, stream, all, U, measures));
+  PetscCall(Solve(&r, stream, f->everywhere ? NULL : &f->window, U, measures));
   if (source) PetscCall(VecRestoreArrayRead(source, &r.source));
-  PetscCall(VecRestoreArrayRead(f, &r.f));
+  PetscCall(VecRestoreArrayRead(f->values, &r.f));
   PetscCall(PetscLogEventEnd(m->respond, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

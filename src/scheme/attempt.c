@@ -71,34 +71,20 @@ static PetscErrorCode AddObstacleData(Scheme s, Vec known) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* f, the momentum's right-hand side. */
-static Vec Momentum(const Coupled *d) {
-  return d->next.force ? d->next.force : d->f;
-}
-
-/* Whether f is zero outside the markers' window, which is remembered with it: convection is everywhere, and so is
-   gravity's mean that is taken off. */
-static PetscBool IsLocal(Scheme s, const Coupled *d) {
-  return d->next.force && !d->convection && !CouplingRemovesMean(s->coupling) ? PETSC_TRUE : PETSC_FALSE;
-}
-
-/* The history uhat: in f, with k = lag E uhat, or as flows beside f; none in quasi-steady flow. */
+/* The history uhat: in f, with k = lag E uhat, or as flows beside f; none in quasi-steady flow. next.w is used for
+   uhat. */
 static PetscErrorCode Past(Scheme s, Coupled *d, const BDF *b) {
-  const Vec f = Momentum(d), *flow = STATES(s, flow);
+  const Vec *flow = STATES(s, flow);
   PetscFunctionBeginUser;
   d->past.count = d->next.flow && !s->fluid->steady ? b->order : 0;
   for (PetscInt j = 0; j < d->past.count; j++) {
     d->past.weight[j] = b->history[j];
     d->past.flow[j] = flow[j];
   }
-  if (IsLocal(s, d))
-    PetscCall(MarkersClear(s->coupling->markers, f, &d->next.window));
-  else if (s->fluid->steady || d->next.flow)
-    PetscCall(VecSet(f, 0));
-  else {
-    PetscCall(HistorySum(b->order, b->history, 1, STATES(s, w), f));
-    PetscCall(CouplingAddPast(s->coupling, f, d->known));
-  }
+  if (s->fluid->steady || d->next.flow) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(HistorySum(b->order, b->history, 1, STATES(s, w), d->next.w));
+  PetscCall(CouplingAddPast(s->coupling, d->next.w, d->known));
+  PetscCall(ForcingAdd(&d->next.forcing, d->next.w));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -106,16 +92,12 @@ static PetscErrorCode Past(Scheme s, Coupled *d, const BDF *b) {
    springs beside bending, Y = Xhat + u_inf/a0, V the labels' speed, and what holds obstacles in the flow. next.w is
    used for w*. */
 static PetscErrorCode RightHandSides(Scheme s, Coupled *d, const BDF *b) {
-  const Vec f = Momentum(d);
+  Forcing *f = &d->next.forcing;
   PetscFunctionBeginUser;
   PetscCall(VecSet(d->known, 0));
-  if (d->source) PetscCall(VecSet(d->source, 0));
-  if (d->next.source && IsLocal(s, d))
-    PetscCall(GridClear(s->fluid->grid, &d->next.window, d->next.source));
-  else if (d->next.source)
-    PetscCall(VecSet(d->next.source, 0));
+  PetscCall(ForcingClear(f));
   PetscCall(Past(s, d, b));
-  if (s->fluid->bc1) PetscCall(VecAXPY(f, 1, s->fluid->bc1));
+  if (s->fluid->bc1) PetscCall(ForcingAdd(f, s->fluid->bc1));
   PetscCall(VecWAXPY(d->Y, 1 / b->a0, s->background, d->Xhat));
   PetscCall(CouplingKnownForce(s->coupling, d->Y, d->Xstar, d->force));
   PetscCall(CouplingSpreadForce(s->coupling, d->force, f));
@@ -154,12 +136,10 @@ static PetscErrorCode Solve(Scheme s, Coupled *d) {
   State *n = &d->next;
   const Vec w = n->flow ? NULL : n->w;
   const CoupledProblem problem = {.moved = d->moved,
-                                  .source = n->source ? n->source : d->source,
-                                  .f = Momentum(d),
+                                  .f = &n->forcing,
                                   .g = s->g,
                                   .k = d->known,
                                   .F = d->force,
-                                  .local = w ? PETSC_FALSE : IsLocal(s, d),
                                   .w = w,
                                   .p = n->p,
                                   .sigma = n->sigma,
@@ -178,7 +158,6 @@ static PetscErrorCode Solve(Scheme s, Coupled *d) {
   PetscCall(CoupledSolverSolve(d->solver, &problem, &report));
   s->report.coupled_its += report.its;
   s->report.measures = report.measures;
-  PetscCall(PetscArraycpy(n->mean, d->solver->reduced->mean, 2));
   n->a0 = s->fluid->a0;
   if (PreconditionerIsNew(d->solver->preconditioner)) {
     PetscCall(VecCopy(d->Xstar, d->made_at));
@@ -192,7 +171,7 @@ static PetscErrorCode Solve(Scheme s, Coupled *d) {
 /* The largest divergence of the velocity of the step, whose sources D u = bc2 are where there are any. */
 static PetscErrorCode MeasureDivergence(Scheme s, Coupled *d, Vec sources) {
   PetscFunctionBeginUser;
-  if (d->next.force)
+  if (!d->next.p)
     s->report.div_max = s->report.measures.divergence;
   else
     PetscCall(SchemeMeasureDivergence(s, d->next.w, sources));
@@ -211,11 +190,11 @@ static PetscErrorCode MoveMarkers(Scheme s, Coupled *d, PetscReal a0) {
   PetscCall(VecWAXPY(n->X, 1 / a0, d->P, d->Xhat));
   PetscCall(VecCopy(d->P, n->U));
   PetscCall(CouplingTread(s->coupling, 1, n->X, n->U));
-  if (d->source) {
-    PetscCall(ContrastSource(s->coupling, n->U, d->source));
-    PetscCall(VecScale(d->source, -1));
+  if (d->moved && n->p) {
+    PetscCall(ContrastSource(s->coupling, n->U, &n->forcing));
+    PetscCall(VecScale(n->forcing.source, -1));
   }
-  PetscCall(MeasureDivergence(s, d, d->source ? d->source : s->fluid->bc2));
+  PetscCall(MeasureDivergence(s, d, d->moved ? n->forcing.source : s->fluid->bc2));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

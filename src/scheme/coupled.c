@@ -282,10 +282,7 @@ static PetscErrorCode SetUp_Coupled(Scheme s) {
   PetscCall(LayoutCreateVec(s->coupling->bodies->layout, 2, &d->known));
   PetscCall(VecDuplicate(d->known, &d->force));
   PetscCall(VecDuplicate(q->X, &d->Y));
-  if (s->coupling->contrast) {
-    PetscCall(VecDuplicate(q->X, &d->moved));
-    if (!q->source) PetscCall(VecDuplicate(q->p, &d->source));
-  }
+  if (s->coupling->contrast) PetscCall(VecDuplicate(q->X, &d->moved));
   PetscCall(VecDuplicate(q->X, &d->P));
   PetscCall(VecDuplicate(q->X, &d->made_at));
   PetscCall(PetscCalloc1(s->membrane->layout->bodies, &d->made_with));
@@ -318,15 +315,14 @@ static PetscErrorCode KSP_Coupled(Scheme s, const char prefix[], KSP *ksp) {
 
 static PetscErrorCode Destroy_Coupled(Scheme s) {
   Coupled *d = (Coupled *)s->data;
-  Vec *others[] = {&d->f, &d->Xstar,   &d->Xhat,  &d->V,      &d->known, &d->Y,
-                   &d->P, &d->made_at, &d->moved, &d->source, &d->force};
+  Vec *others[] = {&d->Xstar, &d->Xhat, &d->V, &d->known, &d->Y, &d->P, &d->made_at, &d->moved, &d->force};
   PetscFunctionBeginUser;
   PetscCall(CoupledSolverDestroy(&d->solver));
   PetscCall(DirectSolverDestroy(&d->direct));
   PetscCall(ConvectionDestroy(&d->convection));
   PetscCall(StateDestroy(&d->next));
   PetscCall(HistoryDestroy(&d->history));
-  for (int i = 0; i < 11; i++) PetscCall(VecDestroy(others[i]));
+  for (int i = 0; i < 9; i++) PetscCall(VecDestroy(others[i]));
   PetscCall(PetscFree(d->made_with));
   PetscCall(PetscFree(d->edges));
   PetscCall(PetscFree(s->data));

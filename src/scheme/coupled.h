@@ -18,10 +18,9 @@ typedef struct {
   PetscBool warned;      /* of edges that were off */
   Vec made_at;           /* markers at which the preconditioner's dense blocks were made, */
   PetscReal *made_with;  /* [vesicles] and the label speeds */
-  Vec f;                 /* momentum's right-hand side; NULL where that is next.force */
   StreamPast past;       /* the states before, where they are a force as flows */
   Vec Xstar, Xhat;       /* extrapolated markers, BDF history of the markers */
-  Vec moved, source;     /* viscosity contrast: known part of the markers' motion, divergence unless next has it */
+  Vec moved;             /* viscosity contrast: known part of the markers' motion */
   Vec force;             /* minus what is known of the force on all bodies' markers */
   Vec V, known, Y;       /* solved part of the markers' velocity, what is known of it, and of obstacles; work */
   Vec P;                 /* the markers' velocity as the labels of the step see it */

@@ -265,14 +265,13 @@ static PetscErrorCode Assemble(DirectSolver d, Mat *A) {
 
 /* The motion that is known: -B of it to k; its dipoles to f and the source, and the mean velocity that goes with them.
  */
-static PetscErrorCode KnownMotion(DirectSolver d, const CoupledProblem *q, PetscReal mean[2]) {
+static PetscErrorCode KnownMotion(DirectSolver d, const CoupledProblem *q) {
   PetscScalar *k;
   PetscFunctionBeginUser;
-  PetscCall(VecSet(d->source, 0));
   PetscCall(VecGetArray(q->k, &k));
   PetscCall(ContrastKnownAdd(d->coupling, -1, q->moved, k));
   PetscCall(VecRestoreArray(q->k, &k));
-  PetscCall(DoubleLayerSpread(d->coupling->contrast, q->f, d->source, mean));
+  PetscCall(DoubleLayerSpread(d->coupling->contrast, q->f));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -282,28 +281,27 @@ static PetscErrorCode RightHandSide(DirectSolver d, const CoupledProblem *q) {
                  np = g->columns[FIELD_P] * g->rows[FIELD_P];
   const PetscScalar *a;
   PetscScalar *b;
-  PetscReal mean[2] = {0, 0};
   PetscFunctionBeginUser;
   PetscCall(VecGetArray(q->k, &b));
   PetscCall(CouplingNearField(d->coupling, -1, q->F, b));
   PetscCall(VecRestoreArray(q->k, &b));
-  if (d->source) PetscCall(KnownMotion(d, q, mean));
+  if (d->source) PetscCall(KnownMotion(d, q));
   PetscCall(VecSet(d->b, 0));
   PetscCall(VecGetArray(d->b, &b));
-  PetscCall(VecGetArrayRead(q->f, &a));
+  PetscCall(VecGetArrayRead(q->f->values, &a));
   PetscCall(PetscArraycpy(b, a, nw));
-  PetscCall(VecRestoreArrayRead(q->f, &a));
+  PetscCall(VecRestoreArrayRead(q->f->values, &a));
   if (d->fluid->bc2) {
     PetscCall(VecGetArrayRead(d->fluid->bc2, &a));
     for (PetscInt k = 0; k < np; k++) b[nw + k] = -a[k];
     PetscCall(VecRestoreArrayRead(d->fluid->bc2, &a));
   }
   if (d->source) {
-    PetscCall(VecGetArrayRead(d->source, &a));
+    PetscCall(VecGetArrayRead(q->f->source, &a));
     PetscCall(PetscArraycpy(b + nw, a, np));
-    PetscCall(VecRestoreArrayRead(d->source, &a));
+    PetscCall(VecRestoreArrayRead(q->f->source, &a));
     for (PetscInt f = 0; f < MeanForces(d) && g->rank == g->size - 1; f++)
-      b[FirstMean(d) + f - d->start[g->rank]] = mean[f] * g->n[0] * g->n[1];
+      b[FirstMean(d) + f - d->start[g->rank]] = q->f->mean[f] * g->n[0] * g->n[1];
   }
   PetscCall(LayoutGatherVec(d->coupling->membrane->layout, q->g, d->all));
   if (g->rank == g->size - 1) PetscCall(PetscArraycpy(b + nw + np, d->all, d->M));

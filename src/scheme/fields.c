@@ -4,11 +4,12 @@
 
 /* The states before the present one have the velocity where it is a history: in fluid with inertia, of the older one
    for order 3. It is a flow where one is made, which convection needs on the grid as well. Of the next one both fields
-   are needed unless the state's own are made when they are asked for, from the force that each of the two has, and from
-   the flow. */
+   are needed unless the state's own are made when they are asked for, from the forcing that each of the two has then,
+   and from the flow. */
 PetscErrorCode CoupledCreateStates(Scheme s) {
   Coupled *d = (Coupled *)s->data;
   const PetscBool later = d->solver && ReducedNeedsNoPressure(d->solver->reduced) ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool contrast = s->coupling->contrast ? PETSC_TRUE : PETSC_FALSE;
   const PetscBool grid = !s->fluid->steady && (!later || d->convection) ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionBeginUser;
   if (later && !s->fluid->steady) PetscCall(StreamFlowsCreateVec(CoupledFlows(d), &s->state.flow));
@@ -19,16 +20,9 @@ PetscErrorCode CoupledCreateStates(Scheme s) {
     if (j >= s->scene->scheme.order - 1) PetscCall(VecDestroy(&s->old[j].flow));
   }
   PetscCall(StateDuplicate(&s->state, &d->next));
-  if (!later) {
-    PetscCall(VecDuplicate(s->state.w, &d->f));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  PetscCall(VecDuplicate(s->state.w, &s->state.force));
-  PetscCall(VecDuplicate(s->state.w, &d->next.force));
-  if (s->coupling->contrast) {
-    PetscCall(VecDuplicate(s->state.p, &s->state.source));
-    PetscCall(VecDuplicate(s->state.p, &d->next.source));
-  }
+  PetscCall(ForcingCreate(s->fluid->grid, contrast, &d->next.forcing));
+  if (!later) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ForcingCreate(s->fluid->grid, contrast, &s->state.forcing));
   PetscCall(VecDestroy(&d->next.p));
   if (!grid) PetscCall(VecDestroy(&d->next.w));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -47,11 +41,11 @@ PetscErrorCode CoupledFields(Scheme s) {
   const PetscReal now = s->fluid->a0;
   PetscFunctionBeginUser;
   if (q->flow) {
-    PetscCall(ReducedPressure(r, q->force, q->w, q->p));
+    PetscCall(ReducedPressure(r, &q->forcing, q->w, q->p));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   if (now != q->a0) PetscCall(FluidSetTimeCoefficient(s->fluid, q->a0));
-  PetscCall(ReducedFields(r, q->force, q->source, q->mean, q->w, q->p));
+  PetscCall(ReducedFields(r, &q->forcing, q->w, q->p));
   if (now != q->a0) PetscCall(FluidSetTimeCoefficient(s->fluid, now));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -167,7 +167,7 @@ PetscErrorCode SchemeContactEnergy(Scheme s, PetscReal *energy) {
 PetscErrorCode SchemeKineticEnergy(Scheme s, PetscReal *energy) {
   PetscReal norm;
   PetscFunctionBeginUser;
-  if (s->state.hidden || s->state.flow) {
+  if (s->state.fields == FIELDS_WITHOUT_BOTH || s->state.flow) {
     PetscCall(s->ops.square(s, &norm));
     norm = PetscSqrtReal(norm);
   } else if (s->fluid->total) {

@@ -1,19 +1,17 @@
 #include "scheme/state.h"
 
-#define VECTORS 10
-#define ON_GRID 5 /* the first ones */
+#define VECTORS 8
+#define ON_GRID 3 /* the first ones */
 
 static void List(State *q, Vec *all[VECTORS]) {
   all[0] = &q->w;
   all[1] = &q->p;
-  all[2] = &q->force;
-  all[3] = &q->source;
-  all[4] = &q->flow;
-  all[5] = &q->sigma;
-  all[6] = &q->X;
-  all[7] = &q->U;
-  all[8] = &q->walls;
-  all[9] = &q->solid;
+  all[2] = &q->flow;
+  all[3] = &q->sigma;
+  all[4] = &q->X;
+  all[5] = &q->U;
+  all[6] = &q->walls;
+  all[7] = &q->solid;
 }
 
 PetscErrorCode StateCreate(Coupling c, State *q) {
@@ -45,6 +43,7 @@ PetscErrorCode StateDestroy(State *q) {
   PetscFunctionBeginUser;
   List(q, all);
   for (int k = 0; k < VECTORS; k++) PetscCall(VecDestroy(all[k]));
+  PetscCall(ForcingDestroy(&q->forcing));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -59,11 +58,9 @@ PetscErrorCode StateCopy(const State *q, State *copy, PetscBool fields) {
     if (!*to[k]) PetscCall(VecDuplicate(*from[k], to[k]));
     PetscCall(VecCopy(*from[k], *to[k]));
   }
-  if (fields) copy->window = q->window;
-  if (fields) PetscCall(PetscArraycpy(copy->mean, q->mean, 2));
+  if (fields) PetscCall(ForcingCopy(&q->forcing, &copy->forcing));
   if (fields) copy->a0 = q->a0;
-  copy->pending = q->pending;
-  copy->hidden = q->hidden;
+  copy->fields = q->fields;
   copy->step = q->step;
   copy->t = q->t;
   copy->dt = q->dt;
@@ -71,24 +68,19 @@ PetscErrorCode StateCopy(const State *q, State *copy, PetscBool fields) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What goes with the forces of two states. */
-static void SwapForced(State *a, State *b) {
+/* The forcings of two states, with the time coefficients of their solves. */
+static void SwapForcings(State *a, State *b) {
+  const Forcing forcing = a->forcing;
   const PetscReal a0 = a->a0;
-  const GridWindow window = a->window;
+  a->forcing = b->forcing;
+  b->forcing = forcing;
   a->a0 = b->a0;
   b->a0 = a0;
-  a->window = b->window;
-  b->window = window;
-  for (int k = 0; k < 2; k++) {
-    const PetscReal mean = a->mean[k];
-    a->mean[k] = b->mean[k];
-    b->mean[k] = mean;
-  }
 }
 
 void StateSwap(State *a, State *b) {
   Vec *one[VECTORS], *other[VECTORS];
-  if (a->force && b->force) SwapForced(a, b);
+  if (a->forcing.values && b->forcing.values) SwapForcings(a, b);
   List(a, one);
   List(b, other);
   for (int k = 0; k < VECTORS; k++) {

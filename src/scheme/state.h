@@ -2,6 +2,9 @@
 #pragma once
 #include "coupling/coupling.h"
 
+/* What of w and p is made: SchemeVelocity makes w, SchemeFields both. */
+typedef enum { FIELDS_MADE, FIELDS_WITHOUT_P, FIELDS_WITHOUT_BOTH } StateFields;
+
 /* Everything that moves in time. */
 typedef struct {
   PetscInt step;
@@ -9,19 +12,15 @@ typedef struct {
   PetscReal dt_last; /* the step that led here; 0 at the start */
   Vec w;             /* velocity on the faces: the disturbance, or the whole in the total form */
   Vec p;             /* pressure, zero mean */
-  Vec flow;   /* velocity as fluid/streamflow.h has it, in fluid with inertia; NULL where w is made in each step */
-  Vec force;  /* on the faces, from which p follows, and without a flow w; NULL where both are made in each step */
-  Vec source; /* with it, the viscosity contrast's source of the divergence; NULL without */
-  PetscReal mean[2]; /* and the mean velocity that goes with that */
-  PetscReal a0;      /* and the solve's time coefficient */
-  GridWindow window; /* force and source are zero outside it, without convection */
-  PetscBool pending; /* p is not made yet: SchemeFields; */
-  PetscBool hidden;  /* w neither: SchemeVelocity */
-  Vec sigma;         /* tension, an edge vector */
-  Vec X;             /* markers, a marker vector */
-  Vec U;             /* markers' velocity, background included */
-  Vec walls;         /* scheme coupled's wall forces; else NULL */
-  Vec solid;         /* the fluid's force on the markers of obstacles (length^3/time^2); NULL without */
+  Vec flow;        /* velocity as fluid/streamflow.h has it, in fluid with inertia; NULL where w is made in each step */
+  Forcing forcing; /* from which p follows, and without a flow w; none where both are made in each step */
+  PetscReal a0;    /* the time coefficient of the solve that does */
+  StateFields fields;
+  Vec sigma; /* tension, an edge vector */
+  Vec X;     /* markers, a marker vector */
+  Vec U;     /* markers' velocity, background included */
+  Vec walls; /* scheme coupled's wall forces; else NULL */
+  Vec solid; /* the fluid's force on the markers of obstacles (length^3/time^2); NULL without */
 } State;
 
 /* StateCreate - at rest: zero vectors, without wall forces. StateDuplicate - zero vectors of the same kinds, times not

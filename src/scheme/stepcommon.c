@@ -217,10 +217,10 @@ PetscErrorCode SchemeWarn(Scheme s, const char format[], ...) {
 
 PetscErrorCode SchemeVelocity(Scheme s) {
   PetscFunctionBeginUser;
-  if (!s->state.hidden) PetscFunctionReturn(PETSC_SUCCESS);
+  if (s->state.fields != FIELDS_WITHOUT_BOTH) PetscFunctionReturn(PETSC_SUCCESS);
   if (s->state.flow) {
     PetscCall(s->ops.velocity(s, &s->state, s->state.w));
-    s->state.hidden = PETSC_FALSE;
+    s->state.fields = FIELDS_WITHOUT_P;
   } else
     PetscCall(SchemeFields(s));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -229,8 +229,8 @@ PetscErrorCode SchemeVelocity(Scheme s) {
 PetscErrorCode SchemeFields(Scheme s) {
   PetscFunctionBeginUser;
   if (s->state.flow) PetscCall(SchemeVelocity(s));
-  if (!s->state.pending) PetscFunctionReturn(PETSC_SUCCESS);
+  if (s->state.fields == FIELDS_MADE) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(s->ops.fields(s));
-  s->state.pending = s->state.hidden = PETSC_FALSE;
+  s->state.fields = FIELDS_MADE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

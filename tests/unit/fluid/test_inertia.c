@@ -172,7 +172,7 @@ static PetscErrorCode CheckConservation(const char name[], const char options[])
       PetscCall(StokesDestroy(&stokes));
     }
     PetscCall(VecSet(N, 0));
-    PetscCall(ConvectionAdd(c, 1, w, N));
+    PetscCall(ConvectionAdd(c, 1, w, &(Forcing){.values = N}));
     PetscCall(VecDot(w, N, &product));
     PetscCall(VecNorm(w, NORM_2, &size[0]));
     PetscCall(VecNorm(N, NORM_2, &size[1]));
@@ -206,7 +206,7 @@ static PetscErrorCode CheckConsistency(const char name[], const char options[], 
     PetscCall(Sample(r.scene, r.fluid->grid, f, 0.3, VALUE, w));
     PetscCall(Sample(r.scene, r.fluid->grid, f, 0.3, CONVECTION, N));
     if (r.fluid->total) PetscCall(VecAXPY(w, 1, r.fluid->background));
-    PetscCall(ConvectionAdd(c, -1, w, N));
+    PetscCall(ConvectionAdd(c, -1, w, &(Forcing){.values = N}));
     PetscCall(VecNorm(N, NORM_2, &error[k]));
     error[k] *= r.fluid->grid->h / 2;
     PetscCall(VecDestroy(&w));

@@ -120,7 +120,7 @@ static PetscErrorCode Respond(Double *d, PetscBool single) {
   const Grid g = d->world.fluid->grid;
   const PetscScalar *u;
   PetscScalar *v;
-  PetscReal mean[2] = {0, 0};
+  Forcing f = {.values = d->r, .source = d->p};
   PetscFunctionBeginUser;
   PetscCall(VecSet(d->r, 0));
   PetscCall(VecSet(d->p, 0));
@@ -129,9 +129,9 @@ static PetscErrorCode Respond(Double *d, PetscBool single) {
   if (single)
     PetscCall(MarkersSpread(c->markers, 1 / PetscSqr(g->h), d->U, d->r));
   else
-    PetscCall(DoubleLayerSpread(c->contrast, d->r, d->p, mean));
+    PetscCall(DoubleLayerSpread(c->contrast, &f));
   PetscCall(StokesSolve(d->stokes, d->r, d->p, d->w, d->p));
-  if (!g->wall[1]) PetscCall(AddConstant(d->w, GridLocalU(g), mean));
+  if (!g->wall[1]) PetscCall(AddConstant(d->w, GridLocalU(g), f.mean));
   PetscCall(MarkersInterpolate(c->markers, d->w, d->V));
   PetscCall(VecGetArray(d->V, &v));
   if (single)

@@ -173,39 +173,6 @@ static PetscErrorCode CheckList(const char name[], TestWorld *t) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscBool Within(const PetscInt range[2], PetscInt k) {
-  return k >= range[0] && k < range[1] ? PETSC_TRUE : PETSC_FALSE;
-}
-
-/* All that spreading writes is inside the window, and MarkersClear zeroes it. */
-static PetscErrorCode CheckWindow(const char name[], TestWorld *t) {
-  const Markers m = t->coupling->markers;
-  const Grid g = m->grid;
-  GridWindow dirty = m->window;
-  const PetscScalar *a;
-  PetscReal outside = 0, norm;
-  Vec w, F;
-  PetscFunctionBeginUser;
-  PetscCall(DMCreateGlobalVector(g->velocity, &w));
-  PetscCall(VecDuplicate(t->X, &F));
-  PetscCall(TestRandomVec(9, F));
-  PetscCall(MatMultTranspose(m->E, F, w));
-  PetscCall(VecGetArrayRead(w, &a));
-  for (int c = 0; c < 2; c++)
-    for (PetscInt j = 0; j < g->rows[c]; j++)
-      for (PetscInt i = 0; i < g->columns[c]; i++)
-        if (!Within(dirty.rows, j) || !Within(dirty.columns, i))
-          outside = PetscMax(outside, PetscAbsReal(a[(c ? GridLocalU(g) : 0) + j * g->columns[c] + i]));
-  PetscCall(VecRestoreArrayRead(w, &a));
-  CHECK(outside == 0, "%s: nothing is spread outside the window", name);
-  PetscCall(MarkersClear(m, w, &dirty));
-  PetscCall(VecNorm(w, NORM_INFINITY, &norm));
-  CHECK(norm == 0, "%s: the window cleared is all that was spread", name);
-  PetscCall(VecDestroy(&w));
-  PetscCall(VecDestroy(&F));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 static PetscErrorCode CheckCase(const char options[], const char vesicles[], const char delta[]) {
   char all[1024], name[256];
   TestWorld t;
@@ -217,7 +184,6 @@ static PetscErrorCode CheckCase(const char options[], const char vesicles[], con
   PetscCall(CheckInterpolation(name, &t));
   for (unsigned k = 0; k < 3; k++) PetscCall(CheckTranspose(name, &t, 31 + 2 * k));
   PetscCall(CheckList(name, &t));
-  PetscCall(CheckWindow(name, &t));
   PetscCall(TestWorldDestroy(&t));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

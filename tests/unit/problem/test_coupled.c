@@ -37,7 +37,8 @@ static PetscErrorCode ProblemDestroy(Problem *q) {
 /* A random problem solved, from a zero or a random guess; f stays what it was. */
 static PetscErrorCode SolveProblem(const char name[], Problem *q, PetscBool random) {
   SolveReport report;
-  Vec r, k;
+  Forcing r;
+  Vec k;
   PetscFunctionBeginUser;
   PetscCall(TestRandomVec(11, q->f));
   PetscCall(TestRandomVec(12, q->g));
@@ -52,16 +53,16 @@ static PetscErrorCode SolveProblem(const char name[], Problem *q, PetscBool rand
     PetscCall(VecScale(q->sigma, 0.01));
   }
   PetscCall(MarkersInterpolate(q->t.coupling->markers, q->w, q->V));
-  PetscCall(VecDuplicate(q->f, &r));
-  PetscCall(VecCopy(q->f, r));
+  PetscCall(ForcingCreate(q->t.fluid->grid, PETSC_FALSE, &r));
+  PetscCall(ForcingAdd(&r, q->f));
   PetscCall(VecDuplicate(q->V, &k));
   if (q->t.fluid->grid->free) PetscCall(TestRandomVec(16, k)); /* there a force on the grid does nothing */
   const CoupledProblem problem = {
-      .f = r, .g = q->g, .k = k, .w = q->w, .p = q->p, .sigma = q->sigma, .d = q->d, .V = q->V};
+      .f = &r, .g = q->g, .k = k, .w = q->w, .p = q->p, .sigma = q->sigma, .d = q->d, .V = q->V};
   PetscCall(CoupledSolverSolve(q->s, &problem, &report));
   CHECK(report.why > 0, "%s: converged in %d iterations", name, (int)report.its);
   q->its = report.its;
-  PetscCall(VecDestroy(&r));
+  PetscCall(ForcingDestroy(&r));
   PetscCall(VecDestroy(&k));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
