@@ -24,11 +24,11 @@ static PetscErrorCode Motion(Reduced s, const PetscScalar x[], PetscBool whole) 
   PetscScalar *G;
   PetscFunctionBeginUser;
   if (!s->motion) PetscFunctionReturn(PETSC_SUCCESS);
-  if (whole) PetscCall(VecGetArrayRead(s->moved, &known));
+  if (whole) PetscCall(VecGetArrayRead(s->problem->moved, &known));
   PetscCall(VecGetArray(s->motion, &G));
   PetscCall(ContrastMotion(s->unknowns->coupling, x, known, G));
   PetscCall(VecRestoreArray(s->motion, &G));
-  if (whole) PetscCall(VecRestoreArrayRead(s->moved, &known));
+  if (whole) PetscCall(VecRestoreArrayRead(s->problem->moved, &known));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -59,7 +59,6 @@ static PetscErrorCode AddForces(Reduced s, const PetscScalar x[], PetscBool whol
 static PetscErrorCode Subtract(Vec known, PetscInt n, PetscScalar y[]) {
   const PetscScalar *a;
   PetscFunctionBeginUser;
-  if (!known) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecGetArrayRead(known, &a));
   for (PetscInt k = 0; k < n; k++) y[k] -= a[k];
   PetscCall(VecRestoreArrayRead(known, &a));
@@ -68,20 +67,21 @@ static PetscErrorCode Subtract(Vec known, PetscInt n, PetscScalar y[]) {
 
 /* y = (V + (treading/a0) dV/dt - U + C F - k, beta N N^T F - U + C F - k, Dm V/h^2 - g) of x, s->U holding U, s->F F,
    and with viscosity contrast s->motion the G of B G, which stands in the place of the first two; where an area is
-   aimed at the first has its row; k and g may be NULL; not scaled yet. */
-static PetscErrorCode BodyConditions(Reduced s, const PetscScalar x[], Vec known, Vec g, PetscScalar y[]) {
+   aimed at the first has its row; without k, g and the known force where `problem` is NULL; not scaled yet. */
+static PetscErrorCode BodyConditions(Reduced s, const CoupledProblem *problem, const PetscScalar x[], PetscScalar y[]) {
   const Coupling c = s->unknowns->coupling;
   const Unknowns u = s->unknowns;
   const PetscInt n = u->velocity, tension = UnknownsTension(u);
   const PetscReal h2 = PetscSqr(c->fluid->grid->h);
+  const PetscBool known = problem && problem->F ? PETSC_TRUE : PETSC_FALSE;
   const PetscScalar *U;
   PetscFunctionBeginUser;
   PetscCall(VecGetArrayRead(s->U, &U));
   for (PetscInt k = 0; k < tension; k++) y[k] = (k < n && !s->motion ? x[k] : 0) - U[k];
   PetscCall(VecRestoreArrayRead(s->U, &U));
   if (!s->motion) MembraneTread(c->membrane, c->treading, 1 / c->fluid->a0, x, y);
-  if (known && s->known) PetscCall(VecWAXPY(s->all, 1, s->F, s->known));
-  PetscCall(CouplingNearField(c, 1, known && s->known ? s->all : s->F, y));
+  if (known) PetscCall(VecWAXPY(s->all, 1, s->F, problem->F));
+  PetscCall(CouplingNearField(c, 1, known ? s->all : s->F, y));
   if (s->motion) {
     PetscCall(VecGetArrayRead(s->motion, &U));
     PetscCall(ContrastAdd(c, 1, U, y));
@@ -90,18 +90,18 @@ static PetscErrorCode BodyConditions(Reduced s, const PetscScalar x[], Vec known
   if (c->bodies->obstacles) ObstaclesPressure(c->bodies->obstacles, x + n, y + n);
   MembraneStretching(c->membrane, c->tau, x, y + tension);
   for (PetscInt k = 0; k < u->tension; k++) y[tension + k] /= h2;
-  PetscCall(Subtract(known, tension, y));
-  if (c->area) AreaRowReplace(c->area, known ? PETSC_TRUE : PETSC_FALSE, x, y);
-  PetscCall(Subtract(g, u->tension, y + tension));
+  if (problem) PetscCall(Subtract(problem->k, tension, y));
+  if (c->area) AreaRowReplace(c->area, problem ? PETSC_TRUE : PETSC_FALSE, x, y);
+  if (problem) PetscCall(Subtract(problem->g, u->tension, y + tension));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* y = scaled (the bodies' conditions, d + slip) of x and what its forces F gave the markers. Collective. */
-static PetscErrorCode Conditions(Reduced s, const PetscScalar x[], Vec known, Vec g, PetscScalar y[]) {
+static PetscErrorCode Conditions(Reduced s, const CoupledProblem *problem, const PetscScalar x[], PetscScalar y[]) {
   const Unknowns u = s->unknowns;
   const PetscInt wall = UnknownsWalls(u);
   PetscFunctionBeginUser;
-  if (CouplingHasBodies(u->coupling)) PetscCall(BodyConditions(s, x, known, g, y));
+  if (CouplingHasBodies(u->coupling)) PetscCall(BodyConditions(s, problem, x, y));
   if (u->walls->n) PetscCall(WallsSlip(u->walls, StokesPotential(s->stokes), s->slip));
   for (PetscInt k = 0; k < u->wall; k++) y[wall + k] = s->slip[u->first_wall + k] + x[wall + k];
   UnknownsScale(u, PETSC_FALSE, y);
@@ -132,17 +132,6 @@ static PetscErrorCode Solve(Reduced s, const Forcing *r, Vec source, Vec w, Vec 
   PetscCall(StokesSolve(s->stokes, r->values, source, w, p));
   PetscCall(AddMean(s, r->mean, w));
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-void ReducedBegin(Reduced s, Vec known, Vec moved, const StreamPast *past, Vec flow) {
-  const Coupling c = s->unknowns->coupling;
-  s->known = known;
-  s->moved = moved;
-  s->flow = flow;
-  if (!flow) return;
-  s->past = *past;
-  s->past.part = CouplingGridPart(c, c->fluid->alpha);
-  s->past.lag = c->lag > 0 ? CouplingLag(c, c->fluid->alpha) : 0;
 }
 
 /* U = E u becomes what the markers have of it. */
@@ -195,35 +184,38 @@ static PetscErrorCode Mult(Mat A, Vec x, Vec y) {
   else if (CouplingHasBodies(c))
     PetscCall(RespondByRows(s, xa));
   PetscCall(VecGetArray(y, &ya));
-  PetscCall(Conditions(s, xa, NULL, NULL, ya));
+  PetscCall(Conditions(s, NULL, xa, ya));
   PetscCall(VecRestoreArray(y, &ya));
   PetscCall(VecRestoreArrayRead(x, &xa));
   if (place < PRODUCTS_KEPT) PetscCall(VecCopy(y, s->kept.Az[place]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* U of the force f, which has the dipoles' forces, row by row. */
-static PetscErrorCode FollowByRows(Reduced s, const Forcing *f, StreamMeasures *measures) {
+/* U of problem->f, which has the dipoles' forces, row by row. */
+static PetscErrorCode FollowByRows(Reduced s) {
+  const CoupledProblem *q = s->problem;
   const Coupling c = s->unknowns->coupling;
-  const PetscBool dipoles = HasDipoles(s);
+  const PetscBool dipoles = HasDipoles(s), measured = !q->w && (dipoles || !s->motion) ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionBeginUser;
   if (dipoles) PetscCall(DoubleLayerRows(c->contrast, PETSC_FALSE, StokesProfile(s->stokes), s->dipoles));
-  PetscCall(MarkersFollow(c->markers, s->stream, dipoles ? s->dipoles : NULL, f, NULL, s->U, NULL,
-                          dipoles || !s->motion ? measures : NULL));
+  PetscCall(MarkersFollow(c->markers, s->stream, dipoles ? s->dipoles : NULL, q->f, NULL, s->U,
+                          measured ? &s->measures : NULL));
   PetscCall(TakePart(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The same with a flow: of f and of the states before (all), or of the forces F that have been added to f, which go
-   beside what there is. What is measured is a sum, too, but for the divergence, which it bounds. */
-static PetscErrorCode FollowFlow(Reduced s, PetscBool all, const Forcing *f, StreamMeasures *measures) {
+/* The flow and its U: of problem->f and of the states before (first), or with the forces F that have been added to f.
+   What is measured is a sum then, too, but for the divergence, which it bounds. */
+static PetscErrorCode FollowFlow(Reduced s, PetscBool first) {
+  const CoupledProblem *q = s->problem;
   const Coupling c = s->unknowns->coupling;
   StreamMeasures more;
   PetscFunctionBeginUser;
-  if (all)
-    PetscCall(MarkersFollow(c->markers, s->stream, NULL, f, &s->past, s->sum, s->flow, &s->measures));
+  if (first)
+    PetscCall(MarkersFollow(c->markers, s->stream, NULL, q->f, q->past, s->sum, &s->measures));
   else {
-    PetscCall(MarkersAddFlow(c->markers, s->stream, -1 / PetscSqr(c->fluid->grid->h), s->F, s->U, s->flow, &more));
+    const PetscReal alpha = -1 / PetscSqr(c->fluid->grid->h);
+    PetscCall(MarkersAddFlow(c->markers, s->stream, alpha, s->F, s->U, q->past->made, &more));
     PetscCall(TakePart(s));
     PetscCall(VecAXPY(s->sum, 1, s->U));
     s->measures.divergence += more.divergence;
@@ -231,72 +223,84 @@ static PetscErrorCode FollowFlow(Reduced s, PetscBool all, const Forcing *f, Str
     s->measures.pressure += more.pressure;
   }
   PetscCall(VecCopy(s->sum, s->U));
-  if (measures) *measures = s->measures;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* U of the force f, and u and p themselves unless they are not wanted or not p and U can be had without. all: of f, not
-   of what was added to it only. */
-static PetscErrorCode Follow(Reduced s, PetscBool all, const Forcing *f, PetscBool grid, Vec w, Vec p,
-                             StreamMeasures *measures) {
+/* U of problem->f, and w and p unless they are not wanted or (first) not yet and U can be had without. */
+static PetscErrorCode Follow(Reduced s, PetscBool first) {
+  const CoupledProblem *q = s->problem;
   const Coupling c = s->unknowns->coupling;
   const PetscBool bodies = CouplingHasBodies(c);
   PetscFunctionBeginUser;
-  if ((!grid || !p) && s->stream && !c->fluid->bc2) {
-    if (bodies) PetscCall(s->flow ? FollowFlow(s, all, f, measures) : FollowByRows(s, f, measures));
+  if ((first || !q->w) && s->stream && !c->fluid->bc2) {
+    if (bodies) PetscCall(q->past ? FollowFlow(s, first) : FollowByRows(s));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  if (c->fluid->bc2) PetscCall(VecAXPBY(p, -1, 0, c->fluid->bc2)); /* moving walls, which go without dipoles */
-  PetscCall(Solve(s, f, c->fluid->bc2 ? p : f->source, w, p));
-  if (bodies) PetscCall(MarkersInterpolate(c->markers, w, s->U));
+  if (c->fluid->bc2) PetscCall(VecAXPBY(q->p, -1, 0, c->fluid->bc2)); /* moving walls, which go without dipoles */
+  PetscCall(Solve(s, q->f, c->fluid->bc2 ? q->p : q->f->source, q->w, q->p));
+  if (bodies) PetscCall(MarkersInterpolate(c->markers, q->w, s->U));
   PetscCall(TakePart(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode ReducedResidual(Reduced s, Vec added, Forcing *f, Vec g, Vec k, Vec x, PetscBool grid, Vec w, Vec p,
-                               Vec residual, StreamMeasures *measures) {
-  const PetscBool all = added == x ? PETSC_TRUE : PETSC_FALSE;
+/* The forces of `added`, which is x itself (first) or a change of it, go into problem->f; minus the scaled residuals
+   at x. */
+static PetscErrorCode Residual(Reduced s, PetscBool first, Vec added, Vec x, Vec residual) {
+  const CoupledProblem *q = s->problem;
   const PetscScalar *xa;
   PetscScalar *ra;
   PetscFunctionBeginUser;
   PetscCall(VecGetArrayRead(added, &xa));
-  PetscCall(AddForces(s, xa, all, f));
+  PetscCall(AddForces(s, xa, first, q->f));
   PetscCall(VecRestoreArrayRead(added, &xa));
   PetscCall(VecGetArrayRead(x, &xa));
-  if (s->flow) PetscCall(Follow(s, all, f, grid, w, p, measures)); /* while F is that of `added` */
-  if (!all && CouplingHasBodies(s->unknowns->coupling)) {
+  if (q->past) PetscCall(Follow(s, first)); /* while F is that of `added` */
+  if (!first && CouplingHasBodies(s->unknowns->coupling)) {
     PetscCall(Force(s, xa, s->F));
     PetscCall(Motion(s, xa, PETSC_TRUE));
   }
-  if (!s->flow) PetscCall(Follow(s, all, f, grid, w, p, measures));
+  if (!q->past) PetscCall(Follow(s, first));
   PetscCall(VecGetArray(residual, &ra));
-  PetscCall(Conditions(s, xa, k, g, ra));
+  PetscCall(Conditions(s, q, xa, ra));
   PetscCall(VecRestoreArray(residual, &ra));
   PetscCall(VecRestoreArrayRead(x, &xa));
   PetscCall(VecScale(residual, -1));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscBool ReducedIsFinished(Reduced s) {
+PetscErrorCode ReducedBegin(Reduced s, const CoupledProblem *problem, Vec x, Vec residual) {
+  PetscFunctionBeginUser;
+  s->problem = problem;
+  s->measures = (StreamMeasures){0};
+  PetscCall(Residual(s, PETSC_TRUE, x, x, residual));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ReducedUpdate(Reduced s, Vec added, Vec x, Vec residual) {
+  PetscFunctionBeginUser;
+  PetscCall(Residual(s, PETSC_FALSE, added, x, residual));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscBool ReducedDefersDipoles(Reduced s) {
   return s->motion && !HasDipoles(s) ? PETSC_TRUE : PETSC_FALSE;
 }
 
-PetscErrorCode ReducedFinish(Reduced s, Vec added, Forcing *f, Vec x, StreamMeasures *measures) {
+PetscErrorCode ReducedFinish(Reduced s, Vec added, Vec x) {
   const Coupling c = s->unknowns->coupling;
+  Forcing *f = s->problem->f;
   const PetscScalar *xa;
   PetscFunctionBeginUser;
-  if (!ReducedIsFinished(s)) PetscFunctionReturn(PETSC_SUCCESS);
-  if (added) {
-    PetscCall(VecGetArrayRead(added, &xa));
-    PetscCall(AddForces(s, xa, PETSC_FALSE, f));
-    PetscCall(VecRestoreArrayRead(added, &xa));
-  }
+  if (!ReducedDefersDipoles(s)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecGetArrayRead(added, &xa));
+  PetscCall(AddForces(s, xa, PETSC_FALSE, f));
+  PetscCall(VecRestoreArrayRead(added, &xa));
   PetscCall(VecGetArrayRead(x, &xa));
   PetscCall(Motion(s, xa, PETSC_TRUE));
   PetscCall(VecRestoreArrayRead(x, &xa));
   PetscCall(DoubleLayerSpread(c->contrast, f));
   PetscCall(DoubleLayerRows(c->contrast, PETSC_FALSE, StokesProfile(s->stokes), s->dipoles));
-  PetscCall(MarkersFollow(c->markers, s->stream, s->dipoles, f, NULL, NULL, NULL, measures));
+  PetscCall(MarkersFollow(c->markers, s->stream, s->dipoles, f, NULL, NULL, &s->measures));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -306,10 +310,10 @@ PetscErrorCode ReducedForgetProducts(Reduced s) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode ReducedCombine(Reduced s, Vec x, Vec w, Vec p, Vec residual, PetscBool *combined) {
+PetscErrorCode ReducedCombine(Reduced s, Vec x, Vec residual, PetscBool *combined) {
   PetscFunctionBeginUser;
   *combined = !s->stream && s->kept.count <= PRODUCTS_KEPT ? PETSC_TRUE : PETSC_FALSE;
-  if (*combined) PetscCall(ProductsCombine(&s->kept, s->rest, x, w, p, residual));
+  if (*combined) PetscCall(ProductsCombine(&s->kept, s->rest, x, s->problem->w, s->problem->p, residual));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

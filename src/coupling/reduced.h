@@ -16,6 +16,18 @@
 #include "coupling/unknowns.h"
 #include "fluid/stokes.h"
 
+/* What a step gives, and the vectors that its answer goes to. */
+typedef struct {
+  Forcing *f;             /* right-hand side of momentum, to which the forces of the solution are added, */
+  Vec g, k;               /* of Dm V/h^2, an edge vector, and of V, of all bodies; */
+  Vec F;                  /* minus what is known of the force on all bodies' markers, which is in f, but its near field
+                             not in k; NULL: none */
+  Vec moved;              /* with viscosity contrast: the part of the markers' motion that is known; else NULL */
+  const StreamPast *past; /* with inertia where w is NULL: the states before, whose force is beside f; else NULL */
+  Vec w, p;               /* velocity and pressure; may both be NULL where ReducedNeedsNoPressure */
+  Vec sigma, d, V, solid; /* tension, wall forces, V and force on obstacles (NULL without): first guess and solution */
+} CoupledProblem;
+
 typedef struct _p_Reduced *Reduced;
 struct _p_Reduced {
   Unknowns unknowns; /* borrowed */
@@ -23,57 +35,48 @@ struct _p_Reduced {
   Stream stream;     /* borrowed; NULL where products are made on the grid, and kept */
   Mat A;             /* the residuals' derivative, scaled */
   Products kept;
-  Forcing r;               /* of a product; not made with stream */
-  Vec F, U;                /* marker vectors of all bodies, work: forces, what the markers have of u = E u */
-  Vec all, known;          /* work: forces with those that are known (borrowed) */
-  Vec flow;                /* borrowed: of u, where the problem makes one; else NULL */
-  StreamPast past;         /* then: the states before, */
-  Vec sum;                 /* and U of all so far, */
-  StreamMeasures measures; /* and what was measured */
-  Vec motion;              /* with a viscosity contrast: what the jump is of, marker vector, work */
-  Vec moved;               /* borrowed: of the motion what is known */
-  DipoleRows dipoles;      /* of the jump, with stream */
-  Vec rest;                /* unknowns, work */
-  PetscScalar *d;          /* [walls->n] all wall forces, work */
-  PetscScalar *slip;       /* [walls->n] work */
+  const CoupledProblem *problem; /* borrowed: the one under way */
+  StreamMeasures measures;       /* of the velocity at the last residual, where problem.w is NULL */
+  Forcing r;                     /* of a product; not made with stream */
+  Vec F, U;                      /* marker vectors of all bodies, work: forces, what the markers have of u = E u */
+  Vec all;                       /* work: forces with those that are known */
+  Vec sum;                       /* with states before: U of the solution so far */
+  Vec motion;                    /* with a viscosity contrast: what the jump is of, marker vector, work; else NULL */
+  DipoleRows dipoles;            /* of the jump, with stream */
+  Vec rest;                      /* unknowns, work */
+  PetscScalar *d;                /* [walls->n] all wall forces, work */
+  PetscScalar *slip;             /* [walls->n] work */
 };
 
 /* ReducedCreate - the problem for these unknowns. Collective. */
 PETSC_EXTERN PetscErrorCode ReducedCreate(Unknowns unknowns, Reduced *reduced);
 PETSC_EXTERN PetscErrorCode ReducedDestroy(Reduced *reduced);
 
-/* ReducedBegin - a problem begins, in which `known`, minus a part of the force on the bodies' markers, is in f but its
-   near field is not in k, and the part `moved` of the markers' motion is known (NULL without viscosity contrast). flow:
-   u is kept as that (fluid/streamflow.h), and the force of the states before, `past`, is beside f; else NULL. Not
-   collective. */
-PETSC_EXTERN void ReducedBegin(Reduced reduced, Vec known, Vec moved, const StreamPast *past, Vec flow);
-
-/* ReducedResidual - the forces of `added` go into f, those of x itself with the dipoles of `moved`; minus the scaled
-   residuals at x, with u, p = w, p by one Stokes solve of f, f holding the forces of x. grid false: w and p are not
-   wanted and may stay as they are. Both may be NULL where ReducedNeedsNoPressure, and measures is then of u unless it
-   is NULL. With a flow it is added to, and the first residual of a problem must be that of added = x. g: an edge
-   vector, k: a marker vector of all bodies. Collective. */
-PETSC_EXTERN PetscErrorCode ReducedResidual(Reduced reduced, Vec added, Forcing *f, Vec g, Vec k, Vec x, PetscBool grid,
-                                            Vec w, Vec p, Vec residual, StreamMeasures *measures);
+/* ReducedBegin - a problem, borrowed until the next one, begins with the guess x: its forces go into problem->f.
+   residual: minus the scaled residuals at x. ReducedUpdate - the forces of `added`, by which x has changed, go into
+   problem->f as well, and w and p are made by one Stokes solve; residual: at the new x. Collective. */
+PETSC_EXTERN PetscErrorCode ReducedBegin(Reduced reduced, const CoupledProblem *problem, Vec x, Vec residual);
+PETSC_EXTERN PetscErrorCode ReducedUpdate(Reduced reduced, Vec added, Vec x, Vec residual);
 
 /* ReducedNeedsNoPressure - whether a problem can be solved without u and p on the grid: disturbances by fluid/stream.h,
    with a flow in fluid with inertia. ReducedFields - then, without a flow, they are the Stokes solve's for f as
-   ReducedResidual left it. ReducedPressure - with a flow p follows from f and its velocity w. Not collective;
+   the last problem left it. ReducedPressure - with a flow p follows from f and its velocity w. Not collective;
    collective. */
 PETSC_EXTERN PetscBool ReducedNeedsNoPressure(Reduced reduced);
 PETSC_EXTERN PetscErrorCode ReducedFields(Reduced reduced, const Forcing *f, Vec w, Vec p);
 PETSC_EXTERN PetscErrorCode ReducedPressure(Reduced reduced, const Forcing *f, Vec w, Vec p);
 
-/* ReducedFinish - f gets the forces of `added` (NULL: none) and the dipoles of the solution x where the markers' rows
-   are without them; measures is of its velocity; else nothing. Collective.
-   ReducedIsFinished - whether it does. Not collective. */
-PETSC_EXTERN PetscErrorCode ReducedFinish(Reduced reduced, Vec added, Forcing *f, Vec x, StreamMeasures *measures);
-PETSC_EXTERN PetscBool ReducedIsFinished(Reduced reduced);
+/* ReducedDefersDipoles - whether the markers' rows are without the dipoles, so that ReducedFinish has something to do.
+   Not collective. ReducedFinish - problem->f gets the forces of `added`, what the last residual lacks of the solution
+   x, and the dipoles of x, and measures is of its velocity; else nothing. Collective. */
+PETSC_EXTERN PetscBool ReducedDefersDipoles(Reduced reduced);
+PETSC_EXTERN PetscErrorCode ReducedFinish(Reduced reduced, Vec added, Vec x);
 
 /* ReducedForgetProducts - a solve begins: products with A are kept from here on. Not collective. */
 PETSC_EXTERN PetscErrorCode ReducedForgetProducts(Reduced reduced);
 
-/* ReducedCombine - the change of w, p and the residual that goes with a change of x made of the kept products, added; x
+/* ReducedCombine - the change of the problem's w and p and of the residual that goes with a change of x made of the
+   kept products, added; x
    := what it is made of. combined is false when they were not kept, or too many, and nothing has changed. Collective.
  */
-PETSC_EXTERN PetscErrorCode ReducedCombine(Reduced reduced, Vec x, Vec w, Vec p, Vec residual, PetscBool *combined);
+PETSC_EXTERN PetscErrorCode ReducedCombine(Reduced reduced, Vec x, Vec residual, PetscBool *combined);

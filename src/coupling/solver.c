@@ -36,13 +36,11 @@ static PetscErrorCode Apply(PC pc, Vec r, Vec z) {
    is a solution already, and a Stokes solve has given the velocity that goes with it. */
 static PetscErrorCode Try(CoupledSolver s, Vec z, Vec Az) {
   Trial *t = &s->trial;
-  const CoupledProblem *q = t->problem;
   PetscFunctionBeginUser;
   t->state = TRIAL_MADE;
   PetscCall(VecAXPBY(s->pending, t->scale, 0, z));
   PetscCall(VecWAXPY(t->x, 1, s->pending, s->x));
-  PetscCall(ReducedResidual(s->reduced, s->pending, q->f, q->g, q->k, t->x, q->w ? PETSC_TRUE : PETSC_FALSE, q->w, q->p,
-                            t->b, q->p ? NULL : &t->measures));
+  PetscCall(ReducedUpdate(s->reduced, s->pending, t->x, t->b));
   PetscCall(VecNorm(t->b, NORM_2, &t->residual));
   PetscCall(VecWAXPY(Az, -1, t->b, s->b));
   PetscCall(VecScale(Az, 1 / t->scale));
@@ -213,19 +211,16 @@ static PetscErrorCode Reference(CoupledSolver s, const CoupledProblem *q) {
 
 /* x + the change of a KSPSolve, with u and p or what is measured of them; b becomes the residual that is left. Where
    the velocity of the solution is made at the end GMRES's own residual will do. */
-static PetscErrorCode Follow(CoupledSolver s, const CoupledProblem *q, PetscReal goal, SolveReport *report) {
+static PetscErrorCode Follow(CoupledSolver s, PetscReal goal, SolveReport *report) {
   PetscBool combined;
   PetscFunctionBeginUser;
-  PetscCall(ReducedCombine(s->reduced, s->change, q->w, q->p, s->b, &combined));
+  PetscCall(ReducedCombine(s->reduced, s->change, s->b, &combined));
   PetscCall(VecAXPY(s->x, 1, s->change));
   PetscCall(VecAYPX(s->pending, s->trial.state == TRIAL_MADE ? -1 : 1, s->change));
-  if (ReducedIsFinished(s->reduced) && s->preconditioner->flexible && goal > ROUNDING * s->trial.scale) {
-    s->owed = PETSC_TRUE;
+  if (ReducedDefersDipoles(s->reduced) && s->preconditioner->flexible && goal > ROUNDING * s->trial.scale)
     PetscFunctionReturn(PETSC_SUCCESS);
-  }
   if (!combined) {
-    PetscCall(ReducedResidual(s->reduced, s->pending, q->f, q->g, q->k, s->x, q->w ? PETSC_TRUE : PETSC_FALSE, q->w,
-                              q->p, s->b, q->p ? NULL : &report->measures));
+    PetscCall(ReducedUpdate(s->reduced, s->pending, s->x, s->b));
     PetscCall(VecSet(s->pending, 0));
   }
   PetscCall(VecNorm(s->b, NORM_2, &report->residual));
@@ -246,28 +241,23 @@ static PetscErrorCode Correct(CoupledSolver s, const CoupledProblem *q, PetscRea
   if (report->why < 0) PetscFunctionReturn(PETSC_SUCCESS);
   if (t->state == TRIAL_MADE && t->residual <= goal) {
     PetscCall(VecCopy(t->x, s->x));
+    PetscCall(VecSet(s->pending, 0));
     report->residual = t->residual;
-    report->measures = t->measures;
-  } else if (its > 0 || !t->begun)
-    PetscCall(Follow(s, q, goal, report));
+  } else if (its > 0 || q->w) /* without w nothing is left to be done where the first guess is good enough */
+    PetscCall(Follow(s, goal, report));
   t->state = TRIAL_NONE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* The first residual; where products leave no velocity behind, u of its forces is measured, and a trial is wanted. */
-static PetscErrorCode Begin(CoupledSolver s, const CoupledProblem *q, SolveReport *report) {
+static PetscErrorCode Begin(CoupledSolver s, const CoupledProblem *q) {
   Trial *t = &s->trial;
   PetscFunctionBeginUser;
   PetscCall(Guess(s, q));
-  ReducedBegin(s->reduced, q->F, q->moved, q->past, q->flow);
-  t->begun = s->reduced->stream && !q->w ? PETSC_TRUE : PETSC_FALSE;
-  PetscCall(ReducedResidual(s->reduced, s->x, q->f, q->g, q->k, s->x, PETSC_FALSE, q->w, q->p, s->b,
-                            t->begun ? &report->measures : NULL));
-  if (q->flow)
-    s->reference = PetscSqrtReal(PetscSqr(s->reference) + PetscSqr(s->unknowns->length) * report->measures.past);
+  PetscCall(ReducedBegin(s->reduced, q, s->x, s->b));
+  if (q->past)
+    s->reference = PetscSqrtReal(PetscSqr(s->reference) + PetscSqr(s->unknowns->length) * s->reduced->measures.past);
   PetscCall(VecSet(s->pending, 0));
-  s->owed = PETSC_FALSE;
-  t->problem = q;
   PetscCall(VecNorm(s->b, NORM_2, &t->scale));
   t->state = s->reduced->stream && t->scale > 0 ? TRIAL_WANTED : TRIAL_NONE;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -284,15 +274,15 @@ PetscErrorCode CoupledSolverSolve(CoupledSolver s, const CoupledProblem *q, Solv
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(s->reduced->stokes ? Reference(s, q) : FreeReference(s, q));
-  PetscCall(Begin(s, q, report));
+  PetscCall(Begin(s, q));
   PetscCall(KSPGetTolerances(s->ksp, &rtol, &atol, NULL, NULL));
   const PetscReal goal = PetscMax(rtol * s->reference, atol);
   for (int round = 0; round < MOST_ROUNDS; round++) { /* rounding may spoil GMRES's own residual in stiff cases */
     PetscCall(Correct(s, q, goal, report));
     if (report->why < 0 || report->residual <= 2 * goal) break;
   }
-  if (report->why >= 0)
-    PetscCall(ReducedFinish(s->reduced, s->owed ? s->pending : NULL, q->f, s->x, &report->measures));
+  if (report->why >= 0) PetscCall(ReducedFinish(s->reduced, s->pending, s->x));
+  report->measures = s->reduced->measures;
   PreconditionerSolved(s->preconditioner, report->its);
   if (report->why >= 0) PetscCall(UnknownsUnpack(s->unknowns, s->x, q->V, q->solid, q->sigma, q->d));
   PetscFunctionReturn(PETSC_SUCCESS);

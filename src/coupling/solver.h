@@ -3,20 +3,6 @@
 #include "coupling/precondition.h"
 #include "coupling/reduced.h"
 
-/* What a step asks for, and the vectors that its answer goes to. */
-typedef struct {
-  Vec moved;              /* with viscosity contrast: the part of the markers' motion that is known; else NULL */
-  Forcing *f;             /* right-hand side of momentum, to which the forces of the solution are added, */
-  Vec g, k;               /* of Dm V/h^2, and of V of all bodies */
-  Vec F;                  /* minus what is known of the force on all bodies' markers: in f, but its near field not in k;
-                             NULL: none */
-  Vec w, p, sigma, d, V;  /* solution; sigma, d and V hold the first guess; w and p may be NULL where
-                             ReducedNeedsNoPressure, */
-  Vec solid;              /* and the force on obstacles; NULL without */
-  Vec flow;               /* in fluid with inertia where w is NULL: the velocity's flow, */
-  const StreamPast *past; /* and the states before, whose force is beside f */
-} CoupledProblem;
-
 /* How a solve went. */
 typedef struct {
   PetscInt its;
@@ -31,11 +17,8 @@ typedef enum { TRIAL_NONE, TRIAL_WANTED, TRIAL_MADE } TrialState;
    z, the forces of which are in f then. */
 typedef struct {
   TrialState state;
-  const CoupledProblem *problem; /* borrowed, of the solve */
-  PetscBool begun;               /* nothing is left to be done where the first guess is good enough */
-  PetscReal scale, residual;     /* norms of the residual before and at it */
-  Vec x, b;                      /* the unknowns and the residual there */
-  StreamMeasures measures;       /* of its velocity, where w is NULL */
+  PetscReal scale, residual; /* norms of the residual before and at it */
+  Vec x, b;                  /* the unknowns and the residual there */
 } Trial;
 
 typedef struct _p_CoupledSolver *CoupledSolver;
@@ -51,8 +34,7 @@ struct _p_CoupledSolver {
   PetscBool guess;     /* -coupled_ksp_initial_guess_nonzero: start from the guess */
   Vec x, b;            /* unknowns, residual */
   Vec change;          /* of one KSPSolve */
-  Vec pending;         /* part of x whose forces are not in the right-hand side f yet, */
-  PetscBool owed;      /* when the solve has ended, too */
+  Vec pending;         /* part of x whose forces are not in the right-hand side f yet */
   PetscReal reference; /* norm of the step's right-hand side, which the tolerance is relative to */
   PetscReal start;     /* residual norm that a KSPSolve starts from */
 };

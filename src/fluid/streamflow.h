@@ -16,6 +16,7 @@ typedef struct {
   PetscReal weight[STREAM_PAST]; /* (1/time) */
   Vec flow[STREAM_PAST];
   PetscReal part, lag; /* 1, time */
+  Vec made;            /* the flow of u, which the solve makes */
 } StreamPast;
 
 typedef struct _p_StreamFlows *StreamFlows;

@@ -89,11 +89,12 @@ PetscErrorCode MarkersAddFlow(Markers m, Stream stream, PetscReal alpha, Vec F, 
 }
 
 PetscErrorCode MarkersFollow(Markers m, Stream stream, DipoleRows dipoles, const Forcing *f, const StreamPast *past,
-                             Vec U, Vec flow, StreamMeasures *measures) {
+                             Vec U, StreamMeasures *measures) {
   const Vec source = dipoles ? f->source : NULL;
-  Response r = {.m = m, .dipoles = dipoles, .measured = U ? PETSC_FALSE : PETSC_TRUE, .past = past, .flow = flow};
+  Response r = {.m = m, .dipoles = dipoles, .measured = U ? PETSC_FALSE : PETSC_TRUE, .past = past};
   PetscFunctionBeginUser;
   PetscCall(PetscLogEventBegin(m->respond, 0, 0, 0, 0));
+  if (past) r.flow = past->made;
   PetscCall(VecGetArrayRead(f->values, &r.f));
   if (source) PetscCall(VecGetArrayRead(source, &r.source));
   PetscCall(GridRows(m->grid, FIELD_U, r.f, &r.u));

@@ -77,6 +77,9 @@ static PetscErrorCode Past(Scheme s, Coupled *d, const BDF *b) {
   const Vec *flow = STATES(s, flow);
   PetscFunctionBeginUser;
   d->past.count = d->next.flow && !s->fluid->steady ? b->order : 0;
+  d->past.part = CouplingGridPart(s->coupling, s->fluid->alpha);
+  d->past.lag = CouplingLag(s->coupling, s->fluid->alpha);
+  d->past.made = d->next.flow;
   for (PetscInt j = 0; j < d->past.count; j++) {
     d->past.weight[j] = b->history[j];
     d->past.flow[j] = flow[j];
@@ -146,8 +149,7 @@ static PetscErrorCode Solve(Scheme s, Coupled *d) {
                                   .d = n->walls,
                                   .V = d->V,
                                   .solid = n->solid,
-                                  .flow = n->flow,
-                                  .past = &d->past};
+                                  .past = n->flow ? &d->past : NULL};
   SolveReport report;
   PetscFunctionBeginUser;
   if (d->direct) {
