@@ -227,17 +227,16 @@ static PetscErrorCode IsSteady(Simulation s, PetscBool *steady) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* One step, of at most `most`, its row of series.csv and the files that are due. A first step may stop between its
-   parts (SchemeStep). */
-static PetscErrorCode TakeStep(Simulation s, PetscReal most, PetscReal reserve, const char **failure) {
+/* One step, of at most `most`, its row of series.csv and the files that are due. */
+static PetscErrorCode TakeStep(Simulation s, PetscReal most, const char **failure) {
   const StepReport *report = &s->scheme->report;
   PetscLogDouble start, end;
   PetscFunctionBeginUser;
   PetscCall(SimulationBegin(s));
   PetscCall(PetscTime(&start));
-  PetscCall(SchemeStep(s->scheme, most, reserve));
+  PetscCall(SchemeStep(s->scheme, most));
   *failure = *report->failure ? report->failure : NULL;
-  if (*failure || report->stopped) PetscFunctionReturn(PETSC_SUCCESS);
+  if (*failure) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(OutputStep(s->output));
   PetscCall(IsSteady(s, &s->steady));
   PetscCall(PetscTime(&end));
@@ -257,7 +256,7 @@ PetscErrorCode SimulationBegin(Simulation s) {
 PetscErrorCode SimulationStep(Simulation s, const char **failure) {
   const PetscReal t = s->scheme->state.t, end = s->scene->time.end;
   PetscFunctionBeginUser;
-  PetscCall(TakeStep(s, StepFinished(&s->scheme->policy, t, end) ? PETSC_MAX_REAL : end - t, -1, failure));
+  PetscCall(TakeStep(s, StepFinished(&s->scheme->policy, t, end) ? PETSC_MAX_REAL : end - t, failure));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -281,11 +280,10 @@ PetscErrorCode SimulationAdvance(Simulation s, PetscReal until, PetscBool *stepp
   if (s->steady || StepFinished(&s->scheme->policy, t, until)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(StopRequested(s->scene->comm, s->scene->time.wall_limit, reserve + 1.5 * s->longest_step, &why));
   if (!why) {
-    PetscCall(TakeStep(s, until - t, reserve, failure));
-    why = s->scheme->report.stopped;
-    *stepped = why ? PETSC_FALSE : PETSC_TRUE;
-  }
-  if (why) PetscCall(Stop(s, why));
+    PetscCall(TakeStep(s, until - t, failure));
+    *stepped = PETSC_TRUE;
+  } else
+    PetscCall(Stop(s, why));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -4,33 +4,17 @@
 #include "coupling/kspoptions.h"
 #include "scheme/films.h"
 
-/* Whether a first step stops after a part of it that began at `began`: another one may take as long. */
-static PetscErrorCode Stops(Scheme s, PetscLogDouble began, PetscBool *stops) {
-  PetscLogDouble now;
-  PetscFunctionBeginUser;
-  *stops = PETSC_FALSE;
-  if (s->reserve < 0 || s->state.step > 0) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscTime(&now));
-  PetscCall(
-      StopRequested(s->scene->comm, s->scene->time.wall_limit, s->reserve + 1.5 * (now - began), &s->report.stopped));
-  *stops = s->report.stopped ? PETSC_TRUE : PETSC_FALSE;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Start-up: backward Euler on a sixteenth of the step, then BDF2 with doubling steps up to the whole of it. */
 static PetscErrorCode GradedStart(Scheme s, Coupled *d, PetscReal dt) {
   const PetscReal parts[] = {1. / 16, 1. / 16, 1. / 8, 1. / 4, 1. / 2};
-  PetscBool solved = PETSC_TRUE, stops = PETSC_FALSE;
-  PetscLogDouble began;
+  PetscBool solved = PETSC_TRUE;
   PetscFunctionBeginUser;
   d->done = 0;
   if (d->solver) d->solver->preconditioner->graded = PETSC_TRUE;
-  for (int k = 0; k < 5 && solved && !stops; k++) {
-    PetscCall(PetscTime(&began));
+  for (int k = 0; k < 5 && solved; k++) {
     PetscCall(CoupledFixedAttempt(s, parts[k] * dt, &solved));
     if (solved) PetscCall(CoupledAdvance(s, parts[k] * dt));
     d->done += parts[k] * dt;
-    if (k < 4) PetscCall(Stops(s, began, &stops));
   }
   if (d->solver) d->solver->preconditioner->graded = PETSC_FALSE;
   d->done = 0;
@@ -158,14 +142,11 @@ static PetscErrorCode Advance(Scheme s, StepTrial *trial, const StepPlan *before
 
 /* Attempts until one is accepted. What makes the last one fail is the step's failure. */
 static PetscErrorCode JudgedStep(Scheme s, Coupled *d, PetscReal speed, PetscReal most) {
-  PetscBool stops = PETSC_FALSE;
-  PetscLogDouble began;
   StepVerdict verdict;
   StepTrial trial;
   PetscFunctionBeginUser;
   s->plan.before = PETSC_MAX_REAL;
   do {
-    PetscCall(PetscTime(&began));
     trial = (StepTrial){.first = s->state.dt_last == 0 ? PETSC_TRUE : PETSC_FALSE};
     s->report.failure[0] = 0;
     FluidClearFailure(s->fluid);
@@ -176,8 +157,7 @@ static PetscErrorCode JudgedStep(Scheme s, Coupled *d, PetscReal speed, PetscRea
     if (trial.solved) PetscCall(Look(s, d, &trial));
     PetscCall(Decide(s, &trial, &verdict));
     if (verdict == STEP_ACCEPT) PetscCall(Advance(s, &trial, &before, &verdict));
-    if (verdict == STEP_REPEAT) PetscCall(Stops(s, began, &stops));
-  } while (verdict == STEP_REPEAT && !stops);
+  } while (verdict == STEP_REPEAT);
   if (verdict == STEP_GIVE_UP && trial.solved)
     PetscCall(PetscSNPrintf(
         s->report.failure, sizeof(s->report.failure),

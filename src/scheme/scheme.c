@@ -97,7 +97,7 @@ PetscErrorCode SchemeDestroy(Scheme *scheme) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SchemeStep(Scheme s, PetscReal most, PetscReal reserve) {
+PetscErrorCode SchemeStep(Scheme s, PetscReal most) {
   const PetscInt solves = FluidCountSolves(s->fluid);
   PetscLogDouble start, end;
   PetscFunctionBeginUser;
@@ -105,14 +105,11 @@ PetscErrorCode SchemeStep(Scheme s, PetscReal most, PetscReal reserve) {
   PetscCall(PhaseBegin(PHASE_STEP));
   PetscCall(PetscMemzero(&s->report, sizeof(s->report)));
   PetscCall(SchemeKeep(s));
-  s->reserve = reserve;
   FluidClearFailure(s->fluid);
   s->state.dt = s->policy.adaptive ? s->policy.base : StepFixed(&s->policy, s->state.t, most);
   PetscCall(s->ops.step(s, most));
   s->report.solves = FluidCountSolves(s->fluid) - solves;
-  if (s->report.stopped)
-    PetscCall(SchemeReturn(s, PETSC_FALSE));
-  else if (!*s->report.failure) {
+  if (!*s->report.failure) {
     s->state.t += s->state.dt;
     s->state.dt_last = s->state.dt_last > 0 ? s->state.dt_last : s->state.dt;
     s->state.step++;

@@ -13,10 +13,8 @@ PETSC_EXTERN PetscErrorCode SchemeDestroy(Scheme *scheme);
 
 /* SchemeStep - one time step: the policy's, at most `most`, the time that is left (PETSC_MAX_REAL: no end). Afterwards
    scheme->report says what was done; when report.failure is not empty the step could not be taken, or led to a state
-   that is refused, and the state is the last good one. A first step stops between its parts, or attempts, at a signal
-   or where less than `reserve` seconds of -time_wall_limit would be left after another one: report.stopped says why,
-   and the state is as before; negative: it does not. Collective. */
-PETSC_EXTERN PetscErrorCode SchemeStep(Scheme scheme, PetscReal most, PetscReal reserve);
+   that is refused, and the state is the last good one. Collective. */
+PETSC_EXTERN PetscErrorCode SchemeStep(Scheme scheme, PetscReal most);
 
 /* SchemeRemember, SchemeRecall - what the solvers have kept from earlier steps (when their blocks were made, and where
    the markers were), as SchemeMemorySize numbers for a checkpoint, and made again from them. Collective. */

@@ -25,7 +25,6 @@ typedef struct {
   PetscReal seconds;         /* wall time of the step without output */
   StreamMeasures measures;   /* measures of the velocity where a step does not make it on the grid */
   Stress stress;
-  const char *stopped; /* why a first step was stopped between two of its parts (StopRequested); NULL: it was not */
   char failure[PETVES_MAX_MESSAGE]; /* why the step was not taken; empty: it was taken */
 } StepReport;
 
@@ -92,7 +91,6 @@ struct _p_Scheme {
   PetscInt past;          /* how many of them are known */
   Snapshot before;        /* what SchemeStep goes back to when a step fails */
   Warnings warnings;
-  PetscReal reserve; /* SchemeStep's, of the step under way (seconds) */
   StepReport report;
   Vec background;   /* marker vector: what the markers' velocity has besides the solved part: u_inf, zero in the total
                        form */

@@ -130,7 +130,7 @@ static PetscErrorCode Error(const char options[], Exact f, PetscBool forced, Pet
   if (forced) PetscCall(VecDuplicate(exact, &r.fluid->bc1)); /* momentum's right-hand side takes it as it is */
   for (PetscInt k = 1; k <= steps; k++) {
     if (forced) PetscCall(Sample(r.scene, r.fluid->grid, f, k * dt, FORCE, r.fluid->bc1));
-    PetscCall(SchemeStep(r.scheme, dt, -1));
+    PetscCall(SchemeStep(r.scheme, dt));
     PetscCheck(!*r.scheme->report.failure, PETSC_COMM_WORLD, PETSC_ERR_LIB, "%s", r.scheme->report.failure);
   }
   PetscCall(Sample(r.scene, r.fluid->grid, f, t_end, VALUE, exact));

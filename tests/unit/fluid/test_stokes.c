@@ -69,7 +69,7 @@ static PetscErrorCode CheckDecay(const char name[], const char bc[], Exact exact
   PetscCall(VecDuplicate(f.scheme->state.w, &want));
   PetscCall(Fill(f.fluid->grid, exact, 0, NULL, PETSC_FALSE, f.scheme->state.w));
   PetscCall(VecCopy(f.scheme->state.w, want));
-  for (PetscInt k = 0; k < steps; k++) PetscCall(SchemeStep(f.scheme, dt, -1));
+  for (PetscInt k = 0; k < steps; k++) PetscCall(SchemeStep(f.scheme, dt));
   PetscCall(VecScale(want, PetscPowRealInt(1 + dt * nu * lambda, (int)-steps)));
   PetscCall(VecNorm(want, NORM_2, &size));
   PetscCall(VecAXPY(want, -1, f.scheme->state.w));
@@ -140,7 +140,7 @@ static PetscErrorCode RunManufactured(PetscInt n, PetscInt steps, Manufactured *
   *div = 0;
   for (PetscInt k = 1; k <= steps; k++) {
     PetscCall(Fill(g, ManufacturedField, k * dt, m, PETSC_FALSE, f->fluid->bc1));
-    PetscCall(SchemeStep(f->scheme, dt, -1));
+    PetscCall(SchemeStep(f->scheme, dt));
     *div = PetscMax(*div, f->scheme->report.div_max);
   }
   m->forcing = PETSC_FALSE;

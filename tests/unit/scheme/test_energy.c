@@ -83,7 +83,7 @@ static PetscErrorCode Follow(const char options[], PetscReal dt, Law *law) {
   before = first;
   for (PetscInt k = 1; k <= (few ? FEW_STEPS : STEPS); k++) {
     PetscReal now = 0, now_g = 0, rise;
-    PetscCall(SchemeStep(r.scheme, dt, -1));
+    PetscCall(SchemeStep(r.scheme, dt));
     if (*r.scheme->report.failure) break;
     law->steps = k;
     PetscCall(StateEnergy(&r, &now));
