@@ -1,22 +1,20 @@
 #include "coupling/boxgrid.h"
 #include "coupling/doubleblock.h"
 #include "coupling/nearblock.h"
-#include "fluid/walls.h"
+#include "fluid/stokes.h"
 #include "markers/respond.h"
 
 typedef struct {
   Fluid fluid;
   Stokes stokes;
-  Walls walls;
   Layout layout; /* one body: the places, x fastest */
   Markers markers;
   PaddedStencil *stencil;   /* [2 places] */
   struct _p_NearField near; /* of it only what the lattice's mobility needs */
   NearImage image;          /* what the near field has of the walls, */
   DoubleImage twice;        /* and of dipoles */
-  Vec force, r, u, p;       /* on the grid */
+  Vec force, u, p;          /* on the grid */
   Vec F, U;                 /* at the places */
-  PetscScalar *d;           /* wall forces */
   const BoxAxis *axis;
   const BoxLattice *lattice;
   PaddedStencil *dipole; /* [DIPOLE_COUNT places], of dipoles */
@@ -62,7 +60,6 @@ static PetscErrorCode Create(const FluidSpec *spec, const char kernel[], const B
   PetscCall(PetscStrncpy(box.poisson, "fftw_tridiagonal", sizeof(box.poisson)));
   PetscCall(FluidCreate(&box, &b->fluid));
   PetscCall(StokesCreate(b->fluid, &b->stokes));
-  PetscCall(WallsCreate(b->fluid, &b->walls));
   PetscCall(PlaceMarkers(b, kernel));
   PetscCall(NearImageCreate(b->markers, spec->nu, lattice->unit, lattice->half, &b->image));
   b->near = (struct _p_NearField){
@@ -75,53 +72,25 @@ static PetscErrorCode Create(const FluidSpec *spec, const char kernel[], const B
     PetscCall(DoubleImageCreate(b->image, lattice->dipole, &b->twice));
     DoubleImagePlace(b->twice, b->dipole);
   }
-  PetscCall(PetscMalloc1(b->walls->n, &b->d));
-  if (!lattice->dipole && StokesStream(b->stokes)) PetscFunctionReturn(PETSC_SUCCESS); /* nothing on the grid */
+  if (!lattice->dipole) PetscFunctionReturn(PETSC_SUCCESS); /* nothing on the grid */
   PetscCall(DMCreateGlobalVector(b->fluid->grid->velocity, &b->force));
-  PetscCall(VecDuplicate(b->force, &b->r));
   PetscCall(VecDuplicate(b->force, &b->u));
   PetscCall(DMCreateGlobalVector(b->fluid->grid->da[FIELD_P], &b->p));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode Destroy(BoxGrid *b) {
-  Vec *all[] = {&b->force, &b->r, &b->u, &b->p, &b->F, &b->U, &b->source};
+  Vec *all[] = {&b->force, &b->u, &b->p, &b->F, &b->U, &b->source};
   PetscFunctionBeginUser;
-  for (int k = 0; k < 7; k++) PetscCall(VecDestroy(all[k]));
-  PetscCall(PetscFree(b->d));
+  for (int k = 0; k < 6; k++) PetscCall(VecDestroy(all[k]));
   PetscCall(PetscFree(b->stencil));
   PetscCall(PetscFree(b->dipole));
   PetscCall(DoubleImageDestroy(&b->twice));
   PetscCall(NearImageDestroy(&b->image));
   PetscCall(MarkersDestroy(&b->markers));
   PetscCall(LayoutDestroy(&b->layout));
-  PetscCall(WallsDestroy(&b->walls));
   PetscCall(StokesDestroy(&b->stokes));
   PetscCall(FluidDestroy(&b->fluid));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* u of the force and the source on the grid, and of wall forces d. */
-static PetscErrorCode SolveWith(BoxGrid *b, const PetscScalar d[]) {
-  PetscFunctionBeginUser;
-  PetscCall(VecCopy(b->force, b->r));
-  if (d) PetscCall(WallsAdd(b->walls, d, b->r));
-  if (b->source) PetscCall(VecCopy(b->source, b->p));
-  PetscCall(StokesSolve(b->stokes, b->r, b->source ? b->p : NULL, b->u, b->p));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* u of the force and the source; where the Stokes solve is a projection, which is next to walls in x alone, with the
-   wall forces that make it exact. */
-static PetscErrorCode Solve(BoxGrid *b) {
-  const PetscInt n = b->walls->n;
-  PetscFunctionBeginUser;
-  PetscCall(SolveWith(b, NULL));
-  if (!n) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(WallsSlip(b->walls, StokesPotential(b->stokes), b->d));
-  PetscCall(WallsInvert(b->walls, b->d));
-  for (PetscInt k = 0; k < n; k++) b->d[k] = -b->d[k];
-  PetscCall(SolveWith(b, b->d));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -247,27 +216,21 @@ static PetscErrorCode SpreadDipole(BoxGrid *b, PetscInt j, int cj) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* U, the velocity at all places of unit part cj of place j's source: of forces row by row where that can be. */
+/* U, the velocity at all places of unit part cj of place j's source: of forces row by row. */
 static PetscErrorCode Respond(BoxGrid *b, PetscInt j, int cj) {
-  const Stream stream = StokesStream(b->stokes);
   const PetscReal over = 1 / PetscSqr(b->fluid->grid->h);
   PetscFunctionBeginUser;
-  if (b->lattice->dipole)
+  if (b->lattice->dipole) {
     PetscCall(SpreadDipole(b, j, cj));
-  else {
-    PetscCall(VecSet(b->F, 0));
-    PetscCall(VecSetValue(b->F, 2 * j + cj, 1, INSERT_VALUES));
-    PetscCall(VecAssemblyBegin(b->F));
-    PetscCall(VecAssemblyEnd(b->F));
-    if (stream) {
-      PetscCall(MarkersRespond(b->markers, stream, NULL, over, b->F, b->U));
-      PetscFunctionReturn(PETSC_SUCCESS);
-    }
-    PetscCall(VecSet(b->force, 0));
-    PetscCall(MarkersSpread(b->markers, over, b->F, b->force));
+    PetscCall(StokesSolve(b->stokes, b->force, b->source, b->u, b->p));
+    PetscCall(MarkersInterpolate(b->markers, b->u, b->U));
+    PetscFunctionReturn(PETSC_SUCCESS);
   }
-  PetscCall(Solve(b));
-  PetscCall(MarkersInterpolate(b->markers, b->u, b->U));
+  PetscCall(VecSet(b->F, 0));
+  PetscCall(VecSetValue(b->F, 2 * j + cj, 1, INSERT_VALUES));
+  PetscCall(VecAssemblyBegin(b->F));
+  PetscCall(VecAssemblyEnd(b->F));
+  PetscCall(MarkersRespond(b->markers, StokesStream(b->stokes), NULL, over, b->F, b->U));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

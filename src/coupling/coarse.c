@@ -54,10 +54,6 @@ PetscErrorCode CoarseCreate(const FluidSpec *run, Layout fine, const PetscReal l
   PetscCall(MobilityTableSetUp(c->table, c->fluid->alpha));
   PetscCall(LayoutCreateVec(points, 2, &c->X));
   PetscCall(VecDuplicate(c->X, &c->F));
-  if (StokesStream(c->stokes)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(ForcingCreate(c->fluid->grid, PETSC_FALSE, &c->r));
-  PetscCall(VecDuplicate(c->r.values, &c->u));
-  PetscCall(DMCreateGlobalVector(c->fluid->grid->da[FIELD_P], &c->p));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -65,9 +61,8 @@ PetscErrorCode CoarseDestroy(Coarse *coarse) {
   Coarse c = *coarse;
   PetscFunctionBeginUser;
   if (!c) PetscFunctionReturn(PETSC_SUCCESS);
-  Vec *vecs[] = {&c->X, &c->F, &c->u, &c->p};
-  for (int k = 0; k < 4; k++) PetscCall(VecDestroy(vecs[k]));
-  PetscCall(ForcingDestroy(&c->r));
+  PetscCall(VecDestroy(&c->X));
+  PetscCall(VecDestroy(&c->F));
   PetscCall(MobilityTableDestroy(&c->table));
   PetscCall(MarkersDestroy(&c->markers));
   PetscCall(LayoutDestroy(&c->layout));
@@ -109,14 +104,7 @@ PetscErrorCode CoarseApply(Coarse c, PetscScalar F[]) {
   const PetscScalar *U;
   PetscFunctionBeginUser;
   PetscCall(Gather(c, F, c->F));
-  if (StokesStream(c->stokes))
-    PetscCall(MarkersRespond(c->markers, StokesStream(c->stokes), NULL, alpha, c->F, c->F));
-  else {
-    PetscCall(ForcingClear(&c->r));
-    PetscCall(ForcingSpread(&c->r, c->markers, alpha, c->F));
-    PetscCall(StokesSolve(c->stokes, c->r.values, NULL, c->u, c->p));
-    PetscCall(MarkersInterpolate(c->markers, c->u, c->F));
-  }
+  PetscCall(MarkersRespond(c->markers, StokesStream(c->stokes), NULL, alpha, c->F, c->F));
   PetscCall(VecGetArrayRead(c->F, &U));
   PetscCall(PetscArraycpy(F, U + (c->all ? 2 * c->layout->first : 0), 2 * c->layout->n));
   PetscCall(VecRestoreArrayRead(c->F, &U));

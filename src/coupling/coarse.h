@@ -14,8 +14,6 @@ struct _p_Coarse {
   Markers markers;     /* the points, between cells */
   MobilityTable table; /* what the coarse grid does to the vesicle itself */
   Vec X, F;            /* marker vectors, of `all` if there is one */
-  Forcing r;           /* of the points; */
-  Vec u, p;            /* on the grid; these three are not made where the velocity is had by rows (fluid/stream.h) */
 };
 
 /* CoarseCreate - for the quasi-steady fluid that spec makes and vesicles with these initial lengths, whose layout is

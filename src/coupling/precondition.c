@@ -34,7 +34,7 @@ PetscErrorCode PreconditionerCreate(Scene scene, Unknowns u, Preconditioner *out
   p->unknowns = u;
   p->step_ratio = StepRatio(scene, c);
   p->type = CouplingHasMembrane(c) ? (MobilityType)scene->coupling.mobility : MOBILITY_NONE;
-  PetscCall(PetscMalloc2(u->walls->n, &p->d, u->velocity, &p->force));
+  PetscCall(PetscMalloc1(u->velocity, &p->force));
   if (c->bodies->obstacles) PetscCall(ObstacleBlockCreate(&scene->fluid, c, &p->solid));
   PetscCall(PetscCalloc1(c->membrane->layout->bodies, &p->age.treading));
   if (p->type == MOBILITY_TABLE && c->near && c->fluid->steady && c->membrane->layout->M > DENSE_TOGETHER) {
@@ -63,7 +63,7 @@ PetscErrorCode PreconditionerDestroy(Preconditioner *preconditioner) {
   PetscCall(RootPCDestroy(&p->ilu));
   PetscCall(VecDestroy(&p->rhs));
   PetscCall(VecDestroy(&p->sigma));
-  PetscCall(PetscFree2(p->d, p->force));
+  PetscCall(PetscFree(p->force));
   PetscCall(PetscFree(p->age.treading));
   PetscCall(PetscFree(*preconditioner));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -239,18 +239,14 @@ static PetscErrorCode SolveObstacles(Preconditioner p, PetscScalar V[], const Pe
 
 PetscErrorCode PreconditionerApply(Preconditioner p, Vec r, Vec z) {
   const Unknowns u = p->unknowns;
-  PetscScalar *V, *sigma, *d;
+  PetscScalar *V, *sigma;
   PetscFunctionBeginUser;
   PetscCall(RenewUnderWay(p));
   p->now.applied++;
   PetscCall(VecCopy(r, z));
   PetscCall(VecGetArray(z, &V));
   sigma = V + UnknownsTension(u);
-  d = V + UnknownsWalls(u);
   UnknownsScale(u, PETSC_TRUE, V);
-  PetscCall(UnknownsGatherWalls(u, d, p->d));
-  PetscCall(WallsInvert(u->walls, p->d));
-  PetscCall(PetscArraycpy(d, p->d + u->first_wall, u->wall));
   if (CouplingHasBodies(u->coupling)) {
     if (p->solid) PetscCall(ObstacleBlockBegin(p->solid, V + u->velocity, V));
     if (p->patterns) PetscCall(PatternsSolve(p->patterns, V, sigma));

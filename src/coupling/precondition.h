@@ -42,7 +42,6 @@ struct _p_Preconditioner {
   PetscBool flexible; /* blocks may be made anew under way: the KSP allows a changing preconditioner */
   PetscBool failed;   /* a block could not be factored */
   Vec rhs, sigma;     /* ilu: edge vectors, work */
-  PetscScalar *d;     /* [walls->n] all wall forces, work */
   PetscScalar *force; /* [2n] of the own vesicles, work */
 };
 

@@ -37,10 +37,9 @@ static PetscBool HasDipoles(Reduced s) {
   return s->motion && !DoubleLayerIsApart(s->unknowns->coupling->contrast) ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* r += -E^T F/h^2 + d and the motion's dipoles; leaves F and the motion. */
+/* r += -E^T F/h^2 and the motion's dipoles; leaves F and the motion. */
 static PetscErrorCode AddForces(Reduced s, const PetscScalar x[], PetscBool whole, Forcing *r) {
-  const Unknowns u = s->unknowns;
-  const Coupling c = u->coupling;
+  const Coupling c = s->unknowns->coupling;
   PetscFunctionBeginUser;
   if (CouplingHasBodies(c)) {
     PetscCall(Force(s, x, s->F));
@@ -48,10 +47,6 @@ static PetscErrorCode AddForces(Reduced s, const PetscScalar x[], PetscBool whol
   }
   PetscCall(Motion(s, x, whole));
   if (HasDipoles(s)) PetscCall(DoubleLayerSpread(c->contrast, r));
-  if (!u->walls->n) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(UnknownsGatherWalls(u, x + UnknownsWalls(u), s->d));
-  ForcingNote(r, NULL);
-  PetscCall(WallsAdd(u->walls, s->d, r->values));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -67,8 +62,9 @@ static PetscErrorCode Subtract(Vec known, PetscInt n, PetscScalar y[]) {
 
 /* y = (V + (treading/a0) dV/dt - U + C F - k, beta N N^T F - U + C F - k, Dm V/h^2 - g) of x, s->U holding U, s->F F,
    and with viscosity contrast s->motion the G of B G, which stands in the place of the first two; where an area is
-   aimed at the first has its row; without k, g and the known force where `problem` is NULL; not scaled yet. */
-static PetscErrorCode BodyConditions(Reduced s, const CoupledProblem *problem, const PetscScalar x[], PetscScalar y[]) {
+   aimed at the first has its row; without k, g and the known force where `problem` is NULL. Rows are scaled.
+   Collective. */
+static PetscErrorCode Conditions(Reduced s, const CoupledProblem *problem, const PetscScalar x[], PetscScalar y[]) {
   const Coupling c = s->unknowns->coupling;
   const Unknowns u = s->unknowns;
   const PetscInt n = u->velocity, tension = UnknownsTension(u);
@@ -76,6 +72,7 @@ static PetscErrorCode BodyConditions(Reduced s, const CoupledProblem *problem, c
   const PetscBool known = problem && problem->F ? PETSC_TRUE : PETSC_FALSE;
   const PetscScalar *U;
   PetscFunctionBeginUser;
+  if (!CouplingHasBodies(c)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecGetArrayRead(s->U, &U));
   for (PetscInt k = 0; k < tension; k++) y[k] = (k < n && !s->motion ? x[k] : 0) - U[k];
   PetscCall(VecRestoreArrayRead(s->U, &U));
@@ -93,17 +90,6 @@ static PetscErrorCode BodyConditions(Reduced s, const CoupledProblem *problem, c
   if (problem) PetscCall(Subtract(problem->k, tension, y));
   if (c->area) AreaRowReplace(c->area, problem ? PETSC_TRUE : PETSC_FALSE, x, y);
   if (problem) PetscCall(Subtract(problem->g, u->tension, y + tension));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* y = scaled (the bodies' conditions, d + slip) of x and what its forces F gave the markers. Collective. */
-static PetscErrorCode Conditions(Reduced s, const CoupledProblem *problem, const PetscScalar x[], PetscScalar y[]) {
-  const Unknowns u = s->unknowns;
-  const PetscInt wall = UnknownsWalls(u);
-  PetscFunctionBeginUser;
-  if (CouplingHasBodies(u->coupling)) PetscCall(BodyConditions(s, problem, x, y));
-  if (u->walls->n) PetscCall(WallsSlip(u->walls, StokesPotential(s->stokes), s->slip));
-  for (PetscInt k = 0; k < u->wall; k++) y[wall + k] = s->slip[u->first_wall + k] + x[wall + k];
   UnknownsScale(u, PETSC_FALSE, y);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -142,24 +128,16 @@ static PetscErrorCode TakePart(Reduced s) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* U of the forces of x alone, on the grid; the product is kept. */
-static PetscErrorCode RespondOnGrid(Reduced s, const PetscScalar x[], PetscInt place) {
-  const Coupling c = s->unknowns->coupling;
-  PetscFunctionBeginUser;
-  PetscCall(ForcingClear(&s->r));
-  PetscCall(AddForces(s, x, PETSC_FALSE, &s->r));
-  PetscCall(Solve(s, &s->r, s->r.source, s->kept.w[place], s->kept.p[place]));
-  if (CouplingHasBodies(c)) PetscCall(MarkersInterpolate(c->markers, s->kept.w[place], s->U));
-  PetscCall(TakePart(s));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The same row by row. */
-static PetscErrorCode RespondByRows(Reduced s, const PetscScalar x[]) {
+/* U of the forces of x alone, row by row; zero in unbounded fluid. */
+static PetscErrorCode Respond(Reduced s, const PetscScalar x[]) {
   const Coupling c = s->unknowns->coupling;
   PetscFunctionBeginUser;
   PetscCall(Force(s, x, s->F));
   PetscCall(Motion(s, x, PETSC_FALSE));
+  if (!s->stream) {
+    PetscCall(VecSet(s->U, 0));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   if (HasDipoles(s)) PetscCall(DoubleLayerRows(c->contrast, PETSC_TRUE, StokesProfile(s->stokes), s->dipoles));
   PetscCall(MarkersRespond(c->markers, s->stream, HasDipoles(s) ? s->dipoles : NULL, -1 / PetscSqr(c->fluid->grid->h),
                            s->F, s->U));
@@ -171,23 +149,14 @@ static PetscErrorCode Mult(Mat A, Vec x, Vec y) {
   Reduced s;
   const PetscScalar *xa;
   PetscScalar *ya;
-  PetscInt place = PRODUCTS_KEPT;
   PetscFunctionBeginUser;
   PetscCall(MatShellGetContext(A, &s));
-  const Coupling c = s->unknowns->coupling;
-  if (!s->stream)
-    PetscCall(ProductsNext(&s->kept, s->stokes ? s->r.values : NULL, c->fluid->grid->da[FIELD_P], s->rest, &place));
-  if (place < PRODUCTS_KEPT) PetscCall(VecCopy(x, s->kept.z[place]));
   PetscCall(VecGetArrayRead(x, &xa));
-  if (!s->stream)
-    PetscCall(RespondOnGrid(s, xa, place));
-  else if (CouplingHasBodies(c))
-    PetscCall(RespondByRows(s, xa));
+  if (CouplingHasBodies(s->unknowns->coupling)) PetscCall(Respond(s, xa));
   PetscCall(VecGetArray(y, &ya));
   PetscCall(Conditions(s, NULL, xa, ya));
   PetscCall(VecRestoreArray(y, &ya));
   PetscCall(VecRestoreArrayRead(x, &xa));
-  if (place < PRODUCTS_KEPT) PetscCall(VecCopy(y, s->kept.Az[place]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -304,19 +273,6 @@ PetscErrorCode ReducedFinish(Reduced s, Vec added, Vec x) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode ReducedForgetProducts(Reduced s) {
-  PetscFunctionBeginUser;
-  s->kept.count = 0;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode ReducedCombine(Reduced s, Vec x, Vec residual, PetscBool *combined) {
-  PetscFunctionBeginUser;
-  *combined = !s->stream && s->kept.count <= PRODUCTS_KEPT ? PETSC_TRUE : PETSC_FALSE;
-  if (*combined) PetscCall(ProductsCombine(&s->kept, s->rest, x, s->problem->w, s->problem->p, residual));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscBool ReducedNeedsNoPressure(Reduced s) {
   const Coupling c = s->unknowns->coupling;
   return s->stream && !c->fluid->total && CouplingHasBodies(c) ? PETSC_TRUE : PETSC_FALSE;
@@ -336,7 +292,7 @@ PetscErrorCode ReducedPressure(Reduced s, const Forcing *f, Vec w, Vec p) {
 
 PetscErrorCode ReducedCreate(Unknowns u, Reduced *out) {
   const Coupling c = u->coupling;
-  PetscInt n, N;
+  const PetscInt n = UnknownsTension(u) + u->tension;
   Reduced s;
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&s));
@@ -344,7 +300,6 @@ PetscErrorCode ReducedCreate(Unknowns u, Reduced *out) {
   s->unknowns = u;
   if (!c->fluid->grid->free) PetscCall(StokesCreate(c->fluid, &s->stokes));
   if (s->stokes) s->stream = StokesStream(s->stokes);
-  if (!s->stream) PetscCall(ForcingCreate(c->fluid->grid, c->contrast ? PETSC_TRUE : PETSC_FALSE, &s->r));
   PetscCall(LayoutCreateVec(c->bodies->layout, 2, &s->F));
   PetscCall(VecDuplicate(s->F, &s->U));
   PetscCall(VecDuplicate(s->F, &s->all));
@@ -354,11 +309,7 @@ PetscErrorCode ReducedCreate(Unknowns u, Reduced *out) {
     if (s->stream) PetscCall(DipoleRowsCreate(c->fluid->grid, c->fluid->nu, &s->dipoles));
     if (ReducedNeedsNoPressure(s) && !StokesProfile(s->stokes)) DoubleLayerMayBeApart(c->contrast);
   }
-  PetscCall(UnknownsCreateVec(u, &s->rest));
-  PetscCall(PetscMalloc2(u->walls->n, &s->d, u->walls->n, &s->slip));
-  PetscCall(VecGetLocalSize(s->rest, &n));
-  PetscCall(VecGetSize(s->rest, &N));
-  PetscCall(MatCreateShell(c->fluid->grid->comm, n, n, N, N, s, &s->A));
+  PetscCall(MatCreateShell(c->fluid->grid->comm, n, n, PETSC_DETERMINE, PETSC_DETERMINE, s, &s->A));
   PetscCall(MatShellSetOperation(s->A, MATOP_MULT, (void (*)(void))Mult));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -367,16 +318,12 @@ PetscErrorCode ReducedDestroy(Reduced *reduced) {
   Reduced s = *reduced;
   PetscFunctionBeginUser;
   if (!s) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(ProductsDestroy(&s->kept));
-  PetscCall(ForcingDestroy(&s->r));
   PetscCall(VecDestroy(&s->F));
   PetscCall(VecDestroy(&s->U));
   PetscCall(VecDestroy(&s->all));
   PetscCall(VecDestroy(&s->sum));
   PetscCall(VecDestroy(&s->motion));
   PetscCall(DipoleRowsDestroy(&s->dipoles));
-  PetscCall(VecDestroy(&s->rest));
-  PetscCall(PetscFree2(s->d, s->slip));
   PetscCall(MatDestroy(&s->A));
   PetscCall(StokesDestroy(&s->stokes));
   PetscCall(PetscFree(*reduced));

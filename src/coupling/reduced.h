@@ -4,15 +4,13 @@
    V the markers' velocity without the background's, seen from labels t that turn at the speed v of their vesicle, C the
    near field, the last for the markers of obstacles (obstacles.h), whose F is an unknown and which C knows as well,
    K_rep the springs of a repulsion if there is one, k what C gives of the forces that are known, reduced to its forces.
-   A Stokes solve gives u and p for any force, so the unknowns are V, F of obstacles, sigma, and forces d on the faces
-   next to walls, where the Stokes solve is not exact: (u, p) = Stokes(f - E^T F/h^2 + d, -bc2), V + (v/a0) dV/dt - E u
-   + C F = k,    Dm V/h^2 = g,    d + (what the Stokes solve leaves at the walls) = 0. A product costs one Stokes solve;
-   where fluid/stream.h gives it one for the velocity at the markers only, u and p follow from the solution's
-   forces.
+   A Stokes solve gives u and p for any force, so the unknowns are V, F of obstacles and sigma:
+   (u, p) = Stokes(f - E^T F/h^2, -bc2),   V + (v/a0) dV/dt - E u + C F = k,   Dm V/h^2 = g.
+   A product costs one Stokes solve for the velocity at the markers only (fluid/stream.h); u and p follow from the
+   solution's forces.
    In unbounded fluid there is no u on a grid (E = 0) and C is all of the mobility: a product is dense work on markers,
    and u and p stay zero. */
 #pragma once
-#include "coupling/products.h"
 #include "coupling/unknowns.h"
 #include "fluid/stokes.h"
 
@@ -25,27 +23,22 @@ typedef struct {
   Vec moved;              /* with viscosity contrast: the part of the markers' motion that is known; else NULL */
   const StreamPast *past; /* with inertia where w is NULL: the states before, whose force is beside f; else NULL */
   Vec w, p;               /* velocity and pressure; may both be NULL where ReducedNeedsNoPressure */
-  Vec sigma, d, V, solid; /* tension, wall forces, V and force on obstacles (NULL without): first guess and solution */
+  Vec sigma, V, solid;    /* tension, V and force on obstacles (NULL without): first guess and solution */
 } CoupledProblem;
 
 typedef struct _p_Reduced *Reduced;
 struct _p_Reduced {
-  Unknowns unknowns; /* borrowed */
-  Stokes stokes;     /* NULL in unbounded fluid */
-  Stream stream;     /* borrowed; NULL where products are made on the grid, and kept */
-  Mat A;             /* the residuals' derivative, scaled */
-  Products kept;
+  Unknowns unknowns;             /* borrowed */
+  Stokes stokes;                 /* NULL in unbounded fluid */
+  Stream stream;                 /* borrowed; NULL in unbounded fluid */
+  Mat A;                         /* the residuals' derivative, scaled */
   const CoupledProblem *problem; /* borrowed: the one under way */
   StreamMeasures measures;       /* of the velocity at the last residual, where problem.w is NULL */
-  Forcing r;                     /* of a product; not made with stream */
   Vec F, U;                      /* marker vectors of all bodies, work: forces, what the markers have of u = E u */
   Vec all;                       /* work: forces with those that are known */
   Vec sum;                       /* with states before: U of the solution so far */
   Vec motion;                    /* with a viscosity contrast: what the jump is of, marker vector, work; else NULL */
   DipoleRows dipoles;            /* of the jump, with stream */
-  Vec rest;                      /* unknowns, work */
-  PetscScalar *d;                /* [walls->n] all wall forces, work */
-  PetscScalar *slip;             /* [walls->n] work */
 };
 
 /* ReducedCreate - the problem for these unknowns. Collective. */
@@ -71,12 +64,3 @@ PETSC_EXTERN PetscErrorCode ReducedPressure(Reduced reduced, const Forcing *f, V
    x, and the dipoles of x, and measures is of its velocity; else nothing. Collective. */
 PETSC_EXTERN PetscBool ReducedDefersDipoles(Reduced reduced);
 PETSC_EXTERN PetscErrorCode ReducedFinish(Reduced reduced, Vec added, Vec x);
-
-/* ReducedForgetProducts - a solve begins: products with A are kept from here on. Not collective. */
-PETSC_EXTERN PetscErrorCode ReducedForgetProducts(Reduced reduced);
-
-/* ReducedCombine - the change of the problem's w and p and of the residual that goes with a change of x made of the
-   kept products, added; x
-   := what it is made of. combined is false when they were not kept, or too many, and nothing has changed. Collective.
- */
-PETSC_EXTERN PetscErrorCode ReducedCombine(Reduced reduced, Vec x, Vec residual, PetscBool *combined);

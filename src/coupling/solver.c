@@ -79,7 +79,7 @@ static PetscErrorCode CreateKSP(CoupledSolver s, PetscReal rtol) {
   PetscCall(PCSetType(pc, PCSHELL));
   PetscCall(PCShellSetContext(pc, s->preconditioner));
   PetscCall(PCShellSetApply(pc, Apply));
-  PetscCall(PCShellSetName(pc, "mobility of the markers, slip of the walls"));
+  PetscCall(PCShellSetName(pc, "mobility of the markers"));
   PetscCall(KSPSetInitialGuessNonzero(s->ksp, PETSC_TRUE));
   PetscCall(KSPSetFromOptions(s->ksp));
   PetscCall(KSPGetInitialGuessNonzero(s->ksp, &s->guess)); /* KSP itself solves for the change */
@@ -96,8 +96,7 @@ PetscErrorCode CoupledSolverCreate(Scene scene, Coupling coupling, CoupledSolver
   PetscCall(PetscNew(&s));
   *out = s;
   s->coupling = coupling;
-  PetscCall(WallsCreate(coupling->fluid, &s->walls));
-  PetscCall(UnknownsCreate(coupling, s->walls, &s->unknowns));
+  PetscCall(UnknownsCreate(coupling, &s->unknowns));
   PetscCall(ReducedCreate(s->unknowns, &s->reduced));
   PetscCall(PreconditionerCreate(scene, s->unknowns, &s->preconditioner));
   PetscCall(UnknownsCreateVec(s->unknowns, &s->x));
@@ -126,16 +125,15 @@ PetscErrorCode CoupledSolverDestroy(CoupledSolver *solver) {
   PetscCall(PreconditionerDestroy(&s->preconditioner));
   PetscCall(ReducedDestroy(&s->reduced));
   PetscCall(UnknownsDestroy(&s->unknowns));
-  PetscCall(WallsDestroy(&s->walls));
   PetscCall(PetscFree(*solver));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* x = (V, sigma, d) of the guess. */
+/* x = (V, sigma) of the guess. */
 static PetscErrorCode Guess(CoupledSolver s, const CoupledProblem *q) {
   PetscFunctionBeginUser;
   if (s->guess)
-    PetscCall(UnknownsPack(s->unknowns, q->V, q->solid, q->sigma, q->d, s->x));
+    PetscCall(UnknownsPack(s->unknowns, q->V, q->solid, q->sigma, s->x));
   else
     PetscCall(VecSet(s->x, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -149,7 +147,7 @@ static PetscErrorCode FreeReference(CoupledSolver s, const CoupledProblem *q) {
   const Layout l = m->layout;
   PetscScalar *a;
   PetscFunctionBeginUser;
-  PetscCall(UnknownsPack(s->unknowns, q->k, NULL, q->g, q->d, s->change));
+  PetscCall(UnknownsPack(s->unknowns, q->k, NULL, q->g, s->change));
   PetscCall(VecGetArray(s->change, &a));
   PetscCall(CouplingNearField(s->coupling, -1, q->F, a));
   if (q->moved) PetscCall(ContrastKnownAdd(s->coupling, -1, q->moved, a));
@@ -212,17 +210,13 @@ static PetscErrorCode Reference(CoupledSolver s, const CoupledProblem *q) {
 /* x + the change of a KSPSolve, with u and p or what is measured of them; b becomes the residual that is left. Where
    the velocity of the solution is made at the end GMRES's own residual will do. */
 static PetscErrorCode Follow(CoupledSolver s, PetscReal goal, SolveReport *report) {
-  PetscBool combined;
   PetscFunctionBeginUser;
-  PetscCall(ReducedCombine(s->reduced, s->change, s->b, &combined));
   PetscCall(VecAXPY(s->x, 1, s->change));
   PetscCall(VecAYPX(s->pending, s->trial.state == TRIAL_MADE ? -1 : 1, s->change));
   if (ReducedDefersDipoles(s->reduced) && s->preconditioner->flexible && goal > ROUNDING * s->trial.scale)
     PetscFunctionReturn(PETSC_SUCCESS);
-  if (!combined) {
-    PetscCall(ReducedUpdate(s->reduced, s->pending, s->x, s->b));
-    PetscCall(VecSet(s->pending, 0));
-  }
+  PetscCall(ReducedUpdate(s->reduced, s->pending, s->x, s->b));
+  PetscCall(VecSet(s->pending, 0));
   PetscCall(VecNorm(s->b, NORM_2, &report->residual));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -232,7 +226,6 @@ static PetscErrorCode Correct(CoupledSolver s, const CoupledProblem *q, PetscRea
   Trial *t = &s->trial;
   PetscInt its;
   PetscFunctionBeginUser;
-  PetscCall(ReducedForgetProducts(s->reduced));
   PetscCall(KSPSolve(s->ksp, s->b, s->change));
   PetscCall(KSPGetIterationNumber(s->ksp, &its));
   PetscCall(KSPGetConvergedReason(s->ksp, &report->why));
@@ -284,6 +277,6 @@ PetscErrorCode CoupledSolverSolve(CoupledSolver s, const CoupledProblem *q, Solv
   if (report->why >= 0) PetscCall(ReducedFinish(s->reduced, s->pending, s->x));
   report->measures = s->reduced->measures;
   PreconditionerSolved(s->preconditioner, report->its);
-  if (report->why >= 0) PetscCall(UnknownsUnpack(s->unknowns, s->x, q->V, q->solid, q->sigma, q->d));
+  if (report->why >= 0) PetscCall(UnknownsUnpack(s->unknowns, s->x, q->V, q->solid, q->sigma));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

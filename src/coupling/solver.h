@@ -24,7 +24,6 @@ typedef struct {
 typedef struct _p_CoupledSolver *CoupledSolver;
 struct _p_CoupledSolver {
   Coupling coupling; /* borrowed */
-  Walls walls;
   Unknowns unknowns;
   Reduced reduced;
   Preconditioner preconditioner;

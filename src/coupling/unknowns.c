@@ -9,62 +9,39 @@ static PetscReal Length(Coupling c) {
   return least / PETSC_PI;
 }
 
-PetscErrorCode UnknownsCreate(Coupling coupling, Walls walls, Unknowns *out) {
-  const Grid g = coupling->fluid->grid;
+PetscErrorCode UnknownsCreate(Coupling coupling, Unknowns *out) {
   Unknowns u;
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&u));
   *out = u;
   u->coupling = coupling;
-  u->walls = walls;
   u->length = Length(coupling);
   u->velocity = 2 * coupling->membrane->layout->n;
   u->solid = BodiesObstacleNumbers(coupling->bodies);
   u->tension = coupling->membrane->layout->n;
-  PetscCall(PetscMalloc2(g->size, &u->count, g->size, &u->at));
-  for (PetscMPIInt r = 0; r < g->size; r++) {
-    u->at[r] = (PetscMPIInt)((PetscInt64)walls->n * r / g->size);
-    u->count[r] = (PetscMPIInt)((PetscInt64)walls->n * (r + 1) / g->size) - u->at[r];
-  }
-  u->first_wall = u->at[g->rank];
-  u->wall = u->count[g->rank];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode UnknownsDestroy(Unknowns *unknowns) {
   PetscFunctionBeginUser;
-  if (!*unknowns) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscFree2((*unknowns)->count, (*unknowns)->at));
   PetscCall(PetscFree(*unknowns));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode CreateVec(Unknowns u, PetscInt n, PetscInt N, Vec *x) {
-  PetscFunctionBeginUser;
-  PetscCall(VecCreate(u->coupling->fluid->grid->comm, x));
-  PetscCall(VecSetSizes(*x, n, N));
-  PetscCall(VecSetType(*x, VECSTANDARD));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode UnknownsCreateVec(Unknowns u, Vec *x) {
   const PetscInt numbers = 2 * u->coupling->bodies->layout->M + u->coupling->membrane->layout->M;
   PetscFunctionBeginUser;
-  PetscCall(CreateVec(u, UnknownsWalls(u) + u->wall, numbers + u->walls->n, x));
+  PetscCall(VecCreate(u->coupling->fluid->grid->comm, x));
+  PetscCall(VecSetSizes(*x, UnknownsTension(u) + u->tension, numbers));
+  PetscCall(VecSetType(*x, VECSTANDARD));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode UnknownsCreateWallVec(Unknowns u, Vec *d) {
-  PetscFunctionBeginUser;
-  PetscCall(CreateVec(u, u->wall, u->walls->n, d));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
+#define PARTS 3
 
-#define PARTS 4
-
-PetscErrorCode UnknownsPack(Unknowns u, Vec V, Vec solid, Vec sigma, Vec d, Vec x) {
-  const Vec part[PARTS] = {V, solid, sigma, d};
-  const PetscInt n[PARTS] = {u->velocity, u->solid, u->tension, u->wall};
+PetscErrorCode UnknownsPack(Unknowns u, Vec V, Vec solid, Vec sigma, Vec x) {
+  const Vec part[PARTS] = {V, solid, sigma};
+  const PetscInt n[PARTS] = {u->velocity, u->solid, u->tension};
   PetscScalar *to;
   PetscFunctionBeginUser;
   PetscCall(VecGetArrayWrite(x, &to));
@@ -79,9 +56,9 @@ PetscErrorCode UnknownsPack(Unknowns u, Vec V, Vec solid, Vec sigma, Vec d, Vec 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode UnknownsUnpack(Unknowns u, Vec x, Vec V, Vec solid, Vec sigma, Vec d) {
-  const Vec part[PARTS] = {V, solid, sigma, d};
-  const PetscInt n[PARTS] = {u->velocity, u->solid, u->tension, u->wall};
+PetscErrorCode UnknownsUnpack(Unknowns u, Vec x, Vec V, Vec solid, Vec sigma) {
+  const Vec part[PARTS] = {V, solid, sigma};
+  const PetscInt n[PARTS] = {u->velocity, u->solid, u->tension};
   const PetscScalar *from;
   PetscFunctionBeginUser;
   PetscCall(VecGetArrayRead(x, &from));
@@ -93,17 +70,6 @@ PetscErrorCode UnknownsUnpack(Unknowns u, Vec x, Vec V, Vec solid, Vec sigma, Ve
     PetscCall(VecRestoreArrayWrite(part[k], &to));
   }
   PetscCall(VecRestoreArrayRead(x, &from));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode UnknownsGatherWalls(Unknowns u, const PetscScalar own[], PetscScalar all[]) {
-  const Grid g = u->coupling->fluid->grid;
-  PetscFunctionBeginUser;
-  if (!u->walls->n) PetscFunctionReturn(PETSC_SUCCESS);
-  if (g->size == 1)
-    PetscCall(PetscArraycpy(all, own, u->wall));
-  else
-    PetscCallMPI(MPI_Allgatherv(own, u->count[g->rank], MPIU_SCALAR, all, u->count, u->at, MPIU_SCALAR, g->comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -131,6 +97,4 @@ void UnknownsScale(Unknowns u, PetscBool inverse, PetscScalar y[]) {
   }
   const Obstacles o = u->coupling->bodies->obstacles;
   if (o) ObstaclesScale(o, UnknownsWeight(u), inverse, y + u->velocity);
-  const PetscReal wall = PetscMin(u->length, 2 * f->grid->h);
-  for (PetscInt k = UnknownsWalls(u); k < UnknownsWalls(u) + u->wall; k++) y[k] = inverse ? y[k] / wall : y[k] * wall;
 }

@@ -137,18 +137,10 @@ static PetscBool IsZero(PetscInt n, const PetscScalar x[]) {
   return PETSC_TRUE;
 }
 
-/* Nor does one with entries at its ends alone: wall forces along the walls in x. */
-static void FromEnds(RowTransform t, double first, double last) {
-  for (PetscInt k = 0; k < t->width; k++) t->modes[k] = first * t->ends[0][k] + last * t->ends[1][k];
-}
-
 void RowTransformForward(RowTransform t, const PetscScalar x[]) {
   const PetscInt n = t->n;
-  const PetscBool inner = IsZero(n - 2, x + 1) ? PETSC_FALSE : PETSC_TRUE;
-  if (!inner && x[0] == 0 && x[n - 1] == 0)
+  if (IsZero(n, x))
     memset(t->modes, 0, (size_t)t->width * sizeof(double));
-  else if (!inner && t->ends[0])
-    FromEnds(t, x[0], x[n - 1]);
   else if (t->matrix.matrix[0])
     SineMatrixApply(&t->matrix, 0, x, t->modes);
   else if (t->base)
@@ -183,22 +175,6 @@ static PetscReal Eigenvalue(PetscReal argument) {
   return 4 * PetscSqr(PetscSinReal(argument));
 }
 
-static PetscErrorCode CreateEnds(RowTransform t) {
-  PetscScalar *x;
-  PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(t->n, &x));
-  for (int end = 0; end < 2; end++) {
-    const PetscInt at = end ? t->n - 1 : 0;
-    x[at] = 1;
-    HalfSampleForward(t, x);
-    x[at] = 0;
-    PetscCall(PetscMalloc1(t->width, &t->ends[end]));
-    PetscCall(PetscArraycpy(t->ends[end], t->modes, t->width));
-  }
-  PetscCall(PetscFree(x));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Periodic, and walls half a cell off. */
 static PetscErrorCode CreateWhole(RowTransform t, PetscBool periodic, unsigned plan) {
   const PetscInt n = t->n;
@@ -214,7 +190,6 @@ static PetscErrorCode CreateWhole(RowTransform t, PetscBool periodic, unsigned p
     if (k == 1) t->lambda[k] = 4; /* no mode: zero, whatever is done to it */
     t->scale[k] = 1.0 / n;
   }
-  if (!periodic) PetscCall(CreateEnds(t));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -256,7 +231,6 @@ static PetscErrorCode CreateMatrix(RowTransform t, SineMatrixKind kind) {
   PetscFunctionBeginUser;
   t->width = n;
   PetscCall(SineMatrixCreate(kind, n, &t->matrix));
-  for (int end = 0; end < 2; end++) t->ends[end] = t->matrix.matrix[0] + (end ? (n - 1) * t->matrix.stride : 0);
   t->modes = fftw_alloc_real((size_t)n);
   PetscCall(PetscMalloc2(n, &t->lambda, n, &t->scale));
   for (PetscInt k = 0; k < n; k++) {
@@ -354,7 +328,6 @@ PetscErrorCode RowTransformDestroy(RowTransform *transform) {
   fftw_free(t->rest);
   fftw_free(t->unsorted);
   PetscCall(PetscFree(t->order));
-  for (int end = 0; end < 2 && !t->matrix.matrix[0]; end++) PetscCall(PetscFree(t->ends[end]));
   PetscCall(SineMatrixDestroy(&t->matrix));
   PetscCall(PetscFree2(t->lambda, t->scale));
   PetscCall(PetscFree(*transform));

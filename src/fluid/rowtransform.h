@@ -32,8 +32,7 @@ struct _p_RowTransform {
   PetscReal *scale;  /* [width] what makes backward(scale forward) the identity */
   double *modes;     /* [width] what Forward makes and Backward takes */
   double *line;      /* work, the other end of the Fourier transforms */
-  double *ends[2]; /* [width] each, modes of a 1 at the first entry, at the last; NULL for long rows but half samples */
-  PetscReal sign;  /* 1 cosines, -1 sines of half samples, 0 others */
+  PetscReal sign;    /* 1 cosines, -1 sines of half samples, 0 others */
   SineMatrix matrix; /* of a short row between walls, which has nothing of what follows */
   PetscInt levels;   /* sines on the entries: halvings */
   Fourier f[ROW_LEVELS];

@@ -17,14 +17,6 @@ static PetscBool IsBox(Fluid f) {
   return f->grid->wall[0] && f->grid->wall[1] && !f->grid->free && f->tridiagonal ? PETSC_TRUE : PETSC_FALSE;
 }
 
-PetscBool StokesIsExact(Fluid f) {
-  return f->grid->wall[0] && !f->grid->free && !IsBox(f) ? PETSC_FALSE : PETSC_TRUE;
-}
-
-Vec StokesPotential(Stokes s) {
-  return s->psi;
-}
-
 const PetscReal *StokesProfile(Stokes s) {
   return s->flux ? ZeroFluxProfile(s->flux) : NULL;
 }

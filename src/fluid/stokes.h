@@ -8,8 +8,8 @@ typedef struct _p_Stokes *Stokes;
 PETSC_EXTERN PetscErrorCode StokesCreate(Fluid fluid, Stokes *stokes);
 PETSC_EXTERN PetscErrorCode StokesDestroy(Stokes *stokes);
 
-/* StokesSolve - velocity u and pressure p (zero mean). Exact but between walls in x where y is periodic or the fast
-   solves are not fftw_tridiagonal's: x periodic, one banded solve that counts as three scalar ones, or three with a
+/* StokesSolve - velocity u and pressure p (zero mean). Exact but between walls in x where the fast solves are not
+   fftw_tridiagonal's: x periodic, one banded solve that counts as three scalar ones, or three with a
    correction of two unknowns a mode next to walls; walls both ways, by the stream function and the pressure that
    belongs to it, two scalar solves, five with r_p. Elsewhere it is StokesProject. r_p may be NULL (zero); u may be r_u,
    p may be r_p. Collective. Errors: a scalar solve that does not converge, see FluidFailure. */
@@ -23,17 +23,10 @@ PETSC_EXTERN PetscErrorCode StokesProject(Stokes stokes, Vec r_u, Vec r_p, Vec u
    r_u is given but for a part without divergence: one scalar solve, of L p = -G^T (r_u + nu L_u u). Collective. */
 PETSC_EXTERN PetscErrorCode StokesPressure(Stokes stokes, Vec r_u, Vec u, Vec p);
 
-/* StokesIsExact - whether StokesSolve is. Not collective. */
-PETSC_EXTERN PetscBool StokesIsExact(Fluid fluid);
-
 /* StokesProfile - of u along the channel, [rows of all], with a mean of 1: what the solve leaves out where the fluid
    may carry no flux; borrowed, NULL elsewhere. Not collective. */
 PETSC_EXTERN const PetscReal *StokesProfile(Stokes stokes);
 
-/* StokesPotential - psi of the last projection, u = w - G psi; borrowed. NULL where the banded solve is used, which
-   keeps psi in Fourier modes. Not collective. */
-PETSC_EXTERN Vec StokesPotential(Stokes stokes);
-
 /* StokesStream - the solve for the velocity alone, much cheaper, the same to rounding; borrowed. NULL unless the fast
-   solves are fftw_tridiagonal's, and between walls in x where y is periodic. Not collective. */
+   solves are fftw_tridiagonal's. Not collective. */
 PETSC_EXTERN Stream StokesStream(Stokes stokes);

@@ -82,7 +82,6 @@ static PetscErrorCode WriteVectors(Scheme s, H5File *file, const char prefix[], 
     PetscCall(WriteOnly(file, prefix, "vesicle/tension", 1, markers, now.tension));
   }
   if (now.W) PetscCall(WriteOnly(file, prefix, "obstacle/force", 2, (const PetscInt[]){now.W, 2}, now.solid));
-  if (now.walls) PetscCall(WriteOnly(file, prefix, "fluid/walls", 1, &now.walls, now.wall_force));
   PetscCall(GatheredDestroy(&now));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -117,7 +116,6 @@ static PetscErrorCode WriteNumbers(Scheme s, H5File *file, const Record *record,
   const PetscInt totals[4] = {record->solves, record->tension, record->bending, record->coupled};
   PetscReal earlier[SCHEME_PAST] = {0};
   const PetscInt flow = StateFlowWidth(q, s->fluid->grid);
-  PetscInt walls = 0;
   PetscFunctionBeginUser;
   PetscCall(H5PutInts(file, "format", 1, &format));
   PetscCall(H5PutInts(file, "step", 1, &q->step));
@@ -130,8 +128,6 @@ static PetscErrorCode WriteNumbers(Scheme s, H5File *file, const Record *record,
   PetscCall(H5PutInts(file, "step_level", 1, &level));
   PetscCall(H5PutInts(file, "step_order", 1, &s->plan.order));
   PetscCall(H5PutInts(file, "step_guess", 1, &s->plan.guess));
-  PetscCall(GatheredWalls(q, &walls));
-  PetscCall(H5PutInts(file, "walls", 1, &walls));
   PetscCall(H5PutInts(file, "flow", 1, &flow));
   PetscCall(H5PutInts(file, "frames", 1, &frames));
   PetscCall(H5PutInts(file, "totals", 4, totals));

@@ -1,28 +1,19 @@
 #include "output/gathered.h"
 
-PetscErrorCode GatheredWalls(const State *q, PetscInt *walls) {
-  PetscFunctionBeginUser;
-  *walls = 0;
-  if (q->walls) PetscCall(VecGetSize(q->walls, walls));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode GatheredCreate(const State *q, Gathered *g) {
   PetscFunctionBeginUser;
   g->M = 0;
   if (q->sigma) PetscCall(VecGetSize(q->sigma, &g->M));
-  PetscCall(GatheredWalls(q, &g->walls));
   g->W = 0;
   if (q->solid) PetscCall(VecGetSize(q->solid, &g->W));
   g->W /= 2;
-  PetscCall(PetscCalloc5(2 * g->M, &g->markers, 2 * g->M, &g->velocity, g->M, &g->tension, 2 * g->W, &g->solid,
-                         g->walls, &g->wall_force));
+  PetscCall(PetscCalloc4(2 * g->M, &g->markers, 2 * g->M, &g->velocity, g->M, &g->tension, 2 * g->W, &g->solid));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode GatheredDestroy(Gathered *g) {
   PetscFunctionBeginUser;
-  PetscCall(PetscFree5(g->markers, g->velocity, g->tension, g->solid, g->wall_force));
+  PetscCall(PetscFree4(g->markers, g->velocity, g->tension, g->solid));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -73,7 +64,6 @@ static PetscErrorCode CopyAll(const State *q, PetscBool gather, const Gathered *
   PetscCall(Copy(q->U, gather, 2 * g->M, g->velocity));
   PetscCall(Copy(q->sigma, gather, g->M, g->tension));
   PetscCall(Copy(q->solid, gather, 2 * g->W, g->solid));
-  PetscCall(Copy(q->walls, gather, g->walls, g->wall_force));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

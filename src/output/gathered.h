@@ -1,18 +1,16 @@
-/* What a state has of its markers and walls, gathered: the one place where the files' writers and the restart touch
+/* What a state has of its markers, gathered: the one place where the files' writers and the restart touch
    these vectors. */
 #pragma once
 #include "scheme/scheme.h"
 
 /* Arrays of all vesicles, the same on every rank. */
 typedef struct {
-  PetscInt M;            /* markers */
-  PetscInt W;            /* markers of obstacles */
-  PetscInt walls;        /* wall forces; 0 without */
-  PetscReal *markers;    /* [M][2] */
-  PetscReal *velocity;   /* [M][2], background included */
-  PetscReal *tension;    /* [M] */
-  PetscReal *solid;      /* [W][2] force on obstacles */
-  PetscReal *wall_force; /* [walls] */
+  PetscInt M;          /* markers */
+  PetscInt W;          /* markers of obstacles */
+  PetscReal *markers;  /* [M][2] */
+  PetscReal *velocity; /* [M][2], background included */
+  PetscReal *tension;  /* [M] */
+  PetscReal *solid;    /* [W][2] force on obstacles */
 } Gathered;
 
 /* GatheredCreate - arrays of the state's sizes, zero. GatheredDestroy - free them. Collective. */
@@ -23,6 +21,3 @@ PETSC_EXTERN PetscErrorCode GatheredDestroy(Gathered *arrays);
    Collective. */
 PETSC_EXTERN PetscErrorCode GatherState(const State *state, Gathered *arrays);
 PETSC_EXTERN PetscErrorCode ScatterState(const Gathered *arrays, const State *state);
-
-/* GatheredWalls - how many wall forces a state has. */
-PETSC_EXTERN PetscErrorCode GatheredWalls(const State *state, PetscInt *walls);

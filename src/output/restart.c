@@ -188,10 +188,8 @@ static PetscErrorCode CheckVectors(Scheme s, const State *q) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The vectors of one state. Wall forces are a guess that the next step starts from: other back ends may have none, or
-   others, and then they stay zero. */
+/* The vectors of one state. */
 static PetscErrorCode ReadVectors(Scheme s, H5File *file, const char prefix[], State *q) {
-  PetscInt walls = 0;
   Gathered there;
   PetscFunctionBeginUser;
   PetscCall(ReadFluid(s, file, prefix, q));
@@ -200,8 +198,6 @@ static PetscErrorCode ReadVectors(Scheme s, H5File *file, const char prefix[], S
   PetscCall(ReadOnly(file, prefix, "vesicle/velocity", there.M, 2, there.velocity));
   PetscCall(ReadOnly(file, prefix, "vesicle/tension", there.M, 1, there.tension));
   PetscCall(ReadOnly(file, prefix, "obstacle/force", there.W, 2, there.solid));
-  PetscCall(H5GetInts(file, "walls", 1, &walls));
-  if (walls == there.walls) PetscCall(ReadOnly(file, prefix, "fluid/walls", walls, 1, there.wall_force));
   PetscCall(ScatterState(&there, q));
   PetscCall(GatheredDestroy(&there));
   PetscCall(CheckVectors(s, q));

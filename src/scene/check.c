@@ -12,6 +12,10 @@ static PetscErrorCode CheckBox(Scene scene) {
   PetscCheck(b[0] < b[1] && b[2] < b[3], scene->comm, PETSC_ERR_USER_INPUT,
              "-domain_box %g,%g,%g,%g: empty; allowed: x_min < x_max and y_min < y_max", (double)b[0], (double)b[1],
              (double)b[2], (double)b[3]);
+  PetscCheck(
+      scene->fluid.bc[0] != BC_WALL || scene->fluid.bc[1] != BC_PERIODIC, scene->comm, PETSC_ERR_USER_INPUT,
+      "-domain_bc_y periodic: with walls in x that is a channel along y; allowed: the scene turned by 90 degrees, "
+      "-domain_bc_x periodic -domain_bc_y wall with x and y of box, cells, centres, angles and flow exchanged");
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -222,10 +226,25 @@ static PetscErrorCode CheckFrame(Scene scene) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The unsplit steps solve for the velocity by the stream function. */
+static PetscErrorCode CheckSolvers(Scene scene) {
+  const struct {
+    const char *option, *value;
+  } all[] = {{"-helmholtz_type", scene->fluid.helmholtz}, {"-poisson_type", scene->fluid.poisson}};
+  PetscFunctionBeginUser;
+  for (int k = 0; k < 2 && !SceneIsProjection(scene); k++)
+    PetscCheck(!strcmp(all[k].value, "fftw_tridiagonal"), scene->comm, PETSC_ERR_USER_INPUT,
+               "%s %s: not with -scheme_type %s, which solves in the modes of fftw_tridiagonal; allowed: "
+               "fftw_tridiagonal, or -scheme_type split or penalty",
+               all[k].option, all[k].value, scene->scheme.type);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode CheckScheme(Scene scene) {
   PetscBool split;
   PetscFunctionBeginUser;
   PetscCall(CheckFrame(scene));
+  PetscCall(CheckSolvers(scene));
   PetscCall(CheckNearField(scene));
   PetscCall(PetscStrcmp(scene->scheme.type, "split", &split));
   if (SceneIsProjection(scene)) PetscCall(CheckProjection(scene));

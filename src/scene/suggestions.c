@@ -45,7 +45,7 @@ static const OptionWish wishes[] = {
     {"-ny", "-domain_cells is meant?"},
     {"*domain_size", "-domain_box is meant?"},
     {"*box_size", "-domain_box is meant?"},
-    {"-periodic", "-domain_bc_x periodic or -domain_bc_y periodic is meant?"},
+    {"-periodic", "-domain_bc_x periodic is meant?"},
     {"-vesicles", "-vesicle_count is meant?"},
     {"*n_vesicles", "-vesicle_count is meant?"},
     {"-obstacles", "-obstacle_shape is meant?"},

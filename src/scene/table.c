@@ -8,7 +8,7 @@ static const OptionRow table[] = {
   {"-domain_box", OPT_REALS, AT(domain.box), "-1,1,-1,1", "any", "x_min,x_max,y_min,y_max (length)"},
   {"-domain_cells", OPT_INTS, AT(domain.cells), "128,128", ">=8", "cells in x and y; cells must be square"},
   {"-domain_bc_x", OPT_ENUM, AT(fluid.bc[0]), "wall", "wall|periodic|free", "boundaries at x_min and x_max; free (in x and y): unbounded fluid, the box is the window of the fields"},
-  {"-domain_bc_y", OPT_ENUM, AT(fluid.bc[1]), "wall", "wall|periodic|free", "boundaries at y_min and y_max"},
+  {"-domain_bc_y", OPT_ENUM, AT(fluid.bc[1]), "wall", "wall|periodic|free", "boundaries at y_min and y_max; periodic where x is periodic too"},
   {"-flow_type", OPT_ENUM, AT(flow.type), "quiescent", "quiescent|shear|poiseuille|extension|uniform|custom", "background flow; custom: a function given from Python or C"},
   {"-flow_rate", OPT_REAL, AT(flow.rate), "1", "any", "rate of shear or extension (1/time)"},
   {"-flow_chi", OPT_REAL, AT(flow.chi), "0", "any", "in place of -flow_rate: chi = rate nu R0^3/c_b, R0 of the largest vesicle"},

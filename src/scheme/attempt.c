@@ -116,7 +116,7 @@ static PetscErrorCode RightHandSides(Scheme s, Coupled *d, const BDF *b) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The solution extrapolated: tension, wall forces, and V = U - (labels' speed) dX/dt - u_inf. */
+/* The solution extrapolated: tension and V = U - (labels' speed) dX/dt - u_inf. */
 static PetscErrorCode InitialGuess(Scheme s, Coupled *d) {
   State *n = &d->next;
   History *h = &d->history;
@@ -125,7 +125,6 @@ static PetscErrorCode InitialGuess(Scheme s, Coupled *d) {
   PetscFunctionBeginUser;
   if (!d->solver) PetscFunctionReturn(PETSC_SUCCESS);
   BDFGuess(count, h->step, weight);
-  PetscCall(HistorySum(count, weight, 1, STATES(s, walls), n->walls));
   if (n->solid) PetscCall(HistorySum(count, weight, 1, STATES(s, solid), n->solid));
   PetscCall(HistoryEdges(h, s->membrane, count, weight, STATES(s, sigma), n->sigma));
   PetscCall(HistorySum(count, weight, 1, h->U, d->V));
@@ -146,7 +145,6 @@ static PetscErrorCode Solve(Scheme s, Coupled *d) {
                                   .w = w,
                                   .p = n->p,
                                   .sigma = n->sigma,
-                                  .d = n->walls,
                                   .V = d->V,
                                   .solid = n->solid,
                                   .past = n->flow ? &d->past : NULL};

@@ -200,7 +200,6 @@ static PetscErrorCode StartFlow(Scheme s, Coupled *d) {
   if (next->flow) PetscCall(VecCopy(next->flow, now->flow));
   PetscCall(VecCopy(next->sigma, now->sigma));
   PetscCall(VecCopy(next->solid, now->solid));
-  if (now->walls) PetscCall(VecCopy(next->walls, now->walls));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -249,10 +248,8 @@ static PetscErrorCode SetUp_Coupled(Scheme s) {
   PetscFunctionBeginUser;
   if (!strcmp(s->type, "direct"))
     PetscCall(DirectSolverCreate(s->coupling, &d->direct));
-  else {
+  else
     PetscCall(CoupledSolverCreate(s->scene, s->coupling, &d->solver));
-    PetscCall(UnknownsCreateWallVec(d->solver->unknowns, &q->walls));
-  }
   PetscCall(SetUpConvection(s, d));
   PetscCall(CoupledCreateStates(s));
   PetscCall(HistoryCreate(s, &d->history));

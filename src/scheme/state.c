@@ -1,6 +1,6 @@
 #include "scheme/state.h"
 
-#define VECTORS 8
+#define VECTORS 7
 #define ON_GRID 3 /* the first ones */
 
 static void List(State *q, Vec *all[VECTORS]) {
@@ -10,8 +10,7 @@ static void List(State *q, Vec *all[VECTORS]) {
   all[3] = &q->sigma;
   all[4] = &q->X;
   all[5] = &q->U;
-  all[6] = &q->walls;
-  all[7] = &q->solid;
+  all[6] = &q->solid;
 }
 
 PetscErrorCode StateCreate(Coupling c, State *q) {

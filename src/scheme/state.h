@@ -19,11 +19,10 @@ typedef struct {
   Vec sigma; /* tension, an edge vector */
   Vec X;     /* markers, a marker vector */
   Vec U;     /* markers' velocity, background included */
-  Vec walls; /* scheme coupled's wall forces; else NULL */
   Vec solid; /* the fluid's force on the markers of obstacles (length^3/time^2); NULL without */
 } State;
 
-/* StateCreate - at rest: zero vectors, without wall forces. StateDuplicate - zero vectors of the same kinds, times not
+/* StateCreate - at rest: zero vectors. StateDuplicate - zero vectors of the same kinds, times not
    copied. Collective. */
 PETSC_EXTERN PetscErrorCode StateCreate(Coupling coupling, State *state);
 PETSC_EXTERN PetscErrorCode StateDuplicate(const State *state, State *copy);

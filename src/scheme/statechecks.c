@@ -22,7 +22,8 @@ static PetscErrorCode CheckFinite(Scheme s) {
   PetscFunctionBeginUser;
   for (int k = 0; k < (CouplingHasMembrane(s->coupling) ? 4 : 2); k++) {
     PetscBool finite = PetscIsInfOrNanReal(s->report.div_max) ? PETSC_FALSE : PETSC_TRUE; /* the velocity */
-    if (k == 1 && s->state.fields != FIELDS_MADE) continue; /* the pressure follows from the forces, which are checked by div_max */
+    if (k == 1 && s->state.fields != FIELDS_MADE)
+      continue; /* the pressure follows from the forces, which are checked by div_max */
     if (k) PetscCall(AgreeFinite(all[k], &finite));
     if (finite) continue;
     PetscCall(PetscSNPrintf(s->report.failure, sizeof(s->report.failure), "the %s is not finite", names[k]));

@@ -4,9 +4,10 @@
 #define LEAST_LEVEL (-80)
 #define MOST_LEVEL 40
 #define SAFETY 0.9
-#define GROWTH 2 /* levels that a step may grow by; 1 at order 3, which is stable for steps that grow by 1.53 at most  \
-                  */
-#define HALF 2   /* levels of a factor of 2 */
+#define GROWTH                                                                                                         \
+  2            /* levels that a step may grow by; 1 at order 3, which is stable for steps that grow by 1.53 at most    \
+                */
+#define HALF 2 /* levels of a factor of 2 */
 
 StepPolicy StepPolicyCreate(Scene scene, PetscInt vesicles) {
   return (StepPolicy){.adaptive = scene->time.adapt == ADAPT_ERROR && vesicles ? PETSC_TRUE : PETSC_FALSE,

@@ -197,7 +197,7 @@ MISTAKES = {
         ["-fluid_inertia convective", "-scheme_order 1", "allowed: -scheme_order 2"],
     ),
     "seam": (
-        "-scheme_type coupled -fluid_inertia convective -flow_type shear -domain_bc_y periodic",
+        "-scheme_type coupled -fluid_inertia convective -flow_type shear -domain_bc_x periodic -domain_bc_y periodic",
         ["-fluid_inertia convective", "not periodic in y", "-domain_bc_y wall"],
     ),
     "cfl": (

@@ -244,18 +244,3 @@ def test_same_bits_twice(tmp_path):
         one, two = (frames(run.folder) for run in runs)
         for key in one:
             np.testing.assert_array_equal(one[key], two[key], err_msg=key)
-
-
-@pytest.mark.parametrize("first, then", [("fftw", "fftw_tridiagonal"), ("fftw_tridiagonal", "fftw")])
-def test_goes_on_with_another_back_end(first, then, tmp_path):
-    """States are kept as flows with one and as velocities with the other: each goes on from what the other has written."""
-    scene = (
-        "-domain_cells 32,32 -domain_bc_x periodic -flow_type shear -scheme_type coupled -scheme_order 3 -time_step 0.02 "
-        "-fluid_inertia unsteady -vesicle_semi_axes 0.3,0.5 -coupled_ksp_rtol 1e-11"
-    )
-    backs = {name: f"{scene} -helmholtz_type {name} -poisson_type {name}" for name in (first, then)}
-    whole = run_petves(tmp_path / "whole", f"{backs[then]} -time_end 0.2").series
-    run_petves(tmp_path / "part", f"{backs[first]} -time_end 0.1")
-    rest = run_petves(tmp_path / "rest", f"{backs[then]} -time_end 0.2 -restart {tmp_path}/part/checkpoint.h5").series
-    for name in ("energy_kinetic", "energy_bending", "inclination"):
-        assert rest[name][-1] == pytest.approx(whole[name][-1], rel=1e-9), name

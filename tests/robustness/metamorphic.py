@@ -148,9 +148,7 @@ def changes(scene: Scene, draw: random.Random, ranks: list[int]) -> list[Change]
     found = [Change("shift", shift=shift, box_shift=np.where(bc == "periodic", 0, shift))]
     posts = scene.kind == "posts"  # their markers begin on the right: mirrored in y only they are the same
     found.append(Change("mirror", np.diag([1, -1] if posts or draw.random() < 0.5 else [-1, 1])))
-    along_x = flow in ("shear", "poiseuille") or "flow_drive" in scene.text
-    # a projection, with its splitting error, where walls are in x, but none in a channel along x
-    along_x |= scene.text["scheme_type"] == "penalty" and bc[0] != bc[1]
+    along_x = flow in ("shear", "poiseuille") or "flow_drive" in scene.text or bc[0] != bc[1]
     if not posts and not along_x:
         found.append(Change("swap", np.array([[0, 1], [1, 0]])))
     vesicles, solids = list(range(len(scene.vesicles))), list(range(len(scene.numbers.get("obstacle_rotation", ()))))

@@ -19,7 +19,7 @@ def reason(prefix: str, its: int) -> str:
 
 @pytest.mark.parametrize("ranks", [1, 2, 3])
 @pytest.mark.parametrize("solver", ["helmholtz", "poisson"])
-@pytest.mark.parametrize("scheme", ["split", "penalty", "coupled"])
+@pytest.mark.parametrize("scheme", ["split", "penalty"])
 def test_fast_solve_that_fails_ends_the_run(scheme, solver, ranks, tmp_path):
     """In the first step: the state on disk is the initial one."""
     options = f"{SMALL} -scheme_type {scheme} -{solver}_type hypre -{solver}_ksp_max_it 1"
@@ -30,13 +30,13 @@ def test_fast_solve_that_fails_ends_the_run(scheme, solver, ranks, tmp_path):
 
 
 #: Five iterations are enough for H of a small step, and no longer for that of a large one.
-LARGER_STEPS = "-domain_cells 32,32 -time_step 0.1 -scheme_type coupled -helmholtz_type hypre -helmholtz_ksp_max_it 5"
+LARGER_STEPS = "-domain_cells 32,32 -time_step 0.1 -scheme_type split -helmholtz_type hypre -helmholtz_ksp_max_it 5"
 
 
 @pytest.mark.parametrize("ranks", [1, 2, 3])
 def test_fast_solve_that_fails_later_keeps_the_steps_before(ranks, tmp_path):
     """A run goes on from its checkpoint with larger steps; step and time in the line are those of the step that failed."""
-    first = run_petves(tmp_path / "out", f"{LARGER_STEPS} -time_step 0.01 -time_end 0.03", ranks, timeout=120)
+    first = run_petves(tmp_path / "out", f"{LARGER_STEPS} -time_step 0.003 -time_end 0.009", ranks, timeout=120)
     restart = f"-restart {first.folder}/checkpoint.h5 -time_step 1 -time_end 5"
     run = run_petves(tmp_path / "out", f"{LARGER_STEPS} {restart}", ranks, good=False, timeout=120)
     summary, series = leaves_files(run, reason("helmholtz_", 5))
@@ -45,20 +45,10 @@ def test_fast_solve_that_fails_later_keeps_the_steps_before(ranks, tmp_path):
     assert series["time"][-1] < float(time) < 5
 
 
-@pytest.mark.parametrize("ranks", [1, 2])
-def test_judged_steps_stay_where_the_fast_solve_converges(ranks, tmp_path):
-    """Steps of -time_adapt error grow until five iterations are too few, and then no further."""
-    options = f"{LARGER_STEPS} -time_end 1.5 -time_adapt error"
-    free = run_petves(tmp_path / "free", options.replace("max_it 5", "max_it 100"), ranks, timeout=120)
-    run = run_petves(tmp_path / "out", options, ranks, timeout=120)
-    assert run.series["time"][-1] == 1.5 and not run.errors
-    assert run.series["dt"][1:].max() < free.series["dt"][1:].max()
-
-
 def test_fast_solve_without_vesicle(tmp_path):
     """No outer iteration sees the failed solve: what the step leaves is looked at."""
     options = (
-        "-domain_cells 32,32 -time_step 0.1 -time_end 1 -scheme_type coupled -vesicle_shape none -flow_type shear "
+        "-domain_cells 32,32 -time_step 0.1 -time_end 1 -scheme_type split -vesicle_shape none -flow_type shear "
         "-flow_form total -helmholtz_type hypre -helmholtz_ksp_max_it 1"
     )
     run = run_petves(tmp_path / "out", options, 2, good=False, timeout=60)

@@ -39,7 +39,7 @@ KINDS = {
     "penalty": f"{BOX} -scheme_type penalty -time_step 0.001 -time_end 0.003",
     "direct": f"{STOKES} -scheme_type direct -domain_cells 16,16",
     "ilu": f"{STOKES} -mobility_type ilu",
-    "hypre": f"{BOX} -helmholtz_type hypre -poisson_type hypre",
+    "hypre": f"{BOX} -scheme_type split -helmholtz_type hypre -poisson_type hypre",
     "adaptive": f"{STOKES} -time_adapt error -time_adapt_max_step 0.1",
     "steady": f"{STOKES} -time_end 0.3 -time_step 0.05 -time_steady_tol 0.01",
     "auto": f"-fluid_viscosity 1 {VESICLE} -time_step 0.02 -time_end 0.1 -scheme_auto 0.01",

@@ -79,6 +79,8 @@ class Draw:
         self.bc = np.array(
             ["free"] * 2 if self.chance(0.1) else [pick(["wall", "periodic"]), pick(["wall", "periodic"])]
         )
+        if self.bc.tolist() == ["wall", "periodic"]:
+            self.bc = self.bc[::-1]
         self.low = np.array([self.random.uniform(-2, 2), self.random.uniform(-2, 2)])
         self.size = self.n * self.h
 

@@ -119,7 +119,8 @@ static PetscErrorCode Facts(void) {
   /* in the middle, three cells from two walls, and across one seam or both */
   static const char *const scenes[] = {
       "-vesicle_center 0.03,-0.02", "-vesicle_center -0.7,0.4 -vesicle_semi_axes 0.2,0.5",
-      "-domain_bc_x periodic -vesicle_center 0.97,0.01", "-domain_bc_y periodic -vesicle_center 0.03,0.9",
+      "-domain_bc_x periodic -vesicle_center 0.97,0.01",
+      "-domain_bc_x periodic -domain_bc_y periodic -vesicle_center 0.03,0.9",
       "-domain_bc_x periodic -domain_bc_y periodic -vesicle_center 0.96,-0.93 -vesicle_angle 30"};
   static const char *const kernels[] = {"ib6", "cbs32", "cbs54"};
   PetscFunctionBeginUser;

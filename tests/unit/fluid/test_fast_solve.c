@@ -38,14 +38,14 @@ static PetscErrorCode Residual(FastSolver s, PetscReal *error, PetscReal *mean) 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Every second row keeps its ends alone, as wall forces leave most rows. */
-static PetscErrorCode KeepEnds(FastSolver s, Vec b) {
+/* Every second row is zero, as the forces of a membrane leave most rows. */
+static PetscErrorCode ClearRows(FastSolver s, Vec b) {
   const PetscInt n = s->grid->columns[s->field];
   PetscScalar *a;
   PetscFunctionBeginUser;
   PetscCall(VecGetArray(b, &a));
   for (PetscInt j = 0; j < s->grid->rows[s->field]; j += 2)
-    for (PetscInt i = 1; i < n - 1; i++) a[j * n + i] = 0;
+    for (PetscInt i = 0; i < n; i++) a[j * n + i] = 0;
   PetscCall(VecRestoreArray(b, &a));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -60,7 +60,7 @@ static PetscErrorCode Difference(FastSolver one, FastSolver two, PetscReal *erro
   PetscCall(VecDuplicate(b, &x));
   PetscCall(VecDuplicate(b, &y));
   PetscCall(TestRandomVec(12, b));
-  PetscCall(KeepEnds(one, b));
+  PetscCall(ClearRows(one, b));
   PetscCall(VecGetSize(b, &n));
   PetscCall(VecSum(b, &sum));
   if (one->singular) PetscCall(VecShift(b, -sum / n));
@@ -130,14 +130,13 @@ static PetscErrorCode CheckGrid(const Size *size, const char bc[], PetscBool hyp
 }
 
 static PetscErrorCode Facts(void) {
-  static const char *const bc[] = {"-domain_bc_x wall -domain_bc_y wall", "-domain_bc_x wall -domain_bc_y periodic",
-                                   "-domain_bc_x periodic -domain_bc_y wall",
+  static const char *const bc[] = {"-domain_bc_x wall -domain_bc_y wall", "-domain_bc_x periodic -domain_bc_y wall",
                                    "-domain_bc_x periodic -domain_bc_y periodic"};
   static const Size sizes[] = {
       {"-1,1,-1,1", "64,64"}, {"0,5,0,3.7", "50,37"}, {"0,5.3,0,3.7", "53,37"}, {"0,4,0,3", "128,96"}};
   static const Size small[] = {{"-1,1,-1,1", "32,32"}, {"0,2.5,0,1.9", "25,19"}};
   PetscFunctionBeginUser;
-  for (int b = 0; b < 4; b++) {
+  for (int b = 0; b < 3; b++) {
     for (int k = 0; k < 3; k++) PetscCall(CheckGrid(&sizes[k], bc[b], PETSC_FALSE));
     for (int k = 0; k < 2; k++) PetscCall(CheckGrid(&small[k], bc[b], PETSC_TRUE));
   }

@@ -204,14 +204,12 @@ static PetscErrorCode CheckTimeOrder(const char name[], Manufactured *m) {
 static PetscErrorCode Facts(void) {
   Manufactured walls = {{PETSC_TRUE, PETSC_TRUE}, 0.3, PETSC_FALSE};
   Manufactured channel = {{PETSC_FALSE, PETSC_TRUE}, 0.3, PETSC_FALSE};
-  Manufactured upright = {{PETSC_TRUE, PETSC_FALSE}, 0.3, PETSC_FALSE};
   PetscFunctionBeginUser;
   PetscCall(CheckDecay("shear mode in a channel", "-domain_bc_x periodic", ShearMode, PETSC_PI, 1));
   PetscCall(
       CheckDecay("vortex in a periodic box", "-domain_bc_x periodic -domain_bc_y periodic", Vortex, 2 * PETSC_PI, 2));
   PetscCall(CheckSpaceOrder("four walls", &walls));
   PetscCall(CheckSpaceOrder("channel along x", &channel));
-  PetscCall(CheckSpaceOrder("channel along y", &upright));
   PetscCall(CheckTimeOrder("four walls", &walls));
   PetscCall(CheckTimeOrder("channel along x", &channel));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -1,6 +1,6 @@
-/* StokesSolve: H u + G p = r_u, G^T u = r_p for random data with a consistent r_p. Exact in periodic boxes and in
-   channels along x; elsewhere the divergence is met and what is left of the momentum lies on the faces next to the
-   walls that run along the velocity component: rows of u under walls in y, columns of v beside walls in x. */
+/* StokesSolve: H u + G p = r_u, G^T u = r_p for random data with a consistent r_p, exactly. StokesProject between four
+   walls: the divergence is met, and what is left of the momentum lies on the faces next to the walls that run along the
+   velocity component: rows of u under walls in y, columns of v beside walls in x. */
 #include "world.h"
 #include "fluid/stokes.h"
 
@@ -67,12 +67,12 @@ static PetscErrorCode Residual(Fluid f, PetscBool with_r_p, Fields *x) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* exact: but between walls in x with y periodic. */
-static PetscErrorCode CheckSolve(const char name[], Fluid f, Stokes stokes, PetscBool with_r_p, PetscBool exact,
+/* Of StokesSolve, or of StokesProject between four walls. */
+static PetscErrorCode CheckSolve(const char name[], Fluid f, Stokes stokes, PetscBool with_r_p, PetscBool project,
                                  Fields *x) {
   PetscReal size_u, size_p, left_u, left_p, wall = 0, inside = 0, mean;
   PetscFunctionBeginUser;
-  PetscCall(StokesSolve(stokes, x->r_u, with_r_p ? x->r_p : NULL, x->u, x->p));
+  PetscCall((project ? StokesProject : StokesSolve)(stokes, x->r_u, with_r_p ? x->r_p : NULL, x->u, x->p));
   PetscCall(Residual(f, with_r_p, x));
   PetscCall(VecNorm(x->r_u, NORM_2, &size_u));
   PetscCall(VecNorm(x->r_p, NORM_2, &size_p));
@@ -82,7 +82,7 @@ static PetscErrorCode CheckSolve(const char name[], Fluid f, Stokes stokes, Pets
   PetscCall(WallAndInside(f->grid, x->left_u, &wall, &inside));
   CHECK(left_p < TOLERANCE * size_p, "%s: G^T u = r_p, %.1e", name, left_p / size_p);
   CHECK(PetscAbsReal(mean) < TOLERANCE * size_u * size_p, "%s: p has no mean, sum %.1e", name, mean);
-  if (exact)
+  if (!project)
     CHECK(left_u < TOLERANCE * size_u, "%s: H u + G p = r_u, %.1e", name, left_u / size_u);
   else {
     CHECK(inside < TOLERANCE * size_u, "%s: momentum is met away from the walls, %.1e", name, inside / size_u);
@@ -103,7 +103,7 @@ static PetscErrorCode CheckInPlace(const char name[], Stokes stokes, Fields *x) 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode CheckBox(const char grid[], const char bc[], PetscBool exact) {
+static PetscErrorCode CheckBox(const char grid[], const char bc[]) {
   static const PetscReal coefficients[] = {128, 0.75, 128};
   char options[512], name[256];
   Scene scene;
@@ -122,7 +122,9 @@ static PetscErrorCode CheckBox(const char grid[], const char bc[], PetscBool exa
     for (int with = 0; with < 2; with++) {
       PetscCall(PetscSNPrintf(name, sizeof(name), "%s %s a0 = %g%s", strstr(grid, "-domain_cells") + 14, bc,
                               (double)coefficients[k], with ? "" : ", r_p = 0"));
-      PetscCall(CheckSolve(name, fluid, stokes, with ? PETSC_TRUE : PETSC_FALSE, exact, &x));
+      PetscCall(CheckSolve(name, fluid, stokes, with ? PETSC_TRUE : PETSC_FALSE, PETSC_FALSE, &x));
+      if (!fluid->grid->wall[0]) continue;
+      PetscCall(CheckSolve(name, fluid, stokes, with ? PETSC_TRUE : PETSC_FALSE, PETSC_TRUE, &x));
     }
   }
   before = FluidCountSolves(fluid);
@@ -145,10 +147,9 @@ static PetscErrorCode Facts(void) {
       "-domain_box 0,1,0,0.5 -domain_cells 176,88"};
   PetscFunctionBeginUser;
   for (int g = 0; g < 5; g++) {
-    PetscCall(CheckBox(grids[g], "-domain_bc_x periodic -domain_bc_y periodic", PETSC_TRUE));
-    PetscCall(CheckBox(grids[g], "-domain_bc_x periodic", PETSC_TRUE));
-    PetscCall(CheckBox(grids[g], "-domain_bc_y periodic", PETSC_FALSE));
-    PetscCall(CheckBox(grids[g], "", PETSC_TRUE));
+    PetscCall(CheckBox(grids[g], "-domain_bc_x periodic -domain_bc_y periodic"));
+    PetscCall(CheckBox(grids[g], "-domain_bc_x periodic"));
+    PetscCall(CheckBox(grids[g], ""));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

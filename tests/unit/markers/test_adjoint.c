@@ -171,18 +171,17 @@ static PetscErrorCode CheckCase(const char grid[], const char bc[], const char v
 }
 
 static PetscErrorCode Facts(void) {
-  static const char *const bc[] = {"-domain_bc_x wall -domain_bc_y wall", "-domain_bc_x wall -domain_bc_y periodic",
-                                   "-domain_bc_x periodic -domain_bc_y wall",
+  static const char *const bc[] = {"-domain_bc_x wall -domain_bc_y wall", "-domain_bc_x periodic -domain_bc_y wall",
                                    "-domain_bc_x periodic -domain_bc_y periodic"};
   /* the vesicle is tall enough to cross every slab border of 8 ranks, and lies across a seam where there is one */
-  static const char *const vesicle[] = {"-vesicle_center 0.1,0", "-vesicle_center 0.1,0.9", "-vesicle_center 0.95,0.05",
+  static const char *const vesicle[] = {"-vesicle_center 0.1,0", "-vesicle_center 0.95,0.05",
                                         "-vesicle_center -0.97,0.93"};
   static const char *const grids[] = {"-domain_box -1,1,-1,1 -domain_cells 48,48",
                                       "-domain_box -1,1,-1,1.1860465116279069 -domain_cells 43,47",
                                       "-domain_box -1,1,-1,0.95918367346938771 -domain_cells 49,48"};
   static const char *const kernels[] = {"ib6", "cbs32", "cbs43", "cbs54", "cbs65"};
   PetscFunctionBeginUser;
-  for (int b = 0; b < 4; b++)
+  for (int b = 0; b < 3; b++)
     for (int g = 0; g < 3; g++) PetscCall(CheckCase(grids[g], bc[b], vesicle[b], kernels[(b + 2 * g) % 5]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -269,7 +269,6 @@ static PetscErrorCode Facts(void) {
                       "-domain_bc_y periodic",
                       ACROSS, "cbs54"));
   PetscCall(CheckCase("-domain_cells 60,60 -domain_bc_x periodic", INSIDE, "cbs54"));
-  PetscCall(CheckCase("-domain_cells 60,60 -domain_bc_y periodic", INSIDE, "ib6"));
   PetscCall(CheckCase("-domain_cells 60,60", INSIDE, "cbs43"));
   for (int k = 0; k < 5; k++)
     if (k != 1) PetscCall(CheckCase("-domain_cells 60,60", AT_WALLS, kernels[k]));

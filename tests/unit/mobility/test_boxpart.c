@@ -362,7 +362,6 @@ static PetscErrorCode Facts(void) {
   PetscCall(CheckDefault());
   PetscCall(CheckTable("walls", ONE, PETSC_TRUE));
   PetscCall(CheckTable("channel", ONE CHANNEL, PETSC_FALSE));
-  PetscCall(CheckTable("channel in y", ONE "-domain_bc_y periodic ", PETSC_FALSE));
   PetscCall(CheckTable("periodic", ONE PERIODIC, PETSC_FALSE));
   PetscCall(CheckUnlike(ONE UNLIKE "-domain_cells 63,64 ", ONE UNLIKE "-domain_cells 189,192 "));
   PetscCall(CheckImages("walls", SMALL));

@@ -1,13 +1,13 @@
 /* The coupled problem's parts: its solution put back into the equations of the step, Mob against E A^-1 E^T column by
-   column, the wall forces' preconditioner as an inverse. */
+   column. */
 #include "world.h"
 #include "coupling/solver.h"
 
 typedef struct {
   TestWorld t;
   CoupledSolver s;
-  Vec f, w, p, g, sigma, d, V; /* right-hand sides and solution */
-  PetscInt its;                /* of the last solve */
+  Vec f, w, p, g, sigma, V; /* right-hand sides and solution */
+  PetscInt its;             /* of the last solve */
 } Problem;
 
 static PetscErrorCode ProblemCreate(const char options[], PetscReal a0, Problem *q) {
@@ -20,15 +20,14 @@ static PetscErrorCode ProblemCreate(const char options[], PetscReal a0, Problem 
   PetscCall(DMCreateGlobalVector(q->t.fluid->grid->da[FIELD_P], &q->p));
   PetscCall(LayoutCreateVec(q->t.layout, 1, &q->g));
   PetscCall(VecDuplicate(q->g, &q->sigma));
-  PetscCall(UnknownsCreateWallVec(q->s->unknowns, &q->d));
   PetscCall(VecDuplicate(q->t.X, &q->V));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode ProblemDestroy(Problem *q) {
-  Vec *all[] = {&q->f, &q->w, &q->p, &q->g, &q->sigma, &q->d, &q->V};
+  Vec *all[] = {&q->f, &q->w, &q->p, &q->g, &q->sigma, &q->V};
   PetscFunctionBeginUser;
-  for (int k = 0; k < 7; k++) PetscCall(VecDestroy(all[k]));
+  for (int k = 0; k < 6; k++) PetscCall(VecDestroy(all[k]));
   PetscCall(CoupledSolverDestroy(&q->s));
   PetscCall(TestWorldDestroy(&q->t));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -44,11 +43,9 @@ static PetscErrorCode SolveProblem(const char name[], Problem *q, PetscBool rand
   PetscCall(TestRandomVec(12, q->g));
   PetscCall(VecSet(q->w, 0));
   PetscCall(VecSet(q->sigma, 0));
-  PetscCall(VecSet(q->d, 0));
   if (random) {
     PetscCall(TestRandomVec(13, q->w));
     PetscCall(TestRandomVec(14, q->sigma));
-    PetscCall(TestRandomVec(15, q->d));
     PetscCall(VecScale(q->w, 0.01)); /* a guess far larger than the solution would leave its rounding */
     PetscCall(VecScale(q->sigma, 0.01));
   }
@@ -57,8 +54,7 @@ static PetscErrorCode SolveProblem(const char name[], Problem *q, PetscBool rand
   PetscCall(ForcingAdd(&r, q->f));
   PetscCall(VecDuplicate(q->V, &k));
   if (q->t.fluid->grid->free) PetscCall(TestRandomVec(16, k)); /* there a force on the grid does nothing */
-  const CoupledProblem problem = {
-      .f = &r, .g = q->g, .k = k, .w = q->w, .p = q->p, .sigma = q->sigma, .d = q->d, .V = q->V};
+  const CoupledProblem problem = {.f = &r, .g = q->g, .k = k, .w = q->w, .p = q->p, .sigma = q->sigma, .V = q->V};
   PetscCall(CoupledSolverSolve(q->s, &problem, &report));
   CHECK(report.why > 0, "%s: converged in %d iterations", name, (int)report.its);
   q->its = report.its;
@@ -145,52 +141,6 @@ static PetscErrorCode CheckBending(const char name[], Problem *q) {
     PetscCall(VecDestroy(&y[k]));
   }
   PetscCall(VecDestroy(&U));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Wall forces: of one pair of walls the preconditioner is the inverse of d -> d + slip of its projection. */
-static PetscErrorCode CheckWalls(const char options[], const char name[], PetscReal a0) {
-  Scene scene;
-  Fluid fluid;
-  Stokes stokes;
-  Walls walls;
-  Vec r, p, d, y;
-  PetscScalar *da, *ya;
-  PetscReal error = 0, off = 0, size;
-  PetscFunctionBeginUser;
-  PetscCall(TestScene(options, &scene));
-  PetscCall(FluidCreate(&scene->fluid, &fluid));
-  PetscCall(FluidSetTimeCoefficient(fluid, a0));
-  PetscCall(StokesCreate(fluid, &stokes));
-  PetscCall(WallsCreate(fluid, &walls));
-  PetscCall(DMCreateGlobalVector(fluid->grid->velocity, &r));
-  PetscCall(DMCreateGlobalVector(fluid->grid->da[FIELD_P], &p));
-  PetscCall(VecCreateSeq(PETSC_COMM_SELF, walls->n, &d));
-  PetscCall(VecDuplicate(d, &y));
-  PetscCall(TestRandomVec(31, d));
-  PetscCall(VecNorm(d, NORM_INFINITY, &size));
-  PetscCall(VecSet(r, 0));
-  PetscCall(VecGetArray(d, &da));
-  PetscCall(VecGetArray(y, &ya));
-  PetscCall(WallsAdd(walls, da, r));
-  PetscCall(StokesSolve(stokes, r, NULL, r, p));
-  PetscCall(WallsSlip(walls, StokesPotential(stokes), ya));
-  for (PetscInt k = 0; k < walls->n; k++) {
-    off = PetscMax(off, PetscAbsReal(ya[k]));
-    ya[k] += da[k];
-  }
-  PetscCall(WallsInvert(walls, ya));
-  for (PetscInt k = 0; k < walls->n; k++) error = PetscMax(error, PetscAbsReal(ya[k] - da[k]));
-  PetscCall(VecRestoreArray(y, &ya));
-  PetscCall(VecRestoreArray(d, &da));
-  CHECK(off > 0.1 * size, "%s: the projection slips, by %.2f of the force", name, off / size);
-  CHECK(error < 1e-11 * size, "%s: the walls' inverse, %.1e", name, error / size);
-  Vec *all[] = {&r, &p, &d, &y};
-  for (int k = 0; k < 4; k++) PetscCall(VecDestroy(all[k]));
-  PetscCall(WallsDestroy(&walls));
-  PetscCall(StokesDestroy(&stokes));
-  PetscCall(FluidDestroy(&fluid));
-  PetscCall(SceneDestroy(&scene));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -338,10 +288,6 @@ static PetscErrorCode Facts(void) {
   PetscCall(CheckNearField("-fluid_inertia none", 3, 0.2, 9));
   PetscCall(CheckNearField("", 30, 0.1, 6));
   PetscCall(CheckNearField("-domain_bc_x free -domain_bc_y free -fluid_inertia none", 3, 0, 1));
-  PetscCall(CheckWalls("-domain_cells 48,32 -domain_box -1.5,1.5,-1,1 -domain_bc_y periodic -vesicle_shape none",
-                       "48,32 walls in x", 50));
-  PetscCall(CheckWalls("-domain_cells 33,21 -domain_box 0,3.3,0,2.1 -domain_bc_y periodic -vesicle_shape none",
-                       "33,21 walls in x", 0.5));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
