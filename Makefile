@@ -105,10 +105,14 @@ $(BIN)/petves: $(BUILD)/main.o $(LIBRARY)
 	@mkdir -p $(@D)
 	$(CC) $(OPTIMISE) -o $@ $< -Wl,--push-state,--no-as-needed $(FIRST) -Wl,--pop-state -L$(LIBDIR) -lpetves -Wl,-rpath,'$$ORIGIN/../$(LIBDIR)' $(LIBS)
 
+# What a program has of tests/support.
+$(BUILD)/tests/test_direct: SUPPORT := $(wildcard tests/support/*direct*.c)
+$(BUILD)/tests/test_direct: $(wildcard tests/support/*direct*)
+
 vpath %.c $(sort $(dir $(TEST_SOURCES)))
 $(BUILD)/tests/%: %.c $(wildcard tests/support/*.h) $(CODE) | $(LIBRARY)
 	@mkdir -p $(@D)
-	$(CC) $(CFLAGS) -Itests/support -o $@ $< -L$(LIBDIR) -lpetves -Wl,-rpath,$(CURDIR)/$(LIBDIR) $(LIBS)
+	$(CC) $(CFLAGS) -Itests/support -o $@ $< $(SUPPORT) -L$(LIBDIR) -lpetves -Wl,-rpath,$(CURDIR)/$(LIBDIR) $(LIBS)
 
 $(BUILD)/bench/%: bench/%.c bench/bench.h $(wildcard tests/support/*.h) $(CODE) | $(LIBRARY)
 	@mkdir -p $(@D)

@@ -97,8 +97,8 @@ PETSC_EXTERN PetscErrorCode SimulationGatherMarkers(Simulation simulation, const
 
 /* SimulationGetObject - borrowed PETSc object by name, NULL when the simulation has none of that name: Vecs velocity,
    pressure, tension, markers, marker_velocity; DMs dm_velocity, dm_u, dm_v, dm_pressure; Mats mat_G, mat_D, mat_L,
-   mat_H, mat_E, mat_S, mat_B (docs/method.md); PCs pc_helmholtz, pc_poisson (fast solves); KSPs coupled_, direct_,
-   tension_, bending_. Vecs change places from step to step, and velocity and pressure may have to be made when they are
+   mat_H, mat_E, mat_S, mat_B (docs/method.md); PCs pc_helmholtz, pc_poisson (fast solves); KSPs coupled_, tension_,
+   bending_. Vecs change places from step to step, and velocity and pressure may have to be made when they are
    asked for: ask again after each. Collective for these two. */
 PETSC_EXTERN PetscErrorCode SimulationGetObject(Simulation simulation, const char name[], PetscObject *object);
 

@@ -12,7 +12,7 @@ from petves.library import Handle, Int, one_thread, wrap
 from petves.measures import Measures
 from petves.petsc import PETSc
 
-KSP_NAMES = ("coupled", "direct", "tension", "bending")
+KSP_NAMES = ("coupled", "tension", "bending")
 DM_NAMES = {"velocity": "dm_velocity", "u": "dm_u", "v": "dm_v", "pressure": "dm_pressure"}
 
 
@@ -149,7 +149,7 @@ class State(Measures):
 
     @property
     def ksp(self) -> dict[str, PETSc.KSP]:
-        """The scheme's solvers by name: coupled; or direct; or tension and bending. They may be configured."""
+        """The scheme's solvers by name: coupled, or tension and bending. They may be configured."""
         handles = {name: self._find(f"{name}_") for name in KSP_NAMES}
         return {name: wrap("KSP", handle) for name, handle in handles.items() if handle}
 

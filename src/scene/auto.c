@@ -26,15 +26,12 @@ static PetscInt Row(Scene scene) {
 }
 
 PetscErrorCode SceneChooseByError(Draft scene) {
-  PetscBool coupled, direct;
   PetscFunctionBeginUser;
   if (scene->scheme.wanted == 0) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCheck(scene->scheme.wanted >= 1e-4 && scene->scheme.wanted <= 0.1, scene->comm, PETSC_ERR_USER_INPUT,
              "-scheme_auto %g: outside of what was measured; allowed: 0, or 1e-4 to 0.1", (double)scene->scheme.wanted);
-  PetscCall(PetscStrcmp(scene->scheme.type, "coupled", &coupled));
-  PetscCall(PetscStrcmp(scene->scheme.type, "direct", &direct));
-  PetscCheck(coupled || direct, scene->comm, PETSC_ERR_USER_INPUT,
-             "-scheme_auto %g: with -scheme_type %s; allowed: coupled or direct", (double)scene->scheme.wanted,
+  PetscCheck(!strcmp(scene->scheme.type, "coupled"), scene->comm, PETSC_ERR_USER_INPUT,
+             "-scheme_auto %g: with -scheme_type %s; allowed: coupled", (double)scene->scheme.wanted,
              scene->scheme.type);
   PetscCall(SceneChoose(scene, "-time_adapt", "error"));
   PetscCall(SceneChoose(scene, "-time_adapt_tol", settings[Row(scene)].adapt_tol));
@@ -119,7 +116,7 @@ static PetscErrorCode PrintChoice(Scene scene, PetscInt row, PetscBool timed) {
     if (scene->membrane.bending > 0) PetscCall(SceneSaySetting(scene, "-time_adapt_max_step", why));
   }
   PetscCall(PetscSNPrintf(why, sizeof(why), "the solver leaves up to %.1e", (double)settings[row].of_solver));
-  if (!strcmp(scene->scheme.type, "coupled")) PetscCall(SceneSaySetting(scene, "-coupled_ksp_rtol", why));
+  PetscCall(SceneSaySetting(scene, "-coupled_ksp_rtol", why));
   PetscCall(SceneSaySetting(scene, "-delta_type", "kernels differ by 1e-4 at most"));
   if (scene->vesicles.spacing > 0) PetscCall(SceneSaySetting(scene, "-vesicle_spacing", ""));
   if (scene->vesicles.markers > 0)

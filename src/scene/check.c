@@ -158,19 +158,17 @@ static PetscErrorCode CheckProjection(Scene scene) {
              scene->scheme.order, split ? "splitting error" : "forward step of the markers", name);
   PetscCheck(scene->membrane.derivative != DERIVATIVE_SPECTRAL, scene->comm, PETSC_ERR_USER_INPUT,
              "-membrane_derivative spectral: not with -scheme_type %s, whose %s; allowed: fd, bending, or -scheme_type "
-             "coupled or direct",
+             "coupled",
              name, split ? "preconditioner knows chords only" : "springs are chords");
   PetscCheck(!scene->scheme.area_target, scene->comm, PETSC_ERR_USER_INPUT,
-             "-scheme_area_target true: not with -scheme_type %s; allowed: false, or -scheme_type coupled or direct",
-             name);
+             "-scheme_area_target true: not with -scheme_type %s; allowed: false, or -scheme_type coupled", name);
   PetscCheck(scene->fluid.inertia != INERTIA_NONE, scene->comm, PETSC_ERR_USER_INPUT,
-             "-fluid_inertia none: not with -scheme_type %s, %s; allowed: unsteady, or -scheme_type coupled or direct",
-             name,
+             "-fluid_inertia none: not with -scheme_type %s, %s; allowed: unsteady, or -scheme_type coupled", name,
              split ? "whose projection stands on the inertia: it puts dt I in place of H^-1"
                    : "whose projection step starts from the velocity before it");
   PetscCheck(scene->fluid.inertia != INERTIA_CONVECTIVE, scene->comm, PETSC_ERR_USER_INPUT,
              "-fluid_inertia convective: not with -scheme_type %s, %s for unsteady Stokes flow; allowed: unsteady, or "
-             "-scheme_type coupled or direct",
+             "-scheme_type coupled",
              name, split ? "the paper's method" : "here");
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -182,7 +180,7 @@ static PetscErrorCode CheckPenalty(Scene scene, PetscBool split) {
   PetscCall(PetscStrcmp(scene->scheme.type, "penalty", &penalty));
   PetscCheck(!penalty || scene->scheme.bending_at == BENDING_EXPLICIT, scene->comm, PETSC_ERR_USER_INPUT,
              "-scheme_bending implicit: -scheme_type penalty has all membrane forces at the old markers; allowed: "
-             "explicit, or -scheme_type split, coupled or direct");
+             "explicit, or -scheme_type split or coupled");
   PetscCheck(penalty || split || scene->scheme.bending_at == BENDING_IMPLICIT, scene->comm, PETSC_ERR_USER_INPUT,
              "-scheme_bending explicit: not with -scheme_type %s, whose stability stands on implicit bending; allowed: "
              "implicit, or -scheme_type split or penalty",
@@ -203,7 +201,7 @@ static PetscErrorCode CheckNearField(Scene scene) {
   if (scene->coupling.near_field == NEAR_NONE) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCheck(!SceneIsProjection(scene), scene->comm, PETSC_ERR_USER_INPUT,
              "-coupling_near_field exact: not with -scheme_type %s, which is its paper's method; allowed: none, or "
-             "-scheme_type coupled or direct",
+             "-scheme_type coupled",
              scene->scheme.type);
   PetscCheck(
       strcmp(scene->coupling.kernel, "cbs32"), scene->comm, PETSC_ERR_USER_INPUT,
@@ -218,7 +216,7 @@ static PetscErrorCode CheckFrame(Scene scene) {
   if (scene->time.frame == FRAME_NONE) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCheck(!SceneIsProjection(scene), scene->comm, PETSC_ERR_USER_INPUT,
              "-time_frame treading: not with -scheme_type %s, which is its paper's method; allowed: none, or "
-             "-scheme_type coupled or direct",
+             "-scheme_type coupled",
              scene->scheme.type);
   PetscCheck(scene->membrane.derivative == DERIVATIVE_SPECTRAL, scene->comm, PETSC_ERR_USER_INPUT,
              "-time_frame treading: a shift of labels keeps the lengths of spectral edges only; allowed: none, or "
@@ -251,7 +249,7 @@ static PetscErrorCode CheckScheme(Scene scene) {
   PetscCall(CheckPenalty(scene, split));
   PetscCheck(scene->time.adapt == ADAPT_NONE || scene->scheme.order > 1, scene->comm, PETSC_ERR_USER_INPUT,
              "-time_adapt error: with -scheme_type %s of order %" PetscInt_FMT
-             "; allowed: coupled or direct with -scheme_order 2 or 3",
+             "; allowed: coupled with -scheme_order 2 or 3",
              scene->scheme.type, scene->scheme.order);
   PetscCheck(scene->fluid.inertia != INERTIA_CONVECTIVE || scene->scheme.order > 1, scene->comm, PETSC_ERR_USER_INPUT,
              "-fluid_inertia convective: with -scheme_order %" PetscInt_FMT

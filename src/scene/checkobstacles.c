@@ -13,7 +13,7 @@ static PetscErrorCode CheckMethod(Scene scene) {
              "-obstacle_shape: not with -domain_bc_x free, where a body held in a flow has no finite velocity in two "
              "dimensions; allowed: walls, or periodic boundaries");
   PetscCheck(!SceneIsProjection(scene), scene->comm, PETSC_ERR_USER_INPUT,
-             "-obstacle_shape: not with -scheme_type %s; allowed: coupled, direct", scene->scheme.type);
+             "-obstacle_shape: not with -scheme_type %s; allowed: coupled", scene->scheme.type);
   PetscCheck(scene->fluid.form != FORM_TOTAL, scene->comm, PETSC_ERR_USER_INPUT,
              "-obstacle_shape: not with -flow_form total; allowed: disturbance");
   PetscCheck(scene->fluid.inertia == INERTIA_AUTO || scene->fluid.inertia == INERTIA_NONE ||

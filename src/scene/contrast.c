@@ -8,7 +8,7 @@ static PetscErrorCode CheckMethod(Scene scene, PetscReal ratio) {
   PetscFunctionBeginUser;
   PetscCheck(!SceneIsProjection(scene), scene->comm, PETSC_ERR_USER_INPUT,
              "-vesicle_viscosity_ratio %g: not with -scheme_type %s, which is its paper's method; allowed: 1, or "
-             "-scheme_type coupled or direct",
+             "-scheme_type coupled",
              (double)ratio, scene->scheme.type);
   PetscCheck(inertia == INERTIA_AUTO || inertia == INERTIA_NONE, scene->comm, PETSC_ERR_USER_INPUT,
              "-vesicle_viscosity_ratio %g: not with -fluid_inertia %s, because with inertia the fluid inside obeys "
@@ -26,11 +26,6 @@ static PetscErrorCode CheckBox(Scene scene, PetscReal ratio) {
   PetscFunctionBeginUser;
   PetscCheck(scene->fluid.form != FORM_TOTAL, scene->comm, PETSC_ERR_USER_INPUT,
              "-vesicle_viscosity_ratio %g: not with -flow_form total; allowed: 1, or -flow_form disturbance",
-             (double)ratio);
-  PetscCheck(scene->fluid.drive != DRIVE_FLUX || !strcmp(scene->scheme.type, "coupled"), scene->comm,
-             PETSC_ERR_USER_INPUT,
-             "-vesicle_viscosity_ratio %g: not with -flow_drive flux and -scheme_type direct; allowed: 1, or "
-             "-scheme_type coupled",
              (double)ratio);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

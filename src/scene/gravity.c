@@ -24,10 +24,9 @@ PetscErrorCode SceneCheckGravity(Scene scene) {
              "-fluid_gravity %g,%g: not with -domain_bc_x free, where a body under a force has no finite velocity in "
              "two dimensions; allowed: walls, or periodic boundaries",
              (double)g->v[0], (double)g->v[1]);
-  PetscCheck(scene->fluid.drive != DRIVE_FLUX || !strcmp(scene->scheme.type, "coupled") ||
-                 !strcmp(scene->scheme.type, "direct"),
-             scene->comm, PETSC_ERR_USER_INPUT,
-             "-flow_drive flux: not with -scheme_type %s; allowed: pressure, or coupled, direct", scene->scheme.type);
+  PetscCheck(scene->fluid.drive != DRIVE_FLUX || !strcmp(scene->scheme.type, "coupled"), scene->comm,
+             PETSC_ERR_USER_INPUT, "-flow_drive flux: not with -scheme_type %s; allowed: pressure, or coupled",
+             scene->scheme.type);
   PetscCheck(
       scene->fluid.drive != DRIVE_FLUX || scene->fluid.form != FORM_TOTAL, scene->comm, PETSC_ERR_USER_INPUT,
       "-flow_drive flux: not with -flow_form total, whose velocity has the background's flux; allowed: pressure, "

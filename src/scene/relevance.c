@@ -51,7 +51,7 @@ static const char *const needs[] = {"-flow_type shear or extension",
                                     "-vesicle_packing and -vesicle_packing_type random",
                                     "vesicles that are not packed (-vesicle_packing 0)",
                                     "vesicles that are not packed at random (-vesicle_packing)",
-                                    "vesicles and -scheme_type coupled or direct",
+                                    "vesicles and -scheme_type coupled",
                                     "vesicles and -scheme_type coupled",
                                     "-contact_repulsion",
                                     "-contact_adhesion",
@@ -208,7 +208,6 @@ static PetscBool Met(Scene s, Need need) {
   case BY_UNIFORM:
     return IsFlow(s, FLOW_UNIFORM, FLOW_UNIFORM);
   case BY_UNSPLIT:
-    return IsScheme(s, "coupled") || IsScheme(s, "direct");
   case BY_COUPLED:
     return IsScheme(s, "coupled");
   case BY_REPULSION:

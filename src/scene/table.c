@@ -38,7 +38,7 @@ static const OptionRow table[] = {
   {"-vesicle_packing_gap", OPT_REAL, AT(vesicles.packing_gap), "0", ">=0", "least distance of packed vesicles from one another and from walls; 0: a cell, at most R0/20 (length)"},
   {"-vesicle_bending", OPT_REALS, AT(membrane.stiffness), "0.01", ">=0", "c_b, bending stiffness, one for all, or one a vesicle or kind; 0 leaves bending out (length^5/time^2)"},
   {"-vesicle_density_difference", OPT_REALS, AT(gravity.density), "0", "any", "density inside less density outside, over that outside; one for all, or one a vesicle or kind"},
-  {"-vesicle_viscosity_ratio", OPT_REALS, AT(membrane.viscosity_ratio), "1", "[0.02,200]", "coupled, direct: viscosity inside over -fluid_viscosity, which is outside; one for all, or one a vesicle or kind; other than 1 the flow is quasi-steady"},
+  {"-vesicle_viscosity_ratio", OPT_REALS, AT(membrane.viscosity_ratio), "1", "[0.02,200]", "coupled: viscosity inside over -fluid_viscosity, which is outside; one for all, or one a vesicle or kind; other than 1 the flow is quasi-steady"},
   {"-vesicle_spacing", OPT_REAL, AT(vesicles.spacing), "0", ">=0", "marker spacing ds/h; 0: by the shape with -coupling_near_field exact (45 markers, more on thin vesicles, at most 2 h apart), else the kernel's (" KERNEL_SPACINGS ")"},
   {"-vesicle_markers", OPT_INT, AT(vesicles.markers), "0", ">=0", "number of markers of each vesicle, instead of the spacing; 0 takes the spacing"},
   {"-vesicle_allow_close_markers", OPT_BOOL, AT(vesicles.allow_close_markers), "false", "true|false", "accept spacings below the least: 0.3 h with -coupling_near_field exact, else the kernel's (" KERNEL_LEAST_SPACINGS ")"},
@@ -57,17 +57,17 @@ static const OptionRow table[] = {
   {"-obstacle_spacing", OPT_REAL, AT(obstacles.spacing), "1", "[0.3,2]", "spacing ds/h of the obstacles' markers, without influence on the flow from 0.5 to 2 but for films thinner than it"},
   {"-obstacle_factor", OPT_ENUM, AT(obstacles.factor), "auto", "auto|dense|modes", "preconditioner's block of the obstacles: the dense inverse of all; or that of each curve and a few waves along every curve for what others do to it. auto: modes for more than 2000 markers in a box that is periodic both ways"},
   {"-delta_type", OPT_NAME, AT(coupling.kernel), "cbs54", KERNEL_NAMES, "kernel between grid and markers; split, penalty: ib6"},
-  {"-scheme_type", OPT_NAME, AT(scheme.type), "coupled", "split|penalty|coupled|direct", "time-stepping scheme: the paper's, stiff springs, unsplit, unsplit by sparse LU"},
+  {"-scheme_type", OPT_NAME, AT(scheme.type), "coupled", "split|penalty|coupled", "time-stepping scheme: the paper's, stiff springs, unsplit"},
   {"-scheme_order", OPT_INT, AT(scheme.order), "3", "[1,3]", "order in time: backward Euler, BDF2, or BDF3 wherever it predicts better; split and penalty are of order 1"},
   {"-scheme_auto", OPT_REAL, AT(scheme.wanted), "0", ">=0", "relative error wanted, 1e-4 to 0.1: steps, tolerances, markers, kernel, and the box and the grid that are not given, by what was measured; 0 off"},
   {"-scheme_bending", OPT_ENUM, AT(scheme.bending_at), "implicit", "implicit|explicit", "bending at the new markers, or (split only) at the old ones; penalty: explicit"},
   {"-penalty_stiffness", OPT_REAL, AT(scheme.stiffness), "0", ">=0", "penalty: sigma_0 of the springs sigma = sigma_0 (|X_s| - 1) (length^3/time^2); 0 takes half of what the step bears"},
-  {"-scheme_length_target", OPT_BOOL, AT(scheme.length_target), "true", "true|false", "coupled, direct: each step aims at edges of their first length"},
-  {"-scheme_area_target", OPT_BOOL, AT(scheme.area_target), "true", "true|false", "coupled, direct: each step aims at the first areas of the vesicles"},
-  {"-coupling_near_field", OPT_ENUM, AT(coupling.near_field), "exact", "exact|none", "coupled, direct: correct the markers' velocity for the smoothing by kernel and grid, to the exact single layer; none: do not"},
+  {"-scheme_length_target", OPT_BOOL, AT(scheme.length_target), "true", "true|false", "coupled: each step aims at edges of their first length"},
+  {"-scheme_area_target", OPT_BOOL, AT(scheme.area_target), "true", "true|false", "coupled: each step aims at the first areas of the vesicles"},
+  {"-coupling_near_field", OPT_ENUM, AT(coupling.near_field), "exact", "exact|none", "coupled: correct the markers' velocity for the smoothing by kernel and grid, to the exact single layer; none: do not"},
   {"-coupling_box_part", OPT_BOOL, AT(coupling.box_part), "true", "true|false", "with the exact near field: the grid's error of second order in what walls and periodic images do is taken off; default false from 256 cells across on"},
   {"-coupling_grid_dipoles", OPT_BOOL, AT(coupling.grid_dipoles), "false", "true|false", "coupled with viscosity contrast: the double layer's dipoles go over the grid in every solve, also those of one vesicle in the middle of the box, which else take their velocity from the markers and a table of the box"},
-  {"-contact_repulsion", OPT_REAL, AT(repulsion.stress), "0", ">=0", "coupled, direct: K, stress that pushes membranes from one another and from walls, K (1 - d/D) at a distance d (length^2/time^2); 0: none"},
+  {"-contact_repulsion", OPT_REAL, AT(repulsion.stress), "0", ">=0", "coupled: K, stress that pushes membranes from one another and from walls, K (1 - d/D) at a distance d (length^2/time^2); 0: none"},
   {"-contact_repulsion_range", OPT_REAL, AT(repulsion.range), "0", ">=0", "D, up to which it acts (length); 0: 1.5 times the longest mean edge"},
   {"-contact_adhesion", OPT_REAL, AT(repulsion.adhesion), "0", ">=0", "with a repulsion: W, energy a length of membranes that stick together at the distance D (length^3/time^2); 0: none"},
   {"-contact_adhesion_range", OPT_REAL, AT(repulsion.band), "0", ">=0", "B, width of the band from D to D + B in which they are drawn together (length); 0: D"},
@@ -76,8 +76,8 @@ static const OptionRow table[] = {
   {"-mobility_type", OPT_ENUM, AT(coupling.mobility), "table", "table|ilu|none", "Lagrangian part of coupled's preconditioner"},
   {"-time_step", OPT_REAL, AT(time.dt), "0.01", ">0", "dt (time)"},
   {"-time_end", OPT_REAL, AT(time.end), "1", ">=0", "end time, reached exactly: the last steps are shortened (time)"},
-  {"-time_frame", OPT_ENUM, AT(time.frame), "treading", "treading|none", "coupled, direct: labels in which a step sees the states before it, turning with each tank-treading membrane, or fixed to matter; split, penalty, -membrane_derivative fd, bending: none"},
-  {"-time_adapt", OPT_ENUM, AT(time.adapt), "none", "none|error", "step size: fixed, or from an error estimate (coupled, direct of order 2 or 3)"},
+  {"-time_frame", OPT_ENUM, AT(time.frame), "treading", "treading|none", "coupled: labels in which a step sees the states before it, turning with each tank-treading membrane, or fixed to matter; split, penalty, -membrane_derivative fd, bending: none"},
+  {"-time_adapt", OPT_ENUM, AT(time.adapt), "none", "none|error", "step size: fixed, or from an error estimate (coupled of order 2 or 3)"},
   {"-time_adapt_tol", OPT_REAL, AT(time.adapt_tol), "1e-4", ">0", "error estimate accepted a step, in units of R0"},
   {"-time_adapt_max_move", OPT_REAL, AT(time.adapt_max_move), "1", ">=0", "cells that a marker may move in a step relative to its vesicle; 0 no limit"},
   {"-time_adapt_max_step", OPT_REAL, AT(time.adapt_max_step), "0", ">=0", "largest step that -time_adapt error takes; 0 no limit; not given: 1/(rate (1 + .03 chi)) in a flow, nu R0^3/c_b without one (time)"},
@@ -209,11 +209,13 @@ PetscErrorCode SceneWriteOptions(Scene scene, FILE *file) {
 }
 
 /* Prefixes of solvers, and what a scene needs to have them. */
-static const OptionOwner owners[] = {
-    {"-tension_", "-scheme_type split"},          {"-bending_", "-scheme_type split"},
-    {"-coupled_mobility_", "-mobility_type ilu"}, {"-coupled_", "-scheme_type coupled"},
-    {"-direct_", "-scheme_type direct"},          {"-helmholtz_", "-helmholtz_type hypre"},
-    {"-poisson_", "-poisson_type hypre"},         {NULL, NULL}};
+static const OptionOwner owners[] = {{"-tension_", "-scheme_type split"},
+                                     {"-bending_", "-scheme_type split"},
+                                     {"-coupled_mobility_", "-mobility_type ilu"},
+                                     {"-coupled_", "-scheme_type coupled"},
+                                     {"-helmholtz_", "-helmholtz_type hypre"},
+                                     {"-poisson_", "-poisson_type hypre"},
+                                     {NULL, NULL}};
 
 PetscErrorCode SceneCheckUnused(Scene scene) {
   PetscFunctionBeginUser;

@@ -123,7 +123,6 @@ static PetscErrorCode InitialGuess(Scheme s, Coupled *d) {
   const PetscInt count = PetscMax(1, PetscMin(h->solved, s->plan.guess));
   PetscReal weight[BDF_STATES];
   PetscFunctionBeginUser;
-  if (!d->solver) PetscFunctionReturn(PETSC_SUCCESS);
   BDFGuess(count, h->step, weight);
   if (n->solid) PetscCall(HistorySum(count, weight, 1, STATES(s, solid), n->solid));
   PetscCall(HistoryEdges(h, s->membrane, count, weight, STATES(s, sigma), n->sigma));
@@ -150,11 +149,6 @@ static PetscErrorCode Solve(Scheme s, Coupled *d) {
                                   .past = n->flow ? &d->past : NULL};
   SolveReport report;
   PetscFunctionBeginUser;
-  if (d->direct) {
-    PetscCall(DirectSolverSolve(d->direct, &problem));
-    if (d->direct->why < 0) PetscCall(SchemeSolverFailed(s, "direct_", d->direct->why, 0, NAN));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
   PetscCall(CoupledSolverSolve(d->solver, &problem, &report));
   s->report.coupled_its += report.its;
   s->report.measures = report.measures;

@@ -1,5 +1,5 @@
-/* Schemes "coupled" and "direct": the unsplit step, first or second order, unconditionally stable. `coupled` solves it
-   by preconditioned FGMRES on its forces, `direct` by a sparse LU factorisation. Here: which steps are taken. */
+/* The scheme "coupled": the unsplit step, unconditionally stable, solved by preconditioned FGMRES on its forces. Here:
+   which steps are taken. */
 #include "scheme/coupled.h"
 #include "coupling/kspoptions.h"
 #include "scheme/films.h"
@@ -10,13 +10,13 @@ static PetscErrorCode GradedStart(Scheme s, Coupled *d, PetscReal dt) {
   PetscBool solved = PETSC_TRUE;
   PetscFunctionBeginUser;
   d->done = 0;
-  if (d->solver) d->solver->preconditioner->graded = PETSC_TRUE;
+  d->solver->preconditioner->graded = PETSC_TRUE;
   for (int k = 0; k < 5 && solved; k++) {
     PetscCall(CoupledFixedAttempt(s, parts[k] * dt, &solved));
     if (solved) PetscCall(CoupledAdvance(s, parts[k] * dt));
     d->done += parts[k] * dt;
   }
-  if (d->solver) d->solver->preconditioner->graded = PETSC_FALSE;
+  d->solver->preconditioner->graded = PETSC_FALSE;
   d->done = 0;
   s->state.dt = dt;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -246,10 +246,7 @@ static PetscErrorCode SetUp_Coupled(Scheme s) {
   Coupled *d = (Coupled *)s->data;
   State *q = &s->state;
   PetscFunctionBeginUser;
-  if (!strcmp(s->type, "direct"))
-    PetscCall(DirectSolverCreate(s->coupling, &d->direct));
-  else
-    PetscCall(CoupledSolverCreate(s->scene, s->coupling, &d->solver));
+  PetscCall(CoupledSolverCreate(s->scene, s->coupling, &d->solver));
   PetscCall(SetUpConvection(s, d));
   PetscCall(CoupledCreateStates(s));
   PetscCall(HistoryCreate(s, &d->history));
@@ -270,23 +267,21 @@ static PetscErrorCode SetUp_Coupled(Scheme s) {
 static PetscErrorCode View_Coupled(Scheme s, PetscViewer viewer) {
   Coupled *d = (Coupled *)s->data;
   PetscFunctionBeginUser;
-  if (d->solver) PetscCall(KSPView(d->solver->ksp, viewer));
+  PetscCall(KSPView(d->solver->ksp, viewer));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode Options_Coupled(Scheme s, FILE *file) {
   Coupled *d = (Coupled *)s->data;
   PetscFunctionBeginUser;
-  if (d->solver) PetscCall(KSPWriteOptions(d->solver->ksp, NULL, "coupled_", file));
+  PetscCall(KSPWriteOptions(d->solver->ksp, NULL, "coupled_", file));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode KSP_Coupled(Scheme s, const char prefix[], KSP *ksp) {
   Coupled *d = (Coupled *)s->data;
   PetscFunctionBeginUser;
-  *ksp = NULL;
-  if (d->solver && !strcmp(prefix, "coupled_")) *ksp = d->solver->ksp;
-  if (d->direct && !strcmp(prefix, "direct_")) *ksp = d->direct->ksp;
+  *ksp = strcmp(prefix, "coupled_") ? NULL : d->solver->ksp;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -295,7 +290,6 @@ static PetscErrorCode Destroy_Coupled(Scheme s) {
   Vec *others[] = {&d->Xstar, &d->Xhat, &d->V, &d->known, &d->Y, &d->P, &d->made_at, &d->moved, &d->force};
   PetscFunctionBeginUser;
   PetscCall(CoupledSolverDestroy(&d->solver));
-  PetscCall(DirectSolverDestroy(&d->direct));
   PetscCall(ConvectionDestroy(&d->convection));
   PetscCall(StateDestroy(&d->next));
   PetscCall(HistoryDestroy(&d->history));

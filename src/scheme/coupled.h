@@ -1,14 +1,12 @@
-/* What schemes coupled and direct share: the parts of one unsplit step of backward Euler or BDF2 (docs/membrane.md). */
+/* The parts of one unsplit step of backward Euler or BDF (docs/membrane.md). */
 #pragma once
 #include "coupling/solver.h"
 #include "fluid/convection.h"
-#include "scheme/direct.h"
 #include "scheme/history.h"
 #include "scheme/stepcommon.h"
 
 typedef struct {
-  CoupledSolver solver;  /* scheme coupled: FGMRES */
-  DirectSolver direct;   /* scheme direct: sparse LU */
+  CoupledSolver solver;
   Convection convection; /* NULL unless the fluid has it */
   State next;            /* the state being made */
   History history;       /* what it is made from */

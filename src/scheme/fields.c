@@ -8,7 +8,7 @@
    and from the flow. */
 PetscErrorCode CoupledCreateStates(Scheme s) {
   Coupled *d = (Coupled *)s->data;
-  const PetscBool later = d->solver && ReducedNeedsNoPressure(d->solver->reduced) ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool later = ReducedNeedsNoPressure(d->solver->reduced);
   const PetscBool contrast = s->coupling->contrast ? PETSC_TRUE : PETSC_FALSE;
   const PetscBool grid = !s->fluid->steady && (!later || d->convection) ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionBeginUser;

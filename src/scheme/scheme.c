@@ -59,7 +59,6 @@ PetscErrorCode SchemeCreate(Scene scene, Coupling coupling, const PetscReal X[],
   PetscErrorCode (*create)(Scheme);
   PetscFunctionBeginUser;
   PetscCall(SchemeRegister("coupled", SchemeCreate_Coupled));
-  PetscCall(SchemeRegister("direct", SchemeCreate_Coupled));
   PetscCall(PetscFunctionListFind(schemes, scene->scheme.type, &create));
   PetscCheck(create, scene->comm, PETSC_ERR_USER_INPUT, "-scheme_type %s: not registered", scene->scheme.type);
   PetscCall(PetscNew(&s));

@@ -4,7 +4,7 @@
 /* The obstacles' block where its factor may be of an earlier time or time step; else NULL. */
 static ObstacleBlock OlderBlock(Scheme s) {
   Coupled *d = (Coupled *)s->data;
-  return d->solver && ObstacleBlockIsOlder(s->coupling) ? d->solver->preconditioner->solid : NULL;
+  return ObstacleBlockIsOlder(s->coupling) ? d->solver->preconditioner->solid : NULL;
 }
 
 /* Where its numbers are, the last ones of the memory. */
@@ -16,7 +16,6 @@ PetscErrorCode CoupledRemember(Scheme s, PetscReal memory[]) {
   Coupled *d = (Coupled *)s->data;
   const Layout l = s->membrane->layout;
   PetscFunctionBeginUser;
-  if (!d->solver) PetscFunctionReturn(PETSC_SUCCESS);
   if (OlderBlock(s)) ObstacleBlockGetMemory(OlderBlock(s), memory + AtBlock(s));
   PetscCall(PreconditionerGetMemory(d->solver->preconditioner, memory));
   if (d->solver->preconditioner->patterns) {
@@ -70,9 +69,9 @@ PetscErrorCode CoupledRecall(Scheme s, const PetscReal memory[]) {
   PetscScalar *X;
   PetscFunctionBeginUser;
   PetscCall(RecallBlock(s, memory + AtBlock(s)));
-  if (d->solver && d->solver->preconditioner->patterns)
+  if (d->solver->preconditioner->patterns)
     PetscCall(RecallPatterns(s, d->solver->preconditioner->patterns, memory + PRECONDITIONER_MEMORY));
-  if (!d->solver || !l->bodies || a0 == 0) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!l->bodies || a0 == 0) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecGetArray(d->made_at, &X));
   PetscCall(PetscArraycpy(X, memory + PRECONDITIONER_MEMORY + 2 * l->first, 2 * l->n));
   PetscCall(VecRestoreArray(d->made_at, &X));

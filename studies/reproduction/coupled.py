@@ -47,7 +47,7 @@ def coupled_results(folder: Path, quick: bool) -> Path:
     results = Results(folder / "coupled.json")
     text = [_head(quick), *_energy(results, folder), *_temporal(results, folder)]
     text += _iterations(results, folder, (32, 64, 128) if quick else (32, 64, 128, 256))
-    text += _work(results, folder, (64, 128, 256), 64 if quick else 128)
+    text += _work(results, folder, (64, 128, 256))
     text += _start(results, folder)
     path = folder / "coupled.md"
     path.write_text("\n".join(text))
@@ -196,27 +196,25 @@ def _iterations(results: Results, folder: Path, sizes: tuple[int, ...]) -> list[
     return ["## Iterations\n", about, *lines]
 
 
-def _work(results: Results, folder: Path, sizes: tuple[int, ...], direct: int) -> list[str]:
-    """Return the cost of a step; scheme direct up to 1/h = `direct`, and what is there."""
+def _work(results: Results, folder: Path, sizes: tuple[int, ...]) -> list[str]:
+    """Return the cost of a step."""
     rows, shown = [], []
     for n, ranks in product(sizes, (1, 2)):
         split = results.get(study.work("split", n, ranks))
-        for scheme in ("split", "coupled", "direct"):
-            case = study.work(scheme, n, ranks)
-            if scheme == "direct" and n > direct and not results.has(case):
-                continue
-            one = results.get(case)
+        for scheme in ("split", "coupled"):
+            one = results.get(study.work(scheme, n, ranks))
             if "failed" in one:
                 shown.append([f"{2 * n}^2", str(ranks), scheme, "stopped", "", ""])
                 continue
             ratio = one["seconds"] / split["seconds"]
             rows.append([2 * n, ranks, scheme, one["nsolve"], one["its"], one["seconds"], ratio])
-            its = f"{one['its']:.1f}" if scheme != "direct" else ""
-            shown.append([f"{2 * n}^2", str(ranks), scheme, f"{one['nsolve']:.1f}", its, f"{ratio:.2f}"])
+            shown.append(
+                [f"{2 * n}^2", str(ranks), scheme, f"{one['nsolve']:.1f}", f"{one['its']:.1f}", f"{ratio:.2f}"]
+            )
     write_csv(folder / "coupled_work.csv", ["cells", "ranks", "scheme", "nsolve", "its", "seconds", "over_split"], rows)
     about = (
         "Relaxing ellipse, dt = h, default tolerances (split h^2, coupled 1e-6), order 2 with the extrapolated guess; twelve steps,\n"
-        "median of those after the second (direct: all of three). Scalar fast solves in a step, iterations (split: of the tension\n"
+        "median of those after the second. Scalar fast solves in a step, iterations (split: of the tension\n"
         "solve), and seconds a step over split's on the same grid and ranks. The Green's table (six solves once) is not counted.\n"
     )
     header = ["cells", "ranks", "scheme", "fast solves", "iterations", "time over split"]

@@ -25,9 +25,8 @@ SCHEMES = {
     "coupled 2, uncorrected": SECOND_ORDER | PAPER_MEMBRANE,
     "coupled 2, exact": SECOND_ORDER,
     "coupled 3, exact": words("-scheme_type coupled"),
-    "direct, exact": words("-scheme_type direct"),
 }
-BEST, DEFAULT, DIRECT = tuple(SCHEMES)[5:]
+BEST, DEFAULT = tuple(SCHEMES)[5:]
 EXACT = (BEST, DEFAULT)
 """Those with the exact near field, among which settings are recommended."""
 FIRST = tuple(SCHEMES)[:3]  # those of the paper and before, whose points are chosen by dt/h
@@ -100,7 +99,7 @@ class Scene:
     def work(self, point: Point) -> float:
         """Return an estimate of the work of a point: cells times steps."""
         steps = self.time_end / point.dt if point.dt else ADAPTIVE_STEPS * (1e-3 / point.tolerance) ** 0.5
-        return point.cells**2 * steps * (30 if point.scheme.startswith("direct") else 1)
+        return point.cells**2 * steps
 
 
 def _measure(series: Series, folder: Path) -> dict[str, object]:
@@ -179,8 +178,7 @@ def _relax_points() -> list[Point]:
     points += grid("coupled 2, uncorrected", (32, 64, 128, 256), tolerances=(1e-2, 1e-3, 1e-4))
     points += grid(BEST, (16, 24, 32, 48, 64), tolerances=(1e-2, 1e-3, 1e-4))
     points += grid(DEFAULT, (16, 24, 32, 48, 64, 128, 256), tolerances=(1e-2, 1e-3, 1e-4))
-    points += grid(DEFAULT, (32, 48, 64), tolerances=(1e-5,))
-    return points + grid(DIRECT, (24, 32), tolerances=(1e-3,))
+    return points + grid(DEFAULT, (32, 48, 64), tolerances=(1e-5,))
 
 
 def _shear_points() -> list[Point]:
@@ -190,8 +188,7 @@ def _shear_points() -> list[Point]:
     for name in ("coupled 1, uncorrected", "coupled 2, uncorrected"):
         points += grid(name, (48, 64, 128), dts=(0.1, 0.05, 0.0125)) + grid(name, (256,), dts=(0.05,))
     points += grid(BEST, (24, 32, 64, 128), dts=(0.1, 0.05, 0.025))
-    points += grid(DEFAULT, (16, 24, 32, 48, 64, 96, 128, 192, 256), dts=(0.2, 0.1, 0.05))
-    return points + grid(DIRECT, (32,), dts=(0.1,))
+    return points + grid(DEFAULT, (16, 24, 32, 48, 64, 96, 128, 192, 256), dts=(0.2, 0.1, 0.05))
 
 
 def _channel_points() -> list[Point]:
@@ -201,8 +198,7 @@ def _channel_points() -> list[Point]:
     for name in ("coupled 1, uncorrected", "coupled 2, uncorrected"):
         points += grid(name, (8, 16), dts=(0.12, 0.03, 0.0075)) + grid(name, (32,), dts=(0.03,))
     points += grid(BEST, (5, 8, 12), dts=(0.12, 0.06, 0.03))
-    points += grid(DEFAULT, (3, 4, 5, 6, 8, 12, 16), dts=(0.12, 0.06, 0.03))
-    return points + grid(DIRECT, (4,), dts=(0.12,))
+    return points + grid(DEFAULT, (3, 4, 5, 6, 8, 12, 16), dts=(0.12, 0.06, 0.03))
 
 
 # fmt: off

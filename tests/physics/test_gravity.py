@@ -40,13 +40,12 @@ def test_energy_falls(tmp_path):
     assert (np.diff(series["energy_gravity"] + series["energy_bending"]) < 0).all()
 
 
-def test_ranks_restart_and_direct(tmp_path):
-    """Two ranks and the sparse LU agree; a restart has the same bits."""
+def test_ranks_and_restart(tmp_path):
+    """Two ranks agree; a restart has the same bits."""
     short = "-time_end 0.4 -coupled_ksp_rtol 1e-11"
     whole = settle(tmp_path / "whole", short).series
-    for name, options, ranks in (("ranks", short, 2), ("direct", "-time_end 0.4 -scheme_type direct", 1)):
-        other = settle(tmp_path / name, options, ranks).series
-        assert other["center_y"] == pytest.approx(whole["center_y"], abs=1e-9)
+    other = settle(tmp_path / "ranks", short, 2).series
+    assert other["center_y"] == pytest.approx(whole["center_y"], abs=1e-9)
     settle(tmp_path / "half", "-time_end 0.2 -coupled_ksp_rtol 1e-11")
     rest = settle(tmp_path / "rest", f"{short} -restart {tmp_path / 'half' / 'checkpoint.h5'}").series
     assert np.array_equal(rest["center_y"], whole["center_y"][-len(rest["center_y"]) :])
@@ -116,16 +115,14 @@ def test_heavy_vesicle_on_a_wall(tmp_path, ratio, thick):
 @pytest.mark.parametrize("inertia", ["none", "unsteady"])
 def test_box_without_walls_step_after_step(tmp_path, inertia):
     """The mean that is taken off is everywhere on the grid, and must not be left there for a later step: along x as along y
-    for a vesicle turned with gravity, and as the scheme direct has it, which begins each step with zeros."""
+    for a vesicle turned with gravity."""
     scene = f"{COUPLED} -domain_box -4,4,-4,4 -domain_cells 32,32 -domain_bc_x periodic -domain_bc_y periodic -vesicle_area 1"
     scene += f" -vesicle_reduced_area .7 -vesicle_markers 35 -vesicle_bending .03 -fluid_inertia {inertia} -vesicle_density_difference 2"
     scene += " -vesicle_allow_close_markers -time_step .05 -time_end .3 -output_every 1"
     tight = "-coupled_ksp_rtol 1e-11"
     down = run_petves(tmp_path / "down", f"{scene} {tight} -fluid_gravity 0,-1 -vesicle_angle 0").series
     along = run_petves(tmp_path / "along", f"{scene} {tight} -fluid_gravity 1,0 -vesicle_angle 90").series
-    direct = run_petves(tmp_path / "direct", f"{scene} -fluid_gravity 0,-1 -vesicle_angle 0 -scheme_type direct").series
     assert along["center_x"][-1] == pytest.approx(-down["center_y"][-1], rel=1e-9)
-    assert direct["center_y"][-1] == pytest.approx(down["center_y"][-1], rel=1e-6)
 
 
 @pytest.mark.parametrize("boundary", ["periodic", "wall"])
@@ -140,7 +137,7 @@ def test_speed_does_not_depend_on_the_unit_of_length(tmp_path, boundary):
             f" -time_end .01 -fluid_viscosity {length**2!r} -fluid_inertia none -vesicle_bending {0.01 * length**5!r}"
             f" -vesicle_semi_axes {0.3 * length!r},{0.5 * length!r} -vesicle_center {0.1 * length!r},{0.07 * length!r}"
             f" -fluid_gravity {0.5 * length!r},{-length!r} -vesicle_density_difference 1"
-            " -scheme_type direct -delta_type cbs54 -membrane_derivative spectral -coupling_near_field exact"
+            " -scheme_type coupled -coupled_ksp_rtol 1e-12 -delta_type cbs54 -membrane_derivative spectral -coupling_near_field exact"
             " -scheme_area_target true",
         ).series
         speeds.append([series["velocity_x"][-1] / length, series["velocity_y"][-1] / length])

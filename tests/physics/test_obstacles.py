@@ -1,5 +1,5 @@
 """Obstacles: drag, torque and pressure drop against exact numbers, bumps on walls and curves across a period, vesicles
-among them, ranks, restarts, the sparse LU, files."""
+among them, ranks, restarts, files."""
 
 import json
 import re
@@ -182,7 +182,7 @@ def test_a_swinging_circle(tmp_path):
 
 
 def test_flow_with_inertia(tmp_path):
-    """Past a held post the flow starts steady and stays. With a vesicle the sparse LU, two ranks and a restart agree."""
+    """Past a held post the flow starts steady and stays. With a vesicle two ranks and a restart agree."""
     options = f"{ARRAY} -obstacle_radius .2 -domain_cells 32,32 -fluid_inertia unsteady -time_end .03"
     series = run_petves(tmp_path / "post", options).series
     assert series["obstacle_force_x"][1:] == pytest.approx(EXACT["drag"]["0.2"], rel=1e-5)
@@ -194,7 +194,6 @@ def test_flow_with_inertia(tmp_path):
     run_petves(tmp_path / "half", f"{short} {tight} -time_end .08")
     go_on = f"{tight} -restart {tmp_path / 'half' / 'checkpoint.h5'}"
     for name, more, ranks, within in (
-        ("direct", "-scheme_type direct", 1, 1e-9),
         ("two", tight, 2, 1e-9),
         ("rest", go_on, 1, 0),
     ):
@@ -205,14 +204,11 @@ def test_flow_with_inertia(tmp_path):
 
 def test_drive_of_a_channel(tmp_path):
     """A post in Poiseuille flow: the pressure drop given and the flux lower, or the flux kept and the drop higher; at
-    low flux both belong to one resistance. The sparse LU keeps the flux as well."""
+    low flux both belong to one resistance."""
     rows = []
     for drive in ("pressure", "flux"):
         options = f"{CHANNEL} -domain_cells 96,32 -obstacle_radius .2 {POISEUILLE} -flow_drive {drive}"
         rows.append(last(tmp_path / drive, options))
-    other = last(tmp_path / "direct", f"{options.replace('-coupled_ksp_rtol 1e-10', '')} -scheme_type direct")
-    for column in ("flux", "pressure_drop", "obstacle_force_x"):
-        assert other[column] == pytest.approx(rows[1][column], rel=1e-8)
     assert rows[0]["pressure_drop"] == pytest.approx(24, rel=1e-12) and rows[0]["flux"] < 0.5
     assert rows[1]["flux"] == pytest.approx(2 / 3, rel=1e-12)
     assert rows[1]["pressure_drop"] / rows[1]["flux"] == pytest.approx(24 / rows[0]["flux"], rel=2e-3)
@@ -272,25 +268,23 @@ def test_lines_across_a_period(tmp_path):
     assert row["obstacle_force_x"] == pytest.approx(-1 / 0.4 - 1 / 0.6, rel=2e-5)
 
 
-def test_direct_ranks_and_restart(tmp_path):
-    """A vesicle before a post: the sparse LU agrees, so do 2 and 3 ranks; a restart has the same bits."""
+def test_ranks_and_restart(tmp_path):
+    """A vesicle before a post: 1, 2 and 3 ranks agree; a restart has the same bits."""
     agree(f"{POST} -time_step .04", 0.04, tmp_path)
 
 
-def test_direct_ranks_and_restart_in_a_throat(tmp_path):
+def test_ranks_and_restart_in_a_throat(tmp_path):
     """The same of one that touches the bumps almost."""
     vesicle = "-vesicle_semi_axes .45,.16 -vesicle_center 1.3,.5 -vesicle_bending .1 -domain_cells 72,24"
     agree(f"{THROAT} -flow_drive pressure {vesicle} {COUPLED} -time_step .003", 0.003, tmp_path)
 
 
 def agree(options, step, tmp_path):
-    """coupled and direct, 1, 2 and 3 ranks, and a run that is interrupted."""
+    """1, 2 and 3 ranks, and a run that is interrupted."""
     short = f"{options} -time_end {3 * step}"
     whole = run_petves(tmp_path / "whole", f"{short} -coupled_ksp_rtol 1e-11").series
-    cases = {"direct": ("-scheme_type direct", 1), "two": ("-coupled_ksp_rtol 1e-11", 2)}
-    cases["three"] = ("-coupled_ksp_rtol 1e-11", 3)
-    for name, (more, ranks) in cases.items():
-        other = run_petves(tmp_path / name, f"{short} {more}", ranks=ranks).series
+    for ranks in (2, 3):
+        other = run_petves(tmp_path / str(ranks), f"{short} -coupled_ksp_rtol 1e-11", ranks=ranks).series
         for column in ("center_x", "gap", "obstacle_force_x", "pressure_drop"):
             assert other[column] == pytest.approx(whole[column], rel=1e-9)
     run_petves(tmp_path / "half", f"{options} -time_end {2 * step} -coupled_ksp_rtol 1e-11")
@@ -301,14 +295,13 @@ def agree(options, step, tmp_path):
 
 
 def test_viscosity_contrast(tmp_path):
-    """A vesicle of another viscosity before a post: the sparse LU and two ranks agree; the mean flow is 1."""
+    """A vesicle of another viscosity before a post: two ranks agree; the mean flow is 1."""
     short = f"{POST} -time_step .04 -time_end .08 -vesicle_viscosity_ratio 5"
     tight = "-coupled_ksp_rtol 1e-11"
     one = last(tmp_path / "one", f"{short} {tight}")
-    for name, options, ranks in (("direct", "-scheme_type direct", 1), ("two", tight, 2)):
-        other = last(tmp_path / name, f"{short} {options}", ranks)
-        for column in ("center_x", "gap", "obstacle_force_x", "pressure_drop"):
-            assert other[column] == pytest.approx(one[column], rel=1e-9)
+    other = last(tmp_path / "two", f"{short} {tight}", 2)
+    for column in ("center_x", "gap", "obstacle_force_x", "pressure_drop"):
+        assert other[column] == pytest.approx(one[column], rel=1e-9)
     assert one["flux"] == pytest.approx(2, rel=1e-12)
     assert one["pressure_drop"] == pytest.approx(one["obstacle_force_x"] / 2, rel=1e-9)
 

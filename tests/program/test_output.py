@@ -186,7 +186,7 @@ def test_view_prints_the_model_in_force(tmp_path):
     assert len(run.series["step"]) == 1
 
 
-@pytest.mark.parametrize("scheme", ["split", "coupled", "direct"])
+@pytest.mark.parametrize("scheme", ["split", "coupled"])
 def test_no_memory_is_left(scheme, tmp_path):
     """PETSc's own account, of a run and of its restart: every PetscMalloc freed and every object destroyed."""
     options = (

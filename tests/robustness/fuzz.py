@@ -123,7 +123,7 @@ class Draw:
         """A small scene and some options."""
         words = "-domain_cells 16,16 -time_step 0.01 -time_end 0.01 -time_wall_limit 3".split()
         if self.random.random() < 0.5:
-            words += ["-scheme_type", self.random.choice(["split", "penalty", "coupled", "direct"])]
+            words += ["-scheme_type", self.random.choice(["split", "penalty", "coupled"])]
         if self.random.random() < 0.3:
             words.append("-allow_unused_options")
         for name, default, _, allowed, _ in self.random.sample(self.table, self.random.randint(0, most)):

@@ -62,9 +62,8 @@ RESIDUALS = ("div_max", "surface_div_max")
 
 #: Bounds of a difference over the scale of its column.
 OF_UNITS = 1e-8  # powers of two change no digits, but the last ones of what is restored after a step
-OF_FACTOR = 1e-6  # and what a sparse LU makes of those where its matrix is ill-conditioned
 OF_ROUNDING = 1e-4  # what solves to 1e-11 leave of small torques, in films and where a membrane hardly turns
-OF_TOLERANCE = 1e-3  # solves to the default, 1e-6, and by a sparse LU without refinement
+OF_TOLERANCE = 1e-3  # solves to the default, 1e-6, leave
 OF_BUMPS = 2e-3  # polynomials through six markers, at spacings of half a cell: not the same from the left and right
 
 
@@ -232,10 +231,10 @@ def difference(scene: Scene, base: dict, changed: dict, change: Change) -> tuple
 
 def bound(scene: Scene, change: Change) -> float:
     if change.rescales:
-        return OF_FACTOR if scene.text["scheme_type"] == "direct" else OF_UNITS
+        return OF_UNITS
     if scene.kind == "open":
         return OF_BUMPS
-    loose = scene.text["scheme_type"] in ("coupled", "direct") and "coupled_ksp_rtol" not in scene.text
+    loose = scene.text["scheme_type"] == "coupled" and "coupled_ksp_rtol" not in scene.text
     return OF_TOLERANCE if loose else OF_ROUNDING
 
 

@@ -41,7 +41,7 @@ def test_every_kind_is_drawn():
         if scene:
             seen.update([scene.kind, *scene.text.values(), *scene.numbers, *scene.numbers["domain_bc"].tolist()])
             seen.update(change.name for change in metamorphic.changes(scene, draw.random, RANKS))
-    kinds = "posts closed container open spanning coupled direct split penalty free periodic wall convective unsteady"
+    kinds = "posts closed container open spanning coupled split penalty free periodic wall convective unsteady"
     kinds += " shear poiseuille extension uniform flux error vesicle_viscosity_ratio fluid_gravity contact_adhesion"
     kinds += " shift mirror swap order time length both"
     assert not [kind for kind in kinds.split() if not seen[kind]]

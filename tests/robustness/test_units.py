@@ -37,15 +37,12 @@ KINDS = {
     "convective": f"{BOX} {SHEAR} -fluid_inertia convective",
     "split": f"{BOX} -scheme_type split",
     "penalty": f"{BOX} -scheme_type penalty -time_step 0.001 -time_end 0.003",
-    "direct": f"{STOKES} -scheme_type direct -domain_cells 16,16",
     "ilu": f"{STOKES} -mobility_type ilu",
     "hypre": f"{BOX} -scheme_type split -helmholtz_type hypre -poisson_type hypre",
     "adaptive": f"{STOKES} -time_adapt error -time_adapt_max_step 0.1",
     "steady": f"{STOKES} -time_end 0.3 -time_step 0.05 -time_steady_tol 0.01",
     "auto": f"-fluid_viscosity 1 {VESICLE} -time_step 0.02 -time_end 0.1 -scheme_auto 0.01",
 }
-#: Of the direct scheme the factor's rounding times its condition number.
-WITHIN = {"direct": 1e-7}
 COUNTS = ("step", "tension_its", "bending_its", "coupled_its", "nsolve")
 
 
@@ -79,7 +76,7 @@ def run(options: str, folder, units: dict, length: float = 1, time: float = 1) -
         if word in units and any(units[word]):
             factor = length ** units[word][0] * time ** units[word][1]
             words[k + 1] = ",".join(repr(float(x) * factor) for x in words[k + 1].split(","))
-    tight = [] if "split" in options or "penalty" in options or "direct" in options else ["-coupled_ksp_rtol", "1e-10"]
+    tight = [] if "split" in options or "penalty" in options else ["-coupled_ksp_rtol", "1e-10"]
     done = mpirun([PETVES, *words, *tight, "-output_dir", str(folder)], 1)
     assert done.returncode == 0, done.stderr
     series = read_series(folder / "series.csv")
@@ -100,7 +97,7 @@ def test_units_change_nothing(kind, option_units, tmp_path):
         for name, column in base.items():
             apart = np.nan_to_num(np.abs(other[name] - column))
             assert apart.shape == column.shape
-            within = 0 if name in COUNTS else WITHIN.get(kind, 1e-9) * largest[unit(name)]
+            within = 0 if name in COUNTS else 1e-9 * largest[unit(name)]
             assert apart.max() <= within, (name, k, m, column, other[name])
 
 

@@ -42,7 +42,6 @@ LONG = SHORT | {
     "penalty": (f"{SHEAR} -scheme_type penalty", 0),
     "split": (f"{SHEAR} -scheme_type split", 0),
     "hypre": (f"{SHEAR} -scheme_type split -helmholtz_type hypre -poisson_type hypre", 0),
-    "direct": (f"{TWO_STEPS} -scheme_type direct", 0),
     "contrast": (f"{TWO_STEPS} -domain_cells 32,32 -vesicle_viscosity_ratio 5", 0),
     "contrast_channel": (f"{TWO_STEPS} -domain_cells 32,32 -domain_bc_x periodic -vesicle_viscosity_ratio 5", 0),
     "contrast_posts": (f"{TWO_STEPS} {POSTS} -domain_cells 32,32 -vesicle_viscosity_ratio 5", 0),

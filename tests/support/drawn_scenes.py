@@ -134,7 +134,7 @@ class Draw:
         pick, h = self.random.choice, self.h
         kind, found = self.solids()
         free, grid = self.bc[0] == "free", kind == "none" and self.bc[0] != "free"
-        scheme = pick(["coupled"] * (10 if free else 7 if grid else 3) + ["direct"] * (not free) + PROJECTIONS * grid)
+        scheme = pick(["coupled"] * (10 if free else 8 if grid else 4) + PROJECTIONS * grid)
         gaps = [3.1] if scheme in PROJECTIONS else [0.8, 1.5, 3]  # what kernels need
         vesicles = []
         for _ in range(self.random.randint(1, 3)):
@@ -169,7 +169,7 @@ class Draw:
         return Scene(self.numbers, self.text, vesicles, [] if kind in ("none", "posts") else found, kind)
 
     def unsplit(self, count: int, bending: float) -> None:
-        """What coupled and direct may have."""
+        """What coupled may have."""
         pick, order = self.random.choice, self.random.choice([1, 2, 3, 3])
         inertia = "none" if self.bc[0] == "free" else pick(["auto", "none", "unsteady", "convective"])
         if self.chance(0.3):

@@ -1,0 +1,101 @@
+/* Viscosity contrast in the matrix (coupling/contrast.h). The jump J, less its flux, is an unknown of its own, so that
+   the fluid's rows have the few markers near them only. */
+#include "coupling/contrast.h"
+#include "direct.h"
+
+/* The tensor of the unit jump of marker k in direction c. */
+static void UnitTensor(DoubleLayer s, PetscInt k, int c, PetscReal T[DIPOLE_COUNT]) {
+  const PetscReal *N = s->normal + 2 * k;
+  T[DIPOLE_XX] = c ? 0 : 2 * N[0];
+  T[DIPOLE_YY] = c ? 2 * N[1] : 0;
+  T[DIPOLE_XY] = N[1 - c];
+}
+
+/* The unit jump's column: its dipoles in the fluid's rows, what they have of the mean velocity, and minus the box part
+   D (columns one after another, NULL: none) in the rows of bodies. */
+static PetscErrorCode AddUnitJump(Direct *d, PetscInt k, int c, const PetscReal D[]) {
+  const DoubleLayer s = d->c->contrast;
+  const Grid g = d->grid;
+  const PetscInt column = d->first[PART_JUMP] + 2 * k + c, rows = 2 * d->c->bodies->layout->M;
+  const PetscReal *X = d->c->markers->X + 2 * k;
+  PetscReal T[DIPOLE_COUNT];
+  DipoleSpot spot[DIPOLE_SPOTS];
+  PetscFunctionBeginUser;
+  UnitTensor(s, k, c, T);
+  DipoleSpots(g, d->fluid->nu, X, spot);
+  for (const DipoleSpot *p = spot; p < spot + DIPOLE_SPOTS; p++)
+    for (PetscInt b = 0; b < p->line[1].n; b++)
+      for (PetscInt a = 0; a < p->line[0].n; a++)
+        PetscCall(DirectAdd(d, DirectIndex(d, p->field, DipoleEntry(g, p, 0, a), DipoleEntry(g, p, 1, b)), column,
+                            -T[p->part] * p->value * p->line[0].weight[a] * p->line[1].weight[b]));
+  for (PetscInt f = 0; f < DirectMeans(d); f++)
+    PetscCall(DirectAdd(d, d->first[PART_MEAN] + f, column, X[f] * s->normal[2 * k + c] / PetscSqr(g->h)));
+  for (PetscInt i = 0; D && i < rows; i++)
+    for (int q = 0; q < DIPOLE_COUNT; q++)
+      PetscCall(DirectAdd(d, DirectRow(d, i), column, T[q] * D[(DIPOLE_COUNT * k + q) * rows + i]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* J - Q (1 - ratio) (V + (treading/a0) dV/dt) = 0 of one vesicle, a column of V at a time. */
+static PetscErrorCode AddJump(Direct *d, PetscInt v) {
+  const DoubleLayer s = d->c->contrast;
+  const Membrane m = d->c->membrane;
+  const PetscInt first = 2 * m->layout->start[v], n = 2 * LayoutCount(m->layout, v);
+  const PetscInt J = d->first[PART_JUMP] + first, V = d->first[PART_V] + first;
+  const PetscReal *N = s->normal + first, *along = s->along + first / 2;
+  PetscReal *unit, *out;
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc2(n, &unit, n, &out));
+  for (PetscInt c = 0; c < n; c++) {
+    PetscReal flux = 0;
+    PetscCall(DirectAdd(d, J + c, J + c, 1));
+    if (s->ratio[v] == 1) continue;
+    unit[c] = 1;
+    PetscCall(PetscArraycpy(out, unit, n));
+    MembraneLabelDerivative(m, v, d->c->treading[v] / d->fluid->a0, unit, out);
+    for (PetscInt k = 0; k < n; k++) flux += N[k] * out[k];
+    for (PetscInt k = 0; k < n; k++)
+      PetscCall(DirectAdd(d, J + k, V + c, -(1 - s->ratio[v]) * (out[k] - flux / s->length[v] * N[k] / along[k / 2])));
+    unit[c] = 0;
+  }
+  PetscCall(PetscFree2(unit, out));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Minus C_D of the vesicles' motion in the rows of obstacles. */
+static PetscErrorCode AddToObstacles(Direct *d) {
+  const Membrane m = d->c->membrane;
+  const PetscInt M = 2 * m->layout->M, n = 2 * d->c->bodies->layout->M;
+  PetscReal *C, *row;
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc2(n * n, &C, M, &row));
+  PetscCall(DoubleLayerAdd(d->c->contrast, -1, PETSC_TRUE, 0, n / 2, C));
+  for (PetscInt i = M; i < n; i++) {
+    for (PetscInt j = 0; j < M; j++) row[j] = C[j * n + i];
+    PetscCall(ContrastTread(m, 0, m->layout->bodies, d->c->treading, d->fluid->a0, 1, row));
+    for (PetscInt j = 0; j < M; j++) PetscCall(DirectAdd(d, DirectRow(d, i), d->first[PART_V] + j, row[j]));
+  }
+  PetscCall(PetscFree2(C, row));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode DirectAddContrast(Direct *d) {
+  const DoubleLayer s = d->c->contrast;
+  const Layout l = d->c->membrane->layout;
+  const PetscInt n = 2 * l->M, V = d->first[PART_V];
+  const PetscBool box = DoubleBoxServes(s->box);
+  PetscReal *B, *D = NULL;
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(n * n, &B));
+  PetscCall(ContrastMatrix(d->c, PETSC_TRUE, d->fluid->a0, 0, l->M, B));
+  for (PetscInt i = 0; i < n * n; i++) PetscCall(DirectAdd(d, V + i / n, V + i % n, B[i]));
+  PetscCall(PetscFree(B));
+  PetscCall(AddToObstacles(d));
+  if (box) PetscCall(PetscCalloc1(2 * DIPOLE_COUNT * PetscSqr(d->c->bodies->layout->M), &D));
+  if (box) PetscCall(DoubleBoxMatrix(s->box, -1, D));
+  for (PetscInt k = 0; k < n; k++)
+    if (s->ratio[LayoutBody(l, k / 2)] != 1) PetscCall(AddUnitJump(d, k / 2, (int)(k % 2), D));
+  PetscCall(PetscFree(D));
+  for (PetscInt v = 0; v < l->bodies; v++) PetscCall(AddJump(d, v));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,243 @@
+/* The solution of each step's coupled problem in whole runs, FGMRES's, is that of a sparse LU of the same equations. */
+#include "check.h"
+#include "simulation.h"
+#include "scheme/coupled.h"
+#include "direct.h"
+#include <dlfcn.h>
+
+/* Largest |x - y| of the solves of a scene so far, over 1 + max |y|, of velocity, pressure, tension, the markers' and
+   the obstacles' part. */
+enum { W, P, SIGMA, V, SOLID, VECTORS };
+static PetscReal largest[VECTORS];
+static PetscInt solves, iterations;
+
+static PetscErrorCode Compare(Vec x, Vec y, PetscReal *error) {
+  PetscReal size, off;
+  PetscFunctionBeginUser;
+  PetscCall(VecNorm(y, NORM_INFINITY, &size));
+  PetscCall(VecAXPY(x, -1, y));
+  PetscCall(VecNorm(x, NORM_INFINITY, &off));
+  *error = off == off ? PetscMax(*error, off / (1 + size)) : PETSC_INFINITY;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A problem with vectors of its own, the states before it in its forcing f and in k. */
+static PetscErrorCode Duplicate(CoupledSolver s, const CoupledProblem *q, Forcing *f, CoupledProblem *own) {
+  const Coupling c = s->coupling;
+  PetscFunctionBeginUser;
+  *own = (CoupledProblem){.f = f, .moved = q->moved, .g = q->g, .F = q->F};
+  PetscCall(ForcingCreate(c->fluid->grid, c->contrast ? PETSC_TRUE : PETSC_FALSE, f));
+  PetscCall(VecDuplicate(q->k, &own->k));
+  PetscCall(VecDuplicate(f->values, &own->w));
+  PetscCall(DMCreateGlobalVector(c->fluid->grid->da[FIELD_P], &own->p));
+  PetscCall(VecDuplicate(q->sigma, &own->sigma));
+  PetscCall(VecDuplicate(q->V, &own->V));
+  if (q->solid) PetscCall(VecDuplicate(q->solid, &own->solid));
+  PetscCall(VecCopy(q->k, own->k));
+  for (PetscInt j = 0; q->past && j < q->past->count; j++) {
+    PetscCall(StreamFlowsVelocity(StreamGetFlows(s->reduced->stream), q->past->flow[j], own->w));
+    PetscCall(VecScale(own->w, q->past->weight[j]));
+    PetscCall(ForcingAdd(f, own->w));
+  }
+  PetscCall(CouplingAddPast(c, f->values, own->k));
+  PetscCall(ForcingAdd(f, q->f->values));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The solver's u and p on the grid. */
+static PetscErrorCode Fields(CoupledSolver s, const CoupledProblem *q, Vec w, Vec p) {
+  PetscFunctionBeginUser;
+  if (q->w) {
+    PetscCall(VecCopy(q->w, w));
+    PetscCall(VecCopy(q->p, p));
+  } else if (q->past) {
+    PetscCall(StreamFlowsVelocity(StreamGetFlows(s->reduced->stream), q->past->made, w));
+    PetscCall(ReducedPressure(s->reduced, q->f, w, p));
+  } else
+    PetscCall(ReducedFields(s->reduced, q->f, w, p));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* In the place of the library's, which it calls: the dynamic linker finds this one first. */
+PetscErrorCode CoupledSolverSolve(CoupledSolver s, const CoupledProblem *q, SolveReport *report) {
+  PetscErrorCode (*solve)(CoupledSolver, const CoupledProblem *, SolveReport *);
+  CoupledProblem own;
+  Forcing f;
+  Vec w, p;
+  PetscFunctionBeginUser;
+  *(void **)&solve = dlsym(RTLD_NEXT, "CoupledSolverSolve");
+  PetscCall(Duplicate(s, q, &f, &own));
+  PetscCall(DirectSolve(s->coupling, &own));
+  PetscCall(solve(s, q, report));
+  solves++;
+  iterations += report->its;
+  PetscCall(VecDuplicate(own.w, &w));
+  PetscCall(VecDuplicate(own.p, &p));
+  PetscCall(Fields(s, q, w, p));
+  PetscCall(Compare(own.w, w, &largest[W]));
+  PetscCall(Compare(own.p, p, &largest[P]));
+  PetscCall(Compare(own.sigma, q->sigma, &largest[SIGMA]));
+  PetscCall(Compare(own.V, q->V, &largest[V]));
+  if (q->solid) PetscCall(Compare(own.solid, q->solid, &largest[SOLID]));
+  Vec *all[] = {&own.k, &own.w, &own.p, &own.sigma, &own.V, &own.solid, &w, &p};
+  for (int k = 0; k < 8; k++) PetscCall(VecDestroy(all[k]));
+  PetscCall(ForcingDestroy(&f));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A scene's run, all of whose solves agree to `within`. */
+static PetscErrorCode Agrees(const char name[], PetscReal within, const char options[]) {
+  static const char *const what[VECTORS] = {"velocity", "pressure", "tension", "markers' velocity", "obstacles' force"};
+  const char *scratch = getenv("PETVES_SCRATCH");
+  char folder[PETSC_MAX_PATH_LEN];
+  Simulation s;
+  PetscBool good;
+  PetscFunctionBeginUser;
+  solves = iterations = 0;
+  PetscCall(PetscArrayzero(largest, VECTORS));
+  PetscCall(PetscSNPrintf(folder, sizeof(folder), "%sdirect", scratch ? scratch : "/tmp/"));
+  PetscCall(PetscOptionsClear(NULL));
+  PetscCall(PetscOptionsInsertString(NULL, "-output_overwrite -allow_unused_options -vesicle_allow_close_markers "
+                                           "-coupled_ksp_rtol 1e-12 -checkpoint_every 0"));
+  PetscCall(PetscOptionsInsertString(NULL, options));
+  PetscCall(PetscOptionsSetValue(NULL, "-output_dir", folder));
+  PetscCall(SimulationCreate(PETSC_COMM_WORLD, &s));
+  PetscCall(PetvesSetQuiet(PETSC_TRUE));
+  PetscCall(SimulationRun(s, &good));
+  PetscCall(SimulationDestroy(&s));
+  CHECK(good && solves > 0, "%s: %d solves in %d iterations", name, (int)solves, (int)iterations);
+  for (int k = 0; k < VECTORS; k++)
+    CHECK(largest[k] <= within, "%s: %s as of the sparse LU, %.1e", name, what[k], largest[k]);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+#define STEPS " -time_step 0.02 -time_end 0.06"
+#define SHEAR " -flow_type shear -flow_rate 2 -vesicle_angle 20"
+#define CHANNEL " -domain_bc_x periodic"
+#define PERIODIC " -domain_bc_x periodic -domain_bc_y periodic"
+#define PAPER                                                                                                          \
+  " -delta_type ib6 -membrane_derivative fd -coupling_near_field none -scheme_area_target false -fluid_inertia "       \
+  "unsteady"
+
+/* The paper's membrane, of both orders, with and without bending, in every kind of box. */
+static PetscErrorCode PaperScenes(void) {
+  static const char *const box[] = {" -domain_cells 48,48",
+                                    " -domain_cells 60,48 -domain_box 0,2.5,-1,1 -vesicle_center 2.4,0.1" CHANNEL,
+                                    " -domain_cells 48,48 -vesicle_center 0,0.9" PERIODIC};
+  static const char *const flow[] = {" -vesicle_angle 20", SHEAR};
+  PetscFunctionBeginUser;
+  for (int k = 0; k < 12; k++) {
+    char name[64], options[512];
+    const int order = 1 + k % 2;
+    PetscCall(PetscSNPrintf(name, sizeof(name), "box %d, %s, order %d", k / 4, k / 2 % 2 ? "shear" : "at rest", order));
+    PetscCall(PetscSNPrintf(options, sizeof(options), "%s%s -scheme_order %d" PAPER STEPS, box[k / 4], flow[k / 2 % 2],
+                            order));
+    PetscCall(Agrees(name, 1e-9, options));
+    PetscCall(PetscStrlcat(options, " -vesicle_bending 0", sizeof(options)));
+    if (k / 2 % 2) PetscCall(Agrees(name, 1e-9, options));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+#define PAIR                                                                                                           \
+  " -domain_box -1.5,1.5,-1.5,1.5 -domain_cells 48,48 -vesicle_count 2 -vesicle_semi_axes 0.2,0.4 -vesicle_angle 0"
+#define SMALL                                                                                                          \
+  " -domain_box -2,2,-2,2 -domain_cells 32,32 -flow_type shear -vesicle_area 0.5 -vesicle_markers 25 -vesicle_count "  \
+  "2 "                                                                                                                 \
+  "-vesicle_center -.6,.2,.6,-.2 -vesicle_angle 60 -vesicle_bending .03 -time_step .1 -time_end .3 -scheme_order 3"
+#define UNLIKE SMALL " -vesicle_viscosity_ratio 5,.3"
+#define TOUCHING                                                                                                       \
+  " -fluid_inertia none -vesicle_count 2 -vesicle_semi_axes 0.4,0.8 -vesicle_bending 0.05 -vesicle_markers 21 "        \
+  "-domain_box -1.35,1.35,-1.35,1.35 -domain_cells 24,24 -coupling_box_part false -vesicle_center -0.45,0,0.45,0.3 "   \
+  "-contact_repulsion 30 -contact_repulsion_range 0.3 -contact_adhesion 1 -contact_adhesion_range 0.2 "                \
+  "-flow_type shear"
+#define SETTLES                                                                                                        \
+  " -domain_box -4,4,-4,4 -domain_cells 32,32 -vesicle_area 1 -vesicle_reduced_area .7 -vesicle_markers 35 "           \
+  "-vesicle_bending .03 -vesicle_density_difference 2 -fluid_gravity 0,-1 -scheme_order 3 -time_step .05 -time_end .3"
+#define POST                                                                                                           \
+  " -vesicle_area .19634954 -vesicle_reduced_area .7 -vesicle_angle 90 -vesicle_center .25,1 -domain_box 0,2,0,2 "     \
+  "-domain_cells 32,32 -obstacle_shape posts -obstacle_radius .3 -obstacle_center 1,1 -obstacle_spacing .75 "          \
+  "-flow_type uniform -vesicle_bending .01 -scheme_order 3 -time_step .04 -time_end .12" PERIODIC
+#define POISEUILLE " -domain_box 0,3,0,1 -flow_type poiseuille -flow_half_width .5 -flow_center_y .5" CHANNEL
+#define THROAT                                                                                                         \
+  POISEUILLE " -flow_peak_velocity 1.5 -obstacle_shape constriction -obstacle_throat .48 -obstacle_length 1 "          \
+             "-obstacle_center 1.5,0 -vesicle_semi_axes .45,.16 -vesicle_center 1.3,.5 -vesicle_bending .1 "           \
+             "-domain_cells 72,24 -time_step .003 -time_end .009"
+#define CELLS SHEAR STEPS " -domain_cells 32,32"
+
+static const struct {
+  const char *name, *options;
+  PetscReal within;
+} scenes[] = {
+    {"exact near field", CELLS, 1e-9},
+    {"ib6", CELLS " -delta_type ib6", 1e-9},
+    {"cbs43", CELLS " -delta_type cbs43", 1e-9},
+    {"cbs65", CELLS " -delta_type cbs65", 1e-9},
+    {"order 1", CELLS " -scheme_order 1", 1e-9},
+    {"chords", CELLS " -membrane_derivative bending", 1e-9},
+    {"unsteady", CELLS " -fluid_inertia unsteady", 1e-9},
+    {"channel", CELLS " -domain_box 0,2.5,-1,1 -domain_cells 40,32 -vesicle_center 1.2,0.1" CHANNEL, 1e-9},
+    {"seam", CELLS " -domain_cells 33,33 -vesicle_center 0.97,-0.95" PERIODIC, 1e-9},
+    {"close markers", CELLS " -vesicle_spacing 0.7", 1e-9},
+    {"pair", CELLS PAIR " -vesicle_center -0.29375,0.05,0.29375,-0.05", 1e-9},
+    {"pair over a seam", CELLS PAIR " -vesicle_center -1.3,0.05,1.1,-0.05" CHANNEL, 1e-9},
+    {"no bending", CELLS " -vesicle_bending 0", 1e-9},
+    {"little bending", CELLS " -vesicle_bending 1e-4", 1e-9},
+    {"stiff", CELLS " -vesicle_bending 1", 1e-9},
+    {"stiffer", CELLS " -vesicle_bending 100", 1e-7},
+    {"quasi-steady in a box", CELLS " -fluid_inertia none", 1e-9},
+    {"quasi-steady in a channel", CELLS " -fluid_inertia none" CHANNEL, 1e-9},
+    {"quasi-steady, periodic", CELLS " -fluid_inertia none" PERIODIC, 1e-9},
+    {"convective", CELLS " -fluid_inertia convective -time_step 0.005 -time_end 0.02", 1e-9},
+    {"no vesicle", " -vesicle_shape none -domain_cells 32,32 -flow_type shear -fluid_inertia unsteady" STEPS, 1e-9},
+    {"box part between walls", SMALL " -fluid_inertia none", 1e-9},
+    {"box part in a channel", SMALL " -fluid_inertia none" CHANNEL, 1e-9},
+    {"contrast between walls", UNLIKE, 1e-9},
+    {"contrast next to walls", UNLIKE " -vesicle_center -.8,-1.58,.8,1.6 -vesicle_angle 5" CHANNEL, 1e-9},
+    {"contrast, periodic", UNLIKE PERIODIC, 1e-9},
+    {"repulsion and adhesion", TOUCHING STEPS CHANNEL, 1e-9},
+    {"gravity in a box", SETTLES " -fluid_inertia none", 1e-9},
+    {"gravity, periodic", SETTLES " -fluid_inertia none" PERIODIC, 1e-9},
+    {"gravity with inertia, periodic", SETTLES " -fluid_inertia unsteady" PERIODIC, 1e-9},
+    {"post", POST, 1e-9},
+    {"post with inertia", POST " -fluid_inertia unsteady", 1e-9},
+    {"post and contrast", POST " -vesicle_viscosity_ratio 5", 1e-9},
+    {"post, flux held",
+     POISEUILLE " -vesicle_shape none -domain_cells 96,32 -obstacle_shape posts -obstacle_center 1.5,.5 "
+                "-obstacle_radius .2 -flow_drive flux -time_step .01 -time_end .01",
+     1e-9},
+    {"throat", THROAT, 3e-9},
+};
+
+/* A bump on a wall, with its foot half a cell from a corner of four walls. */
+static PetscErrorCode BumpBesideCorner(void) {
+  const char *scratch = getenv("PETVES_SCRATCH");
+  char path[PETSC_MAX_PATH_LEN], options[2 * PETSC_MAX_PATH_LEN];
+  FILE *file;
+  PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(path, sizeof(path), "%sbump.txt", scratch ? scratch : "/tmp/"));
+  PetscCall(PetscFOpen(PETSC_COMM_SELF, path, "w", &file));
+  fprintf(file, "# open\n");
+  for (int k = -40; k <= 40; k++)
+    fprintf(file, "%.17g %.17g\n", 0.28 + k / 160., 0.15 * (1 + PetscCosReal(PETSC_PI * k / 40)));
+  PetscCall(PetscFClose(PETSC_COMM_SELF, file));
+  PetscCall(PetscSNPrintf(options, sizeof(options),
+                          "-vesicle_shape none -time_step .01 -time_end .01 -domain_box 0,1,0,1 -domain_cells 16,16 "
+                          "-flow_type shear -obstacle_shape file -obstacle_file %s",
+                          path));
+  PetscCall(Agrees("bump beside a corner", 1e-7, options));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Facts(void) {
+  PetscFunctionBeginUser;
+  PetscCall(PaperScenes());
+  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(scenes); k++)
+    PetscCall(Agrees(scenes[k].name, scenes[k].within, scenes[k].options));
+  PetscCall(BumpBesideCorner());
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+int main(int argc, char **argv) {
+  return CheckMain(argc, argv, Facts);
+}
