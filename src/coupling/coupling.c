@@ -271,9 +271,7 @@ PetscErrorCode CouplingCreate(Fluid fluid, Membrane m, Obstacles obstacles, cons
   c->fluid = fluid;
   c->membrane = m;
   PetscCall(BodiesCreate(m, obstacles, &c->bodies));
-  /* walls that move with the flow are not at rest in the total form: nothing to fold there */
-  const PetscBool folded = near == NEAR_EXACT && !fluid->total ? PETSC_TRUE : PETSC_FALSE;
-  PetscCall(MarkersCreate(fluid->grid, c->bodies->layout, kernel, folded, &c->markers));
+  PetscCall(MarkersCreate(fluid->grid, c->bodies->layout, kernel, near == NEAR_EXACT, &c->markers));
   PetscCall(PetscMalloc1(2 * m->layout->n, &c->tau));
   PetscCall(PetscCalloc1(m->layout->n, &c->turning));
   PetscCall(PetscCalloc1(m->layout->bodies, &c->treading));

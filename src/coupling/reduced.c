@@ -111,11 +111,11 @@ static PetscErrorCode AddMean(Reduced s, const PetscReal mean[2], Vec w) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* (w, p) = Stokes(r, source), source may be p. */
-static PetscErrorCode Solve(Reduced s, const Forcing *r, Vec source, Vec w, Vec p) {
+/* (w, p) = Stokes(r). */
+static PetscErrorCode Solve(Reduced s, const Forcing *r, Vec w, Vec p) {
   PetscFunctionBeginUser;
   if (!s->stokes) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(StokesSolve(s->stokes, r->values, source, w, p));
+  PetscCall(StokesSolve(s->stokes, r->values, r->source, w, p));
   PetscCall(AddMean(s, r->mean, w));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -201,12 +201,11 @@ static PetscErrorCode Follow(Reduced s, PetscBool first) {
   const Coupling c = s->unknowns->coupling;
   const PetscBool bodies = CouplingHasBodies(c);
   PetscFunctionBeginUser;
-  if ((first || !q->w) && s->stream && !c->fluid->bc2) {
+  if ((first || !q->w) && s->stream) {
     if (bodies) PetscCall(q->past ? FollowFlow(s, first) : FollowByRows(s));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  if (c->fluid->bc2) PetscCall(VecAXPBY(q->p, -1, 0, c->fluid->bc2)); /* moving walls, which go without dipoles */
-  PetscCall(Solve(s, q->f, c->fluid->bc2 ? q->p : q->f->source, q->w, q->p));
+  PetscCall(Solve(s, q->f, q->w, q->p));
   if (bodies) PetscCall(MarkersInterpolate(c->markers, q->w, s->U));
   PetscCall(TakePart(s));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -275,12 +274,12 @@ PetscErrorCode ReducedFinish(Reduced s, Vec added, Vec x) {
 
 PetscBool ReducedNeedsNoPressure(Reduced s) {
   const Coupling c = s->unknowns->coupling;
-  return s->stream && !c->fluid->total && CouplingHasBodies(c) ? PETSC_TRUE : PETSC_FALSE;
+  return s->stream && CouplingHasBodies(c) ? PETSC_TRUE : PETSC_FALSE;
 }
 
 PetscErrorCode ReducedFields(Reduced s, const Forcing *f, Vec w, Vec p) {
   PetscFunctionBeginUser;
-  PetscCall(Solve(s, f, f->source, w, p));
+  PetscCall(Solve(s, f, w, p));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

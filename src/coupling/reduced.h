@@ -1,11 +1,11 @@
 /* The coupled problem of one time step, for velocity, pressure and tension together (docs/solver.md),
-       H u + G p + E^T F/h^2 = f,   G^T u = -bc2,   F = Dm^T sigma + (1/a0) (c_b ds D4 + K_rep) V,
+       H u + G p + E^T F/h^2 = f,   G^T u = 0,   F = Dm^T sigma + (1/a0) (c_b ds D4 + K_rep) V,
        V + (v/a0) dV/dt = E u - C F + k,           Dm V/h^2 = g,           0 = E_w u - C F - beta N N^T F + k_w,
    V the markers' velocity without the background's, seen from labels t that turn at the speed v of their vesicle, C the
    near field, the last for the markers of obstacles (obstacles.h), whose F is an unknown and which C knows as well,
    K_rep the springs of a repulsion if there is one, k what C gives of the forces that are known, reduced to its forces.
    A Stokes solve gives u and p for any force, so the unknowns are V, F of obstacles and sigma:
-   (u, p) = Stokes(f - E^T F/h^2, -bc2),   V + (v/a0) dV/dt - E u + C F = k,   Dm V/h^2 = g.
+   (u, p) = Stokes(f - E^T F/h^2),   V + (v/a0) dV/dt - E u + C F = k,   Dm V/h^2 = g.
    A product costs one Stokes solve for the velocity at the markers only (fluid/stream.h); u and p follow from the
    solution's forces.
    In unbounded fluid there is no u on a grid (E = 0) and C is all of the mobility: a product is dense work on markers,

@@ -4,7 +4,7 @@
 #define MOST_ROUNDS 4
 #define ROUNDING 1e-8 /* of the first residual: what rounding leaves out of GMRES's is far below */
 
-/* -coupled_ksp_rtol is relative to the norm of the step's right-hand side (f, bc2, g, k of obstacles), not to what the
+/* -coupled_ksp_rtol is relative to the norm of the step's right-hand side (f, g, k of obstacles), not to what the
    initial guess left of it. */
 static PetscErrorCode Converged(KSP ksp, PetscInt it, PetscReal norm, KSPConvergedReason *reason, void *ctx) {
   const CoupledSolver s = (CoupledSolver)ctx;
@@ -182,13 +182,13 @@ static PetscErrorCode ObstacleReference(CoupledSolver s, const CoupledProblem *q
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Norm of f, bc2, g and the obstacles' k with their factors (UnknownsScale). With a flow f is without the states
+/* Norm of f, g and the obstacles' k with their factors (UnknownsScale). With a flow f is without the states
    before, whose square the first residual gives (Begin). */
 static PetscErrorCode Reference(CoupledSolver s, const CoupledProblem *q) {
   const Layout l = s->coupling->membrane->layout;
   const PetscScalar *a;
   const PetscReal l2 = PetscSqr(s->unknowns->length);
-  PetscReal norm, sum = 0, squares = 0;
+  PetscReal sum = 0, squares = 0;
   PetscFunctionBeginUser;
   PetscCall(VecGetArrayRead(q->g, &a));
   for (PetscInt v = l->own; v < l->end; v++)
@@ -199,10 +199,6 @@ static PetscErrorCode Reference(CoupledSolver s, const CoupledProblem *q) {
   PetscCall(GridAddSquares(q->f->grid, q->f->everywhere ? NULL : &q->f->window, q->f->values, &squares));
   sum += l2 * squares;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPIU_REAL, MPI_SUM, l->comm));
-  if (s->coupling->fluid->bc2) {
-    PetscCall(VecNorm(s->coupling->fluid->bc2, NORM_2, &norm));
-    sum += PetscSqr(s->coupling->fluid->nu * norm);
-  }
   s->reference = PetscSqrtReal(sum);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -56,14 +56,8 @@ static void PadRow(Convection c, int f, const PetscScalar row[], PetscReal padde
 static PetscErrorCode Pad(Convection c, Vec w) {
   const Grid g = c->fluid->grid;
   const PetscScalar *a;
-  Vec difference = NULL;
   Rows rows;
   PetscFunctionBeginUser;
-  if (c->fluid->total) {
-    PetscCall(DMGetGlobalVector(g->velocity, &difference));
-    PetscCall(VecWAXPY(difference, -1, c->fluid->background, w));
-    w = difference;
-  }
   PetscCall(VecGetArrayRead(w, &a));
   for (int f = 0; f < 2; f++) {
     PetscCall(GridRows(g, (Field)f, a + (f ? GridLocalU(g) : 0), &rows));
@@ -72,7 +66,6 @@ static PetscErrorCode Pad(Convection c, Vec w) {
     for (PetscInt k = 0; k < c->width * c->height; k++) c->carrier[f][k] = c->own[f][k] + c->background[f][k];
   }
   PetscCall(VecRestoreArrayRead(w, &a));
-  if (difference) PetscCall(DMRestoreGlobalVector(g->velocity, &difference));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -21,8 +21,8 @@ struct _p_Convection {
 PETSC_EXTERN PetscErrorCode ConvectionCreate(const Flow *flow, Fluid fluid, Convection *convection);
 PETSC_EXTERN PetscErrorCode ConvectionDestroy(Convection *convection);
 
-/* ConvectionAdd - f += alpha N (length/time^2), from the solved velocity w (u', or u' + u_inf in the total form), which
-   must not be the values of f. Collective. */
+/* ConvectionAdd - f += alpha N (length/time^2), from the disturbance w = u', which must not be the values of f.
+   Collective. */
 PETSC_EXTERN PetscErrorCode ConvectionAdd(Convection convection, PetscReal alpha, Vec w, Forcing *f);
 
 /* ConvectionSpeed - max over cells of |u| + |v| of the whole velocity u' + u_inf, which times dt/h is the CFL number;

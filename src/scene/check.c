@@ -56,7 +56,13 @@ static PetscErrorCode CheckFlow(Scene scene) {
         "-flow_velocity %g,%g: into the walls at %c_min and %c_max; allowed: along walls, which move with it, or "
         "-domain_bc_%c periodic",
         (double)scene->flow.velocity.v[0], (double)scene->flow.velocity.v[1], "xy"[d], "xy"[d], "xy"[d]);
-  if (scene->fluid.form != FORM_TOTAL || type == FLOW_QUIESCENT) PetscFunctionReturn(PETSC_SUCCESS);
+  if (scene->fluid.form != FORM_TOTAL) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCheck(
+      SceneIsProjection(scene), scene->comm, PETSC_ERR_USER_INPUT,
+      "-flow_form total: not with -scheme_type %s, whose near field and fast solves have walls at rest; allowed: "
+      "disturbance, or -scheme_type split or penalty",
+      scene->scheme.type);
+  if (type == FLOW_QUIESCENT) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCheck(type != FLOW_CUSTOM, scene->comm, PETSC_ERR_USER_INPUT,
              "-flow_form total: not with -flow_type custom; allowed: -flow_form disturbance");
   PetscCheck(!y_periodic, scene->comm, PETSC_ERR_USER_INPUT,

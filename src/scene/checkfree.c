@@ -1,8 +1,8 @@
 /* Unbounded fluid: what a scene with -domain_bc_x free may ask for. */
 #include "scene/resolve.h"
 
-/* The step is dense work on the markers alone; there is no grid on which a fluid with inertia, a total velocity or a
-   projection could be. */
+/* The step is dense work on the markers alone; there is no grid on which a fluid with inertia or a projection could
+   be. */
 static PetscErrorCode CheckMethod(Scene scene) {
   PetscFunctionBeginUser;
   PetscCheck(!strcmp(scene->scheme.type, "coupled"), scene->comm, PETSC_ERR_USER_INPUT,
@@ -15,8 +15,6 @@ static PetscErrorCode CheckMethod(Scene scene) {
              PETSC_ERR_USER_INPUT,
              "-fluid_inertia %s: not with -domain_bc_x free, which is quasi-steady; allowed: none",
              scene->fluid.inertia == INERTIA_UNSTEADY ? "unsteady" : "convective");
-  PetscCheck(scene->fluid.form != FORM_TOTAL, scene->comm, PETSC_ERR_USER_INPUT,
-             "-flow_form total: not with -domain_bc_x free, which has no walls to move; allowed: disturbance");
   PetscCheck(!scene->coupling.box_part, scene->comm, PETSC_ERR_USER_INPUT,
              "-coupling_box_part true: not with -domain_bc_x free, where there is no box; allowed: false");
   PetscCheck(scene->coupling.mobility != MOBILITY_ILU, scene->comm, PETSC_ERR_USER_INPUT,

@@ -14,8 +14,6 @@ static PetscErrorCode CheckMethod(Scene scene) {
              "dimensions; allowed: walls, or periodic boundaries");
   PetscCheck(!SceneIsProjection(scene), scene->comm, PETSC_ERR_USER_INPUT,
              "-obstacle_shape: not with -scheme_type %s; allowed: coupled", scene->scheme.type);
-  PetscCheck(scene->fluid.form != FORM_TOTAL, scene->comm, PETSC_ERR_USER_INPUT,
-             "-obstacle_shape: not with -flow_form total; allowed: disturbance");
   PetscCheck(scene->fluid.inertia == INERTIA_AUTO || scene->fluid.inertia == INERTIA_NONE ||
                  scene->obstacles.spacing <= MOST_SPACING,
              scene->comm, PETSC_ERR_USER_INPUT,

@@ -22,14 +22,6 @@ static PetscErrorCode CheckMethod(Scene scene, PetscReal ratio) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode CheckBox(Scene scene, PetscReal ratio) {
-  PetscFunctionBeginUser;
-  PetscCheck(scene->fluid.form != FORM_TOTAL, scene->comm, PETSC_ERR_USER_INPUT,
-             "-vesicle_viscosity_ratio %g: not with -flow_form total; allowed: 1, or -flow_form disturbance",
-             (double)ratio);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode SceneCheckContrast(Scene scene) {
   const RealList *ratio = &scene->membrane.viscosity_ratio;
   const PetscInt entries = scene->vesicles.kind ? scene->vesicles.mixture.n : scene->shape.vesicles;
@@ -44,6 +36,5 @@ PetscErrorCode SceneCheckContrast(Scene scene) {
     if (ratio->v[k] != 1) other = ratio->v[k];
   if (!SceneHasContrast(scene)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(CheckMethod(scene, other));
-  PetscCall(CheckBox(scene, other));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -27,9 +27,5 @@ PetscErrorCode SceneCheckGravity(Scene scene) {
   PetscCheck(scene->fluid.drive != DRIVE_FLUX || !strcmp(scene->scheme.type, "coupled"), scene->comm,
              PETSC_ERR_USER_INPUT, "-flow_drive flux: not with -scheme_type %s; allowed: pressure, or coupled",
              scene->scheme.type);
-  PetscCheck(
-      scene->fluid.drive != DRIVE_FLUX || scene->fluid.form != FORM_TOTAL, scene->comm, PETSC_ERR_USER_INPUT,
-      "-flow_drive flux: not with -flow_form total, whose velocity has the background's flux; allowed: pressure, "
-      "or -flow_form disturbance");
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -18,7 +18,7 @@ static const OptionRow table[] = {
   {"-flow_half_width", OPT_REAL, AT(flow.half_width), "3", ">0", "L_y of poiseuille: half the channel's height (length)"},
   {"-flow_center_x", OPT_REAL, AT(flow.center[0]), "0", "any", "x_c of the background flow (length)"},
   {"-flow_center_y", OPT_REAL, AT(flow.center[1]), "0", "any", "y_c of the background flow (length)"},
-  {"-flow_form", OPT_ENUM, AT(fluid.form), "disturbance", "disturbance|total", "solve for u - u_inf, or for u with moving walls as the paper"},
+  {"-flow_form", OPT_ENUM, AT(fluid.form), "disturbance", "disturbance|total", "solve for u - u_inf, or (split, penalty) for u with moving walls as the paper"},
   {"-flow_drive", OPT_ENUM, AT(fluid.drive), "pressure", "pressure|flux", "channel, periodic in x: which quantity vesicles and obstacles do not change, the mean pressure gradient or the flux"},
   {"-fluid_viscosity", OPT_REAL, AT(fluid.nu), "1", ">0", "nu (length^2/time; density is 1)"},
   {"-fluid_inertia", OPT_ENUM, AT(fluid.inertia), "auto", "auto|none|unsteady|convective", "inertia of the fluid: quasi-steady Stokes, unsteady Stokes, Navier-Stokes; auto goes by flow and Reynolds number"},

@@ -91,7 +91,7 @@ static PetscErrorCode Past(Scheme s, Coupled *d, const BDF *b) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* f = uhat - B Y + bc1 - N(w*) and k = lag E uhat - (C c_b ds D4 + V d/dt) Y, with turning tension and a repulsion's
+/* f = uhat - B Y - N(w*) and k = lag E uhat - (C c_b ds D4 + V d/dt) Y, with turning tension and a repulsion's
    springs beside bending, Y = Xhat + u_inf/a0, V the labels' speed, and what holds obstacles in the flow. next.w is
    used for w*. */
 static PetscErrorCode RightHandSides(Scheme s, Coupled *d, const BDF *b) {
@@ -100,7 +100,6 @@ static PetscErrorCode RightHandSides(Scheme s, Coupled *d, const BDF *b) {
   PetscCall(VecSet(d->known, 0));
   PetscCall(ForcingClear(f));
   PetscCall(Past(s, d, b));
-  if (s->fluid->bc1) PetscCall(ForcingAdd(f, s->fluid->bc1));
   PetscCall(VecWAXPY(d->Y, 1 / b->a0, s->background, d->Xhat));
   PetscCall(CouplingKnownForce(s->coupling, d->Y, d->Xstar, d->force));
   PetscCall(CouplingSpreadForce(s->coupling, d->force, f));
@@ -162,7 +161,7 @@ static PetscErrorCode Solve(Scheme s, Coupled *d) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The largest divergence of the velocity of the step, whose sources D u = bc2 are where there are any. */
+/* The largest divergence of the velocity of the step; sources: minus what it should be, NULL: nothing. */
 static PetscErrorCode MeasureDivergence(Scheme s, Coupled *d, Vec sources) {
   PetscFunctionBeginUser;
   if (!d->next.p)
@@ -177,7 +176,7 @@ static PetscErrorCode MoveMarkers(Scheme s, Coupled *d, PetscReal a0) {
   State *n = &d->next;
   PetscFunctionBeginUser;
   if (!CouplingHasMembrane(s->coupling)) {
-    PetscCall(MeasureDivergence(s, d, s->fluid->bc2));
+    PetscCall(MeasureDivergence(s, d, NULL));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(SchemeMarkerVelocity(s, d->V, d->P));
@@ -188,7 +187,7 @@ static PetscErrorCode MoveMarkers(Scheme s, Coupled *d, PetscReal a0) {
     PetscCall(ContrastSource(s->coupling, n->U, &n->forcing));
     PetscCall(VecScale(n->forcing.source, -1));
   }
-  PetscCall(MeasureDivergence(s, d, d->moved ? n->forcing.source : s->fluid->bc2));
+  PetscCall(MeasureDivergence(s, d, d->moved ? n->forcing.source : NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

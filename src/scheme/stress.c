@@ -29,7 +29,7 @@ static PetscErrorCode EndRows(Grid g, Field field, Vec x, PetscReal sum[2]) {
 static PetscErrorCode WallStress(Scheme s, Vec w, Vec p, PetscReal *shear, PetscReal *pressure) {
   const Fluid f = s->fluid;
   const Grid g = f->grid;
-  PetscReal u[2], background[2] = {0, 0}, q[2];
+  PetscReal u[2], q[2];
   PetscScalar all;
   PetscFunctionBeginUser;
   if (!p) {
@@ -38,10 +38,9 @@ static PetscErrorCode WallStress(Scheme s, Vec w, Vec p, PetscReal *shear, Petsc
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(EndRows(g, FIELD_U, w, u));
-  if (f->total) PetscCall(EndRows(g, FIELD_U, f->background, background));
   PetscCall(EndRows(g, FIELD_P, p, q));
   PetscCall(VecSum(p, &all));
-  *shear = f->nu / (g->h * g->n[0]) * ((u[0] - background[0]) - (u[1] - background[1]));
+  *shear = f->nu / (g->h * g->n[0]) * (u[0] - u[1]);
   *pressure = 0.5 * (q[0] + q[1]) / g->n[0] - all / ((PetscReal)g->n[0] * g->n[1]);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -19,16 +19,6 @@ CHANNEL = "-domain_cells 60,48 -domain_box 0,2.5,-1,1 -domain_bc_x periodic -ves
 TWO = "-vesicle_count 2 -vesicle_semi_axes 0.2,0.4"
 
 
-@pytest.mark.parametrize("membrane", ["", "-delta_type cbs54 -membrane_derivative spectral -coupling_near_field exact"])
-def test_total_form_is_the_disturbance_form(membrane, tmp_path):
-    """Shear with moving walls against u - u_inf, 20 steps with the length target: every column but wall to 1e-8."""
-    options = f"-scheme_type coupled {membrane} -domain_cells 48,48 -vesicle_angle 25 -flow_type shear {TIGHT} "
-    options += "-time_step 0.02 -time_end 0.4"
-    one = run_petves(tmp_path / "disturbance", f"{options} -flow_form disturbance").series
-    two = run_petves(tmp_path / "total", f"{options} -flow_form total").series
-    for name in set(one) - {"wall", "coupled_its", "nsolve"}:
-        np.testing.assert_allclose(two[name], one[name], rtol=0, atol=1e-8, err_msg=name)
-    assert abs(two["length_error"][-1]) < 1e-5
 
 
 #: Scenes and their steps; two vesicles on four ranks spend most of the time waiting for one another.
@@ -183,11 +173,3 @@ def test_options_of_the_solver_work(tmp_path):
     again = run_petves(tmp_path / "again", resolved)
     for name in set(COLUMNS) - {"wall"}:
         np.testing.assert_array_equal(again.series[name], one.series[name], err_msg=name)
-
-
-def test_a_run_without_vesicle_is_a_stokes_flow(tmp_path):
-    """No coupling: FGMRES still, one iteration where the Stokes solve is exact; the walls' shear stays as it is."""
-    options = "-domain_cells 32,32 -flow_type shear -flow_form total -vesicle_shape none -time_step 0.1 -time_end 0.5"
-    for extra in ("-scheme_type coupled -domain_bc_x periodic", "-scheme_type coupled"):
-        run = run_petves(tmp_path / re.sub(r"\W", "", extra), f"{options} {extra}", 2)
-        assert run.series["energy_kinetic"].max() < 1e-20 and run.series["div_max"].max() < 1e-9

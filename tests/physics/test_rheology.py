@@ -22,7 +22,6 @@ SEAM = "-vesicle_center 0.1,2,2.3,2.4 -contact_repulsion 20 -contact_repulsion_r
         (APART, 2),
         (SEAM, 1),
         (SEAM, 3),
-        (APART + "-flow_form total", 1),
     ],
 )
 def test_walls_agree_with_stresslets(options, ranks, tmp_path):

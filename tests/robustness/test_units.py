@@ -22,7 +22,7 @@ KINDS = {
     "walls": STOKES,
     "channel": f"{STOKES} {STREAM}",
     "flux": f"{STOKES} {STREAM} -flow_drive flux",
-    "total": f"{STOKES} {SHEAR} -flow_form total",
+    "total": f"{BOX} {SHEAR} -flow_form total -scheme_type split",
     "periodic": f"{STOKES} -domain_bc_x periodic -domain_bc_y periodic",
     "free": f"{STOKES} {SHEAR} -domain_bc_x free -domain_bc_y free",
     "contrast": f"{BOX} {SHEAR} -vesicle_viscosity_ratio 5",

@@ -25,7 +25,7 @@ POSTS = f"-domain_bc_x periodic -flow_type poiseuille -flow_half_width 1 {SOLID}
 #: Options and status. Restarts: one that goes on, one whose first step is refused, one of another scene.
 SHORT = {
     "disturbance": (SHEAR, 0),
-    "total": (f"{TWO_STEPS} -flow_form total -coupling_box_part false", 0),
+    "total": (f"{SHEAR} -flow_form total -scheme_type split", 0),
     "restart": (f"{COUPLED} -restart {{checkpoint}}", 0),
     "limit": (f"{COUPLED} -time_end 1 -limit_length_error 1e-14 -restart {{checkpoint}}", 2),
     "another_scene": (f"{COUPLED} -fluid_viscosity 2 -restart {{checkpoint}}", 1),
@@ -51,7 +51,7 @@ LONG = SHORT | {
         0,
     ),
     "auto": (f"{SHEAR} -scheme_auto 0.01", 0),
-    "no_vesicle": ("-domain_cells 16,16 -vesicle_shape none -flow_type shear -flow_form total -time_end 0.03", 0),
+    "no_vesicle": ("-domain_cells 16,16 -vesicle_shape none -flow_type shear -time_end 0.03", 0),
 }
 
 

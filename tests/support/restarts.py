@@ -21,7 +21,7 @@ SCHEMES = {
     "stiff": f"{BASE} -scheme_type coupled {DEFAULTS} -vesicle_bending 100",  # edges are corrected after its steps
     "adaptive": f"{BASE} -scheme_type coupled {DEFAULTS} -scheme_order 3 -time_adapt error -time_adapt_tol 1e-3",
     "two_vesicles": f"{BASE} {TWO} -scheme_type coupled {DEFAULTS}",
-    "total_form": f"{BASE} -flow_form total -scheme_type coupled -scheme_order 1",
+    "total_form": f"{BASE} -flow_form total -scheme_type split",
 }
 N = 8  # steps to the checkpoint; twice as many in all
 

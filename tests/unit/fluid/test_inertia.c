@@ -1,8 +1,10 @@
 /* Convection: its discrete form keeps energy and momentum and is of second order; Navier-Stokes flow against a vortex
    carried by a stream, and against manufactured solutions. Quasi-steady flow: the limit of a slow step. */
 #include "world.h"
-#include "fluid/stokes.h"
+#include "coupling/solver.h"
 #include "fluid/convection.h"
+#include "fluid/stokes.h"
+#include <dlfcn.h>
 
 #define NU 0.05
 
@@ -116,6 +118,18 @@ static PetscErrorCode RunCreate(const char options[], PetscInt n, PetscReal dt, 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static Vec body_force; /* in every solve's momentum; NULL: none */
+
+/* In the place of the library's, which it calls: the dynamic linker finds this one first. */
+PetscErrorCode CoupledSolverSolve(CoupledSolver s, const CoupledProblem *q, SolveReport *report) {
+  PetscErrorCode (*solve)(CoupledSolver, const CoupledProblem *, SolveReport *);
+  PetscFunctionBeginUser;
+  *(void **)&solve = dlsym(RTLD_NEXT, "CoupledSolverSolve");
+  if (body_force) PetscCall(ForcingAdd(q->f, body_force));
+  PetscCall(solve(s, q, report));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Root mean square velocity error at time t_end, from the exact start; forced: with the force that upholds f. w: copy
    of the end state, or NULL. */
 static PetscErrorCode Error(const char options[], Exact f, PetscBool forced, PetscInt n, PetscInt steps,
@@ -127,9 +141,9 @@ static PetscErrorCode Error(const char options[], Exact f, PetscBool forced, Pet
   PetscCall(RunCreate(options, n, dt, &r));
   PetscCall(VecDuplicate(r.scheme->state.w, &exact));
   PetscCall(Sample(r.scene, r.fluid->grid, f, 0, VALUE, r.scheme->state.w));
-  if (forced) PetscCall(VecDuplicate(exact, &r.fluid->bc1)); /* momentum's right-hand side takes it as it is */
+  if (forced) PetscCall(VecDuplicate(exact, &body_force));
   for (PetscInt k = 1; k <= steps; k++) {
-    if (forced) PetscCall(Sample(r.scene, r.fluid->grid, f, k * dt, FORCE, r.fluid->bc1));
+    if (forced) PetscCall(Sample(r.scene, r.fluid->grid, f, k * dt, FORCE, body_force));
     PetscCall(SchemeStep(r.scheme, dt));
     PetscCheck(!*r.scheme->report.failure, PETSC_COMM_WORLD, PETSC_ERR_LIB, "%s", r.scheme->report.failure);
   }
@@ -141,6 +155,7 @@ static PetscErrorCode Error(const char options[], Exact f, PetscBool forced, Pet
     PetscCall(VecDuplicate(exact, w));
     PetscCall(VecCopy(r.scheme->state.w, *w));
   }
+  PetscCall(VecDestroy(&body_force));
   PetscCall(VecDestroy(&exact));
   PetscCall(TestWorldDestroy(&r));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -205,7 +220,6 @@ static PetscErrorCode CheckConsistency(const char name[], const char options[], 
     PetscCall(VecDuplicate(w, &N));
     PetscCall(Sample(r.scene, r.fluid->grid, f, 0.3, VALUE, w));
     PetscCall(Sample(r.scene, r.fluid->grid, f, 0.3, CONVECTION, N));
-    if (r.fluid->total) PetscCall(VecAXPY(w, 1, r.fluid->background));
     PetscCall(ConvectionAdd(c, -1, w, &(Forcing){.values = N}));
     PetscCall(VecNorm(N, NORM_2, &error[k]));
     error[k] *= r.fluid->grid->h / 2;
@@ -328,7 +342,6 @@ static PetscErrorCode Facts(void) {
   PetscCall(CheckConservation("channel", "-domain_bc_x periodic"));
   PetscCall(CheckConservation("walls", ""));
   PetscCall(CheckConsistency("poiseuille in a channel", CHANNEL, InChannel));
-  PetscCall(CheckConsistency("poiseuille in a channel, total form", CHANNEL "-flow_form total", InChannel));
   PetscCall(CheckConsistency("shear between walls", "-flow_type shear", InBox));
   PetscCall(CheckConsistency("extension between walls", "-flow_type extension", InBox));
   PetscCall(CheckOrder("vortices in a stream", PERIODIC STREAM, Carried, PETSC_FALSE));
