@@ -1,4 +1,4 @@
-"""Solver study: the coupled solve of one step with different preconditioners and Krylov methods, through its KSP."""
+"""Solver study: the coupled solve of one step by different Krylov methods, through its KSP."""
 
 from common import settings
 
@@ -7,11 +7,10 @@ from petves.views.plot import new_figure, save_figure
 
 chosen = settings(__doc__)
 CASES = {
-    "FGMRES, table": dict(mobility_type="table"),
-    "FGMRES, ilu": dict(mobility_type="ilu"),
-    "FGMRES, no Lagrangian part": dict(mobility_type="none"),
-    "GCR, table": dict(mobility_type="table"),
-    "FGMRES restarted every 5, table": dict(mobility_type="table", coupled_ksp_gmres_restart=5),
+    "FGMRES": {},
+    "GCR": {},
+    "FGMRES restarted every 5": dict(coupled_ksp_gmres_restart=5),
+    "FGMRES restarted every 2": dict(coupled_ksp_gmres_restart=2),
 }
 
 

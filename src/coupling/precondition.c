@@ -1,7 +1,5 @@
 #include "coupling/precondition.h"
 #include "coupling/denseblock.h"
-#include "baselines/lagrangian.h"
-#include "baselines/tensionmatrix.h"
 
 #define MOST_EXCESS 5     /* iterations more than with new blocks, in one solve */
 #define FIXED_RATIO 1.3   /* of two steps whose blocks are the same: those of order 2 and 3 are 1.22 apart */
@@ -33,20 +31,14 @@ PetscErrorCode PreconditionerCreate(Scene scene, Unknowns u, Preconditioner *out
   *out = p;
   p->unknowns = u;
   p->step_ratio = StepRatio(scene, c);
-  p->type = CouplingHasMembrane(c) ? (MobilityType)scene->coupling.mobility : MOBILITY_NONE;
   PetscCall(PetscMalloc1(u->velocity, &p->force));
   if (c->bodies->obstacles) PetscCall(ObstacleBlockCreate(&scene->fluid, c, &p->solid));
   PetscCall(PetscCalloc1(c->membrane->layout->bodies, &p->age.treading));
-  if (p->type == MOBILITY_TABLE && c->near && c->fluid->steady && c->membrane->layout->M > DENSE_TOGETHER) {
+  if (c->near && c->fluid->steady && c->membrane->layout->M > DENSE_TOGETHER) {
     PetscCall(PatternsCreate(&scene->fluid, c, &p->patterns));
-  } else if (p->type == MOBILITY_TABLE) {
+  } else if (CouplingHasMembrane(c)) {
     if (!c->fluid->grid->free) PetscCall(MobilityCreate(&scene->fluid, c, Reach(c), &p->mobility));
     PetscCall(DenseBlocksCreate(c, &p->blocks));
-  }
-  if (p->type == MOBILITY_ILU) {
-    PetscCall(RootPCCreate(c->membrane->layout, "coupled_mobility_", COMPLETE_FILL, &p->ilu));
-    PetscCall(LayoutCreateVec(c->membrane->layout, 1, &p->rhs));
-    PetscCall(VecDuplicate(p->rhs, &p->sigma));
   }
   PetscCall(PreconditionerForget(p));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -60,9 +52,6 @@ PetscErrorCode PreconditionerDestroy(Preconditioner *preconditioner) {
   PetscCall(ObstacleBlockDestroy(&p->solid));
   PetscCall(DenseBlocksDestroy(&p->blocks));
   PetscCall(MobilityDestroy(&p->mobility));
-  PetscCall(RootPCDestroy(&p->ilu));
-  PetscCall(VecDestroy(&p->rhs));
-  PetscCall(VecDestroy(&p->sigma));
   PetscCall(PetscFree(p->force));
   PetscCall(PetscFree(p->age.treading));
   PetscCall(PetscFree(*preconditioner));
@@ -151,15 +140,6 @@ static PetscBool Changed(Preconditioner p, PetscReal cost) {
   return p->solid ? ObstacleBlockRenewed(p->solid) : PETSC_FALSE;
 }
 
-static PetscErrorCode SetUpChat(Preconditioner p) {
-  Mat Chat;
-  PetscFunctionBeginUser;
-  PetscCall(TensionAssemble(p->unknowns->coupling, p->ilu->root, &Chat));
-  PetscCall(RootPCSetMatrix(p->ilu, Chat, &p->failed));
-  PetscCall(MatDestroy(&Chat));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode PreconditionerSetUp(Preconditioner p) {
   const Coupling c = p->unknowns->coupling;
   const Ageing *a = &p->age;
@@ -169,7 +149,6 @@ PetscErrorCode PreconditionerSetUp(Preconditioner p) {
   if (!CouplingHasBodies(c)) PetscFunctionReturn(PETSC_SUCCESS);
   if (p->solid) PetscCall(ObstacleBlockSetUp(p->solid, &p->failed));
   if (p->failed || !CouplingHasMembrane(c)) PetscFunctionReturn(PETSC_SUCCESS);
-  if (p->type == MOBILITY_ILU) PetscCall(SetUpChat(p));
   if (p->patterns) PetscCall(PatternsFollow(p->patterns, &p->failed));
   if (!p->blocks) PetscFunctionReturn(PETSC_SUCCESS);
   DenseBlocksPlace(p->blocks);
@@ -191,24 +170,6 @@ void PreconditionerSolved(Preconditioner p, PetscInt its) {
 
 PetscBool PreconditionerIsNew(Preconditioner p) {
   return p->age.solves == 1 ? PETSC_TRUE : PETSC_FALSE;
-}
-
-/* E A^-1 E^T ~ (1/a0) E (I + G diag(L)^-1 G^T) E^T, no bending: sigma = a0 Chat^-1 (Dm V/h^2 - r_s), V as it is. */
-static PetscErrorCode SolveChat(Preconditioner p, const PetscScalar V[], PetscScalar sigma[]) {
-  const Coupling c = p->unknowns->coupling;
-  const PetscInt n = p->unknowns->tension;
-  const PetscScalar *found;
-  PetscScalar *r;
-  PetscFunctionBeginUser;
-  PetscCall(VecGetArray(p->rhs, &r));
-  MembraneStretching(c->membrane, c->tau, V, r);
-  for (PetscInt k = 0; k < n; k++) r[k] = c->fluid->a0 * (r[k] / PetscSqr(c->fluid->grid->h) - sigma[k]);
-  PetscCall(VecRestoreArray(p->rhs, &r));
-  PetscCall(RootPCApply(p->ilu, p->rhs, p->sigma));
-  PetscCall(VecGetArrayRead(p->sigma, &found));
-  PetscCall(PetscArraycpy(sigma, found, n));
-  PetscCall(VecRestoreArrayRead(p->sigma, &found));
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Dense blocks far too old: new ones from here on, and the next time before this happens; the parts of a graded start
@@ -251,9 +212,6 @@ PetscErrorCode PreconditionerApply(Preconditioner p, Vec r, Vec z) {
     if (p->solid) PetscCall(ObstacleBlockBegin(p->solid, V + u->velocity, V));
     if (p->patterns) PetscCall(PatternsSolve(p->patterns, V, sigma));
     if (p->blocks) PetscCall(DenseBlocksSolve(p->blocks, V, sigma));
-    if (p->type == MOBILITY_ILU) PetscCall(SolveChat(p, V, sigma));
-    if (p->type == MOBILITY_NONE)
-      for (PetscInt k = 0; k < u->tension; k++) sigma[k] *= -1;
     if (p->solid) PetscCall(SolveObstacles(p, V, sigma));
   }
   PetscCall(VecRestoreArray(z, &V));

@@ -1,10 +1,9 @@
 /* The preconditioner of the reduced coupled problem, and the decision how long its dense blocks serve
-   (docs/solver.md, Preconditioner): of the markers' mobility among themselves, by a dense table of a periodic box or by
-   Chat, of the obstacles by themselves, and of each pair of walls by itself. */
+   (docs/solver.md, Preconditioner): of the markers' mobility among themselves, by a dense table of a periodic box, of
+   the obstacles by themselves, and of each pair of walls by itself. */
 #pragma once
 #include "coupling/dense.h"
 #include "coupling/obstacleblock.h"
-#include "coupling/rootpc.h"
 #include "coupling/patterns.h"
 #include "coupling/unknowns.h"
 #include "scene/scene.h"
@@ -28,24 +27,21 @@ typedef struct {
 
 typedef struct _p_Preconditioner *Preconditioner;
 struct _p_Preconditioner {
-  Unknowns unknowns; /* borrowed */
-  MobilityType type;
-  Mobility mobility;    /* table; NULL in unbounded fluid, where the near field is all of it */
-  DenseBlocks blocks;   /* table, few vesicles */
-  Patterns patterns;    /* table, many vesicles */
+  Unknowns unknowns;    /* borrowed */
+  Mobility mobility;    /* NULL in unbounded fluid, where the near field is all of it */
+  DenseBlocks blocks;   /* few vesicles */
+  Patterns patterns;    /* many vesicles */
   ObstacleBlock solid;  /* NULL without obstacles */
-  RootPC ilu;           /* ilu: of the assembled Chat, prefix coupled_mobility_ */
   PetscReal step_ratio; /* of two steps whose dense blocks are the same */
   Ageing age;
   Application now;
   PetscBool graded;   /* the present steps are parts of a graded start, each solved once */
   PetscBool flexible; /* blocks may be made anew under way: the KSP allows a changing preconditioner */
   PetscBool failed;   /* a block could not be factored */
-  Vec rhs, sigma;     /* ilu: edge vectors, work */
   PetscScalar *force; /* [2n] of the own vesicles, work */
 };
 
-/* PreconditionerCreate - for the scene's type. Collective. */
+/* PreconditionerCreate - for the scene. Collective. */
 PETSC_EXTERN PetscErrorCode PreconditionerCreate(Scene scene, Unknowns unknowns, Preconditioner *preconditioner);
 PETSC_EXTERN PetscErrorCode PreconditionerDestroy(Preconditioner *preconditioner);
 

@@ -41,8 +41,8 @@ static PetscErrorCode NeedsGrid(Scene s, PetscBool *needs) {
   PetscFunctionBeginUser;
   PetscCall(CountVesicles(s, &count));
   *needs = strcmp(s->scheme.type, "coupled") || s->coupling.near_field != NEAR_EXACT || box_part ||
-                   s->coupling.mobility == MOBILITY_ILU || s->fluid.inertia == INERTIA_UNSTEADY ||
-                   s->fluid.inertia == INERTIA_CONVECTIVE || count > SCENE_MOST_FREE
+                   s->fluid.inertia == INERTIA_UNSTEADY || s->fluid.inertia == INERTIA_CONVECTIVE ||
+                   count > SCENE_MOST_FREE
                ? PETSC_TRUE
                : PETSC_FALSE;
   for (size_t k = 0; k < sizeof(backends) / sizeof(backends[0]); k++)

@@ -17,8 +17,6 @@ static PetscErrorCode CheckMethod(Scene scene) {
              scene->fluid.inertia == INERTIA_UNSTEADY ? "unsteady" : "convective");
   PetscCheck(!scene->coupling.box_part, scene->comm, PETSC_ERR_USER_INPUT,
              "-coupling_box_part true: not with -domain_bc_x free, where there is no box; allowed: false");
-  PetscCheck(scene->coupling.mobility != MOBILITY_ILU, scene->comm, PETSC_ERR_USER_INPUT,
-             "-mobility_type ilu: not with -domain_bc_x free, it is of the grid; allowed: table, none");
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

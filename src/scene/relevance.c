@@ -133,7 +133,6 @@ static const struct {
              {"-contact_adhesion_range", BY_ADHESION},
              {"-membrane_derivative", BY_VESICLES},
              {"-scheme_startup", BY_ORDER},
-             {"-mobility_type", BY_COUPLED},
              {"-time_adapt", BY_ADAPTABLE},
              {"-time_adapt_tol", BY_ADAPT},
              {"-time_adapt_max_move", BY_ADAPT},

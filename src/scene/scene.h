@@ -8,7 +8,6 @@ typedef enum { DERIVATIVE_FD, DERIVATIVE_BENDING, DERIVATIVE_SPECTRAL } Derivati
 typedef enum { NEAR_EXACT, NEAR_NONE } NearFieldType;
 #define NEAR_LEAST_SPACING 0.3 /* ds/h with the exact near field, in which neither kernel nor grid is felt */
 #define SCENE_LEAST_GAP 0.3    /* marker spacings between obstacles, down to which their forces are right */
-typedef enum { MOBILITY_TABLE, MOBILITY_ILU, MOBILITY_NONE } MobilityType;
 typedef enum { BENDING_IMPLICIT, BENDING_EXPLICIT } BendingType;
 typedef enum { ADAPT_NONE, ADAPT_ERROR } AdaptType;
 typedef enum { FRAME_TREADING, FRAME_NONE } FrameType;
@@ -84,7 +83,6 @@ typedef struct {
   PetscInt near_field;          /* NearFieldType */
   PetscBool grid_dipoles;       /* always over the grid */
   PetscBool box_part;           /* of the near field: what the box adds, to fourth order */
-  PetscInt mobility;            /* MobilityType */
   PetscReal ksp_rtol;           /* default of -coupled_ksp_rtol */
 } SceneCoupling;
 

@@ -73,7 +73,6 @@ static const OptionRow table[] = {
   {"-contact_adhesion_range", OPT_REAL, AT(repulsion.band), "0", ">=0", "B, width of the band from D to D + B in which they are drawn together (length); 0: D"},
   {"-membrane_derivative", OPT_ENUM, AT(membrane.derivative), "spectral", "fd|bending|spectral", "derivatives along the membrane: finite differences, spectral bending, spectral bending and edges; split, penalty: fd"},
   {"-scheme_startup", OPT_ENUM, AT(scheme.startup), "graded", "euler|graded", "first step of orders 2 and 3: backward Euler, or five growing parts of a step"},
-  {"-mobility_type", OPT_ENUM, AT(coupling.mobility), "table", "table|ilu|none", "Lagrangian part of coupled's preconditioner"},
   {"-time_step", OPT_REAL, AT(time.dt), "0.01", ">0", "dt (time)"},
   {"-time_end", OPT_REAL, AT(time.end), "1", ">=0", "end time, reached exactly: the last steps are shortened (time)"},
   {"-time_frame", OPT_ENUM, AT(time.frame), "treading", "treading|none", "coupled: labels in which a step sees the states before it, turning with each tank-treading membrane, or fixed to matter; split, penalty, -membrane_derivative fd, bending: none"},
@@ -161,7 +160,6 @@ PetscBool SceneOptionMayChange(const char name[]) {
                               "-helmholtz_type",
                               "-poisson_type",
                               "-fftw_plan",
-                              "-mobility_type",
                               "-vesicle_file",
                               "-obstacle_file",
                               "-vesicle_allow_close_markers",
@@ -211,7 +209,6 @@ PetscErrorCode SceneWriteOptions(Scene scene, FILE *file) {
 /* Prefixes of solvers, and what a scene needs to have them. */
 static const OptionOwner owners[] = {{"-tension_", "-scheme_type split"},
                                      {"-bending_", "-scheme_type split"},
-                                     {"-coupled_mobility_", "-mobility_type ilu"},
                                      {"-coupled_", "-scheme_type coupled"},
                                      {"-helmholtz_", "-helmholtz_type hypre"},
                                      {"-poisson_", "-poisson_type hypre"},

@@ -174,24 +174,24 @@ def _iterations(results: Results, folder: Path, sizes: tuple[int, ...]) -> list[
     rows, lines = [], []
     for stiff, name in study.STIFF.items():
         shown = []
-        for box, mobility in product(study.BOXES, study.MOBILITIES):
-            found = [results.get(study.iterations(box, stiff, mobility, n)) for n in sizes]
+        for box in study.BOXES:
+            found = [results.get(study.iterations(box, stiff, n)) for n in sizes]
             rows += [
-                [name, box, mobility, f"1/{n}", *(one.get(key, "> 200") for key in ("mean", "min", "max"))]
+                [name, box, f"1/{n}", *(one.get(key, "> 200") for key in ("mean", "min", "max"))]
                 for n, one in zip(sizes, found)
             ]
             texts = [
                 "> 200" if "failed" in one else f"{one['mean']:.1f} ({one['min']:.0f} to {one['max']:.0f})"
                 for one in found
             ]
-            shown.append([box, mobility, *texts])
-        lines += [f"{name}:\n", *table(["box", "`-mobility_type`", *(f"h = 1/{n}" for n in sizes)], shown)]
-    write_csv(folder / "coupled_iterations.csv", ["case", "box", "mobility", "h", "mean", "least", "largest"], rows)
+            shown.append([box, *texts])
+        lines += [f"{name}:\n", *table(["box", *(f"h = 1/{n}" for n in sizes)], shown)]
+    write_csv(folder / "coupled_iterations.csv", ["case", "box", "h", "mean", "least", "largest"], rows)
     about = (
         "FGMRES to 1e-6 from a zero guess (`-coupled_ksp_initial_guess_nonzero false`), order 2, markers 1.75 h apart, six\n"
-        "steps: mean, least and largest of steps 2 to 6. table: the dense factors are kept over steps until the\n"
+        "steps: mean, least and largest of steps 2 to 6. The dense factors are kept over steps until the\n"
         "iterations that they cost more than new ones add up to the price of new ones. A step made again by backward Euler has the\n"
-        "iterations of both. `> 200`: a solve did not end in 200 (restart 60). ilu: complete fill, 200 levels in nested dissection; none: no Lagrangian solve.\n"
+        "iterations of both. `> 200`: a solve did not end in 200 (restart 60).\n"
     )
     return ["## Iterations\n", about, *lines]
 

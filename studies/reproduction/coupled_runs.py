@@ -19,7 +19,6 @@ SPLIT = words("-scheme_type split") | TIGHT_SPLIT
 OFF = words("-scheme_length_target false")
 EULER = words("-scheme_startup euler")
 WALLS = words("-domain_bc_x wall -domain_bc_y wall")
-MOBILITIES = ("table", "ilu", "none")
 TOLERANCES = (*(1e-2 / 2**k for k in range(11)), 1e-6)
 STEPS = (32, 64, 128, 256)
 """1/dt of the table of temporal errors."""
@@ -104,15 +103,13 @@ def _measure_iterations(series: Series, folder: Path) -> dict[str, object]:
 STIFF = {False: "dt = h, c_b = 0.01", True: "dt = 1/4, c_b = 1"}
 
 
-def iterations(box: str, stiff: bool, mobility: str, n: int) -> Case:
+def iterations(box: str, stiff: bool, n: int) -> Case:
     """Return a run of six steps from a zero guess: box is a key of BOXES, stiff one of STIFF."""
     dt, bending = (0.25, 1.0) if stiff else (1 / n, 0.01)
     options = ELLIPSE | cells(2 * n) | WALLS | BOXES[box] | coupled(2, "1e-6")
     options |= words(f"-vesicle_bending {bending!r} -time_step {dt!r} -time_end {6 * dt!r}")
-    options |= words(f"-mobility_type {mobility} -coupled_ksp_initial_guess_nonzero false")
-    if mobility == "ilu":  # the fill of split's tension solve
-        options |= words("-coupled_mobility_pc_factor_levels 200 -coupled_mobility_pc_factor_mat_ordering_type nd")
-    name = f"iterations_{box}_{'stiff' if stiff else 'soft'}_{mobility}_{n}"
+    options |= words("-coupled_ksp_initial_guess_nonzero false")
+    name = f"iterations_{box}_{'stiff' if stiff else 'soft'}_{n}"
     return Case(name, options, _measure_iterations, may_fail=True)
 
 

@@ -37,7 +37,6 @@ KINDS = {
     "convective": f"{BOX} {SHEAR} -fluid_inertia convective",
     "split": f"{BOX} -scheme_type split",
     "penalty": f"{BOX} -scheme_type penalty -time_step 0.001 -time_end 0.003",
-    "ilu": f"{STOKES} -mobility_type ilu",
     "hypre": f"{BOX} -scheme_type split -helmholtz_type hypre -poisson_type hypre",
     "adaptive": f"{STOKES} -time_adapt error -time_adapt_max_step 0.1",
     "steady": f"{STOKES} -time_end 0.3 -time_step 0.05 -time_steady_tol 0.01",
