@@ -23,13 +23,14 @@ static PetscReal Reach(Coupling c) {
   return c->bodies->layout->bodies > 1 && m->layout->M <= DENSE_TOGETHER ? PETSC_MAX_REAL : reach;
 }
 
-PetscErrorCode PreconditionerCreate(Scene scene, Unknowns u, Preconditioner *out) {
+PetscErrorCode PreconditionerCreate(Scene scene, Unknowns u, PetscBool flexible, Preconditioner *out) {
   const Coupling c = u->coupling;
   Preconditioner p;
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&p));
   *out = p;
   p->unknowns = u;
+  p->flexible = flexible;
   p->step_ratio = StepRatio(scene, c);
   PetscCall(PetscMalloc1(u->velocity, &p->force));
   if (c->bodies->obstacles) PetscCall(ObstacleBlockCreate(&scene->fluid, c, &p->solid));
@@ -140,11 +141,12 @@ static PetscBool Changed(Preconditioner p, PetscReal cost) {
   return p->solid ? ObstacleBlockRenewed(p->solid) : PETSC_FALSE;
 }
 
-PetscErrorCode PreconditionerSetUp(Preconditioner p) {
+PetscErrorCode PreconditionerSetUp(Preconditioner p, PetscBool graded) {
   const Coupling c = p->unknowns->coupling;
   const Ageing *a = &p->age;
   PetscFunctionBeginUser;
   p->now = (Application){0};
+  p->graded = graded;
   p->failed = PETSC_FALSE;
   if (!CouplingHasBodies(c)) PetscFunctionReturn(PETSC_SUCCESS);
   if (p->solid) PetscCall(ObstacleBlockSetUp(p->solid, &p->failed));

@@ -35,22 +35,23 @@ struct _p_Preconditioner {
   PetscReal step_ratio; /* of two steps whose dense blocks are the same */
   Ageing age;
   Application now;
-  PetscBool graded;   /* the present steps are parts of a graded start, each solved once */
-  PetscBool flexible; /* blocks may be made anew under way: the KSP allows a changing preconditioner */
+  PetscBool graded;   /* the solve under way is of a part of a graded start */
+  PetscBool flexible; /* blocks may be made anew under way */
   PetscBool failed;   /* a block could not be factored */
   PetscScalar *force; /* [2n] of the own vesicles, work */
 };
 
-/* PreconditionerCreate - for the scene. Collective. */
-PETSC_EXTERN PetscErrorCode PreconditionerCreate(Scene scene, Unknowns unknowns, Preconditioner *preconditioner);
+/* PreconditionerCreate - for the scene; flexible: for a KSP that allows a changing preconditioner. Collective. */
+PETSC_EXTERN PetscErrorCode PreconditionerCreate(Scene scene, Unknowns unknowns, PetscBool flexible,
+                                                 Preconditioner *preconditioner);
 PETSC_EXTERN PetscErrorCode PreconditionerDestroy(Preconditioner *preconditioner);
 
-/* PreconditionerSetUp - follow the coupling's a0 and markers; a solve begins. The dense blocks are kept while a0 moves
-   by less than step_ratio and until the iterations beyond the least of a solve with them have cost as much as new ones
-   would, and while I + (v/a0) d/dt of the labels' speeds v moves by less than 10 %; those that cost many
-   iterations also while a0 moves by less than 2.2 within a graded start, and the labels' motion by less than half. A
-   solve that needs many more iterations makes them anew and goes on. Collective. */
-PETSC_EXTERN PetscErrorCode PreconditionerSetUp(Preconditioner preconditioner);
+/* PreconditionerSetUp - follow the coupling's a0 and markers; a solve begins, graded: of a part of a graded start. The
+   dense blocks are kept while a0 moves by less than step_ratio and until the iterations beyond the least of a solve
+   with them have cost as much as new ones would, and while I + (v/a0) d/dt of the labels' speeds v moves by less than
+   10 %; those that cost many iterations also while a0 moves by less than 2.2 within a graded start, and the labels'
+   motion by less than half. A solve that needs many more iterations makes them anew and goes on. Collective. */
+PETSC_EXTERN PetscErrorCode PreconditionerSetUp(Preconditioner preconditioner, PetscBool graded);
 
 /* PreconditionerApply - z ~ A^-1 r, of residuals and unknowns. Collective. */
 PETSC_EXTERN PetscErrorCode PreconditionerApply(Preconditioner preconditioner, Vec r, Vec z);

@@ -23,6 +23,7 @@ typedef struct {
   Vec moved;              /* with viscosity contrast: the part of the markers' motion that is known; else NULL */
   const StreamPast *past; /* with inertia where w is NULL: the states before, whose force is beside f; else NULL */
   Vec w, p;               /* velocity and pressure; may both be NULL where ReducedNeedsNoPressure */
+  PetscBool graded;       /* the step is a part of a graded start */
   Vec sigma, V, solid;    /* tension, V and force on obstacles (NULL without): first guess and solution */
 } CoupledProblem;
 

@@ -65,7 +65,9 @@ static PetscErrorCode CreateOperator(CoupledSolver s) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode CreateKSP(CoupledSolver s, PetscReal rtol) {
+/* The KSP, then the preconditioner for it. */
+static PetscErrorCode CreateKSP(CoupledSolver s, Scene scene) {
+  PetscBool flexible;
   PC pc;
   PetscFunctionBeginUser;
   PetscCall(KSPCreate(s->coupling->fluid->grid->comm, &s->ksp));
@@ -73,11 +75,10 @@ static PetscErrorCode CreateKSP(CoupledSolver s, PetscReal rtol) {
   PetscCall(KSPSetType(s->ksp, KSPFGMRES));
   PetscCall(KSPGMRESSetRestart(s->ksp, 60));
   PetscCall(KSPGMRESSetCGSRefinementType(s->ksp, KSP_GMRES_CGS_REFINE_IFNEEDED));
-  PetscCall(KSPSetTolerances(s->ksp, rtol, 0, PETSC_DEFAULT, 200));
+  PetscCall(KSPSetTolerances(s->ksp, scene->coupling.ksp_rtol, 0, PETSC_DEFAULT, 200));
   PetscCall(KSPSetOperators(s->ksp, s->A, s->A));
   PetscCall(KSPGetPC(s->ksp, &pc));
   PetscCall(PCSetType(pc, PCSHELL));
-  PetscCall(PCShellSetContext(pc, s->preconditioner));
   PetscCall(PCShellSetApply(pc, Apply));
   PetscCall(PCShellSetName(pc, "mobility of the markers"));
   PetscCall(KSPSetInitialGuessNonzero(s->ksp, PETSC_TRUE));
@@ -85,8 +86,10 @@ static PetscErrorCode CreateKSP(CoupledSolver s, PetscReal rtol) {
   PetscCall(KSPGetInitialGuessNonzero(s->ksp, &s->guess)); /* KSP itself solves for the change */
   PetscCall(KSPSetInitialGuessNonzero(s->ksp, PETSC_FALSE));
   PetscCall(KSPSetConvergenceTest(s->ksp, Converged, s, NULL));
+  PetscCall(PetscObjectTypeCompare((PetscObject)s->ksp, KSPFGMRES, &flexible));
+  PetscCall(PreconditionerCreate(scene, s->unknowns, flexible, &s->preconditioner));
+  PetscCall(PCShellSetContext(pc, s->preconditioner));
   PetscCall(KSPSetUp(s->ksp));
-  PetscCall(PetscObjectTypeCompare((PetscObject)s->ksp, KSPFGMRES, &s->preconditioner->flexible));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -98,7 +101,6 @@ PetscErrorCode CoupledSolverCreate(Scene scene, Coupling coupling, CoupledSolver
   s->coupling = coupling;
   PetscCall(UnknownsCreate(coupling, &s->unknowns));
   PetscCall(ReducedCreate(s->unknowns, &s->reduced));
-  PetscCall(PreconditionerCreate(scene, s->unknowns, &s->preconditioner));
   PetscCall(UnknownsCreateVec(s->unknowns, &s->x));
   PetscCall(VecDuplicate(s->x, &s->b));
   PetscCall(VecDuplicate(s->x, &s->change));
@@ -106,7 +108,7 @@ PetscErrorCode CoupledSolverCreate(Scene scene, Coupling coupling, CoupledSolver
   PetscCall(VecDuplicate(s->x, &s->trial.x));
   PetscCall(VecDuplicate(s->x, &s->trial.b));
   PetscCall(CreateOperator(s));
-  PetscCall(CreateKSP(s, scene->coupling.ksp_rtol));
+  PetscCall(CreateKSP(s, scene));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -256,7 +258,7 @@ PetscErrorCode CoupledSolverSolve(CoupledSolver s, const CoupledProblem *q, Solv
   PetscReal rtol, atol;
   PetscFunctionBeginUser;
   *report = (SolveReport){0};
-  PetscCall(PreconditionerSetUp(s->preconditioner));
+  PetscCall(PreconditionerSetUp(s->preconditioner, q->graded));
   if (s->preconditioner->failed) {
     report->why = KSP_DIVERGED_PC_FAILED;
     report->residual = NAN;

@@ -27,6 +27,11 @@ struct _p_Fluid {
 PETSC_EXTERN PetscErrorCode FluidCreate(const FluidSpec *spec, Fluid *fluid);
 PETSC_EXTERN PetscErrorCode FluidDestroy(Fluid *fluid);
 
+/* FluidSetSteady - quasi-steady flow or not, from the next FluidSetTimeCoefficient on. Not collective. */
+static inline void FluidSetSteady(Fluid fluid, PetscBool steady) {
+  fluid->steady = steady;
+}
+
 /* FluidSetTimeCoefficient - a0 (1/time), 1/dt for backward Euler, and with it alpha of H = alpha I - nu L_u. All ranks
    give the same bits. Collective. */
 PETSC_EXTERN PetscErrorCode FluidSetTimeCoefficient(Fluid fluid, PetscReal a0);

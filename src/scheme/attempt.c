@@ -145,6 +145,7 @@ static PetscErrorCode Solve(Scheme s, Coupled *d) {
                                   .sigma = n->sigma,
                                   .V = d->V,
                                   .solid = n->solid,
+                                  .graded = d->graded,
                                   .past = n->flow ? &d->past : NULL};
   SolveReport report;
   PetscFunctionBeginUser;

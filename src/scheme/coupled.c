@@ -10,13 +10,13 @@ static PetscErrorCode GradedStart(Scheme s, Coupled *d, PetscReal dt) {
   PetscBool solved = PETSC_TRUE;
   PetscFunctionBeginUser;
   d->done = 0;
-  d->solver->preconditioner->graded = PETSC_TRUE;
+  d->graded = PETSC_TRUE;
   for (int k = 0; k < 5 && solved; k++) {
     PetscCall(CoupledFixedAttempt(s, parts[k] * dt, &solved));
     if (solved) PetscCall(CoupledAdvance(s, parts[k] * dt));
     d->done += parts[k] * dt;
   }
-  d->solver->preconditioner->graded = PETSC_FALSE;
+  d->graded = PETSC_FALSE;
   d->done = 0;
   s->state.dt = dt;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -191,9 +191,9 @@ static PetscErrorCode StartFlow(Scheme s, Coupled *d) {
   PetscBool solved;
   PetscFunctionBeginUser;
   if (!now->solid || s->fluid->steady || now->dt_last > 0) PetscFunctionReturn(PETSC_SUCCESS);
-  s->fluid->steady = PETSC_TRUE;
+  FluidSetSteady(s->fluid, PETSC_TRUE);
   PetscCall(CoupledAttempt(s, MOMENT * dt, &solved));
-  s->fluid->steady = PETSC_FALSE;
+  FluidSetSteady(s->fluid, PETSC_FALSE);
   now->dt = dt;
   if (!solved) PetscFunctionReturn(PETSC_SUCCESS);
   if (next->w) PetscCall(VecCopy(next->w, now->w));

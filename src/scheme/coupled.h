@@ -12,7 +12,8 @@ typedef struct {
   History history;       /* what it is made from */
   PetscInt order;        /* of the step being made, */
   StepPlan next_plan;    /* and what it says for the next one: order and guess */
-  PetscReal done;        /* of the step under way: parts of a graded start (time) */
+  PetscBool graded;      /* the step under way is a graded start, */
+  PetscReal done;        /* of which this much is done (time) */
   PetscBool warned;      /* of edges that were off */
   Vec made_at;           /* markers at which the preconditioner's dense blocks were made, */
   PetscReal *made_with;  /* [vesicles] and the label speeds */
