@@ -2,7 +2,6 @@
 #include "simulation.h"
 #include "base/agree.h"
 #include "baselines/baselines.h"
-#include "coupling/contrast.h"
 #include "fluid/wisdom.h"
 #include "options/typed.h"
 #include <stdlib.h>
@@ -94,15 +93,22 @@ static PetscErrorCode SetWeights(Scene scene, Membrane membrane) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode AddContrast(Scene scene, Coupling coupling) {
+static PetscErrorCode CreateCoupling(Scene scene, Simulation s) {
+  const PetscInt vesicles = scene->shape.vesicles;
+  CouplingSetting setting = {.kernel = scene->coupling.kernel,
+                             .near = (NearFieldType)scene->coupling.near_field,
+                             .spec = &scene->fluid,
+                             .box_part = SceneHasBoxPart(scene),
+                             .apart = SceneDipolesMayBeApart(scene),
+                             .lag = scene->fluid.inertia == INERTIA_UNSTEADY ? PETSC_TRUE : PETSC_FALSE,
+                             .area_target = scene->scheme.area_target && vesicles ? PETSC_TRUE : PETSC_FALSE,
+                             .repulsion = scene->repulsion.stress > 0 && vesicles ? &scene->repulsion : NULL};
   PetscReal *ratio;
   PetscFunctionBeginUser;
-  if (!SceneHasContrast(scene)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscMalloc1(scene->shape.vesicles, &ratio));
-  for (PetscInt v = 0; v < scene->shape.vesicles; v++) ratio[v] = SceneViscosityRatio(scene, v);
-  PetscCall(CouplingAddContrast(coupling, ratio));
-  const PetscBool error = SceneHasBoxPart(scene), all = SceneDipolesMayBeApart(scene);
-  if (error || all) PetscCall(DoubleLayerAddBoxPart(coupling->contrast, &scene->fluid, error, all));
+  PetscCall(PetscMalloc1(vesicles, &ratio));
+  if (SceneHasContrast(scene)) setting.ratio = ratio;
+  for (PetscInt v = 0; v < vesicles && setting.ratio; v++) ratio[v] = SceneViscosityRatio(scene, v);
+  PetscCall(CouplingCreate(s->fluid, s->membrane, s->obstacles, &setting, &s->coupling));
   PetscCall(PetscFree(ratio));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -137,14 +143,7 @@ static PetscErrorCode Build(MPI_Comm comm, PetvesFlow flow, void *ctx, Simulatio
   PetscCall(MembraneCreate(s->layout, scene->shape.X, scene->membrane.each, (DerivativeType)scene->membrane.derivative,
                            &s->membrane));
   PetscCall(SetWeights(scene, s->membrane));
-  PetscCall(CouplingCreate(s->fluid, s->membrane, s->obstacles, scene->coupling.kernel,
-                           (NearFieldType)scene->coupling.near_field, &s->coupling));
-  if (s->coupling->near && SceneHasBoxPart(scene)) PetscCall(NearFieldAddBoxPart(s->coupling->near, &scene->fluid));
-  if (s->coupling->near && scene->fluid.inertia == INERTIA_UNSTEADY) PetscCall(CouplingAddLag(s->coupling));
-  PetscCall(AddContrast(scene, s->coupling));
-  if (scene->repulsion.stress > 0 && scene->shape.vesicles)
-    PetscCall(CouplingAddRepulsion(s->coupling, &scene->repulsion));
-  if (scene->scheme.area_target && scene->shape.vesicles) PetscCall(CouplingAddAreaTarget(s->coupling));
+  PetscCall(CreateCoupling(scene, s));
   PetscCall(BaselinesRegister());
   PetscCall(SchemeCreate(scene, s->coupling, scene->shape.X, &s->scheme));
   PetscCall(SceneCheckUnused(scene));

@@ -1,11 +1,5 @@
 #include "coupling/contrast.h"
 
-PetscErrorCode CouplingAddContrast(Coupling c, const PetscReal ratio[]) {
-  PetscFunctionBeginUser;
-  PetscCall(DoubleLayerCreate(c->near, ratio, &c->contrast));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* y += alpha (1 + ratio)/2 U */
 static void AddMean(Coupling c, PetscReal alpha, const PetscScalar U[], PetscScalar y[]) {
   const Layout l = c->membrane->layout;

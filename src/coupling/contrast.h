@@ -6,9 +6,6 @@
 #pragma once
 #include "coupling/coupling.h"
 
-/* CouplingAddContrast - from here on with ratio[vesicles] of viscosities; the coupling has a near field. Collective. */
-PETSC_EXTERN PetscErrorCode CouplingAddContrast(Coupling coupling, const PetscReal ratio[]);
-
 /* ContrastKnown - the part of the motion that is known before the step, the background's and what the labels' speed
    makes of Y: moved = background + treading dY/dt, and k += background. Collective. */
 PETSC_EXTERN PetscErrorCode ContrastKnown(Coupling coupling, Vec background, Vec Y, Vec moved, Vec k);

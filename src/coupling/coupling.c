@@ -262,7 +262,23 @@ static PetscErrorCode CreateShell(Coupling c, int each, ShellMult mult, ShellMul
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode CouplingCreate(Fluid fluid, Membrane m, Obstacles obstacles, const char kernel[], NearFieldType near,
+/* The markers' velocities beside the grid's: near field, double layer, lag. */
+static PetscErrorCode CreateLayers(Coupling c, const CouplingSetting *setting) {
+  const Kernel *k = c->markers->kernel;
+  const PetscReal cells = (KernelSecondMoment(k->along) + 3 * KernelSecondMoment(k->across)) / 4 - 1. / 8;
+  PetscFunctionBeginUser;
+  if (setting->near != NEAR_EXACT || !CouplingHasBodies(c)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(NearFieldCreate(c->markers, c->bodies, c->fluid->nu, &c->near));
+  if (setting->box_part) PetscCall(NearFieldAddBoxPart(c->near, setting->spec));
+  if (setting->lag) c->lag = cells * PetscSqr(c->fluid->grid->h) / c->fluid->nu;
+  if (!setting->ratio) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(DoubleLayerCreate(c->near, setting->ratio, &c->contrast));
+  if (setting->box_part || setting->apart)
+    PetscCall(DoubleLayerAddBoxPart(c->contrast, setting->spec, setting->box_part, setting->apart));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CouplingCreate(Fluid fluid, Membrane m, Obstacles obstacles, const CouplingSetting *setting,
                               Coupling *out) {
   Coupling c;
   PetscFunctionBeginUser;
@@ -271,7 +287,7 @@ PetscErrorCode CouplingCreate(Fluid fluid, Membrane m, Obstacles obstacles, cons
   c->fluid = fluid;
   c->membrane = m;
   PetscCall(BodiesCreate(m, obstacles, &c->bodies));
-  PetscCall(MarkersCreate(fluid->grid, c->bodies->layout, kernel, near == NEAR_EXACT, &c->markers));
+  PetscCall(MarkersCreate(fluid->grid, c->bodies->layout, setting->kernel, setting->near == NEAR_EXACT, &c->markers));
   PetscCall(PetscMalloc1(2 * m->layout->n, &c->tau));
   PetscCall(PetscCalloc1(m->layout->n, &c->turning));
   PetscCall(PetscCalloc1(m->layout->bodies, &c->treading));
@@ -281,28 +297,9 @@ PetscErrorCode CouplingCreate(Fluid fluid, Membrane m, Obstacles obstacles, cons
   PetscCall(VecDuplicate(c->force, &c->velocity));
   PetscCall(CreateShell(c, 1, Mult_S, MultTranspose_S, &c->S));
   PetscCall(CreateShell(c, 2, Mult_B, MultTranspose_B, &c->B));
-  if (near == NEAR_EXACT && CouplingHasBodies(c))
-    PetscCall(NearFieldCreate(c->markers, c->bodies, fluid->nu, &c->near));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode CouplingAddRepulsion(Coupling c, const SceneRepulsion *law) {
-  PetscFunctionBeginUser;
-  PetscCall(RepulsionCreate(c->bodies, c->fluid->grid, law, &c->repulsion));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode CouplingAddAreaTarget(Coupling c) {
-  PetscFunctionBeginUser;
-  PetscCall(AreaRowCreate(c->membrane, c->contrast ? c->contrast->ratio : NULL, &c->area));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode CouplingAddLag(Coupling c) {
-  const Kernel *k = c->markers->kernel;
-  const PetscReal cells = (KernelSecondMoment(k->along) + 3 * KernelSecondMoment(k->across)) / 4 - 1. / 8;
-  PetscFunctionBeginUser;
-  c->lag = cells * PetscSqr(c->fluid->grid->h) / c->fluid->nu;
+  PetscCall(CreateLayers(c, setting));
+  if (setting->repulsion) PetscCall(RepulsionCreate(c->bodies, fluid->grid, setting->repulsion, &c->repulsion));
+  if (setting->area_target) PetscCall(AreaRowCreate(m, c->contrast ? c->contrast->ratio : NULL, &c->area));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

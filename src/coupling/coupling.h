@@ -28,24 +28,28 @@ struct _p_Coupling {
   Mat B;                /* (velocity x marker vector) B = E^T (c_b ds/h^2) D4: minus the spread bending force */
 };
 
-/* CouplingCreate - of a fluid, membranes and obstacles (NULL: none) with the named kernel and near field; not placed
-   yet. Collective. */
-PETSC_EXTERN PetscErrorCode CouplingCreate(Fluid fluid, Membrane membrane, Obstacles obstacles, const char kernel[],
-                                           NearFieldType near, Coupling *coupling);
+/* What a coupling has besides fluid and bodies; nothing that is zero. */
+typedef struct {
+  const char *kernel; /* its name */
+  NearFieldType near;
+  const FluidSpec *spec;           /* the fluid's, for box parts; borrowed */
+  PetscBool box_part;              /* the near field and the double layer have it */
+  PetscBool apart;                 /* a double layer may take all that walls and images add from its box part */
+  PetscBool lag;                   /* in unsteady flow markers have the velocity of the grid less the lag times its rate
+                                      of change: what kernel and lattice take from the fluid's inertia, where the near
+                                      field is that of quasi-steady flow (docs/nearfield.md, Unsteady flow) */
+  PetscBool area_target;           /* steps aim at the vesicles' first areas */
+  const PetscReal *ratio;          /* [vesicles] viscosity inside over outside, which needs the near field */
+  const SceneRepulsion *repulsion; /* a force of short range between membranes */
+} CouplingSetting;
+
+/* CouplingCreate - of a fluid, membranes and obstacles (NULL: none); not placed yet. Collective. */
+PETSC_EXTERN PetscErrorCode CouplingCreate(Fluid fluid, Membrane membrane, Obstacles obstacles,
+                                           const CouplingSetting *setting, Coupling *coupling);
 PETSC_EXTERN PetscErrorCode CouplingDestroy(Coupling *coupling);
 
-/* CouplingAddRepulsion - from here on with a force of short range between membranes. Not collective. */
-PETSC_EXTERN PetscErrorCode CouplingAddRepulsion(Coupling coupling, const SceneRepulsion *law);
-
-/* CouplingAddAreaTarget - from here on steps aim at the vesicles' first areas; after CouplingAddContrast. Not
-   collective. */
-PETSC_EXTERN PetscErrorCode CouplingAddAreaTarget(Coupling coupling);
-
-/* CouplingAddLag - from here on markers have the velocity of the grid less lag times its rate of change, in unsteady
-   flow: what kernel and lattice take from the fluid's inertia, where the near field is that of quasi-steady flow
-   (docs/nearfield.md, Unsteady flow). CouplingAddPast - U += lag E uhat, marker vector of all bodies, of the history
-   uhat in du/dt = alpha u - uhat. Collective. */
-PETSC_EXTERN PetscErrorCode CouplingAddLag(Coupling coupling);
+/* CouplingAddPast - U += lag E uhat, marker vector of all bodies, of the history uhat in du/dt = alpha u - uhat.
+   Collective. */
 PETSC_EXTERN PetscErrorCode CouplingAddPast(Coupling coupling, Vec uhat, Vec U);
 
 /* CouplingPlace - everything that a solve stands on, in one call: the time coefficient a0 (1/time) in the fluid's H; E,

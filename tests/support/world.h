@@ -71,8 +71,8 @@ static inline PetscErrorCode TestWorldBuild(TestWorld *w) {
   PetscCall(LayoutCreate(s->comm, s->shape.vesicles, s->shape.start, &w->layout));
   PetscCall(
       MembraneCreate(w->layout, s->shape.X, s->membrane.each, (DerivativeType)s->membrane.derivative, &w->membrane));
-  PetscCall(CouplingCreate(w->fluid, w->membrane, NULL, s->coupling.kernel, (NearFieldType)s->coupling.near_field,
-                           &w->coupling));
+  const CouplingSetting setting = {.kernel = s->coupling.kernel, .near = (NearFieldType)s->coupling.near_field};
+  PetscCall(CouplingCreate(w->fluid, w->membrane, NULL, &setting, &w->coupling));
   PetscCall(LayoutCreateVec(w->layout, 2, &w->X));
   PetscCall(VecGetArray(w->X, &x));
   PetscCall(PetscArraycpy(x, s->shape.X + 2 * w->layout->first, 2 * w->layout->n));

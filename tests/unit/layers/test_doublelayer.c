@@ -83,7 +83,7 @@ static PetscErrorCode Create(const char options[], Double *d) {
   PetscFunctionBeginUser;
   PetscCall(TestScene(options, &w->scene));
   PetscCall(TestWorldBuild(w));
-  PetscCall(CouplingAddContrast(w->coupling, &ratio));
+  PetscCall(DoubleLayerCreate(w->coupling->near, &ratio, &w->coupling->contrast));
   PetscCall(TestWorldPlace(1, w));
   PetscCall(StokesCreate(w->fluid, &d->stokes));
   PetscCall(DMCreateGlobalVector(w->fluid->grid->velocity, &d->r));

@@ -37,8 +37,9 @@ static PetscErrorCode WorldCreate(const char options[], PetscInt cells, PetscBoo
   PetscCall(LayoutCreate(s->comm, s->shape.vesicles, s->shape.start, &w->layout));
   PetscCall(
       MembraneCreate(w->layout, s->shape.X, s->membrane.each, (DerivativeType)s->membrane.derivative, &w->membrane));
-  PetscCall(CouplingCreate(w->fluid, w->membrane, NULL, s->coupling.kernel, NEAR_EXACT, &w->coupling));
-  if (box) PetscCall(NearFieldAddBoxPart(w->coupling->near, &s->fluid));
+  const CouplingSetting setting = {
+      .kernel = s->coupling.kernel, .near = NEAR_EXACT, .spec = &s->fluid, .box_part = box};
+  PetscCall(CouplingCreate(w->fluid, w->membrane, NULL, &setting, &w->coupling));
   if (box && !w->images) BoxPartTakeImages(w->coupling->near->box, NULL, NULL);
   PetscCall(LayoutCreateVec(w->layout, 2, &X));
   PetscCall(VecGetArray(X, &x));

@@ -59,7 +59,7 @@ static PetscErrorCode CheckRegion(const char name[], const char options[], Petsc
   TestWorld w;
   PetscFunctionBeginUser;
   PetscCall(TestWorldCreate(options, &w));
-  PetscCall(CouplingAddContrast(w.coupling, &ratio));
+  PetscCall(DoubleLayerCreate(w.coupling->near, &ratio, &w.coupling->contrast));
   const DoubleLayer s = w.coupling->contrast;
   PetscCall(DoubleLayerAddBoxPart(s, &w.scene->fluid, PETSC_TRUE, PETSC_FALSE));
   DoubleBoxTakeImages(s->box, NULL, NULL);
@@ -84,7 +84,7 @@ static PetscErrorCode CheckImages(const char name[], const char options[]) {
   TestWorld w;
   PetscFunctionBeginUser;
   PetscCall(TestWorldCreate(options, &w));
-  PetscCall(CouplingAddContrast(w.coupling, &ratio));
+  PetscCall(DoubleLayerCreate(w.coupling->near, &ratio, &w.coupling->contrast));
   const DoubleLayer s = w.coupling->contrast;
   const PetscInt n = 2 * w.layout->n;
   PetscCall(DoubleLayerAddBoxPart(s, &w.scene->fluid, PETSC_TRUE, PETSC_FALSE));
