@@ -22,41 +22,29 @@ PetscErrorCode ContrastKnown(Coupling c, Vec background, Vec Y, Vec moved, Vec k
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode ContrastMotion(Coupling c, const PetscScalar V[], const PetscScalar known[], PetscScalar G[]) {
+void ContrastMotion(Coupling c, const PetscScalar V[], const PetscScalar known[], PetscScalar G[]) {
   const PetscInt n = 2 * c->membrane->layout->n;
-  PetscFunctionBeginUser;
-  PetscCall(PetscArraycpy(G, V, n));
+  for (PetscInt k = 0; k < n; k++) G[k] = V[k];
   MembraneTread(c->membrane, c->treading, 1 / c->fluid->a0, V, G);
   for (PetscInt k = 0; k < n && known; k++) G[k] += known[k];
-  PetscCall(DoubleLayerSet(c->contrast, G));
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode ContrastAdd(Coupling c, PetscReal alpha, const PetscScalar G[], PetscScalar y[]) {
+PetscErrorCode ContrastAdd(Coupling c, PetscReal alpha, Vec motion, PetscScalar y[]) {
+  const PetscScalar *G;
   PetscFunctionBeginUser;
+  PetscCall(VecGetArrayRead(motion, &G));
   AddMean(c, alpha, G, y);
-  PetscCall(DoubleLayerApply(c->contrast, -alpha, y));
+  PetscCall(DoubleLayerApply(c->contrast, -alpha, G, y));
+  PetscCall(VecRestoreArrayRead(motion, &G));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode ContrastKnownAdd(Coupling c, PetscReal alpha, Vec moved, PetscScalar y[]) {
-  const PetscScalar *U;
+PetscErrorCode ContrastSpread(Coupling c, Vec motion, Forcing *f) {
+  const PetscScalar *G;
   PetscFunctionBeginUser;
-  PetscCall(VecGetArrayRead(moved, &U));
-  PetscCall(DoubleLayerSet(c->contrast, U));
-  PetscCall(ContrastAdd(c, alpha, U, y));
-  PetscCall(VecRestoreArrayRead(moved, &U));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode ContrastSource(Coupling c, Vec U, Forcing *f) {
-  const PetscScalar *u;
-  PetscFunctionBeginUser;
-  PetscCall(VecGetArrayRead(U, &u));
-  PetscCall(DoubleLayerSet(c->contrast, u));
-  PetscCall(VecRestoreArrayRead(U, &u));
-  PetscCall(ForcingClear(f));
-  PetscCall(DoubleLayerSpread(c->contrast, f));
+  PetscCall(VecGetArrayRead(motion, &G));
+  PetscCall(DoubleLayerSpread(c->contrast, G, f));
+  PetscCall(VecRestoreArrayRead(motion, &G));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -10,17 +10,13 @@
    makes of Y: moved = background + treading dY/dt, and k += background. Collective. */
 PETSC_EXTERN PetscErrorCode ContrastKnown(Coupling coupling, Vec background, Vec Y, Vec moved, Vec k);
 
-/* ContrastMotion - the motion G = V + (treading/a0) dV/dt + known (or NULL) of own V[2n], and its jump set. ContrastAdd
-   - y += alpha B G, of all bodies, for the G whose jump is set. ContrastKnownAdd - the same of `moved`, whose jump is
-   set. Collective. */
-PETSC_EXTERN PetscErrorCode ContrastMotion(Coupling coupling, const PetscScalar V[], const PetscScalar known[],
-                                           PetscScalar G[]);
-PETSC_EXTERN PetscErrorCode ContrastAdd(Coupling coupling, PetscReal alpha, const PetscScalar G[], PetscScalar y[]);
-PETSC_EXTERN PetscErrorCode ContrastKnownAdd(Coupling coupling, PetscReal alpha, Vec moved, PetscScalar y[]);
+/* ContrastMotion - the motion G = V + (treading/a0) dV/dt + known (or NULL) of own V[2n]. Not collective. */
+PETSC_EXTERN void ContrastMotion(Coupling coupling, const PetscScalar V[], const PetscScalar known[], PetscScalar G[]);
 
-/* ContrastSource - f becomes the dipoles alone of markers that move with U, its source G^T of the solved velocity.
-   Collective. */
-PETSC_EXTERN PetscErrorCode ContrastSource(Coupling coupling, Vec U, Forcing *f);
+/* Of a motion G, the vesicles' part of a marker vector: ContrastAdd - y += alpha B G, of all bodies. ContrastSpread - f
+   += its dipoles, whose source is G^T of the solved velocity (DoubleLayerSpread). Collective. */
+PETSC_EXTERN PetscErrorCode ContrastAdd(Coupling coupling, PetscReal alpha, Vec motion, PetscScalar y[]);
+PETSC_EXTERN PetscErrorCode ContrastSpread(Coupling coupling, Vec motion, Forcing *f);
 
 /* ContrastMatrix - out[2n][2n], zero before, of the markers first .. first + n - 1, which are whole vesicles: its
    column r is row r of B (1 + (treading/a0) d/dt), of own markers; lattice false: with D in the place of C_D. Not

@@ -154,7 +154,8 @@ PetscErrorCode DoubleLayerPlace(DoubleLayer s) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode DoubleLayerSet(DoubleLayer s, const PetscScalar U[]) {
+/* The jump of markers that move with U. */
+static PetscErrorCode SetJump(DoubleLayer s, const PetscScalar U[]) {
   const Layout l = s->near->bodies->membrane->layout; /* obstacles, whose J is zero, come behind */
   PetscFunctionBeginUser;
   PetscCall(LayoutGather(l, 2, U, s->plain));
@@ -169,9 +170,11 @@ PetscErrorCode DoubleLayerSet(DoubleLayer s, const PetscScalar U[]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Tensors of the dipoles, less the jump's flux; zero where there is no jump, as for a ratio of 1, which has no normals.
- */
-static void Tensors(DoubleLayer s) {
+/* The jump of markers that move with U, and tensors of its dipoles, less its flux; zero where there is no jump, as for
+   a ratio of 1, which has no normals. */
+static PetscErrorCode SetDipoles(DoubleLayer s, const PetscScalar U[]) {
+  PetscFunctionBeginUser;
+  PetscCall(SetJump(s, U));
   for (PetscInt k = 0; k < s->near->bodies->layout->M; k++) {
     const PetscReal *J = s->jump + 2 * k, *N = s->normal + 2 * k;
     const PetscBool none = J[0] == 0 && J[1] == 0 ? PETSC_TRUE : PETSC_FALSE;
@@ -180,68 +183,80 @@ static void Tensors(DoubleLayer s) {
     T[DIPOLE_YY] = none ? 0 : 2 * J[1] * N[1];
     T[DIPOLE_XY] = none ? 0 : J[0] * N[1] + J[1] * N[0];
   }
-}
-
-/* y += alpha times the dipoles' mean velocity in a box that is periodic both ways. */
-static void AddMean(DoubleLayer s, PetscReal alpha, PetscScalar y[]) {
-  const Grid g = s->near->markers->grid;
-  PetscReal mean[2] = {0, 0};
-  if (g->wall[0] || g->wall[1]) return;
-  DoubleLayerMean(s, mean);
-  for (PetscInt k = 0; k < 2 * s->near->bodies->layout->n; k++) y[k] += alpha * mean[k % 2];
-}
-
-PetscErrorCode DoubleLayerApply(DoubleLayer s, PetscReal alpha, PetscScalar y[]) {
-  const Layout l = s->near->bodies->layout;
-  PetscFunctionBeginUser;
-  PetscCall(PetscLogEventBegin(s->apply, 0, 0, 0, 0));
-  for (PetscInt k = 0; k < s->blocks; k++) {
-    const DoubleBlock *b = &s->block[k];
-    PetscCall(DenseMultAdd(PETSC_FALSE, 2 * LayoutCount(l, b->row), 2 * LayoutCount(l, b->column), alpha,
-                           s->value + b->at, s->plain + 2 * l->start[b->column], y + 2 * LayoutOffset(l, b->row)));
-  }
-  if (DoubleBoxServes(s->box)) {
-    Tensors(s);
-    PetscCall(DoubleBoxApply(s->box, alpha, s->tensor + DIPOLE_COUNT * l->first, y));
-    if (DoubleLayerIsApart(s)) AddMean(s, alpha, y);
-  }
-  PetscCall(PetscLogEventEnd(s->apply, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-void DoubleLayerMean(DoubleLayer s, PetscReal mean[2]) {
+/* mean += that of the dipoles that have been set. */
+static void AddMean(DoubleLayer s, PetscReal mean[2]) {
   const NearField f = s->near;
   const Grid g = f->markers->grid;
   const PetscReal area = (g->hi[0] - g->lo[0]) * (g->hi[1] - g->lo[1]);
-  Tensors(s);
   for (PetscInt k = 0; k < 2 * f->bodies->layout->M; k++) {
     const PetscReal *T = s->tensor + DIPOLE_COUNT * (k / 2);
     mean[k % 2] -= f->markers->X[k] * 0.5 * (T[DIPOLE_XX] + T[DIPOLE_YY]) / area;
   }
 }
 
-PetscErrorCode DoubleLayerSpread(DoubleLayer s, Forcing *f) {
+/* y += alpha times the dipoles' mean velocity in a box that is periodic both ways. */
+static void ApplyMean(DoubleLayer s, PetscReal alpha, PetscScalar y[]) {
+  const Grid g = s->near->markers->grid;
+  PetscReal mean[2] = {0, 0};
+  if (g->wall[0] || g->wall[1]) return;
+  AddMean(s, mean);
+  for (PetscInt k = 0; k < 2 * s->near->bodies->layout->n; k++) y[k] += alpha * mean[k % 2];
+}
+
+PetscErrorCode DoubleLayerApply(DoubleLayer s, PetscReal alpha, const PetscScalar U[], PetscScalar y[]) {
+  const Layout l = s->near->bodies->layout;
+  PetscFunctionBeginUser;
+  PetscCall(PetscLogEventBegin(s->apply, 0, 0, 0, 0));
+  PetscCall(SetDipoles(s, U));
+  for (PetscInt k = 0; k < s->blocks; k++) {
+    const DoubleBlock *b = &s->block[k];
+    PetscCall(DenseMultAdd(PETSC_FALSE, 2 * LayoutCount(l, b->row), 2 * LayoutCount(l, b->column), alpha,
+                           s->value + b->at, s->plain + 2 * l->start[b->column], y + 2 * LayoutOffset(l, b->row)));
+  }
+  if (DoubleBoxServes(s->box)) {
+    PetscCall(DoubleBoxApply(s->box, alpha, s->tensor + DIPOLE_COUNT * l->first, y));
+    if (DoubleLayerIsApart(s)) ApplyMean(s, alpha, y);
+  }
+  PetscCall(PetscLogEventEnd(s->apply, 0, 0, 0, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode DoubleLayerMean(DoubleLayer s, const PetscScalar U[], PetscReal mean[2]) {
+  PetscFunctionBeginUser;
+  PetscCall(SetDipoles(s, U));
+  AddMean(s, mean);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode DoubleLayerSpread(DoubleLayer s, const PetscScalar U[], Forcing *f) {
   PetscFunctionBeginUser;
   if (s->near->free) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PlaceDipoles(s));
-  DoubleLayerMean(s, f->mean);
+  PetscCall(SetDipoles(s, U));
+  AddMean(s, f->mean);
   ForcingNote(f, &s->near->markers->window);
   PetscCall(DipoleListSpread(s->list, s->tensor, f->values, f->source));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode DoubleLayerRows(DoubleLayer s, PetscBool own, const PetscReal profile[], DipoleRows rows) {
+PetscErrorCode DoubleLayerRows(DoubleLayer s, const PetscScalar U[], PetscBool own, const PetscReal profile[],
+                               DipoleRows rows) {
   PetscReal mean[2] = {0, 0};
   PetscFunctionBeginUser;
   PetscCall(PlaceDipoles(s));
-  DoubleLayerMean(s, mean);
+  PetscCall(SetDipoles(s, U));
+  AddMean(s, mean);
   PetscCall(DipoleRowsSet(rows, s->list, s->tensor, own, profile, mean));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-void DoubleLayerStress(DoubleLayer s, PetscReal sum[3], PetscReal shortfall[2]) {
+PetscErrorCode DoubleLayerStress(DoubleLayer s, const PetscScalar U[], PetscReal sum[3], PetscReal shortfall[2]) {
   const Markers m = s->near->markers;
-  Tensors(s);
+  PetscFunctionBeginUser;
+  PetscCall(SetDipoles(s, U));
   for (PetscInt k = 0; k < s->near->bodies->layout->M; k++) {
     const PetscReal *T = s->tensor + DIPOLE_COUNT * k;
     PetscReal part[2];
@@ -249,6 +264,7 @@ void DoubleLayerStress(DoubleLayer s, PetscReal sum[3], PetscReal shortfall[2]) 
     for (int q = 0; q < 3; q++) sum[q] += s->near->nu * T[q];
     for (int c = 0; c < 2; c++) shortfall[c] += part[c];
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* out += scale (1 - ratio) times what the box part has, of one vesicle whose dipoles are apart. */

@@ -40,9 +40,9 @@ struct _p_DoubleLayer {
   PetscReal *value;
   PetscInt blocks, block_room;
   size_t values, value_room;
-  PetscScalar *jump;   /* [2M] J of all markers, less its flux */
-  PetscScalar *plain;  /* [2M] J */
-  PetscReal *tensor;   /* [DIPOLE_COUNT M] work */
+  PetscScalar *jump;   /* [2M] work: J of all markers, less its flux, */
+  PetscScalar *plain;  /* [2M] J, */
+  PetscReal *tensor;   /* [DIPOLE_COUNT M] and the dipoles of the former */
   PetscScalar *column; /* [2 most markers of a vesicle] work */
   DoubleBox box;       /* NULL without box part */
   PetscBool spread;    /* dipoles are placed on the grid */
@@ -68,32 +68,32 @@ static inline PetscBool DoubleLayerIsApart(DoubleLayer layer) {
 }
 PETSC_EXTERN PetscErrorCode DoubleLayerPlace(DoubleLayer layer);
 
-/* DoubleLayerSet - the jump that the next ones act on: of vesicles' markers that move with U[2n], this rank's part.
-   Collective. */
-PETSC_EXTERN PetscErrorCode DoubleLayerSet(DoubleLayer layer, const PetscScalar U[]);
+/* The next ones are of the jump of vesicles' markers that move with U[2n], this rank's part. Collective.
 
-/* DoubleLayerApply - y += alpha (C_D J and the box part of its dipoles), this rank's part y[2n] of a marker vector of
-   all bodies. Collective. */
-PETSC_EXTERN PetscErrorCode DoubleLayerApply(DoubleLayer layer, PetscReal alpha, PetscScalar y[]);
+   DoubleLayerApply - y += alpha (C_D J and the box part of its dipoles), this rank's part y[2n] of a marker vector of
+   all bodies.
 
-/* DoubleLayerMean - mean += the mean velocity v' that goes with no mean of the fluid's own, -(1/box) SUM w X (J.n); not
-   in unbounded fluid. Not collective. */
-PETSC_EXTERN void DoubleLayerMean(DoubleLayer layer, PetscReal mean[2]);
+   DoubleLayerMean - mean += the mean velocity v' that goes with no mean of the fluid's own, -(1/box) SUM w X (J.n); not
+   in unbounded fluid.
 
-/* DoubleLayerSpread - f += the force of J's dipoles, its source += G^T of the velocity that is their source, its mean
+   DoubleLayerSpread - f += the force of J's dipoles, its source += G^T of the velocity that is their source, its mean
    += DoubleLayerMean, which a box that is periodic both ways, or a channel without flux, has with them: the one without
-   flow outside a moving rigid body. Nothing in unbounded fluid. Not collective. */
-PETSC_EXTERN PetscErrorCode DoubleLayerSpread(DoubleLayer layer, Forcing *f);
+   flow outside a moving rigid body. Nothing in unbounded fluid.
 
-/* DoubleLayerRows - the same dipoles as rows of a solve by stream function, with their mean velocity, and unless their
-   force is spread already their own; profile: that of the Stokes solve (StokesProfile). Not collective. */
-PETSC_EXTERN PetscErrorCode DoubleLayerRows(DoubleLayer layer, PetscBool own, const PetscReal profile[],
-                                            DipoleRows rows);
+   DoubleLayerRows - the same dipoles as rows of a solve by stream function, with their mean velocity, and unless their
+   force is spread already their own; profile: that of the Stokes solve (StokesProfile).
 
-/* DoubleLayerStress - sum[3] (xx, yy, xy) += minus nu INT (J n + n J) ds of the jump last set, less its flux: what the
-   dipoles add to the sum of force times place; shortfall[2] (u, v) += what their stencils lack of it across a channel
-   along x (DipoleShortfall). Not collective. */
-PETSC_EXTERN void DoubleLayerStress(DoubleLayer layer, PetscReal sum[3], PetscReal shortfall[2]);
+   DoubleLayerStress - sum[3] (xx, yy, xy) += minus nu INT (J n + n J) ds of J less its flux: what the dipoles add to
+   the sum of force times place; shortfall[2] (u, v) += what their stencils lack of it across a channel along x
+   (DipoleShortfall). */
+PETSC_EXTERN PetscErrorCode DoubleLayerApply(DoubleLayer layer, PetscReal alpha, const PetscScalar U[],
+                                             PetscScalar y[]);
+PETSC_EXTERN PetscErrorCode DoubleLayerMean(DoubleLayer layer, const PetscScalar U[], PetscReal mean[2]);
+PETSC_EXTERN PetscErrorCode DoubleLayerSpread(DoubleLayer layer, const PetscScalar U[], Forcing *f);
+PETSC_EXTERN PetscErrorCode DoubleLayerRows(DoubleLayer layer, const PetscScalar U[], PetscBool own,
+                                            const PetscReal profile[], DipoleRows rows);
+PETSC_EXTERN PetscErrorCode DoubleLayerStress(DoubleLayer layer, const PetscScalar U[], PetscReal sum[3],
+                                              PetscReal shortfall[2]);
 
 /* DoubleLayerAdd - out += scale C_D (1 - ratio) (without box part) or, without lattice, D (1 - ratio), between the
    markers first .. first

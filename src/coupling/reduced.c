@@ -18,7 +18,7 @@ static PetscErrorCode Force(Reduced s, const PetscScalar x[], Vec F) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The motion that x gives the markers, or (whole) all of it with what is known, in s->motion, and its jump. */
+/* The motion that x gives the markers, or (whole) all of it with what is known, in s->motion. */
 static PetscErrorCode Motion(Reduced s, const PetscScalar x[], PetscBool whole) {
   const PetscScalar *known = NULL;
   PetscScalar *G;
@@ -26,7 +26,7 @@ static PetscErrorCode Motion(Reduced s, const PetscScalar x[], PetscBool whole) 
   if (!s->motion) PetscFunctionReturn(PETSC_SUCCESS);
   if (whole) PetscCall(VecGetArrayRead(s->problem->moved, &known));
   PetscCall(VecGetArray(s->motion, &G));
-  PetscCall(ContrastMotion(s->unknowns->coupling, x, known, G));
+  ContrastMotion(s->unknowns->coupling, x, known, G);
   PetscCall(VecRestoreArray(s->motion, &G));
   if (whole) PetscCall(VecRestoreArrayRead(s->problem->moved, &known));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -46,7 +46,7 @@ static PetscErrorCode AddForces(Reduced s, const PetscScalar x[], PetscBool whol
     PetscCall(ForcingSpread(r, c->markers, -1 / PetscSqr(c->fluid->grid->h), s->F));
   }
   PetscCall(Motion(s, x, whole));
-  if (HasDipoles(s)) PetscCall(DoubleLayerSpread(c->contrast, r));
+  if (HasDipoles(s)) PetscCall(ContrastSpread(c, s->motion, r));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -79,11 +79,7 @@ static PetscErrorCode Conditions(Reduced s, const CoupledProblem *problem, const
   if (!s->motion) MembraneTread(c->membrane, c->treading, 1 / c->fluid->a0, x, y);
   if (known) PetscCall(VecWAXPY(s->all, 1, s->F, problem->F));
   PetscCall(CouplingNearField(c, 1, known ? s->all : s->F, y));
-  if (s->motion) {
-    PetscCall(VecGetArrayRead(s->motion, &U));
-    PetscCall(ContrastAdd(c, 1, U, y));
-    PetscCall(VecRestoreArrayRead(s->motion, &U));
-  }
+  if (s->motion) PetscCall(ContrastAdd(c, 1, s->motion, y));
   if (c->bodies->obstacles) ObstaclesPressure(c->bodies->obstacles, x + n, y + n);
   MembraneStretching(c->membrane, c->tau, x, y + tension);
   for (PetscInt k = 0; k < u->tension; k++) y[tension + k] /= h2;
@@ -128,6 +124,16 @@ static PetscErrorCode TakePart(Reduced s) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The dipoles of the motion as rows, own: with their force. */
+static PetscErrorCode SetDipoles(Reduced s, PetscBool own) {
+  const PetscScalar *G;
+  PetscFunctionBeginUser;
+  PetscCall(VecGetArrayRead(s->motion, &G));
+  PetscCall(DoubleLayerRows(s->unknowns->coupling->contrast, G, own, StokesProfile(s->stokes), s->dipoles));
+  PetscCall(VecRestoreArrayRead(s->motion, &G));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* U of the forces of x alone, row by row; zero in unbounded fluid. */
 static PetscErrorCode Respond(Reduced s, const PetscScalar x[]) {
   const Coupling c = s->unknowns->coupling;
@@ -138,7 +144,7 @@ static PetscErrorCode Respond(Reduced s, const PetscScalar x[]) {
     PetscCall(VecSet(s->U, 0));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  if (HasDipoles(s)) PetscCall(DoubleLayerRows(c->contrast, PETSC_TRUE, StokesProfile(s->stokes), s->dipoles));
+  if (HasDipoles(s)) PetscCall(SetDipoles(s, PETSC_TRUE));
   PetscCall(MarkersRespond(c->markers, s->stream, HasDipoles(s) ? s->dipoles : NULL, -1 / PetscSqr(c->fluid->grid->h),
                            s->F, s->U));
   PetscCall(TakePart(s));
@@ -166,7 +172,7 @@ static PetscErrorCode FollowByRows(Reduced s) {
   const Coupling c = s->unknowns->coupling;
   const PetscBool dipoles = HasDipoles(s), measured = !q->w && (dipoles || !s->motion) ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionBeginUser;
-  if (dipoles) PetscCall(DoubleLayerRows(c->contrast, PETSC_FALSE, StokesProfile(s->stokes), s->dipoles));
+  if (dipoles) PetscCall(SetDipoles(s, PETSC_FALSE));
   PetscCall(MarkersFollow(c->markers, s->stream, dipoles ? s->dipoles : NULL, q->f, NULL, s->U,
                           measured ? &s->measures : NULL));
   PetscCall(TakePart(s));
@@ -266,8 +272,8 @@ PetscErrorCode ReducedFinish(Reduced s, Vec added, Vec x) {
   PetscCall(VecGetArrayRead(x, &xa));
   PetscCall(Motion(s, xa, PETSC_TRUE));
   PetscCall(VecRestoreArrayRead(x, &xa));
-  PetscCall(DoubleLayerSpread(c->contrast, f));
-  PetscCall(DoubleLayerRows(c->contrast, PETSC_FALSE, StokesProfile(s->stokes), s->dipoles));
+  PetscCall(ContrastSpread(c, s->motion, f));
+  PetscCall(SetDipoles(s, PETSC_FALSE));
   PetscCall(MarkersFollow(c->markers, s->stream, s->dipoles, f, NULL, NULL, &s->measures));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -152,7 +152,7 @@ static PetscErrorCode FreeReference(CoupledSolver s, const CoupledProblem *q) {
   PetscCall(UnknownsPack(s->unknowns, q->k, NULL, q->g, s->change));
   PetscCall(VecGetArray(s->change, &a));
   PetscCall(CouplingNearField(s->coupling, -1, q->F, a));
-  if (q->moved) PetscCall(ContrastKnownAdd(s->coupling, -1, q->moved, a));
+  if (q->moved) PetscCall(ContrastAdd(s->coupling, -1, q->moved, a));
   for (PetscInt v = l->own; v < l->end; v++) {
     const PetscReal speed = m->bending * m->part[v] / (s->coupling->fluid->nu * PetscSqr(m->L0[v] / (2 * PETSC_PI)));
     const PetscInt at = 2 * LayoutOffset(l, v);

@@ -185,15 +185,15 @@ static PetscErrorCode MoveMarkers(Scheme s, Coupled *d, PetscReal a0) {
   PetscCall(VecCopy(d->P, n->U));
   PetscCall(CouplingTread(s->coupling, 1, n->X, n->U));
   if (d->moved && n->p) {
-    PetscCall(ContrastSource(s->coupling, n->U, &n->forcing));
+    PetscCall(ForcingClear(&n->forcing)); /* its source becomes the divergence of the velocity, minus */
+    PetscCall(ContrastSpread(s->coupling, n->U, &n->forcing));
     PetscCall(VecScale(n->forcing.source, -1));
   }
   PetscCall(MeasureDivergence(s, d, d->moved ? n->forcing.source : NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What the forces of the step, which are spread at X*, and the jump, which is still that of U, do to a sheared
-   channel. */
+/* What the forces of the step, which are spread at X*, and the jump do to a sheared channel. */
 static PetscErrorCode MeasureStress(Scheme s, Coupled *d) {
   const PetscScalar *sigma, *x;
   PetscScalar *F;
@@ -208,7 +208,7 @@ static PetscErrorCode MeasureStress(Scheme s, Coupled *d) {
   PetscCall(VecRestoreArrayRead(d->Xstar, &x));
   PetscCall(VecRestoreArray(d->Y, &F));
   PetscCall(VecRestoreArrayRead(d->next.sigma, &sigma));
-  PetscCall(StressMeasure(s, d->next.w, d->next.p, d->Y, d->next.X));
+  PetscCall(StressMeasure(s, d->next.w, d->next.p, d->Y, d->next.X, d->next.U));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

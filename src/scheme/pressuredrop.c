@@ -95,9 +95,8 @@ static PetscErrorCode InnerMean(Scheme s, PetscReal mean[2]) {
   PetscFunctionBeginUser;
   if (!s->coupling->contrast || !s->state.step) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecGetArrayRead(s->state.U, &U));
-  PetscCall(DoubleLayerSet(s->coupling->contrast, U));
+  PetscCall(DoubleLayerMean(s->coupling->contrast, U, mean));
   PetscCall(VecRestoreArrayRead(s->state.U, &U));
-  DoubleLayerMean(s->coupling->contrast, mean);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -87,10 +87,11 @@ static PetscErrorCode Shortfall(Scheme s, Vec F, PetscReal sum[2]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode StressMeasure(Scheme s, Vec w, Vec p, Vec F, Vec X) {
+PetscErrorCode StressMeasure(Scheme s, Vec w, Vec p, Vec F, Vec X, Vec U) {
   const Grid g = s->fluid->grid;
   const PetscReal area = (g->hi[0] - g->lo[0]) * (g->hi[1] - g->lo[1]);
   const PetscReal scale = s->fluid->nu * s->scene->flow.rate;
+  const PetscScalar *u;
   Stress *out = &s->report.stress;
   PetscReal sum[3], near[2], shear = 0, pressure = 0;
   PetscFunctionBeginUser;
@@ -98,7 +99,9 @@ PetscErrorCode StressMeasure(Scheme s, Vec w, Vec p, Vec F, Vec X) {
   PetscCall(WallStress(s, w, p, &shear, &pressure));
   PetscCall(Stresslets(s, F, X, sum));
   PetscCall(Shortfall(s, F, near));
-  if (s->coupling->contrast) DoubleLayerStress(s->coupling->contrast, sum, near);
+  PetscCall(VecGetArrayRead(U, &u));
+  if (s->coupling->contrast) PetscCall(DoubleLayerStress(s->coupling->contrast, u, sum, near));
+  PetscCall(VecRestoreArrayRead(U, &u));
   out->viscosity[0] = 1 + (shear - near[0] / area) / scale;
   out->viscosity[1] = 1 - sum[2] / area / scale;
   out->normal[0] = pressure + (near[1] - sum[0]) / area;

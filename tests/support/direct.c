@@ -220,9 +220,9 @@ static PetscErrorCode RightHandSide(const Direct *d, const CoupledProblem *q, Ve
   PetscFunctionBeginUser;
   PetscCall(VecGetArray(q->k, &k));
   PetscCall(CouplingNearField(d->c, -1, q->F, k));
-  if (d->c->contrast) PetscCall(ContrastKnownAdd(d->c, -1, q->moved, k));
+  if (d->c->contrast) PetscCall(ContrastAdd(d->c, -1, q->moved, k));
   PetscCall(VecRestoreArray(q->k, &k));
-  if (d->c->contrast) PetscCall(DoubleLayerSpread(d->c->contrast, q->f));
+  if (d->c->contrast) PetscCall(ContrastSpread(d->c, q->moved, q->f));
   PetscCall(VecSet(rhs, 0));
   PetscCall(VecGetArray(rhs, &b));
   PetscCall(Take(q->f->values, 0, first[FIELD_P], b));

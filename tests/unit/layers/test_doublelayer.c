@@ -125,11 +125,10 @@ static PetscErrorCode Respond(Double *d, PetscBool single) {
   PetscCall(VecSet(d->r, 0));
   PetscCall(VecSet(d->p, 0));
   PetscCall(VecGetArrayRead(d->U, &u));
-  PetscCall(DoubleLayerSet(c->contrast, u));
   if (single)
     PetscCall(MarkersSpread(c->markers, 1 / PetscSqr(g->h), d->U, d->r));
   else
-    PetscCall(DoubleLayerSpread(c->contrast, &f));
+    PetscCall(DoubleLayerSpread(c->contrast, u, &f));
   PetscCall(StokesSolve(d->stokes, d->r, d->p, d->w, d->p));
   if (!g->wall[1]) PetscCall(AddConstant(d->w, GridLocalU(g), f.mean));
   PetscCall(MarkersInterpolate(c->markers, d->w, d->V));
@@ -137,7 +136,7 @@ static PetscErrorCode Respond(Double *d, PetscBool single) {
   if (single)
     PetscCall(NearFieldApply(c->near, 1, u, v));
   else
-    PetscCall(DoubleLayerApply(c->contrast, 1, v));
+    PetscCall(DoubleLayerApply(c->contrast, 1, u, v));
   PetscCall(VecRestoreArray(d->V, &v));
   PetscCall(VecRestoreArrayRead(d->U, &u));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -101,8 +101,7 @@ static PetscErrorCode CheckImages(const char name[], const char options[]) {
     }
     PetscCall(DoubleLayerPlace(s));
     CHECK((int)DoubleBoxHasImages(s->box) == images, "%s: a square %s images", name, images ? "with" : "without");
-    PetscCall(DoubleLayerSet(s, U));
-    PetscCall(DoubleLayerApply(s, 1, y[images]));
+    PetscCall(DoubleLayerApply(s, 1, U, y[images]));
     if (images) PetscCall(DoubleBoxApply(s->box, 1, s->tensor + DIPOLE_COUNT * w.layout->first, D));
   }
   for (PetscInt k = 0; k < n; k++) {
