@@ -8,7 +8,7 @@ typedef struct {
   PetscReal *values;  /* [M][3][n1][n0]: u faces, v faces and scaled cells of G^T S */
 } Windows;
 
-static PetscReal *Layer(const Windows *w, PetscInt k, int layer) {
+static PetscReal *WindowLayer(const Windows *w, PetscInt k, int layer) {
   return w->values + (3 * k + layer) * w->n[0] * w->n[1];
 }
 
@@ -58,7 +58,7 @@ static void FillFaces(Coupling c, Windows *w, PetscInt k) {
       const PetscReal f = (end ? -1 : 1) * w->tau[2 * k + comp] / h2;
       const PetscInt i0 = Unwrap(c->fluid->grid, 0, s->first[0], w->origin[2 * k]) - w->origin[2 * k];
       const PetscInt j0 = Unwrap(c->fluid->grid, 1, s->first[1], w->origin[2 * k + 1]) - w->origin[2 * k + 1];
-      PetscReal *a = Layer(w, k, comp);
+      PetscReal *a = WindowLayer(w, k, comp);
       for (PetscInt j = 0; j < s->n[1]; j++)
         for (PetscInt i = 0; i < s->n[0]; i++) a[(j0 + j) * w->n[0] + i0 + i] += f * s->weight[1][j] * s->weight[0][i];
     }
@@ -68,8 +68,8 @@ static void FillFaces(Coupling c, Windows *w, PetscInt k) {
 static void FillCells(Coupling c, Windows *w, PetscInt k) {
   const Grid g = c->fluid->grid;
   const PetscInt nx = w->n[0];
-  const PetscReal *u = Layer(w, k, FIELD_U), *v = Layer(w, k, FIELD_V);
-  PetscReal *q = Layer(w, k, FIELD_P);
+  const PetscReal *u = WindowLayer(w, k, FIELD_U), *v = WindowLayer(w, k, FIELD_V);
+  PetscReal *q = WindowLayer(w, k, FIELD_P);
   for (PetscInt j = 0; j < w->n[1]; j++)
     for (PetscInt i = 0; i < nx; i++) {
       const PetscInt cell[2] = {w->origin[2 * k] + i, w->origin[2 * k + 1] + j};
@@ -95,7 +95,7 @@ static PetscReal Product(const Windows *w, PetscInt k, PetscInt l, const PetscIn
   const PetscInt j0 = PetscMax(0, d[1]), j1 = PetscMin(w->n[1], w->n[1] + d[1]);
   PetscReal sum = 0;
   for (int layer = 0; layer < 3; layer++) {
-    const PetscReal *a = Layer(w, k, layer), *b = Layer(w, l, layer);
+    const PetscReal *a = WindowLayer(w, k, layer), *b = WindowLayer(w, l, layer);
     PetscReal part = 0;
     for (PetscInt j = j0; j < j1; j++)
       for (PetscInt i = i0; i < i1; i++) part += a[j * w->n[0] + i] * b[(j - d[1]) * w->n[0] + i - d[0]];

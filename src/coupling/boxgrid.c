@@ -9,12 +9,11 @@ typedef struct {
   Stokes stokes;
   Layout layout; /* one body: the places, x fastest */
   Markers markers;
-  PaddedStencil *stencil;   /* [2 places] */
-  struct _p_NearField near; /* of it only what the lattice's mobility needs */
-  NearImage image;          /* what the near field has of the walls, */
-  DoubleImage twice;        /* and of dipoles */
-  Vec force, u, p;          /* on the grid */
-  Vec F, U;                 /* at the places */
+  LayerSetting set;
+  SinglePairs pairs; /* of the places, */
+  DoubleImage twice; /* and what walls add to dipoles */
+  Vec force, u, p;   /* on the grid */
+  Vec F, U;          /* at the places */
   const BoxAxis *axis;
   const BoxLattice *lattice;
   PaddedStencil *dipole; /* [DIPOLE_COUNT places], of dipoles */
@@ -38,9 +37,6 @@ static PetscErrorCode PlaceMarkers(BoxGrid *b, const char kernel[]) {
   }
   PetscCall(VecRestoreArray(b->U, &a));
   PetscCall(MarkersPlace(b->markers, b->U));
-  PetscCall(PetscMalloc1(2 * start[1], &b->stencil));
-  for (PetscInt k = 0; k < 2 * start[1]; k++) StencilPad(&b->markers->plain[k], &b->stencil[k]);
-  for (PetscInt k = 0; k < start[1]; k++) StencilUnwrap(b->fluid->grid, b->markers->X + 2 * k, &b->stencil[2 * k]);
   if (!b->lattice->dipole) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscCalloc1(DIPOLE_COUNT * start[1], &b->dipole));
   for (PetscInt k = 0; k < start[1]; k++) {
@@ -61,15 +57,12 @@ static PetscErrorCode Create(const FluidSpec *spec, const char kernel[], const B
   PetscCall(FluidCreate(&box, &b->fluid));
   PetscCall(StokesCreate(b->fluid, &b->stokes));
   PetscCall(PlaceMarkers(b, kernel));
-  PetscCall(NearImageCreate(b->markers, spec->nu, lattice->unit, lattice->half, &b->image));
-  b->near = (struct _p_NearField){
-      .markers = b->markers, .nu = spec->nu, .unit = lattice->unit, .image = b->image, .stencil = b->stencil};
-  if (lattice->stokeslet) b->near.lattice = *lattice->stokeslet;
-  NearFarMake(b->markers->kernel, b->near.far);
-  PetscCall(NearImagePlace(b->image, b->stencil));
+  b->set = (LayerSetting){.markers = b->markers, .nu = spec->nu, .unit = lattice->unit};
+  PetscCall(SinglePairsCreate(&b->set, lattice->stokeslet, lattice->half, &b->pairs));
+  PetscCall(SinglePairsPlace(b->pairs, PETSC_TRUE));
   if (lattice->dipole) {
     PetscCall(DMCreateGlobalVector(b->fluid->grid->da[FIELD_P], &b->source));
-    PetscCall(DoubleImageCreate(b->image, lattice->dipole, &b->twice));
+    PetscCall(DoubleImageCreate(b->pairs->image, lattice->dipole, &b->twice));
     DoubleImagePlace(b->twice, b->dipole);
   }
   if (!lattice->dipole) PetscFunctionReturn(PETSC_SUCCESS); /* nothing on the grid */
@@ -83,10 +76,9 @@ static PetscErrorCode Destroy(BoxGrid *b) {
   Vec *all[] = {&b->force, &b->u, &b->p, &b->F, &b->U, &b->source};
   PetscFunctionBeginUser;
   for (int k = 0; k < 6; k++) PetscCall(VecDestroy(all[k]));
-  PetscCall(PetscFree(b->stencil));
   PetscCall(PetscFree(b->dipole));
   PetscCall(DoubleImageDestroy(&b->twice));
-  PetscCall(NearImageDestroy(&b->image));
+  PetscCall(SinglePairsDestroy(&b->pairs));
   PetscCall(MarkersDestroy(&b->markers));
   PetscCall(LayoutDestroy(&b->layout));
   PetscCall(StokesDestroy(&b->stokes));
@@ -94,51 +86,29 @@ static PetscErrorCode Destroy(BoxGrid *b) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The unbounded double layer. */
-static void Free(const PetscReal d[2], PetscReal D[2][DIPOLE_COUNT]) {
-  const PetscReal r2 = d[0] * d[0] + d[1] * d[1], q = r2 > 0 ? 1 / (PETSC_PI * r2 * r2) : 0;
-  for (int c = 0; c < 2; c++) {
-    D[c][DIPOLE_XX] = 0.5 * q * d[c] * d[0] * d[0];
-    D[c][DIPOLE_YY] = 0.5 * q * d[c] * d[1] * d[1];
-    D[c][DIPOLE_XY] = q * d[c] * d[0] * d[1];
-  }
-}
-
-/* What fades at d of what is whole at 0. */
-static PetscReal Lost(const BoxAxis axis[2], const PetscReal d[2]) {
-  PetscReal at[2] = {d[0], d[1]}, zero[2] = {0, 0};
-  const PetscReal whole = BoxImage(axis, zero);
-  return (whole - BoxImage(axis, at)) / whole;
-}
-
 void BoxFaded(const BoxAxis axis[2], PetscInt n, PetscReal *const d[2], PetscReal V[]) {
   PetscReal zero[2] = {0, 0};
   const PetscReal whole = BoxImage(axis, zero);
   BoxImageRow(axis, n, d, V);
   for (PetscInt k = 0; k < n; k += LANES) {
-    const Lanes r[2] = {LanesAt(d[0] + k), LanesAt(d[1] + k)}, r2 = r[0] * r[0] + r[1] * r[1];
-    const Lanes q = (whole - LanesAt(V + k)) / whole / (PETSC_PI * r2 * r2);
-    const Lanes some = LanesWhere((LanesBits)(r2 > 0), q);
-    for (int c = 0; c < 2; c++) {
-      PetscReal *K = V + c * DIPOLE_COUNT * n + k;
-      LanesPut(0.5 * some * r[c] * r[0] * r[0], K + DIPOLE_XX * n);
-      LanesPut(0.5 * some * r[c] * r[1] * r[1], K + DIPOLE_YY * n);
-      LanesPut(some * r[c] * r[0] * r[1], K + DIPOLE_XY * n);
-    }
+    Lanes K[2][DIPOLE_COUNT];
+    StressletParts(LanesAt(d[0] + k), LanesAt(d[1] + k), (whole - LanesAt(V + k)) / whole, K);
+    for (int q = 0; q < 2 * DIPOLE_COUNT; q++) LanesPut(K[q / DIPOLE_COUNT][q % DIPOLE_COUNT], V + q * n + k);
   }
 }
 
 /* L = K less what fades of the exact double layer D; towards half a period, where images change, (1 - lost) D. */
-static void All(const BoxAxis axis[2], const PetscReal d[2], const PetscReal K[2][DIPOLE_COUNT],
+static void All(const BoxAxis axis[2], const PetscReal d[2], PetscReal K[2][DIPOLE_COUNT],
                 PetscReal L[2][DIPOLE_COUNT]) {
-  const PetscReal lost = Lost(axis, d);
-  PetscReal near = 1, D[2][DIPOLE_COUNT];
+  PetscReal near = 1, at[2] = {d[0], d[1]}, zero[2] = {0, 0};
+  const PetscReal whole = BoxImage(axis, zero), lost = (whole - BoxImage(axis, at)) / whole;
+  Lanes D[2][DIPOLE_COUNT];
   for (int dir = 0; dir < 2; dir++)
     if (!axis[dir].wall)
       near *= 1 - BoxSmoothStep(PetscAbsReal(d[dir]) / (axis[dir].high - axis[dir].low), BOX_ALL_OFFSET, 0.5);
-  Free(d, D);
+  StressletParts(d[0] + (Lanes){0}, d[1] + (Lanes){0}, 1 + (Lanes){0}, D);
   for (int c = 0; c < 2; c++)
-    for (int part = 0; part < DIPOLE_COUNT; part++) L[c][part] = near * K[c][part] + (1 - lost - near) * D[c][part];
+    for (int part = 0; part < DIPOLE_COUNT; part++) L[c][part] = near * K[c][part] + (1 - lost - near) * D[c][part][0];
 }
 
 /* What the lattice has of the parts of place j's source at place i, less what the near field gives of the walls: the
@@ -151,8 +121,9 @@ static void Lattice(BoxGrid *b, PetscInt i, PetscInt j, PetscReal L[2][DIPOLE_CO
   if (b->lattice->dipole) {
     const PetscInt periods[2] = {(PetscInt)rint((d[0] - plain[0]) / h), (PetscInt)rint((d[1] - plain[1]) / h)};
     PetscReal K[2][DIPOLE_COUNT], exact[2][DIPOLE_COUNT] = {{0}};
-    DoubleLatticeParts(b->lattice->dipole, h, BOX_LATTICE_CELLS * h, &b->stencil[2 * i], &b->dipole[DIPOLE_COUNT * j],
-                       periods, d, K);
+    DoubleLatticeParts(b->lattice->dipole, BOX_LATTICE_CELLS, &b->pairs->stencil[2 * i], &b->dipole[DIPOLE_COUNT * j],
+                       periods, (PetscReal[]){d[0] / h, d[1] / h}, K);
+    for (int q = 0; q < 2 * DIPOLE_COUNT; q++) K[q / DIPOLE_COUNT][q % DIPOLE_COUNT] /= h;
     if (b->lattice->all) {
       All(b->axis, d, K, L);
       return;
@@ -162,9 +133,9 @@ static void Lattice(BoxGrid *b, PetscInt i, PetscInt j, PetscReal L[2][DIPOLE_CO
       for (int part = 0; part < DIPOLE_COUNT; part++) L[c][part] = fade * (K[c][part] - exact[c][part]);
     return;
   }
-  NearLatticePair(&b->near, i, j, d, S);
-  NearImageAdd(b->image, NULL, i, j, d, S, C);
-  if (b->lattice->whole) NearImageAddBlake(b->image, i, j, d, -1, C);
+  NearLatticePair(b->pairs, i, j, d, S);
+  NearImageAdd(b->pairs->image, NULL, i, j, d, S, C);
+  if (b->lattice->whole) NearImageAddBlake(b->pairs->image, i, j, d, -1, C);
   for (int c = 0; c < 2; c++) {
     L[c][c] = fade * (S[c] - C[c]);
     L[c][1 - c] = fade * (S[2 + c] - C[2 + c]);

@@ -3,6 +3,7 @@
 #pragma once
 #include "coupling/arearow.h"
 #include "coupling/doublelayer.h"
+#include "coupling/layer.h"
 #include "coupling/nearfield.h"
 #include "coupling/repulsion.h"
 #include "fluid/fluid.h"
@@ -122,3 +123,7 @@ PETSC_EXTERN PetscErrorCode CouplingTread(Coupling coupling, PetscReal alpha, Ve
 
 /* CouplingStretching - d = Dm U/h^2. d and U are an edge vector and a marker vector. Not collective. */
 PETSC_EXTERN PetscErrorCode CouplingStretching(Coupling coupling, Vec U, Vec d);
+
+/* CouplingLayer - the single layer of all forces of membranes at X with tension sigma in unbounded fluid. Collective.
+ */
+PETSC_EXTERN PetscErrorCode CouplingLayer(Coupling coupling, Vec sigma, Vec X, Layer *layer);

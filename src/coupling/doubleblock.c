@@ -1,7 +1,7 @@
 #include "coupling/doubleblock.h"
-#include "base/lanes.h"
 #include "coupling/dipolefaces.h"
-#include "coupling/nearblock.h"
+
+#define CELLS 16 /* up to which pairs' stencils are summed; farther, a closed form, right to 2e-5 of D */
 
 PetscErrorCode DoubleGeometry(Spectral spectral, PetscInt n, const PetscReal X[], PetscReal normal[],
                               PetscReal along[]) {
@@ -18,17 +18,9 @@ PetscErrorCode DoubleGeometry(Spectral spectral, PetscInt n, const PetscReal X[]
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* On the diagonal the curvature takes the place of 2 r.n/r^2: D = -(kappa/2 pi) t t w, from the label's derivatives T
-   and T' : xx, yy, xy. */
-static void Diagonal(const PetscReal T[2], const PetscReal TT[2], PetscReal D[3]) {
-  const PetscReal t2 = T[0] * T[0] + T[1] * T[1];
-  const PetscReal q = -(T[0] * TT[1] - T[1] * TT[0]) / (2 * PETSC_PI * t2 * t2);
-  D[0] = q * T[0] * T[0];
-  D[1] = q * T[1] * T[1];
-  D[2] = q * T[0] * T[1];
-}
-
-/* D(i, i) of all markers, whose n w is known: [n][3]. */
+/* D of a curve's markers with themselves, where the curvature kappa takes the place of 2 r.n/r^2:
+       D = -(kappa/2 pi) t t w,
+   from the label's derivatives: [n][3], xx, yy, xy. */
 static PetscErrorCode Diagonals(Spectral spectral, PetscInt n, const PetscReal X[], const PetscReal normal[],
                                 PetscReal D[]) {
   PetscReal *TT;
@@ -36,21 +28,14 @@ static PetscErrorCode Diagonals(Spectral spectral, PetscInt n, const PetscReal X
   PetscCall(PetscCalloc1(2 * n, &TT));
   SpectralDerivative(spectral, 2, 1, X, TT);
   for (PetscInt k = 0; k < n; k++) {
-    const PetscReal T[2] = {-normal[2 * k + 1], normal[2 * k]};
-    Diagonal(T, TT + 2 * k, D + 3 * k);
+    const PetscReal T[2] = {-normal[2 * k + 1], normal[2 * k]}, t2 = T[0] * T[0] + T[1] * T[1];
+    const PetscReal q = -(T[0] * TT[2 * k + 1] - T[1] * TT[2 * k]) / (2 * PETSC_PI * t2 * t2);
+    D[3 * k] = q * T[0] * T[0];
+    D[3 * k + 1] = q * T[1] * T[1];
+    D[3 * k + 2] = q * T[0] * T[1];
   }
   PetscCall(PetscFree(TT));
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* D of the unbounded double layer at (x, y) from a source's marker, zero there: xx, xy, yx, yy. */
-static inline void FreeFour(Lanes x, Lanes y, const PetscReal N[2], Lanes D[4]) {
-  const Lanes r2 = x * x + y * y;
-  const Lanes q = (x * N[0] + y * N[1]) / (PETSC_PI * (r2 * r2 + LanesWhere((LanesBits)(r2 == 0), 1 + (Lanes){0})));
-  const Lanes qx = q * x;
-  D[0] = qx * x;
-  D[1] = D[2] = qx * y;
-  D[3] = q * y * y;
 }
 
 /* From marker p of n on, in a source's columns of J_x and of J_y: value[2][2n]. */
@@ -74,9 +59,9 @@ PetscErrorCode DoubleSelf(Spectral spectral, PetscInt n, const PetscReal X[], co
   for (PetscInt j = 0; j < n; j++) {
     PetscReal *column = D + 2 * j * 2 * n, *at = column + 2 * j;
     for (PetscInt p = 0; p < n; p += LANES) {
-      Lanes M[4];
-      FreeFour(LanesAt(x + p) - x[j], LanesAt(y + p) - y[j], normal + 2 * j, M);
-      PutFour(M, p, n, column);
+      Lanes M[3];
+      StressletFour(LanesAt(x + p) - x[j], LanesAt(y + p) - y[j], normal + 2 * j, M);
+      PutFour((Lanes[]){M[0], M[2], M[2], M[1]}, p, n, column);
     }
     at[0] = own[3 * j];
     at[2 * n + 1] = own[3 * j + 1];
@@ -104,37 +89,22 @@ static inline void FarFour(PetscReal h, Lanes x, Lanes y, Lanes K[2][DIPOLE_COUN
   K[1][DIPOLE_XY] = q * x * y * y - (-34 * c3 - 6 * c5 + 12 * c7) - (46 * C5 - 230 * C7 - 30 * C9 + 70 * C11);
 }
 
-/* The same of near pairs. */
-static void NearParts(const OffsetTable lattice[2], PetscReal h, const PaddedStencil response[2],
-                      const PaddedStencil dipole[DIPOLE_COUNT], const PetscInt cells[2], PetscReal K[2][DIPOLE_COUNT]) {
-  StencilDipoleSums(lattice, response, dipole, cells, K);
-  for (int c = 0; c < 2; c++)
-    for (int k = 0; k < DIPOLE_COUNT; k++) K[c][k] /= h;
-}
-
-void DoubleLatticeParts(const OffsetTable lattice[2], PetscReal h, PetscReal reach, const PaddedStencil response[2],
+void DoubleLatticeParts(const OffsetTable lattice[2], PetscReal reach, const PaddedStencil response[2],
                         const PaddedStencil dipole[DIPOLE_COUNT], const PetscInt cells[2], const PetscReal d[2],
                         PetscReal K[2][DIPOLE_COUNT]) {
   Lanes four[2][DIPOLE_COUNT];
   if (d[0] * d[0] + d[1] * d[1] <= reach * reach) {
-    NearParts(lattice, h, response, dipole, cells, K);
+    StencilDipoleSums(lattice, response, dipole, cells, K);
     return;
   }
-  FarFour(h, d[0] + (Lanes){0}, d[1] + (Lanes){0}, four);
+  FarFour(1, d[0] + (Lanes){0}, d[1] + (Lanes){0}, four);
   for (int c = 0; c < 2; c++)
     for (int k = 0; k < DIPOLE_COUNT; k++) K[c][k] = four[c][k][0];
 }
 
-/* Images in walls that are left out, from so many cells on; with a box part, which is made with all, none, or, of what
-   the lattice has less than the exact fluid, all where it has them. */
-static PetscReal ImageReach(DoubleLayer s, PetscBool lattice) {
-  if (lattice && s->box && DoubleBoxHasImages(s->box)) return 0;
-  return s->near->box ? PETSC_MAX_REAL : DOUBLE_IMAGE_REACH;
-}
-
 /* A block's columns, one at a time: the markers of its row respond to one of its column. */
 typedef struct {
-  DoubleLayer layer;
+  const DoublePairs *pairs;
   const DoubleBlock *block;
   PetscBool self;
   DoubleColumn to;
@@ -146,89 +116,72 @@ typedef struct {
   PetscInt cells[2]; /* added to their offsets */
 } Fill;
 
-/* All arrays of a Fill, one behind the other: those of the walls first. */
-static PetscErrorCode CreateFill(DoubleLayer s, const DoubleBlock *b, PetscBool lattice, Fill *f) {
-  const Layout l = s->near->bodies->layout;
-  const PetscInt n = LayoutCount(l, b->row), room = n + LANES;
-  DoubleColumn *c = &f->to;
-  PetscReal *next;
-  PetscFunctionBeginUser;
-  *f = (Fill){.layer = s, .block = b, .to = {.i = l->start[b->row], .n = n, .lattice = lattice}};
-  f->self = b->row == b->column && b->shift[0] == 0 && b->shift[1] == 0 ? PETSC_TRUE : PETSC_FALSE;
-  PetscCall(PetscCalloc1(15 * room, &f->memory));
-  next = f->memory;
-  PetscReal **const arrays[] = {&c->wall[0], &c->wall[1], &c->wall[2], &c->wall[3], &c->flux[0],
-                                &c->flux[1], &c->free[0], &c->free[1], &c->free[2], &c->free[3],
-                                &c->d[0],    &c->d[1],    &f->flux[0], &f->flux[1], &f->part};
-  for (int k = 0; k < 15; k++, next += room) *arrays[k] = next;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The least box of some markers. */
-static void Bounds(PetscInt n, const PetscReal X[], PetscReal low[2], PetscReal high[2]) {
-  for (int c = 0; c < 2; c++) low[c] = high[c] = X[c];
-  for (PetscInt k = 0; k < 2 * n; k++) {
-    low[k % 2] = PetscMin(low[k % 2], X[k]);
-    high[k % 2] = PetscMax(high[k % 2], X[k]);
-  }
-}
-
 /* Whether no pair is farther apart than faces are shared, nor has another image for the nearest one. */
 static PetscBool AreNear(Fill *f) {
-  const NearField near = f->layer->near;
-  const Layout l = near->bodies->layout;
-  const Grid g = near->markers->grid;
-  const PetscReal *X = near->markers->X, reach = DOUBLE_FACE_CELLS * g->h;
-  PetscReal low[2][2], high[2][2];
-  Bounds(f->to.n, X + 2 * f->to.i, low[0], high[0]);
-  Bounds(LayoutCount(l, f->block->column), X + 2 * l->start[f->block->column], low[1], high[1]);
+  const LayerSetting *set = f->pairs->single->set;
+  const Grid g = set->markers->grid;
+  const NearBounds *row = &f->pairs->single->bounds[f->block->row];
+  const NearBounds *column = &f->pairs->single->bounds[f->block->column];
   for (int dir = 0; dir < 2; dir++) {
     const PetscReal shift = f->block->shift[dir], half = 0.49 * (g->hi[dir] - g->lo[dir]);
-    const PetscReal most = PetscMax(high[0][dir] - low[1][dir] - shift, high[1][dir] + shift - low[0][dir]);
-    if (most > reach || (near->box && !g->wall[dir] && most > half)) return PETSC_FALSE;
+    const PetscReal most = PetscMax(row->high[dir] - column->low[dir] - shift,
+                                    column->high[dir] + shift - row->low[dir]);
+    if (most > DOUBLE_FACE_CELLS * g->h || (set->box && !g->wall[dir] && most > half)) return PETSC_FALSE;
     f->cells[dir] = (PetscInt)rint(-shift / g->h);
   }
   return PETSC_TRUE;
 }
 
-/* Which way takes less: a marker's double sums cost as much as some vectors of faces. */
-static PetscErrorCode ChooseWay(Fill *f) {
+/* Faces, which way takes less, as a marker's double sums cost as much as some vectors of them; and all arrays, one
+   behind the other: those of the walls first. */
+static PetscErrorCode CreateFill(const DoublePairs *s, const DoubleBlock *b, PetscBool lattice, Fill *f) {
   enum { VECTORS_PER_MARKER = 6 };
+  const Layout l = s->single->set->markers->layout;
+  const PetscInt n = LayoutCount(l, b->row), room = n + LANES;
+  DoubleColumn *c = &f->to;
   PetscFunctionBeginUser;
-  if (!f->to.lattice || !AreNear(f)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(DipoleFacesCreate(f->to.n, f->layer->near->stencil + 2 * f->to.i, &f->faces));
-  f->by_faces = f->faces.vectors <= VECTORS_PER_MARKER * f->to.n ? PETSC_TRUE : PETSC_FALSE;
+  *f = (Fill){.pairs = s, .block = b, .to = {.i = l->start[b->row], .n = n, .lattice = lattice}};
+  f->self = b->row == b->column && b->shift[0] == 0 && b->shift[1] == 0 ? PETSC_TRUE : PETSC_FALSE;
+  PetscCall(PetscCalloc1(15 * room, &f->memory));
+  PetscReal **const arrays[] = {&c->wall[0], &c->wall[1], &c->wall[2], &c->wall[3], &c->flux[0],
+                                &c->flux[1], &c->free[0], &c->free[1], &c->free[2], &c->free[3],
+                                &c->d[0],    &c->d[1],    &f->flux[0], &f->flux[1], &f->part};
+  for (int k = 0; k < 15; k++) *arrays[k] = f->memory + k * room;
+  if (s->image) DoubleImageRange(s->image, c);
+  if (!lattice || !AreNear(f)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(DipoleFacesCreate(n, s->single->stencil + 2 * c->i, &f->faces));
+  f->by_faces = f->faces.vectors <= VECTORS_PER_MARKER * n ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Where the column's marker is from those of the row; nothing of walls. */
 static void Begin(Fill *f, PetscInt j) {
-  DoubleLayer s = f->layer;
+  const LayerSetting *set = f->pairs->single->set;
   DoubleColumn *c = &f->to;
-  const PetscReal *X = s->near->markers->X;
+  const PetscReal *X = set->markers->X;
   const Lanes from = {X[2 * j] + f->block->shift[0], X[2 * j + 1] + f->block->shift[1]};
   c->j = j;
-  c->over = 1 / s->along[j];
-  for (int dir = 0; dir < 2; dir++) c->N[dir] = s->normal[2 * j + dir];
+  c->over = 1 / f->pairs->along[j];
+  for (int dir = 0; dir < 2; dir++) c->N[dir] = f->pairs->normal[2 * j + dir];
   for (PetscInt p = 0; p < c->n; p++) {
     c->d[0][p] = X[2 * (c->i + p)] - from[0];
     c->d[1][p] = X[2 * (c->i + p) + 1] - from[1];
     f->part[p] = 1;
   }
-  if (c->lattice && s->near->box) BoxImageRow(s->near->box->axis, c->n, c->d, f->part);
+  if (c->lattice && set->box) BoxImageRow(set->box, c->n, c->d, f->part);
   (void)PetscArrayzero(c->wall[0], 6 * (c->n + LANES));
 }
 
 /* The lattice without walls: all pairs as if they were distant, if any are, then those by stencils. */
 static void Lattice(Fill *f) {
-  const NearField near = f->layer->near;
+  const DoublePairs *s = f->pairs;
   const DoubleColumn *c = &f->to;
-  const PetscReal *X = near->markers->X, h = near->markers->grid->h;
-  const PetscReal reach2 = PetscSqr(DOUBLE_CELLS * h);
+  const PetscReal *X = s->single->set->markers->X, h = s->single->set->markers->grid->h;
+  const PaddedStencil *dipole = &s->dipole[DIPOLE_COUNT * c->j];
+  const PetscReal reach2 = PetscSqr(CELLS * h);
   PetscInt distant = 0;
   if (f->by_faces) {
-    DipoleFacesAnswer(&f->faces, f->layer->lattice, &f->layer->dipole[DIPOLE_COUNT * c->j], f->cells, c->N, 1 / h,
-                      c->free);
+    DipoleFacesAnswer(&f->faces, s->lattice, dipole, f->cells, c->N, 1 / h, c->free);
     return;
   }
   for (PetscInt p = 0; p < c->n; p++) distant += PetscSqr(c->d[0][p]) + PetscSqr(c->d[1][p]) > reach2;
@@ -244,25 +197,24 @@ static void Lattice(Fill *f) {
     PetscInt cells[2];
     if (d[0] * d[0] + d[1] * d[1] > reach2) continue;
     for (int dir = 0; dir < 2; dir++) cells[dir] = (PetscInt)rint((d[dir] - (at[dir] - X[2 * c->j + dir])) / h);
-    StencilDipoleSums(f->layer->lattice, &near->stencil[2 * (c->i + p)], &f->layer->dipole[DIPOLE_COUNT * c->j], cells,
-                      K);
+    StencilDipoleSums(s->lattice, &s->single->stencil[2 * (c->i + p)], dipole, cells, K);
     DipoleContract((const PetscReal(*)[DIPOLE_COUNT])K, c->N, 1 / h, M);
     for (int q = 0; q < 4; q++) c->free[q][p] = M[q];
   }
 }
 
 /* The column's numbers of C = D - L (or D) to value, columns of J_x and of J_y, and L n added to the flux. D of a
-   marker with itself is not among them. */
-static void End(Fill *f, PetscReal value[]) {
+   marker with itself, own[3] in a body's block with itself, is not among the others. */
+static void End(Fill *f, const PetscReal own[3], PetscReal value[]) {
   const DoubleColumn *c = &f->to;
   const PetscReal *N = c->N, n[2] = {c->over * N[0], c->over * N[1]};
   for (PetscInt p = 0; p < c->n; p += LANES) {
     const Lanes part = LanesAt(f->part + p);
-    Lanes D[4], M[4], free[4];
-    FreeFour(LanesAt(c->d[0] + p), LanesAt(c->d[1] + p), N, D);
+    Lanes D[3], M[4], free[4];
+    StressletFour(LanesAt(c->d[0] + p), LanesAt(c->d[1] + p), N, D);
     for (int k = 0; k < 4; k++) {
       free[k] = LanesAt(c->free[k] + p);
-      M[k] = part * (D[k] + (LanesAt(c->wall[k] + p) - free[k]));
+      M[k] = part * (D[k == 0 ? 0 : k == 3 ? 1 : 2] + (LanesAt(c->wall[k] + p) - free[k]));
     }
     for (int comp = 0; comp < 2; comp++) {
       const Lanes flux = n[0] * free[comp] + n[1] * free[2 + comp] + LanesAt(c->flux[comp] + p);
@@ -270,53 +222,38 @@ static void End(Fill *f, PetscReal value[]) {
     }
     PutFour(M, p, c->n, value);
   }
+  if (!own) return;
+  const PetscInt k = c->j - c->i;
+  PetscReal *x = value + 2 * k, *y = x + 2 * c->n;
+  x[0] += f->part[k] * own[0];
+  y[1] += f->part[k] * own[1];
+  x[1] += f->part[k] * own[2];
+  y[0] += f->part[k] * own[2];
 }
 
-/* D of the column's marker with itself, own[3], added to its own block's column. */
-static void AddOwn(const Fill *f, const PetscReal own[3], PetscReal value[]) {
-  const PetscInt k = f->to.j - f->to.i;
-  PetscReal *at = value + 2 * k, *next = at + 2 * f->to.n;
-  at[0] += f->part[k] * own[0];
-  next[1] += f->part[k] * own[1];
-  at[1] += f->part[k] * own[2];
-  next[0] += f->part[k] * own[2];
-}
-
-/* value += (L n) (n w)^T/length: L acts on what Q leaves. */
-static void PutFluxBack(const Fill *f, PetscReal value[]) {
-  const DoubleLayer s = f->layer;
-  const Layout l = s->near->bodies->layout;
-  const PetscInt n = f->to.n, first = 2 * l->start[f->block->column];
-  for (PetscInt i = 0; i < n; i++)
-    for (int c = 0; c < 2; c++) s->column[2 * i + c] = f->flux[c][i];
-  for (PetscInt j = 0; j < 2 * LayoutCount(l, f->block->column); j++) {
-    const PetscReal N = s->normal[first + j] / s->length[f->block->column];
-    for (PetscInt i = 0; i < 2 * n; i++) value[j * 2 * n + i] += N * s->column[i];
-  }
-}
-
-PetscErrorCode DoubleBlockFill(DoubleLayer s, const DoubleBlock *b, PetscBool lattice, PetscReal value[]) {
-  const Layout l = s->near->bodies->layout;
-  const PetscInt m = LayoutCount(l, b->column);
+PetscErrorCode DoubleBlockFill(const DoublePairs *s, const DoubleBlock *b, PetscBool lattice, PetscReal value[]) {
+  const LayerSetting *set = s->single->set;
+  const PetscInt n = LayoutCount(set->markers->layout, b->row), m = LayoutCount(set->markers->layout, b->column);
+  const PetscInt first = set->markers->layout->start[b->column];
+  const PetscReal reach = lattice && !s->images ? 0 : set->box ? PETSC_MAX_REAL : DOUBLE_IMAGE_REACH;
   PetscReal *own = NULL;
   Fill f;
   PetscFunctionBeginUser;
   PetscCall(CreateFill(s, b, lattice, &f));
-  PetscCall(ChooseWay(&f));
-  if (s->image) DoubleImageRange(s->image, &f.to);
   if (f.self) {
     PetscCall(PetscMalloc1(3 * m, &own));
-    PetscCall(Diagonals(s->near->bodies->spectral[b->row], m, s->near->markers->X + 2 * l->start[b->row],
-                        s->normal + 2 * l->start[b->row], own));
+    PetscCall(Diagonals(set->bodies->spectral[b->row], m, set->markers->X + 2 * first, s->normal + 2 * first, own));
   }
   for (PetscInt q = 0; q < m; q++) {
-    Begin(&f, l->start[b->column] + q);
+    Begin(&f, first + q);
     if (lattice) Lattice(&f);
-    if (s->image) DoubleImageAddColumn(s->image, ImageReach(s, lattice), &f.to);
-    End(&f, value + 2 * q * 2 * f.to.n);
-    if (f.self) AddOwn(&f, own + 3 * q, value + 2 * q * 2 * f.to.n);
+    if (s->image) DoubleImageAddColumn(s->image, reach, &f.to);
+    End(&f, own ? own + 3 * q : NULL, value + 2 * q * 2 * n);
   }
-  if (lattice) PutFluxBack(&f, value);
+  for (PetscInt j = 0; j < 2 * m && lattice; j++) { /* + (L n) (n w)^T/length: L acts on what Q leaves */
+    const PetscReal N = s->normal[2 * first + j] / s->length[b->column];
+    for (PetscInt i = 0; i < 2 * n; i++) value[j * 2 * n + i] += N * f.flux[i % 2][i / 2];
+  }
   PetscCall(PetscFree(own));
   PetscCall(DipoleFacesDestroy(&f.faces));
   PetscCall(PetscFree(f.memory));

@@ -10,15 +10,14 @@
 
 /* One vesicle, and what all cells need. */
 typedef struct {
-  Coupling coupling;
+  const LayerSetting *set;
+  OffsetTable table[3]; /* the lattice's dipoles: u, v and p */
   DoubleCurve curve;
-  PetscInt n;
-  PetscReal reach; /* of the correction (length); everywhere in unbounded fluid */
   PetscReal ratio;
   const PetscReal *X;    /* [2n] */
   PetscReal *tensor;     /* [DIPOLE_COUNT n]; whole vectors, as X */
   PaddedStencil *dipole; /* [DIPOLE_COUNT n], not wrapped into the grid */
-  CellRow row;           /* the cells under way; none in unbounded fluid */
+  PetscReal *over;       /* [cells] 1/ratio inside vesicles, else 1 */
 } DoubleCells;
 
 static PetscReal At(const OffsetTable *t, OffsetBlock b, PetscInt i, PetscInt j) {
@@ -46,28 +45,34 @@ static PetscErrorCode PressureTable(PetscInt reach, OffsetTable *t) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What the lattice has of the dipoles of marker k at `n` cells of a row from cell[0] on, taken off. */
-static void TakeLattice(DoubleCells *s, PetscInt k, const PetscInt cell[2], PetscInt n) {
+static void TakeLattice(void *context, PetscInt k, const PetscInt cell[2], PetscInt n, PetscReal *const sum[3]) {
   static const PetscInt none[2] = {0, 0};
-  const DoubleLayer d = s->coupling->contrast;
-  const PetscReal h = s->coupling->fluid->grid->h, nu = s->coupling->fluid->nu;
-  const OffsetTable *table[3] = {&d->lattice[0], &d->lattice[1], &d->pressure};
-  const PetscReal scale[3] = {1 / h, 1 / h, nu / (h * h)};
+  const DoubleCells *s = (const DoubleCells *)context;
+  const PetscReal h = s->set->markers->grid->h, scale[3] = {1 / h, 1 / h, s->set->nu / (h * h)};
   for (int c = 0; c < 3; c++) {
     PaddedStencil weights;
     CellStencil((Field)c, cell, &weights);
     for (PetscInt q = DIPOLE_COUNT * k; q < DIPOLE_COUNT * (k + 1); q++)
-      StencilRowAdd(table[c], (OffsetBlock)(q % DIPOLE_COUNT), &weights, &s->dipole[q], none, -scale[c] * s->tensor[q],
-                    n, s->row.sum[c] + cell[0] - s->row.from);
+      StencilRowAdd(&s->table[c], (OffsetBlock)(q % DIPOLE_COUNT), &weights, &s->dipole[q], none,
+                    -scale[c] * s->tensor[q], n, sum[c]);
   }
 }
 
-/* The same of markers that are distant from cell i: the double layer itself. */
-static void TakeDistant(const DoubleCells *s, PetscInt i, const PetscReal at[2], PetscReal f[3]) {
-  const PetscReal nu = s->coupling->fluid->nu;
+/* The double layer, less the lattice's of distant markers, which is the double layer itself; and which cells are
+ * inside.
+ */
+static void Exact(void *context, const CellRow *row, PetscInt i, const PetscReal at[2], PetscBool corrected,
+                  PetscInt cell, PetscReal found[3]) {
+  const DoubleCells *s = (const DoubleCells *)context;
+  PetscBool inside;
   Lanes sum[3] = {{0}, {0}, {0}};
-  for (PetscInt k = 0; k < s->n; k += LANES) {
-    const LanesBits far = CellRowDistant(&s->row, s->n, k, i);
+  if (corrected)
+    DoubleCurveAdd(s->curve, at, found, &found[2], &inside);
+  else
+    inside = DoubleCurveContains(s->curve, at);
+  if (inside) s->over[cell] = 1 / s->ratio;
+  for (PetscInt k = 0; k < row->n && corrected && !row->grid->free; k += LANES) {
+    const LanesBits far = CellRowDistant(row, k, i);
     const PetscReal *T = s->tensor + DIPOLE_COUNT * k;
     Lanes x, y, part[DIPOLE_COUNT];
     LanesPairs(s->X + 2 * k, &x, &y);
@@ -82,116 +87,60 @@ static void TakeDistant(const DoubleCells *s, PetscInt i, const PetscReal at[2],
     sum[1] += LanesWhere(far, factor * y);
     sum[2] += LanesWhere(far, 0.5 * (part[DIPOLE_XX] + part[DIPOLE_YY]) * over - 2 * factor);
   }
-  for (int c = 0; c < 2; c++) f[c] += LanesSum(sum[c]) / PETSC_PI;
-  f[2] += nu / PETSC_PI * LanesSum(sum[2]);
+  for (int c = 0; c < 3; c++) found[c] += (c == 2 ? s->set->nu : 1) / PETSC_PI * LanesSum(sum[c]);
 }
 
-static PetscErrorCode SetVesicle(DoubleCells *s, PetscInt v, const PetscReal X[], const PetscReal U[]) {
-  const DoubleLayer d = s->coupling->contrast;
-  const Membrane m = s->coupling->membrane;
+/* The curve and the dipoles of vesicle v, of n markers that move with U[2n]. */
+static PetscErrorCode SetVesicle(DoubleCells *s, PetscInt v, PetscInt n, const PetscReal U[]) {
   PetscReal *normal, *along, *J;
   PetscFunctionBeginUser;
-  s->n = LayoutCount(m->layout, v);
-  s->ratio = d->ratio[v];
-  s->X = X + 2 * m->layout->start[v];
-  s->reach = PetscMax(CELLS * s->coupling->fluid->grid->h, SPACINGS * m->ds[v]);
-  PetscCall(PetscMalloc3(2 * s->n, &normal, s->n, &along, 2 * s->n, &J));
-  PetscCall(DoubleGeometry(m->spectral[v], s->n, s->X, normal, along));
-  for (PetscInt k = 0; k < 2 * s->n; k++) J[k] = (1 - s->ratio) * U[2 * m->layout->start[v] + k];
-  PetscCall(DoubleCurveCreate(s->n, s->coupling->fluid->nu, s->X, J, &s->curve));
-  for (PetscInt k = 0; k < s->n; k++) {
+  PetscCall(PetscMalloc3(2 * n, &normal, n, &along, 2 * n, &J));
+  PetscCall(DoubleGeometry(s->set->bodies->spectral[v], n, s->X, normal, along));
+  for (PetscInt k = 0; k < 2 * n; k++) J[k] = (1 - s->ratio) * U[k];
+  PetscCall(DoubleCurveCreate(n, s->set->nu, s->X, J, &s->curve));
+  for (PetscInt k = 0; k < n; k++) {
     PetscReal *T = s->tensor + DIPOLE_COUNT * k;
     Stencil part[DIPOLE_COUNT];
     T[DIPOLE_XX] = 2 * J[2 * k] * normal[2 * k];
     T[DIPOLE_YY] = 2 * J[2 * k + 1] * normal[2 * k + 1];
     T[DIPOLE_XY] = J[2 * k] * normal[2 * k + 1] + J[2 * k + 1] * normal[2 * k];
-    DipoleStencilsUnwrapped(s->coupling->fluid->grid, s->X + 2 * k, part);
+    DipoleStencilsUnwrapped(s->set->markers->grid, s->X + 2 * k, part);
     for (int c = 0; c < DIPOLE_COUNT; c++) StencilPad(&part[c], &s->dipole[DIPOLE_COUNT * k + c]);
   }
   PetscCall(PetscFree3(normal, along, J));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Cells from box[dir][0] to box[dir][1] hold the vesicle and all that is near it; in unbounded fluid all of the window.
- */
-static void FindBox(const DoubleCells *s, PetscInt box[2][2]) {
-  const Grid g = s->coupling->fluid->grid;
-  if (!g->free) {
-    CellBox(g, s->n, s->X, s->reach, box);
-    return;
-  }
-  for (int dir = 0; dir < 2; dir++) {
-    box[dir][0] = 0;
-    box[dir][1] = g->n[dir] - 1;
-  }
-}
-
-/* Row j of the cells from box[0] to box[1]; to the fields from `start` on, over[] becomes 1/ratio inside. */
-static void CorrectRow(DoubleCells *s, const PetscInt box[2], PetscInt j, PetscReal *const field[3], PetscInt start,
-                       PetscReal over[]) {
-  const Grid g = s->coupling->fluid->grid;
-  PetscInt cell[2];
-  const PetscBool any = g->free || CellRowPlace(&s->row, g, s->n, s->X, s->reach, box, j) ? PETSC_TRUE : PETSC_FALSE;
-  for (PetscInt k = 0; k < s->n && any && !g->free; k++) {
-    const PetscInt n = CellRowNear(&s->row, g, k, s->X + 2 * k, SUMMED_CELLS, j, cell);
-    if (n) TakeLattice(s, k, cell, n);
-  }
-  for (PetscInt i = box[0]; i <= box[1]; i++) {
-    const PetscInt at = start + ((i % g->n[0]) + g->n[0]) % g->n[0];
-    PetscReal x[2], f[3] = {0, 0, 0};
-    PetscBool inside;
-    GridPosition(g, FIELD_P, i, j, x);
-    const PetscBool near = any && (g->free || CellIsNear(s->n, s->X, s->reach, x)) ? PETSC_TRUE : PETSC_FALSE;
-    if (near)
-      DoubleCurveAdd(s->curve, x, f, &f[2], &inside);
-    else
-      inside = DoubleCurveContains(s->curve, x);
-    if (inside) over[at] = 1 / s->ratio;
-    if (!near) continue;
-    if (!g->free) TakeDistant(s, i, x, f);
-    for (int c = 0; c < 3; c++)
-      if (field[c]) field[c][at] += f[c] + (g->free ? 0 : s->row.sum[c][i - s->row.from]);
-  }
-}
-
-/* One vesicle's part, added. */
-static PetscErrorCode CorrectVesicle(DoubleCells *s, PetscReal *const field[3], PetscReal over[]) {
-  const Grid g = s->coupling->fluid->grid;
-  PetscInt box[2][2];
+PetscErrorCode DoubleCellsCorrect(const LayerSetting *set, const OffsetTable lattice[2], const PetscReal ratio[], Vec U,
+                                  Vec X, PetscReal *const field[3]) {
+  const Membrane m = set->bodies->membrane;
+  const Layout l = m->layout;
+  const Grid g = set->markers->grid;
+  const PetscInt cells = g->n[0] * g->rows[FIELD_P];
+  PetscReal *x, *velocity;
+  DoubleCells s = {.set = set, .table = {lattice[0], lattice[1]}};
+  const CellLayer of = {&s, SUMMED_CELLS, TakeLattice, Exact};
   PetscFunctionBeginUser;
-  FindBox(s, box);
-  PetscCall(CellRowCreate(s->n, box[0][1] - box[0][0] + 1, &s->row));
-  for (PetscInt j = box[1][0]; j <= box[1][1]; j++) {
-    const PetscInt row = ((j % g->n[1]) + g->n[1]) % g->n[1] - g->first;
-    if (row >= 0 && row < g->rows[FIELD_P]) CorrectRow(s, box[0], j, field, row * g->n[0], over);
-  }
-  PetscCall(CellRowDestroy(&s->row));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode DoubleCellsCorrect(Coupling c, Vec U, Vec X, PetscReal u[], PetscReal v[], PetscReal p[]) {
-  const Layout l = c->membrane->layout;
-  const PetscInt cells = c->fluid->grid->n[0] * c->fluid->grid->rows[FIELD_P];
-  PetscReal *const field[3] = {u, v, p};
-  PetscReal *x, *velocity, *over;
-  DoubleCells s = {.coupling = c};
-  PetscFunctionBeginUser;
-  if (!c->contrast) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscCalloc3(2 * (l->M + LANES), &x, 2 * l->M, &velocity, cells, &over));
+  PetscCall(PetscCalloc3(2 * (l->M + LANES), &x, 2 * l->M, &velocity, cells, &s.over));
   PetscCall(PetscCalloc2(DIPOLE_COUNT * (l->M + LANES), &s.tensor, DIPOLE_COUNT * l->M, &s.dipole));
   PetscCall(LayoutGatherVec(l, X, x));
   PetscCall(LayoutGatherVec(l, U, velocity));
-  if (!c->contrast->pressure.value[0]) PetscCall(PressureTable(SUMMED_CELLS + OFFSET_LAGS, &c->contrast->pressure));
-  for (PetscInt k = 0; k < cells; k++) over[k] = 1;
-  for (PetscInt b = 0; b < l->bodies; b++) {
-    if (c->contrast->ratio[b] == 1) continue;
-    PetscCall(SetVesicle(&s, b, x, velocity));
-    PetscCall(CorrectVesicle(&s, field, over));
+  if (!g->free) PetscCall(PressureTable(SUMMED_CELLS + OFFSET_LAGS, &s.table[2]));
+  for (PetscInt k = 0; k < cells; k++) s.over[k] = 1;
+  for (PetscInt v = 0; v < l->bodies; v++) {
+    CellRow row;
+    s.ratio = ratio[v];
+    s.X = x + 2 * l->start[v];
+    if (ratio[v] == 1) continue;
+    if (!CellRowBegin(g, LayoutCount(l, v), s.X, PetscMax(CELLS * g->h, SPACINGS * m->ds[v]), &row)) continue;
+    PetscCall(SetVesicle(&s, v, row.n, velocity + 2 * l->start[v]));
+    PetscCall(CellRowCorrect(&row, &of, field));
     PetscCall(DoubleCurveDestroy(&s.curve));
   }
   for (int f = 0; f < 2; f++)
-    for (PetscInt k = 0; k < cells && field[f]; k++) field[f][k] *= over[k];
+    for (PetscInt k = 0; k < cells && field[f]; k++) field[f][k] *= s.over[k];
+  PetscCall(OffsetTableDestroy(&s.table[2]));
   PetscCall(PetscFree2(s.tensor, s.dipole));
-  PetscCall(PetscFree3(x, velocity, over));
+  PetscCall(PetscFree3(x, velocity, s.over));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,12 +1,13 @@
-/* Velocity and pressure of a viscosity contrast at cell centres (docs/contrast.md, Output): the double layer
+/* Velocity and pressure of a viscosity contrast at cell centres (cellrow.h, docs/contrast.md, Output): the double layer
    next to the membranes as it is, in the place of what the grid has of it, and inside a vesicle the fluid's own
    velocity, the solved one over the ratio. */
 #pragma once
-#include "coupling/coupling.h"
+#include "coupling/layersetting.h"
+#include "coupling/offsets.h"
 
 /* DoubleCellsCorrect - to the solved velocity u, v, background included, and the pressure p at this rank's cell
-   centres, [rows][nx] each, u and v together or neither, p or NULL: of markers X that move with U. In unbounded fluid
-   all of the double layer is added, else the difference to the grid's next to the membranes. Nothing without contrast.
-   Collective. */
-PETSC_EXTERN PetscErrorCode DoubleCellsCorrect(Coupling coupling, Vec U, Vec X, PetscReal u[], PetscReal v[],
-                                               PetscReal p[]);
+   centres, field[3][rows][nx], u and v together or neither, p or NULL: of vesicles with these ratios of viscosities at
+   X that move with U, all as marker vectors of the membranes; lattice: LatticeDipoles. In unbounded fluid all of the
+   double layer is added, else the difference to the grid's next to the membranes. Collective. */
+PETSC_EXTERN PetscErrorCode DoubleCellsCorrect(const LayerSetting *set, const OffsetTable lattice[2],
+                                               const PetscReal ratio[], Vec U, Vec X, PetscReal *const field[3]);

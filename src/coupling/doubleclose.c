@@ -1,91 +1,52 @@
-/* As nearclose.c: chi(r) D is exchanged, chi a smooth window. */
-#include "coupling/doubleclose.h"
-#include "coupling/finecurve.h"
-#include "coupling/nearclose.h"
+/* The double layer between curves near one another, and of images in a wall near them, on finer points. */
+#include "coupling/doubleblock.h"
 
-void DoubleCloseNormals(const FineCurve *c, const PetscReal normal[], PetscReal N[]) {
-  const PetscInt Q = c->n * c->f;
-  for (PetscInt q = 0; q < c->count; q++)
-    for (int d = 0; d < 2; d++) {
-      PetscReal sum = 0;
-      for (PetscInt k = 0; k < c->n; k++) sum += c->weight[((c->used[q] - c->f * k) % Q + Q) % Q] * normal[2 * k + d];
-      N[2 * q + d] = sum;
-    }
+/* Parts in a block: from J_x to u, v, then from J_y. */
+static void FreeKernel(const void *pairs, int wall, const Lanes x[2], const PetscReal y[2], const PetscReal N[2],
+                       Lanes K[]) {
+  Lanes D[3];
+  StressletFour(x[0] - y[0], x[1] - y[1], N, D);
+  K[0] = D[0];
+  K[1] = K[2] = D[2];
+  K[3] = D[1];
 }
 
-/* chi D on the points in use, projected: parts xx, yy, xy, [n_b][n_a] each. */
-static PetscErrorCode Project(const FineCurve *a, const FineCurve *b, const PetscReal N[], PetscReal window,
-                              PetscReal *const part[3]) {
-  PetscReal *K[3];
-  PetscFunctionBeginUser;
-  for (int c = 0; c < 3; c++) PetscCall(PetscMalloc1(a->count * b->count, &K[c]));
-  for (PetscInt q = 0; q < b->count; q++)
-    for (PetscInt p = 0; p < a->count; p++) {
-      const PetscReal *x = a->x + 2 * a->used[p], *y = b->x + 2 * b->used[q], r[2] = {y[0] - x[0], y[1] - x[1]};
-      const PetscReal r2 = r[0] * r[0] + r[1] * r[1], chi = FineWindow(PetscSqrtReal(r2), window);
-      const PetscReal D = -chi * (r[0] * N[2 * q] + r[1] * N[2 * q + 1]) / (PETSC_PI * r2 * r2);
-      K[0][q * a->count + p] = D * r[0] * r[0];
-      K[1][q * a->count + p] = D * r[1] * r[1];
-      K[2][q * a->count + p] = D * r[0] * r[1];
-    }
-  for (int c = 0; c < 3; c++) {
-    PetscCall(FineCurveProject(a, b, K[c], part[c]));
-    PetscCall(PetscFree(K[c]));
+static void WallKernel(const void *pairs, int wall, const Lanes x[2], const PetscReal y[2], const PetscReal N[2],
+                       Lanes K[]) {
+  const DoublePairs *s = (const DoublePairs *)pairs;
+  Lanes seen[3];
+  FinePairSeen(s->single->set->markers->grid, wall, x, y, seen);
+  for (int q = 0; q < LANES; q++) {
+    PetscReal image[2][DIPOLE_COUNT] = {{0}}, M[4];
+    DoubleImageExact(s->image, wall, &(ImagePair){seen[0][q], seen[1][q], seen[2][q]}, image);
+    DipoleContract((const PetscReal(*)[DIPOLE_COUNT])image, N, 1, M);
+    for (int c = 0; c < 4; c++) K[c][q] = M[c];
   }
+}
+
+PetscErrorCode DoubleBlockRefine(const DoublePairs *s, const FinePair *pair, PetscReal value[]) {
+  const Layout l = s->single->set->markers->layout;
+  const PetscInt n = LayoutCount(l, pair->row), m = LayoutCount(l, pair->column);
+  const FineKernel kernel = {4, pair->wall < 0 ? FreeKernel : WallKernel, s, s->normal + 2 * l->start[pair->column]};
+  PetscReal *part;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(4 * n * m, &part));
+  for (int fine = 1; fine >= 0; fine--) {
+    PetscCall(FinePairParts(s->single->set, pair, (PetscBool)fine, &kernel, part));
+    for (PetscInt k = 0; k < 4 * n * m; k++) {
+      const PetscInt c = k / (n * m), j = k / n % m, i = k % n;
+      value[(2 * j + c / 2) * 2 * n + 2 * i + c % 2] += fine ? part[k] : -part[k];
+    }
+  }
+  PetscCall(PetscFree(part));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Curves at `factor` times their markers, added with a sign. */
-static PetscErrorCode AddAt(DoubleLayer s, const DoubleBlock *block, const PetscReal shift[2], PetscInt factor,
-                            PetscReal window, PetscReal sign, PetscReal value[]) {
-  const PetscReal none[2] = {0, 0};
-  PetscReal *part[3], *N;
-  FineCurve a, b;
+PetscErrorCode DoubleBlockRefineAtWalls(const DoublePairs *s, const DoubleBlock *b, PetscReal value[]) {
   PetscFunctionBeginUser;
-  PetscCall(FineCurveCreate(s->near, block->row, none, factor, &a));
-  PetscCall(FineCurveCreate(s->near, block->column, shift, factor, &b));
-  PetscCall(FineCurvePair(&a, &b, window));
-  PetscCall(PetscMalloc4(a.n * b.n, &part[0], a.n * b.n, &part[1], a.n * b.n, &part[2], 2 * b.count, &N));
-  DoubleCloseNormals(&b, s->normal + 2 * s->near->bodies->layout->start[block->column], N);
-  PetscCall(Project(&a, &b, N, window, part));
-  for (PetscInt j = 0; j < b.n; j++)
-    for (PetscInt i = 0; i < a.n; i++) {
-      PetscReal *at = value + 2 * j * 2 * a.n + 2 * i;
-      at[0] += sign * part[0][j * a.n + i];
-      at[2 * a.n + 1] += sign * part[1][j * a.n + i];
-      at[1] += sign * part[2][j * a.n + i];
-      at[2 * a.n] += sign * part[2][j * a.n + i];
-    }
-  PetscCall(PetscFree4(part[0], part[1], part[2], N));
-  PetscCall(FineCurveDestroy(&a));
-  PetscCall(FineCurveDestroy(&b));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Whether a close image of the near field is in this block, and by which shift of its column. */
-static PetscBool Belongs(DoubleLayer s, const DoubleBlock *b, const NearClose *c, PetscReal shift[2]) {
-  const NearBlock *of = &s->near->block[c->block];
-  for (int turned = 0; turned < 2; turned++) {
-    PetscBool same = b->row == (turned ? of->column : of->row) && b->column == (turned ? of->row : of->column);
-    for (int d = 0; d < 2; d++) {
-      shift[d] = turned ? -c->shift[d] : c->shift[d];
-      if (b->shift[d] != shift[d] && !s->near->box) same = PETSC_FALSE; /* with a box part all images share a block */
-    }
-    if (same) return PETSC_TRUE;
-  }
-  return PETSC_FALSE;
-}
-
-PetscErrorCode DoubleCloseAdd(DoubleLayer s, const DoubleBlock *b, PetscReal value[]) {
-  const NearField f = s->near;
-  PetscReal shift[2], window;
-  PetscInt factor;
-  PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < f->closes; k++) {
-    if (!Belongs(s, b, &f->close[k], shift)) continue;
-    NearCloseFineness(f, &f->close[k], &factor, &window);
-    PetscCall(AddAt(s, b, shift, factor, window, 1, value));
-    PetscCall(AddAt(s, b, shift, 1, window, -1, value));
+  for (int wall = 0; wall < 4; wall++) {
+    FinePair pair = {.row = b->row, .column = b->column, .shift = {b->shift[0], b->shift[1]}};
+    if (FinePairAtWall(s->single->set, s->single->bounds, wall, &pair)) PetscCall(DoubleBlockRefine(s, &pair, value));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,9 +1,8 @@
 #include "coupling/doublecross.h"
 #include "base/lanes.h"
-#include "coupling/nearblock.h"
 
 PetscErrorCode DoubleCrossCreate(DoubleLayer layer, DoubleCross *out) {
-  const PetscInt room = 2 * (layer->near->bodies->layout->M + LANES);
+  const PetscInt room = 2 * (layer->near->set.bodies->layout->M + LANES);
   DoubleCross c;
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&c));
@@ -44,7 +43,7 @@ static void AddAt(DoubleCross c, const PetscReal x[2], PetscInt first, PetscInt 
 /* Of the vesicle `column` to own markers of `row`; sign times shift moves the column. */
 static void AddPair(DoubleCross c, PetscInt row, PetscInt column, PetscReal sign, const PetscReal shift[2],
                     PetscScalar W[]) {
-  const Layout l = c->layer->near->bodies->layout;
+  const Layout l = c->layer->near->set.bodies->layout;
   if (c->layer->ratio[column] == 1 || row < l->own || row >= l->end) return;
   for (PetscInt i = l->start[row]; i < l->start[row + 1]; i++) {
     const PetscReal x[2] = {c->X[2 * i] - sign * shift[0], c->X[2 * i + 1] - sign * shift[1]};
@@ -54,20 +53,20 @@ static void AddPair(DoubleCross c, PetscInt row, PetscInt column, PetscReal sign
 
 PetscErrorCode DoubleCrossPlace(DoubleCross c) {
   const NearField f = c->layer->near;
-  const PetscInt M = f->bodies->membrane->layout->M;
+  const PetscInt M = f->set.bodies->membrane->layout->M;
   PetscFunctionBeginUser;
-  PetscCall(PetscArraycpy(c->X, f->markers->X, 2 * M));
+  PetscCall(PetscArraycpy(c->X, f->set.markers->X, 2 * M));
   PetscCall(PetscArraycpy(c->N, c->layer->normal, 2 * M));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode DoubleCrossApply(DoubleCross c, const PetscScalar J[], PetscScalar W[]) {
   const NearField f = c->layer->near;
-  const Layout l = f->bodies->membrane->layout;
+  const Layout l = f->set.bodies->membrane->layout;
   PetscFunctionBeginUser;
   PetscCall(LayoutGather(l, 2, J, c->J));
-  for (PetscInt k = 0; k < f->blocks; k++) {
-    const NearBlock *b = &f->block[k];
+  for (PetscInt k = 0; k < f->list.count.blocks; k++) {
+    const NearBlock *b = &f->list.block[k];
     if (NearBlockIsSelf(b) || PetscMax(b->row, b->column) >= l->bodies) continue;
     AddPair(c, b->row, b->column, 1, b->shift, W);
     AddPair(c, b->column, b->row, -1, b->shift, W);

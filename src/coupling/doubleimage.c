@@ -56,9 +56,9 @@ static int Turned(int direction, int part) {
   return direction || part == DIPOLE_XY ? part : 1 - part;
 }
 
-/* K += alpha times a pair's parts, turned from the wall with this normal and side to x and y. */
-static void Turn(int direction, int side, PetscReal alpha, const PetscReal part[2][DIPOLE_COUNT],
-                 PetscReal K[2][DIPOLE_COUNT]) {
+/* K += alpha times a pair's parts, turned from a wall to x and y. */
+static void Turn(int wall, PetscReal alpha, const PetscReal part[2][DIPOLE_COUNT], PetscReal K[2][DIPOLE_COUNT]) {
+  const int direction = wall / 2, side = wall % 2;
   for (int c = 0; c < 2; c++)
     for (int q = 0; q < DIPOLE_COUNT; q++) {
       const PetscBool odd = (c == 1) != (q == DIPOLE_XY) ? PETSC_TRUE : PETSC_FALSE; /* in the distance from the wall */
@@ -66,63 +66,84 @@ static void Turn(int direction, int side, PetscReal alpha, const PetscReal part[
     }
 }
 
-/* The half-space lattice's answer at i to the parts of j near the wall, seen from it. */
-static void Half(DoubleImage m, int direction, PetscReal x, PetscInt i, const ImageEnd *e, PetscInt j,
-                 const DipoleEnd *f, PetscReal K[2][DIPOLE_COUNT]) {
-  const int t = 1 - direction;
+/* The half-space lattice's answer at i to the parts of j near a wall, x cells apart along it and seen from it. */
+static void Half(DoubleImage m, int wall, PetscInt i, PetscInt j, PetscReal x, PetscReal K[2][DIPOLE_COUNT]) {
+  const int direction = wall / 2, t = 1 - direction;
+  const ImageEnd *e = &m->single->end[direction][wall % 2][i];
+  const DipoleEnd *f = &m->end[direction][wall % 2][j];
   for (int c = 0; c < 2; c++)
     for (int part = 0; part < DIPOLE_COUNT; part++) {
-      const PaddedStencil *from = &m->single->stencil[2 * i + (c ? direction : t)];
-      const PaddedStencil *to = &m->dipole[DIPOLE_COUNT * j + Turned(direction, part)];
-      const ImageRows row = {e->first[c], e->n[c], e->weight[c]};
-      const ImageRows source = {f->first[part], f->n[part], f->weight[part]};
-      K[c][part] = ImageSum(m->table->value[part][c], m->single->markers->grid, t, x, from, &row, to, &source);
+      const ImageRows row = {e->first[c], e->n[c], e->weight[c], &m->single->stencil[2 * i + (c ? direction : t)]};
+      const ImageRows source = {f->first[part], f->n[part], f->weight[part],
+                                &m->dipole[DIPOLE_COUNT * j + Turned(direction, part)]};
+      K[c][part] = ImageSum(m->table->value[part][c], m->single->markers->grid, t, x, &row, &source);
     }
 }
 
-static void AddParts(PetscReal alpha, const PetscReal from[2][DIPOLE_COUNT], PetscReal to[2][DIPOLE_COUNT]) {
-  for (int c = 0; c < 2; c++)
-    for (int k = 0; k < DIPOLE_COUNT; k++) to[c][k] += alpha * from[c][k];
+void DoubleImageExact(DoubleImage m, int wall, const ImagePair *p, PetscReal exact[2][DIPOLE_COUNT]) {
+  PetscReal part[2][DIPOLE_COUNT];
+  DipoleImageExact(&m->forms, p, part);
+  Turn(wall, 1 / m->single->markers->grid->h, PARTS(part), exact);
 }
 
-/* What the lattice has of one wall for a pair, whose image in exact fluid is blake, and how much of each component of
-   its answer without walls is to be taken off. Responses that are scaled near the wall take s of the half space's free
-   + exact - far only. */
-static void OnLattice(DoubleImage m, int direction, int side, PetscInt i, PetscInt j, const ImagePair *p,
-                      const PetscReal blake[2][DIPOLE_COUNT], PetscReal grid[2][DIPOLE_COUNT], PetscReal less[2]) {
-  const PetscReal over = 1 / m->single->markers->grid->h;
-  const ImageEnd *e = &m->single->end[direction][side][i];
+/* What a wall adds for a pair: to exact fluid, to the lattice, and how much of each component of the lattice's answer
+   without walls is to be taken off. */
+typedef struct {
+  PetscReal exact[2][DIPOLE_COUNT], lattice[2][DIPOLE_COUNT], less[2];
+} AtWall;
+
+/* Responses that are scaled near the wall take s of the half space's free + exact - far only. */
+static AtWall AtWallOf(DoubleImage m, int wall, PetscInt i, PetscInt j, const PetscReal d[2], PetscBool lattice) {
+  const PetscReal over = 1 / m->single->markers->grid->h, *y = m->single->y[wall / 2][wall % 2];
+  const ImagePair p = {d[1 - wall / 2] * over, y[i], y[j]};
+  AtWall a = {.less = {1, 1}};
   PetscReal part[2][DIPOLE_COUNT];
-  less[0] = less[1] = 1;
-  if (NearImageIsNear(p)) {
-    Half(m, direction, p->x, i, e, j, &m->end[direction][side][j], part);
-    Turn(direction, side, over, PARTS(part), grid);
-    return;
+  DoubleImageExact(m, wall, &p, a.exact);
+  if (!lattice) return a;
+  if (NearImageIsNear(&p)) {
+    Half(m, wall, i, j, p.x, part);
+    Turn(wall, over, PARTS(part), a.lattice);
+    return a;
   }
-  DipoleImageFar(&m->forms, p, part);
-  Turn(direction, side, -over, PARTS(part), grid);
+  DipoleImageFar(&m->forms, &p, part);
+  Turn(wall, -over, PARTS(part), a.lattice);
   for (int c = 0; c < 2; c++) {
-    const PetscReal scale = c == direction ? e->scale : 1;
-    less[c] = 1 - scale;
-    for (int k = 0; k < DIPOLE_COUNT; k++) grid[c][k] = scale * (grid[c][k] + blake[c][k]);
+    const PetscReal scale = c == wall / 2 ? m->single->end[wall / 2][wall % 2][i].scale : 1;
+    a.less[c] = 1 - scale;
+    for (int k = 0; k < DIPOLE_COUNT; k++) a.lattice[c][k] = scale * (a.lattice[c][k] + a.exact[c][k]);
+  }
+  return a;
+}
+
+void DoubleImageAdd(DoubleImage m, PetscInt i, PetscInt j, const PetscReal d[2], PetscReal reach,
+                    PetscReal exact[2][DIPOLE_COUNT], PetscReal lattice[2][DIPOLE_COUNT]) {
+  PetscReal free[2][DIPOLE_COUNT];
+  (void)PetscMemcpy(free, lattice, sizeof(free));
+  for (int wall = 0; wall < 4; wall++) {
+    const PetscReal *y = m->single->y[wall / 2][wall % 2];
+    if (!m->end[wall / 2][wall % 2] || y[i] + y[j] >= reach) continue;
+    const AtWall a = AtWallOf(m, wall, i, j, d, PETSC_TRUE);
+    for (int c = 0; c < 2; c++)
+      for (int k = 0; k < DIPOLE_COUNT; k++) {
+        exact[c][k] += a.exact[c][k];
+        lattice[c][k] += a.lattice[c][k] - a.less[c] * free[c][k];
+      }
   }
 }
 
 /* One wall's parts, pair by pair. */
-static void AddPairs(DoubleImage m, int direction, int side, PetscReal reach, const DoubleColumn *c) {
-  const PetscReal *y = m->single->y[direction][side];
+static void AddPairs(DoubleImage m, int wall, PetscReal reach, const DoubleColumn *c) {
+  const PetscReal *y = m->single->y[wall / 2][wall % 2];
   for (PetscInt k = 0; k < c->n; k++) {
-    const ImagePair p = {c->d[1 - direction][k] / m->single->markers->grid->h, y[c->i + k], y[c->j]};
-    PetscReal blake[2][DIPOLE_COUNT] = {{0}}, grid[2][DIPOLE_COUNT] = {{0}}, less[2], exact[4], L[4];
-    if (p.a + p.b >= reach) continue;
-    DoubleImageExact(m, direction, side, &p, blake);
-    DipoleContract(PARTS(blake), c->N, 1, exact);
+    PetscReal exact[4], L[4];
+    if (y[c->i + k] + y[c->j] >= reach) continue;
+    const AtWall a = AtWallOf(m, wall, c->i + k, c->j, (PetscReal[]){c->d[0][k], c->d[1][k]}, c->lattice);
+    DipoleContract(a.exact, c->N, 1, exact);
     for (int q = 0; q < 4; q++) c->wall[q][k] += exact[q];
     if (!c->lattice) continue;
-    OnLattice(m, direction, side, c->i + k, c->j, &p, PARTS(blake), grid, less);
-    DipoleContract(PARTS(grid), c->N, 1, L);
+    DipoleContract(a.lattice, c->N, 1, L);
     for (int q = 0; q < 4; q++) {
-      L[q] -= less[q % 2] * c->free[q][k];
+      L[q] -= a.less[q % 2] * c->free[q][k];
       c->wall[q][k] -= L[q];
       c->flux[q % 2][k] += c->over * c->N[q / 2] * L[q];
     }
@@ -136,7 +157,8 @@ static inline void AddFour(PetscBool turned, Lanes a, PetscReal x[]) {
 
 /* One wall's parts in closed form, of markers that are off the wall, seen from which x is along it; none of images
    beyond the reach. */
-static inline void AddFar(DoubleImage m, const int direction, const int side, PetscReal reach, const DoubleColumn *c) {
+static void AddFar(DoubleImage m, int wall, PetscReal reach, const DoubleColumn *c) {
+  const int direction = wall / 2, side = wall % 2;
   const PetscReal cell = 1 / m->single->markers->grid->h, *y = m->single->y[direction][side];
   const PetscReal N[2] = {c->N[1 - direction], side ? -c->N[direction] : c->N[direction]};
   const Lanes b = y[c->j] + (Lanes){0};
@@ -160,49 +182,14 @@ static inline void AddFar(DoubleImage m, const int direction, const int side, Pe
   }
 }
 
-static void AddFarLeft(DoubleImage m, PetscReal reach, const DoubleColumn *c) {
-  AddFar(m, 0, 0, reach, c);
-}
-static void AddFarRight(DoubleImage m, PetscReal reach, const DoubleColumn *c) {
-  AddFar(m, 0, 1, reach, c);
-}
-static void AddFarBottom(DoubleImage m, PetscReal reach, const DoubleColumn *c) {
-  AddFar(m, 1, 0, reach, c);
-}
-static void AddFarTop(DoubleImage m, PetscReal reach, const DoubleColumn *c) {
-  AddFar(m, 1, 1, reach, c);
-}
-static void (*const AddFarFrom[4])(DoubleImage, PetscReal, const DoubleColumn *) = {AddFarLeft, AddFarRight,
-                                                                                    AddFarBottom, AddFarTop};
-
-void DoubleImageAdd(DoubleImage m, PetscInt i, PetscInt j, const PetscReal d[2], PetscReal reach,
-                    PetscReal exact[2][DIPOLE_COUNT], PetscReal lattice[2][DIPOLE_COUNT]) {
-  PetscReal free[2][DIPOLE_COUNT] = {{0}};
-  AddParts(1, PARTS(lattice), free);
-  for (int wall = 0; wall < 4; wall++) {
-    const int direction = wall / 2, side = wall % 2;
-    const PetscReal *y = m->single->y[direction][side];
-    PetscReal blake[2][DIPOLE_COUNT] = {{0}}, grid[2][DIPOLE_COUNT] = {{0}}, less[2];
-    if (!m->end[direction][side] || y[i] + y[j] >= reach) continue;
-    const ImagePair p = {d[1 - direction] / m->single->markers->grid->h, y[i], y[j]};
-    DoubleImageExact(m, direction, side, &p, blake);
-    OnLattice(m, direction, side, i, j, &p, PARTS(blake), grid, less);
-    AddParts(1, PARTS(blake), exact);
-    AddParts(1, PARTS(grid), lattice);
-    for (int q = 0; q < 2 * DIPOLE_COUNT; q++)
-      lattice[q / DIPOLE_COUNT][q % DIPOLE_COUNT] -= less[q / DIPOLE_COUNT] * free[q / DIPOLE_COUNT][q % DIPOLE_COUNT];
-  }
-}
-
 void DoubleImageAddColumn(DoubleImage m, PetscReal reach, const DoubleColumn *c) {
   for (int wall = 0; wall < 4; wall++) {
-    const int direction = wall / 2, side = wall % 2;
-    const PetscReal *y = m->single->y[direction][side], low = c->near[wall];
-    if (!m->end[direction][side] || low + y[c->j] >= reach) continue;
+    const PetscReal *y = m->single->y[wall / 2][wall % 2], low = c->near[wall];
+    if (!m->end[wall / 2][wall % 2] || low + y[c->j] >= reach) continue;
     if (!c->lattice || (low + y[c->j] >= IMAGE_OFF && PetscMin(low, y[c->j]) >= FOLD_SCALED))
-      AddFarFrom[wall](m, reach, c);
+      AddFar(m, wall, reach, c);
     else
-      AddPairs(m, direction, side, reach, c);
+      AddPairs(m, wall, reach, c);
   }
 }
 
@@ -213,12 +200,6 @@ void DoubleImageRange(DoubleImage m, DoubleColumn *c) {
     for (PetscInt k = c->i; k < c->i + c->n && m->end[wall / 2][wall % 2]; k++)
       c->near[wall] = PetscMin(c->near[wall], y[k]);
   }
-}
-
-void DoubleImageExact(DoubleImage m, int direction, int side, const ImagePair *p, PetscReal exact[2][DIPOLE_COUNT]) {
-  PetscReal part[2][DIPOLE_COUNT];
-  DipoleImageExact(&m->forms, p, part);
-  Turn(direction, side, 1 / m->single->markers->grid->h, PARTS(part), exact);
 }
 
 void DoubleImageFar(const void *image, PetscInt n, const PetscReal X[], const PetscReal Y[2], PetscReal V[]) {
@@ -240,7 +221,7 @@ void DoubleImageFar(const void *image, PetscInt n, const PetscReal X[], const Pe
         PetscReal part[2][DIPOLE_COUNT], turned[2][DIPOLE_COUNT] = {{0}};
         for (int c = 0; c < 2 * DIPOLE_COUNT; c++)
           part[c / DIPOLE_COUNT][c % DIPOLE_COUNT] = K[c / DIPOLE_COUNT][c % DIPOLE_COUNT][q];
-        Turn(direction, side, 1 / g->h, PARTS(part), turned);
+        Turn(wall, 1 / g->h, PARTS(part), turned);
         for (int c = 0; c < 2 * DIPOLE_COUNT; c++) V[c * n + k + q] += turned[c / DIPOLE_COUNT][c % DIPOLE_COUNT];
       }
     }

@@ -45,15 +45,16 @@ typedef struct {
 } DoubleColumn;
 
 /* DoubleImageRange - the least distances of a column's row from walls. DoubleImageAddColumn - with these, all walls'
-   parts, added to `wall` and `flux`; reach: of images (cells). DoubleImageAdd - of one pair, to unit tensor parts:
-   exact +=, and lattice += image, which holds the free lattice's. DoubleImageExact - exact
-   += that of two points and one wall. Not collective. */
+   parts, added to `wall` and `flux`; reach: of images (cells). Not collective. */
 PETSC_EXTERN void DoubleImageRange(DoubleImage image, DoubleColumn *column);
 PETSC_EXTERN void DoubleImageAddColumn(DoubleImage image, PetscReal reach, const DoubleColumn *column);
+
+/* DoubleImageAdd - of one pair, to unit tensor parts: exact +=, and lattice += image, which holds the free lattice's.
+   DoubleImageExact - exact += that of two points and one wall, 2 times the direction of its normal plus its side.
+   DoubleImageFar - BoxImages (boxregion.h) of the double layer, image: a DoubleImage. Not collective. */
 PETSC_EXTERN void DoubleImageAdd(DoubleImage image, PetscInt i, PetscInt j, const PetscReal d[2], PetscReal reach,
                                  PetscReal exact[2][DIPOLE_COUNT], PetscReal lattice[2][DIPOLE_COUNT]);
-/* DoubleImageFar - BoxImages of the double layer, image: a DoubleImage. Not collective. */
+PETSC_EXTERN void DoubleImageExact(DoubleImage image, int wall, const ImagePair *pair,
+                                   PetscReal exact[2][DIPOLE_COUNT]);
 PETSC_EXTERN void DoubleImageFar(const void *image, PetscInt n, const PetscReal X[], const PetscReal Y[2],
                                  PetscReal V[]);
-PETSC_EXTERN void DoubleImageExact(DoubleImage image, int direction, int side, const ImagePair *pair,
-                                   PetscReal exact[2][DIPOLE_COUNT]);

@@ -9,19 +9,10 @@
    near field (nearfield.h), whose pairs of vesicles it has, and Q, which takes the net flux off a vesicle's J, as the
    spreading on the grid does. In unbounded fluid L = 0. */
 #pragma once
+#include "coupling/doubleblock.h"
 #include "coupling/doublebox.h"
-#include "coupling/doubleimage.h"
-#include "coupling/latticedipole.h"
 #include "coupling/nearfield.h"
 #include "markers/dipolerows.h"
-
-/* Response of own vesicle `row` to an image of `column`, moved by `shift` (length): a matrix of 2n rows, columns one
-   after another, entries interlaced. */
-typedef struct {
-  PetscInt row, column;
-  PetscReal shift[2];
-  size_t at; /* in `value` */
-} DoubleBlock;
 
 typedef struct _p_DoubleLayer *DoubleLayer;
 struct _p_DoubleLayer {
@@ -29,7 +20,6 @@ struct _p_DoubleLayer {
   PetscReal *ratio; /* [vesicles] viscosity inside over that outside */
   OffsetTable lattice[2];
   DoubleImage image;     /* what the walls add to each pair; NULL in unbounded fluid */
-  OffsetTable pressure;  /* of the lattice's dipoles in cells, viscosity 1, over h^2; empty before the first output */
   PaddedStencil *dipole; /* [DIPOLE_COUNT M] unfolded; */
   DipoleSpot *spot;      /* [DIPOLE_SPOTS M] on the grid, zero where there is no jump; */
   DipoleList list;       /* these by rows; none of the three in unbounded fluid */
@@ -40,12 +30,11 @@ struct _p_DoubleLayer {
   PetscReal *value;
   PetscInt blocks, block_room;
   size_t values, value_room;
-  PetscScalar *jump;   /* [2M] work: J of all markers, less its flux, */
-  PetscScalar *plain;  /* [2M] J, */
-  PetscReal *tensor;   /* [DIPOLE_COUNT M] and the dipoles of the former */
-  PetscScalar *column; /* [2 most markers of a vesicle] work */
-  DoubleBox box;       /* NULL without box part */
-  PetscBool spread;    /* dipoles are placed on the grid */
+  PetscScalar *jump;  /* [2M] work: J of all markers, less its flux, */
+  PetscScalar *plain; /* [2M] J, */
+  PetscReal *tensor;  /* [DIPOLE_COUNT M] and the dipoles of the former */
+  DoubleBox box;      /* NULL without box part */
+  PetscBool spread;   /* dipoles are placed on the grid */
   PetscLogEvent place, apply;
 };
 

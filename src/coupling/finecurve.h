@@ -1,40 +1,55 @@
-/* A curve at more points than its markers, by an interpolation P from n markers to f n points (curve/kind.h),
-   trigonometric where the curve repeats. A matrix K between two curves becomes P_a^T K_fine P_b/(f_a f_b): symmetric
-   under exchange of the curves where K is. */
+/* Curves nearer to one another, or to an image in a wall, than their markers are: kernels between them need finer
+   points. A curve at f n points instead of n markers is P x, P an interpolation (curve/kind.h), trigonometric where the
+   curve repeats. A kernel K between two curves becomes
+
+       P_a^T K_fine P_b/(f_a f_b),
+
+   symmetric under exchange of the curves where K is. Only near pairs need this: what is exchanged in a block is
+
+       chi(r) K on finer points less chi(r) K on the markers,
+
+   chi a window from 1 to 0 over some marker spacings. Nothing crosses ranks.
+
+   FinePairMake or FinePairAtWall says how fine and how wide, then FinePairParts gives either term. */
 #pragma once
-#include "coupling/nearfield.h"
+#include "coupling/imagefar.h"
+#include "coupling/layersetting.h"
+#include "coupling/nearimage.h"
 
+/* Two bodies, the column's moved by `shift` (length) and, with a wall, mirrored there. */
 typedef struct {
-  const CurveKind *kind; /* borrowed */
-  PetscInt n, f;         /* markers, factor */
-  PetscReal *weight;     /* closed and spanning: [f n] P by index difference: P_qk = weight[(q - f k) mod f n] */
-  PetscReal *x;          /* [f n][2] the points (length) */
-  PetscReal edge;        /* the longest distance from one point to the next */
-  PetscInt *used;        /* [count] points in use */
-  PetscInt count;
-  PetscReal *P; /* [n][count] rows of P/f that are in use, columns one after another */
-} FineCurve;
+  PetscInt row, column;
+  PetscReal shift[2];
+  int wall;         /* 2 times the direction of its normal plus its side; -1: none */
+  PetscInt factor;  /* finer points a marker */
+  PetscReal window; /* (length) beyond which chi is zero */
+} FinePair;
 
-/* FineCurveCreate - of a body moved by shift (length). FineCurveReflect - its points mirrored at a wall whose normal
-   is in `direction`. Not collective. */
-PETSC_EXTERN PetscErrorCode FineCurveCreate(NearField near, PetscInt body, const PetscReal shift[2], PetscInt factor,
-                                            FineCurve *curve);
-PETSC_EXTERN PetscErrorCode FineCurveDestroy(FineCurve *curve);
-PETSC_EXTERN void FineCurveReflect(FineCurve *curve, int direction, PetscReal wall);
+/* FinePairMake - for curves with this gap (length). FinePairGap - the gap of two curves whose markers come as near as
+   gap (length): that of finer points where it may need any, else as it is; returns whether it does, by `close`.
+   FinePairAtWall - of two bodies within these bounds; false where images in the wall are farther away than two marker
+   spacings. Not collective. */
+PETSC_EXTERN FinePair FinePairMake(const LayerSetting *set, PetscInt row, PetscInt column, const PetscReal shift[2],
+                                   PetscReal gap);
+PETSC_EXTERN PetscErrorCode FinePairGap(const LayerSetting *set, PetscInt row, PetscInt column,
+                                        const PetscReal shift[2], PetscReal *gap, PetscBool *close);
+PETSC_EXTERN PetscBool FinePairAtWall(const LayerSetting *set, const NearBounds bounds[], int wall, FinePair *pair);
 
-/* FineCurveGap - least distance of the points of two curves. */
-PETSC_EXTERN PetscReal FineCurveGap(const FineCurve *a, const FineCurve *b);
+/* A kernel of so many parts between curves: K[parts] at four points x of the row's curve, of the point y of the
+   column's with N there; wall as in FinePair, y being mirrored. */
+#define FINE_PARTS 4 /* at most */
+typedef struct {
+  int parts;
+  void (*at)(const void *context, int wall, const Lanes x[2], const PetscReal y[2], const PetscReal N[2], Lanes K[]);
+  const void *context;
+  const PetscReal *normal; /* [2 n_column] N at the markers, which finer points interpolate; NULL: no N */
+} FineKernel;
 
-/* FineCurvePair - the two curves' points that lie within the window (length) of one another come into use. */
-PETSC_EXTERN PetscErrorCode FineCurvePair(FineCurve *a, FineCurve *b, PetscReal window);
+/* FinePairParts - part[parts][n_column][n_row] = chi K on finer points or, not `fine`, on the markers. Not collective.
+ */
+PETSC_EXTERN PetscErrorCode FinePairParts(const LayerSetting *set, const FinePair *pair, PetscBool fine,
+                                          const FineKernel *kernel, PetscReal part[]);
 
-/* FineWindow - 1 up to a third of the window, smoothly to 0 at its end. */
-static inline PetscReal FineWindow(PetscReal distance, PetscReal window) {
-  const PetscReal t = PetscMin(1, PetscMax(0, (distance / window - 1. / 3) * 1.5));
-  return 1 - t * t * (3 - 2 * t);
-}
-
-/* FineCurveProject - part[n_b][n_a] = P_a^T K P_b, columns of a block one after another, for K[count_b][count_a] of the
-   points in use. Not collective. */
-PETSC_EXTERN PetscErrorCode FineCurveProject(const FineCurve *a, const FineCurve *b, const PetscReal K[],
-                                             PetscReal part[]);
+/* FinePairSeen - four points and the mirror image y of another one as a wall sees them, in cells: x along it, a and b
+   the distances of the points and of the other one. Not collective. */
+PETSC_EXTERN void FinePairSeen(Grid grid, int wall, const Lanes x[2], const PetscReal y[2], Lanes seen[3]);

@@ -116,8 +116,9 @@ PetscErrorCode ImageTableFill(const OffsetTable *lattice, ImageTable *t) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscReal ImageSum(const PetscReal (*table)[IMAGE_ROWS][IMAGE_WIDTH], Grid g, int t, PetscReal x,
-                   const PaddedStencil *from, const ImageRows *row, const PaddedStencil *to, const ImageRows *source) {
+PetscReal ImageSum(const PetscReal (*table)[IMAGE_ROWS][IMAGE_WIDTH], Grid g, int t, PetscReal x, const ImageRows *row,
+                   const ImageRows *source) {
+  const PaddedStencil *from = row->along, *to = source->along;
   enum { VECTORS = OFFSET_LAGS / LANES };
   PetscReal lag[OFFSET_LAGS];
   Lanes line[VECTORS] = {{0}};

@@ -29,17 +29,17 @@ typedef struct {
 PETSC_EXTERN ImageMode ImageModeMake(PetscReal theta);
 PETSC_EXTERN void ImagePsi(const ImageMode *mode, PetscReal A, PetscReal jump, PetscReal psi[IMAGE_LINES]);
 
-/* A stencil's rows at a wall, folded. */
+/* A stencil at a wall: its rows from the wall, folded, and the stencil itself, which counts along the wall. */
 typedef struct {
   PetscInt first, n;
   const PetscReal *weight;
+  const PaddedStencil *along;
 } ImageRows;
 
 /* ImageSum - the sum of a table over the rows of a response and a source and over their stencils along the wall, in
    direction t, whose markers are x cells apart there. Not collective. */
 PETSC_EXTERN PetscReal ImageSum(const PetscReal (*table)[IMAGE_ROWS][IMAGE_WIDTH], Grid grid, int t, PetscReal x,
-                                const PaddedStencil *from, const ImageRows *row, const PaddedStencil *to,
-                                const ImageRows *source);
+                                const ImageRows *response, const ImageRows *source);
 
 /* ImageTableFill - from the free lattice's table (lattice.h), of a reach of IMAGE_SHIFT at least. Not collective. */
 PETSC_EXTERN PetscErrorCode ImageTableFill(const OffsetTable *lattice, ImageTable *table);

@@ -38,53 +38,25 @@ static PetscErrorCode CreateCurve(LayerCurve *c, PetscInt n, const PetscReal X[]
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Own parts of the markers x and of the force times ds, f. */
-static PetscErrorCode Forces(Membrane m, Vec sigma, const PetscScalar x[], PetscScalar f[]) {
-  const PetscScalar *s;
-  PetscReal *tau;
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(2 * m->layout->n, &tau));
-  PetscCall(PetscArrayzero(f, 2 * m->layout->n));
-  PetscCall(VecGetArrayRead(sigma, &s));
-  MembraneTangents(m, x, tau);
-  MembraneStretchingTranspose(m, tau, -1, s, f);
-  PetscCall(VecRestoreArrayRead(sigma, &s));
-  if (m->bending > 0) MembraneBending(m, -m->bending, x, f);
-  MembraneGravity(m, 1, x, f);
-  PetscCall(PetscFree(tau));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode LayerCreate(Coupling coupling, Vec sigma, Vec X, Layer *out) {
-  const Layout l = coupling->membrane->layout;
-  const PetscScalar *x;
-  PetscScalar *f;
-  PetscReal energy;
+PetscErrorCode LayerCreate(PetscReal nu, Layout l, const PetscScalar X[], const PetscScalar F[], Layer *out) {
   Layer s;
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&s));
   *out = s;
-  s->nu = coupling->fluid->nu;
-  s->count = l->bodies;
-  s->start = l->start;
+  s->nu = nu;
+  s->layout = l;
   PetscCall(PetscCalloc1(l->bodies, &s->curve));
   PetscCall(PetscCalloc2(2 * (l->M + LANES), &s->X, 2 * (l->M + LANES), &s->F));
-  PetscCall(PetscMalloc1(2 * l->n, &f));
-  PetscCall(VecGetArrayRead(X, &x));
-  PetscCall(Forces(coupling->membrane, sigma, x, f));
-  if (coupling->repulsion) PetscCall(RepulsionAt(coupling->repulsion, 0, 1, x, f, &energy));
-  PetscCall(LayoutGather(l, 2, x, s->X));
-  PetscCall(LayoutGather(l, 2, f, s->F));
-  PetscCall(VecRestoreArrayRead(X, &x));
-  PetscCall(PetscFree(f));
+  PetscCall(LayoutGather(l, 2, X, s->X));
+  PetscCall(LayoutGather(l, 2, F, s->F));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode LayerUse(Layer s, PetscInt v) {
-  const PetscInt first = s->start[v];
+  const PetscInt first = s->layout->start[v];
   PetscFunctionBeginUser;
   if (!s->curve[v].curve)
-    PetscCall(CreateCurve(&s->curve[v], s->start[v + 1] - first, s->X + 2 * first, s->F + 2 * first));
+    PetscCall(CreateCurve(&s->curve[v], s->layout->start[v + 1] - first, s->X + 2 * first, s->F + 2 * first));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -92,7 +64,7 @@ PetscErrorCode LayerDestroy(Layer *layer) {
   Layer s = *layer;
   PetscFunctionBeginUser;
   if (!s) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt v = 0; v < s->count; v++) {
+  for (PetscInt v = 0; v < s->layout->bodies; v++) {
     LayerCurve *c = &s->curve[v];
     PetscCall(PetscFree4(c->curve, c->force, c->fine, c->fine_force));
   }
@@ -203,9 +175,4 @@ void LayerAdd(Layer s, PetscInt v, const PetscReal x[2], PetscReal u[2], PetscRe
   u[0] += creal(velocity) / (4 * PETSC_PI * s->nu);
   u[1] += cimag(velocity) / (4 * PETSC_PI * s->nu);
   *p += pressure / (2 * PETSC_PI);
-}
-
-void LayerEvaluate(Layer s, const PetscReal x[2], PetscReal u[2], PetscReal *p) {
-  u[0] = u[1] = *p = 0;
-  for (PetscInt v = 0; v < s->count; v++) LayerAdd(s, v, x, u, p);
 }

@@ -1,5 +1,4 @@
 #include "coupling/mobilitybox.h"
-#include "coupling/nearblock.h"
 
 #define NEAR 8 /* cells up to which a pair has the lattice's sums */
 
@@ -26,27 +25,21 @@ PetscErrorCode MobilityBoxDestroy(MobilityBox *box) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The Stokeslet, which L tends to far away. */
-static void Stokeslet(NearField f, const PetscReal d[2], PetscReal S[4]) {
-  const PetscReal r2 = d[0] * d[0] + d[1] * d[1], over = 1 / (4 * PETSC_PI * f->nu);
-  const PetscReal logarithm = -0.5 * PetscLogReal(r2 / PetscSqr(f->unit));
-  S[0] = over * (logarithm + d[0] * d[0] / r2);
-  S[1] = over * (logarithm + d[1] * d[1] / r2);
-  S[2] = S[3] = over * d[0] * d[1] / r2;
-}
-
 /* L - C_image and the exact images of markers i and j, the nearest image: xx, yy, xy, yx. Pairs far from one another
    and from walls take those of S, which leaves out a C of the order h^2/r^2. */
 static void Lattice(NearField f, PetscInt i, PetscInt j, PetscReal value[4]) {
-  const PetscReal *X = f->markers->X, h = f->markers->grid->h;
+  const PetscReal *X = f->set.markers->X, h = f->set.markers->grid->h;
   PetscReal d[2] = {X[2 * i] - X[2 * j], X[2 * i + 1] - X[2 * j + 1]}, L[4], C[4] = {0, 0, 0, 0};
   const PetscReal fade = BoxPartImage(f->box, d);
   if (d[0] * d[0] + d[1] * d[1] < PetscSqr(NEAR * h)) {
-    NearLatticePair(f, i, j, d, L);
-    NearImageAdd(f->image, NULL, i, j, d, L, C);
-  } else
-    Stokeslet(f, d, L);
-  NearImageAddBlake(f->image, i, j, d, -1, C);
+    NearLatticePair(f->pairs, i, j, d, L);
+    NearImageAdd(f->pairs->image, NULL, i, j, d, L, C);
+  } else {
+    Lanes S[3];
+    StokesletFour(&f->set, d[0] + (Lanes){0}, d[1] + (Lanes){0}, S);
+    for (int q = 0; q < 4; q++) L[q] = S[PetscMin(q, 2)][0];
+  }
+  NearImageAddBlake(f->pairs->image, i, j, d, -1, C);
   for (int q = 0; q < 4; q++) value[q] = fade * (L[q] - C[q]);
 }
 

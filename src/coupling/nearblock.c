@@ -1,21 +1,14 @@
 #include "coupling/nearblock.h"
 
-/* The free-space Stokeslet of four pairs: xx, yy, xy. Its logarithm is that of a length over the near field's unit. */
-static void Stokeslets(NearField f, Lanes x, Lanes y, Lanes S[3]) {
-  const PetscReal factor = 1 / (4 * PETSC_PI * f->nu), over2 = 1 / PetscSqr(f->unit);
-  const Lanes r2 = x * x + y * y, logarithm = -0.5 * LanesLog(over2 * r2);
-  S[0] = factor * (logarithm + x * x / r2);
-  S[1] = factor * (logarithm + y * y / r2);
-  S[2] = factor * x * y / r2;
-}
+#define IMAGE_REACH 300 /* cells between a body and another one's image in a wall: beyond, none without a box part */
 
 /* L of markers i and j, d = X_i - X_j: xx, yy, xy and yx. */
-static void LatticePair(NearField f, PetscInt i, PetscInt j, const PetscReal d[2], PetscReal L[4]) {
-  const PetscReal *X = f->markers->X, cell = 1 / f->markers->grid->h, over = 1 / f->nu;
+static void LatticePair(SinglePairs f, PetscInt i, PetscInt j, const PetscReal d[2], PetscReal L[4]) {
+  const PetscReal *X = f->set->markers->X, cell = 1 / f->set->markers->grid->h, over = 1 / f->set->nu;
   PetscInt periods[2];
   for (int dir = 0; dir < 2; dir++) /* in cells */
     periods[dir] = (PetscInt)rint((d[dir] - (X[2 * i + dir] - X[2 * j + dir])) * cell);
-  StencilFourSums(&f->lattice, &f->stencil[2 * i], &f->stencil[2 * j], periods, L);
+  StencilFourSums(f->lattice, &f->stencil[2 * i], &f->stencil[2 * j], periods, L);
   L[0] -= f->image->logarithm;
   L[1] -= f->image->logarithm;
   for (int c = 0; c < 4; c++) L[c] *= over;
@@ -24,12 +17,12 @@ static void LatticePair(NearField f, PetscInt i, PetscInt j, const PetscReal d[2
 static const int respond[4] = {0, 1, 0, 1}, source[4] = {0, 1, 1, 0}; /* components that meet in xx, yy, xy, yx */
 
 /* L and C = S - L of two markers whose S is known; by stencils up to the reach of far. */
-static void Pair(NearField f, const NearFar *far, PetscInt i, PetscInt j, const PetscReal d[2], const PetscReal S[3],
+static void Pair(SinglePairs f, const NearFar *far, PetscInt i, PetscInt j, const PetscReal d[2], const PetscReal S[3],
                  PetscReal L[4], PetscReal C[4]) {
-  const PetscReal cell = 1 / f->markers->grid->h, r2 = d[0] * d[0] + d[1] * d[1];
+  const PetscReal cell = 1 / f->set->markers->grid->h, r2 = d[0] * d[0] + d[1] * d[1];
   Lanes fourth[4][2], four[4];
-  if (f->free || r2 * cell * cell <= PetscSqr(far->reach)) {
-    if (!f->free) LatticePair(f, i, j, d, L);
+  if (f->set->markers->grid->free || r2 * cell * cell <= PetscSqr(far->reach)) {
+    if (!f->set->markers->grid->free) LatticePair(f, i, j, d, L);
     for (int c = 0; c < 4; c++) C[c] = S[PetscMin(c, 2)] - L[c];
     return;
   }
@@ -37,30 +30,31 @@ static void Pair(NearField f, const NearFar *far, PetscInt i, PetscInt j, const 
     for (int dir = 0; dir < 2; dir++)
       fourth[c][dir] = f->stencil[2 * i + respond[c]].fourth[dir] + f->stencil[2 * j + source[c]].fourth[dir] -
                        far->fourth[respond[c] != dir] - far->fourth[source[c] != dir] - (Lanes){0};
-  NearFarPairs(far, 1 / f->nu, cell * d[0] - (Lanes){0}, cell * d[1] - (Lanes){0}, fourth, four);
+  NearFarPairs(far, 1 / f->set->nu, cell * d[0] - (Lanes){0}, cell * d[1] - (Lanes){0}, fourth, four);
   for (int c = 0; c < 4; c++) {
     C[c] = four[c][0];
     L[c] = S[PetscMin(c, 2)] - C[c];
   }
 }
 
-void NearLatticePair(NearField f, PetscInt i, PetscInt j, const PetscReal d[2], PetscReal L[4]) {
+void NearLatticePair(SinglePairs f, PetscInt i, PetscInt j, const PetscReal d[2], PetscReal L[4]) {
   PetscReal C[4];
   Lanes S[3];
   if (d[0] == 0 && d[1] == 0) {
     LatticePair(f, i, j, d, L);
     return;
   }
-  Stokeslets(f, d[0] - (Lanes){0}, d[1] - (Lanes){0}, S);
+  StokesletFour(f->set, d[0] - (Lanes){0}, d[1] - (Lanes){0}, S);
   Pair(f, &f->far[NEAR_ONE], i, j, d, (PetscReal[]){S[0][0], S[1][0], S[2][0]}, L, C);
 }
 
 /* The diagonal of S in a curve's quadrature, from the derivative T = dX/dk: xx, yy, xy. */
-static void SelfPart(NearField f, PetscInt v, const PetscReal T[2], PetscReal S[3]) {
-  const PetscReal factor = 1 / (4 * PETSC_PI * f->nu);
-  const PetscReal t2 = T[0] * T[0] + T[1] * T[1], n = LayoutCount(f->bodies->layout, v);
-  const PetscReal part = f->bodies->kind[v].type == CURVE_OPEN ? 1 : n; /* of a turn: see NearField's Kress, Zeta */
-  const PetscReal logarithm = -0.5 * (f->kress[v][0] + PetscLogReal(t2 * PetscSqr(part / (2 * PETSC_PI * f->unit))));
+static void SelfPart(SinglePairs f, PetscInt v, const PetscReal T[2], PetscReal S[3]) {
+  const PetscReal factor = 1 / (4 * PETSC_PI * f->set->nu);
+  const PetscReal t2 = T[0] * T[0] + T[1] * T[1], n = LayoutCount(f->set->bodies->layout, v);
+  const PetscReal part = f->set->bodies->kind[v].type == CURVE_OPEN ? 1 : n; /* of a turn: SinglePairsCreate */
+  const PetscReal logarithm = -0.5 *
+                              (f->logarithm[v][0] + PetscLogReal(t2 * PetscSqr(part / (2 * PETSC_PI * f->set->unit))));
   S[0] = factor * (logarithm + T[0] * T[0] / t2);
   S[1] = factor * (logarithm + T[1] * T[1] / t2);
   S[2] = factor * T[0] * T[1] / t2;
@@ -80,12 +74,12 @@ typedef struct {
 } Chunk;
 
 /* Marker i from the other vesicle's frame. */
-static void Place(NearField f, const Chunk *c, PetscReal own[2]) {
-  for (int dir = 0; dir < 2; dir++) own[dir] = f->markers->X[2 * c->i + dir] - c->block->shift[dir];
+static void Place(SinglePairs f, const Chunk *c, PetscReal own[2]) {
+  for (int dir = 0; dir < 2; dir++) own[dir] = f->set->markers->X[2 * c->i + dir] - c->block->shift[dir];
 }
 
-static void Distances(NearField f, Chunk *c) {
-  const PetscReal *X = f->markers->X + 2 * c->j, sign = c->back ? -1 : 1;
+static void Distances(SinglePairs f, Chunk *c) {
+  const PetscReal *X = f->set->markers->X + 2 * c->j, sign = c->back ? -1 : 1;
   PetscReal own[2];
   PetscInt k = 0;
   Place(f, c, own);
@@ -100,12 +94,12 @@ static void Distances(NearField f, Chunk *c) {
     for (int dir = 0; dir < 2; dir++) c->d[dir][k] = sign * (own[dir] - X[2 * k + dir]);
     c->part[k] = 1;
   }
-  if (f->box) BoxImageRow(f->box->axis, c->n, (PetscReal *[2]){c->d[0], c->d[1]}, c->part);
+  if (f->set->box) BoxImageRow(f->set->box, c->n, (PetscReal *[2]){c->d[0], c->d[1]}, c->part);
   for (k = c->n; k < CHUNK && k < c->n + LANES; k++) c->d[0][k] = c->d[1][k] = c->part[k] = 1;
 }
 
 /* By how much the fourth moments of four pairs' stencils, from the k-th of a chunk on, are above the mean. */
-static inline void Fourth(NearField f, const Chunk *c, PetscInt k, Lanes fourth[4][2]) {
+static inline void Fourth(SinglePairs f, const Chunk *c, PetscInt k, Lanes fourth[4][2]) {
   for (int q = 0; q < 4; q++)
     for (int dir = 0; dir < 2; dir++) {
       const int row = c->back ? source[q] : respond[q], column = c->back ? respond[q] : source[q];
@@ -114,29 +108,29 @@ static inline void Fourth(NearField f, const Chunk *c, PetscInt k, Lanes fourth[
 }
 
 /* All pairs as if they were distant. */
-static void FillFar(NearField f, Chunk *c) {
-  const PetscReal cell = 1 / f->markers->grid->h;
+static void FillFar(SinglePairs f, Chunk *c) {
+  const PetscReal cell = 1 / f->set->markers->grid->h, over = 1 / f->set->nu;
   Lanes C[4], fourth[4][2];
   for (PetscInt k = 0; k < c->n; k += LANES) {
     const Lanes x = cell * LanesAt(c->d[0] + k), y = cell * LanesAt(c->d[1] + k);
     if (LanesAny(NearFarIsClose(x, y))) Fourth(f, c, k, fourth);
-    NearFarPairs(c->far, 1 / f->nu, x, y, fourth, C);
+    NearFarPairs(c->far, over, x, y, fourth, C);
     for (int q = 0; q < 4; q++) LanesPut(C[q], c->C[q] + k);
   }
 }
 
 /* No marker of the other vesicle is within the stencils' reach; with a box part images are looked for one by one. */
-static PetscBool IsAlone(NearField f, const Chunk *c) {
+static PetscBool IsAlone(SinglePairs f, const Chunk *c) {
   const NearBounds *bounds = &f->bounds[c->block->column];
   PetscReal own[2], r2 = 0;
   Place(f, c, own);
   for (int dir = 0; dir < 2; dir++)
     r2 += PetscSqr(PetscMax(0, PetscMax(bounds->low[dir] - own[dir], own[dir] - bounds->high[dir])));
-  return !f->box && r2 > c->reach * c->reach ? PETSC_TRUE : PETSC_FALSE;
+  return !f->set->box && r2 > c->reach * c->reach ? PETSC_TRUE : PETSC_FALSE;
 }
 
 /* Pairs one by one; those within the stencils' reach are enough far from walls. */
-static void FillNear(NearField f, Chunk *c) {
+static void FillNear(SinglePairs f, Chunk *c) {
   const PetscReal farthest2 = c->plain ? c->reach * c->reach : PETSC_MAX_REAL;
   Lanes S[3] = {{0}};
   for (PetscInt k = 0; k < c->n; k++) {
@@ -146,7 +140,7 @@ static void FillNear(NearField f, Chunk *c) {
         k += LANES - 1;
         continue;
       }
-      Stokeslets(f, x, y, S);
+      StokesletFour(f->set, x, y, S);
     }
     const PetscInt j = c->j + k, from = c->back ? c->i : j, to = c->back ? j : c->i;
     const PetscReal d[2] = {c->d[0][k], c->d[1][k]};
@@ -156,7 +150,7 @@ static void FillNear(NearField f, Chunk *c) {
     for (int q = 0; q < 3; q++) own[q] = same ? 0 : S[q][k % LANES];
     if (same) c->part[k] = 0.5; /* whole, as S of the marker itself, which has the same logarithm */
     if (same || c->plain) {
-      if (!f->free) LatticePair(f, to, from, d, L);
+      if (!f->set->markers->grid->free) LatticePair(f, to, from, d, L);
       for (int q = 0; q < 4; q++) C[q] = own[PetscMin(q, 2)] - L[q];
     } else
       Pair(f, c->far, to, from, d, own, L, C);
@@ -168,7 +162,7 @@ static void FillNear(NearField f, Chunk *c) {
 }
 
 /* The images of pairs in walls that are near. */
-static void AddImages(NearField f, Chunk *c) {
+static void AddImages(SinglePairs f, Chunk *c) {
   for (PetscInt k = 0; k < c->n; k++) {
     const PetscInt from = c->back ? c->i : c->j + k, to = c->back ? c->j + k : c->i;
     const PetscReal d[2] = {c->d[0][k], c->d[1][k]}, L[4] = {c->L[0][k], c->L[1][k], c->L[2][k], c->L[3][k]};
@@ -178,7 +172,7 @@ static void AddImages(NearField f, Chunk *c) {
   }
 }
 
-static void FillChunk(NearField f, Chunk *c) {
+static void FillChunk(SinglePairs f, Chunk *c) {
   Distances(f, c);
   if (c->plain) {
     FillFar(f, c);
@@ -187,9 +181,12 @@ static void FillChunk(NearField f, Chunk *c) {
     FillNear(f, c);
     if (f->image) AddImages(f, c);
   }
-  if (f->image)
-    NearImageAddFar(f->image, c->walls, c->off, c->i, c->j, c->n, c->back, c->d[0], c->d[1],
-                    (PetscReal *[]){c->C[0], c->C[1], c->C[2], c->C[3]});
+  if (!f->image) return;
+  PetscBool walls[2][2];
+  for (int wall = 0; wall < 4; wall++)
+    walls[wall / 2][wall % 2] = c->walls[wall / 2][wall % 2] && c->off[wall / 2][wall % 2] ? PETSC_TRUE : PETSC_FALSE;
+  NearImageAddFar(f->image, walls,
+                  &(NearImageRow){c->i, c->j, c->n, c->back, {c->d[0], c->d[1]}, {c->C[0], c->C[1], c->C[2], c->C[3]}});
 }
 
 /* Four of the chunk's pairs to the marker's x and y row. */
@@ -200,111 +197,87 @@ static inline void Interlace(const Chunk *c, PetscInt k, PetscReal x[], PetscRea
   LanesInterlace(part * LanesAt(c->C[yx] + k), part * LanesAt(c->C[1] + k), y);
 }
 
+static inline void Put(const NearBlock *b, size_t at, PetscReal x, NearStore *s) {
+  if (b->single)
+    s->single[at] = (float)x;
+  else
+    s->value[at] = x;
+}
+
 /* The chunk's pairs to the block, from `at` on. */
-static void Write(NearField f, const Chunk *c, size_t at, PetscInt stride) {
+static void Write(const Chunk *c, size_t at, PetscInt stride, NearStore *s) {
   for (PetscInt k = 0; k < c->n; k += LANES, at += 2 * LANES) {
     const PetscInt n = 2 * PetscMin(LANES, c->n - k);
     PetscReal row[2][2 * LANES];
     if (!c->block->single && n == 2 * LANES) {
-      Interlace(c, k, f->store.value + at, f->store.value + at + stride);
+      Interlace(c, k, s->value + at, s->value + at + stride);
       continue;
     }
     Interlace(c, k, row[0], row[1]);
     for (int dir = 0; dir < 2; dir++)
-      for (PetscInt q = 0; q < n; q++)
-        if (c->block->single)
-          f->store.single[at + dir * stride + q] = (float)row[dir][q];
-        else
-          f->store.value[at + dir * stride + q] = row[dir][q];
+      for (PetscInt q = 0; q < n; q++) Put(c->block, at + dir * stride + q, row[dir][q], s);
   }
 }
 
-static void FillRow(NearField f, const NearRow *r, Chunk *c) {
+static void FillRow(SinglePairs f, const NearRow *r, Chunk *c, NearStore *s) {
   const NearBounds *column = &f->bounds[c->block->column];
   c->i = r->row;
-  c->plain = f->image && NearImageIsFar(f->image, f->markers->X + 2 * r->row, column, c->off) ? PETSC_TRUE
-                                                                                              : PETSC_FALSE;
+  c->plain = f->image && NearImageIsFar(f->image, f->set->markers->X + 2 * r->row, column, c->off) ? PETSC_TRUE
+                                                                                                   : PETSC_FALSE;
   for (PetscInt k = 0; k < r->count; k += CHUNK) {
     c->j = r->column + k;
     c->n = PetscMin(CHUNK, r->count - k);
     FillChunk(f, c);
-    Write(f, c, r->at + 2 * k, r->stride);
+    Write(c, r->at + 2 * k, r->stride, s);
   }
   for (PetscInt k = 2 * r->count; k < r->stride; k++) /* behind the last marker */
-    for (int dir = 0; dir < 2; dir++) {
-      const size_t at = r->at + dir * r->stride + k;
-      if (c->block->single)
-        f->store.single[at] = 0;
-      else
-        f->store.value[at] = 0;
-    }
+    for (int dir = 0; dir < 2; dir++) Put(c->block, r->at + dir * r->stride + k, 0, s);
 }
 
-/* A vesicle's own quadrature, to its block with itself: what it has besides the plain logarithm for two markers that
-   are k apart, and the diagonal. */
-static PetscErrorCode AddSelf(NearField f, const NearBlock *b) {
-  const Bodies m = f->bodies;
+/* A body's own quadrature, to its block with itself: what it has besides the plain logarithm for two markers that are k
+   apart, and the diagonal. */
+static PetscErrorCode AddSelf(SinglePairs f, const NearBlock *b, NearStore *s) {
+  const Bodies m = f->set->bodies;
   const PetscInt first = m->layout->start[b->row];
-  const PetscReal factor = 1 / (4 * PETSC_PI * f->nu), *kress = f->kress[b->row];
+  const PetscReal factor = -0.5 / (4 * PETSC_PI * f->set->nu), *logarithm = f->logarithm[b->row];
   NearRow r = NearBlockBegin(m->layout, b);
   PetscReal *T, S[3];
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(2 * r.count, &T));
-  PetscCall(CurveTangents(&m->kind[b->row], m->spectral[b->row], r.count, f->markers->X + 2 * first, T));
+  PetscCall(CurveTangents(&m->kind[b->row], m->spectral[b->row], r.count, f->set->markers->X + 2 * first, T));
   do {
-    PetscReal *x = f->store.value + r.at, *y = x + r.stride;
+    PetscReal *x = s->value + r.at, *y = x + r.stride;
     SelfPart(f, b->row, T + 2 * (r.row - first), S);
     x[0] += 0.5 * S[0];
     x[1] += 0.5 * S[2];
     y[0] += 0.5 * S[2];
     y[1] += 0.5 * S[1];
     for (PetscInt k = 1; k < r.count; k++) {
-      x[2 * k] += factor * kress[k];
-      y[2 * k + 1] += factor * kress[k];
+      x[2 * k] += factor * logarithm[k];
+      y[2 * k + 1] += factor * logarithm[k];
     }
   } while (NearBlockNext(m->layout, b, &r));
   PetscCall(PetscFree(T));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-void NearBlockAdd(NearField f, const NearBlock *b, PetscReal scale, PetscReal *const part[4]) {
-  const Layout l = f->bodies->layout;
-  const PetscInt rows = LayoutCount(l, b->row);
-  NearRow r = NearBlockBegin(l, b);
-  do {
-    for (PetscInt k = 0; k < r.count; k++) {
-      const PetscInt at = (r.column + k - l->start[b->column]) * rows + r.row - l->start[b->row];
-      const PetscReal alpha = NearBlockIsSelf(b) && !k ? 0.5 * scale : scale;
-      for (int q = 0; q < 4; q++) {
-        static const int place[4] = {0, 2, 3, 1}; /* xx, xy of the x row, yx, yy of the y row */
-        NearValueAdd(f, b, r.at + q / 2 * r.stride + 2 * k + q % 2, alpha * part[place[q]][at]);
-      }
-    }
-  } while (NearBlockNext(l, b, &r));
+/* The images of one body in a wall count for the other: with a box part all walls', as it was found with all. */
+static PetscBool CountsWall(SinglePairs f, const NearBlock *b, int direction, int side) {
+  const Grid g = f->set->markers->grid;
+  const PetscReal gap = NearImageGap(g, direction, side, &f->bounds[b->row], &f->bounds[b->column]);
+  return f->images && g->wall[direction] && (f->set->box || gap < IMAGE_REACH * g->h) ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* The walls whose images of the one vesicle count for the other; with a box part all, as it was found with all, or
-   none, where it has them. */
-static void FindWalls(NearField f, const NearBlock *b, PetscBool walls[2][2]) {
-  const Grid g = f->markers->grid;
-  const PetscBool none = f->box && BoxPartHasImages(f->box) ? PETSC_TRUE : PETSC_FALSE;
-  for (int direction = 0; direction < 2; direction++)
-    for (int side = 0; side < 2; side++) {
-      const PetscReal gap = NearImageGap(g, direction, side, &f->bounds[b->row], &f->bounds[b->column]);
-      walls[direction][side] = !none && g->wall[direction] && (f->box || gap < NEAR_IMAGE_REACH * g->h) ? PETSC_TRUE
-                                                                                                        : PETSC_FALSE;
-    }
-}
-
-PetscErrorCode NearBlockFill(NearField f, const NearBlock *b) {
+PetscErrorCode NearBlockFill(SinglePairs f, const NearBlock *b, NearStore *s) {
+  const Layout l = f->set->markers->layout;
   Chunk c = {.block = b, .self = NearBlockIsSelf(b), .back = b->row > b->column ? PETSC_TRUE : PETSC_FALSE};
-  NearRow r = NearBlockBegin(f->bodies->layout, b);
+  NearRow r = NearBlockBegin(l, b);
   PetscFunctionBeginUser;
-  if (f->image) FindWalls(f, b, c.walls);
+  for (int wall = 0; wall < 4; wall++) c.walls[wall / 2][wall % 2] = CountsWall(f, b, wall / 2, wall % 2);
   c.far = &f->far[c.self ? NEAR_ONE : NEAR_TWO];
-  c.reach = c.far->reach * f->markers->grid->h;
-  do FillRow(f, &r, &c);
-  while (NearBlockNext(f->bodies->layout, b, &r));
-  if (c.self) PetscCall(AddSelf(f, b));
+  c.reach = c.far->reach * f->set->markers->grid->h;
+  do FillRow(f, &r, &c, s);
+  while (NearBlockNext(l, b, &r));
+  if (c.self) PetscCall(AddSelf(f, b, s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

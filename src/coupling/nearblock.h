@@ -1,13 +1,30 @@
-/* The numbers of the near field: pairs of markers. */
+/* Blocks of the single layer's C = S - L (singlepairs.h): the velocities of one body's markers by the forces on those
+   of another one, or of its image,
+
+       U_v += C_vw F_w,     U_w += C_vw^T F_v,
+
+   so that each pair of bodies has one block. It lies in rows, two for each marker of the first body, its x and its y
+   velocity, with columns interlaced. A body's block with itself has of each row what is right of the diagonal, and of a
+   marker with itself the half. Nothing crosses ranks: a block is in the store of the rank that owns its first body. */
 #pragma once
-#include "coupling/nearfield.h"
+#include "coupling/finecurve.h"
+#include "coupling/singlepairs.h"
 
-#define NEAR_REACH 24        /* cells between two vesicles up to which they have a block */
-#define NEAR_MANY 16         /* vesicles: with more of them, */
-#define NEAR_SINGLE 4        /* cells between two from which on their block is in single precision */
-#define NEAR_IMAGE_REACH 300 /* cells between a vesicle and another one's image in a wall: beyond, none */
+typedef struct {
+  PetscInt row, column; /* bodies */
+  PetscReal shift[2];   /* of the column's image (length) */
+  PetscBool single;     /* in single precision */
+  size_t at;            /* in the store's value, or single */
+} NearBlock;
 
-/* NearBlockIsSelf - whether it is of a vesicle with itself, not with an image. */
+/* The blocks' values in double and in single precision, and room for so many. */
+typedef struct {
+  PetscReal *value;
+  float *single;
+  size_t value_room, single_room;
+} NearStore;
+
+/* NearBlockIsSelf - whether it is of a body with itself, not with an image. */
 static inline PetscBool NearBlockIsSelf(const NearBlock *b) {
   return b->row == b->column && b->shift[0] == 0 && b->shift[1] == 0 ? PETSC_TRUE : PETSC_FALSE;
 }
@@ -37,26 +54,15 @@ static inline PetscBool NearBlockNext(Layout l, const NearBlock *b, NearRow *r) 
   return PETSC_TRUE;
 }
 
-/* NearValue - a block's value at this place. NearValueAdd - it += x. */
-static inline PetscReal NearValue(NearField f, const NearBlock *b, size_t at) {
-  return b->single ? f->store.single[at] : f->store.value[at];
-}
-static inline void NearValueAdd(NearField f, const NearBlock *b, size_t at, PetscReal x) {
-  if (b->single)
-    f->store.single[at] = (float)(f->store.single[at] + x);
-  else
-    f->store.value[at] += x;
-}
+/* NearBlockFill - the values of a block where the pairs have been placed, without finer points. NearBlockRefine - to
+   the block the difference between finer points of two curves near one another and their markers.
+   NearBlockRefineAtWalls - the same of images in walls that are nearer than two marker spacings, of closed curves only:
+   the first marker of an open one is half a spacing off its wall. Not collective. */
+PETSC_EXTERN PetscErrorCode NearBlockFill(SinglePairs pairs, const NearBlock *block, NearStore *store);
+PETSC_EXTERN PetscErrorCode NearBlockRefine(SinglePairs pairs, const NearBlock *block, const FinePair *fine,
+                                            NearStore *store);
+PETSC_EXTERN PetscErrorCode NearBlockRefineAtWalls(SinglePairs pairs, const NearBlock *block, NearStore *store);
 
-/* NearBlockFill - the values of the block at the present markers, close curves not yet refined (nearclose.h). Not
-   collective. */
-PETSC_EXTERN PetscErrorCode NearBlockFill(NearField near, const NearBlock *block);
-
-/* NearBlockAdd - the block += parts xx, yy, xy, yx, [n_column][n_row] each; where it is of a vesicle with itself, of
-   one of the two of each pair. Not collective. */
-PETSC_EXTERN void NearBlockAdd(NearField near, const NearBlock *block, PetscReal scale, PetscReal *const part[4]);
-
-/* NearLatticePair - L of markers i and j, d = X_i - X_j (length) that of the image meant: xx, yy, xy, yx. By stencils
-   as far as the table goes, by closed form beyond. Of `near` it reads markers, stencil, lattice, far and nu. Not
-   collective. */
-PETSC_EXTERN void NearLatticePair(NearField near, PetscInt i, PetscInt j, const PetscReal d[2], PetscReal L[4]);
+/* NearLatticePair - L of markers i and j, d = X_i - X_j (length) that of the image meant: xx, yy, xy (x to a force
+   along y), yx. By stencils as far as the table goes, by closed form beyond. Not collective. */
+PETSC_EXTERN void NearLatticePair(SinglePairs pairs, PetscInt i, PetscInt j, const PetscReal d[2], PetscReal L[4]);

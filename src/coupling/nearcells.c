@@ -1,15 +1,11 @@
 #include "coupling/nearcells.h"
-#include "base/lanes.h"
 #include "coupling/cellrow.h"
-#include "coupling/layer.h"
-#include "coupling/nearblock.h"
+#include "coupling/lattice.h"
 
 /* Distance from a marker up to which a cell is corrected, in cells; and in spacings of markers, whose single forces the
    lattice shows a little farther where they are more than 2 h apart. */
 #define CELLS 4
-#define SUMMED_CELLS                                                                                                   \
-  10 /* from a marker to a cell; beyond, its closed form is right to 1e-5. Less than STENCIL_ROW/2                     \
-      */
+#define SUMMED_CELLS 10 /* from a marker to a cell; beyond, its closed form is right to 1e-5 */
 #define SPACINGS 2
 
 /* Coefficients of the velocity of distant markers, as in nearblock.c, of two ends that differ: a kernel, and a cell's
@@ -20,15 +16,14 @@ typedef struct {
 
 /* What all cells need, and one vesicle's kernels: component c of marker k at 2k + c, not wrapped into the grid. */
 typedef struct {
-  Coupling coupling;
-  Layer layer;
+  const LayerSetting *set;
+  const OffsetTable *stokeslet;
   OffsetTable pressure;
-  PetscInt vesicle, n;
+  Layer layer;
+  PetscInt vesicle;
   FarCell far;
-  PetscReal reach;        /* of the correction (length) */
   const PetscReal *X, *F; /* [2n] of the vesicle */
   PaddedStencil *source;  /* [2n] */
-  CellRow row;            /* the cells under way */
 } NearCells;
 
 /* Second moments along and across are averaged over both ends where one component meets itself; from one to the other
@@ -45,19 +40,9 @@ static FarCell FarCoefficients(const Kernel *kernel) {
                    .b6 = 1. / 96};
 }
 
-static void SetVesicle(NearCells *s, PetscInt v) {
-  const Markers m = s->coupling->markers;
-  const Layout l = m->layout;
-  s->vesicle = v;
-  s->n = LayoutCount(l, v);
-  s->reach = PetscMax(CELLS * m->grid->h, SPACINGS * s->coupling->membrane->ds[v]);
-  s->X = s->layer->X + 2 * l->start[v];
-  s->F = s->layer->F + 2 * l->start[v];
-}
-
-static void SetStencils(NearCells *s) {
-  const Markers m = s->coupling->markers;
-  for (PetscInt k = 0; k < 2 * s->n; k++) {
+static void SetStencils(NearCells *s, PetscInt n) {
+  const Markers m = s->set->markers;
+  for (PetscInt k = 0; k < 2 * n; k++) {
     Stencil stencil;
     for (int dir = 0; dir < 2; dir++) {
       const PetscBool along = k % 2 == dir ? PETSC_TRUE : PETSC_FALSE;
@@ -68,31 +53,26 @@ static void SetStencils(NearCells *s) {
   }
 }
 
-/* Velocity and pressure of marker k on the lattice, taken off those of `n` cells of a row from cell[0] on. */
-static void TakeLattice(NearCells *s, PetscInt k, const PetscInt cell[2], PetscInt n) {
+static void TakeLattice(void *context, PetscInt k, const PetscInt cell[2], PetscInt n, PetscReal *const sum[3]) {
   static const PetscInt none[2] = {0, 0}, turned[2] = {1, -1}; /* u of a force along y: StencilFourSums */
-  const OffsetTable *t = &s->coupling->near->lattice;
+  const NearCells *s = (const NearCells *)context;
   const PaddedStencil *source = &s->source[2 * k];
-  const PetscReal *F = &s->F[2 * k], h = s->coupling->fluid->grid->h, nu = s->coupling->fluid->nu;
-  PetscReal *at[3];
+  const PetscReal *F = &s->F[2 * k], h = s->set->markers->grid->h, nu = s->set->nu;
   PaddedStencil weights[3];
-  for (int f = 0; f < 3; f++) {
-    CellStencil((Field)f, cell, &weights[f]);
-    at[f] = s->row.sum[f] + cell[0] - s->row.from;
-  }
-  StencilRowAdd(t, OFFSET_UU, &weights[0], &source[0], none, -F[0] / nu, n, at[0]);
-  StencilRowAdd(t, OFFSET_VU, &weights[0], &source[1], turned, -F[1] / nu, n, at[0]);
-  StencilRowAdd(t, OFFSET_VU, &weights[1], &source[0], none, -F[0] / nu, n, at[1]);
-  StencilRowAdd(t, OFFSET_VV, &weights[1], &source[1], none, -F[1] / nu, n, at[1]);
-  StencilRowAdd(&s->pressure, OFFSET_UU, &weights[2], &source[0], none, -F[0] / h, n, at[2]);
-  StencilRowAdd(&s->pressure, OFFSET_VV, &weights[2], &source[1], none, -F[1] / h, n, at[2]);
+  for (int f = 0; f < 3; f++) CellStencil((Field)f, cell, &weights[f]);
+  StencilRowAdd(s->stokeslet, OFFSET_UU, &weights[0], &source[0], none, -F[0] / nu, n, sum[0]);
+  StencilRowAdd(s->stokeslet, OFFSET_VU, &weights[0], &source[1], turned, -F[1] / nu, n, sum[0]);
+  StencilRowAdd(s->stokeslet, OFFSET_VU, &weights[1], &source[0], none, -F[0] / nu, n, sum[1]);
+  StencilRowAdd(s->stokeslet, OFFSET_VV, &weights[1], &source[1], none, -F[1] / nu, n, sum[1]);
+  StencilRowAdd(&s->pressure, OFFSET_UU, &weights[2], &source[0], none, -F[0] / h, n, sum[2]);
+  StencilRowAdd(&s->pressure, OFFSET_VV, &weights[2], &source[1], none, -F[1] / h, n, sum[2]);
 }
 
-/* The same of four distant markers, (x, y) from them to the cell, with forces (f, g): the Stokeslet, and the closed
-   form of its difference. */
+/* What the lattice has of four distant markers, (x, y) from them to the cell, with forces (f, g): the Stokeslet, and
+   the closed form of its difference. */
 static void TakeFar(const NearCells *s, Lanes x, Lanes y, Lanes f, Lanes g, Lanes sum[3]) {
   const FarCell *far = &s->far;
-  const PetscReal h = s->coupling->fluid->grid->h, nu = s->coupling->fluid->nu;
+  const PetscReal h = s->set->markers->grid->h, nu = s->set->nu;
   const Lanes r2 = x * x + y * y, over = 1 / r2, along = (x * f + y * g) * over,
               logarithm = 0.5 * LanesLog(r2 * (1 / (h * h)));
   const Lanes c2 = (x * x - y * y) * over, s2 = 2 * x * y * over, c4 = c2 * c2 - s2 * s2, s4 = 2 * c2 * s2,
@@ -106,88 +86,45 @@ static void TakeFar(const NearCells *s, Lanes x, Lanes y, Lanes f, Lanes g, Lane
   sum[2] = along * (-1 / (2 * PETSC_PI)); /* but for h^2/r^3 */
 }
 
-/* All markers of the vesicle that are not near cell i of the row. */
-static void TakeDistant(const NearCells *s, PetscInt i, const PetscReal at[2], PetscReal u[2], PetscReal *p) {
+/* The exact layer, less the lattice's of all markers that are not near the cell. */
+static void Exact(void *context, const CellRow *row, PetscInt i, const PetscReal at[2], PetscBool corrected,
+                  PetscInt cell, PetscReal found[3]) {
+  const NearCells *s = (const NearCells *)context;
   Lanes sum[3] = {{0}, {0}, {0}}, four[3];
-  for (PetscInt k = 0; k < s->n; k += LANES) {
+  if (!corrected) return;
+  LayerAdd(s->layer, s->vesicle, at, found, &found[2]);
+  for (PetscInt k = 0; k < row->n && !row->grid->free; k += LANES) {
     Lanes x, y, f, g;
     LanesPairs(s->X + 2 * k, &x, &y);
     LanesPairs(s->F + 2 * k, &f, &g);
-    const LanesBits far = CellRowDistant(&s->row, s->n, k, i);
+    const LanesBits far = CellRowDistant(row, k, i);
     TakeFar(s, at[0] - x, at[1] - y, f, g, four);
     for (int q = 0; q < 3; q++) sum[q] += LanesWhere(far, four[q]);
   }
-  for (int c = 0; c < 2; c++) u[c] += LanesSum(sum[c]);
-  *p += LanesSum(sum[2]);
+  for (int q = 0; q < 3; q++) found[q] += LanesSum(sum[q]);
 }
 
-/* The exact layer less the lattice's at the centre x of cell i of the row. */
-static void Difference(const NearCells *s, PetscInt i, const PetscReal x[2], PetscReal found[3]) {
-  for (int f = 0; f < 3; f++) found[f] = s->row.sum[f][i - s->row.from];
-  LayerAdd(s->layer, s->vesicle, x, found, &found[2]);
-  TakeDistant(s, i, x, found, &found[2]);
-}
-
-/* Whether the cells of a box, whose indices are not wrapped into the grid, have any in this rank's rows. */
-static PetscBool HasOwnRows(Grid g, PetscInt box[2][2]) {
-  for (PetscInt cell = box[1][0]; cell <= box[1][1]; cell++) {
-    const PetscInt row = ((cell % g->n[1]) + g->n[1]) % g->n[1] - g->first;
-    if (row >= 0 && row < g->rows[FIELD_P]) return PETSC_TRUE;
-  }
-  return PETSC_FALSE;
-}
-
-/* Row j of the cells from box[0] to box[1]; to the fields from `start` on. */
-static void CorrectRow(NearCells *s, const PetscInt box[2], PetscInt j, PetscReal *const field[3], PetscInt start) {
-  const Grid g = s->coupling->fluid->grid;
-  PetscInt cell[2];
-  if (!CellRowPlace(&s->row, g, s->n, s->X, s->reach, box, j)) return;
-  for (PetscInt k = 0; k < s->n; k++) {
-    const PetscInt n = CellRowNear(&s->row, g, k, s->X + 2 * k, SUMMED_CELLS, j, cell);
-    if (n) TakeLattice(s, k, cell, n);
-  }
-  for (PetscInt i = s->row.from; i <= s->row.to; i++) {
-    const PetscInt at = start + ((i % g->n[0]) + g->n[0]) % g->n[0];
-    PetscReal x[2], found[3];
-    GridPosition(g, FIELD_P, i, j, x);
-    if (!CellIsNear(s->n, s->X, s->reach, x)) continue;
-    Difference(s, i, x, found);
-    for (int f = 0; f < 3; f++)
-      if (field[f]) field[f][at] += found[f];
-  }
-}
-
-static PetscErrorCode CorrectVesicle(NearCells *s, PetscInt v, PetscReal *const field[3]) {
-  const Grid g = s->coupling->fluid->grid;
-  PetscInt box[2][2];
+PetscErrorCode NearCellsCorrect(const LayerSetting *set, const OffsetTable *lattice, Layer layer,
+                                PetscReal *const field[3]) {
+  const Layout l = layer->layout;
+  const Grid g = set->markers->grid;
+  NearCells s = {.set = set, .stokeslet = lattice, .layer = layer, .far = FarCoefficients(set->markers->kernel)};
+  const CellLayer of = {&s, SUMMED_CELLS, TakeLattice, Exact};
   PetscFunctionBeginUser;
-  SetVesicle(s, v);
-  CellBox(g, s->n, s->X, s->reach, box);
-  if (!HasOwnRows(g, box)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(LayerUse(s->layer, v));
-  SetStencils(s);
-  PetscCall(CellRowCreate(s->n, box[0][1] - box[0][0] + 1, &s->row));
-  for (PetscInt j = box[1][0]; j <= box[1][1]; j++) {
-    const PetscInt row = ((j % g->n[1]) + g->n[1]) % g->n[1] - g->first;
-    if (row >= 0 && row < g->rows[FIELD_P]) CorrectRow(s, box[0], j, field, row * g->n[0]);
-  }
-  PetscCall(CellRowDestroy(&s->row));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode NearCellsCorrect(Coupling coupling, Vec sigma, Vec X, PetscReal u[], PetscReal v[], PetscReal p[]) {
-  const Layout l = coupling->membrane->layout;
-  PetscReal *const field[3] = {u, v, p};
-  NearCells s = {.coupling = coupling};
-  PetscFunctionBeginUser;
-  if (!coupling->near || coupling->near->free) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(LayerCreate(coupling, sigma, X, &s.layer));
-  s.far = FarCoefficients(coupling->markers->kernel);
-  PetscCall(LatticePressure(SUMMED_CELLS + OFFSET_LAGS, &s.pressure));
+  if (!g->free) PetscCall(LatticePressure(SUMMED_CELLS + OFFSET_LAGS, &s.pressure));
   PetscCall(PetscMalloc1(2 * l->M, &s.source));
-  for (PetscInt b = 0; b < l->bodies; b++) PetscCall(CorrectVesicle(&s, b, field));
+  for (PetscInt v = 0; v < l->bodies; v++) {
+    const PetscReal reach = PetscMax(CELLS * g->h, SPACINGS * set->bodies->membrane->ds[v]);
+    CellRow row;
+    s.vesicle = v;
+    s.X = layer->X + 2 * l->start[v];
+    s.F = layer->F + 2 * l->start[v];
+    if (!CellRowBegin(g, LayoutCount(l, v), s.X, reach, &row)) continue;
+    PetscCall(LayerUse(layer, v));
+    SetStencils(&s, row.n);
+    PetscCall(CellRowCorrect(&row, &of, field));
+  }
   PetscCall(PetscFree(s.source));
   PetscCall(OffsetTableDestroy(&s.pressure));
-  PetscCall(LayerDestroy(&s.layer));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,11 +1,12 @@
-/* Fields at cell centres next to a membrane: the grid's velocity and pressure are smoothed there by the kernel. Cells
-   within a few h of a membrane get the difference between the exact single layer and what the kernel makes of it on the
-   infinite lattice, as the markers' velocity does (nearfield.h). */
+/* Velocity and pressure of the membranes' forces at cell centres (cellrow.h): the exact single layer next to a membrane
+   in the place of what the regularised delta function makes of it on the infinite lattice, as for the markers'
+   velocity; in unbounded fluid all of it. */
 #pragma once
-#include "coupling/coupling.h"
+#include "coupling/layer.h"
+#include "coupling/layersetting.h"
+#include "coupling/offsets.h"
 
-/* NearCellsCorrect - to the velocity u, v and the pressure p at this rank's cell centres, [rows][nx] each, NULL for
-   those not wanted, that the coupling's grid has of markers X with tension sigma; nothing without near field.
-   Collective. */
-PETSC_EXTERN PetscErrorCode NearCellsCorrect(Coupling coupling, Vec sigma, Vec X, PetscReal u[], PetscReal v[],
-                                             PetscReal p[]);
+/* NearCellsCorrect - to the velocity u, v and the pressure p at this rank's cell centres, field[3][rows][nx], NULL for
+   those not wanted, that the grid has of the layer's forces; lattice: LatticeStokeslet. Not collective. */
+PETSC_EXTERN PetscErrorCode NearCellsCorrect(const LayerSetting *set, const OffsetTable *lattice, Layer layer,
+                                             PetscReal *const field[3]);

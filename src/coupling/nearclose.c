@@ -1,84 +1,70 @@
-/* Only near pairs need finer points: chi(r) S is exchanged, chi a smooth window. */
-#include "coupling/nearclose.h"
-#include "coupling/finecurve.h"
+/* The single layer between curves near one another, and of images in a wall near them, on finer points. */
 #include "coupling/nearblock.h"
 
-#define CLOSE 1.3    /* spacings: gaps below it need finer points */
-#define FINE 2.5     /* fine points a gap */
-#define MOST_FINE 64 /* times the markers */
-#define PROBE 4      /* times the markers, for measuring the gap */
-#define WINDOW 8     /* spacings */
-
-/* chi times the Stokeslet from y to x: xx, yy, xy. */
-static void Windowed(NearField f, PetscReal window, const PetscReal x[2], const PetscReal y[2], PetscReal S[3]) {
-  const PetscReal d[2] = {x[0] - y[0], x[1] - y[1]}, r2 = d[0] * d[0] + d[1] * d[1];
-  const PetscReal factor = FineWindow(PetscSqrtReal(r2), window) / (4 * PETSC_PI * f->nu);
-  const PetscReal logarithm = -0.5 * PetscLogReal(r2 / PetscSqr(f->unit));
-  S[0] = factor * (logarithm + d[0] * d[0] / r2);
-  S[1] = factor * (logarithm + d[1] * d[1] / r2);
-  S[2] = factor * d[0] * d[1] / r2;
+static void FreeKernel(const void *set, int wall, const Lanes x[2], const PetscReal y[2], const PetscReal N[2],
+                       Lanes K[]) {
+  StokesletFour((const LayerSetting *)set, x[0] - y[0], x[1] - y[1], K);
 }
 
-/* The block of curves at `factor` times their markers, windowed, added with a sign. */
-static PetscErrorCode AddAt(NearField f, const NearClose *close, PetscInt factor, PetscReal window, PetscReal sign) {
-  const NearBlock *block = &f->block[close->block];
-  const PetscReal none[2] = {0, 0};
-  PetscReal *K[3], *part[3];
-  FineCurve a, b;
-  PetscFunctionBeginUser;
-  PetscCall(FineCurveCreate(f, block->row, none, factor, &a));
-  PetscCall(FineCurveCreate(f, block->column, close->shift, factor, &b));
-  PetscCall(FineCurvePair(&a, &b, window));
-  for (int c = 0; c < 3; c++) PetscCall(PetscMalloc2(a.count * b.count, &K[c], a.n * b.n, &part[c]));
-  for (PetscInt q = 0; q < b.count; q++)
-    for (PetscInt p = 0; p < a.count; p++) {
-      PetscReal S[3];
-      Windowed(f, window, a.x + 2 * a.used[p], b.x + 2 * b.used[q], S);
-      for (int c = 0; c < 3; c++) K[c][q * a.count + p] = S[c];
+static void WallKernel(const void *set, int wall, const Lanes x[2], const PetscReal y[2], const PetscReal N[2],
+                       Lanes K[]) {
+  Lanes seen[3];
+  FinePairSeen(((const LayerSetting *)set)->markers->grid, wall, x, y, seen);
+  NearImageBlake(seen[0], seen[1], seen[2], K);
+}
+
+/* The block += scale times parts xx, yy, xy, yx, [n_column][n_row] each; where it is of a body with itself, of one of
+   the two of each pair. */
+static void Add(Layout l, const NearBlock *b, PetscReal scale, const PetscReal *const part[4], NearStore *s) {
+  static const int place[4] = {0, 2, 3, 1}; /* xx, xy of the x row, yx, yy of the y row */
+  const PetscInt rows = LayoutCount(l, b->row);
+  NearRow r = NearBlockBegin(l, b);
+  do
+    for (PetscInt k = 0; k < r.count; k++) {
+      const PetscInt from = (r.column + k - l->start[b->column]) * rows + r.row - l->start[b->row];
+      const PetscReal alpha = NearBlockIsSelf(b) && !k ? 0.5 * scale : scale;
+      for (int q = 0; q < 4; q++) {
+        const size_t at = r.at + q / 2 * r.stride + 2 * k + q % 2;
+        if (b->single)
+          s->single[at] = (float)(s->single[at] + alpha * part[place[q]][from]);
+        else
+          s->value[at] += alpha * part[place[q]][from];
+      }
     }
-  for (int c = 0; c < 3; c++) PetscCall(FineCurveProject(&a, &b, K[c], part[c]));
-  NearBlockAdd(f, block, sign, (PetscReal *[4]){part[0], part[1], part[2], part[2]});
-  for (int c = 0; c < 3; c++) PetscCall(PetscFree2(K[c], part[c]));
-  PetscCall(FineCurveDestroy(&a));
-  PetscCall(FineCurveDestroy(&b));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  while (NearBlockNext(l, b, &r));
 }
 
-/* The larger spacing of two vesicles' markers. */
-static PetscReal Spacing(NearField f, PetscInt v, PetscInt w) {
-  return PetscMax(f->bodies->ds[v], f->bodies->ds[w]);
-}
-
-PetscErrorCode NearCloseGap(NearField f, PetscInt row, PetscInt column, const PetscReal shift[2], PetscReal *gap,
-                            PetscBool *close) {
-  const PetscReal ds = Spacing(f, row, column), none[2] = {0, 0};
-  FineCurve a, b;
+PetscErrorCode NearBlockRefine(SinglePairs f, const NearBlock *b, const FinePair *pair, NearStore *s) {
+  const Layout l = f->set->markers->layout;
+  const int direction = pair->wall / 2, side = pair->wall % 2;
+  const PetscInt n = LayoutCount(l, b->row) * LayoutCount(l, b->column);
+  const FineKernel kernel = {pair->wall < 0 ? 3 : IMAGE_PARTS, pair->wall < 0 ? FreeKernel : WallKernel, f->set, NULL};
+  PetscReal *part;
   PetscFunctionBeginUser;
-  if (*gap <= (CLOSE + 1) * ds) { /* where markers are farther, so are the curves */
-    PetscCall(FineCurveCreate(f, row, none, PROBE, &a));
-    PetscCall(FineCurveCreate(f, column, shift, PROBE, &b));
-    *gap = FineCurveGap(&a, &b);
-    PetscCall(FineCurveDestroy(&a));
-    PetscCall(FineCurveDestroy(&b));
+  PetscCall(PetscMalloc1(IMAGE_PARTS * n, &part));
+  const PetscReal *p = part, *tt = p + IMAGE_TT * n, *nn = p + IMAGE_NN * n, *nt = p + IMAGE_NT * n,
+                  *tn = p + IMAGE_TN * n;
+  for (int fine = 1; fine >= 0; fine--) {
+    const PetscReal sign = fine ? 1 : -1;
+    PetscCall(FinePairParts(f->set, pair, (PetscBool)fine, &kernel, part));
+    for (PetscInt k = IMAGE_NT * n; k < IMAGE_PARTS * n && pair->wall >= 0 && side; k++) part[k] *= -1;
+    if (pair->wall < 0)
+      Add(l, b, sign, (const PetscReal *[]){p, p + n, p + 2 * n, p + 2 * n}, s);
+    else /* the wall's directions turned to x and y */
+      Add(l, b, sign / f->set->nu,
+          direction ? (const PetscReal *[]){tt, nn, tn, nt} : (const PetscReal *[]){nn, tt, nt, tn}, s);
   }
-  *close = *gap <= CLOSE * ds ? PETSC_TRUE : PETSC_FALSE;
+  PetscCall(PetscFree(part));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-void NearCloseFineness(NearField f, const NearClose *close, PetscInt *factor, PetscReal *window) {
-  const NearBlock *block = &f->block[close->block];
-  const PetscReal ds = Spacing(f, block->row, block->column);
-  const PetscReal times = FINE * ds / PetscMax(close->gap, FINE * ds / MOST_FINE);
-  *factor = (PetscInt)PetscMin(MOST_FINE, PetscCeilReal(times));
-  *window = WINDOW * ds;
-}
-
-PetscErrorCode NearCloseAdd(NearField f, const NearClose *close) {
-  PetscInt factor;
-  PetscReal window;
+PetscErrorCode NearBlockRefineAtWalls(SinglePairs f, const NearBlock *b, NearStore *s) {
+  const CurveKind *kind = f->set->bodies->kind;
   PetscFunctionBeginUser;
-  NearCloseFineness(f, close, &factor, &window);
-  PetscCall(AddAt(f, close, factor, window, 1));
-  PetscCall(AddAt(f, close, 1, window, -1));
+  if (kind[b->row].type != CURVE_CLOSED || kind[b->column].type != CURVE_CLOSED) PetscFunctionReturn(PETSC_SUCCESS);
+  for (int wall = 0; wall < 4; wall++) {
+    FinePair pair = {.row = b->row, .column = b->column, .shift = {b->shift[0], b->shift[1]}};
+    if (FinePairAtWall(f->set, f->bounds, wall, &pair)) PetscCall(NearBlockRefine(f, b, &pair, s));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

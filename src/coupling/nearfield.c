@@ -1,67 +1,23 @@
 #include "coupling/nearfield.h"
 #include "base/agree.h"
-#include "coupling/nearblock.h"
-#include "coupling/nearclose.h"
-#include "coupling/nearpairs.h"
+#include "coupling/lattice.h"
 #include "coupling/nearrows.h"
-#include "coupling/wallclose.h"
-
-/* Weights of ln(4 sin^2(t/2)) in Kress' quadrature on n points, by index difference; less that logarithm and times -1/2
-   but at 0. */
-static void Kress(PetscInt n, PetscReal k[]) {
-  for (PetscInt d = 0; d < n; d++) {
-    k[d] = 0;
-    for (PetscInt m = 1; m <= (n - 1) / 2; m++) k[d] -= 2 * PetscCosReal(2 * PETSC_PI * ((m * d) % n) / n) / m;
-    if (n % 2 == 0) k[d] -= (d % 2 ? -2.0 : 2.0) / n;
-    if (d) k[d] = -0.5 * (k[d] - PetscLogReal(4 * PetscSqr(PetscSinReal(PETSC_PI * d / n))));
-  }
-}
-
-#define ZETA 0.0304484570583 /* -zeta'(-2) */
-
-/* The same of an open curve, of the trapezoidal rule with three corrected weights: on the diagonal ln(2 pi/ds) - 2
-   ZETA, beside it ZETA. It has no corrections at the ends, where the force fades. */
-static void Zeta(PetscInt n, PetscReal k[]) {
-  for (PetscInt d = 0; d < n; d++) k[d] = 0;
-  k[0] = 4 * ZETA;
-  k[1] = ZETA;
-}
-
-/* The lattice's tables, for pairs, their images in walls and the box part. */
-static PetscErrorCode MakeLattice(NearField f) {
-  const Grid g = f->markers->grid;
-  ImageTable *half = NULL;
-  PetscFunctionBeginUser;
-  PetscCall(LatticeStokeslet(BOX_LATTICE_CELLS + OFFSET_LAGS, &f->lattice));
-  if (g->wall[0] || g->wall[1]) {
-    PetscCall(PetscNew(&half));
-    PetscCall(ImageTableFill(&f->lattice, half));
-  }
-  PetscCall(NearImageCreate(f->markers, f->nu, f->unit, half, &f->image));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
 
 PetscErrorCode NearFieldCreate(Markers markers, Bodies bodies, PetscReal nu, NearField *out) {
   const Layout l = bodies->layout;
+  const Grid g = markers->grid;
   NearField f;
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&f));
   *out = f;
-  f->markers = markers;
-  f->bodies = bodies;
-  f->nu = nu;
-  f->unit = markers->grid->h;
-  f->free = markers->grid->free;
-  NearFarMake(markers->kernel, f->far);
-  if (!f->free) PetscCall(MakeLattice(f));
-  PetscCall(PetscCalloc1(l->bodies, &f->kress));
-  for (PetscInt v = l->own; v < l->end; v++) {
-    PetscCall(PetscMalloc1(LayoutCount(l, v), &f->kress[v]));
-    (bodies->kind[v].type == CURVE_OPEN ? Zeta : Kress)(LayoutCount(l, v), f->kress[v]);
+  f->set = (LayerSetting){.markers = markers, .bodies = bodies, .nu = nu, .unit = g->h};
+  if (!g->free) PetscCall(LatticeStokeslet(BOX_LATTICE_CELLS + OFFSET_LAGS, &f->lattice));
+  if (!g->free && (g->wall[0] || g->wall[1])) {
+    PetscCall(PetscNew(&f->half));
+    PetscCall(ImageTableFill(&f->lattice, f->half));
   }
-  PetscCall(NearDistantCreate(l, &f->fixed.distant));
-  PetscCall(PetscMalloc2(2 * l->M, &f->stencil, l->bodies, &f->bounds));
-  for (int c = 0; c < 4; c++) PetscCall(PetscCalloc1(l->M + LANES, &f->fourth[c / 2][c % 2]));
+  PetscCall(SinglePairsCreate(&f->set, &f->lattice, f->half, &f->pairs));
+  PetscCall(NearListCreate(f->pairs, &f->list));
   PetscCall(PetscCalloc2(2 * l->M + LANES, &f->force, 2 * l->n + LANES, &f->velocity)); /* whole vectors */
   PetscCall(PetvesEvent("NearField", &f->event[0]));
   PetscCall(PetvesEvent("NearFieldApply", &f->event[1]));
@@ -72,18 +28,12 @@ PetscErrorCode NearFieldDestroy(NearField *near) {
   NearField f = *near;
   PetscFunctionBeginUser;
   if (!f) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscFree(f->block));
-  PetscCall(PetscFree(f->close));
-  PetscCall(NearDistantDestroy(&f->fixed.distant));
+  PetscCall(NearListDestroy(&f->list));
   PetscCall(PetscFree(f->store.value));
   PetscCall(PetscFree(f->store.single));
-  for (PetscInt v = 0; v < f->bodies->layout->bodies; v++) PetscCall(PetscFree(f->kress[v]));
-  PetscCall(PetscFree(f->kress));
-  PetscCall(PetscFree2(f->stencil, f->bounds));
-  for (int c = 0; c < 4; c++) PetscCall(PetscFree(f->fourth[c / 2][c % 2]));
   PetscCall(PetscFree2(f->force, f->velocity));
-  if (f->image) PetscCall(PetscFree(f->image->table));
-  PetscCall(NearImageDestroy(&f->image));
+  PetscCall(SinglePairsDestroy(&f->pairs));
+  PetscCall(PetscFree(f->half));
   PetscCall(OffsetTableDestroy(&f->lattice));
   PetscCall(BoxPartDestroy(&f->box));
   PetscCall(PetscFree(*near));
@@ -91,41 +41,20 @@ PetscErrorCode NearFieldDestroy(NearField *near) {
 }
 
 PetscErrorCode NearFieldCreateBoxPart(NearField f, const FluidSpec *spec, PetscBool whole, BoxPart *box) {
-  const BoxLattice lattice = {
-      .unit = f->unit, .stokeslet = &f->lattice, .half = f->image ? f->image->table : NULL, .whole = whole};
+  const BoxLattice lattice = {.unit = f->set.unit, .stokeslet = &f->lattice, .half = f->half, .whole = whole};
   PetscFunctionBeginUser;
-  PetscCall(BoxPartCreate(spec, f->markers, &lattice, box));
+  PetscCall(BoxPartCreate(spec, f->set.markers, &lattice, box));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode NearFieldAddBoxPart(NearField f, const FluidSpec *spec) {
+  const Bodies m = f->set.bodies;
   PetscFunctionBeginUser;
   PetscCall(NearFieldCreateBoxPart(f, spec, PETSC_FALSE, &f->box));
+  f->set.box = f->box->axis;
   /* not with obstacles, whose pairs are made once */
-  if (f->image && f->bodies->vesicles == f->bodies->layout->bodies) BoxPartTakeImages(f->box, f->image, NearImageFar);
-  if (spec->inertia == INERTIA_NONE) MarkersLeaveUnscaled(f->markers);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The stencils of the vesicles that blocks are of, each once. */
-static PetscErrorCode PlaceStencils(NearField f) {
-  const Layout l = f->bodies->layout;
-  PetscBool *done;
-  PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(l->bodies, &done));
-  for (PetscInt b = 0; b < f->blocks; b++)
-    for (int end = 0; end < 2; end++) {
-      const PetscInt v = end ? f->block[b].column : f->block[b].row;
-      for (PetscInt k = l->start[v]; k < l->start[v + 1] && !done[v]; k++) {
-        PaddedStencil *s = &f->stencil[2 * k];
-        for (int c = 0; c < 2; c++) StencilPad(&f->markers->plain[2 * k + c], &s[c]);
-        StencilUnwrap(f->markers->grid, f->markers->X + 2 * k, s);
-        for (int c = 0; c < 4; c++)
-          f->fourth[c / 2][c % 2][k] = s[c / 2].fourth[c % 2] - f->far[NEAR_ONE].fourth[c / 2 != c % 2];
-      }
-      done[v] = PETSC_TRUE;
-    }
-  PetscCall(PetscFree(done));
+  if (f->pairs->image && m->vesicles == m->layout->bodies) BoxPartTakeImages(f->box, f->pairs->image, NearImageFar);
+  if (spec->inertia == INERTIA_NONE) MarkersLeaveUnscaled(f->set.markers);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -142,56 +71,59 @@ static PetscErrorCode Room(size_t count, size_t kept, size_t size, size_t *room,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* C of a distant pair as a block in double precision, and where it is: in a store of its own. */
-static PetscErrorCode FillDistant(NearField f, PetscInt pair) {
-  const NearDistantPair *p = &f->fixed.distant->pair[pair];
-  const NearBlock block = {.row = p->row, .column = p->column, .shift = {p->shift[0], p->shift[1]}};
-  const NearStore kept = f->store;
-  const NearRow r = NearBlockBegin(f->bodies->layout, &block);
+/* A distant pair's block in a store of its own, in double precision, which the caller frees. */
+static PetscErrorCode DistantBlock(NearField f, PetscInt pair, NearBlock *block, NearStore *store) {
+  const NearDistantPair *p = &f->list.distant->pair[pair];
+  const Layout l = f->set.bodies->layout;
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(2 * LayoutCount(f->bodies->layout, p->row) * r.stride, &f->store.value));
-  PetscCall(NearBlockFill(f, &block));
-  PetscCall(NearDistantFill(f->fixed.distant, pair, r.stride, f->store.value));
-  PetscCall(PetscFree(f->store.value));
-  f->store = kept;
+  *block = (NearBlock){.row = p->row, .column = p->column, .shift = {p->shift[0], p->shift[1]}};
+  *store = (NearStore){0};
+  PetscCall(PetscMalloc1(2 * LayoutCount(l, p->row) * NearStride(LayoutCount(l, p->column)), &store->value));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Distant pairs, once; crossed: with another rank's marker. */
 static PetscErrorCode PlaceDistant(NearField f, PetscBool *crossed) {
-  const Layout l = f->bodies->layout;
-  NearDistant d = f->fixed.distant;
+  const Layout l = f->set.bodies->layout;
+  NearDistant d = f->list.distant;
+  NearStore store;
+  NearBlock block;
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < d->pairs; k++)
     if (d->pair[k].column < l->own || d->pair[k].column >= l->end) *crossed = PETSC_TRUE;
   if (d->value || !d->pairs) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(NearDistantMake(d));
-  for (PetscInt k = 0; k < d->pairs; k++) PetscCall(FillDistant(f, k));
+  for (PetscInt k = 0; k < d->pairs; k++) {
+    PetscCall(DistantBlock(f, k, &block, &store));
+    PetscCall(NearBlockFill(f->pairs, &block, &store));
+    PetscCall(NearDistantFill(d, k, NearStride(LayoutCount(l, block.column)), store.value));
+    PetscCall(PetscFree(store.value));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode NearFieldPlace(NearField f) {
-  const Layout l = f->bodies->layout;
+  const Layout l = f->set.bodies->layout;
   NearStore *s = &f->store;
   PetscBool crossed = PETSC_FALSE;
   PetscInt first;
   PetscFunctionBeginUser;
   PetscCall(PetscLogEventBegin(f->event[0], 0, 0, 0, 0));
-  PetscCall(NearPairsFind(f, &first));
-  PetscCall(Room(s->values, f->fixed.values, sizeof(PetscReal), &s->value_room, (void **)&s->value));
-  PetscCall(Room(s->singles, f->fixed.singles, sizeof(float), &s->single_room, (void **)&s->single));
-  if (!f->free) PetscCall(PlaceStencils(f));
-  if (f->image) PetscCall(NearImagePlace(f->image, f->stencil));
-  if (f->box) PetscCall(BoxPartPlace(f->box)); /* before the blocks, which may leave images to it */
-  for (PetscInt k = 0; k < f->blocks; k++) {
-    const NearBlock *b = &f->block[k];
+  if (f->box) PetscCall(BoxPartPlace(f->box)); /* before the pairs, which may leave images to it */
+  PetscCall(SinglePairsPlace(f->pairs, f->box && BoxPartHasImages(f->box) ? PETSC_FALSE : PETSC_TRUE));
+  PetscCall(NearListFind(&f->list, &first));
+  PetscCall(Room(f->list.count.values, f->list.fixed.values, sizeof(PetscReal), &s->value_room, (void **)&s->value));
+  PetscCall(Room(f->list.count.singles, f->list.fixed.singles, sizeof(float), &s->single_room, (void **)&s->single));
+  for (PetscInt k = 0; k < f->list.count.blocks; k++) {
+    const NearBlock *b = &f->list.block[k];
     if (b->column < l->own || b->column >= l->end) crossed = PETSC_TRUE;
     if (k < first) continue;
-    PetscCall(NearBlockFill(f, b));
-    if (f->image) PetscCall(NearBlockRefineAtWalls(f, b));
+    PetscCall(NearBlockFill(f->pairs, b, s));
+    PetscCall(NearBlockRefineAtWalls(f->pairs, b, s));
   }
-  for (PetscInt k = 0; k < f->closes; k++)
-    if (f->close[k].block >= first) PetscCall(NearCloseAdd(f, &f->close[k]));
+  for (PetscInt k = 0; k < f->list.count.closes; k++)
+    if (f->list.close[k].block >= first)
+      PetscCall(NearBlockRefine(f->pairs, &f->list.block[f->list.close[k].block], &f->list.close[k].fine, s));
   PetscCall(PlaceDistant(f, &crossed));
   PetscCall(AgreeFlag(l->comm, crossed, &f->crossed));
   PetscCall(PetscLogEventEnd(f->event[0], 0, 0, 0, 0));
@@ -201,7 +133,7 @@ PetscErrorCode NearFieldPlace(NearField f) {
 /* velocity[2n] += alpha C force[2M] of one block: both ways where both vesicles are own ones. */
 static inline void ApplyBlock(NearField f, const NearBlock *b, const PetscBool single, const void *value,
                               PetscReal alpha, const PetscScalar force[], PetscScalar velocity[]) {
-  const Layout l = f->bodies->layout;
+  const Layout l = f->set.bodies->layout;
   const PetscBool both = b->column >= l->own && b->column < l->end ? PETSC_TRUE : PETSC_FALSE;
   PetscInt rows;
   NearRow r = NearBlockBegin(l, b);
@@ -216,7 +148,7 @@ static inline void ApplyBlock(NearField f, const NearBlock *b, const PetscBool s
 }
 
 PetscErrorCode NearFieldApply(NearField f, PetscReal alpha, const PetscScalar F[], PetscScalar U[]) {
-  const Layout l = f->bodies->layout;
+  const Layout l = f->set.bodies->layout;
   PetscFunctionBeginUser;
   PetscCall(PetscLogEventBegin(f->event[1], 0, 0, 0, 0));
   if (f->crossed)
@@ -224,14 +156,14 @@ PetscErrorCode NearFieldApply(NearField f, PetscReal alpha, const PetscScalar F[
   else
     PetscCall(PetscArraycpy(f->force + 2 * l->first, F, 2 * l->n));
   PetscCall(PetscArrayzero(f->velocity, 2 * l->n + LANES));
-  for (PetscInt k = 0; k < f->blocks; k++) {
-    const NearBlock *b = &f->block[k];
+  for (PetscInt k = 0; k < f->list.count.blocks; k++) {
+    const NearBlock *b = &f->list.block[k];
     if (b->single)
       ApplyBlock(f, b, PETSC_TRUE, f->store.single, alpha, f->force, f->velocity);
     else
       ApplyBlock(f, b, PETSC_FALSE, f->store.value, alpha, f->force, f->velocity);
   }
-  PetscCall(NearDistantApply(f->fixed.distant, alpha, f->force, f->velocity));
+  PetscCall(NearDistantApply(f->list.distant, alpha, f->force, f->velocity));
   for (PetscInt k = 0; k < 2 * l->n; k++) U[k] += f->velocity[k];
   if (f->box) PetscCall(BoxPartApply(f->box, alpha, F, U));
   PetscCall(PetscLogEventEnd(f->event[1], 0, 0, 0, 0));
@@ -249,9 +181,8 @@ static inline PetscBool Within(Layout l, PetscInt body, const MarkerRange *range
 }
 
 /* out += scale times a block, in its own rows. */
-static void AddBlock(NearField f, const NearBlock *b, PetscReal scale, const MarkerRange *rows,
+static void AddBlock(Layout l, const NearBlock *b, const NearStore *s, PetscReal scale, const MarkerRange *rows,
                      const MarkerRange *columns, PetscReal out[]) {
-  const Layout l = f->bodies->layout;
   const PetscBool both = b->column >= l->own && b->column < l->end ? PETSC_TRUE : PETSC_FALSE;
   const PetscBool there = Within(l, b->row, rows) && Within(l, b->column, columns) ? PETSC_TRUE : PETSC_FALSE;
   const PetscBool back = both && Within(l, b->column, rows) && Within(l, b->row, columns) ? PETSC_TRUE : PETSC_FALSE;
@@ -260,7 +191,8 @@ static void AddBlock(NearField f, const NearBlock *b, PetscReal scale, const Mar
   do
     for (PetscInt k = 0; k < 2 * r.count; k++)
       for (int c = 0; c < 2; c++) {
-        const PetscReal value = scale * NearValue(f, b, r.at + c * r.stride + k);
+        const size_t at = r.at + (size_t)(c * r.stride + k);
+        const PetscReal value = scale * (b->single ? s->single[at] : s->value[at]);
         const PetscInt i = 2 * r.row + c, j = 2 * r.column + k;
         if (there) out[Place(rows, columns, i, j)] += value;
         if (back) out[Place(rows, columns, j, i)] += value;
@@ -268,33 +200,13 @@ static void AddBlock(NearField f, const NearBlock *b, PetscReal scale, const Mar
   while (NearBlockNext(l, b, &r));
 }
 
-/* The same of a distant pair, whose block is made for that. */
-static PetscErrorCode AddDistant(NearField f, PetscInt pair, PetscReal scale, const MarkerRange *rows,
-                                 const MarkerRange *columns, PetscReal out[]) {
-  const Layout l = f->bodies->layout;
-  const NearDistantPair *p = &f->fixed.distant->pair[pair];
-  const NearBlock block = {.row = p->row, .column = p->column, .shift = {p->shift[0], p->shift[1]}};
-  const NearStore kept = f->store;
-  const NearRow r = NearBlockBegin(l, &block);
-  PetscFunctionBeginUser;
-  if (!(Within(l, p->row, rows) && Within(l, p->column, columns)) &&
-      !(Within(l, p->row, columns) && Within(l, p->column, rows)))
-    PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscMalloc1(2 * LayoutCount(l, p->row) * r.stride, &f->store.value));
-  PetscCall(NearDistantExpand(f->fixed.distant, pair, r.stride, f->store.value));
-  AddBlock(f, &block, scale, rows, columns, out);
-  PetscCall(PetscFree(f->store.value));
-  f->store = kept;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* The first block, after the fixed ones, of the vesicle that a marker belongs to, or of a later one. */
 static PetscInt FirstBlock(NearField f, PetscInt marker) {
-  const PetscInt *start = f->bodies->layout->start;
-  PetscInt low = f->fixed.blocks, high = f->blocks;
+  const PetscInt *start = f->set.bodies->layout->start;
+  PetscInt low = f->list.fixed.blocks, high = f->list.count.blocks;
   while (low < high) {
     const PetscInt middle = (low + high) / 2;
-    if (start[f->block[middle].row] < marker)
+    if (start[f->list.block[middle].row] < marker)
       low = middle + 1;
     else
       high = middle;
@@ -304,14 +216,26 @@ static PetscInt FirstBlock(NearField f, PetscInt marker) {
 
 PetscErrorCode NearFieldAddBetween(NearField f, PetscReal scale, PetscBool box, const MarkerRange *rows,
                                    const MarkerRange *columns, PetscReal out[]) {
-  const Layout l = f->bodies->layout;
+  const Layout l = f->set.bodies->layout;
   const PetscInt from = PetscMin(rows->first, columns->first);
   const PetscInt to = PetscMax(rows->first + rows->n, columns->first + columns->n);
+  NearStore store;
+  NearBlock block;
   PetscFunctionBeginUser;
-  for (PetscInt b = 0; b < f->fixed.blocks; b++) AddBlock(f, &f->block[b], scale, rows, columns, out);
-  for (PetscInt b = FirstBlock(f, from); b < f->blocks && l->start[f->block[b].row] < to; b++)
-    AddBlock(f, &f->block[b], scale, rows, columns, out);
-  for (PetscInt k = 0; k < f->fixed.distant->pairs; k++) PetscCall(AddDistant(f, k, scale, rows, columns, out));
+  for (PetscInt b = 0; b < f->list.fixed.blocks; b++)
+    AddBlock(l, &f->list.block[b], &f->store, scale, rows, columns, out);
+  for (PetscInt b = FirstBlock(f, from); b < f->list.count.blocks && l->start[f->list.block[b].row] < to; b++)
+    AddBlock(l, &f->list.block[b], &f->store, scale, rows, columns, out);
+  for (PetscInt k = 0; k < f->list.distant->pairs; k++) { /* whose block is made for that */
+    const NearDistantPair *p = &f->list.distant->pair[k];
+    if (!(Within(l, p->row, rows) && Within(l, p->column, columns)) &&
+        !(Within(l, p->row, columns) && Within(l, p->column, rows)))
+      continue;
+    PetscCall(DistantBlock(f, k, &block, &store));
+    PetscCall(NearDistantExpand(f->list.distant, k, NearStride(LayoutCount(l, p->column)), store.value));
+    AddBlock(l, &block, &store, scale, rows, columns, out);
+    PetscCall(PetscFree(store.value));
+  }
   if (f->box && box) PetscCall(BoxPartAdd(f->box, scale, rows, columns, out));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

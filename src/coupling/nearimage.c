@@ -3,80 +3,82 @@
 
 /* -S(R) + 2 b^2 D - 2 b SD with R from the source's mirror image, D_ij = s_j (delta_ij/R^2 - 2 R_i R_j/R^4), SD_ij =
    R_n D_ij + s_j (delta_jn R_i - delta_in R_j)/R^2, s = (1, -1). */
-void NearImageBlake(const ImagePair *p, PetscReal image[IMAGE_PARTS]) {
-  const PetscReal b = p->b, R[2] = {p->x, p->a + b}, r2 = R[0] * R[0] + R[1] * R[1];
-  const PetscReal logarithm = -0.5 * PetscLogReal(r2);
+void NearImageBlake(Lanes x, Lanes a, Lanes b, Lanes image[IMAGE_PARTS]) {
   static const int place[2][2] = {{IMAGE_TT, IMAGE_TN}, {IMAGE_NT, IMAGE_NN}};
+  const Lanes R[2] = {x, a + b}, r2 = R[0] * R[0] + R[1] * R[1], logarithm = -0.5 * LanesLog(r2);
   for (int i = 0; i < 2; i++)
     for (int j = 0; j < 2; j++) {
-      const PetscReal s = j ? -1 : 1, D = s * ((i == j) / r2 - 2 * R[i] * R[j] / (r2 * r2));
-      const PetscReal SD = R[1] * D + s * (j * R[i] - i * R[j]) / r2;
-      const PetscReal S = (i == j) * logarithm + R[i] * R[j] / r2;
+      const PetscReal s = j ? -1 : 1;
+      const Lanes D = s * ((i == j) / r2 - 2 * R[i] * R[j] / (r2 * r2));
+      const Lanes SD = R[1] * D + s * (j * R[i] - i * R[j]) / r2;
+      const Lanes S = (i == j) * logarithm + R[i] * R[j] / r2;
       image[place[i][j]] = (-S + 2 * b * b * D - 2 * b * SD) / (4 * PETSC_PI);
     }
 }
 
-void NearImageTurn(int direction, int side, PetscReal alpha, const PetscReal part[IMAGE_PARTS], PetscReal C[4]) {
-  const int place[IMAGE_PARTS] = {1 - direction, direction, direction ? 3 : 2, direction ? 2 : 3};
-  for (int q = 0; q < IMAGE_PARTS; q++) C[place[q]] += (side && q >= IMAGE_NT ? -alpha : alpha) * part[q];
+/* Of one pair. */
+static void Blake(const ImagePair *p, PetscReal image[IMAGE_PARTS]) {
+  Lanes four[IMAGE_PARTS];
+  NearImageBlake(p->x + (Lanes){0}, p->a + (Lanes){0}, p->b + (Lanes){0}, four);
+  for (int q = 0; q < IMAGE_PARTS; q++) image[q] = four[q][0];
 }
 
-/* Sum of one part over two stencils against the half-space table; response comp r (0 t, 1 n) of i, source comp s of j.
- */
-static PetscReal HalfSum(NearImage m, int direction, OffsetBlock b, const ImageEnd *e, PetscInt i, int r,
-                         const ImageEnd *f, PetscInt j, int s, PetscReal x) {
-  const int t = 1 - direction;
-  const ImageRows row = {e->first[r], e->n[r], e->weight[r]}, source = {f->first[s], f->n[s], f->weight[s]};
-  return ImageSum(m->table->value[b], m->markers->grid, t, x, &m->stencil[2 * i + (r ? direction : t)], &row,
-                  &m->stencil[2 * j + (s ? direction : t)], &source);
+/* C += alpha times a pair's parts, turned from a wall to x and y. */
+static void Turn(int direction, int side, PetscReal alpha, const PetscReal part[IMAGE_PARTS], PetscReal C[4]) {
+  for (int q = 0; q < IMAGE_PARTS; q++)
+    C[image_place[direction][q]] += (side && q >= IMAGE_NT ? -alpha : alpha) * part[q];
 }
 
-/* The half-space lattice's mobility of a pair near the wall. */
-static void Half(NearImage m, int direction, const ImagePair *p, PetscInt i, PetscInt j, const ImageEnd *e,
-                 const ImageEnd *f, PetscReal C[IMAGE_PARTS]) {
-  C[IMAGE_TT] = HalfSum(m, direction, OFFSET_UU, e, i, 0, f, j, 0, p->x);
-  C[IMAGE_NN] = HalfSum(m, direction, OFFSET_VV, e, i, 1, f, j, 1, p->x);
-  C[IMAGE_NT] = HalfSum(m, direction, OFFSET_VU, e, i, 1, f, j, 0, p->x);
-  C[IMAGE_TN] = HalfSum(m, direction, OFFSET_VU, f, j, 1, e, i, 0, -p->x);
+/* What a marker has of a wall: tangential or normal (r = 1) component. */
+static ImageRows RowsOf(NearImage m, int wall, PetscInt i, int r) {
+  const ImageEnd *e = &m->end[wall / 2][wall % 2][i];
+  return (ImageRows){e->first[r], e->n[r], e->weight[r], &m->stencil[2 * i + (r ? wall / 2 : 1 - wall / 2)]};
 }
 
-/* The free lattice's mobility seen from a wall, in cells and of viscosity 1. */
-static void FreePart(NearImage m, int direction, int side, const PetscReal L[4], PetscReal free[IMAGE_PARTS]) {
-  const int place[IMAGE_PARTS] = {1 - direction, direction, direction ? 3 : 2, direction ? 2 : 3};
-  for (int q = 0; q < IMAGE_PARTS; q++) free[q] = (side && q >= IMAGE_NT ? -m->nu : m->nu) * L[place[q]];
-  free[IMAGE_TT] += m->logarithm;
-  free[IMAGE_NN] += m->logarithm;
+/* The half-space lattice's mobility of markers i and j near a wall, x cells apart along it. */
+static void Half(NearImage m, int wall, PetscInt i, PetscInt j, PetscReal x, PetscReal part[IMAGE_PARTS]) {
+  const ImageRows a[2] = {RowsOf(m, wall, i, 0), RowsOf(m, wall, i, 1)};
+  const ImageRows b[2] = {RowsOf(m, wall, j, 0), RowsOf(m, wall, j, 1)};
+  const Grid g = m->markers->grid;
+  const int t = 1 - wall / 2;
+  part[IMAGE_TT] = ImageSum(m->table->value[OFFSET_UU], g, t, x, &a[0], &b[0]);
+  part[IMAGE_NN] = ImageSum(m->table->value[OFFSET_VV], g, t, x, &a[1], &b[1]);
+  part[IMAGE_NT] = ImageSum(m->table->value[OFFSET_VU], g, t, x, &a[1], &b[0]);
+  part[IMAGE_TN] = ImageSum(m->table->value[OFFSET_VU], g, t, -x, &b[1], &a[0]);
 }
 
 /* One wall's part, added. Stencils that are scaled near the wall take s s' of the half-space's mobility S + Blake -
    C_free - C_image only: the rest comes on top. */
-static void AddWall(NearImage m, int direction, int side, PetscInt i, PetscInt j, const PetscReal d[2],
-                    const PetscReal L[4], PetscReal C[4]) {
+static void AddWall(NearImage m, int wall, PetscInt i, PetscInt j, const PetscReal d[2], const PetscReal L[4],
+                    PetscReal C[4]) {
+  const int direction = wall / 2, side = wall % 2;
   const ImageEnd *e = &m->end[direction][side][i], *f = &m->end[direction][side][j];
   const ImagePair p = {d[1 - direction] / m->markers->grid->h, e->y, f->y};
-  const PetscBool near = NearImageIsNear(&p);
+  const PetscBool near = NearImageIsNear(&p), scaled = e->scale < 1 || f->scale < 1 ? PETSC_TRUE : PETSC_FALSE;
   PetscReal blake[IMAGE_PARTS] = {0}, part[IMAGE_PARTS], free[IMAGE_PARTS] = {0};
-  if (near || e->scale < 1 || f->scale < 1) {
-    FreePart(m, direction, side, L, free);
-    NearImageBlake(&p, blake);
+  if (near || scaled) { /* free: the lattice's mobility without walls, seen from the wall, in cells, of viscosity 1 */
+    for (int q = 0; q < IMAGE_PARTS; q++)
+      free[q] = (side && q >= IMAGE_NT ? -m->nu : m->nu) * L[image_place[direction][q]];
+    free[IMAGE_TT] += m->logarithm;
+    free[IMAGE_NN] += m->logarithm;
+    Blake(&p, blake);
   }
   if (near) {
-    Half(m, direction, &p, i, j, e, f, part);
+    Half(m, wall, i, j, p.x, part);
     for (int q = 0; q < IMAGE_PARTS; q++) part[q] = blake[q] + free[q] - part[q];
   } else
     ImageFar(&p, &m->kernel, e->moment, f->moment, part);
-  if (!near && (e->scale < 1 || f->scale < 1)) {
+  if (!near && scaled) {
     const PetscReal scale[IMAGE_PARTS] = {1, e->scale * f->scale, e->scale, f->scale};
     for (int q = 0; q < IMAGE_PARTS; q++) part[q] += (1 - scale[q]) * (free[q] + blake[q] - part[q]);
   }
-  NearImageTurn(direction, side, 1 / m->nu, part, C);
+  Turn(direction, side, 1 / m->nu, part, C);
 }
 
 void NearImageAdd(NearImage m, const PetscBool without[2][2], PetscInt i, PetscInt j, const PetscReal d[2],
                   const PetscReal L[4], PetscReal C[4]) {
-  for (int direction = 0; direction < 2; direction++)
-    for (int side = 0; side < 2; side++)
-      if (m->end[direction][side] && !(without && without[direction][side])) AddWall(m, direction, side, i, j, d, L, C);
+  for (int wall = 0; wall < 4; wall++)
+    if (m->end[wall / 2][wall % 2] && !(without && without[wall / 2][wall % 2])) AddWall(m, wall, i, j, d, L, C);
 }
 
 void NearImageAddBlake(NearImage m, PetscInt i, PetscInt j, const PetscReal d[2], PetscReal alpha, PetscReal C[4]) {
@@ -86,11 +88,20 @@ void NearImageAddBlake(NearImage m, PetscInt i, PetscInt j, const PetscReal d[2]
       const PetscReal *y = m->y[direction][side];
       PetscReal blake[IMAGE_PARTS];
       if (!y) continue;
-      NearImageBlake(&(ImagePair){d[1 - direction] / h, y[i], y[j]}, blake);
+      Blake(&(ImagePair){d[1 - direction] / h, y[i], y[j]}, blake);
       blake[IMAGE_TT] += m->logarithm;
       blake[IMAGE_NN] += m->logarithm;
-      NearImageTurn(direction, side, alpha / m->nu, blake, C);
+      Turn(direction, side, alpha / m->nu, blake, C);
     }
+}
+
+NearBounds NearBoundsOf(PetscInt n, const PetscReal X[]) {
+  NearBounds b = {{PETSC_MAX_REAL, PETSC_MAX_REAL}, {PETSC_MIN_REAL, PETSC_MIN_REAL}};
+  for (PetscInt k = 0; k < 2 * n; k++) {
+    b.low[k % 2] = PetscMin(b.low[k % 2], X[k]);
+    b.high[k % 2] = PetscMax(b.high[k % 2], X[k]);
+  }
+  return b;
 }
 
 PetscReal NearImageGap(Grid g, int direction, int side, const NearBounds *a, const NearBounds *b) {
@@ -114,36 +125,32 @@ PetscBool NearImageIsFar(NearImage m, const PetscReal X[2], const NearBounds *bo
   return all;
 }
 
-/* One wall's part, added; d along the wall. */
-static void AddFarWall(NearImage m, int direction, int side, PetscInt i, PetscInt j, PetscInt n, PetscBool back,
-                       const PetscReal d[], PetscReal *const C[4]) {
-  const PetscReal cell = 1 / m->markers->grid->h, over = 1 / m->nu, *y = m->y[direction][side];
-  const PetscReal alpha[2] = {over, side ? -over : over};
-  const int place[IMAGE_PARTS] = {1 - direction, direction, direction ? 3 : 2, direction ? 2 : 3};
-  const Lanes own = y[i] + (Lanes){0};
-  for (PetscInt k = 0; k < n; k += LANES) {
-    const Lanes x = cell * LanesAt(d + k), other = LanesAt(y + j + k);
-    Lanes part[IMAGE_PARTS];
-    ImageFarFour(&m->kernel, x, back ? other : own, back ? own : other, part);
-    for (int q = 0; q < IMAGE_PARTS; q++)
-      LanesPut(LanesAt(C[place[q]] + k) + alpha[q >= IMAGE_NT] * part[q], C[place[q]] + k);
+void NearImageAddFar(NearImage m, const PetscBool walls[2][2], const NearImageRow *r) {
+  const PetscReal cell = 1 / m->markers->grid->h, over = 1 / m->nu;
+  for (int wall = 0; wall < 4; wall++) {
+    const int direction = wall / 2;
+    const PetscReal *y = m->y[direction][wall % 2], alpha[2] = {over, wall % 2 ? -over : over};
+    if (!walls[direction][wall % 2]) continue;
+    const Lanes own = y[r->i] + (Lanes){0};
+    for (PetscInt k = 0; k < r->n; k += LANES) {
+      const Lanes x = cell * LanesAt(r->d[1 - direction] + k), other = LanesAt(y + r->j + k);
+      Lanes part[IMAGE_PARTS];
+      ImageFarFour(&m->kernel, x, r->back ? other : own, r->back ? own : other, part);
+      for (int q = 0; q < IMAGE_PARTS; q++) {
+        PetscReal *C = r->C[image_place[direction][q]] + k;
+        LanesPut(LanesAt(C) + alpha[q >= IMAGE_NT] * part[q], C);
+      }
+    }
   }
 }
 
-void NearImageAddFar(NearImage m, const PetscBool walls[2][2], const PetscBool far[2][2], PetscInt i, PetscInt j,
-                     PetscInt n, PetscBool back, const PetscReal x[], const PetscReal y[], PetscReal *const C[4]) {
-  for (int wall = 0; wall < 4; wall++)
-    if (walls[wall / 2][wall % 2] && far[wall / 2][wall % 2])
-      AddFarWall(m, wall / 2, wall % 2, i, j, n, back, wall / 2 ? x : y, C);
-}
-
 void NearImageFar(const void *image, PetscInt n, const PetscReal X[], const PetscReal Y[2], PetscReal V[]) {
+  static const int part_of[4] = {0, 3, 1, 2}; /* xx, yy, xy, yx among [response][source] */
   const struct _p_NearImage *m = image;
   const Grid g = m->markers->grid;
   (void)PetscArrayzero(V, 4 * n);
   for (int wall = 0; wall < 4; wall++) {
     const int direction = wall / 2, side = wall % 2, t = 1 - direction;
-    const int place[IMAGE_PARTS] = {t * 3, direction * 3, direction ? 2 : 1, direction ? 1 : 2}; /* response, source */
     if (!g->wall[direction]) continue;
     for (PetscInt k = 0; k < n; k += LANES) {
       const Lanes b = NearImageOff(g, direction, side, Y) + (Lanes){0};
@@ -156,7 +163,7 @@ void NearImageFar(const void *image, PetscInt n, const PetscReal X[], const Pets
       ImageFarFour(&m->kernel, x, a, b, part);
       for (int q = 0; q < IMAGE_PARTS; q++)
         for (PetscInt l = 0; l < LANES && k + l < n; l++)
-          V[place[q] * n + k + l] += (side && q >= IMAGE_NT ? -1 : 1) / m->nu * part[q][l];
+          V[part_of[image_place[direction][q]] * n + k + l] += (side && q >= IMAGE_NT ? -1 : 1) / m->nu * part[q][l];
     }
   }
 }
@@ -207,21 +214,21 @@ PetscErrorCode NearImagePlace(NearImage m, const PaddedStencil stencil[]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode NearImageCreate(Markers markers, PetscReal nu, PetscReal unit, const ImageTable *table, NearImage *out) {
-  const PetscInt M = markers->layout->M;
+PetscErrorCode NearImageCreate(const LayerSetting *set, const ImageTable *table, NearImage *out) {
+  const Grid g = set->markers->grid;
+  const PetscInt M = set->markers->layout->M;
   NearImage m;
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&m));
   *out = m;
-  m->markers = markers;
-  m->nu = nu;
-  m->logarithm = NearLogarithm(markers, unit);
+  m->markers = set->markers;
+  m->nu = set->nu;
+  m->logarithm = PetscLogReal(g->h / set->unit) / (4 * PETSC_PI);
   m->table = table;
-  ImageKernelMake(markers->kernel, &m->kernel);
-  if (!markers->grid->wall[0] && !markers->grid->wall[1]) PetscFunctionReturn(PETSC_SUCCESS);
-  for (int direction = 0; direction < 2; direction++)
-    for (int side = 0; side < 2 && markers->grid->wall[direction]; side++)
-      PetscCall(PetscCalloc2(M, &m->end[direction][side], M + LANES, &m->y[direction][side]));
+  ImageKernelMake(set->markers->kernel, &m->kernel);
+  for (int wall = 0; wall < 4; wall++)
+    if (g->wall[wall / 2])
+      PetscCall(PetscCalloc2(M, &m->end[wall / 2][wall % 2], M + LANES, &m->y[wall / 2][wall % 2]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

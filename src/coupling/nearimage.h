@@ -1,10 +1,17 @@
-/* What a wall of the grid adds to the near field's C = S - L of a pair of markers: Blake's image of the Stokeslet in
-   the wall less the image that kernel and lattice make of it (docs/nearfield.md, Walls). One term for each wall and
-   pair; two walls' terms are added, so that images of images, and what a corner's walls do to one another, stay the
-   grid's. */
+/* What a wall of the grid adds to C = S - L of a pair of markers in the single layer: Blake's image of the Stokeslet in
+   the wall less the image that regularised delta function and lattice make of it (docs/nearfield.md, Walls),
+
+       C_wall = Blake(x, a, b) - L_half(x, a, b) + L(x, a - b),
+
+   x the distance of the two along the wall, a and b their distances from it, L_half the mobility of the lattice in a
+   half space. L_half is summed over stencils, which are folded at the wall, where marker and image are near one
+   another; else the difference has a closed form (imagefar.h). There is one term for each wall and pair; those of two
+   walls are added, so that images of images, and what a corner's walls do to one another, stay the grid's. Nothing
+   crosses ranks. */
 #pragma once
 #include "coupling/imagefar.h"
 #include "coupling/imagetable.h"
+#include "coupling/layersetting.h"
 #include "markers/fold.h"
 
 typedef struct {
@@ -15,16 +22,22 @@ typedef struct {
   PetscReal weight[2][KERNEL_MAX_POINTS];
 } ImageEnd;
 
-/* A vesicle's least and largest x and y. */
+/* Where a wall's parts go, seen from a wall whose normal is in this direction, among xx, yy, xy (x to a force along y),
+   yx. At the upper end of a direction the parts from normal to tangential and back change their sign. */
+static const int image_place[2][IMAGE_PARTS] = {{1, 0, 2, 3}, {0, 1, 3, 2}};
+
+/* Least and largest x and y of some markers. NearBoundsOf - of n at X[2n]. Not collective. */
 typedef struct {
   PetscReal low[2], high[2];
 } NearBounds;
+PETSC_EXTERN NearBounds NearBoundsOf(PetscInt n, const PetscReal X[]);
 
 typedef struct _p_NearImage *NearImage;
 struct _p_NearImage {
   Markers markers; /* borrowed */
   PetscReal nu;
-  PetscReal logarithm; /* NearLogarithm */
+  PetscReal logarithm; /* ln(h/unit)/(4 pi): what a Stokeslet whose unit of length is `unit`, the h of the run's grid,
+                          has less than one in cells of this grid; no number depends on the unit of lengths */
   ImageKernel kernel;
   const ImageTable *table;      /* borrowed */
   const PaddedStencil *stencil; /* [2M] unfolded, borrowed */
@@ -32,17 +45,9 @@ struct _p_NearImage {
   PetscReal *y[2][2];           /* [M] cells from the wall, in whole vectors (LANES), of which the rest is zero */
 };
 
-/* NearLogarithm - what a Stokeslet whose logarithm is that of a length over `unit` has less than one with the length in
-   cells of the markers' grid, times nu. The unit is the h of the run's grid, also on the coarser ones of a box part, so
-   that no number depends on what lengths are measured in. */
-static inline PetscReal NearLogarithm(Markers markers, PetscReal unit) {
-  return PetscLogReal(markers->grid->h / unit) / (4 * PETSC_PI);
-}
-
-/* NearImageCreate - for markers on a grid with any walls, in a fluid of viscosity nu, with this unit (NearLogarithm);
-   table: the half-space lattice's, kept by the caller, NULL without walls. Collective. */
-PETSC_EXTERN PetscErrorCode NearImageCreate(Markers markers, PetscReal nu, PetscReal unit, const ImageTable *table,
-                                            NearImage *image);
+/* NearImageCreate - for markers on a grid with any walls; table: the half-space lattice's, kept by the caller, NULL
+   without walls. Collective. */
+PETSC_EXTERN PetscErrorCode NearImageCreate(const LayerSetting *set, const ImageTable *table, NearImage *image);
 PETSC_EXTERN PetscErrorCode NearImageDestroy(NearImage *image);
 
 /* NearImagePlace - where the markers have been placed, whose unfolded stencils are stencil[2M] (kept by the caller).
@@ -77,21 +82,25 @@ static inline PetscBool NearImageIsNear(const ImagePair *p) {
 PETSC_EXTERN PetscReal NearImageGap(Grid grid, int direction, int side, const NearBounds *one, const NearBounds *other);
 
 /* NearImageIsFar - by which walls a marker at X and all in a box are off them, and so far from one another's images
-   that no stencils are summed: far[direction][side], or NULL; returns whether by all. NearImageAddFar - the same as
-   NearImageAdd for such a marker i and the n markers from j on, d = (x, y)[n] (and C with room for whole vectors), by
-   the walls that are far and among `walls`: C[4][n] of i's response to them, or, with back, of theirs to it, d turned.
-   Not collective. */
+   that no stencils are summed: far[direction][side], or NULL; returns whether by all. Not collective. */
 PETSC_EXTERN PetscBool NearImageIsFar(NearImage image, const PetscReal X[2], const NearBounds *box,
                                       PetscBool far[2][2]);
-PETSC_EXTERN void NearImageAddFar(NearImage image, const PetscBool walls[2][2], const PetscBool far[2][2], PetscInt i,
-                                  PetscInt j, PetscInt n, PetscBool back, const PetscReal x[], const PetscReal y[],
-                                  PetscReal *const C[4]);
 
-/* NearImageFar - BoxImages of the single layer, image: a NearImage. Not collective. */
+/* NearImageAddFar - add the parts of these walls, from which all markers are far, to C: of marker i's response to the n
+   markers from j on or, with back, of theirs to it. d[2][n], C[4][n] as in NearImageAdd; arrays with room for whole
+   vectors, d turned with back. Not collective. */
+typedef struct {
+  PetscInt i, j, n;
+  PetscBool back;
+  const PetscReal *d[2];
+  PetscReal *C[4];
+} NearImageRow;
+PETSC_EXTERN void NearImageAddFar(NearImage image, const PetscBool walls[2][2], const NearImageRow *row);
+
+/* NearImageFar - BoxImages (boxregion.h) of the single layer, image: a NearImage. Not collective. */
 PETSC_EXTERN void NearImageFar(const void *image, PetscInt n, const PetscReal X[], const PetscReal Y[2], PetscReal V[]);
 
-/* NearImageBlake - Blake's image part of the Stokeslet in a wall, cells, viscosity 1. NearImageTurn - C += alpha times
-   a pair's parts, turned from the wall with this normal and side to x and y. Not collective. */
-PETSC_EXTERN void NearImageBlake(const ImagePair *pair, PetscReal image[IMAGE_PARTS]);
-PETSC_EXTERN void NearImageTurn(int direction, int side, PetscReal alpha, const PetscReal part[IMAGE_PARTS],
-                                PetscReal C[4]);
+/* NearImageBlake - Blake's image of the Stokeslet in a wall, less the Stokeslet, of four pairs in cells and of
+   viscosity
+   1. Not collective. */
+PETSC_EXTERN void NearImageBlake(Lanes x, Lanes a, Lanes b, Lanes image[IMAGE_PARTS]);

@@ -1,25 +1,15 @@
 #include "coupling/nearpairs.h"
-#include "coupling/nearblock.h"
-#include "coupling/nearclose.h"
 #include "curve/crossing.h"
 
-static void FindBounds(NearField f) {
-  const Layout l = f->bodies->layout;
-  for (PetscInt v = 0; v < l->bodies; v++) {
-    NearBounds *b = &f->bounds[v];
-    *b = (NearBounds){{PETSC_MAX_REAL, PETSC_MAX_REAL}, {PETSC_MIN_REAL, PETSC_MIN_REAL}};
-    for (PetscInt k = l->start[v]; k < l->start[v + 1]; k++)
-      for (int d = 0; d < 2; d++) {
-        b->low[d] = PetscMin(b->low[d], f->markers->X[2 * k + d]);
-        b->high[d] = PetscMax(b->high[d], f->markers->X[2 * k + d]);
-      }
-  }
-}
+#define MANY 16  /* vesicles: with more of them, */
+#define SINGLE 4 /* cells between two from which on their block is in single precision */
 
 /* Two vesicles far apart do not feel the grid in one another, as their forces add up to zero; those of obstacles do
  * not. */
-static PetscReal Reach(NearField f, PetscInt v, PetscInt w) {
-  return f->free || PetscMax(v, w) >= f->bodies->vesicles ? PETSC_MAX_REAL : NEAR_REACH * f->markers->grid->h;
+static PetscReal Reach(NearList *f, PetscInt v, PetscInt w) {
+  return f->pairs->set->markers->grid->free || PetscMax(v, w) >= f->pairs->set->bodies->vesicles
+             ? PETSC_MAX_REAL
+             : NEAR_REACH * f->pairs->set->markers->grid->h;
 }
 
 /* Whether b moved by shift comes as near as `reach` to a. */
@@ -44,16 +34,19 @@ static PetscErrorCode Grow(PetscInt count, size_t size, PetscInt *room, void **a
 
 /* The block of own vesicle v and the image of w moved by shift, with room for its values. With many
    vesicles values that are far from large are in single precision. */
-static PetscErrorCode AddBlock(NearField f, PetscInt v, PetscInt w, const PetscReal shift[2], PetscReal gap) {
-  const Layout l = f->bodies->layout;
-  const PetscBool many = l->bodies > NEAR_MANY ? PETSC_TRUE : PETSC_FALSE;
-  const PetscBool single = many && !f->free && gap >= NEAR_SINGLE * f->markers->grid->h ? PETSC_TRUE : PETSC_FALSE;
-  size_t *values = single ? &f->store.singles : &f->store.values;
+static PetscErrorCode AddBlock(NearList *f, PetscInt v, PetscInt w, const PetscReal shift[2], PetscReal gap) {
+  const Layout l = f->pairs->set->bodies->layout;
+  const PetscBool many = l->bodies > MANY ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool single = many && !f->pairs->set->markers->grid->free &&
+                                   gap >= SINGLE * f->pairs->set->markers->grid->h
+                               ? PETSC_TRUE
+                               : PETSC_FALSE;
+  size_t *values = single ? &f->count.singles : &f->count.values;
   NearBlock *b;
   NearRow r;
   PetscFunctionBeginUser;
-  PetscCall(Grow(f->blocks, sizeof(NearBlock), &f->block_room, (void **)&f->block));
-  b = &f->block[f->blocks++];
+  PetscCall(Grow(f->count.blocks, sizeof(NearBlock), &f->block_room, (void **)&f->block));
+  b = &f->block[f->count.blocks++];
   *b = (NearBlock){.row = v, .column = w, .shift = {shift[0], shift[1]}, .single = single, .at = *values};
   r = NearBlockBegin(l, b);
   while (NearBlockNext(l, b, &r)) continue;
@@ -61,23 +54,15 @@ static PetscErrorCode AddBlock(NearField f, PetscInt v, PetscInt w, const PetscR
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Note that the last block has an image of these shift and gap. */
-static PetscErrorCode AddClose(NearField f, const PetscReal shift[2], PetscReal gap) {
-  PetscFunctionBeginUser;
-  PetscCall(Grow(f->closes, sizeof(NearClose), &f->close_room, (void **)&f->close));
-  f->close[f->closes++] = (NearClose){.block = f->blocks - 1, .shift = {shift[0], shift[1]}, .gap = gap};
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Least distance (length) between markers of v and of w moved by shift, where it is below reach. */
-static PetscReal Apart(NearField f, PetscInt v, PetscInt w, const PetscReal shift[2], PetscReal reach) {
-  const Layout l = f->bodies->layout;
-  const PetscReal *X = f->markers->X, none[2] = {0, 0};
-  PetscReal least = f->free ? reach : reach * reach;
+static PetscReal Apart(NearList *f, PetscInt v, PetscInt w, const PetscReal shift[2], PetscReal reach) {
+  const Layout l = f->pairs->set->bodies->layout;
+  const PetscReal *X = f->pairs->set->markers->X, none[2] = {0, 0};
+  PetscReal least = f->pairs->set->markers->grid->free ? reach : reach * reach;
   for (PetscInt i = l->start[v]; i < l->start[v + 1]; i++) {
     const PetscReal x = X[2 * i] - shift[0], y = X[2 * i + 1] - shift[1];
     const NearBounds at = {{x, y}, {x, y}};
-    if (!Meet(&at, &f->bounds[w], none, reach)) continue;
+    if (!Meet(&at, &f->pairs->bounds[w], none, reach)) continue;
     for (PetscInt j = l->start[w]; j < l->start[w + 1]; j++) {
       const PetscReal dx = x - X[2 * j], dy = y - X[2 * j + 1];
       least = PetscMin(least, dx * dx + dy * dy);
@@ -94,16 +79,16 @@ typedef struct {
 #define MOST_IMAGES 9
 
 /* Whether the image of a spanning curve p, q periods away goes on where the curve ends. */
-static PetscBool Continues(NearField f, PetscInt v, PetscInt p, PetscInt q) {
-  const CurveKind *kind = &f->bodies->kind[v];
+static PetscBool Continues(NearList *f, PetscInt v, PetscInt p, PetscInt q) {
+  const CurveKind *kind = &f->pairs->set->bodies->kind[v];
   if (kind->type != CURVE_SPANNING) return PETSC_FALSE;
   return (kind->span[0] != 0 ? q == 0 : p == 0) ? PETSC_TRUE : PETSC_FALSE;
 }
 
 /* The images of w near v, the nearest first; of v's own without a box part one of each two that are opposite. */
-static PetscErrorCode Images(NearField f, PetscInt v, PetscInt w, Image image[MOST_IMAGES], int *count) {
-  const Grid g = f->markers->grid;
-  const NearBounds *a = &f->bounds[v], *b = &f->bounds[w];
+static PetscErrorCode Images(NearList *f, PetscInt v, PetscInt w, Image image[MOST_IMAGES], int *count) {
+  const Grid g = f->pairs->set->markers->grid;
+  const NearBounds *a = &f->pairs->bounds[v], *b = &f->pairs->bounds[w];
   const PetscReal reach = Reach(f, v, w);
   PetscInt around[2];
   PetscReal middle[2], period[2];
@@ -118,11 +103,11 @@ static PetscErrorCode Images(NearField f, PetscInt v, PetscInt w, Image image[MO
     for (PetscInt p = -around[0]; p <= around[0]; p++) {
       Image one = {.shift = {(middle[0] + p) * period[0], (middle[1] + q) * period[1]}};
       if (v == w && Continues(f, v, p, q)) continue;
-      if (v == w && ((!p && !q) || (!f->box && (q < 0 || (q == 0 && p < 0))))) continue;
+      if (v == w && ((!p && !q) || (!f->pairs->set->box && (q < 0 || (q == 0 && p < 0))))) continue;
       if (!Meet(a, b, one.shift, reach)) continue;
       one.gap = Apart(f, v, w, one.shift, reach);
-      if (!f->free && one.gap >= reach) continue;
-      PetscCall(NearCloseGap(f, v, w, one.shift, &one.gap, &one.close));
+      if (!f->pairs->set->markers->grid->free && one.gap >= reach) continue;
+      PetscCall(FinePairGap(f->pairs->set, v, w, one.shift, &one.gap, &one.close));
       image[*count] = one;
       if (one.gap < image[0].gap) {
         image[*count] = image[0];
@@ -135,36 +120,40 @@ static PetscErrorCode Images(NearField f, PetscInt v, PetscInt w, Image image[MO
 
 /* Whether what w does to v is smooth along both: obstacles that rest, as far from one another as the larger one is
    wide, and off walls. */
-static PetscBool AreDistant(NearField f, PetscInt v, PetscInt w, PetscReal gap) {
-  const Bodies m = f->bodies;
+static PetscBool AreDistant(NearList *f, PetscInt v, PetscInt w, PetscReal gap) {
+  const Bodies m = f->pairs->set->bodies;
   const PetscInt body[2] = {v, w};
-  PetscReal least = f->far[NEAR_TWO].reach * f->markers->grid->h;
-  if (v == w || !f->box || !m->resting[v] || !m->resting[w]) return PETSC_FALSE;
+  PetscReal least = f->pairs->far[NEAR_TWO].reach * f->pairs->set->markers->grid->h;
+  if (v == w || !f->pairs->set->box || !m->resting[v] || !m->resting[w]) return PETSC_FALSE;
   for (int end = 0; end < 2; end++) {
     const PetscInt one = body[end];
-    const NearBounds *b = &f->bounds[one];
+    const NearBounds *b = &f->pairs->bounds[one];
     if (m->kind[one].type != CURVE_CLOSED) return PETSC_FALSE;
     least = PetscMax(least, PetscHypotReal(b->high[0] - b->low[0], b->high[1] - b->low[1]));
     for (PetscInt k = m->layout->start[one]; k < m->layout->start[one + 1]; k++)
-      if (!NearImageIsFar(f->image, f->markers->X + 2 * k, &f->bounds[body[1 - end]], NULL)) return PETSC_FALSE;
+      if (!NearImageIsFar(f->pairs->image, f->pairs->set->markers->X + 2 * k, &f->pairs->bounds[body[1 - end]], NULL))
+        return PETSC_FALSE;
   }
   return gap >= least ? PETSC_TRUE : PETSC_FALSE;
 }
 
 /* A block for each image of w; with a box part one, of the images nearest to each marker, named after the nearest, in
    which all close images are refined; v's own are in its block with itself. */
-static PetscErrorCode AddImages(NearField f, PetscInt v, PetscInt w) {
+static PetscErrorCode AddImages(NearList *f, PetscInt v, PetscInt w) {
   Image image[MOST_IMAGES];
   PetscBool distant = PETSC_FALSE;
   int count;
   PetscFunctionBeginUser;
   PetscCall(Images(f, v, w, image, &count));
   if (count && AreDistant(f, v, w, image[0].gap))
-    PetscCall(NearDistantAdd(f->fixed.distant, f->markers->X, v, w, image[0].shift, &distant));
+    PetscCall(NearDistantAdd(f->distant, f->pairs->set->markers->X, v, w, image[0].shift, &distant));
   if (distant) PetscFunctionReturn(PETSC_SUCCESS);
   for (int k = 0; k < count; k++) {
-    if (!f->box || (!k && v != w)) PetscCall(AddBlock(f, v, w, image[k].shift, image[k].gap));
-    if (image[k].close) PetscCall(AddClose(f, image[k].shift, image[k].gap));
+    if (!f->pairs->set->box || (!k && v != w)) PetscCall(AddBlock(f, v, w, image[k].shift, image[k].gap));
+    if (!image[k].close) continue;
+    PetscCall(Grow(f->count.closes, sizeof(NearClose), &f->close_room, (void **)&f->close));
+    f->close[f->count.closes++] = (NearClose){f->count.blocks - 1,
+                                              FinePairMake(f->pairs->set, v, w, image[k].shift, image[k].gap)};
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -191,8 +180,8 @@ static PetscBool Keep(void *context, PetscInt v, PetscInt w, const PetscReal d[2
   return PETSC_FALSE;
 }
 
-static PetscErrorCode FindCandidates(NearField f, Candidates *c) {
-  const Grid g = f->markers->grid;
+static PetscErrorCode FindCandidates(NearList *f, Candidates *c) {
+  const Grid g = f->pairs->set->markers->grid;
   const PetscInt bodies = c->layout->bodies;
   const PetscReal reach = Reach(f, 0, bodies - 1);
   PetscReal *middle, period[2], widest = 0;
@@ -200,7 +189,7 @@ static PetscErrorCode FindCandidates(NearField f, Candidates *c) {
   PetscCall(PetscMalloc1(2 * bodies, &middle));
   for (int d = 0; d < 2; d++) period[d] = g->wall[d] ? 0 : g->hi[d] - g->lo[d];
   for (PetscInt v = 0; v < bodies; v++) {
-    const NearBounds *b = &f->bounds[v];
+    const NearBounds *b = &f->pairs->bounds[v];
     for (int d = 0; d < 2; d++) middle[2 * v + d] = 0.5 * (b->low[d] + b->high[d]);
     widest = PetscMax(widest, PetscHypotReal(b->high[0] - b->low[0], b->high[1] - b->low[1]));
   }
@@ -217,10 +206,10 @@ static int ByRow(const void *a, const void *b) {
 }
 
 /* The fixed blocks, or the others, behind those there are. */
-static PetscErrorCode AddBlocks(NearField f, PetscBool fixed) {
-  const Layout l = f->bodies->layout;
+static PetscErrorCode AddBlocks(NearList *f, PetscBool fixed) {
+  const Layout l = f->pairs->set->bodies->layout;
   const PetscReal none[2] = {0, 0};
-  Candidates c = {.layout = l, .resting = f->bodies->resting, .fixed = fixed};
+  Candidates c = {.layout = l, .resting = f->pairs->set->bodies->resting, .fixed = fixed};
   PetscInt k = 0;
   PetscFunctionBeginUser;
   PetscCall(FindCandidates(f, &c));
@@ -236,18 +225,29 @@ static PetscErrorCode AddBlocks(NearField f, PetscBool fixed) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode NearPairsFind(NearField f, PetscInt *first) {
-  NearFixed *fixed = &f->fixed;
+PetscErrorCode NearListCreate(SinglePairs pairs, NearList *f) {
   PetscFunctionBeginUser;
-  FindBounds(f);
-  f->blocks = fixed->blocks;
-  f->closes = fixed->closes;
-  f->store.values = fixed->values;
-  f->store.singles = fixed->singles;
-  *first = fixed->blocks;
-  if (!fixed->made) {
+  *f = (NearList){.pairs = pairs};
+  PetscCall(NearDistantCreate(pairs->set->bodies->layout, &f->distant));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode NearListDestroy(NearList *f) {
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(f->block));
+  PetscCall(PetscFree(f->close));
+  PetscCall(NearDistantDestroy(&f->distant));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode NearListFind(NearList *f, PetscInt *first) {
+  PetscFunctionBeginUser;
+  f->count = f->fixed;
+  *first = f->fixed.blocks;
+  if (!f->made) {
     PetscCall(AddBlocks(f, PETSC_TRUE));
-    *fixed = (NearFixed){f->blocks, f->closes, f->store.values, f->store.singles, f->fixed.distant, PETSC_TRUE};
+    f->fixed = f->count;
+    f->made = PETSC_TRUE;
   }
   PetscCall(AddBlocks(f, PETSC_FALSE));
   PetscFunctionReturn(PETSC_SUCCESS);

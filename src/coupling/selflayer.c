@@ -1,11 +1,12 @@
 #include "coupling/selflayer.h"
 
-/* What stands for ln(r^2) by index difference, less ln(4 sin^2(t/2)): Kress' weights of that. */
-static PetscReal Logarithm(PetscInt n, PetscInt d) {
-  PetscReal k = 0;
-  for (PetscInt m = 1; m <= (n - 1) / 2; m++) k -= 2 * PetscCosReal(2 * PETSC_PI * ((m * d) % n) / n) / m;
-  if (n % 2 == 0) k -= (d % 2 ? -2.0 : 2.0) / n;
-  return d ? k - PetscLogReal(4 * PetscSqr(PetscSinReal(PETSC_PI * d / n))) : k;
+void SelfLogarithm(PetscInt n, PetscReal own[]) {
+  for (PetscInt d = 0; d < n; d++) {
+    own[d] = 0;
+    for (PetscInt m = 1; m <= (n - 1) / 2; m++) own[d] -= 2 * PetscCosReal(2 * PETSC_PI * ((m * d) % n) / n) / m;
+    if (n % 2 == 0) own[d] -= (d % 2 ? -2.0 : 2.0) / n;
+    if (d) own[d] -= PetscLogReal(4 * PetscSqr(PetscSinReal(PETSC_PI * d / n)));
+  }
 }
 
 PetscErrorCode SelfLayer(Spectral spectral, PetscInt n, PetscReal nu, PetscReal unit, const PetscReal X[],
@@ -15,7 +16,7 @@ PetscErrorCode SelfLayer(Spectral spectral, PetscInt n, PetscReal nu, PetscReal 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(n, &own));
   PetscCall(PetscCalloc1(2 * n, &T));
-  for (PetscInt d = 0; d < n; d++) own[d] = Logarithm(n, d);
+  SelfLogarithm(n, own);
   SpectralDerivative(spectral, 1, n / (2 * PETSC_PI), X, T);
   for (PetscInt j = 0; j < n; j++)
     for (PetscInt i = 0; i < n; i++) { /* on the diagonal the derivative takes the place of the difference */

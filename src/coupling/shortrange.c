@@ -97,7 +97,7 @@ static PetscErrorCode Room(ShortRange s, PetscInt more) {
 static PetscErrorCode AddRow(ShortRange s, const NearBlock *b, PetscInt i) {
   const NearField f = s->coupling->near;
   const Layout l = s->coupling->membrane->layout;
-  const NearBounds *column = &f->bounds[b->column];
+  const NearBounds *column = &f->pairs->bounds[b->column];
   const PetscReal *X = s->coupling->markers->X, x[2] = {X[2 * i] - b->shift[0], X[2 * i + 1] - b->shift[1]};
   PetscFunctionBeginUser;
   for (int d = 0; d < 2; d++)
@@ -115,8 +115,8 @@ PetscErrorCode ShortRangePlace(ShortRange s) {
   const Layout l = s->coupling->membrane->layout;
   PetscFunctionBeginUser;
   s->pairs = 0;
-  for (PetscInt b = 0; b < f->blocks; b++) {
-    const NearBlock *block = &f->block[b];
+  for (PetscInt b = 0; b < f->list.count.blocks; b++) {
+    const NearBlock *block = &f->list.block[b];
     if (NearBlockIsSelf(block) || PetscMax(block->row, block->column) >= l->bodies) continue; /* vesicles' only */
     for (PetscInt i = l->start[block->row]; i < l->start[block->row + 1]; i++) PetscCall(AddRow(s, block, i));
   }

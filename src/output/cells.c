@@ -1,7 +1,6 @@
 #include "output/cells.h"
 #include "base/agree.h"
 #include "coupling/doublecells.h"
-#include "coupling/layer.h"
 #include "coupling/nearcells.h"
 
 /* Value of a velocity component on a wall: the background's in the total form, else zero. */
@@ -49,36 +48,20 @@ static PetscErrorCode Component(Scheme s, int c, const PetscScalar w[], PetscRea
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The single layer at all cells of this rank; any of the fields may be NULL. */
-static PetscErrorCode FromLayer(Scheme s, PetscReal u[], PetscReal v[], PetscReal p[]) {
-  const Grid g = s->fluid->grid;
-  Layer layer;
-  PetscFunctionBeginUser;
-  PetscCall(LayerCreate(s->coupling, s->state.sigma, s->state.X, &layer));
-  for (PetscInt v = 0; v < layer->count; v++) PetscCall(LayerUse(layer, v));
-  for (PetscInt j = 0; j < g->rows[FIELD_P]; j++)
-    for (PetscInt i = 0; i < g->n[0]; i++) {
-      const PetscInt k = j * g->n[0] + i;
-      PetscReal X[2], velocity[2], pressure;
-      GridPosition(g, FIELD_P, i, j + g->first, X);
-      LayerEvaluate(layer, X, velocity, &pressure);
-      if (u) u[k] += velocity[0];
-      if (v) v[k] += velocity[1];
-      if (p) p[k] += pressure;
-    }
-  PetscCall(LayerDestroy(&layer));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* What the grid does not have of the membranes' forces and jumps: all of it in unbounded fluid, the near field
    otherwise; then the velocity inside vesicles of another viscosity. Nothing before the first step, whose velocity and
    tension are not known. */
-static PetscErrorCode AddMembranes(Scheme s, PetscReal u[], PetscReal v[], PetscReal p[]) {
+static PetscErrorCode AddMembranes(Scheme s, PetscReal *const field[3]) {
   const State *q = &s->state;
+  const NearField near = s->coupling->near;
+  const DoubleLayer contrast = s->coupling->contrast;
+  Layer layer;
   PetscFunctionBeginUser;
-  if (q->dt_last == 0) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(s->fluid->grid->free ? FromLayer(s, u, v, p) : NearCellsCorrect(s->coupling, q->sigma, q->X, u, v, p));
-  PetscCall(DoubleCellsCorrect(s->coupling, q->U, q->X, u, v, p));
+  if (q->dt_last == 0 || !near) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(CouplingLayer(s->coupling, q->sigma, q->X, &layer));
+  PetscCall(NearCellsCorrect(&near->set, &near->lattice, layer, field));
+  PetscCall(LayerDestroy(&layer));
+  if (contrast) PetscCall(DoubleCellsCorrect(&near->set, contrast->lattice, contrast->ratio, q->U, q->X, field));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -94,6 +77,6 @@ PetscErrorCode CellFields(Scheme s, PetscReal u[], PetscReal v[], PetscReal p[])
   PetscCall(VecGetArrayRead(s->state.p, &a));
   if (p) PetscCall(PetscArraycpy(p, a, g->n[0] * g->rows[FIELD_P]));
   PetscCall(VecRestoreArrayRead(s->state.p, &a));
-  PetscCall(AddMembranes(s, u, v, p));
+  PetscCall(AddMembranes(s, (PetscReal *[]){u, v, p}));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -78,8 +78,8 @@ static PetscErrorCode CompareFar(const OffsetTable lattice[2], PetscReal diamete
       Place(&a, i, response, unused, X[0]);
       Place(&a, j, other, dipole, X[1]);
       const PetscReal d[2] = {X[0][0] - X[1][0], X[0][1] - X[1][1]};
-      DoubleLatticeParts(lattice, 1, 100, response, dipole, none, d, sum);
-      DoubleLatticeParts(lattice, 1, 0, response, dipole, none, d, form);
+      DoubleLatticeParts(lattice, 100, response, dipole, none, d, sum);
+      DoubleLatticeParts(lattice, 0, response, dipole, none, d, form);
       for (int c = 0; c < 2; c++)
         for (int k = 0; k < DIPOLE_COUNT; k++) {
           worst = PetscMax(worst, PetscAbsReal(form[c][k] - sum[c][k]));

@@ -139,6 +139,7 @@ static PetscErrorCode CheckCircle(const char options[], PetscReal a0) {
   const PetscScalar *a;
   TestWorld w;
   Stokes stokes;
+  Layer layer;
   Vec f, u, p, sigma;
   PetscFunctionBeginUser;
   PetscCall(TestWorldCreate(options, &w));
@@ -160,7 +161,10 @@ static PetscErrorCode CheckCircle(const char options[], PetscReal a0) {
   PetscCall(VecRestoreArrayRead(p, &a));
   PetscCall(FaceMeans(g, u, cells[1]));
   speed[0] = Largest(n, cells[1]);
-  PetscCall(NearCellsCorrect(w.coupling, sigma, w.X, cells[1], NULL, cells[0]));
+  PetscCall(CouplingLayer(w.coupling, sigma, w.X, &layer));
+  PetscCall(NearCellsCorrect(&w.coupling->near->set, &w.coupling->near->lattice, layer,
+                             (PetscReal *[]){cells[1], NULL, cells[0]}));
+  PetscCall(LayerDestroy(&layer));
   PetscCall(JumpError(g, center, cells[0], &after));
   speed[1] = Largest(n, cells[1]);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, speed, 2, MPIU_REAL, MPI_MAX, g->comm));

@@ -15,8 +15,8 @@ static PetscReal Stokeslet(int source, int response, PetscReal x, PetscReal y) {
 static void BySums(const OffsetTable *t, const NearField f, PetscInt i, PetscInt j, const PetscReal d[2],
                    PetscReal C[4]) {
   static const PetscInt none[2] = {0, 0};
-  const PetscReal h = f->markers->grid->h, nu = f->nu;
-  const PaddedStencil *a = &f->stencil[2 * i], *b = &f->stencil[2 * j];
+  const PetscReal h = f->set.markers->grid->h, nu = f->set.nu;
+  const PaddedStencil *a = &f->pairs->stencil[2 * i], *b = &f->pairs->stencil[2 * j];
   const PetscReal x = d[0] / h, y = d[1] / h;
   C[0] = (Stokeslet(0, 0, x, y) - StencilPairSum(t, OFFSET_UU, &a[0], &b[0], none)) / nu;
   C[1] = (Stokeslet(1, 1, x, y) - StencilPairSum(t, OFFSET_VV, &a[1], &b[1], none)) / nu;
@@ -45,7 +45,7 @@ static PetscErrorCode CheckClosedForm(const OffsetTable *t, const char kernel[],
       PetscSNPrintf(options, sizeof(options), EXACT PERIODIC "-scheme_type coupled -delta_type %s %s", kernel, scene));
   PetscCall(TestWorldCreate(options, &w));
   const NearField f = w.coupling->near;
-  const PetscReal h = w.fluid->grid->h, *X = w.coupling->markers->X, ring = f->far[NEAR_TWO].reach + 2;
+  const PetscReal h = w.fluid->grid->h, *X = w.coupling->markers->X, ring = f->pairs->far[NEAR_TWO].reach + 2;
   const Layout l = w.layout;
   PetscReal *all;
   PetscCall(PetscCalloc1(4 * l->M * l->M, &all));
@@ -54,13 +54,13 @@ static PetscErrorCode CheckClosedForm(const OffsetTable *t, const char kernel[],
     for (PetscInt j = 0; j < l->M; j++) {
       const PetscReal d[2] = {X[2 * i] - X[2 * j], X[2 * i + 1] - X[2 * j + 1]};
       const PetscReal r = PetscSqrtReal(d[0] * d[0] + d[1] * d[1]) / h;
-      const int is = r > f->far[NEAR_TWO].reach ? 1 : 0;
+      const int is = r > f->pairs->far[NEAR_TWO].reach ? 1 : 0;
       if (LayoutBody(l, i) == LayoutBody(l, j) || (is && PetscAbsReal(r - ring) > 0.5)) continue;
       const PetscReal *at = all + 4 * j * l->M + 2 * i, found[4] = {at[0], at[2 * l->M + 1], at[2 * l->M], at[1]};
       BySums(t, f, i, j, d, C);
       pairs += is;
       for (int c = 0; c < 4; c++)
-        worst[is] = PetscMax(worst[is], PetscAbsReal(found[c] - C[c]) * f->nu * (is ? r * r * r * r : 1));
+        worst[is] = PetscMax(worst[is], PetscAbsReal(found[c] - C[c]) * f->set.nu * (is ? r * r * r * r : 1));
     }
   PetscCall(PetscFree(all));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, worst, 2, MPIU_REAL, MPI_MAX, PETSC_COMM_WORLD));
@@ -93,14 +93,14 @@ static PetscErrorCode CheckWithin(const OffsetTable *t, const char kernel[], con
   for (PetscInt i = 0; i < M && w.layout->n; i++)
     for (PetscInt j = 0; j < M; j++) {
       const PetscReal d[2] = {X[2 * i] - X[2 * j], X[2 * i + 1] - X[2 * j + 1]};
-      const int is = PetscSqrtReal(d[0] * d[0] + d[1] * d[1]) > f->far[NEAR_ONE].reach * h ? 1 : 0;
+      const int is = PetscSqrtReal(d[0] * d[0] + d[1] * d[1]) > f->pairs->far[NEAR_ONE].reach * h ? 1 : 0;
       const PetscReal *at = all + 4 * j * M + 2 * i, found[4] = {at[0], at[2 * M + 1], at[2 * M], at[1]};
       if (i == j) continue;
       BySums(t, f, i, j, d, C);
       pairs += is;
       for (int c = 0; c < 4; c++) {
-        const PetscReal own = c < 2 ? f->kress[0][PetscAbsInt(i - j)] / (4 * PETSC_PI) : 0;
-        worst[is] = PetscMax(worst[is], PetscAbsReal(f->nu * (found[c] - C[c]) - own));
+        const PetscReal own = c < 2 ? -0.5 * f->pairs->logarithm[0][PetscAbsInt(i - j)] / (4 * PETSC_PI) : 0;
+        worst[is] = PetscMax(worst[is], PetscAbsReal(f->set.nu * (found[c] - C[c]) - own));
       }
     }
   PetscCall(PetscFree(all));
@@ -108,7 +108,7 @@ static PetscErrorCode CheckWithin(const OffsetTable *t, const char kernel[], con
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &pairs, 1, MPIU_INT, MPI_SUM, PETSC_COMM_WORLD));
   CHECK(worst[0] < 1e-12 && worst[1] < bound && pairs > 4000,
         "%s, one vesicle, %s: closed form of %d pairs beyond %g h within %.2e/nu, bound %g; nearer ones to %.1e",
-        kernel, place, (int)pairs, f->far[NEAR_ONE].reach, worst[1], bound, worst[0]);
+        kernel, place, (int)pairs, f->pairs->far[NEAR_ONE].reach, worst[1], bound, worst[0]);
   PetscCall(TestWorldDestroy(&w));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

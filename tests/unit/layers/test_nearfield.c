@@ -204,7 +204,7 @@ static PetscErrorCode CheckSymmetry(const char name[], const char scene[], const
   const PetscInt N = 2 * w.layout->M;
   PetscCall(PetscMalloc2(N * N, &C, N * N, &same));
   PetscCall(WholeMatrix(&w, C));
-  blocks = w.coupling->near->blocks;
+  blocks = w.coupling->near->list.count.blocks;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &blocks, 1, MPIU_INT, MPI_SUM, PETSC_COMM_WORLD));
   Asymmetry(w.layout, C, worst);
   CHECK(worst[0] < 1e-14 && worst[1] < 1e-13, "%s, %s: C of %d blocks symmetric to %.1e, %.1e between vesicles", name,

@@ -200,13 +200,14 @@ static PetscErrorCode CheckImages(PetscReal R, PetscReal bound) {
   for (int q = 0; q < 60; q++) { /* angles, places between wall and wall, places in a cell */
     const PetscReal turn = 0.9 * (q % 12) / 12, H = R * PetscCosReal(turn), part = (q % 5 + 0.5) / 5;
     const ImagePair p = {R * PetscSinReal(turn), 3 + part * (H - 6), H - 3 - part * (H - 6)};
-    PetscReal blake[IMAGE_PARTS], left[IMAGE_PARTS];
-    NearImageBlake(&p, blake);
+    PetscReal left[IMAGE_PARTS];
+    Lanes blake[IMAGE_PARTS];
+    NearImageBlake(p.x + (Lanes){0}, p.a + (Lanes){0}, p.b + (Lanes){0}, blake);
     ImageFar(&p, &kernel, kernel.moment[1].second, kernel.moment[1].second, left);
     for (int k = 0; k < IMAGE_NT + 1; k++) {
       const int r = k != IMAGE_TT, s = k == IMAGE_NN;
       const PetscReal image = ImageOfTables(half, &free, r, s, &p, 0.37 * q);
-      most[k] = PetscMax(most[k], PetscAbsReal(blake[k] - image - left[k]));
+      most[k] = PetscMax(most[k], PetscAbsReal(blake[k][0] - image - left[k]));
     }
     const ImagePair turned = {-p.x, p.b, p.a}; /* t from n is n from t, exchanged */
     PetscReal other[IMAGE_PARTS];

@@ -90,7 +90,7 @@ static PetscErrorCode CheckImages(const char name[], const char options[]) {
   PetscCall(DoubleLayerAddBoxPart(s, &w.scene->fluid, PETSC_TRUE, PETSC_FALSE));
   PetscCall(PetscCalloc4(n, &y[0], n, &y[1], n, &D, n, &U));
   for (PetscInt k = 0; k < n; k++) {
-    const PetscReal *X = s->near->markers->X + 2 * (w.layout->first + k / 2);
+    const PetscReal *X = s->near->set.markers->X + 2 * (w.layout->first + k / 2);
     U[k] = k % 2 ? X[0] - 3.4 : 3 * (X[1] - 4.3);
   }
   for (int images = 1; images >= 0; images--) {
