@@ -150,8 +150,10 @@ static PetscBool IsSquare(const BoxAxis axis[2]) {
 
 /* W of the pair and of its mirror images between walls: a mirrored velocity or force changes its sign, of a tensor xy.
    In a square also of that with x and y exchanged, of forces. */
-static void AddEntry(const BoxAxis axis[2], PetscBool dipoles, int ci, int cj, const PetscInt a[2], const PetscInt s[2],
-                     PetscReal value, PetscReal W[]) {
+static void AddEntry(const BoxGrid *b, int ci, int cj, const PetscInt a[2], const PetscInt s[2], PetscReal value,
+                     PetscReal W[]) {
+  const BoxAxis *axis = b->axis;
+  const PetscBool dipoles = b->lattice->dipole ? PETSC_TRUE : PETSC_FALSE;
   const int parts = dipoles ? 3 : 2;
   for (int my = 0; my <= (int)axis[1].wall; my++)
     for (int mx = 0; mx <= (int)axis[0].wall; mx++) {
@@ -209,20 +211,18 @@ static PetscErrorCode Respond(BoxGrid *b, PetscInt j, int cj) {
 static PetscErrorCode AddSource(BoxGrid *b, const PetscInt s[2], PetscReal scale, PetscReal W[]) {
   const BoxAxis *x = &b->axis[0], *y = &b->axis[1];
   const PetscInt j = s[1] * x->places + s[0];
-  const PetscBool dipoles = b->lattice->dipole ? PETSC_TRUE : PETSC_FALSE;
   const PetscScalar *U;
   PetscReal(*L)[2][DIPOLE_COUNT];
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(x->places * y->places, &L));
   for (PetscInt i = 0; i < x->places * y->places; i++) Lattice(b, i, j, L[i]);
-  for (int cj = 0; cj < (dipoles ? DIPOLE_COUNT : 2); cj++) {
+  for (int cj = 0; cj < (b->lattice->dipole ? DIPOLE_COUNT : 2); cj++) {
     if (cj == 1 && IsSquare(b->axis)) continue;
     PetscCall(Respond(b, j, cj));
     PetscCall(VecGetArrayRead(b->U, &U));
     for (PetscInt i = 0; i < x->places * y->places; i++) {
       const PetscInt a[2] = {i % x->places, i / x->places};
-      for (int ci = 0; ci < 2; ci++)
-        AddEntry(b->axis, dipoles, ci, cj, a, s, scale * (U[2 * i + ci] - L[i][ci][cj]), W);
+      for (int ci = 0; ci < 2; ci++) AddEntry(b, ci, cj, a, s, scale * (U[2 * i + ci] - L[i][ci][cj]), W);
     }
     PetscCall(VecRestoreArrayRead(b->U, &U));
   }

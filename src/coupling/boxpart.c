@@ -1,4 +1,5 @@
 #include "coupling/boxpart.h"
+#include "base/lanes.h"
 
 PetscErrorCode BoxPartCreate(const FluidSpec *spec, Markers markers, const BoxLattice *lattice, BoxPart *out) {
   BoxPart b;
@@ -113,7 +114,7 @@ PetscErrorCode BoxPartApply(BoxPart b, PetscReal alpha, const PetscScalar F[], P
     for (PetscInt m = 0; m < r; m++) b->amplitude[m] += b->A[k * r + m] * F[k];
   if (l->size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, b->amplitude, (PetscMPIInt)r, MPIU_REAL, MPI_SUM, l->comm));
   for (PetscInt m = 0; m < r; m++) b->amplitude[m] *= alpha * b->at->l[m];
-  for (PetscInt k = 0; k < 2 * l->n; k++) U[k] += BoxSum(r, b->amplitude, b->A + k * r);
+  for (PetscInt k = 0; k < 2 * l->n; k++) U[k] += LanesDot(r, b->amplitude, b->A + k * r);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -268,7 +268,7 @@ static PetscErrorCode OffBy(const BoxRegion *r, const BoxTable *t, PetscReal *of
     for (PetscInt i = 0; i < 2 * CHECKS * CHECKS; i++) {
       const PetscReal D = BoxProduct(rank, r->whole->l, row[i / 2] + i % 2 * rank, source) +
                           V[(i % 2 * parts + j % parts) * points + i / 2];
-      most = PetscMax(most, PetscAbsReal(D - BoxSum(n, column + i % 2 * n, value[i / 2])));
+      most = PetscMax(most, PetscAbsReal(D - LanesDot(n, column + i % 2 * n, value[i / 2])));
       largest = PetscMax(largest, PetscAbsReal(D));
     }
   }

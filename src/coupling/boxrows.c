@@ -45,20 +45,11 @@ void BoxTableRows(const BoxTable *t, const PetscReal X[2], PetscReal part, int f
     }
 }
 
-PetscReal BoxSum(PetscInt r, const PetscReal l[], const PetscReal x[]) {
-  PetscReal sum[4] = {0}, rest = 0;
-  PetscInt m = 0;
-  for (; m + 4 <= r; m += 4)
-    for (int q = 0; q < 4; q++) sum[q] += l[m + q] * x[m + q];
-  for (; m < r; m++) rest += l[m] * x[m];
-  return sum[0] + sum[1] + sum[2] + sum[3] + rest;
-}
-
 PetscReal BoxProduct(PetscInt r, const PetscReal l[], const PetscReal x[], const PetscReal y[]) {
-  PetscReal sum[4] = {0}, rest = 0;
+  Lanes sum = {0};
+  PetscReal rest = 0;
   PetscInt m = 0;
-  for (; m + 4 <= r; m += 4)
-    for (int q = 0; q < 4; q++) sum[q] += l[m + q] * (x[m + q] * y[m + q]);
+  for (; m + LANES <= r; m += LANES) sum += LanesAt(l + m) * (LanesAt(x + m) * LanesAt(y + m));
   for (; m < r; m++) rest += l[m] * (x[m] * y[m]);
-  return sum[0] + sum[1] + sum[2] + sum[3] + rest;
+  return LanesSum(sum) + rest;
 }

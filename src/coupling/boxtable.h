@@ -68,7 +68,5 @@ PETSC_EXTERN void BoxBlockSum(const BoxBlock *block, int first, int components, 
 PETSC_EXTERN void BoxTableRows(const BoxTable *table, const PetscReal X[2], PetscReal part, int first, int count,
                                PetscReal rows[]);
 
-/* BoxSum - SUM l x of n, in four lanes. BoxProduct - SUM l x y, the same
-   bits with x and y exchanged. Not collective. */
-PETSC_EXTERN PetscReal BoxSum(PetscInt n, const PetscReal l[], const PetscReal x[]);
+/* BoxProduct - SUM l x y of n numbers, the same bits with x and y exchanged. Not collective. */
 PETSC_EXTERN PetscReal BoxProduct(PetscInt n, const PetscReal l[], const PetscReal x[], const PetscReal y[]);

@@ -148,25 +148,21 @@ static inline void Sums(const int order, const DipoleImageForms *f, const ImageT
   }
 }
 
-/* An order of it, added to pairs that are within these cells. */
-static inline void AddOrder(const int order, const int cells, const DipoleImageForms *f, Lanes x, Lanes a, Lanes b,
-                            const ImageTerms *t, Lanes K[2][DIPOLE_COUNT]) {
-  const LanesBits within = ImageWithin(cells, x, a, b);
+/* The sums of an order, added to pairs that are so near. */
+static inline void AddOrder(const int order, LanesBits near, const DipoleImageForms *f, const ImageTerms *t,
+                            Lanes K[2][DIPOLE_COUNT]) {
   Lanes more[2][DIPOLE_COUNT];
   Sums(order, f, t, more);
   for (int k = 0; k < 2 * DIPOLE_COUNT; k++)
-    K[k / DIPOLE_COUNT][k % DIPOLE_COUNT] += LanesWhere(within, more[k / DIPOLE_COUNT][k % DIPOLE_COUNT]);
+    K[k / DIPOLE_COUNT][k % DIPOLE_COUNT] += LanesWhere(near, more[k / DIPOLE_COUNT][k % DIPOLE_COUNT]);
 }
 
-/* The second order; the second and the third. */
-static void AddSecond(const DipoleImageForms *f, Lanes x, Lanes a, Lanes b, Lanes K[2][DIPOLE_COUNT]) {
-  const ImageTerms t = ImageTermsMake(2, x, a, b);
-  AddOrder(2, IMAGE_SECOND, f, x, a, b, &t, K);
-}
-static void AddBoth(const DipoleImageForms *f, Lanes x, Lanes a, Lanes b, Lanes K[2][DIPOLE_COUNT]) {
-  const ImageTerms t = ImageTermsMake(3, x, a, b);
-  AddOrder(2, IMAGE_SECOND, f, x, a, b, &t, K);
-  AddOrder(3, IMAGE_THIRD, f, x, a, b, &t, K);
+/* The second order and, with third, the third one. */
+static void AddOrders(const PetscBool third, const DipoleImageForms *f, Lanes x, Lanes a, Lanes b,
+                      Lanes K[2][DIPOLE_COUNT]) {
+  const ImageTerms t = third ? ImageTermsMake(3, x, a, b) : ImageTermsMake(2, x, a, b);
+  AddOrder(2, ImageWithin(IMAGE_SECOND, x, a, b), f, &t, K);
+  if (third) AddOrder(3, ImageWithin(IMAGE_THIRD, x, a, b), f, &t, K);
 }
 
 /* What is left of the exact image, with the terms of the first order. */
@@ -174,9 +170,9 @@ static inline void FarSums(const DipoleImageForms *f, Lanes x, Lanes a, Lanes b,
                            Lanes K[2][DIPOLE_COUNT]) {
   Sums(1, f, t, K);
   if (LanesAny(ImageWithin(IMAGE_THIRD, x, a, b)))
-    AddBoth(f, x, a, b, K);
+    AddOrders(PETSC_TRUE, f, x, a, b, K);
   else if (LanesAny(ImageWithin(IMAGE_SECOND, x, a, b)))
-    AddSecond(f, x, a, b, K);
+    AddOrders(PETSC_FALSE, f, x, a, b, K);
 }
 
 void DipoleImageSourceMake(const DipoleImageForms *f, const PetscReal N[2], PetscReal factor, PetscReal over_length,

@@ -181,7 +181,7 @@ static void FromAmplitudes(DoubleBox b, const BoxBlock *q) {
   for (int c = 0; c < 2; c++)
     for (PetscInt i = 0; i < q->n[0]; i++)
       for (PetscInt j = 0; j < q->n[1]; j++, Q += q->modes)
-        InBlock(b, q, c)[i * b->width + j] = BoxSum(q->modes, b->amplitude + q->start, Q);
+        InBlock(b, q, c)[i * b->width + j] = LanesDot(q->modes, b->amplitude + q->start, Q);
 }
 
 /* The velocities' functions = alpha D of the tensors', which (add) all ranks have a part of. */

@@ -20,10 +20,6 @@ typedef struct {
   PetscReal *over;       /* [cells] 1/ratio inside vesicles, else 1 */
 } DoubleCells;
 
-static PetscReal At(const OffsetTable *t, OffsetBlock b, PetscInt i, PetscInt j) {
-  return t->value[b][(j + t->size[1]) * (2 * t->size[0] + 1) + i + t->size[0]];
-}
-
 /* The lattice's pressure at a cell of a dipole's force -DIV T and of its source, which is 1/2 in the own cell of xx and
    yy. Entry (i, j) of a face is right of (u) or above (v) cell (i, j). */
 static PetscErrorCode PressureTable(PetscInt reach, OffsetTable *t) {
@@ -36,10 +32,10 @@ static PetscErrorCode PressureTable(PetscInt reach, OffsetTable *t) {
     for (PetscInt i = -reach; i <= reach; i++) {
       const PetscInt at = (j + reach) * (2 * reach + 1) + i + reach;
       const PetscReal own = !i && !j ? 0.5 : 0;
-      t->value[DIPOLE_XX][at] = At(&p, OFFSET_UU, i, j) - At(&p, OFFSET_UU, i + 1, j) + own;
-      t->value[DIPOLE_YY][at] = At(&p, OFFSET_VV, i, j) - At(&p, OFFSET_VV, i, j + 1) + own;
-      t->value[DIPOLE_XY][at] = At(&p, OFFSET_UU, i, j - 1) - At(&p, OFFSET_UU, i, j) + At(&p, OFFSET_VV, i - 1, j) -
-                                At(&p, OFFSET_VV, i, j);
+      t->value[DIPOLE_XX][at] = OffsetAt(&p, OFFSET_UU, i, j) - OffsetAt(&p, OFFSET_UU, i + 1, j) + own;
+      t->value[DIPOLE_YY][at] = OffsetAt(&p, OFFSET_VV, i, j) - OffsetAt(&p, OFFSET_VV, i, j + 1) + own;
+      t->value[DIPOLE_XY][at] = OffsetAt(&p, OFFSET_UU, i, j - 1) - OffsetAt(&p, OFFSET_UU, i, j) +
+                                OffsetAt(&p, OFFSET_VV, i - 1, j) - OffsetAt(&p, OFFSET_VV, i, j);
     }
   PetscCall(OffsetTableDestroy(&p));
   PetscFunctionReturn(PETSC_SUCCESS);

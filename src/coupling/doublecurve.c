@@ -1,6 +1,5 @@
 #include "coupling/doublecurve.h"
 #include "base/lanes.h"
-#include "curve/modes.h"
 
 #define FINE 4    /* points a marker */
 #define CLOSE 4   /* spacings of the points within which the trapezoidal rule is corrected */
@@ -57,11 +56,22 @@ PetscErrorCode DoubleCurveDestroy(DoubleCurve *curve) {
 /* What the trapezoidal rule on N points lacks of INT f dt over a period, f of period 2 pi with the pole
    double/(t - t0)^2 + single/(t - t0): exact for (1/2) cot((t - t0)/2), whose sum is -pi cot(N t0/2), and for its
    derivative by t0. With e = e^{+-i N t0}, cot(N t0/2) = -+i (1 + e)/(1 - e). */
-static Point PoleError(PetscInt N, Point t0, Point twice, Point single) {
+Point CurvePole(PetscInt N, Point t0, Point twice, Point once) {
   const PetscReal side = cimag(t0) >= 0 ? 1 : -1;
   const Point e = cexp(I * side * (PetscReal)N * t0);
   const Point simple = -2 * PETSC_PI * side * I * e / (1 - e);
-  return single * simple + twice * (I * side * (PetscReal)N) * simple / (1 - e);
+  return once * simple + twice * (I * side * (PetscReal)N) * simple / (1 - e);
+}
+
+PetscBool CurveRoot(PetscInt n, const Point curve[], PetscInt N, PetscReal close, Point z, Point *t0, Point *slope) {
+  Point step = 1;
+  for (int k = 0; k < NEWTON && cabs(step) > 1e-13; k++) {
+    const Point off = z - CurveSeries(n, curve, *t0, slope);
+    step = off / *slope;
+    *t0 += step;
+  }
+  (void)CurveSeries(n, curve, *t0, slope);
+  return cabs(step) < 1e-8 && PetscAbsReal(cimag(*t0)) * N <= 2 * 2 * PETSC_PI * close ? PETSC_TRUE : PETSC_FALSE;
 }
 
 /* The integrals without their factors; winding: INT Im(X'/r) dt. */
@@ -116,23 +126,17 @@ static void FineSums(DoubleCurve c, Point z, Sums *s) {
    conj(t0); X'/r^2 = 1/(X'(t0) (t - t0)^2) without a simple pole. */
 static void CorrectClose(DoubleCurve c, Point z, PetscInt nearest, Sums *s) {
   const PetscInt N = FINE * c->n;
-  Point t0 = 2 * PETSC_PI * (PetscReal)nearest / (PetscReal)N, slope, step = 1, other, turned;
-  for (int k = 0; k < NEWTON && cabs(step) > 1e-13; k++) {
-    const Point off = z - CurveSeries(c->n, c->curve, t0, &slope);
-    step = off / slope;
-    t0 += step;
-  }
-  if (!(cabs(step) < 1e-8) || PetscAbsReal(cimag(t0)) * N > 2 * 2 * PETSC_PI * CLOSE) return;
-  (void)CurveSeries(c->n, c->curve, t0, &slope);
+  Point t0 = 2 * PETSC_PI * (PetscReal)nearest / (PetscReal)N, slope, other, turned;
+  if (!CurveRoot(c->n, c->curve, N, CLOSE, z, &t0, &slope)) return;
   const Point mirror = conj(CurveSeries(c->n, c->curve, conj(t0), &turned) - z);
   const Point J = CurveSeries(c->n, c->density, t0, &other),
               bar = conj(CurveSeries(c->n, c->density, conj(t0), &(Point){0}));
   const Point h = mirror * J, dh = conj(turned) * J + mirror * other;
-  const Point direct = PoleError(N, t0, 0, J), back = PoleError(N, t0, 0, bar);
-  const Point across = PoleError(N, t0, 0, J * conj(turned) / slope), last = PoleError(N, t0, h / slope, dh / slope);
+  const Point direct = CurvePole(N, t0, 0, J), back = CurvePole(N, t0, 0, bar);
+  const Point across = CurvePole(N, t0, 0, J * conj(turned) / slope), last = CurvePole(N, t0, h / slope, dh / slope);
   s->velocity += (direct - conj(back) + conj(across) - conj(last)) / (2 * I);
-  s->pressure += PoleError(N, t0, J / slope, other / slope);
-  s->winding += cimag(PoleError(N, t0, 0, 1));
+  s->pressure += CurvePole(N, t0, J / slope, other / slope);
+  s->winding += cimag(CurvePole(N, t0, 0, 1));
 }
 
 void DoubleCurveAdd(DoubleCurve c, const PetscReal x[2], PetscReal u[2], PetscReal *p, PetscBool *inside) {

@@ -14,19 +14,16 @@ typedef struct {
   OffsetTable stokeslet, source;
 } Lattice;
 
-static PetscReal At(const OffsetTable *t, OffsetBlock b, PetscInt i, PetscInt j) {
-  return t->value[b][(j + t->size[1]) * (2 * t->size[0] + 1) + i + t->size[0]];
-}
 static PetscReal UU(const Lattice *l, PetscInt i, PetscInt j) {
-  return At(&l->stokeslet, OFFSET_UU, i, j);
+  return OffsetAt(&l->stokeslet, OFFSET_UU, i, j);
 }
 /* vu(i + 1/2, j + 1/2): v lies half a cell left of and above u */
 static PetscReal VU(const Lattice *l, PetscInt i, PetscInt j) {
-  return At(&l->stokeslet, OFFSET_VU, i + 1, j);
+  return OffsetAt(&l->stokeslet, OFFSET_VU, i + 1, j);
 }
 /* su(i + 1/2, j): the pressure at (i, j) of a force along x at the face (i - 1/2, j), the offset turned */
 static PetscReal SU(const Lattice *l, PetscInt i, PetscInt j) {
-  return At(&l->source, OFFSET_UU, i + 1, j);
+  return OffsetAt(&l->source, OFFSET_UU, i + 1, j);
 }
 
 static PetscReal XX(const Lattice *l, PetscInt i, PetscInt j) {

@@ -1,12 +1,11 @@
 #include "coupling/layer.h"
 #include "base/lanes.h"
-#include "curve/modes.h"
+#include "coupling/doublecurve.h"
 #include "curve/spectral.h"
 
-#define FINE 4   /* points of the finer curve a marker */
-#define NEAR 6   /* spacings of markers from a membrane, within which the finer curve is summed */
-#define CLOSE 3  /* spacings of its points, within which the trapezoidal rule is corrected */
-#define NEWTON 8 /* most steps */
+#define FINE 4  /* points of the finer curve a marker */
+#define NEAR 6  /* spacings of markers from a membrane, within which the finer curve is summed */
+#define CLOSE 3 /* spacings of its points, within which the trapezoidal rule is corrected */
 
 /* One membrane, a trigonometric polynomial of the parameter t: marker k at t = 2 pi k/n. */
 struct _p_LayerCurve {
@@ -126,35 +125,21 @@ static PetscInt Nearest(PetscInt n, const PetscReal X[], Point z) {
   return nearest;
 }
 
-/* What the trapezoidal rule on N points lacks of INT f dt over a period, f of period 2 pi with a pole of residue rho at
-   t0: exact for (1/2) cot((t - t0)/2), whose integral is +-i pi and whose sum is -pi cot(N t0/2). */
-static Point PoleError(PetscInt N, Point t0, Point rho) {
-  const PetscReal side = cimag(t0) >= 0 ? 1 : -1;
-  const Point wave = cexp(I * side * (PetscReal)N * t0); /* cot(N t0/2) = -side i (1 + wave)/(1 - wave) */
-  return -2 * PETSC_PI * side * I * rho * wave / (1 - wave);
-}
-
 /* Corrections of the finer curve's sums for z close to its point `nearest`: poles, and a logarithm, of the analytic
    integrands at the complex parameter t0 where the curve is at z. Pressure: Re F/(z - X(t)). Velocity: of x (x.F)/r^2
    the part conj[F conj(z - X)/(z - X)]/2; of -ln r, whose error per density is that of ln|2 sin((t - t0)/2)|. */
 static void CorrectClose(const LayerCurve *c, Point z, PetscInt nearest, Point *u, PetscReal *p) {
   const PetscInt N = FINE * c->n;
   const PetscReal per = (PetscReal)c->n / (2 * PETSC_PI);
-  Point t0 = 2 * PETSC_PI * (PetscReal)nearest / (PetscReal)N, slope, mirror, other, step = 1;
-  for (int k = 0; k < NEWTON && cabs(step) > 1e-13; k++) {
-    const Point off = z - CurveSeries(c->n, c->curve, t0, &slope);
-    step = off / slope;
-    t0 += step;
-  }
-  if (!(cabs(step) < 1e-8) || PetscAbsReal(cimag(t0)) * N > 2 * 2 * PETSC_PI * CLOSE) return;
-  (void)CurveSeries(c->n, c->curve, t0, &slope);
+  Point t0 = 2 * PETSC_PI * (PetscReal)nearest / (PetscReal)N, slope, mirror, other;
+  if (!CurveRoot(c->n, c->curve, N, CLOSE, z, &t0, &slope)) return;
   mirror = conj(CurveSeries(c->n, c->curve, conj(t0), &other));
   const Point F = CurveSeries(c->n, c->force, t0, &other), residue = -F / slope;
   const Point density = CurveSeries(c->n, c->force, creal(t0), &other);
   const PetscReal side = cimag(t0) >= 0 ? 1 : -1;
   const PetscReal logarithm = PetscLogReal(cabs(1 - cexp(I * side * (PetscReal)N * t0)));
-  *p += per * creal(PoleError(N, t0, residue));
-  *u += 0.5 * per * conj(PoleError(N, t0, residue * (conj(z) - mirror))) + density * logarithm / FINE;
+  *p += per * creal(CurvePole(N, t0, 0, residue));
+  *u += 0.5 * per * conj(CurvePole(N, t0, 0, residue * (conj(z) - mirror))) + density * logarithm / FINE;
 }
 
 void LayerAdd(Layer s, PetscInt v, const PetscReal x[2], PetscReal u[2], PetscReal *p) {

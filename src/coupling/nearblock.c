@@ -16,14 +16,13 @@ static void LatticePair(SinglePairs f, PetscInt i, PetscInt j, const PetscReal d
 
 static const int respond[4] = {0, 1, 0, 1}, source[4] = {0, 1, 1, 0}; /* components that meet in xx, yy, xy, yx */
 
-/* L and C = S - L of two markers whose S is known; by stencils up to the reach of far. */
+/* L of two markers whose S is known: by stencils up to the reach of the closed form of C = S - L. */
 static void Pair(SinglePairs f, const NearFar *far, PetscInt i, PetscInt j, const PetscReal d[2], const PetscReal S[3],
-                 PetscReal L[4], PetscReal C[4]) {
+                 PetscReal L[4]) {
   const PetscReal cell = 1 / f->set->markers->grid->h, r2 = d[0] * d[0] + d[1] * d[1];
   Lanes fourth[4][2], four[4];
-  if (f->set->markers->grid->free || r2 * cell * cell <= PetscSqr(far->reach)) {
-    if (!f->set->markers->grid->free) LatticePair(f, i, j, d, L);
-    for (int c = 0; c < 4; c++) C[c] = S[PetscMin(c, 2)] - L[c];
+  if (r2 * cell * cell <= PetscSqr(far->reach)) {
+    LatticePair(f, i, j, d, L);
     return;
   }
   for (int c = 0; c < 4; c++)
@@ -31,21 +30,17 @@ static void Pair(SinglePairs f, const NearFar *far, PetscInt i, PetscInt j, cons
       fourth[c][dir] = f->stencil[2 * i + respond[c]].fourth[dir] + f->stencil[2 * j + source[c]].fourth[dir] -
                        far->fourth[respond[c] != dir] - far->fourth[source[c] != dir] - (Lanes){0};
   NearFarPairs(far, 1 / f->set->nu, cell * d[0] - (Lanes){0}, cell * d[1] - (Lanes){0}, fourth, four);
-  for (int c = 0; c < 4; c++) {
-    C[c] = four[c][0];
-    L[c] = S[PetscMin(c, 2)] - C[c];
-  }
+  for (int c = 0; c < 4; c++) L[c] = S[PetscMin(c, 2)] - four[c][0];
 }
 
 void NearLatticePair(SinglePairs f, PetscInt i, PetscInt j, const PetscReal d[2], PetscReal L[4]) {
-  PetscReal C[4];
   Lanes S[3];
   if (d[0] == 0 && d[1] == 0) {
     LatticePair(f, i, j, d, L);
     return;
   }
   StokesletFour(f->set, d[0] - (Lanes){0}, d[1] - (Lanes){0}, S);
-  Pair(f, &f->far[NEAR_ONE], i, j, d, (PetscReal[]){S[0][0], S[1][0], S[2][0]}, L, C);
+  Pair(f, &f->far[NEAR_ONE], i, j, d, (PetscReal[]){S[0][0], S[1][0], S[2][0]}, L);
 }
 
 /* The diagonal of S in a curve's quadrature, from the derivative T = dX/dk: xx, yy, xy. */
@@ -132,6 +127,7 @@ static PetscBool IsAlone(SinglePairs f, const Chunk *c) {
 /* Pairs one by one; those within the stencils' reach are enough far from walls. */
 static void FillNear(SinglePairs f, Chunk *c) {
   const PetscReal farthest2 = c->plain ? c->reach * c->reach : PETSC_MAX_REAL;
+  const PetscBool free = f->set->markers->grid->free;
   Lanes S[3] = {{0}};
   for (PetscInt k = 0; k < c->n; k++) {
     if (k % LANES == 0) {
@@ -144,19 +140,16 @@ static void FillNear(SinglePairs f, Chunk *c) {
     }
     const PetscInt j = c->j + k, from = c->back ? c->i : j, to = c->back ? j : c->i;
     const PetscReal d[2] = {c->d[0][k], c->d[1][k]};
-    PetscReal L[4] = {0, 0, 0, 0}, C[4], own[3];
+    PetscReal L[4] = {0, 0, 0, 0}, own[3];
     if (d[0] * d[0] + d[1] * d[1] > farthest2) continue;
     const PetscBool same = j == c->i && c->self ? PETSC_TRUE : PETSC_FALSE;
     for (int q = 0; q < 3; q++) own[q] = same ? 0 : S[q][k % LANES];
     if (same) c->part[k] = 0.5; /* whole, as S of the marker itself, which has the same logarithm */
-    if (same || c->plain) {
-      if (!f->set->markers->grid->free) LatticePair(f, to, from, d, L);
-      for (int q = 0; q < 4; q++) C[q] = own[PetscMin(q, 2)] - L[q];
-    } else
-      Pair(f, c->far, to, from, d, own, L, C);
+    if (!free && (same || c->plain)) LatticePair(f, to, from, d, L);
+    if (!free && !same && !c->plain) Pair(f, c->far, to, from, d, own, L);
     for (int q = 0; q < 4; q++) {
       c->L[q][k] = L[q];
-      c->C[q][k] = C[q];
+      c->C[q][k] = own[PetscMin(q, 2)] - L[q];
     }
   }
 }

@@ -166,8 +166,8 @@ PetscErrorCode NearDistantApply(NearDistant d, PetscReal alpha, const PetscScala
     const PetscBool both = p->column >= l->own && p->column < l->end ? PETSC_TRUE : PETSC_FALSE;
     for (PetscInt i = 0; i < d->function[p->row].stride; i += LANES) {
       const PetscInt to = d->start[p->row] + i;
-      ApplyRows(2, PETSC_TRUE, d->value, p->at + (size_t)(i * stride), stride, 1, both, d->amplitude + to,
-                d->amplitude + from, d->answer + to, d->answer + from);
+      ApplyRows(2, (BlockRows){PETSC_TRUE, d->value, p->at + (size_t)(i * stride), stride}, 1, d->amplitude + to,
+                d->amplitude + from, d->answer + to, both ? d->answer + from : NULL);
     }
   }
   for (PetscInt v = l->own; v < l->end; v++)

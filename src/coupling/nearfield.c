@@ -130,20 +130,20 @@ PetscErrorCode NearFieldPlace(NearField f) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* velocity[2n] += alpha C force[2M] of one block: both ways where both vesicles are own ones. */
-static inline void ApplyBlock(NearField f, const NearBlock *b, const PetscBool single, const void *value,
-                              PetscReal alpha, const PetscScalar force[], PetscScalar velocity[]) {
-  const Layout l = f->set.bodies->layout;
+/* velocity[2n] += alpha C force[2M] of one block: both ways where both bodies are own ones. */
+static inline void ApplyBlock(Layout l, const NearBlock *b, const PetscBool single, const void *value, PetscReal alpha,
+                              const PetscScalar force[], PetscScalar velocity[]) {
   const PetscBool both = b->column >= l->own && b->column < l->end ? PETSC_TRUE : PETSC_FALSE;
   PetscInt rows;
   NearRow r = NearBlockBegin(l, b);
   do {
     PetscScalar *other = both ? velocity + 2 * (r.column - l->first) : NULL, *own = velocity + 2 * (r.row - l->first);
+    const BlockRows values = {single, value, r.at, r.stride};
     rows = NearBlockIsSelf(b) || r.row + 2 > l->start[b->row + 1] ? 1 : 2;
     if (rows == 2)
-      ApplyRows(2, single, value, r.at, r.stride, alpha, both, force + 2 * r.row, force + 2 * r.column, own, other);
+      ApplyRows(2, values, alpha, force + 2 * r.row, force + 2 * r.column, own, other);
     else
-      ApplyRows(1, single, value, r.at, r.stride, alpha, both, force + 2 * r.row, force + 2 * r.column, own, other);
+      ApplyRows(1, values, alpha, force + 2 * r.row, force + 2 * r.column, own, other);
   } while ((rows == 1 || NearBlockNext(l, b, &r)) && NearBlockNext(l, b, &r));
 }
 
@@ -159,9 +159,9 @@ PetscErrorCode NearFieldApply(NearField f, PetscReal alpha, const PetscScalar F[
   for (PetscInt k = 0; k < f->list.count.blocks; k++) {
     const NearBlock *b = &f->list.block[k];
     if (b->single)
-      ApplyBlock(f, b, PETSC_TRUE, f->store.single, alpha, f->force, f->velocity);
+      ApplyBlock(l, b, PETSC_TRUE, f->store.single, alpha, f->force, f->velocity);
     else
-      ApplyBlock(f, b, PETSC_FALSE, f->store.value, alpha, f->force, f->velocity);
+      ApplyBlock(l, b, PETSC_FALSE, f->store.value, alpha, f->force, f->velocity);
   }
   PetscCall(NearDistantApply(f->list.distant, alpha, f->force, f->velocity));
   for (PetscInt k = 0; k < 2 * l->n; k++) U[k] += f->velocity[k];

@@ -48,26 +48,6 @@ PetscInt StencilLagWeights(int dir, const PaddedStencil *response, const PaddedS
   return response->first[dir] - source->first[dir] - (KERNEL_MAX_POINTS - 1);
 }
 
-/* First offset, shifted, inside the table. */
-static inline PetscInt LagWeights(const OffsetTable *t, int dir, const PaddedStencil *response,
-                                  const PaddedStencil *source, PetscInt shift, PetscReal weight[OFFSET_LAGS]) {
-  const PetscInt first = StencilLagWeights(dir, response, source, weight) + shift;
-  return PetscMax(-t->size[dir], PetscMin(first, t->size[dir] - OFFSET_LAGS + 1));
-}
-
-PetscReal StencilPairSum(const OffsetTable *t, OffsetBlock b, const PaddedStencil *response,
-                         const PaddedStencil *source, const PetscInt shift[2]) {
-  const PetscInt width = 2 * t->size[0] + 1;
-  PetscReal wx[OFFSET_LAGS], wy[OFFSET_LAGS], line[OFFSET_LAGS] = {0}, sum = 0;
-  const PetscInt i0 = LagWeights(t, 0, response, source, shift[0], wx);
-  const PetscInt j0 = LagWeights(t, 1, response, source, shift[1], wy);
-  const PetscReal *row = t->value[b] + (j0 + t->size[1]) * width + i0 + t->size[0];
-  for (int j = 0; j < OFFSET_LAGS; j++, row += width)
-    for (int i = 0; i < OFFSET_LAGS; i++) line[i] += wy[j] * row[i];
-  for (int i = 0; i < OFFSET_LAGS; i++) sum += wx[i] * line[i];
-  return sum;
-}
-
 void StencilUnwrap(Grid g, const PetscReal X[2], PaddedStencil s[2]) {
   for (int comp = 0; comp < 2; comp++)
     for (int dir = 0; dir < 2; dir++) {
@@ -117,7 +97,7 @@ static inline PetscReal TableSum(const PetscReal *value, PetscInt width, const P
                                             : RowSum(3, value, width, a, b, cells);
 }
 
-/* The same of stencils whose numbers of points are known to the compiler: r and s along x and y. */
+/* The double sum of stencils whose numbers of points are known to the compiler: r and s along x and y. */
 static inline PetscReal FixedSum(const int rx, const int ry, const int sx, const int sy, const PetscReal *value,
                                  PetscInt width, const PaddedStencil *response, const PaddedStencil *source,
                                  const PetscInt cells[2]) {

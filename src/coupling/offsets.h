@@ -1,5 +1,10 @@
-/* Sums over the faces of two kernels' stencils: SUM SUM phi(response) G(offset) phi(source), G a function of the offset
-   of two faces that is tabulated. */
+/* Sums over the faces of two stencils, of a function of the offset of two faces that is tabulated,
+
+       SUM_i SUM_j phi(i) G(i - j) psi(j),
+
+   phi the response's weights and psi the source's, each a product of weights along x and along y. Along one direction
+   the sum depends on the lag i - j alone, so the weights of the lags come first, then one product with the table.
+   Nothing crosses ranks. */
 #pragma once
 #include "markers/markers.h"
 
@@ -17,6 +22,11 @@ typedef struct {
 PETSC_EXTERN PetscErrorCode OffsetTableCreate(const PetscInt size[2], OffsetTable *table);
 PETSC_EXTERN PetscErrorCode OffsetTableDestroy(OffsetTable *table);
 
+/* OffsetAt - the entry at an offset within the table. */
+static inline PetscReal OffsetAt(const OffsetTable *t, int block, PetscInt i, PetscInt j) {
+  return t->value[block][(j + t->size[1]) * (2 * t->size[0] + 1) + i + t->size[0]];
+}
+
 /* A stencil's weights in one direction between zeros, so that sums run over whole vectors. */
 typedef struct {
   PetscReal weight[2][3 * KERNEL_MAX_POINTS];
@@ -24,15 +34,11 @@ typedef struct {
   PetscInt first[2], n[2];
 } PaddedStencil;
 
-/* StencilPad - of a stencil. StencilPairSum - the double sum; shift[2]: cells that are added to the offset, whole
-   periods, by which the source is meant to be moved. Offsets beyond the table take its border. Not collective. */
+/* StencilPad - of a stencil. StencilLagWeights - along one direction a double sum depends on the lag of two entries
+   only: weight[q] = SUM_j a_{q+j} b_j of the lag first + q; returns first. Not collective. */
 PETSC_EXTERN void StencilPad(const Stencil *stencil, PaddedStencil *padded);
-/* StencilLagWeights - along one direction a double sum depends on the lag of two entries only: weight[q] = SUM_j
-   a_{q+j} b_j of the lag first + q; returns first. */
 PETSC_EXTERN PetscInt StencilLagWeights(int dir, const PaddedStencil *response, const PaddedStencil *source,
                                         PetscReal weight[OFFSET_LAGS]);
-PETSC_EXTERN PetscReal StencilPairSum(const OffsetTable *table, OffsetBlock block, const PaddedStencil *response,
-                                      const PaddedStencil *source, const PetscInt shift[2]);
 
 /* StencilUnwrap - the two components' stencils of a marker at X count from its own place, however many periods that is
    from the grid. StencilFourSums - the sums of markers a and b, so unwrapped, `cells` being added to the offset: xx,

@@ -11,17 +11,30 @@ static PetscReal Stokeslet(int source, int response, PetscReal x, PetscReal y) {
   return ((source == response ? -0.5 * PetscLogReal(r2) : 0) + d[source] * d[response] / r2) / (4 * PETSC_PI);
 }
 
+/* The double sum, offset by offset. */
+static PetscReal PairSum(const OffsetTable *t, OffsetBlock block, const PaddedStencil *a, const PaddedStencil *b) {
+  const PetscReal *x = a->weight[0] + KERNEL_MAX_POINTS, *y = a->weight[1] + KERNEL_MAX_POINTS;
+  const PetscReal *u = b->weight[0] + KERNEL_MAX_POINTS, *v = b->weight[1] + KERNEL_MAX_POINTS;
+  PetscReal sum = 0;
+  for (PetscInt j = 0; j < a->n[1]; j++)
+    for (PetscInt l = 0; l < b->n[1]; l++)
+      for (PetscInt i = 0; i < a->n[0]; i++)
+        for (PetscInt k = 0; k < b->n[0]; k++)
+          sum += x[i] * y[j] * u[k] * v[l] *
+                 OffsetAt(t, block, a->first[0] + i - b->first[0] - k, a->first[1] + j - b->first[1] - l);
+  return sum;
+}
+
 /* C of a pair by sums over the stencils: xx, yy, xy, yx. */
 static void BySums(const OffsetTable *t, const NearField f, PetscInt i, PetscInt j, const PetscReal d[2],
                    PetscReal C[4]) {
-  static const PetscInt none[2] = {0, 0};
   const PetscReal h = f->set.markers->grid->h, nu = f->set.nu;
   const PaddedStencil *a = &f->pairs->stencil[2 * i], *b = &f->pairs->stencil[2 * j];
   const PetscReal x = d[0] / h, y = d[1] / h;
-  C[0] = (Stokeslet(0, 0, x, y) - StencilPairSum(t, OFFSET_UU, &a[0], &b[0], none)) / nu;
-  C[1] = (Stokeslet(1, 1, x, y) - StencilPairSum(t, OFFSET_VV, &a[1], &b[1], none)) / nu;
-  C[2] = (Stokeslet(1, 0, x, y) - StencilPairSum(t, OFFSET_VU, &b[1], &a[0], none)) / nu;
-  C[3] = (Stokeslet(0, 1, x, y) - StencilPairSum(t, OFFSET_VU, &a[1], &b[0], none)) / nu;
+  C[0] = (Stokeslet(0, 0, x, y) - PairSum(t, OFFSET_UU, &a[0], &b[0])) / nu;
+  C[1] = (Stokeslet(1, 1, x, y) - PairSum(t, OFFSET_VV, &a[1], &b[1])) / nu;
+  C[2] = (Stokeslet(1, 0, x, y) - PairSum(t, OFFSET_VU, &b[1], &a[0])) / nu;
+  C[3] = (Stokeslet(0, 1, x, y) - PairSum(t, OFFSET_VU, &a[1], &b[0])) / nu;
 }
 
 #define TWO                                                                                                            \
