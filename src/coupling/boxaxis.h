@@ -1,4 +1,5 @@
-/* Directions of a box, and the nearest of its images. */
+/* Directions of a box, and the nearest of its images: the distance d between two points becomes that of the nearest
+   image, with a weight that falls from 1 to 0 at half a period. Nothing crosses ranks. */
 #pragma once
 #include "scene/fluidspec.h"
 

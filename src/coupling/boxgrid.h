@@ -1,6 +1,10 @@
-/* The smooth part W = E A^-1 E^T/h^2 - L of a grid's mobility between places: what walls and periodic images add to the
-   infinite lattice, L of the nearest image times a window over a period (docs/nearfield.md, Box part). In quasi-steady
-   flow, whatever the run's. */
+/* The smooth part of a grid's mobility between places (docs/nearfield.md, Box part),
+
+       W = E A^-1 E^T/h^2 - L,
+
+   what walls and periodic images add to the infinite lattice, L of the nearest image times a window over a period. It
+   is measured: a Stokes solve for each source on a grid of its own, in quasi-steady flow. Each rank has such a grid and
+   solves for some of the sources; the caller sums over ranks. */
 #pragma once
 #include "coupling/boxaxis.h"
 #include "coupling/imagetable.h"

@@ -1,6 +1,13 @@
 /* The box part of the near field: D takes the error of second order off what walls and periodic images add to the
-   markers' mobility (boxtable.h), U += D (f ds) for all pairs of markers. D is steady in every flow. Over a period C is
-   of the nearest images only and fades where D takes over (BoxPartImage). */
+   markers' mobility (boxtable.h),
+
+       U += D F = A diag(l) A^T F,
+
+   A the table's eigenvectors at the markers. D is steady in every flow. Over a period the near field's C is of nearest
+   images only and fades where D takes over (BoxPartImage). A rank has the rows of A of its own markers; a product sums
+   one amplitude an eigenvalue over all ranks.
+
+   Create, Place wherever the markers have been placed, then Apply or Add. */
 #pragma once
 #include "coupling/boxregion.h"
 #include "markers/markers.h"

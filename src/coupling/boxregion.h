@@ -1,7 +1,7 @@
-/* The box part where the markers are. They often fill a small part of the box, in which D is so smooth that 8 x 8 of
-   Chebyshev's places tell it: a table of some 40 eigenvalues in place of several hundred, or, of dipoles, a matrix
-   between their functions. In a square far from walls images are as smooth: its table has them, and pairs of markers
-   need not. */
+/* A smaller table for the box part where the markers are. They often fill a small part of the box, in which D is so
+   smooth that 8 x 8 of Chebyshev's places hold it: some 40 eigenvalues in place of several hundred, or, of dipoles, a
+   matrix between the places' functions. In a square far from walls images are as smooth: its table has them, and pairs
+   of markers need not. Every rank makes the same tables; eigenvectors are the first rank's. */
 #pragma once
 #include "coupling/boxtable.h"
 

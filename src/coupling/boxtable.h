@@ -1,7 +1,11 @@
 /* The error of second order of a grid's smooth part W, made once for a run by Richardson's extrapolation from a coarse
-   pair of grids of the box's shape (docs/nearfield.md, Box part): D = (h/H)^2 4/3 (W_{H/2} - W_H) = phi Q diag(l) Q^T
-   phi^T, phi the values of interpolating functions at a marker. Or the same of the double layer's dipoles, where D from
-   the tensors to the velocities stands beside its transpose in a symmetric matrix. */
+   pair of grids of the box's shape (docs/nearfield.md, Box part):
+
+       D = (h/H)^2 4/3 (W_{H/2} - W_H) = phi Q diag(l) Q^T phi^T,
+
+   phi the values of interpolating functions at a marker, Q and l eigenvectors and eigenvalues. Of the double layer's
+   dipoles D from the tensors to the velocities stands beside its transpose in a symmetric matrix. Ranks share the
+   solves (boxgrid.h), then all have the table. */
 #pragma once
 #include "coupling/boxgrid.h"
 

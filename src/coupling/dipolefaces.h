@@ -1,6 +1,8 @@
-/* The lattice's velocity of one dipole on all faces that some markers' stencils read, from which they then take theirs.
-   Where markers are about a cell apart or less this takes less than a double sum for each pair (StencilDipoleSums),
-   whose numbers it has. */
+/* The lattice's velocity of one dipole on all faces that some markers' stencils read, from which the markers then take
+   theirs. Where markers are about a cell apart or less this takes less than a double sum for each pair
+   (StencilDipoleSums), with the same result. Nothing crosses ranks.
+
+   Create for the markers of a body, then Answer for one dipole after another. */
 #pragma once
 #include "coupling/latticedipole.h"
 

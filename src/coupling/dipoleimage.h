@@ -1,6 +1,7 @@
-/* What a wall adds to the velocity of tensor dipoles (docs/contrast.md, Walls), seen from the
-   wall: x along it, y across, tensor parts xx (along), yy (across), xy. Of the half-space lattice in a table, of the
-   exact fluid in closed form, and what kernels and lattice take from that far away. h = 1; no viscosity. */
+/* What a wall adds to the velocity of tensor dipoles (docs/contrast.md, Walls), seen from the wall: x along it, y
+   across, tensor parts xx (along), yy (across), xy; h = 1, of any viscosity. Three answers: of the half-space lattice,
+   in a table; of the exact fluid, in closed form; and what lattice and regularised delta functions take from that far
+   away, in closed form (imageform.h). Nothing crosses ranks. */
 #pragma once
 #include "base/lanes.h"
 #include "coupling/imagefar.h"

@@ -1,8 +1,14 @@
-/* The box part of the double layer, as boxpart.h of the single one: what walls and periodic images add to the dipoles'
-   velocity has an error of second order, which D takes off. A marker has its values of the table's functions of x and
-   of y; a product sums tensors into the functions, goes through the eigenvectors once, or through the matrix D between
-   the functions of a square about the markers, and takes velocities out of the functions. So markers cost what
-   functions there are, not what eigenvectors, and placing them next to nothing. */
+/* The box part of the double layer: D takes the error of second order off what walls and periodic images add to the
+   dipoles' velocity,
+
+       U += D T = phi Q diag(l) Q^T psi^T T,
+
+   phi and psi the values of the table's functions at the markers. A product sums tensors into the functions, goes
+   through the eigenvectors once, or through the matrix between the functions of a square about the markers
+   (boxregion.h), and takes velocities out of the functions, so that a marker costs what functions there are. A rank has
+   the values of its own markers; a product sums the amplitudes over all ranks.
+
+   Create, Place wherever the markers have been placed, then Apply or Matrix. */
 #pragma once
 #include "coupling/boxregion.h"
 #include "markers/markers.h"

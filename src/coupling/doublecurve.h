@@ -4,8 +4,8 @@
        u + i v = -(1/4 pi i) INT J X'/r - J conj(X'/r) + conj(J) X'/conj(r) - r conj(J X'/r^2) dt
        p = (nu/pi) Im INT J X'/r^2 dt
 
-   by the trapezoidal rule on finer points, and next to the curve with what the rule lacks at the poles in closed form.
- */
+   by the trapezoidal rule on finer points, and next to the curve with what the rule lacks at the integrands' poles in
+   closed form. Nothing crosses ranks. */
 #pragma once
 #include "curve/modes.h"
 

@@ -1,6 +1,10 @@
-/* What a wall of the grid adds to the double layer's C = D - L of a pair of markers, as nearimage.h of the single one:
-   the exact fluid's image of a tensor dipole in the wall, less the image that kernels and lattice make of the dipole as
-   the grid has it, folded (docs/contrast.md, Walls). */
+/* What a wall of the grid adds to C = D - L of a pair of markers in the double layer (docs/contrast.md, Walls):
+
+       C_wall = D_image - L_half + L,
+
+   D_image the exact fluid's image of a tensor dipole in the wall, L_half what the lattice of a half space makes of the
+   dipole as the grid has it, folded at the wall, L the same without a wall. L_half is summed over stencils next to the
+   wall, else the difference has a closed form (dipoleimage.h). Walls are added one by one. Nothing crosses ranks. */
 #pragma once
 #include "coupling/dipoleimage.h"
 #include "coupling/nearimage.h"

@@ -3,11 +3,13 @@
    ratio) U at a membrane that moves with U: a sheet of tensor dipoles J n + n J with the source J.n. The markers'
    velocities obey
 
-       (1 + ratio)/2 U = u_inf + E v' + C_S f + C_D J,      C_D = D - L Q
+       (1 + ratio)/2 U = u_inf + E v' + C_S f + C_D J,      C_D = D - L Q,
 
-   with D the exact double layer of unbounded fluid, L what the same dipoles give on the infinite lattice, as in the
-   near field (nearfield.h), whose pairs of vesicles it has, and Q, which takes the net flux off a vesicle's J, as the
-   spreading on the grid does. In unbounded fluid L = 0. */
+   D the exact double layer of unbounded fluid, L what the same dipoles give on the infinite lattice, Q what takes the
+   net flux off a vesicle's J, as spreading on the grid does (doubleblock.h). Its pairs of bodies are those of the near
+   field (nearfield.h). In unbounded fluid L = 0. Every rank gathers all of J.
+
+   Create, perhaps AddBoxPart, Place where the near field has been placed, Set the jump, then Apply, Spread, Rows. */
 #pragma once
 #include "coupling/doubleblock.h"
 #include "coupling/doublebox.h"

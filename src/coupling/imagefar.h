@@ -1,5 +1,7 @@
-/* C_image of distant pairs of markers in closed form (nearimage.h): to the order h^6/R^6 of itself up to IMAGE_THIRD
-   cells, R from the source's image, to h^4/R^4 up to IMAGE_SECOND, to h^2/R^2 beyond. */
+/* C_image of distant pairs of markers in closed form: what the image in a wall lacks of Blake's when it is made by
+   lattice and regularised delta function. Its forms (imageform.h) are taken to the order h^6/R^6 of C_image up to
+   IMAGE_THIRD cells, R the distance from the source's image, to h^4/R^4 up to IMAGE_SECOND, to h^2/R^2 beyond. Nothing
+   crosses ranks. */
 #pragma once
 #include "coupling/imageform.h"
 

@@ -1,8 +1,14 @@
-/* Distant images in a wall in closed form. In mode theta along it the image that a lattice makes is e^{-theta(a+b)}
-   theta^n0/4 [p + theta^2 p_1 + theta^4 p_2 + theta^6 p_3], each p_m a polynomial in theta a and theta b, a and b the
-   distances of response and source from the wall (h = 1), so that a monomial c a^i b^j of p_m gives
+/* Distant images in a wall in closed form. In mode theta along the wall the image that a lattice makes is
+
+       e^{-theta(a+b)} theta^n0/4 [p + theta^2 p_1 + theta^4 p_2 + theta^6 p_3],
+
+   each p_m a polynomial in theta a and theta b, a and b the distances of response and source from the wall (h = 1). The
+   integral over theta of a monomial c a^i b^j of p_m is
+
        c a^i b^j n!/z^{n+1}/(4 pi),   n = n0 + 2 m + i + j,   z = a + b - i x,
-   the real part where the wave along the wall is a cosine, the imaginary part where it is a sine. */
+
+   the real part where the wave along the wall is a cosine, the imaginary part where it is a sine. Nothing crosses
+   ranks. */
 #pragma once
 #include "base/lanes.h"
 #include "kernel/kernel.h"

@@ -1,5 +1,10 @@
 /* The Stokeslet of the half-space lattice, h = nu = 1: what the grid's Stokes solve gives at a face per unit force on a
-   face above one wall, without inertia (docs/nearfield.md, Walls). */
+   face above one wall, without inertia (docs/nearfield.md, Walls). In mode theta along the wall the wall adds
+
+       psi(j) = (A + B j) e^{-mu j},      mu = 2 asinh(sin(theta/2)),
+
+   to the stream function of the free lattice, A and B such that both velocities are zero on the wall. The integral over
+   theta is tabulated for rows of response and source and offsets along the wall. Nothing crosses ranks. */
 #pragma once
 #include "coupling/offsets.h"
 

@@ -1,5 +1,6 @@
 /* The Stokeslet of the infinite staggered lattice, h = nu = 1: what the grid's Stokes solve gives at a face per unit
-   force on a face, without box and without inertia (docs/nearfield.md, The lattice). */
+   force on a face, without box and without inertia (docs/nearfield.md, The lattice), and its pressure at cells. Both
+   are Fourier integrals along x of closed forms across, and tabulated by offset. Nothing crosses ranks. */
 #pragma once
 #include "coupling/offsets.h"
 

@@ -1,5 +1,6 @@
-/* The lattice's answer to tensor dipoles in cells and at nodes, spread as markers/dipoles.h does, h = 1
-   (docs/contrast.md, Near field). */
+/* The lattice's answer to tensor dipoles in cells and at nodes, h = 1 (docs/contrast.md, Near field): to the force
+   -DIV T and the source tr T/2 that markers/dipoles.h spreads. Both are differences of the lattice's Stokeslet and of
+   the gradient of its Green's function. Nothing crosses ranks. */
 #pragma once
 #include "base/lanes.h"
 #include "coupling/offsets.h"

@@ -1,7 +1,10 @@
-/* The velocity and the pressure of the membranes' forces in unbounded fluid, at any point: the free-space single layer
+/* The velocity and the pressure of the membranes' forces in unbounded fluid, at any point: the single layer
+
        u = SUM [-ln r F + x (x.F)/r^2]/(4 pi nu),   p = SUM F.x/(2 pi r^2),   x from a marker to the point,
+
    F the force times ds. Near a membrane the sums run over a finer curve, and what the trapezoidal rule lacks next to
-   it is added in closed form, so that points at any distance are right, on both sides. */
+   it is added in closed form, so that points at any distance are right, on both sides. Create gathers the markers and
+   forces of all ranks; after that nothing crosses them. */
 #pragma once
 #include "markers/layout.h"
 

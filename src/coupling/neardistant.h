@@ -1,7 +1,12 @@
 /* C of two closed obstacles that rest far from one another. It is smooth along both, so a few polynomials of the place
    on each curve hold it (docs/nearfield.md, Distant obstacles):
+
        C ~ Q_v B Q_w^T,     B = Q_v^T C Q_w,
-   Q orthonormal polynomials of a degree of at most 7 at the markers, which are 15 on a circle. */
+
+   Q orthonormal polynomials of a degree of at most 7 at the markers, which are 15 on a circle. A rank has the pairs of
+   its own bodies; a product reads the forces of all, which the caller has gathered.
+
+   Add all pairs, Make, Fill each from its C, then Apply. */
 #pragma once
 #include "base/lanes.h"
 #include "coupling/nearimage.h"

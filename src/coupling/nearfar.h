@@ -1,7 +1,12 @@
-/* C = S - L of distant markers in closed form: what smoothing by the kernel and dispersion by the lattice take from the
-   Stokeslet, to the order h^2/r^2 or h^6/r^6 (docs/nearfield.md, Distant pairs).
-   With phi the angle of r, in cells, xx:      SUM_n p_n(1/r^2) cos n phi,     n = 2, 4 .. 14 yy:      the same with
-   -p_n where n/2 is odd xy, yx:  SUM_n q_n(1/r^2) sin n phi,     n = 2, 6, 10, 14. */
+/* C = S - L of distant markers in closed form: what smoothing by the regularised delta function and dispersion by the
+   lattice take from the Stokeslet, to the order h^2/r^2 or h^6/r^6 (docs/nearfield.md, Distant pairs). With phi the
+   angle of r, lengths in cells,
+
+       xx:      SUM_n p_n(1/r^2) cos n phi,        n = 2, 4 .. 14
+       yy:      SUM_n -+p_n(1/r^2) cos n phi,      minus where n/2 is odd
+       xy, yx:  SUM_n q_n(1/r^2) sin n phi,        n = 2, 6, 10, 14.
+
+   The coefficients p_n, q_n follow from the moments of the delta function's weights alone. Nothing crosses ranks. */
 #pragma once
 #include "base/lanes.h"
 #include "kernel/kernel.h"
