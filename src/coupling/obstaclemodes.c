@@ -2,19 +2,19 @@
 #include "base/agree.h"
 #include "coupling/blas.h"
 #include "coupling/symmetric.h"
-#include "coupling/waves.h"
+#include "coupling/curvepoints.h"
 
-#define MOST_WAVES 9   /* of a curve with few markers */
-#define WAVE_MARKERS 8 /* of a curve with many: one for so many markers */
-#define SAME 1e-6      /* cells that markers of curves of one shape differ by, at most */
+#define POINTS 11
+#define POINT_MARKERS 6 /* of a curve with many: one point for so many */
+#define SAME 1e-6       /* cells that markers of curves of one shape differ by, at most */
 
 /* A curve that others are equal to but for their place. */
 typedef struct {
   PetscInt like; /* the first of them */
-  Waves waves;
+  CurvePoints curve;
   float *inverse; /* D^-1 (symmetric.h), on root */
-  float *answer;  /* D^-1 Q, [2 waves][2n], on root */
-  PetscReal *G;   /* [2 waves][2 waves], on root */
+  float *answer;  /* D^-1 Q, [2 points][2n], on root */
+  PetscReal *G;   /* [2 points][2 points], on root */
 } CurveShape;
 
 struct _p_ObstacleModes {
@@ -22,24 +22,24 @@ struct _p_ObstacleModes {
   Coupling coupling;     /* borrowed */
   PetscMPIInt root;
   PetscInt *of;    /* [curves] shape of each */
-  PetscInt *start; /* [curves + 1] first mode of each */
+  PetscInt *start; /* [curves + 1] first number of each: two a point */
   PetscInt shapes;
   CurveShape *shape;
   float *K;                      /* (symmetric.h), on root */
   float *amplitude, *correction; /* [modes] work */
 };
 
-/* How many waves a curve has when one of few markers has `least`. */
+/* How many points a curve has when one of few markers has `least`. */
 static PetscInt Count(PetscInt n, PetscInt least) {
-  const PetscInt many = n * least / (WAVE_MARKERS * MOST_WAVES);
+  const PetscInt many = n * least / (POINT_MARKERS * POINTS);
   return PetscMin(n - 1 + n % 2, PetscMax(least, many - 1 + many % 2));
 }
 
-/* Waves for every curve, as many as K has room for. */
+/* Points for every curve, as many as K has room for. */
 static PetscErrorCode Share(ObstacleModes s) {
   const Layout l = s->coupling->bodies->obstacles->layout;
   PetscFunctionBeginUser;
-  for (PetscInt least = MOST_WAVES; least >= 1; least -= 2) {
+  for (PetscInt least = POINTS; least >= 1; least -= 2) {
     for (PetscInt v = 0; v < l->bodies; v++) s->start[v + 1] = s->start[v] + 2 * Count(LayoutCount(l, v), least);
     if (s->start[l->bodies] <= OBSTACLE_MODES) break;
   }
@@ -66,7 +66,7 @@ PetscErrorCode ObstacleModesCreate(const FluidSpec *spec, Coupling c, PetscMPIIn
 static PetscErrorCode FreeShapes(ObstacleModes s) {
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < s->shapes; k++) {
-    PetscCall(WavesDestroy(&s->shape[k].waves));
+    PetscCall(CurvePointsDestroy(&s->shape[k].curve));
     PetscCall(PetscFree3(s->shape[k].inverse, s->shape[k].answer, s->shape[k].G));
   }
   s->shapes = 0;
@@ -135,23 +135,23 @@ static PetscErrorCode AssembleCurve(ObstacleModes s, Mobility mobility, PetscInt
 
 /* D^-1, D^-1 Q and G of a shape from D, on root. */
 static PetscErrorCode InvertCurve(CurveShape *q, const PetscReal D[], PetscBool *done) {
-  const PetscInt n = 2 * q->waves.n, m = 2 * q->waves.count;
+  const PetscInt n = 2 * q->curve.n, m = 2 * q->curve.points;
   float *single;
-  PetscReal *x, *a;
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc3(SymmetricSize(n), &q->inverse, m * n, &q->answer, m * m, &q->G));
-  PetscCall(PetscMalloc3(n * n, &single, n, &x, m, &a));
+  PetscCall(PetscMalloc1(n * n, &single));
   DenseSingle(n * n, D, single);
   PetscCall(SymmetricInvert(n, single, q->inverse, done));
   for (PetscInt j = 0; j < m && *done; j++) {
-    for (PetscInt k = 0; k < m; k++) a[k] = k == j;
-    WavesSum(&q->waves, a, x);
-    DenseSingle(n, x, single);
-    SymmetricMult(n, q->inverse, single, q->answer + j * n);
-    for (PetscInt k = 0; k < n; k++) x[k] = q->answer[j * n + k];
-    WavesOf(&q->waves, x, q->G + j * m);
+    float *answer = q->answer + j * n;
+    for (PetscInt k = 0; k < n; k++) single[k] = k % 2 == j % 2 ? (float)q->curve.to_markers[j / 2 * n / 2 + k / 2] : 0;
+    SymmetricMult(n, q->inverse, single, answer);
+    for (PetscInt i = 0; i < m; i++) {
+      q->G[j * m + i] = 0;
+      for (PetscInt k = i % 2; k < n; k += 2) q->G[j * m + i] += q->curve.to_markers[i / 2 * n / 2 + k / 2] * answer[k];
+    }
   }
-  PetscCall(PetscFree3(single, x, a));
+  PetscCall(PetscFree(single));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -169,8 +169,8 @@ static PetscErrorCode MakeShapes(ObstacleModes s, PetscReal alpha, PetscBool *do
     CurveShape *q = &s->shape[k];
     const PetscInt n = LayoutCount(o->layout, q->like);
     PetscBool good = PETSC_TRUE;
-    PetscCall(WavesCreate(o->kind[q->like].type == CURVE_OPEN ? PETSC_TRUE : PETSC_FALSE, n,
-                          (s->start[q->like + 1] - s->start[q->like]) / 2, &q->waves));
+    PetscCall(CurvePointsCreate(o->kind[q->like].type == CURVE_OPEN ? PETSC_TRUE : PETSC_FALSE, n,
+                                (s->start[q->like + 1] - s->start[q->like]) / 2, &q->curve));
     PetscCall(PetscMalloc1(4 * n * n, &D));
     PetscCall(AssembleCurve(s, mobility, q->like, D));
     if (o->layout->rank == s->root) PetscCall(InvertCurve(q, D, &good));
@@ -181,72 +181,48 @@ static PetscErrorCode MakeShapes(ObstacleModes s, PetscReal alpha, PetscBool *do
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The grid's mobility between the places of two curves, T[2 places of w][2 places of v]. */
-static void Between(ObstacleModes s, MobilityTable table, PetscInt v, PetscInt w, PetscReal T[]) {
+/* Where the points of all curves are, Y[modes]. */
+static void PlacePoints(ObstacleModes s, PetscReal Y[]) {
   const Obstacles o = s->coupling->bodies->obstacles;
-  const Grid g = s->coupling->fluid->grid;
-  const Waves *a = &s->shape[s->of[v]].waves, *b = &s->shape[s->of[w]].waves;
-  const PetscReal *X = o->X + 2 * o->layout->start[v], *Y = o->X + 2 * o->layout->start[w];
-  const PetscReal over = 1 / PetscSqr(g->h);
-  const PetscInt stride = 2 * a->places;
-  for (PetscInt j = 0; j < b->places; j++)
-    for (PetscInt i = 0; i < a->places; i++) {
-      PetscReal d[2], one[3], *x = T + 2 * j * stride + 2 * i, *y = x + stride;
-      for (int c = 0; c < 2; c++) {
-        const PetscReal period = g->hi[c] - g->lo[c];
-        d[c] = X[2 * a->place[i] + c] - Y[2 * b->place[j] + c];
-        d[c] -= period * PetscFloorReal(d[c] / period + 0.5);
-      }
-      MobilityTableMean(table, d, one);
-      x[0] = over * one[0];
-      y[1] = over * one[1];
-      x[1] = y[0] = over * one[2];
-    }
+  (void)PetscArrayzero(Y, ObstacleModesCount(s));
+  for (PetscInt v = 0; v < o->layout->bodies; v++) {
+    const CurvePoints *q = &s->shape[s->of[v]].curve;
+    for (PetscInt i = 0; i < q->points; i++)
+      for (PetscInt k = 0; k < 2 * q->n; k++)
+        Y[s->start[v] + 2 * i + k % 2] += q->to_points[i * q->n + k / 2] * o->X[2 * o->layout->start[v] + k];
+  }
 }
 
-/* out[columns][2 count] = the coefficients of columns of values at the places, [columns][2 places]. */
-static void FitColumns(const Waves *w, PetscInt columns, const PetscReal values[], PetscReal out[]) {
-  for (PetscInt j = 0; j < columns; j++, values += 2 * w->places, out += 2 * w->count)
-    for (PetscInt m = 0; m < w->count; m++)
-      for (int c = 0; c < 2; c++) {
-        out[2 * m + c] = 0;
-        for (PetscInt k = 0; k < w->places; k++) out[2 * m + c] += w->fit[m * w->places + k] * values[2 * k + c];
-      }
-}
-
-static void Transpose(PetscInt rows, PetscInt columns, const PetscReal A[], PetscReal B[]) {
-  for (PetscInt j = 0; j < columns; j++)
-    for (PetscInt i = 0; i < rows; i++) B[i * columns + j] = A[j * rows + i];
-}
-
-/* M[modes][modes] on root: every rank makes a part of the pairs. */
+/* M[modes][modes] on root, the grid's mobility between points of different curves: every rank makes a part. */
 static PetscErrorCode AssembleModes(ObstacleModes s, PetscReal alpha, PetscReal M[]) {
   const Layout l = s->coupling->bodies->obstacles->layout;
+  const Grid g = s->coupling->fluid->grid;
   const PetscInt n = ObstacleModesCount(s);
+  const PetscReal over = 1 / PetscSqr(g->h), period[2] = {g->hi[0] - g->lo[0], g->hi[1] - g->lo[1]};
   MobilityTable table;
-  PetscInt most = 0, pair = 0;
-  PetscReal *T, *half, *turned, *block;
+  PetscReal *Y;
   PetscMPIInt size;
   PetscFunctionBeginUser;
   PetscCall(MobilityTableCreate(s->spec, s->coupling->markers->kernel, PETSC_MAX_REAL, &table));
   PetscCall(MobilityTableSetUp(table, alpha));
-  for (PetscInt k = 0; k < s->shapes; k++) most = PetscMax(most, 2 * s->shape[k].waves.places);
-  PetscCall(PetscMalloc4(most * most, &T, most * most, &half, most * most, &turned, most * most, &block));
+  PetscCall(PetscMalloc1(n, &Y));
+  PlacePoints(s, Y);
   PetscCall(PetscArrayzero(M, n * n));
   for (PetscInt v = 0; v < l->bodies; v++)
-    for (PetscInt w = v + 1; w < l->bodies; w++) {
-      const Waves *a = &s->shape[s->of[v]].waves, *b = &s->shape[s->of[w]].waves;
-      if (pair++ % l->size != l->rank) continue;
-      Between(s, table, v, w, T);
-      FitColumns(a, 2 * b->places, T, half);
-      Transpose(2 * a->count, 2 * b->places, half, turned);
-      FitColumns(b, 2 * a->count, turned, block);
-      for (PetscInt j = 0; j < 2 * a->count; j++)
-        for (PetscInt i = 0; i < 2 * b->count; i++)
-          M[(s->start[v] + j) * n + s->start[w] + i] = M[(s->start[w] + i) * n + s->start[v] + j] =
-              block[j * 2 * b->count + i];
-    }
-  PetscCall(PetscFree4(T, half, turned, block));
+    for (PetscInt i = s->start[v] + 2 * l->rank; i < s->start[v + 1]; i += 2 * l->size)
+      for (PetscInt j = s->start[v + 1]; j < n; j += 2) {
+        PetscReal d[2], mean[3];
+        for (int c = 0; c < 2; c++) {
+          d[c] = Y[i + c] - Y[j + c];
+          d[c] -= period[c] * PetscFloorReal(d[c] / period[c] + 0.5);
+        }
+        MobilityTableMean(table, d, mean);
+        for (int q = 0; q < 4; q++) {
+          const PetscInt a = i + q / 2, b = j + q % 2;
+          M[a * n + b] = M[b * n + a] = over * mean[q == 0 ? 0 : q == 3 ? 1 : 2];
+        }
+      }
+  PetscCall(PetscFree(Y));
   PetscCall(MobilityTableDestroy(&table));
   PetscCall(PetscMPIIntCast(n * n, &size));
   if (l->size > 1)
@@ -298,14 +274,14 @@ PetscErrorCode ObstacleModesApply(ObstacleModes s, const float x[], float y[]) {
   PetscCall(PetscArrayzero(s->amplitude, ObstacleModesCount(s)));
   for (PetscInt v = 0; v < l->bodies; v++) {
     const CurveShape *q = &s->shape[s->of[v]];
-    const PetscInt n = 2 * q->waves.n, at = 2 * l->start[v];
+    const PetscInt n = 2 * q->curve.n, at = 2 * l->start[v];
     SymmetricMult(n, q->inverse, x + at, y + at);
-    PetscCall(DenseSingleMultAdd(PETSC_TRUE, n, 2 * q->waves.count, 1, q->answer, x + at, s->amplitude + s->start[v]));
+    PetscCall(DenseSingleMultAdd(PETSC_TRUE, n, 2 * q->curve.points, 1, q->answer, x + at, s->amplitude + s->start[v]));
   }
   SymmetricMult(ObstacleModesCount(s), s->K, s->amplitude, s->correction);
   for (PetscInt v = 0; v < l->bodies; v++) {
     const CurveShape *q = &s->shape[s->of[v]];
-    PetscCall(DenseSingleMultAdd(PETSC_FALSE, 2 * q->waves.n, 2 * q->waves.count, -1, q->answer,
+    PetscCall(DenseSingleMultAdd(PETSC_FALSE, 2 * q->curve.n, 2 * q->curve.points, -1, q->answer,
                                  s->correction + s->start[v], y + 2 * l->start[v]));
   }
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -1,7 +1,11 @@
-/* The obstacles' block of the reduced problem for many markers (docs/obstacles.md, Many markers): the dense block D of
-   each curve, shared by equal ones, and what the others do to it by a few waves along every curve,
-       A ~ D + Q M Q^T,     A^-1 = D^-1 - D^-1 Q K Q^T D^-1,     K = (I + M G)^-1 M,     G = Q^T D^-1 Q,
-   Q the waves (waves.h), M the grid's mobility between those of two curves. Everything in single precision. */
+/* An approximate inverse of the obstacles' block A of the reduced problem, for many markers (docs/obstacles.md, Many
+   markers).
+
+   D is the dense block of each curve alone; curves that are equal but for their place share it. What the other curves
+   do is smooth along a curve, so a few points of each curve hold it: with Q the interpolation from points to markers
+   (curvepoints.h) and M the grid's mobility between the points of different curves,
+       A ~ D + Q M Q^T,     A^-1 = D^-1 - D^-1 Q K Q^T D^-1,     K = (I + M G)^-1 M,     G = Q^T D^-1 Q.
+   The matrices are in single precision on one rank, root; all ranks make parts of D and M. */
 #pragma once
 #include "coupling/mobility.h"
 

@@ -14,8 +14,7 @@ static PetscReal Dot(PetscInt n, const PetscReal a[], const PetscReal b[]) {
 }
 
 /* P^T F: a vesicle's forces, its labels those of the pattern, to the coarse points. work[2n]. */
-static void Restrict(const PatternWeights *q, PetscInt shift, const PetscScalar F[], PetscReal work[],
-                     PetscScalar to[]) {
+static void Restrict(const CurvePoints *q, PetscInt shift, const PetscScalar F[], PetscReal work[], PetscScalar to[]) {
   const PetscInt n = q->n;
   PetscReal *x = work, *y = work + n;
   for (PetscInt k = 0; k < n; k++) {
@@ -30,7 +29,7 @@ static void Restrict(const PatternWeights *q, PetscInt shift, const PetscScalar 
 }
 
 /* P W: velocities at the coarse points to the markers. work[2n]. */
-static void Prolong(const PatternWeights *q, PetscInt shift, const PetscReal W[], PetscReal work[], PetscScalar to[]) {
+static void Prolong(const CurvePoints *q, PetscInt shift, const PetscReal W[], PetscReal work[], PetscScalar to[]) {
   const PetscInt n = q->n;
   PetscReal *x = work, *y = work + n;
   (void)PetscArrayzero(work, 2 * n);

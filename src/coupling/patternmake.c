@@ -51,29 +51,13 @@ static PetscErrorCode Motion(Patterns s, const Pattern *q, PetscReal **motion) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode AddWeights(Patterns s, PetscInt n, PetscInt points) {
-  PatternWeights *w;
-  PetscFunctionBeginUser;
-  PetscCall(PetscRealloc((size_t)(s->kinds + 1) * sizeof(PatternWeights), &s->weights));
-  w = &s->weights[s->kinds++];
-  *w = (PatternWeights){.n = n, .points = points};
-  PetscCall(PetscMalloc1(n * points, &w->to_markers));
-  PetscCall(PetscMalloc1(n * points, &w->to_points));
-  for (PetscInt i = 0; i < points; i++)
-    for (PetscInt k = 0; k < n; k++) {
-      const PetscReal t = 2 * PETSC_PI * ((PetscReal)k / (PetscReal)n - (PetscReal)i / (PetscReal)points);
-      w->to_markers[i * n + k] = TrigonometricCardinal(points, t);
-      w->to_points[i * n + k] = TrigonometricCardinal(n, -t);
-    }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* The weights of n markers and so many points; those of an earlier pattern where there are. */
 static PetscErrorCode FindWeights(Patterns s, PetscInt n, PetscInt points, PetscInt *which) {
   PetscFunctionBeginUser;
   for (*which = 0; *which < s->kinds; (*which)++)
     if (s->weights[*which].n == n && s->weights[*which].points == points) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(AddWeights(s, n, points));
+  PetscCall(PetscRealloc((size_t)(s->kinds + 1) * sizeof(CurvePoints), &s->weights));
+  PetscCall(CurvePointsCreate(PETSC_FALSE, n, points, &s->weights[s->kinds++]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -56,10 +56,7 @@ PetscErrorCode PatternsDestroy(Patterns *patterns) {
   if (!s) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt k = 0; k < s->count; k++) PetscCall(FreePattern(&s->pattern[k]));
   PetscCall(PetscFree(s->pattern));
-  for (PetscInt k = 0; k < s->kinds; k++) {
-    PetscCall(PetscFree(s->weights[k].to_markers));
-    PetscCall(PetscFree(s->weights[k].to_points));
-  }
+  for (PetscInt k = 0; k < s->kinds; k++) PetscCall(CurvePointsDestroy(&s->weights[k]));
   PetscCall(PetscFree(s->weights));
   PetscCall(PatternCrossDestroy(&s->cross));
   PetscCall(CoarseDestroy(&s->coarse));

@@ -7,6 +7,7 @@
 #pragma once
 #include "coupling/coarse.h"
 #include "coupling/coupling.h"
+#include "coupling/curvepoints.h"
 #include "coupling/doublelayer.h"
 #include "coupling/pose.h"
 
@@ -24,12 +25,6 @@ typedef struct {
   PetscReal *points;   /* [2q] where they are */
 } Pattern;
 
-/* Trigonometric interpolation between n markers and q coarse points, [q][n] each. */
-typedef struct {
-  PetscInt n, points;
-  PetscReal *to_markers, *to_points;
-} PatternWeights;
-
 /* What membranes do to the fluid: forces F and, with viscosity contrast (else NULL), jumps J, [2n] of own vesicles. */
 typedef struct {
   PetscScalar *force, *jump;
@@ -43,7 +38,7 @@ struct _p_Patterns {
   PetscReal a0;      /* that the matrices are for; 0: none yet */
   PetscInt count, room;
   Pattern *pattern;
-  PatternWeights *weights; /* one for each n and q */
+  CurvePoints *weights; /* between n markers and q coarse points, one for each n and q */
   PetscInt kinds;
   PetscInt *of;         /* [vesicles] pattern of each, -1: none yet */
   PetscInt *order;      /* [own vesicles] by pattern */

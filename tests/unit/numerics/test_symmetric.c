@@ -1,8 +1,8 @@
 /* Matrices of the preconditioner's block of obstacles: a symmetric product in single precision against the plain sum,
-   and the waves of a curve against what they are fitted to. */
+   and interpolation between markers and points of a curve. */
 #include "check.h"
 #include "coupling/symmetric.h"
-#include "coupling/waves.h"
+#include "coupling/curvepoints.h"
 
 /* Products with a matrix of n rows, and its inverse. */
 static PetscErrorCode CheckSymmetric(PetscInt n) {
@@ -34,28 +34,32 @@ static PetscErrorCode CheckSymmetric(PetscInt n) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Waves are orthonormal, and a sum of them is found again from its values at a few places. */
-static PetscErrorCode CheckWaves(PetscBool open, PetscInt n, PetscInt count) {
-  Waves w;
-  PetscReal *x, *a, *b, off = 0, fit = 0;
+/* Values at points give values at the markers that give them back, and a cosine is a cosine at the markers. */
+static PetscErrorCode CheckPoints(PetscBool open, PetscInt n, PetscInt points) {
+  CurvePoints w;
+  PetscReal *x, *value, off = 0, wave = 0;
   unsigned seed = 7;
   PetscFunctionBeginUser;
-  PetscCall(WavesCreate(open, n, count, &w));
-  PetscCall(PetscMalloc3(2 * n, &x, 2 * count, &a, 2 * count, &b));
-  for (PetscInt k = 0; k < 2 * count; k++) a[k] = TestRandom(&seed);
-  WavesSum(&w, a, x);
-  WavesOf(&w, x, b);
-  for (PetscInt m = 0; m < count; m++)
-    for (int c = 0; c < 2; c++) {
-      PetscReal sum = 0;
-      for (PetscInt s = 0; s < w.places; s++) sum += w.fit[m * w.places + s] * x[2 * w.place[s] + c];
-      off = PetscMax(off, PetscAbsReal(b[2 * m + c] - a[2 * m + c]));
-      fit = PetscMax(fit, PetscAbsReal(sum - a[2 * m + c]));
-    }
-  CHECK(off < 1e-13, "%d waves on %d markers are orthonormal to %.1e", (int)count, (int)n, (double)off);
-  CHECK(fit < 1e-10, "and found from %d of them to %.1e", (int)w.places, (double)fit);
-  PetscCall(PetscFree3(x, a, b));
-  PetscCall(WavesDestroy(&w));
+  PetscCall(CurvePointsCreate(open, n, points, &w));
+  PetscCall(PetscCalloc2(2 * n, &x, 2 * points, &value));
+  for (PetscInt i = 0; i < points; i++) {
+    value[2 * i] = TestRandom(&seed);
+    value[2 * i + 1] = points < 3 ? 1 : PetscCosReal(open ? PETSC_PI * (i + 0.5) / points : 2 * PETSC_PI * i / points);
+    for (PetscInt k = 0; k < 2 * n; k++) x[k] += w.to_markers[i * n + k / 2] * value[2 * i + k % 2];
+  }
+  for (PetscInt i = 0; i < points; i++) {
+    PetscReal sum = 0;
+    for (PetscInt k = 0; k < n; k++) sum += w.to_points[i * n + k] * x[2 * k];
+    off = PetscMax(off, PetscAbsReal(sum - value[2 * i]));
+  }
+  for (PetscInt k = 0; k < n; k++) {
+    const PetscReal angle = open ? PETSC_PI * (k + 0.5) / n : 2 * PETSC_PI * k / n;
+    wave = PetscMax(wave, PetscAbsReal(x[2 * k + 1] - (points < 3 ? 1 : PetscCosReal(angle))));
+  }
+  CHECK(off < 1e-13, "%d points on %d markers have their values again to %.1e", (int)points, (int)n, (double)off);
+  CHECK(wave < 1e-13, "and the first cosine is interpolated to %.1e", (double)wave);
+  PetscCall(PetscFree2(x, value));
+  PetscCall(CurvePointsDestroy(&w));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -63,9 +67,9 @@ static PetscErrorCode Facts(void) {
   PetscFunctionBeginUser;
   for (PetscInt n = 1; n < 24; n += n < 12 ? 1 : 5) PetscCall(CheckSymmetric(n));
   for (int open = 0; open < 2; open++) {
-    PetscCall(CheckWaves(open, 67, 9));
-    PetscCall(CheckWaves(open, 15, 9));
-    PetscCall(CheckWaves(open, 17, 1));
+    PetscCall(CheckPoints(open, 67, 9));
+    PetscCall(CheckPoints(open, 15, 9));
+    PetscCall(CheckPoints(open, 17, 1));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
