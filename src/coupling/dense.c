@@ -60,32 +60,6 @@ PetscErrorCode DenseBlocksDestroy(DenseBlocks *blocks) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Mob by MobilityAssemble, zero in unbounded fluid. */
-static PetscErrorCode AssembleTable(Mobility mobility, PetscInt first, PetscInt n, PetscInt part, PetscInt parts,
-                                    PetscReal Mob[]) {
-  PetscFunctionBeginUser;
-  if (mobility)
-    PetscCall(MobilityAssemble(mobility, first, n, part, parts, Mob));
-  else
-    PetscCall(PetscArrayzero(Mob, 4 * n * n));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The one block: every rank makes a part of Mob and adds its own rows of the near field, root has the sum. */
-static PetscErrorCode AssembleTogether(DenseBlocks b, Mobility mobility, PetscReal Mob[]) {
-  const Layout l = b->coupling->membrane->layout;
-  PetscMPIInt size;
-  PetscFunctionBeginUser;
-  PetscCall(PetscMPIIntCast(4 * l->M * l->M, &size));
-  PetscCall(AssembleTable(mobility, 0, l->M, l->rank, l->size, Mob));
-  if (b->coupling->near)
-    PetscCall(NearFieldAdd(b->coupling->near, PetscSqr(b->coupling->fluid->grid->h),
-                           MobilityHasBoxPart(mobility) ? PETSC_FALSE : PETSC_TRUE, 0, l->M, Mob));
-  if (l->size > 1)
-    PetscCallMPI(MPI_Reduce(l->rank == b->root ? MPI_IN_PLACE : Mob, Mob, size, MPIU_REAL, MPI_SUM, b->root, l->comm));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* What the velocities do with viscosity contrast, of free space (ContrastMatrix): made for a block's owner, NULL
    without contrast. Collective where the block is for all. */
 static PetscErrorCode AssembleMotion(DenseBlocks b, PetscReal a0, PetscInt first, PetscInt n, PetscReal **motion) {
@@ -146,6 +120,7 @@ PetscErrorCode DenseBlocksFactor(DenseBlocks b, Mobility mobility, ObstacleBlock
                                  PetscBool *factored) {
   const Membrane m = b->coupling->membrane;
   const PetscReal h2 = PetscSqr(b->coupling->fluid->grid->h);
+  const MarkerRange all = {0, m->layout->M};
   PetscBool good = PETSC_TRUE, singular = PETSC_FALSE, failed;
   PetscReal *Mob, *motion = NULL;
   PetscInt most = b->together ? m->layout->M : 0;
@@ -157,7 +132,7 @@ PetscErrorCode DenseBlocksFactor(DenseBlocks b, Mobility mobility, ObstacleBlock
   for (PetscInt k = 0; k < b->count; k++) most = PetscMax(most, b->block[k].n);
   PetscCall(PetscMalloc1(4 * most * most, &Mob));
   if (b->together) {
-    PetscCall(AssembleTogether(b, mobility, Mob));
+    PetscCall(MobilityOnRoot(mobility, &all, &all, b->root, Mob));
     if (solid) PetscCall(ObstacleBlockCouple(solid, mobility, Mob, &singular));
     if (singular) good = PETSC_FALSE;
     PetscCall(AssembleMotion(b, a0, 0, m->layout->M, &motion));
@@ -165,7 +140,8 @@ PetscErrorCode DenseBlocksFactor(DenseBlocks b, Mobility mobility, ObstacleBlock
   for (PetscInt k = 0; k < b->count && good; k++) {
     DenseBlock *q = &b->block[k];
     if (!b->together) {
-      PetscCall(AssembleTable(mobility, q->first, q->n, 0, 1, Mob));
+      const MarkerRange own = {q->first, q->n};
+      PetscCall(MobilityAssemble(mobility, &own, &own, 0, 1, Mob));
       /* the box part does not change the iterations of one vesicle's block but costs more than the rest of it */
       if (b->coupling->near) PetscCall(NearFieldAdd(b->coupling->near, h2, PETSC_FALSE, q->first, q->n, Mob));
       PetscCall(AssembleMotion(b, a0, q->first, q->n, &motion));

@@ -20,7 +20,7 @@ PETSC_EXTERN PetscErrorCode DenseBlocksDestroy(DenseBlocks *blocks);
    block was made. Not collective. */
 PETSC_EXTERN void DenseBlocksPlace(DenseBlocks blocks);
 
-/* DenseBlocksFactor - assemble Mob (mobility NULL: zero, the near field is all) at the coupling's markers, factor N and
+/* DenseBlocksFactor - assemble Mob at the coupling's markers, factor N and
    C for a0 and the coupling's label speeds. A block for all is that in the presence of the obstacles, whose own block
    is `solid`, or NULL. Ranks share the sums of Mob of a block for all, its owner does the rest. factored is false, on
    every rank, when a matrix is singular. Collective. */

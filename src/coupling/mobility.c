@@ -17,7 +17,7 @@ PetscErrorCode MobilityCreate(const FluidSpec *spec, Coupling c, PetscReal reach
   m->near = c->near ? NEAR : PETSC_MAX_REAL;
   if (HasBox(c))
     PetscCall(MobilityBoxCreate(spec, c, &m->box));
-  else
+  else if (!c->fluid->grid->free)
     PetscCall(MobilityTableCreate(spec, c->markers->kernel, reach, &m->table));
   PetscCall(PetscMalloc1(2 * c->bodies->layout->M, &m->stencil));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -78,43 +78,44 @@ static void Pad(Mobility m, const MarkerRange *range) {
   }
 }
 
-PetscErrorCode MobilityAssemble(Mobility m, PetscInt first, PetscInt n, PetscInt part, PetscInt parts,
-                                PetscReal Mob[]) {
-  const MarkerRange range = {first, n};
+PetscErrorCode MobilityAssemble(Mobility m, const MarkerRange *rows, const MarkerRange *columns, PetscInt part,
+                                PetscInt parts, PetscReal Mob[]) {
+  const PetscBool same = rows->first == columns->first && rows->n == columns->n ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionBeginUser;
-  if (m->box) {
-    PetscCall(MobilityAssembleBetween(m, &range, &range, part, parts, Mob));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  Pad(m, &range);
-  if (parts > 1) PetscCall(PetscArrayzero(Mob, 4 * n * n));
-  for (PetscInt i = part; i < n; i += parts)
-    for (PetscInt j = i; j < n; j++) { /* symmetric */
-      PetscReal *block = Mob + 2 * i * 2 * n + 2 * j, *mirror = Mob + 2 * j * 2 * n + 2 * i, one[4];
-      Pair(m, first + i, first + j, one);
-      block[0] = mirror[0] = one[0];
-      block[2 * n + 1] = mirror[2 * n + 1] = one[1];
-      block[1] = mirror[2 * n] = one[2];
-      block[2 * n] = mirror[1] = one[3];
+  PetscCall(PetscArrayzero(Mob, 4 * rows->n * columns->n));
+  if (m->box) PetscCall(MobilityBoxAdd(m->box, rows, columns, Mob));
+  if (!m->table) PetscFunctionReturn(PETSC_SUCCESS);
+  Pad(m, rows);
+  Pad(m, columns);
+  for (PetscInt p = part; p < columns->n; p += parts)
+    for (PetscInt q = same ? p : 0; q < rows->n; q++) {
+      const PetscInt i = same ? p : q, j = same ? q : p;
+      PetscReal one[4];
+      Pair(m, rows->first + i, columns->first + j, one);
+      if (same && i == j) one[2] = one[3]; /* symmetric to the bit */
+      MobilityAddPair(1, rows->n, i, j, one, Mob);
+      if (same && i != j) MobilityAddPair(1, rows->n, j, i, (PetscReal[]){one[0], one[1], one[3], one[2]}, Mob);
     }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode MobilityAssembleBetween(Mobility m, const MarkerRange *rows, const MarkerRange *columns, PetscInt part,
-                                       PetscInt parts, PetscReal Mob[]) {
-  const MarkerRange *range[2] = {rows, columns};
+PetscErrorCode MobilityAddNear(Coupling c, PetscBool box, const MarkerRange *rows, const MarkerRange *columns,
+                               PetscMPIInt root, PetscReal Mob[]) {
+  const Layout l = c->bodies->layout;
+  PetscMPIInt size;
   PetscFunctionBeginUser;
-  for (int q = 0; q < 2; q++) Pad(m, range[q]);
-  if (parts > 1 || m->box) PetscCall(PetscArrayzero(Mob, 4 * rows->n * columns->n));
-  if (m->box) PetscCall(MobilityBoxAdd(m->box, rows, columns, Mob));
-  for (PetscInt j = part; j < columns->n && !m->box; j += parts)
-    for (PetscInt i = 0; i < rows->n; i++) {
-      PetscReal *x = Mob + 2 * j * 2 * rows->n + 2 * i, *y = x + 2 * rows->n, one[4];
-      Pair(m, rows->first + i, columns->first + j, one);
-      x[0] = one[0];
-      y[1] = one[1];
-      y[0] = one[2];
-      x[1] = one[3];
-    }
+  if (c->near) PetscCall(NearFieldAddBetween(c->near, PetscSqr(c->fluid->grid->h), box, rows, columns, Mob));
+  PetscCall(PetscMPIIntCast(4 * rows->n * columns->n, &size));
+  if (l->size > 1)
+    PetscCallMPI(MPI_Reduce(l->rank == root ? MPI_IN_PLACE : Mob, Mob, size, MPIU_REAL, MPI_SUM, root, l->comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode MobilityOnRoot(Mobility m, const MarkerRange *rows, const MarkerRange *columns, PetscMPIInt root,
+                              PetscReal Mob[]) {
+  const Layout l = m->coupling->bodies->layout;
+  PetscFunctionBeginUser;
+  PetscCall(MobilityAssemble(m, rows, columns, l->rank, l->size, Mob));
+  PetscCall(MobilityAddNear(m->coupling, m->box ? PETSC_FALSE : PETSC_TRUE, rows, columns, root, Mob));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

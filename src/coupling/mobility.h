@@ -11,8 +11,8 @@
 typedef struct _p_Mobility *Mobility;
 struct _p_Mobility {
   Coupling coupling;      /* borrowed */
-  MobilityTable table;    /* NULL with */
-  MobilityBox box;        /* between walls, in quasi-steady flow with box part */
+  MobilityTable table;    /* NULL with box, and in unbounded fluid, where the near field is all */
+  MobilityBox box;        /* between walls, in quasi-steady flow with box part; else NULL */
   PetscReal near;         /* cells up to which a pair's stencils are summed */
   PetscReal part;         /* what the markers have of the grid's velocity, CouplingGridPart */
   PaddedStencil *stencil; /* [2M] work */
@@ -28,19 +28,16 @@ PETSC_EXTERN PetscErrorCode MobilityDestroy(Mobility *mobility);
    once). Collective. */
 PETSC_EXTERN PetscErrorCode MobilitySetUp(Mobility mobility, PetscReal alpha);
 
-/* MobilityAssemble - Mob of the n markers from `first` on, where the markers have been placed: matrix [2n][2n], entries
-   interlaced x, y. part p of `parts`: this call makes every parts-th row's pairs from p on and leaves zero elsewhere,
-   so that the sum over all parts is Mob. Collective between walls. */
-PETSC_EXTERN PetscErrorCode MobilityAssemble(Mobility mobility, PetscInt first, PetscInt n, PetscInt part,
-                                             PetscInt parts, PetscReal Mob[]);
+/* MobilityAssemble - Mob of the velocity of the markers in rows by forces on those in columns, ranges of whole bodies
+   where the markers have been placed: matrix [2 n of columns][2 n of rows], entries interlaced x, y. part p of `parts`:
+   this call makes the pairs of every parts-th column from p on and leaves zero elsewhere, so that the sum over all
+   parts is Mob; with a box every rank makes the rows of its own markers. Collective with a box. */
+PETSC_EXTERN PetscErrorCode MobilityAssemble(Mobility mobility, const MarkerRange *rows, const MarkerRange *columns,
+                                             PetscInt part, PetscInt parts, PetscReal Mob[]);
 
-/* MobilityHasBoxPart - whether the near field's box part is in it already; false of NULL. Not collective. */
-static inline PetscBool MobilityHasBoxPart(Mobility m) {
-  return m && m->box ? PETSC_TRUE : PETSC_FALSE;
-}
-
-/* MobilityAssembleBetween - the same of the velocity of the markers in rows by forces on those in columns, [2 n of
-   columns][2 n of rows]; a part has every parts-th column. Collective between walls. */
-PETSC_EXTERN PetscErrorCode MobilityAssembleBetween(Mobility mobility, const MarkerRange *rows,
-                                                    const MarkerRange *columns, PetscInt part, PetscInt parts,
-                                                    PetscReal Mob[]);
+/* MobilityOnRoot - Mob + h^2 C, C the near field with its box part: the sum of all ranks' parts on rank root, what is
+   left elsewhere has no meaning. MobilityAddNear - from ranks' parts of Mob, box: C has its box part. Collective. */
+PETSC_EXTERN PetscErrorCode MobilityOnRoot(Mobility mobility, const MarkerRange *rows, const MarkerRange *columns,
+                                           PetscMPIInt root, PetscReal Mob[]);
+PETSC_EXTERN PetscErrorCode MobilityAddNear(Coupling coupling, PetscBool box, const MarkerRange *rows,
+                                            const MarkerRange *columns, PetscMPIInt root, PetscReal Mob[]);

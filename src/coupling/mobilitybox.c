@@ -43,15 +43,6 @@ static void Lattice(NearField f, PetscInt i, PetscInt j, PetscReal value[4]) {
   for (int q = 0; q < 4; q++) value[q] = fade * (L[q] - C[q]);
 }
 
-/* out += scale times a pair's block, from column j to row i of so many. */
-static void AddPair(PetscReal scale, PetscInt rows, PetscInt i, PetscInt j, const PetscReal L[4], PetscReal out[]) {
-  PetscReal *x = out + 4 * j * rows + 2 * i, *y = x + 2 * rows;
-  x[0] += scale * L[0];
-  y[1] += scale * L[1];
-  y[0] += scale * L[2];
-  x[1] += scale * L[3];
-}
-
 PetscErrorCode MobilityBoxAdd(MobilityBox b, const MarkerRange *rows, const MarkerRange *columns, PetscReal out[]) {
   const NearField f = b->coupling->near;
   const Layout l = b->coupling->bodies->layout;
@@ -67,8 +58,8 @@ PetscErrorCode MobilityBoxAdd(MobilityBox b, const MarkerRange *rows, const Mark
     for (PetscInt i = same ? j : begin - rows->first; i < end - rows->first; i++) {
       PetscReal L[4];
       Lattice(f, rows->first + i, columns->first + j, L);
-      AddPair(h2, rows->n, i, j, L, out);
-      if (same && i > j) AddPair(h2, rows->n, j, i, (PetscReal[]){L[0], L[1], L[3], L[2]}, out);
+      MobilityAddPair(h2, rows->n, i, j, L, out);
+      if (same && i > j) MobilityAddPair(h2, rows->n, j, i, (PetscReal[]){L[0], L[1], L[3], L[2]}, out);
     }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

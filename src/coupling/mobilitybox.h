@@ -19,3 +19,14 @@ PETSC_EXTERN PetscErrorCode MobilityBoxDestroy(MobilityBox *box);
    the near field has been placed; out[2 n of columns][2 n of rows], ranges of whole bodies. Collective. */
 PETSC_EXTERN PetscErrorCode MobilityBoxAdd(MobilityBox box, const MarkerRange *rows, const MarkerRange *columns,
                                            PetscReal out[]);
+
+/* MobilityAddPair - Mob[][2 rows] += scale times the block xx, yy, xy, yx of markers i and j: velocity of row marker i
+   by a force on column marker j. Not collective. */
+static inline void MobilityAddPair(PetscReal scale, PetscInt rows, PetscInt i, PetscInt j, const PetscReal block[4],
+                                   PetscReal Mob[]) {
+  PetscReal *x = Mob + 4 * j * rows + 2 * i, *y = x + 2 * rows;
+  x[0] += scale * block[0];
+  y[1] += scale * block[1];
+  y[0] += scale * block[2];
+  x[1] += scale * block[3];
+}

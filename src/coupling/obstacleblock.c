@@ -66,39 +66,28 @@ static PetscBool OnWall(Obstacles o) {
   return PETSC_FALSE;
 }
 
-/* E A^-1 E^T: every rank makes a part of the table's sums, or root has all from solves. */
-static PetscErrorCode AssembleMobility(ObstacleBlock b, PetscReal A[]) {
-  const Layout l = b->obstacles->layout;
+/* The block times h^2, on root. */
+static PetscErrorCode Assemble(ObstacleBlock b, PetscReal A[]) {
+  const Obstacles o = b->obstacles;
+  const Layout l = o->layout;
+  const PetscInt n = 2 * l->M;
+  const MarkerRange solid = {o->all->M - l->M, l->M};
+  const PetscReal scale = o->beta * PetscSqr(b->coupling->fluid->grid->h);
   Mobility mobility;
   PetscFunctionBeginUser;
-  if (OnWall(b->obstacles)) {
-    if (l->rank != b->root) PetscCall(PetscArrayzero(A, 4 * l->M * l->M));
+  if (OnWall(o)) {
+    if (l->rank != b->root) PetscCall(PetscArrayzero(A, n * n));
     PetscCall(MobilitySolves(b->coupling, b->root, A));
-    PetscFunctionReturn(PETSC_SUCCESS);
+    PetscCall(MobilityAddNear(b->coupling, PETSC_TRUE, &solid, &solid, b->root, A));
+  } else {
+    PetscCall(MobilityCreate(b->spec, b->coupling, PETSC_MAX_REAL, &mobility));
+    PetscCall(MobilitySetUp(mobility, b->alpha));
+    PetscCall(MobilityOnRoot(mobility, &solid, &solid, b->root, A));
+    PetscCall(MobilityDestroy(&mobility));
   }
-  PetscCall(MobilityCreate(b->spec, b->coupling, PETSC_MAX_REAL, &mobility));
-  PetscCall(MobilitySetUp(mobility, b->alpha));
-  PetscCall(MobilityAssemble(mobility, b->obstacles->all->M - l->M, l->M, l->rank, l->size, A));
-  PetscCall(MobilityDestroy(&mobility));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The block times h^2, on root: every rank adds its own rows of the near field. */
-static PetscErrorCode Assemble(ObstacleBlock b, PetscReal A[]) {
-  const Layout l = b->obstacles->layout;
-  const PetscInt n = 2 * l->M, first = b->obstacles->all->M - l->M;
-  const PetscReal h2 = PetscSqr(b->coupling->fluid->grid->h);
-  PetscMPIInt size;
-  PetscFunctionBeginUser;
-  PetscCall(AssembleMobility(b, A));
-  PetscCall(NearFieldAdd(b->coupling->near, h2, PETSC_TRUE, first, l->M, A));
-  for (PetscInt v = l->own; v < l->end; v++)
-    for (PetscInt i = 2 * l->start[v]; i < 2 * l->start[v + 1]; i++)
-      for (PetscInt j = 2 * l->start[v]; j < 2 * l->start[v + 1]; j++)
-        A[j * n + i] += h2 * b->obstacles->beta * b->obstacles->N[i] * b->obstacles->N[j];
-  PetscCall(PetscMPIIntCast(n * n, &size));
-  if (l->size > 1)
-    PetscCallMPI(MPI_Reduce(l->rank == b->root ? MPI_IN_PLACE : A, A, size, MPIU_REAL, MPI_SUM, b->root, l->comm));
+  for (PetscInt v = 0; v < l->bodies && l->rank == b->root; v++)
+    for (PetscInt j = 2 * l->start[v]; j < 2 * l->start[v + 1]; j++)
+      for (PetscInt i = 2 * l->start[v]; i < 2 * l->start[v + 1]; i++) A[j * n + i] += scale * o->N[i] * o->N[j];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -215,22 +204,6 @@ static void Turn(ObstacleBlock b, PetscBool back, PetscScalar F[]) {
   }
 }
 
-/* h^2 times the velocity of the obstacles by forces on the vesicles, [2M][2W] on root. */
-static PetscErrorCode AssembleCross(ObstacleBlock b, Mobility mobility, PetscReal K[]) {
-  const Layout l = b->obstacles->layout;
-  const MarkerRange vesicles = {0, b->coupling->membrane->layout->M}, solid = {vesicles.n, l->M};
-  const PetscReal h2 = PetscSqr(b->coupling->fluid->grid->h);
-  PetscMPIInt size;
-  PetscFunctionBeginUser;
-  PetscCall(MobilityAssembleBetween(mobility, &solid, &vesicles, l->rank, l->size, K));
-  PetscCall(NearFieldAddBetween(b->coupling->near, h2, MobilityHasBoxPart(mobility) ? PETSC_FALSE : PETSC_TRUE, &solid,
-                                &vesicles, K));
-  PetscCall(PetscMPIIntCast(4 * solid.n * vesicles.n, &size));
-  if (l->size > 1)
-    PetscCallMPI(MPI_Reduce(l->rank == b->root ? MPI_IN_PLACE : K, K, size, MPIU_REAL, MPI_SUM, b->root, l->comm));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* X = A^-1 K to response, and Mob -= h^2 K^T X of K h^2, on root. */
 static PetscErrorCode Eliminate(ObstacleBlock b, PetscInt m, PetscReal K[], PetscReal Mob[]) {
   const PetscInt w = 2 * b->obstacles->layout->M;
@@ -251,7 +224,8 @@ static PetscErrorCode Eliminate(ObstacleBlock b, PetscInt m, PetscReal K[], Pets
 }
 
 PetscErrorCode ObstacleBlockCouple(ObstacleBlock b, Mobility mobility, PetscReal Mob[], PetscBool *failed) {
-  const PetscInt m = 2 * b->coupling->membrane->layout->M;
+  const MarkerRange vesicles = {0, b->coupling->membrane->layout->M}, solid = {vesicles.n, b->obstacles->layout->M};
+  const PetscInt m = 2 * vesicles.n;
   PetscReal *K;
   PetscFunctionBeginUser;
   if (b->obstacles->moving) PetscFunctionReturn(PETSC_SUCCESS);
@@ -261,7 +235,7 @@ PetscErrorCode ObstacleBlockCouple(ObstacleBlock b, Mobility mobility, PetscReal
   b->coupled = PETSC_TRUE;
   b->renewed = PETSC_FALSE;
   PetscCall(PetscMalloc1(2 * b->obstacles->layout->M * m, &K));
-  PetscCall(AssembleCross(b, mobility, K));
+  PetscCall(MobilityOnRoot(mobility, &solid, &vesicles, b->root, K)); /* velocity of obstacles by forces on vesicles */
   if (b->obstacles->layout->rank == b->root) PetscCall(Eliminate(b, m, K, Mob));
   PetscCall(PetscFree(K));
   PetscFunctionReturn(PETSC_SUCCESS);

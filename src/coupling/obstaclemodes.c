@@ -112,24 +112,17 @@ static void FindShapes(ObstacleModes s) {
   }
 }
 
-/* D of a curve, [2n][2n], on root: every rank makes a part of the table's sums and adds its own rows of the near field.
- */
+/* D of a curve, [2n][2n], on root. */
 static PetscErrorCode AssembleCurve(ObstacleModes s, Mobility mobility, PetscInt v, PetscReal D[]) {
   const Obstacles o = s->coupling->bodies->obstacles;
   const Layout l = o->layout;
-  const PetscInt n = 2 * LayoutCount(l, v), first = o->all->M - l->M + l->start[v];
+  const PetscInt n = 2 * LayoutCount(l, v);
+  const MarkerRange own = {o->all->M - l->M + l->start[v], n / 2};
   const PetscReal h2 = PetscSqr(s->coupling->fluid->grid->h), *N = o->N + 2 * l->start[v];
-  PetscMPIInt size;
   PetscFunctionBeginUser;
-  PetscCall(MobilityAssemble(mobility, first, n / 2, l->rank, l->size, D));
-  PetscCall(
-      NearFieldAdd(s->coupling->near, h2, MobilityHasBoxPart(mobility) ? PETSC_FALSE : PETSC_TRUE, first, n / 2, D));
-  for (PetscInt j = 0; j < n && v >= l->own && v < l->end; j++)
-    for (PetscInt i = 0; i < n; i++) D[j * n + i] += h2 * o->beta * N[i] * N[j];
-  PetscCall(PetscMPIIntCast(n * n, &size));
-  if (l->size > 1)
-    PetscCallMPI(MPI_Reduce(l->rank == s->root ? MPI_IN_PLACE : D, D, size, MPIU_REAL, MPI_SUM, s->root, l->comm));
-  for (PetscInt k = 0; k < n * n; k++) D[k] /= h2;
+  PetscCall(MobilityOnRoot(mobility, &own, &own, s->root, D));
+  for (PetscInt j = 0; j < n; j++)
+    for (PetscInt i = 0; i < n; i++) D[j * n + i] = D[j * n + i] / h2 + o->beta * N[i] * N[j];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

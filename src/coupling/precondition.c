@@ -38,7 +38,7 @@ PetscErrorCode PreconditionerCreate(Scene scene, Unknowns u, PetscBool flexible,
   if (c->near && c->fluid->steady && c->membrane->layout->M > DENSE_TOGETHER) {
     PetscCall(PatternsCreate(&scene->fluid, c, &p->patterns));
   } else if (CouplingHasMembrane(c)) {
-    if (!c->fluid->grid->free) PetscCall(MobilityCreate(&scene->fluid, c, Reach(c), &p->mobility));
+    PetscCall(MobilityCreate(&scene->fluid, c, Reach(c), &p->mobility));
     PetscCall(DenseBlocksCreate(c, &p->blocks));
   }
   PetscCall(PreconditionerForget(p));
@@ -117,7 +117,7 @@ static PetscReal RenewalCost(Preconditioner p) {
   const Coupling c = p->unknowns->coupling;
   const Layout l = c->membrane->layout;
   const PetscReal n = l->M <= DENSE_TOGETHER ? l->M : (PetscReal)l->M / l->bodies, blocks = l->M / n;
-  const PetscReal cells = p->mobility ? (PetscReal)c->fluid->grid->n[0] * c->fluid->grid->n[1] : 0;
+  const PetscReal cells = c->fluid->grid->free ? 0 : (PetscReal)c->fluid->grid->n[0] * c->fluid->grid->n[1];
   return DenseRenewalCost(blocks, n, blocks == 1 ? (PetscReal)BodiesObstacleMarkers(c->bodies) : 0, cells);
 }
 

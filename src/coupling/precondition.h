@@ -28,7 +28,7 @@ typedef struct {
 typedef struct _p_Preconditioner *Preconditioner;
 struct _p_Preconditioner {
   Unknowns unknowns;    /* borrowed */
-  Mobility mobility;    /* NULL in unbounded fluid, where the near field is all of it */
+  Mobility mobility;    /* few vesicles */
   DenseBlocks blocks;   /* few vesicles */
   Patterns patterns;    /* many vesicles */
   ObstacleBlock solid;  /* NULL without obstacles */
