@@ -27,27 +27,9 @@ PetscErrorCode DenseSolve(PetscInt n, const PetscReal A[], const PetscBLASInt pi
 }
 
 /* PETSc names the routines of its own precision only. */
-extern void sgetrf_(const PetscBLASInt *, const PetscBLASInt *, float *, const PetscBLASInt *, PetscBLASInt *,
-                    PetscBLASInt *);
-extern void sgetri_(const PetscBLASInt *, float *, const PetscBLASInt *, const PetscBLASInt *, float *,
-                    const PetscBLASInt *, PetscBLASInt *);
 extern void sgemv_(const char *, const PetscBLASInt *, const PetscBLASInt *, const float *, const float *,
                    const PetscBLASInt *, const float *, const PetscBLASInt *, const float *, float *,
                    const PetscBLASInt *);
-
-PetscErrorCode DenseInverse(PetscInt n, float A[], PetscBool *done) {
-  PetscBLASInt size, room, info, *pivot;
-  float *work;
-  PetscFunctionBeginUser;
-  PetscCall(PetscBLASIntCast(n, &size));
-  PetscCall(PetscBLASIntCast(64 * n, &room));
-  PetscCall(PetscMalloc2(n, &pivot, 64 * n, &work));
-  PetscCallBLAS("sgetrf", sgetrf_(&size, &size, A, &size, pivot, &info));
-  *done = info ? PETSC_FALSE : PETSC_TRUE;
-  if (*done) PetscCallBLAS("sgetri", sgetri_(&size, A, &size, pivot, work, &room, &info));
-  PetscCall(PetscFree2(pivot, work));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
 
 PetscErrorCode DenseSingleMultAdd(PetscBool transpose, PetscInt m, PetscInt n, float alpha, const float A[],
                                   const float x[], float y[]) {
@@ -74,24 +56,26 @@ PetscErrorCode DenseMultAdd(PetscBool transpose, PetscInt m, PetscInt n, PetscRe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode DenseProductWithin(PetscBool transpose, PetscInt m, PetscInt n, PetscInt k, const PetscReal A[],
-                                  PetscInt lda, const PetscReal B[], PetscInt ldb, PetscReal beta, PetscReal C[],
-                                  PetscInt ldc) {
-  const PetscInt sizes[] = {m, n, k, PetscMax(1, lda), PetscMax(1, ldb), PetscMax(1, ldc)};
+PetscErrorCode DenseProductWithin(PetscBool transpose, DenseView A, DenseView B, PetscReal beta, PetscReal C[],
+                                  PetscInt apart) {
+  const PetscInt m = transpose ? A.columns : A.rows;
+  const PetscInt sizes[] = {m, B.columns, B.rows, PetscMax(1, A.apart), PetscMax(1, B.apart), PetscMax(1, apart)};
   const PetscReal one = 1;
   PetscBLASInt size[6];
   PetscFunctionBeginUser;
-  if (!m || !n) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!m || !B.columns) PetscFunctionReturn(PETSC_SUCCESS);
   for (int q = 0; q < 6; q++) PetscCall(PetscBLASIntCast(sizes[q], &size[q]));
-  PetscCallBLAS("BLASgemm", BLASgemm_(transpose ? "T" : "N", "N", &size[0], &size[1], &size[2], &one, A, &size[3], B,
-                                      &size[4], &beta, C, &size[5]));
+  PetscCallBLAS("BLASgemm", BLASgemm_(transpose ? "T" : "N", "N", &size[0], &size[1], &size[2], &one, A.a, &size[3],
+                                      B.a, &size[4], &beta, C, &size[5]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode DenseProduct(PetscBool transpose, PetscInt m, PetscInt n, PetscInt k, const PetscReal A[],
                             const PetscReal B[], PetscReal C[]) {
+  const PetscInt rows = transpose ? k : m;
   PetscFunctionBeginUser;
-  PetscCall(DenseProductWithin(transpose, m, n, k, A, transpose ? k : m, B, k, 0, C, m));
+  PetscCall(
+      DenseProductWithin(transpose, (DenseView){A, rows, transpose ? m : k, rows}, (DenseView){B, k, n, k}, 0, C, m));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

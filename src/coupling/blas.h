@@ -10,9 +10,6 @@ PETSC_EXTERN PetscErrorCode DenseFactor(PetscInt n, PetscReal A[], PetscBLASInt 
 PETSC_EXTERN PetscErrorCode DenseSolve(PetscInt n, const PetscReal A[], const PetscBLASInt pivot[], PetscBool transpose,
                                        PetscInt nrhs, PetscReal X[]);
 
-/* DenseInverse - A (n x n) in single precision becomes its inverse; done is false when it is singular. */
-PETSC_EXTERN PetscErrorCode DenseInverse(PetscInt n, float A[], PetscBool *done);
-
 /* DenseSingle - single[n] = x[n]. */
 static inline void DenseSingle(PetscInt n, const PetscReal x[], float single[]) {
   for (PetscInt k = 0; k < n; k++) single[k] = (float)x[k];
@@ -30,11 +27,16 @@ PETSC_EXTERN PetscErrorCode DenseSingleMultAdd(PetscBool transpose, PetscInt m, 
 PETSC_EXTERN PetscErrorCode DenseProduct(PetscBool transpose, PetscInt m, PetscInt n, PetscInt k, const PetscReal A[],
                                          const PetscReal B[], PetscReal C[]);
 
-/* DenseProductWithin - C = A B + beta C, or (transpose) A^T B + beta C, of parts of matrices: their columns are lda,
-   ldb and ldc apart. */
-PETSC_EXTERN PetscErrorCode DenseProductWithin(PetscBool transpose, PetscInt m, PetscInt n, PetscInt k,
-                                               const PetscReal A[], PetscInt lda, const PetscReal B[], PetscInt ldb,
-                                               PetscReal beta, PetscReal C[], PetscInt ldc);
+/* A matrix whose columns are `apart` numbers from one to the next: a part of a larger one. */
+typedef struct {
+  const PetscReal *a;
+  PetscInt rows, columns, apart;
+} DenseView;
+
+/* DenseProductWithin - C = A B + beta C, or (transpose) A^T B + beta C, columns of C `apart` numbers from one to the
+   next. */
+PETSC_EXTERN PetscErrorCode DenseProductWithin(PetscBool transpose, DenseView A, DenseView B, PetscReal beta,
+                                               PetscReal C[], PetscInt apart);
 
 /* DenseEigen - eigenvalues l[n], ascending, of the symmetric A (n x n), whose columns become the eigenvectors. */
 PETSC_EXTERN PetscErrorCode DenseEigen(PetscInt n, PetscReal A[], PetscReal l[]);

@@ -37,7 +37,8 @@ PetscErrorCode DenseBlocksCreate(Coupling coupling, DenseBlocks *out) {
   for (PetscInt k = 0; k < b->count; k++) {
     const PetscInt v = b->together ? 0 : l->own + k;
     BlockFrame *f = &b->frame[k];
-    PetscCall(DenseBlockCreate(l, v, b->together ? l->bodies : v + 1, &b->block[k]));
+    PetscCall(DenseBlockCreate(coupling->membrane, coupling->fluid->grid->h, v, b->together ? l->bodies : v + 1,
+                               &b->block[k]));
     f->turns = b->block[k].end - v == 1 && !(b->together && coupling->bodies->obstacles) ? PETSC_TRUE : PETSC_FALSE;
     const PetscInt n = f->turns ? b->block[k].n : 0;
     PetscCall(PetscMalloc3(2 * n, &f->X, 2 * n, &f->U, n, &f->sigma));
@@ -146,7 +147,7 @@ PetscErrorCode DenseBlocksFactor(DenseBlocks b, Mobility mobility, ObstacleBlock
       if (b->coupling->near) PetscCall(NearFieldAdd(b->coupling->near, h2, PETSC_FALSE, q->first, q->n, Mob));
       PetscCall(AssembleMotion(b, a0, q->first, q->n, &motion));
     }
-    PetscCall(DenseBlockFactor(m, h2, q, a0, b->coupling->treading + q->vesicle, Mob, motion, &good));
+    PetscCall(DenseBlockFactor(q, a0, b->coupling->treading + q->vesicle, Mob, motion, &good));
     if (!b->together) PetscCall(PetscFree(motion));
   }
   PetscCall(PetscFree(motion));
@@ -159,17 +160,16 @@ PetscErrorCode DenseBlocksFactor(DenseBlocks b, Mobility mobility, ObstacleBlock
 
 /* Block k's problem, in its frame. */
 static PetscErrorCode SolveBlock(DenseBlocks b, PetscInt k, PetscScalar U[], PetscScalar sigma[]) {
-  const PetscReal h2 = PetscSqr(b->coupling->fluid->grid->h);
   const DenseBlock *q = &b->block[k];
   BlockFrame *f = &b->frame[k];
   PetscFunctionBeginUser;
   if (!f->turns) {
-    PetscCall(DenseBlockSolve(b->coupling->membrane, h2, q, 1, U, sigma));
+    PetscCall(DenseBlockSolve(q, 1, U, sigma));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PoseInto(&f->pose, 2, q->n, U, f->U);
   PoseInto(&f->pose, 1, q->n, sigma, f->sigma);
-  PetscCall(DenseBlockSolve(b->coupling->membrane, h2, q, 1, f->U, f->sigma));
+  PetscCall(DenseBlockSolve(q, 1, f->U, f->sigma));
   PoseBack(&f->pose, 2, q->n, f->U, U);
   PoseBack(&f->pose, 1, q->n, f->sigma, sigma);
   PetscFunctionReturn(PETSC_SUCCESS);

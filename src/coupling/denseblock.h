@@ -6,6 +6,8 @@
 #include <petscblaslapack.h>
 
 typedef struct {
+  Membrane membrane;     /* borrowed */
+  PetscReal h2;          /* h^2 of the grid's cells */
   PetscInt vesicle, end; /* its vesicles: vesicle .. end - 1 */
   PetscInt first, n;     /* its markers */
   PetscReal *N, *C;      /* LU factors of N (2n x 2n) and C (n x n) */
@@ -15,20 +17,20 @@ typedef struct {
   PetscBLASInt *pivot_N, *pivot_C;
 } DenseBlock;
 
-/* DenseBlockCreate - for vesicles vesicle .. end - 1, tangents not set. Not collective. */
-PETSC_EXTERN PetscErrorCode DenseBlockCreate(Layout layout, PetscInt vesicle, PetscInt end, DenseBlock *block);
+/* DenseBlockCreate - for vesicles vesicle .. end - 1 on a grid of cells h, tangents not set. Not collective. */
+PETSC_EXTERN PetscErrorCode DenseBlockCreate(Membrane membrane, PetscReal h, PetscInt vesicle, PetscInt end,
+                                             DenseBlock *block);
 PETSC_EXTERN PetscErrorCode DenseBlockDestroy(DenseBlock *block);
 
 /* DenseBlockFactor - N and C for M = Mob[2n][2n], symmetric, the block's tangents, a0 and its vesicles' label speeds
-   treading[]; h2 = h^2. motion: with viscosity contrast what stands in the place of (I + (v/a0) d/dt)^T
-   (ContrastMatrix), else NULL. factored is false when a matrix is singular. Not collective. */
-PETSC_EXTERN PetscErrorCode DenseBlockFactor(Membrane membrane, PetscReal h2, DenseBlock *block, PetscReal a0,
-                                             const PetscReal treading[], const PetscReal Mob[],
-                                             const PetscReal motion[], PetscBool *factored);
+   treading[]. motion: with viscosity contrast what stands in the place of (I + (v/a0) d/dt)^T (ContrastMatrix), else
+   NULL. factored is false when a matrix is singular. Not collective. */
+PETSC_EXTERN PetscErrorCode DenseBlockFactor(DenseBlock *block, PetscReal a0, const PetscReal treading[],
+                                             const PetscReal Mob[], const PetscReal motion[], PetscBool *factored);
 
 /* DenseBlockSolve - from nrhs columns of U[2n] and sigma[n] = r_s: sigma, and U overwritten by U3. Not collective. */
-PETSC_EXTERN PetscErrorCode DenseBlockSolve(Membrane membrane, PetscReal h2, const DenseBlock *block, PetscInt nrhs,
-                                            PetscScalar U[], PetscScalar sigma[]);
+PETSC_EXTERN PetscErrorCode DenseBlockSolve(const DenseBlock *block, PetscInt nrhs, PetscScalar U[],
+                                            PetscScalar sigma[]);
 
 /* DenseStepChanged - whether a factor made for one coefficient of the time step no longer serves the present one: they
    differ by more than this ratio, or one of them is zero. Not collective. */

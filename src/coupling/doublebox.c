@@ -253,8 +253,8 @@ static PetscErrorCode SquareMatrix(DoubleBox b, PetscReal scale, PetscReal out[]
     if (!c)
       PetscCall(
           DenseProduct(PETSC_FALSE, 2 * size, l->M, size, b->at->block->Q + part * size * 2 * size, value, given));
-    PetscCall(DenseProductWithin(PETSC_TRUE, l->n, l->M, size, value + l->first * size, size, given + c * size,
-                                 2 * size, 0, taken, l->n));
+    PetscCall(DenseProductWithin(PETSC_TRUE, (DenseView){value + l->first * size, size, l->n, size},
+                                 (DenseView){given + c * size, size, l->M, 2 * size}, 0, taken, l->n));
     for (PetscInt j = 0; j < l->M; j++)
       for (PetscInt k = 0; k < l->n; k++)
         out[2 * ((DIPOLE_COUNT * j + part) * l->M + l->first + k) + c] += scale * taken[j * l->n + k];

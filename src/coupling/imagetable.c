@@ -70,9 +70,10 @@ static PetscErrorCode AddNodes(const PetscReal theta[], const PetscReal weight[]
   for (int q = 0; q < IMAGE_NODES; q++) SetNode(theta[q], weight[q], q, a);
   for (int b = 0; b < OFFSET_COUNT; b++) {
     PetscReal *first = t->value[b][0][0] + IMAGE_SHIFT + (b == OFFSET_VU ? 1 : 0);
-    PetscCall(DenseProductWithin(PETSC_FALSE, b == OFFSET_VU ? IMAGE_SHIFT : SHIFTS, PAIRS, IMAGE_NODES,
-                                 b == OFFSET_VU ? a->odd[0] : a->even[0], SHIFTS, a->across[b][0], IMAGE_NODES, 1,
-                                 first, IMAGE_WIDTH));
+    const PetscBool odd = b == OFFSET_VU ? PETSC_TRUE : PETSC_FALSE;
+    const DenseView shift = {odd ? a->odd[0] : a->even[0], odd ? IMAGE_SHIFT : SHIFTS, IMAGE_NODES, SHIFTS};
+    const DenseView across = {a->across[b][0], IMAGE_NODES, PAIRS, IMAGE_NODES};
+    PetscCall(DenseProductWithin(PETSC_FALSE, shift, across, 1, first, IMAGE_WIDTH));
   }
   PetscCall(PetscFree(a));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -106,15 +106,12 @@ static PetscErrorCode MakeDense(ObstacleBlock b, PetscBool *failed) {
   const PetscReal over = 1 / PetscSqr(b->coupling->fluid->grid->h);
   PetscBool done = PETSC_TRUE;
   PetscReal *A;
-  float *single;
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(n * n, &A));
   PetscCall(Assemble(b, A));
   if (l->rank == b->root) {
-    PetscCall(PetscMalloc1(n * n, &single));
-    for (PetscInt k = 0; k < n * n; k++) single[k] = (float)(over * A[k]);
-    PetscCall(SymmetricInvert(n, single, b->inverse, &done));
-    PetscCall(PetscFree(single));
+    for (PetscInt k = 0; k < n * n; k++) A[k] *= over;
+    PetscCall(SymmetricInvert(n, A, b->inverse, &done));
   }
   PetscCall(PetscFree(A));
   PetscCall(AgreeFlag(l->comm, done ? PETSC_FALSE : PETSC_TRUE, failed));

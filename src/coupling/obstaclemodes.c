@@ -132,9 +132,8 @@ static PetscErrorCode InvertCurve(CurveShape *q, const PetscReal D[], PetscBool 
   float *single;
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc3(SymmetricSize(n), &q->inverse, m * n, &q->answer, m * m, &q->G));
-  PetscCall(PetscMalloc1(n * n, &single));
-  DenseSingle(n * n, D, single);
-  PetscCall(SymmetricInvert(n, single, q->inverse, done));
+  PetscCall(PetscMalloc1(n, &single));
+  PetscCall(SymmetricInvert(n, D, q->inverse, done));
   for (PetscInt j = 0; j < m && *done; j++) {
     float *answer = q->answer + j * n;
     for (PetscInt k = 0; k < n; k++) single[k] = k % 2 == j % 2 ? (float)q->curve.to_markers[j / 2 * n / 2 + k / 2] : 0;

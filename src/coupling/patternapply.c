@@ -1,6 +1,5 @@
 /* The preconditioner's part of the vesicles: patterns' matrices on the columns of all vesicles that take them. */
 #include "coupling/patternapply.h"
-#include "coupling/panels.h"
 
 /* (U, sigma) += y, back from the pattern's frame. */
 static void AddFromPattern(const Pose *p, PetscInt n, const PetscReal y[], PetscScalar U[], PetscScalar sigma[]) {
@@ -23,24 +22,16 @@ static void GatherColumns(Patterns s, const Pattern *q, PetscInt each, const Pet
   }
 }
 
-/* s->to = panels of `rows` rows times the columns gathered, 3n or (W alone) 2n numbers each; returns how far its
-   columns are apart. */
-static PetscInt Multiply(Patterns s, const Pattern *q, PetscInt rows, const PetscReal panels[], PetscInt inner) {
-  const PetscInt all = 3 * LayoutCount(s->coupling->membrane->layout, q->like), apart[2] = {inner, PanelsRows(rows)};
-  PanelsProduct(rows, all, panels, inner, q->end - q->begin, apart, s->from, s->to);
-  return apart[1];
-}
-
 /* F and J of each vesicle, from the columns gathered. */
 static void FindSources(Patterns s, const Pattern *q, PetscInt inner, const PatternSources *sources) {
   const Layout l = s->coupling->membrane->layout;
-  const PetscInt n = LayoutCount(l, q->like), rows = PatternSourceRows(s, q);
-  const PetscInt apart = Multiply(s, q, rows, q->sources, inner);
+  const PetscInt n = LayoutCount(l, q->like);
   const PetscReal *y = s->to;
-  for (PetscInt k = q->begin; k < q->end; k++, y += apart) {
+  PackedMatrixProduct(&q->sources, inner, q->end - q->begin, s->from, s->to);
+  for (PetscInt k = q->begin; k < q->end; k++, y += PackedMatrixRows(&q->sources)) {
     const PetscInt v = s->order[k], at = 2 * LayoutOffset(l, v);
     PoseBack(&s->pose[v - l->own], 2, n, y, sources->force + at);
-    if (rows > 2 * n)
+    if (q->sources.rows > 2 * n)
       PoseBack(&s->pose[v - l->own], 2, n, y + 2 * n, sources->jump + at);
     else if (sources->jump)
       (void)PetscArrayzero(sources->jump + at, 2 * n);
@@ -50,9 +41,9 @@ static void FindSources(Patterns s, const Pattern *q, PetscInt inner, const Patt
 /* (V, sigma) of each vesicle, added. */
 static void AddAnswers(Patterns s, const Pattern *q, PetscInt inner, PetscScalar U[], PetscScalar sigma[]) {
   const Layout l = s->coupling->membrane->layout;
-  const PetscInt apart = Multiply(s, q, 3 * LayoutCount(l, q->like), q->inverse, inner);
   const PetscReal *y = s->to;
-  for (PetscInt k = q->begin; k < q->end; k++, y += apart) {
+  PackedMatrixProduct(&q->inverse, inner, q->end - q->begin, s->from, s->to);
+  for (PetscInt k = q->begin; k < q->end; k++, y += PackedMatrixRows(&q->inverse)) {
     const PetscInt v = s->order[k], at = LayoutOffset(l, v);
     AddFromPattern(&s->pose[v - l->own], LayoutCount(l, v), y, U + 2 * at, sigma + at);
   }

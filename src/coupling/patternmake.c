@@ -2,7 +2,6 @@
 #include "coupling/contrast.h"
 #include "coupling/denseblock.h"
 #include "coupling/doubleblock.h"
-#include "coupling/panels.h"
 #include "coupling/selflayer.h"
 
 /* M += scale times the coarse grid's mean mobility between n points. */
@@ -71,7 +70,7 @@ static void Sources(Patterns s, const Pattern *q, const PetscReal tau[], const P
   (void)PetscArrayzero(F, 2 * n);
   MembraneEdgesTranspose(m, q->like, 1, pull, F);
   if (m->bending > 0) MembraneVesicleBending(m, q->like, m->bending / s->a0, V, F);
-  if (PatternSourceRows(s, q) == 2 * n) return;
+  if (q->sources.rows == 2 * n) return;
   PetscReal *J = F + 2 * n;
   (void)PetscArraycpy(J, V, 2 * n);
   MembraneLabelDerivative(m, q->like, q->treading / s->a0, V, J);
@@ -97,18 +96,18 @@ static PetscErrorCode MakeCoarse(Patterns s, Pattern *q) {
 /* The inverse and its sources: the columns are the answers V, sigma to those of the identity. */
 static PetscErrorCode Store(Patterns s, Pattern *q, const PetscReal tau[], const PetscReal V[],
                             const PetscReal sigma[]) {
-  const PetscInt n = LayoutCount(s->coupling->membrane->layout, q->like), all = 3 * n, rows = PatternSourceRows(s, q);
+  const PetscInt n = LayoutCount(s->coupling->membrane->layout, q->like), all = 3 * n;
   PetscReal *answer, *F;
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(all, &answer, rows, &F));
-  PetscCall(PetscMalloc1(PanelsSize(all, all), &q->inverse));
-  PetscCall(PetscMalloc1(PanelsSize(rows, all), &q->sources));
+  PetscCall(PetscMalloc2(all, &answer, q->sources.rows, &F));
+  PetscCall(PetscMalloc1(PackedMatrixSize(&q->inverse), &q->inverse.value));
+  PetscCall(PetscMalloc1(PackedMatrixSize(&q->sources), &q->sources.value));
   for (PetscInt j = 0; j < all; j++) {
     PetscCall(PetscArraycpy(answer, V + j * 2 * n, 2 * n));
     PetscCall(PetscArraycpy(answer + 2 * n, sigma + j * n, n));
     Sources(s, q, tau, answer, F);
-    PanelsSetColumn(all, all, j, answer, q->inverse);
-    PanelsSetColumn(rows, all, j, F, q->sources);
+    PackedMatrixSetColumn(&q->inverse, j, answer);
+    PackedMatrixSetColumn(&q->sources, j, F);
   }
   PetscCall(PetscFree2(answer, F));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -117,21 +116,20 @@ static PetscErrorCode Store(Patterns s, Pattern *q, const PetscReal tau[], const
 PetscErrorCode PatternMake(Patterns s, Pattern *q, PetscBool *good) {
   const Membrane m = s->coupling->membrane;
   const PetscInt n = LayoutCount(m->layout, q->like), all = 3 * n;
-  const PetscReal h2 = PetscSqr(s->coupling->fluid->grid->h);
   PetscReal *M, *motion, *V, *sigma;
   DenseBlock block;
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(4 * n * n, &M));
   PetscCall(PetscCalloc2(2 * n * all, &V, n * all, &sigma));
-  PetscCall(DenseBlockCreate(m->layout, q->like, q->like + 1, &block));
+  PetscCall(DenseBlockCreate(m, s->coupling->fluid->grid->h, q->like, q->like + 1, &block));
   PetscCall(Assemble(s, q, M));
   PetscCall(Motion(s, q, &motion));
   MembraneVesicleTangents(m, q->like, q->X, block.tau);
-  PetscCall(DenseBlockFactor(m, h2, &block, s->a0, &q->treading, M, motion, good));
+  PetscCall(DenseBlockFactor(&block, s->a0, &q->treading, M, motion, good));
   PetscCall(PetscFree(motion));
   for (PetscInt j = 0; j < 2 * n; j++) V[j * 2 * n + j] = 1;
   for (PetscInt j = 0; j < n; j++) sigma[(2 * n + j) * n + j] = 1;
-  if (*good) PetscCall(DenseBlockSolve(m, h2, &block, all, V, sigma));
+  if (*good) PetscCall(DenseBlockSolve(&block, all, V, sigma));
   PetscCall(Store(s, q, block.tau, V, sigma));
   if (s->coarse) PetscCall(MakeCoarse(s, q));
   PetscCall(DenseBlockDestroy(&block));
@@ -142,10 +140,9 @@ PetscErrorCode PatternMake(Patterns s, Pattern *q, PetscBool *good) {
 
 /* A pattern's matrices one after another. */
 static PetscInt Lists(Patterns s, Pattern *q, PetscReal **list[4], PetscInt size[4]) {
-  const PetscInt n = LayoutCount(s->coupling->membrane->layout, q->like), all = 3 * n,
-                 points = s->coarse ? LayoutCount(s->coarse->layout, q->like) : 0;
-  PetscReal **const lists[4] = {&q->inverse, &q->sources, &q->self, &q->points};
-  const PetscInt sizes[4] = {PanelsSize(all, all), PanelsSize(PatternSourceRows(s, q), all), 4 * points * points,
+  const PetscInt points = s->coarse ? LayoutCount(s->coarse->layout, q->like) : 0;
+  PetscReal **const lists[4] = {&q->inverse.value, &q->sources.value, &q->self, &q->points};
+  const PetscInt sizes[4] = {PackedMatrixSize(&q->inverse), PackedMatrixSize(&q->sources), 4 * points * points,
                              2 * points};
   for (int k = 0; k < 4; k++) {
     list[k] = lists[k];

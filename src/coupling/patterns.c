@@ -1,6 +1,5 @@
 #include "coupling/patterns.h"
 #include "base/agree.h"
-#include "coupling/panels.h"
 #include "coupling/patternapply.h"
 #include "coupling/patterncross.h"
 #include "coupling/patternmake.h"
@@ -36,8 +35,8 @@ PetscErrorCode PatternsCreate(const FluidSpec *spec, Coupling c, Patterns *out) 
 
 static PetscErrorCode FreeMatrices(Pattern *q) {
   PetscFunctionBeginUser;
-  PetscCall(PetscFree(q->inverse));
-  PetscCall(PetscFree(q->sources));
+  PetscCall(PetscFree(q->inverse.value));
+  PetscCall(PetscFree(q->sources.value));
   PetscCall(PetscFree(q->self));
   PetscCall(PetscFree(q->points));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -133,11 +132,16 @@ static PetscErrorCode Add(Patterns s, PetscInt like, PetscReal treading, const P
     s->room = 2 * s->room + 8;
     PetscCall(PetscRealloc((size_t)s->room * sizeof(Pattern), &s->pattern));
   }
+  const PetscInt n = LayoutCount(m->layout, like);
+  const PetscBool jumps = s->coupling->contrast && s->coupling->contrast->ratio[like] != 1 ? PETSC_TRUE : PETSC_FALSE;
   Pattern *q = &s->pattern[s->count++];
-  *q = (Pattern){.like = like, .treading = treading};
-  PetscCall(PetscMalloc1(2 * LayoutCount(m->layout, like), &q->X));
-  PetscCall(PetscArraycpy(q->X, X, 2 * LayoutCount(m->layout, like)));
-  PoseSizes(LayoutCount(m->layout, like), X, q->size);
+  *q = (Pattern){.like = like,
+                 .treading = treading,
+                 .inverse = {.rows = 3 * n, .columns = 3 * n},
+                 .sources = {.rows = jumps ? 4 * n : 2 * n, .columns = 3 * n}};
+  PetscCall(PetscMalloc1(2 * n, &q->X));
+  PetscCall(PetscArraycpy(q->X, X, 2 * n));
+  PoseSizes(n, X, q->size);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -258,12 +262,12 @@ static PetscErrorCode MakeAll(Patterns s, PetscBool *failed) {
   PetscCall(PetscMalloc2(l->size * s->count, &state, s->count, &maker));
   for (PetscInt k = 0; k < s->count; k++) {
     const Pattern *q = &s->pattern[k];
-    state[l->rank * s->count + k] = (char)(q->inverse ? MADE : q->end > q->begin ? NEEDED : NOT_NEEDED);
+    state[l->rank * s->count + k] = (char)(q->inverse.value ? MADE : q->end > q->begin ? NEEDED : NOT_NEEDED);
   }
   PetscCallMPI(MPI_Allgather(MPI_IN_PLACE, 0, MPI_DATATYPE_NULL, state, count, MPI_CHAR, l->comm));
   PetscCall(ShareOut(s, state, maker));
   for (PetscInt k = 0; k < s->count && good; k++)
-    if (maker[k] == l->rank && !s->pattern[k].inverse) PetscCall(PatternMake(s, &s->pattern[k], &good));
+    if (maker[k] == l->rank && !s->pattern[k].inverse.value) PetscCall(PatternMake(s, &s->pattern[k], &good));
   PetscCall(AgreeFlag(l->comm, good ? PETSC_FALSE : PETSC_TRUE, failed));
   if (!*failed) PetscCall(Exchange(s, state, maker));
   PetscCall(PetscFree2(state, maker));

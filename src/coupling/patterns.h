@@ -9,6 +9,7 @@
 #include "coupling/coupling.h"
 #include "coupling/curvepoints.h"
 #include "coupling/doublelayer.h"
+#include "coupling/packedmatrix.h"
 #include "coupling/pose.h"
 
 /* A shape: its curve, and on ranks that need them the matrices of its dense problem. */
@@ -17,12 +18,12 @@ typedef struct {
   PetscReal treading; /* label speed (1/time) */
   PetscReal *X;       /* [2n] centred */
   PetscReal size[POSE_SIZES];
-  PetscInt begin, end; /* own vesicles that take it: a range of the order */
-  PetscReal *inverse;  /* panels (panels.h), 3n x 3n: (r_V, r_s) to (V, sigma); NULL: not made */
-  PetscReal *sources;  /* 2n x 3n: to their forces F; with viscosity contrast 4n x 3n, to F and their jumps J */
-  PetscReal *self;     /* [2q][2q]: forces at q coarse points to what they do to the vesicle itself there, times -1 */
-  PetscInt weights;    /* which */
-  PetscReal *points;   /* [2q] where they are */
+  PetscInt begin, end;  /* own vesicles that take it: a range of the order */
+  PackedMatrix inverse; /* 3n x 3n: (r_V, r_s) to (V, sigma); without values: not made */
+  PackedMatrix sources; /* 2n x 3n: to their forces F; with viscosity contrast 4n x 3n, to F and their jumps J */
+  PetscReal *self;      /* [2q][2q]: forces at q coarse points to what they do to the vesicle itself there, times -1 */
+  PetscInt weights;     /* which */
+  PetscReal *points;    /* [2q] where they are */
 } Pattern;
 
 /* What membranes do to the fluid: forces F and, with viscosity contrast (else NULL), jumps J, [2n] of own vesicles. */
@@ -48,12 +49,6 @@ struct _p_Patterns {
   PatternSources alone; /* work */
   PatternCross cross;   /* NULL without coarse grid */
 };
-
-/* PatternSourceRows - of a pattern's `sources`. Not collective. */
-static inline PetscInt PatternSourceRows(Patterns s, const Pattern *q) {
-  const PetscInt n = LayoutCount(s->coupling->membrane->layout, q->like);
-  return s->coupling->contrast && s->coupling->contrast->ratio[q->like] != 1 ? 4 * n : 2 * n;
-}
 
 /* PatternsCreate - for the coupling's membranes, which have a near field, in the quasi-steady fluid that spec makes.
    Collective. */

@@ -18,10 +18,25 @@ void SymmetricPack(PetscInt n, const float A[], float packed[]) {
       for (PetscInt i = j; i < n; i++) *packed++ = c < n ? A[c * n + i] : 0;
 }
 
-PetscErrorCode SymmetricInvert(PetscInt n, float A[], float inverse[], PetscBool *done) {
+/* PETSc names the routines of its own precision only. */
+extern void sgetrf_(const PetscBLASInt *, const PetscBLASInt *, float *, const PetscBLASInt *, PetscBLASInt *,
+                    PetscBLASInt *);
+extern void sgetri_(const PetscBLASInt *, float *, const PetscBLASInt *, const PetscBLASInt *, float *,
+                    const PetscBLASInt *, PetscBLASInt *);
+
+PetscErrorCode SymmetricInvert(PetscInt n, const PetscReal A[], float inverse[], PetscBool *done) {
+  PetscBLASInt size, room, info, *pivot;
+  float *single, *work;
   PetscFunctionBeginUser;
-  PetscCall(DenseInverse(n, A, done));
-  if (*done) SymmetricPack(n, A, inverse);
+  PetscCall(PetscBLASIntCast(n, &size));
+  PetscCall(PetscBLASIntCast(64 * n, &room));
+  PetscCall(PetscMalloc3(n * n, &single, n, &pivot, 64 * n, &work));
+  DenseSingle(n * n, A, single);
+  PetscCallBLAS("sgetrf", sgetrf_(&size, &size, single, &size, pivot, &info));
+  *done = info ? PETSC_FALSE : PETSC_TRUE;
+  if (*done) PetscCallBLAS("sgetri", sgetri_(&size, single, &size, pivot, work, &room, &info));
+  if (*done) SymmetricPack(n, single, inverse);
+  PetscCall(PetscFree3(single, pivot, work));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -12,8 +12,8 @@ static inline size_t SymmetricSize(PetscInt n) {
   return size;
 }
 
-/* SymmetricInvert - the inverse of A (n x n), which is overwritten, to inverse; done is false when A is singular. */
-PETSC_EXTERN PetscErrorCode SymmetricInvert(PetscInt n, float A[], float inverse[], PetscBool *done);
+/* SymmetricInvert - the inverse of A (n x n), in single precision; done is false when A is singular. Not collective. */
+PETSC_EXTERN PetscErrorCode SymmetricInvert(PetscInt n, const PetscReal A[], float inverse[], PetscBool *done);
 
 /* SymmetricPack - of A (n x n). SymmetricMult - y = A x. Not collective. */
 PETSC_EXTERN void SymmetricPack(PetscInt n, const float A[], float packed[]);

@@ -6,7 +6,8 @@
 
 /* Products with a matrix of n rows, and its inverse. */
 static PetscErrorCode CheckSymmetric(PetscInt n) {
-  float *A, *copy, *packed, *x, *y;
+  float *A, *packed, *x, *y;
+  PetscReal *copy;
   PetscReal product = 0, inverse = 0;
   PetscBool done;
   unsigned seed = 5;
@@ -25,9 +26,8 @@ static PetscErrorCode CheckSymmetric(PetscInt n) {
     product = PetscMax(product, PetscAbsReal(y[i] - sum));
   }
   PetscCall(SymmetricInvert(n, copy, packed, &done));
-  for (PetscInt i = 0; i < n; i++) copy[i] = y[i];
-  SymmetricMult(n, packed, copy, y);
-  for (PetscInt i = 0; i < n; i++) inverse = PetscMax(inverse, PetscAbsReal(y[i] - x[i]));
+  SymmetricMult(n, packed, y, A);
+  for (PetscInt i = 0; i < n; i++) inverse = PetscMax(inverse, PetscAbsReal(A[i] - x[i]));
   CHECK(product < 1e-6 * n, "%d rows: a product is off by %.1e", (int)n, (double)product);
   CHECK(done && inverse < 1e-5, "%d rows: its inverse gives back what went in to %.1e", (int)n, (double)inverse);
   PetscCall(PetscFree5(A, copy, packed, x, y));
