@@ -137,39 +137,3 @@ PetscErrorCode PatternMake(Patterns s, Pattern *q, PetscBool *good) {
   PetscCall(PetscFree2(V, sigma));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
-
-/* A pattern's matrices one after another. */
-static PetscInt Lists(Patterns s, Pattern *q, PetscReal **list[4], PetscInt size[4]) {
-  const PetscInt points = s->coarse ? LayoutCount(s->coarse->layout, q->like) : 0;
-  PetscReal **const lists[4] = {&q->inverse.value, &q->sources.value, &q->self, &q->points};
-  const PetscInt sizes[4] = {PackedMatrixSize(&q->inverse), PackedMatrixSize(&q->sources), 4 * points * points,
-                             2 * points};
-  for (int k = 0; k < 4; k++) {
-    list[k] = lists[k];
-    size[k] = sizes[k];
-  }
-  return s->coarse ? 4 : 2;
-}
-
-PetscErrorCode PatternSend(Patterns s, Pattern *q, PetscMPIInt rank) {
-  PetscReal **list[4];
-  PetscInt size[4];
-  PetscFunctionBeginUser;
-  for (PetscInt k = 0, lists = Lists(s, q, list, size); k < lists; k++)
-    PetscCallMPI(MPI_Send(*list[k], (PetscMPIInt)size[k], MPIU_REAL, rank, 0, s->coupling->membrane->layout->comm));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode PatternReceive(Patterns s, Pattern *q, PetscMPIInt rank) {
-  const Layout l = s->coupling->membrane->layout;
-  PetscReal **list[4];
-  PetscInt size[4];
-  PetscFunctionBeginUser;
-  for (PetscInt k = 0, lists = Lists(s, q, list, size); k < lists; k++) {
-    PetscCall(PetscMalloc1(size[k], list[k]));
-    PetscCallMPI(MPI_Recv(*list[k], (PetscMPIInt)size[k], MPIU_REAL, rank, 0, l->comm, MPI_STATUS_IGNORE));
-  }
-  if (s->coarse)
-    PetscCall(FindWeights(s, LayoutCount(l, q->like), LayoutCount(s->coarse->layout, q->like), &q->weights));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}

@@ -209,68 +209,20 @@ static void Sort(Patterns s) {
   for (PetscInt v = l->own; v < l->end; v++) s->order[s->pattern[s->of[v]].end++] = v;
 }
 
-/* What a rank has of a pattern. */
-enum { NOT_NEEDED, NEEDED, MADE };
-
-/* maker[k]: the rank whose matrices of pattern k others get: the first that has them, else of those that need them the
-   one with the fewest to make. state[ranks][count]. */
-static PetscErrorCode ShareOut(Patterns s, const char state[], PetscMPIInt maker[]) {
-  const PetscMPIInt size = s->coupling->membrane->layout->size;
-  PetscInt *work;
-  PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(size, &work));
-  for (PetscInt k = 0; k < s->count; k++) {
-    PetscBool made = PETSC_FALSE;
-    maker[k] = -1;
-    for (PetscMPIInt r = 0; r < size && !made; r++) {
-      const char has = state[r * s->count + k];
-      made = has == MADE ? PETSC_TRUE : PETSC_FALSE;
-      if (made || (has == NEEDED && (maker[k] < 0 || work[r] < work[maker[k]]))) maker[k] = r;
-    }
-    if (!made && maker[k] >= 0) work[maker[k]]++;
-  }
-  PetscCall(PetscFree(work));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Each to the ranks that need it, in the order of the patterns. */
-static PetscErrorCode Exchange(Patterns s, const char state[], const PetscMPIInt maker[]) {
-  const Layout l = s->coupling->membrane->layout;
-  PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < s->count; k++)
-    for (PetscMPIInt r = 0; r < l->size; r++) {
-      if (state[r * s->count + k] != NEEDED || r == maker[k]) continue;
-      if (l->rank == maker[k]) PetscCall(PatternSend(s, &s->pattern[k], r));
-      if (l->rank == r) PetscCall(PatternReceive(s, &s->pattern[k], maker[k]));
-    }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Matrices of the patterns that own vesicles take, for the a0 in force, each made by one rank. */
+/* Matrices of the patterns that own vesicles take, for the a0 in force. */
 static PetscErrorCode MakeAll(Patterns s, PetscBool *failed) {
-  const Layout l = s->coupling->membrane->layout;
   const PetscReal a0 = s->coupling->fluid->a0;
-  PetscMPIInt *maker, count;
   PetscBool good = PETSC_TRUE;
-  char *state;
   PetscFunctionBeginUser;
   if (!(PetscAbsReal(s->a0 / a0 - 1) < 0.1)) {
     s->a0 = a0;
     for (PetscInt k = 0; k < s->count; k++) PetscCall(FreeMatrices(&s->pattern[k]));
   }
-  PetscCall(PetscMPIIntCast(s->count, &count));
-  PetscCall(PetscMalloc2(l->size * s->count, &state, s->count, &maker));
-  for (PetscInt k = 0; k < s->count; k++) {
-    const Pattern *q = &s->pattern[k];
-    state[l->rank * s->count + k] = (char)(q->inverse.value ? MADE : q->end > q->begin ? NEEDED : NOT_NEEDED);
+  for (PetscInt k = 0; k < s->count && good; k++) {
+    Pattern *q = &s->pattern[k];
+    if (q->end > q->begin && !q->inverse.value) PetscCall(PatternMake(s, q, &good));
   }
-  PetscCallMPI(MPI_Allgather(MPI_IN_PLACE, 0, MPI_DATATYPE_NULL, state, count, MPI_CHAR, l->comm));
-  PetscCall(ShareOut(s, state, maker));
-  for (PetscInt k = 0; k < s->count && good; k++)
-    if (maker[k] == l->rank && !s->pattern[k].inverse.value) PetscCall(PatternMake(s, &s->pattern[k], &good));
-  PetscCall(AgreeFlag(l->comm, good ? PETSC_FALSE : PETSC_TRUE, failed));
-  if (!*failed) PetscCall(Exchange(s, state, maker));
-  PetscCall(PetscFree2(state, maker));
+  PetscCall(AgreeFlag(s->coupling->membrane->layout->comm, good ? PETSC_FALSE : PETSC_TRUE, failed));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
