@@ -80,14 +80,10 @@ void BoxImageRow(const BoxAxis axis[2], PetscInt n, PetscReal *const d[2], Petsc
 }
 
 PetscReal BoxImage(const BoxAxis axis[2], PetscReal d[2]) {
-  Lanes x = {d[0], d[1]}, period = {axis[0].high - axis[0].low, axis[1].high - axis[1].low, 1, 1},
-        part = 1 + (Lanes){0};
-  PetscReal all = 1;
-  Nearest(period, (Lanes){axis[0].faded, axis[1].faded, 1, 1}, &x, &part);
-  for (int dir = 0; dir < 2; dir++) {
-    if (axis[dir].wall) continue;
-    d[dir] = x[dir];
-    all *= part[dir];
-  }
-  return all;
+  PetscReal x[LANES] = {d[0]}, y[LANES] = {d[1]}, part[LANES];
+  PetscReal *const row[2] = {x, y};
+  BoxImageRow(axis, 1, row, part);
+  d[0] = x[0];
+  d[1] = y[0];
+  return part[0];
 }

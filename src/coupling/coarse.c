@@ -35,7 +35,9 @@ PetscErrorCode CoarseCreate(const FluidSpec *run, Layout fine, const PetscReal l
   Coarse c;
   PetscFunctionBeginUser;
   *out = NULL;
-  const PetscInt times = FluidSpecIsFree(run) ? 0 : Times(run);
+  /* the stream function does not serve walls in x alone */
+  const PetscBool serves = run->bc[0] == BC_PERIODIC || run->bc[1] != BC_PERIODIC ? PETSC_TRUE : PETSC_FALSE;
+  const PetscInt times = FluidSpecIsFree(run) || !serves ? 0 : Times(run);
   if (!times) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscNew(&c));
   *out = c;

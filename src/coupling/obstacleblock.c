@@ -2,9 +2,10 @@
 #include "base/agree.h"
 #include "coupling/blas.h"
 #include "coupling/denseblock.h"
-#include "coupling/mobilitysolves.h"
 #include "coupling/obstaclemodes.h"
 #include "coupling/symmetric.h"
+#include "fluid/stokes.h"
+#include "markers/respond.h"
 
 struct _p_ObstacleBlock {
   const FluidSpec *spec; /* borrowed */
@@ -59,11 +60,46 @@ PetscErrorCode ObstacleBlockDestroy(ObstacleBlock *block) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether an obstacle stands on a wall, which the table of a periodic box does not know. */
-static PetscBool OnWall(Obstacles o) {
-  for (PetscInt v = 0; v < o->layout->bodies; v++)
-    if (o->kind[v].type == CURVE_OPEN) return PETSC_TRUE;
+/* Whether the mobility is had from Stokes solves: an obstacle stands on a wall, which the table of a periodic box does
+   not know, and the stream function serves. */
+static PetscBool IsBySolves(ObstacleBlock b) {
+  const Fluid f = b->coupling->fluid;
+  if (!f->tridiagonal || (f->grid->wall[0] && !f->grid->wall[1])) return PETSC_FALSE;
+  for (PetscInt v = 0; v < b->obstacles->layout->bodies; v++)
+    if (b->obstacles->kind[v].type == CURVE_OPEN) return PETSC_TRUE;
   return PETSC_FALSE;
+}
+
+/* Mob = E A^-1 E^T of the grid itself, on root, zero elsewhere: a solve for each column. */
+static PetscErrorCode MobilityBySolves(ObstacleBlock b, PetscReal Mob[]) {
+  const Coupling c = b->coupling;
+  const Layout l = b->obstacles->layout;
+  const PetscInt n = 2 * l->M, own = BodiesFirstObstacle(c->bodies);
+  const PetscReal part = CouplingGridPart(c, c->fluid->alpha);
+  const PetscScalar *U;
+  PetscScalar *F;
+  Stokes stokes;
+  Vec force, velocity;
+  PetscFunctionBeginUser;
+  PetscCall(StokesCreate(c->fluid, &stokes));
+  PetscCall(VecDuplicate(c->X, &force));
+  PetscCall(VecDuplicate(c->X, &velocity));
+  PetscCall(VecSet(force, 0));
+  PetscCall(PetscArrayzero(Mob, n * n));
+  for (PetscInt j = 0; j < n; j++) {
+    const PetscInt at = j - 2 * l->first;
+    PetscCall(VecGetArray(force, &F));
+    for (PetscInt k = 0; k < 2 * l->n; k++) F[own + k] = k == at ? 1 : 0;
+    PetscCall(VecRestoreArray(force, &F));
+    PetscCall(MarkersRespond(c->markers, StokesStream(stokes), NULL, part, force, velocity));
+    PetscCall(VecGetArrayRead(velocity, &U));
+    PetscCall(LayoutToRank(l, b->root, 2, U + own, l->rank == b->root ? Mob + j * n : b->all));
+    PetscCall(VecRestoreArrayRead(velocity, &U));
+  }
+  PetscCall(VecDestroy(&force));
+  PetscCall(VecDestroy(&velocity));
+  PetscCall(StokesDestroy(&stokes));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* The block times h^2, on root. */
@@ -75,9 +111,8 @@ static PetscErrorCode Assemble(ObstacleBlock b, PetscReal A[]) {
   const PetscReal scale = o->beta * PetscSqr(b->coupling->fluid->grid->h);
   Mobility mobility;
   PetscFunctionBeginUser;
-  if (OnWall(o)) {
-    if (l->rank != b->root) PetscCall(PetscArrayzero(A, n * n));
-    PetscCall(MobilitySolves(b->coupling, b->root, A));
+  if (IsBySolves(b)) {
+    PetscCall(MobilityBySolves(b, A));
     PetscCall(MobilityAddNear(b->coupling, PETSC_TRUE, &solid, &solid, b->root, A));
   } else {
     PetscCall(MobilityCreate(b->spec, b->coupling, PETSC_MAX_REAL, &mobility));
@@ -96,7 +131,7 @@ static PetscReal RenewalCost(ObstacleBlock b) {
   const Grid g = b->coupling->fluid->grid;
   const PetscReal cells = (PetscReal)g->n[0] * g->n[1], W = b->obstacles->layout->M;
   if (b->modes) return DenseRenewalCost(1, 0.5 * (PetscReal)ObstacleModesCount(b->modes), 0, cells);
-  return (OnWall(b->obstacles) ? 2 * W : 0) + DenseRenewalCost(1, W, 0, cells);
+  return (IsBySolves(b) ? 2 * W : 0) + DenseRenewalCost(1, W, 0, cells);
 }
 
 /* The whole block's inverse, on root. */

@@ -1,7 +1,7 @@
 /* The obstacles' block of the reduced problem, E A^-1 E^T/h^2 + C + D + beta N N^T between their markers, as a dense
    inverse in single precision: part of the preconditioner (docs/obstacles.md, Preconditioner). E A^-1 E^T is that of a
-   periodic box of the same cells (mobility.h), or, where an obstacle stands on a wall, the grid's own
-   (mobilitysolves.h). While obstacles rest it is made once in quasi-steady flow. Of bodies that move it is the one of
+   periodic box of the same cells (mobility.h), or, where an obstacle stands on a wall, the grid's own,
+   by Stokes solves. While obstacles rest it is made once in quasi-steady flow. Of bodies that move it is the one of
    an earlier time, forces and velocities turned with each body, as one alone has the same block wherever it is; in
    unsteady flow it may be that of a time step of another size (DenseStepChanged). Once the iterations beyond the fewest
    so far have cost as much as a new one would, it is made anew. */
