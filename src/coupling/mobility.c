@@ -1,9 +1,11 @@
 #include "coupling/mobility.h"
+#include "coupling/nearblock.h"
 
-#define NEAR 14 /* cells up to which stencils are summed where the near field is exact */
+#define TABLE_NEAR 14 /* cells up to which stencils are summed where the near field is exact */
+#define BOX_NEAR 8    /* cells up to which a pair has the lattice's sums */
 
 /* Whether the mobility between walls can be had from the box part's grids. */
-static PetscBool HasBox(Coupling c) {
+static PetscBool TakesBox(Coupling c) {
   const Grid g = c->fluid->grid;
   return c->fluid->steady && c->near && c->near->box && (g->wall[0] || g->wall[1]) ? PETSC_TRUE : PETSC_FALSE;
 }
@@ -14,9 +16,9 @@ PetscErrorCode MobilityCreate(const FluidSpec *spec, Coupling c, PetscReal reach
   PetscCall(PetscNew(&m));
   *out = m;
   m->coupling = c;
-  m->near = c->near ? NEAR : PETSC_MAX_REAL;
-  if (HasBox(c))
-    PetscCall(MobilityBoxCreate(spec, c, &m->box));
+  m->near = c->near ? TABLE_NEAR : PETSC_MAX_REAL;
+  if (TakesBox(c))
+    PetscCall(NearFieldCreateBoxPart(c->near, spec, PETSC_TRUE, &m->box));
   else if (!c->fluid->grid->free)
     PetscCall(MobilityTableCreate(spec, c->markers->kernel, reach, &m->table));
   PetscCall(PetscMalloc1(2 * c->bodies->layout->M, &m->stencil));
@@ -27,7 +29,7 @@ PetscErrorCode MobilityDestroy(Mobility *mobility) {
   PetscFunctionBeginUser;
   if (!*mobility) PetscFunctionReturn(PETSC_SUCCESS);
   if ((*mobility)->table) PetscCall(MobilityTableDestroy(&(*mobility)->table));
-  PetscCall(MobilityBoxDestroy(&(*mobility)->box));
+  PetscCall(BoxPartDestroy(&(*mobility)->box));
   PetscCall(PetscFree((*mobility)->stencil));
   PetscCall(PetscFree(*mobility));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -41,14 +43,14 @@ PetscErrorCode MobilitySetUp(Mobility m, PetscReal alpha) {
 }
 
 /* Whether a pair's stencils are summed: near, and with all of their offsets in the table. */
-static PetscBool IsNear(Mobility m, const PetscReal cells[2]) {
+static PetscBool IsTableNear(Mobility m, const PetscReal cells[2]) {
   for (int dir = 0; dir < 2; dir++)
     if (PetscAbsReal(cells[dir]) > (PetscReal)(m->table->green.size[dir] - OFFSET_LAGS)) return PETSC_FALSE;
   return cells[0] * cells[0] + cells[1] * cells[1] <= m->near * m->near ? PETSC_TRUE : PETSC_FALSE;
 }
 
 /* Mob of markers i and j, the nearest image: xx, yy, xy, yx. */
-static void Pair(Mobility m, PetscInt i, PetscInt j, PetscReal Mob[4]) {
+static void TablePair(Mobility m, PetscInt i, PetscInt j, PetscReal Mob[4]) {
   const Grid g = m->coupling->fluid->grid;
   const PetscReal *X = m->coupling->markers->X;
   PetscReal d[2], cells[2];
@@ -60,7 +62,7 @@ static void Pair(Mobility m, PetscInt i, PetscInt j, PetscReal Mob[4]) {
     periods[dir] = -back * g->n[dir];
     cells[dir] = d[dir] / g->h;
   }
-  if (IsNear(m, cells))
+  if (IsTableNear(m, cells))
     StencilFourSums(&m->table->green, &m->stencil[2 * i], &m->stencil[2 * j], periods, Mob);
   else {
     MobilityTableMean(m->table, d, Mob);
@@ -70,7 +72,7 @@ static void Pair(Mobility m, PetscInt i, PetscInt j, PetscReal Mob[4]) {
 }
 
 /* The stencils of markers, which count from the markers' own places. */
-static void Pad(Mobility m, const MarkerRange *range) {
+static void PadStencils(Mobility m, const MarkerRange *range) {
   const Markers markers = m->coupling->markers;
   for (PetscInt k = range->first; k < range->first + range->n; k++) {
     for (PetscInt q = 2 * k; q < 2 * k + 2; q++) StencilPad(&markers->plain[q], &m->stencil[q]);
@@ -78,23 +80,73 @@ static void Pad(Mobility m, const MarkerRange *range) {
   }
 }
 
+/* Mob[][2 rows] += scale times the block xx, yy, xy, yx of markers i and j: velocity of row marker i
+   by a force on column marker j. */
+static void AddPair(PetscReal scale, PetscInt rows, PetscInt i, PetscInt j, const PetscReal block[4], PetscReal Mob[]) {
+  PetscReal *x = Mob + 4 * j * rows + 2 * i, *y = x + 2 * rows;
+  x[0] += scale * block[0];
+  y[1] += scale * block[1];
+  y[0] += scale * block[2];
+  x[1] += scale * block[3];
+}
+
+/* L - C_image and the exact images of markers i and j, the nearest image: xx, yy, xy, yx. Pairs far from one another
+   and from walls take those of S, which leaves out a C of the order h^2/r^2. */
+static void MobilityBoxPair(NearField f, PetscInt i, PetscInt j, PetscReal value[4]) {
+  const PetscReal *X = f->set.markers->X, h = f->set.markers->grid->h;
+  PetscReal d[2] = {X[2 * i] - X[2 * j], X[2 * i + 1] - X[2 * j + 1]}, L[4], C[4] = {0, 0, 0, 0};
+  const PetscReal fade = BoxPartImage(f->box, d);
+  if (d[0] * d[0] + d[1] * d[1] < PetscSqr(BOX_NEAR * h)) {
+    NearLatticePair(f->pairs, i, j, d, L);
+    NearImageAdd(f->pairs->image, NULL, i, j, d, L, C);
+  } else {
+    Lanes S[3];
+    StokesletFour(&f->set, d[0] + (Lanes){0}, d[1] + (Lanes){0}, S);
+    for (int q = 0; q < 4; q++) L[q] = S[PetscMin(q, 2)][0];
+  }
+  NearImageAddBlake(f->pairs->image, i, j, d, -1, C);
+  for (int q = 0; q < 4; q++) value[q] = fade * (L[q] - C[q]);
+}
+
+/* Mob += that of the velocity of the own markers in rows by forces on those in columns, with a box. Collective. */
+static PetscErrorCode AddBox(Mobility m, const MarkerRange *rows, const MarkerRange *columns, PetscReal Mob[]) {
+  const NearField f = m->coupling->near;
+  const Layout l = m->coupling->bodies->layout;
+  const PetscReal h2 = PetscSqr(m->coupling->fluid->grid->h);
+  const PetscInt begin = PetscMax(l->first, rows->first), end = PetscMin(l->first + l->n, rows->first + rows->n);
+  /* of the own markers among themselves a pair and its mirror image are one another's transposes */
+  const PetscBool same = rows->first == columns->first && rows->n == columns->n && end - begin == rows->n ? PETSC_TRUE
+                                                                                                          : PETSC_FALSE;
+  PetscFunctionBeginUser;
+  PetscCall(BoxPartPlace(m->box));
+  PetscCall(BoxPartAdd(m->box, h2, rows, columns, Mob));
+  for (PetscInt j = 0; j < columns->n; j++)
+    for (PetscInt i = same ? j : begin - rows->first; i < end - rows->first; i++) {
+      PetscReal L[4];
+      MobilityBoxPair(f, rows->first + i, columns->first + j, L);
+      AddPair(h2, rows->n, i, j, L, Mob);
+      if (same && i > j) AddPair(h2, rows->n, j, i, (PetscReal[]){L[0], L[1], L[3], L[2]}, Mob);
+    }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode MobilityAssemble(Mobility m, const MarkerRange *rows, const MarkerRange *columns, PetscInt part,
                                 PetscInt parts, PetscReal Mob[]) {
   const PetscBool same = rows->first == columns->first && rows->n == columns->n ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionBeginUser;
   PetscCall(PetscArrayzero(Mob, 4 * rows->n * columns->n));
-  if (m->box) PetscCall(MobilityBoxAdd(m->box, rows, columns, Mob));
+  if (m->box) PetscCall(AddBox(m, rows, columns, Mob));
   if (!m->table) PetscFunctionReturn(PETSC_SUCCESS);
-  Pad(m, rows);
-  Pad(m, columns);
+  PadStencils(m, rows);
+  PadStencils(m, columns);
   for (PetscInt p = part; p < columns->n; p += parts)
     for (PetscInt q = same ? p : 0; q < rows->n; q++) {
       const PetscInt i = same ? p : q, j = same ? q : p;
       PetscReal one[4];
-      Pair(m, rows->first + i, columns->first + j, one);
+      TablePair(m, rows->first + i, columns->first + j, one);
       if (same && i == j) one[2] = one[3]; /* symmetric to the bit */
-      MobilityAddPair(1, rows->n, i, j, one, Mob);
-      if (same && i != j) MobilityAddPair(1, rows->n, j, i, (PetscReal[]){one[0], one[1], one[3], one[2]}, Mob);
+      AddPair(1, rows->n, i, j, one, Mob);
+      if (same && i != j) AddPair(1, rows->n, j, i, (PetscReal[]){one[0], one[1], one[3], one[2]}, Mob);
     }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,18 +1,28 @@
-/* Mob, the membranes' mobility on the grid: an approximation of E A^-1 E^T, A^-1 the Stokes solution operator of the
-   grid, by a periodic box of the same cells (docs/solver.md, Preconditioner). Near markers are exact there: the two
-   kernels' weights are summed against the grid's Green's function, which is tabulated. With the near field, whose C
-   takes what depends on the place in a cell off them, distant markers have a smooth table: the mean of these sums over
-   the places in a cell, by whole cells between two markers, interpolated. Between walls, in quasi-steady flow with box
-   part, it is that of the box (mobilitybox.h). */
+/* Mob, the mobility of bodies' markers among themselves on the grid, approximately E A^-1 E^T with A^-1 the Stokes
+   solution operator, for preconditioners (docs/solver.md, Preconditioner). There are two ways.
+
+   Table: A^-1 is that of a periodic box of the grid's cells. Near markers are exact there: the weights of the two
+   kernels are summed against the grid's Green's function, which is tabulated (mobilitytable.h). With the near field,
+   whose C takes what depends on the place in a cell off them, distant markers have a smooth table: the mean of these
+   sums over the places in a cell, by whole cells between two markers, interpolated.
+
+   Box: between walls, in quasi-steady flow where the near field has a box part D (docs/nearfield.md, Box part),
+       (E A^-1 E^T + D)/h^2 ~ W + B + L - C_image,
+   B, L and C_image those of the nearest image, fading over a period: B the exact images of the Stokeslet in the walls,
+   L the lattice's mobility, and W the smooth rest on the coarser one of the box part's grids. Near a wall W goes on
+   along a straight line, which it can as B has what is singular there. With the near field's C that is the exact single
+   layer with its images.
+
+   Every rank makes a part of the entries; the sum of all parts is made on one rank. */
 #pragma once
-#include "coupling/mobilitybox.h"
+#include "coupling/coupling.h"
 #include "coupling/mobilitytable.h"
 
 typedef struct _p_Mobility *Mobility;
 struct _p_Mobility {
   Coupling coupling;      /* borrowed */
   MobilityTable table;    /* NULL with box, and in unbounded fluid, where the near field is all */
-  MobilityBox box;        /* between walls, in quasi-steady flow with box part; else NULL */
+  BoxPart box;            /* W; NULL with table */
   PetscReal near;         /* cells up to which a pair's stencils are summed */
   PetscReal part;         /* what the markers have of the grid's velocity, CouplingGridPart */
   PaddedStencil *stencil; /* [2M] work */
