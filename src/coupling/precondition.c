@@ -36,7 +36,7 @@ PetscErrorCode PreconditionerCreate(Scene scene, Unknowns u, PetscBool flexible,
   if (c->bodies->obstacles) PetscCall(ObstacleBlockCreate(&scene->fluid, c, &p->solid));
   PetscCall(PetscCalloc1(c->membrane->layout->bodies, &p->age.treading));
   if (c->near && c->fluid->steady && c->membrane->layout->M > DENSE_TOGETHER) {
-    PetscCall(PatternsCreate(&scene->fluid, c, &p->patterns));
+    PetscCall(SharedShapesCreate(&scene->fluid, c, &p->shapes));
   } else if (CouplingHasMembrane(c)) {
     PetscCall(MobilityCreate(&scene->fluid, c, Reach(c), &p->mobility));
     PetscCall(DenseBlocksCreate(c, &p->blocks));
@@ -49,7 +49,7 @@ PetscErrorCode PreconditionerDestroy(Preconditioner *preconditioner) {
   Preconditioner p = *preconditioner;
   PetscFunctionBeginUser;
   if (!p) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PatternsDestroy(&p->patterns));
+  PetscCall(SharedShapesDestroy(&p->shapes));
   PetscCall(ObstacleBlockDestroy(&p->solid));
   PetscCall(DenseBlocksDestroy(&p->blocks));
   PetscCall(MobilityDestroy(&p->mobility));
@@ -151,7 +151,7 @@ PetscErrorCode PreconditionerSetUp(Preconditioner p, PetscBool graded) {
   if (!CouplingHasBodies(c)) PetscFunctionReturn(PETSC_SUCCESS);
   if (p->solid) PetscCall(ObstacleBlockSetUp(p->solid, &p->failed));
   if (p->failed || !CouplingHasMembrane(c)) PetscFunctionReturn(PETSC_SUCCESS);
-  if (p->patterns) PetscCall(PatternsFollow(p->patterns, &p->failed));
+  if (p->shapes) PetscCall(SharedShapesFollow(p->shapes, &p->failed));
   if (!p->blocks) PetscFunctionReturn(PETSC_SUCCESS);
   DenseBlocksPlace(p->blocks);
   const PetscReal cost = RenewalCost(p);
@@ -212,7 +212,7 @@ PetscErrorCode PreconditionerApply(Preconditioner p, Vec r, Vec z) {
   UnknownsScale(u, PETSC_TRUE, V);
   if (CouplingHasBodies(u->coupling)) {
     if (p->solid) PetscCall(ObstacleBlockBegin(p->solid, V + u->velocity, V));
-    if (p->patterns) PetscCall(PatternsSolve(p->patterns, V, sigma));
+    if (p->shapes) PetscCall(SharedShapesSolve(p->shapes, V, sigma));
     if (p->blocks) PetscCall(DenseBlocksSolve(p->blocks, V, sigma));
     if (p->solid) PetscCall(SolveObstacles(p, V, sigma));
   }

@@ -2,9 +2,9 @@
    (docs/solver.md, Preconditioner): of the markers' mobility among themselves, by a dense table of a periodic box, of
    the obstacles by themselves, and of each pair of walls by itself. */
 #pragma once
-#include "coupling/dense.h"
+#include "coupling/denseblocks.h"
 #include "coupling/obstacleblock.h"
-#include "coupling/patterns.h"
+#include "coupling/sharedshapes.h"
 #include "coupling/unknowns.h"
 #include "scene/scene.h"
 
@@ -30,7 +30,7 @@ struct _p_Preconditioner {
   Unknowns unknowns;    /* borrowed */
   Mobility mobility;    /* few vesicles */
   DenseBlocks blocks;   /* few vesicles */
-  Patterns patterns;    /* many vesicles */
+  SharedShapes shapes;  /* many vesicles */
   ObstacleBlock solid;  /* NULL without obstacles */
   PetscReal step_ratio; /* of two steps whose dense blocks are the same */
   Ageing age;
@@ -66,7 +66,7 @@ PETSC_EXTERN PetscBool PreconditionerIsNew(Preconditioner preconditioner);
    a checkpoint can hold, and made again from them, with the coupling placed where and for the a0 (memory[0]; 0: no
    blocks) and the label speeds for which the dense blocks were made, which are not among the numbers. Whatever is kept
    from solve to solve belongs in here, or a restarted run would not have the bits of one that went on. Set is
-   collective. Patterns are all among numbers of their own (PatternsGetMemory). */
+   collective. Shared shapes are all among numbers of their own (SharedShapesGetMemory). */
 #define PRECONDITIONER_MEMORY 6
 PETSC_EXTERN PetscErrorCode PreconditionerGetMemory(Preconditioner preconditioner,
                                                     PetscReal memory[PRECONDITIONER_MEMORY]);

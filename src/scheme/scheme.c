@@ -127,7 +127,7 @@ PetscErrorCode SchemeStep(Scheme s, PetscReal most) {
 
 PetscInt SchemeMemorySize(Scheme s) {
   const PetscInt block = ObstacleBlockIsOlder(s->coupling) ? OBSTACLE_BLOCK_MEMORY : 0;
-  return PRECONDITIONER_MEMORY + PatternsMemorySize(s->membrane->layout) + block;
+  return PRECONDITIONER_MEMORY + SharedShapesMemorySize(s->membrane->layout) + block;
 }
 
 PetscErrorCode SchemeRemember(Scheme s, PetscReal memory[]) {

@@ -9,7 +9,7 @@ static ObstacleBlock OlderBlock(Scheme s) {
 
 /* Where its numbers are, the last ones of the memory. */
 static PetscInt AtBlock(Scheme s) {
-  return PRECONDITIONER_MEMORY + PatternsMemorySize(s->membrane->layout);
+  return PRECONDITIONER_MEMORY + SharedShapesMemorySize(s->membrane->layout);
 }
 
 PetscErrorCode CoupledRemember(Scheme s, PetscReal memory[]) {
@@ -18,8 +18,8 @@ PetscErrorCode CoupledRemember(Scheme s, PetscReal memory[]) {
   PetscFunctionBeginUser;
   if (OlderBlock(s)) ObstacleBlockGetMemory(OlderBlock(s), memory + AtBlock(s));
   PetscCall(PreconditionerGetMemory(d->solver->preconditioner, memory));
-  if (d->solver->preconditioner->patterns) {
-    PatternsGetMemory(d->solver->preconditioner->patterns, memory + PRECONDITIONER_MEMORY);
+  if (d->solver->preconditioner->shapes) {
+    SharedShapesGetMemory(d->solver->preconditioner->shapes, memory + PRECONDITIONER_MEMORY);
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(LayoutGatherVec(l, d->made_at, memory + PRECONDITIONER_MEMORY));
@@ -27,10 +27,10 @@ PetscErrorCode CoupledRemember(Scheme s, PetscReal memory[]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode RecallPatterns(Scheme s, Patterns patterns, const PetscReal memory[]) {
+static PetscErrorCode RecallSharedShapes(Scheme s, SharedShapes shapes, const PetscReal memory[]) {
   PetscBool valid;
   PetscFunctionBeginUser;
-  PetscCall(PatternsSetMemory(patterns, memory, &valid));
+  PetscCall(SharedShapesSetMemory(shapes, memory, &valid));
   PetscCheck(valid, s->scene->comm, PETSC_ERR_USER_INPUT,
              "-restart %s: its solver's memory is of other vesicles; allowed: a checkpoint of this scene",
              s->scene->output.restart);
@@ -69,8 +69,8 @@ PetscErrorCode CoupledRecall(Scheme s, const PetscReal memory[]) {
   PetscScalar *X;
   PetscFunctionBeginUser;
   PetscCall(RecallBlock(s, memory + AtBlock(s)));
-  if (d->solver->preconditioner->patterns)
-    PetscCall(RecallPatterns(s, d->solver->preconditioner->patterns, memory + PRECONDITIONER_MEMORY));
+  if (d->solver->preconditioner->shapes)
+    PetscCall(RecallSharedShapes(s, d->solver->preconditioner->shapes, memory + PRECONDITIONER_MEMORY));
   if (!l->bodies || a0 == 0) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecGetArray(d->made_at, &X));
   PetscCall(PetscArraycpy(X, memory + PRECONDITIONER_MEMORY + 2 * l->first, 2 * l->n));

@@ -1,18 +1,18 @@
-#include "coupling/patterns.h"
+#include "coupling/sharedshapes.h"
 #include "base/agree.h"
-#include "coupling/patternapply.h"
-#include "coupling/patterncross.h"
-#include "coupling/patternmake.h"
+#include "coupling/shapeproducts.h"
+#include "coupling/interactions.h"
+#include "coupling/shapematrices.h"
 
-#define TOLERANCE 0.03 /* of a vesicle's distance from its pattern */
+#define TOLERANCE 0.03 /* of a vesicle's distance from its shape */
 
 /* Work space of the vesicles' columns and of one vesicle. */
-static PetscErrorCode CreateWork(Patterns s) {
+static PetscErrorCode CreateWork(SharedShapes s) {
   const Layout l = s->coupling->membrane->layout;
   PetscInt most = 0;
   PetscFunctionBeginUser;
   for (PetscInt v = 0; v < l->bodies; v++) most = PetscMax(most, LayoutCount(l, v));
-  PetscCall(PetscMalloc4(l->bodies, &s->of, l->end - l->own, &s->order, l->end - l->own, &s->pose, 2 * most, &s->X));
+  PetscCall(PetscMalloc4(l->bodies, &s->of, l->end - l->own, &s->order, l->end - l->own, &s->fit, 2 * most, &s->X));
   PetscCall(
       PetscMalloc3(3 * l->n, &s->from, 4 * l->n + PANEL_ROWS * (l->end - l->own), &s->to, 2 * l->n, &s->alone.force));
   if (s->coupling->contrast) PetscCall(PetscMalloc1(2 * l->n, &s->alone.jump));
@@ -20,20 +20,20 @@ static PetscErrorCode CreateWork(Patterns s) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode PatternsCreate(const FluidSpec *spec, Coupling c, Patterns *out) {
+PetscErrorCode SharedShapesCreate(const FluidSpec *spec, Coupling c, SharedShapes *out) {
   const Membrane m = c->membrane;
-  Patterns s;
+  SharedShapes s;
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&s));
   *out = s;
   s->coupling = c;
-  PetscCall(CoarseCreate(spec, m->layout, m->L0, c->markers->kernel->name, &s->coarse));
+  PetscCall(CoarseGridCreate(spec, m->layout, m->L0, c->markers->kernel->name, &s->coarse));
   PetscCall(CreateWork(s));
-  if (s->coarse) PetscCall(PatternCrossCreate(s, &s->cross));
+  if (s->coarse) PetscCall(InteractionsCreate(s, &s->cross));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode FreeMatrices(Pattern *q) {
+static PetscErrorCode FreeMatrices(SharedShape *q) {
   PetscFunctionBeginUser;
   PetscCall(PetscFree(q->inverse.value));
   PetscCall(PetscFree(q->sources.value));
@@ -42,27 +42,27 @@ static PetscErrorCode FreeMatrices(Pattern *q) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode FreePattern(Pattern *q) {
+static PetscErrorCode FreeShape(SharedShape *q) {
   PetscFunctionBeginUser;
   PetscCall(PetscFree(q->X));
   PetscCall(FreeMatrices(q));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode PatternsDestroy(Patterns *patterns) {
-  Patterns s = *patterns;
+PetscErrorCode SharedShapesDestroy(SharedShapes *shapes) {
+  SharedShapes s = *shapes;
   PetscFunctionBeginUser;
   if (!s) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt k = 0; k < s->count; k++) PetscCall(FreePattern(&s->pattern[k]));
-  PetscCall(PetscFree(s->pattern));
+  for (PetscInt k = 0; k < s->count; k++) PetscCall(FreeShape(&s->shape[k]));
+  PetscCall(PetscFree(s->shape));
   for (PetscInt k = 0; k < s->kinds; k++) PetscCall(CurvePointsDestroy(&s->weights[k]));
   PetscCall(PetscFree(s->weights));
-  PetscCall(PatternCrossDestroy(&s->cross));
-  PetscCall(CoarseDestroy(&s->coarse));
-  PetscCall(PetscFree4(s->of, s->order, s->pose, s->X));
+  PetscCall(InteractionsDestroy(&s->cross));
+  PetscCall(CoarseGridDestroy(&s->coarse));
+  PetscCall(PetscFree4(s->of, s->order, s->fit, s->X));
   PetscCall(PetscFree3(s->from, s->to, s->alone.force));
   PetscCall(PetscFree(s->alone.jump));
-  PetscCall(PetscFree(*patterns));
+  PetscCall(PetscFree(*shapes));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -76,9 +76,9 @@ static PetscBool Alike(Coupling c, PetscInt v, PetscInt w) {
              : PETSC_FALSE;
 }
 
-/* What of a pattern's distance is due to its label speed, in the mode in which that counts most beside the I and the
+/* What of a shape's distance is due to its label speed, in the mode in which that counts most beside the I and the
    bending of N, 1 + c_b m^3/(4 nu R0^3 a0). */
-static PetscReal TreadingDistance(Coupling c, PetscInt v, const Pattern *q) {
+static PetscReal TreadingDistance(Coupling c, PetscInt v, const SharedShape *q) {
   const Membrane m = c->membrane;
   const PetscReal R0 = m->L0[v] / (2 * PETSC_PI), a0 = c->fluid->a0;
   const PetscReal stiffness = m->part[v] * m->bending / (4 * c->fluid->nu * R0 * R0 * R0 * a0);
@@ -90,63 +90,63 @@ static PetscReal TreadingDistance(Coupling c, PetscInt v, const Pattern *q) {
   return most * PetscAbsReal(c->treading[v] - q->treading) / a0;
 }
 
-/* How far a pattern's matrices are from those of own vesicle v, whose centred markers are s->X: its curve, part of R0,
-   and its label speed. Where that is more than `limit` (what no pose can mend shows most of them) it may be any larger
+/* How far a shape's matrices are from those of own vesicle v, whose centred markers are s->X: its curve, part of R0,
+   and its label speed. Where that is more than `limit` (what no fit can mend shows most of them) it may be any larger
    number. */
-static PetscReal Distance(Patterns s, PetscInt v, const Pattern *q, const PetscReal size[], PetscReal limit,
-                          Pose *pose) {
+static PetscReal Distance(SharedShapes s, PetscInt v, const SharedShape *q, const PetscReal size[], PetscReal limit,
+                          RigidFit *fit) {
   const Membrane m = s->coupling->membrane;
   const PetscReal R0 = m->L0[v] / (2 * PETSC_PI);
   if (!Alike(s->coupling, v, q->like)) return PETSC_MAX_REAL;
   const PetscReal treading = TreadingDistance(s->coupling, v, q);
-  if (PoseLeast(size, q->size) / R0 + treading > limit) return PETSC_MAX_REAL;
-  *pose = PoseFit(LayoutCount(m->layout, v), s->X, q->X);
-  return pose->distance / R0 + treading;
+  if (RigidFitLeast(size, q->size) / R0 + treading > limit) return PETSC_MAX_REAL;
+  *fit = RigidFitCurves(LayoutCount(m->layout, v), s->X, q->X);
+  return fit->distance / R0 + treading;
 }
 
-/* The pattern that own vesicle v takes from here on: that of before while it is near enough, else the nearest of those
+/* The shape that own vesicle v takes from here on: that of before while it is near enough, else the nearest of those
    from `first` on; false when it needs a new one. */
-static PetscBool Choose(Patterns s, PetscInt v, PetscInt first) {
+static PetscBool Choose(SharedShapes s, PetscInt v, PetscInt first) {
   const Layout l = s->coupling->membrane->layout;
-  PetscReal least = TOLERANCE, size[POSE_SIZES];
-  Pose *own = &s->pose[v - l->own], pose;
-  PoseCentred(LayoutCount(l, v), s->coupling->markers->X + 2 * l->start[v], s->X);
-  PoseSizes(LayoutCount(l, v), s->X, size);
-  if (s->of[v] >= 0 && Distance(s, v, &s->pattern[s->of[v]], size, least, own) <= least) return PETSC_TRUE;
+  PetscReal least = TOLERANCE, size[RIGIDFIT_SIZES];
+  RigidFit *own = &s->fit[v - l->own], fit;
+  RigidFitCentre(LayoutCount(l, v), s->coupling->markers->X + 2 * l->start[v], s->X);
+  RigidFitSizes(LayoutCount(l, v), s->X, size);
+  if (s->of[v] >= 0 && Distance(s, v, &s->shape[s->of[v]], size, least, own) <= least) return PETSC_TRUE;
   s->of[v] = -1;
   for (PetscInt k = first; k < s->count; k++) {
-    const PetscReal distance = Distance(s, v, &s->pattern[k], size, least, &pose);
+    const PetscReal distance = Distance(s, v, &s->shape[k], size, least, &fit);
     if (distance > least) continue;
     least = distance;
     s->of[v] = k;
-    *own = pose;
+    *own = fit;
   }
   return s->of[v] >= 0 ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* A pattern, zero but for its X. */
-static PetscErrorCode Add(Patterns s, PetscInt like, PetscReal treading, const PetscReal X[]) {
+/* A shape, zero but for its X. */
+static PetscErrorCode Add(SharedShapes s, PetscInt like, PetscReal treading, const PetscReal X[]) {
   const Membrane m = s->coupling->membrane;
   PetscFunctionBeginUser;
   if (s->count == s->room) {
     s->room = 2 * s->room + 8;
-    PetscCall(PetscRealloc((size_t)s->room * sizeof(Pattern), &s->pattern));
+    PetscCall(PetscRealloc((size_t)s->room * sizeof(SharedShape), &s->shape));
   }
   const PetscInt n = LayoutCount(m->layout, like);
   const PetscBool jumps = s->coupling->contrast && s->coupling->contrast->ratio[like] != 1 ? PETSC_TRUE : PETSC_FALSE;
-  Pattern *q = &s->pattern[s->count++];
-  *q = (Pattern){.like = like,
-                 .treading = treading,
-                 .inverse = {.rows = 3 * n, .columns = 3 * n},
-                 .sources = {.rows = jumps ? 4 * n : 2 * n, .columns = 3 * n}};
+  SharedShape *q = &s->shape[s->count++];
+  *q = (SharedShape){.like = like,
+                     .treading = treading,
+                     .inverse = {.rows = 3 * n, .columns = 3 * n},
+                     .sources = {.rows = jumps ? 4 * n : 2 * n, .columns = 3 * n}};
   PetscCall(PetscMalloc1(2 * n, &q->X));
   PetscCall(PetscArraycpy(q->X, X, 2 * n));
-  PoseSizes(n, X, q->size);
+  RigidFitSizes(n, X, q->size);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Which vesicle takes which pattern, told to all ranks; those that none takes any more are dropped. */
-static PetscErrorCode Tell(Patterns s) {
+/* Which vesicle takes which shape, told to all ranks; those that none takes any more are dropped. */
+static PetscErrorCode Tell(SharedShapes s) {
   const Layout l = s->coupling->membrane->layout;
   PetscInt *to, kept = 0;
   PetscFunctionBeginUser;
@@ -158,10 +158,10 @@ static PetscErrorCode Tell(Patterns s) {
   for (PetscInt v = 0; v < l->bodies; v++) to[s->of[v]] = 0;
   for (PetscInt k = 0; k < s->count; k++) {
     if (to[k] < 0) {
-      PetscCall(FreePattern(&s->pattern[k]));
+      PetscCall(FreeShape(&s->shape[k]));
       continue;
     }
-    s->pattern[kept] = s->pattern[k];
+    s->shape[kept] = s->shape[k];
     to[k] = kept++;
   }
   s->count = kept;
@@ -170,9 +170,9 @@ static PetscErrorCode Tell(Patterns s) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* New patterns until every vesicle has one: each of the first vesicle of all ranks that needs one, so that they do not
+/* New shapes until every vesicle has one: each of the first vesicle of all ranks that needs one, so that they do not
    depend on the ranks. */
-static PetscErrorCode ChooseAll(Patterns s) {
+static PetscErrorCode ChooseAll(SharedShapes s) {
   const Layout l = s->coupling->membrane->layout;
   PetscInt first = 0, found[2] = {0, 0}; /* the vesicle that needs one, minus whether any has changed */
   PetscFunctionBeginUser;
@@ -187,46 +187,46 @@ static PetscErrorCode ChooseAll(Patterns s) {
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, found, 2, MPIU_INT, MPI_MIN, l->comm));
     if (found[0] == l->bodies) break;
     first = s->count;
-    PoseCentred(LayoutCount(l, found[0]), s->coupling->markers->X + 2 * l->start[found[0]], s->X);
+    RigidFitCentre(LayoutCount(l, found[0]), s->coupling->markers->X + 2 * l->start[found[0]], s->X);
     PetscCall(Add(s, found[0], s->coupling->treading[found[0]], s->X));
   }
   if (found[1]) PetscCall(Tell(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Own vesicles by pattern. */
-static void Sort(Patterns s) {
+/* Own vesicles by shape. */
+static void Sort(SharedShapes s) {
   const Layout l = s->coupling->membrane->layout;
   PetscInt at = 0;
-  for (PetscInt k = 0; k < s->count; k++) s->pattern[k].begin = s->pattern[k].end = 0;
-  for (PetscInt v = l->own; v < l->end; v++) s->pattern[s->of[v]].end++;
+  for (PetscInt k = 0; k < s->count; k++) s->shape[k].begin = s->shape[k].end = 0;
+  for (PetscInt v = l->own; v < l->end; v++) s->shape[s->of[v]].end++;
   for (PetscInt k = 0; k < s->count; k++) {
-    Pattern *q = &s->pattern[k];
+    SharedShape *q = &s->shape[k];
     const PetscInt own = q->end;
     q->begin = q->end = at;
     at += own;
   }
-  for (PetscInt v = l->own; v < l->end; v++) s->order[s->pattern[s->of[v]].end++] = v;
+  for (PetscInt v = l->own; v < l->end; v++) s->order[s->shape[s->of[v]].end++] = v;
 }
 
-/* Matrices of the patterns that own vesicles take, for the a0 in force. */
-static PetscErrorCode MakeAll(Patterns s, PetscBool *failed) {
+/* Matrices of the shapes that own vesicles take, for the a0 in force. */
+static PetscErrorCode MakeAll(SharedShapes s, PetscBool *failed) {
   const PetscReal a0 = s->coupling->fluid->a0;
   PetscBool good = PETSC_TRUE;
   PetscFunctionBeginUser;
   if (!(PetscAbsReal(s->a0 / a0 - 1) < 0.1)) {
     s->a0 = a0;
-    for (PetscInt k = 0; k < s->count; k++) PetscCall(FreeMatrices(&s->pattern[k]));
+    for (PetscInt k = 0; k < s->count; k++) PetscCall(FreeMatrices(&s->shape[k]));
   }
   for (PetscInt k = 0; k < s->count && good; k++) {
-    Pattern *q = &s->pattern[k];
-    if (q->end > q->begin && !q->inverse.value) PetscCall(PatternMake(s, q, &good));
+    SharedShape *q = &s->shape[k];
+    if (q->end > q->begin && !q->inverse.value) PetscCall(SharedShapeMake(s, q, &good));
   }
   PetscCall(AgreeFlag(s->coupling->membrane->layout->comm, good ? PETSC_FALSE : PETSC_TRUE, failed));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode PatternsFollow(Patterns s, PetscBool *failed) {
+PetscErrorCode SharedShapesFollow(SharedShapes s, PetscBool *failed) {
   PetscLogEvent event;
   PetscFunctionBeginUser;
   PetscCall(PetvesEvent("FactorMobility", &event));
@@ -234,33 +234,33 @@ PetscErrorCode PatternsFollow(Patterns s, PetscBool *failed) {
   PetscCall(ChooseAll(s));
   Sort(s);
   PetscCall(MakeAll(s, failed));
-  if (s->cross && !*failed) PetscCall(PatternCrossPlace(s->cross));
+  if (s->cross && !*failed) PetscCall(InteractionsPlace(s->cross));
   PetscCall(PetscLogEventEnd(event, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode PatternsSolve(Patterns s, PetscScalar U[], PetscScalar sigma[]) {
+PetscErrorCode SharedShapesSolve(SharedShapes s, PetscScalar U[], PetscScalar sigma[]) {
   const PetscScalar *a;
   Vec W;
   PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < s->count; k++) PatternSolveAlone(s, &s->pattern[k], U, sigma, s->cross ? &s->alone : NULL);
+  for (PetscInt k = 0; k < s->count; k++) SharedShapeSolveAlone(s, &s->shape[k], U, sigma, s->cross ? &s->alone : NULL);
   if (!s->cross) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PatternCrossSolve(s->cross, &s->alone, &W));
+  PetscCall(InteractionsSolve(s->cross, &s->alone, &W));
   PetscCall(VecGetArrayRead(W, &a));
-  for (PetscInt k = 0; k < s->count; k++) PatternAddAnswer(s, &s->pattern[k], a, U, sigma);
+  for (PetscInt k = 0; k < s->count; k++) SharedShapeAddAnswer(s, &s->shape[k], a, U, sigma);
   PetscCall(VecRestoreArrayRead(W, &a));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Memory: a0; the curve of each pattern in the place of the first vesicle that takes it; that vesicle's number for
-   every vesicle; label speed and kin of each pattern, in the place of that vesicle. */
-void PatternsGetMemory(Patterns s, PetscReal memory[]) {
+/* Memory: a0; the curve of each shape in the place of the first vesicle that takes it; that vesicle's number for
+   every vesicle; label speed and kin of each shape, in the place of that vesicle. */
+void SharedShapesGetMemory(SharedShapes s, PetscReal memory[]) {
   const Layout l = s->coupling->membrane->layout;
   PetscReal *X = memory + 1, *first = X + 2 * l->M, *treading = first + l->bodies, *like = treading + l->bodies;
-  (void)PetscArrayzero(memory, PatternsMemorySize(l));
+  (void)PetscArrayzero(memory, SharedShapesMemorySize(l));
   memory[0] = s->a0;
   for (PetscInt v = 0; v < l->bodies && s->a0 > 0; v++) {
-    const Pattern *q = &s->pattern[s->of[v]];
+    const SharedShape *q = &s->shape[s->of[v]];
     PetscInt w = 0;
     while (s->of[w] != s->of[v]) w++;
     first[v] = (PetscReal)w;
@@ -277,7 +277,7 @@ static PetscBool IsLike(Coupling c, PetscInt v, PetscReal number) {
                                                                                                          : PETSC_FALSE;
 }
 
-PetscErrorCode PatternsSetMemory(Patterns s, const PetscReal memory[], PetscBool *valid) {
+PetscErrorCode SharedShapesSetMemory(SharedShapes s, const PetscReal memory[], PetscBool *valid) {
   const Coupling c = s->coupling;
   const Layout l = c->membrane->layout;
   const PetscReal *X = memory + 1, *first = X + 2 * l->M, *treading = first + l->bodies, *like = treading + l->bodies;

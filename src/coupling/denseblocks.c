@@ -1,8 +1,8 @@
-#include "coupling/dense.h"
+#include "coupling/denseblocks.h"
 #include "base/agree.h"
 #include "coupling/contrast.h"
 #include "coupling/denseblock.h"
-#include "coupling/pose.h"
+#include "coupling/rigidfit.h"
 
 /* The frame of the one curve that a block was made for. */
 typedef struct {
@@ -10,7 +10,7 @@ typedef struct {
   PetscBool made;
   PetscReal *X;         /* [2n] the curve, centred */
   PetscReal *U, *sigma; /* [2n], [n] work */
-  Pose pose;            /* of the present curve */
+  RigidFit fit;         /* of the present curve */
 } BlockFrame;
 
 struct _p_DenseBlocks {
@@ -85,7 +85,7 @@ static void PlaceTangents(DenseBlocks b, PetscInt k) {
   const BlockFrame *f = &b->frame[k];
   const PetscReal *X = b->coupling->markers->X + 2 * q->first;
   if (f->turns && f->made) {
-    PoseInto(&f->pose, 2, q->n, X, f->U);
+    RigidFitInto(&f->fit, 2, q->n, X, f->U);
     X = f->U;
   }
   for (PetscInt v = q->vesicle; v < q->end; v++) {
@@ -99,8 +99,8 @@ void DenseBlocksPlace(DenseBlocks b) {
     const DenseBlock *q = &b->block[k];
     BlockFrame *f = &b->frame[k];
     if (f->turns && f->made) {
-      PoseCentred(q->n, b->coupling->markers->X + 2 * q->first, f->U);
-      f->pose = PoseFit(q->n, f->U, f->X);
+      RigidFitCentre(q->n, b->coupling->markers->X + 2 * q->first, f->U);
+      f->fit = RigidFitCurves(q->n, f->U, f->X);
     }
     PlaceTangents(b, k);
   }
@@ -111,8 +111,8 @@ static void BeginFrames(DenseBlocks b) {
   for (PetscInt k = 0; k < b->count; k++) {
     BlockFrame *f = &b->frame[k];
     f->made = PETSC_TRUE;
-    f->pose = (Pose){.turn = {1, 0}};
-    if (f->turns) PoseCentred(b->block[k].n, b->coupling->markers->X + 2 * b->block[k].first, f->X);
+    f->fit = (RigidFit){.turn = {1, 0}};
+    if (f->turns) RigidFitCentre(b->block[k].n, b->coupling->markers->X + 2 * b->block[k].first, f->X);
     PlaceTangents(b, k);
   }
 }
@@ -167,11 +167,11 @@ static PetscErrorCode SolveBlock(DenseBlocks b, PetscInt k, PetscScalar U[], Pet
     PetscCall(DenseBlockSolve(q, 1, U, sigma));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  PoseInto(&f->pose, 2, q->n, U, f->U);
-  PoseInto(&f->pose, 1, q->n, sigma, f->sigma);
+  RigidFitInto(&f->fit, 2, q->n, U, f->U);
+  RigidFitInto(&f->fit, 1, q->n, sigma, f->sigma);
   PetscCall(DenseBlockSolve(q, 1, f->U, f->sigma));
-  PoseBack(&f->pose, 2, q->n, f->U, U);
-  PoseBack(&f->pose, 1, q->n, f->sigma, sigma);
+  RigidFitBack(&f->fit, 2, q->n, f->U, U);
+  RigidFitBack(&f->fit, 1, q->n, f->sigma, sigma);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

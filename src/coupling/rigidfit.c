@@ -1,7 +1,7 @@
-#include "coupling/pose.h"
+#include "coupling/rigidfit.h"
 #include "base/lanes.h"
 
-void PoseCentred(PetscInt n, const PetscReal X[], PetscReal Y[]) {
+void RigidFitCentre(PetscInt n, const PetscReal X[], PetscReal Y[]) {
   PetscReal mean[2] = {0, 0};
   for (PetscInt k = 0; k < n; k++)
     for (int c = 0; c < 2; c++) mean[c] += X[2 * k + c] / n;
@@ -9,10 +9,10 @@ void PoseCentred(PetscInt n, const PetscReal X[], PetscReal Y[]) {
     for (int c = 0; c < 2; c++) Y[2 * k + c] = X[2 * k + c] - mean[c];
 }
 
-void PoseSizes(PetscInt n, const PetscReal X[], PetscReal size[POSE_SIZES]) {
+void RigidFitSizes(PetscInt n, const PetscReal X[], PetscReal size[RIGIDFIT_SIZES]) {
   PetscReal rest = 0;
   for (PetscInt k = 0; k < 2 * n; k++) rest += X[k] * X[k] / (PetscReal)n;
-  for (int q = 0; q < POSE_SIZES - 1; q++) {
+  for (int q = 0; q < RIGIDFIT_SIZES - 1; q++) {
     const PetscReal angle = (q % 2 ? 2 : -2) * PETSC_PI * (q / 2 + 1) / (PetscReal)n, c = PetscCosReal(angle),
                     s = PetscSinReal(angle);
     PetscReal turn[2] = {1, 0}, a[2] = {0, 0};
@@ -26,12 +26,12 @@ void PoseSizes(PetscInt n, const PetscReal X[], PetscReal size[POSE_SIZES]) {
     size[q] = PetscSqrtReal(a[0] * a[0] + a[1] * a[1]);
     rest -= size[q] * size[q];
   }
-  size[POSE_SIZES - 1] = PetscSqrtReal(PetscMax(rest, 0));
+  size[RIGIDFIT_SIZES - 1] = PetscSqrtReal(PetscMax(rest, 0));
 }
 
-PetscReal PoseLeast(const PetscReal a[POSE_SIZES], const PetscReal b[POSE_SIZES]) {
+PetscReal RigidFitLeast(const PetscReal a[RIGIDFIT_SIZES], const PetscReal b[RIGIDFIT_SIZES]) {
   PetscReal sum = 0;
-  for (int q = 0; q < POSE_SIZES; q++) sum += PetscSqr(a[q] - b[q]);
+  for (int q = 0; q < RIGIDFIT_SIZES; q++) sum += PetscSqr(a[q] - b[q]);
   return PetscSqrtReal(sum);
 }
 
@@ -74,8 +74,8 @@ static void Correlate(PetscInt n, PetscInt j, const PetscReal X[], const PetscRe
   for (int i = 0; i < SHIFTS; i++) LanesTwoSums(sum.same[i], sum.cross[i], &c[i][0], &c[i][1]);
 }
 
-Pose PoseFit(PetscInt n, const PetscReal X[], const PetscReal Y[]) {
-  Pose pose = {.turn = {1, 0}};
+RigidFit RigidFitCurves(PetscInt n, const PetscReal X[], const PetscReal Y[]) {
+  RigidFit fit = {.turn = {1, 0}};
   PetscReal squares = 0, largest = -1;
   for (PetscInt k = 0; k < 2 * n; k++) squares += X[k] * X[k] + Y[k] * Y[k];
   for (PetscInt from = 0; from < n; from += SHIFTS) {
@@ -86,18 +86,18 @@ Pose PoseFit(PetscInt n, const PetscReal X[], const PetscReal Y[]) {
       const PetscReal size = c[i][0] * c[i][0] + c[i][1] * c[i][1];
       if (size <= (1 + SAME) * largest) continue; /* of a symmetric curve the first, whatever rounding does */
       largest = size;
-      pose.shift = j + i;
-      pose.turn[0] = c[i][0];
-      pose.turn[1] = c[i][1];
+      fit.shift = j + i;
+      fit.turn[0] = c[i][0];
+      fit.turn[1] = c[i][1];
     }
   }
   const PetscReal size = PetscSqrtReal(PetscMax(largest, 0));
-  for (int c = 0; c < 2; c++) pose.turn[c] = size > 0 ? pose.turn[c] / size : !c;
-  pose.distance = PetscSqrtReal(PetscMax(squares - 2 * size, 0) / (PetscReal)n);
-  return pose;
+  for (int c = 0; c < 2; c++) fit.turn[c] = size > 0 ? fit.turn[c] / size : !c;
+  fit.distance = PetscSqrtReal(PetscMax(squares - 2 * size, 0) / (PetscReal)n);
+  return fit;
 }
 
-void PoseTurn(const Pose *p, PetscBool back, PetscInt n, const PetscReal x[], PetscReal y[]) {
+void RigidFitTurn(const RigidFit *p, PetscBool back, PetscInt n, const PetscReal x[], PetscReal y[]) {
   const PetscReal c = p->turn[0], s = back ? -p->turn[1] : p->turn[1];
   for (PetscInt k = 0; k < n; k++) {
     y[2 * k] = c * x[2 * k] - s * x[2 * k + 1];
@@ -106,20 +106,20 @@ void PoseTurn(const Pose *p, PetscBool back, PetscInt n, const PetscReal x[], Pe
 }
 
 /* y = x of n markers, vectors turned. */
-static void Copy(const Pose *p, PetscBool back, int each, PetscInt n, const PetscReal x[], PetscReal y[]) {
+static void Copy(const RigidFit *p, PetscBool back, int each, PetscInt n, const PetscReal x[], PetscReal y[]) {
   if (each == 2)
-    PoseTurn(p, back, n, x, y);
+    RigidFitTurn(p, back, n, x, y);
   else
     (void)PetscArraycpy(y, x, n);
 }
 
-void PoseInto(const Pose *p, int each, PetscInt n, const PetscReal x[], PetscReal y[]) {
+void RigidFitInto(const RigidFit *p, int each, PetscInt n, const PetscReal x[], PetscReal y[]) {
   const PetscInt j = p->shift;
   Copy(p, PETSC_TRUE, each, n - j, x + each * j, y);
   Copy(p, PETSC_TRUE, each, j, x, y + each * (n - j));
 }
 
-void PoseBack(const Pose *p, int each, PetscInt n, const PetscReal x[], PetscReal y[]) {
+void RigidFitBack(const RigidFit *p, int each, PetscInt n, const PetscReal x[], PetscReal y[]) {
   const PetscInt j = p->shift;
   Copy(p, PETSC_FALSE, each, n - j, x, y + each * j);
   Copy(p, PETSC_FALSE, each, j, x + each * (n - j), y);

@@ -1,4 +1,4 @@
-#include "coupling/patternmake.h"
+#include "coupling/shapematrices.h"
 #include "coupling/contrast.h"
 #include "coupling/denseblock.h"
 #include "coupling/doubleblock.h"
@@ -19,7 +19,7 @@ static void AddMean(MobilityTable table, PetscReal scale, PetscInt n, const Pets
 }
 
 /* M = h^2 S. */
-static PetscErrorCode Assemble(Patterns s, const Pattern *q, PetscReal M[]) {
+static PetscErrorCode Assemble(SharedShapes s, const SharedShape *q, PetscReal M[]) {
   const Coupling c = s->coupling;
   const PetscInt n = LayoutCount(c->membrane->layout, q->like);
   const PetscReal h2 = PetscSqr(c->fluid->grid->h);
@@ -30,7 +30,7 @@ static PetscErrorCode Assemble(Patterns s, const Pattern *q, PetscReal M[]) {
 }
 
 /* With viscosity contrast what ContrastMatrix has of a vesicle of this shape, else NULL. */
-static PetscErrorCode Motion(Patterns s, const Pattern *q, PetscReal **motion) {
+static PetscErrorCode Motion(SharedShapes s, const SharedShape *q, PetscReal **motion) {
   const Membrane m = s->coupling->membrane;
   const PetscInt n = 2 * LayoutCount(m->layout, q->like);
   PetscReal *D, *normal, *along;
@@ -50,8 +50,8 @@ static PetscErrorCode Motion(Patterns s, const Pattern *q, PetscReal **motion) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The weights of n markers and so many points; those of an earlier pattern where there are. */
-static PetscErrorCode FindWeights(Patterns s, PetscInt n, PetscInt points, PetscInt *which) {
+/* The weights of n markers and so many points; those of an earlier shape where there are. */
+static PetscErrorCode FindWeights(SharedShapes s, PetscInt n, PetscInt points, PetscInt *which) {
   PetscFunctionBeginUser;
   for (*which = 0; *which < s->kinds; (*which)++)
     if (s->weights[*which].n == n && s->weights[*which].points == points) PetscFunctionReturn(PETSC_SUCCESS);
@@ -62,7 +62,7 @@ static PetscErrorCode FindWeights(Patterns s, PetscInt n, PetscInt points, Petsc
 
 /* F = Dm^T sigma + (c_b ds/a0) D4 V of an answer (V, sigma), and behind it J = (1 - ratio) (V + (treading/a0) dV/dt).
  */
-static void Sources(Patterns s, const Pattern *q, const PetscReal tau[], const PetscReal V[], PetscReal F[]) {
+static void Sources(SharedShapes s, const SharedShape *q, const PetscReal tau[], const PetscReal V[], PetscReal F[]) {
   const Membrane m = s->coupling->membrane;
   const PetscInt n = LayoutCount(m->layout, q->like);
   PetscReal *pull = s->X;
@@ -77,8 +77,8 @@ static void Sources(Patterns s, const Pattern *q, const PetscReal tau[], const P
   for (PetscInt k = 0; k < 2 * n; k++) J[k] *= 1 - s->coupling->contrast->ratio[q->like];
 }
 
-/* The coarse parts of a pattern: the points of the curve through its markers, weights, self. */
-static PetscErrorCode MakeCoarse(Patterns s, Pattern *q) {
+/* The coarse parts of a shape: the points of the curve through its markers, weights, self. */
+static PetscErrorCode MakeCoarse(SharedShapes s, SharedShape *q) {
   const PetscInt n = LayoutCount(s->coupling->membrane->layout, q->like),
                  points = LayoutCount(s->coarse->layout, q->like);
   const PetscReal h2 = PetscSqr(s->coarse->fluid->grid->h);
@@ -94,7 +94,7 @@ static PetscErrorCode MakeCoarse(Patterns s, Pattern *q) {
 }
 
 /* The inverse and its sources: the columns are the answers V, sigma to those of the identity. */
-static PetscErrorCode Store(Patterns s, Pattern *q, const PetscReal tau[], const PetscReal V[],
+static PetscErrorCode Store(SharedShapes s, SharedShape *q, const PetscReal tau[], const PetscReal V[],
                             const PetscReal sigma[]) {
   const PetscInt n = LayoutCount(s->coupling->membrane->layout, q->like), all = 3 * n;
   PetscReal *answer, *F;
@@ -113,7 +113,7 @@ static PetscErrorCode Store(Patterns s, Pattern *q, const PetscReal tau[], const
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode PatternMake(Patterns s, Pattern *q, PetscBool *good) {
+PetscErrorCode SharedShapeMake(SharedShapes s, SharedShape *q, PetscBool *good) {
   const Membrane m = s->coupling->membrane;
   const PetscInt n = LayoutCount(m->layout, q->like), all = 3 * n;
   PetscReal *M, *motion, *V, *sigma;

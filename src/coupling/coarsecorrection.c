@@ -1,4 +1,4 @@
-#include "coupling/shortrange.h"
+#include "coupling/coarsecorrection.h"
 #include "coupling/nearblock.h"
 
 #define CELLS 4  /* of the coarse grid: reach */
@@ -38,10 +38,11 @@ static void LatticeMean(const OffsetTable *lattice, const Kernel *kernel, PetscR
 }
 
 /* R by distance: the mean over directions, fading smoothly in the last quarter. */
-static void Tabulate(ShortRange s, const OffsetTable *lattice, const Kernel *kernel) {
+static void Tabulate(CoarseCorrection s, const OffsetTable *lattice, const Kernel *kernel) {
   const PetscReal nu = s->coupling->fluid->nu;
-  for (PetscInt k = 0; k < SHORT_POINTS; k++) {
-    const PetscReal r = CELLS * PetscMax((PetscReal)k, 0.5) / (SHORT_POINTS - 1), x = 4 * PetscMax(0, r / CELLS - 0.75);
+  for (PetscInt k = 0; k < CORRECTION_POINTS; k++) {
+    const PetscReal r = CELLS * PetscMax((PetscReal)k, 0.5) / (CORRECTION_POINTS - 1),
+                    x = 4 * PetscMax(0, r / CELLS - 0.75);
     const PetscReal fade = (1 - x) * (1 - x) * (1 + 2 * x), S = -PetscLogReal(r);
     PetscReal sum[2] = {0, 0};
     for (int a = 0; a < ANGLES; a++) {
@@ -54,8 +55,8 @@ static void Tabulate(ShortRange s, const OffsetTable *lattice, const Kernel *ker
   }
 }
 
-PetscErrorCode ShortRangeCreate(Coupling c, Coarse coarse, ShortRange *out) {
-  ShortRange s;
+PetscErrorCode CoarseCorrectionCreate(Coupling c, CoarseGrid coarse, CoarseCorrection *out) {
+  CoarseCorrection s;
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&s));
   *out = s;
@@ -66,7 +67,7 @@ PetscErrorCode ShortRangeCreate(Coupling c, Coarse coarse, ShortRange *out) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode ShortRangeDestroy(ShortRange *range) {
+PetscErrorCode CoarseCorrectionDestroy(CoarseCorrection *range) {
   PetscFunctionBeginUser;
   if (!*range) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscFree((*range)->pair));
@@ -76,25 +77,25 @@ PetscErrorCode ShortRangeDestroy(ShortRange *range) {
 }
 
 /* The pair of markers i and j, d apart. */
-static ShortPair Pair(ShortRange s, PetscInt i, PetscInt j, const PetscReal d[2], PetscReal r2) {
-  const PetscReal at = PetscSqrtReal(r2) / s->reach * (SHORT_POINTS - 1);
-  const PetscInt k = PetscMin((PetscInt)at, SHORT_POINTS - 2);
+static CorrectionPair Pair(CoarseCorrection s, PetscInt i, PetscInt j, const PetscReal d[2], PetscReal r2) {
+  const PetscReal at = PetscSqrtReal(r2) / s->reach * (CORRECTION_POINTS - 1);
+  const PetscInt k = PetscMin((PetscInt)at, CORRECTION_POINTS - 2);
   const PetscReal t = at - (PetscReal)k, across = (1 - t) * s->across[k] + t * s->across[k + 1],
                   along = (1 - t) * s->along[k] + t * s->along[k + 1], both = r2 > 0 ? (along - across) / r2 : 0;
-  return (ShortPair){i, j, (float)(across + both * d[0] * d[0]), (float)(both * d[0] * d[1]),
-                     (float)(across + both * d[1] * d[1])};
+  return (CorrectionPair){i, j, (float)(across + both * d[0] * d[0]), (float)(both * d[0] * d[1]),
+                          (float)(across + both * d[1] * d[1])};
 }
 
-static PetscErrorCode Room(ShortRange s, PetscInt more) {
+static PetscErrorCode Room(CoarseCorrection s, PetscInt more) {
   PetscFunctionBeginUser;
   if (s->pairs + more <= s->room) PetscFunctionReturn(PETSC_SUCCESS);
   s->room = 2 * s->room + more;
-  PetscCall(PetscRealloc((size_t)s->room * sizeof(ShortPair), &s->pair));
+  PetscCall(PetscRealloc((size_t)s->room * sizeof(CorrectionPair), &s->pair));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* The pairs of marker i with those of the block's column. */
-static PetscErrorCode AddRow(ShortRange s, const NearBlock *b, PetscInt i) {
+static PetscErrorCode AddRow(CoarseCorrection s, const NearBlock *b, PetscInt i) {
   const NearField f = s->coupling->near;
   const Layout l = s->coupling->membrane->layout;
   const NearBounds *column = &f->pairs->bounds[b->column];
@@ -110,7 +111,7 @@ static PetscErrorCode AddRow(ShortRange s, const NearBlock *b, PetscInt i) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode ShortRangePlace(ShortRange s) {
+PetscErrorCode CoarseCorrectionPlace(CoarseCorrection s) {
   const NearField f = s->coupling->near;
   const Layout l = s->coupling->membrane->layout;
   PetscFunctionBeginUser;
@@ -124,18 +125,18 @@ PetscErrorCode ShortRangePlace(ShortRange s) {
 }
 
 /* u -= R f of one marker. */
-static inline void Take(const ShortPair *p, const PetscScalar f[2], PetscScalar u[2]) {
+static inline void Take(const CorrectionPair *p, const PetscScalar f[2], PetscScalar u[2]) {
   u[0] -= p->xx * f[0] + p->xy * f[1];
   u[1] -= p->xy * f[0] + p->yy * f[1];
 }
 
-PetscErrorCode ShortRangeApply(ShortRange s, const PetscScalar F[], PetscScalar U[]) {
+PetscErrorCode CoarseCorrectionApply(CoarseCorrection s, const PetscScalar F[], PetscScalar U[]) {
   const Layout l = s->coupling->membrane->layout;
   const PetscInt first = l->first, end = l->first + l->n;
   PetscFunctionBeginUser;
   PetscCall(LayoutGather(l, 2, F, s->force));
   for (PetscInt k = 0; k < s->pairs; k++) {
-    const ShortPair *p = &s->pair[k];
+    const CorrectionPair *p = &s->pair[k];
     Take(p, s->force + 2 * p->j, U + 2 * (p->i - first));
     if (p->j >= first && p->j < end) Take(p, s->force + 2 * p->i, U + 2 * (p->j - first));
   }

@@ -1,6 +1,6 @@
-#include "coupling/patterncross.h"
+#include "coupling/interactions.h"
 #include "base/lanes.h"
-#include "coupling/patternapply.h"
+#include "coupling/shapeproducts.h"
 
 #define ITERATIONS 2 /* of GMRES */
 
@@ -13,7 +13,7 @@ static PetscReal Dot(PetscInt n, const PetscReal a[], const PetscReal b[]) {
   return LanesSum(four) + rest;
 }
 
-/* P^T F: a vesicle's forces, its labels those of the pattern, to the coarse points. work[2n]. */
+/* P^T F: a vesicle's forces, its labels those of the shape, to the coarse points. work[2n]. */
 static void Restrict(const CurvePoints *q, PetscInt shift, const PetscScalar F[], PetscReal work[], PetscScalar to[]) {
   const PetscInt n = q->n;
   PetscReal *x = work, *y = work + n;
@@ -46,52 +46,52 @@ static void Prolong(const CurvePoints *q, PetscInt shift, const PetscReal W[], P
 }
 
 /* W += what a vesicle's forces F do to itself on the coarse grid, taken off. work[4 points]. */
-static void TakeSelf(const Pattern *q, const Pose *pose, PetscInt points, const PetscReal F[], PetscReal work[],
+static void TakeSelf(const SharedShape *q, const RigidFit *fit, PetscInt points, const PetscReal F[], PetscReal work[],
                      PetscReal W[]) {
   PetscReal *f = work, *w = work + 2 * points;
-  PoseTurn(pose, PETSC_TRUE, points, F, f);
+  RigidFitTurn(fit, PETSC_TRUE, points, F, f);
   (void)PetscArrayzero(w, 2 * points);
   for (PetscInt j = 0; j < 2 * points; j++)
     for (PetscInt i = 0; i < 2 * points; i++) w[i] += q->self[j * 2 * points + i] * f[j];
-  PoseTurn(pose, PETSC_FALSE, points, w, f);
+  RigidFitTurn(fit, PETSC_FALSE, points, w, f);
   for (PetscInt i = 0; i < 2 * points; i++) W[i] += f[i];
 }
 
 /* W = -K F + D J: what forces F and jumps J of the own vesicles, and the walls, do to the others; own parts of marker
    vectors. */
-static PetscErrorCode Others(PatternCross c, const PatternSources *sources, PetscScalar W[]) {
+static PetscErrorCode Others(Interactions c, const ShapeSources *sources, PetscScalar W[]) {
   const PetscScalar *F = sources->force;
-  const Patterns s = c->patterns;
+  const SharedShapes s = c->shapes;
   const Layout l = s->coupling->membrane->layout, coarse = s->coarse->layout;
   PetscFunctionBeginUser;
   for (PetscInt v = l->own; v < l->end; v++)
-    Restrict(&s->weights[s->pattern[s->of[v]].weights], s->pose[v - l->own].shift, F + 2 * LayoutOffset(l, v), c->work,
+    Restrict(&s->weights[s->shape[s->of[v]].weights], s->fit[v - l->own].shift, F + 2 * LayoutOffset(l, v), c->work,
              c->F + 2 * LayoutOffset(coarse, v));
   PetscCall(PetscArraycpy(c->W, c->F, 2 * coarse->n));
-  PetscCall(CoarseApply(s->coarse, c->W));
+  PetscCall(CoarseGridApply(s->coarse, c->W));
   for (PetscInt v = l->own; v < l->end; v++) {
-    const Pattern *q = &s->pattern[s->of[v]];
-    const Pose *pose = &s->pose[v - l->own];
+    const SharedShape *q = &s->shape[s->of[v]];
+    const RigidFit *fit = &s->fit[v - l->own];
     const PetscInt points = LayoutCount(coarse, v), at = 2 * LayoutOffset(coarse, v);
-    TakeSelf(q, pose, points, c->F + at, c->work, c->W + at);
-    Prolong(&s->weights[q->weights], pose->shift, c->W + at, c->work, W + 2 * LayoutOffset(l, v));
+    TakeSelf(q, fit, points, c->F + at, c->work, c->W + at);
+    Prolong(&s->weights[q->weights], fit->shift, c->W + at, c->work, W + 2 * LayoutOffset(l, v));
   }
-  PetscCall(ShortRangeApply(c->near, F, W));
+  PetscCall(CoarseCorrectionApply(c->near, F, W));
   if (c->dipoles) PetscCall(DoubleCrossApply(c->dipoles, sources->jump, W));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* y = W + (K F - D J)(B^-1 (W, 0)). */
 static PetscErrorCode Mult(Mat A, Vec W, Vec y) {
-  PatternCross c;
+  Interactions c;
   const PetscScalar *from;
   PetscScalar *to;
   PetscFunctionBeginUser;
   PetscCall(MatShellGetContext(A, &c));
-  const Patterns s = c->patterns;
+  const SharedShapes s = c->shapes;
   PetscCall(VecGetArrayRead(W, &from));
   PetscCall(VecGetArray(y, &to));
-  for (PetscInt k = 0; k < s->count; k++) PatternAnswers(s, &s->pattern[k], from, &c->answer);
+  for (PetscInt k = 0; k < s->count; k++) SharedShapeSources(s, &s->shape[k], from, &c->answer);
   PetscCall(Others(c, &c->answer, to));
   PetscCall(VecRestoreArray(y, &to));
   PetscCall(VecRestoreArrayRead(W, &from));
@@ -99,7 +99,7 @@ static PetscErrorCode Mult(Mat A, Vec W, Vec y) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode CreateKSP(PatternCross c, Layout l) {
+static PetscErrorCode CreateKSP(Interactions c, Layout l) {
   PC pc;
   PetscFunctionBeginUser;
   PetscCall(LayoutCreateVec(l, 2, &c->known));
@@ -115,14 +115,14 @@ static PetscErrorCode CreateKSP(PatternCross c, Layout l) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode PatternCrossCreate(Patterns s, PatternCross *out) {
+PetscErrorCode InteractionsCreate(SharedShapes s, Interactions *out) {
   const Layout l = s->coupling->membrane->layout, coarse = s->coarse->layout;
   PetscInt most = 0;
-  PatternCross c;
+  Interactions c;
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&c));
   *out = c;
-  c->patterns = s;
+  c->shapes = s;
   for (PetscInt v = l->own; v < l->end; v++)
     most = PetscMax(most, PetscMax(2 * LayoutCount(l, v), 4 * LayoutCount(coarse, v)));
   PetscCall(PetscMalloc4(2 * coarse->n, &c->F, 2 * coarse->n, &c->W, 2 * l->n, &c->answer.force, most, &c->work));
@@ -130,20 +130,20 @@ PetscErrorCode PatternCrossCreate(Patterns s, PatternCross *out) {
     PetscCall(PetscMalloc1(2 * l->n, &c->answer.jump));
     PetscCall(DoubleCrossCreate(s->coupling->contrast, &c->dipoles));
   }
-  PetscCall(ShortRangeCreate(s->coupling, s->coarse, &c->near));
+  PetscCall(CoarseCorrectionCreate(s->coupling, s->coarse, &c->near));
   PetscCall(CreateKSP(c, l));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode PatternCrossDestroy(PatternCross *cross) {
-  PatternCross c = *cross;
+PetscErrorCode InteractionsDestroy(Interactions *cross) {
+  Interactions c = *cross;
   PetscFunctionBeginUser;
   if (!c) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(KSPDestroy(&c->ksp));
   PetscCall(MatDestroy(&c->A));
   PetscCall(VecDestroy(&c->known));
   PetscCall(VecDestroy(&c->velocity));
-  PetscCall(ShortRangeDestroy(&c->near));
+  PetscCall(CoarseCorrectionDestroy(&c->near));
   PetscCall(PetscFree4(c->F, c->W, c->answer.force, c->work));
   PetscCall(PetscFree(c->answer.jump));
   PetscCall(DoubleCrossDestroy(&c->dipoles));
@@ -151,9 +151,9 @@ PetscErrorCode PatternCrossDestroy(PatternCross *cross) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Each vesicle's coarse points lie where its pattern's lie in its frame. */
-PetscErrorCode PatternCrossPlace(PatternCross c) {
-  const Patterns s = c->patterns;
+/* Each vesicle's coarse points lie where its shape's lie in its frame. */
+PetscErrorCode InteractionsPlace(Interactions c) {
+  const SharedShapes s = c->shapes;
   const Layout l = s->coupling->membrane->layout, coarse = s->coarse->layout;
   PetscFunctionBeginUser;
   for (PetscInt v = l->own; v < l->end; v++) {
@@ -161,16 +161,16 @@ PetscErrorCode PatternCrossPlace(PatternCross c) {
     const PetscReal *X = s->coupling->markers->X + 2 * l->start[v];
     PetscReal mean[2] = {0, 0}, *to = c->W + 2 * LayoutOffset(coarse, v);
     for (PetscInt k = 0; k < 2 * n; k++) mean[k % 2] += X[k] / (PetscReal)n;
-    PoseTurn(&s->pose[v - l->own], PETSC_FALSE, points, s->pattern[s->of[v]].points, to);
+    RigidFitTurn(&s->fit[v - l->own], PETSC_FALSE, points, s->shape[s->of[v]].points, to);
     for (PetscInt i = 0; i < 2 * points; i++) to[i] += mean[i % 2];
   }
-  PetscCall(CoarsePlace(s->coarse, c->W));
-  PetscCall(ShortRangePlace(c->near));
+  PetscCall(CoarseGridPlace(s->coarse, c->W));
+  PetscCall(CoarseCorrectionPlace(c->near));
   if (c->dipoles) PetscCall(DoubleCrossPlace(c->dipoles));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode PatternCrossSolve(PatternCross c, const PatternSources *alone, Vec *W) {
+PetscErrorCode InteractionsSolve(Interactions c, const ShapeSources *alone, Vec *W) {
   PetscScalar *known;
   PetscFunctionBeginUser;
   PetscCall(VecGetArray(c->known, &known));

@@ -1,4 +1,4 @@
-#include "coupling/coarse.h"
+#include "coupling/coarsegrid.h"
 #include "markers/respond.h"
 
 #define SPACING 1.2 /* coarse cells between the points of a vesicle, at most */
@@ -15,7 +15,7 @@ static PetscInt Times(const FluidSpec *spec) {
   return 0;
 }
 
-static PetscErrorCode CreateLayout(Coarse c, Layout fine, const PetscReal length[], PetscReal h) {
+static PetscErrorCode CreateLayout(CoarseGrid c, Layout fine, const PetscReal length[], PetscReal h) {
   PetscInt *start;
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(fine->bodies + 1, &start));
@@ -28,11 +28,11 @@ static PetscErrorCode CreateLayout(Coarse c, Layout fine, const PetscReal length
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode CoarseCreate(const FluidSpec *run, Layout fine, const PetscReal length[], const char kernel[],
-                            Coarse *out) {
+PetscErrorCode CoarseGridCreate(const FluidSpec *run, Layout fine, const PetscReal length[], const char kernel[],
+                                CoarseGrid *out) {
   FluidSpec spec = *run;
   PetscReal longest = 0;
-  Coarse c;
+  CoarseGrid c;
   PetscFunctionBeginUser;
   *out = NULL;
   /* the stream function does not serve walls in x alone */
@@ -59,8 +59,8 @@ PetscErrorCode CoarseCreate(const FluidSpec *run, Layout fine, const PetscReal l
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode CoarseDestroy(Coarse *coarse) {
-  Coarse c = *coarse;
+PetscErrorCode CoarseGridDestroy(CoarseGrid *coarse) {
+  CoarseGrid c = *coarse;
   PetscFunctionBeginUser;
   if (!c) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecDestroy(&c->X));
@@ -76,7 +76,7 @@ PetscErrorCode CoarseDestroy(Coarse *coarse) {
 }
 
 /* to = the own parts from[2n] of all ranks, or this rank's where the grid is shared out. */
-static PetscErrorCode Gather(Coarse c, const PetscScalar from[], Vec to) {
+static PetscErrorCode Gather(CoarseGrid c, const PetscScalar from[], Vec to) {
   PetscScalar *a;
   PetscFunctionBeginUser;
   PetscCall(VecGetArrayWrite(to, &a));
@@ -88,7 +88,7 @@ static PetscErrorCode Gather(Coarse c, const PetscScalar from[], Vec to) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode CoarsePlace(Coarse c, PetscScalar X[]) {
+PetscErrorCode CoarseGridPlace(CoarseGrid c, PetscScalar X[]) {
   const Grid g = c->fluid->grid;
   const PetscReal least = c->markers->least * g->h * (1 + 1e-9);
   PetscFunctionBeginUser;
@@ -101,7 +101,7 @@ PetscErrorCode CoarsePlace(Coarse c, PetscScalar X[]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode CoarseApply(Coarse c, PetscScalar F[]) {
+PetscErrorCode CoarseGridApply(CoarseGrid c, PetscScalar F[]) {
   const PetscReal alpha = -1 / PetscSqr(c->fluid->grid->h);
   const PetscScalar *U;
   PetscFunctionBeginUser;

@@ -1,7 +1,7 @@
-/* Patterns of many vesicles (docs/suspensions.md, Many vesicles): how a curve lies, the exact mobility of one curve,
-   and a vesicle's problem solved by another's pattern. */
+/* SharedShapes of many vesicles (docs/suspensions.md, Many vesicles): how a curve lies, the exact mobility of one
+   curve, and a vesicle's problem solved by another's shape. */
 #include "coupling/packedmatrix.h"
-#include "coupling/patterns.h"
+#include "coupling/sharedshapes.h"
 #include "coupling/selflayer.h"
 #include "fluid/stokes.h"
 #include "world.h"
@@ -30,7 +30,7 @@ static void TurnCurve(PetscReal angle, PetscInt shift, const PetscReal X[], Pets
 
 /* A curve without symmetry is found again wherever it lies. */
 static PetscErrorCode CheckPose(PetscReal angle, PetscInt shift) {
-  PetscReal X[2 * N], Y[2 * N], x[2 * N], y[2 * N], z[2 * N], a[POSE_SIZES], b[POSE_SIZES], most = 0;
+  PetscReal X[2 * N], Y[2 * N], x[2 * N], y[2 * N], z[2 * N], a[RIGIDFIT_SIZES], b[RIGIDFIT_SIZES], most = 0;
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < N; k++) {
     const PetscReal t = 2 * PETSC_PI * (PetscReal)k / N;
@@ -38,27 +38,28 @@ static PetscErrorCode CheckPose(PetscReal angle, PetscInt shift) {
     Y[2 * k + 1] = 0.5 * sin(t) + 0.05 * sin(3 * t);
   }
   TurnCurve(angle, shift, Y, X);
-  PoseCentred(N, X, x);
-  PoseCentred(N, Y, y);
-  Pose p = PoseFit(N, x, y);
+  RigidFitCentre(N, X, x);
+  RigidFitCentre(N, Y, y);
+  RigidFit p = RigidFitCurves(N, x, y);
   CHECK((p.shift + shift) % N == 0, "labels shifted by %d are shifted back by %d", (int)shift, (int)p.shift);
   CHECK(fabs(p.turn[0] - cos(angle)) + fabs(p.turn[1] - sin(angle)) < 1e-13, "a turn of %g is found", (double)angle);
   CHECK(p.distance < 1e-7, "nothing is left, %.1e", (double)p.distance);
-  PoseInto(&p, 2, N, x, z);
+  RigidFitInto(&p, 2, N, x, z);
   for (PetscInt k = 0; k < 2 * N; k++) most = PetscMax(most, fabs(z[k] - y[k]));
   CHECK(most < 1e-13, "the curve is the other one in its frame, %.1e", (double)most);
-  PoseBack(&p, 2, N, y, z);
+  RigidFitBack(&p, 2, N, y, z);
   for (PetscInt k = 0; k < 2 * N; k++) most = PetscMax(most, fabs(z[k] - x[k]));
-  PoseInto(&p, 1, N, x, z);
-  PoseBack(&p, 1, N, z, z + N);
+  RigidFitInto(&p, 1, N, x, z);
+  RigidFitBack(&p, 1, N, z, z + N);
   CHECK(most < 1e-13 && !memcmp(z + N, x, N * sizeof(*x)), "there and back, %.1e", (double)most);
-  PoseSizes(N, x, a);
-  PoseSizes(N, y, b);
-  CHECK(PoseLeast(a, b) < 1e-13, "sizes know no turn and no labels, %.1e", (double)PoseLeast(a, b));
+  RigidFitSizes(N, x, a);
+  RigidFitSizes(N, y, b);
+  CHECK(RigidFitLeast(a, b) < 1e-13, "sizes know no turn and no labels, %.1e", (double)RigidFitLeast(a, b));
   for (PetscInt k = 0; k < N; k++) x[2 * k] += k % 2 ? 0.01 : -0.01;
-  p = PoseFit(N, x, y);
-  PoseSizes(N, x, a);
-  CHECK(PoseLeast(a, b) > 1e-3 && PoseLeast(a, b) <= p.distance, "the distance is not less than that of the sizes");
+  p = RigidFitCurves(N, x, y);
+  RigidFitSizes(N, x, a);
+  CHECK(RigidFitLeast(a, b) > 1e-3 && RigidFitLeast(a, b) <= p.distance,
+        "the distance is not less than that of the sizes");
   CHECK(fabs(p.distance - 0.01) < 5e-4, "a zigzag of 0.01 is left, %.4f", (double)p.distance);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -84,7 +85,7 @@ static PetscErrorCode CheckFit(PetscInt n) {
     most = c[0] * c[0] + c[1] * c[1];
     best = j;
   }
-  const Pose p = PoseFit(n, x, y);
+  const RigidFit p = RigidFitCurves(n, x, y);
   CHECK(p.shift == best, "%d points: shifted by %d, the best is %d", (int)n, (int)p.shift, (int)best);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -145,33 +146,33 @@ static PetscErrorCode Multiply(TestWorld *t, PetscInt v, const PetscScalar V[], 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* All vesicles take the first one's pattern, and each gets its own solution by it. */
+/* All vesicles take the first one's shape, and each gets its own solution by it. */
 static PetscErrorCode CheckSolve(void) {
   TestWorld t;
-  Patterns s;
+  SharedShapes s;
   PetscBool failed;
   PetscScalar V[VESICLES * 2 * N], sigma[VESICLES * N], U[VESICLES * 2 * N], r[VESICLES * N];
   PetscReal error = 0, most = 0;
   PetscFunctionBeginUser;
   PetscCall(TestWorldCreate(
       OPTIONS "-domain_cells 64,32 -domain_bc_x free -domain_bc_y free -vesicle_semi_axes 0.4,0.8", &t));
-  PetscCall(PatternsCreate(&t.scene->fluid, t.coupling, &s));
-  PetscCall(PatternsFollow(s, &failed));
-  CHECK(!failed && s->count == 1, "equal vesicles have one pattern, %d", (int)s->count);
+  PetscCall(SharedShapesCreate(&t.scene->fluid, t.coupling, &s));
+  PetscCall(SharedShapesFollow(s, &failed));
+  CHECK(!failed && s->count == 1, "equal vesicles have one shape, %d", (int)s->count);
   CHECK(!s->coarse, "no coarse grid in unbounded fluid");
   const PetscInt own = t.layout->end - t.layout->own;
   for (PetscInt i = 0; i < own * 2 * N; i++) V[i] = sin(1.0 + 0.37 * (double)i);
   for (PetscInt i = 0; i < own * N; i++) sigma[i] = cos(0.2 * (double)i * (double)i);
   for (PetscInt v = 0; v < own; v++)
     PetscCall(Multiply(&t, t.layout->own + v, V + 2 * N * v, sigma + N * v, U + 2 * N * v, r + N * v));
-  PetscCall(PatternsSolve(s, U, r));
+  PetscCall(SharedShapesSolve(s, U, r));
   for (PetscInt i = 0; i < own * 2 * N; i++) {
     error = PetscMax(error, fabs(U[i] - V[i]));
     most = PetscMax(most, fabs(V[i]));
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &error, 1, MPIU_REAL, MPI_MAX, PETSC_COMM_WORLD));
   CHECK(error < 1e-6 * most, "each vesicle's V comes back, %.1e", (double)(error / most));
-  PetscCall(PatternsDestroy(&s));
+  PetscCall(SharedShapesDestroy(&s));
   PetscCall(TestWorldDestroy(&t));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -213,19 +214,19 @@ static PetscErrorCode MultiplyAll(TestWorld *t, Vec V, Vec sigma, Vec U, Vec s) 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Vesicles next to one another: the patterns with what vesicles do to one another, coarse grid and near
+/* Vesicles next to one another: the shapes with what vesicles do to one another, coarse grid and near
    markers, give V back but for some per cent. */
 static PetscErrorCode CheckCross(void) {
   TestWorld t;
-  Patterns s;
+  SharedShapes s;
   PetscBool failed;
   Vec V, sigma, U, r;
   PetscScalar *v, *g;
   PetscReal norm, error;
   PetscFunctionBeginUser;
   PetscCall(TestWorldCreate(OPTIONS CLOSE, &t));
-  PetscCall(PatternsCreate(&t.scene->fluid, t.coupling, &s));
-  PetscCall(PatternsFollow(s, &failed));
+  PetscCall(SharedShapesCreate(&t.scene->fluid, t.coupling, &s));
+  PetscCall(SharedShapesFollow(s, &failed));
   CHECK(!failed && s->cross, "a coarse grid in a channel");
   PetscCall(LayoutCreateVec(t.layout, 2, &V));
   PetscCall(VecDuplicate(V, &U));
@@ -244,7 +245,7 @@ static PetscErrorCode CheckCross(void) {
   PetscCall(MultiplyAll(&t, V, sigma, U, r));
   PetscCall(VecGetArray(U, &v));
   PetscCall(VecGetArray(r, &g));
-  PetscCall(PatternsSolve(s, v, g));
+  PetscCall(SharedShapesSolve(s, v, g));
   PetscCall(VecRestoreArray(r, &g));
   PetscCall(VecRestoreArray(U, &v));
   PetscCall(VecNorm(V, NORM_2, &norm));
@@ -253,38 +254,38 @@ static PetscErrorCode CheckCross(void) {
   CHECK(error < 0.05 * norm, "V comes back, %.3f of it is left", (double)(error / norm));
   Vec *all[] = {&V, &sigma, &U, &r};
   for (int k = 0; k < 4; k++) PetscCall(VecDestroy(all[k]));
-  PetscCall(PatternsDestroy(&s));
+  PetscCall(SharedShapesDestroy(&s));
   PetscCall(TestWorldDestroy(&t));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The memory makes the same patterns again, and is refused where it is of other vesicles. */
+/* The memory makes the same shapes again, and is refused where it is of other vesicles. */
 static PetscErrorCode CheckMemory(void) {
   TestWorld t;
-  Patterns s, again;
+  SharedShapes s, again;
   PetscBool failed, valid;
   PetscReal *memory, *second;
   PetscFunctionBeginUser;
   PetscCall(TestWorldCreate(OPTIONS "-domain_cells 64,32 -domain_bc_x periodic -vesicle_reduced_area "
                                     "0.7,0.8,0.9,0.7,0.8,0.9,0.7 -vesicle_area 1",
                             &t));
-  const PetscInt size = PatternsMemorySize(t.layout);
-  PetscCall(PatternsCreate(&t.scene->fluid, t.coupling, &s));
-  PetscCall(PatternsCreate(&t.scene->fluid, t.coupling, &again));
-  PetscCall(PatternsFollow(s, &failed));
-  CHECK(!failed && s->count == 3, "three kinds of vesicles have three patterns, %d", (int)s->count);
+  const PetscInt size = SharedShapesMemorySize(t.layout);
+  PetscCall(SharedShapesCreate(&t.scene->fluid, t.coupling, &s));
+  PetscCall(SharedShapesCreate(&t.scene->fluid, t.coupling, &again));
+  PetscCall(SharedShapesFollow(s, &failed));
+  CHECK(!failed && s->count == 3, "three kinds of vesicles have three shapes, %d", (int)s->count);
   PetscCall(PetscMalloc2(size, &memory, size, &second));
-  PatternsGetMemory(s, memory);
-  PetscCall(PatternsSetMemory(again, memory, &valid));
-  PetscCall(PatternsFollow(again, &failed));
-  PatternsGetMemory(again, second);
-  CHECK(valid && !memcmp(memory, second, (size_t)size * sizeof(PetscReal)), "the memory makes the same patterns again");
+  SharedShapesGetMemory(s, memory);
+  PetscCall(SharedShapesSetMemory(again, memory, &valid));
+  PetscCall(SharedShapesFollow(again, &failed));
+  SharedShapesGetMemory(again, second);
+  CHECK(valid && !memcmp(memory, second, (size_t)size * sizeof(PetscReal)), "the memory makes the same shapes again");
   memory[1 + 2 * t.layout->M + 1] = 0; /* vesicle 1 after vesicle 0, whose edges are longer */
-  PetscCall(PatternsSetMemory(again, memory, &valid));
+  PetscCall(SharedShapesSetMemory(again, memory, &valid));
   CHECK(!valid, "a memory of other vesicles is refused");
   PetscCall(PetscFree2(memory, second));
-  PetscCall(PatternsDestroy(&again));
-  PetscCall(PatternsDestroy(&s));
+  PetscCall(SharedShapesDestroy(&again));
+  PetscCall(SharedShapesDestroy(&s));
   PetscCall(TestWorldDestroy(&t));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

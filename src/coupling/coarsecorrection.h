@@ -1,0 +1,35 @@
+/* What the coarse grid does not know of two vesicles next to one another: between markers nearer than a few of its
+   cells, the Stokeslet less the mean of what its kernel and lattice make of it (docs/suspensions.md, Near markers). For
+   the preconditioner. */
+#pragma once
+#include "coupling/coarsegrid.h"
+#include "coupling/coupling.h"
+
+#define CORRECTION_POINTS 512 /* of the table */
+
+/* R of two markers, symmetric. */
+typedef struct {
+  PetscInt i, j; /* i is an own one */
+  float xx, xy, yy;
+} CorrectionPair;
+
+typedef struct _p_CoarseCorrection *CoarseCorrection;
+struct _p_CoarseCorrection {
+  Coupling coupling;                   /* borrowed; has a near field, whose pairs of vesicles these are */
+  PetscReal reach;                     /* length */
+  PetscReal across[CORRECTION_POINTS]; /* R = across I + (along - across) r r^T/r^2 by distance, from 0 to the reach */
+  PetscReal along[CORRECTION_POINTS];
+  CorrectionPair *pair;
+  PetscInt pairs, room;
+  PetscScalar *force; /* [2M] work */
+};
+
+/* CoarseCorrectionCreate - for the coupling's membranes and this coarse grid. Not collective. */
+PETSC_EXTERN PetscErrorCode CoarseCorrectionCreate(Coupling coupling, CoarseGrid coarse, CoarseCorrection *range);
+PETSC_EXTERN PetscErrorCode CoarseCorrectionDestroy(CoarseCorrection *range);
+
+/* CoarseCorrectionPlace - the pairs where the markers have been placed. Not collective. */
+PETSC_EXTERN PetscErrorCode CoarseCorrectionPlace(CoarseCorrection range);
+
+/* CoarseCorrectionApply - U -= R F, own parts of marker vectors. Collective. */
+PETSC_EXTERN PetscErrorCode CoarseCorrectionApply(CoarseCorrection range, const PetscScalar F[], PetscScalar U[]);
