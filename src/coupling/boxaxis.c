@@ -57,7 +57,7 @@ static inline Lanes ErrorFunction(Lanes x) {
 
 /* Along one period, distances d become the nearest images' and part is multiplied by erfc/2, which falls from 1 about
    `faded` of a period. */
-static inline void Nearest(Lanes period, Lanes faded, Lanes *d, Lanes *part) {
+static inline void NearestImage(Lanes period, Lanes faded, Lanes *d, Lanes *part) {
   const PetscReal whole = 6755399441055744.; /* 3 2^51: beside it the last bit is 1 */
   const Lanes one = 1 + (Lanes){0}, x = *d / period, from = x - ((x + whole) - whole);
   const Lanes off = from - LanesWhere((LanesBits)(from >= 0.5 - TIE), one);
@@ -72,7 +72,7 @@ void BoxImageRow(const BoxAxis axis[2], PetscInt n, PetscReal *const d[2], Petsc
     for (int dir = 0; dir < 2; dir++) {
       Lanes x = LanesAt(d[dir] + k);
       if (axis[dir].wall) continue;
-      Nearest(axis[dir].high - axis[dir].low + (Lanes){0}, axis[dir].faded + (Lanes){0}, &x, &all);
+      NearestImage(axis[dir].high - axis[dir].low + (Lanes){0}, axis[dir].faded + (Lanes){0}, &x, &all);
       LanesPut(x, d[dir] + k);
     }
     LanesPut(all, part + k);

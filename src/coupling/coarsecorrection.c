@@ -6,7 +6,7 @@
 #define ANGLES 8 /* in a quarter turn */
 
 /* Stencils of both components of a marker at x, in cells of a lattice without ends. */
-static void Stencils(const Kernel *kernel, const PetscReal x[2], PaddedStencil padded[2]) {
+static void LatticeStencils(const Kernel *kernel, const PetscReal x[2], PaddedStencil padded[2]) {
   for (int c = 0; c < 2; c++) {
     Stencil s;
     for (int dir = 0; dir < 2; dir++) {
@@ -29,8 +29,8 @@ static void LatticeMean(const OffsetTable *lattice, const Kernel *kernel, PetscR
     const PetscReal to[2] = {from[0] + r * c, from[1] + r * s};
     PaddedStencil a[2], b[2];
     PetscReal L[4];
-    Stencils(kernel, to, a);
-    Stencils(kernel, from, b);
+    LatticeStencils(kernel, to, a);
+    LatticeStencils(kernel, from, b);
     StencilFourSums(lattice, a, b, none, L);
     mean[0] += (c * c * L[0] + s * s * L[1] + c * s * (L[2] + L[3])) / (PLACES * PLACES);
     mean[1] += (s * s * L[0] + c * c * L[1] - c * s * (L[2] + L[3])) / (PLACES * PLACES);
@@ -38,7 +38,7 @@ static void LatticeMean(const OffsetTable *lattice, const Kernel *kernel, PetscR
 }
 
 /* R by distance: the mean over directions, fading smoothly in the last quarter. */
-static void Tabulate(CoarseCorrection s, const OffsetTable *lattice, const Kernel *kernel) {
+static void TabulateCorrection(CoarseCorrection s, const OffsetTable *lattice, const Kernel *kernel) {
   const PetscReal nu = s->coupling->fluid->nu;
   for (PetscInt k = 0; k < CORRECTION_POINTS; k++) {
     const PetscReal r = CELLS * PetscMax((PetscReal)k, 0.5) / (CORRECTION_POINTS - 1),
@@ -62,7 +62,7 @@ PetscErrorCode CoarseCorrectionCreate(Coupling c, CoarseGrid coarse, CoarseCorre
   *out = s;
   s->coupling = c;
   s->reach = CELLS * coarse->fluid->grid->h;
-  Tabulate(s, &c->near->lattice, coarse->markers->kernel);
+  TabulateCorrection(s, &c->near->lattice, coarse->markers->kernel);
   PetscCall(PetscCalloc1(2 * c->membrane->layout->M, &s->force));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -77,7 +77,7 @@ PetscErrorCode CoarseCorrectionDestroy(CoarseCorrection *range) {
 }
 
 /* The pair of markers i and j, d apart. */
-static CorrectionPair Pair(CoarseCorrection s, PetscInt i, PetscInt j, const PetscReal d[2], PetscReal r2) {
+static CorrectionPair CorrectionOf(CoarseCorrection s, PetscInt i, PetscInt j, const PetscReal d[2], PetscReal r2) {
   const PetscReal at = PetscSqrtReal(r2) / s->reach * (CORRECTION_POINTS - 1);
   const PetscInt k = PetscMin((PetscInt)at, CORRECTION_POINTS - 2);
   const PetscReal t = at - (PetscReal)k, across = (1 - t) * s->across[k] + t * s->across[k + 1],
@@ -86,7 +86,7 @@ static CorrectionPair Pair(CoarseCorrection s, PetscInt i, PetscInt j, const Pet
                           (float)(across + both * d[1] * d[1])};
 }
 
-static PetscErrorCode Room(CoarseCorrection s, PetscInt more) {
+static PetscErrorCode CorrectionRoom(CoarseCorrection s, PetscInt more) {
   PetscFunctionBeginUser;
   if (s->pairs + more <= s->room) PetscFunctionReturn(PETSC_SUCCESS);
   s->room = 2 * s->room + more;
@@ -95,7 +95,7 @@ static PetscErrorCode Room(CoarseCorrection s, PetscInt more) {
 }
 
 /* The pairs of marker i with those of the block's column. */
-static PetscErrorCode AddRow(CoarseCorrection s, const NearBlock *b, PetscInt i) {
+static PetscErrorCode AddCorrectionRow(CoarseCorrection s, const NearBlock *b, PetscInt i) {
   const NearField f = s->coupling->near;
   const Layout l = s->coupling->membrane->layout;
   const NearBounds *column = &f->pairs->bounds[b->column];
@@ -103,10 +103,10 @@ static PetscErrorCode AddRow(CoarseCorrection s, const NearBlock *b, PetscInt i)
   PetscFunctionBeginUser;
   for (int d = 0; d < 2; d++)
     if (x[d] < column->low[d] - s->reach || x[d] > column->high[d] + s->reach) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(Room(s, LayoutCount(l, b->column)));
+  PetscCall(CorrectionRoom(s, LayoutCount(l, b->column)));
   for (PetscInt j = l->start[b->column]; j < l->start[b->column + 1]; j++) {
     const PetscReal d[2] = {x[0] - X[2 * j], x[1] - X[2 * j + 1]}, r2 = d[0] * d[0] + d[1] * d[1];
-    if (r2 < s->reach * s->reach) s->pair[s->pairs++] = Pair(s, i, j, d, r2);
+    if (r2 < s->reach * s->reach) s->pair[s->pairs++] = CorrectionOf(s, i, j, d, r2);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -119,13 +119,13 @@ PetscErrorCode CoarseCorrectionPlace(CoarseCorrection s) {
   for (PetscInt b = 0; b < f->list.count.blocks; b++) {
     const NearBlock *block = &f->list.block[b];
     if (NearBlockIsSelf(block) || PetscMax(block->row, block->column) >= l->bodies) continue; /* vesicles' only */
-    for (PetscInt i = l->start[block->row]; i < l->start[block->row + 1]; i++) PetscCall(AddRow(s, block, i));
+    for (PetscInt i = l->start[block->row]; i < l->start[block->row + 1]; i++) PetscCall(AddCorrectionRow(s, block, i));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* u -= R f of one marker. */
-static inline void Take(const CorrectionPair *p, const PetscScalar f[2], PetscScalar u[2]) {
+static inline void TakeCorrection(const CorrectionPair *p, const PetscScalar f[2], PetscScalar u[2]) {
   u[0] -= p->xx * f[0] + p->xy * f[1];
   u[1] -= p->xy * f[0] + p->yy * f[1];
 }
@@ -137,8 +137,8 @@ PetscErrorCode CoarseCorrectionApply(CoarseCorrection s, const PetscScalar F[], 
   PetscCall(LayoutGather(l, 2, F, s->force));
   for (PetscInt k = 0; k < s->pairs; k++) {
     const CorrectionPair *p = &s->pair[k];
-    Take(p, s->force + 2 * p->j, U + 2 * (p->i - first));
-    if (p->j >= first && p->j < end) Take(p, s->force + 2 * p->i, U + 2 * (p->j - first));
+    TakeCorrection(p, s->force + 2 * p->j, U + 2 * (p->i - first));
+    if (p->j >= first && p->j < end) TakeCorrection(p, s->force + 2 * p->i, U + 2 * (p->j - first));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

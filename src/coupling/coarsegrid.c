@@ -4,7 +4,7 @@
 #define SPACING 1.2 /* coarse cells between the points of a vesicle, at most */
 
 /* Cells of the run's grid across one of the coarse one, the first of these that fits; 0: none. */
-static PetscInt Times(const FluidSpec *spec) {
+static PetscInt CoarseTimes(const FluidSpec *spec) {
   const PetscInt times[] = {4, 5, 3, 2};
   for (int k = 0; k < 4; k++) {
     PetscBool fits = PETSC_TRUE;
@@ -15,7 +15,7 @@ static PetscInt Times(const FluidSpec *spec) {
   return 0;
 }
 
-static PetscErrorCode CreateLayout(CoarseGrid c, Layout fine, const PetscReal length[], PetscReal h) {
+static PetscErrorCode CreatePointLayout(CoarseGrid c, Layout fine, const PetscReal length[], PetscReal h) {
   PetscInt *start;
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(fine->bodies + 1, &start));
@@ -37,7 +37,7 @@ PetscErrorCode CoarseGridCreate(const FluidSpec *run, Layout fine, const PetscRe
   *out = NULL;
   /* the stream function does not serve walls in x alone */
   const PetscBool serves = run->bc[0] == BC_PERIODIC || run->bc[1] != BC_PERIODIC ? PETSC_TRUE : PETSC_FALSE;
-  const PetscInt times = FluidSpecIsFree(run) || !serves ? 0 : Times(run);
+  const PetscInt times = FluidSpecIsFree(run) || !serves ? 0 : CoarseTimes(run);
   if (!times) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscNew(&c));
   *out = c;
@@ -48,7 +48,7 @@ PetscErrorCode CoarseGridCreate(const FluidSpec *run, Layout fine, const PetscRe
   PetscCall(PetscStrncpy(spec.poisson, "fftw_tridiagonal", sizeof(spec.poisson)));
   PetscCall(FluidCreate(&spec, &c->fluid));
   PetscCall(StokesCreate(c->fluid, &c->stokes));
-  PetscCall(CreateLayout(c, fine, length, c->fluid->grid->h));
+  PetscCall(CreatePointLayout(c, fine, length, c->fluid->grid->h));
   const Layout points = c->all ? c->all : c->layout;
   PetscCall(MarkersCreate(c->fluid->grid, points, kernel, PETSC_TRUE, &c->markers));
   for (PetscInt v = 0; v < fine->bodies; v++) longest = PetscMax(longest, length[v]);
@@ -76,7 +76,7 @@ PetscErrorCode CoarseGridDestroy(CoarseGrid *coarse) {
 }
 
 /* to = the own parts from[2n] of all ranks, or this rank's where the grid is shared out. */
-static PetscErrorCode Gather(CoarseGrid c, const PetscScalar from[], Vec to) {
+static PetscErrorCode GatherPoints(CoarseGrid c, const PetscScalar from[], Vec to) {
   PetscScalar *a;
   PetscFunctionBeginUser;
   PetscCall(VecGetArrayWrite(to, &a));
@@ -96,7 +96,7 @@ PetscErrorCode CoarseGridPlace(CoarseGrid c, PetscScalar X[]) {
     const int d = (int)(k % 2);
     if (g->wall[d]) X[k] = PetscMax(g->lo[d] + least, PetscMin(g->hi[d] - least, X[k]));
   }
-  PetscCall(Gather(c, X, c->X));
+  PetscCall(GatherPoints(c, X, c->X));
   PetscCall(MarkersPlace(c->markers, c->X));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -105,7 +105,7 @@ PetscErrorCode CoarseGridApply(CoarseGrid c, PetscScalar F[]) {
   const PetscReal alpha = -1 / PetscSqr(c->fluid->grid->h);
   const PetscScalar *U;
   PetscFunctionBeginUser;
-  PetscCall(Gather(c, F, c->F));
+  PetscCall(GatherPoints(c, F, c->F));
   PetscCall(MarkersRespond(c->markers, StokesStream(c->stokes), NULL, alpha, c->F, c->F));
   PetscCall(VecGetArrayRead(c->F, &U));
   PetscCall(PetscArraycpy(F, U + (c->all ? 2 * c->layout->first : 0), 2 * c->layout->n));

@@ -21,7 +21,7 @@ PetscErrorCode DoubleCrossDestroy(DoubleCross *cross) {
 }
 
 /* w += D J at x of the markers first .. end - 1: -(1/pi) r (r.N)(r.J)/r^4. Markers behind the last are no jump. */
-static void AddAt(DoubleCross c, const PetscReal x[2], PetscInt first, PetscInt end, PetscScalar w[2]) {
+static void AddJumpsAt(DoubleCross c, const PetscReal x[2], PetscInt first, PetscInt end, PetscScalar w[2]) {
   const Lanes order = {0, 1, 2, 3};
   Lanes sum[2] = {{0}, {0}};
   for (PetscInt k = first; k < end; k += LANES) {
@@ -41,13 +41,13 @@ static void AddAt(DoubleCross c, const PetscReal x[2], PetscInt first, PetscInt 
 }
 
 /* Of the vesicle `column` to own markers of `row`; sign times shift moves the column. */
-static void AddPair(DoubleCross c, PetscInt row, PetscInt column, PetscReal sign, const PetscReal shift[2],
-                    PetscScalar W[]) {
+static void AddJumps(DoubleCross c, PetscInt row, PetscInt column, PetscReal sign, const PetscReal shift[2],
+                     PetscScalar W[]) {
   const Layout l = c->layer->near->set.bodies->layout;
   if (c->layer->ratio[column] == 1 || row < l->own || row >= l->end) return;
   for (PetscInt i = l->start[row]; i < l->start[row + 1]; i++) {
     const PetscReal x[2] = {c->X[2 * i] - sign * shift[0], c->X[2 * i + 1] - sign * shift[1]};
-    AddAt(c, x, l->start[column], l->start[column + 1], W + 2 * (i - l->first));
+    AddJumpsAt(c, x, l->start[column], l->start[column + 1], W + 2 * (i - l->first));
   }
 }
 
@@ -68,8 +68,8 @@ PetscErrorCode DoubleCrossApply(DoubleCross c, const PetscScalar J[], PetscScala
   for (PetscInt k = 0; k < f->list.count.blocks; k++) {
     const NearBlock *b = &f->list.block[k];
     if (NearBlockIsSelf(b) || PetscMax(b->row, b->column) >= l->bodies) continue;
-    AddPair(c, b->row, b->column, 1, b->shift, W);
-    AddPair(c, b->column, b->row, -1, b->shift, W);
+    AddJumps(c, b->row, b->column, 1, b->shift, W);
+    AddJumps(c, b->column, b->row, -1, b->shift, W);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -4,17 +4,9 @@
 
 #define ITERATIONS 2 /* of GMRES */
 
-static PetscReal Dot(PetscInt n, const PetscReal a[], const PetscReal b[]) {
-  Lanes four = {0};
-  PetscReal rest = 0;
-  PetscInt k = 0;
-  for (; k + LANES <= n; k += LANES) four += LanesAt(a + k) * LanesAt(b + k);
-  for (; k < n; k++) rest += a[k] * b[k];
-  return LanesSum(four) + rest;
-}
-
 /* P^T F: a vesicle's forces, its labels those of the shape, to the coarse points. work[2n]. */
-static void Restrict(const CurvePoints *q, PetscInt shift, const PetscScalar F[], PetscReal work[], PetscScalar to[]) {
+static void RestrictForces(const CurvePoints *q, PetscInt shift, const PetscScalar F[], PetscReal work[],
+                           PetscScalar to[]) {
   const PetscInt n = q->n;
   PetscReal *x = work, *y = work + n;
   for (PetscInt k = 0; k < n; k++) {
@@ -23,13 +15,14 @@ static void Restrict(const CurvePoints *q, PetscInt shift, const PetscScalar F[]
     y[k] = F[2 * at + 1];
   }
   for (PetscInt i = 0; i < q->points; i++) {
-    to[2 * i] = Dot(n, q->to_markers + i * n, x);
-    to[2 * i + 1] = Dot(n, q->to_markers + i * n, y);
+    to[2 * i] = LanesDot(n, q->to_markers + i * n, x);
+    to[2 * i + 1] = LanesDot(n, q->to_markers + i * n, y);
   }
 }
 
 /* P W: velocities at the coarse points to the markers. work[2n]. */
-static void Prolong(const CurvePoints *q, PetscInt shift, const PetscReal W[], PetscReal work[], PetscScalar to[]) {
+static void ProlongVelocity(const CurvePoints *q, PetscInt shift, const PetscReal W[], PetscReal work[],
+                            PetscScalar to[]) {
   const PetscInt n = q->n;
   PetscReal *x = work, *y = work + n;
   (void)PetscArrayzero(work, 2 * n);
@@ -46,8 +39,8 @@ static void Prolong(const CurvePoints *q, PetscInt shift, const PetscReal W[], P
 }
 
 /* W += what a vesicle's forces F do to itself on the coarse grid, taken off. work[4 points]. */
-static void TakeSelf(const SharedShape *q, const RigidFit *fit, PetscInt points, const PetscReal F[], PetscReal work[],
-                     PetscReal W[]) {
+static void AddSelfVelocity(const SharedShape *q, const RigidFit *fit, PetscInt points, const PetscReal F[],
+                            PetscReal work[], PetscReal W[]) {
   PetscReal *f = work, *w = work + 2 * points;
   RigidFitTurn(fit, PETSC_TRUE, points, F, f);
   (void)PetscArrayzero(w, 2 * points);
@@ -59,22 +52,22 @@ static void TakeSelf(const SharedShape *q, const RigidFit *fit, PetscInt points,
 
 /* W = -K F + D J: what forces F and jumps J of the own vesicles, and the walls, do to the others; own parts of marker
    vectors. */
-static PetscErrorCode Others(Interactions c, const ShapeSources *sources, PetscScalar W[]) {
+static PetscErrorCode OthersVelocity(Interactions c, const ShapeSources *sources, PetscScalar W[]) {
   const PetscScalar *F = sources->force;
   const SharedShapes s = c->shapes;
   const Layout l = s->coupling->membrane->layout, coarse = s->coarse->layout;
   PetscFunctionBeginUser;
   for (PetscInt v = l->own; v < l->end; v++)
-    Restrict(&s->weights[s->shape[s->of[v]].weights], s->fit[v - l->own].shift, F + 2 * LayoutOffset(l, v), c->work,
-             c->F + 2 * LayoutOffset(coarse, v));
+    RestrictForces(&s->weights[s->shape[s->of[v]].weights], s->fit[v - l->own].shift, F + 2 * LayoutOffset(l, v),
+                   c->work, c->F + 2 * LayoutOffset(coarse, v));
   PetscCall(PetscArraycpy(c->W, c->F, 2 * coarse->n));
   PetscCall(CoarseGridApply(s->coarse, c->W));
   for (PetscInt v = l->own; v < l->end; v++) {
     const SharedShape *q = &s->shape[s->of[v]];
     const RigidFit *fit = &s->fit[v - l->own];
     const PetscInt points = LayoutCount(coarse, v), at = 2 * LayoutOffset(coarse, v);
-    TakeSelf(q, fit, points, c->F + at, c->work, c->W + at);
-    Prolong(&s->weights[q->weights], fit->shift, c->W + at, c->work, W + 2 * LayoutOffset(l, v));
+    AddSelfVelocity(q, fit, points, c->F + at, c->work, c->W + at);
+    ProlongVelocity(&s->weights[q->weights], fit->shift, c->W + at, c->work, W + 2 * LayoutOffset(l, v));
   }
   PetscCall(CoarseCorrectionApply(c->near, F, W));
   if (c->dipoles) PetscCall(DoubleCrossApply(c->dipoles, sources->jump, W));
@@ -82,7 +75,7 @@ static PetscErrorCode Others(Interactions c, const ShapeSources *sources, PetscS
 }
 
 /* y = W + (K F - D J)(B^-1 (W, 0)). */
-static PetscErrorCode Mult(Mat A, Vec W, Vec y) {
+static PetscErrorCode InteractionsMult(Mat A, Vec W, Vec y) {
   Interactions c;
   const PetscScalar *from;
   PetscScalar *to;
@@ -92,20 +85,20 @@ static PetscErrorCode Mult(Mat A, Vec W, Vec y) {
   PetscCall(VecGetArrayRead(W, &from));
   PetscCall(VecGetArray(y, &to));
   for (PetscInt k = 0; k < s->count; k++) SharedShapeSources(s, &s->shape[k], from, &c->answer);
-  PetscCall(Others(c, &c->answer, to));
+  PetscCall(OthersVelocity(c, &c->answer, to));
   PetscCall(VecRestoreArray(y, &to));
   PetscCall(VecRestoreArrayRead(W, &from));
   PetscCall(VecAYPX(y, -1, W));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode CreateKSP(Interactions c, Layout l) {
+static PetscErrorCode CreateInteractionKSP(Interactions c, Layout l) {
   PC pc;
   PetscFunctionBeginUser;
   PetscCall(LayoutCreateVec(l, 2, &c->known));
   PetscCall(VecDuplicate(c->known, &c->velocity));
   PetscCall(MatCreateShell(l->comm, 2 * l->n, 2 * l->n, 2 * l->M, 2 * l->M, c, &c->A));
-  PetscCall(MatShellSetOperation(c->A, MATOP_MULT, (void (*)(void))Mult));
+  PetscCall(MatShellSetOperation(c->A, MATOP_MULT, (void (*)(void))InteractionsMult));
   PetscCall(KSPCreate(l->comm, &c->ksp));
   PetscCall(KSPSetType(c->ksp, KSPGMRES));
   PetscCall(KSPGetPC(c->ksp, &pc));
@@ -131,7 +124,7 @@ PetscErrorCode InteractionsCreate(SharedShapes s, Interactions *out) {
     PetscCall(DoubleCrossCreate(s->coupling->contrast, &c->dipoles));
   }
   PetscCall(CoarseCorrectionCreate(s->coupling, s->coarse, &c->near));
-  PetscCall(CreateKSP(c, l));
+  PetscCall(CreateInteractionKSP(c, l));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -174,7 +167,7 @@ PetscErrorCode InteractionsSolve(Interactions c, const ShapeSources *alone, Vec 
   PetscScalar *known;
   PetscFunctionBeginUser;
   PetscCall(VecGetArray(c->known, &known));
-  PetscCall(Others(c, alone, known));
+  PetscCall(OthersVelocity(c, alone, known));
   PetscCall(VecRestoreArray(c->known, &known));
   PetscCall(KSPSolve(c->ksp, c->known, c->velocity));
   *W = c->velocity;

@@ -82,7 +82,8 @@ static void PadStencils(Mobility m, const MarkerRange *range) {
 
 /* Mob[][2 rows] += scale times the block xx, yy, xy, yx of markers i and j: velocity of row marker i
    by a force on column marker j. */
-static void AddPair(PetscReal scale, PetscInt rows, PetscInt i, PetscInt j, const PetscReal block[4], PetscReal Mob[]) {
+static void AddMobilityPair(PetscReal scale, PetscInt rows, PetscInt i, PetscInt j, const PetscReal block[4],
+                            PetscReal Mob[]) {
   PetscReal *x = Mob + 4 * j * rows + 2 * i, *y = x + 2 * rows;
   x[0] += scale * block[0];
   y[1] += scale * block[1];
@@ -109,7 +110,7 @@ static void MobilityBoxPair(NearField f, PetscInt i, PetscInt j, PetscReal value
 }
 
 /* Mob += that of the velocity of the own markers in rows by forces on those in columns, with a box. Collective. */
-static PetscErrorCode AddBox(Mobility m, const MarkerRange *rows, const MarkerRange *columns, PetscReal Mob[]) {
+static PetscErrorCode AddBoxMobility(Mobility m, const MarkerRange *rows, const MarkerRange *columns, PetscReal Mob[]) {
   const NearField f = m->coupling->near;
   const Layout l = m->coupling->bodies->layout;
   const PetscReal h2 = PetscSqr(m->coupling->fluid->grid->h);
@@ -124,8 +125,8 @@ static PetscErrorCode AddBox(Mobility m, const MarkerRange *rows, const MarkerRa
     for (PetscInt i = same ? j : begin - rows->first; i < end - rows->first; i++) {
       PetscReal L[4];
       MobilityBoxPair(f, rows->first + i, columns->first + j, L);
-      AddPair(h2, rows->n, i, j, L, Mob);
-      if (same && i > j) AddPair(h2, rows->n, j, i, (PetscReal[]){L[0], L[1], L[3], L[2]}, Mob);
+      AddMobilityPair(h2, rows->n, i, j, L, Mob);
+      if (same && i > j) AddMobilityPair(h2, rows->n, j, i, (PetscReal[]){L[0], L[1], L[3], L[2]}, Mob);
     }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -135,7 +136,7 @@ PetscErrorCode MobilityAssemble(Mobility m, const MarkerRange *rows, const Marke
   const PetscBool same = rows->first == columns->first && rows->n == columns->n ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionBeginUser;
   PetscCall(PetscArrayzero(Mob, 4 * rows->n * columns->n));
-  if (m->box) PetscCall(AddBox(m, rows, columns, Mob));
+  if (m->box) PetscCall(AddBoxMobility(m, rows, columns, Mob));
   if (!m->table) PetscFunctionReturn(PETSC_SUCCESS);
   PadStencils(m, rows);
   PadStencils(m, columns);
@@ -145,8 +146,8 @@ PetscErrorCode MobilityAssemble(Mobility m, const MarkerRange *rows, const Marke
       PetscReal one[4];
       TablePair(m, rows->first + i, columns->first + j, one);
       if (same && i == j) one[2] = one[3]; /* symmetric to the bit */
-      AddPair(1, rows->n, i, j, one, Mob);
-      if (same && i != j) AddPair(1, rows->n, j, i, (PetscReal[]){one[0], one[1], one[3], one[2]}, Mob);
+      AddMobilityPair(1, rows->n, i, j, one, Mob);
+      if (same && i != j) AddMobilityPair(1, rows->n, j, i, (PetscReal[]){one[0], one[1], one[3], one[2]}, Mob);
     }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -9,8 +9,8 @@
 
 /* Weights by lag of the double sum over two kernels at one place, mean over the places; entry m is at m + 1, or at m +
    1/2 where the kernel is the one across. */
-static void Correlate(KernelWeights response, KernelWeights source, int response_across, int source_across,
-                      PetscReal weight[LAGS]) {
+static void CorrelateKernels(KernelWeights response, KernelWeights source, int response_across, int source_across,
+                             PetscReal weight[LAGS]) {
   for (int q = 0; q < LAGS; q++) weight[q] = 0;
   for (int s = 0; s < PLACES; s++) {
     PetscReal x[KERNEL_MAX_POINTS], y[KERNEL_MAX_POINTS];
@@ -24,15 +24,15 @@ static void Correlate(KernelWeights response, KernelWeights source, int response
 }
 
 /* The mean over places in a cell of the sums over two stencils whose markers are whole cells apart. */
-static void Average(MobilityTable m) {
+static void AverageTable(MobilityTable m) {
   const Kernel *k = m->kernel;
   const PetscInt nx = 2 * m->mean.size[0] + 1, ny = 2 * m->mean.size[1] + 1, gx = 2 * m->green.size[0] + 1;
   const KernelWeights weights[] = {k->along, k->across}; /* with faces at m + 1, m + 1/2 */
   for (int b = 0; b < OFFSET_COUNT; b++) {
     const int response = b != OFFSET_UU, source = b == OFFSET_VV; /* component */
     PetscReal wx[LAGS], wy[LAGS];
-    Correlate(weights[response], weights[source], response, source, wx);
-    Correlate(weights[!response], weights[!source], !response, !source, wy);
+    CorrelateKernels(weights[response], weights[source], response, source, wx);
+    CorrelateKernels(weights[!response], weights[!source], !response, !source, wy);
     for (PetscInt j = 0; j < ny; j++) {
       PetscReal *out = m->mean.value[b] + j * nx;
       for (PetscInt i = 0; i < gx; i++) m->line[i] = 0;
@@ -47,11 +47,11 @@ static void Average(MobilityTable m) {
 }
 
 /* Whether the solver is made for each table. */
-static PetscBool IsLarge(Grid g) {
+static PetscBool IsTableLarge(Grid g) {
   return (PetscReal)g->n[0] * g->n[1] > KEPT_CELLS ? PETSC_TRUE : PETSC_FALSE;
 }
 
-static PetscErrorCode CreateSolver(MobilityTable m) {
+static PetscErrorCode CreateTableSolver(MobilityTable m) {
   PetscFunctionBeginUser;
   PetscCall(StokesCreate(m->periodic, &m->stokes));
   PetscCall(DMCreateGlobalVector(m->periodic->grid->velocity, &m->u));
@@ -59,7 +59,7 @@ static PetscErrorCode CreateSolver(MobilityTable m) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode DestroySolver(MobilityTable m) {
+static PetscErrorCode DestroyTableSolver(MobilityTable m) {
   PetscFunctionBeginUser;
   PetscCall(VecDestroy(&m->u));
   PetscCall(VecDestroy(&m->p));
@@ -89,7 +89,7 @@ PetscErrorCode MobilityTableCreate(const FluidSpec *spec, const Kernel *kernel, 
   for (int d = 0; d < 2; d++) size[d] += LAG;
   PetscCall(OffsetTableCreate(size, &m->green));
   PetscCall(PetscMalloc1(2 * size[0] + 1, &m->line));
-  if (!IsLarge(g)) PetscCall(CreateSolver(m));
+  if (!IsTableLarge(g)) PetscCall(CreateTableSolver(m));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -100,25 +100,25 @@ PetscErrorCode MobilityTableDestroy(MobilityTable *table) {
   PetscCall(OffsetTableDestroy(&m->mean));
   PetscCall(OffsetTableDestroy(&m->green));
   PetscCall(PetscFree(m->line));
-  PetscCall(DestroySolver(m));
+  PetscCall(DestroyTableSolver(m));
   PetscCall(FluidDestroy(&m->periodic));
   PetscCall(PetscFree(*table));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscInt Modulo(PetscInt i, PetscInt n) {
+static PetscInt TableModulo(PetscInt i, PetscInt n) {
   return ((i % n) + n) % n;
 }
 
 /* A field's window of offsets, known to all ranks. */
-static PetscErrorCode Gather(Grid g, Field f, const PetscScalar a[], const PetscInt size[2], PetscReal window[]) {
+static PetscErrorCode GatherWindow(Grid g, Field f, const PetscScalar a[], const PetscInt size[2], PetscReal window[]) {
   const PetscInt sx = size[0], sy = size[1], nx = 2 * sx + 1, ny = 2 * sy + 1;
   PetscFunctionBeginUser;
   PetscCall(PetscArrayzero(window, nx * ny));
   for (PetscInt j = -sy; j <= sy; j++) {
-    const PetscInt row = Modulo(j, g->n[1]) - g->first;
+    const PetscInt row = TableModulo(j, g->n[1]) - g->first;
     if (row < 0 || row >= g->rows[f]) continue;
-    for (PetscInt i = 0, at = Modulo(-sx, g->n[0]); i < nx; i++, at = at + 1 < g->n[0] ? at + 1 : 0)
+    for (PetscInt i = 0, at = TableModulo(-sx, g->n[0]); i < nx; i++, at = at + 1 < g->n[0] ? at + 1 : 0)
       window[(j + sy) * nx + i] = a[row * g->columns[f] + at];
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, window, (PetscMPIInt)(nx * ny), MPIU_REAL, MPI_SUM, g->comm));
@@ -138,14 +138,14 @@ static PetscErrorCode UnitResponse(MobilityTable m, int source) {
   PetscCall(VecRestoreArray(m->u, &r));
   PetscCall(StokesSolve(m->stokes, m->u, NULL, m->u, m->p));
   PetscCall(VecGetArrayRead(m->u, &a));
-  if (!source) PetscCall(Gather(g, FIELD_U, a, G->size, G->value[OFFSET_UU]));
-  PetscCall(Gather(g, FIELD_V, a + GridLocalU(g), G->size, G->value[source ? OFFSET_VV : OFFSET_VU]));
+  if (!source) PetscCall(GatherWindow(g, FIELD_U, a, G->size, G->value[OFFSET_UU]));
+  PetscCall(GatherWindow(g, FIELD_V, a + GridLocalU(g), G->size, G->value[source ? OFFSET_VV : OFFSET_VU]));
   PetscCall(VecRestoreArrayRead(m->u, &a));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* In a square box v to v is u to u, turned. */
-static void Turn(OffsetTable *t) {
+static void TurnTable(OffsetTable *t) {
   const PetscInt n = 2 * t->size[0] + 1;
   for (PetscInt j = 0; j < n; j++)
     for (PetscInt i = 0; i < n; i++) t->value[OFFSET_VV][j * n + i] = t->value[OFFSET_UU][i * n + j];
@@ -158,18 +158,18 @@ PetscErrorCode MobilityTableSetUp(MobilityTable m, PetscReal alpha) {
   m->alpha = alpha;
   m->averaged = PETSC_FALSE;
   PetscCall(FluidSetTimeCoefficient(m->periodic, alpha));
-  if (!m->stokes) PetscCall(CreateSolver(m));
+  if (!m->stokes) PetscCall(CreateTableSolver(m));
   PetscCall(UnitResponse(m, 0));
   if (g->n[0] == g->n[1])
-    Turn(&m->green);
+    TurnTable(&m->green);
   else
     PetscCall(UnitResponse(m, 1));
-  if (IsLarge(g)) PetscCall(DestroySolver(m));
+  if (IsTableLarge(g)) PetscCall(DestroyTableSolver(m));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Lagrange's weights at x, 0 .. POINTS - 1. */
-static void Lagrange(PetscReal x, PetscReal weight[POINTS]) {
+static void LagrangeWeights(PetscReal x, PetscReal weight[POINTS]) {
   for (int i = 0; i < POINTS; i++) {
     weight[i] = 1;
     for (int j = 0; j < POINTS; j++)
@@ -182,12 +182,12 @@ void MobilityTableMean(MobilityTable m, const PetscReal d[2], PetscReal mean[3])
   const PetscInt nx = 2 * t->size[0] + 1;
   PetscReal w[2][POINTS];
   PetscInt at[2];
-  if (!m->averaged) Average(m);
+  if (!m->averaged) AverageTable(m);
   for (int dir = 0; dir < 2; dir++) {
     const PetscReal most = t->size[dir] - POINTS / 2, cells = d[dir] / m->periodic->grid->h;
     const PetscReal x = PetscMax(-most, PetscMin(most, cells)) + t->size[dir];
     at[dir] = (PetscInt)x - POINTS / 2 + 1;
-    Lagrange(x - (PetscReal)at[dir], w[dir]);
+    LagrangeWeights(x - (PetscReal)at[dir], w[dir]);
   }
   for (int b = 0; b < OFFSET_COUNT; b++) {
     mean[b] = 0;

@@ -103,7 +103,7 @@ static PetscErrorCode MobilityBySolves(ObstacleBlock b, PetscReal Mob[]) {
 }
 
 /* The block times h^2, on root. */
-static PetscErrorCode Assemble(ObstacleBlock b, PetscReal A[]) {
+static PetscErrorCode AssembleObstacles(ObstacleBlock b, PetscReal A[]) {
   const Obstacles o = b->obstacles;
   const Layout l = o->layout;
   const PetscInt n = 2 * l->M;
@@ -127,7 +127,7 @@ static PetscErrorCode Assemble(ObstacleBlock b, PetscReal A[]) {
 }
 
 /* Cost of a new factor in iterations, those with the grid's own mobility by 2W solves. */
-static PetscReal RenewalCost(ObstacleBlock b) {
+static PetscReal ObstacleRenewalCost(ObstacleBlock b) {
   const Grid g = b->coupling->fluid->grid;
   const PetscReal cells = (PetscReal)g->n[0] * g->n[1], W = b->obstacles->layout->M;
   if (b->modes) return DenseRenewalCost(1, 0.5 * (PetscReal)ObstacleModesCount(b->modes), 0, cells);
@@ -135,7 +135,7 @@ static PetscReal RenewalCost(ObstacleBlock b) {
 }
 
 /* The whole block's inverse, on root. */
-static PetscErrorCode MakeDense(ObstacleBlock b, PetscBool *failed) {
+static PetscErrorCode MakeObstacleInverse(ObstacleBlock b, PetscBool *failed) {
   const Layout l = b->obstacles->layout;
   const PetscInt n = 2 * l->M;
   const PetscReal over = 1 / PetscSqr(b->coupling->fluid->grid->h);
@@ -143,7 +143,7 @@ static PetscErrorCode MakeDense(ObstacleBlock b, PetscBool *failed) {
   PetscReal *A;
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(n * n, &A));
-  PetscCall(Assemble(b, A));
+  PetscCall(AssembleObstacles(b, A));
   if (l->rank == b->root) {
     for (PetscInt k = 0; k < n * n; k++) A[k] *= over;
     PetscCall(SymmetricInvert(n, A, b->inverse, &done));
@@ -153,7 +153,7 @@ static PetscErrorCode MakeDense(ObstacleBlock b, PetscBool *failed) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Make(ObstacleBlock b, PetscBool *failed) {
+static PetscErrorCode MakeObstacleFactor(ObstacleBlock b, PetscBool *failed) {
   PetscLogEvent event;
   PetscFunctionBeginUser;
   PetscCall(PetvesEvent("FactorObstacles", &event));
@@ -167,13 +167,13 @@ static PetscErrorCode Make(ObstacleBlock b, PetscBool *failed) {
   if (b->modes)
     PetscCall(ObstacleModesSetUp(b->modes, b->alpha, failed));
   else
-    PetscCall(MakeDense(b, failed));
+    PetscCall(MakeObstacleInverse(b, failed));
   PetscCall(PetscLogEventEnd(event, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* y = A^-1 x of the block's approximation, on root. */
-static PetscErrorCode Invert(ObstacleBlock b, const float x[], float y[]) {
+static PetscErrorCode InvertObstacles(ObstacleBlock b, const float x[], float y[]) {
   PetscFunctionBeginUser;
   if (b->modes)
     PetscCall(ObstacleModesApply(b->modes, x, y));
@@ -183,21 +183,21 @@ static PetscErrorCode Invert(ObstacleBlock b, const float x[], float y[]) {
 }
 
 /* Whether the factor is of another place of bodies or of another time step. */
-static PetscBool IsOld(ObstacleBlock b) {
+static PetscBool IsObstacleFactorOld(ObstacleBlock b) {
   return b->obstacles->moving || b->alpha != b->coupling->fluid->alpha ? PETSC_TRUE : PETSC_FALSE;
 }
 
 PetscErrorCode ObstacleBlockSetUp(ObstacleBlock b, PetscBool *failed) {
   PetscFunctionBeginUser;
   if (DenseStepChanged(b->alpha, b->coupling->fluid->alpha, OBSTACLE_STEP_RATIO) ||
-      (IsOld(b) && b->excess > RenewalCost(b)))
-    PetscCall(Make(b, failed));
+      (IsObstacleFactorOld(b) && b->excess > ObstacleRenewalCost(b)))
+    PetscCall(MakeObstacleFactor(b, failed));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 void ObstacleBlockSolved(ObstacleBlock b, PetscInt its) {
   if (b->least < 0 || its < b->least) b->least = its;
-  if (IsOld(b)) b->excess += its - b->least;
+  if (IsObstacleFactorOld(b)) b->excess += its - b->least;
 }
 
 PetscBool ObstacleBlockIsOlder(Coupling c) {
@@ -213,7 +213,7 @@ void ObstacleBlockGetMemory(ObstacleBlock b, PetscReal memory[OBSTACLE_BLOCK_MEM
 PetscErrorCode ObstacleBlockSetMemory(ObstacleBlock b, const PetscReal memory[OBSTACLE_BLOCK_MEMORY]) {
   PetscBool failed;
   PetscFunctionBeginUser;
-  PetscCall(Make(b, &failed));
+  PetscCall(MakeObstacleFactor(b, &failed));
   b->least = memory[2];
   b->excess = memory[3];
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -221,7 +221,7 @@ PetscErrorCode ObstacleBlockSetMemory(ObstacleBlock b, const PetscReal memory[OB
 
 /* The own numbers of bodies whose markers turn: to how they were when the factor was made, or (back) to how they are.
  */
-static void Turn(ObstacleBlock b, PetscBool back, PetscScalar F[]) {
+static void TurnObstacles(ObstacleBlock b, PetscBool back, PetscScalar F[]) {
   const Obstacles o = b->obstacles;
   const Layout l = o->layout;
   for (PetscInt v = l->own; v < l->end; v++) {
@@ -237,7 +237,7 @@ static void Turn(ObstacleBlock b, PetscBool back, PetscScalar F[]) {
 }
 
 /* X = A^-1 K to response, and Mob -= h^2 K^T X of K h^2, on root. */
-static PetscErrorCode Eliminate(ObstacleBlock b, PetscInt m, PetscReal K[], PetscReal Mob[]) {
+static PetscErrorCode EliminateObstacles(ObstacleBlock b, PetscInt m, PetscReal K[], PetscReal Mob[]) {
   const PetscInt w = 2 * b->obstacles->layout->M;
   const PetscReal over = 1 / PetscSqr(b->coupling->fluid->grid->h);
   PetscReal *X, *part;
@@ -246,7 +246,7 @@ static PetscErrorCode Eliminate(ObstacleBlock b, PetscInt m, PetscReal K[], Pets
   PetscCall(PetscMalloc2(w * m, &X, m * m, &part));
   for (PetscInt j = 0; j < m; j++) {
     for (PetscInt k = 0; k < w; k++) b->from[k] = (float)(over * K[j * w + k]);
-    PetscCall(Invert(b, b->from, b->response + j * w));
+    PetscCall(InvertObstacles(b, b->from, b->response + j * w));
   }
   for (PetscInt k = 0; k < w * m; k++) X[k] = b->response[k];
   PetscCall(DenseProduct(PETSC_TRUE, m, m, w, K, X, part));
@@ -261,14 +261,14 @@ PetscErrorCode ObstacleBlockCouple(ObstacleBlock b, Mobility mobility, PetscReal
   PetscReal *K;
   PetscFunctionBeginUser;
   if (b->obstacles->moving) PetscFunctionReturn(PETSC_SUCCESS);
-  if (b->alpha < 0) PetscCall(Make(b, failed)); /* a restart comes here first */
+  if (b->alpha < 0) PetscCall(MakeObstacleFactor(b, failed)); /* a restart comes here first */
   if (*failed) PetscFunctionReturn(PETSC_SUCCESS);
   if (!b->force) PetscCall(PetscMalloc2(m, &b->force, m, &b->single));
   b->coupled = PETSC_TRUE;
   b->renewed = PETSC_FALSE;
   PetscCall(PetscMalloc1(2 * b->obstacles->layout->M * m, &K));
   PetscCall(MobilityOnRoot(mobility, &solid, &vesicles, b->root, K)); /* velocity of obstacles by forces on vesicles */
-  if (b->obstacles->layout->rank == b->root) PetscCall(Eliminate(b, m, K, Mob));
+  if (b->obstacles->layout->rank == b->root) PetscCall(EliminateObstacles(b, m, K, Mob));
   PetscCall(PetscFree(K));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -286,7 +286,7 @@ PetscErrorCode ObstacleBlockBegin(ObstacleBlock b, PetscScalar r[], PetscScalar 
   const PetscInt w = 2 * l->M, m = 2 * vesicles->M;
   const PetscBool root = l->rank == b->root ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionBeginUser;
-  Turn(b, PETSC_FALSE, r);
+  TurnObstacles(b, PETSC_FALSE, r);
   PetscCall(LayoutToRank(l, b->root, 2, r, b->all));
   if (root) DenseSingle(w, b->all, b->from);
   if (b->coupled) {
@@ -298,7 +298,7 @@ PetscErrorCode ObstacleBlockBegin(ObstacleBlock b, PetscScalar r[], PetscScalar 
     }
     PetscCall(LayoutFromRank(vesicles, b->root, 2, b->force, U));
   }
-  if (root) PetscCall(Invert(b, b->from, b->to));
+  if (root) PetscCall(InvertObstacles(b, b->from, b->to));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -314,6 +314,6 @@ PetscErrorCode ObstacleBlockEnd(ObstacleBlock b, const PetscScalar F[], PetscSca
   }
   for (PetscInt k = 0; k < w && root; k++) b->all[k] = b->to[k];
   PetscCall(LayoutFromRank(l, b->root, 2, b->all, solid));
-  Turn(b, PETSC_TRUE, solid);
+  TurnObstacles(b, PETSC_TRUE, solid);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

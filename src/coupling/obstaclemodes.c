@@ -30,17 +30,17 @@ struct _p_ObstacleModes {
 };
 
 /* How many points a curve has when one of few markers has `least`. */
-static PetscInt Count(PetscInt n, PetscInt least) {
+static PetscInt CountPoints(PetscInt n, PetscInt least) {
   const PetscInt many = n * least / (POINT_MARKERS * POINTS);
   return PetscMin(n - 1 + n % 2, PetscMax(least, many - 1 + many % 2));
 }
 
 /* Points for every curve, as many as K has room for. */
-static PetscErrorCode Share(ObstacleModes s) {
+static PetscErrorCode SharePoints(ObstacleModes s) {
   const Layout l = s->coupling->bodies->obstacles->layout;
   PetscFunctionBeginUser;
   for (PetscInt least = POINTS; least >= 1; least -= 2) {
-    for (PetscInt v = 0; v < l->bodies; v++) s->start[v + 1] = s->start[v] + 2 * Count(LayoutCount(l, v), least);
+    for (PetscInt v = 0; v < l->bodies; v++) s->start[v + 1] = s->start[v] + 2 * CountPoints(LayoutCount(l, v), least);
     if (s->start[l->bodies] <= OBSTACLE_MODES) break;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -56,7 +56,7 @@ PetscErrorCode ObstacleModesCreate(const FluidSpec *spec, Coupling c, PetscMPIIn
   s->coupling = c;
   s->root = root;
   PetscCall(PetscCalloc3(curves, &s->of, curves + 1, &s->start, curves, &s->shape));
-  PetscCall(Share(s));
+  PetscCall(SharePoints(s));
   const PetscInt n = s->start[curves];
   PetscCall(PetscMalloc2(n, &s->amplitude, n, &s->correction));
   if (c->bodies->layout->rank == root) PetscCall(PetscMalloc1(SymmetricSize(n), &s->K));
@@ -90,7 +90,7 @@ PetscInt ObstacleModesCount(ObstacleModes s) {
 }
 
 /* Whether two curves are equal but for their place, and as far from the walls. */
-static PetscBool Equal(ObstacleModes s, PetscInt v, PetscInt w) {
+static PetscBool AreEqualCurves(ObstacleModes s, PetscInt v, PetscInt w) {
   const Obstacles o = s->coupling->bodies->obstacles;
   const Grid g = s->coupling->fluid->grid;
   const PetscReal *X = o->X + 2 * o->layout->start[v], *Y = o->X + 2 * o->layout->start[w];
@@ -106,7 +106,7 @@ static void FindShapes(ObstacleModes s) {
   const Layout l = s->coupling->bodies->obstacles->layout;
   for (PetscInt v = 0; v < l->bodies; v++) {
     PetscInt k = 0;
-    while (k < s->shapes && !Equal(s, v, s->shape[k].like)) k++;
+    while (k < s->shapes && !AreEqualCurves(s, v, s->shape[k].like)) k++;
     if (k == s->shapes) s->shape[s->shapes++] = (CurveShape){.like = v};
     s->of[v] = k;
   }

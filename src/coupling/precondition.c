@@ -16,7 +16,7 @@ static PetscReal StepRatio(Scene scene, Coupling c) {
 }
 
 /* How far apart markers of one block are: half a contour, or anywhere. */
-static PetscReal Reach(Coupling c) {
+static PetscReal BlockReach(Coupling c) {
   const Membrane m = c->membrane;
   PetscReal reach = 0;
   for (PetscInt v = 0; v < m->layout->bodies; v++) reach = PetscMax(reach, m->L0[v] / 2);
@@ -38,7 +38,7 @@ PetscErrorCode PreconditionerCreate(Scene scene, Unknowns u, PetscBool flexible,
   if (c->near && c->fluid->steady && c->membrane->layout->M > DENSE_TOGETHER) {
     PetscCall(SharedShapesCreate(&scene->fluid, c, &p->shapes));
   } else if (CouplingHasMembrane(c)) {
-    PetscCall(MobilityCreate(&scene->fluid, c, Reach(c), &p->mobility));
+    PetscCall(MobilityCreate(&scene->fluid, c, BlockReach(c), &p->mobility));
     PetscCall(DenseBlocksCreate(c, &p->blocks));
   }
   PetscCall(PreconditionerForget(p));
@@ -100,7 +100,7 @@ PetscErrorCode PreconditionerSetMemory(Preconditioner p, const PetscReal memory[
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Renew(Preconditioner p) {
+static PetscErrorCode RenewBlocks(Preconditioner p) {
   Ageing *a = &p->age;
   PetscFunctionBeginUser;
   PetscCall(MakeBlocks(p));
@@ -113,7 +113,7 @@ static PetscErrorCode Renew(Preconditioner p) {
 }
 
 /* Cost of new dense blocks in iterations. */
-static PetscReal RenewalCost(Preconditioner p) {
+static PetscReal BlocksRenewalCost(Preconditioner p) {
   const Coupling c = p->unknowns->coupling;
   const Layout l = c->membrane->layout;
   const PetscReal n = l->M <= DENSE_TOGETHER ? l->M : (PetscReal)l->M / l->bodies, blocks = l->M / n;
@@ -133,7 +133,7 @@ static PetscBool LabelsMoved(Preconditioner p, PetscReal part) {
 }
 
 /* Whether the blocks are no longer those of what they were made for. None are made yet: a0 = 0. */
-static PetscBool Changed(Preconditioner p, PetscReal cost) {
+static PetscBool BlocksChanged(Preconditioner p, PetscReal cost) {
   const PetscReal a0 = p->unknowns->coupling->fluid->a0;
   const PetscBool dear = cost > DEAR && !p->solid ? PETSC_TRUE : PETSC_FALSE;
   const PetscReal ratio = dear && p->graded ? ADAPTED_RATIO : p->step_ratio;
@@ -154,8 +154,8 @@ PetscErrorCode PreconditionerSetUp(Preconditioner p, PetscBool graded) {
   if (p->shapes) PetscCall(SharedShapesFollow(p->shapes, &p->failed));
   if (!p->blocks) PetscFunctionReturn(PETSC_SUCCESS);
   DenseBlocksPlace(p->blocks);
-  const PetscReal cost = RenewalCost(p);
-  if (a->excess > cost || a->solves >= a->most || Changed(p, cost)) PetscCall(Renew(p));
+  const PetscReal cost = BlocksRenewalCost(p);
+  if (a->excess > cost || a->solves >= a->most || BlocksChanged(p, cost)) PetscCall(RenewBlocks(p));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -182,7 +182,7 @@ static PetscErrorCode RenewUnderWay(Preconditioner p) {
   if (!p->flexible || !p->blocks || a->solves == 0 || p->now.applied != a->fresh_its + MOST_EXCESS)
     PetscFunctionReturn(PETSC_SUCCESS);
   if (!p->graded) a->most = a->solves;
-  PetscCall(Renew(p));
+  PetscCall(RenewBlocks(p));
   p->now.renewed = p->now.applied;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

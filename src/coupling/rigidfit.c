@@ -42,9 +42,9 @@ PetscReal RigidFitLeast(const PetscReal a[RIGIDFIT_SIZES], const PetscReal b[RIG
    imaginary part of a curve with itself is zero to the bit. */
 typedef struct {
   Lanes same[SHIFTS], cross[SHIFTS];
-} Products;
+} ShiftProducts;
 
-static inline void AddPoints(Lanes y, Lanes x, int shift, Products *sum) {
+static inline void AddShiftPoints(Lanes y, Lanes x, int shift, ShiftProducts *sum) {
   const Lanes turned = {-y[1], y[0], -y[3], y[2]};
   sum->same[shift] += y * x;
   sum->cross[shift] += turned * x;
@@ -55,22 +55,22 @@ static inline Lanes OnePoint(const PetscReal x[2]) {
 }
 
 /* += SUM_k conj(y_k) x_{k + i} of n markers, all shifts i at once. */
-static inline void AddProducts(PetscInt n, const PetscReal X[], const PetscReal Y[], Products *sum) {
+static inline void AddShiftProducts(PetscInt n, const PetscReal X[], const PetscReal Y[], ShiftProducts *sum) {
   PetscInt k = 0;
   for (; k + 2 <= n; k += 2)
-    for (int i = 0; i < SHIFTS; i++) AddPoints(LanesAt(Y + 2 * k), LanesAt(X + 2 * (k + i)), i, sum);
+    for (int i = 0; i < SHIFTS; i++) AddShiftPoints(LanesAt(Y + 2 * k), LanesAt(X + 2 * (k + i)), i, sum);
   for (; k < n; k++)
-    for (int i = 0; i < SHIFTS; i++) AddPoints(OnePoint(Y + 2 * k), OnePoint(X + 2 * (k + i)), i, sum);
+    for (int i = 0; i < SHIFTS; i++) AddShiftPoints(OnePoint(Y + 2 * k), OnePoint(X + 2 * (k + i)), i, sum);
 }
 
 /* c_i = SUM_k conj(y_k) x_{k + j + i}, markers counted round the curve; j + SHIFTS is at most n. */
-static void Correlate(PetscInt n, PetscInt j, const PetscReal X[], const PetscReal Y[], PetscReal c[SHIFTS][2]) {
+static void CorrelateShifts(PetscInt n, PetscInt j, const PetscReal X[], const PetscReal Y[], PetscReal c[SHIFTS][2]) {
   const PetscInt whole = n - j - (SHIFTS - 1); /* up to here no shift goes past the last marker, from n - j on all do */
-  Products sum = {{{0}}, {{0}}};
-  AddProducts(whole, X + 2 * j, Y, &sum);
+  ShiftProducts sum = {{{0}}, {{0}}};
+  AddShiftProducts(whole, X + 2 * j, Y, &sum);
   for (PetscInt k = whole; k < n - j; k++)
-    for (int i = 0; i < SHIFTS; i++) AddPoints(OnePoint(Y + 2 * k), OnePoint(X + 2 * ((k + j + i) % n)), i, &sum);
-  AddProducts(j, X, Y + 2 * (n - j), &sum);
+    for (int i = 0; i < SHIFTS; i++) AddShiftPoints(OnePoint(Y + 2 * k), OnePoint(X + 2 * ((k + j + i) % n)), i, &sum);
+  AddShiftProducts(j, X, Y + 2 * (n - j), &sum);
   for (int i = 0; i < SHIFTS; i++) LanesTwoSums(sum.same[i], sum.cross[i], &c[i][0], &c[i][1]);
 }
 
@@ -81,7 +81,7 @@ RigidFit RigidFitCurves(PetscInt n, const PetscReal X[], const PetscReal Y[]) {
   for (PetscInt from = 0; from < n; from += SHIFTS) {
     const PetscInt j = PetscMin(from, n - SHIFTS); /* the last ones overlap those before */
     PetscReal c[SHIFTS][2];
-    Correlate(n, j, X, Y, c);
+    CorrelateShifts(n, j, X, Y, c);
     for (int i = 0; i < SHIFTS; i++) {
       const PetscReal size = c[i][0] * c[i][0] + c[i][1] * c[i][1];
       if (size <= (1 + SAME) * largest) continue; /* of a symmetric curve the first, whatever rounding does */
@@ -106,7 +106,7 @@ void RigidFitTurn(const RigidFit *p, PetscBool back, PetscInt n, const PetscReal
 }
 
 /* y = x of n markers, vectors turned. */
-static void Copy(const RigidFit *p, PetscBool back, int each, PetscInt n, const PetscReal x[], PetscReal y[]) {
+static void CopyTurned(const RigidFit *p, PetscBool back, int each, PetscInt n, const PetscReal x[], PetscReal y[]) {
   if (each == 2)
     RigidFitTurn(p, back, n, x, y);
   else
@@ -115,12 +115,12 @@ static void Copy(const RigidFit *p, PetscBool back, int each, PetscInt n, const 
 
 void RigidFitInto(const RigidFit *p, int each, PetscInt n, const PetscReal x[], PetscReal y[]) {
   const PetscInt j = p->shift;
-  Copy(p, PETSC_TRUE, each, n - j, x + each * j, y);
-  Copy(p, PETSC_TRUE, each, j, x, y + each * (n - j));
+  CopyTurned(p, PETSC_TRUE, each, n - j, x + each * j, y);
+  CopyTurned(p, PETSC_TRUE, each, j, x, y + each * (n - j));
 }
 
 void RigidFitBack(const RigidFit *p, int each, PetscInt n, const PetscReal x[], PetscReal y[]) {
   const PetscInt j = p->shift;
-  Copy(p, PETSC_FALSE, each, n - j, x, y + each * j);
-  Copy(p, PETSC_FALSE, each, j, x + each * (n - j), y);
+  CopyTurned(p, PETSC_FALSE, each, n - j, x, y + each * j);
+  CopyTurned(p, PETSC_FALSE, each, j, x + each * (n - j), y);
 }

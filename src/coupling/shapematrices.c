@@ -5,7 +5,7 @@
 #include "coupling/selflayer.h"
 
 /* M += scale times the coarse grid's mean mobility between n points. */
-static void AddMean(MobilityTable table, PetscReal scale, PetscInt n, const PetscReal X[], PetscReal M[]) {
+static void AddMeanMobility(MobilityTable table, PetscReal scale, PetscInt n, const PetscReal X[], PetscReal M[]) {
   for (PetscInt j = 0; j < n; j++)
     for (PetscInt i = 0; i < n; i++) {
       const PetscReal d[2] = {X[2 * i] - X[2 * j], X[2 * i + 1] - X[2 * j + 1]};
@@ -19,7 +19,7 @@ static void AddMean(MobilityTable table, PetscReal scale, PetscInt n, const Pets
 }
 
 /* M = h^2 S. */
-static PetscErrorCode Assemble(SharedShapes s, const SharedShape *q, PetscReal M[]) {
+static PetscErrorCode AssembleShape(SharedShapes s, const SharedShape *q, PetscReal M[]) {
   const Coupling c = s->coupling;
   const PetscInt n = LayoutCount(c->membrane->layout, q->like);
   const PetscReal h2 = PetscSqr(c->fluid->grid->h);
@@ -30,7 +30,7 @@ static PetscErrorCode Assemble(SharedShapes s, const SharedShape *q, PetscReal M
 }
 
 /* With viscosity contrast what ContrastMatrix has of a vesicle of this shape, else NULL. */
-static PetscErrorCode Motion(SharedShapes s, const SharedShape *q, PetscReal **motion) {
+static PetscErrorCode ShapeMotion(SharedShapes s, const SharedShape *q, PetscReal **motion) {
   const Membrane m = s->coupling->membrane;
   const PetscInt n = 2 * LayoutCount(m->layout, q->like);
   PetscReal *D, *normal, *along;
@@ -51,7 +51,7 @@ static PetscErrorCode Motion(SharedShapes s, const SharedShape *q, PetscReal **m
 }
 
 /* The weights of n markers and so many points; those of an earlier shape where there are. */
-static PetscErrorCode FindWeights(SharedShapes s, PetscInt n, PetscInt points, PetscInt *which) {
+static PetscErrorCode FindShapeWeights(SharedShapes s, PetscInt n, PetscInt points, PetscInt *which) {
   PetscFunctionBeginUser;
   for (*which = 0; *which < s->kinds; (*which)++)
     if (s->weights[*which].n == n && s->weights[*which].points == points) PetscFunctionReturn(PETSC_SUCCESS);
@@ -62,7 +62,8 @@ static PetscErrorCode FindWeights(SharedShapes s, PetscInt n, PetscInt points, P
 
 /* F = Dm^T sigma + (c_b ds/a0) D4 V of an answer (V, sigma), and behind it J = (1 - ratio) (V + (treading/a0) dV/dt).
  */
-static void Sources(SharedShapes s, const SharedShape *q, const PetscReal tau[], const PetscReal V[], PetscReal F[]) {
+static void ShapeSourcesOf(SharedShapes s, const SharedShape *q, const PetscReal tau[], const PetscReal V[],
+                           PetscReal F[]) {
   const Membrane m = s->coupling->membrane;
   const PetscInt n = LayoutCount(m->layout, q->like);
   PetscReal *pull = s->X;
@@ -78,24 +79,24 @@ static void Sources(SharedShapes s, const SharedShape *q, const PetscReal tau[],
 }
 
 /* The coarse parts of a shape: the points of the curve through its markers, weights, self. */
-static PetscErrorCode MakeCoarse(SharedShapes s, SharedShape *q) {
+static PetscErrorCode MakeShapePoints(SharedShapes s, SharedShape *q) {
   const PetscInt n = LayoutCount(s->coupling->membrane->layout, q->like),
                  points = LayoutCount(s->coarse->layout, q->like);
   const PetscReal h2 = PetscSqr(s->coarse->fluid->grid->h);
   PetscFunctionBeginUser;
-  PetscCall(FindWeights(s, n, points, &q->weights));
+  PetscCall(FindShapeWeights(s, n, points, &q->weights));
   PetscCall(PetscCalloc1(4 * points * points, &q->self));
   PetscCall(PetscCalloc1(2 * points, &q->points));
   for (PetscInt i = 0; i < points; i++)
     for (PetscInt k = 0; k < 2 * n; k++)
       q->points[2 * i + k % 2] += s->weights[q->weights].to_points[i * n + k / 2] * q->X[k];
-  AddMean(s->coarse->table, 1 / h2, points, q->points, q->self);
+  AddMeanMobility(s->coarse->table, 1 / h2, points, q->points, q->self);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* The inverse and its sources: the columns are the answers V, sigma to those of the identity. */
-static PetscErrorCode Store(SharedShapes s, SharedShape *q, const PetscReal tau[], const PetscReal V[],
-                            const PetscReal sigma[]) {
+static PetscErrorCode StoreShape(SharedShapes s, SharedShape *q, const PetscReal tau[], const PetscReal V[],
+                                 const PetscReal sigma[]) {
   const PetscInt n = LayoutCount(s->coupling->membrane->layout, q->like), all = 3 * n;
   PetscReal *answer, *F;
   PetscFunctionBeginUser;
@@ -105,7 +106,7 @@ static PetscErrorCode Store(SharedShapes s, SharedShape *q, const PetscReal tau[
   for (PetscInt j = 0; j < all; j++) {
     PetscCall(PetscArraycpy(answer, V + j * 2 * n, 2 * n));
     PetscCall(PetscArraycpy(answer + 2 * n, sigma + j * n, n));
-    Sources(s, q, tau, answer, F);
+    ShapeSourcesOf(s, q, tau, answer, F);
     PackedMatrixSetColumn(&q->inverse, j, answer);
     PackedMatrixSetColumn(&q->sources, j, F);
   }
@@ -122,16 +123,16 @@ PetscErrorCode SharedShapeMake(SharedShapes s, SharedShape *q, PetscBool *good) 
   PetscCall(PetscMalloc1(4 * n * n, &M));
   PetscCall(PetscCalloc2(2 * n * all, &V, n * all, &sigma));
   PetscCall(DenseBlockCreate(m, s->coupling->fluid->grid->h, q->like, q->like + 1, &block));
-  PetscCall(Assemble(s, q, M));
-  PetscCall(Motion(s, q, &motion));
+  PetscCall(AssembleShape(s, q, M));
+  PetscCall(ShapeMotion(s, q, &motion));
   MembraneVesicleTangents(m, q->like, q->X, block.tau);
   PetscCall(DenseBlockFactor(&block, s->a0, &q->treading, M, motion, good));
   PetscCall(PetscFree(motion));
   for (PetscInt j = 0; j < 2 * n; j++) V[j * 2 * n + j] = 1;
   for (PetscInt j = 0; j < n; j++) sigma[(2 * n + j) * n + j] = 1;
   if (*good) PetscCall(DenseBlockSolve(&block, all, V, sigma));
-  PetscCall(Store(s, q, block.tau, V, sigma));
-  if (s->coarse) PetscCall(MakeCoarse(s, q));
+  PetscCall(StoreShape(s, q, block.tau, V, sigma));
+  if (s->coarse) PetscCall(MakeShapePoints(s, q));
   PetscCall(DenseBlockDestroy(&block));
   PetscCall(PetscFree(M));
   PetscCall(PetscFree2(V, sigma));

@@ -13,7 +13,7 @@ static void AddFromShape(const RigidFit *p, PetscInt n, const PetscReal y[], Pet
 }
 
 /* Columns W of the vesicles that take a shape, in its frame, to s->from, `each` numbers apart. */
-static void GatherColumns(SharedShapes s, const SharedShape *q, PetscInt each, const PetscScalar W[]) {
+static void GatherShapeColumns(SharedShapes s, const SharedShape *q, PetscInt each, const PetscScalar W[]) {
   const Layout l = s->coupling->membrane->layout;
   PetscReal *x = s->from;
   for (PetscInt k = q->begin; k < q->end; k++, x += each) {
@@ -54,7 +54,7 @@ void SharedShapeSolveAlone(SharedShapes s, const SharedShape *q, PetscScalar U[]
   const Layout l = s->coupling->membrane->layout;
   const PetscInt n = LayoutCount(l, q->like);
   PetscReal *x = s->from + 2 * n;
-  GatherColumns(s, q, 3 * n, U);
+  GatherShapeColumns(s, q, 3 * n, U);
   for (PetscInt k = q->begin; k < q->end; k++, x += 3 * n) {
     const PetscInt v = s->order[k], at = LayoutOffset(l, v);
     RigidFitInto(&s->fit[v - l->own], 1, n, sigma + at, x);
@@ -67,13 +67,13 @@ void SharedShapeSolveAlone(SharedShapes s, const SharedShape *q, PetscScalar U[]
 
 void SharedShapeSources(SharedShapes s, const SharedShape *q, const PetscScalar W[], const ShapeSources *sources) {
   const PetscInt inner = 2 * LayoutCount(s->coupling->membrane->layout, q->like);
-  GatherColumns(s, q, inner, W);
+  GatherShapeColumns(s, q, inner, W);
   FindSources(s, q, inner, sources);
 }
 
 void SharedShapeAddAnswer(SharedShapes s, const SharedShape *q, const PetscScalar W[], PetscScalar U[],
                           PetscScalar sigma[]) {
   const PetscInt inner = 2 * LayoutCount(s->coupling->membrane->layout, q->like);
-  GatherColumns(s, q, inner, W);
+  GatherShapeColumns(s, q, inner, W);
   AddAnswers(s, q, inner, U, sigma);
 }

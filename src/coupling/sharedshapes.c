@@ -7,7 +7,7 @@
 #define TOLERANCE 0.03 /* of a vesicle's distance from its shape */
 
 /* Work space of the vesicles' columns and of one vesicle. */
-static PetscErrorCode CreateWork(SharedShapes s) {
+static PetscErrorCode CreateShapeWork(SharedShapes s) {
   const Layout l = s->coupling->membrane->layout;
   PetscInt most = 0;
   PetscFunctionBeginUser;
@@ -28,12 +28,12 @@ PetscErrorCode SharedShapesCreate(const FluidSpec *spec, Coupling c, SharedShape
   *out = s;
   s->coupling = c;
   PetscCall(CoarseGridCreate(spec, m->layout, m->L0, c->markers->kernel->name, &s->coarse));
-  PetscCall(CreateWork(s));
+  PetscCall(CreateShapeWork(s));
   if (s->coarse) PetscCall(InteractionsCreate(s, &s->cross));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode FreeMatrices(SharedShape *q) {
+static PetscErrorCode FreeShapeMatrices(SharedShape *q) {
   PetscFunctionBeginUser;
   PetscCall(PetscFree(q->inverse.value));
   PetscCall(PetscFree(q->sources.value));
@@ -45,7 +45,7 @@ static PetscErrorCode FreeMatrices(SharedShape *q) {
 static PetscErrorCode FreeShape(SharedShape *q) {
   PetscFunctionBeginUser;
   PetscCall(PetscFree(q->X));
-  PetscCall(FreeMatrices(q));
+  PetscCall(FreeShapeMatrices(q));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -67,7 +67,7 @@ PetscErrorCode SharedShapesDestroy(SharedShapes *shapes) {
 }
 
 /* Whether two vesicles have as many markers, as far apart, the same stiffness and the same viscosity. */
-static PetscBool Alike(Coupling c, PetscInt v, PetscInt w) {
+static PetscBool AreAlike(Coupling c, PetscInt v, PetscInt w) {
   const Membrane m = c->membrane;
   if (c->contrast && c->contrast->ratio[v] != c->contrast->ratio[w]) return PETSC_FALSE;
   return LayoutCount(m->layout, v) == LayoutCount(m->layout, w) &&
@@ -93,11 +93,11 @@ static PetscReal TreadingDistance(Coupling c, PetscInt v, const SharedShape *q) 
 /* How far a shape's matrices are from those of own vesicle v, whose centred markers are s->X: its curve, part of R0,
    and its label speed. Where that is more than `limit` (what no fit can mend shows most of them) it may be any larger
    number. */
-static PetscReal Distance(SharedShapes s, PetscInt v, const SharedShape *q, const PetscReal size[], PetscReal limit,
-                          RigidFit *fit) {
+static PetscReal ShapeDistance(SharedShapes s, PetscInt v, const SharedShape *q, const PetscReal size[],
+                               PetscReal limit, RigidFit *fit) {
   const Membrane m = s->coupling->membrane;
   const PetscReal R0 = m->L0[v] / (2 * PETSC_PI);
-  if (!Alike(s->coupling, v, q->like)) return PETSC_MAX_REAL;
+  if (!AreAlike(s->coupling, v, q->like)) return PETSC_MAX_REAL;
   const PetscReal treading = TreadingDistance(s->coupling, v, q);
   if (RigidFitLeast(size, q->size) / R0 + treading > limit) return PETSC_MAX_REAL;
   *fit = RigidFitCurves(LayoutCount(m->layout, v), s->X, q->X);
@@ -106,16 +106,16 @@ static PetscReal Distance(SharedShapes s, PetscInt v, const SharedShape *q, cons
 
 /* The shape that own vesicle v takes from here on: that of before while it is near enough, else the nearest of those
    from `first` on; false when it needs a new one. */
-static PetscBool Choose(SharedShapes s, PetscInt v, PetscInt first) {
+static PetscBool ChooseShape(SharedShapes s, PetscInt v, PetscInt first) {
   const Layout l = s->coupling->membrane->layout;
   PetscReal least = TOLERANCE, size[RIGIDFIT_SIZES];
   RigidFit *own = &s->fit[v - l->own], fit;
   RigidFitCentre(LayoutCount(l, v), s->coupling->markers->X + 2 * l->start[v], s->X);
   RigidFitSizes(LayoutCount(l, v), s->X, size);
-  if (s->of[v] >= 0 && Distance(s, v, &s->shape[s->of[v]], size, least, own) <= least) return PETSC_TRUE;
+  if (s->of[v] >= 0 && ShapeDistance(s, v, &s->shape[s->of[v]], size, least, own) <= least) return PETSC_TRUE;
   s->of[v] = -1;
   for (PetscInt k = first; k < s->count; k++) {
-    const PetscReal distance = Distance(s, v, &s->shape[k], size, least, &fit);
+    const PetscReal distance = ShapeDistance(s, v, &s->shape[k], size, least, &fit);
     if (distance > least) continue;
     least = distance;
     s->of[v] = k;
@@ -125,7 +125,7 @@ static PetscBool Choose(SharedShapes s, PetscInt v, PetscInt first) {
 }
 
 /* A shape, zero but for its X. */
-static PetscErrorCode Add(SharedShapes s, PetscInt like, PetscReal treading, const PetscReal X[]) {
+static PetscErrorCode AddShape(SharedShapes s, PetscInt like, PetscReal treading, const PetscReal X[]) {
   const Membrane m = s->coupling->membrane;
   PetscFunctionBeginUser;
   if (s->count == s->room) {
@@ -146,7 +146,7 @@ static PetscErrorCode Add(SharedShapes s, PetscInt like, PetscReal treading, con
 }
 
 /* Which vesicle takes which shape, told to all ranks; those that none takes any more are dropped. */
-static PetscErrorCode Tell(SharedShapes s) {
+static PetscErrorCode TellShapes(SharedShapes s) {
   const Layout l = s->coupling->membrane->layout;
   PetscInt *to, kept = 0;
   PetscFunctionBeginUser;
@@ -172,7 +172,7 @@ static PetscErrorCode Tell(SharedShapes s) {
 
 /* New shapes until every vesicle has one: each of the first vesicle of all ranks that needs one, so that they do not
    depend on the ranks. */
-static PetscErrorCode ChooseAll(SharedShapes s) {
+static PetscErrorCode ChooseShapes(SharedShapes s) {
   const Layout l = s->coupling->membrane->layout;
   PetscInt first = 0, found[2] = {0, 0}; /* the vesicle that needs one, minus whether any has changed */
   PetscFunctionBeginUser;
@@ -181,21 +181,21 @@ static PetscErrorCode ChooseAll(SharedShapes s) {
     for (PetscInt v = l->own; v < l->end; v++) {
       const PetscInt before = s->of[v];
       if (round && before >= 0) continue;
-      if (!Choose(s, v, first)) found[0] = PetscMin(found[0], v);
+      if (!ChooseShape(s, v, first)) found[0] = PetscMin(found[0], v);
       if (s->of[v] != before) found[1] = -1;
     }
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, found, 2, MPIU_INT, MPI_MIN, l->comm));
     if (found[0] == l->bodies) break;
     first = s->count;
     RigidFitCentre(LayoutCount(l, found[0]), s->coupling->markers->X + 2 * l->start[found[0]], s->X);
-    PetscCall(Add(s, found[0], s->coupling->treading[found[0]], s->X));
+    PetscCall(AddShape(s, found[0], s->coupling->treading[found[0]], s->X));
   }
-  if (found[1]) PetscCall(Tell(s));
+  if (found[1]) PetscCall(TellShapes(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Own vesicles by shape. */
-static void Sort(SharedShapes s) {
+static void SortByShape(SharedShapes s) {
   const Layout l = s->coupling->membrane->layout;
   PetscInt at = 0;
   for (PetscInt k = 0; k < s->count; k++) s->shape[k].begin = s->shape[k].end = 0;
@@ -210,13 +210,13 @@ static void Sort(SharedShapes s) {
 }
 
 /* Matrices of the shapes that own vesicles take, for the a0 in force. */
-static PetscErrorCode MakeAll(SharedShapes s, PetscBool *failed) {
+static PetscErrorCode MakeShapeMatrices(SharedShapes s, PetscBool *failed) {
   const PetscReal a0 = s->coupling->fluid->a0;
   PetscBool good = PETSC_TRUE;
   PetscFunctionBeginUser;
   if (!(PetscAbsReal(s->a0 / a0 - 1) < 0.1)) {
     s->a0 = a0;
-    for (PetscInt k = 0; k < s->count; k++) PetscCall(FreeMatrices(&s->shape[k]));
+    for (PetscInt k = 0; k < s->count; k++) PetscCall(FreeShapeMatrices(&s->shape[k]));
   }
   for (PetscInt k = 0; k < s->count && good; k++) {
     SharedShape *q = &s->shape[k];
@@ -231,9 +231,9 @@ PetscErrorCode SharedShapesFollow(SharedShapes s, PetscBool *failed) {
   PetscFunctionBeginUser;
   PetscCall(PetvesEvent("FactorMobility", &event));
   PetscCall(PetscLogEventBegin(event, 0, 0, 0, 0));
-  PetscCall(ChooseAll(s));
-  Sort(s);
-  PetscCall(MakeAll(s, failed));
+  PetscCall(ChooseShapes(s));
+  SortByShape(s);
+  PetscCall(MakeShapeMatrices(s, failed));
   if (s->cross && !*failed) PetscCall(InteractionsPlace(s->cross));
   PetscCall(PetscLogEventEnd(event, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -272,9 +272,10 @@ void SharedShapesGetMemory(SharedShapes s, PetscReal memory[]) {
 }
 
 /* Whether a number from a file is that of a vesicle like v. */
-static PetscBool IsLike(Coupling c, PetscInt v, PetscReal number) {
-  return number >= 0 && number < (PetscReal)c->membrane->layout->bodies && Alike(c, v, (PetscInt)number) ? PETSC_TRUE
-                                                                                                         : PETSC_FALSE;
+static PetscBool IsNumberAlike(Coupling c, PetscInt v, PetscReal number) {
+  return number >= 0 && number < (PetscReal)c->membrane->layout->bodies && AreAlike(c, v, (PetscInt)number)
+             ? PETSC_TRUE
+             : PETSC_FALSE;
 }
 
 PetscErrorCode SharedShapesSetMemory(SharedShapes s, const PetscReal memory[], PetscBool *valid) {
@@ -285,7 +286,7 @@ PetscErrorCode SharedShapesSetMemory(SharedShapes s, const PetscReal memory[], P
   *valid = PETSC_TRUE;
   if (!(memory[0] > 0)) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt v = 0; v < l->bodies; v++)
-    if (!IsLike(c, v, first[v]) || first[v] > (PetscReal)v || !IsLike(c, v, like[(PetscInt)first[v]]) ||
+    if (!IsNumberAlike(c, v, first[v]) || first[v] > (PetscReal)v || !IsNumberAlike(c, v, like[(PetscInt)first[v]]) ||
         first[(PetscInt)first[v]] != first[v])
       *valid = PETSC_FALSE;
   if (!*valid) PetscFunctionReturn(PETSC_SUCCESS);
@@ -293,7 +294,7 @@ PetscErrorCode SharedShapesSetMemory(SharedShapes s, const PetscReal memory[], P
   for (PetscInt v = 0; v < l->bodies; v++) {
     const PetscInt w = (PetscInt)first[v];
     s->of[v] = w == v ? s->count : s->of[w];
-    if (w == v) PetscCall(Add(s, (PetscInt)like[v], treading[v], X + 2 * l->start[v]));
+    if (w == v) PetscCall(AddShape(s, (PetscInt)like[v], treading[v], X + 2 * l->start[v]));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -41,8 +41,8 @@ PetscErrorCode SymmetricInvert(PetscInt n, const PetscReal A[], float inverse[],
 }
 
 /* y += A x of the rows below a panel's first four, and what they say of the panel's own: sum[4]. m rows in all. */
-static inline void Below(PetscInt m, const float *panel, const float own[SYMMETRIC_PANEL], const float x[], float y[],
-                         float sum[SYMMETRIC_PANEL]) {
+static inline void MultBelow(PetscInt m, const float *panel, const float own[SYMMETRIC_PANEL], const float x[],
+                             float y[], float sum[SYMMETRIC_PANEL]) {
   Wide part[SYMMETRIC_PANEL] = {{0}};
   PetscInt i = SYMMETRIC_PANEL;
   for (; i + WIDE <= m; i += WIDE) {
@@ -69,7 +69,7 @@ void SymmetricMult(PetscInt n, const float packed[], const float x[], float y[])
     const PetscInt m = n - j, columns = PetscMin(m, SYMMETRIC_PANEL);
     float own[SYMMETRIC_PANEL] = {0}, sum[SYMMETRIC_PANEL];
     for (PetscInt c = 0; c < columns; c++) own[c] = x[j + c];
-    Below(m, packed, own, x + j, y + j, sum);
+    MultBelow(m, packed, own, x + j, y + j, sum);
     for (PetscInt c = 0; c < columns; c++) {
       y[j + c] += sum[c];
       for (PetscInt i = 0; i < columns; i++) y[j + i] += packed[c * m + i] * own[c];
