@@ -55,14 +55,12 @@ static PetscErrorCode CreateTableSolver(MobilityTable m) {
   PetscFunctionBeginUser;
   PetscCall(StokesCreate(m->periodic, &m->stokes));
   PetscCall(DMCreateGlobalVector(m->periodic->grid->velocity, &m->u));
-  PetscCall(DMCreateGlobalVector(m->periodic->grid->da[FIELD_P], &m->p));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode DestroyTableSolver(MobilityTable m) {
   PetscFunctionBeginUser;
   PetscCall(VecDestroy(&m->u));
-  PetscCall(VecDestroy(&m->p));
   PetscCall(StokesDestroy(&m->stokes));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -136,7 +134,7 @@ static PetscErrorCode UnitResponse(MobilityTable m, int source) {
   PetscCall(VecGetArray(m->u, &r));
   if (!g->rank) r[source ? GridLocalU(g) : 0] = 1;
   PetscCall(VecRestoreArray(m->u, &r));
-  PetscCall(StokesSolve(m->stokes, m->u, NULL, m->u, m->p));
+  PetscCall(StokesVelocity(m->stokes, m->u, m->u));
   PetscCall(VecGetArrayRead(m->u, &a));
   if (!source) PetscCall(GatherWindow(g, FIELD_U, a, G->size, G->value[OFFSET_UU]));
   PetscCall(GatherWindow(g, FIELD_V, a + GridLocalU(g), G->size, G->value[source ? OFFSET_VV : OFFSET_VU]));

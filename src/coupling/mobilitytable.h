@@ -9,8 +9,8 @@ typedef struct _p_MobilityTable *MobilityTable;
 struct _p_MobilityTable {
   const Kernel *kernel;
   Fluid periodic; /* a periodic box of the same cells */
-  Stokes stokes;  /* its solver with work vectors, kept on few cells; else NULL between set-ups */
-  Vec u, p;
+  Stokes stokes;  /* its solver with a work vector, kept on few cells; else NULL between set-ups */
+  Vec u;
   PetscReal alpha;   /* coefficient of H that the tables are for; negative: none yet */
   OffsetTable green; /* its Green's function, by offsets of faces */
   OffsetTable mean;  /* of two markers' mobility, by whole cells between them, once asked for */

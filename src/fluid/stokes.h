@@ -8,15 +8,18 @@ typedef struct _p_Stokes *Stokes;
 PETSC_EXTERN PetscErrorCode StokesCreate(Fluid fluid, Stokes *stokes);
 PETSC_EXTERN PetscErrorCode StokesDestroy(Stokes *stokes);
 
-/* StokesSolve - velocity u and pressure p (zero mean). Exact but between walls in x where the fast solves are not
-   fftw_tridiagonal's: x periodic, one banded solve that counts as three scalar ones, or three with a
-   correction of two unknowns a mode next to walls; walls both ways, by the stream function and the pressure that
-   belongs to it, two scalar solves, five with r_p. Elsewhere it is StokesProject. r_p may be NULL (zero); u may be r_u,
-   p may be r_p. Collective. Errors: a scalar solve that does not converge, see FluidFailure. */
+/* StokesSolve - velocity u and pressure p (zero mean): where both fast solves are fftw_tridiagonal's, exact, by the
+   stream function and the pressure that belongs to it, two scalar solves, three with r_p and five with r_p between
+   walls. Else by projection, as StokesProject between walls in x. r_p may be NULL (zero); u may be r_u, p may be r_p.
+   Collective. Errors: a scalar solve that does not converge, see FluidFailure. */
 PETSC_EXTERN PetscErrorCode StokesSolve(Stokes stokes, Vec r_u, Vec r_p, Vec u, Vec p);
 
-/* StokesProject - the same by projection where there are walls in x: three scalar solves, which leave in the momentum
-   next to walls nu (L_u G - G L) psi. Else StokesSolve. Collective. */
+/* StokesVelocity - u of StokesSolve with r_p = 0, one scalar solve, where there is a StokesStream; u may be r_u.
+   Collective. */
+PETSC_EXTERN PetscErrorCode StokesVelocity(Stokes stokes, Vec r_u, Vec u);
+
+/* StokesProject - between walls in x by projection: three scalar solves, which leave in the momentum next to walls
+   nu (L_u G - G L) psi. Else StokesSolve. Collective. */
 PETSC_EXTERN PetscErrorCode StokesProject(Stokes stokes, Vec r_u, Vec r_p, Vec u, Vec p);
 
 /* StokesPressure - the pressure p (zero mean) of the velocity u without divergence that solves H u + G p = r_u where

@@ -161,31 +161,6 @@ PetscErrorCode TridiagonalEnd(Tridiagonal d) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-void TridiagonalAbove(Tridiagonal d, PetscReal x[]) {
-  const PetscReal *z = d->ends.above + d->grid->rank * d->width;
-  const PetscInt n = d->grid->all_rows[d->field];
-  for (PetscInt k = 0; k < d->modes; k++) x[k] = d->factors.factor[k] * z[k];
-  if (d->singular) x[0] = d->column[(d->grid->first + d->grid->rows[d->field]) % n];
-}
-
-void TridiagonalBelow(Tridiagonal d, const PetscReal row_0[], PetscReal x[]) {
-  const PetscReal *y = d->ends.below + d->grid->rank * d->width;
-  const PetscInt n = d->grid->all_rows[d->field];
-  for (PetscInt k = 0; k < d->modes; k++) x[k] = d->factors.factor[k] * y[k] + d->factors.r[k] * row_0[k];
-  if (d->singular) x[0] = d->column[(d->grid->first + n - 1) % n];
-}
-
-void TridiagonalEnds(Tridiagonal d, PetscReal first[], PetscReal last[]) {
-  const ModeFactors *f = &d->factors;
-  for (PetscInt k = 0; k < d->modes; k++) {
-    first[k] = f->factor[k] * d->ends.first_z[k];
-    last[k] = f->factor[k] * (1 + f->r[k] * f->top[k]) * d->ends.last_y[k];
-  }
-  if (!d->singular) return;
-  first[0] = d->column[0];
-  last[0] = d->column[d->grid->all_rows[d->field] - 1];
-}
-
 PetscErrorCode TridiagonalCreate(Grid g, Field field, PetscInt modes, PetscReal lambda[], PetscReal scale[],
                                  Tridiagonal *out) {
   const PetscInt w = (modes + BLOCK - 1) / BLOCK * BLOCK;

@@ -85,11 +85,3 @@ PETSC_EXTERN void TridiagonalDown(Tridiagonal d, PetscInt j, PetscReal x[]);
 /* TridiagonalBegin, TridiagonalEnd - between them one message travels. Collective, in the same order on every rank. */
 PETSC_EXTERN PetscErrorCode TridiagonalBegin(Tridiagonal d);
 PETSC_EXTERN PetscErrorCode TridiagonalEnd(Tridiagonal d);
-
-/* TridiagonalAbove - the solution in the row above the slab, between End and the first Down. TridiagonalBelow - in the
-   row below, row_0[modes] being the solution in row 0. Through a wall they have no meaning. Not collective. */
-PETSC_EXTERN void TridiagonalAbove(Tridiagonal d, PetscReal x[]);
-PETSC_EXTERN void TridiagonalBelow(Tridiagonal d, const PetscReal row_0[], PetscReal x[]);
-
-/* TridiagonalEnds - the solution in the first and the last row of all, after End, between walls. Not collective. */
-PETSC_EXTERN void TridiagonalEnds(Tridiagonal d, PetscReal first[], PetscReal last[]);
