@@ -63,7 +63,7 @@ def many(ranks: int, warmup: int, steps: int, rounds: int) -> Run:
     return Run(f"coupled 1000x480 suspension {ranks}", "bench_step", text, ranks, rounds)
 
 
-def items(quick: bool, scratch: Path) -> dict[str, list[Run]]:
+def items(quick: bool) -> dict[str, list[Run]]:
     """Return the runs of every item; QUICK has smaller grids and fewer rounds, for a look."""
     middle, large = (128, 256) if quick else (512, 1024)
     warmup, steps, rounds = (5, 5, 1) if quick else (20, 8, 3)
@@ -102,15 +102,8 @@ def items(quick: bool, scratch: Path) -> dict[str, list[Run]]:
         if name != "hypre" or n <= 128  # at 256^2 a residual of 1e-12 is not to be had
     ]
     startup = [
-        step(f"{plan} {kept}", middle, box, 1, f"-scheme_type coupled -fftw_plan {plan}{wisdom}", warmup, steps, rounds)
-        for box, plan, (kept, wisdom) in product(
-            ("channel", "walls"), ("estimate", "measure", "patient"), (("alone", ""), ("wisdom", f" -fftw_wisdom {scratch}/"))
-        )  # fmt: skip
+        step("coupled", middle, box, 1, schemes["coupled"], warmup, steps, rounds) for box in ("channel", "walls")
     ]
-    for run in startup:  # a file for each plan and box; the first round makes it and is not counted
-        if "-fftw_wisdom" in run.options:
-            run.options += run.name.replace(" ", "_")
-            run.rounds += 1
     return {"solve": solve, "share": share, "ranks": ranks, "size": size, "steady": steady, "solvers": solvers, "startup": startup}  # fmt: skip
 
 
@@ -146,9 +139,7 @@ def main() -> int:
     results = folder / "results"
     results.mkdir(parents=True, exist_ok=True)
     (results / "machine.json").write_text(json.dumps(machine(), indent=1) + "\n")
-    scratch = ROOT / "out" / "bench" / "wisdom"
-    scratch.mkdir(parents=True, exist_ok=True)
-    for name, runs in items(quick, scratch).items():
+    for name, runs in items(quick).items():
         run_item(name, runs, results)
     for path in report(results, ROOT / "docs", pages):
         print(path)

@@ -68,7 +68,7 @@ static PetscErrorCode BenchField(Grid grid, const char box[], Field field, Petsc
   if (field == FIELD_P) PetscCall(VecShift(b, -sum / n));
   PetscCall(FastSolversRegister());
   for (int k = 0; k < count; k++) {
-    PetscCall(FastSolverCreate(grid, field, back_ends[k], 0, &s[k]));
+    PetscCall(FastSolverCreate(grid, field, back_ends[k], &s[k]));
     PetscCall(FastSolverSetCoefficients(s[k], field == FIELD_P ? 0 : 1.5 / grid->h, field == FIELD_P ? -1 : 1));
     PetscCall(PCApply(s[k]->pc, b, x));
     PetscCall(Residual(s[k], b, x, &residual[k]));

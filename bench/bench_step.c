@@ -2,7 +2,6 @@
      bench_step -bench_warmup W -bench_steps N [options of petves]     one JSON object: seconds of each step, of its
    fast solves and of the rest, iterations, scalar solves; seconds of the set-up and of the first step; peak memory. */
 #include "bench.h"
-#include "fluid/wisdom.h"
 #include <sys/resource.h>
 
 #define MOST_STEPS 4096
@@ -12,13 +11,11 @@ static const char *const names[LISTS] = {"step", "fast", "rest", "nsolve", "coup
 static PetscErrorCode Create(TestWorld *w) {
   PetscFunctionBeginUser;
   PetscCall(SceneCreate(PETSC_COMM_WORLD, NULL, NULL, &w->scene));
-  PetscCall(WisdomRead(PETSC_COMM_WORLD, w->scene->wisdom));
   PetscCall(TestWorldBuild(w));
   if (w->coupling->near && SceneHasBoxPart(w->scene))
     PetscCall(NearFieldAddBoxPart(w->coupling->near, &w->scene->fluid));
   PetscCall(TestWorldScheme(w));
   PetscCall(SceneCheckUnused(w->scene));
-  PetscCall(WisdomWrite(PETSC_COMM_WORLD, w->scene->wisdom));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -26,13 +26,11 @@ def median(values: list[float]) -> float:
     return float(np.median(values))
 
 
-def gathered(kept: Kept, first_round: int = 0) -> dict[str, dict]:
+def gathered(kept: Kept) -> dict[str, dict]:
     """Return the runs by name, the lists of all rounds put together; numbers become lists, one a round."""
     found: dict[str, dict] = {}
     for key, (one,) in kept.items():
-        name, number = key.rsplit(" #", 1)
-        if int(number) < first_round:
-            continue
+        name = key.rsplit(" #", 1)[0]
         into = found.setdefault(name, {k: [] for k in one})
         for k, v in one.items():
             into[k] += v if isinstance(v, list) else [v]
@@ -184,19 +182,11 @@ def _solvers(results: Path) -> list[str]:
 
 def _startup(results: Path) -> list[str]:
     rows = []
-    found = gathered(load(results, "startup"))
-    again = gathered(load(results, "startup"), 1)  # the first round makes the file
-    for name in found:
-        plan, kept, cells, box, _ = name.split()
-        one = again[name] if kept == "wisdom" and name in again else found[name]
-        base = found[f"estimate alone {cells} {box} 1"]
+    for name, one in gathered(load(results, "startup")).items():
+        _, cells, box, _ = name.split()
         start = np.array(one["setup"]) + np.array(one["first"])
-        rows.append(
-            [f"{cells}^2", box, plan, "yes" if kept == "wisdom" else "no", f"{median(one['setup']):.2f}", f"{median(start):.2f}",
-             f"{median(one['step']) / median(base['step']):.2f}"]
-        )  # fmt: skip
-    header = ["cells", "box", "plan", "wisdom", "set-up, s", "set-up and first step, s", "later step over estimate's"]
-    return table(header, rows)
+        rows.append([f"{cells}^2", box, f"{median(one['setup']):.2f}", f"{median(start):.2f}"])
+    return table(["cells", "box", "set-up, s", "set-up and first step, s"], rows)
 
 
 def _copy_rate(results: Path) -> float:

@@ -14,7 +14,7 @@ from check_options import Option, described
 
 TOOLS = "run plot movie report compare sweep"
 WORDS = "-help -version -options_file -log_view"
-FILES = "-options_file -restart -vesicle_file -fftw_wisdom"
+FILES = "-options_file -restart -vesicle_file"
 FOLDERS = "-output_dir"
 
 

@@ -2,7 +2,6 @@
 #include "simulation.h"
 #include "base/agree.h"
 #include "baselines/baselines.h"
-#include "fluid/wisdom.h"
 #include "options/typed.h"
 #include <stdlib.h>
 
@@ -136,7 +135,6 @@ static PetscErrorCode Build(MPI_Comm comm, PetvesFlow flow, void *ctx, Simulatio
   scene = s->scene;
   PetscCall(SceneCheckUsed(scene));
   PetscCall(SceneReport(scene));
-  PetscCall(WisdomRead(comm, scene->wisdom));
   PetscCall(FluidCreate(&scene->fluid, &s->fluid));
   PetscCall(CreateLayouts(comm, scene, s));
   PetscCall(ObstaclesCreate(scene, s->all, &s->obstacles));
@@ -168,10 +166,7 @@ PetscErrorCode SimulationCreateWithFlow(MPI_Comm comm, PetvesFlow flow, void *ct
   PetscCall(Build(comm, flow, ctx, s));
   if (s->scene->view) PetscCall(SimulationView(s, PETSC_VIEWER_STDOUT_(comm)));
   PetscCall(PetscOptionsHasHelp(NULL, &only_help));
-  if (!only_help) { /* -help leaves no files */
-    PetscCall(WisdomWrite(comm, s->scene->wisdom));
-    PetscCall(OutputCreate(s->scene, s->scheme, &s->output));
-  }
+  if (!only_help) PetscCall(OutputCreate(s->scene, s->scheme, &s->output)); /* -help leaves no files */
   PetscCall(PetvesSetupErrors(PETSC_FALSE));
   PetscCall(PhaseEnd());
   PetscFunctionReturn(PETSC_SUCCESS);

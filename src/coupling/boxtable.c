@@ -305,7 +305,6 @@ static PetscErrorCode Pair(const FluidSpec *run, const char kernel[], const BoxL
   spec.comm = PETSC_COMM_SELF;
   spec.form = FORM_DISTURBANCE;
   spec.inertia = INERTIA_NONE;
-  spec.plan = 0; /* the same bits in every run */
   PetscCall(PetscStrncpy(spec.helmholtz, "fftw_tridiagonal", sizeof(spec.helmholtz)));
   PetscCall(PetscStrncpy(spec.poisson, "fftw_tridiagonal", sizeof(spec.poisson)));
   for (int fine = 0; fine < (lattice->whole ? 1 : 2); fine++) {

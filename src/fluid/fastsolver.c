@@ -8,7 +8,7 @@ static PetscErrorCode ForgetBackEnds(void) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode FastSolverRegister(const char type[], PetscErrorCode (*create)(FastSolver, PetscInt)) {
+PetscErrorCode FastSolverRegister(const char type[], PetscErrorCode (*create)(FastSolver)) {
   PetscFunctionBeginUser;
   if (!back_ends) PetscCall(PetscRegisterFinalize(ForgetBackEnds));
   PetscCall(PetscFunctionListAdd(&back_ends, type, create));
@@ -45,9 +45,9 @@ static PetscErrorCode MultOperator(Mat A, Vec x, Vec y) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode FastSolverCreate(Grid grid, Field field, const char type[], PetscInt plan, FastSolver *out) {
+PetscErrorCode FastSolverCreate(Grid grid, Field field, const char type[], FastSolver *out) {
   FastSolver s;
-  PetscErrorCode (*create)(FastSolver, PetscInt);
+  PetscErrorCode (*create)(FastSolver);
   PetscFunctionBeginUser;
   PetscCall(PetscFunctionListFind(back_ends, type, &create));
   PetscCheck(create, grid->comm, PETSC_ERR_USER_INPUT, "fast solver %s: not registered", type);
@@ -56,7 +56,7 @@ PetscErrorCode FastSolverCreate(Grid grid, Field field, const char type[], Petsc
   s->grid = grid;
   s->field = field;
   s->a0 = s->nu = PETSC_MAX_REAL;
-  PetscCall(create(s, plan));
+  PetscCall(create(s));
   const PetscInt n = grid->columns[field] * grid->rows[field];
   PetscCall(MatCreateShell(grid->comm, n, n, PETSC_DETERMINE, PETSC_DETERMINE, s, &s->A));
   PetscCall(MatShellSetOperation(s->A, MATOP_MULT, (void (*)(void))MultOperator));

@@ -34,9 +34,9 @@ struct _p_FastSolver {
   PetscErrorCode (*destroy)(FastSolver);
 };
 
-/* FastSolverCreate - solver of one field by the back end `type` ("fftw_tridiagonal", "fftw", "hypre"); plan: FFTW's
-   effort (0 estimate, 1 measure, 2 patient). Collective. Errors: a type that is not registered. */
-PETSC_EXTERN PetscErrorCode FastSolverCreate(Grid grid, Field field, const char type[], PetscInt plan, FastSolver *s);
+/* FastSolverCreate - solver of one field by the back end `type` ("fftw_tridiagonal", "fftw", "hypre").
+   Collective. Errors: a type that is not registered. */
+PETSC_EXTERN PetscErrorCode FastSolverCreate(Grid grid, Field field, const char type[], FastSolver *s);
 PETSC_EXTERN PetscErrorCode FastSolverDestroy(FastSolver *s);
 
 /* FastSolverSetCoefficients - choose a0 (1/time) and nu (length^2/time), the same bits on every rank; for L (FIELD_P)
@@ -56,10 +56,10 @@ PETSC_EXTERN PetscErrorCode FastSolverEnd(FastSolver s, PetscScalar x[]);
 PETSC_EXTERN PetscErrorCode FastSolverGetPC(FastSolver s, PC *pc);
 
 /* FastSolverRegister - add a back end under a name of -helmholtz_type and -poisson_type. Not collective. */
-PETSC_EXTERN PetscErrorCode FastSolverRegister(const char type[], PetscErrorCode (*create)(FastSolver, PetscInt plan));
+PETSC_EXTERN PetscErrorCode FastSolverRegister(const char type[], PetscErrorCode (*create)(FastSolver));
 
 /* The back ends of petves, which FastSolversRegister adds: FFTW's transforms both ways; transforms along the rows with
    tridiagonal solves across them; conjugate gradients with algebraic multigrid. Collective. */
-PETSC_EXTERN PetscErrorCode FastSolverCreate_FFTW(FastSolver, PetscInt plan);
-PETSC_EXTERN PetscErrorCode FastSolverCreate_Tridiagonal(FastSolver, PetscInt plan);
-PETSC_EXTERN PetscErrorCode FastSolverCreate_Hypre(FastSolver, PetscInt plan);
+PETSC_EXTERN PetscErrorCode FastSolverCreate_FFTW(FastSolver);
+PETSC_EXTERN PetscErrorCode FastSolverCreate_Tridiagonal(FastSolver);
+PETSC_EXTERN PetscErrorCode FastSolverCreate_Hypre(FastSolver);

@@ -7,7 +7,6 @@
      wall half a cell off, Dirichlet  sines of half samples     RODFT10, RODFT01     u in y, v in x
      wall on an entry, Dirichlet      sines                     RODFT00              u in x, v in y */
 #include "fluid/fastsolver.h"
-#include "fluid/wisdom.h"
 #include <fftw3-mpi.h>
 
 typedef struct {
@@ -96,8 +95,23 @@ static PetscErrorCode Destroy_FFTW(FastSolver s) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode FastSolverCreate_FFTW(FastSolver s, PetscInt plan) {
-  const unsigned efforts[] = {FFTW_ESTIMATE, FFTW_MEASURE, FFTW_PATIENT};
+static PetscErrorCode CleanUpFFTW(void) {
+  fftw_mpi_cleanup();
+  return PETSC_SUCCESS;
+}
+
+/* FFTW's MPI part, on the first call only. */
+static PetscErrorCode StartFFTW(void) {
+  static PetscBool done = PETSC_FALSE;
+  PetscFunctionBeginUser;
+  if (done) PetscFunctionReturn(PETSC_SUCCESS);
+  fftw_mpi_init();
+  PetscCall(PetscRegisterFinalize(CleanUpFFTW));
+  done = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode FastSolverCreate_FFTW(FastSolver s) {
   Grid g = s->grid;
   Transform *t;
   const ptrdiff_t n[2] = {g->all_rows[s->field], g->columns[s->field]};
@@ -106,7 +120,7 @@ PetscErrorCode FastSolverCreate_FFTW(FastSolver s, PetscInt plan) {
   fftw_r2r_kind forward[2], backward[2];
   PetscReal logical[2];
   PetscFunctionBeginUser;
-  PetscCall(WisdomInitialise());
+  PetscCall(StartFFTW());
   PetscCall(PetscNew(&t));
   s->data = t;
   s->apply = Apply_FFTW;
@@ -127,10 +141,10 @@ PetscErrorCode FastSolverCreate_FFTW(FastSolver s, PetscInt plan) {
   t->buffer = fftw_alloc_real((size_t)PetscMax(size, 1));
   PetscCheck(t->buffer, PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for the transforms");
   t->forward = fftw_mpi_plan_many_r2r(2, n, 1, g->block, column_block, t->buffer, t->buffer, g->comm, forward,
-                                      efforts[plan] | FFTW_MPI_TRANSPOSED_OUT);
+                                      FFTW_ESTIMATE | FFTW_MPI_TRANSPOSED_OUT);
   /* blocks of the input, then of the output: the transposed array comes first here */
   t->backward = fftw_mpi_plan_many_r2r(2, n, 1, column_block, g->block, t->buffer, t->buffer, g->comm, backward,
-                                       efforts[plan] | FFTW_MPI_TRANSPOSED_IN);
+                                       FFTW_ESTIMATE | FFTW_MPI_TRANSPOSED_IN);
   PetscCheck(t->forward && t->backward, PETSC_COMM_SELF, PETSC_ERR_LIB, "FFTW could not plan a transform");
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -76,13 +76,12 @@ static PetscErrorCode Destroy_Hypre(FastSolver s) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode FastSolverCreate_Hypre(FastSolver s, PetscInt plan) {
+PetscErrorCode FastSolverCreate_Hypre(FastSolver s) {
   Assembled *d;
   PC pc;
   Grid g = s->grid;
   const PetscInt n = g->columns[s->field] * g->rows[s->field];
   PetscFunctionBeginUser;
-  (void)plan;
   PetscCall(PetscNew(&d));
   s->data = d;
   s->setcoefficients = SetCoefficients_Hypre;

@@ -47,8 +47,7 @@ static PetscErrorCode Destroy_Tridiagonal(FastSolver s) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode FastSolverCreate_Tridiagonal(FastSolver s, PetscInt plan) {
-  const unsigned efforts[] = {FFTW_ESTIMATE, FFTW_MEASURE, FFTW_PATIENT};
+PetscErrorCode FastSolverCreate_Tridiagonal(FastSolver s) {
   Solver *q;
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&q));
@@ -57,7 +56,7 @@ PetscErrorCode FastSolverCreate_Tridiagonal(FastSolver s, PetscInt plan) {
   s->end = End_Tridiagonal;
   s->setcoefficients = SetCoefficients_Tridiagonal;
   s->destroy = Destroy_Tridiagonal;
-  PetscCall(RowTransformCreate(s->grid, s->field, efforts[plan], &q->t));
+  PetscCall(RowTransformCreate(s->grid, s->field, &q->t));
   PetscCall(TridiagonalCreate(s->grid, s->field, q->t->width, q->t->lambda, q->t->scale, &q->d));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

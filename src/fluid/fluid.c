@@ -138,8 +138,7 @@ static PetscErrorCode CreateSolvers(const FluidSpec *spec, Fluid f) {
   PetscFunctionBeginUser;
   PetscCall(FastSolversRegister());
   for (int k = FIELD_U; k <= FIELD_P; k++)
-    PetscCall(
-        FastSolverCreate(f->grid, (Field)k, k == FIELD_P ? spec->poisson : spec->helmholtz, spec->plan, &f->solver[k]));
+    PetscCall(FastSolverCreate(f->grid, (Field)k, k == FIELD_P ? spec->poisson : spec->helmholtz, &f->solver[k]));
   PetscCall(FastSolverSetCoefficients(f->solver[FIELD_P], 0, -1));
   PetscCall(FastSolverGetPC(f->solver[FIELD_P], &f->Linv));
   PetscCall(PetscObjectReference((PetscObject)f->Linv));
@@ -155,7 +154,6 @@ PetscErrorCode FluidCreate(const FluidSpec *spec, Fluid *out) {
   PetscCall(GridCreate(spec, &f->grid));
   f->nu = spec->nu;
   f->steady = spec->inertia == INERTIA_NONE ? PETSC_TRUE : PETSC_FALSE;
-  f->plan = spec->plan;
   f->zero_flux = spec->drive == DRIVE_FLUX ? PETSC_TRUE : PETSC_FALSE;
   f->held = spec->held && spec->bc[0] == BC_PERIODIC && spec->bc[1] == BC_PERIODIC ? PETSC_TRUE : PETSC_FALSE;
   f->tridiagonal = !strcmp(spec->helmholtz, "fftw_tridiagonal") && !strcmp(spec->poisson, "fftw_tridiagonal");

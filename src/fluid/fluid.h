@@ -14,7 +14,6 @@ struct _p_Fluid {
   PC Hinv, Linv;         /* fast solves of H (two scalar solves) and of L (one), PCSHELLs; NULL in unbounded fluid */
   FastSolver solver[3];  /* behind them, one a field; NULL in unbounded fluid */
   PetscBool tridiagonal; /* all of them by fftw_tridiagonal */
-  PetscInt plan;         /* FFTW's effort: 0 estimate, 1 measure, 2 patient */
   PetscBool zero_flux;   /* a uniform pressure gradient along x holds the mean of u at zero */
   PetscBool held;        /* in a box periodic both ways one holds the means of u and v */
   PetscBool total;       /* total form: walls move with the background flow */

@@ -2,13 +2,12 @@
 #include "base/lanes.h"
 
 /* One real Fourier transform of length n between real[n] and complex[n/2 + 1], twisted or not. */
-static PetscErrorCode FourierCreate(PetscInt n, PetscBool twisted, double *real, double *modes, unsigned plan,
-                                    Fourier *f) {
+static PetscErrorCode FourierCreate(PetscInt n, PetscBool twisted, double *real, double *modes, Fourier *f) {
   PetscFunctionBeginUser;
   f->n = n;
   f->half = n / 2 + 1;
-  f->forward = fftw_plan_dft_r2c_1d((int)n, real, (fftw_complex *)modes, plan);
-  f->backward = fftw_plan_dft_c2r_1d((int)n, (fftw_complex *)modes, real, plan);
+  f->forward = fftw_plan_dft_r2c_1d((int)n, real, (fftw_complex *)modes, FFTW_ESTIMATE);
+  f->backward = fftw_plan_dft_c2r_1d((int)n, (fftw_complex *)modes, real, FFTW_ESTIMATE);
   PetscCheck(f->forward && f->backward, PETSC_COMM_SELF, PETSC_ERR_LIB, "FFTW could not plan a transform");
   if (!twisted) PetscFunctionReturn(PETSC_SUCCESS);
   f->twist = fftw_alloc_real(2 * (size_t)f->half);
@@ -176,14 +175,14 @@ static PetscReal Eigenvalue(PetscReal argument) {
 }
 
 /* Periodic, and walls half a cell off. */
-static PetscErrorCode CreateWhole(RowTransform t, PetscBool periodic, unsigned plan) {
+static PetscErrorCode CreateWhole(RowTransform t, PetscBool periodic) {
   const PetscInt n = t->n;
   PetscFunctionBeginUser;
   t->width = 2 * (n / 2 + 1);
   t->modes = fftw_alloc_real((size_t)t->width);
   t->line = fftw_alloc_real((size_t)n);
   PetscCall(PetscMalloc2(t->width, &t->lambda, t->width, &t->scale));
-  PetscCall(FourierCreate(n, periodic ? PETSC_FALSE : PETSC_TRUE, t->line, t->modes, plan, &t->f[0]));
+  PetscCall(FourierCreate(n, periodic ? PETSC_FALSE : PETSC_TRUE, t->line, t->modes, &t->f[0]));
   for (PetscInt k = 0; k < t->width; k++) {
     const PetscInt mode = k / 2, wave = k % 2 ? n - mode : mode; /* cosine number, of 0 .. n - 1 */
     t->lambda[k] = Eigenvalue(periodic ? PETSC_PI * mode / n : PETSC_PI * (t->sign > 0 ? wave : n - wave) / (2.0 * n));
@@ -194,7 +193,7 @@ static PetscErrorCode CreateWhole(RowTransform t, PetscBool periodic, unsigned p
 }
 
 /* Walls on the entries next to the row's ends. */
-static PetscErrorCode CreateSines(RowTransform t, unsigned plan) {
+static PetscErrorCode CreateSines(RowTransform t) {
   const PetscInt cells = t->n + 1;
   PetscInt N = cells, start = 0;
   PetscFunctionBeginUser;
@@ -205,7 +204,7 @@ static PetscErrorCode CreateSines(RowTransform t, unsigned plan) {
   PetscCall(PetscMalloc2(t->width, &t->lambda, t->width, &t->scale));
   for (; N % 2 == 0 && N > 4; N /= 2) {
     const PetscInt half = N / 2;
-    PetscCall(FourierCreate(half, PETSC_TRUE, t->modes + start, t->line, plan, &t->f[t->levels++]));
+    PetscCall(FourierCreate(half, PETSC_TRUE, t->modes + start, t->line, &t->f[t->levels++]));
     for (PetscInt i = 0; i < half; i++) { /* wave numbers 1, 3, 5 .. in Makhoul's order */
       const PetscInt m = 2 * i < half ? 2 * i : 2 * (half - 1 - i) + 1;
       t->lambda[start + i] = Eigenvalue(PETSC_PI * (2 * m + 1) / (2.0 * N));
@@ -219,8 +218,8 @@ static PetscErrorCode CreateSines(RowTransform t, unsigned plan) {
     t->scale[start + k - 1] = 1.0 / (2 * cells);
   }
   if (N == 1) PetscFunctionReturn(PETSC_SUCCESS);
-  t->base_forward = fftw_plan_r2r_1d((int)N - 1, t->rest, t->modes + start, FFTW_RODFT00, plan);
-  t->base_backward = fftw_plan_r2r_1d((int)N - 1, t->modes + start, t->rest, FFTW_RODFT00, plan);
+  t->base_forward = fftw_plan_r2r_1d((int)N - 1, t->rest, t->modes + start, FFTW_RODFT00, FFTW_ESTIMATE);
+  t->base_backward = fftw_plan_r2r_1d((int)N - 1, t->modes + start, t->rest, FFTW_RODFT00, FFTW_ESTIMATE);
   PetscCheck(t->base_forward && t->base_backward, PETSC_COMM_SELF, PETSC_ERR_LIB, "FFTW could not plan a transform");
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -240,7 +239,7 @@ static PetscErrorCode CreateMatrix(RowTransform t, SineMatrixKind kind) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode RowTransformCreate(Grid g, Field field, unsigned plan, RowTransform *out) {
+PetscErrorCode RowTransformCreate(Grid g, Field field, RowTransform *out) {
   const PetscReal c = GridWallFactor(field, 0);
   RowTransform t;
   PetscFunctionBeginUser;
@@ -252,10 +251,10 @@ PetscErrorCode RowTransformCreate(Grid g, Field field, unsigned plan, RowTransfo
                               : c > 0 ? SINE_MATRIX_HALF_COSINES
                                       : SINE_MATRIX_HALF_SINES));
   else if (g->wall[0] && c == 0)
-    PetscCall(CreateSines(t, plan));
+    PetscCall(CreateSines(t));
   else {
     t->sign = g->wall[0] ? c : 0;
-    PetscCall(CreateWhole(t, g->wall[0] ? PETSC_FALSE : PETSC_TRUE, plan));
+    PetscCall(CreateWhole(t, g->wall[0] ? PETSC_FALSE : PETSC_TRUE));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

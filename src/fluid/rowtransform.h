@@ -43,8 +43,8 @@ struct _p_RowTransform {
   fftw_plan base_forward, base_backward;
 };
 
-/* RowTransformCreate - for a field of the grid; plan: FFTW's flags. Not collective. */
-PETSC_EXTERN PetscErrorCode RowTransformCreate(Grid grid, Field field, unsigned plan, RowTransform *t);
+/* RowTransformCreate - for a field of the grid. Not collective. */
+PETSC_EXTERN PetscErrorCode RowTransformCreate(Grid grid, Field field, RowTransform *t);
 PETSC_EXTERN PetscErrorCode RowTransformDestroy(RowTransform *t);
 
 /* RowTransformSort - from here on modes come by their wave numbers. Not collective. */

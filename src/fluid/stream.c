@@ -14,7 +14,6 @@
 #include "fluid/streamup.h"
 
 PetscErrorCode StreamCreate(Fluid f, ZeroFlux flux, Stream *out) {
-  const unsigned efforts[] = {FFTW_ESTIMATE, FFTW_MEASURE, FFTW_PATIENT};
   const Grid g = f->grid;
   const size_t n = (size_t)g->n[0];
   Stream s;
@@ -23,7 +22,7 @@ PetscErrorCode StreamCreate(Fluid f, ZeroFlux flux, Stream *out) {
   *out = s;
   s->fluid = f;
   s->flux = flux;
-  PetscCall(RowTransformCreate(g, g->wall[0] ? FIELD_U : FIELD_P, efforts[f->plan], &s->t));
+  PetscCall(RowTransformCreate(g, g->wall[0] ? FIELD_U : FIELD_P, &s->t));
   PetscCall(RowTransformSort(s->t)); /* what is felt far away comes first */
   PetscCall(StreamFactorsCreate(g, s->t, &s->factors));
   PetscCall(StreamSlabsCreate(g, s->factors, &s->slabs));

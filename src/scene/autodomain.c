@@ -35,7 +35,7 @@ static PetscErrorCode CountVesicles(Scene s, PetscInt *count) {
 
 /* Whether something is asked for that unbounded fluid does not have. */
 static PetscErrorCode NeedsGrid(Scene s, PetscBool *needs) {
-  static const char *const backends[] = {"-helmholtz_type", "-poisson_type", "-fftw_plan", "-fftw_wisdom"};
+  static const char *const backends[] = {"-helmholtz_type", "-poisson_type"};
   const PetscBool box_part = SceneGiven(s, "-coupling_box_part") && s->coupling.box_part ? PETSC_TRUE : PETSC_FALSE;
   PetscInt count;
   PetscFunctionBeginUser;

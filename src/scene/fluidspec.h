@@ -22,7 +22,6 @@ typedef struct {
   const Flow *flow;  /* background flow, borrowed */
   char helmholtz[OPTION_MAX_NAME]; /* back end of the Helmholtz solves */
   char poisson[OPTION_MAX_NAME];   /* back end of the Poisson solves */
-  PetscInt plan;                   /* FFTW's effort: 0 estimate, 1 measure, 2 patient */
   PetscReal dt;                    /* the step that the first Helmholtz operator is made for */
 } FluidSpec;
 

@@ -141,8 +141,6 @@ static const struct {
              {"-time_steady_tol", BY_VESICLES},
              {"-helmholtz_type", BY_GRID},
              {"-poisson_type", BY_GRID},
-             {"-fftw_plan", BY_GRID},
-             {"-fftw_wisdom", BY_GRID},
              {"-limit_edge_ratio", BY_VESICLES},
              {"-limit_area_error", BY_VESICLES},
              {"-limit_length_error", BY_VESICLES},

@@ -149,7 +149,6 @@ struct _p_Scene {
   SceneTime time;
   SceneOutput output;
   SceneLimits limits;
-  char wisdom[PETSC_MAX_PATH_LEN]; /* file of FFTW's wisdom; empty: none */
   PetscBool view, allow_unused;
   Shape shape;                      /* the initial markers, the same on every rank */
   PetscReal reynolds;               /* speed R0/nu, see docs/fluid.md; 0 without vesicles */

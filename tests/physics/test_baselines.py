@@ -114,7 +114,9 @@ def test_penalty_on_ranks(flow, solves, tmp_path):
     )
     one, *others = (run_petves(tmp_path / f"{n}", options, n).series for n in (1, 2, 4))
     assert len(one["step"]) == 21
-    assert (one["nsolve"][1:] == solves).all() and (one["tension_its"] + one["bending_its"] + one["coupled_its"] == 0).all()
+    assert (one["nsolve"][1:] == solves).all() and (
+        one["tension_its"] + one["bending_its"] + one["coupled_its"] == 0
+    ).all()
     for other in others:
         for name in set(COLUMNS) - {"wall"}:
             np.testing.assert_allclose(other[name], one[name], rtol=0, atol=1e-10, err_msg=name)

@@ -93,7 +93,7 @@ def test_stopped_bench_goes_on(tmp_path, monkeypatch):
 
 def test_items_have_the_sizes_of_the_targets():
     """Both ranks, every box, 128^2 to 2048^2; QUICK has the same items."""
-    full, quick = (bench.items(value, Path("wisdom")) for value in (False, True))
+    full, quick = (bench.items(value) for value in (False, True))
     assert list(full) == list(quick)
     assert {run.name for run in full["size"]} >= {f"coupled {n} channel 1" for n in (128, 256, 512, 1024, 2048, 4096)}
     assert {run.name for run in full["ranks"]} >= {f"coupled 1000x480 suspension {r}" for r in (1, 2)}

@@ -98,9 +98,9 @@ static PetscErrorCode CheckGrid(const Size *size, const char bc[], PetscBool hyp
   PetscCall(FastSolversRegister());
   for (int f = 0; f < 3; f++) {
     FastSolver fftw, tridiagonal, other;
-    PetscCall(FastSolverCreate(grid, (Field)f, "fftw", 0, &fftw));
-    PetscCall(FastSolverCreate(grid, (Field)f, "fftw_tridiagonal", 0, &tridiagonal));
-    if (hypre) PetscCall(FastSolverCreate(grid, (Field)f, "hypre", 0, &other));
+    PetscCall(FastSolverCreate(grid, (Field)f, "fftw", &fftw));
+    PetscCall(FastSolverCreate(grid, (Field)f, "fftw_tridiagonal", &tridiagonal));
+    if (hypre) PetscCall(FastSolverCreate(grid, (Field)f, "hypre", &other));
     for (int k = 0; k < 4; k++) {
       PetscReal error, mean;
       PetscCall(FastSolverSetCoefficients(fftw, problems[k].a0, problems[k].nu));
