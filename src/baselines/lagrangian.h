@@ -2,12 +2,6 @@
    prefixes tension_ and bending_. */
 #pragma once
 #include "coupling/coupling.h"
-#include "coupling/rootpc.h"
-
-/* Levels of PCILU at which its fill is complete, with nested dissection, up to a few hundred markers: markers numbered
-   along a curve make Chat a cyclic band, whose fill runs along the whole curve. Only a complete one has the paper's
-   iterations (docs/reproduction/tension.md). */
-#define COMPLETE_FILL 200
 
 typedef struct _p_LagrangianSolver *LagrangianSolver;
 struct _p_LagrangianSolver {
@@ -15,7 +9,10 @@ struct _p_LagrangianSolver {
   const char *prefix;
   KSP ksp;
   Mat A;                  /* the operator, a shell */
-  RootPC chat;            /* tension: preconditioner of the assembled approximation; NULL for bending */
+  PC chat;                /* of the assembled Chat, on every rank, so that a bad option is everybody's error, but used
+                             on root; NULL: none, as for bending */
+  PetscMPIInt root;       /* the owner of the first vesicle */
+  Vec all[2];             /* on root: all edges, before and after chat */
   Forcing r;              /* work: S sigma or B X; for the tension with its divergence */
   Vec w2, q2;             /* work: a velocity and a pressure */
   Vec U;                  /* work: a marker vector */

@@ -161,9 +161,7 @@ static PetscErrorCode Options_Split(Scheme s, FILE *file) {
   LagrangianSolver solvers[2] = {d->tension, d->bending};
   PetscFunctionBeginUser;
   for (int k = 0; k < 2; k++)
-    if (solvers[k])
-      PetscCall(
-          KSPWriteOptions(solvers[k]->ksp, solvers[k]->chat ? solvers[k]->chat->pc : NULL, solvers[k]->prefix, file));
+    if (solvers[k]) PetscCall(KSPWriteOptions(solvers[k]->ksp, solvers[k]->chat, solvers[k]->prefix, file));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
