@@ -62,6 +62,10 @@ PETSC_EXTERN PetscErrorCode PetvesEvent(const char name[], PetscLogEvent *event)
 PETSC_EXTERN FILE *FileOpen(const char path[]);
 PETSC_EXTERN FILE *FileNew(const char path[]);
 
+/* PetvesRoom - room for `count` entries of so many bytes in *array, which has room for *room: a quarter more where it
+   has to grow. Entries stay. Not collective. */
+PETSC_EXTERN PetscErrorCode PetvesRoom(size_t count, size_t size, size_t *room, void *array);
+
 /* PetvesWarmUpBlas - let the BLAS take its own memory now, or stop with one line where a rank has too little: OpenBLAS
    would wait for it without end. Does nothing when it has been done. Collective. */
 PETSC_EXTERN PetscErrorCode PetvesWarmUpBlas(MPI_Comm comm);

@@ -1,7 +1,15 @@
-/* The memory that the BLAS takes for itself. */
+/* Arrays that grow, and the memory that the BLAS takes for itself. */
 #include "base/base.h"
 #include <petscblaslapack.h>
 #include <sys/mman.h>
+
+PetscErrorCode PetvesRoom(size_t count, size_t size, size_t *room, void *array) {
+  PetscFunctionBeginUser;
+  if (count <= *room) PetscFunctionReturn(PETSC_SUCCESS);
+  *room = count + count / 4;
+  PetscCall(PetscRealloc(*room * size, (void **)array));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
 
 /* What OpenBLAS maps at its first call, and keeps: 128 MiB (0.3.21). When it cannot it tries for ever. */
 #define MIB 160

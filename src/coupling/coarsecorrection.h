@@ -20,7 +20,8 @@ struct _p_CoarseCorrection {
   PetscReal across[CORRECTION_POINTS]; /* R = across I + (along - across) r r^T/r^2 by distance, from 0 to the reach */
   PetscReal along[CORRECTION_POINTS];
   CorrectionPair *pair;
-  PetscInt pairs, room;
+  PetscInt pairs;
+  size_t room;
   PetscScalar *force; /* [2M] work */
 };
 

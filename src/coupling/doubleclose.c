@@ -15,10 +15,10 @@ static void WallKernel(const void *pairs, int wall, const Lanes x[2], const Pets
                        Lanes K[]) {
   const DoublePairs *s = (const DoublePairs *)pairs;
   Lanes seen[3];
-  FinePairSeen(s->single->set->markers->grid, wall, x, y, seen);
+  NearImageSeen(s->single->set->markers->grid, wall, x, y, seen);
   for (int q = 0; q < LANES; q++) {
     PetscReal image[2][DIPOLE_COUNT] = {{0}}, M[4];
-    DoubleImageExact(s->image, wall, &(ImagePair){seen[0][q], seen[1][q], seen[2][q]}, image);
+    DoubleImageExact(s->image, wall, &(ImagePair){seen[0][q], seen[1][q], -seen[2][q]}, image); /* y is mirrored */
     DipoleContract((const PetscReal(*)[DIPOLE_COUNT])image, N, 1, M);
     for (int c = 0; c < 4; c++) K[c][q] = M[c];
   }

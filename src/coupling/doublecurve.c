@@ -80,12 +80,11 @@ typedef struct {
   PetscReal winding;
 } Sums;
 
-/* The finer point nearest to z. */
-static PetscInt Nearest(DoubleCurve c, Point z, PetscReal *distance) {
+PetscInt CurveNearest(PetscInt n, const PetscReal X[], Point z, PetscReal *distance) {
   PetscInt nearest = 0;
   PetscReal least = PETSC_MAX_REAL;
-  for (PetscInt j = 0; j < FINE * c->n; j++) {
-    const PetscReal r2 = PetscSqr(c->each[AT][j] - creal(z)) + PetscSqr(c->each[AT + 1][j] - cimag(z));
+  for (PetscInt j = 0; j < n; j++) {
+    const PetscReal r2 = PetscSqr(X[2 * j] - creal(z)) + PetscSqr(X[2 * j + 1] - cimag(z));
     if (r2 >= least) continue;
     least = r2;
     nearest = j;
@@ -143,7 +142,7 @@ void DoubleCurveAdd(DoubleCurve c, const PetscReal x[2], PetscReal u[2], PetscRe
   Point z = x[0] + I * x[1];
   PetscReal distance;
   Sums s;
-  const PetscInt nearest = Nearest(c, z, &distance);
+  const PetscInt nearest = CurveNearest(FINE * c->n, (const PetscReal *)c->fine, z, &distance);
   if (distance < 1e-7 * c->spacing) /* a point of the curve: next to it, outside */
     z = c->fine[nearest] - I * 1e-7 * c->spacing * c->slope[nearest] / cabs(c->slope[nearest]);
   FineSums(c, z, &s);

@@ -25,10 +25,12 @@ PETSC_EXTERN void DoubleCurveAdd(DoubleCurve curve, const PetscReal x[2], PetscR
    collective. */
 PETSC_EXTERN PetscBool DoubleCurveContains(DoubleCurve curve, const PetscReal x[2]);
 
-/* CurveRoot - the complex parameter t0, from about t0 on, where the curve of n modes is at z, and the slope there;
-   false unless it is found so near to the real line that the trapezoidal rule on N points lacks something, which is
-   within `close` of their spacings. CurvePole - what that rule lacks of INT f dt over a period of 2 pi, f with the pole
-   twice/(t - t0)^2 + once/(t - t0). Not collective. */
+/* CurveNearest - the nearest to z of n points X[2n], and how far it is. CurveRoot - the complex parameter t0, from
+   about t0 on, where the curve of n modes is at z, and the slope there; false unless it is found so near to the real
+   line that the trapezoidal rule on N points lacks something, which is within `close` of their spacings. CurvePole -
+   what that rule lacks of INT f dt over a period of 2 pi, f with the pole twice/(t - t0)^2 + once/(t - t0). Not
+   collective. */
+PETSC_EXTERN PetscInt CurveNearest(PetscInt n, const PetscReal X[], Point z, PetscReal *distance);
 PETSC_EXTERN PetscBool CurveRoot(PetscInt n, const Point curve[], PetscInt N, PetscReal close, Point z, Point *t0,
                                  Point *slope);
 PETSC_EXTERN Point CurvePole(PetscInt N, Point t0, Point twice, Point once);

@@ -56,13 +56,23 @@ static int Turned(int direction, int part) {
   return direction || part == DIPOLE_XY ? part : 1 - part;
 }
 
+/* Where a component of the answer to a part, both seen from a wall, is in x and y, and its sign: what is odd in the
+   distance from the wall changes it at the upper end. */
+typedef struct {
+  int component, part;
+  PetscReal sign;
+} Place;
+static Place PlaceOf(int wall, int c, int part) {
+  const PetscBool odd = (c == 1) != (part == DIPOLE_XY) ? PETSC_TRUE : PETSC_FALSE;
+  return (Place){c ? wall / 2 : 1 - wall / 2, Turned(wall / 2, part), wall % 2 && odd ? -1 : 1};
+}
+
 /* K += alpha times a pair's parts, turned from a wall to x and y. */
 static void Turn(int wall, PetscReal alpha, const PetscReal part[2][DIPOLE_COUNT], PetscReal K[2][DIPOLE_COUNT]) {
-  const int direction = wall / 2, side = wall % 2;
   for (int c = 0; c < 2; c++)
     for (int q = 0; q < DIPOLE_COUNT; q++) {
-      const PetscBool odd = (c == 1) != (q == DIPOLE_XY) ? PETSC_TRUE : PETSC_FALSE; /* in the distance from the wall */
-      K[c ? direction : 1 - direction][Turned(direction, q)] += side && odd ? -alpha * part[c][q] : alpha * part[c][q];
+      const Place to = PlaceOf(wall, c, q);
+      K[to.component][to.part] += to.sign * alpha * part[c][q];
     }
 }
 
@@ -206,24 +216,17 @@ void DoubleImageFar(const void *image, PetscInt n, const PetscReal X[], const Pe
   const struct _p_DoubleImage *m = image;
   const Grid g = m->single->markers->grid;
   (void)PetscArrayzero(V, 2 * DIPOLE_COUNT * n);
-  for (int wall = 0; wall < 4; wall++) {
-    const int direction = wall / 2, side = wall % 2, t = 1 - direction;
-    if (!g->wall[direction]) continue;
-    for (PetscInt k = 0; k < n; k += LANES) {
-      const Lanes b = NearImageOff(g, direction, side, Y) + (Lanes){0};
-      Lanes x, a, K[2][DIPOLE_COUNT];
-      for (int q = 0; q < LANES; q++) {
-        x[q] = (X[2 * (k + q) + t] - Y[t]) / g->h;
-        a[q] = NearImageOff(g, direction, side, X + 2 * (k + q));
-      }
-      DipoleImageFarFour(&m->forms, x, a, b, K);
-      for (int q = 0; q < LANES; q++) {
-        PetscReal part[2][DIPOLE_COUNT], turned[2][DIPOLE_COUNT] = {{0}};
-        for (int c = 0; c < 2 * DIPOLE_COUNT; c++)
-          part[c / DIPOLE_COUNT][c % DIPOLE_COUNT] = K[c / DIPOLE_COUNT][c % DIPOLE_COUNT][q];
-        Turn(wall, 1 / g->h, PARTS(part), turned);
-        for (int c = 0; c < 2 * DIPOLE_COUNT; c++) V[c * n + k + q] += turned[c / DIPOLE_COUNT][c % DIPOLE_COUNT];
-      }
+  for (int wall = 0; wall < 4; wall++)
+    for (PetscInt k = 0; k < n && g->wall[wall / 2]; k += LANES) {
+      Lanes x[2], seen[3], K[2][DIPOLE_COUNT];
+      LanesPairs(X + 2 * k, &x[0], &x[1]);
+      NearImageSeen(g, wall, x, Y, seen);
+      DipoleImageFarFour(&m->forms, seen[0], seen[1], seen[2], K);
+      for (int c = 0; c < 2; c++)
+        for (int q = 0; q < DIPOLE_COUNT; q++) {
+          const Place to = PlaceOf(wall, c, q);
+          PetscReal *at = V + (to.component * DIPOLE_COUNT + to.part) * n + k;
+          LanesPut(LanesAt(at) + to.sign / g->h * K[c][q], at);
+        }
     }
-  }
 }

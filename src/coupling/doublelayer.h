@@ -30,8 +30,8 @@ struct _p_DoubleLayer {
   PetscReal *length;     /* [vesicles] sum of w */
   DoubleBlock *block;
   PetscReal *value;
-  PetscInt blocks, block_room;
-  size_t values, value_room;
+  PetscInt blocks;
+  size_t block_room, values, value_room;
   PetscScalar *jump;  /* [2M] work: J of all markers, less its flux, */
   PetscScalar *plain; /* [2M] J, */
   PetscReal *tensor;  /* [DIPOLE_COUNT M] and the dipoles of the former */

@@ -142,14 +142,6 @@ PetscBool FinePairAtWall(const LayerSetting *set, const NearBounds bounds[], int
   return PETSC_TRUE;
 }
 
-void FinePairSeen(Grid g, int wall, const Lanes x[2], const PetscReal y[2], Lanes seen[3]) {
-  const int direction = wall / 2;
-  const PetscReal place = wall % 2 ? g->hi[direction] : g->lo[direction], inward = (wall % 2 ? -1 : 1) / g->h;
-  seen[0] = (x[1 - direction] - y[1 - direction]) / g->h;
-  seen[1] = inward * (x[direction] - place);
-  seen[2] = inward * (place - y[direction]) + (Lanes){0};
-}
-
 /* chi K of the points in use, K[parts][count_b][count_a]. */
 static void Fill(const FinePair *pair, const FineKernel *k, const FineCurve *a, const FineCurve *b, PetscReal K[]) {
   const PetscInt Q = b->n * b->f;

@@ -49,7 +49,3 @@ typedef struct {
  */
 PETSC_EXTERN PetscErrorCode FinePairParts(const LayerSetting *set, const FinePair *pair, PetscBool fine,
                                           const FineKernel *kernel, PetscReal part[]);
-
-/* FinePairSeen - four points and the mirror image y of another one as a wall sees them, in cells: x along it, a and b
-   the distances of the points and of the other one. Not collective. */
-PETSC_EXTERN void FinePairSeen(Grid grid, int wall, const Lanes x[2], const PetscReal y[2], Lanes seen[3]);

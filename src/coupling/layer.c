@@ -94,37 +94,6 @@ static void Sums(PetscInt n, const PetscReal X[], const PetscReal F[], Point z, 
   *p = LanesSum(sum[2]);
 }
 
-static inline Lanes Squares(const PetscReal X[], Point z) {
-  Lanes x, y;
-  LanesPairs(X, &x, &y);
-  x = creal(z) - x;
-  y = cimag(z) - y;
-  return x * x + y * y;
-}
-
-/* How far z is from the nearest of n points X[2n], whole vectors. */
-static PetscReal Distance(PetscInt n, const PetscReal X[], Point z) {
-  Lanes least = (Lanes){0} + PETSC_MAX_REAL;
-  PetscReal one = PETSC_MAX_REAL;
-  PetscInt j = 0;
-  for (; j + LANES <= n; j += LANES) least = LanesMin(least, Squares(X + 2 * j, z));
-  for (PetscInt k = 0; k < n - j; k++) one = PetscMin(one, Squares(X + 2 * j, z)[k]);
-  for (PetscInt k = 0; k < LANES; k++) one = PetscMin(one, least[k]);
-  return PetscSqrtReal(one);
-}
-
-static PetscInt Nearest(PetscInt n, const PetscReal X[], Point z) {
-  PetscReal least = PETSC_MAX_REAL;
-  PetscInt nearest = 0;
-  for (PetscInt j = 0; j < n; j++) {
-    const PetscReal x = creal(z) - X[2 * j], y = cimag(z) - X[2 * j + 1], r2 = x * x + y * y;
-    if (r2 >= least) continue;
-    least = r2;
-    nearest = j;
-  }
-  return nearest;
-}
-
 /* Corrections of the finer curve's sums for z close to its point `nearest`: poles, and a logarithm, of the analytic
    integrands at the complex parameter t0 where the curve is at z. Pressure: Re F/(z - X(t)). Velocity: of x (x.F)/r^2
    the part conj[F conj(z - X)/(z - X)]/2; of -ln r, whose error per density is that of ln|2 sin((t - t0)/2)|. */
@@ -146,11 +115,11 @@ void LayerAdd(Layer s, PetscInt v, const PetscReal x[2], PetscReal u[2], PetscRe
   const LayerCurve *c = &s->curve[v];
   const PetscInt N = FINE * c->n;
   Point z = x[0] + I * x[1], velocity;
-  PetscReal pressure;
-  if (Distance(c->n, c->X, z) < NEAR * c->spacing) {
-    const PetscReal distance = Distance(N, c->fine, z);
+  PetscReal pressure, distance;
+  (void)CurveNearest(c->n, c->X, z, &distance);
+  if (distance < NEAR * c->spacing) {
+    const PetscInt nearest = CurveNearest(N, c->fine, z, &distance);
     const PetscBool close = distance < CLOSE * c->spacing / FINE ? PETSC_TRUE : PETSC_FALSE;
-    const PetscInt nearest = close ? Nearest(N, c->fine, z) : 0;
     if (distance < 1e-7 * c->spacing) /* a point of the curve: next to it */
       z = c->fine[2 * nearest] + 1e-7 * c->spacing + I * c->fine[2 * nearest + 1];
     Sums(N, c->fine, c->fine_force, z, &velocity, &pressure);

@@ -9,8 +9,8 @@ static void FreeKernel(const void *set, int wall, const Lanes x[2], const PetscR
 static void WallKernel(const void *set, int wall, const Lanes x[2], const PetscReal y[2], const PetscReal N[2],
                        Lanes K[]) {
   Lanes seen[3];
-  FinePairSeen(((const LayerSetting *)set)->markers->grid, wall, x, y, seen);
-  NearImageBlake(seen[0], seen[1], seen[2], K);
+  NearImageSeen(((const LayerSetting *)set)->markers->grid, wall, x, y, seen);
+  NearImageBlake(seen[0], seen[1], -seen[2], K); /* y is mirrored */
 }
 
 /* The block += scale times parts xx, yy, xy, yx, [n_column][n_row] each; where it is of a body with itself, of one of

@@ -31,7 +31,8 @@ struct _p_NearDistant {
   Layout layout;           /* borrowed, of all bodies */
   NearFunctions *function; /* [bodies] */
   NearDistantPair *pair;
-  PetscInt pairs, room;
+  PetscInt pairs;
+  size_t room;
   float *value;
   size_t values;
   PetscInt *start;               /* [bodies + 1] first number of each body */

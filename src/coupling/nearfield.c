@@ -58,19 +58,6 @@ PetscErrorCode NearFieldAddBoxPart(NearField f, const FluidSpec *spec) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Room for so many values of this size, and a quarter more where it has to be made anew; the first `kept` stay. */
-static PetscErrorCode Room(size_t count, size_t kept, size_t size, size_t *room, void **values) {
-  void *more;
-  PetscFunctionBeginUser;
-  if (count <= *room) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscMalloc((count + count / 4) * size, &more));
-  PetscCall(PetscMemcpy(more, *values, PetscMin(kept, *room) * size));
-  PetscCall(PetscFree(*values));
-  *room = count + count / 4;
-  *values = more;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* A distant pair's block in a store of its own, in double precision, which the caller frees. */
 static PetscErrorCode DistantBlock(NearField f, PetscInt pair, NearBlock *block, NearStore *store) {
   const NearDistantPair *p = &f->list.distant->pair[pair];
@@ -112,8 +99,8 @@ PetscErrorCode NearFieldPlace(NearField f) {
   if (f->box) PetscCall(BoxPartPlace(f->box)); /* before the pairs, which may leave images to it */
   PetscCall(SinglePairsPlace(f->pairs, f->box && BoxPartHasImages(f->box) ? PETSC_FALSE : PETSC_TRUE));
   PetscCall(NearListFind(&f->list, &first));
-  PetscCall(Room(f->list.count.values, f->list.fixed.values, sizeof(PetscReal), &s->value_room, (void **)&s->value));
-  PetscCall(Room(f->list.count.singles, f->list.fixed.singles, sizeof(float), &s->single_room, (void **)&s->single));
+  PetscCall(PetvesRoom(f->list.count.values, sizeof(PetscReal), &s->value_room, &s->value));
+  PetscCall(PetvesRoom(f->list.count.singles, sizeof(float), &s->single_room, &s->single));
   for (PetscInt k = 0; k < f->list.count.blocks; k++) {
     const NearBlock *b = &f->list.block[k];
     if (b->column < l->own || b->column >= l->end) crossed = PETSC_TRUE;

@@ -145,27 +145,21 @@ void NearImageAddFar(NearImage m, const PetscBool walls[2][2], const NearImageRo
 }
 
 void NearImageFar(const void *image, PetscInt n, const PetscReal X[], const PetscReal Y[2], PetscReal V[]) {
-  static const int part_of[4] = {0, 3, 1, 2}; /* xx, yy, xy, yx among [response][source] */
+  static const int place[4] = {0, 3, 1, 2}; /* of xx, yy, xy, yx among [response][source] */
   const struct _p_NearImage *m = image;
   const Grid g = m->markers->grid;
   (void)PetscArrayzero(V, 4 * n);
-  for (int wall = 0; wall < 4; wall++) {
-    const int direction = wall / 2, side = wall % 2, t = 1 - direction;
-    if (!g->wall[direction]) continue;
-    for (PetscInt k = 0; k < n; k += LANES) {
-      const Lanes b = NearImageOff(g, direction, side, Y) + (Lanes){0};
-      Lanes x, a, part[IMAGE_PARTS];
-      for (int q = 0; q < LANES; q++) {
-        const PetscReal *at = X + 2 * PetscMin(k + q, n - 1);
-        x[q] = (at[t] - Y[t]) / g->h;
-        a[q] = NearImageOff(g, direction, side, at);
+  for (int wall = 0; wall < 4; wall++)
+    for (PetscInt k = 0; k < n && g->wall[wall / 2]; k += LANES) {
+      Lanes x[2], seen[3], part[IMAGE_PARTS];
+      LanesPairs(X + 2 * k, &x[0], &x[1]);
+      NearImageSeen(g, wall, x, Y, seen);
+      ImageFarFour(&m->kernel, seen[0], seen[1], seen[2], part);
+      for (int q = 0; q < IMAGE_PARTS; q++) {
+        PetscReal *at = V + place[image_place[wall / 2][q]] * n + k;
+        LanesPut(LanesAt(at) + (wall % 2 && q >= IMAGE_NT ? -1 : 1) / m->nu * part[q], at);
       }
-      ImageFarFour(&m->kernel, x, a, b, part);
-      for (int q = 0; q < IMAGE_PARTS; q++)
-        for (PetscInt l = 0; l < LANES && k + l < n; l++)
-          V[part_of[image_place[direction][q]] * n + k + l] += (side && q >= IMAGE_NT ? -1 : 1) / m->nu * part[q][l];
     }
-  }
 }
 
 /* SUM w [c|c| - sgn(c)/4] - y^2 + 1/4 over the tangential stencil's rows at c from the wall, before it is folded. */

@@ -71,6 +71,16 @@ static inline PetscReal NearImageOff(Grid g, int direction, int side, const Pets
   return (side ? g->hi[direction] - X[direction] : X[direction] - g->lo[direction]) / g->h;
 }
 
+/* NearImageSeen - four points x and a point y as a wall sees them, in cells: x less y along it, the distances from it
+   of x and of y. The wall is 2 times the direction of its normal plus its side. Not collective. */
+static inline void NearImageSeen(Grid g, int wall, const Lanes x[2], const PetscReal y[2], Lanes seen[3]) {
+  const int direction = wall / 2;
+  const PetscReal inward = (wall % 2 ? -1 : 1) / g->h, place = wall % 2 ? g->hi[direction] : g->lo[direction];
+  seen[0] = (x[1 - direction] - y[1 - direction]) / g->h;
+  seen[1] = inward * (x[direction] - place);
+  seen[2] = inward * (y[direction] - place) + (Lanes){0};
+}
+
 /* NearImageIsNear - whether stencils of a pair are summed. Not collective. */
 static inline PetscBool NearImageIsNear(const ImagePair *p) {
   const PetscReal reach = PetscMin(p->a, p->b) < FOLD_SCALED ? IMAGE_CELLS : IMAGE_OFF;

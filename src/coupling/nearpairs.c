@@ -19,19 +19,6 @@ static PetscBool Meet(const NearBounds *a, const NearBounds *b, const PetscReal 
   return PETSC_TRUE;
 }
 
-/* Room for one more of `size` bytes. */
-static PetscErrorCode Grow(PetscInt count, size_t size, PetscInt *room, void **all) {
-  void *more;
-  PetscFunctionBeginUser;
-  if (count < *room) PetscFunctionReturn(PETSC_SUCCESS);
-  *room = PetscMax(64, 2 * *room);
-  PetscCall(PetscMalloc(*room * size, &more));
-  PetscCall(PetscMemcpy(more, *all, count * size));
-  PetscCall(PetscFree(*all));
-  *all = more;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* The block of own vesicle v and the image of w moved by shift, with room for its values. With many
    vesicles values that are far from large are in single precision. */
 static PetscErrorCode AddBlock(NearList *f, PetscInt v, PetscInt w, const PetscReal shift[2], PetscReal gap) {
@@ -45,7 +32,7 @@ static PetscErrorCode AddBlock(NearList *f, PetscInt v, PetscInt w, const PetscR
   NearBlock *b;
   NearRow r;
   PetscFunctionBeginUser;
-  PetscCall(Grow(f->count.blocks, sizeof(NearBlock), &f->block_room, (void **)&f->block));
+  PetscCall(PetvesRoom((size_t)f->count.blocks + 1, sizeof(NearBlock), &f->block_room, &f->block));
   b = &f->block[f->count.blocks++];
   *b = (NearBlock){.row = v, .column = w, .shift = {shift[0], shift[1]}, .single = single, .at = *values};
   r = NearBlockBegin(l, b);
@@ -151,7 +138,7 @@ static PetscErrorCode AddImages(NearList *f, PetscInt v, PetscInt w) {
   for (int k = 0; k < count; k++) {
     if (!f->pairs->set->box || (!k && v != w)) PetscCall(AddBlock(f, v, w, image[k].shift, image[k].gap));
     if (!image[k].close) continue;
-    PetscCall(Grow(f->count.closes, sizeof(NearClose), &f->close_room, (void **)&f->close));
+    PetscCall(PetvesRoom((size_t)f->count.closes + 1, sizeof(NearClose), &f->close_room, &f->close));
     f->close[f->count.closes++] = (NearClose){f->count.blocks - 1,
                                               FinePairMake(f->pairs->set, v, w, image[k].shift, image[k].gap)};
   }
@@ -163,7 +150,8 @@ typedef struct {
   Layout layout;
   const PetscBool *resting; /* [bodies] */
   PetscBool fixed;
-  PetscInt (*pair)[2], count, room;
+  PetscInt (*pair)[2], count;
+  size_t room;
   PetscErrorCode error;
 } Candidates;
 
@@ -173,7 +161,7 @@ static PetscBool Keep(void *context, PetscInt v, PetscInt w, const PetscReal d[2
   const PetscBool first = v >= l->own && v < l->end ? PETSC_TRUE : PETSC_FALSE;
   if (!first && (w < l->own || w >= l->end)) return PETSC_FALSE;
   if ((c->resting[v] && c->resting[w]) != c->fixed) return PETSC_FALSE;
-  c->error = Grow(c->count, sizeof(*c->pair), &c->room, (void **)&c->pair);
+  c->error = PetvesRoom((size_t)c->count + 1, sizeof(*c->pair), &c->room, &c->pair);
   if (c->error) return PETSC_TRUE;
   c->pair[c->count][0] = first ? v : w;
   c->pair[c->count++][1] = first ? w : v;

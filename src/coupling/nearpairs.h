@@ -27,7 +27,7 @@ typedef struct {
   NearClose *close;
   NearDistant distant;
   NearCounts count, fixed;
-  PetscInt block_room, close_room;
+  size_t block_room, close_room;
   PetscBool made; /* the fixed ones */
 } NearList;
 

@@ -128,10 +128,7 @@ static PetscBool ChooseShape(SharedShapes s, PetscInt v, PetscInt first) {
 static PetscErrorCode AddShape(SharedShapes s, PetscInt like, PetscReal treading, const PetscReal X[]) {
   const Membrane m = s->coupling->membrane;
   PetscFunctionBeginUser;
-  if (s->count == s->room) {
-    s->room = 2 * s->room + 8;
-    PetscCall(PetscRealloc((size_t)s->room * sizeof(SharedShape), &s->shape));
-  }
+  PetscCall(PetvesRoom((size_t)s->count + 1, sizeof(SharedShape), &s->room, &s->shape));
   const PetscInt n = LayoutCount(m->layout, like);
   const PetscBool jumps = s->coupling->contrast && s->coupling->contrast->ratio[like] != 1 ? PETSC_TRUE : PETSC_FALSE;
   SharedShape *q = &s->shape[s->count++];

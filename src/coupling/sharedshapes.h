@@ -37,7 +37,8 @@ struct _p_SharedShapes {
   Coupling coupling; /* borrowed */
   CoarseGrid coarse; /* NULL where no coarse cells fit */
   PetscReal a0;      /* that the matrices are for; 0: none yet */
-  PetscInt count, room;
+  PetscInt count;
+  size_t room;
   SharedShape *shape;
   CurvePoints *weights; /* between n markers and q coarse points, one for each n and q */
   PetscInt kinds;
