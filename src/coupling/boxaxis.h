@@ -1,9 +1,9 @@
 /* Directions of a box, and the nearest of its images: the distance d between two points becomes that of the nearest
    image, with a weight that falls from 1 to 0 at half a period. Nothing crosses ranks. */
 #pragma once
-#include "scene/fluidspec.h"
+#include "base/base.h"
 
-#define BOX_PLACES (64 * FLUID_LONGEST_PERIOD) /* largest number of places in a direction */
+#define BOX_PLACES 256 /* largest number of places in a direction */
 #define BOX_FADED 0.3
 #define BOX_WALL_PLACES 24 /* the same where they are Chebyshev's */
 

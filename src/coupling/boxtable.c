@@ -51,7 +51,7 @@ static void MakeAxis(const FluidSpec *spec, int dir, PetscReal H, PetscBool midd
   a->faded = faded;
   a->low = low;
   a->high = high;
-  a->places = times * BOX_PLACES / FLUID_LONGEST_PERIOD;
+  a->places = times * (BOX_PLACES / FLUID_LONGEST_PERIOD);
   a->modes = times * MODES;
   a->pairs = a->places;
   for (PetscInt k = 0; k < a->places; k++) a->place[k] = low + (high - low) * k / a->places;

@@ -3,7 +3,7 @@
    the preconditioner. */
 #pragma once
 #include "coupling/coarsegrid.h"
-#include "coupling/coupling.h"
+#include "coupling/nearfield.h"
 
 #define CORRECTION_POINTS 512 /* of the table */
 
@@ -15,7 +15,7 @@ typedef struct {
 
 typedef struct _p_CoarseCorrection *CoarseCorrection;
 struct _p_CoarseCorrection {
-  Coupling coupling;                   /* borrowed; has a near field, whose pairs of vesicles these are */
+  NearField near;                      /* borrowed: markers, and the pairs of vesicles near one another */
   PetscReal reach;                     /* length */
   PetscReal across[CORRECTION_POINTS]; /* R = across I + (along - across) r r^T/r^2 by distance, from 0 to the reach */
   PetscReal along[CORRECTION_POINTS];
@@ -25,8 +25,8 @@ struct _p_CoarseCorrection {
   PetscScalar *force; /* [2M] work */
 };
 
-/* CoarseCorrectionCreate - for the coupling's membranes and this coarse grid. Not collective. */
-PETSC_EXTERN PetscErrorCode CoarseCorrectionCreate(Coupling coupling, CoarseGrid coarse, CoarseCorrection *range);
+/* CoarseCorrectionCreate - for the near field's membranes and this coarse grid. Not collective. */
+PETSC_EXTERN PetscErrorCode CoarseCorrectionCreate(NearField near, CoarseGrid coarse, CoarseCorrection *range);
 PETSC_EXTERN PetscErrorCode CoarseCorrectionDestroy(CoarseCorrection *range);
 
 /* CoarseCorrectionPlace - the pairs where the markers have been placed. Not collective. */

@@ -8,7 +8,7 @@
    Q, the weights from points to markers, has its transpose for forces: Q^T F on the points has the moments of F on the
    markers. */
 #pragma once
-#include "curve/kind.h"
+#include "base/base.h"
 
 typedef struct {
   PetscInt n, points;

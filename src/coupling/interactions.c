@@ -123,7 +123,7 @@ PetscErrorCode InteractionsCreate(SharedShapes s, Interactions *out) {
     PetscCall(PetscMalloc1(2 * l->n, &c->answer.jump));
     PetscCall(DoubleCrossCreate(s->coupling->contrast, &c->dipoles));
   }
-  PetscCall(CoarseCorrectionCreate(s->coupling, s->coarse, &c->near));
+  PetscCall(CoarseCorrectionCreate(s->coupling->near, s->coarse, &c->near));
   PetscCall(CreateInteractionKSP(c, l));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -4,7 +4,7 @@
    F(B^-1 r); a few iterations of GMRES solve for most of it. */
 #pragma once
 #include "coupling/doublecross.h"
-#include "coupling/sharedshapes.h"
+#include "coupling/shapeset.h"
 #include "coupling/coarsecorrection.h"
 #include <petscksp.h>
 

@@ -62,8 +62,8 @@ static PetscErrorCode FindShapeWeights(SharedShapes s, PetscInt n, PetscInt poin
 
 /* F = Dm^T sigma + (c_b ds/a0) D4 V of an answer (V, sigma), and behind it J = (1 - ratio) (V + (treading/a0) dV/dt).
  */
-static void ShapeSourcesOf(SharedShapes s, const SharedShape *q, const PetscReal tau[], const PetscReal V[],
-                           PetscReal F[]) {
+static void AnswerSources(SharedShapes s, const SharedShape *q, const PetscReal tau[], const PetscReal V[],
+                          PetscReal F[]) {
   const Membrane m = s->coupling->membrane;
   const PetscInt n = LayoutCount(m->layout, q->like);
   PetscReal *pull = s->X;
@@ -106,7 +106,7 @@ static PetscErrorCode StoreShape(SharedShapes s, SharedShape *q, const PetscReal
   for (PetscInt j = 0; j < all; j++) {
     PetscCall(PetscArraycpy(answer, V + j * 2 * n, 2 * n));
     PetscCall(PetscArraycpy(answer + 2 * n, sigma + j * n, n));
-    ShapeSourcesOf(s, q, tau, answer, F);
+    AnswerSources(s, q, tau, answer, F);
     PackedMatrixSetColumn(&q->inverse, j, answer);
     PackedMatrixSetColumn(&q->sources, j, F);
   }

@@ -1,6 +1,6 @@
 /* The matrices of one shape. */
 #pragma once
-#include "coupling/sharedshapes.h"
+#include "coupling/shapeset.h"
 
 /* SharedShapeMake - inverse, forces, and with a coarse grid self, weight and points, for the shapes' a0 and tables.
    good is false when a matrix is singular. Not collective. */

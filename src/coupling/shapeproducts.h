@@ -1,7 +1,7 @@
 /* One shape's matrix on the columns of all own vesicles that take it. Own parts of marker vectors and of edge
    vectors; of others' entries nothing changes. */
 #pragma once
-#include "coupling/sharedshapes.h"
+#include "coupling/shapeset.h"
 
 /* SharedShapeSolveAlone - from U[2n] and sigma[n] = r_s: V and sigma of each vesicle's dense problem, and their
    sources unless NULL. SharedShapeSources - the sources of the answers to (W, 0). SharedShapeAddAnswer - (U, sigma) +=
