@@ -19,7 +19,7 @@ static inline void DenseSingle(PetscInt n, const PetscReal x[], float single[]) 
 PETSC_EXTERN PetscErrorCode DenseMultAdd(PetscBool transpose, PetscInt m, PetscInt n, PetscReal alpha,
                                          const PetscReal A[], const PetscReal x[], PetscReal y[]);
 
-/* DenseSingleMultAdd - the same in single precision. */
+/* DenseSingleMultAdd - y += alpha A x, or (transpose) alpha A^T x, in single precision. */
 PETSC_EXTERN PetscErrorCode DenseSingleMultAdd(PetscBool transpose, PetscInt m, PetscInt n, float alpha,
                                                const float A[], const float x[], float y[]);
 

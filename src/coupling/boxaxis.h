@@ -5,15 +5,15 @@
 
 #define BOX_PLACES 256 /* largest number of places in a direction */
 #define BOX_FADED 0.3
-#define BOX_WALL_PLACES 24 /* the same where they are Chebyshev's */
+#define BOX_WALL_PLACES 24 /* largest number of places between walls, which are Chebyshev's */
 
 /* Places in one direction. Between walls a force may be at any of them; where the box is periodic it is at the first
    one, and W depends on the offset alone. */
 typedef struct {
   PetscBool wall;
   PetscReal low, high; /* of the places (length): within the walls, or the period */
-  PetscReal faded;     /* of a period: the distance where half of the lattice's mobility is left out (BoxImage), */
-  PetscInt modes;      /* and the modes that are kept of W; 0 between walls */
+  PetscReal faded;     /* part of a period: the distance where half of the lattice's mobility is left out (BoxImage) */
+  PetscInt modes;      /* modes that are kept of W; 0 between walls */
   PetscInt places;     /* an even number: mirror images in pairs */
   PetscReal place[BOX_PLACES];
   PetscReal weight[BOX_WALL_PLACES]; /* of Chebyshev's places in the barycentric formula */
@@ -28,8 +28,8 @@ PETSC_EXTERN void BoxAxisPolynomials(const BoxAxis *axis, PetscReal x, PetscReal
 
 /* BoxImage - d[2] (length) between two points becomes that of the nearest image; returns the part of the infinite
    lattice's mobility that W leaves out: from 1 it falls to 0 at half a period, where images change, so that W is smooth
-   and periodic. 1 between walls. BoxImageRow - the same of n, with room for whole vectors in d[2][] and part[]. Not
-   collective. */
+   and periodic. 1 between walls. BoxImageRow - BoxImage of n pairs, with room for whole vectors in d[2][] and part[].
+   Not collective. */
 PETSC_EXTERN PetscReal BoxImage(const BoxAxis axis[2], PetscReal d[2]);
 PETSC_EXTERN void BoxImageRow(const BoxAxis axis[2], PetscInt n, PetscReal *const d[2], PetscReal part[]);
 

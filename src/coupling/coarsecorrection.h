@@ -1,6 +1,9 @@
-/* What the coarse grid does not know of two vesicles next to one another: between markers nearer than a few of its
-   cells, the Stokeslet less the mean of what its kernel and lattice make of it (docs/suspensions.md, Near markers). For
-   the preconditioner. */
+/* What the coarse grid lacks between markers of two vesicles next to one another (docs/suspensions.md, Near markers):
+   the velocity -R F with
+       R = S - L,
+   S the Stokeslet and L the mean of what kernel and lattice of the coarse grid make of it, over the places in a cell
+   and all directions. R fades smoothly to zero at a reach of four coarse cells and is tabulated by distance. Forces of
+   all ranks are gathered. */
 #pragma once
 #include "coupling/coarsegrid.h"
 #include "coupling/nearfield.h"

@@ -31,8 +31,8 @@ static void BlockStretching(const DenseBlock *q, const PetscReal U[], PetscReal 
   }
 }
 
-/* A linear map of a vesicle's markers that is the same for both components and at all markers, by first[2n], what it
-   makes of a unit at marker 0: A[2n][2n] += it, columns lda apart. */
+/* A circulant map of a vesicle's markers, equal for both components, by first[2n], what it makes of a unit at marker 0:
+ * A[2n][2n] += it, columns lda apart. */
 static void AddCirculant(PetscInt n, const PetscReal first[], PetscInt lda, PetscReal A[]) {
   for (PetscInt j = 0; j < n; j++)
     for (PetscInt k = 0; k < n; k++)

@@ -1,6 +1,10 @@
-/* The dense problem of one or several vesicles (docs/solver.md, Preconditioner), M their mobility times h^2:
-       N = I + (v/a0) d/dt + (c_b ds/(h^2 a0)) M D4 (v: the labels' speed),   C = Dm N^-1 M Dm^T/h^4,
-       U1 = N^-1 U,   sigma = C^-1 (Dm U1/h^2 - r_s),   U3 = U1 - N^-1 M Dm^T sigma/h^2. */
+/* The dense problem of one or several vesicles inside the coupled preconditioner (docs/solver.md, Preconditioner).
+
+   M is the vesicles' mobility times h^2, v the speed of their labels and Dm the stretching of edges. With
+       N = I + (v/a0) d/dt + (c_b ds/(h^2 a0)) M D4,      C = Dm N^-1 M Dm^T/h^4,
+   velocity and tension follow from right-hand sides U and r_s by the Schur complement C:
+       U1 = N^-1 U,      sigma = C^-1 (Dm U1/h^2 - r_s),      U3 = U1 - N^-1 M Dm^T sigma/h^2.
+   N and C are factored once for many solves. All is local to one rank. */
 #pragma once
 #include "membrane/membrane.h"
 #include <petscblaslapack.h>

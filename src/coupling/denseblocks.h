@@ -1,9 +1,11 @@
-/* The small problem of the membranes inside the coupled preconditioner, one dense block for all vesicles or, when their
-   markers are many, one a vesicle (docs/solver.md, Preconditioner), with M = Mob + h^2 C, C the near
-   field:
-       N = I + (v/a0) d/dt + (c_b ds/(h^2 a0)) M D4 (v: the labels' speed),   C = Dm N^-1 M Dm^T/h^4,
-       U1 = N^-1 U,   sigma = C^-1 (Dm U1/h^2 - r_s),   U3 = U1 - N^-1 M Dm^T sigma/h^2.
-   A block is one rank's, the owner of its first vesicle. */
+/* Block Jacobi part of the coupled preconditioner: the dense problem (denseblock.h) of the membranes, one block for all
+   vesicles whose markers are few, else one a vesicle (docs/solver.md, Preconditioner).
+
+   The mobility of a block is M = Mob + h^2 C, Mob the grid's (mobility.h) and C the near field. A block of one vesicle
+   that knows no obstacles is used in the frame of the vesicle for which it was made, turned and with labels shifted
+   (rigidfit.h), so that it serves longer.
+
+   A block belongs to one rank, the owner of its first vesicle. All ranks make parts of Mob of a block for all. */
 #pragma once
 #include "coupling/obstacleblock.h"
 

@@ -1,7 +1,10 @@
 /* What vesicles and walls do to one another, inside the preconditioner (docs/suspensions.md, Vesicles among
-   themselves). With B^-1 the shapes' answers, F(.) their forces and K the mobility of others and walls, by the coarse
-   grid and what that lacks between near markers, the velocities W that the others make obey W + K F(B^-1 (W, 0)) = -K
-   F(B^-1 r); a few iterations of GMRES solve for most of it. */
+   themselves).
+
+   B^-1 is the inverse of each vesicle's own problem, by its shared shape; F(.) the forces of an answer; K the mobility
+   of other vesicles and walls, by the coarse grid (coarsegrid.h) and its correction between near markers. The
+   velocities W that the others make obey W + K F(B^-1 (W, 0)) = -K F(B^-1 r). A few iterations of GMRES find most of W.
+   With viscosity contrast -K F has the double layer of the jumps beside it (doublecross.h). */
 #pragma once
 #include "coupling/doublecross.h"
 #include "coupling/shapeset.h"
@@ -27,7 +30,6 @@ PETSC_EXTERN PetscErrorCode InteractionsDestroy(Interactions *cross);
 /* InteractionsPlace - where the coupling has been placed and its vesicles have chosen their shapes. Collective. */
 PETSC_EXTERN PetscErrorCode InteractionsPlace(Interactions cross);
 
-/* InteractionsSolve - from the own forces and jumps of B^-1 r: the marker vector W, which stays the cross's.
- * Collective.
- */
+/* InteractionsSolve - from the own forces and jumps of B^-1 r: the marker vector W, which belongs to `cross`.
+   Collective. */
 PETSC_EXTERN PetscErrorCode InteractionsSolve(Interactions cross, const ShapeSources *alone, Vec *W);

@@ -24,7 +24,7 @@ struct _p_Mobility {
   MobilityTable table;    /* NULL with box, and in unbounded fluid, where the near field is all */
   BoxPart box;            /* W; NULL with table */
   PetscReal near;         /* cells up to which a pair's stencils are summed */
-  PetscReal part;         /* what the markers have of the grid's velocity, CouplingGridPart */
+  PetscReal part;         /* part of the grid's velocity that markers have, CouplingGridPart */
   PaddedStencil *stencil; /* [2M] work */
 };
 

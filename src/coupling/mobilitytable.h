@@ -1,6 +1,10 @@
-/* The grid's Green's function in a periodic box of the run's cells, by offsets of faces, and the mean over places in a
-   cell of what two kernels make of it: the mobility of two markers as a smooth function of their distance
-   (docs/solver.md, Preconditioner). */
+/* The mobility of two markers on the grid as a smooth function of their distance (docs/solver.md, Preconditioner).
+
+   A solve for a unit force on one face of a periodic box of the run's cells gives the grid's Green's function G by
+   offsets of faces. Two kernels at markers i and j make SUM SUM w_i G w_j of it; the mean of these sums over the places
+   in a cell, by whole cells between the markers, is a second table, which is interpolated.
+
+   The solves are collective; every rank has the tables. */
 #pragma once
 #include "coupling/offsets.h"
 #include "fluid/stokes.h"

@@ -16,15 +16,15 @@ struct _p_ObstacleBlock {
   PetscReal made;        /* where bodies were at this time */
   PetscReal least;       /* fewest iterations of a solve with it; negative: not known yet */
   PetscReal excess;      /* iterations above them in all */
-  float *inverse;        /* 2W x 2W (symmetric.h), on root; or */
-  ObstacleModes modes;   /* NULL: dense */
+  float *inverse;        /* 2W x 2W (symmetric.h), on root; NULL with modes */
+  ObstacleModes modes;   /* NULL: dense inverse */
   PetscScalar *all;      /* [2W] work */
   float *from, *to;      /* [2W] on root: work, what has been found */
   PetscBool renewed;     /* since it was last coupled */
-  PetscBool coupled;     /* to the vesicles, by */
-  float *response;       /* [2M][2W] X, on root */
+  PetscBool coupled;     /* the vesicles' block knows the obstacles */
+  float *response;       /* [2M][2W] X, on root; not made unless coupled */
   PetscScalar *force;    /* [2M] of vesicles, work */
-  float *single;         /* [2M] the same */
+  float *single;         /* [2M] of vesicles in single precision, work */
 };
 
 PetscErrorCode ObstacleBlockCreate(const FluidSpec *spec, Coupling coupling, ObstacleBlock *out) {

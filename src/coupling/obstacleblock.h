@@ -1,10 +1,18 @@
-/* The obstacles' block of the reduced problem, E A^-1 E^T/h^2 + C + D + beta N N^T between their markers, as a dense
-   inverse in single precision: part of the preconditioner (docs/obstacles.md, Preconditioner). E A^-1 E^T is that of a
-   periodic box of the same cells (mobility.h), or, where an obstacle stands on a wall, the grid's own,
-   by Stokes solves. While obstacles rest it is made once in quasi-steady flow. Of bodies that move it is the one of
-   an earlier time, forces and velocities turned with each body, as one alone has the same block wherever it is; in
+/* The obstacles' block of the reduced problem, part of the preconditioner (docs/obstacles.md, Preconditioner):
+       A = E G E^T/h^2 + C + D + beta N N^T
+   between their markers, G the Stokes solution operator, C the near field, D its box part, N the normals. Few markers
+   have its dense inverse in single precision, many an approximation by shapes of curves (obstaclemodes.h). E G E^T is
+   that of mobility.h, or, where an obstacle stands on a wall, the grid's own, by Stokes solves.
+
+   While obstacles rest in quasi-steady flow the factor is made once. For bodies that move it is the one of an earlier
+   time, with forces and velocities turned with each body, because a body alone has one block wherever it is. In
    unsteady flow it may be that of a time step of another size (DenseStepChanged). Once the iterations beyond the fewest
-   so far have cost as much as a new one would, it is made anew. */
+   so far have cost as much as a new factor would, it is made anew.
+
+   With X = A^-1 K, K the obstacles' velocity by forces on the vesicles, the obstacles are eliminated: the vesicles'
+   block gets the Schur complement Mob - K^T X, and X carries right-hand sides and forces across.
+
+   One rank, the owner of the first body, has the factor; all ranks make parts of A. */
 #pragma once
 #include "coupling/mobility.h"
 

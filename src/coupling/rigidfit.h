@@ -1,4 +1,9 @@
-/* How a curve lies: its markers' mean, and the shift of labels and the turn by which another curve fits it best. */
+/* The rigid motion by which one closed curve fits another best (Procrustes or Kabsch fit), labels included.
+
+   For two centred curves of n markers as complex numbers, x_k and y_k, the shift j of labels and the turn theta that
+   leave the least SUM |x_{k+j} - e^{i theta} y_k|^2 are those of the correlation
+       c_j = SUM_k conj(y_k) x_{k+j},      j: |c_j| is largest,      e^{i theta} = c_j/|c_j|.
+   What is left is a distance of two shapes. The sizes of a curve's modes bound it from below at a small cost. */
 #pragma once
 #include "base/base.h"
 
@@ -18,14 +23,12 @@ PETSC_EXTERN void RigidFitCentre(PetscInt n, const PetscReal X[], PetscReal Y[])
 PETSC_EXTERN void RigidFitSizes(PetscInt n, const PetscReal X[], PetscReal size[RIGIDFIT_SIZES]);
 PETSC_EXTERN PetscReal RigidFitLeast(const PetscReal a[RIGIDFIT_SIZES], const PetscReal b[RIGIDFIT_SIZES]);
 
-/* RigidFitCurves - of the centred curve X to the centred curve Y, n markers each: in complex numbers the j with the
-   largest |c_j|, c_j = SUM_k conj(y_k) x_{k+j}, and e^{i theta} = c_j/|c_j|, which leave the least SUM |x_{k+j} - e^{i
-   theta} y_k|^2. Not collective. */
+/* RigidFitCurves - how the other centred curve Y lies on the centred curve X, n markers each. Not collective. */
 PETSC_EXTERN RigidFit RigidFitCurves(PetscInt n, const PetscReal X[], const PetscReal Y[]);
 
 /* RigidFitTurn - n vectors x turned from the other curve's frame to this one's, or (back) the other way. RigidFitInto -
    y is in the other curve's frame what x is at the n markers of this one: vectors (each = 2) turned, numbers (1) as
-   they are. RigidFitBack - the other way round. Not collective. */
+   they are. RigidFitBack - y is at the markers of this curve what x is in the other curve's frame. Not collective. */
 PETSC_EXTERN void RigidFitTurn(const RigidFit *fit, PetscBool back, PetscInt n, const PetscReal x[], PetscReal y[]);
 PETSC_EXTERN void RigidFitInto(const RigidFit *fit, int each, PetscInt n, const PetscReal x[], PetscReal y[]);
 PETSC_EXTERN void RigidFitBack(const RigidFit *fit, int each, PetscInt n, const PetscReal x[], PetscReal y[]);

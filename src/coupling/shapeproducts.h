@@ -1,5 +1,5 @@
-/* One shape's matrix on the columns of all own vesicles that take it. Own parts of marker vectors and of edge
-   vectors; of others' entries nothing changes. */
+/* One shape's matrices times the columns of all own vesicles that take it, each in its shape's frame. Arrays are the
+   own parts of marker vectors and of edge vectors; entries of vesicles of other shapes stay as they are. */
 #pragma once
 #include "coupling/shapeset.h"
 
