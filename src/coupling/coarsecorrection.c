@@ -39,7 +39,7 @@ static void LatticeMean(const OffsetTable *lattice, const Kernel *kernel, PetscR
 
 /* R by distance: the mean over directions, fading smoothly in the last quarter. */
 static void TabulateCorrection(CoarseCorrection s, const OffsetTable *lattice, const Kernel *kernel) {
-  const PetscReal nu = s->near->nu;
+  const PetscReal nu = s->near->set.nu;
   for (PetscInt k = 0; k < CORRECTION_POINTS; k++) {
     const PetscReal r = CELLS * PetscMax((PetscReal)k, 0.5) / (CORRECTION_POINTS - 1),
                     x = 4 * PetscMax(0, r / CELLS - 0.75);
@@ -63,7 +63,7 @@ PetscErrorCode CoarseCorrectionCreate(NearField near, CoarseGrid coarse, CoarseC
   s->near = near;
   s->reach = CELLS * coarse->fluid->grid->h;
   TabulateCorrection(s, &near->lattice, coarse->markers->kernel);
-  PetscCall(PetscCalloc1(2 * near->bodies->membrane->layout->M, &s->force));
+  PetscCall(PetscCalloc1(2 * near->set.bodies->membrane->layout->M, &s->force));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -89,9 +89,9 @@ static CorrectionPair CorrectionOf(CoarseCorrection s, PetscInt i, PetscInt j, c
 /* The pairs of marker i with those of the block's column. */
 static PetscErrorCode AddCorrectionRow(CoarseCorrection s, const NearBlock *b, PetscInt i) {
   const NearField f = s->near;
-  const Layout l = s->near->bodies->membrane->layout;
+  const Layout l = s->near->set.bodies->membrane->layout;
   const NearBounds *column = &f->pairs->bounds[b->column];
-  const PetscReal *X = s->near->markers->X, x[2] = {X[2 * i] - b->shift[0], X[2 * i + 1] - b->shift[1]};
+  const PetscReal *X = s->near->set.markers->X, x[2] = {X[2 * i] - b->shift[0], X[2 * i + 1] - b->shift[1]};
   PetscFunctionBeginUser;
   for (int d = 0; d < 2; d++)
     if (x[d] < column->low[d] - s->reach || x[d] > column->high[d] + s->reach) PetscFunctionReturn(PETSC_SUCCESS);
@@ -105,7 +105,7 @@ static PetscErrorCode AddCorrectionRow(CoarseCorrection s, const NearBlock *b, P
 
 PetscErrorCode CoarseCorrectionPlace(CoarseCorrection s) {
   const NearField f = s->near;
-  const Layout l = s->near->bodies->membrane->layout;
+  const Layout l = s->near->set.bodies->membrane->layout;
   PetscFunctionBeginUser;
   s->pairs = 0;
   for (PetscInt b = 0; b < f->list.count.blocks; b++) {
@@ -123,7 +123,7 @@ static inline void TakeCorrection(const CorrectionPair *p, const PetscScalar f[2
 }
 
 PetscErrorCode CoarseCorrectionApply(CoarseCorrection s, const PetscScalar F[], PetscScalar U[]) {
-  const Layout l = s->near->bodies->membrane->layout;
+  const Layout l = s->near->set.bodies->membrane->layout;
   const PetscInt first = l->first, end = l->first + l->n;
   PetscFunctionBeginUser;
   PetscCall(LayoutGather(l, 2, F, s->force));
