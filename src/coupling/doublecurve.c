@@ -31,14 +31,14 @@ PetscErrorCode DoubleCurveCreate(PetscInt n, PetscReal nu, const PetscReal X[], 
   PetscCall(PetscMalloc4(n + 1, &c->curve, n + 1, &c->density, N, &c->fine, N, &c->slope));
   PetscCall(PetscMalloc1(6 * N, &c->each[0]));
   for (int k = 1; k < 6; k++) c->each[k] = c->each[0] + k * N;
-  CurveModes(n, X, c->curve);
-  CurveModes(n, J, c->density);
+  FourierSeriesModes(n, X, c->curve);
+  FourierSeriesModes(n, J, c->density);
   for (PetscInt j = 0; j < N; j++) {
     Point other;
-    c->fine[j] = CurveSeries(n, c->curve, 2 * PETSC_PI * (PetscReal)j / (PetscReal)N, &c->slope[j]);
+    c->fine[j] = FourierSeriesAt(n, c->curve, 2 * PETSC_PI * (PetscReal)j / (PetscReal)N, &c->slope[j]);
     Put(c, AT, j, c->fine[j]);
     Put(c, SLOPE, j, c->slope[j]);
-    Put(c, JUMP, j, CurveSeries(n, c->density, 2 * PETSC_PI * (PetscReal)j / (PetscReal)N, &other));
+    Put(c, JUMP, j, FourierSeriesAt(n, c->density, 2 * PETSC_PI * (PetscReal)j / (PetscReal)N, &other));
     c->spacing = PetscMax(c->spacing, cabs(c->slope[j]) * 2 * PETSC_PI / (PetscReal)N);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -66,11 +66,11 @@ Point CurvePole(PetscInt N, Point t0, Point twice, Point once) {
 PetscBool CurveRoot(PetscInt n, const Point curve[], PetscInt N, PetscReal close, Point z, Point *t0, Point *slope) {
   Point step = 1;
   for (int k = 0; k < NEWTON && cabs(step) > 1e-13; k++) {
-    const Point off = z - CurveSeries(n, curve, *t0, slope);
+    const Point off = z - FourierSeriesAt(n, curve, *t0, slope);
     step = off / *slope;
     *t0 += step;
   }
-  (void)CurveSeries(n, curve, *t0, slope);
+  (void)FourierSeriesAt(n, curve, *t0, slope);
   return cabs(step) < 1e-8 && PetscAbsReal(cimag(*t0)) * N <= 2 * 2 * PETSC_PI * close ? PETSC_TRUE : PETSC_FALSE;
 }
 
@@ -127,9 +127,9 @@ static void CorrectClose(DoubleCurve c, Point z, PetscInt nearest, Sums *s) {
   const PetscInt N = FINE * c->n;
   Point t0 = 2 * PETSC_PI * (PetscReal)nearest / (PetscReal)N, slope, other, turned;
   if (!CurveRoot(c->n, c->curve, N, CLOSE, z, &t0, &slope)) return;
-  const Point mirror = conj(CurveSeries(c->n, c->curve, conj(t0), &turned) - z);
-  const Point J = CurveSeries(c->n, c->density, t0, &other),
-              bar = conj(CurveSeries(c->n, c->density, conj(t0), &(Point){0}));
+  const Point mirror = conj(FourierSeriesAt(c->n, c->curve, conj(t0), &turned) - z);
+  const Point J = FourierSeriesAt(c->n, c->density, t0, &other),
+              bar = conj(FourierSeriesAt(c->n, c->density, conj(t0), &(Point){0}));
   const Point h = mirror * J, dh = conj(turned) * J + mirror * other;
   const Point direct = CurvePole(N, t0, 0, J), back = CurvePole(N, t0, 0, bar);
   const Point across = CurvePole(N, t0, 0, J * conj(turned) / slope), last = CurvePole(N, t0, h / slope, dh / slope);

@@ -7,7 +7,7 @@
    by the trapezoidal rule on finer points, and next to the curve with what the rule lacks at the integrands' poles in
    closed form. Nothing crosses ranks. */
 #pragma once
-#include "curve/modes.h"
+#include "curve/fourierseries.h"
 
 typedef struct _p_DoubleCurve *DoubleCurve;
 

@@ -25,8 +25,8 @@ static PetscErrorCode CreateCurve(LayerCurve *c, PetscInt n, const PetscReal X[]
   c->F = F;
   PetscCall(
       PetscMalloc4(n + 1, &c->curve, n + 1, &c->force, 2 * (N + LANES), &c->fine, 2 * (N + LANES), &c->fine_force));
-  CurveModes(n, X, c->curve);
-  CurveModes(n, F, c->force);
+  FourierSeriesModes(n, X, c->curve);
+  FourierSeriesModes(n, F, c->force);
   TrigonometricPoints(n, X, FINE, c->fine);
   TrigonometricPoints(n, F, FINE, c->fine_force);
   for (PetscInt j = 0; j < 2 * N; j++) c->fine_force[j] /= FINE;
@@ -102,9 +102,9 @@ static void CorrectClose(const LayerCurve *c, Point z, PetscInt nearest, Point *
   const PetscReal per = (PetscReal)c->n / (2 * PETSC_PI);
   Point t0 = 2 * PETSC_PI * (PetscReal)nearest / (PetscReal)N, slope, mirror, other;
   if (!CurveRoot(c->n, c->curve, N, CLOSE, z, &t0, &slope)) return;
-  mirror = conj(CurveSeries(c->n, c->curve, conj(t0), &other));
-  const Point F = CurveSeries(c->n, c->force, t0, &other), residue = -F / slope;
-  const Point density = CurveSeries(c->n, c->force, creal(t0), &other);
+  mirror = conj(FourierSeriesAt(c->n, c->curve, conj(t0), &other));
+  const Point F = FourierSeriesAt(c->n, c->force, t0, &other), residue = -F / slope;
+  const Point density = FourierSeriesAt(c->n, c->force, creal(t0), &other);
   const PetscReal side = cimag(t0) >= 0 ? 1 : -1;
   const PetscReal logarithm = PetscLogReal(cabs(1 - cexp(I * side * (PetscReal)N * t0)));
   *p += per * creal(CurvePole(N, t0, 0, residue));
