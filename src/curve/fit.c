@@ -1,7 +1,7 @@
 /* The markers of a closed curve moved as little as possible until their edges and their area are what they
    should be. */
 #include "curve/curve.h"
-#include "curve/round.h"
+#include "curve/circulant.h"
 #include <petscblaslapack.h>
 
 #define CONVERGED 1e-13 /* squared edges and area, relative */
@@ -11,9 +11,9 @@
 typedef struct {
   PetscInt M;
   PetscReal *edge, *central;   /* [M] d of the edges, and of the antisymmetric derivative of differences */
-  PetscReal *products;         /* [M + CONVOLVE_ROUND] D D^T of the edges */
-  PetscReal *e, *a, *z, *work; /* [2M + CONVOLVE_ROUND] edges, derivative, normals */
-  PetscReal *twice;            /* [4M + CONVOLVE_ROUND] */
+  PetscReal *products;         /* [M + CIRCULANT_PADDING] D D^T of the edges */
+  PetscReal *e, *a, *z, *work; /* [2M + CIRCULANT_PADDING] edges, derivative, normals */
+  PetscReal *twice;            /* [4M + CIRCULANT_PADDING] */
   PetscReal *r, *CC;           /* [M + 1] residuals, [(M + 1)^2] */
 } Fit;
 
@@ -36,12 +36,12 @@ static void DifferenceDerivative(PetscInt M, PetscBool chord, PetscReal d[]) {
 }
 
 /* out = D x of `each` numbers a marker, or (transposed) D^T x. */
-static void Circulant(const Fit *f, const PetscReal d[], int each, PetscBool transposed, const PetscReal x[],
-                      PetscReal out[]) {
+static void FitMultiply(const Fit *f, const PetscReal d[], int each, PetscBool transposed, const PetscReal x[],
+                        PetscReal out[]) {
   const PetscInt width = each * f->M;
   for (PetscInt i = 0; i < width; i++) f->twice[i] = f->twice[width + i] = x[i];
-  for (PetscInt i = 2 * width; i < 2 * width + CONVOLVE_ROUND; i++) f->twice[i] = 0;
-  ConvolveRound(f->M, each, transposed, d, f->twice, out);
+  for (PetscInt i = 2 * width; i < 2 * width + CIRCULANT_PADDING; i++) f->twice[i] = 0;
+  CirculantConvolve(f->M, each, transposed, d, f->twice, out);
 }
 
 /* r = {|e_k|^2 - ds^2, 2 (A - wanted)}, 2A = SUM X x a for the edges e and an antisymmetric derivative a; returns the
@@ -68,7 +68,7 @@ static void GradientProducts(const Fit *f) {
   for (PetscInt k = 0; k < M; k++)
     for (PetscInt j = k; j < M; j++)
       CC[k * rows + j] = 4 * f->products[j - k] * (e[2 * k] * e[2 * j] + e[2 * k + 1] * e[2 * j + 1]);
-  Circulant(f, f->edge, 2, PETSC_FALSE, z, f->work);
+  FitMultiply(f, f->edge, 2, PETSC_FALSE, z, f->work);
   CC[M * rows + M] = 0;
   for (PetscInt k = 0; k < M; k++) {
     CC[k * rows + M] = 4 * (e[2 * k] * Dz[2 * k] + e[2 * k + 1] * Dz[2 * k + 1]);
@@ -89,13 +89,13 @@ static PetscErrorCode LeastChange(const Fit *f, PetscReal X[], PetscBool *solved
   if (info) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCallBLAS("LAPACKpotrs", LAPACKpotrs_("L", &rows, &one, f->CC, &rows, f->r, &rows, &info));
   for (PetscInt k = 0; k < 2 * M; k++) f->a[k] = r[k / 2] * f->e[k];
-  Circulant(f, f->edge, 2, PETSC_TRUE, f->a, f->work);
+  FitMultiply(f, f->edge, 2, PETSC_TRUE, f->a, f->work);
   for (PetscInt k = 0; k < 2 * M; k++) X[k] -= 2 * (r[M] * f->z[k] + f->work[k]);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode CreateFit(PetscInt M, PetscBool spectral, Fit *f) {
-  const PetscInt room = 2 * M + CONVOLVE_ROUND;
+  const PetscInt room = 2 * M + CIRCULANT_PADDING;
   PetscFunctionBeginUser;
   f->M = M;
   PetscCall(PetscMalloc7(M, &f->edge, M, &f->central, room, &f->products, room, &f->e, room, &f->a, room, &f->z, room,
@@ -107,7 +107,7 @@ static PetscErrorCode CreateFit(PetscInt M, PetscBool spectral, Fit *f) {
     DifferenceDerivative(M, PETSC_TRUE, f->edge);
     DifferenceDerivative(M, PETSC_FALSE, f->central);
   }
-  Circulant(f, f->edge, 1, PETSC_TRUE, f->edge, f->products); /* of d_q and d_{q + j}, even in j */
+  FitMultiply(f, f->edge, 1, PETSC_TRUE, f->edge, f->products); /* of d_q and d_{q + j}, even in j */
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -125,9 +125,9 @@ PetscErrorCode CurveFit(PetscInt M, PetscBool spectral, PetscReal length, PetscR
   PetscCall(CreateFit(M, spectral, &f));
   for (PetscInt it = 0;; it++) { /* Newton with the smallest change of the markers */
     PetscBool solved = PETSC_FALSE;
-    Circulant(&f, f.edge, 2, PETSC_FALSE, X, f.e);
+    FitMultiply(&f, f.edge, 2, PETSC_FALSE, X, f.e);
     const PetscReal *a = spectral ? f.e : f.a;
-    if (!spectral) Circulant(&f, f.central, 2, PETSC_FALSE, X, f.a);
+    if (!spectral) FitMultiply(&f, f.central, 2, PETSC_FALSE, X, f.a);
     *left = Residual(M, X, length / M, area, f.e, a, f.r);
     if (it == most || *left < CONVERGED) break;
     for (PetscInt k = 0; k < M; k++) {

@@ -1,12 +1,12 @@
 #include "curve/spectral.h"
-#include "curve/round.h"
+#include "curve/circulant.h"
 #include <fftw3.h>
 
 #define CONVOLVED 128        /* most markers whose sums take less time than transforms */
 #define CONVOLVED_ROUGH 1024 /* with a prime factor above 13, for which a transform takes many times longer */
 #define TURNS 3              /* a step turns the states before it by as many different angles */
 #define KEPT 6               /* a step asks several times for the same derivative */
-#define ROUND CONVOLVE_ROUND
+#define ROUND CIRCULANT_PADDING
 
 /* Of X[2n] to some power, 0: none yet. */
 typedef struct {
@@ -18,7 +18,7 @@ struct _p_Spectral {
   PetscInt n;
   fftw_complex *line, *hat; /* x + i y of the points, and its modes */
   fftw_plan forward, backward;
-  RoundWeights derivative[3];         /* where sums are taken, else NULL */
+  CirculantWeights derivative[3];     /* where sums are taken, else NULL */
   Derivative last[KEPT];              /* found last */
   PetscReal *turn[TURNS], phi[TURNS]; /* weights [n] of angles phi */
   PetscReal *round;                   /* cos and sin of pi j/n, j = 0 .. n/2, interlaced */
@@ -65,7 +65,7 @@ static PetscErrorCode DerivativeWeights(Spectral s) {
     one[0] = 1;
     Transformed(s, 1 << p, 1, one, found);
     for (PetscInt q = 0; q < n; q++) weight[q] = 0.5 * (found[2 * q] + (p ? 1 : -1) * found[2 * ((n - q) % n)]);
-    PetscCall(RoundWeightsCreate(n, p ? PETSC_FALSE : PETSC_TRUE, weight, &s->derivative[p]));
+    PetscCall(CirculantWeightsCreate(n, p ? PETSC_FALSE : PETSC_TRUE, weight, &s->derivative[p]));
     PetscCall(PetscFree3(one, found, weight));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -82,7 +82,8 @@ PetscErrorCode SpectralCreate(PetscInt n, Spectral *out) {
   s->forward = fftw_plan_dft_1d((int)n, s->line, s->hat, FFTW_FORWARD, FFTW_ESTIMATE);
   s->backward = fftw_plan_dft_1d((int)n, s->hat, s->line, FFTW_BACKWARD, FFTW_ESTIMATE);
   if (!IsConvolved(n)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscCalloc4(4 * n + ROUND, &s->twice, RoundRoom(n), &s->points, 2 * n + ROUND, &s->sum, n + 2, &s->round));
+  PetscCall(
+      PetscCalloc4(4 * n + ROUND, &s->twice, CirculantRoom(n), &s->points, 2 * n + ROUND, &s->sum, n + 2, &s->round));
   for (PetscInt j = 0; j <= n / 2; j++) {
     s->round[2 * j] = PetscCosReal(PETSC_PI * j / n);
     s->round[2 * j + 1] = PetscSinReal(PETSC_PI * j / n);
@@ -104,7 +105,7 @@ PetscErrorCode SpectralDestroy(Spectral *spectral) {
   fftw_destroy_plan(s->backward);
   fftw_free(s->hat);
   fftw_free(s->line);
-  for (int p = 0; p < 3; p++) PetscCall(RoundWeightsDestroy(&s->derivative[p]));
+  for (int p = 0; p < 3; p++) PetscCall(CirculantWeightsDestroy(&s->derivative[p]));
   for (int k = 0; k < KEPT; k++) PetscCall(PetscFree2(s->last[k].X, s->last[k].value));
   for (int t = 0; t < TURNS; t++) PetscCall(PetscFree(s->turn[t]));
   PetscCall(PetscFree4(s->twice, s->points, s->sum, s->round));
@@ -122,8 +123,8 @@ static const PetscReal *Found(Spectral s, int power, const PetscScalar X[]) {
   s->replaced = (s->replaced + 1) % KEPT;
   memcpy(d->X, X, bytes);
   d->power = power;
-  RoundUnroll(s->n, X, s->points);
-  RoundSums(s->derivative[power / 2], s->points, d->value);
+  CirculantUnroll(s->n, X, s->points);
+  CirculantSums(s->derivative[power / 2], s->points, d->value);
   return d->value;
 }
 
@@ -218,7 +219,7 @@ static inline void Turn(Spectral s, const int each, PetscReal phi, const PetscSc
   for (int c = 0; c < each; c++) first[c] = X[c];
   for (PetscInt k = 0; k < n; k++)
     for (int c = 0; c < each; c++) s->twice[each * k + c] = s->twice[each * (n + k) + c] = X[each * k + c] - first[c];
-  ConvolveRound(n, each, PETSC_FALSE, TurnWeights(s, phi), s->twice, s->sum);
+  CirculantConvolve(n, each, PETSC_FALSE, TurnWeights(s, phi), s->twice, s->sum);
   for (PetscInt k = 0; k < n; k++)
     for (int c = 0; c < each; c++) Y[each * k + c] = first[c] + s->sum[each * k + c];
 }
