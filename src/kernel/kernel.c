@@ -3,7 +3,7 @@
 /* Six-point C^3 kernel of Bao, Kaye and Peskin, J. Comput. Phys. 316 (2016). */
 static PetscInt IB6(PetscReal x, PetscInt *first, PetscReal w[KERNEL_MAX_POINTS]) {
   const PetscReal K = 59.0 / 60 - PetscSqrtReal(29.0) / 20, below = PetscFloorReal(x);
-  /* the formulas give phi at r-3 .. r+2; point j sees phi(x - j), so the first point (x - j = r + 2) is last */
+  /* the formulas give phi at r-3 .. r+2: the last is the weight of the first grid point, where x - j = r + 2 */
   const PetscReal r = x - below, r2 = r * r, r3 = r2 * r;
   const PetscReal beta = 9.0 / 4 - 1.5 * (K + r2) + (22.0 / 3 - 7 * K) * r - 7.0 / 3 * r3;
   const PetscReal gamma = 0.25 * (0.5 * (161.0 / 36 - 59.0 / 6 * K + 5 * K * K) * r2 +
@@ -19,11 +19,11 @@ static PetscInt IB6(PetscReal x, PetscInt *first, PetscReal w[KERNEL_MAX_POINTS]
   return 6;
 }
 
-/* Cardinal B-spline with n support points (degree n - 1), centred on x, by the Cox-de Boor recursion. */
+/* Weights of the cardinal B-spline of degree n - 1 centred on x, by the Cox-de Boor recursion; returns n. */
 static PetscInt BSpline(PetscInt n, PetscReal x, PetscInt *first, PetscReal w[KERNEL_MAX_POINTS]) {
   const PetscReal left = x - 0.5 * (PetscReal)n, below = PetscFloorReal(left), f = left - below;
   PetscReal M[KERNEL_MAX_POINTS] = {1}, factorial = 1;
-  for (PetscInt m = 2; m <= n; factorial *= m - 1, m++) /* without its divisions by m - 1 */
+  for (PetscInt m = 2; m <= n; factorial *= m - 1, m++) /* the divisions by m - 1 follow as 1/factorial */
     for (PetscInt i = m - 1; i >= 0; i--)
       M[i] = (i < m - 1 ? (f + i) * M[i] : 0) + (i > 0 ? (m - f - i) * M[i - 1] : 0);
   *first = (PetscInt)below + 1;

@@ -1,16 +1,22 @@
-/* Regularised delta functions between grid and markers: tensor products of 1-D weights, one along a component's own
-   direction, one across (docs/membrane.md, Kernels). */
+/* Regularised delta functions between grid and markers (docs/membrane.md, Kernels): tensor products of 1-D weights,
+
+       phi_along(x - i) phi_across(y - j),
+
+   phi_along in the direction of the velocity component, phi_across in the other one. x and y are in cells, and the
+   weights at the grid points add up to 1. All functions work on one rank. */
 #pragma once
 #include "base/base.h"
 
 #define KERNEL_MAX_POINTS 6
-#define KERNEL_WALL_CELLS 3      /* cells that markers keep from walls: the kernels' reach; */
-#define KERNEL_FOLDED_CELLS 0.25 /* or where stencils are folded at walls (markers/fold.h) */
+#define KERNEL_WALL_CELLS 3      /* cells that markers keep from walls: the reach of the kernels */
+#define KERNEL_FOLDED_CELLS 0.25 /* cells that markers keep from walls where stencils are folded (markers/fold.h) */
 
-/* The kernels: ib6 of Bao, Kaye and Peskin (2016), the composite B-splines of Gruninger and Griffith (2025). Name;
-   weights along and across; marker spacing ds/h that suits it; spacing below which the tension problem is near
-   singular; a, b of the stiffest springs a nu h/dt + b h^3/dt^2 that explicit steps bear, as measured (docs/split.md:
-   ib6 smooths the markers' own motion more than the others, of which cbs32 bears least). */
+/* The kernels: ib6 of Bao, Kaye and Peskin (2016), composite B-splines cbs of Gruninger and Griffith (2025). A row has
+   the name; the weights along and across; the marker spacing ds/h that suits the kernel; the spacing below which the
+   tension problem is near singular; and a, b of the stiffest springs that explicit steps bear, as measured
+   (docs/split.md),
+
+     a nu h/dt + b h^3/dt^2. */
 /* clang-format off */
 #define KERNELS(ROW, BETWEEN)                                    \
   ROW(ib6, IB6, IB6, 1.75, 1.25, 50, 100) BETWEEN                \
@@ -20,7 +26,7 @@
   ROW(cbs65, BSpline6, BSpline5, 1.5, 1, 19, 12)
 /* clang-format on */
 
-/* Texts of the table, constants for the option table: "a|b", "a 1.75, b 1.25" (spacing that suits, least spacing). */
+/* Texts of the table for the option table: names "a|b", spacings that suit and least spacings "a 1.75, b 1.25". */
 #define KERNEL_NAME(name, along, across, spacing, least, a, b) #name
 #define KERNEL_SPACING(name, along, across, spacing, least, a, b) #name " " #spacing
 #define KERNEL_LEAST(name, along, across, spacing, least, a, b) #name " " #least
@@ -34,17 +40,22 @@ typedef PetscInt (*KernelWeights)(PetscReal x, PetscInt *first, PetscReal weight
 typedef struct {
   const char *name;
   KernelWeights along, across; /* along the component's own direction, across it */
-  PetscReal default_spacing;   /* marker spacing ds/h that suits it */
-  PetscReal least_spacing;     /* below it the tension problem is near singular */
-  PetscReal spring[2];         /* the step bears springs up to sigma_0 = spring[0] nu h/dt + spring[1] h^3/dt^2 */
+  PetscReal default_spacing;   /* marker spacing ds/h that suits the kernel */
+  PetscReal least_spacing;     /* spacing below which the tension problem is near singular */
+  PetscReal spring[2];         /* a and b of the stiffest springs */
 } Kernel;
 
-/* KernelFind - kernel by name, NULL when unknown. */
+/* KernelFind - kernel by name; NULL: there is none. Not collective. */
 PETSC_EXTERN const Kernel *KernelFind(const char name[]);
 
-/* KernelSecondMoment - SUM phi(x - j) (x - j)^2, the same at every place x but for cbs32. Not collective. */
-PETSC_EXTERN PetscReal KernelSecondMoment(KernelWeights weights);
+/* KernelSecondMoment - at every place x, with cbs32 at one place,
 
-/* KernelMoments - moment[m], m < count, the mean over all places x in a cell of SUM phi(x - j) (x - j)^{2m}. Not
-   collective. */
+     SUM_j phi(x - j) (x - j)^2.
+
+   KernelMoments - moment[m], m < count, the means over all places x in a cell of
+
+     SUM_j phi(x - j) (x - j)^{2m}.
+
+   Not collective. */
+PETSC_EXTERN PetscReal KernelSecondMoment(KernelWeights weights);
 PETSC_EXTERN void KernelMoments(KernelWeights weights, int count, PetscReal moment[]);

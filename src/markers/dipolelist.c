@@ -1,6 +1,6 @@
 #include "markers/dipolelist.h"
 
-static PetscInt AllRows(DipoleList d) {
+static PetscInt ListRows(DipoleList d) {
   return d->grid->rows[FIELD_U] + DIPOLE_BELOW + DIPOLE_ABOVE;
 }
 
@@ -10,7 +10,7 @@ PetscErrorCode DipoleListCreate(Grid g, DipoleList *out) {
   PetscCall(PetscNew(&d));
   *out = d;
   d->grid = g;
-  for (int f = 0; f < 3; f++) PetscCall(PetscCalloc1(AllRows(d) + 2, &d->start[f]));
+  for (int f = 0; f < 3; f++) PetscCall(PetscCalloc1(ListRows(d) + 2, &d->start[f]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -25,18 +25,18 @@ PetscErrorCode DipoleListDestroy(DipoleList *list) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The first row from the lowest on that is this row of the grid; others follow after a period. */
-static inline PetscInt FirstRow(const Grid g, PetscInt entry) {
+/* The first row of the list that is this row of the grid; with a period others follow. */
+static inline PetscInt ListFirstRow(const Grid g, PetscInt entry) {
   const PetscInt j = entry - g->first + DIPOLE_BELOW;
   return g->wall[1] ? j : (j % g->n[1] + g->n[1]) % g->n[1];
 }
 
-/* Counts a spot's rows in start[j + 2], or (hit) puts them where start[j + 1] says. */
-static void Visit(DipoleList d, PetscInt k, PetscInt rows, PetscInt start[], DipoleHit hit[]) {
+/* Count the rows of a spot in start[j + 2] or, with hit, put its hits at start[j + 1]. */
+static void ListVisitSpot(DipoleList d, PetscInt k, PetscInt rows, PetscInt start[], DipoleHit hit[]) {
   const Grid g = d->grid;
   const DipoleSpot *s = &d->spot[k];
   const PetscInt period = g->wall[1] ? rows : g->n[1], part = k / DIPOLE_SPOTS * DIPOLE_COUNT + (PetscInt)s->part;
-  const PetscInt n = s->line[1].n, first = FirstRow(g, s->line[1].first);
+  const PetscInt n = s->line[1].n, first = ListFirstRow(g, s->line[1].first);
   for (PetscInt q = 0; q < n; q++)
     for (PetscInt j = g->wall[1] ? first + q : (first + q) % period; j >= 0 && j < rows; j += period)
       if (hit)
@@ -45,9 +45,9 @@ static void Visit(DipoleList d, PetscInt k, PetscInt rows, PetscInt start[], Dip
         start[j + 2]++;
 }
 
-/* The rows that any spot reaches. */
-static void FindWindow(DipoleList d) {
-  const PetscInt rows = AllRows(d);
+/* Find the rows that spots reach. */
+static void ListFindWindow(DipoleList d) {
+  const PetscInt rows = ListRows(d);
   d->window[0] = rows - DIPOLE_BELOW;
   d->window[1] = -DIPOLE_BELOW;
   for (int f = 0; f < 3; f++)
@@ -59,12 +59,12 @@ static void FindWindow(DipoleList d) {
 }
 
 PetscErrorCode DipoleListPlace(DipoleList d, PetscInt M, const DipoleSpot spot[]) {
-  const PetscInt rows = AllRows(d);
+  const PetscInt rows = ListRows(d);
   PetscFunctionBeginUser;
   d->M = M;
   d->spot = spot;
   for (int f = 0; f < 3; f++) PetscCall(PetscArrayzero(d->start[f], rows + 2));
-  for (PetscInt k = 0; k < DIPOLE_SPOTS * M; k++) Visit(d, k, rows, d->start[spot[k].field], NULL);
+  for (PetscInt k = 0; k < DIPOLE_SPOTS * M; k++) ListVisitSpot(d, k, rows, d->start[spot[k].field], NULL);
   for (int f = 0; f < 3; f++) {
     for (PetscInt j = 0; j < rows; j++) d->start[f][j + 2] += d->start[f][j + 1];
     if (d->start[f][rows + 1] <= d->room[f]) continue;
@@ -72,21 +72,23 @@ PetscErrorCode DipoleListPlace(DipoleList d, PetscInt M, const DipoleSpot spot[]
     PetscCall(PetscFree(d->hit[f]));
     PetscCall(PetscMalloc1(d->room[f], &d->hit[f]));
   }
-  for (PetscInt k = 0; k < DIPOLE_SPOTS * M; k++) Visit(d, k, rows, d->start[spot[k].field], d->hit[spot[k].field]);
-  FindWindow(d);
+  for (PetscInt k = 0; k < DIPOLE_SPOTS * M; k++)
+    ListVisitSpot(d, k, rows, d->start[spot[k].field], d->hit[spot[k].field]);
+  ListFindWindow(d);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static inline void AddHit(DipoleList d, const DipoleHit *hit, const PetscReal T[], PetscScalar row[]) {
+static inline void ListAddHit(DipoleList d, const DipoleHit *hit, const PetscReal T[], PetscScalar row[]) {
   DipoleAddRow(d->grid, &d->spot[hit->spot], hit->value * T[hit->part], row);
 }
 
 void DipoleListAddRow(DipoleList d, Field f, PetscInt j, const PetscReal T[], PetscScalar row[]) {
   const PetscInt *start = d->start[f] + j + DIPOLE_BELOW;
   const DipoleHit *hit = d->hit[f] + start[0], *end = d->hit[f] + start[1], *half = hit + (end - hit) / 2;
-  for (const DipoleHit *other = half; other < end; other++) { /* neighbours overlap: two far apart need not wait */
-    if (hit < half) AddHit(d, hit++, T, row);
-    AddHit(d, other, T, row);
+  for (const DipoleHit *other = half; other < end;
+       other++) { /* neighbouring spots overlap, and a sum would wait for the one before: take two that are far apart */
+    if (hit < half) ListAddHit(d, hit++, T, row);
+    ListAddHit(d, other, T, row);
   }
 }
 

@@ -1,9 +1,9 @@
 #include "markers/dipolerows.h"
 
-#define AT_ONCE 4 /* rows */
+#define AT_ONCE 4 /* rows that are summed at once */
 
-/* A field's row j, which may be up to DIPOLE_BELOW below the own ones or DIPOLE_ABOVE above them. */
-static PetscScalar *Row(DipoleRows d, Field f, PetscInt j) {
+/* Row j of a field: this rank's, up to DIPOLE_BELOW rows below them or DIPOLE_ABOVE above them. */
+static PetscScalar *DipoleRow(DipoleRows d, Field f, PetscInt j) {
   return d->field[f] + (j + DIPOLE_BELOW) * d->grid->n[0];
 }
 
@@ -29,8 +29,8 @@ PetscErrorCode DipoleRowsDestroy(DipoleRows *rows) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The mean sources of all rows of v. */
-static void Means(DipoleRows d, const DipoleList list, const PetscReal T[]) {
+/* Find the mean source of every row. */
+static void DipoleRowMeans(DipoleRows d, const DipoleList list, const PetscReal T[]) {
   const PetscInt n = d->grid->n[1];
   (void)PetscArrayzero(d->mean, n);
   for (PetscInt k = 0; k < DIPOLE_SPOTS * list->M; k++) {
@@ -45,16 +45,16 @@ static void Means(DipoleRows d, const DipoleList list, const PetscReal T[]) {
   }
 }
 
-/* From the sources of so many rows to b, whose means are zero, or which is zero on walls, the last entries: together,
-   as each sum has to wait for the one before. */
-static inline void SumRows(const int count, DipoleRows d, PetscInt j) {
+/* Replace the sources of `count` rows by b along x, with zero mean or, between walls, zero on the wall. A sum waits for
+   the one before, so that several rows are summed at once. */
+static inline void DipoleRowSums(const int count, DipoleRows d, PetscInt j) {
   const Grid g = d->grid;
   const PetscInt n = g->n[0];
   PetscReal mean[AT_ONCE], b[AT_ONCE] = {0}, sum[AT_ONCE] = {0};
   PetscScalar *row[AT_ONCE];
   for (int q = 0; q < count; q++) {
     mean[q] = d->mean[(j + q + g->first + g->n[1]) % g->n[1]];
-    row[q] = Row(d, FIELD_P, j + q);
+    row[q] = DipoleRow(d, FIELD_P, j + q);
   }
   for (PetscInt i = 0; i < n; i++)
     for (int q = 0; q < count; q++) {
@@ -69,8 +69,8 @@ static inline void SumRows(const int count, DipoleRows d, PetscInt j) {
   }
 }
 
-/* From the rows' mean sources to v, zero at a wall and else of zero mean. */
-static void SumMeans(const Grid g, PetscScalar mean[]) {
+/* Replace the mean sources of the rows by b along y, zero at a wall or else with zero mean. */
+static void DipoleRowSumMeans(const Grid g, PetscScalar mean[]) {
   PetscReal v = 0, sum = 0;
   for (PetscInt j = 0; j < g->n[1]; j++) {
     v -= g->h * mean[j];
@@ -80,12 +80,12 @@ static void SumMeans(const Grid g, PetscScalar mean[]) {
   for (PetscInt j = 0; j < g->n[1] && !g->wall[1]; j++) mean[j] -= sum / (PetscReal)g->n[1];
 }
 
-/* The rows of `window` become the ones that are set; those that were and are none of them any more become zero, as
-   their neighbours look at them. */
-static void SetWindow(DipoleRows d, const PetscInt window[2]) {
+/* Set the window. Rows of the window before that are not in this one become zero, because rows next to them are added
+   to. */
+static void DipoleRowsSetWindow(DipoleRows d, const PetscInt window[2]) {
   for (PetscInt j = d->window[0]; j < d->window[1]; j++)
     for (int f = 0; f < 3 && (j < window[0] || j >= window[1]); f++)
-      (void)PetscArrayzero(Row(d, (Field)f, j), d->grid->n[0]);
+      (void)PetscArrayzero(DipoleRow(d, (Field)f, j), d->grid->n[0]);
   for (int c = 0; c < 2; c++) d->window[c] = window[c];
 }
 
@@ -95,17 +95,17 @@ PetscErrorCode DipoleRowsSet(DipoleRows d, const DipoleList list, const PetscRea
   PetscInt j;
   PetscFunctionBeginUser;
   d->own = own;
-  Means(d, list, T);
-  SetWindow(d, list->window);
+  DipoleRowMeans(d, list, T);
+  DipoleRowsSetWindow(d, list->window);
   for (j = d->window[0]; j < d->window[1]; j++)
     for (int f = own ? FIELD_U : FIELD_P; f <= FIELD_P; f++) {
-      PetscScalar *row = Row(d, (Field)f, j);
+      PetscScalar *row = DipoleRow(d, (Field)f, j);
       for (PetscInt i = 0; i < g->n[0]; i++) row[i] = 0;
       DipoleListAddRow(list, (Field)f, j, T, row);
     }
-  for (j = d->window[0]; j + AT_ONCE <= d->window[1]; j += AT_ONCE) SumRows(AT_ONCE, d, j);
-  for (; j < d->window[1]; j++) SumRows(1, d, j);
-  SumMeans(g, d->mean);
+  for (j = d->window[0]; j + AT_ONCE <= d->window[1]; j += AT_ONCE) DipoleRowSums(AT_ONCE, d, j);
+  for (; j < d->window[1]; j++) DipoleRowSums(1, d, j);
+  DipoleRowSumMeans(g, d->mean);
   for (j = 0; j < g->n[1]; j++) {
     d->flow[j] = mean[0] * (profile ? profile[j] : g->wall[1] ? 0 : 1);
     if (!g->wall[1]) d->mean[j] += mean[1];
@@ -113,11 +113,11 @@ PetscErrorCode DipoleRowsSet(DipoleRows d, const DipoleList list, const PetscRea
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* row += factor (the five-point sum of b), rows low and high beside it, over a period of n entries, of which the last
-   is left out where it is on a wall. */
-static void AddLaplacian(PetscInt n, PetscBool wall, PetscReal factor, const PetscScalar *restrict b, PetscReal below,
-                         const PetscScalar *restrict low, PetscReal above, const PetscScalar *restrict high,
-                         PetscScalar *restrict row) {
+/* row += factor (five-point sum of b), with the rows low and high times `below` and `above`, over a period of n
+   entries. The last entry is left out where it is on a wall. */
+static void RowAddLaplacian(PetscInt n, PetscBool wall, PetscReal factor, const PetscScalar *restrict b,
+                            PetscReal below, const PetscScalar *restrict low, PetscReal above,
+                            const PetscScalar *restrict high, PetscScalar *restrict row) {
   row[0] += factor * (b[n - 1] + b[1] + below * low[0] + above * high[0] - 4 * b[0]);
   for (PetscInt i = 1; i + 1 < n; i++)
     row[i] += factor * (b[i - 1] + b[i + 1] + below * low[i] + above * high[i] - 4 * b[i]);
@@ -125,24 +125,24 @@ static void AddLaplacian(PetscInt n, PetscBool wall, PetscReal factor, const Pet
 }
 
 /* y += x */
-static void AddRow(PetscInt n, const PetscScalar *restrict x, PetscScalar *restrict y) {
+static void RowAdd(PetscInt n, const PetscScalar *restrict x, PetscScalar *restrict y) {
   for (PetscInt i = 0; i < n; i++) y[i] += x[i];
 }
 
 void DipoleRowsAddForce(DipoleRows d, Field f, PetscInt j, PetscScalar row[]) {
   const PetscInt n = d->grid->n[0];
   if (j < d->window[0] - 1 || j > d->window[1]) return;
-  if (d->own) AddRow(d->grid->columns[f], Row(d, f, j), row);
+  if (d->own) RowAdd(d->grid->columns[f], DipoleRow(d, f, j), row);
   if (f == FIELD_V) return;
-  /* beyond a wall there is minus the row next to it */
+  /* beyond a wall b is minus the row next to the wall */
   const PetscBool bottom = d->grid->wall[1] && d->grid->first + j == 0 ? PETSC_TRUE : PETSC_FALSE;
   const PetscBool top = d->grid->wall[1] && d->grid->first + j == d->grid->n[1] - 1 ? PETSC_TRUE : PETSC_FALSE;
-  const PetscScalar *low = Row(d, FIELD_P, bottom ? j : j - 1), *high = Row(d, FIELD_P, top ? j : j + 1);
-  AddLaplacian(n, d->grid->wall[0], d->nu / PetscSqr(d->grid->h), Row(d, FIELD_P, j), bottom ? -1 : 1, low,
-               top ? -1 : 1, high, row);
+  const PetscScalar *low = DipoleRow(d, FIELD_P, bottom ? j : j - 1), *high = DipoleRow(d, FIELD_P, top ? j : j + 1);
+  RowAddLaplacian(n, d->grid->wall[0], d->nu / PetscSqr(d->grid->h), DipoleRow(d, FIELD_P, j), bottom ? -1 : 1, low,
+                  top ? -1 : 1, high, row);
 }
 
 void DipoleRowsAddVelocity(DipoleRows d, PetscInt j, PetscScalar row[]) {
   if (j < d->window[0] || j >= d->window[1]) return;
-  AddRow(d->grid->columns[FIELD_U], Row(d, FIELD_P, j), row);
+  RowAdd(d->grid->columns[FIELD_U], DipoleRow(d, FIELD_P, j), row);
 }

@@ -1,11 +1,14 @@
 /* Dipoles of markers in the rows of a solve by stream function (fluid/stream.h), whose velocity w has no divergence.
-   A velocity b whose divergence is the dipoles' source is found row by row: along x by sums of the source less its
-   row's mean, which are zero on walls, along y by sums of these means,
 
-       b_i - b_{i-1} = h (mean - source_i),      v_j - v_{j-1} = -h mean_j,
+   A velocity b whose divergence is the dipoles' source is found row by row: along x by sums of the source less the mean
+   of its row, which are zero on walls, along y by sums of these means,
 
-   source = G^T of the velocity. Then u = w + b, w being the flow of the forces + nu L_u b, and v's mean flow adds to
-   the pressure only (docs/fluid.md, Stream function). */
+       b_i - b_{i-1} = h (mean - source_i),      v_j - v_{j-1} = -h mean_j,      source = G^T of the velocity.
+
+   Then u = w + b, where w is the flow of the forces + nu L_u b, and the mean flow of v adds to the pressure only
+   (docs/fluid.md, Stream function). Every rank has the means of all rows; nothing crosses ranks.
+
+   Order: DipoleRowsSet, then DipoleRowsAddForce and DipoleRowsAddVelocity for the rows of one solve. */
 #pragma once
 #include "markers/dipolelist.h"
 
@@ -13,24 +16,24 @@ typedef struct _p_DipoleRows *DipoleRows;
 struct _p_DipoleRows {
   Grid grid; /* borrowed */
   PetscReal nu;
-  PetscBool own;         /* their own forces are in the rows, */
-  PetscInt window[2];    /* of which all but these local ones are zero */
-  PetscScalar *field[3]; /* forces on u (with the row above) and v, b along x: from the row below on */
-  PetscScalar *mean;     /* [all rows of v] b along y, with the mean flow; zero on walls */
-  PetscScalar *flow;     /* [all rows of u] mean flow along x */
+  PetscBool own;         /* the dipoles' own forces are in `field` */
+  PetscInt window[2];    /* local rows that are not zero */
+  PetscScalar *field[3]; /* forces on u and v, and b along x, from the row below this rank's on */
+  PetscScalar *mean;     /* [rows of v of all ranks] b along y and the mean flow along y; zero on walls */
+  PetscScalar *flow;     /* [rows of u of all ranks] mean flow along x */
 };
 
-/* DipoleRowsCreate - none yet. Not collective. */
+/* DipoleRowsCreate - rows without dipoles. Not collective. */
 PETSC_EXTERN PetscErrorCode DipoleRowsCreate(Grid grid, PetscReal nu, DipoleRows *rows);
 PETSC_EXTERN PetscErrorCode DipoleRowsDestroy(DipoleRows *rows);
 
-/* DipoleRowsSet - those of the list with tensors T[3M], which add up to a source of zero, with their own forces if
-   `own`, else of the source alone; u has the mean flow mean[0] times the profile[rows of all], or, NULL, in a box that
-   is periodic both ways u and v have mean[2]. Not collective. */
+/* DipoleRowsSet - the dipoles of the list with tensors T[3M], whose sources add up to zero. own: with their own forces;
+   else their sources alone. The mean flow of u is mean[0] profile[rows of all ranks] or, where profile is NULL and the
+   box is periodic both ways, that of u and v is mean[2]. Not collective. */
 PETSC_EXTERN PetscErrorCode DipoleRowsSet(DipoleRows rows, const DipoleList list, const PetscReal T[], PetscBool own,
                                           const PetscReal profile[], const PetscReal mean[2]);
 
-/* DipoleRowsAddForce - row += nu L_u b and, where they have them, the dipoles' own force, in local row j of u or v; of
-   u the row above the last, too. DipoleRowsAddVelocity - local row j of u += b along x. Not collective. */
+/* DipoleRowsAddForce - row += nu L_u b, and the dipoles' own force where `own` was set, in local row j of u or v; of u
+   the row above the last, too. DipoleRowsAddVelocity - row += b along x, in local row j of u. Not collective. */
 PETSC_EXTERN void DipoleRowsAddForce(DipoleRows rows, Field field, PetscInt j, PetscScalar row[]);
 PETSC_EXTERN void DipoleRowsAddVelocity(DipoleRows rows, PetscInt j, PetscScalar row[]);

@@ -2,7 +2,7 @@
 #include "markers/fold.h"
 
 void DipoleStencilsUnwrapped(Grid g, const PetscReal X[2], Stencil s[DIPOLE_COUNT]) {
-  static const Kernel *five = NULL, *six = NULL; /* names are looked up once */
+  static const Kernel *five = NULL, *six = NULL; /* kernels are found once */
   if (!six) {
     five = KernelFind("cbs54");
     six = KernelFind("cbs65");
@@ -16,8 +16,8 @@ void DipoleStencilsUnwrapped(Grid g, const PetscReal X[2], Stencil s[DIPOLE_COUN
     }
 }
 
-/* On the grid: entries within a period, folded at walls. */
-static void Wrap(Grid g, Stencil s[DIPOLE_COUNT]) {
+/* Put stencils on the grid: first entries into the period, weights folded at walls. */
+static void DipoleWrap(Grid g, Stencil s[DIPOLE_COUNT]) {
   for (int k = 0; k < DIPOLE_COUNT; k++)
     for (int dir = 0; dir < 2; dir++) {
       PetscInt *first = &s[k].first[dir];
@@ -29,8 +29,8 @@ static void Wrap(Grid g, Stencil s[DIPOLE_COUNT]) {
     }
 }
 
-/* Leaves the entries of a line of a field's that are unknowns: between walls the faces on them are none. */
-static void Inside(Grid g, Field field, int dir, DipoleLine *line) {
+/* Keep the entries of a line that are unknowns of the field: faces on walls are not. */
+static void LineClip(Grid g, Field field, int dir, DipoleLine *line) {
   const PetscInt end = (int)field == dir ? g->n[dir] - 1 : g->n[dir];
   PetscInt skip = 0;
   if (!g->wall[dir] || (line->first >= 0 && line->first + line->n <= end)) return;
@@ -41,16 +41,16 @@ static void Inside(Grid g, Field field, int dir, DipoleLine *line) {
   for (PetscInt k = 0; k < DIPOLE_POINTS; k++) line->weight[k] = k < line->n ? line->weight[k + skip] : 0;
 }
 
-/* A stencil's weights along dir (before < 0), or the differences of neighbours: from entry `first` on, which is the
-   stencil's own (before = 0) or the one before it (1). */
-static void MakeLine(Grid g, Field field, const Stencil *s, int dir, PetscInt before, DipoleLine *line) {
+/* A line of a stencil's weights along dir (before < 0), or of the differences of neighbouring weights, of which the
+   first belongs to the stencil's first entry (before = 0) or to the entry before it (before = 1). */
+static void LineMake(Grid g, Field field, const Stencil *s, int dir, PetscInt before, DipoleLine *line) {
   const PetscInt difference = before >= 0 ? 1 : 0;
   PetscReal w[DIPOLE_POINTS + 1] = {0};
   for (PetscInt k = 0; k < s->n[dir]; k++) w[k + 1] = s->weight[dir][k];
   line->first = s->first[dir] - (before > 0);
   line->n = s->n[dir] + difference;
   for (PetscInt k = 0; k < DIPOLE_POINTS; k++) line->weight[k] = w[k + 1] - difference * w[k];
-  Inside(g, field, dir, line);
+  LineClip(g, field, dir, line);
 }
 
 void DipoleSpotsOf(Grid g, PetscReal nu, Stencil s[DIPOLE_COUNT], DipoleSpot spot[DIPOLE_SPOTS]) {
@@ -59,17 +59,17 @@ void DipoleSpotsOf(Grid g, PetscReal nu, Stencil s[DIPOLE_COUNT], DipoleSpot spo
   static const struct {
     Field field;
     DipolePart part;
-    PetscInt before[2]; /* of the lines along x and y: MakeLine */
+    PetscInt before[2]; /* argument `before` of LineMake along x and y */
   } form[DIPOLE_SPOTS] = {{FIELD_U, DIPOLE_XX, {1, PLAIN}},     {FIELD_U, DIPOLE_XY, {PLAIN, 0}},
                           {FIELD_V, DIPOLE_XY, {0, PLAIN}},     {FIELD_V, DIPOLE_YY, {PLAIN, 1}},
                           {FIELD_P, DIPOLE_XX, {PLAIN, PLAIN}}, {FIELD_P, DIPOLE_YY, {PLAIN, PLAIN}}};
-  Wrap(g, s);
+  DipoleWrap(g, s);
   for (int q = 0; q < DIPOLE_SPOTS; q++) {
     spot[q].field = form[q].field;
     spot[q].part = form[q].part;
     spot[q].value = form[q].field == FIELD_P ? half : force;
     for (int dir = 0; dir < 2; dir++)
-      MakeLine(g, form[q].field, &s[form[q].part], dir, form[q].before[dir], &spot[q].line[dir]);
+      LineMake(g, form[q].field, &s[form[q].part], dir, form[q].before[dir], &spot[q].line[dir]);
   }
 }
 
@@ -79,7 +79,7 @@ void DipoleSpots(Grid g, PetscReal nu, const PetscReal X[2], DipoleSpot spot[DIP
   DipoleSpotsOf(g, nu, s, spot);
 }
 
-/* SUM of a line's weights, and of them times the places of its entries along dir (length), from the middle. */
+/* First moment of a line's weights along dir about the middle of the box (length), and the sum of the weights. */
 static PetscReal LineMoment(Grid g, const DipoleSpot *s, int dir, PetscReal *sum) {
   const DipoleLine *line = &s->line[dir];
   const PetscReal half = (int)s->field == dir ? 1 : 0.5;
@@ -92,7 +92,7 @@ static PetscReal LineMoment(Grid g, const DipoleSpot *s, int dir, PetscReal *sum
   return moment;
 }
 
-/* The weights of a line in the rows next to the walls along dir. */
+/* Sum of the weights of a line in the rows next to the walls along dir. */
 static PetscReal LineEnds(Grid g, const DipoleLine *line, int dir) {
   PetscReal sum = 0;
   for (PetscInt k = 0; k < line->n; k++)
@@ -121,8 +121,8 @@ void DipoleShortfall(Grid g, PetscReal nu, const PetscReal X[2], const PetscReal
   }
 }
 
-/* a += value times the spot on this rank's rows of its field. */
-static void Add(Grid g, const DipoleSpot *s, PetscReal value, PetscScalar a[]) {
+/* a += value times the spot, in this rank's rows of the spot's field. */
+static void DipoleAdd(Grid g, const DipoleSpot *s, PetscReal value, PetscScalar a[]) {
   const DipoleLine *y = &s->line[1];
   for (PetscInt q = 0; q < y->n; q++) {
     const PetscInt j = DipoleEntry(g, s, 1, q) - g->first;
@@ -138,7 +138,7 @@ PetscErrorCode DipolesSpread(Grid g, PetscInt M, const DipoleSpot spot[], const 
   a[FIELD_V] = a[FIELD_U] + GridLocalU(g);
   for (PetscInt k = 0; k < DIPOLE_SPOTS * M; k++) {
     const PetscReal *t = T + k / DIPOLE_SPOTS * DIPOLE_COUNT;
-    if (t[0] != 0 || t[1] != 0 || t[2] != 0) Add(g, &spot[k], spot[k].value * t[spot[k].part], a[spot[k].field]);
+    if (t[0] != 0 || t[1] != 0 || t[2] != 0) DipoleAdd(g, &spot[k], spot[k].value * t[spot[k].part], a[spot[k].field]);
   }
   PetscCall(VecRestoreArray(source, &a[FIELD_P]));
   PetscCall(VecRestoreArray(w, &a[FIELD_U]));

@@ -1,15 +1,17 @@
 #include "markers/fold.h"
 
-#define FOLD_ENTRIES 5 /* that a smooth fold goes to */
+#define FOLD_ENTRIES 5 /* entries that a smooth fold goes to */
 
-/* Take the first `cut` entries off. */
-static void Cut(PetscInt cut, PetscInt *first, PetscInt *n, PetscReal w[]) {
+/* Remove the first `cut` entries. */
+static void FoldCut(PetscInt cut, PetscInt *first, PetscInt *n, PetscReal w[]) {
   *n -= cut;
   for (PetscInt k = 0; k < *n; k++) w[k] = w[k + cut];
   *first += cut;
 }
 
-/* The polynomial through entries 0 to 4 at an entry below them: 5, -10, 10, -5 and 1 of them at entry -1. */
+/* Fold the first `cut` entries by the polynomial through entries 0 to 4, whose value at entry -1 is
+
+     5 f_0 - 10 f_1 + 10 f_2 - 5 f_3 + f_4. */
 static void FoldSmoothly(PetscInt cut, PetscInt *first, PetscInt *n, PetscReal w[]) {
   PetscReal add[FOLD_ENTRIES] = {0};
   for (PetscInt k = 0; k < cut; k++)
@@ -19,7 +21,7 @@ static void FoldSmoothly(PetscInt cut, PetscInt *first, PetscInt *n, PetscReal w
         if (i != j) value *= (PetscReal)(*first + k - i) / (j - i);
       add[j] += value;
     }
-  Cut(cut, first, n, w);
+  FoldCut(cut, first, n, w);
   for (; *n < FOLD_ENTRIES; (*n)++) w[*n] = 0;
   for (int j = 0; j < FOLD_ENTRIES; j++) w[j] += add[j];
 }
@@ -35,11 +37,11 @@ void FoldLow(FoldKind kind, PetscInt *first, PetscInt *n, PetscReal w[]) {
     const PetscInt mirror = (kind == FOLD_EVEN ? -2 : -1) - (*first + k), to = mirror - *first;
     if (mirror >= 0 && to < *n) w[to] += kind == FOLD_EVEN ? w[k] : -w[k];
   }
-  Cut(cut, first, n, w);
+  FoldCut(cut, first, n, w);
 }
 
-/* Count the entries from the other end, `last` becoming 0. */
-static void Reverse(PetscInt last, PetscInt *first, PetscInt n, PetscReal w[]) {
+/* Reverse the order of entries, so that entry `last` becomes 0. */
+static void FoldReverse(PetscInt last, PetscInt *first, PetscInt n, PetscReal w[]) {
   *first = last - (*first + n - 1);
   for (PetscInt k = 0; k < n / 2; k++) {
     const PetscReal kept = w[k];
@@ -50,9 +52,9 @@ static void Reverse(PetscInt last, PetscInt *first, PetscInt n, PetscReal w[]) {
 
 void FoldHigh(FoldKind kind, PetscInt last, PetscInt *first, PetscInt *n, PetscReal w[]) {
   if (*first + *n - 1 <= last) return;
-  Reverse(last, first, *n, w);
+  FoldReverse(last, first, *n, w);
   FoldLow(kind, first, n, w);
-  Reverse(last, first, *n, w);
+  FoldReverse(last, first, *n, w);
 }
 
 PetscReal WallScale(const Kernel *kernel, PetscReal y) {

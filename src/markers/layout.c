@@ -1,7 +1,8 @@
 #include "markers/layout.h"
 
-/* First body of each rank: a body goes where the middle of its work falls in the whole. */
-static void Share(Layout l) {
+/* Fill in the first body of each rank: a body goes to the rank in whose equal share of the work the middle of its work
+   lies. */
+static void LayoutShare(Layout l) {
   PetscReal total = 0, before = 0;
   PetscMPIInt rank = 0;
   for (PetscInt b = 0; b < l->bodies; b++) total += PetscSqr((PetscReal)LayoutCount(l, b));
@@ -14,9 +15,9 @@ static void Share(Layout l) {
   while (rank < l->size) l->body[++rank] = l->bodies;
 }
 
-/* body[ranks+1]: first body of each rank; NULL: to be shared out. */
-static PetscErrorCode Create(MPI_Comm comm, PetscInt bodies, const PetscInt start[], const PetscInt body[],
-                             Layout *out) {
+/* Make a layout. body[ranks+1]: first body of each rank; NULL: by equal work. */
+static PetscErrorCode LayoutMake(MPI_Comm comm, PetscInt bodies, const PetscInt start[], const PetscInt body[],
+                                 Layout *out) {
   Layout l;
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&l));
@@ -31,7 +32,7 @@ static PetscErrorCode Create(MPI_Comm comm, PetscInt bodies, const PetscInt star
   if (body)
     PetscCall(PetscArraycpy(l->body, body, l->size + 1));
   else
-    Share(l);
+    LayoutShare(l);
   l->own = l->body[l->rank];
   l->end = l->body[l->rank + 1];
   l->first = start[l->own];
@@ -48,13 +49,13 @@ static PetscErrorCode Create(MPI_Comm comm, PetscInt bodies, const PetscInt star
 
 PetscErrorCode LayoutCreate(MPI_Comm comm, PetscInt bodies, const PetscInt start[], Layout *layout) {
   PetscFunctionBeginUser;
-  PetscCall(Create(comm, bodies, start, NULL, layout));
+  PetscCall(LayoutMake(comm, bodies, start, NULL, layout));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode LayoutCreateLike(Layout like, const PetscInt start[], Layout *layout) {
   PetscFunctionBeginUser;
-  PetscCall(Create(like->comm, like->bodies, start, like->body, layout));
+  PetscCall(LayoutMake(like->comm, like->bodies, start, like->body, layout));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -64,7 +65,7 @@ PetscErrorCode LayoutCreatePart(Layout all, PetscInt first, PetscInt end, Layout
   PetscCall(PetscMalloc2(end - first + 1, &start, all->size + 1, &body));
   for (PetscInt b = first; b <= end; b++) start[b - first] = all->start[b] - all->start[first];
   for (PetscMPIInt r = 0; r <= all->size; r++) body[r] = PetscMax(first, PetscMin(all->body[r], end)) - first;
-  PetscCall(Create(all->comm, end - first, start, body, layout));
+  PetscCall(LayoutMake(all->comm, end - first, start, body, layout));
   PetscCall(PetscFree2(start, body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -123,14 +124,14 @@ PetscErrorCode LayoutSum(Layout l, int each, const PetscScalar part[], PetscScal
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether one rank has all markers: nothing has to travel to it. */
-static PetscBool HasAll(Layout l, PetscMPIInt root) {
+/* Whether rank `root` owns all markers, so that no message is needed. */
+static PetscBool LayoutIsOnRank(Layout l, PetscMPIInt root) {
   return l->count[0][root] == l->M ? PETSC_TRUE : PETSC_FALSE;
 }
 
 PetscErrorCode LayoutToRank(Layout l, PetscMPIInt root, int each, const PetscScalar own[], PetscScalar all[]) {
   PetscFunctionBeginUser;
-  if (!HasAll(l, root))
+  if (!LayoutIsOnRank(l, root))
     PetscCallMPI(MPI_Gatherv(own, l->count[each - 1][l->rank], MPIU_SCALAR, all, l->count[each - 1], l->at[each - 1],
                              MPIU_SCALAR, root, l->comm));
   else if (l->rank == root)
@@ -140,7 +141,7 @@ PetscErrorCode LayoutToRank(Layout l, PetscMPIInt root, int each, const PetscSca
 
 PetscErrorCode LayoutFromRank(Layout l, PetscMPIInt root, int each, const PetscScalar all[], PetscScalar own[]) {
   PetscFunctionBeginUser;
-  if (!HasAll(l, root))
+  if (!LayoutIsOnRank(l, root))
     PetscCallMPI(MPI_Scatterv(all, l->count[each - 1], l->at[each - 1], MPIU_SCALAR, own, l->count[each - 1][l->rank],
                               MPIU_SCALAR, root, l->comm));
   else if (l->rank == root)

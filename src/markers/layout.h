@@ -1,7 +1,9 @@
-/* Which rank owns which markers. Bodies are closed curves of markers, numbered one after another; each belongs to one
-   rank, ranks own contiguous ranges of bodies of about equal work. Marker vectors (two numbers a marker) and edge
-   vectors (one a marker, such as a tension) are MPI vectors in this order: a rank's part is that of its bodies, so what
-   a body needs of itself is on its owner. */
+/* Which rank owns which markers.
+
+   Bodies are curves of markers, numbered one after another. Each body belongs to one rank, and ranks own contiguous
+   ranges of bodies of about equal work. Marker vectors (two numbers a marker) and edge vectors (one number a marker,
+   such as a tension) are MPI vectors in the order of the bodies: the part of a rank is that of its bodies. So what a
+   body needs of itself is on its owner; what others need of it is gathered. */
 #pragma once
 #include "base/base.h"
 
@@ -9,23 +11,22 @@ typedef struct _p_Layout *Layout;
 struct _p_Layout {
   MPI_Comm comm;
   PetscMPIInt rank, size;
-  PetscInt bodies, M;            /* bodies and markers in all */
+  PetscInt bodies, M;            /* bodies and markers of all ranks */
   PetscInt *start;               /* [bodies+1] first marker of each body */
   PetscInt *body;                /* [ranks+1] first body of each rank */
   PetscInt own, end;             /* this rank's bodies: own .. end - 1 */
-  PetscInt first, n;             /* this rank's markers: the first one's number, and how many */
-  PetscMPIInt *count[2], *at[2]; /* [ranks] numbers of each rank, and where they start, with one and two a marker */
+  PetscInt first, n;             /* this rank's markers: first .. first + n - 1 */
+  PetscMPIInt *count[2], *at[2]; /* [ranks] length and start of each rank's part, with one and two numbers a marker */
 };
 
-/* LayoutCreate - for bodies whose first markers are start[bodies+1] (copied). Work of a body: the square of its
-   markers, as of its dense matrices' products. Not collective. */
+/* LayoutCreate - for bodies whose first markers are start[bodies+1] (copied). The work of a body is counted as the
+   square of its markers, like that of products with its dense matrices. Not collective. */
 PETSC_EXTERN PetscErrorCode LayoutCreate(MPI_Comm comm, PetscInt bodies, const PetscInt start[], Layout *layout);
 
-/* LayoutCreateLike - of the same bodies on the same ranks with other markers, start[bodies+1]. Not collective. */
+/* LayoutCreateLike - the bodies of a layout, on the same ranks, with other markers, start[bodies+1]. Not collective. */
 PETSC_EXTERN PetscErrorCode LayoutCreateLike(Layout like, const PetscInt start[], Layout *layout);
 
-/* LayoutCreatePart - of the bodies first .. end - 1 of another one on the same ranks, numbered from 0 on. Not
-   collective. */
+/* LayoutCreatePart - the bodies first .. end - 1 of a layout, on the same ranks, numbered from 0 on. Not collective. */
 PETSC_EXTERN PetscErrorCode LayoutCreatePart(Layout all, PetscInt first, PetscInt end, Layout *layout);
 PETSC_EXTERN PetscErrorCode LayoutDestroy(Layout *layout);
 
@@ -35,8 +36,8 @@ PETSC_EXTERN PetscErrorCode LayoutCreateVec(Layout layout, int each, Vec *x);
 /* LayoutOwner - the rank that a body belongs to. Not collective. */
 PETSC_EXTERN PetscMPIInt LayoutOwner(Layout layout, PetscInt body);
 
-/* LayoutCount - markers of a body. LayoutOffset - where an own body's markers start in this rank's part of an edge
-   vector; twice that in a marker vector's. Not collective. */
+/* LayoutCount - number of markers of a body. LayoutOffset - where the markers of one of this rank's bodies start in
+   this rank's part of an edge vector; in a marker vector they start at twice that. Not collective. */
 static inline PetscInt LayoutCount(Layout layout, PetscInt body) {
   return layout->start[body + 1] - layout->start[body];
 }
@@ -62,14 +63,14 @@ static inline PetscInt LayoutBody(Layout layout, PetscInt marker) {
   return low;
 }
 
-/* LayoutGather - own[each n] of every rank to all[each M] of every rank. LayoutGatherVec - the same of a vector.
-   LayoutSum - the sum over ranks of part[each M] to the owners' own[each n]. Collective. */
+/* LayoutGather - own[each n] of every rank to all[each M] of every rank. LayoutGatherVec - a marker or edge vector to
+   all[] of every rank. LayoutSum - the sum over ranks of part[each M] to own[each n] of the owners. Collective. */
 PETSC_EXTERN PetscErrorCode LayoutGather(Layout layout, int each, const PetscScalar own[], PetscScalar all[]);
 PETSC_EXTERN PetscErrorCode LayoutGatherVec(Layout layout, Vec x, PetscScalar all[]);
 PETSC_EXTERN PetscErrorCode LayoutSum(Layout layout, int each, const PetscScalar part[], PetscScalar own[]);
 
-/* LayoutToRank - own[each n] of every rank to all[each M] of one. LayoutFromRank - and back. all is not touched on
-   other ranks. Collective. */
+/* LayoutToRank - own[each n] of every rank to all[each M] of rank `root`. LayoutFromRank - all[each M] of rank `root`
+   to own[each n] of every rank. `all` is not touched on other ranks. Collective. */
 PETSC_EXTERN PetscErrorCode LayoutToRank(Layout layout, PetscMPIInt root, int each, const PetscScalar own[],
                                          PetscScalar all[]);
 PETSC_EXTERN PetscErrorCode LayoutFromRank(Layout layout, PetscMPIInt root, int each, const PetscScalar all[],

@@ -2,9 +2,9 @@
 #include "base/agree.h"
 #include "markers/fold.h"
 
-/* A marker of body b at X too near a wall, or beyond it: the distance in cells. */
-static PetscErrorCode WrongPlace(PetscInt b, const PetscReal X[2], PetscReal distance, const char wall[], PetscReal at,
-                                 const char needs[], char message[PETVES_MAX_MESSAGE]) {
+/* The message of a marker of body b at X that is too near a wall or beyond it; distance in cells. */
+static PetscErrorCode MarkerReject(PetscInt b, const PetscReal X[2], PetscReal distance, const char wall[],
+                                   PetscReal at, const char needs[], char message[PETVES_MAX_MESSAGE]) {
   char where[64] = "beyond", need[64] = "";
   PetscFunctionBeginUser;
   if (distance >= 0) {
@@ -17,9 +17,9 @@ static PetscErrorCode WrongPlace(PetscInt b, const PetscReal X[2], PetscReal dis
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What is wrong with the own body b's markers X[2n], if anything. */
-static PetscErrorCode CheckBody(Markers m, PetscInt b, PetscInt n, const PetscScalar X[],
-                                char message[PETVES_MAX_MESSAGE]) {
+/* The message of the first wrong marker of X[2n], those of one of this rank's bodies, b. */
+static PetscErrorCode MarkersCheckBody(Markers m, PetscInt b, PetscInt n, const PetscScalar X[],
+                                       char message[PETVES_MAX_MESSAGE]) {
   static const char *const names[2][2] = {{"x_min", "x_max"}, {"y_min", "y_max"}};
   const Grid g = m->grid;
   PetscFunctionBeginUser;
@@ -34,8 +34,8 @@ static PetscErrorCode CheckBody(Markers m, PetscInt b, PetscInt n, const PetscSc
       for (int side = 0; side < 2 && g->wall[dir] && !g->free; side++) {
         const PetscReal distance = side ? g->hi[dir] - x : x - g->lo[dir];
         if (distance >= m->least * g->h * (1 - 1e-12)) continue;
-        PetscCall(WrongPlace(b, X + 2 * k, distance / g->h, names[dir][side], side ? g->hi[dir] : g->lo[dir], m->needs,
-                             message));
+        PetscCall(MarkerReject(b, X + 2 * k, distance / g->h, names[dir][side], side ? g->hi[dir] : g->lo[dir],
+                               m->needs, message));
         PetscFunctionReturn(PETSC_SUCCESS);
       }
     }
@@ -48,23 +48,24 @@ PetscErrorCode MarkersCheck(Markers m, Layout layout, Vec X, char message[PETVES
   message[0] = 0;
   PetscCall(VecGetArrayRead(X, &x));
   for (PetscInt b = layout->own; b < layout->end && !*message; b++)
-    PetscCall(CheckBody(m, b, LayoutCount(layout, b), x + 2 * LayoutOffset(layout, b), message));
+    PetscCall(MarkersCheckBody(m, b, LayoutCount(layout, b), x + 2 * LayoutOffset(layout, b), message));
   PetscCall(VecRestoreArrayRead(X, &x));
   PetscCall(AgreeMessage(layout->comm, message));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-#define BESIDE 2 /* rows and columns beside the stencils: for G, G^T and dipoles */
+#define BESIDE 2 /* rows and columns next to the stencils that G, G^T and dipoles reach */
 
-/* From `low` to `high` on a grid of n, of which a rank has `own` from `first` on; all of them across a seam. */
-static void Clip(PetscBool wall, PetscInt n, PetscInt first, PetscInt own, PetscInt low, PetscInt high,
-                 PetscInt window[2]) {
+/* Entries low .. high of a grid of n, of which a rank has `own` from `first` on, as a range of the rank's; the whole
+   range where they lie across a periodic seam. */
+static void WindowClip(PetscBool wall, PetscInt n, PetscInt first, PetscInt own, PetscInt low, PetscInt high,
+                       PetscInt window[2]) {
   const PetscBool seam = !wall && (low < 0 || high > n) ? PETSC_TRUE : PETSC_FALSE;
   window[0] = seam ? 0 : PetscMin(PetscMax(low - first, 0), own);
   window[1] = seam ? own : PetscMax(PetscMin(high - first, own), window[0]);
 }
 
-static void SetWindow(Markers m) {
+static void MarkersSetWindow(Markers m) {
   const Grid g = m->grid;
   PetscInt low[2] = {PETSC_MAX_INT / 2, PETSC_MAX_INT / 2}, high[2] = {-1, -1};
   for (PetscInt k = 0; k < 2 * m->layout->M; k++)
@@ -72,12 +73,12 @@ static void SetWindow(Markers m) {
       low[d] = PetscMin(low[d], m->stencil[k].first[d]);
       high[d] = PetscMax(high[d], m->stencil[k].first[d] + m->stencil[k].n[d]);
     }
-  Clip(g->wall[0], g->n[0], 0, g->n[0], low[0] - BESIDE, high[0] + BESIDE, m->window.columns);
-  Clip(g->wall[1], g->n[1], g->first, g->rows[FIELD_P], low[1] - BESIDE, high[1] + BESIDE, m->window.rows);
+  WindowClip(g->wall[0], g->n[0], 0, g->n[0], low[0] - BESIDE, high[0] + BESIDE, m->window.columns);
+  WindowClip(g->wall[1], g->n[1], g->first, g->rows[FIELD_P], low[1] - BESIDE, high[1] + BESIDE, m->window.rows);
 }
 
-/* The stencil of one component of a marker at X between the walls. */
-static void FoldStencil(Markers m, int comp, const PetscReal X[2], Stencil *s) {
+/* Fold and scale the stencil of one component of a marker at X at the walls. */
+static void MarkerFoldStencil(Markers m, int comp, const PetscReal X[2], Stencil *s) {
   const Grid g = m->grid;
   for (int dir = 0; dir < 2; dir++) {
     const PetscBool normal = comp == dir ? PETSC_TRUE : PETSC_FALSE;
@@ -96,12 +97,13 @@ PetscErrorCode MarkersPlace(Markers m, Vec X) {
   const Grid g = m->grid;
   PetscFunctionBeginUser;
   PetscCall(LayoutGatherVec(m->layout, X, m->X));
-  if (g->free) PetscFunctionReturn(PETSC_SUCCESS); /* no stencils, an empty window: E = 0 */
+  if (g->free) PetscFunctionReturn(PETSC_SUCCESS); /* without stencils the window is empty and E = 0 */
   for (PetscInt k = 0; k < m->layout->M; k++)
     for (int comp = 0; comp < 2; comp++)
       for (int dir = 0; dir < 2; dir++) {
         Stencil *s = &m->plain[2 * k + comp];
-        /* entry 0 of a component sits on the first right (top) face along its direction, in a cell's middle across */
+        /* entry 0 of a component lies on the right or top face of the first cell along it, and in the cell's middle
+         * across */
         const PetscReal r = (m->X[2 * k + dir] - g->lo[dir]) / g->h - (comp == dir ? 1.0 : 0.5);
         s->n[dir] = (comp == dir ? m->kernel->along : m->kernel->across)(r, &s->first[dir], s->weight[dir]);
         if (!g->wall[dir] && (s->first[dir] < 0 || s->first[dir] >= g->n[dir]))
@@ -109,11 +111,11 @@ PetscErrorCode MarkersPlace(Markers m, Vec X) {
       }
   if (m->folded) {
     PetscCall(PetscArraycpy(m->stencil, m->plain, 2 * m->layout->M));
-    for (PetscInt k = 0; k < 2 * m->layout->M; k++) FoldStencil(m, k % 2, m->X + k - k % 2, &m->stencil[k]);
+    for (PetscInt k = 0; k < 2 * m->layout->M; k++) MarkerFoldStencil(m, k % 2, m->X + k - k % 2, &m->stencil[k]);
   }
-  for (PetscInt k = 0; k < 2 * m->layout->M; k++) /* weights of whole vectors */
+  for (PetscInt k = 0; k < 2 * m->layout->M; k++) /* weights are padded to whole vectors */
     for (PetscInt a = m->stencil[k].n[0]; a < KERNEL_MAX_POINTS; a++) m->stencil[k].weight[0][a] = 0;
-  SetWindow(m);
+  MarkersSetWindow(m);
   PetscCall(MarkerRowsPlace(m->rows, m->stencil));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -201,9 +203,9 @@ PetscErrorCode MarkersCreate(Grid g, Layout l, const char kernel[], PetscBool fo
   PetscCheck(m->kernel, g->comm, PETSC_ERR_USER_INPUT, "-delta_type %s: unknown kernel", kernel);
   PetscCall(PetscMalloc4(2 * l->M, &m->X, 2 * l->M, &m->plain, 2 * l->M, &m->force, 2 * l->M, &m->part));
   m->folded = m->scaled = folded && (g->wall[0] || g->wall[1]) ? PETSC_TRUE : PETSC_FALSE;
-  m->least = folded
-                 ? KERNEL_FOLDED_CELLS
-                 : KERNEL_WALL_CELLS; /* nearer, mobility with the near field may not be positive; the kernels' reach */
+  m->least =
+      folded ? KERNEL_FOLDED_CELLS
+             : KERNEL_WALL_CELLS; /* within the kernels' reach the mobility with the near field may not be positive */
   m->needs = folded ? "0.25" : "3";
   m->stencil = m->plain;
   if (m->folded) PetscCall(PetscMalloc1(2 * l->M, &m->stencil));

@@ -1,30 +1,29 @@
-/* Markers between which only the fluid is: forces spread and velocities interpolated row by row of a Stokes solve. */
 #include "markers/respond.h"
 
 typedef struct {
   Markers m;
   DipoleRows dipoles;
-  PetscReal alpha;           /* of the markers' forces */
-  const PetscScalar *f;      /* or a force on the grid, */
-  Rows u;                    /* whose u has a row above, */
-  const PetscScalar *source; /* and the dipoles' source on it */
-  PetscBool measured;        /* not wanted at the markers */
-  const StreamPast *past;    /* a further force, */
-  Vec flow;                  /* the velocity's flow or NULL, */
-  PetscBool add;             /* added to what is there */
+  PetscReal alpha;           /* factor of the markers' forces */
+  const PetscScalar *f;      /* force on the grid in place of the markers' forces; NULL: none */
+  Rows u;                    /* component u of f, with the row above this rank's */
+  const PetscScalar *source; /* the dipoles' source on the grid; NULL: none */
+  PetscBool measured;        /* the velocity at the markers is not wanted */
+  const StreamPast *past;    /* force of earlier states; NULL: none */
+  Vec flow;                  /* the flow of the velocity; NULL: not wanted */
+  PetscBool add;             /* the flow is added to `flow` */
 } Response;
 
-static const PetscScalar *SpreadForce(void *ctx, Field f, PetscInt j, PetscScalar work[]) {
+static const PetscScalar *ResponseSpreadForce(void *ctx, Field f, PetscInt j, PetscScalar work[]) {
   const Response *r = (const Response *)ctx;
   const Grid g = r->m->grid;
-  const PetscInt row = j == g->rows[f] && g->size == 1 ? 0 : j; /* across the seam */
+  const PetscInt row = j == g->rows[f] && g->size == 1 ? 0 : j; /* the row above lies across the periodic seam */
   (void)PetscArrayzero(work, g->columns[f]);
   MarkerRowSpread(r->m->rows, f, row, r->alpha, r->m->force, work);
   if (r->dipoles) DipoleRowsAddForce(r->dipoles, f, j, work);
   return work;
 }
 
-static const PetscScalar *GridForce(void *ctx, Field f, PetscInt j, PetscScalar work[]) {
+static const PetscScalar *ResponseGridForce(void *ctx, Field f, PetscInt j, PetscScalar work[]) {
   const Response *r = (const Response *)ctx;
   const PetscScalar *row = f == FIELD_U ? RowAt(&r->u, j) : r->f + GridRowStart(r->m->grid, f, j);
   if (!r->dipoles) return row;
@@ -33,14 +32,15 @@ static const PetscScalar *GridForce(void *ctx, Field f, PetscInt j, PetscScalar 
   return work;
 }
 
-static void TakeVelocity(void *ctx, Field f, PetscInt j, PetscScalar row[]) {
+static void ResponseVelocity(void *ctx, Field f, PetscInt j, PetscScalar row[]) {
   const Response *r = (const Response *)ctx;
   if (r->dipoles && f == FIELD_U) DipoleRowsAddVelocity(r->dipoles, j, row);
   if (!r->measured) MarkerRowInterpolate(r->m->rows, f, j, row, r->m->part);
 }
 
-/* window: forces are zero outside it; NULL: they may be anywhere. */
-static PetscErrorCode Solve(Response *r, Stream stream, const GridWindow *window, Vec U, StreamMeasures *measures) {
+/* One solve. window: forces are zero outside it; NULL: they may be anywhere. */
+static PetscErrorCode ResponseSolve(Response *r, Stream stream, const GridWindow *window, Vec U,
+                                    StreamMeasures *measures) {
   const Markers m = r->m;
   const StreamRows rows = {.ctx = r,
                            .forced = {window ? window->rows[0] : 0, window ? window->rows[1] : m->grid->rows[FIELD_U]},
@@ -48,8 +48,8 @@ static PetscErrorCode Solve(Response *r, Stream stream, const GridWindow *window
                            .past = r->past,
                            .flow = r->flow,
                            .add = r->add,
-                           .force = r->f ? GridForce : SpreadForce,
-                           .velocity = TakeVelocity,
+                           .force = r->f ? ResponseGridForce : ResponseSpreadForce,
+                           .velocity = ResponseVelocity,
                            .mean = {r->dipoles ? r->dipoles->flow : NULL, r->dipoles ? r->dipoles->mean : NULL},
                            .source = r->source};
   PetscScalar *own;
@@ -63,12 +63,12 @@ static PetscErrorCode Solve(Response *r, Stream stream, const GridWindow *window
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Respond(Response *r, Stream stream, Vec F, Vec U, StreamMeasures *measures) {
+static PetscErrorCode ResponseToForces(Response *r, Stream stream, Vec F, Vec U, StreamMeasures *measures) {
   const Markers m = r->m;
   PetscFunctionBeginUser;
   PetscCall(PetscLogEventBegin(m->respond, 0, 0, 0, 0));
   PetscCall(LayoutGatherVec(m->layout, F, m->force));
-  PetscCall(Solve(r, stream, &m->window, U, measures));
+  PetscCall(ResponseSolve(r, stream, &m->window, U, measures));
   PetscCall(PetscLogEventEnd(m->respond, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -76,7 +76,7 @@ static PetscErrorCode Respond(Response *r, Stream stream, Vec F, Vec U, StreamMe
 PetscErrorCode MarkersRespond(Markers m, Stream stream, DipoleRows dipoles, PetscReal alpha, Vec F, Vec U) {
   Response r = {.m = m, .dipoles = dipoles, .alpha = alpha};
   PetscFunctionBeginUser;
-  PetscCall(Respond(&r, stream, F, U, NULL));
+  PetscCall(ResponseToForces(&r, stream, F, U, NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -84,7 +84,7 @@ PetscErrorCode MarkersAddFlow(Markers m, Stream stream, PetscReal alpha, Vec F, 
                               StreamMeasures *measures) {
   Response r = {.m = m, .alpha = alpha, .flow = flow, .add = PETSC_TRUE};
   PetscFunctionBeginUser;
-  PetscCall(Respond(&r, stream, F, U, measures));
+  PetscCall(ResponseToForces(&r, stream, F, U, measures));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -98,7 +98,7 @@ PetscErrorCode MarkersFollow(Markers m, Stream stream, DipoleRows dipoles, const
   PetscCall(VecGetArrayRead(f->values, &r.f));
   if (source) PetscCall(VecGetArrayRead(source, &r.source));
   PetscCall(GridRows(m->grid, FIELD_U, r.f, &r.u));
-  PetscCall(Solve(&r, stream, f->everywhere ? NULL : &f->window, U, measures));
+  PetscCall(ResponseSolve(&r, stream, f->everywhere ? NULL : &f->window, U, measures));
   if (source) PetscCall(VecRestoreArrayRead(source, &r.source));
   PetscCall(VecRestoreArrayRead(f->values, &r.f));
   PetscCall(PetscLogEventEnd(m->respond, 0, 0, 0, 0));

@@ -1,13 +1,18 @@
-/* What a solve by stream function does to markers. Forces and velocities go row by row between markers and stream,
-   which must be of the markers' grid: nothing is made on the grid. */
+/* The velocity at markers that a Stokes solve by stream function gives for forces at markers:
+
+       U = E S^-1 (alpha E^T F + force of the dipoles),
+
+   S the Stokes operator. Forces are spread and velocities interpolated row by row as the solve passes the grid, so that
+   no field is made on the grid. The stream must be of the markers' grid. A call gathers the forces to all ranks, has
+   the messages of one solve, and sums the velocities to the owners. */
 #pragma once
 #include "markers/dipolerows.h"
 
-/* MarkersRespond - U = E u, u the Stokes solve's velocity for the force alpha E^T F and the dipoles (NULL: none).
-   MarkersAddFlow - the same without dipoles, and flow += the flow of u. MarkersFollow - for the forcing f, in which the
-   dipoles' force and source are, and for the force of states before (past, NULL: none), U and the flow made being what
-   it says; U NULL: not wanted. measures: of u on the whole grid, NULL: not wanted. U may be F.
-   Collective. */
+/* MarkersRespond - U = E u, u the velocity of the Stokes solve for the force alpha E^T F and the dipoles (NULL: none).
+   MarkersAddFlow - U = E u for the force alpha E^T F, and flow += the flow of u. MarkersFollow - U = E u for the forcing
+   f, which has the dipoles' force and source in it, and for the force of earlier states (past, NULL: none), which also
+   says how U and the flow of u are made; U may be NULL: not wanted. measures: of u on the whole grid, NULL: not wanted.
+   U may be F. Collective. */
 PETSC_EXTERN PetscErrorCode MarkersRespond(Markers markers, Stream stream, DipoleRows dipoles, PetscReal alpha, Vec F,
                                            Vec U);
 PETSC_EXTERN PetscErrorCode MarkersAddFlow(Markers markers, Stream stream, PetscReal alpha, Vec F, Vec U, Vec flow,

@@ -1,16 +1,16 @@
 #include "markers/rows.h"
 #include "base/lanes.h"
 
-#define AHEAD 16 /* entries */
+#define AHEAD 16 /* entries between the one that is used and the one that is fetched into the cache */
 
 /* The row of this rank, or the one above its rows, that is entry b of a stencil; -1 when it is another rank's. Beyond a
    wall only zero weights can fall: markers keep three cells away, or stencils are folded. */
-static inline PetscInt LocalRow(const Grid g, int comp, const Stencil *s, PetscInt b) {
+static inline PetscInt StencilLocalRow(const Grid g, int comp, const Stencil *s, PetscInt b) {
   PetscInt j = s->first[1] + b;
   if (!g->wall[1] && j >= g->n[1]) j -= g->n[1];
   j -= g->first;
   if (j >= 0 && j <= g->rows[comp]) return j;
-  return !g->wall[1] && j + g->n[1] == g->rows[comp] ? g->rows[comp] : -1; /* above, across the seam */
+  return !g->wall[1] && j + g->n[1] == g->rows[comp] ? g->rows[comp] : -1; /* the row above, across the periodic seam */
 }
 
 PetscErrorCode MarkerRowsPlace(MarkerRows r, const Stencil stencil[]) {
@@ -22,7 +22,7 @@ PetscErrorCode MarkerRowsPlace(MarkerRows r, const Stencil stencil[]) {
     PetscCall(PetscArrayzero(start, g->rows[c] + 2));
     for (PetscInt k = c; k < r->stencils; k += 2)
       for (PetscInt b = 0; b < stencil[k].n[1]; b++)
-        if ((j = LocalRow(g, c, &stencil[k], b)) >= 0) start[j + 1]++;
+        if ((j = StencilLocalRow(g, c, &stencil[k], b)) >= 0) start[j + 1]++;
     for (j = 0; j <= g->rows[c]; j++) start[j + 1] += start[j];
     if (start[g->rows[c] + 1] > r->room[c]) {
       r->room[c] = start[g->rows[c] + 1] * 11 / 10;
@@ -31,22 +31,24 @@ PetscErrorCode MarkerRowsPlace(MarkerRows r, const Stencil stencil[]) {
     }
     for (PetscInt k = c; k < r->stencils; k += 2)
       for (PetscInt b = 0; b < stencil[k].n[1]; b++)
-        if ((j = LocalRow(g, c, &stencil[k], b)) >= 0) r->entry[c][start[j]++] = (RowEntry){.stencil = k, .entry = b};
-    for (j = g->rows[c] + 1; j > 0; j--) start[j] = start[j - 1]; /* each has become the next one's */
+        if ((j = StencilLocalRow(g, c, &stencil[k], b)) >= 0)
+          r->entry[c][start[j]++] = (RowEntry){.stencil = k, .entry = b};
+    for (j = g->rows[c] + 1; j > 0; j--) start[j] = start[j - 1]; /* start[j] has become the start of row j + 1 */
     start[0] = 0;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Stencils of a row lie apart: the one that is wanted some entries on is asked for now. */
-static inline void Prefetch(MarkerRows r, Field f, PetscInt e) {
+/* Fetch a stencil that is used some entries later: the stencils of a row lie far apart in memory. */
+static inline void RowPrefetch(MarkerRows r, Field f, PetscInt e) {
   const char *next = (const char *)&r->stencil[r->entry[f][e + AHEAD].stencil];
   __builtin_prefetch(next);
   __builtin_prefetch(next + 64);
 }
 
-/* row += force times a stencil's weights along it. */
-static inline void AddWeights(const Grid g, PetscInt columns, const Stencil *s, PetscScalar force, PetscScalar row[]) {
+/* row += force times the weights of a stencil along x. */
+static inline void RowAddStencil(const Grid g, PetscInt columns, const Stencil *s, PetscScalar force,
+                                 PetscScalar row[]) {
   const PetscInt i0 = s->first[0];
   const PetscReal *weight = s->weight[0];
   if (i0 >= 0 && i0 + LANES <= columns && i0 + s->n[0] <= columns) {
@@ -63,8 +65,8 @@ void MarkerRowSpread(MarkerRows r, Field f, PetscInt j, PetscReal alpha, const P
   for (PetscInt e = r->start[f][j]; e < r->start[f][j + 1]; e++) {
     const RowEntry at = r->entry[f][e];
     const Stencil *s = &r->stencil[at.stencil];
-    Prefetch(r, f, e);
-    AddWeights(r->grid, r->grid->columns[f], s, alpha * F[at.stencil] * s->weight[1][at.entry], row);
+    RowPrefetch(r, f, e);
+    RowAddStencil(r->grid, r->grid->columns[f], s, alpha * F[at.stencil] * s->weight[1][at.entry], row);
   }
 }
 
@@ -74,8 +76,8 @@ void MarkerRowsSpread(MarkerRows r, Field f, PetscReal alpha, const PetscScalar 
   for (PetscInt k = f; k < r->stencils; k += 2) {
     const Stencil *s = &r->stencil[k];
     for (PetscInt b = 0; b < s->n[1]; b++) {
-      const PetscInt j = LocalRow(g, f, s, b);
-      if (j >= 0 && j < g->rows[f]) AddWeights(g, columns, s, alpha * F[k] * s->weight[1][b], all + j * columns);
+      const PetscInt j = StencilLocalRow(g, f, s, b);
+      if (j >= 0 && j < g->rows[f]) RowAddStencil(g, columns, s, alpha * F[k] * s->weight[1][b], all + j * columns);
     }
   }
 }
@@ -85,7 +87,7 @@ void MarkerRowInterpolate(MarkerRows r, Field f, PetscInt j, const PetscScalar r
   for (PetscInt e = r->start[f][j]; e < r->start[f][j + 1]; e++) {
     const RowEntry at = r->entry[f][e];
     const Stencil *s = &r->stencil[at.stencil];
-    Prefetch(r, f, e);
+    RowPrefetch(r, f, e);
     const PetscInt i0 = s->first[0];
     const PetscReal *weight = s->weight[0];
     PetscScalar line = 0;

@@ -1,4 +1,3 @@
-/* Edges of membranes, and the forces of tension and bending on their markers. */
 #include "membrane/membrane.h"
 
 void MembraneEdges(Membrane m, PetscInt v, const PetscScalar X[], PetscScalar e[]) {
@@ -14,7 +13,7 @@ void MembraneEdges(Membrane m, PetscInt v, const PetscScalar X[], PetscScalar e[
 
 void MembraneEdgesTranspose(Membrane m, PetscInt v, PetscReal alpha, const PetscScalar F[], PetscScalar Y[]) {
   const PetscInt n = LayoutCount(m->layout, v);
-  if (m->derivative == DERIVATIVE_SPECTRAL) { /* antisymmetric */
+  if (m->derivative == DERIVATIVE_SPECTRAL) { /* D is antisymmetric */
     SpectralDerivative(m->spectral[v], 1, -alpha, F, Y);
     return;
   }
@@ -47,8 +46,8 @@ void MembraneStretching(Membrane m, const PetscReal tau[], const PetscScalar U[]
   }
 }
 
-/* Of most vesicles no tension turns. */
-static PetscBool IsZero(PetscInt n, const PetscReal x[]) {
+/* Whether all n numbers are zero, as the tension that turns with the edges is on most vesicles. */
+static PetscBool TensionIsZero(PetscInt n, const PetscReal x[]) {
   for (PetscInt k = 0; k < n; k++)
     if (x[k] != 0) return PETSC_FALSE;
   return PETSC_TRUE;
@@ -59,7 +58,7 @@ void MembraneStretchingTranspose(Membrane m, const PetscReal tau[], PetscReal al
   PetscScalar *pull = m->work.stretching;
   for (PetscInt v = m->layout->own; v < m->layout->end; v++) {
     const PetscInt at = LayoutOffset(m->layout, v);
-    if (IsZero(LayoutCount(m->layout, v), sigma + at)) continue;
+    if (TensionIsZero(LayoutCount(m->layout, v), sigma + at)) continue;
     for (PetscInt k = 0; k < 2 * LayoutCount(m->layout, v); k++) pull[k] = tau[2 * at + k] * sigma[at + k / 2];
     MembraneEdgesTranspose(m, v, alpha, pull, F + 2 * at);
   }
@@ -76,13 +75,13 @@ void MembraneVesiclePull(Membrane m, PetscInt v, PetscReal alpha, const PetscRea
 void MembranePull(Membrane m, PetscReal alpha, const PetscReal tension[], const PetscScalar X[], PetscScalar F[]) {
   for (PetscInt v = m->layout->own; v < m->layout->end; v++) {
     const PetscInt at = LayoutOffset(m->layout, v);
-    if (IsZero(LayoutCount(m->layout, v), tension + at)) continue;
+    if (TensionIsZero(LayoutCount(m->layout, v), tension + at)) continue;
     MembraneVesiclePull(m, v, alpha, tension + at, X + 2 * at, F + 2 * at);
   }
 }
 
 /* Y += w (second difference of X) around a closed curve of n points. */
-static void AddSecondDifference(PetscInt n, PetscReal w, const PetscScalar X[], PetscScalar Y[]) {
+static void CurveAddSecondDifference(PetscInt n, PetscReal w, const PetscScalar X[], PetscScalar Y[]) {
   for (PetscInt k = 0; k < n; k++) {
     const PetscInt p = k ? k - 1 : n - 1, q = k < n - 1 ? k + 1 : 0;
     for (int c = 0; c < 2; c++) Y[2 * k + c] += w * (X[2 * p + c] - 2 * X[2 * k + c] + X[2 * q + c]);
@@ -98,8 +97,8 @@ void MembraneVesicleBending(Membrane m, PetscInt v, PetscReal alpha, const Petsc
     return;
   }
   (void)PetscArrayzero(curvature, 2 * n);
-  AddSecondDifference(n, 1 / PetscSqr(m->ds[v]), X, curvature);
-  AddSecondDifference(n, alpha / m->ds[v], curvature, F); /* ds/ds^2 */
+  CurveAddSecondDifference(n, 1 / PetscSqr(m->ds[v]), X, curvature);
+  CurveAddSecondDifference(n, alpha / m->ds[v], curvature, F); /* ds D+D-/ds^2 */
 }
 
 void MembraneBending(Membrane m, PetscReal alpha, const PetscScalar X[], PetscScalar F[]) {
@@ -115,7 +114,7 @@ PetscReal MembraneBendingEnergy(Membrane m, PetscInt v, const PetscScalar X[]) {
   PetscReal sum = 0;
   (void)PetscArrayzero(curvature, 2 * n);
   if (m->derivative == DERIVATIVE_FD)
-    AddSecondDifference(n, 1 / PetscSqr(m->ds[v]), X, curvature);
+    CurveAddSecondDifference(n, 1 / PetscSqr(m->ds[v]), X, curvature);
   else
     SpectralDerivative(m->spectral[v], 2, PetscSqr(n / m->arc[v]), X, curvature);
   for (PetscInt k = 0; k < 2 * n; k++) sum += PetscSqr(curvature[k]);

@@ -1,7 +1,3 @@
-/* Gravity as a force on membranes (docs/membrane.md, Gravity): with the hydrostatic pressure of each fluid taken off,
-   its jump across the membrane is a normal force, whose sum is the weight of what is inside less that of what it
-   displaces.
- */
 #include "membrane/membrane.h"
 
 PetscErrorCode MembraneSetWeight(Membrane m, const PetscReal weight[]) {
@@ -12,7 +8,7 @@ PetscErrorCode MembraneSetWeight(Membrane m, const PetscReal weight[]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* From the centroid, so that numbers stay small: a constant is a constant pressure. */
+/* A constant pressure has no effect: with positions from the centroid numbers stay small. */
 void MembraneVesicleGravity(Membrane m, PetscInt v, PetscReal alpha, const PetscScalar X[], PetscScalar F[]) {
   const PetscInt n = LayoutCount(m->layout, v);
   const PetscReal *g = m->weight + 2 * v;
@@ -35,7 +31,6 @@ void MembraneGravity(Membrane m, PetscReal alpha, const PetscScalar X[], PetscSc
   }
 }
 
-/* - weight . INT x dA */
 PetscReal MembraneGravityEnergy(Membrane m, PetscInt v, const PetscScalar X[]) {
   Measures measures;
   if (!m->weight) return 0;
@@ -43,7 +38,6 @@ PetscReal MembraneGravityEnergy(Membrane m, PetscInt v, const PetscScalar X[]) {
   return -measures.area * (m->weight[2 * v] * measures.center[0] + m->weight[2 * v + 1] * measures.center[1]);
 }
 
-/* (1/A) INT (x - c) (u.n) ds, which is what the centroid moves by where the area is kept */
 void MembraneCentroidVelocity(Membrane m, PetscInt v, const PetscScalar X[], const PetscScalar U[],
                               PetscReal velocity[2]) {
   const PetscInt n = LayoutCount(m->layout, v);

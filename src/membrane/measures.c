@@ -1,8 +1,7 @@
-/* Measures of a vesicle (docs/method.md, Diagnostics). */
 #include "membrane/membrane.h"
 #include "base/lanes.h"
 
-#define ROUNDING 1e-12 /* of the largest tangential speed: a smaller one has no sign */
+#define ROUNDING 1e-12 /* over the largest tangential speed: a smaller speed has no sign */
 
 /* Area, first and second moments of the polygon about `about`, by Green's theorem over its edges. */
 static void PolygonMoments(PetscInt markers, const PetscScalar X[], const PetscReal about[2], PetscReal *area,
@@ -22,8 +21,8 @@ static void PolygonMoments(PetscInt markers, const PetscScalar X[], const PetscR
   }
 }
 
-/* What four points add to the sums of x dy - y dx and its like. */
-static inline void AddMoments(Lanes x, Lanes y, Lanes dx, Lanes dy, Lanes sum[6]) {
+/* Add four points to the integrals round the curve that give area, first and second moments by Green's theorem. */
+static inline void MomentsAdd(Lanes x, Lanes y, Lanes dx, Lanes dy, Lanes sum[6]) {
   sum[0] += x * dy - y * dx;
   sum[1] += x * x * dy;
   sum[2] -= y * y * dx;
@@ -32,7 +31,7 @@ static inline void AddMoments(Lanes x, Lanes y, Lanes dx, Lanes dy, Lanes sum[6]
   sum[5] -= y * y * y * dx;
 }
 
-/* The same moments of the spectral curve, by the trapezoidal rule: spectrally accurate. */
+/* Area, first and second moments of the spectral curve about `about`, by the trapezoidal rule: spectrally accurate. */
 static void SpectralMoments(PetscInt markers, const PetscScalar X[], const PetscScalar e[], const PetscReal about[2],
                             PetscReal *area, PetscReal first[2], PetscReal second[3]) {
   Lanes sum[6] = {{0}}, x, y, dx, dy;
@@ -40,10 +39,10 @@ static void SpectralMoments(PetscInt markers, const PetscScalar X[], const Petsc
   for (; k + LANES <= markers; k += LANES) {
     LanesPairs(X + 2 * k, &x, &y);
     LanesPairs(e + 2 * k, &dx, &dy);
-    AddMoments(x - about[0], y - about[1], dx, dy, sum);
+    MomentsAdd(x - about[0], y - about[1], dx, dy, sum);
   }
   for (; k < markers; k++)
-    AddMoments(X[2 * k] - about[0] - (Lanes){0}, X[2 * k + 1] - about[1] - (Lanes){0}, (Lanes){e[2 * k]},
+    MomentsAdd(X[2 * k] - about[0] - (Lanes){0}, X[2 * k + 1] - about[1] - (Lanes){0}, (Lanes){e[2 * k]},
                (Lanes){e[2 * k + 1]}, sum);
   *area = LanesSum(sum[0]) / 2;
   for (int c = 0; c < 2; c++) first[c] = LanesSum(sum[1 + c]) / 2;
@@ -55,7 +54,7 @@ void MembraneMeasure(Membrane m, PetscInt v, const PetscScalar X[], Measures *ou
   PetscReal about[2] = {X[0], X[1]}, area = 0, first[2], second[3], shortest = PETSC_MAX_REAL, longest = 0;
   PetscScalar *e = m->work.measures;
   MembraneEdges(m, v, X, e);
-  for (int pass = 0; pass < 2; pass++) { /* about a marker, then about the centroid */
+  for (int pass = 0; pass < 2; pass++) { /* moments about a marker, then about the centroid */
     if (m->derivative == DERIVATIVE_SPECTRAL)
       SpectralMoments(n, X, e, about, &area, first, second);
     else
@@ -89,7 +88,7 @@ PetscReal MembraneFrequency(Membrane m, PetscInt v, const PetscScalar X[], const
     const PetscReal tangential = ((U[2 * k] - mean[0]) * T[2 * k] + (U[2 * k + 1] - mean[1]) * T[2 * k + 1]) / speed;
     least = PetscMin(least, tangential);
     most = PetscMax(most, tangential);
-    sum += speed / tangential; /* dl = speed 2 pi/n a marker */
+    sum += speed / tangential; /* dl = 2 pi/n speed */
   }
   const PetscReal rounding = ROUNDING * PetscMax(most, -least);
   return least > rounding || most < -rounding ? n / PetscAbsReal(sum) : NAN;

@@ -1,13 +1,13 @@
-/* Markers moved back to their membrane's area and edge lengths after a step (docs/membrane.md, After the step). */
 #include "membrane/membrane.h"
 
 #define MAX_NEWTON 20
-#define CONVERGED 1e-10 /* of squared edges and area; Newton ends far below it or not at all */
+#define CONVERGED 1e-10 /* relative error of squared edges and area; Newton's method ends far below it or not at all   \
+                         */
 #define LENGTH_RIGHT 1e-13
-#define CIRCLE 1e-3 /* sin^2 of the angle of the gradients of area and length, below which one gives the other */
+#define CIRCLE 1e-3 /* sin^2 of the angle between the gradients of area and length; below it they are parallel */
 
-/* e: edges at the vertices, dX/dk, or half the chord from k-1 to k+1, which is the mean of two edges. Returns the sum
-   of their lengths. */
+/* Edges e at the vertices: dX/dk, or half the chord from k-1 to k+1, the mean of two edges. Returns the sum of their
+   lengths. */
 static PetscReal VertexEdges(Membrane m, PetscInt v, const PetscScalar X[], PetscScalar e[]) {
   const PetscInt n = LayoutCount(m->layout, v);
   PetscReal size = 0;
@@ -78,9 +78,8 @@ PetscErrorCode MembraneRestoreEdges(Membrane m, PetscInt v, PetscReal tolerance,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Gradients by the markers: of the area, the vertex normals, and of the length, the unit edges' transposed difference.
- */
-static void Gradients(Membrane m, PetscInt v, const PetscScalar X[], PetscScalar area[], PetscScalar length[]) {
+/* Gradients of the area and of the length by the markers: vertex normals, and D^T of the unit edges. */
+static void RestoreGradients(Membrane m, PetscInt v, const PetscScalar X[], PetscScalar area[], PetscScalar length[]) {
   const PetscInt n = LayoutCount(m->layout, v);
   PetscScalar *e = m->work.restore;
   MembraneAreaGradient(m, v, X, area);
@@ -106,7 +105,7 @@ PetscErrorCode MembraneRestoreLength(Membrane m, PetscInt v, PetscReal tolerance
     if (it == 0) wanted = measures.area;
     const PetscReal long_by = measures.length - m->L0[v], large_by = measures.area - wanted;
     if (PetscAbsReal(long_by) < LENGTH_RIGHT * m->L0[v] || !(PetscAbsReal(long_by) < tolerance * m->L0[v])) break;
-    Gradients(m, v, X, area, length);
+    RestoreGradients(m, v, X, area, length);
     for (PetscInt k = 0; k < n; k++) {
       aa += area[k] * area[k];
       al += area[k] * length[k];

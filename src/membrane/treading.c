@@ -1,15 +1,14 @@
-/* Labels that turn with a tank-treading membrane (docs/membrane.md, Frame of the labels). */
 #include "membrane/membrane.h"
 
-#define DISTINCT                                                                                                       \
-  0.05 /* least ratio of the fit's singular values at which a turn and a shift of labels are told apart */
+/* Ratio of the fit's singular values below which a turn and a shift of labels are taken to be the same. */
+#define DISTINCT 0.05
 
-/* Sums over the markers of the products of U (relative to its mean), T = dX/dt and R = J (X - mean). */
+/* Sums over the markers of the products of U - mean U, T = dX/dt and R = J (X - mean X). */
 typedef struct {
   PetscReal TT, TR, RR, UT, UR;
 } Products;
 
-static Products Multiply(PetscInt n, const PetscScalar X[], const PetscScalar U[], const PetscScalar T[]) {
+static Products TreadingProducts(PetscInt n, const PetscScalar X[], const PetscScalar U[], const PetscScalar T[]) {
   PetscReal center[2] = {0, 0}, mean[2] = {0, 0};
   Products p = {0};
   for (PetscInt k = 0; k < n; k++)
@@ -36,7 +35,7 @@ PetscReal MembraneTreading(Membrane m, PetscInt v, const PetscScalar X[], const 
   PetscScalar *T = m->work.treading;
   (void)PetscArrayzero(T, 2 * n);
   MembraneLabelDerivative(m, v, 1, X, T);
-  const Products p = Multiply(n, X, U, T);
+  const Products p = TreadingProducts(n, X, U, T);
   /* the eigenvalues of the normal equations are the squares of the singular values */
   const PetscReal half = 0.5 * (p.TT + p.RR), determinant = p.TT * p.RR - p.TR * p.TR;
   const PetscReal largest = half + PetscSqrtReal(PetscMax(half * half - determinant, 0));
