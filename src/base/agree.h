@@ -1,12 +1,13 @@
-/* What ranks must hold alike: an error or a message of one becomes everybody's before the next collective call. */
+/* Decisions and messages that all ranks must have alike: what one rank has found is told to all before the next
+   collective call. Each function is one reduction over the ranks. */
 #pragma once
 #include "base/base.h"
 
 /* AgreeFlag - whether `mine` is true on any rank. Collective. */
 PETSC_EXTERN PetscErrorCode AgreeFlag(MPI_Comm comm, PetscBool mine, PetscBool *any);
 
-/* AgreeFinite - whether all numbers of a vector, of every rank, are finite: norms over ranks may drop a NaN of one.
-   Collective. */
+/* AgreeFinite - whether all numbers of a vector are finite, on every rank: a norm over ranks may drop a NaN of one
+   rank. Collective. */
 PETSC_EXTERN PetscErrorCode AgreeFinite(Vec x, PetscBool *finite);
 
 /* AgreeMessage - the message of the lowest rank that has one; empty when none has. message[PETVES_MAX_MESSAGE].

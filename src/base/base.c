@@ -3,10 +3,10 @@
 #include <ctype.h>
 #include <time.h>
 
-#define PATIENCE 200 /* hundredths of a second that a rank waits for the others to fail too */
+#define PATIENCE 200 /* hundredths of a second that a rank that has failed waits for the others */
 
-/* Logging and error state of the whole program. It is kept here and nowhere else; PETSc's logging, which it feeds, is
-   program-wide too. */
+/* Logging and error state of the whole program, the only one that petves has. PETSc's logging, which it feeds, belongs
+   to the whole program too. */
 static struct {
   PetscBool one_line;
   PetscBool said, ending;          /* an error has been printed; the program ends */
@@ -23,8 +23,8 @@ static struct {
 
 const char *const PhaseNames[PHASE_COUNT] = {"setup", "step", "fast_solve", "output"};
 
-/* Whether an option is PETSc's own: of a solver, or of the library. */
-static PetscBool OfPetsc(const char *name) {
+/* Whether an option is one of PETSc's solvers or of its library. */
+static PetscBool OptionIsPetscs(const char *name) {
   const char *const heads[] = {"-malloc", "-log_",     "-info",     "-fp_trap",
                                "-memory", "-options_", "-on_error", "-objects"};
   for (size_t k = 0; k < sizeof(heads) / sizeof(heads[0]); k++)
@@ -32,25 +32,25 @@ static PetscBool OfPetsc(const char *name) {
   return strstr(name, "_ksp_") || strstr(name, "_pc_") ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* PETSc's messages about a bad option of its own (-tension_ksp_type foo) name the value but not the option. So look for
-   the first such option whose value is a word of the message: "-name value: ", or nothing. */
-static void NameOption(const char *message, char name[], size_t length) {
+/* PETSc's messages about a bad option of its own (-tension_ksp_type foo) have the value but not the option. name: the
+   first such option whose value is a word of the message, as "-name value: "; else "". */
+static void ErrorNameOption(const char *message, char name[], size_t length) {
   char *all = NULL, *word, *last = NULL, *end = NULL;
   name[0] = 0;
   if (PetscOptionsGetAll(NULL, &all)) return;
   for (word = strtok_r(all, " \n", &end); word && !*name; last = word, word = strtok_r(NULL, " \n", &end)) {
-    const char *found = last && OfPetsc(last) ? strcasestr(message, word) : NULL;
+    const char *found = last && OptionIsPetscs(last) ? strcasestr(message, word) : NULL;
     if (!found || (found > message && !isspace((unsigned char)found[-1]))) continue;
     if (!isalnum((unsigned char)found[strlen(word)])) (void)PetscSNPrintf(name, length, "%s %s: ", last, word);
   }
   (void)PetscFree(all);
 }
 
-/* One line of text: the message, after the option at fault; whether there is one. */
-static PetscBool OneLine(PetscErrorCode code, const char *message, char text[PETVES_MAX_MESSAGE]) {
+/* One line of text: the option at fault and the message; TRUE if there is such an option. */
+static PetscBool ErrorOneLine(PetscErrorCode code, const char *message, char text[PETVES_MAX_MESSAGE]) {
   char before[PETVES_MAX_MESSAGE / 2] = "";
   size_t n;
-  if (code != PETSC_ERR_USER_INPUT && message) NameOption(message, before, sizeof(before));
+  if (code != PETSC_ERR_USER_INPUT && message) ErrorNameOption(message, before, sizeof(before));
   (void)PetscStrncpy(text, before, PETVES_MAX_MESSAGE);
   n = strlen(text);
   for (const char *c = message ? message : "unknown error"; *c && n < PETVES_MAX_MESSAGE - 1; c++)
@@ -62,18 +62,21 @@ static PetscBool OneLine(PetscErrorCode code, const char *message, char text[PET
 PetscErrorCode PetvesErrorHandler(MPI_Comm comm, int line, const char *function, const char *file, PetscErrorCode code,
                                   PetscErrorType type, const char *message, void *ctx) {
   char text[PETVES_MAX_MESSAGE], *kept = (char *)ctx;
-  PetscMPIInt rank = 0, among = 0; /* of all, and of those whose error it is: the first of them says it */
+  PetscMPIInt rank = 0,
+              among = 0; /* rank of all ranks, and of those that have the error: the first of them prints it */
   PetscBool mistake;
   MPI_Comm_rank(MPI_COMM_WORLD, &rank);
   if (comm != MPI_COMM_NULL) MPI_Comm_rank(comm, &among);
   if (type != PETSC_ERROR_INITIAL || (base.said && base.ending)) return code;
-  if (code == PETSC_ERR_MEM || !strcmp(function, "PetscMallocAlign")) { /* which gives a line's number as its code */
+  if (code == PETSC_ERR_MEM ||
+      !strcmp(function, "PetscMallocAlign")) { /* PetscMallocAlign gives a line number as the code */
     code = PETSC_ERR_MEM;
     message = "out of memory; allowed: fewer cells or vesicles, a larger limit, or more nodes";
   }
-  if ((rank || among) && code == PETSC_ERR_USER_INPUT && !kept) return code; /* rank 0 says it */
-  mistake = OneLine(code, message, text) || code == PETSC_ERR_USER_INPUT || base.one_line ? PETSC_TRUE : PETSC_FALSE;
-  if (!mistake) { /* say where */
+  if ((rank || among) && code == PETSC_ERR_USER_INPUT && !kept) return code; /* rank 0 prints it */
+  mistake = ErrorOneLine(code, message, text) || code == PETSC_ERR_USER_INPUT || base.one_line ? PETSC_TRUE
+                                                                                               : PETSC_FALSE;
+  if (!mistake) { /* add the place in the source */
     const size_t used = strlen(text);
     (void)PetscSNPrintf(text + used, sizeof(text) - used, " (%s() in %s, line %d, rank %d)", function, file, line,
                         rank);
@@ -116,7 +119,7 @@ PetscErrorCode PetvesSetupErrors(PetscBool on) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode RegisterStages(void) {
+static PetscErrorCode PhaseRegister(void) {
   PetscFunctionBeginUser;
   for (int p = 0; p < PHASE_COUNT; p++) {
     char name[64];
@@ -128,8 +131,8 @@ static PetscErrorCode RegisterStages(void) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Add the time since the last call to the phase that was in force. */
-static void Charge(void) {
+/* Add the time since the last call to the phase that has lasted since then. */
+static void PhaseCharge(void) {
   PetscLogDouble now;
   (void)PetscTime(&now);
   if (base.depth > 0) base.seconds[base.stack[base.depth - 1]] += now - base.since;
@@ -138,9 +141,9 @@ static void Charge(void) {
 
 PetscErrorCode PhaseBegin(Phase phase) {
   PetscFunctionBeginUser;
-  if (!base.registered) PetscCall(RegisterStages());
+  if (!base.registered) PetscCall(PhaseRegister());
   PetscCheck(base.depth < 16, PETSC_COMM_SELF, PETSC_ERR_PLIB, "phases nested too deep");
-  Charge();
+  PhaseCharge();
   base.stack[base.depth++] = phase;
   PetscCall(PetscLogStagePush(base.stage[phase]));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -149,7 +152,7 @@ PetscErrorCode PhaseBegin(Phase phase) {
 PetscErrorCode PhaseEnd(void) {
   PetscFunctionBeginUser;
   PetscCheck(base.depth > 0, PETSC_COMM_SELF, PETSC_ERR_PLIB, "PhaseEnd without PhaseBegin");
-  Charge();
+  PhaseCharge();
   base.depth--;
   PetscCall(PetscLogStagePop());
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -165,7 +168,7 @@ PetscReal PhaseSeconds(Phase phase) {
 
 PetscErrorCode PetvesEvent(const char name[], PetscLogEvent *event) {
   PetscFunctionBeginUser;
-  if (!base.registered) PetscCall(RegisterStages());
+  if (!base.registered) PetscCall(PhaseRegister());
   PetscCall(PetscLogEventRegister(name, base.classid, event));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

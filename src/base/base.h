@@ -1,4 +1,5 @@
-/* What every folder needs: PETSc, version shims, the way a user's mistake is reported, log stages and timers. */
+/* What every folder needs: PETSc and names that it has changed, errors of one line, what a run prints, log stages with
+   timers, files, arrays that grow, and reasons to stop. */
 #pragma once
 #include <petscdmcomposite.h>
 #include <petscdmda.h>
@@ -20,44 +21,44 @@
    Say the option or file, the value and what is allowed. Collective: all ranks must agree on cond. */
 #define PetvesCheck(cond, comm, ...) PetscCheck((cond), (comm), PETSC_ERR_USER_INPUT, __VA_ARGS__)
 
-/* PetvesErrorHandler - PETSc error handler of the program: one line on stderr, for anything but a user's mistake with
-   the place in the source. Install with PetscPushErrorHandler(PetvesErrorHandler, NULL). With a context
-   char[PETVES_MAX_MESSAGE] nothing is printed: the context gets the first message. */
+/* PetvesErrorHandler - PETSc error handler of the program (PetscPushErrorHandler(PetvesErrorHandler, context)): prints
+   one line on stderr, with the place in the source unless the error is a user's mistake. With a context
+   char[PETVES_MAX_MESSAGE] nothing is printed, and the context gets the first message. */
 PETSC_EXTERN PetscErrorCode PetvesErrorHandler(MPI_Comm, int, const char *, const char *, PetscErrorCode,
                                                PetscErrorType, const char *, void *);
 
-/* PetvesSay - PetscPrintf of what a run says by itself: progress, reasons of -scheme_auto, warnings. Nothing while
-   PetvesSetQuiet asks for that, as PetvesIsQuiet tells. Collective, but for PetvesIsQuiet. */
+/* PetvesSay - PetscPrintf of progress, reasons of -scheme_auto and warnings; prints nothing after PetvesSetQuiet(TRUE).
+   Collective. PetvesIsQuiet - whether PetvesSay prints nothing. Not collective. */
 PETSC_EXTERN PetscErrorCode PetvesSay(MPI_Comm comm, const char format[], ...) PETSC_ATTRIBUTE_FORMAT(2, 3);
 PETSC_EXTERN PetscBool PetvesIsQuiet(void);
 
-/* PetvesSetupErrors - while on, every error counts as a user's mistake: a solver option with a bad value
-   (-tension_ksp_type foo) is one, and PETSc reports it with its own codes. */
+/* PetvesSetupErrors - while on, every error counts as a user's mistake: PETSc reports a solver option with a bad value
+   (-tension_ksp_type foo) with codes of its own. Not collective. */
 PETSC_EXTERN PetscErrorCode PetvesSetupErrors(PetscBool);
 
-/* PetvesLastErrors - the program ends: errors count as a user's mistake, and after a line none is printed. */
+/* PetvesLastErrors - the program ends: errors count as a user's mistake, and at most one more line is printed. Not
+   collective. */
 PETSC_EXTERN PetscErrorCode PetvesLastErrors(void);
 
-/* Phases of a run: one -log_view stage each, and the wall seconds of summary.json. Time in a nested phase belongs to
-   the inner one only. */
+/* Phases of a run, each a -log_view stage with its wall seconds in summary.json. Time in a nested phase does not count
+   for the outer phase. */
 typedef enum { PHASE_SETUP, PHASE_STEP, PHASE_FAST_SOLVE, PHASE_OUTPUT, PHASE_COUNT } Phase;
 
-/* PhaseBegin, PhaseEnd - enter and leave a phase; calls nest. Not collective. */
+/* PhaseBegin - enter a phase. PhaseEnd - leave the phase that was entered last. PhaseDepth - number of phases that have
+   been entered and not left. PhaseSeconds - wall seconds spent so far in a phase. Not collective. */
 PETSC_EXTERN PetscErrorCode PhaseBegin(Phase);
 PETSC_EXTERN PetscErrorCode PhaseEnd(void);
 
-/* PhaseDepth - phases entered and not left. */
 PETSC_EXTERN PetscInt PhaseDepth(void);
 
-/* PhaseSeconds - wall seconds spent so far in a phase itself, nested phases excluded. */
 PETSC_EXTERN PetscReal PhaseSeconds(Phase);
 PETSC_EXTERN const char *const PhaseNames[PHASE_COUNT];
 
-/* PetvesEvent - id of a -log_view event of the given name, registered on first use. */
+/* PetvesEvent - register a -log_view event of the given name and return its id. Collective. */
 PETSC_EXTERN PetscErrorCode PetvesEvent(const char name[], PetscLogEvent *event);
 
-/* FileOpen - a file to read; NULL and errno when it cannot be opened, or is no file but a folder, device or pipe, which
-   may have no end. FileNew - a new file to write, in place of what has its name: a link is not followed; NULL: it
+/* FileOpen - open a file to read; NULL, with errno, when it cannot be opened, or is a folder, device or pipe, which may
+   have no end. FileNew - open a new file to write, after the file or link of this name has been removed; NULL when it
    cannot be made. Not collective. */
 PETSC_EXTERN FILE *FileOpen(const char path[]);
 PETSC_EXTERN FILE *FileNew(const char path[]);
@@ -66,14 +67,20 @@ PETSC_EXTERN FILE *FileNew(const char path[]);
    has to grow. Entries stay. Not collective. */
 PETSC_EXTERN PetscErrorCode PetvesRoom(size_t count, size_t size, size_t *room, void *array);
 
-/* PetvesWarmUpBlas - let the BLAS take its own memory now, or stop with one line where a rank has too little: OpenBLAS
-   would wait for it without end. Does nothing when it has been done. Collective. */
+/* ArrayReserve - memory for at least `count` entries in an array that grows: capacity and array are the caller's, zero
+   and NULL at first. A larger capacity is at least twice the one before. Free the array with PetscFree. Not collective.
+ */
+#define ArrayReserve(count, capacity, array) ArrayReserveBytes((count), sizeof(**(array)), (capacity), (array))
+PETSC_EXTERN PetscErrorCode ArrayReserveBytes(PetscInt count, size_t bytes, PetscInt *capacity, void *array);
+
+/* PetvesWarmUpBlas - make the BLAS allocate its own memory, or stop with one line where a rank has too little: OpenBLAS
+   would wait for memory without end. The first call counts. Collective. */
 PETSC_EXTERN PetscErrorCode PetvesWarmUpBlas(MPI_Comm comm);
 
-/* StopClock - the wall time of -time_wall_limit starts here, the first time that this is called. */
+/* StopClock - the wall time of -time_wall_limit starts with the first call. Not collective. */
 PETSC_EXTERN void StopClock(void);
 
-/* StopRequested - whether a rank has caught SIGTERM, SIGUSR1 or SIGINT (PetvesCatchSignals), or less than `reserve`
-   seconds are left of `limit` (0: no limit) on rank 0's clock: its name, else NULL. The same on every rank. Collective.
- */
+/* StopRequested - why: the name of a signal SIGTERM, SIGUSR1 or SIGINT that a rank has caught (PetvesCatchSignals);
+   "-time_wall_limit" if less than `reserve` seconds of `limit` (0: no limit) are left on rank 0's clock; else NULL. The
+   same on every rank. Collective. */
 PETSC_EXTERN PetscErrorCode StopRequested(MPI_Comm comm, PetscReal limit, PetscReal reserve, const char **why);

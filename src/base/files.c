@@ -1,4 +1,3 @@
-/* Text files that are read and made. */
 #include "base/base.h"
 #include <errno.h>
 #include <sys/stat.h>

@@ -1,14 +1,15 @@
-/* Four numbers at once, from any address: loops over them become vector instructions whatever the compiler makes of a
-   sum's order. */
+/* Vectors of four numbers, loaded from any address.
+
+   Loops over them become vector instructions, and the order of a sum is that of the source on every compiler. */
 #pragma once
 #include "base/base.h"
 
 #define LANES 4
 typedef PetscReal Lanes __attribute__((vector_size(LANES * sizeof(PetscReal)), aligned(sizeof(PetscReal)), may_alias));
 
-/* LanesAt - the four numbers from x on. LanesPut - to x on. LanesSum - their sum. LanesPairs - four pairs x[8],
-   interlaced, become their first and their second numbers; LanesInterlace - the other way round. LanesTwoSums - as
-   LanesSum, of two. */
+/* LanesAt - load the four numbers from x on. LanesPut - store four numbers from x on. LanesSum - sum of four numbers.
+   LanesTwoSums - sums of two times four numbers. LanesPairs - load the first numbers, a, and the second numbers, b, of
+   four interlaced pairs x[8]. LanesInterlace - store a and b as four interlaced pairs. */
 static inline Lanes LanesAt(const PetscReal x[]) {
   return *(const Lanes *)x;
 }
@@ -43,8 +44,9 @@ static inline PetscReal LanesDot(PetscInt n, const PetscReal x[], const PetscRea
   return LanesSum(sum) + rest;
 }
 
-/* The bits of four numbers. Comparisons of Lanes give all ones or zeros; LanesWhere - a where so, else 0.
-   LanesAny - whether one is so. */
+/* The bits of four numbers. A comparison of Lanes gives all ones where it is true and else zeros. LanesAny - whether it
+   is true of any number. LanesWhere - a where it is true, else 0. LanesMax, LanesMin - the larger and the smaller
+   number. */
 typedef unsigned long long LanesBits __attribute__((vector_size(LANES * sizeof(PetscReal)), may_alias));
 static inline int LanesAny(LanesBits so) {
   return (so[0] | so[1] | so[2] | so[3]) != 0;
@@ -61,11 +63,13 @@ static inline Lanes LanesMin(Lanes a, Lanes b) {
   return (Lanes)((so & (LanesBits)a) | (~so & (LanesBits)b));
 }
 
-/* LanesLog - logarithms to 3e-16 of themselves (2e-17 near 1), of normal numbers above 0; anything finite at 0. With x
-   = 2^e m, m from root(1/2) to root 2, and s = (m - 1)/(m + 1) it is e ln 2 + 2 (s + s^3/3 + .. + s^21/21). */
+/* LanesLog - logarithms of normal numbers above 0, relative error 3e-16, near 1 error 2e-17; at 0 a finite number. With
+   x = 2^e m, m from root(1/2) to root 2, and s = (m - 1)/(m + 1) it is
+
+     e ln 2 + 2 (s + s^3/3 + .. + s^21/21). */
 static inline Lanes LanesLog(Lanes x) {
   const unsigned long long half = 0x3fe6a09e667f3bcdULL, shifted = 0x4000000000000000ULL, whole = 0x4330000000000000ULL;
-  const LanesBits e = ((LanesBits)x - half + shifted) >> 52; /* more by 1024 than the exponent */
+  const LanesBits e = ((LanesBits)x - half + shifted) >> 52; /* the exponent + 1024 */
   const Lanes m = (Lanes)((LanesBits)x - ((e - 1024) << 52)),
               exponent = (Lanes)(e | whole) - (4503599627370496. + 1024);
   const Lanes s = (m - 1) / (m + 1), z = s * s;

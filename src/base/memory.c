@@ -11,8 +11,19 @@ PetscErrorCode PetvesRoom(size_t count, size_t size, size_t *room, void *array) 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What OpenBLAS maps at its first call, and keeps: 128 MiB (0.3.21). When it cannot it tries for ever. */
-#define MIB 160
+/* MiB that must be free: OpenBLAS 0.3.21 maps 128 MiB at its first call and keeps them. */
+#define BLAS_MIB 160
+
+PetscErrorCode ArrayReserveBytes(PetscInt count, size_t bytes, PetscInt *capacity, void *array) {
+  void *all;
+  PetscFunctionBeginUser;
+  if (count <= *capacity) PetscFunctionReturn(PETSC_SUCCESS);
+  *capacity = PetscMax(PetscMax(count, 2 * *capacity), 16);
+  memcpy(&all, array, sizeof(all));
+  PetscCall(PetscRealloc((size_t)*capacity * bytes, &all));
+  memcpy(array, &all, sizeof(all));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
 
 PetscErrorCode PetvesWarmUpBlas(MPI_Comm comm) {
   static PetscBool done = PETSC_FALSE;
@@ -22,13 +33,13 @@ PetscErrorCode PetvesWarmUpBlas(MPI_Comm comm) {
   PetscMPIInt lacking = 0;
   PetscFunctionBeginUser;
   if (done) PetscFunctionReturn(PETSC_SUCCESS);
-  void *const room = mmap(NULL, (size_t)MIB << 20, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  void *const room = mmap(NULL, (size_t)BLAS_MIB << 20, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
   lacking = room == MAP_FAILED;
-  if (!lacking) (void)munmap(room, (size_t)MIB << 20);
+  if (!lacking) (void)munmap(room, (size_t)BLAS_MIB << 20);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &lacking, 1, MPI_INT, MPI_MAX, comm));
   PetvesCheck(!lacking, comm,
               "out of memory: no %d MiB for the BLAS on a rank; allowed: a larger limit (ulimit -v), or fewer ranks",
-              MIB);
+              BLAS_MIB);
   PetscCallBLAS("BLASgemm", BLASgemm_("N", "N", &n, &n, &n, &zero, a, &n, a, &n, &zero, c, &n));
   done = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);

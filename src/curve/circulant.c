@@ -90,7 +90,8 @@ void CirculantUnroll(PetscInt n, const PetscReal X[], PetscReal points[]) {
   for (PetscInt k = -1; k >= -2 * ahead; k--) x[k] = x[k + 2 * n];
 }
 
-/* sum += the part of the sums at the points x with q = 2p + first, in registers as CirculantAddTurns. */
+/* sum += the terms q = 2p + first of the sums at the points x. Vectors are kept in registers, and their places go
+   round, as in CirculantAddTurns. */
 static inline void CirculantAddRow(const int odd, PetscInt pairs, const PetscReal weight[], const PetscReal *x,
                                    int first, Lanes sum[2][CIRCULANT_ROW]) {
   const PetscReal *before = x - 2 * first, *behind = x + 2 * first;

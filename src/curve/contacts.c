@@ -1,32 +1,37 @@
 #include "curve/contacts.h"
-#include "curve/apart.h"
+#include "curve/separation.h"
 #include "curve/crossing.h"
 #include <stdlib.h>
 
-#define FINER 8 /* times the points, where smooth curves are near */
+#define CONTACT_FINER 8 /* times as many points where smooth curves are near */
+
+/* A contact of a point, and the number of the point's next one, or -1. */
+typedef struct {
+  CurveContact contact;
+  PetscInt next;
+} ContactLink;
 
 typedef struct {
   const CurveSet *set;
   PetscReal reach;
-  PetscReal seam;  /* an image is farther than this from where its curve is */
-  PetscInt *curve; /* of each point */
-  PetscInt *head;  /* of each point: its first contact, or -1; contacts in a chain */
-  PetscInt *next;  /* of each contact: the point's next one, or -1 */
-  CurveContact *contact;
-  PetscInt count, room;
+  PetscReal seam;       /* an image of a point is farther than this from the point */
+  PetscInt *curve;      /* [points] the curve that a point is on */
+  PetscInt *head;       /* [points] number of a point's first contact, or -1 */
+  ContactLink *contact; /* [count] */
+  PetscInt count, capacity;
   PetscErrorCode error;
 } ContactSearch;
 
-/* The point `steps` from k along its curve, by its number. */
-static PetscInt Step(const ContactSearch *s, PetscInt k, PetscInt steps) {
+/* Number of the point `steps` from point k along its curve. */
+static PetscInt ContactStep(const ContactSearch *s, PetscInt k, PetscInt steps) {
   const PetscInt *start = s->set->start + s->curve[k], n = start[1] - start[0];
   return start[0] + (k - start[0] + steps + n) % n;
 }
 
-/* The point p seen from the edge that starts at q, or (back) ends there, q moved by `shift`: distance and where; false
-   where an open curve ends. At an end of the edge the outside is that of both edges that meet there. */
-static PetscBool Measure(const ContactSearch *s, PetscInt p, PetscInt q, PetscBool back, const PetscReal shift[2],
-                         CurveContact *c) {
+/* The contact of point p with the edge that starts at q or, with `back`, ends at q, q moved by `shift`; false where an
+   open curve ends. At an end of the edge the outside is that of both edges that meet there. */
+static PetscBool ContactMeasure(const ContactSearch *s, PetscInt p, PetscInt q, PetscBool back,
+                                const PetscReal shift[2], CurveContact *c) {
   const PetscInt v = s->curve[q], a = back ? -1 : 0;
   PetscReal A[2], B[2], P[2], Q[2], d[2], edge[2], size;
   if (!CurveSetWalk(s->set, v, q, a, A) || !CurveSetWalk(s->set, v, q, a + 1, B)) return PETSC_FALSE;
@@ -36,7 +41,7 @@ static PetscBool Measure(const ContactSearch *s, PetscInt p, PetscInt q, PetscBo
   }
   const PetscReal square = edge[0] * edge[0] + edge[1] * edge[1];
   const PetscReal along = square > 0 ? (d[0] * edge[0] + d[1] * edge[1]) / square : 0;
-  *c = (CurveContact){.point = p, .edge = {Step(s, q, a), Step(s, q, a + 1)}, .curve = {s->curve[p], v}};
+  *c = (CurveContact){.point = p, .edge = {ContactStep(s, q, a), ContactStep(s, q, a + 1)}, .curve = {s->curve[p], v}};
   PetscReal out[2] = {edge[1], -edge[0]};
   c->at = PetscMax(0, PetscMin(1, along));
   const PetscInt corner = c->at == 1 ? a + 1 : a;
@@ -54,34 +59,23 @@ static PetscBool Measure(const ContactSearch *s, PetscInt p, PetscInt q, PetscBo
   return PETSC_TRUE;
 }
 
-static PetscErrorCode Append(ContactSearch *s, const CurveContact *c) {
-  PetscFunctionBeginUser;
-  if (s->count == s->room) {
-    s->room = 2 * s->room + 64;
-    PetscCall(PetscRealloc((size_t)s->room * sizeof(*s->contact), &s->contact));
-    PetscCall(PetscRealloc((size_t)s->room * sizeof(*s->next), &s->next));
-  }
-  s->next[s->count] = s->head[c->point];
-  s->head[c->point] = s->count;
-  s->contact[s->count++] = *c;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Keep c if it is the nearest one of its point to its curve so far. */
-static PetscErrorCode Offer(ContactSearch *s, const CurveContact *c) {
+/* Keep contact c if no contact of its point with its curve so far is nearer. */
+static PetscErrorCode ContactOffer(ContactSearch *s, const CurveContact *c) {
   PetscInt k = s->head[c->point];
   PetscFunctionBeginUser;
   if (PetscAbsReal(c->distance) >= s->reach) PetscFunctionReturn(PETSC_SUCCESS);
-  while (k >= 0 && s->contact[k].curve[1] != c->curve[1]) k = s->next[k];
-  if (k < 0)
-    PetscCall(Append(s, c));
-  else if (PetscAbsReal(c->distance) < PetscAbsReal(s->contact[k].distance))
-    s->contact[k] = *c;
+  while (k >= 0 && s->contact[k].contact.curve[1] != c->curve[1]) k = s->contact[k].next;
+  if (k < 0) {
+    PetscCall(ArrayReserve(s->count + 1, &s->capacity, &s->contact));
+    s->contact[s->count] = (ContactLink){*c, s->head[c->point]};
+    s->head[c->point] = s->count++;
+  } else if (PetscAbsReal(c->distance) < PetscAbsReal(s->contact[k].contact.distance))
+    s->contact[k].contact = *c;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Points i and j, the image of j being d from i: each to the two edges at the other. */
-static PetscErrorCode OfferBoth(ContactSearch *s, PetscInt i, PetscInt j, const PetscReal d[2]) {
+/* Offer the contacts of points i and j, the image of j being d from i, each with the two edges at the other. */
+static PetscErrorCode ContactOfferBoth(ContactSearch *s, PetscInt i, PetscInt j, const PetscReal d[2]) {
   const PetscInt pair[2][2] = {{i, j}, {j, i}};
   PetscFunctionBeginUser;
   for (int side = 0; side < 2; side++) {
@@ -90,28 +84,28 @@ static PetscErrorCode OfferBoth(ContactSearch *s, PetscInt i, PetscInt j, const 
     for (int k = 0; k < 2; k++) shift[k] = (side ? -d[k] : d[k]) - (s->set->X[2 * q + k] - s->set->X[2 * p + k]);
     for (int back = 0; back < 2; back++) {
       CurveContact c;
-      if (Measure(s, p, q, back ? PETSC_TRUE : PETSC_FALSE, shift, &c)) PetscCall(Offer(s, &c));
+      if (ContactMeasure(s, p, q, back ? PETSC_TRUE : PETSC_FALSE, shift, &c)) PetscCall(ContactOffer(s, &c));
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscBool Near(void *context, PetscInt i, PetscInt j, const PetscReal d[2]) {
+static PetscBool ContactNear(void *context, PetscInt i, PetscInt j, const PetscReal d[2]) {
   ContactSearch *s = (ContactSearch *)context;
   const PetscReal *X = s->set->X;
   if (PetscMin(s->curve[i], s->curve[j]) >= s->set->moving) return PETSC_FALSE;
-  if (s->curve[i] == s->curve[j]) { /* nothing but images */
+  if (s->curve[i] == s->curve[j]) { /* points of one curve count if one of them is an image */
     const PetscReal x = d[0] - (X[2 * j] - X[2 * i]), y = d[1] - (X[2 * j + 1] - X[2 * i + 1]);
     if (PetscAbsReal(x) + PetscAbsReal(y) < s->seam) return PETSC_FALSE;
   }
-  s->error = OfferBoth(s, i, j, d);
+  s->error = ContactOfferBoth(s, i, j, d);
   return s->error ? PETSC_TRUE : PETSC_FALSE;
 }
 
 PetscErrorCode CurveContacts(const CurveSet *set, PetscReal reach, PetscInt *n, CurveContact **contacts) {
   const PetscInt points = set->start[set->curves], *part = set->part;
   const PetscInt first[2] = {part ? set->start[part[0]] : 0, part ? set->start[part[1]] : points};
-  /* a point near an edge is as near as this to one of its ends */
+  /* a point nearer than reach to an edge is nearer than this to one end of the edge */
   const PetscReal apart = PetscHypotReal(reach, 0.5 * CurveLongestEdge(set));
   ContactSearch s = {.set = set, .reach = reach, .seam = PETSC_MAX_REAL};
   PetscInt count = 0;
@@ -125,27 +119,26 @@ PetscErrorCode CurveContacts(const CurveSet *set, PetscReal reach, PetscInt *n, 
   for (PetscInt v = 0; v < set->curves; v++)
     for (PetscInt k = set->start[v]; k < set->start[v + 1]; k++) s.curve[k] = v;
   for (PetscInt k = 0; k < points; k++) s.head[k] = -1;
-  PetscCall(PairsWithin(points, set->X, first, set->period, apart, Near, &s));
+  PetscCall(PairsWithin(points, set->X, first, set->period, apart, ContactNear, &s));
   PetscCall(s.error);
   PetscCall(PetscMalloc1(s.count, contacts));
   for (PetscInt p = 0; p < points; p++)
-    for (PetscInt k = s.head[p]; k >= 0; k = s.next[k]) (*contacts)[count++] = s.contact[k];
+    for (PetscInt k = s.head[p]; k >= 0; k = s.contact[k].next) (*contacts)[count++] = s.contact[k].contact;
   *n = count;
   PetscCall(PetscFree2(s.curve, s.head));
-  PetscCall(PetscFree(s.next));
   PetscCall(PetscFree(s.contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* By pair, then by distance. */
-static int Order(const void *first, const void *second) {
+/* The order of gaps: by pair, then by distance. */
+static int GapOrder(const void *first, const void *second) {
   const CurveGap *a = (const CurveGap *)first, *b = (const CurveGap *)second;
   for (int k = 0; k < 2; k++)
     if (a->curve[k] != b->curve[k]) return a->curve[k] < b->curve[k] ? -1 : 1;
   return (a->distance > b->distance) - (a->distance < b->distance);
 }
 
-/* Of the polygons. */
+/* The gaps of the polygons. */
 static PetscErrorCode PolygonGaps(const CurveSet *set, PetscReal reach, PetscInt *n, CurveGap **gaps) {
   CurveContact *c;
   PetscInt count, kept = 0;
@@ -157,7 +150,7 @@ static PetscErrorCode PolygonGaps(const CurveSet *set, PetscReal reach, PetscInt
     (*gaps)[k] = (CurveGap){.curve = {PetscMin(v, w), PetscMax(v, w)}, .distance = c[k].distance};
   }
   PetscCall(PetscFree(c));
-  if (count) qsort(*gaps, (size_t)count, sizeof(**gaps), Order);
+  if (count) qsort(*gaps, (size_t)count, sizeof(**gaps), GapOrder);
   for (PetscInt k = 0; k < count; k++)
     if (!kept || (*gaps)[k].curve[0] != (*gaps)[kept - 1].curve[0] || (*gaps)[k].curve[1] != (*gaps)[kept - 1].curve[1])
       (*gaps)[kept++] = (*gaps)[k];
@@ -165,14 +158,14 @@ static PetscErrorCode PolygonGaps(const CurveSet *set, PetscReal reach, PetscInt
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The gap of two polygons becomes that of the curves, which bulge beyond their chords. */
-static PetscErrorCode Refine(const CurveSet *set, PetscReal edge, CurveGap *gap) {
+/* Replace the gap of two polygons by that of the curves, which bulge beyond their chords. */
+static PetscErrorCode GapRefine(const CurveSet *set, PetscReal edge, CurveGap *gap) {
   const PetscInt two = gap->curve[0] == gap->curve[1] ? 1 : 2;
   PetscInt count;
   CurveGap *found;
   CurveFine fine;
   PetscFunctionBeginUser;
-  PetscCall(CurveFineCreate(set, two, gap->curve, FINER, &fine));
+  PetscCall(CurveFineCreate(set, two, gap->curve, CONTACT_FINER, &fine));
   PetscCall(PolygonGaps(&fine.set, PetscAbsReal(gap->distance) + 0.5 * edge, &count, &found));
   for (PetscInt k = 0; k < count; k++)
     if (two == 1 || found[k].curve[0] != found[k].curve[1]) gap->distance = found[k].distance;
@@ -187,7 +180,7 @@ PetscErrorCode CurveGaps(const CurveSet *set, PetscReal reach, PetscInt *n, Curv
   PetscFunctionBeginUser;
   PetscCall(PolygonGaps(set, set->smooth ? reach + 0.25 * edge : reach, n, gaps));
   for (PetscInt k = 0; k < *n; k++) {
-    if (set->smooth && (*gaps)[k].distance < 0.5 * edge) PetscCall(Refine(set, edge, &(*gaps)[k]));
+    if (set->smooth && (*gaps)[k].distance < 0.5 * edge) PetscCall(GapRefine(set, edge, &(*gaps)[k]));
     if ((*gaps)[k].distance < reach) (*gaps)[kept++] = (*gaps)[k];
   }
   *n = kept;
@@ -203,7 +196,8 @@ PetscErrorCode CurveLeastGap(const CurveSet *set, PetscReal *distance) {
     low[k % 2] = PetscMin(low[k % 2], X[k]);
     high[k % 2] = PetscMax(high[k % 2], X[k]);
   }
-  for (int d = 0; d < 2; d++) most += period[d] > 0 ? period[d] : high[d] - low[d]; /* no two points are farther */
+  for (int d = 0; d < 2; d++)
+    most += period[d] > 0 ? period[d] : high[d] - low[d]; /* no two points are farther apart */
   if (set->curves < 2 && period[0] <= 0 && period[1] <= 0) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscReal reach = 2 * edge; PetscIsNanReal(*distance); reach *= 4) {
     CurveGap *gaps, *least = NULL;
@@ -211,7 +205,7 @@ PetscErrorCode CurveLeastGap(const CurveSet *set, PetscReal *distance) {
     PetscCall(PolygonGaps(set, reach, &n, &gaps));
     for (PetscInt k = 0; k < n; k++)
       if (!least || gaps[k].distance < least->distance) least = &gaps[k];
-    if (least && set->smooth) PetscCall(Refine(set, edge, least));
+    if (least && set->smooth) PetscCall(GapRefine(set, edge, least));
     if (least) *distance = least->distance;
     PetscCall(PetscFree(gaps));
     if (reach > most) break;
@@ -232,7 +226,8 @@ PetscReal CurveWallGap(PetscInt n, const PetscReal X[], const CurveRoom *room, P
   return least;
 }
 
-static void Thinner(CurveFilm *film, PetscReal gap, PetscReal ds, PetscInt v, PetscInt w) {
+/* Take the film between v and w if it is thinner than `film`. */
+static void FilmThinner(CurveFilm *film, PetscReal gap, PetscReal ds, PetscInt v, PetscInt w) {
   if (gap <= 0 || gap >= film->spacings * ds) return;
   *film = (CurveFilm){.thickness = gap, .spacings = gap / ds, .pair = {v, w}};
 }
@@ -249,12 +244,12 @@ PetscErrorCode CurveThinnestFilm(const CurveSet *set, const PetscReal ds[], cons
   PetscCall(CurveGaps(set, most * widest, &n, &gap));
   for (PetscInt k = 0; k < n; k++) {
     const PetscInt v = gap[k].curve[0], w = gap[k].curve[1];
-    Thinner(film, gap[k].distance, PetscMax(ds[v], ds[w]), v, w);
+    FilmThinner(film, gap[k].distance, PetscMax(ds[v], ds[w]), v, w);
   }
   PetscCall(PetscFree(gap));
   for (PetscInt v = set->part ? set->part[0] : 0; v < (set->part ? set->part[1] : set->moving); v++) {
     const PetscReal wall = CurveWallGap(start[v + 1] - start[v], set->X + 2 * start[v], room, &side);
-    Thinner(film, wall, ds[v], v, -1 - side);
+    FilmThinner(film, wall, ds[v], v, -1 - side);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

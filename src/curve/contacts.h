@@ -1,56 +1,60 @@
-/* How near curves are to one another, images of themselves among them, by a list of cells, in a time in proportion to
-   their points. A curve's inside is on its left: closed curves run counter-clockwise, one that runs clockwise has its
-   inside outside. */
+/* Distances of curves from one another, from images and from walls.
+
+   Points are sorted into a list of cells, and each is compared with the edges at points within reach, so that the time
+   is in proportion to the number of points. The inside of a curve is on its left: a closed curve runs
+   counter-clockwise, and one that runs clockwise has its inside outside. Distances are negative inside. Ranks share a
+   search by CurveSet.part; no function sends a message. */
 #pragma once
 #include "curve/kind.h"
 
-/* A point and the edge of another curve that is nearest to it. Distances are negative for a point inside. */
+/* A point and the edge of another curve that is nearest to the point. */
 typedef struct {
-  PetscInt point, edge[2]; /* the edge's two ends */
-  PetscInt curve[2];       /* the point's and the edge's; the same twice: the edge is of an image */
-  PetscReal at;            /* where on the edge: weight `at` of its second end, 1 - at of its first */
-  PetscReal distance;      /* length */
+  PetscInt point, edge[2]; /* numbers of the point and of the ends of the edge */
+  PetscInt curve[2];       /* curve of the point, curve of the edge; the same one: the edge is that of an image */
+  PetscReal at;            /* nearest place on the edge: weight `at` of its second end, 1 - at of its first */
+  PetscReal distance;      /* length; negative: the point is inside */
   PetscReal normal[2];     /* unit, from the edge to the outside of its curve: point = edge + distance normal */
 } CurveContact;
 
-/* CurveContacts - for each point, in order, and each other curve that has an edge nearer than reach (length) the
-   nearest edge; contacts[n] is the caller's to free (PetscFree). Not collective. Errors: memory. */
+/* CurveContacts - for each point, in order, and each other curve with an edge nearer than reach (length) the nearest
+   edge. The caller frees contacts[n] (PetscFree). Not collective. Errors: memory. */
 PETSC_EXTERN PetscErrorCode CurveContacts(const CurveSet *set, PetscReal reach, PetscInt *n, CurveContact **contacts);
 
-/* The least distance of two curves, negative where a point of one is inside of the other. */
+/* The least distance of two curves; negative where a point of one is inside the other. */
 typedef struct {
-  PetscInt curve[2]; /* the first not above the second; the same twice: of a curve and its image */
+  PetscInt curve[2]; /* the first is not above the second; the same one twice: a curve and its image */
   PetscReal distance;
 } CurveGap;
 
-/* CurveGaps - of every two curves nearer than reach, in order; gaps[n] is the caller's to free. Of smooth curves what
-   is nearer than half an edge is found at eight times the points. Not collective. Errors: memory. */
+/* CurveGaps - the gaps of all pairs of curves nearer than reach, in order. Where smooth curves are nearer than half an
+   edge the gap is found at eight times as many points. The caller frees gaps[n] (PetscFree). Not collective. Errors:
+   memory. */
 PETSC_EXTERN PetscErrorCode CurveGaps(const CurveSet *set, PetscReal reach, PetscInt *n, CurveGap **gaps);
 
-/* CurveLeastGap - the least of all distances, of any size; not a number where nothing is within half a period, or where
-   one curve is alone. Not collective. Errors: memory. */
+/* CurveLeastGap - the least of all distances; NaN where no curve is within half a period of another one or of an image,
+   or where there is one curve without images. Not collective. Errors: memory. */
 PETSC_EXTERN PetscErrorCode CurveLeastGap(const CurveSet *set, PetscReal *distance);
 
-/* Where curves lie: walls at the sides of the box in the directions that have them, images in those with a period. */
+/* The box that curves lie in. */
 typedef struct {
-  PetscReal box[4]; /* x_min, x_max, y_min, y_max */
-  PetscReal period[2];
-  PetscBool wall[2];
+  PetscReal box[4];    /* x_min, x_max, y_min, y_max */
+  PetscReal period[2]; /* 0: none */
+  PetscBool wall[2];   /* walls at both sides in x, in y */
 } CurveRoom;
 
-/* CurveWallGap - least distance of n points X[2n] from a wall, the one at box[side]; PETSC_MAX_REAL, side -1: none. Not
-   collective. */
+/* CurveWallGap - least distance of n points X[2n] from a wall, which is the one at box[side]; PETSC_MAX_REAL and side
+   -1 where there are no walls. Not collective. */
 PETSC_EXTERN PetscReal CurveWallGap(PetscInt n, const PetscReal X[], const CurveRoom *room, PetscInt *side);
 
-/* A film of fluid: between two curves, a curve and its own image (the same twice), or a curve and a wall. */
+/* A film of fluid between two curves, a curve and its own image, or a curve and a wall. */
 typedef struct {
   PetscReal thickness; /* length */
-  PetscReal spacings;  /* the same over the larger of both curves' point spacings */
-  PetscInt pair[2];    /* the curves; -1 - side for a wall */
+  PetscReal spacings;  /* thickness over the point spacing, the larger one of two curves */
+  PetscInt pair[2];    /* the curves, the same one twice for an image; the second is -1 - side for a wall */
 } CurveFilm;
 
-/* CurveThinnestFilm - the film that is thinnest against the points, which are ds[v] apart (length) on curve v, of those
-   thinner than `most` spacings; spacings is `most` where there is none. Distances are those of CurveGaps and
-   CurveWallGap; curves that overlap have no film. Not collective. Errors: memory. */
+/* CurveThinnestFilm - the film with the fewest spacings, of those with less than `most`; film.spacings is `most` where
+   there is none. ds[v]: spacing of the points of curve v (length). Distances are those of CurveGaps and CurveWallGap;
+   curves that overlap have no film. Not collective. Errors: memory. */
 PETSC_EXTERN PetscErrorCode CurveThinnestFilm(const CurveSet *set, const PetscReal ds[], const CurveRoom *room,
                                               PetscReal most, CurveFilm *film);

@@ -1,24 +1,24 @@
 #include "curve/crossing.h"
 
-#define FINER 8 /* times the points, where polygons of smooth curves cross */
+#define CROSSING_FINER 8 /* times as many points where polygons of smooth curves cross */
 
-/* Points sorted into cells at least `reach` wide: those of cell c are point[first[c]] .. point[first[c + 1] - 1], in
-   order, and x has their positions. */
+/* Points sorted into cells at least `reach` wide. The points of cell c are point[first[c]] .. point[first[c + 1] - 1],
+   in order, at the positions x. */
 typedef struct {
   PetscInt cells[2], *first, *point;
   PetscReal *x, low[2], width[2];
   const PetscReal *period;
 } CellList;
 
-static PetscInt CellAlong(const CellList *c, int dir, PetscReal x) {
+static PetscInt CellListAlong(const CellList *c, int dir, PetscReal x) {
   const PetscReal at = PetscFloorReal((x - c->low[dir]) / c->width[dir]);
   const PetscInt cells = c->cells[dir];
   if (c->period[dir] > 0) return (PetscInt)(at - cells * PetscFloorReal(at / cells));
   return PetscMax(0, PetscMin(cells - 1, (PetscInt)at));
 }
 
-static PetscInt CellOf(const CellList *c, const PetscReal x[2]) {
-  return CellAlong(c, 1, x[1]) * c->cells[0] + CellAlong(c, 0, x[0]);
+static PetscInt CellListCell(const CellList *c, const PetscReal x[2]) {
+  return CellListAlong(c, 1, x[1]) * c->cells[0] + CellListAlong(c, 0, x[0]);
 }
 
 static PetscErrorCode CellListCreate(PetscInt n, const PetscReal X[], PetscReal reach, CellList *c) {
@@ -31,7 +31,7 @@ static PetscErrorCode CellListCreate(PetscInt n, const PetscReal X[], PetscReal 
       high = PetscMax(high, X[2 * k + dir]);
     }
     const PetscReal extent = c->period[dir] > 0 ? c->period[dir] : PetscMax(high - low, reach);
-    const PetscReal most = PetscCeilReal(PetscSqrtReal(4. * n)); /* cells in all: a few a point */
+    const PetscReal most = PetscCeilReal(PetscSqrtReal(4. * n)); /* a few cells a point in all */
     c->cells[dir] = (PetscInt)PetscMax(1, PetscMin(most, PetscFloorReal(extent / reach)));
     c->low[dir] = low;
     c->width[dir] = extent / c->cells[dir];
@@ -40,10 +40,11 @@ static PetscErrorCode CellListCreate(PetscInt n, const PetscReal X[], PetscReal 
   PetscCall(PetscCalloc1(cells + 2, &c->first));
   PetscCall(PetscMalloc2(n, &c->point, 2 * n, &c->x));
   PetscCall(PetscMalloc1(n, &cell));
-  for (PetscInt k = 0; k < n; k++) c->first[(cell[k] = CellOf(c, X + 2 * k)) + 2]++;
+  for (PetscInt k = 0; k < n; k++) c->first[(cell[k] = CellListCell(c, X + 2 * k)) + 2]++;
   for (PetscInt k = 0; k < cells; k++) c->first[k + 2] += c->first[k + 1];
   for (PetscInt k = 0; k < n; k++) {
-    const PetscInt at = c->first[cell[k] + 1]++; /* in the end each has become its own cell's first again */
+    const PetscInt at =
+        c->first[cell[k] + 1]++; /* first[c + 1] grows from the first place of cell c to that of cell c + 1 */
     c->point[at] = k;
     for (int dir = 0; dir < 2; dir++) c->x[2 * at + dir] = X[2 * k + dir];
   }
@@ -58,8 +59,8 @@ static PetscErrorCode CellListDestroy(CellList *c) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Indices of the cells beside and at `cell`, each once. */
-static int Around(const CellList *c, int dir, PetscInt cell, PetscInt around[3]) {
+/* Indices of a cell and its neighbours along dir, each once; returns how many. */
+static int CellListAround(const CellList *c, int dir, PetscInt cell, PetscInt around[3]) {
   const PetscInt cells = c->cells[dir];
   int count = 0;
   for (PetscInt k = cell - 1; k <= cell + 1; k++) {
@@ -71,8 +72,8 @@ static int Around(const CellList *c, int dir, PetscInt cell, PetscInt around[3])
   return count;
 }
 
-/* From a to b, to the nearest image of b. */
-static void Apart(const PetscReal period[2], const PetscReal a[2], const PetscReal b[2], PetscReal d[2]) {
+/* d = vector from a to the nearest image of b. */
+static void NearestImage(const PetscReal period[2], const PetscReal a[2], const PetscReal b[2], PetscReal d[2]) {
   for (int dir = 0; dir < 2; dir++) {
     d[dir] = b[dir] - a[dir];
     if (period[dir] > 0) d[dir] -= period[dir] * PetscFloorReal(d[dir] / period[dir] + 0.5);
@@ -89,14 +90,14 @@ PetscErrorCode PairsWithin(PetscInt n, const PetscReal X[], const PetscInt part[
   if (done) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(CellListCreate(n, X, reach, &c));
   for (PetscInt i = begin; i < end && !done; i++) {
-    const int columns = Around(&c, 0, CellAlong(&c, 0, X[2 * i]), around[0]),
-              rows = Around(&c, 1, CellAlong(&c, 1, X[2 * i + 1]), around[1]);
+    const int columns = CellListAround(&c, 0, CellListAlong(&c, 0, X[2 * i]), around[0]),
+              rows = CellListAround(&c, 1, CellListAlong(&c, 1, X[2 * i + 1]), around[1]);
     for (int k = 0; k < columns * rows && !done; k++) {
       const PetscInt cell = around[1][k / columns] * c.cells[0] + around[0][k % columns];
       for (PetscInt at = c.first[cell]; at < c.first[cell + 1] && !done; at++) {
         PetscReal d[2];
         if (c.point[at] <= i) continue;
-        Apart(period, X + 2 * i, c.x + 2 * at, d);
+        NearestImage(period, X + 2 * i, c.x + 2 * at, d);
         if (d[0] * d[0] + d[1] * d[1] < reach * reach) done = found(context, i, c.point[at], d);
       }
     }
@@ -105,46 +106,46 @@ PetscErrorCode PairsWithin(PetscInt n, const PetscReal X[], const PetscInt part[
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Edges by their middles: those that cross have them as near as the longest is long. */
+/* A search for edges by their middles: edges that cross have middles no farther apart than the longest edge is long. */
 typedef struct {
   const CurveSet *set;
-  PetscInt *curve, *next; /* of each point; where its edge ends, */
-  PetscReal *end;         /* seen from its start; at the last point of an open curve there */
-  PetscReal *middle, longest;
-  PetscInt (*passed)[2], count, room; /* pairs of curves that do not cross, whatever their polygons do */
-  PetscInt pair[2];                   /* of curves that cross */
+  PetscInt *curve;   /* [points] the curve that a point is on */
+  PetscInt *next;    /* [points] number of the point where an edge ends */
+  PetscReal *end;    /* [points][2] where an edge ends, next to its start; an open curve's last edge has no length */
+  PetscReal *middle; /* [points][2] middles of the edges */
+  PetscReal longest; /* length of the longest edge */
+  PetscInt (*passed)[2]; /* [count] pairs of curves that do not cross although their polygons do */
+  PetscInt count, capacity;
+  PetscInt pair[2]; /* the first pair of curves that cross */
   PetscErrorCode error;
 } EdgeSearch;
 
 /* Twice the area of the triangle a, b, c. */
-static PetscReal Turn(const PetscReal a[2], const PetscReal b[2], const PetscReal c[2]) {
+static PetscReal TriangleArea(const PetscReal a[2], const PetscReal b[2], const PetscReal c[2]) {
   return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
 }
 
-/* Whether two curves cross at FINER times their points. */
-static PetscErrorCode FinerCross(const EdgeSearch *s, const PetscInt pair[2], PetscBool *cross) {
+/* Whether two curves cross at CROSSING_FINER times their points. */
+static PetscErrorCode CurvesCrossFiner(const EdgeSearch *s, const PetscInt pair[2], PetscBool *cross) {
   CurveFine fine;
   PetscInt found[2];
   PetscFunctionBeginUser;
-  PetscCall(CurveFineCreate(s->set, pair[0] == pair[1] ? 1 : 2, pair, FINER, &fine));
+  PetscCall(CurveFineCreate(s->set, pair[0] == pair[1] ? 1 : 2, pair, CROSSING_FINER, &fine));
   PetscCall(CurvesCross(&fine.set, found));
   *cross = found[0] < 0 ? PETSC_FALSE : PETSC_TRUE;
   PetscCall(CurveFineDestroy(&fine));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Curves whose polygons cross: s->pair if they cross themselves, else those passed. */
-static PetscErrorCode LookAgain(EdgeSearch *s, const PetscInt pair[2], PetscBool *cross) {
+/* Whether two curves whose polygons cross do so themselves: they become s->pair, or are added to s->passed. */
+static PetscErrorCode CurvesCrossTruly(EdgeSearch *s, const PetscInt pair[2], PetscBool *cross) {
   PetscFunctionBeginUser;
   *cross = PETSC_FALSE;
   for (PetscInt k = 0; k < s->count; k++)
     if (pair[0] == s->passed[k][0] && pair[1] == s->passed[k][1]) PetscFunctionReturn(PETSC_SUCCESS);
   *cross = PETSC_TRUE;
-  if (s->set->smooth) PetscCall(FinerCross(s, pair, cross));
-  if (!*cross && s->count == s->room) {
-    s->room = 2 * s->room + 16;
-    PetscCall(PetscRealloc((size_t)s->room * sizeof(*s->passed), &s->passed));
-  }
+  if (s->set->smooth) PetscCall(CurvesCrossFiner(s, pair, cross));
+  PetscCall(ArrayReserve(s->count + 1, &s->capacity, &s->passed));
   PetscCall(PetscArraycpy(*cross ? s->pair : s->passed[s->count++], pair, 2));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -161,8 +162,9 @@ static PetscBool EdgesCross(void *context, PetscInt i, PetscInt j, const PetscRe
     p[dir] = X[2 * j + dir] + shift;
     q[dir] = s->end[2 * j + dir] + shift;
   }
-  if (Turn(a, b, p) * Turn(a, b, q) >= 0 || Turn(p, q, a) * Turn(p, q, b) >= 0) return PETSC_FALSE;
-  s->error = LookAgain(s, pair, &cross);
+  if (TriangleArea(a, b, p) * TriangleArea(a, b, q) >= 0 || TriangleArea(p, q, a) * TriangleArea(p, q, b) >= 0)
+    return PETSC_FALSE;
+  s->error = CurvesCrossTruly(s, pair, &cross);
   return s->error || cross ? PETSC_TRUE : PETSC_FALSE;
 }
 

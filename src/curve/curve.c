@@ -1,7 +1,7 @@
 /* Curves: ellipses and cubic splines, and equal chords along them. */
 #include "curve/curve.h"
 
-#define CURVE_SAMPLES 4000 /* parts of a curve, of which integrals along it are summed */
+#define CURVE_SAMPLES 4000 /* parts of a curve that integrals along it are summed over */
 
 void CurveEvaluate(const Curve *c, PetscReal t, PetscReal X[2]) {
   const PetscReal all = t;
@@ -30,12 +30,14 @@ void CurveEvaluate(const Curve *c, PetscReal t, PetscReal X[2]) {
   }
 }
 
-/* Perimeter of an ellipse by arithmetic-geometric means: 2 pi (a^2 - SUM 2^(n-1) c_n^2)/M(a, b), c_0^2 = a^2 - b^2,
-   c_(n+1) = (a_n - b_n)/2 (NIST Handbook of Mathematical Functions, 19.8.6). To rounding. */
+/* Perimeter of an ellipse to rounding, by the arithmetic-geometric mean M(a, b) (NIST Handbook of Mathematical
+   Functions, 19.8.6):
+
+     2 pi (a^2 - SUM 2^(n-1) c_n^2)/M(a, b),   c_0^2 = a^2 - b^2,   c_(n+1) = (a_n - b_n)/2. */
 static PetscReal EllipsePerimeter(PetscReal x, PetscReal y) {
   PetscReal a = PetscMax(x, y), b = PetscMin(x, y), power = 0.5, sum = (a + b) * (a - b) / 2;
   const PetscReal square = a * a;
-  while (a - b > 1e-9 * a) { /* twice the digits a time: what is left is below rounding after the next */
+  while (a - b > 1e-9 * a) { /* every turn doubles the digits: after the next the error is below rounding */
     const PetscReal mean = (a + b) / 2, c = (a - b) / 2;
     b = PetscSqrtReal(a * b);
     a = mean;
@@ -50,7 +52,7 @@ PetscReal CurveLength(const Curve *c) {
 }
 
 PetscReal CurvePartLength(const Curve *c, PetscReal from, PetscReal to) {
-  /* Richardson on chord sums: error h^4 for a smooth curve */
+  /* Richardson extrapolation of sums of chords: error h^4 for a smooth curve */
   PetscReal sum[2] = {0, 0};
   for (int level = 0; level < 2; level++) {
     const PetscInt n = CURVE_SAMPLES << level;
@@ -67,7 +69,7 @@ PetscReal CurvePartLength(const Curve *c, PetscReal from, PetscReal to) {
 }
 
 PetscReal CurveArea(const Curve *c) {
-  /* Richardson on polygons, error h^4; about the first point */
+  /* Richardson extrapolation of areas of polygons: error h^4 for a smooth curve */
   PetscReal sum[2] = {0, 0};
   if (!c->n) return PETSC_PI * c->axes[0] * c->axes[1];
   for (int level = 0; level < 2; level++) {
@@ -85,8 +87,8 @@ PetscReal CurveArea(const Curve *c) {
   return (4 * sum[1] - sum[0]) / 3;
 }
 
-/* Cumulative chord length at the points of parameters t[0..M]; returns the total. */
-static PetscReal Chords(const Curve *c, PetscInt M, const PetscReal t[], PetscReal s[], PetscReal X[]) {
+/* s[M + 1]: lengths of chords from t[0] up to t[k], with the points X[2M + 2]; returns the whole length. */
+static PetscReal CurveChords(const Curve *c, PetscInt M, const PetscReal t[], PetscReal s[], PetscReal X[]) {
   s[0] = 0;
   for (PetscInt k = 0; k <= M; k++) CurveEvaluate(c, t[k], &X[2 * k]);
   for (PetscInt k = 1; k <= M; k++)
@@ -94,8 +96,8 @@ static PetscReal Chords(const Curve *c, PetscInt M, const PetscReal t[], PetscRe
   return s[M];
 }
 
-/* Parameters at which the piecewise linear s(t) takes equal steps. */
-static void EqualSteps(PetscInt n, const PetscReal t[], const PetscReal s[], PetscInt M, PetscReal out[]) {
+/* out[M + 1]: parameters at which the piecewise linear function s(t) takes equal steps. */
+static void CurveEqualSteps(PetscInt n, const PetscReal t[], const PetscReal s[], PetscInt M, PetscReal out[]) {
   PetscInt i = 0;
   for (PetscInt k = 0; k < M; k++) {
     const PetscReal want = s[n] * k / M;
@@ -111,13 +113,13 @@ PetscErrorCode CurveEqualChords(const Curve *c, PetscInt M, PetscReal X[]) {
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc4(n + 1, &t, n + 1, &s, M + 1, &next, 2 * n + 2, &points));
   for (PetscInt i = 0; i <= n; i++) t[i] = (PetscReal)i / n;
-  (void)Chords(c, n, t, s, points);
-  EqualSteps(n, t, s, M, next);
+  (void)CurveChords(c, n, t, s, points);
+  CurveEqualSteps(n, t, s, M, next);
   PetscCall(PetscArraycpy(t, next, M + 1));
   for (int it = 0; it < 500; it++) {
     PetscReal change = 0;
-    (void)Chords(c, M, t, s, points);
-    EqualSteps(M, t, s, M, next);
+    (void)CurveChords(c, M, t, s, points);
+    CurveEqualSteps(M, t, s, M, next);
     for (PetscInt k = 0; k <= M; k++) {
       change = PetscMax(change, PetscAbsReal(next[k] - t[k]));
       t[k] = next[k];
@@ -129,9 +131,9 @@ PetscErrorCode CurveEqualChords(const Curve *c, PetscInt M, PetscReal X[]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Arc length up to the end of each of n equal parts of the parameter between two, s[n+1], and up to its middle,
-   middle[n]: chords and half chords by Richardson, relative error h^4. */
-static void Arcs(const Curve *c, const PetscReal between[2], PetscInt n, PetscReal s[], PetscReal middle[]) {
+/* Arc lengths of n equal parts of the parameter between two: s[n + 1] up to the end of each part, middle[n] up to its
+   middle. By Richardson extrapolation of chords and half chords, relative error h^4. */
+static void CurveArcs(const Curve *c, const PetscReal between[2], PetscInt n, PetscReal s[], PetscReal middle[]) {
   const PetscReal from = between[0], all = between[1] - from;
   PetscReal a[2], b[2], m[2];
   CurveEvaluate(c, from, a);
@@ -147,18 +149,19 @@ static void Arcs(const Curve *c, const PetscReal between[2], PetscInt n, PetscRe
   }
 }
 
-/* M points of which `arcs` arcs go into the part of the curve. */
-static PetscErrorCode EqualArcs(const Curve *c, const PetscReal between[2], PetscInt M, PetscInt arcs, PetscReal X[]) {
+/* M points at equal arcs, of which `arcs` fill the curve between two parameters. */
+static PetscErrorCode CurvePlaceArcs(const Curve *c, const PetscReal between[2], PetscInt M, PetscInt arcs,
+                                     PetscReal X[]) {
   const PetscInt n = PetscMax(CURVE_SAMPLES, 20 * M);
   PetscReal *s, *middle;
   PetscInt i = 0;
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(n + 1, &s, n, &middle));
-  Arcs(c, between, n, s, middle);
+  CurveArcs(c, between, n, s, middle);
   for (PetscInt k = 0; k < M; k++) {
     const PetscReal want = s[n] * k / arcs;
     while (i < n - 1 && s[i + 1] < want) i++;
-    /* the parabola through the part's two ends and middle, as t(s) */
+    /* t(s) is the parabola through both ends and the middle of the part */
     const PetscReal x = (want - s[i]) / (s[i + 1] - s[i]), m = (middle[i] - s[i]) / (s[i + 1] - s[i]);
     const PetscReal bend = (0.5 - m) / (m * (m - 1));
     CurveEvaluate(c, between[0] + (between[1] - between[0]) * ((i + x + bend * x * (x - 1)) / n), &X[2 * k]);
@@ -170,19 +173,20 @@ static PetscErrorCode EqualArcs(const Curve *c, const PetscReal between[2], Pets
 PetscErrorCode CurveEqualArcs(const Curve *c, PetscInt M, PetscReal X[]) {
   const PetscReal all[2] = {0, 1};
   PetscFunctionBeginUser;
-  PetscCall(EqualArcs(c, all, M, M, X));
+  PetscCall(CurvePlaceArcs(c, all, M, M, X));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode CurvePartEqualArcs(const Curve *c, PetscReal from, PetscReal to, PetscInt M, PetscReal X[]) {
   const PetscReal between[2] = {from, to};
   PetscFunctionBeginUser;
-  PetscCall(EqualArcs(c, between, M, M - 1, X));
+  PetscCall(CurvePlaceArcs(c, between, M, M - 1, X));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode EllipseAxes(PetscReal area, PetscReal reduced_area, PetscReal axes[2]) {
-  /* the reduced area rises with b/a from 0 to 1: bisection; a perimeter from 4 a to 2 pi a bounds b/a */
+  /* Bisection: the reduced area rises with b/a from 0 to 1. The perimeter lies between 4 a and 2 pi a, which bounds
+   * b/a. */
   PetscReal lo = 0.4 * reduced_area, hi = reduced_area;
   Curve c = {0};
   PetscFunctionBeginUser;
@@ -201,9 +205,9 @@ PetscErrorCode EllipseAxes(PetscReal area, PetscReal reduced_area, PetscReal axe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Second derivatives of the cubic spline by two passes of the cyclic Thomas algorithm (Sherman-Morrison). Of an open
-   one that of the first and the last point, which are one unknown, is zero. */
-static PetscErrorCode SplineSetUp(Curve *c) {
+/* Second derivatives of the cubic spline by two passes of the cyclic Thomas algorithm (Sherman-Morrison). In an open
+   curve the first and the last point are one unknown, and the second derivative there is zero. */
+static PetscErrorCode CurveSplineSetUp(Curve *c) {
   const PetscInt n = c->n;
   PetscReal *diag, *low, *up, *rhs, *z;
   PetscFunctionBeginUser;
@@ -269,6 +273,6 @@ PetscErrorCode CurveFromPoints(const CurveKind *kind, PetscInt points, const Pet
   for (PetscInt i = 0; i <= n; i++) c->t[i] /= length;
   for (PetscInt i = 0; i <= n; i++)
     for (int d = 0; d < 2; d++) c->x[d][i] -= kind->span[d] * c->t[i];
-  PetscCall(SplineSetUp(c));
+  PetscCall(CurveSplineSetUp(c));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,86 +1,101 @@
-/* Curves in the plane, most of them closed: ellipses, splines through points, curves of a file, markers at equal
-   distances on them. What a scene and a membrane both need. Markers are interlaced, x0,y0,x1,y1,...; lengths are in the
-   user's units. */
+/* Curves in the plane: ellipses, splines through points, the curves of a file, and equal distances along them.
+
+   A spline is cubic in a parameter t from 0 to 1 that grows with the length of chords; integrals along a curve are sums
+   over 4000 parts with Richardson extrapolation, relative error h^4. Markers are interlaced, x0,y0,x1,y1,...; lengths
+   are in the user's units. Rank 0 reads a file and sends it to all ranks; all other functions work on one rank. */
 #pragma once
 #include "curve/kind.h"
 
 #define DIGEST 17 /* 64 bits as text */
 
-/* Curves as equal-edge markers, closed ones counter-clockwise. X holds x0,y0,x1,y1,... of all vesicles one after
-   another; vesicle v owns markers start[v] .. start[v+1]-1. */
+/* Curves as markers with equal edges; closed curves run counter-clockwise. Vesicle v has the markers start[v] ..
+   start[v+1]-1. */
 typedef struct {
   PetscInt vesicles;
   PetscInt *start;     /* [vesicles+1] */
   PetscReal *X;        /* [2*start[vesicles]] */
-  PetscReal longest;   /* length of the longest of the curves that they are on */
+  PetscReal longest;   /* length of the longest curve */
   CurveKind *kind;     /* [vesicles]; NULL: all closed */
-  char digest[DIGEST]; /* of what their file says; empty without */
+  char digest[DIGEST]; /* of the curves in their file; empty without a file */
 } Shape;
 PETSC_EXTERN PetscErrorCode ShapeDestroy(Shape *shape);
 
-/* ShapeRadius - R0 of vesicle v, its length over 2 pi. */
+/* ShapeRadius - R0 of vesicle v: its length over 2 pi. Not collective. */
 PETSC_EXTERN PetscReal ShapeRadius(const Shape *shape, PetscInt v);
 
-/* ShapeHolds - whether (x, y) lies within curve v, by its polygon. Not collective. */
+/* ShapeHolds - whether (x, y) lies within the polygon of curve v. Not collective. */
 PETSC_EXTERN PetscBool ShapeHolds(const Shape *shape, PetscInt v, PetscReal x, PetscReal y);
 
-/* A curve X(t), t in [0,1), with X(t+1) = X(t) + span, or from t = 0 to 1 where it is open. */
+/* A curve X(t):
+
+     X(t + 1) = X(t) + span
+
+   where it is closed (span = 0) or spans a period; an open curve runs from t = 0 to t = 1. */
 typedef struct {
   CurveKind kind;
-  PetscInt n;          /* 0: ellipse; else number of the spline's parts */
-  PetscReal axes[2];   /* ellipse */
-  PetscReal *t, *x[2]; /* knots [n+1], values [n+1] less span t */
-  PetscReal *m[2];     /* second derivatives [n+1] */
-  char digest[DIGEST]; /* of what its file says (CurvesFromFile) */
+  PetscInt n;          /* parts of the spline; 0: ellipse */
+  PetscReal axes[2];   /* semi-axes of the ellipse */
+  PetscReal *t;        /* [n+1] knots */
+  PetscReal *x[2];     /* [n+1] values less span t */
+  PetscReal *m[2];     /* [n+1] second derivatives */
+  char digest[DIGEST]; /* of the curves in its file; empty without a file */
 } Curve;
+
+/* CurveEvaluate - X(t). CurveLength - length of the curve. CurvePartLength - length from t = `from` to `to`. CurveArea
+   - enclosed area. CurveCentroid - centroid of the enclosed area. Not collective. */
 PETSC_EXTERN void CurveEvaluate(const Curve *curve, PetscReal t, PetscReal X[2]);
 PETSC_EXTERN PetscReal CurveLength(const Curve *curve);
 PETSC_EXTERN PetscReal CurvePartLength(const Curve *curve, PetscReal from, PetscReal to);
 PETSC_EXTERN PetscReal CurveArea(const Curve *curve);
+PETSC_EXTERN void CurveCentroid(const Curve *curve, PetscReal centroid[2]);
 
-/* CurveEqualChords - place M points on the curve so that all M chords are equal; X[2M], first point at t = 0. */
+/* CurveEqualChords - M points X[2M] on the curve between which all M chords are equal, the first at t = 0.
+   CurveEqualArcs - M points between which all M arcs are equal, on a smooth curve to 1e-9 of their length, the first at
+   t = 0: CurveFit starts from these points for the edges of the spectral derivative. CurvePartEqualArcs - M points
+   between which M - 1 arcs are equal, the first at t = `from` and the last at `to`. Not collective. Errors: memory. */
 PETSC_EXTERN PetscErrorCode CurveEqualChords(const Curve *curve, PetscInt M, PetscReal X[]);
-
-/* CurveEqualArcs - the same with M arcs, equal to 1e-9 of their length on a smooth curve: what CurveFit starts from
-   for the edges of the spectral derivative. */
 PETSC_EXTERN PetscErrorCode CurveEqualArcs(const Curve *curve, PetscInt M, PetscReal X[]);
-
-/* CurvePartEqualArcs - the same from t = `from` to `to`, the first and the last point there. */
 PETSC_EXTERN PetscErrorCode CurvePartEqualArcs(const Curve *curve, PetscReal from, PetscReal to, PetscInt M,
                                                PetscReal X[]);
 
-/* CurveFit - move M markers X[2M] as little as possible (least squares) until all their edges, chords or spectral ones
-   dX/dk, are length/M long and the polygon or the spectral curve encloses the area: Newton, at most `most` steps. left:
-   the largest relative error of squared edges and area. A circle, which has no freedom left, stays. */
+/* CurveFit - move M markers X[2M] as little as possible (least squares) until all edges are length/M long and the curve
+   encloses the area, by at most `most` steps of Newton's method. spectral: edges are dX/dk and the curve is that of the
+   spectral derivative; else edges are chords and the curve is a polygon. left: the largest relative error of squared
+   edges and area. A circle, which has no freedom, stays. Not collective. Errors: memory. */
 PETSC_EXTERN PetscErrorCode CurveFit(PetscInt M, PetscBool spectral, PetscReal length, PetscReal area, PetscReal X[],
                                      PetscInt most, PetscReal *left);
 
-/* CurveFromPoints - cubic spline through n points xy[2n], by chord length: periodic, or without curvature at the ends
-   of an open one. */
+/* CurveFromPoints - the cubic spline through n points xy[2n], periodic or, for an open curve, without curvature at its
+   ends. Not collective. Errors: memory. */
 PETSC_EXTERN PetscErrorCode CurveFromPoints(const CurveKind *kind, PetscInt n, const PetscReal xy[], Curve *curve);
 
-/* What a file says of a curve besides its points. */
+/* Notes on a curve in a file. */
 typedef struct {
-  PetscReal velocity[2], rotation; /* lines "# velocity u_x u_y" (length/time), "# rotation w" (1/time) before it */
-  PetscBool clockwise;             /* its points' order, before they were turned */
-  PetscBool open;                  /* a line "# open" */
+  PetscReal velocity[2]; /* length/time, of a line "# velocity u_x u_y" before the curve */
+  PetscReal rotation;    /* 1/time, of a line "# rotation w" before the curve */
+  PetscBool clockwise;   /* the points in the file run clockwise */
+  PetscBool open;        /* there is a line "# open" before the curve */
 } CurveNote;
 
-/* CurvesFromFile - the curves of a text file ("x y" a line, # starts a comment, an empty line ends a curve), turned
-   counter-clockwise, open ones as if the chord closed them. Where period[2] is given, 0 without, one whose last point
-   is its first but for a period spans it, as it runs, and a note makes one open; else all are closed. curve[curves] to
-   be freed, each after CurveDestroy, and note[curves] (NULL: not wanted). option: the one that names the file, for
-   messages. All have one digest, of the points and notes of all. Collective: rank 0 reads. */
+/* CurvesFromFile - the curves of a text file with a point "x y" a line, # before a comment, and an empty line behind
+   each curve. Points are put into counter-clockwise order, those of an open curve as if its chord closed it. period:
+   [2], 0 for none. With it, a curve whose last point is its first one a period on spans the period in the file's order,
+   and a note makes a curve open; with NULL all curves are closed. The caller frees curve[curves], each after
+   CurveDestroy, and note[curves] (NULL: not wanted). option: the option that names the file, for messages. Every curve
+   has the digest of all points and notes. Collective. */
 PETSC_EXTERN PetscErrorCode CurvesFromFile(MPI_Comm comm, const char option[], const char file[],
                                            const PetscReal period[2], PetscInt *curves, Curve **curve,
                                            CurveNote **note);
 PETSC_EXTERN PetscErrorCode CurveDestroy(Curve *curve);
 
-/* EllipseAxes - semi-axes a >= b of the ellipse with the given area and reduced area V = 4 pi area / perimeter^2. */
+/* EllipseAxes - semi-axes a >= b of the ellipse with the given area and reduced area
+
+     V = 4 pi area/perimeter^2.
+
+   Not collective. */
 PETSC_EXTERN PetscErrorCode EllipseAxes(PetscReal area, PetscReal reduced_area, PetscReal axes[2]);
 
-/* BiconcaveCurve - the red cell's outline of Evans and Fung, thicker or thinner in its middle so that it has the
-   reduced area (.35 to .9; their cell has .461) and the area; about the origin, long axis along x. CurveCentroid - of
-   the area that a curve encloses. Not collective. */
+/* BiconcaveCurve - the red cell's outline of Evans and Fung about the origin, with the long axis along x. Its middle is
+   made thicker or thinner to have the reduced area, 0.35 to 0.9 (0.461 in their paper). Not collective. Errors: memory.
+ */
 PETSC_EXTERN PetscErrorCode BiconcaveCurve(PetscReal area, PetscReal reduced_area, Curve *curve);
-PETSC_EXTERN void CurveCentroid(const Curve *curve, PetscReal centroid[2]);

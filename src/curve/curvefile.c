@@ -4,34 +4,36 @@
 #include <inttypes.h>
 #include <strings.h>
 
-#define SAME 1e-6    /* of a period: a curve's last point is its first */
-#define ROUNDED 1e-9 /* of a curve's size: two points are one but for rounding */
+#define PERIOD_ERROR 1e-6 /* over a period: error of a last point that is the first a period on */
+#define POINT_ERROR 1e-9  /* over a curve's size: distance up to which two points are one */
 
 typedef struct {
   PetscInt n, curves;
-  PetscInt *end; /* points up to the end of each curve */
-  PetscReal *xy;
-  CurveNote *note; /* [curves] */
-  CurveNote next;  /* of the curve under way */
+  PetscInt *end;                                     /* [curves] points up to the end of each curve */
+  PetscReal *xy;                                     /* [n][2] */
+  CurveNote *note;                                   /* [curves] */
+  PetscInt end_capacity, xy_capacity, note_capacity; /* of the three arrays */
+  CurveNote next;                                    /* note of the curve that is being read */
   const char *option, *file;
   const PetscReal *period; /* NULL: closed curves only */
   char error[PETVES_MAX_MESSAGE];
 } Points;
 
-static PetscErrorCode EndCurve(Points *p) {
+static PetscErrorCode PointsEndCurve(Points *p) {
   const PetscInt last = p->curves ? p->end[p->curves - 1] : 0;
   PetscFunctionBeginUser;
   if (p->n == last) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscRealloc((size_t)(p->curves + 1) * sizeof(PetscInt), &p->end));
-  PetscCall(PetscRealloc((size_t)(p->curves + 1) * sizeof(CurveNote), &p->note));
+  PetscCall(ArrayReserve(p->curves + 1, &p->end_capacity, &p->end));
+  PetscCall(ArrayReserve(p->curves + 1, &p->note_capacity, &p->note));
   p->note[p->curves] = p->next;
   p->end[p->curves++] = p->n;
   p->next = (CurveNote){0};
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* How many finite numbers a text consists of, blanks or commas between them; -1: more than `most`, or others. */
-static int Numbers(const char text[], int most, PetscReal x[]) {
+/* Count of the finite numbers in a text, with blanks or commas between them; -1 if there are more than `most` or
+   anything else. */
+static int PointsNumbers(const char text[], int most, PetscReal x[]) {
   int n = 0;
   while (text[strspn(text, " \t\r\n,")]) {
     char *end;
@@ -44,7 +46,7 @@ static int Numbers(const char text[], int most, PetscReal x[]) {
   return n;
 }
 
-static PetscErrorCode Refuse(Points *points, PetscInt number, const char line[], const char allowed[]) {
+static PetscErrorCode PointsRefuse(Points *points, PetscInt number, const char line[], const char allowed[]) {
   PetscFunctionBeginUser;
   PetscCall(PetscSNPrintf(points->error, sizeof(points->error),
                           "%s %s: line %" PetscInt_FMT " is \"%.60s\"; allowed: %s", points->option, points->file,
@@ -52,8 +54,8 @@ static PetscErrorCode Refuse(Points *points, PetscInt number, const char line[],
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A comment whose first word says something of an obstacle's curve: "# velocity x y" and so on. */
-static PetscErrorCode ReadNote(const char line[], PetscInt number, Points *points) {
+/* A comment whose first word is known is a note on an obstacle's curve: "# velocity x y" and so on. */
+static PetscErrorCode PointsReadNote(const char line[], PetscInt number, Points *points) {
   const char *start = line + 1 + strspn(line + 1, " \t");
   const size_t length = strcspn(start, " \t,:=");
   CurveNote *note = &points->next;
@@ -66,8 +68,9 @@ static PetscErrorCode ReadNote(const char line[], PetscInt number, Points *point
   PetscFunctionBeginUser;
   for (int k = 0; k < 3; k++) {
     if (length != strlen(known[k].word) || strncasecmp(start, known[k].word, length)) continue;
-    if (Numbers(start + length, 2, x) != known[k].numbers)
-      PetscCall(Refuse(points, number, line, "# velocity and two finite numbers, # rotation and one, # open and none"));
+    if (PointsNumbers(start + length, 2, x) != known[k].numbers)
+      PetscCall(
+          PointsRefuse(points, number, line, "# velocity and two finite numbers, # rotation and one, # open and none"));
     else if (known[k].value)
       PetscCall(PetscArraycpy(known[k].value, x, known[k].numbers));
     else
@@ -76,39 +79,36 @@ static PetscErrorCode ReadNote(const char line[], PetscInt number, Points *point
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* One line, `number` of the file. */
-static PetscErrorCode ReadLine(char line[], PetscInt number, PetscInt *capacity, Points *points) {
+/* Read line `number` of the file. */
+static PetscErrorCode PointsReadLine(char line[], PetscInt number, Points *points) {
   const char *start = line + strspn(line, " \t");
   const PetscBool comment = *start == '#' ? PETSC_TRUE : PETSC_FALSE;
   PetscReal x[2];
   PetscFunctionBeginUser;
   line[strcspn(line, "\r\n")] = 0;
   if (comment) {
-    if (points->period) PetscCall(ReadNote(start, number, points));
+    if (points->period) PetscCall(PointsReadNote(start, number, points));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   line[strcspn(line, "#")] = 0;
-  const int n = Numbers(line, 2, x);
-  if (n == 0) PetscCall(EndCurve(points));
+  const int n = PointsNumbers(line, 2, x);
+  if (n == 0) PetscCall(PointsEndCurve(points));
   if (n == 0) PetscFunctionReturn(PETSC_SUCCESS);
   if (n != 2) {
-    PetscCall(Refuse(points, number, line, "two finite numbers, x y"));
+    PetscCall(PointsRefuse(points, number, line, "two finite numbers, x y"));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  if (points->n == *capacity) {
-    *capacity = *capacity ? 2 * *capacity : 256;
-    PetscCall(PetscRealloc(2 * *capacity * sizeof(PetscReal), &points->xy));
-  }
+  PetscCall(ArrayReserve(2 * (points->n + 1), &points->xy_capacity, &points->xy));
   PetscCall(PetscArraycpy(points->xy + 2 * points->n++, x, 2));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Read the lines on one rank; what is wrong goes into points->error. */
-static PetscErrorCode ReadPoints(Points *points) {
+/* Read the lines on one rank. The message of a mistake goes into points->error. */
+static PetscErrorCode PointsRead(Points *points) {
   FILE *f = FileOpen(points->file);
   char *line = NULL;
   size_t room = 0;
-  PetscInt number = 0, capacity = 0;
+  PetscInt number = 0;
   PetscFunctionBeginUser;
   if (!f) {
     PetscCall(PetscSNPrintf(points->error, sizeof(points->error),
@@ -116,35 +116,35 @@ static PetscErrorCode ReadPoints(Points *points) {
                             strerror(errno)));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  while (getline(&line, &room, f) >= 0 && !*points->error) PetscCall(ReadLine(line, ++number, &capacity, points));
+  while (getline(&line, &room, f) >= 0 && !*points->error) PetscCall(PointsReadLine(line, ++number, points));
   if (ferror(f))
     PetscCall(PetscSNPrintf(points->error, sizeof(points->error),
                             "%s %s: cannot be read; allowed: a readable text file", points->option, points->file));
   free(line);
   fclose(f);
-  PetscCall(EndCurve(points));
+  PetscCall(PointsEndCurve(points));
   if (!points->curves && !*points->error)
     PetscCall(PetscSNPrintf(points->error, sizeof(points->error), "%s %s: 0 points; allowed: at least 8 a curve",
                             points->option, points->file));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Points of a curve that are no further apart are one point. */
-static PetscReal Nearest(PetscInt n, const PetscReal xy[]) {
+/* Distance up to which two points of a curve are one point. */
+static PetscReal PointError(PetscInt n, const PetscReal xy[]) {
   PetscReal size = 0;
   for (PetscInt k = 2; k < 2 * n; k++) size = PetscMax(size, PetscAbsReal(xy[k] - xy[k % 2]));
-  return ROUNDED * size;
+  return POINT_ERROR * size;
 }
 
-/* What kind a curve of n points is; a last point that closes it, or is its first a period on, is dropped. */
-static CurveKind FindKind(const Points *p, PetscInt *n, const PetscReal xy[], const CurveNote *note) {
-  const PetscReal near = Nearest(*n, xy);
+/* The kind of a curve of n points. A last point that is the first, or the first a period on, is dropped. */
+static CurveKind PointsKind(const Points *p, PetscInt *n, const PetscReal xy[], const CurveNote *note) {
+  const PetscReal near = PointError(*n, xy);
   const PetscReal d[2] = {xy[2 * *n - 2] - xy[0], xy[2 * *n - 1] - xy[1]};
   CurveKind kind = {.type = p->period && note->open ? CURVE_OPEN : CURVE_CLOSED};
   if (kind.type == CURVE_OPEN) return kind;
   for (int c = 0; c < 2 && p->period; c++)
-    if (p->period[c] > 0 && PetscAbsReal(PetscAbsReal(d[c]) - p->period[c]) < SAME * p->period[c] &&
-        PetscAbsReal(d[1 - c]) < SAME * p->period[c]) {
+    if (p->period[c] > 0 && PetscAbsReal(PetscAbsReal(d[c]) - p->period[c]) < PERIOD_ERROR * p->period[c] &&
+        PetscAbsReal(d[1 - c]) < PERIOD_ERROR * p->period[c]) {
       kind.type = CURVE_SPANNING;
       kind.span[c] = d[c] < 0 ? -p->period[c] : p->period[c];
     }
@@ -152,8 +152,8 @@ static CurveKind FindKind(const Points *p, PetscInt *n, const PetscReal xy[], co
   return kind;
 }
 
-/* The points the other way round; a closed curve still starts at the first. */
-static void Reverse(const CurveKind *kind, PetscInt n, PetscReal xy[]) {
+/* Reverse the order of the points; a closed curve still starts at the same point. */
+static void PointsReverse(const CurveKind *kind, PetscInt n, PetscReal xy[]) {
   for (PetscInt i = kind->type == CURVE_OPEN ? 0 : 1, k = n - 1; i < k; i++, k--)
     for (int c = 0; c < 2; c++) {
       const PetscReal swap = xy[2 * i + c];
@@ -162,15 +162,15 @@ static void Reverse(const CurveKind *kind, PetscInt n, PetscReal xy[]) {
     }
 }
 
-/* The kind of one curve, the number of its points without a repeated one, and its points turned counter-clockwise; what
-   makes the curve unusable goes into the error. */
-static PetscErrorCode CleanCurve(Points *p, PetscInt *n, PetscReal xy[], CurveNote *note, CurveKind *kind) {
+/* The kind of one curve and the number of its points without a repeated one. Its points are turned counter-clockwise.
+   The message of a curve that cannot be used goes into p->error. */
+static PetscErrorCode PointsClean(Points *p, PetscInt *n, PetscReal xy[], CurveNote *note, CurveKind *kind) {
   char *error = p->error;
   const size_t length_of_error = sizeof(p->error);
-  const PetscReal near = Nearest(*n, xy);
+  const PetscReal near = PointError(*n, xy);
   PetscReal area = 0, length = 0;
   PetscFunctionBeginUser;
-  *kind = FindKind(p, n, xy, note);
+  *kind = PointsKind(p, n, xy, note);
   if (*n < 8) {
     PetscCall(PetscSNPrintf(error, length_of_error, "%s %s: %" PetscInt_FMT " points; allowed: at least 8 a curve",
                             p->option, p->file, *n));
@@ -194,21 +194,21 @@ static PetscErrorCode CleanCurve(Points *p, PetscInt *n, PetscReal xy[], CurveNo
                             p->file, (double)area,
                             kind->type == CURVE_OPEN ? "curve off the chord between its ends" : "closed simple curve"));
   note->clockwise = area < 0 ? PETSC_TRUE : PETSC_FALSE;
-  if (area < 0) Reverse(kind, *n, xy);
+  if (area < 0) PointsReverse(kind, *n, xy);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What rank 0 has read, to all ranks. */
-static PetscErrorCode Share(MPI_Comm comm, PetscMPIInt rank, Points *p) {
+/* Send what rank 0 has read to all ranks. */
+static PetscErrorCode PointsShare(MPI_Comm comm, PetscMPIInt rank, Points *p) {
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Bcast(p->error, sizeof(p->error), MPI_CHAR, 0, comm));
   PetscCallMPI(MPI_Bcast(&p->n, 1, MPIU_INT, 0, comm));
   PetscCallMPI(MPI_Bcast(&p->curves, 1, MPIU_INT, 0, comm));
   PetscCheck(!*p->error, comm, PETSC_ERR_USER_INPUT, "%s", p->error);
   if (rank) {
-    PetscCall(PetscRealloc((size_t)p->curves * sizeof(PetscInt), &p->end));
-    PetscCall(PetscRealloc((size_t)p->curves * sizeof(CurveNote), &p->note));
-    PetscCall(PetscRealloc(2 * (size_t)p->n * sizeof(PetscReal), &p->xy));
+    PetscCall(PetscMalloc1(p->curves, &p->end));
+    PetscCall(PetscMalloc1(p->curves, &p->note));
+    PetscCall(PetscMalloc1(2 * p->n, &p->xy));
   }
   PetscCallMPI(MPI_Bcast(p->end, (PetscMPIInt)p->curves, MPIU_INT, 0, comm));
   PetscCallMPI(MPI_Bcast(p->note, (PetscMPIInt)((size_t)p->curves * sizeof(CurveNote)), MPI_BYTE, 0, comm));
@@ -216,8 +216,8 @@ static PetscErrorCode Share(MPI_Comm comm, PetscMPIInt rank, Points *p) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* FNV-1a: h goes on with n numbers. */
-static uint64_t Digest(uint64_t h, PetscInt n, const PetscReal x[]) {
+/* The hash FNV-1a of what came before, h, and of n numbers. */
+static uint64_t PointsDigest(uint64_t h, PetscInt n, const PetscReal x[]) {
   const unsigned char *bytes = (const unsigned char *)x;
   for (size_t k = 0; k < (size_t)n * sizeof(*x); k++) h = (h ^ bytes[k]) * 0x100000001b3u;
   return h;
@@ -230,8 +230,8 @@ PetscErrorCode CurvesFromFile(MPI_Comm comm, const char option[], const char fil
   PetscMPIInt rank;
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
-  if (!rank) PetscCall(ReadPoints(&p));
-  PetscCall(Share(comm, rank, &p));
+  if (!rank) PetscCall(PointsRead(&p));
+  PetscCall(PointsShare(comm, rank, &p));
   *curves = p.curves;
   PetscCall(PetscCalloc1(p.curves, curve));
   for (PetscInt k = 0; k < p.curves; k++) {
@@ -240,8 +240,8 @@ PetscErrorCode CurvesFromFile(MPI_Comm comm, const char option[], const char fil
     CurveKind kind;
     const CurveNote *said = &p.note[k];
     const PetscReal says[] = {n, said->open, said->velocity[0], said->velocity[1], said->rotation};
-    digest = Digest(Digest(digest, 5, says), 2 * n, p.xy + 2 * first);
-    PetscCall(CleanCurve(&p, &n, p.xy + 2 * first, &p.note[k], &kind));
+    digest = PointsDigest(PointsDigest(digest, 5, says), 2 * n, p.xy + 2 * first);
+    PetscCall(PointsClean(&p, &n, p.xy + 2 * first, &p.note[k], &kind));
     PetscCheck(!*p.error, comm, PETSC_ERR_USER_INPUT, "%s", p.error);
     PetscCall(CurveFromPoints(&kind, n, p.xy + 2 * first, *curve + k));
   }

@@ -1,24 +1,30 @@
-/* The markers of a closed curve moved as little as possible until their edges and their area are what they
-   should be. */
+/* CurveFit by Newton's method. The residuals of the markers X are
+
+       r_k = |e_k|^2 - ds^2,   e = D X,      r_M = 2 (A - area),   2 A = SUM X_k x a_k,
+
+   D is circulant, D_kl = d_{k - l}, and a is an antisymmetric derivative of X. Their gradients are the rows of C, 2 e_k
+   . D and 2 z with z = (a_y, -a_x), and the smallest step that makes the linearised residuals zero is
+
+       X -= C^T (C C^T)^-1 r. */
 #include "curve/curve.h"
 #include "curve/circulant.h"
 #include <petscblaslapack.h>
 
-#define CONVERGED 1e-13 /* squared edges and area, relative */
+#define FIT_CONVERGED 1e-13 /* relative error of squared edges and of the area */
 
-/* Of one fit. D is circulant: D[k][l] = d[k - l], markers counted round the curve, and (D D^T)_kl is a function of k -
-   l alone. */
+/* The arrays of one fit. */
 typedef struct {
   PetscInt M;
-  PetscReal *edge, *central;   /* [M] d of the edges, and of the antisymmetric derivative of differences */
-  PetscReal *products;         /* [M + CIRCULANT_PADDING] D D^T of the edges */
-  PetscReal *e, *a, *z, *work; /* [2M + CIRCULANT_PADDING] edges, derivative, normals */
-  PetscReal *twice;            /* [4M + CIRCULANT_PADDING] */
-  PetscReal *r, *CC;           /* [M + 1] residuals, [(M + 1)^2] */
+  PetscReal *edge;             /* [M] d of the edges */
+  PetscReal *central;          /* [M] d of the antisymmetric derivative by differences */
+  PetscReal *products;         /* [M + CIRCULANT_PADDING] (D D^T)_kl as a function of k - l */
+  PetscReal *e, *a, *z, *work; /* [2M + CIRCULANT_PADDING] e, a, z, work */
+  PetscReal *twice;            /* [4M + CIRCULANT_PADDING] an argument of D two times */
+  PetscReal *r, *CC;           /* [M + 1], [(M + 1)^2] */
 } Fit;
 
-/* Of the trigonometric interpolant (for even M without its highest wave). */
-static void SpectralIndexDerivative(PetscInt M, PetscReal d[]) {
+/* d of the derivative of the trigonometric interpolant, for even M without its highest mode. */
+static void FitSpectralDerivative(PetscInt M, PetscReal d[]) {
   d[0] = 0;
   for (PetscInt j = 1; 2 * j <= M; j++) {
     const PetscReal x = PETSC_PI * j / M;
@@ -27,15 +33,16 @@ static void SpectralIndexDerivative(PetscInt M, PetscReal d[]) {
   }
 }
 
-/* Half the difference of the neighbours, or (chord) of a marker and the one before. */
-static void DifferenceDerivative(PetscInt M, PetscBool chord, PetscReal d[]) {
+/* d of half the difference of a marker's neighbours or, with chord, of the difference between a marker and the one
+   before. */
+static void FitDifference(PetscInt M, PetscBool chord, PetscReal d[]) {
   (void)PetscArrayzero(d, M);
   d[0] = chord ? 1 : 0;
   d[1] = chord ? -1 : -0.5;
   if (!chord) d[M - 1] = 0.5;
 }
 
-/* out = D x of `each` numbers a marker, or (transposed) D^T x. */
+/* out = D x or, if transposed, D^T x, of `each` numbers a marker. */
 static void FitMultiply(const Fit *f, const PetscReal d[], int each, PetscBool transposed, const PetscReal x[],
                         PetscReal out[]) {
   const PetscInt width = each * f->M;
@@ -44,10 +51,9 @@ static void FitMultiply(const Fit *f, const PetscReal d[], int each, PetscBool t
   CirculantConvolve(f->M, each, transposed, d, f->twice, out);
 }
 
-/* r = {|e_k|^2 - ds^2, 2 (A - wanted)}, 2A = SUM X x a for the edges e and an antisymmetric derivative a; returns the
-   largest, relative. */
-static PetscReal Residual(PetscInt M, const PetscReal X[], PetscReal ds, PetscReal area, const PetscReal e[],
-                          const PetscReal a[], PetscReal r[]) {
+/* The residuals r; returns the largest relative one. */
+static PetscReal FitResidual(PetscInt M, const PetscReal X[], PetscReal ds, PetscReal area, const PetscReal e[],
+                             const PetscReal a[], PetscReal r[]) {
   PetscReal worst = 0;
   r[M] = -2 * area;
   for (PetscInt k = 0; k < M; k++) {
@@ -59,9 +65,8 @@ static PetscReal Residual(PetscInt M, const PetscReal X[], PetscReal ds, PetscRe
   return PetscMax(worst, PetscAbsReal(r[M]) / (2 * area));
 }
 
-/* CC = C C^T, its lower triangle by columns, C the rows' gradient: 2 e_k . D, and 2 z, z = (a_y, -a_x), because the
-   derivative of a is antisymmetric. */
-static void GradientProducts(const Fit *f) {
+/* CC = C C^T, its lower triangle by columns. */
+static void FitGradientProducts(const Fit *f) {
   const PetscInt M = f->M, rows = M + 1;
   const PetscReal *e = f->e, *z = f->z, *Dz = f->work;
   PetscReal *CC = f->CC;
@@ -76,14 +81,14 @@ static void GradientProducts(const Fit *f) {
   }
 }
 
-/* X -= C^T (C C^T)^-1 r, the least change; false when the rows do not determine it. */
-static PetscErrorCode LeastChange(const Fit *f, PetscReal X[], PetscBool *solved) {
+/* X -= C^T (C C^T)^-1 r; solved is false when C C^T is singular. */
+static PetscErrorCode FitLeastChange(const Fit *f, PetscReal X[], PetscBool *solved) {
   const PetscInt M = f->M;
   const PetscBLASInt rows = (PetscBLASInt)M + 1, one = 1;
   const PetscReal *r = f->r;
   PetscBLASInt info;
   PetscFunctionBeginUser;
-  GradientProducts(f);
+  FitGradientProducts(f);
   PetscCallBLAS("LAPACKpotrf", LAPACKpotrf_("L", &rows, f->CC, &rows, &info));
   *solved = info ? PETSC_FALSE : PETSC_TRUE;
   if (info) PetscFunctionReturn(PETSC_SUCCESS);
@@ -94,7 +99,7 @@ static PetscErrorCode LeastChange(const Fit *f, PetscReal X[], PetscBool *solved
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode CreateFit(PetscInt M, PetscBool spectral, Fit *f) {
+static PetscErrorCode FitCreate(PetscInt M, PetscBool spectral, Fit *f) {
   const PetscInt room = 2 * M + CIRCULANT_PADDING;
   PetscFunctionBeginUser;
   f->M = M;
@@ -102,16 +107,16 @@ static PetscErrorCode CreateFit(PetscInt M, PetscBool spectral, Fit *f) {
                          &f->work));
   PetscCall(PetscMalloc3(2 * room, &f->twice, M + 1, &f->r, (M + 1) * (M + 1), &f->CC));
   if (spectral)
-    SpectralIndexDerivative(M, f->edge);
+    FitSpectralDerivative(M, f->edge);
   else {
-    DifferenceDerivative(M, PETSC_TRUE, f->edge);
-    DifferenceDerivative(M, PETSC_FALSE, f->central);
+    FitDifference(M, PETSC_TRUE, f->edge);
+    FitDifference(M, PETSC_FALSE, f->central);
   }
-  FitMultiply(f, f->edge, 1, PETSC_TRUE, f->edge, f->products); /* of d_q and d_{q + j}, even in j */
+  FitMultiply(f, f->edge, 1, PETSC_TRUE, f->edge, f->products); /* SUM_q d_q d_{q + j}, even in j */
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode DestroyFit(Fit *f) {
+static PetscErrorCode FitDestroy(Fit *f) {
   PetscFunctionBeginUser;
   PetscCall(PetscFree7(f->edge, f->central, f->products, f->e, f->a, f->z, f->work));
   PetscCall(PetscFree3(f->twice, f->r, f->CC));
@@ -122,21 +127,21 @@ PetscErrorCode CurveFit(PetscInt M, PetscBool spectral, PetscReal length, PetscR
                         PetscReal *left) {
   Fit f;
   PetscFunctionBeginUser;
-  PetscCall(CreateFit(M, spectral, &f));
-  for (PetscInt it = 0;; it++) { /* Newton with the smallest change of the markers */
+  PetscCall(FitCreate(M, spectral, &f));
+  for (PetscInt it = 0;; it++) {
     PetscBool solved = PETSC_FALSE;
     FitMultiply(&f, f.edge, 2, PETSC_FALSE, X, f.e);
     const PetscReal *a = spectral ? f.e : f.a;
     if (!spectral) FitMultiply(&f, f.central, 2, PETSC_FALSE, X, f.a);
-    *left = Residual(M, X, length / M, area, f.e, a, f.r);
-    if (it == most || *left < CONVERGED) break;
+    *left = FitResidual(M, X, length / M, area, f.e, a, f.r);
+    if (it == most || *left < FIT_CONVERGED) break;
     for (PetscInt k = 0; k < M; k++) {
       f.z[2 * k] = a[2 * k + 1];
       f.z[2 * k + 1] = -a[2 * k];
     }
-    PetscCall(LeastChange(&f, X, &solved));
-    if (!solved) break; /* a circle has no freedom left: it stays as it is */
+    PetscCall(FitLeastChange(&f, X, &solved));
+    if (!solved) break; /* a circle has no freedom: it stays as it is */
   }
-  PetscCall(DestroyFit(&f));
+  PetscCall(FitDestroy(&f));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

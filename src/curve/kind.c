@@ -1,15 +1,17 @@
 #include "curve/kind.h"
 
-#define ORDER 6 /* markers of a polynomial */
-#define ENDS 4  /* markers from an end within which forces are interpolated linearly */
+#define KIND_ORDER 6 /* markers that a polynomial goes through */
+#define KIND_ENDS 4  /* markers from an end within which forces are interpolated linearly */
 
-/* The polynomial through markers first .. first + ORDER - 1 at t: weights of the markers, or of dX/dk. */
-static PetscInt Lagrange(PetscInt n, PetscReal t, PetscBool derivative, PetscReal weight[ORDER]) {
-  const PetscInt low = (PetscInt)PetscFloorReal(t) - ORDER / 2 + 1, first = PetscMax(0, PetscMin(n - ORDER, low));
+/* Weights of the markers first .. first + KIND_ORDER - 1 in the value at t of the polynomial through them, or in its
+   derivative; returns first. */
+static PetscInt KindLagrange(PetscInt n, PetscReal t, PetscBool derivative, PetscReal weight[KIND_ORDER]) {
+  const PetscInt low = (PetscInt)PetscFloorReal(t) - KIND_ORDER / 2 + 1,
+                 first = PetscMax(0, PetscMin(n - KIND_ORDER, low));
   const PetscReal x = t - (PetscReal)first;
-  for (int i = 0; i < ORDER; i++) {
+  for (int i = 0; i < KIND_ORDER; i++) {
     PetscReal value = 1, slope = 0;
-    for (int j = 0; j < ORDER; j++) {
+    for (int j = 0; j < KIND_ORDER; j++) {
       if (j == i) continue;
       slope = (slope * (x - j) + value) / (i - j);
       value *= (x - j) / (i - j);
@@ -19,15 +21,15 @@ static PetscInt Lagrange(PetscInt n, PetscReal t, PetscBool derivative, PetscRea
   return first;
 }
 
-/* Y = SUM weight X. */
-static void Sum(PetscInt first, const PetscReal weight[ORDER], const PetscReal X[], PetscReal Y[2]) {
+/* Y = SUM weight_i X_{first + i}. */
+static void KindSum(PetscInt first, const PetscReal weight[KIND_ORDER], const PetscReal X[], PetscReal Y[2]) {
   Y[0] = Y[1] = 0;
-  for (int i = 0; i < ORDER; i++)
+  for (int i = 0; i < KIND_ORDER; i++)
     for (int c = 0; c < 2; c++) Y[c] += weight[i] * X[2 * (first + i) + c];
 }
 
-/* X less the straight part of a spanning curve. */
-static PetscErrorCode Periodic(const CurveKind *kind, PetscInt n, const PetscReal X[], PetscReal **P) {
+/* P = X less the straight line from the first point of a spanning curve to its image a period on. */
+static PetscErrorCode KindPeriodicPart(const CurveKind *kind, PetscInt n, const PetscReal X[], PetscReal **P) {
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(2 * n, P));
   for (PetscInt k = 0; k < 2 * n; k++) (*P)[k] = X[k] - kind->span[k % 2] * (PetscReal)(k / 2) / (PetscReal)n;
@@ -35,14 +37,14 @@ static PetscErrorCode Periodic(const CurveKind *kind, PetscInt n, const PetscRea
 }
 
 PetscErrorCode CurveTangents(const CurveKind *kind, Spectral s, PetscInt n, const PetscReal X[], PetscReal T[]) {
-  PetscReal weight[ORDER], *P;
+  PetscReal weight[KIND_ORDER], *P;
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < n && kind->type == CURVE_OPEN; k++) {
-    const PetscInt first = Lagrange(n, (PetscReal)k, PETSC_TRUE, weight);
-    Sum(first, weight, X, T + 2 * k);
+    const PetscInt first = KindLagrange(n, (PetscReal)k, PETSC_TRUE, weight);
+    KindSum(first, weight, X, T + 2 * k);
   }
   if (kind->type == CURVE_OPEN) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(Periodic(kind, n, X, &P));
+  PetscCall(KindPeriodicPart(kind, n, X, &P));
   for (PetscInt k = 0; k < 2 * n; k++) T[k] = kind->span[k % 2] / (PetscReal)n;
   SpectralDerivative(s, 1, 1, P, T);
   PetscCall(PetscFree(P));
@@ -55,14 +57,14 @@ PetscReal CurveFinePlace(const CurveKind *kind, PetscInt times, PetscInt q) {
 }
 
 PetscErrorCode CurveFinePoints(const CurveKind *kind, PetscInt n, const PetscReal X[], PetscInt times, PetscReal Y[]) {
-  PetscReal weight[ORDER], *P;
+  PetscReal weight[KIND_ORDER], *P;
   PetscFunctionBeginUser;
   for (PetscInt q = 0; q < n * times && kind->type == CURVE_OPEN; q++) {
-    const PetscInt first = Lagrange(n, CurveFinePlace(kind, times, q), PETSC_FALSE, weight);
-    Sum(first, weight, X, Y + 2 * q);
+    const PetscInt first = KindLagrange(n, CurveFinePlace(kind, times, q), PETSC_FALSE, weight);
+    KindSum(first, weight, X, Y + 2 * q);
   }
   if (kind->type == CURVE_OPEN) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(Periodic(kind, n, X, &P));
+  PetscCall(KindPeriodicPart(kind, n, X, &P));
   TrigonometricPoints(n, P, times, Y);
   for (PetscInt q = 0; q < 2 * n * times; q++) Y[q] += kind->span[q % 2] * (PetscReal)(q / 2) / (PetscReal)(n * times);
   PetscCall(PetscFree(P));
@@ -72,16 +74,16 @@ PetscErrorCode CurveFinePoints(const CurveKind *kind, PetscInt n, const PetscRea
 void CurveOpenWeights(PetscInt n, PetscInt times, PetscInt q, PetscReal weight[]) {
   const CurveKind open = {.type = CURVE_OPEN};
   const PetscReal t = PetscMax(0, PetscMin((PetscReal)(n - 1), CurveFinePlace(&open, times, q)));
-  PetscReal part[ORDER];
+  PetscReal part[KIND_ORDER];
   for (PetscInt k = 0; k < n; k++) weight[k] = 0;
-  if (t < ENDS || t > (PetscReal)(n - 1 - ENDS)) {
+  if (t < KIND_ENDS || t > (PetscReal)(n - 1 - KIND_ENDS)) {
     const PetscInt k = PetscMin(n - 2, (PetscInt)t);
     weight[k + 1] = t - (PetscReal)k;
     weight[k] = 1 - weight[k + 1];
     return;
   }
-  const PetscInt first = Lagrange(n, t, PETSC_FALSE, part);
-  for (int i = 0; i < ORDER; i++) weight[first + i] = part[i];
+  const PetscInt first = KindLagrange(n, t, PETSC_FALSE, part);
+  for (int i = 0; i < KIND_ORDER; i++) weight[first + i] = part[i];
 }
 
 PetscBool CurveSetWalk(const CurveSet *set, PetscInt v, PetscInt k, PetscInt steps, PetscReal X[2]) {

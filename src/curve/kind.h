@@ -1,6 +1,12 @@
 /* The kinds of curves that markers are on: closed, spanning a period of the box, or open with both ends on a wall.
-   Derivatives along them, finer points, and how a force on finer points follows from that on the markers. Points are
-   interlaced, x0,y0,x1,y1,...; k = 0 .. n - 1 numbers the markers. */
+
+   Points are interlaced, x0,y0,x1,y1,...; k = 0 .. n - 1 numbers the markers of a curve, and t is a real marker number.
+   Between markers a curve is a trigonometric polynomial,
+
+       X(t) = t/n span + SUM X_k c_n(t - k),   c_n the cardinal function (spectral.h),
+
+   where it repeats (closed: span = 0), and a polynomial through six markers where it is open. All functions work on one
+   rank; CurveSet.part shares a search among ranks. */
 #pragma once
 #include "curve/spectral.h"
 
@@ -9,56 +15,55 @@ typedef enum { CURVE_CLOSED, CURVE_SPANNING, CURVE_OPEN } CurveType;
 typedef struct {
   CurveType type;
   PetscReal span[2]; /* from marker 0 to where marker n would be: a period of a spanning curve, else zero */
-  PetscInt around;   /* 1 + the closed curve of its set that it is meant to lie within, where its distance from that is
-                        positive; 0: none */
+  PetscInt around; /* 1 + number of the closed curve of the set that this curve is meant to lie within; 0: none. Inside
+                      `around` distances are positive */
 } CurveKind;
 
-/* Curves as contacts see them: curve v has the points start[v] .. start[v+1]-1. */
+/* A set of curves. Curve v has the points start[v] .. start[v+1]-1. */
 typedef struct {
   PetscInt curves;
-  PetscInt moving; /* the first ones; others are not compared among themselves */
+  PetscInt moving; /* the first `moving` curves move; curves that rest are not compared with one another */
   const PetscInt *start;
   const CurveKind *kind; /* [curves]; NULL: all closed */
   const PetscReal *X;
-  const PetscReal *period; /* [2] 0 is none, else the nearest images count */
-  PetscBool smooth;        /* the points are those of smooth curves, else of polygons */
-  const PetscInt *part; /* [2] only pairs are looked at whose first curve, or whose curve at a wall, is one of part[0]
-                           .. part[1] - 1, of the moving ones, so that ranks can share the search; NULL: all */
+  const PetscReal *period; /* [2] with a period the nearest images count; 0: none */
+  PetscBool smooth;        /* the points are on smooth curves; FALSE: polygons */
+  const PetscInt *part; /* [2] a search looks at pairs whose first curve, or whose curve at a wall, is one of the moving
+                           curves part[0] .. part[1] - 1; NULL: all pairs */
 } CurveSet;
 
-/* CurveSetKind - of curve v. CurveSetWalk - the place X of the point `steps` on from point k of curve v, a period
-   further where that leads over the end of a spanning curve; false beyond an open end. Not
-   collective. */
+/* CurveSetKind - kind of curve v. CurveSetWalk - place X of the point `steps` on from point k of curve v; beyond the
+   last point of a spanning curve it is a period further, beyond an open end the function returns FALSE. Not collective.
+ */
 static inline CurveKind CurveSetKind(const CurveSet *set, PetscInt v) {
   return set->kind ? set->kind[v] : (CurveKind){0};
 }
 PETSC_EXTERN PetscBool CurveSetWalk(const CurveSet *set, PetscInt v, PetscInt k, PetscInt steps, PetscReal X[2]);
 
-/* CurveFineCreate - one or two curves of a set, which[n], as a set of polygons of their own, all moving, at `times`
-   their points. Not collective. */
+/* One or two curves of a set as polygons of more points. */
 typedef struct {
   CurveSet set;
   PetscInt start[3];
   CurveKind kind[2];
   PetscReal *X;
 } CurveFine;
+
+/* CurveFineCreate - the curves which[n] of a set, with `times` as many points, all moving. Not collective. */
 PETSC_EXTERN PetscErrorCode CurveFineCreate(const CurveSet *set, PetscInt n, const PetscInt which[], PetscInt times,
                                             CurveFine *fine);
 PETSC_EXTERN PetscErrorCode CurveFineDestroy(CurveFine *fine);
 
-/* CurveTangents - T[2n] = dX/dk: spectral where the curve repeats, else of polynomials through six markers. s is of n
-   markers. Not collective. */
+/* CurveTangents - T[2n] = dX/dk at the markers X[2n]. s: for n markers. Not collective. */
 PETSC_EXTERN PetscErrorCode CurveTangents(const CurveKind *kind, Spectral s, PetscInt n, const PetscReal X[],
                                           PetscReal T[]);
 
-/* CurveFinePlace - where the q-th of `times` n finer points lies, as a marker's number: points begin at marker 0, those
-   of open curves lie evenly about each marker. CurveFinePoints - Y[2 times n], by trigonometric interpolation or
-   polynomials through six markers. Not collective. */
+/* CurveFinePlace - t of the q-th of `times` n finer points: they begin at marker 0; on an open curve they lie evenly
+   about each marker. CurveFinePoints - Y[2 times n] = X(t) at these places. Not collective. */
 PETSC_EXTERN PetscReal CurveFinePlace(const CurveKind *kind, PetscInt times, PetscInt q);
 PETSC_EXTERN PetscErrorCode CurveFinePoints(const CurveKind *kind, PetscInt n, const PetscReal X[], PetscInt times,
                                             PetscReal Y[]);
 
-/* CurveOpenWeights - of an open curve: weight[n], what a force on the q-th finer point has of those on the markers.
-   Linear within four markers of an end, where one-sided polynomials would make the mobility indefinite, constant beyond
-   the last marker. Not collective. */
+/* CurveOpenWeights - weight[n]: the force on the q-th finer point of an open curve is SUM weight_k (force on marker k).
+   The interpolation is linear within four markers of an end, where one-sided polynomials would make the mobility
+   indefinite, and constant beyond the last marker. Not collective. */
 PETSC_EXTERN void CurveOpenWeights(PetscInt n, PetscInt times, PetscInt q, PetscReal weight[]);

@@ -1,47 +1,52 @@
 #include "curve/packing.h"
 #include <stdint.h>
 
-#define FIRST_SCALE 0.1 /* of the ellipses at their first, random places */
-#define MOST_TRIES 1000 /* first places of an ellipse */
+#define FIRST_SCALE 0.1 /* size of the ellipses at their first, random places */
+#define MOST_TRIES 1000 /* random places that are tried for an ellipse */
 #define MOST_SWEEPS 3000
-#define MORE_SWEEPS 30 /* once all have their size */
-#define GROWTH 1.2     /* of an ellipse in a sweep, at most */
-#define HALVINGS 40
-#define SECTIONS 14 /* golden sections for a pair */
+#define MORE_SWEEPS 30 /* sweeps after all ellipses have their size */
+#define GROWTH 1.2     /* largest factor by which an ellipse grows in a sweep */
+#define LATTICE_HALVINGS 40
+#define SECTIONS 14 /* golden sections that decide whether a pair is apart */
 
 typedef struct {
   PackingSpec spec;
   PetscInt n;
   Pose *pose;
-  PetscReal *axes, *scale; /* [2n] semi-axes, half a gap longer; [n] */
+  PetscReal *axes;  /* [2n] semi-axes, longer by half a gap */
+  PetscReal *scale; /* [n] sizes over the full ones */
   PetscReal length[2], longest, step;
-  PetscInt cells[2], *first, *next, *before, *cell; /* centres in cells at least twice `longest` wide */
+  PetscInt cells[2]; /* cells at least twice `longest` wide that hold the centres */
+  PetscInt *first, *next, *before,
+      *cell; /* first centre of a cell; next and previous in the cell of a centre; its cell */
   uint64_t random;
 } Packing;
 
-/* splitmix64 (Steele, Lea and Flood 2014), in [0, 1). */
-static PetscReal Random(Packing *p) {
+/* A random number in [0, 1) by splitmix64 (Steele, Lea and Flood 2014). */
+static PetscReal PackingRandom(Packing *p) {
   uint64_t z = p->random += 0x9e3779b97f4a7c15u;
   z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
   z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
   return (PetscReal)((z ^ (z >> 31)) >> 11) / 9007199254740992.;
 }
 
-/* A direction: a point of the unit disc, put on the circle. */
-static void RandomDirection(Packing *p, PetscReal u[2]) {
+/* A random direction: a point of the unit disc, moved to the circle. */
+static void PackingDirection(Packing *p, PetscReal u[2]) {
   PetscReal square = 0;
   while (square < 1e-4 || square > 1) {
-    for (int d = 0; d < 2; d++) u[d] = 2 * Random(p) - 1;
+    for (int d = 0; d < 2; d++) u[d] = 2 * PackingRandom(p) - 1;
     square = u[0] * u[0] + u[1] * u[1];
   }
   for (int d = 0; d < 2; d++) u[d] /= PetscSqrtReal(square);
 }
 
-/* Whether two ellipses, d from one centre to the other, are apart: F = max over t in (0, 1) of t (1 - t) d.C^-1 d, C =
-   (1 - t) A + t B, is above 1 (Perram and Wertheim 1985); A = s^2 (b^2 I + (a^2 - b^2) u u). Any t with a value above 1
-   proves it. */
-static PetscBool AreApart(const PetscReal d[2], const PetscReal axes[2][2], const PetscReal *const u[2],
-                          const PetscReal scale[2]) {
+/* Whether two ellipses, with the vector d from one centre to the other, are apart (Perram and Wertheim 1985):
+
+     max t (1 - t) d.C^-1 d > 1,   0 < t < 1,   C = (1 - t) A + t B,   A = scale^2 (b^2 I + (a^2 - b^2) u u),
+
+   B likewise of the other ellipse. Golden sections search for t; the first t with a value above 1 proves it. */
+static PetscBool EllipsesAreApart(const PetscReal d[2], const PetscReal axes[2][2], const PetscReal *const u[2],
+                                  const PetscReal scale[2]) {
   const PetscReal golden = 0.6180339887498949, square = d[0] * d[0] + d[1] * d[1];
   PetscReal A[2][3], reach = 0, core = 0, low = 0, high = 1, f[2] = {0, 0}, t[2];
   for (int k = 0; k < 2; k++) {
@@ -77,8 +82,8 @@ static PetscBool AreApart(const PetscReal d[2], const PetscReal axes[2][2], cons
   return PETSC_FALSE;
 }
 
-/* Whether ellipse i, placed like this, is apart from ellipse j and its images. */
-static PetscBool ApartFrom(const Packing *p, PetscInt i, const Pose *at, PetscReal scale, PetscInt j) {
+/* Whether ellipse i with this pose and scale is apart from ellipse j and its images. */
+static PetscBool PackingIsApart(const Packing *p, PetscInt i, const Pose *at, PetscReal scale, PetscInt j) {
   const PetscReal axes[2][2] = {{p->axes[2 * i], p->axes[2 * i + 1]}, {p->axes[2 * j], p->axes[2 * j + 1]}};
   const PetscReal *const u[2] = {at->along, i == j ? at->along : p->pose[j].along};
   const PetscReal scales[2] = {scale, i == j ? scale : p->scale[j]};
@@ -94,12 +99,12 @@ static PetscBool ApartFrom(const Packing *p, PetscInt i, const Pose *at, PetscRe
       if (i == j && !m && !n) continue;
       image[0] = d[0] + m * p->length[0];
       image[1] = d[1] + n * p->length[1];
-      if (!AreApart(image, axes, u, scales)) return PETSC_FALSE;
+      if (!EllipsesAreApart(image, axes, u, scales)) return PETSC_FALSE;
     }
   return PETSC_TRUE;
 }
 
-static PetscBool ClearOfWalls(const Packing *p, PetscInt i, const Pose *at, PetscReal scale) {
+static PetscBool PackingClearsWalls(const Packing *p, PetscInt i, const Pose *at, PetscReal scale) {
   for (int d = 0; d < 2; d++) {
     const PetscReal a = p->axes[2 * i] * at->along[d], b = p->axes[2 * i + 1] * at->along[1 - d];
     const PetscReal room = scale * (PetscSqrtReal(a * a + b * b) + p->spec.wall_gap - p->spec.gap / 2);
@@ -109,14 +114,14 @@ static PetscBool ClearOfWalls(const Packing *p, PetscInt i, const Pose *at, Pets
   return PETSC_TRUE;
 }
 
-static PetscInt CellAlong(const Packing *p, int d, PetscReal x) {
+static PetscInt PackingCell(const Packing *p, int d, PetscReal x) {
   const PetscInt k = (PetscInt)PetscFloorReal((x - p->spec.box[2 * d]) / p->length[d] * p->cells[d]);
   return PetscMax(0, PetscMin(p->cells[d] - 1, k));
 }
 
-/* Columns or rows of cells to look in, around the one at x. */
-static int Around(const Packing *p, int d, PetscReal x, PetscInt around[3]) {
-  const PetscInt cells = p->cells[d], middle = CellAlong(p, d, x);
+/* Columns or rows of cells beside and at the cell of x, each once; returns how many. */
+static int PackingCellsAround(const Packing *p, int d, PetscReal x, PetscInt around[3]) {
+  const PetscInt cells = p->cells[d], middle = PackingCell(p, d, x);
   int count = 0;
   for (PetscInt k = middle - 1; k <= middle + 1; k++)
     if (p->spec.periodic[d] && cells >= 3)
@@ -126,20 +131,21 @@ static int Around(const Packing *p, int d, PetscReal x, PetscInt around[3]) {
   return count;
 }
 
-static PetscBool Fits(const Packing *p, PetscInt i, const Pose *at, PetscReal scale) {
+static PetscBool PackingFits(const Packing *p, PetscInt i, const Pose *at, PetscReal scale) {
   PetscInt columns[3], rows[3];
-  const int wide = Around(p, 0, at->center[0], columns), high = Around(p, 1, at->center[1], rows);
-  if (!ClearOfWalls(p, i, at, scale)) return PETSC_FALSE;
-  if (!ApartFrom(p, i, at, scale, i)) return PETSC_FALSE;
+  const int wide = PackingCellsAround(p, 0, at->center[0], columns),
+            high = PackingCellsAround(p, 1, at->center[1], rows);
+  if (!PackingClearsWalls(p, i, at, scale)) return PETSC_FALSE;
+  if (!PackingIsApart(p, i, at, scale, i)) return PETSC_FALSE;
   for (int k = 0; k < wide * high; k++)
     for (PetscInt j = p->first[rows[k / wide] * p->cells[0] + columns[k % wide]]; j >= 0; j = p->next[j])
-      if (j != i && !ApartFrom(p, i, at, scale, j)) return PETSC_FALSE;
+      if (j != i && !PackingIsApart(p, i, at, scale, j)) return PETSC_FALSE;
   return PETSC_TRUE;
 }
 
-/* Put ellipse i there, and into its cell. */
-static void Put(Packing *p, PetscInt i, const Pose *at, PetscReal scale) {
-  const PetscInt cell = CellAlong(p, 1, at->center[1]) * p->cells[0] + CellAlong(p, 0, at->center[0]);
+/* Give ellipse i this pose and scale, and put it into its cell. */
+static void PackingPut(Packing *p, PetscInt i, const Pose *at, PetscReal scale) {
+  const PetscInt cell = PackingCell(p, 1, at->center[1]) * p->cells[0] + PackingCell(p, 0, at->center[0]);
   p->pose[i] = *at;
   p->scale[i] = scale;
   if (p->cell[i] == cell) return;
@@ -157,10 +163,15 @@ static void Put(Packing *p, PetscInt i, const Pose *at, PetscReal scale) {
   p->first[cell] = i;
 }
 
-/* Semi-axes are longer by half a gap (a + b)/(2 root(a b)): an ellipse with both longer by e has the distance e (a c^2
-   + b s^2)/root(a^2 c^2 + b^2 s^2) and more from the first one's tangents, of which that factor is the inverse's most.
- */
-static PetscErrorCode Begin(Packing *p, const PackingSpec *spec, PetscInt n, const PetscReal axes[], Pose pose[]) {
+/* Both semi-axes are made longer by
+
+     e = gap/2 (a + b)/(2 root(a b)).
+
+   The longer ellipse is then at least gap/2 from the tangent of the ellipse in every direction (c, s),
+
+     e (a c^2 + b s^2)/root(a^2 c^2 + b^2 s^2) >= gap/2. */
+static PetscErrorCode PackingBegin(Packing *p, const PackingSpec *spec, PetscInt n, const PetscReal axes[],
+                                   Pose pose[]) {
   PetscFunctionBeginUser;
   p->spec = *spec;
   p->n = n;
@@ -185,47 +196,48 @@ static PetscErrorCode Begin(Packing *p, const PackingSpec *spec, PetscInt n, con
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode End(Packing *p) {
+static PetscErrorCode PackingEnd(Packing *p) {
   PetscFunctionBeginUser;
   PetscCall(PetscFree5(p->axes, p->scale, p->next, p->before, p->cell));
   PetscCall(PetscFree(p->first));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A Monte Carlo step of ellipse i, shift and turn; whether it was taken. */
-static PetscBool Move(Packing *p, PetscInt i) {
+/* Shift and turn ellipse i at random; whether it has room there. */
+static PetscBool PackingMove(Packing *p, PetscInt i) {
   Pose at = p->pose[i];
-  const PetscReal turn = 2 * (Random(p) - 0.5) * p->step / p->longest, x = at.along[0], y = at.along[1];
+  const PetscReal turn = 2 * (PackingRandom(p) - 0.5) * p->step / p->longest, x = at.along[0], y = at.along[1];
   const PetscReal norm = PetscSqrtReal(1 + turn * turn);
   for (int d = 0; d < 2; d++) {
-    at.center[d] += 2 * (Random(p) - 0.5) * p->step;
+    at.center[d] += 2 * (PackingRandom(p) - 0.5) * p->step;
     if (p->spec.periodic[d])
       at.center[d] -= p->length[d] * PetscFloorReal((at.center[d] - p->spec.box[2 * d]) / p->length[d]);
   }
   at.along[0] = (x - turn * y) / norm;
   at.along[1] = (y + turn * x) / norm;
-  if (!Fits(p, i, &at, p->scale[i])) return PETSC_FALSE;
-  Put(p, i, &at, p->scale[i]);
+  if (!PackingFits(p, i, &at, p->scale[i])) return PETSC_FALSE;
+  PackingPut(p, i, &at, p->scale[i]);
   return PETSC_TRUE;
 }
 
-/* Grow ellipse i where it is, by as much as a sweep allows or an eighth of it. */
-static void Grow(Packing *p, PetscInt i) {
+/* Enlarge ellipse i by as much as a sweep allows, or by an eighth of that. */
+static void PackingGrow(Packing *p, PetscInt i) {
   const PetscReal most = PetscMin(1, p->scale[i] * GROWTH), some = p->scale[i] + (most - p->scale[i]) / 8;
   if (p->scale[i] >= 1) return;
-  if (Fits(p, i, &p->pose[i], most))
+  if (PackingFits(p, i, &p->pose[i], most))
     p->scale[i] = most;
-  else if (Fits(p, i, &p->pose[i], some))
+  else if (PackingFits(p, i, &p->pose[i], some))
     p->scale[i] = some;
 }
 
-/* All ellipses a step, in steps of which a third to a half are taken; the area of those of full size. */
-static PetscReal Sweep(Packing *p) {
+/* Move and enlarge every ellipse; returns the part of the area that ellipses of full size have. The length of moves is
+   adjusted until a third to a half of them have room. */
+static PetscReal PackingSweep(Packing *p) {
   PetscInt taken = 0;
   PetscReal area = 0, full = 0;
   for (PetscInt i = 0; i < p->n; i++) {
-    taken += Move(p, i) ? 1 : 0;
-    Grow(p, i);
+    taken += PackingMove(p, i) ? 1 : 0;
+    PackingGrow(p, i);
   }
   for (PetscInt i = 0; i < p->n; i++) {
     area += p->axes[2 * i] * p->axes[2 * i + 1];
@@ -236,17 +248,17 @@ static PetscReal Sweep(Packing *p) {
   return full / area;
 }
 
-/* Small ellipses at random places; whether all have one. */
-static PetscBool Start(Packing *p) {
+/* Put small ellipses at random places; whether all have room. */
+static PetscBool PackingStart(Packing *p) {
   for (PetscInt i = 0; i < p->n; i++) {
     Pose at;
     PetscInt left = MOST_TRIES;
     do {
-      for (int d = 0; d < 2; d++) at.center[d] = p->spec.box[2 * d] + Random(p) * p->length[d];
-      RandomDirection(p, at.along);
-    } while (!Fits(p, i, &at, FIRST_SCALE) && --left);
+      for (int d = 0; d < 2; d++) at.center[d] = p->spec.box[2 * d] + PackingRandom(p) * p->length[d];
+      PackingDirection(p, at.along);
+    } while (!PackingFits(p, i, &at, FIRST_SCALE) && --left);
     if (!left) return PETSC_FALSE;
-    Put(p, i, &at, FIRST_SCALE);
+    PackingPut(p, i, &at, FIRST_SCALE);
   }
   return PETSC_TRUE;
 }
@@ -254,23 +266,23 @@ static PetscBool Start(Packing *p) {
 PetscErrorCode PackRandomly(const PackingSpec *spec, PetscInt n, const PetscReal axes[], Pose pose[], PetscReal *part) {
   Packing p;
   PetscFunctionBeginUser;
-  PetscCall(Begin(&p, spec, n, axes, pose));
+  PetscCall(PackingBegin(&p, spec, n, axes, pose));
   *part = 0;
-  if (Start(&p))
-    for (PetscInt k = 0; k < MOST_SWEEPS && *part < 1; k++) *part = Sweep(&p);
-  for (PetscInt k = 0; k < MORE_SWEEPS && *part >= 1; k++) *part = Sweep(&p);
-  PetscCall(End(&p));
+  if (PackingStart(&p))
+    for (PetscInt k = 0; k < MOST_SWEEPS && *part < 1; k++) *part = PackingSweep(&p);
+  for (PetscInt k = 0; k < MORE_SWEEPS && *part >= 1; k++) *part = PackingSweep(&p);
+  PetscCall(PackingEnd(&p));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Where lattice cells may lie along d: less than the whole box where walls keep ellipses further away than they keep
-   one another. */
-static PetscReal Room(const Packing *p, int d) {
+/* Length along d that lattice cells fill: less than the box where ellipses keep more distance from walls than from one
+   another. */
+static PetscReal LatticeRoom(const Packing *p, int d) {
   return p->length[d] - (p->spec.periodic[d] ? 0 : 2 * p->spec.wall_gap - p->spec.gap);
 }
 
-/* Columns of the lattice whose cells are widest beside what the longest ellipse takes in x and y. */
-static PetscInt Columns(const Packing *p, const PetscReal along[2]) {
+/* Columns of the lattice whose cells are largest over the extent of the longest ellipse in x and y. */
+static PetscInt LatticeColumns(const Packing *p, const PetscReal along[2]) {
   PetscReal best = 0, extent[2] = {0, 0};
   PetscInt columns = 1;
   for (PetscInt i = 0; i < p->n; i++)
@@ -279,7 +291,7 @@ static PetscInt Columns(const Packing *p, const PetscReal along[2]) {
       extent[d] = PetscMax(extent[d], PetscSqrtReal(a * a + b * b));
     }
   for (PetscInt k = 1; k <= p->n; k++) {
-    const PetscReal x = Room(p, 0) / (k * extent[0]), y = Room(p, 1) / (((p->n + k - 1) / k) * extent[1]);
+    const PetscReal x = LatticeRoom(p, 0) / (k * extent[0]), y = LatticeRoom(p, 1) / (((p->n + k - 1) / k) * extent[1]);
     if (PetscMin(x, y) <= best) continue;
     best = PetscMin(x, y);
     columns = k;
@@ -287,10 +299,10 @@ static PetscInt Columns(const Packing *p, const PetscReal along[2]) {
   return columns;
 }
 
-static PetscBool AllFit(Packing *p, PetscReal scale) {
+static PetscBool LatticeFits(Packing *p, PetscReal scale) {
   for (PetscInt i = 0; i < p->n; i++) p->scale[i] = scale;
   for (PetscInt i = 0; i < p->n; i++)
-    if (!Fits(p, i, &p->pose[i], scale)) return PETSC_FALSE;
+    if (!PackingFits(p, i, &p->pose[i], scale)) return PETSC_FALSE;
   return PETSC_TRUE;
 }
 
@@ -299,24 +311,24 @@ PetscErrorCode PackLattice(const PackingSpec *spec, PetscInt n, const PetscReal 
   PetscReal low = 0, high = 1;
   Packing p;
   PetscFunctionBeginUser;
-  PetscCall(Begin(&p, spec, n, axes, pose));
-  const PetscInt columns = Columns(&p, along), rows = (n + columns - 1) / columns;
+  PetscCall(PackingBegin(&p, spec, n, axes, pose));
+  const PetscInt columns = LatticeColumns(&p, along), rows = (n + columns - 1) / columns;
   for (PetscInt i = 0; i < n; i++) {
     const PetscReal at_x = (i % columns + 0.5) / columns - 0.5, at_y = (i / columns + 0.5) / rows - 0.5;
-    const Pose at = {{0.5 * (spec->box[0] + spec->box[1]) + at_x * Room(&p, 0),
-                      0.5 * (spec->box[2] + spec->box[3]) + at_y * Room(&p, 1)},
+    const Pose at = {{0.5 * (spec->box[0] + spec->box[1]) + at_x * LatticeRoom(&p, 0),
+                      0.5 * (spec->box[2] + spec->box[3]) + at_y * LatticeRoom(&p, 1)},
                      {along[0], along[1]}};
-    Put(&p, i, &at, 1);
+    PackingPut(&p, i, &at, 1);
   }
-  if (AllFit(&p, 1)) low = 1;
-  for (int k = 0; k < HALVINGS && low < high; k++) {
+  if (LatticeFits(&p, 1)) low = 1;
+  for (int k = 0; k < LATTICE_HALVINGS && low < high; k++) {
     const PetscReal middle = 0.5 * (low + high);
-    if (AllFit(&p, middle))
+    if (LatticeFits(&p, middle))
       low = middle;
     else
       high = middle;
   }
   *part = low * low;
-  PetscCall(End(&p));
+  PetscCall(PackingEnd(&p));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

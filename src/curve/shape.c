@@ -20,7 +20,7 @@ PetscReal ShapeRadius(const Shape *shape, PetscInt v) {
   return length / (2 * PETSC_PI);
 }
 
-/* Crossings of a ray. */
+/* By the number of edges that a ray from (x, y) crosses. */
 PetscBool ShapeHolds(const Shape *shape, PetscInt v, PetscReal x, PetscReal y) {
   const PetscInt M = shape->start[v + 1] - shape->start[v];
   const PetscReal *X = shape->X + 2 * shape->start[v];

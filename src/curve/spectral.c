@@ -2,13 +2,12 @@
 #include "curve/circulant.h"
 #include <fftw3.h>
 
-#define CONVOLVED 128        /* most markers whose sums take less time than transforms */
-#define CONVOLVED_ROUGH 1024 /* with a prime factor above 13, for which a transform takes many times longer */
-#define TURNS 3              /* a step turns the states before it by as many different angles */
-#define KEPT 6               /* a step asks several times for the same derivative */
-#define ROUND CIRCULANT_PADDING
+#define CONVOLVED 128        /* markers up to which sums take less time than transforms */
+#define CONVOLVED_ROUGH 1024 /* the limit for numbers with a prime factor above 13, whose transforms are slow */
+#define TURNS 3              /* angles that a step shifts the states before it by */
+#define KEPT 6               /* derivatives that are kept */
 
-/* Of X[2n] to some power, 0: none yet. */
+/* A derivative of X[2n]; power 0: none yet. */
 typedef struct {
   int power;
   PetscReal *X, *value;
@@ -18,23 +17,23 @@ struct _p_Spectral {
   PetscInt n;
   fftw_complex *line, *hat; /* x + i y of the points, and its modes */
   fftw_plan forward, backward;
-  CirculantWeights derivative[3];     /* where sums are taken, else NULL */
-  Derivative last[KEPT];              /* found last */
-  PetscReal *turn[TURNS], phi[TURNS]; /* weights [n] of angles phi */
+  CirculantWeights derivative[3];     /* of powers 1, 2, 4, where sums are taken; else NULL */
+  Derivative last[KEPT];              /* the last derivatives */
+  PetscReal *turn[TURNS], phi[TURNS]; /* weights [n] of shifts by the angles phi */
   PetscReal *round;                   /* cos and sin of pi j/n, j = 0 .. n/2, interlaced */
-  PetscReal *points, *twice, *sum;    /* rooms of the sums */
-  int next, replaced;                 /* turn and derivative to be replaced */
+  PetscReal *points, *twice, *sum;    /* work arrays of the sums */
+  int next, replaced;                 /* numbers of the shift and of the derivative that are replaced next */
 };
 
-static PetscBool IsConvolved(PetscInt n) {
+static PetscBool SpectralIsConvolved(PetscInt n) {
   PetscInt rest = n;
   for (PetscInt prime = 2; prime <= 13; prime++)
     while (rest % prime == 0) rest /= prime;
   return n <= (rest > 1 ? CONVOLVED_ROUGH : CONVOLVED) ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* Both coordinates at once: x + i y is an array of complex numbers as it is, and a derivative is linear. */
-static void Transformed(Spectral s, int power, PetscReal scale, const PetscScalar X[], PetscScalar Y[]) {
+/* SpectralDerivative by transforms of x + i y, which interlaced arrays are as they stand. */
+static void SpectralTransformed(Spectral s, int power, PetscReal scale, const PetscScalar X[], PetscScalar Y[]) {
   const PetscInt n = s->n;
   double *line = (double *)s->line, *hat = (double *)s->hat;
   memcpy(line, X, 2 * (size_t)n * sizeof(double));
@@ -55,15 +54,15 @@ static void Transformed(Spectral s, int power, PetscReal scale, const PetscScala
   for (PetscInt k = 0; k < 2 * n; k++) Y[k] += line[k];
 }
 
-/* What a 1 at marker 0 has at marker q; the first derivative of it is odd, the others are even. */
-static PetscErrorCode DerivativeWeights(Spectral s) {
+/* The weights of each derivative: those of a 1 at marker 0. They are odd for the first derivative and else even. */
+static PetscErrorCode SpectralWeights(Spectral s) {
   const PetscInt n = s->n;
   PetscReal *one, *found, *weight;
   PetscFunctionBeginUser;
   for (int p = 0; p < 3; p++) {
     PetscCall(PetscCalloc3(2 * n, &one, 2 * n, &found, n, &weight));
     one[0] = 1;
-    Transformed(s, 1 << p, 1, one, found);
+    SpectralTransformed(s, 1 << p, 1, one, found);
     for (PetscInt q = 0; q < n; q++) weight[q] = 0.5 * (found[2 * q] + (p ? 1 : -1) * found[2 * ((n - q) % n)]);
     PetscCall(CirculantWeightsCreate(n, p ? PETSC_FALSE : PETSC_TRUE, weight, &s->derivative[p]));
     PetscCall(PetscFree3(one, found, weight));
@@ -81,19 +80,20 @@ PetscErrorCode SpectralCreate(PetscInt n, Spectral *out) {
   s->line = fftw_alloc_complex((size_t)n);
   s->forward = fftw_plan_dft_1d((int)n, s->line, s->hat, FFTW_FORWARD, FFTW_ESTIMATE);
   s->backward = fftw_plan_dft_1d((int)n, s->hat, s->line, FFTW_BACKWARD, FFTW_ESTIMATE);
-  if (!IsConvolved(n)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(
-      PetscCalloc4(4 * n + ROUND, &s->twice, CirculantRoom(n), &s->points, 2 * n + ROUND, &s->sum, n + 2, &s->round));
+  if (!SpectralIsConvolved(n)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscCalloc4(4 * n + CIRCULANT_PADDING, &s->twice, CirculantRoom(n), &s->points, 2 * n + CIRCULANT_PADDING,
+                         &s->sum, n + 2, &s->round));
   for (PetscInt j = 0; j <= n / 2; j++) {
     s->round[2 * j] = PetscCosReal(PETSC_PI * j / n);
     s->round[2 * j + 1] = PetscSinReal(PETSC_PI * j / n);
   }
-  for (int k = 0; k < KEPT; k++) PetscCall(PetscMalloc2(2 * n, &s->last[k].X, 2 * n + ROUND, &s->last[k].value));
+  for (int k = 0; k < KEPT; k++)
+    PetscCall(PetscMalloc2(2 * n, &s->last[k].X, 2 * n + CIRCULANT_PADDING, &s->last[k].value));
   for (int t = 0; t < TURNS; t++) {
     PetscCall(PetscMalloc1(n, &s->turn[t]));
     s->phi[t] = NAN;
   }
-  PetscCall(DerivativeWeights(s));
+  PetscCall(SpectralWeights(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -113,8 +113,8 @@ PetscErrorCode SpectralDestroy(Spectral *spectral) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* d^power X/dk^power, which is kept. */
-static const PetscReal *Found(Spectral s, int power, const PetscScalar X[]) {
+/* d^power X/dk^power, of those that are kept or new. */
+static const PetscReal *SpectralFound(Spectral s, int power, const PetscScalar X[]) {
   const size_t bytes = 2 * (size_t)s->n * sizeof(PetscReal);
   Derivative *d = s->last;
   for (int k = 0; k < KEPT; k++)
@@ -130,10 +130,10 @@ static const PetscReal *Found(Spectral s, int power, const PetscScalar X[]) {
 
 void SpectralDerivative(Spectral s, int power, PetscReal scale, const PetscScalar X[], PetscScalar Y[]) {
   if (!s->sum) {
-    Transformed(s, power, scale, X, Y);
+    SpectralTransformed(s, power, scale, X, Y);
     return;
   }
-  const PetscReal *found = Found(s, power, X);
+  const PetscReal *found = SpectralFound(s, power, X);
   for (PetscInt k = 0; k < 2 * s->n; k++) Y[k] += scale * found[k];
 }
 
@@ -158,7 +158,7 @@ PetscReal TrigonometricCardinal(PetscInt n, PetscReal t) {
   return PetscSinReal(0.5 * n * t) / (n * (n % 2 ? s : PetscTanReal(0.5 * t)));
 }
 
-/* The points between the same two markers of every pair have the same weights. */
+/* A point at the same place between every two markers has the same weights. */
 void TrigonometricPoints(PetscInt n, const PetscReal X[], PetscInt times, PetscReal Y[]) {
   for (PetscInt q = 0; q < 2 * n * times; q++) Y[q] = 0;
   for (PetscInt between = 0; between < times; between++)
@@ -173,7 +173,7 @@ void TrigonometricPoints(PetscInt n, const PetscReal X[], PetscInt times, PetscR
     }
 }
 
-static void ShiftTransformed(Spectral s, int each, PetscReal phi, const PetscScalar X[], PetscScalar Y[]) {
+static void SpectralShiftTransformed(Spectral s, int each, PetscReal phi, const PetscScalar X[], PetscScalar Y[]) {
   const PetscInt n = s->n;
   double *line = (double *)s->line, *hat = (double *)s->hat;
   for (PetscInt k = 0; k < n; k++)
@@ -190,10 +190,13 @@ static void ShiftTransformed(Spectral s, int each, PetscReal phi, const PetscSca
     for (int c = 0; c < each; c++) Y[each * k + c] = line[2 * k + c];
 }
 
-/* The trigonometric cardinal function at phi and the markers' labels before it. With phi = d + 2 pi m/n, d at most half
-   a label, that at d + 2 pi j/n is sin(n d/2) (-1)^j/(n sin(d/2 + pi j/n)), for even n by the tangent: no small
-   differences. */
-static const PetscReal *TurnWeights(Spectral s, PetscReal phi) {
+/* Weights of the shift by phi = d + 2 pi m/n, |d| at most pi/n: the values at d + 2 pi j/n of the trigonometric
+   cardinal function,
+
+     (-1)^j sin(n d/2)/(n sin(d/2 + pi j/n)),
+
+   for even n with the tangent in the denominator. No difference of nearly equal numbers is taken. */
+static const PetscReal *SpectralShiftWeights(Spectral s, PetscReal phi) {
   const PetscReal labels = PetscFloorReal(phi * s->n / (2 * PETSC_PI) + 0.5);
   const PetscInt n = s->n, m = PetscAbsReal(labels) < 1e9 ? (PetscInt)labels : 0;
   const PetscReal half = 0.5 * phi - PETSC_PI * m / n, top = PetscSinReal(n * half) / n;
@@ -212,23 +215,24 @@ static const PetscReal *TurnWeights(Spectral s, PetscReal phi) {
   return weight;
 }
 
-/* `each` known to the compiler. */
-static inline void Turn(Spectral s, const int each, PetscReal phi, const PetscScalar X[], PetscScalar Y[]) {
+/* SpectralShift by sums; inlined, so that the compiler knows `each`. */
+static inline void SpectralShiftConvolved(Spectral s, const int each, PetscReal phi, const PetscScalar X[],
+                                          PetscScalar Y[]) {
   const PetscInt n = s->n;
   PetscReal first[2];
   for (int c = 0; c < each; c++) first[c] = X[c];
   for (PetscInt k = 0; k < n; k++)
     for (int c = 0; c < each; c++) s->twice[each * k + c] = s->twice[each * (n + k) + c] = X[each * k + c] - first[c];
-  CirculantConvolve(n, each, PETSC_FALSE, TurnWeights(s, phi), s->twice, s->sum);
+  CirculantConvolve(n, each, PETSC_FALSE, SpectralShiftWeights(s, phi), s->twice, s->sum);
   for (PetscInt k = 0; k < n; k++)
     for (int c = 0; c < each; c++) Y[each * k + c] = first[c] + s->sum[each * k + c];
 }
 
 void SpectralShift(Spectral s, int each, PetscReal phi, const PetscScalar X[], PetscScalar Y[]) {
   if (!s->sum)
-    ShiftTransformed(s, each, phi, X, Y);
+    SpectralShiftTransformed(s, each, phi, X, Y);
   else if (each == 1)
-    Turn(s, 1, phi, X, Y);
+    SpectralShiftConvolved(s, 1, phi, X, Y);
   else
-    Turn(s, 2, phi, X, Y);
+    SpectralShiftConvolved(s, 2, phi, X, Y);
 }

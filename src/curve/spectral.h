@@ -1,29 +1,37 @@
-/* Derivatives with respect to the marker index, and shifts of it, in the discrete Fourier space of one closed curve. */
+/* Derivatives along a closed curve, and shifts along it, by the discrete Fourier transform.
+
+   A curve of n markers X_k is the trigonometric polynomial through the markers, with k = n t/(2 pi) as its variable. In
+   mode m the derivative d/dk multiplies by 2 pi i m/n and the shift by an angle phi by e^{i m phi}. Both are circulant
+   matrices: with few markers their sums take less time than transforms (circulant.h). The last derivatives and shifts
+   are kept, as a step asks for them several times. All functions work on one rank. */
 #pragma once
 #include "base/base.h"
 
 typedef struct _p_Spectral *Spectral;
 
-/* SpectralCreate - for a curve of n markers. */
+/* SpectralCreate - for curves of n markers. Not collective. */
 PETSC_EXTERN PetscErrorCode SpectralCreate(PetscInt n, Spectral *spectral);
 PETSC_EXTERN PetscErrorCode SpectralDestroy(Spectral *spectral);
 
-/* SpectralDerivative - Y += scale d^power X/dk^power for power 1, 2 or 4, k the marker index; X[2n], Y[2n] interlaced
-   x, y. Odd powers drop the Nyquist mode of an even n, so that the first derivative is antisymmetric. */
+/* SpectralDerivative - Y += scale d^power X/dk^power, power 1, 2 or 4; X[2n], Y[2n] interlaced. The first derivative
+   drops the Nyquist mode of an even n, so that it is antisymmetric. Not collective. */
 PETSC_EXTERN void SpectralDerivative(Spectral spectral, int power, PetscReal scale, const PetscScalar X[],
                                      PetscScalar Y[]);
 
-/* SpectralTail - how much of a curve's bending is in modes above `part` of the highest, K = (n - 1)/2: the root of
-   SUM m^4 |X_m|^2 over |m| > part K, divided by that over all modes. Small where markers resolve the curve. */
+/* SpectralTail - the part of a curve's bending in modes above part K, K = (n - 1)/2 the highest mode:
+
+     root( SUM_{|m| > part K} m^4 |X_m|^2 / SUM_m m^4 |X_m|^2 ).
+
+   It is small where the markers resolve the curve. Not collective. */
 PETSC_EXTERN PetscReal SpectralTail(Spectral spectral, PetscReal part, const PetscScalar X[]);
 
-/* TrigonometricCardinal - the function of trigonometric interpolation on n points: 1 at t = 0, 0 at the others, t the
-   distance from 0 to 2 pi. TrigonometricPoints - the curve through n points X[2n] at `times` as many, Y[2 times n]. Not
+/* SpectralShift - Y_k = X at the angle t_k + phi, t_k = 2 pi k/n, of the trigonometric polynomial through X; the
+   Nyquist mode of an even n is multiplied by cos(n phi/2). `each`: numbers a marker, 1 or 2 (interlaced). For odd n the
+   shift keeps the sum of squares. Y may be X. Not collective. */
+PETSC_EXTERN void SpectralShift(Spectral spectral, int each, PetscReal phi, const PetscScalar X[], PetscScalar Y[]);
+
+/* TrigonometricCardinal - the trigonometric polynomial of n points that is 1 at the angle t = 0 and 0 at the other
+   points. TrigonometricPoints - Y[2 times n], `times` as many points on the curve through the points X[2n]. Not
    collective. */
 PETSC_EXTERN PetscReal TrigonometricCardinal(PetscInt n, PetscReal t);
 PETSC_EXTERN void TrigonometricPoints(PetscInt n, const PetscReal X[], PetscInt times, PetscReal Y[]);
-
-/* SpectralShift - Y_k = X at the label t_k + phi, t_k = 2 pi k/n, of the trigonometric polynomial through X: mode m
-   times e^{i m phi}, the Nyquist mode of an even n times cos(n phi/2). `each` numbers a marker, 1 or 2 (interlaced).
-   For odd n it keeps the sum of squares. Y may be X. */
-PETSC_EXTERN void SpectralShift(Spectral spectral, int each, PetscReal phi, const PetscScalar X[], PetscScalar Y[]);

@@ -1,6 +1,6 @@
 #include "scheme/films.h"
 #include "base/agree.h"
-#include "curve/apart.h"
+#include "curve/separation.h"
 #include "curve/contacts.h"
 #include "curve/crossing.h"
 #include "scheme/stepcommon.h"

@@ -1,6 +1,6 @@
 /* Pairs of near points against the search of all pairs, and closed curves that cross or do not. */
 #include "check.h"
-#include "curve/apart.h"
+#include "curve/separation.h"
 #include "curve/crossing.h"
 
 typedef struct {

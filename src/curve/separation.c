@@ -1,19 +1,16 @@
-/* A curve is cut into groups of successive edges. Where the discs around two groups are disjoint, their edges do not
-   cross. Two groups that follow one another make an arc; one that turns by less than half a turn in all, T, does not
-   cross itself, and its chords are at least cos(T/2) times as long as the way along it. */
-#include "curve/apart.h"
+#include "curve/separation.h"
 #include "base/lanes.h"
 
-#define MOST_CURVES 32  /* beyond, boxes overlap in most scenes */
-#define MOST_GROUPS 64  /* about; each is compared with each */
-#define MOST_TURN 1.85  /* of an arc: cos(T/2) > .6 = 1/(2 SHORTEST) */
-#define SHORTEST 0.8334 /* an edge over ds */
+#define MOST_CURVES 32  /* in most scenes with more curves their boxes overlap */
+#define MOST_GROUPS 64  /* about: every group is compared with every other */
+#define MOST_TURN 1.85  /* the largest turn T of an arc: cos(T/2) > 0.6 = 1/(2 SHORTEST) */
+#define SHORTEST 0.8334 /* length of the shortest edge over ds */
 
 typedef struct {
   PetscReal low[2], high[2];
 } Box;
 
-static Box BoxOf(PetscInt n, const PetscReal X[]) {
+static Box BoxAround(PetscInt n, const PetscReal X[]) {
   Box b = {{PETSC_MAX_REAL, PETSC_MAX_REAL}, {-PETSC_MAX_REAL, -PETSC_MAX_REAL}};
   PetscInt k = 0;
   if (n >= LANES / 2) {
@@ -50,8 +47,9 @@ PetscReal CurveLongestEdge(const CurveSet *set) {
   return PetscSqrtReal(longest);
 }
 
-/* Of a closed curve, to its own images: farther than reach, or over half a period away from all of it. */
-static PetscBool IsAlone(const Box *b, const PetscReal period[2], PetscReal reach) {
+/* Whether the box of a closed curve is farther than reach from its own images, or every image of a point of the curve
+   is more than half a period from all of the curve. */
+static PetscBool BoxIsAlone(const Box *b, const PetscReal period[2], PetscReal reach) {
   for (int d = 0; d < 2; d++) {
     const PetscReal extent = b->high[d] - b->low[d];
     if (period[d] > 0 && extent + reach >= period[d] && 2 * extent >= period[d]) return PETSC_FALSE;
@@ -59,7 +57,7 @@ static PetscBool IsAlone(const Box *b, const PetscReal period[2], PetscReal reac
   return PETSC_TRUE;
 }
 
-/* Of two, the nearest images. */
+/* Whether the nearest images of two boxes are farther apart than reach. */
 static PetscBool BoxesApart(const Box *a, const Box *b, const PetscReal period[2], PetscReal reach) {
   for (int d = 0; d < 2; d++) {
     PetscReal middle = 0.5 * (b->low[d] + b->high[d] - a->low[d] - a->high[d]);
@@ -74,26 +72,26 @@ PetscBool CurvesAreApart(const CurveSet *set, PetscReal reach) {
   if (set->curves > MOST_CURVES) return PETSC_FALSE;
   for (PetscInt v = 0; v < set->curves; v++) {
     if (CurveSetKind(set, v).type == CURVE_SPANNING) return PETSC_FALSE;
-    box[v] = BoxOf(set->start[v + 1] - set->start[v], set->X + 2 * set->start[v]);
+    box[v] = BoxAround(set->start[v + 1] - set->start[v], set->X + 2 * set->start[v]);
   }
   for (PetscInt v = 0; v < set->moving; v++) {
-    if (!IsAlone(&box[v], set->period, reach)) return PETSC_FALSE;
+    if (!BoxIsAlone(&box[v], set->period, reach)) return PETSC_FALSE;
     for (PetscInt w = v + 1; w < set->curves; w++)
       if (!BoxesApart(&box[v], &box[w], set->period, reach)) return PETSC_FALSE;
   }
   return PETSC_TRUE;
 }
 
-/* The edges of a closed curve in groups; its points, the first of them once more behind the last. */
+/* The edges of a closed curve in groups, and its points, with the first two again behind the last. */
 typedef struct {
   PetscInt n, groups;
   PetscReal *x, *y;              /* points[n + 2] */
-  PetscReal *turn;               /* [n + 1] at each point the tangent of the angle, MOST_TURN or more if it is sharp */
-  PetscReal *middle[2], *radius; /* discs, whole vectors of them */
+  PetscReal *turn;               /* [n + 1] tangent of the angle at each point; MOST_TURN for a sharp angle */
+  PetscReal *middle[2], *radius; /* discs, padded to whole vectors */
 } Groups;
 
-/* Of edges before group k. */
-static inline PetscInt Before(const Groups *g, PetscInt k) {
+/* Number of the first edge of group k. */
+static inline PetscInt GroupFirst(const Groups *g, PetscInt k) {
   return k * g->n / g->groups;
 }
 
@@ -106,8 +104,8 @@ static PetscErrorCode GroupsCreate(PetscInt n, PetscInt groups, Groups *g) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Points and turns; the square of the shortest edge. */
-static PetscReal Unroll(Groups *g, const PetscReal X[]) {
+/* Fill in the points and turns; returns the square of the shortest edge. */
+static PetscReal GroupsUnroll(Groups *g, const PetscReal X[]) {
   PetscReal shortest = PETSC_MAX_REAL;
   for (PetscInt k = 0; k < g->n + 2; k++) {
     g->x[k] = X[2 * (k < g->n ? k : k - g->n)];
@@ -123,11 +121,11 @@ static PetscReal Unroll(Groups *g, const PetscReal X[]) {
   return shortest;
 }
 
-/* Whether every arc of two groups turns by less than MOST_TURN; an angle is below its tangent. */
-static PetscBool ArcsAreOpen(const Groups *g) {
+/* Whether every arc of two groups turns by less than MOST_TURN. An angle is smaller than its tangent. */
+static PetscBool GroupsAreOpen(const Groups *g) {
   PetscReal before = 0;
-  for (PetscInt k = -1; k < g->groups; k++) { /* the last one comes before the first */
-    const PetscInt from = Before(g, k < 0 ? g->groups - 1 : k), to = Before(g, k < 0 ? g->groups : k + 1);
+  for (PetscInt k = -1; k < g->groups; k++) { /* the last group comes before the first */
+    const PetscInt from = GroupFirst(g, k < 0 ? g->groups - 1 : k), to = GroupFirst(g, k < 0 ? g->groups : k + 1);
     PetscReal turn = 0;
     for (PetscInt j = from + 1; j < to; j++) turn += g->turn[j];
     if (before + g->turn[from] + turn >= MOST_TURN) return PETSC_FALSE;
@@ -136,10 +134,10 @@ static PetscBool ArcsAreOpen(const Groups *g) {
   return PETSC_TRUE;
 }
 
-/* Around each group's points, its last edge's end among them. */
-static void MakeDiscs(Groups *g) {
+/* Fill in the discs around the points of each group, the end of its last edge included. */
+static void GroupsMakeDiscs(Groups *g) {
   for (PetscInt k = 0; k < g->groups; k++) {
-    const PetscInt from = Before(g, k), to = Before(g, k + 1);
+    const PetscInt from = GroupFirst(g, k), to = GroupFirst(g, k + 1);
     const PetscReal x = 0.5 * (g->x[from] + g->x[to]), y = 0.5 * (g->y[from] + g->y[to]);
     PetscReal r2 = 0;
     for (PetscInt j = from; j <= to; j++) r2 = PetscMax(r2, PetscSqr(g->x[j] - x) + PetscSqr(g->y[j] - y));
@@ -151,9 +149,9 @@ static void MakeDiscs(Groups *g) {
 }
 
 /* Whether the discs of groups that do not follow one another are farther apart than reach. */
-static PetscBool DiscsAreApart(const Groups *g, PetscReal reach) {
+static PetscBool GroupsAreApart(const Groups *g, PetscReal reach) {
   for (PetscInt k = 0; k < g->groups; k++) {
-    const PetscInt end = k ? g->groups : g->groups - 1; /* the first one follows the last */
+    const PetscInt end = k ? g->groups : g->groups - 1; /* the first group follows the last */
     for (PetscInt j = k + 2; j < end; j += LANES) {
       const Lanes x = LanesAt(g->middle[0] + j) - g->middle[0][k], y = LanesAt(g->middle[1] + j) - g->middle[1][k],
                   r = LanesAt(g->radius + j) + (g->radius[k] + reach);
@@ -165,17 +163,18 @@ static PetscBool DiscsAreApart(const Groups *g, PetscReal reach) {
   return PETSC_TRUE;
 }
 
-static PetscErrorCode IsClear(PetscInt n, const PetscReal X[], PetscReal ds, PetscReal reach, PetscBool *clear) {
-  const PetscInt between = (PetscInt)PetscMin(n, PetscCeilReal(1.25 * reach / ds)); /* edges: enough for the reach */
+static PetscErrorCode CurveIsClear(PetscInt n, const PetscReal X[], PetscReal ds, PetscReal reach, PetscBool *clear) {
+  const PetscInt between = (PetscInt)PetscMin(
+      n, PetscCeilReal(1.25 * reach / ds)); /* edges whose length is more than the reach */
   const PetscInt size = PetscMax(PetscMax(2, n / MOST_GROUPS), between);
   Groups g;
   PetscFunctionBeginUser;
   *clear = PETSC_FALSE;
   if (n < 4 * size) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(GroupsCreate(n, n / size, &g));
-  if (Unroll(&g, X) >= PetscSqr(SHORTEST * ds) && ArcsAreOpen(&g)) {
-    MakeDiscs(&g);
-    *clear = DiscsAreApart(&g, reach);
+  if (GroupsUnroll(&g, X) >= PetscSqr(SHORTEST * ds) && GroupsAreOpen(&g)) {
+    GroupsMakeDiscs(&g);
+    *clear = GroupsAreApart(&g, reach);
   }
   PetscCall(PetscFree6(g.x, g.y, g.turn, g.middle[0], g.middle[1], g.radius));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -186,7 +185,7 @@ PetscErrorCode CurvesAreClear(const CurveSet *set, const PetscReal ds[], PetscRe
   *clear = CurvesAreApart(set, reach);
   for (PetscInt v = 0; v < set->moving && *clear; v++) {
     const PetscInt *start = set->start + v;
-    PetscCall(IsClear(start[1] - start[0], set->X + 2 * start[0], ds[v], reach, clear));
+    PetscCall(CurveIsClear(start[1] - start[0], set->X + 2 * start[0], ds[v], reach, clear));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
