@@ -28,9 +28,9 @@ PetscErrorCode SimulationGatherMarkers(Simulation s, const PetscReal **markers, 
   Gathered *now = &s->output->now;
   PetscFunctionBeginUser;
   PetscCall(GatherState(&s->scheme->state, now));
-  if (markers) *markers = now->markers;
-  if (velocity) *velocity = now->velocity;
-  if (tension) *tension = now->tension;
+  if (markers) *markers = now->part[GATHERED_MARKERS].values;
+  if (velocity) *velocity = now->part[GATHERED_VELOCITY].values;
+  if (tension) *tension = now->part[GATHERED_TENSION].values;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -3,8 +3,8 @@
 #include "coupling/doublecells.h"
 #include "coupling/nearcells.h"
 
-/* Value of a velocity component on a wall: the background's in the total form, else zero. */
-static PetscScalar WallValue(Scheme s, int c, PetscInt i, PetscInt j, PetscReal wall) {
+/* A velocity component on a wall: the background's in the total form, else zero. */
+static PetscScalar CellWallValue(Scheme s, int c, PetscInt i, PetscInt j, PetscReal wall) {
   PetscReal X[2], u[2];
   if (!s->fluid->total) return 0;
   GridPosition(s->fluid->grid, FIELD_P, i, j, X);
@@ -13,8 +13,8 @@ static PetscScalar WallValue(Scheme s, int c, PetscInt i, PetscInt j, PetscReal 
   return u[c];
 }
 
-/* Component c of w, the mean of a cell's two faces, with the background. */
-static PetscErrorCode Component(Scheme s, int c, const PetscScalar w[], PetscReal cells[]) {
+/* Component c of the velocity w with the background: the mean of a cell's two faces. */
+static PetscErrorCode CellComponent(Scheme s, int c, const PetscScalar w[], PetscReal cells[]) {
   const Grid g = s->fluid->grid;
   const PetscInt columns = g->columns[c], nx = g->n[0];
   const PetscScalar *a = w + (c ? GridLocalU(g) : 0);
@@ -33,7 +33,7 @@ static PetscErrorCode Component(Scheme s, int c, const PetscScalar w[], PetscRea
       for (int side = 0; side < 2; side++) {
         const PetscInt k = index[c] - 1 + side, n = g->n[c];
         if (g->wall[c] && (k < 0 || k == n - 1))
-          face[side] = WallValue(s, c, i, index[1], side ? g->hi[c] : g->lo[c]);
+          face[side] = CellWallValue(s, c, i, index[1], side ? g->hi[c] : g->lo[c]);
         else if (c == 0)
           face[side] = RowAt(&rows, j)[(k + columns) % columns];
         else
@@ -71,8 +71,8 @@ PetscErrorCode CellFields(Scheme s, PetscReal u[], PetscReal v[], PetscReal p[])
   PetscFunctionBeginUser;
   PetscCall(SchemeFields(s));
   PetscCall(VecGetArrayRead(s->state.w, &a));
-  if (u) PetscCall(Component(s, 0, a, u));
-  if (v) PetscCall(Component(s, 1, a, v));
+  if (u) PetscCall(CellComponent(s, 0, a, u));
+  if (v) PetscCall(CellComponent(s, 1, a, v));
   PetscCall(VecRestoreArrayRead(s->state.w, &a));
   PetscCall(VecGetArrayRead(s->state.p, &a));
   if (p) PetscCall(PetscArraycpy(p, a, g->n[0] * g->rows[FIELD_P]));

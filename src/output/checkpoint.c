@@ -1,191 +1,237 @@
 #include "base/version.h"
-#include "output/gathered.h"
 #include "output/checkpoint.h"
-#include "output/checksum.h"
-#include "output/h5.h"
-#include "output/lock.h"
+#include "output/gathered.h"
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* Names that are looked at: more checkpoints than -checkpoint_keep allows. */
-#define MOST 100
-#define TEMPORARY "checkpoint.h5.tmp"
+/* More names than -checkpoint_keep allows. */
+#define CHECKPOINT_NAMES 100
+#define CHECKPOINT_TEMPORARY "checkpoint.h5.tmp"
 
-/* One entry that has no further ones behind it. */
-static PetscErrorCode WriteOnly(H5File *file, const char prefix[], const char name[], int ndims, const PetscInt dims[],
-                                const PetscReal values[]) {
-  char path[64];
+PetscErrorCode CheckpointEntry(H5File *file, PetscBool write, const char name[], PetscInt n, PetscInt each,
+                               PetscReal values[]) {
+  const PetscInt dims[2] = {n, each};
+  const int ndims = each > 1 ? 2 : 1;
   PetscFunctionBeginUser;
-  PetscCall(PetscSNPrintf(path, sizeof(path), "%s/%s", prefix, name));
-  PetscCall(H5CreateSeries(file, path, ndims, dims));
-  PetscCall(H5WriteArray(file, path, 0, dims[0] * (ndims > 1 ? dims[1] : 1), values));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The velocity w of a state, and its pressure: of an older one no step needs that. */
-static PetscErrorCode WriteFields(Scheme s, H5File *file, const char prefix[], const State *q, Vec w) {
-  static const char *const names[3] = {"u", "v", "p"};
-  const Grid g = s->fluid->grid;
-  char name[64];
-  const PetscScalar *a[3];
-  PetscFunctionBeginUser;
-  PetscCall(VecGetArrayRead(w, &a[0]));
-  a[1] = a[0] + GridLocalU(g);
-  if (q->p) PetscCall(VecGetArrayRead(q->p, &a[2]));
-  for (int f = 0; f < (q->p ? 3 : 2); f++) {
-    const PetscInt dims[2] = {g->all_rows[f], g->columns[f]};
-    PetscCall(PetscSNPrintf(name, sizeof(name), "%s/fluid/%s", prefix, names[f]));
-    PetscCall(H5CreateSeries(file, name, 2, dims));
-    PetscCall(H5WriteField(file, name, 0, g, (Field)f, a[f]));
+  if (!n) PetscFunctionReturn(PETSC_SUCCESS);
+  if (write) {
+    H5CreateSeries(file, name, PETSC_FALSE, ndims, dims);
+    H5WriteArray(file, name, 0, n * each, values);
+  } else {
+    H5CheckEntry(file, name, ndims, dims);
+    PetscCall(H5ReadArray(file, name, 0, n * each, values));
   }
-  if (q->p) PetscCall(VecRestoreArrayRead(q->p, &a[2]));
-  PetscCall(VecRestoreArrayRead(w, &a[0]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What the state has: of most older ones no step needs the velocity. A flow is written as it is, so that a restart has
-   its bits, beside the velocity, from which other solvers go on. */
-static PetscErrorCode WriteFluid(Scheme s, H5File *file, const char prefix[], const State *q) {
-  const Grid g = s->fluid->grid;
-  const PetscScalar *a;
+/* Write or read `each` numbers in every row of a field. */
+static PetscErrorCode CheckpointRows(H5File *file, PetscBool write, const char name[], Grid g, Field field,
+                                     PetscInt each, PetscScalar values[]) {
+  const PetscInt dims[2] = {g->all_rows[field], each};
+  PetscFunctionBeginUser;
+  if (write)
+    H5CreateSeries(file, name, PETSC_FALSE, 2, dims);
+  else
+    H5CheckEntry(file, name, 2, dims);
+  PetscCall(H5TransferRows(file, write, name, 0, g, field, each, values));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Write or read the velocity w of a state, and its pressure where it has one: no step needs the pressure of an older
+   state. */
+static PetscErrorCode CheckpointFields(H5File *file, PetscBool write, Grid g, const char group[], const State *q,
+                                       Vec w) {
   char name[64];
+  PetscScalar *a[3];
+  PetscFunctionBeginUser;
+  PetscCall(VecGetArray(w, &a[0]));
+  a[1] = a[0] + GridLocalU(g);
+  if (q->p) PetscCall(VecGetArray(q->p, &a[2]));
+  for (int f = 0; f < (q->p ? 3 : 2); f++) {
+    PetscCall(PetscSNPrintf(name, sizeof(name), "%s/fluid/%c", group, "uvp"[f]));
+    PetscCall(CheckpointRows(file, write, name, g, (Field)f, g->columns[f], a[f]));
+  }
+  if (q->p) PetscCall(VecRestoreArray(q->p, &a[2]));
+  PetscCall(VecRestoreArray(w, &a[0]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Write or read a state's flow, bit by bit. A file of solvers without such a flow gives it by its velocity w. */
+static PetscErrorCode CheckpointFlow(H5File *file, PetscBool write, Scheme s, const char group[], const State *q,
+                                     Vec w) {
+  const Grid g = s->fluid->grid;
+  PetscInt width = StateFlowWidth(q, g), there = width;
+  PetscScalar *a;
+  char name[64];
+  PetscFunctionBeginUser;
+  if (!write) PetscCall(H5GetInts(file, "flow", 1, &there));
+  if (there != width) {
+    PetscCall(s->ops.flow(s, w, q->flow));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(PetscSNPrintf(name, sizeof(name), "%s/fluid/flow", group));
+  PetscCall(VecGetArray(q->flow, &a));
+  PetscCall(CheckpointRows(file, write, name, g, FIELD_U, width, a));
+  PetscCall(VecRestoreArray(q->flow, &a));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Write or read what a state has of the fluid: no step needs the velocity of most older states. */
+static PetscErrorCode CheckpointFluid(H5File *file, PetscBool write, Scheme s, const char group[], const State *q) {
+  const DM velocity = s->fluid->grid->velocity;
   Vec w = q->w;
   PetscFunctionBeginUser;
   if (!w && !q->flow) PetscFunctionReturn(PETSC_SUCCESS);
-  if (!w) {
-    PetscCall(DMGetGlobalVector(g->velocity, &w));
-    PetscCall(s->ops.velocity(s, q, w));
-  }
-  PetscCall(WriteFields(s, file, prefix, q, w));
-  if (!q->w) PetscCall(DMRestoreGlobalVector(g->velocity, &w));
-  if (!q->flow) PetscFunctionReturn(PETSC_SUCCESS);
-  const PetscInt dims[2] = {g->all_rows[FIELD_U], StateFlowWidth(q, g)};
-  PetscCall(PetscSNPrintf(name, sizeof(name), "%s/fluid/flow", prefix));
-  PetscCall(H5CreateSeries(file, name, 2, dims));
-  PetscCall(VecGetArrayRead(q->flow, &a));
-  PetscCall(H5WriteRows(file, name, 0, g, FIELD_U, dims[1], a));
-  PetscCall(VecRestoreArrayRead(q->flow, &a));
+  if (!w) PetscCall(DMGetGlobalVector(velocity, &w));
+  if (write && !q->w) PetscCall(s->ops.velocity(s, q, w));
+  PetscCall(CheckpointFields(file, write, s->fluid->grid, group, q, w));
+  if (q->flow) PetscCall(CheckpointFlow(file, write, s, group, q, w));
+  if (!q->w) PetscCall(DMRestoreGlobalVector(velocity, &w));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The vectors of one state into the groups <prefix>/fluid and <prefix>/vesicle. */
-static PetscErrorCode WriteVectors(Scheme s, H5File *file, const char prefix[], const State *q) {
-  Gathered now;
+PetscErrorCode CheckpointVectors(H5File *file, PetscBool write, Scheme s, PetscInt j, State *q) {
+  static const char *const groups[] = {"", "/previous", "/previous_1", "/previous_2", "/previous_3", "/previous_4"};
+  Gathered all;
   PetscFunctionBeginUser;
-  PetscCall(WriteFluid(s, file, prefix, q));
-  PetscCall(GatheredCreate(q, &now));
-  PetscCall(GatherState(q, &now));
-  const PetscInt markers[2] = {now.M, 2};
-  if (now.M) {
-    PetscCall(WriteOnly(file, prefix, "vesicle/markers", 2, markers, now.markers));
-    PetscCall(WriteOnly(file, prefix, "vesicle/velocity", 2, markers, now.velocity));
-    PetscCall(WriteOnly(file, prefix, "vesicle/tension", 1, markers, now.tension));
+  PetscCall(CheckpointFluid(file, write, s, groups[j], q));
+  PetscCall(GatheredCreate(q, &all));
+  if (write) PetscCall(GatherState(q, &all));
+  for (int k = 0; k < GATHERED_COUNT; k++) {
+    GatheredPart *p = &all.part[k];
+    char name[64];
+    PetscCall(PetscSNPrintf(name, sizeof(name), "%s/%s", groups[j], p->name));
+    PetscCall(CheckpointEntry(file, write, name, p->n, p->each, p->values));
   }
-  if (now.W) PetscCall(WriteOnly(file, prefix, "obstacle/force", 2, (const PetscInt[]){now.W, 2}, now.solid));
-  PetscCall(GatheredDestroy(&now));
+  if (!write) PetscCall(ScatterState(&all, q));
+  PetscCall(GatheredDestroy(&all));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The scene's options and digests of its files, by which a restart knows the scene, and what the vesicles are. */
-static PetscErrorCode WriteScene(Scheme s, H5File *file) {
+PetscErrorCode CheckpointMoveNumbers(H5File *file, PetscBool write, CheckpointNumbers *n) {
+  const struct {
+    const char *name;
+    PetscInt count, *whole;
+    PetscReal *real;
+  } all[] = {{"step", 1, &n->step},
+             {"past", 1, &n->past},
+             {"step_level", 1, &n->step_level},
+             {"frames", 1, &n->frames},
+             {"time", 1, NULL, &n->time},
+             {"dt", 1, NULL, &n->dt},
+             {"dt_last", 1, NULL, &n->dt_last},
+             {"step_order", 1, &n->step_order},
+             {"step_guess", 1, &n->step_guess},
+             {"flow", 1, &n->flow},
+             {"totals", 4, n->totals},
+             {"dt_earlier", SCHEME_PAST, NULL, n->dt_earlier}};
+  PetscFunctionBeginUser;
+  for (size_t k = 0; k < sizeof(all) / sizeof(all[0]); k++) {
+    if (write && all[k].whole)
+      H5PutInts(file, all[k].name, all[k].count, all[k].whole);
+    else if (write)
+      H5PutReals(file, all[k].name, all[k].count, all[k].real);
+    else if (all[k].whole)
+      PetscCall(H5GetInts(file, all[k].name, all[k].count, all[k].whole));
+    else
+      PetscCall(H5GetReals(file, all[k].name, all[k].count, all[k].real));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Write the scene's options and the digests of its files, by which a restart knows the scene, and the vesicles. */
+static PetscErrorCode CheckpointWriteScene(Scheme s, H5File *file) {
   const Membrane m = s->membrane;
   const Layout l = m->layout;
   PetscFunctionBeginUser;
-  PetscCall(H5PutString(file, "version", PETVES_VERSION));
+  H5PutText(file, "version", PETVES_VERSION);
   for (PetscInt i = 0; SceneOptionName(i); i++) {
     char *value;
     PetscCall(SceneOptionText(s->scene, i, &value));
-    PetscCall(H5PutText(file, SceneOptionName(i), value));
+    H5PutText(file, SceneOptionName(i), value);
     PetscCall(PetscFree(value));
   }
-  PetscCall(H5PutString(file, "vesicle_digest", s->scene->shape.digest));
-  PetscCall(H5PutString(file, "obstacle_digest", s->scene->obstacles.outline.digest));
+  H5PutText(file, "vesicle_digest", s->scene->shape.digest);
+  H5PutText(file, "obstacle_digest", s->scene->obstacles.outline.digest);
   if (!l->bodies) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(H5PutInts(file, "vesicles", 1, &l->bodies));
-  PetscCall(H5PutInts(file, "vesicle_start", l->bodies + 1, l->start));
-  PetscCall(H5PutReals(file, "vesicle_ds", l->bodies, m->ds));
-  PetscCall(H5PutReals(file, "vesicle_area", l->bodies, m->A0));
-  PetscCall(H5PutReals(file, "vesicle_length", l->bodies, m->L0));
+  H5PutInts(file, "vesicles", 1, &l->bodies);
+  H5PutInts(file, "vesicle_start", l->bodies + 1, l->start);
+  H5PutReals(file, "vesicle_ds", l->bodies, m->ds);
+  H5PutReals(file, "vesicle_area", l->bodies, m->A0);
+  H5PutReals(file, "vesicle_length", l->bodies, m->L0);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The numbers that stand for time, step and what has been written so far. */
-static PetscErrorCode WriteNumbers(Scheme s, H5File *file, const Record *record, PetscInt frames) {
-  const State *q = &s->state;
-  const PetscInt format = CHECKPOINT_FORMAT, past = s->past, level = s->policy.adaptive ? s->plan.level : 0;
-  const PetscInt totals[4] = {record->solves, record->tension, record->bending, record->coupled};
-  PetscReal earlier[SCHEME_PAST] = {0};
-  const PetscInt flow = StateFlowWidth(q, s->fluid->grid);
-  PetscFunctionBeginUser;
-  PetscCall(H5PutInts(file, "format", 1, &format));
-  PetscCall(H5PutInts(file, "step", 1, &q->step));
-  PetscCall(H5PutReals(file, "time", 1, &q->t));
-  PetscCall(H5PutReals(file, "dt", 1, &q->dt));
-  PetscCall(H5PutReals(file, "dt_last", 1, &q->dt_last));
-  PetscCall(H5PutInts(file, "past", 1, &past));
-  for (PetscInt j = 0; j < past; j++) earlier[j] = s->old[j].dt_last;
-  PetscCall(H5PutReals(file, "dt_earlier", SCHEME_PAST, earlier));
-  PetscCall(H5PutInts(file, "step_level", 1, &level));
-  PetscCall(H5PutInts(file, "step_order", 1, &s->plan.order));
-  PetscCall(H5PutInts(file, "step_guess", 1, &s->plan.guess));
-  PetscCall(H5PutInts(file, "flow", 1, &flow));
-  PetscCall(H5PutInts(file, "frames", 1, &frames));
-  PetscCall(H5PutInts(file, "totals", 4, totals));
-  PetscCall(H5PutText(file, "series_row", record->text));
-  PetscFunctionReturn(PETSC_SUCCESS);
+PetscBool CheckpointChecksum(const char path[], long tail, unsigned *crc, char *end) {
+  static unsigned table[256];
+  unsigned char block[65536];
+  FILE *f = fopen(path, "rb");
+  long left;
+  unsigned sum = 0xffffffffu;
+  if (!f) return PETSC_FALSE;
+  for (unsigned i = 0; i < 256 && !table[255]; i++) { /* the reflected polynomial of zlib's crc32 */
+    unsigned c = i;
+    for (int k = 0; k < 8; k++) c = c & 1 ? 0xedb88320u ^ (c >> 1) : c >> 1;
+    table[i] = c;
+  }
+  left = fseek(f, 0, SEEK_END) ? -1 : ftell(f) - tail;
+  rewind(f);
+  while (left > 0) {
+    const size_t want = PetscMin((size_t)left, sizeof(block)), got = fread(block, 1, want, f);
+    if (got != want) break;
+    for (size_t i = 0; i < got; i++) sum = table[(sum ^ block[i]) & 255] ^ (sum >> 8);
+    left -= (long)got;
+  }
+  const PetscBool read = left == 0 && fread(end, 1, (size_t)tail, f) == (size_t)tail ? PETSC_TRUE : PETSC_FALSE;
+  fclose(f);
+  *crc = ~sum;
+  return read;
 }
 
-/* What the solvers have kept from earlier steps. */
-static PetscErrorCode WriteMemory(Scheme s, H5File *file) {
-  const PetscInt numbers = SchemeMemorySize(s);
-  PetscReal *memory;
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(numbers, &memory));
-  PetscCall(SchemeRemember(s, memory));
-  PetscCall(WriteOnly(file, "", "solver", 1, &numbers, memory));
-  PetscCall(PetscFree(memory));
-  PetscFunctionReturn(PETSC_SUCCESS);
+/* Put the checksum behind the bytes of a file; false when that fails. */
+static PetscBool ChecksumAppend(const char path[]) {
+  unsigned crc;
+  char none[1];
+  FILE *f;
+  if (!CheckpointChecksum(path, 0, &crc, none)) return PETSC_FALSE;
+  f = fopen(path, "ab");
+  if (!f) return PETSC_FALSE;
+  const PetscBool printed = fprintf(f, CHECKPOINT_TAIL, crc) == CHECKPOINT_TAIL_LENGTH ? PETSC_TRUE : PETSC_FALSE;
+  return !fclose(f) && printed ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* The name of the k-th newest checkpoint. */
-static PetscErrorCode Name(Folder *folder, PetscInt k, char path[PETSC_MAX_PATH_LEN]) {
+/* Path of the k-th newest checkpoint. */
+static void CheckpointPath(Folder *folder, PetscInt k, char path[PETSC_MAX_PATH_LEN]) {
   char file[64] = "checkpoint.h5";
-  PetscFunctionBeginUser;
-  if (k) PetscCall(PetscSNPrintf(file, sizeof(file), "checkpoint_%" PetscInt_FMT ".h5", k));
-  PetscCall(FolderPath(folder, file, path));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  if (k) (void)PetscSNPrintf(file, sizeof(file), "checkpoint_%" PetscInt_FMT ".h5", k);
+  FolderPath(folder, file, path);
 }
 
-/* Older checkpoints move one name up, then the new one takes its own. There is a checkpoint.h5 at every moment, where
-   the file system has links. */
-static PetscErrorCode Rotate(const Checkpoint *c, const char temporary[], PetscBool *done) {
+/* Older checkpoints move one name up, then the new one takes the name checkpoint.h5. Where the file system has links a
+   file of this name exists at every moment. */
+static PetscBool CheckpointRotate(const Checkpoint *c, const char temporary[]) {
   char from[PETSC_MAX_PATH_LEN], to[PETSC_MAX_PATH_LEN];
   struct stat what;
-  PetscFunctionBeginUser;
   for (PetscInt k = c->keep - 1; k > 0; k--) {
-    PetscCall(Name(c->folder, k - 1, from));
-    PetscCall(Name(c->folder, k, to));
+    CheckpointPath(c->folder, k - 1, from);
+    CheckpointPath(c->folder, k, to);
     if (stat(from, &what) || !S_ISREG(what.st_mode)) continue;
     (void)unlink(to);
     if (k > 1 || link(from, to)) (void)rename(from, to);
   }
-  PetscCall(Name(c->folder, 0, to));
-  *done = !rename(temporary, to) && !FileSync(c->folder->path) ? PETSC_TRUE : PETSC_FALSE;
-  PetscFunctionReturn(PETSC_SUCCESS);
+  CheckpointPath(c->folder, 0, to);
+  return !rename(temporary, to) && !FileSync(c->folder->path) ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* The place of a file among the checkpoints, by its inode; MOST when it is none of them. */
-static PetscErrorCode PlaceOf(Folder *folder, const char file[], PetscInt *k) {
+/* k, if the file is the k-th newest checkpoint, as its inode tells; CHECKPOINT_NAMES when it is none of them. */
+static PetscInt CheckpointNumber(Folder *folder, const char file[]) {
   char path[PETSC_MAX_PATH_LEN];
   struct stat chosen, other;
-  PetscFunctionBeginUser;
-  *k = MOST;
-  if (stat(file, &chosen)) PetscFunctionReturn(PETSC_SUCCESS);
-  for (*k = 0; *k < MOST; ++*k) {
-    PetscCall(Name(folder, *k, path));
-    if (!stat(path, &other) && other.st_ino == chosen.st_ino) break;
+  for (PetscInt k = 0; k < CHECKPOINT_NAMES && !stat(file, &chosen); k++) {
+    CheckpointPath(folder, k, path);
+    if (!stat(path, &other) && other.st_ino == chosen.st_ino) return k;
   }
-  PetscFunctionReturn(PETSC_SUCCESS);
+  return CHECKPOINT_NAMES;
 }
 
 PetscErrorCode CheckpointAdopt(const Checkpoint *c, const char restart[]) {
@@ -193,37 +239,58 @@ PetscErrorCode CheckpointAdopt(const Checkpoint *c, const char restart[]) {
   PetscInt k = 0;
   PetscBool done = PETSC_TRUE;
   PetscFunctionBeginUser;
-  PetscCall(FolderPath(c->folder, TEMPORARY, temporary));
-  PetscCall(Name(c->folder, 0, newest));
-  if (!c->folder->rank) PetscCall(PlaceOf(c->folder, restart, &k));
-  if (k && k < MOST) {
+  FolderPath(c->folder, CHECKPOINT_TEMPORARY, temporary);
+  CheckpointPath(c->folder, 0, newest);
+  if (!c->folder->rank) k = CheckpointNumber(c->folder, restart);
+  if (k && k < CHECKPOINT_NAMES) {
     (void)unlink(temporary);
-    if (link(restart, temporary) || rename(temporary, newest)) /* no links here: it leaves its old name */
+    if (link(restart, temporary) || rename(temporary, newest)) /* without links the file loses its old name */
       done = !rename(restart, newest) ? PETSC_TRUE : PETSC_FALSE;
     for (PetscInt j = 1; j < k && done; j++) {
-      PetscCall(Name(c->folder, j, path));
+      CheckpointPath(c->folder, j, path);
       (void)unlink(path);
     }
   }
-  PetscCall(FolderCheck(c->folder, done, newest));
+  PetscCall(FolderCheck(c->folder, done, "checkpoint.h5"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode CheckpointClear(Folder *folder) {
+void CheckpointClear(Folder *folder) {
   char path[PETSC_MAX_PATH_LEN];
-  PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < MOST && !folder->rank; k++) {
-    PetscCall(Name(folder, k, path));
+  for (PetscInt k = 0; k < CHECKPOINT_NAMES && !folder->rank; k++) {
+    CheckpointPath(folder, k, path);
     (void)unlink(path);
   }
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode CheckpointCreate(Checkpoint *c, Folder *folder, PetscInt keep) {
+/* Write all of a checkpoint into the open file. /solver is what the solvers have kept from earlier steps. */
+static PetscErrorCode CheckpointWriteAll(H5File *file, Scheme s, const Record *r, PetscInt frames) {
+  const PetscInt format = CHECKPOINT_FORMAT, numbers = SchemeMemorySize(s);
+  const State *q = &s->state;
+  CheckpointNumbers n = {.step = q->step,
+                         .past = s->past,
+                         .step_level = s->policy.adaptive ? s->plan.level : 0,
+                         .step_order = s->plan.order,
+                         .step_guess = s->plan.guess,
+                         .flow = StateFlowWidth(q, s->fluid->grid),
+                         .frames = frames,
+                         .totals = {r->solves, r->tension, r->bending, r->coupled},
+                         .time = q->t,
+                         .dt = q->dt,
+                         .dt_last = q->dt_last};
+  PetscReal *memory;
   PetscFunctionBeginUser;
-  c->folder = folder;
-  c->keep = keep;
-  c->step = -1;
+  for (PetscInt j = 0; j < s->past; j++) n.dt_earlier[j] = s->old[j].dt_last;
+  H5PutInts(file, "format", 1, &format);
+  PetscCall(CheckpointMoveNumbers(file, PETSC_TRUE, &n));
+  H5PutText(file, "series_row", r->text);
+  PetscCall(CheckpointWriteScene(s, file));
+  PetscCall(CheckpointVectors(file, PETSC_TRUE, s, 0, &s->state));
+  for (PetscInt j = 0; j < s->past; j++) PetscCall(CheckpointVectors(file, PETSC_TRUE, s, j + 1, &s->old[j]));
+  PetscCall(PetscMalloc1(numbers, &memory));
+  PetscCall(SchemeRemember(s, memory));
+  PetscCall(CheckpointEntry(file, PETSC_TRUE, "/solver", numbers, 1, memory));
+  PetscCall(PetscFree(memory));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -234,23 +301,18 @@ PetscErrorCode CheckpointWrite(Checkpoint *c, Scheme s, const Record *record, Pe
   PetscErrorCode error;
   PetscFunctionBeginUser;
   PetscCall(SchemeFields(s));
-  PetscCall(FolderPath(c->folder, TEMPORARY, path));
+  FolderPath(c->folder, CHECKPOINT_TEMPORARY, path);
   PetscCall(H5FileCreate(c->folder->comm, path, &file));
-  PetscCall(WriteNumbers(s, &file, record, frames));
-  PetscCall(WriteScene(s, &file));
-  PetscCall(WriteVectors(s, &file, "", &s->state));
-  for (PetscInt j = 0; j < s->past; j++) PetscCall(WriteVectors(s, &file, CheckpointGroup(j), &s->old[j]));
-  PetscCall(WriteMemory(s, &file));
-  PetscCall(H5FileClose(&file));
+  PetscCall(CheckpointWriteAll(&file, s, record, frames));
+  H5FileClose(&file);
   if (!c->folder->rank) done = !file.failed && ChecksumAppend(path) && !FileSync(path) ? PETSC_TRUE : PETSC_FALSE;
-  error = FolderCheckOwn(c->folder); /* once more: that took time */
+  error = FolderCheckOwn(c->folder); /* once more: writing took time */
   if (!c->folder->rank) {
-    if (done && !error) PetscCall(Rotate(c, path, &done));
+    if (done && !error) done = CheckpointRotate(c, path);
     if (!done || error) (void)unlink(path);
   }
   PetscCall(error);
-  PetscCall(Name(c->folder, 0, path));
-  PetscCall(FolderCheck(c->folder, done, path));
+  PetscCall(FolderCheck(c->folder, done, "checkpoint.h5"));
   c->step = s->state.step;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

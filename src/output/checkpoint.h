@@ -1,32 +1,59 @@
-/* checkpoint.h5: everything that a restart needs, and a checksum of all its bytes behind them. */
+/* checkpoint.h5: everything that a restart needs.
+
+   The file has the scene's options and digests of its curve files, the numbers of CheckpointNumbers, and the vectors of
+   the present state and of those before it: fields of the grid under <group>/fluid, markers under <group>/vesicle and
+   <group>/obstacle. Behind the bytes of HDF5, which does not read past its own end, stands a line with the CRC-32 of
+   all of them.
+
+   A checkpoint is written under a temporary name, put on the disk and renamed, so that a complete checkpoint.h5 exists
+   at every moment. Earlier ones are renamed to checkpoint_1.h5 and so on. Rank 0 has the file; the ranks send it their
+   rows of the grid and gather the markers. */
 #pragma once
 #include "output/folder.h"
+#include "output/h5series.h"
 #include "output/record.h"
 
-/* Where a checkpoint has the states before the present one. */
-static inline const char *CheckpointGroup(PetscInt j) {
-  static const char *const groups[] = {"/previous", "/previous_1", "/previous_2", "/previous_3", "/previous_4"};
-  return groups[j];
-}
+#define CHECKPOINT_FORMAT 7
+#define CHECKPOINT_TAIL "petves checkpoint, crc32 %08x\n"
+#define CHECKPOINT_TAIL_LENGTH 34
+
+/* The numbers of a checkpoint. */
+typedef struct {
+  PetscInt step, past, step_level, step_order, step_guess; /* state, states before it, step-size control */
+  PetscInt flow;                                           /* numbers of a flow in a row of u */
+  PetscInt frames;                                         /* scheduled frames in run.h5 */
+  PetscInt totals[4];                                      /* of series.csv: solves, tension, bending, coupled */
+  PetscReal time, dt, dt_last, dt_earlier[SCHEME_PAST];
+} CheckpointNumbers;
 
 typedef struct {
   Folder *folder; /* borrowed */
   PetscInt keep;  /* checkpoints kept, the newest included */
-  PetscInt step;  /* of the newest checkpoint.h5 that this run wrote; -1 none */
+  PetscInt step;  /* of the newest checkpoint.h5 that this run wrote; -1: none */
 } Checkpoint;
 
-PETSC_EXTERN PetscErrorCode CheckpointCreate(Checkpoint *checkpoint, Folder *folder, PetscInt keep);
-
-/* CheckpointWrite - the scheme's state, the record and the number of scheduled frames: to a temporary name, with a
-   checksum at its end, all of it on the disk, then renamed. The ones before it become checkpoint_1.h5 and so on. Rows
-   and frames that belong to it must be on the disk. Collective; stops with one line when it cannot be written, and the
-   checkpoints before it are whole. */
+/* CheckpointWrite - write the scheme's state, the record and the number of scheduled frames. Rows and frames up to the
+   state must be on the disk. Collective; stops with one line when the checkpoint cannot be written, and the checkpoints
+   before it are whole. */
 PETSC_EXTERN PetscErrorCode CheckpointWrite(Checkpoint *checkpoint, Scheme scheme, const Record *record,
                                             PetscInt frames);
 
-/* CheckpointAdopt - the checkpoint that -restart names in the folder becomes its newest: later ones belong to steps
-   that are taken anew. Collective; stops with one line when that fails. */
+/* CheckpointAdopt - the checkpoint that -restart names, if it is in the folder, becomes the newest one: later ones
+   belong to steps that are taken anew. Collective; stops with one line when the file cannot be renamed. */
 PETSC_EXTERN PetscErrorCode CheckpointAdopt(const Checkpoint *checkpoint, const char restart[]);
 
-/* CheckpointClear - remove all checkpoints of the folder, on rank 0. */
-PETSC_EXTERN PetscErrorCode CheckpointClear(Folder *folder);
+/* CheckpointClear - remove all checkpoints of the folder, on rank 0. Not collective. */
+PETSC_EXTERN void CheckpointClear(Folder *folder);
+
+/* CheckpointEntry - write or read n entries of `each` numbers, the same on every rank, as <group>/<name>; n = 0 does
+   nothing. CheckpointVectors - write or read the vectors of one state of group j: 0 the present state, then those
+   before it. CheckpointMoveNumbers - write or read the numbers; what a run cannot have had is refused with a line that
+   names `restart`. When they read, an entry that is missing or has another size makes the file fail. Collective. */
+PETSC_EXTERN PetscErrorCode CheckpointEntry(H5File *file, PetscBool write, const char name[], PetscInt n, PetscInt each,
+                                            PetscReal values[]);
+PETSC_EXTERN PetscErrorCode CheckpointVectors(H5File *file, PetscBool write, Scheme scheme, PetscInt j, State *state);
+PETSC_EXTERN PetscErrorCode CheckpointMoveNumbers(H5File *file, PetscBool write, CheckpointNumbers *numbers);
+
+/* CheckpointChecksum - CRC-32 of a file up to its last `tail` bytes, which are copied to `end`; false when the file
+   cannot be read or is shorter. Not collective. */
+PETSC_EXTERN PetscBool CheckpointChecksum(const char path[], long tail, unsigned *crc, char *end);

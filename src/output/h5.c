@@ -1,81 +1,106 @@
 #define _GNU_SOURCE /* memfd_create */
 #include "output/h5.h"
-#include "output/h5place.h"
 #include <sys/mman.h>
 #include <unistd.h>
 
-/* A call on rank 0's file, once all before it were good. */
-#define Try(file, call)                                                                                                \
-  do {                                                                                                                 \
-    if (!(file)->failed && ((call) < 0 || H5PlaceLost())) (file)->failed = PETSC_TRUE;                                 \
-  } while (0)
+/* HDF5's drivers belong to the whole program, and their calls have no context. */
+static struct {
+  hid_t id;
+  H5FD_class_t class;
+  herr_t (*read)(H5FD_t *, H5FD_mem_t, hid_t, haddr_t, size_t, void *);
+  herr_t (*write)(H5FD_t *, H5FD_mem_t, hid_t, haddr_t, size_t, const void *);
+  haddr_t last_read;
+  PetscBool lost; /* a write has failed */
+} driver = {.id = -1, .last_read = HADDR_UNDEF};
 
-static PetscErrorCode Start(MPI_Comm comm, const char path[], H5File *f) {
+static herr_t DriverRead(H5FD_t *file, H5FD_mem_t type, hid_t transfer, haddr_t place, size_t size, void *values) {
+  if (type == H5FD_MEM_DRAW) driver.last_read = place;
+  return driver.read(file, type, transfer, place, size, values);
+}
+
+static herr_t DriverWrite(H5FD_t *file, H5FD_mem_t type, hid_t transfer, haddr_t place, size_t size,
+                          const void *values) {
+  if (driver.write(file, type, transfer, place, size, values) < 0) driver.lost = PETSC_TRUE;
+  return 0;
+}
+
+PetscBool H5WriteLost(void) {
+  const PetscBool lost = driver.lost;
+  driver.lost = PETSC_FALSE;
+  return lost;
+}
+
+haddr_t H5LastRead(void) {
+  const haddr_t place = driver.last_read;
+  driver.last_read = HADDR_UNDEF;
+  return place;
+}
+
+/* HDF5's own driver of plain files, with DriverRead and DriverWrite in place of two functions. An open file is the only
+   way to these functions. */
+static void DriverRegister(void) {
+  const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
+  H5FD_t *file = H5Pset_fapl_sec2(access) < 0 ? NULL : H5FDopen("/dev/null", H5F_ACC_RDONLY, access, HADDR_UNDEF);
+  if (file) {
+    driver.class = *file->cls;
+    driver.read = driver.class.read;
+    driver.class.read = DriverRead;
+    driver.write = driver.class.write;
+    driver.class.write = DriverWrite;
+    driver.id = H5FDregister(&driver.class);
+    (void)H5FDclose(file);
+  }
+  (void)H5Pclose(access);
+}
+
+/* Open or create rank 0's file with the driver above. Without a cache of chunks a write that fails does so in H5Dwrite,
+   not when the dataset is closed, which HDF5 cannot undo. */
+static PetscErrorCode FileBegin(MPI_Comm comm, const char path[], PetscBool create, unsigned flags, H5File *f) {
   PetscFunctionBeginUser;
   f->comm = comm;
   f->id = -1;
   f->failed = PETSC_FALSE;
   PetscCallMPI(MPI_Comm_rank(comm, &f->rank));
   PetscCall(PetscStrncpy(f->path, path, sizeof(f->path)));
-  if (!f->rank) (void)H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* No cache of chunks: a write that fails does so in H5Dwrite, not when the dataset is closed, which HDF5
-   cannot undo. */
-static hid_t Access(void) {
+  if (f->rank) PetscFunctionReturn(PETSC_SUCCESS);
+  (void)H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
+  if (driver.id < 0) DriverRegister();
   const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
   (void)H5Pset_cache(access, 0, 0, 0, 0);
-  H5PlaceDriver(access);
-  return access;
+  if (driver.id >= 0) (void)H5Pset_driver(access, driver.id, NULL); /* else HDF5 has refused the driver */
+  if (create) (void)unlink(path);                                   /* a link leads to a file that is not the run's */
+  H5Try(f, f->id = create ? H5Fcreate(path, flags, H5P_DEFAULT, access) : H5Fopen(path, flags, access));
+  (void)H5Pclose(access);
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode H5FileCreate(MPI_Comm comm, const char path[], H5File *f) {
-  PetscFunctionBeginUser;
-  PetscCall(Start(comm, path, f));
-  if (!f->rank) {
-    const hid_t access = Access();
-    (void)unlink(path); /* a link: what it leads to is not the run's */
-    Try(f, f->id = H5Fcreate(path, H5F_ACC_TRUNC, H5P_DEFAULT, access));
-    (void)H5Pclose(access);
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
+  return FileBegin(comm, path, PETSC_TRUE, H5F_ACC_TRUNC, f);
 }
 
 PetscErrorCode H5FileOpen(MPI_Comm comm, const char path[], PetscBool write, H5File *f) {
-  PetscFunctionBeginUser;
-  PetscCall(Start(comm, path, f));
-  if (!f->rank) {
-    const hid_t access = Access();
-    Try(f, f->id = H5Fopen(path, write ? H5F_ACC_RDWR : H5F_ACC_RDONLY, access));
-    (void)H5Pclose(access);
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
+  return FileBegin(comm, path, PETSC_FALSE, write ? H5F_ACC_RDWR : H5F_ACC_RDONLY, f);
 }
 
-PetscErrorCode H5FileFlush(H5File *f) {
-  PetscFunctionBeginUser;
-  if (!f->rank) Try(f, H5Fflush(f->id, H5F_SCOPE_GLOBAL));
-  PetscFunctionReturn(PETSC_SUCCESS);
+void H5FileFlush(H5File *f) {
+  if (!f->rank) H5Try(f, H5Fflush(f->id, H5F_SCOPE_GLOBAL));
 }
 
-/* HDF5 cannot give up a file whose disk is full: closing it fails, and the library crashes at the end. So what it still
-   wants to write to a failed file goes into memory instead. */
-static void Redirect(hid_t file) {
+/* HDF5 cannot give up a file whose disk is full: closing the file fails, and the library crashes at the program's end.
+   So what HDF5 still wants to write to a failed file goes into memory. */
+static void FileToMemory(hid_t file) {
   void *handle;
   const int memory = memfd_create("petves", 0);
   if (memory >= 0 && H5Fget_vfd_handle(file, H5P_DEFAULT, &handle) >= 0) (void)dup2(memory, *(int *)handle);
   if (memory >= 0) (void)close(memory);
 }
 
-PetscErrorCode H5FileClose(H5File *f) {
-  PetscFunctionBeginUser;
-  if (f->id < 0) PetscFunctionReturn(PETSC_SUCCESS);
-  if (H5Fflush(f->id, H5F_SCOPE_GLOBAL) < 0 || H5PlaceLost()) f->failed = PETSC_TRUE;
-  if (f->failed) Redirect(f->id);
-  if (H5Fclose(f->id) < 0 || H5PlaceLost()) f->failed = PETSC_TRUE;
+void H5FileClose(H5File *f) {
+  if (f->id < 0) return;
+  if (H5Fflush(f->id, H5F_SCOPE_GLOBAL) < 0 || H5WriteLost()) f->failed = PETSC_TRUE;
+  if (f->failed) FileToMemory(f->id);
+  if (H5Fclose(f->id) < 0 || H5WriteLost()) f->failed = PETSC_TRUE;
   f->id = -1;
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode H5FileFailed(const H5File *f, PetscBool *failed) {
@@ -86,103 +111,98 @@ PetscErrorCode H5FileFailed(const H5File *f, PetscBool *failed) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static hid_t IntType(void) {
+static hid_t AttributeIntType(void) {
   return sizeof(PetscInt) == 8 ? H5T_NATIVE_INT64 : H5T_NATIVE_INT32;
 }
 
-/* Numbers that an attribute may have: HDF5 keeps no more than 64 KiB with an object. More are a dataset of the name. */
+/* The most numbers of an attribute: HDF5 keeps no more than 64 KiB with an object. */
 #define ATTRIBUTE_NUMBERS 8000
 
-static void PutDataset(H5File *f, const char name[], hid_t type, int ndims, const hsize_t size[], const void *values) {
+static void DatasetPut(H5File *f, const char name[], hid_t type, int ndims, const hsize_t size[], const void *values) {
   const hid_t link = H5Pcreate(H5P_LINK_CREATE);
   hid_t space = -1, set = -1;
-  Try(f, H5Pset_create_intermediate_group(link, 1));
-  Try(f, space = H5Screate_simple(ndims, size, NULL));
-  Try(f, set = H5Dcreate2(f->id, name, type, space, link, H5P_DEFAULT, H5P_DEFAULT));
-  Try(f, H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values));
-  if (set >= 0) Try(f, H5Dclose(set));
-  if (space >= 0) Try(f, H5Sclose(space));
+  H5Try(f, H5Pset_create_intermediate_group(link, 1));
+  H5Try(f, space = H5Screate_simple(ndims, size, NULL));
+  H5Try(f, set = H5Dcreate2(f->id, name, type, space, link, H5P_DEFAULT, H5P_DEFAULT));
+  H5Try(f, H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values));
+  if (set >= 0) H5Try(f, H5Dclose(set));
+  if (space >= 0) H5Try(f, H5Sclose(space));
   (void)H5Pclose(link);
 }
 
-static void GetDataset(H5File *f, const char name[], hid_t type, PetscInt n, void *values) {
+static void DatasetGet(H5File *f, const char name[], hid_t type, PetscInt n, void *values) {
   hid_t set = -1, space = -1;
-  Try(f, set = H5Dopen2(f->id, name, H5P_DEFAULT));
-  Try(f, space = H5Dget_space(set));
-  Try(f, H5Sget_simple_extent_npoints(space) == n ? 0 : -1);
-  Try(f, H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values));
+  H5Try(f, set = H5Dopen2(f->id, name, H5P_DEFAULT));
+  H5Try(f, space = H5Dget_space(set));
+  H5Try(f, H5Sget_simple_extent_npoints(space) == n ? 0 : -1);
+  H5Try(f, H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values));
   if (space >= 0) (void)H5Sclose(space);
   if (set >= 0) (void)H5Dclose(set);
 }
 
-static PetscErrorCode PutAttribute(H5File *f, const char name[], hid_t type, PetscInt n, const void *values) {
+static void AttributePut(H5File *f, const char name[], hid_t type, PetscInt n, const void *values) {
   const hsize_t size = (hsize_t)n;
   hid_t space = -1, attribute = -1;
-  PetscFunctionBeginUser;
-  if (f->rank || f->failed) PetscFunctionReturn(PETSC_SUCCESS);
+  if (f->rank || f->failed) return;
   if (n > ATTRIBUTE_NUMBERS) {
-    PutDataset(f, name, type, 1, &size, values);
-    PetscFunctionReturn(PETSC_SUCCESS);
+    DatasetPut(f, name, type, 1, &size, values);
+    return;
   }
-  Try(f, space = n == 1 ? H5Screate(H5S_SCALAR) : H5Screate_simple(1, &size, NULL));
-  Try(f, attribute = H5Acreate2(f->id, name, type, space, H5P_DEFAULT, H5P_DEFAULT));
-  Try(f, H5Awrite(attribute, type, values));
-  if (attribute >= 0) Try(f, H5Aclose(attribute));
-  if (space >= 0) Try(f, H5Sclose(space));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  H5Try(f, space = n == 1 ? H5Screate(H5S_SCALAR) : H5Screate_simple(1, &size, NULL));
+  H5Try(f, attribute = H5Acreate2(f->id, name, type, space, H5P_DEFAULT, H5P_DEFAULT));
+  H5Try(f, H5Awrite(attribute, type, values));
+  if (attribute >= 0) H5Try(f, H5Aclose(attribute));
+  if (space >= 0) H5Try(f, H5Sclose(space));
 }
 
-PetscErrorCode H5PutReals(H5File *f, const char name[], PetscInt n, const PetscReal values[]) {
-  return PutAttribute(f, name, H5T_NATIVE_DOUBLE, n, values);
+void H5PutReals(H5File *f, const char name[], PetscInt n, const PetscReal values[]) {
+  AttributePut(f, name, H5T_NATIVE_DOUBLE, n, values);
 }
 
-PetscErrorCode H5PutInts(H5File *f, const char name[], PetscInt n, const PetscInt values[]) {
-  return PutAttribute(f, name, IntType(), n, values);
+void H5PutInts(H5File *f, const char name[], PetscInt n, const PetscInt values[]) {
+  AttributePut(f, name, AttributeIntType(), n, values);
 }
 
-PetscErrorCode H5PutRows(H5File *f, const char name[], PetscInt rows, PetscInt n, const PetscReal values[]) {
+void H5PutRows(H5File *f, const char name[], PetscInt rows, PetscInt n, const PetscReal values[]) {
   const hsize_t size[2] = {(hsize_t)rows, (hsize_t)n};
-  if (!f->rank && !f->failed) PutDataset(f, name, H5T_NATIVE_DOUBLE, 2, size, values);
-  return PETSC_SUCCESS;
+  if (!f->rank && !f->failed) DatasetPut(f, name, H5T_NATIVE_DOUBLE, 2, size, values);
 }
 
-PetscErrorCode H5PutString(H5File *f, const char name[], const char value[]) {
+static void AttributePutString(H5File *f, const char name[], const char value[]) {
   hid_t type;
-  PetscFunctionBeginUser;
-  if (f->rank || f->failed) PetscFunctionReturn(PETSC_SUCCESS);
+  if (f->rank || f->failed) return;
   type = H5Tcopy(H5T_C_S1);
-  Try(f, H5Tset_size(type, strlen(value) + 1));
-  PetscCall(PutAttribute(f, name, type, 1, value));
+  H5Try(f, H5Tset_size(type, strlen(value) + 1));
+  AttributePut(f, name, type, 1, value);
   (void)H5Tclose(type);
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* An attribute of n numbers of the given type, on rank 0. */
-static void GetAttribute(H5File *f, const char name[], hid_t type, PetscInt n, void *values) {
+/* Rank 0 reads the n numbers of an attribute. */
+static void AttributeGet(H5File *f, const char name[], hid_t type, PetscInt n, void *values) {
   hid_t attribute = -1, space = -1;
   if (f->rank || f->failed) return;
   if (n > ATTRIBUTE_NUMBERS) {
-    GetDataset(f, name, type, n, values);
+    DatasetGet(f, name, type, n, values);
     return;
   }
-  Try(f, attribute = H5Aopen(f->id, name, H5P_DEFAULT));
-  Try(f, space = H5Aget_space(attribute));
-  Try(f, H5Sget_simple_extent_npoints(space) == n ? 0 : -1);
-  Try(f, H5Aread(attribute, type, values));
+  H5Try(f, attribute = H5Aopen(f->id, name, H5P_DEFAULT));
+  H5Try(f, space = H5Aget_space(attribute));
+  H5Try(f, H5Sget_simple_extent_npoints(space) == n ? 0 : -1);
+  H5Try(f, H5Aread(attribute, type, values));
   if (space >= 0) (void)H5Sclose(space);
   if (attribute >= 0) (void)H5Aclose(attribute);
 }
 
 PetscErrorCode H5GetReals(H5File *f, const char name[], PetscInt n, PetscReal values[]) {
   PetscFunctionBeginUser;
-  GetAttribute(f, name, H5T_NATIVE_DOUBLE, n, values);
+  AttributeGet(f, name, H5T_NATIVE_DOUBLE, n, values);
   PetscCallMPI(MPI_Bcast(values, (PetscMPIInt)n, MPIU_REAL, 0, f->comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode H5GetInts(H5File *f, const char name[], PetscInt n, PetscInt values[]) {
   PetscFunctionBeginUser;
-  GetAttribute(f, name, IntType(), n, values);
+  AttributeGet(f, name, AttributeIntType(), n, values);
   PetscCallMPI(MPI_Bcast(values, (PetscMPIInt)n, MPIU_INT, 0, f->comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -192,8 +212,8 @@ PetscErrorCode H5GetString(H5File *f, const char name[], size_t length, char val
   PetscCall(PetscArrayzero(value, (PetscInt)length));
   if (!f->rank && !f->failed && H5Aexists(f->id, name) > 0) {
     hid_t type = H5Tcopy(H5T_C_S1);
-    Try(f, H5Tset_size(type, length));
-    GetAttribute(f, name, type, 1, value);
+    H5Try(f, H5Tset_size(type, length));
+    AttributeGet(f, name, type, 1, value);
     (void)H5Tclose(type);
   }
   PetscCallMPI(MPI_Bcast(value, (PetscMPIInt)length, MPI_CHAR, 0, f->comm));
@@ -201,34 +221,30 @@ PetscErrorCode H5GetString(H5File *f, const char name[], size_t length, char val
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Characters in one attribute of a text: HDF5 allows 64 KiB. The pieces are name, name_1, name_2 and so on. */
-#define PIECE 32000
+/* Characters of a text in one attribute. The attributes of a text are name, name_1, name_2 and so on. */
+#define TEXT_PIECE 32000
 
-static PetscErrorCode PieceName(const char name[], int k, char piece[64]) {
-  PetscFunctionBeginUser;
-  PetscCall(k ? PetscSNPrintf(piece, 64, "%s_%d", name, k) : PetscStrncpy(piece, name, 64));
-  PetscFunctionReturn(PETSC_SUCCESS);
+static void TextPieceName(const char name[], int k, char piece[64]) {
+  (void)(k ? PetscSNPrintf(piece, 64, "%s_%d", name, k) : PetscStrncpy(piece, name, 64));
 }
 
-PetscErrorCode H5PutText(H5File *f, const char name[], const char value[]) {
+void H5PutText(H5File *f, const char name[], const char value[]) {
   const size_t length = strlen(value);
-  char part[PIECE + 1], piece[64];
-  PetscFunctionBeginUser;
-  for (int k = 0; !k || (size_t)k * PIECE < length; k++) {
-    PetscCall(PieceName(name, k, piece));
-    PetscCall(PetscStrncpy(part, value + (size_t)k * PIECE, sizeof(part)));
-    PetscCall(H5PutString(f, piece, part));
+  char part[TEXT_PIECE + 1], piece[64];
+  for (int k = 0; !k || (size_t)k * TEXT_PIECE < length; k++) {
+    TextPieceName(name, k, piece);
+    (void)PetscStrncpy(part, value + (size_t)k * TEXT_PIECE, sizeof(part));
+    AttributePutString(f, piece, part);
   }
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode H5GetText(H5File *f, const char name[], char **value) {
-  char part[PIECE + 1], piece[64];
+  char part[TEXT_PIECE + 1], piece[64];
   size_t length = 0;
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(1, value));
-  for (int k = 0; length == (size_t)k * PIECE; k++) {
-    PetscCall(PieceName(name, k, piece));
+  for (int k = 0; length == (size_t)k * TEXT_PIECE; k++) {
+    TextPieceName(name, k, piece);
     PetscCall(H5GetString(f, piece, sizeof(part), part));
     PetscCall(PetscRealloc(length + strlen(part) + 1, value));
     PetscCall(PetscStrncpy(*value + length, part, strlen(part) + 1));
@@ -238,161 +254,20 @@ PetscErrorCode H5GetText(H5File *f, const char name[], char **value) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Create(H5File *f, const char name[], hid_t type, int ndims, const PetscInt dims[]) {
-  hsize_t size[3] = {0, 1, 1}, limit[3] = {H5S_UNLIMITED, 1, 1}, chunk[3] = {1, 1, 1};
-  hid_t space, create, link, set = -1;
+/* plain becomes false at a link that is not hard. */
+static herr_t LinkIsHard(hid_t group, const char *name, const H5L_info_t *info, void *plain) {
+  if (info->type != H5L_TYPE_HARD) *(PetscBool *)plain = PETSC_FALSE;
+  return 0;
+}
+
+PetscErrorCode H5CheckLinks(H5File *f, PetscBool *plain) {
+  PetscMPIInt good = 1;
   PetscFunctionBeginUser;
-  if (f->rank || f->failed) PetscFunctionReturn(PETSC_SUCCESS);
-  for (int d = 0; d < ndims; d++) size[d + 1] = limit[d + 1] = chunk[d + 1] = (hsize_t)dims[d];
-  if (!ndims) chunk[0] = 64;
-  space = H5Screate_simple(ndims + 1, size, limit);
-  create = H5Pcreate(H5P_DATASET_CREATE);
-  link = H5Pcreate(H5P_LINK_CREATE);
-  Try(f, H5Pset_chunk(create, ndims + 1, chunk));
-  Try(f, H5Pset_create_intermediate_group(link, 1));
-  Try(f, set = H5Dcreate2(f->id, name, type, space, link, create, H5P_DEFAULT));
-  if (set >= 0) Try(f, H5Dclose(set));
-  (void)H5Pclose(link);
-  (void)H5Pclose(create);
-  (void)H5Sclose(space);
+  *plain = PETSC_TRUE;
+  if (!f->rank && !f->failed && H5Lvisit(f->id, H5_INDEX_NAME, H5_ITER_NATIVE, LinkIsHard, plain) < 0)
+    *plain = PETSC_FALSE;
+  good = *plain ? 1 : 0;
+  PetscCallMPI(MPI_Bcast(&good, 1, MPI_INT, 0, f->comm));
+  *plain = good ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode H5CreateSeries(H5File *f, const char name[], int ndims, const PetscInt dims[]) {
-  return Create(f, name, H5T_NATIVE_DOUBLE, ndims, dims);
-}
-
-PetscErrorCode H5CreateSingleSeries(H5File *f, const char name[], int ndims, const PetscInt dims[]) {
-  return Create(f, name, H5T_NATIVE_FLOAT, ndims, dims);
-}
-
-/* A series, and its size, on rank 0; -1 when there is none. */
-static hid_t OpenSeries(H5File *f, const char name[], int *ndims, hsize_t size[3]) {
-  hid_t set = -1, space = -1;
-  Try(f, set = H5Dopen2(f->id, name, H5P_DEFAULT));
-  Try(f, space = H5Dget_space(set));
-  Try(f, *ndims = H5Sget_simple_extent_ndims(space));
-  Try(f, *ndims >= 1 && *ndims <= 3 ? 0 : -1);
-  Try(f, H5Sget_simple_extent_dims(space, size, NULL));
-  if (space >= 0) (void)H5Sclose(space);
-  if (f->failed && set >= 0) (void)H5Dclose(set);
-  return f->failed ? -1 : set;
-}
-
-PetscErrorCode H5SeriesLength(H5File *f, const char name[], PetscInt *length) {
-  hsize_t size[3] = {0, 0, 0};
-  int ndims;
-  PetscFunctionBeginUser;
-  if (!f->rank && !f->failed) {
-    const hid_t set = OpenSeries(f, name, &ndims, size);
-    if (set >= 0) (void)H5Dclose(set);
-  }
-  *length = (PetscInt)size[0];
-  PetscCallMPI(MPI_Bcast(length, 1, MPIU_INT, 0, f->comm));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode H5TruncateSeries(H5File *f, const char name[], PetscInt length) {
-  hsize_t size[3];
-  int ndims;
-  PetscFunctionBeginUser;
-  if (f->rank || f->failed) PetscFunctionReturn(PETSC_SUCCESS);
-  const hid_t set = OpenSeries(f, name, &ndims, size);
-  if (set < 0) PetscFunctionReturn(PETSC_SUCCESS);
-  size[0] = PetscMin(size[0], (hsize_t)length);
-  Try(f, H5Dset_extent(set, size));
-  Try(f, H5Dclose(set));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-unsigned long long H5FramePlace(H5File *f, const char name[], PetscInt index) {
-  hsize_t size[3], start[3] = {(hsize_t)index, 0, 0};
-  haddr_t place;
-  int ndims = 1;
-  if (f->failed) return 0;
-  const hid_t set = OpenSeries(f, name, &ndims, size);
-  if (set < 0) return 0;
-  place = H5PlaceOf(set, ndims, start);
-  Try(f, place == HADDR_UNDEF ? -1 : 0);
-  Try(f, H5Dclose(set));
-  return f->failed ? 0 : (unsigned long long)place;
-}
-
-/* Rows first .. first + rows - 1 of entry `index`, n values in all, to or from rank 0's array; rows 0: the whole entry.
-   A series whose rows have another size is an error. */
-static void Transfer(H5File *f, PetscBool write, const char name[], PetscInt index, PetscInt first, PetscInt rows,
-                     PetscInt n, void *values) {
-  hsize_t size[3] = {0, 1, 1}, start[3] = {(hsize_t)index, (hsize_t)first, 0}, part[3], count = 1;
-  hid_t space = -1, memory = -1;
-  int ndims;
-  if (f->failed) return;
-  const hid_t set = OpenSeries(f, name, &ndims, size);
-  if (set < 0) return;
-  if (write && size[0] <= (hsize_t)index) {
-    size[0] = (hsize_t)index + 1;
-    Try(f, H5Dset_extent(set, size));
-  }
-  for (int d = 0; d < 3; d++) part[d] = !d ? 1 : (d == 1 && rows ? (hsize_t)rows : size[d]);
-  for (int d = 0; d < ndims; d++) count *= part[d];
-  Try(f, count == (hsize_t)n && (hsize_t)index < size[0] ? 0 : -1);
-  Try(f, space = H5Dget_space(set));
-  Try(f, memory = H5Screate_simple(ndims, part, NULL));
-  Try(f, H5Sselect_hyperslab(space, H5S_SELECT_SET, start, NULL, part, NULL));
-  if (write)
-    Try(f, H5Dwrite(set, H5T_NATIVE_DOUBLE, memory, space, H5P_DEFAULT, values));
-  else
-    Try(f, H5Dread(set, H5T_NATIVE_DOUBLE, memory, space, H5P_DEFAULT, values));
-  if (memory >= 0) (void)H5Sclose(memory);
-  if (space >= 0) (void)H5Sclose(space);
-  Try(f, H5Dclose(set));
-}
-
-PetscErrorCode H5WriteArray(H5File *f, const char name[], PetscInt index, PetscInt n, const PetscReal values[]) {
-  PetscFunctionBeginUser;
-  if (!f->rank) Transfer(f, PETSC_TRUE, name, index, 0, 0, n, (void *)values);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode H5ReadArray(H5File *f, const char name[], PetscInt index, PetscInt n, PetscReal values[]) {
-  PetscFunctionBeginUser;
-  if (!f->rank) Transfer(f, PETSC_FALSE, name, index, 0, 0, n, values);
-  PetscCallMPI(MPI_Bcast(values, (PetscMPIInt)n, MPIU_REAL, 0, f->comm));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Rows of a field on a rank: blocks of the same size on all but the last. */
-static PetscInt RowsOf(Grid g, Field field, PetscInt rank) {
-  return rank < g->size - 1 ? g->block : g->all_rows[field] - (g->size - 1) * g->block;
-}
-
-/* Rank by rank, so that rank 0 holds one slab at a time besides its own. */
-static PetscErrorCode TransferRows(H5File *f, PetscBool write, const char name[], PetscInt index, Grid g, Field field,
-                                   PetscInt columns, PetscScalar values[]) {
-  const PetscInt own = columns * g->rows[field];
-  PetscScalar *slab = NULL;
-  PetscFunctionBeginUser;
-  if (g->rank && write) PetscCallMPI(MPI_Send(values, (PetscMPIInt)own, MPIU_SCALAR, 0, 0, g->comm));
-  if (g->rank && !write)
-    PetscCallMPI(MPI_Recv(values, (PetscMPIInt)own, MPIU_SCALAR, 0, 0, g->comm, MPI_STATUS_IGNORE));
-  if (g->rank) PetscFunctionReturn(PETSC_SUCCESS);
-  Transfer(f, write, name, index, 0, g->rows[field], own, values);
-  PetscCall(PetscMalloc1(columns * g->block, &slab));
-  for (PetscMPIInt r = 1; r < g->size; r++) {
-    const PetscInt rows = RowsOf(g, field, r), n = columns * rows;
-    if (write) PetscCallMPI(MPI_Recv(slab, (PetscMPIInt)n, MPIU_SCALAR, r, 0, g->comm, MPI_STATUS_IGNORE));
-    if (rows) Transfer(f, write, name, index, r * g->block, rows, n, slab);
-    if (!write) PetscCallMPI(MPI_Send(slab, (PetscMPIInt)n, MPIU_SCALAR, r, 0, g->comm));
-  }
-  PetscCall(PetscFree(slab));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode H5WriteRows(H5File *f, const char name[], PetscInt index, Grid g, Field field, PetscInt each,
-                           const PetscScalar values[]) {
-  return TransferRows(f, PETSC_TRUE, name, index, g, field, each, (PetscScalar *)values);
-}
-
-PetscErrorCode H5ReadRows(H5File *f, const char name[], PetscInt index, Grid g, Field field, PetscInt each,
-                          PetscScalar values[]) {
-  return TransferRows(f, PETSC_FALSE, name, index, g, field, each, values);
 }

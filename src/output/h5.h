@@ -1,7 +1,13 @@
-/* Small layer over HDF5: rank 0 owns every file, the others send it their rows. So a full disk or a broken file is one
-   rank's to find, and no rank waits for another that has failed.
+/* HDF5 files of a run, and the attributes of their root group.
 
-   An error is kept in the file's `failed` and makes every later call on it do nothing: H5FileFailed tells all ranks. */
+   Rank 0 owns every file, and the other ranks send it their rows. So a full disk or a broken file is found by one rank,
+   and no rank waits for another that has failed. Rank 0 keeps an error in `failed`, and every later call on the file
+   does nothing. H5FileFailed tells all ranks; writing tells nobody.
+
+   Files are read and written by HDF5's driver of plain files with two changes. A write that fails is noted
+   (H5WriteLost) and reported to HDF5 as done: HDF5 1.10 crashes at the program's end where a file is open that it
+   cannot write. And where values were last read is noted (H5LastRead), by which the places of entries in a file are
+   known. */
 #pragma once
 #include "fluid/grid.h"
 #include <hdf5.h>
@@ -9,73 +15,50 @@
 typedef struct {
   MPI_Comm comm;
   PetscMPIInt rank;
-  hid_t id;         /* rank 0; -1 elsewhere and when not open */
+  hid_t id;         /* rank 0; -1 on other ranks and when not open */
   PetscBool failed; /* rank 0 */
   char path[PETSC_MAX_PATH_LEN];
 } H5File;
 
-/* H5FileCreate - new file, truncated. H5FileOpen - existing one, to read or to write on. Collective. */
+/* H5Try - a call of HDF5 on rank 0's file, made when all calls before it have succeeded. */
+#define H5Try(file, call)                                                                                              \
+  do {                                                                                                                 \
+    if (!(file)->failed && ((call) < 0 || H5WriteLost())) (file)->failed = PETSC_TRUE;                                 \
+  } while (0)
+
+/* H5WriteLost - whether a write has failed since the last call. H5LastRead - byte of the file from which values were
+   last read; HADDR_UNDEF: none since the last call. Not collective. */
+PETSC_EXTERN PetscBool H5WriteLost(void);
+PETSC_EXTERN haddr_t H5LastRead(void);
+
+/* H5FileCreate - new file; a file of this name is removed first. H5FileOpen - existing file, to read or to write on.
+   Collective. */
 PETSC_EXTERN PetscErrorCode H5FileCreate(MPI_Comm comm, const char path[], H5File *file);
 PETSC_EXTERN PetscErrorCode H5FileOpen(MPI_Comm comm, const char path[], PetscBool write, H5File *file);
 
-/* H5FileFlush - hand everything to the system. H5FileClose - the same, and close; also after a failure. */
-PETSC_EXTERN PetscErrorCode H5FileFlush(H5File *file);
-PETSC_EXTERN PetscErrorCode H5FileClose(H5File *file);
+/* H5FileFlush - hand everything to the system. H5FileClose - hand everything to the system and close the file; also
+   after a failure. Not collective. */
+PETSC_EXTERN void H5FileFlush(H5File *file);
+PETSC_EXTERN void H5FileClose(H5File *file);
 
-/* H5FileFailed - whether any call so far has failed; the same on every rank. Collective. */
+/* H5FileFailed - whether any call so far has failed, the same on every rank. Collective. */
 PETSC_EXTERN PetscErrorCode H5FileFailed(const H5File *file, PetscBool *failed);
 
-/* Attributes of the root group, of more than 8000 numbers datasets of their name: rank 0's values are written; what is
-   read goes to every rank. A string that is not
-   there is left empty. Reading is collective. */
-PETSC_EXTERN PetscErrorCode H5PutReals(H5File *file, const char name[], PetscInt n, const PetscReal values[]);
-PETSC_EXTERN PetscErrorCode H5PutInts(H5File *file, const char name[], PetscInt n, const PetscInt values[]);
-PETSC_EXTERN PetscErrorCode H5PutString(H5File *file, const char name[], const char value[]);
+/* Attributes of the root group, or, of more than 8000 numbers, datasets of that name. H5Put*: rank 0's values are
+   written. H5Get*: every rank gets what is read; collective. A missing number is a failure, a missing text is empty.
+   H5PutText writes a text of any length, in several attributes where HDF5 does not hold it in one. The text of
+   H5GetText is the caller's to free (PetscFree). H5GetString reads at most length - 1 characters. */
+PETSC_EXTERN void H5PutReals(H5File *file, const char name[], PetscInt n, const PetscReal values[]);
+PETSC_EXTERN void H5PutInts(H5File *file, const char name[], PetscInt n, const PetscInt values[]);
+PETSC_EXTERN void H5PutText(H5File *file, const char name[], const char value[]);
 PETSC_EXTERN PetscErrorCode H5GetReals(H5File *file, const char name[], PetscInt n, PetscReal values[]);
 PETSC_EXTERN PetscErrorCode H5GetInts(H5File *file, const char name[], PetscInt n, PetscInt values[]);
 PETSC_EXTERN PetscErrorCode H5GetString(H5File *file, const char name[], size_t length, char value[]);
-
-/* H5PutRows - a dataset of its own that does not grow, values[rows][n]: rank 0's. */
-PETSC_EXTERN PetscErrorCode H5PutRows(H5File *file, const char name[], PetscInt rows, PetscInt n,
-                                      const PetscReal values[]);
-
-/* H5PutText, H5GetText - a string of any length, in several attributes where it is longer than one may be. What is read
-   is to be freed with PetscFree; empty when it is not there. Reading is collective. */
-PETSC_EXTERN PetscErrorCode H5PutText(H5File *file, const char name[], const char value[]);
 PETSC_EXTERN PetscErrorCode H5GetText(H5File *file, const char name[], char **value);
 
-/* H5CreateSeries - dataset [0.., dims...] that grows along its first index; ndims <= 2 further ones. */
-PETSC_EXTERN PetscErrorCode H5CreateSeries(H5File *file, const char name[], int ndims, const PetscInt dims[]);
+/* H5PutRows - a dataset values[rows][n] of rank 0 that does not grow. Not collective. */
+PETSC_EXTERN void H5PutRows(H5File *file, const char name[], PetscInt rows, PetscInt n, const PetscReal values[]);
 
-/* H5CreateSingleSeries - the same in single precision; it is written and read as doubles. */
-PETSC_EXTERN PetscErrorCode H5CreateSingleSeries(H5File *file, const char name[], int ndims, const PetscInt dims[]);
-
-/* H5SeriesLength - entries of a series. H5TruncateSeries - drop the entries from `length` on. */
-PETSC_EXTERN PetscErrorCode H5SeriesLength(H5File *file, const char name[], PetscInt *length);
-PETSC_EXTERN PetscErrorCode H5TruncateSeries(H5File *file, const char name[], PetscInt length);
-
-/* H5FramePlace - byte of the file where entry `index` of a series begins, whose entries are chunks; 0 when there is
-   none. Rank 0's. */
-PETSC_EXTERN unsigned long long H5FramePlace(H5File *file, const char name[], PetscInt index);
-
-/* H5WriteArray, H5ReadArray - entry `index` of a series, n values: rank 0's array is written; every rank gets what is
-   read. Writing entry `length` makes the series longer. */
-PETSC_EXTERN PetscErrorCode H5WriteArray(H5File *file, const char name[], PetscInt index, PetscInt n,
-                                         const PetscReal values[]);
-PETSC_EXTERN PetscErrorCode H5ReadArray(H5File *file, const char name[], PetscInt index, PetscInt n,
-                                        PetscReal values[]);
-
-/* H5WriteRows, H5ReadRows - the same for `each` numbers in every row of a field of the grid, each rank its own rows.
-   H5WriteField, H5ReadField - for the field itself. Collective. */
-PETSC_EXTERN PetscErrorCode H5WriteRows(H5File *file, const char name[], PetscInt index, Grid grid, Field field,
-                                        PetscInt each, const PetscScalar values[]);
-PETSC_EXTERN PetscErrorCode H5ReadRows(H5File *file, const char name[], PetscInt index, Grid grid, Field field,
-                                       PetscInt each, PetscScalar values[]);
-static inline PetscErrorCode H5WriteField(H5File *file, const char name[], PetscInt index, Grid grid, Field field,
-                                          const PetscScalar values[]) {
-  return H5WriteRows(file, name, index, grid, field, grid->columns[field], values);
-}
-static inline PetscErrorCode H5ReadField(H5File *file, const char name[], PetscInt index, Grid grid, Field field,
-                                         PetscScalar values[]) {
-  return H5ReadRows(file, name, index, grid, field, grid->columns[field], values);
-}
+/* H5CheckLinks - whether the file itself holds all that its names stand for: a link to another file or name makes
+   `plain` false. A file with a right checksum need not be one that petves wrote. Collective. */
+PETSC_EXTERN PetscErrorCode H5CheckLinks(H5File *file, PetscBool *plain);

@@ -1,71 +1,174 @@
 #include "output/record.h"
-#include "output/obstaclerow.h"
+#include "scheme/pressuredrop.h"
 #include "scheme/films.h"
 
-const char *const SeriesColumns[] = {"step",
-                                     "time",
-                                     "dt",
-                                     "energy_kinetic",
-                                     "energy_bending",
-                                     "area",
-                                     "length",
-                                     "area_error",
-                                     "length_error",
-                                     "edge_ratio",
-                                     "div_max",
-                                     "surface_div_max",
-                                     "center_x",
-                                     "center_y",
-                                     "inclination",
-                                     "frequency",
-                                     "tension_its",
-                                     "bending_its",
-                                     "coupled_its",
-                                     "nsolve",
-                                     "wall",
-                                     "area_shift",
-                                     "normal_speed",
-                                     "velocity_x",
-                                     "velocity_y",
-                                     "energy_gravity",
-                                     "gap",
-                                     "energy_contact",
-                                     "viscosity_wall",
-                                     "viscosity",
-                                     "normal_stress_wall",
-                                     "normal_stress",
-                                     NULL};
+#define RECORD_NAME(id, name) name,
+const char *const SeriesColumns[COLUMN_COUNT] = {RECORD_COLUMNS(RECORD_NAME)};
 
 const int RecordVesicleColumns[] = {COLUMN_BENDING,      COLUMN_AREA,       COLUMN_LENGTH,       COLUMN_AREA_ERROR,
                                     COLUMN_LENGTH_ERROR, COLUMN_EDGE_RATIO, COLUMN_CENTER_X,     COLUMN_CENTER_Y,
                                     COLUMN_INCLINATION,  COLUMN_FREQUENCY,  COLUMN_NORMAL_SPEED, COLUMN_VELOCITY_X,
                                     COLUMN_VELOCITY_Y,   COLUMN_GRAVITY,    COLUMN_GAP,          -1};
 
-/* The columns that repeat with a suffix in series.csv: of several vesicles, but not of many. */
-static int Repeated(const Record *r) {
+/* Room for an entry of a line: 24 characters a number and the comma; the longest name and a vesicle's number. */
+#define RECORD_ENTRY 32
+
+#define OBSTACLE_TOTALS 4 /* columns of all obstacles together */
+
+/* Number of columns of one obstacle. */
+static PetscInt ObstacleEach(const SceneObstacles *o) {
+  return o->moving ? 6 : 3;
+}
+
+/* Number of columns of all obstacles; 0 without obstacles. */
+static PetscInt ObstacleRowCount(const SceneObstacles *o) {
+  const PetscInt obstacles = o->outline.vesicles;
+  if (!obstacles) return 0;
+  return OBSTACLE_TOTALS + (obstacles <= RECORD_FEW ? ObstacleEach(o) * obstacles : 0);
+}
+
+static void ObstacleRowName(const SceneObstacles *o, PetscInt k, char name[RECORD_ENTRY]) {
+  static const char *const totals[] = {"pressure_drop", "flux", "obstacle_force_x", "obstacle_force_y"};
+  static const char *const names[] = {"force_x", "force_y", "torque", "center_x", "center_y", "angle"};
+  if (k < OBSTACLE_TOTALS)
+    (void)snprintf(name, RECORD_ENTRY, "%s", totals[k]);
+  else
+    (void)snprintf(name, RECORD_ENTRY, "obstacle_%s_%d", names[(k - OBSTACLE_TOTALS) % ObstacleEach(o)],
+                   (int)((k - OBSTACLE_TOTALS) / ObstacleEach(o) + 1));
+}
+
+/* The columns of one obstacle. */
+static void ObstacleTake(Scheme s, PetscInt b, const ObstacleLoad *load, PetscReal values[]) {
+  const ObstaclePose pose = ObstaclesPose(s->coupling->bodies->obstacles, b, s->state.t);
+  values[2] = load->torque;
+  for (int c = 0; c < 2; c++) values[c] = load->force[c];
+  if (!s->scene->obstacles.moving) return;
+  values[5] = pose.angle;
+  for (int c = 0; c < 2; c++) values[3 + c] = pose.center[c];
+}
+
+/* to += scale (force and torque, about c, of a load at a place). The nearest images count. */
+static void ObstacleAddLoad(Grid g, PetscReal scale, const ObstacleLoad *from, const PetscReal place[2],
+                            const PetscReal c[2], ObstacleLoad *to) {
+  PetscReal d[2];
+  for (int k = 0; k < 2; k++) {
+    const PetscReal period = g->hi[k] - g->lo[k];
+    d[k] = place[k] - c[k];
+    if (!g->wall[k]) d[k] -= period * PetscFloorReal(d[k] / period + 0.5);
+    to->force[k] += scale * from->force[k];
+  }
+  to->torque += scale * (from->torque + d[0] * from->force[1] - d[1] * from->force[0]);
+}
+
+/* The force of gravity and contact on each vesicle, whose sum over a vesicle need not be zero, and its torque about the
+   centroid: load[vesicles], and the centroids place[2 vesicles]. */
+static PetscErrorCode VesicleLoads(Scheme s, ObstacleLoad load[], PetscReal place[]) {
+  const Membrane m = s->membrane;
+  const Layout l = m->layout;
+  const PetscScalar *X;
+  PetscScalar *F;
+  PetscReal energy;
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(2 * l->n, &F));
+  PetscCall(VecGetArrayRead(s->state.X, &X));
+  MembraneGravity(m, 1, X, F);
+  if (s->coupling->repulsion) PetscCall(RepulsionAt(s->coupling->repulsion, s->state.t, 1, X, F, &energy));
+  for (PetscInt v = l->own; v < l->end; v++) {
+    const PetscInt at = LayoutOffset(l, v);
+    Measures measures;
+    MembraneMeasure(m, v, X + 2 * at, &measures);
+    for (int c = 0; c < 2; c++) place[2 * v + c] = measures.center[c];
+    for (PetscInt k = 2 * at; k < 2 * (at + LayoutCount(l, v)); k += 2) {
+      for (int c = 0; c < 2; c++) load[v].force[c] += F[k + c];
+      load[v].torque += (X[k] - measures.center[0]) * F[k + 1] - (X[k + 1] - measures.center[1]) * F[k];
+    }
+  }
+  PetscCall(VecRestoreArrayRead(s->state.X, &X));
+  PetscCall(PetscFree(F));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, load, (PetscMPIInt)(3 * l->bodies), MPIU_REAL, MPI_SUM, l->comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, place, (PetscMPIInt)(2 * l->bodies), MPIU_REAL, MPI_SUM, l->comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The load on a container is that of the fluid inside, where load[] is that of the fluid on both sides. Without inertia
+   the momentum of the fluid inside balances:
+     load on the container = sum of the loads on vesicles inside - sum of the loads on posts inside.
+   With inertia the load on a container that moves is not known. */
+static PetscErrorCode ContainerLoads(Scheme s, ObstacleLoad load[]) {
+  const Obstacles o = s->coupling->bodies->obstacles;
+  const SceneObstacles *own = &s->scene->obstacles;
+  const PetscInt vesicles = s->membrane->layout->bodies, curves = o->layout->bodies;
+  ObstacleLoad *inner;
+  PetscReal *place;
+  PetscFunctionBeginUser;
+  if (!s->state.step) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscCalloc2(vesicles + curves, &inner, 2 * (vesicles + curves), &place));
+  PetscCall(VesicleLoads(s, inner, place));
+  for (PetscInt b = 0; b < curves; b++) {
+    const ObstaclePose pose = ObstaclesPose(o, b, s->state.t);
+    for (int c = 0; c < 2; c++) place[2 * (vesicles + b) + c] = pose.center[c];
+    inner[vesicles + b] = load[b];
+  }
+  for (PetscInt b = 0; b < curves; b++) {
+    const ObstacleMotion *m = &o->motion[b];
+    const PetscBool moves = m->velocity[0] != 0 || m->velocity[1] != 0 || m->rotation != 0 ? PETSC_TRUE : PETSC_FALSE;
+    if (!o->container[b] || (!s->fluid->steady && !moves)) continue;
+    load[b] = s->fluid->steady ? (ObstacleLoad){{0, 0}, 0} : (ObstacleLoad){{NAN, NAN}, NAN};
+    for (PetscInt k = 0; k < vesicles + curves; k++)
+      if (own->holder[k] == b)
+        ObstacleAddLoad(s->fluid->grid, k < vesicles ? 1 : -1, &inner[k], place + 2 * k, place + 2 * (vesicles + b),
+                        &load[b]);
+  }
+  PetscCall(PetscFree2(inner, place));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ObstacleRowTake(Scheme s, PetscReal values[]) {
+  const Obstacles o = s->coupling->bodies->obstacles;
+  const PetscScalar *F;
+  ObstacleLoad *load;
+  Drive drive;
+  PetscFunctionBeginUser;
+  if (!o) PetscFunctionReturn(PETSC_SUCCESS);
+  const PetscInt curves = o->layout->bodies, count = ObstacleRowCount(&s->scene->obstacles);
+  PetscCall(PetscMalloc1(curves, &load));
+  PetscCall(VecGetArrayRead(s->state.solid, &F));
+  PetscCall(ObstaclesLoads(o, s->state.t, F, load));
+  PetscCall(VecRestoreArrayRead(s->state.solid, &F));
+  PetscCall(ContainerLoads(s, load));
+  PetscCall(PetscArrayzero(values, count));
+  PetscCall(DriveMeasure(s, &drive));
+  values[0] = drive.pressure_drop;
+  values[1] = drive.flux;
+  for (PetscInt b = 0; b < curves; b++) {
+    for (int c = 0; c < 2; c++) values[2 + c] += load[b].force[c];
+    if (count > OBSTACLE_TOTALS)
+      ObstacleTake(s, b, &load[b], values + OBSTACLE_TOTALS + ObstacleEach(&s->scene->obstacles) * b);
+  }
+  PetscCall(PetscFree(load));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Number of columns in series.csv that each vesicle has with its suffix: none of one vesicle, or of many. */
+static int RecordRepeated(const Record *r) {
   int n = 0;
   while (RecordVesicleColumns[n] >= 0) n++;
   return r->vesicles > 1 && r->vesicles <= RECORD_FEW ? n : 0;
 }
 
-/* Room for an entry of a line: 24 characters a number and the comma; the longest name and a vesicle's number. */
-#define ENTRY 32
-
-static PetscErrorCode WriteHeader(Record *r, const SceneObstacles *obstacles) {
+static void RecordWriteHeader(Record *r, const SceneObstacles *obstacles) {
   size_t used = 0;
-  PetscFunctionBeginUser;
   for (int c = 0; c < COLUMN_COUNT; c++)
     used += (size_t)snprintf(r->header + used, r->room - used, "%s%s", c ? "," : "", SeriesColumns[c]);
   for (PetscInt v = 1; v <= r->vesicles; v++)
-    for (int c = 0; c < Repeated(r); c++)
+    for (int c = 0; c < RecordRepeated(r); c++)
       used += (size_t)snprintf(r->header + used, r->room - used, ",%s_%d", SeriesColumns[RecordVesicleColumns[c]],
                                (int)v);
   for (PetscInt k = 0; k < r->solids; k++) {
-    char name[OBSTACLE_ROW_NAME];
+    char name[RECORD_ENTRY];
     ObstacleRowName(obstacles, k, name);
     used += (size_t)snprintf(r->header + used, r->room - used, ",%s", name);
   }
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode RecordCreate(PetscInt vesicles, const SceneObstacles *obstacles, Record *r) {
@@ -73,10 +176,10 @@ PetscErrorCode RecordCreate(PetscInt vesicles, const SceneObstacles *obstacles, 
   PetscCall(PetscMemzero(r, sizeof(*r)));
   r->vesicles = vesicles;
   r->solids = ObstacleRowCount(obstacles);
-  r->room = (size_t)(COLUMN_COUNT + vesicles * Repeated(r) + r->solids) * ENTRY;
+  r->room = (size_t)(COLUMN_COUNT + vesicles * RecordRepeated(r) + r->solids) * RECORD_ENTRY;
   PetscCall(PetscCalloc4(vesicles * COLUMN_COUNT, &r->each, r->solids, &r->solid, (PetscInt)r->room, &r->header,
                          (PetscInt)r->room, &r->text));
-  PetscCall(WriteHeader(r, obstacles));
+  RecordWriteHeader(r, obstacles);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -86,8 +189,8 @@ PetscErrorCode RecordDestroy(Record *r) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The vesicle columns of one vesicle. */
-static void VesicleRow(Membrane m, PetscInt v, const PetscScalar X[], const PetscScalar U[], PetscReal row[]) {
+/* The own columns of one vesicle. */
+static void RecordVesicle(Membrane m, PetscInt v, const PetscScalar X[], const PetscScalar U[], PetscReal row[]) {
   Measures measures;
   MembraneMeasure(m, v, X, &measures);
   row[COLUMN_BENDING] = MembraneBendingEnergy(m, v, X);
@@ -105,7 +208,7 @@ static void VesicleRow(Membrane m, PetscInt v, const PetscScalar X[], const Pets
   row[COLUMN_GRAVITY] = MembraneGravityEnergy(m, v, X);
 }
 
-static PetscErrorCode MeasureGaps(Record *r, Scheme s) {
+static PetscErrorCode RecordGaps(Record *r, Scheme s) {
   PetscReal *each;
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(r->vesicles, &each));
@@ -115,7 +218,6 @@ static PetscErrorCode MeasureGaps(Record *r, Scheme s) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Each owner measures its vesicles, all ranks get all rows. */
 PetscErrorCode RecordMeasure(Record *r, Scheme s) {
   const Layout l = s->membrane->layout;
   const PetscScalar *X, *U;
@@ -126,18 +228,17 @@ PetscErrorCode RecordMeasure(Record *r, Scheme s) {
   PetscCall(VecGetArrayRead(s->state.X, &X));
   PetscCall(VecGetArrayRead(s->state.U, &U));
   for (PetscInt v = l->own; v < l->end; v++)
-    VesicleRow(s->membrane, v, X + 2 * LayoutOffset(l, v), U + 2 * LayoutOffset(l, v), r->each + v * COLUMN_COUNT);
+    RecordVesicle(s->membrane, v, X + 2 * LayoutOffset(l, v), U + 2 * LayoutOffset(l, v), r->each + v * COLUMN_COUNT);
   PetscCall(VecRestoreArrayRead(s->state.U, &U));
   PetscCall(VecRestoreArrayRead(s->state.X, &X));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, r->each, size, MPIU_REAL, MPI_SUM, l->comm));
-  PetscCall(MeasureGaps(r, s));
+  PetscCall(RecordGaps(r, s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Totals (energy, area, length), worst values (errors, edge ratio, normal speed) or means (centre) of several vesicles.
-   The inclination and the frequency of the first stand for all: neither a total nor a worst value of angles means
-   anything. */
-static void Combine(PetscInt vesicles, const PetscReal one[], PetscReal all[]) {
+/* Add one vesicle to the columns of all vesicles: totals, worst values and means. Neither a total nor a worst value of
+   angles means anything: the inclination and the frequency of the first vesicle stand for all. */
+static void RecordCombine(PetscInt vesicles, const PetscReal one[], PetscReal all[]) {
   const int total[] = {COLUMN_BENDING, COLUMN_AREA, COLUMN_LENGTH, COLUMN_GRAVITY};
   const int worst[] = {COLUMN_AREA_ERROR, COLUMN_LENGTH_ERROR, COLUMN_EDGE_RATIO, COLUMN_NORMAL_SPEED};
   const int mean[] = {COLUMN_CENTER_X, COLUMN_CENTER_Y, COLUMN_VELOCITY_X, COLUMN_VELOCITY_Y};
@@ -147,8 +248,8 @@ static void Combine(PetscInt vesicles, const PetscReal one[], PetscReal all[]) {
   for (int c = 0; c < 4; c++) all[mean[c]] += one[mean[c]] / vesicles;
 }
 
-/* The columns that are not of the vesicles, and the totals. */
-static PetscErrorCode TakeStep(Record *r, Scheme s) {
+/* The columns that vesicles do not have, and the totals of the run. */
+static PetscErrorCode RecordStep(Record *r, Scheme s) {
   const StepReport *report = &s->report;
   PetscReal *row = r->last;
   PetscFunctionBeginUser;
@@ -178,8 +279,8 @@ static PetscErrorCode TakeStep(Record *r, Scheme s) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* NaN is an empty entry. */
-static void AddNumber(Record *r, size_t *used, PetscReal x) {
+/* Add a number to the text. NaN is an empty entry. */
+static void RecordAddNumber(Record *r, size_t *used, PetscReal x) {
   const char *comma = *used ? "," : "";
   if (PetscIsNanReal(x))
     *used += (size_t)snprintf(r->text + *used, r->room - *used, "%s", comma);
@@ -191,16 +292,17 @@ PetscErrorCode RecordTake(Record *r, Scheme s) {
   PetscReal *row = r->last;
   size_t used = 0;
   PetscFunctionBeginUser;
-  PetscCall(TakeStep(r, s));
+  PetscCall(RecordStep(r, s));
   PetscCall(RecordMeasure(r, s));
-  for (PetscInt v = 0; v < r->vesicles; v++) Combine(r->vesicles, r->each + v * COLUMN_COUNT, row);
+  for (PetscInt v = 0; v < r->vesicles; v++) RecordCombine(r->vesicles, r->each + v * COLUMN_COUNT, row);
   row[COLUMN_INCLINATION] = r->vesicles ? r->each[COLUMN_INCLINATION] : 0;
   row[COLUMN_FREQUENCY] = r->vesicles ? r->each[COLUMN_FREQUENCY] : NAN;
-  for (int c = 0; c < COLUMN_COUNT; c++) AddNumber(r, &used, row[c]);
+  for (int c = 0; c < COLUMN_COUNT; c++) RecordAddNumber(r, &used, row[c]);
   for (PetscInt v = 0; v < r->vesicles; v++)
-    for (int c = 0; c < Repeated(r); c++) AddNumber(r, &used, r->each[v * COLUMN_COUNT + RecordVesicleColumns[c]]);
+    for (int c = 0; c < RecordRepeated(r); c++)
+      RecordAddNumber(r, &used, r->each[v * COLUMN_COUNT + RecordVesicleColumns[c]]);
   PetscCall(ObstacleRowTake(s, r->solid));
-  for (PetscInt k = 0; k < r->solids; k++) AddNumber(r, &used, r->solid[k]);
+  for (PetscInt k = 0; k < r->solids; k++) RecordAddNumber(r, &used, r->solid[k]);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -214,15 +316,13 @@ PetscBool RecordFits(const Record *r, PetscInt step, PetscReal t) {
              : PETSC_FALSE;
 }
 
-PetscErrorCode RecordParse(Record *r, const char text[]) {
+void RecordParse(Record *r, const char text[]) {
   const char *p = r->text;
-  PetscFunctionBeginUser;
-  PetscCall(PetscStrncpy(r->text, text, r->room));
+  (void)PetscStrncpy(r->text, text, r->room);
   for (int c = 0; c < COLUMN_COUNT && p; c++) {
     char *end;
     const double x = strtod(p, &end);
     r->last[c] = end > p ? x : NAN; /* an empty entry, which the last may be */
     p = strchr(p, ',') ? strchr(p, ',') + 1 : NULL;
   }
-  PetscFunctionReturn(PETSC_SUCCESS);
 }

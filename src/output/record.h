@@ -1,74 +1,87 @@
-/* What a step amounts to in numbers: the row of series.csv, the rows of the vesicles, and the run's totals. */
+/* What a step amounts to in numbers: the row of series.csv, the rows of the vesicles, and the totals of the run.
+
+   Each vesicle is measured by the rank that owns it, and one sum over ranks gives the numbers of all vesicles to every
+   rank. A column of all vesicles is the total, the worst value or the mean of theirs. */
 #pragma once
 #include "scheme/scheme.h"
 
-/* Columns of series.csv, in order; NULL past the last. */
-PETSC_EXTERN const char *const SeriesColumns[];
-enum {
-  COLUMN_STEP,
-  COLUMN_TIME,
-  COLUMN_DT,
-  COLUMN_KINETIC,
-  COLUMN_BENDING,
-  COLUMN_AREA,
-  COLUMN_LENGTH,
-  COLUMN_AREA_ERROR,
-  COLUMN_LENGTH_ERROR,
-  COLUMN_EDGE_RATIO,
-  COLUMN_DIV,
-  COLUMN_SURFACE_DIV,
-  COLUMN_CENTER_X,
-  COLUMN_CENTER_Y,
-  COLUMN_INCLINATION,
-  COLUMN_FREQUENCY,
-  COLUMN_TENSION_ITS,
-  COLUMN_BENDING_ITS,
-  COLUMN_COUPLED_ITS,
-  COLUMN_NSOLVE,
-  COLUMN_WALL,
-  COLUMN_AREA_SHIFT,
-  COLUMN_NORMAL_SPEED,
-  COLUMN_VELOCITY_X,
-  COLUMN_VELOCITY_Y,
-  COLUMN_GRAVITY,
-  COLUMN_GAP,
-  COLUMN_CONTACT,
-  COLUMN_VISCOSITY_WALL,
-  COLUMN_VISCOSITY,
-  COLUMN_NORMAL_WALL,
-  COLUMN_NORMAL,
-  COLUMN_COUNT
-};
+/* Columns of series.csv, in order. */
+/* clang-format off */
+#define RECORD_COLUMNS(COLUMN)              \
+  COLUMN(STEP, "step")                      \
+  COLUMN(TIME, "time")                      \
+  COLUMN(DT, "dt")                          \
+  COLUMN(KINETIC, "energy_kinetic")         \
+  COLUMN(BENDING, "energy_bending")         \
+  COLUMN(AREA, "area")                      \
+  COLUMN(LENGTH, "length")                  \
+  COLUMN(AREA_ERROR, "area_error")          \
+  COLUMN(LENGTH_ERROR, "length_error")      \
+  COLUMN(EDGE_RATIO, "edge_ratio")          \
+  COLUMN(DIV, "div_max")                    \
+  COLUMN(SURFACE_DIV, "surface_div_max")    \
+  COLUMN(CENTER_X, "center_x")              \
+  COLUMN(CENTER_Y, "center_y")              \
+  COLUMN(INCLINATION, "inclination")        \
+  COLUMN(FREQUENCY, "frequency")            \
+  COLUMN(TENSION_ITS, "tension_its")        \
+  COLUMN(BENDING_ITS, "bending_its")        \
+  COLUMN(COUPLED_ITS, "coupled_its")        \
+  COLUMN(NSOLVE, "nsolve")                  \
+  COLUMN(WALL, "wall")                      \
+  COLUMN(AREA_SHIFT, "area_shift")          \
+  COLUMN(NORMAL_SPEED, "normal_speed")      \
+  COLUMN(VELOCITY_X, "velocity_x")          \
+  COLUMN(VELOCITY_Y, "velocity_y")          \
+  COLUMN(GRAVITY, "energy_gravity")         \
+  COLUMN(GAP, "gap")                        \
+  COLUMN(CONTACT, "energy_contact")         \
+  COLUMN(VISCOSITY_WALL, "viscosity_wall")  \
+  COLUMN(VISCOSITY, "viscosity")            \
+  COLUMN(NORMAL_WALL, "normal_stress_wall") \
+  COLUMN(NORMAL, "normal_stress")
+/* clang-format on */
+#define RECORD_ENUM(id, name) COLUMN_##id,
+enum { RECORD_COLUMNS(RECORD_ENUM) COLUMN_COUNT };
+PETSC_EXTERN const char *const SeriesColumns[COLUMN_COUNT];
 
-/* RecordVesicleColumns - those that vesicles have of their own; -1 past the last. Up to RECORD_FEW vesicles they are in
-   series.csv, with a suffix each, and in vesicles.h5 above. */
+/* Columns that each vesicle has of its own; -1 past the last. With at most RECORD_FEW vesicles these columns are in
+   series.csv with a suffix for each vesicle, with more vesicles they are in vesicles.h5. */
 #define RECORD_FEW 40
 PETSC_EXTERN const int RecordVesicleColumns[];
 
 typedef struct {
-  PetscInt vesicles, solids;    /* vesicles; columns of obstacles */
+  PetscInt vesicles;            /* number of vesicles */
+  PetscInt solids;              /* columns of obstacles */
   PetscReal last[COLUMN_COUNT]; /* the last row, over all vesicles */
-  PetscReal *each;              /* [vesicles][COLUMN_COUNT] the vesicles' own columns of it */
-  PetscReal *solid;             /* [solids] the obstacles' columns of it, the last ones in series.csv */
-  char *header, *text;          /* the names and the last row as lines of series.csv, without the line's end */
-  size_t room;                  /* of each of the two: it grows with the vesicles */
+  PetscReal *each;              /* [vesicles][COLUMN_COUNT] the vesicles' own columns of the last row */
+  PetscReal *solid;             /* [solids] the obstacles' columns of the last row, which come last in series.csv */
+  char *header, *text;          /* names of the columns, and the last row, as lines of series.csv without line ends */
+  size_t room;                  /* characters that header and text have room for */
   PetscInt solves, tension, bending, coupled; /* sums over the run */
   PetscReal cfl_max;                          /* largest of a step */
 } Record;
 
-/* RecordCreate - zero, with the header for so many vesicles and for these obstacles. */
+/* RecordCreate - a row of zeros, with the header for the vesicles and obstacles. Not collective. */
 PETSC_EXTERN PetscErrorCode RecordCreate(PetscInt vesicles, const SceneObstacles *obstacles, Record *record);
 PETSC_EXTERN PetscErrorCode RecordDestroy(Record *record);
 
-/* RecordMeasure - the vesicles' own columns of the present state, into `each`, and the least gap of all. Collective. */
-PETSC_EXTERN PetscErrorCode RecordMeasure(Record *record, Scheme scheme);
+/* RecordMeasure - the vesicles' own columns of the present state, into `each`, and the least gap of all. RecordTake -
+   the row of the scheme's state and last step, which is added to the totals. With obstacles the row ends with
 
-/* RecordTake - the row of the scheme's state and last step, which is added to the totals. Collective. */
+     pressure_drop, flux    scheme/pressuredrop.h
+     force_x, force_y       of the fluid on all obstacles (length^3/time^2, density 1)
+
+   and, with at most RECORD_FEW obstacles, for each of them
+
+     force_x, force_y, torque    of the fluid, the torque about the obstacle's middle (length^4/time^2)
+     center_x, center_y, angle   where obstacles move: middle (length) and the angle it has turned by (radian)
+
+   Collective. */
+PETSC_EXTERN PetscErrorCode RecordMeasure(Record *record, Scheme scheme);
 PETSC_EXTERN PetscErrorCode RecordTake(Record *record, Scheme scheme);
 
-/* RecordFits - whether the text is a row of as many numbers as the header has names, of this step and time. Not
-   collective. */
+/* RecordFits - whether the text is a row of this step and time with as many numbers as the header has names.
+   RecordParse - the last row from its text; a text that is longer than `room` is cut. Not collective. */
 PETSC_EXTERN PetscBool RecordFits(const Record *record, PetscInt step, PetscReal t);
-
-/* RecordParse - the last row from its text; a text that is too long for so many vesicles is cut. */
-PETSC_EXTERN PetscErrorCode RecordParse(Record *record, const char text[]);
+PETSC_EXTERN void RecordParse(Record *record, const char text[]);

@@ -1,29 +1,27 @@
 #include "output/series.h"
-#include "output/lock.h"
 #include <stdlib.h>
 #include <unistd.h>
 
-#define NAME "series.csv"
-#define TEMPORARY "series.csv.tmp"
+#define SERIES "series.csv"
+#define SERIES_TEMPORARY "series.csv.tmp"
 
 PetscErrorCode SeriesPrepare(Series *s, Folder *folder, const char header[], const char row[]) {
-  char path[PETSC_MAX_PATH_LEN], temporary[PETSC_MAX_PATH_LEN];
+  char temporary[PETSC_MAX_PATH_LEN];
   PetscBool written = PETSC_TRUE;
   PetscFunctionBeginUser;
   s->folder = folder;
-  PetscCall(FolderPath(folder, NAME, path));
-  PetscCall(FolderPath(folder, TEMPORARY, temporary));
+  FolderPath(folder, SERIES_TEMPORARY, temporary);
   if (!folder->rank) {
     FILE *f = FileNew(temporary);
     if (f) fprintf(f, *row ? "%s\n%s\n" : "%s\n", header, row);
     written = f && !fclose(f) ? PETSC_TRUE : PETSC_FALSE;
   }
-  PetscCall(FolderCheck(folder, written, path));
+  PetscCall(FolderCheck(folder, written, SERIES));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The file up to the row of `step`, under the temporary name; what is wrong with it, or "". */
-static const char *CopyRows(const char path[], const char temporary[], const char header[], PetscInt step) {
+/* Copy the file up to the row of `step` to the temporary name; what is wrong with the file, or "". */
+static const char *SeriesCopyRows(const char path[], const char temporary[], const char header[], PetscInt step) {
   FILE *in = fopen(path, "r"), *out = in ? FileNew(temporary) : NULL;
   char *line = NULL;
   const char *wrong = !in ? "cannot be read" : (!out ? "cannot be written" : NULL);
@@ -53,9 +51,9 @@ PetscErrorCode SeriesCut(Series *s, Folder *folder, const char header[], PetscIn
   char path[PETSC_MAX_PATH_LEN], temporary[PETSC_MAX_PATH_LEN], wrong[64] = "";
   PetscFunctionBeginUser;
   s->folder = folder;
-  PetscCall(FolderPath(folder, NAME, path));
-  PetscCall(FolderPath(folder, TEMPORARY, temporary));
-  if (!folder->rank) PetscCall(PetscStrncpy(wrong, CopyRows(path, temporary, header, step), sizeof(wrong)));
+  FolderPath(folder, SERIES, path);
+  FolderPath(folder, SERIES_TEMPORARY, temporary);
+  if (!folder->rank) PetscCall(PetscStrncpy(wrong, SeriesCopyRows(path, temporary, header, step), sizeof(wrong)));
   PetscCallMPI(MPI_Bcast(wrong, sizeof(wrong), MPI_CHAR, 0, folder->comm));
   PetvesCheck(!*wrong, folder->comm,
               "-restart %s: %s %s (step %" PetscInt_FMT "); allowed: the file as the run left it, or a new -output_dir",
@@ -66,36 +64,30 @@ PetscErrorCode SeriesCut(Series *s, Folder *folder, const char header[], PetscIn
 PetscErrorCode SeriesOpen(Series *s) {
   char path[PETSC_MAX_PATH_LEN], temporary[PETSC_MAX_PATH_LEN];
   PetscFunctionBeginUser;
-  PetscCall(FolderPath(s->folder, NAME, path));
-  PetscCall(FolderPath(s->folder, TEMPORARY, temporary));
+  FolderPath(s->folder, SERIES, path);
+  FolderPath(s->folder, SERIES_TEMPORARY, temporary);
   if (!s->folder->rank && !rename(temporary, path)) s->file = fopen(path, "a");
-  PetscCall(FolderCheck(s->folder, s->file ? PETSC_TRUE : PETSC_FALSE, path));
+  PetscCall(FolderCheck(s->folder, s->file ? PETSC_TRUE : PETSC_FALSE, SERIES));
   if (s->file) (void)setvbuf(s->file, NULL, _IOLBF, 0); /* each row at once */
-  FolderWatch(s->folder, NAME);
+  FolderWatch(s->folder, SERIES);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SeriesWrite(Series *s, const char row[]) {
-  PetscFunctionBeginUser;
+void SeriesWrite(Series *s, const char row[]) {
   if (s->file) fprintf(s->file, "%s\n", row);
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode SeriesFlush(Series *s, PetscBool sync) {
-  char path[PETSC_MAX_PATH_LEN];
   PetscBool good = PETSC_TRUE;
   PetscFunctionBeginUser;
-  PetscCall(FolderPath(s->folder, NAME, path));
   if (s->file) good = !fflush(s->file) && !ferror(s->file) && !(sync && fsync(fileno(s->file)));
-  PetscCall(FolderCheck(s->folder, good, path));
+  PetscCall(FolderCheck(s->folder, good, SERIES));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SeriesClose(Series *s, PetscBool *good) {
+PetscBool SeriesClose(Series *s) {
   FILE *file = s->file;
-  const int lost = file && ferror(file); /* a row */
-  PetscFunctionBeginUser;
-  s->file = NULL; /* also when closing it fails: it is gone then */
-  *good = !file || (!fclose(file) && !lost) ? PETSC_TRUE : PETSC_FALSE;
-  PetscFunctionReturn(PETSC_SUCCESS);
+  const int lost = file && ferror(file); /* a row is lost */
+  s->file = NULL;
+  return !file || (!fclose(file) && !lost) ? PETSC_TRUE : PETSC_FALSE;
 }

@@ -1,4 +1,8 @@
-/* series.csv: a row a step. */
+/* series.csv: a header, then a row a step. Rank 0 has the file; every row is handed to the system at once. A new file
+   is written under a temporary name, and a file that goes on is copied up to a step, so that nothing of an earlier run
+   is lost before all of its files have been checked.
+
+   Order: SeriesPrepare or SeriesCut, SeriesOpen, SeriesWrite and SeriesFlush, SeriesClose. */
 #pragma once
 #include "output/folder.h"
 
@@ -7,20 +11,18 @@ typedef struct {
   FILE *file;     /* rank 0, when open */
 } Series;
 
-/* SeriesPrepare - the new series.csv under a temporary name: the header and, unless it is "", a first row. SeriesCut -
-   the one that is there, up to the row of `step`, under a temporary name; stops with one line that names `restart` when
-   it has other columns or lacks the row. Collective. */
+/* SeriesPrepare - a new file of the header and, unless it is "", a first row. SeriesCut - a copy of the file in the
+   folder, up to the row of `step`; stops with one line, which names `restart`, when the file has other columns or lacks
+   the row. SeriesOpen - the prepared file takes the name series.csv and is open for further rows. Collective. */
 PETSC_EXTERN PetscErrorCode SeriesPrepare(Series *series, Folder *folder, const char header[], const char row[]);
 PETSC_EXTERN PetscErrorCode SeriesCut(Series *series, Folder *folder, const char header[], PetscInt step,
                                       const char restart[]);
-
-/* SeriesOpen - the prepared file takes its name and is open for further rows. Collective. */
 PETSC_EXTERN PetscErrorCode SeriesOpen(Series *series);
 
-/* SeriesWrite - add a row. It is in the file after SeriesFlush; with sync it is on the disk. SeriesFlush is collective
-   and stops with one line when it cannot be written. */
-PETSC_EXTERN PetscErrorCode SeriesWrite(Series *series, const char row[]);
+/* SeriesWrite - add a row; not collective. SeriesFlush - hand the rows to the system and, with sync, put them on the
+   disk. Collective; stops with one line when a row could not be written. */
+PETSC_EXTERN void SeriesWrite(Series *series, const char row[]);
 PETSC_EXTERN PetscErrorCode SeriesFlush(Series *series, PetscBool sync);
 
-/* SeriesClose - close the file; good: all of it was written. Rank 0 closes, and good is TRUE elsewhere. */
-PETSC_EXTERN PetscErrorCode SeriesClose(Series *series, PetscBool *good);
+/* SeriesClose - close the file; whether all of it was written, TRUE on ranks other than 0. Not collective. */
+PETSC_EXTERN PetscBool SeriesClose(Series *series);

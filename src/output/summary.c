@@ -1,11 +1,139 @@
 #include "output/summary.h"
 #include "base/version.h"
+#include "options/typed.h"
+#include <ctype.h>
 #include <fftw3.h>
 #include <hdf5.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 
-/* A JSON string: quotes, backslashes and control characters escaped. */
-static void PrintString(FILE *f, const char *text) {
+/* Seconds between progress lines. */
+#define PROGRESS_SECONDS 2
+
+void ProgressStart(Progress *p, MPI_Comm comm) {
+  p->comm = comm;
+  (void)MPI_Comm_rank(comm, &p->rank);
+  (void)PetscTime(&p->start);
+  p->printed = p->start;
+}
+
+PetscReal ProgressSeconds(const Progress *p) {
+  PetscLogDouble now;
+  (void)PetscTime(&now);
+  return now - p->start;
+}
+
+void ProgressLine(Progress *p, const State *q, PetscReal t_end, PetscBool force) {
+  PetscLogDouble now;
+  PetscReal share, left;
+  if (p->rank || PetvesIsQuiet()) return;
+  (void)PetscTime(&now);
+  if (!force && now - p->printed < PROGRESS_SECONDS) return;
+  p->printed = now;
+  share = t_end > 0 ? PetscMin(1, q->t / t_end) : 1;
+  left = share > 0 ? (now - p->start) * (1 - share) / share : 0;
+  printf("step %" PetscInt_FMT "  time %.6g  %3.0f %%  %.0f s left\n", q->step, (double)q->t, 100 * (double)share,
+         left);
+  fflush(stdout);
+}
+
+void DiskUsageCount(const Folder *folder, PetscInt frames, PetscInt checkpoints, DiskUsage *usage) {
+  static const char *const names[] = {"run.h5", "series.csv", "run.xmf", "vesicles.h5", "checkpoint.h5"};
+  struct stat status;
+  *usage = (DiskUsage){.frames = frames};
+  for (PetscInt k = 0; k < 4 + checkpoints && !folder->rank; k++) {
+    char name[64], path[PETSC_MAX_PATH_LEN];
+    (void)(k < 5 ? PetscStrncpy(name, names[k], sizeof(name))
+                 : PetscSNPrintf(name, sizeof(name), "checkpoint_%d.h5", (int)k - 4));
+    FolderPath(folder, name, path);
+    if (!stat(path, &status)) usage->all += (double)status.st_size;
+    if (!k) usage->h5 = usage->all;
+  }
+}
+
+/* Whether resolved.opts has an option of the database already, or must not have it. */
+static PetscBool ResolvedSkips(const char *name) {
+  const char *const never[] = {"-options_file", "-help"};
+  for (size_t i = 0; i < sizeof(never) / sizeof(never[0]); i++)
+    if (!strcmp(name, never[i])) return PETSC_TRUE;
+  for (PetscInt i = 0; SceneOptionName(i); i++)
+    if (!strcmp(name, SceneOptionName(i))) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+/* Print PETSc's own options that the user gave, -tension_ksp_monitor, -log_view and so on. A word of the database may
+   be a value, which is no option. A file must not have the options that TypedIsOwn names. */
+static PetscErrorCode ResolvedPrintOthers(FILE *f) {
+  char *all, *word, *end = NULL;
+  PetscFunctionBeginUser;
+  PetscCall(PetscOptionsGetAll(NULL, &all));
+  for (word = strtok_r(all, " \n", &end); word; word = strtok_r(NULL, " \n", &end)) {
+    const char *value = NULL;
+    PetscBool given = PETSC_FALSE;
+    if (word[0] != '-' || !isalpha((unsigned char)word[1]) || ResolvedSkips(word)) continue;
+    PetscCall(PetscOptionsFindPair(NULL, NULL, word, &value, &given));
+    if (given && !TypedIsOwn(word, value)) OptionPrint(f, word, value ? value : "");
+  }
+  PetscCall(PetscFree(all));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ResolvedPrint(FILE *f, const void *what) {
+  const Scheme scheme = (Scheme)what;
+  PetscFunctionBeginUser;
+  fprintf(f, "# every option in force: mpirun -n RANKS petves -options_file resolved.opts repeats the run\n");
+  PetscCall(SceneWriteOptions(scheme->scene, f));
+  if (scheme->ops.options) PetscCall(scheme->ops.options(scheme, f));
+  PetscCall(ResolvedPrintOthers(f));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SummaryResolved(Folder *folder, Scheme scheme) {
+  PetscFunctionBeginUser;
+  PetscCall(FolderWriteText(folder, "resolved.opts", ResolvedPrint, scheme));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The lines that only a run with vesicles has. */
+static PetscErrorCode TablePrintVesicles(MPI_Comm comm, const Record *record, PetscInt steps) {
+  const PetscReal *r = record->last;
+  PetscFunctionBeginUser;
+  PetscCall(PetvesSay(comm, "  energy, kinetic and bending   %.6e  %.6e\n", (double)r[COLUMN_KINETIC],
+                      (double)r[COLUMN_BENDING]));
+  PetscCall(PetvesSay(comm, "  area error, length error      %.3e  %.3e\n", (double)r[COLUMN_AREA_ERROR],
+                      (double)r[COLUMN_LENGTH_ERROR]));
+  PetscCall(PetvesSay(comm, "  inclination (radians)         %.6f\n", (double)r[COLUMN_INCLINATION]));
+  if (!PetscIsNanReal(r[COLUMN_FREQUENCY]))
+    PetscCall(PetvesSay(comm, "  tank-treading frequency       %.6f\n", (double)r[COLUMN_FREQUENCY]));
+  PetscCall(PetvesSay(comm, "  iterations a step             "));
+  if (record->coupled)
+    PetscCall(PetvesSay(comm, "coupled %.1f\n", (double)record->coupled / (double)steps));
+  else
+    PetscCall(PetvesSay(comm, "tension %.1f, bending %.1f\n", (double)record->tension / (double)steps,
+                        (double)record->bending / (double)steps));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SummaryTable(const Folder *folder, const Record *record, const DiskUsage *usage, PetscReal seconds,
+                            const char reason[]) {
+  const PetscReal *r = record->last;
+  const PetscInt step = (PetscInt)r[COLUMN_STEP], steps = PetscMax(step, 1);
+  PetscFunctionBeginUser;
+  PetscCall(PetvesSay(folder->comm, "\n%s at time %g after %" PetscInt_FMT " steps, %.2f s\n", reason,
+                      (double)r[COLUMN_TIME], step, (double)seconds));
+  if (record->vesicles) PetscCall(TablePrintVesicles(folder->comm, record, steps));
+  PetscCall(PetvesSay(folder->comm, "  max |div u|                   %.3e\n", (double)r[COLUMN_DIV]));
+  PetscCall(PetvesSay(folder->comm, "  fast solves a step            %.1f\n", (double)record->solves / (double)steps));
+  PetscCall(PetvesSay(folder->comm, "  seconds: fast solves %.2f, rest of the steps %.2f, output %.2f\n",
+                      (double)PhaseSeconds(PHASE_FAST_SOLVE), (double)PhaseSeconds(PHASE_STEP),
+                      (double)PhaseSeconds(PHASE_OUTPUT)));
+  PetscCall(PetvesSay(folder->comm, "  files in %s: %.3g MB, %.3g MB of them run.h5 with %" PetscInt_FMT " frames\n",
+                      folder->path, usage->all / 1e6, usage->h5 / 1e6, usage->frames));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Print a JSON string: quotes, backslashes and control characters are escaped. */
+static void JsonPrintString(FILE *f, const char *text) {
   fputc('"', f);
   for (; *text; text++) {
     if (*text == '"' || *text == '\\')
@@ -18,7 +146,7 @@ static void PrintString(FILE *f, const char *text) {
   fputc('"', f);
 }
 
-static void PrintVersions(FILE *f) {
+static void JsonPrintVersions(FILE *f) {
   char petsc[256] = "";
   unsigned major, minor, release;
   (void)PetscGetVersion(petsc, sizeof(petsc));
@@ -29,17 +157,17 @@ static void PrintVersions(FILE *f) {
           release);
 }
 
-/* The model of the fluid, how much inertia there is, the largest CFL number of a step (0 without convection). */
-static void PrintInertia(FILE *f, Scene scene, PetscReal cfl_max) {
+/* Print the model of the fluid, the Reynolds number and the largest CFL number of a step (0 without convection). */
+static void JsonPrintInertia(FILE *f, Scene scene, PetscReal cfl_max) {
   static const char *const names[] = {"unsteady", "none", "unsteady", "convective"};
   fprintf(f, "  \"inertia\": \"%s\",\n  \"reynolds\": %.6g,\n  \"cfl_max\": %.6g,\n  \"warning\": ",
           names[scene->fluid.inertia], (double)scene->reynolds, (double)cfl_max);
-  PrintString(f, scene->warning);
+  JsonPrintString(f, scene->warning);
   fprintf(f, ",\n");
 }
 
-/* The least and the largest ratio of viscosities, where they are not all 1. */
-static void PrintRatios(FILE *f, Scene scene) {
+/* Print the least and the largest ratio of viscosities, unless all are 1. */
+static void JsonPrintRatios(FILE *f, Scene scene) {
   PetscReal low = PETSC_MAX_REAL, high = 0;
   if (!SceneHasContrast(scene)) return;
   for (PetscInt v = 0; v < scene->shape.vesicles; v++) {
@@ -49,17 +177,17 @@ static void PrintRatios(FILE *f, Scene scene) {
   fprintf(f, "  \"viscosity_ratio\": [%.6g, %.6g],\n", (double)low, (double)high);
 }
 
-/* What the run has warned of, in order. */
-static void PrintWarnings(FILE *f, const Warnings *w) {
+/* Print the warnings of the run, in order. */
+static void JsonPrintWarnings(FILE *f, const Warnings *w) {
   fprintf(f, "  \"warnings\": [");
   for (PetscInt k = 0; k < w->n; k++) {
     if (k) fprintf(f, ", ");
-    PrintString(f, w->text[k]);
+    JsonPrintString(f, w->text[k]);
   }
   fprintf(f, "],\n");
 }
 
-static void PrintRow(FILE *f, const Record *record) {
+static void JsonPrintRow(FILE *f, const Record *record) {
   fprintf(f, ",\n  \"last\": {");
   for (int c = 0; c < COLUMN_COUNT; c++) {
     fprintf(f, "%s\"%s\": ", c ? ", " : "", SeriesColumns[c]);
@@ -71,23 +199,23 @@ static void PrintRow(FILE *f, const Record *record) {
   fprintf(f, "},\n");
 }
 
-/* What is printed. */
+/* What summary.json is printed from. */
 typedef struct {
   Scheme scheme;
   const Record *record;
-  const Written *written;
+  const DiskUsage *usage;
   const char *reason;
   PetscReal seconds;
   PetscMPIInt ranks;
 } Summary;
 
-static PetscErrorCode Print(FILE *f, const void *what) {
+static PetscErrorCode JsonPrint(FILE *f, const void *what) {
   const Summary *s = what;
   const Record *r = s->record;
   struct rusage usage;
   fprintf(f, "{\n  \"reason\": ");
-  PrintString(f, s->reason);
-  PrintRow(f, r);
+  JsonPrintString(f, s->reason);
+  JsonPrintRow(f, r);
   fprintf(f,
           "  \"totals\": {\"steps\": %d, \"nsolve\": %d, \"tension_its\": %d, \"bending_its\": %d, "
           "\"coupled_its\": %d},\n",
@@ -98,21 +226,21 @@ static PetscErrorCode Print(FILE *f, const void *what) {
   fprintf(f, "},\n  \"memory_mib_rank_0\": %.1f,\n", (double)usage.ru_maxrss / 1024);
   fprintf(f, "  \"markers\": %d,\n  \"cells\": [%d, %d],\n  \"ranks\": %d,\n", (int)s->scheme->membrane->layout->M,
           (int)s->scheme->scene->fluid.cells[0], (int)s->scheme->scene->fluid.cells[1], s->ranks);
-  fprintf(f, "  \"written\": {\"frames\": %d, \"bytes\": %.0f, \"bytes_run_h5\": %.0f},\n", (int)s->written->frames,
-          s->written->all, s->written->h5);
-  PrintRatios(f, s->scheme->scene);
-  PrintInertia(f, s->scheme->scene, r->cfl_max);
-  PrintWarnings(f, &s->scheme->warnings);
-  PrintVersions(f);
+  fprintf(f, "  \"written\": {\"frames\": %d, \"bytes\": %.0f, \"bytes_run_h5\": %.0f},\n", (int)s->usage->frames,
+          s->usage->all, s->usage->h5);
+  JsonPrintRatios(f, s->scheme->scene);
+  JsonPrintInertia(f, s->scheme->scene, r->cfl_max);
+  JsonPrintWarnings(f, &s->scheme->warnings);
+  JsonPrintVersions(f);
   fprintf(f, "  \"git_commit\": \"%s\"\n}\n", PetvesCommit());
   return PETSC_SUCCESS;
 }
 
-PetscErrorCode SummaryWrite(Folder *folder, Scheme scheme, const Record *record, const Written *written,
+PetscErrorCode SummaryWrite(Folder *folder, Scheme scheme, const Record *record, const DiskUsage *usage,
                             PetscReal seconds, const char reason[]) {
-  Summary summary = {scheme, record, written, reason, seconds, 1};
+  Summary summary = {scheme, record, usage, reason, seconds, 1};
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_size(folder->comm, &summary.ranks));
-  PetscCall(FolderWriteText(folder, "summary.json", Print, &summary));
+  PetscCall(FolderWriteText(folder, "summary.json", JsonPrint, &summary));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,30 +1,18 @@
-/* vesicles.h5: what many vesicles have of their own, a row a step: /step and /time [rows], and a dataset [rows,
-   vesicles] for each of RecordVesicleColumns. A scene of few has it in series.csv instead, and then every call does
-   nothing. */
+/* vesicles.h5: the columns that each vesicle has of its own, where vesicles are too many for series.csv.
+
+   vesicles.h5 is an appended file whose entries are rows, one a step (appendedfile.h): /step and /time [rows], and a
+   series [rows, vesicles] for each of RecordVesicleColumns. With at most RECORD_FEW vesicles there is no file, and
+   every call does nothing. The values are the same on every rank. */
 #pragma once
-#include "output/growing.h"
+#include "output/appendedfile.h"
 #include "output/record.h"
 
-#define VESICLE_NAME 32
-
-typedef struct {
-  Growing grown;
-  const char *path[GROWING_SERIES]; /* of the datasets: /step, and those of the columns */
-  char name[GROWING_SERIES][VESICLE_NAME];
-  PetscReal *values; /* [vesicles] of a column */
-} VesicleFile;
-
-/* VesicleFileCreate - a new, empty file. VesicleFileGoOn - the one of an earlier run, repaired where that was killed
-   and cut behind the row of `step`. Collective; stop with one line, which names `restart`, when it lacks that row or
-   cannot be written. */
-PETSC_EXTERN PetscErrorCode VesicleFileCreate(VesicleFile *file, Folder *folder, Scheme scheme);
-PETSC_EXTERN PetscErrorCode VesicleFileGoOn(VesicleFile *file, Folder *folder, Scheme scheme, PetscInt step,
+/* VesicleFileCreate - a new, empty file. VesicleFileGoOn - the file of an earlier run, cut behind the row of `step`.
+   Collective; both stop with one line, which names `restart`, when the row is missing or the file cannot be written.
+   The file is flushed and closed by AppendedFlush and AppendedClose. */
+PETSC_EXTERN PetscErrorCode VesicleFileCreate(AppendedFile *file, Folder *folder, Scheme scheme);
+PETSC_EXTERN PetscErrorCode VesicleFileGoOn(AppendedFile *file, Folder *folder, Scheme scheme, PetscInt step,
                                             const char restart[]);
 
-/* VesicleFileWrite - a row of the step's record. It is in the file after VesicleFileFlush; with sync it is on the disk.
-   Collective; stop with one line when it cannot be written. */
-PETSC_EXTERN PetscErrorCode VesicleFileWrite(VesicleFile *file, const Record *record, PetscInt step, PetscReal time);
-PETSC_EXTERN PetscErrorCode VesicleFileFlush(VesicleFile *file, PetscBool sync);
-
-/* VesicleFileClose - close the file; good: all of it was written. Rank 0 closes, and good is TRUE elsewhere. */
-PETSC_EXTERN PetscErrorCode VesicleFileClose(VesicleFile *file, PetscBool *good);
+/* VesicleFileWrite - the row of a step's record. Collective; stops with one line when it cannot be written. */
+PETSC_EXTERN PetscErrorCode VesicleFileWrite(AppendedFile *file, const Record *record, PetscInt step, PetscReal time);

@@ -1,28 +1,33 @@
-/* run.xmf: what VTK and ParaView need to read run.h5. A frame is written over the closing tags, and the closing tags
-   behind it, in one write: so a frame costs the same at any time of a run, and the document is whole in between. How
-   many frames run.h5 has stands once, in an entity at the beginning. */
+/* run.xmf: the document by which VTK and ParaView read run.h5.
+
+   A frame is written over the closing tags, with new closing tags behind it, in one write: the document is whole at
+   every moment, and a frame costs the same at any time of a run. The number of frames stands once, in an entity at the
+   beginning. Markers are those that every rank has; rank 0 writes the file.
+
+   Order: XdmfGoOn after a restart, XdmfWrite for each frame, XdmfClose. */
 #pragma once
 #include "output/folder.h"
 #include "scheme/scheme.h"
 #include <sys/types.h>
 
+/* Filled in by the caller: folder, scheme, file = -1; else zero. */
 typedef struct {
   Folder *folder;  /* borrowed */
   Scheme scheme;   /* borrowed */
   int file;        /* rank 0, when open; else -1 */
   PetscInt frames; /* in the document */
-  off_t last, end; /* where the last frame begins, and where it ends: there the closing tags begin */
+  off_t last;      /* where the last frame begins */
+  off_t end;       /* where the last frame ends and the closing tags begin */
 } Xdmf;
 
-/* XdmfCreate - nothing is written yet: a document begins with its first frame. XdmfGoOn - the document anew, of the
-   frames that a run goes on after, with their times[frames] and markers[frames][2 M], by which membranes are shown in
-   a periodic box. Collective; stops with one line when it cannot be written. */
-PETSC_EXTERN PetscErrorCode XdmfCreate(Xdmf *xdmf, Folder *folder, Scheme scheme);
+/* XdmfGoOn - write the document anew, of the frames that a run goes on after, with their times[frames] and
+   markers[frames][2 M], by which vesicles are shown in a periodic box. Collective; stops with one line when the
+   document cannot be written. */
 PETSC_EXTERN PetscErrorCode XdmfGoOn(Xdmf *xdmf, PetscInt frames, const PetscReal times[], const PetscReal markers[]);
 
-/* XdmfWrite - frame number `frame`, which run.h5 has already: a further one, or the last one anew. Collective; stops
-   with one line when it cannot be written, and leaves the document as it was. */
+/* XdmfWrite - write frame number `frame`, which run.h5 has already: one more frame, or the last one again. Collective;
+   stops with one line when the frame cannot be written, and leaves the document as it was. */
 PETSC_EXTERN PetscErrorCode XdmfWrite(Xdmf *xdmf, PetscInt frame, PetscReal time, const PetscReal markers[]);
 
-/* XdmfClose - close the file; good: all of it was written. Rank 0 closes, and good is TRUE elsewhere. */
-PETSC_EXTERN PetscErrorCode XdmfClose(Xdmf *xdmf, PetscBool *good);
+/* XdmfClose - close the file; whether all of it was written, TRUE on ranks other than 0. Not collective. */
+PETSC_EXTERN PetscBool XdmfClose(Xdmf *xdmf);

@@ -1,0 +1,275 @@
+#include "output/appendedfile.h"
+#include <errno.h>
+#include <fcntl.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+void AppendedAddSeries(AppendedKind *kind, const char path[], PetscInt rows, PetscInt columns, PetscBool single) {
+  const PetscInt k = kind->series++;
+  (void)snprintf(kind->path[k], APPENDED_NAME, "%s", path);
+  kind->dims[k][0] = rows;
+  kind->dims[k][1] = columns;
+  kind->single[k] = single;
+}
+
+/* Numbers in an entry of series k. */
+static PetscInt EntrySize(const AppendedKind *kind, PetscInt k) {
+  return PetscMax(1, kind->dims[k][0]) * kind->dims[k][1];
+}
+
+/* Path of the file with an ending behind its name. */
+static void AppendedPath(const AppendedFile *a, const char ending[], char path[PETSC_MAX_PATH_LEN]) {
+  (void)PetscSNPrintf(path, PETSC_MAX_PATH_LEN, "%s/%s%s", a->folder->path, a->kind.name, ending);
+}
+
+/* Write the line of an entry. */
+static void IndexPrint(AppendedFile *a, PetscInt entry, PetscReal t) {
+  fprintf(a->index, "%d %.17g", (int)entry, (double)t);
+  for (PetscInt k = 0; k < a->kind.series; k++)
+    fprintf(a->index, " %llu", H5EntryPlace(&a->file, a->kind.path[k], entry));
+  fprintf(a->index, "\n");
+}
+
+/* Make the index of the first `count` entries, to which further lines are added. */
+static PetscErrorCode IndexOpen(AppendedFile *a, PetscInt count) {
+  char path[PETSC_MAX_PATH_LEN], temporary[PETSC_MAX_PATH_LEN];
+  PetscBool done = PETSC_TRUE;
+  PetscFunctionBeginUser;
+  AppendedPath(a, ".index", path);
+  AppendedPath(a, ".index.tmp", temporary);
+  if (!a->folder->rank) {
+    a->index = FileNew(temporary);
+    for (PetscInt t = 0; t < count && a->index; t++) IndexPrint(a, t, a->time[t]);
+    done = a->index && !fflush(a->index) && !ferror(a->index) ? PETSC_TRUE : PETSC_FALSE;
+    if (done) done = a->file.failed ? !unlink(temporary) : !rename(temporary, path);
+  }
+  PetscCall(FolderCheck(a->folder, done, a->index_name));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Stop every rank when the file could not be written. The file is closed at once: HDF5 crashes at the program's end
+   where a file is open that it cannot write. */
+static PetscErrorCode AppendedCheck(AppendedFile *a) {
+  PetscFunctionBeginUser;
+  if (a->file.failed) H5FileClose(&a->file);
+  PetscCall(FolderCheck(a->folder, !a->file.failed, a->kind.name));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A file without entries. */
+static PetscErrorCode AppendedMake(const AppendedKind *kind, MPI_Comm comm, const char path[], H5File *f) {
+  PetscFunctionBeginUser;
+  PetscCall(H5FileCreate(comm, path, f));
+  PetscCall(kind->describe(kind->scheme, f));
+  H5CreateSeries(f, "/time", PETSC_FALSE, 0, NULL);
+  for (PetscInt k = 0; k < kind->series; k++)
+    H5CreateSeries(f, kind->path[k], kind->single[k], !kind->dims[k][0] ? 0 : (kind->dims[k][1] > 1 ? 2 : 1),
+                   kind->dims[k]);
+  H5FileFlush(f);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static void AppendedBegin(AppendedFile *a, Folder *folder, const AppendedKind *kind) {
+  a->folder = folder;
+  a->kind = *kind;
+  (void)PetscSNPrintf(a->index_name, sizeof(a->index_name), "%s.index", kind->name);
+}
+
+PetscErrorCode AppendedCreate(AppendedFile *a, Folder *folder, const AppendedKind *kind) {
+  char path[PETSC_MAX_PATH_LEN];
+  PetscFunctionBeginUser;
+  AppendedBegin(a, folder, kind);
+  FolderPath(folder, kind->name, path);
+  PetscCall(AppendedMake(kind, folder->comm, path, &a->file));
+  a->open = PETSC_TRUE;
+  PetscCall(AppendedCheck(a));
+  FolderWatch(folder, kind->name);
+  PetscCall(IndexOpen(a, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Read one line of the index with n places; false when it is not whole. */
+static PetscBool IndexRead(FILE *index, PetscInt n, PetscInt *entry, PetscReal *t, unsigned long long place[]) {
+  char line[32 * (APPENDED_SERIES + 2)], *p = line;
+  if (!fgets(line, sizeof(line), index) || !strchr(line, '\n')) return PETSC_FALSE;
+  *entry = (PetscInt)strtol(p, &p, 10);
+  *t = strtod(p, &p);
+  for (PetscInt k = 0; k < n; k++) {
+    char *end;
+    place[k] = strtoull(p, &end, 10);
+    if (end == p || !place[k]) return PETSC_FALSE;
+    p = end;
+  }
+  return PETSC_TRUE;
+}
+
+/* Read an entry of n numbers at its place in the old file. */
+static PetscBool EntryRead(int old, PetscInt n, PetscBool single, off_t place, PetscReal values[]) {
+  const size_t bytes = (size_t)n * (single ? sizeof(float) : sizeof(*values));
+  if (pread(old, values, bytes, place) != (ssize_t)bytes) return PETSC_FALSE;
+  for (PetscInt i = n - 1; i >= 0 && single; i--) { /* from the last number on: the array holds both precisions */
+    float x;
+    memcpy(&x, (const char *)values + (size_t)i * sizeof(x), sizeof(x));
+    values[i] = x;
+  }
+  return PETSC_TRUE;
+}
+
+/* Copy the first `most` entries into the new file `f`, on rank 0; copied: the number of entries that could be read. An
+   entry may have several lines, where a run went on after its end: the last line counts. */
+static PetscErrorCode EntriesCopy(const AppendedKind *kind, PetscInt most, FILE *index, int old, H5File *f,
+                                  PetscInt *copied) {
+  PetscReal *values, t;
+  PetscInt largest = 0, entry;
+  unsigned long long place[APPENDED_SERIES];
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < kind->series; k++) largest = PetscMax(largest, EntrySize(kind, k));
+  PetscCall(PetscMalloc1(largest, &values));
+  *copied = 0;
+  while (IndexRead(index, kind->series, &entry, &t, place) && entry <= *copied) {
+    PetscBool good = PETSC_TRUE;
+    if (entry >= most) continue;
+    for (PetscInt k = 0; good && k < kind->series; k++) {
+      good = EntryRead(old, EntrySize(kind, k), kind->single[k], (off_t)place[k], values);
+      if (good) H5WriteArray(f, kind->path[k], entry, EntrySize(kind, k), values);
+    }
+    if (!good) break;
+    H5WriteArray(f, "/time", entry, 1, &t);
+    *copied = entry + 1;
+  }
+  PetscCall(PetscFree(values));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Give the file run.h5.new, which is whole when it has that name, the name run.h5. The index, which is of the old
+   run.h5, goes first. */
+static PetscBool AppendedTakeNew(const char fresh[], const char index[], const char path[]) {
+  return !access(fresh, F_OK) && (!unlink(index) || errno == ENOENT) && !rename(fresh, path) ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* Make the file anew where there is an index. If fewer than `most` entries can be read, and `most` is not
+   PETSC_MAX_INT, the file stays as it is. */
+static PetscErrorCode AppendedRepair(AppendedFile *a, PetscInt most) {
+  char path[PETSC_MAX_PATH_LEN], index[PETSC_MAX_PATH_LEN], part[PETSC_MAX_PATH_LEN], fresh[PETSC_MAX_PATH_LEN];
+  FILE *lines = NULL;
+  H5File f;
+  PetscInt copied = 0;
+  int old = -1;
+  PetscMPIInt here = 0;
+  PetscFunctionBeginUser;
+  AppendedPath(a, "", path);
+  AppendedPath(a, ".index", index);
+  AppendedPath(a, ".tmp", part);
+  AppendedPath(a, ".new", fresh);
+  if (!a->folder->rank && !AppendedTakeNew(fresh, index, path)) {
+    lines = fopen(index, "r");
+    old = lines ? open(path, O_RDONLY) : -1;
+    here = old >= 0;
+  }
+  PetscCallMPI(MPI_Bcast(&here, 1, MPI_INT, 0, a->folder->comm));
+  if (here) {
+    PetscCall(AppendedMake(&a->kind, a->folder->comm, part, &f));
+    if (!a->folder->rank) PetscCall(EntriesCopy(&a->kind, most, lines, old, &f, &copied));
+    H5FileClose(&f);
+    if (!a->folder->rank && (copied == most || most == PETSC_MAX_INT) && !f.failed &&
+        (FileSync(part) || rename(part, fresh) || !AppendedTakeNew(fresh, index, path)))
+      f.failed = PETSC_TRUE;
+    if (!a->folder->rank) (void)unlink(part);
+    PetscCall(FolderCheck(a->folder, !f.failed, strrchr(part, '/') + 1));
+  }
+  if (lines) (void)fclose(lines);
+  if (old >= 0) (void)close(old);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode AppendedOpen(AppendedFile *a, Folder *folder, const AppendedKind *kind, PetscInt most,
+                            PetscInt *length) {
+  char path[PETSC_MAX_PATH_LEN];
+  PetscBool failed;
+  PetscFunctionBeginUser;
+  AppendedBegin(a, folder, kind);
+  PetscCall(AppendedRepair(a, most));
+  FolderPath(folder, kind->name, path);
+  PetscCall(H5FileOpen(folder->comm, path, PETSC_TRUE, &a->file));
+  a->open = PETSC_TRUE;
+  PetscCall(H5SeriesLength(&a->file, "/time", length));
+  PetscCall(H5FileFailed(&a->file, &failed));
+  if (failed) *length = 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Remove the entries from a->count on. */
+static PetscErrorCode AppendedCut(AppendedFile *a, const char restart[]) {
+  H5File *file = &a->file;
+  PetscBool failed;
+  PetscFunctionBeginUser;
+  H5TruncateSeries(file, "/time", a->count); /* readers count entries by their times */
+  H5FileFlush(file);
+  for (PetscInt k = 0; k < a->kind.series; k++) H5TruncateSeries(file, a->kind.path[k], a->count);
+  H5FileFlush(file);
+  PetscCall(H5FileFailed(file, &failed));
+  if (failed) H5FileClose(file);
+  PetvesCheck(!failed, file->comm,
+              "-restart %s: %s cannot be cut to the %" PetscInt_FMT
+              " readable %s that the checkpoint counts; allowed: %s as the run left it, or a new -output_dir",
+              restart, file->path, a->count, a->kind.entries, a->kind.name);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode AppendedGoOn(AppendedFile *a, PetscInt length, PetscInt count, const char restart[]) {
+  PetscBool failed;
+  PetscFunctionBeginUser;
+  PetscCall(H5FileFailed(&a->file, &failed));
+  PetvesCheck(!failed && length >= count, a->folder->comm,
+              "-restart %s: %s has %" PetscInt_FMT " readable %s, the checkpoint counts %" PetscInt_FMT
+              "; allowed: %s as the run left it, or a new -output_dir",
+              restart, a->file.path, length, a->kind.entries, count, a->kind.name);
+  a->count = count;
+  PetscCall(PetscMalloc1(count, &a->time));
+  for (PetscInt t = 0; t < count; t++) PetscCall(H5ReadArray(&a->file, "/time", t, 1, &a->time[t]));
+  PetscCall(IndexOpen(a, count)); /* before anything in the file is changed */
+  PetscCall(AppendedCut(a, restart));
+  FolderWatch(a->folder, a->kind.name);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+void AppendedSet(AppendedFile *a, PetscInt k, const PetscReal values[]) {
+  return H5WriteArray(&a->file, a->kind.path[k], a->count, EntrySize(&a->kind, k), values);
+}
+
+PetscErrorCode AppendedAdd(AppendedFile *a, PetscReal t) {
+  PetscFunctionBeginUser;
+  if (a->index) IndexPrint(a, a->count, t);
+  H5WriteArray(&a->file, "/time", a->count, 1, &t);
+  PetscCall(AppendedCheck(a));
+  a->count++;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode AppendedFlush(AppendedFile *a, PetscBool sync) {
+  PetscFunctionBeginUser;
+  if (!a->open) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(FolderCheck(a->folder, !a->index || (!fflush(a->index) && !ferror(a->index)), a->index_name));
+  H5FileFlush(&a->file);
+  if (sync && a->index && (FileSync(a->file.path) || fsync(fileno(a->index)))) a->file.failed = PETSC_TRUE;
+  PetscCall(AppendedCheck(a));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode AppendedClose(AppendedFile *a, PetscBool *good) {
+  const PetscBool known = a->open ? a->file.failed : PETSC_FALSE; /* a line has said so */
+  char path[PETSC_MAX_PATH_LEN];
+  PetscFunctionBeginUser;
+  *good = PETSC_TRUE;
+  if (a->open) {
+    H5FileClose(&a->file);
+    AppendedPath(a, ".index", path);
+    if (a->index) (void)fclose(a->index);
+    if (a->index && !a->file.failed && !a->folder->failed) (void)unlink(path);
+    *good = !a->file.failed || known ? PETSC_TRUE : PETSC_FALSE;
+  }
+  a->index = NULL;
+  a->open = PETSC_FALSE;
+  PetscCall(PetscFree(a->time));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
