@@ -47,44 +47,36 @@ static PetscReal EllipsePerimeter(PetscReal x, PetscReal y) {
   return 2 * PETSC_PI * (square - sum) / ((a + b) / 2);
 }
 
+/* Length of the curve from t = `from` to `to`, or the area between it and its first point there. Richardson
+   extrapolation of sums over chords: error h^4 for a smooth curve. */
+static PetscReal CurveIntegral(const Curve *c, PetscBool area, PetscReal from, PetscReal to) {
+  PetscReal sum[2] = {0, 0};
+  for (int level = 0; level < 2; level++) {
+    const PetscInt n = CURVE_SAMPLES << level;
+    PetscReal first[2], last[2], X[2];
+    CurveEvaluate(c, from, first);
+    CurveEvaluate(c, from, last);
+    for (PetscInt i = 1; i <= n; i++) {
+      CurveEvaluate(c, from + (to - from) * (PetscReal)i / n, X);
+      sum[level] += area ? 0.5 * ((last[0] - first[0]) * (X[1] - first[1]) - (X[0] - first[0]) * (last[1] - first[1]))
+                         : PetscSqrtReal(PetscSqr(X[0] - last[0]) + PetscSqr(X[1] - last[1]));
+      last[0] = X[0];
+      last[1] = X[1];
+    }
+  }
+  return (4 * sum[1] - sum[0]) / 3;
+}
+
+PetscReal CurvePartLength(const Curve *c, PetscReal from, PetscReal to) {
+  return CurveIntegral(c, PETSC_FALSE, from, to);
+}
+
 PetscReal CurveLength(const Curve *c) {
   return c->n ? CurvePartLength(c, 0, 1) : EllipsePerimeter(c->axes[0], c->axes[1]);
 }
 
-PetscReal CurvePartLength(const Curve *c, PetscReal from, PetscReal to) {
-  /* Richardson extrapolation of sums of chords: error h^4 for a smooth curve */
-  PetscReal sum[2] = {0, 0};
-  for (int level = 0; level < 2; level++) {
-    const PetscInt n = CURVE_SAMPLES << level;
-    PetscReal last[2], X[2];
-    CurveEvaluate(c, from, last);
-    for (PetscInt i = 1; i <= n; i++) {
-      CurveEvaluate(c, from + (to - from) * (PetscReal)i / n, X);
-      sum[level] += PetscSqrtReal(PetscSqr(X[0] - last[0]) + PetscSqr(X[1] - last[1]));
-      last[0] = X[0];
-      last[1] = X[1];
-    }
-  }
-  return (4 * sum[1] - sum[0]) / 3;
-}
-
 PetscReal CurveArea(const Curve *c) {
-  /* Richardson extrapolation of areas of polygons: error h^4 for a smooth curve */
-  PetscReal sum[2] = {0, 0};
-  if (!c->n) return PETSC_PI * c->axes[0] * c->axes[1];
-  for (int level = 0; level < 2; level++) {
-    const PetscInt n = CURVE_SAMPLES << level;
-    PetscReal about[2], last[2], X[2];
-    CurveEvaluate(c, 0, about);
-    CurveEvaluate(c, 0, last);
-    for (PetscInt i = 1; i <= n; i++) {
-      CurveEvaluate(c, (PetscReal)i / n, X);
-      sum[level] += 0.5 * ((last[0] - about[0]) * (X[1] - about[1]) - (X[0] - about[0]) * (last[1] - about[1]));
-      last[0] = X[0];
-      last[1] = X[1];
-    }
-  }
-  return (4 * sum[1] - sum[0]) / 3;
+  return c->n ? CurveIntegral(c, PETSC_TRUE, 0, 1) : PETSC_PI * c->axes[0] * c->axes[1];
 }
 
 /* s[M + 1]: lengths of chords from t[0] up to t[k], with the points X[2M + 2]; returns the whole length. */

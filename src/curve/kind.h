@@ -3,7 +3,7 @@
    Points are interlaced, x0,y0,x1,y1,...; k = 0 .. n - 1 numbers the markers of a curve, and t is a real marker number.
    Between markers a curve is a trigonometric polynomial,
 
-       X(t) = t/n span + SUM X_k c_n(t - k),   c_n the cardinal function (spectral.h),
+       X(t) = t/n span + SUM (X_k - k/n span) c_n(t - k),   c_n: TrigonometricCardinal at the angle 2 pi (t - k)/n,
 
    where it repeats (closed: span = 0), and a polynomial through six markers where it is open. All functions work on one
    rank; CurveSet.part shares a search among ranks. */
@@ -15,8 +15,8 @@ typedef enum { CURVE_CLOSED, CURVE_SPANNING, CURVE_OPEN } CurveType;
 typedef struct {
   CurveType type;
   PetscReal span[2]; /* from marker 0 to where marker n would be: a period of a spanning curve, else zero */
-  PetscInt around; /* 1 + number of the closed curve of the set that this curve is meant to lie within; 0: none. Inside
-                      `around` distances are positive */
+  PetscInt around;   /* 1 + number of the curve of the set that is meant to hold this curve: distances from it are
+                        positive   inside; 0: none */
 } CurveKind;
 
 /* A set of curves. Curve v has the points start[v] .. start[v+1]-1. */

@@ -11,8 +11,7 @@
 typedef enum {
   FOLD_ODD,    /* odd continuation; entries are half a cell, one and a half, .. from the wall */
   FOLD_EVEN,   /* even continuation; entries are whole cells from the wall, and one on the wall drops out */
-  FOLD_SMOOTH, /* continuation by the polynomial through the five entries next to the wall, for entries beyond or on it
-                */
+  FOLD_SMOOTH, /* continuation by the polynomial through the five entries next to the wall */
 } FoldKind;
 
 /* FoldLow - fold the weights[n], an array of KERNEL_MAX_POINTS, of entries first .. first + n - 1 at a wall below entry

@@ -1,8 +1,8 @@
 #include "membrane/membrane.h"
 
 #define MAX_NEWTON 20
-#define CONVERGED 1e-10 /* relative error of squared edges and area; Newton's method ends far below it or not at all   \
-                         */
+/* Relative error of squared edges and area: Newton's method ends far below it or does not converge. */
+#define CONVERGED 1e-10
 #define LENGTH_RIGHT 1e-13
 #define CIRCLE 1e-3 /* sin^2 of the angle between the gradients of area and length; below it they are parallel */
 

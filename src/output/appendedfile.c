@@ -175,10 +175,10 @@ static PetscErrorCode AppendedRepair(AppendedFile *a, PetscInt most) {
         (FileSync(part) || rename(part, fresh) || !AppendedTakeNew(fresh, index, path)))
       f.failed = PETSC_TRUE;
     if (!a->folder->rank) (void)unlink(part);
-    PetscCall(FolderCheck(a->folder, !f.failed, strrchr(part, '/') + 1));
   }
   if (lines) (void)fclose(lines);
   if (old >= 0) (void)close(old);
+  if (here) PetscCall(FolderCheck(a->folder, !f.failed, strrchr(part, '/') + 1));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -1,6 +1,7 @@
 #include "base/version.h"
 #include "output/checkpoint.h"
 #include "output/gathered.h"
+#include "scheme/bdf.h"
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -111,31 +112,40 @@ PetscErrorCode CheckpointVectors(H5File *file, PetscBool write, Scheme s, PetscI
 PetscErrorCode CheckpointMoveNumbers(H5File *file, PetscBool write, CheckpointNumbers *n) {
   const struct {
     const char *name;
-    PetscInt count, *whole;
+    PetscReal least, most; /* allowed; most 0: all */
+    PetscInt *whole;
     PetscReal *real;
-  } all[] = {{"step", 1, &n->step},
-             {"past", 1, &n->past},
-             {"step_level", 1, &n->step_level},
-             {"frames", 1, &n->frames},
-             {"time", 1, NULL, &n->time},
-             {"dt", 1, NULL, &n->dt},
-             {"dt_last", 1, NULL, &n->dt_last},
-             {"step_order", 1, &n->step_order},
-             {"step_guess", 1, &n->step_guess},
-             {"flow", 1, &n->flow},
-             {"totals", 4, n->totals},
-             {"dt_earlier", SCHEME_PAST, NULL, n->dt_earlier}};
+    PetscInt count; /* 0: one number */
+  } all[] = {{"step", 0, 1e9, &n->step},
+             {"past", 0, SCHEME_PAST, &n->past},
+             {"step_level", -1000, 1000, &n->step_level},
+             {"frames", 0, 1e9, &n->frames},
+             {"time", 0, 1e300, NULL, &n->time},
+             {"dt", 0, 1e300, NULL, &n->dt},
+             {"dt_last", 0, 1e300, NULL, &n->dt_last},
+             {"step_order", 0, BDF_MOST, &n->step_order},
+             {"step_guess", 0, BDF_STATES, &n->step_guess},
+             {"flow", 0, 0, &n->flow},
+             {"totals", 0, 0, n->totals, NULL, 4},
+             {"dt_earlier", 0, 0, NULL, n->dt_earlier, SCHEME_PAST}};
   PetscFunctionBeginUser;
   for (size_t k = 0; k < sizeof(all) / sizeof(all[0]); k++) {
+    const PetscInt count = PetscMax(1, all[k].count);
     if (write && all[k].whole)
-      H5PutInts(file, all[k].name, all[k].count, all[k].whole);
+      H5PutInts(file, all[k].name, count, all[k].whole);
     else if (write)
-      H5PutReals(file, all[k].name, all[k].count, all[k].real);
-    else if (all[k].whole)
-      PetscCall(H5GetInts(file, all[k].name, all[k].count, all[k].whole));
+      H5PutReals(file, all[k].name, count, all[k].real);
     else
-      PetscCall(H5GetReals(file, all[k].name, all[k].count, all[k].real));
+      PetscCall(all[k].whole ? H5GetInts(file, all[k].name, count, all[k].whole)
+                             : H5GetReals(file, all[k].name, count, all[k].real));
+    const PetscReal value = all[k].whole ? *all[k].whole : *all[k].real;
+    PetvesCheck(write || all[k].most == 0 || (value >= all[k].least && value <= all[k].most), file->comm,
+                "-restart %s: its %s is %g; allowed: %g to %g, as petves writes it", file->path, all[k].name,
+                (double)value, (double)all[k].least, (double)all[k].most);
   }
+  PetvesCheck(write || (n->frames <= n->step + 1 && (n->step == 0 || n->dt_last > 0)), file->comm,
+              "-restart %s: it has %g frames and a last step of %g at step %g; allowed: a checkpoint.h5 of petves",
+              file->path, (double)n->frames, (double)n->dt_last, (double)n->step);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

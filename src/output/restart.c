@@ -2,7 +2,6 @@
 #include "base/version.h"
 #include "output/checkpoint.h"
 #include "output/restart.h"
-#include "scheme/bdf.h"
 #include <errno.h>
 #include <stdlib.h>
 #include <unistd.h>
@@ -131,33 +130,6 @@ static PetscErrorCode RestartEntries(Scene scene, const H5File *file) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Read the numbers, and refuse those that a run cannot have had: steps are at most as many as a run may take. */
-static PetscErrorCode RestartNumbers(Scene scene, H5File *file, CheckpointNumbers *n) {
-  const char *restart = scene->output.restart;
-  PetscFunctionBeginUser;
-  PetscCall(CheckpointMoveNumbers(file, PETSC_FALSE, n));
-  const struct {
-    const char *name;
-    PetscReal value, least, most;
-  } all[] = {{"step", n->step, 0, 1e9},
-             {"past", n->past, 0, SCHEME_PAST},
-             {"step_level", n->step_level, -1000, 1000},
-             {"frames", n->frames, 0, 1e9},
-             {"time", n->time, 0, 1e300},
-             {"dt", n->dt, 0, 1e300},
-             {"dt_last", n->dt_last, 0, 1e300},
-             {"step_order", n->step_order, 0, BDF_MOST},
-             {"step_guess", n->step_guess, 0, BDF_STATES}};
-  for (size_t k = 0; k < sizeof(all) / sizeof(all[0]); k++)
-    PetvesCheck(all[k].value >= all[k].least && all[k].value <= all[k].most, scene->comm,
-                "-restart %s: its %s is %g; allowed: %g to %g, as petves writes it", restart, all[k].name,
-                (double)all[k].value, (double)all[k].least, (double)all[k].most);
-  PetvesCheck(n->frames <= n->step + 1 && (n->step == 0 || n->dt_last > 0), scene->comm,
-              "-restart %s: it has %g frames and a last step of %g at step %g; allowed: a checkpoint.h5 of petves",
-              restart, (double)n->frames, (double)n->dt_last, (double)n->step);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* The level of step-size control counts from -time_step, which may differ from that of the checkpoint. */
 static PetscErrorCode RestartLevel(Scheme s, H5File *file, PetscInt level) {
   char base[64];
@@ -231,7 +203,7 @@ static PetscErrorCode RestartReadAll(Scheme s, H5File *file, Record *record, Pet
               "-restart %s: it has links to other names or files; allowed: a checkpoint.h5 of petves",
               s->scene->output.restart);
   PetscCall(RestartOptions(s->scene, file));
-  PetscCall(RestartNumbers(s->scene, file, &n));
+  PetscCall(CheckpointMoveNumbers(file, PETSC_FALSE, &n));
   PetscCall(RestartEntries(s->scene, file));
   PetscCall(RestartFiles(s->scene, file));
   PetscCall(RestartState(s, file, &n));
