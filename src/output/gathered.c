@@ -24,19 +24,23 @@ PetscErrorCode GatherState(const State *q, Gathered *g) {
   PetscFunctionBeginUser;
   for (int k = 0; k < GATHERED_COUNT; k++) {
     const Vec vector = GatheredVector(q, k);
-    const GatheredPart *p = &g->part[k];
-    const PetscScalar *values;
-    VecScatter scatter;
-    Vec all;
-    if (!p->n) continue;
-    PetscCall(VecScatterCreateToAll(vector, &scatter, &all));
-    PetscCall(VecScatterBegin(scatter, vector, all, INSERT_VALUES, SCATTER_FORWARD));
-    PetscCall(VecScatterEnd(scatter, vector, all, INSERT_VALUES, SCATTER_FORWARD));
-    PetscCall(VecGetArrayRead(all, &values));
-    PetscCall(PetscArraycpy(p->values, values, p->n * p->each));
-    PetscCall(VecRestoreArrayRead(all, &values));
-    PetscCall(VecScatterDestroy(&scatter));
-    PetscCall(VecDestroy(&all));
+    const PetscInt *range;
+    const PetscScalar *own;
+    PetscMPIInt rank, size, *count, *at;
+    if (!g->part[k].n) continue;
+    const MPI_Comm comm = PetscObjectComm((PetscObject)vector);
+    PetscCallMPI(MPI_Comm_rank(comm, &rank));
+    PetscCallMPI(MPI_Comm_size(comm, &size));
+    PetscCall(VecGetOwnershipRanges(vector, &range));
+    PetscCall(PetscMalloc2(size, &count, size, &at));
+    for (PetscMPIInt r = 0; r < size; r++) {
+      PetscCall(PetscMPIIntCast(range[r], &at[r]));
+      PetscCall(PetscMPIIntCast(range[r + 1] - range[r], &count[r]));
+    }
+    PetscCall(VecGetArrayRead(vector, &own));
+    PetscCallMPI(MPI_Allgatherv(own, count[rank], MPIU_REAL, g->part[k].values, count, at, MPIU_REAL, comm));
+    PetscCall(VecRestoreArrayRead(vector, &own));
+    PetscCall(PetscFree2(count, at));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
