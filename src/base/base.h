@@ -63,15 +63,12 @@ PETSC_EXTERN PetscErrorCode PetvesEvent(const char name[], PetscLogEvent *event)
 PETSC_EXTERN FILE *FileOpen(const char path[]);
 PETSC_EXTERN FILE *FileNew(const char path[]);
 
-/* PetvesRoom - room for `count` entries of so many bytes in *array, which has room for *room: a quarter more where it
-   has to grow. Entries stay. Not collective. */
-PETSC_EXTERN PetscErrorCode PetvesRoom(size_t count, size_t size, size_t *room, void *array);
-
 /* ArrayReserve - memory for at least `count` entries in an array that grows: capacity and array are the caller's, zero
-   and NULL at first. A larger capacity is at least twice the one before. Free the array with PetscFree. Not collective.
+   and NULL at first. A capacity grows by a quarter more than is asked for. Free the array with PetscFree. Not
+   collective.
  */
 #define ArrayReserve(count, capacity, array) ArrayReserveBytes((count), sizeof(**(array)), (capacity), (array))
-PETSC_EXTERN PetscErrorCode ArrayReserveBytes(PetscInt count, size_t bytes, PetscInt *capacity, void *array);
+PETSC_EXTERN PetscErrorCode ArrayReserveBytes(size_t count, size_t bytes, size_t *capacity, void *array);
 
 /* PetvesWarmUpBlas - make the BLAS allocate its own memory, or stop with one line where a rank has too little: OpenBLAS
    would wait for memory without end. The first call counts. Collective. */

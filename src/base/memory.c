@@ -3,25 +3,14 @@
 #include <petscblaslapack.h>
 #include <sys/mman.h>
 
-PetscErrorCode PetvesRoom(size_t count, size_t size, size_t *room, void *array) {
-  PetscFunctionBeginUser;
-  if (count <= *room) PetscFunctionReturn(PETSC_SUCCESS);
-  *room = count + count / 4;
-  PetscCall(PetscRealloc(*room * size, (void **)array));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* MiB that must be free: OpenBLAS 0.3.21 maps 128 MiB at its first call and keeps them. */
 #define BLAS_MIB 160
 
-PetscErrorCode ArrayReserveBytes(PetscInt count, size_t bytes, PetscInt *capacity, void *array) {
-  void *all;
+PetscErrorCode ArrayReserveBytes(size_t count, size_t bytes, size_t *capacity, void *array) {
   PetscFunctionBeginUser;
   if (count <= *capacity) PetscFunctionReturn(PETSC_SUCCESS);
-  *capacity = PetscMax(PetscMax(count, 2 * *capacity), 16);
-  memcpy(&all, array, sizeof(all));
-  PetscCall(PetscRealloc((size_t)*capacity * bytes, &all));
-  memcpy(array, &all, sizeof(all));
+  *capacity = count + count / 4 + 8;
+  PetscCall(PetscRealloc(*capacity * bytes, (void **)array));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -95,7 +95,7 @@ static PetscErrorCode AddCorrectionRow(CoarseCorrection s, const NearBlock *b, P
   PetscFunctionBeginUser;
   for (int d = 0; d < 2; d++)
     if (x[d] < column->low[d] - s->reach || x[d] > column->high[d] + s->reach) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetvesRoom((size_t)(s->pairs + LayoutCount(l, b->column)), sizeof(CorrectionPair), &s->room, &s->pair));
+  PetscCall(ArrayReserve((size_t)(s->pairs + LayoutCount(l, b->column)), &s->room, &s->pair));
   for (PetscInt j = l->start[b->column]; j < l->start[b->column + 1]; j++) {
     const PetscReal d[2] = {x[0] - X[2 * j], x[1] - X[2 * j + 1]}, r2 = d[0] * d[0] + d[1] * d[1];
     if (r2 < s->reach * s->reach) s->pair[s->pairs++] = CorrectionOf(s, i, j, d, r2);

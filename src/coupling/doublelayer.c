@@ -107,7 +107,7 @@ static PetscErrorCode AddBlock(DoubleLayer s, PetscInt row, PetscInt column, Pet
   const Layout l = s->near->set.bodies->layout;
   PetscFunctionBeginUser;
   if (s->ratio[column] == 1 || row < l->own || row >= l->end) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetvesRoom((size_t)s->blocks + 1, sizeof(DoubleBlock), &s->block_room, &s->block));
+  PetscCall(ArrayReserve((size_t)s->blocks + 1, &s->block_room, &s->block));
   s->block[s->blocks++] = (DoubleBlock){
       .row = row, .column = column, .shift = {sign * shift[0], sign * shift[1]}, .at = s->values};
   s->values += 4 * (size_t)LayoutCount(l, row) * (size_t)LayoutCount(l, column);
@@ -125,7 +125,7 @@ static PetscErrorCode FindBlocks(DoubleLayer s) {
     PetscCall(AddBlock(s, b->row, b->column, 1, b->shift));
     if (!NearBlockIsSelf(b)) PetscCall(AddBlock(s, b->column, b->row, -1, b->shift));
   }
-  PetscCall(PetvesRoom(s->values, sizeof(PetscReal), &s->value_room, &s->value));
+  PetscCall(ArrayReserve(s->values, &s->value_room, &s->value));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

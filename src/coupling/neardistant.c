@@ -78,7 +78,7 @@ PetscErrorCode NearDistantAdd(NearDistant d, const PetscReal X[], PetscInt v, Pe
   const PetscInt numbers = d->function[v].stride * d->function[w].stride;
   *added = 2 * numbers < 4 * LayoutCount(l, v) * LayoutCount(l, w) ? PETSC_TRUE : PETSC_FALSE;
   if (!*added) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetvesRoom((size_t)d->pairs + 1, sizeof(NearDistantPair), &d->room, &d->pair));
+  PetscCall(ArrayReserve((size_t)d->pairs + 1, &d->room, &d->pair));
   d->pair[d->pairs++] = (NearDistantPair){v, w, {shift[0], shift[1]}, d->values};
   d->values += (size_t)numbers;
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -99,8 +99,8 @@ PetscErrorCode NearFieldPlace(NearField f) {
   if (f->box) PetscCall(BoxPartPlace(f->box)); /* before the pairs, which may leave images to it */
   PetscCall(SinglePairsPlace(f->pairs, f->box && BoxPartHasImages(f->box) ? PETSC_FALSE : PETSC_TRUE));
   PetscCall(NearListFind(&f->list, &first));
-  PetscCall(PetvesRoom(f->list.count.values, sizeof(PetscReal), &s->value_room, &s->value));
-  PetscCall(PetvesRoom(f->list.count.singles, sizeof(float), &s->single_room, &s->single));
+  PetscCall(ArrayReserve(f->list.count.values, &s->value_room, &s->value));
+  PetscCall(ArrayReserve(f->list.count.singles, &s->single_room, &s->single));
   for (PetscInt k = 0; k < f->list.count.blocks; k++) {
     const NearBlock *b = &f->list.block[k];
     if (b->column < l->own || b->column >= l->end) crossed = PETSC_TRUE;

@@ -32,7 +32,7 @@ static PetscErrorCode AddBlock(NearList *f, PetscInt v, PetscInt w, const PetscR
   NearBlock *b;
   NearRow r;
   PetscFunctionBeginUser;
-  PetscCall(PetvesRoom((size_t)f->count.blocks + 1, sizeof(NearBlock), &f->block_room, &f->block));
+  PetscCall(ArrayReserve((size_t)f->count.blocks + 1, &f->block_room, &f->block));
   b = &f->block[f->count.blocks++];
   *b = (NearBlock){.row = v, .column = w, .shift = {shift[0], shift[1]}, .single = single, .at = *values};
   r = NearBlockBegin(l, b);
@@ -138,7 +138,7 @@ static PetscErrorCode AddImages(NearList *f, PetscInt v, PetscInt w) {
   for (int k = 0; k < count; k++) {
     if (!f->pairs->set->box || (!k && v != w)) PetscCall(AddBlock(f, v, w, image[k].shift, image[k].gap));
     if (!image[k].close) continue;
-    PetscCall(PetvesRoom((size_t)f->count.closes + 1, sizeof(NearClose), &f->close_room, &f->close));
+    PetscCall(ArrayReserve((size_t)f->count.closes + 1, &f->close_room, &f->close));
     f->close[f->count.closes++] = (NearClose){f->count.blocks - 1,
                                               FinePairMake(f->pairs->set, v, w, image[k].shift, image[k].gap)};
   }
@@ -161,7 +161,7 @@ static PetscBool Keep(void *context, PetscInt v, PetscInt w, const PetscReal d[2
   const PetscBool first = v >= l->own && v < l->end ? PETSC_TRUE : PETSC_FALSE;
   if (!first && (w < l->own || w >= l->end)) return PETSC_FALSE;
   if ((c->resting[v] && c->resting[w]) != c->fixed) return PETSC_FALSE;
-  c->error = PetvesRoom((size_t)c->count + 1, sizeof(*c->pair), &c->room, &c->pair);
+  c->error = ArrayReserve((size_t)c->count + 1, &c->room, &c->pair);
   if (c->error) return PETSC_TRUE;
   c->pair[c->count][0] = first ? v : w;
   c->pair[c->count++][1] = first ? w : v;

@@ -128,7 +128,7 @@ static PetscBool ChooseShape(SharedShapes s, PetscInt v, PetscInt first) {
 static PetscErrorCode AddShape(SharedShapes s, PetscInt like, PetscReal treading, const PetscReal X[]) {
   const Membrane m = s->coupling->membrane;
   PetscFunctionBeginUser;
-  PetscCall(PetvesRoom((size_t)s->count + 1, sizeof(SharedShape), &s->room, &s->shape));
+  PetscCall(ArrayReserve((size_t)s->count + 1, &s->room, &s->shape));
   const PetscInt n = LayoutCount(m->layout, like);
   const PetscBool jumps = s->coupling->contrast && s->coupling->contrast->ratio[like] != 1 ? PETSC_TRUE : PETSC_FALSE;
   SharedShape *q = &s->shape[s->count++];

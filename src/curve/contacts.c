@@ -18,7 +18,8 @@ typedef struct {
   PetscInt *curve;      /* [points] the curve that a point is on */
   PetscInt *head;       /* [points] number of a point's first contact, or -1 */
   ContactLink *contact; /* [count] */
-  PetscInt count, capacity;
+  PetscInt count;
+  size_t capacity;
   PetscErrorCode error;
 } ContactSearch;
 
@@ -66,7 +67,7 @@ static PetscErrorCode ContactOffer(ContactSearch *s, const CurveContact *c) {
   if (PetscAbsReal(c->distance) >= s->reach) PetscFunctionReturn(PETSC_SUCCESS);
   while (k >= 0 && s->contact[k].contact.curve[1] != c->curve[1]) k = s->contact[k].next;
   if (k < 0) {
-    PetscCall(ArrayReserve(s->count + 1, &s->capacity, &s->contact));
+    PetscCall(ArrayReserve((size_t)(s->count + 1), &s->capacity, &s->contact));
     s->contact[s->count] = (ContactLink){*c, s->head[c->point]};
     s->head[c->point] = s->count++;
   } else if (PetscAbsReal(c->distance) < PetscAbsReal(s->contact[k].contact.distance))

@@ -115,7 +115,8 @@ typedef struct {
   PetscReal *middle; /* [points][2] middles of the edges */
   PetscReal longest; /* length of the longest edge */
   PetscInt (*passed)[2]; /* [count] pairs of curves that do not cross although their polygons do */
-  PetscInt count, capacity;
+  PetscInt count;
+  size_t capacity;
   PetscInt pair[2]; /* the first pair of curves that cross */
   PetscErrorCode error;
 } EdgeSearch;
@@ -145,7 +146,7 @@ static PetscErrorCode CurvesCrossTruly(EdgeSearch *s, const PetscInt pair[2], Pe
     if (pair[0] == s->passed[k][0] && pair[1] == s->passed[k][1]) PetscFunctionReturn(PETSC_SUCCESS);
   *cross = PETSC_TRUE;
   if (s->set->smooth) PetscCall(CurvesCrossFiner(s, pair, cross));
-  PetscCall(ArrayReserve(s->count + 1, &s->capacity, &s->passed));
+  PetscCall(ArrayReserve((size_t)(s->count + 1), &s->capacity, &s->passed));
   PetscCall(PetscArraycpy(*cross ? s->pair : s->passed[s->count++], pair, 2));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -9,11 +9,11 @@
 
 typedef struct {
   PetscInt n, curves;
-  PetscInt *end;                                     /* [curves] points up to the end of each curve */
-  PetscReal *xy;                                     /* [n][2] */
-  CurveNote *note;                                   /* [curves] */
-  PetscInt end_capacity, xy_capacity, note_capacity; /* of the three arrays */
-  CurveNote next;                                    /* note of the curve that is being read */
+  PetscInt *end;                                   /* [curves] points up to the end of each curve */
+  PetscReal *xy;                                   /* [n][2] */
+  CurveNote *note;                                 /* [curves] */
+  size_t end_capacity, xy_capacity, note_capacity; /* of the three arrays */
+  CurveNote next;                                  /* note of the curve that is being read */
   const char *option, *file;
   const PetscReal *period; /* NULL: closed curves only */
   char error[PETVES_MAX_MESSAGE];
@@ -23,8 +23,8 @@ static PetscErrorCode PointsEndCurve(Points *p) {
   const PetscInt last = p->curves ? p->end[p->curves - 1] : 0;
   PetscFunctionBeginUser;
   if (p->n == last) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(ArrayReserve(p->curves + 1, &p->end_capacity, &p->end));
-  PetscCall(ArrayReserve(p->curves + 1, &p->note_capacity, &p->note));
+  PetscCall(ArrayReserve((size_t)(p->curves + 1), &p->end_capacity, &p->end));
+  PetscCall(ArrayReserve((size_t)(p->curves + 1), &p->note_capacity, &p->note));
   p->note[p->curves] = p->next;
   p->end[p->curves++] = p->n;
   p->next = (CurveNote){0};
@@ -98,7 +98,7 @@ static PetscErrorCode PointsReadLine(char line[], PetscInt number, Points *point
     PetscCall(PointsRefuse(points, number, line, "two finite numbers, x y"));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  PetscCall(ArrayReserve(2 * (points->n + 1), &points->xy_capacity, &points->xy));
+  PetscCall(ArrayReserve((size_t)(2 * (points->n + 1)), &points->xy_capacity, &points->xy));
   PetscCall(PetscArraycpy(points->xy + 2 * points->n++, x, 2));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -9,10 +9,10 @@
 #include "markers/dipolerows.h"
 
 /* MarkersRespond - U = E u, u the velocity of the Stokes solve for the force alpha E^T F and the dipoles (NULL: none).
-   MarkersAddFlow - U = E u for the force alpha E^T F, and flow += the flow of u. MarkersFollow - U = E u for the forcing
-   f, which has the dipoles' force and source in it, and for the force of earlier states (past, NULL: none), which also
-   says how U and the flow of u are made; U may be NULL: not wanted. measures: of u on the whole grid, NULL: not wanted.
-   U may be F. Collective. */
+   MarkersAddFlow - U = E u for the force alpha E^T F, and flow += the flow of u. MarkersFollow - U = E u for the
+   forcing f, which has the dipoles' force and source in it, and for the force of earlier states (past, NULL: none),
+   which also says how U and the flow of u are made; U may be NULL: not wanted. measures: of u on the whole grid, NULL:
+   not wanted. U may be F. Collective. */
 PETSC_EXTERN PetscErrorCode MarkersRespond(Markers markers, Stream stream, DipoleRows dipoles, PetscReal alpha, Vec F,
                                            Vec U);
 PETSC_EXTERN PetscErrorCode MarkersAddFlow(Markers markers, Stream stream, PetscReal alpha, Vec F, Vec U, Vec flow,

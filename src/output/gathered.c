@@ -7,10 +7,7 @@ static Vec GatheredVector(const State *q, int part) {
 
 PetscErrorCode GatheredCreate(const State *q, Gathered *g) {
   PetscFunctionBeginUser;
-  *g = (Gathered){{{"vesicle/markers", 2},
-                   {"vesicle/velocity", 2},
-                   {"vesicle/tension", 1},
-                   {"obstacle/force", 2}}};
+  *g = (Gathered){{{"vesicle/markers", 2}, {"vesicle/velocity", 2}, {"vesicle/tension", 1}, {"obstacle/force", 2}}};
   for (int k = 0; k < GATHERED_COUNT; k++) {
     PetscInt size = 0;
     if (GatheredVector(q, k)) PetscCall(VecGetSize(GatheredVector(q, k), &size));

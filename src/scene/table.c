@@ -204,12 +204,9 @@ PetscErrorCode SceneWriteOptions(Scene scene, FILE *file) {
 }
 
 /* Prefixes of solvers, and what a scene needs to have them. */
-static const OptionOwner owners[] = {{"-tension_", "-scheme_type split"},
-                                     {"-bending_", "-scheme_type split"},
-                                     {"-coupled_", "-scheme_type coupled"},
-                                     {"-helmholtz_", "-helmholtz_type hypre"},
-                                     {"-poisson_", "-poisson_type hypre"},
-                                     {NULL, NULL}};
+static const OptionOwner owners[] = {{"-tension_", "-scheme_type split"},   {"-bending_", "-scheme_type split"},
+                                     {"-coupled_", "-scheme_type coupled"}, {"-helmholtz_", "-helmholtz_type hypre"},
+                                     {"-poisson_", "-poisson_type hypre"},  {NULL, NULL}};
 
 PetscErrorCode SceneCheckUnused(Scene scene) {
   PetscFunctionBeginUser;

@@ -19,8 +19,6 @@ CHANNEL = "-domain_cells 60,48 -domain_box 0,2.5,-1,1 -domain_bc_x periodic -ves
 TWO = "-vesicle_count 2 -vesicle_semi_axes 0.2,0.4"
 
 
-
-
 #: Scenes and their steps; two vesicles on four ranks spend most of the time waiting for one another.
 SCENES = {
     "walls": ("-domain_cells 48,48 -vesicle_angle 20", 50),
