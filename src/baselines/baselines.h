@@ -4,3 +4,7 @@
 
 /* BaselinesRegister - register split and penalty, for -scheme_type. Not collective. */
 PETSC_EXTERN PetscErrorCode BaselinesRegister(void);
+
+/* SchemeCreate_Split, SchemeCreate_Penalty - give a scheme the operations of one of the methods. Collective. */
+PETSC_EXTERN PetscErrorCode SchemeCreate_Split(Scheme scheme);
+PETSC_EXTERN PetscErrorCode SchemeCreate_Penalty(Scheme scheme);

@@ -1,5 +1,6 @@
 /* Scheme "penalty": the penalty immersed boundary method of Kim and Lai, J. Comput. Phys. 229 (2010) 4840. Stiff
    springs in place of the constraint, explicit forces, a projection step of the fluid. First order in time. */
+#include "baselines/baselines.h"
 #include "fluid/stokes.h"
 #include "scheme/stepcommon.h"
 
@@ -102,15 +103,16 @@ static PetscErrorCode Destroy_Penalty(Scheme s) {
   PetscCall(VecDestroy(&d->constraint));
   PetscCall(VecDestroy(&d->force));
   PetscCall(PetscFree(d->tau));
-  PetscCall(PetscFree(s->data));
+  PetscCall(PetscFree(d));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode SchemeCreate_Penalty(Scheme s) {
+  const SchemeOps ops = {
+      .setup = SetUp_Penalty, .step = Step_Penalty, .view = View_Penalty, .destroy = Destroy_Penalty};
   Penalty *d;
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&d));
-  s->data = d;
-  s->ops = (SchemeOps){.setup = SetUp_Penalty, .step = Step_Penalty, .view = View_Penalty, .destroy = Destroy_Penalty};
+  SchemeImplement(s, &ops, d);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,5 +1,6 @@
 /* Scheme "split": the immersed boundary projection method of Ong and Lai, J. Comput. Phys. 408 (2020) 109277,
    sections 4.1 (no bending) and 4.2. First order in time. */
+#include "baselines/baselines.h"
 #include "baselines/lagrangian.h"
 #include "coupling/kspoptions.h"
 #include "scheme/stepcommon.h"
@@ -43,7 +44,7 @@ static PetscErrorCode ImplicitBending(Scheme s, Split *d) {
   PetscCall(MarkersInterpolate(c->markers, d->u2, d->rhs_z));
   PetscCall(VecScale(d->rhs_z, -s->state.dt));
   PetscCall(LagrangianSolverSolve(d->bending, d->rhs_z, d->z));
-  s->report.bending_its = d->bending->its;
+  SchemeIterations(s, 0, d->bending->its);
   if (d->bending->why < 0) {
     PetscCall(SolverFailed(s, d->bending));
     PetscFunctionReturn(PETSC_SUCCESS);
@@ -68,7 +69,7 @@ static PetscErrorCode SolveTension(Scheme s, Split *d) {
   PetscCall(VecAXPY(d->rhs_sigma, -1, s->g));
   PetscCall(VecScale(d->rhs_sigma, 1 / s->state.dt));
   PetscCall(LagrangianSolverSolve(d->tension, d->rhs_sigma, d->dsigma));
-  s->report.tension_its = d->tension->its;
+  SchemeIterations(s, d->tension->its, s->report.bending_its);
   if (d->tension->why < 0) {
     PetscCall(SolverFailed(s, d->tension));
     PetscFunctionReturn(PETSC_SUCCESS);
@@ -152,7 +153,7 @@ static PetscErrorCode Destroy_Split(Scheme s) {
   PetscCall(LagrangianSolverDestroy(&d->tension));
   PetscCall(LagrangianSolverDestroy(&d->bending));
   for (size_t i = 0; i < sizeof(all) / sizeof(all[0]); i++) PetscCall(VecDestroy(all[i]));
-  PetscCall(PetscFree(s->data));
+  PetscCall(PetscFree(d));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -176,15 +177,15 @@ static PetscErrorCode KSP_Split(Scheme s, const char prefix[], KSP *ksp) {
 }
 
 PetscErrorCode SchemeCreate_Split(Scheme s) {
+  const SchemeOps ops = {.setup = SetUp_Split,
+                         .step = Step_Split,
+                         .view = View_Split,
+                         .options = Options_Split,
+                         .ksp = KSP_Split,
+                         .destroy = Destroy_Split};
   Split *d;
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&d));
-  s->data = d;
-  s->ops = (SchemeOps){.setup = SetUp_Split,
-                       .step = Step_Split,
-                       .view = View_Split,
-                       .options = Options_Split,
-                       .ksp = KSP_Split,
-                       .destroy = Destroy_Split};
+  SchemeImplement(s, &ops, d);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -88,6 +88,12 @@ typedef struct {
   PetscReal torque;   /* about where its center is (length^4/time^2) */
 } ObstacleLoad;
 
+/* ObstacleLoadAdd - to += scale times a load that acts at the distance d (length) from the place of `to`. */
+static inline void ObstacleLoadAdd(ObstacleLoad *to, PetscReal scale, const ObstacleLoad *from, const PetscReal d[2]) {
+  for (int c = 0; c < 2; c++) to->force[c] += scale * from->force[c];
+  to->torque += scale * (from->torque + d[0] * from->force[1] - d[1] * from->force[0]);
+}
+
 /* ObstaclesLoads - of all obstacles at time t, load[curves], from the own F[2w]. Collective. */
 PETSC_EXTERN PetscErrorCode ObstaclesLoads(Obstacles obstacles, PetscReal t, const PetscScalar F[],
                                            ObstacleLoad load[]);

@@ -55,9 +55,8 @@ static void ObstacleAddLoad(Grid g, PetscReal scale, const ObstacleLoad *from, c
     const PetscReal period = g->hi[k] - g->lo[k];
     d[k] = place[k] - c[k];
     if (!g->wall[k]) d[k] -= period * PetscFloorReal(d[k] / period + 0.5);
-    to->force[k] += scale * from->force[k];
   }
-  to->torque += scale * (from->torque + d[0] * from->force[1] - d[1] * from->force[0]);
+  ObstacleLoadAdd(to, scale, from, d);
 }
 
 /* The force of gravity and contact on each vesicle, whose sum over a vesicle need not be zero, and its torque about the
@@ -78,10 +77,9 @@ static PetscErrorCode VesicleLoads(Scheme s, ObstacleLoad load[], PetscReal plac
     Measures measures;
     MembraneMeasure(m, v, X + 2 * at, &measures);
     for (int c = 0; c < 2; c++) place[2 * v + c] = measures.center[c];
-    for (PetscInt k = 2 * at; k < 2 * (at + LayoutCount(l, v)); k += 2) {
-      for (int c = 0; c < 2; c++) load[v].force[c] += F[k + c];
-      load[v].torque += (X[k] - measures.center[0]) * F[k + 1] - (X[k + 1] - measures.center[1]) * F[k];
-    }
+    for (PetscInt k = 2 * at; k < 2 * (at + LayoutCount(l, v)); k += 2)
+      ObstacleLoadAdd(&load[v], 1, &(ObstacleLoad){{F[k], F[k + 1]}, 0},
+                      (PetscReal[]){X[k] - measures.center[0], X[k + 1] - measures.center[1]});
   }
   PetscCall(VecRestoreArrayRead(s->state.X, &X));
   PetscCall(PetscFree(F));

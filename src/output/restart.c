@@ -131,13 +131,12 @@ static PetscErrorCode RestartEntries(Scene scene, const H5File *file) {
 }
 
 /* The level of step-size control counts from -time_step, which may differ from that of the checkpoint. */
-static PetscErrorCode RestartLevel(Scheme s, H5File *file, PetscInt level) {
+static PetscErrorCode RestartLevel(Scheme s, H5File *file, PetscInt *level) {
   char base[64];
   PetscFunctionBeginUser;
   PetscCall(H5GetString(file, "-time_step", sizeof(base), base));
   if (*base && strtod(base, NULL) > 0 && strtod(base, NULL) < 1e300)
-    level += (PetscInt)PetscFloorReal(2 * PetscLog2Real((PetscReal)strtod(base, NULL) / s->scene->time.dt) + 1e-9);
-  if (s->policy.adaptive) s->plan.level = level;
+    *level += (PetscInt)PetscFloorReal(2 * PetscLog2Real((PetscReal)strtod(base, NULL) / s->scene->time.dt) + 1e-9);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -164,28 +163,22 @@ static PetscErrorCode RestartRecord(Scheme s, H5File *file, const PetscInt total
 /* The present state and those before it. dt_earlier: the steps that led to the earlier states; to each but the first
    state of a run there was one. */
 static PetscErrorCode RestartState(Scheme s, H5File *file, const CheckpointNumbers *n) {
-  State *q = &s->state;
+  SchemeTimes times = {.step = n->step, .past = n->past, .t = n->time, .dt = n->dt, .dt_last = n->dt_last};
   PetscFunctionBeginUser;
-  q->step = n->step;
-  q->t = n->time;
-  q->dt = n->dt;
-  q->dt_last = n->dt_last;
-  s->past = s->old[0].X ? n->past : 0; /* some schemes go on from one state */
-  s->plan.order = n->step_order;
-  s->plan.guess = n->step_guess;
+  times.plan = (StepPlan){.level = n->step_level, .order = n->step_order, .guess = n->step_guess};
+  PetscCall(RestartLevel(s, file, &times.plan.level));
+  PetscCall(PetscArraycpy(times.dt_earlier, n->dt_earlier, SCHEME_PAST));
+  SchemeSetTimes(s, &times);
   PetvesCheck(n->step_order > 0 && n->step_guess > 0, s->scene->comm,
               "-restart %s: its step_order is %" PetscInt_FMT ", its step_guess is %" PetscInt_FMT
               "; allowed: at least 1",
               s->scene->output.restart, n->step_order, n->step_guess);
-  for (PetscInt j = 0; j < s->past; j++) {
+  for (PetscInt j = 0; j < s->past; j++)
     PetvesCheck(n->dt_earlier[j] >= 0 && n->dt_earlier[j] <= 1e300 && (j == s->past - 1 || n->dt_earlier[j] > 0),
                 s->scene->comm, "-restart %s: its dt_earlier is %g; allowed: a step above 0, as petves writes it",
                 s->scene->output.restart, (double)n->dt_earlier[j]);
-    s->old[j].dt_last = n->dt_earlier[j];
-  }
-  PetscCall(RestartLevel(s, file, n->step_level));
   for (PetscInt j = 0; j <= s->past; j++) {
-    State *state = j ? &s->old[j - 1] : q;
+    State *state = j ? &s->old[j - 1] : &s->state;
     PetscCall(CheckpointVectors(file, PETSC_FALSE, s, j, state));
     PetscCall(RestartVectors(s, state));
   }

@@ -10,23 +10,23 @@ typedef struct {
   Convection convection; /* NULL unless the fluid has it */
   State next;            /* the state being made */
   History history;       /* what it is made from */
-  PetscInt order;        /* of the step being made, */
-  StepPlan next_plan;    /* and what it says for the next one: order and guess */
-  PetscBool graded;      /* the step under way is a graded start, */
-  PetscReal done;        /* of which this much is done (time) */
-  PetscBool warned;      /* of edges that were off */
-  Vec made_at;           /* markers at which the preconditioner's dense blocks were made, */
-  PetscReal *made_with;  /* [vesicles] and the label speeds */
-  StreamPast past;       /* the states before, where they are a force as flows */
+  PetscInt order;        /* order of the step being made */
+  StepPlan next_plan;    /* order and guess that the step being made plans for the next one */
+  PetscBool graded;      /* the step being made is a graded start */
+  PetscReal done;        /* the part of a graded start that is done (time) */
+  PetscBool warned;      /* a warning of edges that were off has been given */
+  Vec made_at;           /* markers at which the preconditioner's dense blocks were made */
+  PetscReal *made_with;  /* [vesicles] label speeds with which these blocks were made */
+  StreamPast past;       /* the states before, where their flows act as a force */
   Vec Xstar, Xhat;       /* extrapolated markers, BDF history of the markers */
-  Vec moved;             /* viscosity contrast: known part of the markers' motion */
-  Vec force;             /* minus what is known of the force on all bodies' markers */
-  Vec V, known, Y;       /* solved part of the markers' velocity, what is known of it, and of obstacles; work */
+  Vec moved;             /* known part of the markers' motion; NULL without viscosity contrast */
+  Vec force;             /* minus the known part of the force on all bodies' markers */
+  Vec V, known, Y;       /* solved part and known part of the markers' velocity, obstacles included; work */
   Vec P;                 /* the markers' velocity as the labels of the step see it */
   PetscScalar *edges;    /* [2n] work */
 } Coupled;
 
-/* What makes and reads flows, of a scheme whose states have them. */
+/* The flows of a scheme whose states have them. */
 static inline StreamFlows CoupledFlows(const Coupled *d) {
   return StreamGetFlows(d->solver->reduced->stream);
 }
@@ -35,8 +35,8 @@ static inline StreamFlows CoupledFlows(const Coupled *d) {
    Collective. */
 PETSC_EXTERN PetscErrorCode CoupledAttempt(Scheme scheme, PetscReal dt, PetscBool *solved);
 
-/* CoupledFixedAttempt - the same; a step whose motion stops within it is made again by backward Euler, from the state
-   itself in place of an extrapolation. Collective. */
+/* CoupledFixedAttempt - CoupledAttempt of a fixed step. A step whose motion stops within it is made again by backward
+   Euler, from the state itself in place of an extrapolation. Collective. */
 PETSC_EXTERN PetscErrorCode CoupledFixedAttempt(Scheme scheme, PetscReal dt, PetscBool *solved);
 
 /* CoupledAdvance - next becomes the state and the state the old one; then the markers are moved to their area and
@@ -54,3 +54,6 @@ PETSC_EXTERN PetscErrorCode CoupledFields(Scheme scheme);
 PETSC_EXTERN PetscErrorCode CoupledVelocity(Scheme scheme, const State *state, Vec w);
 PETSC_EXTERN PetscErrorCode CoupledFlow(Scheme scheme, Vec w, Vec flow);
 PETSC_EXTERN PetscErrorCode CoupledSquare(Scheme scheme, PetscReal *square);
+
+/* SchemeCreate_Coupled - give a scheme the operations of the unsplit step. Collective. */
+PETSC_EXTERN PetscErrorCode SchemeCreate_Coupled(Scheme scheme);

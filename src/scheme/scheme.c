@@ -1,5 +1,6 @@
 #include "scheme/scheme.h"
 #include "coupling/precondition.h"
+#include "scheme/coupled.h"
 #include "scheme/statechecks.h"
 
 static PetscFunctionList schemes;

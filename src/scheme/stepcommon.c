@@ -1,6 +1,28 @@
 #include "scheme/stepcommon.h"
 #include "base/agree.h"
 
+void SchemeImplement(Scheme s, const SchemeOps *ops, void *data) {
+  s->ops = *ops;
+  s->data = data;
+}
+
+void SchemeIterations(Scheme s, PetscInt tension, PetscInt bending) {
+  s->report.tension_its = tension;
+  s->report.bending_its = bending;
+}
+
+void SchemeSetTimes(Scheme s, const SchemeTimes *times) {
+  s->state.step = times->step;
+  s->state.t = times->t;
+  s->state.dt = times->dt;
+  s->state.dt_last = times->dt_last;
+  s->past = s->old[0].X ? times->past : 0;
+  for (PetscInt j = 0; j < s->past; j++) s->old[j].dt_last = times->dt_earlier[j];
+  s->plan.order = times->plan.order;
+  s->plan.guess = times->plan.guess;
+  if (s->policy.adaptive) s->plan.level = times->plan.level;
+}
+
 PetscErrorCode SchemeKeep(Scheme s) {
   Snapshot *b = &s->before;
   PetscFunctionBeginUser;

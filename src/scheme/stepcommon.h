@@ -101,6 +101,21 @@ struct _p_Scheme {
   SchemeOps ops;
 };
 
+/* The times of a scheme's states and its plan for the next step, for a run that goes on from a checkpoint. */
+typedef struct {
+  PetscInt step, past;                               /* steps taken; old states that are known */
+  PetscReal t, dt, dt_last, dt_earlier[SCHEME_PAST]; /* dt_earlier: the steps that led to the old states */
+  StepPlan plan;
+} SchemeTimes;
+
+/* SchemeSetTimes - take these times and this plan; a scheme of one state takes no old ones. Not collective. */
+PETSC_EXTERN void SchemeSetTimes(Scheme scheme, const SchemeTimes *times);
+
+/* SchemeImplement - give a scheme its operations and its own data. SchemeIterations - report the iterations of the
+   solves for tension and bending. Not collective. */
+PETSC_EXTERN void SchemeImplement(Scheme scheme, const SchemeOps *ops, void *data);
+PETSC_EXTERN void SchemeIterations(Scheme scheme, PetscInt tension, PetscInt bending);
+
 /* SchemePlace - put everything that a solve stands on at the markers X, with label speeds treading[vesicles] or NULL
    (CouplingPlace), and the background of time t there: background = u_inf(X), g = -Dm background/h^2. placed is false
    with report.failure when a marker is too close to a wall or the flow has no value. Collective. */
@@ -153,9 +168,3 @@ PETSC_EXTERN PetscErrorCode SchemeAdvise(Scheme scheme, const char advice[]);
 /* SchemeWarn - a warning on rank 0's output, one line, and among those of summary.json. Every rank gives the same text.
    Collective. */
 PETSC_EXTERN PetscErrorCode SchemeWarn(Scheme scheme, const char format[], ...) PETSC_ATTRIBUTE_FORMAT(2, 3);
-
-/* SchemeCreate_Coupled, SchemeCreate_Split, SchemeCreate_Penalty - the schemes, as SchemeRegister takes them: each puts
-   its operations into a scheme that has none. Collective. */
-PETSC_EXTERN PetscErrorCode SchemeCreate_Coupled(Scheme);
-PETSC_EXTERN PetscErrorCode SchemeCreate_Split(Scheme);
-PETSC_EXTERN PetscErrorCode SchemeCreate_Penalty(Scheme);
