@@ -146,26 +146,24 @@ PetscErrorCode GridAddSquares(Grid g, const GridWindow *window, Vec w, PetscReal
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* out = a0 here - nu (second differences) for one row; a missing neighbour in x is `factor` times the entry itself, or
-   the row's other end where x is periodic. */
-static void HelmholtzRow(PetscInt n, PetscBool wall, PetscReal factor, PetscReal diagonal, PetscReal off,
-                         const PetscScalar down[], const PetscScalar here[], const PetscScalar up[],
-                         PetscScalar out[]) {
-  const PetscScalar left = wall ? factor * here[0] : here[n - 1], right = wall ? factor * here[n - 1] : here[0];
-  out[0] = diagonal * here[0] - off * (left + here[1] + down[0] + up[0]);
-  for (PetscInt i = 1; i < n - 1; i++)
-    out[i] = diagonal * here[i] - off * (here[i - 1] + here[i + 1] + down[i] + up[i]);
-  out[n - 1] = diagonal * here[n - 1] - off * (here[n - 2] + right + down[n - 1] + up[n - 1]);
-}
-
+/* Row by row; a missing neighbour in x is `factor` times the entry itself, or the row's other end where x is periodic.
+ */
 PetscErrorCode GridHelmholtzField(Grid g, Field f, PetscReal a0, PetscReal nu, const PetscScalar w[], PetscScalar y[]) {
-  const PetscReal off = nu / PetscSqr(g->h), diagonal = a0 + 4 * off;
+  const PetscReal off = nu / PetscSqr(g->h), diagonal = a0 + 4 * off, factor = GridWallFactor(f, 0);
+  const PetscInt n = g->columns[f];
   Rows rows;
   PetscFunctionBeginUser;
   PetscCall(GridRows(g, f, w, &rows));
-  for (PetscInt j = 0; j < g->rows[f]; j++)
-    HelmholtzRow(g->columns[f], g->wall[0], GridWallFactor(f, 0), diagonal, off, RowAt(&rows, j - 1), RowAt(&rows, j),
-                 RowAt(&rows, j + 1), y + j * g->columns[f]);
+  for (PetscInt j = 0; j < g->rows[f]; j++) {
+    const PetscScalar *down = RowAt(&rows, j - 1), *here = RowAt(&rows, j), *up = RowAt(&rows, j + 1);
+    const PetscScalar left = g->wall[0] ? factor * here[0] : here[n - 1];
+    const PetscScalar right = g->wall[0] ? factor * here[n - 1] : here[0];
+    PetscScalar *out = y + j * n;
+    out[0] = diagonal * here[0] - off * (left + here[1] + down[0] + up[0]);
+    for (PetscInt i = 1; i < n - 1; i++)
+      out[i] = diagonal * here[i] - off * (here[i - 1] + here[i + 1] + down[i] + up[i]);
+    out[n - 1] = diagonal * here[n - 1] - off * (here[n - 2] + right + down[n - 1] + up[n - 1]);
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -77,13 +77,6 @@ void StreamMeterSquares(StreamMeter m, PetscInt j, const PetscScalar row[], Pets
   if (has_v) m->own.square += LanesSum(v) + (PetscReal)g->n[0] * PetscSqr(mean_v);
 }
 
-/* h times the divergence of cell i, less its source's; `last` is the cell before it. */
-static PetscReal Divergence(PetscReal h, const PetscScalar u[], const PetscScalar low[], const PetscScalar high[],
-                            PetscReal rise, const PetscScalar source[], PetscInt i, PetscInt last) {
-  const PetscReal d = u[i] - u[last] + (high[last] - high[i]) - (low[last] - low[i]) + rise;
-  return source ? d + h * source[i] : d;
-}
-
 void StreamMeterDivergence(StreamMeter m, const PetscScalar u[], const PetscScalar low[], const PetscScalar high[],
                            PetscReal rise, const PetscScalar source[]) {
   const PetscInt n = m->grid->n[0];
@@ -99,8 +92,10 @@ void StreamMeterDivergence(StreamMeter m, const PetscScalar u[], const PetscScal
     four = LanesMax(four, LanesMax(d, -d));
   }
   for (int k = 0; k < LANES; k++) most = PetscMax(most, four[k]);
-  for (PetscInt k = n; k-- > i;)
-    most = PetscMax(most, PetscAbsReal(Divergence(h, u, low, high, rise, source, k, k - 1)));
-  most = PetscMax(most, PetscAbsReal(Divergence(h, u, low, high, rise, source, 0, n - 1)));
+  for (PetscInt k = n; k >= i; k--) { /* the last cells of the row, and the first one */
+    const PetscInt at = k > i ? k - 1 : 0, last = at ? at - 1 : n - 1;
+    const PetscReal d = u[at] - u[last] + (high[last] - high[at]) - (low[last] - low[at]) + rise;
+    most = PetscMax(most, PetscAbsReal(source ? d + h * source[at] : d));
+  }
   m->own.divergence = most / h;
 }

@@ -113,11 +113,12 @@ PetscErrorCode DipoleRowsSet(DipoleRows d, const DipoleList list, const PetscRea
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* row += factor (five-point sum of b), with the rows low and high times `below` and `above`, over a period of n
-   entries. The last entry is left out where it is on a wall. */
-static void RowAddLaplacian(PetscInt n, PetscBool wall, PetscReal factor, const PetscScalar *restrict b,
-                            PetscReal below, const PetscScalar *restrict low, PetscReal above,
-                            const PetscScalar *restrict high, PetscScalar *restrict row) {
+/* row += factor (five-point sum), over a period of n entries, of the rows low, b, high = rows[], low and high times
+   sign[]. The last entry is left out where it is on a wall. */
+static void RowAddLaplacian(PetscInt n, PetscBool wall, PetscReal factor, const PetscScalar *const rows[3],
+                            const PetscReal sign[2], PetscScalar *restrict row) {
+  const PetscScalar *restrict low = rows[0], *restrict b = rows[1], *restrict high = rows[2];
+  const PetscReal below = sign[0], above = sign[1];
   row[0] += factor * (b[n - 1] + b[1] + below * low[0] + above * high[0] - 4 * b[0]);
   for (PetscInt i = 1; i + 1 < n; i++)
     row[i] += factor * (b[i - 1] + b[i + 1] + below * low[i] + above * high[i] - 4 * b[i]);
@@ -138,8 +139,9 @@ void DipoleRowsAddForce(DipoleRows d, Field f, PetscInt j, PetscScalar row[]) {
   const PetscBool bottom = d->grid->wall[1] && d->grid->first + j == 0 ? PETSC_TRUE : PETSC_FALSE;
   const PetscBool top = d->grid->wall[1] && d->grid->first + j == d->grid->n[1] - 1 ? PETSC_TRUE : PETSC_FALSE;
   const PetscScalar *low = DipoleRow(d, FIELD_P, bottom ? j : j - 1), *high = DipoleRow(d, FIELD_P, top ? j : j + 1);
-  RowAddLaplacian(n, d->grid->wall[0], d->nu / PetscSqr(d->grid->h), DipoleRow(d, FIELD_P, j), bottom ? -1 : 1, low,
-                  top ? -1 : 1, high, row);
+  RowAddLaplacian(n, d->grid->wall[0], d->nu / PetscSqr(d->grid->h),
+                  (const PetscScalar *[]){low, DipoleRow(d, FIELD_P, j), high},
+                  (PetscReal[]){bottom ? -1 : 1, top ? -1 : 1}, row);
 }
 
 void DipoleRowsAddVelocity(DipoleRows d, PetscInt j, PetscScalar row[]) {

@@ -34,7 +34,7 @@ static PetscErrorCode CheckpointRows(H5File *file, PetscBool write, const char n
     H5CreateSeries(file, name, PETSC_FALSE, 2, dims);
   else
     H5CheckEntry(file, name, 2, dims);
-  PetscCall(H5TransferRows(file, write, name, 0, g, field, each, values));
+  PetscCall(H5TransferRows(file, write, &(H5Entry){name, 0}, g, field, each, values));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

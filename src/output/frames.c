@@ -99,8 +99,8 @@ PetscErrorCode FramesWrite(Frames *f, const Gathered *now, PetscBool scheduled) 
   file->count = f->scheduled;
   PetscCall(CellFields(s, f->cells[0], f->cells[1], f->cells[2]));
   for (; k < 3; k++)
-    PetscCall(H5TransferRows(&file->file, PETSC_TRUE, file->kind.path[k], file->count, s->fluid->grid, FIELD_P,
-                             s->fluid->grid->n[0], f->cells[k]));
+    PetscCall(H5TransferRows(&file->file, PETSC_TRUE, &(H5Entry){file->kind.path[k], file->count}, s->fluid->grid,
+                             FIELD_P, s->fluid->grid->n[0], f->cells[k]));
   for (int part = GATHERED_MARKERS; part <= GATHERED_TENSION; part++)
     if (now->part[part].n) AppendedSet(file, k++, now->part[part].values);
   if (o) {

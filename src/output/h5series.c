@@ -79,11 +79,11 @@ unsigned long long H5EntryPlace(H5File *f, const char name[], PetscInt index) {
   return f->failed ? 0 : place;
 }
 
-/* Write or read rows first .. first + rows - 1 of entry `index`, n values in all, from or to rank 0's array; rows 0:
+/* Write or read rows[1] rows of entry `index` from row rows[0] on, n values in all, from or to rank 0's array; NULL:
    the whole entry. A series whose rows have another size is an error. */
-static void EntryTransfer(H5File *f, PetscBool write, const char name[], PetscInt index, PetscInt first, PetscInt rows,
+static void EntryTransfer(H5File *f, PetscBool write, const char name[], PetscInt index, const PetscInt rows[2],
                           PetscInt n, void *values) {
-  hsize_t size[3] = {0, 1, 1}, start[3] = {(hsize_t)index, (hsize_t)first, 0}, part[3], count = 1;
+  hsize_t size[3] = {0, 1, 1}, start[3] = {(hsize_t)index, rows ? (hsize_t)rows[0] : 0, 0}, part[3], count = 1;
   hid_t space = -1, memory = -1;
   int ndims;
   if (f->failed) return;
@@ -93,7 +93,7 @@ static void EntryTransfer(H5File *f, PetscBool write, const char name[], PetscIn
     size[0] = (hsize_t)index + 1;
     H5Try(f, H5Dset_extent(set, size));
   }
-  for (int d = 0; d < 3; d++) part[d] = !d ? 1 : (d == 1 && rows ? (hsize_t)rows : size[d]);
+  for (int d = 0; d < 3; d++) part[d] = !d ? 1 : (d == 1 && rows ? (hsize_t)rows[1] : size[d]);
   for (int d = 0; d < ndims; d++) count *= part[d];
   H5Try(f, count == (hsize_t)n && (hsize_t)index < size[0] ? 0 : -1);
   H5Try(f, space = H5Dget_space(set));
@@ -109,18 +109,18 @@ static void EntryTransfer(H5File *f, PetscBool write, const char name[], PetscIn
 }
 
 void H5WriteArray(H5File *f, const char name[], PetscInt index, PetscInt n, const PetscReal values[]) {
-  if (!f->rank) EntryTransfer(f, PETSC_TRUE, name, index, 0, 0, n, (void *)values);
+  if (!f->rank) EntryTransfer(f, PETSC_TRUE, name, index, NULL, n, (void *)values);
 }
 
 PetscErrorCode H5ReadArray(H5File *f, const char name[], PetscInt index, PetscInt n, PetscReal values[]) {
   PetscFunctionBeginUser;
-  if (!f->rank) EntryTransfer(f, PETSC_FALSE, name, index, 0, 0, n, values);
+  if (!f->rank) EntryTransfer(f, PETSC_FALSE, name, index, NULL, n, values);
   PetscCallMPI(MPI_Bcast(values, (PetscMPIInt)n, MPIU_REAL, 0, f->comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode H5TransferRows(H5File *f, PetscBool write, const char name[], PetscInt index, Grid g, Field field,
-                              PetscInt columns, PetscScalar values[]) {
+PetscErrorCode H5TransferRows(H5File *f, PetscBool write, const H5Entry *entry, Grid g, Field field, PetscInt columns,
+                              PetscScalar values[]) {
   const PetscInt own = columns * g->rows[field];
   PetscScalar *slab = NULL;
   PetscFunctionBeginUser;
@@ -128,13 +128,13 @@ PetscErrorCode H5TransferRows(H5File *f, PetscBool write, const char name[], Pet
   if (g->rank && !write)
     PetscCallMPI(MPI_Recv(values, (PetscMPIInt)own, MPIU_SCALAR, 0, 0, g->comm, MPI_STATUS_IGNORE));
   if (g->rank) PetscFunctionReturn(PETSC_SUCCESS);
-  EntryTransfer(f, write, name, index, 0, g->rows[field], own, values);
+  EntryTransfer(f, write, entry->name, entry->index, (PetscInt[]){0, g->rows[field]}, own, values);
   PetscCall(PetscCalloc1(columns * g->block, &slab)); /* zero where nothing can be read */
   for (PetscMPIInt r = 1; r < g->size; r++) {
     const PetscInt rows = r < g->size - 1 ? g->block : g->all_rows[field] - (g->size - 1) * g->block,
                    n = columns * rows;
     if (write) PetscCallMPI(MPI_Recv(slab, (PetscMPIInt)n, MPIU_SCALAR, r, 0, g->comm, MPI_STATUS_IGNORE));
-    if (rows) EntryTransfer(f, write, name, index, r * g->block, rows, n, slab);
+    if (rows) EntryTransfer(f, write, entry->name, entry->index, (PetscInt[]){r * g->block, rows}, n, slab);
     if (!write) PetscCallMPI(MPI_Send(slab, (PetscMPIInt)n, MPIU_SCALAR, r, 0, g->comm));
   }
   PetscCall(PetscFree(slab));

@@ -30,7 +30,11 @@ PETSC_EXTERN void H5WriteArray(H5File *file, const char name[], PetscInt index, 
 PETSC_EXTERN PetscErrorCode H5ReadArray(H5File *file, const char name[], PetscInt index, PetscInt n,
                                         PetscReal values[]);
 
-/* H5TransferRows - entry `index` with `each` numbers in every row of a field of the grid, written or read: the values
-   of a rank are those of its own rows. Collective. */
-PETSC_EXTERN PetscErrorCode H5TransferRows(H5File *file, PetscBool write, const char name[], PetscInt index, Grid grid,
-                                           Field field, PetscInt each, PetscScalar values[]);
+/* H5TransferRows - write or read an entry of a series with `each` numbers in every row of a field of the grid: a rank
+   has the values of its own rows. Collective. */
+typedef struct {
+  const char *name; /* of the series */
+  PetscInt index;
+} H5Entry;
+PETSC_EXTERN PetscErrorCode H5TransferRows(H5File *file, PetscBool write, const H5Entry *entry, Grid grid, Field field,
+                                           PetscInt each, PetscScalar values[]);
