@@ -1,6 +1,21 @@
 #include "coupling/boxaxis.h"
 #include "base/lanes.h"
 
+void BoxAxisPeriodic(PetscInt places, PetscInt modes, PetscReal low, PetscReal high, BoxAxis *a) {
+  a->wall = PETSC_FALSE;
+  a->low = low;
+  a->high = high;
+  a->places = a->pairs = places;
+  a->modes = modes;
+  for (PetscInt k = 0; k < places; k++) a->place[k] = low + (high - low) * k / places;
+}
+
+void BoxAxisStretch(PetscReal from, PetscReal factor, BoxAxis *a) {
+  a->low = from + factor * (a->low - from);
+  a->high = from + factor * (a->high - from);
+  for (PetscInt k = 0; k < a->places; k++) a->place[k] = from + factor * (a->place[k] - from);
+}
+
 void BoxAxisChebyshev(PetscInt places, PetscReal low, PetscReal high, BoxAxis *a) {
   a->wall = PETSC_TRUE;
   a->faded = BOX_FADED;

@@ -20,6 +20,17 @@ typedef struct {
   PetscInt pairs;                    /* of a response's place a and a force's b: a * places + b, or the offset a */
 } BoxAxis;
 
+/* BoxAxisPeriodic - the axis of a period from low to high (length) with so many places, equally spaced, and modes that
+   are kept. BoxAxisStretch - make an axis `factor` times as long, `from` staying where it is. Not collective. */
+PETSC_EXTERN void BoxAxisPeriodic(PetscInt places, PetscInt modes, PetscReal low, PetscReal high, BoxAxis *axis);
+PETSC_EXTERN void BoxAxisStretch(PetscReal from, PetscReal factor, BoxAxis *axis);
+
+/* BoxAxisOfGrid - the axis of a direction of the box without places: what BoxImage needs, images that fade at the part
+   `faded` of the period. Not collective. */
+static inline BoxAxis BoxAxisOfGrid(PetscBool wall, PetscReal low, PetscReal high, PetscReal faded) {
+  return (BoxAxis){.wall = wall, .low = low, .high = high, .faded = faded};
+}
+
 /* BoxAxisChebyshev - the axis with so many of Chebyshev's places (even, at most BOX_WALL_PLACES) from low to high
    (length). BoxAxisPolynomials - values[places] at x of the even halves of Lagrange's polynomials on them, then of the
    odd ones, which the mirror images of a box keep apart: an orthogonal change of the polynomials. Not collective. */

@@ -10,12 +10,8 @@ PetscErrorCode BoxPartCreate(const FluidSpec *spec, Markers markers, const BoxLa
   b->lattice = *lattice;
   b->markers = markers;
   b->ramp = spec->inertia == INERTIA_NONE ? PETSC_FALSE : PETSC_TRUE;
-  for (int d = 0; d < 2; d++) {
-    b->axis[d].wall = markers->grid->wall[d];
-    b->axis[d].faded = BOX_FADED;
-    b->axis[d].low = markers->grid->lo[d];
-    b->axis[d].high = markers->grid->hi[d];
-  }
+  for (int d = 0; d < 2; d++)
+    b->axis[d] = BoxAxisOfGrid(markers->grid->wall[d], markers->grid->lo[d], markers->grid->hi[d], BOX_FADED);
   PetscCall(PetvesEvent("BoxTable", &b->make));
   PetscCall(PetscMalloc1(2 * markers->layout->n, &b->X));
   for (PetscInt k = 0; k < 2 * markers->layout->n; k++) b->X[k] = NAN;

@@ -31,13 +31,6 @@ static void CoarseCells(const FluidSpec *spec, PetscInt cells[2]) {
   }
 }
 
-/* The axis of a box that differs in this length only. */
-static void Stretch(PetscReal from, PetscReal factor, BoxAxis *a) {
-  a->low = from + factor * (a->low - from);
-  a->high = from + factor * (a->high - from);
-  for (PetscInt k = 0; k < a->places; k++) a->place[k] = from + factor * (a->place[k] - from);
-}
-
 static void MakeAxis(const FluidSpec *spec, int dir, PetscReal H, PetscBool middle, PetscReal faded, PetscInt places,
                      BoxAxis *a) {
   const PetscInt shorter = PetscMin(spec->cells[0], spec->cells[1]), times = (spec->cells[dir] + shorter - 1) / shorter;
@@ -47,14 +40,8 @@ static void MakeAxis(const FluidSpec *spec, int dir, PetscReal H, PetscBool midd
     BoxAxisChebyshev(places, low + margin, high - margin, a);
     return;
   }
-  a->wall = PETSC_FALSE;
-  a->faded = faded;
-  a->low = low;
-  a->high = high;
-  a->places = times * (BOX_PLACES / FLUID_LONGEST_PERIOD);
-  a->modes = times * MODES;
-  a->pairs = a->places;
-  for (PetscInt k = 0; k < a->places; k++) a->place[k] = low + (high - low) * k / a->places;
+  *a = BoxAxisOfGrid(PETSC_FALSE, low, high, faded);
+  BoxAxisPeriodic(times * (BOX_PLACES / FLUID_LONGEST_PERIOD), times * MODES, low, high, a);
 }
 
 /* Between walls: nearer to one than the table reaches, of the straight line on from its end. */
@@ -344,7 +331,7 @@ PetscErrorCode BoxTableCreate(const FluidSpec *spec, const char kernel[], const 
   for (int d = 0; d < 2; d++) {
     MakeAxis(&pair, d, t->H, middle, lattice->all ? ALL_FADED : BOX_FADED, places, &axis[d]);
     t->axis[d] = axis[d];
-    if (d) Stretch(pair.box[2], height / (pair.box[3] - pair.box[2]), &t->axis[d]);
+    if (d) BoxAxisStretch(pair.box[2], height / (pair.box[3] - pair.box[2]), &t->axis[d]);
     t->functions[d] = t->axis[d].wall ? t->axis[d].places : 2 * t->axis[d].modes + 1;
     size *= t->axis[d].pairs;
   }

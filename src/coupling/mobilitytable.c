@@ -142,13 +142,6 @@ static PetscErrorCode UnitResponse(MobilityTable m, int source) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* In a square box v to v is u to u, turned. */
-static void TurnTable(OffsetTable *t) {
-  const PetscInt n = 2 * t->size[0] + 1;
-  for (PetscInt j = 0; j < n; j++)
-    for (PetscInt i = 0; i < n; i++) t->value[OFFSET_VV][j * n + i] = t->value[OFFSET_UU][i * n + j];
-}
-
 PetscErrorCode MobilityTableSetUp(MobilityTable m, PetscReal alpha) {
   const Grid g = m->periodic->grid;
   PetscFunctionBeginUser;
@@ -159,7 +152,7 @@ PetscErrorCode MobilityTableSetUp(MobilityTable m, PetscReal alpha) {
   if (!m->stokes) PetscCall(CreateTableSolver(m));
   PetscCall(UnitResponse(m, 0));
   if (g->n[0] == g->n[1])
-    TurnTable(&m->green);
+    OffsetTableTurn(&m->green);
   else
     PetscCall(UnitResponse(m, 1));
   if (IsTableLarge(g)) PetscCall(DestroyTableSolver(m));

@@ -14,6 +14,12 @@ PetscErrorCode OffsetTableDestroy(OffsetTable *t) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+void OffsetTableTurn(OffsetTable *t) {
+  const PetscInt n = 2 * t->size[0] + 1;
+  for (PetscInt j = 0; j < n; j++)
+    for (PetscInt i = 0; i < n; i++) t->value[OFFSET_VV][j * n + i] = t->value[OFFSET_UU][i * n + j];
+}
+
 /* SUM w_i (i - SUM w_j j)^4 of the weights a, b. */
 static inline PetscReal FourthMoment(Lanes a, Lanes b) {
   const Lanes low = {0, 1, 2, 3}, high = low + LANES;

@@ -22,6 +22,9 @@ typedef struct {
 PETSC_EXTERN PetscErrorCode OffsetTableCreate(const PetscInt size[2], OffsetTable *table);
 PETSC_EXTERN PetscErrorCode OffsetTableDestroy(OffsetTable *table);
 
+/* OffsetTableTurn - in a square box the block v to v is the block u to u turned by 90 degrees. Not collective. */
+PETSC_EXTERN void OffsetTableTurn(OffsetTable *table);
+
 /* OffsetAt - the entry at an offset within the table. */
 static inline PetscReal OffsetAt(const OffsetTable *t, int block, PetscInt i, PetscInt j) {
   return t->value[block][(j + t->size[1]) * (2 * t->size[0] + 1) + i + t->size[0]];

@@ -52,6 +52,15 @@ PETSC_EXTERN PetscErrorCode FastSolverSolve(FastSolver s, const PetscScalar b[],
 PETSC_EXTERN PetscErrorCode FastSolverBegin(FastSolver s, const PetscScalar b[]);
 PETSC_EXTERN PetscErrorCode FastSolverEnd(FastSolver s, PetscScalar x[]);
 
+/* FastSolverClearFailure - forget the failure of earlier solves. FastSolverCount - count a solve of the same work that
+   was made elsewhere. Not collective. */
+static inline void FastSolverClearFailure(FastSolver s) {
+  s->failure.why = KSP_CONVERGED_ITERATING;
+}
+static inline void FastSolverCount(FastSolver s) {
+  s->solves++;
+}
+
 /* FastSolverGetPC - the PCSHELL that applies this solver to vectors of the field's DMDA. Borrowed. */
 PETSC_EXTERN PetscErrorCode FastSolverGetPC(FastSolver s, PC *pc);
 

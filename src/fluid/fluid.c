@@ -220,5 +220,5 @@ const SolveFailure *FluidFailure(Fluid f) {
 }
 
 void FluidClearFailure(Fluid f) {
-  for (int k = FIELD_U; k <= FIELD_P && !f->grid->free; k++) f->solver[k]->failure.why = KSP_CONVERGED_ITERATING;
+  for (int k = FIELD_U; k <= FIELD_P && !f->grid->free; k++) FastSolverClearFailure(f->solver[k]);
 }

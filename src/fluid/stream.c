@@ -173,7 +173,7 @@ PetscErrorCode StreamSolve(Stream s, const StreamRows *rows, StreamMeasures *mea
   s->flow = NULL;
   if (past) PetscCall(StreamFlowsEnd(s->flows, past, &s->meter->own.past));
   if (measures) PetscCall(StreamMeterEnd(s->meter, measures));
-  s->fluid->solver[FIELD_P]->solves++;
+  FastSolverCount(s->fluid->solver[FIELD_P]);
   PetscCall(PhaseEnd());
   PetscFunctionReturn(PETSC_SUCCESS);
 }

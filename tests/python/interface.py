@@ -2,7 +2,6 @@
 
 import gc
 import sys
-import time
 from pathlib import Path
 
 import numpy as np
@@ -17,7 +16,6 @@ from petsc4py import PETSc
 import petves
 
 SMALL = dict(domain_cells=(32, 32), vesicle_semi_axes=(0.35, 0.5), time_step=0.01, time_end=0.03, flow_type="shear")
-BEGAN = time.monotonic()  # as the clock of time_wall_limit does with the first simulation
 RANKS, RANK = PETSc.COMM_WORLD.getSize(), PETSc.COMM_WORLD.getRank()
 
 
@@ -107,34 +105,9 @@ def running():
         assert sim.run() == "stopped" and sim.steps == 0
     with petves.Simulation(time_wall_limit=1000, **SMALL) as sim:
         assert sim.run() == "finished"
-    stops_in_the_first_step()
     PETSc.COMM_WORLD.barrier()
     assert not temporary.exists(), "a temporary folder goes with its simulation"
     refused("closed", sim.step)
-
-
-def stops_in_the_first_step():
-    """Where another part of it would take longer than the time that is left; the checkpoint is of the start."""
-    times = []
-
-    def slow(x, y, t):
-        if t > 0:
-            times.append(t)
-            time.sleep(0.3)
-        return y, 0 * x
-
-    folder = FOLDER / "slow"
-    scene = {**SMALL, "domain_cells": (16, 16), "flow_type": None, "scheme_type": "coupled", "scheme_order": 2}
-    limit = time.monotonic() - BEGAN + 2.5  # a second of it is kept for the checkpoint
-    with petves.Simulation(output_dir=folder, time_wall_limit=limit, **scene, flow=slow) as sim:
-        assert sim.run() == "stopped" and sim.steps == 0 and sim.time == 0
-    assert RANKS > 1 or 0 < max(times) < SMALL["time_step"], "others may have no marker"
-    flow = lambda x, y, t: (y, 0 * x)
-    with petves.Simulation.restart(folder / "checkpoint.h5", time_wall_limit=0, flow=flow) as again:
-        again.run()
-        with petves.Simulation(**scene, flow=flow) as straight:
-            straight.run()
-            assert np.array_equal(straight.markers, again.markers)
 
 
 def restarting():
