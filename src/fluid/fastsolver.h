@@ -9,7 +9,7 @@
 
 /* A solve that did not converge; the same on every rank. */
 typedef struct {
-  const char *prefix;     /* of its options */
+  const char *prefix;     /* prefix of the solver's options */
   KSPConvergedReason why; /* negative; 0: all solves have converged */
   PetscInt its;
   PetscReal residual; /* 2-norm */
@@ -22,15 +22,15 @@ struct _p_FastSolver {
   PetscReal a0, nu;     /* operator in force */
   PetscBool singular;   /* constants are in the null space: the mean of the solution is set to zero */
   Mat A;                /* the operator, a MatShell on vectors of the field's DMDA */
-  PC pc;                /* its inverse, a PCSHELL */
+  PC pc;                /* the inverse of A, a PCSHELL */
   PetscInt solves;      /* solves so far */
   SolveFailure failure; /* the first one since it was last cleared */
   void *data;           /* the back end's own */
   PetscErrorCode (*setcoefficients)(FastSolver);
   PetscErrorCode (*apply)(FastSolver, const PetscScalar b[], PetscScalar x[]); /* local arrays; x may be b */
-  PetscErrorCode (*begin)(FastSolver, const PetscScalar b[]);                  /* or in two halves */
+  PetscErrorCode (*begin)(FastSolver, const PetscScalar b[]);                  /* in place of apply: two halves */
   PetscErrorCode (*end)(FastSolver, PetscScalar x[]);
-  const PetscScalar *b; /* of a solve under way, for a back end that has no halves */
+  const PetscScalar *b; /* right-hand side of the solve under way, for a back end that has apply */
   PetscErrorCode (*destroy)(FastSolver);
 };
 
@@ -47,8 +47,8 @@ PETSC_EXTERN PetscErrorCode FastSolverSetCoefficients(FastSolver s, PetscReal a0
    Collective. Errors: see `failure` above. */
 PETSC_EXTERN PetscErrorCode FastSolverSolve(FastSolver s, const PetscScalar b[], PetscScalar x[]);
 
-/* FastSolverBegin, FastSolverEnd - the same in two halves, so that messages of one field travel while the next is at
-   work: b must stay as it is until the solve ends. Every Begin wants its End, in the same order on every rank. */
+/* FastSolverBegin, FastSolverEnd - FastSolverSolve in two halves, so that messages of one field travel while the next
+   field is solved. b must not change until the solve ends. Each Begin has its End, in the same order on every rank. */
 PETSC_EXTERN PetscErrorCode FastSolverBegin(FastSolver s, const PetscScalar b[]);
 PETSC_EXTERN PetscErrorCode FastSolverEnd(FastSolver s, PetscScalar x[]);
 

@@ -1,8 +1,6 @@
-/* Down all rows of a solve by stream function: the nodes' chi, rows of velocity, its flow and what is measured. */
 #include "fluid/streamdown.h"
 #include "fluid/streamloops.h"
 
-/* On the way down: what comes in from above. */
 void StreamBeginDown(Stream s) {
   const StreamSlabs q = s->slabs;
   s->felt = q->width / STREAM_BLOCK;
@@ -10,7 +8,7 @@ void StreamBeginDown(Stream s) {
   for (PetscInt b = 0; b < s->felt; b++) s->fed[b] = q->rows;
 }
 
-/* Blocks of Z that are felt in row j, where `stored` of them have y: Z is zero beyond. */
+/* Blocks of modes in which Z has not decayed in row j, where y has `stored` blocks; Z is zero in the others. */
 static PetscInt FeltBlocks(Stream s, PetscInt j, PetscInt stored) {
   const StreamSlabs q = s->slabs;
   PetscInt blocks = PetscMax(s->felt, stored);
@@ -21,7 +19,6 @@ static PetscInt FeltBlocks(Stream s, PetscInt j, PetscInt stored) {
   return blocks;
 }
 
-/* The next row of nodes downwards, j: modes of chi/h, so many; in `into` unless that is NULL. */
 PetscInt StreamNodeModes(Stream s, PetscInt j, PetscBool squares, PetscReal *into, PetscReal **modes) {
   const StreamSlabs q = s->slabs;
   const PetscInt w = q->width, all = s->t->width, stored = j < 0 ? w / STREAM_BLOCK : q->alive[j];

@@ -4,7 +4,7 @@
 #include "fluid/streamfactors.h"
 #include "fluid/tridiagonal.h"
 
-#define NEGLIGIBLE 50. /* e^-50 n = 2e-22 n: what comes in from that far is not felt */
+#define NEGLIGIBLE 50. /* a mode that has decayed by e^-50 = 2e-22 is zero to rounding */
 
 typedef struct {
   PetscReal a[2][2];
@@ -38,7 +38,7 @@ static Slab Stack(Slab low, Slab high) {
                 .gain = Plus(low.gain, 1, Times(low.power, Times(high.gain, low.power)))};
 }
 
-/* A slab of m rows, by doubling. */
+/* M^m and the gain of a slab of m rows, by doubling. */
 static Slab OfRows(PetscReal r1, PetscReal r2, PetscInt m) {
   Slab all = {.power = unit}, next = {.power = {{{r1, 0}, {r1, r2}}}, .gain = {{{r1, r2}, {r1, r2}}}};
   for (; m > 0; m /= 2) {
@@ -63,8 +63,8 @@ static void Store(StreamFactors s, PetscInt k, Pair from, PairMatrix to) {
   for (int i = 0; i < 4; i++) to[i * s->width + k] = from.a[i / 2][i % 2];
 }
 
-/* The seam: Y below the first row is what leaves the last one, (1 - M^n)^-1 of what leaves it with nothing coming in; Z
-   above the last row likewise. */
+/* Set the constants of mode k. At the seam of a period Y below the first row is what leaves the last row,
+   (1 - M^n)^-1 times what leaves it when nothing comes in; so is Z above the last row. */
 static void SetMode(StreamFactors s, PetscInt k, PetscReal theta_1, PetscReal theta_2) {
   const PetscInt n = s->grid->all_rows[FIELD_V], full = s->grid->block;
   const PetscReal r1 = PetscExpReal(-theta_1), r2 = PetscExpReal(-theta_2);

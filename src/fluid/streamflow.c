@@ -38,7 +38,7 @@ PetscErrorCode StreamFlowsCreateVec(StreamFlows s, Vec *flow) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Row j of the sum, of rows that are this rank's. */
+/* Row j of the sum, a row of this rank. */
 static void SumRow(StreamFlows s, PetscInt j, PetscReal *restrict sum) {
   const PetscInt at = j * s->each;
   const PetscReal a = s->weight[0], b = s->weight[1], c = s->weight[2];
@@ -46,7 +46,7 @@ static void SumRow(StreamFlows s, PetscInt j, PetscReal *restrict sum) {
   for (PetscInt k = 0; k < s->each; k++) sum[k] = a * x[k] + b * y[k] + c * z[k];
 }
 
-/* The neighbours' rows next to this rank's, which are across the seam on one rank; none at walls, and none of a
+/* Exchange the rows next to the slab with the neighbours: across the seam on one rank, none at walls, none of a
    neighbour that has no nodes. */
 static PetscErrorCode Exchange(StreamFlows s) {
   const Grid g = s->grid;
@@ -85,8 +85,7 @@ PetscErrorCode StreamFlowsEnd(StreamFlows s, const StreamPast *past, PetscReal *
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* SUM u^2 over the rows of u is SUM c (2 c - those of the rows below and above) of the nodes' c = chi/h, that of v
-   SUM lambda c^2. */
+/* With the nodes' c = chi/h, SUM u^2 = SUM_j c_j (2 c_j - c_{j-1} - c_{j+1}) and SUM v^2 = SUM lambda c^2. */
 const PetscReal *StreamFlowsCurl(StreamFlows s, PetscInt j) {
   const PetscReal *last = j > 0 ? s->line[(j - 1) % 3] : s->edge[0], *now = s->line[j % 3], *next = s->edge[1];
   Lanes square = {0};
@@ -147,7 +146,7 @@ PetscErrorCode StreamFlowsVelocity(StreamFlows s, Vec flow, Vec w) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Modes of chi/h of a row of v, whose sum along the row it is, and (x periodic) without a mean. */
+/* Modes of chi/h of a row: chi/h is minus the sum of v along the row, without a mean where x is periodic. */
 static void FlowRow(StreamFlows s, const PetscScalar v[], PetscReal mean, PetscScalar chi[], PetscScalar modes[]) {
   const PetscInt n = s->grid->n[0];
   for (PetscInt i = 0; i < n; i++) chi[i] = (i ? chi[i - 1] : 0) - (v[i] - mean);

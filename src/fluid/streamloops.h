@@ -22,7 +22,7 @@ static inline PetscReal Sum(PetscInt n, const PetscScalar x[]) {
   return LanesSum(sum[0] + sum[1]) + rest;
 }
 
-/* One row upwards: y of the row, from its modes b and y of the row below; y1 goes along. */
+/* One row upwards: y of the row from its modes b and y of the row below; y1 is updated. */
 static inline void Up(PetscInt width, const PetscReal *restrict r1, const PetscReal *restrict r2,
                       const PetscReal *restrict b, const PetscReal *restrict below, PetscReal *restrict y1,
                       PetscReal *restrict y) {
@@ -32,8 +32,8 @@ static inline void Up(PetscInt width, const PetscReal *restrict r1, const PetscR
   }
 }
 
-/* The same of a force on the faces next to two walls alone, from modes a and b of its curl, y2 going along too; added
-   to y. */
+/* One row upwards for forces on the faces next to two walls: y += y2, where a and b are the modes of the curl of a unit
+   force at either wall; y1 and y2 are updated. */
 static inline void UpWalls(PetscInt width, const PetscReal *restrict r1, const PetscReal *restrict r2,
                            const PetscReal force[2], const PetscReal *restrict a, const PetscReal *restrict b,
                            PetscReal *restrict y1, PetscReal *restrict y2, PetscReal *restrict y) {
@@ -44,7 +44,7 @@ static inline void UpWalls(PetscInt width, const PetscReal *restrict r1, const P
   }
 }
 
-/* One row downwards: its chi, in modes. Without y, which is zero there, the second. */
+/* One row downwards: the modes of chi; z1 and z2 are updated. DownFree - for the modes in which y is zero. */
 static inline void Down(PetscInt width, const PetscReal *restrict r1, const PetscReal *restrict r2,
                         const PetscReal *restrict factor, const PetscReal *restrict y, PetscReal *restrict z1,
                         PetscReal *restrict z2, PetscReal *restrict chi) {
@@ -64,7 +64,7 @@ static inline void DownFree(PetscInt from, PetscInt width, const PetscReal *rest
   }
 }
 
-/* u = d_y chi and v = -d_x chi, of chi/h, and the mean flow. */
+/* u = d_y chi and v = -d_x chi with the mean flow, from chi/h. */
 static inline void VelocityU(PetscInt n, const PetscScalar *restrict low, const PetscScalar *restrict high,
                              PetscReal mean, PetscScalar *restrict u) {
   for (PetscInt i = 0; i < n; i++) u[i] = high[i] - low[i] + mean;

@@ -37,11 +37,12 @@ PetscErrorCode StreamMeterEnd(StreamMeter m, StreamMeasures *all) {
   all->slip = sum[1];
   all->pressure = sum[2];
   all->past = sum[3];
-  if (PetscIsInfOrNanReal(sum[0] + sum[3])) all->divergence = NAN; /* which may get lost in MPI_MAX */
+  if (PetscIsInfOrNanReal(sum[0] + sum[3])) all->divergence = NAN; /* MPI_MAX may lose a NaN */
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The mean of v is zero in all rows, so that of its force is the pressure's step from row j to the next one. */
+/* The mean of v is zero in all rows, so that the mean of its force is the step of the pressure from row j to the next.
+ */
 void StreamMeterForce(StreamMeter m, PetscInt j, PetscReal sum) {
   const Grid g = m->grid;
   const PetscInt above = g->n[1] - 1 - (g->first + j); /* rows of cells, which have the step in them */
@@ -61,7 +62,8 @@ void StreamMeterSlip(StreamMeter m, PetscInt j, PetscReal mean_u) {
   if (g->first + j == g->n[1] - 1) m->own.slip -= mean_u;
 }
 
-/* By Parseval. A row of v has no other mean than what is added to it, one of u between walls in x none. */
+/* By Parseval's theorem. A row of v has no other mean than what is added to it; a row of u between walls in x has none.
+ */
 void StreamMeterSquares(StreamMeter m, PetscInt j, const PetscScalar row[], PetscReal mean_u, PetscBool has_v,
                         PetscReal mean_v) {
   const Grid g = m->grid;

@@ -46,7 +46,7 @@ PetscErrorCode StreamSlabsReserve(StreamSlabs s) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What this slab tells the others: its first Z and its last Y, both for nothing coming in from outside. */
+/* The first Z and the last Y of this slab where nothing comes in from outside, for the other ranks. */
 static void Summarise(StreamSlabs s) {
   const PetscInt w = s->width;
   for (PetscInt b = 0; b < w / BLOCK; b++) {
@@ -82,7 +82,7 @@ static void Product(StreamSlabs s, const PairMatrix matrix, const PetscReal in[]
   AddProduct(s, matrix, in, out);
 }
 
-/* From Y below the first slab to Y below every slab and above the last. */
+/* From Y below the first slab to Y below every slab and above the last one. */
 static void CarryUp(StreamSlabs s) {
   const PetscMPIInt size = s->grid->size;
   const PetscInt pair = 2 * s->part;
@@ -105,8 +105,8 @@ static void CarryDown(StreamSlabs s) {
   }
 }
 
-/* What comes into every slab. Walls: Z above all rows follows from Y there, and Y below them from Z for nothing coming
-   in at the bottom. Seam: Y below follows from Y above for nothing coming in, then Z likewise (streamfactors.c). */
+/* What comes into every slab. At walls, Z above all rows follows from Y there, and Y below all rows from the Z of no Y
+   at the bottom. At a seam, Y below all rows follows from Y above them, and Z above from Z below (streamfactors.c). */
 static void Close(StreamSlabs s) {
   const PetscInt pair = 2 * s->part;
   PetscReal *Y = s->Y, *Z = s->Z + (s->grid->size - 1) * pair;
@@ -128,7 +128,7 @@ static void Close(StreamSlabs s) {
   CarryDown(s);
 }
 
-/* Modes of part q. */
+/* Number of modes of part q. */
 static PetscInt PartCount(StreamSlabs s, PetscMPIInt q) {
   return PetscMax(0, PetscMin(s->part, s->width - q * s->part));
 }
@@ -140,7 +140,7 @@ static PetscErrorCode Exchange(StreamSlabs s) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Each rank gets its part of the modes of all slabs. */
+/* Send each rank its part of the modes of this slab. */
 static PetscErrorCode ToParts(StreamSlabs s) {
   const PetscInt w = s->width, part = s->part;
   PetscFunctionBeginUser;
@@ -155,7 +155,7 @@ static PetscErrorCode ToParts(StreamSlabs s) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* And each slab what comes into it of all modes. */
+/* Send each slab what comes into it, in the modes of this part. */
 static PetscErrorCode ToSlabs(StreamSlabs s) {
   const PetscInt w = s->width, part = s->part;
   PetscFunctionBeginUser;
@@ -174,7 +174,7 @@ static PetscErrorCode ToSlabs(StreamSlabs s) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Blocks that anything comes in of from below. */
+/* Blocks of modes in which anything comes in from below. */
 static PetscInt BlocksBelow(StreamSlabs s) {
   const PetscReal *y1 = s->below, *y2 = y1 + s->width;
   PetscInt k = s->width;
@@ -182,7 +182,7 @@ static PetscInt BlocksBelow(StreamSlabs s) {
   return (k + BLOCK - 1) / BLOCK;
 }
 
-/* y2 of the rows += factor times what Y from below becomes there. */
+/* y2 of the rows += factor times the contribution of Y from below. */
 static void AddBelow(StreamSlabs s, PetscReal factor) {
   const PetscInt w = s->width, blocks = BlocksBelow(s);
   const PetscReal *below = s->below;

@@ -19,8 +19,8 @@ typedef struct {
                          in the row below; all rows where there is one next to a seam in y */
   PetscInt wanted[2]; /* velocities are not wanted outside rows wanted[0] .. wanted[1] - 1; all: 0, rows of u */
   const StreamPast *past; /* a further force, of states before, and what of it is in the velocities; NULL: none */
-  Vec flow;               /* of the velocity; NULL: not wanted, */
-  PetscBool add;          /* and it is added to what is there */
+  Vec flow;               /* becomes the flow of the velocity; NULL: not wanted */
+  PetscBool add;          /* the flow of the velocity is added to `flow` */
   const PetscScalar *(*force)(void *ctx, Field f, PetscInt j,
                               PetscScalar work[]);                     /* may be work[n_x], which it fills */
   void (*velocity)(void *ctx, Field f, PetscInt j, PetscScalar row[]); /* downwards; to u it may add what it has */
@@ -35,22 +35,22 @@ struct _p_Stream {
   Fluid fluid;
   ZeroFlux flux;            /* borrowed, or NULL */
   RowTransform t;           /* along the nodes of a row */
-  StreamFactors factors;    /* of the recurrences */
-  StreamSlabs slabs;        /* what they leave */
+  StreamFactors factors;    /* constants of the recurrences */
+  StreamSlabs slabs;        /* y of the rows, and what comes into the slab */
   SideWalls side;           /* NULL where x is periodic */
-  PetscInt *fed;            /* [blocks] the last row with y of a block, on the way down */
-  PetscInt felt;            /* blocks of Z in the last row */
+  PetscInt *fed;            /* [blocks] the last row on the way down in which a block has y */
+  PetscInt felt;            /* blocks of modes in which Z of the last row has not decayed */
   PetscScalar *row[3];      /* [n_x] two rows of u's force or of chi, one of v */
   PetscScalar *curl, *zero; /* [n_x] */
-  Tridiagonal mean;         /* of u's row means: one mode; NULL between walls, where there are none */
-  PetscReal one[2];         /* its eigenvalue and its scale */
+  Tridiagonal mean;         /* the solve for the row means of u, one mode; NULL between walls in x, without means */
+  PetscReal one[2];         /* eigenvalue and scale of that mode */
   PetscReal *means, mean_v; /* [rows of u] mode 0 of u, and of v */
   StreamMeter meter;
   StreamFlows flows;
-  PetscScalar *flow; /* of the solve under way, where it is wanted */
+  PetscScalar *flow; /* the flow that the solve under way makes; NULL: none */
 };
 
-/* What is added to the mean of row `at` of all. */
+/* The mean that is added to row `at` of the whole grid. */
 static inline PetscReal StreamGiven(const StreamRows *rows, Field f, PetscInt at) {
   return rows->mean[f] ? rows->mean[f][at] : 0;
 }

@@ -1,8 +1,8 @@
-/* Up all rows of a solve by stream function: y of the modes from the rows of forces and the states before. */
 #include "fluid/streamup.h"
 #include "fluid/streamloops.h"
 
-/* Modes of the curl of row j's forces: u's below and above it and v's, and of the states before (NULL: none). */
+/* Modes of the curl of the forces at a row of nodes: of u below and above it, of v in it, and of the states before
+   (past, NULL: none). */
 static const PetscReal *CurlModes(Stream s, const PetscScalar low[], const PetscScalar high[], const PetscScalar v[],
                                   const PetscReal past[]) {
   PetscReal *restrict modes = s->t->modes;
@@ -22,7 +22,7 @@ static void ForcedRow(Stream s, PetscInt j, const PetscReal curl[], const PetscR
   q->alive[j] = w / STREAM_BLOCK;
 }
 
-/* y of row j, which is so many rows above the last force: of the blocks that are still felt. */
+/* y of row j, `since` rows above the last force, in the blocks of modes that have not decayed. */
 static void FreeRow(Stream s, PetscInt j, PetscInt since) {
   const StreamSlabs q = s->slabs;
   PetscInt blocks = j > 0 ? q->alive[j - 1] : 0;
@@ -34,7 +34,7 @@ static void FreeRow(Stream s, PetscInt j, PetscInt since) {
        q->y + j * q->width);
 }
 
-/* n_x nu d_yy of the v that is added to row j between walls: what it is to the pressure. */
+/* n_x nu d_yy of the v that is added to row j between walls, which the pressure balances. */
 static PetscReal GivenForce(Stream s, const StreamRows *rows, PetscInt j) {
   const Grid g = s->fluid->grid;
   const PetscInt at = g->first + j;
@@ -43,7 +43,7 @@ static PetscReal GivenForce(Stream s, const StreamRows *rows, PetscInt j) {
   return (PetscReal)g->n[0] * s->fluid->nu / PetscSqr(g->h) * bend;
 }
 
-/* The force on v in row j, or its sum. */
+/* Take in the sum of the force on v in row j: for the mean flow, or for the meter. */
 static void TakeSum(Stream s, const StreamRows *rows, PetscBool measured, PetscInt j, PetscReal sum) {
   if (!s->fluid->grid->wall[1])
     s->mean_v += sum;
@@ -51,7 +51,7 @@ static void TakeSum(Stream s, const StreamRows *rows, PetscBool measured, PetscI
     StreamMeterForce(s->meter, j, sum + GivenForce(s, rows, j));
 }
 
-/* Row j of nodes, with the row of u's force below it; returns the one above. */
+/* The way up through row j of nodes; low: the row of u's force below it. Returns the row of u's force above it. */
 static const PetscScalar *GatherRow(Stream s, const StreamRows *rows, PetscBool measured, PetscInt j,
                                     const PetscScalar *low, const PetscReal past[], const PetscReal below[]) {
   const PetscInt n = s->fluid->grid->n[0], end = rows->forced[1];
@@ -69,7 +69,7 @@ static PetscReal PastSum(Stream s, const StreamRows *rows, PetscInt j, int comp)
   return rows->past ? (PetscReal)s->fluid->grid->n[0] * StreamFlowsMean(s->flows, j, comp) : 0;
 }
 
-/* Up all rows, with nothing coming in from below. The nodes below the first row of u with a force feel it. */
+/* The way up, with nothing coming in from below. It begins at the nodes below the first row of u with a force. */
 void StreamGather(Stream s, const StreamRows *rows, PetscBool measured) {
   const Grid g = s->fluid->grid;
   const StreamSlabs q = s->slabs;
