@@ -1,6 +1,6 @@
-/* The preconditioner of the reduced coupled problem, and the decision how long its dense blocks serve
-   (docs/solver.md, Preconditioner): of the markers' mobility among themselves, by a dense table of a periodic box, of
-   the obstacles by themselves, and of each pair of walls by itself. */
+/* The preconditioner of the reduced coupled problem (docs/solver.md, Preconditioner): block Jacobi of the bodies. Few
+   vesicles share one dense block; many vesicles have blocks of shared shapes with a coarse grid; obstacles have a block
+   of their own. It also decides how long a dense block serves before it is made again. */
 #pragma once
 #include "coupling/denseblocks.h"
 #include "coupling/obstacleblock.h"
@@ -8,21 +8,21 @@
 #include "coupling/unknowns.h"
 #include "scene/scene.h"
 
-/* How the dense blocks age. Iterations, not seconds, so that a run does not depend on the machine. */
+/* The age of the dense blocks, by iterations, not by seconds, so that a run does not depend on the machine. */
 typedef struct {
-  PetscReal a0;        /* that they were made for; 0: none yet */
-  PetscReal *treading; /* [vesicles] label speeds that they were made for */
-  PetscInt fresh_its;  /* least iterations of a solve with them, one at least if not the first; -1: not known yet */
-  PetscInt solves;     /* that they have served */
-  PetscReal excess;    /* iterations above fresh_its in all of these */
-  PetscInt most;       /* solves that they may serve */
-  PetscInt made;       /* times that blocks have been made */
+  PetscReal a0;        /* the a0 for which the blocks were made; 0: none yet */
+  PetscReal *treading; /* [vesicles] the label speeds for which the blocks were made */
+  PetscInt fresh_its;  /* least iterations of a solve with these blocks; -1: not known yet */
+  PetscInt solves;     /* solves that the blocks have served */
+  PetscReal excess;    /* iterations above fresh_its in all of these solves */
+  PetscInt most;       /* solves that the blocks may serve */
+  PetscInt made;       /* number of times that blocks have been made */
 } Ageing;
 
-/* Of the solve under way. */
+/* Counts of the solve under way. */
 typedef struct {
   PetscInt applied; /* times that the preconditioner has been applied */
-  PetscInt renewed; /* of them before the blocks were made anew; 0: they were not */
+  PetscInt renewed; /* applications before the blocks were made anew; 0: they were not */
 } Application;
 
 typedef struct _p_Preconditioner *Preconditioner;
@@ -32,7 +32,7 @@ struct _p_Preconditioner {
   DenseBlocks blocks;   /* few vesicles */
   SharedShapes shapes;  /* many vesicles */
   ObstacleBlock solid;  /* NULL without obstacles */
-  PetscReal step_ratio; /* of two steps whose dense blocks are the same */
+  PetscReal step_ratio; /* largest ratio of two steps that share dense blocks */
   Ageing age;
   Application now;
   PetscBool graded;   /* the solve under way is of a part of a graded start */

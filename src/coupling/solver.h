@@ -1,4 +1,6 @@
-/* The coupled solve of one step: FGMRES, prefix coupled_, on the reduced problem (docs/solver.md, Reduced unknowns). */
+/* The solve of one step's coupled problem (reduced.h) by FGMRES, prefix coupled_, with the preconditioner of
+   precondition.h (docs/solver.md, Reduced unknowns). A solve is made of rounds: a residual by a Stokes solve, a
+   KSPSolve for the change, and the residual again, until it is within the tolerance. */
 #pragma once
 #include "coupling/precondition.h"
 #include "coupling/reduced.h"
@@ -6,19 +8,20 @@
 /* How a solve went. */
 typedef struct {
   PetscInt its;
-  KSPConvergedReason why; /* < 0: failed */
-  PetscReal residual;
-  StreamMeasures measures; /* of the velocity, where w is NULL */
+  KSPConvergedReason why;  /* negative: the solve failed */
+  PetscReal residual;      /* norm of the last residual */
+  StreamMeasures measures; /* measures of the velocity, where the problem's w is NULL */
 } SolveReport;
 
 typedef enum { TRIAL_NONE, TRIAL_WANTED, TRIAL_MADE } TrialState;
 
-/* What the first product of a solve leaves behind where fluid/stream.h makes products: the whole residual at x + scale
-   z, the forces of which are in f then. */
+/* The trial of a solve. Its first product is made at x + scale z, z the preconditioned residual, and is a whole
+   residual: where that is small enough the solve ends with it. The forces of x + scale z are then in the problem's f.
+ */
 typedef struct {
   TrialState state;
-  PetscReal scale, residual; /* norms of the residual before and at it */
-  Vec x, b;                  /* the unknowns and the residual there */
+  PetscReal scale, residual; /* norms of the residual at x and at the trial */
+  Vec x, b;                  /* unknowns and residual of the trial */
 } Trial;
 
 typedef struct _p_CoupledSolver *CoupledSolver;
@@ -27,14 +30,14 @@ struct _p_CoupledSolver {
   Unknowns unknowns;
   Reduced reduced;
   Preconditioner preconditioner;
-  Mat A; /* the reduced problem's */
+  Mat A; /* the operator of the reduced problem, with the trial */
   KSP ksp;
   Trial trial;
   PetscBool guess;     /* -coupled_ksp_initial_guess_nonzero: start from the guess */
   Vec x, b;            /* unknowns, residual */
-  Vec change;          /* of one KSPSolve */
-  Vec pending;         /* part of x whose forces are not in the right-hand side f yet */
-  PetscReal reference; /* norm of the step's right-hand side, which the tolerance is relative to */
+  Vec change;          /* solution of one KSPSolve */
+  Vec pending;         /* part of x whose forces are not in the problem's f */
+  PetscReal reference; /* norm of the step's right-hand side; the tolerance is relative to it */
   PetscReal start;     /* residual norm that a KSPSolve starts from */
 };
 

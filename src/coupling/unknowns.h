@@ -7,30 +7,38 @@
 typedef struct _p_Unknowns *Unknowns;
 struct _p_Unknowns {
   Coupling coupling;                 /* borrowed */
-  PetscReal length;                  /* l, that residuals are weighed with: 2 R0 of the smallest vesicle */
+  PetscReal length;                  /* l, the length of the residuals' factors: 2 R0 of the smallest vesicle */
   PetscInt velocity, solid, tension; /* own numbers of each kind */
 };
 
+/* UnknownsCreate - the layout of the unknowns of these bodies. Collective. */
 PETSC_EXTERN PetscErrorCode UnknownsCreate(Coupling coupling, Unknowns *unknowns);
 PETSC_EXTERN PetscErrorCode UnknownsDestroy(Unknowns *unknowns);
 
 /* UnknownsCreateVec - a vector of unknowns, zero. Collective. */
 PETSC_EXTERN PetscErrorCode UnknownsCreateVec(Unknowns unknowns, Vec *x);
 
-/* UnknownsPack - x from its parts; solid may be NULL where there is none. UnknownsUnpack - and back. Not collective. */
+/* UnknownsPack - put the parts into x; solid may be NULL where there is none. UnknownsUnpack - copy the parts out of x.
+   Not collective. */
 PETSC_EXTERN PetscErrorCode UnknownsPack(Unknowns unknowns, Vec V, Vec solid, Vec sigma, Vec x);
 PETSC_EXTERN PetscErrorCode UnknownsUnpack(Unknowns unknowns, Vec x, Vec V, Vec solid, Vec sigma);
 
-/* UnknownsScale - rows of this rank's residual y times their factors (inverse: over them), which give every row the
-   unit length^2/time^2, so that the norm does not depend on the units. A residual f of the momentum equation
-   (length/time^2) is weighed with the length l, 2 R0 of the smallest vesicle. The other rows, by which a residual of
-   the membrane is a surface divergence times nu: Dm V/h^2 = g           (nu + h l alpha) h^2/ds; h l alpha weighs short
-   steps, where the momentum's right-hand side u alpha would hide the row V = E u - Theta F      that over h^2, an
-   edge's difference, times the root of the force it means, bending over viscous (an energy norm) obstacles (nu + h l
-   alpha)/ds. Not collective. */
+/* clang-format off */
+/* UnknownsScale - multiply the rows of this rank's residual y by their factors (inverse: divide), which give every row
+   the unit length^2/time^2, so that the norm does not depend on the units. With the length l = 2 R0 of the smallest
+   vesicle the factors are
+
+       momentum                       l
+       Dm V/h^2 = g                   (nu + h l alpha) h^2/ds
+       V = E u - C F                  the same over h^2, times sqrt(bending force over viscous force)
+       obstacles                      (nu + h l alpha)/ds
+
+   h l alpha weighs short steps, in which the momentum's right-hand side alpha u would hide the other rows. Not
+   collective. */
+/* clang-format on */
 PETSC_EXTERN void UnknownsScale(Unknowns unknowns, PetscBool inverse, PetscScalar y[]);
 
-/* UnknownsTension - where the tensions start in a rank's part. Not collective. */
+/* UnknownsTension - index at which the tensions start in a rank's part. Not collective. */
 static inline PetscInt UnknownsTension(Unknowns u) {
   return u->velocity + u->solid;
 }

@@ -10,18 +10,18 @@ typedef struct {
   Vec values;           /* f on the faces (length/time^2); NULL: no forcing has been made */
   Vec source;           /* in the cells (1/time); NULL: zero */
   PetscReal mean[2];    /* mean velocity that goes with the source in a box periodic both ways, or without flux */
-  GridWindow window;    /* values and source are zero outside it, */
-  PetscBool everywhere; /* unless they may be anywhere */
+  GridWindow window;    /* values and source are zero outside the window, unless `everywhere` */
+  PetscBool everywhere; /* values and source may be anywhere */
 } Forcing;
 
-/* ForcingCreate - zero, with a source or without one. ForcingCopy - all of it; vectors that the target lacks are made.
-   Collective. */
+/* ForcingCreate - a zero forcing, with a source or without one. ForcingCopy - copy vectors, mean and window; vectors
+   that the target lacks are made. Collective. */
 PETSC_EXTERN PetscErrorCode ForcingCreate(Grid grid, PetscBool source, Forcing *forcing);
 PETSC_EXTERN PetscErrorCode ForcingCopy(const Forcing *from, Forcing *to);
 PETSC_EXTERN PetscErrorCode ForcingDestroy(Forcing *forcing);
 
-/* ForcingClear - zero again. ForcingNote - values and source may be written in this window, too; NULL: everywhere. Not
-   collective. */
+/* ForcingClear - make the forcing zero. ForcingNote - note that values and source are written in this window too; NULL:
+   everywhere. Not collective. */
 PETSC_EXTERN PetscErrorCode ForcingClear(Forcing *forcing);
 PETSC_EXTERN void ForcingNote(Forcing *forcing, const GridWindow *window);
 

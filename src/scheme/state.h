@@ -1,20 +1,20 @@
-/* What a scheme advances in time. */
+/* The state that a scheme advances in time. Vectors are distributed like the grid and the markers. */
 #pragma once
 #include "coupling/coupling.h"
 
-/* What of w and p is made: SchemeVelocity makes w, SchemeFields both. */
+/* Which of w and p have been made; SchemeVelocity makes w, SchemeFields makes both. */
 typedef enum { FIELDS_MADE, FIELDS_WITHOUT_P, FIELDS_WITHOUT_BOTH } StateFields;
 
 /* Everything that moves in time. */
 typedef struct {
   PetscInt step;
   PetscReal t, dt;
-  PetscReal dt_last; /* the step that led here; 0 at the start */
+  PetscReal dt_last; /* the step that led to this state; 0 at the start */
   Vec w;             /* velocity on the faces: the disturbance, or the whole in the total form */
   Vec p;             /* pressure, zero mean */
-  Vec flow;        /* velocity as fluid/streamflow.h has it, in fluid with inertia; NULL where w is made in each step */
-  Forcing forcing; /* from which p follows, and without a flow w; none where both are made in each step */
-  PetscReal a0;    /* the time coefficient of the solve that does */
+  Vec flow;          /* velocity as a flow (fluid/streamflow.h), in fluid with inertia; NULL where steps make w */
+  Forcing forcing;   /* the forcing from which p follows, and w where there is no flow; empty where steps make both */
+  PetscReal a0;      /* the time coefficient of the solve from forcing to w and p */
   StateFields fields;
   Vec sigma; /* tension, an edge vector */
   Vec X;     /* markers, a marker vector */
@@ -22,23 +22,22 @@ typedef struct {
   Vec solid; /* the fluid's force on the markers of obstacles (length^3/time^2); NULL without */
 } State;
 
-/* StateCreate - at rest: zero vectors. StateDuplicate - zero vectors of the same kinds, times not
+/* StateCreate - a state at rest, of zero vectors. StateDuplicate - zero vectors of the same kinds; times are not
    copied. Collective. */
 PETSC_EXTERN PetscErrorCode StateCreate(Coupling coupling, State *state);
 PETSC_EXTERN PetscErrorCode StateDuplicate(const State *state, State *copy);
 PETSC_EXTERN PetscErrorCode StateDestroy(State *state);
 
-/* StateFlowWidth - numbers that a flow has in a row of u of the grid; 0 without. Not collective. */
+/* StateFlowWidth - numbers of a flow in a row of u of the grid; 0 without a flow. Not collective. */
 static inline PetscInt StateFlowWidth(const State *state, Grid grid) {
   PetscInt size = 0;
   if (state->flow) (void)VecGetLocalSize(state->flow, &size);
   return size / grid->rows[FIELD_U];
 }
 
-/* StateCopy - times, vectors and what is not made yet; the target's missing vectors are made. fields: what is on the
-   grid too, else it stays. Collective. */
+/* StateCopy - copy times, vectors and StateFields; vectors that the target lacks are made. fields: vectors on the grid
+   are copied too; else those of the target stay. Collective. */
 PETSC_EXTERN PetscErrorCode StateCopy(const State *from, State *to, PetscBool fields);
 
-/* StateSwap - the vectors that two states both have change places; times and what is not made yet stay. Not collective.
- */
+/* StateSwap - exchange the vectors that both states have; times and StateFields stay. Not collective. */
 PETSC_EXTERN void StateSwap(State *a, State *b);
