@@ -1,20 +1,20 @@
-/* Viscosity contrast in the equations of a step (docs/contrast.md): what stands in the place of the
-   vesicles' velocity U where the inner viscosity is another than the outer one,
+/* Viscosity contrast in the equations of a step (docs/contrast.md). Where the inner viscosity differs from the outer
+   one the row of the vesicles' velocity U is
 
        B U - E v' + C F = ...,      B U = (1 + ratio)/2 U - C_D (1 - ratio) U,      U = V + (treading/a0) dV/dt + known.
  */
 #pragma once
 #include "coupling/coupling.h"
 
-/* ContrastKnown - the part of the motion that is known before the step, the background's and what the labels' speed
-   makes of Y: moved = background + treading dY/dt, and k += background. Collective. */
+/* ContrastKnown - the part of the motion that is known before the step: moved = background + treading dY/dt, and
+   k += background. Collective. */
 PETSC_EXTERN PetscErrorCode ContrastKnown(Coupling coupling, Vec background, Vec Y, Vec moved, Vec k);
 
-/* ContrastMotion - the motion G = V + (treading/a0) dV/dt + known (or NULL) of own V[2n]. Not collective. */
+/* ContrastMotion - the motion G = V + (treading/a0) dV/dt + known of own V[2n]; known may be NULL. Not collective. */
 PETSC_EXTERN void ContrastMotion(Coupling coupling, const PetscScalar V[], const PetscScalar known[], PetscScalar G[]);
 
-/* Of a motion G, the vesicles' part of a marker vector: ContrastAdd - y += alpha B G, of all bodies. ContrastSpread - f
-   += its dipoles, whose source is G^T of the solved velocity (DoubleLayerSpread). Collective. */
+/* ContrastAdd - y += alpha B G for a motion G, the vesicles' part of a marker vector; y is of all bodies.
+   ContrastSpread - add the dipoles of the motion G to the forcing f (DoubleLayerSpread). Collective. */
 PETSC_EXTERN PetscErrorCode ContrastAdd(Coupling coupling, PetscReal alpha, Vec motion, PetscScalar y[]);
 PETSC_EXTERN PetscErrorCode ContrastSpread(Coupling coupling, Vec motion, Forcing *f);
 
