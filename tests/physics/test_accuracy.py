@@ -19,8 +19,7 @@ BOX = {
     (v, chi): found for v, chi, *found in REFERENCES["tank_treading_box"]["V, chi, angle over pi, frequency over rate"]
 }
 
-CORRECTED = "-scheme_type coupled -delta_type cbs54 -membrane_derivative spectral -coupling_near_field exact "
-CORRECTED += "-scheme_area_target true -checkpoint_every 0 -output_every 100"
+CORRECTED = "-checkpoint_every 0 -output_every 100"
 BOXES = {
     "box": "-domain_box -4,4,-4,4 -domain_cells {n},{n}",
     "channel": "-domain_box -8,8,-4,4 -domain_cells {m},{n} -domain_bc_x periodic",

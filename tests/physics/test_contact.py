@@ -4,10 +4,7 @@ import numpy as np
 import pytest
 from harness import run_petves
 
-BASE = "-scheme_type coupled -delta_type cbs54 -coupling_near_field exact -membrane_derivative spectral -fluid_inertia none "
-BASE += (
-    "-scheme_area_target true -vesicle_count 2 -vesicle_semi_axes 0.4,0.8 -vesicle_bending 0.05 -vesicle_markers 21 "
-)
+BASE = "-fluid_inertia none -vesicle_count 2 -vesicle_semi_axes 0.4,0.8 -vesicle_bending 0.05 -vesicle_markers 21 "
 BASE += "-vesicle_allow_close_markers -domain_bc_x periodic -domain_box -1.35,1.35,-1.35,1.35 -domain_cells 24,24 "
 BASE += "-coupling_box_part false "
 #: Near one another, over the seam, and near a wall.

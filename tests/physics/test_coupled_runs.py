@@ -5,13 +5,13 @@ import re
 
 import numpy as np
 import pytest
-from harness import COLUMNS, run_petves
+from harness import COLUMNS, PAPER, run_petves
 from refusals import SMALL, leaves_files, stops_with
 from restarts import last_state, same_state
 
 pytestmark = pytest.mark.xdist_group("coupled_runs")  # its tests share runs
 
-TIGHT = "-scheme_type coupled -coupled_ksp_rtol 1e-12"
+TIGHT = "-coupled_ksp_rtol 1e-12"
 
 CHANNEL = "-domain_cells 60,48 -domain_box 0,2.5,-1,1 -domain_bc_x periodic -vesicle_center 2.4,0.1"
 
@@ -46,7 +46,7 @@ def test_ranks_agree(scene, cached_run):
 def test_two_vesicles_are_two(tmp_path):
     """Columns of each, totals, mirror symmetry; split takes them too, and a file with two curves is the same scene."""
     options = "-domain_cells 64,64 -flow_type shear -time_step 0.01 -time_end 0.05"
-    pair = f"{TWO} -vesicle_center -0.375,0,0.375,0"
+    pair = f"{TWO} -vesicle_markers 44 -vesicle_center -0.375,0,0.375,0"
     t = 2 * np.pi * np.arange(200) / 200
     curve = [f"{0.2 * np.cos(a):.15g} {0.4 * np.sin(a):.15g}" for a in t]
     (tmp_path / "two.txt").write_text("\n".join(["# first", *curve, "", "# second", *curve]) + "\n")
@@ -61,7 +61,9 @@ def test_two_vesicles_are_two(tmp_path):
         # the second vesicle is the first turned by half a turn, which moves marker k to k + M/2
         turned = -np.roll(state["vesicle/markers"][0, half:], half // 2, axis=0)
         np.testing.assert_allclose(turned, state["vesicle/markers"][0, :half], rtol=0, atol=1e-5)
-        file = f"-vesicle_shape file -vesicle_file {tmp_path}/two.txt -vesicle_center -0.375,0,0.375,0"
+        file = (
+            f"-vesicle_markers 44 -vesicle_shape file -vesicle_file {tmp_path}/two.txt -vesicle_center -0.375,0,0.375,0"
+        )
         same = run_petves(tmp_path / f"file{scheme[-5:]}", f"{options} {file} {scheme}", 2)
         same_state(state, last_state(same.folder), 1e-4, ("vesicle/markers",))
         assert (
@@ -80,50 +82,11 @@ def test_far_vesicles_do_as_one(tmp_path):
     np.testing.assert_allclose(b[len(a) :] - [6, 0], a, rtol=0, atol=1e-6)
 
 
-#: Options, ranks, and what the one line must hold.
-MISTAKES = {
-    "split_order": ("-scheme_type split -scheme_order 2", 1, ["-scheme_order 2", "split", "allowed: 1"]),
-    "split_adapts": ("-scheme_type split -time_adapt error", 2, ["-time_adapt error", "split", "coupled with"]),
-    "order_1_adapts": (
-        "-scheme_type coupled -scheme_order 1 -time_adapt error",
-        1,
-        ["-time_adapt error", "order 1", "-scheme_order 2"],
-    ),
-    "adapt_tol": ("-scheme_type coupled -time_adapt_tol 0", 1, ["-time_adapt_tol 0", ">0"]),
-    "no_startup": ("-scheme_type coupled -scheme_startup bdf", 1, ["-scheme_startup bdf", "euler|graded"]),
-    "centres": (f"{TWO} -vesicle_center 0.3,0", 2, ["-vesicle_center", "2 numbers", "-vesicle_count 2"]),
-    "axes": (
-        "-vesicle_count 2 -vesicle_center -.4,0,.4,0 -vesicle_semi_axes 1,2,3",
-        1,
-        ["-vesicle_semi_axes", "3 num"],
-    ),
-    "angles": (f"{TWO} -vesicle_center -.4,0,.4,0 -vesicle_angle 1,2,3", 1, ["-vesicle_angle", "3 numbers"]),
-    "areas": (
-        "-vesicle_count 3 -vesicle_center -.4,0,.4,0,0,0 -vesicle_area 1,1 -vesicle_reduced_area .7",
-        1,
-        ["-vesicle_area", "2 numbers", "-vesicle_count 3"],
-    ),
-    "no_vesicles": ("-vesicle_count 0", 1, ["-vesicle_count 0", ">=1"]),
-    "overlap": (f"{TWO} -vesicle_center -0.1,0,0.1,0", 2, ["-vesicle_center", "vesicles 1 and 2", "overlap"]),
-    "inside": ("-vesicle_count 2 -vesicle_center 0,0,0,0 -vesicle_semi_axes .5,.5,.2,.2", 1, ["overlap"]),
-    "second_near_wall": (f"{TWO} -vesicle_center -0.4,0,0.7,0", 1, ["vesicle 2", "wall x_max", "needs 3"]),
-    "unused_with_coupled": ("-scheme_type coupled -tension_ksp_rtol 1e-3", 1, ["-tension_ksp_rtol", "1e-3"]),
-    "unused_with_split": ("-scheme_type split -coupled_ksp_rtol 1e-3", 1, ["-coupled_ksp_rtol", "1e-3"]),
-    "bad_ksp_type": ("-scheme_type coupled -coupled_ksp_type gmress", 2, ["gmress"]),
-}
-
-
-@pytest.mark.parametrize("name", MISTAKES)
-def test_mistake_is_named(name, tmp_path):
-    options, ranks, needles = MISTAKES[name]
-    stops_with(run_petves(tmp_path / "out", f"{SMALL} {options}", ranks, good=False, timeout=60), needles)
-
-
 def test_number_of_curves_is_checked(tmp_path):
     t = 2 * np.pi * np.arange(40) / 40
     curve = [f"{0.3 * np.cos(a):.15g} {0.3 * np.sin(a):.15g}" for a in t]
     (tmp_path / "c.txt").write_text("\n".join(curve + ["", ""] + curve) + "\n")
-    file = f"{SMALL} -vesicle_shape file -vesicle_file {tmp_path}/c.txt"
+    file = f"{PAPER} {SMALL} -vesicle_shape file -vesicle_file {tmp_path}/c.txt"
     cases = {
         "-vesicle_count 3 -vesicle_center -.4,0,.4,0": ["-vesicle_count 3", "2", "same number"],
         "-vesicle_center 0,0,1,0,2,0": ["-vesicle_center", "6 numbers", "2"],
@@ -137,7 +100,7 @@ def test_number_of_curves_is_checked(tmp_path):
 @pytest.mark.parametrize("start", ["euler", "graded"])
 def test_failed_solve_stops_the_run(start, tmp_path):
     """Prefix, step, time and residual in the message; the state left is the one before the step."""
-    options = f"{SMALL} -scheme_type coupled -coupled_ksp_max_it 1 -coupled_ksp_rtol 1e-12 -scheme_startup {start}"
+    options = f"{SMALL} -coupled_ksp_max_it 1 -coupled_ksp_rtol 1e-12 -scheme_startup {start}"
     run = run_petves(tmp_path / "out", options, ranks=2, good=False)
     reason = r"prefix coupled_ failed in step \d+ at time [\d.e-]+: DIVERGED_ITS after 1 iterations, residual [\d.]+"
     summary, series = leaves_files(run, reason)
@@ -147,13 +110,13 @@ def test_failed_solve_stops_the_run(start, tmp_path):
 
 def test_options_of_the_solver_work(tmp_path):
     """-coupled_ksp_type, -view and resolved.opts: another Krylov method gives the same run, and the file repeats it."""
-    options = f"{SMALL} -scheme_startup euler -coupled_ksp_rtol 1e-11 -scheme_type coupled"
+    options = f"{SMALL} -scheme_startup euler -coupled_ksp_rtol 1e-11 "
     one = run_petves(tmp_path / "one", f"{options} -view")
     assert "fgmres" in one.stdout
     two = run_petves(tmp_path / "two", f"{options} -coupled_ksp_type gmres -coupled_ksp_pc_side right -view")
     assert "type: gmres" in two.stdout
     same_state(last_state(one.folder), last_state(two.folder), 1e-8)
-    resolved = f"-options_file {one.folder}/resolved.opts -scheme_type coupled -output_dir {tmp_path}/again"
+    resolved = f"-options_file {one.folder}/resolved.opts -output_dir {tmp_path}/again"
     again = run_petves(tmp_path / "again", resolved)
     for name in set(COLUMNS) - {"wall"}:
         np.testing.assert_array_equal(again.series[name], one.series[name], err_msg=name)

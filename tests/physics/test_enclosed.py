@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from test_obstacles import COUPLED, PERIODIC, STILL, last
+from test_obstacles import PERIODIC, STILL, last
 
 BOX = "-domain_box -1,1,-1,1 -domain_cells 64,64 -fluid_inertia none"
 CIRCLES = "-obstacle_shape couette -obstacle_radius .3,.7"
@@ -27,7 +27,7 @@ def test_a_vesicle_around_a_post(ratio, tmp_path):
     inside and the fluid outside in a row, and the film between post and vesicle is a gap as others are."""
     curves = tmp_path / "circles.txt"
     curves.write_text(circle(0.3, notes=["# rotation 1"]) + circle(0.9, container=True))
-    options = f"{COUPLED} {BOX} -time_step .02 -time_end .1 -obstacle_shape file -obstacle_file {curves} -vesicle_semi_axes .6,.6"
+    options = f"{BOX} -time_step .02 -time_end .1 -obstacle_shape file -obstacle_file {curves} -vesicle_semi_axes .6,.6"
     row = last(tmp_path / "run", f"{options} -vesicle_viscosity_ratio {ratio}")
     inside, outside = between(0.3, 0.6, ratio), between(0.6, 0.9)
     torque = 1 / (1 / inside + 1 / outside)
@@ -40,7 +40,9 @@ def test_a_vesicle_around_a_post(ratio, tmp_path):
 def test_a_vesicle_is_pushed_off_a_post_within(tmp_path):
     curves = tmp_path / "post.txt"
     curves.write_text(circle(0.3, center=(0.25, 0)))
-    options = f"{COUPLED} {BOX} -time_step .01 -time_end .05 -obstacle_shape file -obstacle_file {curves} -vesicle_semi_axes .6,.6"
+    options = (
+        f"{BOX} -time_step .01 -time_end .05 -obstacle_shape file -obstacle_file {curves} -vesicle_semi_axes .6,.6"
+    )
     row = last(tmp_path / "run", f"{options} -contact_repulsion 100 -contact_repulsion_range .1")
     assert row["gap"] > 0.0505 and row["center_x"] > 0.0005 and row["energy_contact"] > 0, row
 
@@ -77,9 +79,7 @@ def test_a_heavy_vesicle_in_a_container(tmp_path):
     curves = tmp_path / "container.txt"
     curves.write_text(circle(1, container=True))
     options = STILL.replace("-vesicle_shape none", "-vesicle_semi_axes .3,.4 -fluid_gravity 0,-1")
-    options = (
-        f"{COUPLED} {options} -domain_box -2,2,-2,2 -domain_cells 48,48 -obstacle_shape file -obstacle_file {curves}"
-    )
+    options = f"{options} -domain_box -2,2,-2,2 -domain_cells 48,48 -obstacle_shape file -obstacle_file {curves}"
     row = last(tmp_path / "run", f"{options} -fluid_inertia none -vesicle_density_difference 2")
     assert row["obstacle_force_y_1"] == pytest.approx(-2 * np.pi * 0.3 * 0.4, rel=1e-6)
 

@@ -6,8 +6,8 @@ import pytest
 from harness import ROOT, run_petves
 
 RATE = 0.326116
-FREE = "-domain_bc_x free -domain_bc_y free -scheme_type coupled -scheme_order 2 -membrane_derivative spectral"
-FREE += " -delta_type cbs54 -coupling_near_field exact -scheme_area_target true -output_overwrite"
+FREE = "-domain_bc_x free -domain_bc_y free -scheme_order 2 "
+FREE += " -output_overwrite"
 THREE = f"{FREE} -domain_box -1,1,-1,1 -domain_cells 16,16 -flow_type shear -vesicle_count 3 -vesicle_markers 35"
 THREE += " -vesicle_center -1.5,.2,0,0,2,-.3 -vesicle_area .5 -vesicle_reduced_area .7 -time_step .1"
 THREE += " -vesicle_allow_close_markers -output_every .2"

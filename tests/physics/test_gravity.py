@@ -7,12 +7,11 @@ import numpy as np
 import pytest
 from harness import ROOT, run_petves
 
-COUPLED = "-scheme_type coupled -membrane_derivative spectral -delta_type cbs54 -coupling_near_field exact"
-COUPLED += " -scheme_area_target true -scheme_order 3 -output_overwrite"
-SETTLE = f"{COUPLED} -options_file {ROOT / 'runs' / 'settling.opts'}"
+QUIET = "-output_overwrite"
+SETTLE = f"{QUIET} -options_file {ROOT / 'runs' / 'settling.opts'}"
 SINKS = json.loads((ROOT / "tests" / "support" / "references.json").read_text())["settling"]
 AREA = np.pi / 100
-CHANNEL = f"{COUPLED} -domain_box 0,3,0,1 -domain_cells 96,32 -domain_bc_x periodic -fluid_inertia none"
+CHANNEL = f"{QUIET} -domain_box 0,3,0,1 -domain_cells 96,32 -domain_bc_x periodic -fluid_inertia none"
 CHANNEL += f" -fluid_gravity 1,0 -vesicle_density_difference 1 -vesicle_area {AREA!r} -vesicle_center 1.5,.5"
 CHANNEL += " -vesicle_markers 45 -time_step 1e-4 -time_end 1e-3 -output_every 1"
 
@@ -102,7 +101,7 @@ def test_zero_flux(tmp_path):
 def test_heavy_vesicle_on_a_wall(tmp_path, ratio, thick):
     """It presses out the film under it and does not go through: half a cell and one cell of it are left, 1.6 % and .1 %
     (measured) more than on 64 cells, which is `thick`."""
-    scene = f"{COUPLED} -fluid_inertia none -domain_box 0,1,0,1 -domain_bc_x periodic -fluid_gravity 0,-1"
+    scene = f"{QUIET} -fluid_inertia none -domain_box 0,1,0,1 -domain_bc_x periodic -fluid_gravity 0,-1"
     scene += f" -vesicle_density_difference 300 -vesicle_area {np.pi / 16!r} -vesicle_reduced_area .8 -vesicle_angle 0"
     scene += f" -vesicle_center .5,.35 -vesicle_bending .02 -vesicle_markers 45 -vesicle_viscosity_ratio {ratio}"
     scene += " -vesicle_allow_close_markers -time_step .04 -time_end 2 -output_every 2"
@@ -116,7 +115,9 @@ def test_heavy_vesicle_on_a_wall(tmp_path, ratio, thick):
 def test_box_without_walls_step_after_step(tmp_path, inertia):
     """The mean that is taken off is everywhere on the grid, and must not be left there for a later step: along x as along y
     for a vesicle turned with gravity."""
-    scene = f"{COUPLED} -domain_box -4,4,-4,4 -domain_cells 32,32 -domain_bc_x periodic -domain_bc_y periodic -vesicle_area 1"
+    scene = (
+        f"{QUIET} -domain_box -4,4,-4,4 -domain_cells 32,32 -domain_bc_x periodic -domain_bc_y periodic -vesicle_area 1"
+    )
     scene += f" -vesicle_reduced_area .7 -vesicle_markers 35 -vesicle_bending .03 -fluid_inertia {inertia} -vesicle_density_difference 2"
     scene += " -vesicle_allow_close_markers -time_step .05 -time_end .3 -output_every 1"
     tight = "-coupled_ksp_rtol 1e-11"
@@ -137,8 +138,7 @@ def test_speed_does_not_depend_on_the_unit_of_length(tmp_path, boundary):
             f" -time_end .01 -fluid_viscosity {length**2!r} -fluid_inertia none -vesicle_bending {0.01 * length**5!r}"
             f" -vesicle_semi_axes {0.3 * length!r},{0.5 * length!r} -vesicle_center {0.1 * length!r},{0.07 * length!r}"
             f" -fluid_gravity {0.5 * length!r},{-length!r} -vesicle_density_difference 1"
-            " -scheme_type coupled -coupled_ksp_rtol 1e-12 -delta_type cbs54 -membrane_derivative spectral -coupling_near_field exact"
-            " -scheme_area_target true",
+            " -coupled_ksp_rtol 1e-12",
         ).series
         speeds.append([series["velocity_x"][-1] / length, series["velocity_y"][-1] / length])
     assert speeds[1] == pytest.approx(speeds[0], rel=1e-10)

@@ -9,7 +9,7 @@ import pytest
 from boundary_integral import driven
 from harness import ROOT, run_petves
 from restarts import frames
-from test_obstacles import COUPLED, PERIODIC, STILL, agree, last
+from test_obstacles import PERIODIC, STILL, agree, last
 
 import petves
 from petves.views.window import Window
@@ -18,7 +18,7 @@ ONCE = STILL.replace("-time_step .01 -time_end .01", "")
 #: A post in a periodic box of side 1, in steps of a tenth.
 POST = f"{ONCE} {PERIODIC} -domain_box 0,1,0,1 -obstacle_shape posts -obstacle_radius .2 -obstacle_center .5,.5"
 #: A vesicle in a periodic box of side 2.
-VESICLE = f"{COUPLED} {PERIODIC} -domain_box 0,2,0,2 -domain_cells 32,32 -vesicle_semi_axes .2,.35 -vesicle_markers 41"
+VESICLE = f"{PERIODIC} -domain_box 0,2,0,2 -domain_cells 32,32 -vesicle_semi_axes .2,.35 -vesicle_markers 41"
 VESICLE += " -vesicle_center 1,1.5 -vesicle_bending .01"
 
 
@@ -76,7 +76,7 @@ def test_a_turning_ellipse_against_boundary_integrals(tmp_path):
 
 def test_a_vesicle_in_a_moving_cage(tmp_path):
     """Two circles with a vesicle between them, the inner one turning; all of it carried along, the same."""
-    options = f"{COUPLED} {PERIODIC} -domain_box 0,2,0,2 -domain_cells 32,32 -vesicle_semi_axes .3,.12"
+    options = f"{PERIODIC} -domain_box 0,2,0,2 -domain_cells 32,32 -vesicle_semi_axes .3,.12"
     options += " -vesicle_center .9,1.5 -vesicle_bending .01 -obstacle_shape couette -obstacle_radius .2,.8"
     options += " -obstacle_center .9,1 -obstacle_rotation 2,0 -time_step .02 -time_end .1"
     still = last(tmp_path / "rest", options)
@@ -197,6 +197,6 @@ def test_bodies_stop_before_they_touch(posts, step, adapt, tmp_path):
 def test_the_scene_of_runs(tmp_path, monkeypatch):
     """runs/stirring.opts shows what its header says."""
     monkeypatch.chdir(ROOT)
-    row = last(tmp_path, f"{COUPLED} -options_file runs/stirring.opts -time_end .2")
+    row = last(tmp_path, f"-options_file runs/stirring.opts -time_end .2")
     assert row["obstacle_angle_1"] == pytest.approx(0.4, rel=1e-12)
     assert row["center_x_1"] == pytest.approx(-row["center_x_2"], abs=1e-4)

@@ -6,15 +6,14 @@ import math
 import h5py
 import numpy as np
 import pytest
-from harness import run_petves, run_plain
+from harness import run_petves
 from test_obstacles import STILL
 from test_obstacles import last as obstacle_row
 
 R0 = math.sqrt(1 / (0.7 * math.pi))  # of the channel's vesicle: area 1, V = .7
 
 COMMON = (
-    "-scheme_type coupled -delta_type cbs54 -membrane_derivative spectral -coupling_near_field exact "
-    "-scheme_area_target true -flow_type shear -vesicle_area 1 -vesicle_markers 45 -vesicle_allow_close_markers true -fluid_inertia none "
+    "-flow_type shear -vesicle_area 1 -vesicle_markers 45 -vesicle_allow_close_markers true -fluid_inertia none "
     "-time_step 0.05 -coupled_ksp_rtol 1e-10 -output_every 100 -checkpoint_every 0"
 )
 BOX = (
@@ -91,7 +90,7 @@ def test_a_bump_beside_a_corner(tmp_path):
 def test_two_at_rest_between_walls_stay_apart(tmp_path):
     """Stiff membranes, so that what a step in the walls' images leaves would move them: measured -4e-4 a unit of time, and
     -.011 with images farther than 20 cells right to the order (h/R)^2 only."""
-    run = run_plain(
+    run = run_petves(
         tmp_path / "run",
         "-domain_cells 32,32 -vesicle_semi_axes 0.2,0.5 -vesicle_count 2 -vesicle_center -0.3,0,0.3,0 -vesicle_bending 100 "
         "-time_step 0.5 -time_end 12",
@@ -103,7 +102,7 @@ def test_two_at_rest_between_walls_stay_apart(tmp_path):
 def test_a_symmetric_pair_stays_symmetric(tmp_path):
     """Pressed together about the middle of the box, where one slides off the other from the least disturbance: measured
     1e-13, and 2e-8 where the square about their markers was not centred there."""
-    run = run_plain(
+    run = run_petves(
         tmp_path / "run",
         "-fluid_inertia none -flow_type extension -flow_rate -1 -domain_box -4,4,-4,4 -domain_cells 64,64 -vesicle_count 2 "
         "-vesicle_markers 101 -vesicle_allow_close_markers true -vesicle_semi_axes 0.4,0.8 -vesicle_center -0.55,0,0.55,0 "
@@ -113,10 +112,8 @@ def test_a_symmetric_pair_stays_symmetric(tmp_path):
         assert abs(run.series[f"center_y_{v}"][-1]) < 1e-10
 
 
-EXACT = (
-    "-scheme_type coupled -membrane_derivative spectral -delta_type cbs54 -coupling_near_field exact -scheme_order 2"
-)
-EXACT += " -scheme_area_target true -fluid_inertia none -vesicle_allow_close_markers -coupled_ksp_rtol 1e-10"
+EXACT = "-scheme_order 2"
+EXACT += " -fluid_inertia none -vesicle_allow_close_markers -coupled_ksp_rtol 1e-10"
 
 
 def fields(folder, options, ranks=1):

@@ -17,7 +17,7 @@ from petves.views.report import report
 
 EXACT = json.loads((ROOT / "tests" / "support" / "references.json").read_text())["obstacles"]
 PERIODIC = "-domain_bc_x periodic -domain_bc_y periodic"
-STILL = "-vesicle_shape none -scheme_type coupled -coupled_ksp_rtol 1e-10 -time_step .01 -time_end .01"
+STILL = "-vesicle_shape none -coupled_ksp_rtol 1e-10 -time_step .01 -time_end .01"
 ARRAY = f"{STILL} {PERIODIC} -domain_box 0,1,0,1 -obstacle_shape posts -obstacle_center .5,.5 -flow_type uniform"
 CHANNEL = f"{STILL} -domain_box 0,3,0,1 -domain_bc_x periodic -obstacle_shape posts -obstacle_center 1.5,.5"
 POISEUILLE = "-flow_type poiseuille -flow_half_width .5 -flow_center_y .5"
@@ -27,9 +27,7 @@ THROAT = f"{BUMPS} -obstacle_shape constriction -obstacle_throat .48 -obstacle_l
 #: A vesicle that lies across the stream in front of a post, in a periodic square of four units.
 POST = f"-vesicle_area .19634954 -vesicle_reduced_area .7 -vesicle_angle 90 -vesicle_center .25,1 {PERIODIC}"
 POST += " -domain_box 0,2,0,2 -domain_cells 32,32 -obstacle_shape posts -obstacle_radius .3 -obstacle_center 1,1"
-COUPLED = "-scheme_type coupled -membrane_derivative spectral -delta_type cbs54 -coupling_near_field exact"
-COUPLED += " -scheme_area_target true -scheme_order 3"
-POST += f" -obstacle_spacing .75 -flow_type uniform -vesicle_bending .01 {COUPLED}"
+POST += f" -obstacle_spacing .75 -flow_type uniform -vesicle_bending .01"
 
 
 def last(folder, options, ranks=1):
@@ -82,7 +80,6 @@ def test_vesicle_pressed_on_a_post(gap, times, tmp_path):
     options = f"-vesicle_semi_axes .4,.8 -vesicle_center {4 - 0.5 - gap * h - 0.4:.15g},4 -vesicle_markers 83"
     options += f" -vesicle_bending 0 {PERIODIC} -domain_box 0,8,0,8 -domain_cells 128,128 -flow_type uniform"
     options += " -obstacle_shape posts -obstacle_radius .5 -obstacle_center 4,4 -obstacle_spacing .75"
-    options += " -scheme_type coupled -delta_type cbs54 -membrane_derivative spectral -coupling_near_field exact"
     options += f" -scheme_area_target false -scheme_order 1 -time_step {step} -time_end {step} -coupled_ksp_rtol 1e-10"
     row = last(tmp_path, options)
     run = petves.load(tmp_path, "numpy")
@@ -276,7 +273,7 @@ def test_ranks_and_restart(tmp_path):
 def test_ranks_and_restart_in_a_throat(tmp_path):
     """The same of one that touches the bumps almost."""
     vesicle = "-vesicle_semi_axes .45,.16 -vesicle_center 1.3,.5 -vesicle_bending .1 -domain_cells 72,24"
-    agree(f"{THROAT} -flow_drive pressure {vesicle} {COUPLED} -time_step .003", 0.003, tmp_path)
+    agree(f"{THROAT} -flow_drive pressure {vesicle} -time_step .003", 0.003, tmp_path)
 
 
 def agree(options, step, tmp_path):
@@ -311,8 +308,8 @@ def test_many_vesicles_among_posts(tmp_path):
     places = ",".join(f"{2 * i},{2.6 + 2.8 * j:g}" for i in range(4) for j in range(2)) + ",1,4,5,4"
     scene = f"-vesicle_count 10 -vesicle_markers 35 -vesicle_area .8 -vesicle_reduced_area .8 -vesicle_angle 60 -vesicle_center {places}"
     scene += f" {PERIODIC} -domain_box 0,8,0,8 -domain_cells 64,64 -flow_type uniform -obstacle_shape posts"
-    scene += " -obstacle_radius .6 -obstacle_center 3,1,7,1 -vesicle_bending .05 -scheme_type coupled -delta_type cbs54"
-    scene += " -membrane_derivative spectral -coupling_near_field exact -scheme_area_target true -scheme_order 3"
+    scene += " -obstacle_radius .6 -obstacle_center 3,1,7,1 -vesicle_bending .05 "
+    scene += ""
     scene += " -time_step .02 -coupled_ksp_rtol 1e-11"
     one = last(tmp_path / "one", f"{scene} -time_end .06")
     two = last(tmp_path / "two", f"{scene} -time_end .06", ranks=2)
@@ -345,9 +342,9 @@ def test_a_post_is_not_crossed(tmp_path):
 
 def test_the_scenes_of_runs(tmp_path):
     """runs/posts.opts keeps the film of another program to 1 %, runs/couette.opts shows what its header says."""
-    series = run_petves(tmp_path / "posts", f"{COUPLED} -options_file {ROOT / 'runs' / 'posts.opts'}").series
+    series = run_petves(tmp_path / "posts", f"-options_file {ROOT / 'runs' / 'posts.opts'}").series
     assert series["gap"][-1] / 0.25 == pytest.approx(EXACT["film"]["1.8"], rel=0.01)
-    row = last(tmp_path / "couette", f"{COUPLED} -options_file {ROOT / 'runs' / 'couette.opts'} -domain_cells 32,32")
+    row = last(tmp_path / "couette", f"-options_file {ROOT / 'runs' / 'couette.opts'} -domain_cells 32,32")
     assert row["obstacle_torque_1"] == pytest.approx(-0.6469, rel=1e-3)
     assert row["obstacle_torque_2"] == pytest.approx(0.6469, rel=1e-3)
 
@@ -355,7 +352,7 @@ def test_the_scenes_of_runs(tmp_path):
 def test_vesicle_through_a_throat(tmp_path):
     """runs/constriction.opts on coarser markers and steps: its largest pressure drop is that of a grid twice as fine to 1 %,
     it falls again without a peak at the exit, films last, and iterations stay few."""
-    options = f"{COUPLED} -options_file {ROOT / 'runs' / 'constriction.opts'} -obstacle_spacing .75 -vesicle_markers 81"
+    options = f"-options_file {ROOT / 'runs' / 'constriction.opts'} -obstacle_spacing .75 -vesicle_markers 81"
     series = run_petves(tmp_path, f"{options} -time_step .0056").series
     x, drop, its = series["center_x"], series["pressure_drop"], series["coupled_its"]
     assert drop.max() == pytest.approx(EXACT["throat"], rel=1e-2)

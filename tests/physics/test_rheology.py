@@ -6,8 +6,7 @@ from harness import ROOT, run_petves
 from petves import rheology
 from petves.run import Run
 
-EXACT = "-scheme_type coupled -delta_type cbs54 -coupling_near_field exact -membrane_derivative spectral "
-EXACT += "-scheme_area_target true -fluid_inertia none "
+EXACT = "-fluid_inertia none "
 CHANNEL = EXACT + "-domain_box 0,4,0,4 -domain_cells 32,32 -domain_bc_x periodic -flow_type shear -flow_rate 2 "
 CHANNEL += "-vesicle_count 2 -vesicle_area 1 -vesicle_angle 25 -vesicle_bending 0.05 -vesicle_markers 31 "
 CHANNEL += "-vesicle_allow_close_markers -coupling_box_part false -time_step 0.02 -time_end 0.1 -output_every 0.05 "

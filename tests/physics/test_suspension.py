@@ -18,9 +18,8 @@ from petves.views.plot import draw_members, new_figure, plot_run
 from petves.views.report import report
 from petves.views.words import scene_in_words
 
-METHOD = "-scheme_type coupled -coupling_near_field exact -delta_type cbs54 -membrane_derivative spectral -scheme_area_target true"
 PACKED = (
-    f"{METHOD} "
+    f""
     "-domain_box 0,6,0,3 -domain_cells 96,48 -domain_bc_x periodic -fluid_inertia none -flow_type shear -vesicle_markers 24 "
     "-vesicle_packing .4 -time_step .05 -time_end 0 -vesicle_mixture .75,.25 -vesicle_area .3,.15 "
     "-vesicle_reduced_area .7,.9 -vesicle_bending .01,.04"
@@ -36,7 +35,7 @@ def test_packing_is_the_same_on_all_ranks(tmp_path):
     assert count == round(0.4 * 18 / (0.75 * 0.3 + 0.25 * 0.15))
     assert sum(small) == pytest.approx(count / 4, abs=1)
     assert run.series["area"][0] / 18 == pytest.approx(0.4, abs=0.01)
-    again = run_petves(tmp_path / "b", f"{METHOD} -options_file {first.folder}/resolved.opts", ranks=3)
+    again = run_petves(tmp_path / "b", f"-options_file {first.folder}/resolved.opts", ranks=3)
     other = run_petves(tmp_path / "c", f"{PACKED} -vesicle_packing_seed 2")
     assert np.array_equal(Files.read(again.folder).markers, run.markers)
     assert np.abs(Files.read(other.folder).markers[0] - run.markers[0]).max() > 0.1
@@ -44,16 +43,14 @@ def test_packing_is_the_same_on_all_ranks(tmp_path):
 
 def test_number_and_fraction_give_the_area(tmp_path):
     """With -vesicle_count the area of the vesicles follows from the fraction."""
-    run = run_petves(
-        tmp_path, "-scheme_type coupled -vesicle_packing .3 -vesicle_count 5 -vesicle_reduced_area .8 -time_end 0"
-    )
+    run = run_petves(tmp_path, "-vesicle_packing .3 -vesicle_count 5 -vesicle_reduced_area .8 -time_end 0")
     assert run.series["area_3"][0] == pytest.approx(0.3 * 4 / 5, rel=1e-2)  # a polygon's
 
 
 def test_bending_of_each(tmp_path):
     """Energies go by each vesicle's own c_b; a pair with its stiffnesses exchanged is the mirror image."""
     pair = (
-        "-scheme_type coupled -fluid_inertia none -vesicle_count 2 -vesicle_semi_axes .2,.4 -vesicle_center -.5,0,.5,0 "
+        "-fluid_inertia none -vesicle_count 2 -vesicle_semi_axes .2,.4 -vesicle_center -.5,0,.5,0 "
         "-time_step .1 -time_end .3 -vesicle_bending "
     )
     one, two = (run_petves(tmp_path / name, pair + c).series for name, c in (("a", ".01,.1"), ("b", ".1,.01")))
@@ -107,7 +104,7 @@ def test_many_have_a_file_of_their_own(whole):
 def test_gap_of_each(tmp_path):
     """Circles of radius 1/4: the first two .1 apart, the third .2 from the second over the seam, the fourth .15 from a wall,
     the fifth far from all."""
-    scene = f"{METHOD} -domain_box 0,6,0,4 -domain_cells 60,40 -domain_bc_x periodic -vesicle_semi_axes .25,.25 "
+    scene = f"-domain_box 0,6,0,4 -domain_cells 60,40 -domain_bc_x periodic -vesicle_semi_axes .25,.25 "
     scene += (
         "-vesicle_count 5 -vesicle_center 5,2,5.6,2,.3,2,2,.4,3,3 -vesicle_markers 25 -vesicle_allow_close_markers "
     )
@@ -213,7 +210,6 @@ def test_killed_run_has_its_rows(whole, tmp_path):
 
 #: 7 vesicles at 30 % of a channel, in shear: 315 markers, more than one dense block takes.
 SEVEN = (
-    "-scheme_type coupled -delta_type cbs54 -membrane_derivative spectral -coupling_near_field exact -scheme_area_target true"
     " -domain_box 0,6.4,0,3.2 -domain_cells 96,48 -domain_bc_x periodic -flow_type shear -fluid_inertia none -vesicle_count 7"
     " -vesicle_semi_axes 0.35,0.8 -vesicle_markers 45 -vesicle_bending 0.2 -vesicle_angle 70,60,65,60,70,75,65"
     " -vesicle_center 0.9,0.8,2.4,0.8,4.0,0.8,5.6,0.8,1.6,2.4,3.2,2.4,4.9,2.4 -time_step 0.05 -output_every 2"

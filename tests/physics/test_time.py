@@ -13,8 +13,7 @@ from studies.time import runs as study
 from studies.time.page import step_for
 
 FREE = (
-    "-scheme_type coupled -delta_type cbs54 -membrane_derivative spectral -coupling_near_field exact "
-    "-scheme_area_target true -domain_bc_x free -domain_bc_y free -domain_box -4,4,-4,4 -domain_cells 32,32 "
+    "-domain_bc_x free -domain_bc_y free -domain_box -4,4,-4,4 -domain_cells 32,32 "
     "-output_every 1e9 -checkpoint_every 0"
 )
 
@@ -42,8 +41,7 @@ def test_steady_shape_does_not_depend_on_the_step(reduced_area, chi, dt, tmp_pat
 def test_two_vesicles_and_walls(tmp_path):
     """A pair far apart in a channel, with other shapes: each has labels of its own; the angles are those of small steps."""
     scene = (
-        "-scheme_type coupled -delta_type cbs54 -membrane_derivative spectral -coupling_near_field exact "
-        "-scheme_area_target true -domain_box -8,8,-2.5,2.5 -domain_cells 64,20 -domain_bc_x periodic -flow_type shear "
+        "-domain_box -8,8,-2.5,2.5 -domain_cells 64,20 -domain_bc_x periodic -flow_type shear "
         "-fluid_inertia none -vesicle_count 2 -vesicle_area 2.199114857512855,2.5 -vesicle_reduced_area 0.7,0.9 "
         "-vesicle_center -4,0,4,0 -vesicle_angle 20,30 -vesicle_bending 0.5 -output_every 1e9 -checkpoint_every 0 "
         "-time_end 12"

@@ -5,7 +5,7 @@ import re
 
 import numpy as np
 import pytest
-from harness import ROOT, run_plain
+from harness import ROOT, run_petves
 from studies.common import paper
 from studies.common.engine import Case, Results
 from studies.common.scenes import words
@@ -45,7 +45,7 @@ def settings(text: str) -> dict[str, tuple[str, str]]:
 @pytest.mark.parametrize("wanted", WANTED)
 def test_choice_is_what_was_measured(wanted, tmp_path):
     """Each printed error is the table's worst at the value chosen; those of steps and solver leave room for the grid's."""
-    run = run_plain(tmp_path, f"{REST} {QUIET} -vesicle_area 1 -scheme_auto {wanted} -time_end 0")
+    run = run_petves(tmp_path, f"{REST} {QUIET} -vesicle_area 1 -scheme_auto {wanted} -time_end 0")
     chosen = settings(run.stdout)
     relaxation = radius(0.7) ** 3 / 0.01
     for name, table, scale in (
@@ -75,7 +75,7 @@ def test_tank_treading_within_the_wanted_error(wanted, cells, reduced_area, chi,
     """Angle and frequency in the 8 x 8 box against the boundary integral, on a grid that the program calls enough."""
     bending = radius(reduced_area) ** 3 / chi
     options = f"{BOX} {QUIET} -domain_cells {cells},{cells} -vesicle_reduced_area {reduced_area} -time_end 12"
-    run = run_plain(tmp_path, f"{options} -vesicle_bending {bending!r} -scheme_auto {wanted}")
+    run = run_petves(tmp_path, f"{options} -vesicle_bending {bending!r} -scheme_auto {wanted}")
     assert wanted == 0.1 or ": enough\n" in run.stdout
     angle, frequency = paper.SHEAR["box"][reduced_area, chi]
     found = run.series["inclination"][-1] / np.pi, run.series["frequency"][-1]
@@ -87,7 +87,9 @@ def test_tank_treading_within_the_wanted_error(wanted, cells, reduced_area, chi,
 def test_shape_at_rest_within_the_wanted_error(wanted, tmp_path):
     """Energy of the shape at rest, V = 0.7, against the boundary integral's."""
     end = 20 * radius(0.7) ** 3 / 0.01
-    run = run_plain(tmp_path, f"{REST} {QUIET} -vesicle_area 1 -vesicle_angle 90 -time_end {end} -scheme_auto {wanted}")
+    run = run_petves(
+        tmp_path, f"{REST} {QUIET} -vesicle_area 1 -vesicle_angle 90 -time_end {end} -scheme_auto {wanted}"
+    )
     found = run.series["energy_bending"][-1] * radius(0.7) / 0.01
     print(f"{found / paper.REST[0.7][0] - 1:+.2e} in {len(run.series['step']) - 1} steps")
     assert found == pytest.approx(paper.REST[0.7][0], rel=wanted)
@@ -97,11 +99,11 @@ def test_what_is_given_stays(tmp_path):
     """Options that the user gives win and are called theirs; the resolved options repeat the run."""
     given = "-time_adapt_tol 0.02 -coupled_ksp_rtol 1e-7 -vesicle_spacing 1.25"
     base = f"{REST} {QUIET} -vesicle_area 1 -time_end 3"
-    run = run_plain(tmp_path / "a", f"{base} {given} -scheme_auto 1e-2")
+    run = run_petves(tmp_path / "a", f"{base} {given} -scheme_auto 1e-2")
     chosen = settings(run.stdout)
     for name, value in zip(given.split()[::2], given.split()[1::2]):
         assert float(chosen[name][0]) == float(value) and chosen[name][1] == "yours"
-    again = run_plain(tmp_path / "b", f"-options_file {run.folder}/resolved.opts -output_dir {tmp_path}/b")
+    again = run_petves(tmp_path / "b", f"-options_file {run.folder}/resolved.opts -output_dir {tmp_path}/b")
     lines = [set((folder / "resolved.opts").read_text().split("\n")) for folder in (run.folder, again.folder)]
     assert {line.split()[0] for line in lines[0] ^ lines[1]} == {"-output_dir"}
     for name in ("time", "energy_bending", "nsolve"):
@@ -112,14 +114,14 @@ def test_coarse_grid_is_called_so(tmp_path):
     """32 cells in a box of 8, markers 1.5 h apart, are too coarse for 1 percent: the square cells that it takes are named,
     and the markers with which it would do."""
     options = f"{BOX} {QUIET} -vesicle_area 1 -time_end 0 -scheme_auto 1e-2"
-    run = run_plain(tmp_path / "coarse", f"{options} -domain_cells 32,32 -vesicle_spacing 1.5")
+    run = run_petves(tmp_path / "coarse", f"{options} -domain_cells 32,32 -vesicle_spacing 1.5")
     assert "or this grid and -vesicle_markers 45\n" in run.stdout
     named = re.search(r"TOO COARSE for 0.01, take R0/h = (\S+), -domain_cells (\d+),(\d+)", run.stdout).groups()
     assert named[1] == named[2] and int(named[1]) * radius(0.7) / 8 >= float(named[0])
-    fine = run_plain(tmp_path / "fine", f"{options} -domain_cells {named[1]},{named[2]}")
+    fine = run_petves(tmp_path / "fine", f"{options} -domain_cells {named[1]},{named[2]}")
     assert ": enough\n" in fine.stdout
     wide = f"{options.replace('0,8,0,8', '0,16,0,8')} -domain_cells 56,28 -vesicle_spacing 1.5"
-    named = re.search(r"-domain_cells (\d+),(\d+)", run_plain(tmp_path / "wide", wide).stdout).groups()
+    named = re.search(r"-domain_cells (\d+),(\d+)", run_petves(tmp_path / "wide", wide).stdout).groups()
     assert int(named[0]) == 2 * int(named[1]) > 56
 
 
@@ -131,7 +133,7 @@ def domain(text: str, name: str) -> list[float]:
 def test_unbounded_where_nothing_asks_for_walls(tmp_path):
     """Neither box nor boundaries: unbounded fluid, with a window that holds both vesicles in square cells."""
     scene = f"{QUIET} -flow_type shear -vesicle_area 1 -vesicle_count 2 -vesicle_center 3,4,6,4.3 -time_end 0"
-    run = run_plain(tmp_path / "a", f"{scene} -scheme_auto 1e-2")
+    run = run_petves(tmp_path / "a", f"{scene} -scheme_auto 1e-2")
     chosen = settings(run.stdout)
     assert [chosen[f"-domain_bc_{x}"][0] for x in "xy"] == ["free", "free"]
     assert "quasi-steady" in chosen["-domain_bc_x"][1] and "3 R0 around" in chosen["-domain_box"][1]
@@ -140,9 +142,9 @@ def test_unbounded_where_nothing_asks_for_walls(tmp_path):
     assert box[2] <= 4 - 3 * radius(0.7) and box[3] >= 4.3 + 3 * radius(0.7)
     h = (box[1] - box[0]) / cells[0]
     assert h == pytest.approx((box[3] - box[2]) / cells[1]) and 10 <= radius(0.7) / h < 12
-    again = run_plain(tmp_path / "b", f"-options_file {run.folder}/resolved.opts -output_dir {tmp_path}/b")
+    again = run_petves(tmp_path / "b", f"-options_file {run.folder}/resolved.opts -output_dir {tmp_path}/b")
     assert settings(again.stdout)["-domain_box"][1] == "yours"
-    given = run_plain(tmp_path / "c", f"{scene} -scheme_auto 1e-2 -domain_cells 96,48").stdout
+    given = run_petves(tmp_path / "c", f"{scene} -scheme_auto 1e-2 -domain_cells 96,48").stdout
     box = domain(given, "-domain_box")
     assert box[1] - box[0] == pytest.approx(2 * (box[3] - box[2])) and settings(given)["-domain_cells"][1] == "yours"
 
@@ -153,7 +155,7 @@ def test_box_so_large_that_images_do_not_matter(why, tmp_path):
     scene = f"{QUIET} -flow_type shear -time_end 0 -vesicle_area 1 -coupling_box_part false {why}"
     half = {}
     for wanted in (0.1, 1e-2):
-        text = run_plain(tmp_path / f"{wanted}", f"{scene} -scheme_auto {wanted}").stdout
+        text = run_petves(tmp_path / f"{wanted}", f"{scene} -scheme_auto {wanted}").stdout
         box, cells = domain(text, "-domain_box"), domain(text, "-domain_cells")
         half[wanted] = float(settings(text)["-domain_box"][1].split()[0])
         assert settings(text)["-domain_bc_x"][0] == "periodic" and settings(text)["-domain_bc_y"][0] == "wall"
@@ -174,7 +176,7 @@ def test_box_that_is_the_question_stays(tmp_path):
             "-vesicle_packing 0.3 -vesicle_count 2 -domain_bc_x periodic -vesicle_packing_gap 0.1",
         )
     ):
-        text = run_plain(tmp_path / f"{number}", f"{QUIET} {scene} -time_end 0 -scheme_auto 1e-2").stdout
+        text = run_petves(tmp_path / f"{number}", f"{QUIET} {scene} -time_end 0 -scheme_auto 1e-2").stdout
         assert domain(text, "-domain_box") == [-1, 1, -1, 1] and "yours to give" in settings(text)["-domain_box"][1]
         assert "free" not in text and domain(text, "-domain_cells")[0] < 128
 
@@ -189,7 +191,7 @@ def test_grid_for_a_box(inertia, tmp_path):
     cells = {}
     near = (1e-2, 0.5)
     for wanted, height in ((0.1, 2.5), (1e-2, 2.5), (1e-3, 2.5), near, (1e-3, 0.6)):
-        text = run_plain(
+        text = run_petves(
             tmp_path / f"{wanted}_{height}", f"{scene} -vesicle_center 3,{height} -time_end 0 -scheme_auto {wanted}"
         ).stdout
         nx, ny = domain(text, "-domain_cells")
@@ -210,7 +212,7 @@ def test_grid_for_a_box(inertia, tmp_path):
 def test_grid_goes_by_what_inertia_stands_for(peak, inertia, tmp_path):
     """-fluid_inertia auto in a channel has inertia by the Reynolds number, and so has the choice of the grid."""
     scene = f"{QUIET} -domain_box 0,12,0,6 -domain_bc_x periodic -flow_type poiseuille -flow_center_y 3 -vesicle_area 1"
-    text = run_plain(
+    text = run_petves(
         tmp_path, f"{scene} -vesicle_center 3,3 -flow_peak_velocity {peak} -time_end 0 -scheme_auto 0.01"
     ).stdout
     assert (" with inertia: enough" in text) == inertia and "TOO" not in text
@@ -237,11 +239,11 @@ def test_grid_and_walls_are_what_was_measured(first, fluid, tmp_path):
     cells = ["2", "3", "4", "6", "8"]
     scene = f"{QUIET} -vesicle_area {0.7 * np.pi} -vesicle_center 0,0 -time_end 0 {fluid} -scheme_auto 0.1"
     n = 10 * int(cells[first])
-    text = run_plain(tmp_path / "a", f"{scene} -domain_box -5,5,-5,5 -domain_cells {n},{n}").stdout
+    text = run_petves(tmp_path / "a", f"{scene} -domain_box -5,5,-5,5 -domain_cells {n},{n}").stdout
     within(float(re.search(r"R0/h = .*leaves up to ([^\s:]+)", text)[1]), FLUIDS[fluid][0], cells[first:])
     gaps = ["0.4", "0.6", "0.8", "1.2", "1.6", "2.4"]
     low = unseen.Scene("box", 1, 0.7, 1, 0, 0.5, 8).ellipse()[:, 1].min() - 1.02 * float(gaps[first]) / 8
-    text = run_plain(tmp_path / "b", f"{scene} -domain_box -5,5,{low},{low + 10} -domain_cells 80,80").stdout
+    text = run_petves(tmp_path / "b", f"{scene} -domain_box -5,5,{low},{low + 10} -domain_cells 80,80").stdout
     near, found = re.search(r"nearest wall: (\S+) cells, which leaves up to (\S+) of R0", text).groups()
     within(float(found) / (float(near) / 8), FLUIDS[fluid][1], gaps[first:])
 
@@ -252,7 +254,7 @@ def test_walls_farther_than_measured(tmp_path):
         f"{QUIET} -vesicle_area {0.7 * np.pi} -vesicle_center 0,0 -time_end 0 -fluid_inertia unsteady -scheme_auto 0.1"
     )
     low = unseen.Scene("box", 1, 0.7, 1, 0, 0.5, 8).ellipse()[:, 1].min() - 0.8
-    text = run_plain(tmp_path, f"{scene} -domain_box -5,5,{low},{low + 10} -domain_cells 80,80").stdout
+    text = run_petves(tmp_path, f"{scene} -domain_box -5,5,{low},{low + 10} -domain_cells 80,80").stdout
     near, found = re.search(r"nearest wall: (\S+) cells, which leaves up to (\S+) of R0", text).groups()
     last = measured("cells_to_wall_plain", "3.2")
     assert float(found) == pytest.approx(last * 3.2**2 / 8 / float(near), rel=0.05)
@@ -261,7 +263,7 @@ def test_walls_farther_than_measured(tmp_path):
 def test_last_steps_are_of_one_size(tmp_path):
     """-time_adapt error does not end with a sliver of a step, and -time_adapt_max_step is kept."""
     for end in (0.1, 0.1234, 0.131):
-        run = run_plain(
+        run = run_petves(
             tmp_path / f"{end}",
             f"-domain_cells 32,32 {QUIET} -time_adapt error -time_adapt_max_step 0.01 -time_end {end}",
         )
@@ -301,8 +303,8 @@ def test_film_at_the_start(tmp_path):
     """Two ellipses .08 apart: too thin for 25 markers, .45 spacings, and for .1 %; more markers are chosen where they are left open."""
     scene = f"{FREE} {QUIET} -flow_type shear -vesicle_count 2 -vesicle_semi_axes 0.5,1 -vesicle_angle 0 -time_end 0 "
     scene += "-vesicle_center -0.54,0,0.54,0 -scheme_auto 1e-3"
-    few = run_plain(tmp_path / "few", f"{scene} -vesicle_markers 25").stdout
+    few = run_petves(tmp_path / "few", f"{scene} -vesicle_markers 25").stdout
     assert re.search(r"thinnest film: 0\.4\d marker spacings.*: TOO THIN, take more -vesicle_markers\n", few)
-    chosen = run_plain(tmp_path / "chosen", scene)
+    chosen = run_petves(tmp_path / "chosen", scene)
     assert int(settings(chosen.stdout)["-vesicle_markers"][0]) > 55
     assert "TOO THIN" not in chosen.stdout and "grid: none, unbounded fluid: enough\n" in chosen.stdout

@@ -10,8 +10,7 @@ import pytest
 from harness import ENVIRONMENT, PETVES, ROOT, mpirun, run_petves
 from restarts import without_wall
 
-COUPLED = "-scheme_type coupled -delta_type cbs54 -membrane_derivative spectral -coupling_near_field exact"
-SMALL = f"{COUPLED} -domain_cells 32,32 -domain_box -2,2,-2,2 -time_step 0.1 -time_end 0.1 -output_every 10"
+SMALL = f"-domain_cells 32,32 -domain_box -2,2,-2,2 -time_step 0.1 -time_end 0.1 -output_every 10"
 VIEW = re.compile(r"background flow: \w+, (?:rate|u_max) = (\S+): .* = (\S+) with R0 = (\S+), nu R0\^3/c_b = (\S+)\n")
 
 
@@ -162,7 +161,7 @@ UNITS = {
 def test_other_units_take_the_same_iterations(kind, walls, tmp_path):
     """The tolerance is relative to forces, and so are the rows that it is compared with."""
     scene, other = UNITS[kind]
-    scene = f"{COUPLED} -domain_cells 48,48 -flow_type shear -vesicle_semi_axes 0.3,0.5 -vesicle_bending 0.02 {walls} {scene}"
+    scene = f"-domain_cells 48,48 -flow_type shear -vesicle_semi_axes 0.3,0.5 -vesicle_bending 0.02 {walls} {scene}"
     one = run_petves(tmp_path / "one", scene).series
     two = run_petves(tmp_path / "two", f"{scene} {other}").series
     np.testing.assert_array_equal(two["coupled_its"], one["coupled_its"])

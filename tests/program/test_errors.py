@@ -7,7 +7,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
-from harness import PETVES, ROOT, mpirun, run_petves, without_mpirun
+from harness import PAPER, PETVES, PROGRAMS, ROOT, mpirun, run_petves, without_mpirun
 from refusals import CELLS, SMALL, leaves_files, matches, stops_with
 
 
@@ -76,6 +76,10 @@ OPTIONS = {
 }
 
 
+#: Groups of rows that say why a scene is refused, however its options were given.
+SCENES = ("Options", "Geometry")
+
+
 def rows() -> list[tuple[str, str, int, str]]:
     """Group, options, ranks and message of every row of docs/errors.md."""
     found, group = [], ""
@@ -89,21 +93,39 @@ def rows() -> list[tuple[str, str, int, str]]:
     return found
 
 
-@pytest.mark.parametrize("group, options, ranks, message", rows(), ids=lambda value: str(value)[:40])
-def test_mistake_is_named(group, options, ranks, message, tmp_path, monkeypatch):
-    """A row of docs/errors.md: this line and no other; bad input before any step, a failed step with the last good
-    state."""
-    monkeypatch.chdir(tmp_path)
+def with_files(options: str, folder: Path) -> str:
+    """The page's scene and the options of a row, with the files that it names."""
     for name, lines in CURVES.items():
-        path = tmp_path / f"{name.replace(' ', '_')}.txt"
+        path = folder / f"{name.replace(' ', '_')}.txt"
         path.write_text("\n".join(lines) + "\n")
         options = options.replace(f"{{curve: {name}}}", str(path))
     for name, content in OPTIONS.items():
-        path = tmp_path / f"{name.replace(' ', '_')}.opts"
+        path = folder / f"{name.replace(' ', '_')}.opts"
         path.write_bytes(content)
         options = options.replace(f"{{opts: {name}}}", path.name)
-    small = SMALL.removeprefix(CELLS) if options.startswith("-scheme_auto") else SMALL
-    run = run_petves(tmp_path / "out", f"{small} {options}", ranks, good=False, timeout=60)
+    return f"{PAPER} {SMALL.removeprefix(CELLS) if options.startswith('-scheme_auto') else SMALL} {options}"
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_scene_is_refused(ranks, tmp_path):
+    """Rows whose scene is refused, one after another in one process: this line and no other."""
+    table = [(options, message) for group, options, n, message in rows() if group in SCENES and n == ranks]
+    lines = [f"-output_dir {tmp_path}/out {with_files(options, tmp_path)}" for options, _ in table]
+    (tmp_path / "lines").write_text("\n".join(lines) + "\n")
+    done = mpirun([str(PROGRAMS / "scenes"), str(tmp_path / "lines")], ranks)
+    found = done.stdout.splitlines()
+    assert done.returncode == 0 and len(found) == len(table) > 30 and not (tmp_path / "out" / "series.csv").exists()
+    assert not [case for case in zip(table, found) if not matches(f"1 {case[0][1]}", case[1])]
+
+
+@pytest.mark.parametrize(
+    "group, options, ranks, message", [row for row in rows() if row[0] not in SCENES], ids=lambda value: str(value)[:40]
+)
+def test_mistake_is_named(group, options, ranks, message, tmp_path, monkeypatch):
+    """A row of docs/errors.md, in a run: this line and no other; bad input before any step, a failed step with the last
+    good state."""
+    monkeypatch.chdir(tmp_path)
+    run = run_petves(tmp_path / "out", with_files(options, tmp_path), ranks, good=False, timeout=60)
     assert matches(f"petves: error: {message}", "\n".join(run.errors)), run.errors
     if group == "Steps":
         leaves_files(run, "")
@@ -210,7 +232,7 @@ def test_unused_options_go_on_when_allowed(tmp_path):
 @pytest.mark.parametrize("prefix", ["tension_", "bending_"])
 def test_failed_solve_stops_the_run(prefix, tmp_path):
     """Prefix, step, time and residual in the message."""
-    options = f"{SMALL} -{prefix}ksp_max_it 1 -{prefix}ksp_rtol 1e-12"
+    options = f"{PAPER} {SMALL} -{prefix}ksp_max_it 1 -{prefix}ksp_rtol 1e-12"
     run = run_petves(tmp_path / "out", options, ranks=2, good=False)
     reason = rf"prefix {prefix} failed in step \d+ at time [\d.e-]+: DIVERGED_ITS after 1 iterations, residual [\d.]+"
     summary, series = leaves_files(run, reason)
@@ -221,7 +243,7 @@ def test_failed_solve_stops_the_run(prefix, tmp_path):
 
 def test_vesicle_carried_into_a_wall_stops_the_run(tmp_path):
     """Extension carries the vesicle away from the centre of the flow, to the wall at x_max."""
-    options = "-domain_cells 48,48 -flow_type extension -vesicle_center 0.4,0 -time_step 0.02 -time_end 5"
+    options = f"{PAPER} -domain_cells 48,48 -flow_type extension -vesicle_center 0.4,0 -time_step 0.02 -time_end 5"
     run = run_petves(tmp_path / "out", options, ranks=2, good=False)
     summary, series = leaves_files(
         run, r"vesicle 1.*wall x_max = 1.*needs 3 after step \d+, time [\d.]+; try a larger -domain_box"

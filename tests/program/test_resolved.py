@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from harness import PAPER, PETVES, mpirun
+from harness import PETVES, mpirun
 from restarts import without_wall
 
 
@@ -20,7 +20,7 @@ def test_resolved_options_repeat_the_run(name, tmp_path, monkeypatch):
     curve = Path("curve") / name.replace("/", "")
     np.savetxt(curve, 0.4 * np.c_[np.cos(angle), np.sin(angle)])
     words = f"-domain_cells 24,24 -output_every 10 -vesicle_shape file -time_end 0.02".split()
-    words = [*words, *PAPER.split(), "-vesicle_file", str(curve), "-output_dir", name]
+    words = [*words, "-vesicle_file", str(curve), "-output_dir", name]
     assert mpirun([PETVES, *words], 1).returncode == 0
     first = Path(name).rename("first")
     done = mpirun([PETVES, "-options_file", "first/resolved.opts"], 1)

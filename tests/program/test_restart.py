@@ -117,8 +117,7 @@ def test_another_curve_is_refused(solid, began, then, tmp_path):
     """The same options, but what the curve file holds has changed. What it holds may be elsewhere, with other comments."""
     curve, moved = tmp_path / "curve.txt", tmp_path / "moved.txt"
     kind = "obstacle" if solid else "vesicle"
-    options = "-domain_cells 32,32 -time_step 0.02 -time_end 0 -scheme_type coupled -fluid_inertia none -coupling_near_field exact "
-    options += "-delta_type cbs54 -membrane_derivative spectral "
+    options = "-domain_cells 32,32 -time_step 0.02 -time_end 0 -fluid_inertia none "
     options += "-domain_bc_x periodic -domain_bc_y periodic -vesicle_semi_axes 0.2,0.3 " * solid
     options += "-vesicle_center 0.5,0 " * solid + f"-{kind}_shape file -{kind}_file "
     curve.write_text(began)
@@ -136,7 +135,7 @@ def test_the_end_of_a_long_list_is_compared(tmp_path):
     """4200 characters: the message begins with the entry that differs."""
     places = [f"{x:.16f},{y:.16f}" for x in np.linspace(0.15, 7.85, 15) for y in np.linspace(0.15, 3.85, 8)]
     scene = "-domain_box 0,8,0,4 -domain_cells 256,128 -domain_bc_x periodic -domain_bc_y periodic -flow_type uniform -vesicle_shape none"
-    scene += " -time_end 0 -scheme_type coupled -obstacle_shape posts -obstacle_radius 0.1 -obstacle_center "
+    scene += " -time_end 0 -obstacle_shape posts -obstacle_radius 0.1 -obstacle_center "
     run_petves(tmp_path / "run", scene + ",".join(places))
     places[-1] = "7.85,3.75"
     scene += f"{','.join(places)} -restart {tmp_path}/run/checkpoint.h5"

@@ -6,9 +6,9 @@ import json
 import h5py
 import numpy as np
 import pytest
-from harness import run_petves
+from harness import PAPER, run_petves
 
-STRETCHED = "-domain_cells 32,32 -flow_type extension -flow_rate 10 -time_step 0.01 -time_end 1"
+STRETCHED = f"{PAPER} -domain_cells 32,32 -flow_type extension -flow_rate 10 -time_step 0.01 -time_end 1"
 
 
 @pytest.mark.parametrize(
@@ -37,7 +37,9 @@ def test_limit_stops_at_the_state_before(limit, column, tmp_path):
 
 def test_no_limit(tmp_path):
     """0 is no limit: the split scheme with a stiff membrane gains length without end."""
-    options = "-domain_cells 32,32 -vesicle_bending 100 -time_step 0.03125 -time_end 0.09375 -limit_area_error 0"
+    options = (
+        f"{PAPER} -domain_cells 32,32 -vesicle_bending 100 -time_step 0.03125 -time_end 0.09375 -limit_area_error 0"
+    )
     run = run_petves(tmp_path / "run", f"{options} -limit_length_error 0 -limit_edge_ratio 0")
     assert np.abs(run.series["length_error"]).max() > 0.2
     stopped = run_petves(tmp_path / "stopped", options, good=False)
@@ -46,11 +48,9 @@ def test_no_limit(tmp_path):
 
 def test_failed_graded_start_leaves_the_first_state(tmp_path):
     """One of the parts of the first step fails: the step as a whole has not been taken."""
-    options = (
-        "-domain_cells 32,32 -scheme_type coupled -scheme_order 2 -flow_type shear -flow_rate 2000 -time_step 0.01"
-    )
+    options = "-domain_cells 32,32 -scheme_order 2 -flow_type shear -flow_rate 2000 -time_step 0.01"
     run = run_petves(tmp_path / "run", options, good=False)
-    assert run.status == 2 and "needs 3" in run.errors[0] and "; try " in run.errors[0]
+    assert run.status == 2 and "beyond the wall x_max" in run.errors[0] and "; try " in run.errors[0]
     with h5py.File(run.folder / "checkpoint.h5") as file:
         assert file.attrs["step"] == 0 and file.attrs["time"] == 0 and file.attrs["past"] == 0
         assert not file["fluid/u"][:].any()
@@ -68,13 +68,16 @@ def test_failed_graded_start_leaves_the_first_state(tmp_path):
     ],
 )
 def test_contact_is_warned_of_once(options, who, tmp_path):
-    run = run_petves(tmp_path / "run", f"-domain_cells 32,32 {options} -time_step 0.002 -time_end 0.01", ranks=2)
+    """With the paper's scheme, which has no near field."""
+    run = run_petves(
+        tmp_path / "run", f"{PAPER} -domain_cells 32,32 {options} -time_step 0.002 -time_end 0.01", ranks=2
+    )
     lines = [line for line in run.stdout.splitlines() if "petves: warning" in line]
     assert len(lines) == 1 and who in lines[0] and "closer than 2 cells after step 1," in lines[0], run.stdout
 
 
 def test_no_warning_without_contact(tmp_path):
-    options = "-vesicle_count 2 -vesicle_semi_axes 0.2,0.5 -vesicle_center -0.35,0,0.35,0"
+    options = f"{PAPER} -vesicle_count 2 -vesicle_semi_axes 0.2,0.5 -vesicle_center -0.35,0,0.35,0"
     run = run_petves(tmp_path / "run", f"-domain_cells 32,32 {options} -time_step 0.002 -time_end 0.01")
     assert "petves: warning" not in run.stdout
 
@@ -82,7 +85,6 @@ def test_no_warning_without_contact(tmp_path):
 def test_markers_that_do_not_resolve_a_shape(tmp_path):
     """Warned of once, on any number of ranks; as many as the warning says are enough."""
     scene = "-domain_cells 32,32 -domain_bc_x free -domain_bc_y free -fluid_inertia none -vesicle_allow_close_markers "
-    scene += "-scheme_type coupled -coupling_near_field exact -membrane_derivative spectral -delta_type cbs54 "
     scene += "-domain_box 0,8,0,8 -flow_type shear -vesicle_center 2.5,4,5.5,4 -vesicle_count 2 -vesicle_area 1,1 "
     scene += "-vesicle_reduced_area 0.95,0.7 -time_step 0.05 -time_end 0.3 -vesicle_markers"
     run = run_petves(tmp_path / "run", f"{scene} 17", ranks=2)
@@ -94,23 +96,19 @@ def test_markers_that_do_not_resolve_a_shape(tmp_path):
     assert "petves: warning" not in run_petves(tmp_path / "more", f"{scene} {wanted}").stdout
 
 
+PRESSED = "-domain_box -4,4,-4,4 -domain_cells 32,32 -flow_type extension -flow_rate -1 -fluid_inertia none "
+PRESSED += "-vesicle_count 2 -vesicle_semi_axes 0.4,0.8 -vesicle_center -0.42,0,0.42,0 "
+
+
 def test_membranes_that_cross_end_the_run(tmp_path):
     """Without the near field and with long steps two vesicles pressed together cross: the last good state is the one before."""
-    options = "-domain_box -4,4,-4,4 -domain_cells 32,32 -flow_type extension -flow_rate -1 -fluid_inertia none "
-    options += "-scheme_type coupled -delta_type cbs54 -membrane_derivative spectral -vesicle_count 2 "
-    options += "-vesicle_semi_axes 0.4,0.8 -vesicle_center -0.42,0,0.42,0 "
-    options += "-vesicle_angle 0 -vesicle_bending 0.001 -time_step 0.5 -time_end 8 -limit_gap_loss 0"
+    options = f"{PRESSED} -coupling_near_field none -vesicle_angle 0 -vesicle_bending 0.001 -time_step 0.5 -time_end 8 -limit_gap_loss 0"
     run = run_petves(tmp_path / "run", options, ranks=2, good=False)
     assert run.status == 2 and "vesicles 1 and 2 cross after step" in run.errors[0] and "; try " in run.errors[0]
     last = int(run.series["step"][-1])
     assert 3 < last < 16 and f"after step {last + 1}," in run.errors[0]
     with h5py.File(run.folder / "checkpoint.h5") as file:
         assert file.attrs["step"] == last
-
-
-PRESSED = "-domain_box -4,4,-4,4 -domain_cells 32,32 -flow_type extension -flow_rate -1 -fluid_inertia none "
-PRESSED += "-scheme_type coupled -delta_type cbs54 -membrane_derivative spectral -scheme_area_target true "
-PRESSED += "-vesicle_count 2 -vesicle_semi_axes 0.4,0.8 -vesicle_center -0.42,0,0.42,0 "
 
 
 def test_step_that_drains_a_film(tmp_path):
@@ -121,7 +119,7 @@ def test_step_that_drains_a_film(tmp_path):
     assert run.status == 2 and "the film between vesicles 1 and 2 went from " in run.errors[0], run.errors
     assert run.series["gap"][-1] > 0 and len(run.series["gap"]) > 2
     adaptive = "-scheme_order 2 -time_adapt error -time_adapt_tol 0.1 -time_adapt_max_move 0 -time_adapt_max_step 0.3"
-    exact = f"{PRESSED} -coupling_near_field exact -vesicle_bending 0.01 {adaptive} -time_step 0.3 -time_end 0.6"
+    exact = f"{PRESSED} -vesicle_bending 0.01 {adaptive} -time_step 0.3 -time_end 0.6"
     gaps = [
         run_petves(tmp_path / str(limit), f"{exact} -limit_gap_loss {limit}").series["gap"] for limit in (0.5, 0.002)
     ]
@@ -133,7 +131,6 @@ def test_step_that_drains_a_film(tmp_path):
 def test_corner_is_warned_of_once(tmp_path):
     """2 cells from two walls that meet, and from one of them only; the box part of quasi-steady flow holds there."""
     scene = (
-        "-scheme_type coupled -coupling_near_field exact -delta_type cbs54 -membrane_derivative spectral "
         "-fluid_inertia none -domain_cells 32,32 -domain_box 0,2,0,2 -vesicle_semi_axes 0.3,0.3 -vesicle_markers 45 "
         "-time_step 1e-4 -time_end 3e-4"
     )
@@ -146,6 +143,5 @@ def test_corner_is_warned_of_once(tmp_path):
 def test_window_of_unbounded_fluid_has_no_corner(tmp_path):
     """A vesicle may lie over the corner of its window, and outside of it."""
     scene = "-domain_box 0,2,0,2 -domain_cells 32,32 -domain_bc_x free -domain_bc_y free -fluid_inertia none "
-    scene += "-scheme_type coupled -coupling_near_field exact -delta_type cbs54 -membrane_derivative spectral "
     scene += "-vesicle_semi_axes 0.3,0.4 -vesicle_center -0.1,2.5 -time_step 0.01 -time_end 0.02"
     assert "petves: warning" not in run_petves(tmp_path / "run", scene).stdout

@@ -48,7 +48,7 @@ def test_what_was_written_is_said(tmp_path):
 
 def test_single_precision(tmp_path):
     """The fields alone, rounded, on any number of ranks; the run is the same."""
-    options = f"{SMALL} -time_step 0.01 -time_end 0.03 -output_every 0.01"
+    options = f"{SMALL} -domain_cells 48,48 -time_step 0.01 -time_end 0.03 -output_every 0.01"
     double = run_petves(tmp_path / "double", options)
     single = run_petves(tmp_path / "single", f"{options} -output_precision single", 2)
     one = run_petves(tmp_path / "one", f"{options} -output_precision single")

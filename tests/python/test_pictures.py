@@ -19,7 +19,7 @@ from petves.views.words import key_numbers
 pytestmark = pytest.mark.xdist_group("pictures")  # its tests share a run
 
 OPTIONS = (
-    "-scheme_type coupled -delta_type cbs54 -membrane_derivative spectral -coupling_near_field exact -fluid_inertia none "
+    "-fluid_inertia none "
     "-domain_box 0,4,0,2 -domain_cells 48,24 -domain_bc_x periodic -flow_type poiseuille -flow_half_width 1 "
     "-flow_center_y 1 -flow_peak_velocity 3 -vesicle_semi_axes .3,.4 -vesicle_center 3.3,1 -time_step .1 -time_end .4 "
     "-output_every .2"

@@ -21,7 +21,7 @@ from petves.views.report import report
 pytestmark = pytest.mark.xdist_group("tools")  # its tests share runs
 
 OPTIONS = (
-    "-scheme_type coupled -delta_type cbs54 -domain_cells 32,48 -domain_box -1,1,-1,2 -flow_type shear"
+    "-domain_cells 32,48 -domain_box -1,1,-1,2 -flow_type shear"
     " -vesicle_semi_axes 0.3,0.5 -time_step 0.01 -time_end 0.04 -output_every 0.02"
 )
 CHROMIUM = shutil.which("chromium-headless-shell") or shutil.which("chromium")

@@ -12,7 +12,7 @@ from refusals import one_line
 
 pytestmark = pytest.mark.xdist_group("forged")  # its tests share a run
 
-SCENE = "-domain_cells 16,16 -domain_box -2,2,-2,2 -vesicle_semi_axes 0.8,1 -flow_type shear -time_step 0.02 -scheme_type coupled"
+SCENE = "-domain_cells 16,16 -domain_box -2,2,-2,2 -vesicle_semi_axes 0.8,1 -flow_type shear -time_step 0.02 "
 
 
 @pytest.fixture(scope="module")
@@ -157,7 +157,6 @@ def test_forged_checkpoints_are_refused(name, good, tmp_path):
 def test_numbers_of_the_last_rank_are_finite(state, tmp_path):
     """A largest number over ranks may lose one rank's NaN."""
     scene = f"{SCENE} -fluid_inertia none -vesicle_semi_axes 0.4,0.5 -vesicle_count 3 -vesicle_center -1,-1,1,-1,0,1 "
-    scene += "-delta_type cbs54 -membrane_derivative spectral -coupling_near_field exact"
     good = run_petves(tmp_path / "run", f"{scene} -time_end 0.06").folder / "checkpoint.h5"
     path = forge(good, tmp_path, dataset(f"{state}vesicle/markers", with_entry(np.nan, -3)))
     run = run_petves(tmp_path / "new", f"{scene} -time_end 0.1 -restart {path}", 3, good=False, timeout=60)
@@ -166,7 +165,7 @@ def test_numbers_of_the_last_rank_are_finite(state, tmp_path):
 
 def test_earlier_steps_of_no_length_are_refused(tmp_path):
     """The steps between the states that coupled goes on from divide what it makes of them."""
-    scene = f"{SCENE} -scheme_type coupled -coupling_near_field none"
+    scene = f"{SCENE} -coupling_near_field none"
     good = run_petves(tmp_path / "run", f"{scene} -time_end 0.06").folder / "checkpoint.h5"
     path = forge(good, tmp_path, attribute("dt_earlier", np.zeros(5)))
     run = run_petves(tmp_path / "new", f"{scene} -time_end 0.1 -restart {path}", good=False, timeout=60)
@@ -176,7 +175,7 @@ def test_earlier_steps_of_no_length_are_refused(tmp_path):
 def test_a_memory_of_another_time_is_refused(tmp_path):
     """Moving obstacles were where the preconditioner's factor was made at a time that the checkpoint has."""
     scene = "-vesicle_shape none -domain_cells 16,16 -domain_bc_x periodic -domain_bc_y periodic -time_step 0.01"
-    scene += " -scheme_type coupled -obstacle_shape posts -obstacle_radius .5 -obstacle_moving -obstacle_velocity 1,0"
+    scene += " -obstacle_shape posts -obstacle_radius .5 -obstacle_moving -obstacle_velocity 1,0"
     good = run_petves(tmp_path / "run", f"{scene} -time_end 0.02").folder / "checkpoint.h5"
 
     def later(file, name, values, place):

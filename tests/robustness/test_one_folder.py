@@ -11,7 +11,7 @@ from pathlib import Path
 
 import h5py
 import pytest
-from harness import ENVIRONMENT, PAPER, PETVES, ROOT, SANITIZE, mpirun, read_series, run_petves, without_mpirun
+from harness import ENVIRONMENT, PETVES, ROOT, SANITIZE, mpirun, read_series, run_petves, without_mpirun
 from double_starts import KINDS, double_start
 from refusals import one_line
 from restarts import without_wall
@@ -24,7 +24,7 @@ SCENE = "-domain_cells 24,24 -vesicle_semi_axes 0.3,0.5 -flow_type shear -time_s
 def start(folder: Path, options: str, ranks: int = 1, **how) -> subprocess.Popen:
     """petves in the background, with a run that has no end unless the options say one."""
     command = ["mpirun", "-n", str(ranks)] if ranks > 1 else []
-    command += [PETVES, "-output_dir", str(folder), *PAPER.split(), *f"{SCENE} -time_end 1000 {options}".split()]
+    command += [PETVES, "-output_dir", str(folder), *f"{SCENE} -time_end 1000 {options}".split()]
     environment = {**os.environ, **ENVIRONMENT, **how.pop("environment", {})}
     return subprocess.Popen(
         command, env=environment, text=True, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, **how
@@ -190,7 +190,7 @@ def test_clock_set_back(tmp_path):
     options = (
         f"{SCENE} -time_step 1e-5 -time_end 1000 -output_every 10 -time_wall_limit 4 -output_dir {tmp_path / 'run'}"
     )
-    done = mpirun([PETVES, *PAPER.split(), *options.split()], 1, 60, LD_PRELOAD=str(library))
+    done = mpirun([PETVES, *options.split()], 1, 60, LD_PRELOAD=str(library))
     assert done.returncode == 0 and "-time_wall_limit" in done.stdout, done.stdout + done.stderr
     assert read_series(tmp_path / "run" / "series.csv")["wall"].min() >= 0
     assert 0 < json.loads((tmp_path / "run" / "summary.json").read_text())["wall_seconds"]["run"] < 4
@@ -199,9 +199,7 @@ def test_clock_set_back(tmp_path):
 
 def test_signal_before_the_first_step(tmp_path):
     """It ends the process at once: there is nothing to save."""
-    process = start(
-        tmp_path / "run", "-domain_cells 192,192 -scheme_type coupled -coupling_near_field exact -delta_type cbs54"
-    )
+    process = start(tmp_path / "run", "-domain_cells 192,192 ")
 
     def caught() -> int:  # signals that the process handles itself, a bit each
         lines = Path(f"/proc/{process.pid}/status").read_text().splitlines()
@@ -232,7 +230,7 @@ print(sim.run(callback=wait))
 @pytest.mark.parametrize("pauses, status", [((0, 0.1), 0), ((0, 1.2), -signal.SIGTERM)])
 def test_second_signal_ends_the_process(pauses, status, tmp_path):
     """A second later; one that comes sooner is the same request, which mpirun and the batch system both send."""
-    words = f"{PAPER} {SCENE}".split()
+    words = f"{SCENE}".split()
     named = ", ".join(f"{name[1:]}={value!r}" for name, value in zip(words[::2], words[1::2]))
     (tmp_path / "script.py").write_text(TWICE.format(simulation=f"petves.Simulation({named})", pauses=pauses))
     library = str(Path(PETVES).parent.parent / "lib" / "libpetves.so")

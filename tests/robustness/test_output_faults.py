@@ -10,7 +10,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
-from harness import PAPER, PETVES, ROOT, SANITIZE, mpirun, run_petves, without_mpirun
+from harness import PETVES, ROOT, SANITIZE, mpirun, run_petves, without_mpirun
 
 pytestmark = pytest.mark.xdist_group("output_faults")  # its tests share runs
 
@@ -83,7 +83,7 @@ def test_close_that_fails_at_the_end(name, ranks, fault, straight, tmp_path):
     as if nothing had been."""
     folder = tmp_path / "run"
     options = f"{SCENE} -time_end 0.1 -output_dir {folder} -malloc_debug -malloc_dump -objects_dump"
-    done = mpirun([PETVES, *PAPER.split(), *options.split()], ranks, 60, LD_PRELOAD=str(fault), PETVES_FAULT=name)
+    done = mpirun([PETVES, *options.split()], ranks, 60, LD_PRELOAD=str(fault), PETVES_FAULT=name)
     said = f"petves: error: {folder}/{name}: cannot be written; allowed: a folder with space that can be written"
     assert done.returncode == 1 and without_mpirun(done.stderr) == [said], done.stderr
     assert "never freed" not in done.stdout and " bytes " not in done.stdout, done.stdout
@@ -97,9 +97,7 @@ def test_close_that_fails_at_the_end(name, ranks, fault, straight, tmp_path):
 def test_close_that_fails_on_the_way(name, ranks, fault, tmp_path):
     """Of a file that is written under a temporary name, before the first step or after the last one."""
     options = f"{SCENE} -time_end 0.04 -output_dir {tmp_path / 'run'} -malloc_debug -malloc_dump -objects_dump"
-    done = mpirun(
-        [PETVES, *PAPER.split(), *options.split()], ranks, 60, LD_PRELOAD=str(fault), PETVES_FAULT=f"{name}.tmp"
-    )
+    done = mpirun([PETVES, *options.split()], ranks, 60, LD_PRELOAD=str(fault), PETVES_FAULT=f"{name}.tmp")
     said = f"petves: error: {tmp_path}/run/{name}: cannot be written; allowed: a folder with space that can be written"
     assert done.returncode == 1 and without_mpirun(done.stderr) == [said], done.stderr
     assert "never freed" not in done.stdout and " bytes " not in done.stdout, done.stdout
@@ -150,7 +148,7 @@ assert all("cannot be written" in line for line in said), said
 def test_disk_that_is_full_from_python(call, times, steps, ranks, tmp_path):
     """At the end, as the file is closed to which a row could not be written, and in a step; calls after it return.
     The checkpoint before it is good."""
-    options = f"{PAPER} {SCENE} -time_end 0.2 -output_every {0.08 if times == 2 else 10} -checkpoint_every 2"
+    options = f"{SCENE} -time_end 0.2 -output_every {0.08 if times == 2 else 10} -checkpoint_every 2"
     folder, script = tmp_path / "run", tmp_path / "script.py"
     script.write_text(FULL.format(simulation=simulation(folder, options), call=call, times=times, steps=steps))
     done = run_python(script, ranks)
@@ -186,7 +184,7 @@ def test_a_frame_costs_the_same_at_any_time(tmp_path):
     """The bytes written and read for a frame do not grow with the frames before it; run.xmf is one file that grows, what
     was there stays, and it is a whole document after each frame."""
     frames, out = 300, str(tmp_path / "counts.json")
-    options = f"{PAPER} {SCENE} -domain_cells 16,16 -vesicle_semi_axes 0.4,0.4 -time_step 1e-3 -output_every 1e-3"
+    options = f"{SCENE} -domain_cells 16,16 -vesicle_semi_axes 0.4,0.4 -time_step 1e-3 -output_every 1e-3"
     script = tmp_path / "script.py"
     call = simulation(tmp_path / "run", f"{options} -time_end 10 -checkpoint_every 0 -vesicle_spacing 1.75")
     script.write_text(COUNT.format(simulation=call, frames=frames, out=out))
@@ -237,7 +235,7 @@ def test_run_xmf_after_a_restart(straight, tmp_path):
 def test_run_xmf_when_a_run_goes_on_after_its_end(straight, tmp_path):
     """From Python: the last frame of run.xmf is written over, also by a shorter text."""
     script = tmp_path / "script.py"
-    call = simulation(tmp_path / "run", f"{PAPER} {SCENE} -time_end 0.06")
+    call = simulation(tmp_path / "run", f"{SCENE} -time_end 0.06")
     script.write_text(f"import petves\nsim = {call}\nsim.run()\nsim.run(until=0.12)\nsim.close()\n")
     done = run_python(script)
     assert done.returncode == 0, done.stdout + done.stderr

@@ -2,6 +2,7 @@
 differs from one on like ranks by what the solvers' tolerances let through. One rank preloads a library that turns the last
 bit of what BLAS and LAPACK give back."""
 
+import functools
 import shutil
 
 import numpy as np
@@ -53,6 +54,9 @@ SCENES = {
 }
 
 
+pytestmark = pytest.mark.xdist_group("unlike_ranks")  # its tests share runs
+
+
 @pytest.fixture(scope="module")
 def library(tmp_path_factory):
     """The library that nudges, compiled."""
@@ -66,23 +70,31 @@ def library(tmp_path_factory):
     return folder / "nudge.so"
 
 
+@pytest.fixture(scope="module")
+def series(library, tmp_path_factory):
+    """Rows of two ranks, of which this one is nudged, or none; each run is made once."""
+
+    @functools.cache
+    def of(scene: str, odd: int | None):
+        solvers = ("tension", "bending") if scene == "split" else ("coupled",)
+        folder = tmp_path_factory.mktemp("run") / "out"
+        options = f"{SCENES[scene]} {' '.join(f'-{solver}_ksp_rtol 1e-12' for solver in solvers)}"
+        run = [PETVES, "-output_dir", str(folder), *options.split()]
+        nudged = ["env", f"LD_PRELOAD={library}", *run]
+        one, two = (nudged if rank == odd else run for rank in (0, 1))
+        done = mpirun(["mpirun", "-n", "1", *one, ":", "-n", "1", *two], 1, timeout=120)
+        assert done.returncode == 0, done.stderr
+        return read_series(folder / "series.csv")
+
+    return of
+
+
 @pytest.mark.skipif(SANITIZE, reason="the sanitizers' library must be the first to be loaded")
 @pytest.mark.parametrize("unlike", [0, 1])
 @pytest.mark.parametrize("scene", SCENES)
-def test_unlike_ranks_agree(scene, unlike, library, tmp_path):
+def test_unlike_ranks_agree(scene, unlike, series):
     """Two ranks, one of them nudged, against two that are not."""
-    solvers = ("tension", "bending") if scene == "split" else ("coupled",)
-    options = f"{SCENES[scene]} {' '.join(f'-{solver}_ksp_rtol 1e-12' for solver in solvers)}".split()
-    series = []
-    for nudged in (False, True):
-        folder = tmp_path / str(nudged)
-        run = [PETVES, "-output_dir", str(folder), *options]
-        odd = ["env", f"LD_PRELOAD={library}", *run] if nudged else run
-        both = [run, odd] if unlike else [odd, run]
-        done = mpirun(["mpirun", "-n", "1", *both[0], ":", "-n", "1", *both[1]], 1, timeout=120)
-        assert done.returncode == 0, done.stderr
-        series.append(read_series(folder / "series.csv"))
-    like, other = series
+    like, other = series(scene, None), series(scene, unlike)
     assert len(like["time"]) == len(other["time"]) > 10
     assert any(not np.array_equal(like[name], other[name]) for name in ("energy_bending", "center_x", "length_error"))
     for name in ("time", "energy_kinetic", "energy_bending", "area", "length", "center_x", "center_y", "inclination"):

@@ -22,11 +22,53 @@ static inline PetscErrorCode PETSC_ATTRIBUTE_FORMAT(2, 3) CheckFact(PetscBool ho
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* TestKeep - what is to be destroyed when the program ends. */
+static struct {
+  PetscObject *object;
+  PetscInt n, room;
+} test_kept;
+
+static inline PetscErrorCode TestKeep(PetscObject object) {
+  PetscFunctionBeginUser;
+  if (test_kept.n == test_kept.room) {
+    test_kept.room = 2 * test_kept.room + 16;
+    PetscCall(PetscRealloc(sizeof(PetscObject) * (size_t)test_kept.room, &test_kept.object));
+  }
+  test_kept.object[test_kept.n++] = object;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static inline PetscErrorCode TestDestroyKept(void) {
+  PetscFunctionBeginUser;
+  while (test_kept.n) PetscCall(PetscObjectDestroy(&test_kept.object[--test_kept.n]));
+  PetscCall(PetscFree(test_kept.object));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* TestVecs - vectors like x, up to a NULL, which the end of the program destroys. */
+static inline PetscErrorCode TestVecsLike(Vec x, va_list list) {
+  PetscFunctionBeginUser;
+  for (Vec *y; (y = va_arg(list, Vec *));) {
+    PetscCall(VecDuplicate(x, y));
+    PetscCall(TestKeep((PetscObject)*y));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static inline PetscErrorCode TestVecs(Vec x, ...) {
+  va_list list;
+  PetscFunctionBeginUser;
+  va_start(list, x);
+  PetscCall(TestVecsLike(x, list));
+  va_end(list);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* CheckMain - main() of a test program. */
 static inline int CheckMain(int argc, char **argv, PetscErrorCode (*facts)(void)) {
   if (PetvesInitialize(&argc, &argv)) return 1;
   const PetscErrorCode error = facts();
-  if (PetvesFinalize() || error) return 1;
+  if (TestDestroyKept() || PetvesFinalize() || error) return 1;
   return check_failed ? 1 : 0;
 }
 

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import h5py
 import numpy as np
-from harness import ENVIRONMENT, PAPER, PETVES, read_series
+from harness import ENVIRONMENT, PETVES, read_series
 
 SCENE = "-domain_cells 24,24 -vesicle_semi_axes 0.3,0.5 -flow_type shear -time_step 0.02 -output_every 0.1"
 STEPS = 300
@@ -24,7 +24,7 @@ END = f"-time_end {0.02 * STEPS} -checkpoint_every 10"
 def start(folder: Path, options: str) -> subprocess.Popen:
     """petves in the background."""
     return subprocess.Popen(
-        [PETVES, "-output_dir", str(folder), *PAPER.split(), *SCENE.split(), *END.split(), *options.split()],
+        [PETVES, "-output_dir", str(folder), *SCENE.split(), *END.split(), *options.split()],
         env={**os.environ, **ENVIRONMENT},
         text=True,
         stdout=subprocess.DEVNULL,

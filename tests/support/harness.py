@@ -39,8 +39,8 @@ ENVIRONMENT = {
 if SANITIZE:  # also programs that the package or a study starts
     os.environ.update({name: ENVIRONMENT[name] for name in ("ASAN_OPTIONS", "UBSAN_OPTIONS")})
 
-#: The paper's scheme and discretisation, which most tests start from: options given after them win.
-PAPER = "-scheme_type split -delta_type ib6 -membrane_derivative fd -coupling_near_field none -scheme_area_target false"
+#: The paper's scheme; its discretisation follows from it. Tests start from the default scheme unless they say this.
+PAPER = "-scheme_type split"
 
 COLUMNS = (
     "step,time,dt,energy_kinetic,energy_bending,area,length,area_error,length_error,edge_ratio,div_max,"
@@ -101,29 +101,18 @@ class Run:
 
 
 def run_petves(folder: Path, options: str, ranks: int = 1, good: bool = True, timeout: float = 300) -> Run:
-    """Run petves with its output in `folder`, unless the options say another; with `good` the run must end well.
-
-    The scheme is split, and the membrane's discretisation the paper's, unless the options say otherwise.
-    """
-    paper = PAPER if "-vesicle_shape none" not in options else "-scheme_type split"
-    done = mpirun([PETVES, "-output_dir", str(folder), *paper.split(), *options.split()], ranks, timeout)
+    """Run petves with its output in `folder`, unless the options say another; with `good` the run must end well."""
+    done = mpirun([PETVES, "-output_dir", str(folder), *options.split()], ranks, timeout)
     run = Run(folder, done.returncode, done.stdout, without_mpirun(done.stderr))
     if good:
         assert run.status == 0, f"petves {options}\n{done.stdout}\n{done.stderr}"
     return run
 
 
-def run_plain(folder: Path, options: str) -> Run:
-    """A run with the program's own defaults, on one rank."""
-    done = mpirun([PETVES, "-output_dir", str(folder), *options.split()], 1)
-    assert done.returncode == 0, done.stderr
-    return Run(folder, done.returncode, done.stdout, [])
-
-
 def start(folder: Path, options: str, ranks: int = 1, **streams) -> subprocess.Popen:
     """petves in the background."""
     command = ["mpirun", "-n", str(ranks)] if ranks > 1 else []
-    command += [PETVES, "-output_dir", str(folder), *PAPER.split(), *options.split()]
+    command += [PETVES, "-output_dir", str(folder), *options.split()]
     heed = lambda: signal.signal(signal.SIGINT, signal.SIG_DFL)  # which tests in the background ignore
     return subprocess.Popen(command, env={**os.environ, **ENVIRONMENT}, text=True, preexec_fn=heed, **streams)
 

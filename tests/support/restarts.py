@@ -7,7 +7,6 @@ import numpy as np
 from harness import COLUMNS
 
 BASE = "-domain_cells 32,32 -vesicle_semi_axes 0.3,0.5 -flow_type shear -time_step 0.02 -output_every 0.05"
-DEFAULTS = "-delta_type cbs54 -membrane_derivative spectral -coupling_near_field exact -scheme_area_target true"
 TWO = (
     "-domain_box -1.5,1.5,-1.5,1.5 -domain_cells 48,48 -vesicle_semi_axes 0.2,0.4 -vesicle_count 2 "
     "-vesicle_center -0.5,0.2,0.5,-0.2"
@@ -15,12 +14,12 @@ TWO = (
 SCHEMES = {
     "split": f"{BASE} -scheme_type split",
     "penalty": f"{BASE} -scheme_type penalty",
-    "order_1": f"{BASE} -scheme_type coupled -scheme_order 1",
-    "order_2": f"{BASE} -scheme_type coupled {DEFAULTS}",
-    "order_3": f"{BASE} -scheme_type coupled {DEFAULTS} -scheme_order 3",  # unsteady: with the velocity of three states
-    "stiff": f"{BASE} -scheme_type coupled {DEFAULTS} -vesicle_bending 100",  # edges are corrected after its steps
-    "adaptive": f"{BASE} -scheme_type coupled {DEFAULTS} -scheme_order 3 -time_adapt error -time_adapt_tol 1e-3",
-    "two_vesicles": f"{BASE} {TWO} -scheme_type coupled {DEFAULTS}",
+    "order_1": f"{BASE} -scheme_order 1",
+    "order_2": f"{BASE}",
+    "order_3": f"{BASE} -scheme_order 3",  # unsteady: with the velocity of three states
+    "stiff": f"{BASE} -vesicle_bending 100",  # edges are corrected after its steps
+    "adaptive": f"{BASE} -scheme_order 3 -time_adapt error -time_adapt_tol 1e-3",
+    "two_vesicles": f"{BASE} {TWO}",
     "total_form": f"{BASE} -flow_form total -scheme_type split",
 }
 N = 8  # steps to the checkpoint; twice as many in all

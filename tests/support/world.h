@@ -80,6 +80,32 @@ static inline PetscErrorCode TestWorldBuild(TestWorld *w) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* TestFieldVecs - vectors of a field of the grid, TestMarkerVecs - of `each` numbers a marker; as TestVecs makes them.
+ */
+static inline PetscErrorCode TestFieldVecs(DM dm, ...) {
+  va_list list;
+  Vec x;
+  PetscFunctionBeginUser;
+  va_start(list, dm);
+  PetscCall(DMCreateGlobalVector(dm, &x));
+  PetscCall(TestVecsLike(x, list));
+  va_end(list);
+  PetscCall(VecDestroy(&x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static inline PetscErrorCode TestMarkerVecs(Layout layout, PetscInt each, ...) {
+  va_list list;
+  Vec x;
+  PetscFunctionBeginUser;
+  va_start(list, each);
+  PetscCall(LayoutCreateVec(layout, each, &x));
+  PetscCall(TestVecsLike(x, list));
+  va_end(list);
+  PetscCall(VecDestroy(&x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* TestWorldPlace - the coupling at the initial markers for the time coefficient a0. */
 static inline PetscErrorCode TestWorldPlace(PetscReal a0, TestWorld *w) {
   char message[PETVES_MAX_MESSAGE];

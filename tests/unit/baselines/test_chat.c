@@ -1,5 +1,5 @@
 /* The tension problem: the assembled Chat is S^T S + S^T G diag(L)^-1 G^T S, and the operator is symmetric positive. */
-#include "world.h"
+#include "facts.h"
 #include "baselines/lagrangian.h"
 #include "baselines/tensionmatrix.h"
 
@@ -34,8 +34,6 @@ static PetscErrorCode ColumnError(Layout l, PetscMPIInt root, Mat Chat, PetscInt
     PetscCall(VecAssemblyBegin(e));
     PetscCall(VecAssemblyEnd(e));
     PetscCall(MatMult(Chat, e, column));
-    PetscCall(VecDestroy(&e));
-    PetscCall(VecDestroy(&column));
     for (PetscInt r = 0; r < l->M; r++) *error = PetscMax(*error, PetscAbsReal(got[r] - all[r]));
   }
   PetscCallMPI(MPI_Bcast(error, 1, MPIU_REAL, root, l->comm));
@@ -55,10 +53,9 @@ static PetscErrorCode ChatError(TestWorld *t, PetscReal *error) {
   PetscCall(TensionAssemble(t->coupling, root, &Chat));
   CHECK((Chat != NULL) == (t->layout->rank == root), "   Chat is on rank %d and nowhere else", root);
   PetscCall(InverseDiagonal(f->grid, &d));
-  PetscCall(DMCreateGlobalVector(f->grid->velocity, &w));
-  PetscCall(VecDuplicate(d, &q));
-  PetscCall(LayoutCreateVec(t->layout, 1, &e));
-  PetscCall(VecDuplicate(e, &column));
+  PetscCall(TestFieldVecs(f->grid->velocity, &w, NULL));
+  PetscCall(TestVecs(d, &q, NULL));
+  PetscCall(TestMarkerVecs(t->layout, 1, &e, &column, NULL));
   for (PetscInt k = 0; k < t->layout->M; k++) {
     PetscCall(VecSet(e, 0));
     PetscCall(VecSetValue(e, k, 1, INSERT_VALUES));
@@ -76,8 +73,6 @@ static PetscErrorCode ChatError(TestWorld *t, PetscReal *error) {
   }
   *error /= largest;
   PetscCall(MatDestroy(&Chat));
-  Vec *all[] = {&d, &w, &q, &e, &column};
-  for (int k = 0; k < 5; k++) PetscCall(VecDestroy(all[k]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -89,10 +84,7 @@ static PetscErrorCode CheckSymmetry(const char name[], TestWorld *t) {
   PetscReal one, two, nx, ny, self;
   PetscFunctionBeginUser;
   PetscCall(TensionSolverCreate(t->coupling, &s));
-  PetscCall(LayoutCreateVec(t->layout, 1, &x));
-  PetscCall(VecDuplicate(x, &y));
-  PetscCall(VecDuplicate(x, &Cx));
-  PetscCall(VecDuplicate(x, &Cy));
+  PetscCall(TestMarkerVecs(t->layout, 1, &x, &y, &Cx, &Cy, NULL));
   for (unsigned k = 0; k < 5; k++) {
     PetscCall(TestRandomVec(20 + k, x));
     PetscCall(TestRandomVec(40 + k, y));
@@ -107,15 +99,11 @@ static PetscErrorCode CheckSymmetry(const char name[], TestWorld *t) {
           PetscAbsReal(one - two) / (nx * ny));
     CHECK(self > 0, "%s: the tension operator is positive, %.3e", name, self);
   }
-  PetscCall(VecDestroy(&x));
-  PetscCall(VecDestroy(&y));
-  PetscCall(VecDestroy(&Cx));
-  PetscCall(VecDestroy(&Cy));
   PetscCall(LagrangianSolverDestroy(&s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Facts(void) {
+PetscErrorCode Facts(void) {
   /* in the middle, three cells from two walls, and across one seam or both */
   static const char *const scenes[] = {
       "-vesicle_center 0.03,-0.02", "-vesicle_center -0.7,0.4 -vesicle_semi_axes 0.2,0.5",
@@ -138,8 +126,4 @@ static PetscErrorCode Facts(void) {
       PetscCall(TestWorldDestroy(&t));
     }
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-int main(int argc, char **argv) {
-  return CheckMain(argc, argv, Facts);
 }

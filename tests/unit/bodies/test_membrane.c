@@ -1,5 +1,5 @@
 /* Membranes: initial shapes with equal edges, measures of exact shapes, bending and stretching operators. */
-#include "world.h"
+#include "facts.h"
 
 /* Membrane of M markers on an ellipse, turned and moved. */
 static PetscErrorCode Ellipse(PetscInt M, PetscReal a, PetscReal b, PetscReal degrees, TestMembrane *m) {
@@ -222,7 +222,7 @@ static PetscErrorCode CheckOperators(void) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Facts(void) {
+PetscErrorCode Facts(void) {
   PetscFunctionBeginUser;
   PetscCall(CheckCircle());
   PetscCall(CheckEllipse(0));
@@ -233,8 +233,4 @@ static PetscErrorCode Facts(void) {
   PetscCall(CheckFile());
   PetscCall(CheckOperators());
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-int main(int argc, char **argv) {
-  return CheckMain(argc, argv, Facts);
 }

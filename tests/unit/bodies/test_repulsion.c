@@ -1,6 +1,6 @@
 /* Repulsion and adhesion of membranes: the force is minus the slope of the energy, every force has its counterforce,
    and the springs of a step are the law where they were found. */
-#include "world.h"
+#include "facts.h"
 
 /* Two vesicles, one of them near a wall and near an image of the other. */
 static const char scene[] =
@@ -94,7 +94,7 @@ static PetscErrorCode CheckRange(const Case *c, const TestMembrane *m, Bodies bo
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Facts(void) {
+PetscErrorCode Facts(void) {
   PetscFunctionBeginUser;
   for (size_t k = 0; k < sizeof(cases) / sizeof(cases[0]); k++) {
     char options[1024];
@@ -120,8 +120,4 @@ static PetscErrorCode Facts(void) {
     PetscCall(TestMembraneDestroy(&m));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-int main(int argc, char **argv) {
-  return CheckMain(argc, argv, Facts);
 }

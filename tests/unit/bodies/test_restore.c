@@ -1,6 +1,6 @@
 /* Edges corrected after a step (src/membrane/restore.c): exact on known shapes, Newton's quadratic convergence, the
    least displacement, and nothing where nothing is wrong or no freedom is left. */
-#include "world.h"
+#include "facts.h"
 
 static const char *const derivatives[] = {"fd", "bending", "spectral"};
 
@@ -240,7 +240,7 @@ static PetscErrorCode CheckLength(int derivative) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Facts(void) {
+PetscErrorCode Facts(void) {
   PetscFunctionBeginUser;
   for (int d = 0; d < 3; d++) {
     for (int k = 0; k < 3; k++) PetscCall(CheckRestored(d, k ? 0.03 * k : 3e-3));
@@ -250,8 +250,4 @@ static PetscErrorCode Facts(void) {
     PetscCall(CheckLength(d));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-int main(int argc, char **argv) {
-  return CheckMain(argc, argv, Facts);
 }

@@ -1,6 +1,6 @@
 /* The edge nearest to each point, the gaps of curves and the thinnest film, against the search of all pairs and of
    circles; curves that are open or span a period. */
-#include "check.h"
+#include "facts.h"
 #include "curve/contacts.h"
 #include "curve/crossing.h"
 
@@ -225,7 +225,7 @@ static PetscErrorCode CheckOpen(void) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Facts(void) {
+PetscErrorCode Facts(void) {
   PetscFunctionBeginUser;
   for (int k = 0; k < 4; k++) PetscCall(CheckNearest(k & 1 ? 5.3 : 0, k & 2 ? 6.5 : 0, k < 2 ? 0.4 : 0.15));
   for (int k = 0; k < 2; k++) {
@@ -246,8 +246,4 @@ static PetscErrorCode Facts(void) {
   PetscCall(CheckFilm(PETSC_TRUE, 1, 0, 3, 0.05));
   PetscCall(CheckFilm(PETSC_FALSE, 1.0 / 3, 2, -2, 0.14));
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-int main(int argc, char **argv) {
-  return CheckMain(argc, argv, Facts);
 }

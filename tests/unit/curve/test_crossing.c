@@ -1,5 +1,5 @@
 /* Pairs of near points against the search of all pairs, and closed curves that cross or do not. */
-#include "check.h"
+#include "facts.h"
 #include "curve/separation.h"
 #include "curve/crossing.h"
 
@@ -154,7 +154,7 @@ static PetscErrorCode CheckAllClear(void) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Facts(void) {
+PetscErrorCode Facts(void) {
   static const Loop apart[2] = {{0, 0, 1, 0.5, 0, 1}, {0, 1.001, 1, 0.5, 0, 1}},
                     over[2] = {{0, 0, 1, 0.5, 0, 1}, {0, 0.99, 1, 0.5, 0, 1}},
                     inside[2] = {{0, 0, 1, 0.5, 0, 1}, {0, 0, 0.5, 0.2, 0, 1}},
@@ -181,8 +181,4 @@ static PetscErrorCode Facts(void) {
   PetscCall(CheckBehind(nested, over));
   PetscCall(CheckAllClear());
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-int main(int argc, char **argv) {
-  return CheckMain(argc, argv, Facts);
 }

@@ -1,6 +1,6 @@
 /* Packings of ellipses: all of them in the box, a gap apart, at fractions that random placing alone does not reach. */
 #include "curve/packing.h"
-#include "check.h"
+#include "facts.h"
 
 #define POINTS 64 /* on an outline */
 
@@ -113,7 +113,7 @@ static PetscErrorCode CheckTooMany(void) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Facts(void) {
+PetscErrorCode Facts(void) {
   const PackingSpec channel = {{0, 12, -3, 3}, {PETSC_TRUE, PETSC_FALSE}, 0.03, 0.03, 1},
                     walls = {{-5, 5, 0, 8}, {PETSC_FALSE, PETSC_FALSE}, 0.02, 0.1, 7},
                     periodic = {{0, 6, 0, 6}, {PETSC_TRUE, PETSC_TRUE}, 0.03, 0.03, 3},
@@ -131,8 +131,4 @@ static PetscErrorCode Facts(void) {
   PetscCall(CheckLattice());
   PetscCall(CheckTooMany());
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-int main(int argc, char **argv) {
-  return CheckMain(argc, argv, Facts);
 }

@@ -1,6 +1,6 @@
 /* Fast solves: the stencil applied to the solution gives the right-hand side back, for every boundary pair, field and
    grid shape; FFTW and hypre agree. */
-#include "world.h"
+#include "facts.h"
 #include "fluid/fastsolvers.h"
 
 typedef struct {
@@ -14,9 +14,7 @@ static PetscErrorCode Residual(FastSolver s, PetscReal *error, PetscReal *mean) 
   PetscReal size[2], sum;
   PetscInt n;
   PetscFunctionBeginUser;
-  PetscCall(DMCreateGlobalVector(s->grid->da[s->field], &b));
-  PetscCall(VecDuplicate(b, &x));
-  PetscCall(VecDuplicate(b, &r));
+  PetscCall(TestFieldVecs(s->grid->da[s->field], &b, &x, &r, NULL));
   PetscCall(TestRandomVec(11, b));
   PetscCall(VecGetSize(b, &n));
   if (s->singular) {
@@ -32,9 +30,6 @@ static PetscErrorCode Residual(FastSolver s, PetscReal *error, PetscReal *mean) 
   PetscCall(VecSum(x, &sum));
   PetscCall(VecNorm(x, NORM_INFINITY, &size[1]));
   *mean = PetscAbsReal(sum) / n / size[1];
-  PetscCall(VecDestroy(&b));
-  PetscCall(VecDestroy(&x));
-  PetscCall(VecDestroy(&r));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -56,9 +51,7 @@ static PetscErrorCode Difference(FastSolver one, FastSolver two, PetscReal *erro
   PetscReal size, sum;
   PetscInt n;
   PetscFunctionBeginUser;
-  PetscCall(DMCreateGlobalVector(one->grid->da[one->field], &b));
-  PetscCall(VecDuplicate(b, &x));
-  PetscCall(VecDuplicate(b, &y));
+  PetscCall(TestFieldVecs(one->grid->da[one->field], &b, &x, &y, NULL));
   PetscCall(TestRandomVec(12, b));
   PetscCall(ClearRows(one, b));
   PetscCall(VecGetSize(b, &n));
@@ -70,9 +63,6 @@ static PetscErrorCode Difference(FastSolver one, FastSolver two, PetscReal *erro
   PetscCall(VecAXPY(y, -1, x));
   PetscCall(VecNorm(y, NORM_INFINITY, error));
   *error /= size;
-  PetscCall(VecDestroy(&b));
-  PetscCall(VecDestroy(&x));
-  PetscCall(VecDestroy(&y));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -129,7 +119,7 @@ static PetscErrorCode CheckGrid(const Size *size, const char bc[], PetscBool hyp
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Facts(void) {
+PetscErrorCode Facts(void) {
   static const char *const bc[] = {"-domain_bc_x wall -domain_bc_y wall", "-domain_bc_x periodic -domain_bc_y wall",
                                    "-domain_bc_x periodic -domain_bc_y periodic"};
   static const Size sizes[] = {
@@ -141,8 +131,4 @@ static PetscErrorCode Facts(void) {
     for (int k = 0; k < 2; k++) PetscCall(CheckGrid(&small[k], bc[b], PETSC_TRUE));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-int main(int argc, char **argv) {
-  return CheckMain(argc, argv, Facts);
 }

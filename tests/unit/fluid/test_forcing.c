@@ -1,6 +1,6 @@
 /* A forcing knows where it is not zero: after a term that is everywhere, one in the markers' window, and one in the
    window of markers that have moved, each after a clear, nothing is left of what was there before. */
-#include "world.h"
+#include "facts.h"
 
 static PetscBool Within(const PetscInt range[2], PetscInt k) {
   return k >= range[0] && k < range[1] ? PETSC_TRUE : PETSC_FALSE;
@@ -35,13 +35,12 @@ static PetscErrorCode CheckSpread(const char name[], TestWorld *t, Vec F, Forcin
   PetscCall(ForcingSpread(f, m, 2, F));
   PetscCall(Outside(f, &outside));
   CHECK(outside == 0 && !f->everywhere, "%s: nothing is spread outside the window", name);
-  PetscCall(VecDuplicate(f->values, &exact));
+  PetscCall(TestVecs(f->values, &exact, NULL));
   PetscCall(MatMultTranspose(m->E, F, exact));
   PetscCall(VecAXPY(exact, -0.5, f->values));
   PetscCall(VecNorm(exact, NORM_INFINITY, &error));
   PetscCall(VecNorm(f->values, NORM_INFINITY, &norm[0]));
   CHECK(error <= 1e-15 * norm[0] && norm[0] > 0, "%s: what is spread is all that is there, error %.1e", name, error);
-  PetscCall(VecDestroy(&exact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -53,8 +52,8 @@ static PetscErrorCode CheckCase(const char name[], const char options[]) {
   PetscCall(TestWorldCreate(options, &t));
   const Grid g = t.fluid->grid;
   PetscCall(ForcingCreate(g, PETSC_TRUE, &f));
-  PetscCall(VecDuplicate(f.values, &term));
-  PetscCall(VecDuplicate(t.X, &F));
+  PetscCall(TestVecs(f.values, &term, NULL));
+  PetscCall(TestVecs(t.X, &F, NULL));
   PetscCall(TestRandomVec(8, term));
   PetscCall(TestRandomVec(9, F));
   PetscCall(ForcingAdd(&f, term));
@@ -74,22 +73,16 @@ static PetscErrorCode CheckCase(const char name[], const char options[]) {
   PetscCall(CheckSpread(name, &t, F, &f));
   if (!g->wall[0] && !g->wall[1]) PetscCall(ForcingRemoveMean(&f, t.fluid));
   PetscCall(CheckSpread(name, &t, F, &f));
-  PetscCall(VecDestroy(&F));
-  PetscCall(VecDestroy(&term));
   PetscCall(ForcingDestroy(&f));
   PetscCall(ForcingDestroy(&copy));
   PetscCall(TestWorldDestroy(&t));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Facts(void) {
+PetscErrorCode Facts(void) {
   PetscFunctionBeginUser;
   PetscCall(CheckCase("walls", "-domain_cells 60,60 -vesicle_center -0.3,-0.3 -vesicle_semi_axes 0.2,0.1"));
   PetscCall(CheckCase("periodic", "-domain_cells 60,60 -domain_bc_x periodic -domain_bc_y periodic "
                                   "-vesicle_center 0.6,-0.9 -vesicle_semi_axes 0.2,0.1"));
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-int main(int argc, char **argv) {
-  return CheckMain(argc, argv, Facts);
 }

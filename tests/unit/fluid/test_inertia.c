@@ -1,6 +1,6 @@
 /* Convection: its discrete form keeps energy and momentum and is of second order; Navier-Stokes flow against a vortex
    carried by a stream, and against manufactured solutions. Quasi-steady flow: the limit of a slow step. */
-#include "world.h"
+#include "facts.h"
 #include "coupling/solver.h"
 #include "fluid/convection.h"
 #include "fluid/stokes.h"
@@ -139,7 +139,7 @@ static PetscErrorCode Error(const char options[], Exact f, PetscBool forced, Pet
   Vec exact;
   PetscFunctionBeginUser;
   PetscCall(RunCreate(options, n, dt, &r));
-  PetscCall(VecDuplicate(r.scheme->state.w, &exact));
+  PetscCall(TestVecs(r.scheme->state.w, &exact, NULL));
   PetscCall(Sample(r.scene, r.fluid->grid, f, 0, VALUE, r.scheme->state.w));
   if (forced) PetscCall(VecDuplicate(exact, &body_force));
   for (PetscInt k = 1; k <= steps; k++) {
@@ -156,7 +156,6 @@ static PetscErrorCode Error(const char options[], Exact f, PetscBool forced, Pet
     PetscCall(VecCopy(r.scheme->state.w, *w));
   }
   PetscCall(VecDestroy(&body_force));
-  PetscCall(VecDestroy(&exact));
   PetscCall(TestWorldDestroy(&r));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -177,8 +176,7 @@ static PetscErrorCode CheckConservation(const char name[], const char options[])
   PetscFunctionBeginUser;
   PetscCall(RunCreate(options, 24, 1e-6, &r));
   PetscCall(ConvectionCreate(&r.scene->flow, r.fluid, &c));
-  PetscCall(VecDuplicate(r.scheme->state.w, &w));
-  PetscCall(VecDuplicate(w, &N));
+  PetscCall(TestVecs(r.scheme->state.w, &w, &N, NULL));
   PetscCall(TestRandomVec(3, w));
   for (int free = 0; free < 2; free++) {
     if (free) {
@@ -199,8 +197,6 @@ static PetscErrorCode CheckConservation(const char name[], const char options[])
   if (!r.fluid->grid->wall[0] && !r.fluid->grid->wall[1])
     CHECK(PetscAbsReal(sum) <= 1e-11 * size[1] * 24, "%s: convection keeps the momentum, sum of N over its size %.1e",
           name, (double)(sum / (size[1] * 24)));
-  PetscCall(VecDestroy(&w));
-  PetscCall(VecDestroy(&N));
   PetscCall(ConvectionDestroy(&c));
   PetscCall(TestWorldDestroy(&r));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -216,15 +212,12 @@ static PetscErrorCode CheckConsistency(const char name[], const char options[], 
     Vec w, N;
     PetscCall(RunCreate(options, 24 << k, 1e-6, &r));
     PetscCall(ConvectionCreate(&r.scene->flow, r.fluid, &c));
-    PetscCall(VecDuplicate(r.scheme->state.w, &w));
-    PetscCall(VecDuplicate(w, &N));
+    PetscCall(TestVecs(r.scheme->state.w, &w, &N, NULL));
     PetscCall(Sample(r.scene, r.fluid->grid, f, 0.3, VALUE, w));
     PetscCall(Sample(r.scene, r.fluid->grid, f, 0.3, CONVECTION, N));
     PetscCall(ConvectionAdd(c, -1, w, &(Forcing){.values = N}));
     PetscCall(VecNorm(N, NORM_2, &error[k]));
     error[k] *= r.fluid->grid->h / 2;
-    PetscCall(VecDestroy(&w));
-    PetscCall(VecDestroy(&N));
     PetscCall(ConvectionDestroy(&c));
     PetscCall(TestWorldDestroy(&r));
   }
@@ -278,15 +271,13 @@ static PetscErrorCode CheckQuasiSteady(const char name[], const char options[]) 
     PetscCall(RunCreate(all, 24, 1, &r));
     PetscCall(FluidSetTimeCoefficient(r.fluid, 1e-7));
     if (!k) CHECK(r.fluid->alpha == 0 && r.fluid->a0 > 0, "%s: no inertia in quasi-steady flow", name);
-    PetscCall(VecDuplicate(r.scheme->state.w, &force));
-    PetscCall(VecDuplicate(force, &w[k]));
-    PetscCall(VecDuplicate(r.scheme->state.p, &p[k]));
+    PetscCall(TestVecs(r.scheme->state.w, &force, &w[k], NULL));
+    PetscCall(TestVecs(r.scheme->state.p, &p[k], NULL));
     PetscCall(Sample(r.scene, r.fluid->grid, InBox, 0, FORCE, force));
     if (!r.fluid->grid->wall[0] && !r.fluid->grid->wall[1]) PetscCall(FluidRemoveMean(r.fluid, force));
     PetscCall(StokesCreate(r.fluid, &stokes));
     PetscCall(StokesSolve(stokes, force, NULL, w[k], p[k]));
     PetscCall(StokesDestroy(&stokes));
-    PetscCall(VecDestroy(&force));
     PetscCall(TestWorldDestroy(&r));
   }
   PetscCall(VecSum(w[0], &mean));
@@ -300,10 +291,7 @@ static PetscErrorCode CheckQuasiSteady(const char name[], const char options[]) 
   PetscCall(VecAXPY(p[1], -1, p[0]));
   PetscCall(VecNorm(p[1], NORM_2, &apart));
   CHECK(apart <= 1e-4 * size, "%s: pressure is the limit of small inertia, %.1e apart", name, (double)(apart / size));
-  for (int k = 0; k < 2; k++) {
-    PetscCall(VecDestroy(&w[k]));
-    PetscCall(VecDestroy(&p[k]));
-  }
+  for (int k = 0; k < 2; k++) {}
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -335,7 +323,7 @@ static PetscErrorCode CheckSpeed(void) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Facts(void) {
+PetscErrorCode Facts(void) {
   PetscFunctionBeginUser;
   PetscCall(CheckConservation("periodic", PERIODIC));
   PetscCall(CheckConservation("periodic with a stream", PERIODIC STREAM));
@@ -353,8 +341,4 @@ static PetscErrorCode Facts(void) {
   PetscCall(CheckQuasiSteady("channel", "-domain_bc_x periodic"));
   PetscCall(CheckQuasiSteady("walls", ""));
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-int main(int argc, char **argv) {
-  return CheckMain(argc, argv, Facts);
 }

@@ -4,7 +4,7 @@
    - A manufactured flow with walls on all four sides or in a channel, both components and a pressure with slope at the
      walls, driven through Fluid->bc1, which the step adds to the momentum's right-hand side: second order in h, first
      in dt. */
-#include "world.h"
+#include "facts.h"
 
 /* Value of one field at a point and a time. */
 typedef PetscReal (*Exact)(Field field, const PetscReal X[2], PetscReal t, void *ctx);
@@ -31,14 +31,13 @@ static PetscErrorCode Distance(Grid g, Vec x, Vec y, PetscBool pressure, PetscRe
   PetscReal sum;
   PetscInt n;
   PetscFunctionBeginUser;
-  PetscCall(VecDuplicate(x, &d));
+  PetscCall(TestVecs(x, &d, NULL));
   PetscCall(VecWAXPY(d, -1, x, y));
   PetscCall(VecSum(d, &sum));
   PetscCall(VecGetSize(d, &n));
   if (pressure) PetscCall(VecShift(d, -sum / n));
   PetscCall(VecNorm(d, NORM_2, distance));
   *distance *= g->h;
-  PetscCall(VecDestroy(&d));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -66,7 +65,7 @@ static PetscErrorCode CheckDecay(const char name[], const char bc[], Exact exact
       "-time_step 0.03",
       bc));
   PetscCall(TestRunCreate(options, &f));
-  PetscCall(VecDuplicate(f.scheme->state.w, &want));
+  PetscCall(TestVecs(f.scheme->state.w, &want, NULL));
   PetscCall(Fill(f.fluid->grid, exact, 0, NULL, PETSC_FALSE, f.scheme->state.w));
   PetscCall(VecCopy(f.scheme->state.w, want));
   for (PetscInt k = 0; k < steps; k++) PetscCall(SchemeStep(f.scheme, dt));
@@ -78,7 +77,6 @@ static PetscErrorCode CheckDecay(const char name[], const char bc[], Exact exact
   CHECK(error < 1e-12 * size, "%s decays as backward Euler says, error %.1e", name, error / size);
   CHECK(pressure < 1e-12, "%s makes no pressure, %.1e", name, pressure);
   CHECK(f.scheme->report.solves == 3, "%s: 3 scalar solves a step", name);
-  PetscCall(VecDestroy(&want));
   PetscCall(TestWorldDestroy(&f));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -156,15 +154,13 @@ static PetscErrorCode CheckSpaceOrder(const char name[], Manufactured *m) {
     TestWorld f;
     Vec w, p;
     PetscCall(RunManufactured(n, n * n / 4, m, &f, &div));
-    PetscCall(VecDuplicate(f.scheme->state.w, &w));
-    PetscCall(VecDuplicate(f.scheme->state.p, &p));
+    PetscCall(TestVecs(f.scheme->state.w, &w, NULL));
+    PetscCall(TestVecs(f.scheme->state.p, &p, NULL));
     PetscCall(Fill(f.fluid->grid, ManufacturedField, 0.2, m, PETSC_FALSE, w));
     PetscCall(Fill(f.fluid->grid, ManufacturedField, 0.2, m, PETSC_TRUE, p));
     PetscCall(Distance(f.fluid->grid, f.scheme->state.w, w, PETSC_FALSE, &error[level][0]));
     PetscCall(Distance(f.fluid->grid, f.scheme->state.p, p, PETSC_TRUE, &error[level][1]));
     CHECK(div < 1e-11, "%s, %d cells: max |div u| %.1e", name, (int)n, div);
-    PetscCall(VecDestroy(&w));
-    PetscCall(VecDestroy(&p));
     PetscCall(TestWorldDestroy(&f));
   }
   for (int level = 1; level < 3; level++)
@@ -201,7 +197,7 @@ static PetscErrorCode CheckTimeOrder(const char name[], Manufactured *m) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Facts(void) {
+PetscErrorCode Facts(void) {
   Manufactured walls = {{PETSC_TRUE, PETSC_TRUE}, 0.3, PETSC_FALSE};
   Manufactured channel = {{PETSC_FALSE, PETSC_TRUE}, 0.3, PETSC_FALSE};
   PetscFunctionBeginUser;
@@ -213,8 +209,4 @@ static PetscErrorCode Facts(void) {
   PetscCall(CheckTimeOrder("four walls", &walls));
   PetscCall(CheckTimeOrder("channel along x", &channel));
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-int main(int argc, char **argv) {
-  return CheckMain(argc, argv, Facts);
 }

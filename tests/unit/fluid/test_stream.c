@@ -1,7 +1,7 @@
 /* The velocity by the stream function is the one that obeys the equations, in channels, periodic boxes and boxes with
    four walls, steady or not, with a flux or without; on every number of ranks. So are flows, and the force that flows
    are. */
-#include "world.h"
+#include "facts.h"
 #include "fluid/stokes.h"
 
 #define TOLERANCE 1e-11
@@ -63,19 +63,13 @@ static PetscErrorCode BoxCreate(const char options[], Box *b) {
   PetscCall(TestScene(options, &b->scene));
   PetscCall(FluidCreate(&b->scene->fluid, &b->fluid));
   PetscCall(StokesCreate(b->fluid, &b->stokes));
-  PetscCall(DMCreateGlobalVector(b->fluid->grid->velocity, &b->r));
-  PetscCall(VecDuplicate(b->r, &b->exact));
-  PetscCall(VecDuplicate(b->r, &b->u));
-  PetscCall(DMCreateGlobalVector(b->fluid->grid->da[FIELD_P], &b->p));
+  PetscCall(TestFieldVecs(b->fluid->grid->velocity, &b->r, &b->exact, &b->u, NULL));
+  PetscCall(TestFieldVecs(b->fluid->grid->da[FIELD_P], &b->p, NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode BoxDestroy(Box *b) {
   PetscFunctionBeginUser;
-  PetscCall(VecDestroy(&b->r));
-  PetscCall(VecDestroy(&b->exact));
-  PetscCall(VecDestroy(&b->u));
-  PetscCall(VecDestroy(&b->p));
   PetscCall(StokesDestroy(&b->stokes));
   PetscCall(FluidDestroy(&b->fluid));
   PetscCall(SceneDestroy(&b->scene));
@@ -156,7 +150,7 @@ static PetscErrorCode SolveExactly(Box *b) {
   PetscReal norm, error, divergence;
   Vec left;
   PetscFunctionBeginUser;
-  PetscCall(VecDuplicate(b->r, &left));
+  PetscCall(TestVecs(b->r, &left, NULL));
   PetscCall(StokesSolve(b->stokes, b->r, NULL, b->exact, b->p));
   PetscCall(MatMult(f->H, b->exact, left));
   PetscCall(GridGradient(g, 1, b->p, PETSC_TRUE, left));
@@ -169,7 +163,6 @@ static PetscErrorCode SolveExactly(Box *b) {
   PetscCall(VecNorm(b->exact, NORM_2, &norm));
   PetscCall(GridLargestDivergence(g, b->exact, NULL, &divergence));
   CHECK(divergence < TOLERANCE * norm / g->h, "%s: G^T u = 0, %.1e", b->options, (double)divergence);
-  PetscCall(VecDestroy(&left));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -220,8 +213,8 @@ static PetscErrorCode CheckFlow(Box *b, PetscInt seed, Vec flow) {
   StreamMeasures measures;
   Vec other, p;
   PetscFunctionBeginUser;
-  PetscCall(VecDuplicate(flow, &other));
-  PetscCall(VecDuplicate(b->p, &p));
+  PetscCall(TestVecs(flow, &other, NULL));
+  PetscCall(TestVecs(b->p, &p, NULL));
   PetscCall(TestRandomVec(seed, b->r));
   PetscCall(SolveExactly(b));
   PetscCall(SolveRows(b->fluid, b->stokes, rows, b->r, b->u, &measures));
@@ -236,8 +229,6 @@ static PetscErrorCode CheckFlow(Box *b, PetscInt seed, Vec flow) {
   PetscCall(CheckSame(b, "the flow of a velocity", TOLERANCE, other, flow));
   PetscCall(StokesPressure(b->stokes, b->r, b->u, p));
   PetscCall(CheckSame(b, "the pressure of a flow", 10 * TOLERANCE, p, b->p));
-  PetscCall(VecDestroy(&other));
-  PetscCall(VecDestroy(&p));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -259,7 +250,7 @@ static PetscErrorCode MakePast(Box *b, StreamPast *past, Vec uhat) {
 static PetscErrorCode CheckAdded(Box *b, StreamRows rows) {
   Vec more;
   PetscFunctionBeginUser;
-  PetscCall(VecDuplicate(b->r, &more));
+  PetscCall(TestVecs(b->r, &more, NULL));
   PetscCall(TestRandomVec(5, more));
   PetscCall(Keep(b->fluid->grid, rows.wanted, more));
   PetscCall(VecAXPY(b->r, 1, more));
@@ -269,7 +260,6 @@ static PetscErrorCode CheckAdded(Box *b, StreamRows rows) {
   PetscCall(SolveExactly(b));
   PetscCall(StreamFlowsVelocity(StreamGetFlows(StokesStream(b->stokes)), rows.flow, b->u));
   PetscCall(CheckSame(b, "velocity with what is added", TOLERANCE, b->u, b->exact));
-  PetscCall(VecDestroy(&more));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -286,8 +276,7 @@ static PetscErrorCode CheckPast(Box *b, PetscInt first, PetscInt end) {
   PetscReal norm;
   Vec uhat, shown;
   PetscFunctionBeginUser;
-  PetscCall(VecDuplicate(b->r, &uhat));
-  PetscCall(VecDuplicate(b->r, &shown));
+  PetscCall(TestVecs(b->r, &uhat, &shown, NULL));
   PetscCall(StreamFlowsCreateVec(flows, &these.flow));
   PetscCall(MakePast(b, &past, uhat));
   PetscCall(TestRandomVec(3, b->r));
@@ -307,8 +296,6 @@ static PetscErrorCode CheckPast(Box *b, PetscInt first, PetscInt end) {
   PetscCall(CheckAdded(b, these));
   for (PetscInt k = 0; k < past.count; k++) PetscCall(VecDestroy(&past.flow[k]));
   PetscCall(VecDestroy(&these.flow));
-  PetscCall(VecDestroy(&uhat));
-  PetscCall(VecDestroy(&shown));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -329,7 +316,7 @@ static PetscErrorCode CheckBox(const char options[]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Facts(void) {
+PetscErrorCode Facts(void) {
   static const char *const grids[] = {"-domain_box -1,1,-1,1 -domain_cells 48,48",
                                       "-domain_box -1,1,-1,1.1860465116279069 -domain_cells 43,47",
                                       "-domain_box 0,3,0,1.0540540540540540 -domain_cells 74,26",
@@ -353,8 +340,4 @@ static PetscErrorCode Facts(void) {
       PetscCall(CheckBox(options));
     }
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-int main(int argc, char **argv) {
-  return CheckMain(argc, argv, Facts);
 }

@@ -1,5 +1,5 @@
 /* Kernels: values and moments (docs/membrane.md, Kernels), at many positions of a marker in its cell. */
-#include "world.h"
+#include "facts.h"
 
 #define POSITIONS 997
 
@@ -106,14 +106,10 @@ static PetscErrorCode CheckComposite(void) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Facts(void) {
+PetscErrorCode Facts(void) {
   PetscFunctionBeginUser;
   PetscCall(CheckIB6());
   PetscCall(CheckComposite());
   CHECK(!KernelFind("ib4"), "an unknown kernel is not found");
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-int main(int argc, char **argv) {
-  return CheckMain(argc, argv, Facts);
 }

@@ -1,5 +1,5 @@
 /* The solution of each step's coupled problem in whole runs, FGMRES's, is that of a sparse LU of the same equations. */
-#include "check.h"
+#include "facts.h"
 #include "simulation.h"
 #include "scheme/coupled.h"
 #include "direct.h"
@@ -229,15 +229,11 @@ static PetscErrorCode BumpBesideCorner(void) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Facts(void) {
+PetscErrorCode Facts(void) {
   PetscFunctionBeginUser;
   PetscCall(PaperScenes());
   for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(scenes); k++)
     PetscCall(Agrees(scenes[k].name, scenes[k].within, scenes[k].options));
   PetscCall(BumpBesideCorner());
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-int main(int argc, char **argv) {
-  return CheckMain(argc, argv, Facts);
 }

@@ -1,6 +1,6 @@
 /* The lattice's answer of a dipole by faces that markers share, and in closed form, against the double sums of each
    pair; dipoles by rows of a grid. */
-#include "world.h"
+#include "facts.h"
 #include "coupling/dipolefaces.h"
 #include "coupling/doubleblock.h"
 #include "markers/dipolerows.h"
@@ -142,7 +142,7 @@ static PetscErrorCode CompareRows(const PetscReal before[2], const PetscReal now
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Facts(void) {
+PetscErrorCode Facts(void) {
   const PetscReal height[4][2] = {{6.4, 25.1}, {12.2, 17.6}, {15.3, 15.8}, {9.7, 28.9}};
   const PetscReal half[4][2] = {{5, 3}, {0.2, 0.3}, {1, 6}, {7, 0.6}};
   const PetscInt cells[3][2] = {{0, 0}, {4, -3}, {-1, 5}};
@@ -161,8 +161,4 @@ static PetscErrorCode Facts(void) {
   for (int c = 0; c < 2; c++) PetscCall(OffsetTableDestroy(&lattice[c]));
   for (int k = 0; k < 4; k++) PetscCall(CompareRows(height[k], height[(k + 1) % 4]));
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-int main(int argc, char **argv) {
-  return CheckMain(argc, argv, Facts);
 }

@@ -1,6 +1,6 @@
 /* The double layer of a viscosity contrast, grid and near field together: the lattice's tables, rigid motions, flux,
    that it is adjoint to itself through the single layer, and the dissipation. */
-#include "world.h"
+#include "facts.h"
 #include "coupling/contrast.h"
 #include "coupling/blas.h"
 #include "coupling/doublecurve.h"
@@ -86,18 +86,14 @@ static PetscErrorCode Create(const char options[], Double *d) {
   PetscCall(DoubleLayerCreate(w->coupling->near, &ratio, &w->coupling->contrast));
   PetscCall(TestWorldPlace(1, w));
   PetscCall(StokesCreate(w->fluid, &d->stokes));
-  PetscCall(DMCreateGlobalVector(w->fluid->grid->velocity, &d->r));
-  PetscCall(DMCreateGlobalVector(w->fluid->grid->da[FIELD_P], &d->p));
-  PetscCall(VecDuplicate(d->r, &d->w));
-  PetscCall(VecDuplicate(w->X, &d->U));
-  PetscCall(VecDuplicate(w->X, &d->V));
+  PetscCall(TestFieldVecs(w->fluid->grid->velocity, &d->r, &d->w, NULL));
+  PetscCall(TestFieldVecs(w->fluid->grid->da[FIELD_P], &d->p, NULL));
+  PetscCall(TestVecs(w->X, &d->U, &d->V, NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode Destroy(Double *d) {
-  Vec *all[] = {&d->r, &d->p, &d->w, &d->U, &d->V};
   PetscFunctionBeginUser;
-  for (int k = 0; k < 5; k++) PetscCall(VecDestroy(all[k]));
   PetscCall(StokesDestroy(&d->stokes));
   PetscCall(TestWorldDestroy(&d->world));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -364,7 +360,7 @@ static PetscErrorCode CheckCurve(void) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Facts(void) {
+PetscErrorCode Facts(void) {
   PetscFunctionBeginUser;
   PetscCall(CheckCurve());
   PetscCall(CheckTables());
@@ -376,8 +372,4 @@ static PetscErrorCode Facts(void) {
   PetscCall(CheckAtWall("top, twice the markers", CHANNEL "-vesicle_markers 137 -vesicle_center .013,1.5 ", 5e-5));
   PetscCall(CheckMatrices());
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-int main(int argc, char **argv) {
-  return CheckMain(argc, argv, Facts);
 }

@@ -1,6 +1,6 @@
 /* Fields next to a membrane: the lattice's pressure, and a circle under tension, inside of which nothing moves and the
    pressure is higher by tension over radius. */
-#include "world.h"
+#include "facts.h"
 #include "base/lanes.h"
 #include "coupling/lattice.h"
 #include "coupling/nearcells.h"
@@ -63,9 +63,8 @@ static PetscErrorCode CheckAgainstGrid(const OffsetTable *t) {
                             &w));
   const Grid g = w.fluid->grid;
   PetscCall(StokesCreate(w.fluid, &stokes));
-  PetscCall(DMCreateGlobalVector(g->velocity, &f));
-  PetscCall(VecDuplicate(f, &u));
-  PetscCall(DMCreateGlobalVector(g->da[FIELD_P], &p));
+  PetscCall(TestFieldVecs(g->velocity, &f, &u, NULL));
+  PetscCall(TestFieldVecs(g->da[FIELD_P], &p, NULL));
   PetscCall(VecGetArray(f, &a));
   for (int k = 0; k < 2; k++) {
     const PetscInt row = at[1] + k * 2 * apart - g->first, column = at[0] + k * 2 * apart;
@@ -85,9 +84,6 @@ static PetscErrorCode CheckAgainstGrid(const OffsetTable *t) {
     }
   PetscCall(VecRestoreArray(p, &a));
   CHECK(worst < 1e-5, "the Stokes solve's pressure next to a force, its images 256 h away: %.1e", worst);
-  PetscCall(VecDestroy(&f));
-  PetscCall(VecDestroy(&u));
-  PetscCall(VecDestroy(&p));
   PetscCall(StokesDestroy(&stokes));
   PetscCall(TestWorldDestroy(&w));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -147,10 +143,9 @@ static PetscErrorCode CheckCircle(const char options[], PetscReal a0) {
   const Grid g = w.fluid->grid;
   const PetscInt n = g->n[0] * g->rows[FIELD_P];
   PetscCall(StokesCreate(w.fluid, &stokes));
-  PetscCall(DMCreateGlobalVector(g->velocity, &f));
-  PetscCall(VecDuplicate(f, &u));
-  PetscCall(DMCreateGlobalVector(g->da[FIELD_P], &p));
-  PetscCall(LayoutCreateVec(w.layout, 1, &sigma));
+  PetscCall(TestFieldVecs(g->velocity, &f, &u, NULL));
+  PetscCall(TestFieldVecs(g->da[FIELD_P], &p, NULL));
+  PetscCall(TestMarkerVecs(w.layout, 1, &sigma, NULL));
   PetscCall(VecSet(sigma, 1));
   PetscCall(CouplingSpreadTension(w.coupling, -1, sigma, f));
   PetscCall(StokesSolve(stokes, f, NULL, u, p));
@@ -174,10 +169,6 @@ static PetscErrorCode CheckCircle(const char options[], PetscReal a0) {
   CHECK(speed[1] < 3e-4, "where nothing moves: velocity %.1e of tension over viscosity, corrected %.1e", speed[0],
         speed[1]);
   PetscCall(PetscFree2(cells[0], cells[1]));
-  PetscCall(VecDestroy(&f));
-  PetscCall(VecDestroy(&u));
-  PetscCall(VecDestroy(&p));
-  PetscCall(VecDestroy(&sigma));
   PetscCall(StokesDestroy(&stokes));
   PetscCall(TestWorldDestroy(&w));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -187,7 +178,7 @@ static PetscErrorCode CheckCircle(const char options[], PetscReal a0) {
   EXACT PERIODIC "-scheme_type coupled -scheme_order 2 -domain_box -1.5,1.5,-1.5,1.5 "                                 \
                  "-vesicle_semi_axes .5,.5 -vesicle_center .013,-.021 -vesicle_bending 0 "
 
-static PetscErrorCode Facts(void) {
+PetscErrorCode Facts(void) {
   static const char *const kernels[] = {"cbs43", "cbs54", "cbs65", "ib6"};
   static const char *const grids[] = {"-domain_cells 32,32 -fluid_inertia none -vesicle_markers 35",
                                       "-domain_cells 64,64 -fluid_inertia none -vesicle_markers 45"};
@@ -206,8 +197,4 @@ static PetscErrorCode Facts(void) {
   PetscCall(
       CheckCircle(CIRCLE "-delta_type cbs54 -domain_cells 64,64 -fluid_inertia unsteady -vesicle_markers 45", 100));
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-int main(int argc, char **argv) {
-  return CheckMain(argc, argv, Facts);
 }

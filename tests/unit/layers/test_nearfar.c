@@ -1,5 +1,5 @@
 /* The closed form of the near field's distant pairs against sums over their stencils, on any number of ranks. */
-#include "world.h"
+#include "facts.h"
 #include "coupling/nearblock.h"
 
 #define EXACT "-coupling_near_field exact -membrane_derivative spectral -vesicle_allow_close_markers "
@@ -126,7 +126,7 @@ static PetscErrorCode CheckWithin(const OffsetTable *t, const char kernel[], con
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Facts(void) {
+PetscErrorCode Facts(void) {
   static const char *const kernels[] = {"cbs43", "cbs54", "cbs65", "ib6"};
   static const char *const places[] = {
       "-vesicle_center 2,2.1 -vesicle_angle 20", "-vesicle_center 1.99,1.98 -vesicle_angle 70",
@@ -141,8 +141,4 @@ static PetscErrorCode Facts(void) {
   }
   PetscCall(OffsetTableDestroy(&table));
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-int main(int argc, char **argv) {
-  return CheckMain(argc, argv, Facts);
 }

@@ -1,5 +1,5 @@
 /* The near field C = S - L: the lattice table, symmetry, and any number of ranks. */
-#include "world.h"
+#include "facts.h"
 #include "coupling/nearblock.h"
 #include "fluid/stokes.h"
 
@@ -124,9 +124,8 @@ static PetscErrorCode CheckPeriodicGrid(const OffsetTable *t) {
                             &w));
   const Grid g = w.fluid->grid;
   PetscCall(StokesCreate(w.fluid, &stokes));
-  PetscCall(DMCreateGlobalVector(g->velocity, &force));
-  PetscCall(VecDuplicate(force, &u));
-  PetscCall(DMCreateGlobalVector(g->da[FIELD_P], &p));
+  PetscCall(TestFieldVecs(g->velocity, &force, &u, NULL));
+  PetscCall(TestFieldVecs(g->da[FIELD_P], &p, NULL));
   PetscCall(VecGetArray(force, &a));
   if (FROM >= g->first && FROM < g->first + g->rows[0]) a[(FROM - g->first) * BOX_CELLS + FROM] = 1;
   PetscCall(VecRestoreArray(force, &a));
@@ -139,9 +138,6 @@ static PetscErrorCode CheckPeriodicGrid(const OffsetTable *t) {
         "a 256^2 periodic grid's response: from one entry to the next apart by %.1e, fourth differences by %.1e",
         worst[0], worst[1]);
   PetscCall(PetscFree(all));
-  PetscCall(VecDestroy(&force));
-  PetscCall(VecDestroy(&u));
-  PetscCall(VecDestroy(&p));
   PetscCall(StokesDestroy(&stokes));
   PetscCall(TestWorldDestroy(&w));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -287,7 +283,7 @@ static PetscErrorCode CheckReach(void) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Facts(void) {
+PetscErrorCode Facts(void) {
   static const char *const kernels[] = {"cbs43", "cbs54", "cbs65", "ib6"};
   OffsetTable table;
   PetscFunctionBeginUser;
@@ -302,8 +298,4 @@ static PetscErrorCode Facts(void) {
   }
   PetscCall(OffsetTableDestroy(&table));
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-int main(int argc, char **argv) {
-  return CheckMain(argc, argv, Facts);
 }

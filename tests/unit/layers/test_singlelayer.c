@@ -1,6 +1,6 @@
 /* Grid and near field together are the free-space single layer: the velocity of forces on a circle, which is known, for
    kernels, places in a cell and turns of the markers. */
-#include "world.h"
+#include "facts.h"
 #include "coupling/lattice.h"
 #include "coupling/nearimage.h"
 #include "fluid/stokes.h"
@@ -34,18 +34,14 @@ static PetscErrorCode CircleCreate(const char kernel[], PetscReal turn, const Pe
   PetscCall(TestWorldCreate(options, &c->w));
   for (int d = 0; d < 2; d++) c->center[d] = center[d];
   PetscCall(StokesCreate(c->w.fluid, &c->stokes));
-  PetscCall(VecDuplicate(c->w.X, &c->force));
-  PetscCall(VecDuplicate(c->w.X, &c->velocity));
-  PetscCall(DMCreateGlobalVector(c->w.fluid->grid->velocity, &c->fluid));
-  PetscCall(VecDuplicate(c->fluid, &c->r));
-  PetscCall(DMCreateGlobalVector(c->w.fluid->grid->da[FIELD_P], &c->p));
+  PetscCall(TestVecs(c->w.X, &c->force, &c->velocity, NULL));
+  PetscCall(TestFieldVecs(c->w.fluid->grid->velocity, &c->fluid, &c->r, NULL));
+  PetscCall(TestFieldVecs(c->w.fluid->grid->da[FIELD_P], &c->p, NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode CircleDestroy(Circle *c) {
-  Vec *all[] = {&c->force, &c->velocity, &c->fluid, &c->r, &c->p};
   PetscFunctionBeginUser;
-  for (int i = 0; i < 5; i++) PetscCall(VecDestroy(all[i]));
   PetscCall(StokesDestroy(&c->stokes));
   PetscCall(TestWorldDestroy(&c->w));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -72,13 +68,12 @@ static PetscErrorCode AddMode(Circle *c, int k, PetscReal factor, PetscReal phas
 static PetscErrorCode Coefficient(Circle *c, int k, Vec x, PetscReal z[2]) {
   Vec wave;
   PetscFunctionBeginUser;
-  PetscCall(VecDuplicate(x, &wave));
+  PetscCall(TestVecs(x, &wave, NULL));
   for (int part = 0; part < 2; part++) {
     PetscCall(VecZeroEntries(wave));
     PetscCall(AddMode(c, k, 1. / c->w.layout->M, part * PETSC_PI / 2, wave));
     PetscCall(VecDot(x, wave, &z[part]));
   }
-  PetscCall(VecDestroy(&wave));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -223,7 +218,7 @@ static PetscErrorCode CheckImages(PetscReal R, PetscReal bound) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Facts(void) {
+PetscErrorCode Facts(void) {
   static const char *const kernels[] = {"cbs43", "cbs54", "cbs65", "ib6"};
   static const PetscReal cell = 5. / 160, shift[][2] = {{0, 0}, {0.37, 0}, {0.5, 0.5}, {0.21, 0.83}};
   static PetscReal kept[MODES][2][COEFFICIENTS];
@@ -236,8 +231,4 @@ static PetscErrorCode Facts(void) {
   PetscCall(CheckImages(IMAGE_OFF, 1e-6));
   PetscCall(CheckImages(IMAGE_CELLS, 2e-7));
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-int main(int argc, char **argv) {
-  return CheckMain(argc, argv, Facts);
 }

@@ -1,6 +1,6 @@
 /* The near field next to walls: markers' velocity against a finer grid, mobility positive down to a quarter of a cell,
    the same at all four walls. */
-#include "world.h"
+#include "facts.h"
 #include "coupling/blas.h"
 #include "fluid/stokes.h"
 
@@ -31,8 +31,8 @@ static PetscErrorCode Mobility(TestWorld *t, Stokes stokes, Vec F, Vec U) {
   PetscScalar *u;
   Vec w, p;
   PetscFunctionBeginUser;
-  PetscCall(DMCreateGlobalVector(g->velocity, &w));
-  PetscCall(DMCreateGlobalVector(g->da[FIELD_P], &p));
+  PetscCall(TestFieldVecs(g->velocity, &w, NULL));
+  PetscCall(TestFieldVecs(g->da[FIELD_P], &p, NULL));
   PetscCall(VecSet(w, 0));
   PetscCall(MarkersSpread(t->coupling->markers, 1 / PetscSqr(g->h), F, w));
   PetscCall(StokesSolve(stokes, w, NULL, w, p));
@@ -42,8 +42,6 @@ static PetscErrorCode Mobility(TestWorld *t, Stokes stokes, Vec F, Vec U) {
   PetscCall(NearFieldApply(t->coupling->near, 1, f, u));
   PetscCall(VecRestoreArray(U, &u));
   PetscCall(VecRestoreArrayRead(F, &f));
-  PetscCall(VecDestroy(&w));
-  PetscCall(VecDestroy(&p));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -57,8 +55,7 @@ static PetscErrorCode SmoothVelocity(PetscInt cells, PetscInt markers, PetscReal
   PetscFunctionBeginUser;
   PetscCall(CreateAtWall(cells, markers, gap, 0, "-domain_bc_x periodic -fluid_inertia none", &t));
   PetscCall(StokesCreate(t.fluid, &stokes));
-  PetscCall(VecDuplicate(t.X, &F));
-  PetscCall(VecDuplicate(t.X, &velocity));
+  PetscCall(TestVecs(t.X, &F, &velocity, NULL));
   PetscCall(VecGetArray(F, &f));
   for (PetscInt k = 0; k < t.layout->n; k++) {
     const PetscReal a = 2 * PETSC_PI * k / markers;
@@ -70,8 +67,6 @@ static PetscErrorCode SmoothVelocity(PetscInt cells, PetscInt markers, PetscReal
   PetscCall(VecGetArrayRead(velocity, &u));
   PetscCall(LayoutGather(t.layout, 2, u, U));
   PetscCall(VecRestoreArrayRead(velocity, &u));
-  PetscCall(VecDestroy(&F));
-  PetscCall(VecDestroy(&velocity));
   PetscCall(StokesDestroy(&stokes));
   PetscCall(TestWorldDestroy(&t));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -150,8 +145,7 @@ static PetscErrorCode CheckPositive(PetscReal coefficient, PetscInt markers, Pet
                          &t));
   if (coefficient > 0) PetscCall(FluidSetTimeCoefficient(t.fluid, coefficient / (H * H)));
   PetscCall(StokesCreate(t.fluid, &stokes));
-  PetscCall(VecDuplicate(t.X, &F));
-  PetscCall(VecDuplicate(t.X, &U));
+  PetscCall(TestVecs(t.X, &F, &U, NULL));
   PetscCall(PetscMalloc1(N * N, &Mob));
   for (PetscInt j = 0; j < N; j++) PetscCall(Column(&t, stokes, j, F, U, Mob + j * N));
   for (PetscInt j = 0; j < N; j++)
@@ -164,8 +158,6 @@ static PetscErrorCode CheckPositive(PetscReal coefficient, PetscInt markers, Pet
         "a0 h^2/nu = %g, %d markers %g cells from a wall: mobility symmetric to %.1e and positive", coefficient,
         (int)markers, gap, asymmetry / largest);
   PetscCall(PetscFree(Mob));
-  PetscCall(VecDestroy(&F));
-  PetscCall(VecDestroy(&U));
   PetscCall(StokesDestroy(&stokes));
   PetscCall(TestWorldDestroy(&t));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -213,7 +205,7 @@ static PetscErrorCode CheckSides(void) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Facts(void) {
+PetscErrorCode Facts(void) {
   static const PetscReal coefficients[] = {0, 0.1, 1, 10}, gaps[] = {3, 2, 0.5, 0.25};
   PetscFunctionBeginUser;
   PetscCall(CheckSides());
@@ -224,8 +216,4 @@ static PetscErrorCode Facts(void) {
       if (a % 3 == 0) PetscCall(CheckPositive(coefficients[a], 45, gaps[k]));
     }
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-int main(int argc, char **argv) {
-  return CheckMain(argc, argv, Facts);
 }

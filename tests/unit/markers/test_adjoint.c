@@ -1,6 +1,6 @@
 /* Operator pairs are exact transposes, on random data, for every boundary pair, with markers across periodic seams and
    slab borders; shells equal the assembled operators. */
-#include "world.h"
+#include "facts.h"
 
 #define TOLERANCE 1e-13 /* relative: round-off of sums of some thousand terms */
 
@@ -9,8 +9,8 @@ static PetscErrorCode PairError(Mat A, Vec x, Vec y, PetscReal *error) {
   Vec Ax, Aty;
   PetscReal one, two, size[4];
   PetscFunctionBeginUser;
-  PetscCall(VecDuplicate(y, &Ax));
-  PetscCall(VecDuplicate(x, &Aty));
+  PetscCall(TestVecs(y, &Ax, NULL));
+  PetscCall(TestVecs(x, &Aty, NULL));
   PetscCall(MatMult(A, x, Ax));
   PetscCall(MatMultTranspose(A, y, Aty));
   PetscCall(VecDot(Ax, y, &one));
@@ -21,8 +21,6 @@ static PetscErrorCode PairError(Mat A, Vec x, Vec y, PetscReal *error) {
   PetscCall(VecNorm(x, NORM_2, &size[3]));
   *error = PetscAbsReal(one - two) / PetscMax(size[0] * size[1], size[2] * size[3]);
   CHECK(size[0] > 0 && size[2] > 0, "   both products give something: %.3e %.3e", size[0], size[2]);
-  PetscCall(VecDestroy(&Ax));
-  PetscCall(VecDestroy(&Aty));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -31,16 +29,13 @@ static PetscErrorCode Difference(Mat A, Mat B, Vec x, PetscReal *error) {
   Vec a, b;
   PetscReal size;
   PetscFunctionBeginUser;
-  PetscCall(VecDuplicate(x, &a));
-  PetscCall(VecDuplicate(x, &b));
+  PetscCall(TestVecs(x, &a, &b, NULL));
   PetscCall(MatMult(A, x, a));
   PetscCall(MatMult(B, x, b));
   PetscCall(VecNorm(a, NORM_2, &size));
   PetscCall(VecAXPY(a, -1, b));
   PetscCall(VecNorm(a, NORM_2, error));
   *error /= size;
-  PetscCall(VecDestroy(&a));
-  PetscCall(VecDestroy(&b));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -55,9 +50,7 @@ static PetscErrorCode HelmholtzFieldError(Grid g, Field f, PetscReal a0, PetscRe
   Vec x, y, Ax;
   PetscFunctionBeginUser;
   PetscCall(GridAssemble(g, f, a0, nu, &A));
-  PetscCall(DMCreateGlobalVector(g->da[f], &x));
-  PetscCall(VecDuplicate(x, &y));
-  PetscCall(VecDuplicate(x, &Ax));
+  PetscCall(TestFieldVecs(g->da[f], &x, &y, &Ax, NULL));
   for (int k = 0; k < 2; k++) {
     PetscCall(VecGetArrayRead(k ? Hw : w, &wa));
     PetscCall(VecGetArray(k ? y : x, &xa));
@@ -70,9 +63,6 @@ static PetscErrorCode HelmholtzFieldError(Grid g, Field f, PetscReal a0, PetscRe
   PetscCall(VecAXPY(Ax, -1, y));
   PetscCall(VecNorm(Ax, NORM_2, error));
   *error /= size;
-  PetscCall(VecDestroy(&x));
-  PetscCall(VecDestroy(&y));
-  PetscCall(VecDestroy(&Ax));
   PetscCall(MatDestroy(&A));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -83,9 +73,8 @@ static PetscErrorCode CheckFluid(const char name[], Fluid f) {
   Mat A;
   PetscReal error;
   PetscFunctionBeginUser;
-  PetscCall(DMCreateGlobalVector(g->velocity, &w));
-  PetscCall(DMCreateGlobalVector(g->da[FIELD_P], &p));
-  PetscCall(VecDuplicate(w, &Hw));
+  PetscCall(TestFieldVecs(g->velocity, &w, &Hw, NULL));
+  PetscCall(TestFieldVecs(g->da[FIELD_P], &p, NULL));
   PetscCall(TestRandomVec(1, w));
   PetscCall(TestRandomVec(2, p));
   PetscCall(PairError(f->G, p, w, &error));
@@ -101,9 +90,6 @@ static PetscErrorCode CheckFluid(const char name[], Fluid f) {
     PetscCall(HelmholtzFieldError(g, (Field)c, f->a0, f->nu, w, Hw, &error));
     CHECK(error < TOLERANCE, "%s: H is the assembled Helmholtz operator of %c, error %.1e", name, c ? 'v' : 'u', error);
   }
-  PetscCall(VecDestroy(&w));
-  PetscCall(VecDestroy(&Hw));
-  PetscCall(VecDestroy(&p));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -111,9 +97,9 @@ static PetscErrorCode CheckCoupling(const char name[], TestWorld *t) {
   Vec w, x, sigma;
   PetscReal error;
   PetscFunctionBeginUser;
-  PetscCall(DMCreateGlobalVector(t->fluid->grid->velocity, &w));
-  PetscCall(LayoutCreateVec(t->layout, 2, &x));
-  PetscCall(LayoutCreateVec(t->layout, 1, &sigma));
+  PetscCall(TestFieldVecs(t->fluid->grid->velocity, &w, NULL));
+  PetscCall(TestMarkerVecs(t->layout, 2, &x, NULL));
+  PetscCall(TestMarkerVecs(t->layout, 1, &sigma, NULL));
   PetscCall(TestRandomVec(3, w));
   PetscCall(TestRandomVec(4, x));
   PetscCall(TestRandomVec(5, sigma));
@@ -123,9 +109,6 @@ static PetscErrorCode CheckCoupling(const char name[], TestWorld *t) {
   CHECK(error < TOLERANCE, "%s: S and S^T adjoint, error %.1e", name, error);
   PetscCall(PairError(t->coupling->B, x, w, &error));
   CHECK(error < TOLERANCE, "%s: B and B^T adjoint, error %.1e", name, error);
-  PetscCall(VecDestroy(&w));
-  PetscCall(VecDestroy(&x));
-  PetscCall(VecDestroy(&sigma));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -136,8 +119,8 @@ static PetscErrorCode CheckSums(const char name[], TestWorld *t) {
   const PetscScalar *a;
   PetscReal error = 0, sum, want;
   PetscFunctionBeginUser;
-  PetscCall(DMCreateGlobalVector(t->fluid->grid->velocity, &w));
-  PetscCall(LayoutCreateVec(t->layout, 2, &x));
+  PetscCall(TestFieldVecs(t->fluid->grid->velocity, &w, NULL));
+  PetscCall(TestMarkerVecs(t->layout, 2, &x, NULL));
   PetscCall(VecSet(w, 1));
   PetscCall(MarkersInterpolate(t->coupling->markers, w, x));
   PetscCall(VecGetArrayRead(x, &a));
@@ -151,8 +134,6 @@ static PetscErrorCode CheckSums(const char name[], TestWorld *t) {
   PetscCall(VecSum(w, &sum));
   error = PetscAbsReal(sum - 2 * want) / t->layout->M;
   CHECK(error < TOLERANCE, "%s: spreading keeps the sum of the force, error %.1e", name, error);
-  PetscCall(VecDestroy(&w));
-  PetscCall(VecDestroy(&x));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -170,7 +151,7 @@ static PetscErrorCode CheckCase(const char grid[], const char bc[], const char v
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Facts(void) {
+PetscErrorCode Facts(void) {
   static const char *const bc[] = {"-domain_bc_x wall -domain_bc_y wall", "-domain_bc_x periodic -domain_bc_y wall",
                                    "-domain_bc_x periodic -domain_bc_y periodic"};
   /* the vesicle is tall enough to cross every slab border of 8 ranks, and lies across a seam where there is one */
@@ -184,8 +165,4 @@ static PetscErrorCode Facts(void) {
   for (int b = 0; b < 3; b++)
     for (int g = 0; g < 3; g++) PetscCall(CheckCase(grids[g], bc[b], vesicle[b], kernels[(b + 2 * g) % 5]));
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-int main(int argc, char **argv) {
-  return CheckMain(argc, argv, Facts);
 }

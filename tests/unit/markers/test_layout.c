@@ -1,5 +1,5 @@
 /* Which rank owns which body: ranges, shares of the work, and numbers that travel between owners and others. */
-#include "check.h"
+#include "facts.h"
 #include "markers/layout.h"
 
 #define MOST_BODIES 100
@@ -102,7 +102,7 @@ static PetscErrorCode CheckGather(const Case *c, int each) {
   for (PetscInt k = 0; k < n; k++) own[k] = Known(first + k);
   PetscCall(LayoutGather(l, each, own, all));
   CHECK(AreKnown(N, all, 0, 1), "%s, %d a marker: every rank gathers all", c->name, each);
-  PetscCall(LayoutCreateVec(l, each, &v));
+  PetscCall(TestMarkerVecs(l, each, &v, NULL));
   PetscCall(VecGetSize(v, &size));
   PetscCall(VecGetLocalSize(v, &local));
   PetscCall(VecNorm(v, NORM_INFINITY, &norm));
@@ -118,7 +118,6 @@ static PetscErrorCode CheckGather(const Case *c, int each) {
   PetscCall(LayoutSum(l, each, all, own));
   good = AreKnown(n, own, first, 0.5 * l->size * (l->size + 1)); /* exact: halves of small integers */
   CHECK(good, "%s, %d a marker: owners get the sum over ranks", c->name, each);
-  PetscCall(VecDestroy(&v));
   PetscCall(PetscFree2(all, own));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -166,7 +165,7 @@ static PetscErrorCode CheckCase(const char name[], PetscInt bodies, Size size) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Facts(void) {
+PetscErrorCode Facts(void) {
   PetscFunctionBeginUser;
   PetscCall(CheckCase("equal", 0, Equal));
   PetscCall(CheckCase("equal", 1, Equal));
@@ -179,8 +178,4 @@ static PetscErrorCode Facts(void) {
   PetscCall(CheckCase("mixed", 53, Mixed));
   PetscCall(CheckCase("equal", MOST_BODIES, Equal));
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-int main(int argc, char **argv) {
-  return CheckMain(argc, argv, Facts);
 }

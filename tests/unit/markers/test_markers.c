@@ -1,7 +1,7 @@
 /* Markers of several vesicles that belong to different ranks, across seams and borders between ranks: interpolation
    against its sum written out, spreading as its exact transpose, the lists of stencils, and what is wrong with one
    rank's markers. */
-#include "world.h"
+#include "facts.h"
 #include "markers/fold.h"
 
 #define TOLERANCE 1e-13 /* relative: round-off of sums of some thousand terms */
@@ -80,8 +80,8 @@ static PetscErrorCode CheckInterpolation(const char name[], TestWorld *t) {
   PetscReal error = 0;
   Vec w, U;
   PetscFunctionBeginUser;
-  PetscCall(DMCreateGlobalVector(t->fluid->grid->velocity, &w));
-  PetscCall(VecDuplicate(t->X, &U));
+  PetscCall(TestFieldVecs(t->fluid->grid->velocity, &w, NULL));
+  PetscCall(TestVecs(t->X, &U, NULL));
   PetscCall(FillVelocity(t->fluid->grid, w));
   PetscCall(MarkersInterpolate(m, w, U));
   PetscCall(VecGetArrayRead(t->X, &X));
@@ -92,8 +92,6 @@ static PetscErrorCode CheckInterpolation(const char name[], TestWorld *t) {
   PetscCall(VecRestoreArrayRead(t->X, &X));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &error, 1, MPIU_REAL, MPI_MAX, t->layout->comm));
   CHECK(error < TOLERANCE, "%s: every marker's velocity is the sum over all faces, error %.1e", name, error);
-  PetscCall(VecDestroy(&w));
-  PetscCall(VecDestroy(&U));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -103,10 +101,8 @@ static PetscErrorCode CheckTranspose(const char name[], TestWorld *t, unsigned s
   PetscReal one, two, size[2], error;
   Vec w, spread, F, U;
   PetscFunctionBeginUser;
-  PetscCall(DMCreateGlobalVector(t->fluid->grid->velocity, &w));
-  PetscCall(VecDuplicate(w, &spread));
-  PetscCall(VecDuplicate(t->X, &F));
-  PetscCall(VecDuplicate(t->X, &U));
+  PetscCall(TestFieldVecs(t->fluid->grid->velocity, &w, &spread, NULL));
+  PetscCall(TestVecs(t->X, &F, &U, NULL));
   PetscCall(TestRandomVec(seed, w));
   PetscCall(TestRandomVec(seed + 1, F));
   PetscCall(MatMult(m->E, w, U));
@@ -122,8 +118,6 @@ static PetscErrorCode CheckTranspose(const char name[], TestWorld *t, unsigned s
   PetscCall(VecAXPY(w, -1, spread));
   PetscCall(VecNorm(w, NORM_INFINITY, &error));
   CHECK(error < TOLERANCE, "%s: spreading adds to what is there, error %.1e", name, error);
-  Vec *all[] = {&w, &spread, &F, &U};
-  for (int k = 0; k < 4; k++) PetscCall(VecDestroy(all[k]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -196,7 +190,7 @@ static PetscErrorCode CheckMessage(TestWorld *t, PetscInt vesicle, PetscReal x, 
   PetscScalar *a;
   Vec X;
   PetscFunctionBeginUser;
-  PetscCall(VecDuplicate(t->X, &X));
+  PetscCall(TestVecs(t->X, &X, NULL));
   PetscCall(VecCopy(t->X, X));
   PetscCall(VecGetArray(X, &a));
   for (int c = 0; c < 2 && LayoutOwner(t->layout, vesicle) == t->layout->rank; c++)
@@ -207,7 +201,6 @@ static PetscErrorCode CheckMessage(TestWorld *t, PetscInt vesicle, PetscReal x, 
   CHECK(what ? strstr(message, who) && strstr(message, what) : !*message,
         "a marker of vesicle %d at (%g, %g), known on all ranks: %s", (int)vesicle + 1, x, y,
         *message ? message : "good");
-  PetscCall(VecDestroy(&X));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -260,7 +253,7 @@ static PetscErrorCode CheckFold(void) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Facts(void) {
+PetscErrorCode Facts(void) {
   static const char *const kernels[] = {"ib6", "cbs32", "cbs43", "cbs54", "cbs65"};
   PetscFunctionBeginUser;
   for (int k = 0; k < 5; k++)
@@ -276,8 +269,4 @@ static PetscErrorCode Facts(void) {
   PetscCall(CheckFold());
   PetscCall(CheckMessages());
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-int main(int argc, char **argv) {
-  return CheckMain(argc, argv, Facts);
 }

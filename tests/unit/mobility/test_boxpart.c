@@ -1,6 +1,6 @@
 /* The box part D of the near field: symmetric, of second order in h, free of a net flux through a membrane; with it the
    markers' velocity on a coarse grid is that on a finer one. */
-#include "check.h"
+#include "facts.h"
 #include "fluid/stokes.h"
 #include "scheme/scheme.h"
 
@@ -41,13 +41,12 @@ static PetscErrorCode WorldCreate(const char options[], PetscInt cells, PetscBoo
       .kernel = s->coupling.kernel, .near = NEAR_EXACT, .spec = &s->fluid, .box_part = box};
   PetscCall(CouplingCreate(w->fluid, w->membrane, NULL, &setting, &w->coupling));
   if (box && !w->images) BoxPartTakeImages(w->coupling->near->box, NULL, NULL);
-  PetscCall(LayoutCreateVec(w->layout, 2, &X));
+  PetscCall(TestMarkerVecs(w->layout, 2, &X, NULL));
   PetscCall(VecGetArray(X, &x));
   PetscCall(PetscArraycpy(x, s->shape.X + 2 * w->layout->first, 2 * w->layout->n));
   PetscCall(VecRestoreArray(X, &x));
   PetscCall(CouplingPlace(w->coupling, w->fluid->a0, 0, X, NULL, message));
   PetscCheck(!*message, s->comm, PETSC_ERR_LIB, "%s", message);
-  PetscCall(VecDestroy(&X));
   PetscCall(PetscCalloc1(PetscSqr(2 * w->layout->M), &w->D));
   if (box) PetscCall(AddAll(w->coupling->near->box, w->layout, w->D));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -212,10 +211,9 @@ static PetscErrorCode Velocity(World *w, const PetscReal force[], PetscBool part
   Vec F, U, u, p;
   PetscScalar *f, *a;
   PetscFunctionBeginUser;
-  PetscCall(LayoutCreateVec(w->layout, 2, &F));
-  PetscCall(VecDuplicate(F, &U));
-  PetscCall(DMCreateGlobalVector(w->fluid->grid->velocity, &u));
-  PetscCall(DMCreateGlobalVector(w->fluid->grid->da[FIELD_P], &p));
+  PetscCall(TestMarkerVecs(w->layout, 2, &F, &U, NULL));
+  PetscCall(TestFieldVecs(w->fluid->grid->velocity, &u, NULL));
+  PetscCall(TestFieldVecs(w->fluid->grid->da[FIELD_P], &p, NULL));
   PetscCall(StokesCreate(w->fluid, &stokes));
   PetscCall(VecGetArray(F, &f));
   PetscCall(PetscArraycpy(f, force + 2 * w->layout->first, 2 * w->layout->n));
@@ -233,8 +231,6 @@ static PetscErrorCode Velocity(World *w, const PetscReal force[], PetscBool part
   c->near->box = box;
   PetscCall(LayoutGatherVec(w->layout, U, all));
   PetscCall(StokesDestroy(&stokes));
-  Vec *vectors[] = {&F, &U, &u, &p};
-  for (int k = 0; k < 4; k++) PetscCall(VecDestroy(vectors[k]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -357,7 +353,7 @@ static PetscErrorCode CheckImage(void) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Facts(void) {
+PetscErrorCode Facts(void) {
   PetscFunctionBeginUser;
   PetscCall(CheckImage());
   PetscCall(CheckDefault());
@@ -378,8 +374,4 @@ static PetscErrorCode Facts(void) {
   PetscCall(CheckOwnImages("its own images in a channel", OWN CHANNEL));
   PetscCall(CheckOwnImages("its own images in a periodic box", OWN PERIODIC));
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-int main(int argc, char **argv) {
-  return CheckMain(argc, argv, Facts);
 }

@@ -1,7 +1,7 @@
 /* The box part of the double layer: the table of a square about the markers beside the whole one, products beside the
    matrix. */
 #include "coupling/contrast.h"
-#include "world.h"
+#include "facts.h"
 
 #define SCENE                                                                                                          \
   "-delta_type cbs54 -coupling_near_field exact -coupling_box_part false -membrane_derivative spectral "               \
@@ -115,7 +115,7 @@ static PetscErrorCode CheckImages(const char name[], const char options[]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Facts(void) {
+PetscErrorCode Facts(void) {
   PetscFunctionBeginUser;
   PetscCall(CheckImages("walls", SCENE "-vesicle_center 3.4,4.3"));
   PetscCall(CheckImages("channel", SCENE CHANNEL "-vesicle_center 3.4,4.3"));
@@ -127,8 +127,4 @@ static PetscErrorCode Facts(void) {
                         PETSC_FALSE));
   PetscCall(CheckRegion("large in a channel", SCENE CHANNEL "-domain_box 0,2,0,2 -vesicle_center .9,1", PETSC_FALSE));
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-int main(int argc, char **argv) {
-  return CheckMain(argc, argv, Facts);
 }

@@ -1,5 +1,5 @@
 /* Derivatives along the membrane: spectral ones, edges with their exact transposes, bending, and the area target. */
-#include "world.h"
+#include "facts.h"
 
 static PetscReal Dot(PetscInt n, const PetscReal a[], const PetscReal b[]) {
   PetscReal sum = 0;
@@ -272,7 +272,7 @@ static PetscErrorCode CheckStart(const char *cells) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Facts(void) {
+PetscErrorCode Facts(void) {
   static const char *const derivatives[] = {"fd", "bending", "spectral"};
   PetscFunctionBeginUser;
   PetscCall(CheckStart("24,24"));
@@ -286,8 +286,4 @@ static PetscErrorCode Facts(void) {
   PetscCall(CheckShift(48));
   for (int k = 0; k < 3; k++) PetscCall(CheckMembrane(derivatives[k]));
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-int main(int argc, char **argv) {
-  return CheckMain(argc, argv, Facts);
 }

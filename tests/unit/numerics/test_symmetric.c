@@ -1,6 +1,6 @@
 /* Matrices of the preconditioner's block of obstacles: a symmetric product in single precision against the plain sum,
    and interpolation between markers and points of a curve. */
-#include "check.h"
+#include "facts.h"
 #include "coupling/symmetric.h"
 #include "coupling/curvepoints.h"
 
@@ -63,7 +63,7 @@ static PetscErrorCode CheckPoints(PetscBool open, PetscInt n, PetscInt points) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Facts(void) {
+PetscErrorCode Facts(void) {
   PetscFunctionBeginUser;
   for (PetscInt n = 1; n < 24; n += n < 12 ? 1 : 5) PetscCall(CheckSymmetric(n));
   for (int open = 0; open < 2; open++) {
@@ -72,8 +72,4 @@ static PetscErrorCode Facts(void) {
     PetscCall(CheckPoints(open, 17, 1));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-int main(int argc, char **argv) {
-  return CheckMain(argc, argv, Facts);
 }

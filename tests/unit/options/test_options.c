@@ -1,6 +1,6 @@
 /* The option table, with rows that mean nothing: values of the user and defaults, lists of any length, text that reads
    back as the value; and a scene of more vesicles than fit in a short list. */
-#include "world.h"
+#include "facts.h"
 
 #define MANY 2000 /* numbers, more text than a path may have */
 #define VESICLES 40
@@ -109,13 +109,9 @@ static PetscErrorCode CheckScene(void) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Facts(void) {
+PetscErrorCode Facts(void) {
   PetscFunctionBeginUser;
   PetscCall(CheckTable());
   PetscCall(CheckScene());
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-int main(int argc, char **argv) {
-  return CheckMain(argc, argv, Facts);
 }

@@ -1,6 +1,6 @@
 /* Parts of the output that no small run reaches: rows of many vesicles, texts longer than an HDF5 attribute, and the
    places of frames. */
-#include "check.h"
+#include "facts.h"
 #include "output/h5series.h"
 #include "output/record.h"
 #include <stdlib.h>
@@ -120,7 +120,7 @@ static PetscErrorCode CheckPlaces(void) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Facts(void) {
+PetscErrorCode Facts(void) {
   PetscFunctionBeginUser;
   PetscCall(CheckTexts());
   PetscCall(CheckRows(1));
@@ -128,8 +128,4 @@ static PetscErrorCode Facts(void) {
   PetscCall(CheckRows(5000));
   PetscCall(CheckPlaces());
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-int main(int argc, char **argv) {
-  return CheckMain(argc, argv, Facts);
 }

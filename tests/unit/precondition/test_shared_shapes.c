@@ -4,7 +4,7 @@
 #include "coupling/sharedshapes.h"
 #include "coupling/selflayer.h"
 #include "fluid/stokes.h"
-#include "world.h"
+#include "facts.h"
 
 #define VESICLES 7
 #define N 45 /* markers of a vesicle */
@@ -185,10 +185,9 @@ static PetscErrorCode MultiplyAll(TestWorld *t, Vec V, Vec sigma, Vec U, Vec s) 
   Vec F, r, w, p;
   Stokes stokes;
   PetscFunctionBeginUser;
-  PetscCall(VecDuplicate(V, &F));
-  PetscCall(DMCreateGlobalVector(t->fluid->grid->velocity, &r));
-  PetscCall(VecDuplicate(r, &w));
-  PetscCall(DMCreateGlobalVector(t->fluid->grid->da[FIELD_P], &p));
+  PetscCall(TestVecs(V, &F, NULL));
+  PetscCall(TestFieldVecs(t->fluid->grid->velocity, &r, &w, NULL));
+  PetscCall(TestFieldVecs(t->fluid->grid->da[FIELD_P], &p, NULL));
   PetscCall(StokesCreate(t->fluid, &stokes));
   PetscCall(VecGetArrayRead(V, &f));
   PetscCall(VecGetArray(F, &u));
@@ -209,8 +208,6 @@ static PetscErrorCode MultiplyAll(TestWorld *t, Vec V, Vec sigma, Vec U, Vec s) 
   PetscCall(VecRestoreArrayRead(F, &f));
   PetscCall(CouplingStretching(t->coupling, V, s));
   PetscCall(StokesDestroy(&stokes));
-  Vec *all[] = {&F, &r, &w, &p};
-  for (int k = 0; k < 4; k++) PetscCall(VecDestroy(all[k]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -228,10 +225,8 @@ static PetscErrorCode CheckCross(void) {
   PetscCall(SharedShapesCreate(&t.scene->fluid, t.coupling, &s));
   PetscCall(SharedShapesFollow(s, &failed));
   CHECK(!failed && s->cross, "a coarse grid in a channel");
-  PetscCall(LayoutCreateVec(t.layout, 2, &V));
-  PetscCall(VecDuplicate(V, &U));
-  PetscCall(LayoutCreateVec(t.layout, 1, &sigma));
-  PetscCall(VecDuplicate(sigma, &r));
+  PetscCall(TestMarkerVecs(t.layout, 2, &V, &U, NULL));
+  PetscCall(TestMarkerVecs(t.layout, 1, &sigma, &r, NULL));
   PetscCall(VecGetArray(V, &v));
   PetscCall(VecGetArray(sigma, &g));
   for (PetscInt k = 0; k < t.layout->n; k++) {
@@ -252,8 +247,6 @@ static PetscErrorCode CheckCross(void) {
   PetscCall(VecAXPY(U, -1, V));
   PetscCall(VecNorm(U, NORM_2, &error));
   CHECK(error < 0.05 * norm, "V comes back, %.3f of it is left", (double)(error / norm));
-  Vec *all[] = {&V, &sigma, &U, &r};
-  for (int k = 0; k < 4; k++) PetscCall(VecDestroy(all[k]));
   PetscCall(SharedShapesDestroy(&s));
   PetscCall(TestWorldDestroy(&t));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -314,7 +307,7 @@ static PetscErrorCode CheckPackedMatrix(PetscInt rows, PetscInt columns, PetscIn
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Facts(void) {
+PetscErrorCode Facts(void) {
   const PetscReal angle[] = {2.1, -0.3, 0, 3.1};
   const PetscInt shift[] = {17, 44, 0, 1};
   PetscFunctionBeginUser;
@@ -329,8 +322,4 @@ static PetscErrorCode Facts(void) {
   PetscCall(CheckCross());
   PetscCall(CheckMemory());
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-int main(int argc, char **argv) {
-  return CheckMain(argc, argv, Facts);
 }

@@ -1,6 +1,6 @@
 /* The coupled problem's parts: its solution put back into the equations of the step, Mob against E A^-1 E^T column by
    column. */
-#include "world.h"
+#include "facts.h"
 #include "coupling/solver.h"
 
 typedef struct {
@@ -15,19 +15,15 @@ static PetscErrorCode ProblemCreate(const char options[], PetscReal a0, Problem 
   PetscCall(TestWorldCreate(options, &q->t));
   PetscCall(TestWorldPlace(a0, &q->t));
   PetscCall(CoupledSolverCreate(q->t.scene, q->t.coupling, &q->s));
-  PetscCall(DMCreateGlobalVector(q->t.fluid->grid->velocity, &q->f));
-  PetscCall(VecDuplicate(q->f, &q->w));
-  PetscCall(DMCreateGlobalVector(q->t.fluid->grid->da[FIELD_P], &q->p));
-  PetscCall(LayoutCreateVec(q->t.layout, 1, &q->g));
-  PetscCall(VecDuplicate(q->g, &q->sigma));
-  PetscCall(VecDuplicate(q->t.X, &q->V));
+  PetscCall(TestFieldVecs(q->t.fluid->grid->velocity, &q->f, &q->w, NULL));
+  PetscCall(TestFieldVecs(q->t.fluid->grid->da[FIELD_P], &q->p, NULL));
+  PetscCall(TestMarkerVecs(q->t.layout, 1, &q->g, &q->sigma, NULL));
+  PetscCall(TestVecs(q->t.X, &q->V, NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode ProblemDestroy(Problem *q) {
-  Vec *all[] = {&q->f, &q->w, &q->p, &q->g, &q->sigma, &q->V};
   PetscFunctionBeginUser;
-  for (int k = 0; k < 6; k++) PetscCall(VecDestroy(all[k]));
   PetscCall(CoupledSolverDestroy(&q->s));
   PetscCall(TestWorldDestroy(&q->t));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -52,14 +48,13 @@ static PetscErrorCode SolveProblem(const char name[], Problem *q, PetscBool rand
   PetscCall(MarkersInterpolate(q->t.coupling->markers, q->w, q->V));
   PetscCall(ForcingCreate(q->t.fluid->grid, PETSC_FALSE, &r));
   PetscCall(ForcingAdd(&r, q->f));
-  PetscCall(VecDuplicate(q->V, &k));
+  PetscCall(TestVecs(q->V, &k, NULL));
   if (q->t.fluid->grid->free) PetscCall(TestRandomVec(16, k)); /* there a force on the grid does nothing */
   const CoupledProblem problem = {.f = &r, .g = q->g, .k = k, .w = q->w, .p = q->p, .sigma = q->sigma, .V = q->V};
   PetscCall(CoupledSolverSolve(q->s, &problem, &report));
   CHECK(report.why > 0, "%s: converged in %d iterations", name, (int)report.its);
   q->its = report.its;
   PetscCall(ForcingDestroy(&r));
-  PetscCall(VecDestroy(&k));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -69,7 +64,7 @@ static PetscErrorCode ScaledNorm(Problem *q, Vec d, PetscReal *norm) {
   PetscScalar *a;
   Vec scaled;
   PetscFunctionBeginUser;
-  PetscCall(VecDuplicate(d, &scaled));
+  PetscCall(TestVecs(d, &scaled, NULL));
   PetscCall(VecCopy(d, scaled));
   PetscCall(VecGetArray(scaled, &a));
   for (PetscInt v = l->own; v < l->end; v++)
@@ -77,7 +72,6 @@ static PetscErrorCode ScaledNorm(Problem *q, Vec d, PetscReal *norm) {
       a[LayoutOffset(l, v) + k] *= UnknownsTensionScale(q->s->unknowns, v);
   PetscCall(VecRestoreArray(scaled, &a));
   PetscCall(VecNorm(scaled, NORM_2, norm));
-  PetscCall(VecDestroy(&scaled));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -90,10 +84,10 @@ static PetscErrorCode CheckSolution(const char name[], Problem *q, PetscBool ran
   Vec r, div, U, stretching;
   PetscFunctionBeginUser;
   PetscCall(SolveProblem(name, q, random));
-  PetscCall(VecDuplicate(q->f, &r));
-  PetscCall(VecDuplicate(q->p, &div));
-  PetscCall(VecDuplicate(q->t.X, &U));
-  PetscCall(VecDuplicate(q->g, &stretching));
+  PetscCall(TestVecs(q->f, &r, NULL));
+  PetscCall(TestVecs(q->p, &div, NULL));
+  PetscCall(TestVecs(q->t.X, &U, NULL));
+  PetscCall(TestVecs(q->g, &stretching, NULL));
   PetscCall(MatMult(f->H, q->w, r));
   PetscCall(MatMult(c->markers->E, q->w, U));
   PetscCall(CouplingSpreadBending(c, 1 / f->a0, U, r));
@@ -111,8 +105,6 @@ static PetscErrorCode CheckSolution(const char name[], Problem *q, PetscBool ran
   const PetscReal size = PetscSqrtReal(PetscSqr(reference[0]) + PetscSqr(reference[1]));
   for (int k = 0; k < 3; k++) /* the solver's residual is V - E u; in row 1 it counts with the bending's stiffness */
     CHECK(row[k] < (k ? 3e-12 : 2e-11) * size, "%s: row %d of the solution put back, %.1e", name, k + 1, row[k] / size);
-  Vec *all[] = {&r, &div, &U, &stretching};
-  for (int k = 0; k < 4; k++) PetscCall(VecDestroy(all[k]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -122,10 +114,9 @@ static PetscErrorCode CheckBending(const char name[], Problem *q) {
   PetscReal energy, one, two;
   Vec x[2], y[2], U;
   PetscFunctionBeginUser;
-  PetscCall(VecDuplicate(q->t.X, &U));
+  PetscCall(TestVecs(q->t.X, &U, NULL));
   for (int k = 0; k < 2; k++) {
-    PetscCall(VecDuplicate(q->f, &x[k]));
-    PetscCall(VecDuplicate(q->f, &y[k]));
+    PetscCall(TestVecs(q->f, &x[k], &y[k], NULL));
     PetscCall(TestRandomVec(21 + (unsigned)k, x[k]));
     PetscCall(MatMult(c->markers->E, x[k], U));
     PetscCall(MatMult(c->B, U, y[k]));
@@ -136,11 +127,7 @@ static PetscErrorCode CheckBending(const char name[], Problem *q) {
   CHECK(PetscAbsReal(one - two) < 1e-12 * PetscAbsReal(one), "%s: B E is symmetric, %.1e", name,
         PetscAbsReal(one - two) / PetscAbsReal(one));
   CHECK(energy > 0, "%s: B E only takes energy, %.3e", name, energy);
-  for (int k = 0; k < 2; k++) {
-    PetscCall(VecDestroy(&x[k]));
-    PetscCall(VecDestroy(&y[k]));
-  }
-  PetscCall(VecDestroy(&U));
+  for (int k = 0; k < 2; k++) {}
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -166,8 +153,8 @@ static PetscErrorCode MobilityError(Problem *q, PetscInt v, const PetscReal Mob[
   PetscFunctionBeginUser;
   *error = 0;
   PetscCall(StokesCreate(q->t.fluid, &stokes));
-  PetscCall(VecDuplicate(q->t.X, &F));
-  PetscCall(VecDuplicate(q->f, &r));
+  PetscCall(TestVecs(q->t.X, &F, NULL));
+  PetscCall(TestVecs(q->f, &r, NULL));
   for (PetscInt column = 0; column < n; column++) {
     PetscReal off;
     PetscCall(VecSet(F, 0));
@@ -180,8 +167,6 @@ static PetscErrorCode MobilityError(Problem *q, PetscInt v, const PetscReal Mob[
     PetscCall(ColumnError(q->t.layout, v, F, Mob + column * n, &off));
     *error = PetscMax(*error, off);
   }
-  PetscCall(VecDestroy(&F));
-  PetscCall(VecDestroy(&r));
   PetscCall(StokesDestroy(&stokes));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -260,7 +245,7 @@ static PetscErrorCode CheckCase(const char options[], PetscReal a0, PetscBool pe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Facts(void) {
+PetscErrorCode Facts(void) {
   const PetscBool yes = PETSC_TRUE, no = PETSC_FALSE;
   PetscFunctionBeginUser;
   PetscCall(CheckCase("-domain_cells 48,48 -vesicle_bending 1", 100, no));
@@ -291,8 +276,4 @@ static PetscErrorCode Facts(void) {
   PetscCall(CheckNearField("", 30, 0.1, 6));
   PetscCall(CheckNearField("-domain_bc_x free -domain_bc_y free -fluid_inertia none", 3, 0, 1));
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-int main(int argc, char **argv) {
-  return CheckMain(argc, argv, Facts);
 }

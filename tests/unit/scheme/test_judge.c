@@ -1,5 +1,5 @@
 /* Step sizes: what StepJudge makes of an attempt and StepSize of a plan, both pure functions, as tables of cases. */
-#include "world.h"
+#include "facts.h"
 #include "scheme/stepcontrol.h"
 
 #define TOL 1e-4 /* of the error */
@@ -335,7 +335,7 @@ static PetscErrorCode CheckPolicy(void) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Facts(void) {
+PetscErrorCode Facts(void) {
   static const PetscReal bases[] = {1, 0.25, 1024}; /* powers of 2: the same rounding */
   PetscFunctionBeginUser;
   for (int b = 0; b < 3; b++) {
@@ -350,8 +350,4 @@ static PetscErrorCode Facts(void) {
   PetscCall(CheckFinished());
   PetscCall(CheckPolicy());
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-int main(int argc, char **argv) {
-  return CheckMain(argc, argv, Facts);
 }
