@@ -180,18 +180,3 @@ def test_curve_file_as_programs_write_it(tmp_path):
         for name in ("plain", "closed")
     )
     np.testing.assert_array_equal(plain, closed)
-
-
-@pytest.mark.parametrize("unit", [0.25, 64])
-def test_split_in_another_unit_of_length(unit, tmp_path):
-    """Cells larger than the unit too: the same run, with as many iterations."""
-    scene = (
-        "-scheme_type split -domain_cells 32,32 -domain_bc_x periodic -flow_type shear -vesicle_angle 20 -time_step 0.02 -time_end 0.1 "
-        "-domain_box -{0},{0},-{0},{0} -vesicle_semi_axes {1},{2} -fluid_viscosity {3} -vesicle_bending {4}"
-    )
-    ours, plain = (
-        run_petves(tmp_path / str(a), scene.format(2 * a, a, a / 2, a * a, 0.1 * a**5)).series for a in (unit, 1)
-    )
-    np.testing.assert_allclose(ours["inclination"], plain["inclination"], rtol=0, atol=1e-9)
-    np.testing.assert_array_equal(ours["tension_its"], plain["tension_its"])
-    np.testing.assert_array_equal(ours["bending_its"], plain["bending_its"])

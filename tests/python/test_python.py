@@ -2,14 +2,12 @@
 
 import json
 import subprocess
-from pathlib import Path
 
 import pytest
-from harness import PETVES, ROOT, SANITIZE, mpirun, without_mpirun
+from harness import PETVES, ROOT, SANITIZE, mpirun, run_python, without_mpirun
 
 SCRIPTS = ROOT / "tests" / "python"
 PYTHON = "/usr/bin/python3"
-LIBRARY = str(Path(PETVES).parent.parent / "lib" / "libpetves.so")
 FACTS = [
     ("interface", ["state", "measures", "solvers"], 1),
     ("interface", ["running", "several", "quiet"], 1),
@@ -59,25 +57,19 @@ print("same" if all(np.array_equal(alone[k], beside[k]) for k in range(2)) else 
 """
 
 
-def run_python(script: Path, arguments: list[str], ranks: int = 1, **environment: str):
-    """Run a Python script on some ranks; the library is that of the program under test."""
-    package = {"PETVES_LIBRARY": LIBRARY, "PYTHONPATH": str(ROOT / "python")}
-    return mpirun([PYTHON, str(script), *arguments], ranks, **package, **environment)
-
-
 if not SANITIZE:  # a sanitized library cannot be loaded into Python
 
     @pytest.mark.parametrize("script,facts,ranks", FACTS, ids=lambda x: x if isinstance(x, (str, int)) else x[0])
     def test_facts_hold(script, facts, ranks, tmp_path):
         arguments = [str(tmp_path)] if script == "interface" else []
-        done = run_python(SCRIPTS / f"{script}.py", [*arguments, *facts], ranks)
+        done = run_python(SCRIPTS / f"{script}.py", *arguments, *facts, ranks=ranks)
         assert done.returncode == 0, done.stdout + done.stderr
         assert done.stdout == "facts hold\n", "PETSc reports what was not freed:\n" + done.stdout
         assert not without_mpirun(done.stderr)
 
     @pytest.mark.parametrize("ranks", [1, 2])
     def test_mistakes_are_errors_of_one_line(ranks, tmp_path):
-        done = run_python(SCRIPTS / "interface.py", [str(tmp_path), "mistakes"], ranks)
+        done = run_python(SCRIPTS / "interface.py", str(tmp_path), "mistakes", ranks=ranks)
         assert done.returncode == 0 and "facts hold" in done.stdout, done.stdout + done.stderr
         assert not without_mpirun(done.stderr), "nothing is printed: the exception has the message"
 
@@ -85,12 +77,12 @@ if not SANITIZE:  # a sanitized library cannot be loaded into Python
         monkeypatch.chdir(tmp_path)
         (tmp_path / ".petscrc").write_text(f'-python "touch {tmp_path}/made"\n')
         (tmp_path / "script.py").write_text("import petves\nprint(petves.Simulation)\n")
-        done = run_python(tmp_path / "script.py", [])
+        done = run_python(tmp_path / "script.py")
         assert done.returncode == 0 and not (tmp_path / "made").exists(), done.stderr
 
     @pytest.mark.alone
     def test_a_callback_costs_less_than_two_per_cent():
-        done = run_python(SCRIPTS / "overhead.py", [])
+        done = run_python(SCRIPTS / "overhead.py")
         assert done.returncode == 0 and float(done.stdout) < 0.02, done.stdout + done.stderr
 
     def test_progress_bar_where_one_is_asked_for(tmp_path):
@@ -99,7 +91,7 @@ if not SANITIZE:  # a sanitized library cannot be loaded into Python
             "import petves\nwith petves.Simulation(domain_cells=(24, 24), vesicle_semi_axes=(0.4, 0.5)) as sim:\n"
             "    sim.run(until=0.03, progress=True)\n    sim.run(until=0.05)\n"
         )
-        done = run_python(script, [], 2)
+        done = run_python(script, ranks=2)
         assert done.returncode == 0 and "100%" in done.stderr
         assert done.stderr.count("| 0/0.03 ") == 1 and "/0.05" not in done.stderr  # a slow bar draws its end twice
 
@@ -115,7 +107,7 @@ if not SANITIZE:  # a sanitized library cannot be loaded into Python
             f"import petves\nwith petves.Simulation(output_dir={str(tmp_path / 'python')!r}, {call}) as sim:\n"
             "    sim.run(callback=lambda s: s.markers.sum())\n"
         )
-        done = run_python(script, [], ranks)
+        done = run_python(script, ranks=ranks)
         assert done.returncode == 0 and not done.stdout and not without_mpirun(done.stderr), done.stderr
         rows = [without_wall((tmp_path / name / "series.csv").read_text()) for name in ("program", "python")]
         assert len(rows[0]) > 3 and rows[0] == rows[1]
@@ -133,7 +125,7 @@ if not SANITIZE:  # a sanitized library cannot be loaded into Python
             pytest.skip("no locale with commas can be made here")
         script = tmp_path / "script.py"
         script.write_text(COMMA.format(early=comma_from == "the start"))
-        done = run_python(script, [str(tmp_path)], LOCPATH=str(tmp_path))
+        done = run_python(script, str(tmp_path), LOCPATH=str(tmp_path))
         assert done.returncode == 0 and done.stdout == "1,5 finished 1,5\n" and not done.stderr, done.stderr
         points, commas = ((tmp_path / name / "series.csv").read_text() for name in ("points", "commas"))
         assert len(without_wall(points)) > 3 and without_wall(points) == without_wall(commas)
@@ -142,7 +134,7 @@ if not SANITIZE:  # a sanitized library cannot be loaded into Python
     def test_threads_take_turns(tmp_path):
         """Two runs at once, one of them with a flow of Python: the numbers of one after the other."""
         (tmp_path / "script.py").write_text(THREADS)
-        done = run_python(tmp_path / "script.py", [])
+        done = run_python(tmp_path / "script.py")
         assert done.returncode == 0 and done.stdout == "same\n", done.stdout + done.stderr
 
 

@@ -9,13 +9,11 @@ import resource
 import shutil
 import subprocess
 import sys
-from pathlib import Path
 
 import pytest
-from harness import ENVIRONMENT, PETVES, ROOT, SANITIZE, mpirun, without_mpirun
+from harness import ENVIRONMENT, LIBRARY, ROOT, SANITIZE, mpirun, without_mpirun
 
 EXAMPLES = sorted(path.stem for path in (ROOT / "python" / "examples").glob("*.py") if path.stem != "common")
-LIBRARY = Path(PETVES).parent.parent / "lib" / "libpetves.so"
 LEFT = {
     "quick_start": "quick_start/shapes.png",
     "restart": "halves/series.csv",

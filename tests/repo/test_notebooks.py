@@ -1,14 +1,11 @@
 """The notebooks of docs/: they run, and the outputs stored in them are those that they have today."""
 
-from pathlib import Path
 
 import nbformat
 import notebooks
 import pytest
-from harness import ENVIRONMENT, PETVES, ROOT, SANITIZE
+from harness import ENVIRONMENT, LIBRARY, PETVES, ROOT, SANITIZE
 from test_newcomer import prints
-
-LIBRARY = Path(PETVES).parent.parent / "lib" / "libpetves.so"
 
 
 def printed(cell: nbformat.NotebookNode) -> list[str]:

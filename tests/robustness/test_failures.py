@@ -2,10 +2,9 @@
 one line names the options' prefix and the reason, and the last good state is on disk."""
 
 import re
-import shutil
 
 import pytest
-from harness import PETVES, ROOT, SANITIZE, Run, mpirun, run_petves, without_mpirun
+from harness import PETVES, ROOT, Run, mpirun, preloaded, run_petves, without_mpirun
 from refusals import SMALL, leaves_files
 
 
@@ -79,15 +78,9 @@ void dgetrf_(int *m, int *n, double *A, int *lda, int *pivot, int *info) {
 
 def failing_from(call: int, folder, what: str = "FAIL") -> tuple[str, ...]:
     """Return the words before a program whose factorisations fail from this call on (FAIL), or this sum of MPI (FAIL_MPI)."""
-    (folder / "failing.c").write_text(FAILING)
-    library = str(folder / "failing.so")
-    command = [shutil.which("mpicc"), "-shared", "-fPIC", "-o", library, str(folder / "failing.c"), "-ldl"]
-    done = mpirun(command, 1)
-    assert done.returncode == 0, done.stderr
-    return ("env", f"LD_PRELOAD={library}", f"{what}={call}")
+    return ("env", f"LD_PRELOAD={preloaded(folder, FAILING, 'mpicc')}", f"{what}={call}")
 
 
-@pytest.mark.skipif(SANITIZE, reason="the sanitizers' library must be the first to be loaded")
 def test_dense_blocks_serve_many_steps(tmp_path):
     """120 steps of runs/free.opts, whose first one is dear, make fewer than 20 factors; they once made one or two each."""
     options = f"-options_file {ROOT}/runs/free.opts -time_end 18.4 -output_every 1e9 -checkpoint_every 0"
@@ -95,7 +88,6 @@ def test_dense_blocks_serve_many_steps(tmp_path):
     assert done.returncode == 0, done.stderr
 
 
-@pytest.mark.skipif(SANITIZE, reason="the sanitizers' library must be the first to be loaded")
 @pytest.mark.parametrize("ranks", [1, 3])
 def test_matrix_without_factor_ends_the_run(ranks, tmp_path):
     """The dense blocks of the preconditioner, on the one rank that owns the vesicle: every rank ends, one line, status 2,
@@ -110,7 +102,6 @@ def test_matrix_without_factor_ends_the_run(ranks, tmp_path):
     assert series["step"][-1] > 1
 
 
-@pytest.mark.skipif(SANITIZE, reason="the sanitizers' library must be the first to be loaded")
 @pytest.mark.parametrize("call, where", [(20, ""), (300, " (")], ids=["setup", "step"])
 @pytest.mark.parametrize("failing", [0, 1])
 def test_an_error_of_one_rank_ends_all(failing, call, where, tmp_path):

@@ -10,7 +10,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
-from harness import PETVES, ROOT, SANITIZE, mpirun, read_series, run_petves, start, wait_for_rows
+from harness import PETVES, SANITIZE, read_series, run_petves, run_python, start, wait_for_rows
 from refusals import one_line
 from restarts import BASE, frames, without_wall
 
@@ -141,9 +141,7 @@ def test_broken_tables_after_an_end_that_was_not_the_end(tmp_path):
     (tmp_path / "script.py").write_text(
         f"import os, petves\nsim = petves.Simulation({call})\nsim.run()\nsim.run(until=0.22)\nos.kill(os.getpid(), 9)\n"
     )
-    library = str(Path(PETVES).parent.parent / "lib" / "libpetves.so")
-    python = {"PETVES_LIBRARY": library, "PYTHONPATH": str(ROOT / "python")}
-    done = mpirun(["/usr/bin/python3", str(tmp_path / "script.py")], 1, **python)
+    done = run_python(tmp_path / "script.py")
     assert done.returncode == -signal.SIGKILL, done.stderr
     assert break_tables(tmp_path / "run") == 11
     run_plainly = f"{BASE} -domain_cells 24,24 -output_every 0.04 -time_end 0.4"

@@ -11,7 +11,17 @@ from pathlib import Path
 
 import h5py
 import pytest
-from harness import ENVIRONMENT, PETVES, ROOT, SANITIZE, mpirun, read_series, run_petves, without_mpirun
+from harness import (
+    ENVIRONMENT,
+    PETVES,
+    SANITIZE,
+    mpirun,
+    preloaded,
+    read_series,
+    run_petves,
+    run_python,
+    without_mpirun,
+)
 from double_starts import KINDS, double_start
 from refusals import one_line
 from restarts import without_wall
@@ -181,16 +191,12 @@ int clock_gettime(clockid_t clock, struct timespec *now) {
 """
 
 
-@pytest.mark.skipif(SANITIZE, reason="the sanitizers want to be loaded first")
 def test_clock_set_back(tmp_path):
     """The wall limit, the progress lines and the seconds of a step go by a clock that nobody sets."""
-    (tmp_path / "clock.c").write_text(CLOCK)
-    library = tmp_path / "clock.so"
-    subprocess.run(["gcc", "-shared", "-fPIC", "-o", library, tmp_path / "clock.c", "-ldl"], check=True)
     options = (
         f"{SCENE} -time_step 1e-5 -time_end 1000 -output_every 10 -time_wall_limit 4 -output_dir {tmp_path / 'run'}"
     )
-    done = mpirun([PETVES, *options.split()], 1, 60, LD_PRELOAD=str(library))
+    done = mpirun([PETVES, *options.split()], 1, 60, LD_PRELOAD=preloaded(tmp_path, CLOCK))
     assert done.returncode == 0 and "-time_wall_limit" in done.stdout, done.stdout + done.stderr
     assert read_series(tmp_path / "run" / "series.csv")["wall"].min() >= 0
     assert 0 < json.loads((tmp_path / "run" / "summary.json").read_text())["wall_seconds"]["run"] < 4
@@ -233,9 +239,7 @@ def test_second_signal_ends_the_process(pauses, status, tmp_path):
     words = f"{SCENE}".split()
     named = ", ".join(f"{name[1:]}={value!r}" for name, value in zip(words[::2], words[1::2]))
     (tmp_path / "script.py").write_text(TWICE.format(simulation=f"petves.Simulation({named})", pauses=pauses))
-    library = str(Path(PETVES).parent.parent / "lib" / "libpetves.so")
-    python = {"PETVES_LIBRARY": library, "PYTHONPATH": str(ROOT / "python"), "TMPDIR": str(tmp_path)}
-    done = mpirun(["/usr/bin/python3", str(tmp_path / "script.py")], 1, 60, **python)
+    done = run_python(tmp_path / "script.py", TMPDIR=str(tmp_path))
     assert done.returncode == status, done.stdout + done.stderr
     assert done.stdout.split() == ([] if status else ["stopped"])
 

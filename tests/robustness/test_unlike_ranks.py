@@ -3,11 +3,10 @@ differs from one on like ranks by what the solvers' tolerances let through. One 
 bit of what BLAS and LAPACK give back."""
 
 import functools
-import shutil
 
 import numpy as np
 import pytest
-from harness import PETVES, SANITIZE, mpirun, read_series
+from harness import PETVES, mpirun, preloaded, read_series
 
 NUDGE = r"""
 #define _GNU_SOURCE
@@ -58,21 +57,9 @@ pytestmark = pytest.mark.xdist_group("unlike_ranks")  # its tests share runs
 
 
 @pytest.fixture(scope="module")
-def library(tmp_path_factory):
-    """The library that nudges, compiled."""
-    compiler = shutil.which("gcc")
-    folder = tmp_path_factory.mktemp("nudge")
-    (folder / "nudge.c").write_text(NUDGE)
-    done = mpirun(
-        [compiler, "-O1", "-shared", "-fPIC", "-o", str(folder / "nudge.so"), str(folder / "nudge.c"), "-ldl"], 1
-    )
-    assert done.returncode == 0, done.stderr
-    return folder / "nudge.so"
-
-
-@pytest.fixture(scope="module")
-def series(library, tmp_path_factory):
+def series(tmp_path_factory):
     """Rows of two ranks, of which this one is nudged, or none; each run is made once."""
+    library = preloaded(tmp_path_factory.mktemp("nudge"), NUDGE)
 
     @functools.cache
     def of(scene: str, odd: int | None):
@@ -89,7 +76,6 @@ def series(library, tmp_path_factory):
     return of
 
 
-@pytest.mark.skipif(SANITIZE, reason="the sanitizers' library must be the first to be loaded")
 @pytest.mark.parametrize("unlike", [0, 1])
 @pytest.mark.parametrize("scene", SCENES)
 def test_unlike_ranks_agree(scene, unlike, series):

@@ -15,6 +15,7 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 PETVES = os.environ.get("PETVES", str(ROOT / "bin" / "petves"))
 PROGRAMS = Path(os.environ.get("PETVES_TESTS", str(ROOT / "build" / "tests")))
+LIBRARY = Path(PETVES).resolve().parent.parent / "lib" / "libpetves.so"
 SITE = PROGRAMS.parent / "site"  # what the tests need that Debian does not have: SITE_PACKAGES of the Makefile
 SANITIZE = bool(os.environ.get("SANITIZE"))
 
@@ -65,6 +66,22 @@ def mpirun(command: list[str], ranks: int, timeout: float = 300, wrapper: tuple[
     if lacks and os.environ.get("PETSC_DIR"):  # Debian's has both
         pytest.skip(f"this PETSc was built without {lacks[1] or lacks[2]}")
     return done
+
+
+def run_python(script: Path, *words: str, ranks: int = 1, timeout: float = 300, **environment: str):
+    """Run a Python script on some ranks, with this package and the library of the program under test."""
+    package = {"PETVES_LIBRARY": str(LIBRARY), "PYTHONPATH": str(ROOT / "python")}
+    return mpirun(["/usr/bin/python3", str(script), *words], ranks, timeout, **package, **environment)
+
+
+def preloaded(folder: Path, source: str, compiler: str = "gcc") -> str:
+    """Compile a library that a program is to load first (LD_PRELOAD); the sanitizers want to be that themselves."""
+    if SANITIZE:
+        pytest.skip("the sanitizers' library must be the first to be loaded")
+    (folder / "first.c").write_text(source)
+    command = [compiler, "-O1", "-shared", "-fPIC", "-o", folder / "first.so", folder / "first.c", "-ldl"]
+    subprocess.run(command, env={**os.environ, **ENVIRONMENT}, check=True)
+    return str(folder / "first.so")
 
 
 def without_mpirun(text: str) -> list[str]:
