@@ -21,9 +21,24 @@ HOMES = {
 }
 
 
+#: Pictures but the first are built and not drawn: layouts take most of the time, and no picture is compared.
+DRAWN_ONCE = """
+from matplotlib.figure import Figure
+real, drawn = Figure.savefig, []
+def savefig(figure, path, **how):
+    if not drawn:
+        real(figure, path, **how)
+    drawn.append(open(path, "ab").close())
+Figure.savefig = savefig
+"""
+
+
 def study(name: str, folder, *words: str, program: str = "/nowhere/petves") -> subprocess.CompletedProcess:
     """Run a study; nothing can be run by it unless a program is given."""
-    environment = os.environ | {"PETVES": program, "PYTHONPATH": f"{ROOT / 'python'}:{ROOT}"}
+    first = folder.parent / "first"
+    first.mkdir()
+    (first / "sitecustomize.py").write_text(DRAWN_ONCE)
+    environment = os.environ | {"PETVES": program, "PYTHONPATH": f"{first}:{ROOT / 'python'}:{ROOT}"}
     command = [sys.executable, "-m", "studies", name, str(folder), *words]
     return subprocess.run(command, env=environment, capture_output=True, text=True, timeout=300)
 
@@ -46,13 +61,15 @@ def test_committed_results_are_taken(name, tmp_path):
 
 
 def test_a_missing_program_is_one_line(tmp_path):
-    done = study("accuracy", tmp_path, "--quick")
+    done = study("accuracy", tmp_path / "accuracy", "--quick")
     assert done.returncode == 1 and done.stderr.startswith("studies: error: /nowhere/petves: no such program")
     assert len(done.stderr.splitlines()) == 1
 
 
 def test_results_that_cannot_be_read_are_one_line(tmp_path):
-    (tmp_path / "calibration.json").write_text("{")
-    done = study("calibrate", tmp_path)
+    home = tmp_path / "speed_accuracy"
+    home.mkdir()
+    (home / "calibration.json").write_text("{")
+    done = study("calibrate", home)
     assert done.returncode == 1 and "calibration.json: " in done.stderr and "remove it to start afresh" in done.stderr
     assert len(done.stderr.splitlines()) == 1
