@@ -9,7 +9,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
-from harness import PETVES, SANITIZE, mpirun, preloaded, run_petves, run_python, without_mpirun
+from harness import PAPER, PETVES, SANITIZE, mpirun, preloaded, run_petves, run_python, without_mpirun
 
 pytestmark = pytest.mark.xdist_group("output_faults")  # its tests share runs
 
@@ -171,7 +171,7 @@ def test_a_frame_costs_the_same_at_any_time(tmp_path):
     """The bytes written and read for a frame do not grow with the frames before it; run.xmf is one file that grows, what
     was there stays, and it is a whole document after each frame."""
     frames, out = 300, str(tmp_path / "counts.json")
-    options = f"{SCENE} -domain_cells 16,16 -vesicle_semi_axes 0.4,0.4 -time_step 1e-3 -output_every 1e-3"
+    options = f"{PAPER} {SCENE} -domain_cells 16,16 -vesicle_semi_axes 0.4,0.4 -time_step 1e-3 -output_every 1e-3"
     script = tmp_path / "script.py"
     call = simulation(tmp_path / "run", f"{options} -time_end 10 -checkpoint_every 0 -vesicle_spacing 1.75")
     script.write_text(COUNT.format(simulation=call, frames=frames, out=out))

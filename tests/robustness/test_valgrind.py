@@ -27,7 +27,7 @@ SHORT = {
     "disturbance": (SHEAR, 0),
     "total": (f"{SHEAR} -flow_form total -scheme_type split", 0),
     "restart": (f"{COUPLED} -restart {{checkpoint}}", 0),
-    "limit": (f"{COUPLED} -time_end 1 -limit_length_error 1e-14 -restart {{checkpoint}}", 2),
+    "limit": (f"{COUPLED} -time_end 1 -limit_edge_ratio 1.0000000001 -restart {{checkpoint}}", 2),
     "another_scene": (f"{COUPLED} -fluid_viscosity 2 -restart {{checkpoint}}", 1),
     "images": (f"{TWO_STEPS} -domain_cells 32,32", 0),  # 17 cells between a marker and another's image
 }
