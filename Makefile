@@ -51,7 +51,7 @@ VERSION := $(shell sed -n 's/^\#define PETVES_VERSION "\(.*\)"/\1/p' src/base/ve
 COMMIT := $(shell cat .commit 2>/dev/null || git describe --always --dirty 2>/dev/null || echo unknown)
 LIBS = $(shell $(PKG) --libs $(MODULES)) -lfftw3_mpi -lm $(if $(PETSC_DIR),-Wl$(COMMA)-rpath$(COMMA)$(PETSC_DIR)/$(PETSC_ARCH)/lib)
 
-SOURCES := $(filter-out src/main.c,$(wildcard src/*.c src/*/*.c))
+SOURCES := $(filter-out src/app/main.c,$(wildcard src/*/*.c src/*/*/*.c))
 OBJECTS := $(SOURCES:src/%.c=$(BUILD)/%.o)
 # What programs that load the library are built for: not the commit's name.
 CODE := $(filter-out $(BUILD)/base/version.o,$(OBJECTS))
@@ -83,10 +83,10 @@ $(eval $(call remember,$(BUILD)/.arch,$(FOR)))
 $(eval $(call remember,$(BUILD)/.commit,$(COMMIT)))
 FORCE:
 
-$(OBJECTS) $(BUILD)/main.o: $(BUILD)/.arch
+$(OBJECTS) $(BUILD)/app/main.o: $(BUILD)/.arch
 $(BUILD)/base/version.o: $(BUILD)/.commit
 $(BUILD)/base/version.o: CFLAGS += -DPETVES_COMMIT='"$(COMMIT)"' -DPETVES_ARCH='"$(FOR)"'
-$(BUILD)/program.o: CFLAGS += -DPETVES_PYTHON='"$(PYTHON)"'
+$(BUILD)/app/program.o: CFLAGS += -DPETVES_PYTHON='"$(PYTHON)"'
 
 $(BUILD)/%.o: src/%.c
 	@mkdir -p $(@D)
@@ -101,7 +101,7 @@ $(LIBRARY): $(OBJECTS)
 MANY_NAMES := openblas $(addprefix trilinos_,teuchosparameterlist ifpack epetraext epetra teuchoscomm ml)
 LOADED = $(if $(PETSC_DIR),,$(shell ldd $(LIBRARY)))
 FIRST = $(foreach name,$(MANY_NAMES),$(foreach file,$(filter /%,$(LOADED)),$(if $(findstring /lib$(name).so,$(file)),$(file))))
-$(BIN)/petves: $(BUILD)/main.o $(LIBRARY)
+$(BIN)/petves: $(BUILD)/app/main.o $(LIBRARY)
 	@mkdir -p $(@D)
 	$(CC) $(OPTIMISE) -o $@ $< -Wl,--push-state,--no-as-needed $(FIRST) -Wl,--pop-state -L$(LIBDIR) -lpetves -Wl,-rpath,'$$ORIGIN/../$(LIBDIR)' $(LIBS)
 
@@ -240,7 +240,7 @@ uninstall: ## remove what make install has put under PREFIX
 arch: ## print which processor the code is built for (make ARCH=... takes another)
 	@echo "$(FOR)"
 
-C_FILES = $(wildcard src/*.c src/*/*.c src/*/*.h include/*.h tests/unit/*/*.c tests/support/*.[ch] bench/*.c bench/*.h)
+C_FILES = $(wildcard src/*/*.[ch] src/*/*/*.[ch] include/*.h tests/unit/*/*.c tests/support/*.[ch] bench/*.c bench/*.h)
 format: test-deps ## format C and Python
 	clang-format -i $(C_FILES)
 	black -q -l 120 python studies tests bench
@@ -252,4 +252,4 @@ check-format: test-deps ## fail when a file is not formatted
 clean: ## remove what was built
 	rm -rf build build-* bin bin-* lib lib-*
 
--include $(OBJECTS:.o=.d) $(BUILD)/main.d
+-include $(OBJECTS:.o=.d) $(BUILD)/app/main.d

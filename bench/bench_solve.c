@@ -2,8 +2,8 @@
    repetition goes through all of them in turn.
      bench_solve -cells N -repeats R -hypre true|false      one JSON object a line, seconds of each repetition */
 #include "bench.h"
-#include "fluid/fastsolvers.h"
-#include "fluid/stokes.h"
+#include "fluid/transforms/fastsolvers.h"
+#include "fluid/stokes/stokes.h"
 
 #define BACK_ENDS 3
 #define MOST_REPEATS 64

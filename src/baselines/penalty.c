@@ -1,7 +1,7 @@
 /* Scheme "penalty": the penalty immersed boundary method of Kim and Lai, J. Comput. Phys. 229 (2010) 4840. Stiff
    springs in place of the constraint, explicit forces, a projection step of the fluid. First order in time. */
 #include "baselines/baselines.h"
-#include "fluid/stokes.h"
+#include "fluid/stokes/stokes.h"
 #include "scheme/stepcommon.h"
 
 typedef struct {

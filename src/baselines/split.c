@@ -2,7 +2,7 @@
    sections 4.1 (no bending) and 4.2. First order in time. */
 #include "baselines/baselines.h"
 #include "baselines/lagrangian.h"
-#include "coupling/kspoptions.h"
+#include "krylov/kspoptions.h"
 #include "scheme/stepcommon.h"
 
 typedef struct {

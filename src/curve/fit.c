@@ -7,7 +7,7 @@
 
        X -= C^T (C C^T)^-1 r. */
 #include "curve/curve.h"
-#include "curve/circulant.h"
+#include "numerics/circulant.h"
 #include <petscblaslapack.h>
 
 #define FIT_CONVERGED 1e-13 /* relative error of squared edges and of the area */

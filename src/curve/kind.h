@@ -8,7 +8,7 @@
    where it repeats (closed: span = 0), and a polynomial through six markers where it is open. All functions work on one
    rank; CurveSet.part shares a search among ranks. */
 #pragma once
-#include "curve/spectral.h"
+#include "numerics/spectral.h"
 
 typedef enum { CURVE_CLOSED, CURVE_SPANNING, CURVE_OPEN } CurveType;
 

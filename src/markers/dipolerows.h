@@ -1,4 +1,5 @@
-/* Dipoles of markers in the rows of a solve by stream function (fluid/stream.h), whose velocity w has no divergence.
+/* Dipoles of markers in the rows of a solve by stream function (fluid/stokes/stream.h), whose velocity w has no
+   divergence.
 
    A velocity b whose divergence is the dipoles' source is found row by row: along x by sums of the source less the mean
    of its row, which are zero on walls, along y by sums of these means,

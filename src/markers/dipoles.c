@@ -1,5 +1,5 @@
 #include "markers/dipoles.h"
-#include "markers/fold.h"
+#include "markers/wallfold.h"
 
 void DipoleStencilsUnwrapped(Grid g, const PetscReal X[2], Stencil s[DIPOLE_COUNT]) {
   static const Kernel *five = NULL, *six = NULL; /* kernels are found once */

@@ -1,6 +1,6 @@
 #include "markers/markers.h"
 #include "base/agree.h"
-#include "markers/fold.h"
+#include "markers/wallfold.h"
 
 /* The message of a marker of body b at X that is too near a wall or beyond it; distance in cells. */
 static PetscErrorCode MarkerReject(PetscInt b, const PetscReal X[2], PetscReal distance, const char wall[],

@@ -11,8 +11,8 @@
 
    Order: MarkersCreate, then for each set of positions MarkersCheck and MarkersPlace before E is used. */
 #pragma once
-#include "fluid/forcing.h"
-#include "fluid/stream.h"
+#include "fluid/stokes/forcing.h"
+#include "fluid/stokes/stream.h"
 #include "markers/layout.h"
 #include "markers/rows.h"
 

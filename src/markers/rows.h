@@ -4,7 +4,7 @@
    interpolated, while it is in the cache. Every rank has the stencils of all markers and the entries of its own rows
    and of the row above them; nothing crosses ranks here. */
 #pragma once
-#include "fluid/grid.h"
+#include "fluid/grid/grid.h"
 #include "kernel/kernel.h"
 
 /* The faces of one velocity component that a marker's kernel reaches: columns first[0] .. and rows first[1] .., with

@@ -1,7 +1,7 @@
 #include "output/cells.h"
 #include "base/agree.h"
-#include "coupling/doublecells.h"
-#include "coupling/nearcells.h"
+#include "layers/doublecells.h"
+#include "layers/nearcells.h"
 
 /* A velocity component on a wall: the background's in the total form, else zero. */
 static PetscScalar CellWallValue(Scheme s, int c, PetscInt i, PetscInt j, PetscReal wall) {

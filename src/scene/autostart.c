@@ -1,7 +1,7 @@
 /* -scheme_auto: what the start of a scene asks for. A vesicle that the flow compresses along its length wrinkles, and
    errors of its steps grow with the wrinkles; thin shapes and thin films need more markers (docs/settings.md). */
 #include "curve/contacts.h"
-#include "curve/spectral.h"
+#include "numerics/spectral.h"
 #include "scene/resolve.h"
 
 #define ALIGNED 1e-6 /* of the strain: none, but for rounding */

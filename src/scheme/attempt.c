@@ -1,6 +1,6 @@
 /* One unsplit step, backward Euler or BDF2 (docs/membrane.md, One step). */
 #include "base/agree.h"
-#include "coupling/contrast.h"
+#include "mobility/contrast.h"
 #include "scheme/coupled.h"
 #include "scheme/stress.h"
 

@@ -1,7 +1,7 @@
 /* The scheme "coupled": the unsplit step, unconditionally stable, solved by preconditioned FGMRES on its forces. Here:
    which steps are taken. */
 #include "scheme/coupled.h"
-#include "coupling/kspoptions.h"
+#include "krylov/kspoptions.h"
 #include "scheme/films.h"
 
 /* Start-up: backward Euler on a sixteenth of the step, then BDF2 with doubling steps up to the whole of it. */

@@ -1,7 +1,7 @@
 /* The parts of one unsplit step of backward Euler or BDF (docs/membrane.md). */
 #pragma once
-#include "coupling/solver.h"
-#include "fluid/convection.h"
+#include "krylov/solver.h"
+#include "fluid/stokes/convection.h"
 #include "scheme/history.h"
 #include "scheme/stepcommon.h"
 

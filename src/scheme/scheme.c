@@ -1,5 +1,5 @@
 #include "scheme/scheme.h"
-#include "coupling/precondition.h"
+#include "precondition/precondition.h"
 #include "scheme/coupled.h"
 #include "scheme/statechecks.h"
 

@@ -1,6 +1,6 @@
 /* The state that a scheme advances in time. Vectors are distributed like the grid and the markers. */
 #pragma once
-#include "coupling/coupling.h"
+#include "mobility/coupling.h"
 
 /* Which of w and p have been made; SchemeVelocity makes w, SchemeFields makes both. */
 typedef enum { FIELDS_MADE, FIELDS_WITHOUT_P, FIELDS_WITHOUT_BOTH } StateFields;
@@ -12,9 +12,9 @@ typedef struct {
   PetscReal dt_last; /* the step that led to this state; 0 at the start */
   Vec w;             /* velocity on the faces: the disturbance, or the whole in the total form */
   Vec p;             /* pressure, zero mean */
-  Vec flow;          /* velocity as a flow (fluid/streamflow.h), in fluid with inertia; NULL where steps make w */
-  Forcing forcing;   /* the forcing from which p follows, and w where there is no flow; empty where steps make both */
-  PetscReal a0;      /* the time coefficient of the solve from forcing to w and p */
+  Vec flow;        /* velocity as a flow (fluid/stokes/streamflow.h), in fluid with inertia; NULL where steps make w */
+  Forcing forcing; /* the forcing from which p follows, and w where there is no flow; empty where steps make both */
+  PetscReal a0;    /* the time coefficient of the solve from forcing to w and p */
   StateFields fields;
   Vec sigma; /* tension, an edge vector */
   Vec X;     /* markers, a marker vector */

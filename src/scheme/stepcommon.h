@@ -3,7 +3,7 @@
 #pragma once
 #include "scheme/state.h"
 #include "scheme/stepcontrol.h"
-#include "fluid/stream.h"
+#include "fluid/stokes/stream.h"
 
 /* Stresses of a sheared channel after a step, measured at the walls [0] and from the membranes' forces [1] (stress.h).
  */
@@ -157,8 +157,8 @@ PETSC_EXTERN void SchemePeriods(Scheme scheme, PetscReal period[2]);
 PETSC_EXTERN PetscBool SchemeIsSmooth(Scheme scheme);
 
 /* SchemeFields - make the velocity and the pressure of the state, w and p, where the step has not: it needs neither on
-   the grid where fluid/stream.h gives the velocity (docs/membrane.md, One step). SchemeVelocity - w alone, if there is
-   a cheaper way. To be called before they are read. Collective. */
+   the grid where fluid/stokes/stream.h gives the velocity (docs/membrane.md, One step). SchemeVelocity - w alone, if
+   there is a cheaper way. To be called before they are read. Collective. */
 PETSC_EXTERN PetscErrorCode SchemeFields(Scheme scheme);
 PETSC_EXTERN PetscErrorCode SchemeVelocity(Scheme scheme);
 

@@ -1,5 +1,5 @@
 #include "direct.h"
-#include "coupling/contrast.h"
+#include "mobility/contrast.h"
 
 PetscErrorCode DirectAdd(Direct *d, PetscInt row, PetscInt column, PetscReal value) {
   PetscFunctionBeginUser;

@@ -1,6 +1,6 @@
 /* The coupled problem by a sparse LU: what the solution of the scheme coupled is compared with. On one rank. */
 #pragma once
-#include "coupling/solver.h"
+#include "krylov/solver.h"
 
 /* DirectSolve - [H + B E/a0, G, S; G^T; S^T] with the near field, at the coupling's markers, p of zero mean. The
    markers' velocity V and the force F = Dm^T sigma/h^2 + (c_b ds/(h^2 a0)) D4 V on them are unknowns of their own, as

@@ -1,6 +1,6 @@
-/* Viscosity contrast in the matrix (coupling/contrast.h). The jump J, less its flux, is an unknown of its own, so that
+/* Viscosity contrast in the matrix (mobility/contrast.h). The jump J, less its flux, is an unknown of its own, so that
    the fluid's rows have the few markers near them only. */
-#include "coupling/contrast.h"
+#include "mobility/contrast.h"
 #include "direct.h"
 
 /* The tensor of the unit jump of marker k in direction c. */

@@ -1,4 +1,4 @@
-/* Edges corrected after a step (src/membrane/restore.c): exact on known shapes, Newton's quadratic convergence, the
+/* Edges corrected after a step (src/bodies/restore.c): exact on known shapes, Newton's quadratic convergence, the
    least displacement, and nothing where nothing is wrong or no freedom is left. */
 #include "facts.h"
 

@@ -1,7 +1,7 @@
 /* Fast solves: the stencil applied to the solution gives the right-hand side back, for every boundary pair, field and
    grid shape; FFTW and hypre agree. */
 #include "facts.h"
-#include "fluid/fastsolvers.h"
+#include "fluid/transforms/fastsolvers.h"
 
 typedef struct {
   const char *box, *cells;

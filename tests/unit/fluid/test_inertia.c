@@ -1,9 +1,9 @@
 /* Convection: its discrete form keeps energy and momentum and is of second order; Navier-Stokes flow against a vortex
    carried by a stream, and against manufactured solutions. Quasi-steady flow: the limit of a slow step. */
 #include "facts.h"
-#include "coupling/solver.h"
-#include "fluid/convection.h"
-#include "fluid/stokes.h"
+#include "krylov/solver.h"
+#include "fluid/stokes/convection.h"
+#include "fluid/stokes/stokes.h"
 #include <dlfcn.h>
 
 #define NU 0.05

@@ -2,7 +2,7 @@
    walls: the divergence is met, and what is left of the momentum lies on the faces next to the walls that run along the
    velocity component: rows of u under walls in y, columns of v beside walls in x. */
 #include "facts.h"
-#include "fluid/stokes.h"
+#include "fluid/stokes/stokes.h"
 
 #define TOLERANCE 1e-11
 

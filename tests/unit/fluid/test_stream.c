@@ -2,7 +2,7 @@
    four walls, steady or not, with a flux or without; on every number of ranks. So are flows, and the force that flows
    are. */
 #include "facts.h"
-#include "fluid/stokes.h"
+#include "fluid/stokes/stokes.h"
 
 #define TOLERANCE 1e-11
 

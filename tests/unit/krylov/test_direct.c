@@ -1,6 +1,6 @@
 /* The solution of each step's coupled problem in whole runs, FGMRES's, is that of a sparse LU of the same equations. */
 #include "facts.h"
-#include "simulation.h"
+#include "app/simulation.h"
 #include "scheme/coupled.h"
 #include "direct.h"
 #include <dlfcn.h>

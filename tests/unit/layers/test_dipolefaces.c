@@ -1,8 +1,8 @@
 /* The lattice's answer of a dipole by faces that markers share, and in closed form, against the double sums of each
    pair; dipoles by rows of a grid. */
 #include "facts.h"
-#include "coupling/dipolefaces.h"
-#include "coupling/doubleblock.h"
+#include "layers/dipolefaces.h"
+#include "layers/doubleblock.h"
 #include "markers/dipolerows.h"
 
 #define MARKERS 11

@@ -1,10 +1,10 @@
 /* The double layer of a viscosity contrast, grid and near field together: the lattice's tables, rigid motions, flux,
    that it is adjoint to itself through the single layer, and the dissipation. */
 #include "facts.h"
-#include "coupling/contrast.h"
-#include "coupling/blas.h"
-#include "coupling/doublecurve.h"
-#include "fluid/stokes.h"
+#include "mobility/contrast.h"
+#include "numerics/blas.h"
+#include "layers/doublecurve.h"
+#include "fluid/stokes/stokes.h"
 
 #define SCENE                                                                                                          \
   "-delta_type cbs54 -coupling_near_field exact -coupling_box_part false -membrane_derivative spectral "               \

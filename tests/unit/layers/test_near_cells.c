@@ -2,9 +2,9 @@
    pressure is higher by tension over radius. */
 #include "facts.h"
 #include "base/lanes.h"
-#include "coupling/lattice.h"
-#include "coupling/nearcells.h"
-#include "fluid/stokes.h"
+#include "layers/latticegreen.h"
+#include "layers/nearcells.h"
+#include "fluid/stokes/stokes.h"
 
 #define EXACT "-coupling_near_field exact -membrane_derivative spectral -vesicle_allow_close_markers "
 #define PERIODIC "-domain_bc_x periodic -domain_bc_y periodic "

@@ -1,6 +1,6 @@
 /* The closed form of the near field's distant pairs against sums over their stencils, on any number of ranks. */
 #include "facts.h"
-#include "coupling/nearblock.h"
+#include "layers/nearblock.h"
 
 #define EXACT "-coupling_near_field exact -membrane_derivative spectral -vesicle_allow_close_markers "
 #define PERIODIC "-domain_bc_x periodic -domain_bc_y periodic -fluid_inertia none "

@@ -1,7 +1,7 @@
 /* The near field C = S - L: the lattice table, symmetry, and any number of ranks. */
 #include "facts.h"
-#include "coupling/nearblock.h"
-#include "fluid/stokes.h"
+#include "layers/nearblock.h"
+#include "fluid/stokes/stokes.h"
 
 #define EXACT "-coupling_near_field exact -membrane_derivative spectral -vesicle_allow_close_markers "
 #define PERIODIC "-domain_bc_x periodic -domain_bc_y periodic -fluid_inertia none "

@@ -1,9 +1,9 @@
 /* Grid and near field together are the free-space single layer: the velocity of forces on a circle, which is known, for
    kernels, places in a cell and turns of the markers. */
 #include "facts.h"
-#include "coupling/lattice.h"
-#include "coupling/nearimage.h"
-#include "fluid/stokes.h"
+#include "layers/latticegreen.h"
+#include "layers/nearimage.h"
+#include "fluid/stokes/stokes.h"
 
 #define OPTIONS                                                                                                        \
   "-scheme_type coupled -coupling_near_field exact -membrane_derivative spectral -vesicle_allow_close_markers "        \

@@ -1,8 +1,8 @@
 /* The near field next to walls: markers' velocity against a finer grid, mobility positive down to a quarter of a cell,
    the same at all four walls. */
 #include "facts.h"
-#include "coupling/blas.h"
-#include "fluid/stokes.h"
+#include "numerics/blas.h"
+#include "fluid/stokes/stokes.h"
 
 #define H (8. / 48)
 #define SCENE                                                                                                          \

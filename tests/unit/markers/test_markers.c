@@ -2,7 +2,7 @@
    against its sum written out, spreading as its exact transpose, the lists of stencils, and what is wrong with one
    rank's markers. */
 #include "facts.h"
-#include "markers/fold.h"
+#include "markers/wallfold.h"
 
 #define TOLERANCE 1e-13 /* relative: round-off of sums of some thousand terms */
 

@@ -1,7 +1,7 @@
 /* The box part D of the near field: symmetric, of second order in h, free of a net flux through a membrane; with it the
    markers' velocity on a coarse grid is that on a finer one. */
 #include "facts.h"
-#include "fluid/stokes.h"
+#include "fluid/stokes/stokes.h"
 #include "scheme/scheme.h"
 
 typedef struct {

@@ -1,6 +1,6 @@
 /* The box part of the double layer: the table of a square about the markers beside the whole one, products beside the
    matrix. */
-#include "coupling/contrast.h"
+#include "mobility/contrast.h"
 #include "facts.h"
 
 #define SCENE                                                                                                          \

@@ -1,8 +1,8 @@
 /* Matrices of the preconditioner's block of obstacles: a symmetric product in single precision against the plain sum,
    and interpolation between markers and points of a curve. */
 #include "facts.h"
-#include "coupling/symmetric.h"
-#include "coupling/curvepoints.h"
+#include "numerics/symmetric.h"
+#include "precondition/curvepoints.h"
 
 /* Products with a matrix of n rows, and its inverse. */
 static PetscErrorCode CheckSymmetric(PetscInt n) {

@@ -1,9 +1,9 @@
 /* SharedShapes of many vesicles (docs/suspensions.md, Many vesicles): how a curve lies, the exact mobility of one
    curve, and a vesicle's problem solved by another's shape. */
-#include "coupling/packedmatrix.h"
-#include "coupling/sharedshapes.h"
-#include "coupling/selflayer.h"
-#include "fluid/stokes.h"
+#include "numerics/packedmatrix.h"
+#include "precondition/sharedshapes.h"
+#include "layers/selflayer.h"
+#include "fluid/stokes/stokes.h"
 #include "facts.h"
 
 #define VESICLES 7

@@ -1,7 +1,7 @@
 /* The coupled problem's parts: its solution put back into the equations of the step, Mob against E A^-1 E^T column by
    column. */
 #include "facts.h"
-#include "coupling/solver.h"
+#include "krylov/solver.h"
 
 typedef struct {
   TestWorld t;

@@ -1,0 +1,302 @@
+/* A whole run: build everything from the options, step, write. */
+#include "app/simulation.h"
+#include "base/agree.h"
+#include "baselines/baselines.h"
+#include "options/typed.h"
+#include <stdlib.h>
+
+static const char help[] = "petves: inextensible vesicles in two-dimensional viscous flow.\n"
+                           "usage: mpirun -n RANKS petves run SCENE.opts [-option value ...]\n\n";
+
+/* MPI is started here and not by PETSc: what the user typed is read and checked before PETSc sees it. */
+static PetscBool began_mpi = PETSC_FALSE;
+
+/* Into the options database that PETSc will start with. */
+static int ReadTyped(int argc, char **argv) {
+  Typed typed = {0};
+  int rank, error;
+  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  if (!rank) TypedCommand(&typed, argc - 1, argv + 1);
+  error = TypedShare(&typed, MPI_COMM_WORLD);
+  if (!error && *typed.error) {
+    if (!rank) fprintf(stderr, "petves: error: %s\n", typed.error);
+    error = PETSC_ERR_USER_INPUT;
+  }
+  if (!error) error = (int)TypedInsert(&typed, NULL);
+  TypedDestroy(&typed);
+  return error;
+}
+
+PetscErrorCode PetvesInitialize(int *argc, char ***argv) {
+  static char skip[] = "-skip_petscrc";
+  int running, provided, one = 2;
+  if (MPI_Initialized(&running)) return PETSC_ERR_MPI;
+  began_mpi = running ? PETSC_FALSE : PETSC_TRUE;
+  /* newer PETSc leaves the level to decide (negative) until it starts MPI itself */
+  const int level = PETSC_MPI_THREAD_REQUIRED < 0 ? MPI_THREAD_FUNNELED : (int)PETSC_MPI_THREAD_REQUIRED;
+  if (began_mpi && MPI_Init_thread(argc, argv, level, &provided)) return PETSC_ERR_MPI;
+  if (ReadTyped(*argc, *argv)) {
+    if (began_mpi) MPI_Finalize();
+    return PETSC_ERR_USER_INPUT;
+  }
+  StopClock();
+  unsetenv("PETSC_OPTIONS"); /* it has been read */
+  char *words[] = {(*argv)[0], skip, NULL}, **given = words;
+  PetscFunctionBeginUser;
+  PetscCall(PetscPushErrorHandler(PetvesErrorHandler, NULL));
+  PetscCall(PetvesSetupErrors(PETSC_TRUE));
+  PetscCall(PetscInitialize(&one, &given, NULL, help));
+  PetscCall(PetvesSetupErrors(PETSC_FALSE));
+  PetscCall(PetscOptionsClearValue(NULL, skip));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode PetvesFinalize(void) {
+  PetscErrorCode error;
+  PetscBool given = PETSC_FALSE;
+  /* unused options have been reported in one line; newer PETSc would list them again */
+  if (!PetscOptionsHasName(NULL, NULL, "-options_left", &given) && !given)
+    (void)PetscOptionsSetValue(NULL, "-options_left", "no");
+  (void)PetvesLastErrors();
+  error = PetscFinalize();
+  if (error)
+    PetvesEndTogether(MPI_COMM_WORLD, NULL);
+  else
+    (void)PetscPopErrorHandler();
+  if (began_mpi && MPI_Finalize()) return PETSC_ERR_MPI;
+  return error;
+}
+
+PetscErrorCode PetvesReadOptions(MPI_Comm comm, PetscOptions options, const char path[]) {
+  Typed typed = {0};
+  PetscMPIInt rank;
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  if (!rank) TypedFile(&typed, path);
+  PetscCallMPI(TypedShare(&typed, comm));
+  if (!*typed.error) PetscCall(TypedInsert(&typed, options));
+  TypedDestroy(&typed);
+  PetscCheck(!*typed.error, comm, PETSC_ERR_USER_INPUT, "%s", typed.error);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode SetWeights(Scene scene, Membrane membrane) {
+  const PetscInt n = 2 * scene->shape.vesicles;
+  PetscReal *weight;
+  PetscFunctionBeginUser;
+  if (!SceneHasGravity(scene)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMalloc1(n, &weight));
+  for (PetscInt k = 0; k < n; k++) weight[k] = SceneWeight(scene, k / 2, (int)(k % 2));
+  PetscCall(MembraneSetWeight(membrane, weight));
+  PetscCall(PetscFree(weight));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CreateCoupling(Scene scene, Simulation s) {
+  const PetscInt vesicles = scene->shape.vesicles;
+  CouplingSetting setting = {.kernel = scene->coupling.kernel,
+                             .near = (NearFieldType)scene->coupling.near_field,
+                             .spec = &scene->fluid,
+                             .box_part = SceneHasBoxPart(scene),
+                             .apart = SceneDipolesMayBeApart(scene),
+                             .lag = scene->fluid.inertia == INERTIA_UNSTEADY ? PETSC_TRUE : PETSC_FALSE,
+                             .area_target = scene->scheme.area_target && vesicles ? PETSC_TRUE : PETSC_FALSE,
+                             .repulsion = scene->repulsion.stress > 0 && vesicles ? &scene->repulsion : NULL};
+  PetscReal *ratio;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(vesicles, &ratio));
+  if (SceneHasContrast(scene)) setting.ratio = ratio;
+  for (PetscInt v = 0; v < vesicles && setting.ratio; v++) ratio[v] = SceneViscosityRatio(scene, v);
+  PetscCall(CouplingCreate(s->fluid, s->membrane, s->obstacles, &setting, &s->coupling));
+  PetscCall(PetscFree(ratio));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Which rank has which vesicles and obstacles. */
+static PetscErrorCode CreateLayouts(MPI_Comm comm, Scene scene, Simulation s) {
+  const Shape *vesicles = &scene->shape, *solid = &scene->obstacles.outline;
+  const PetscInt n = vesicles->vesicles, all = n + solid->vesicles;
+  PetscInt *start;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(all + 1, &start));
+  PetscCall(PetscArraycpy(start, vesicles->start, n + 1));
+  for (PetscInt b = 1; b <= solid->vesicles; b++) start[n + b] = start[n] + solid->start[b];
+  PetscCall(LayoutCreate(comm, all, start, &s->all));
+  PetscCall(LayoutCreatePart(s->all, 0, n, &s->layout));
+  PetscCall(PetscFree(start));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Build(MPI_Comm comm, PetvesFlow flow, void *ctx, Simulation s) {
+  Scene scene;
+  PetscFunctionBeginUser;
+  PetscCall(PetvesWarmUpBlas(comm));
+  PetscCall(SceneCreate(comm, flow, ctx, &s->scene));
+  scene = s->scene;
+  PetscCall(SceneCheckUsed(scene));
+  PetscCall(SceneReport(scene));
+  PetscCall(FluidCreate(&scene->fluid, &s->fluid));
+  PetscCall(CreateLayouts(comm, scene, s));
+  PetscCall(ObstaclesCreate(scene, s->all, &s->obstacles));
+  PetscCall(MembraneCreate(s->layout, scene->shape.X, scene->membrane.each, (DerivativeType)scene->membrane.derivative,
+                           &s->membrane));
+  PetscCall(SetWeights(scene, s->membrane));
+  PetscCall(CreateCoupling(scene, s));
+  PetscCall(BaselinesRegister());
+  PetscCall(SchemeCreate(scene, s->coupling, scene->shape.X, &s->scheme));
+  PetscCall(SceneCheckUnused(scene));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SimulationCreate(MPI_Comm comm, Simulation *out) {
+  PetscFunctionBeginUser;
+  PetscCall(SimulationCreateWithFlow(comm, NULL, NULL, out));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SimulationCreateWithFlow(MPI_Comm comm, PetvesFlow flow, void *ctx, Simulation *out) {
+  Simulation s;
+  PetscBool only_help;
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&s));
+  *out = s;
+  StopClock(); /* where others have started PETSc: Python */
+  PetscCall(PhaseBegin(PHASE_SETUP));
+  PetscCall(PetvesSetupErrors(PETSC_TRUE));
+  PetscCall(Build(comm, flow, ctx, s));
+  if (s->scene->view) PetscCall(SimulationView(s, PETSC_VIEWER_STDOUT_(comm)));
+  PetscCall(PetscOptionsHasHelp(NULL, &only_help));
+  if (!only_help) PetscCall(OutputCreate(s->scene, s->scheme, &s->output)); /* -help leaves no files */
+  PetscCall(PetvesSetupErrors(PETSC_FALSE));
+  PetscCall(PhaseEnd());
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SimulationDestroy(Simulation *simulation) {
+  Simulation s = *simulation;
+  PetscErrorCode error;
+  PetscFunctionBeginUser;
+  if (!s) PetscFunctionReturn(PETSC_SUCCESS);
+  *simulation = NULL;                /* it is gone also when a file cannot be closed, */
+  error = OutputDestroy(&s->output); /* which is reported last */
+  PetscCall(SchemeDestroy(&s->scheme));
+  PetscCall(CouplingDestroy(&s->coupling));
+  PetscCall(MembraneDestroy(&s->membrane));
+  PetscCall(ObstaclesDestroy(&s->obstacles));
+  PetscCall(LayoutDestroy(&s->layout));
+  PetscCall(LayoutDestroy(&s->all));
+  PetscCall(FluidDestroy(&s->fluid));
+  PetscCall(SceneDestroy(&s->scene));
+  PetscCall(PetscFree(s));
+  PetscCall(error);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SimulationView(Simulation s, PetscViewer viewer) {
+  PetscFunctionBeginUser;
+  PetscCall(SceneView(s->scene, viewer));
+  PetscCall(SchemeView(s->scheme, viewer));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode IsSteady(Simulation s, PetscBool *steady) {
+  const State *q = &s->scheme->state;
+  const Layout l = s->layout;
+  const PetscReal tolerance = s->scene->time.steady_tol;
+  const PetscScalar *X, *U;
+  PetscBool moves = PETSC_FALSE;
+  PetscFunctionBeginUser;
+  *steady = PETSC_FALSE;
+  if (tolerance <= 0 || !l->bodies) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecGetArrayRead(q->X, &X));
+  PetscCall(VecGetArrayRead(q->U, &U));
+  for (PetscInt v = l->own; v < l->end; v++) {
+    const PetscInt at = 2 * LayoutOffset(l, v);
+    if (!(MembraneNormalSpeed(s->membrane, v, X + at, U + at) < tolerance)) moves = PETSC_TRUE;
+  }
+  PetscCall(VecRestoreArrayRead(q->U, &U));
+  PetscCall(VecRestoreArrayRead(q->X, &X));
+  PetscCall(AgreeFlag(l->comm, moves, &moves));
+  *steady = moves ? PETSC_FALSE : PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* One step, of at most `most`, its row of series.csv and the files that are due. */
+static PetscErrorCode TakeStep(Simulation s, PetscReal most, const char **failure) {
+  const StepReport *report = &s->scheme->report;
+  PetscLogDouble start, end;
+  PetscFunctionBeginUser;
+  PetscCall(SimulationBegin(s));
+  PetscCall(PetscTime(&start));
+  PetscCall(SchemeStep(s->scheme, most));
+  *failure = *report->failure ? report->failure : NULL;
+  if (*failure) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(OutputStep(s->output));
+  PetscCall(IsSteady(s, &s->steady));
+  PetscCall(PetscTime(&end));
+  s->longest_step = PetscMax(s->longest_step, end - start);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SimulationBegin(Simulation s) {
+  PetscFunctionBeginUser;
+  if (s->begun) PetscFunctionReturn(PETSC_SUCCESS);
+  s->begun = PETSC_TRUE;
+  s->reason = "finished";
+  PetscCall(OutputBegin(s->output));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SimulationStep(Simulation s, const char **failure) {
+  const PetscReal t = s->scheme->state.t, end = s->scene->time.end;
+  PetscFunctionBeginUser;
+  PetscCall(TakeStep(s, StepFinished(&s->scheme->policy, t, end) ? PETSC_MAX_REAL : end - t, failure));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Stop(Simulation s, const char why[]) {
+  PetscFunctionBeginUser;
+  s->reason = "stopped";
+  PetscCall(
+      PetvesSay(s->scene->comm, "petves: stopping after step %" PetscInt_FMT ": %s\n", s->scheme->state.step, why));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SimulationAdvance(Simulation s, PetscReal until, PetscBool *stepped, const char **failure) {
+  const PetscReal t = s->scheme->state.t;
+  const char *why = NULL;
+  PetscFunctionBeginUser;
+  *failure = NULL;
+  *stepped = PETSC_FALSE;
+  PetscCall(SimulationBegin(s));
+  const PetscReal reserve = 1 + 1.5 * s->output->checkpoint_seconds;
+  s->reason = s->steady ? "steady" : "finished";
+  if (s->steady || StepFinished(&s->scheme->policy, t, until)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(StopRequested(s->scene->comm, s->scene->time.wall_limit, reserve + 1.5 * s->longest_step, &why));
+  if (!why) {
+    PetscCall(TakeStep(s, until - t, failure));
+    *stepped = PETSC_TRUE;
+  } else
+    PetscCall(Stop(s, why));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SimulationEnd(Simulation s, const char *failure) {
+  PetscFunctionBeginUser;
+  PetscCall(SimulationBegin(s));
+  PetscCall(OutputEnd(s->output, s->reason, failure));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SimulationRun(Simulation s, PetscBool *good) {
+  const char *failure = NULL;
+  PetscBool stepped = PETSC_TRUE;
+  PetscFunctionBeginUser;
+  PetscCall(SimulationBegin(s));
+  while (stepped && !failure) PetscCall(SimulationAdvance(s, s->scene->time.end, &stepped, &failure));
+  PetscCall(SimulationEnd(s, failure));
+  *good = failure ? PETSC_FALSE : PETSC_TRUE;
+  if (failure && !s->fluid->grid->rank)
+    fprintf(stderr, "petves: error: %s; the last good state is in %s/checkpoint.h5\n", failure, s->output->folder.path);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,122 @@
+#include "bodies/membrane.h"
+
+void MembraneEdges(Membrane m, PetscInt v, const PetscScalar X[], PetscScalar e[]) {
+  const PetscInt n = LayoutCount(m->layout, v);
+  if (m->derivative == DERIVATIVE_SPECTRAL) {
+    (void)PetscArrayzero(e, 2 * n);
+    SpectralDerivative(m->spectral[v], 1, 1, X, e);
+    return;
+  }
+  for (PetscInt k = 0; k < n; k++)
+    for (int c = 0; c < 2; c++) e[2 * k + c] = X[2 * k + c] - X[2 * (k ? k - 1 : n - 1) + c];
+}
+
+void MembraneEdgesTranspose(Membrane m, PetscInt v, PetscReal alpha, const PetscScalar F[], PetscScalar Y[]) {
+  const PetscInt n = LayoutCount(m->layout, v);
+  if (m->derivative == DERIVATIVE_SPECTRAL) { /* D is antisymmetric */
+    SpectralDerivative(m->spectral[v], 1, -alpha, F, Y);
+    return;
+  }
+  for (PetscInt k = 0; k < n; k++)
+    for (int c = 0; c < 2; c++) Y[2 * k + c] += alpha * (F[2 * k + c] - F[2 * (k < n - 1 ? k + 1 : 0) + c]);
+}
+
+void MembraneVesicleTangents(Membrane m, PetscInt v, const PetscScalar X[], PetscReal tau[]) {
+  MembraneEdges(m, v, X, tau);
+  for (PetscInt k = 0; k < 2 * LayoutCount(m->layout, v); k++) tau[k] /= m->ds[v];
+}
+
+void MembraneTangents(Membrane m, const PetscScalar X[], PetscReal tau[]) {
+  for (PetscInt v = m->layout->own; v < m->layout->end; v++) {
+    const PetscInt at = 2 * LayoutOffset(m->layout, v);
+    MembraneVesicleTangents(m, v, X + at, tau + at);
+  }
+}
+
+void MembraneVesicleStretching(Membrane m, PetscInt v, const PetscReal tau[], const PetscScalar U[], PetscScalar d[]) {
+  PetscScalar *e = m->work.stretching;
+  MembraneEdges(m, v, U, e);
+  for (PetscInt k = 0; k < LayoutCount(m->layout, v); k++) d[k] = tau[2 * k] * e[2 * k] + tau[2 * k + 1] * e[2 * k + 1];
+}
+
+void MembraneStretching(Membrane m, const PetscReal tau[], const PetscScalar U[], PetscScalar d[]) {
+  for (PetscInt v = m->layout->own; v < m->layout->end; v++) {
+    const PetscInt at = LayoutOffset(m->layout, v);
+    MembraneVesicleStretching(m, v, tau + 2 * at, U + 2 * at, d + at);
+  }
+}
+
+/* Whether all n numbers are zero, as the tension that turns with the edges is on most vesicles. */
+static PetscBool TensionIsZero(PetscInt n, const PetscReal x[]) {
+  for (PetscInt k = 0; k < n; k++)
+    if (x[k] != 0) return PETSC_FALSE;
+  return PETSC_TRUE;
+}
+
+void MembraneStretchingTranspose(Membrane m, const PetscReal tau[], PetscReal alpha, const PetscScalar sigma[],
+                                 PetscScalar F[]) {
+  PetscScalar *pull = m->work.stretching;
+  for (PetscInt v = m->layout->own; v < m->layout->end; v++) {
+    const PetscInt at = LayoutOffset(m->layout, v);
+    if (TensionIsZero(LayoutCount(m->layout, v), sigma + at)) continue;
+    for (PetscInt k = 0; k < 2 * LayoutCount(m->layout, v); k++) pull[k] = tau[2 * at + k] * sigma[at + k / 2];
+    MembraneEdgesTranspose(m, v, alpha, pull, F + 2 * at);
+  }
+}
+
+void MembraneVesiclePull(Membrane m, PetscInt v, PetscReal alpha, const PetscReal tension[], const PetscScalar X[],
+                         PetscScalar F[]) {
+  PetscScalar *e = m->work.stretching;
+  MembraneEdges(m, v, X, e);
+  for (PetscInt k = 0; k < 2 * LayoutCount(m->layout, v); k++) e[k] *= tension[k / 2] / m->ds[v];
+  MembraneEdgesTranspose(m, v, alpha, e, F);
+}
+
+void MembranePull(Membrane m, PetscReal alpha, const PetscReal tension[], const PetscScalar X[], PetscScalar F[]) {
+  for (PetscInt v = m->layout->own; v < m->layout->end; v++) {
+    const PetscInt at = LayoutOffset(m->layout, v);
+    if (TensionIsZero(LayoutCount(m->layout, v), tension + at)) continue;
+    MembraneVesiclePull(m, v, alpha, tension + at, X + 2 * at, F + 2 * at);
+  }
+}
+
+/* Y += w (second difference of X) around a closed curve of n points. */
+static void CurveAddSecondDifference(PetscInt n, PetscReal w, const PetscScalar X[], PetscScalar Y[]) {
+  for (PetscInt k = 0; k < n; k++) {
+    const PetscInt p = k ? k - 1 : n - 1, q = k < n - 1 ? k + 1 : 0;
+    for (int c = 0; c < 2; c++) Y[2 * k + c] += w * (X[2 * p + c] - 2 * X[2 * k + c] + X[2 * q + c]);
+  }
+}
+
+void MembraneVesicleBending(Membrane m, PetscInt v, PetscReal alpha, const PetscScalar X[], PetscScalar F[]) {
+  const PetscInt n = LayoutCount(m->layout, v);
+  PetscScalar *curvature = m->work.bending;
+  alpha *= m->part[v];
+  if (m->derivative != DERIVATIVE_FD) {
+    SpectralDerivative(m->spectral[v], 4, alpha * m->ds[v] * PetscPowRealInt(n / m->arc[v], 4), X, F);
+    return;
+  }
+  (void)PetscArrayzero(curvature, 2 * n);
+  CurveAddSecondDifference(n, 1 / PetscSqr(m->ds[v]), X, curvature);
+  CurveAddSecondDifference(n, alpha / m->ds[v], curvature, F); /* ds D+D-/ds^2 */
+}
+
+void MembraneBending(Membrane m, PetscReal alpha, const PetscScalar X[], PetscScalar F[]) {
+  for (PetscInt v = m->layout->own; v < m->layout->end; v++) {
+    const PetscInt at = 2 * LayoutOffset(m->layout, v);
+    MembraneVesicleBending(m, v, alpha, X + at, F + at);
+  }
+}
+
+PetscReal MembraneBendingEnergy(Membrane m, PetscInt v, const PetscScalar X[]) {
+  const PetscInt n = LayoutCount(m->layout, v);
+  PetscScalar *curvature = m->work.bending;
+  PetscReal sum = 0;
+  (void)PetscArrayzero(curvature, 2 * n);
+  if (m->derivative == DERIVATIVE_FD)
+    CurveAddSecondDifference(n, 1 / PetscSqr(m->ds[v]), X, curvature);
+  else
+    SpectralDerivative(m->spectral[v], 2, PetscSqr(n / m->arc[v]), X, curvature);
+  for (PetscInt k = 0; k < 2 * n; k++) sum += PetscSqr(curvature[k]);
+  return 0.5 * m->bending * m->part[v] * sum * m->ds[v];
+}

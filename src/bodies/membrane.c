@@ -1,0 +1,55 @@
+#include "bodies/membrane.h"
+
+/* Arc length of one vesicle's curve by spectral derivatives. */
+static PetscReal ArcLength(Membrane m, PetscInt v, const PetscScalar X[]) {
+  const PetscInt n = LayoutCount(m->layout, v);
+  PetscScalar *e = m->work.measures;
+  PetscReal length = 0;
+  (void)PetscArrayzero(e, 2 * n);
+  SpectralDerivative(m->spectral[v], 1, 1, X, e);
+  for (PetscInt k = 0; k < n; k++) length += PetscSqrtReal(PetscSqr(e[2 * k]) + PetscSqr(e[2 * k + 1]));
+  return length;
+}
+
+PetscErrorCode MembraneCreate(Layout layout, const PetscReal X[], const PetscReal bending[], DerivativeType derivative,
+                              Membrane *out) {
+  const PetscInt vesicles = layout->bodies;
+  MembraneWork *w;
+  Membrane m;
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&m));
+  *out = m;
+  w = &m->work;
+  m->layout = layout;
+  m->bending = 0;
+  for (PetscInt v = 0; v < vesicles; v++) m->bending = PetscMax(m->bending, bending[v]);
+  m->derivative = derivative;
+  PetscCall(PetscMalloc6(vesicles, &m->ds, vesicles, &m->A0, vesicles, &m->L0, vesicles, &m->spectral, vesicles,
+                         &m->arc, vesicles, &m->part));
+  PetscCall(PetscMalloc5(2 * layout->M, &w->stretching, 2 * layout->M, &w->bending, 2 * layout->M, &w->measures,
+                         2 * layout->M, &w->restore, 2 * layout->M, &w->treading));
+  for (PetscInt v = 0; v < vesicles; v++) {
+    const PetscInt n = LayoutCount(layout, v);
+    Measures measures;
+    PetscCall(SpectralCreate(n, &m->spectral[v]));
+    m->arc[v] = ArcLength(m, v, X + 2 * layout->start[v]);
+    MembraneMeasure(m, v, X + 2 * layout->start[v], &measures);
+    m->A0[v] = measures.area;
+    m->L0[v] = measures.length;
+    m->ds[v] = measures.length / n;
+    m->part[v] = m->bending > 0 ? bending[v] / m->bending : 1;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode MembraneDestroy(Membrane *membrane) {
+  Membrane m = *membrane;
+  PetscFunctionBeginUser;
+  if (!m) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt v = 0; v < m->layout->bodies; v++) PetscCall(SpectralDestroy(&m->spectral[v]));
+  PetscCall(PetscFree6(m->ds, m->A0, m->L0, m->spectral, m->arc, m->part));
+  PetscCall(PetscFree(m->weight));
+  PetscCall(PetscFree5(m->work.stretching, m->work.bending, m->work.measures, m->work.restore, m->work.treading));
+  PetscCall(PetscFree(*membrane));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

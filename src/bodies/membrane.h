@@ -1,0 +1,173 @@
+/* Membranes of vesicles: edges, forces of tension, bending and gravity, energies, measures, and corrections after a
+   step.
+
+   The markers X_k of a vesicle have edges e = D X, unit tangents tau = e/ds and the stretching rate Dm U = tau . D U.
+   Forces on markers are transposes of derivatives: Dm^T sigma of a tension, ds D4 X of bending. D is the difference of
+   neighbours (edge k runs from marker k-1 to marker k) or the spectral derivative by the marker index.
+
+   Marker vectors and edge vectors (a tension) are distributed as markers/layout.h says. Functions of "all own vesicles"
+   take this rank's part of them. Functions of one vesicle take its own arrays, [2n] or [n] for its n markers, and work
+   for any vesicle on any rank. Nothing crosses ranks. */
+#pragma once
+#include "markers/markers.h"
+#include "numerics/spectral.h"
+#include "scene/scene.h"
+
+/* Work arrays [2 M]. Each belongs to one group of functions, so that functions that call one another share none. */
+typedef struct {
+  PetscScalar *stretching, *bending, *measures, *restore, *treading;
+} MembraneWork;
+
+typedef struct _p_Membrane *Membrane;
+struct _p_Membrane {
+  Layout layout;      /* borrowed; a body is a vesicle */
+  PetscReal *ds;      /* [vesicles] fixed material spacing: mean initial edge (length) */
+  PetscReal *A0, *L0; /* [vesicles] initial area and length */
+  PetscReal bending;  /* the largest c_b */
+  PetscReal *part;    /* [vesicles] c_b of each over the largest c_b; 1 where the largest is 0 */
+  DerivativeType derivative;
+  Spectral *spectral; /* [vesicles] */
+  PetscReal *arc;     /* [vesicles] initial arc length, spectrally accurate */
+  PetscReal *weight;  /* [2 vesicles] density difference times gravity (length/time^2); NULL without gravity */
+  MembraneWork work;
+};
+
+/* MembraneCreate - membranes at rest with the markers X[2M] of all vesicles, and c_b of each, bending[vesicles]. Not
+   collective. */
+PETSC_EXTERN PetscErrorCode MembraneCreate(Layout layout, const PetscReal X[], const PetscReal bending[],
+                                           DerivativeType derivative, Membrane *membrane);
+PETSC_EXTERN PetscErrorCode MembraneDestroy(Membrane *membrane);
+
+/* MembraneEdges - edges e = D X of one vesicle: chords e_k = X_k - X_{k-1}, or spectral derivatives dX/dk.
+   MembraneEdgesTranspose - Y += alpha D^T F. */
+PETSC_EXTERN void MembraneEdges(Membrane membrane, PetscInt vesicle, const PetscScalar X[], PetscScalar e[]);
+PETSC_EXTERN void MembraneEdgesTranspose(Membrane membrane, PetscInt vesicle, PetscReal alpha, const PetscScalar F[],
+                                         PetscScalar Y[]);
+
+/* MembraneVesicleTangents - tau = e/ds of one vesicle. MembraneTangents - tau of all own vesicles. */
+PETSC_EXTERN void MembraneVesicleTangents(Membrane membrane, PetscInt vesicle, const PetscScalar X[], PetscReal tau[]);
+PETSC_EXTERN void MembraneTangents(Membrane membrane, const PetscScalar X[], PetscReal tau[]);
+
+/* MembraneVesicleStretching - the stretching rate of the edges times ds of one vesicle, d = Dm U:
+
+     d_k = tau_k . (D U)_k.
+
+   MembraneStretching - d of all own vesicles. MembraneStretchingTranspose - F += alpha Dm^T sigma of all own vesicles.
+ */
+PETSC_EXTERN void MembraneVesicleStretching(Membrane membrane, PetscInt vesicle, const PetscReal tau[],
+                                            const PetscScalar U[], PetscScalar d[]);
+PETSC_EXTERN void MembraneStretching(Membrane membrane, const PetscReal tau[], const PetscScalar U[], PetscScalar d[]);
+PETSC_EXTERN void MembraneStretchingTranspose(Membrane membrane, const PetscReal tau[], PetscReal alpha,
+                                              const PetscScalar sigma[], PetscScalar F[]);
+
+/* MembraneVesiclePull - minus the force of a given tension[n] (length^3/time^2) of one vesicle, linear in the markers
+   X:
+
+     F += alpha D^T (tension D X)/ds.
+
+   The matrix is symmetric, and without negative eigenvalue where the tension is nowhere negative. MembranePull - F of
+   all own vesicles. */
+PETSC_EXTERN void MembraneVesiclePull(Membrane membrane, PetscInt vesicle, PetscReal alpha, const PetscReal tension[],
+                                      const PetscScalar X[], PetscScalar F[]);
+PETSC_EXTERN void MembranePull(Membrane membrane, PetscReal alpha, const PetscReal tension[], const PetscScalar X[],
+                               PetscScalar F[]);
+
+/* MembraneVesicleBending - minus the bending force of one vesicle, with D4 = (D+D-)(D+D-) of the fixed spacing ds:
+
+     F += alpha part ds D4 X.
+
+   alpha has the largest c_b as a factor. The matrix is symmetric. MembraneBending - F of all own vesicles. */
+PETSC_EXTERN void MembraneVesicleBending(Membrane membrane, PetscInt vesicle, PetscReal alpha, const PetscScalar X[],
+                                         PetscScalar F[]);
+PETSC_EXTERN void MembraneBending(Membrane membrane, PetscReal alpha, const PetscScalar X[], PetscScalar F[]);
+
+/* MembraneBendingEnergy - of one vesicle:
+
+     E_B = c_b/2 SUM |D+D- X|^2 ds      (37) */
+PETSC_EXTERN PetscReal MembraneBendingEnergy(Membrane membrane, PetscInt vesicle, const PetscScalar X[]);
+
+/* Measures of one vesicle. */
+typedef struct {
+  PetscReal area;        /* of the polygon or of the spectral curve; positive, as markers run counter-clockwise */
+  PetscReal length;      /* sum of edges */
+  PetscReal edge_ratio;  /* longest over shortest edge */
+  PetscReal center[2];   /* centroid of the enclosed area */
+  PetscReal inclination; /* of the long axis of the area's second moments, radians in (-pi/2, pi/2] */
+} Measures;
+PETSC_EXTERN void MembraneMeasure(Membrane membrane, PetscInt vesicle, const PetscScalar X[], Measures *measures);
+
+/* MembraneFrequency - tank-treading frequency of one vesicle (radians a time), with u relative to the mean velocity of
+   the markers and spectral derivatives of X:
+
+     2 pi/|INT dl/(u.tau)|   round the membrane.
+
+   NaN unless u.tau has the same sign all round and is larger than rounding. */
+PETSC_EXTERN PetscReal MembraneFrequency(Membrane membrane, PetscInt vesicle, const PetscScalar X[],
+                                         const PetscScalar U[]);
+
+/* MembraneNormalSpeed - max |u.n| of one vesicle, the speed of its outline (length/time). n is made of the spectral
+   derivative of X, so that markers that pass along a curve at rest do not count as motion. */
+PETSC_EXTERN PetscReal MembraneNormalSpeed(Membrane membrane, PetscInt vesicle, const PetscScalar X[],
+                                           const PetscScalar U[]);
+
+/* Gravity (docs/membrane.md, Gravity). With the hydrostatic pressure of each fluid taken off, the jump of these
+   pressures across the membrane is a normal force whose sum over the markers is weight times the area, without torque.
+   MembraneSetWeight - density difference over the outer density times gravity, weight[2 vesicles] (length/time^2).
+   MembraneVesicleGravity - the force of one vesicle, n outward:
+
+     F += alpha (weight.(X - centroid)) n ds.
+
+   MembraneGravity - F of all own vesicles; nothing without gravity. MembraneGravityEnergy - of one vesicle:
+
+     -weight . INT x dA. */
+PETSC_EXTERN PetscErrorCode MembraneSetWeight(Membrane membrane, const PetscReal weight[]);
+PETSC_EXTERN void MembraneVesicleGravity(Membrane membrane, PetscInt vesicle, PetscReal alpha, const PetscScalar X[],
+                                         PetscScalar F[]);
+PETSC_EXTERN void MembraneGravity(Membrane membrane, PetscReal alpha, const PetscScalar X[], PetscScalar F[]);
+PETSC_EXTERN PetscReal MembraneGravityEnergy(Membrane membrane, PetscInt vesicle, const PetscScalar X[]);
+
+/* MembraneCentroidVelocity - velocity of the centroid of one vesicle's area (length/time) when its markers move with U:
+
+     (1/area) INT (x - centroid) (u.n) ds. */
+PETSC_EXTERN void MembraneCentroidVelocity(Membrane membrane, PetscInt vesicle, const PetscScalar X[],
+                                           const PetscScalar U[], PetscReal velocity[2]);
+
+/* MembraneRestoreEdges - if an edge of one vesicle is off by more than tolerance (relative), move its markers as little
+   as possible until all edges have the length ds and the area is as before (CurveFit). Nothing moves where Newton's
+   method does not converge, as on a circle, which has no freedom. error: the largest error of an edge that was
+   corrected; 0 when nothing has moved. */
+PETSC_EXTERN PetscErrorCode MembraneRestoreEdges(Membrane membrane, PetscInt vesicle, PetscReal tolerance,
+                                                 PetscScalar X[], PetscReal *error);
+
+/* MembraneRestoreLength - move one vesicle's markers as little as possible until the sum of its edges is L0 and the
+   area is as before, by Newton's method. Nothing moves where the length is off by more than tolerance (relative), or
+   where the gradients of length and area are nearly parallel, as on a circle. */
+PETSC_EXTERN PetscErrorCode MembraneRestoreLength(Membrane membrane, PetscInt vesicle, PetscReal tolerance,
+                                                  PetscScalar X[]);
+
+/* MembraneRestoreArea - shift one vesicle's markers by the same distance along the vertex normals until its area is A0,
+   by Newton's method. A vertex normal is that of the chord from X_{k-1} to X_{k+1}, or of the spectral edge. Returns
+   the shift (length). */
+PETSC_EXTERN PetscReal MembraneRestoreArea(Membrane membrane, PetscInt vesicle, PetscScalar X[]);
+
+/* MembraneAreaGradient - gradient z[2n] of one vesicle's area by its markers X[2n]: outward vertex normals (length). */
+PETSC_EXTERN void MembraneAreaGradient(Membrane membrane, PetscInt vesicle, const PetscScalar X[], PetscReal z[]);
+
+/* MembraneTreading - speed V (1/time) at which the markers of one vesicle pass along its shape, in labels t = 0 .. 2
+   pi: the least-squares fit
+
+     U ~ c + omega J (X - mean) + V dX/dt,   J a quarter turn.
+
+   Where a turn and a shift of labels are the same to 5 %, as on a circle, omega is left out. */
+PETSC_EXTERN PetscReal MembraneTreading(Membrane membrane, PetscInt vesicle, const PetscScalar X[],
+                                        const PetscScalar U[]);
+
+/* MembraneLabelDerivative - Y += alpha dX/dt of one vesicle, spectral. MembraneTread - U += alpha V dX/dt of all own
+   vesicles, V[vesicles]. MembraneShiftLabels - y(t) = x(t + V time) of all own vesicles, V[vesicles], with `each` (1 or
+   2) numbers a marker. */
+PETSC_EXTERN void MembraneLabelDerivative(Membrane membrane, PetscInt vesicle, PetscReal alpha, const PetscScalar X[],
+                                          PetscScalar Y[]);
+PETSC_EXTERN void MembraneTread(Membrane membrane, const PetscReal V[], PetscReal alpha, const PetscScalar X[],
+                                PetscScalar U[]);
+PETSC_EXTERN void MembraneShiftLabels(Membrane membrane, const PetscReal V[], PetscReal time, int each,
+                                      const PetscScalar x[], PetscScalar y[]);

@@ -1,0 +1,256 @@
+#include "bodies/obstacles.h"
+#include "curve/contacts.h"
+#include "kernel/kernel.h"
+
+/* N of one curve where it has been placed, and its length. */
+static PetscErrorCode Normals(Obstacles o, PetscInt b, PetscReal *length) {
+  const PetscInt first = 2 * o->layout->start[b], n = LayoutCount(o->layout, b);
+  PetscReal *T, *N = o->N + first, sum = 0;
+  PetscFunctionBeginUser;
+  *length = 0;
+  PetscCall(PetscMalloc1(2 * n, &T));
+  PetscCall(CurveTangents(&o->kind[b], o->spectral[b], n, o->X + first, T));
+  for (PetscInt k = 0; k < n; k++) {
+    N[2 * k] = T[2 * k + 1];
+    N[2 * k + 1] = -T[2 * k];
+    for (int c = 0; c < 2; c++) sum += PetscSqr(T[2 * k + c]);
+    *length += PetscHypotReal(T[2 * k], T[2 * k + 1]);
+  }
+  for (PetscInt k = 0; k < 2 * n; k++) N[k] /= PetscSqrtReal(sum);
+  PetscCall(PetscFree(T));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* One curve's middle and mean edge, and its motion. */
+static PetscErrorCode Describe(Obstacles o, const SceneObstacles *own, PetscInt b) {
+  const PetscInt first = o->layout->start[b], n = LayoutCount(o->layout, b);
+  ObstacleMotion *m = &o->motion[b];
+  PetscReal length;
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < 2 * n; k++) o->center[2 * b + k % 2] += o->rest[2 * first + k] / n;
+  PetscCall(Normals(o, b, &length));
+  o->ds[b] = length / n;
+  for (int c = 0; c < 2; c++) m->velocity[c] = own->velocity[2 * b + c];
+  m->rotation = own->turn[b];
+  m->turned = own->moving && m->rotation != 0 && !own->circle[b] ? PETSC_TRUE : PETSC_FALSE;
+  m->carried = m->turned || (own->moving && (m->velocity[0] != 0 || m->velocity[1] != 0)) ? PETSC_TRUE : PETSC_FALSE;
+  if (m->carried) o->moving = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ObstaclesCreate(Scene scene, Layout all, Obstacles *out) {
+  const SceneObstacles *own = &scene->obstacles;
+  const PetscInt curves = own->outline.vesicles;
+  Obstacles o;
+  PetscFunctionBeginUser;
+  *out = NULL;
+  if (!curves) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscNew(&o));
+  *out = o;
+  o->all = all;
+  o->frequency = own->frequency;
+  o->modes = own->modes;
+  o->beta = 1 / (4 * scene->fluid.nu);
+  PetscCall(LayoutCreatePart(all, all->bodies - curves, all->bodies, &o->layout));
+  const PetscInt W = o->layout->M;
+  PetscCall(PetscCalloc7(2 * W, &o->rest, 2 * W, &o->X, 2 * W, &o->N, 2 * curves, &o->center, curves, &o->ds, curves,
+                         &o->spectral, curves, &o->container));
+  PetscCall(PetscMalloc4(curves, &o->kind, curves, &o->motion, curves, &o->vesicle, curves, &o->ratio));
+  PetscCall(PetscArraycpy(o->kind, own->outline.kind, curves));
+  PetscCall(PetscArraycpy(o->rest, own->outline.X, 2 * W));
+  PetscCall(PetscArraycpy(o->X, own->outline.X, 2 * W));
+  PetscCall(PetscArraycpy(o->container, own->container, curves));
+  for (PetscInt b = 0; b < curves; b++) {
+    PetscCall(SpectralCreate(LayoutCount(o->layout, b), &o->spectral[b]));
+    PetscCall(Describe(o, own, b));
+    o->vesicle[b] = own->vesicle[b];
+    o->ratio[b] = own->vesicle[b] < 0 ? 1 : SceneViscosityRatio(scene, own->vesicle[b]);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* How long a body would have moved with its velocity of time 0 to be where it is. */
+static PetscReal Travelled(Obstacles o, PetscReal t) {
+  return o->frequency > 0 ? PetscSinReal(o->frequency * t) / o->frequency : t;
+}
+
+ObstaclePose ObstaclesPose(Obstacles o, PetscInt b, PetscReal t) {
+  const ObstacleMotion *m = &o->motion[b];
+  const PetscReal *c = o->center + 2 * b, s = Travelled(o, t);
+  if (!m->carried) return (ObstaclePose){{c[0], c[1]}, 0};
+  return (ObstaclePose){{c[0] + m->velocity[0] * s, c[1] + m->velocity[1] * s}, m->rotation * s};
+}
+
+/* The markers of one curve at time t, X[2W]. */
+static void Carry(Obstacles o, PetscInt b, PetscReal t, PetscReal X[]) {
+  const ObstaclePose p = ObstaclesPose(o, b, t);
+  const ObstacleMotion *m = &o->motion[b];
+  const PetscReal turn[2] = {m->turned ? PetscCosReal(p.angle) : 1, m->turned ? PetscSinReal(p.angle) : 0};
+  for (PetscInt k = o->layout->start[b]; k < o->layout->start[b + 1]; k++) {
+    const PetscReal x = o->rest[2 * k] - o->center[2 * b], y = o->rest[2 * k + 1] - o->center[2 * b + 1];
+    X[2 * k] = m->carried ? p.center[0] + turn[0] * x - turn[1] * y : o->rest[2 * k];
+    X[2 * k + 1] = m->carried ? p.center[1] + turn[1] * x + turn[0] * y : o->rest[2 * k + 1];
+  }
+}
+
+PetscErrorCode ObstaclesPlace(Obstacles o, PetscReal t) {
+  PetscReal length;
+  PetscFunctionBeginUser;
+  o->t = t;
+  for (PetscInt b = 0; b < o->layout->bodies; b++) {
+    if (o->motion[b].carried) Carry(o, b, t, o->X);
+    if (o->motion[b].turned) PetscCall(Normals(o, b, &length));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ObstaclesDestroy(Obstacles *obstacles) {
+  Obstacles o = *obstacles;
+  PetscFunctionBeginUser;
+  if (!o) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt b = 0; b < o->layout->bodies; b++) PetscCall(SpectralDestroy(&o->spectral[b]));
+  PetscCall(PetscFree7(o->rest, o->X, o->N, o->center, o->ds, o->spectral, o->container));
+  PetscCall(PetscFree4(o->kind, o->motion, o->vesicle, o->ratio));
+  PetscCall(LayoutDestroy(&o->layout));
+  PetscCall(PetscFree(*obstacles));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+void ObstaclesOrder(Obstacles o, const PetscReal own[], PetscReal seen[]) {
+  for (PetscInt v = 0; v < o->layout->bodies; v++)
+    for (PetscInt first = o->layout->start[v], last = o->layout->start[v + 1] - 1, k = first, j = last; k <= j;
+         k++, j--)
+      for (int c = 0; c < 2; c++) {
+        const PetscReal low = own[2 * k + c], high = own[2 * j + c];
+        seen[2 * k + c] = o->container[v] ? high : low;
+        seen[2 * j + c] = o->container[v] ? low : high;
+      }
+}
+
+void ObstaclesCurves(Obstacles o, PetscReal t, PetscReal X[]) {
+  for (PetscInt b = 0; b < o->layout->bodies; b++) Carry(o, b, t, X);
+  ObstaclesOrder(o, X, X);
+}
+
+/* The first moving curve that is too near a wall. */
+static PetscErrorCode CheckWalls(Obstacles o, const CurveRoom *room, PetscReal h, const PetscReal X[], char message[]) {
+  static const char *const sides[] = {"x_min", "x_max", "y_min", "y_max"};
+  PetscInt side;
+  PetscFunctionBeginUser;
+  for (PetscInt b = 0; b < o->layout->bodies && !*message; b++) {
+    const PetscReal gap = CurveWallGap(LayoutCount(o->layout, b), X + 2 * o->layout->start[b], room, &side);
+    if (o->motion[b].carried && gap < KERNEL_FOLDED_CELLS * h)
+      PetscCall(PetscSNPrintf(message, PETVES_MAX_MESSAGE,
+                              "obstacle %" PetscInt_FMT " runs into the wall %s: it would come to %.3g cells of it",
+                              b + 1, sides[side], (double)(gap / h)));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CheckOthers(Obstacles o, const CurveRoom *room, const PetscReal X[], char message[]) {
+  const Layout l = o->layout;
+  const CurveSet set = {l->bodies, l->bodies, l->start, o->kind, X, room->period, PETSC_TRUE, NULL};
+  PetscReal edge = 0;
+  CurveGap *gap;
+  PetscInt n;
+  PetscFunctionBeginUser;
+  for (PetscInt b = 0; b < l->bodies; b++) edge = PetscMax(edge, o->ds[b]);
+  PetscCall(CurveGaps(&set, SCENE_LEAST_GAP * edge, &n, &gap));
+  for (PetscInt k = 0; k < n && !*message; k++) {
+    const PetscInt a = gap[k].curve[0], b = gap[k].curve[1];
+    const PetscReal least = SCENE_LEAST_GAP * PetscMax(o->ds[a], o->ds[b]);
+    if ((!o->motion[a].carried && !o->motion[b].carried) || gap[k].distance >= least) continue;
+    if (a == b)
+      PetscCall(PetscSNPrintf(message, PETVES_MAX_MESSAGE,
+                              "obstacle %" PetscInt_FMT " runs into its periodic image: the gap would be %.3g", a + 1,
+                              (double)gap[k].distance));
+    else
+      PetscCall(PetscSNPrintf(message, PETVES_MAX_MESSAGE,
+                              "obstacles %" PetscInt_FMT " and %" PetscInt_FMT
+                              " run into one another: the gap would be %.3g",
+                              a + 1, b + 1, (double)gap[k].distance));
+  }
+  PetscCall(PetscFree(gap));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ObstaclesCheck(Obstacles o, Grid g, PetscReal t, char message[PETVES_MAX_MESSAGE]) {
+  CurveRoom room;
+  PetscReal *X;
+  PetscFunctionBeginUser;
+  message[0] = 0;
+  if (!o->moving) PetscFunctionReturn(PETSC_SUCCESS);
+  for (int d = 0; d < 2; d++) {
+    room.box[2 * d] = g->lo[d];
+    room.box[2 * d + 1] = g->hi[d];
+    room.wall[d] = g->wall[d];
+    room.period[d] = g->wall[d] ? 0 : g->hi[d] - g->lo[d];
+  }
+  PetscCall(PetscMalloc1(2 * o->layout->M, &X));
+  ObstaclesCurves(o, t, X);
+  PetscCall(CheckWalls(o, &room, g->h, X, message));
+  if (!*message) PetscCall(CheckOthers(o, &room, X, message));
+  PetscCall(PetscFree(X));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+void ObstaclesPressure(Obstacles o, const PetscScalar F[], PetscScalar y[]) {
+  const Layout l = o->layout;
+  for (PetscInt b = l->own; b < l->end; b++) {
+    const PetscInt at = 2 * LayoutOffset(l, b), n = 2 * LayoutCount(l, b);
+    const PetscReal *N = o->N + 2 * l->start[b];
+    PetscReal sum = 0;
+    for (PetscInt k = 0; k < n; k++) sum += N[k] * F[at + k];
+    for (PetscInt k = 0; k < n; k++) y[at + k] += o->beta * sum * N[k];
+  }
+}
+
+void ObstaclesScale(Obstacles o, PetscReal weight, PetscBool inverse, PetscScalar y[]) {
+  const Layout l = o->layout;
+  for (PetscInt b = l->own; b < l->end; b++) {
+    const PetscInt at = 2 * LayoutOffset(l, b);
+    const PetscReal factor = inverse ? o->ds[b] / weight : weight / o->ds[b];
+    for (PetscInt k = at; k < at + 2 * LayoutCount(l, b); k++) y[k] *= factor;
+  }
+}
+
+PetscErrorCode ObstaclesData(Obstacles o, const Flow *flow, PetscScalar y[], char message[PETVES_MAX_MESSAGE]) {
+  const Layout l = o->layout;
+  PetscReal *u;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(2 * l->n, &u));
+  PetscCall(FlowVelocities(flow, o->t, l->n, o->X + 2 * l->first, u, message));
+  for (PetscInt b = l->own; b < l->end; b++) {
+    const ObstacleMotion *m = &o->motion[b];
+    const ObstaclePose p = ObstaclesPose(o, b, o->t);
+    const PetscReal swing = o->ratio[b] * PetscCosReal(o->frequency * o->t);
+    for (PetscInt k = l->start[b]; k < l->start[b + 1]; k++) {
+      const PetscReal x = o->X[2 * k] - p.center[0], *X = o->X + 2 * k;
+      const PetscReal U[2] = {m->velocity[0] - m->rotation * (X[1] - p.center[1]), m->velocity[1] + m->rotation * x};
+      for (int c = 0; c < 2; c++) y[2 * (k - l->first) + c] += u[2 * (k - l->first) + c] - swing * U[c];
+    }
+  }
+  PetscCall(PetscFree(u));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ObstaclesLoads(Obstacles o, PetscReal t, const PetscScalar F[], ObstacleLoad load[]) {
+  const Layout l = o->layout;
+  PetscReal *at;
+  PetscFunctionBeginUser;
+  PetscCall(PetscArrayzero(load, l->bodies));
+  PetscCall(PetscMalloc1(2 * l->M, &at));
+  for (PetscInt b = l->own; b < l->end; b++) {
+    const ObstaclePose p = ObstaclesPose(o, b, t);
+    Carry(o, b, t, at);
+    for (PetscInt k = l->start[b]; k < l->start[b + 1]; k++) {
+      const PetscReal *f = F + 2 * (k - l->first), *X = at + 2 * k;
+      load[b].force[0] += f[0];
+      load[b].force[1] += f[1];
+      load[b].torque += (X[0] - p.center[0]) * f[1] - (X[1] - p.center[1]) * f[0];
+    }
+  }
+  PetscCall(PetscFree(at));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, load, (PetscMPIInt)(3 * l->bodies), MPIU_REAL, MPI_SUM, l->comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

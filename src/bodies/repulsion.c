@@ -1,0 +1,176 @@
+#include "bodies/repulsion.h"
+
+#define EDGES 1.5 /* longest mean edges: the range where none is given */
+
+PetscErrorCode RepulsionCreate(Bodies bodies, Grid grid, const SceneRepulsion *law, Repulsion *out) {
+  Repulsion r;
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&r));
+  *out = r;
+  r->membrane = bodies->membrane;
+  r->bodies = bodies;
+  r->grid = grid;
+  r->law = *law;
+  for (PetscInt v = 0; v < bodies->layout->bodies && law->range <= 0; v++)
+    r->law.range = PetscMax(r->law.range, EDGES * bodies->ds[v]);
+  if (law->band <= 0) r->law.band = r->law.range;
+  PetscCall(PetscMalloc1(2 * bodies->layout->M, &r->all));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode RepulsionDestroy(Repulsion *repulsion) {
+  PetscFunctionBeginUser;
+  if (!*repulsion) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscFree((*repulsion)->spring));
+  PetscCall(PetscFree((*repulsion)->all));
+  PetscCall(PetscFree(*repulsion));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* How far the law reaches. */
+static PetscReal Reach(const SceneRepulsion *law) {
+  return law->range + (law->adhesion > 0 ? law->band : 0);
+}
+
+/* The law on a length `size` of membrane, into a spring whose geometry is known; X[2M]. With P = p size the force is
+   P + stiffness (distance - SUM weight normal.(x - X)) below D. */
+static void SetLaw(const SceneRepulsion *law, PetscReal size, const PetscReal X[], Spring *s) {
+  PetscReal along = 0;
+  const PetscReal x = (s->distance - law->range) / law->band;
+  const PetscReal well = law->adhesion * size; /* depth of it */
+  if (x < 0) {
+    for (PetscInt i = 0; i < s->n; i++)
+      for (int c = 0; c < 2; c++) along += s->weight[i] * s->normal[c] * X[2 * s->marker[i] + c];
+    s->stiffness = law->stress * size / law->range;
+    s->push = s->stiffness * (law->range - s->distance + along);
+    s->energy = 0.5 * s->stiffness * PetscSqr(law->range - s->distance) - well;
+  } else { /* INT of 30 y^2 (1 - y)^2 from x to 1 is 1 - 10 x^3 + 15 x^4 - 6 x^5 */
+    s->push = -30 * well / law->band * PetscSqr(x * (1 - x));
+    s->energy = -well * (1 - x * x * x * (10 - x * (15 - 6 * x)));
+  }
+}
+
+/* A marker and the edge nearest to it: half of what is between two membranes, as markers of both look for edges. What
+   is of an obstacle stays where it is. */
+static void SetEdge(Repulsion r, const PetscReal X[], const CurveContact *c, Spring *s) {
+  const PetscInt marker[3] = {c->point, c->edge[0], c->edge[1]};
+  const PetscReal weight[3] = {1, c->at - 1, -c->at};
+  *s = (Spring){.normal = {c->normal[0], c->normal[1]}, .distance = c->distance};
+  for (int k = 0; k < 3; k++) {
+    if (marker[k] >= r->membrane->layout->M) continue;
+    s->marker[s->n] = marker[k];
+    s->weight[s->n++] = weight[k];
+  }
+  SetLaw(&r->law, 0.5 * r->bodies->ds[c->curve[0]], X, s);
+}
+
+/* Markers near walls; room for 4 a marker. */
+static PetscInt FindWalls(Repulsion r, const PetscReal X[], Spring spring[]) {
+  const Grid g = r->grid;
+  const Layout l = r->membrane->layout;
+  PetscInt count = 0;
+  for (PetscInt v = 0; v < l->bodies; v++)
+    for (PetscInt k = l->start[v]; k < l->start[v + 1]; k++)
+      for (int side = 0; side < 4; side++) {
+        const int d = side / 2;
+        const PetscReal sign = side % 2 ? -1 : 1;
+        const PetscReal distance = sign * (X[2 * k + d] - (side % 2 ? g->hi[d] : g->lo[d]));
+        if (!g->wall[d] || g->free || distance >= Reach(&r->law)) continue;
+        spring[count] = (Spring){.n = 1, .marker = {k}, .weight = {1}, .distance = distance};
+        spring[count].normal[d] = sign;
+        SetLaw(&r->law, r->membrane->ds[v], X, &spring[count++]);
+      }
+  return count;
+}
+
+/* The springs at the curves X[2(M + W)]; to be freed. */
+static PetscErrorCode Find(Repulsion r, const PetscReal X[], PetscInt *count, Spring **springs) {
+  const Grid g = r->grid;
+  const Layout l = r->membrane->layout, all = r->bodies->layout;
+  PetscReal period[2];
+  CurveContact *contact;
+  PetscInt n;
+  PetscFunctionBeginUser;
+  for (int d = 0; d < 2; d++) period[d] = g->wall[d] || g->free ? 0 : g->hi[d] - g->lo[d];
+  const CurveSet set = {all->bodies, l->bodies, all->start, r->bodies->kind, X, period, PETSC_FALSE};
+  PetscCall(CurveContacts(&set, Reach(&r->law), &n, &contact));
+  PetscCall(PetscMalloc1(n + 4 * l->M, springs));
+  for (PetscInt k = 0; k < n; k++) SetEdge(r, X, &contact[k], &(*springs)[k]);
+  PetscCall(PetscFree(contact));
+  *count = n + FindWalls(r, X, *springs + n);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode RepulsionPlace(Repulsion r, PetscReal t, const PetscReal X[]) {
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(r->spring));
+  PetscCall(BodiesSee(r->bodies, t, X, r->all));
+  PetscCall(Find(r, r->all, &r->count, &r->spring));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* y += force weight normal of the own markers. */
+static void Pull(const Spring *s, Layout l, PetscReal force, PetscScalar y[]) {
+  for (PetscInt i = 0; i < s->n; i++) {
+    const PetscInt own = s->marker[i] - l->first;
+    if (own < 0 || own >= l->n) continue;
+    for (int c = 0; c < 2; c++) y[2 * own + c] += force * s->weight[i] * s->normal[c];
+  }
+}
+
+/* SUM weight normal.x, x[2M]. */
+static PetscReal Stretch(const Spring *s, const PetscScalar x[]) {
+  PetscReal along = 0;
+  for (PetscInt i = 0; i < s->n; i++)
+    for (int c = 0; c < 2; c++) along += s->weight[i] * s->normal[c] * x[2 * s->marker[i] + c];
+  return along;
+}
+
+PetscErrorCode RepulsionStiffness(Repulsion r, PetscReal alpha, const PetscScalar x[], PetscScalar y[]) {
+  const Layout l = r->membrane->layout;
+  PetscFunctionBeginUser;
+  PetscCall(LayoutGather(l, 2, x, r->all));
+  for (PetscInt k = 0; k < r->count; k++) {
+    const Spring *s = &r->spring[k];
+    if (s->stiffness > 0) Pull(s, l, alpha * s->stiffness * Stretch(s, r->all), y);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+void RepulsionPush(Repulsion r, PetscReal alpha, PetscScalar y[]) {
+  for (PetscInt k = 0; k < r->count; k++) Pull(&r->spring[k], r->membrane->layout, alpha * r->spring[k].push, y);
+}
+
+PetscErrorCode RepulsionSeams(Repulsion r, const PetscReal X[], const PetscScalar x[], PetscReal *sum) {
+  PetscFunctionBeginUser;
+  *sum = 0;
+  PetscCall(LayoutGather(r->membrane->layout, 2, x, r->all));
+  for (PetscInt k = 0; k < r->count; k++) {
+    const Spring *s = &r->spring[k];
+    PetscReal apart = -s->distance * s->normal[0];
+    if (s->n < 3) continue; /* of a wall or an obstacle */
+    for (PetscInt i = 0; i < s->n; i++) apart += s->weight[i] * X[2 * s->marker[i]];
+    *sum += (s->push - s->stiffness * Stretch(s, r->all)) * s->normal[0] * apart;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode RepulsionAt(Repulsion r, PetscReal t, PetscReal alpha, const PetscScalar x[], PetscScalar y[],
+                           PetscReal *energy) {
+  const Layout l = r->membrane->layout;
+  Spring *spring;
+  PetscInt count;
+  PetscFunctionBeginUser;
+  *energy = 0;
+  PetscCall(LayoutGather(l, 2, x, r->all));
+  PetscCall(BodiesSee(r->bodies, t, r->all, r->all));
+  PetscCall(Find(r, r->all, &count, &spring));
+  for (PetscInt k = 0; k < count; k++) {
+    const Spring *s = &spring[k];
+    *energy += s->energy;
+    if (y) Pull(s, l, alpha * (s->push - s->stiffness * Stretch(s, r->all)), y);
+  }
+  PetscCall(PetscFree(spring));
+  PetscCallMPI(MPI_Bcast(energy, 1, MPIU_REAL, 0, l->comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,277 @@
+/* The operators G, G^T and H on local arrays, row by row, and their MatShells. */
+#include "base/lanes.h"
+#include "fluid/grid/grid.h"
+
+PetscErrorCode GridGradientRows(Grid g, PetscReal alpha, Vec p, PetscBool add, const PetscInt window[2], Vec w) {
+  const PetscReal c = alpha / g->h;
+  const PetscInt n = g->columns[FIELD_P], nu = g->columns[FIELD_U];
+  const PetscScalar *pa;
+  PetscScalar *wa, *va;
+  Rows rows;
+  PetscFunctionBeginUser;
+  PetscCall(VecGetArrayRead(p, &pa));
+  PetscCall(VecGetArray(w, &wa));
+  va = wa + GridLocalU(g);
+  PetscCall(GridRows(g, FIELD_P, pa, &rows));
+  for (PetscInt j = window[0]; j < PetscMin(window[1], g->rows[FIELD_P]); j++) {
+    const PetscScalar *here = RowAt(&rows, j), *up = RowAt(&rows, j + 1);
+    PetscScalar *u = wa + j * nu, *v = va + j * n;
+    if (!add) {
+      PetscCall(PetscArrayzero(u, nu));
+      if (j < g->rows[FIELD_V]) PetscCall(PetscArrayzero(v, n));
+    }
+    for (PetscInt i = 0; i < n - 1; i++) u[i] += c * (here[i + 1] - here[i]);
+    if (nu == n) u[n - 1] += c * (here[0] - here[n - 1]);
+    if (j < g->rows[FIELD_V])
+      for (PetscInt i = 0; i < n; i++) v[i] += c * (up[i] - here[i]);
+  }
+  PetscCall(VecRestoreArray(w, &wa));
+  PetscCall(VecRestoreArrayRead(p, &pa));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode GridGradient(Grid g, PetscReal alpha, Vec p, PetscBool add, Vec w) {
+  const PetscInt all[2] = {0, g->rows[FIELD_P]};
+  PetscFunctionBeginUser;
+  PetscCall(GridGradientRows(g, alpha, p, add, all, w));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* out = c G^T w in row j of the cells. */
+static void DivergenceRow(Grid g, PetscReal c, const PetscScalar w[], const Rows *rows, PetscInt j, PetscScalar out[]) {
+  const PetscInt n = g->columns[FIELD_P], nu = g->columns[FIELD_U];
+  const PetscScalar *u = w + j * nu, *down = RowAt(rows, j - 1), *up = RowAt(rows, j);
+  const PetscScalar left = nu == n ? u[n - 1] : 0, right = nu == n ? u[n - 1] : 0;
+  out[0] = c * (left - u[0] + down[0] - up[0]);
+  for (PetscInt i = 1; i < n - 1; i++) out[i] = c * (u[i - 1] - u[i] + down[i] - up[i]);
+  out[n - 1] = c * (u[n - 2] - right + down[n - 1] - up[n - 1]);
+}
+
+PetscErrorCode GridGradientTransposeRows(Grid g, PetscReal alpha, Vec w, const PetscInt window[2], Vec q) {
+  const PetscScalar *wa;
+  PetscScalar *qa;
+  Rows rows;
+  PetscFunctionBeginUser;
+  PetscCall(VecGetArrayRead(w, &wa));
+  PetscCall(VecGetArray(q, &qa));
+  PetscCall(GridRows(g, FIELD_V, wa + GridLocalU(g), &rows));
+  for (PetscInt j = window[0]; j < PetscMin(window[1], g->rows[FIELD_P]); j++)
+    DivergenceRow(g, alpha / g->h, wa, &rows, j, qa + j * g->columns[FIELD_P]);
+  PetscCall(VecRestoreArray(q, &qa));
+  PetscCall(VecRestoreArrayRead(w, &wa));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode GridLargestDivergence(Grid g, Vec w, Vec bc2, PetscReal *largest) {
+  const PetscInt n = g->columns[FIELD_P];
+  const PetscScalar *wa, *b = NULL;
+  PetscScalar *row = g->row;
+  PetscReal most = 0;
+  PetscMPIInt bad = 0;
+  Rows rows;
+  PetscFunctionBeginUser;
+  PetscCall(VecGetArrayRead(w, &wa));
+  if (bc2) PetscCall(VecGetArrayRead(bc2, &b));
+  PetscCall(GridRows(g, FIELD_V, wa + GridLocalU(g), &rows));
+  for (PetscInt j = 0; j < g->rows[FIELD_P]; j++) {
+    Lanes four = {0}, sums = {0};
+    PetscReal sum = 0;
+    PetscInt i = 0;
+    DivergenceRow(g, 1 / g->h, wa, &rows, j, row);
+    for (PetscInt k = 0; k < n && b; k++) row[k] += b[j * n + k];
+    for (; i + LANES <= n; i += LANES) {
+      const Lanes d = LanesAt(row + i);
+      four = LanesMax(four, LanesMax(d, -d));
+      sums += d;
+    }
+    for (; i < n; i++) {
+      most = PetscMax(most, PetscAbsReal(row[i]));
+      sum += row[i];
+    }
+    for (int k = 0; k < LANES; k++) most = PetscMax(most, four[k]);
+    if (PetscIsInfOrNanReal(sum + LanesSum(sums))) bad = 1;
+  }
+  if (bc2) PetscCall(VecRestoreArrayRead(bc2, &b));
+  PetscCall(VecRestoreArrayRead(w, &wa));
+  if (bad) most = INFINITY; /* a NaN may get lost in MPI_MAX, on some ranks only */
+  PetscCallMPI(MPI_Allreduce(&most, largest, 1, MPIU_REAL, MPI_MAX, g->comm));
+  if (PetscIsInfOrNanReal(*largest)) *largest = NAN;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode GridGradientTranspose(Grid g, PetscReal alpha, Vec w, Vec q) {
+  const PetscInt all[2] = {0, g->rows[FIELD_P]};
+  PetscFunctionBeginUser;
+  PetscCall(GridGradientTransposeRows(g, alpha, w, all, q));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What of n rows or columns is in a window. */
+static inline PetscInt Clip(const PetscInt window[2], PetscInt n, PetscInt *first) {
+  const PetscInt end = PetscMin(window[1], n);
+  *first = PetscMin(window[0], end);
+  return end - *first;
+}
+
+PetscErrorCode GridClear(Grid g, const GridWindow *window, Vec w) {
+  const PetscInt start[3] = {0, GridLocalU(g), 0};
+  PetscScalar *a;
+  PetscInt size, row, column;
+  PetscFunctionBeginUser;
+  PetscCall(VecGetLocalSize(w, &size));
+  PetscCall(VecGetArray(w, &a));
+  const PetscBool pressure = size == g->columns[FIELD_P] * g->rows[FIELD_P] ? PETSC_TRUE : PETSC_FALSE;
+  for (int f = pressure ? FIELD_P : FIELD_U; f <= (pressure ? FIELD_P : FIELD_V); f++) {
+    const PetscInt rows = Clip(window->rows, g->rows[f], &row), n = Clip(window->columns, g->columns[f], &column);
+    for (PetscInt j = row; j < row + rows; j++) PetscCall(PetscArrayzero(a + start[f] + j * g->columns[f] + column, n));
+  }
+  PetscCall(VecRestoreArray(w, &a));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode GridAddSquares(Grid g, const GridWindow *window, Vec w, PetscReal *sum) {
+  const PetscScalar *a;
+  PetscInt row, column;
+  PetscFunctionBeginUser;
+  PetscCall(VecGetArrayRead(w, &a));
+  for (int f = FIELD_U; f <= FIELD_V; f++) {
+    const GridWindow all = {{0, g->rows[f]}, {0, g->columns[f]}}, *part = window ? window : &all;
+    const PetscInt rows = Clip(part->rows, g->rows[f], &row), n = Clip(part->columns, g->columns[f], &column);
+    for (PetscInt j = row; j < row + rows; j++) {
+      const PetscScalar *x = a + GridRowStart(g, (Field)f, j) + column;
+      *sum += LanesDot(n, x, x);
+    }
+  }
+  PetscCall(VecRestoreArrayRead(w, &a));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Row by row; a missing neighbour in x is `factor` times the entry itself, or the row's other end where x is periodic.
+ */
+PetscErrorCode GridHelmholtzField(Grid g, Field f, PetscReal a0, PetscReal nu, const PetscScalar w[], PetscScalar y[]) {
+  const PetscReal off = nu / PetscSqr(g->h), diagonal = a0 + 4 * off, factor = GridWallFactor(f, 0);
+  const PetscInt n = g->columns[f];
+  Rows rows;
+  PetscFunctionBeginUser;
+  PetscCall(GridRows(g, f, w, &rows));
+  for (PetscInt j = 0; j < g->rows[f]; j++) {
+    const PetscScalar *down = RowAt(&rows, j - 1), *here = RowAt(&rows, j), *up = RowAt(&rows, j + 1);
+    const PetscScalar left = g->wall[0] ? factor * here[0] : here[n - 1];
+    const PetscScalar right = g->wall[0] ? factor * here[n - 1] : here[0];
+    PetscScalar *out = y + j * n;
+    out[0] = diagonal * here[0] - off * (left + here[1] + down[0] + up[0]);
+    for (PetscInt i = 1; i < n - 1; i++)
+      out[i] = diagonal * here[i] - off * (here[i - 1] + here[i + 1] + down[i] + up[i]);
+    out[n - 1] = diagonal * here[n - 1] - off * (here[n - 2] + right + down[n - 1] + up[n - 1]);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode GridHelmholtz(Grid g, PetscReal a0, PetscReal nu, Vec w, Vec y) {
+  const PetscInt v = GridLocalU(g);
+  const PetscScalar *wa;
+  PetscScalar *ya;
+  PetscFunctionBeginUser;
+  PetscCall(VecGetArrayRead(w, &wa));
+  PetscCall(VecGetArray(y, &ya));
+  PetscCall(GridHelmholtzField(g, FIELD_U, a0, nu, wa, ya));
+  PetscCall(GridHelmholtzField(g, FIELD_V, a0, nu, wa + v, ya + v));
+  PetscCall(VecRestoreArray(y, &ya));
+  PetscCall(VecRestoreArrayRead(w, &wa));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode MultG(Mat A, Vec p, Vec w) {
+  Grid g;
+  PetscFunctionBeginUser;
+  PetscCall(MatShellGetContext(A, &g));
+  PetscCall(GridGradient(g, 1, p, PETSC_FALSE, w));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode MultTransposeG(Mat A, Vec w, Vec q) {
+  Grid g;
+  PetscFunctionBeginUser;
+  PetscCall(MatShellGetContext(A, &g));
+  PetscCall(GridGradientTranspose(g, 1, w, q));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode MultD(Mat A, Vec w, Vec q) {
+  Grid g;
+  PetscFunctionBeginUser;
+  PetscCall(MatShellGetContext(A, &g));
+  PetscCall(GridGradientTranspose(g, -1, w, q));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode MultTransposeD(Mat A, Vec p, Vec w) {
+  Grid g;
+  PetscFunctionBeginUser;
+  PetscCall(MatShellGetContext(A, &g));
+  PetscCall(GridGradient(g, -1, p, PETSC_FALSE, w));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode MultL(Mat A, Vec p, Vec q) {
+  Grid g;
+  Vec w;
+  PetscFunctionBeginUser;
+  PetscCall(MatShellGetContext(A, &g));
+  PetscCall(DMGetGlobalVector(g->velocity, &w));
+  PetscCall(GridGradient(g, 1, p, PETSC_FALSE, w));
+  PetscCall(GridGradientTranspose(g, -1, w, q));
+  PetscCall(DMRestoreGlobalVector(g->velocity, &w));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CreateShell(Grid g, PetscBool from_velocity, PetscBool to_velocity,
+                                  PetscErrorCode (*mult)(Mat, Vec, Vec), PetscErrorCode (*transpose)(Mat, Vec, Vec),
+                                  Mat *A) {
+  const PetscInt n_p = g->columns[FIELD_P] * g->rows[FIELD_P];
+  const PetscInt n_w = GridLocalU(g) + g->columns[FIELD_V] * g->rows[FIELD_V];
+  PetscFunctionBeginUser;
+  PetscCall(MatCreateShell(g->comm, to_velocity ? n_w : n_p, from_velocity ? n_w : n_p, PETSC_DETERMINE,
+                           PETSC_DETERMINE, g, A));
+  PetscCall(MatShellSetOperation(*A, MATOP_MULT, (void (*)(void))mult));
+  PetscCall(MatShellSetOperation(*A, MATOP_MULT_TRANSPOSE, (void (*)(void))transpose));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode GridCreateG(Grid g, Mat *G) {
+  return CreateShell(g, PETSC_FALSE, PETSC_TRUE, MultG, MultTransposeG, G);
+}
+PetscErrorCode GridCreateD(Grid g, Mat *D) {
+  return CreateShell(g, PETSC_TRUE, PETSC_FALSE, MultD, MultTransposeD, D);
+}
+PetscErrorCode GridCreateL(Grid g, Mat *L) {
+  return CreateShell(g, PETSC_FALSE, PETSC_FALSE, MultL, MultL, L);
+}
+
+PetscErrorCode GridAssemble(Grid g, Field f, PetscReal a0, PetscReal nu, Mat *A) {
+  const PetscInt n = g->columns[f], rows = g->rows[f], all = g->all_rows[f];
+  const PetscReal off = nu / PetscSqr(g->h);
+  PetscFunctionBeginUser;
+  PetscCall(MatCreateAIJ(g->comm, n * rows, n * rows, PETSC_DETERMINE, PETSC_DETERMINE, 5, NULL, 2, NULL, A));
+  for (PetscInt j = g->first; j < g->first + rows; j++)
+    for (PetscInt i = 0; i < n; i++) {
+      const PetscInt row = j * n + i, di[4] = {-1, 1, 0, 0}, dj[4] = {0, 0, -1, 1};
+      PetscReal diagonal = a0 + 4 * off;
+      for (int k = 0; k < 4; k++) {
+        const int dir = k / 2;
+        PetscInt c = i + di[k], r = j + dj[k];
+        const PetscBool outside = c < 0 || c >= n || r < 0 || r >= all ? PETSC_TRUE : PETSC_FALSE;
+        if (outside && g->wall[dir]) {
+          diagonal -= off * GridWallFactor(f, dir);
+          continue;
+        }
+        c = (c + n) % n;
+        r = (r + all) % all;
+        PetscCall(MatSetValue(*A, row, r * n + c, -off, ADD_VALUES));
+      }
+      PetscCall(MatSetValue(*A, row, row, diagonal, ADD_VALUES));
+    }
+  PetscCall(MatAssemblyBegin(*A, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(*A, MAT_FINAL_ASSEMBLY));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

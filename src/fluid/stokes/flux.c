@@ -1,0 +1,87 @@
+#include "fluid/stokes/flux.h"
+
+struct _p_ZeroFlux {
+  Fluid fluid;
+  PetscReal alpha;    /* coefficient that the profile is for; -1 none yet */
+  PetscReal *profile; /* [rows of all] b over its mean */
+  PetscReal *factor;  /* work of its solve */
+};
+
+PetscErrorCode ZeroFluxCreate(Fluid fluid, ZeroFlux *out) {
+  ZeroFlux z;
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&z));
+  *out = z;
+  z->fluid = fluid;
+  z->alpha = -1;
+  PetscCall(PetscMalloc2(fluid->grid->n[1], &z->profile, fluid->grid->n[1], &z->factor));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ZeroFluxDestroy(ZeroFlux *flux) {
+  PetscFunctionBeginUser;
+  if (!*flux) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscFree2((*flux)->profile, (*flux)->factor));
+  PetscCall(PetscFree(*flux));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* (alpha - nu d_yy) b = 1 with b reflected in the walls to minus itself, by elimination. */
+static void SetUp(ZeroFlux z) {
+  const Fluid f = z->fluid;
+  const PetscInt n = f->grid->n[1];
+  const PetscReal off = -f->nu / PetscSqr(f->grid->h);
+  PetscReal *b = z->profile, *c = z->factor, mean = 0;
+  if (z->alpha == f->alpha) return;
+  z->alpha = f->alpha;
+  for (PetscInt j = 0; j < n; j++) {
+    const PetscReal diagonal = f->alpha - off * (j == 0 || j == n - 1 ? 3 : 2);
+    const PetscReal pivot = diagonal - (j ? off * c[j - 1] : 0);
+    c[j] = off / pivot;
+    b[j] = (1 - (j ? off * b[j - 1] : 0)) / pivot;
+  }
+  for (PetscInt j = n - 2; j >= 0; j--) b[j] -= c[j] * b[j + 1];
+  for (PetscInt j = 0; j < n; j++) mean += b[j] / n;
+  for (PetscInt j = 0; j < n; j++) b[j] /= mean;
+}
+
+const PetscReal *ZeroFluxProfile(ZeroFlux z) {
+  SetUp(z);
+  return z->profile;
+}
+
+/* On every rank: what times the profile has a mean whose own part of the sum over rows is given, row means of u. */
+static PetscErrorCode Factor(ZeroFlux z, PetscReal sum, PetscReal *factor) {
+  const Grid g = z->fluid->grid;
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPIU_REAL, MPI_SUM, g->comm));
+  *factor = sum / g->n[1];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ZeroFluxCorrectMeans(ZeroFlux z, PetscReal means[]) {
+  const Grid g = z->fluid->grid;
+  PetscReal sum = 0, factor;
+  PetscFunctionBeginUser;
+  for (PetscInt j = 0; j < g->rows[FIELD_U]; j++) sum += means[j];
+  PetscCall(Factor(z, sum, &factor));
+  for (PetscInt j = 0; j < g->rows[FIELD_U]; j++) means[j] -= factor * ZeroFluxProfile(z)[g->first + j];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ZeroFluxCorrect(ZeroFlux z, Vec u) {
+  const Grid g = z->fluid->grid;
+  const PetscInt n = g->n[0], rows = g->rows[FIELD_U];
+  PetscReal sum = 0, factor;
+  PetscScalar *a;
+  PetscFunctionBeginUser;
+  PetscCall(VecGetArray(u, &a));
+  for (PetscInt k = 0; k < n * rows; k++) sum += a[k];
+  PetscCall(Factor(z, sum / n, &factor));
+  for (PetscInt j = 0; j < rows; j++) {
+    const PetscReal off = factor * ZeroFluxProfile(z)[g->first + j];
+    for (PetscInt i = 0; i < n; i++) a[j * n + i] -= off;
+  }
+  PetscCall(VecRestoreArray(u, &a));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,179 @@
+/* With the decays r1 of -(d_xx + d_yy) and r2 of alpha - nu (d_xx + d_yy) from row to row (tridiagonal.h) and S the
+   shift by one row, each Fourier mode of the stream function has
+
+       (nu/(r1 r2 h^4)) (1 - r1 S)(1 - r2 S)(1 - r1 S^-1)(1 - r2 S^-1) chi = curl of the force,
+
+   two recurrences upwards, y1_j = b_j + r1 y1_{j-1}, y2_j = y1_j + r2 y2_{j-1}, and the same downwards from y2 to z1
+   and z2, chi = (r1 r2 h^4/nu) z2. A state is a pair, Y = (y1, y2), Z = (z1, z2): with M = [r1 0; r1 r2] Y_j = M
+   Y_{j-1} + (b_j, b_j),      Z_j = M Z_{j+1} + (y2_j, y2_j). What comes into a slab of rows is known from what all
+   slabs say by themselves, as in tridiagonal.c: Y leaves a slab of m rows as its own and M^m times what came in, Z as
+   its own, the gain times Y from below and M^m times Z from above. */
+#include "fluid/stokes/stream.h"
+#include "fluid/stokes/sweepdown.h"
+#include "fluid/stokes/streamloops.h"
+#include "fluid/stokes/sweepup.h"
+
+PetscErrorCode StreamCreate(Fluid f, ZeroFlux flux, Stream *out) {
+  const Grid g = f->grid;
+  const size_t n = (size_t)g->n[0];
+  Stream s;
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&s));
+  *out = s;
+  s->fluid = f;
+  s->flux = flux;
+  PetscCall(RowTransformCreate(g, g->wall[0] ? FIELD_U : FIELD_P, &s->t));
+  PetscCall(RowTransformSort(s->t)); /* what is felt far away comes first */
+  PetscCall(StreamFactorsCreate(g, s->t, &s->factors));
+  PetscCall(StreamSlabsCreate(g, s->factors, &s->slabs));
+  PetscCall(PetscCalloc2(g->rows[FIELD_U], &s->means, s->slabs->width / STREAM_BLOCK, &s->fed));
+  for (int k = 0; k < 5; k++) {
+    PetscScalar **line[] = {&s->row[0], &s->row[1], &s->row[2], &s->curl, &s->zero};
+    *line[k] = fftw_alloc_real(n);
+    PetscCall(PetscArrayzero(*line[k], (PetscInt)n));
+  }
+  if (g->wall[0]) PetscCall(SideWallsCreate(g, s->t, s->factors, &s->side));
+  s->one[1] = 1 / (PetscReal)n;
+  if (!g->wall[0]) PetscCall(TridiagonalCreate(g, FIELD_U, 1, &s->one[0], &s->one[1], &s->mean));
+  PetscCall(StreamMeterCreate(g, s->t, &s->meter));
+  PetscCall(StreamFlowsCreate(g, s->t, s->slabs->width, &s->flows));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode StreamDestroy(Stream *stream) {
+  Stream s = *stream;
+  PetscFunctionBeginUser;
+  if (!s) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(TridiagonalDestroy(&s->mean));
+  PetscCall(SideWallsDestroy(&s->side));
+  for (int k = 0; k < 3; k++) fftw_free(s->row[k]);
+  fftw_free(s->curl);
+  fftw_free(s->zero);
+  PetscCall(PetscFree2(s->means, s->fed));
+  PetscCall(StreamFlowsDestroy(&s->flows));
+  PetscCall(StreamMeterDestroy(&s->meter));
+  PetscCall(StreamSlabsDestroy(&s->slabs));
+  PetscCall(StreamFactorsDestroy(&s->factors));
+  PetscCall(RowTransformDestroy(&s->t));
+  PetscCall(PetscFree(*stream));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+StreamFlows StreamGetFlows(Stream s) {
+  return s->flows;
+}
+
+static PetscErrorCode SetUp(Stream s) {
+  const Fluid f = s->fluid;
+  PetscFunctionBeginUser;
+  PetscCall(StreamSlabsReserve(s->slabs));
+  if (s->mean) PetscCall(TridiagonalReserve(s->mean));
+  if (s->factors->alpha == f->alpha) PetscFunctionReturn(PETSC_SUCCESS);
+  StreamFactorsSet(s->factors, f->alpha, f->nu);
+  if (s->side) PetscCall(SideWallsSet(s->side, f->alpha, f->nu));
+  if (s->mean) PetscCall(TridiagonalSetCoefficients(s->mean, f->alpha, f->nu, f->solver[FIELD_U]->singular));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Both means of a box that is periodic both ways to zero. */
+static PetscErrorCode HoldMean(Stream s, PetscReal *sum_v) {
+  const Grid g = s->fluid->grid;
+  PetscReal mean = 0;
+  PetscFunctionBeginUser;
+  for (PetscInt j = 0; j < g->rows[FIELD_U]; j++) mean += s->means[j] / g->n[1];
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &mean, 1, MPIU_REAL, MPI_SUM, g->comm));
+  for (PetscInt j = 0; j < g->rows[FIELD_U]; j++) s->means[j] -= mean;
+  *sum_v = 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Mode 0: the row means of u, and v's, which is the same everywhere, from the sum of its force. */
+static PetscErrorCode MeanFlow(Stream s, PetscReal sum) {
+  const Grid g = s->fluid->grid;
+  PetscFunctionBeginUser;
+  PetscCall(TridiagonalEnd(s->mean));
+  for (PetscInt j = g->rows[FIELD_U] - 1; j >= 0; j--) TridiagonalDown(s->mean, j, &s->means[j]);
+  if (s->flux) PetscCall(ZeroFluxCorrectMeans(s->flux, s->means));
+  if (s->fluid->held) PetscCall(HoldMean(s, &sum));
+  s->mean_v = s->fluid->alpha > 0 ? sum / ((PetscReal)g->n[0] * g->n[1] * s->fluid->alpha) : 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* v on the faces next to walls in x, in all own rows. */
+static void SideVelocity(Stream s, const StreamRows *rows) {
+  const PetscInt first = s->fluid->grid->first;
+  StreamBeginDown(s);
+  for (PetscInt j = s->slabs->rows - 1; j >= 0; j--) {
+    PetscReal *chi;
+    const PetscInt count = StreamNodeModes(s, j, PETSC_FALSE, NULL, &chi);
+    for (int side = 0; side < 2; side++)
+      s->side->v[side][first + j] = LanesDot(count, s->side->velocity[side], chi) +
+                                    StreamGiven(rows, FIELD_V, first + j);
+  }
+}
+
+/* y += that of the forces on these faces, with nothing coming in from below; `state` as after Gather. */
+static void AddSideForces(Stream s, PetscBool measured) {
+  const StreamSlabs q = s->slabs;
+  const SideWalls side = s->side;
+  const PetscInt w = q->width, first = s->fluid->grid->first;
+  (void)PetscArrayzero(q->state, 2 * w);
+  for (PetscInt j = 0; j < q->rows; j++) {
+    const PetscReal force[2] = {side->d[0][first + j], side->d[1][first + j]};
+    const PetscInt stored = q->alive[j] * STREAM_BLOCK;
+    if (measured) StreamMeterForce(s->meter, j, force[0] + force[1]);
+    (void)PetscArrayzero(q->y + j * w + stored, w - stored);
+    q->alive[j] = w / STREAM_BLOCK;
+    UpWalls(w, s->factors->r[0], s->factors->r[1], force, side->curl[0], side->curl[1], q->state, q->state + w,
+            q->y + j * w);
+  }
+}
+
+/* Walls in x hold the fluid: what came in is taken off y again, their forces are added, and all is closed anew. */
+static PetscErrorCode HoldSides(Stream s, const StreamRows *rows, PetscBool measured) {
+  const StreamSlabs q = s->slabs;
+  const PetscReal *last = q->own + 2 * q->width;
+  PetscReal none = 0;
+  PetscFunctionBeginUser;
+  SideVelocity(s, rows);
+  PetscCall(SideWallsForces(s->side, s->fluid->nu));
+  StreamSlabsReopen(q);
+  AddSideForces(s, measured);
+  for (PetscInt k = 0; k < 2 * q->width; k++) q->state[k] += last[k];
+  PetscCall(StreamSlabsClose(q, &none));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The solve, `past` and the flow being at hand. */
+static PetscErrorCode Solve(Stream s, const StreamRows *rows, PetscBool measured) {
+  PetscReal sum;
+  PetscFunctionBeginUser;
+  StreamGather(s, rows, measured);
+  if (s->mean) PetscCall(TridiagonalBegin(s->mean));
+  sum = s->mean_v;
+  PetscCall(StreamSlabsClose(s->slabs, &sum));
+  if (s->mean) PetscCall(MeanFlow(s, sum));
+  if (s->side) PetscCall(HoldSides(s, rows, measured));
+  StreamScatter(s, rows, measured);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode StreamSolve(Stream s, const StreamRows *rows, StreamMeasures *measures) {
+  const StreamPast *past = rows->past && rows->past->count ? rows->past : NULL;
+  StreamRows these = *rows;
+  PetscFunctionBeginUser;
+  PetscCall(PhaseBegin(PHASE_FAST_SOLVE));
+  these.past = past;
+  PetscCall(SetUp(s));
+  StreamMeterBegin(s->meter);
+  if (past) PetscCall(StreamFlowsBegin(s->flows, past));
+  if (rows->flow) PetscCall(VecGetArray(rows->flow, &s->flow));
+  PetscCall(Solve(s, &these, measures ? PETSC_TRUE : PETSC_FALSE));
+  if (rows->flow) PetscCall(VecRestoreArray(rows->flow, &s->flow));
+  s->flow = NULL;
+  if (past) PetscCall(StreamFlowsEnd(s->flows, past, &s->meter->own.past));
+  if (measures) PetscCall(StreamMeterEnd(s->meter, measures));
+  FastSolverCount(s->fluid->solver[FIELD_P]);
+  PetscCall(PhaseEnd());
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

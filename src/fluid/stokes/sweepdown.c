@@ -1,0 +1,124 @@
+#include "fluid/stokes/sweepdown.h"
+#include "fluid/stokes/streamloops.h"
+
+void StreamBeginDown(Stream s) {
+  const StreamSlabs q = s->slabs;
+  s->felt = q->width / STREAM_BLOCK;
+  (void)PetscArraycpy(q->state, q->above, 2 * q->width);
+  for (PetscInt b = 0; b < s->felt; b++) s->fed[b] = q->rows;
+}
+
+/* Blocks of modes in which Z has not decayed in row j, where y has `stored` blocks; Z is zero in the others. */
+static PetscInt FeltBlocks(Stream s, PetscInt j, PetscInt stored) {
+  const StreamSlabs q = s->slabs;
+  PetscInt blocks = PetscMax(s->felt, stored);
+  for (PetscInt b = 0; b < stored; b++) s->fed[b] = j;
+  for (; blocks > stored && s->factors->reach[blocks - 1] <= s->fed[blocks - 1] - j; blocks--)
+    for (int c = 0; c < 2; c++)
+      (void)PetscArrayzero(q->state + c * q->width + (blocks - 1) * STREAM_BLOCK, STREAM_BLOCK);
+  return blocks;
+}
+
+PetscInt StreamNodeModes(Stream s, PetscInt j, PetscBool squares, PetscReal *into, PetscReal **modes) {
+  const StreamSlabs q = s->slabs;
+  const PetscInt w = q->width, all = s->t->width, stored = j < 0 ? w / STREAM_BLOCK : q->alive[j];
+  const PetscReal *y = j < 0 ? q->below + w : q->y + j * w;
+  s->felt = FeltBlocks(s, j, stored);
+  const PetscInt fed = PetscMin(stored * STREAM_BLOCK, all), count = PetscMin(s->felt * STREAM_BLOCK, all);
+  *modes = squares ? StreamMeterNodes(s->meter, count) : into ? into : s->t->modes;
+  Down(fed, s->factors->r[0], s->factors->r[1], s->factors->factor, y, q->state, q->state + w, *modes);
+  DownFree(fed, count, s->factors->r[0], s->factors->r[1], s->factors->factor, q->state, q->state + w, *modes);
+  return count;
+}
+
+/* The same into row j of the flow, or added to it. */
+static PetscInt FlowModes(Stream s, const StreamRows *rows, PetscInt j, PetscReal **modes) {
+  PetscScalar *restrict flow = s->flow + j * s->flows->each;
+  const PetscInt count = StreamNodeModes(s, j, PETSC_FALSE, rows->add ? NULL : flow, modes);
+  for (PetscInt k = 0; k < count && rows->add; k++) flow[k] += (*modes)[k];
+  for (PetscInt k = count; k < s->t->width && !rows->add; k++) flow[k] = 0;
+  return count;
+}
+
+/* The same, with chi/h in `row` unless that is NULL, and what is shown of the states before; zero on the wall behind
+   the last node. */
+static void NodeRow(Stream s, const StreamRows *rows, PetscInt j, PetscBool squares, PetscScalar row[]) {
+  PetscReal *restrict modes = s->t->modes;
+  PetscReal *chi;
+  const PetscInt all = s->t->width,
+                 count = s->flow && j >= 0 ? FlowModes(s, rows, j, &chi) : StreamNodeModes(s, j, squares, NULL, &chi);
+  if (!row) return;
+  if (chi != modes) (void)PetscArraycpy(modes, chi, count);
+  for (PetscInt k = count; k < all; k++) modes[k] = 0;
+  const PetscReal *past = rows->past ? StreamFlowsRow(s->flows, j) : NULL;
+  for (PetscInt k = 0; k < all && past; k++) modes[k] = rows->past->part * modes[k] + rows->past->lag * past[k];
+  RowTransformBackward(s->t, row);
+  if (s->side) row[s->fluid->grid->n[0] - 1] = 0;
+}
+
+/* The mean of a row of u, or (comp 1) of v, as it is shown: of the velocity and of the states before. */
+static PetscReal Shown(Stream s, const StreamRows *rows, PetscReal mean, PetscInt j, int comp) {
+  const StreamPast *past = rows->past;
+  return past ? past->part * mean + past->lag * StreamFlowsMean(s->flows, j, comp) : mean;
+}
+
+/* A row of u between two rows of nodes, which stays in s->curl, and of v in the upper one. */
+static void VelocityRows(Stream s, const StreamRows *rows, PetscBool measured, PetscInt j, const PetscScalar low[],
+                         const PetscScalar high[]) {
+  const Grid g = s->fluid->grid;
+  const PetscInt n = g->n[0], at = g->first + j;
+  const PetscReal given = StreamGiven(rows, FIELD_V, at),
+                  below = StreamGiven(rows, FIELD_V, (at + g->n[1] - 1) % g->n[1]);
+  VelocityU(n, low, high, Shown(s, rows, s->means[j], j, 0) + StreamGiven(rows, FIELD_U, at), s->curl);
+  rows->velocity(rows->ctx, FIELD_U, j, s->curl);
+  if (measured)
+    StreamMeterDivergence(s->meter, s->curl, low, high, given - below, rows->source ? rows->source + j * n : NULL);
+  if (j >= s->slabs->rows) return;
+  VelocityV(n, high, Shown(s, rows, s->mean_v, j, 1) + given, s->row[2]);
+  rows->velocity(rows->ctx, FIELD_V, j, s->row[2]);
+}
+
+/* What is measured of row j of u, which is `row` where it is made, and of v above it. */
+static void MeasureRow(Stream s, const StreamRows *rows, PetscInt j, const PetscScalar row[]) {
+  const PetscInt at = s->fluid->grid->first + j;
+  const PetscReal mean = s->means[j] + StreamGiven(rows, FIELD_U, at);
+  StreamMeterSlip(s->meter, j, mean);
+  if (!s->flow)
+    StreamMeterSquares(s->meter, j, row, mean, j < s->slabs->rows ? PETSC_TRUE : PETSC_FALSE,
+                       s->mean_v + StreamGiven(rows, FIELD_V, at));
+}
+
+/* The means of row j into the flow, or added to it. */
+static void FlowMeans(Stream s, const StreamRows *rows, PetscInt j) {
+  PetscScalar *flow = s->flow + j * s->flows->each + s->flows->width;
+  const PetscReal mean[2] = {s->means[j], s->mean_v};
+  for (int comp = 0; comp < 2; comp++) flow[comp] = (rows->add ? flow[comp] : 0) + mean[comp];
+}
+
+/* Down all rows, or to the last one that is wanted. */
+void StreamScatter(Stream s, const StreamRows *rows, PetscBool measured) {
+  const Grid g = s->fluid->grid;
+  const PetscInt nodes = s->slabs->rows, first = rows->wanted[0], end = rows->wanted[1];
+  const PetscBool squares = measured && !s->flow ? PETSC_TRUE : PETSC_FALSE;
+  const PetscScalar *high = s->zero;
+  StreamBeginDown(s);
+  if (nodes == g->rows[FIELD_U]) { /* not on the upper wall, where chi = 0 */
+    high = s->row[nodes % 2];
+    NodeRow(s, rows, nodes - 1, squares, nodes <= end ? s->row[nodes % 2] : NULL);
+  } else if (squares)
+    (void)StreamMeterNodes(s->meter, 0);
+  for (PetscInt j = g->rows[FIELD_U] - 1; j >= 0 && (measured || s->flow || j >= first); j--) {
+    const PetscScalar *low = s->row[j % 2];
+    if (j > 0 || g->below != MPI_PROC_NULL || !g->wall[1])
+      NodeRow(s, rows, j - 1, squares, j >= first && j <= end ? s->row[j % 2] : NULL);
+    else {
+      low = s->zero;
+      if (squares) (void)StreamMeterNodes(s->meter, 0);
+    }
+    const PetscBool wanted = j >= first && j < end ? PETSC_TRUE : PETSC_FALSE;
+    if (wanted) VelocityRows(s, rows, measured, j, low, high);
+    if (measured) MeasureRow(s, rows, j, wanted ? s->curl : NULL);
+    if (s->flow) FlowMeans(s, rows, j);
+    high = low;
+  }
+}

@@ -1,0 +1,74 @@
+/* Fast scalar solves: (a0 I - nu second differences) x = b for one field of the grid. Back ends are registered by name
+   and stand behind one interface, which is a PETSc PCSHELL too.
+
+   A back end that iterates may fail. Then the solution is set to infinity on every rank, and `failure` says why. What
+   iterates on this solve, an outer Krylov method or a step, stops at once at a number that is not finite, on all ranks
+   alike; whoever reports the failed step asks for the reason. */
+#pragma once
+#include "fluid/grid/grid.h"
+
+/* A solve that did not converge; the same on every rank. */
+typedef struct {
+  const char *prefix;     /* prefix of the solver's options */
+  KSPConvergedReason why; /* negative; 0: all solves have converged */
+  PetscInt its;
+  PetscReal residual; /* 2-norm */
+} SolveFailure;
+
+typedef struct _p_FastSolver *FastSolver;
+struct _p_FastSolver {
+  Grid grid;
+  Field field;
+  PetscReal a0, nu;     /* operator in force */
+  PetscBool singular;   /* constants are in the null space: the mean of the solution is set to zero */
+  Mat A;                /* the operator, a MatShell on vectors of the field's DMDA */
+  PC pc;                /* the inverse of A, a PCSHELL */
+  PetscInt solves;      /* solves so far */
+  SolveFailure failure; /* the first one since it was last cleared */
+  void *data;           /* the back end's own */
+  PetscErrorCode (*setcoefficients)(FastSolver);
+  PetscErrorCode (*apply)(FastSolver, const PetscScalar b[], PetscScalar x[]); /* local arrays; x may be b */
+  PetscErrorCode (*begin)(FastSolver, const PetscScalar b[]);                  /* in place of apply: two halves */
+  PetscErrorCode (*end)(FastSolver, PetscScalar x[]);
+  const PetscScalar *b; /* right-hand side of the solve under way, for a back end that has apply */
+  PetscErrorCode (*destroy)(FastSolver);
+};
+
+/* FastSolverCreate - solver of one field by the back end `type` ("fftw_tridiagonal", "fftw", "hypre").
+   Collective. Errors: a type that is not registered. */
+PETSC_EXTERN PetscErrorCode FastSolverCreate(Grid grid, Field field, const char type[], FastSolver *s);
+PETSC_EXTERN PetscErrorCode FastSolverDestroy(FastSolver *s);
+
+/* FastSolverSetCoefficients - choose a0 (1/time) and nu (length^2/time), the same bits on every rank; for L (FIELD_P)
+   a0 = 0, nu = -1. Cheap when they do not change. Collective. */
+PETSC_EXTERN PetscErrorCode FastSolverSetCoefficients(FastSolver s, PetscReal a0, PetscReal nu);
+
+/* FastSolverSolve - one scalar solve on local arrays of the field (columns x rows); x may be b. Counted.
+   Collective. Errors: see `failure` above. */
+PETSC_EXTERN PetscErrorCode FastSolverSolve(FastSolver s, const PetscScalar b[], PetscScalar x[]);
+
+/* FastSolverBegin, FastSolverEnd - FastSolverSolve in two halves, so that messages of one field travel while the next
+   field is solved. b must not change until the solve ends. Each Begin has its End, in the same order on every rank. */
+PETSC_EXTERN PetscErrorCode FastSolverBegin(FastSolver s, const PetscScalar b[]);
+PETSC_EXTERN PetscErrorCode FastSolverEnd(FastSolver s, PetscScalar x[]);
+
+/* FastSolverClearFailure - forget the failure of earlier solves. FastSolverCount - count a solve of the same work that
+   was made elsewhere. Not collective. */
+static inline void FastSolverClearFailure(FastSolver s) {
+  s->failure.why = KSP_CONVERGED_ITERATING;
+}
+static inline void FastSolverCount(FastSolver s) {
+  s->solves++;
+}
+
+/* FastSolverGetPC - the PCSHELL that applies this solver to vectors of the field's DMDA. Borrowed. */
+PETSC_EXTERN PetscErrorCode FastSolverGetPC(FastSolver s, PC *pc);
+
+/* FastSolverRegister - add a back end under a name of -helmholtz_type and -poisson_type. Not collective. */
+PETSC_EXTERN PetscErrorCode FastSolverRegister(const char type[], PetscErrorCode (*create)(FastSolver));
+
+/* The back ends of petves, which FastSolversRegister adds: FFTW's transforms both ways; transforms along the rows with
+   tridiagonal solves across them; conjugate gradients with algebraic multigrid. Collective. */
+PETSC_EXTERN PetscErrorCode FastSolverCreate_FFTW(FastSolver);
+PETSC_EXTERN PetscErrorCode FastSolverCreate_Tridiagonal(FastSolver);
+PETSC_EXTERN PetscErrorCode FastSolverCreate_Hypre(FastSolver);

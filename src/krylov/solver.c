@@ -1,0 +1,280 @@
+#include "krylov/solver.h"
+#include "mobility/contrast.h"
+
+#define MOST_ROUNDS 4
+#define ROUNDING 1e-8 /* of the first residual: what rounding leaves out of GMRES's is far below */
+
+/* -coupled_ksp_rtol is relative to the norm of the step's right-hand side (f, g, k of obstacles), not to what the
+   initial guess left of it. */
+static PetscErrorCode Converged(KSP ksp, PetscInt it, PetscReal norm, KSPConvergedReason *reason, void *ctx) {
+  const CoupledSolver s = (CoupledSolver)ctx;
+  PetscReal rtol, atol, dtol;
+  PetscFunctionBeginUser;
+  PetscCall(KSPGetTolerances(ksp, &rtol, &atol, &dtol, NULL));
+  *reason = KSP_CONVERGED_ITERATING;
+  if (!it) s->start = norm;
+  if (PetscIsInfOrNanReal(norm))
+    *reason = KSP_DIVERGED_NANORINF;
+  else if (norm <= atol)
+    *reason = KSP_CONVERGED_ATOL;
+  else if (norm <= rtol * s->reference)
+    *reason = KSP_CONVERGED_RTOL;
+  else if (it > 0 && norm >= dtol * PetscMax(s->reference, s->start))
+    *reason = KSP_DIVERGED_DTOL;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Apply(PC pc, Vec r, Vec z) {
+  Preconditioner p;
+  PetscFunctionBeginUser;
+  PetscCall(PCShellGetContext(pc, &p));
+  PetscCall(PreconditionerApply(p, r, z));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A z for the first z = P b/|b| of a solve, from the whole residual at x + |b| z: where the preconditioner is good that
+   is a solution already, and a Stokes solve has given the velocity that goes with it. */
+static PetscErrorCode Try(CoupledSolver s, Vec z, Vec Az) {
+  Trial *t = &s->trial;
+  PetscFunctionBeginUser;
+  t->state = TRIAL_MADE;
+  PetscCall(VecAXPBY(s->pending, t->scale, 0, z));
+  PetscCall(VecWAXPY(t->x, 1, s->pending, s->x));
+  PetscCall(ReducedUpdate(s->reduced, s->pending, t->x, t->b));
+  PetscCall(VecNorm(t->b, NORM_2, &t->residual));
+  PetscCall(VecWAXPY(Az, -1, t->b, s->b));
+  PetscCall(VecScale(Az, 1 / t->scale));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Mult(Mat A, Vec x, Vec y) {
+  CoupledSolver s;
+  PetscFunctionBeginUser;
+  PetscCall(MatShellGetContext(A, &s));
+  PetscCall(s->trial.state == TRIAL_WANTED ? Try(s, x, y) : MatMult(s->reduced->A, x, y));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CreateOperator(CoupledSolver s) {
+  PetscInt n, N;
+  PetscFunctionBeginUser;
+  PetscCall(VecGetLocalSize(s->x, &n));
+  PetscCall(VecGetSize(s->x, &N));
+  PetscCall(MatCreateShell(s->coupling->fluid->grid->comm, n, n, N, N, s, &s->A));
+  PetscCall(MatShellSetOperation(s->A, MATOP_MULT, (void (*)(void))Mult));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The KSP, then the preconditioner for it. */
+static PetscErrorCode CreateKSP(CoupledSolver s, Scene scene) {
+  PetscBool flexible;
+  PC pc;
+  PetscFunctionBeginUser;
+  PetscCall(KSPCreate(s->coupling->fluid->grid->comm, &s->ksp));
+  PetscCall(KSPSetOptionsPrefix(s->ksp, "coupled_"));
+  PetscCall(KSPSetType(s->ksp, KSPFGMRES));
+  PetscCall(KSPGMRESSetRestart(s->ksp, 60));
+  PetscCall(KSPGMRESSetCGSRefinementType(s->ksp, KSP_GMRES_CGS_REFINE_IFNEEDED));
+  PetscCall(KSPSetTolerances(s->ksp, scene->coupling.ksp_rtol, 0, PETSC_DEFAULT, 200));
+  PetscCall(KSPSetOperators(s->ksp, s->A, s->A));
+  PetscCall(KSPGetPC(s->ksp, &pc));
+  PetscCall(PCSetType(pc, PCSHELL));
+  PetscCall(PCShellSetApply(pc, Apply));
+  PetscCall(PCShellSetName(pc, "mobility of the markers"));
+  PetscCall(KSPSetInitialGuessNonzero(s->ksp, PETSC_TRUE));
+  PetscCall(KSPSetFromOptions(s->ksp));
+  PetscCall(KSPGetInitialGuessNonzero(s->ksp, &s->guess)); /* KSP itself solves for the change */
+  PetscCall(KSPSetInitialGuessNonzero(s->ksp, PETSC_FALSE));
+  PetscCall(KSPSetConvergenceTest(s->ksp, Converged, s, NULL));
+  PetscCall(PetscObjectTypeCompare((PetscObject)s->ksp, KSPFGMRES, &flexible));
+  PetscCall(PreconditionerCreate(scene, s->unknowns, flexible, &s->preconditioner));
+  PetscCall(PCShellSetContext(pc, s->preconditioner));
+  PetscCall(KSPSetUp(s->ksp));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CoupledSolverCreate(Scene scene, Coupling coupling, CoupledSolver *out) {
+  CoupledSolver s;
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&s));
+  *out = s;
+  s->coupling = coupling;
+  PetscCall(UnknownsCreate(coupling, &s->unknowns));
+  PetscCall(ReducedCreate(s->unknowns, &s->reduced));
+  PetscCall(UnknownsCreateVec(s->unknowns, &s->x));
+  PetscCall(VecDuplicate(s->x, &s->b));
+  PetscCall(VecDuplicate(s->x, &s->change));
+  PetscCall(VecDuplicate(s->x, &s->pending));
+  PetscCall(VecDuplicate(s->x, &s->trial.x));
+  PetscCall(VecDuplicate(s->x, &s->trial.b));
+  PetscCall(CreateOperator(s));
+  PetscCall(CreateKSP(s, scene));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CoupledSolverDestroy(CoupledSolver *solver) {
+  CoupledSolver s = *solver;
+  PetscFunctionBeginUser;
+  if (!s) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(KSPDestroy(&s->ksp));
+  PetscCall(VecDestroy(&s->x));
+  PetscCall(VecDestroy(&s->b));
+  PetscCall(VecDestroy(&s->change));
+  PetscCall(VecDestroy(&s->pending));
+  PetscCall(VecDestroy(&s->trial.x));
+  PetscCall(VecDestroy(&s->trial.b));
+  PetscCall(MatDestroy(&s->A));
+  PetscCall(PreconditionerDestroy(&s->preconditioner));
+  PetscCall(ReducedDestroy(&s->reduced));
+  PetscCall(UnknownsDestroy(&s->unknowns));
+  PetscCall(PetscFree(*solver));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* x = (V, sigma) of the guess. */
+static PetscErrorCode Guess(CoupledSolver s, const CoupledProblem *q) {
+  PetscFunctionBeginUser;
+  if (s->guess)
+    PetscCall(UnknownsPack(s->unknowns, q->V, q->solid, q->sigma, s->x));
+  else
+    PetscCall(VecSet(s->x, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* In unbounded fluid, which has no f: the norm of the right-hand sides k and g with their factors, and of the speed
+   c_b/(nu R0^2) that bending can give a marker, without which a circle, whose k is all rounding, would have no scale.
+ */
+static PetscErrorCode FreeReference(CoupledSolver s, const CoupledProblem *q) {
+  const Membrane m = s->coupling->membrane;
+  const Layout l = m->layout;
+  PetscScalar *a;
+  PetscFunctionBeginUser;
+  PetscCall(UnknownsPack(s->unknowns, q->k, NULL, q->g, s->change));
+  PetscCall(VecGetArray(s->change, &a));
+  PetscCall(CouplingNearField(s->coupling, -1, q->F, a));
+  if (q->moved) PetscCall(ContrastAdd(s->coupling, -1, q->moved, a));
+  for (PetscInt v = l->own; v < l->end; v++) {
+    const PetscReal speed = m->bending * m->part[v] / (s->coupling->fluid->nu * PetscSqr(m->L0[v] / (2 * PETSC_PI)));
+    const PetscInt at = 2 * LayoutOffset(l, v);
+    for (PetscInt k = at; k < at + 2 * LayoutCount(l, v); k++) a[k] = PetscSqrtReal(a[k] * a[k] + speed * speed);
+  }
+  UnknownsScale(s->unknowns, PETSC_FALSE, a);
+  PetscCall(VecRestoreArray(s->change, &a));
+  PetscCall(VecNorm(s->change, NORM_2, &s->reference));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The square of the norm of k of the own obstacles with its factors. */
+static PetscErrorCode ObstacleReference(CoupledSolver s, const CoupledProblem *q, PetscReal *sum) {
+  const Obstacles o = s->coupling->bodies->obstacles;
+  const PetscInt n = s->unknowns->solid;
+  PetscScalar *all, *data;
+  const PetscScalar *a;
+  PetscFunctionBeginUser;
+  if (!o) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMalloc1(s->unknowns->velocity + n, &all));
+  data = all + s->unknowns->velocity;
+  PetscCall(VecGetArrayRead(q->k, &a));
+  PetscCall(PetscArraycpy(all, a, s->unknowns->velocity + n));
+  PetscCall(VecRestoreArrayRead(q->k, &a));
+  PetscCall(CouplingNearField(s->coupling, -1, q->F, all));
+  ObstaclesScale(o, UnknownsWeight(s->unknowns), PETSC_FALSE, data);
+  for (PetscInt i = 0; i < n; i++) *sum += PetscSqr(data[i]);
+  PetscCall(PetscFree(all));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Norm of f, g and the obstacles' k with their factors (UnknownsScale). With a flow f is without the states
+   before, whose square the first residual gives (Begin). */
+static PetscErrorCode Reference(CoupledSolver s, const CoupledProblem *q) {
+  const Layout l = s->coupling->membrane->layout;
+  const PetscScalar *a;
+  const PetscReal l2 = PetscSqr(s->unknowns->length);
+  PetscReal sum = 0, squares = 0;
+  PetscFunctionBeginUser;
+  PetscCall(VecGetArrayRead(q->g, &a));
+  for (PetscInt v = l->own; v < l->end; v++)
+    for (PetscInt k = 0; k < LayoutCount(l, v); k++)
+      sum += PetscSqr(a[LayoutOffset(l, v) + k] * UnknownsTensionScale(s->unknowns, v));
+  PetscCall(VecRestoreArrayRead(q->g, &a));
+  PetscCall(ObstacleReference(s, q, &sum));
+  PetscCall(GridAddSquares(q->f->grid, q->f->everywhere ? NULL : &q->f->window, q->f->values, &squares));
+  sum += l2 * squares;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPIU_REAL, MPI_SUM, l->comm));
+  s->reference = PetscSqrtReal(sum);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* x + the change of a KSPSolve, with u and p or what is measured of them; b becomes the residual that is left. Where
+   the velocity of the solution is made at the end GMRES's own residual will do. */
+static PetscErrorCode Follow(CoupledSolver s, PetscReal goal, SolveReport *report) {
+  PetscFunctionBeginUser;
+  PetscCall(VecAXPY(s->x, 1, s->change));
+  PetscCall(VecAYPX(s->pending, s->trial.state == TRIAL_MADE ? -1 : 1, s->change));
+  if (ReducedDefersDipoles(s->reduced) && s->preconditioner->flexible && goal > ROUNDING * s->trial.scale)
+    PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ReducedUpdate(s->reduced, s->pending, s->x, s->b));
+  PetscCall(VecSet(s->pending, 0));
+  PetscCall(VecNorm(s->b, NORM_2, &report->residual));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* One KSPSolve for the residual b, whose change is added to x, w, p, or what it has tried where that is enough. */
+static PetscErrorCode Correct(CoupledSolver s, const CoupledProblem *q, PetscReal goal, SolveReport *report) {
+  Trial *t = &s->trial;
+  PetscInt its;
+  PetscFunctionBeginUser;
+  PetscCall(KSPSolve(s->ksp, s->b, s->change));
+  PetscCall(KSPGetIterationNumber(s->ksp, &its));
+  PetscCall(KSPGetConvergedReason(s->ksp, &report->why));
+  PetscCall(KSPGetResidualNorm(s->ksp, &report->residual));
+  report->its += its;
+  if (report->why < 0) PetscFunctionReturn(PETSC_SUCCESS);
+  if (t->state == TRIAL_MADE && t->residual <= goal) {
+    PetscCall(VecCopy(t->x, s->x));
+    PetscCall(VecSet(s->pending, 0));
+    report->residual = t->residual;
+  } else if (its > 0 || q->w) /* without w nothing is left to be done where the first guess is good enough */
+    PetscCall(Follow(s, goal, report));
+  t->state = TRIAL_NONE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The first residual; where products leave no velocity behind, u of its forces is measured, and a trial is wanted. */
+static PetscErrorCode Begin(CoupledSolver s, const CoupledProblem *q) {
+  Trial *t = &s->trial;
+  PetscFunctionBeginUser;
+  PetscCall(Guess(s, q));
+  PetscCall(ReducedBegin(s->reduced, q, s->x, s->b));
+  if (q->past)
+    s->reference = PetscSqrtReal(PetscSqr(s->reference) + PetscSqr(s->unknowns->length) * s->reduced->measures.past);
+  PetscCall(VecSet(s->pending, 0));
+  PetscCall(VecNorm(s->b, NORM_2, &t->scale));
+  t->state = s->reduced->stream && t->scale > 0 ? TRIAL_WANTED : TRIAL_NONE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CoupledSolverSolve(CoupledSolver s, const CoupledProblem *q, SolveReport *report) {
+  PetscReal rtol, atol;
+  PetscFunctionBeginUser;
+  *report = (SolveReport){0};
+  PetscCall(PreconditionerSetUp(s->preconditioner, q->graded));
+  if (s->preconditioner->failed) {
+    report->why = KSP_DIVERGED_PC_FAILED;
+    report->residual = NAN;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(s->reduced->stokes ? Reference(s, q) : FreeReference(s, q));
+  PetscCall(Begin(s, q));
+  PetscCall(KSPGetTolerances(s->ksp, &rtol, &atol, NULL, NULL));
+  const PetscReal goal = PetscMax(rtol * s->reference, atol);
+  for (int round = 0; round < MOST_ROUNDS; round++) { /* rounding may spoil GMRES's own residual in stiff cases */
+    PetscCall(Correct(s, q, goal, report));
+    if (report->why < 0 || report->residual <= 2 * goal) break;
+  }
+  if (report->why >= 0) PetscCall(ReducedFinish(s->reduced, s->pending, s->x));
+  report->measures = s->reduced->measures;
+  PreconditionerSolved(s->preconditioner, report->its);
+  if (report->why >= 0) PetscCall(UnknownsUnpack(s->unknowns, s->x, q->V, q->solid, q->sigma));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,233 @@
+/* As imagetable.c: in mode theta along the wall the wall adds psi(j) = (A + B j) e^{-mu j}, with A and B that make the
+   velocity zero there. With D the difference from one row to the next,
+
+     STRAIN, SOURCE: along -D psi sin, across k psi cos;      SHEAR: along D psi cos, across k psi sin,
+
+   and of the free lattice, J rows above the dipole (sin or cos as above; D g(J) = g(J + 1) - g(J)),
+
+     STRAIN: along k F(J), across s D g2(J);     SOURCE: along k g1(J), across -D g1(J);
+     SHEAR: along -D g1(J) + 2 s D g2(J), across k (2 s g2(J) - g1(J)).
+
+   Expanded in theta these are the forms of imageform.h with n0 = 0: p is the exact fluid's image, and minus the orders
+   above it is what is left of that. Of SHEAR the along form is -2 times that of STRAIN, the across one twice.
+ */
+#include "layers/dipoleimage.h"
+#include "layers/latticegreen.h"
+
+static PetscReal G1(const ImageMode *m, int j) {
+  return m->F[j] + m->s * m->g2[j];
+}
+
+/* psi of a part in a row of cells or nodes: xx = STRAIN + SOURCE/2, yy = -STRAIN + SOURCE/2, xy = SHEAR. */
+static void Psi(const ImageMode *m, DipolePart part, int j, PetscReal psi[IMAGE_LINES]) {
+  const int before = j ? j - 1 : 1;
+  const PetscReal strain = part == DIPOLE_XX ? m->k : -m->k;
+  if (part == DIPOLE_XY)
+    ImagePsi(m, G1(m, j) - 2 * m->s * m->g2[j],
+             G1(m, j + 1) - G1(m, before) + 2 * m->s * (m->g2[before] - m->g2[j + 1]), psi);
+  else
+    ImagePsi(m, strain * (m->g2[j + 1] - m->g2[j]) + 0.5 * (G1(m, j) - G1(m, j + 1)) / m->k,
+             -strain * (m->F[j + 1] + m->F[j]) - 0.5 * m->k * (G1(m, j + 1) + G1(m, j)), psi);
+}
+
+/* Add one node of the quadrature to offsets from 0 or 1 on. */
+static void AddNode(PetscReal theta, PetscReal weight, DipoleImageTable *t) {
+  const ImageMode m = ImageModeMake(theta);
+  PetscReal cosine[IMAGE_SHIFT + 1], right[IMAGE_SHIFT + 1], left[IMAGE_SHIFT + 1], psi[IMAGE_LINES];
+  for (int i = 0; i <= IMAGE_SHIFT; i++) {
+    cosine[i] = weight / PETSC_PI * PetscCosReal(i * theta);
+    right[i] = weight / PETSC_PI * PetscSinReal((i + 0.5) * theta);
+    left[i] = weight / PETSC_PI * PetscSinReal((i - 0.5) * theta);
+  }
+  for (int part = 0; part < DIPOLE_COUNT; part++)
+    for (int source = 0; source < IMAGE_ROWS; source++) {
+      const PetscBool shear = part == DIPOLE_XY ? PETSC_TRUE : PETSC_FALSE;
+      const PetscReal *wave[2] = {shear ? cosine : right, shear ? left : cosine};
+      Psi(&m, (DipolePart)part, source, psi);
+      for (int row = 0; row < IMAGE_ROWS; row++) {
+        const PetscReal size[2] = {(shear ? 1 : -1) * (psi[row + 1] - psi[row]), m.k * psi[row]};
+        for (int c = 0; c < 2; c++) {
+          PetscReal *line = t->value[part][c][row][source] + IMAGE_SHIFT;
+          for (int i = 0; i <= IMAGE_SHIFT; i++) line[i] += size[c] * wave[c][i];
+        }
+      }
+    }
+}
+
+/* Offsets below zero by symmetry, and the free lattice's part: in its table the across component lies above the along
+   one of the same row, a node above the cell. */
+static void Complete(const OffsetTable lattice[2], DipolePart part, int c, PetscInt row, PetscInt source,
+                     DipoleImageTable *t) {
+  PetscReal *line = t->value[part][c][row][source] + IMAGE_SHIFT;
+  const PetscInt rows = row - source - c + (part == DIPOLE_XY);
+  const PetscBool even = (part == DIPOLE_XY) != c ? PETSC_TRUE : PETSC_FALSE;
+  for (PetscInt i = 1; i <= IMAGE_SHIFT; i++) {
+    if (even)
+      line[-i] = line[i];
+    else if (c)
+      line[1 - i] = -line[i];
+    else
+      line[-i] = -line[i - 1];
+  }
+  const OffsetTable *free = &lattice[c];
+  const PetscReal *value = free->value[part] + (rows + free->size[1]) * (2 * free->size[0] + 1) + free->size[0];
+  for (PetscInt i = -IMAGE_SHIFT; i <= IMAGE_SHIFT; i++) line[i] += value[i];
+}
+
+PetscErrorCode DipoleImageFill(const OffsetTable lattice[2], DipoleImageTable *t) {
+  PetscReal *theta, *weight;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(IMAGE_NODES, &theta, IMAGE_NODES, &weight));
+  GaussLegendre(IMAGE_NODES, theta, weight);
+  PetscCall(PetscMemzero(t, sizeof(*t)));
+  for (int q = 0; q < IMAGE_NODES; q++) AddNode(theta[q], weight[q], t);
+  for (int part = 0; part < DIPOLE_COUNT; part++)
+    for (int c = 0; c < 2; c++)
+      for (int row = 0; row < IMAGE_ROWS; row++)
+        for (int source = 0; source < IMAGE_ROWS; source++) Complete(lattice, (DipolePart)part, c, row, source, t);
+  PetscCall(PetscFree2(theta, weight));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static const PetscReal over[IMAGE_ORDERS] = {1, 24, 5760, 2903040};
+static const ImageNumbers strain_form[2] = {
+    {{{-1, 1, 1, -2},
+      {9, -21, -21, 38, 2, 2, -4, -4},
+      {-1575, 3303, 3303, -6022, -460, -460, 860, 860, 20, 20, -40, -80, -40},
+      {536949, -1042929, -1042929, 1866006, 164574, 164574, -300840, -300840, -10780, -10780, 20440, 40320, 20440, 280,
+       280, -560, -1680, -1680, -560}}},
+    {{{0, 1, -1, -2},
+      {-6, -19, 7, 34, 2, -2, -4, -4},
+      {660, 2943, -663, -5342, -440, 200, 820, 780, 20, -20, -40, -80, -40},
+      {-132426, -924471, 123363, 1652778, 155754, -39834, -284040, -268080, -10500, 5460, 19880, 38640, 18760, 280,
+       -280, -560, -1680, -1680, -560}}}};
+static const ImageNumbers source_form[2] = {
+    {{{-2, 4},
+      {30, -56, -4, 8, 8},
+      {-4470, 7932, 720, -1360, -1320, -40, 160, 80, 80},
+      {1338750, -2332584, -236916, 426456, 408816, 17640, -65520, -33600, -32480, -560, 3360, 3360, 1120, 1120}}},
+    {{{2, 4},
+      {-6, -48, 4, 8, 8},
+      {390, 6972, -240, -1200, -1240, 40, 160, 80, 80},
+      {-53046, -2060352, 35316, 376056, 383616, -7560, -62160, -30240, -31360, 560, 3360, 3360, 1120, 1120}}}};
+
+void DipoleImageFormsMake(const ImageMoments kernel[2], DipoleImageForms *f) {
+  const Kernel *five = KernelFind("cbs54"), *six = KernelFind("cbs65");
+  const ImageMoments four = ImageMomentsOf(five->across), m5 = ImageMomentsOf(five->along),
+                     m6 = ImageMomentsOf(six->along);
+  const ImageMoments moment[DIPOLE_COUNT][2] = {{m6, four}, {four, m6}, {m5, m5}};
+  *f = (DipoleImageForms){0};
+  for (int part = 0; part < DIPOLE_COUNT; part++)
+    for (int c = 0; c < 2; c++) {
+      const PetscReal strain = part == DIPOLE_XX ? 1 : part == DIPOLE_YY ? -1 : c ? 2 : -2;
+      ImageForm form = {{{0}}};
+      ImageFormAdd(strain, &strain_form[c], over, &form);
+      if (part != DIPOLE_XY) ImageFormAdd(0.5, &source_form[c], over, &form);
+      ImageFormSmooth(ImageMomentsBoth(kernel[c], moment[part][0]), kernel[1 - c], moment[part][1], &form);
+      for (int m = 0; m < IMAGE_ORDERS; m++)
+        for (int k = 0; k < IMAGE_MONOMIALS; k++) f->c[m][part][c][k] = (m ? -1 : 1) * form.c[m][k] + (Lanes){0};
+    }
+}
+
+/* ImageSumOf, of coefficients that are four times each. */
+static inline Lanes SumOf(const int order, const Lanes c[], const Lanes term[]) {
+  Lanes sum = c[0] * term[0];
+  for (int k = 1; k < image_monomials[order]; k++) sum += c[k] * term[k];
+  return sum;
+}
+
+/* The sums of an order. */
+static inline void Sums(const int order, const DipoleImageForms *f, const ImageTerms *t, Lanes K[2][DIPOLE_COUNT]) {
+  for (int sine = 0; sine < 2; sine++) {
+    Lanes term[IMAGE_MONOMIALS];
+    ImageProducts(order, 0, sine, t, term);
+    for (int part = 0; part < DIPOLE_COUNT; part++) {
+      const int comp = part == DIPOLE_XY ? sine : 1 - sine;
+      K[comp][part] = SumOf(order, f->c[order][part][comp], term);
+    }
+  }
+}
+
+/* The sums of an order, added to pairs that are so near. */
+static inline void AddOrder(const int order, LanesBits near, const DipoleImageForms *f, const ImageTerms *t,
+                            Lanes K[2][DIPOLE_COUNT]) {
+  Lanes more[2][DIPOLE_COUNT];
+  Sums(order, f, t, more);
+  for (int k = 0; k < 2 * DIPOLE_COUNT; k++)
+    K[k / DIPOLE_COUNT][k % DIPOLE_COUNT] += LanesWhere(near, more[k / DIPOLE_COUNT][k % DIPOLE_COUNT]);
+}
+
+/* The second order and, with third, the third one. */
+static void AddOrders(const PetscBool third, const DipoleImageForms *f, Lanes x, Lanes a, Lanes b,
+                      Lanes K[2][DIPOLE_COUNT]) {
+  const ImageTerms t = third ? ImageTermsMake(3, x, a, b) : ImageTermsMake(2, x, a, b);
+  AddOrder(2, ImageWithin(IMAGE_SECOND, x, a, b), f, &t, K);
+  if (third) AddOrder(3, ImageWithin(IMAGE_THIRD, x, a, b), f, &t, K);
+}
+
+/* What is left of the exact image, with the terms of the first order. */
+static inline void FarSums(const DipoleImageForms *f, Lanes x, Lanes a, Lanes b, const ImageTerms *t,
+                           Lanes K[2][DIPOLE_COUNT]) {
+  Sums(1, f, t, K);
+  if (LanesAny(ImageWithin(IMAGE_THIRD, x, a, b)))
+    AddOrders(PETSC_TRUE, f, x, a, b, K);
+  else if (LanesAny(ImageWithin(IMAGE_SECOND, x, a, b)))
+    AddOrders(PETSC_FALSE, f, x, a, b, K);
+}
+
+void DipoleImageSourceMake(const DipoleImageForms *f, const PetscReal N[2], PetscReal factor, PetscReal over_length,
+                           DipoleImageSource *s) {
+  const PetscReal part[DIPOLE_COUNT] = {2 * N[0] * N[0], 2 * N[1] * N[1], 2 * N[0] * N[1]};
+  s->forms = f;
+  for (int c = 0; c < 2; c++) {
+    s->N[c] = factor * N[c];
+    s->unit[c] = over_length * N[c];
+    for (int k = 0; k < image_monomials[0]; k++) {
+      const Lanes both = part[DIPOLE_XX] * f->c[0][DIPOLE_XX][c][k] + part[DIPOLE_YY] * f->c[0][DIPOLE_YY][c][k];
+      s->flux[c][1 - c][k] = factor * over_length * both;
+      s->flux[c][c][k] = factor * over_length * part[DIPOLE_XY] * f->c[0][DIPOLE_XY][c][k];
+    }
+  }
+}
+
+void DipoleImageFourExact(const DipoleImageSource *s, Lanes x, Lanes a, Lanes b, Lanes M[4]) {
+  const ImageTerms t = ImageTermsMake(0, x, a, b);
+  Lanes K[2][DIPOLE_COUNT];
+  Sums(0, s->forms, &t, K);
+  DipoleContractFour(K, s->N, M);
+}
+
+void DipoleImageFour(const DipoleImageSource *s, Lanes x, Lanes a, Lanes b, Lanes M[4], Lanes L[2]) {
+  const ImageTerms t = ImageTermsMake(1, x, a, b);
+  Lanes K[2][DIPOLE_COUNT], term[2][IMAGE_MONOMIALS];
+  FarSums(s->forms, x, a, b, &t, K);
+  DipoleContractFour(K, s->N, M);
+  for (int sine = 0; sine < 2; sine++) ImageProducts(0, 0, sine, &t, term[sine]);
+  for (int c = 0; c < 2; c++)
+    L[c] = SumOf(0, s->flux[c][0], term[0]) + SumOf(0, s->flux[c][1], term[1]) -
+           (s->unit[0] * M[c] + s->unit[1] * M[2 + c]);
+}
+
+/* One pair's numbers, of four that are the same. */
+static void First(const Lanes four[2][DIPOLE_COUNT], PetscReal K[2][DIPOLE_COUNT]) {
+  for (int c = 0; c < 2; c++)
+    for (int part = 0; part < DIPOLE_COUNT; part++) K[c][part] = four[c][part][0];
+}
+
+void DipoleImageExact(const DipoleImageForms *f, const ImagePair *p, PetscReal K[2][DIPOLE_COUNT]) {
+  const ImageTerms t = ImageTermsMake(0, p->x + (Lanes){0}, p->a + (Lanes){0}, p->b + (Lanes){0});
+  Lanes four[2][DIPOLE_COUNT];
+  Sums(0, f, &t, four);
+  First((const Lanes(*)[DIPOLE_COUNT])four, K);
+}
+
+void DipoleImageFarFour(const DipoleImageForms *f, Lanes x, Lanes a, Lanes b, Lanes K[2][DIPOLE_COUNT]) {
+  const ImageTerms t = ImageTermsMake(1, x, a, b);
+  FarSums(f, x, a, b, &t, K);
+}
+
+void DipoleImageFar(const DipoleImageForms *f, const ImagePair *p, PetscReal K[2][DIPOLE_COUNT]) {
+  Lanes four[2][DIPOLE_COUNT];
+  DipoleImageFarFour(f, p->x + (Lanes){0}, p->a + (Lanes){0}, p->b + (Lanes){0}, four);
+  First((const Lanes(*)[DIPOLE_COUNT])four, K);
+}

@@ -1,0 +1,232 @@
+#include "layers/doubleimage.h"
+
+#define PARTS(K) ((const PetscReal(*)[DIPOLE_COUNT])(K)) /* as what is only read */
+
+PetscErrorCode DoubleImageCreate(NearImage single, const OffsetTable lattice[2], DoubleImage *out) {
+  const Markers markers = single->markers;
+  DoubleImage m;
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&m));
+  *out = m;
+  m->single = single;
+  DipoleImageFormsMake(single->kernel.moment, &m->forms);
+  if (!single->table) PetscFunctionReturn(PETSC_SUCCESS);
+  for (int wall = 0; wall < 4; wall++)
+    if (single->end[wall / 2][wall % 2]) PetscCall(PetscMalloc1(markers->layout->M, &m->end[wall / 2][wall % 2]));
+  PetscCall(PetscNew(&m->table));
+  PetscCall(DipoleImageFill(lattice, m->table));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode DoubleImageDestroy(DoubleImage *image) {
+  DoubleImage m = *image;
+  PetscFunctionBeginUser;
+  if (!m) PetscFunctionReturn(PETSC_SUCCESS);
+  for (int wall = 0; wall < 4; wall++) PetscCall(PetscFree(m->end[wall / 2][wall % 2]));
+  PetscCall(PetscFree(m->table));
+  PetscCall(PetscFree(*image));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Rows of a dipole y cells from a wall; parts seen from it. */
+static DipoleEnd MakeEnd(PetscReal y) {
+  const Kernel *five = KernelFind("cbs54"), *six = KernelFind("cbs65");
+  const KernelWeights weights[DIPOLE_COUNT] = {five->across, six->along, five->along};
+  DipoleEnd e;
+  for (int part = 0; part < DIPOLE_COUNT; part++) {
+    const PetscBool node = part == DIPOLE_XY ? PETSC_TRUE : PETSC_FALSE; /* nodes at j + 1, cells at j + 1/2 */
+    e.n[part] = weights[part](y - (node ? 1.0 : 0.5), &e.first[part], e.weight[part]);
+    FoldLow(FOLD_SMOOTH, &e.first[part], &e.n[part], e.weight[part]);
+    if (node) e.first[part]++; /* rows of the table: 0 on the wall */
+  }
+  return e;
+}
+
+void DoubleImagePlace(DoubleImage m, const PaddedStencil dipole[]) {
+  m->dipole = dipole;
+  for (int wall = 0; wall < 4; wall++)
+    for (PetscInt k = 0; k < m->single->markers->layout->M && m->end[wall / 2][wall % 2]; k++) {
+      const PetscReal y = m->single->y[wall / 2][wall % 2][k];
+      if (y < IMAGE_CELLS) m->end[wall / 2][wall % 2][k] = MakeEnd(y);
+    }
+}
+
+/* A part, seen from a wall, in the directions of the grid, or the other way round. */
+static int Turned(int direction, int part) {
+  return direction || part == DIPOLE_XY ? part : 1 - part;
+}
+
+/* Where a component of the answer to a part, both seen from a wall, is in x and y, and its sign: what is odd in the
+   distance from the wall changes it at the upper end. */
+typedef struct {
+  int component, part;
+  PetscReal sign;
+} Place;
+static Place PlaceOf(int wall, int c, int part) {
+  const PetscBool odd = (c == 1) != (part == DIPOLE_XY) ? PETSC_TRUE : PETSC_FALSE;
+  return (Place){c ? wall / 2 : 1 - wall / 2, Turned(wall / 2, part), wall % 2 && odd ? -1 : 1};
+}
+
+/* K += alpha times a pair's parts, turned from a wall to x and y. */
+static void Turn(int wall, PetscReal alpha, const PetscReal part[2][DIPOLE_COUNT], PetscReal K[2][DIPOLE_COUNT]) {
+  for (int c = 0; c < 2; c++)
+    for (int q = 0; q < DIPOLE_COUNT; q++) {
+      const Place to = PlaceOf(wall, c, q);
+      K[to.component][to.part] += to.sign * alpha * part[c][q];
+    }
+}
+
+/* The half-space lattice's answer at i to the parts of j near a wall, x cells apart along it and seen from it. */
+static void Half(DoubleImage m, int wall, PetscInt i, PetscInt j, PetscReal x, PetscReal K[2][DIPOLE_COUNT]) {
+  const int direction = wall / 2, t = 1 - direction;
+  const ImageEnd *e = &m->single->end[direction][wall % 2][i];
+  const DipoleEnd *f = &m->end[direction][wall % 2][j];
+  for (int c = 0; c < 2; c++)
+    for (int part = 0; part < DIPOLE_COUNT; part++) {
+      const ImageRows row = {e->first[c], e->n[c], e->weight[c], &m->single->stencil[2 * i + (c ? direction : t)]};
+      const ImageRows source = {f->first[part], f->n[part], f->weight[part],
+                                &m->dipole[DIPOLE_COUNT * j + Turned(direction, part)]};
+      K[c][part] = ImageSum(m->table->value[part][c], m->single->markers->grid, t, x, &row, &source);
+    }
+}
+
+void DoubleImageExact(DoubleImage m, int wall, const ImagePair *p, PetscReal exact[2][DIPOLE_COUNT]) {
+  PetscReal part[2][DIPOLE_COUNT];
+  DipoleImageExact(&m->forms, p, part);
+  Turn(wall, 1 / m->single->markers->grid->h, PARTS(part), exact);
+}
+
+/* What a wall adds for a pair: to exact fluid, to the lattice, and how much of each component of the lattice's answer
+   without walls is to be taken off. */
+typedef struct {
+  PetscReal exact[2][DIPOLE_COUNT], lattice[2][DIPOLE_COUNT], less[2];
+} AtWall;
+
+/* Responses that are scaled near the wall take s of the half space's free + exact - far only. */
+static AtWall AtWallOf(DoubleImage m, int wall, PetscInt i, PetscInt j, const PetscReal d[2], PetscBool lattice) {
+  const PetscReal over = 1 / m->single->markers->grid->h, *y = m->single->y[wall / 2][wall % 2];
+  const ImagePair p = {d[1 - wall / 2] * over, y[i], y[j]};
+  AtWall a = {.less = {1, 1}};
+  PetscReal part[2][DIPOLE_COUNT];
+  DoubleImageExact(m, wall, &p, a.exact);
+  if (!lattice) return a;
+  if (NearImageIsNear(&p)) {
+    Half(m, wall, i, j, p.x, part);
+    Turn(wall, over, PARTS(part), a.lattice);
+    return a;
+  }
+  DipoleImageFar(&m->forms, &p, part);
+  Turn(wall, -over, PARTS(part), a.lattice);
+  for (int c = 0; c < 2; c++) {
+    const PetscReal scale = c == wall / 2 ? m->single->end[wall / 2][wall % 2][i].scale : 1;
+    a.less[c] = 1 - scale;
+    for (int k = 0; k < DIPOLE_COUNT; k++) a.lattice[c][k] = scale * (a.lattice[c][k] + a.exact[c][k]);
+  }
+  return a;
+}
+
+void DoubleImageAdd(DoubleImage m, PetscInt i, PetscInt j, const PetscReal d[2], PetscReal reach,
+                    PetscReal exact[2][DIPOLE_COUNT], PetscReal lattice[2][DIPOLE_COUNT]) {
+  PetscReal free[2][DIPOLE_COUNT];
+  (void)PetscMemcpy(free, lattice, sizeof(free));
+  for (int wall = 0; wall < 4; wall++) {
+    const PetscReal *y = m->single->y[wall / 2][wall % 2];
+    if (!m->end[wall / 2][wall % 2] || y[i] + y[j] >= reach) continue;
+    const AtWall a = AtWallOf(m, wall, i, j, d, PETSC_TRUE);
+    for (int c = 0; c < 2; c++)
+      for (int k = 0; k < DIPOLE_COUNT; k++) {
+        exact[c][k] += a.exact[c][k];
+        lattice[c][k] += a.lattice[c][k] - a.less[c] * free[c][k];
+      }
+  }
+}
+
+/* One wall's parts, pair by pair. */
+static void AddPairs(DoubleImage m, int wall, PetscReal reach, const DoubleColumn *c) {
+  const PetscReal *y = m->single->y[wall / 2][wall % 2];
+  for (PetscInt k = 0; k < c->n; k++) {
+    PetscReal exact[4], L[4];
+    if (y[c->i + k] + y[c->j] >= reach) continue;
+    const AtWall a = AtWallOf(m, wall, c->i + k, c->j, (PetscReal[]){c->d[0][k], c->d[1][k]}, c->lattice);
+    DipoleContract(a.exact, c->N, 1, exact);
+    for (int q = 0; q < 4; q++) c->wall[q][k] += exact[q];
+    if (!c->lattice) continue;
+    DipoleContract(a.lattice, c->N, 1, L);
+    for (int q = 0; q < 4; q++) {
+      L[q] -= a.less[q % 2] * c->free[q][k];
+      c->wall[q][k] -= L[q];
+      c->flux[q % 2][k] += c->over * c->N[q / 2] * L[q];
+    }
+  }
+}
+
+/* x += a, or -a. */
+static inline void AddFour(PetscBool turned, Lanes a, PetscReal x[]) {
+  LanesPut(turned ? LanesAt(x) - a : LanesAt(x) + a, x);
+}
+
+/* One wall's parts in closed form, of markers that are off the wall, seen from which x is along it; none of images
+   beyond the reach. */
+static void AddFar(DoubleImage m, int wall, PetscReal reach, const DoubleColumn *c) {
+  const int direction = wall / 2, side = wall % 2;
+  const PetscReal cell = 1 / m->single->markers->grid->h, *y = m->single->y[direction][side];
+  const PetscReal N[2] = {c->N[1 - direction], side ? -c->N[direction] : c->N[direction]};
+  const Lanes b = y[c->j] + (Lanes){0};
+  DipoleImageSource source;
+  DipoleImageSourceMake(&m->forms, N, cell, c->over, &source);
+  for (PetscInt k = 0; k < c->n; k += LANES) {
+    const Lanes x = cell * LanesAt(c->d[1 - direction] + k), a = LanesAt(y + c->i + k);
+    Lanes M[4], L[2];
+    if (c->lattice)
+      DipoleImageFour(&source, x, a, b, M, L);
+    else
+      DipoleImageFourExact(&source, x, a, b, M);
+    const LanesBits meant = (LanesBits)(a + b < reach);
+    for (int to = 0; to < 2; to++) {
+      const int comp = to ? direction : 1 - direction;
+      for (int from = 0; from < 2; from++)
+        AddFour(side && to != from, LanesWhere(meant, M[2 * from + to]),
+                c->wall[2 * (from ? direction : 1 - direction) + comp] + k);
+      if (c->lattice) AddFour(side && to, LanesWhere(meant, L[to]), c->flux[comp] + k);
+    }
+  }
+}
+
+void DoubleImageAddColumn(DoubleImage m, PetscReal reach, const DoubleColumn *c) {
+  for (int wall = 0; wall < 4; wall++) {
+    const PetscReal *y = m->single->y[wall / 2][wall % 2], low = c->near[wall];
+    if (!m->end[wall / 2][wall % 2] || low + y[c->j] >= reach) continue;
+    if (!c->lattice || (low + y[c->j] >= IMAGE_OFF && PetscMin(low, y[c->j]) >= FOLD_SCALED))
+      AddFar(m, wall, reach, c);
+    else
+      AddPairs(m, wall, reach, c);
+  }
+}
+
+void DoubleImageRange(DoubleImage m, DoubleColumn *c) {
+  for (int wall = 0; wall < 4; wall++) {
+    const PetscReal *y = m->single->y[wall / 2][wall % 2];
+    c->near[wall] = PETSC_MAX_REAL;
+    for (PetscInt k = c->i; k < c->i + c->n && m->end[wall / 2][wall % 2]; k++)
+      c->near[wall] = PetscMin(c->near[wall], y[k]);
+  }
+}
+
+void DoubleImageFar(const void *image, PetscInt n, const PetscReal X[], const PetscReal Y[2], PetscReal V[]) {
+  const struct _p_DoubleImage *m = image;
+  const Grid g = m->single->markers->grid;
+  (void)PetscArrayzero(V, 2 * DIPOLE_COUNT * n);
+  for (int wall = 0; wall < 4; wall++)
+    for (PetscInt k = 0; k < n && g->wall[wall / 2]; k += LANES) {
+      Lanes x[2], seen[3], K[2][DIPOLE_COUNT];
+      LanesPairs(X + 2 * k, &x[0], &x[1]);
+      NearImageSeen(g, wall, x, Y, seen);
+      DipoleImageFarFour(&m->forms, seen[0], seen[1], seen[2], K);
+      for (int c = 0; c < 2; c++)
+        for (int q = 0; q < DIPOLE_COUNT; q++) {
+          const Place to = PlaceOf(wall, c, q);
+          PetscReal *at = V + (to.component * DIPOLE_COUNT + to.part) * n + k;
+          LanesPut(LanesAt(at) + to.sign / g->h * K[c][q], at);
+        }
+    }
+}

@@ -1,0 +1,50 @@
+/* The Stokeslet of the half-space lattice, h = nu = 1: what the grid's Stokes solve gives at a face per unit force on a
+   face above one wall, without inertia (docs/nearfield.md, Walls). In mode theta along the wall the wall adds
+
+       psi(j) = (A + B j) e^{-mu j},      mu = 2 asinh(sin(theta/2)),
+
+   to the stream function of the free lattice, A and B such that both velocities are zero on the wall. The integral over
+   theta is tabulated for rows of response and source and offsets along the wall. Nothing crosses ranks. */
+#pragma once
+#include "layers/stencilsums.h"
+
+#define IMAGE_CELLS 20 /* from a marker to another one's image, up to which stencils are summed if one is folded, */
+#define IMAGE_OFF 14   /* and if both are off the wall */
+#define IMAGE_ROWS 25  /* rows from the wall: t at row + 1/2, n at row (0 on the wall, zero) */
+#define IMAGE_SHIFT 28 /* largest offset along the wall */
+#define IMAGE_WIDTH (2 * IMAGE_SHIFT + 1)
+
+/* Velocity per unit force by rows of response and source and the offset along the wall, response minus source, as in
+   OffsetTable with the wall along x: t to t (OFFSET_UU), n to n (OFFSET_VV), n to t (OFFSET_VU; at the offset minus
+   1/2). */
+typedef struct {
+  PetscReal value[OFFSET_COUNT][IMAGE_ROWS][IMAGE_ROWS][IMAGE_WIDTH];
+} ImageTable;
+
+/* A mode along the wall: k, s, sinh mu, cosh mu, and by row from row 0 F = g1 - s g2, g2 and e^{-mu j} (imagetable.c).
+ */
+#define IMAGE_LINES (IMAGE_ROWS + 2)
+#define IMAGE_NODES 64 /* of Gauss and Legendre; 50 give the same to rounding, 40 to 6e-13 */
+typedef struct {
+  PetscReal k, s, sinh, cosh, F[IMAGE_LINES], g2[IMAGE_LINES], e[IMAGE_LINES];
+} ImageMode;
+
+/* ImageModeMake - of the wave number theta. ImagePsi - psi(j) = (A + B j) e^{-mu j} of A and of minus the sum of psi's
+   next neighbours, psi(1) - psi(-1) = -jump. Not collective. */
+PETSC_EXTERN ImageMode ImageModeMake(PetscReal theta);
+PETSC_EXTERN void ImagePsi(const ImageMode *mode, PetscReal A, PetscReal jump, PetscReal psi[IMAGE_LINES]);
+
+/* A stencil at a wall: its rows from the wall, folded, and the stencil itself, which counts along the wall. */
+typedef struct {
+  PetscInt first, n;
+  const PetscReal *weight;
+  const PaddedStencil *along;
+} ImageRows;
+
+/* ImageSum - the sum of a table over the rows of a response and a source and over their stencils along the wall, in
+   direction t, whose markers are x cells apart there. Not collective. */
+PETSC_EXTERN PetscReal ImageSum(const PetscReal (*table)[IMAGE_ROWS][IMAGE_WIDTH], Grid grid, int t, PetscReal x,
+                                const ImageRows *response, const ImageRows *source);
+
+/* ImageTableFill - from the free lattice's table (lattice.h), of a reach of IMAGE_SHIFT at least. Not collective. */
+PETSC_EXTERN PetscErrorCode ImageTableFill(const OffsetTable *lattice, ImageTable *table);

@@ -1,0 +1,140 @@
+/* In x a Fourier integral over theta in (0, pi], in y in closed form. With s = 4 sin^2(theta/2) and the decay e^-mu of
+   mode theta from row to row, mu = 2 asinh(sin(theta/2)), the inverse of s minus the second difference in y and that of
+   its square are
+
+       g1(j) = e^{-mu j}/(2 sinh mu)
+       g2(j) = e^{-mu j} (j sinh mu + cosh mu)/(4 sinh^3 mu)
+
+   and the projection onto divergence-free fields gives
+
+       uu(i, j) = (1/pi) INT [cos(i theta) (g1 - s g2)(j) - 1/(4 theta)] dtheta + (gamma + ln pi + 1)/(4 pi)
+       vv(i, j) = uu(j, i)
+       vu(i + 1/2, j + 1/2) = -(1/pi) INT 2 sin(theta/2) sin((i + 1/2) theta) (g2(j + 1) - g2(j)) dtheta
+
+   vu odd in both offsets. The integrands are analytic: Gauss-Legendre converges to rounding. */
+#include "layers/latticegreen.h"
+
+#define EULER_GAMMA 0.57721566490153286061
+
+PetscReal LatticeConstant(void) {
+  return (EULER_GAMMA + PetscLogReal(PETSC_PI) + 1) / (4 * PETSC_PI);
+}
+
+/* Newton on the Legendre polynomial. */
+void GaussLegendre(PetscInt n, PetscReal theta[], PetscReal weight[]) {
+  for (PetscInt k = 0; k < n; k++) {
+    PetscReal x = PetscCosReal(PETSC_PI * (k + 0.75) / (n + 0.5)), slope = 1;
+    for (int it = 0; it < 100; it++) {
+      PetscReal p = 1, before = 0, step;
+      for (PetscInt j = 0; j < n; j++) { /* (j + 1) P_{j+1} = (2j + 1) x P_j - j P_{j-1} */
+        const PetscReal next = ((2 * j + 1) * x * p - j * before) / (j + 1);
+        before = p;
+        p = next;
+      }
+      slope = n * (x * p - before) / (x * x - 1);
+      step = p / slope;
+      x -= step;
+      if (PetscAbsReal(step) < 1e-15) break;
+    }
+    theta[k] = 0.5 * PETSC_PI * (1 - x);
+    weight[k] = PETSC_PI / ((1 - x * x) * slope * slope);
+  }
+}
+
+/* (g1 - s g2)(j) and g2(j) for j = 0 .. n. */
+static void Along(PetscReal mu, PetscReal s, PetscInt n, PetscReal along[], PetscReal square[]) {
+  const PetscReal S = PetscSinhReal(mu), C = PetscCoshReal(mu);
+  for (PetscInt j = 0; j <= n; j++) {
+    const PetscReal e = PetscExpReal(-mu * j);
+    square[j] = e * (j * S + C) / (4 * S * S * S);
+    along[j] = e / (2 * S) - s * square[j];
+  }
+}
+
+/* uu and vu of offsets 0 .. reach: arrays [i][j], i fastest in memory order [j * (reach + 1) + i]. */
+static PetscErrorCode Quadrant(PetscInt reach, PetscReal uu[], PetscReal vu[]) {
+  const PetscInt nodes = reach + 40, n = reach + 1; /* reach + 20 give the same to rounding */
+  PetscReal *theta, *weight, *cosine, *sine, *along, *square;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc6(nodes, &theta, nodes, &weight, n, &cosine, n, &sine, n + 1, &along, n + 1, &square));
+  GaussLegendre(nodes, theta, weight);
+  PetscCall(PetscArrayzero(vu, n * n));
+  for (PetscInt k = 0; k < n * n; k++) uu[k] = LatticeConstant();
+  for (PetscInt q = 0; q < nodes; q++) {
+    const PetscReal half = PetscSinReal(0.5 * theta[q]), s = 4 * half * half, mu = 2 * PetscAsinhReal(half);
+    const PetscReal w = weight[q] / PETSC_PI;
+    for (PetscInt i = 0; i < n; i++) {
+      cosine[i] = PetscCosReal(i * theta[q]);
+      sine[i] = PetscSinReal((i + 0.5) * theta[q]);
+    }
+    Along(mu, s, n, along, square);
+    for (PetscInt j = 0; j < n; j++) {
+      const PetscReal across = w * 2 * half * (square[j + 1] - square[j]), level = 1 / (4 * theta[q]);
+      for (PetscInt i = 0; i < n; i++) {
+        uu[j * n + i] += w * (cosine[i] * along[j] - level);
+        vu[j * n + i] -= sine[i] * across;
+      }
+    }
+  }
+  PetscCall(PetscFree6(theta, weight, cosine, sine, along, square));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Entry (i, j) of v lies half a cell left of and above that of u: the offset (i - 1/2, j + 1/2). */
+PetscErrorCode LatticeStokeslet(PetscInt reach, OffsetTable *t) {
+  const PetscInt size[2] = {reach, reach}, n = reach + 2, width = 2 * reach + 1;
+  PetscReal *uu, *vu;
+  PetscFunctionBeginUser;
+  PetscCall(OffsetTableCreate(size, t));
+  PetscCall(PetscMalloc2(n * n, &uu, n * n, &vu));
+  PetscCall(Quadrant(reach + 1, uu, vu));
+  for (PetscInt j = -reach; j <= reach; j++)
+    for (PetscInt i = -reach; i <= reach; i++) {
+      const PetscInt at = (j + reach) * width + i + reach, ai = PetscAbsInt(i), aj = PetscAbsInt(j);
+      const PetscInt hi = i > 0 ? i - 1 : -i, hj = j >= 0 ? j : -j - 1;
+      t->value[OFFSET_UU][at] = uu[aj * n + ai];
+      t->value[OFFSET_VV][at] = uu[ai * n + aj];
+      t->value[OFFSET_VU][at] = ((i > 0) == (j >= 0) ? 1 : -1) * vu[hj * n + hi];
+    }
+  PetscCall(PetscFree2(uu, vu));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The inverse of the lattice's Laplacian is -(1/pi) INT cos(i theta) g1(j) dtheta; its difference over one cell in x
+   has 2 sin(theta/2)/(2 sinh mu) = 1/(2 cosh(mu/2)), so it is (1/(2 pi)) INT sin((i - 1/2) theta) e^{-mu j}/cosh(mu/2)
+   dtheta. quadrant[j * (reach + 2) + i] for i from 1, j from 0. */
+static PetscErrorCode PressureQuadrant(PetscInt reach, PetscReal quadrant[]) {
+  const PetscInt nodes = reach + 40, n = reach + 2;
+  PetscReal *theta, *weight, *sine;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc3(nodes, &theta, nodes, &weight, n, &sine));
+  GaussLegendre(nodes, theta, weight);
+  PetscCall(PetscArrayzero(quadrant, n * n));
+  for (PetscInt q = 0; q < nodes; q++) {
+    const PetscReal half = PetscSinReal(0.5 * theta[q]), mu = 2 * PetscAsinhReal(half);
+    for (PetscInt i = 1; i < n; i++) sine[i] = PetscSinReal((i - 0.5) * theta[q]);
+    for (PetscInt j = 0; j < n; j++) {
+      const PetscReal along = weight[q] / (2 * PETSC_PI) * PetscExpReal(-mu * j) / PetscSqrtReal(1 + half * half);
+      for (PetscInt i = 1; i < n; i++) quadrant[j * n + i] += along * sine[i];
+    }
+  }
+  PetscCall(PetscFree3(theta, weight, sine));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode LatticePressure(PetscInt reach, OffsetTable *t) {
+  const PetscInt size[2] = {reach, reach}, n = reach + 2, width = 2 * reach + 1;
+  PetscReal *quadrant;
+  PetscFunctionBeginUser;
+  PetscCall(OffsetTableCreate(size, t));
+  PetscCall(PetscMalloc1(n * n, &quadrant));
+  PetscCall(PressureQuadrant(reach, quadrant));
+  for (PetscInt j = -reach; j <= reach; j++)
+    for (PetscInt i = -reach; i <= reach; i++) {
+      const PetscReal p = (i > 0 ? 1 : -1) * quadrant[PetscAbsInt(j) * n + (i > 0 ? i : 1 - i)];
+      t->value[OFFSET_UU][(j + reach) * width + i + reach] = p;
+      t->value[OFFSET_VV][(i + reach) * width + j + reach] = p;
+    }
+  PetscCall(PetscFree(quadrant));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,68 @@
+/* Blocks of the single layer's C = S - L (singlepairs.h): the velocities of one body's markers by the forces on those
+   of another one, or of its image,
+
+       U_v += C_vw F_w,     U_w += C_vw^T F_v,
+
+   so that each pair of bodies has one block. It lies in rows, two for each marker of the first body, its x and its y
+   velocity, with columns interlaced. A body's block with itself has of each row what is right of the diagonal, and of a
+   marker with itself the half. Nothing crosses ranks: a block is in the store of the rank that owns its first body. */
+#pragma once
+#include "layers/finecurve.h"
+#include "layers/singlepairs.h"
+
+typedef struct {
+  PetscInt row, column; /* bodies */
+  PetscReal shift[2];   /* of the column's image (length) */
+  PetscBool single;     /* in single precision */
+  size_t at;            /* in the store's value, or single */
+} NearBlock;
+
+/* The blocks' values in double and in single precision, and room for so many. */
+typedef struct {
+  PetscReal *value;
+  float *single;
+  size_t value_room, single_room;
+} NearStore;
+
+/* NearBlockIsSelf - whether it is of a body with itself, not with an image. */
+static inline PetscBool NearBlockIsSelf(const NearBlock *b) {
+  return b->row == b->column && b->shift[0] == 0 && b->shift[1] == 0 ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* One marker's two rows of a block, the y row a stride behind. */
+typedef struct {
+  PetscInt row, column, count; /* marker; the first of the columns' markers, how many */
+  PetscInt stride;             /* whole vectors, zeros behind the last marker */
+  size_t at;                   /* in the store's value, or single */
+} NearRow;
+
+/* NearBlockBegin - of a block's first marker; NearBlockNext - of the next one; false when there is none. */
+static inline PetscInt NearStride(PetscInt count) {
+  return 4 * ((count + 1) / 2);
+}
+static inline NearRow NearBlockBegin(Layout l, const NearBlock *b) {
+  const PetscInt count = LayoutCount(l, b->column);
+  return (NearRow){l->start[b->row], l->start[b->column], count, NearStride(count), b->at};
+}
+static inline PetscBool NearBlockNext(Layout l, const NearBlock *b, NearRow *r) {
+  r->at += 2 * (size_t)r->stride;
+  if (++r->row == l->start[b->row + 1]) return PETSC_FALSE;
+  if (NearBlockIsSelf(b)) {
+    r->column++;
+    r->stride = NearStride(--r->count);
+  }
+  return PETSC_TRUE;
+}
+
+/* NearBlockFill - the values of a block where the pairs have been placed, without finer points. NearBlockRefine - to
+   the block the difference between finer points of two curves near one another and their markers.
+   NearBlockRefineAtWalls - the same of images in walls that are nearer than two marker spacings, of closed curves only:
+   the first marker of an open one is half a spacing off its wall. Not collective. */
+PETSC_EXTERN PetscErrorCode NearBlockFill(SinglePairs pairs, const NearBlock *block, NearStore *store);
+PETSC_EXTERN PetscErrorCode NearBlockRefine(SinglePairs pairs, const NearBlock *block, const FinePair *fine,
+                                            NearStore *store);
+PETSC_EXTERN PetscErrorCode NearBlockRefineAtWalls(SinglePairs pairs, const NearBlock *block, NearStore *store);
+
+/* NearLatticePair - L of markers i and j, d = X_i - X_j (length) that of the image meant: xx, yy, xy (x to a force
+   along y), yx. By stencils as far as the table goes, by closed form beyond. Not collective. */
+PETSC_EXTERN void NearLatticePair(SinglePairs pairs, PetscInt i, PetscInt j, const PetscReal d[2], PetscReal L[4]);

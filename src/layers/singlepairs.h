@@ -1,0 +1,39 @@
+/* Pairs of markers in the single layer,
+
+       C = S - L,
+
+   S the Stokeslet of unbounded fluid, L what a force on one marker gives at another on the infinite lattice: spread
+   and interpolated by the regularised delta function, solved on the staggered grid. What walls add to either is in
+   nearimage.h. Far from one another C has a closed form (nearfar.h); near ones take L from sums over their stencils
+   (offsets.h). In unbounded fluid there is no lattice: C = S.
+
+   Create once, Place where the markers have been placed, then whatever asks for pairs (nearblock.h). Nothing crosses
+   ranks. */
+#pragma once
+#include "layers/layersetting.h"
+#include "layers/farform.h"
+#include "layers/nearimage.h"
+
+typedef struct _p_SinglePairs *SinglePairs;
+struct _p_SinglePairs {
+  const LayerSetting *set;    /* borrowed */
+  const OffsetTable *lattice; /* the lattice's Stokeslet (lattice.h), borrowed; not read in unbounded fluid */
+  NearImage image;            /* what walls add; NULL in unbounded fluid */
+  PetscBool images;           /* whether it counts: a box table may have it instead */
+  NearFar far[2];             /* closed forms of distant pairs: of one body, of two */
+  PetscReal **logarithm;      /* [bodies][n] of own bodies, by difference of the markers' numbers: what the curve's
+                                 quadrature has besides ln(r^2) (SelfLogarithm); others NULL */
+  PaddedStencil *stencil;     /* [2M] of u and v, unfolded, counted from the marker's own place */
+  PetscReal *fourth[2][2];    /* [M] and whole vectors: a component's fourth moments along x and y less the mean ones */
+  NearBounds *bounds;         /* [bodies] */
+};
+
+/* SinglePairsCreate - with the lattice's tables, which the caller keeps: its Stokeslet, and that of the half space in
+   front of a wall, NULL without walls. Collective. */
+PETSC_EXTERN PetscErrorCode SinglePairsCreate(const LayerSetting *set, const OffsetTable *lattice,
+                                              const ImageTable *half, SinglePairs *pairs);
+PETSC_EXTERN PetscErrorCode SinglePairsDestroy(SinglePairs *pairs);
+
+/* SinglePairsPlace - where the markers have been placed (MarkersPlace); images: whether those in walls count. Not
+   collective. */
+PETSC_EXTERN PetscErrorCode SinglePairsPlace(SinglePairs pairs, PetscBool images);

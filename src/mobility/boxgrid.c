@@ -1,0 +1,249 @@
+#include "mobility/boxgrid.h"
+#include "layers/doubleblock.h"
+#include "layers/nearblock.h"
+#include "fluid/stokes/stokes.h"
+#include "markers/streamresponse.h"
+
+typedef struct {
+  Fluid fluid;
+  Stokes stokes;
+  Layout layout; /* one body: the places, x fastest */
+  Markers markers;
+  LayerSetting set;
+  SinglePairs pairs; /* of the places, */
+  DoubleImage twice; /* and what walls add to dipoles */
+  Vec force, u, p;   /* on the grid */
+  Vec F, U;          /* at the places */
+  const BoxAxis *axis;
+  const BoxLattice *lattice;
+  PaddedStencil *dipole; /* [DIPOLE_COUNT places], of dipoles */
+  Vec source;            /* of dipoles */
+} BoxGrid;
+
+static PetscErrorCode PlaceMarkers(BoxGrid *b, const char kernel[]) {
+  const BoxAxis *x = &b->axis[0], *y = &b->axis[1];
+  const PetscInt start[2] = {0, x->places * y->places};
+  PetscScalar *a;
+  PetscFunctionBeginUser;
+  PetscCall(LayoutCreate(PETSC_COMM_SELF, 1, start, &b->layout));
+  PetscCall(MarkersCreate(b->fluid->grid, b->layout, kernel, PETSC_TRUE, &b->markers));
+  MarkersLeaveUnscaled(b->markers);
+  PetscCall(LayoutCreateVec(b->layout, 2, &b->F));
+  PetscCall(VecDuplicate(b->F, &b->U));
+  PetscCall(VecGetArray(b->U, &a));
+  for (PetscInt k = 0; k < start[1]; k++) {
+    a[2 * k] = x->place[k % x->places];
+    a[2 * k + 1] = y->place[k / x->places];
+  }
+  PetscCall(VecRestoreArray(b->U, &a));
+  PetscCall(MarkersPlace(b->markers, b->U));
+  if (!b->lattice->dipole) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscCalloc1(DIPOLE_COUNT * start[1], &b->dipole));
+  for (PetscInt k = 0; k < start[1]; k++) {
+    Stencil part[DIPOLE_COUNT];
+    DipoleStencilsUnwrapped(b->fluid->grid, b->markers->X + 2 * k, part);
+    for (int c = 0; c < DIPOLE_COUNT; c++) StencilPad(&part[c], &b->dipole[DIPOLE_COUNT * k + c]);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Create(const FluidSpec *spec, const char kernel[], const BoxLattice *lattice,
+                             const BoxAxis axis[2], BoxGrid *b) {
+  FluidSpec box = *spec;
+  PetscFunctionBeginUser;
+  *b = (BoxGrid){.axis = axis, .lattice = lattice};
+  PetscCall(PetscStrncpy(box.helmholtz, "fftw_tridiagonal", sizeof(box.helmholtz)));
+  PetscCall(PetscStrncpy(box.poisson, "fftw_tridiagonal", sizeof(box.poisson)));
+  PetscCall(FluidCreate(&box, &b->fluid));
+  PetscCall(StokesCreate(b->fluid, &b->stokes));
+  PetscCall(PlaceMarkers(b, kernel));
+  b->set = (LayerSetting){.markers = b->markers, .nu = spec->nu, .unit = lattice->unit};
+  PetscCall(SinglePairsCreate(&b->set, lattice->stokeslet, lattice->half, &b->pairs));
+  PetscCall(SinglePairsPlace(b->pairs, PETSC_TRUE));
+  if (lattice->dipole) {
+    PetscCall(DMCreateGlobalVector(b->fluid->grid->da[FIELD_P], &b->source));
+    PetscCall(DoubleImageCreate(b->pairs->image, lattice->dipole, &b->twice));
+    DoubleImagePlace(b->twice, b->dipole);
+  }
+  if (!lattice->dipole) PetscFunctionReturn(PETSC_SUCCESS); /* nothing on the grid */
+  PetscCall(DMCreateGlobalVector(b->fluid->grid->velocity, &b->force));
+  PetscCall(VecDuplicate(b->force, &b->u));
+  PetscCall(DMCreateGlobalVector(b->fluid->grid->da[FIELD_P], &b->p));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Destroy(BoxGrid *b) {
+  Vec *all[] = {&b->force, &b->u, &b->p, &b->F, &b->U, &b->source};
+  PetscFunctionBeginUser;
+  for (int k = 0; k < 6; k++) PetscCall(VecDestroy(all[k]));
+  PetscCall(PetscFree(b->dipole));
+  PetscCall(DoubleImageDestroy(&b->twice));
+  PetscCall(SinglePairsDestroy(&b->pairs));
+  PetscCall(MarkersDestroy(&b->markers));
+  PetscCall(LayoutDestroy(&b->layout));
+  PetscCall(StokesDestroy(&b->stokes));
+  PetscCall(FluidDestroy(&b->fluid));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+void BoxFaded(const BoxAxis axis[2], PetscInt n, PetscReal *const d[2], PetscReal V[]) {
+  PetscReal zero[2] = {0, 0};
+  const PetscReal whole = BoxImage(axis, zero);
+  BoxImageRow(axis, n, d, V);
+  for (PetscInt k = 0; k < n; k += LANES) {
+    Lanes K[2][DIPOLE_COUNT];
+    StressletParts(LanesAt(d[0] + k), LanesAt(d[1] + k), (whole - LanesAt(V + k)) / whole, K);
+    for (int q = 0; q < 2 * DIPOLE_COUNT; q++) LanesPut(K[q / DIPOLE_COUNT][q % DIPOLE_COUNT], V + q * n + k);
+  }
+}
+
+/* L = K less what fades of the exact double layer D; towards half a period, where images change, (1 - lost) D. */
+static void All(const BoxAxis axis[2], const PetscReal d[2], PetscReal K[2][DIPOLE_COUNT],
+                PetscReal L[2][DIPOLE_COUNT]) {
+  PetscReal near = 1, at[2] = {d[0], d[1]}, zero[2] = {0, 0};
+  const PetscReal whole = BoxImage(axis, zero), lost = (whole - BoxImage(axis, at)) / whole;
+  Lanes D[2][DIPOLE_COUNT];
+  for (int dir = 0; dir < 2; dir++)
+    if (!axis[dir].wall)
+      near *= 1 - BoxSmoothStep(PetscAbsReal(d[dir]) / (axis[dir].high - axis[dir].low), BOX_ALL_OFFSET, 0.5);
+  StressletParts(d[0] + (Lanes){0}, d[1] + (Lanes){0}, 1 + (Lanes){0}, D);
+  for (int c = 0; c < 2; c++)
+    for (int part = 0; part < DIPOLE_COUNT; part++) L[c][part] = near * K[c][part] + (1 - lost - near) * D[c][part][0];
+}
+
+/* What the lattice has of the parts of place j's source at place i, less what the near field gives of the walls: the
+   velocities L; with the exact images where the smooth part itself is wanted. */
+static void Lattice(BoxGrid *b, PetscInt i, PetscInt j, PetscReal L[2][DIPOLE_COUNT]) {
+  const PetscReal *X = b->markers->X, h = b->fluid->grid->h;
+  const PetscReal plain[2] = {X[2 * i] - X[2 * j], X[2 * i + 1] - X[2 * j + 1]};
+  PetscReal d[2] = {plain[0], plain[1]}, C[4] = {0, 0, 0, 0}, S[4];
+  const PetscReal fade = BoxImage(b->axis, d);
+  if (b->lattice->dipole) {
+    const PetscInt periods[2] = {(PetscInt)rint((d[0] - plain[0]) / h), (PetscInt)rint((d[1] - plain[1]) / h)};
+    PetscReal K[2][DIPOLE_COUNT], exact[2][DIPOLE_COUNT] = {{0}};
+    DoubleLatticeParts(b->lattice->dipole, BOX_LATTICE_CELLS, &b->pairs->stencil[2 * i], &b->dipole[DIPOLE_COUNT * j],
+                       periods, (PetscReal[]){d[0] / h, d[1] / h}, K);
+    for (int q = 0; q < 2 * DIPOLE_COUNT; q++) K[q / DIPOLE_COUNT][q % DIPOLE_COUNT] /= h;
+    if (b->lattice->all) {
+      All(b->axis, d, K, L);
+      return;
+    }
+    DoubleImageAdd(b->twice, i, j, d, PETSC_MAX_REAL, exact, K);
+    for (int c = 0; c < 2; c++)
+      for (int part = 0; part < DIPOLE_COUNT; part++) L[c][part] = fade * (K[c][part] - exact[c][part]);
+    return;
+  }
+  NearLatticePair(b->pairs, i, j, d, S);
+  NearImageAdd(b->pairs->image, NULL, i, j, d, S, C);
+  if (b->lattice->whole) NearImageAddBlake(b->pairs->image, i, j, d, -1, C);
+  for (int c = 0; c < 2; c++) {
+    L[c][c] = fade * (S[c] - C[c]);
+    L[c][1 - c] = fade * (S[2 + c] - C[2 + c]);
+  }
+}
+
+/* Whether x and y are alike. */
+static PetscBool IsSquare(const BoxAxis axis[2]) {
+  const PetscReal x = axis[0].high - axis[0].low, y = axis[1].high - axis[1].low;
+  return axis[0].wall == axis[1].wall && PetscAbsReal(x - y) < 1e-12 * x ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* W of the pair and of its mirror images between walls: a mirrored velocity or force changes its sign, of a tensor xy.
+   In a square also of that with x and y exchanged, of forces. */
+static void AddEntry(const BoxGrid *b, int ci, int cj, const PetscInt a[2], const PetscInt s[2], PetscReal value,
+                     PetscReal W[]) {
+  const BoxAxis *axis = b->axis;
+  const PetscBool dipoles = b->lattice->dipole ? PETSC_TRUE : PETSC_FALSE;
+  const int parts = dipoles ? 3 : 2;
+  for (int my = 0; my <= (int)axis[1].wall; my++)
+    for (int mx = 0; mx <= (int)axis[0].wall; mx++) {
+      PetscInt pair[2];
+      for (int dir = 0; dir < 2; dir++) {
+        const PetscInt n = axis[dir].places, mirror = dir ? my : mx;
+        pair[dir] = !axis[dir].wall ? a[dir] : mirror ? (n - 1 - a[dir]) * n + n - 1 - s[dir] : a[dir] * n + s[dir];
+      }
+      const int turned = (ci ? my : mx) + (dipoles ? (cj == DIPOLE_XY ? mx + my : 0) : cj ? my : mx);
+      const PetscReal sign = turned % 2 ? -1 : 1;
+      W[((ci * parts + cj) * axis[0].pairs + pair[0]) * axis[1].pairs + pair[1]] += sign * value;
+      if (IsSquare(axis) && (!dipoles || cj == DIPOLE_XX)) { /* yy from xx, forces along y from those along x */
+        const PetscInt other = dipoles ? (1 - ci) * parts + DIPOLE_YY : 3 - ci * 2 - cj;
+        W[(other * axis[0].pairs + pair[1]) * axis[1].pairs + pair[0]] += sign * value;
+      }
+    }
+}
+
+/* Unit part cj of a dipole at place j, on the grid. */
+static PetscErrorCode SpreadDipole(BoxGrid *b, PetscInt j, int cj) {
+  const Grid g = b->fluid->grid;
+  PetscReal unit[DIPOLE_COUNT] = {0};
+  DipoleSpot spot[DIPOLE_SPOTS];
+  PetscScalar sum;
+  PetscFunctionBeginUser;
+  unit[cj] = 1;
+  DipoleSpots(g, b->fluid->nu, b->markers->X + 2 * j, spot);
+  PetscCall(VecSet(b->force, 0));
+  PetscCall(VecSet(b->source, 0));
+  PetscCall(DipolesSpread(g, 1, spot, unit, b->force, b->source));
+  PetscCall(VecSum(b->source, &sum));
+  PetscCall(VecShift(b->source, -sum / ((PetscReal)g->n[0] * g->n[1])));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* U, the velocity at all places of unit part cj of place j's source: of forces row by row. */
+static PetscErrorCode Respond(BoxGrid *b, PetscInt j, int cj) {
+  const PetscReal over = 1 / PetscSqr(b->fluid->grid->h);
+  PetscFunctionBeginUser;
+  if (b->lattice->dipole) {
+    PetscCall(SpreadDipole(b, j, cj));
+    PetscCall(StokesSolve(b->stokes, b->force, b->source, b->u, b->p));
+    PetscCall(MarkersInterpolate(b->markers, b->u, b->U));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(VecSet(b->F, 0));
+  PetscCall(VecSetValue(b->F, 2 * j + cj, 1, INSERT_VALUES));
+  PetscCall(VecAssemblyBegin(b->F));
+  PetscCall(VecAssemblyEnd(b->F));
+  PetscCall(MarkersRespond(b->markers, StokesStream(b->stokes), NULL, over, b->F, b->U));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* All responses to unit sources at place s. */
+static PetscErrorCode AddSource(BoxGrid *b, const PetscInt s[2], PetscReal scale, PetscReal W[]) {
+  const BoxAxis *x = &b->axis[0], *y = &b->axis[1];
+  const PetscInt j = s[1] * x->places + s[0];
+  const PetscScalar *U;
+  PetscReal(*L)[2][DIPOLE_COUNT];
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(x->places * y->places, &L));
+  for (PetscInt i = 0; i < x->places * y->places; i++) Lattice(b, i, j, L[i]);
+  for (int cj = 0; cj < (b->lattice->dipole ? DIPOLE_COUNT : 2); cj++) {
+    if (cj == 1 && IsSquare(b->axis)) continue;
+    PetscCall(Respond(b, j, cj));
+    PetscCall(VecGetArrayRead(b->U, &U));
+    for (PetscInt i = 0; i < x->places * y->places; i++) {
+      const PetscInt a[2] = {i % x->places, i / x->places};
+      for (int ci = 0; ci < 2; ci++) AddEntry(b, ci, cj, a, s, scale * (U[2 * i + ci] - L[i][ci][cj]), W);
+    }
+    PetscCall(VecRestoreArrayRead(b->U, &U));
+  }
+  PetscCall(PetscFree(L));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode BoxGridAdd(const FluidSpec *spec, MPI_Comm comm, const char kernel[], const BoxLattice *lattice,
+                          const BoxAxis axis[2], PetscReal scale, PetscReal W[]) {
+  PetscInt sources[2];
+  PetscMPIInt rank, size;
+  BoxGrid b;
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  PetscCallMPI(MPI_Comm_size(comm, &size));
+  for (int dir = 0; dir < 2; dir++) sources[dir] = axis[dir].wall ? axis[dir].places / 2 : 1;
+  PetscCall(Create(spec, kernel, lattice, axis, &b));
+  for (PetscInt k = rank; k < sources[0] * sources[1]; k += size) {
+    const PetscInt s[2] = {k % sources[0], k / sources[0]};
+    PetscCall(AddSource(&b, s, scale, W));
+  }
+  PetscCall(Destroy(&b));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

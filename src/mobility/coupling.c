@@ -1,0 +1,357 @@
+#include "mobility/coupling.h"
+
+#define EXPLICIT 0.3 /* of Return, what may pull along the old edges: order 3 bears .52, order 2 .89 */
+
+/* The own part of `from`, the vesicles', to the beginning of that of `to`, all bodies', or back. */
+static PetscErrorCode CopyVesicles(Coupling c, Vec from, Vec to) {
+  const PetscScalar *a;
+  PetscScalar *b;
+  PetscFunctionBeginUser;
+  PetscCall(VecGetArrayRead(from, &a));
+  PetscCall(VecGetArray(to, &b));
+  PetscCall(PetscArraycpy(b, a, 2 * c->membrane->layout->n));
+  PetscCall(VecRestoreArray(to, &b));
+  PetscCall(VecRestoreArrayRead(from, &a));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The obstacles' part of X. */
+static PetscErrorCode PlaceObstacles(Coupling c, PetscReal t) {
+  const Obstacles o = c->bodies->obstacles;
+  PetscScalar *X;
+  PetscFunctionBeginUser;
+  if (!o) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ObstaclesPlace(o, t));
+  PetscCall(VecGetArray(c->X, &X));
+  PetscCall(PetscArraycpy(X + BodiesFirstObstacle(c->bodies), o->X + 2 * o->layout->first, 2 * o->layout->n));
+  PetscCall(VecRestoreArray(c->X, &X));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CouplingPlaceMarkers(Coupling c, Vec X) {
+  PetscFunctionBeginUser;
+  PetscCall(CopyVesicles(c, X, c->X));
+  PetscCall(MarkersPlace(c->markers, c->X));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CouplingInterpolate(Coupling c, Vec w, Vec U) {
+  PetscFunctionBeginUser;
+  PetscCall(MarkersInterpolate(c->markers, w, c->velocity));
+  PetscCall(CopyVesicles(c, c->velocity, U));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CouplingPlace(Coupling c, PetscReal a0, PetscReal t, Vec X, const PetscReal treading[],
+                             char message[PETVES_MAX_MESSAGE]) {
+  const PetscScalar *x;
+  PetscFunctionBeginUser;
+  message[0] = 0;
+  for (PetscInt v = 0; v < c->membrane->layout->bodies; v++) c->treading[v] = treading ? treading[v] : 0;
+  PetscCall(PetscArrayzero(c->turning, c->membrane->layout->n));
+  PetscCall(FluidSetTimeCoefficient(c->fluid, a0));
+  if (!CouplingHasBodies(c)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(MarkersCheck(c->markers, c->membrane->layout, X, message));
+  if (*message) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PlaceObstacles(c, t));
+  PetscCall(CouplingPlaceMarkers(c, X));
+  PetscCall(VecGetArrayRead(X, &x));
+  MembraneTangents(c->membrane, x, c->tau);
+  PetscCall(VecRestoreArrayRead(X, &x));
+  if (c->near) PetscCall(NearFieldPlace(c->near));
+  if (c->contrast) PetscCall(DoubleLayerPlace(c->contrast));
+  if (c->repulsion) PetscCall(RepulsionPlace(c->repulsion, t, c->markers->X));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* max over waves k of (sigma k/(4 nu a0))/(1 + c_b k^3/(4 nu a0)): how far a membrane under this tension comes back in
+   a step, over what bending lets it. */
+static PetscReal Return(Coupling c, PetscInt v, PetscReal sigma) {
+  const Membrane m = c->membrane;
+  const PetscReal slow = 4 * c->fluid->nu * c->fluid->a0, bending = m->bending * m->part[v];
+  PetscReal largest = 0;
+  for (PetscInt mode = 1; 2 * mode <= LayoutCount(m->layout, v); mode++) {
+    const PetscReal k = 2 * PETSC_PI * mode / m->L0[v];
+    largest = PetscMax(largest, sigma * k / (slow + bending * k * k * k));
+  }
+  return largest;
+}
+
+PetscErrorCode CouplingTurn(Coupling c, Vec expected) {
+  const Layout l = c->membrane->layout;
+  const PetscScalar *sigma;
+  PetscFunctionBeginUser;
+  PetscCall(VecGetArrayRead(expected, &sigma));
+  for (PetscInt v = l->own; v < l->end; v++) {
+    const PetscInt at = LayoutOffset(l, v), n = LayoutCount(l, v);
+    PetscReal most = 0;
+    for (PetscInt k = at; k < at + n; k++) most = PetscMax(most, sigma[k]);
+    const PetscReal part = 1 - EXPLICIT / PetscMax(EXPLICIT, Return(c, v, most));
+    for (PetscInt k = at; k < at + n; k++) c->turning[k] = part * PetscMax(0, sigma[k]);
+  }
+  PetscCall(VecRestoreArrayRead(expected, &sigma));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CouplingSpreadTension(Coupling c, PetscReal alpha, Vec sigma, Vec w) {
+  const PetscScalar *s;
+  PetscScalar *F;
+  PetscFunctionBeginUser;
+  PetscCall(VecSet(c->force, 0));
+  PetscCall(VecGetArrayRead(sigma, &s));
+  PetscCall(VecGetArray(c->force, &F));
+  MembraneStretchingTranspose(c->membrane, c->tau, 1 / PetscSqr(c->fluid->grid->h), s, F);
+  PetscCall(VecRestoreArray(c->force, &F));
+  PetscCall(VecRestoreArrayRead(sigma, &s));
+  PetscCall(MarkersSpread(c->markers, alpha, c->force, w));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* F = (c_b ds/h^2) D4 X */
+static PetscErrorCode BendingForce(Coupling c, Vec X, Vec F) {
+  const PetscScalar *x;
+  PetscScalar *f;
+  PetscFunctionBeginUser;
+  PetscCall(VecSet(F, 0));
+  PetscCall(VecGetArrayRead(X, &x));
+  PetscCall(VecGetArray(F, &f));
+  MembraneBending(c->membrane, c->membrane->bending / PetscSqr(c->fluid->grid->h), x, f);
+  PetscCall(VecRestoreArray(F, &f));
+  PetscCall(VecRestoreArrayRead(X, &x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CouplingSpreadBending(Coupling c, PetscReal alpha, Vec X, Vec w) {
+  PetscFunctionBeginUser;
+  PetscCall(BendingForce(c, X, c->force));
+  PetscCall(MarkersSpread(c->markers, alpha, c->force, w));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CouplingElasticRate(Coupling c, PetscReal alpha, const PetscScalar V[], PetscScalar F[]) {
+  PetscFunctionBeginUser;
+  if (c->membrane->bending > 0) MembraneBending(c->membrane, alpha * c->membrane->bending, V, F);
+  MembranePull(c->membrane, alpha, c->turning, V, F);
+  if (c->repulsion) PetscCall(RepulsionStiffness(c->repulsion, alpha, V, F));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CouplingElasticForce(Coupling c, Vec X, Vec F) {
+  const PetscScalar *x;
+  PetscScalar *f;
+  PetscFunctionBeginUser;
+  PetscCall(VecSet(F, 0));
+  PetscCall(VecGetArrayRead(X, &x));
+  PetscCall(VecGetArray(F, &f));
+  PetscCall(CouplingElasticRate(c, 1, x, f));
+  MembraneStretchingTranspose(c->membrane, c->tau, -1, c->turning, f);
+  if (c->repulsion) RepulsionPush(c->repulsion, -1, f);
+  PetscCall(VecRestoreArray(F, &f));
+  PetscCall(VecRestoreArrayRead(X, &x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CouplingKnownForce(Coupling c, Vec Y, Vec X, Vec F) {
+  const PetscScalar *x;
+  PetscScalar *f;
+  PetscFunctionBeginUser;
+  if (CouplingHasMembrane(c))
+    PetscCall(CouplingElasticForce(c, Y, F));
+  else
+    PetscCall(VecSet(F, 0));
+  if (!c->membrane->weight) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecGetArrayRead(X, &x));
+  PetscCall(VecGetArray(F, &f));
+  MembraneGravity(c->membrane, -1, x, f);
+  PetscCall(VecRestoreArray(F, &f));
+  PetscCall(VecRestoreArrayRead(X, &x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CouplingSpreadForce(Coupling c, Vec F, Forcing *f) {
+  const Grid g = c->fluid->grid;
+  PetscFunctionBeginUser;
+  PetscCall(ForcingSpread(f, c->markers, -1 / PetscSqr(g->h), F));
+  if (c->membrane->weight && !g->wall[0] && !g->wall[1]) PetscCall(ForcingRemoveMean(f, c->fluid));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CouplingNearField(Coupling c, PetscReal alpha, Vec F, PetscScalar u[]) {
+  const PetscScalar *f;
+  PetscFunctionBeginUser;
+  if (!c->near || !F) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecGetArrayRead(F, &f));
+  PetscCall(NearFieldApply(c->near, alpha, f, u));
+  PetscCall(VecRestoreArrayRead(F, &f));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CouplingTread(Coupling c, PetscReal alpha, Vec X, Vec U) {
+  const PetscScalar *x;
+  PetscScalar *u;
+  PetscFunctionBeginUser;
+  PetscCall(VecGetArrayRead(X, &x));
+  PetscCall(VecGetArray(U, &u));
+  MembraneTread(c->membrane, c->treading, alpha, x, u);
+  PetscCall(VecRestoreArray(U, &u));
+  PetscCall(VecRestoreArrayRead(X, &x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CouplingStretching(Coupling c, Vec U, Vec d) {
+  const PetscScalar *u;
+  PetscScalar *stretching;
+  PetscFunctionBeginUser;
+  PetscCall(VecGetArrayRead(U, &u));
+  PetscCall(VecGetArray(d, &stretching));
+  MembraneStretching(c->membrane, c->tau, u, stretching);
+  PetscCall(VecRestoreArray(d, &stretching));
+  PetscCall(VecRestoreArrayRead(U, &u));
+  PetscCall(VecScale(d, 1 / PetscSqr(c->fluid->grid->h)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The shells S and B, and their transposes S^T w = Dm E w/h^2, B^T w = (c_b ds/h^2) D4 E w. */
+static PetscErrorCode Mult_S(Mat S, Vec sigma, Vec w) {
+  Coupling c;
+  PetscFunctionBeginUser;
+  PetscCall(MatShellGetContext(S, &c));
+  PetscCall(VecSet(w, 0));
+  PetscCall(CouplingSpreadTension(c, 1, sigma, w));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode MultTranspose_S(Mat S, Vec w, Vec d) {
+  Coupling c;
+  PetscFunctionBeginUser;
+  PetscCall(MatShellGetContext(S, &c));
+  PetscCall(MarkersInterpolate(c->markers, w, c->velocity));
+  PetscCall(CouplingStretching(c, c->velocity, d));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Mult_B(Mat B, Vec X, Vec w) {
+  Coupling c;
+  PetscFunctionBeginUser;
+  PetscCall(MatShellGetContext(B, &c));
+  PetscCall(VecSet(w, 0));
+  PetscCall(CouplingSpreadBending(c, 1, X, w));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode MultTranspose_B(Mat B, Vec w, Vec X) {
+  Coupling c;
+  PetscFunctionBeginUser;
+  PetscCall(MatShellGetContext(B, &c));
+  PetscCall(MarkersInterpolate(c->markers, w, c->velocity));
+  PetscCall(BendingForce(c, c->velocity, X));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+typedef PetscErrorCode (*ShellMult)(Mat, Vec, Vec);
+
+/* A shell from vectors with `each` numbers a marker to velocities. */
+static PetscErrorCode CreateShell(Coupling c, int each, ShellMult mult, ShellMult transpose, Mat *A) {
+  const Grid g = c->fluid->grid;
+  const Layout l = c->membrane->layout;
+  const PetscInt slab = GridLocalU(g) + g->columns[FIELD_V] * g->rows[FIELD_V];
+  PetscFunctionBeginUser;
+  PetscCall(MatCreateShell(g->comm, slab, each * l->n, PETSC_DETERMINE, each * l->M, c, A));
+  PetscCall(MatShellSetOperation(*A, MATOP_MULT, (void (*)(void))mult));
+  PetscCall(MatShellSetOperation(*A, MATOP_MULT_TRANSPOSE, (void (*)(void))transpose));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The markers' velocities beside the grid's: near field, double layer, lag. */
+static PetscErrorCode CreateLayers(Coupling c, const CouplingSetting *setting) {
+  const Kernel *k = c->markers->kernel;
+  const PetscReal cells = (KernelSecondMoment(k->along) + 3 * KernelSecondMoment(k->across)) / 4 - 1. / 8;
+  PetscFunctionBeginUser;
+  if (setting->near != NEAR_EXACT || !CouplingHasBodies(c)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(NearFieldCreate(c->markers, c->bodies, c->fluid->nu, &c->near));
+  if (setting->box_part) PetscCall(NearFieldAddBoxPart(c->near, setting->spec));
+  if (setting->lag) c->lag = cells * PetscSqr(c->fluid->grid->h) / c->fluid->nu;
+  if (!setting->ratio) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(DoubleLayerCreate(c->near, setting->ratio, &c->contrast));
+  if (setting->box_part || setting->apart)
+    PetscCall(DoubleLayerAddBoxPart(c->contrast, setting->spec, setting->box_part, setting->apart));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CouplingCreate(Fluid fluid, Membrane m, Obstacles obstacles, const CouplingSetting *setting,
+                              Coupling *out) {
+  Coupling c;
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&c));
+  *out = c;
+  c->fluid = fluid;
+  c->membrane = m;
+  PetscCall(BodiesCreate(m, obstacles, &c->bodies));
+  PetscCall(MarkersCreate(fluid->grid, c->bodies->layout, setting->kernel, setting->near == NEAR_EXACT, &c->markers));
+  PetscCall(PetscMalloc1(2 * m->layout->n, &c->tau));
+  PetscCall(PetscCalloc1(m->layout->n, &c->turning));
+  PetscCall(PetscCalloc1(m->layout->bodies, &c->treading));
+  PetscCall(LayoutCreateVec(c->bodies->layout, 2, &c->force));
+  PetscCall(VecDuplicate(c->force, &c->X));
+  PetscCall(PlaceObstacles(c, 0));
+  PetscCall(VecDuplicate(c->force, &c->velocity));
+  PetscCall(CreateShell(c, 1, Mult_S, MultTranspose_S, &c->S));
+  PetscCall(CreateShell(c, 2, Mult_B, MultTranspose_B, &c->B));
+  PetscCall(CreateLayers(c, setting));
+  if (setting->repulsion) PetscCall(RepulsionCreate(c->bodies, fluid->grid, setting->repulsion, &c->repulsion));
+  if (setting->area_target) PetscCall(AreaRowCreate(m, c->contrast ? c->contrast->ratio : NULL, &c->area));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CouplingAddPast(Coupling c, Vec uhat, Vec U) {
+  PetscFunctionBeginUser;
+  if (c->lag == 0) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(MarkersInterpolate(c->markers, uhat, c->velocity));
+  PetscCall(VecAXPY(U, CouplingLag(c, c->fluid->alpha), c->velocity));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CouplingLayer(Coupling c, Vec sigma, Vec X, Layer *layer) {
+  const Membrane m = c->membrane;
+  const PetscScalar *x, *s;
+  PetscReal *tau, energy;
+  PetscScalar *f;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(2 * m->layout->n, &tau));
+  PetscCall(PetscCalloc1(2 * m->layout->n, &f));
+  PetscCall(VecGetArrayRead(X, &x));
+  PetscCall(VecGetArrayRead(sigma, &s));
+  MembraneTangents(m, x, tau);
+  MembraneStretchingTranspose(m, tau, -1, s, f);
+  if (m->bending > 0) MembraneBending(m, -m->bending, x, f);
+  MembraneGravity(m, 1, x, f);
+  if (c->repulsion) PetscCall(RepulsionAt(c->repulsion, 0, 1, x, f, &energy));
+  PetscCall(LayerCreate(c->fluid->nu, m->layout, x, f, layer));
+  PetscCall(VecRestoreArrayRead(sigma, &s));
+  PetscCall(VecRestoreArrayRead(X, &x));
+  PetscCall(PetscFree(tau));
+  PetscCall(PetscFree(f));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CouplingDestroy(Coupling *coupling) {
+  Coupling c = *coupling;
+  PetscFunctionBeginUser;
+  if (!c) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(AreaRowDestroy(&c->area));
+  PetscCall(RepulsionDestroy(&c->repulsion));
+  PetscCall(DoubleLayerDestroy(&c->contrast));
+  PetscCall(NearFieldDestroy(&c->near));
+  PetscCall(MarkersDestroy(&c->markers));
+  PetscCall(BodiesDestroy(&c->bodies));
+  PetscCall(PetscFree(c->tau));
+  PetscCall(PetscFree(c->turning));
+  PetscCall(PetscFree(c->treading));
+  PetscCall(VecDestroy(&c->X));
+  PetscCall(VecDestroy(&c->force));
+  PetscCall(VecDestroy(&c->velocity));
+  PetscCall(MatDestroy(&c->S));
+  PetscCall(MatDestroy(&c->B));
+  PetscCall(PetscFree(*coupling));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,335 @@
+#include "mobility/doublelayer.h"
+#include "numerics/blas.h"
+
+PetscErrorCode DoubleLayerCreate(NearField near, const PetscReal ratio[], DoubleLayer *out) {
+  const Layout l = near->set.bodies->layout;
+  DoubleLayer s;
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&s));
+  *out = s;
+  s->near = near;
+  PetscCall(PetscMalloc2(l->bodies, &s->ratio, l->bodies, &s->length));
+  for (PetscInt v = 0; v < l->bodies; v++) s->ratio[v] = v < near->set.bodies->vesicles ? ratio[v] : 1;
+  PetscCall(PetscMalloc2(2 * l->M, &s->normal, l->M, &s->along));
+  PetscCall(PetscCalloc3(2 * l->M, &s->jump, 2 * l->M, &s->plain, DIPOLE_COUNT * l->M, &s->tensor));
+  if (!near->set.markers->grid->free) {
+    PetscCall(PetscMalloc1(DIPOLE_COUNT * l->M, &s->dipole));
+    PetscCall(PetscCalloc1(DIPOLE_SPOTS * l->M, &s->spot));
+    PetscCall(DipoleListCreate(near->set.markers->grid, &s->list));
+    PetscCall(LatticeDipoles(DOUBLE_FACE_CELLS + OFFSET_LAGS, s->lattice));
+    PetscCall(DoubleImageCreate(near->pairs->image, s->lattice, &s->image));
+  }
+  PetscCall(PetvesEvent("DoubleLayer", &s->place));
+  PetscCall(PetvesEvent("DoubleLayerApply", &s->apply));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode DoubleLayerDestroy(DoubleLayer *layer) {
+  DoubleLayer s = *layer;
+  PetscFunctionBeginUser;
+  if (!s) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscFree2(s->ratio, s->length));
+  PetscCall(PetscFree2(s->normal, s->along));
+  PetscCall(PetscFree(s->dipole));
+  PetscCall(PetscFree(s->spot));
+  if (s->list) PetscCall(DipoleListDestroy(&s->list));
+  PetscCall(PetscFree3(s->jump, s->plain, s->tensor));
+  for (int c = 0; c < 2; c++) PetscCall(OffsetTableDestroy(&s->lattice[c]));
+  PetscCall(DoubleImageDestroy(&s->image));
+  PetscCall(DoubleBoxDestroy(&s->box));
+  PetscCall(PetscFree(s->block));
+  PetscCall(PetscFree(s->value));
+  PetscCall(PetscFree(*layer));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode DoubleLayerAddBoxPart(DoubleLayer s, const FluidSpec *spec, PetscBool error, PetscBool all) {
+  const BoxLattice lattice = {.unit = s->near->set.unit, .dipole = s->lattice, .half = s->near->half};
+  PetscFunctionBeginUser;
+  PetscCall(DoubleBoxCreate(spec, s->near->set.markers, &lattice, error, all, &s->box));
+  if (s->image) DoubleBoxTakeImages(s->box, s->image, DoubleImageFar);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+void DoubleLayerMayBeApart(DoubleLayer s) {
+  if (s->box && s->near->set.bodies->layout->bodies == 1) DoubleBoxMayBeAll(s->box);
+}
+
+/* What the layers' functions need of it; without images in walls where the box part has them. */
+static DoublePairs PairsOf(DoubleLayer s) {
+  return (DoublePairs){.single = s->near->pairs,
+                       .lattice = s->lattice,
+                       .image = s->image,
+                       .dipole = s->dipole,
+                       .normal = s->normal,
+                       .along = s->along,
+                       .length = s->length,
+                       .images = s->box && DoubleBoxHasImages(s->box) ? PETSC_FALSE : PETSC_TRUE};
+}
+
+/* Normals of the vesicles that have a jump. */
+static PetscErrorCode PlaceNormals(DoubleLayer s) {
+  const Bodies m = s->near->set.bodies;
+  const Layout l = m->layout;
+  PetscFunctionBeginUser;
+  for (PetscInt v = 0; v < l->bodies; v++) {
+    const PetscInt first = l->start[v];
+    if (s->ratio[v] == 1) continue;
+    PetscCall(DoubleGeometry(m->spectral[v], LayoutCount(l, v), s->near->set.markers->X + 2 * first,
+                             s->normal + 2 * first, s->along + first));
+    s->length[v] = 0;
+    for (PetscInt k = first; k < l->start[v + 1]; k++) s->length[v] += s->along[k];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Their dipoles' stencils, where they are not placed. */
+static PetscErrorCode PlaceDipoles(DoubleLayer s) {
+  const NearField f = s->near;
+  const Layout l = f->set.bodies->layout;
+  const Grid g = f->set.markers->grid;
+  PetscFunctionBeginUser;
+  if (f->set.markers->grid->free || s->spread) PetscFunctionReturn(PETSC_SUCCESS);
+  s->spread = PETSC_TRUE;
+  for (PetscInt v = 0; v < l->bodies; v++)
+    for (PetscInt k = l->start[v]; k < l->start[v + 1] && s->ratio[v] != 1; k++) {
+      Stencil part[DIPOLE_COUNT];
+      DipoleStencilsUnwrapped(g, f->set.markers->X + 2 * k, part);
+      for (int c = 0; c < DIPOLE_COUNT && !DoubleLayerIsApart(s); c++)
+        StencilPad(&part[c], &s->dipole[DIPOLE_COUNT * k + c]);
+      DipoleSpotsOf(g, f->set.nu, part, s->spot + DIPOLE_SPOTS * k);
+    }
+  PetscCall(DipoleListPlace(s->list, l->M, s->spot));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AddBlock(DoubleLayer s, PetscInt row, PetscInt column, PetscReal sign, const PetscReal shift[2]) {
+  const Layout l = s->near->set.bodies->layout;
+  PetscFunctionBeginUser;
+  if (s->ratio[column] == 1 || row < l->own || row >= l->end) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ArrayReserve((size_t)s->blocks + 1, &s->block_room, &s->block));
+  s->block[s->blocks++] = (DoubleBlock){
+      .row = row, .column = column, .shift = {sign * shift[0], sign * shift[1]}, .at = s->values};
+  s->values += 4 * (size_t)LayoutCount(l, row) * (size_t)LayoutCount(l, column);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The near field's pairs, each both ways. */
+static PetscErrorCode FindBlocks(DoubleLayer s) {
+  const NearField f = s->near;
+  PetscFunctionBeginUser;
+  s->blocks = 0;
+  s->values = 0;
+  for (PetscInt k = 0; k < f->list.count.blocks; k++) {
+    const NearBlock *b = &f->list.block[k];
+    PetscCall(AddBlock(s, b->row, b->column, 1, b->shift));
+    if (!NearBlockIsSelf(b)) PetscCall(AddBlock(s, b->column, b->row, -1, b->shift));
+  }
+  PetscCall(ArrayReserve(s->values, &s->value_room, &s->value));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A block's values; or, without lattice, those of D alone. */
+static PetscErrorCode FillBlock(DoubleLayer s, const DoubleBlock *b, PetscBool lattice, PetscReal value[]) {
+  const DoublePairs pairs = PairsOf(s);
+  const NearField f = s->near;
+  PetscFunctionBeginUser;
+  PetscCall(DoubleBlockFill(&pairs, b, lattice && !s->near->set.markers->grid->free ? PETSC_TRUE : PETSC_FALSE, value));
+  for (PetscInt k = 0; k < f->list.count.closes; k++) { /* those in this block; with a box part all images share one */
+    const FinePair *p = &f->list.close[k].fine;
+    for (int turned = 0; turned < 2; turned++) {
+      FinePair fine = *p;
+      if (turned) {
+        fine.row = p->column;
+        fine.column = p->row;
+        for (int d = 0; d < 2; d++) fine.shift[d] = -p->shift[d];
+      }
+      if (b->row != fine.row || b->column != fine.column) continue;
+      if (!f->box && (b->shift[0] != fine.shift[0] || b->shift[1] != fine.shift[1])) continue;
+      PetscCall(DoubleBlockRefine(&pairs, &fine, value));
+      break;
+    }
+  }
+  PetscCall(DoubleBlockRefineAtWalls(&pairs, b, value));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode DoubleLayerPlace(DoubleLayer s) {
+  const Layout l = s->near->set.bodies->layout;
+  PetscFunctionBeginUser;
+  PetscCall(PetscLogEventBegin(s->place, 0, 0, 0, 0));
+  s->spread = PETSC_FALSE;
+  PetscCall(PlaceNormals(s));
+  if (s->box) PetscCall(DoubleBoxPlace(s->box)); /* before the blocks, which may leave images to it */
+  if (!DoubleLayerIsApart(s)) PetscCall(PlaceDipoles(s));
+  if (s->image && !DoubleLayerIsApart(s)) DoubleImagePlace(s->image, s->dipole);
+  PetscCall(FindBlocks(s));
+  for (PetscInt k = 0; k < s->blocks; k++) {
+    const DoubleBlock *b = &s->block[k];
+    if (DoubleLayerIsApart(s)) { /* one vesicle, far from walls and from its images */
+      PetscCall(
+          DoubleSelf(s->near->set.bodies->spectral[0], l->M, s->near->set.markers->X, s->normal, s->value + b->at));
+      continue;
+    }
+    PetscCall(FillBlock(s, b, PETSC_TRUE, s->value + b->at));
+  }
+  PetscCall(PetscLogEventEnd(s->place, 0, 0, 0, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The jump of markers that move with U. */
+static PetscErrorCode SetJump(DoubleLayer s, const PetscScalar U[]) {
+  const Layout l = s->near->set.bodies->membrane->layout; /* obstacles, whose J is zero, come behind */
+  PetscFunctionBeginUser;
+  PetscCall(LayoutGather(l, 2, U, s->plain));
+  for (PetscInt v = 0; v < l->bodies; v++) {
+    const PetscInt first = 2 * l->start[v], end = 2 * l->start[v + 1];
+    PetscReal flux = 0;
+    for (PetscInt k = first; k < end; k++) s->jump[k] = s->plain[k] *= 1 - s->ratio[v];
+    for (PetscInt k = first; k < end && s->ratio[v] != 1; k++) flux += s->normal[k] * s->plain[k];
+    for (PetscInt k = first; k < end && s->ratio[v] != 1; k++)
+      s->jump[k] -= flux / s->length[v] * s->normal[k] / s->along[k / 2];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The jump of markers that move with U, and tensors of its dipoles, less its flux; zero where there is no jump, as for
+   a ratio of 1, which has no normals. */
+static PetscErrorCode SetDipoles(DoubleLayer s, const PetscScalar U[]) {
+  PetscFunctionBeginUser;
+  PetscCall(SetJump(s, U));
+  for (PetscInt k = 0; k < s->near->set.bodies->layout->M; k++) {
+    const PetscReal *J = s->jump + 2 * k, *N = s->normal + 2 * k;
+    const PetscBool none = J[0] == 0 && J[1] == 0 ? PETSC_TRUE : PETSC_FALSE;
+    PetscReal *T = s->tensor + DIPOLE_COUNT * k;
+    T[DIPOLE_XX] = none ? 0 : 2 * J[0] * N[0];
+    T[DIPOLE_YY] = none ? 0 : 2 * J[1] * N[1];
+    T[DIPOLE_XY] = none ? 0 : J[0] * N[1] + J[1] * N[0];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* mean += that of the dipoles that have been set. */
+static void AddMean(DoubleLayer s, PetscReal mean[2]) {
+  const NearField f = s->near;
+  const Grid g = f->set.markers->grid;
+  const PetscReal area = (g->hi[0] - g->lo[0]) * (g->hi[1] - g->lo[1]);
+  for (PetscInt k = 0; k < 2 * f->set.bodies->layout->M; k++) {
+    const PetscReal *T = s->tensor + DIPOLE_COUNT * (k / 2);
+    mean[k % 2] -= f->set.markers->X[k] * 0.5 * (T[DIPOLE_XX] + T[DIPOLE_YY]) / area;
+  }
+}
+
+/* y += alpha times the dipoles' mean velocity in a box that is periodic both ways. */
+static void ApplyMean(DoubleLayer s, PetscReal alpha, PetscScalar y[]) {
+  const Grid g = s->near->set.markers->grid;
+  PetscReal mean[2] = {0, 0};
+  if (g->wall[0] || g->wall[1]) return;
+  AddMean(s, mean);
+  for (PetscInt k = 0; k < 2 * s->near->set.bodies->layout->n; k++) y[k] += alpha * mean[k % 2];
+}
+
+PetscErrorCode DoubleLayerApply(DoubleLayer s, PetscReal alpha, const PetscScalar U[], PetscScalar y[]) {
+  const Layout l = s->near->set.bodies->layout;
+  PetscFunctionBeginUser;
+  PetscCall(PetscLogEventBegin(s->apply, 0, 0, 0, 0));
+  PetscCall(SetDipoles(s, U));
+  for (PetscInt k = 0; k < s->blocks; k++) {
+    const DoubleBlock *b = &s->block[k];
+    PetscCall(DenseMultAdd(PETSC_FALSE, 2 * LayoutCount(l, b->row), 2 * LayoutCount(l, b->column), alpha,
+                           s->value + b->at, s->plain + 2 * l->start[b->column], y + 2 * LayoutOffset(l, b->row)));
+  }
+  if (DoubleBoxServes(s->box)) {
+    PetscCall(DoubleBoxApply(s->box, alpha, s->tensor + DIPOLE_COUNT * l->first, y));
+    if (DoubleLayerIsApart(s)) ApplyMean(s, alpha, y);
+  }
+  PetscCall(PetscLogEventEnd(s->apply, 0, 0, 0, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode DoubleLayerMean(DoubleLayer s, const PetscScalar U[], PetscReal mean[2]) {
+  PetscFunctionBeginUser;
+  PetscCall(SetDipoles(s, U));
+  AddMean(s, mean);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode DoubleLayerSpread(DoubleLayer s, const PetscScalar U[], Forcing *f) {
+  PetscFunctionBeginUser;
+  if (s->near->set.markers->grid->free) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PlaceDipoles(s));
+  PetscCall(SetDipoles(s, U));
+  AddMean(s, f->mean);
+  ForcingNote(f, &s->near->set.markers->window);
+  PetscCall(DipoleListSpread(s->list, s->tensor, f->values, f->source));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode DoubleLayerRows(DoubleLayer s, const PetscScalar U[], PetscBool own, const PetscReal profile[],
+                               DipoleRows rows) {
+  PetscReal mean[2] = {0, 0};
+  PetscFunctionBeginUser;
+  PetscCall(PlaceDipoles(s));
+  PetscCall(SetDipoles(s, U));
+  AddMean(s, mean);
+  PetscCall(DipoleRowsSet(rows, s->list, s->tensor, own, profile, mean));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode DoubleLayerStress(DoubleLayer s, const PetscScalar U[], PetscReal sum[3], PetscReal shortfall[2]) {
+  const Markers m = s->near->set.markers;
+  PetscFunctionBeginUser;
+  PetscCall(SetDipoles(s, U));
+  for (PetscInt k = 0; k < s->near->set.bodies->layout->M; k++) {
+    const PetscReal *T = s->tensor + DIPOLE_COUNT * k;
+    PetscReal part[2];
+    DipoleShortfall(m->grid, s->near->set.nu, m->X + 2 * k, T, 1, part);
+    for (int q = 0; q < 3; q++) sum[q] += s->near->set.nu * T[q];
+    for (int c = 0; c < 2; c++) shortfall[c] += part[c];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* out += scale (1 - ratio) times what the box part has, of one vesicle whose dipoles are apart. */
+static PetscErrorCode AddBox(DoubleLayer s, PetscReal scale, PetscReal out[]) {
+  const PetscInt M = s->near->set.bodies->layout->M;
+  PetscReal *W;
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(2 * M * DIPOLE_COUNT * M, &W));
+  PetscCall(DoubleBoxMatrix(s->box, scale * (1 - s->ratio[0]), W));
+  for (PetscInt j = 0; j < M; j++) {
+    const PetscReal *N = s->normal + 2 * j, *xx = W + (DIPOLE_COUNT * j + DIPOLE_XX) * 2 * M;
+    const PetscReal *yy = W + (DIPOLE_COUNT * j + DIPOLE_YY) * 2 * M, *xy = W + (DIPOLE_COUNT * j + DIPOLE_XY) * 2 * M;
+    PetscReal *x = out + 2 * j * 2 * M, *y = x + 2 * M;
+    for (PetscInt i = 0; i < 2 * M; i++) {
+      x[i] += 2 * N[0] * xx[i] + N[1] * xy[i];
+      y[i] += 2 * N[1] * yy[i] + N[0] * xy[i];
+    }
+  }
+  PetscCall(PetscFree(W));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode DoubleLayerAdd(DoubleLayer s, PetscReal scale, PetscBool lattice, PetscInt first, PetscInt n,
+                              PetscReal out[]) {
+  const Layout l = s->near->set.bodies->layout;
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < s->blocks; k++) {
+    const DoubleBlock *b = &s->block[k];
+    const PetscInt rows = 2 * LayoutCount(l, b->row), columns = 2 * LayoutCount(l, b->column);
+    const PetscInt i0 = 2 * (l->start[b->row] - first), j0 = 2 * (l->start[b->column] - first);
+    PetscReal *value = s->value + b->at, *free = NULL;
+    if (i0 < 0 || j0 < 0 || i0 >= 2 * n || j0 >= 2 * n) continue;
+    if (!lattice && !s->near->set.markers->grid->free && !DoubleLayerIsApart(s)) {
+      PetscCall(PetscMalloc1(rows * columns, &free));
+      PetscCall(FillBlock(s, b, PETSC_FALSE, free));
+      value = free;
+    }
+    for (PetscInt j = 0; j < columns; j++)
+      for (PetscInt i = 0; i < rows; i++)
+        out[(j0 + j) * 2 * n + i0 + i] += scale * (1 - s->ratio[b->column]) * value[j * rows + i];
+    PetscCall(PetscFree(free));
+  }
+  if (DoubleLayerIsApart(s)) PetscCall(AddBox(s, scale, out));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

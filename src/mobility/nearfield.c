@@ -1,0 +1,235 @@
+#include "mobility/nearfield.h"
+#include "base/agree.h"
+#include "layers/latticegreen.h"
+#include "mobility/nearrows.h"
+
+PetscErrorCode NearFieldCreate(Markers markers, Bodies bodies, PetscReal nu, NearField *out) {
+  const Layout l = bodies->layout;
+  const Grid g = markers->grid;
+  NearField f;
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&f));
+  *out = f;
+  f->set = (LayerSetting){.markers = markers, .bodies = bodies, .nu = nu, .unit = g->h};
+  if (!g->free) PetscCall(LatticeStokeslet(BOX_LATTICE_CELLS + OFFSET_LAGS, &f->lattice));
+  if (!g->free && (g->wall[0] || g->wall[1])) {
+    PetscCall(PetscNew(&f->half));
+    PetscCall(ImageTableFill(&f->lattice, f->half));
+  }
+  PetscCall(SinglePairsCreate(&f->set, &f->lattice, f->half, &f->pairs));
+  PetscCall(NearListCreate(f->pairs, &f->list));
+  PetscCall(PetscCalloc2(2 * l->M + LANES, &f->force, 2 * l->n + LANES, &f->velocity)); /* whole vectors */
+  PetscCall(PetvesEvent("NearField", &f->event[0]));
+  PetscCall(PetvesEvent("NearFieldApply", &f->event[1]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode NearFieldDestroy(NearField *near) {
+  NearField f = *near;
+  PetscFunctionBeginUser;
+  if (!f) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(NearListDestroy(&f->list));
+  PetscCall(PetscFree(f->store.value));
+  PetscCall(PetscFree(f->store.single));
+  PetscCall(PetscFree2(f->force, f->velocity));
+  PetscCall(SinglePairsDestroy(&f->pairs));
+  PetscCall(PetscFree(f->half));
+  PetscCall(OffsetTableDestroy(&f->lattice));
+  PetscCall(BoxPartDestroy(&f->box));
+  PetscCall(PetscFree(*near));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode NearFieldCreateBoxPart(NearField f, const FluidSpec *spec, PetscBool whole, BoxPart *box) {
+  const BoxLattice lattice = {.unit = f->set.unit, .stokeslet = &f->lattice, .half = f->half, .whole = whole};
+  PetscFunctionBeginUser;
+  PetscCall(BoxPartCreate(spec, f->set.markers, &lattice, box));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode NearFieldAddBoxPart(NearField f, const FluidSpec *spec) {
+  const Bodies m = f->set.bodies;
+  PetscFunctionBeginUser;
+  PetscCall(NearFieldCreateBoxPart(f, spec, PETSC_FALSE, &f->box));
+  f->set.box = f->box->axis;
+  /* not with obstacles, whose pairs are made once */
+  if (f->pairs->image && m->vesicles == m->layout->bodies) BoxPartTakeImages(f->box, f->pairs->image, NearImageFar);
+  if (spec->inertia == INERTIA_NONE) MarkersLeaveUnscaled(f->set.markers);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A distant pair's block in a store of its own, in double precision, which the caller frees. */
+static PetscErrorCode DistantBlock(NearField f, PetscInt pair, NearBlock *block, NearStore *store) {
+  const NearDistantPair *p = &f->list.distant->pair[pair];
+  const Layout l = f->set.bodies->layout;
+  PetscFunctionBeginUser;
+  *block = (NearBlock){.row = p->row, .column = p->column, .shift = {p->shift[0], p->shift[1]}};
+  *store = (NearStore){0};
+  PetscCall(PetscMalloc1(2 * LayoutCount(l, p->row) * NearStride(LayoutCount(l, p->column)), &store->value));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Distant pairs, once; crossed: with another rank's marker. */
+static PetscErrorCode PlaceDistant(NearField f, PetscBool *crossed) {
+  const Layout l = f->set.bodies->layout;
+  NearDistant d = f->list.distant;
+  NearStore store;
+  NearBlock block;
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < d->pairs; k++)
+    if (d->pair[k].column < l->own || d->pair[k].column >= l->end) *crossed = PETSC_TRUE;
+  if (d->value || !d->pairs) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(NearDistantMake(d));
+  for (PetscInt k = 0; k < d->pairs; k++) {
+    PetscCall(DistantBlock(f, k, &block, &store));
+    PetscCall(NearBlockFill(f->pairs, &block, &store));
+    PetscCall(NearDistantFill(d, k, NearStride(LayoutCount(l, block.column)), store.value));
+    PetscCall(PetscFree(store.value));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode NearFieldPlace(NearField f) {
+  const Layout l = f->set.bodies->layout;
+  NearStore *s = &f->store;
+  PetscBool crossed = PETSC_FALSE;
+  PetscInt first;
+  PetscFunctionBeginUser;
+  PetscCall(PetscLogEventBegin(f->event[0], 0, 0, 0, 0));
+  if (f->box) PetscCall(BoxPartPlace(f->box)); /* before the pairs, which may leave images to it */
+  PetscCall(SinglePairsPlace(f->pairs, f->box && BoxPartHasImages(f->box) ? PETSC_FALSE : PETSC_TRUE));
+  PetscCall(NearListFind(&f->list, &first));
+  PetscCall(ArrayReserve(f->list.count.values, &s->value_room, &s->value));
+  PetscCall(ArrayReserve(f->list.count.singles, &s->single_room, &s->single));
+  for (PetscInt k = 0; k < f->list.count.blocks; k++) {
+    const NearBlock *b = &f->list.block[k];
+    if (b->column < l->own || b->column >= l->end) crossed = PETSC_TRUE;
+    if (k < first) continue;
+    PetscCall(NearBlockFill(f->pairs, b, s));
+    PetscCall(NearBlockRefineAtWalls(f->pairs, b, s));
+  }
+  for (PetscInt k = 0; k < f->list.count.closes; k++)
+    if (f->list.close[k].block >= first)
+      PetscCall(NearBlockRefine(f->pairs, &f->list.block[f->list.close[k].block], &f->list.close[k].fine, s));
+  PetscCall(PlaceDistant(f, &crossed));
+  PetscCall(AgreeFlag(l->comm, crossed, &f->crossed));
+  PetscCall(PetscLogEventEnd(f->event[0], 0, 0, 0, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* velocity[2n] += alpha C force[2M] of one block: both ways where both bodies are own ones. */
+static inline void ApplyBlock(Layout l, const NearBlock *b, const PetscBool single, const void *value, PetscReal alpha,
+                              const PetscScalar force[], PetscScalar velocity[]) {
+  const PetscBool both = b->column >= l->own && b->column < l->end ? PETSC_TRUE : PETSC_FALSE;
+  PetscInt rows;
+  NearRow r = NearBlockBegin(l, b);
+  do {
+    PetscScalar *other = both ? velocity + 2 * (r.column - l->first) : NULL, *own = velocity + 2 * (r.row - l->first);
+    const BlockRows values = {single, value, r.at, r.stride};
+    rows = NearBlockIsSelf(b) || r.row + 2 > l->start[b->row + 1] ? 1 : 2;
+    if (rows == 2)
+      ApplyRows(2, values, alpha, force + 2 * r.row, force + 2 * r.column, own, other);
+    else
+      ApplyRows(1, values, alpha, force + 2 * r.row, force + 2 * r.column, own, other);
+  } while ((rows == 1 || NearBlockNext(l, b, &r)) && NearBlockNext(l, b, &r));
+}
+
+PetscErrorCode NearFieldApply(NearField f, PetscReal alpha, const PetscScalar F[], PetscScalar U[]) {
+  const Layout l = f->set.bodies->layout;
+  PetscFunctionBeginUser;
+  PetscCall(PetscLogEventBegin(f->event[1], 0, 0, 0, 0));
+  if (f->crossed)
+    PetscCall(LayoutGather(l, 2, F, f->force));
+  else
+    PetscCall(PetscArraycpy(f->force + 2 * l->first, F, 2 * l->n));
+  PetscCall(PetscArrayzero(f->velocity, 2 * l->n + LANES));
+  for (PetscInt k = 0; k < f->list.count.blocks; k++) {
+    const NearBlock *b = &f->list.block[k];
+    if (b->single)
+      ApplyBlock(l, b, PETSC_TRUE, f->store.single, alpha, f->force, f->velocity);
+    else
+      ApplyBlock(l, b, PETSC_FALSE, f->store.value, alpha, f->force, f->velocity);
+  }
+  PetscCall(NearDistantApply(f->list.distant, alpha, f->force, f->velocity));
+  for (PetscInt k = 0; k < 2 * l->n; k++) U[k] += f->velocity[k];
+  if (f->box) PetscCall(BoxPartApply(f->box, alpha, F, U));
+  PetscCall(PetscLogEventEnd(f->event[1], 0, 0, 0, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The place of row i and column j in a matrix between two ranges. */
+static inline PetscInt Place(const MarkerRange *rows, const MarkerRange *columns, PetscInt i, PetscInt j) {
+  return (j - 2 * columns->first) * 2 * rows->n + i - 2 * rows->first;
+}
+
+/* Whether a body is in a range, which is of whole bodies. */
+static inline PetscBool Within(Layout l, PetscInt body, const MarkerRange *range) {
+  return l->start[body] >= range->first && l->start[body] < range->first + range->n ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* out += scale times a block, in its own rows. */
+static void AddBlock(Layout l, const NearBlock *b, const NearStore *s, PetscReal scale, const MarkerRange *rows,
+                     const MarkerRange *columns, PetscReal out[]) {
+  const PetscBool both = b->column >= l->own && b->column < l->end ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool there = Within(l, b->row, rows) && Within(l, b->column, columns) ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool back = both && Within(l, b->column, rows) && Within(l, b->row, columns) ? PETSC_TRUE : PETSC_FALSE;
+  NearRow r = NearBlockBegin(l, b);
+  if (!there && !back) return;
+  do
+    for (PetscInt k = 0; k < 2 * r.count; k++)
+      for (int c = 0; c < 2; c++) {
+        const size_t at = r.at + (size_t)(c * r.stride + k);
+        const PetscReal value = scale * (b->single ? s->single[at] : s->value[at]);
+        const PetscInt i = 2 * r.row + c, j = 2 * r.column + k;
+        if (there) out[Place(rows, columns, i, j)] += value;
+        if (back) out[Place(rows, columns, j, i)] += value;
+      }
+  while (NearBlockNext(l, b, &r));
+}
+
+/* The first block, after the fixed ones, of the vesicle that a marker belongs to, or of a later one. */
+static PetscInt FirstBlock(NearField f, PetscInt marker) {
+  const PetscInt *start = f->set.bodies->layout->start;
+  PetscInt low = f->list.fixed.blocks, high = f->list.count.blocks;
+  while (low < high) {
+    const PetscInt middle = (low + high) / 2;
+    if (start[f->list.block[middle].row] < marker)
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  return low;
+}
+
+PetscErrorCode NearFieldAddBetween(NearField f, PetscReal scale, PetscBool box, const MarkerRange *rows,
+                                   const MarkerRange *columns, PetscReal out[]) {
+  const Layout l = f->set.bodies->layout;
+  const PetscInt from = PetscMin(rows->first, columns->first);
+  const PetscInt to = PetscMax(rows->first + rows->n, columns->first + columns->n);
+  NearStore store;
+  NearBlock block;
+  PetscFunctionBeginUser;
+  for (PetscInt b = 0; b < f->list.fixed.blocks; b++)
+    AddBlock(l, &f->list.block[b], &f->store, scale, rows, columns, out);
+  for (PetscInt b = FirstBlock(f, from); b < f->list.count.blocks && l->start[f->list.block[b].row] < to; b++)
+    AddBlock(l, &f->list.block[b], &f->store, scale, rows, columns, out);
+  for (PetscInt k = 0; k < f->list.distant->pairs; k++) { /* whose block is made for that */
+    const NearDistantPair *p = &f->list.distant->pair[k];
+    if (!(Within(l, p->row, rows) && Within(l, p->column, columns)) &&
+        !(Within(l, p->row, columns) && Within(l, p->column, rows)))
+      continue;
+    PetscCall(DistantBlock(f, k, &block, &store));
+    PetscCall(NearDistantExpand(f->list.distant, k, NearStride(LayoutCount(l, p->column)), store.value));
+    AddBlock(l, &block, &store, scale, rows, columns, out);
+    PetscCall(PetscFree(store.value));
+  }
+  if (f->box && box) PetscCall(BoxPartAdd(f->box, scale, rows, columns, out));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode NearFieldAdd(NearField f, PetscReal scale, PetscBool box, PetscInt first, PetscInt n, PetscReal out[]) {
+  const MarkerRange range = {first, n};
+  PetscFunctionBeginUser;
+  PetscCall(NearFieldAddBetween(f, scale, box, &range, &range, out));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,238 @@
+#include "numerics/spectral.h"
+#include "numerics/circulant.h"
+#include <fftw3.h>
+
+#define CONVOLVED 128        /* markers up to which sums take less time than transforms */
+#define CONVOLVED_ROUGH 1024 /* the limit for numbers with a prime factor above 13, whose transforms are slow */
+#define TURNS 3              /* angles that a step shifts the states before it by */
+#define KEPT 6               /* derivatives that are kept */
+
+/* A derivative of X[2n]; power 0: none yet. */
+typedef struct {
+  int power;
+  PetscReal *X, *value;
+} Derivative;
+
+struct _p_Spectral {
+  PetscInt n;
+  fftw_complex *line, *hat; /* x + i y of the points, and its modes */
+  fftw_plan forward, backward;
+  CirculantWeights derivative[3];     /* of powers 1, 2, 4, where sums are taken; else NULL */
+  Derivative last[KEPT];              /* the last derivatives */
+  PetscReal *turn[TURNS], phi[TURNS]; /* weights [n] of shifts by the angles phi */
+  PetscReal *round;                   /* cos and sin of pi j/n, j = 0 .. n/2, interlaced */
+  PetscReal *points, *twice, *sum;    /* work arrays of the sums */
+  int next, replaced;                 /* numbers of the shift and of the derivative that are replaced next */
+};
+
+static PetscBool SpectralIsConvolved(PetscInt n) {
+  PetscInt rest = n;
+  for (PetscInt prime = 2; prime <= 13; prime++)
+    while (rest % prime == 0) rest /= prime;
+  return n <= (rest > 1 ? CONVOLVED_ROUGH : CONVOLVED) ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* SpectralDerivative by transforms of x + i y, which interlaced arrays are as they stand. */
+static void SpectralTransformed(Spectral s, int power, PetscReal scale, const PetscScalar X[], PetscScalar Y[]) {
+  const PetscInt n = s->n;
+  double *line = (double *)s->line, *hat = (double *)s->hat;
+  memcpy(line, X, 2 * (size_t)n * sizeof(double));
+  fftw_execute(s->forward);
+  for (PetscInt q = 0; q < n; q++) {
+    const PetscReal wave = 2 * PETSC_PI * (2 * q > n ? q - n : q) / n, re = hat[2 * q], im = hat[2 * q + 1];
+    if (power == 1) {
+      const PetscReal factor = 2 * q == n ? 0 : scale * wave / n;
+      hat[2 * q] = -factor * im;
+      hat[2 * q + 1] = factor * re;
+    } else {
+      const PetscReal factor = scale * (power == 2 ? -1 : PetscSqr(wave)) * PetscSqr(wave) / n;
+      hat[2 * q] = factor * re;
+      hat[2 * q + 1] = factor * im;
+    }
+  }
+  fftw_execute(s->backward);
+  for (PetscInt k = 0; k < 2 * n; k++) Y[k] += line[k];
+}
+
+/* The weights of each derivative: those of a 1 at marker 0. They are odd for the first derivative and else even. */
+static PetscErrorCode SpectralWeights(Spectral s) {
+  const PetscInt n = s->n;
+  PetscReal *one, *found, *weight;
+  PetscFunctionBeginUser;
+  for (int p = 0; p < 3; p++) {
+    PetscCall(PetscCalloc3(2 * n, &one, 2 * n, &found, n, &weight));
+    one[0] = 1;
+    SpectralTransformed(s, 1 << p, 1, one, found);
+    for (PetscInt q = 0; q < n; q++) weight[q] = 0.5 * (found[2 * q] + (p ? 1 : -1) * found[2 * ((n - q) % n)]);
+    PetscCall(CirculantWeightsCreate(n, p ? PETSC_FALSE : PETSC_TRUE, weight, &s->derivative[p]));
+    PetscCall(PetscFree3(one, found, weight));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SpectralCreate(PetscInt n, Spectral *out) {
+  Spectral s;
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&s));
+  *out = s;
+  s->n = n;
+  s->hat = fftw_alloc_complex((size_t)n);
+  s->line = fftw_alloc_complex((size_t)n);
+  s->forward = fftw_plan_dft_1d((int)n, s->line, s->hat, FFTW_FORWARD, FFTW_ESTIMATE);
+  s->backward = fftw_plan_dft_1d((int)n, s->hat, s->line, FFTW_BACKWARD, FFTW_ESTIMATE);
+  if (!SpectralIsConvolved(n)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscCalloc4(4 * n + CIRCULANT_PADDING, &s->twice, CirculantRoom(n), &s->points, 2 * n + CIRCULANT_PADDING,
+                         &s->sum, n + 2, &s->round));
+  for (PetscInt j = 0; j <= n / 2; j++) {
+    s->round[2 * j] = PetscCosReal(PETSC_PI * j / n);
+    s->round[2 * j + 1] = PetscSinReal(PETSC_PI * j / n);
+  }
+  for (int k = 0; k < KEPT; k++)
+    PetscCall(PetscMalloc2(2 * n, &s->last[k].X, 2 * n + CIRCULANT_PADDING, &s->last[k].value));
+  for (int t = 0; t < TURNS; t++) {
+    PetscCall(PetscMalloc1(n, &s->turn[t]));
+    s->phi[t] = NAN;
+  }
+  PetscCall(SpectralWeights(s));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SpectralDestroy(Spectral *spectral) {
+  Spectral s = *spectral;
+  PetscFunctionBeginUser;
+  if (!s) PetscFunctionReturn(PETSC_SUCCESS);
+  fftw_destroy_plan(s->forward);
+  fftw_destroy_plan(s->backward);
+  fftw_free(s->hat);
+  fftw_free(s->line);
+  for (int p = 0; p < 3; p++) PetscCall(CirculantWeightsDestroy(&s->derivative[p]));
+  for (int k = 0; k < KEPT; k++) PetscCall(PetscFree2(s->last[k].X, s->last[k].value));
+  for (int t = 0; t < TURNS; t++) PetscCall(PetscFree(s->turn[t]));
+  PetscCall(PetscFree4(s->twice, s->points, s->sum, s->round));
+  PetscCall(PetscFree(*spectral));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* d^power X/dk^power, of those that are kept or new. */
+static const PetscReal *SpectralFound(Spectral s, int power, const PetscScalar X[]) {
+  const size_t bytes = 2 * (size_t)s->n * sizeof(PetscReal);
+  Derivative *d = s->last;
+  for (int k = 0; k < KEPT; k++)
+    if (d[k].power == power && !memcmp(d[k].X, X, bytes)) return d[k].value;
+  d += s->replaced;
+  s->replaced = (s->replaced + 1) % KEPT;
+  memcpy(d->X, X, bytes);
+  d->power = power;
+  CirculantUnroll(s->n, X, s->points);
+  CirculantSums(s->derivative[power / 2], s->points, d->value);
+  return d->value;
+}
+
+void SpectralDerivative(Spectral s, int power, PetscReal scale, const PetscScalar X[], PetscScalar Y[]) {
+  if (!s->sum) {
+    SpectralTransformed(s, power, scale, X, Y);
+    return;
+  }
+  const PetscReal *found = SpectralFound(s, power, X);
+  for (PetscInt k = 0; k < 2 * s->n; k++) Y[k] += scale * found[k];
+}
+
+PetscReal SpectralTail(Spectral s, PetscReal part, const PetscScalar X[]) {
+  const PetscInt n = s->n;
+  const double *hat = (double *)s->hat;
+  PetscReal all = 0, tail = 0;
+  memcpy(s->line, X, 2 * (size_t)n * sizeof(double));
+  fftw_execute(s->forward);
+  for (PetscInt q = 1; q < n; q++) {
+    const PetscInt m = PetscMin(q, n - q);
+    const PetscReal bending = PetscSqr((PetscReal)m * m) * (PetscSqr(hat[2 * q]) + PetscSqr(hat[2 * q + 1]));
+    all += bending;
+    if (2 * m > part * (n - 1)) tail += bending;
+  }
+  return all > 0 ? PetscSqrtReal(tail / all) : 0;
+}
+
+PetscReal TrigonometricCardinal(PetscInt n, PetscReal t) {
+  const PetscReal s = PetscSinReal(0.5 * t);
+  if (PetscAbsReal(s) < 1e-14) return 1;
+  return PetscSinReal(0.5 * n * t) / (n * (n % 2 ? s : PetscTanReal(0.5 * t)));
+}
+
+/* A point at the same place between every two markers has the same weights. */
+void TrigonometricPoints(PetscInt n, const PetscReal X[], PetscInt times, PetscReal Y[]) {
+  for (PetscInt q = 0; q < 2 * n * times; q++) Y[q] = 0;
+  for (PetscInt between = 0; between < times; between++)
+    for (PetscInt off = 0; off < n; off++) {
+      const PetscReal weight = TrigonometricCardinal(n, 2 * PETSC_PI * (between + times * off) / (n * times));
+      PetscReal *y = Y + 2 * between;
+      for (PetscInt p = 0; p < n; p++, y += 2 * times) {
+        const PetscReal *x = X + 2 * (p < off ? p - off + n : p - off);
+        y[0] += weight * x[0];
+        y[1] += weight * x[1];
+      }
+    }
+}
+
+static void SpectralShiftTransformed(Spectral s, int each, PetscReal phi, const PetscScalar X[], PetscScalar Y[]) {
+  const PetscInt n = s->n;
+  double *line = (double *)s->line, *hat = (double *)s->hat;
+  for (PetscInt k = 0; k < n; k++)
+    for (int c = 0; c < 2; c++) line[2 * k + c] = c < each ? X[each * k + c] : 0;
+  fftw_execute(s->forward);
+  for (PetscInt q = 0; q < n; q++) {
+    const PetscReal angle = (PetscReal)(2 * q > n ? q - n : q) * phi, re = hat[2 * q], im = hat[2 * q + 1];
+    const PetscReal a = PetscCosReal(angle) / n, b = 2 * q == n ? 0 : PetscSinReal(angle) / n;
+    hat[2 * q] = a * re - b * im;
+    hat[2 * q + 1] = a * im + b * re;
+  }
+  fftw_execute(s->backward);
+  for (PetscInt k = 0; k < n; k++)
+    for (int c = 0; c < each; c++) Y[each * k + c] = line[2 * k + c];
+}
+
+/* Weights of the shift by phi = d + 2 pi m/n, |d| at most pi/n: the values at d + 2 pi j/n of the trigonometric
+   cardinal function,
+
+     (-1)^j sin(n d/2)/(n sin(d/2 + pi j/n)),
+
+   for even n with the tangent in the denominator. No difference of nearly equal numbers is taken. */
+static const PetscReal *SpectralShiftWeights(Spectral s, PetscReal phi) {
+  const PetscReal labels = PetscFloorReal(phi * s->n / (2 * PETSC_PI) + 0.5);
+  const PetscInt n = s->n, m = PetscAbsReal(labels) < 1e9 ? (PetscInt)labels : 0;
+  const PetscReal half = 0.5 * phi - PETSC_PI * m / n, top = PetscSinReal(n * half) / n;
+  const PetscReal sine = PetscSinReal(half), cosine = PetscCosReal(half);
+  PetscReal *weight = s->turn[s->next];
+  for (int t = 0; t < TURNS; t++)
+    if (s->phi[t] == phi) return s->turn[t];
+  s->phi[s->next] = phi;
+  s->next = (s->next + 1) % TURNS;
+  PetscInt q = ((((1 - n) / 2 - m) % n) + n) % n;
+  for (PetscInt j = (1 - n) / 2; j <= n / 2; j++, q = q + 1 < n ? q + 1 : 0) {
+    const PetscReal a = s->round[2 * PetscAbsInt(j)], b = j < 0 ? -s->round[2 * -j + 1] : s->round[2 * j + 1];
+    const PetscReal bottom = n % 2 ? sine * a + cosine * b : (sine * a + cosine * b) / (cosine * a - sine * b);
+    weight[q] = !j && half == 0 ? 1 : (j % 2 ? -top : top) / bottom;
+  }
+  return weight;
+}
+
+/* SpectralShift by sums; inlined, so that the compiler knows `each`. */
+static inline void SpectralShiftConvolved(Spectral s, const int each, PetscReal phi, const PetscScalar X[],
+                                          PetscScalar Y[]) {
+  const PetscInt n = s->n;
+  PetscReal first[2];
+  for (int c = 0; c < each; c++) first[c] = X[c];
+  for (PetscInt k = 0; k < n; k++)
+    for (int c = 0; c < each; c++) s->twice[each * k + c] = s->twice[each * (n + k) + c] = X[each * k + c] - first[c];
+  CirculantConvolve(n, each, PETSC_FALSE, SpectralShiftWeights(s, phi), s->twice, s->sum);
+  for (PetscInt k = 0; k < n; k++)
+    for (int c = 0; c < each; c++) Y[each * k + c] = first[c] + s->sum[each * k + c];
+}
+
+void SpectralShift(Spectral s, int each, PetscReal phi, const PetscScalar X[], PetscScalar Y[]) {
+  if (!s->sum)
+    SpectralShiftTransformed(s, each, phi, X, Y);
+  else if (each == 1)
+    SpectralShiftConvolved(s, 1, phi, X, Y);
+  else
+    SpectralShiftConvolved(s, 2, phi, X, Y);
+}

@@ -1,0 +1,52 @@
+/* The dense problem of one or several vesicles inside the coupled preconditioner (docs/solver.md, Preconditioner).
+
+   M is the vesicles' mobility times h^2, v the speed of their labels and Dm the stretching of edges. With
+       N = I + (v/a0) d/dt + (c_b ds/(h^2 a0)) M D4,      C = Dm N^-1 M Dm^T/h^4,
+   velocity and tension follow from right-hand sides U and r_s by the Schur complement C:
+       U1 = N^-1 U,      sigma = C^-1 (Dm U1/h^2 - r_s),      U3 = U1 - N^-1 M Dm^T sigma/h^2.
+   N and C are factored once for many solves. All is local to one rank. */
+#pragma once
+#include "bodies/membrane.h"
+#include <petscblaslapack.h>
+
+typedef struct {
+  Membrane membrane;     /* borrowed */
+  PetscReal h2;          /* h^2 of the grid's cells */
+  PetscInt vesicle, end; /* its vesicles: vesicle .. end - 1 */
+  PetscInt first, n;     /* its markers */
+  PetscReal *N, *C;      /* LU factors of N (2n x 2n) and C (n x n) */
+  PetscReal *K;          /* N^-1 M Dm^T/h^2, (2n x n), columns contiguous */
+  PetscReal *tau;        /* [2n] tangents */
+  PetscReal *d;          /* [n] work */
+  PetscBLASInt *pivot_N, *pivot_C;
+} DenseBlock;
+
+/* DenseBlockCreate - for vesicles vesicle .. end - 1 on a grid of cells h, tangents not set. Not collective. */
+PETSC_EXTERN PetscErrorCode DenseBlockCreate(Membrane membrane, PetscReal h, PetscInt vesicle, PetscInt end,
+                                             DenseBlock *block);
+PETSC_EXTERN PetscErrorCode DenseBlockDestroy(DenseBlock *block);
+
+/* DenseBlockFactor - N and C for M = Mob[2n][2n], symmetric, the block's tangents, a0 and its vesicles' label speeds
+   treading[]. motion: with viscosity contrast what stands in the place of (I + (v/a0) d/dt)^T (ContrastMatrix), else
+   NULL. factored is false when a matrix is singular. Not collective. */
+PETSC_EXTERN PetscErrorCode DenseBlockFactor(DenseBlock *block, PetscReal a0, const PetscReal treading[],
+                                             const PetscReal Mob[], const PetscReal motion[], PetscBool *factored);
+
+/* DenseBlockSolve - from nrhs columns of U[2n] and sigma[n] = r_s: sigma, and U overwritten by U3. Not collective. */
+PETSC_EXTERN PetscErrorCode DenseBlockSolve(const DenseBlock *block, PetscInt nrhs, PetscScalar U[],
+                                            PetscScalar sigma[]);
+
+/* DenseStepChanged - whether a factor made for one coefficient of the time step no longer serves the present one: they
+   differ by more than this ratio, or one of them is zero. Not collective. */
+static inline PetscBool DenseStepChanged(PetscReal made, PetscReal now, PetscReal ratio) {
+  return made == now || (now < ratio * made && made < ratio * now) ? PETSC_FALSE : PETSC_TRUE;
+}
+
+/* DenseRenewalCost - of so many dense blocks of n markers each, made anew, in iterations on so many cells; w: markers
+   of the obstacles that the block knows. From the operation counts and the speeds of one core; a number of the problem
+   alone, so that iterations do not depend on the machine or its load. Not collective. */
+static inline PetscReal DenseRenewalCost(PetscReal blocks, PetscReal n, PetscReal w, PetscReal cells) {
+  const PetscReal own = blocks * n * n, cross = n * w;
+  return (own * (4e-9 * n + 6e-7) + cross * (4e-10 * w + 6e-7)) /
+         (1.5e-8 * cells + 1e-8 * (own + 2 * cross + w * w) + 5e-5);
+}

@@ -1,0 +1,174 @@
+#include "precondition/mobility.h"
+#include "layers/nearblock.h"
+
+#define TABLE_NEAR 14 /* cells up to which stencils are summed where the near field is exact */
+#define BOX_NEAR 8    /* cells up to which a pair has the lattice's sums */
+
+/* Whether the mobility between walls can be had from the box part's grids. */
+static PetscBool TakesBox(Coupling c) {
+  const Grid g = c->fluid->grid;
+  return c->fluid->steady && c->near && c->near->box && (g->wall[0] || g->wall[1]) ? PETSC_TRUE : PETSC_FALSE;
+}
+
+PetscErrorCode MobilityCreate(const FluidSpec *spec, Coupling c, PetscReal reach, Mobility *out) {
+  Mobility m;
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&m));
+  *out = m;
+  m->coupling = c;
+  m->near = c->near ? TABLE_NEAR : PETSC_MAX_REAL;
+  if (TakesBox(c))
+    PetscCall(NearFieldCreateBoxPart(c->near, spec, PETSC_TRUE, &m->box));
+  else if (!c->fluid->grid->free)
+    PetscCall(MobilityTableCreate(spec, c->markers->kernel, reach, &m->table));
+  PetscCall(PetscMalloc1(2 * c->bodies->layout->M, &m->stencil));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode MobilityDestroy(Mobility *mobility) {
+  PetscFunctionBeginUser;
+  if (!*mobility) PetscFunctionReturn(PETSC_SUCCESS);
+  if ((*mobility)->table) PetscCall(MobilityTableDestroy(&(*mobility)->table));
+  PetscCall(BoxPartDestroy(&(*mobility)->box));
+  PetscCall(PetscFree((*mobility)->stencil));
+  PetscCall(PetscFree(*mobility));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode MobilitySetUp(Mobility m, PetscReal alpha) {
+  PetscFunctionBeginUser;
+  m->part = CouplingGridPart(m->coupling, alpha);
+  if (m->table) PetscCall(MobilityTableSetUp(m->table, alpha));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Whether a pair's stencils are summed: near, and with all of their offsets in the table. */
+static PetscBool IsTableNear(Mobility m, const PetscReal cells[2]) {
+  for (int dir = 0; dir < 2; dir++)
+    if (PetscAbsReal(cells[dir]) > (PetscReal)(m->table->green.size[dir] - OFFSET_LAGS)) return PETSC_FALSE;
+  return cells[0] * cells[0] + cells[1] * cells[1] <= m->near * m->near ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* Mob of markers i and j, the nearest image: xx, yy, xy, yx. */
+static void TablePair(Mobility m, PetscInt i, PetscInt j, PetscReal Mob[4]) {
+  const Grid g = m->coupling->fluid->grid;
+  const PetscReal *X = m->coupling->markers->X;
+  PetscReal d[2], cells[2];
+  PetscInt periods[2]; /* in cells */
+  for (int dir = 0; dir < 2; dir++) {
+    const PetscReal period = g->hi[dir] - g->lo[dir], apart = X[2 * i + dir] - X[2 * j + dir];
+    const PetscInt back = (PetscInt)PetscFloorReal(apart / period + 0.5);
+    d[dir] = apart - period * (PetscReal)back;
+    periods[dir] = -back * g->n[dir];
+    cells[dir] = d[dir] / g->h;
+  }
+  if (IsTableNear(m, cells))
+    StencilFourSums(&m->table->green, &m->stencil[2 * i], &m->stencil[2 * j], periods, Mob);
+  else {
+    MobilityTableMean(m->table, d, Mob);
+    Mob[3] = Mob[2];
+  }
+  for (int q = 0; q < 4; q++) Mob[q] *= m->part;
+}
+
+/* The stencils of markers, which count from the markers' own places. */
+static void PadStencils(Mobility m, const MarkerRange *range) {
+  const Markers markers = m->coupling->markers;
+  for (PetscInt k = range->first; k < range->first + range->n; k++) {
+    for (PetscInt q = 2 * k; q < 2 * k + 2; q++) StencilPad(&markers->plain[q], &m->stencil[q]);
+    StencilUnwrap(markers->grid, markers->X + 2 * k, &m->stencil[2 * k]);
+  }
+}
+
+/* Mob[][2 rows] += scale times the block xx, yy, xy, yx of markers i and j: velocity of row marker i
+   by a force on column marker j. */
+static void AddMobilityPair(PetscReal scale, PetscInt rows, PetscInt i, PetscInt j, const PetscReal block[4],
+                            PetscReal Mob[]) {
+  PetscReal *x = Mob + 4 * j * rows + 2 * i, *y = x + 2 * rows;
+  x[0] += scale * block[0];
+  y[1] += scale * block[1];
+  y[0] += scale * block[2];
+  x[1] += scale * block[3];
+}
+
+/* L - C_image and the exact images of markers i and j, the nearest image: xx, yy, xy, yx. Pairs far from one another
+   and from walls take those of S, which leaves out a C of the order h^2/r^2. */
+static void MobilityBoxPair(NearField f, PetscInt i, PetscInt j, PetscReal value[4]) {
+  const PetscReal *X = f->set.markers->X, h = f->set.markers->grid->h;
+  PetscReal d[2] = {X[2 * i] - X[2 * j], X[2 * i + 1] - X[2 * j + 1]}, L[4], C[4] = {0, 0, 0, 0};
+  const PetscReal fade = BoxPartImage(f->box, d);
+  if (d[0] * d[0] + d[1] * d[1] < PetscSqr(BOX_NEAR * h)) {
+    NearLatticePair(f->pairs, i, j, d, L);
+    NearImageAdd(f->pairs->image, NULL, i, j, d, L, C);
+  } else {
+    Lanes S[3];
+    StokesletFour(&f->set, d[0] + (Lanes){0}, d[1] + (Lanes){0}, S);
+    for (int q = 0; q < 4; q++) L[q] = S[PetscMin(q, 2)][0];
+  }
+  NearImageAddBlake(f->pairs->image, i, j, d, -1, C);
+  for (int q = 0; q < 4; q++) value[q] = fade * (L[q] - C[q]);
+}
+
+/* Mob += that of the velocity of the own markers in rows by forces on those in columns, with a box. Collective. */
+static PetscErrorCode AddBoxMobility(Mobility m, const MarkerRange *rows, const MarkerRange *columns, PetscReal Mob[]) {
+  const NearField f = m->coupling->near;
+  const Layout l = m->coupling->bodies->layout;
+  const PetscReal h2 = PetscSqr(m->coupling->fluid->grid->h);
+  const PetscInt begin = PetscMax(l->first, rows->first), end = PetscMin(l->first + l->n, rows->first + rows->n);
+  /* of the own markers among themselves a pair and its mirror image are one another's transposes */
+  const PetscBool same = rows->first == columns->first && rows->n == columns->n && end - begin == rows->n ? PETSC_TRUE
+                                                                                                          : PETSC_FALSE;
+  PetscFunctionBeginUser;
+  PetscCall(BoxPartPlace(m->box));
+  PetscCall(BoxPartAdd(m->box, h2, rows, columns, Mob));
+  for (PetscInt j = 0; j < columns->n; j++)
+    for (PetscInt i = same ? j : begin - rows->first; i < end - rows->first; i++) {
+      PetscReal L[4];
+      MobilityBoxPair(f, rows->first + i, columns->first + j, L);
+      AddMobilityPair(h2, rows->n, i, j, L, Mob);
+      if (same && i > j) AddMobilityPair(h2, rows->n, j, i, (PetscReal[]){L[0], L[1], L[3], L[2]}, Mob);
+    }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode MobilityAssemble(Mobility m, const MarkerRange *rows, const MarkerRange *columns, PetscInt part,
+                                PetscInt parts, PetscReal Mob[]) {
+  const PetscBool same = rows->first == columns->first && rows->n == columns->n ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionBeginUser;
+  PetscCall(PetscArrayzero(Mob, 4 * rows->n * columns->n));
+  if (m->box) PetscCall(AddBoxMobility(m, rows, columns, Mob));
+  if (!m->table) PetscFunctionReturn(PETSC_SUCCESS);
+  PadStencils(m, rows);
+  PadStencils(m, columns);
+  for (PetscInt p = part; p < columns->n; p += parts)
+    for (PetscInt q = same ? p : 0; q < rows->n; q++) {
+      const PetscInt i = same ? p : q, j = same ? q : p;
+      PetscReal one[4];
+      TablePair(m, rows->first + i, columns->first + j, one);
+      if (same && i == j) one[2] = one[3]; /* symmetric to the bit */
+      AddMobilityPair(1, rows->n, i, j, one, Mob);
+      if (same && i != j) AddMobilityPair(1, rows->n, j, i, (PetscReal[]){one[0], one[1], one[3], one[2]}, Mob);
+    }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode MobilityAddNear(Coupling c, PetscBool box, const MarkerRange *rows, const MarkerRange *columns,
+                               PetscMPIInt root, PetscReal Mob[]) {
+  const Layout l = c->bodies->layout;
+  PetscMPIInt size;
+  PetscFunctionBeginUser;
+  if (c->near) PetscCall(NearFieldAddBetween(c->near, PetscSqr(c->fluid->grid->h), box, rows, columns, Mob));
+  PetscCall(PetscMPIIntCast(4 * rows->n * columns->n, &size));
+  if (l->size > 1)
+    PetscCallMPI(MPI_Reduce(l->rank == root ? MPI_IN_PLACE : Mob, Mob, size, MPIU_REAL, MPI_SUM, root, l->comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode MobilityOnRoot(Mobility m, const MarkerRange *rows, const MarkerRange *columns, PetscMPIInt root,
+                              PetscReal Mob[]) {
+  const Layout l = m->coupling->bodies->layout;
+  PetscFunctionBeginUser;
+  PetscCall(MobilityAssemble(m, rows, columns, l->rank, l->size, Mob));
+  PetscCall(MobilityAddNear(m->coupling, m->box ? PETSC_FALSE : PETSC_TRUE, rows, columns, root, Mob));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,190 @@
+/* The grid's periodic Green's function, and the mean mobility of two markers made from it. */
+#include "precondition/mobilitytable.h"
+
+#define LAG KERNEL_MAX_POINTS /* most cells between the entries of two stencils at one place */
+#define LAGS (2 * LAG + 1)
+#define PLACES 4         /* in a cell, in each direction */
+#define POINTS 6         /* of an interpolation */
+#define KEPT_CELLS 65536 /* in all, up to which the solver is kept: its plans cost as much as its solves there */
+
+/* Weights by lag of the double sum over two kernels at one place, mean over the places; entry m is at m + 1, or at m +
+   1/2 where the kernel is the one across. */
+static void CorrelateKernels(KernelWeights response, KernelWeights source, int response_across, int source_across,
+                             PetscReal weight[LAGS]) {
+  for (int q = 0; q < LAGS; q++) weight[q] = 0;
+  for (int s = 0; s < PLACES; s++) {
+    PetscReal x[KERNEL_MAX_POINTS], y[KERNEL_MAX_POINTS];
+    PetscInt i0, j0;
+    const PetscReal place = (s + 0.5) / PLACES;
+    const PetscInt m = response(place - (response_across ? 0.5 : 1), &i0, x),
+                   n = source(place - (source_across ? 0.5 : 1), &j0, y);
+    for (PetscInt i = 0; i < m; i++)
+      for (PetscInt j = 0; j < n; j++) weight[LAG + i0 + i - j0 - j] += x[i] * y[j] / PLACES;
+  }
+}
+
+/* The mean over places in a cell of the sums over two stencils whose markers are whole cells apart. */
+static void AverageTable(MobilityTable m) {
+  const Kernel *k = m->kernel;
+  const PetscInt nx = 2 * m->mean.size[0] + 1, ny = 2 * m->mean.size[1] + 1, gx = 2 * m->green.size[0] + 1;
+  const KernelWeights weights[] = {k->along, k->across}; /* with faces at m + 1, m + 1/2 */
+  for (int b = 0; b < OFFSET_COUNT; b++) {
+    const int response = b != OFFSET_UU, source = b == OFFSET_VV; /* component */
+    PetscReal wx[LAGS], wy[LAGS];
+    CorrelateKernels(weights[response], weights[source], response, source, wx);
+    CorrelateKernels(weights[!response], weights[!source], !response, !source, wy);
+    for (PetscInt j = 0; j < ny; j++) {
+      PetscReal *out = m->mean.value[b] + j * nx;
+      for (PetscInt i = 0; i < gx; i++) m->line[i] = 0;
+      for (PetscInt i = 0; i < nx; i++) out[i] = 0;
+      for (int q = 0; q < LAGS; q++)
+        for (PetscInt i = 0; wy[q] != 0 && i < gx; i++) m->line[i] += wy[q] * m->green.value[b][(j + q) * gx + i];
+      for (int p = 0; p < LAGS; p++)
+        for (PetscInt i = 0; wx[p] != 0 && i < nx; i++) out[i] += wx[p] * m->line[i + p];
+    }
+  }
+  m->averaged = PETSC_TRUE;
+}
+
+/* Whether the solver is made for each table. */
+static PetscBool IsTableLarge(Grid g) {
+  return (PetscReal)g->n[0] * g->n[1] > KEPT_CELLS ? PETSC_TRUE : PETSC_FALSE;
+}
+
+static PetscErrorCode CreateTableSolver(MobilityTable m) {
+  PetscFunctionBeginUser;
+  PetscCall(StokesCreate(m->periodic, &m->stokes));
+  PetscCall(DMCreateGlobalVector(m->periodic->grid->velocity, &m->u));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode DestroyTableSolver(MobilityTable m) {
+  PetscFunctionBeginUser;
+  PetscCall(VecDestroy(&m->u));
+  PetscCall(StokesDestroy(&m->stokes));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode MobilityTableCreate(const FluidSpec *spec, const Kernel *kernel, PetscReal reach, MobilityTable *out) {
+  FluidSpec box = *spec;
+  MobilityTable m;
+  PetscInt size[2];
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&m));
+  *out = m;
+  m->kernel = kernel;
+  m->alpha = -1;
+  box.bc[0] = box.bc[1] = BC_PERIODIC;
+  box.form = FORM_DISTURBANCE;
+  /* for a preconditioner: by the default solver, which cannot fail, whatever solves the steps */
+  PetscCall(PetscStrncpy(box.helmholtz, "fftw_tridiagonal", sizeof(box.helmholtz)));
+  PetscCall(PetscStrncpy(box.poisson, "fftw_tridiagonal", sizeof(box.poisson)));
+  PetscCall(FluidCreate(&box, &m->periodic));
+  const Grid g = m->periodic->grid;
+  for (int d = 0; d < 2; d++) /* room for drift */
+    size[d] = PetscMin(g->n[d] / 2, (PetscInt)(PetscMin(1.1 * reach / g->h, PETSC_MAX_INT / 4)) + 4) + POINTS;
+  PetscCall(OffsetTableCreate(size, &m->mean));
+  for (int d = 0; d < 2; d++) size[d] += LAG;
+  PetscCall(OffsetTableCreate(size, &m->green));
+  PetscCall(PetscMalloc1(2 * size[0] + 1, &m->line));
+  if (!IsTableLarge(g)) PetscCall(CreateTableSolver(m));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode MobilityTableDestroy(MobilityTable *table) {
+  MobilityTable m = *table;
+  PetscFunctionBeginUser;
+  if (!m) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(OffsetTableDestroy(&m->mean));
+  PetscCall(OffsetTableDestroy(&m->green));
+  PetscCall(PetscFree(m->line));
+  PetscCall(DestroyTableSolver(m));
+  PetscCall(FluidDestroy(&m->periodic));
+  PetscCall(PetscFree(*table));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscInt TableModulo(PetscInt i, PetscInt n) {
+  return ((i % n) + n) % n;
+}
+
+/* A field's window of offsets, known to all ranks. */
+static PetscErrorCode GatherWindow(Grid g, Field f, const PetscScalar a[], const PetscInt size[2], PetscReal window[]) {
+  const PetscInt sx = size[0], sy = size[1], nx = 2 * sx + 1, ny = 2 * sy + 1;
+  PetscFunctionBeginUser;
+  PetscCall(PetscArrayzero(window, nx * ny));
+  for (PetscInt j = -sy; j <= sy; j++) {
+    const PetscInt row = TableModulo(j, g->n[1]) - g->first;
+    if (row < 0 || row >= g->rows[f]) continue;
+    for (PetscInt i = 0, at = TableModulo(-sx, g->n[0]); i < nx; i++, at = at + 1 < g->n[0] ? at + 1 : 0)
+      window[(j + sy) * nx + i] = a[row * g->columns[f] + at];
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, window, (PetscMPIInt)(nx * ny), MPIU_REAL, MPI_SUM, g->comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The periodic box's responses to a unit force on a u face, or on a v face. */
+static PetscErrorCode UnitResponse(MobilityTable m, int source) {
+  const OffsetTable *G = &m->green;
+  const Grid g = m->periodic->grid;
+  const PetscScalar *a;
+  PetscScalar *r;
+  PetscFunctionBeginUser;
+  PetscCall(VecSet(m->u, 0));
+  PetscCall(VecGetArray(m->u, &r));
+  if (!g->rank) r[source ? GridLocalU(g) : 0] = 1;
+  PetscCall(VecRestoreArray(m->u, &r));
+  PetscCall(StokesVelocity(m->stokes, m->u, m->u));
+  PetscCall(VecGetArrayRead(m->u, &a));
+  if (!source) PetscCall(GatherWindow(g, FIELD_U, a, G->size, G->value[OFFSET_UU]));
+  PetscCall(GatherWindow(g, FIELD_V, a + GridLocalU(g), G->size, G->value[source ? OFFSET_VV : OFFSET_VU]));
+  PetscCall(VecRestoreArrayRead(m->u, &a));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode MobilityTableSetUp(MobilityTable m, PetscReal alpha) {
+  const Grid g = m->periodic->grid;
+  PetscFunctionBeginUser;
+  if (alpha == m->alpha) PetscFunctionReturn(PETSC_SUCCESS);
+  m->alpha = alpha;
+  m->averaged = PETSC_FALSE;
+  PetscCall(FluidSetTimeCoefficient(m->periodic, alpha));
+  if (!m->stokes) PetscCall(CreateTableSolver(m));
+  PetscCall(UnitResponse(m, 0));
+  if (g->n[0] == g->n[1])
+    OffsetTableTurn(&m->green);
+  else
+    PetscCall(UnitResponse(m, 1));
+  if (IsTableLarge(g)) PetscCall(DestroyTableSolver(m));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Lagrange's weights at x, 0 .. POINTS - 1. */
+static void LagrangeWeights(PetscReal x, PetscReal weight[POINTS]) {
+  for (int i = 0; i < POINTS; i++) {
+    weight[i] = 1;
+    for (int j = 0; j < POINTS; j++)
+      if (j != i) weight[i] *= (x - j) / (i - j);
+  }
+}
+
+void MobilityTableMean(MobilityTable m, const PetscReal d[2], PetscReal mean[3]) {
+  const OffsetTable *t = &m->mean;
+  const PetscInt nx = 2 * t->size[0] + 1;
+  PetscReal w[2][POINTS];
+  PetscInt at[2];
+  if (!m->averaged) AverageTable(m);
+  for (int dir = 0; dir < 2; dir++) {
+    const PetscReal most = t->size[dir] - POINTS / 2, cells = d[dir] / m->periodic->grid->h;
+    const PetscReal x = PetscMax(-most, PetscMin(most, cells)) + t->size[dir];
+    at[dir] = (PetscInt)x - POINTS / 2 + 1;
+    LagrangeWeights(x - (PetscReal)at[dir], w[dir]);
+  }
+  for (int b = 0; b < OFFSET_COUNT; b++) {
+    mean[b] = 0;
+    for (int j = 0; j < POINTS; j++) {
+      const PetscReal *row = t->value[b] + (at[1] + j) * nx + at[0];
+      for (int i = 0; i < POINTS; i++) mean[b] += w[1][j] * w[0][i] * row[i];
+    }
+  }
+}

@@ -1,0 +1,319 @@
+#include "precondition/obstacleblock.h"
+#include "base/agree.h"
+#include "numerics/blas.h"
+#include "precondition/denseblock.h"
+#include "precondition/obstaclemodes.h"
+#include "numerics/symmetric.h"
+#include "fluid/stokes/stokes.h"
+#include "markers/streamresponse.h"
+
+struct _p_ObstacleBlock {
+  const FluidSpec *spec; /* borrowed */
+  Coupling coupling;     /* borrowed */
+  Obstacles obstacles;   /* borrowed */
+  PetscMPIInt root;      /* the rank that has the factor */
+  PetscReal alpha;       /* that it is for; negative: none yet */
+  PetscReal made;        /* where bodies were at this time */
+  PetscReal least;       /* fewest iterations of a solve with it; negative: not known yet */
+  PetscReal excess;      /* iterations above them in all */
+  float *inverse;        /* 2W x 2W (symmetric.h), on root; NULL with modes */
+  ObstacleModes modes;   /* NULL: dense inverse */
+  PetscScalar *all;      /* [2W] work */
+  float *from, *to;      /* [2W] on root: work, what has been found */
+  PetscBool renewed;     /* since it was last coupled */
+  PetscBool coupled;     /* the vesicles' block knows the obstacles */
+  float *response;       /* [2M][2W] X, on root; not made unless coupled */
+  PetscScalar *force;    /* [2M] of vesicles, work */
+  float *single;         /* [2M] of vesicles in single precision, work */
+};
+
+PetscErrorCode ObstacleBlockCreate(const FluidSpec *spec, Coupling coupling, ObstacleBlock *out) {
+  const Obstacles o = coupling->bodies->obstacles;
+  const PetscInt n = 2 * o->layout->M;
+  ObstacleBlock b;
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&b));
+  *out = b;
+  b->spec = spec;
+  b->coupling = coupling;
+  b->obstacles = o;
+  b->alpha = -1;
+  b->root = LayoutOwner(coupling->bodies->layout, 0);
+  PetscCall(PetscMalloc1(n, &b->all));
+  if (o->modes) PetscCall(ObstacleModesCreate(spec, coupling, b->root, &b->modes));
+  if (o->layout->rank != b->root) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMalloc2(n, &b->from, n, &b->to));
+  if (!b->modes) PetscCall(PetscMalloc1(SymmetricSize(n), &b->inverse));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ObstacleBlockDestroy(ObstacleBlock *block) {
+  PetscFunctionBeginUser;
+  if (!*block) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ObstacleModesDestroy(&(*block)->modes));
+  PetscCall(PetscFree((*block)->inverse));
+  PetscCall(PetscFree2((*block)->from, (*block)->to));
+  PetscCall(PetscFree((*block)->response));
+  PetscCall(PetscFree2((*block)->force, (*block)->single));
+  PetscCall(PetscFree((*block)->all));
+  PetscCall(PetscFree(*block));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Whether the mobility is had from Stokes solves: an obstacle stands on a wall, which the table of a periodic box does
+   not know, and the stream function serves. */
+static PetscBool IsBySolves(ObstacleBlock b) {
+  const Fluid f = b->coupling->fluid;
+  if (!f->tridiagonal || (f->grid->wall[0] && !f->grid->wall[1])) return PETSC_FALSE;
+  for (PetscInt v = 0; v < b->obstacles->layout->bodies; v++)
+    if (b->obstacles->kind[v].type == CURVE_OPEN) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+/* Mob = E A^-1 E^T of the grid itself, on root, zero elsewhere: a solve for each column. */
+static PetscErrorCode MobilityBySolves(ObstacleBlock b, PetscReal Mob[]) {
+  const Coupling c = b->coupling;
+  const Layout l = b->obstacles->layout;
+  const PetscInt n = 2 * l->M, own = BodiesFirstObstacle(c->bodies);
+  const PetscReal part = CouplingGridPart(c, c->fluid->alpha);
+  const PetscScalar *U;
+  PetscScalar *F;
+  Stokes stokes;
+  Vec force, velocity;
+  PetscFunctionBeginUser;
+  PetscCall(StokesCreate(c->fluid, &stokes));
+  PetscCall(VecDuplicate(c->X, &force));
+  PetscCall(VecDuplicate(c->X, &velocity));
+  PetscCall(VecSet(force, 0));
+  PetscCall(PetscArrayzero(Mob, n * n));
+  for (PetscInt j = 0; j < n; j++) {
+    const PetscInt at = j - 2 * l->first;
+    PetscCall(VecGetArray(force, &F));
+    for (PetscInt k = 0; k < 2 * l->n; k++) F[own + k] = k == at ? 1 : 0;
+    PetscCall(VecRestoreArray(force, &F));
+    PetscCall(MarkersRespond(c->markers, StokesStream(stokes), NULL, part, force, velocity));
+    PetscCall(VecGetArrayRead(velocity, &U));
+    PetscCall(LayoutToRank(l, b->root, 2, U + own, l->rank == b->root ? Mob + j * n : b->all));
+    PetscCall(VecRestoreArrayRead(velocity, &U));
+  }
+  PetscCall(VecDestroy(&force));
+  PetscCall(VecDestroy(&velocity));
+  PetscCall(StokesDestroy(&stokes));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The block times h^2, on root. */
+static PetscErrorCode AssembleObstacles(ObstacleBlock b, PetscReal A[]) {
+  const Obstacles o = b->obstacles;
+  const Layout l = o->layout;
+  const PetscInt n = 2 * l->M;
+  const MarkerRange solid = {o->all->M - l->M, l->M};
+  const PetscReal scale = o->beta * PetscSqr(b->coupling->fluid->grid->h);
+  Mobility mobility;
+  PetscFunctionBeginUser;
+  if (IsBySolves(b)) {
+    PetscCall(MobilityBySolves(b, A));
+    PetscCall(MobilityAddNear(b->coupling, PETSC_TRUE, &solid, &solid, b->root, A));
+  } else {
+    PetscCall(MobilityCreate(b->spec, b->coupling, PETSC_MAX_REAL, &mobility));
+    PetscCall(MobilitySetUp(mobility, b->alpha));
+    PetscCall(MobilityOnRoot(mobility, &solid, &solid, b->root, A));
+    PetscCall(MobilityDestroy(&mobility));
+  }
+  for (PetscInt v = 0; v < l->bodies && l->rank == b->root; v++)
+    for (PetscInt j = 2 * l->start[v]; j < 2 * l->start[v + 1]; j++)
+      for (PetscInt i = 2 * l->start[v]; i < 2 * l->start[v + 1]; i++) A[j * n + i] += scale * o->N[i] * o->N[j];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Cost of a new factor in iterations, those with the grid's own mobility by 2W solves. */
+static PetscReal ObstacleRenewalCost(ObstacleBlock b) {
+  const Grid g = b->coupling->fluid->grid;
+  const PetscReal cells = (PetscReal)g->n[0] * g->n[1], W = b->obstacles->layout->M;
+  if (b->modes) return DenseRenewalCost(1, 0.5 * (PetscReal)ObstacleModesCount(b->modes), 0, cells);
+  return (IsBySolves(b) ? 2 * W : 0) + DenseRenewalCost(1, W, 0, cells);
+}
+
+/* The whole block's inverse, on root. */
+static PetscErrorCode MakeObstacleInverse(ObstacleBlock b, PetscBool *failed) {
+  const Layout l = b->obstacles->layout;
+  const PetscInt n = 2 * l->M;
+  const PetscReal over = 1 / PetscSqr(b->coupling->fluid->grid->h);
+  PetscBool done = PETSC_TRUE;
+  PetscReal *A;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(n * n, &A));
+  PetscCall(AssembleObstacles(b, A));
+  if (l->rank == b->root) {
+    for (PetscInt k = 0; k < n * n; k++) A[k] *= over;
+    PetscCall(SymmetricInvert(n, A, b->inverse, &done));
+  }
+  PetscCall(PetscFree(A));
+  PetscCall(AgreeFlag(l->comm, done ? PETSC_FALSE : PETSC_TRUE, failed));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode MakeObstacleFactor(ObstacleBlock b, PetscBool *failed) {
+  PetscLogEvent event;
+  PetscFunctionBeginUser;
+  PetscCall(PetvesEvent("FactorObstacles", &event));
+  PetscCall(PetscLogEventBegin(event, 0, 0, 0, 0));
+  b->alpha = b->coupling->fluid->alpha;
+  b->made = b->obstacles->t;
+  b->least = -1;
+  b->excess = 0;
+  if (b->coupled) b->renewed = PETSC_TRUE;
+  b->coupled = PETSC_FALSE;
+  if (b->modes)
+    PetscCall(ObstacleModesSetUp(b->modes, b->alpha, failed));
+  else
+    PetscCall(MakeObstacleInverse(b, failed));
+  PetscCall(PetscLogEventEnd(event, 0, 0, 0, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* y = A^-1 x of the block's approximation, on root. */
+static PetscErrorCode InvertObstacles(ObstacleBlock b, const float x[], float y[]) {
+  PetscFunctionBeginUser;
+  if (b->modes)
+    PetscCall(ObstacleModesApply(b->modes, x, y));
+  else
+    SymmetricMult(2 * b->obstacles->layout->M, b->inverse, x, y);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Whether the factor is of another place of bodies or of another time step. */
+static PetscBool IsObstacleFactorOld(ObstacleBlock b) {
+  return b->obstacles->moving || b->alpha != b->coupling->fluid->alpha ? PETSC_TRUE : PETSC_FALSE;
+}
+
+PetscErrorCode ObstacleBlockSetUp(ObstacleBlock b, PetscBool *failed) {
+  PetscFunctionBeginUser;
+  if (DenseStepChanged(b->alpha, b->coupling->fluid->alpha, OBSTACLE_STEP_RATIO) ||
+      (IsObstacleFactorOld(b) && b->excess > ObstacleRenewalCost(b)))
+    PetscCall(MakeObstacleFactor(b, failed));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+void ObstacleBlockSolved(ObstacleBlock b, PetscInt its) {
+  if (b->least < 0 || its < b->least) b->least = its;
+  if (IsObstacleFactorOld(b)) b->excess += its - b->least;
+}
+
+PetscBool ObstacleBlockIsOlder(Coupling c) {
+  const Obstacles o = c->bodies->obstacles;
+  return o && (o->moving || !c->fluid->steady) ? PETSC_TRUE : PETSC_FALSE;
+}
+
+void ObstacleBlockGetMemory(ObstacleBlock b, PetscReal memory[OBSTACLE_BLOCK_MEMORY]) {
+  const PetscReal own[] = {b->made, b->alpha, b->least, b->excess};
+  for (int k = 0; k < OBSTACLE_BLOCK_MEMORY; k++) memory[k] = own[k];
+}
+
+PetscErrorCode ObstacleBlockSetMemory(ObstacleBlock b, const PetscReal memory[OBSTACLE_BLOCK_MEMORY]) {
+  PetscBool failed;
+  PetscFunctionBeginUser;
+  PetscCall(MakeObstacleFactor(b, &failed));
+  b->least = memory[2];
+  b->excess = memory[3];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The own numbers of bodies whose markers turn: to how they were when the factor was made, or (back) to how they are.
+ */
+static void TurnObstacles(ObstacleBlock b, PetscBool back, PetscScalar F[]) {
+  const Obstacles o = b->obstacles;
+  const Layout l = o->layout;
+  for (PetscInt v = l->own; v < l->end; v++) {
+    if (!o->motion[v].turned) continue;
+    const PetscReal angle = ObstaclesPose(o, v, o->t).angle - ObstaclesPose(o, v, b->made).angle;
+    const PetscReal c = PetscCosReal(angle), s = (back ? 1 : -1) * PetscSinReal(angle);
+    for (PetscInt k = 2 * LayoutOffset(l, v); k < 2 * (LayoutOffset(l, v) + LayoutCount(l, v)); k += 2) {
+      const PetscScalar x = F[k], y = F[k + 1];
+      F[k] = c * x - s * y;
+      F[k + 1] = s * x + c * y;
+    }
+  }
+}
+
+/* X = A^-1 K to response, and Mob -= h^2 K^T X of K h^2, on root. */
+static PetscErrorCode EliminateObstacles(ObstacleBlock b, PetscInt m, PetscReal K[], PetscReal Mob[]) {
+  const PetscInt w = 2 * b->obstacles->layout->M;
+  const PetscReal over = 1 / PetscSqr(b->coupling->fluid->grid->h);
+  PetscReal *X, *part;
+  PetscFunctionBeginUser;
+  if (!b->response) PetscCall(PetscMalloc1(w * m, &b->response));
+  PetscCall(PetscMalloc2(w * m, &X, m * m, &part));
+  for (PetscInt j = 0; j < m; j++) {
+    for (PetscInt k = 0; k < w; k++) b->from[k] = (float)(over * K[j * w + k]);
+    PetscCall(InvertObstacles(b, b->from, b->response + j * w));
+  }
+  for (PetscInt k = 0; k < w * m; k++) X[k] = b->response[k];
+  PetscCall(DenseProduct(PETSC_TRUE, m, m, w, K, X, part));
+  for (PetscInt k = 0; k < m * m; k++) Mob[k] -= part[k];
+  PetscCall(PetscFree2(X, part));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ObstacleBlockCouple(ObstacleBlock b, Mobility mobility, PetscReal Mob[], PetscBool *failed) {
+  const MarkerRange vesicles = {0, b->coupling->membrane->layout->M}, solid = {vesicles.n, b->obstacles->layout->M};
+  const PetscInt m = 2 * vesicles.n;
+  PetscReal *K;
+  PetscFunctionBeginUser;
+  if (b->obstacles->moving) PetscFunctionReturn(PETSC_SUCCESS);
+  if (b->alpha < 0) PetscCall(MakeObstacleFactor(b, failed)); /* a restart comes here first */
+  if (*failed) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!b->force) PetscCall(PetscMalloc2(m, &b->force, m, &b->single));
+  b->coupled = PETSC_TRUE;
+  b->renewed = PETSC_FALSE;
+  PetscCall(PetscMalloc1(2 * b->obstacles->layout->M * m, &K));
+  PetscCall(MobilityOnRoot(mobility, &solid, &vesicles, b->root, K)); /* velocity of obstacles by forces on vesicles */
+  if (b->obstacles->layout->rank == b->root) PetscCall(EliminateObstacles(b, m, K, Mob));
+  PetscCall(PetscFree(K));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscBool ObstacleBlockCoupled(ObstacleBlock b) {
+  return b->coupled;
+}
+
+PetscBool ObstacleBlockRenewed(ObstacleBlock b) {
+  return b->renewed;
+}
+
+PetscErrorCode ObstacleBlockBegin(ObstacleBlock b, PetscScalar r[], PetscScalar U[]) {
+  const Layout l = b->obstacles->layout, vesicles = b->coupling->membrane->layout;
+  const PetscInt w = 2 * l->M, m = 2 * vesicles->M;
+  const PetscBool root = l->rank == b->root ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionBeginUser;
+  TurnObstacles(b, PETSC_FALSE, r);
+  PetscCall(LayoutToRank(l, b->root, 2, r, b->all));
+  if (root) DenseSingle(w, b->all, b->from);
+  if (b->coupled) {
+    PetscCall(LayoutToRank(vesicles, b->root, 2, U, b->force));
+    if (root) {
+      PetscCall(PetscArrayzero(b->single, m));
+      PetscCall(DenseSingleMultAdd(PETSC_TRUE, w, m, -1, b->response, b->from, b->single));
+      for (PetscInt k = 0; k < m; k++) b->force[k] += b->single[k];
+    }
+    PetscCall(LayoutFromRank(vesicles, b->root, 2, b->force, U));
+  }
+  if (root) PetscCall(InvertObstacles(b, b->from, b->to));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ObstacleBlockEnd(ObstacleBlock b, const PetscScalar F[], PetscScalar solid[]) {
+  const Layout l = b->obstacles->layout, vesicles = b->coupling->membrane->layout;
+  const PetscInt w = 2 * l->M, m = 2 * vesicles->M;
+  const PetscBool root = l->rank == b->root ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionBeginUser;
+  if (b->coupled) {
+    PetscCall(LayoutToRank(vesicles, b->root, 2, F, b->force));
+    if (root) DenseSingle(m, b->force, b->single);
+    if (root) PetscCall(DenseSingleMultAdd(PETSC_FALSE, w, m, -1, b->response, b->single, b->to));
+  }
+  for (PetscInt k = 0; k < w && root; k++) b->all[k] = b->to[k];
+  PetscCall(LayoutFromRank(l, b->root, 2, b->all, solid));
+  TurnObstacles(b, PETSC_TRUE, solid);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

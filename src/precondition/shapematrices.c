@@ -1,0 +1,140 @@
+#include "precondition/shapematrices.h"
+#include "mobility/contrast.h"
+#include "precondition/denseblock.h"
+#include "layers/doubleblock.h"
+#include "layers/selflayer.h"
+
+/* M += scale times the coarse grid's mean mobility between n points. */
+static void AddMeanMobility(MobilityTable table, PetscReal scale, PetscInt n, const PetscReal X[], PetscReal M[]) {
+  for (PetscInt j = 0; j < n; j++)
+    for (PetscInt i = 0; i < n; i++) {
+      const PetscReal d[2] = {X[2 * i] - X[2 * j], X[2 * i + 1] - X[2 * j + 1]};
+      PetscReal mean[3], *at = M + 2 * j * 2 * n + 2 * i;
+      MobilityTableMean(table, d, mean);
+      at[0] += scale * mean[0];
+      at[1] += scale * mean[2];
+      at[2 * n] += scale * mean[2];
+      at[2 * n + 1] += scale * mean[1];
+    }
+}
+
+/* M = h^2 S. */
+static PetscErrorCode AssembleShape(SharedShapes s, const SharedShape *q, PetscReal M[]) {
+  const Coupling c = s->coupling;
+  const PetscInt n = LayoutCount(c->membrane->layout, q->like);
+  const PetscReal h2 = PetscSqr(c->fluid->grid->h);
+  PetscFunctionBeginUser;
+  PetscCall(SelfLayer(c->membrane->spectral[q->like], n, c->fluid->nu, c->fluid->grid->h, q->X, M));
+  for (PetscInt k = 0; k < 4 * n * n; k++) M[k] *= h2;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* With viscosity contrast what ContrastMatrix has of a vesicle of this shape, else NULL. */
+static PetscErrorCode ShapeMotion(SharedShapes s, const SharedShape *q, PetscReal **motion) {
+  const Membrane m = s->coupling->membrane;
+  const PetscInt n = 2 * LayoutCount(m->layout, q->like);
+  PetscReal *D, *normal, *along;
+  PetscFunctionBeginUser;
+  *motion = NULL;
+  if (!s->coupling->contrast) PetscFunctionReturn(PETSC_SUCCESS);
+  const PetscReal ratio = s->coupling->contrast->ratio[q->like];
+  PetscCall(PetscMalloc1(n * n, motion));
+  PetscCall(PetscMalloc3(n * n, &D, n, &normal, n / 2, &along));
+  PetscCall(DoubleGeometry(m->spectral[q->like], n / 2, q->X, normal, along));
+  PetscCall(DoubleSelf(m->spectral[q->like], n / 2, q->X, normal, D));
+  for (PetscInt j = 0; j < n; j++)
+    for (PetscInt i = 0; i < n; i++)
+      (*motion)[j * n + i] = (i == j ? 0.5 * (1 + ratio) : 0) - (1 - ratio) * D[i * n + j];
+  PetscCall(ContrastTread(m, q->like, q->like + 1, &q->treading, s->a0, n, *motion));
+  PetscCall(PetscFree3(D, normal, along));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The weights of n markers and so many points; those of an earlier shape where there are. */
+static PetscErrorCode FindShapeWeights(SharedShapes s, PetscInt n, PetscInt points, PetscInt *which) {
+  PetscFunctionBeginUser;
+  for (*which = 0; *which < s->kinds; (*which)++)
+    if (s->weights[*which].n == n && s->weights[*which].points == points) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscRealloc((size_t)(s->kinds + 1) * sizeof(CurvePoints), &s->weights));
+  PetscCall(CurvePointsCreate(PETSC_FALSE, n, points, &s->weights[s->kinds++]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* F = Dm^T sigma + (c_b ds/a0) D4 V of an answer (V, sigma), and behind it J = (1 - ratio) (V + (treading/a0) dV/dt).
+ */
+static void AnswerSources(SharedShapes s, const SharedShape *q, const PetscReal tau[], const PetscReal V[],
+                          PetscReal F[]) {
+  const Membrane m = s->coupling->membrane;
+  const PetscInt n = LayoutCount(m->layout, q->like);
+  PetscReal *pull = s->X;
+  for (PetscInt k = 0; k < 2 * n; k++) pull[k] = V[2 * n + k / 2] * tau[k];
+  (void)PetscArrayzero(F, 2 * n);
+  MembraneEdgesTranspose(m, q->like, 1, pull, F);
+  if (m->bending > 0) MembraneVesicleBending(m, q->like, m->bending / s->a0, V, F);
+  if (q->sources.rows == 2 * n) return;
+  PetscReal *J = F + 2 * n;
+  (void)PetscArraycpy(J, V, 2 * n);
+  MembraneLabelDerivative(m, q->like, q->treading / s->a0, V, J);
+  for (PetscInt k = 0; k < 2 * n; k++) J[k] *= 1 - s->coupling->contrast->ratio[q->like];
+}
+
+/* The coarse parts of a shape: the points of the curve through its markers, weights, self. */
+static PetscErrorCode MakeShapePoints(SharedShapes s, SharedShape *q) {
+  const PetscInt n = LayoutCount(s->coupling->membrane->layout, q->like),
+                 points = LayoutCount(s->coarse->layout, q->like);
+  const PetscReal h2 = PetscSqr(s->coarse->fluid->grid->h);
+  PetscFunctionBeginUser;
+  PetscCall(FindShapeWeights(s, n, points, &q->weights));
+  PetscCall(PetscCalloc1(4 * points * points, &q->self));
+  PetscCall(PetscCalloc1(2 * points, &q->points));
+  for (PetscInt i = 0; i < points; i++)
+    for (PetscInt k = 0; k < 2 * n; k++)
+      q->points[2 * i + k % 2] += s->weights[q->weights].to_points[i * n + k / 2] * q->X[k];
+  AddMeanMobility(s->coarse->table, 1 / h2, points, q->points, q->self);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The inverse and its sources: the columns are the answers V, sigma to those of the identity. */
+static PetscErrorCode StoreShape(SharedShapes s, SharedShape *q, const PetscReal tau[], const PetscReal V[],
+                                 const PetscReal sigma[]) {
+  const PetscInt n = LayoutCount(s->coupling->membrane->layout, q->like), all = 3 * n;
+  PetscReal *answer, *F;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(all, &answer, q->sources.rows, &F));
+  PetscCall(PetscMalloc1(PackedMatrixSize(&q->inverse), &q->inverse.value));
+  PetscCall(PetscMalloc1(PackedMatrixSize(&q->sources), &q->sources.value));
+  for (PetscInt j = 0; j < all; j++) {
+    PetscCall(PetscArraycpy(answer, V + j * 2 * n, 2 * n));
+    PetscCall(PetscArraycpy(answer + 2 * n, sigma + j * n, n));
+    AnswerSources(s, q, tau, answer, F);
+    PackedMatrixSetColumn(&q->inverse, j, answer);
+    PackedMatrixSetColumn(&q->sources, j, F);
+  }
+  PetscCall(PetscFree2(answer, F));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SharedShapeMake(SharedShapes s, SharedShape *q, PetscBool *good) {
+  const Membrane m = s->coupling->membrane;
+  const PetscInt n = LayoutCount(m->layout, q->like), all = 3 * n;
+  PetscReal *M, *motion, *V, *sigma;
+  DenseBlock block;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(4 * n * n, &M));
+  PetscCall(PetscCalloc2(2 * n * all, &V, n * all, &sigma));
+  PetscCall(DenseBlockCreate(m, s->coupling->fluid->grid->h, q->like, q->like + 1, &block));
+  PetscCall(AssembleShape(s, q, M));
+  PetscCall(ShapeMotion(s, q, &motion));
+  MembraneVesicleTangents(m, q->like, q->X, block.tau);
+  PetscCall(DenseBlockFactor(&block, s->a0, &q->treading, M, motion, good));
+  PetscCall(PetscFree(motion));
+  for (PetscInt j = 0; j < 2 * n; j++) V[j * 2 * n + j] = 1;
+  for (PetscInt j = 0; j < n; j++) sigma[(2 * n + j) * n + j] = 1;
+  if (*good) PetscCall(DenseBlockSolve(&block, all, V, sigma));
+  PetscCall(StoreShape(s, q, block.tau, V, sigma));
+  if (s->coarse) PetscCall(MakeShapePoints(s, q));
+  PetscCall(DenseBlockDestroy(&block));
+  PetscCall(PetscFree(M));
+  PetscCall(PetscFree2(V, sigma));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,46 @@
+/* The shared shapes of vesicles and what the preconditioner keeps for them (sharedshapes.h). */
+#pragma once
+#include "precondition/coarsegrid.h"
+#include "mobility/coupling.h"
+#include "precondition/curvepoints.h"
+#include "numerics/packedmatrix.h"
+#include "numerics/rigidfit.h"
+
+/* A shape: its curve, and on ranks that need them the matrices of its dense problem. */
+typedef struct {
+  PetscInt like;      /* vesicle whose markers' number and spacing it has */
+  PetscReal treading; /* label speed (1/time) */
+  PetscReal *X;       /* [2n] centred */
+  PetscReal size[RIGIDFIT_SIZES];
+  PetscInt begin, end;  /* own vesicles that take it: a range of the order */
+  PackedMatrix inverse; /* 3n x 3n: (r_V, r_s) to (V, sigma); without values: not made */
+  PackedMatrix sources; /* 2n x 3n: to their forces F; with viscosity contrast 4n x 3n, to F and their jumps J */
+  PetscReal *self;      /* [2q][2q]: forces at q coarse points to what they do to the vesicle itself there, times -1 */
+  PetscInt weights;     /* number of its interpolation among all */
+  PetscReal *points;    /* [2q] places of its coarse points */
+} SharedShape;
+
+/* What membranes do to the fluid: forces F and, with viscosity contrast (else NULL), jumps J, [2n] of own vesicles. */
+typedef struct {
+  PetscScalar *force, *jump;
+} ShapeSources;
+
+typedef struct _p_Interactions *Interactions; /* interactions.h */
+typedef struct _p_SharedShapes *SharedShapes;
+struct _p_SharedShapes {
+  Coupling coupling; /* borrowed */
+  CoarseGrid coarse; /* NULL where no coarse cells fit */
+  PetscReal a0;      /* of the time step that the matrices are for; 0: none yet */
+  PetscInt count;
+  size_t room;
+  SharedShape *shape;
+  CurvePoints *weights; /* between n markers and q coarse points, one for each n and q */
+  PetscInt kinds;       /* number of weights */
+  PetscInt *of;         /* [vesicles] shape of each, -1: none yet */
+  PetscInt *order;      /* [own vesicles] by shape */
+  RigidFit *fit;        /* [own vesicles] in its shape's frame */
+  PetscReal *X;         /* [2 most markers of a vesicle] work */
+  PetscReal *from, *to; /* columns of own vesicles: work */
+  ShapeSources alone;   /* work */
+  Interactions cross;   /* NULL without coarse grid */
+};

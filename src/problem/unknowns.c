@@ -1,0 +1,100 @@
+#include "problem/unknowns.h"
+
+/* 2 R0 of the smallest vesicle, without vesicles half of the box's shorter side. */
+static PetscReal Length(Coupling c) {
+  const Membrane m = c->membrane;
+  const Grid g = c->fluid->grid;
+  PetscReal least = m->layout->bodies ? PETSC_MAX_REAL : 0.5 * PETSC_PI * g->h * PetscMin(g->n[0], g->n[1]);
+  for (PetscInt v = 0; v < m->layout->bodies; v++) least = PetscMin(least, m->L0[v]);
+  return least / PETSC_PI;
+}
+
+PetscErrorCode UnknownsCreate(Coupling coupling, Unknowns *out) {
+  Unknowns u;
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&u));
+  *out = u;
+  u->coupling = coupling;
+  u->length = Length(coupling);
+  u->velocity = 2 * coupling->membrane->layout->n;
+  u->solid = BodiesObstacleNumbers(coupling->bodies);
+  u->tension = coupling->membrane->layout->n;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode UnknownsDestroy(Unknowns *unknowns) {
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(*unknowns));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode UnknownsCreateVec(Unknowns u, Vec *x) {
+  const PetscInt numbers = 2 * u->coupling->bodies->layout->M + u->coupling->membrane->layout->M;
+  PetscFunctionBeginUser;
+  PetscCall(VecCreate(u->coupling->fluid->grid->comm, x));
+  PetscCall(VecSetSizes(*x, UnknownsTension(u) + u->tension, numbers));
+  PetscCall(VecSetType(*x, VECSTANDARD));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+#define PARTS 3
+
+PetscErrorCode UnknownsPack(Unknowns u, Vec V, Vec solid, Vec sigma, Vec x) {
+  const Vec part[PARTS] = {V, solid, sigma};
+  const PetscInt n[PARTS] = {u->velocity, u->solid, u->tension};
+  PetscScalar *to;
+  PetscFunctionBeginUser;
+  PetscCall(VecGetArrayWrite(x, &to));
+  for (PetscInt k = 0, at = 0; k < PARTS; at += n[k++]) {
+    const PetscScalar *from;
+    if (!part[k]) continue;
+    PetscCall(VecGetArrayRead(part[k], &from));
+    PetscCall(PetscArraycpy(to + at, from, n[k]));
+    PetscCall(VecRestoreArrayRead(part[k], &from));
+  }
+  PetscCall(VecRestoreArrayWrite(x, &to));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode UnknownsUnpack(Unknowns u, Vec x, Vec V, Vec solid, Vec sigma) {
+  const Vec part[PARTS] = {V, solid, sigma};
+  const PetscInt n[PARTS] = {u->velocity, u->solid, u->tension};
+  const PetscScalar *from;
+  PetscFunctionBeginUser;
+  PetscCall(VecGetArrayRead(x, &from));
+  for (PetscInt k = 0, at = 0; k < PARTS; at += n[k++]) {
+    PetscScalar *to;
+    if (!part[k]) continue;
+    PetscCall(VecGetArrayWrite(part[k], &to));
+    PetscCall(PetscArraycpy(to, from + at, n[k]));
+    PetscCall(VecRestoreArrayWrite(part[k], &to));
+  }
+  PetscCall(VecRestoreArrayRead(x, &from));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscReal UnknownsWeight(Unknowns u) {
+  const Fluid f = u->coupling->fluid;
+  return f->nu + f->grid->h * u->length * f->alpha;
+}
+
+PetscReal UnknownsTensionScale(Unknowns u, PetscInt v) {
+  return PetscSqr(u->coupling->fluid->grid->h) / u->coupling->membrane->ds[v] * UnknownsWeight(u);
+}
+
+void UnknownsScale(Unknowns u, PetscBool inverse, PetscScalar y[]) {
+  const Membrane m = u->coupling->membrane;
+  const Layout l = m->layout;
+  const Fluid f = u->coupling->fluid;
+  for (PetscInt v = l->own; v < l->end; v++) {
+    const PetscReal stiffness = m->bending * m->part[v] / (f->a0 * f->nu * PetscPowRealInt(m->ds[v], 3));
+    const PetscReal tension = UnknownsTensionScale(u, v);
+    const PetscReal velocity = tension / PetscSqr(f->grid->h) * PetscSqrtReal(1 + stiffness);
+    const PetscInt at = LayoutOffset(l, v), n = LayoutCount(l, v);
+    PetscScalar *V = y + 2 * at, *sigma = y + UnknownsTension(u) + at;
+    for (PetscInt k = 0; k < 2 * n; k++) V[k] = inverse ? V[k] / velocity : V[k] * velocity;
+    for (PetscInt k = 0; k < n; k++) sigma[k] = inverse ? sigma[k] / tension : sigma[k] * tension;
+  }
+  const Obstacles o = u->coupling->bodies->obstacles;
+  if (o) ObstaclesScale(o, UnknownsWeight(u), inverse, y + u->velocity);
+}
