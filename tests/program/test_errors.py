@@ -118,6 +118,20 @@ def test_scene_is_refused(ranks, tmp_path):
     assert not [case for case in zip(table, found) if not matches(f"1 {case[0][1]}", case[1])]
 
 
+def sample() -> list[tuple[str, int, str]]:
+    """Options, ranks and message of six rows of each group of SCENES, spread over its table."""
+    tables = ([row[1:] for row in rows() if row[0] == group] for group in SCENES)
+    return [table[k * len(table) // 6] for table in tables for k in range(6)]
+
+
+@pytest.mark.parametrize("options, ranks, message", sample(), ids=lambda value: str(value)[:40])
+def test_program_refuses_scene(options, ranks, message, tmp_path):
+    """As the process of many scenes does, and in the program: exit status, one line, nothing on disk."""
+    run = run_petves(tmp_path / "out", with_files(options, tmp_path), ranks, good=False, timeout=60)
+    stops_with(run, [])
+    assert matches(f"petves: error: {message}", run.errors[0]) and not run.folder.exists(), run.errors
+
+
 @pytest.mark.parametrize(
     "group, options, ranks, message", [row for row in rows() if row[0] not in SCENES], ids=lambda value: str(value)[:40]
 )

@@ -68,8 +68,9 @@ def rows(folder: Path) -> list[list[str]]:
         return [[row[name] for name in row if name != "wall"] for row in csv.DictReader(file)]
 
 
-@pytest.mark.parametrize("ranks", [1, 3])
-@pytest.mark.parametrize("name", ["series.csv", "run.xmf"])
+@pytest.mark.parametrize(
+    "name, ranks", [("series.csv", 1), ("series.csv", 2), ("series.csv", 3), ("run.xmf", 1), ("run.xmf", 3)]
+)
 def test_close_that_fails_at_the_end(name, ranks, fault, straight, tmp_path):
     """When all has been written: the line, status 1, nothing left in memory, and a checkpoint from which the run goes on
     as if nothing had been."""
