@@ -99,7 +99,7 @@ def test_run_takes_a_file(here):
 
 def test_tools_are_python_s(here):
     """petves plot and the others start the package, whose commands are these and no others."""
-    source = (ROOT / "src" / "program.c").read_text()
+    source = (ROOT / "src" / "app" / "program.c").read_text()
     tools = re.findall(r'"(\w+)"', re.search(r"tools\[\] = \{(.*?)\}", source)[1])
     done = mpirun([PETVES, tools[0], "--help"], 1)
     assert done.returncode == 0 and done.stdout.startswith(f"usage: petves {tools[0]}"), done.stderr
