@@ -8,9 +8,10 @@
 #include "base/base.h"
 
 #define KERNEL_MAX_POINTS 6
-#define KERNEL_WALL_CELLS 3      /* cells that markers keep from walls: the reach of the kernels */
-#define KERNEL_FOLDED_CELLS 0.25 /* cells that markers keep from walls where stencils are folded (markers/wallfold.h)  \
-                                  */
+#define KERNEL_WALL_CELLS 3 /* cells that markers keep from walls: the reach of the kernels */
+#define KERNEL_FOLDED_CELLS                                                                                            \
+  0.25 /* cells that markers keep from walls where stencils are folded (markers/wallfold.h)                            \
+        */
 
 /* The kernels: ib6 of Bao, Kaye and Peskin (2016), composite B-splines cbs of Gruninger and Griffith (2025). A row has
    the name; the weights along and across; the marker spacing ds/h that suits the kernel; the spacing below which the
