@@ -99,7 +99,7 @@ PetscErrorCode SimulationGetObstacles(Simulation s, PetscInt *obstacles, PetscIn
 PetscErrorCode SimulationGetOption(Simulation s, PetscInt i, const char **name, char value[], size_t length) {
   PetscFunctionBeginUser;
   *name = SceneOptionName(i);
-  if (*name) PetscCall(SceneOptionValue(s->scene, i, value, length));
+  if (*name) PetscCall(OptionValue(&s->scene->options, s->scene, i, value, length));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -16,8 +16,21 @@ static void PrintWrapped(FILE *file, const char *text) {
   fputc('\n', file);
 }
 
-void OptionHelp(FILE *file, const OptionRow *row) {
+void OptionHelpText(const OptionRow *row, const OptionDefault *d, char text[OPTION_HELP]) {
+  (void)snprintf(text, OPTION_HELP, "%s", row->help);
+  for (; d->name; d++) {
+    const size_t used = strlen(text);
+    char own[OPTION_HELP];
+    if (!d->help || strcmp(d->name, row->name)) continue;
+    (void)snprintf(own, sizeof(own), d->help, d->value);
+    (void)snprintf(text + used, OPTION_HELP - used, "; %s", own);
+  }
+}
+
+void OptionHelp(FILE *file, const OptionRow *row, const OptionDefault dependent[]) {
+  char help[OPTION_HELP];
   fprintf(file, "  %s%s%s", row->name, *row->value ? " " : "", row->value);
   fprintf(file, *row->range && strcmp(row->range, "any") ? "  [%s]\n" : "\n", row->range);
-  PrintWrapped(file, row->help);
+  OptionHelpText(row, dependent, help);
+  PrintWrapped(file, help);
 }

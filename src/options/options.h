@@ -1,6 +1,7 @@
-/* A table of options, each once with its type, default, range and help. -help, the checks of single values, the text of
-   a value in force and the "did you mean" of a misspelt name all come from it. What the options mean is not known here:
-   their values go into a struct of the caller's, at the offsets of the rows. */
+/* A table of options, each once with its type, default, range, help and what it needs to mean something, and a table of
+   the defaults that depend on other options. -help, the checks of single values, the text of a value in force, the
+   refusal of an option without use and the "did you mean" of a misspelt name all come from them. What the options mean
+   is not known here: their values go into a struct of the caller's, at the offsets of the rows. */
 #pragma once
 #include "base/base.h"
 
@@ -20,6 +21,14 @@ typedef struct {
    char[OPTION_MAX_NAME], char[PETSC_MAX_PATH_LEN], RealList, IntList. */
 typedef enum { OPT_REAL, OPT_INT, OPT_BOOL, OPT_ENUM, OPT_NAME, OPT_PATH, OPT_REALS, OPT_INTS } OptionType;
 
+/* What has to be there for an option to mean something: an enum in the values that is one of some, or a condition. */
+typedef struct {
+  const char *what; /* for a message: "-flow_type shear or extension" */
+  size_t offset;    /* of a PetscInt, and */
+  unsigned any_of;  /* bit k: the value k is one of those; where it is 0: */
+  PetscBool (*met)(const void *values);
+} OptionNeed;
+
 typedef struct {
   const char *name; /* with its dash */
   OptionType type;
@@ -27,28 +36,51 @@ typedef struct {
   const char *value; /* default, as a user would write it */
   const char *range; /* ">0", ">=0", "(0,1)", "any"; for enums and names "a|b|c"; for lists the same for each entry */
   const char *help;
+  const OptionNeed *need; /* NULL: none */
+  PetscBool may_change;   /* between a run and one that goes on from its checkpoint */
 } OptionRow;
+
+/* A default that depends on other options, in place of its row's. A table of them ends with a row without a name. */
+typedef struct {
+  const char *name;                                              /* of the option, with its dash */
+  PetscBool (*when)(const void *values);                         /* the condition */
+  const char *value;                                             /* as a user would write it, or NULL: */
+  void (*find)(const void *values, char value[OPTION_MAX_NAME]); /* empty: the row's default stays */
+  const char *why;                                               /* the reason */
+  const char *help;                                              /* behind the row's, %s: the value; NULL: none */
+} OptionDefault;
 
 typedef struct {
   MPI_Comm comm;
   PetscInt n;
-  const OptionRow *row; /* [n], borrowed */
-  PetscBool *given;     /* [n], whether the user gave it */
+  const OptionRow *row;           /* [n], borrowed */
+  const OptionDefault *dependent; /* borrowed */
+  PetscBool *given;               /* [n], whether the user gave it */
 } OptionTable;
 
 /* OptionsRead - make the table of n rows and read each option of the options database, or its default, into values.
    Fills in -help under the title. Collective. A value that cannot be read or is out of its range is the user's mistake.
    OptionsDestroy - free the table and the lists in values. */
 PETSC_EXTERN PetscErrorCode OptionsRead(MPI_Comm comm, const char title[], PetscInt n, const OptionRow row[],
-                                        OptionTable *table, void *values);
+                                        const OptionDefault dependent[], OptionTable *table, void *values);
 PETSC_EXTERN PetscErrorCode OptionsDestroy(OptionTable *table, void *values);
 
 /* OptionFind - index of the option ("-name"), or -1. OptionGiven - whether the user gave it. Not collective. */
 PETSC_EXTERN PetscInt OptionFind(const OptionTable *table, const char name[]);
 PETSC_EXTERN PetscBool OptionGiven(const OptionTable *table, const char name[]);
 
-/* OptionChoose - give an option a value that the user has not given: what was given stays. */
+/* OptionChoose - give an option a value that the user has not given: what was given stays. OptionsDepend - choose all
+   dependent defaults whose condition holds. OptionDepends - whether one of them is in force, and its value. Collective.
+ */
 PETSC_EXTERN PetscErrorCode OptionChoose(const OptionTable *table, void *values, const char name[], const char text[]);
+PETSC_EXTERN PetscErrorCode OptionsDepend(const OptionTable *table, void *values);
+PETSC_EXTERN PetscBool OptionDepends(const OptionTable *table, const void *values, const OptionDefault *dependent,
+                                     char value[OPTION_MAX_NAME]);
+
+/* OptionUsed - whether what an option needs is there. Not collective. OptionsCheckUsed - stop when the user gave one
+   whose need is not met. Collective. */
+PETSC_EXTERN PetscBool OptionUsed(const OptionRow *row, const void *values);
+PETSC_EXTERN PetscErrorCode OptionsCheckUsed(const OptionTable *table, const void *values);
 
 /* OptionText - the i-th option's value in force as text, to be freed with PetscFree. OptionValue - the same, cut to
    length - 1 characters. Not collective. */
@@ -61,11 +93,13 @@ PETSC_EXTERN PetscErrorCode OptionValue(const OptionTable *table, const void *va
 PETSC_EXTERN void OptionPrint(FILE *file, const char name[], const char value[]);
 
 /* OptionHelp - a row for a reader: "  -name default  [range]", and its help below in lines that begin with six blanks.
-   Not collective. */
-PETSC_EXTERN void OptionHelp(FILE *file, const OptionRow *row);
+   OptionHelpText - the help of a row and of its dependent defaults. Not collective, and also before PETSc starts. */
+#define OPTION_HELP 512
+PETSC_EXTERN void OptionHelp(FILE *file, const OptionRow *row, const OptionDefault dependent[]);
+PETSC_EXTERN void OptionHelpText(const OptionRow *row, const OptionDefault dependent[], char text[OPTION_HELP]);
 
-/* OptionsWrite - write every option in force that has a value, defaults included, one "-name value" a line; but not
-   those in skip, whose last entry is NULL. */
+/* OptionsWrite - write every option in force that is used and has a value, defaults included, one "-name value" a line;
+   but not those in skip, whose last entry is NULL. */
 PETSC_EXTERN PetscErrorCode OptionsWrite(const OptionTable *table, const void *values, const char *const skip[],
                                          FILE *file);
 
@@ -75,18 +109,18 @@ typedef struct {
   const char *prefix, *need;
 } OptionOwner;
 
-/* What a name asks for that is none: the whole name ("-dt"), or words in it ("*inflow"), and what to say. Where words
-   are in the name of an option too, that option is meant. A list ends with NULL. */
+/* What names ask for that are none, and what to say. Between blanks: a whole name ("-dt"), or words in it ("*inflow").
+   Where words are in the name of an option too, that option is meant. A list ends with NULL. */
 typedef struct {
-  const char *name, *say;
-} OptionWish;
+  const char *names, *say;
+} OptionSuggestion;
 
 /* OptionsCheckUnused - stop when the options database holds an option that nothing has read: one of a solver that is
-   not there, by `owners` and the values in force, or one that there is not, with what `wishes` say, or the name of the
-   table or of `others` (last entry NULL) that is meant, if one is near.
+   not there, by `owners` and the values in force, or one that there is not, with what `suggestions` say, or the name of
+   the table or of `others` (last entry NULL) that is meant, if one is near.
    Call when everything is set up. Collective. */
 PETSC_EXTERN PetscErrorCode OptionsCheckUnused(const OptionTable *table, const void *values, const char *const others[],
-                                               const OptionOwner owners[], const OptionWish wishes[]);
+                                               const OptionOwner owners[], const OptionSuggestion suggestions[]);
 
 /* OptionParse - text into the place of a row's value. Collective: a text that does not fit is the user's mistake.
    OptionFormat - the value as text, to be freed with PetscFree. */

@@ -18,19 +18,22 @@ static PetscErrorCode ReadOption(MPI_Comm comm, const OptionRow *o, PetscBool gi
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode OptionsRead(MPI_Comm comm, const char title[], PetscInt n, const OptionRow row[], OptionTable *t,
-                           void *values) {
+PetscErrorCode OptionsRead(MPI_Comm comm, const char title[], PetscInt n, const OptionRow row[],
+                           const OptionDefault dependent[], OptionTable *t, void *values) {
   PetscFunctionBeginUser;
   t->comm = comm;
   t->n = n;
   t->row = row;
+  t->dependent = dependent;
   PetscCall(PetscCalloc1(n, &t->given));
   PetscOptionsBegin(comm, NULL, title, NULL);
   for (PetscInt i = 0; i < n; i++) {
     const char *range = strcmp(row[i].range, "any") ? row[i].range : "";
-    char text[PETSC_MAX_PATH_LEN], help[512];
-    PetscCall(PetscSNPrintf(help, sizeof(help), *range ? "%s [%s]" : "%s%s", row[i].help, range));
-    PetscCall(PetscOptionsString(row[i].name, help, "docs/options.md", row[i].value, text, sizeof(text), &t->given[i]));
+    char text[PETSC_MAX_PATH_LEN], help[OPTION_HELP], ranged[2 * OPTION_HELP];
+    OptionHelpText(&row[i], dependent, help);
+    PetscCall(PetscSNPrintf(ranged, sizeof(ranged), *range ? "%s [%s]" : "%s%s", help, range));
+    PetscCall(
+        PetscOptionsString(row[i].name, ranged, "docs/options.md", row[i].value, text, sizeof(text), &t->given[i]));
     PetscCall(ReadOption(comm, &row[i], t->given[i], (void *)Place(t, values, i)));
   }
   PetscOptionsEnd();
@@ -68,6 +71,45 @@ PetscErrorCode OptionChoose(const OptionTable *t, void *values, const char name[
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscBool OptionDepends(const OptionTable *t, const void *values, const OptionDefault *d, char value[OPTION_MAX_NAME]) {
+  *value = 0;
+  if (OptionGiven(t, d->name) || !d->when(values)) return PETSC_FALSE;
+  if (d->find)
+    d->find(values, value);
+  else
+    (void)snprintf(value, OPTION_MAX_NAME, "%s", d->value);
+  return *value ? PETSC_TRUE : PETSC_FALSE;
+}
+
+PetscErrorCode OptionsDepend(const OptionTable *t, void *values) {
+  PetscFunctionBeginUser;
+  for (const OptionDefault *d = t->dependent; d->name; d++) {
+    char value[OPTION_MAX_NAME];
+    if (OptionDepends(t, values, d, value)) PetscCall(OptionChoose(t, values, d->name, value));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscBool OptionUsed(const OptionRow *row, const void *values) {
+  const OptionNeed *need = row->need;
+  if (!need) return PETSC_TRUE;
+  if (need->met) return need->met(values);
+  return need->any_of >> *(const PetscInt *)((const char *)values + need->offset) & 1 ? PETSC_TRUE : PETSC_FALSE;
+}
+
+PetscErrorCode OptionsCheckUsed(const OptionTable *t, const void *values) {
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < t->n; i++) {
+    const char *value = NULL; /* as it was typed */
+    if (!t->given[i] || OptionUsed(&t->row[i], values)) continue;
+    PetscCall(PetscOptionsFindPair(NULL, NULL, t->row[i].name, &value, NULL));
+    SETERRQ(t->comm, PETSC_ERR_USER_INPUT,
+            "%s %.128s: not used by this scene; allowed: with %s (-allow_unused_options goes on)", t->row[i].name,
+            value ? value : "", t->row[i].need->what);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode OptionText(const OptionTable *t, const void *values, PetscInt i, char **text) {
   PetscFunctionBeginUser;
   PetscCall(OptionFormat(&t->row[i], Place(t, values, i), text));
@@ -92,7 +134,7 @@ PetscErrorCode OptionsWrite(const OptionTable *t, const void *values, const char
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < t->n; i++) {
     char *text;
-    PetscBool left = PETSC_FALSE;
+    PetscBool left = OptionUsed(&t->row[i], values) ? PETSC_FALSE : PETSC_TRUE;
     for (PetscInt k = 0; skip[k] && !left; k++) left = !strcmp(skip[k], t->row[i].name) ? PETSC_TRUE : PETSC_FALSE;
     if (left) continue;
     PetscCall(OptionFormat(&t->row[i], Place(t, values, i), &text));

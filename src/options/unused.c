@@ -119,17 +119,19 @@ static PetscBool HasWords(const char *name, const char *words) {
   return PETSC_FALSE;
 }
 
-/* What to say to a name that asks for something; NULL: nothing. */
-static const char *Wished(const OptionTable *t, const OptionWish wishes[], const char *name) {
-  for (; wishes->name; wishes++) {
-    const char *words = wishes->name + 1;
-    PetscBool granted = PETSC_FALSE;
-    if (wishes->name[0] == '*' ? !HasWords(name, words) : strcmp(wishes->name, name) != 0) continue;
-    for (PetscInt i = 0; i < t->n && !granted; i++)
-      granted = wishes->name[0] == '*' ? HasWords(t->row[i].name, words) : PETSC_FALSE;
-    if (!granted) return wishes->say;
+/* Whether a name is one of a suggestion's, "-nx *grid"; its words (*) are in no name of the table. */
+static PetscBool IsAmong(const OptionTable *t, const char *names, const char *name) {
+  for (const char *p = names; *p; p += strspn(p, " ")) {
+    const size_t n = strcspn(p, " ");
+    char one[64];
+    PetscBool found;
+    (void)snprintf(one, sizeof(one), "%.*s", (int)n, p);
+    found = *one == '*' ? HasWords(name, one + 1) : !strcmp(one, name);
+    for (PetscInt i = 0; i < t->n && *one == '*' && found; i++) found = !HasWords(t->row[i].name, one + 1);
+    if (found) return PETSC_TRUE;
+    p += n;
   }
-  return NULL;
+  return PETSC_FALSE;
 }
 
 /* Whether the table's options in force are what a solver needs: "-name value". */
@@ -147,9 +149,9 @@ static PetscErrorCode HasOwner(const OptionTable *t, const void *values, const c
 
 /* An option that nothing has read, with its dash. */
 static PetscErrorCode Refuse(const OptionTable *t, const void *values, const char *const others[],
-                             const OptionOwner owners[], const OptionWish wishes[], const char name[],
+                             const OptionOwner owners[], const OptionSuggestion *suggestion, const char name[],
                              const char value[]) {
-  const char *meant, *say;
+  const char *meant;
   PetscBool known = PETSC_FALSE, has = PETSC_TRUE;
   PetscInt k = 0;
   PetscFunctionBeginUser;
@@ -161,9 +163,9 @@ static PetscErrorCode Refuse(const OptionTable *t, const void *values, const cha
              owners[k].need);
   PetscCheck(!known, t->comm, PETSC_ERR_USER_INPUT,
              "%s %s: not used by this scene's solvers as they are set up (-allow_unused_options goes on)", name, value);
-  say = Wished(t, wishes, name);
-  PetscCheck(!say, t->comm, PETSC_ERR_USER_INPUT, "%s %s: no such option; %s (-allow_unused_options goes on)", name,
-             value, say);
+  while (suggestion->names && !IsAmong(t, suggestion->names, name)) suggestion++;
+  PetscCheck(!suggestion->names, t->comm, PETSC_ERR_USER_INPUT,
+             "%s %s: no such option; %s (-allow_unused_options goes on)", name, value, suggestion->say);
   meant = Meant(t, others, name);
   PetscCheck(!meant, t->comm, PETSC_ERR_USER_INPUT,
              "%s %s: no such option; %s is meant? (-allow_unused_options goes on)", name, value, meant);
@@ -180,7 +182,7 @@ PetscErrorCode OptionsTryLate(const OptionTable *t) {
 }
 
 PetscErrorCode OptionsCheckUnused(const OptionTable *t, const void *values, const char *const others[],
-                                  const OptionOwner owners[], const OptionWish wishes[]) {
+                                  const OptionOwner owners[], const OptionSuggestion suggestions[]) {
   char **names, **texts, unused[128] = "", value[128] = "";
   PetscInt n = 0;
   PetscFunctionBeginUser;
@@ -196,6 +198,6 @@ PetscErrorCode OptionsCheckUnused(const OptionTable *t, const void *values, cons
     if (texts[i]) PetscCall(PetscStrncpy(value, texts[i], sizeof(value)));
   }
   PetscCall(PetscOptionsLeftRestore(NULL, &n, &names, &texts));
-  if (*unused) PetscCall(Refuse(t, values, others, owners, wishes, unused, value));
+  if (*unused) PetscCall(Refuse(t, values, others, owners, suggestions, unused, value));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

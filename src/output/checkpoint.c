@@ -157,7 +157,7 @@ static PetscErrorCode CheckpointWriteScene(Scheme s, H5File *file) {
   H5PutText(file, "version", PETVES_VERSION);
   for (PetscInt i = 0; SceneOptionName(i); i++) {
     char *value;
-    PetscCall(SceneOptionText(s->scene, i, &value));
+    PetscCall(OptionText(&s->scene->options, s->scene, i, &value));
     H5PutText(file, SceneOptionName(i), value);
     PetscCall(PetscFree(value));
   }

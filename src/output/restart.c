@@ -67,8 +67,8 @@ static PetscErrorCode RestartOptions(Scene scene, H5File *file) {
   PetscFunctionBeginUser;
   for (PetscInt i = 0; SceneOptionName(i); i++) {
     char *here, *there;
-    if (SceneOptionMayChange(SceneOptionName(i))) continue;
-    PetscCall(SceneOptionText(scene, i, &here));
+    if (SceneOptionRow(i)->may_change) continue;
+    PetscCall(OptionText(&scene->options, scene, i, &here));
     PetscCall(H5GetText(file, SceneOptionName(i), &there));
     const PetscErrorCode same = RestartOption(scene, SceneOptionName(i), here, there);
     PetscCall(PetscFree(here));

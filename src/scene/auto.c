@@ -1,44 +1,49 @@
-/* -scheme_auto: the settings that reach a wanted error, by what was measured (docs/speed_accuracy/calibration.csv). */
 #include "scene/auto.h"
+#include "scene/autodomain.h"
+#include "scene/autogrid.h"
+#include "scene/autostart.h"
+#include "scene/properties.h"
 
 /* By wanted error: the settings, and the worst error that each of them leaves by itself over the scenes of the
-   calibration (tests/program/test_auto.py compares with the table). */
-static const struct {
+   calibration, docs/speed_accuracy/calibration.csv (tests/program/test_auto.py compares with the table). */
+typedef struct {
   PetscReal wanted;
-  const char *adapt_tol;
-  PetscReal of_steps; /* 32 scenes: tank-treading, turning, relaxing, a channel, pairs */
-  const char *ksp_rtol;
-  PetscReal of_solver; /* the same */
-  PetscReal max_step;  /* over nu R0^3/c_b */
-  PetscReal of_rest;   /* energy of shapes at rest */
-} settings[] = {
-    {1e-1, "1e-2", 3.1e-2, "1e-4", 3.6e-5, 4, 2.6e-7},
-    {1e-2, "1e-3", 4.5e-3, "1e-4", 3.6e-5, 4, 2.6e-7},
-    {1e-3, "3e-5", 1.6e-4, "1e-5", 6.3e-6, 4, 2.6e-7},
-    {1e-4, "7e-6", 4.1e-5, "1e-6", 4.4e-7, 2, 2.9e-7},
-};
+  PetscReal adapt_tol, of_steps; /* 32 scenes: tank-treading, turning, relaxing, a channel, pairs */
+  PetscReal ksp_rtol, of_solver; /* the same */
+  PetscReal max_step, of_rest;   /* over nu R0^3/c_b; energy of shapes at rest */
+} Calibrated;
 
-static PetscInt Row(Scene scene) {
-  const PetscInt last = (PetscInt)(sizeof(settings) / sizeof(settings[0])) - 1;
+static const Calibrated calibrated[] = {{1e-1, 1e-2, 3.1e-2, 1e-4, 3.6e-5, 4, 2.6e-7},
+                                        {1e-2, 1e-3, 4.5e-3, 1e-4, 3.6e-5, 4, 2.6e-7},
+                                        {1e-3, 3e-5, 1.6e-4, 1e-5, 6.3e-6, 4, 2.6e-7},
+                                        {1e-4, 7e-6, 4.1e-5, 1e-6, 4.4e-7, 2, 2.9e-7}};
+
+static const Calibrated *Row(Scene s) {
+  const PetscInt last = (PetscInt)(sizeof(calibrated) / sizeof(calibrated[0])) - 1;
   PetscInt row = 0;
-  while (row < last && settings[row].wanted > scene->scheme.wanted * (1 + 1e-9)) row++;
-  return row;
+  while (row < last && calibrated[row].wanted > s->scheme.wanted * (1 + 1e-9)) row++;
+  return &calibrated[row];
 }
 
-PetscErrorCode SceneChooseByError(Draft scene) {
+/* A number that the scene has, to be chosen as a text. */
+static PetscErrorCode Write(const char format[], PetscReal number, char value[AUTO_TEXT]) {
   PetscFunctionBeginUser;
-  if (scene->scheme.wanted == 0) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCheck(scene->scheme.wanted >= 1e-4 && scene->scheme.wanted <= 0.1, scene->comm, PETSC_ERR_USER_INPUT,
-             "-scheme_auto %g: outside of what was measured; allowed: 0, or 1e-4 to 0.1", (double)scene->scheme.wanted);
-  PetscCheck(!strcmp(scene->scheme.type, "coupled"), scene->comm, PETSC_ERR_USER_INPUT,
-             "-scheme_auto %g: with -scheme_type %s; allowed: coupled", (double)scene->scheme.wanted,
-             scene->scheme.type);
-  PetscCall(SceneChoose(scene, "-time_adapt", "error"));
-  PetscCall(SceneChoose(scene, "-time_adapt_tol", settings[Row(scene)].adapt_tol));
-  PetscCall(SceneChoose(scene, "-delta_type", "cbs54"));
-  PetscCall(SceneChooseBoundaries(scene));
-  scene->coupling.ksp_rtol = strtod(settings[Row(scene)].ksp_rtol, NULL);
+  if (number < PETSC_MAX_REAL) PetscCall(PetscSNPrintf(value, AUTO_TEXT, format, (double)number));
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ChooseStep(Draft s, char value[AUTO_TEXT]) {
+  PetscReal slow, fast;
+  SceneTimes(s, &slow, &fast);
+  return Write("%.6g", fast < PETSC_MAX_REAL ? 0.05 * fast : fast, value);
+}
+
+static PetscBool ExplainStep(Scene s, char why[AUTO_TEXT]) {
+  PetscReal slow, fast;
+  SceneTimes(s, &slow, &fast);
+  (void)snprintf(why, AUTO_TEXT,
+                 fast < PETSC_MAX_REAL ? "a twentieth of the fastest time of the scene" : "the default");
+  return PETSC_TRUE;
 }
 
 /* Where the flow compresses a vesicle so fast that it wrinkles: a tolerance of a hundredth of the error wanted, whose
@@ -46,82 +51,137 @@ PetscErrorCode SceneChooseByError(Draft scene) {
 #define OF_WRINKLES 100
 #define WRINKLES_LEAVE 0.3
 
-static PetscErrorCode ChooseForCompression(Draft scene) {
-  char value[32];
-  PetscFunctionBeginUser;
-  if (!SceneIsSqueezed(scene)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscSNPrintf(value, sizeof(value), "%g", (double)(scene->scheme.wanted / OF_WRINKLES)));
-  PetscCall(SceneChoose(scene, "-time_adapt_tol", value));
-  PetscFunctionReturn(PETSC_SUCCESS);
+static PetscErrorCode ChooseTolerance(Draft s, char value[AUTO_TEXT]) {
+  return Write("%g", SceneSqueeze(s) > 0 ? s->scheme.wanted / OF_WRINKLES : Row(s)->adapt_tol, value);
+}
+
+static PetscBool ExplainTolerance(Scene s, char why[AUTO_TEXT]) {
+  const PetscReal chi = SceneSqueeze(s);
+  if (chi > 0)
+    (void)snprintf(why, AUTO_TEXT, "a vesicle is compressed (chi = %.2g) and wrinkles: leaves up to %.1e", (double)chi,
+                   (double)(WRINKLES_LEAVE * s->scheme.wanted));
+  else
+    (void)snprintf(why, AUTO_TEXT, "steps leave up to %.1e", (double)Row(s)->of_steps);
+  return s->time.adapt == ADAPT_ERROR ? PETSC_TRUE : PETSC_FALSE;
 }
 
 /* For the error at rest, and no more than the flow bears. */
-static PetscReal LargestStep(Scene scene, PetscReal slow) {
-  return PetscMin(settings[Row(scene)].max_step * slow, SceneFlowStep(scene));
+static PetscErrorCode ChooseLargestStep(Draft s, char value[AUTO_TEXT]) {
+  PetscReal slow, fast;
+  SceneTimes(s, &slow, &fast);
+  return Write("%.6g", slow < PETSC_MAX_REAL ? PetscMin(Row(s)->max_step * slow, SceneFlowStep(s)) : slow, value);
 }
 
-PetscErrorCode SceneChooseSteps(Draft scene) {
+static PetscBool ExplainLargestStep(Scene s, char why[AUTO_TEXT]) {
   PetscReal slow, fast;
-  char value[64];
+  SceneTimes(s, &slow, &fast);
+  if (SceneFlowStep(s) < Row(s)->max_step * slow)
+    (void)snprintf(why, AUTO_TEXT, "what this flow bears");
+  else
+    (void)snprintf(why, AUTO_TEXT, "%g nu R0^3/c_b: leaves up to %.1e of the energy at rest", (double)Row(s)->max_step,
+                   (double)Row(s)->of_rest);
+  return s->time.adapt == ADAPT_ERROR && s->membrane.bending > 0 ? PETSC_TRUE : PETSC_FALSE;
+}
+
+static PetscBool ExplainSolver(Scene s, char why[AUTO_TEXT]) {
+  (void)snprintf(why, AUTO_TEXT, "the solver leaves up to %.1e", (double)Row(s)->of_solver);
+  return PETSC_TRUE;
+}
+
+static PetscBool ExplainSpacing(Scene s, char why[AUTO_TEXT]) {
+  return s->vesicles.spacing > 0 ? PETSC_TRUE : PETSC_FALSE;
+}
+
+static PetscBool ExplainMarkers(Scene s, char why[AUTO_TEXT]) {
+  (void)snprintf(why, AUTO_TEXT, "by the shapes, films and compression of the start");
+  return s->vesicles.markers > 0 ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* All settings in the order in which they are printed: their values, or what finds them, and their reasons. Markers are
+   chosen by SceneChooseMarkers, the solver's tolerance is no option of the table. */
+typedef struct {
+  const char *name;
+  AutoStage stage;
+  const char *value;
+  PetscErrorCode (*choose)(Draft scene, char value[AUTO_TEXT]);
+  const char *why;
+  PetscBool (*explain)(Scene scene, char why[AUTO_TEXT]);
+} Setting;
+
+/* clang-format off */
+static const Setting settings[] = {
+  {"-scheme_type", AUTO_NEVER, .why = "the membrane and the fluid in one solve"},
+  {"-scheme_order", AUTO_NEVER, .why = "what was calibrated"},
+  {"-time_adapt", AUTO_FIRST, .value = "error", .why = "finds the step of any scene"},
+  {"-time_step", AUTO_STEPS, .choose = ChooseStep, .explain = ExplainStep},
+  {"-time_adapt_tol", AUTO_STEPS, .choose = ChooseTolerance, .explain = ExplainTolerance},
+  {"-time_adapt_max_step", AUTO_STEPS, .choose = ChooseLargestStep, .explain = ExplainLargestStep},
+  {"-coupled_ksp_rtol", AUTO_NEVER, .explain = ExplainSolver},
+  {"-delta_type", AUTO_FIRST, .value = "cbs54", .why = "kernels differ by 1e-4 at most"},
+  {"-vesicle_spacing", AUTO_NEVER, .explain = ExplainSpacing},
+  {"-vesicle_markers", AUTO_NEVER, .explain = ExplainMarkers},
+  {"-domain_bc_x", AUTO_FIRST, .choose = SceneChooseBoundaryX, .explain = SceneExplainBoundaryX},
+  {"-domain_bc_y", AUTO_FIRST, .choose = SceneChooseBoundaryY, .explain = SceneExplainBoundaryY},
+  {"-domain_box", AUTO_DOMAIN, .choose = SceneChooseBox, .explain = SceneExplainBox},
+  {"-domain_cells", AUTO_DOMAIN, .choose = SceneChooseCells, .explain = SceneExplainCells}};
+/* clang-format on */
+#define SETTINGS (sizeof(settings) / sizeof(settings[0]))
+
+static PetscErrorCode CheckWanted(Scene s) {
+  const PetscReal wanted = s->scheme.wanted;
   PetscFunctionBeginUser;
-  if (scene->scheme.wanted == 0 || !scene->shape.vesicles) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(ChooseForCompression(scene));
-  SceneTimes(scene, &slow, &fast);
-  if (slow < PETSC_MAX_REAL) {
-    PetscCall(PetscSNPrintf(value, sizeof(value), "%.6g", (double)LargestStep(scene, slow)));
-    PetscCall(SceneChoose(scene, "-time_adapt_max_step", value));
-  }
-  if (fast < PETSC_MAX_REAL) {
-    PetscCall(PetscSNPrintf(value, sizeof(value), "%.6g", (double)(0.05 * fast)));
-    PetscCall(SceneChoose(scene, "-time_step", value));
+  PetscCheck(wanted >= 1e-4 && wanted <= 0.1, s->comm, PETSC_ERR_USER_INPUT,
+             "-scheme_auto %g: outside of what was measured; allowed: 0, or 1e-4 to 0.1", (double)wanted);
+  PetscCheck(!SceneIsProjection(s), s->comm, PETSC_ERR_USER_INPUT,
+             "-scheme_auto %g: with -scheme_type %s; allowed: coupled", (double)wanted, s->scheme.type);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SceneChooseByError(Draft s, AutoStage stage) {
+  PetscFunctionBeginUser;
+  if (s->scheme.wanted == 0 || (stage == AUTO_STEPS && !s->shape.vesicles)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(CheckWanted(s));
+  s->coupling.ksp_rtol = Row(s)->ksp_rtol;
+  for (size_t k = 0; k < SETTINGS; k++) {
+    const Setting *own = &settings[k];
+    char value[AUTO_TEXT] = "";
+    if (own->stage != stage || SceneGiven(s, own->name)) continue;
+    if (own->value) PetscCall(PetscStrncpy(value, own->value, AUTO_TEXT));
+    if (own->choose) PetscCall(own->choose(s, value));
+    if (*value) PetscCall(OptionChoose(&s->options, s, own->name, value));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What the thinnest film of the start leaves. */
-static PetscErrorCode PrintFilm(Scene scene) {
-  PetscReal spacings, error;
-  PetscFunctionBeginUser;
-  PetscCall(SceneThinnestFilm(scene, &spacings, &error));
-  if (error > 0)
-    PetscCall(PetvesSay(scene->comm, "  thinnest film: %.2g marker spacings, which leaves up to %.1g of R0: %s\n",
-                        (double)spacings, (double)error,
-                        error <= scene->scheme.wanted ? "enough" : "TOO THIN, take more -vesicle_markers"));
-  PetscFunctionReturn(PETSC_SUCCESS);
+/* Numbers, with commas between them, to six digits. */
+static void Shorten(char value[AUTO_TEXT]) {
+  char text[AUTO_TEXT];
+  size_t used = 0;
+  if (!strchr(value, '.')) return;
+  (void)snprintf(text, sizeof(text), "%s", value);
+  for (char *at = text, *end = NULL; *at; at = *end ? end + 1 : end) {
+    const double number = strtod(at, &end);
+    if (end == at || (*end && *end != ',')) return;
+    used += (size_t)snprintf(value + used, AUTO_TEXT - used, "%s%.6g", used ? "," : "", number);
+  }
 }
 
-static PetscErrorCode PrintChoice(Scene scene, PetscInt row, PetscBool timed) {
-  char why[128];
-  PetscReal slow, fast;
+/* One setting: its name, value, and why, or that it is the user's. */
+static PetscErrorCode Say(Scene s, const Setting *own) {
+  char value[AUTO_TEXT], why[AUTO_TEXT] = "";
+  PetscBool given = SceneGiven(s, own->name);
+  const PetscInt i = OptionFind(&s->options, own->name);
   PetscFunctionBeginUser;
-  SceneTimes(scene, &slow, &fast);
-  PetscCall(PetvesSay(scene->comm, "petves: -scheme_auto %g, by the worst errors measured (docs/settings.md)\n",
-                      (double)scene->scheme.wanted));
-  PetscCall(SceneSaySetting(scene, "-scheme_type", "the membrane and the fluid in one solve"));
-  PetscCall(SceneSaySetting(scene, "-scheme_order", "what was calibrated"));
-  PetscCall(SceneSaySetting(scene, "-time_adapt", "finds the step of any scene"));
-  PetscCall(
-      SceneSaySetting(scene, "-time_step", timed ? "a twentieth of the fastest time of the scene" : "the default"));
-  if (scene->time.adapt == ADAPT_ERROR) {
-    PetscCall(PetscSNPrintf(why, sizeof(why), "steps leave up to %.1e", (double)settings[row].of_steps));
-    if (SceneIsSqueezed(scene))
-      PetscCall(PetscSNPrintf(why, sizeof(why), "a vesicle is compressed (chi = %.2g) and wrinkles: leaves up to %.1e",
-                              (double)SceneSqueeze(scene), (double)(WRINKLES_LEAVE * scene->scheme.wanted)));
-    PetscCall(SceneSaySetting(scene, "-time_adapt_tol", why));
-    if (SceneFlowStep(scene) < settings[row].max_step * slow)
-      PetscCall(PetscSNPrintf(why, sizeof(why), "what this flow bears"));
-    else
-      PetscCall(PetscSNPrintf(why, sizeof(why), "%g nu R0^3/c_b: leaves up to %.1e of the energy at rest",
-                              (double)settings[row].max_step, (double)settings[row].of_rest));
-    if (scene->membrane.bending > 0) PetscCall(SceneSaySetting(scene, "-time_adapt_max_step", why));
+  if (own->why) PetscCall(PetscStrncpy(why, own->why, sizeof(why)));
+  if (own->explain && !own->explain(s, why)) PetscFunctionReturn(PETSC_SUCCESS);
+  if (i >= 0) {
+    PetscCall(OptionValue(&s->options, s, i, value, sizeof(value)));
+  } else {
+    PetscCall(PetscSNPrintf(value, sizeof(value), "%.0e", (double)s->coupling.ksp_rtol));
+    PetscCall(PetscOptionsGetString(NULL, NULL, own->name, value, sizeof(value), &given));
   }
-  PetscCall(PetscSNPrintf(why, sizeof(why), "the solver leaves up to %.1e", (double)settings[row].of_solver));
-  PetscCall(SceneSaySetting(scene, "-coupled_ksp_rtol", why));
-  PetscCall(SceneSaySetting(scene, "-delta_type", "kernels differ by 1e-4 at most"));
-  if (scene->vesicles.spacing > 0) PetscCall(SceneSaySetting(scene, "-vesicle_spacing", ""));
-  if (scene->vesicles.markers > 0)
-    PetscCall(SceneSaySetting(scene, "-vesicle_markers", "by the shapes, films and compression of the start"));
-  PetscCall(SceneReportDomain(scene));
+  Shorten(value);
+  PetscCall(PetvesSay(s->comm, "  %-20s %-8s %s\n", own->name, value, given ? "yours" : why));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -144,16 +204,16 @@ static PetscErrorCode ReportMarkers(Scene scene) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SceneReport(Scene scene) {
-  PetscReal slow, fast;
+PetscErrorCode SceneReport(Scene s) {
   PetscFunctionBeginUser;
-  if (scene->scheme.wanted > 0 && scene->shape.vesicles) {
-    SceneTimes(scene, &slow, &fast);
-    PetscCall(PrintChoice(scene, Row(scene), fast < PETSC_MAX_REAL ? PETSC_TRUE : PETSC_FALSE));
-    PetscCall(PrintFilm(scene));
-    PetscCall(SceneReportGrid(scene));
+  if (s->scheme.wanted > 0 && s->shape.vesicles) {
+    PetscCall(PetvesSay(s->comm, "petves: -scheme_auto %g, by the worst errors measured (docs/settings.md)\n",
+                        (double)s->scheme.wanted));
+    for (size_t k = 0; k < SETTINGS; k++) PetscCall(Say(s, &settings[k]));
+    PetscCall(SceneReportFilm(s));
+    PetscCall(SceneReportGrid(s));
   }
-  if (*scene->warning) PetscCall(PetvesSay(scene->comm, "petves: warning: %s\n", scene->warning));
-  PetscCall(ReportMarkers(scene));
+  if (*s->warning) PetscCall(PetvesSay(s->comm, "petves: warning: %s\n", s->warning));
+  PetscCall(ReportMarkers(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

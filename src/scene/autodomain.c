@@ -1,6 +1,8 @@
-/* -scheme_auto: boundaries, box and grid, where they are not given (docs/settings.md). */
-#include "scene/auto.h"
-#include "scene/vesiclekinds.h"
+#include "scene/autodomain.h"
+#include "scene/autogrid.h"
+#include "scene/checks.h"
+#include "scene/properties.h"
+#include "scene/vesicles.h"
 
 /* Error of a vesicle in walls or periods over (R0/W)^2, W from its middle to a side of the box, against unbounded
    fluid, the worst of the calibration (tests/program/test_auto.py compares with the table). */
@@ -50,22 +52,48 @@ static PetscErrorCode NeedsGrid(Scene s, PetscBool *needs) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SceneChooseBoundaries(Draft s) {
+/* Where neither box nor boundaries are given and walls are no part of the question: unbounded fluid, or with what needs
+   a grid a period in x, but for extension, which is not periodic. */
+static PetscErrorCode ChooseBoundary(Scene s, PetscBool in_x, char value[AUTO_TEXT]) {
   PetscBool needs = PETSC_TRUE;
   PetscFunctionBeginUser;
   if (SceneGiven(s, "-domain_box") || SceneGiven(s, "-domain_bc_x") || SceneGiven(s, "-domain_bc_y") ||
       s->vesicles.shape == SHAPE_NONE || !LeavesBox(s))
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(NeedsGrid(s, &needs));
-  if (!needs) {
-    PetscCall(SceneChoose(s, "-domain_bc_x", "free"));
-    PetscCall(SceneChoose(s, "-domain_bc_y", "free"));
-  } else if (s->flow.type != FLOW_EXTENSION) /* which is not periodic */
-    PetscCall(SceneChoose(s, "-domain_bc_x", "periodic"));
+  if (!needs)
+    PetscCall(PetscStrncpy(value, "free", AUTO_TEXT));
+  else if (in_x && s->flow.type != FLOW_EXTENSION)
+    PetscCall(PetscStrncpy(value, "periodic", AUTO_TEXT));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What box and grid go by: radii, the rectangle around all vesicles, and how near to a wall of a box given they are;
+PetscErrorCode SceneChooseBoundaryX(Draft s, char value[AUTO_TEXT]) {
+  return ChooseBoundary(s, PETSC_TRUE, value);
+}
+
+PetscErrorCode SceneChooseBoundaryY(Draft s, char value[AUTO_TEXT]) {
+  return ChooseBoundary(s, PETSC_FALSE, value);
+}
+
+static PetscBool ExplainBoundary(Scene s, int dir, char why[AUTO_TEXT]) {
+  const PetscBool free = FluidSpecIsFree(&s->fluid);
+  (void)snprintf(why, AUTO_TEXT, "%s",
+                 s->fluid.bc[dir] == BC_WALL ? "the default"
+                 : free                      ? "nothing asks for walls: unbounded, quasi-steady fluid"
+                                             : "the default: a place between four walls is not stable");
+  return free || !SceneGiven(s, "-domain_box") ? PETSC_TRUE : PETSC_FALSE;
+}
+
+PetscBool SceneExplainBoundaryX(Scene s, char why[AUTO_TEXT]) {
+  return ExplainBoundary(s, 0, why);
+}
+
+PetscBool SceneExplainBoundaryY(Scene s, char why[AUTO_TEXT]) {
+  return ExplainBoundary(s, 1, why);
+}
+
+/* What box and grid go by: radii, the rectangle around all vesicles, and how near to a wall of the box they are;
    packed vesicles are as near as the grid lets them. */
 typedef struct {
   PetscInt vesicles;
@@ -77,7 +105,7 @@ static PetscErrorCode Measure(Draft s, Extent *e) {
   Kinds kinds;
   Pose *pose;
   PetscFunctionBeginUser;
-  PetscCall(SceneMakeKinds(s, &kinds));
+  PetscCall(KindsCreate(s, &kinds));
   *e = (Extent){kinds.vesicles, PETSC_MAX_REAL, 0, KIND_NOWHERE, PETSC_MAX_REAL};
   for (PetscInt k = 0; k < kinds.kinds; k++) {
     e->small = PetscMin(e->small, kinds.kind[k].length / (2 * PETSC_PI));
@@ -108,24 +136,36 @@ static PetscReal Reach(Scene s, PetscInt vesicles) {
 }
 
 /* About the vesicles, its shorter side twice half a side long, its sides in proportion to cells that are given. */
-static PetscErrorCode ChooseBox(Draft s, const Extent *e) {
+PetscErrorCode SceneChooseBox(Draft s, char value[AUTO_TEXT]) {
   const PetscBool free = FluidSpecIsFree(&s->fluid);
-  const PetscReal wide = PetscMax(e->around[1] - e->around[0], e->around[3] - e->around[2]) / 2;
-  const PetscReal half = free ? wide + WINDOW * e->large : wide + Reach(s, e->vesicles) * e->large;
-  const PetscReal unit = PetscPowReal(10, PetscFloorReal(PetscLog10Real(half)) - 1);
   PetscReal side[2], middle[2];
-  char value[128];
+  Extent e;
   PetscFunctionBeginUser;
+  if (s->vesicles.shape == SHAPE_NONE || !(free || LeavesBox(s))) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(Measure(s, &e));
+  const PetscReal wide = PetscMax(e.around[1] - e.around[0], e.around[3] - e.around[2]) / 2;
+  const PetscReal half = wide + (free ? WINDOW : Reach(s, e.vesicles)) * e.large;
+  const PetscReal unit = PetscPowReal(10, PetscFloorReal(PetscLog10Real(half)) - 1);
   for (int d = 0; d < 2; d++) {
     const PetscInt n = s->domain.cells.v[d], other = s->domain.cells.v[1 - d];
     const PetscBool longer = SceneGiven(s, "-domain_cells") && n > other ? PETSC_TRUE : PETSC_FALSE;
     side[d] = Rounded(half, unit, PETSC_TRUE) * (longer ? (PetscReal)n / other : 1);
-    middle[d] = Rounded((e->around[2 * d] + e->around[2 * d + 1]) / 2, unit, PETSC_FALSE);
+    middle[d] = Rounded((e.around[2 * d] + e.around[2 * d + 1]) / 2, unit, PETSC_FALSE);
   }
-  PetscCall(PetscSNPrintf(value, sizeof(value), "%.14g,%.14g,%.14g,%.14g", (double)(middle[0] - side[0]),
+  PetscCall(PetscSNPrintf(value, AUTO_TEXT, "%.14g,%.14g,%.14g,%.14g", (double)(middle[0] - side[0]),
                           (double)(middle[0] + side[0]), (double)(middle[1] - side[1]), (double)(middle[1] + side[1])));
-  PetscCall(SceneChoose(s, "-domain_box", value));
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscBool SceneExplainBox(Scene s, char why[AUTO_TEXT]) {
+  if (FluidSpecIsFree(&s->fluid))
+    (void)snprintf(why, AUTO_TEXT, "the window of the fields, %d R0 around the vesicles", WINDOW);
+  else if (LeavesBox(s))
+    (void)snprintf(why, AUTO_TEXT, "%.3g R0 around the vesicles: its images leave up to %.1e",
+                   (double)Reach(s, s->shape.vesicles), (double)(s->scheme.wanted / 2));
+  else
+    (void)snprintf(why, AUTO_TEXT, "the default: walls are part of this scene, the box is yours to give");
+  return PETSC_TRUE;
 }
 
 /* In unbounded fluid it is that of the fields. */
@@ -137,12 +177,15 @@ static PetscReal LargestCell(Scene s, const Extent *e) {
          (finer * PetscMax(LEAST_CELLS, SceneCellsFor(SceneAutoFluid(s, e->large), s->scheme.wanted / 2, PETSC_TRUE)));
 }
 
-static PetscErrorCode ChooseCells(Draft s, const Extent *e) {
-  const PetscReal *box = s->domain.box.v, h = LargestCell(s, e);
+PetscErrorCode SceneChooseCells(Draft s, char value[AUTO_TEXT]) {
+  const PetscReal *box = s->domain.box.v;
   const PetscBool free = FluidSpecIsFree(&s->fluid), by_images = !free && !SceneGiven(s, "-domain_box") && LeavesBox(s);
   PetscInt cells[2] = {0, 0};
-  char value[64];
+  Extent e;
   PetscFunctionBeginUser;
+  if (s->vesicles.shape == SHAPE_NONE) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(Measure(s, &e));
+  const PetscReal h = LargestCell(s, &e);
   const PetscReal across = PetscCeilReal(PetscMax(box[1] - box[0], box[3] - box[2]) / h * (1 - 1e-9));
   PetscCheck(!by_images || across <= MOST_BOX, s->comm, PETSC_ERR_USER_INPUT,
              "-scheme_auto %g: a box so large that its images leave half of it takes %g cells across; allowed: "
@@ -153,47 +196,17 @@ static PetscErrorCode ChooseCells(Draft s, const Extent *e) {
              "to %d in a direction; allowed: -domain_cells, or a box whose sides are in a simple ratio",
              (double)s->scheme.wanted, (double)h, (double)box[0], (double)box[1], (double)box[2], (double)box[3],
              SCENE_MOST_ACROSS);
-  if (!free && e->gap > 0 && e->gap < PETSC_MAX_REAL)
-    (void)SceneWallCells(SceneAutoFluid(s, e->large), box, h, e->small, e->gap, s->scheme.wanted / 2, cells);
-  PetscCall(PetscSNPrintf(value, sizeof(value), "%" PetscInt_FMT ",%" PetscInt_FMT, cells[0], cells[1]));
-  PetscCall(SceneChoose(s, "-domain_cells", value));
-  PetscCall(SceneChooseBoxPart(s));
+  if (!free && e.gap > 0 && e.gap < PETSC_MAX_REAL)
+    (void)SceneWallCells(SceneAutoFluid(s, e.large), box, h, e.small, e.gap, s->scheme.wanted / 2, cells);
+  PetscCall(PetscSNPrintf(value, AUTO_TEXT, "%" PetscInt_FMT ",%" PetscInt_FMT, cells[0], cells[1]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SceneChooseDomain(Draft s) {
-  const PetscBool boxed = SceneGiven(s, "-domain_box"), gridded = SceneGiven(s, "-domain_cells");
-  Extent e;
-  PetscFunctionBeginUser;
-  if (s->scheme.wanted == 0 || s->vesicles.shape == SHAPE_NONE || (boxed && gridded))
-    PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(Measure(s, &e));
-  if (!boxed && (FluidSpecIsFree(&s->fluid) || LeavesBox(s))) PetscCall(ChooseBox(s, &e));
-  if (!gridded) PetscCall(ChooseCells(s, &e));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode SceneReportDomain(Scene s) {
-  const PetscBool free = FluidSpecIsFree(&s->fluid), leaves = LeavesBox(s), bounded = SceneGiven(s, "-domain_box");
-  char box[128] = "the default: walls are part of this scene, the box is yours to give", cells[128];
-  PetscFunctionBeginUser;
-  if (free || !bounded) {
-    const char *const why = free ? "nothing asks for walls: unbounded, quasi-steady fluid"
-                                 : "the default: a place between four walls is not stable";
-    PetscCall(SceneSaySetting(s, "-domain_bc_x", s->fluid.bc[0] == BC_WALL ? "the default" : why));
-    PetscCall(SceneSaySetting(s, "-domain_bc_y", s->fluid.bc[1] == BC_WALL ? "the default" : why));
-  }
-  if (free)
-    PetscCall(PetscSNPrintf(box, sizeof(box), "the window of the fields, %d R0 around the vesicles", WINDOW));
-  else if (leaves)
-    PetscCall(PetscSNPrintf(box, sizeof(box), "%.3g R0 around the vesicles: its images leave up to %.1e",
-                            (double)Reach(s, s->shape.vesicles), (double)(s->scheme.wanted / 2)));
-  PetscCall(SceneSaySetting(s, "-domain_box", box));
-  if (free)
-    PetscCall(PetscSNPrintf(cells, sizeof(cells), "of the fields alone, R0/%d", WINDOW_CELLS));
+PetscBool SceneExplainCells(Scene s, char why[AUTO_TEXT]) {
+  if (FluidSpecIsFree(&s->fluid))
+    (void)snprintf(why, AUTO_TEXT, "of the fields alone, R0/%d", WINDOW_CELLS);
   else
-    PetscCall(PetscSNPrintf(cells, sizeof(cells), "the fewest square ones that are enough%s",
-                            s->obstacles.shape != OBSTACLE_NONE ? ", twice as many beside obstacles" : ""));
-  PetscCall(SceneSaySetting(s, "-domain_cells", cells));
-  PetscFunctionReturn(PETSC_SUCCESS);
+    (void)snprintf(why, AUTO_TEXT, "the fewest square ones that are enough%s",
+                   s->obstacles.shape != OBSTACLE_NONE ? ", twice as many beside obstacles" : "");
+  return PETSC_TRUE;
 }

@@ -1,23 +1,17 @@
-/* -scheme_auto: what grids leave, by what was measured (docs/speed_accuracy/calibration.csv). */
-#include "scene/auto.h"
+#include "scene/autogrid.h"
+#include "scene/inertia.h"
+#include "scene/properties.h"
 
 /* Worst errors over vesicles in shear, in a channel, between four walls, in pairs and with viscosity contrast, by R0/h;
-   few: with markers 1.5 h apart, whose number is what fails first (tests/program/test_auto.py compares with the table).
- */
+   few: with markers 1.5 h apart, whose number is what fails first; inertia: in unsteady and convective flow, up to
+   Reynolds numbers of 1 (tests/program/test_auto.py compares with the table). */
 static const struct {
-  PetscReal cells, error, few;
-} grids[] = {{8, 2.5e-5, 8.1e-4},
-             {6, 4.1e-5, 4.0e-3},
-             {4, 4.4e-5, 4.3e-2},
-             {3, 1.1e-4, PETSC_MAX_REAL},
-             {2, 1.8e-4, PETSC_MAX_REAL}};
+  PetscReal cells, error, few, inertia;
+} grids[] = {{24, 2.5e-5, 8.1e-4, 2.9e-4},       {16, 2.5e-5, 8.1e-4, 7.7e-4},      {12, 2.5e-5, 8.1e-4, 1.5e-3},
+             {8, 2.5e-5, 8.1e-4, 3.3e-3},        {6, 4.1e-5, 4.0e-3, 5.5e-3},       {4, 4.4e-5, 4.3e-2, 0.013},
+             {3, 1.1e-4, PETSC_MAX_REAL, 0.021}, {2, 1.8e-4, PETSC_MAX_REAL, 0.031}};
 #define GRIDS ((int)(sizeof(grids) / sizeof(grids[0])))
-
-/* In unsteady and convective flow, up to Reynolds numbers of 1. */
-static const struct {
-  PetscReal cells, error;
-} inertia[] = {{24, 2.9e-4}, {16, 7.7e-4}, {12, 1.5e-3}, {8, 3.3e-3}, {6, 5.5e-3}, {4, 0.013}, {3, 0.021}, {2, 0.031}};
-#define INERTIA ((int)(sizeof(inertia) / sizeof(inertia[0])))
+#define FINEST_QUIET 3 /* row of the finest grid that was measured without inertia */
 
 /* Worst errors over the gap of a vesicle that begins so many cells from a wall: where the box part takes the grid's
    error beside walls off, and where not. There it goes on beyond the last row as h^2 over the gap. */
@@ -34,24 +28,24 @@ AutoFluid SceneAutoFluid(Scene scene, PetscReal R0) {
   return SceneHasBoxPart(scene) ? AUTO_BOX_PART : AUTO_NO_BOX_PART;
 }
 
-PetscReal SceneGridError(AutoFluid fluid, PetscReal cells, PetscBool many) {
-  PetscReal error = PETSC_MAX_REAL, own = 0;
-  for (int k = GRIDS - 1; k >= 0; k--)
-    if (cells >= grids[k].cells * (1 - LEEWAY)) error = many ? grids[k].error : grids[k].few;
-  for (int k = INERTIA - 1; k >= 0 && fluid == AUTO_INERTIA; k--)
-    if (cells >= inertia[k].cells * (1 - LEEWAY)) own = inertia[k].error;
-  return PetscMax(error, own);
+/* What a grid of so many cells a R0 leaves, of markers or energy over R0, by the worst of the calibration; many: with
+   45 markers a vesicle or more. PETSC_MAX_REAL on grids coarser than any that was measured. */
+static PetscReal GridError(AutoFluid fluid, PetscReal cells, PetscBool many) {
+  for (int k = 0; k < GRIDS; k++)
+    if (cells >= grids[k].cells * (1 - LEEWAY))
+      return PetscMax(many ? grids[k].error : grids[k].few, fluid == AUTO_INERTIA ? grids[k].inertia : 0);
+  return PETSC_MAX_REAL;
 }
 
 PetscReal SceneCellsFor(AutoFluid fluid, PetscReal error, PetscBool many) {
-  for (int k = GRIDS - 1; k >= 0; k--)
-    if (SceneGridError(fluid, grids[k].cells, many) <= error) return grids[k].cells;
-  for (int k = INERTIA - 1; k >= 0 && fluid == AUTO_INERTIA; k--)
-    if (SceneGridError(fluid, inertia[k].cells, many) <= error) return inertia[k].cells;
-  return fluid == AUTO_INERTIA ? inertia[0].cells : grids[0].cells;
+  int k = GRIDS - 1;
+  while (k > (fluid == AUTO_INERTIA ? 0 : FINEST_QUIET) && GridError(fluid, grids[k].cells, many) > error) k--;
+  return grids[k].cells;
 }
 
-PetscReal SceneWallError(AutoFluid fluid, PetscReal gap, PetscReal h) {
+/* What the grid leaves of R0 when a membrane begins `gap` from a wall (all lengths in R0), beside that of a grid
+   without walls near it. */
+static PetscReal WallError(AutoFluid fluid, PetscReal gap, PetscReal h) {
   const PetscReal last = walls[0].cells * h;
   if (gap > last * (1 + LEEWAY)) return fluid == AUTO_BOX_PART ? 0 : walls[0].plain * last * last / gap;
   for (int k = 0; k < WALLS; k++)
@@ -101,7 +95,7 @@ PetscBool SceneWallCells(AutoFluid fluid, const PetscReal box[4], PetscReal h, P
   PetscReal next = h;
   while (SceneSquareCells(box, next, cells)) {
     const PetscReal now = (box[1] - box[0]) / cells[0];
-    if (SceneWallError(fluid, gap / R0, now / R0) <= error) return PETSC_TRUE;
+    if (WallError(fluid, gap / R0, now / R0) <= error) return PETSC_TRUE;
     next = 0.999 * now;
     if (next < R0 / Finest(fluid)) break;
   }
@@ -131,68 +125,53 @@ static PetscReal WallGap(Scene scene) {
 /* What walls leave that are so near that the grid is felt, and what it would take. */
 static PetscErrorCode ReportWall(Scene scene, AutoFluid fluid) {
   const PetscReal R0 = SceneSmallestRadius(scene), h = FluidSpecCellSize(&scene->fluid), gap = WallGap(scene);
-  const PetscReal error = gap < PETSC_MAX_REAL ? SceneWallError(fluid, gap / R0, h / R0) : 0;
-  char what[128] = "enough";
+  const PetscReal error = gap < PETSC_MAX_REAL ? WallError(fluid, gap / R0, h / R0) : 0, wanted = scene->scheme.wanted;
+  char leaves[64] = "more than was measured", what[128] = "enough";
   PetscInt cells[2];
   PetscFunctionBeginUser;
   if (error == 0) PetscFunctionReturn(PETSC_SUCCESS);
-  if (error > scene->scheme.wanted * (1 + 1e-9)) {
-    if (scene->vesicles.packing > 0 && scene->vesicles.packing_gap == 0)
-      PetscCall(PetscSNPrintf(what, sizeof(what), "TOO NEAR for %g, give -vesicle_packing_gap",
-                              (double)scene->scheme.wanted));
-    else if (SceneWallCells(fluid, scene->fluid.box, h, R0, gap, scene->scheme.wanted, cells))
-      PetscCall(PetscSNPrintf(what, sizeof(what),
-                              "TOO NEAR for %g, take -domain_cells %" PetscInt_FMT ",%" PetscInt_FMT,
-                              (double)scene->scheme.wanted, cells[0], cells[1]));
-    else
-      PetscCall(PetscSNPrintf(what, sizeof(what), "TOO NEAR for %g, and for any grid up to R0/h = %d",
-                              (double)scene->scheme.wanted, Finest(fluid)));
-  }
-  PetscCall(PetvesSay(scene->comm, "  nearest wall: %.3g cells, which leaves ", (double)(gap / h)));
-  if (error < PETSC_MAX_REAL)
-    PetscCall(PetvesSay(scene->comm, "up to %.2g of R0: %s\n", (double)error, what));
+  if (error < PETSC_MAX_REAL) PetscCall(PetscSNPrintf(leaves, sizeof(leaves), "up to %.2g of R0", (double)error));
+  if (error <= wanted * (1 + 1e-9))
+    ;
+  else if (scene->vesicles.packing > 0 && scene->vesicles.packing_gap == 0)
+    PetscCall(PetscSNPrintf(what, sizeof(what), "TOO NEAR for %g, give -vesicle_packing_gap", (double)wanted));
+  else if (SceneWallCells(fluid, scene->fluid.box, h, R0, gap, wanted, cells))
+    PetscCall(PetscSNPrintf(what, sizeof(what), "TOO NEAR for %g, take -domain_cells %" PetscInt_FMT ",%" PetscInt_FMT,
+                            (double)wanted, cells[0], cells[1]));
   else
-    PetscCall(PetvesSay(scene->comm, "more than was measured: %s\n", what));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* What a grid that is too coarse would take. */
-static PetscErrorCode SayFiner(Scene scene, AutoFluid fluid, PetscReal cells, PetscBool many) {
-  const PetscReal wanted = scene->scheme.wanted, enough = SceneCellsFor(fluid, wanted, many);
-  PetscInt finer[2];
-  PetscFunctionBeginUser;
-  if (SceneGridError(fluid, enough, many) > wanted ||
-      !SceneSquareCells(scene->fluid.box, SceneSmallestRadius(scene) / enough, finer)) {
-    PetscCall(PetvesSay(scene->comm, ": no grid up to R0/h = %g reached %g\n", (double)enough, (double)wanted));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  PetscCall(PetvesSay(
-      scene->comm, ": TOO COARSE for %g, take R0/h = %g, -domain_cells %" PetscInt_FMT ",%" PetscInt_FMT "%s\n",
-      (double)wanted, (double)enough, finer[0], finer[1],
-      !many && SceneGridError(fluid, cells, PETSC_TRUE) <= wanted ? ", or this grid and -vesicle_markers 45" : ""));
+    PetscCall(PetscSNPrintf(what, sizeof(what), "TOO NEAR for %g, and for any grid up to R0/h = %d", (double)wanted,
+                            Finest(fluid)));
+  PetscCall(
+      PetvesSay(scene->comm, "  nearest wall: %.3g cells, which leaves %s: %s\n", (double)(gap / h), leaves, what));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode SceneReportGrid(Scene scene) {
-  const PetscReal cells = SceneSmallestRadius(scene) / FluidSpecCellSize(&scene->fluid);
+  const PetscReal R0 = SceneSmallestRadius(scene), cells = R0 / FluidSpecCellSize(&scene->fluid);
+  const PetscReal wanted = scene->scheme.wanted;
   const PetscBool many = FewestMarkers(&scene->shape) >= MARKERS ? PETSC_TRUE : PETSC_FALSE;
   const AutoFluid fluid = SceneAutoFluid(scene, scene->shape.longest / (2 * PETSC_PI));
-  const PetscReal error = SceneGridError(fluid, cells, many);
+  const PetscReal error = GridError(fluid, cells, many), enough = SceneCellsFor(fluid, wanted, many);
+  char leaves[64] = "coarser than any that was measured", what[256] = "enough";
+  PetscInt finer[2];
   PetscFunctionBeginUser;
   if (FluidSpecIsFree(&scene->fluid)) {
     PetscCall(PetvesSay(scene->comm, "  grid: none, unbounded fluid: enough\n"));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  PetscCall(PetvesSay(scene->comm, "  grid: R0/h = %.3g", (double)cells));
   if (error < PETSC_MAX_REAL)
-    PetscCall(PetvesSay(scene->comm, ", which leaves up to %.2g%s", (double)error,
-                        fluid == AUTO_INERTIA ? " with inertia" : ""));
+    PetscCall(PetscSNPrintf(leaves, sizeof(leaves), "which leaves up to %.2g%s", (double)error,
+                            fluid == AUTO_INERTIA ? " with inertia" : ""));
+  if (error <= wanted * (1 + 1e-9))
+    ;
+  else if (GridError(fluid, enough, many) > wanted || !SceneSquareCells(scene->fluid.box, R0 / enough, finer))
+    PetscCall(PetscSNPrintf(what, sizeof(what), "no grid up to R0/h = %g reached %g", (double)enough, (double)wanted));
   else
-    PetscCall(PetvesSay(scene->comm, ", coarser than any that was measured"));
-  if (error <= scene->scheme.wanted * (1 + 1e-9))
-    PetscCall(PetvesSay(scene->comm, ": enough\n"));
-  else
-    PetscCall(SayFiner(scene, fluid, cells, many));
+    PetscCall(PetscSNPrintf(
+        what, sizeof(what), "TOO COARSE for %g, take R0/h = %g, -domain_cells %" PetscInt_FMT ",%" PetscInt_FMT "%s",
+        (double)wanted, (double)enough, finer[0], finer[1],
+        !many && GridError(fluid, cells, PETSC_TRUE) <= wanted ? ", or this grid and -vesicle_markers 45" : ""));
+  PetscCall(PetvesSay(scene->comm, "  grid: R0/h = %.3g, %s: %s\n", (double)cells, leaves, what));
   PetscCall(ReportWall(scene, fluid));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

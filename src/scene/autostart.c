@@ -1,8 +1,8 @@
-/* -scheme_auto: what the start of a scene asks for. A vesicle that the flow compresses along its length wrinkles, and
-   errors of its steps grow with the wrinkles; thin shapes and thin films need more markers (docs/settings.md). */
+#include "scene/autostart.h"
 #include "curve/contacts.h"
 #include "numerics/spectral.h"
-#include "scene/resolve.h"
+#include "scene/properties.h"
+#include "scene/vesicles.h"
 
 #define ALIGNED 1e-6 /* of the strain: none, but for rounding */
 #define SQUEEZED 3   /* nu R0^3/c_b times the rate of compression from which on steps are those of wrinkles */
@@ -44,11 +44,7 @@ PetscReal SceneSqueeze(Scene scene) {
   PetscReal largest = 0;
   for (PetscInt v = 0; v < scene->shape.vesicles; v++)
     if (scene->membrane.each[v] > 0) largest = PetscMax(largest, Compression(scene, v) * SceneMembraneTime(scene, v));
-  return largest;
-}
-
-PetscBool SceneIsSqueezed(Scene scene) {
-  return SceneSqueeze(scene) > SQUEEZED ? PETSC_TRUE : PETSC_FALSE;
+  return largest > SQUEEZED ? largest : 0;
 }
 
 /* What a film so many spacings thick leaves of its thickness. */
@@ -60,7 +56,9 @@ static PetscReal FilmError(PetscReal spacings) {
   return PetscExpReal((1 - part) * PetscLogReal(films[k].error) + part * PetscLogReal(films[k - 1].error));
 }
 
-PetscErrorCode SceneThinnestFilm(Scene scene, PetscReal *spacings, PetscReal *error) {
+/* The thinnest film of the start, in marker spacings (2: none is thinner), and the error that it leaves, of its
+   thickness over R0. */
+static PetscErrorCode ThinnestFilm(Scene scene, PetscReal *spacings, PetscReal *error) {
   const Shape *s = &scene->shape;
   const FluidSpec *f = &scene->fluid;
   const PetscBool smooth = scene->membrane.derivative == DERIVATIVE_SPECTRAL ? PETSC_TRUE : PETSC_FALSE;
@@ -81,13 +79,24 @@ PetscErrorCode SceneThinnestFilm(Scene scene, PetscReal *spacings, PetscReal *er
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode SceneReportFilm(Scene scene) {
+  PetscReal spacings, error;
+  PetscFunctionBeginUser;
+  PetscCall(ThinnestFilm(scene, &spacings, &error));
+  if (error > 0)
+    PetscCall(PetvesSay(scene->comm, "  thinnest film: %.2g marker spacings, which leaves up to %.1g of R0: %s\n",
+                        (double)spacings, (double)error,
+                        error <= scene->scheme.wanted ? "enough" : "TOO THIN, take more -vesicle_markers"));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Whether the markers resolve the shapes and the films of the start. */
 static PetscErrorCode Resolved(Scene scene, PetscBool *resolved) {
   const Shape *s = &scene->shape;
   const PetscReal tail = PetscMin(MOST_TAIL, TAIL * PetscSqrtReal(scene->scheme.wanted / 1e-3));
   PetscReal spacings, error;
   PetscFunctionBeginUser;
-  PetscCall(SceneThinnestFilm(scene, &spacings, &error));
+  PetscCall(ThinnestFilm(scene, &spacings, &error));
   *resolved = error < 0.5 * scene->scheme.wanted ? PETSC_TRUE : PETSC_FALSE;
   for (PetscInt v = 0; v < s->vesicles && *resolved; v++) {
     Spectral spectral;
@@ -102,10 +111,10 @@ PetscErrorCode SceneChooseMarkers(Draft scene) {
   const PetscReal h = FluidSpecCellSize(&scene->fluid);
   PetscBool resolved = PETSC_FALSE;
   PetscInt n = 0, most = PETSC_MAX_INT;
-  char value[32];
   PetscFunctionBeginUser;
-  if (scene->scheme.wanted == 0 || !scene->shape.vesicles || scene->vesicles.markers || scene->vesicles.spacing > 0 ||
-      scene->coupling.near_field != NEAR_EXACT || scene->membrane.derivative != DERIVATIVE_SPECTRAL)
+  if (scene->scheme.wanted == 0 || !scene->shape.vesicles || SceneGiven(scene, "-vesicle_markers") ||
+      scene->vesicles.spacing > 0 || scene->coupling.near_field != NEAR_EXACT ||
+      scene->membrane.derivative != DERIVATIVE_SPECTRAL)
     PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt v = 0; v < scene->shape.vesicles; v++) {
     const PetscReal length = 2 * PETSC_PI * ShapeRadius(&scene->shape, v);
@@ -113,14 +122,13 @@ PetscErrorCode SceneChooseMarkers(Draft scene) {
     most = PetscMin(most, (PetscInt)(length / (NEAR_LEAST_SPACING * h)));
   }
   most = PetscMin(most, MOST_FINER * n);
-  const PetscInt least = SceneIsSqueezed(scene) ? PetscMin(most, 3 * n / 2) - 1 : 0;
+  const PetscInt least = SceneSqueeze(scene) > 0 ? PetscMin(most, 3 * n / 2) - 1 : 0;
   for (;;) {
     PetscCall(Resolved(scene, &resolved));
     if ((resolved && n >= least) || n >= most - 1) break;
     n = PetscMin((PetscInt)(GROWTH * n), most);
     n -= 1 - n % 2;
-    PetscCall(PetscSNPrintf(value, sizeof(value), "%" PetscInt_FMT, n));
-    PetscCall(SceneChoose(scene, "-vesicle_markers", value));
+    scene->vesicles.markers = n;
     PetscCall(SceneDropShape(scene));
     PetscCall(SceneMakeShape(scene));
   }

@@ -23,6 +23,13 @@ PETSC_EXTERN void FlowVelocity(const Flow *flow, PetscReal t, PetscReal x, Petsc
 PETSC_EXTERN PetscErrorCode FlowVelocities(const Flow *flow, PetscReal t, PetscInt n, const PetscReal X[],
                                            PetscReal u[], char message[PETVES_MAX_MESSAGE]);
 
+/* FlowShearRate - the fastest rate at which the flow shears a vesicle (1/time); 0 where it is not known. */
+PETSC_EXTERN PetscReal FlowShearRate(const Flow *flow);
+
+/* FlowCheckDivergence - that a custom flow has no divergence, by differences at points all over the box of cells of
+   size h. Collective; stops with the user's message. */
+PETSC_EXTERN PetscErrorCode FlowCheckDivergence(MPI_Comm comm, const Flow *flow, const PetscReal box[4], PetscReal h);
+
 /* FlowPressureGradient - grad p_inf[2] at any point (uniform for the flows offered) for viscosity nu. */
 PETSC_EXTERN void FlowPressureGradient(const Flow *flow, PetscReal nu, PetscReal g[2]);
 

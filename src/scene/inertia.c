@@ -1,17 +1,10 @@
-/* How much inertia a scene has, and which model of the fluid goes with it. */
-#include "scene/resolve.h"
+#include "scene/inertia.h"
+#include "scene/properties.h"
 
 /* Below it a channel or a strain flow is quasi-steady by default. */
 #define SMALL_REYNOLDS 0.01
 /* Above it unsteady Stokes flow sends a vesicle that is carried along astray. */
 #define CARRIED_REYNOLDS 0.05
-
-/* Radius of the largest vesicle; 0 without vesicles. */
-static PetscReal LargestRadius(const Shape *shape) {
-  PetscReal largest = 0;
-  for (PetscInt v = 0; v < shape->vesicles; v++) largest = PetscMax(largest, ShapeRadius(shape, v));
-  return largest;
-}
 
 static PetscReal Reynolds(Scene scene, PetscReal R0) {
   const Flow *flow = &scene->flow;
@@ -39,7 +32,7 @@ static PetscReal CarriedReynolds(Scene scene) {
     FlowVelocity(&scene->flow, 0, X[0], X[1], u);
     most = PetscMax(most, PetscSqrtReal(PetscSqr(u[0]) + PetscSqr(u[1])));
   }
-  return most * LargestRadius(shape) / scene->fluid.nu;
+  return most * SceneLargestRadius(scene) / scene->fluid.nu;
 }
 
 /* Whether u_inf takes up again across the periodic boundaries; dir: the first where it does not. */
@@ -70,7 +63,7 @@ static PetscBool Seamless(Scene scene, int *dir) {
 
 /* What the fluid puts against the membrane: viscosity, or inertia over a step where the near field is not there. */
 static PetscErrorCode CheckStiffness(Scene scene) {
-  const PetscReal R0 = LargestRadius(&scene->shape), dt = scene->time.dt, inertia = R0 * R0 / dt;
+  const PetscReal R0 = SceneLargestRadius(scene), dt = scene->time.dt, inertia = R0 * R0 / dt;
   const PetscBool viscous = scene->coupling.near_field == NEAR_EXACT ? PETSC_TRUE : PETSC_FALSE;
   const PetscReal resists = viscous ? scene->fluid.nu : PetscMax(scene->fluid.nu, inertia);
   const PetscReal own = resists * R0 * R0 * R0 / scene->membrane.bending;
@@ -145,7 +138,7 @@ static PetscErrorCode WarnOfSparse(Draft scene) {
 }
 
 PetscErrorCode SceneChooseInertia(Draft scene) {
-  const PetscReal carried = CarriedReynolds(scene), R0 = LargestRadius(&scene->shape);
+  const PetscReal carried = CarriedReynolds(scene), R0 = SceneLargestRadius(scene);
   const PetscBool baseline = SceneIsProjection(scene), inertia = SceneHasInertia(scene, R0);
   PetscBool seamless;
   int dir;

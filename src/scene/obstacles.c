@@ -1,7 +1,9 @@
 /* The obstacles of a scene: circles, bumps or curves of a file, markers at equal distances on them, and what their
    surfaces do. */
-#include "kernel/kernel.h"
+#include "scene/obstacles.h"
+#include "scene/obstaclechecks.h"
 #include "scene/openbodies.h"
+#include "scene/properties.h"
 
 /* The curves before they have markers. */
 typedef struct {

@@ -1,5 +1,6 @@
 #include "scene/openbodies.h"
 #include "kernel/kernel.h"
+#include "scene/properties.h"
 
 #define SAMPLES 4000 /* of a curve, where it is looked for its places off a wall */
 #define HALVINGS 50  /* of a sample, to find the place */

@@ -1,6 +1,6 @@
 /* Obstacles that stand on a wall of the box: curves whose ends are there. */
 #pragma once
-#include "scene/mixture.h"
+#include "scene/spec.h"
 
 /* ArcCut - which part of an open curve carries markers, part[2] of its parameter: from where it is half a marker
    spacing off the wall that its ends are on, wall = 2 direction + side, to where it is so again. b: its number, for

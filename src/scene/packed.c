@@ -1,51 +1,12 @@
 /* Where vesicles lie: at the centres given, or packed into the box. */
+#include "scene/packed.h"
 #include "kernel/kernel.h"
-#include "scene/vesiclekinds.h"
+#include "scene/properties.h"
 #include <stdlib.h>
 
 #define GAP_CELLS 1    /* of the default gap of a packing, */
 #define LEEWAY 0.25    /* cells that markers fitted to an ellipse may lie beside it */
 #define GAP_RADII 0.05 /* and at most so many R0 of the smallest vesicle */
-
-static PetscReal BoxArea(Scene scene) {
-  const PetscReal *b = scene->domain.box.v; /* the fluid is not described yet */
-  return (b[1] - b[0]) * (b[3] - b[2]);
-}
-
-/* Mean area of a vesicle by the mixture. */
-static PetscReal MeanArea(Scene scene) {
-  const SceneVesicles *own = &scene->vesicles;
-  PetscReal mean = 0;
-  for (PetscInt k = 0; k < own->mixture.n; k++) {
-    const PetscReal part = own->mixture.n > 1 ? own->mixture.v[k] : 1;
-    const PetscReal axes = PETSC_PI * ListEntry(&own->axes, 2, k, 0) * ListEntry(&own->axes, 2, k, 1);
-    mean += part * (SceneByArea(scene) ? ListEntry(&own->area, 1, k, 0) : axes);
-  }
-  return mean;
-}
-
-PetscErrorCode SceneCountPacked(Draft scene) {
-  SceneVesicles *own = &scene->vesicles;
-  const PetscReal mean = MeanArea(scene), box = BoxArea(scene), wanted = own->packing * box / mean;
-  char text[32];
-  PetscFunctionBeginUser;
-  if (own->shape != SHAPE_ELLIPSE || own->packing == 0) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCheck(!FluidSpecIsFree(&scene->fluid), scene->comm, PETSC_ERR_USER_INPUT,
-             "-vesicle_packing %g: not with -domain_bc_x free, where the box holds nothing; allowed: walls or periodic "
-             "boundaries",
-             (double)own->packing);
-  if (SceneGiven(scene, "-vesicle_count")) {
-    own->area_scale = wanted / own->count;
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  PetscCheck(wanted >= 0.5 && wanted < PETSC_MAX_INT / 64, scene->comm, PETSC_ERR_USER_INPUT,
-             "-vesicle_packing %g: %.3g vesicles of area %g in a box of area %g; allowed: a fraction of at least one "
-             "vesicle, and as many as can be numbered",
-             (double)own->packing, (double)wanted, (double)mean, (double)box);
-  PetscCall(PetscSNPrintf(text, sizeof(text), "%" PetscInt_FMT, (PetscInt)PetscFloorReal(wanted + 0.5)));
-  PetscCall(SceneChoose(scene, "-vesicle_count", text));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
 
 /* A cell, but not more than a twentieth of R0: a film that the near field resolves. */
 static PetscReal Gap(Scene scene, const Kinds *kinds) {

@@ -1,5 +1,11 @@
 /* A scene resolved from its options: all defaults in one order. */
-#include "scene/resolve.h"
+#include "scene/scene.h"
+#include "kernel/kernel.h"
+#include "scene/autostart.h"
+#include "scene/checks.h"
+#include "scene/inertia.h"
+#include "scene/obstacles.h"
+#include "scene/vesicles.h"
 
 /* The user's lists, whose lengths have been checked, and the flow, for the fluid. */
 static void DescribeFluid(Draft s) {
@@ -7,6 +13,14 @@ static void DescribeFluid(Draft s) {
   for (int k = 0; k < 4; k++) s->fluid.box[k] = s->domain.box.v[k];
   for (int d = 0; d < 2; d++) s->fluid.cells[d] = s->domain.cells.v[d];
   s->fluid.flow = &s->flow;
+}
+
+/* Penalty's springs, where none are given: half of what the step bears. */
+static void ChooseStiffness(Draft s) {
+  const PetscReal h = FluidSpecCellSize(&s->fluid), dt = s->time.dt;
+  const PetscReal *bound = KernelFind(s->coupling.kernel)->spring;
+  if (strcmp(s->scheme.type, "penalty") || s->scheme.stiffness > 0) return;
+  s->scheme.stiffness = 0.5 * (bound[0] * s->fluid.nu * h / dt + bound[1] * h * PetscSqr(h / dt));
 }
 
 PetscErrorCode SceneCreate(MPI_Comm comm, PetvesFlow flow, void *ctx, Scene *out) {
@@ -20,13 +34,14 @@ PetscErrorCode SceneCreate(MPI_Comm comm, PetvesFlow flow, void *ctx, Scene *out
   /* 1  what the user gives, or the table's defaults */
   PetscCall(SceneReadOptions(comm, s));
   /* 2  -scheme_auto: all but box, grid and steps */
-  PetscCall(SceneChooseByError(s));
-  /* 3  what split and penalty have instead of the table's defaults */
-  PetscCall(SceneChooseByScheme(s));
+  PetscCall(SceneChooseByError(s, AUTO_FIRST));
+  /* 3  defaults that depend on what is known by now */
+  PetscCall(OptionsDepend(&s->options, s));
   /* 4  mistakes that involve more than one option */
   PetscCall(SceneCheck(s));
   /* 5  -scheme_auto: the box and the grid */
-  PetscCall(SceneChooseDomain(s));
+  PetscCall(SceneChooseByError(s, AUTO_DOMAIN));
+  PetscCall(OptionsDepend(&s->options, s));
   PetscCall(SceneCheckCells(s));
   PetscCheck(flow || s->flow.type != FLOW_CUSTOM, comm, PETSC_ERR_USER_INPUT,
              "-flow_type custom: no function given; allowed: from Python (flow=) or C (SimulationCreateWithFlow) only");
@@ -39,19 +54,15 @@ PetscErrorCode SceneCreate(MPI_Comm comm, PetvesFlow flow, void *ctx, Scene *out
   PetscCall(SceneMakeShape(s));
   PetscCall(SceneChooseMarkers(s));
   PetscCall(SceneMakeObstacles(s));
-  PetscCall(SceneCheckFree(s));
-  PetscCall(SceneCheckDivergence(s));
-  PetscCall(SceneCheckGravity(s));
-  PetscCall(SceneCheckContrast(s));
+  PetscCall(SceneCheckBodies(s));
   /* 7  the steps, which go by the vesicles' size */
-  PetscCall(SceneChooseSteps(s));
-  PetscCall(SceneChooseLargestStep(s));
-  PetscCall(SceneChooseOutput(s));
+  PetscCall(SceneChooseByError(s, AUTO_STEPS));
+  PetscCall(OptionsDepend(&s->options, s));
   s->fluid.dt = s->time.dt;
   /* 8  Reynolds number, model of the fluid, warning */
   PetscCall(SceneChooseInertia(s));
   /* 9  penalty's springs, which go by the step */
-  PetscCall(SceneChooseStiffness(s));
+  ChooseStiffness(s);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -1,76 +1,88 @@
-/* Defaults that go by the scheme. */
-#include "kernel/kernel.h"
-#include "scene/resolve.h"
+#include "scene/schemedefaults.h"
+#include "scene/properties.h"
 
-#define LARGE_BOX 256 /* cells across: from here on the box part moves vesicles by 2e-5 of their speed at most */
-
-PetscBool SceneIsProjection(Scene scene) {
-  const char *const name = scene->scheme.type;
-  return !strcmp(name, "split") || !strcmp(name, "penalty") ? PETSC_TRUE : PETSC_FALSE;
+static PetscBool IsBiconcave(const void *scene) {
+  return ((Scene)scene)->vesicles.shape == SHAPE_BICONCAVE ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* split and penalty are their papers' methods: one order, kernel ib6 and differences, none of the corrections of the
-   coupled scheme; all forces of penalty are explicit. */
-static PetscErrorCode ChooseProjection(Draft scene) {
-  PetscFunctionBeginUser;
-  PetscCall(SceneChoose(scene, "-scheme_order", "1"));
-  PetscCall(SceneChoose(scene, "-delta_type", "ib6"));
-  PetscCall(SceneChoose(scene, "-membrane_derivative", "fd"));
-  PetscCall(SceneChoose(scene, "-coupling_near_field", "none"));
-  PetscCall(SceneChoose(scene, "-scheme_area_target", "false"));
-  if (!strcmp(scene->scheme.type, "penalty")) PetscCall(SceneChoose(scene, "-scheme_bending", "explicit"));
-  PetscFunctionReturn(PETSC_SUCCESS);
+static PetscBool IsProjection(const void *scene) {
+  return SceneIsProjection((Scene)scene);
 }
 
-static PetscBool IsLarge(Scene scene) {
-  const IntList cells = scene->domain.cells; /* not checked yet */
+static PetscBool IsPenalty(const void *scene) {
+  return strcmp(((Scene)scene)->scheme.type, "penalty") ? PETSC_FALSE : PETSC_TRUE;
+}
+
+static PetscBool HasNoLabelsToTurn(const void *scene) {
+  return IsProjection(scene) || ((Scene)scene)->membrane.derivative != DERIVATIVE_SPECTRAL ? PETSC_TRUE : PETSC_FALSE;
+}
+
+static PetscBool HasNoNearField(const void *scene) {
+  return ((Scene)scene)->coupling.near_field == NEAR_NONE ? PETSC_TRUE : PETSC_FALSE;
+}
+
+static PetscBool IsFree(const void *scene) {
+  return FluidSpecIsFree(&((Scene)scene)->fluid);
+}
+
+#define LARGE_BOX 256 /* cells across */
+
+static PetscBool IsLarge(const void *scene) {
+  const IntList cells = ((Scene)scene)->domain.cells; /* not checked yet */
+  if (HasNoNearField(scene) || IsFree(scene) || ((Scene)scene)->obstacles.shape != OBSTACLE_NONE) return PETSC_FALSE;
   return cells.n == 2 && PetscMin(cells.v[0], cells.v[1]) >= LARGE_BOX ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* It is the grid's, nothing without the rest of the near field, and small in a large box. */
-PetscErrorCode SceneChooseBoxPart(Draft scene) {
-  PetscFunctionBeginUser;
-  if (scene->coupling.near_field == NEAR_NONE || FluidSpecIsFree(&scene->fluid) ||
-      (IsLarge(scene) && scene->obstacles.shape == OBSTACLE_NONE))
-    PetscCall(SceneChoose(scene, "-coupling_box_part", "false"));
-  PetscFunctionReturn(PETSC_SUCCESS);
+/* -scheme_auto has a largest step of its own. */
+static PetscBool IsAdaptive(const void *scene) {
+  const Scene s = (Scene)scene;
+  return s->time.adapt != ADAPT_NONE && s->shape.vesicles && s->scheme.wanted == 0 ? PETSC_TRUE : PETSC_FALSE;
 }
 
-PetscErrorCode SceneChooseByScheme(Draft scene) {
-  PetscFunctionBeginUser;
-  if (scene->vesicles.shape == SHAPE_BICONCAVE) PetscCall(SceneChoose(scene, "-vesicle_reduced_area", "0.65"));
-  if (SceneIsProjection(scene)) PetscCall(ChooseProjection(scene));
-  /* labels are shifted by the spectral derivative's trigonometric polynomials, which keep the lengths of its edges */
-  if (SceneIsProjection(scene) || scene->membrane.derivative != DERIVATIVE_SPECTRAL)
-    PetscCall(SceneChoose(scene, "-time_frame", "none"));
-  PetscCall(SceneChooseBoxPart(scene));
-  PetscFunctionReturn(PETSC_SUCCESS);
+/* At rest for the error that the area target leaves there; a flow has steps of its own. */
+static void LargestStep(const void *scene, char value[OPTION_MAX_NAME]) {
+  const Scene s = (Scene)scene;
+  PetscReal most = SceneFlowStep(s), slow, fast;
+  SceneTimes(s, &slow, &fast);
+  if (FlowShearRate(&s->flow) == 0 && s->flow.type != FLOW_CUSTOM) most = slow;
+  if (most < PETSC_MAX_REAL) (void)snprintf(value, OPTION_MAX_NAME, "%.6g", (double)most);
 }
 
-/* Whether a box part can be made. */
-static PetscBool IsServed(Scene scene) {
-  const FluidSpec *f = &scene->fluid;
-  PetscBool served = scene->coupling.near_field == NEAR_EXACT && !FluidSpecIsFree(f) ? PETSC_TRUE : PETSC_FALSE;
-  for (int d = 0; d < 2; d++)
-    if (f->bc[d] == BC_PERIODIC && f->cells[d] > FLUID_LONGEST_PERIOD * f->cells[1 - d]) served = PETSC_FALSE;
-  return served;
+#define MOST_FRAMES 100 /* the first included */
+
+static PetscReal LeastOutputTime(const void *scene) {
+  return ((Scene)scene)->time.end / (MOST_FRAMES - 1) * (1 - 1e-12);
 }
 
-PetscBool SceneHasBoxPart(Scene scene) {
-  return scene->coupling.box_part ? IsServed(scene) : PETSC_FALSE;
+static PetscBool IsLong(const void *scene) {
+  return LeastOutputTime(scene) > 0.1 ? PETSC_TRUE : PETSC_FALSE;
 }
 
-PetscBool SceneDipolesMayBeApart(Scene scene) {
-  const PetscBool refused = !scene->coupling.box_part && SceneGiven(scene, "-coupling_box_part");
-  if (scene->coupling.grid_dipoles || refused || strcmp(scene->scheme.type, "coupled")) return PETSC_FALSE;
-  return scene->shape.vesicles == 1 && scene->obstacles.shape == OBSTACLE_NONE ? IsServed(scene) : PETSC_FALSE;
+static void OutputTime(const void *scene, char value[OPTION_MAX_NAME]) {
+  static const int steps[3] = {1, 2, 5};
+  for (int k = -1; !*value; k++)
+    for (int s = 0; s < 3 && !*value; s++)
+      if (steps[s] * PetscPowRealInt(10, k) >= LeastOutputTime(scene))
+        (void)snprintf(value, OPTION_MAX_NAME, "%de%d", steps[s], k);
 }
 
-PetscErrorCode SceneChooseStiffness(Draft scene) {
-  const PetscReal h = FluidSpecCellSize(&scene->fluid), dt = scene->time.dt;
-  const PetscReal *bound = KernelFind(scene->coupling.kernel)->spring;
-  PetscFunctionBeginUser;
-  if (strcmp(scene->scheme.type, "penalty") || scene->scheme.stiffness > 0) PetscFunctionReturn(PETSC_SUCCESS);
-  scene->scheme.stiffness = 0.5 * (bound[0] * scene->fluid.nu * h / dt + bound[1] * h * PetscSqr(h / dt));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
+/* split and penalty are their papers' methods: one order, kernel ib6 and differences, none of the corrections of the
+   coupled scheme. What is turned with a membrane are trigonometric polynomials, which keep the lengths of spectral
+   edges. The box part is the grid's. */
+/* clang-format off */
+const OptionDefault scene_defaults[] = {
+  {"-vesicle_reduced_area", IsBiconcave, "0.65", NULL, "the outline is biconcave", "biconcave: 0.35 to 0.9, %s when not given"},
+  {"-scheme_order", IsProjection, "1", NULL, "splitting errors and forward steps of markers are of first order", "split and penalty are of order %s"},
+  {"-delta_type", IsProjection, "ib6", NULL, "the paper's kernel", "split, penalty: %s"},
+  {"-membrane_derivative", IsProjection, "fd", NULL, "preconditioner and springs know chords only", "split, penalty: %s"},
+  {"-coupling_near_field", IsProjection, "none", NULL, "the paper's method has none", NULL},
+  {"-scheme_area_target", IsProjection, "false", NULL, "the paper's method has none", NULL},
+  {"-scheme_bending", IsPenalty, "explicit", NULL, "penalty has all forces at the old markers", "penalty: %s"},
+  {"-time_frame", HasNoLabelsToTurn, "none", NULL, "labels turn on spectral edges of unsplit steps only", "split, penalty, -membrane_derivative fd, bending: %s"},
+  {"-coupling_box_part", HasNoNearField, "false", NULL, "it is part of the exact near field", NULL},
+  {"-coupling_box_part", IsFree, "false", NULL, "there is no box", NULL},
+  {"-coupling_box_part", IsLarge, "false", NULL, "in a box so large it moves vesicles by 2e-5 of their speed at most", "default %s from 256 cells across on"},
+  {"-time_adapt_max_step", IsAdaptive, NULL, LargestStep, "what this flow, or the shape at rest, bears", "not given: 1/(rate (1 + .03 chi)) in a flow, nu R0^3/c_b without one (time)"},
+  {"-output_every", IsLong, NULL, OutputTime, "at most 100 frames", "not given: 0.1, or so many times more (1, 2, 5, 10 ...) that there are at most 100 (time)"},
+  {NULL}};
+/* clang-format on */

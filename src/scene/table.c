@@ -1,8 +1,15 @@
-/* The option table: each option once, beside its default, range and unit. */
+/* The option table: each option once, beside its default, range, unit and need. */
+#include "scene/table.h"
 #include "kernel/kernel.h"
-#include "scene/resolve.h"
+#include "scene/properties.h"
+#include "scene/relevance.h"
+#include "scene/schemedefaults.h"
 
 #define AT(member) offsetof(struct _p_Scene, member)
+/* A restart may have another value than its checkpoint: end, tolerances, output, limits and back ends may change; grid,
+   fluid, vesicles and scheme may not, nor -output_precision, since a file goes on as it was begun. Of -flow_chi and
+   -flow_ca what they stand for is compared. */
+#define MAY_CHANGE PETSC_TRUE
 /* clang-format off */
 static const OptionRow table[] = {
   {"-domain_box", OPT_REALS, AT(domain.box), "-1,1,-1,1", "any", "x_min,x_max,y_min,y_max (length)"},
@@ -10,130 +17,104 @@ static const OptionRow table[] = {
   {"-domain_bc_x", OPT_ENUM, AT(fluid.bc[0]), "wall", "wall|periodic|free", "boundaries at x_min and x_max; free (in x and y): unbounded fluid, the box is the window of the fields"},
   {"-domain_bc_y", OPT_ENUM, AT(fluid.bc[1]), "wall", "wall|periodic|free", "boundaries at y_min and y_max; periodic where x is periodic too"},
   {"-flow_type", OPT_ENUM, AT(flow.type), "quiescent", "quiescent|shear|poiseuille|extension|uniform|custom", "background flow; custom: a function given from Python or C"},
-  {"-flow_rate", OPT_REAL, AT(flow.rate), "1", "any", "rate of shear or extension (1/time)"},
-  {"-flow_chi", OPT_REAL, AT(flow.chi), "0", "any", "in place of -flow_rate: chi = rate nu R0^3/c_b, R0 of the largest vesicle"},
-  {"-flow_peak_velocity", OPT_REAL, AT(flow.peak), "1", "any", "u_max of poiseuille (length/time)"},
-  {"-flow_ca", OPT_REAL, AT(flow.ca), "0", "any", "in place of -flow_peak_velocity: u_max nu R0^2/c_b, the paper's w"},
-  {"-flow_velocity", OPT_REALS, AT(flow.velocity), "1,0", "any", "uniform: u_x,u_y (length/time)"},
-  {"-flow_half_width", OPT_REAL, AT(flow.half_width), "3", ">0", "L_y of poiseuille: half the channel's height (length)"},
-  {"-flow_center_x", OPT_REAL, AT(flow.center[0]), "0", "any", "x_c of the background flow (length)"},
-  {"-flow_center_y", OPT_REAL, AT(flow.center[1]), "0", "any", "y_c of the background flow (length)"},
-  {"-flow_form", OPT_ENUM, AT(fluid.form), "disturbance", "disturbance|total", "solve for u - u_inf, or (split, penalty) for u with moving walls as the paper"},
-  {"-flow_drive", OPT_ENUM, AT(fluid.drive), "pressure", "pressure|flux", "channel, periodic in x: which quantity vesicles and obstacles do not change, the mean pressure gradient or the flux"},
+  {"-flow_rate", OPT_REAL, AT(flow.rate), "1", "any", "rate of shear or extension (1/time)", &need_strain},
+  {"-flow_chi", OPT_REAL, AT(flow.chi), "0", "any", "in place of -flow_rate: chi = rate nu R0^3/c_b, R0 of the largest vesicle", &need_strain, MAY_CHANGE},
+  {"-flow_peak_velocity", OPT_REAL, AT(flow.peak), "1", "any", "u_max of poiseuille (length/time)", &need_channel},
+  {"-flow_ca", OPT_REAL, AT(flow.ca), "0", "any", "in place of -flow_peak_velocity: u_max nu R0^2/c_b, the paper's w", &need_channel, MAY_CHANGE},
+  {"-flow_velocity", OPT_REALS, AT(flow.velocity), "1,0", "any", "uniform: u_x,u_y (length/time)", &need_uniform},
+  {"-flow_half_width", OPT_REAL, AT(flow.half_width), "3", ">0", "L_y of poiseuille: half the channel's height (length)", &need_channel},
+  {"-flow_center_x", OPT_REAL, AT(flow.center[0]), "0", "any", "x_c of the background flow (length)", &need_extension},
+  {"-flow_center_y", OPT_REAL, AT(flow.center[1]), "0", "any", "y_c of the background flow (length)", &need_sheared},
+  {"-flow_form", OPT_ENUM, AT(fluid.form), "disturbance", "disturbance|total", "solve for u - u_inf, or (split, penalty) for u with moving walls as the paper", &need_flow},
+  {"-flow_drive", OPT_ENUM, AT(fluid.drive), "pressure", "pressure|flux", "channel, periodic in x: which quantity vesicles and obstacles do not change, the mean pressure gradient or the flux", &need_period},
   {"-fluid_viscosity", OPT_REAL, AT(fluid.nu), "1", ">0", "nu (length^2/time; density is 1)"},
   {"-fluid_inertia", OPT_ENUM, AT(fluid.inertia), "auto", "auto|none|unsteady|convective", "inertia of the fluid: quasi-steady Stokes, unsteady Stokes, Navier-Stokes; auto goes by flow and Reynolds number"},
-  {"-fluid_gravity", OPT_REALS, AT(gravity.g), "0,0", "any", "gravity g_x,g_y (length/time^2); it moves vesicles by -vesicle_density_difference"},
+  {"-fluid_gravity", OPT_REALS, AT(gravity.g), "0,0", "any", "gravity g_x,g_y (length/time^2); it moves vesicles by -vesicle_density_difference", &need_coupled},
   {"-vesicle_shape", OPT_ENUM, AT(vesicles.shape), "ellipse", "ellipse|biconcave|file|none", "initial shape; biconcave: the red cell's outline"},
-  {"-vesicle_count", OPT_INT, AT(vesicles.count), "1", ">=1", "number of vesicles; a file has its own number of curves, a packing the number that it takes"},
-  {"-vesicle_semi_axes", OPT_REALS, AT(vesicles.axes), "0.2,0.5", ">0", "semi-axes of the ellipse, two for all, or two a vesicle or kind (length)"},
-  {"-vesicle_area", OPT_REALS, AT(vesicles.area), "1", ">0", "area, with -vesicle_reduced_area; one for all, or one a vesicle or kind (length^2)"},
-  {"-vesicle_reduced_area", OPT_REALS, AT(vesicles.reduced_area), "0.7", "(0,1)", "V = area/(pi R0^2), R0 = perimeter/(2 pi); long axis along x; biconcave: 0.35 to 0.9, 0.65 when not given"},
-  {"-vesicle_center", OPT_REALS, AT(vesicles.center), "0,0", "any", "x,y of the centre, a pair a vesicle; file: added to its coordinates, one pair for all or one each (length)"},
-  {"-vesicle_angle", OPT_REALS, AT(vesicles.angle), "0", "any", "counter-clockwise turn about the centre, file: about each curve's centroid; one for all or one a vesicle (degrees)"},
-  {"-vesicle_file", OPT_PATH, AT(vesicles.file), "", "", "closed curves: x y a line, an empty line between curves, for -vesicle_shape file"},
-  {"-vesicle_mixture", OPT_REALS, AT(vesicles.mixture), "1", ">0", "fraction of the vesicles that are of each kind, adding up to 1; lists of area, reduced area, semi-axes and bending then have an entry for each kind"},
-  {"-vesicle_packing", OPT_REAL, AT(vesicles.packing), "0", "[0,1]", "area fraction of ellipses packed into the box; their number follows, or with -vesicle_count their area; 0: they lie at -vesicle_center"},
-  {"-vesicle_packing_type", OPT_ENUM, AT(vesicles.packing_type), "random", "random|lattice", "random places and angles, or a rectangular lattice with -vesicle_angle"},
-  {"-vesicle_packing_seed", OPT_INT, AT(vesicles.packing_seed), "1", ">=0", "of the random packing: the same seed gives the same vesicles"},
-  {"-vesicle_packing_gap", OPT_REAL, AT(vesicles.packing_gap), "0", ">=0", "least distance of packed vesicles from one another and from walls; 0: a cell, at most R0/20 (length)"},
-  {"-vesicle_bending", OPT_REALS, AT(membrane.stiffness), "0.01", ">=0", "c_b, bending stiffness, one for all, or one a vesicle or kind; 0 leaves bending out (length^5/time^2)"},
-  {"-vesicle_density_difference", OPT_REALS, AT(gravity.density), "0", "any", "density inside less density outside, over that outside; one for all, or one a vesicle or kind"},
-  {"-vesicle_viscosity_ratio", OPT_REALS, AT(membrane.viscosity_ratio), "1", "[0.02,200]", "coupled: viscosity inside over -fluid_viscosity, which is outside; one for all, or one a vesicle or kind; other than 1 the flow is quasi-steady"},
-  {"-vesicle_spacing", OPT_REAL, AT(vesicles.spacing), "0", ">=0", "marker spacing ds/h; 0: by the shape with -coupling_near_field exact (45 markers, more on thin vesicles, at most 2 h apart), else the kernel's (" KERNEL_SPACINGS ")"},
-  {"-vesicle_markers", OPT_INT, AT(vesicles.markers), "0", ">=0", "number of markers of each vesicle, instead of the spacing; 0 takes the spacing"},
-  {"-vesicle_allow_close_markers", OPT_BOOL, AT(vesicles.allow_close_markers), "false", "true|false", "accept spacings below the least: 0.3 h with -coupling_near_field exact, else the kernel's (" KERNEL_LEAST_SPACINGS ")"},
+  {"-vesicle_count", OPT_INT, AT(vesicles.count), "1", ">=1", "number of vesicles; a file has its own number of curves, a packing the number that it takes", &need_vesicles},
+  {"-vesicle_semi_axes", OPT_REALS, AT(vesicles.axes), "0.2,0.5", ">0", "semi-axes of the ellipse, two for all, or two a vesicle or kind (length)", &need_ellipses},
+  {"-vesicle_area", OPT_REALS, AT(vesicles.area), "1", ">0", "area, with -vesicle_reduced_area; one for all, or one a vesicle or kind (length^2)", &need_sizes},
+  {"-vesicle_reduced_area", OPT_REALS, AT(vesicles.reduced_area), "0.7", "(0,1)", "V = area/(pi R0^2), R0 = perimeter/(2 pi); long axis along x", &need_sizes},
+  {"-vesicle_center", OPT_REALS, AT(vesicles.center), "0,0", "any", "x,y of the centre, a pair a vesicle; file: added to its coordinates, one pair for all or one each (length)", &need_centers},
+  {"-vesicle_angle", OPT_REALS, AT(vesicles.angle), "0", "any", "counter-clockwise turn about the centre, file: about each curve's centroid; one for all or one a vesicle (degrees)", &need_angles},
+  {"-vesicle_file", OPT_PATH, AT(vesicles.file), "", "", "closed curves: x y a line, an empty line between curves, for -vesicle_shape file", &need_file, MAY_CHANGE},
+  {"-vesicle_mixture", OPT_REALS, AT(vesicles.mixture), "1", ">0", "fraction of the vesicles that are of each kind, adding up to 1; lists of area, reduced area, semi-axes and bending then have an entry for each kind", &need_sizes},
+  {"-vesicle_packing", OPT_REAL, AT(vesicles.packing), "0", "[0,1]", "area fraction of ellipses packed into the box; their number follows, or with -vesicle_count their area; 0: they lie at -vesicle_center", &need_ellipses},
+  {"-vesicle_packing_type", OPT_ENUM, AT(vesicles.packing_type), "random", "random|lattice", "random places and angles, or a rectangular lattice with -vesicle_angle", &need_packing},
+  {"-vesicle_packing_seed", OPT_INT, AT(vesicles.packing_seed), "1", ">=0", "of the random packing: the same seed gives the same vesicles", &need_random},
+  {"-vesicle_packing_gap", OPT_REAL, AT(vesicles.packing_gap), "0", ">=0", "least distance of packed vesicles from one another and from walls; 0: a cell, at most R0/20 (length)", &need_packing},
+  {"-vesicle_bending", OPT_REALS, AT(membrane.stiffness), "0.01", ">=0", "c_b, bending stiffness, one for all, or one a vesicle or kind; 0 leaves bending out (length^5/time^2)", &need_vesicles},
+  {"-vesicle_density_difference", OPT_REALS, AT(gravity.density), "0", "any", "density inside less density outside, over that outside; one for all, or one a vesicle or kind", &need_gravity},
+  {"-vesicle_viscosity_ratio", OPT_REALS, AT(membrane.viscosity_ratio), "1", "[0.02,200]", "coupled: viscosity inside over -fluid_viscosity, which is outside; one for all, or one a vesicle or kind; other than 1 the flow is quasi-steady", &need_vesicles},
+  {"-vesicle_spacing", OPT_REAL, AT(vesicles.spacing), "0", ">=0", "marker spacing ds/h; 0: by the shape with -coupling_near_field exact (45 markers, more on thin vesicles, at most 2 h apart), else the kernel's (" KERNEL_SPACINGS ")", &need_vesicles},
+  {"-vesicle_markers", OPT_INT, AT(vesicles.markers), "0", ">=0", "number of markers of each vesicle, instead of the spacing; 0 takes the spacing", &need_vesicles},
+  {"-vesicle_allow_close_markers", OPT_BOOL, AT(vesicles.allow_close_markers), "false", "true|false", "accept spacings below the least: 0.3 h with -coupling_near_field exact, else the kernel's (" KERNEL_LEAST_SPACINGS ")", &need_vesicles, MAY_CHANGE},
   {"-obstacle_shape", OPT_ENUM, AT(obstacles.shape), "none", "none|posts|couette|constriction|file", "solid bodies in the fluid: circles, two circles with fluid between them, two bumps on the walls y_min and y_max that face one another, curves of a file"},
-  {"-obstacle_radius", OPT_REALS, AT(obstacles.radius), "0.2", ">0", "of posts: one for all or one each; of couette: the inner and the outer one (length)"},
-  {"-obstacle_center", OPT_REALS, AT(obstacles.center), "0,0", "any", "x,y of the centres: a pair a post; of couette one for both circles or one each; of a constriction x counts (length)"},
-  {"-obstacle_lattice", OPT_INTS, AT(obstacles.lattice), "0,0", ">=0", "posts: columns and rows that fill the box, in place of -obstacle_center; 0,0: none"},
-  {"-obstacle_shift", OPT_REAL, AT(obstacles.shift), "0", "any", "lattice of posts: how far a row stands along x from the one below it, over the distance of columns"},
-  {"-obstacle_throat", OPT_REAL, AT(obstacles.throat), "0.5", "(0,1)", "constriction: its narrowest width over that of the channel"},
-  {"-obstacle_length", OPT_REAL, AT(obstacles.length), "0", ">=0", "constriction: its length along x, a whole wave of a cosine; 0: as long as the channel is wide (length)"},
-  {"-obstacle_velocity", OPT_REALS, AT(obstacles.move), "0,0", "any", "u_x,u_y of the fluid at the obstacles' surfaces, one for all or one each; the curves stay where they are without -obstacle_moving (length/time)"},
-  {"-obstacle_rotation", OPT_REALS, AT(obstacles.rotation), "0", "any", "rate at which the surfaces turn about their curves' middles, counter-clockwise, one for all or one each (1/time)"},
-  {"-obstacle_frequency", OPT_REAL, AT(obstacles.frequency), "0", ">=0", "the surfaces' velocities are those given times the cosine of this times the time: they swing (1/time)"},
-  {"-obstacle_moving", OPT_BOOL, AT(obstacles.moving), "false", "true|false", "closed obstacles move and turn as solid bodies with the velocities given (of a file: its lines # velocity and # rotation); false: they rest, and only their surfaces move"},
-  {"-obstacle_file", OPT_PATH, AT(obstacles.file), "", "", "curves as -vesicle_file's, a clockwise one a container of the fluid; one after a line # open has its ends on a wall, one whose last point is the first but for a period spans the box, its solid on the left; lines # velocity u_x u_y and # rotation w before a curve are its own"},
-  {"-obstacle_spacing", OPT_REAL, AT(obstacles.spacing), "1", "[0.3,2]", "spacing ds/h of the obstacles' markers, without influence on the flow from 0.5 to 2 but for films thinner than it"},
-  {"-obstacle_factor", OPT_ENUM, AT(obstacles.factor), "auto", "auto|dense|modes", "preconditioner's block of the obstacles: the dense inverse of all; or that of each curve and a few points on every curve for what others do to it. auto: modes for more than 2000 markers in a box that is periodic both ways"},
-  {"-delta_type", OPT_NAME, AT(coupling.kernel), "cbs54", KERNEL_NAMES, "kernel between grid and markers; split, penalty: ib6"},
+  {"-obstacle_radius", OPT_REALS, AT(obstacles.radius), "0.2", ">0", "of posts: one for all or one each; of couette: the inner and the outer one (length)", &need_circles},
+  {"-obstacle_center", OPT_REALS, AT(obstacles.center), "0,0", "any", "x,y of the centres: a pair a post; of couette one for both circles or one each; of a constriction x counts (length)", &need_solid_centers},
+  {"-obstacle_lattice", OPT_INTS, AT(obstacles.lattice), "0,0", ">=0", "posts: columns and rows that fill the box, in place of -obstacle_center; 0,0: none", &need_posts},
+  {"-obstacle_shift", OPT_REAL, AT(obstacles.shift), "0", "any", "lattice of posts: how far a row stands along x from the one below it, over the distance of columns", &need_posts},
+  {"-obstacle_throat", OPT_REAL, AT(obstacles.throat), "0.5", "(0,1)", "constriction: its narrowest width over that of the channel", &need_constriction},
+  {"-obstacle_length", OPT_REAL, AT(obstacles.length), "0", ">=0", "constriction: its length along x, a whole wave of a cosine; 0: as long as the channel is wide (length)", &need_constriction},
+  {"-obstacle_velocity", OPT_REALS, AT(obstacles.move), "0,0", "any", "u_x,u_y of the fluid at the obstacles' surfaces, one for all or one each; the curves stay where they are without -obstacle_moving (length/time)", &need_circles},
+  {"-obstacle_rotation", OPT_REALS, AT(obstacles.rotation), "0", "any", "rate at which the surfaces turn about their curves' middles, counter-clockwise, one for all or one each (1/time)", &need_circles},
+  {"-obstacle_frequency", OPT_REAL, AT(obstacles.frequency), "0", ">=0", "the surfaces' velocities are those given times the cosine of this times the time: they swing (1/time)", &need_obstacles},
+  {"-obstacle_moving", OPT_BOOL, AT(obstacles.moving), "false", "true|false", "closed obstacles move and turn as solid bodies with the velocities given (of a file: its lines # velocity and # rotation); false: they rest, and only their surfaces move", &need_obstacles},
+  {"-obstacle_file", OPT_PATH, AT(obstacles.file), "", "", "curves as -vesicle_file's, a clockwise one a container of the fluid; one after a line # open has its ends on a wall, one whose last point is the first but for a period spans the box, its solid on the left; lines # velocity u_x u_y and # rotation w before a curve are its own", &need_obstacle_file, MAY_CHANGE},
+  {"-obstacle_spacing", OPT_REAL, AT(obstacles.spacing), "1", "[0.3,2]", "spacing ds/h of the obstacles' markers, without influence on the flow from 0.5 to 2 but for films thinner than it", &need_obstacles},
+  {"-obstacle_factor", OPT_ENUM, AT(obstacles.factor), "auto", "auto|dense|modes", "preconditioner's block of the obstacles: the dense inverse of all; or that of each curve and a few points on every curve for what others do to it. auto: modes for more than 2000 markers in a box that is periodic both ways", &need_obstacles},
+  {"-delta_type", OPT_NAME, AT(coupling.kernel), "cbs54", KERNEL_NAMES, "kernel between grid and markers", &need_bodies},
   {"-scheme_type", OPT_NAME, AT(scheme.type), "coupled", "split|penalty|coupled", "time-stepping scheme: the paper's, stiff springs, unsplit"},
-  {"-scheme_order", OPT_INT, AT(scheme.order), "3", "[1,3]", "order in time: backward Euler, BDF2, or BDF3 wherever it predicts better; split and penalty are of order 1"},
-  {"-scheme_auto", OPT_REAL, AT(scheme.wanted), "0", ">=0", "relative error wanted, 1e-4 to 0.1: steps, tolerances, markers, kernel, and the box and the grid that are not given, by what was measured; 0 off"},
-  {"-scheme_bending", OPT_ENUM, AT(scheme.bending_at), "implicit", "implicit|explicit", "bending at the new markers, or (split only) at the old ones; penalty: explicit"},
-  {"-penalty_stiffness", OPT_REAL, AT(scheme.stiffness), "0", ">=0", "penalty: sigma_0 of the springs sigma = sigma_0 (|X_s| - 1) (length^3/time^2); 0 takes half of what the step bears"},
-  {"-scheme_length_target", OPT_BOOL, AT(scheme.length_target), "true", "true|false", "coupled: each step aims at edges of their first length"},
-  {"-scheme_area_target", OPT_BOOL, AT(scheme.area_target), "true", "true|false", "coupled: each step aims at the first areas of the vesicles"},
-  {"-coupling_near_field", OPT_ENUM, AT(coupling.near_field), "exact", "exact|none", "coupled: correct the markers' velocity for the smoothing by kernel and grid, to the exact single layer; none: do not"},
-  {"-coupling_box_part", OPT_BOOL, AT(coupling.box_part), "true", "true|false", "with the exact near field: the grid's error of second order in what walls and periodic images do is taken off; default false from 256 cells across on"},
-  {"-coupling_grid_dipoles", OPT_BOOL, AT(coupling.grid_dipoles), "false", "true|false", "coupled with viscosity contrast: the double layer's dipoles go over the grid in every solve, also those of one vesicle in the middle of the box, which else take their velocity from the markers and a table of the box"},
-  {"-contact_repulsion", OPT_REAL, AT(repulsion.stress), "0", ">=0", "coupled: K, stress that pushes membranes from one another and from walls, K (1 - d/D) at a distance d (length^2/time^2); 0: none"},
-  {"-contact_repulsion_range", OPT_REAL, AT(repulsion.range), "0", ">=0", "D, up to which it acts (length); 0: 1.5 times the longest mean edge"},
-  {"-contact_adhesion", OPT_REAL, AT(repulsion.adhesion), "0", ">=0", "with a repulsion: W, energy a length of membranes that stick together at the distance D (length^3/time^2); 0: none"},
-  {"-contact_adhesion_range", OPT_REAL, AT(repulsion.band), "0", ">=0", "B, width of the band from D to D + B in which they are drawn together (length); 0: D"},
-  {"-membrane_derivative", OPT_ENUM, AT(membrane.derivative), "spectral", "fd|bending|spectral", "derivatives along the membrane: finite differences, spectral bending, spectral bending and edges; split, penalty: fd"},
-  {"-scheme_startup", OPT_ENUM, AT(scheme.startup), "graded", "euler|graded", "first step of orders 2 and 3: backward Euler, or five growing parts of a step"},
-  {"-time_step", OPT_REAL, AT(time.dt), "0.01", ">0", "dt (time)"},
-  {"-time_end", OPT_REAL, AT(time.end), "1", ">=0", "end time, reached exactly: the last steps are shortened (time)"},
-  {"-time_frame", OPT_ENUM, AT(time.frame), "treading", "treading|none", "coupled: labels in which a step sees the states before it, turning with each tank-treading membrane, or fixed to matter; split, penalty, -membrane_derivative fd, bending: none"},
-  {"-time_adapt", OPT_ENUM, AT(time.adapt), "none", "none|error", "step size: fixed, or from an error estimate (coupled of order 2 or 3)"},
-  {"-time_adapt_tol", OPT_REAL, AT(time.adapt_tol), "1e-4", ">0", "error estimate accepted a step, in units of R0"},
-  {"-time_adapt_max_move", OPT_REAL, AT(time.adapt_max_move), "1", ">=0", "cells that a marker may move in a step relative to its vesicle; 0 no limit"},
-  {"-time_adapt_max_step", OPT_REAL, AT(time.adapt_max_step), "0", ">=0", "largest step that -time_adapt error takes; 0 no limit; not given: 1/(rate (1 + .03 chi)) in a flow, nu R0^3/c_b without one (time)"},
-  {"-time_cfl_limit", OPT_REAL, AT(time.cfl_limit), "0.5", ">0", "convective: largest dt max(|u| + |v|)/h; -time_adapt error stays below it, a fixed step above it stops the run"},
-  {"-time_steady_tol", OPT_REAL, AT(time.steady_tol), "0", ">=0", "stop when normal_speed, max |u.n| on a membrane, falls below it; 0 never (length/time)"},
-  {"-helmholtz_type", OPT_NAME, AT(fluid.helmholtz), "fftw_tridiagonal", "fftw_tridiagonal|fftw|hypre", "fast solver of the velocity Helmholtz problems"},
-  {"-poisson_type", OPT_NAME, AT(fluid.poisson), "fftw_tridiagonal", "fftw_tridiagonal|fftw|hypre", "fast solver of the pressure Poisson problems"},
-  {"-output_dir", OPT_PATH, AT(output.dir), "out/run", "", "folder of every output file"},
-  {"-output_overwrite", OPT_BOOL, AT(output.overwrite), "false", "true|false", "replace the results that -output_dir holds already"},
-  {"-output_every", OPT_REAL, AT(output.every), "0.1", ">0", "time between saved fields; not given: 0.1, or so many times more (1, 2, 5, 10 ...) that there are at most 100 (time)"},
+  {"-scheme_order", OPT_INT, AT(scheme.order), "3", "[1,3]", "order in time: backward Euler, BDF2, or BDF3 wherever it predicts better"},
+  {"-scheme_auto", OPT_REAL, AT(scheme.wanted), "0", ">=0", "relative error wanted, 1e-4 to 0.1: steps, tolerances, markers, kernel, and the box and the grid that are not given, by what was measured; 0 off", &need_vesicles, MAY_CHANGE},
+  {"-scheme_bending", OPT_ENUM, AT(scheme.bending_at), "implicit", "implicit|explicit", "bending at the new markers, or (split only) at the old ones", &need_vesicles},
+  {"-penalty_stiffness", OPT_REAL, AT(scheme.stiffness), "0", ">=0", "penalty: sigma_0 of the springs sigma = sigma_0 (|X_s| - 1) (length^3/time^2); 0 takes half of what the step bears", &need_penalty},
+  {"-scheme_length_target", OPT_BOOL, AT(scheme.length_target), "true", "true|false", "coupled: each step aims at edges of their first length", &need_coupled},
+  {"-scheme_area_target", OPT_BOOL, AT(scheme.area_target), "true", "true|false", "coupled: each step aims at the first areas of the vesicles", &need_vesicles},
+  {"-coupling_near_field", OPT_ENUM, AT(coupling.near_field), "exact", "exact|none", "coupled: correct the markers' velocity for the smoothing by kernel and grid, to the exact single layer; none: do not", &need_bodies},
+  {"-coupling_box_part", OPT_BOOL, AT(coupling.box_part), "true", "true|false", "with the exact near field: the grid's error of second order in what walls and periodic images do is taken off", &need_bodies},
+  {"-coupling_grid_dipoles", OPT_BOOL, AT(coupling.grid_dipoles), "false", "true|false", "coupled with viscosity contrast: the double layer's dipoles go over the grid in every solve, also those of one vesicle in the middle of the box, which else take their velocity from the markers and a table of the box", &need_coupled},
+  {"-contact_repulsion", OPT_REAL, AT(repulsion.stress), "0", ">=0", "coupled: K, stress that pushes membranes from one another and from walls, K (1 - d/D) at a distance d (length^2/time^2); 0: none", &need_coupled},
+  {"-contact_repulsion_range", OPT_REAL, AT(repulsion.range), "0", ">=0", "D, up to which it acts (length); 0: 1.5 times the longest mean edge", &need_repulsion},
+  {"-contact_adhesion", OPT_REAL, AT(repulsion.adhesion), "0", ">=0", "with a repulsion: W, energy a length of membranes that stick together at the distance D (length^3/time^2); 0: none", &need_repulsion},
+  {"-contact_adhesion_range", OPT_REAL, AT(repulsion.band), "0", ">=0", "B, width of the band from D to D + B in which they are drawn together (length); 0: D", &need_adhesion},
+  {"-membrane_derivative", OPT_ENUM, AT(membrane.derivative), "spectral", "fd|bending|spectral", "derivatives along the membrane: finite differences, spectral bending, spectral bending and edges", &need_vesicles},
+  {"-scheme_startup", OPT_ENUM, AT(scheme.startup), "graded", "euler|graded", "first step of orders 2 and 3: backward Euler, or five growing parts of a step", &need_order},
+  {"-time_step", OPT_REAL, AT(time.dt), "0.01", ">0", "dt (time)", NULL, MAY_CHANGE},
+  {"-time_end", OPT_REAL, AT(time.end), "1", ">=0", "end time, reached exactly: the last steps are shortened (time)", NULL, MAY_CHANGE},
+  {"-time_frame", OPT_ENUM, AT(time.frame), "treading", "treading|none", "coupled: labels in which a step sees the states before it, turning with each tank-treading membrane, or fixed to matter"},
+  {"-time_adapt", OPT_ENUM, AT(time.adapt), "none", "none|error", "step size: fixed, or from an error estimate (coupled of order 2 or 3)", &need_adaptable},
+  {"-time_adapt_tol", OPT_REAL, AT(time.adapt_tol), "1e-4", ">0", "error estimate accepted a step, in units of R0", &need_adapt, MAY_CHANGE},
+  {"-time_adapt_max_move", OPT_REAL, AT(time.adapt_max_move), "1", ">=0", "cells that a marker may move in a step relative to its vesicle; 0 no limit", &need_adapt, MAY_CHANGE},
+  {"-time_adapt_max_step", OPT_REAL, AT(time.adapt_max_step), "0", ">=0", "largest step that -time_adapt error takes; 0 no limit", &need_adapt, MAY_CHANGE},
+  {"-time_cfl_limit", OPT_REAL, AT(time.cfl_limit), "0.5", ">0", "convective: largest dt max(|u| + |v|)/h; -time_adapt error stays below it, a fixed step above it stops the run", &need_convection},
+  {"-time_steady_tol", OPT_REAL, AT(time.steady_tol), "0", ">=0", "stop when normal_speed, max |u.n| on a membrane, falls below it; 0 never (length/time)", &need_vesicles, MAY_CHANGE},
+  {"-helmholtz_type", OPT_NAME, AT(fluid.helmholtz), "fftw_tridiagonal", "fftw_tridiagonal|fftw|hypre", "fast solver of the velocity Helmholtz problems", &need_grid, MAY_CHANGE},
+  {"-poisson_type", OPT_NAME, AT(fluid.poisson), "fftw_tridiagonal", "fftw_tridiagonal|fftw|hypre", "fast solver of the pressure Poisson problems", &need_grid, MAY_CHANGE},
+  {"-output_dir", OPT_PATH, AT(output.dir), "out/run", "", "folder of every output file", NULL, MAY_CHANGE},
+  {"-output_overwrite", OPT_BOOL, AT(output.overwrite), "false", "true|false", "replace the results that -output_dir holds already", NULL, MAY_CHANGE},
+  {"-output_every", OPT_REAL, AT(output.every), "0.1", ">0", "time between saved fields", NULL, MAY_CHANGE},
   {"-output_precision", OPT_ENUM, AT(output.precision), "double", "double|single", "of saved velocity and pressure; single takes half the room"},
-  {"-checkpoint_every", OPT_INT, AT(output.checkpoint_every), "100", ">=0", "steps between checkpoints; 0 writes one at the end only"},
-  {"-checkpoint_keep", OPT_INT, AT(output.checkpoint_keep), "2", "[1,100]", "checkpoints kept: checkpoint.h5, the one before it checkpoint_1.h5, and so on"},
-  {"-restart", OPT_PATH, AT(output.restart), "", "", "go on from this checkpoint, in its folder or in a new -output_dir"},
-  {"-time_wall_limit", OPT_REAL, AT(time.wall_limit), "0", ">=0", "stop with a checkpoint before this much wall time has passed; 0 never (seconds)"},
-  {"-limit_edge_ratio", OPT_REAL, AT(limits.edge_ratio), "5", ">=0", "stop when a vesicle's longest edge is more than this many times its shortest; 0 no limit"},
-  {"-limit_area_error", OPT_REAL, AT(limits.area_error), "0.2", ">=0", "stop when a vesicle's area is off by more than this part of its first; 0 no limit"},
-  {"-limit_length_error", OPT_REAL, AT(limits.length_error), "0.2", ">=0", "stop when a vesicle's length is off by more than this part of its first; 0 no limit"},
-  {"-limit_gap_loss", OPT_REAL, AT(limits.gap_loss), "0.5", "[0,1]", "stop when a step takes more than this part of a film between vesicles, or vesicle and wall, that is then thinner than half an edge (a cell without near field); -time_adapt error takes a smaller step; 0 no limit"},
-  {"-limit_crossing", OPT_BOOL, AT(limits.crossing), "true", "true|false", "stop when membranes cross, one another or themselves"},
-  {"-view", OPT_BOOL, AT(view), "false", "true|false", "print the model in force and the solvers"},
-  {"-allow_unused_options", OPT_BOOL, AT(allow_unused), "false", "true|false", "go on when an option is misspelt or unused"},
+  {"-checkpoint_every", OPT_INT, AT(output.checkpoint_every), "100", ">=0", "steps between checkpoints; 0 writes one at the end only", NULL, MAY_CHANGE},
+  {"-checkpoint_keep", OPT_INT, AT(output.checkpoint_keep), "2", "[1,100]", "checkpoints kept: checkpoint.h5, the one before it checkpoint_1.h5, and so on", NULL, MAY_CHANGE},
+  {"-restart", OPT_PATH, AT(output.restart), "", "", "go on from this checkpoint, in its folder or in a new -output_dir", NULL, MAY_CHANGE},
+  {"-time_wall_limit", OPT_REAL, AT(time.wall_limit), "0", ">=0", "stop with a checkpoint before this much wall time has passed; 0 never (seconds)", NULL, MAY_CHANGE},
+  {"-limit_edge_ratio", OPT_REAL, AT(limits.edge_ratio), "5", ">=0", "stop when a vesicle's longest edge is more than this many times its shortest; 0 no limit", &need_vesicles, MAY_CHANGE},
+  {"-limit_area_error", OPT_REAL, AT(limits.area_error), "0.2", ">=0", "stop when a vesicle's area is off by more than this part of its first; 0 no limit", &need_vesicles, MAY_CHANGE},
+  {"-limit_length_error", OPT_REAL, AT(limits.length_error), "0.2", ">=0", "stop when a vesicle's length is off by more than this part of its first; 0 no limit", &need_vesicles, MAY_CHANGE},
+  {"-limit_gap_loss", OPT_REAL, AT(limits.gap_loss), "0.5", "[0,1]", "stop when a step takes more than this part of a film between vesicles, or vesicle and wall, that is then thinner than half an edge (a cell without near field); -time_adapt error takes a smaller step; 0 no limit", &need_vesicles, MAY_CHANGE},
+  {"-limit_crossing", OPT_BOOL, AT(limits.crossing), "true", "true|false", "stop when membranes cross, one another or themselves", &need_vesicles, MAY_CHANGE},
+  {"-view", OPT_BOOL, AT(view), "false", "true|false", "print the model in force and the solvers", NULL, MAY_CHANGE},
+  {"-allow_unused_options", OPT_BOOL, AT(allow_unused), "false", "true|false", "go on when an option is misspelt or unused", NULL, MAY_CHANGE},
 };
 /* clang-format on */
 #define TABLE_SIZE ((PetscInt)(sizeof(table) / sizeof(table[0])))
 
-/* Solver options that users write most, as candidates for a suggestion. */
-static const char *const solvers[] = {"-tension_ksp_type",   "-tension_ksp_rtol",         "-tension_ksp_atol",
-                                      "-tension_ksp_max_it", "-tension_ksp_monitor",      "-tension_pc_type",
-                                      "-bending_ksp_type",   "-bending_ksp_rtol",         "-bending_ksp_atol",
-                                      "-bending_ksp_max_it", "-bending_pc_type",          "-options_file",
-                                      "-log_view",           "-tension_pc_factor_levels", "-bending_ksp_monitor",
-                                      "-coupled_ksp_type",   "-coupled_ksp_rtol",         "-coupled_ksp_atol",
-                                      "-coupled_ksp_max_it", "-coupled_ksp_monitor",      NULL};
-
 PetscErrorCode SceneReadOptions(MPI_Comm comm, Draft scene) {
   PetscFunctionBeginUser;
   PetscCall(OptionsRead(comm, "petves: inextensible vesicles in two-dimensional viscous flow", TABLE_SIZE, table,
-                        &scene->options, scene));
+                        scene_defaults, &scene->options, scene));
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode SceneChoose(Draft scene, const char name[], const char value[]) {
-  PetscFunctionBeginUser;
-  PetscCall(OptionChoose(&scene->options, scene, name, value));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscBool SceneGiven(Scene scene, const char name[]) {
-  return OptionGiven(&scene->options, name);
-}
-
-PetscBool SceneByArea(Scene scene) {
-  const PetscBool packed = scene->vesicles.packing > 0 && !SceneGiven(scene, "-vesicle_semi_axes");
-  if (scene->vesicles.shape == SHAPE_BICONCAVE) return PETSC_TRUE;
-  return SceneGiven(scene, "-vesicle_area") || SceneGiven(scene, "-vesicle_reduced_area") || packed ? PETSC_TRUE
-                                                                                                    : PETSC_FALSE;
 }
 
 const OptionRow *SceneOptionRow(PetscInt i) {
@@ -144,73 +125,50 @@ const char *SceneOptionName(PetscInt i) {
   return i < TABLE_SIZE ? table[i].name : NULL;
 }
 
-PetscBool SceneOptionMayChange(const char name[]) {
-  const char *const free[] = {"-scheme_auto",
-                              "-flow_chi", /* what they stand for is compared */
-                              "-flow_ca",
-                              "-time_end",
-                              "-time_step",
-                              "-time_adapt_tol",
-                              "-time_adapt_max_move",
-                              "-time_adapt_max_step",
-                              "-time_steady_tol",
-                              "-time_wall_limit",
-                              "-helmholtz_type",
-                              "-poisson_type",
-                              "-vesicle_file",
-                              "-obstacle_file",
-                              "-vesicle_allow_close_markers",
-                              "-restart",
-                              "-view",
-                              "-allow_unused_options"};
-  const char *const groups[] = {"-output_", /* but a file goes on as it was begun */ "-checkpoint_", "-limit_"};
-  for (size_t i = 0; i < sizeof(free) / sizeof(free[0]); i++)
-    if (!strcmp(name, free[i])) return PETSC_TRUE;
-  if (!strcmp(name, "-output_precision")) return PETSC_FALSE;
-  for (size_t i = 0; i < sizeof(groups) / sizeof(groups[0]); i++)
-    if (!strncmp(name, groups[i], strlen(groups[i]))) return PETSC_TRUE;
-  return PETSC_FALSE;
-}
+/* A group goes to the first option of the next. */
+static const struct {
+  const char *first, *title;
+} groups[] = {{"-domain_box", "Domain"},
+              {"-flow_type", "Background flow"},
+              {"-fluid_viscosity", "Fluid"},
+              {"-vesicle_shape", "Vesicles"},
+              {"-obstacle_shape", "Obstacles"},
+              {"-delta_type", "Scheme"},
+              {"-time_step", "Time"},
+              {"-helmholtz_type", "Fast solvers"},
+              {"-output_dir", "Output, checkpoints, restart"},
+              {"-time_wall_limit", "When to stop"},
+              {"-view", "Others"}};
+#define GROUPS (sizeof(groups) / sizeof(groups[0]))
 
-PetscErrorCode SceneOptionText(Scene scene, PetscInt i, char **text) {
-  PetscFunctionBeginUser;
-  PetscCall(OptionText(&scene->options, scene, i, text));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode SceneOptionValue(Scene scene, PetscInt i, char value[], size_t length) {
-  PetscFunctionBeginUser;
-  PetscCall(OptionValue(&scene->options, scene, i, value, length));
-  PetscFunctionReturn(PETSC_SUCCESS);
+PetscBool SceneHelp(FILE *file, const char word[]) {
+  const char *title = NULL;
+  PetscBool any = PETSC_FALSE;
+  for (PetscInt i = 0; SceneOptionRow(i); i++) {
+    const OptionRow *row = SceneOptionRow(i);
+    for (size_t g = 0; g < GROUPS; g++)
+      if (!strcmp(groups[g].first, row->name)) title = groups[g].title;
+    if (word && !strstr(row->name, word)) continue;
+    if (title) fprintf(file, "%s%s\n", any ? "\n" : "", title);
+    title = NULL; /* has been printed */
+    OptionHelp(file, row, scene_defaults);
+    any = PETSC_TRUE;
+  }
+  return any;
 }
 
 PetscErrorCode SceneWriteOptions(Scene scene, FILE *file) {
-  /* what the scene does not use would be refused when read back, and so would be both descriptions of the ellipse, or
-     of the flow; what one launch was asked to do with an earlier run's files is no part of the run */
+  /* what one launch was asked to do with an earlier run's files is no part of the run; both descriptions of the
+     ellipse, or of the flow, would be refused when read back */
   const PetscBool by_area = SceneByArea(scene), packed = scene->vesicles.packing > 0 ? PETSC_TRUE : PETSC_FALSE;
   const PetscBool counted = SceneGiven(scene, "-vesicle_count");
-  const char *skip[TABLE_SIZE + 9] = {"-restart", "-output_overwrite", "-flow_chi", "-flow_ca"};
+  const char *skip[9] = {"-restart", "-output_overwrite", "-flow_chi", "-flow_ca"};
   PetscInt skipped = 4;
   PetscFunctionBeginUser;
   if (by_area) skip[skipped++] = "-vesicle_semi_axes";
   if (packed && !counted) skip[skipped++] = "-vesicle_count"; /* of fraction, number and area two say the third */
   if (!by_area || (packed && counted)) skip[skipped++] = "-vesicle_area";
   if (!by_area) skip[skipped++] = "-vesicle_reduced_area";
-  for (PetscInt i = 0; i < TABLE_SIZE; i++)
-    if (!SceneUses(scene, table[i].name)) skip[skipped++] = table[i].name;
-  skip[skipped] = NULL;
   PetscCall(OptionsWrite(&scene->options, scene, skip, file));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Prefixes of solvers, and what a scene needs to have them. */
-static const OptionOwner owners[] = {{"-tension_", "-scheme_type split"},   {"-bending_", "-scheme_type split"},
-                                     {"-coupled_", "-scheme_type coupled"}, {"-helmholtz_", "-helmholtz_type hypre"},
-                                     {"-poisson_", "-poisson_type hypre"},  {NULL, NULL}};
-
-PetscErrorCode SceneCheckUnused(Scene scene) {
-  PetscFunctionBeginUser;
-  PetscCall(OptionsTryLate(&scene->options));
-  if (!scene->allow_unused) PetscCall(OptionsCheckUnused(&scene->options, scene, solvers, owners, SceneWishes()));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

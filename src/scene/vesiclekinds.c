@@ -1,6 +1,7 @@
 /* The kinds of vesicles of a scene: which vesicle is of which, and the markers that all of a kind share. */
-#include "kernel/kernel.h"
 #include "scene/vesiclekinds.h"
+#include "kernel/kernel.h"
+#include "scene/properties.h"
 #include <stdlib.h>
 
 #define MAX_NEWTON 20 /* of the first markers; four are usual */
@@ -19,14 +20,9 @@ static PetscInt FastOdd(PetscInt M) {
   return M;
 }
 
-/* lambda_t rate of the flow with a vesicle of radius R0; 0 where either is zero. */
+/* Rate of the flow over the membrane's own, of a vesicle of radius R0; 0 where either is zero. */
 static PetscReal Chi(Scene scene, PetscReal R0, PetscReal bending) {
-  const Flow *flow = &scene->flow;
-  PetscReal rate = 0;
-  if (flow->type == FLOW_SHEAR || flow->type == FLOW_EXTENSION) rate = PetscAbsReal(flow->rate);
-  if (flow->type == FLOW_POISEUILLE) rate = 2 * PetscAbsReal(flow->peak) / flow->half_width;
-  if (bending == 0) return 0;
-  return rate * scene->fluid.nu * PetscPowRealInt(R0, 3) / bending;
+  return bending == 0 ? 0 : FlowShearRate(&scene->flow) * scene->fluid.nu * PetscPowRealInt(R0, 3) / bending;
 }
 
 #define STRONG 100 /* chi from which on membranes wrinkle */
@@ -198,9 +194,101 @@ static PetscErrorCode FileKinds(Scene scene, Kinds *all) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode KindsCreate(Scene scene, Kinds *all) {
+static PetscReal BoxArea(Scene scene) {
+  const PetscReal *b = scene->domain.box.v; /* the fluid is not described yet */
+  return (b[1] - b[0]) * (b[3] - b[2]);
+}
+
+/* Mean area of a vesicle by the mixture. */
+static PetscReal MeanArea(Scene scene) {
+  const SceneVesicles *own = &scene->vesicles;
+  PetscReal mean = 0;
+  for (PetscInt k = 0; k < own->mixture.n; k++) {
+    const PetscReal part = own->mixture.n > 1 ? own->mixture.v[k] : 1;
+    const PetscReal axes = PETSC_PI * ListEntry(&own->axes, 2, k, 0) * ListEntry(&own->axes, 2, k, 1);
+    mean += part * (SceneByArea(scene) ? ListEntry(&own->area, 1, k, 0) : axes);
+  }
+  return mean;
+}
+
+/* How many vesicles a packing takes, or with -vesicle_count their area. */
+static PetscErrorCode CountPacked(Draft scene) {
+  SceneVesicles *own = &scene->vesicles;
+  const PetscReal mean = MeanArea(scene), box = BoxArea(scene), wanted = own->packing * box / mean;
+  PetscFunctionBeginUser;
+  if (own->shape != SHAPE_ELLIPSE || own->packing == 0) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCheck(!FluidSpecIsFree(&scene->fluid), scene->comm, PETSC_ERR_USER_INPUT,
+             "-vesicle_packing %g: not with -domain_bc_x free, where the box holds nothing; allowed: walls or periodic "
+             "boundaries",
+             (double)own->packing);
+  if (SceneGiven(scene, "-vesicle_count")) {
+    own->area_scale = wanted / own->count;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCheck(wanted >= 0.5 && wanted < PETSC_MAX_INT / 64, scene->comm, PETSC_ERR_USER_INPUT,
+             "-vesicle_packing %g: %.3g vesicles of area %g in a box of area %g; allowed: a fraction of at least one "
+             "vesicle, and as many as can be numbered",
+             (double)own->packing, (double)wanted, (double)mean, (double)box);
+  own->count = (PetscInt)PetscFloorReal(wanted + 0.5);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The entry of the lists that each of -vesicle_count vesicles takes with -vesicle_mixture: one after another the kind
+   that is furthest behind its part, so that any row of vesicles has the mixture. */
+static PetscErrorCode MixKinds(Draft scene) {
+  const RealList *part = &scene->vesicles.mixture;
+  const PetscInt n = scene->vesicles.count;
+  PetscInt *have;
+  PetscFunctionBeginUser;
+  if (part->n < 2 || scene->vesicles.shape >= SHAPE_FILE) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMalloc1(n, &scene->vesicles.kind));
+  PetscCall(PetscCalloc1(part->n, &have));
+  for (PetscInt v = 0; v < n; v++) {
+    PetscInt next = 0;
+    for (PetscInt k = 1; k < part->n; k++)
+      if (part->v[k] * (v + 1) - have[k] > part->v[next] * (v + 1) - have[next] + 1e-9) next = k;
+    have[next]++;
+    scene->vesicles.kind[v] = next;
+  }
+  PetscCall(PetscFree(have));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What a number stands for: `unit` c_b/(nu R0^power), of the largest vesicle. */
+static PetscErrorCode DeriveFlow(Draft scene, const char name[], PetscReal number, const char stands_for[], int power,
+                                 PetscReal *value) {
+  const PetscReal R0 = scene->shape.longest / (2 * PETSC_PI);
+  PetscFunctionBeginUser;
+  PetscCheck(!SceneGiven(scene, stands_for), scene->comm, PETSC_ERR_USER_INPUT,
+             "%s %g: given together with %s; allowed: one of them", name, (double)number, stands_for);
+  PetscCheck(R0 > 0 && scene->membrane.bending > 0, scene->comm, PETSC_ERR_USER_INPUT,
+             "%s %g: without vesicles that bend there is no time nu R0^3/c_b; allowed: vesicles with -vesicle_bending "
+             "above 0, or %s",
+             name, (double)number, stands_for);
+  *value = number * scene->membrane.bending / (scene->fluid.nu * PetscPowRealInt(R0, power));
+  PetscCheck(!PetscIsInfOrNanReal(*value), scene->comm, PETSC_ERR_USER_INPUT,
+             "%s %g: stands for a %s of %g; allowed: a finite one", name, (double)number, stands_for + 1,
+             (double)*value);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Rate or peak velocity from -flow_chi or -flow_ca. */
+static PetscErrorCode ChooseFlow(Draft scene) {
+  Flow *flow = &scene->flow;
+  const PetscBool strain = flow->type == FLOW_SHEAR || flow->type == FLOW_EXTENSION ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionBeginUser;
+  if (strain && SceneGiven(scene, "-flow_chi"))
+    PetscCall(DeriveFlow(scene, "-flow_chi", flow->chi, "-flow_rate", 3, &flow->rate));
+  if (flow->type == FLOW_POISEUILLE && SceneGiven(scene, "-flow_ca"))
+    PetscCall(DeriveFlow(scene, "-flow_ca", flow->ca, "-flow_peak_velocity", 2, &flow->peak));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode KindsCreate(Draft scene, Kinds *all) {
   PetscFunctionBeginUser;
   PetscCall(PetscMemzero(all, sizeof(*all)));
+  PetscCall(CountPacked(scene));
+  PetscCall(MixKinds(scene));
   if (scene->vesicles.shape == SHAPE_FILE) PetscCall(FileKinds(scene, all));
   if (scene->vesicles.shape < SHAPE_FILE) {
     all->vesicles = scene->vesicles.count;
@@ -208,9 +296,13 @@ PetscErrorCode KindsCreate(Scene scene, Kinds *all) {
     PetscCall(EllipseKinds(scene, all));
   }
   for (PetscInt k = 0; k < all->kinds; k++) {
-    all->kind[k].length = CurveLength(&all->kind[k].curve);
-    all->kind[k].area = CurveArea(&all->kind[k].curve);
+    Kind *kind = &all->kind[k];
+    kind->length = CurveLength(&kind->curve);
+    kind->area = CurveArea(&kind->curve);
+    scene->membrane.bending = PetscMax(scene->membrane.bending, kind->bending);
+    scene->shape.longest = PetscMax(scene->shape.longest, kind->length);
   }
+  PetscCall(ChooseFlow(scene));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -1,7 +1,7 @@
 /* Kinds of vesicles: equal vesicles share one curve and the markers fitted to it, so that a scene of many starts in the
    time of its kinds. */
 #pragma once
-#include "scene/mixture.h"
+#include "scene/spec.h"
 
 typedef struct {
   Curve curve;        /* about the origin, or where its file has it */
@@ -17,25 +17,12 @@ typedef struct {
   Kind *kind;   /* [kinds] */
 } Kinds;
 
-/* KindsCreate - the kinds of the scene's vesicles, with their curves: ellipses and outlines that are equal in all are
-   one kind, each curve of a file is one. KindFit - the markers of a kind: their number, and equal edges. Collective;
-   stop with the user's message on a bad file, list, number of markers or spacing. */
-PETSC_EXTERN PetscErrorCode KindsCreate(Scene scene, Kinds *kinds);
+/* KindsCreate - the kinds of a scene from its options, with their curves: how many vesicles a packing takes, which
+   entry of the lists each of a mixture; ellipses and outlines that are equal in all are one kind, each curve of a file
+   is one. The rate or peak velocity of the flow follows from -flow_chi or -flow_ca: rate = chi c_b/(nu R0^3), u_max =
+   Ca c_b/(nu R0^2), R0 of the largest vesicle and the largest c_b. What this leaves in the scene SceneDropShape takes.
+   KindFit - the markers of a kind: their number, and equal edges. Collective; stop with the user's message on a bad
+   file, list, number of markers, spacing, or a flow without vesicles that bend. */
+PETSC_EXTERN PetscErrorCode KindsCreate(Draft scene, Kinds *kinds);
 PETSC_EXTERN PetscErrorCode KindsDestroy(Kinds *kinds);
 PETSC_EXTERN PetscErrorCode KindFit(Scene scene, Kind *kind);
-
-/* SceneMakeKinds - the kinds of a scene from its options: how many a packing takes, which entries of a mixture, their
-   curves. What it leaves in the scene SceneDropShape takes. Collective; errors as KindsCreate's. */
-PETSC_EXTERN PetscErrorCode SceneMakeKinds(Draft scene, Kinds *kinds);
-
-/* KindExtend - make the rectangle around[4] (x_min, x_max, y_min, y_max; KIND_NOWHERE is empty) hold a kind's curve,
-   turned and moved. Not collective. */
-#define KIND_NOWHERE                                                                                                   \
-  { PETSC_MAX_REAL, -PETSC_MAX_REAL, PETSC_MAX_REAL, -PETSC_MAX_REAL }
-PETSC_EXTERN void KindExtend(const Kind *kind, const Pose *at, PetscReal around[4]);
-
-/* ScenePlace - where the vesicles lie: pose[vesicles] by -vesicle_center and -vesicle_angle, or packed. With
-   -vesicle_packing SceneCountPacked has chosen -vesicle_count, or the area, by the fraction before. Collective; stop
-   with the user's message when there is no room. */
-PETSC_EXTERN PetscErrorCode SceneCountPacked(Draft scene);
-PETSC_EXTERN PetscErrorCode ScenePlace(Scene scene, const Kinds *kinds, Pose pose[]);

@@ -1,6 +1,7 @@
 /* The initial markers of a scene: equal edges on ellipses or on curves from a file, each where it belongs. */
+#include "scene/vesicles.h"
 #include "curve/crossing.h"
-#include "scene/vesiclekinds.h"
+#include "scene/properties.h"
 
 /* Markers X on a kind's curve, turned and moved, as Y, which may be X. */
 static void Place(const Kind *kind, const Pose *at, PetscInt M, const PetscReal X[], PetscReal Y[]) {
@@ -168,25 +169,12 @@ static PetscErrorCode Number(Scene scene, Kinds *kinds, Shape *shape) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SceneMakeKinds(Draft scene, Kinds *kinds) {
-  PetscFunctionBeginUser;
-  PetscCall(SceneCountPacked(scene));
-  PetscCall(SceneMixKinds(scene));
-  PetscCall(KindsCreate(scene, kinds));
-  for (PetscInt k = 0; k < kinds->kinds; k++) {
-    scene->membrane.bending = PetscMax(scene->membrane.bending, kinds->kind[k].bending);
-    scene->shape.longest = PetscMax(scene->shape.longest, kinds->kind[k].length);
-  }
-  PetscCall(SceneChooseFlow(scene));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode SceneMakeShape(Draft scene) {
   Shape *shape = &scene->shape;
   Kinds kinds;
   Pose *pose;
   PetscFunctionBeginUser;
-  PetscCall(SceneMakeKinds(scene, &kinds));
+  PetscCall(KindsCreate(scene, &kinds));
   shape->vesicles = kinds.vesicles;
   if (kinds.kinds) PetscCall(PetscStrncpy(shape->digest, kinds.kind[0].curve.digest, DIGEST));
   PetscCall(PetscMalloc1(kinds.vesicles, &pose));

@@ -1,5 +1,6 @@
-/* -view: the model in force. */
-#include "scene/scene.h"
+#include "scene/view.h"
+#include "scene/properties.h"
+#include "scene/schemedefaults.h"
 
 static PetscErrorCode ViewContrast(Scene scene, PetscViewer v) {
   PetscReal low = PETSC_MAX_REAL, high = 0;
@@ -106,6 +107,18 @@ static PetscErrorCode ViewVesicles(Scene scene, PetscViewer v) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The defaults that depend on the scene, where one is in force. */
+static PetscErrorCode ViewDefaults(Scene scene, PetscViewer v) {
+  char value[OPTION_MAX_NAME];
+  PetscFunctionBeginUser;
+  for (const OptionDefault *d = scene_defaults; d->name; d++) {
+    const OptionRow *row = &scene->options.row[OptionFind(&scene->options, d->name)];
+    if (OptionUsed(row, scene) && OptionDepends(&scene->options, scene, d, value))
+      PetscCall(PetscViewerASCIIPrintf(v, "default of this scene: %s %s, %s\n", d->name, value, d->why));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode SceneView(Scene scene, PetscViewer v) {
   static const char *const derivatives[] = {"finite differences", "spectral bending", "spectral bending and edges"};
   static const char *const bc[] = {"wall", "periodic", "free"};
@@ -132,6 +145,7 @@ PetscErrorCode SceneView(Scene scene, PetscViewer v) {
   else
     PetscCall(PetscViewerASCIIPrintf(v, "fast solves: helmholtz %s, poisson %s\n", scene->fluid.helmholtz,
                                      scene->fluid.poisson));
+  PetscCall(ViewDefaults(scene, v));
   PetscCall(PetscViewerASCIIPopTab(v));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -24,6 +24,19 @@ static const OptionRow rows[] = {{"-t_real", OPT_REAL, offsetof(Values, real), "
                                  {"-t_ints", OPT_INTS, offsetof(Values, ints), "3", "any", "integers"}};
 #define ROWS ((PetscInt)(sizeof(rows) / sizeof(rows[0])))
 
+static PetscBool IsTrue(const void *values) {
+  return ((const Values *)values)->truth;
+}
+
+static void NameOfChoice(const void *values, char value[OPTION_MAX_NAME]) {
+  (void)snprintf(value, OPTION_MAX_NAME, "%s", ((const Values *)values)->choice == 0 ? "two" : "");
+}
+
+static const OptionDefault dependent[] = {{"-t_integer", IsTrue, "9", NULL, "it is true", "%s when true"},
+                                          {"-t_choice", IsTrue, "a", NULL, "it is true", "%s when true"},
+                                          {"-t_name", IsTrue, NULL, NameOfChoice, "the choice is a", NULL},
+                                          {NULL}};
+
 /* " -t_reals x,x,..." with 17 digits each. */
 static PetscErrorCode LongList(PetscReal x[MANY], char **text) {
   unsigned state = 3;
@@ -63,13 +76,13 @@ static PetscErrorCode CheckTable(void) {
   Values v = {0};
   OptionTable table;
   PetscReal x[MANY], off = 0;
-  char *text;
+  char *text, help[OPTION_HELP];
   PetscFunctionBeginUser;
   PetscCall(LongList(x, &text));
   PetscCall(PetscOptionsClear(NULL));
   PetscCall(PetscOptionsInsertString(NULL, text));
   PetscCall(PetscFree(text));
-  PetscCall(OptionsRead(PETSC_COMM_WORLD, "test", ROWS, rows, &table, &v));
+  PetscCall(OptionsRead(PETSC_COMM_WORLD, "test", ROWS, rows, dependent, &table, &v));
   CHECK(v.real == 0.1 && v.choice == 1 && !strcmp(v.name, "one") && !*v.path && v.ints.n == 1 && v.ints.v[0] == 3,
         "defaults where nothing is given");
   CHECK(v.integer == 5 && v.truth, "the user's values");
@@ -81,6 +94,10 @@ static PetscErrorCode CheckTable(void) {
   PetscCall(OptionChoose(&table, &v, "-t_integer", "9"));
   PetscCall(OptionChoose(&table, &v, "-t_choice", "c"));
   CHECK(v.integer == 5 && v.choice == 2, "a choice takes the place of a default, not of what is given");
+  PetscCall(OptionsDepend(&table, &v));
+  CHECK(v.integer == 5 && v.choice == 0 && !strcmp(v.name, "two"), "dependent defaults, one after another");
+  OptionHelpText(&rows[2], dependent, help);
+  CHECK(!strcmp(help, "a choice; a when true"), "help with a dependent default: %s", help);
   PetscCall(CheckText(&table, &v));
   PetscCall(OptionsDestroy(&table, &v));
   PetscFunctionReturn(PETSC_SUCCESS);

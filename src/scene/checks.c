@@ -1,5 +1,5 @@
-/* Checks that involve more than one option. */
-#include "scene/resolve.h"
+#include "scene/checks.h"
+#include "scene/properties.h"
 
 static PetscErrorCode CheckBox(Scene scene) {
   const PetscReal *b = scene->domain.box.v;
@@ -274,5 +274,107 @@ PetscErrorCode SceneCheck(Scene scene) {
              "-time_step %g: more than 1e9 steps to -time_end %g; allowed: a larger step", (double)scene->time.dt,
              (double)scene->time.end);
   PetscCheck(*scene->output.dir, scene->comm, PETSC_ERR_USER_INPUT, "-output_dir: empty; allowed: a folder's name");
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The step is dense work on the markers alone; there is no grid on which a fluid with inertia or a projection could
+   be. */
+static PetscErrorCode CheckFreeMethod(Scene scene) {
+  PetscFunctionBeginUser;
+  PetscCheck(!strcmp(scene->scheme.type, "coupled"), scene->comm, PETSC_ERR_USER_INPUT,
+             "-scheme_type %s: not with -domain_bc_x free, where no fluid is solved for on a grid; allowed: coupled",
+             scene->scheme.type);
+  PetscCheck(scene->coupling.near_field == NEAR_EXACT, scene->comm, PETSC_ERR_USER_INPUT,
+             "-coupling_near_field none: not with -domain_bc_x free, where it is all that moves the markers; allowed: "
+             "exact");
+  PetscCheck(scene->fluid.inertia == INERTIA_AUTO || scene->fluid.inertia == INERTIA_NONE, scene->comm,
+             PETSC_ERR_USER_INPUT,
+             "-fluid_inertia %s: not with -domain_bc_x free, which is quasi-steady; allowed: none",
+             scene->fluid.inertia == INERTIA_UNSTEADY ? "unsteady" : "convective");
+  PetscCheck(!scene->coupling.box_part, scene->comm, PETSC_ERR_USER_INPUT,
+             "-coupling_box_part true: not with -domain_bc_x free, where there is no box; allowed: false");
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CheckFree(Scene scene) {
+  const PetscBool free = FluidSpecIsFree(&scene->fluid);
+  PetscFunctionBeginUser;
+  PetscCheck(free == (scene->fluid.bc[1] == BC_FREE), scene->comm, PETSC_ERR_USER_INPUT,
+             "-domain_bc_%c free: with a boundary in %c; allowed: free in x and y, or in neither", free ? 'x' : 'y',
+             free ? 'y' : 'x');
+  if (!free) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(CheckFreeMethod(scene));
+  PetscCheck(scene->shape.vesicles <= SCENE_MOST_FREE, scene->comm, PETSC_ERR_USER_INPUT,
+             "-domain_bc_x free: %" PetscInt_FMT " vesicles, every pair of which is summed; allowed: up to %d, or a "
+             "large -domain_box with walls",
+             scene->shape.vesicles, SCENE_MOST_FREE);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CheckGravity(Scene scene) {
+  const RealList *g = &scene->gravity.g, *density = &scene->gravity.density;
+  const PetscInt entries = scene->vesicles.kind ? scene->vesicles.mixture.n : scene->shape.vesicles;
+  PetscFunctionBeginUser;
+  PetscCheck(g->n == 2, scene->comm, PETSC_ERR_USER_INPUT,
+             "-fluid_gravity: %" PetscInt_FMT " numbers given; allowed: two, g_x,g_y", g->n);
+  PetscCheck(density->n == 1 || density->n == entries, scene->comm, PETSC_ERR_USER_INPUT,
+             "-vesicle_density_difference: %" PetscInt_FMT " numbers given for %" PetscInt_FMT
+             " vesicles; allowed: one for all or one a vesicle",
+             density->n, scene->shape.vesicles);
+  PetscCheck(!SceneHasGravity(scene) || !FluidSpecIsFree(&scene->fluid), scene->comm, PETSC_ERR_USER_INPUT,
+             "-fluid_gravity %g,%g: not with -domain_bc_x free, where a body under a force has no finite velocity in "
+             "two dimensions; allowed: walls, or periodic boundaries",
+             (double)g->v[0], (double)g->v[1]);
+  PetscCheck(scene->fluid.drive != DRIVE_FLUX || !strcmp(scene->scheme.type, "coupled"), scene->comm,
+             PETSC_ERR_USER_INPUT, "-flow_drive flux: not with -scheme_type %s; allowed: pressure, or coupled",
+             scene->scheme.type);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The double layer is of quasi-steady flow: with inertia the inner fluid's velocity obeys another equation than the
+   outer one's. It stands on the unsplit step and its near field. */
+static PetscErrorCode CheckContrastMethod(Scene scene, PetscReal ratio) {
+  const PetscInt inertia = scene->fluid.inertia;
+  PetscFunctionBeginUser;
+  PetscCheck(!SceneIsProjection(scene), scene->comm, PETSC_ERR_USER_INPUT,
+             "-vesicle_viscosity_ratio %g: not with -scheme_type %s, which is its paper's method; allowed: 1, or "
+             "-scheme_type coupled",
+             (double)ratio, scene->scheme.type);
+  PetscCheck(inertia == INERTIA_AUTO || inertia == INERTIA_NONE, scene->comm, PETSC_ERR_USER_INPUT,
+             "-vesicle_viscosity_ratio %g: not with -fluid_inertia %s, because with inertia the fluid inside obeys "
+             "another equation than the one outside; allowed: 1, or -fluid_inertia none",
+             (double)ratio, inertia == INERTIA_UNSTEADY ? "unsteady" : "convective");
+  PetscCheck(scene->coupling.near_field == NEAR_EXACT && !strcmp(scene->coupling.kernel, "cbs54"), scene->comm,
+             PETSC_ERR_USER_INPUT,
+             "-vesicle_viscosity_ratio %g: not with -delta_type %s and this -coupling_near_field, whose sums are of "
+             "cbs54 and exact; allowed: 1, or -delta_type cbs54 -coupling_near_field exact",
+             (double)ratio, scene->coupling.kernel);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CheckContrast(Scene scene) {
+  const RealList *ratio = &scene->membrane.viscosity_ratio;
+  const PetscInt entries = scene->vesicles.kind ? scene->vesicles.mixture.n : scene->shape.vesicles;
+  PetscReal other = 1;
+  PetscFunctionBeginUser;
+  if (!scene->shape.vesicles) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCheck(ratio->n == 1 || ratio->n == entries, scene->comm, PETSC_ERR_USER_INPUT,
+             "-vesicle_viscosity_ratio: %" PetscInt_FMT " numbers given for %" PetscInt_FMT
+             " vesicles; allowed: one for all or one a vesicle or kind",
+             ratio->n, scene->shape.vesicles);
+  for (PetscInt k = 0; k < ratio->n; k++)
+    if (ratio->v[k] != 1) other = ratio->v[k];
+  if (!SceneHasContrast(scene)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(CheckContrastMethod(scene, other));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SceneCheckBodies(Scene scene) {
+  const FluidSpec *f = &scene->fluid;
+  PetscFunctionBeginUser;
+  PetscCall(CheckFree(scene));
+  PetscCall(FlowCheckDivergence(scene->comm, &scene->flow, f->box, FluidSpecCellSize(f)));
+  PetscCall(CheckGravity(scene));
+  PetscCall(CheckContrast(scene));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

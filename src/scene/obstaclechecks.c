@@ -1,8 +1,8 @@
-/* What goes with obstacles, and where they and the vesicles among them may be. */
+#include "scene/obstaclechecks.h"
 #include "curve/contacts.h"
 #include "curve/crossing.h"
 #include "kernel/kernel.h"
-#include "scene/mixture.h"
+#include "scene/properties.h"
 
 #define LEAST_ACROSS 6   /* cells: the drag of such a circle is right to 6e-5 (docs/obstacles.md) */
 #define MOST_SPACING 1.5 /* ds/h with inertia, where the mobility of markers farther apart is indefinite */

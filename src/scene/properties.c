@@ -1,0 +1,94 @@
+#include "scene/properties.h"
+
+PetscReal ListEntry(const RealList *list, PetscInt each, PetscInt entry, PetscInt component) {
+  return list->v[list->n > each ? each * entry + component : component];
+}
+
+PetscInt SceneKindOf(Scene scene, PetscInt v) {
+  return scene->vesicles.kind ? scene->vesicles.kind[v] : v;
+}
+
+PetscBool SceneByArea(Scene scene) {
+  const PetscBool packed = scene->vesicles.packing > 0 && !SceneGiven(scene, "-vesicle_semi_axes");
+  if (scene->vesicles.shape == SHAPE_BICONCAVE) return PETSC_TRUE;
+  return SceneGiven(scene, "-vesicle_area") || SceneGiven(scene, "-vesicle_reduced_area") || packed ? PETSC_TRUE
+                                                                                                    : PETSC_FALSE;
+}
+
+PetscBool SceneHasGravity(Scene scene) {
+  return scene->gravity.g.v[0] != 0 || scene->gravity.g.v[1] != 0 ? PETSC_TRUE : PETSC_FALSE;
+}
+
+PetscReal SceneWeight(Scene scene, PetscInt vesicle, int dir) {
+  return ListEntry(&scene->gravity.density, 1, SceneKindOf(scene, vesicle), 0) * scene->gravity.g.v[dir];
+}
+
+PetscBool SceneHasContrast(Scene scene) {
+  const RealList *ratio = &scene->membrane.viscosity_ratio;
+  for (PetscInt k = 0; k < ratio->n && scene->vesicles.shape != SHAPE_NONE; k++)
+    if (ratio->v[k] != 1) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+PetscReal SceneViscosityRatio(Scene scene, PetscInt v) {
+  return ListEntry(&scene->membrane.viscosity_ratio, 1, SceneKindOf(scene, v), 0);
+}
+
+PetscBool SceneIsProjection(Scene scene) {
+  const char *const name = scene->scheme.type;
+  return !strcmp(name, "split") || !strcmp(name, "penalty") ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* Whether a box part can be made. */
+static PetscBool IsServed(Scene scene) {
+  const FluidSpec *f = &scene->fluid;
+  PetscBool served = scene->coupling.near_field == NEAR_EXACT && !FluidSpecIsFree(f) ? PETSC_TRUE : PETSC_FALSE;
+  for (int d = 0; d < 2; d++)
+    if (f->bc[d] == BC_PERIODIC && f->cells[d] > FLUID_LONGEST_PERIOD * f->cells[1 - d]) served = PETSC_FALSE;
+  return served;
+}
+
+PetscBool SceneHasBoxPart(Scene scene) {
+  return scene->coupling.box_part ? IsServed(scene) : PETSC_FALSE;
+}
+
+PetscBool SceneDipolesMayBeApart(Scene scene) {
+  const PetscBool refused = !scene->coupling.box_part && SceneGiven(scene, "-coupling_box_part");
+  if (scene->coupling.grid_dipoles || refused || strcmp(scene->scheme.type, "coupled")) return PETSC_FALSE;
+  return scene->shape.vesicles == 1 && scene->obstacles.shape == OBSTACLE_NONE ? IsServed(scene) : PETSC_FALSE;
+}
+
+PetscReal SceneSmallestRadius(Scene scene) {
+  PetscReal R0 = PETSC_MAX_REAL;
+  for (PetscInt v = 0; v < scene->shape.vesicles; v++) R0 = PetscMin(R0, ShapeRadius(&scene->shape, v));
+  return R0;
+}
+
+PetscReal SceneLargestRadius(Scene scene) {
+  PetscReal R0 = 0;
+  for (PetscInt v = 0; v < scene->shape.vesicles; v++) R0 = PetscMax(R0, ShapeRadius(&scene->shape, v));
+  return R0;
+}
+
+PetscReal SceneMembraneTime(Scene scene, PetscInt v) {
+  const PetscReal c_b = scene->membrane.each[v];
+  return c_b > 0 ? scene->fluid.nu * PetscPowRealInt(ShapeRadius(&scene->shape, v), 3) / c_b : PETSC_MAX_REAL;
+}
+
+void SceneTimes(Scene scene, PetscReal *slow, PetscReal *fast) {
+  const PetscReal rate = FlowShearRate(&scene->flow);
+  *slow = PETSC_MAX_REAL;
+  for (PetscInt v = 0; v < scene->shape.vesicles; v++) *slow = PetscMin(*slow, SceneMembraneTime(scene, v));
+  *fast = rate > 0 ? PetscMin(*slow, 1 / rate) : *slow;
+}
+
+/* From here on the largest step falls more slowly than 1/chi: 0.125 over the rate at chi = 1000. */
+#define MOST_CHI 250
+
+PetscReal SceneFlowStep(Scene scene) {
+  const PetscReal rate = FlowShearRate(&scene->flow);
+  PetscReal largest = 0;
+  if (rate == 0) return PETSC_MAX_REAL;
+  for (PetscInt v = 0; v < scene->shape.vesicles; v++) largest = PetscMax(largest, SceneMembraneTime(scene, v));
+  return 1 / (rate * (1 + 0.03 * PetscMin(rate * largest, MOST_CHI)));
+}

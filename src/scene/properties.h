@@ -1,0 +1,42 @@
+/* What follows from the options of a scene: numbers of a vesicle, times, which parts the method has. */
+#pragma once
+#include "scene/spec.h"
+
+/* ListEntry - number `component` of entry `entry` of a list with `each` numbers an entry, or the same for all.
+   SceneKindOf - the entry of the options' lists that a vesicle takes: its own number, or with -vesicle_mixture that of
+   its kind. Not collective. */
+PETSC_EXTERN PetscReal ListEntry(const RealList *list, PetscInt each, PetscInt entry, PetscInt component);
+PETSC_EXTERN PetscInt SceneKindOf(Scene scene, PetscInt vesicle);
+
+/* SceneByArea - whether the vesicles are given by area and reduced area. Not collective. */
+PETSC_EXTERN PetscBool SceneByArea(Scene scene);
+
+/* SceneHasGravity - whether it pulls at a vesicle. SceneWeight - density difference times gravity of one vesicle, in
+   direction dir (length/time^2). Not collective. */
+PETSC_EXTERN PetscBool SceneHasGravity(Scene scene);
+PETSC_EXTERN PetscReal SceneWeight(Scene scene, PetscInt vesicle, int dir);
+
+/* SceneHasContrast - whether a vesicle's inner fluid has another viscosity than the outer one. SceneViscosityRatio - of
+   one vesicle, inner over outer. Not collective. */
+PETSC_EXTERN PetscBool SceneHasContrast(Scene scene);
+PETSC_EXTERN PetscReal SceneViscosityRatio(Scene scene, PetscInt vesicle);
+
+/* SceneIsProjection - whether the scheme is one of the baselines, split or penalty, which stand on a projection step.
+   SceneHasBoxPart - whether the near field has its box part: asked for, and no period too long.
+   SceneDipolesMayBeApart - whether the dipoles of one vesicle's viscosity contrast may take their velocity from markers
+   and box alone, without the grid. Not collective. */
+PETSC_EXTERN PetscBool SceneIsProjection(Scene scene);
+PETSC_EXTERN PetscBool SceneHasBoxPart(Scene scene);
+PETSC_EXTERN PetscBool SceneDipolesMayBeApart(Scene scene);
+
+/* SceneSmallestRadius, SceneLargestRadius - R0 of a vesicle (length). SceneMembraneTime - nu R0^3/c_b of vesicle v;
+   PETSC_MAX_REAL without bending. SceneTimes - the slowest and the fastest time of the scene, the least nu R0^3/c_b of
+   a vesicle, and the least of it and the flow's; PETSC_MAX_REAL: none. SceneFlowStep - up to which -time_adapt error
+   lets steps grow in a flow when nothing changes (time): 1/(rate (1 + 0.03 chi)), which fixed steps from an ellipse
+   still bear (docs/time.md), chi = rate nu R0^3/c_b of the softest vesicle, at most 250; PETSC_MAX_REAL without a known
+   rate. Not collective. */
+PETSC_EXTERN PetscReal SceneSmallestRadius(Scene scene);
+PETSC_EXTERN PetscReal SceneLargestRadius(Scene scene);
+PETSC_EXTERN PetscReal SceneMembraneTime(Scene scene, PetscInt v);
+PETSC_EXTERN void SceneTimes(Scene scene, PetscReal *slow, PetscReal *fast);
+PETSC_EXTERN PetscReal SceneFlowStep(Scene scene);

@@ -1,0 +1,162 @@
+/* A scene: what is simulated, as one struct. Nothing in here knows how it is computed. */
+#pragma once
+#include "curve/curve.h"
+#include "scene/fluidspec.h"
+
+typedef enum { DERIVATIVE_FD, DERIVATIVE_BENDING, DERIVATIVE_SPECTRAL } DerivativeType;
+typedef enum { NEAR_EXACT, NEAR_NONE } NearFieldType;
+#define NEAR_LEAST_SPACING 0.3 /* ds/h with the exact near field, in which neither kernel nor grid is felt */
+#define SCENE_LEAST_GAP 0.3    /* marker spacings between obstacles, down to which their forces are right */
+typedef enum { BENDING_IMPLICIT, BENDING_EXPLICIT } BendingType;
+typedef enum { ADAPT_NONE, ADAPT_ERROR } AdaptType;
+typedef enum { FRAME_TREADING, FRAME_NONE } FrameType;
+typedef enum { PRECISION_DOUBLE, PRECISION_SINGLE } PrecisionType;
+typedef enum { STARTUP_EULER, STARTUP_GRADED } StartUp;
+typedef enum { SHAPE_ELLIPSE, SHAPE_BICONCAVE, SHAPE_FILE, SHAPE_NONE } ShapeType;
+typedef enum { OBSTACLE_NONE, OBSTACLE_POSTS, OBSTACLE_COUETTE, OBSTACLE_CONSTRICTION, OBSTACLE_FILE } ObstacleShape;
+typedef enum { OBSTACLE_FACTOR_AUTO, OBSTACLE_FACTOR_DENSE, OBSTACLE_FACTOR_MODES } ObstacleFactor;
+typedef enum { PACKING_RANDOM, PACKING_LATTICE } PackingType;
+
+/* The domain as the user gives it: fluid.box and fluid.cells when their lengths are right. */
+typedef struct {
+  RealList box;
+  IntList cells;
+} SceneDomain;
+
+typedef struct {
+  PetscInt shape;               /* ShapeType */
+  PetscInt count;               /* of vesicles, but of a file's */
+  RealList axes, center, angle; /* semi-axes, centre, angle in degrees; one entry for all, or one a vesicle */
+  RealList area, reduced_area;  /* instead of semi-axes, and of biconcave outlines */
+  PetscReal area_scale;         /* of the areas, where a packing of so many vesicles chooses them; else 1 */
+  RealList mixture;             /* parts of the vesicles' number; one: no mixture */
+  PetscInt *kind;               /* [count] with a mixture: which entry of the lists a vesicle takes; else NULL */
+  PetscReal packing;            /* area fraction; 0: vesicles lie at their centres */
+  PetscInt packing_type;        /* PackingType */
+  PetscInt packing_seed;
+  PetscReal packing_gap;         /* least distance in a packing (length); 0: by the grid */
+  char file[PETSC_MAX_PATH_LEN]; /* curve file */
+  PetscReal spacing;             /* ds/h; 0: by kernel */
+  PetscInt markers;              /* 0: from spacing */
+  PetscBool allow_close_markers; /* accept spacings where the tension problem is near singular */
+} SceneVesicles;
+
+typedef struct {
+  RealList stiffness;       /* c_b; one entry for all, or one a vesicle or kind */
+  PetscReal bending;        /* the largest of them */
+  PetscReal *each;          /* [vesicles] c_b of each */
+  RealList viscosity_ratio; /* inside over outside; one for all, or one a vesicle or kind */
+  PetscInt derivative;      /* DerivativeType */
+} SceneMembrane;
+
+/* Gravity: a force on the membranes, the inertia of both fluids being the same (Boussinesq). */
+typedef struct {
+  RealList g;       /* g_x, g_y (length/time^2) */
+  RealList density; /* difference over the outer density, one for all or one a vesicle */
+} SceneGravity;
+
+/* Solid bodies in the fluid. */
+typedef struct {
+  PetscInt shape; /* ObstacleShape */
+  RealList radius, center, move, rotation;
+  PetscReal frequency;           /* angular, of the surfaces' velocities (1/time); 0: steady */
+  PetscBool moving;              /* closed curves go with their velocities */
+  IntList lattice;               /* columns and rows; 0, 0: none */
+  PetscReal shift;               /* of a row against the one below, over the distance of columns */
+  PetscReal throat, length;      /* of a constriction: narrowest width over the channel's; along x, 0: the width */
+  char file[PETSC_MAX_PATH_LEN]; /* curve file */
+  PetscReal spacing;             /* ds/h */
+  PetscInt factor;               /* ObstacleFactor */
+  PetscBool modes;               /* what has come of it */
+  Shape outline;                 /* their markers, the same on every rank */
+  PetscReal *velocity, *turn;    /* [2 curves], [curves] of their surfaces */
+  PetscBool *container;          /* [curves] the fluid is inside */
+  PetscInt *holder;              /* [vesicles + curves] the container around each; -1: none */
+  PetscInt *vesicle;             /* [curves] the vesicle around each; -1: none */
+  PetscBool *circle;             /* [curves] the same curve whichever way it is turned */
+  PetscInt *wall;                /* [curves] 2 direction + side of the wall that an open one is on; -1 of others */
+} SceneObstacles;
+
+typedef struct {
+  char kernel[OPTION_MAX_NAME]; /* between grid and markers */
+  PetscInt near_field;          /* NearFieldType */
+  PetscBool grid_dipoles;       /* always over the grid */
+  PetscBool box_part;           /* of the near field: what the box adds, to fourth order */
+  PetscReal ksp_rtol;           /* default of -coupled_ksp_rtol */
+} SceneCoupling;
+
+/* A force of short range between membranes, src/coupling/repulsion.h. */
+typedef struct {
+  PetscReal stress;   /* K (length^2/time^2); 0: none */
+  PetscReal range;    /* D (length); 0: 1.5 times the longest mean edge */
+  PetscReal adhesion; /* W, depth of the well (length^3/time^2) */
+  PetscReal band;     /* B, its width (length); 0: D */
+} SceneRepulsion;
+
+typedef struct {
+  char type[OPTION_MAX_NAME];
+  PetscInt order;          /* in time */
+  PetscReal wanted;        /* -scheme_auto: relative error; 0: off */
+  PetscInt bending_at;     /* BendingType */
+  PetscReal stiffness;     /* penalty: sigma_0 of the springs */
+  PetscBool length_target; /* coupled: new edges get the length ds */
+  PetscBool area_target;   /* coupled: each step aims at the first areas */
+  PetscInt startup;        /* StartUp */
+} SceneScheme;
+
+typedef struct {
+  PetscReal dt, end;
+  PetscInt frame;                      /* FrameType */
+  PetscInt adapt;                      /* AdaptType */
+  PetscReal adapt_tol, adapt_max_move; /* error a step over R0; cells a marker may move in a step */
+  PetscReal adapt_max_step;            /* largest step of -time_adapt error; 0: none */
+  PetscReal cfl_limit;                 /* convective: largest dt max(|u| + |v|)/h */
+  PetscReal steady_tol;                /* stop when max |u.n| falls below it */
+  PetscReal wall_limit;                /* seconds after which to stop; 0: never */
+} SceneTime;
+
+typedef struct {
+  char dir[PETSC_MAX_PATH_LEN];     /* every output file goes here */
+  PetscReal every;                  /* time between saved fields */
+  PetscInt precision;               /* PrecisionType, of saved velocity and pressure */
+  PetscInt checkpoint_every;        /* steps between checkpoints; 0: only at the end */
+  PetscInt checkpoint_keep;         /* checkpoints kept, the newest included */
+  char restart[PETSC_MAX_PATH_LEN]; /* checkpoint to go on from; empty: none */
+  PetscBool overwrite;
+} SceneOutput;
+
+/* The run stops above them, 0: no limit; and where membranes cross. */
+typedef struct {
+  PetscReal edge_ratio, area_error, length_error;
+  PetscReal gap_loss; /* part of a thin film that a step may take */
+  PetscBool crossing;
+} SceneLimits;
+
+struct _p_Scene {
+  MPI_Comm comm;
+  OptionTable options; /* whose values are in here */
+  SceneDomain domain;
+  FluidSpec fluid;
+  Flow flow;
+  SceneVesicles vesicles;
+  SceneMembrane membrane;
+  SceneObstacles obstacles;
+  SceneGravity gravity;
+  SceneCoupling coupling;
+  SceneRepulsion repulsion;
+  SceneScheme scheme;
+  SceneTime time;
+  SceneOutput output;
+  SceneLimits limits;
+  PetscBool view, allow_unused;
+  Shape shape;                      /* the initial markers, the same on every rank */
+  PetscReal reynolds;               /* speed R0/nu, see docs/fluid.md; 0 without vesicles */
+  char warning[PETVES_MAX_MESSAGE]; /* of the model chosen; empty when there is none */
+};
+typedef const struct _p_Scene *Scene; /* resolved: all defaults are chosen, it is only read */
+typedef struct _p_Scene *Draft;       /* not resolved yet */
+
+/* SceneGiven - whether the user gave this option ("-name"). Not collective. */
+static inline PetscBool SceneGiven(Scene scene, const char name[]) {
+  return OptionGiven(&scene->options, name);
+}
