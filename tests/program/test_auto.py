@@ -169,7 +169,7 @@ def test_box_so_large_that_images_do_not_matter(why, tmp_path):
 def test_grid_of_a_chosen_box_goes_by_its_own_walls(tmp_path):
     """A vesicle near a side of the default box, -1,1,-1,1, is as far from the walls of its own box as any other."""
     scene = f"{QUIET} -flow_type shear -fluid_inertia unsteady -time_end 0 -scheme_auto 1e-2"
-    texts = [run_plain(tmp_path / y, f"{scene} -vesicle_center 0,{y}").stdout for y in ("0", "0.48")]
+    texts = [run_petves(tmp_path / y, f"{scene} -vesicle_center 0,{y}").stdout for y in ("0", "0.48")]
     assert domain(texts[0], "-domain_cells") == domain(texts[1], "-domain_cells")
 
 
