@@ -1,8 +1,11 @@
 /* Solid curves in the fluid: closed, spanning a period, or with both ends on a wall (docs/obstacles.md). Their markers
-   Y carry forces Phi on the fluid that hold its velocity there at U_w: u_inf(Y) + E u - C F - beta N N^T F = U_w,     F
-   = -Phi, C the near field, of vesicles and obstacles together, N one unit vector a curve that enclosed fluid's
-   pressure alone can feel, beta = 1/(4 nu), which leaves that pressure at the mean of the one outside. Every rank has
-   all curves; the unknowns are distributed as the layout says.
+   Y carry forces Phi = -F on the fluid that hold its velocity there at U_w,
+
+       u_inf(Y) + E u - C F - beta N N^T F = U_w,
+
+   C the near field of vesicles and obstacles together, N one unit vector a curve, on which the pressure of enclosed
+   fluid alone acts, beta = 1/(4 nu), by which that pressure has the mean of the pressure outside. Every rank has all
+   curves; the unknowns are distributed as the layout says.
 
    A body that moves (-obstacle_moving) is the same markers, carried and turned about their middle c as a solid: with
    velocity U cos(ft) and rotation w cos(ft) it is at c + U s, turned by w s, s = sin(ft)/f or, with f = 0, t. That is

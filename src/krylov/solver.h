@@ -1,4 +1,4 @@
-/* The solve of one step's coupled problem (reduced.h) by FGMRES, prefix coupled_, with the preconditioner of
+/* The solve of one step's coupled problem (problem/residual.h) by FGMRES, prefix coupled_, with the preconditioner of
    precondition.h (docs/solver.md, Reduced unknowns). A solve is made of rounds: a residual by a Stokes solve, a
    KSPSolve for the change, and the residual again, until it is within the tolerance. */
 #pragma once

@@ -1,10 +1,18 @@
-/* In mode theta along the wall (lattice.c has s, mu, g1, g2), with k = 2 sin(theta/2), the wall adds to the free
-   lattice t(j) = psi(j + 1) - psi(j),     n(j) = k psi(j) (times sin),     psi(j) = (A + B j) e^{-mu j}, t in row j at
-   j + 1/2, n at j: free of divergence, and A, B make n(0) = 0 and (t(-1/2) + t(1/2))/2 = 0 with the source's own field.
-   A source t in row j' has, with F = g1 - s g2, A = -(g2(j' + 1) - g2(j')),     B = [-(F(j' + 1) + F(j'))/2 + A sinh
-   mu]/cosh mu, a source n in row j' gives n the part -s psi(j) with A = g2(j'),                     B = [-(g2(j' + 1) -
-   g2(j' - 1))/2 + A sinh mu]/cosh mu. The image of the free constant comes with its sign turned, and 1/(4 theta) as
-   there. */
+/* In mode theta along the wall (latticegreen.c has s, mu, g1, g2), with k = 2 sin(theta/2), the wall adds to the free
+   lattice
+
+       t(j) = psi(j + 1) - psi(j),   n(j) = k psi(j) (times sin),   psi(j) = (A + B j) e^{-mu j},
+
+   t in row j at j + 1/2, n at j: free of divergence, and A, B make n(0) = 0 and (t(-1/2) + t(1/2))/2 = 0 with the
+   source's own field. A source t in row j' has, with F = g1 - s g2,
+
+       A = -(g2(j' + 1) - g2(j')),   B = [-(F(j' + 1) + F(j'))/2 + A sinh mu]/cosh mu,
+
+   and a source n in row j' gives n the part -s psi(j) with
+
+       A = g2(j'),   B = [-(g2(j' + 1) - g2(j' - 1))/2 + A sinh mu]/cosh mu.
+
+   The image of the free constant has the opposite sign, and 1/(4 theta) as the free lattice. */
 #include "layers/imagetable.h"
 #include "base/lanes.h"
 #include "numerics/blas.h"

@@ -46,5 +46,6 @@ typedef struct {
 PETSC_EXTERN PetscReal ImageSum(const PetscReal (*table)[IMAGE_ROWS][IMAGE_WIDTH], Grid grid, int t, PetscReal x,
                                 const ImageRows *response, const ImageRows *source);
 
-/* ImageTableFill - from the free lattice's table (lattice.h), of a reach of IMAGE_SHIFT at least. Not collective. */
+/* ImageTableFill - from the free lattice's table (latticegreen.h), of a reach of IMAGE_SHIFT at least. Not collective.
+ */
 PETSC_EXTERN PetscErrorCode ImageTableFill(const OffsetTable *lattice, ImageTable *table);

@@ -2,8 +2,7 @@
    solutions of Stokes flow in the plane from which all of them start. With r from the source to the response,
 
        S_ij = [-delta_ij ln(r/unit) + r_i r_j/r^2]/(4 pi nu)      Stokeslet: velocity per force
-       D_ij = (r.n) r_i r_j/(pi r^4)                              stresslet: velocity per jump of the velocity and
-   length
+       D_ij = (r.n) r_i r_j/(pi r^4)                              stresslet: velocity per (velocity jump times length)
 
    Nothing here crosses ranks: every rank has the markers of all. */
 #pragma once
@@ -13,9 +12,8 @@
 #include "markers/dipoles.h"
 #include "markers/markers.h"
 
-/* Its grid and its regularised delta function are those of the markers. */
 typedef struct {
-  Markers markers;    /* borrowed */
+  Markers markers;    /* with their grid and their regularised delta function, borrowed */
   Bodies bodies;      /* the curves on which the markers are, borrowed; NULL: single points */
   PetscReal nu;       /* viscosity (length^2/time, density 1) */
   PetscReal unit;     /* length whose logarithm is zero */

@@ -4,8 +4,8 @@
 
    S the Stokeslet of unbounded fluid, L what a force on one marker gives at another on the infinite lattice: spread
    and interpolated by the regularised delta function, solved on the staggered grid. What walls add to either is in
-   nearimage.h. Far from one another C has a closed form (nearfar.h); near ones take L from sums over their stencils
-   (offsets.h). In unbounded fluid there is no lattice: C = S.
+   nearimage.h. Far from one another C has a closed form (farform.h); near ones take L from sums over their stencils
+   (stencilsums.h). In unbounded fluid there is no lattice: C = S.
 
    Create once, Place where the markers have been placed, then whatever asks for pairs (nearblock.h). Nothing crosses
    ranks. */
@@ -17,7 +17,7 @@
 typedef struct _p_SinglePairs *SinglePairs;
 struct _p_SinglePairs {
   const LayerSetting *set;    /* borrowed */
-  const OffsetTable *lattice; /* the lattice's Stokeslet (lattice.h), borrowed; not read in unbounded fluid */
+  const OffsetTable *lattice; /* the lattice's Stokeslet (latticegreen.h), borrowed; not read in unbounded fluid */
   NearImage image;            /* what walls add; NULL in unbounded fluid */
   PetscBool images;           /* whether it counts: a box table may have it instead */
   NearFar far[2];             /* closed forms of distant pairs: of one body, of two */

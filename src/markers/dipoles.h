@@ -7,8 +7,8 @@
        T_xx: B6(x) B4(y),   T_yy: B4(x) B6(y)   cells,      T_xy: B5(x) B5(y)   nodes,
 
    so that the force -nu DIV T and the source of a closed curve that moves as a rigid body give a smoothed rigid motion
-   inside the curve and nothing outside. At a wall weights are folded smoothly (fold.h). Every rank has all tensors and
-   adds them to its own rows; nothing crosses ranks. */
+   inside the curve and nothing outside. At a wall weights are folded smoothly (wallfold.h). Every rank has all tensors
+   and adds them to its own rows; nothing crosses ranks. */
 #pragma once
 #include "base/lanes.h"
 #include "markers/markers.h"

@@ -22,7 +22,7 @@ struct _p_Markers {
   Layout layout; /* borrowed */
   const Kernel *kernel;
   PetscReal *X;       /* [2M] positions of all markers */
-  PetscBool folded;   /* stencils are folded at walls (fold.h) */
+  PetscBool folded;   /* stencils are folded at walls (wallfold.h) */
   PetscBool scaled;   /* stencils are scaled near walls (WallScale) */
   PetscReal least;    /* cells that markers keep from walls */
   const char *needs;  /* `least` as text */

@@ -1,4 +1,3 @@
-/* clang-format off */
 /* The coupled problem of one time step for velocity, pressure and tension together (docs/solver.md),
 
        H u + G p + E^T F/h^2 = f,   G^T u = 0                          the fluid
@@ -11,12 +10,11 @@
    the near field of all bodies; K_rep are the springs of a repulsion; k is what C gives of the known forces.
 
    A Stokes solve gives u and p for any force. So the unknowns are V, the obstacles' F and sigma, and a product with the
-   operator costs one Stokes solve for the velocity at the markers alone (fluid/stokes/stream.h); u and p follow from the
-   solution's forces. In unbounded fluid E = 0 and C is all of the mobility: u and p stay zero.
+   operator costs one Stokes solve for the velocity at the markers alone (fluid/stokes/stream.h); u and p follow from
+   the solution's forces. In unbounded fluid E = 0 and C is all of the mobility: u and p stay zero.
 
    Order of calls in a step: ReducedBegin, products with A by a Krylov solver, ReducedUpdate, and ReducedFinish once.
    Ranks have the rows of their own markers; forces are gathered where MarkersRespond and the near field say so. */
-/* clang-format on */
 #pragma once
 #include "problem/unknowns.h"
 #include "fluid/stokes/stokes.h"

@@ -23,7 +23,6 @@ PETSC_EXTERN PetscErrorCode UnknownsCreateVec(Unknowns unknowns, Vec *x);
 PETSC_EXTERN PetscErrorCode UnknownsPack(Unknowns unknowns, Vec V, Vec solid, Vec sigma, Vec x);
 PETSC_EXTERN PetscErrorCode UnknownsUnpack(Unknowns unknowns, Vec x, Vec V, Vec solid, Vec sigma);
 
-/* clang-format off */
 /* UnknownsScale - multiply the rows of this rank's residual y by their factors (inverse: divide), which give every row
    the unit length^2/time^2, so that the norm does not depend on the units. With the length l = 2 R0 of the smallest
    vesicle the factors are
@@ -35,7 +34,6 @@ PETSC_EXTERN PetscErrorCode UnknownsUnpack(Unknowns unknowns, Vec x, Vec V, Vec 
 
    h l alpha weighs short steps, in which the momentum's right-hand side alpha u would hide the other rows. Not
    collective. */
-/* clang-format on */
 PETSC_EXTERN void UnknownsScale(Unknowns unknowns, PetscBool inverse, PetscScalar y[]);
 
 /* UnknownsTension - index at which the tensions start in a rank's part. Not collective. */

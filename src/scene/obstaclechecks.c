@@ -30,7 +30,7 @@ static PetscErrorCode CheckMethod(Scene scene) {
 }
 
 /* That a curve fits into the box and is off the walls that it does not stand on: with finer points next to a wall for
-   closed curves only (wallclose.h), others keep a marker spacing. */
+   closed curves only (layers/finecurve.h), others keep a marker spacing. */
 static PetscErrorCode CheckRoom(Scene scene, PetscInt b, int d, PetscReal low, PetscReal high) {
   const SceneObstacles *own = &scene->obstacles;
   const FluidSpec *f = &scene->fluid;

@@ -85,7 +85,7 @@ typedef struct {
   PetscReal ksp_rtol;           /* default of -coupled_ksp_rtol */
 } SceneCoupling;
 
-/* A force of short range between membranes, src/coupling/repulsion.h. */
+/* A force of short range between membranes, src/bodies/repulsion.h. */
 typedef struct {
   PetscReal stress;   /* K (length^2/time^2); 0: none */
   PetscReal range;    /* D (length); 0: 1.5 times the longest mean edge */

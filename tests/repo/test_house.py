@@ -42,6 +42,16 @@ def test_no_rule_is_broken_but_by_the_list():
     assert not struck, f"run python3 tests/repo/house.py: {struck}"
 
 
+def test_comments_and_pages_name_files_that_exist():
+    names = {path.name for path in ROOT.rglob("*.[ch]")} | {"own.c"}  # of a reader of docs/install.md
+    paths = [*(ROOT / "src").rglob("*.[ch]"), ROOT / "CONTRIBUTING.md", *(ROOT / "docs").glob("*.md")]
+    texts = {path.name: re.sub(r"^#include.*", "", path.read_text(), flags=re.M) for path in paths}
+    found = {
+        (name, word) for name, text in texts.items() for word in re.findall(r"(?<![\w.>&])\w{3,}\.[ch]\b(?!\[)", text)
+    }
+    assert len(found) > 100 and not {pair for pair in found if pair[1] not in names}
+
+
 def test_nothing_refers_to_a_document_elsewhere():
     paths = [*house.code(), ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
     assert not [str(path) for path in paths if re.search(rf"\b{ELSEWHERE}\b", path.read_text())]

@@ -4,10 +4,13 @@
        (nu/(r1 r2 h^4)) (1 - r1 S)(1 - r2 S)(1 - r1 S^-1)(1 - r2 S^-1) chi = curl of the force,
 
    two recurrences upwards, y1_j = b_j + r1 y1_{j-1}, y2_j = y1_j + r2 y2_{j-1}, and the same downwards from y2 to z1
-   and z2, chi = (r1 r2 h^4/nu) z2. A state is a pair, Y = (y1, y2), Z = (z1, z2): with M = [r1 0; r1 r2] Y_j = M
-   Y_{j-1} + (b_j, b_j),      Z_j = M Z_{j+1} + (y2_j, y2_j). What comes into a slab of rows is known from what all
-   slabs say by themselves, as in tridiagonal.c: Y leaves a slab of m rows as its own and M^m times what came in, Z as
-   its own, the gain times Y from below and M^m times Z from above. */
+   and z2, chi = (r1 r2 h^4/nu) z2. A state is a pair, Y = (y1, y2), Z = (z1, z2), and with M = [r1 0; r1 r2]
+
+       Y_j = M Y_{j-1} + (b_j, b_j),   Z_j = M Z_{j+1} + (y2_j, y2_j).
+
+   What comes into a slab of rows is known from what all slabs say by themselves, as in tridiagonal.c: Y leaves a slab
+   of m rows as its own and M^m times what came in, Z as its own, the gain times Y from below and M^m times Z from
+   above. */
 #include "fluid/stokes/stream.h"
 #include "fluid/stokes/sweepdown.h"
 #include "fluid/stokes/streamloops.h"

@@ -1,5 +1,5 @@
 /* The parts of a solve by stream function (stream.h) and the rows of forces and velocities that it is given: what its
-   way up (streamup.h) and its way down (streamdown.h) share. Each rank has the rows of its slab. */
+   way up (sweepup.h) and its way down (sweepdown.h) share. Each rank has the rows of its slab. */
 #pragma once
 #include "fluid/stokes/flux.h"
 #include "fluid/stokes/sidewalls.h"
