@@ -225,9 +225,9 @@ static PetscErrorCode MultL(Mat A, Vec p, Vec q) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode CreateShell(Grid g, PetscBool from_velocity, PetscBool to_velocity,
-                                  PetscErrorCode (*mult)(Mat, Vec, Vec), PetscErrorCode (*transpose)(Mat, Vec, Vec),
-                                  Mat *A) {
+static PetscErrorCode StencilCreateShell(Grid g, PetscBool from_velocity, PetscBool to_velocity,
+                                         PetscErrorCode (*mult)(Mat, Vec, Vec),
+                                         PetscErrorCode (*transpose)(Mat, Vec, Vec), Mat *A) {
   const PetscInt n_p = g->columns[FIELD_P] * g->rows[FIELD_P];
   const PetscInt n_w = GridLocalU(g) + g->columns[FIELD_V] * g->rows[FIELD_V];
   PetscFunctionBeginUser;
@@ -239,13 +239,13 @@ static PetscErrorCode CreateShell(Grid g, PetscBool from_velocity, PetscBool to_
 }
 
 PetscErrorCode GridCreateG(Grid g, Mat *G) {
-  return CreateShell(g, PETSC_FALSE, PETSC_TRUE, MultG, MultTransposeG, G);
+  return StencilCreateShell(g, PETSC_FALSE, PETSC_TRUE, MultG, MultTransposeG, G);
 }
 PetscErrorCode GridCreateD(Grid g, Mat *D) {
-  return CreateShell(g, PETSC_TRUE, PETSC_FALSE, MultD, MultTransposeD, D);
+  return StencilCreateShell(g, PETSC_TRUE, PETSC_FALSE, MultD, MultTransposeD, D);
 }
 PetscErrorCode GridCreateL(Grid g, Mat *L) {
-  return CreateShell(g, PETSC_FALSE, PETSC_FALSE, MultL, MultL, L);
+  return StencilCreateShell(g, PETSC_FALSE, PETSC_FALSE, MultL, MultL, L);
 }
 
 PetscErrorCode GridAssemble(Grid g, Field f, PetscReal a0, PetscReal nu, Mat *A) {

@@ -27,7 +27,7 @@ PetscErrorCode ZeroFluxDestroy(ZeroFlux *flux) {
 }
 
 /* (alpha - nu d_yy) b = 1 with b reflected in the walls to minus itself, by elimination. */
-static void SetUp(ZeroFlux z) {
+static void ZeroFluxSetUp(ZeroFlux z) {
   const Fluid f = z->fluid;
   const PetscInt n = f->grid->n[1];
   const PetscReal off = -f->nu / PetscSqr(f->grid->h);
@@ -46,7 +46,7 @@ static void SetUp(ZeroFlux z) {
 }
 
 const PetscReal *ZeroFluxProfile(ZeroFlux z) {
-  SetUp(z);
+  ZeroFluxSetUp(z);
   return z->profile;
 }
 

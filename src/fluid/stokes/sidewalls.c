@@ -50,7 +50,7 @@ PetscErrorCode SideWallsDestroy(SideWalls *walls) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* One mode's decays, and t1, t2 from m = -1 on; how far they are felt. */
+/* One mode's decays, and t1, t2 from m = -1 on; `reach`: rows after which they are negligible. */
 typedef struct {
   PetscReal G[2], *t[2];
   PetscInt n, reach;
@@ -67,11 +67,11 @@ static void SetDecays(PetscReal theta_1, PetscReal theta_2, ModeDecays *m) {
   m->t[1][0] = 1;
   m->reach = m->n + 3;
   for (PetscInt k = 1; k < m->n + 3; k++) {
-    const PetscBool felt = m->reach > k ? PETSC_TRUE : PETSC_FALSE;
+    const PetscBool near = m->reach > k ? PETSC_TRUE : PETSC_FALSE;
     power *= r1;
-    m->t[0][k] = felt ? power + r2 * m->t[0][k - 1] : 0;
-    m->t[1][k] = felt ? r2 * m->t[1][k - 1] : 0;
-    if (felt && m->t[0][k] < NEGLIGIBLE * m->t[0][1]) m->reach = k;
+    m->t[0][k] = near ? power + r2 * m->t[0][k - 1] : 0;
+    m->t[1][k] = near ? r2 * m->t[1][k - 1] : 0;
+    if (near && m->t[0][k] < NEGLIGIBLE * m->t[0][1]) m->reach = k;
   }
 }
 
@@ -96,23 +96,23 @@ static void WallTerms(const ModeDecays *m, PetscReal s, PetscInt j, PetscReal A[
 
 /* The walls' part of one mode, weighed, for both mirror symmetries; p: [2][half] work. */
 static void AddWalls(SideWalls s, const ModeDecays *m, PetscReal weight, PetscReal *const B[2], PetscReal p[]) {
-  const PetscInt half = s->half, felt = PetscMin(half, m->reach);
+  const PetscInt half = s->half, reach = PetscMin(half, m->reach);
   for (int symmetry = 0; symmetry < 2; symmetry++) {
     const PetscReal sign = symmetry ? -1 : 1;
     for (int q = 0; q < 2; q++)
-      for (PetscInt j = 0; j < felt; j++) p[q * half + j] = m->t[q][j + 1] + sign * m->t[q][m->n - j];
-    for (PetscInt b = 0; b < felt; b++) {
+      for (PetscInt j = 0; j < reach; j++) p[q * half + j] = m->t[q][j + 1] + sign * m->t[q][m->n - j];
+    for (PetscInt b = 0; b < reach; b++) {
       PetscReal A[2], *restrict to = B[symmetry] + b * half;
       const PetscReal *restrict p1 = p, *restrict p2 = p + half;
       WallTerms(m, sign, b, A);
       const PetscReal a1 = weight * A[0], a2 = weight * A[1];
-      for (PetscInt a = 0; a < felt; a++) to[a] += a1 * p1[a] + a2 * p2[a];
+      for (PetscInt a = 0; a < reach; a++) to[a] += a1 * p1[a] + a2 * p2[a];
     }
   }
 }
 
 /* B of one parity in x to its two blocks, columns contiguous: by rows up to the middle of a pair of mirrored forces. */
-static PetscErrorCode Fill(SideWalls s, PetscInt even, PetscReal alpha, PetscReal nu, PetscReal *const B[2]) {
+static PetscErrorCode SideWallsFill(SideWalls s, PetscInt even, PetscReal alpha, PetscReal nu, PetscReal *const B[2]) {
   const PetscInt n = s->faces, half = s->half;
   const PetscReal h2 = PetscSqr(s->grid->h);
   PetscReal *sum, *t, *p;
@@ -165,7 +165,7 @@ PetscErrorCode SideWallsSet(SideWalls s, PetscReal alpha, PetscReal nu) {
   if (s->alpha == alpha) PetscFunctionReturn(PETSC_SUCCESS);
   s->alpha = alpha;
   for (int q = 0; q < SIDE_SYMMETRIES && !s->inverse[q]; q++) PetscCall(PetscMalloc1(half * half, &s->inverse[q]));
-  for (PetscInt even = 0; even < 2; even++) PetscCall(Fill(s, even, alpha, nu, &s->inverse[2 * even]));
+  for (PetscInt even = 0; even < 2; even++) PetscCall(SideWallsFill(s, even, alpha, nu, &s->inverse[2 * even]));
   for (int q = 0; q < SIDE_SYMMETRIES; q++) {
     PetscReal *last = s->inverse[q] + (half - 1) * half;
     for (PetscInt a = 0; a < half; a++) last[a] *= middle;
@@ -176,8 +176,8 @@ PetscErrorCode SideWallsSet(SideWalls s, PetscReal alpha, PetscReal nu) {
 }
 
 /* Entries begin to end - 1 of y = A x of size n, columns contiguous. */
-static void Product(PetscInt n, PetscInt begin, PetscInt end, const PetscReal A[], const PetscReal x[],
-                    PetscReal *restrict y) {
+static void SideWallsProduct(PetscInt n, PetscInt begin, PetscInt end, const PetscReal A[], const PetscReal x[],
+                             PetscReal *restrict y) {
   for (PetscInt a = begin; a < end; a++) y[a] = 0;
   for (PetscInt b = 0; b < n; b++) {
     const PetscReal *restrict column = A + b * n, f = x[b];
@@ -185,7 +185,8 @@ static void Product(PetscInt n, PetscInt begin, PetscInt end, const PetscReal A[
   }
 }
 
-/* Both arrays of a wall's faces, of which each entry is zero on all ranks but one: the same bits everywhere. */
+/* Sum the arrays of both walls over the ranks. Each entry is zero on all ranks but one, so that all ranks get the same
+   bits. */
 static PetscErrorCode Share(SideWalls s, PetscReal faces[]) {
   PetscFunctionBeginUser;
   if (s->grid->size > 1)
@@ -212,7 +213,7 @@ PetscErrorCode SideWallsForces(SideWalls s, PetscReal nu) {
       const PetscInt m = n - 1 - j;
       x[j] = RowFactor(s, j) / 4 * (s->v[0][j] + across * s->v[1][j] + along * (s->v[0][m] + across * s->v[1][m]));
     }
-    Product(half, begin, end, s->inverse[q], x, y);
+    SideWallsProduct(half, begin, end, s->inverse[q], x, y);
     for (PetscInt j = begin; j < end; j++) {
       const PetscInt m = n - 1 - j;
       const PetscReal d = -c * y[j] / RowFactor(s, j);

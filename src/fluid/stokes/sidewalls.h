@@ -17,15 +17,15 @@ struct _p_SideWalls {
   Grid grid;              /* borrowed */
   StreamFactors factors;  /* borrowed */
   PetscReal alpha;        /* coefficient that the inverses are for; -1 none yet */
-  PetscInt faces, half;   /* of v along a wall; of these the ones up to the middle */
+  PetscInt faces, half;   /* faces of v along a wall, and those up to the middle */
   PetscInt *even;         /* [modes] whether a mode's chi is the same next to both walls */
   PetscReal *curl[2];     /* [width] modes of h times the curl of a unit force on a face next to the left, right wall */
   PetscReal *velocity[2]; /* [width] v next to a wall of a mode of chi/h */
   PetscReal *inverse[SIDE_SYMMETRIES]; /* [half][half] of 1 + c B, NULL at first: v the same on both walls or opposite,
                                           from row to row downwards the same or opposite */
-  PetscReal *v[2]; /* [faces] v at the left, right wall (length/time), the second behind the first; */
-  PetscReal *d[2]; /* likewise forces (length/time^2) */
-  PetscReal *work; /* [2][half] */
+  PetscReal *v[2];                     /* [faces] v at the left and at the right wall (length/time), one array */
+  PetscReal *d[2];                     /* [faces] forces at the left and at the right wall (length/time^2), one array */
+  PetscReal *work;                     /* [2][half] */
 };
 
 /* SideWallsCreate - for rows of a grid with walls both ways, t their transform, as long as the walls are in x. Not

@@ -42,7 +42,7 @@ typedef struct {
   PetscScalar *w;
 } GridFlow;
 
-static const PetscScalar *Force(void *ctx, Field f, PetscInt j, PetscScalar work[]) {
+static const PetscScalar *StokesForce(void *ctx, Field f, PetscInt j, PetscScalar work[]) {
   const GridFlow *a = (const GridFlow *)ctx;
   (void)work;
   return f == FIELD_U ? RowAt(&a->u, j) : a->r + GridRowStart(a->grid, f, j);
@@ -56,7 +56,8 @@ static void TakeVelocity(void *ctx, Field f, PetscInt j, PetscScalar row[]) {
 PetscErrorCode StokesVelocity(Stokes s, Vec r, Vec w) {
   GridFlow a = {.grid = s->fluid->grid};
   const PetscInt all = a.grid->rows[FIELD_U];
-  const StreamRows rows = {.ctx = &a, .forced = {0, all}, .wanted = {0, all}, .force = Force, .velocity = TakeVelocity};
+  const StreamRows rows = {
+      .ctx = &a, .forced = {0, all}, .wanted = {0, all}, .force = StokesForce, .velocity = TakeVelocity};
   PetscFunctionBeginUser;
   PetscCall(VecGetArray(w, &a.w));
   if (r == w) /* all forces are asked for before the first velocity is there */

@@ -26,10 +26,10 @@ PetscErrorCode StreamCreate(Fluid f, ZeroFlux flux, Stream *out) {
   s->fluid = f;
   s->flux = flux;
   PetscCall(RowTransformCreate(g, g->wall[0] ? FIELD_U : FIELD_P, &s->t));
-  PetscCall(RowTransformSort(s->t)); /* what is felt far away comes first */
+  PetscCall(RowTransformSort(s->t)); /* slow decays come first */
   PetscCall(StreamFactorsCreate(g, s->t, &s->factors));
   PetscCall(StreamSlabsCreate(g, s->factors, &s->slabs));
-  PetscCall(PetscCalloc2(g->rows[FIELD_U], &s->means, s->slabs->width / STREAM_BLOCK, &s->fed));
+  PetscCall(PetscCalloc2(g->rows[FIELD_U], &s->means, s->slabs->width / STREAM_BLOCK, &s->last));
   for (int k = 0; k < 5; k++) {
     PetscScalar **line[] = {&s->row[0], &s->row[1], &s->row[2], &s->curl, &s->zero};
     *line[k] = fftw_alloc_real(n);
@@ -52,7 +52,7 @@ PetscErrorCode StreamDestroy(Stream *stream) {
   for (int k = 0; k < 3; k++) fftw_free(s->row[k]);
   fftw_free(s->curl);
   fftw_free(s->zero);
-  PetscCall(PetscFree2(s->means, s->fed));
+  PetscCall(PetscFree2(s->means, s->last));
   PetscCall(StreamFlowsDestroy(&s->flows));
   PetscCall(StreamMeterDestroy(&s->meter));
   PetscCall(StreamSlabsDestroy(&s->slabs));
@@ -66,7 +66,7 @@ StreamFlows StreamGetFlows(Stream s) {
   return s->flows;
 }
 
-static PetscErrorCode SetUp(Stream s) {
+static PetscErrorCode StreamSetUp(Stream s) {
   const Fluid f = s->fluid;
   PetscFunctionBeginUser;
   PetscCall(StreamSlabsReserve(s->slabs));
@@ -123,12 +123,11 @@ static void AddSideForces(Stream s, PetscBool measured) {
   (void)PetscArrayzero(q->state, 2 * w);
   for (PetscInt j = 0; j < q->rows; j++) {
     const PetscReal force[2] = {side->d[0][first + j], side->d[1][first + j]};
-    const PetscInt stored = q->alive[j] * STREAM_BLOCK;
+    const PetscInt stored = q->stored[j] * STREAM_BLOCK;
     if (measured) StreamMeterForce(s->meter, j, force[0] + force[1]);
     (void)PetscArrayzero(q->y + j * w + stored, w - stored);
-    q->alive[j] = w / STREAM_BLOCK;
-    UpWalls(w, s->factors->r[0], s->factors->r[1], force, side->curl[0], side->curl[1], q->state, q->state + w,
-            q->y + j * w);
+    q->stored[j] = w / STREAM_BLOCK;
+    StreamRowUpWalls(s->factors, force, side->curl, q->state, q->y + j * w);
   }
 }
 
@@ -148,7 +147,7 @@ static PetscErrorCode HoldSides(Stream s, const StreamRows *rows, PetscBool meas
 }
 
 /* The solve, `past` and the flow being at hand. */
-static PetscErrorCode Solve(Stream s, const StreamRows *rows, PetscBool measured) {
+static PetscErrorCode StreamSweeps(Stream s, const StreamRows *rows, PetscBool measured) {
   PetscReal sum;
   PetscFunctionBeginUser;
   StreamGather(s, rows, measured);
@@ -167,11 +166,11 @@ PetscErrorCode StreamSolve(Stream s, const StreamRows *rows, StreamMeasures *mea
   PetscFunctionBeginUser;
   PetscCall(PhaseBegin(PHASE_FAST_SOLVE));
   these.past = past;
-  PetscCall(SetUp(s));
+  PetscCall(StreamSetUp(s));
   StreamMeterBegin(s->meter);
   if (past) PetscCall(StreamFlowsBegin(s->flows, past));
   if (rows->flow) PetscCall(VecGetArray(rows->flow, &s->flow));
-  PetscCall(Solve(s, &these, measures ? PETSC_TRUE : PETSC_FALSE));
+  PetscCall(StreamSweeps(s, &these, measures ? PETSC_TRUE : PETSC_FALSE));
   if (rows->flow) PetscCall(VecRestoreArray(rows->flow, &s->flow));
   s->flow = NULL;
   if (past) PetscCall(StreamFlowsEnd(s->flows, past, &s->meter->own.past));

@@ -17,9 +17,9 @@ PETSC_EXTERN PetscErrorCode StreamCreate(Fluid fluid, ZeroFlux flux, Stream *str
 PETSC_EXTERN PetscErrorCode StreamDestroy(Stream *stream);
 
 /* StreamSolve - velocity for these forces, zero mean in quasi-steady flow in a box that is periodic both ways. Counted
-   as one scalar solve, whose transforms it has. Modes are followed from forces no farther than they are felt, 2e-22 of
-   them. measures: of this velocity with all that is added on all of the grid (its divergence less `source` in the
-   wanted rows; no sum of squares where a flow is made), NULL: not wanted. Collective. */
+   as one scalar solve, whose transforms it has. Modes are followed from forces to where 2e-22 of them are left.
+   measures: of this velocity with all that is added on all of the grid (its divergence less `source` in the wanted
+   rows; no sum of squares where a flow is made), NULL: not wanted. Collective. */
 PETSC_EXTERN PetscErrorCode StreamSolve(Stream stream, const StreamRows *rows, StreamMeasures *measures);
 
 /* StreamGetFlows - what makes and reads flows of this stream; borrowed. Not collective. */

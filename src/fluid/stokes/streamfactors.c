@@ -15,7 +15,7 @@ typedef struct {
   Pair power, gain;
 } Slab;
 
-static Pair Times(Pair A, Pair B) {
+static Pair PairTimes(Pair A, Pair B) {
   Pair C;
   for (int i = 0; i < 2; i++)
     for (int j = 0; j < 2; j++) C.a[i][j] = A.a[i][0] * B.a[0][j] + A.a[i][1] * B.a[1][j];
@@ -27,15 +27,15 @@ static Pair Plus(Pair A, PetscReal factor, Pair B) {
     for (int j = 0; j < 2; j++) A.a[i][j] += factor * B.a[i][j];
   return A;
 }
-static Pair Inverse(Pair A) {
+static Pair PairInverse(Pair A) {
   const PetscReal d = A.a[0][0] * A.a[1][1] - A.a[0][1] * A.a[1][0];
   return (Pair){{{A.a[1][1] / d, -A.a[0][1] / d}, {-A.a[1][0] / d, A.a[0][0] / d}}};
 }
 static const Pair unit = {{{1, 0}, {0, 1}}};
 
 static Slab Stack(Slab low, Slab high) {
-  return (Slab){.power = Times(high.power, low.power),
-                .gain = Plus(low.gain, 1, Times(low.power, Times(high.gain, low.power)))};
+  return (Slab){.power = PairTimes(high.power, low.power),
+                .gain = Plus(low.gain, 1, PairTimes(low.power, PairTimes(high.gain, low.power)))};
 }
 
 /* M^m and the gain of a slab of m rows, by doubling. */
@@ -55,8 +55,8 @@ static Slab OfRows(PetscReal r1, PetscReal r2, PetscInt m) {
 static void Walls(PetscReal r1, PetscReal r2, Slab all, Pair *bottom, Pair *top) {
   const Pair B = {{{-r1, -r2 * (2 + r1 * r2)}, {-r1, -r2}}};
   *top = (Pair){{{0, -r2 / (1 + r1 * r2)}, {0, 0}}};
-  const Pair D = Plus(all.gain, 1, Times(all.power, Times(*top, all.power)));
-  *bottom = Times(B, Inverse(Plus(unit, -1, Times(D, B))));
+  const Pair D = Plus(all.gain, 1, PairTimes(all.power, PairTimes(*top, all.power)));
+  *bottom = PairTimes(B, PairInverse(Plus(unit, -1, PairTimes(D, B))));
 }
 
 static void Store(StreamFactors s, PetscInt k, Pair from, PairMatrix to) {
@@ -80,13 +80,13 @@ static void SetMode(StreamFactors s, PetscInt k, PetscReal theta_1, PetscReal th
   if (s->grid->wall[1])
     Walls(r1, r2, all, &bottom, &top);
   else
-    bottom = top = Inverse((Pair){{{-expm1(-n * theta_1), 0}, {-all.power.a[1][0], -expm1(-n * theta_2)}}});
+    bottom = top = PairInverse((Pair){{{-expm1(-n * theta_1), 0}, {-all.power.a[1][0], -expm1(-n * theta_2)}}});
   Store(s, k, bottom, s->bottom);
   Store(s, k, top, s->top);
 }
 
 /* The rows in which r1^j, the slower decay, is not negligible for one mode of a block. */
-static void SetReach(StreamFactors s) {
+static void StreamSetReach(StreamFactors s) {
   for (PetscInt b = 0; b < s->width / TRIDIAGONAL_BLOCK; b++) {
     s->reach[b] = 0;
     for (PetscInt k = b * TRIDIAGONAL_BLOCK; k < (b + 1) * TRIDIAGONAL_BLOCK; k++) {
@@ -105,7 +105,7 @@ void StreamFactorsSet(StreamFactors s, PetscReal alpha, PetscReal nu) {
     SetMode(s, k, theta_1, theta_2);
     s->factor[k] = s->scale[k] * s->r[0][k] * s->r[1][k] * h2 / nu;
   }
-  SetReach(s);
+  StreamSetReach(s);
 }
 
 PetscErrorCode StreamFactorsCreate(Grid g, RowTransform t, StreamFactors *out) {

@@ -39,7 +39,7 @@ PetscErrorCode StreamFlowsCreateVec(StreamFlows s, Vec *flow) {
 }
 
 /* Row j of the sum, a row of this rank. */
-static void SumRow(StreamFlows s, PetscInt j, PetscReal *restrict sum) {
+static void FlowsSumRow(StreamFlows s, PetscInt j, PetscReal *restrict sum) {
   const PetscInt at = j * s->each;
   const PetscReal a = s->weight[0], b = s->weight[1], c = s->weight[2];
   const PetscScalar *restrict x = s->flow[0] + at, *restrict y = s->flow[1] + at, *restrict z = s->flow[2] + at;
@@ -48,14 +48,14 @@ static void SumRow(StreamFlows s, PetscInt j, PetscReal *restrict sum) {
 
 /* Exchange the rows next to the slab with the neighbours: across the seam on one rank, none at walls, none of a
    neighbour that has no nodes. */
-static PetscErrorCode Exchange(StreamFlows s) {
+static PetscErrorCode FlowsExchange(StreamFlows s) {
   const Grid g = s->grid;
   const PetscMPIInt n = (PetscMPIInt)s->each;
   PetscFunctionBeginUser;
   for (int up = 0; up < 2; up++) {
     PetscReal *own = s->line[0];
     (void)PetscArrayzero(own, s->each);
-    if (s->rows) SumRow(s, up ? s->rows - 1 : 0, own);
+    if (s->rows) FlowsSumRow(s, up ? s->rows - 1 : 0, own);
     PetscCallMPI(MPI_Sendrecv(own, n, MPIU_REAL, up ? g->above : g->below, up, s->edge[!up], n, MPIU_REAL,
                               up ? g->below : g->above, up, g->comm, MPI_STATUS_IGNORE));
   }
@@ -68,8 +68,8 @@ PetscErrorCode StreamFlowsBegin(StreamFlows s, const StreamPast *past) {
   for (PetscInt i = 0; i < past->count; i++) PetscCall(VecGetArrayRead(past->flow[i], &s->flow[i]));
   for (PetscInt i = 0; i < STREAM_PAST; i++) s->weight[i] = i < past->count ? past->weight[i] : 0;
   for (PetscInt i = past->count; i < STREAM_PAST; i++) s->flow[i] = s->flow[0];
-  PetscCall(Exchange(s));
-  if (s->rows) SumRow(s, 0, s->line[0]);
+  PetscCall(FlowsExchange(s));
+  if (s->rows) FlowsSumRow(s, 0, s->line[0]);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -90,7 +90,7 @@ const PetscReal *StreamFlowsCurl(StreamFlows s, PetscInt j) {
   const PetscReal *last = j > 0 ? s->line[(j - 1) % 3] : s->edge[0], *now = s->line[j % 3], *next = s->edge[1];
   Lanes square = {0};
   if (j + 1 < s->rows) {
-    SumRow(s, j + 1, s->line[(j + 1) % 3]);
+    FlowsSumRow(s, j + 1, s->line[(j + 1) % 3]);
     next = s->line[(j + 1) % 3];
   }
   for (PetscInt k = 0; k < s->width; k += LANES) {
@@ -105,7 +105,7 @@ const PetscReal *StreamFlowsCurl(StreamFlows s, PetscInt j) {
 const PetscReal *StreamFlowsRow(StreamFlows s, PetscInt j) {
   if (j < 0) return s->edge[0];
   if (j >= s->rows) return s->edge[1];
-  SumRow(s, j, s->line[0]);
+  FlowsSumRow(s, j, s->line[0]);
   return s->line[0];
 }
 
@@ -134,10 +134,10 @@ PetscErrorCode StreamFlowsVelocity(StreamFlows s, Vec flow, Vec w) {
   for (PetscInt j = 0; j < g->rows[FIELD_U]; j++) {
     PetscScalar *low = chi + (j + 1) % 2 * n, *high = chi + j % 2 * n;
     Nodes(s, j, high);
-    VelocityU(n, low, high, StreamFlowsMean(s, j, 0), row);
+    StreamRowU(n, low, high, StreamFlowsMean(s, j, 0), row);
     PetscCall(PetscArraycpy(a + GridRowStart(g, FIELD_U, j), row, g->columns[FIELD_U]));
     if (j == s->rows) break;
-    VelocityV(n, high, StreamFlowsMean(s, j, 1), row);
+    StreamRowV(n, high, StreamFlowsMean(s, j, 1), row);
     PetscCall(PetscArraycpy(a + GridRowStart(g, FIELD_V, j), row, g->columns[FIELD_V]));
   }
   PetscCall(VecRestoreArrayWrite(w, &a));
@@ -166,9 +166,9 @@ PetscErrorCode StreamFlowsOf(StreamFlows s, Vec w, Vec flow) {
   PetscCall(VecGetArray(flow, &b));
   for (PetscInt j = 0; j < g->rows[FIELD_U]; j++) {
     PetscScalar *row = b + j * s->each;
-    if (!g->wall[0]) row[s->width] = Sum(n, a + GridRowStart(g, FIELD_U, j)) / (PetscReal)n;
+    if (!g->wall[0]) row[s->width] = StreamRowSum(n, a + GridRowStart(g, FIELD_U, j)) / (PetscReal)n;
     if (j >= s->rows) break;
-    if (!g->wall[0] && !g->wall[1]) row[s->width + 1] = Sum(n, a + GridRowStart(g, FIELD_V, j)) / (PetscReal)n;
+    if (!g->wall[0] && !g->wall[1]) row[s->width + 1] = StreamRowSum(n, a + GridRowStart(g, FIELD_V, j)) / (PetscReal)n;
     FlowRow(s, a + GridRowStart(g, FIELD_V, j), row[s->width + 1], chi, row);
   }
   PetscCall(VecRestoreArray(flow, &b));

@@ -18,7 +18,7 @@ PetscErrorCode StreamSlabsCreate(Grid g, StreamFactors factors, StreamSlabs *out
   s->count = PetscMin(part, w - s->begin);
   s->message = 4 * part + 1;
   PetscCall(PetscCalloc5(2 * w, &s->state, 2 * part, &s->last, 2 * part, &s->first, 4 * w + 1, &s->own, w, &s->zero));
-  PetscCall(PetscCalloc3(2 * w, &s->below, 2 * w, &s->above, s->rows, &s->alive));
+  PetscCall(PetscCalloc3(2 * w, &s->below, 2 * w, &s->above, s->rows, &s->stored));
   s->all = s->own;
   s->Y = s->below;
   s->Z = s->above;
@@ -34,7 +34,7 @@ PetscErrorCode StreamSlabsDestroy(StreamSlabs *slabs) {
   if (!s) PetscFunctionReturn(PETSC_SUCCESS);
   if (s->grid->size > 1) PetscCall(PetscFree4(s->send, s->all, s->Y, s->Z));
   PetscCall(PetscFree5(s->state, s->last, s->first, s->own, s->zero));
-  PetscCall(PetscFree3(s->below, s->above, s->alive));
+  PetscCall(PetscFree3(s->below, s->above, s->stored));
   PetscCall(PetscFree(s->y));
   PetscCall(PetscFree(*slabs));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -47,15 +47,15 @@ PetscErrorCode StreamSlabsReserve(StreamSlabs s) {
 }
 
 /* The first Z and the last Y of this slab where nothing comes in from outside, for the other ranks. */
-static void Summarise(StreamSlabs s) {
+static void SlabsSummarise(StreamSlabs s) {
   const PetscInt w = s->width;
   for (PetscInt b = 0; b < w / BLOCK; b++) {
     const PetscReal *restrict r1 = s->factors->r[0] + b * BLOCK, *restrict r2 = s->factors->r[1] + b * BLOCK;
     PetscReal z1[BLOCK] = {0}, z2[BLOCK] = {0};
     PetscInt j = PetscMin(s->factors->reach[b], s->rows) - 1;
-    while (j >= 0 && s->alive[j] <= b) j--;
+    while (j >= 0 && s->stored[j] <= b) j--;
     for (; j >= 0; j--) {
-      const PetscReal *restrict y = s->alive[j] > b ? s->y + j * w + b * BLOCK : s->zero;
+      const PetscReal *restrict y = s->stored[j] > b ? s->y + j * w + b * BLOCK : s->zero;
       for (int k = 0; k < BLOCK; k++) {
         z1[k] = y[k] + r1[k] * z1[k];
         z2[k] = z1[k] + r2[k] * z2[k];
@@ -68,7 +68,7 @@ static void Summarise(StreamSlabs s) {
 }
 
 /* out += A in, a matrix and a pair for each of the modes that this rank closes. */
-static void AddProduct(StreamSlabs s, const PairMatrix matrix, const PetscReal in[], PetscReal out[]) {
+static void SlabsAddProduct(StreamSlabs s, const PairMatrix matrix, const PetscReal in[], PetscReal out[]) {
   const PetscInt w = s->width, part = s->part;
   const PetscReal *A = matrix + s->begin;
   for (PetscInt k = 0; k < s->count; k++) {
@@ -77,63 +77,63 @@ static void AddProduct(StreamSlabs s, const PairMatrix matrix, const PetscReal i
   }
 }
 
-static void Product(StreamSlabs s, const PairMatrix matrix, const PetscReal in[], PetscReal out[]) {
+static void SlabsProduct(StreamSlabs s, const PairMatrix matrix, const PetscReal in[], PetscReal out[]) {
   (void)PetscArrayzero(out, 2 * s->part);
-  AddProduct(s, matrix, in, out);
+  SlabsAddProduct(s, matrix, in, out);
 }
 
 /* From Y below the first slab to Y below every slab and above the last one. */
-static void CarryUp(StreamSlabs s) {
+static void SlabsCarryUp(StreamSlabs s) {
   const PetscMPIInt size = s->grid->size;
   const PetscInt pair = 2 * s->part;
   for (PetscMPIInt q = 0; q < size; q++) {
     PetscReal *out = q + 1 < size ? s->Y + (q + 1) * pair : s->last;
     (void)PetscArraycpy(out, s->all + q * s->message + pair, pair);
-    AddProduct(s, s->factors->power[q == size - 1], s->Y + q * pair, out);
+    SlabsAddProduct(s, s->factors->power[q == size - 1], s->Y + q * pair, out);
   }
 }
 
 /* From Z above the last slab to Z above every slab and in the first row of all. */
-static void CarryDown(StreamSlabs s) {
+static void SlabsCarryDown(StreamSlabs s) {
   const PetscMPIInt size = s->grid->size;
   const PetscInt pair = 2 * s->part;
   for (PetscMPIInt q = size - 1; q >= 0; q--) {
     PetscReal *out = q > 0 ? s->Z + (q - 1) * pair : s->first;
     (void)PetscArraycpy(out, s->all + q * s->message, pair);
-    AddProduct(s, s->factors->gain[q == size - 1], s->Y + q * pair, out);
-    AddProduct(s, s->factors->power[q == size - 1], s->Z + q * pair, out);
+    SlabsAddProduct(s, s->factors->gain[q == size - 1], s->Y + q * pair, out);
+    SlabsAddProduct(s, s->factors->power[q == size - 1], s->Z + q * pair, out);
   }
 }
 
 /* What comes into every slab. At walls, Z above all rows follows from Y there, and Y below all rows from the Z of no Y
    at the bottom. At a seam, Y below all rows follows from Y above them, and Z above from Z below (streamfactors.c). */
-static void Close(StreamSlabs s) {
+static void SlabsMatchEnds(StreamSlabs s) {
   const PetscInt pair = 2 * s->part;
   PetscReal *Y = s->Y, *Z = s->Z + (s->grid->size - 1) * pair;
   (void)PetscArrayzero(Y, pair);
-  CarryUp(s);
+  SlabsCarryUp(s);
   if (s->grid->wall[1]) {
-    Product(s, s->factors->top, s->last, Z);
-    CarryDown(s);
-    Product(s, s->factors->bottom, s->first, Y);
-    CarryUp(s);
-    Product(s, s->factors->top, s->last, Z);
+    SlabsProduct(s, s->factors->top, s->last, Z);
+    SlabsCarryDown(s);
+    SlabsProduct(s, s->factors->bottom, s->first, Y);
+    SlabsCarryUp(s);
+    SlabsProduct(s, s->factors->top, s->last, Z);
   } else {
-    Product(s, s->factors->bottom, s->last, Y);
-    CarryUp(s);
+    SlabsProduct(s, s->factors->bottom, s->last, Y);
+    SlabsCarryUp(s);
     (void)PetscArrayzero(Z, pair);
-    CarryDown(s);
-    Product(s, s->factors->top, s->first, Z);
+    SlabsCarryDown(s);
+    SlabsProduct(s, s->factors->top, s->first, Z);
   }
-  CarryDown(s);
+  SlabsCarryDown(s);
 }
 
 /* Number of modes of part q. */
-static PetscInt PartCount(StreamSlabs s, PetscMPIInt q) {
+static PetscInt SlabsPartCount(StreamSlabs s, PetscMPIInt q) {
   return PetscMax(0, PetscMin(s->part, s->width - q * s->part));
 }
 
-static PetscErrorCode Exchange(StreamSlabs s) {
+static PetscErrorCode SlabsExchange(StreamSlabs s) {
   const PetscMPIInt n = (PetscMPIInt)s->message;
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Alltoall(s->send, n, MPIU_REAL, s->all, n, MPIU_REAL, s->grid->comm));
@@ -141,22 +141,22 @@ static PetscErrorCode Exchange(StreamSlabs s) {
 }
 
 /* Send each rank its part of the modes of this slab. */
-static PetscErrorCode ToParts(StreamSlabs s) {
+static PetscErrorCode SlabsToParts(StreamSlabs s) {
   const PetscInt w = s->width, part = s->part;
   PetscFunctionBeginUser;
   if (s->grid->size == 1) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscMPIInt q = 0; q < s->grid->size; q++) {
     PetscReal *to = s->send + q * s->message;
     for (int a = 0; a < 4; a++)
-      PetscCall(PetscArraycpy(to + a * part, s->own + a * w + PetscMin(q * part, w), PartCount(s, q)));
+      PetscCall(PetscArraycpy(to + a * part, s->own + a * w + PetscMin(q * part, w), SlabsPartCount(s, q)));
     to[4 * part] = s->own[4 * w];
   }
-  PetscCall(Exchange(s));
+  PetscCall(SlabsExchange(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Send each slab what comes into it, in the modes of this part. */
-static PetscErrorCode ToSlabs(StreamSlabs s) {
+static PetscErrorCode SlabsToSlabs(StreamSlabs s) {
   const PetscInt w = s->width, part = s->part;
   PetscFunctionBeginUser;
   if (s->grid->size == 1) PetscFunctionReturn(PETSC_SUCCESS);
@@ -164,18 +164,18 @@ static PetscErrorCode ToSlabs(StreamSlabs s) {
     PetscCall(PetscArraycpy(s->send + q * s->message, s->Y + 2 * q * part, 2 * part));
     PetscCall(PetscArraycpy(s->send + q * s->message + 2 * part, s->Z + 2 * q * part, 2 * part));
   }
-  PetscCall(Exchange(s));
+  PetscCall(SlabsExchange(s));
   for (PetscMPIInt q = 0; q < s->grid->size; q++) {
     const PetscReal *from = s->all + q * s->message;
     for (int a = 0; a < 4; a++)
       PetscCall(PetscArraycpy((a < 2 ? s->below : s->above) + a % 2 * w + PetscMin(q * part, w), from + a * part,
-                              PartCount(s, q)));
+                              SlabsPartCount(s, q)));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Blocks of modes in which anything comes in from below. */
-static PetscInt BlocksBelow(StreamSlabs s) {
+static PetscInt SlabsBlocksBelow(StreamSlabs s) {
   const PetscReal *y1 = s->below, *y2 = y1 + s->width;
   PetscInt k = s->width;
   while (k > 0 && y1[k - 1] == 0 && y2[k - 1] == 0) k--;
@@ -183,8 +183,8 @@ static PetscInt BlocksBelow(StreamSlabs s) {
 }
 
 /* y2 of the rows += factor times the contribution of Y from below. */
-static void AddBelow(StreamSlabs s, PetscReal factor) {
-  const PetscInt w = s->width, blocks = BlocksBelow(s);
+static void SlabsAddBelow(StreamSlabs s, PetscReal factor) {
+  const PetscInt w = s->width, blocks = SlabsBlocksBelow(s);
   const PetscReal *below = s->below;
   for (PetscInt b = 0; b < blocks; b++) {
     const PetscReal *restrict r1 = s->factors->r[0] + b * BLOCK, *restrict r2 = s->factors->r[1] + b * BLOCK;
@@ -195,7 +195,7 @@ static void AddBelow(StreamSlabs s, PetscReal factor) {
     }
     for (PetscInt j = 0; j < PetscMin(s->factors->reach[b], s->rows); j++) {
       PetscReal *restrict y = s->y + j * w + b * BLOCK;
-      if (s->alive[j] <= b) (void)PetscArrayzero(y, BLOCK);
+      if (s->stored[j] <= b) (void)PetscArrayzero(y, BLOCK);
       for (int k = 0; k < BLOCK; k++) {
         y1[k] *= r1[k];
         y2[k] = y1[k] + r2[k] * y2[k];
@@ -205,23 +205,23 @@ static void AddBelow(StreamSlabs s, PetscReal factor) {
   }
   for (PetscInt j = 0, b = blocks; j < s->rows; j++) {
     while (b > 0 && s->factors->reach[b - 1] <= j) b--;
-    s->alive[j] = PetscMax(s->alive[j], b);
+    s->stored[j] = PetscMax(s->stored[j], b);
   }
 }
 
 PetscErrorCode StreamSlabsClose(StreamSlabs s, PetscReal *sum) {
   PetscFunctionBeginUser;
-  Summarise(s);
+  SlabsSummarise(s);
   s->own[4 * s->width] = *sum;
-  PetscCall(ToParts(s));
+  PetscCall(SlabsToParts(s));
   *sum = 0;
   for (PetscMPIInt q = 0; q < s->grid->size; q++) *sum += s->all[q * s->message + s->message - 1];
-  Close(s);
-  PetscCall(ToSlabs(s));
-  AddBelow(s, 1);
+  SlabsMatchEnds(s);
+  PetscCall(SlabsToSlabs(s));
+  SlabsAddBelow(s, 1);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 void StreamSlabsReopen(StreamSlabs s) {
-  AddBelow(s, -1);
+  SlabsAddBelow(s, -1);
 }

@@ -10,7 +10,7 @@ struct _p_StreamSlabs {
   StreamFactors factors;    /* borrowed */
   PetscInt rows, width;     /* rows of nodes on this rank; modes, rounded up to whole blocks */
   PetscReal *y;             /* [rows][width] y2; NULL before the first solve */
-  PetscInt *alive;          /* [rows] blocks of modes that are stored in a row of y; y of the others is zero */
+  PetscInt *stored;         /* [rows] blocks of modes that are stored in a row of y; y of the others is zero */
   PetscReal *state;         /* [2][width] Y on the way up, Z on the way down */
   PetscReal *below, *above; /* [2][width] Y below the slab, Z above it */
   PetscReal *own;           /* [4][width] first Z and last Y of the slab, and behind them a number to be summed */

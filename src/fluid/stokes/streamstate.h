@@ -25,8 +25,8 @@ typedef struct {
                               PetscScalar work[]);                     /* may be work[n_x], which it fills */
   void (*velocity)(void *ctx, Field f, PetscInt j, PetscScalar row[]); /* downwards; to u it may add what it has */
   const PetscReal *mean[2];  /* [rows of the whole grid] added to every u and v of a row, of v zero on walls in y,
-                                of u zero between walls in x; may be NULL, */
-  const PetscScalar *source; /* [rows][n_x] G^T of these and of what `velocity` adds; NULL: zero */
+                                of u zero between walls in x; may be NULL */
+  const PetscScalar *source; /* [rows][n_x] G^T of the means and of what `velocity` adds; NULL: zero */
 } StreamRows;
 
 #define STREAM_BLOCK TRIDIAGONAL_BLOCK
@@ -38,8 +38,8 @@ struct _p_Stream {
   StreamFactors factors;    /* constants of the recurrences */
   StreamSlabs slabs;        /* y of the rows, and what comes into the slab */
   SideWalls side;           /* NULL where x is periodic */
-  PetscInt *fed;            /* [blocks] the last row on the way down in which a block has y */
-  PetscInt felt;            /* blocks of modes in which Z of the last row has not decayed */
+  PetscInt *last;           /* [blocks] the last row on the way down in which a block has y */
+  PetscInt kept;            /* blocks of modes in which Z of the last row has not decayed */
   PetscScalar *row[3];      /* [n_x] two rows of u's force or of chi, one of v */
   PetscScalar *curl, *zero; /* [n_x] */
   Tridiagonal mean;         /* the solve for the row means of u, one mode; NULL between walls in x, without means */

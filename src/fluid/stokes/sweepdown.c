@@ -3,17 +3,17 @@
 
 void StreamBeginDown(Stream s) {
   const StreamSlabs q = s->slabs;
-  s->felt = q->width / STREAM_BLOCK;
+  s->kept = q->width / STREAM_BLOCK;
   (void)PetscArraycpy(q->state, q->above, 2 * q->width);
-  for (PetscInt b = 0; b < s->felt; b++) s->fed[b] = q->rows;
+  for (PetscInt b = 0; b < s->kept; b++) s->last[b] = q->rows;
 }
 
 /* Blocks of modes in which Z has not decayed in row j, where y has `stored` blocks; Z is zero in the others. */
-static PetscInt FeltBlocks(Stream s, PetscInt j, PetscInt stored) {
+static PetscInt KeptBlocks(Stream s, PetscInt j, PetscInt stored) {
   const StreamSlabs q = s->slabs;
-  PetscInt blocks = PetscMax(s->felt, stored);
-  for (PetscInt b = 0; b < stored; b++) s->fed[b] = j;
-  for (; blocks > stored && s->factors->reach[blocks - 1] <= s->fed[blocks - 1] - j; blocks--)
+  PetscInt blocks = PetscMax(s->kept, stored);
+  for (PetscInt b = 0; b < stored; b++) s->last[b] = j;
+  for (; blocks > stored && s->factors->reach[blocks - 1] <= s->last[blocks - 1] - j; blocks--)
     for (int c = 0; c < 2; c++)
       (void)PetscArrayzero(q->state + c * q->width + (blocks - 1) * STREAM_BLOCK, STREAM_BLOCK);
   return blocks;
@@ -21,17 +21,16 @@ static PetscInt FeltBlocks(Stream s, PetscInt j, PetscInt stored) {
 
 PetscInt StreamNodeModes(Stream s, PetscInt j, PetscBool squares, PetscReal *into, PetscReal **modes) {
   const StreamSlabs q = s->slabs;
-  const PetscInt w = q->width, all = s->t->width, stored = j < 0 ? w / STREAM_BLOCK : q->alive[j];
+  const PetscInt w = q->width, all = s->t->width, stored = j < 0 ? w / STREAM_BLOCK : q->stored[j];
   const PetscReal *y = j < 0 ? q->below + w : q->y + j * w;
-  s->felt = FeltBlocks(s, j, stored);
-  const PetscInt fed = PetscMin(stored * STREAM_BLOCK, all), count = PetscMin(s->felt * STREAM_BLOCK, all);
+  s->kept = KeptBlocks(s, j, stored);
+  const PetscInt forced = PetscMin(stored * STREAM_BLOCK, all), count = PetscMin(s->kept * STREAM_BLOCK, all);
   *modes = squares ? StreamMeterNodes(s->meter, count) : into ? into : s->t->modes;
-  Down(fed, s->factors->r[0], s->factors->r[1], s->factors->factor, y, q->state, q->state + w, *modes);
-  DownFree(fed, count, s->factors->r[0], s->factors->r[1], s->factors->factor, q->state, q->state + w, *modes);
+  StreamRowDown(s->factors, forced, count, y, q->state, *modes);
   return count;
 }
 
-/* The same into row j of the flow, or added to it. */
+/* The modes of chi/h in row j of nodes, into the flow that is made or added to it; returns their number. */
 static PetscInt FlowModes(Stream s, const StreamRows *rows, PetscInt j, PetscReal **modes) {
   PetscScalar *restrict flow = s->flow + j * s->flows->each;
   const PetscInt count = StreamNodeModes(s, j, PETSC_FALSE, rows->add ? NULL : flow, modes);
@@ -40,8 +39,8 @@ static PetscInt FlowModes(Stream s, const StreamRows *rows, PetscInt j, PetscRea
   return count;
 }
 
-/* The same, with chi/h in `row` unless that is NULL, and what is shown of the states before; zero on the wall behind
-   the last node. */
+/* Row j of nodes: the modes of chi/h for the flow and the meter, and, unless `row` is NULL, chi/h itself with the part
+   of the states before that the velocity has; chi is zero on the wall behind the last node. */
 static void NodeRow(Stream s, const StreamRows *rows, PetscInt j, PetscBool squares, PetscScalar row[]) {
   PetscReal *restrict modes = s->t->modes;
   PetscReal *chi;
@@ -56,8 +55,9 @@ static void NodeRow(Stream s, const StreamRows *rows, PetscInt j, PetscBool squa
   if (s->side) row[s->fluid->grid->n[0] - 1] = 0;
 }
 
-/* The mean of a row of u, or (comp 1) of v, as it is shown: of the velocity and of the states before. */
-static PetscReal Shown(Stream s, const StreamRows *rows, PetscReal mean, PetscInt j, int comp) {
+/* The mean of a row of u, or (comp 1) of v, of the velocity that is returned: of the solution and of the states before.
+ */
+static PetscReal ReturnedMean(Stream s, const StreamRows *rows, PetscReal mean, PetscInt j, int comp) {
   const StreamPast *past = rows->past;
   return past ? past->part * mean + past->lag * StreamFlowsMean(s->flows, j, comp) : mean;
 }
@@ -69,16 +69,16 @@ static void VelocityRows(Stream s, const StreamRows *rows, PetscBool measured, P
   const PetscInt n = g->n[0], at = g->first + j;
   const PetscReal given = StreamGiven(rows, FIELD_V, at),
                   below = StreamGiven(rows, FIELD_V, (at + g->n[1] - 1) % g->n[1]);
-  VelocityU(n, low, high, Shown(s, rows, s->means[j], j, 0) + StreamGiven(rows, FIELD_U, at), s->curl);
+  StreamRowU(n, low, high, ReturnedMean(s, rows, s->means[j], j, 0) + StreamGiven(rows, FIELD_U, at), s->curl);
   rows->velocity(rows->ctx, FIELD_U, j, s->curl);
   if (measured)
     StreamMeterDivergence(s->meter, s->curl, low, high, given - below, rows->source ? rows->source + j * n : NULL);
   if (j >= s->slabs->rows) return;
-  VelocityV(n, high, Shown(s, rows, s->mean_v, j, 1) + given, s->row[2]);
+  StreamRowV(n, high, ReturnedMean(s, rows, s->mean_v, j, 1) + given, s->row[2]);
   rows->velocity(rows->ctx, FIELD_V, j, s->row[2]);
 }
 
-/* What is measured of row j of u, which is `row` where it is made, and of v above it. */
+/* Add row j of u (`row`; NULL: not made) and the row of v above it to the measures. */
 static void MeasureRow(Stream s, const StreamRows *rows, PetscInt j, const PetscScalar row[]) {
   const PetscInt at = s->fluid->grid->first + j;
   const PetscReal mean = s->means[j] + StreamGiven(rows, FIELD_U, at);

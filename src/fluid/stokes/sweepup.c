@@ -6,7 +6,7 @@
 static const PetscReal *CurlModes(Stream s, const PetscScalar low[], const PetscScalar high[], const PetscScalar v[],
                                   const PetscReal past[]) {
   PetscReal *restrict modes = s->t->modes;
-  Curl(s->fluid->grid->n[0], s->fluid->grid->wall[0], low, high, v, s->curl);
+  StreamRowCurl(s->fluid->grid->n[0], s->fluid->grid->wall[0], low, high, v, s->curl);
   RowTransformForward(s->t, s->curl);
   for (PetscInt k = 0; k < s->t->width && past; k++) modes[k] += past[k];
   return modes;
@@ -17,21 +17,21 @@ static void ForcedRow(Stream s, PetscInt j, const PetscReal curl[], const PetscR
   const StreamSlabs q = s->slabs;
   const PetscInt modes = s->t->width, w = q->width;
   PetscReal *y = q->y + j * w;
-  Up(modes, s->factors->r[0], s->factors->r[1], curl, below, q->state, y);
+  StreamRowUp(modes, s->factors->r[0], s->factors->r[1], curl, below, q->state, y);
   for (PetscInt k = modes; k < w; k++) y[k] = 0;
-  q->alive[j] = w / STREAM_BLOCK;
+  q->stored[j] = w / STREAM_BLOCK;
 }
 
 /* y of row j, `since` rows above the last force, in the blocks of modes that have not decayed. */
 static void FreeRow(Stream s, PetscInt j, PetscInt since) {
   const StreamSlabs q = s->slabs;
-  PetscInt blocks = j > 0 ? q->alive[j - 1] : 0;
+  PetscInt blocks = j > 0 ? q->stored[j - 1] : 0;
   for (; blocks > 0 && s->factors->reach[blocks - 1] <= since; blocks--)
     (void)PetscArrayzero(q->state + (blocks - 1) * STREAM_BLOCK, STREAM_BLOCK);
-  q->alive[j] = blocks;
+  q->stored[j] = blocks;
   if (blocks)
-    Up(blocks * STREAM_BLOCK, s->factors->r[0], s->factors->r[1], q->zero, q->y + (j - 1) * q->width, q->state,
-       q->y + j * q->width);
+    StreamRowUp(blocks * STREAM_BLOCK, s->factors->r[0], s->factors->r[1], q->zero, q->y + (j - 1) * q->width, q->state,
+                q->y + j * q->width);
 }
 
 /* n_x nu d_yy of the v that is added to row j between walls, which the pressure balances. */
@@ -59,7 +59,7 @@ static const PetscScalar *GatherRow(Stream s, const StreamRows *rows, PetscBool 
   if (j + 1 < end || end == s->fluid->grid->rows[FIELD_U])
     high = rows->force(rows->ctx, FIELD_U, j + 1, s->row[(j + 1) % 2]);
   v = rows->force(rows->ctx, FIELD_V, j, s->row[2]);
-  TakeSum(s, rows, measured, j, measured || !s->fluid->grid->wall[1] ? Sum(n, v) : 0);
+  TakeSum(s, rows, measured, j, measured || !s->fluid->grid->wall[1] ? StreamRowSum(n, v) : 0);
   ForcedRow(s, j, CurlModes(s, low, high, v, past), below);
   return high;
 }
@@ -80,7 +80,7 @@ void StreamGather(Stream s, const StreamRows *rows, PetscBool measured) {
   for (PetscInt j = 0; j < g->rows[FIELD_U]; j++) {
     const PetscBool forced = j >= first && j < end ? PETSC_TRUE : PETSC_FALSE;
     if (forced && !low) low = rows->force(rows->ctx, FIELD_U, j, s->row[j % 2]);
-    const PetscReal sum = s->mean ? (forced ? Sum(n, low) : 0) + PastSum(s, rows, j, 0) : 0;
+    const PetscReal sum = s->mean ? (forced ? StreamRowSum(n, low) : 0) + PastSum(s, rows, j, 0) : 0;
     if (s->mean) TridiagonalUp(s->mean, j, &sum);
     if (j == q->rows) break; /* no nodes on the upper wall */
     const PetscReal *past = rows->past ? StreamFlowsCurl(s->flows, j) : NULL;
@@ -93,6 +93,6 @@ void StreamGather(Stream s, const StreamRows *rows, PetscBool measured) {
     else
       FreeRow(s, j, j - end + 1);
   }
-  const PetscInt felt = q->rows > 0 ? q->alive[q->rows - 1] * STREAM_BLOCK : 0;
-  if (felt) (void)PetscArraycpy(q->state + w, q->y + (q->rows - 1) * w, felt);
+  const PetscInt out = q->rows > 0 ? q->stored[q->rows - 1] * STREAM_BLOCK : 0;
+  if (out) (void)PetscArraycpy(q->state + w, q->y + (q->rows - 1) * w, out);
 }

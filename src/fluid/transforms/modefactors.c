@@ -2,7 +2,7 @@
    Long waves have theta near 0 and r near 1; asinh and expm1 keep their digits where 1 - r would lose them. */
 #include "fluid/transforms/tridiagonal.h"
 
-#define NEGLIGIBLE 43. /* e^-43 = 2e-19: what comes in from that far is not felt */
+#define NEGLIGIBLE 43. /* e^-43 = 2e-19: what comes in from that far is lost in rounding */
 
 /* Rows of a slab: the first ranks have full height, the last one what is left. */
 static PetscInt SlabRows(const Tridiagonal d, int last) {
@@ -58,7 +58,7 @@ static void ClearMode(Tridiagonal d, PetscInt k) {
 }
 
 /* The rows of a block of modes in which r^j is not negligible for one of them. */
-static void SetReach(Tridiagonal d) {
+static void ModesSetReach(Tridiagonal d) {
   for (PetscInt b = 0; b < d->width / TRIDIAGONAL_BLOCK; b++) {
     const PetscInt first = b * TRIDIAGONAL_BLOCK, end = PetscMin(first + TRIDIAGONAL_BLOCK, d->modes);
     d->reach[b] = 1;
@@ -85,6 +85,6 @@ PetscErrorCode TridiagonalSetCoefficients(Tridiagonal d, PetscReal a0, PetscReal
       SetSeam(d, k, theta);
   }
   if (singular) ClearMode(d, 0);
-  SetReach(d);
+  ModesSetReach(d);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -22,7 +22,7 @@ void TridiagonalUp(Tridiagonal d, PetscInt j, const PetscReal b[]) {
 
 /* What this slab tells the others: its first z and its last y, both for nothing coming in from outside. Rows beyond the
    reach of a block do not matter for its first z. */
-static void Summarise(Tridiagonal d) {
+static void TridiagonalSummarise(Tridiagonal d) {
   const PetscInt rows = d->grid->rows[d->field];
   PetscReal *first_z = d->message.own, *last_y = first_z + d->width;
   for (PetscInt b = 0; b < d->width / BLOCK; b++) {
@@ -37,7 +37,7 @@ static void Summarise(Tridiagonal d) {
 
 /* From y below the first slab, in ends.below[0], to y below every slab and above the last: what leaves a slab of m rows
    is its own last y and r^m times what came in. */
-static void CarryUp(Tridiagonal d) {
+static void TridiagonalCarryUp(Tridiagonal d) {
   const PetscMPIInt size = d->grid->size;
   const PetscInt w = d->width;
   for (PetscMPIInt q = 0; q < size; q++) {
@@ -50,7 +50,7 @@ static void CarryUp(Tridiagonal d) {
 
 /* From z above the last slab, in ends.above[size - 1], to z above every slab and in the first row of all: a slab's
    first z is its own, the gain times y that came in from below, and r^m times z that came in from above. */
-static void CarryDown(Tridiagonal d) {
+static void TridiagonalCarryDown(Tridiagonal d) {
   const PetscMPIInt size = d->grid->size;
   const PetscInt w = d->width;
   for (PetscMPIInt q = size - 1; q >= 0; q--) {
@@ -64,27 +64,27 @@ static void CarryDown(Tridiagonal d) {
 
 /* y below the first row of all and z above the last, and with them what comes into every slab. Both follow from a first
    pass with nothing coming in at the bottom (modefactors.c has the equations). */
-static void Close(Tridiagonal d) {
+static void TridiagonalMatchEnds(Tridiagonal d) {
   const PetscInt w = d->width;
   const PetscBool walls = d->grid->wall[1];
   const PetscReal *bottom = d->factors.bottom, *top = d->factors.top;
   PetscReal *y = d->ends.below, *z = d->ends.above + (d->grid->size - 1) * w;
   for (PetscInt k = 0; k < w; k++) y[k] = 0;
-  CarryUp(d);
+  TridiagonalCarryUp(d);
   if (walls) { /* y_{-1} follows from z_0, z_n from y_{n-1} */
     for (PetscInt k = 0; k < w; k++) z[k] = top[k] * d->ends.last_y[k];
-    CarryDown(d);
+    TridiagonalCarryDown(d);
     for (PetscInt k = 0; k < w; k++) y[k] = bottom[k] * d->ends.first_z[k];
-    CarryUp(d);
+    TridiagonalCarryUp(d);
     for (PetscInt k = 0; k < w; k++) z[k] = top[k] * d->ends.last_y[k];
   } else { /* y_{-1} follows from y_{n-1}, then z_n from z_0 */
     for (PetscInt k = 0; k < w; k++) y[k] = bottom[k] * d->ends.last_y[k];
-    CarryUp(d);
+    TridiagonalCarryUp(d);
     for (PetscInt k = 0; k < w; k++) z[k] = 0;
-    CarryDown(d);
+    TridiagonalCarryDown(d);
     for (PetscInt k = 0; k < w; k++) z[k] = bottom[k] * d->ends.first_z[k];
   }
-  CarryDown(d);
+  TridiagonalCarryDown(d);
 }
 
 /* The zero mode of a singular problem, on every rank: -(nu/h^2) (x_{j+1} - 2 x_j + x_{j-1}) = b_j - mean(b), summed up
@@ -116,7 +116,7 @@ static void ZeroMode(Tridiagonal d) {
 }
 
 /* y_j += r^{j+1} times what came in from below. */
-static void AddBelow(Tridiagonal d, const PetscReal below[]) {
+static void TridiagonalAddBelow(Tridiagonal d, const PetscReal below[]) {
   for (PetscInt b = 0; b < d->width / BLOCK; b++) {
     const PetscReal *restrict r = d->factors.r + b * BLOCK;
     PetscReal value[BLOCK];
@@ -145,7 +145,7 @@ void TridiagonalDown(Tridiagonal d, PetscInt j, PetscReal x[]) {
 PetscErrorCode TridiagonalBegin(Tridiagonal d) {
   SlabMessage *m = &d->message;
   PetscFunctionBeginUser;
-  Summarise(d);
+  TridiagonalSummarise(d);
   if (d->grid->size > 1)
     PetscCallMPI(MPI_Iallgather(m->own, (PetscMPIInt)m->size, MPIU_REAL, m->all, (PetscMPIInt)m->size, MPIU_REAL,
                                 d->grid->comm, &m->request));
@@ -156,8 +156,8 @@ PetscErrorCode TridiagonalEnd(Tridiagonal d) {
   PetscFunctionBeginUser;
   if (d->grid->size > 1) PetscCallMPI(MPI_Wait(&d->message.request, MPI_STATUS_IGNORE));
   if (d->singular) ZeroMode(d);
-  Close(d);
-  AddBelow(d, d->ends.below + d->grid->rank * d->width);
+  TridiagonalMatchEnds(d);
+  TridiagonalAddBelow(d, d->ends.below + d->grid->rank * d->width);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
