@@ -174,7 +174,7 @@ PetscErrorCode PetvesTemporaryFolder(MPI_Comm comm, char path[]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Of this thread: the caller's locale, and how many PetvesEnter are open. */
+/* This thread's locale outside PetvesEnter, and the number of PetvesEnter that are open on this thread. */
 static _Thread_local locale_t callers;
 static _Thread_local int entered;
 

@@ -51,9 +51,9 @@ static PetscBool IsFirst(void) {
   return !rank || !atoi(rank) ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* A process started alone talks to nobody: Open MPI need not start a daemon beside it nor look for a network, which
-   takes .3 s, nor load what only several ranks use, and hwloc need not look for screens and graphics cards. What the
-   environment says already stays. */
+/* Settings for a process that is started alone. They keep Open MPI from starting a daemon, from looking for a network
+   (0.3 s) and from loading what only several ranks use, and hwloc from looking for graphics cards. Variables that the
+   environment sets already keep their values. */
 static void StartAlone(void) {
   static const char *const names[][2] = {
       {"OMPI_MCA_ess_singleton_isolated", "1"},

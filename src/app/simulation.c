@@ -40,7 +40,7 @@ PetscErrorCode PetvesInitialize(int *argc, char ***argv) {
     return PETSC_ERR_USER_INPUT;
   }
   StopClock();
-  unsetenv("PETSC_OPTIONS"); /* it has been read */
+  unsetenv("PETSC_OPTIONS"); /* ReadTyped has read it */
   char *words[] = {(*argv)[0], skip, NULL}, **given = words;
   PetscFunctionBeginUser;
   PetscCall(PetscPushErrorHandler(PetvesErrorHandler, NULL));
@@ -177,8 +177,8 @@ PetscErrorCode SimulationDestroy(Simulation *simulation) {
   PetscErrorCode error;
   PetscFunctionBeginUser;
   if (!s) PetscFunctionReturn(PETSC_SUCCESS);
-  *simulation = NULL;                /* it is gone also when a file cannot be closed, */
-  error = OutputDestroy(&s->output); /* which is reported last */
+  *simulation = NULL;                /* the simulation is destroyed also when a file cannot be closed */
+  error = OutputDestroy(&s->output); /* reported when all else is freed */
   PetscCall(SchemeDestroy(&s->scheme));
   PetscCall(CouplingDestroy(&s->coupling));
   PetscCall(MembraneDestroy(&s->membrane));

@@ -9,8 +9,8 @@ struct _p_LagrangianSolver {
   const char *prefix;
   KSP ksp;
   Mat A;                  /* the operator, a shell */
-  PC chat;                /* of the assembled Chat, on every rank, so that a bad option is everybody's error, but used
-                             on root; NULL: none, as for bending */
+  PC chat;                /* factors of the assembled Chat. Every rank has it, so that a bad option is an error of all
+                             ranks; only root applies it. NULL without a preconditioner, as for bending */
   PetscMPIInt root;       /* the owner of the first vesicle */
   Vec all[2];             /* on root: all edges, before and after chat */
   Forcing r;              /* work: S sigma or B X; for the tension with its divergence */
@@ -18,8 +18,8 @@ struct _p_LagrangianSolver {
   Vec U;                  /* work: a marker vector */
   PetscBool failed;       /* the preconditioner could not be factored */
   PetscInt its;           /* iterations of the last solve */
-  KSPConvergedReason why; /* how it ended */
-  PetscReal residual;     /* its last residual norm, as KSP measures it */
+  KSPConvergedReason why; /* how the last solve ended */
+  PetscReal residual;     /* the last residual norm, as KSP measures it */
 };
 
 /* TensionSolverCreate - C = S^T S + S^T G L^-1 G^T S (M x M), prefix tension_, GMRES with PCILU on the assembled

@@ -85,8 +85,8 @@ static inline void ListAddHit(DipoleList d, const DipoleHit *hit, const PetscRea
 void DipoleListAddRow(DipoleList d, Field f, PetscInt j, const PetscReal T[], PetscScalar row[]) {
   const PetscInt *start = d->start[f] + j + DIPOLE_BELOW;
   const DipoleHit *hit = d->hit[f] + start[0], *end = d->hit[f] + start[1], *half = hit + (end - hit) / 2;
-  for (const DipoleHit *other = half; other < end;
-       other++) { /* neighbouring spots overlap, and a sum would wait for the one before: take two that are far apart */
+  /* Neighbouring spots overlap, and a sum would wait for the sum before it. So two spots far apart take turns. */
+  for (const DipoleHit *other = half; other < end; other++) {
     if (hit < half) ListAddHit(d, hit++, T, row);
     ListAddHit(d, other, T, row);
   }

@@ -45,8 +45,8 @@ static void DipoleRowMeans(DipoleRows d, const DipoleList list, const PetscReal 
   }
 }
 
-/* Replace the sources of `count` rows by b along x, with zero mean or, between walls, zero on the wall. A sum waits for
-   the one before, so that several rows are summed at once. */
+/* Replace the sources of `count` rows by b along x, with zero mean or, between walls, zero on the wall. A sum
+   waits for the sum before it, so that several rows are summed at once. */
 static inline void DipoleRowSums(const int count, DipoleRows d, PetscInt j) {
   const Grid g = d->grid;
   const PetscInt n = g->n[0];

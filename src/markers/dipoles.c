@@ -41,8 +41,8 @@ static void LineClip(Grid g, Field field, int dir, DipoleLine *line) {
   for (PetscInt k = 0; k < DIPOLE_POINTS; k++) line->weight[k] = k < line->n ? line->weight[k + skip] : 0;
 }
 
-/* A line of a stencil's weights along dir (before < 0), or of the differences of neighbouring weights, of which the
-   first belongs to the stencil's first entry (before = 0) or to the entry before it (before = 1). */
+/* A line of a stencil's weights along dir (before < 0), or a line of the differences of neighbouring weights. The first
+   difference belongs to the stencil's first entry (before = 0) or to the entry before it (before = 1). */
 static void LineMake(Grid g, Field field, const Stencil *s, int dir, PetscInt before, DipoleLine *line) {
   const PetscInt difference = before >= 0 ? 1 : 0;
   PetscReal w[DIPOLE_POINTS + 1] = {0};

@@ -56,8 +56,8 @@ PetscErrorCode MarkersCheck(Markers m, Layout layout, Vec X, char message[PETVES
 
 #define BESIDE 2 /* rows and columns next to the stencils that G, G^T and dipoles reach */
 
-/* Entries low .. high of a grid of n, of which a rank has `own` from `first` on, as a range of the rank's; the whole
-   range where they lie across a periodic seam. */
+/* window: the part of entries low .. high of a grid row or column of n that this rank owns, counted from the rank's
+   first entry; the rank has `own` entries from `first` on. Entries across a periodic seam give all of the rank's. */
 static void WindowClip(PetscBool wall, PetscInt n, PetscInt first, PetscInt own, PetscInt low, PetscInt high,
                        PetscInt window[2]) {
   const PetscBool seam = !wall && (low < 0 || high > n) ? PETSC_TRUE : PETSC_FALSE;

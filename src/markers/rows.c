@@ -1,9 +1,9 @@
 #include "markers/rows.h"
 #include "base/lanes.h"
 
-#define AHEAD 16 /* entries between the one that is used and the one that is fetched into the cache */
+#define AHEAD 16 /* entries from the one in use to the one that is fetched into the cache */
 
-/* The row of this rank, or the one above its rows, that is entry b of a stencil; -1 when it is another rank's. Beyond a
+/* The local row of entry b of a stencil: one of this rank's rows or the row above them; -1 for any other row. Beyond a
    wall only zero weights can fall: markers keep three cells away, or stencils are folded. */
 static inline PetscInt StencilLocalRow(const Grid g, int comp, const Stencil *s, PetscInt b) {
   PetscInt j = s->first[1] + b;

@@ -23,7 +23,7 @@
 
 /* What an appended file holds. */
 typedef struct {
-  const char *name;    /* of the file */
+  const char *name;    /* name of the file in the folder */
   const char *entries; /* what an entry is, in messages: "frames" */
   Scheme scheme;       /* borrowed */
   PetscErrorCode (*describe)(Scheme scheme,
@@ -40,7 +40,7 @@ typedef struct {
   H5File file;
   PetscBool open;      /* on every rank */
   FILE *index;         /* rank 0, when open */
-  char index_name[64]; /* of the index */
+  char index_name[64]; /* name of the index in the folder */
   PetscInt count;      /* entries in the file; the next entry is set and added at this place */
   PetscReal *time;     /* [count] times of the entries that AppendedGoOn has found; else NULL */
 } AppendedFile;

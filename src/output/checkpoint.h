@@ -22,14 +22,14 @@ typedef struct {
   PetscInt step, past, step_level, step_order, step_guess; /* state, states before it, step-size control */
   PetscInt flow;                                           /* numbers of a flow in a row of u */
   PetscInt frames;                                         /* scheduled frames in run.h5 */
-  PetscInt totals[4];                                      /* of series.csv: solves, tension, bending, coupled */
+  PetscInt totals[4]; /* sums over the columns of series.csv: solves, tension, bending, coupled */
   PetscReal time, dt, dt_last, dt_earlier[SCHEME_PAST];
 } CheckpointNumbers;
 
 typedef struct {
   Folder *folder; /* borrowed */
   PetscInt keep;  /* checkpoints kept, the newest included */
-  PetscInt step;  /* of the newest checkpoint.h5 that this run wrote; -1: none */
+  PetscInt step;  /* step of the newest checkpoint.h5 that this run wrote; -1: none */
 } Checkpoint;
 
 /* CheckpointWrite - write the scheme's state, the record and the number of scheduled frames. Rows and frames up to the

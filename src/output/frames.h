@@ -11,7 +11,7 @@ typedef struct {
   Scheme scheme; /* borrowed */
   AppendedFile file;
   PetscInt scheduled;    /* frames at multiples of -output_every, the first included */
-  PetscReal time;        /* of the last frame */
+  PetscReal time;        /* time of the last frame */
   PetscScalar *cells[3]; /* u, v, p at cell centres of this rank's rows */
   PetscReal *solid;      /* [W][2] force on or places of obstacles' markers; work */
 } Frames;

@@ -67,7 +67,7 @@ static PetscErrorCode FileBegin(MPI_Comm comm, const char path[], PetscBool crea
   if (driver.id < 0) DriverRegister();
   const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
   (void)H5Pset_cache(access, 0, 0, 0, 0);
-  if (driver.id >= 0) (void)H5Pset_driver(access, driver.id, NULL); /* else HDF5 has refused the driver */
+  if (driver.id >= 0) (void)H5Pset_driver(access, driver.id, NULL); /* negative: HDF5 has refused the driver */
   if (create) (void)unlink(path);                                   /* a link leads to a file that is not the run's */
   H5Try(f, f->id = create ? H5Fcreate(path, flags, H5P_DEFAULT, access) : H5Fopen(path, flags, access));
   (void)H5Pclose(access);

@@ -33,7 +33,7 @@ PETSC_EXTERN PetscErrorCode H5ReadArray(H5File *file, const char name[], PetscIn
 /* H5TransferRows - write or read an entry of a series with `each` numbers in every row of a field of the grid: a rank
    has the values of its own rows. Collective. */
 typedef struct {
-  const char *name; /* of the series */
+  const char *name; /* path of the series in the file */
   PetscInt index;
 } H5Entry;
 PETSC_EXTERN PetscErrorCode H5TransferRows(H5File *file, PetscBool write, const H5Entry *entry, Grid grid, Field field,

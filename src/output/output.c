@@ -78,7 +78,7 @@ PetscErrorCode OutputDestroy(Output *output) {
   Folder folder;
   PetscFunctionBeginUser;
   if (!o) PetscFunctionReturn(PETSC_SUCCESS);
-  *output = NULL; /* it is gone also when a file cannot be closed */
+  *output = NULL; /* the output is destroyed also when a file cannot be closed */
   good[0] = SeriesClose(&o->series);
   PetscCall(FramesClose(&o->frames, &good[1]));
   good[2] = XdmfClose(&o->xdmf);

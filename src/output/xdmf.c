@@ -12,7 +12,7 @@
 /* A part of a dataset of run.h5: rows first .. first + n - 1 and columns column .. column + columns - 1 of an entry. */
 typedef struct {
   const char *name;
-  int bytes;                /* of a number */
+  int bytes;                /* bytes of a number */
   PetscInt frame;           /* -1: the dataset is no series, but one entry */
   PetscInt first, n, all;   /* rows; all: of an entry */
   PetscInt column, columns; /* columns */

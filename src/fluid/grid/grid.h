@@ -38,7 +38,7 @@ struct _p_Grid {
 PETSC_EXTERN PetscErrorCode GridCreate(const FluidSpec *spec, Grid *grid);
 PETSC_EXTERN PetscErrorCode GridDestroy(Grid *grid);
 
-/* GridFits - whether n rows of cells can be shared out among so many ranks. Not collective. */
+/* GridFits - whether n rows of cells can be divided among this number of ranks. Not collective. */
 PETSC_EXTERN PetscBool GridFits(PetscInt n, PetscInt ranks);
 
 /* GridPosition - position X[2] (length) of entry (i, j) of a field, j counting the rows of all ranks.
@@ -76,8 +76,8 @@ PETSC_EXTERN PetscErrorCode GridGradient(Grid grid, PetscReal alpha, Vec p, Pets
 /* GridGradientTranspose - q = alpha G^T w, so that the divergence is D w = -G^T w (walls at rest). Collective. */
 PETSC_EXTERN PetscErrorCode GridGradientTranspose(Grid grid, PetscReal alpha, Vec w, Vec q);
 
-/* GridGradientRows, GridGradientTransposeRows - the same two on local rows window[0] .. window[1] - 1 only; other rows
-   are left as they are. Collective. */
+/* GridGradientRows, GridGradientTransposeRows - GridGradient and GridGradientTranspose on local rows window[0] ..
+   window[1] - 1; other rows keep their values. Collective. */
 PETSC_EXTERN PetscErrorCode GridGradientRows(Grid grid, PetscReal alpha, Vec p, PetscBool add, const PetscInt window[2],
                                              Vec w);
 PETSC_EXTERN PetscErrorCode GridGradientTransposeRows(Grid grid, PetscReal alpha, Vec w, const PetscInt window[2],

@@ -10,10 +10,10 @@ typedef struct _p_Convection *Convection;
 struct _p_Convection {
   Fluid fluid; /* borrowed */
   Flow flow;
-  PetscInt width, height;   /* of the padded arrays: a face more on every side than cells */
+  PetscInt width, height;   /* size of the padded arrays, which have one face more on every side than there are cells */
   PetscReal *background[2]; /* u_inf on the padded faces */
-  PetscReal *own[2];        /* u' there */
-  PetscReal *carrier[2];    /* u' + u_inf there */
+  PetscReal *own[2];        /* u' on the padded faces */
+  PetscReal *carrier[2];    /* u' + u_inf on the padded faces */
 };
 
 /* ConvectionCreate - for a background flow, whose values must be the same across periodic boundaries (checked

@@ -19,5 +19,5 @@ PETSC_EXTERN const PetscReal *ZeroFluxProfile(ZeroFlux flux);
    Collective. */
 PETSC_EXTERN PetscErrorCode ZeroFluxCorrect(ZeroFlux flux, Vec u);
 
-/* ZeroFluxCorrectMeans - the same on the row means of u, means[rows of u on this rank]. Collective. */
+/* ZeroFluxCorrectMeans - ZeroFluxCorrect for the row means of u alone, means[rows of u on this rank]. Collective. */
 PETSC_EXTERN PetscErrorCode ZeroFluxCorrectMeans(ZeroFlux flux, PetscReal means[]);

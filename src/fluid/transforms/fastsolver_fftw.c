@@ -14,7 +14,7 @@ typedef struct {
   double *buffer;
   fftw_plan forward, backward;
   PetscReal *lambda[2]; /* eigenvalues of the second difference in x and y, in transform order */
-  PetscReal scale;      /* of a forward and a backward transform */
+  PetscReal scale;      /* factor that makes a forward and a backward transform the identity */
 } Transform;
 
 /* Kinds of transform in one direction, and the size that a forward and a backward one multiply by. */

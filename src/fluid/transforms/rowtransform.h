@@ -33,7 +33,7 @@ struct _p_RowTransform {
   double *modes;     /* [width] what Forward makes and Backward takes */
   double *line;      /* work, the other end of the Fourier transforms */
   PetscReal sign;    /* 1 cosines, -1 sines of half samples, 0 others */
-  SineMatrix matrix; /* of a short row between walls, which has nothing of what follows */
+  SineMatrix matrix; /* the transform of a short row between walls, which needs none of the fields below */
   PetscInt levels;   /* sines on the entries: halvings */
   Fourier f[ROW_LEVELS];
   PetscInt base;    /* sines on the entries: cells left after the halvings, base - 1 entries; 0: another kind */

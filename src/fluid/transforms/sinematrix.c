@@ -35,8 +35,8 @@ PetscErrorCode SineMatrixDestroy(SineMatrix *m) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* y = x A of `vectors` times LANES columns, of which the last vector may be only in part in y; inlined for each number
-   of vectors, which stay in registers. */
+/* y = x A for `vectors` times LANES columns of A. The last vector may be longer than the rest of y. The function is
+   inlined for each number of vectors, so that all sums stay in registers. */
 static inline __attribute__((always_inline)) void Columns(int vectors, PetscInt n, PetscInt stride, PetscInt columns,
                                                           const PetscReal A[], const PetscReal x[], PetscReal y[]) {
   Lanes sum[8];
