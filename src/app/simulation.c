@@ -98,7 +98,6 @@ static PetscErrorCode CreateCoupling(Scene scene, Simulation s) {
                              .near = (NearFieldType)scene->coupling.near_field,
                              .spec = &scene->fluid,
                              .box_part = SceneHasBoxPart(scene),
-                             .apart = SceneDipolesMayBeApart(scene),
                              .lag = scene->fluid.inertia == INERTIA_UNSTEADY ? PETSC_TRUE : PETSC_FALSE,
                              .area_target = scene->scheme.area_target && vesicles ? PETSC_TRUE : PETSC_FALSE,
                              .repulsion = scene->repulsion.stress > 0 && vesicles ? &scene->repulsion : NULL};

@@ -2,7 +2,6 @@
 #include "mobility/contrast.h"
 
 #define MOST_ROUNDS 4
-#define ROUNDING 1e-8 /* of the first residual: what rounding leaves out of GMRES's is far below */
 
 /* -coupled_ksp_rtol is relative to the norm of the step's right-hand side (f, g, k of obstacles), not to what the
    initial guess left of it. */
@@ -205,14 +204,11 @@ static PetscErrorCode Reference(CoupledSolver s, const CoupledProblem *q) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* x + the change of a KSPSolve, with u and p or what is measured of them; b becomes the residual that is left. Where
-   the velocity of the solution is made at the end GMRES's own residual will do. */
-static PetscErrorCode Follow(CoupledSolver s, PetscReal goal, SolveReport *report) {
+/* x + the change of a KSPSolve, with u and p or what is measured of them; b becomes the residual that is left. */
+static PetscErrorCode Follow(CoupledSolver s, SolveReport *report) {
   PetscFunctionBeginUser;
   PetscCall(VecAXPY(s->x, 1, s->change));
   PetscCall(VecAYPX(s->pending, s->trial.state == TRIAL_MADE ? -1 : 1, s->change));
-  if (ReducedDefersDipoles(s->reduced) && s->preconditioner->flexible && goal > ROUNDING * s->trial.scale)
-    PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ReducedUpdate(s->reduced, s->pending, s->x, s->b));
   PetscCall(VecSet(s->pending, 0));
   PetscCall(VecNorm(s->b, NORM_2, &report->residual));
@@ -235,7 +231,7 @@ static PetscErrorCode Correct(CoupledSolver s, const CoupledProblem *q, PetscRea
     PetscCall(VecSet(s->pending, 0));
     report->residual = t->residual;
   } else if (its > 0 || q->w) /* without w nothing is left to be done where the first guess is good enough */
-    PetscCall(Follow(s, goal, report));
+    PetscCall(Follow(s, report));
   t->state = TRIAL_NONE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -272,7 +268,6 @@ PetscErrorCode CoupledSolverSolve(CoupledSolver s, const CoupledProblem *q, Solv
     PetscCall(Correct(s, q, goal, report));
     if (report->why < 0 || report->residual <= 2 * goal) break;
   }
-  if (report->why >= 0) PetscCall(ReducedFinish(s->reduced, s->pending, s->x));
   report->measures = s->reduced->measures;
   PreconditionerSolved(s->preconditioner, report->its);
   if (report->why >= 0) PetscCall(UnknownsUnpack(s->unknowns, s->x, q->V, q->solid, q->sigma));

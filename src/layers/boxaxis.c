@@ -18,7 +18,6 @@ void BoxAxisStretch(PetscReal from, PetscReal factor, BoxAxis *a) {
 
 void BoxAxisChebyshev(PetscInt places, PetscReal low, PetscReal high, BoxAxis *a) {
   a->wall = PETSC_TRUE;
-  a->faded = BOX_FADED;
   a->low = low;
   a->high = high;
   a->modes = 0;
@@ -71,14 +70,14 @@ static inline Lanes ErrorFunction(Lanes x) {
 #define TIE 1e-10 /* of a period: of two images that are as near but for rounding, always the one at -period/2 */
 
 /* Along one period, distances d become the nearest images' and part is multiplied by erfc/2, which falls from 1 about
-   `faded` of a period. */
-static inline void NearestImage(Lanes period, Lanes faded, Lanes *d, Lanes *part) {
+   BOX_FADED of a period. */
+static inline void NearestImage(Lanes period, Lanes *d, Lanes *part) {
   const PetscReal whole = 6755399441055744.; /* 3 2^51: beside it the last bit is 1 */
   const Lanes one = 1 + (Lanes){0}, x = *d / period, from = x - ((x + whole) - whole);
   const Lanes off = from - LanesWhere((LanesBits)(from >= 0.5 - TIE), one);
   const Lanes size = LanesWhere((LanesBits)(off > 0), 2 * off) - off;
   *d -= period * (x - off);
-  *part *= 0.5 - 0.5 * ErrorFunction((size - faded) * (MOST / faded));
+  *part *= 0.5 - 0.5 * ErrorFunction((size - BOX_FADED) * (MOST / BOX_FADED));
 }
 
 void BoxImageRow(const BoxAxis axis[2], PetscInt n, PetscReal *const d[2], PetscReal part[]) {
@@ -87,7 +86,7 @@ void BoxImageRow(const BoxAxis axis[2], PetscInt n, PetscReal *const d[2], Petsc
     for (int dir = 0; dir < 2; dir++) {
       Lanes x = LanesAt(d[dir] + k);
       if (axis[dir].wall) continue;
-      NearestImage(axis[dir].high - axis[dir].low + (Lanes){0}, axis[dir].faded + (Lanes){0}, &x, &all);
+      NearestImage(axis[dir].high - axis[dir].low + (Lanes){0}, &x, &all);
       LanesPut(x, d[dir] + k);
     }
     LanesPut(all, part + k);

@@ -3,16 +3,15 @@
 #pragma once
 #include "base/base.h"
 
-#define BOX_PLACES 256 /* largest number of places in a direction */
-#define BOX_FADED 0.3
-#define BOX_WALL_PLACES 24 /* largest number of places between walls, which are Chebyshev's */
+#define BOX_PLACES 256     /* largest number of places in a direction */
+#define BOX_FADED 0.3      /* of a period: the distance where half of the lattice's mobility is left out (BoxImage) */
+#define BOX_WALL_PLACES 16 /* largest number of places between walls, which are Chebyshev's */
 
 /* Places in one direction. Between walls a force may be at any of them; where the box is periodic it is at the first
    one, and W depends on the offset alone. */
 typedef struct {
   PetscBool wall;
   PetscReal low, high; /* of the places (length): within the walls, or the period */
-  PetscReal faded;     /* part of a period: the distance where half of the lattice's mobility is left out (BoxImage) */
   PetscInt modes;      /* modes that are kept of W; 0 between walls */
   PetscInt places;     /* an even number: mirror images in pairs */
   PetscReal place[BOX_PLACES];
@@ -25,10 +24,9 @@ typedef struct {
 PETSC_EXTERN void BoxAxisPeriodic(PetscInt places, PetscInt modes, PetscReal low, PetscReal high, BoxAxis *axis);
 PETSC_EXTERN void BoxAxisStretch(PetscReal from, PetscReal factor, BoxAxis *axis);
 
-/* BoxAxisOfGrid - the axis of a direction of the box without places: what BoxImage needs, images that fade at the part
-   `faded` of the period. Not collective. */
-static inline BoxAxis BoxAxisOfGrid(PetscBool wall, PetscReal low, PetscReal high, PetscReal faded) {
-  return (BoxAxis){.wall = wall, .low = low, .high = high, .faded = faded};
+/* BoxAxisOfGrid - the axis of a direction of the box without places: what BoxImage needs. Not collective. */
+static inline BoxAxis BoxAxisOfGrid(PetscBool wall, PetscReal low, PetscReal high) {
+  return (BoxAxis){.wall = wall, .low = low, .high = high};
 }
 
 /* BoxAxisChebyshev - the axis with so many of Chebyshev's places (even, at most BOX_WALL_PLACES) from low to high

@@ -221,13 +221,10 @@ void DipoleImageExact(const DipoleImageForms *f, const ImagePair *p, PetscReal K
   First((const Lanes(*)[DIPOLE_COUNT])four, K);
 }
 
-void DipoleImageFarFour(const DipoleImageForms *f, Lanes x, Lanes a, Lanes b, Lanes K[2][DIPOLE_COUNT]) {
-  const ImageTerms t = ImageTermsMake(1, x, a, b);
-  FarSums(f, x, a, b, &t, K);
-}
-
 void DipoleImageFar(const DipoleImageForms *f, const ImagePair *p, PetscReal K[2][DIPOLE_COUNT]) {
+  const Lanes x = p->x + (Lanes){0}, a = p->a + (Lanes){0}, b = p->b + (Lanes){0};
+  const ImageTerms t = ImageTermsMake(1, x, a, b);
   Lanes four[2][DIPOLE_COUNT];
-  DipoleImageFarFour(f, p->x + (Lanes){0}, p->a + (Lanes){0}, p->b + (Lanes){0}, four);
+  FarSums(f, x, a, b, &t, four);
   First((const Lanes(*)[DIPOLE_COUNT])four, K);
 }

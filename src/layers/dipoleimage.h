@@ -25,13 +25,10 @@ typedef struct {
 
 /* DipoleImageFormsMake - for responses with a kernel of these moments along and across. DipoleImageExact -
    K[component][part] of the exact fluid's image. DipoleImageFar - that less the lattice's, to the order 1/R^7 up to
-   IMAGE_THIRD cells, 1/R^5 up to IMAGE_SECOND and 1/R^3 beyond, R the distance from the image; of four pairs. Not
-   collective. */
+   IMAGE_THIRD cells, 1/R^5 up to IMAGE_SECOND and 1/R^3 beyond, R the distance from the image. Not collective. */
 PETSC_EXTERN void DipoleImageFormsMake(const ImageMoments kernel[2], DipoleImageForms *forms);
 PETSC_EXTERN void DipoleImageExact(const DipoleImageForms *forms, const ImagePair *pair, PetscReal K[2][DIPOLE_COUNT]);
 PETSC_EXTERN void DipoleImageFar(const DipoleImageForms *forms, const ImagePair *pair, PetscReal K[2][DIPOLE_COUNT]);
-PETSC_EXTERN void DipoleImageFarFour(const DipoleImageForms *forms, Lanes x, Lanes a, Lanes b,
-                                     Lanes K[2][DIPOLE_COUNT]);
 
 /* One marker's dipoles seen from a wall, with the polynomials of the exact image of J = n. */
 typedef struct {

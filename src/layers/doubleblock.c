@@ -235,7 +235,7 @@ PetscErrorCode DoubleBlockFill(const DoublePairs *s, const DoubleBlock *b, Petsc
   const LayerSetting *set = s->single->set;
   const PetscInt n = LayoutCount(set->markers->layout, b->row), m = LayoutCount(set->markers->layout, b->column);
   const PetscInt first = set->markers->layout->start[b->column];
-  const PetscReal reach = lattice && !s->images ? 0 : set->box ? PETSC_MAX_REAL : DOUBLE_IMAGE_REACH;
+  const PetscReal reach = set->box ? PETSC_MAX_REAL : DOUBLE_IMAGE_REACH;
   PetscReal *own = NULL;
   Fill f;
   PetscFunctionBeginUser;

@@ -36,7 +36,6 @@ typedef struct {
   const PaddedStencil *dipole;     /* [DIPOLE_COUNT M] unfolded */
   const PetscReal *normal, *along; /* [2M] n w, [M] w (length), of bodies that have a jump */
   const PetscReal *length;         /* [bodies] SUM w */
-  PetscBool images;                /* whether L has walls' images: a box table may have them instead */
 } DoublePairs;
 
 /* DoubleBlockFill - C of a block or, without lattice, D, [2 n_column][2 n_row], without finer points. DoubleBlockRefine

@@ -211,22 +211,3 @@ void DoubleImageRange(DoubleImage m, DoubleColumn *c) {
       c->near[wall] = PetscMin(c->near[wall], y[k]);
   }
 }
-
-void DoubleImageFar(const void *image, PetscInt n, const PetscReal X[], const PetscReal Y[2], PetscReal V[]) {
-  const struct _p_DoubleImage *m = image;
-  const Grid g = m->single->markers->grid;
-  (void)PetscArrayzero(V, 2 * DIPOLE_COUNT * n);
-  for (int wall = 0; wall < 4; wall++)
-    for (PetscInt k = 0; k < n && g->wall[wall / 2]; k += LANES) {
-      Lanes x[2], seen[3], K[2][DIPOLE_COUNT];
-      LanesPairs(X + 2 * k, &x[0], &x[1]);
-      NearImageSeen(g, wall, x, Y, seen);
-      DipoleImageFarFour(&m->forms, seen[0], seen[1], seen[2], K);
-      for (int c = 0; c < 2; c++)
-        for (int q = 0; q < DIPOLE_COUNT; q++) {
-          const Place to = PlaceOf(wall, c, q);
-          PetscReal *at = V + (to.component * DIPOLE_COUNT + to.part) * n + k;
-          LanesPut(LanesAt(at) + to.sign / g->h * K[c][q], at);
-        }
-    }
-}

@@ -55,10 +55,8 @@ PETSC_EXTERN void DoubleImageAddColumn(DoubleImage image, PetscReal reach, const
 
 /* DoubleImageAdd - of one pair, to unit tensor parts: exact +=, and lattice += image, which holds the free lattice's.
    DoubleImageExact - exact += that of two points and one wall, 2 times the direction of its normal plus its side.
-   DoubleImageFar - BoxImages (boxregion.h) of the double layer, image: a DoubleImage. Not collective. */
+   Not collective. */
 PETSC_EXTERN void DoubleImageAdd(DoubleImage image, PetscInt i, PetscInt j, const PetscReal d[2], PetscReal reach,
                                  PetscReal exact[2][DIPOLE_COUNT], PetscReal lattice[2][DIPOLE_COUNT]);
 PETSC_EXTERN void DoubleImageExact(DoubleImage image, int wall, const ImagePair *pair,
                                    PetscReal exact[2][DIPOLE_COUNT]);
-PETSC_EXTERN void DoubleImageFar(const void *image, PetscInt n, const PetscReal X[], const PetscReal Y[2],
-                                 PetscReal V[]);

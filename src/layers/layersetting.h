@@ -39,15 +39,3 @@ static inline void StressletFour(Lanes x, Lanes y, const PetscReal N[2], Lanes D
   D[1] = q * y * y;
   D[2] = qx * y;
 }
-
-/* StressletParts - of four pairs, of unit parts of a symmetric tensor J n + n J, times scale: K[component][part]; zero
-   at the source itself. Not collective. */
-static inline void StressletParts(Lanes x, Lanes y, Lanes scale, Lanes K[2][DIPOLE_COUNT]) {
-  const Lanes r[2] = {x, y}, r2 = x * x + y * y;
-  const Lanes q = LanesWhere((LanesBits)(r2 > 0), scale / (PETSC_PI * r2 * r2));
-  for (int c = 0; c < 2; c++) {
-    K[c][DIPOLE_XX] = 0.5 * q * r[c] * x * x;
-    K[c][DIPOLE_YY] = 0.5 * q * r[c] * y * y;
-    K[c][DIPOLE_XY] = q * r[c] * x * y;
-  }
-}

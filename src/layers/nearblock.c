@@ -258,7 +258,7 @@ static PetscErrorCode AddSelf(SinglePairs f, const NearBlock *b, NearStore *s) {
 static PetscBool CountsWall(SinglePairs f, const NearBlock *b, int direction, int side) {
   const Grid g = f->set->markers->grid;
   const PetscReal gap = NearImageGap(g, direction, side, &f->bounds[b->row], &f->bounds[b->column]);
-  return f->images && g->wall[direction] && (f->set->box || gap < IMAGE_REACH * g->h) ? PETSC_TRUE : PETSC_FALSE;
+  return g->wall[direction] && (f->set->box || gap < IMAGE_REACH * g->h) ? PETSC_TRUE : PETSC_FALSE;
 }
 
 PetscErrorCode NearBlockFill(SinglePairs f, const NearBlock *b, NearStore *s) {

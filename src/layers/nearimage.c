@@ -144,24 +144,6 @@ void NearImageAddFar(NearImage m, const PetscBool walls[2][2], const NearImageRo
   }
 }
 
-void NearImageFar(const void *image, PetscInt n, const PetscReal X[], const PetscReal Y[2], PetscReal V[]) {
-  static const int place[4] = {0, 3, 1, 2}; /* of xx, yy, xy, yx among [response][source] */
-  const struct _p_NearImage *m = image;
-  const Grid g = m->markers->grid;
-  (void)PetscArrayzero(V, 4 * n);
-  for (int wall = 0; wall < 4; wall++)
-    for (PetscInt k = 0; k < n && g->wall[wall / 2]; k += LANES) {
-      Lanes x[2], seen[3], part[IMAGE_PARTS];
-      LanesPairs(X + 2 * k, &x[0], &x[1]);
-      NearImageSeen(g, wall, x, Y, seen);
-      ImageFarFour(&m->kernel, seen[0], seen[1], seen[2], part);
-      for (int q = 0; q < IMAGE_PARTS; q++) {
-        PetscReal *at = V + place[image_place[wall / 2][q]] * n + k;
-        LanesPut(LanesAt(at) + (wall % 2 && q >= IMAGE_NT ? -1 : 1) / m->nu * part[q], at);
-      }
-    }
-}
-
 /* SUM w [c|c| - sgn(c)/4] - y^2 + 1/4 over the tangential stencil's rows at c from the wall, before it is folded. */
 static PetscReal OddMoment(PetscReal y, PetscInt first, PetscInt n, const PetscReal w[]) {
   PetscReal sum = 0.25 - y * y;

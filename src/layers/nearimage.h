@@ -107,9 +107,6 @@ typedef struct {
 } NearImageRow;
 PETSC_EXTERN void NearImageAddFar(NearImage image, const PetscBool walls[2][2], const NearImageRow *row);
 
-/* NearImageFar - BoxImages (boxregion.h) of the single layer, image: a NearImage. Not collective. */
-PETSC_EXTERN void NearImageFar(const void *image, PetscInt n, const PetscReal X[], const PetscReal Y[2], PetscReal V[]);
-
 /* NearImageBlake - Blake's image of the Stokeslet in a wall, less the Stokeslet, of four pairs in cells and of
    viscosity
    1. Not collective. */

@@ -45,10 +45,9 @@ PetscErrorCode SinglePairsDestroy(SinglePairs *pairs) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SinglePairsPlace(SinglePairs f, PetscBool images) {
+PetscErrorCode SinglePairsPlace(SinglePairs f) {
   const Markers m = f->set->markers;
   PetscFunctionBeginUser;
-  f->images = images;
   for (PetscInt v = 0; v < m->layout->bodies; v++)
     f->bounds[v] = NearBoundsOf(LayoutCount(m->layout, v), m->X + 2 * m->layout->start[v]);
   for (PetscInt k = 0; k < m->layout->M && !m->grid->free; k++) {

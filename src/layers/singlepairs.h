@@ -19,7 +19,6 @@ struct _p_SinglePairs {
   const LayerSetting *set;    /* borrowed */
   const OffsetTable *lattice; /* the lattice's Stokeslet (latticegreen.h), borrowed; not read in unbounded fluid */
   NearImage image;            /* what walls add; NULL in unbounded fluid */
-  PetscBool images;           /* whether it counts: a box table may have it instead */
   NearFar far[2];             /* closed forms of distant pairs: of one body, of two */
   PetscReal **logarithm;      /* [bodies][n] of own bodies, by difference of the markers' numbers: what the curve's
                                  quadrature has besides ln(r^2) (SelfLogarithm); others NULL */
@@ -34,6 +33,5 @@ PETSC_EXTERN PetscErrorCode SinglePairsCreate(const LayerSetting *set, const Off
                                               const ImageTable *half, SinglePairs *pairs);
 PETSC_EXTERN PetscErrorCode SinglePairsDestroy(SinglePairs *pairs);
 
-/* SinglePairsPlace - where the markers have been placed (MarkersPlace); images: whether those in walls count. Not
-   collective. */
-PETSC_EXTERN PetscErrorCode SinglePairsPlace(SinglePairs pairs, PetscBool images);
+/* SinglePairsPlace - where the markers have been placed (MarkersPlace). Not collective. */
+PETSC_EXTERN PetscErrorCode SinglePairsPlace(SinglePairs pairs);

@@ -59,7 +59,7 @@ static PetscErrorCode Create(const FluidSpec *spec, const char kernel[], const B
   PetscCall(PlaceMarkers(b, kernel));
   b->set = (LayerSetting){.markers = b->markers, .nu = spec->nu, .unit = lattice->unit};
   PetscCall(SinglePairsCreate(&b->set, lattice->stokeslet, lattice->half, &b->pairs));
-  PetscCall(SinglePairsPlace(b->pairs, PETSC_TRUE));
+  PetscCall(SinglePairsPlace(b->pairs));
   if (lattice->dipole) {
     PetscCall(DMCreateGlobalVector(b->fluid->grid->da[FIELD_P], &b->source));
     PetscCall(DoubleImageCreate(b->pairs->image, lattice->dipole, &b->twice));
@@ -86,31 +86,6 @@ static PetscErrorCode Destroy(BoxGrid *b) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-void BoxFaded(const BoxAxis axis[2], PetscInt n, PetscReal *const d[2], PetscReal V[]) {
-  PetscReal zero[2] = {0, 0};
-  const PetscReal whole = BoxImage(axis, zero);
-  BoxImageRow(axis, n, d, V);
-  for (PetscInt k = 0; k < n; k += LANES) {
-    Lanes K[2][DIPOLE_COUNT];
-    StressletParts(LanesAt(d[0] + k), LanesAt(d[1] + k), (whole - LanesAt(V + k)) / whole, K);
-    for (int q = 0; q < 2 * DIPOLE_COUNT; q++) LanesPut(K[q / DIPOLE_COUNT][q % DIPOLE_COUNT], V + q * n + k);
-  }
-}
-
-/* L = K less what fades of the exact double layer D; towards half a period, where images change, (1 - lost) D. */
-static void All(const BoxAxis axis[2], const PetscReal d[2], PetscReal K[2][DIPOLE_COUNT],
-                PetscReal L[2][DIPOLE_COUNT]) {
-  PetscReal near = 1, at[2] = {d[0], d[1]}, zero[2] = {0, 0};
-  const PetscReal whole = BoxImage(axis, zero), lost = (whole - BoxImage(axis, at)) / whole;
-  Lanes D[2][DIPOLE_COUNT];
-  for (int dir = 0; dir < 2; dir++)
-    if (!axis[dir].wall)
-      near *= 1 - BoxSmoothStep(PetscAbsReal(d[dir]) / (axis[dir].high - axis[dir].low), BOX_ALL_OFFSET, 0.5);
-  StressletParts(d[0] + (Lanes){0}, d[1] + (Lanes){0}, 1 + (Lanes){0}, D);
-  for (int c = 0; c < 2; c++)
-    for (int part = 0; part < DIPOLE_COUNT; part++) L[c][part] = near * K[c][part] + (1 - lost - near) * D[c][part][0];
-}
-
 /* What the lattice has of the parts of place j's source at place i, less what the near field gives of the walls: the
    velocities L; with the exact images where the smooth part itself is wanted. */
 static void Lattice(BoxGrid *b, PetscInt i, PetscInt j, PetscReal L[2][DIPOLE_COUNT]) {
@@ -124,10 +99,6 @@ static void Lattice(BoxGrid *b, PetscInt i, PetscInt j, PetscReal L[2][DIPOLE_CO
     DoubleLatticeParts(b->lattice->dipole, BOX_LATTICE_CELLS, &b->pairs->stencil[2 * i], &b->dipole[DIPOLE_COUNT * j],
                        periods, (PetscReal[]){d[0] / h, d[1] / h}, K);
     for (int q = 0; q < 2 * DIPOLE_COUNT; q++) K[q / DIPOLE_COUNT][q % DIPOLE_COUNT] /= h;
-    if (b->lattice->all) {
-      All(b->axis, d, K, L);
-      return;
-    }
     DoubleImageAdd(b->twice, i, j, d, PETSC_MAX_REAL, exact, K);
     for (int c = 0; c < 2; c++)
       for (int part = 0; part < DIPOLE_COUNT; part++) L[c][part] = fade * (K[c][part] - exact[c][part]);

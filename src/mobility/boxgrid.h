@@ -22,16 +22,7 @@ typedef struct {
   const ImageTable *half;    /* in front of a wall; NULL without walls */
   const OffsetTable *dipole; /* [2] */
   PetscBool whole;           /* the smooth part itself is wanted: less the exact images in walls */
-  PetscBool all;             /* of dipoles, in the middle of the box: with all images in walls, and for offsets up to
-                                BOX_ALL_OFFSET of a period, right when BoxFaded is added */
 } BoxLattice;
-
-#define BOX_ALL_OFFSET 0.3
-
-/* BoxFaded - V[2 components][DIPOLE_COUNT][n] = the unbounded double layer at d[2][n] from a dipole (length) times what
-   fades of it over a period, which `axis` says; nothing of it next to the dipole. Offsets are less than half a period,
-   n is a number of whole vectors. Not collective. */
-PETSC_EXTERN void BoxFaded(const BoxAxis axis[2], PetscInt n, PetscReal *const d[2], PetscReal V[]);
 
 /* BoxGridAdd - W += scale times the smooth part of the grid `spec`, with the named kernel, its lattice as far as it is
    tabulated and the closed form beyond. W[2][parts][x pairs][y pairs], of a velocity component to a force component

@@ -11,7 +11,7 @@ PetscErrorCode BoxPartCreate(const FluidSpec *spec, Markers markers, const BoxLa
   b->markers = markers;
   b->ramp = spec->inertia == INERTIA_NONE ? PETSC_FALSE : PETSC_TRUE;
   for (int d = 0; d < 2; d++)
-    b->axis[d] = BoxAxisOfGrid(markers->grid->wall[d], markers->grid->lo[d], markers->grid->hi[d], BOX_FADED);
+    b->axis[d] = BoxAxisOfGrid(markers->grid->wall[d], markers->grid->lo[d], markers->grid->hi[d]);
   PetscCall(PetvesEvent("BoxTable", &b->make));
   PetscCall(PetscMalloc1(2 * markers->layout->n, &b->X));
   for (PetscInt k = 0; k < 2 * markers->layout->n; k++) b->X[k] = NAN;
@@ -22,10 +22,7 @@ PetscErrorCode BoxPartDestroy(BoxPart *box) {
   BoxPart b = *box;
   PetscFunctionBeginUser;
   if (!b) PetscFunctionReturn(PETSC_SUCCESS);
-  for (int k = 0; k < 2; k++) {
-    PetscCall(BoxRegionDestroy(&b->region[k]));
-    PetscCall(BoxTableDestroy(&b->table[k]));
-  }
+  for (int k = 0; k < 2; k++) PetscCall(BoxTableDestroy(&b->table[k]));
   PetscCall(PetscFree2(b->A, b->amplitude));
   PetscCall(PetscFree(b->X));
   PetscCall(PetscFree(*box));
@@ -71,14 +68,9 @@ static PetscErrorCode TakeTable(BoxPart b, PetscBool *moved) {
     PetscCall(PetscLogEventBegin(b->make, 0, 0, 0, 0));
     PetscCall(BoxTableCreate(b->spec, b->markers->kernel->name, &b->lattice, middle, t));
     PetscCall(PetscLogEventEnd(b->make, 0, 0, 0, 0));
-    b->region[middle] = (BoxRegion){.comm = b->spec->comm,
-                                    .grid = b->markers->grid,
-                                    .whole = t,
-                                    .image = b->image,
-                                    .images = b->images,
-                                    .off = BOX_REGION_OFF};
   }
-  PetscCall(BoxRegionAt(&b->region[middle], l->M, b->markers->X, &b->at, moved));
+  *moved = b->at == t ? PETSC_FALSE : PETSC_TRUE;
+  b->at = t;
   if (b->at->rank <= b->room) PetscFunctionReturn(PETSC_SUCCESS);
   b->room = b->at->rank;
   PetscCall(PetscFree2(b->A, b->amplitude));
@@ -88,7 +80,7 @@ static PetscErrorCode TakeTable(BoxPart b, PetscBool *moved) {
 
 PetscErrorCode BoxPartPlace(BoxPart b) {
   const Layout l = b->markers->layout;
-  PetscBool moved;
+  PetscBool moved = PETSC_FALSE;
   PetscFunctionBeginUser;
   PetscCall(TakeTable(b, &moved));
   for (PetscInt k = 0; k < l->n; k++) {

@@ -9,21 +9,18 @@
 
    Create, Place wherever the markers have been placed, then Apply or Add. */
 #pragma once
-#include "mobility/boxregion.h"
+#include "mobility/boxtable.h"
 #include "markers/markers.h"
 
 typedef struct _p_BoxPart *BoxPart;
 struct _p_BoxPart {
   const FluidSpec *spec; /* borrowed */
   BoxLattice lattice;
-  Markers markers;   /* borrowed */
-  BoxAxis axis[2];   /* of the box: what BoxImage needs */
-  PetscBool ramp;    /* unsteady flow: D fades next to walls */
-  const void *image; /* of walls, in squares: BoxRegion's */
-  BoxImages images;
+  Markers markers;      /* borrowed */
+  BoxAxis axis[2];      /* of the box: what BoxImage needs */
+  PetscBool ramp;       /* unsteady flow: D fades next to walls */
   BoxTable table[2];    /* of all the box; of its middle, where all markers are in that. Made when needed */
-  BoxRegion region[2];  /* of each */
-  const BoxTable *at;   /* of all these tables, the one that A is of */
+  const BoxTable *at;   /* the table that A is of */
   PetscReal *A;         /* [2n][rank] of the own markers, D = A diag(l) A^T */
   PetscReal *X;         /* [2n] where they are in A */
   PetscReal *amplitude; /* [rank] work */
@@ -36,16 +33,6 @@ struct _p_BoxPart {
  */
 PETSC_EXTERN PetscErrorCode BoxPartCreate(const FluidSpec *spec, Markers markers, const BoxLattice *lattice,
                                           BoxPart *box);
-
-/* BoxPartTakeImages - from here on squares have the images of these walls, `images` of `image`, which is borrowed.
-   BoxPartHasImages - whether those where the markers are placed have them. Not collective. */
-static inline void BoxPartTakeImages(BoxPart box, const void *image, BoxImages images) {
-  box->image = image;
-  box->images = images;
-}
-static inline PetscBool BoxPartHasImages(BoxPart box) {
-  return box->at->images;
-}
 
 PETSC_EXTERN PetscErrorCode BoxPartDestroy(BoxPart *box);
 

@@ -2,17 +2,19 @@
 #include "numerics/blas.h"
 
 #define WALL_MARGIN 0.5 /* cells of the coarser grid between the places and a wall */
-#define PLACES 16       /* between two walls, */
-#define MIDDLE_PLACES 8 /* in the middle half of the box, far from walls, */
-#define ALL_PLACES 24   /* and of all of the smooth part, which has what has faded along a channel */
+#define PLACES 16       /* between two walls */
+#define MIDDLE_PLACES 8 /* in the middle half of the box, far from walls */
 #define MODES 16        /* of a period as long as the other side */
 #define COARSE_CELLS 64 /* of the shorter side, on the coarser grid */
 #define MOST_CELLS 80
-#define ALL_CELLS 32   /* where the table is all of the smooth part: fewer than these are doubled */
 #define RATIO_CELLS 48 /* of the shorter side, from which on the pair's ratio is 3/2, */
 #define FEW_CELLS 24   /* and below which it is 3 */
 #define SMALLEST 5e-4  /* of the largest: eigenvalues below it are dropped */
-#define ALL_FADED 0.25 /* where the table is all of the smooth part, which is to have no kink at half a period */
+
+/* Parts of a source: two of a force, three of a dipole. */
+static inline PetscInt BoxParts(const BoxTable *t) {
+  return t->components == 2 ? 2 : 3;
+}
 
 /* The coarser grid, its cells square: the run's own or, where that has more than COARSE_CELLS across, the fewest from
    there up to MOST_CELLS that fit the box, or else fit it best: within a half of 1/COARSE_CELLS, which D is smooth
@@ -31,16 +33,14 @@ static void CoarseCells(const FluidSpec *spec, PetscInt cells[2]) {
   }
 }
 
-static void MakeAxis(const FluidSpec *spec, int dir, PetscReal H, PetscBool middle, PetscReal faded, PetscInt places,
-                     BoxAxis *a) {
+static void MakeAxis(const FluidSpec *spec, int dir, PetscReal H, PetscBool middle, BoxAxis *a) {
   const PetscInt shorter = PetscMin(spec->cells[0], spec->cells[1]), times = (spec->cells[dir] + shorter - 1) / shorter;
   const PetscReal low = spec->box[2 * dir], high = spec->box[2 * dir + 1];
   const PetscReal margin = PetscMax(WALL_MARGIN * H, middle ? 0.25 * (high - low) : 0);
   if (spec->bc[dir] == BC_WALL) {
-    BoxAxisChebyshev(places, low + margin, high - margin, a);
+    BoxAxisChebyshev(middle ? MIDDLE_PLACES : PLACES, low + margin, high - margin, a);
     return;
   }
-  *a = BoxAxisOfGrid(PETSC_FALSE, low, high, faded);
   BoxAxisPeriodic(times * (BOX_PLACES / FLUID_LONGEST_PERIOD), times * MODES, low, high, a);
 }
 
@@ -232,7 +232,10 @@ static PetscErrorCode KeepLargest(const BoxTable *t, BoxBlock *q, const PetscRea
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode BoxTableDecompose(MPI_Comm comm, PetscReal smallest, BoxTable *t) {
+/* From D between the functions of each block, symmetric, in Q[size][size] with size = components n[0] n[1]: the largest
+   eigenvalues, down to the part SMALLEST of the largest of all, and their vectors. They are those of the first rank, as
+   equal eigenvalues leave to rounding which vectors they have. Collective. */
+static PetscErrorCode BoxTableDecompose(MPI_Comm comm, BoxTable *t) {
   const PetscInt count = t->components * t->functions[0] * t->functions[1];
   PetscReal *l, most = 0;
   PetscInt at = 0;
@@ -250,32 +253,10 @@ PetscErrorCode BoxTableDecompose(MPI_Comm comm, PetscReal smallest, BoxTable *t)
   t->rank = at = 0;
   for (PetscInt b = 0; b < t->blocks; b++) {
     BoxBlock *q = &t->block[b];
-    PetscCall(KeepLargest(t, q, l + at, smallest * most, t->l, &t->rank));
+    PetscCall(KeepLargest(t, q, l + at, SMALLEST * most, t->l, &t->rank));
     at += t->components * q->n[0] * q->n[1];
   }
   PetscCall(PetscFree(l));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Of dipoles, D as it is: the velocities' functions stand for eigenvectors, with D^T from them to the tensors' and
-   eigenvalues of 1. */
-static PetscErrorCode KeepAll(BoxTable *t) {
-  PetscFunctionBeginUser;
-  t->rank = 2 * t->functions[0] * t->functions[1];
-  PetscCall(PetscMalloc1(t->rank, &t->l));
-  for (PetscInt k = 0; k < t->rank; k++) t->l[k] = 1;
-  for (PetscInt b = 0, at = 0; b < t->blocks; b++) {
-    BoxBlock *q = &t->block[b];
-    const PetscInt n = 2 * q->n[0] * q->n[1], size = t->components * q->n[0] * q->n[1];
-    PetscReal *D = q->Q;
-    q->start = at;
-    q->modes = n;
-    at += n;
-    PetscCall(PetscMalloc1(size * n, &q->Q));
-    for (PetscInt i = 0; i < size; i++)
-      for (PetscInt m = 0; m < n; m++) q->Q[i * n + m] = i < n ? i == m : D[i * size + m];
-    PetscCall(PetscFree(D));
-  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -286,7 +267,6 @@ static PetscErrorCode Pair(const FluidSpec *run, const char kernel[], const BoxL
   const PetscInt shorter = PetscMin(cells[0], cells[1]), odd = cells[0] % 2 || cells[1] % 2;
   const PetscInt halves = shorter < FEW_CELLS ? 6 : shorter < RATIO_CELLS || odd ? 4 : 3; /* 2 r */
   const PetscReal scale = PetscSqr(halves * FluidSpecCellSize(run) / H) / (halves * halves - 4);
-  const PetscReal to_zero[2] = {-4. / (halves * halves - 4), halves * halves / (halves * halves - 4.)};
   FluidSpec spec = *run;
   PetscFunctionBeginUser;
   spec.comm = PETSC_COMM_SELF;
@@ -296,20 +276,9 @@ static PetscErrorCode Pair(const FluidSpec *run, const char kernel[], const BoxL
   PetscCall(PetscStrncpy(spec.poisson, "fftw_tridiagonal", sizeof(spec.poisson)));
   for (int fine = 0; fine < (lattice->whole ? 1 : 2); fine++) {
     for (int d = 0; d < 2; d++) spec.cells[d] = fine ? halves * cells[d] / 2 : cells[d];
-    PetscCall(BoxGridAdd(&spec, run->comm, kernel, lattice, axis,
-                         lattice->all     ? to_zero[fine]
-                         : lattice->whole ? 1
-                         : fine           ? scale
-                                          : -scale,
-                         W));
+    PetscCall(BoxGridAdd(&spec, run->comm, kernel, lattice, axis, lattice->whole ? 1 : fine ? scale : -scale, W));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscBool BoxTableFits(const FluidSpec *spec) {
-  PetscInt cells[2];
-  CoarseCells(spec, cells);
-  return cells[0] * spec->cells[1] == cells[1] * spec->cells[0] ? PETSC_TRUE : PETSC_FALSE;
 }
 
 PetscErrorCode BoxTableCreate(const FluidSpec *spec, const char kernel[], const BoxLattice *lattice, PetscBool middle,
@@ -317,19 +286,15 @@ PetscErrorCode BoxTableCreate(const FluidSpec *spec, const char kernel[], const 
   const PetscBool dipoles = lattice->dipole ? PETSC_TRUE : PETSC_FALSE;
   PetscInt cells[2], size = dipoles ? 6 : 4;
   PetscReal *W, height = spec->box[3] - spec->box[2];
-  const PetscBool closed = spec->bc[0] == BC_WALL && spec->bc[1] == BC_WALL ? PETSC_TRUE : PETSC_FALSE;
-  const PetscInt places = !middle ? PLACES : lattice->all && !closed ? ALL_PLACES : MIDDLE_PLACES;
   FluidSpec pair = *spec;
   BoxAxis axis[2];
   PetscFunctionBeginUser;
   t->components = dipoles ? BOX_COMPONENTS : 2;
   CoarseCells(spec, cells);
-  for (int d = 0, finer = lattice->all && PetscMin(cells[0], cells[1]) < ALL_CELLS ? 2 : 1; d < 2; d++)
-    cells[d] *= finer;
   t->H = (spec->box[1] - spec->box[0]) / cells[0];
   if (cells[0] * spec->cells[1] != cells[1] * spec->cells[0]) pair.box[3] = pair.box[2] + cells[1] * t->H;
   for (int d = 0; d < 2; d++) {
-    MakeAxis(&pair, d, t->H, middle, lattice->all ? ALL_FADED : BOX_FADED, places, &axis[d]);
+    MakeAxis(&pair, d, t->H, middle, &axis[d]);
     t->axis[d] = axis[d];
     if (d) BoxAxisStretch(pair.box[2], height / (pair.box[3] - pair.box[2]), &t->axis[d]);
     t->functions[d] = t->axis[d].wall ? t->axis[d].places : 2 * t->axis[d].modes + 1;
@@ -340,7 +305,7 @@ PetscErrorCode BoxTableCreate(const FluidSpec *spec, const char kernel[], const 
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, W, (PetscMPIInt)size, MPIU_REAL, MPI_SUM, spec->comm));
   PetscCall(CreateBlocks(t));
   PetscCall(Transform(t, W));
-  PetscCall(lattice->all ? KeepAll(t) : BoxTableDecompose(spec->comm, SMALLEST, t));
+  PetscCall(BoxTableDecompose(spec->comm, t));
   PetscCall(PetscFree(W));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

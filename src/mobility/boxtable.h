@@ -18,7 +18,7 @@ typedef struct {
   PetscInt first[BOX_COMPONENTS][2]; /* [component]: its functions of x, of y, from here on */
   PetscInt n[2];                     /* so many */
   PetscInt start, modes;             /* its eigenvalues among all */
-  PetscReal *Q;                      /* [components][n[0]][n[1]][modes]; without modes D, [parts n n][2 n n] */
+  PetscReal *Q;                      /* [components][n[0]][n[1]][modes] */
 } BoxBlock;
 
 typedef struct {
@@ -27,10 +27,9 @@ typedef struct {
   PetscInt functions[2]; /* in x and y: Lagrange's polynomials, or 1, cos, sin, .. over the period */
   PetscInt blocks;
   BoxBlock *block;
-  PetscInt rank;    /* eigenvalues kept */
-  PetscReal *l;     /* [rank] velocity per force */
-  PetscReal H;      /* cell size of the coarser grid */
-  PetscBool images; /* of a square: the distant walls' images are in D as well (boxregion.h) */
+  PetscInt rank; /* eigenvalues kept */
+  PetscReal *l;  /* [rank] velocity per force */
+  PetscReal H;   /* cell size of the coarser grid */
 } BoxTable;
 
 /* BoxTableCreate - for the run's grid and boundaries, of forces or of dipoles, as the lattice is, which is used here
@@ -40,23 +39,6 @@ typedef struct {
 PETSC_EXTERN PetscErrorCode BoxTableCreate(const FluidSpec *spec, const char kernel[], const BoxLattice *lattice,
                                            PetscBool middle, BoxTable *table);
 PETSC_EXTERN PetscErrorCode BoxTableDestroy(BoxTable *table);
-
-/* BoxTableFits - whether the coarse grids are of the box's very shape. Not collective. */
-PETSC_EXTERN PetscBool BoxTableFits(const FluidSpec *spec);
-
-/* BoxTableDecompose - from D between the functions of each block, symmetric, in Q[size][size] with size = components
-   n[0] n[1], the largest eigenvalues, down to the part `smallest` of the largest of all, and their vectors; the first
-   rank's, as alike eigenvalues leave to rounding which vectors they have. Collective. */
-PETSC_EXTERN PetscErrorCode BoxTableDecompose(MPI_Comm comm, PetscReal smallest, BoxTable *table);
-
-/* BoxParts - of a source: two of a force, three of a dipole. BoxFirstPart - the component that is its first. Not
-   collective. */
-static inline PetscInt BoxParts(const BoxTable *table) {
-  return table->components == 2 ? 2 : 3;
-}
-static inline int BoxFirstPart(const BoxTable *table) {
-  return table->components == 2 ? 0 : 2;
-}
 
 /* BoxTableFunctions - values[functions[dir]] of a direction's functions at the coordinate x (length); nearer to a wall
    than the table reaches they go straight on. Not collective. */

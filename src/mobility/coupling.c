@@ -273,8 +273,7 @@ static PetscErrorCode CreateLayers(Coupling c, const CouplingSetting *setting) {
   if (setting->lag) c->lag = cells * PetscSqr(c->fluid->grid->h) / c->fluid->nu;
   if (!setting->ratio) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(DoubleLayerCreate(c->near, setting->ratio, &c->contrast));
-  if (setting->box_part || setting->apart)
-    PetscCall(DoubleLayerAddBoxPart(c->contrast, setting->spec, setting->box_part, setting->apart));
+  if (setting->box_part) PetscCall(DoubleLayerAddBoxPart(c->contrast, setting->spec));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

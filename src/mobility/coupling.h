@@ -36,7 +36,6 @@ typedef struct {
   NearFieldType near;
   const FluidSpec *spec;           /* specification of the fluid, for box parts; borrowed */
   PetscBool box_part;              /* near field and double layer have a box part */
-  PetscBool apart;                 /* a double layer may take all that walls and images add from its box part */
   PetscBool lag;                   /* in unsteady flow, markers move with the grid's velocity less the lag times its
                                       rate of change (docs/nearfield.md, Unsteady flow) */
   PetscBool area_target;           /* steps aim at the vesicles' initial areas */

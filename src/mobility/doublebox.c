@@ -1,13 +1,9 @@
 #include "mobility/doublebox.h"
 #include "base/lanes.h"
-#include "numerics/blas.h"
 
 #define AT_ONCE 64 /* markers */
 
-#define ALL_OFF 1e-4 /* of the largest value: what a square may be off by that has all that the box adds */
-
-PetscErrorCode DoubleBoxCreate(const FluidSpec *spec, Markers markers, const BoxLattice *lattice, PetscBool error,
-                               PetscBool all, DoubleBox *out) {
+PetscErrorCode DoubleBoxCreate(const FluidSpec *spec, Markers markers, const BoxLattice *lattice, DoubleBox *out) {
   DoubleBox b;
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&b));
@@ -15,16 +11,6 @@ PetscErrorCode DoubleBoxCreate(const FluidSpec *spec, Markers markers, const Box
   b->spec = spec;
   b->markers = markers;
   b->lattice = *lattice;
-  b->error = error;
-  b->asked = all;
-  for (int k = 0; k < 2; k++) {
-    b->table[k].components = BOX_COMPONENTS;
-    b->region[k] = (BoxRegion){.comm = spec->comm,
-                               .grid = markers->grid,
-                               .whole = &b->table[k],
-                               .off = k ? ALL_OFF : BOX_REGION_OFF,
-                               .all = k ? PETSC_TRUE : PETSC_FALSE};
-  }
   PetscCall(PetvesEvent("BoxTable", &b->make));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -32,69 +18,40 @@ PetscErrorCode DoubleBoxCreate(const FluidSpec *spec, Markers markers, const Box
 PetscErrorCode DoubleBoxDestroy(DoubleBox *box) {
   PetscFunctionBeginUser;
   if (!*box) PetscFunctionReturn(PETSC_SUCCESS);
-  for (int all = 0; all < 2; all++) {
-    PetscCall(BoxRegionDestroy(&(*box)->region[all]));
-    PetscCall(BoxTableDestroy(&(*box)->table[all]));
-  }
+  PetscCall(BoxTableDestroy(&(*box)->table));
   PetscCall(PetscFree3((*box)->value, (*box)->function, (*box)->amplitude));
   PetscCall(PetscFree(*box));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode MakeTable(DoubleBox b, PetscBool all) {
-  BoxLattice lattice = b->lattice;
+/* Make the table, and room for what the markers have of it. */
+static PetscErrorCode DoubleBoxMakeTable(DoubleBox b) {
+  BoxTable *t = &b->table;
   PetscFunctionBeginUser;
-  if (b->table[all].l) PetscFunctionReturn(PETSC_SUCCESS);
-  lattice.all = all;
   PetscCall(PetscLogEventBegin(b->make, 0, 0, 0, 0));
-  PetscCall(BoxTableCreate(b->spec, b->markers->kernel->name, &lattice, all, &b->table[all]));
+  PetscCall(BoxTableCreate(b->spec, b->markers->kernel->name, &b->lattice, PETSC_FALSE, t));
   PetscCall(PetscLogEventEnd(b->make, 0, 0, 0, 0));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The table where the markers are, and room for what they have of it. */
-static PetscErrorCode TakeTable(DoubleBox b) {
-  const Layout l = b->markers->layout;
-  PetscBool moved, all = b->may_be_all ? BoxRegionMayBeAll(&b->region[1], l->M, b->markers->X) : PETSC_FALSE;
-  PetscFunctionBeginUser;
-  if (all) {
-    PetscCall(MakeTable(b, PETSC_TRUE));
-    PetscCall(BoxRegionAt(&b->region[1], l->M, b->markers->X, &b->at, &moved));
-    all = DoubleBoxIsAll(b);
-  }
-  if (!all && !b->error) b->at = NULL;
-  if (!all && b->error) {
-    PetscCall(MakeTable(b, PETSC_FALSE));
-    PetscCall(BoxRegionAt(&b->region[0], l->M, b->markers->X, &b->at, &moved));
-  }
-  if (!b->at) PetscFunctionReturn(PETSC_SUCCESS);
-  b->width = (b->at->functions[1] + LANES - 1) / LANES * LANES;
-  const PetscInt values = l->n * (b->at->functions[0] + b->width), functions = b->at->functions[0] * b->width;
-  if (values <= b->room && functions <= b->rooms && b->amplitude) PetscFunctionReturn(PETSC_SUCCESS);
-  b->room = PetscMax(values, b->room);
-  b->rooms = PetscMax(functions, b->rooms);
-  PetscCall(PetscFree3(b->value, b->function, b->amplitude));
-  PetscCall(PetscCalloc3(b->room, &b->value, BOX_COMPONENTS * b->rooms, &b->function,
-                         PetscMax(b->table[0].rank, b->table[1].rank), &b->amplitude));
+  b->width = (t->functions[1] + LANES - 1) / LANES * LANES;
+  PetscCall(PetscCalloc3(b->markers->layout->n * (t->functions[0] + b->width), &b->value,
+                         BOX_COMPONENTS * t->functions[0] * b->width, &b->function, t->rank, &b->amplitude));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Own marker k's values of the functions of x; those of y come behind. */
 static PetscReal *Values(DoubleBox b, PetscInt k) {
-  return b->value + k * (b->at->functions[0] + b->width);
+  return b->value + k * (b->table.functions[0] + b->width);
 }
 
 /* A component's functions. */
 static PetscReal *Functions(DoubleBox b, int component) {
-  return b->function + component * b->at->functions[0] * b->width;
+  return b->function + component * b->table.functions[0] * b->width;
 }
 
 PetscErrorCode DoubleBoxPlace(DoubleBox b) {
   const Layout l = b->markers->layout;
   PetscFunctionBeginUser;
-  PetscCall(TakeTable(b));
-  const BoxTable *at = b->at;
-  if (!at) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!b->table.l) PetscCall(DoubleBoxMakeTable(b));
+  const BoxTable *at = &b->table;
   for (PetscInt k = 0; k < l->n; k++) {
     const PetscReal *X = b->markers->X + 2 * (l->first + k);
     PetscReal *value = Values(b, k);
@@ -109,7 +66,7 @@ PetscErrorCode DoubleBoxPlace(DoubleBox b) {
    which have these parts of them: in registers. */
 static inline void GatherColumns(const int vectors, DoubleBox b, int c, PetscInt k, PetscInt count, PetscInt j,
                                  const PetscReal part[]) {
-  const PetscInt nx = b->at->functions[0], size = nx + b->width;
+  const PetscInt nx = b->table.functions[0], size = nx + b->width;
   PetscReal *f = Functions(b, c) + j;
   for (PetscInt i = 0; i < nx; i++, f += b->width) {
     const PetscReal *x = Values(b, k) + i, *y = Values(b, k) + nx + j;
@@ -127,7 +84,7 @@ static inline void GatherColumns(const int vectors, DoubleBox b, int c, PetscInt
 static void Gather(DoubleBox b, const PetscReal T[]) {
   const PetscInt n = b->markers->layout->n;
   PetscReal part[AT_ONCE];
-  (void)PetscArrayzero(Functions(b, 2), DIPOLE_COUNT * b->at->functions[0] * b->width);
+  (void)PetscArrayzero(Functions(b, 2), DIPOLE_COUNT * b->table.functions[0] * b->width);
   for (PetscInt k = 0; k < n; k += AT_ONCE)
     for (int c = 0; c < DIPOLE_COUNT; c++) {
       const PetscInt count = PetscMin(AT_ONCE, n - k);
@@ -152,7 +109,7 @@ static inline Lanes ScatterColumns(const int vectors, PetscInt nx, PetscInt widt
 
 /* Velocity component c of own marker k. */
 static PetscReal Scatter(DoubleBox b, PetscInt k, int c) {
-  const PetscInt nx = b->at->functions[0];
+  const PetscInt nx = b->table.functions[0];
   const PetscReal *x = Values(b, k), *y = x + nx, *f = Functions(b, c);
   PetscInt j = 0;
   Lanes sum = {0};
@@ -184,22 +141,15 @@ static void FromAmplitudes(DoubleBox b, const BoxBlock *q) {
         InBlock(b, q, c)[i * b->width + j] = LanesDot(q->modes, b->amplitude + q->start, Q);
 }
 
-/* The velocities' functions = alpha D of the tensors', which (add) all ranks have a part of. */
-static PetscErrorCode Respond(DoubleBox b, PetscBool add, PetscReal alpha) {
-  const BoxTable *t = b->at;
-  const PetscMPIInt size = (PetscMPIInt)(t->functions[0] * b->width), r = (PetscMPIInt)t->rank;
+/* The velocities' functions = alpha D of the tensors', of which each rank has a part. */
+static PetscErrorCode Respond(DoubleBox b, PetscReal alpha) {
+  const BoxTable *t = &b->table;
+  const PetscMPIInt r = (PetscMPIInt)t->rank;
   const MPI_Comm comm = b->markers->layout->comm;
   PetscFunctionBeginUser;
-  add = add && b->markers->layout->size > 1 ? PETSC_TRUE : PETSC_FALSE;
-  if (!t->l) { /* of a square */
-    if (add) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, Functions(b, 2), DIPOLE_COUNT * size, MPIU_REAL, MPI_SUM, comm));
-    PetscCall(PetscArrayzero(Functions(b, 0), 2 * size));
-    PetscCall(
-        DenseMultAdd(PETSC_FALSE, 2 * size, DIPOLE_COUNT * size, alpha, t->block->Q, Functions(b, 2), Functions(b, 0)));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
   for (PetscInt k = 0; k < t->blocks; k++) ToAmplitudes(b, &t->block[k]);
-  if (add) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, b->amplitude, r, MPIU_REAL, MPI_SUM, comm));
+  if (b->markers->layout->size > 1)
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, b->amplitude, r, MPIU_REAL, MPI_SUM, comm));
   for (PetscInt m = 0; m < r; m++) b->amplitude[m] *= alpha * t->l[m];
   for (PetscInt k = 0; k < t->blocks; k++) FromAmplitudes(b, &t->block[k]);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -208,73 +158,7 @@ static PetscErrorCode Respond(DoubleBox b, PetscBool add, PetscReal alpha) {
 PetscErrorCode DoubleBoxApply(DoubleBox b, PetscReal alpha, const PetscReal T[], PetscScalar y[]) {
   PetscFunctionBeginUser;
   Gather(b, T);
-  PetscCall(Respond(b, PETSC_TRUE, alpha));
+  PetscCall(Respond(b, alpha));
   for (PetscInt k = 0; k < 2 * b->markers->layout->n; k++) y[k] += Scatter(b, k / 2, k % 2);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Part c of a tensor at X, one, in the functions. */
-static void Put(DoubleBox b, const PetscReal X[2], int c) {
-  const PetscInt nx = b->at->functions[0], ny = b->at->functions[1];
-  PetscReal x[BOX_FUNCTIONS], y[BOX_FUNCTIONS], *f = Functions(b, 2 + c);
-  (void)PetscArrayzero(Functions(b, 2), DIPOLE_COUNT * nx * b->width);
-  BoxTableFunctions(b->at, 0, X[0], x);
-  BoxTableFunctions(b->at, 1, X[1], y);
-  for (PetscInt i = 0; i < nx; i++)
-    for (PetscInt j = 0; j < ny; j++) f[i * b->width + j] = x[i] * y[j];
-}
-
-/* Values [M][functions of x][of y] of all markers. */
-static PetscErrorCode AllValues(DoubleBox b, PetscReal **values) {
-  const Layout l = b->markers->layout;
-  const PetscInt nx = b->at->functions[0], ny = b->at->functions[1];
-  PetscReal x[BOX_FUNCTIONS], y[BOX_FUNCTIONS], *f;
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(l->M * nx * ny, &f));
-  *values = f;
-  for (PetscInt k = 0; k < l->M; k++) {
-    BoxTableFunctions(b->at, 0, b->markers->X[2 * k], x);
-    BoxTableFunctions(b->at, 1, b->markers->X[2 * k + 1], y);
-    for (PetscInt i = 0; i < nx * ny; i++) *f++ = x[i / ny] * y[i % ny];
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* A square's matrix D between functions, from all markers' tensors to the own markers. */
-static PetscErrorCode SquareMatrix(DoubleBox b, PetscReal scale, PetscReal out[]) {
-  const Layout l = b->markers->layout;
-  const PetscInt size = b->at->functions[0] * b->at->functions[1];
-  PetscReal *value, *given, *taken;
-  PetscFunctionBeginUser;
-  PetscCall(AllValues(b, &value));
-  PetscCall(PetscMalloc2(2 * size * l->M, &given, l->n * l->M, &taken));
-  for (int q = 0; q < 2 * DIPOLE_COUNT; q++) {
-    const PetscInt part = q / 2, c = q % 2;
-    if (!c)
-      PetscCall(
-          DenseProduct(PETSC_FALSE, 2 * size, l->M, size, b->at->block->Q + part * size * 2 * size, value, given));
-    PetscCall(DenseProductWithin(PETSC_TRUE, (DenseView){value + l->first * size, size, l->n, size},
-                                 (DenseView){given + c * size, size, l->M, 2 * size}, 0, taken, l->n));
-    for (PetscInt j = 0; j < l->M; j++)
-      for (PetscInt k = 0; k < l->n; k++)
-        out[2 * ((DIPOLE_COUNT * j + part) * l->M + l->first + k) + c] += scale * taken[j * l->n + k];
-  }
-  PetscCall(PetscFree2(given, taken));
-  PetscCall(PetscFree(value));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode DoubleBoxMatrix(DoubleBox b, PetscReal scale, PetscReal out[]) {
-  const Layout l = b->markers->layout;
-  PetscFunctionBeginUser;
-  if (!b->at->l) {
-    PetscCall(SquareMatrix(b, scale, out));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  for (PetscInt j = 0; j < DIPOLE_COUNT * l->M; j++) {
-    Put(b, b->markers->X + 2 * (j / DIPOLE_COUNT), (int)(j % DIPOLE_COUNT));
-    PetscCall(Respond(b, PETSC_FALSE, scale));
-    for (PetscInt k = 0; k < 2 * l->n; k++) out[2 * (j * l->M + l->first) + k] += Scatter(b, k / 2, k % 2);
-  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -43,19 +43,14 @@ PetscErrorCode DoubleLayerDestroy(DoubleLayer *layer) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode DoubleLayerAddBoxPart(DoubleLayer s, const FluidSpec *spec, PetscBool error, PetscBool all) {
+PetscErrorCode DoubleLayerAddBoxPart(DoubleLayer s, const FluidSpec *spec) {
   const BoxLattice lattice = {.unit = s->near->set.unit, .dipole = s->lattice, .half = s->near->half};
   PetscFunctionBeginUser;
-  PetscCall(DoubleBoxCreate(spec, s->near->set.markers, &lattice, error, all, &s->box));
-  if (s->image) DoubleBoxTakeImages(s->box, s->image, DoubleImageFar);
+  PetscCall(DoubleBoxCreate(spec, s->near->set.markers, &lattice, &s->box));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-void DoubleLayerMayBeApart(DoubleLayer s) {
-  if (s->box && s->near->set.bodies->layout->bodies == 1) DoubleBoxMayBeAll(s->box);
-}
-
-/* What the layers' functions need of it; without images in walls where the box part has them. */
+/* What the functions of layers/ need of the double layer. */
 static DoublePairs PairsOf(DoubleLayer s) {
   return (DoublePairs){.single = s->near->pairs,
                        .lattice = s->lattice,
@@ -63,8 +58,7 @@ static DoublePairs PairsOf(DoubleLayer s) {
                        .dipole = s->dipole,
                        .normal = s->normal,
                        .along = s->along,
-                       .length = s->length,
-                       .images = s->box && DoubleBoxHasImages(s->box) ? PETSC_FALSE : PETSC_TRUE};
+                       .length = s->length};
 }
 
 /* Normals of the vesicles that have a jump. */
@@ -83,20 +77,18 @@ static PetscErrorCode PlaceNormals(DoubleLayer s) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Their dipoles' stencils, where they are not placed. */
+/* The dipoles' stencils of the vesicles that have a jump. */
 static PetscErrorCode PlaceDipoles(DoubleLayer s) {
   const NearField f = s->near;
   const Layout l = f->set.bodies->layout;
   const Grid g = f->set.markers->grid;
   PetscFunctionBeginUser;
-  if (f->set.markers->grid->free || s->spread) PetscFunctionReturn(PETSC_SUCCESS);
-  s->spread = PETSC_TRUE;
+  if (f->set.markers->grid->free) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt v = 0; v < l->bodies; v++)
     for (PetscInt k = l->start[v]; k < l->start[v + 1] && s->ratio[v] != 1; k++) {
       Stencil part[DIPOLE_COUNT];
       DipoleStencilsUnwrapped(g, f->set.markers->X + 2 * k, part);
-      for (int c = 0; c < DIPOLE_COUNT && !DoubleLayerIsApart(s); c++)
-        StencilPad(&part[c], &s->dipole[DIPOLE_COUNT * k + c]);
+      for (int c = 0; c < DIPOLE_COUNT; c++) StencilPad(&part[c], &s->dipole[DIPOLE_COUNT * k + c]);
       DipoleSpotsOf(g, f->set.nu, part, s->spot + DIPOLE_SPOTS * k);
     }
   PetscCall(DipoleListPlace(s->list, l->M, s->spot));
@@ -155,24 +147,14 @@ static PetscErrorCode FillBlock(DoubleLayer s, const DoubleBlock *b, PetscBool l
 }
 
 PetscErrorCode DoubleLayerPlace(DoubleLayer s) {
-  const Layout l = s->near->set.bodies->layout;
   PetscFunctionBeginUser;
   PetscCall(PetscLogEventBegin(s->place, 0, 0, 0, 0));
-  s->spread = PETSC_FALSE;
   PetscCall(PlaceNormals(s));
-  if (s->box) PetscCall(DoubleBoxPlace(s->box)); /* before the blocks, which may leave images to it */
-  if (!DoubleLayerIsApart(s)) PetscCall(PlaceDipoles(s));
-  if (s->image && !DoubleLayerIsApart(s)) DoubleImagePlace(s->image, s->dipole);
+  if (s->box) PetscCall(DoubleBoxPlace(s->box));
+  PetscCall(PlaceDipoles(s));
+  if (s->image) DoubleImagePlace(s->image, s->dipole);
   PetscCall(FindBlocks(s));
-  for (PetscInt k = 0; k < s->blocks; k++) {
-    const DoubleBlock *b = &s->block[k];
-    if (DoubleLayerIsApart(s)) { /* one vesicle, far from walls and from its images */
-      PetscCall(
-          DoubleSelf(s->near->set.bodies->spectral[0], l->M, s->near->set.markers->X, s->normal, s->value + b->at));
-      continue;
-    }
-    PetscCall(FillBlock(s, b, PETSC_TRUE, s->value + b->at));
-  }
+  for (PetscInt k = 0; k < s->blocks; k++) PetscCall(FillBlock(s, &s->block[k], PETSC_TRUE, s->value + s->block[k].at));
   PetscCall(PetscLogEventEnd(s->place, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -220,15 +202,6 @@ static void AddMean(DoubleLayer s, PetscReal mean[2]) {
   }
 }
 
-/* y += alpha times the dipoles' mean velocity in a box that is periodic both ways. */
-static void ApplyMean(DoubleLayer s, PetscReal alpha, PetscScalar y[]) {
-  const Grid g = s->near->set.markers->grid;
-  PetscReal mean[2] = {0, 0};
-  if (g->wall[0] || g->wall[1]) return;
-  AddMean(s, mean);
-  for (PetscInt k = 0; k < 2 * s->near->set.bodies->layout->n; k++) y[k] += alpha * mean[k % 2];
-}
-
 PetscErrorCode DoubleLayerApply(DoubleLayer s, PetscReal alpha, const PetscScalar U[], PetscScalar y[]) {
   const Layout l = s->near->set.bodies->layout;
   PetscFunctionBeginUser;
@@ -239,10 +212,7 @@ PetscErrorCode DoubleLayerApply(DoubleLayer s, PetscReal alpha, const PetscScala
     PetscCall(DenseMultAdd(PETSC_FALSE, 2 * LayoutCount(l, b->row), 2 * LayoutCount(l, b->column), alpha,
                            s->value + b->at, s->plain + 2 * l->start[b->column], y + 2 * LayoutOffset(l, b->row)));
   }
-  if (DoubleBoxServes(s->box)) {
-    PetscCall(DoubleBoxApply(s->box, alpha, s->tensor + DIPOLE_COUNT * l->first, y));
-    if (DoubleLayerIsApart(s)) ApplyMean(s, alpha, y);
-  }
+  if (s->box) PetscCall(DoubleBoxApply(s->box, alpha, s->tensor + DIPOLE_COUNT * l->first, y));
   PetscCall(PetscLogEventEnd(s->apply, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -257,7 +227,6 @@ PetscErrorCode DoubleLayerMean(DoubleLayer s, const PetscScalar U[], PetscReal m
 PetscErrorCode DoubleLayerSpread(DoubleLayer s, const PetscScalar U[], Forcing *f) {
   PetscFunctionBeginUser;
   if (s->near->set.markers->grid->free) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PlaceDipoles(s));
   PetscCall(SetDipoles(s, U));
   AddMean(s, f->mean);
   ForcingNote(f, &s->near->set.markers->window);
@@ -269,7 +238,6 @@ PetscErrorCode DoubleLayerRows(DoubleLayer s, const PetscScalar U[], PetscBool o
                                DipoleRows rows) {
   PetscReal mean[2] = {0, 0};
   PetscFunctionBeginUser;
-  PetscCall(PlaceDipoles(s));
   PetscCall(SetDipoles(s, U));
   AddMean(s, mean);
   PetscCall(DipoleRowsSet(rows, s->list, s->tensor, own, profile, mean));
@@ -290,26 +258,6 @@ PetscErrorCode DoubleLayerStress(DoubleLayer s, const PetscScalar U[], PetscReal
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* out += scale (1 - ratio) times what the box part has, of one vesicle whose dipoles are apart. */
-static PetscErrorCode AddBox(DoubleLayer s, PetscReal scale, PetscReal out[]) {
-  const PetscInt M = s->near->set.bodies->layout->M;
-  PetscReal *W;
-  PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(2 * M * DIPOLE_COUNT * M, &W));
-  PetscCall(DoubleBoxMatrix(s->box, scale * (1 - s->ratio[0]), W));
-  for (PetscInt j = 0; j < M; j++) {
-    const PetscReal *N = s->normal + 2 * j, *xx = W + (DIPOLE_COUNT * j + DIPOLE_XX) * 2 * M;
-    const PetscReal *yy = W + (DIPOLE_COUNT * j + DIPOLE_YY) * 2 * M, *xy = W + (DIPOLE_COUNT * j + DIPOLE_XY) * 2 * M;
-    PetscReal *x = out + 2 * j * 2 * M, *y = x + 2 * M;
-    for (PetscInt i = 0; i < 2 * M; i++) {
-      x[i] += 2 * N[0] * xx[i] + N[1] * xy[i];
-      y[i] += 2 * N[1] * yy[i] + N[0] * xy[i];
-    }
-  }
-  PetscCall(PetscFree(W));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode DoubleLayerAdd(DoubleLayer s, PetscReal scale, PetscBool lattice, PetscInt first, PetscInt n,
                               PetscReal out[]) {
   const Layout l = s->near->set.bodies->layout;
@@ -320,7 +268,7 @@ PetscErrorCode DoubleLayerAdd(DoubleLayer s, PetscReal scale, PetscBool lattice,
     const PetscInt i0 = 2 * (l->start[b->row] - first), j0 = 2 * (l->start[b->column] - first);
     PetscReal *value = s->value + b->at, *free = NULL;
     if (i0 < 0 || j0 < 0 || i0 >= 2 * n || j0 >= 2 * n) continue;
-    if (!lattice && !s->near->set.markers->grid->free && !DoubleLayerIsApart(s)) {
+    if (!lattice && !s->near->set.markers->grid->free) {
       PetscCall(PetscMalloc1(rows * columns, &free));
       PetscCall(FillBlock(s, b, PETSC_FALSE, free));
       value = free;
@@ -330,6 +278,5 @@ PetscErrorCode DoubleLayerAdd(DoubleLayer s, PetscReal scale, PetscBool lattice,
         out[(j0 + j) * 2 * n + i0 + i] += scale * (1 - s->ratio[b->column]) * value[j * rows + i];
     PetscCall(PetscFree(free));
   }
-  if (DoubleLayerIsApart(s)) PetscCall(AddBox(s, scale, out));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

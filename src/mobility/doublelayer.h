@@ -36,7 +36,6 @@ struct _p_DoubleLayer {
   PetscScalar *plain; /* [2M] J, */
   PetscReal *tensor;  /* [DIPOLE_COUNT M] and the dipoles of the former */
   DoubleBox box;      /* NULL without box part */
-  PetscBool spread;   /* dipoles are placed on the grid */
   PetscLogEvent place, apply;
 };
 
@@ -44,19 +43,9 @@ struct _p_DoubleLayer {
 PETSC_EXTERN PetscErrorCode DoubleLayerCreate(NearField near, const PetscReal ratio[], DoubleLayer *layer);
 PETSC_EXTERN PetscErrorCode DoubleLayerDestroy(DoubleLayer *layer);
 
-/* DoubleLayerAddBoxPart - from here on with the box part for the fluid that spec makes: its error of second order, as
-   the near field's, or all of it (DoubleLayerMayBeApart), or both. Collective. */
-PETSC_EXTERN PetscErrorCode DoubleLayerAddBoxPart(DoubleLayer layer, const FluidSpec *spec, PetscBool error,
-                                                  PetscBool all);
-
-/* DoubleLayerMayBeApart - from here on, with a box part and one vesicle, markers may take their dipoles' velocity from
-   D and the box part alone, which has all that walls and images add, where they are in the middle of the box.
-   DoubleLayerIsApart - whether they do: C_D is D, and E u is the forces'. Not collective.
-   DoubleLayerPlace - C_D where the near field has been placed (NearFieldPlace). Collective. */
-PETSC_EXTERN void DoubleLayerMayBeApart(DoubleLayer layer);
-static inline PetscBool DoubleLayerIsApart(DoubleLayer layer) {
-  return DoubleBoxIsAll(layer->box);
-}
+/* DoubleLayerAddBoxPart - from here on with the box part for the fluid that spec makes. DoubleLayerPlace - C_D where
+   the near field has been placed (NearFieldPlace). Collective. */
+PETSC_EXTERN PetscErrorCode DoubleLayerAddBoxPart(DoubleLayer layer, const FluidSpec *spec);
 PETSC_EXTERN PetscErrorCode DoubleLayerPlace(DoubleLayer layer);
 
 /* The next ones are of the jump of vesicles' markers that move with U[2n], this rank's part. Collective.

@@ -48,12 +48,9 @@ PetscErrorCode NearFieldCreateBoxPart(NearField f, const FluidSpec *spec, PetscB
 }
 
 PetscErrorCode NearFieldAddBoxPart(NearField f, const FluidSpec *spec) {
-  const Bodies m = f->set.bodies;
   PetscFunctionBeginUser;
   PetscCall(NearFieldCreateBoxPart(f, spec, PETSC_FALSE, &f->box));
   f->set.box = f->box->axis;
-  /* not with obstacles, whose pairs are made once */
-  if (f->pairs->image && m->vesicles == m->layout->bodies) BoxPartTakeImages(f->box, f->pairs->image, NearImageFar);
   if (spec->inertia == INERTIA_NONE) MarkersLeaveUnscaled(f->set.markers);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -96,8 +93,8 @@ PetscErrorCode NearFieldPlace(NearField f) {
   PetscInt first;
   PetscFunctionBeginUser;
   PetscCall(PetscLogEventBegin(f->event[0], 0, 0, 0, 0));
-  if (f->box) PetscCall(BoxPartPlace(f->box)); /* before the pairs, which may leave images to it */
-  PetscCall(SinglePairsPlace(f->pairs, f->box && BoxPartHasImages(f->box) ? PETSC_FALSE : PETSC_TRUE));
+  if (f->box) PetscCall(BoxPartPlace(f->box));
+  PetscCall(SinglePairsPlace(f->pairs));
   PetscCall(NearListFind(&f->list, &first));
   PetscCall(ArrayReserve(f->list.count.values, &s->value_room, &s->value));
   PetscCall(ArrayReserve(f->list.count.singles, &s->single_room, &s->single));

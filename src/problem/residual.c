@@ -32,11 +32,6 @@ static PetscErrorCode Motion(Reduced s, const PetscScalar x[], PetscBool whole) 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether dipoles are in what markers have of u; else their velocity is the double layer's alone. */
-static PetscBool HasDipoles(Reduced s) {
-  return s->motion && !DoubleLayerIsApart(s->unknowns->coupling->contrast) ? PETSC_TRUE : PETSC_FALSE;
-}
-
 /* r += -E^T F/h^2 and the motion's dipoles; leaves F and the motion. */
 static PetscErrorCode AddForces(Reduced s, const PetscScalar x[], PetscBool whole, Forcing *r) {
   const Coupling c = s->unknowns->coupling;
@@ -46,7 +41,7 @@ static PetscErrorCode AddForces(Reduced s, const PetscScalar x[], PetscBool whol
     PetscCall(ForcingSpread(r, c->markers, -1 / PetscSqr(c->fluid->grid->h), s->F));
   }
   PetscCall(Motion(s, x, whole));
-  if (HasDipoles(s)) PetscCall(ContrastSpread(c, s->motion, r));
+  if (s->motion) PetscCall(ContrastSpread(c, s->motion, r));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -144,9 +139,9 @@ static PetscErrorCode Respond(Reduced s, const PetscScalar x[]) {
     PetscCall(VecSet(s->U, 0));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  if (HasDipoles(s)) PetscCall(SetDipoles(s, PETSC_TRUE));
-  PetscCall(MarkersRespond(c->markers, s->stream, HasDipoles(s) ? s->dipoles : NULL, -1 / PetscSqr(c->fluid->grid->h),
-                           s->F, s->U));
+  if (s->motion) PetscCall(SetDipoles(s, PETSC_TRUE));
+  PetscCall(MarkersRespond(c->markers, s->stream, s->motion ? s->dipoles : NULL, -1 / PetscSqr(c->fluid->grid->h), s->F,
+                           s->U));
   PetscCall(TakePart(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -170,11 +165,10 @@ static PetscErrorCode Mult(Mat A, Vec x, Vec y) {
 static PetscErrorCode FollowByRows(Reduced s) {
   const CoupledProblem *q = s->problem;
   const Coupling c = s->unknowns->coupling;
-  const PetscBool dipoles = HasDipoles(s), measured = !q->w && (dipoles || !s->motion) ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionBeginUser;
-  if (dipoles) PetscCall(SetDipoles(s, PETSC_FALSE));
-  PetscCall(MarkersFollow(c->markers, s->stream, dipoles ? s->dipoles : NULL, q->f, NULL, s->U,
-                          measured ? &s->measures : NULL));
+  if (s->motion) PetscCall(SetDipoles(s, PETSC_FALSE));
+  PetscCall(MarkersFollow(c->markers, s->stream, s->motion ? s->dipoles : NULL, q->f, NULL, s->U,
+                          q->w ? NULL : &s->measures));
   PetscCall(TakePart(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -256,28 +250,6 @@ PetscErrorCode ReducedUpdate(Reduced s, Vec added, Vec x, Vec residual) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscBool ReducedDefersDipoles(Reduced s) {
-  return s->motion && !HasDipoles(s) ? PETSC_TRUE : PETSC_FALSE;
-}
-
-PetscErrorCode ReducedFinish(Reduced s, Vec added, Vec x) {
-  const Coupling c = s->unknowns->coupling;
-  Forcing *f = s->problem->f;
-  const PetscScalar *xa;
-  PetscFunctionBeginUser;
-  if (!ReducedDefersDipoles(s)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(VecGetArrayRead(added, &xa));
-  PetscCall(AddForces(s, xa, PETSC_FALSE, f));
-  PetscCall(VecRestoreArrayRead(added, &xa));
-  PetscCall(VecGetArrayRead(x, &xa));
-  PetscCall(Motion(s, xa, PETSC_TRUE));
-  PetscCall(VecRestoreArrayRead(x, &xa));
-  PetscCall(ContrastSpread(c, s->motion, f));
-  PetscCall(SetDipoles(s, PETSC_FALSE));
-  PetscCall(MarkersFollow(c->markers, s->stream, s->dipoles, f, NULL, NULL, &s->measures));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscBool ReducedNeedsNoPressure(Reduced s) {
   const Coupling c = s->unknowns->coupling;
   return s->stream && CouplingHasBodies(c) ? PETSC_TRUE : PETSC_FALSE;
@@ -312,7 +284,6 @@ PetscErrorCode ReducedCreate(Unknowns u, Reduced *out) {
   if (c->contrast) {
     PetscCall(VecDuplicate(s->F, &s->motion));
     if (s->stream) PetscCall(DipoleRowsCreate(c->fluid->grid, c->fluid->nu, &s->dipoles));
-    if (ReducedNeedsNoPressure(s) && !StokesProfile(s->stokes)) DoubleLayerMayBeApart(c->contrast);
   }
   PetscCall(MatCreateShell(c->fluid->grid->comm, n, n, PETSC_DETERMINE, PETSC_DETERMINE, s, &s->A));
   PetscCall(MatShellSetOperation(s->A, MATOP_MULT, (void (*)(void))Mult));

@@ -13,7 +13,7 @@
    operator costs one Stokes solve for the velocity at the markers alone (fluid/stokes/stream.h); u and p follow from
    the solution's forces. In unbounded fluid E = 0 and C is all of the mobility: u and p stay zero.
 
-   Order of calls in a step: ReducedBegin, products with A by a Krylov solver, ReducedUpdate, and ReducedFinish once.
+   Order of calls in a step: ReducedBegin, products with A by a Krylov solver, ReducedUpdate.
    Ranks have the rows of their own markers; forces are gathered where MarkersRespond and the near field say so. */
 #pragma once
 #include "problem/unknowns.h"
@@ -63,9 +63,3 @@ PETSC_EXTERN PetscErrorCode ReducedUpdate(Reduced reduced, Vec added, Vec x, Vec
 PETSC_EXTERN PetscBool ReducedNeedsNoPressure(Reduced reduced);
 PETSC_EXTERN PetscErrorCode ReducedFields(Reduced reduced, const Forcing *f, Vec w, Vec p);
 PETSC_EXTERN PetscErrorCode ReducedPressure(Reduced reduced, const Forcing *f, Vec w, Vec p);
-
-/* ReducedDefersDipoles - whether products leave out the dipoles of the jump, which ReducedFinish adds. Not collective.
-   ReducedFinish - where that is so, add to problem->f the forces of `added`, which the last residual lacks of the
-   solution x, and the dipoles of x, and measure the velocity; else do nothing. Collective. */
-PETSC_EXTERN PetscBool ReducedDefersDipoles(Reduced reduced);
-PETSC_EXTERN PetscErrorCode ReducedFinish(Reduced reduced, Vec added, Vec x);

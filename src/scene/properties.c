@@ -39,23 +39,12 @@ PetscBool SceneIsProjection(Scene scene) {
   return !strcmp(name, "split") || !strcmp(name, "penalty") ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* Whether a box part can be made. */
-static PetscBool IsServed(Scene scene) {
-  const FluidSpec *f = &scene->fluid;
-  PetscBool served = scene->coupling.near_field == NEAR_EXACT && !FluidSpecIsFree(f) ? PETSC_TRUE : PETSC_FALSE;
-  for (int d = 0; d < 2; d++)
-    if (f->bc[d] == BC_PERIODIC && f->cells[d] > FLUID_LONGEST_PERIOD * f->cells[1 - d]) served = PETSC_FALSE;
-  return served;
-}
-
 PetscBool SceneHasBoxPart(Scene scene) {
-  return scene->coupling.box_part ? IsServed(scene) : PETSC_FALSE;
-}
-
-PetscBool SceneDipolesMayBeApart(Scene scene) {
-  const PetscBool refused = !scene->coupling.box_part && SceneGiven(scene, "-coupling_box_part");
-  if (scene->coupling.grid_dipoles || refused || strcmp(scene->scheme.type, "coupled")) return PETSC_FALSE;
-  return scene->shape.vesicles == 1 && scene->obstacles.shape == OBSTACLE_NONE ? IsServed(scene) : PETSC_FALSE;
+  const FluidSpec *f = &scene->fluid;
+  if (!scene->coupling.box_part || scene->coupling.near_field != NEAR_EXACT || FluidSpecIsFree(f)) return PETSC_FALSE;
+  for (int d = 0; d < 2; d++)
+    if (f->bc[d] == BC_PERIODIC && f->cells[d] > FLUID_LONGEST_PERIOD * f->cells[1 - d]) return PETSC_FALSE;
+  return PETSC_TRUE;
 }
 
 PetscReal SceneSmallestRadius(Scene scene) {

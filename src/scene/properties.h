@@ -22,12 +22,10 @@ PETSC_EXTERN PetscBool SceneHasContrast(Scene scene);
 PETSC_EXTERN PetscReal SceneViscosityRatio(Scene scene, PetscInt vesicle);
 
 /* SceneIsProjection - whether the scheme is one of the baselines, split or penalty, which stand on a projection step.
-   SceneHasBoxPart - whether the near field has its box part: asked for, and no period too long.
-   SceneDipolesMayBeApart - whether the dipoles of one vesicle's viscosity contrast may take their velocity from markers
-   and box alone, without the grid. Not collective. */
+   SceneHasBoxPart - whether the near field has its box part: asked for, and no period too long. Not
+   collective. */
 PETSC_EXTERN PetscBool SceneIsProjection(Scene scene);
 PETSC_EXTERN PetscBool SceneHasBoxPart(Scene scene);
-PETSC_EXTERN PetscBool SceneDipolesMayBeApart(Scene scene);
 
 /* SceneSmallestRadius, SceneLargestRadius - R0 of a vesicle (length). SceneMembraneTime - nu R0^3/c_b of vesicle v;
    PETSC_MAX_REAL without bending. SceneTimes - the slowest and the fastest time of the scene, the least nu R0^3/c_b of

@@ -80,7 +80,6 @@ typedef struct {
 typedef struct {
   char kernel[OPTION_MAX_NAME]; /* between grid and markers */
   PetscInt near_field;          /* NearFieldType */
-  PetscBool grid_dipoles;       /* always over the grid */
   PetscBool box_part;           /* of the near field: what the box adds, to fourth order */
   PetscReal ksp_rtol;           /* default of -coupled_ksp_rtol */
 } SceneCoupling;

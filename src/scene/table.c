@@ -73,7 +73,6 @@ static const OptionRow table[] = {
   {"-scheme_area_target", OPT_BOOL, AT(scheme.area_target), "true", "true|false", "coupled: each step aims at the first areas of the vesicles", &need_vesicles},
   {"-coupling_near_field", OPT_ENUM, AT(coupling.near_field), "exact", "exact|none", "coupled: correct the markers' velocity for the smoothing by kernel and grid, to the exact single layer; none: do not", &need_bodies},
   {"-coupling_box_part", OPT_BOOL, AT(coupling.box_part), "true", "true|false", "with the exact near field: the grid's error of second order in what walls and periodic images do is taken off", &need_bodies},
-  {"-coupling_grid_dipoles", OPT_BOOL, AT(coupling.grid_dipoles), "false", "true|false", "coupled with viscosity contrast: the double layer's dipoles go over the grid in every solve, also those of one vesicle in the middle of the box, which else take their velocity from the markers and a table of the box", &need_coupled},
   {"-contact_repulsion", OPT_REAL, AT(repulsion.stress), "0", ">=0", "coupled: K, stress that pushes membranes from one another and from walls, K (1 - d/D) at a distance d (length^2/time^2); 0: none", &need_coupled},
   {"-contact_repulsion_range", OPT_REAL, AT(repulsion.range), "0", ">=0", "D, up to which it acts (length); 0: 1.5 times the longest mean edge", &need_repulsion},
   {"-contact_adhesion", OPT_REAL, AT(repulsion.adhesion), "0", ">=0", "with a repulsion: W, energy a length of membranes that stick together at the distance D (length^3/time^2); 0: none", &need_repulsion},

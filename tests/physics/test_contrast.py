@@ -160,50 +160,6 @@ def test_ranks_and_restart(tmp_path):
     assert np.array_equal(markers(rest), whole)
 
 
-APART = "-vesicle_area 1 -vesicle_reduced_area .7 -vesicle_bending .03 -vesicle_markers 45 -vesicle_angle 20"
-APART += f" -domain_box -4,4,-4,4 -vesicle_viscosity_ratio 10 -time_step .05 -time_end .5 {QUIET} {TIGHT}"
-
-
-@pytest.mark.parametrize(
-    "box, most",
-    [
-        ("-flow_type shear", 1e-6),
-        ("-flow_type shear -domain_bc_x periodic", 1.5e-6),
-        ("-flow_type shear -domain_bc_x periodic -vesicle_center 3.5,.4", 4e-6),
-        ("-flow_type quiescent -domain_bc_x periodic -domain_bc_y periodic", 8e-7),
-    ],
-    ids=["walls", "channel", "seam", "periodic"],
-)
-def test_dipoles_without_the_grid(tmp_path, box, most):
-    """Markers of 32^2 are as near to those of 128^2 as with dipoles on the grid, or much nearer; 3 ranks."""
-    fine = markers(run_petves(tmp_path / "fine", f"{APART} {box} -domain_cells 128,128 -coupling_grid_dipoles true"))
-    coarse = f"{APART} {box} -domain_cells 32,32"
-    grid = run_petves(tmp_path / "grid", f"{coarse} -coupling_grid_dipoles true")
-    apart = run_petves(tmp_path / "apart", coarse)
-    off = [np.abs(markers(run) - fine).max() for run in (apart, grid)]
-    assert 0 < off[0] < most, off
-    assert off[0] < 1.05 * off[1], off  # in the periodic box both are the single layer's
-    assert np.abs(markers(run_petves(tmp_path / "ranks", coarse, 3)) - markers(apart)).max() < 1e-10
-    with h5py.File(apart.folder / "checkpoint.h5") as file:
-        squares = sum((np.array(file[f"fluid/{name}"]) ** 2).sum() for name in "uv")
-    assert apart.series["energy_kinetic"][-1] == pytest.approx(squares / 2 * 0.25**2, rel=1e-11)
-
-
-def test_dipoles_reach_the_grid(tmp_path):
-    """A vesicle that settles out of the middle goes on with dipoles on the grid; a restart there has the same bits."""
-    scene = f"{QUIET} -domain_box -2,2,-2,2 -domain_cells 32,32 -domain_bc_x periodic -vesicle_area .2 {TIGHT}"
-    scene += " -vesicle_center 0,-.4 -vesicle_reduced_area .8 -vesicle_bending .01 -vesicle_viscosity_ratio 5"
-    scene += " -fluid_gravity 0,-1 -vesicle_density_difference 10 -time_step .1 -time_end 1.5"
-    whole = run_petves(tmp_path / "whole", scene)
-    grid = run_petves(tmp_path / "grid", f"{scene} -coupling_grid_dipoles true")
-    assert 0 < np.abs(markers(whole) - markers(grid)).max() < 1e-5
-    assert np.abs(np.diff(whole.series["center_y"], 2)[4:]).max() < 1e-3
-    for end in (0.6, 1.2):
-        half = run_petves(tmp_path / f"half{end}", f"{scene} -time_end {end}")
-        rest = run_petves(tmp_path / f"rest{end}", f"{scene} -restart {half.folder / 'checkpoint.h5'}")
-        assert np.array_equal(markers(rest), markers(whole))
-
-
 def first_velocity(folder, cells: int, ratio: float, options="") -> np.ndarray:
     """Of an ellipse .04 from the bottom of a channel of height 2, which shear takes along."""
     scene = f"{QUIET} {PLAIN} -domain_box -1,1,-1,1 -domain_cells {cells},{cells} -domain_bc_x periodic"

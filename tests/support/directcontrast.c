@@ -83,16 +83,22 @@ PetscErrorCode DirectAddContrast(Direct *d) {
   const DoubleLayer s = d->c->contrast;
   const Layout l = d->c->membrane->layout;
   const PetscInt n = 2 * l->M, V = d->first[PART_V];
-  const PetscBool box = DoubleBoxServes(s->box);
-  PetscReal *B, *D = NULL;
+  const PetscInt tensors = DIPOLE_COUNT * d->c->bodies->layout->M, rows = 2 * d->c->bodies->layout->M;
+  PetscReal *B, *D = NULL, *unit;
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(n * n, &B));
   PetscCall(ContrastMatrix(d->c, PETSC_TRUE, d->fluid->a0, 0, l->M, B));
   for (PetscInt i = 0; i < n * n; i++) PetscCall(DirectAdd(d, V + i / n, V + i % n, B[i]));
   PetscCall(PetscFree(B));
   PetscCall(AddToObstacles(d));
-  if (box) PetscCall(PetscCalloc1(2 * DIPOLE_COUNT * PetscSqr(d->c->bodies->layout->M), &D));
-  if (box) PetscCall(DoubleBoxMatrix(s->box, -1, D));
+  PetscCall(PetscCalloc1(tensors, &unit));
+  if (s->box) PetscCall(PetscCalloc1(rows * tensors, &D));
+  for (PetscInt j = 0; j < tensors && D; j++) {
+    unit[j] = 1;
+    PetscCall(DoubleBoxApply(s->box, -1, unit, D + j * rows));
+    unit[j] = 0;
+  }
+  PetscCall(PetscFree(unit));
   for (PetscInt k = 0; k < n; k++)
     if (s->ratio[LayoutBody(l, k / 2)] != 1) PetscCall(AddUnitJump(d, k / 2, (int)(k % 2), D));
   PetscCall(PetscFree(D));
