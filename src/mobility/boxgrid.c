@@ -10,17 +10,17 @@ typedef struct {
   Layout layout; /* one body: the places, x fastest */
   Markers markers;
   LayerSetting set;
-  SinglePairs pairs; /* of the places, */
-  DoubleImage twice; /* and what walls add to dipoles */
-  Vec force, u, p;   /* on the grid */
+  SinglePairs pairs; /* pairs of places */
+  DoubleImage twice; /* what walls add to dipoles at the places */
+  Vec force, u, p;   /* on the grid; NULL for forces, whose rows are not kept */
   Vec F, U;          /* at the places */
   const BoxAxis *axis;
   const BoxLattice *lattice;
-  PaddedStencil *dipole; /* [DIPOLE_COUNT places], of dipoles */
-  Vec source;            /* of dipoles */
+  PaddedStencil *dipole; /* [DIPOLE_COUNT places] stencils of dipoles; NULL for forces */
+  Vec source;            /* divergence that dipoles bring, on the grid; NULL for forces */
 } BoxGrid;
 
-static PetscErrorCode PlaceMarkers(BoxGrid *b, const char kernel[]) {
+static PetscErrorCode BoxGridPlace(BoxGrid *b, const char kernel[]) {
   const BoxAxis *x = &b->axis[0], *y = &b->axis[1];
   const PetscInt start[2] = {0, x->places * y->places};
   PetscScalar *a;
@@ -47,8 +47,8 @@ static PetscErrorCode PlaceMarkers(BoxGrid *b, const char kernel[]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Create(const FluidSpec *spec, const char kernel[], const BoxLattice *lattice,
-                             const BoxAxis axis[2], BoxGrid *b) {
+static PetscErrorCode BoxGridCreate(const FluidSpec *spec, const char kernel[], const BoxLattice *lattice,
+                                    const BoxAxis axis[2], BoxGrid *b) {
   FluidSpec box = *spec;
   PetscFunctionBeginUser;
   *b = (BoxGrid){.axis = axis, .lattice = lattice};
@@ -56,7 +56,7 @@ static PetscErrorCode Create(const FluidSpec *spec, const char kernel[], const B
   PetscCall(PetscStrncpy(box.poisson, "fftw_tridiagonal", sizeof(box.poisson)));
   PetscCall(FluidCreate(&box, &b->fluid));
   PetscCall(StokesCreate(b->fluid, &b->stokes));
-  PetscCall(PlaceMarkers(b, kernel));
+  PetscCall(BoxGridPlace(b, kernel));
   b->set = (LayerSetting){.markers = b->markers, .nu = spec->nu, .unit = lattice->unit};
   PetscCall(SinglePairsCreate(&b->set, lattice->stokeslet, lattice->half, &b->pairs));
   PetscCall(SinglePairsPlace(b->pairs));
@@ -65,14 +65,14 @@ static PetscErrorCode Create(const FluidSpec *spec, const char kernel[], const B
     PetscCall(DoubleImageCreate(b->pairs->image, lattice->dipole, &b->twice));
     DoubleImagePlace(b->twice, b->dipole);
   }
-  if (!lattice->dipole) PetscFunctionReturn(PETSC_SUCCESS); /* nothing on the grid */
+  if (!lattice->dipole) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(DMCreateGlobalVector(b->fluid->grid->velocity, &b->force));
   PetscCall(VecDuplicate(b->force, &b->u));
   PetscCall(DMCreateGlobalVector(b->fluid->grid->da[FIELD_P], &b->p));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Destroy(BoxGrid *b) {
+static PetscErrorCode BoxGridDestroy(BoxGrid *b) {
   Vec *all[] = {&b->force, &b->u, &b->p, &b->F, &b->U, &b->source};
   PetscFunctionBeginUser;
   for (int k = 0; k < 6; k++) PetscCall(VecDestroy(all[k]));
@@ -88,7 +88,7 @@ static PetscErrorCode Destroy(BoxGrid *b) {
 
 /* What the lattice has of the parts of place j's source at place i, less what the near field gives of the walls: the
    velocities L; with the exact images where the smooth part itself is wanted. */
-static void Lattice(BoxGrid *b, PetscInt i, PetscInt j, PetscReal L[2][DIPOLE_COUNT]) {
+static void BoxGridLattice(BoxGrid *b, PetscInt i, PetscInt j, PetscReal L[2][DIPOLE_COUNT]) {
   const PetscReal *X = b->markers->X, h = b->fluid->grid->h;
   const PetscReal plain[2] = {X[2 * i] - X[2 * j], X[2 * i + 1] - X[2 * j + 1]};
   PetscReal d[2] = {plain[0], plain[1]}, C[4] = {0, 0, 0, 0}, S[4];
@@ -119,8 +119,8 @@ static PetscBool IsSquare(const BoxAxis axis[2]) {
   return axis[0].wall == axis[1].wall && PetscAbsReal(x - y) < 1e-12 * x ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* W of the pair and of its mirror images between walls: a mirrored velocity or force changes its sign, of a tensor xy.
-   In a square also of that with x and y exchanged, of forces. */
+/* Add W of a pair of places and of its mirror images between walls. In a mirror one component of a velocity or of a
+   force changes its sign, and xy of a tensor. In a square the pair with x and y exchanged is added too. */
 static void AddEntry(const BoxGrid *b, int ci, int cj, const PetscInt a[2], const PetscInt s[2], PetscReal value,
                      PetscReal W[]) {
   const BoxAxis *axis = b->axis;
@@ -160,8 +160,8 @@ static PetscErrorCode SpreadDipole(BoxGrid *b, PetscInt j, int cj) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* U, the velocity at all places of unit part cj of place j's source: of forces row by row. */
-static PetscErrorCode Respond(BoxGrid *b, PetscInt j, int cj) {
+/* U = the velocity at all places by a unit source, part cj, at place j. */
+static PetscErrorCode BoxGridRespond(BoxGrid *b, PetscInt j, int cj) {
   const PetscReal over = 1 / PetscSqr(b->fluid->grid->h);
   PetscFunctionBeginUser;
   if (b->lattice->dipole) {
@@ -186,10 +186,10 @@ static PetscErrorCode AddSource(BoxGrid *b, const PetscInt s[2], PetscReal scale
   PetscReal(*L)[2][DIPOLE_COUNT];
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(x->places * y->places, &L));
-  for (PetscInt i = 0; i < x->places * y->places; i++) Lattice(b, i, j, L[i]);
+  for (PetscInt i = 0; i < x->places * y->places; i++) BoxGridLattice(b, i, j, L[i]);
   for (int cj = 0; cj < (b->lattice->dipole ? DIPOLE_COUNT : 2); cj++) {
     if (cj == 1 && IsSquare(b->axis)) continue;
-    PetscCall(Respond(b, j, cj));
+    PetscCall(BoxGridRespond(b, j, cj));
     PetscCall(VecGetArrayRead(b->U, &U));
     for (PetscInt i = 0; i < x->places * y->places; i++) {
       const PetscInt a[2] = {i % x->places, i / x->places};
@@ -210,11 +210,11 @@ PetscErrorCode BoxGridAdd(const FluidSpec *spec, MPI_Comm comm, const char kerne
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
   PetscCallMPI(MPI_Comm_size(comm, &size));
   for (int dir = 0; dir < 2; dir++) sources[dir] = axis[dir].wall ? axis[dir].places / 2 : 1;
-  PetscCall(Create(spec, kernel, lattice, axis, &b));
+  PetscCall(BoxGridCreate(spec, kernel, lattice, axis, &b));
   for (PetscInt k = rank; k < sources[0] * sources[1]; k += size) {
     const PetscInt s[2] = {k % sources[0], k / sources[0]};
     PetscCall(AddSource(&b, s, scale, W));
   }
-  PetscCall(Destroy(&b));
+  PetscCall(BoxGridDestroy(&b));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

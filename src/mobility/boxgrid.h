@@ -12,7 +12,7 @@
 #include "layers/latticedipole.h"
 #include "fluid/stokes/fluid.h"
 
-#define BOX_LATTICE_CELLS 30 /* of the lattice's tables; beyond, its closed form is right to 2e-7 */
+#define BOX_LATTICE_CELLS 30 /* reach of the lattice's tables; farther its closed form is right to 2e-7 */
 
 /* The lattice's answers to the sources, borrowed: of forces, or (dipole not NULL) of dipoles. Tables reach
    BOX_LATTICE_CELLS and OFFSET_LAGS. */

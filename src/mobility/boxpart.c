@@ -40,7 +40,7 @@ static PetscReal Fade(BoxPart b, const PetscReal X[2]) {
 }
 
 /* The rows A[2][rank] of marker k, from its functions' values. */
-static void PlaceMarker(BoxPart b, PetscInt k, PetscReal A[]) {
+static void BoxPartPlaceMarker(BoxPart b, PetscInt k, PetscReal A[]) {
   const PetscReal *X = b->markers->X + 2 * k;
   BoxTableRows(b->at, X, Fade(b, X), 0, 2, A);
 }
@@ -59,7 +59,7 @@ static PetscBool AreInMiddle(BoxPart b) {
 }
 
 /* The table that reaches all markers, made when it is first needed. */
-static PetscErrorCode TakeTable(BoxPart b, PetscBool *moved) {
+static PetscErrorCode BoxPartTakeTable(BoxPart b, PetscBool *moved) {
   const Layout l = b->markers->layout;
   const PetscBool middle = AreInMiddle(b);
   BoxTable *t = &b->table[middle];
@@ -82,11 +82,11 @@ PetscErrorCode BoxPartPlace(BoxPart b) {
   const Layout l = b->markers->layout;
   PetscBool moved = PETSC_FALSE;
   PetscFunctionBeginUser;
-  PetscCall(TakeTable(b, &moved));
+  PetscCall(BoxPartTakeTable(b, &moved));
   for (PetscInt k = 0; k < l->n; k++) {
     const PetscReal *now = b->markers->X + 2 * (l->first + k), *then = b->X + 2 * k;
     if (!moved && now[0] == then[0] && now[1] == then[1]) continue; /* at rest, on an obstacle */
-    PlaceMarker(b, l->first + k, b->A + 2 * k * b->at->rank);
+    BoxPartPlaceMarker(b, l->first + k, b->A + 2 * k * b->at->rank);
     b->X[2 * k] = now[0];
     b->X[2 * k + 1] = now[1];
   }
@@ -116,7 +116,7 @@ static PetscErrorCode RangeRows(BoxPart b, const MarkerRange *range, PetscReal *
     *rows = b->A + 2 * (range->first - l->first) * r;
   else
     PetscCall(PetscMalloc1(2 * range->n * r, rows));
-  for (PetscInt k = 0; k < range->n && *made; k++) PlaceMarker(b, range->first + k, *rows + 2 * k * r);
+  for (PetscInt k = 0; k < range->n && *made; k++) BoxPartPlaceMarker(b, range->first + k, *rows + 2 * k * r);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -17,14 +17,14 @@ struct _p_BoxPart {
   const FluidSpec *spec; /* borrowed */
   BoxLattice lattice;
   Markers markers;      /* borrowed */
-  BoxAxis axis[2];      /* of the box: what BoxImage needs */
+  BoxAxis axis[2];      /* the directions of the box, for BoxImage */
   PetscBool ramp;       /* unsteady flow: D fades next to walls */
-  BoxTable table[2];    /* of all the box; of its middle, where all markers are in that. Made when needed */
+  BoxTable table[2];    /* table of all the box, and of its middle half; each is made when it is first needed */
   const BoxTable *at;   /* the table that A is of */
   PetscReal *A;         /* [2n][rank] of the own markers, D = A diag(l) A^T */
-  PetscReal *X;         /* [2n] where they are in A */
+  PetscReal *X;         /* [2n] places of the own markers for which A is */
   PetscReal *amplitude; /* [rank] work */
-  PetscInt room;        /* for ranks */
+  PetscInt room;        /* eigenvalues for which A and amplitude have room */
   PetscLogEvent make;
 };
 

@@ -3,8 +3,8 @@
 #include "mobility/boxtable.h"
 
 /* a[4 n] = weights of count functions times their rows of vectors, 4 n of the `modes` that a row has: in registers. */
-static inline void Sums(const int n, PetscInt count, const PetscReal weight[], const PetscReal *row, PetscInt modes,
-                        PetscReal a[]) {
+static inline void BoxBlockVectors(const int n, PetscInt count, const PetscReal weight[], const PetscReal *row,
+                                   PetscInt modes, PetscReal a[]) {
   Lanes sum[4] = {{0}, {0}, {0}, {0}};
   for (PetscInt f = 0; f < count; f++, row += modes)
     for (int k = 0; k < n; k++) sum[k] += weight[f] * LanesAt(row + LANES * k);
@@ -16,11 +16,11 @@ void BoxBlockSum(const BoxBlock *q, int first, int components, const PetscReal w
   const PetscInt modes = q->modes, functions = q->n[0] * q->n[1], count = components * functions;
   const PetscReal *Q = q->Q + first * functions * modes;
   PetscInt m = 0;
-  for (; m + 4 * LANES <= modes; m += 4 * LANES) Sums(4, count, weight, Q + m, modes, a + m);
-  for (; m + LANES <= modes; m += LANES) Sums(1, count, weight, Q + m, modes, a + m);
+  for (; m + 4 * LANES <= modes; m += 4 * LANES) BoxBlockVectors(4, count, weight, Q + m, modes, a + m);
+  for (; m + LANES <= modes; m += LANES) BoxBlockVectors(1, count, weight, Q + m, modes, a + m);
   if (m < modes && modes >= LANES) {
     m = modes - LANES;
-    Sums(1, count, weight, Q + m, modes, a + m);
+    BoxBlockVectors(1, count, weight, Q + m, modes, a + m);
     m = modes;
   }
   for (; m < modes; m++) {

@@ -4,12 +4,12 @@
 #define WALL_MARGIN 0.5 /* cells of the coarser grid between the places and a wall */
 #define PLACES 16       /* between two walls */
 #define MIDDLE_PLACES 8 /* in the middle half of the box, far from walls */
-#define MODES 16        /* of a period as long as the other side */
-#define COARSE_CELLS 64 /* of the shorter side, on the coarser grid */
+#define MODES 16        /* modes kept over a period that is as long as the other side */
+#define COARSE_CELLS 64 /* least and most cells of the shorter side on the coarser grid of a large one */
 #define MOST_CELLS 80
-#define RATIO_CELLS 48 /* of the shorter side, from which on the pair's ratio is 3/2, */
-#define FEW_CELLS 24   /* and below which it is 3 */
-#define SMALLEST 5e-4  /* of the largest: eigenvalues below it are dropped */
+#define RATIO_CELLS 48 /* cells of the shorter side from which on the ratio of the pair is 3/2 */
+#define FEW_CELLS 24   /* cells of the shorter side below which the ratio is 3 */
+#define SMALLEST 5e-4  /* part of the largest eigenvalue below which eigenvalues are dropped */
 
 /* Parts of a source: two of a force, three of a dipole. */
 static inline PetscInt BoxParts(const BoxTable *t) {
@@ -131,8 +131,8 @@ static PetscInt CountBlocks(const BoxAxis *a) {
   return a->wall ? 2 : a->modes + 1;
 }
 
-/* The velocity component like which a component behaves in a mirror across x, across y: its sign changes if it is like
-   the one across the mirror. Components: u, v, and the tensor's xx, yy, xy. */
+/* How each component (u, v, and the tensor's xx, yy, xy) behaves in a mirror across x and in one across y: as the
+   velocity component of this number. The component across the mirror changes its sign. */
 static const int like[BOX_COMPONENTS][2] = {{0, 0}, {1, 1}, {1, 0}, {1, 0}, {0, 1}};
 
 /* A direction's functions of block b: a cosine and its sine; between walls the even or odd half, and of the other
@@ -180,7 +180,7 @@ static void AddCouple(const BoxTable *t, int ci, int cj, Couple x, Couple y, Pet
 
 /* The blocks' parts of D between functions, from W between places; symmetric, of dipoles with its transpose beside it.
  */
-static PetscErrorCode Transform(const BoxTable *t, const PetscReal W[]) {
+static PetscErrorCode BoxTableTransform(const BoxTable *t, const PetscReal W[]) {
   const PetscInt nx = t->axis[0].pairs, ny = t->axis[1].pairs, parts = BoxParts(t);
   PetscReal *line;
   Couplings c[2];
@@ -212,7 +212,7 @@ static PetscBool IsKept(const BoxTable *t, PetscReal l, PetscReal least) {
   return (BoxParts(t) == 2 ? PetscAbsReal(l) : l) > least ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* Of the block's eigenvectors Q, columns, and eigenvalues l only those larger than `least` are kept. */
+/* Keep the block's eigenvectors (columns of Q) whose eigenvalues l are larger than `least`. */
 static PetscErrorCode KeepLargest(const BoxTable *t, BoxBlock *q, const PetscReal l[], PetscReal least,
                                   PetscReal kept[], PetscInt *rank) {
   const PetscInt size = t->components * q->n[0] * q->n[1];
@@ -262,8 +262,8 @@ static PetscErrorCode BoxTableDecompose(MPI_Comm comm, BoxTable *t) {
 
 /* r^2/(r^2 - 1) (W_{H/r} - W_H) of the pair, times (h/H)^2, leaves 1/r^2 of what W_H has of fourth order; r = 3/2 on
    many cells, where that makes whole numbers of them, else 2 or, on few, 3. */
-static PetscErrorCode Pair(const FluidSpec *run, const char kernel[], const BoxLattice *lattice,
-                           const PetscInt cells[2], const BoxAxis axis[2], PetscReal H, PetscReal W[]) {
+static PetscErrorCode BoxTablePair(const FluidSpec *run, const char kernel[], const BoxLattice *lattice,
+                                   const PetscInt cells[2], const BoxAxis axis[2], PetscReal H, PetscReal W[]) {
   const PetscInt shorter = PetscMin(cells[0], cells[1]), odd = cells[0] % 2 || cells[1] % 2;
   const PetscInt halves = shorter < FEW_CELLS ? 6 : shorter < RATIO_CELLS || odd ? 4 : 3; /* 2 r */
   const PetscReal scale = PetscSqr(halves * FluidSpecCellSize(run) / H) / (halves * halves - 4);
@@ -301,10 +301,10 @@ PetscErrorCode BoxTableCreate(const FluidSpec *spec, const char kernel[], const 
     size *= t->axis[d].pairs;
   }
   PetscCall(PetscCalloc1(size, &W));
-  PetscCall(Pair(&pair, kernel, lattice, cells, axis, t->H, W));
+  PetscCall(BoxTablePair(&pair, kernel, lattice, cells, axis, t->H, W));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, W, (PetscMPIInt)size, MPIU_REAL, MPI_SUM, spec->comm));
   PetscCall(CreateBlocks(t));
-  PetscCall(Transform(t, W));
+  PetscCall(BoxTableTransform(t, W));
   PetscCall(BoxTableDecompose(spec->comm, t));
   PetscCall(PetscFree(W));
   PetscFunctionReturn(PETSC_SUCCESS);

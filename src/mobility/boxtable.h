@@ -16,14 +16,14 @@
 #define BOX_COMPONENTS 5 /* u, v, and of dipoles xx, yy, xy */
 typedef struct {
   PetscInt first[BOX_COMPONENTS][2]; /* [component]: its functions of x, of y, from here on */
-  PetscInt n[2];                     /* so many */
-  PetscInt start, modes;             /* its eigenvalues among all */
+  PetscInt n[2];                     /* numbers of its functions of x and of y */
+  PetscInt start, modes;             /* first and number of its eigenvalues among all */
   PetscReal *Q;                      /* [components][n[0]][n[1]][modes] */
 } BoxBlock;
 
 typedef struct {
   int components;        /* 2, or BOX_COMPONENTS with dipoles */
-  BoxAxis axis[2];       /* of the places: Chebyshev's between walls, even offsets over a period */
+  BoxAxis axis[2];       /* places in x and y: Chebyshev's between walls, equal offsets over a period */
   PetscInt functions[2]; /* in x and y: Lagrange's polynomials, or 1, cos, sin, .. over the period */
   PetscInt blocks;
   BoxBlock *block;

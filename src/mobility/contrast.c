@@ -1,7 +1,7 @@
 #include "mobility/contrast.h"
 
 /* y += alpha (1 + ratio)/2 U */
-static void AddMean(Coupling c, PetscReal alpha, const PetscScalar U[], PetscScalar y[]) {
+static void ContrastAddMean(Coupling c, PetscReal alpha, const PetscScalar U[], PetscScalar y[]) {
   const Layout l = c->membrane->layout;
   for (PetscInt v = l->own; v < l->end; v++)
     for (PetscInt k = 2 * LayoutOffset(l, v); k < 2 * (LayoutOffset(l, v) + LayoutCount(l, v)); k++)
@@ -33,7 +33,7 @@ PetscErrorCode ContrastAdd(Coupling c, PetscReal alpha, Vec motion, PetscScalar 
   const PetscScalar *G;
   PetscFunctionBeginUser;
   PetscCall(VecGetArrayRead(motion, &G));
-  AddMean(c, alpha, G, y);
+  ContrastAddMean(c, alpha, G, y);
   PetscCall(DoubleLayerApply(c->contrast, -alpha, G, y));
   PetscCall(VecRestoreArrayRead(motion, &G));
   PetscFunctionReturn(PETSC_SUCCESS);

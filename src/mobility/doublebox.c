@@ -38,12 +38,12 @@ static PetscErrorCode DoubleBoxMakeTable(DoubleBox b) {
 }
 
 /* Own marker k's values of the functions of x; those of y come behind. */
-static PetscReal *Values(DoubleBox b, PetscInt k) {
+static PetscReal *BoxValues(DoubleBox b, PetscInt k) {
   return b->value + k * (b->table.functions[0] + b->width);
 }
 
 /* A component's functions. */
-static PetscReal *Functions(DoubleBox b, int component) {
+static PetscReal *BoxFunctions(DoubleBox b, int component) {
   return b->function + component * b->table.functions[0] * b->width;
 }
 
@@ -54,7 +54,7 @@ PetscErrorCode DoubleBoxPlace(DoubleBox b) {
   const BoxTable *at = &b->table;
   for (PetscInt k = 0; k < l->n; k++) {
     const PetscReal *X = b->markers->X + 2 * (l->first + k);
-    PetscReal *value = Values(b, k);
+    PetscReal *value = BoxValues(b, k);
     BoxTableFunctions(at, 0, X[0], value);
     BoxTableFunctions(at, 1, X[1], value + at->functions[0]);
     for (PetscInt j = at->functions[1]; j < b->width; j++) value[at->functions[0] + j] = 0;
@@ -62,14 +62,14 @@ PetscErrorCode DoubleBoxPlace(DoubleBox b) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Columns of tensor part c's functions, so many vectors from the j-th number on, += of markers k .. k + count - 1,
-   which have these parts of them: in registers. */
+/* Functions of tensor part c += the parts of markers k .. k + count - 1, in `vectors` columns of vectors from the j-th
+   number on. The sums stay in registers. */
 static inline void GatherColumns(const int vectors, DoubleBox b, int c, PetscInt k, PetscInt count, PetscInt j,
                                  const PetscReal part[]) {
   const PetscInt nx = b->table.functions[0], size = nx + b->width;
-  PetscReal *f = Functions(b, c) + j;
+  PetscReal *f = BoxFunctions(b, c) + j;
   for (PetscInt i = 0; i < nx; i++, f += b->width) {
-    const PetscReal *x = Values(b, k) + i, *y = Values(b, k) + nx + j;
+    const PetscReal *x = BoxValues(b, k) + i, *y = BoxValues(b, k) + nx + j;
     Lanes sum[4];
     for (int q = 0; q < vectors; q++) sum[q] = LanesAt(f + q * LANES);
     for (PetscInt m = 0; m < count; m++, x += size, y += size) {
@@ -81,10 +81,10 @@ static inline void GatherColumns(const int vectors, DoubleBox b, int c, PetscInt
 }
 
 /* Parts 2, 3, 4: the own markers' tensors in the functions. */
-static void Gather(DoubleBox b, const PetscReal T[]) {
+static void BoxGather(DoubleBox b, const PetscReal T[]) {
   const PetscInt n = b->markers->layout->n;
   PetscReal part[AT_ONCE];
-  (void)PetscArrayzero(Functions(b, 2), DIPOLE_COUNT * b->table.functions[0] * b->width);
+  (void)PetscArrayzero(BoxFunctions(b, 2), DIPOLE_COUNT * b->table.functions[0] * b->width);
   for (PetscInt k = 0; k < n; k += AT_ONCE)
     for (int c = 0; c < DIPOLE_COUNT; c++) {
       const PetscInt count = PetscMin(AT_ONCE, n - k);
@@ -95,7 +95,7 @@ static void Gather(DoubleBox b, const PetscReal T[]) {
     }
 }
 
-/* SUM x_i SUM f_ij y_j of so many vectors of columns. */
+/* SUM x_i SUM f_ij y_j over `vectors` columns of vectors, at most 4. */
 static inline Lanes ScatterColumns(const int vectors, PetscInt nx, PetscInt width, const PetscReal x[],
                                    const PetscReal y[], const PetscReal f[]) {
   Lanes column[4], sum[4] = {{0}, {0}, {0}, {0}};
@@ -108,9 +108,9 @@ static inline Lanes ScatterColumns(const int vectors, PetscInt nx, PetscInt widt
 }
 
 /* Velocity component c of own marker k. */
-static PetscReal Scatter(DoubleBox b, PetscInt k, int c) {
+static PetscReal BoxScatter(DoubleBox b, PetscInt k, int c) {
   const PetscInt nx = b->table.functions[0];
-  const PetscReal *x = Values(b, k), *y = x + nx, *f = Functions(b, c);
+  const PetscReal *x = BoxValues(b, k), *y = x + nx, *f = BoxFunctions(b, c);
   PetscInt j = 0;
   Lanes sum = {0};
   for (; j + 4 * LANES <= b->width; j += 4 * LANES) sum += ScatterColumns(4, nx, b->width, x, y + j, f + j);
@@ -120,7 +120,7 @@ static PetscReal Scatter(DoubleBox b, PetscInt k, int c) {
 
 /* Where component c's functions of a block begin. */
 static PetscReal *InBlock(DoubleBox b, const BoxBlock *q, int c) {
-  return Functions(b, c) + q->first[c][0] * b->width + q->first[c][1];
+  return BoxFunctions(b, c) + q->first[c][0] * b->width + q->first[c][1];
 }
 
 /* A block's eigenvectors' amplitudes of the tensors' functions. */
@@ -142,7 +142,7 @@ static void FromAmplitudes(DoubleBox b, const BoxBlock *q) {
 }
 
 /* The velocities' functions = alpha D of the tensors', of which each rank has a part. */
-static PetscErrorCode Respond(DoubleBox b, PetscReal alpha) {
+static PetscErrorCode BoxRespond(DoubleBox b, PetscReal alpha) {
   const BoxTable *t = &b->table;
   const PetscMPIInt r = (PetscMPIInt)t->rank;
   const MPI_Comm comm = b->markers->layout->comm;
@@ -157,8 +157,8 @@ static PetscErrorCode Respond(DoubleBox b, PetscReal alpha) {
 
 PetscErrorCode DoubleBoxApply(DoubleBox b, PetscReal alpha, const PetscReal T[], PetscScalar y[]) {
   PetscFunctionBeginUser;
-  Gather(b, T);
-  PetscCall(Respond(b, alpha));
-  for (PetscInt k = 0; k < 2 * b->markers->layout->n; k++) y[k] += Scatter(b, k / 2, k % 2);
+  BoxGather(b, T);
+  PetscCall(BoxRespond(b, alpha));
+  for (PetscInt k = 0; k < 2 * b->markers->layout->n; k++) y[k] += BoxScatter(b, k / 2, k % 2);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

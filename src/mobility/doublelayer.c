@@ -95,7 +95,8 @@ static PetscErrorCode PlaceDipoles(DoubleLayer s) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode AddBlock(DoubleLayer s, PetscInt row, PetscInt column, PetscReal sign, const PetscReal shift[2]) {
+static PetscErrorCode DoubleLayerAddBlock(DoubleLayer s, PetscInt row, PetscInt column, PetscReal sign,
+                                          const PetscReal shift[2]) {
   const Layout l = s->near->set.bodies->layout;
   PetscFunctionBeginUser;
   if (s->ratio[column] == 1 || row < l->own || row >= l->end) PetscFunctionReturn(PETSC_SUCCESS);
@@ -114,8 +115,8 @@ static PetscErrorCode FindBlocks(DoubleLayer s) {
   s->values = 0;
   for (PetscInt k = 0; k < f->list.count.blocks; k++) {
     const NearBlock *b = &f->list.block[k];
-    PetscCall(AddBlock(s, b->row, b->column, 1, b->shift));
-    if (!NearBlockIsSelf(b)) PetscCall(AddBlock(s, b->column, b->row, -1, b->shift));
+    PetscCall(DoubleLayerAddBlock(s, b->row, b->column, 1, b->shift));
+    if (!NearBlockIsSelf(b)) PetscCall(DoubleLayerAddBlock(s, b->column, b->row, -1, b->shift));
   }
   PetscCall(ArrayReserve(s->values, &s->value_room, &s->value));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -177,7 +178,7 @@ static PetscErrorCode SetJump(DoubleLayer s, const PetscScalar U[]) {
 
 /* The jump of markers that move with U, and tensors of its dipoles, less its flux; zero where there is no jump, as for
    a ratio of 1, which has no normals. */
-static PetscErrorCode SetDipoles(DoubleLayer s, const PetscScalar U[]) {
+static PetscErrorCode DoubleLayerSetDipoles(DoubleLayer s, const PetscScalar U[]) {
   PetscFunctionBeginUser;
   PetscCall(SetJump(s, U));
   for (PetscInt k = 0; k < s->near->set.bodies->layout->M; k++) {
@@ -192,7 +193,7 @@ static PetscErrorCode SetDipoles(DoubleLayer s, const PetscScalar U[]) {
 }
 
 /* mean += that of the dipoles that have been set. */
-static void AddMean(DoubleLayer s, PetscReal mean[2]) {
+static void DoubleLayerAddMean(DoubleLayer s, PetscReal mean[2]) {
   const NearField f = s->near;
   const Grid g = f->set.markers->grid;
   const PetscReal area = (g->hi[0] - g->lo[0]) * (g->hi[1] - g->lo[1]);
@@ -206,7 +207,7 @@ PetscErrorCode DoubleLayerApply(DoubleLayer s, PetscReal alpha, const PetscScala
   const Layout l = s->near->set.bodies->layout;
   PetscFunctionBeginUser;
   PetscCall(PetscLogEventBegin(s->apply, 0, 0, 0, 0));
-  PetscCall(SetDipoles(s, U));
+  PetscCall(DoubleLayerSetDipoles(s, U));
   for (PetscInt k = 0; k < s->blocks; k++) {
     const DoubleBlock *b = &s->block[k];
     PetscCall(DenseMultAdd(PETSC_FALSE, 2 * LayoutCount(l, b->row), 2 * LayoutCount(l, b->column), alpha,
@@ -219,16 +220,16 @@ PetscErrorCode DoubleLayerApply(DoubleLayer s, PetscReal alpha, const PetscScala
 
 PetscErrorCode DoubleLayerMean(DoubleLayer s, const PetscScalar U[], PetscReal mean[2]) {
   PetscFunctionBeginUser;
-  PetscCall(SetDipoles(s, U));
-  AddMean(s, mean);
+  PetscCall(DoubleLayerSetDipoles(s, U));
+  DoubleLayerAddMean(s, mean);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode DoubleLayerSpread(DoubleLayer s, const PetscScalar U[], Forcing *f) {
   PetscFunctionBeginUser;
   if (s->near->set.markers->grid->free) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(SetDipoles(s, U));
-  AddMean(s, f->mean);
+  PetscCall(DoubleLayerSetDipoles(s, U));
+  DoubleLayerAddMean(s, f->mean);
   ForcingNote(f, &s->near->set.markers->window);
   PetscCall(DipoleListSpread(s->list, s->tensor, f->values, f->source));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -238,8 +239,8 @@ PetscErrorCode DoubleLayerRows(DoubleLayer s, const PetscScalar U[], PetscBool o
                                DipoleRows rows) {
   PetscReal mean[2] = {0, 0};
   PetscFunctionBeginUser;
-  PetscCall(SetDipoles(s, U));
-  AddMean(s, mean);
+  PetscCall(DoubleLayerSetDipoles(s, U));
+  DoubleLayerAddMean(s, mean);
   PetscCall(DipoleRowsSet(rows, s->list, s->tensor, own, profile, mean));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -247,7 +248,7 @@ PetscErrorCode DoubleLayerRows(DoubleLayer s, const PetscScalar U[], PetscBool o
 PetscErrorCode DoubleLayerStress(DoubleLayer s, const PetscScalar U[], PetscReal sum[3], PetscReal shortfall[2]) {
   const Markers m = s->near->set.markers;
   PetscFunctionBeginUser;
-  PetscCall(SetDipoles(s, U));
+  PetscCall(DoubleLayerSetDipoles(s, U));
   for (PetscInt k = 0; k < s->near->set.bodies->layout->M; k++) {
     const PetscReal *T = s->tensor + DIPOLE_COUNT * k;
     PetscReal part[2];

@@ -48,7 +48,7 @@ PETSC_EXTERN PetscErrorCode DoubleLayerDestroy(DoubleLayer *layer);
 PETSC_EXTERN PetscErrorCode DoubleLayerAddBoxPart(DoubleLayer layer, const FluidSpec *spec);
 PETSC_EXTERN PetscErrorCode DoubleLayerPlace(DoubleLayer layer);
 
-/* The next ones are of the jump of vesicles' markers that move with U[2n], this rank's part. Collective.
+/* In what follows the jump is that of the vesicles' markers that move with U[2n], this rank's part. Collective.
 
    DoubleLayerApply - y += alpha (C_D J and the box part of its dipoles), this rank's part y[2n] of a marker vector of
    all bodies.
