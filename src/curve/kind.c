@@ -95,6 +95,20 @@ PetscBool CurveSetWalk(const CurveSet *set, PetscInt v, PetscInt k, PetscInt ste
   return PETSC_TRUE;
 }
 
+PetscReal CurveLongestEdge(const CurveSet *set) {
+  PetscReal longest = 0, to[2];
+  for (PetscInt v = 0; v < set->curves; v++) {
+    const PetscInt last = set->start[v + 1] - 1;
+    for (PetscInt k = set->start[v]; k < last; k++) {
+      const PetscReal x = set->X[2 * k + 2] - set->X[2 * k], y = set->X[2 * k + 3] - set->X[2 * k + 1];
+      longest = PetscMax(longest, x * x + y * y);
+    }
+    if (last >= set->start[v] && CurveSetWalk(set, v, last, 1, to))
+      longest = PetscMax(longest, PetscSqr(to[0] - set->X[2 * last]) + PetscSqr(to[1] - set->X[2 * last + 1]));
+  }
+  return PetscSqrtReal(longest);
+}
+
 PetscErrorCode CurveFineCreate(const CurveSet *set, PetscInt n, const PetscInt which[], PetscInt times,
                                CurveFine *fine) {
   PetscFunctionBeginUser;

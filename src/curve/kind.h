@@ -40,6 +40,9 @@ static inline CurveKind CurveSetKind(const CurveSet *set, PetscInt v) {
 }
 PETSC_EXTERN PetscBool CurveSetWalk(const CurveSet *set, PetscInt v, PetscInt k, PetscInt steps, PetscReal X[2]);
 
+/* CurveLongestEdge - length of the longest edge of all curves of a set. Not collective. */
+PETSC_EXTERN PetscReal CurveLongestEdge(const CurveSet *set);
+
 /* One or two curves of a set as polygons of more points. */
 typedef struct {
   CurveSet set;

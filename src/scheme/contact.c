@@ -80,15 +80,11 @@ PetscErrorCode SchemeCheckContact(Scheme s) {
   const PetscBool before = s->warnings.contact;
   PetscReal reach = 0, found;
   PetscMPIInt pair[2] = {0, 0}, whose;
-  PetscBool clear;
   PetscFunctionBeginUser;
   for (PetscInt v = 0; v < l->bodies; v++) reach = PetscMax(reach, Unresolved(s, v, v));
   PetscCall(SchemeCurves(s, s->state.t, s->state.X));
-  PetscCall(FilmsNone(s, s->work_all, reach, &clear));
-  if (!clear) {
-    if (s->scene->limits.crossing) PetscCall(CheckCrossing(s, s->work_all));
-    PetscCall(FindContact(s, s->work_all, reach, pair));
-  }
+  if (s->scene->limits.crossing) PetscCall(CheckCrossing(s, s->work_all));
+  PetscCall(FindContact(s, s->work_all, reach, pair));
   PetscCall(AgreeMessage(l->comm, s->report.failure));
   found = pair[0] ? 1 : 0;
   PetscCall(AgreeLargest(l->comm, &found, &whose));

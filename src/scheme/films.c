@@ -1,6 +1,5 @@
 #include "scheme/films.h"
 #include "base/agree.h"
-#include "curve/separation.h"
 #include "curve/contacts.h"
 #include "curve/crossing.h"
 #include "scheme/stepcommon.h"
@@ -120,23 +119,11 @@ static PetscErrorCode FindDrained(Scheme s, PetscReal t, PetscReal limit, Draine
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode FilmsNone(Scheme s, const PetscScalar X[], PetscReal reach, PetscBool *none) {
-  View view;
-  PetscFunctionBeginUser;
-  SeeCurves(s, X, &view);
-  PetscCall(CurvesAreClear(&view.set, s->membrane->ds, PetscMax(reach, CurveLongestEdge(&view.set)), none));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode FilmsCross(Scheme s, const PetscScalar X[], PetscInt pair[2]) {
   CurveGap *gaps;
   PetscInt n;
-  PetscBool none;
   View view;
   PetscFunctionBeginUser;
-  pair[0] = pair[1] = -1;
-  PetscCall(FilmsNone(s, X, 0, &none));
-  if (none) PetscFunctionReturn(PETSC_SUCCESS);
   SeeCurves(s, X, &view);
   PetscCall(CurvesCross(&view.set, pair));
   if (pair[0] >= 0 || !view.set.smooth) PetscFunctionReturn(PETSC_SUCCESS);

@@ -9,11 +9,6 @@
    least is NaN where a vesicle has nothing to touch, each[v] where nothing is within four mean edges. Collective. */
 PETSC_EXTERN PetscErrorCode FilmsGaps(Scheme scheme, PetscReal *least, PetscReal each[]);
 
-/* FilmsNone - a quick test of the curves X[2(M + W)]. none is true where nothing crosses, no two bodies are nearer than
-   reach (length) or an edge, and no two parts of a vesicle farther than 2 reach apart along it are nearer than reach
-   (CurvesAreClear). Where none is false, nothing is known. Not collective. */
-PETSC_EXTERN PetscErrorCode FilmsNone(Scheme scheme, const PetscScalar X[], PetscReal reach, PetscBool *none);
-
 /* FilmsCross - the first two bodies that cross at the curves X[2(M + W)], by their polygons or by their smooth
    outlines; pair[0] is an own vesicle, pair[0] = pair[1] where a vesicle crosses itself, both are -1 where nothing
    crosses. Not collective. */

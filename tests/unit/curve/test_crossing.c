@@ -1,6 +1,5 @@
 /* Pairs of near points against the search of all pairs, and closed curves that cross or do not. */
 #include "facts.h"
-#include "curve/separation.h"
 #include "curve/crossing.h"
 
 typedef struct {
@@ -98,62 +97,6 @@ static PetscErrorCode CheckBehind(const Loop nested[2], const Loop over[2]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What is told without a search must be so: no crossing, and no near points but along the curve. */
-static PetscErrorCode CheckClear(const char what[], const Loop loop[2], PetscReal period_x, PetscReal reach,
-                                 PetscBool expected) {
-  const PetscInt start[3] = {0, POINTS, 2 * POINTS};
-  const PetscReal period[2] = {period_x, 0};
-  PetscReal X[4 * POINTS], ds[2], edges[2 * POINTS];
-  PetscInt pair[2], near = 0;
-  PetscBool clear;
-  PetscFunctionBeginUser;
-  for (int v = 0; v < 2; v++) {
-    PetscReal *x = X + 2 * v * POINTS;
-    Place(&loop[v], 0, x);
-    ds[v] = PETSC_MAX_REAL;
-    for (int k = 0; k < POINTS; k++) {
-      const int n = (k + 1) % POINTS;
-      edges[v * POINTS + k] = hypot(x[2 * n] - x[2 * k], x[2 * n + 1] - x[2 * k + 1]);
-      ds[v] = PetscMin(ds[v], edges[v * POINTS + k]);
-    }
-  }
-  const CurveSet set = {2, 2, start, NULL, X, period, PETSC_FALSE};
-  PetscCall(CurvesAreClear(&set, ds, PetscMax(reach, CurveLongestEdge(&set)), &clear));
-  CHECK(clear == expected, "%s, reach %g: %s", what, reach, clear ? "clear" : "a search is needed");
-  PetscCall(CurvesCross(&set, pair));
-  for (int i = 0; i < 2 * POINTS; i++)
-    for (int j = i + 1; j < 2 * POINTS; j++) {
-      const int v = i / POINTS, w = j / POINTS, apart = PetscMin(j - i, POINTS - (j - i));
-      PetscReal x = X[2 * j] - X[2 * i];
-      if (period_x > 0) x = remainder(x, period_x);
-      if (v == w && apart * ds[v] <= 2 * reach) continue;
-      near += hypot(x, X[2 * j + 1] - X[2 * i + 1]) < reach;
-    }
-  CHECK(!clear || (pair[0] < 0 && !near), "%s: cleared, and %d cross, %d points are near", what, (int)pair[0],
-        (int)near);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode CheckAllClear(void) {
-  static const Loop wide[2] = {{0, 0, 1, 0.8, 0, 1}, {0, 2.5, 1, 0.8, 0, 1}},
-                    near[2] = {{0, 0, 1, 0.8, 0, 1}, {0, 1.7, 1, 0.8, 0, 1}},
-                    slim[2] = {{0, 0, 1, 0.1, 0, 1}, {0, 2.5, 1, 0.8, 0, 1}},
-                    waist[2] = {{0, 0, 0.4, 1, -0.36, 1}, {0, 3.5, 1, 0.8, 0, 1}},
-                    eight[2] = {{0, 0, 1, 0.8, 0, 1}, {0, 3, 1, 0.5, 0.1, 2}},
-                    seam[2] = {{0, 0, 1, 0.8, 0, 1}, {2.5, 0, 1, 0.8, 0, 1}};
-  PetscFunctionBeginUser;
-  PetscCall(CheckClear("one above the other", wide, 0, 0.2, PETSC_TRUE));
-  PetscCall(CheckClear("one above the other, periodic", wide, 5, 0.2, PETSC_TRUE));
-  PetscCall(CheckClear("near its own image", wide, 2.1, 0.2, PETSC_FALSE));
-  PetscCall(CheckClear("near one another", near, 0, 0.2, PETSC_FALSE));
-  PetscCall(CheckClear("a slim one", slim, 0, 0.25, PETSC_FALSE));
-  PetscCall(CheckClear("a waist", waist, 0, 0.3, PETSC_FALSE));
-  PetscCall(CheckClear("a figure of eight", eight, 0, 0.1, PETSC_FALSE));
-  PetscCall(CheckClear("beside one another", seam, 0, 0.2, PETSC_TRUE));
-  PetscCall(CheckClear("over a seam", seam, 4, 0.2, PETSC_FALSE));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode Facts(void) {
   static const Loop apart[2] = {{0, 0, 1, 0.5, 0, 1}, {0, 1.001, 1, 0.5, 0, 1}},
                     over[2] = {{0, 0, 1, 0.5, 0, 1}, {0, 0.99, 1, 0.5, 0, 1}},
@@ -179,6 +122,5 @@ PetscErrorCode Facts(void) {
   PetscCall(CheckLoops("a tip in a hollow", nested, 0, PETSC_FALSE, 0, 1));
   PetscCall(CheckLoops("a tip in a hollow", nested, 0, PETSC_TRUE, -1, -1));
   PetscCall(CheckBehind(nested, over));
-  PetscCall(CheckAllClear());
   PetscFunctionReturn(PETSC_SUCCESS);
 }
