@@ -58,6 +58,7 @@ static inline Lanes LanesMax(Lanes a, Lanes b) {
   const LanesBits so = (LanesBits)(a > b);
   return (Lanes)((so & (LanesBits)a) | (~so & (LanesBits)b));
 }
+
 /* LanesLog - logarithms of normal numbers above 0, relative error 3e-16, near 1 error 2e-17; at 0 a finite number. With
    x = 2^e m, m from root(1/2) to root 2, and s = (m - 1)/(m + 1) it is
 

@@ -141,10 +141,9 @@ static void CurveArcs(const Curve *c, const PetscReal between[2], PetscInt n, Pe
   }
 }
 
-/* M points at equal arcs, of which `arcs` fill the curve between two parameters. */
-static PetscErrorCode CurvePlaceArcs(const Curve *c, const PetscReal between[2], PetscInt M, PetscInt arcs,
-                                     PetscReal X[]) {
-  const PetscInt n = PetscMax(CURVE_SAMPLES, 20 * M);
+PetscErrorCode CurveEqualArcs(const Curve *c, const PetscReal part[2], PetscInt M, PetscReal X[]) {
+  const PetscReal all[2] = {0, 1}, *between = part ? part : all;
+  const PetscInt arcs = part ? M - 1 : M, n = PetscMax(CURVE_SAMPLES, 20 * M);
   PetscReal *s, *middle;
   PetscInt i = 0;
   PetscFunctionBeginUser;
@@ -159,20 +158,6 @@ static PetscErrorCode CurvePlaceArcs(const Curve *c, const PetscReal between[2],
     CurveEvaluate(c, between[0] + (between[1] - between[0]) * ((i + x + bend * x * (x - 1)) / n), &X[2 * k]);
   }
   PetscCall(PetscFree2(s, middle));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode CurveEqualArcs(const Curve *c, PetscInt M, PetscReal X[]) {
-  const PetscReal all[2] = {0, 1};
-  PetscFunctionBeginUser;
-  PetscCall(CurvePlaceArcs(c, all, M, M, X));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode CurvePartEqualArcs(const Curve *c, PetscReal from, PetscReal to, PetscInt M, PetscReal X[]) {
-  const PetscReal between[2] = {from, to};
-  PetscFunctionBeginUser;
-  PetscCall(CurvePlaceArcs(c, between, M, M - 1, X));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

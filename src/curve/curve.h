@@ -50,13 +50,12 @@ PETSC_EXTERN PetscReal CurveArea(const Curve *curve);
 PETSC_EXTERN void CurveCentroid(const Curve *curve, PetscReal centroid[2]);
 
 /* CurveEqualChords - M points X[2M] on the curve between which all M chords are equal, the first at t = 0.
-   CurveEqualArcs - M points between which all M arcs are equal, on a smooth curve to 1e-9 of their length, the first at
-   t = 0: CurveFit starts from these points for the edges of the spectral derivative. CurvePartEqualArcs - M points
-   between which M - 1 arcs are equal, the first at t = `from` and the last at `to`. Not collective. Errors: memory. */
+   CurveEqualArcs - M points between which all arcs are equal, on a smooth curve to 1e-9 of their length: CurveFit
+   starts from these points for the edges of the spectral derivative. part NULL: M arcs around the curve, the first
+   point at t = 0; else M - 1 arcs, the first point at t = part[0] and the last at t = part[1]. Not collective. Errors:
+   memory. */
 PETSC_EXTERN PetscErrorCode CurveEqualChords(const Curve *curve, PetscInt M, PetscReal X[]);
-PETSC_EXTERN PetscErrorCode CurveEqualArcs(const Curve *curve, PetscInt M, PetscReal X[]);
-PETSC_EXTERN PetscErrorCode CurvePartEqualArcs(const Curve *curve, PetscReal from, PetscReal to, PetscInt M,
-                                               PetscReal X[]);
+PETSC_EXTERN PetscErrorCode CurveEqualArcs(const Curve *curve, const PetscReal part[2], PetscInt M, PetscReal X[]);
 
 /* CurveFit - move M markers X[2M] as little as possible (least squares) until all edges are length/M long and the curve
    encloses the area, by at most `most` steps of Newton's method. spectral: edges are dX/dk and the curve is that of the

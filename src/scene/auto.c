@@ -33,16 +33,13 @@ static PetscErrorCode Write(const char format[], PetscReal number, char value[AU
 }
 
 static PetscErrorCode ChooseStep(Draft s, char value[AUTO_TEXT]) {
-  PetscReal slow, fast;
-  SceneTimes(s, &slow, &fast);
-  return Write("%.6g", fast < PETSC_MAX_REAL ? 0.05 * fast : fast, value);
+  const PetscReal time = SceneFastestTime(s);
+  return Write("%.6g", time < PETSC_MAX_REAL ? 0.05 * time : time, value);
 }
 
 static PetscBool ExplainStep(Scene s, char why[AUTO_TEXT]) {
-  PetscReal slow, fast;
-  SceneTimes(s, &slow, &fast);
-  (void)snprintf(why, AUTO_TEXT,
-                 fast < PETSC_MAX_REAL ? "a twentieth of the fastest time of the scene" : "the default");
+  const PetscBool timed = SceneFastestTime(s) < PETSC_MAX_REAL ? PETSC_TRUE : PETSC_FALSE;
+  (void)snprintf(why, AUTO_TEXT, timed ? "a twentieth of the fastest time of the scene" : "the default");
   return PETSC_TRUE;
 }
 
@@ -67,15 +64,12 @@ static PetscBool ExplainTolerance(Scene s, char why[AUTO_TEXT]) {
 
 /* For the error at rest, and no more than the flow bears. */
 static PetscErrorCode ChooseLargestStep(Draft s, char value[AUTO_TEXT]) {
-  PetscReal slow, fast;
-  SceneTimes(s, &slow, &fast);
-  return Write("%.6g", slow < PETSC_MAX_REAL ? PetscMin(Row(s)->max_step * slow, SceneFlowStep(s)) : slow, value);
+  const PetscReal rest = SceneRestTime(s);
+  return Write("%.6g", rest < PETSC_MAX_REAL ? PetscMin(Row(s)->max_step * rest, SceneFlowStep(s)) : rest, value);
 }
 
 static PetscBool ExplainLargestStep(Scene s, char why[AUTO_TEXT]) {
-  PetscReal slow, fast;
-  SceneTimes(s, &slow, &fast);
-  if (SceneFlowStep(s) < Row(s)->max_step * slow)
+  if (SceneFlowStep(s) < Row(s)->max_step * SceneRestTime(s))
     (void)snprintf(why, AUTO_TEXT, "what this flow bears");
   else
     (void)snprintf(why, AUTO_TEXT, "%g nu R0^3/c_b: leaves up to %.1e of the energy at rest", (double)Row(s)->max_step,

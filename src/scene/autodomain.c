@@ -54,7 +54,7 @@ static PetscErrorCode NeedsGrid(Scene s, PetscBool *needs) {
 
 /* Where neither box nor boundaries are given and walls are no part of the question: unbounded fluid, or with what needs
    a grid a period in x, but for extension, which is not periodic. */
-static PetscErrorCode ChooseBoundary(Scene s, PetscBool in_x, char value[AUTO_TEXT]) {
+PetscErrorCode SceneChooseBoundaryX(Draft s, char value[AUTO_TEXT]) {
   PetscBool needs = PETSC_TRUE;
   PetscFunctionBeginUser;
   if (SceneGiven(s, "-domain_box") || SceneGiven(s, "-domain_bc_x") || SceneGiven(s, "-domain_bc_y") ||
@@ -63,17 +63,16 @@ static PetscErrorCode ChooseBoundary(Scene s, PetscBool in_x, char value[AUTO_TE
   PetscCall(NeedsGrid(s, &needs));
   if (!needs)
     PetscCall(PetscStrncpy(value, "free", AUTO_TEXT));
-  else if (in_x && s->flow.type != FLOW_EXTENSION)
+  else if (s->flow.type != FLOW_EXTENSION)
     PetscCall(PetscStrncpy(value, "periodic", AUTO_TEXT));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SceneChooseBoundaryX(Draft s, char value[AUTO_TEXT]) {
-  return ChooseBoundary(s, PETSC_TRUE, value);
-}
-
+/* As in x, where that is chosen. */
 PetscErrorCode SceneChooseBoundaryY(Draft s, char value[AUTO_TEXT]) {
-  return ChooseBoundary(s, PETSC_FALSE, value);
+  PetscFunctionBeginUser;
+  if (FluidSpecIsFree(&s->fluid) && !SceneGiven(s, "-domain_bc_x")) PetscCall(PetscStrncpy(value, "free", AUTO_TEXT));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscBool ExplainBoundary(Scene s, int dir, char why[AUTO_TEXT]) {

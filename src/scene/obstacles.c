@@ -212,10 +212,8 @@ static PetscErrorCode PlaceMarkers(Scene scene, const Outlines *o, SceneObstacle
     const PetscInt n = shape->start[k + 1] - shape->start[k];
     shape->kind[k] = o->curve[k].kind;
     own->wall[k] = o->wall[k];
-    if (o->curve[k].kind.type == CURVE_OPEN)
-      PetscCall(CurvePartEqualArcs(&o->curve[k], o->part[2 * k], o->part[2 * k + 1], n, X));
-    else
-      PetscCall(CurveEqualArcs(&o->curve[k], n, X));
+    const PetscReal *part = o->curve[k].kind.type == CURVE_OPEN ? o->part + 2 * k : NULL;
+    PetscCall(CurveEqualArcs(&o->curve[k], part, n, X));
     for (PetscInt j = 0; j < 2 * n; j++) X[j] += o->center[2 * k + j % 2];
     for (int c = 0; c < 2; c++) own->velocity[2 * k + c] = o->note[k].velocity[c];
     own->turn[k] = o->note[k].rotation;

@@ -64,11 +64,15 @@ PetscReal SceneMembraneTime(Scene scene, PetscInt v) {
   return c_b > 0 ? scene->fluid.nu * PetscPowRealInt(ShapeRadius(&scene->shape, v), 3) / c_b : PETSC_MAX_REAL;
 }
 
-void SceneTimes(Scene scene, PetscReal *slow, PetscReal *fast) {
-  const PetscReal rate = FlowShearRate(&scene->flow);
-  *slow = PETSC_MAX_REAL;
-  for (PetscInt v = 0; v < scene->shape.vesicles; v++) *slow = PetscMin(*slow, SceneMembraneTime(scene, v));
-  *fast = rate > 0 ? PetscMin(*slow, 1 / rate) : *slow;
+PetscReal SceneRestTime(Scene scene) {
+  PetscReal time = PETSC_MAX_REAL;
+  for (PetscInt v = 0; v < scene->shape.vesicles; v++) time = PetscMin(time, SceneMembraneTime(scene, v));
+  return time;
+}
+
+PetscReal SceneFastestTime(Scene scene) {
+  const PetscReal rate = FlowShearRate(&scene->flow), rest = SceneRestTime(scene);
+  return rate > 0 ? PetscMin(rest, 1 / rate) : rest;
 }
 
 /* From here on the largest step falls more slowly than 1/chi: 0.125 over the rate at chi = 1000. */

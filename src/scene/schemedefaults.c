@@ -42,9 +42,8 @@ static PetscBool IsAdaptive(const void *scene) {
 /* At rest for the error that the area target leaves there; a flow has steps of its own. */
 static void LargestStep(const void *scene, char value[OPTION_MAX_NAME]) {
   const Scene s = (Scene)scene;
-  PetscReal most = SceneFlowStep(s), slow, fast;
-  SceneTimes(s, &slow, &fast);
-  if (FlowShearRate(&s->flow) == 0 && s->flow.type != FLOW_CUSTOM) most = slow;
+  const PetscBool rests = FlowShearRate(&s->flow) == 0 && s->flow.type != FLOW_CUSTOM ? PETSC_TRUE : PETSC_FALSE;
+  const PetscReal most = rests ? SceneRestTime(s) : SceneFlowStep(s);
   if (most < PETSC_MAX_REAL) (void)snprintf(value, OPTION_MAX_NAME, "%.6g", (double)most);
 }
 

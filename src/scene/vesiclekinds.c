@@ -101,7 +101,7 @@ PetscErrorCode KindFit(Scene scene, Kind *kind) {
   PetscCall(CheckSpacing(scene, kind, kind->M));
   PetscCall(PetscMalloc1(2 * kind->M, &kind->X));
   if (scene->membrane.derivative == DERIVATIVE_SPECTRAL) {
-    PetscCall(CurveEqualArcs(&kind->curve, kind->M, kind->X));
+    PetscCall(CurveEqualArcs(&kind->curve, NULL, kind->M, kind->X));
     /* what M markers sample of a curve with sharper tips than they resolve has neither its length nor its area */
     PetscCall(CurveFit(kind->M, PETSC_TRUE, kind->length, kind->area, kind->X, MAX_NEWTON, &left));
   } else

@@ -79,58 +79,26 @@ static void Bounds(const Shape *s, PetscInt v, PetscReal box[2][2]) {
   }
 }
 
-/* Whether vesicle b, or an image of it, lies inside vesicle a, given that they do not cross. box[2][2] holds a. */
-static PetscBool Encloses(const Shape *s, PetscInt a, PetscInt b, PetscReal box[2][2], const PetscReal period[2]) {
-  const PetscReal *at = s->X + 2 * s->start[b];
-  for (int p = -1; p <= 1; p++)
-    for (int q = -1; q <= 1; q++) {
-      if ((p && period[0] == 0) || (q && period[1] == 0)) continue;
-      const PetscReal x = at[0] + p * period[0], y = at[1] + q * period[1];
-      if (x < box[0][0] || x > box[0][1] || y < box[1][0] || y > box[1][1]) continue;
-      if (ShapeHolds(s, a, x, y)) return PETSC_TRUE;
-    }
-  return PETSC_FALSE;
-}
-
-/* Vesicles by a point of each and the middle of its bounding box, for a search of those that enclose another. */
-typedef struct {
-  const Shape *shape;
-  const PetscReal *period;
-  PetscInt pair[2];
-} EncloseSearch;
-
-/* Points i < vesicles are middles of boxes, the others first markers. */
-static PetscBool FindEnclosed(void *context, PetscInt i, PetscInt j, const PetscReal d[2]) {
-  EncloseSearch *e = (EncloseSearch *)context;
-  const PetscInt n = e->shape->vesicles, inner = j - n;
+/* The first vesicles of which one, or its image, lies within the other, given that none cross; -1: none. */
+static void FindWithin(const Shape *s, const PetscReal period[2], PetscInt pair[2]) {
   PetscReal box[2][2];
-  (void)d;
-  if (i >= n || j < n || inner == i) return PETSC_FALSE;
-  Bounds(e->shape, i, box);
-  if (!Encloses(e->shape, i, inner, box, e->period)) return PETSC_FALSE;
-  e->pair[0] = PetscMin(i, inner);
-  e->pair[1] = PetscMax(i, inner);
-  return PETSC_TRUE;
-}
-
-/* The first vesicles found of which one lies within the other, given that none cross; -1 where there are none. */
-static PetscErrorCode FindWithin(const Shape *s, const PetscReal period[2], PetscInt pair[2]) {
-  EncloseSearch search = {s, period, {-1, -1}};
-  PetscReal *points, reach = 0, box[2][2];
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(4 * s->vesicles, &points));
-  for (PetscInt v = 0; v < s->vesicles; v++) {
-    Bounds(s, v, box);
-    for (int d = 0; d < 2; d++) {
-      points[2 * v + d] = 0.5 * (box[d][0] + box[d][1]);
-      points[2 * (s->vesicles + v) + d] = s->X[2 * s->start[v] + d];
+  for (PetscInt a = 0; a < s->vesicles; a++) {
+    Bounds(s, a, box);
+    for (PetscInt b = 0; b < s->vesicles; b++) {
+      PetscReal X[2];
+      PetscBool near = b == a ? PETSC_FALSE : PETSC_TRUE;
+      for (int d = 0; d < 2 && near; d++) { /* the nearest image of a point of b */
+        const PetscReal middle = 0.5 * (box[d][0] + box[d][1]);
+        X[d] = s->X[2 * s->start[b] + d];
+        if (period[d] > 0) X[d] -= period[d] * PetscFloorReal((X[d] - middle) / period[d] + 0.5);
+        if (X[d] < box[d][0] || X[d] > box[d][1]) near = PETSC_FALSE;
+      }
+      if (!near || !ShapeHolds(s, a, X[0], X[1])) continue;
+      pair[0] = PetscMin(a, b);
+      pair[1] = PetscMax(a, b);
+      return;
     }
-    reach = PetscMax(reach, PetscHypotReal(box[0][1] - box[0][0], box[1][1] - box[1][0]) / 2);
   }
-  PetscCall(PairsWithin(2 * s->vesicles, points, NULL, period, reach * (1 + 1e-12), FindEnclosed, &search));
-  PetscCall(PetscFree(points));
-  PetscCall(PetscArraycpy(pair, search.pair, 2));
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* No vesicle crosses another, an image of one or itself, nor lies within another. */
@@ -146,7 +114,7 @@ static PetscErrorCode CheckOverlap(Scene scene, const Shape *s) {
              "%s: vesicle %" PetscInt_FMT
              " crosses itself or its periodic image; allowed: curves that do not, in a box that holds them",
              scene->vesicles.shape == SHAPE_FILE ? "-vesicle_file" : "-domain_box", pair[0] + 1);
-  if (pair[0] < 0) PetscCall(FindWithin(s, period, pair));
+  if (pair[0] < 0) FindWithin(s, period, pair);
   PetscCheck(pair[0] < 0, scene->comm, PETSC_ERR_USER_INPUT,
              "-vesicle_center: vesicles %" PetscInt_FMT " and %" PetscInt_FMT
              " overlap; allowed: vesicles apart from one another",
