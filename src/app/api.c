@@ -97,8 +97,9 @@ PetscErrorCode SimulationGetObstacles(Simulation s, PetscInt *obstacles, PetscIn
 }
 
 PetscErrorCode SimulationGetOption(Simulation s, PetscInt i, const char **name, char value[], size_t length) {
+  const OptionRow *row = SceneOptionRow(i);
   PetscFunctionBeginUser;
-  *name = SceneOptionName(i);
+  *name = row ? row->name : NULL;
   if (*name) PetscCall(OptionValue(&s->scene->options, s->scene, i, value, length));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -155,10 +155,10 @@ static PetscErrorCode CheckpointWriteScene(Scheme s, H5File *file) {
   const Layout l = m->layout;
   PetscFunctionBeginUser;
   H5PutText(file, "version", PETVES_VERSION);
-  for (PetscInt i = 0; SceneOptionName(i); i++) {
+  for (PetscInt i = 0; SceneOptionRow(i); i++) {
     char *value;
     PetscCall(OptionText(&s->scene->options, s->scene, i, &value));
-    H5PutText(file, SceneOptionName(i), value);
+    H5PutText(file, SceneOptionRow(i)->name, value);
     PetscCall(PetscFree(value));
   }
   H5PutText(file, "vesicle_digest", s->scene->shape.digest);

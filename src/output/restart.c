@@ -65,12 +65,12 @@ static PetscErrorCode RestartOption(Scene scene, const char name[], const char h
 
 static PetscErrorCode RestartOptions(Scene scene, H5File *file) {
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; SceneOptionName(i); i++) {
+  for (PetscInt i = 0; SceneOptionRow(i); i++) {
     char *here, *there;
     if (SceneOptionRow(i)->may_change) continue;
     PetscCall(OptionText(&scene->options, scene, i, &here));
-    PetscCall(H5GetText(file, SceneOptionName(i), &there));
-    const PetscErrorCode same = RestartOption(scene, SceneOptionName(i), here, there);
+    PetscCall(H5GetText(file, SceneOptionRow(i)->name, &there));
+    const PetscErrorCode same = RestartOption(scene, SceneOptionRow(i)->name, here, there);
     PetscCall(PetscFree(here));
     PetscCall(PetscFree(there));
     PetscCall(same);

@@ -56,8 +56,8 @@ static PetscBool ResolvedSkips(const char *name) {
   const char *const never[] = {"-options_file", "-help"};
   for (size_t i = 0; i < sizeof(never) / sizeof(never[0]); i++)
     if (!strcmp(name, never[i])) return PETSC_TRUE;
-  for (PetscInt i = 0; SceneOptionName(i); i++)
-    if (!strcmp(name, SceneOptionName(i))) return PETSC_TRUE;
+  for (PetscInt i = 0; SceneOptionRow(i); i++)
+    if (!strcmp(name, SceneOptionRow(i)->name)) return PETSC_TRUE;
   return PETSC_FALSE;
 }
 

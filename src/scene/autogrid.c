@@ -112,14 +112,9 @@ static PetscInt FewestMarkers(const Shape *shape) {
 
 /* The least distance of a marker from a wall; PETSC_MAX_REAL without walls. */
 static PetscReal WallGap(Scene scene) {
-  const FluidSpec *f = &scene->fluid;
-  const Shape *s = &scene->shape;
-  PetscReal gap = PETSC_MAX_REAL;
-  for (PetscInt k = 0; k < s->start[s->vesicles]; k++)
-    for (int d = 0; d < 2; d++)
-      if (f->bc[d] == BC_WALL)
-        gap = PetscMin(gap, PetscMin(s->X[2 * k + d] - f->box[2 * d], f->box[2 * d + 1] - s->X[2 * k + d]));
-  return gap;
+  const CurveRoom room = SceneRoom(scene);
+  PetscInt side;
+  return CurveWallGap(scene->shape.start[scene->shape.vesicles], scene->shape.X, &room, &side);
 }
 
 /* What walls leave that are so near that the grid is felt, and what it would take. */

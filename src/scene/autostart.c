@@ -60,17 +60,13 @@ static PetscReal FilmError(PetscReal spacings) {
    thickness over R0. */
 static PetscErrorCode ThinnestFilm(Scene scene, PetscReal *spacings, PetscReal *error) {
   const Shape *s = &scene->shape;
-  const FluidSpec *f = &scene->fluid;
+  const CurveRoom room = SceneRoom(scene);
   const PetscBool smooth = scene->membrane.derivative == DERIVATIVE_SPECTRAL ? PETSC_TRUE : PETSC_FALSE;
-  CurveRoom room;
   CurveFilm film;
   PetscReal *ds;
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(s->vesicles, &ds));
   for (PetscInt v = 0; v < s->vesicles; v++) ds[v] = 2 * PETSC_PI * ShapeRadius(s, v) / (s->start[v + 1] - s->start[v]);
-  PetscCall(PetscArraycpy(room.box, f->box, 4));
-  FluidSpecPeriods(f, room.period);
-  for (int dir = 0; dir < 2; dir++) room.wall[dir] = f->bc[dir] == BC_WALL ? PETSC_TRUE : PETSC_FALSE;
   const CurveSet set = {s->vesicles, s->vesicles, s->start, NULL, s->X, room.period, smooth};
   PetscCall(CurveThinnestFilm(&set, ds, &room, WIDE, &film));
   PetscCall(PetscFree(ds));

@@ -8,6 +8,15 @@ PetscInt SceneKindOf(Scene scene, PetscInt v) {
   return scene->vesicles.kind ? scene->vesicles.kind[v] : v;
 }
 
+CurveRoom SceneRoom(Scene scene) {
+  const FluidSpec *f = &scene->fluid;
+  CurveRoom room;
+  for (int k = 0; k < 4; k++) room.box[k] = f->box[k];
+  FluidSpecPeriods(f, room.period);
+  for (int d = 0; d < 2; d++) room.wall[d] = f->bc[d] == BC_WALL ? PETSC_TRUE : PETSC_FALSE;
+  return room;
+}
+
 PetscBool SceneByArea(Scene scene) {
   const PetscBool packed = scene->vesicles.packing > 0 && !SceneGiven(scene, "-vesicle_semi_axes");
   if (scene->vesicles.shape == SHAPE_BICONCAVE) return PETSC_TRUE;

@@ -1,5 +1,6 @@
 /* What follows from the options of a scene: numbers of a vesicle, times, which parts the method has. */
 #pragma once
+#include "curve/contacts.h"
 #include "scene/spec.h"
 
 /* ListEntry - number `component` of entry `entry` of a list with `each` numbers an entry, or the same for all.
@@ -7,6 +8,9 @@
    its kind. Not collective. */
 PETSC_EXTERN PetscReal ListEntry(const RealList *list, PetscInt each, PetscInt entry, PetscInt component);
 PETSC_EXTERN PetscInt SceneKindOf(Scene scene, PetscInt vesicle);
+
+/* SceneRoom - box, periods and walls, as curves see them. Not collective. */
+PETSC_EXTERN CurveRoom SceneRoom(Scene scene);
 
 /* SceneByArea - whether the vesicles are given by area and reduced area. Not collective. */
 PETSC_EXTERN PetscBool SceneByArea(Scene scene);

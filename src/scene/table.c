@@ -120,10 +120,6 @@ const OptionRow *SceneOptionRow(PetscInt i) {
   return i < TABLE_SIZE ? &table[i] : NULL;
 }
 
-const char *SceneOptionName(PetscInt i) {
-  return i < TABLE_SIZE ? table[i].name : NULL;
-}
-
 /* A group goes to the first option of the next. */
 static const struct {
   const char *first, *title;

@@ -5,11 +5,10 @@
 /* SceneReadOptions - every option of the table, or its default. Collective. */
 PETSC_EXTERN PetscErrorCode SceneReadOptions(MPI_Comm comm, Draft scene);
 
-/* SceneOptionRow - the i-th option of the table, NULL past the last one. SceneOptionName - its name. SceneHelp - print
-   the table by groups; with a word, the options that have it in their name: false when there is none. Not collective,
-   and also before PETSc starts. */
+/* SceneOptionRow - the i-th option of the table, NULL past the last one. SceneHelp - print the table by groups; with a
+   word, the options that have it in their name: false when there is none. Not collective, and also before PETSc starts.
+ */
 PETSC_EXTERN const OptionRow *SceneOptionRow(PetscInt i);
-PETSC_EXTERN const char *SceneOptionName(PetscInt i);
 PETSC_EXTERN PetscBool SceneHelp(FILE *file, const char word[]);
 
 /* SceneWriteOptions - write every option of the table that the scene uses, defaults included, one "-name value" a
