@@ -17,11 +17,11 @@ struct _p_Spectral {
   PetscInt n;
   fftw_complex *line, *hat; /* x + i y of the points, and its modes */
   fftw_plan forward, backward;
-  CirculantWeights derivative[3];     /* of powers 1, 2, 4, where sums are taken; else NULL */
+  PetscReal *derivative[3];           /* weights [n] of powers 1, 2, 4, where sums are taken; else NULL */
   Derivative last[KEPT];              /* the last derivatives */
   PetscReal *turn[TURNS], phi[TURNS]; /* weights [n] of shifts by the angles phi */
   PetscReal *round;                   /* cos and sin of pi j/n, j = 0 .. n/2, interlaced */
-  PetscReal *points, *twice, *sum;    /* work arrays of the sums */
+  PetscReal *twice, *sum;             /* work arrays of the sums */
   int next, replaced;                 /* numbers of the shift and of the derivative that are replaced next */
 };
 
@@ -57,15 +57,17 @@ static void SpectralTransformed(Spectral s, int power, PetscReal scale, const Pe
 /* The weights of each derivative: those of a 1 at marker 0. They are odd for the first derivative and else even. */
 static PetscErrorCode SpectralWeights(Spectral s) {
   const PetscInt n = s->n;
-  PetscReal *one, *found, *weight;
+  PetscReal *one, *found;
   PetscFunctionBeginUser;
   for (int p = 0; p < 3; p++) {
-    PetscCall(PetscCalloc3(2 * n, &one, 2 * n, &found, n, &weight));
+    PetscReal *weight;
+    PetscCall(PetscCalloc2(2 * n, &one, 2 * n, &found));
+    PetscCall(PetscMalloc1(n, &weight));
     one[0] = 1;
     SpectralTransformed(s, 1 << p, 1, one, found);
     for (PetscInt q = 0; q < n; q++) weight[q] = 0.5 * (found[2 * q] + (p ? 1 : -1) * found[2 * ((n - q) % n)]);
-    PetscCall(CirculantWeightsCreate(n, p ? PETSC_FALSE : PETSC_TRUE, weight, &s->derivative[p]));
-    PetscCall(PetscFree3(one, found, weight));
+    s->derivative[p] = weight;
+    PetscCall(PetscFree2(one, found));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -81,8 +83,7 @@ PetscErrorCode SpectralCreate(PetscInt n, Spectral *out) {
   s->forward = fftw_plan_dft_1d((int)n, s->line, s->hat, FFTW_FORWARD, FFTW_ESTIMATE);
   s->backward = fftw_plan_dft_1d((int)n, s->hat, s->line, FFTW_BACKWARD, FFTW_ESTIMATE);
   if (!SpectralIsConvolved(n)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscCalloc4(4 * n + CIRCULANT_PADDING, &s->twice, CirculantRoom(n), &s->points, 2 * n + CIRCULANT_PADDING,
-                         &s->sum, n + 2, &s->round));
+  PetscCall(PetscCalloc3(4 * n + CIRCULANT_PADDING, &s->twice, 2 * n + CIRCULANT_PADDING, &s->sum, n + 2, &s->round));
   for (PetscInt j = 0; j <= n / 2; j++) {
     s->round[2 * j] = PetscCosReal(PETSC_PI * j / n);
     s->round[2 * j + 1] = PetscSinReal(PETSC_PI * j / n);
@@ -105,12 +106,18 @@ PetscErrorCode SpectralDestroy(Spectral *spectral) {
   fftw_destroy_plan(s->backward);
   fftw_free(s->hat);
   fftw_free(s->line);
-  for (int p = 0; p < 3; p++) PetscCall(CirculantWeightsDestroy(&s->derivative[p]));
+  for (int p = 0; p < 3; p++) PetscCall(PetscFree(s->derivative[p]));
   for (int k = 0; k < KEPT; k++) PetscCall(PetscFree2(s->last[k].X, s->last[k].value));
   for (int t = 0; t < TURNS; t++) PetscCall(PetscFree(s->turn[t]));
-  PetscCall(PetscFree4(s->twice, s->points, s->sum, s->round));
+  PetscCall(PetscFree3(s->twice, s->sum, s->round));
   PetscCall(PetscFree(*spectral));
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The points X less the first one, and after them the same numbers again, for a sum around the curve. */
+static inline void SpectralRepeat(Spectral s, const int each, const PetscScalar X[]) {
+  const PetscInt n = each * s->n;
+  for (PetscInt k = 0; k < n; k++) s->twice[k] = s->twice[n + k] = X[k] - X[k % each];
 }
 
 /* d^power X/dk^power, of those that are kept or new. */
@@ -123,8 +130,8 @@ static const PetscReal *SpectralFound(Spectral s, int power, const PetscScalar X
   s->replaced = (s->replaced + 1) % KEPT;
   memcpy(d->X, X, bytes);
   d->power = power;
-  CirculantUnroll(s->n, X, s->points);
-  CirculantSums(s->derivative[power / 2], s->points, d->value);
+  SpectralRepeat(s, 2, X);
+  CirculantConvolve(s->n, 2, PETSC_FALSE, s->derivative[power / 2], s->twice, d->value);
   return d->value;
 }
 
@@ -221,8 +228,7 @@ static inline void SpectralShiftConvolved(Spectral s, const int each, PetscReal 
   const PetscInt n = s->n;
   PetscReal first[2];
   for (int c = 0; c < each; c++) first[c] = X[c];
-  for (PetscInt k = 0; k < n; k++)
-    for (int c = 0; c < each; c++) s->twice[each * k + c] = s->twice[each * (n + k) + c] = X[each * k + c] - first[c];
+  SpectralRepeat(s, each, X);
   CirculantConvolve(n, each, PETSC_FALSE, SpectralShiftWeights(s, phi), s->twice, s->sum);
   for (PetscInt k = 0; k < n; k++)
     for (int c = 0; c < each; c++) Y[each * k + c] = first[c] + s->sum[each * k + c];
