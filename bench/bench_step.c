@@ -11,7 +11,7 @@ static const char *const names[LISTS] = {"step", "fast", "rest", "nsolve", "coup
 static PetscErrorCode Create(TestWorld *w) {
   PetscFunctionBeginUser;
   PetscCall(SceneCreate(PETSC_COMM_WORLD, NULL, NULL, &w->scene));
-  PetscCall(TestWorldBuild(w));
+  PetscCall(TestWorldBuild(SceneHasAreaTarget(w->scene), w));
   if (w->coupling->near && SceneHasBoxPart(w->scene))
     PetscCall(NearFieldAddBoxPart(w->coupling->near, &w->scene->fluid));
   PetscCall(TestWorldScheme(w));

@@ -99,7 +99,7 @@ static PetscErrorCode CreateCoupling(Scene scene, Simulation s) {
                              .spec = &scene->fluid,
                              .box_part = SceneHasBoxPart(scene),
                              .lag = scene->fluid.inertia == INERTIA_UNSTEADY ? PETSC_TRUE : PETSC_FALSE,
-                             .area_target = scene->scheme.area_target && vesicles ? PETSC_TRUE : PETSC_FALSE,
+                             .area_target = SceneHasAreaTarget(scene),
                              .repulsion = scene->repulsion.stress > 0 && vesicles ? &scene->repulsion : NULL};
   PetscReal *ratio;
   PetscFunctionBeginUser;

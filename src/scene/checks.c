@@ -166,8 +166,6 @@ static PetscErrorCode CheckProjection(Scene scene) {
              "-membrane_derivative spectral: not with -scheme_type %s, whose %s; allowed: fd, bending, or -scheme_type "
              "coupled",
              name, split ? "preconditioner knows chords only" : "springs are chords");
-  PetscCheck(!scene->scheme.area_target, scene->comm, PETSC_ERR_USER_INPUT,
-             "-scheme_area_target true: not with -scheme_type %s; allowed: false, or -scheme_type coupled", name);
   PetscCheck(scene->fluid.inertia != INERTIA_NONE, scene->comm, PETSC_ERR_USER_INPUT,
              "-fluid_inertia none: not with -scheme_type %s, %s; allowed: unsteady, or -scheme_type coupled", name,
              split ? "whose projection stands on the inertia: it puts dt I in place of H^-1"

@@ -48,6 +48,11 @@ PetscBool SceneIsProjection(Scene scene) {
   return !strcmp(name, "split") || !strcmp(name, "penalty") ? PETSC_TRUE : PETSC_FALSE;
 }
 
+PetscBool SceneHasAreaTarget(Scene scene) {
+  const PetscBool papers = scene->membrane.derivative == DERIVATIVE_FD || SceneIsProjection(scene);
+  return scene->shape.vesicles && !papers ? PETSC_TRUE : PETSC_FALSE;
+}
+
 PetscBool SceneHasBoxPart(Scene scene) {
   const FluidSpec *f = &scene->fluid;
   if (!scene->coupling.box_part || scene->coupling.near_field != NEAR_EXACT || FluidSpecIsFree(f)) return PETSC_FALSE;

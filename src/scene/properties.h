@@ -26,9 +26,11 @@ PETSC_EXTERN PetscBool SceneHasContrast(Scene scene);
 PETSC_EXTERN PetscReal SceneViscosityRatio(Scene scene, PetscInt vesicle);
 
 /* SceneIsProjection - whether the scheme is one of the baselines, split or penalty, which stand on a projection step.
-   SceneHasBoxPart - whether the near field has its box part: asked for, and no period too long. Not
-   collective. */
+   SceneHasAreaTarget - whether each step aims at the first areas of the vesicles: coupled, but for the finite
+   differences of the paper's membrane. SceneHasBoxPart - whether the near field has its box part: asked for, and no
+   period too long. Not collective. */
 PETSC_EXTERN PetscBool SceneIsProjection(Scene scene);
+PETSC_EXTERN PetscBool SceneHasAreaTarget(Scene scene);
 PETSC_EXTERN PetscBool SceneHasBoxPart(Scene scene);
 
 /* SceneSmallestRadius, SceneLargestRadius - R0 of a vesicle (length). SceneMembraneTime - nu R0^3/c_b of vesicle v;

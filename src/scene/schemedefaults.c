@@ -75,7 +75,6 @@ const OptionDefault scene_defaults[] = {
   {"-delta_type", IsProjection, "ib6", NULL, "the paper's kernel", "split, penalty: %s"},
   {"-membrane_derivative", IsProjection, "fd", NULL, "preconditioner and springs know chords only", "split, penalty: %s"},
   {"-coupling_near_field", IsProjection, "none", NULL, "the paper's method has none", NULL},
-  {"-scheme_area_target", IsProjection, "false", NULL, "the paper's method has none", NULL},
   {"-scheme_bending", IsPenalty, "explicit", NULL, "penalty has all forces at the old markers", "penalty: %s"},
   {"-time_frame", HasNoLabelsToTurn, "none", NULL, "labels turn on spectral edges of unsplit steps only", "split, penalty, -membrane_derivative fd, bending: %s"},
   {"-coupling_box_part", HasNoNearField, "false", NULL, "it is part of the exact near field", NULL},

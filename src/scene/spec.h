@@ -99,7 +99,6 @@ typedef struct {
   PetscInt bending_at;     /* BendingType */
   PetscReal stiffness;     /* penalty: sigma_0 of the springs */
   PetscBool length_target; /* coupled: new edges get the length ds */
-  PetscBool area_target;   /* coupled: each step aims at the first areas */
   PetscInt startup;        /* StartUp */
 } SceneScheme;
 

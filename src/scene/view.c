@@ -137,7 +137,7 @@ PetscErrorCode SceneView(Scene scene, PetscViewer v) {
   if (shape->vesicles)
     PetscCall(PetscViewerASCIIPrintf(v, "membrane: kernel %s, %s, near field %s, area target %s\n",
                                      scene->coupling.kernel, derivatives[scene->membrane.derivative], NearField(scene),
-                                     scene->scheme.area_target ? "on" : "off"));
+                                     SceneHasAreaTarget(scene) ? "on" : "off"));
   PetscCall(PetscViewerASCIIPrintf(v, "scheme: %s, order %" PetscInt_FMT ", dt = %g to t = %g\n", scene->scheme.type,
                                    scene->scheme.order, (double)scene->time.dt, (double)scene->time.end));
   if (FluidSpecIsFree(&scene->fluid))

@@ -37,7 +37,7 @@ static PetscErrorCode WarnOfEdges(Scheme s, Coupled *d, const Restored *r) {
    an edge has lost the shape, and correcting edges would find another one. */
 static PetscErrorCode RestoreVesicle(Scheme s, PetscInt v, PetscScalar X[], Restored *r) {
   const Membrane m = s->membrane;
-  const PetscBool area = s->scene->scheme.area_target;
+  const PetscBool area = s->coupling->area ? PETSC_TRUE : PETSC_FALSE;
   PetscReal error, shift = 0;
   PetscFunctionBeginUser;
   if (area) shift = MembraneRestoreArea(m, v, X);

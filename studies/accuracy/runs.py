@@ -14,13 +14,13 @@ from studies.common.engine import Case, Series
 from studies.common.scenes import cells, tank_treading, words
 
 COMBINATIONS = {
-    "default": ("cbs54", "spectral", "exact", "true"),
-    "chords": ("cbs54", "bending", "exact", "true"),
-    "ib6": ("ib6", "spectral", "exact", "true"),
-    "cbs54, none": ("cbs54", "spectral", "none", "true"),
-    "uncorrected": ("ib6", "fd", "none", "false"),
+    "default": ("cbs54", "spectral", "exact"),
+    "chords": ("cbs54", "bending", "exact"),
+    "ib6": ("ib6", "spectral", "exact"),
+    "cbs54, none": ("cbs54", "spectral", "none"),
+    "uncorrected": ("ib6", "fd", "none"),
 }
-"""Kernel, derivative, near field and area target by name."""
+"""Kernel, derivative and near field by name."""
 
 MARKERS = (25, 35, 45)
 REDUCED_AREAS, CHIS = (0.5, 0.7, 0.9), (1, 10)
@@ -33,10 +33,10 @@ def label(name: str) -> str:
 
 def combination(name: str) -> dict[str, str]:
     """Return the options of a key of COMBINATIONS."""
-    kernel, derivative, near_field, area = COMBINATIONS[name]
+    kernel, derivative, near_field = COMBINATIONS[name]
     return words(
         f"-scheme_type coupled -delta_type {kernel} -membrane_derivative {derivative} "
-        f"-coupling_near_field {near_field} -scheme_area_target {area}"
+        f"-coupling_near_field {near_field}"
     )
 
 

@@ -29,7 +29,7 @@ def option_text(options: dict[str, str]) -> str:
 LAST_ONLY = words("-output_every 1e9 -checkpoint_every 0")
 ILU = words("-tension_pc_type ilu -tension_pc_factor_levels 200 -tension_pc_factor_mat_ordering_type nd")
 TIGHT_SPLIT = {"-tension_ksp_rtol": TIGHT, "-bending_ksp_rtol": TIGHT}
-PAPER_MEMBRANE = words("-delta_type ib6 -membrane_derivative fd -coupling_near_field none -scheme_area_target false")
+PAPER_MEMBRANE = words("-delta_type ib6 -membrane_derivative fd -coupling_near_field none")
 """The paper's membrane, where schemes are compared and not the discretisations of a membrane."""
 BOXES = {
     "periodic": words("-domain_bc_x periodic -domain_bc_y periodic"),

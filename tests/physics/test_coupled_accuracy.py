@@ -10,7 +10,7 @@ from harness import run_petves
 pytestmark = pytest.mark.xdist_group("coupled_accuracy")  # its tests share runs
 
 #: The discretisation of the prototype whose numbers these are, the paper's; edges and area are not restored after a step.
-MEMBRANE = "-delta_type ib6 -membrane_derivative fd -coupling_near_field none -scheme_area_target false"
+MEMBRANE = "-delta_type ib6 -membrane_derivative fd -coupling_near_field none"
 BASE = f"{MEMBRANE} -output_every 10 -checkpoint_every 0"
 
 #: The scene for errors in time.

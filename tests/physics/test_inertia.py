@@ -130,7 +130,7 @@ DEFAULTS = {
     "slow_channel": ("-flow_peak_velocity 0.02", "none", "quasi-steady Stokes (default", 0.02),
     "channel": ("-flow_peak_velocity 0.4", "convective", "Navier-Stokes, convection explicit (default", 0.4),
     "split": ("-flow_peak_velocity 0.4 -scheme_type split -delta_type ib6 -membrane_derivative fd "
-              "-coupling_near_field none -scheme_area_target false", "unsteady", "unsteady Stokes (default", 0.4),
+              "-coupling_near_field none", "unsteady", "unsteady Stokes (default", 0.4),
     "shear": ("-flow_type shear -vesicle_center 1.25,0", "unsteady", "unsteady Stokes (default", 1),
     "carried_in_shear": ("-flow_type shear -vesicle_center 1.25,0.4", "unsteady", "unsteady Stokes (default", 1),
     "at_rest": ("-flow_type quiescent", "unsteady", "unsteady Stokes (default", None),

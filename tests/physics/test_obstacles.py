@@ -80,7 +80,7 @@ def test_vesicle_pressed_on_a_post(gap, times, tmp_path):
     options = f"-vesicle_semi_axes .4,.8 -vesicle_center {4 - 0.5 - gap * h - 0.4:.15g},4 -vesicle_markers 83"
     options += f" -vesicle_bending 0 {PERIODIC} -domain_box 0,8,0,8 -domain_cells 128,128 -flow_type uniform"
     options += " -obstacle_shape posts -obstacle_radius .5 -obstacle_center 4,4 -obstacle_spacing .75"
-    options += f" -scheme_area_target false -scheme_order 1 -time_step {step} -time_end {step} -coupled_ksp_rtol 1e-10"
+    options += f" -scheme_order 1 -time_step {step} -time_end {step} -coupled_ksp_rtol 1e-10"
     row = last(tmp_path, options)
     run = petves.load(tmp_path, "numpy")
     assert [len(run.markers[0]), len(run.obstacles[0])] == [83, 67]

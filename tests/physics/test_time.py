@@ -1,8 +1,5 @@
 """Time steps: a steady shape does not depend on them, what a step solves, orders, and how far steps grow."""
 
-from pathlib import Path
-
-import h5py
 import numpy as np
 import pytest
 from harness import PETVES, mpirun, run_petves
@@ -53,46 +50,6 @@ def test_two_vesicles_and_walls(tmp_path):
     for name in ("inclination", "frequency"):
         for one in (name, f"{name}_2"):
             assert abs(coarse[one][-1] / fine[one][-1] - 1) < 4e-4, one
-
-
-def shifted(X: np.ndarray, phi: float) -> np.ndarray:
-    """Return the trigonometric polynomial through X at labels phi farther on."""
-    modes = np.fft.fftfreq(len(X), 1 / len(X))[:, None]
-    return np.fft.ifft(np.exp(1j * modes * phi) * np.fft.fft(X, axis=0), axis=0).real
-
-
-def derivative(X: np.ndarray) -> np.ndarray:
-    modes = np.fft.fftfreq(len(X), 1 / len(X))[:, None]
-    return np.fft.ifft(1j * modes * np.fft.fft(X, axis=0), axis=0).real
-
-
-def states(folder: Path) -> tuple[list[np.ndarray], list[np.ndarray]]:
-    """Return markers and velocities of the last four states, the newest first."""
-    groups = [("checkpoint", group) for group in ("", "previous/", "previous_1/")] + [("checkpoint_1", "previous_1/")]
-    found: tuple[list[np.ndarray], list[np.ndarray]] = ([], [])
-    for name, group in groups:
-        with h5py.File(folder / f"{name}.h5") as file:
-            for values, what in zip(found, ("markers", "velocity")):
-                values.append(file[f"{group}vesicle/{what}"][0])
-    return found
-
-
-@pytest.mark.parametrize("frame, order", [("none", 2), ("treading", 1), ("treading", 2), ("treading", 3)])
-def test_step_is_the_formula(frame, order, tmp_path):
-    """U = a0 (X - Xhat) + V dX/ds with the history in labels that turn at the fitted speed V, here from what
-    checkpoints hold. Without frame it is BDF2 of the markers themselves."""
-    dt = 0.125
-    options = f"{FREE} {vesicle(0.7, 10)} -scheme_area_target false -time_step {dt} -time_end 4 -checkpoint_every 1"
-    run = run_petves(tmp_path / "run", f"{options} -time_frame {frame} -scheme_order {order}")
-    X, U = states(run.folder)
-    about = X[1] - X[1].mean(axis=0)
-    basis = np.stack([derivative(X[1]), np.stack([-about[:, 1], about[:, 0]], axis=1)], axis=-1).reshape(-1, 2)
-    speed = np.linalg.lstsq(basis, (U[1] - U[1].mean(axis=0)).ravel(), rcond=None)[0][0] if frame == "treading" else 0
-    assert frame == "none" or abs(speed) > 0.3
-    a0, *weights = {1: (1, 1), 2: (3 / 2, 2, -1 / 2), 3: (11 / 6, 3, -3 / 2, 1 / 3)}[order]
-    history = sum(w * shifted(X[j], speed * j * dt) for j, w in enumerate(weights, 1))
-    found = (a0 * X[0] - history) / dt + speed * derivative(X[0])
-    assert np.abs(found - U[0]).max() < 1e-12
 
 
 def test_orders(tmp_path):

@@ -326,7 +326,7 @@ def make_places(folder: Path) -> dict[str, str]:
     t = np.linspace(0, 2 * np.pi, 40, endpoint=False)
     np.savetxt(folder / "curve.txt", 0.4 * np.c_[np.cos(t), 0.6 * np.sin(t)])
     first = "-domain_cells 16,16 -time_step 0.01 -time_end 0.02 -scheme_type coupled -scheme_order 2 -delta_type cbs54 "
-    first += "-membrane_derivative spectral -coupling_near_field exact -scheme_area_target true -fluid_inertia unsteady"
+    first += "-membrane_derivative spectral -coupling_near_field exact -fluid_inertia unsteady"
     run_petves(folder / "first", first)
     return {"curve": str(folder / "curve.txt"), "checkpoint": str(folder / "first" / "checkpoint.h5")}
 

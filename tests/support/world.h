@@ -7,7 +7,7 @@
 /* The paper's discretisation of the membrane and its model of the fluid, which tests start from: options given after
    it win. */
 #define PAPER_MEMBRANE                                                                                                 \
-  "-delta_type ib6 -membrane_derivative fd -coupling_near_field none -scheme_area_target false "                       \
+  "-delta_type ib6 -membrane_derivative fd -coupling_near_field none "                                                 \
   "-fluid_inertia unsteady "
 
 /* TestScene - the scene of PAPER_MEMBRANE and an options text, which replaces what earlier scenes of the same program
@@ -61,8 +61,8 @@ typedef struct {
   Scheme scheme; /* NULL: none made */
 } TestWorld;
 
-/* TestWorldBuild - all but the scheme, from the scene that is in it. */
-static inline PetscErrorCode TestWorldBuild(TestWorld *w) {
+/* TestWorldBuild - all but the scheme, from the scene that is in it; with rows that aim at the areas, or without. */
+static inline PetscErrorCode TestWorldBuild(PetscBool area_target, TestWorld *w) {
   const Scene s = w->scene;
   PetscScalar *x;
   PetscFunctionBeginUser;
@@ -71,7 +71,8 @@ static inline PetscErrorCode TestWorldBuild(TestWorld *w) {
   PetscCall(LayoutCreate(s->comm, s->shape.vesicles, s->shape.start, &w->layout));
   PetscCall(
       MembraneCreate(w->layout, s->shape.X, s->membrane.each, (DerivativeType)s->membrane.derivative, &w->membrane));
-  const CouplingSetting setting = {.kernel = s->coupling.kernel, .near = (NearFieldType)s->coupling.near_field};
+  const CouplingSetting setting = {
+      .kernel = s->coupling.kernel, .near = (NearFieldType)s->coupling.near_field, .area_target = area_target};
   PetscCall(CouplingCreate(w->fluid, w->membrane, NULL, &setting, &w->coupling));
   PetscCall(LayoutCreateVec(w->layout, 2, &w->X));
   PetscCall(VecGetArray(w->X, &x));
@@ -135,7 +136,7 @@ static inline PetscErrorCode TestWorldScheme(TestWorld *w) {
 static inline PetscErrorCode TestWorldCreate(const char options[], TestWorld *w) {
   PetscFunctionBeginUser;
   PetscCall(TestScene(options, &w->scene));
-  PetscCall(TestWorldBuild(w));
+  PetscCall(TestWorldBuild(PETSC_FALSE, w));
   PetscCall(TestWorldPlace(w->fluid->a0, w));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -143,7 +144,7 @@ static inline PetscErrorCode TestWorldCreate(const char options[], TestWorld *w)
 static inline PetscErrorCode TestRunCreate(const char options[], TestWorld *w) {
   PetscFunctionBeginUser;
   PetscCall(TestScene(options, &w->scene));
-  PetscCall(TestWorldBuild(w));
+  PetscCall(TestWorldBuild(PETSC_FALSE, w));
   PetscCall(TestWorldScheme(w));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -116,7 +116,7 @@ static PetscErrorCode Agrees(const char name[], PetscReal within, const char opt
 #define CHANNEL " -domain_bc_x periodic"
 #define PERIODIC " -domain_bc_x periodic -domain_bc_y periodic"
 #define PAPER                                                                                                          \
-  " -delta_type ib6 -membrane_derivative fd -coupling_near_field none -scheme_area_target false -fluid_inertia "       \
+  " -delta_type ib6 -membrane_derivative fd -coupling_near_field none -fluid_inertia "                                 \
   "unsteady"
 
 /* The paper's membrane, of both orders, with and without bending, in every kind of box. */

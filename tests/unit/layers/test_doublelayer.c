@@ -82,7 +82,7 @@ static PetscErrorCode Create(const char options[], Double *d) {
   TestWorld *w = &d->world;
   PetscFunctionBeginUser;
   PetscCall(TestScene(options, &w->scene));
-  PetscCall(TestWorldBuild(w));
+  PetscCall(TestWorldBuild(PETSC_FALSE, w));
   PetscCall(DoubleLayerCreate(w->coupling->near, &ratio, &w->coupling->contrast));
   PetscCall(TestWorldPlace(1, w));
   PetscCall(StokesCreate(w->fluid, &d->stokes));
