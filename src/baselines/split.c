@@ -6,7 +6,7 @@
 #include "scheme/stepcommon.h"
 
 typedef struct {
-  LagrangianSolver tension, bending; /* NULL where the scene has no such part; bending: or is explicit */
+  LagrangianSolver tension, bending; /* NULL where the scene has no such part */
   Vec r, u2, dp, q;                  /* momentum's right-hand side, velocity, pressures */
   Vec dsigma, rhs_sigma;             /* tension increment and right-hand side */
   Vec z, rhs_z, Xhat;                /* bending unknown, its right-hand side, X + dt u_inf */
@@ -17,8 +17,7 @@ static PetscErrorCode SolverFailed(Scheme s, LagrangianSolver solver) {
   return SchemeSolverFailed(s, solver->prefix, solver->why, solver->its, solver->residual);
 }
 
-/* 1  H u3 = r - G p - S sigma - B X + bc1, where r = u/dt and B acts on X + dt u_inf, or on X when bending
-   is explicit */
+/* 1  H u3 = r - G p - S sigma - B X + bc1, where r = u/dt and B acts on X + dt u_inf */
 static PetscErrorCode PredictVelocity(Scheme s, Split *d) {
   const State *q = &s->state;
   Fluid f = s->fluid;
@@ -30,7 +29,7 @@ static PetscErrorCode PredictVelocity(Scheme s, Split *d) {
   if (f->bc1) PetscCall(VecAXPY(d->r, 1, f->bc1));
   if (CouplingHasMembrane(c)) PetscCall(CouplingSpreadTension(c, -1, q->sigma, d->r));
   if (CouplingBending(c) > 0) {
-    PetscCall(VecWAXPY(d->Xhat, d->bending ? q->dt : 0, s->background, q->X));
+    PetscCall(VecWAXPY(d->Xhat, q->dt, s->background, q->X));
     PetscCall(CouplingSpreadBending(c, -1, d->Xhat, d->r));
   }
   PetscCall(FluidSolveHelmholtz(f, d->r, d->u2));
@@ -132,8 +131,7 @@ static PetscErrorCode SetUp_Split(Scheme s) {
   PetscCall(VecDuplicate(q->X, &d->U));
   if (!CouplingHasMembrane(s->coupling)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(TensionSolverCreate(s->coupling, &d->tension));
-  if (CouplingBending(s->coupling) > 0 && s->scene->scheme.bending_at == BENDING_IMPLICIT)
-    PetscCall(BendingSolverCreate(s->coupling, &d->bending));
+  if (CouplingBending(s->coupling) > 0) PetscCall(BendingSolverCreate(s->coupling, &d->bending));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -177,19 +177,10 @@ static PetscErrorCode CheckProjection(Scene scene) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What penalty alone has or lacks. */
-static PetscErrorCode CheckPenalty(Scene scene, PetscBool split) {
-  PetscBool penalty;
+/* What penalty alone has. */
+static PetscErrorCode CheckPenalty(Scene scene) {
   PetscFunctionBeginUser;
-  PetscCall(PetscStrcmp(scene->scheme.type, "penalty", &penalty));
-  PetscCheck(!penalty || scene->scheme.bending_at == BENDING_EXPLICIT, scene->comm, PETSC_ERR_USER_INPUT,
-             "-scheme_bending implicit: -scheme_type penalty has all membrane forces at the old markers; allowed: "
-             "explicit, or -scheme_type split or coupled");
-  PetscCheck(penalty || split || scene->scheme.bending_at == BENDING_IMPLICIT, scene->comm, PETSC_ERR_USER_INPUT,
-             "-scheme_bending explicit: not with -scheme_type %s, whose stability stands on implicit bending; allowed: "
-             "implicit, or -scheme_type split or penalty",
-             scene->scheme.type);
-  PetscCheck(penalty || scene->scheme.stiffness == 0, scene->comm, PETSC_ERR_USER_INPUT,
+  PetscCheck(!strcmp(scene->scheme.type, "penalty") || scene->scheme.stiffness == 0, scene->comm, PETSC_ERR_USER_INPUT,
              "-penalty_stiffness %g: -scheme_type %s has no springs, its length is a constraint; allowed: 0, or "
              "-scheme_type penalty",
              (double)scene->scheme.stiffness, scene->scheme.type);
@@ -243,14 +234,12 @@ static PetscErrorCode CheckSolvers(Scene scene) {
 }
 
 static PetscErrorCode CheckScheme(Scene scene) {
-  PetscBool split;
   PetscFunctionBeginUser;
   PetscCall(CheckFrame(scene));
   PetscCall(CheckSolvers(scene));
   PetscCall(CheckNearField(scene));
-  PetscCall(PetscStrcmp(scene->scheme.type, "split", &split));
   if (SceneIsProjection(scene)) PetscCall(CheckProjection(scene));
-  PetscCall(CheckPenalty(scene, split));
+  PetscCall(CheckPenalty(scene));
   PetscCheck(scene->time.adapt == ADAPT_NONE || scene->scheme.order > 1, scene->comm, PETSC_ERR_USER_INPUT,
              "-time_adapt error: with -scheme_type %s of order %" PetscInt_FMT
              "; allowed: coupled with -scheme_order 2 or 3",

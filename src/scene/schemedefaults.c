@@ -9,10 +9,6 @@ static PetscBool IsProjection(const void *scene) {
   return SceneIsProjection((Scene)scene);
 }
 
-static PetscBool IsPenalty(const void *scene) {
-  return strcmp(((Scene)scene)->scheme.type, "penalty") ? PETSC_FALSE : PETSC_TRUE;
-}
-
 static PetscBool HasNoLabelsToTurn(const void *scene) {
   return IsProjection(scene) || ((Scene)scene)->membrane.derivative != DERIVATIVE_SPECTRAL ? PETSC_TRUE : PETSC_FALSE;
 }
@@ -75,7 +71,6 @@ const OptionDefault scene_defaults[] = {
   {"-delta_type", IsProjection, "ib6", NULL, "the paper's kernel", "split, penalty: %s"},
   {"-membrane_derivative", IsProjection, "fd", NULL, "preconditioner and springs know chords only", "split, penalty: %s"},
   {"-coupling_near_field", IsProjection, "none", NULL, "the paper's method has none", NULL},
-  {"-scheme_bending", IsPenalty, "explicit", NULL, "penalty has all forces at the old markers", "penalty: %s"},
   {"-time_frame", HasNoLabelsToTurn, "none", NULL, "labels turn on spectral edges of unsplit steps only", "split, penalty, -membrane_derivative fd, bending: %s"},
   {"-coupling_box_part", HasNoNearField, "false", NULL, "it is part of the exact near field", NULL},
   {"-coupling_box_part", IsFree, "false", NULL, "there is no box", NULL},

@@ -7,7 +7,6 @@ typedef enum { DERIVATIVE_FD, DERIVATIVE_BENDING, DERIVATIVE_SPECTRAL } Derivati
 typedef enum { NEAR_EXACT, NEAR_NONE } NearFieldType;
 #define NEAR_LEAST_SPACING 0.3 /* ds/h with the exact near field, in which neither kernel nor grid is felt */
 #define SCENE_LEAST_GAP 0.3    /* marker spacings between obstacles, down to which their forces are right */
-typedef enum { BENDING_IMPLICIT, BENDING_EXPLICIT } BendingType;
 typedef enum { ADAPT_NONE, ADAPT_ERROR } AdaptType;
 typedef enum { FRAME_TREADING, FRAME_NONE } FrameType;
 typedef enum { PRECISION_DOUBLE, PRECISION_SINGLE } PrecisionType;
@@ -96,7 +95,6 @@ typedef struct {
   char type[OPTION_MAX_NAME];
   PetscInt order;          /* in time */
   PetscReal wanted;        /* -scheme_auto: relative error; 0: off */
-  PetscInt bending_at;     /* BendingType */
   PetscReal stiffness;     /* penalty: sigma_0 of the springs */
   PetscBool length_target; /* coupled: new edges get the length ds */
   PetscInt startup;        /* StartUp */

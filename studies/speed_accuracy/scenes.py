@@ -19,17 +19,16 @@ LIMITS = words("-limit_edge_ratio 5 -limit_area_error 0.2 -limit_length_error 0.
 FIRST_ORDER, SECOND_ORDER = (words(f"-scheme_type coupled -scheme_order {order}") for order in (1, 2))
 SCHEMES = {
     "penalty": words("-scheme_type penalty"),
-    "split, explicit bending": words("-scheme_type split -scheme_bending explicit"),
     "split": words("-scheme_type split"),
     "coupled 1, uncorrected": FIRST_ORDER | PAPER_MEMBRANE,
     "coupled 2, uncorrected": SECOND_ORDER | PAPER_MEMBRANE,
     "coupled 2, exact": SECOND_ORDER,
     "coupled 3, exact": words("-scheme_type coupled"),
 }
-BEST, DEFAULT = tuple(SCHEMES)[5:]
+BEST, DEFAULT = tuple(SCHEMES)[4:]
 EXACT = (BEST, DEFAULT)
 """Those with the exact near field, among which settings are recommended."""
-FIRST = tuple(SCHEMES)[:3]  # those of the paper and before, whose points are chosen by dt/h
+FIRST = tuple(SCHEMES)[:2]  # those of the paper and before, whose points are chosen by dt/h
 ERRORS = tuple("largest shape energy angle frequency velocity place gap viscosity force area length".split())
 KEPT = ("steps", "solves", "step_seconds")
 ADAPTIVE_STEPS = 60  # for the estimate of work
@@ -171,7 +170,6 @@ def over_h(scheme: str, width: float, cells: tuple[int, ...], parts: tuple[float
 
 def _relax_points() -> list[Point]:
     points = over_h("penalty", 2, (64, 128), (2, 8, 32, 128)) + over_h("penalty", 2, (256,), (8, 32))
-    points += over_h("split, explicit bending", 2, (64, 128), (2, 8, 32)) + over_h(FIRST[1], 2, (256,), (2, 8))
     points += over_h("split", 2, (64, 128), (2, 8, 32)) + over_h("split", 2, (256,), (2, 8))
     points += over_h("split", 2, (512,), (2,))
     points += grid("coupled 1, uncorrected", (32, 64, 128, 256), dts=(1 / 16, 1 / 64, 1 / 256))
@@ -183,7 +181,6 @@ def _relax_points() -> list[Point]:
 
 def _shear_points() -> list[Point]:
     points = over_h("penalty", 8, (64, 128), (8, 32, 128))
-    points += over_h("split, explicit bending", 8, (64, 128), (2, 8, 32))
     points += over_h("split", 8, (64, 128), (2, 8, 32)) + over_h("split", 8, (256,), (2, 8))
     for name in ("coupled 1, uncorrected", "coupled 2, uncorrected"):
         points += grid(name, (48, 64, 128), dts=(0.1, 0.05, 0.0125)) + grid(name, (256,), dts=(0.05,))
@@ -193,7 +190,6 @@ def _shear_points() -> list[Point]:
 
 def _channel_points() -> list[Point]:
     points = over_h("penalty", 1 / PEAK, (8, 16), (2, 8, 32))
-    points += over_h("split, explicit bending", 1 / PEAK, (8, 16), (2, 8, 32))
     points += over_h("split", 1 / PEAK, (8, 16), (2, 8, 32)) + over_h("split", 1 / PEAK, (32,), (2,))
     for name in ("coupled 1, uncorrected", "coupled 2, uncorrected"):
         points += grid(name, (8, 16), dts=(0.12, 0.03, 0.0075)) + grid(name, (32,), dts=(0.03,))
