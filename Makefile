@@ -173,7 +173,7 @@ chart: deps ## error against CPU time of every scheme, into docs/speed_accuracy 
 	@$(MAKE) --no-print-directory all benches
 	PETVES=$(CURDIR)/$(BIN)/petves PETVES_BENCH=$(CURDIR)/$(BUILD)/bench PYTHONPATH=python:. $(PYTHON) -m studies chart $(if $(QUICK),out/chart,docs/speed_accuracy)
 
-time: deps ## what the time step leaves, by order and frame of the labels, into docs/time (two minutes; QUICK=1: one, into out/time)
+time: deps ## what the time step leaves, by order, into docs/time (two minutes; QUICK=1: one, into out/time)
 	@$(MAKE) --no-print-directory all
 	PETVES=$(CURDIR)/$(BIN)/petves PYTHONPATH=python:. $(PYTHON) -m studies time $(if $(QUICK),out/time,docs/time)
 

@@ -205,20 +205,6 @@ static PetscErrorCode CheckNearField(Scene scene) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Turning labels need what is carried along to be trigonometric. */
-static PetscErrorCode CheckFrame(Scene scene) {
-  PetscFunctionBeginUser;
-  if (scene->time.frame == FRAME_NONE) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCheck(!SceneIsProjection(scene), scene->comm, PETSC_ERR_USER_INPUT,
-             "-time_frame treading: not with -scheme_type %s, which is its paper's method; allowed: none, or "
-             "-scheme_type coupled",
-             scene->scheme.type);
-  PetscCheck(scene->membrane.derivative == DERIVATIVE_SPECTRAL, scene->comm, PETSC_ERR_USER_INPUT,
-             "-time_frame treading: a shift of labels keeps the lengths of spectral edges only; allowed: none, or "
-             "-membrane_derivative spectral");
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* The unsplit steps solve for the velocity by the stream function. */
 static PetscErrorCode CheckSolvers(Scene scene) {
   const struct {
@@ -235,7 +221,6 @@ static PetscErrorCode CheckSolvers(Scene scene) {
 
 static PetscErrorCode CheckScheme(Scene scene) {
   PetscFunctionBeginUser;
-  PetscCall(CheckFrame(scene));
   PetscCall(CheckSolvers(scene));
   PetscCall(CheckNearField(scene));
   if (SceneIsProjection(scene)) PetscCall(CheckProjection(scene));

@@ -9,10 +9,6 @@ static PetscBool IsProjection(const void *scene) {
   return SceneIsProjection((Scene)scene);
 }
 
-static PetscBool HasNoLabelsToTurn(const void *scene) {
-  return IsProjection(scene) || ((Scene)scene)->membrane.derivative != DERIVATIVE_SPECTRAL ? PETSC_TRUE : PETSC_FALSE;
-}
-
 static PetscBool HasNoNearField(const void *scene) {
   return ((Scene)scene)->coupling.near_field == NEAR_NONE ? PETSC_TRUE : PETSC_FALSE;
 }
@@ -62,8 +58,7 @@ static void OutputTime(const void *scene, char value[OPTION_MAX_NAME]) {
 }
 
 /* split and penalty are their papers' methods: one order, kernel ib6 and differences, none of the corrections of the
-   coupled scheme. What is turned with a membrane are trigonometric polynomials, which keep the lengths of spectral
-   edges. The box part is the grid's. */
+   coupled scheme. The box part is the grid's. */
 /* clang-format off */
 const OptionDefault scene_defaults[] = {
   {"-vesicle_reduced_area", IsBiconcave, "0.65", NULL, "the outline is biconcave", "biconcave: 0.35 to 0.9, %s when not given"},
@@ -71,7 +66,6 @@ const OptionDefault scene_defaults[] = {
   {"-delta_type", IsProjection, "ib6", NULL, "the paper's kernel", "split, penalty: %s"},
   {"-membrane_derivative", IsProjection, "fd", NULL, "preconditioner and springs know chords only", "split, penalty: %s"},
   {"-coupling_near_field", IsProjection, "none", NULL, "the paper's method has none", NULL},
-  {"-time_frame", HasNoLabelsToTurn, "none", NULL, "labels turn on spectral edges of unsplit steps only", "split, penalty, -membrane_derivative fd, bending: %s"},
   {"-coupling_box_part", HasNoNearField, "false", NULL, "it is part of the exact near field", NULL},
   {"-coupling_box_part", IsFree, "false", NULL, "there is no box", NULL},
   {"-coupling_box_part", IsLarge, "false", NULL, "in a box so large it moves vesicles by 2e-5 of their speed at most", "default %s from 256 cells across on"},

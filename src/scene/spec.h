@@ -8,7 +8,6 @@ typedef enum { NEAR_EXACT, NEAR_NONE } NearFieldType;
 #define NEAR_LEAST_SPACING 0.3 /* ds/h with the exact near field, in which neither kernel nor grid is felt */
 #define SCENE_LEAST_GAP 0.3    /* marker spacings between obstacles, down to which their forces are right */
 typedef enum { ADAPT_NONE, ADAPT_ERROR } AdaptType;
-typedef enum { FRAME_TREADING, FRAME_NONE } FrameType;
 typedef enum { PRECISION_DOUBLE, PRECISION_SINGLE } PrecisionType;
 typedef enum { STARTUP_EULER, STARTUP_GRADED } StartUp;
 typedef enum { SHAPE_ELLIPSE, SHAPE_BICONCAVE, SHAPE_FILE, SHAPE_NONE } ShapeType;
@@ -102,7 +101,6 @@ typedef struct {
 
 typedef struct {
   PetscReal dt, end;
-  PetscInt frame;                      /* FrameType */
   PetscInt adapt;                      /* AdaptType */
   PetscReal adapt_tol, adapt_max_move; /* error a step over R0; cells a marker may move in a step */
   PetscReal adapt_max_step;            /* largest step of -time_adapt error; 0: none */

@@ -79,7 +79,6 @@ static const OptionRow table[] = {
   {"-scheme_startup", OPT_ENUM, AT(scheme.startup), "graded", "euler|graded", "first step of orders 2 and 3: backward Euler, or five growing parts of a step", &need_order},
   {"-time_step", OPT_REAL, AT(time.dt), "0.01", ">0", "dt (time)", NULL, MAY_CHANGE},
   {"-time_end", OPT_REAL, AT(time.end), "1", ">=0", "end time, reached exactly: the last steps are shortened (time)", NULL, MAY_CHANGE},
-  {"-time_frame", OPT_ENUM, AT(time.frame), "treading", "treading|none", "coupled: labels in which a step sees the states before it, turning with each tank-treading membrane, or fixed to matter"},
   {"-time_adapt", OPT_ENUM, AT(time.adapt), "none", "none|error", "step size: fixed, or from an error estimate (coupled of order 2 or 3)", &need_adaptable},
   {"-time_adapt_tol", OPT_REAL, AT(time.adapt_tol), "1e-4", ">0", "error estimate accepted a step, in units of R0", &need_adapt, MAY_CHANGE},
   {"-time_adapt_max_move", OPT_REAL, AT(time.adapt_max_move), "1", ">=0", "cells that a marker may move in a step relative to its vesicle; 0 no limit", &need_adapt, MAY_CHANGE},

@@ -246,7 +246,7 @@ static PetscErrorCode Miss(Scheme s, Coupled *d, PetscInt count, const Vec state
    many states as would have told this one's velocity best, of those whose velocity is known. */
 static PetscErrorCode ChooseNext(Scheme s, Coupled *d) {
   const History *h = &d->history;
-  const PetscInt solved = s->scene->time.frame == FRAME_NONE ? 0 : d->history.solved;
+  const PetscInt solved = SchemeIsSmooth(s) ? d->history.solved : 0;
   StepPlan *next = &d->next_plan;
   PetscReal miss[BDF_MOST - 1 + BDF_STATES] = {0}, *of_U = miss + BDF_MOST - 1;
   PetscFunctionBeginUser;

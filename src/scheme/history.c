@@ -16,7 +16,8 @@ PetscErrorCode HistoryDestroy(History *h) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Fit the label speed V of every vesicle, on all ranks. */
+/* Fit the label speed V of every vesicle, on all ranks. It is 0 unless the membrane is spectral: labels are shifted by
+   trigonometric polynomials, which keep the lengths of spectral edges. */
 static PetscErrorCode FitLabelSpeeds(History *h, Scheme s) {
   const Membrane m = s->membrane;
   const Layout l = m->layout;
@@ -25,7 +26,7 @@ static PetscErrorCode FitLabelSpeeds(History *h, Scheme s) {
   PetscFunctionBeginUser;
   h->moving = PETSC_FALSE;
   PetscCall(PetscArrayzero(h->treading, l->bodies));
-  if (!s->past || s->scene->time.frame == FRAME_NONE) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!s->past || m->derivative != DERIVATIVE_SPECTRAL) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecGetArrayRead(s->state.X, &X));
   PetscCall(VecGetArrayRead(s->state.U, &U));
   for (PetscInt v = l->own; v < l->end; v++) {

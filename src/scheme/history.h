@@ -22,7 +22,7 @@ PETSC_EXTERN PetscErrorCode HistoryCreate(Scheme scheme, History *history);
 PETSC_EXTERN PetscErrorCode HistoryDestroy(History *history);
 
 /* HistoryCarry - before a step of size dt: fit V of each vesicle to the present velocity of its markers (zero in a
-   first step, and with -time_frame none), and carry markers and velocities of the states. Collective. */
+   first step, and of membranes that are not spectral), and carry markers and velocities of the states. Collective. */
 PETSC_EXTERN PetscErrorCode HistoryCarry(History *history, Scheme scheme, PetscReal dt);
 
 /* HistorySum - y = scale SUM_j weight_j x_j over the first `count` states, of vectors x_j that are carried or need not

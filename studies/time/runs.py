@@ -19,8 +19,7 @@ BOXES = {
 """R0/h = 4; every one quasi-steady, so that only time steps differ."""
 SHAPES = ((0.7, 10), (0.55, 3), (0.9, 1))
 """Reduced area and chi of the steady shapes."""
-WAYS = {"none 2": (2, "none"), "treading 2": (2, "treading"), "treading 3": (3, "treading")}
-"""Order and frame."""
+WAYS = {"order 2": 2, "order 3": 3}
 EXACT = words("-coupled_ksp_rtol 1e-8")
 
 
@@ -36,9 +35,8 @@ def resting(c_b: float) -> dict[str, str]:
 
 
 def way(name: str) -> dict[str, str]:
-    """Return the options of order and frame."""
-    order, frame = WAYS[name]
-    return words(f"-scheme_order {order} -time_frame {frame}")
+    """Return the options of an order."""
+    return words(f"-scheme_order {WAYS[name]}")
 
 
 def until(dt: float, end: float) -> dict[str, str]:
@@ -159,7 +157,7 @@ def large(chi: float, name: str, dt: float) -> Case:
     return Case(f"large_{chi}_{name}_{dt:g}", options | way(name) | until(dt, 50 * dt), measure, may_fail=True)
 
 
-def energy(c_b: float, order: int, frame: str, dt: float) -> Case:
+def energy(c_b: float, order: int, dt: float) -> Case:
     """Return 40 steps of an ellipse at rest: the largest rise of the bending energy in a step and its end, over E_0."""
 
     def measure(series: Series, folder: Path) -> dict[str, object]:
@@ -167,5 +165,5 @@ def energy(c_b: float, order: int, frame: str, dt: float) -> Case:
         return {"rise": np.diff(found).max(), "end": found[-1]}
 
     startup = "-scheme_startup euler" if order > 1 else ""
-    options = FREE | resting(c_b) | words(f"-scheme_order {order} -time_frame {frame} {startup}")
-    return Case(f"energy_{c_b}_{order}_{frame}_{dt:g}", options | until(dt, 40 * dt) | EXACT, measure)
+    options = FREE | resting(c_b) | words(f"-scheme_order {order} {startup}")
+    return Case(f"energy_{c_b}_{order}_{dt:g}", options | until(dt, 40 * dt) | EXACT, measure)
