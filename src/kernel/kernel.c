@@ -31,19 +31,15 @@ static PetscInt BSpline(PetscInt n, PetscReal x, PetscInt *first, PetscReal w[KE
   return n;
 }
 
-static PetscInt BSpline2(PetscReal x, PetscInt *first, PetscReal w[]) {
-  return BSpline(2, x, first, w);
-}
-static PetscInt BSpline3(PetscReal x, PetscInt *first, PetscReal w[]) {
-  return BSpline(3, x, first, w);
-}
-static PetscInt BSpline4(PetscReal x, PetscInt *first, PetscReal w[]) {
+PetscInt KernelSpline4(PetscReal x, PetscInt *first, PetscReal w[]) {
   return BSpline(4, x, first, w);
 }
-static PetscInt BSpline5(PetscReal x, PetscInt *first, PetscReal w[]) {
+
+PetscInt KernelSpline5(PetscReal x, PetscInt *first, PetscReal w[]) {
   return BSpline(5, x, first, w);
 }
-static PetscInt BSpline6(PetscReal x, PetscInt *first, PetscReal w[]) {
+
+PetscInt KernelSpline6(PetscReal x, PetscInt *first, PetscReal w[]) {
   return BSpline(6, x, first, w);
 }
 

@@ -13,19 +13,16 @@
   0.25 /* cells that markers keep from walls where stencils are folded (markers/wallfold.h)                            \
         */
 
-/* The kernels: ib6 of Bao, Kaye and Peskin (2016), composite B-splines cbs of Gruninger and Griffith (2025). A row has
-   the name; the weights along and across; the marker spacing ds/h that suits the kernel; the spacing below which the
-   tension problem is near singular; and a, b of the stiffest springs that explicit steps bear, as measured
+/* The kernels: ib6 of Bao, Kaye and Peskin (2016), the composite B-spline cbs54 of Gruninger and Griffith (2025). A row
+   has the name; the weights along and across; the marker spacing ds/h that suits the kernel; the spacing below which
+   the tension problem is near singular; and a, b of the stiffest springs that explicit steps bear, as measured
    (docs/split.md),
 
      a nu h/dt + b h^3/dt^2. */
 /* clang-format off */
-#define KERNELS(ROW, BETWEEN)                                    \
-  ROW(ib6, IB6, IB6, 1.75, 1.25, 50, 100) BETWEEN                \
-  ROW(cbs32, BSpline3, BSpline2, 1.25, 1, 19, 12) BETWEEN        \
-  ROW(cbs43, BSpline4, BSpline3, 1.5, 1, 19, 12) BETWEEN         \
-  ROW(cbs54, BSpline5, BSpline4, 1.5, 1, 19, 12) BETWEEN         \
-  ROW(cbs65, BSpline6, BSpline5, 1.5, 1, 19, 12)
+#define KERNELS(ROW, BETWEEN)                              \
+  ROW(ib6, IB6, IB6, 1.75, 1.25, 50, 100) BETWEEN          \
+  ROW(cbs54, KernelSpline5, KernelSpline4, 1.5, 1, 19, 12)
 /* clang-format on */
 
 /* Texts of the table for the option table: names "a|b", spacings that suit and least spacings "a 1.75, b 1.25". */
@@ -39,6 +36,11 @@
 /* Weights phi(x - j) at the grid points j = first .. first + n - 1 of a coordinate x in cells; returns n. */
 typedef PetscInt (*KernelWeights)(PetscReal x, PetscInt *first, PetscReal weights[KERNEL_MAX_POINTS]);
 
+/* KernelSpline4, 5, 6 - the weights of the cardinal B-splines of 4, 5 and 6 points. Not collective. */
+PETSC_EXTERN PetscInt KernelSpline4(PetscReal x, PetscInt *first, PetscReal weights[]);
+PETSC_EXTERN PetscInt KernelSpline5(PetscReal x, PetscInt *first, PetscReal weights[]);
+PETSC_EXTERN PetscInt KernelSpline6(PetscReal x, PetscInt *first, PetscReal weights[]);
+
 typedef struct {
   const char *name;
   KernelWeights along, across; /* along the component's own direction, across it */
@@ -50,7 +52,7 @@ typedef struct {
 /* KernelFind - kernel by name; NULL: there is none. Not collective. */
 PETSC_EXTERN const Kernel *KernelFind(const char name[]);
 
-/* KernelSecondMoment - at every place x, with cbs32 at one place,
+/* KernelSecondMoment - at every place x, for kernels of three points and more,
 
      SUM_j phi(x - j) (x - j)^2.
 

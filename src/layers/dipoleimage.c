@@ -112,10 +112,9 @@ static const ImageNumbers source_form[2] = {
       {-53046, -2060352, 35316, 376056, 383616, -7560, -62160, -30240, -31360, 560, 3360, 3360, 1120, 1120}}}};
 
 void DipoleImageFormsMake(const ImageMoments kernel[2], DipoleImageForms *f) {
-  const Kernel *five = KernelFind("cbs54"), *six = KernelFind("cbs65");
-  const ImageMoments four = ImageMomentsOf(five->across), m5 = ImageMomentsOf(five->along),
-                     m6 = ImageMomentsOf(six->along);
-  const ImageMoments moment[DIPOLE_COUNT][2] = {{m6, four}, {four, m6}, {m5, m5}};
+  const ImageMoments m4 = ImageMomentsOf(KernelSpline4), m5 = ImageMomentsOf(KernelSpline5),
+                     m6 = ImageMomentsOf(KernelSpline6);
+  const ImageMoments moment[DIPOLE_COUNT][2] = {{m6, m4}, {m4, m6}, {m5, m5}};
   *f = (DipoleImageForms){0};
   for (int part = 0; part < DIPOLE_COUNT; part++)
     for (int c = 0; c < 2; c++) {

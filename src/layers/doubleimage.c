@@ -30,8 +30,7 @@ PetscErrorCode DoubleImageDestroy(DoubleImage *image) {
 
 /* Rows of a dipole y cells from a wall; parts seen from it. */
 static DipoleEnd MakeEnd(PetscReal y) {
-  const Kernel *five = KernelFind("cbs54"), *six = KernelFind("cbs65");
-  const KernelWeights weights[DIPOLE_COUNT] = {five->across, six->along, five->along};
+  static const KernelWeights weights[DIPOLE_COUNT] = {KernelSpline4, KernelSpline6, KernelSpline5};
   DipoleEnd e;
   for (int part = 0; part < DIPOLE_COUNT; part++) {
     const PetscBool node = part == DIPOLE_XY ? PETSC_TRUE : PETSC_FALSE; /* nodes at j + 1, cells at j + 1/2 */

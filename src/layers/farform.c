@@ -1,7 +1,7 @@
 /* The transforms of S and L, k along phi, are 1/k^2 times
        S: sin^2 phi (xx), cos^2 phi (yy), -sin phi cos phi (xy)
        L: the same with k~ = 2 sin(k/2) in place of k in each direction, times the transforms of the kernel's weights at
-          both ends. (A kernel whose moments depend on the place in a cell has other terms, which are left out.)
+          both ends.
    L is expanded in k^2, and k^{2m-2} e^{i n phi} is i^n n (n^2 - 2^2) .. (n^2 - (2m-2)^2)/(2 pi r^{2m}) e^{i n phi} in
    the plane. */
 #include "layers/farform.h"
@@ -38,16 +38,6 @@ static Series Cosine(const PetscReal moment[TERMS], PetscReal x) {
   return s;
 }
 
-/* SUM phi(x - j) (x - j)^3 is not zero at all places. */
-static PetscBool HasThirdMoment(KernelWeights weights) {
-  const PetscReal x = 0.25;
-  PetscReal w[KERNEL_MAX_POINTS], sum = 0;
-  PetscInt first;
-  const PetscInt n = weights(x, &first, w);
-  for (PetscInt k = 0; k < n; k++) sum += w[k] * PetscPowRealInt(first + k - x, 3);
-  return PetscAbsReal(sum) > PETSC_SQRT_MACHINE_EPSILON ? PETSC_TRUE : PETSC_FALSE;
-}
-
 /* L's transform at the angle (c, s), times k^2: xx, yy, xy. */
 static void LatticeTransform(const PetscReal moment[2][TERMS], PetscReal c, PetscReal s, Series L[3]) {
   static const PetscReal half[TERMS] = {1, 1. / 12, 1. / 80, 1. / 448}; /* moments of an interval of length 1 */
@@ -66,8 +56,7 @@ static void LatticeTransform(const PetscReal moment[2][TERMS], PetscReal c, Pets
   }
 }
 
-/* Coefficients up to a power of 1/r^2. */
-static void Fill(const PetscReal moment[2][TERMS], int orders, NearFar *far) {
+static void Fill(const PetscReal moment[2][TERMS], NearFar *far) {
   for (int angle = 0; angle < ANGLES; angle++) {
     const PetscReal phi = 2 * PETSC_PI * angle / ANGLES;
     Series L[3];
@@ -75,7 +64,7 @@ static void Fill(const PetscReal moment[2][TERMS], int orders, NearFar *far) {
     for (int wave = 0; wave < NEAR_FAR_WAVES; wave++) {
       const int n = 2 * (wave + 1);
       PetscReal factor = (n % 4 ? -1 : 1) * n / (2 * PETSC_PI);
-      for (int m = 1; m <= orders; factor *= n * n - 4 * m * m, m++) {
+      for (int m = 1; m <= NEAR_FAR_ORDERS; factor *= n * n - 4 * m * m, m++) {
         far->p[wave][m - 1] -= factor * L[0].term[m] * PetscCosReal(n * phi) * 2 / ANGLES;
         far->q[wave][m - 1] -= factor * L[2].term[m] * PetscSinReal(n * phi) * 2 / ANGLES;
       }
@@ -84,12 +73,11 @@ static void Fill(const PetscReal moment[2][TERMS], int orders, NearFar *far) {
 }
 
 void NearFarMake(const Kernel *kernel, NearFar far[2]) {
-  const PetscBool third = HasThirdMoment(kernel->along) || HasThirdMoment(kernel->across) ? PETSC_TRUE : PETSC_FALSE;
   PetscReal moment[2][TERMS];
   KernelMoments(kernel->along, TERMS, moment[0]);
   KernelMoments(kernel->across, TERMS, moment[1]);
-  far[NEAR_ONE] = (NearFar){.fourth = {moment[0][2], moment[1][2]}, .reach = third ? 30 : 12};
-  far[NEAR_TWO] = (NearFar){.fourth = {moment[0][2], moment[1][2]}, .reach = third ? 16 : 10};
-  Fill(moment, third ? 1 : NEAR_FAR_ORDERS, &far[NEAR_ONE]);
-  Fill(moment, NEAR_FAR_ORDERS, &far[NEAR_TWO]);
+  far[NEAR_ONE] = (NearFar){.fourth = {moment[0][2], moment[1][2]}, .reach = 12};
+  Fill(moment, &far[NEAR_ONE]);
+  far[NEAR_TWO] = far[NEAR_ONE];
+  far[NEAR_TWO].reach = 10;
 }

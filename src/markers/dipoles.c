@@ -2,13 +2,8 @@
 #include "markers/wallfold.h"
 
 void DipoleStencilsUnwrapped(Grid g, const PetscReal X[2], Stencil s[DIPOLE_COUNT]) {
-  static const Kernel *five = NULL, *six = NULL; /* kernels are found once */
-  if (!six) {
-    five = KernelFind("cbs54");
-    six = KernelFind("cbs65");
-  }
-  const KernelWeights weights[DIPOLE_COUNT][2] = {
-      {six->along, five->across}, {five->across, six->along}, {five->along, five->along}};
+  static const KernelWeights weights[DIPOLE_COUNT][2] = {
+      {KernelSpline6, KernelSpline4}, {KernelSpline4, KernelSpline6}, {KernelSpline5, KernelSpline5}};
   for (int k = 0; k < DIPOLE_COUNT; k++)
     for (int dir = 0; dir < 2; dir++) {
       const PetscReal r = (X[dir] - g->lo[dir]) / g->h - (k == DIPOLE_XY ? 1.0 : 0.5);

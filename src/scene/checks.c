@@ -187,8 +187,7 @@ static PetscErrorCode CheckPenalty(Scene scene) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The near field belongs to the unsplit step, and to a kernel whose second moments are the same everywhere in a cell.
- */
+/* The near field belongs to the unsplit step. */
 static PetscErrorCode CheckNearField(Scene scene) {
   PetscFunctionBeginUser;
   PetscCheck(scene->coupling.near_field == NEAR_EXACT || !scene->coupling.box_part, scene->comm, PETSC_ERR_USER_INPUT,
@@ -198,10 +197,6 @@ static PetscErrorCode CheckNearField(Scene scene) {
              "-coupling_near_field exact: not with -scheme_type %s, which is its paper's method; allowed: none, or "
              "-scheme_type coupled",
              scene->scheme.type);
-  PetscCheck(
-      strcmp(scene->coupling.kernel, "cbs32"), scene->comm, PETSC_ERR_USER_INPUT,
-      "-delta_type cbs32: not with -coupling_near_field exact, because its second moment depends on the place in a "
-      "cell; allowed: ib6, cbs43, cbs54, cbs65, or -coupling_near_field none");
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

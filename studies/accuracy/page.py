@@ -13,7 +13,7 @@ from studies.accuracy import runs as study
 from studies.common.curves import radius
 from studies.common.engine import Case, Results
 from studies.common.paper import REST, SHEAR, shear_errors
-from studies.common.scenes import NEAR_FIELD_KERNELS
+from studies.common.scenes import KERNELS
 
 CELLS, FINE_CELLS = (32, 64, 128), (24, 32, 48, 64, 96, 128, 256)
 PICTURE = {
@@ -133,7 +133,7 @@ def _kernels(results: Results, folder: Path) -> list[str]:
     """Kernels and numbers of markers at 64^2 and 128^2."""
     rows, shown = [], []
     base = {n: results.get(study.kernel_and_markers("cbs54", 45, n)) for n in (64, 128)}
-    for kernel, count in product(NEAR_FIELD_KERNELS, study.MARKERS):
+    for kernel, count in product(KERNELS, study.MARKERS):
         line = [kernel, f"{count}"]
         for n in (64, 128):
             one = results.get(study.kernel_and_markers(kernel, count, n))

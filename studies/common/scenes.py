@@ -36,9 +36,7 @@ BOXES = {
     "channel": words("-domain_bc_x periodic"),
     "walls": {},
 }
-KERNELS = ("ib6", "cbs32", "cbs43", "cbs54", "cbs65")
-NEAR_FIELD_KERNELS = tuple(kernel for kernel in KERNELS if kernel != "cbs32")
-"""Those of -coupling_near_field exact."""
+KERNELS = ("ib6", "cbs54")
 
 
 def cells(n: int, m: int | None = None) -> dict[str, str]:

@@ -157,8 +157,6 @@ PAIR = "-domain_box -1.5,1.5,-1.5,1.5 -domain_cells 48,48 -vesicle_count 2 -vesi
 CASES = {
     "exact": "",
     "ib6": "-delta_type ib6",
-    "cbs43": "-delta_type cbs43",
-    "cbs65": "-delta_type cbs65",
     "order_1": "-scheme_order 1",
     "chords": "-membrane_derivative bending",
     "unsteady": "-fluid_inertia unsteady",

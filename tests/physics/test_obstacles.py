@@ -48,9 +48,7 @@ def test_drag_of_a_square_array(radius, cells, within, tmp_path):
     assert row["coupled_its"] <= 3
 
 
-@pytest.mark.parametrize(
-    "option", ["-obstacle_spacing .5", "-obstacle_spacing 2", "-delta_type ib6", "-delta_type cbs43"]
-)
+@pytest.mark.parametrize("option", ["-obstacle_spacing .5", "-obstacle_spacing 2", "-delta_type ib6"])
 def test_drag_is_the_same_with_other_markers_and_kernels(option, tmp_path):
     row = last(tmp_path, f"{ARRAY} -obstacle_radius .2 -domain_cells 32,32 {option}")
     assert row["obstacle_force_x"] == pytest.approx(EXACT["drag"]["0.2"], rel=1e-5)

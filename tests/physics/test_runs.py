@@ -173,11 +173,10 @@ def test_no_vesicle_is_a_plain_projection_step(tmp_path):
     assert series["energy_kinetic"].max() < 1e-24 and series["div_max"].max() < 1e-11
 
 
-@pytest.mark.parametrize("kernel", ["cbs32", "cbs43", "cbs54", "cbs65"])
-def test_kernels_agree(kernel, cached_run):
+def test_kernels_agree(cached_run):
     """One unit of shear: angle within 1 % of ib6's (measured 0.7 %); area drift of the order of the step's, as ib6's."""
     options = SHEAR + " -time_end 1 -delta_type "
-    ib6, other = (cached_run(options + name, 1).series for name in ("ib6", kernel))
+    ib6, other = (cached_run(options + name, 1).series for name in ("ib6", "cbs54"))
     assert other["inclination"][-1] == pytest.approx(ib6["inclination"][-1], rel=0.01)
     assert other["inclination"][-1] != ib6["inclination"][-1]
     assert np.abs(other["area_error"]).max() < 3e-3

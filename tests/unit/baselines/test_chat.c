@@ -110,10 +110,10 @@ PetscErrorCode Facts(void) {
       "-domain_bc_x periodic -vesicle_center 0.97,0.01",
       "-domain_bc_x periodic -domain_bc_y periodic -vesicle_center 0.03,0.9",
       "-domain_bc_x periodic -domain_bc_y periodic -vesicle_center 0.96,-0.93 -vesicle_angle 30"};
-  static const char *const kernels[] = {"ib6", "cbs32", "cbs54"};
+  static const char *const kernels[] = {"ib6", "cbs54"};
   PetscFunctionBeginUser;
   for (int k = 0; k < 5; k++)
-    for (int d = 0; d < 3; d++) {
+    for (int d = 0; d < 2; d++) {
       char options[512], name[256];
       TestWorld t;
       PetscReal error;

@@ -171,8 +171,6 @@ static const struct {
 } scenes[] = {
     {"exact near field", CELLS, 1e-9},
     {"ib6", CELLS " -delta_type ib6", 1e-9},
-    {"cbs43", CELLS " -delta_type cbs43", 1e-9},
-    {"cbs65", CELLS " -delta_type cbs65", 1e-9},
     {"order 1", CELLS " -scheme_order 1", 1e-9},
     {"chords", CELLS " -membrane_derivative bending", 1e-9},
     {"unsteady", CELLS " -fluid_inertia unsteady", 1e-9},
