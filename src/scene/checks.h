@@ -1,6 +1,21 @@
-/* Checks that involve more than one option. */
+/* Checks that involve more than one option.
+
+   Most are rows of a table: a condition that must not hold, and the message. */
 #pragma once
 #include "scene/spec.h"
+
+/* A rule. In its message the value in force of an option stands for "{-name}". */
+typedef struct {
+  int broken;
+  const char *message;
+} SceneRule;
+
+/* SceneRefuse - stop with the message of the first rule that is broken. SceneCheckList - stop unless a list has `each`
+   numbers (1 or 2) for all of `count` "vesicles" (what), or `each` numbers "a vesicle" (one). Collective. */
+PETSC_EXTERN PetscErrorCode SceneRefuse(Scene scene, size_t rules, const SceneRule rule[]);
+PETSC_EXTERN PetscErrorCode SceneCheckList(Scene scene, const char name[], PetscInt n, PetscInt each, PetscInt count,
+                                           const char what[], const char one[]);
+#define REFUSE(scene, rules) SceneRefuse(scene, sizeof(rules) / sizeof((rules)[0]), rules)
 
 #define SCENE_MOST_FREE 30 /* vesicles in unbounded fluid: all pairs are summed, beyond it a large box is faster */
 
@@ -10,3 +25,7 @@
 PETSC_EXTERN PetscErrorCode SceneCheck(Scene scene);
 PETSC_EXTERN PetscErrorCode SceneCheckCells(Scene scene);
 PETSC_EXTERN PetscErrorCode SceneCheckBodies(Scene scene);
+
+/* SceneCheckObstacles - method, places and sizes of the obstacles and of the vesicles among them (obstaclechecks.c);
+   finds what is around each. Collective; stops with the user's message. */
+PETSC_EXTERN PetscErrorCode SceneCheckObstacles(Draft scene);

@@ -1,33 +1,28 @@
-#include "scene/obstaclechecks.h"
+#include "scene/checks.h"
 #include "curve/contacts.h"
 #include "curve/crossing.h"
 #include "kernel/kernel.h"
 #include "scene/properties.h"
 
-#define LEAST_ACROSS 6   /* cells: the drag of such a circle is right to 6e-5 (docs/obstacles.md) */
-#define MOST_SPACING 1.5 /* ds/h with inertia, where the mobility of markers farther apart is indefinite */
+#define LEAST_ACROSS 6 /* cells: the drag of such a circle is right to 6e-5 (docs/obstacles.md) */
 
-static PetscErrorCode CheckMethod(Scene scene) {
-  PetscFunctionBeginUser;
-  PetscCheck(!FluidSpecIsFree(&scene->fluid), scene->comm, PETSC_ERR_USER_INPUT,
-             "-obstacle_shape: not with -domain_bc_x free, where a body held in a flow has no finite velocity in two "
-             "dimensions; allowed: walls, or periodic boundaries");
-  PetscCheck(!SceneIsProjection(scene), scene->comm, PETSC_ERR_USER_INPUT,
-             "-obstacle_shape: not with -scheme_type %s; allowed: coupled", scene->scheme.type);
-  PetscCheck(scene->fluid.inertia == INERTIA_AUTO || scene->fluid.inertia == INERTIA_NONE ||
-                 scene->obstacles.spacing <= MOST_SPACING,
-             scene->comm, PETSC_ERR_USER_INPUT,
-             "-obstacle_spacing %g: with inertia of the fluid obstacles so far apart leak; allowed: at most %g, or "
-             "-fluid_inertia none",
-             (double)scene->obstacles.spacing, MOST_SPACING);
-  PetscCheck(scene->coupling.near_field == NEAR_EXACT, scene->comm, PETSC_ERR_USER_INPUT,
-             "-obstacle_shape: not with -coupling_near_field none; allowed: exact");
-  PetscCheck(SceneHasBoxPart(scene), scene->comm, PETSC_ERR_USER_INPUT,
-             "-obstacle_shape: needs the box part of the near field, without which its forces are wrong by parts of a "
-             "hundred; allowed: -coupling_box_part true in a box whose periods are at most %d times its other side",
-             FLUID_LONGEST_PERIOD);
-  PetscFunctionReturn(PETSC_SUCCESS);
+/* With inertia the mobility of markers farther apart than 1.5 h is indefinite. */
+/* clang-format off */
+static PetscErrorCode CheckMethod(Scene s) {
+  const SceneRule rules[] = {
+    {FluidSpecIsFree(&s->fluid),
+     "-obstacle_shape: not with -domain_bc_x free, where a body held in a flow has no finite velocity in two dimensions; allowed: walls, or periodic boundaries"},
+    {SceneIsProjection(s),
+     "-obstacle_shape: not with -scheme_type {-scheme_type}; allowed: coupled"},
+    {s->fluid.inertia != INERTIA_AUTO && s->fluid.inertia != INERTIA_NONE && s->obstacles.spacing > 1.5,
+     "-obstacle_spacing {-obstacle_spacing}: with inertia of the fluid obstacles so far apart leak; allowed: at most 1.5, or -fluid_inertia none"},
+    {s->coupling.near_field != NEAR_EXACT,
+     "-obstacle_shape: not with -coupling_near_field none; allowed: exact"},
+    {!SceneHasBoxPart(s),
+     "-obstacle_shape: needs the box part of the near field, without which its forces are wrong by parts of a hundred; allowed: -coupling_box_part true in a box whose periods are at most 4 times its other side"}};
+  return REFUSE(s, rules);
 }
+/* clang-format on */
 
 /* That a curve fits into the box and is off the walls that it does not stand on: with finer points next to a wall for
    closed curves only (layers/finecurve.h), others keep a marker spacing. */

@@ -1,7 +1,7 @@
 /* The obstacles of a scene: circles, bumps or curves of a file, markers at equal distances on them, and what their
    surfaces do. */
 #include "scene/obstacles.h"
-#include "scene/obstaclechecks.h"
+#include "scene/checks.h"
 #include "scene/openbodies.h"
 #include "scene/properties.h"
 
@@ -14,15 +14,6 @@ typedef struct {
   PetscReal *part; /* [2 count] of the parameter of open ones, that markers are on */
   PetscInt *wall;  /* [count] that open ones are on */
 } Outlines;
-
-/* A list has `each` numbers for all curves, or `each` a curve. */
-static PetscErrorCode CheckList(Scene scene, const char name[], PetscInt n, PetscInt each, PetscInt curves) {
-  PetscFunctionBeginUser;
-  PetscCheck(n == each || n == each * curves, scene->comm, PETSC_ERR_USER_INPUT,
-             "%s: %" PetscInt_FMT " numbers given for %" PetscInt_FMT " obstacles; allowed: %s for all or %s each",
-             name, n, curves, each == 1 ? "one" : "two", each == 1 ? "one" : "two");
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
 
 /* Columns and rows of posts over the whole box, each row a part of a column further than the one below. */
 static void PlaceLattice(Scene scene, PetscReal center[]) {
@@ -68,9 +59,9 @@ static PetscErrorCode MakeCircles(Scene scene, PetscInt count, Outlines *o) {
   const PetscBool lattice = own->lattice.n == 2 && own->lattice.v[0] > 0 ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionBeginUser;
   PetscCall(CreateOutlines(scene, count, o));
-  PetscCall(CheckList(scene, "-obstacle_radius", own->radius.n, 1, count));
-  PetscCall(CheckList(scene, "-obstacle_velocity", own->move.n, 2, count));
-  PetscCall(CheckList(scene, "-obstacle_rotation", own->rotation.n, 1, count));
+  PetscCall(SceneCheckList(scene, "-obstacle_radius", own->radius.n, 1, count, "obstacles", "each"));
+  PetscCall(SceneCheckList(scene, "-obstacle_velocity", own->move.n, 2, count, "obstacles", "each"));
+  PetscCall(SceneCheckList(scene, "-obstacle_rotation", own->rotation.n, 1, count, "obstacles", "each"));
   if (lattice) PlaceLattice(scene, o->center);
   for (PetscInt k = 0; k < count; k++)
     for (int c = 0; c < 2; c++) {
@@ -106,7 +97,7 @@ static PetscErrorCode MakeCouette(Scene scene, Outlines *o) {
       own->radius.v[0] < own->radius.v[1], scene->comm, PETSC_ERR_USER_INPUT,
       "-obstacle_shape couette: -obstacle_radius %g,%g; allowed: the inner radius first, smaller than the outer one",
       (double)own->radius.v[0], (double)own->radius.v[1]);
-  PetscCall(CheckList(scene, "-obstacle_center", own->center.n, 2, 2));
+  PetscCall(SceneCheckList(scene, "-obstacle_center", own->center.n, 2, 2, "obstacles", "each"));
   PetscCall(MakeCircles(scene, 2, o));
   o->note[1].clockwise = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -122,7 +113,7 @@ static PetscErrorCode MakeConstriction(Scene scene, Outlines *o) {
   PetscCheck(own->length < f->box[1] - f->box[0], scene->comm, PETSC_ERR_USER_INPUT,
              "-obstacle_length %g: the box is %g long; allowed: less than that", (double)own->length,
              (double)(f->box[1] - f->box[0]));
-  PetscCall(CheckList(scene, "-obstacle_center", own->center.n, 2, 1));
+  PetscCall(SceneCheckList(scene, "-obstacle_center", own->center.n, 2, 1, "obstacles", "each"));
   PetscCall(CreateOutlines(scene, 2, o));
   for (int side = 0; side < 2; side++) PetscCall(ArcBump(scene, side, &o->curve[side]));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -1,6 +1,7 @@
 /* The kinds of vesicles of a scene: which vesicle is of which, and the markers that all of a kind share. */
 #include "scene/vesiclekinds.h"
 #include "kernel/kernel.h"
+#include "scene/checks.h"
 #include "scene/properties.h"
 #include <stdlib.h>
 
@@ -160,15 +161,6 @@ static PetscErrorCode EllipseKinds(Scene scene, Kinds *all) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* That a list has `each` numbers for all curves of the file, or `each` a curve. */
-static PetscErrorCode CheckForCurves(Scene scene, const char name[], PetscInt n, PetscInt each, PetscInt curves) {
-  PetscFunctionBeginUser;
-  PetscCheck(n == each || n == each * curves, scene->comm, PETSC_ERR_USER_INPUT,
-             "%s: %" PetscInt_FMT " numbers given for %" PetscInt_FMT " curves; allowed: %s for all or %s a curve",
-             name, n, curves, each == 1 ? "one" : "two", each == 1 ? "one" : "two");
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 static PetscErrorCode FileKinds(Scene scene, Kinds *all) {
   const SceneVesicles *own = &scene->vesicles;
   Curve *curve;
@@ -183,9 +175,10 @@ static PetscErrorCode FileKinds(Scene scene, Kinds *all) {
              "-vesicle_count %" PetscInt_FMT ": -vesicle_file %s has %" PetscInt_FMT
              " curves; allowed: the same number",
              own->count, own->file, all->vesicles);
-  PetscCall(CheckForCurves(scene, "-vesicle_center", own->center.n, 2, all->vesicles));
-  PetscCall(CheckForCurves(scene, "-vesicle_angle", own->angle.n, 1, all->vesicles));
-  PetscCall(CheckForCurves(scene, "-vesicle_bending", scene->membrane.stiffness.n, 1, all->vesicles));
+  PetscCall(SceneCheckList(scene, "-vesicle_center", own->center.n, 2, all->vesicles, "curves", "a curve"));
+  PetscCall(SceneCheckList(scene, "-vesicle_angle", own->angle.n, 1, all->vesicles, "curves", "a curve"));
+  PetscCall(
+      SceneCheckList(scene, "-vesicle_bending", scene->membrane.stiffness.n, 1, all->vesicles, "curves", "a curve"));
   for (PetscInt k = 0; k < all->kinds; k++) {
     all->of[k] = k;
     all->kind[k].bending = ListEntry(&scene->membrane.stiffness, 1, k, 0);
