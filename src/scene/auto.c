@@ -1,8 +1,13 @@
+/* -scheme_auto: the settings that reach a wanted error, by what was measured. A vesicle that the flow compresses along
+   its length wrinkles, and errors of its steps grow with the wrinkles; thin shapes and thin films need more markers
+   (docs/settings.md). */
 #include "scene/auto.h"
+#include "curve/contacts.h"
+#include "numerics/spectral.h"
 #include "scene/autodomain.h"
 #include "scene/autogrid.h"
-#include "scene/autostart.h"
 #include "scene/properties.h"
+#include "scene/vesicles.h"
 
 /* By wanted error: the settings, and the worst error that each of them leaves by itself over the scenes of the
    calibration, docs/speed_accuracy/calibration.csv (tests/program/test_auto.py compares with the table). */
@@ -25,101 +30,217 @@ static const Calibrated *Row(Scene s) {
   return &calibrated[row];
 }
 
-/* A number that the scene has, to be chosen as a text. */
-static PetscErrorCode Write(const char format[], PetscReal number, char value[AUTO_TEXT]) {
+#define ALIGNED 1e-6 /* of the strain: none, but for rounding */
+#define SQUEEZED 3   /* nu R0^3/c_b times the rate of compression from which on steps are those of wrinkles */
+#define MOST_FINER 3 /* times the default's markers */
+#define WIDE 2       /* spacings: wider films are resolved */
+#define GROWTH 1.2   /* of the markers from one try to the next */
+
+/* A first shape's tail (SpectralTail beyond two thirds of the modes) for an error of 1e-3, and the largest: .31 left
+   7e-4 of R0 in a pair pressed together. */
+#define TAIL 0.15
+#define MOST_TAIL 0.3
+
+/* What films leave of the thickness, by spacings (docs/settings.md, Films). */
+static const struct {
+  PetscReal spacings, error;
+} films[] = {{WIDE, 1e-5}, {1.5, 2e-4}, {1, 4e-3}, {.7, 1e-2}, {.5, 4e-2}, {.3, 1}};
+
+/* Rate at which the flow shortens vesicle v along its length; 0 if it does not, or is not known (1/time). */
+static PetscReal Compression(Scene scene, PetscInt v) {
+  const Shape *s = &scene->shape;
+  const PetscInt n = s->start[v + 1] - s->start[v];
+  PetscReal mean[2] = {0, 0}, xx = 0, yy = 0, xy = 0, G[2][2];
+  if (scene->flow.type == FLOW_CUSTOM) return 0;
+  for (PetscInt k = s->start[v]; k < s->start[v + 1]; k++)
+    for (int c = 0; c < 2; c++) mean[c] += s->X[2 * k + c] / n;
+  for (PetscInt k = s->start[v]; k < s->start[v + 1]; k++) {
+    const PetscReal x = s->X[2 * k] - mean[0], y = s->X[2 * k + 1] - mean[1];
+    xx += x * x;
+    yy += y * y;
+    xy += x * y;
+  }
+  const PetscReal angle = 0.5 * PetscAtan2Real(2 * xy, xx - yy), c = PetscCosReal(angle), d = PetscSinReal(angle);
+  FlowGradient(&scene->flow, 0, mean[0], mean[1], G);
+  const PetscReal rate = -(G[0][0] * c * c + (G[0][1] + G[1][0]) * c * d + G[1][1] * d * d);
+  return rate > ALIGNED * (PetscAbsReal(G[0][0]) + PetscAbsReal(G[0][1] + G[1][0])) ? rate : 0;
+}
+
+/* nu R0^3/c_b times the rate at which the flow shortens a vesicle of the start along its length, the largest; 0 where
+   it is so small that no vesicle wrinkles. */
+static PetscReal Squeeze(Scene scene) {
+  PetscReal largest = 0;
+  for (PetscInt v = 0; v < scene->shape.vesicles; v++)
+    if (scene->membrane.each[v] > 0) largest = PetscMax(largest, Compression(scene, v) * SceneMembraneTime(scene, v));
+  return largest > SQUEEZED ? largest : 0;
+}
+
+/* What a film so many spacings thick leaves of its thickness. */
+static PetscReal FilmError(PetscReal spacings) {
+  const int n = (int)(sizeof(films) / sizeof(films[0]));
+  int k = 1;
+  while (k < n - 1 && spacings < films[k].spacings) k++;
+  const PetscReal part = (spacings - films[k].spacings) / (films[k - 1].spacings - films[k].spacings);
+  return PetscExpReal((1 - part) * PetscLogReal(films[k].error) + part * PetscLogReal(films[k - 1].error));
+}
+
+/* The thinnest film of the start, in marker spacings (2: none is thinner), and the error that it leaves, of its
+   thickness over R0. */
+static PetscErrorCode ThinnestFilm(Scene scene, PetscReal *spacings, PetscReal *error) {
+  const Shape *s = &scene->shape;
+  const CurveRoom room = SceneRoom(scene);
+  const PetscBool smooth = scene->membrane.derivative == DERIVATIVE_SPECTRAL ? PETSC_TRUE : PETSC_FALSE;
+  CurveFilm film;
+  PetscReal *ds;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(s->vesicles, &ds));
+  for (PetscInt v = 0; v < s->vesicles; v++) ds[v] = 2 * PETSC_PI * ShapeRadius(s, v) / (s->start[v + 1] - s->start[v]);
+  const CurveSet set = {s->vesicles, s->vesicles, s->start, NULL, s->X, room.period, smooth};
+  PetscCall(CurveThinnestFilm(&set, ds, &room, WIDE, &film));
+  PetscCall(PetscFree(ds));
+  *spacings = film.spacings;
+  *error = film.spacings < WIDE ? FilmError(film.spacings) * film.thickness / SceneSmallestRadius(scene) : 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Print what the thinnest film of the start leaves. */
+static PetscErrorCode ReportFilm(Scene scene) {
+  PetscReal spacings, error;
+  PetscFunctionBeginUser;
+  PetscCall(ThinnestFilm(scene, &spacings, &error));
+  if (error > 0)
+    PetscCall(PetvesSay(scene->comm, "  thinnest film: %.2g marker spacings, which leaves up to %.1g of R0: %s\n",
+                        (double)spacings, (double)error,
+                        error <= scene->scheme.wanted ? "enough" : "TOO THIN, take more -vesicle_markers"));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Whether the markers resolve the shapes and the films of the start. */
+static PetscErrorCode Resolved(Scene scene, PetscBool *resolved) {
+  const Shape *s = &scene->shape;
+  const PetscReal tail = PetscMin(MOST_TAIL, TAIL * PetscSqrtReal(scene->scheme.wanted / 1e-3));
+  PetscReal spacings, error;
+  PetscFunctionBeginUser;
+  PetscCall(ThinnestFilm(scene, &spacings, &error));
+  *resolved = error < 0.5 * scene->scheme.wanted ? PETSC_TRUE : PETSC_FALSE;
+  for (PetscInt v = 0; v < s->vesicles && *resolved; v++) {
+    Spectral spectral;
+    PetscCall(SpectralCreate(s->start[v + 1] - s->start[v], &spectral));
+    if (SpectralTail(spectral, 2. / 3, s->X + 2 * s->start[v]) > tail) *resolved = PETSC_FALSE;
+    PetscCall(SpectralDestroy(&spectral));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SceneChooseMarkers(Draft scene) {
+  const PetscReal h = FluidSpecCellSize(&scene->fluid);
+  PetscBool resolved = PETSC_FALSE;
+  PetscInt n = 0, most = PETSC_MAX_INT;
+  PetscFunctionBeginUser;
+  if (scene->scheme.wanted == 0 || !scene->shape.vesicles || SceneGiven(scene, "-vesicle_markers") ||
+      scene->vesicles.spacing > 0 || scene->coupling.near_field != NEAR_EXACT ||
+      scene->membrane.derivative != DERIVATIVE_SPECTRAL)
+    PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt v = 0; v < scene->shape.vesicles; v++) {
+    const PetscReal length = 2 * PETSC_PI * ShapeRadius(&scene->shape, v);
+    n = PetscMax(n, scene->shape.start[v + 1] - scene->shape.start[v]);
+    most = PetscMin(most, (PetscInt)(length / (NEAR_LEAST_SPACING * h)));
+  }
+  most = PetscMin(most, MOST_FINER * n);
+  const PetscInt least = Squeeze(scene) > 0 ? PetscMin(most, 3 * n / 2) - 1 : 0;
+  for (;;) {
+    PetscCall(Resolved(scene, &resolved));
+    if ((resolved && n >= least) || n >= most - 1) break;
+    n = PetscMin((PetscInt)(GROWTH * n), most);
+    n -= 1 - n % 2;
+    scene->vesicles.markers = n;
+    PetscCall(SceneDropShape(scene));
+    PetscCall(SceneMakeShape(scene));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Write a number, for a value; nothing where the scene has none. */
+static PetscErrorCode AutoNumber(const char format[], PetscReal number, char value[AUTO_TEXT]) {
   PetscFunctionBeginUser;
   if (number < PETSC_MAX_REAL) PetscCall(PetscSNPrintf(value, AUTO_TEXT, format, (double)number));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode ChooseStep(Draft s, char value[AUTO_TEXT]) {
+static PetscErrorCode SuggestStep(Draft s, char value[AUTO_TEXT], char why[AUTO_TEXT]) {
   const PetscReal time = SceneFastestTime(s);
-  return Write("%.6g", time < PETSC_MAX_REAL ? 0.05 * time : time, value);
-}
-
-static PetscBool ExplainStep(Scene s, char why[AUTO_TEXT]) {
-  const PetscBool timed = SceneFastestTime(s) < PETSC_MAX_REAL ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool timed = time < PETSC_MAX_REAL ? PETSC_TRUE : PETSC_FALSE;
   (void)snprintf(why, AUTO_TEXT, timed ? "a twentieth of the fastest time of the scene" : "the default");
-  return PETSC_TRUE;
+  return AutoNumber("%.6g", timed ? 0.05 * time : time, value);
 }
 
-/* Where the flow compresses a vesicle so fast that it wrinkles: a tolerance of a hundredth of the error wanted, whose
-   steps leave up to a third of it, by the worst measured. */
+/* Where the flow compresses a vesicle so fast that it wrinkles, the tolerance is a hundredth of the error wanted, whose
+   steps leave up to a third of that error by the worst measured. */
 #define OF_WRINKLES 100
 #define WRINKLES_LEAVE 0.3
 
-static PetscErrorCode ChooseTolerance(Draft s, char value[AUTO_TEXT]) {
-  return Write("%g", SceneSqueeze(s) > 0 ? s->scheme.wanted / OF_WRINKLES : Row(s)->adapt_tol, value);
-}
-
-static PetscBool ExplainTolerance(Scene s, char why[AUTO_TEXT]) {
-  const PetscReal chi = SceneSqueeze(s);
-  if (chi > 0)
+static PetscErrorCode SuggestTolerance(Draft s, char value[AUTO_TEXT], char why[AUTO_TEXT]) {
+  const PetscReal chi = Squeeze(s), wanted = s->scheme.wanted;
+  if (s->time.adapt == ADAPT_ERROR && chi > 0)
     (void)snprintf(why, AUTO_TEXT, "a vesicle is compressed (chi = %.2g) and wrinkles: leaves up to %.1e", (double)chi,
-                   (double)(WRINKLES_LEAVE * s->scheme.wanted));
-  else
+                   (double)(WRINKLES_LEAVE * wanted));
+  else if (s->time.adapt == ADAPT_ERROR)
     (void)snprintf(why, AUTO_TEXT, "steps leave up to %.1e", (double)Row(s)->of_steps);
-  return s->time.adapt == ADAPT_ERROR ? PETSC_TRUE : PETSC_FALSE;
+  return AutoNumber("%g", chi > 0 ? wanted / OF_WRINKLES : Row(s)->adapt_tol, value);
 }
 
 /* For the error at rest, and no more than the flow bears. */
-static PetscErrorCode ChooseLargestStep(Draft s, char value[AUTO_TEXT]) {
-  const PetscReal rest = SceneRestTime(s);
-  return Write("%.6g", rest < PETSC_MAX_REAL ? PetscMin(Row(s)->max_step * rest, SceneFlowStep(s)) : rest, value);
-}
-
-static PetscBool ExplainLargestStep(Scene s, char why[AUTO_TEXT]) {
-  if (SceneFlowStep(s) < Row(s)->max_step * SceneRestTime(s))
+static PetscErrorCode SuggestLargestStep(Draft s, char value[AUTO_TEXT], char why[AUTO_TEXT]) {
+  const PetscReal rest = SceneRestTime(s), flow = SceneFlowStep(s), own = Row(s)->max_step;
+  const PetscBool bends = s->time.adapt == ADAPT_ERROR && s->membrane.bending > 0 ? PETSC_TRUE : PETSC_FALSE;
+  if (bends && flow < own * rest)
     (void)snprintf(why, AUTO_TEXT, "what this flow bears");
-  else
-    (void)snprintf(why, AUTO_TEXT, "%g nu R0^3/c_b: leaves up to %.1e of the energy at rest", (double)Row(s)->max_step,
+  else if (bends)
+    (void)snprintf(why, AUTO_TEXT, "%g nu R0^3/c_b: leaves up to %.1e of the energy at rest", (double)own,
                    (double)Row(s)->of_rest);
-  return s->time.adapt == ADAPT_ERROR && s->membrane.bending > 0 ? PETSC_TRUE : PETSC_FALSE;
+  return AutoNumber("%.6g", rest < PETSC_MAX_REAL ? PetscMin(own * rest, flow) : rest, value);
 }
 
-static PetscBool ExplainSolver(Scene s, char why[AUTO_TEXT]) {
+static PetscErrorCode SuggestSolver(Draft s, char value[AUTO_TEXT], char why[AUTO_TEXT]) {
+  (void)value;
   (void)snprintf(why, AUTO_TEXT, "the solver leaves up to %.1e", (double)Row(s)->of_solver);
-  return PETSC_TRUE;
+  return PETSC_SUCCESS;
 }
 
-static PetscBool ExplainSpacing(Scene s, char why[AUTO_TEXT]) {
-  return s->vesicles.spacing > 0 ? PETSC_TRUE : PETSC_FALSE;
+/* SceneChooseMarkers has chosen them. */
+static PetscErrorCode SuggestMarkers(Draft s, char value[AUTO_TEXT], char why[AUTO_TEXT]) {
+  (void)value;
+  if (s->vesicles.markers > 0) (void)snprintf(why, AUTO_TEXT, "by the shapes, films and compression of the start");
+  return PETSC_SUCCESS;
 }
 
-static PetscBool ExplainMarkers(Scene s, char why[AUTO_TEXT]) {
-  (void)snprintf(why, AUTO_TEXT, "by the shapes, films and compression of the start");
-  return s->vesicles.markers > 0 ? PETSC_TRUE : PETSC_FALSE;
-}
-
-/* All settings in the order in which they are printed: their values, or what finds them, and their reasons. Markers are
-   chosen by SceneChooseMarkers, the solver's tolerance is no option of the table. */
+/* All settings in the order in which they are printed. A setting has a value and a reason, or a function that writes
+   them: without a value the default stays, and without a reason the setting is not worth a line unless it is the
+   user's. The solver's tolerance is no option of the table. */
 typedef struct {
   const char *name;
   AutoStage stage;
-  const char *value;
-  PetscErrorCode (*choose)(Draft scene, char value[AUTO_TEXT]);
-  const char *why;
-  PetscBool (*explain)(Scene scene, char why[AUTO_TEXT]);
+  const char *value, *why;
+  PetscErrorCode (*suggest)(Draft scene, char value[AUTO_TEXT], char why[AUTO_TEXT]);
 } Setting;
 
 /* clang-format off */
-static const Setting settings[] = {
-  {"-scheme_type", AUTO_NEVER, .why = "the membrane and the fluid in one solve"},
-  {"-scheme_order", AUTO_NEVER, .why = "what was calibrated"},
-  {"-time_adapt", AUTO_FIRST, .value = "error", .why = "finds the step of any scene"},
-  {"-time_step", AUTO_STEPS, .choose = ChooseStep, .explain = ExplainStep},
-  {"-time_adapt_tol", AUTO_STEPS, .choose = ChooseTolerance, .explain = ExplainTolerance},
-  {"-time_adapt_max_step", AUTO_STEPS, .choose = ChooseLargestStep, .explain = ExplainLargestStep},
-  {"-coupled_ksp_rtol", AUTO_NEVER, .explain = ExplainSolver},
-  {"-delta_type", AUTO_FIRST, .value = "cbs54", .why = "kernels differ by 1e-4 at most"},
-  {"-vesicle_spacing", AUTO_NEVER, .explain = ExplainSpacing},
-  {"-vesicle_markers", AUTO_NEVER, .explain = ExplainMarkers},
-  {"-domain_bc_x", AUTO_FIRST, .choose = SceneChooseBoundaryX, .explain = SceneExplainBoundaryX},
-  {"-domain_bc_y", AUTO_FIRST, .choose = SceneChooseBoundaryY, .explain = SceneExplainBoundaryY},
-  {"-domain_box", AUTO_DOMAIN, .choose = SceneChooseBox, .explain = SceneExplainBox},
-  {"-domain_cells", AUTO_DOMAIN, .choose = SceneChooseCells, .explain = SceneExplainCells}};
+static const Setting settings[AUTO_SETTINGS] = {
+  {"-scheme_type", AUTO_FIRST, "", "the membrane and the fluid in one solve"},
+  {"-scheme_order", AUTO_FIRST, "", "what was calibrated"},
+  {"-time_adapt", AUTO_FIRST, "error", "finds the step of any scene"},
+  {"-time_step", AUTO_STEPS, .suggest = SuggestStep},
+  {"-time_adapt_tol", AUTO_STEPS, .suggest = SuggestTolerance},
+  {"-time_adapt_max_step", AUTO_STEPS, .suggest = SuggestLargestStep},
+  {"-coupled_ksp_rtol", AUTO_STEPS, .suggest = SuggestSolver},
+  {"-delta_type", AUTO_FIRST, "cbs54", "kernels differ by 1e-4 at most"},
+  {"-vesicle_spacing", AUTO_STEPS, "", ""},
+  {"-vesicle_markers", AUTO_STEPS, .suggest = SuggestMarkers},
+  {"-domain_bc_x", AUTO_FIRST, .suggest = SceneSuggestBoundaryX},
+  {"-domain_bc_y", AUTO_FIRST, .suggest = SceneSuggestBoundaryY},
+  {"-domain_box", AUTO_DOMAIN, .suggest = SceneSuggestBox},
+  {"-domain_cells", AUTO_DOMAIN, .suggest = SceneSuggestCells}};
 /* clang-format on */
-#define SETTINGS (sizeof(settings) / sizeof(settings[0]))
 
 static PetscErrorCode CheckWanted(Scene s) {
   const PetscReal wanted = s->scheme.wanted;
@@ -136,12 +257,16 @@ PetscErrorCode SceneChooseByError(Draft s, AutoStage stage) {
   if (s->scheme.wanted == 0 || (stage == AUTO_STEPS && !s->shape.vesicles)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(CheckWanted(s));
   s->coupling.ksp_rtol = Row(s)->ksp_rtol;
-  for (size_t k = 0; k < SETTINGS; k++) {
+  for (int k = 0; k < AUTO_SETTINGS; k++) {
     const Setting *own = &settings[k];
-    char value[AUTO_TEXT] = "";
+    char value[AUTO_TEXT] = "", *why = s->scheme.reason[k];
     if (own->stage != stage || SceneGiven(s, own->name)) continue;
-    if (own->value) PetscCall(PetscStrncpy(value, own->value, AUTO_TEXT));
-    if (own->choose) PetscCall(own->choose(s, value));
+    if (own->suggest)
+      PetscCall(own->suggest(s, value, why));
+    else {
+      PetscCall(PetscStrncpy(value, own->value, AUTO_TEXT));
+      PetscCall(PetscStrncpy(why, own->why, AUTO_TEXT));
+    }
     if (*value) PetscCall(OptionChoose(&s->options, s, own->name, value));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -160,22 +285,21 @@ static void Shorten(char value[AUTO_TEXT]) {
   }
 }
 
-/* One setting: its name, value, and why, or that it is the user's. */
-static PetscErrorCode Say(Scene s, const Setting *own) {
-  char value[AUTO_TEXT], why[AUTO_TEXT] = "";
-  PetscBool given = SceneGiven(s, own->name);
-  const PetscInt i = OptionFind(&s->options, own->name);
+/* A line for a setting: its name, value, and reason, or that it is the user's. */
+static PetscErrorCode ReportSetting(Scene s, const char name[], const char why[]) {
+  char value[AUTO_TEXT];
+  PetscBool given = SceneGiven(s, name);
+  const PetscInt i = OptionFind(&s->options, name);
   PetscFunctionBeginUser;
-  if (own->why) PetscCall(PetscStrncpy(why, own->why, sizeof(why)));
-  if (own->explain && !own->explain(s, why)) PetscFunctionReturn(PETSC_SUCCESS);
   if (i >= 0) {
     PetscCall(OptionValue(&s->options, s, i, value, sizeof(value)));
   } else {
     PetscCall(PetscSNPrintf(value, sizeof(value), "%.0e", (double)s->coupling.ksp_rtol));
-    PetscCall(PetscOptionsGetString(NULL, NULL, own->name, value, sizeof(value), &given));
+    PetscCall(PetscOptionsGetString(NULL, NULL, name, value, sizeof(value), &given));
   }
+  if (!*why && !given) PetscFunctionReturn(PETSC_SUCCESS);
   Shorten(value);
-  PetscCall(PetvesSay(s->comm, "  %-20s %-8s %s\n", own->name, value, given ? "yours" : why));
+  PetscCall(PetvesSay(s->comm, "  %-20s %-8s %s\n", name, value, given ? "yours" : why));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -203,8 +327,8 @@ PetscErrorCode SceneReport(Scene s) {
   if (s->scheme.wanted > 0 && s->shape.vesicles) {
     PetscCall(PetvesSay(s->comm, "petves: -scheme_auto %g, by the worst errors measured (docs/settings.md)\n",
                         (double)s->scheme.wanted));
-    for (size_t k = 0; k < SETTINGS; k++) PetscCall(Say(s, &settings[k]));
-    PetscCall(SceneReportFilm(s));
+    for (int k = 0; k < AUTO_SETTINGS; k++) PetscCall(ReportSetting(s, settings[k].name, s->scheme.reason[k]));
+    PetscCall(ReportFilm(s));
     PetscCall(SceneReportGrid(s));
   }
   if (*s->warning) PetscCall(PetvesSay(s->comm, "petves: warning: %s\n", s->warning));

@@ -52,44 +52,33 @@ static PetscErrorCode NeedsGrid(Scene s, PetscBool *needs) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+#define UNBOUNDED "nothing asks for walls: unbounded, quasi-steady fluid"
+
 /* Where neither box nor boundaries are given and walls are no part of the question: unbounded fluid, or with what needs
    a grid a period in x, but for extension, which is not periodic. */
-PetscErrorCode SceneChooseBoundaryX(Draft s, char value[AUTO_TEXT]) {
+PetscErrorCode SceneSuggestBoundaryX(Draft s, char value[AUTO_TEXT], char why[AUTO_TEXT]) {
   PetscBool needs = PETSC_TRUE;
   PetscFunctionBeginUser;
-  if (SceneGiven(s, "-domain_box") || SceneGiven(s, "-domain_bc_x") || SceneGiven(s, "-domain_bc_y") ||
-      s->vesicles.shape == SHAPE_NONE || !LeavesBox(s))
+  if (!SceneGiven(s, "-domain_box")) PetscCall(PetscStrncpy(why, "the default", AUTO_TEXT));
+  if (SceneGiven(s, "-domain_box") || SceneGiven(s, "-domain_bc_y") || s->vesicles.shape == SHAPE_NONE || !LeavesBox(s))
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(NeedsGrid(s, &needs));
-  if (!needs)
+  if (!needs) {
     PetscCall(PetscStrncpy(value, "free", AUTO_TEXT));
-  else if (s->flow.type != FLOW_EXTENSION)
+    PetscCall(PetscStrncpy(why, UNBOUNDED, AUTO_TEXT));
+  } else if (s->flow.type != FLOW_EXTENSION) {
     PetscCall(PetscStrncpy(value, "periodic", AUTO_TEXT));
+    PetscCall(PetscStrncpy(why, "the default: a place between four walls is not stable", AUTO_TEXT));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* As in x, where that is chosen. */
-PetscErrorCode SceneChooseBoundaryY(Draft s, char value[AUTO_TEXT]) {
+PetscErrorCode SceneSuggestBoundaryY(Draft s, char value[AUTO_TEXT], char why[AUTO_TEXT]) {
+  const PetscBool free = FluidSpecIsFree(&s->fluid) && !SceneGiven(s, "-domain_bc_x") ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionBeginUser;
-  if (FluidSpecIsFree(&s->fluid) && !SceneGiven(s, "-domain_bc_x")) PetscCall(PetscStrncpy(value, "free", AUTO_TEXT));
+  if (free) PetscCall(PetscStrncpy(value, "free", AUTO_TEXT));
+  if (free || !SceneGiven(s, "-domain_box")) PetscCall(PetscStrncpy(why, free ? UNBOUNDED : "the default", AUTO_TEXT));
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscBool ExplainBoundary(Scene s, int dir, char why[AUTO_TEXT]) {
-  const PetscBool free = FluidSpecIsFree(&s->fluid);
-  (void)snprintf(why, AUTO_TEXT, "%s",
-                 s->fluid.bc[dir] == BC_WALL ? "the default"
-                 : free                      ? "nothing asks for walls: unbounded, quasi-steady fluid"
-                                             : "the default: a place between four walls is not stable");
-  return free || !SceneGiven(s, "-domain_box") ? PETSC_TRUE : PETSC_FALSE;
-}
-
-PetscBool SceneExplainBoundaryX(Scene s, char why[AUTO_TEXT]) {
-  return ExplainBoundary(s, 0, why);
-}
-
-PetscBool SceneExplainBoundaryY(Scene s, char why[AUTO_TEXT]) {
-  return ExplainBoundary(s, 1, why);
 }
 
 /* What box and grid go by: radii, the rectangle around all vesicles, and how near to a wall of the box they are;
@@ -135,13 +124,20 @@ static PetscReal Reach(Scene s, PetscInt vesicles) {
 }
 
 /* About the vesicles, its shorter side twice half a side long, its sides in proportion to cells that are given. */
-PetscErrorCode SceneChooseBox(Draft s, char value[AUTO_TEXT]) {
+PetscErrorCode SceneSuggestBox(Draft s, char value[AUTO_TEXT], char why[AUTO_TEXT]) {
   const PetscBool free = FluidSpecIsFree(&s->fluid);
   PetscReal side[2], middle[2];
   Extent e;
   PetscFunctionBeginUser;
+  if (!free && !LeavesBox(s))
+    PetscCall(PetscStrncpy(why, "the default: walls are part of this scene, the box is yours to give", AUTO_TEXT));
   if (s->vesicles.shape == SHAPE_NONE || !(free || LeavesBox(s))) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(Measure(s, &e));
+  if (free)
+    PetscCall(PetscSNPrintf(why, AUTO_TEXT, "the window of the fields, %d R0 around the vesicles", WINDOW));
+  else
+    PetscCall(PetscSNPrintf(why, AUTO_TEXT, "%.3g R0 around the vesicles: its images leave up to %.1e",
+                            (double)Reach(s, e.vesicles), (double)(s->scheme.wanted / 2)));
   const PetscReal wide = PetscMax(e.around[1] - e.around[0], e.around[3] - e.around[2]) / 2;
   const PetscReal half = wide + (free ? WINDOW : Reach(s, e.vesicles)) * e.large;
   const PetscReal unit = PetscPowReal(10, PetscFloorReal(PetscLog10Real(half)) - 1);
@@ -156,17 +152,6 @@ PetscErrorCode SceneChooseBox(Draft s, char value[AUTO_TEXT]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscBool SceneExplainBox(Scene s, char why[AUTO_TEXT]) {
-  if (FluidSpecIsFree(&s->fluid))
-    (void)snprintf(why, AUTO_TEXT, "the window of the fields, %d R0 around the vesicles", WINDOW);
-  else if (LeavesBox(s))
-    (void)snprintf(why, AUTO_TEXT, "%.3g R0 around the vesicles: its images leave up to %.1e",
-                   (double)Reach(s, s->shape.vesicles), (double)(s->scheme.wanted / 2));
-  else
-    (void)snprintf(why, AUTO_TEXT, "the default: walls are part of this scene, the box is yours to give");
-  return PETSC_TRUE;
-}
-
 /* In unbounded fluid it is that of the fields. */
 static PetscReal LargestCell(Scene s, const Extent *e) {
   const PetscReal *box = s->domain.box.v, across = PetscMin(box[1] - box[0], box[3] - box[2]);
@@ -176,12 +161,17 @@ static PetscReal LargestCell(Scene s, const Extent *e) {
          (finer * PetscMax(LEAST_CELLS, SceneCellsFor(SceneAutoFluid(s, e->large), s->scheme.wanted / 2, PETSC_TRUE)));
 }
 
-PetscErrorCode SceneChooseCells(Draft s, char value[AUTO_TEXT]) {
+PetscErrorCode SceneSuggestCells(Draft s, char value[AUTO_TEXT], char why[AUTO_TEXT]) {
   const PetscReal *box = s->domain.box.v;
   const PetscBool free = FluidSpecIsFree(&s->fluid), by_images = !free && !SceneGiven(s, "-domain_box") && LeavesBox(s);
   PetscInt cells[2] = {0, 0};
   Extent e;
   PetscFunctionBeginUser;
+  if (free)
+    PetscCall(PetscSNPrintf(why, AUTO_TEXT, "of the fields alone, R0/%d", WINDOW_CELLS));
+  else
+    PetscCall(PetscSNPrintf(why, AUTO_TEXT, "the fewest square ones that are enough%s",
+                            s->obstacles.shape != OBSTACLE_NONE ? ", twice as many beside obstacles" : ""));
   if (s->vesicles.shape == SHAPE_NONE) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(Measure(s, &e));
   const PetscReal h = LargestCell(s, &e);
@@ -199,13 +189,4 @@ PetscErrorCode SceneChooseCells(Draft s, char value[AUTO_TEXT]) {
     (void)SceneWallCells(SceneAutoFluid(s, e.large), box, h, e.small, e.gap, s->scheme.wanted / 2, cells);
   PetscCall(PetscSNPrintf(value, AUTO_TEXT, "%" PetscInt_FMT ",%" PetscInt_FMT, cells[0], cells[1]));
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscBool SceneExplainCells(Scene s, char why[AUTO_TEXT]) {
-  if (FluidSpecIsFree(&s->fluid))
-    (void)snprintf(why, AUTO_TEXT, "of the fields alone, R0/%d", WINDOW_CELLS);
-  else
-    (void)snprintf(why, AUTO_TEXT, "the fewest square ones that are enough%s",
-                   s->obstacles.shape != OBSTACLE_NONE ? ", twice as many beside obstacles" : "");
-  return PETSC_TRUE;
 }

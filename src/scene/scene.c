@@ -1,7 +1,7 @@
 /* A scene resolved from its options: all defaults in one order. */
 #include "scene/scene.h"
 #include "kernel/kernel.h"
-#include "scene/autostart.h"
+#include "scene/auto.h"
 #include "scene/checks.h"
 #include "scene/inertia.h"
 #include "scene/obstacles.h"

@@ -3,9 +3,7 @@
 #pragma once
 #include "scene/auto.h"
 #include "scene/properties.h"
-#include "scene/suggestions.h"
 #include "scene/table.h"
-#include "scene/view.h"
 
 /* SceneCreate - read every option of the options database and resolve the scene: what -scheme_auto and the scheme
    choose, the initial markers, the model of the fluid, the springs. flow: the function of -flow_type custom with its
@@ -13,3 +11,13 @@
    -help. Collective. */
 PETSC_EXTERN PetscErrorCode SceneCreate(MPI_Comm comm, PetvesFlow flow, void *ctx, Scene *scene);
 PETSC_EXTERN PetscErrorCode SceneDestroy(Scene *scene);
+
+/* SceneView - print which parts of the model are on, their numbers, and the defaults that depend on the scene, each
+   with its reason (view.c). Collective. */
+PETSC_EXTERN PetscErrorCode SceneView(Scene scene, PetscViewer viewer);
+
+/* SceneCheckUsed - stop when the user gave an option of the table that the scene does not use. SceneCheckUnused - stop
+   when the options database holds an option that nothing has read: one of a solver that the scene does not have, or one
+   that there is not; when all solvers are set up (suggestions.c). Collective. */
+PETSC_EXTERN PetscErrorCode SceneCheckUsed(Scene scene);
+PETSC_EXTERN PetscErrorCode SceneCheckUnused(Scene scene);

@@ -13,6 +13,8 @@ typedef enum { STARTUP_EULER, STARTUP_GRADED } StartUp;
 typedef enum { SHAPE_ELLIPSE, SHAPE_BICONCAVE, SHAPE_FILE, SHAPE_NONE } ShapeType;
 typedef enum { OBSTACLE_NONE, OBSTACLE_POSTS, OBSTACLE_COUETTE, OBSTACLE_CONSTRICTION, OBSTACLE_FILE } ObstacleShape;
 typedef enum { OBSTACLE_FACTOR_AUTO, OBSTACLE_FACTOR_DENSE, OBSTACLE_FACTOR_MODES } ObstacleFactor;
+#define AUTO_SETTINGS 14
+#define AUTO_TEXT 128 /* characters of a value or of a reason */
 typedef enum { PACKING_RANDOM, PACKING_LATTICE } PackingType;
 
 /* The domain as the user gives it: fluid.box and fluid.cells when their lengths are right. */
@@ -92,11 +94,12 @@ typedef struct {
 
 typedef struct {
   char type[OPTION_MAX_NAME];
-  PetscInt order;          /* in time */
-  PetscReal wanted;        /* -scheme_auto: relative error; 0: off */
-  PetscReal stiffness;     /* penalty: sigma_0 of the springs */
-  PetscBool length_target; /* coupled: new edges get the length ds */
-  PetscInt startup;        /* StartUp */
+  PetscInt order;                        /* in time */
+  PetscReal wanted;                      /* -scheme_auto: relative error; 0: off */
+  char reason[AUTO_SETTINGS][AUTO_TEXT]; /* why -scheme_auto chose each setting; empty: no reason to print */
+  PetscReal stiffness;                   /* penalty: sigma_0 of the springs */
+  PetscBool length_target;               /* coupled: new edges get the length ds */
+  PetscInt startup;                      /* StartUp */
 } SceneScheme;
 
 typedef struct {

@@ -1,6 +1,6 @@
-/* Names that the program does not have: what is said to them. */
-#include "scene/suggestions.h"
-#include "scene/table.h"
+/* What people ask for by names that the program does not have: the option that does it, or that nothing does; and what
+   a scene has no use for. */
+#include "scene/scene.h"
 
 #define NO "; README.md, What petves does not do"
 

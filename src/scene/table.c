@@ -2,15 +2,109 @@
 #include "scene/table.h"
 #include "kernel/kernel.h"
 #include "scene/properties.h"
-#include "scene/relevance.h"
-#include "scene/schemedefaults.h"
 
 #define AT(member) offsetof(struct _p_Scene, member)
+
+static PetscBool HasVesicles(const void *scene) {
+  return ((Scene)scene)->shape.vesicles > 0 ? PETSC_TRUE : PETSC_FALSE;
+}
+
+static PetscBool HasBodies(const void *scene) {
+  return HasVesicles(scene) || ((Scene)scene)->obstacles.shape != OBSTACLE_NONE ? PETSC_TRUE : PETSC_FALSE;
+}
+
+static PetscBool IsPacked(const void *scene) {
+  const SceneVesicles *vesicles = &((Scene)scene)->vesicles;
+  return vesicles->shape == SHAPE_ELLIPSE && vesicles->packing > 0 ? PETSC_TRUE : PETSC_FALSE;
+}
+
+static PetscBool IsPackedRandomly(const void *scene) {
+  return IsPacked(scene) && ((Scene)scene)->vesicles.packing_type == PACKING_RANDOM ? PETSC_TRUE : PETSC_FALSE;
+}
+
+static PetscBool HasCenters(const void *scene) {
+  return HasVesicles(scene) && !IsPacked(scene) ? PETSC_TRUE : PETSC_FALSE;
+}
+
+static PetscBool HasAngles(const void *scene) {
+  return HasVesicles(scene) && !IsPackedRandomly(scene) ? PETSC_TRUE : PETSC_FALSE;
+}
+
+static PetscBool IsCoupled(const void *scene) {
+  return HasVesicles(scene) && !strcmp(((Scene)scene)->scheme.type, "coupled") ? PETSC_TRUE : PETSC_FALSE;
+}
+
+static PetscBool HasRepulsion(const void *scene) {
+  return HasVesicles(scene) && ((Scene)scene)->repulsion.stress > 0 ? PETSC_TRUE : PETSC_FALSE;
+}
+
+static PetscBool HasAdhesion(const void *scene) {
+  return ((Scene)scene)->repulsion.adhesion > 0 ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* The 0 that stands for no springs is right for all schemes. */
+static PetscBool HasSprings(const void *scene) {
+  const SceneScheme *scheme = &((Scene)scene)->scheme;
+  return scheme->stiffness == 0 || (HasVesicles(scene) && !strcmp(scheme->type, "penalty")) ? PETSC_TRUE : PETSC_FALSE;
+}
+
+static PetscBool IsAdaptable(const void *scene) {
+  return HasVesicles(scene) || ((Scene)scene)->time.adapt == ADAPT_NONE ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* The 0 that stands for no difference is right for all scenes. */
+static PetscBool HasWeight(const void *scene) {
+  const RealList *density = &((Scene)scene)->gravity.density;
+  const PetscBool none = density->n == 1 && density->v[0] == 0 ? PETSC_TRUE : PETSC_FALSE;
+  return none || (HasVesicles(scene) && SceneHasGravity((Scene)scene)) ? PETSC_TRUE : PETSC_FALSE;
+}
+
+static PetscBool IsChannel(const void *scene) {
+  const PetscInt *bc = ((Scene)scene)->fluid.bc;
+  return bc[0] == BC_PERIODIC && bc[1] == BC_WALL ? PETSC_TRUE : PETSC_FALSE;
+}
+
+#define IS(value) (1u << (value))
+/* What a scene must have for an option to mean something: the last but one column of the table. */
+/* clang-format off */
+static const OptionNeed
+  need_strain = {"-flow_type shear or extension", AT(flow.type), IS(FLOW_SHEAR) | IS(FLOW_EXTENSION)},
+  need_channel = {"-flow_type poiseuille", AT(flow.type), IS(FLOW_POISEUILLE)},
+  need_extension = {"-flow_type extension", AT(flow.type), IS(FLOW_EXTENSION)},
+  need_sheared = {"-flow_type shear, poiseuille or extension", AT(flow.type), IS(FLOW_SHEAR) | IS(FLOW_POISEUILLE) | IS(FLOW_EXTENSION) | IS(FLOW_UNIFORM)},
+  need_flow = {"a -flow_type that is not quiescent", AT(flow.type), ~(IS(FLOW_QUIESCENT))},
+  need_uniform = {"-flow_type uniform", AT(flow.type), IS(FLOW_UNIFORM)},
+  need_vesicles = {"vesicles (-vesicle_shape)", .met = HasVesicles},
+  need_ellipses = {"-vesicle_shape ellipse", AT(vesicles.shape), IS(SHAPE_ELLIPSE)},
+  need_sizes = {"-vesicle_shape ellipse or biconcave", AT(vesicles.shape), IS(SHAPE_ELLIPSE) | IS(SHAPE_BICONCAVE)},
+  need_file = {"-vesicle_shape file", AT(vesicles.shape), IS(SHAPE_FILE)},
+  need_packing = {"-vesicle_packing", .met = IsPacked},
+  need_random = {"-vesicle_packing and -vesicle_packing_type random", .met = IsPackedRandomly},
+  need_centers = {"vesicles that are not packed (-vesicle_packing 0)", .met = HasCenters},
+  need_angles = {"vesicles that are not packed at random (-vesicle_packing)", .met = HasAngles},
+  need_coupled = {"vesicles and -scheme_type coupled", .met = IsCoupled},
+  need_repulsion = {"-contact_repulsion", .met = HasRepulsion},
+  need_adhesion = {"-contact_adhesion", .met = HasAdhesion},
+  need_penalty = {"vesicles and -scheme_type penalty", .met = HasSprings},
+  need_order = {"-scheme_order 2 or 3", AT(scheme.order), IS(2) | IS(3)},
+  need_adapt = {"-time_adapt error", AT(time.adapt), IS(ADAPT_ERROR)},
+  need_adaptable = {"vesicles; without, steps are fixed", .met = IsAdaptable},
+  need_convection = {"-fluid_inertia convective", AT(fluid.inertia), IS(INERTIA_CONVECTIVE)},
+  need_grid = {"walls or periodic boundaries (-domain_bc_x)", AT(fluid.bc[0]), IS(BC_WALL) | IS(BC_PERIODIC)},
+  need_gravity = {"a -fluid_gravity that is not 0,0", .met = HasWeight},
+  need_period = {"-domain_bc_x periodic and -domain_bc_y wall", .met = IsChannel},
+  need_bodies = {"vesicles (-vesicle_shape) or obstacles (-obstacle_shape)", .met = HasBodies},
+  need_obstacles = {"obstacles (-obstacle_shape)", AT(obstacles.shape), ~(IS(OBSTACLE_NONE))},
+  need_circles = {"-obstacle_shape posts or couette", AT(obstacles.shape), IS(OBSTACLE_POSTS) | IS(OBSTACLE_COUETTE)},
+  need_posts = {"-obstacle_shape posts", AT(obstacles.shape), IS(OBSTACLE_POSTS)},
+  need_constriction = {"-obstacle_shape constriction", AT(obstacles.shape), IS(OBSTACLE_CONSTRICTION)},
+  need_solid_centers = {"-obstacle_shape posts, couette or constriction", AT(obstacles.shape), ~(IS(OBSTACLE_NONE) | IS(OBSTACLE_FILE))},
+  need_obstacle_file = {"-obstacle_shape file", AT(obstacles.shape), IS(OBSTACLE_FILE)};
+
 /* A restart may have another value than its checkpoint: end, tolerances, output, limits and back ends may change; grid,
    fluid, vesicles and scheme may not, nor -output_precision, since a file goes on as it was begun. Of -flow_chi and
    -flow_ca what they stand for is compared. */
 #define MAY_CHANGE PETSC_TRUE
-/* clang-format off */
 static const OptionRow table[] = {
   {"-domain_box", OPT_REALS, AT(domain.box), "-1,1,-1,1", "any", "x_min,x_max,y_min,y_max (length)"},
   {"-domain_cells", OPT_INTS, AT(domain.cells), "128,128", ">=8", "cells in x and y; cells must be square"},
@@ -105,6 +199,79 @@ static const OptionRow table[] = {
 };
 /* clang-format on */
 #define TABLE_SIZE ((PetscInt)(sizeof(table) / sizeof(table[0])))
+
+static PetscBool IsBiconcave(const void *scene) {
+  return ((Scene)scene)->vesicles.shape == SHAPE_BICONCAVE ? PETSC_TRUE : PETSC_FALSE;
+}
+
+static PetscBool IsProjection(const void *scene) {
+  return SceneIsProjection((Scene)scene);
+}
+
+static PetscBool HasNoNearField(const void *scene) {
+  return ((Scene)scene)->coupling.near_field == NEAR_NONE ? PETSC_TRUE : PETSC_FALSE;
+}
+
+static PetscBool IsFree(const void *scene) {
+  return FluidSpecIsFree(&((Scene)scene)->fluid);
+}
+
+#define LARGE_BOX 256 /* cells across */
+
+static PetscBool IsLarge(const void *scene) {
+  const IntList cells = ((Scene)scene)->domain.cells; /* not checked yet */
+  if (HasNoNearField(scene) || IsFree(scene) || ((Scene)scene)->obstacles.shape != OBSTACLE_NONE) return PETSC_FALSE;
+  return cells.n == 2 && PetscMin(cells.v[0], cells.v[1]) >= LARGE_BOX ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* -scheme_auto has a largest step of its own. */
+static PetscBool IsAdaptive(const void *scene) {
+  const Scene s = (Scene)scene;
+  return s->time.adapt != ADAPT_NONE && s->shape.vesicles && s->scheme.wanted == 0 ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* At rest for the error that the area target leaves there; a flow has steps of its own. */
+static void LargestStep(const void *scene, char value[OPTION_MAX_NAME]) {
+  const Scene s = (Scene)scene;
+  const PetscBool rests = FlowShearRate(&s->flow) == 0 && s->flow.type != FLOW_CUSTOM ? PETSC_TRUE : PETSC_FALSE;
+  const PetscReal most = rests ? SceneRestTime(s) : SceneFlowStep(s);
+  if (most < PETSC_MAX_REAL) (void)snprintf(value, OPTION_MAX_NAME, "%.6g", (double)most);
+}
+
+#define MOST_FRAMES 100 /* the first included */
+
+static PetscReal LeastOutputTime(const void *scene) {
+  return ((Scene)scene)->time.end / (MOST_FRAMES - 1) * (1 - 1e-12);
+}
+
+static PetscBool IsLong(const void *scene) {
+  return LeastOutputTime(scene) > 0.1 ? PETSC_TRUE : PETSC_FALSE;
+}
+
+static void OutputTime(const void *scene, char value[OPTION_MAX_NAME]) {
+  static const int steps[3] = {1, 2, 5};
+  for (int k = -1; !*value; k++)
+    for (int s = 0; s < 3 && !*value; s++)
+      if (steps[s] * PetscPowRealInt(10, k) >= LeastOutputTime(scene))
+        (void)snprintf(value, OPTION_MAX_NAME, "%de%d", steps[s], k);
+}
+
+/* split and penalty are their papers' methods: one order, kernel ib6 and differences, none of the corrections of the
+   coupled scheme. The box part is the grid's. */
+/* clang-format off */
+const OptionDefault scene_defaults[] = {
+  {"-vesicle_reduced_area", IsBiconcave, "0.65", NULL, "the outline is biconcave", "biconcave: 0.35 to 0.9, %s when not given"},
+  {"-scheme_order", IsProjection, "1", NULL, "splitting errors and forward steps of markers are of first order", "split and penalty are of order %s"},
+  {"-delta_type", IsProjection, "ib6", NULL, "the paper's kernel", "split, penalty: %s"},
+  {"-membrane_derivative", IsProjection, "fd", NULL, "preconditioner and springs know chords only", "split, penalty: %s"},
+  {"-coupling_near_field", IsProjection, "none", NULL, "the paper's method has none", NULL},
+  {"-coupling_box_part", HasNoNearField, "false", NULL, "it is part of the exact near field", NULL},
+  {"-coupling_box_part", IsFree, "false", NULL, "there is no box", NULL},
+  {"-coupling_box_part", IsLarge, "false", NULL, "in a box so large it moves vesicles by 2e-5 of their speed at most", "default %s from 256 cells across on"},
+  {"-time_adapt_max_step", IsAdaptive, NULL, LargestStep, "what this flow, or the shape at rest, bears", "not given: 1/(rate (1 + .03 chi)) in a flow, nu R0^3/c_b without one (time)"},
+  {"-output_every", IsLong, NULL, OutputTime, "at most 100 frames", "not given: 0.1, or so many times more (1, 2, 5, 10 ...) that there are at most 100 (time)"},
+  {NULL}};
+/* clang-format on */
 
 PetscErrorCode SceneReadOptions(MPI_Comm comm, Draft scene) {
   PetscFunctionBeginUser;

@@ -2,6 +2,10 @@
 #pragma once
 #include "scene/spec.h"
 
+/* Defaults that depend on the scene, each with its condition and its reason: chosen by OptionsDepend
+   where the user gives no value, shown by -help and -view. */
+PETSC_EXTERN const OptionDefault scene_defaults[];
+
 /* SceneReadOptions - every option of the table, or its default. Collective. */
 PETSC_EXTERN PetscErrorCode SceneReadOptions(MPI_Comm comm, Draft scene);
 

@@ -1,6 +1,7 @@
-#include "scene/view.h"
+/* -view: the model in force. */
+#include "scene/scene.h"
 #include "scene/properties.h"
-#include "scene/schemedefaults.h"
+#include "scene/table.h"
 
 static PetscErrorCode ViewContrast(Scene scene, PetscViewer v) {
   PetscReal low = PETSC_MAX_REAL, high = 0;
