@@ -59,16 +59,10 @@ static PetscErrorCode CellListDestroy(CellList *c) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Indices of a cell and its neighbours along dir, each once; returns how many. */
-static int CellListAround(const CellList *c, int dir, PetscInt cell, PetscInt around[3]) {
-  const PetscInt cells = c->cells[dir];
+int CellsAround(PetscBool periodic, PetscInt cells, PetscInt cell, PetscInt around[3]) {
   int count = 0;
-  for (PetscInt k = cell - 1; k <= cell + 1; k++) {
-    if (c->period[dir] > 0) {
-      if (cells >= 3 || (k >= 0 && k < cells)) around[count++] = (k + cells) % cells;
-    } else if (k >= 0 && k < cells)
-      around[count++] = k;
-  }
+  for (PetscInt k = cell - 1; k <= cell + 1; k++)
+    if ((k >= 0 && k < cells) || (periodic && cells >= 3)) around[count++] = (k + cells) % cells;
   return count;
 }
 
@@ -90,10 +84,11 @@ PetscErrorCode PairsWithin(PetscInt n, const PetscReal X[], const PetscInt part[
   if (done) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(CellListCreate(n, X, reach, &c));
   for (PetscInt i = begin; i < end && !done; i++) {
-    const int columns = CellListAround(&c, 0, CellListAlong(&c, 0, X[2 * i]), around[0]),
-              rows = CellListAround(&c, 1, CellListAlong(&c, 1, X[2 * i + 1]), around[1]);
-    for (int k = 0; k < columns * rows && !done; k++) {
-      const PetscInt cell = around[1][k / columns] * c.cells[0] + around[0][k % columns];
+    int count[2];
+    for (int d = 0; d < 2; d++)
+      count[d] = CellsAround(period[d] > 0, c.cells[d], CellListAlong(&c, d, X[2 * i + d]), around[d]);
+    for (int k = 0; k < count[0] * count[1] && !done; k++) {
+      const PetscInt cell = around[1][k / count[0]] * c.cells[0] + around[0][k % count[0]];
       for (PetscInt at = c.first[cell]; at < c.first[cell + 1] && !done; at++) {
         PetscReal d[2];
         if (c.point[at] <= i) continue;

@@ -7,6 +7,10 @@
 #pragma once
 #include "curve/kind.h"
 
+/* CellsAround - numbers of a cell and its neighbours in a row of cells, periodic or not, each once; returns how many.
+   Not collective. */
+PETSC_EXTERN int CellsAround(PetscBool periodic, PetscInt cells, PetscInt cell, PetscInt around[3]);
+
 /* PairFound - is called for points i < j, the nearest image of j being d from i; TRUE ends the search. */
 typedef PetscBool (*PairFound)(void *context, PetscInt i, PetscInt j, const PetscReal d[2]);
 

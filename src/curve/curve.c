@@ -79,13 +79,12 @@ PetscReal CurveArea(const Curve *c) {
   return c->n ? CurveIntegral(c, PETSC_TRUE, 0, 1) : PETSC_PI * c->axes[0] * c->axes[1];
 }
 
-/* s[M + 1]: lengths of chords from t[0] up to t[k], with the points X[2M + 2]; returns the whole length. */
-static PetscReal CurveChords(const Curve *c, PetscInt M, const PetscReal t[], PetscReal s[], PetscReal X[]) {
+/* s[M + 1]: lengths of chords from t[0] up to t[k], with the points X[2M + 2]. */
+static void CurveChords(const Curve *c, PetscInt M, const PetscReal t[], PetscReal s[], PetscReal X[]) {
   s[0] = 0;
   for (PetscInt k = 0; k <= M; k++) CurveEvaluate(c, t[k], &X[2 * k]);
   for (PetscInt k = 1; k <= M; k++)
     s[k] = s[k - 1] + PetscSqrtReal(PetscSqr(X[2 * k] - X[2 * k - 2]) + PetscSqr(X[2 * k + 1] - X[2 * k - 1]));
-  return s[M];
 }
 
 /* out[M + 1]: parameters at which the piecewise linear function s(t) takes equal steps. */
@@ -105,12 +104,12 @@ PetscErrorCode CurveEqualChords(const Curve *c, PetscInt M, PetscReal X[]) {
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc4(n + 1, &t, n + 1, &s, M + 1, &next, 2 * n + 2, &points));
   for (PetscInt i = 0; i <= n; i++) t[i] = (PetscReal)i / n;
-  (void)CurveChords(c, n, t, s, points);
+  CurveChords(c, n, t, s, points);
   CurveEqualSteps(n, t, s, M, next);
   PetscCall(PetscArraycpy(t, next, M + 1));
   for (int it = 0; it < 500; it++) {
     PetscReal change = 0;
-    (void)CurveChords(c, M, t, s, points);
+    CurveChords(c, M, t, s, points);
     CurveEqualSteps(M, t, s, M, next);
     for (PetscInt k = 0; k <= M; k++) {
       change = PetscMax(change, PetscAbsReal(next[k] - t[k]));

@@ -2,6 +2,7 @@
 #include "curve/curve.h"
 #include <errno.h>
 #include <inttypes.h>
+#include <stdarg.h>
 #include <strings.h>
 
 #define PERIOD_ERROR 1e-6 /* over a period: error of a last point that is the first a period on */
@@ -46,12 +47,19 @@ static int PointsNumbers(const char text[], int most, PetscReal x[]) {
   return n;
 }
 
-static PetscErrorCode PointsRefuse(Points *points, PetscInt number, const char line[], const char allowed[]) {
-  PetscFunctionBeginUser;
-  PetscCall(PetscSNPrintf(points->error, sizeof(points->error),
-                          "%s %s: line %" PetscInt_FMT " is \"%.60s\"; allowed: %s", points->option, points->file,
-                          number, line, allowed));
-  PetscFunctionReturn(PETSC_SUCCESS);
+/* What is wrong, behind the option and the file. */
+static void PETSC_ATTRIBUTE_FORMAT(2, 3) PointsRefuse(Points *p, const char format[], ...) {
+  const int used = snprintf(p->error, sizeof(p->error), "%s %s: ", p->option, p->file);
+  size_t length;
+  va_list arguments;
+  va_start(arguments, format);
+  (void)PetscVSNPrintf(p->error + used, sizeof(p->error) - (size_t)used, format, &length, arguments);
+  va_end(arguments);
+}
+
+/* A line that is not `allowed`. */
+static void PointsRefuseLine(Points *p, PetscInt number, const char line[], const char allowed[]) {
+  PointsRefuse(p, "line %" PetscInt_FMT " is \"%.60s\"; allowed: %s", number, line, allowed);
 }
 
 /* A comment whose first word is known is a note on an obstacle's curve: "# velocity x y" and so on. */
@@ -69,8 +77,7 @@ static PetscErrorCode PointsReadNote(const char line[], PetscInt number, Points 
   for (int k = 0; k < 3; k++) {
     if (length != strlen(known[k].word) || strncasecmp(start, known[k].word, length)) continue;
     if (PointsNumbers(start + length, 2, x) != known[k].numbers)
-      PetscCall(
-          PointsRefuse(points, number, line, "# velocity and two finite numbers, # rotation and one, # open and none"));
+      PointsRefuseLine(points, number, line, "# velocity and two finite numbers, # rotation and one, # open and none");
     else if (known[k].value)
       PetscCall(PetscArraycpy(known[k].value, x, known[k].numbers));
     else
@@ -95,7 +102,7 @@ static PetscErrorCode PointsReadLine(char line[], PetscInt number, Points *point
   if (n == 0) PetscCall(PointsEndCurve(points));
   if (n == 0) PetscFunctionReturn(PETSC_SUCCESS);
   if (n != 2) {
-    PetscCall(PointsRefuse(points, number, line, "two finite numbers, x y"));
+    PointsRefuseLine(points, number, line, "two finite numbers, x y");
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(ArrayReserve((size_t)(2 * (points->n + 1)), &points->xy_capacity, &points->xy));
@@ -111,21 +118,15 @@ static PetscErrorCode PointsRead(Points *points) {
   PetscInt number = 0;
   PetscFunctionBeginUser;
   if (!f) {
-    PetscCall(PetscSNPrintf(points->error, sizeof(points->error),
-                            "%s %s: cannot be opened (%s); allowed: a readable text file", points->option, points->file,
-                            strerror(errno)));
+    PointsRefuse(points, "cannot be opened (%s); allowed: a readable text file", strerror(errno));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   while (getline(&line, &room, f) >= 0 && !*points->error) PetscCall(PointsReadLine(line, ++number, points));
-  if (ferror(f))
-    PetscCall(PetscSNPrintf(points->error, sizeof(points->error),
-                            "%s %s: cannot be read; allowed: a readable text file", points->option, points->file));
+  if (ferror(f)) PointsRefuse(points, "cannot be read; allowed: a readable text file");
   free(line);
   fclose(f);
   PetscCall(PointsEndCurve(points));
-  if (!points->curves && !*points->error)
-    PetscCall(PetscSNPrintf(points->error, sizeof(points->error), "%s %s: 0 points; allowed: at least 8 a curve",
-                            points->option, points->file));
+  if (!points->curves && !*points->error) PointsRefuse(points, "0 points; allowed: at least 8 a curve");
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -164,38 +165,26 @@ static void PointsReverse(const CurveKind *kind, PetscInt n, PetscReal xy[]) {
 
 /* The kind of one curve and the number of its points without a repeated one. Its points are turned counter-clockwise.
    The message of a curve that cannot be used goes into p->error. */
-static PetscErrorCode PointsClean(Points *p, PetscInt *n, PetscReal xy[], CurveNote *note, CurveKind *kind) {
-  char *error = p->error;
-  const size_t length_of_error = sizeof(p->error);
+static void PointsClean(Points *p, PetscInt *n, PetscReal xy[], CurveNote *note, CurveKind *kind) {
   const PetscReal near = PointError(*n, xy);
   PetscReal area = 0, length = 0;
-  PetscFunctionBeginUser;
   *kind = PointsKind(p, n, xy, note);
-  if (*n < 8) {
-    PetscCall(PetscSNPrintf(error, length_of_error, "%s %s: %" PetscInt_FMT " points; allowed: at least 8 a curve",
-                            p->option, p->file, *n));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  for (PetscInt i = 0; i < *n; i++) {
+  if (*n < 8) PointsRefuse(p, "%" PetscInt_FMT " points; allowed: at least 8 a curve", *n);
+  for (PetscInt i = 0; i < *n && !*p->error; i++) {
     const PetscReal *a = &xy[2 * i], *b = &xy[2 * ((i + 1) % *n)];
     const PetscReal d = PetscSqrtReal(PetscSqr(b[0] - a[0]) + PetscSqr(b[1] - a[1]));
-    if (d <= near) {
-      PetscCall(PetscSNPrintf(error, length_of_error,
-                              "%s %s: point %" PetscInt_FMT " (%g %g) is given twice; allowed: distinct points",
-                              p->option, p->file, i + 1, (double)a[0], (double)a[1]));
-      PetscFunctionReturn(PETSC_SUCCESS);
-    }
+    if (d <= near)
+      PointsRefuse(p, "point %" PetscInt_FMT " (%g %g) is given twice; allowed: distinct points", i + 1, (double)a[0],
+                   (double)a[1]);
     area += 0.5 * (a[0] * b[1] - b[0] * a[1]);
     length += d;
   }
-  if (kind->type == CURVE_SPANNING) PetscFunctionReturn(PETSC_SUCCESS);
+  if (*p->error || kind->type == CURVE_SPANNING) return;
   if (PetscAbsReal(area) < 1e-6 * length * length)
-    PetscCall(PetscSNPrintf(error, length_of_error, "%s %s: the curve encloses an area of %g; allowed: a %s", p->option,
-                            p->file, (double)area,
-                            kind->type == CURVE_OPEN ? "curve off the chord between its ends" : "closed simple curve"));
+    PointsRefuse(p, "the curve encloses an area of %g; allowed: a %s", (double)area,
+                 kind->type == CURVE_OPEN ? "curve off the chord between its ends" : "closed simple curve");
   note->clockwise = area < 0 ? PETSC_TRUE : PETSC_FALSE;
   if (area < 0) PointsReverse(kind, *n, xy);
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Send what rank 0 has read to all ranks. */
@@ -241,7 +230,7 @@ PetscErrorCode CurvesFromFile(MPI_Comm comm, const char option[], const char fil
     const CurveNote *said = &p.note[k];
     const PetscReal says[] = {n, said->open, said->velocity[0], said->velocity[1], said->rotation};
     digest = PointsDigest(PointsDigest(digest, 5, says), 2 * n, p.xy + 2 * first);
-    PetscCall(PointsClean(&p, &n, p.xy + 2 * first, &p.note[k], &kind));
+    PointsClean(&p, &n, p.xy + 2 * first, &p.note[k], &kind);
     PetscCheck(!*p.error, comm, PETSC_ERR_USER_INPUT, "%s", p.error);
     PetscCall(CurveFromPoints(&kind, n, p.xy + 2 * first, *curve + k));
   }

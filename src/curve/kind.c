@@ -3,8 +3,8 @@
 #define KIND_ORDER 6 /* markers that a polynomial goes through */
 #define KIND_ENDS 4  /* markers from an end within which forces are interpolated linearly */
 
-/* Weights of the markers first .. first + KIND_ORDER - 1 in the value at t of the polynomial through them, or in its
-   derivative; returns first. */
+/* Weights of the markers first .. first + KIND_ORDER - 1 in the value at t of the polynomial through these markers, or
+   in the derivative of the polynomial; returns first. */
 static PetscInt KindLagrange(PetscInt n, PetscReal t, PetscBool derivative, PetscReal weight[KIND_ORDER]) {
   const PetscInt low = (PetscInt)PetscFloorReal(t) - KIND_ORDER / 2 + 1,
                  first = PetscMax(0, PetscMin(n - KIND_ORDER, low));
@@ -21,8 +21,10 @@ static PetscInt KindLagrange(PetscInt n, PetscReal t, PetscBool derivative, Pets
   return first;
 }
 
-/* Y = SUM weight_i X_{first + i}. */
-static void KindSum(PetscInt first, const PetscReal weight[KIND_ORDER], const PetscReal X[], PetscReal Y[2]) {
+/* X(t) of an open curve, or dX/dt. */
+static void KindOpenValue(PetscInt n, const PetscReal X[], PetscReal t, PetscBool derivative, PetscReal Y[2]) {
+  PetscReal weight[KIND_ORDER];
+  const PetscInt first = KindLagrange(n, t, derivative, weight);
   Y[0] = Y[1] = 0;
   for (int i = 0; i < KIND_ORDER; i++)
     for (int c = 0; c < 2; c++) Y[c] += weight[i] * X[2 * (first + i) + c];
@@ -37,12 +39,9 @@ static PetscErrorCode KindPeriodicPart(const CurveKind *kind, PetscInt n, const 
 }
 
 PetscErrorCode CurveTangents(const CurveKind *kind, Spectral s, PetscInt n, const PetscReal X[], PetscReal T[]) {
-  PetscReal weight[KIND_ORDER], *P;
+  PetscReal *P;
   PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < n && kind->type == CURVE_OPEN; k++) {
-    const PetscInt first = KindLagrange(n, (PetscReal)k, PETSC_TRUE, weight);
-    KindSum(first, weight, X, T + 2 * k);
-  }
+  for (PetscInt k = 0; k < n && kind->type == CURVE_OPEN; k++) KindOpenValue(n, X, (PetscReal)k, PETSC_TRUE, T + 2 * k);
   if (kind->type == CURVE_OPEN) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(KindPeriodicPart(kind, n, X, &P));
   for (PetscInt k = 0; k < 2 * n; k++) T[k] = kind->span[k % 2] / (PetscReal)n;
@@ -57,12 +56,10 @@ PetscReal CurveFinePlace(const CurveKind *kind, PetscInt times, PetscInt q) {
 }
 
 PetscErrorCode CurveFinePoints(const CurveKind *kind, PetscInt n, const PetscReal X[], PetscInt times, PetscReal Y[]) {
-  PetscReal weight[KIND_ORDER], *P;
+  PetscReal *P;
   PetscFunctionBeginUser;
-  for (PetscInt q = 0; q < n * times && kind->type == CURVE_OPEN; q++) {
-    const PetscInt first = KindLagrange(n, CurveFinePlace(kind, times, q), PETSC_FALSE, weight);
-    KindSum(first, weight, X, Y + 2 * q);
-  }
+  for (PetscInt q = 0; q < n * times && kind->type == CURVE_OPEN; q++)
+    KindOpenValue(n, X, CurveFinePlace(kind, times, q), PETSC_FALSE, Y + 2 * q);
   if (kind->type == CURVE_OPEN) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(KindPeriodicPart(kind, n, X, &P));
   TrigonometricPoints(n, P, times, Y);

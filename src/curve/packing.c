@@ -1,4 +1,5 @@
 #include "curve/packing.h"
+#include "curve/crossing.h"
 #include <stdint.h>
 
 #define FIRST_SCALE 0.1 /* size of the ellipses at their first, random places */
@@ -119,27 +120,18 @@ static PetscInt PackingCell(const Packing *p, int d, PetscReal x) {
   return PetscMax(0, PetscMin(p->cells[d] - 1, k));
 }
 
-/* Columns or rows of cells beside and at the cell of x, each once; returns how many. */
-static int PackingCellsAround(const Packing *p, int d, PetscReal x, PetscInt around[3]) {
-  const PetscInt cells = p->cells[d], middle = PackingCell(p, d, x);
-  int count = 0;
-  for (PetscInt k = middle - 1; k <= middle + 1; k++)
-    if (p->spec.periodic[d] && cells >= 3)
-      around[count++] = (k + cells) % cells;
-    else if (k >= 0 && k < cells)
-      around[count++] = k;
-  return count;
-}
-
 static PetscBool PackingFits(const Packing *p, PetscInt i, const Pose *at, PetscReal scale) {
-  PetscInt columns[3], rows[3];
-  const int wide = PackingCellsAround(p, 0, at->center[0], columns),
-            high = PackingCellsAround(p, 1, at->center[1], rows);
+  PetscInt around[2][3];
+  int count[2];
+  for (int d = 0; d < 2; d++)
+    count[d] = CellsAround(p->spec.periodic[d], p->cells[d], PackingCell(p, d, at->center[d]), around[d]);
   if (!PackingClearsWalls(p, i, at, scale)) return PETSC_FALSE;
   if (!PackingIsApart(p, i, at, scale, i)) return PETSC_FALSE;
-  for (int k = 0; k < wide * high; k++)
-    for (PetscInt j = p->first[rows[k / wide] * p->cells[0] + columns[k % wide]]; j >= 0; j = p->next[j])
+  for (int k = 0; k < count[0] * count[1]; k++) {
+    const PetscInt cell = around[1][k / count[0]] * p->cells[0] + around[0][k % count[0]];
+    for (PetscInt j = p->first[cell]; j >= 0; j = p->next[j])
       if (j != i && !PackingIsApart(p, i, at, scale, j)) return PETSC_FALSE;
+  }
   return PETSC_TRUE;
 }
 

@@ -20,14 +20,32 @@ PetscReal ShapeRadius(const Shape *shape, PetscInt v) {
   return length / (2 * PETSC_PI);
 }
 
-/* By the number of edges that a ray from (x, y) crosses. */
-PetscBool ShapeHolds(const Shape *shape, PetscInt v, PetscReal x, PetscReal y) {
+void ShapeBounds(const Shape *shape, PetscInt v, PetscReal box[4]) {
+  for (int d = 0; d < 2; d++) {
+    box[2 * d] = PETSC_MAX_REAL;
+    box[2 * d + 1] = -PETSC_MAX_REAL;
+    for (PetscInt k = shape->start[v]; k < shape->start[v + 1]; k++) {
+      box[2 * d] = PetscMin(box[2 * d], shape->X[2 * k + d]);
+      box[2 * d + 1] = PetscMax(box[2 * d + 1], shape->X[2 * k + d]);
+    }
+  }
+}
+
+/* By the number of edges that a ray crosses from the image of the point that is nearest to the curve's middle. */
+PetscBool ShapeHolds(const Shape *shape, PetscInt v, const PetscReal point[2], const PetscReal period[2]) {
   const PetscInt M = shape->start[v + 1] - shape->start[v];
   const PetscReal *X = shape->X + 2 * shape->start[v];
+  PetscReal box[4], at[2];
   PetscBool inside = PETSC_FALSE;
+  ShapeBounds(shape, v, box);
+  for (int d = 0; d < 2; d++) {
+    const PetscReal off = point[d] - 0.5 * (box[2 * d] + box[2 * d + 1]);
+    at[d] = period[d] > 0 ? point[d] - period[d] * PetscFloorReal(off / period[d] + 0.5) : point[d];
+    if (at[d] < box[2 * d] || at[d] > box[2 * d + 1]) return PETSC_FALSE;
+  }
   for (PetscInt k = 0, p = M - 1; k < M; p = k++)
-    if ((X[2 * k + 1] > y) != (X[2 * p + 1] > y) &&
-        x < (X[2 * p] - X[2 * k]) * (y - X[2 * k + 1]) / (X[2 * p + 1] - X[2 * k + 1]) + X[2 * k])
+    if ((X[2 * k + 1] > at[1]) != (X[2 * p + 1] > at[1]) &&
+        at[0] < (X[2 * p] - X[2 * k]) * (at[1] - X[2 * k + 1]) / (X[2 * p + 1] - X[2 * k + 1]) + X[2 * k])
       inside = !inside;
   return inside;
 }

@@ -104,36 +104,30 @@ PetscBool SceneHasInertia(Scene scene, PetscReal R0) {
   return Reynolds(scene, R0) >= SMALL_REYNOLDS ? PETSC_TRUE : PETSC_FALSE;
 }
 
-#define SPARSE                                                                                                         \
-  2.2 /* cells between markers, from which on fluid with inertia passes between them; the default has 2                \
-       */
+/* Cells between markers, from which on fluid with inertia passes between them; the default has 2. */
+#define SPARSE 2.2
 
-/* The vesicle whose markers are the farthest apart, and how far (cells). */
-static PetscReal FarthestApart(Scene scene, PetscInt *vesicle) {
+/* Warn of the vesicle whose markers are the farthest apart. */
+static PetscErrorCode WarnOfSparse(Draft scene) {
   const Shape *shape = &scene->shape;
   PetscReal most = 0;
+  PetscInt widest = 0, markers = 0;
+  PetscFunctionBeginUser;
   for (PetscInt v = 0; v < shape->vesicles; v++) {
-    const PetscReal length = 2 * PETSC_PI * ShapeRadius(shape, v);
-    const PetscReal apart = length / (PetscReal)(shape->start[v + 1] - shape->start[v]);
+    const PetscInt n = shape->start[v + 1] - shape->start[v];
+    const PetscReal apart = 2 * PETSC_PI * ShapeRadius(shape, v) / n / FluidSpecCellSize(&scene->fluid);
     if (apart <= most) continue;
     most = apart;
-    *vesicle = v;
+    widest = v;
+    markers = n;
   }
-  return most / FluidSpecCellSize(&scene->fluid);
-}
-
-static PetscErrorCode WarnOfSparse(Draft scene) {
-  PetscInt v = 0;
-  const PetscReal apart = FarthestApart(scene, &v);
-  PetscFunctionBeginUser;
-  if (scene->fluid.inertia == INERTIA_NONE || SceneIsProjection(scene) || apart <= SPARSE || *scene->warning)
+  if (scene->fluid.inertia == INERTIA_NONE || SceneIsProjection(scene) || most <= SPARSE || *scene->warning)
     PetscFunctionReturn(PETSC_SUCCESS);
-  const PetscInt now = scene->shape.start[v + 1] - scene->shape.start[v];
   PetscCall(PetscSNPrintf(scene->warning, sizeof(scene->warning),
                           "%" PetscInt_FMT " markers of vesicle %" PetscInt_FMT
                           " are %.2g cells apart: with inertia the fluid passes between markers more than 2 cells "
                           "apart, and small steps do not converge; take -vesicle_markers %" PetscInt_FMT,
-                          now, v + 1, (double)apart, (PetscInt)PetscCeilReal(now * apart / 2) | 1));
+                          markers, widest + 1, (double)most, (PetscInt)PetscCeilReal(markers * most / 2) | 1));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -48,14 +48,12 @@ static PetscErrorCode CheckPlace(Scene scene, PetscInt b) {
   const SceneObstacles *own = &scene->obstacles;
   const Shape *s = &own->outline;
   const PetscReal h = FluidSpecCellSize(&scene->fluid);
+  PetscReal around[4];
   PetscFunctionBeginUser;
+  ShapeBounds(s, b, around);
   for (int d = 0; d < 2; d++) {
     const PetscBool along = own->wall[b] < 0 || own->wall[b] / 2 != d ? PETSC_TRUE : PETSC_FALSE;
-    PetscReal low = PETSC_MAX_REAL, high = -PETSC_MAX_REAL;
-    for (PetscInt k = s->start[b]; k < s->start[b + 1]; k++) {
-      low = PetscMin(low, s->X[2 * k + d]);
-      high = PetscMax(high, s->X[2 * k + d]);
-    }
+    const PetscReal low = around[2 * d], high = around[2 * d + 1];
     PetscCheck(!along || s->kind[b].type == CURVE_SPANNING || high - low >= LEAST_ACROSS * h * (1 - 1e-2), scene->comm,
                PETSC_ERR_USER_INPUT,
                "-obstacle_shape: obstacle %" PetscInt_FMT " is %.3g cells across in %c; allowed: at least %d, so finer "
@@ -68,13 +66,7 @@ static PetscErrorCode CheckPlace(Scene scene, PetscInt b) {
 
 /* Whether curve b, or an image of it, holds the point; a spanning one holds none. */
 static PetscBool Holds(const Shape *s, PetscInt b, const PetscReal X[2], const PetscReal period[2]) {
-  if (s->kind && s->kind[b].type == CURVE_SPANNING) return PETSC_FALSE;
-  for (int p = -1; p <= 1; p++)
-    for (int q = -1; q <= 1; q++) {
-      if ((p && period[0] == 0) || (q && period[1] == 0)) continue;
-      if (ShapeHolds(s, b, X[0] + p * period[0], X[1] + q * period[1])) return PETSC_TRUE;
-    }
-  return PETSC_FALSE;
+  return s->kind && s->kind[b].type == CURVE_SPANNING ? PETSC_FALSE : ShapeHolds(s, b, X, period);
 }
 
 /* The spanning curve that a ray from X, upwards (1) or downwards (-1) in direction d, meets first and whose solid is

@@ -1,5 +1,5 @@
 /* Where vesicles lie: at the centres given, or packed into the box. */
-#include "scene/packed.h"
+#include "scene/vesicles.h"
 #include "kernel/kernel.h"
 #include "scene/properties.h"
 #include <stdlib.h>

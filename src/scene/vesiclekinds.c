@@ -1,9 +1,8 @@
 /* The kinds of vesicles of a scene: which vesicle is of which, and the markers that all of a kind share. */
-#include "scene/vesiclekinds.h"
+#include "scene/vesicles.h"
 #include "kernel/kernel.h"
 #include "scene/checks.h"
 #include "scene/properties.h"
-#include <stdlib.h>
 
 #define MAX_NEWTON 20 /* of the first markers; four are usual */
 #define MANY 100      /* markers, from which on it matters that Fourier transforms of them are fast */
@@ -110,54 +109,38 @@ PetscErrorCode KindFit(Scene scene, Kind *kind) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What makes an ellipse or a biconcave outline: area and reduced area or both semi-axes, and the bending stiffness. */
-typedef struct {
-  PetscReal key[3];
-  PetscInt vesicle;
-} Ellipse;
-
-static int Order(const void *a, const void *b) {
-  const Ellipse *e = (const Ellipse *)a, *f = (const Ellipse *)b;
-  for (int k = 0; k < 3; k++)
-    if (e->key[k] != f->key[k]) return e->key[k] < f->key[k] ? -1 : 1;
-  return e->vesicle < f->vesicle ? -1 : 1;
-}
-
-static PetscErrorCode DescribeEllipse(Scene scene, PetscInt v, Ellipse *e) {
+/* What makes vesicle v an ellipse or a biconcave outline: area and reduced area or both semi-axes, and the bending
+   stiffness. */
+static void EllipseKey(Scene scene, PetscInt v, PetscReal key[3]) {
   const SceneVesicles *own = &scene->vesicles;
+  const PetscBool by_area = SceneByArea(scene);
   const PetscInt k = SceneKindOf(scene, v);
-  PetscFunctionBeginUser;
-  for (int c = 0; c < 2; c++) e->key[c] = SceneByArea(scene) ? 0 : ListEntry(&own->axes, 2, k, c);
-  if (SceneByArea(scene)) {
-    e->key[0] = own->area_scale * ListEntry(&own->area, 1, k, 0);
-    e->key[1] = ListEntry(&own->reduced_area, 1, k, 0);
-  }
-  e->key[2] = ListEntry(&scene->membrane.stiffness, 1, k, 0);
-  e->vesicle = v;
-  PetscFunctionReturn(PETSC_SUCCESS);
+  key[0] = by_area ? own->area_scale * ListEntry(&own->area, 1, k, 0) : ListEntry(&own->axes, 2, k, 0);
+  key[1] = by_area ? ListEntry(&own->reduced_area, 1, k, 0) : ListEntry(&own->axes, 2, k, 1);
+  key[2] = ListEntry(&scene->membrane.stiffness, 1, k, 0);
 }
 
 static PetscErrorCode EllipseKinds(Scene scene, Kinds *all) {
-  Ellipse *e;
+  PetscReal(*key)[3];
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(all->vesicles, &e));
-  for (PetscInt v = 0; v < all->vesicles; v++) PetscCall(DescribeEllipse(scene, v, &e[v]));
-  qsort(e, (size_t)all->vesicles, sizeof(*e), Order);
   PetscCall(PetscCalloc1(all->vesicles, &all->kind));
-  for (PetscInt j = 0; j < all->vesicles; j++) {
-    if (!j || memcmp(e[j].key, e[j - 1].key, sizeof(e[j].key))) {
-      Kind *kind = &all->kind[all->kinds++];
-      if (scene->vesicles.shape == SHAPE_BICONCAVE)
-        PetscCall(BiconcaveCurve(e[j].key[0], e[j].key[1], &kind->curve));
-      else if (SceneByArea(scene))
-        PetscCall(EllipseAxes(e[j].key[0], e[j].key[1], kind->curve.axes));
-      else
-        PetscCall(PetscArraycpy(kind->curve.axes, e[j].key, 2));
-      kind->bending = e[j].key[2];
-    }
-    all->of[e[j].vesicle] = all->kinds - 1;
+  PetscCall(PetscMalloc1(all->vesicles, &key)); /* of the kinds */
+  for (PetscInt v = 0; v < all->vesicles; v++) {
+    PetscInt k = 0;
+    EllipseKey(scene, v, key[all->kinds]);
+    while (memcmp(key[k], key[all->kinds], sizeof(*key))) k++;
+    all->of[v] = k;
+    if (k < all->kinds) continue;
+    Kind *kind = &all->kind[all->kinds++];
+    if (scene->vesicles.shape == SHAPE_BICONCAVE)
+      PetscCall(BiconcaveCurve(key[k][0], key[k][1], &kind->curve));
+    else if (SceneByArea(scene))
+      PetscCall(EllipseAxes(key[k][0], key[k][1], kind->curve.axes));
+    else
+      PetscCall(PetscArraycpy(kind->curve.axes, key[k], 2));
+    kind->bending = key[k][2];
   }
-  PetscCall(PetscFree(e));
+  PetscCall(PetscFree(key));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -68,37 +68,15 @@ static PetscErrorCode CheckRoom(Scene scene, const Kind *kind, const Pose *at, P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static void Bounds(const Shape *s, PetscInt v, PetscReal box[2][2]) {
-  for (int d = 0; d < 2; d++) {
-    box[d][0] = PETSC_MAX_REAL;
-    box[d][1] = -PETSC_MAX_REAL;
-    for (PetscInt k = s->start[v]; k < s->start[v + 1]; k++) {
-      box[d][0] = PetscMin(box[d][0], s->X[2 * k + d]);
-      box[d][1] = PetscMax(box[d][1], s->X[2 * k + d]);
-    }
-  }
-}
-
 /* The first vesicles of which one, or its image, lies within the other, given that none cross; -1: none. */
 static void FindWithin(const Shape *s, const PetscReal period[2], PetscInt pair[2]) {
-  PetscReal box[2][2];
-  for (PetscInt a = 0; a < s->vesicles; a++) {
-    Bounds(s, a, box);
+  for (PetscInt a = 0; a < s->vesicles; a++)
     for (PetscInt b = 0; b < s->vesicles; b++) {
-      PetscReal X[2];
-      PetscBool near = b == a ? PETSC_FALSE : PETSC_TRUE;
-      for (int d = 0; d < 2 && near; d++) { /* the nearest image of a point of b */
-        const PetscReal middle = 0.5 * (box[d][0] + box[d][1]);
-        X[d] = s->X[2 * s->start[b] + d];
-        if (period[d] > 0) X[d] -= period[d] * PetscFloorReal((X[d] - middle) / period[d] + 0.5);
-        if (X[d] < box[d][0] || X[d] > box[d][1]) near = PETSC_FALSE;
-      }
-      if (!near || !ShapeHolds(s, a, X[0], X[1])) continue;
+      if (a == b || !ShapeHolds(s, a, s->X + 2 * s->start[b], period)) continue;
       pair[0] = PetscMin(a, b);
       pair[1] = PetscMax(a, b);
       return;
     }
-  }
 }
 
 /* No vesicle crosses another, an image of one or itself, nor lies within another. */

@@ -1,6 +1,36 @@
-/* The initial markers of a scene's vesicles. */
+/* The vesicles of a scene: their kinds, their places and their initial markers. Equal vesicles share one curve and the
+   markers fitted to it, so that a scene of many starts in the time of its kinds. */
 #pragma once
-#include "scene/packed.h"
+#include "curve/packing.h"
+#include "scene/spec.h"
+
+typedef struct {
+  Curve curve;        /* about the origin, or where its file has it */
+  PetscReal pivot[2]; /* about which it is turned: the origin, or the centroid of a file's curve */
+  PetscReal length, area, bending;
+  PetscInt M;   /* markers, 0 before KindFit */
+  PetscReal *X; /* [2M] */
+} Kind;
+
+typedef struct {
+  PetscInt vesicles, kinds;
+  PetscInt *of; /* [vesicles] the kind of each */
+  Kind *kind;   /* [kinds] */
+} Kinds;
+
+/* KindsCreate - the kinds of a scene from its options, with their curves: how many vesicles a packing takes, which
+   entry of the lists each of a mixture; ellipses and outlines that are equal in all are one kind, each curve of a file
+   is one. The rate or peak velocity of the flow follows from -flow_chi or -flow_ca: rate = chi c_b/(nu R0^3), u_max =
+   Ca c_b/(nu R0^2), R0 of the largest vesicle and the largest c_b. What this leaves in the scene SceneDropShape takes.
+   KindFit - the markers of a kind: their number, and equal edges. Collective; stop with the user's message on a bad
+   file, list, number of markers, spacing, or a flow without vesicles that bend. */
+PETSC_EXTERN PetscErrorCode KindsCreate(Draft scene, Kinds *kinds);
+PETSC_EXTERN PetscErrorCode KindsDestroy(Kinds *kinds);
+PETSC_EXTERN PetscErrorCode KindFit(Scene scene, Kind *kind);
+
+/* ScenePlace (packed.c) - pose[vesicles] by -vesicle_center and -vesicle_angle, or packed. Collective; stops with the
+   user's message when there is no room. */
+PETSC_EXTERN PetscErrorCode ScenePlace(Scene scene, const Kinds *kinds, Pose pose[]);
 
 /* SceneMakeShape - the initial markers of the scene's vesicles, all edges of a vesicle equal to 1e-12, and their
    bending stiffnesses. Every rank gets all of it. Collective; stops with the user's message on a bad file, spacing or
