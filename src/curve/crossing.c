@@ -121,26 +121,22 @@ static PetscReal TriangleArea(const PetscReal a[2], const PetscReal b[2], const 
   return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
 }
 
-/* Whether two curves cross at CROSSING_FINER times their points. */
-static PetscErrorCode CurvesCrossFiner(const EdgeSearch *s, const PetscInt pair[2], PetscBool *cross) {
+/* Whether two curves whose polygons cross do so themselves, smooth ones at CROSSING_FINER times their points: they
+   become s->pair, or are added to s->passed. */
+static PetscErrorCode CurvesCrossTruly(EdgeSearch *s, const PetscInt pair[2], PetscBool *cross) {
   CurveFine fine;
   PetscInt found[2];
-  PetscFunctionBeginUser;
-  PetscCall(CurveFineCreate(s->set, pair[0] == pair[1] ? 1 : 2, pair, CROSSING_FINER, &fine));
-  PetscCall(CurvesCross(&fine.set, found));
-  *cross = found[0] < 0 ? PETSC_FALSE : PETSC_TRUE;
-  PetscCall(CurveFineDestroy(&fine));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Whether two curves whose polygons cross do so themselves: they become s->pair, or are added to s->passed. */
-static PetscErrorCode CurvesCrossTruly(EdgeSearch *s, const PetscInt pair[2], PetscBool *cross) {
   PetscFunctionBeginUser;
   *cross = PETSC_FALSE;
   for (PetscInt k = 0; k < s->count; k++)
     if (pair[0] == s->passed[k][0] && pair[1] == s->passed[k][1]) PetscFunctionReturn(PETSC_SUCCESS);
   *cross = PETSC_TRUE;
-  if (s->set->smooth) PetscCall(CurvesCrossFiner(s, pair, cross));
+  if (s->set->smooth) {
+    PetscCall(CurveFineCreate(s->set, pair[0] == pair[1] ? 1 : 2, pair, CROSSING_FINER, &fine));
+    PetscCall(CurvesCross(&fine.set, found));
+    *cross = found[0] < 0 ? PETSC_FALSE : PETSC_TRUE;
+    PetscCall(CurveFineDestroy(&fine));
+  }
   PetscCall(ArrayReserve((size_t)(s->count + 1), &s->capacity, &s->passed));
   PetscCall(PetscArraycpy(*cross ? s->pair : s->passed[s->count++], pair, 2));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -23,10 +23,11 @@ PETSC_EXTERN PetscErrorCode ShapeDestroy(Shape *shape);
 /* ShapeRadius - R0 of vesicle v: its length over 2 pi. Not collective. */
 PETSC_EXTERN PetscReal ShapeRadius(const Shape *shape, PetscInt v);
 
-/* ShapeBounds - the rectangle x_min, x_max, y_min, y_max around the markers of curve v. ShapeHolds - whether the point
-   X, or one of its images, lies within the polygon of curve v, which is no longer than a period (0: none). Not
-   collective.
+/* ShapeMiddle - the mean of the markers of curve v. ShapeBounds - the rectangle x_min, x_max, y_min, y_max around the
+   markers of curve v. ShapeHolds - whether the point X, or one of its images, lies within the polygon of curve v, which
+   is no longer than a period (0: none). Not collective.
  */
+PETSC_EXTERN void ShapeMiddle(const Shape *shape, PetscInt v, PetscReal X[2]);
 PETSC_EXTERN void ShapeBounds(const Shape *shape, PetscInt v, PetscReal box[4]);
 PETSC_EXTERN PetscBool ShapeHolds(const Shape *shape, PetscInt v, const PetscReal X[2], const PetscReal period[2]);
 

@@ -20,6 +20,12 @@ PetscReal ShapeRadius(const Shape *shape, PetscInt v) {
   return length / (2 * PETSC_PI);
 }
 
+void ShapeMiddle(const Shape *shape, PetscInt v, PetscReal X[2]) {
+  const PetscInt first = shape->start[v], n = shape->start[v + 1] - first;
+  X[0] = X[1] = 0;
+  for (PetscInt k = 0; k < 2 * n; k++) X[k % 2] += shape->X[2 * first + k] / (PetscReal)n;
+}
+
 void ShapeBounds(const Shape *shape, PetscInt v, PetscReal box[4]) {
   for (int d = 0; d < 2; d++) {
     box[2 * d] = PETSC_MAX_REAL;

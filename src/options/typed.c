@@ -234,12 +234,9 @@ static void ReadFile(Typed *t, const char *path, const Source *outer) {
   }
   if (!text && outer && outer->line)
     Wrong(t, outer, "%s (%s); allowed: a readable file of options", f ? "not read" : "cannot be opened", why);
-  else if (!text && outer)
-    Wrong(t, outer, "-options_file %.200s: %s (%s); allowed: a readable file of options", path,
-          f ? "not read" : "cannot be opened", why);
   else if (!text)
-    (void)snprintf(t->error, sizeof(t->error), "-options_file %.300s: %s (%s); allowed: a readable file of options",
-                   path, f ? "not read" : "cannot be opened", why);
+    Wrong(t, outer ? outer : &(Source){0}, "-options_file %.300s: %s (%s); allowed: a readable file of options", path,
+          f ? "not read" : "cannot be opened", why);
   else
     TakeText(t, &from, text, length);
   free(text);

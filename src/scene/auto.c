@@ -49,11 +49,9 @@ static const struct {
 /* Rate at which the flow shortens vesicle v along its length; 0 if it does not, or is not known (1/time). */
 static PetscReal Compression(Scene scene, PetscInt v) {
   const Shape *s = &scene->shape;
-  const PetscInt n = s->start[v + 1] - s->start[v];
-  PetscReal mean[2] = {0, 0}, xx = 0, yy = 0, xy = 0, G[2][2];
+  PetscReal mean[2], xx = 0, yy = 0, xy = 0, G[2][2];
   if (scene->flow.type == FLOW_CUSTOM) return 0;
-  for (PetscInt k = s->start[v]; k < s->start[v + 1]; k++)
-    for (int c = 0; c < 2; c++) mean[c] += s->X[2 * k + c] / n;
+  ShapeMiddle(s, v, mean);
   for (PetscInt k = s->start[v]; k < s->start[v + 1]; k++) {
     const PetscReal x = s->X[2 * k] - mean[0], y = s->X[2 * k + 1] - mean[1];
     xx += x * x;

@@ -25,10 +25,8 @@ static PetscReal CarriedReynolds(Scene scene) {
   const Shape *shape = &scene->shape;
   PetscReal most = 0;
   for (PetscInt v = 0; v < shape->vesicles; v++) {
-    const PetscInt first = shape->start[v], n = shape->start[v + 1] - first;
-    PetscReal X[2] = {0, 0}, u[2];
-    for (PetscInt k = first; k < first + n; k++)
-      for (int c = 0; c < 2; c++) X[c] += shape->X[2 * k + c] / n;
+    PetscReal X[2], u[2];
+    ShapeMiddle(shape, v, X);
     FlowVelocity(&scene->flow, 0, X[0], X[1], u);
     most = PetscMax(most, PetscSqrtReal(PetscSqr(u[0]) + PetscSqr(u[1])));
   }

@@ -217,10 +217,10 @@ static PetscErrorCode CheckFlux(Scene scene, PetscInt b) {
   const Shape *s = &own->outline;
   const PetscInt first = s->start[b], n = s->start[b + 1] - first;
   const CurveSet set = {s->vesicles, 0, s->start, s->kind, s->X, NULL, PETSC_FALSE};
-  PetscReal flux = 0, all = 0, middle[2] = {0, 0}, shift[2];
+  PetscReal flux = 0, all = 0, middle[2], shift[2];
   PetscFunctionBeginUser;
   if (s->kind[b].type == CURVE_CLOSED) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt k = 0; k < 2 * n; k++) middle[k % 2] += s->X[2 * first + k] / (PetscReal)n;
+  ShapeMiddle(s, b, middle);
   for (int c = 0; c < 2; c++)
     shift[c] = own->velocity[2 * b + c] -
                (scene->flow.type == FLOW_UNIFORM ? ListEntry(&scene->flow.velocity, 2, 0, c) : 0);

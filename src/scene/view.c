@@ -3,17 +3,10 @@
 #include "scene/properties.h"
 #include "scene/table.h"
 
-static PetscErrorCode ViewContrast(Scene scene, PetscViewer v) {
-  PetscReal low = PETSC_MAX_REAL, high = 0;
+/* "what = low", or "what = low to high". */
+static PetscErrorCode ViewRange(PetscViewer v, const char what[], PetscReal low, PetscReal high) {
   PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < scene->shape.vesicles; k++) {
-    low = PetscMin(low, SceneViscosityRatio(scene, k));
-    high = PetscMax(high, SceneViscosityRatio(scene, k));
-  }
-  if (low == high)
-    PetscCall(PetscViewerASCIIPrintf(v, "viscosity inside over outside: %g\n", (double)low));
-  else
-    PetscCall(PetscViewerASCIIPrintf(v, "viscosity inside over outside: %g to %g\n", (double)low, (double)high));
+  PetscCall(PetscViewerASCIIPrintf(v, low < high ? "%s%g to %g\n" : "%s%g\n", what, (double)low, (double)high));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -25,7 +18,12 @@ static PetscErrorCode ViewFluid(Scene scene, PetscViewer v) {
                                     scene->fluid.bc[1] == BC_PERIODIC
                                 ? PETSC_TRUE
                                 : PETSC_FALSE;
+  PetscReal low = PETSC_MAX_REAL, high = 0;
   PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < scene->shape.vesicles; k++) {
+    low = PetscMin(low, SceneViscosityRatio(scene, k));
+    high = PetscMax(high, SceneViscosityRatio(scene, k));
+  }
   PetscCall(PetscViewerASCIIPrintf(v, "fluid: %s%s, nu = %g, solved for the %s\n", inertia[scene->fluid.inertia],
                                    SceneGiven(scene, "-fluid_inertia") ? "" : " (default for this scene)",
                                    (double)scene->fluid.nu, forms[scene->fluid.form]));
@@ -33,7 +31,7 @@ static PetscErrorCode ViewFluid(Scene scene, PetscViewer v) {
   if (scene->shape.vesicles && SceneHasGravity(scene))
     PetscCall(PetscViewerASCIIPrintf(v, "gravity: %g,%g by the vesicles' density differences\n",
                                      (double)scene->gravity.g.v[0], (double)scene->gravity.g.v[1]));
-  if (SceneHasContrast(scene)) PetscCall(ViewContrast(scene, v));
+  if (SceneHasContrast(scene)) PetscCall(ViewRange(v, "viscosity inside over outside: ", low, high));
   if (scene->fluid.drive == DRIVE_FLUX) PetscCall(PetscViewerASCIIPrintf(v, "channel: no flux of the disturbance\n"));
   if (no_mean) PetscCall(PetscViewerASCIIPrintf(v, "periodic box: the disturbance has no mean flow\n"));
   if (*scene->warning) PetscCall(PetscViewerASCIIPrintf(v, "warning: %s\n", scene->warning));
@@ -100,11 +98,8 @@ static PetscErrorCode ViewVesicles(Scene scene, PetscViewer v) {
         scene->vesicles.packing > 0 ? ", packed" : ""));
   if (!shape->vesicles || scene->membrane.bending == 0)
     PetscCall(PetscViewerASCIIPrintf(v, "bending: off (no bending solve)\n"));
-  else if (soft < scene->membrane.bending)
-    PetscCall(
-        PetscViewerASCIIPrintf(v, "bending: on, c_b = %g to %g\n", (double)soft, (double)scene->membrane.bending));
   else
-    PetscCall(PetscViewerASCIIPrintf(v, "bending: on, c_b = %g\n", (double)soft));
+    PetscCall(ViewRange(v, "bending: on, c_b = ", soft, scene->membrane.bending));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
