@@ -35,18 +35,3 @@ PETSC_EXTERN PetscErrorCode DenseBlockFactor(DenseBlock *block, PetscReal a0, co
 /* DenseBlockSolve - from nrhs columns of U[2n] and sigma[n] = r_s: sigma, and U overwritten by U3. Not collective. */
 PETSC_EXTERN PetscErrorCode DenseBlockSolve(const DenseBlock *block, PetscInt nrhs, PetscScalar U[],
                                             PetscScalar sigma[]);
-
-/* DenseStepChanged - whether a factor made for one coefficient of the time step no longer serves the present one: they
-   differ by more than this ratio, or one of them is zero. Not collective. */
-static inline PetscBool DenseStepChanged(PetscReal made, PetscReal now, PetscReal ratio) {
-  return made == now || (now < ratio * made && made < ratio * now) ? PETSC_FALSE : PETSC_TRUE;
-}
-
-/* DenseRenewalCost - of so many dense blocks of n markers each, made anew, in iterations on so many cells; w: markers
-   of the obstacles that the block knows. From the operation counts and the speeds of one core; a number of the problem
-   alone, so that iterations do not depend on the machine or its load. Not collective. */
-static inline PetscReal DenseRenewalCost(PetscReal blocks, PetscReal n, PetscReal w, PetscReal cells) {
-  const PetscReal own = blocks * n * n, cross = n * w;
-  return (own * (4e-9 * n + 6e-7) + cross * (4e-10 * w + 6e-7)) /
-         (1.5e-8 * cells + 1e-8 * (own + 2 * cross + w * w) + 5e-5);
-}

@@ -1,7 +1,6 @@
 #include "precondition/obstacleblock.h"
 #include "base/agree.h"
 #include "numerics/blas.h"
-#include "precondition/denseblock.h"
 #include "precondition/obstaclemodes.h"
 #include "numerics/symmetric.h"
 #include "fluid/stokes/stokes.h"
@@ -12,16 +11,13 @@ struct _p_ObstacleBlock {
   Coupling coupling;     /* borrowed */
   Obstacles obstacles;   /* borrowed */
   PetscMPIInt root;      /* the rank that has the factor */
-  PetscReal alpha;       /* that it is for; negative: none yet */
-  PetscReal made;        /* where bodies were at this time */
-  PetscReal least;       /* fewest iterations of a solve with it; negative: not known yet */
-  PetscReal excess;      /* iterations above them in all */
+  Age age;               /* of the factor, for the coefficient alpha of H */
+  PetscReal made_at;     /* time at which the bodies were where the factor has them */
   float *inverse;        /* 2W x 2W (symmetric.h), on root; NULL with modes */
   ObstacleModes modes;   /* NULL: dense inverse */
   PetscScalar *all;      /* [2W] work */
   float *from, *to;      /* [2W] on root: work, what has been found */
-  PetscBool renewed;     /* since it was last coupled */
-  PetscBool coupled;     /* the vesicles' block knows the obstacles */
+  PetscInt coupled;      /* number of the factor that X and the vesicles' block are of; 0: they know no obstacles */
   float *response;       /* [2M][2W] X, on root; not made unless coupled */
   PetscScalar *force;    /* [2M] of vesicles, work */
   float *single;         /* [2M] of vesicles in single precision, work */
@@ -37,7 +33,7 @@ PetscErrorCode ObstacleBlockCreate(const FluidSpec *spec, Coupling coupling, Obs
   b->spec = spec;
   b->coupling = coupling;
   b->obstacles = o;
-  b->alpha = -1;
+  b->age = AgeNone();
   b->root = LayoutOwner(coupling->bodies->layout, 0);
   PetscCall(PetscMalloc1(n, &b->all));
   if (o->modes) PetscCall(ObstacleModesCreate(spec, coupling, b->root, &b->modes));
@@ -116,7 +112,7 @@ static PetscErrorCode AssembleObstacles(ObstacleBlock b, PetscReal A[]) {
     PetscCall(MobilityAddNear(b->coupling, PETSC_TRUE, &solid, &solid, b->root, A));
   } else {
     PetscCall(MobilityCreate(b->spec, b->coupling, PETSC_MAX_REAL, &mobility));
-    PetscCall(MobilitySetUp(mobility, b->alpha));
+    PetscCall(MobilitySetUp(mobility, b->coupling->fluid->alpha));
     PetscCall(MobilityOnRoot(mobility, &solid, &solid, b->root, A));
     PetscCall(MobilityDestroy(&mobility));
   }
@@ -130,8 +126,8 @@ static PetscErrorCode AssembleObstacles(ObstacleBlock b, PetscReal A[]) {
 static PetscReal ObstacleRenewalCost(ObstacleBlock b) {
   const Grid g = b->coupling->fluid->grid;
   const PetscReal cells = (PetscReal)g->n[0] * g->n[1], W = b->obstacles->layout->M;
-  if (b->modes) return DenseRenewalCost(1, 0.5 * (PetscReal)ObstacleModesCount(b->modes), 0, cells);
-  return (IsBySolves(b) ? 2 * W : 0) + DenseRenewalCost(1, W, 0, cells);
+  if (b->modes) return AgeCost(1, 0.5 * (PetscReal)ObstacleModesCount(b->modes), 0, cells);
+  return (IsBySolves(b) ? 2 * W : 0) + AgeCost(1, W, 0, cells);
 }
 
 /* The whole block's inverse, on root. */
@@ -158,14 +154,10 @@ static PetscErrorCode MakeObstacleFactor(ObstacleBlock b, PetscBool *failed) {
   PetscFunctionBeginUser;
   PetscCall(PetvesEvent("FactorObstacles", &event));
   PetscCall(PetscLogEventBegin(event, 0, 0, 0, 0));
-  b->alpha = b->coupling->fluid->alpha;
-  b->made = b->obstacles->t;
-  b->least = -1;
-  b->excess = 0;
-  if (b->coupled) b->renewed = PETSC_TRUE;
-  b->coupled = PETSC_FALSE;
+  AgeRenew(&b->age, b->coupling->fluid->alpha);
+  b->made_at = b->obstacles->t;
   if (b->modes)
-    PetscCall(ObstacleModesSetUp(b->modes, b->alpha, failed));
+    PetscCall(ObstacleModesSetUp(b->modes, b->age.made_for, failed));
   else
     PetscCall(MakeObstacleInverse(b, failed));
   PetscCall(PetscLogEventEnd(event, 0, 0, 0, 0));
@@ -184,20 +176,19 @@ static PetscErrorCode InvertObstacles(ObstacleBlock b, const float x[], float y[
 
 /* Whether the factor is of another place of bodies or of another time step. */
 static PetscBool IsObstacleFactorOld(ObstacleBlock b) {
-  return b->obstacles->moving || b->alpha != b->coupling->fluid->alpha ? PETSC_TRUE : PETSC_FALSE;
+  return b->obstacles->moving || b->age.made_for != b->coupling->fluid->alpha ? PETSC_TRUE : PETSC_FALSE;
 }
 
 PetscErrorCode ObstacleBlockSetUp(ObstacleBlock b, PetscBool *failed) {
   PetscFunctionBeginUser;
-  if (DenseStepChanged(b->alpha, b->coupling->fluid->alpha, OBSTACLE_STEP_RATIO) ||
-      (IsObstacleFactorOld(b) && b->excess > ObstacleRenewalCost(b)))
+  if (IsObstacleFactorOld(b) &&
+      AgeIsOver(&b->age, b->coupling->fluid->alpha, OBSTACLE_STEP_RATIO, ObstacleRenewalCost(b)))
     PetscCall(MakeObstacleFactor(b, failed));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 void ObstacleBlockSolved(ObstacleBlock b, PetscInt its) {
-  if (b->least < 0 || its < b->least) b->least = its;
-  if (IsObstacleFactorOld(b)) b->excess += its - b->least;
+  AgeSolved(&b->age, its);
 }
 
 PetscBool ObstacleBlockIsOlder(Coupling c) {
@@ -206,16 +197,15 @@ PetscBool ObstacleBlockIsOlder(Coupling c) {
 }
 
 void ObstacleBlockGetMemory(ObstacleBlock b, PetscReal memory[OBSTACLE_BLOCK_MEMORY]) {
-  const PetscReal own[] = {b->made, b->alpha, b->least, b->excess};
-  for (int k = 0; k < OBSTACLE_BLOCK_MEMORY; k++) memory[k] = own[k];
+  memory[0] = b->made_at;
+  AgeGetMemory(&b->age, memory + 1);
 }
 
 PetscErrorCode ObstacleBlockSetMemory(ObstacleBlock b, const PetscReal memory[OBSTACLE_BLOCK_MEMORY]) {
   PetscBool failed;
   PetscFunctionBeginUser;
   PetscCall(MakeObstacleFactor(b, &failed));
-  b->least = memory[2];
-  b->excess = memory[3];
+  b->age = AgeSetMemory(memory + 1);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -226,7 +216,7 @@ static void TurnObstacles(ObstacleBlock b, PetscBool back, PetscScalar F[]) {
   const Layout l = o->layout;
   for (PetscInt v = l->own; v < l->end; v++) {
     if (!o->motion[v].turned) continue;
-    const PetscReal angle = ObstaclesPose(o, v, o->t).angle - ObstaclesPose(o, v, b->made).angle;
+    const PetscReal angle = ObstaclesPose(o, v, o->t).angle - ObstaclesPose(o, v, b->made_at).angle;
     const PetscReal c = PetscCosReal(angle), s = (back ? 1 : -1) * PetscSinReal(angle);
     for (PetscInt k = 2 * LayoutOffset(l, v); k < 2 * (LayoutOffset(l, v) + LayoutCount(l, v)); k += 2) {
       const PetscScalar x = F[k], y = F[k + 1];
@@ -261,11 +251,10 @@ PetscErrorCode ObstacleBlockCouple(ObstacleBlock b, Mobility mobility, PetscReal
   PetscReal *K;
   PetscFunctionBeginUser;
   if (b->obstacles->moving) PetscFunctionReturn(PETSC_SUCCESS);
-  if (b->alpha < 0) PetscCall(MakeObstacleFactor(b, failed)); /* a restart comes here first */
+  if (!b->age.made) PetscCall(MakeObstacleFactor(b, failed)); /* a restart comes here first */
   if (*failed) PetscFunctionReturn(PETSC_SUCCESS);
   if (!b->force) PetscCall(PetscMalloc2(m, &b->force, m, &b->single));
-  b->coupled = PETSC_TRUE;
-  b->renewed = PETSC_FALSE;
+  b->coupled = b->age.made;
   PetscCall(PetscMalloc1(2 * b->obstacles->layout->M * m, &K));
   PetscCall(MobilityOnRoot(mobility, &solid, &vesicles, b->root, K)); /* velocity of obstacles by forces on vesicles */
   if (b->obstacles->layout->rank == b->root) PetscCall(EliminateObstacles(b, m, K, Mob));
@@ -274,11 +263,11 @@ PetscErrorCode ObstacleBlockCouple(ObstacleBlock b, Mobility mobility, PetscReal
 }
 
 PetscBool ObstacleBlockCoupled(ObstacleBlock b) {
-  return b->coupled;
+  return b->coupled > 0 && b->coupled == b->age.made ? PETSC_TRUE : PETSC_FALSE;
 }
 
 PetscBool ObstacleBlockRenewed(ObstacleBlock b) {
-  return b->renewed;
+  return b->coupled > 0 && b->coupled != b->age.made ? PETSC_TRUE : PETSC_FALSE;
 }
 
 PetscErrorCode ObstacleBlockBegin(ObstacleBlock b, PetscScalar r[], PetscScalar U[]) {
@@ -289,7 +278,7 @@ PetscErrorCode ObstacleBlockBegin(ObstacleBlock b, PetscScalar r[], PetscScalar 
   TurnObstacles(b, PETSC_FALSE, r);
   PetscCall(LayoutToRank(l, b->root, 2, r, b->all));
   if (root) DenseSingle(w, b->all, b->from);
-  if (b->coupled) {
+  if (ObstacleBlockCoupled(b)) {
     PetscCall(LayoutToRank(vesicles, b->root, 2, U, b->force));
     if (root) {
       PetscCall(PetscArrayzero(b->single, m));
@@ -307,7 +296,7 @@ PetscErrorCode ObstacleBlockEnd(ObstacleBlock b, const PetscScalar F[], PetscSca
   const PetscInt w = 2 * l->M, m = 2 * vesicles->M;
   const PetscBool root = l->rank == b->root ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionBeginUser;
-  if (b->coupled) {
+  if (ObstacleBlockCoupled(b)) {
     PetscCall(LayoutToRank(vesicles, b->root, 2, F, b->force));
     if (root) DenseSingle(m, b->force, b->single);
     if (root) PetscCall(DenseSingleMultAdd(PETSC_FALSE, w, m, -1, b->response, b->single, b->to));

@@ -6,14 +6,14 @@
 
    While obstacles rest in quasi-steady flow the factor is made once. For bodies that move it is the one of an earlier
    time, with forces and velocities turned with each body, because a body alone has one block wherever it is. In
-   unsteady flow it may be that of a time step of another size (DenseStepChanged). Once the iterations beyond the fewest
-   so far have cost as much as a new factor would, it is made anew.
+   unsteady flow it may be that of a time step of another size. Such a factor is made anew by its age (age.h).
 
    With X = A^-1 K, K the obstacles' velocity by forces on the vesicles, the obstacles are eliminated: the vesicles'
    block gets the Schur complement Mob - K^T X, and X carries right-hand sides and forces across.
 
    One rank, the owner of the first body, has the factor; all ranks make parts of A. */
 #pragma once
+#include "precondition/age.h"
 #include "precondition/mobility.h"
 
 typedef struct _p_ObstacleBlock *ObstacleBlock;
@@ -41,9 +41,9 @@ PETSC_EXTERN PetscBool ObstacleBlockRenewed(ObstacleBlock block);
 PETSC_EXTERN PetscBool ObstacleBlockIsOlder(Coupling coupling);
 
 /* ObstacleBlockGetMemory, ObstacleBlockSetMemory - what is kept of such factors, for a checkpoint (precondition.h):
-   memory[0] is the time at which the factor was made, memory[1] its alpha, negative: none. Set makes it again, with the
-   coupling placed at that time and for that alpha. Set is collective. */
-#define OBSTACLE_BLOCK_MEMORY 4
+   memory[0] is the time at which the factor was made, then its age, with alpha, negative: none, in memory[1]. Set makes
+   it again, with the coupling placed at that time and for that alpha. Set is collective. */
+#define OBSTACLE_BLOCK_MEMORY (1 + AGE_MEMORY)
 PETSC_EXTERN void ObstacleBlockGetMemory(ObstacleBlock block, PetscReal memory[OBSTACLE_BLOCK_MEMORY]);
 PETSC_EXTERN PetscErrorCode ObstacleBlockSetMemory(ObstacleBlock block, const PetscReal memory[OBSTACLE_BLOCK_MEMORY]);
 

@@ -1,19 +1,11 @@
 #include "precondition/precondition.h"
 #include "precondition/denseblock.h"
 
-#define MOST_EXCESS 5     /* iterations more than with new blocks, in one solve */
-#define FIXED_RATIO 1.3   /* of two steps whose blocks are the same: those of order 2 and 3 are 1.22 apart */
-#define ADAPTED_RATIO 2.2 /* the same where each differs: a factor of 2 costs half an iteration */
-#define LABELS_MOVED 0.1  /* change of the labels' own motion in the highest mode, the same */
-#define DEAR 4            /* iterations that new blocks cost, from which on they serve more: the parts of a graded */
-#define DEAR_MOVED 0.5    /* start, as steps that differ each time, and labels that have moved by this */
-#define NO_LIMIT 1000     /* solves that blocks may serve */
-
-/* Of two steps whose blocks are the same. */
-static PetscReal StepRatio(Scene scene, Coupling c) {
-  if (scene->time.adapt != ADAPT_ERROR) return FIXED_RATIO;
-  return c->bodies->obstacles ? OBSTACLE_STEP_RATIO : ADAPTED_RATIO;
-}
+#define ADAPTED_RATIO                                                                                                  \
+  2.2 /* of two steps whose blocks are shared, where each differs: a factor of 2 costs half an iteration */
+#define LABELS_MOVED 0.1 /* change of the labels' own motion in the highest mode of shared blocks */
+#define DEAR 4           /* iterations that new blocks cost, from which on they serve more: the parts of a graded */
+#define DEAR_MOVED 0.5   /* start, as steps that differ each time, and labels that have moved by this */
 
 /* How far apart markers of one block are: half a contour, or anywhere. */
 static PetscReal BlockReach(Coupling c) {
@@ -31,17 +23,17 @@ PetscErrorCode PreconditionerCreate(Scene scene, Unknowns u, PetscBool flexible,
   *out = p;
   p->unknowns = u;
   p->flexible = flexible;
-  p->step_ratio = StepRatio(scene, c);
+  p->step_ratio = scene->time.adapt == ADAPT_ERROR && !c->bodies->obstacles ? ADAPTED_RATIO : OBSTACLE_STEP_RATIO;
   PetscCall(PetscMalloc1(u->velocity, &p->force));
   if (c->bodies->obstacles) PetscCall(ObstacleBlockCreate(&scene->fluid, c, &p->solid));
-  PetscCall(PetscCalloc1(c->membrane->layout->bodies, &p->age.treading));
+  PetscCall(PetscCalloc1(c->membrane->layout->bodies, &p->treading));
   if (c->near && c->fluid->steady && c->membrane->layout->M > DENSE_TOGETHER) {
     PetscCall(SharedShapesCreate(&scene->fluid, c, &p->shapes));
   } else if (CouplingHasMembrane(c)) {
     PetscCall(MobilityCreate(&scene->fluid, c, BlockReach(c), &p->mobility));
     PetscCall(DenseBlocksCreate(c, &p->blocks));
   }
-  PetscCall(PreconditionerForget(p));
+  p->age = AgeNone();
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -54,14 +46,8 @@ PetscErrorCode PreconditionerDestroy(Preconditioner *preconditioner) {
   PetscCall(DenseBlocksDestroy(&p->blocks));
   PetscCall(MobilityDestroy(&p->mobility));
   PetscCall(PetscFree(p->force));
-  PetscCall(PetscFree(p->age.treading));
+  PetscCall(PetscFree(p->treading));
   PetscCall(PetscFree(*preconditioner));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode PreconditionerForget(Preconditioner p) {
-  PetscFunctionBeginUser;
-  p->age = (Ageing){.treading = p->age.treading, .fresh_its = -1, .most = NO_LIMIT};
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -73,42 +59,27 @@ static PetscErrorCode MakeBlocks(Preconditioner p) {
   if (p->mobility) PetscCall(MobilitySetUp(p->mobility, f->alpha));
   PetscCall(DenseBlocksFactor(p->blocks, p->mobility, p->solid, f->a0, &factored));
   p->failed = factored ? PETSC_FALSE : PETSC_TRUE;
-  PetscCall(PetscArraycpy(p->age.treading, c->treading, c->membrane->layout->bodies));
+  PetscCall(PetscArraycpy(p->treading, c->treading, c->membrane->layout->bodies));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode PreconditionerGetMemory(Preconditioner p, PetscReal memory[PRECONDITIONER_MEMORY]) {
-  const Ageing *a = &p->age;
-  const PetscReal own[] = {a->a0, a->fresh_its, a->solves, a->excess, a->most, a->made};
-  PetscFunctionBeginUser;
-  PetscCall(PetscArraycpy(memory, own, PRECONDITIONER_MEMORY));
-  PetscFunctionReturn(PETSC_SUCCESS);
+void PreconditionerGetMemory(Preconditioner p, PetscReal memory[AGE_MEMORY]) {
+  AgeGetMemory(&p->age, memory);
 }
 
-PetscErrorCode PreconditionerSetMemory(Preconditioner p, const PetscReal memory[PRECONDITIONER_MEMORY]) {
+PetscErrorCode PreconditionerSetMemory(Preconditioner p, const PetscReal memory[AGE_MEMORY]) {
   PetscFunctionBeginUser;
-  if (!p->blocks || memory[0] == 0) PetscFunctionReturn(PETSC_SUCCESS);
-  p->age = (Ageing){.treading = p->age.treading,
-                    .a0 = memory[0],
-                    .fresh_its = (PetscInt)memory[1],
-                    .solves = (PetscInt)memory[2],
-                    .excess = memory[3],
-                    .most = (PetscInt)memory[4],
-                    .made = (PetscInt)memory[5]};
+  if (!p->blocks || memory[0] <= 0) PetscFunctionReturn(PETSC_SUCCESS);
+  p->age = AgeSetMemory(memory);
   DenseBlocksPlace(p->blocks);
   PetscCall(MakeBlocks(p));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode RenewBlocks(Preconditioner p) {
-  Ageing *a = &p->age;
   PetscFunctionBeginUser;
   PetscCall(MakeBlocks(p));
-  a->a0 = p->unknowns->coupling->fluid->a0;
-  a->fresh_its = -1;
-  a->solves = 0;
-  a->excess = 0;
-  if (++a->made % 16 == 0) a->most++; /* now and then let blocks serve longer again */
+  AgeRenew(&p->age, p->unknowns->coupling->fluid->a0);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -118,7 +89,7 @@ static PetscReal BlocksRenewalCost(Preconditioner p) {
   const Layout l = c->membrane->layout;
   const PetscReal n = l->M <= DENSE_TOGETHER ? l->M : (PetscReal)l->M / l->bodies, blocks = l->M / n;
   const PetscReal cells = c->fluid->grid->free ? 0 : (PetscReal)c->fluid->grid->n[0] * c->fluid->grid->n[1];
-  return DenseRenewalCost(blocks, n, blocks == 1 ? (PetscReal)BodiesObstacleMarkers(c->bodies) : 0, cells);
+  return AgeCost(blocks, n, blocks == 1 ? (PetscReal)BodiesObstacleMarkers(c->bodies) : 0, cells);
 }
 
 /* Whether I + (v/a0) d/dt of a vesicle has moved by this part in its highest mode, n/2. */
@@ -126,27 +97,25 @@ static PetscBool LabelsMoved(Preconditioner p, PetscReal part) {
   const Coupling c = p->unknowns->coupling;
   for (PetscInt v = 0; v < c->membrane->layout->bodies; v++) {
     const PetscReal mode = 0.5 * (PetscReal)LayoutCount(c->membrane->layout, v) / c->fluid->a0;
-    const PetscReal now = mode * c->treading[v], made = mode * p->age.treading[v];
+    const PetscReal now = mode * c->treading[v], made = mode * p->treading[v];
     if (PetscAbsReal(now - made) > part * (1 + PetscAbsReal(made))) return PETSC_TRUE;
   }
   return PETSC_FALSE;
 }
 
-/* Whether the blocks are no longer those of what they were made for. None are made yet: a0 = 0. */
-static PetscBool BlocksChanged(Preconditioner p, PetscReal cost) {
-  const PetscReal a0 = p->unknowns->coupling->fluid->a0;
+static PetscBool AreBlocksOver(Preconditioner p) {
+  const PetscReal cost = BlocksRenewalCost(p);
   const PetscBool dear = cost > DEAR && !p->solid ? PETSC_TRUE : PETSC_FALSE;
-  const PetscReal ratio = dear && p->graded ? ADAPTED_RATIO : p->step_ratio;
-  if (DenseStepChanged(p->age.a0, a0, ratio) || LabelsMoved(p, dear ? DEAR_MOVED : LABELS_MOVED)) return PETSC_TRUE;
+  const PetscReal ratio = dear && p->now.graded ? ADAPTED_RATIO : p->step_ratio;
+  if (AgeIsOver(&p->age, p->unknowns->coupling->fluid->a0, ratio, cost)) return PETSC_TRUE;
+  if (LabelsMoved(p, dear ? DEAR_MOVED : LABELS_MOVED)) return PETSC_TRUE;
   return p->solid ? ObstacleBlockRenewed(p->solid) : PETSC_FALSE;
 }
 
 PetscErrorCode PreconditionerSetUp(Preconditioner p, PetscBool graded) {
   const Coupling c = p->unknowns->coupling;
-  const Ageing *a = &p->age;
   PetscFunctionBeginUser;
-  p->now = (Application){0};
-  p->graded = graded;
+  p->now = (Application){.graded = graded};
   p->failed = PETSC_FALSE;
   if (!CouplingHasBodies(c)) PetscFunctionReturn(PETSC_SUCCESS);
   if (p->solid) PetscCall(ObstacleBlockSetUp(p->solid, &p->failed));
@@ -154,20 +123,13 @@ PetscErrorCode PreconditionerSetUp(Preconditioner p, PetscBool graded) {
   if (p->shapes) PetscCall(SharedShapesFollow(p->shapes, &p->failed));
   if (!p->blocks) PetscFunctionReturn(PETSC_SUCCESS);
   DenseBlocksPlace(p->blocks);
-  const PetscReal cost = BlocksRenewalCost(p);
-  if (a->excess > cost || a->solves >= a->most || BlocksChanged(p, cost)) PetscCall(RenewBlocks(p));
+  if (AreBlocksOver(p)) PetscCall(RenewBlocks(p));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 void PreconditionerSolved(Preconditioner p, PetscInt its) {
-  Ageing *a = &p->age;
   if (p->solid) ObstacleBlockSolved(p->solid, its);
-  if (a->solves > 0) { /* the first solve's guess may have been a bad one, as a start's is */
-    a->fresh_its = PetscMin(a->fresh_its, PetscMax(its, 1));
-    a->excess += PetscMax(its - a->fresh_its, 0);
-  } else if (a->fresh_its < 0)
-    a->fresh_its = its - p->now.renewed;
-  a->solves++;
+  AgeSolved(&p->age, its - p->now.renewed);
 }
 
 PetscBool PreconditionerIsNew(Preconditioner p) {
@@ -177,11 +139,9 @@ PetscBool PreconditionerIsNew(Preconditioner p) {
 /* Dense blocks far too old: new ones from here on, and the next time before this happens; the parts of a graded start
    say nothing of later steps. */
 static PetscErrorCode RenewUnderWay(Preconditioner p) {
-  Ageing *a = &p->age;
   PetscFunctionBeginUser;
-  if (!p->flexible || !p->blocks || a->solves == 0 || p->now.applied != a->fresh_its + MOST_EXCESS)
-    PetscFunctionReturn(PETSC_SUCCESS);
-  if (!p->graded) a->most = a->solves;
+  if (!p->flexible || !p->blocks || !AgeIsFar(&p->age, p->now.applied)) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!p->now.graded) AgeShorten(&p->age);
   PetscCall(RenewBlocks(p));
   p->now.renewed = p->now.applied;
   PetscFunctionReturn(PETSC_SUCCESS);

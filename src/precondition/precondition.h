@@ -8,19 +8,9 @@
 #include "problem/unknowns.h"
 #include "scene/scene.h"
 
-/* The age of the dense blocks, by iterations, not by seconds, so that a run does not depend on the machine. */
+/* The solve under way. */
 typedef struct {
-  PetscReal a0;        /* the a0 for which the blocks were made; 0: none yet */
-  PetscReal *treading; /* [vesicles] the label speeds for which the blocks were made */
-  PetscInt fresh_its;  /* least iterations of a solve with these blocks; -1: not known yet */
-  PetscInt solves;     /* solves that the blocks have served */
-  PetscReal excess;    /* iterations above fresh_its in all of these solves */
-  PetscInt most;       /* solves that the blocks may serve */
-  PetscInt made;       /* number of times that blocks have been made */
-} Ageing;
-
-/* Counts of the solve under way. */
-typedef struct {
+  PetscBool graded; /* it is of a part of a graded start */
   PetscInt applied; /* times that the preconditioner has been applied */
   PetscInt renewed; /* applications before the blocks were made anew; 0: they were not */
 } Application;
@@ -33,9 +23,9 @@ struct _p_Preconditioner {
   SharedShapes shapes;  /* many vesicles */
   ObstacleBlock solid;  /* NULL without obstacles */
   PetscReal step_ratio; /* largest ratio of two steps that share dense blocks */
-  Ageing age;
+  Age age;              /* of the dense blocks; without any, of the solves */
+  PetscReal *treading;  /* [vesicles] the label speeds for which the blocks were made */
   Application now;
-  PetscBool graded;   /* the solve under way is of a part of a graded start */
   PetscBool flexible; /* blocks may be made anew under way */
   PetscBool failed;   /* a block could not be factored */
   PetscScalar *force; /* [2n] of the own vesicles, work */
@@ -47,10 +37,10 @@ PETSC_EXTERN PetscErrorCode PreconditionerCreate(Scene scene, Unknowns unknowns,
 PETSC_EXTERN PetscErrorCode PreconditionerDestroy(Preconditioner *preconditioner);
 
 /* PreconditionerSetUp - follow the coupling's a0 and markers; a solve begins, graded: of a part of a graded start. The
-   dense blocks are kept while a0 moves by less than step_ratio and until the iterations beyond the least of a solve
-   with them have cost as much as new ones would, and while I + (v/a0) d/dt of the labels' speeds v moves by less than
-   10 %; those that cost many iterations also while a0 moves by less than 2.2 within a graded start, and the labels'
-   motion by less than half. A solve that needs many more iterations makes them anew and goes on. Collective. */
+   dense blocks are kept by their age (age.h), with a0 within step_ratio, and while I + (v/a0) d/dt of the labels'
+   speeds v moves by less than 10 %; those that cost many iterations also while a0 moves by less than 2.2 within a
+   graded start, and the labels' motion by less than half. A solve that needs many more iterations makes them anew and
+   goes on. Collective. */
 PETSC_EXTERN PetscErrorCode PreconditionerSetUp(Preconditioner preconditioner, PetscBool graded);
 
 /* PreconditionerApply - z ~ A^-1 r, of residuals and unknowns. Collective. */
@@ -63,16 +53,9 @@ PETSC_EXTERN void PreconditionerSolved(Preconditioner preconditioner, PetscInt i
 PETSC_EXTERN PetscBool PreconditionerIsNew(Preconditioner preconditioner);
 
 /* PreconditionerGetMemory, PreconditionerSetMemory - all that earlier solves have left for later ones, as numbers that
-   a checkpoint can hold, and made again from them, with the coupling placed where and for the a0 (memory[0]; 0: no
-   blocks) and the label speeds for which the dense blocks were made, which are not among the numbers. Whatever is kept
-   from solve to solve belongs in here, or a restarted run would not have the bits of one that went on. Set is
-   collective. Shared shapes are all among numbers of their own (SharedShapesGetMemory). */
-#define PRECONDITIONER_MEMORY 6
-PETSC_EXTERN PetscErrorCode PreconditionerGetMemory(Preconditioner preconditioner,
-                                                    PetscReal memory[PRECONDITIONER_MEMORY]);
-PETSC_EXTERN PetscErrorCode PreconditionerSetMemory(Preconditioner preconditioner,
-                                                    const PetscReal memory[PRECONDITIONER_MEMORY]);
-
-/* PreconditionerForget - drop all that is kept from solve to solve, so that what follows depends on the state alone.
-   Not collective. */
-PETSC_EXTERN PetscErrorCode PreconditionerForget(Preconditioner preconditioner);
+   a checkpoint can hold, and made again from them, with the coupling placed where and for the a0 (memory[0]; not
+   positive: no blocks) and the label speeds for which the dense blocks were made, which are not among the numbers.
+   Whatever is kept from solve to solve belongs in here, or a restarted run would not have the bits of one that went on.
+   Set is collective. Shared shapes are all among numbers of their own (SharedShapesGetMemory). */
+PETSC_EXTERN void PreconditionerGetMemory(Preconditioner preconditioner, PetscReal memory[AGE_MEMORY]);
+PETSC_EXTERN PetscErrorCode PreconditionerSetMemory(Preconditioner preconditioner, const PetscReal memory[AGE_MEMORY]);

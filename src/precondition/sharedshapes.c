@@ -1,10 +1,12 @@
 #include "precondition/sharedshapes.h"
 #include "base/agree.h"
+#include "precondition/age.h"
 #include "precondition/shapeproducts.h"
 #include "precondition/interactions.h"
 #include "precondition/shapematrices.h"
 
 #define TOLERANCE 0.03 /* of a vesicle's distance from its shape */
+#define STEP_RATIO 1.1 /* of two steps whose matrices are shared */
 
 /* Work space of the vesicles' columns and of one vesicle. */
 static PetscErrorCode CreateShapeWork(SharedShapes s) {
@@ -211,7 +213,7 @@ static PetscErrorCode MakeShapeMatrices(SharedShapes s, PetscBool *failed) {
   const PetscReal a0 = s->coupling->fluid->a0;
   PetscBool good = PETSC_TRUE;
   PetscFunctionBeginUser;
-  if (!(PetscAbsReal(s->a0 / a0 - 1) < 0.1)) {
+  if (AgeStepChanged(s->a0, a0, STEP_RATIO)) {
     s->a0 = a0;
     for (PetscInt k = 0; k < s->count; k++) PetscCall(FreeShapeMatrices(&s->shape[k]));
   }

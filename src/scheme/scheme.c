@@ -128,7 +128,7 @@ PetscErrorCode SchemeStep(Scheme s, PetscReal most) {
 
 PetscInt SchemeMemorySize(Scheme s) {
   const PetscInt block = ObstacleBlockIsOlder(s->coupling) ? OBSTACLE_BLOCK_MEMORY : 0;
-  return PRECONDITIONER_MEMORY + SharedShapesMemorySize(s->membrane->layout) + block;
+  return AGE_MEMORY + SharedShapesMemorySize(s->membrane->layout) + block;
 }
 
 PetscErrorCode SchemeRemember(Scheme s, PetscReal memory[]) {

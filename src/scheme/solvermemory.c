@@ -9,7 +9,7 @@ static ObstacleBlock OlderBlock(Scheme s) {
 
 /* Where its numbers are, the last ones of the memory. */
 static PetscInt AtBlock(Scheme s) {
-  return PRECONDITIONER_MEMORY + SharedShapesMemorySize(s->membrane->layout);
+  return AGE_MEMORY + SharedShapesMemorySize(s->membrane->layout);
 }
 
 PetscErrorCode CoupledRemember(Scheme s, PetscReal memory[]) {
@@ -17,13 +17,13 @@ PetscErrorCode CoupledRemember(Scheme s, PetscReal memory[]) {
   const Layout l = s->membrane->layout;
   PetscFunctionBeginUser;
   if (OlderBlock(s)) ObstacleBlockGetMemory(OlderBlock(s), memory + AtBlock(s));
-  PetscCall(PreconditionerGetMemory(d->solver->preconditioner, memory));
+  PreconditionerGetMemory(d->solver->preconditioner, memory);
   if (d->solver->preconditioner->shapes) {
-    SharedShapesGetMemory(d->solver->preconditioner->shapes, memory + PRECONDITIONER_MEMORY);
+    SharedShapesGetMemory(d->solver->preconditioner->shapes, memory + AGE_MEMORY);
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  PetscCall(LayoutGatherVec(l, d->made_at, memory + PRECONDITIONER_MEMORY));
-  PetscCall(PetscArraycpy(memory + PRECONDITIONER_MEMORY + 2 * l->M, d->made_with, l->bodies));
+  PetscCall(LayoutGatherVec(l, d->made_at, memory + AGE_MEMORY));
+  PetscCall(PetscArraycpy(memory + AGE_MEMORY + 2 * l->M, d->made_with, l->bodies));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -70,12 +70,12 @@ PetscErrorCode CoupledRecall(Scheme s, const PetscReal memory[]) {
   PetscFunctionBeginUser;
   PetscCall(RecallBlock(s, memory + AtBlock(s)));
   if (d->solver->preconditioner->shapes)
-    PetscCall(RecallSharedShapes(s, d->solver->preconditioner->shapes, memory + PRECONDITIONER_MEMORY));
-  if (!l->bodies || a0 == 0) PetscFunctionReturn(PETSC_SUCCESS);
+    PetscCall(RecallSharedShapes(s, d->solver->preconditioner->shapes, memory + AGE_MEMORY));
+  if (!l->bodies || a0 <= 0) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecGetArray(d->made_at, &X));
-  PetscCall(PetscArraycpy(X, memory + PRECONDITIONER_MEMORY + 2 * l->first, 2 * l->n));
+  PetscCall(PetscArraycpy(X, memory + AGE_MEMORY + 2 * l->first, 2 * l->n));
   PetscCall(VecRestoreArray(d->made_at, &X));
-  PetscCall(PetscArraycpy(d->made_with, memory + PRECONDITIONER_MEMORY + 2 * l->M, l->bodies));
+  PetscCall(PetscArraycpy(d->made_with, memory + AGE_MEMORY + 2 * l->M, l->bodies));
   PetscCall(PlaceAgain(s, a0, s->state.t, d->made_at, d->made_with));
   PetscCall(PreconditionerSetMemory(d->solver->preconditioner, memory));
   PetscFunctionReturn(PETSC_SUCCESS);
