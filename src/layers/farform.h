@@ -24,65 +24,24 @@ typedef struct {
 enum { NEAR_ONE, NEAR_TWO };
 PETSC_EXTERN void NearFarMake(const Kernel *kernel, NearFar far[2]);
 
-/* C of four pairs, (x, y) apart (cells), times scale: xx, yy, xy, yx, by so many orders; fourth: by how much the fourth
-   moments of the two stencils that meet in each of them are above the mean, added, along x and along y. */
-__attribute__((always_inline)) static inline void NearFarOrders(const int orders, const NearFar *f, PetscReal scale,
-                                                                Lanes x, Lanes y, const Lanes fourth[4][2],
-                                                                Lanes C[4]) {
-  const PetscReal(*p)[NEAR_FAR_ORDERS] = f->p, (*q)[NEAR_FAR_ORDERS] = f->q;
-  const Lanes over = 1 / (x * x + y * y), c2 = (x * x - y * y) * over, s2 = 2 * x * y * over;
-  const Lanes c4 = 2 * c2 * c2 - 1, twice = c4 + c4, c6 = (twice - 1) * c2, s6 = (twice + 1) * s2,
-              factor = scale * over;
-  Lanes even = p[1][0] * c4, odd = p[0][0] * c2 + p[2][0] * c6, both = q[0][0] * s2 + q[2][0] * s6;
-  if (orders > 1) {
-    const Lanes c8 = twice * c4 - 1, c10 = twice * c6 - c2, s10 = twice * s6 - s2;
-    Lanes more[3] = {p[1][1] * c4 + p[3][1] * c8, p[2][1] * c6 + p[4][1] * c10, q[2][1] * s6 + q[4][1] * s10};
-    if (orders > 2) {
-      const Lanes c12 = twice * c8 - c4, c14 = twice * c10 - c6, s14 = twice * s10 - s6;
-      more[0] += over * (p[3][2] * c8 + p[5][2] * c12);
-      more[1] += over * (p[2][2] * c6 + p[4][2] * c10 + p[6][2] * c14);
-      more[2] += over * (q[2][2] * s6 + q[4][2] * s10 + q[6][2] * s14);
-    }
-    even += over * more[0];
-    odd += over * more[1];
-    both += over * more[2];
-  }
-  C[0] = factor * (even + odd);
-  C[1] = factor * (even - odd);
-  C[2] = C[3] = factor * both;
-  if (!fourth) return;
-  const Lanes place = (1 / (48 * PETSC_PI)) * factor * over, s4 = 2 * s2 * c2, plus = 6 * (s6 + s4),
-              minus = 6 * (s6 - s4), three = 3 * c4, six = 6 * c6;
-  C[0] -= place * (fourth[0][0] * (six - three) + fourth[0][1] * (3 * three + six));
-  C[1] -= place * (fourth[1][0] * (3 * three - six) - fourth[1][1] * (three + six));
-  for (int c = 2; c < 4; c++) C[c] -= place * (fourth[c][0] * minus + fourth[c][1] * plus);
-}
-
-/* NearFarPairs - C of four pairs, xx, yy, xy, yx: by all orders and the fourth moments up to NEAR_FAR_SECOND cells,
-   from there on by two orders without, from NEAR_FAR_FIRST on by one: what is left out is 1.1e-7 or less.
-   NearFarIsClose - which of them take `fourth`, which is not looked at where none does. A pair has the same C whichever
-   the others are. Not collective. */
-#define NEAR_FAR_SECOND 28
-#define NEAR_FAR_FIRST 44
-static inline LanesBits NearFarIsClose(Lanes x, Lanes y) {
-  return (LanesBits)(x * x + y * y < NEAR_FAR_SECOND * NEAR_FAR_SECOND);
-}
+/* NearFarPairs - C of four pairs, (x, y) apart (cells), times scale: xx, yy, xy, yx. fourth: by how much the fourth
+   moments of the two stencils that meet in each of them are above the mean, added, along x and along y. What is left
+   out is 2.6e-7 or less. Not collective. */
 __attribute__((always_inline)) static inline void NearFarPairs(const NearFar *f, PetscReal scale, Lanes x, Lanes y,
                                                                const Lanes fourth[4][2], Lanes C[4]) {
-  const LanesBits close = NearFarIsClose(x, y), near = (LanesBits)(x * x + y * y < NEAR_FAR_FIRST * NEAR_FAR_FIRST);
-  Lanes part[4];
-  if (!LanesAny(near)) {
-    NearFarOrders(1, f, scale, x, y, NULL, C);
-    return;
-  }
-  if (LanesAny(close)) {
-    NearFarOrders(NEAR_FAR_ORDERS, f, scale, x, y, fourth, C);
-    if (!LanesAny(~close)) return;
-    NearFarOrders(2, f, scale, x, y, NULL, part);
-    for (int c = 0; c < 4; c++) C[c] = LanesWhere(close, C[c]) + LanesWhere(~close, part[c]);
-  } else
-    NearFarOrders(2, f, scale, x, y, NULL, C);
-  if (!LanesAny(~near)) return;
-  NearFarOrders(1, f, scale, x, y, NULL, part);
-  for (int c = 0; c < 4; c++) C[c] = LanesWhere(near, C[c]) + LanesWhere(~near, part[c]);
+  const PetscReal(*p)[NEAR_FAR_ORDERS] = f->p, (*q)[NEAR_FAR_ORDERS] = f->q;
+  const Lanes over = 1 / (x * x + y * y), c2 = (x * x - y * y) * over, s2 = 2 * x * y * over;
+  const Lanes c4 = 2 * c2 * c2 - 1, twice = c4 + c4, c6 = (twice - 1) * c2, s6 = (twice + 1) * s2, c8 = twice * c4 - 1,
+              c10 = twice * c6 - c2, s10 = twice * s6 - s2, c12 = twice * c8 - c4, c14 = twice * c10 - c6,
+              s14 = twice * s10 - s6, factor = scale * over;
+  const Lanes even = p[1][0] * c4 + over * (p[1][1] * c4 + p[3][1] * c8 + over * (p[3][2] * c8 + p[5][2] * c12));
+  const Lanes odd = p[0][0] * c2 + p[2][0] * c6 +
+                    over * (p[2][1] * c6 + p[4][1] * c10 + over * (p[2][2] * c6 + p[4][2] * c10 + p[6][2] * c14));
+  const Lanes both = q[0][0] * s2 + q[2][0] * s6 +
+                     over * (q[2][1] * s6 + q[4][1] * s10 + over * (q[2][2] * s6 + q[4][2] * s10 + q[6][2] * s14));
+  const Lanes place = (1 / (48 * PETSC_PI)) * factor * over, s4 = 2 * s2 * c2, plus = 6 * (s6 + s4),
+              minus = 6 * (s6 - s4), three = 3 * c4, six = 6 * c6;
+  C[0] = factor * (even + odd) - place * (fourth[0][0] * (six - three) + fourth[0][1] * (3 * three + six));
+  C[1] = factor * (even - odd) - place * (fourth[1][0] * (3 * three - six) - fourth[1][1] * (three + six));
+  for (int c = 2; c < 4; c++) C[c] = factor * both - place * (fourth[c][0] * minus + fourth[c][1] * plus);
 }

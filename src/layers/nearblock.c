@@ -108,7 +108,7 @@ static void FillFar(SinglePairs f, Chunk *c) {
   Lanes C[4], fourth[4][2];
   for (PetscInt k = 0; k < c->n; k += LANES) {
     const Lanes x = cell * LanesAt(c->d[0] + k), y = cell * LanesAt(c->d[1] + k);
-    if (LanesAny(NearFarIsClose(x, y))) Fourth(f, c, k, fourth);
+    Fourth(f, c, k, fourth);
     NearFarPairs(c->far, over, x, y, fourth, C);
     for (int q = 0; q < 4; q++) LanesPut(C[q], c->C[q] + k);
   }

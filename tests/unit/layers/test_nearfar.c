@@ -87,7 +87,7 @@ static PetscErrorCode CheckClosedForm(const OffsetTable *t, const char kernel[],
 
 #define LARGE "-domain_cells 128,128 -domain_box 0,4,0,4 -vesicle_semi_axes 0.45,1.2 -vesicle_markers 111 "
 /* Pairs of one vesicle, 77 h long, beyond the reach of sums: the closed form of three orders with the place in the
-   cells, of two and of one, and the vesicle's own quadrature; nearer ones are such sums. */
+   cells, and the vesicle's own quadrature; nearer ones are such sums. */
 static PetscErrorCode CheckWithin(const OffsetTable *t, const char kernel[], const char place[], PetscReal bound) {
   char options[512];
   TestWorld w;
