@@ -30,7 +30,7 @@ static PetscErrorCode CreatePointLayout(CoarseGrid c, Layout fine, const PetscRe
 
 PetscErrorCode CoarseGridCreate(const FluidSpec *run, Layout fine, const PetscReal length[], const char kernel[],
                                 CoarseGrid *out) {
-  FluidSpec spec = *run;
+  FluidSpec spec = MobilityTableSpec(run);
   PetscReal longest = 0;
   CoarseGrid c;
   PetscFunctionBeginUser;
@@ -43,9 +43,6 @@ PetscErrorCode CoarseGridCreate(const FluidSpec *run, Layout fine, const PetscRe
   *out = c;
   for (int d = 0; d < 2; d++) spec.cells[d] /= times;
   if (!GridFits(spec.cells[1], fine->size)) spec.comm = PETSC_COMM_SELF;
-  spec.form = FORM_DISTURBANCE;
-  PetscCall(PetscStrncpy(spec.helmholtz, "fftw_tridiagonal", sizeof(spec.helmholtz)));
-  PetscCall(PetscStrncpy(spec.poisson, "fftw_tridiagonal", sizeof(spec.poisson)));
   PetscCall(FluidCreate(&spec, &c->fluid));
   PetscCall(StokesCreate(c->fluid, &c->stokes));
   PetscCall(CreatePointLayout(c, fine, length, c->fluid->grid->h));

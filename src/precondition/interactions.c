@@ -1,6 +1,5 @@
 #include "precondition/interactions.h"
 #include "base/lanes.h"
-#include "precondition/shapeproducts.h"
 
 #define ITERATIONS 2 /* of GMRES */
 

@@ -3,9 +3,8 @@
 
 #define LAG KERNEL_MAX_POINTS /* most cells between the entries of two stencils at one place */
 #define LAGS (2 * LAG + 1)
-#define PLACES 4         /* in a cell, in each direction */
-#define POINTS 6         /* of an interpolation */
-#define KEPT_CELLS 65536 /* in all, up to which the solver is kept: its plans cost as much as its solves there */
+#define PLACES 4 /* in a cell, in each direction */
+#define POINTS 6 /* of an interpolation */
 
 /* Weights by lag of the double sum over two kernels at one place, mean over the places; entry m is at m + 1, or at m +
    1/2 where the kernel is the one across. */
@@ -46,27 +45,16 @@ static void AverageTable(MobilityTable m) {
   m->averaged = PETSC_TRUE;
 }
 
-/* Whether the solver is made for each table. */
-static PetscBool IsTableLarge(Grid g) {
-  return (PetscReal)g->n[0] * g->n[1] > KEPT_CELLS ? PETSC_TRUE : PETSC_FALSE;
-}
-
-static PetscErrorCode CreateTableSolver(MobilityTable m) {
-  PetscFunctionBeginUser;
-  PetscCall(StokesCreate(m->periodic, &m->stokes));
-  PetscCall(DMCreateGlobalVector(m->periodic->grid->velocity, &m->u));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode DestroyTableSolver(MobilityTable m) {
-  PetscFunctionBeginUser;
-  PetscCall(VecDestroy(&m->u));
-  PetscCall(StokesDestroy(&m->stokes));
-  PetscFunctionReturn(PETSC_SUCCESS);
+FluidSpec MobilityTableSpec(const FluidSpec *run) {
+  FluidSpec spec = *run;
+  spec.form = FORM_DISTURBANCE;
+  (void)PetscStrncpy(spec.helmholtz, "fftw_tridiagonal", sizeof(spec.helmholtz));
+  (void)PetscStrncpy(spec.poisson, "fftw_tridiagonal", sizeof(spec.poisson));
+  return spec;
 }
 
 PetscErrorCode MobilityTableCreate(const FluidSpec *spec, const Kernel *kernel, PetscReal reach, MobilityTable *out) {
-  FluidSpec box = *spec;
+  FluidSpec box = MobilityTableSpec(spec);
   MobilityTable m;
   PetscInt size[2];
   PetscFunctionBeginUser;
@@ -75,10 +63,6 @@ PetscErrorCode MobilityTableCreate(const FluidSpec *spec, const Kernel *kernel, 
   m->kernel = kernel;
   m->alpha = -1;
   box.bc[0] = box.bc[1] = BC_PERIODIC;
-  box.form = FORM_DISTURBANCE;
-  /* for a preconditioner: by the default solver, which cannot fail, whatever solves the steps */
-  PetscCall(PetscStrncpy(box.helmholtz, "fftw_tridiagonal", sizeof(box.helmholtz)));
-  PetscCall(PetscStrncpy(box.poisson, "fftw_tridiagonal", sizeof(box.poisson)));
   PetscCall(FluidCreate(&box, &m->periodic));
   const Grid g = m->periodic->grid;
   for (int d = 0; d < 2; d++) /* room for drift */
@@ -87,7 +71,6 @@ PetscErrorCode MobilityTableCreate(const FluidSpec *spec, const Kernel *kernel, 
   for (int d = 0; d < 2; d++) size[d] += LAG;
   PetscCall(OffsetTableCreate(size, &m->green));
   PetscCall(PetscMalloc1(2 * size[0] + 1, &m->line));
-  if (!IsTableLarge(g)) PetscCall(CreateTableSolver(m));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -98,7 +81,6 @@ PetscErrorCode MobilityTableDestroy(MobilityTable *table) {
   PetscCall(OffsetTableDestroy(&m->mean));
   PetscCall(OffsetTableDestroy(&m->green));
   PetscCall(PetscFree(m->line));
-  PetscCall(DestroyTableSolver(m));
   PetscCall(FluidDestroy(&m->periodic));
   PetscCall(PetscFree(*table));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -124,38 +106,42 @@ static PetscErrorCode GatherWindow(Grid g, Field f, const PetscScalar a[], const
 }
 
 /* The periodic box's responses to a unit force on a u face, or on a v face. */
-static PetscErrorCode UnitResponse(MobilityTable m, int source) {
+static PetscErrorCode UnitResponse(MobilityTable m, Stokes stokes, Vec velocity, int source) {
   const OffsetTable *G = &m->green;
   const Grid g = m->periodic->grid;
   const PetscScalar *a;
   PetscScalar *r;
   PetscFunctionBeginUser;
-  PetscCall(VecSet(m->u, 0));
-  PetscCall(VecGetArray(m->u, &r));
+  PetscCall(VecSet(velocity, 0));
+  PetscCall(VecGetArray(velocity, &r));
   if (!g->rank) r[source ? GridLocalU(g) : 0] = 1;
-  PetscCall(VecRestoreArray(m->u, &r));
-  PetscCall(StokesVelocity(m->stokes, m->u, m->u));
-  PetscCall(VecGetArrayRead(m->u, &a));
+  PetscCall(VecRestoreArray(velocity, &r));
+  PetscCall(StokesVelocity(stokes, velocity, velocity));
+  PetscCall(VecGetArrayRead(velocity, &a));
   if (!source) PetscCall(GatherWindow(g, FIELD_U, a, G->size, G->value[OFFSET_UU]));
   PetscCall(GatherWindow(g, FIELD_V, a + GridLocalU(g), G->size, G->value[source ? OFFSET_VV : OFFSET_VU]));
-  PetscCall(VecRestoreArrayRead(m->u, &a));
+  PetscCall(VecRestoreArrayRead(velocity, &a));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode MobilityTableSetUp(MobilityTable m, PetscReal alpha) {
   const Grid g = m->periodic->grid;
+  Stokes stokes;
+  Vec velocity;
   PetscFunctionBeginUser;
   if (alpha == m->alpha) PetscFunctionReturn(PETSC_SUCCESS);
   m->alpha = alpha;
   m->averaged = PETSC_FALSE;
   PetscCall(FluidSetTimeCoefficient(m->periodic, alpha));
-  if (!m->stokes) PetscCall(CreateTableSolver(m));
-  PetscCall(UnitResponse(m, 0));
+  PetscCall(StokesCreate(m->periodic, &stokes));
+  PetscCall(DMCreateGlobalVector(g->velocity, &velocity));
+  PetscCall(UnitResponse(m, stokes, velocity, 0));
   if (g->n[0] == g->n[1])
     OffsetTableTurn(&m->green);
   else
-    PetscCall(UnitResponse(m, 1));
-  if (IsTableLarge(g)) PetscCall(DestroyTableSolver(m));
+    PetscCall(UnitResponse(m, stokes, velocity, 1));
+  PetscCall(VecDestroy(&velocity));
+  PetscCall(StokesDestroy(&stokes));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -187,4 +173,13 @@ void MobilityTableMean(MobilityTable m, const PetscReal d[2], PetscReal mean[3])
       for (int i = 0; i < POINTS; i++) mean[b] += w[1][j] * w[0][i] * row[i];
     }
   }
+}
+
+void MobilityTableAdd(MobilityTable m, PetscReal scale, const PetscReal d[2], PetscInt rows, PetscReal A[]) {
+  PetscReal mean[3];
+  MobilityTableMean(m, d, mean);
+  A[0] += scale * mean[0];
+  A[1] += scale * mean[2];
+  A[rows] += scale * mean[2];
+  A[rows + 1] += scale * mean[1];
 }

@@ -12,15 +12,17 @@
 typedef struct _p_MobilityTable *MobilityTable;
 struct _p_MobilityTable {
   const Kernel *kernel;
-  Fluid periodic; /* a periodic box of the same cells */
-  Stokes stokes;  /* its solver with a work vector, kept on few cells; else NULL between set-ups */
-  Vec u;
+  Fluid periodic;    /* a periodic box of the same cells */
   PetscReal alpha;   /* coefficient of H that the tables are for; negative: none yet */
   OffsetTable green; /* its Green's function, by offsets of faces */
   OffsetTable mean;  /* of two markers' mobility, by whole cells between them, once asked for */
   PetscBool averaged;
   PetscReal *line; /* work */
 };
+
+/* MobilityTableSpec - the run's fluid for a preconditioner: by the default solver, which cannot fail, whatever solves
+   the steps. Not collective. */
+PETSC_EXTERN FluidSpec MobilityTableSpec(const FluidSpec *run);
 
 /* MobilityTableCreate - for the grid that spec makes and markers up to `reach` (length) apart. Collective. */
 PETSC_EXTERN PetscErrorCode MobilityTableCreate(const FluidSpec *spec, const Kernel *kernel, PetscReal reach,
@@ -32,5 +34,8 @@ PETSC_EXTERN PetscErrorCode MobilityTableDestroy(MobilityTable *table);
 PETSC_EXTERN PetscErrorCode MobilityTableSetUp(MobilityTable table, PetscReal alpha);
 
 /* MobilityTableMean - of two markers d (length) apart, velocity per force on the faces: xx, yy, xy. Beyond the table
-   its border. Not collective. */
+   its border. MobilityTableAdd - the mean mobility times scale, added to the two rows and columns of a matrix from A
+   on, whose columns are `rows` numbers apart. Not collective. */
 PETSC_EXTERN void MobilityTableMean(MobilityTable table, const PetscReal d[2], PetscReal mean[3]);
+PETSC_EXTERN void MobilityTableAdd(MobilityTable table, PetscReal scale, const PetscReal d[2], PetscInt rows,
+                                   PetscReal A[]);

@@ -203,16 +203,13 @@ static PetscErrorCode AssembleModes(ObstacleModes s, PetscReal alpha, PetscReal 
   for (PetscInt v = 0; v < l->bodies; v++)
     for (PetscInt i = s->start[v] + 2 * l->rank; i < s->start[v + 1]; i += 2 * l->size)
       for (PetscInt j = s->start[v + 1]; j < n; j += 2) {
-        PetscReal d[2], mean[3];
+        PetscReal d[2];
         for (int c = 0; c < 2; c++) {
           d[c] = Y[i + c] - Y[j + c];
           d[c] -= period[c] * PetscFloorReal(d[c] / period[c] + 0.5);
         }
-        MobilityTableMean(table, d, mean);
-        for (int q = 0; q < 4; q++) {
-          const PetscInt a = i + q / 2, b = j + q % 2;
-          M[a * n + b] = M[b * n + a] = over * mean[q == 0 ? 0 : q == 3 ? 1 : 2];
-        }
+        MobilityTableAdd(table, over, d, n, M + j * n + i);
+        MobilityTableAdd(table, over, d, n, M + i * n + j);
       }
   PetscCall(PetscFree(Y));
   PetscCall(MobilityTableDestroy(&table));

@@ -1,22 +1,8 @@
-#include "precondition/shapematrices.h"
+#include "precondition/shapeset.h"
 #include "mobility/contrast.h"
 #include "precondition/denseblock.h"
 #include "layers/doubleblock.h"
 #include "layers/selflayer.h"
-
-/* M += scale times the coarse grid's mean mobility between n points. */
-static void AddMeanMobility(MobilityTable table, PetscReal scale, PetscInt n, const PetscReal X[], PetscReal M[]) {
-  for (PetscInt j = 0; j < n; j++)
-    for (PetscInt i = 0; i < n; i++) {
-      const PetscReal d[2] = {X[2 * i] - X[2 * j], X[2 * i + 1] - X[2 * j + 1]};
-      PetscReal mean[3], *at = M + 2 * j * 2 * n + 2 * i;
-      MobilityTableMean(table, d, mean);
-      at[0] += scale * mean[0];
-      at[1] += scale * mean[2];
-      at[2 * n] += scale * mean[2];
-      at[2 * n + 1] += scale * mean[1];
-    }
-}
 
 /* M = h^2 S. */
 static PetscErrorCode AssembleShape(SharedShapes s, const SharedShape *q, PetscReal M[]) {
@@ -90,7 +76,11 @@ static PetscErrorCode MakeShapePoints(SharedShapes s, SharedShape *q) {
   for (PetscInt i = 0; i < points; i++)
     for (PetscInt k = 0; k < 2 * n; k++)
       q->points[2 * i + k % 2] += s->weights[q->weights].to_points[i * n + k / 2] * q->X[k];
-  AddMeanMobility(s->coarse->table, 1 / h2, points, q->points, q->self);
+  for (PetscInt j = 0; j < points; j++)
+    for (PetscInt i = 0; i < points; i++) {
+      const PetscReal d[2] = {q->points[2 * i] - q->points[2 * j], q->points[2 * i + 1] - q->points[2 * j + 1]};
+      MobilityTableAdd(s->coarse->table, 1 / h2, d, 2 * points, q->self + 4 * j * points + 2 * i);
+    }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -1,5 +1,5 @@
 /* The preconditioner's part of the vesicles: shapes' matrices on the columns of all vesicles that take them. */
-#include "precondition/shapeproducts.h"
+#include "precondition/shapeset.h"
 
 /* (U, sigma) += y, back from the shape's frame. */
 static void AddFromShape(const RigidFit *p, PetscInt n, const PetscReal y[], PetscScalar U[], PetscScalar sigma[]) {

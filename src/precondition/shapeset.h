@@ -1,4 +1,5 @@
-/* The shared shapes of vesicles and what the preconditioner keeps for them (sharedshapes.h). */
+/* The shared shapes of vesicles and what the preconditioner keeps for them (sharedshapes.h): the matrices of one shape,
+   and their products with the columns of all own vesicles that take it, each in the shape's frame. */
 #pragma once
 #include "precondition/coarsegrid.h"
 #include "mobility/coupling.h"
@@ -44,3 +45,17 @@ struct _p_SharedShapes {
   ShapeSources alone;   /* work */
   Interactions cross;   /* NULL without coarse grid */
 };
+
+/* SharedShapeMake - inverse, forces, and with a coarse grid self, weight and points, for the shapes' a0 and tables.
+   good is false when a matrix is singular. Not collective. */
+PETSC_EXTERN PetscErrorCode SharedShapeMake(SharedShapes shapes, SharedShape *shape, PetscBool *good);
+
+/* SharedShapeSolveAlone - from the own parts U[2n] and sigma[n] = r_s: V and sigma of each vesicle's dense problem, and
+   their sources unless NULL. SharedShapeSources - the sources of the answers to (W, 0). SharedShapeAddAnswer - (U,
+   sigma) += these answers. Entries of vesicles of other shapes stay as they are. Not collective. */
+PETSC_EXTERN void SharedShapeSolveAlone(SharedShapes shapes, const SharedShape *shape, PetscScalar U[],
+                                        PetscScalar sigma[], const ShapeSources *sources);
+PETSC_EXTERN void SharedShapeSources(SharedShapes shapes, const SharedShape *shape, const PetscScalar W[],
+                                     const ShapeSources *sources);
+PETSC_EXTERN void SharedShapeAddAnswer(SharedShapes shapes, const SharedShape *shape, const PetscScalar W[],
+                                       PetscScalar U[], PetscScalar sigma[]);

@@ -1,9 +1,7 @@
 #include "precondition/sharedshapes.h"
 #include "base/agree.h"
 #include "precondition/age.h"
-#include "precondition/shapeproducts.h"
 #include "precondition/interactions.h"
-#include "precondition/shapematrices.h"
 
 #define TOLERANCE 0.03 /* of a vesicle's distance from its shape */
 #define STEP_RATIO 1.1 /* of two steps whose matrices are shared */
