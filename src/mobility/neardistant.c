@@ -29,7 +29,7 @@ PetscErrorCode NearDistantDestroy(NearDistant *distant) {
 }
 
 /* What is left of f[n] beside the orthonormal Q[count][n], over its norm. */
-static PetscReal TakeOff(PetscInt n, PetscInt count, const PetscReal Q[], PetscReal f[]) {
+static PetscReal DistantRemainder(PetscInt n, PetscInt count, const PetscReal Q[], PetscReal f[]) {
   PetscReal before = 0, after = 0;
   for (PetscInt k = 0; k < n; k++) before += PetscSqr(f[k]);
   for (int twice = 0; twice < 2; twice++) /* once is not enough where little is left */
@@ -44,7 +44,7 @@ static PetscReal TakeOff(PetscInt n, PetscInt count, const PetscReal Q[], PetscR
 }
 
 /* A curve's polynomials, by Gram and Schmidt from x^i y^j, by degree. X[2n] its markers. */
-static PetscErrorCode MakeFunctions(PetscInt n, const PetscReal X[], NearFunctions *own) {
+static PetscErrorCode DistantFunctions(PetscInt n, const PetscReal X[], NearFunctions *own) {
   PetscReal middle[2] = {0, 0}, size = 0, *Q;
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < 2 * n; k++) middle[k % 2] += X[k] / n;
@@ -56,7 +56,7 @@ static PetscErrorCode MakeFunctions(PetscInt n, const PetscReal X[], NearFunctio
       for (PetscInt k = 0; k < n; k++)
         f[k] = PetscPowRealInt((X[2 * k] - middle[0]) / size, (int)i) *
                PetscPowRealInt((X[2 * k + 1] - middle[1]) / size, (int)(degree - i));
-      if (own->count < n && TakeOff(n, own->count, Q, f) > NOTHING) own->count++;
+      if (own->count < n && DistantRemainder(n, own->count, Q, f) > NOTHING) own->count++;
     }
   own->stride = LANES * ((2 * own->count + LANES - 1) / LANES);
   PetscCall(PetscMalloc1(n * own->count, &own->value));
@@ -73,7 +73,7 @@ PetscErrorCode NearDistantAdd(NearDistant d, const PetscReal X[], PetscInt v, Pe
   PetscFunctionBeginUser;
   for (int end = 0; end < 2; end++) {
     const PetscInt b = body[end];
-    if (!d->function[b].value) PetscCall(MakeFunctions(LayoutCount(l, b), X + 2 * l->start[b], &d->function[b]));
+    if (!d->function[b].value) PetscCall(DistantFunctions(LayoutCount(l, b), X + 2 * l->start[b], &d->function[b]));
   }
   const PetscInt numbers = d->function[v].stride * d->function[w].stride;
   *added = 2 * numbers < 4 * LayoutCount(l, v) * LayoutCount(l, w) ? PETSC_TRUE : PETSC_FALSE;
@@ -94,7 +94,7 @@ PetscErrorCode NearDistantMake(NearDistant d) {
 }
 
 /* a[stride] = a curve's polynomials' parts of x, interlaced numbers of n markers. */
-static void Parts(const NearFunctions *f, PetscInt n, const PetscReal x[], PetscReal a[]) {
+static void DistantParts(const NearFunctions *f, PetscInt n, const PetscReal x[], PetscReal a[]) {
   (void)PetscArrayzero(a, f->stride);
   for (PetscInt k = 0; k < n; k++)
     for (int c = 0; c < 2; c++)
@@ -102,7 +102,7 @@ static void Parts(const NearFunctions *f, PetscInt n, const PetscReal x[], Petsc
 }
 
 /* x += alpha times the sum of the polynomials with parts a[stride]. */
-static void Sum(const NearFunctions *f, PetscInt n, PetscReal alpha, const PetscReal a[], PetscReal x[]) {
+static void DistantSum(const NearFunctions *f, PetscInt n, PetscReal alpha, const PetscReal a[], PetscReal x[]) {
   for (PetscInt k = 0; k < n; k++)
     for (int c = 0; c < 2; c++) {
       PetscReal sum = 0;
@@ -119,7 +119,7 @@ PetscErrorCode NearDistantFill(NearDistant d, PetscInt pair, PetscInt stride, co
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc2(column->stride, &half, row->stride * column->stride, &B));
   for (PetscInt i = 0; i < 2 * n; i++) {
-    Parts(column, m, C + i * stride, half);
+    DistantParts(column, m, C + i * stride, half);
     for (PetscInt q = 0; q < row->count; q++)
       for (PetscInt k = 0; k < column->stride; k++)
         B[(i % 2 * row->count + q) * column->stride + k] += row->value[i / 2 * row->count + q] * half[k];
@@ -143,7 +143,7 @@ PetscErrorCode NearDistantExpand(NearDistant d, PetscInt pair, PetscInt stride, 
       for (PetscInt k = 0; k < column->stride; k++)
         half[k] += row->value[i / 2 * row->count + q] *
                    d->value[p->at + (size_t)((i % 2 * row->count + q) * column->stride + k)];
-    Sum(column, m, 1, half, C + i * stride);
+    DistantSum(column, m, 1, half, C + i * stride);
   }
   PetscCall(PetscFree(half));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -155,7 +155,7 @@ PetscErrorCode NearDistantApply(NearDistant d, PetscReal alpha, const PetscScala
   if (!d->pairs) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt v = 0; v < l->bodies; v++)
     if (d->function[v].value)
-      Parts(&d->function[v], LayoutCount(l, v), force + 2 * l->start[v], d->amplitude + d->start[v]);
+      DistantParts(&d->function[v], LayoutCount(l, v), force + 2 * l->start[v], d->amplitude + d->start[v]);
   PetscCall(PetscArrayzero(d->answer, d->start[l->bodies]));
   for (PetscInt k = 0; k < d->pairs; k++) {
     const NearDistantPair *p = &d->pair[k];
@@ -169,6 +169,6 @@ PetscErrorCode NearDistantApply(NearDistant d, PetscReal alpha, const PetscScala
   }
   for (PetscInt v = l->own; v < l->end; v++)
     if (d->function[v].value)
-      Sum(&d->function[v], LayoutCount(l, v), alpha, d->answer + d->start[v], velocity + 2 * LayoutOffset(l, v));
+      DistantSum(&d->function[v], LayoutCount(l, v), alpha, d->answer + d->start[v], velocity + 2 * LayoutOffset(l, v));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -80,20 +80,19 @@ static void PadStencils(Mobility m, const MarkerRange *range) {
   }
 }
 
-/* Mob[][2 rows] += scale times the block xx, yy, xy, yx of markers i and j: velocity of row marker i
-   by a force on column marker j. */
-static void AddMobilityPair(PetscReal scale, PetscInt rows, PetscInt i, PetscInt j, const PetscReal block[4],
-                            PetscReal Mob[]) {
+/* Mob[][2 rows] += the block xx, yy, xy, yx of markers i and j: velocity of row marker i by a force on column marker j.
+ */
+static void AddMobilityPair(PetscInt rows, PetscInt i, PetscInt j, const PetscReal block[4], PetscReal Mob[]) {
   PetscReal *x = Mob + 4 * j * rows + 2 * i, *y = x + 2 * rows;
-  x[0] += scale * block[0];
-  y[1] += scale * block[1];
-  y[0] += scale * block[2];
-  x[1] += scale * block[3];
+  x[0] += block[0];
+  y[1] += block[1];
+  y[0] += block[2];
+  x[1] += block[3];
 }
 
-/* L - C_image and the exact images of markers i and j, the nearest image: xx, yy, xy, yx. Pairs far from one another
-   and from walls take those of S, which leaves out a C of the order h^2/r^2. */
-static void MobilityBoxPair(NearField f, PetscInt i, PetscInt j, PetscReal value[4]) {
+/* h^2 (L - C_image) and the exact images of markers i and j, the nearest image: xx, yy, xy, yx. Pairs far from one
+   another and from walls take those of S, which leaves out a C of the order h^2/r^2. */
+static void BoxPair(NearField f, PetscInt i, PetscInt j, PetscReal value[4]) {
   const PetscReal *X = f->set.markers->X, h = f->set.markers->grid->h;
   PetscReal d[2] = {X[2 * i] - X[2 * j], X[2 * i + 1] - X[2 * j + 1]}, L[4], C[4] = {0, 0, 0, 0};
   const PetscReal fade = BoxPartImage(f->box, d);
@@ -106,48 +105,42 @@ static void MobilityBoxPair(NearField f, PetscInt i, PetscInt j, PetscReal value
     for (int q = 0; q < 4; q++) L[q] = S[PetscMin(q, 2)][0];
   }
   NearImageAddBlake(f->pairs->image, i, j, d, -1, C);
-  for (int q = 0; q < 4; q++) value[q] = fade * (L[q] - C[q]);
-}
-
-/* Mob += that of the velocity of the own markers in rows by forces on those in columns, with a box. Collective. */
-static PetscErrorCode AddBoxMobility(Mobility m, const MarkerRange *rows, const MarkerRange *columns, PetscReal Mob[]) {
-  const NearField f = m->coupling->near;
-  const Layout l = m->coupling->bodies->layout;
-  const PetscReal h2 = PetscSqr(m->coupling->fluid->grid->h);
-  const PetscInt begin = PetscMax(l->first, rows->first), end = PetscMin(l->first + l->n, rows->first + rows->n);
-  /* of the own markers among themselves a pair and its mirror image are one another's transposes */
-  const PetscBool same = rows->first == columns->first && rows->n == columns->n && end - begin == rows->n ? PETSC_TRUE
-                                                                                                          : PETSC_FALSE;
-  PetscFunctionBeginUser;
-  PetscCall(BoxPartPlace(m->box));
-  PetscCall(BoxPartAdd(m->box, h2, rows, columns, Mob));
-  for (PetscInt j = 0; j < columns->n; j++)
-    for (PetscInt i = same ? j : begin - rows->first; i < end - rows->first; i++) {
-      PetscReal L[4];
-      MobilityBoxPair(f, rows->first + i, columns->first + j, L);
-      AddMobilityPair(h2, rows->n, i, j, L, Mob);
-      if (same && i > j) AddMobilityPair(h2, rows->n, j, i, (PetscReal[]){L[0], L[1], L[3], L[2]}, Mob);
-    }
-  PetscFunctionReturn(PETSC_SUCCESS);
+  for (int q = 0; q < 4; q++) value[q] = h * h * fade * (L[q] - C[q]);
 }
 
 PetscErrorCode MobilityAssemble(Mobility m, const MarkerRange *rows, const MarkerRange *columns, PetscInt part,
                                 PetscInt parts, PetscReal Mob[]) {
-  const PetscBool same = rows->first == columns->first && rows->n == columns->n ? PETSC_TRUE : PETSC_FALSE;
+  const Layout l = m->coupling->bodies->layout;
+  const PetscReal h2 = PetscSqr(m->coupling->fluid->grid->h);
+  PetscInt begin = 0, end = rows->n;
   PetscFunctionBeginUser;
   PetscCall(PetscArrayzero(Mob, 4 * rows->n * columns->n));
-  if (m->box) PetscCall(AddBoxMobility(m, rows, columns, Mob));
-  if (!m->table) PetscFunctionReturn(PETSC_SUCCESS);
-  PadStencils(m, rows);
-  PadStencils(m, columns);
-  for (PetscInt p = part; p < columns->n; p += parts)
-    for (PetscInt q = same ? p : 0; q < rows->n; q++) {
-      const PetscInt i = same ? p : q, j = same ? q : p;
+  if (m->box) { /* the rows of the own markers */
+    begin = PetscMax(l->first - rows->first, 0);
+    end = PetscMin(l->first + l->n - rows->first, rows->n);
+    part = 0;
+    parts = 1;
+    PetscCall(BoxPartPlace(m->box));
+    PetscCall(BoxPartAdd(m->box, h2, rows, columns, Mob));
+  } else if (m->table) {
+    PadStencils(m, rows);
+    PadStencils(m, columns);
+  } else
+    PetscFunctionReturn(PETSC_SUCCESS);
+  /* where all pairs of markers among themselves are made, a pair and its mirror image are one another's transposes */
+  const PetscBool same = rows->first == columns->first && end - begin == columns->n && rows->n == columns->n
+                             ? PETSC_TRUE
+                             : PETSC_FALSE;
+  for (PetscInt j = part; j < columns->n; j += parts)
+    for (PetscInt i = same ? j : begin; i < end; i++) {
       PetscReal one[4];
-      TablePair(m, rows->first + i, columns->first + j, one);
+      if (m->box)
+        BoxPair(m->coupling->near, rows->first + i, columns->first + j, one);
+      else
+        TablePair(m, rows->first + i, columns->first + j, one);
       if (same && i == j) one[2] = one[3]; /* symmetric to the bit */
-      AddMobilityPair(1, rows->n, i, j, one, Mob);
-      if (same && i != j) AddMobilityPair(1, rows->n, j, i, (PetscReal[]){one[0], one[1], one[3], one[2]}, Mob);
+      AddMobilityPair(rows->n, i, j, one, Mob);
+      if (same && i != j) AddMobilityPair(rows->n, j, i, (PetscReal[]){one[0], one[1], one[3], one[2]}, Mob);
     }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
