@@ -25,8 +25,8 @@ static Box BoxAround(PetscInt n, const PetscReal X[]) {
   return b;
 }
 
-/* Whether the box of a closed curve is farther than reach from its own images, or every image of a point of the curve
-   is more than half a period from all of the curve. */
+/* TRUE if, in each periodic direction, a closed curve has more than `reach` between its box and the images of the box,
+   or is shorter than half a period, so that every image of a point is more than half a period away from the curve. */
 static PetscBool BoxIsAlone(const Box *b, const PetscReal period[2], PetscReal reach) {
   for (int d = 0; d < 2; d++) {
     const PetscReal extent = b->high[d] - b->low[d];
@@ -35,7 +35,7 @@ static PetscBool BoxIsAlone(const Box *b, const PetscReal period[2], PetscReal r
   return PETSC_TRUE;
 }
 
-/* Whether the nearest images of two boxes are farther apart than reach. */
+/* TRUE if the nearest images of two boxes are farther apart than reach. */
 static PetscBool BoxesApart(const Box *a, const Box *b, const PetscReal period[2], PetscReal reach) {
   for (int d = 0; d < 2; d++) {
     PetscReal middle = 0.5 * (b->low[d] + b->high[d] - a->low[d] - a->high[d]);
@@ -45,8 +45,8 @@ static PetscBool BoxesApart(const Box *a, const Box *b, const PetscReal period[2
   return PETSC_FALSE;
 }
 
-/* A quick answer for curves far from one another, as their bounding boxes tell: true: each curve that moves is farther
-   than reach from all others and from its own images. False says nothing. */
+/* TRUE if the bounding boxes show that each curve that moves is farther than reach from all other curves and from its
+   own images. FALSE does not say that a curve is near. */
 static PetscBool AreApart(const CurveSet *set, PetscReal reach) {
   Box box[MOST_CURVES];
   if (set->curves > MOST_CURVES) return PETSC_FALSE;

@@ -121,8 +121,8 @@ static PetscReal TriangleArea(const PetscReal a[2], const PetscReal b[2], const 
   return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
 }
 
-/* Whether two curves whose polygons cross do so themselves, smooth ones at CROSSING_FINER times their points: they
-   become s->pair, or are added to s->passed. */
+/* Find out whether two curves cross whose polygons do; smooth curves are compared at CROSSING_FINER times their points.
+   The pair becomes s->pair or is added to s->passed. */
 static PetscErrorCode CurvesCrossTruly(EdgeSearch *s, const PetscInt pair[2], PetscBool *cross) {
   CurveFine fine;
   PetscInt found[2];

@@ -47,7 +47,7 @@ static int PointsNumbers(const char text[], int most, PetscReal x[]) {
   return n;
 }
 
-/* What is wrong, behind the option and the file. */
+/* Write the message of a mistake; it begins with the option and the file. */
 static void PETSC_ATTRIBUTE_FORMAT(2, 3) PointsRefuse(Points *p, const char format[], ...) {
   const int used = snprintf(p->error, sizeof(p->error), "%s %s: ", p->option, p->file);
   size_t length;
@@ -57,12 +57,12 @@ static void PETSC_ATTRIBUTE_FORMAT(2, 3) PointsRefuse(Points *p, const char form
   va_end(arguments);
 }
 
-/* A line that is not `allowed`. */
+/* Write the message of a line whose text is not what is allowed. */
 static void PointsRefuseLine(Points *p, PetscInt number, const char line[], const char allowed[]) {
   PointsRefuse(p, "line %" PetscInt_FMT " is \"%.60s\"; allowed: %s", number, line, allowed);
 }
 
-/* A comment whose first word is known is a note on an obstacle's curve: "# velocity x y" and so on. */
+/* Read a comment whose first word is known: it is a note on the next curve, such as "# velocity x y". */
 static PetscErrorCode PointsReadNote(const char line[], PetscInt number, Points *points) {
   const char *start = line + 1 + strspn(line + 1, " \t");
   const size_t length = strcspn(start, " \t,:=");

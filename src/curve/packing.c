@@ -83,7 +83,7 @@ static PetscBool EllipsesAreApart(const PetscReal d[2], const PetscReal axes[2][
   return PETSC_FALSE;
 }
 
-/* Whether ellipse i with this pose and scale is apart from ellipse j and its images. */
+/* TRUE if ellipse i with this pose and scale is apart from ellipse j and its images. */
 static PetscBool PackingIsApart(const Packing *p, PetscInt i, const Pose *at, PetscReal scale, PetscInt j) {
   const PetscReal axes[2][2] = {{p->axes[2 * i], p->axes[2 * i + 1]}, {p->axes[2 * j], p->axes[2 * j + 1]}};
   const PetscReal *const u[2] = {at->along, i == j ? at->along : p->pose[j].along};

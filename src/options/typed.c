@@ -17,7 +17,7 @@ typedef struct {
   PetscBool quoted; /* a value, whatever it begins with */
 } Word;
 
-/* Where words are from. */
+/* The source of words: the command line, an environment variable or a file. */
 typedef struct _Source {
   const struct _Source *outer; /* the file that includes this one */
   const char *name;            /* "PETSC_OPTIONS" or a file's path; NULL: the command line */
@@ -27,7 +27,7 @@ typedef struct _Source {
   ino_t file;
 } Source;
 
-/* What is wrong, behind where it is. */
+/* Write the message of a mistake; it begins with the place where the mistake is. */
 static void PETSC_ATTRIBUTE_FORMAT(3, 4) Wrong(Typed *t, const Source *from, const char format[], ...) {
   int used = 0;
   va_list arguments;
@@ -52,7 +52,7 @@ static void Append(Typed *t, const char *name, const char *value) {
   t->used += (size_t)sprintf(t->text + t->used, "%s%s", value ? "=" : "", value ? value : "") + 1;
 }
 
-/* Whether a word is an option's name and no value: a dash and a letter, but for -inf and -nan. */
+/* TRUE if a word is the name of an option and not a value: a dash and a letter, except -inf and -nan. */
 static PetscBool IsName(const Word *word) {
   PetscBool is = PETSC_FALSE;
   if (!word->quoted) (void)PetscOptionsValidKey(word->text, &is);
@@ -73,7 +73,7 @@ static void CheckName(Typed *t, const Source *from, const char *name) {
     Wrong(t, from, "%.100s: not the name of an option; allowed: up to %d letters, digits and _", name, MOST_NAME);
 }
 
-/* A word where an option should begin: behind an option with a value, or alone. */
+/* Write the message of a word that stands where an option should begin: after an option with a value, or alone. */
 static void WrongWord(Typed *t, const Source *from, const char *name, const char *value, const char *word) {
   const PetscBool comma = value && *value && (value[strlen(value) - 1] == ',' || *word == ',') ? PETSC_TRUE
                                                                                                : PETSC_FALSE;
@@ -164,7 +164,7 @@ static int Cut(char *line, Word word[]) {
   }
 }
 
-/* All words of a line, which is cut. */
+/* Take all words of a line; the line is cut into words. */
 static void TakeLine(Typed *t, const Source *from, char *line) {
   Word *word = (Word *)malloc((strlen(line) / 2 + 1) * sizeof(*word));
   const int n = word ? Cut(line, word) : 0;

@@ -15,7 +15,7 @@ static const char *const later[] = {"_ksp_view", "_ksp_converged_reason", "_ksp_
 #define LATER (sizeof(later) / sizeof(later[0]))
 #define LATER_VIEWERS 4
 
-/* Whether PETSc will read the option (without its dash) after the check, and if it is of a viewer. */
+/* TRUE if PETSc will read the option (given without its dash) after the check. viewer: the option names a viewer. */
 static PetscBool ReadLater(const char *name, PetscBool *viewer) {
   *viewer = PETSC_FALSE;
   for (size_t k = 0; k < LATE; k++)
@@ -79,7 +79,8 @@ static PetscInt Distance(const char *a, const char *b) {
   return row[n];
 }
 
-/* Whether `name` is the end of a longer name, -rate of -flow_rate, or its beginning, -vesicle_reduced. */
+/* TRUE if `name` is the end of a longer name (-rate of -flow_rate) or its beginning (-vesicle_reduced of
+   -vesicle_reduced_area). */
 static PetscBool IsPart(const char *name, const char *longer) {
   const size_t n = strlen(name) - 1, m = strlen(longer);
   if (n < 3 || m <= n + 1) return PETSC_FALSE;
@@ -87,7 +88,7 @@ static PetscBool IsPart(const char *name, const char *longer) {
   return strchr(name, '_') && longer[n + 1] == '_' && !strncmp(longer, name, n + 1) ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* What differs of two names: behind the words that they begin with alike. */
+/* Number of the first character after the words with which two names begin alike. */
 static size_t Alike(const char *a, const char *b) {
   size_t same = 0;
   for (size_t k = 0; a[k] && a[k] == b[k]; k++)
@@ -95,7 +96,8 @@ static size_t Alike(const char *a, const char *b) {
   return same;
 }
 
-/* The known name that is meant; NULL: none is near. A letter may be wrong, and one in four of what differs. */
+/* The known name that is nearest; NULL: no name is near. One letter may be wrong, and one in four of the letters that
+   follow the common words. */
 static const char *Meant(const OptionTable *t, const char *const others[], const char *name) {
   const char *best = NULL;
   PetscInt least = PETSC_MAX_INT;
@@ -111,7 +113,7 @@ static const char *Meant(const OptionTable *t, const char *const others[], const
   return best;
 }
 
-/* Whether words are in a name as whole words: inflow in -domain_inflow_x. */
+/* TRUE if a name has these words as whole words, as -domain_inflow_x has inflow. */
 static PetscBool HasWords(const char *name, const char *words) {
   const size_t n = strlen(words);
   for (const char *p = strstr(name, words); p; p = strstr(p + 1, words))
@@ -119,7 +121,8 @@ static PetscBool HasWords(const char *name, const char *words) {
   return PETSC_FALSE;
 }
 
-/* Whether a name is one of a suggestion's, "-nx *grid"; its words (*) are in no name of the table. */
+/* TRUE if a name is among the names of a suggestion, such as "-nx *grid". A word after * counts only if no name of the
+   table has the word. */
 static PetscBool IsAmong(const OptionTable *t, const char *names, const char *name) {
   for (const char *p = names; *p; p += strspn(p, " ")) {
     const size_t n = strcspn(p, " ");
@@ -134,7 +137,7 @@ static PetscBool IsAmong(const OptionTable *t, const char *names, const char *na
   return PETSC_FALSE;
 }
 
-/* Whether the table's options in force are what a solver needs: "-name value". */
+/* Find out whether the options in force are those that a solver needs: "-name value". */
 static PetscErrorCode HasOwner(const OptionTable *t, const void *values, const char need[], PetscBool *has) {
   const size_t n = strcspn(need, " ");
   char name[64], value[64] = "";

@@ -14,7 +14,7 @@
 typedef struct {
   PetscReal wanted;
   PetscReal adapt_tol, of_steps; /* 32 scenes: tank-treading, turning, relaxing, a channel, pairs */
-  PetscReal ksp_rtol, of_solver; /* the same */
+  PetscReal ksp_rtol, of_solver; /* these 32 scenes */
   PetscReal max_step, of_rest;   /* over nu R0^3/c_b; energy of shapes at rest */
 } Calibrated;
 
@@ -30,7 +30,7 @@ static const Calibrated *Row(Scene s) {
   return &calibrated[row];
 }
 
-#define ALIGNED 1e-6 /* of the strain: none, but for rounding */
+#define ALIGNED 1e-6 /* over the strain: a smaller rate of compression is rounding */
 #define SQUEEZED 3   /* nu R0^3/c_b times the rate of compression from which on steps are those of wrinkles */
 #define MOST_FINER 3 /* times the default's markers */
 #define WIDE 2       /* spacings: wider films are resolved */
@@ -41,12 +41,12 @@ static const Calibrated *Row(Scene s) {
 #define TAIL 0.15
 #define MOST_TAIL 0.3
 
-/* What films leave of the thickness, by spacings (docs/settings.md, Films). */
+/* Error of a film over its thickness, by the number of marker spacings in the film (docs/settings.md, Films). */
 static const struct {
   PetscReal spacings, error;
 } films[] = {{WIDE, 1e-5}, {1.5, 2e-4}, {1, 4e-3}, {.7, 1e-2}, {.5, 4e-2}, {.3, 1}};
 
-/* Rate at which the flow shortens vesicle v along its length; 0 if it does not, or is not known (1/time). */
+/* Rate at which the flow shortens vesicle v along its length (1/time); 0 if the flow does not, or is not known. */
 static PetscReal Compression(Scene scene, PetscInt v) {
   const Shape *s = &scene->shape;
   PetscReal mean[2], xx = 0, yy = 0, xy = 0, G[2][2];
@@ -73,7 +73,7 @@ static PetscReal Squeeze(Scene scene) {
   return largest > SQUEEZED ? largest : 0;
 }
 
-/* What a film so many spacings thick leaves of its thickness. */
+/* Error of a film over its thickness, interpolated between the rows of films. */
 static PetscReal FilmError(PetscReal spacings) {
   const int n = (int)(sizeof(films) / sizeof(films[0]));
   int k = 1;
@@ -113,7 +113,7 @@ static PetscErrorCode ReportFilm(Scene scene) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether the markers resolve the shapes and the films of the start. */
+/* Find out whether the markers resolve the shapes and the films of the start. */
 static PetscErrorCode Resolved(Scene scene, PetscBool *resolved) {
   const Shape *s = &scene->shape;
   const PetscReal tail = PetscMin(MOST_TAIL, TAIL * PetscSqrtReal(scene->scheme.wanted / 1e-3));
@@ -187,7 +187,7 @@ static PetscErrorCode SuggestTolerance(Draft s, char value[AUTO_TEXT], char why[
   return AutoNumber("%g", chi > 0 ? wanted / OF_WRINKLES : Row(s)->adapt_tol, value);
 }
 
-/* For the error at rest, and no more than the flow bears. */
+/* The largest step is that for the error at rest, but not larger than the flow bears. */
 static PetscErrorCode SuggestLargestStep(Draft s, char value[AUTO_TEXT], char why[AUTO_TEXT]) {
   const PetscReal rest = SceneRestTime(s), flow = SceneFlowStep(s), own = Row(s)->max_step;
   const PetscBool bends = s->time.adapt == ADAPT_ERROR && s->membrane.bending > 0 ? PETSC_TRUE : PETSC_FALSE;
@@ -205,7 +205,7 @@ static PetscErrorCode SuggestSolver(Draft s, char value[AUTO_TEXT], char why[AUT
   return PETSC_SUCCESS;
 }
 
-/* SceneChooseMarkers has chosen them. */
+/* The number of markers has been chosen by SceneChooseMarkers. */
 static PetscErrorCode SuggestMarkers(Draft s, char value[AUTO_TEXT], char why[AUTO_TEXT]) {
   (void)value;
   if (s->vesicles.markers > 0) (void)snprintf(why, AUTO_TEXT, "by the shapes, films and compression of the start");
@@ -301,10 +301,10 @@ static PetscErrorCode ReportSetting(Scene s, const char name[], const char why[]
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-#define MANY_MARKERS 700     /* from which on the block of a vesicle takes a second and more, */
-#define BLOCK_SECONDS 3.5e-9 /* times the third power of the markers */
+#define MANY_MARKERS 700     /* from so many markers on the block of a vesicle takes a second and more */
+#define BLOCK_SECONDS 3.5e-9 /* seconds of a block over the third power of the markers */
 
-/* That the dense blocks of the solve take long. */
+/* Warn of vesicles whose dense blocks in the solve take long to make. */
 static PetscErrorCode ReportMarkers(Scene scene) {
   PetscInt most = 0;
   PetscFunctionBeginUser;

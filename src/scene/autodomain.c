@@ -16,8 +16,8 @@
 #define LEAST_CELLS 3      /* a R0, below which the fields show nothing */
 #define BESIDE_OBSTACLES 2 /* times the cells: they are not in the calibration */
 
-/* Whether walls are no part of the question: not in a channel, under gravity, among obstacles, with a packing, or in a
-   flow that only its author knows. */
+/* TRUE if -scheme_auto may choose the box: not in a channel, under gravity, among obstacles, with a packing, or in a
+   custom flow. */
 static PetscBool LeavesBox(Scene s) {
   const PetscInt flow = s->flow.type;
   if (flow == FLOW_POISEUILLE || flow == FLOW_CUSTOM || s->obstacles.shape != OBSTACLE_NONE) return PETSC_FALSE;
@@ -35,7 +35,7 @@ static PetscErrorCode CountVesicles(Scene s, PetscInt *count) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether something is asked for that unbounded fluid does not have. */
+/* Find out whether the scene asks for something that unbounded fluid does not have. */
 static PetscErrorCode NeedsGrid(Scene s, PetscBool *needs) {
   static const char *const backends[] = {"-helmholtz_type", "-poisson_type"};
   const PetscBool box_part = SceneGiven(s, "-coupling_box_part") && s->coupling.box_part ? PETSC_TRUE : PETSC_FALSE;
@@ -54,8 +54,8 @@ static PetscErrorCode NeedsGrid(Scene s, PetscBool *needs) {
 
 #define UNBOUNDED "nothing asks for walls: unbounded, quasi-steady fluid"
 
-/* Where neither box nor boundaries are given and walls are no part of the question: unbounded fluid, or with what needs
-   a grid a period in x, but for extension, which is not periodic. */
+/* Choose boundaries where the user gives neither box nor boundaries and -scheme_auto may choose the box. The fluid is
+   unbounded; a scene that needs a grid has a period in x, except in extension, which is not periodic. */
 PetscErrorCode SceneSuggestBoundaryX(Draft s, char value[AUTO_TEXT], char why[AUTO_TEXT]) {
   PetscBool needs = PETSC_TRUE;
   PetscFunctionBeginUser;
@@ -81,8 +81,8 @@ PetscErrorCode SceneSuggestBoundaryY(Draft s, char value[AUTO_TEXT], char why[AU
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What box and grid go by: radii, the rectangle around all vesicles, and how near to a wall of the box they are;
-   packed vesicles are as near as the grid lets them. */
+/* The numbers that box and grid follow from: radii, the rectangle around all vesicles, and the least distance of a
+   vesicle from a wall of the box. Packed vesicles are as near to walls as the grid allows. */
 typedef struct {
   PetscInt vesicles;
   PetscReal small, large, around[4], gap;
@@ -123,7 +123,8 @@ static PetscReal Reach(Scene s, PetscInt vesicles) {
   return PetscSqrtReal(2 * OF_IMAGES * vesicles / s->scheme.wanted);
 }
 
-/* About the vesicles, its shorter side twice half a side long, its sides in proportion to cells that are given. */
+/* The box is centred on the vesicles. Half its shorter side is half the extent of the vesicles plus the reach of the
+   images; the sides are in proportion to cells that are given. */
 PetscErrorCode SceneSuggestBox(Draft s, char value[AUTO_TEXT], char why[AUTO_TEXT]) {
   const PetscBool free = FluidSpecIsFree(&s->fluid);
   PetscReal side[2], middle[2];
@@ -152,7 +153,7 @@ PetscErrorCode SceneSuggestBox(Draft s, char value[AUTO_TEXT], char why[AUTO_TEX
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* In unbounded fluid it is that of the fields. */
+/* Edge of the largest cell that the error allows; in unbounded fluid the edge of the cells of the fields. */
 static PetscReal LargestCell(Scene s, const Extent *e) {
   const PetscReal *box = s->domain.box.v, across = PetscMin(box[1] - box[0], box[3] - box[2]);
   const PetscReal finer = s->obstacles.shape == OBSTACLE_NONE ? 1 : BESIDE_OBSTACLES;

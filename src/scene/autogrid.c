@@ -28,8 +28,8 @@ AutoFluid SceneAutoFluid(Scene scene, PetscReal R0) {
   return SceneHasBoxPart(scene) ? AUTO_BOX_PART : AUTO_NO_BOX_PART;
 }
 
-/* What a grid of so many cells a R0 leaves, of markers or energy over R0, by the worst of the calibration; many: with
-   45 markers a vesicle or more. PETSC_MAX_REAL on grids coarser than any that was measured. */
+/* Worst error, of markers or energy over R0, that the calibration has for so many cells a R0; many: with 45 markers a
+   vesicle or more. PETSC_MAX_REAL on grids coarser than all that were measured. */
 static PetscReal GridError(AutoFluid fluid, PetscReal cells, PetscBool many) {
   for (int k = 0; k < GRIDS; k++)
     if (cells >= grids[k].cells * (1 - LEEWAY))
@@ -43,8 +43,7 @@ PetscReal SceneCellsFor(AutoFluid fluid, PetscReal error, PetscBool many) {
   return grids[k].cells;
 }
 
-/* What the grid leaves of R0 when a membrane begins `gap` from a wall (all lengths in R0), beside that of a grid
-   without walls near it. */
+/* Error over R0 that a wall adds when a membrane begins `gap` from the wall (all lengths in R0). */
 static PetscReal WallError(AutoFluid fluid, PetscReal gap, PetscReal h) {
   const PetscReal last = walls[0].cells * h;
   if (gap > last * (1 + LEEWAY)) return fluid == AUTO_BOX_PART ? 0 : walls[0].plain * last * last / gap;
@@ -53,7 +52,7 @@ static PetscReal WallError(AutoFluid fluid, PetscReal gap, PetscReal h) {
   return PETSC_MAX_REAL;
 }
 
-/* Whether n has no prime factor above 5: what Fourier transforms like. */
+/* TRUE if n has no prime factor above 5, so that Fourier transforms are fast. */
 static PetscBool IsSmooth(PetscInt n) {
   for (PetscInt prime = 2; prime <= 5; prime++)
     while (n % prime == 0) n /= prime;
@@ -117,7 +116,7 @@ static PetscReal WallGap(Scene scene) {
   return CurveWallGap(scene->shape.start[scene->shape.vesicles], scene->shape.X, &room, &side);
 }
 
-/* What walls leave that are so near that the grid is felt, and what it would take. */
+/* Print the error of walls that are near to a vesicle, and the grid that would be enough. */
 static PetscErrorCode ReportWall(Scene scene, AutoFluid fluid) {
   const PetscReal R0 = SceneSmallestRadius(scene), h = FluidSpecCellSize(&scene->fluid), gap = WallGap(scene);
   const PetscReal error = gap < PETSC_MAX_REAL ? WallError(fluid, gap / R0, h / R0) : 0, wanted = scene->scheme.wanted;

@@ -2,7 +2,8 @@
 #pragma once
 #include "scene/spec.h"
 
-/* What a grid leaves goes by the fluid: quasi-steady with the near field's box part, or without it, or with inertia. */
+/* The error of a grid depends on the fluid: quasi-steady with the near field's box part, quasi-steady without the box
+   part, or with inertia. */
 typedef enum { AUTO_BOX_PART, AUTO_NO_BOX_PART, AUTO_INERTIA } AutoFluid;
 
 /* SceneAutoFluid - which it is when the largest vesicle has this radius. SceneCellsFor - the fewest cells a R0 that

@@ -112,7 +112,7 @@ static PetscErrorCode CheckKinds(Scene scene, const char name[], PetscInt n, Pet
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What a list says of vesicles that are ellipses: as many numbers as there are vesicles or kinds. */
+/* Check the lists of vesicles: a list has one entry for all vesicles, one a vesicle, or one a kind. */
 static PetscErrorCode CheckVesicleLists(Scene scene) {
   const SceneVesicles *own = &scene->vesicles;
   PetscReal sum = 0;
@@ -176,7 +176,7 @@ static PetscErrorCode CheckScheme(Scene s) {
   return REFUSE(s, rules);
 }
 
-/* Lists have their lengths here. */
+/* The lists that the rules read have been checked for their lengths. */
 static PetscErrorCode CheckFlow(Scene s) {
   const PetscReal *b = s->domain.box.v, *u = s->flow.velocity.v;
   const PetscInt *bc = s->fluid.bc, type = s->flow.type;

@@ -1,4 +1,4 @@
-/* What a fluid is made from. */
+/* The specification of a fluid. */
 #pragma once
 #include "options/options.h"
 #include "scene/flow.h"
@@ -33,7 +33,7 @@ static inline PetscReal FluidSpecCellSize(const FluidSpec *spec) {
   return (spec->box[1] - spec->box[0]) / spec->cells[0];
 }
 
-/* FluidSpecPeriods - of both directions (length), 0 without. */
+/* FluidSpecPeriods - the periods in x and y (length); 0 where there is no period. */
 static inline void FluidSpecPeriods(const FluidSpec *spec, PetscReal period[2]) {
   for (int d = 0; d < 2; d++) period[d] = spec->bc[d] == BC_PERIODIC ? spec->box[2 * d + 1] - spec->box[2 * d] : 0;
 }

@@ -1,9 +1,9 @@
 #include "scene/inertia.h"
 #include "scene/properties.h"
 
-/* Below it a channel or a strain flow is quasi-steady by default. */
+/* Reynolds number below which a channel or a strain flow is quasi-steady by default. */
 #define SMALL_REYNOLDS 0.01
-/* Above it unsteady Stokes flow sends a vesicle that is carried along astray. */
+/* Reynolds number above which a vesicle that unsteady Stokes flow carries along goes astray. */
 #define CARRIED_REYNOLDS 0.05
 
 static PetscReal Reynolds(Scene scene, PetscReal R0) {
@@ -33,7 +33,7 @@ static PetscReal CarriedReynolds(Scene scene) {
   return most * SceneLargestRadius(scene) / scene->fluid.nu;
 }
 
-/* Whether u_inf takes up again across the periodic boundaries; dir: the first where it does not. */
+/* FALSE if u_inf differs across a periodic boundary; dir: the first direction in which it does. */
 static PetscBool Seamless(Scene scene, int *dir) {
   const PetscReal *b = scene->fluid.box, d = FluidSpecCellSize(&scene->fluid);
   PetscReal jump = 0, most = 0, u[2], v[2];
@@ -59,7 +59,8 @@ static PetscBool Seamless(Scene scene, int *dir) {
 /* Steps over the membrane's own time from which on no step was seen to succeed: rounding is all that is left. */
 #define MOST_STIFF 1e10
 
-/* What the fluid puts against the membrane: viscosity, or inertia over a step where the near field is not there. */
+/* Check that the step is not too long for the membrane's own time. The membrane is resisted by viscosity, or, without
+   the exact near field, by the inertia of a step. */
 static PetscErrorCode CheckStiffness(Scene scene) {
   const PetscReal R0 = SceneLargestRadius(scene), dt = scene->time.dt, inertia = R0 * R0 / dt;
   const PetscBool viscous = scene->coupling.near_field == NEAR_EXACT ? PETSC_TRUE : PETSC_FALSE;

@@ -24,8 +24,9 @@ static PetscErrorCode CheckMethod(Scene s) {
 }
 /* clang-format on */
 
-/* That a curve fits into the box and is off the walls that it does not stand on: with finer points next to a wall for
-   closed curves only (layers/finecurve.h), others keep a marker spacing. */
+/* Check that a curve fits into the box and keeps its distance from the walls that it does not stand on. The least
+   distance is KERNEL_FOLDED_CELLS for closed curves, which have finer points next to a wall (layers/finecurve.h), and a
+   marker spacing for others. */
 static PetscErrorCode CheckRoom(Scene scene, PetscInt b, int d, PetscReal low, PetscReal high) {
   const SceneObstacles *own = &scene->obstacles;
   const FluidSpec *f = &scene->fluid;
@@ -43,7 +44,8 @@ static PetscErrorCode CheckRoom(Scene scene, PetscInt b, int d, PetscReal low, P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* And large enough for the grid: a bump along its wall, a spanning curve anyway. */
+/* Check the place of a curve, and that the curve is at least LEAST_ACROSS cells across: a bump only along its wall; a
+   spanning curve may be flat. */
 static PetscErrorCode CheckPlace(Scene scene, PetscInt b) {
   const SceneObstacles *own = &scene->obstacles;
   const Shape *s = &own->outline;
@@ -64,7 +66,7 @@ static PetscErrorCode CheckPlace(Scene scene, PetscInt b) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether curve b, or an image of it, holds the point; a spanning one holds none. */
+/* TRUE if curve b, or an image of it, holds the point; a spanning curve holds no point. */
 static PetscBool Holds(const Shape *s, PetscInt b, const PetscReal X[2], const PetscReal period[2]) {
   return s->kind && s->kind[b].type == CURVE_SPANNING ? PETSC_FALSE : ShapeHolds(s, b, X, period);
 }
@@ -117,7 +119,7 @@ static PetscInt SolidAt(const SceneObstacles *own, PetscInt self, const PetscRea
   return -1;
 }
 
-/* That no vesicle and no obstacle is in a solid. */
+/* Check that no vesicle and no obstacle is in a solid. */
 static PetscErrorCode CheckInside(Scene scene, const PetscReal period[2]) {
   const SceneObstacles *own = &scene->obstacles;
   const Shape *s = &own->outline, *vesicles = &scene->shape;
@@ -139,7 +141,7 @@ static PetscErrorCode CheckInside(Scene scene, const PetscReal period[2]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What is around the obstacles and the vesicles, which cross none. */
+/* Find the containers around obstacles and vesicles and the vesicles around obstacles, given that no curves cross. */
 static void FindAround(const Shape *vesicles, const PetscReal period[2], SceneObstacles *own) {
   const Shape *s = &own->outline;
   for (PetscInt v = 0; v < vesicles->vesicles; v++)
@@ -152,7 +154,7 @@ static void FindAround(const Shape *vesicles, const PetscReal period[2], SceneOb
   }
 }
 
-/* That between obstacles, and between one and its images, markers resolve a gap. */
+/* Check that markers resolve the gaps between obstacles and between an obstacle and its images. */
 static PetscErrorCode CheckGaps(Scene scene, const PetscReal period[2]) {
   const SceneObstacles *own = &scene->obstacles;
   const Shape *s = &own->outline;
@@ -179,7 +181,7 @@ static PetscErrorCode CheckGaps(Scene scene, const PetscReal period[2]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* That no obstacle crosses another one, itself or a vesicle. */
+/* Check that no obstacle crosses another one, itself or a vesicle. */
 static PetscErrorCode CheckCrossing(Scene scene, const PetscReal period[2]) {
   const Shape *s = &scene->obstacles.outline, *v = &scene->shape;
   const PetscInt n = v->vesicles, M = v->start[n], all = n + s->vesicles;
@@ -210,8 +212,8 @@ static PetscErrorCode CheckCrossing(Scene scene, const PetscReal period[2]) {
 
 #define MOST_FLUX 1e-6 /* of the sum of |U| ds */
 
-/* That what a curve's surface does, less a uniform flow, moves no fluid through it where it is not closed. Other flows
-   have no flux through walls and across periods. */
+/* Check that the velocity of a curve that is not closed, less a uniform flow, moves no fluid through the curve. Other
+   flows have no flux through walls and across periods. */
 static PetscErrorCode CheckFlux(Scene scene, PetscInt b) {
   const SceneObstacles *own = &scene->obstacles;
   const Shape *s = &own->outline;
@@ -244,7 +246,7 @@ static PetscErrorCode CheckFlux(Scene scene, PetscInt b) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Only closed curves move, and one of those at least. */
+/* Check that only closed curves move, and that one of them does. */
 static PetscErrorCode CheckMotion(Scene scene) {
   const SceneObstacles *own = &scene->obstacles;
   const Shape *s = &own->outline;

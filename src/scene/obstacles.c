@@ -53,7 +53,7 @@ static PetscErrorCode CreateOutlines(Scene scene, PetscInt count, Outlines *o) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Circles with what the options say of each. */
+/* Make circles, with the velocity and rotation that the options give each of them. */
 static PetscErrorCode MakeCircles(Scene scene, PetscInt count, Outlines *o) {
   const SceneObstacles *own = &scene->obstacles;
   const PetscBool lattice = own->lattice.n == 2 && own->lattice.v[0] > 0 ? PETSC_TRUE : PETSC_FALSE;
@@ -131,7 +131,7 @@ static PetscErrorCode MakeFromFile(Scene scene, Outlines *o) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Which parts of open curves count. */
+/* Find the parts of open curves that carry markers. */
 static PetscErrorCode Cut(Scene scene, Outlines *o) {
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(2 * o->count, &o->part, o->count, &o->wall));
@@ -144,8 +144,8 @@ static PetscErrorCode Cut(Scene scene, Outlines *o) {
 
 #define LEAST_MARKERS 15
 #define MOST_MARKERS 40000
-#define MOST_DENSE 4000    /* of which the preconditioner may have a dense block, */
-#define MOST_TOGETHER 2000 /* and has one where it can do without */
+#define MOST_DENSE 4000    /* markers that a dense block of the preconditioner may have */
+#define MOST_TOGETHER 2000 /* markers up to which all obstacles share a dense block */
 
 /* An odd number of markers on each curve that repeats; on open ones none farther apart than wanted, so that the first
    is half a spacing off its wall. */
@@ -167,7 +167,7 @@ static PetscErrorCode Number(Scene scene, const Outlines *o, Shape *shape) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether the preconditioner takes its block of the obstacles apart (-obstacle_factor). */
+/* Choose whether each obstacle has its own block in the preconditioner (-obstacle_factor). */
 static PetscErrorCode ChooseFactor(Scene scene, const Outlines *o, SceneObstacles *own) {
   const FluidSpec *f = &scene->fluid;
   const PetscInt markers = own->outline.start[o->count];

@@ -1,14 +1,14 @@
-/* Where vesicles lie: at the centres given, or packed into the box. */
+/* The places of vesicles: at the centres given, or packed into the box. */
 #include "scene/vesicles.h"
 #include "kernel/kernel.h"
 #include "scene/properties.h"
 #include <stdlib.h>
 
-#define GAP_CELLS 1    /* of the default gap of a packing, */
+#define GAP_CELLS 1    /* cells of the default gap of a packing */
 #define LEEWAY 0.25    /* cells that markers fitted to an ellipse may lie beside it */
-#define GAP_RADII 0.05 /* and at most so many R0 of the smallest vesicle */
+#define GAP_RADII 0.05 /* largest default gap, over R0 of the smallest vesicle */
 
-/* A cell, but not more than a twentieth of R0: a film that the near field resolves. */
+/* The gap of a packing: a cell, but at most a twentieth of R0, a film that the near field resolves. */
 static PetscReal Gap(Scene scene, const Kinds *kinds) {
   PetscReal R0 = PETSC_MAX_REAL;
   if (scene->vesicles.packing_gap > 0) return scene->vesicles.packing_gap;

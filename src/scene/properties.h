@@ -1,4 +1,4 @@
-/* What follows from the options of a scene: numbers of a vesicle, times, which parts the method has. */
+/* Numbers that follow from the options of a scene: of a vesicle, times, and which parts the method has. */
 #pragma once
 #include "curve/contacts.h"
 #include "scene/spec.h"

@@ -1,5 +1,5 @@
-/* What the rest of the program may ask of a scene. SceneCreate resolves all of it from the user's options, every
-   default included; from then on it is only read. */
+/* A scene for the rest of the program. SceneCreate resolves the scene from the options of the user, every default
+   included; from then on the scene is only read. */
 #pragma once
 #include "scene/auto.h"
 #include "scene/properties.h"

@@ -25,11 +25,11 @@ typedef struct {
 
 typedef struct {
   PetscInt shape;               /* ShapeType */
-  PetscInt count;               /* of vesicles, but of a file's */
+  PetscInt count;               /* number of vesicles; a file has its own number */
   RealList axes, center, angle; /* semi-axes, centre, angle in degrees; one entry for all, or one a vesicle */
-  RealList area, reduced_area;  /* instead of semi-axes, and of biconcave outlines */
-  PetscReal area_scale;         /* of the areas, where a packing of so many vesicles chooses them; else 1 */
-  RealList mixture;             /* parts of the vesicles' number; one: no mixture */
+  RealList area, reduced_area;  /* of ellipses in place of semi-axes, and of biconcave outlines */
+  PetscReal area_scale;         /* factor of the areas where a packing of -vesicle_count vesicles chooses it; else 1 */
+  RealList mixture;             /* fraction of the vesicles that each kind has; one entry: no mixture */
   PetscInt *kind;               /* [count] with a mixture: which entry of the lists a vesicle takes; else NULL */
   PetscReal packing;            /* area fraction; 0: vesicles lie at their centres */
   PetscInt packing_type;        /* PackingType */
@@ -43,8 +43,8 @@ typedef struct {
 
 typedef struct {
   RealList stiffness;       /* c_b; one entry for all, or one a vesicle or kind */
-  PetscReal bending;        /* the largest of them */
-  PetscReal *each;          /* [vesicles] c_b of each */
+  PetscReal bending;        /* the largest c_b */
+  PetscReal *each;          /* [vesicles] c_b */
   RealList viscosity_ratio; /* inside over outside; one for all, or one a vesicle or kind */
   PetscInt derivative;      /* DerivativeType */
 } SceneMembrane;
@@ -67,20 +67,20 @@ typedef struct {
   char file[PETSC_MAX_PATH_LEN]; /* curve file */
   PetscReal spacing;             /* ds/h */
   PetscInt factor;               /* ObstacleFactor */
-  PetscBool modes;               /* what has come of it */
-  Shape outline;                 /* their markers, the same on every rank */
-  PetscReal *velocity, *turn;    /* [2 curves], [curves] of their surfaces */
-  PetscBool *container;          /* [curves] the fluid is inside */
+  PetscBool modes;               /* the block of each curve, as factor asks for or auto chooses */
+  Shape outline;                 /* markers of the obstacles, equal on all ranks */
+  PetscReal *velocity, *turn;    /* [2 curves] velocities and [curves] rates of rotation of the surfaces */
+  PetscBool *container;          /* [curves] the fluid is inside the curve */
   PetscInt *holder;              /* [vesicles + curves] the container around each; -1: none */
   PetscInt *vesicle;             /* [curves] the vesicle around each; -1: none */
-  PetscBool *circle;             /* [curves] the same curve whichever way it is turned */
-  PetscInt *wall;                /* [curves] 2 direction + side of the wall that an open one is on; -1 of others */
+  PetscBool *circle;             /* [curves] a turn does not change the curve */
+  PetscInt *wall; /* [curves] 2 direction + side of the wall that an open curve is on; -1 of other curves */
 } SceneObstacles;
 
 typedef struct {
   char kernel[OPTION_MAX_NAME]; /* between grid and markers */
   PetscInt near_field;          /* NearFieldType */
-  PetscBool box_part;           /* of the near field: what the box adds, to fourth order */
+  PetscBool box_part;           /* the near field has the velocities that walls and images add, to fourth order */
   PetscReal ksp_rtol;           /* default of -coupled_ksp_rtol */
 } SceneCoupling;
 
@@ -131,7 +131,7 @@ typedef struct {
 
 struct _p_Scene {
   MPI_Comm comm;
-  OptionTable options; /* whose values are in here */
+  OptionTable options; /* the options, whose values are in this struct */
   SceneDomain domain;
   FluidSpec fluid;
   Flow flow;
@@ -146,7 +146,7 @@ struct _p_Scene {
   SceneOutput output;
   SceneLimits limits;
   PetscBool view, allow_unused;
-  Shape shape;                      /* the initial markers, the same on every rank */
+  Shape shape;                      /* the initial markers, equal on all ranks */
   PetscReal reynolds;               /* speed R0/nu, see docs/fluid.md; 0 without vesicles */
   char warning[PETVES_MAX_MESSAGE]; /* of the model chosen; empty when there is none */
 };

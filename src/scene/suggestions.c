@@ -1,5 +1,5 @@
-/* What people ask for by names that the program does not have: the option that does it, or that nothing does; and what
-   a scene has no use for. */
+/* Names that the program does not have, with the option that is meant or the answer that there is none; and options for
+   which a scene has no use. */
 #include "scene/scene.h"
 
 #define NO "; README.md, What petves does not do"

@@ -65,7 +65,7 @@ static PetscBool IsChannel(const void *scene) {
 }
 
 #define IS(value) (1u << (value))
-/* What a scene must have for an option to mean something: the last but one column of the table. */
+/* Conditions under which an option means something: the last but one column of the table. */
 /* clang-format off */
 static const OptionNeed
   need_strain = {"-flow_type shear or extension", AT(flow.type), IS(FLOW_SHEAR) | IS(FLOW_EXTENSION)},

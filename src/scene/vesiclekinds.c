@@ -1,4 +1,4 @@
-/* The kinds of vesicles of a scene: which vesicle is of which, and the markers that all of a kind share. */
+/* The kinds of vesicles of a scene: the kind of each vesicle, and the markers that all vesicles of a kind share. */
 #include "scene/vesicles.h"
 #include "kernel/kernel.h"
 #include "scene/checks.h"
@@ -28,9 +28,9 @@ static PetscReal Chi(Scene scene, PetscReal R0, PetscReal bending) {
 #define STRONG 100 /* chi from which on membranes wrinkle */
 #define THINNEST 8 /* times the markers of a round vesicle, at most */
 
-/* With the exact near field markers have to resolve the shape, not the grid: 45 for a reduced area of 0.6 and more, in
-   proportion more for thinner ones, half as many more where the flow is so strong that membranes wrinkle; and no edge
-   longer than two cells, so that the kernel leaks nothing. */
+/* Number of markers for the exact near field, where markers have to resolve the shape and not the grid: 45 for a
+   reduced area of 0.6 and more, in proportion more for thinner vesicles, and half as many more where the flow is so
+   strong that membranes wrinkle. No edge is longer than two cells, so that the kernel leaks nothing. */
 static PetscReal WantedByShape(Scene scene, const Kind *kind) {
   const PetscReal length = kind->length, V = 4 * PETSC_PI * kind->area / PetscSqr(length),
                   thin = PetscMin(THINNEST, PetscMax(1, 0.6 / V));
@@ -76,7 +76,7 @@ static PetscErrorCode MarkerCount(Scene scene, const Kind *kind, PetscInt *M) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* That M markers on a curve are as far apart as kernel and near field need. */
+/* Check that M markers on a curve are as far apart as kernel and near field need. */
 static PetscErrorCode CheckSpacing(Scene scene, const Kind *kind, PetscInt M) {
   const Kernel *kernel = KernelFind(scene->coupling.kernel);
   const SceneVesicles *own = &scene->vesicles;
@@ -109,8 +109,8 @@ PetscErrorCode KindFit(Scene scene, Kind *kind) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What makes vesicle v an ellipse or a biconcave outline: area and reduced area or both semi-axes, and the bending
-   stiffness. */
+/* The numbers that define the curve of vesicle v, an ellipse or a biconcave outline: area and reduced area or both
+   semi-axes, and the bending stiffness. */
 static void EllipseKey(Scene scene, PetscInt v, PetscReal key[3]) {
   const SceneVesicles *own = &scene->vesicles;
   const PetscBool by_area = SceneByArea(scene);
@@ -230,7 +230,8 @@ static PetscErrorCode MixKinds(Draft scene) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What a number stands for: `unit` c_b/(nu R0^power), of the largest vesicle. */
+/* The rate or velocity that the dimensionless `number` stands for: number c_b/(nu R0^power), R0 of the largest vesicle.
+ */
 static PetscErrorCode DeriveFlow(Draft scene, const char name[], PetscReal number, const char stands_for[], int power,
                                  PetscReal *value) {
   const PetscReal R0 = scene->shape.longest / (2 * PETSC_PI);

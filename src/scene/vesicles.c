@@ -44,7 +44,8 @@ void KindExtend(const Kind *kind, const Pose *at, PetscReal around[4]) {
   }
 }
 
-/* That a curve, turned and moved, is between the walls and no longer than a period: before markers are fitted to it. */
+/* Check that a curve, turned and moved, is between the walls and no longer than a period, before markers are fitted to
+   the curve. */
 static PetscErrorCode CheckRoom(Scene scene, const Kind *kind, const Pose *at, PetscInt v) {
   const FluidSpec *f = &scene->fluid;
   PetscReal around[4] = KIND_NOWHERE;
@@ -68,7 +69,8 @@ static PetscErrorCode CheckRoom(Scene scene, const Kind *kind, const Pose *at, P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The first vesicles of which one, or its image, lies within the other, given that none cross; -1: none. */
+/* The first two vesicles of which one, or an image of it, lies within the other, given that no vesicles cross; -1:
+   none. */
 static void FindWithin(const Shape *s, const PetscReal period[2], PetscInt pair[2]) {
   for (PetscInt a = 0; a < s->vesicles; a++)
     for (PetscInt b = 0; b < s->vesicles; b++) {
@@ -100,7 +102,7 @@ static PetscErrorCode CheckOverlap(Scene scene, const Shape *s) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Where each vesicle's markers start, of kinds that are fitted when they are met first. */
+/* Number the markers of all vesicles; a kind is fitted when its first vesicle is met. */
 static PetscErrorCode Number(Scene scene, Kinds *kinds, Shape *shape) {
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(shape->vesicles + 1, &shape->start));
