@@ -204,8 +204,9 @@ docs: ## the pages of docs/ as a site: build/docs/index.html
 	$(call install_packages,mkdocs)
 	mkdocs build -q --strict
 
-manual: all ## the manual page and completion for bash, into build/
+manual: all ## the manual page, completion for bash and the pages with their tables, into build/
 	$(PYTHON) python/make_manual.py $(BIN)/petves $(BUILD)
+	$(PYTHON) python/page_tables.py docs $(BUILD)/pages
 
 $(BUILD)/petves.pc: packaging/petves.pc.in FORCE
 	sed -e 's|@PREFIX@|$(abspath $(PREFIX))|; s|@VERSION@|$(VERSION)|' $< > $@
@@ -227,7 +228,7 @@ install: manual $(BUILD)/petves.pc ## install under PREFIX (/usr/local): program
 	install -m 644 $(BUILD)/petves.bash $(PREFIX)/share/bash-completion/completions/petves
 	install -d $(PREFIX)/share/doc/petves/docs
 	install -m 644 README.md CHANGELOG.md CONTRIBUTING.md CITATION.cff LICENSE $(PREFIX)/share/doc/petves/
-	install -m 644 docs/*.md docs/*.png docs/*.ipynb $(PREFIX)/share/doc/petves/docs/
+	install -m 644 $(BUILD)/pages/*.md docs/*.png docs/*.ipynb $(PREFIX)/share/doc/petves/docs/
 	cp -r runs python/examples $(PREFIX)/share/petves/
 	install -m 644 python/petves/*.py python/petves/*.pyi python/petves/py.typed $(PYTHON_DIR)/petves/
 	install -m 644 python/petves/views/*.py python/petves/views/*.html $(PYTHON_DIR)/petves/views/

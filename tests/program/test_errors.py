@@ -1,6 +1,7 @@
 """A user's mistake stops the run before the first step, with one line that names the option, the value and what is
 allowed. A step that cannot be taken stops it with the reason, and leaves checkpoint.h5 and summary.json."""
 
+import csv
 import re
 from pathlib import Path
 
@@ -77,19 +78,18 @@ OPTIONS = {
 
 
 #: Groups of rows that say why a scene is refused, however its options were given.
-SCENES = ("Options", "Geometry")
+SCENES = ("options", "geometry")
+MESSAGES = ROOT / "tests" / "repo" / "messages"
 
 
 def rows() -> list[tuple[str, str, int, str]]:
-    """Group, options, ranks and message of every row of docs/errors.md."""
-    found, group = [], ""
-    for line in (ROOT / "docs" / "errors.md").read_text().splitlines():
-        if line.startswith("## "):
-            group = line[3:]
-        elif line.startswith("| `"):
-            cells = re.split(r"(?<!\\)\|", line)[1:-1]
-            options, ranks, message = (cell.strip().replace("\\|", "|") for cell in cells)
-            found.append((group, options.strip("`"), int(ranks), message))
+    """Group, options, ranks and message of every row of tests/repo/messages that is made by options alone."""
+    found = []
+    for path in sorted(MESSAGES.glob("*.csv")):
+        with path.open(newline="") as file:
+            for row in csv.DictReader(file):
+                if "options" in row:
+                    found.append((path.stem, row["options"], int(row["ranks"]), row["message"]))
     return found
 
 
@@ -136,21 +136,23 @@ def test_program_refuses_scene(options, ranks, message, tmp_path):
     "group, options, ranks, message", [row for row in rows() if row[0] not in SCENES], ids=lambda value: str(value)[:40]
 )
 def test_mistake_is_named(group, options, ranks, message, tmp_path, monkeypatch):
-    """A row of docs/errors.md, in a run: this line and no other; bad input before any step, a failed step with the last
+    """A row of tests/repo/messages, in a run: this line and no other; bad input before any step, a failed step with the last
     good state."""
     monkeypatch.chdir(tmp_path)
     run = run_petves(tmp_path / "out", with_files(options, tmp_path), ranks, good=False, timeout=60)
     assert matches(f"petves: error: {message}", "\n".join(run.errors)), run.errors
-    if group == "Steps":
+    if group == "steps":
         leaves_files(run, "")
     else:
         stops_with(run, [])
 
 
-def test_page_has_rows_of_every_kind():
-    assert len(rows()) >= 80
-    groups = {"Words and option files", "Options", "Geometry", "Ranks", "Files", "Solver settings", "Steps"}
+def test_there_are_rows_of_every_kind_and_the_page_shows_them():
+    assert len(rows()) >= 300
+    groups = {"words", "options", "geometry", "ranks", "files", "solvers", "steps"}
     assert {group for group, *_ in rows()} == groups
+    shown = re.findall(r"messages/(\w+)\.csv", (ROOT / "docs" / "errors.md").read_text())
+    assert sorted(shown) == sorted(path.stem for path in MESSAGES.glob("*.csv"))
 
 
 @pytest.mark.parametrize("ranks", [1, 2])

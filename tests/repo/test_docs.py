@@ -1,8 +1,10 @@
 """README and docs/: every link leads somewhere, every page is in the index and in the site."""
 
+import csv
 import re
 import shutil
 import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -89,6 +91,17 @@ def test_site_is_built(tmp_path):
     )
     assert done.returncode == 0 and not done.stderr, done.stdout + done.stderr
     assert "<h1" in (tmp_path / "method.html").read_text() and (tmp_path / "shear.png").is_file()
+
+
+def test_tables_stand_in_the_pages_that_are_made(tmp_path):
+    """A link to a CSV file alone in its line becomes a table: rows are those of the file, options are code."""
+    command = [sys.executable, ROOT / "python" / "page_tables.py", ROOT / "docs", tmp_path]
+    assert subprocess.run(command, check=False).returncode == 0
+    with (ROOT / "tests" / "repo" / "messages" / "words.csv").open(newline="") as file:
+        first = list(csv.reader(file))[1]
+    made = (tmp_path / "errors.md").read_text()
+    assert f"| `{first[0]}` | {first[1]} | {first[2]} |\n" in made and ".csv)" not in made
+    assert len({page.name for page in tmp_path.glob("*.md")}) == len(list(ROOT.glob("docs/*.md")))
 
 
 def unknown(text: str) -> set[str]:
