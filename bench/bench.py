@@ -1,4 +1,4 @@
-"""`make bench`: measure, keep every number in bench/results, write the tables and pictures of docs/performance.md and docs/performance.
+"""`make bench`: measure, keep every number in bench/results, write the tables and pictures of docs/performance.
 
 Each item is a file of results. Runs that are in it are not made again, so a stopped bench goes on; `make bench` after
 `rm bench/results/size.json` repeats that item. Runs of an item are made in turn, round by round.
@@ -135,13 +135,12 @@ def main() -> int:
     """Run every item, then write the report."""
     quick = os.environ.get("QUICK", "") not in ("", "0")
     folder = ROOT / "out" / "bench" if quick else ROOT / "bench"
-    pages = folder if quick else ROOT / "docs"
     results = folder / "results"
     results.mkdir(parents=True, exist_ok=True)
     (results / "machine.json").write_text(json.dumps(machine(), indent=1) + "\n")
     for name, runs in items(quick).items():
         run_item(name, runs, results)
-    for path in report(results, ROOT / "docs", pages):
+    for path in report(results, (folder if quick else ROOT / "docs") / "performance"):
         print(path)
     return 0
 

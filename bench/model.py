@@ -13,7 +13,7 @@ ROWS = 0.15  # part of all rows that membranes reach: the bench's vesicle with i
 COLUMNS = 0.25  # and of the columns, within which forces are cleared, spread and squared
 FELT = 0.3  # of the modes above and below them, that feel a force there
 BYTES = 8
-SORTED = 0.6e-6  # rows and stencils of a marker sorted on every rank, a step (docs/performance.md, A thousand vesicles)
+SORTED = 0.6e-6  # rows and stencils of a marker sorted on every rank, a step (docs/evidence.md, A thousand vesicles)
 
 
 @dataclass
@@ -163,7 +163,7 @@ def finer(n: int) -> Scene:
 
 def more(n: int) -> Scene:
     """Return a box of n x n cells that grows, with as many vesicles an area, each as on 512 x 512 cells; membranes are in all
-    rows, and a step takes more iterations (docs/performance.md, A thousand vesicles).
+    rows, and a step takes more iterations (docs/evidence.md, A thousand vesicles).
     """
     return Scene(n, MARKERS * 512, its=6, vesicles=(n / 512) ** 2, rows=1)
 

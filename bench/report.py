@@ -1,17 +1,15 @@
-"""Tables and pictures of docs/performance.md and docs/performance, from bench/results. A table replaces what is between
-its two marks."""
+"""Tables and pictures of docs/performance, from bench/results."""
 
 from __future__ import annotations
 
 import json
-import re
 from pathlib import Path
 
 import numpy as np
 
 import model
 from petves.views.plot import new_figure, save_figure
-from petves.tables import table
+from petves.tables import write_csv
 
 Kept = dict[str, list[dict]]
 
@@ -42,46 +40,33 @@ def share(one: dict) -> float:
     return float(np.sum(one["rest"]) / (np.sum(one["rest"]) + np.sum(one["fast"])))
 
 
-PAGES = ("performance.md", "performance/tables.md", "performance/model.md")
+Table = tuple[list[str], list[list[str]]]
 
 
-def report(results: Path, docs: Path, folder: Path) -> list[Path]:
-    """Write the pages of docs with their tables filled in, and the pictures, into a folder; return the paths."""
-    pictures = folder / "performance"
-    pictures.mkdir(parents=True, exist_ok=True)
-    rates, blocks = _fitted(results)
-    blocks |= {
+def report(results: Path, folder: Path) -> list[Path]:
+    """Write the tables that docs/evidence.md and docs/performance/model.md show, and the pictures, into a folder; return the
+    paths."""
+    folder.mkdir(parents=True, exist_ok=True)
+    rates, fitted = _fitted(results)
+    tables = {
         "machine": _machine(results),
         "solve": _solve(results),
         "step": _step(results),
         "ranks": _ranks(results),
-        "size": _size(results),
         "steady": _steady(results),
         "solvers": _solvers(results),
         "startup": _startup(results),
-        "predictions": _predictions(rates),
     }
-    texts = {name: (docs / name).read_text() for name in PAGES}
-    marks = [mark for text in texts.values() for mark in re.findall(r"<!-- (\w+) -->\n", text) if mark != "end"]
-    assert sorted(marks) == sorted(blocks), f"marks of {docs}: {sorted(set(marks) ^ set(blocks)) or marks}"
-    for name, text in texts.items():
-        (folder / name).write_text(_filled(text, blocks))
-    written = [folder / name for name in PAGES]
-    return [*written, _draw_solves(results, pictures), _draw_size(results, pictures), _draw_model(rates, pictures)]
+    tables |= _size(results) | fitted | _predictions(rates)
+    written = [write_csv(folder / f"{name}.csv", *table) for name, table in tables.items()]
+    return [*written, _draw_solves(results, folder), _draw_size(results, folder), _draw_model(rates, folder)]
 
 
-def _filled(text: str, blocks: dict[str, list[str]]) -> str:
-    """Return a page with the lines of a block between each pair of marks."""
-    mark = r"(<!-- (\w+) -->\n).*?(<!-- end -->)"
-    body = lambda m: f"{m[1]}\n" + "\n".join(blocks[m[2]]).strip() + f"\n\n{m[3]}"  # noqa: E731
-    return re.sub(mark, body, text, flags=re.DOTALL)
+def _machine(results: Path) -> Table:
+    return ["what", "this machine"], [[k, v] for k, v in json.loads((results / "machine.json").read_text()).items()]
 
 
-def _machine(results: Path) -> list[str]:
-    return table(["", ""], [[k, v] for k, v in json.loads((results / "machine.json").read_text()).items()])
-
-
-def _solve(results: Path) -> list[str]:
+def _solve(results: Path) -> Table:
     """Fast solves over copies and over fftw, medians of ratios within a repetition."""
     rows = []
     for one in (one for lines in load(results, "solve").values() for one in lines):
@@ -92,10 +77,10 @@ def _solve(results: Path) -> list[str]:
         line.append(f"{one['fftw_tridiagonal_residual']:.0e}" if one["what"] != "stokes" else "")
         rows.append(line)
     header = ["cells", "ranks", "box", "solve", "ms", "over a copy", "fftw over it", "hypre over it", "residual"]
-    return table(header, rows)
+    return header, rows
 
 
-def _step(results: Path) -> list[str]:
+def _step(results: Path) -> Table:
     rows = []
     for name, one in gathered(load(results, "share")).items():
         scheme, cells, box, ranks = name.split()
@@ -105,10 +90,10 @@ def _step(results: Path) -> list[str]:
             [scheme, f"{cells}^2", box, ranks, f"{1e3 * median(one['step']):.3g}", f"{100 * share(one):.0f} %", f"{median(one['nsolve']):.0f}", shown]  # fmt: skip
         )
     header = ["scheme", "cells", "box", "ranks", "ms a step", "besides fast solves", "scalar solves", "iterations"]
-    return table(header, rows)
+    return header, rows
 
 
-def _ranks(results: Path) -> list[str]:
+def _ranks(results: Path) -> Table:
     """Speed-up of two ranks, round by round."""
     rows = []
     for item in ("share", "ranks"):
@@ -123,7 +108,7 @@ def _ranks(results: Path) -> list[str]:
             ratios = [median(one[k]) / median(two[k]) for k in ("step", "fast", "rest")]
             size = cells if "x" in cells else f"{cells}^2"
             rows.append([scheme, size, box, *(f"{q:.2f}" for q in ratios)])
-    return table(["scheme", "cells", "box", "step", "fast solves", "rest"], rows)
+    return ["scheme", "cells", "box", "step", "fast solves", "rest"], rows
 
 
 def _sizes(results: Path, box: str) -> list[dict]:
@@ -140,8 +125,9 @@ def _deviation(cells: np.ndarray, seconds: np.ndarray) -> tuple[float, np.ndarra
     return c, seconds / (c * work) - 1
 
 
-def _size(results: Path) -> list[str]:
-    lines = []
+def _size(results: Path) -> dict[str, Table]:
+    """Steps and solves by size, of each box."""
+    tables = {}
     for box in ("channel", "walls"):
         runs = _sizes(results, box)
         cells = np.array([one["cells"][0] for one in runs])
@@ -157,36 +143,36 @@ def _size(results: Path) -> list[str]:
                  f"{1e3 * each[k]:.2f}", f"{100 * solve[k]:+.0f} %", f"{100 * share(one):.0f} %", grown]
             )  # fmt: skip
         header = ["cells", "markers", "ms a step", "off N log N", "scalar solves", "ms a solve", "off N log N", "besides", "doubles a cell"]  # fmt: skip
-        lines += [f"coupled, {box}:\n", *table(header, rows)]
-    return lines
+        tables[f"size_{box}"] = (header, rows)
+    return tables
 
 
-def _steady(results: Path) -> list[str]:
+def _steady(results: Path) -> Table:
     rows = []
     for name, one in gathered(load(results, "steady")).items():
         scheme, cells, box, _ = name.split()
         n, its = np.array(one["nsolve"]), np.array(one["coupled_its"])
         rows.append([f"{cells}^2", box, f"{n.mean():.1f}", f"{n.max():.0f}", f"{its.mean():.1f}"])
-    return table(["cells", "box", "scalar solves a step", "most", "iterations"], rows)
+    return ["cells", "box", "scalar solves a step", "most", "iterations"], rows
 
 
-def _solvers(results: Path) -> list[str]:
+def _solvers(results: Path) -> Table:
     rows = []
     found = gathered(load(results, "solvers"))
     for name, one in found.items():
         back_end, cells, box, ranks = name.split()
         base = median(found[f"fftw_tridiagonal {cells} {box} {ranks}"]["step"])
         rows.append([f"{cells}^2", back_end, f"{1e3 * median(one['step']):.3g}", f"{median(one['step']) / base:.1f}", f"{median(one['nsolve']):.0f}"])  # fmt: skip
-    return table(["cells", "", "ms a step", "over fftw_tridiagonal", "scalar solves"], rows)
+    return ["cells", "back end", "ms a step", "over fftw_tridiagonal", "scalar solves"], rows
 
 
-def _startup(results: Path) -> list[str]:
+def _startup(results: Path) -> Table:
     rows = []
     for name, one in gathered(load(results, "startup")).items():
         _, cells, box, _ = name.split()
         start = np.array(one["setup"]) + np.array(one["first"])
         rows.append([f"{cells}^2", box, f"{median(one['setup']):.2f}", f"{median(start):.2f}"])
-    return table(["cells", "box", "set-up, s", "set-up and first step, s"], rows)
+    return ["cells", "box", "set-up, s", "set-up and first step, s"], rows
 
 
 def _copy_rate(results: Path) -> float:
@@ -198,7 +184,7 @@ def _copy_rate(results: Path) -> float:
     )
 
 
-def _fitted(results: Path) -> tuple[model.Rates, dict[str, list[str]]]:
+def _fitted(results: Path) -> tuple[model.Rates, dict[str, Table]]:
     """Fit the model to the sizes in the channel; by medians, without the few steps that make new dense factors."""
     measured, rows = [], []
     for one in _sizes(results, "channel"):
@@ -209,16 +195,19 @@ def _fitted(results: Path) -> tuple[model.Rates, dict[str, list[str]]]:
         solve = s.n**2 * (rates.flop * model.solve_flops(s) + rates.byte * model.solve_bytes(s))
         other = sum(model.parts(s, rates, 1, "petves").values()) - solve
         rows.append([f"{s.n}^2", *(f"{1e3 * t:.2f}" for t in (fast, solve, rest, other))])
-    lines = [
-        f"Rates of one rank: {1e-9 / rates.byte:.0f} GB/s of grid data (copies, read and write), "
-        f"{1e-9 / rates.flop:.1f} Gflop/s in the solves, {1e3 * rates.step:.2f} ms a step, {1e6 * rates.marker:.1f} microseconds a marker, {1e9 * rates.dense:.1f} ns"
-        f" for M^2 and solve (fitted). Largest deviation of the fit: {100 * deviation:.0f} %.\n",
-        *table(["cells", "fast solves, ms", "model", "rest, ms", "model"], rows),
+    fitted = [
+        ["grid data, copies, read and write", f"{1e-9 / rates.byte:.0f} GB/s"],
+        ["arithmetic of the solves", f"{1e-9 / rates.flop:.1f} Gflop/s"],
+        ["a step, however small", f"{1e3 * rates.step:.2f} ms"],
+        ["a marker", f"{1e6 * rates.marker:.1f} microseconds"],
+        ["M^2 and solve of M markers", f"{1e9 * rates.dense:.1f} ns"],
+        ["largest deviation of the fit", f"{100 * deviation:.0f} %"],
     ]
-    return rates, {"model": lines}
+    compared = (["cells", "fast solves, ms", "model", "rest, ms", "model"], rows)
+    return rates, {"rates": (["of one rank", "rate"], fitted), "fit": compared}
 
 
-def _predictions(rates: model.Rates) -> list[str]:
+def _predictions(rates: model.Rates) -> dict[str, Table]:
     layouts = ("petves", "shared", "pencil")
     rows, finer, limits = [], [], []
     for n in (4096, 8192, 16384, 32768):
@@ -237,14 +226,11 @@ def _predictions(rates: model.Rates) -> list[str]:
         *layouts,
         *("petves: grid", "markers", "replicated", "chain", "messages"),
     ]
-    return [
-        "Seconds a step, vesicles as many an area as in the bench, each with 137 markers, and what petves spends them on:\n",
-        *table(header, rows),
-        "Ranks, 64 doubled as long as twice as many are 1.4 times faster (a row a rank at least):\n",
-        *table(["cells", *layouts], limits),
-        "Seconds a step on 1024 ranks, one vesicle in the bench's box, ever finer:\n",
-        *table(["cells", "markers", *layouts], finer),
-    ]
+    return {
+        "predictions": (header, rows),
+        "last_useful": (["cells", *layouts], limits),
+        "finer": (["cells", "markers", *layouts], finer),
+    }
 
 
 def _draw_solves(results: Path, folder: Path) -> Path:

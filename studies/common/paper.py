@@ -110,7 +110,7 @@ BOUNDARY_INTEGRAL_CODES = {
 }
 """Boundary integral codes on V = 0.7, chi = 10 in unbounded shear, one thread, from an ellipse to steady tank-treading:
 seconds, relative errors of inclination and of frequency (None: not stated; 6e-5 and 1e-5 are of the angle over pi). The
-first takes 200 steps of rate dt = 0.05. Stated to this project; docs/beside.md has runs of both."""
+first takes 200 steps of rate dt = 0.05. Stated to this project; docs/evidence.md has runs of both."""
 
 
 def shear_errors(theta: float, omega: float, reduced_area: float, chi: float, box: str = "box") -> tuple[float, float]:

@@ -8,7 +8,7 @@ from studies.common.engine import Case, Results, Series
 from studies.gallery.scene import Scene, Values, case, film, least, moments, seconds, with_pictures
 
 EXACT = {"center": (5.32145, 4.28874), "gap": 0.1153}
-"""First centre at t = 15 and least gap: boundary integral of docs/accuracy.md (1e-5; the gap to its digits)."""
+"""First centre at t = 15 and least gap: boundary integral of docs/evidence.md (1e-5; the gap to its digits)."""
 STEPS = (0.1, 0.05, 0.025)
 
 

@@ -168,7 +168,7 @@ def _large(results: Results, folder: Path) -> list[str]:
 
 
 def _maps(results: Results, folder: Path) -> list[str]:
-    """The maps of docs/stability.md that have large steps, with orders 2 and 3."""
+    """The maps of docs/evidence.md that have large steps, with orders 2 and 3."""
     rows, shown = [], []
     for one, order in product((each for each in MAPS if each.name in ("dt_cb", "dt_chi", "strong")), (2, 3)):
         marks = []
@@ -181,7 +181,7 @@ def _maps(results: Results, folder: Path) -> list[str]:
         others = ", ".join(sorted(set(marks) - {"ok"}))
         shown.append([one.name, f"{order}", f"{marks.count('ok')} of {len(marks)}", others])
     write_csv(folder / "time_maps.csv", ["map", "order", "x", "y", "mark", "message"], rows)
-    title = "### Cells of docs/stability.md that are ok, coupled\n"
+    title = "### Cells of docs/evidence.md that are ok, coupled\n"
     return [title, *table(["map", "order", "ok", "others"], shown)]
 
 

@@ -81,7 +81,7 @@ TRANSIENTS = {
     ),
     "channel": ("section 5.5, unsteady", CHANNEL, 24, (0.24, 0.12, 0.06, 0.03)),
 }
-"""What, options, end, steps. The last three are the scenes of docs/speed_accuracy.md."""
+"""What, options, end, steps. The last three are the scenes of docs/evidence.md."""
 FINER = 4
 """Times that the references' steps are smaller than the least of a scene's: in unsteady flow they stay above .34 h^2/nu, below
 which the lag of inertia has a limit and another field is solved for (docs/nearfield.md, Unsteady flow)."""

@@ -1,4 +1,4 @@
-"""What the near field makes of a coarse grid (docs/accuracy.md): steady tank-treading, relaxation and conservation with all
+"""What the near field makes of a coarse grid (docs/evidence.md): steady tank-treading, relaxation and conservation with all
 defaults on, and that ranks agree."""
 
 import json

@@ -55,7 +55,7 @@ def test_coarse_grid_is_enough(cached_run, scene, cells, angle, frequency, witho
 
 
 def test_two_vesicles_passing(cached_run):
-    """The first centre at t = 15 against a boundary integral good to 2e-5 (docs/accuracy.md). Measured
+    """The first centre at t = 15 against a boundary integral good to 2e-5 (docs/evidence.md). Measured
     2.3e-3 and 2e-4, most of it the step's."""
     run = cached_run(
         f"{COMMON} -domain_box 0,8,0,8 -flow_center_y 4 -domain_cells 32,32 -vesicle_count 2 -vesicle_area 0.5 "
