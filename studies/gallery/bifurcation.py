@@ -115,7 +115,7 @@ def fill(results: Results) -> Values:
 
 def _picture(path: Path, runs: list[dict]) -> None:
     """Draw both vesicles' outlines at some times."""
-    figure, panels = new_figure(9, 4.6, rows=2, equal=True)
+    figure, panels = new_figure(12, 6.2, rows=2, equal=True)
     for panel, one in zip(panels, runs):
         panel.fill(*island(2.0).T, fc="#9a9a9a", ec="black", lw=0.8)
         for flat in one["outlines"]:

@@ -89,7 +89,7 @@ def shape(found: dict) -> str:
 def fill(results: Results) -> Values:
     """Make the runs; return the values."""
     runs = {key: results.get(capillary(*key)) for key in product(STRENGTHS, HEIGHTS)}
-    figure, panels = new_figure(5.6, 6.8, columns=len(HEIGHTS), rows=len(STRENGTHS), equal=True)
+    figure, panels = new_figure(8, 9.8, columns=len(HEIGHTS), rows=len(STRENGTHS), equal=True)
     for panel, ((strength, height), one) in zip(panels, runs.items()):
         if "failed" not in one:
             x, y = np.array(one["outline"]).reshape(-1, 2).T

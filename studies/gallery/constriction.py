@@ -68,7 +68,7 @@ def fill(results: Results) -> Values:
     runs = {(throat, 32): results.get(through(throat)) for throat in THROATS if throat != 0.36}
     runs[0.36, 32] = with_pictures(results, through(0.36, pictures=home), "constriction.png")
     runs[0.36, 64] = results.get(through(0.36, 64))
-    figure, (panel,) = new_figure(5, 3.6)
+    figure, (panel,) = new_figure(8, 5)
     for throat in THROATS:
         panel.semilogy(np.linspace(0.7, 2.2, 61), runs[throat, 32]["curve"], lw=1.2, label=f"throat {throat:g}")
     plain_ticks(panel, y=(50, 100, 200, 400))

@@ -22,7 +22,7 @@ def couette(what: str, pictures: Path | None = None) -> Case:
 
     def measure(series: Series, folder: Path) -> dict[str, object]:
         if pictures:
-            moments(folder, pictures / "couette.png", (0, 2, 5, 10))
+            moments(folder, pictures / "couette.png", (0, 2, 5, 10), rows=2, width=9)
         torque = -series["obstacle_torque_1"]
         late = series["time"] >= series["time"][-1] / 2
         both = [series[f"obstacle_torque_{k}"][-1] for k in (1, 2)]

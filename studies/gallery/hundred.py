@@ -18,8 +18,8 @@ def hundred(pictures: Path) -> Case:
     """Return the run: mean height at TIMES, fraction in the lowest fifth of the box, gap, errors, energy of gravity."""
 
     def measure(series: Series, folder: Path) -> dict[str, object]:
-        moments(folder, pictures / "hundred.png", TIMES, width=8)
-        film(folder, pictures / "hundred.gif", rate=8, width=300)
+        moments(folder, pictures / "hundred.png", TIMES, width=12)
+        film(folder, pictures / "hundred.gif", rate=8, width=400)
         run = Run.read(folder)
         frames = [int(np.abs(run.time - t).argmin()) for t in TIMES]
         low = [area_fraction_profile(run, frame, 5)[1][0] for frame in frames]

@@ -24,7 +24,7 @@ def posts(diameter: float, bending: float = 0.02, pictures: Path | None = None) 
 
     def measure(series: Series, folder: Path) -> dict[str, object]:
         if pictures:
-            film(folder, pictures / "posts.gif", width=360)
+            film(folder, pictures / "posts.gif", width=440)
         x, y = series["center_x"], series["center_y"]
         inside = y > 1.5
         way = np.interp(np.linspace(y[0], y[-1], 41), y, x)
@@ -53,7 +53,7 @@ def fill(results: Results) -> Values:
     runs = {(d, 0.02): results.get(posts(d)) for d in DIAMETERS[:-1]}
     runs[DIAMETERS[-1], 0.02] = with_pictures(results, posts(DIAMETERS[-1], pictures=home), "posts.gif")
     runs |= {(0.32, c): results.get(posts(0.32, c)) for c in (SOFT, STIFF)}
-    figure, (panel,) = new_figure(5, 3.6)
+    figure, (panel,) = new_figure(8, 5)
     for (d, c), one in runs.items():
         if c == 0.02:
             panel.plot(np.linspace(*one["y"], len(one["way"])), one["way"], lw=1.2, label=f"2 R0 = {d:g}")

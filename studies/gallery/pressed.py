@@ -53,7 +53,7 @@ def fill(results: Results) -> Values:
         f"| {t} | {coarse['rim'][k]:.5f} | {fine['rim'][k]:.5f} | {coarse['centre'][k]:.5f} | {fine['centre'][k]:.5f} |"
         for k, t in enumerate(TIMES)
     ]
-    figure, (panel,) = new_figure(5, 3.6)
+    figure, (panel,) = new_figure(8, 5)
     for name, style in (("rim", "o-"), ("centre", "s-")):
         panel.loglog(TIMES, fine[name], style, ms=4, lw=1.2, label=name)
     times = np.array(TIMES[2:], float)

@@ -59,7 +59,7 @@ Limits = tuple[float, float, float, float]
 
 
 def moments(
-    folder: Path, path: Path, times: tuple[float, ...], limits: Limits | None = None, rows: int = 1, width: float = 9
+    folder: Path, path: Path, times: tuple[float, ...], limits: Limits | None = None, rows: int = 1, width: float = 12
 ) -> None:
     """Draw all outlines of a run at some times, each at the saved one next to it, in the box or in other limits."""
     run = Run.read(folder)
@@ -76,7 +76,7 @@ def moments(
     save_figure(figure, path)
 
 
-def film(folder: Path, path: Path, rate: float = 12, width: int = 480, every: int = 1) -> None:
+def film(folder: Path, path: Path, rate: float = 12, width: int = 640, every: int = 1) -> None:
     """Film the speed and the membranes of a run."""
     movie(folder, path, rate=rate, width=width, every=every, look=PLAIN)
 

@@ -26,7 +26,7 @@ def through(name: str, pictures: Path | None = None) -> Case:
     def measure(series: Series, folder: Path) -> dict[str, object]:
         if pictures:
             moments(folder, pictures / "stenosis.png", (0, 0.5, 1, 2), rows=2)
-            film(folder, pictures / "stenosis.gif", rate=8, width=400)
+            film(folder, pictures / "stenosis.gif", rate=8, width=640)
         drop, at = least({"time": series["time"], "gap": -series["pressure_drop"]})
         x = np.array([series[f"center_x_{k + 1}"][-1] for k in range(COUNT)])
         return {

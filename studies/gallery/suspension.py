@@ -95,7 +95,7 @@ def row(fraction: float, found: list[dict], intrinsic: float) -> str:
 
 def draw_profiles(runs: dict[tuple[float, int], dict], path: Path) -> None:
     """Draw velocity and area fraction across the channel at the end, means over the seeds."""
-    figure, (left, right) = new_figure(9, 3.4, columns=2)
+    figure, (left, right) = new_figure(12, 4.6, columns=2)
     for fraction in BOXES:
         velocity, part = (np.mean([runs[fraction, seed]["profile"][k] for seed in SEEDS], axis=0) for k in (0, 1))
         heights = (np.arange(len(velocity)) + 0.125) * 32 / len(velocity)

@@ -122,7 +122,7 @@ def _rows_of_periods(runs: dict[tuple[str, float], dict]) -> str:
 
 def _picture(path: Path, runs: dict[tuple[str, float], dict], found: dict[float, float]) -> None:
     """Half periods and critical ratios, with Keller and Skalak's curves."""
-    figure, (left, right) = new_figure(9, 3.6, columns=2)
+    figure, (left, right) = new_figure(12, 4.8, columns=2)
     free = {ratio: one["half"][-1] for (place, ratio), one in runs.items() if place == "free"}
     left.loglog(list(free), list(free.values()), "o", ms=4, label="petves")
     left.plot(10, 12.118, "kx", ms=8, label="boundary integral")

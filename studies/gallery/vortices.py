@@ -96,11 +96,11 @@ def fill(results: Results) -> Values:
     home = results.path.parent
 
     def draw_vortex(folder: Path) -> None:
-        moments(folder, home / "vortex.png", (0, 2, 5, 10), (0, np.pi, 0, np.pi))
+        moments(folder, home / "vortex.png", (0, 2, 5, 10), (0, np.pi, 0, np.pi), rows=2, width=9)
 
     def draw_lattice(folder: Path) -> None:
-        moments(folder, home / "lattice.png", (0, 0.6, 1.2, 2))
-        film(folder, home / "lattice.gif", width=400)
+        moments(folder, home / "lattice.png", (0, 0.6, 1.2, 2), rows=2, width=10)
+        film(folder, home / "lattice.gif", width=560)
 
     four = made(results, "vortex", "", ("vortex.png",), draw_vortex)
     coarse = made(results, "vortex", "-domain_cells 32,32", (), lambda folder: None)

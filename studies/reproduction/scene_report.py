@@ -72,7 +72,7 @@ def channel(results: Results, folder: Path, quick: bool) -> list[str]:
     about = (
         "V = 0.7, w = 60, released with the long axis across the channel. Travel is the way of the centre, height its distance from the\n"
         "middle, both over R0; slip is (U - u_max) nu R0^2/c_b; aspect that of the second moments; extents in x and y over R0.\n"
-        "nu = 1, c_b = .01, so Re = u_max R0/nu = 0.89 with unsteady or convective.\n"
+        "nu = 1, c_b = 0.01, so Re = u_max R0/nu = 0.89 with unsteady or convective.\n"
     )
     pictures = [
         f"![Shapes with tension in the frame of the vesicle]({folder.name}/fig8_channel.png)\n",
@@ -124,7 +124,7 @@ def _settled(results: Results, quick: bool) -> list[str]:
     header = ["c_0", "h", "V", "t = 240", "t = 480", "t = 960", "t = 1440", "slip", "aspect"]
     about = (
         "Longer runs: height over R0. At V = 0.7, w = 60 the symmetric parachute is not stable in quasi-steady flow. A vesicle released\n"
-        "beside the middle ends as a slight slipper, .0427 R0 off it. One released in the middle stays for long: its offset, 4e-6 R0\n"
+        "beside the middle ends as a slight slipper, 0.0427 R0 off it. One released in the middle stays for long: its offset, 4e-6 R0\n"
         "at the start, grows 17 times in 480. At V = 0.9 both end as the parachute. The paper's runs end at t = 96.\n"
     )
     return [about, *table(header, rows)]
@@ -138,7 +138,7 @@ def _model_rows(models: dict[str, dict]) -> list[str]:
             rows.append(_failed([model], one, len(header)))
             continue
         rows.append([model, *_heights(one), *_last(one, "slip", "aspect"), str(one["steps"])])
-    return ["Height from c_0 = R0 for each model of inertia, dt = .04, window 12, h = 1/8.\n", *table(header, rows)]
+    return ["Height from c_0 = R0 for each model of inertia, dt = 0.04, window 12, h = 1/8.\n", *table(header, rows)]
 
 
 def _window_rows(windows: dict[int, dict]) -> list[str]:
