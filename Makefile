@@ -200,7 +200,7 @@ memcheck: test-deps ## every kind of scene under valgrind's memcheck, on 1 and 2
 	PETVES=$(CURDIR)/$(BIN)/petves PETVES_TESTS=$(CURDIR)/$(BUILD)/tests PYTHONPATH=python:. SANITIZE=$(SANITIZE) MEMCHECK=1 \
 	  $(PYTHON) -m pytest -p no:cacheprovider -q tests/robustness/test_valgrind.py
 
-docs: ## the pages of docs/ as a site: build/docs/index.html
+docs: ## the pages of docs/ as a site, with the tables of CSV files: build/docs/index.html
 	$(call install_packages,mkdocs)
 	mkdocs build -q --strict
 

@@ -37,7 +37,8 @@ TRAVEL, SHORT = 160, 60
 
 
 def write(folder: str | Path, quick: bool = False) -> list[Path]:
-    """Run what is not there yet; write inertia_*.csv, two pictures and tables.md. Quick: without the channels."""
+    """Run what is not there yet; write inertia_*.csv with every number, the tables of
+    docs/evidence.md, two pictures and tables.md with all tables. Quick: without the channels."""
     folder = Path(folder)
     results = Results(folder / "inertia.json")
     text = _relaxation(results, folder) + _galilean(results, folder) + _iterations(results, folder)
@@ -65,6 +66,7 @@ def _relaxation(results: Results, folder: Path) -> list[str]:
     write_csv(folder / "inertia_relaxation.csv", ["box", "half_width", "cells", "dt", "t", *names], rows)
     header = ["box", "half width", "cells", "h", "dt", *(f"E_B, t = {t:g}" for t in RELAXATION)]
     header += ["worst E_B", "worst x", "worst y", "iterations (most)"]
+    write_csv(folder / "relaxation.csv", header, shown)
     title = "### Relaxing ellipse, none, against unbounded Stokes flow: errors in percent\n"
     return [title, *table(header, shown)]
 
@@ -99,6 +101,7 @@ def _galilean(results: Results, folder: Path) -> list[str]:
     axes[0].legend(frameon=False, fontsize=8)
     save_figure(figure, folder / "galilean.png")
     write_csv(folder / "inertia_galilean.csv", ["vesicle", "cells", *keys], rows)
+    write_csv(folder / "galilean.csv", ["model", "h", "shape/R0", "velocity", "tension"], shown)
     title = "### A vesicle in a stream, Re = 1, against one at rest: rms over markers at t = 0.125, 0.3125, 0.5\n"
     return [title, *table(["", "h", "shape/R0", "velocity", "tension"], shown)]
 
@@ -153,6 +156,7 @@ def _migration(results: Results, folder: Path) -> list[str]:
             line.append(f"{height:.3f}")
         shown.append(line)
     header = ["Re", *(f"{model}, {at}" for model, at in product(study.MODELS, (SHORT, TRAVEL)))]
+    write_csv(folder / "migration.csv", header, shown)
     text = ["### Migration, w = 60, V = 0.7: height over R0 after u_max t/R0 = 60 and 160, h = R0/7.2\n"]
     text += table(header, shown)
     shown = []
@@ -180,6 +184,7 @@ def _free(results: Results, folder: Path) -> list[str]:
                       f"{one['its']:.1f} ({one['most']:.0f})"])  # fmt: skip
     header = ["window", "height", "h", "dt", "t = 1", "t = 2", "t = 4", "t = 6", "iterations (most)"]
     write_csv(folder / "inertia_free.csv", ["window", "height", "cells", "dt", *header[4:8], "its"], rows)
+    write_csv(folder / "free.csv", header, shown)
     title = (
         "### Migration, none, Ca = 10, against unbounded Stokes flow: height of the centroid minus target, over R0\n"
     )

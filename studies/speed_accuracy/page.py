@@ -19,6 +19,7 @@ FEWER = 3  # of one without the exact near field: these schemes have not changed
 ONCE = 3.0  # CPU seconds above which a point runs once
 QUICK_WORK = 2e5  # cells times steps of the largest run of a quick call
 LEVELS = (1e-2, 1e-3, 1e-4)
+LEVEL_COLUMNS = ["scheme", *(f"{100 * level:g} %" for level in LEVELS), "least error of all points"]
 COLUMNS = (
     "scene scheme cells h dt tolerance".split()
     + list(ERRORS)
@@ -33,7 +34,7 @@ Row = dict[str, object]
 def write(
     folder: str | Path, quick: bool = False, scenes: tuple[Scene, ...] = ALL, finest: int | None = None
 ) -> list[Path]:
-    """Run what is not there yet; write chart.csv, recommended.csv, claim.csv, tables.md and the pictures.
+    """Run what is not there yet; write chart.csv, recommended.csv, levels.csv, claim.csv, tables.md and the pictures.
 
     Quick: only the points of little work, once each. `scenes` stand in place of all; `finest`: 1/h of the paper's
     settings that the last section compares with (256, quick 64).
@@ -56,6 +57,8 @@ def write(
         paths += [picture(folder, one, rows, cost, floor, start) for cost in costs]
         text += _lines(one, rows, floor, start)
         best += [row | {"level": level} for level in LEVELS if (row := cheapest(rows, EXACT, level))]
+    levels = [[one.name, *line] for one in scenes for line in costs_of(rows_of(results, one, points[one.name]))]
+    paths.append(write_csv(folder / "levels.csv", ["scene", *LEVEL_COLUMNS], levels))
     names = ["level", *COLUMNS[:-1]]
     write_csv(paths[1], names, [[row[name] for name in names] for row in best])
     text += claim(Results(folder / "claim.json"), folder, finest or (64 if quick else 256))
@@ -150,11 +153,12 @@ def _lines(one: Scene, rows: list[Row], floor: dict[str, float], start: float) -
         shown = ", ".join(f"{name} {floor[name]:.1e}" for name in one.wanted)
         text.append(f"The reference differs from another fine run by: {shown}.\n")
     text.append(f"The program's start takes {start:.2f} CPU seconds of those below.\n")
-    return text + _seconds(rows) + _settings(one, rows) + _failures(rows)
+    text += ["### CPU seconds (scalar solves) for a level of every error\n", *table(LEVEL_COLUMNS, costs_of(rows))]
+    return text + _settings(one, rows) + _failures(rows)
 
 
-def _seconds(rows: list[Row]) -> list[str]:
-    """Return the costs of a level of every error by scheme."""
+def costs_of(rows: list[Row]) -> list[list[str]]:
+    """Return a line for each scheme: CPU seconds (scalar solves) of a level of every error, and the least error."""
     lines = []
     for scheme in dict.fromkeys(row["scheme"] for row in rows):
         line = [scheme]
@@ -163,8 +167,7 @@ def _seconds(rows: list[Row]) -> list[str]:
             line.append(f"{row['cpu_seconds']:.2f} ({row['solves']:.0f})" if row else "not reached")
         worst = [row["largest"] for row in rows if row["scheme"] == scheme and not row["message"]]
         lines.append([*line, f"{_percent(min(worst))} %" if worst else "none ran"])
-    header = ["scheme", *(f"{100 * level:g} %" for level in LEVELS), "least error of all points"]
-    return ["### CPU seconds (scalar solves) for a level of every error\n", *table(header, lines)]
+    return lines
 
 
 def _settings(one: Scene, rows: list[Row]) -> list[str]:

@@ -96,7 +96,15 @@ def test_a_handful_of_points(tmp_path, monkeypatch):
     scene = replace(RELAX, points=points, reference=RELAX.reference | coarse, other={}, options=stiff)
     paths = report.write(tmp_path, scenes=(scene,), finest=32)
     assert {p.name for p in paths} == {
-        *("chart.csv", "recommended.csv", "tables.md", "claim.csv", "relax_seconds.png", "relax_solves.png"),
+        *(
+            "chart.csv",
+            "recommended.csv",
+            "levels.csv",
+            "tables.md",
+            "claim.csv",
+            "relax_seconds.png",
+            "relax_solves.png",
+        ),
     }
     assert all(p.stat().st_size for p in paths)
     with (tmp_path / "chart.csv").open(newline="") as file:

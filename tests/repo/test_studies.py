@@ -45,7 +45,8 @@ def study(name: str, folder, *words: str, program: str = "/nowhere/petves") -> s
 
 @pytest.mark.parametrize("name", HOMES)
 def test_committed_results_are_taken(name, tmp_path):
-    """No run is made, and every CSV, JSON and Markdown file comes out as it is in docs/."""
+    """No run is made, and every CSV, JSON and Markdown file comes out as it is in docs/, but for tables.md, which only
+    the sections of the paper keep there."""
     home = ROOT / "docs" / HOMES[name]
     shutil.copytree(home, tmp_path / home.name)
     words = []
@@ -56,7 +57,8 @@ def test_committed_results_are_taken(name, tmp_path):
     assert "running" not in done.stdout
     written = [path for path in tmp_path.rglob("*") if path.suffix in (".csv", ".json", ".md")]
     assert len(written) > 1
-    for path in written:
+    kept = [path for path in written if path.name != "tables.md" or name == "reproduce"]
+    for path in kept:
         assert path.read_text() == (ROOT / "docs" / path.relative_to(tmp_path)).read_text(), path.name
 
 
