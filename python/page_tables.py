@@ -15,12 +15,25 @@ from pathlib import Path
 LINK = re.compile(r"^\[([^\]]+)\]\(([\w./-]+\.csv)\)$", re.MULTILINE)
 #: Columns of what is typed, shown as code.
 CODE = ("options", "command")
+WIDE = 50  # letters of a piece of code
+
+
+def code(text: str) -> str:
+    """Return options as code, each with its value in a piece of its own, so that a line of the table may end behind it."""
+    pieces = []
+    for option in re.split(r" (?=-[A-Za-z])", text):
+        while len(option) > WIDE and "," in option[:WIDE]:
+            end = option[:WIDE].rindex(",") + 1
+            pieces.append(option[:end])
+            option = option[end:]
+        pieces.append(option)
+    return " ".join(f"`{piece}`" for piece in pieces)
 
 
 def cell(column: str, text: str) -> str:
     """Return the Markdown of a cell."""
     text = text.replace("|", "\\|")
-    return f"`{text}`" if column in CODE and text else text
+    return code(text) if column in CODE and text else text
 
 
 def table(path: Path) -> str:
