@@ -20,7 +20,8 @@ WANTED = 1e-2, 1e-3, 1e-4  # errors of markers
 
 
 def write(folder: str | Path, quick: bool = False) -> list[Path]:
-    """Run what is not there yet; write time_*.csv and tables.md. Quick: free space only, without references to wait for."""
+    """Run what is not there yet; write time_*.csv with every number, the tables of
+    docs/evidence.md and tables.md with all tables. Quick: free space only, without references to wait for."""
     folder = Path(folder)
     results = Results(folder / "time.json")
     text = _steady(results, folder, ("free",) if quick else tuple(study.BOXES))
@@ -85,11 +86,15 @@ def _transients(results: Results, folder: Path) -> list[str]:
             order = fitted_order(list(errors.items()), 3 * doubt)
             rows += [[scene, name, dt, errors[dt], found[dt]["its"], found[dt]["steps"], doubt] for dt in steps]
             cells = [f"{dt:g}: {error:.1e} ({found[dt]['its']:.0f})" for dt, error in errors.items()]
-            shown.append([what if name == FIRST else "", name, ", ".join(cells), f"{order:.1f}"])
+            shown.append([what, name, ", ".join(cells), f"{order:.1f}"])
     header = ["scene", "way", "dt", "markers", "its", "steps", "references_differ"]
     write_csv(folder / "time_transients.csv", header, rows)
-    title = "### Transients: largest error of a marker at the end (iterations in all), by step\n"
-    return [title, *table(["scene", "", "errors", "order"], shown)]
+    columns = ["scene", "scheme", "step: error (iterations)", "order found"]
+    write_csv(folder / "transients.csv", columns, shown)
+    return [
+        "### Transients: largest error of a marker at the end (iterations in all), by step\n",
+        *table(columns, shown),
+    ]
 
 
 def step_for(errors: dict[float, float], wanted: float) -> float | None:
@@ -128,8 +133,9 @@ def _orders(results: Results, folder: Path) -> list[str]:
         shown.append(line)
     write_csv(folder / "time_orders.csv", ["scene", "way", "error", "dt", "its"], rows)
     title = "### Which order pays: the step (iterations in all) for an error of a marker, order 2; order 3\n"
-    heads = [f"{wanted:.0e}" for wanted in WANTED]
-    return [title, *table(["scene", *heads, "steps at which order 3 is the better"], shown)]
+    columns = ["scene", *(f"{wanted:.0e}" for wanted in WANTED), "steps at which order 3 is the better"]
+    write_csv(folder / "orders.csv", columns, shown)
+    return [title, *table(columns, shown)]
 
 
 def _controlled(results: Results, folder: Path) -> list[str]:
@@ -138,7 +144,7 @@ def _controlled(results: Results, folder: Path) -> list[str]:
     for scene in study.CONTROLLED:
         fine = results.get(study.fine(scene, BEST))
         for name in study.WAYS:
-            line = [scene if name == FIRST else "", name]
+            line = [scene, name]
             for tolerance in study.TOLERANCES:
                 one = results.get(study.controlled(scene, name, tolerance))
                 errors = _distance(one, fine), abs(one["angle"] - fine["angle"])
@@ -148,7 +154,9 @@ def _controlled(results: Results, folder: Path) -> list[str]:
     header = ["scene", "way", "tolerance", "steps", "its", "markers", "angle", "largest_step"]
     write_csv(folder / "time_controlled.csv", header, rows)
     title = "### Error control: steps (iterations): errors of markers, angle (rad), by tolerance\n"
-    return [title, *table(["scene", "", *(f"{t:g}" for t in study.TOLERANCES)], shown)]
+    columns = ["scene", "scheme", *(f"{t:g}" for t in study.TOLERANCES)]
+    write_csv(folder / "controlled.csv", columns, shown)
+    return [title, *table(columns, shown)]
 
 
 def _large(results: Results, folder: Path) -> list[str]:
