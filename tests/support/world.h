@@ -2,6 +2,7 @@
 #pragma once
 #include "check.h"
 #include "baselines/baselines.h"
+#include "fluid/stokes/stokes.h"
 #include "scheme/scheme.h"
 
 /* The paper's discretisation of the membrane and its model of the fluid, which tests start from: options given after
@@ -61,8 +62,9 @@ typedef struct {
   Scheme scheme; /* NULL: none made */
 } TestWorld;
 
-/* TestWorldBuild - all but the scheme, from the scene that is in it; with rows that aim at the areas, or without. */
-static inline PetscErrorCode TestWorldBuild(PetscBool area_target, TestWorld *w) {
+/* TestWorldBuildFor - all but the scheme, from the scene that is in it, with the settings of the coupling.
+   TestWorldBuild - with the scene's kernel and near field alone. */
+static inline PetscErrorCode TestWorldBuildFor(const CouplingSetting *setting, TestWorld *w) {
   const Scene s = w->scene;
   PetscScalar *x;
   PetscFunctionBeginUser;
@@ -71,13 +73,19 @@ static inline PetscErrorCode TestWorldBuild(PetscBool area_target, TestWorld *w)
   PetscCall(LayoutCreate(s->comm, s->shape.vesicles, s->shape.start, &w->layout));
   PetscCall(
       MembraneCreate(w->layout, s->shape.X, s->membrane.each, (DerivativeType)s->membrane.derivative, &w->membrane));
-  const CouplingSetting setting = {
-      .kernel = s->coupling.kernel, .near = (NearFieldType)s->coupling.near_field, .area_target = area_target};
-  PetscCall(CouplingCreate(w->fluid, w->membrane, NULL, &setting, &w->coupling));
+  PetscCall(CouplingCreate(w->fluid, w->membrane, NULL, setting, &w->coupling));
   PetscCall(LayoutCreateVec(w->layout, 2, &w->X));
   PetscCall(VecGetArray(w->X, &x));
   PetscCall(PetscArraycpy(x, s->shape.X + 2 * w->layout->first, 2 * w->layout->n));
   PetscCall(VecRestoreArray(w->X, &x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static inline PetscErrorCode TestWorldBuild(TestWorld *w) {
+  const SceneCoupling *c = &w->scene->coupling;
+  const CouplingSetting setting = {.kernel = c->kernel, .near = (NearFieldType)c->near_field};
+  PetscFunctionBeginUser;
+  PetscCall(TestWorldBuildFor(&setting, w));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -116,6 +124,30 @@ static inline PetscErrorCode TestWorldPlace(PetscReal a0, TestWorld *w) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* TestWorldRespond - U = E A^-1 E^T F/h^2 of marker forces F, A^-1 the Stokes solve, and with `near` + C F. Collective.
+ */
+static inline PetscErrorCode TestWorldRespond(TestWorld *t, Stokes stokes, PetscBool near, Vec F, Vec U) {
+  const Grid g = t->fluid->grid;
+  const PetscScalar *f;
+  PetscScalar *u;
+  Vec w, p;
+  PetscFunctionBeginUser;
+  PetscCall(DMGetGlobalVector(g->velocity, &w));
+  PetscCall(DMGetGlobalVector(g->da[FIELD_P], &p));
+  PetscCall(VecSet(w, 0));
+  PetscCall(MarkersSpread(t->coupling->markers, 1 / PetscSqr(g->h), F, w));
+  PetscCall(StokesSolve(stokes, w, NULL, w, p));
+  PetscCall(MarkersInterpolate(t->coupling->markers, w, U));
+  PetscCall(VecGetArrayRead(F, &f));
+  PetscCall(VecGetArray(U, &u));
+  if (near) PetscCall(NearFieldApply(t->coupling->near, 1, f, u));
+  PetscCall(VecRestoreArray(U, &u));
+  PetscCall(VecRestoreArrayRead(F, &f));
+  PetscCall(DMRestoreGlobalVector(g->da[FIELD_P], &p));
+  PetscCall(DMRestoreGlobalVector(g->velocity, &w));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* TestWorldShare - x[n] of the first vesicle's owner to every rank. Collective. */
 static inline PetscErrorCode TestWorldShare(TestWorld *w, PetscMPIInt n, PetscReal x[]) {
   PetscFunctionBeginUser;
@@ -136,7 +168,7 @@ static inline PetscErrorCode TestWorldScheme(TestWorld *w) {
 static inline PetscErrorCode TestWorldCreate(const char options[], TestWorld *w) {
   PetscFunctionBeginUser;
   PetscCall(TestScene(options, &w->scene));
-  PetscCall(TestWorldBuild(PETSC_FALSE, w));
+  PetscCall(TestWorldBuild(w));
   PetscCall(TestWorldPlace(w->fluid->a0, w));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -144,7 +176,7 @@ static inline PetscErrorCode TestWorldCreate(const char options[], TestWorld *w)
 static inline PetscErrorCode TestRunCreate(const char options[], TestWorld *w) {
   PetscFunctionBeginUser;
   PetscCall(TestScene(options, &w->scene));
-  PetscCall(TestWorldBuild(PETSC_FALSE, w));
+  PetscCall(TestWorldBuild(w));
   PetscCall(TestWorldScheme(w));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -45,11 +45,6 @@ static PetscErrorCode FieldsCreate(Fluid f, Fields *x) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode FieldsDestroy(Fields *x) {
-  PetscFunctionBeginUser;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* left_u = H u + G p - r_u, left_p = G^T u - r_p (r_p left out when it is not with). */
 static PetscErrorCode Residual(Fluid f, PetscBool with_r_p, Fields *x) {
   PetscFunctionBeginUser;
@@ -127,7 +122,6 @@ static PetscErrorCode CheckBox(const char grid[], const char bc[]) {
     CHECK(FluidCountSolves(fluid) == before + 10, "%s: five scalar solves each, two twice and one for r_p", name);
   else
     CHECK(FluidCountSolves(fluid) == before + 6, "%s: three scalar solves each", name);
-  PetscCall(FieldsDestroy(&x));
   PetscCall(StokesDestroy(&stokes));
   PetscCall(FluidDestroy(&fluid));
   PetscCall(SceneDestroy(&scene));

@@ -121,9 +121,9 @@ static PetscErrorCode Agrees(const char name[], PetscReal within, const char opt
 
 /* The paper's membrane, of both orders, with and without bending, in every kind of box. */
 static PetscErrorCode PaperScenes(void) {
-  static const char *const box[] = {" -domain_cells 48,48",
-                                    " -domain_cells 60,48 -domain_box 0,2.5,-1,1 -vesicle_center 2.4,0.1" CHANNEL,
-                                    " -domain_cells 48,48 -vesicle_center 0,0.9" PERIODIC};
+  static const char *const box[] = {" -domain_cells 32,32",
+                                    " -domain_cells 40,32 -domain_box 0,2.5,-1,1 -vesicle_center 2.4,0.1" CHANNEL,
+                                    " -domain_cells 32,32 -vesicle_center 0,0.9" PERIODIC};
   static const char *const flow[] = {" -vesicle_angle 20", SHEAR};
   PetscFunctionBeginUser;
   for (int k = 0; k < 12; k++) {

@@ -183,7 +183,7 @@ static PetscErrorCode SerialWorld(const char options[], TestWorld *w) {
   PetscCall(PetscOptionsInsertString(NULL, PAPER_MEMBRANE));
   PetscCall(PetscOptionsInsertString(NULL, options));
   PetscCall(SceneCreate(PETSC_COMM_SELF, NULL, NULL, &w->scene));
-  PetscCall(TestWorldBuild(PETSC_FALSE, w));
+  PetscCall(TestWorldBuild(w));
   PetscCall(TestWorldPlace(w->fluid->a0, w));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

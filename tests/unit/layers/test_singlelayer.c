@@ -3,7 +3,6 @@
 #include "facts.h"
 #include "layers/latticegreen.h"
 #include "layers/nearimage.h"
-#include "fluid/stokes/stokes.h"
 
 #define OPTIONS                                                                                                        \
   "-scheme_type coupled -coupling_near_field exact -membrane_derivative spectral -vesicle_allow_close_markers "        \
@@ -21,7 +20,7 @@ enum { MODES = 8, LOW = 12, COEFFICIENTS = 2 * (2 * LOW + 1) };
 typedef struct {
   TestWorld w;
   Stokes stokes;
-  Vec force, velocity, fluid, r, p;
+  Vec force, velocity;
   PetscReal center[2];
 } Circle;
 
@@ -35,8 +34,6 @@ static PetscErrorCode CircleCreate(const char kernel[], PetscReal turn, const Pe
   for (int d = 0; d < 2; d++) c->center[d] = center[d];
   PetscCall(StokesCreate(c->w.fluid, &c->stokes));
   PetscCall(TestVecs(c->w.X, &c->force, &c->velocity, NULL));
-  PetscCall(TestFieldVecs(c->w.fluid->grid->velocity, &c->fluid, &c->r, NULL));
-  PetscCall(TestFieldVecs(c->w.fluid->grid->da[FIELD_P], &c->p, NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -79,21 +76,11 @@ static PetscErrorCode Coefficient(Circle *c, int k, Vec x, PetscReal z[2]) {
 
 /* velocity = E A^-1 E^T F/h^2, and with C F, of the force of mode k, less the exact one, over its size. */
 static PetscErrorCode Disturb(Circle *c, int k, PetscReal phase, PetscBool with) {
-  const PetscReal h = c->w.fluid->grid->h, size = RADIUS / (4 * c->w.fluid->nu * PetscAbsInt(k));
-  const PetscScalar *F;
-  PetscScalar *U;
+  const PetscReal size = RADIUS / (4 * c->w.fluid->nu * PetscAbsInt(k));
   PetscFunctionBeginUser;
   PetscCall(VecZeroEntries(c->force));
   PetscCall(AddMode(c, k, 2 * PETSC_PI * RADIUS / c->w.layout->M, phase, c->force));
-  PetscCall(VecZeroEntries(c->r));
-  PetscCall(MarkersSpread(c->w.coupling->markers, 1 / (h * h), c->force, c->r));
-  PetscCall(StokesSolve(c->stokes, c->r, NULL, c->fluid, c->p));
-  PetscCall(MarkersInterpolate(c->w.coupling->markers, c->fluid, c->velocity));
-  PetscCall(VecGetArrayRead(c->force, &F));
-  PetscCall(VecGetArray(c->velocity, &U));
-  if (with) PetscCall(NearFieldApply(c->w.coupling->near, 1, F, U));
-  PetscCall(VecRestoreArray(c->velocity, &U));
-  PetscCall(VecRestoreArrayRead(c->force, &F));
+  PetscCall(TestWorldRespond(&c->w, c->stokes, with, c->force, c->velocity));
   PetscCall(AddMode(c, k, -size, phase, c->velocity));
   PetscCall(VecScale(c->velocity, 1 / size));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -2,7 +2,6 @@
    the same at all four walls. */
 #include "facts.h"
 #include "numerics/blas.h"
-#include "fluid/stokes/stokes.h"
 
 #define H (8. / 48)
 #define SCENE                                                                                                          \
@@ -24,34 +23,12 @@ static PetscErrorCode CreateAtWall(PetscInt cells, PetscInt markers, PetscReal g
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* U = E A^-1 E^T F/h^2 + C F. */
-static PetscErrorCode Mobility(TestWorld *t, Stokes stokes, Vec F, Vec U) {
-  const Grid g = t->fluid->grid;
-  const PetscScalar *f;
-  PetscScalar *u;
-  Vec w, p;
-  PetscFunctionBeginUser;
-  PetscCall(TestFieldVecs(g->velocity, &w, NULL));
-  PetscCall(TestFieldVecs(g->da[FIELD_P], &p, NULL));
-  PetscCall(VecSet(w, 0));
-  PetscCall(MarkersSpread(t->coupling->markers, 1 / PetscSqr(g->h), F, w));
-  PetscCall(StokesSolve(stokes, w, NULL, w, p));
-  PetscCall(MarkersInterpolate(t->coupling->markers, w, U));
-  PetscCall(VecGetArrayRead(F, &f));
-  PetscCall(VecGetArray(U, &u));
-  PetscCall(NearFieldApply(t->coupling->near, 1, f, u));
-  PetscCall(VecRestoreArray(U, &u));
-  PetscCall(VecRestoreArrayRead(F, &f));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* The velocity, [2 markers] on every rank, of a smooth force in a channel of cells^2. */
 static PetscErrorCode SmoothVelocity(PetscInt cells, PetscInt markers, PetscReal gap, PetscReal U[]) {
   TestWorld t;
   Stokes stokes;
   Vec F, velocity;
   PetscScalar *f;
-  const PetscScalar *u;
   PetscFunctionBeginUser;
   PetscCall(CreateAtWall(cells, markers, gap, 0, "-domain_bc_x periodic -fluid_inertia none", &t));
   PetscCall(StokesCreate(t.fluid, &stokes));
@@ -63,10 +40,8 @@ static PetscErrorCode SmoothVelocity(PetscInt cells, PetscInt markers, PetscReal
     f[2 * k + 1] = (0.7 * PetscSinReal(2 * a) + 0.5 * PetscCosReal(3 * a) + 0.2 * PetscCosReal(a)) / markers;
   }
   PetscCall(VecRestoreArray(F, &f));
-  PetscCall(Mobility(&t, stokes, F, velocity));
-  PetscCall(VecGetArrayRead(velocity, &u));
-  PetscCall(LayoutGather(t.layout, 2, u, U));
-  PetscCall(VecRestoreArrayRead(velocity, &u));
+  PetscCall(TestWorldRespond(&t, stokes, PETSC_TRUE, F, velocity));
+  PetscCall(LayoutGatherVec(t.layout, velocity, U));
   PetscCall(StokesDestroy(&stokes));
   PetscCall(TestWorldDestroy(&t));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -95,16 +70,13 @@ static PetscErrorCode CheckVelocity(void) {
 
 /* Column j of the mobility, on every rank. */
 static PetscErrorCode Column(TestWorld *t, Stokes stokes, PetscInt j, Vec F, Vec U, PetscReal column[]) {
-  const PetscScalar *u;
   PetscFunctionBeginUser;
   PetscCall(VecSet(F, 0));
   if (!t->layout->rank) PetscCall(VecSetValue(F, j, 1, INSERT_VALUES));
   PetscCall(VecAssemblyBegin(F));
   PetscCall(VecAssemblyEnd(F));
-  PetscCall(Mobility(t, stokes, F, U));
-  PetscCall(VecGetArrayRead(U, &u));
-  PetscCall(LayoutGather(t->layout, 2, u, column));
-  PetscCall(VecRestoreArrayRead(U, &u));
+  PetscCall(TestWorldRespond(t, stokes, PETSC_TRUE, F, U));
+  PetscCall(LayoutGatherVec(t->layout, U, column));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

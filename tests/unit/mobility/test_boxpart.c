@@ -1,15 +1,10 @@
 /* The box part D of the near field: symmetric, of second order in h, free of a net flux through a membrane; with it the
    markers' velocity on a coarse grid is that on a finer one. */
 #include "facts.h"
-#include "fluid/stokes/stokes.h"
 #include "scheme/scheme.h"
 
 typedef struct {
-  Scene scene;
-  Fluid fluid;
-  Layout layout;
-  Membrane membrane;
-  Coupling coupling;
+  TestWorld world;
   PetscReal *D; /* [2M][2M] */
 } World;
 
@@ -23,47 +18,32 @@ static PetscErrorCode AddAll(BoxPart box, Layout l, PetscReal D[]) {
 }
 
 static PetscErrorCode WorldCreate(const char options[], PetscInt cells, PetscBool box, World *w) {
-  char all[1024], message[PETVES_MAX_MESSAGE];
-  PetscScalar *x;
-  Vec X;
+  TestWorld *world = &w->world;
+  char all[1024];
   PetscFunctionBeginUser;
   PetscCall(PetscSNPrintf(all, sizeof(all), "-domain_cells %d,%d %s", (int)cells, (int)cells, options));
   PetscCall(PetscOptionsClear(NULL));
   PetscCall(PetscOptionsInsertString(NULL, all));
-  PetscCall(SceneCreate(PETSC_COMM_WORLD, NULL, NULL, &w->scene));
-  const Scene s = w->scene;
-  PetscCall(FluidCreate(&s->fluid, &w->fluid));
-  PetscCall(LayoutCreate(s->comm, s->shape.vesicles, s->shape.start, &w->layout));
-  PetscCall(
-      MembraneCreate(w->layout, s->shape.X, s->membrane.each, (DerivativeType)s->membrane.derivative, &w->membrane));
+  PetscCall(SceneCreate(PETSC_COMM_WORLD, NULL, NULL, &world->scene));
   const CouplingSetting setting = {
-      .kernel = s->coupling.kernel, .near = NEAR_EXACT, .spec = &s->fluid, .box_part = box};
-  PetscCall(CouplingCreate(w->fluid, w->membrane, NULL, &setting, &w->coupling));
-  PetscCall(TestMarkerVecs(w->layout, 2, &X, NULL));
-  PetscCall(VecGetArray(X, &x));
-  PetscCall(PetscArraycpy(x, s->shape.X + 2 * w->layout->first, 2 * w->layout->n));
-  PetscCall(VecRestoreArray(X, &x));
-  PetscCall(CouplingPlace(w->coupling, w->fluid->a0, 0, X, NULL, message));
-  PetscCheck(!*message, s->comm, PETSC_ERR_LIB, "%s", message);
-  PetscCall(PetscCalloc1(PetscSqr(2 * w->layout->M), &w->D));
-  if (box) PetscCall(AddAll(w->coupling->near->box, w->layout, w->D));
+      .kernel = world->scene->coupling.kernel, .near = NEAR_EXACT, .spec = &world->scene->fluid, .box_part = box};
+  PetscCall(TestWorldBuildFor(&setting, world));
+  PetscCall(TestWorldPlace(world->fluid->a0, world));
+  PetscCall(PetscCalloc1(PetscSqr(2 * world->layout->M), &w->D));
+  if (box) PetscCall(AddAll(world->coupling->near->box, world->layout, w->D));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode WorldDestroy(World *w) {
   PetscFunctionBeginUser;
   PetscCall(PetscFree(w->D));
-  PetscCall(CouplingDestroy(&w->coupling));
-  PetscCall(MembraneDestroy(&w->membrane));
-  PetscCall(LayoutDestroy(&w->layout));
-  PetscCall(FluidDestroy(&w->fluid));
-  PetscCall(SceneDestroy(&w->scene));
+  PetscCall(TestWorldDestroy(&w->world));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* x.D y of vectors of all markers. */
 static PetscReal Form(World *w, const PetscReal x[], const PetscReal y[]) {
-  const PetscInt n = 2 * w->layout->M;
+  const PetscInt n = 2 * w->world.layout->M;
   PetscReal sum = 0;
   for (PetscInt j = 0; j < n; j++)
     for (PetscInt i = 0; i < n; i++) sum += x[i] * w->D[j * n + i] * y[j];
@@ -73,7 +53,7 @@ static PetscReal Form(World *w, const PetscReal x[], const PetscReal y[]) {
 /* Root of the sum of squares of D - factor D', over that of D. */
 static PetscReal OffBy(World *w, World *finer, PetscReal factor) {
   PetscReal sum = 0, size = 0;
-  for (PetscInt k = 0; k < PetscSqr(2 * w->layout->M); k++) {
+  for (PetscInt k = 0; k < PetscSqr(2 * w->world.layout->M); k++) {
     sum += PetscSqr(w->D[k] - factor * finer->D[k]);
     size += PetscSqr(w->D[k]);
   }
@@ -81,7 +61,7 @@ static PetscReal OffBy(World *w, World *finer, PetscReal factor) {
 }
 
 static PetscReal Asymmetry(World *w) {
-  const PetscInt n = 2 * w->layout->M;
+  const PetscInt n = 2 * w->world.layout->M;
   PetscReal most = 0;
   for (PetscInt j = 0; j < n; j++)
     for (PetscInt i = 0; i < n; i++) most = PetscMax(most, PetscAbsReal(w->D[j * n + i] - w->D[i * n + j]));
@@ -90,11 +70,11 @@ static PetscReal Asymmetry(World *w) {
 
 /* Normals of unit size in all, and the forces c + k (1, 2) of the cosines of the markers' numbers. */
 static void Vectors(World *w, PetscReal normal[], PetscReal force[]) {
-  const PetscInt M = w->layout->M;
-  const PetscReal *X = w->coupling->markers->X;
+  const PetscInt M = w->world.layout->M;
+  const PetscReal *X = w->world.coupling->markers->X;
   PetscReal size = 0;
-  for (PetscInt v = 0; v < w->layout->bodies; v++) {
-    const PetscInt first = w->layout->start[v], n = LayoutCount(w->layout, v);
+  for (PetscInt v = 0; v < w->world.layout->bodies; v++) {
+    const PetscInt first = w->world.layout->start[v], n = LayoutCount(w->world.layout, v);
     for (PetscInt k = 0; k < n; k++) {
       const PetscInt next = first + (k + 1) % n, before = first + (k + n - 1) % n, at = first + k;
       normal[2 * at] = X[2 * next + 1] - X[2 * before + 1];
@@ -111,13 +91,13 @@ static void Vectors(World *w, PetscReal normal[], PetscReal force[]) {
    over a period the flux is that of C + D. */
 static PetscErrorCode CheckTable(const char name[], const char options[], PetscBool walls) {
   PetscReal *normal, *force, off;
-  World w[2] = {{0}};
+  World w[2] = {{{0}}};
   PetscFunctionBeginUser;
   for (int k = 0; k < 2; k++) PetscCall(WorldCreate(options, k ? 64 : 32, PETSC_TRUE, &w[k]));
-  PetscCall(PetscMalloc2(2 * w[0].layout->M, &normal, 2 * w[0].layout->M, &force));
+  PetscCall(PetscMalloc2(2 * w[0].world.layout->M, &normal, 2 * w[0].world.layout->M, &force));
   for (int k = 0; k < 2; k++) {
     CHECK(Asymmetry(&w[k]) == 0, "%s: D is symmetric to the bit, rank %d", name,
-          (int)w[k].coupling->near->box->at->rank);
+          (int)w[k].world.coupling->near->box->at->rank);
     Vectors(&w[k], normal, force);
     const PetscReal flux = Form(&w[k], normal, normal);
     if (walls) CHECK(PetscAbsReal(flux) < 2e-5, "%s: n.D n = %.1e", name, flux);
@@ -131,10 +111,10 @@ static PetscErrorCode CheckTable(const char name[], const char options[], PetscB
 
 /* 189 x 192 cells, which no coarser square ones fit: nearly the D of 63 x 64 cells, whose pair is their own. */
 static PetscErrorCode CheckUnlike(const char own[], const char unlike[]) {
-  World w[2] = {{0}};
+  World w[2] = {{{0}}};
   PetscFunctionBeginUser;
   for (int k = 0; k < 2; k++) PetscCall(WorldCreate(k ? unlike : own, 63, PETSC_TRUE, &w[k]));
-  const PetscReal off = OffBy(&w[0], &w[1], 9), H = w[1].coupling->near->box->at->H / w[1].fluid->grid->h;
+  const PetscReal off = OffBy(&w[0], &w[1], 9), H = w[1].world.coupling->near->box->at->H / w[1].world.fluid->grid->h;
   CHECK(off < 0.05 && H > 2 && H < 3, "189 x 192 cells: from cells %.2f times as large, D within %.3f", H, off);
   for (int k = 0; k < 2; k++) PetscCall(WorldDestroy(&w[k]));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -142,31 +122,21 @@ static PetscErrorCode CheckUnlike(const char own[], const char unlike[]) {
 
 /* U[2M] = (E A^-1 E^T/h^2 + C + D) F where the Stokes solve is exact; D or not. */
 static PetscErrorCode Velocity(World *w, const PetscReal force[], PetscBool part, PetscReal all[]) {
-  const Coupling c = w->coupling;
-  const BoxPart box = c->near->box;
+  const NearField near = w->world.coupling->near;
+  const BoxPart box = near->box;
   Stokes stokes;
-  Vec F, U, u, p;
-  PetscScalar *f, *a;
+  Vec F, U;
+  PetscScalar *f;
   PetscFunctionBeginUser;
-  PetscCall(TestMarkerVecs(w->layout, 2, &F, &U, NULL));
-  PetscCall(TestFieldVecs(w->fluid->grid->velocity, &u, NULL));
-  PetscCall(TestFieldVecs(w->fluid->grid->da[FIELD_P], &p, NULL));
-  PetscCall(StokesCreate(w->fluid, &stokes));
+  PetscCall(TestMarkerVecs(w->world.layout, 2, &F, &U, NULL));
+  PetscCall(StokesCreate(w->world.fluid, &stokes));
   PetscCall(VecGetArray(F, &f));
-  PetscCall(PetscArraycpy(f, force + 2 * w->layout->first, 2 * w->layout->n));
+  PetscCall(PetscArraycpy(f, force + 2 * w->world.layout->first, 2 * w->world.layout->n));
   PetscCall(VecRestoreArray(F, &f));
-  PetscCall(VecSet(u, 0));
-  PetscCall(MarkersSpread(c->markers, 1 / PetscSqr(w->fluid->grid->h), F, u));
-  PetscCall(StokesSolve(stokes, u, NULL, u, p));
-  PetscCall(MarkersInterpolate(c->markers, u, U));
-  if (!part) c->near->box = NULL;
-  PetscCall(VecGetArray(F, &f));
-  PetscCall(VecGetArray(U, &a));
-  PetscCall(NearFieldApply(c->near, 1, f, a));
-  PetscCall(VecRestoreArray(U, &a));
-  PetscCall(VecRestoreArray(F, &f));
-  c->near->box = box;
-  PetscCall(LayoutGatherVec(w->layout, U, all));
+  if (!part) near->box = NULL;
+  PetscCall(TestWorldRespond(&w->world, stokes, PETSC_TRUE, F, U));
+  near->box = box;
+  PetscCall(LayoutGatherVec(w->world.layout, U, all));
   PetscCall(StokesDestroy(&stokes));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -183,17 +153,17 @@ static PetscReal Difference(PetscInt n, const PetscReal a[], const PetscReal b[]
 /* The markers' velocity on two grids, with D and without. */
 static PetscErrorCode CheckVelocity(const char name[], const char options[], PetscReal most) {
   PetscReal *normal, *force, *U[2][2], with, without;
-  World w[2] = {{0}};
+  World w[2] = {{{0}}};
   PetscFunctionBeginUser;
   for (int k = 0; k < 2; k++) {
     PetscCall(WorldCreate(options, k ? 64 : 32, PETSC_TRUE, &w[k]));
-    const PetscInt n = 2 * w[0].layout->M;
+    const PetscInt n = 2 * w[0].world.layout->M;
     if (!k) PetscCall(PetscMalloc6(n, &normal, n, &force, n, &U[0][0], n, &U[0][1], n, &U[1][0], n, &U[1][1]));
     Vectors(&w[k], normal, force);
     for (int part = 0; part < 2; part++) PetscCall(Velocity(&w[k], force, (PetscBool)part, U[k][part]));
   }
-  without = Difference(2 * w[0].layout->M, U[0][0], U[1][0]);
-  with = Difference(2 * w[0].layout->M, U[0][1], U[1][1]);
+  without = Difference(2 * w[0].world.layout->M, U[0][0], U[1][0]);
+  with = Difference(2 * w[0].world.layout->M, U[0][1], U[1][1]);
   CHECK(with < most, "%s: velocities on 32 and 64 cells differ by %.1e", name, with);
   CHECK(with < 0.4 * without, "%s: by %.2f of what they do without D", name, with / without);
   PetscCall(PetscFree6(normal, force, U[0][0], U[0][1], U[1][0], U[1][1]));
@@ -205,16 +175,16 @@ static PetscErrorCode CheckVelocity(const char name[], const char options[], Pet
    without it: unrefined they differ by 2.4e-2. */
 static PetscErrorCode CheckOwnImages(const char name[], const char options[]) {
   PetscReal *normal, *force, *U[2];
-  World w[2] = {{0}};
+  World w[2] = {{{0}}};
   PetscFunctionBeginUser;
   for (int k = 0; k < 2; k++) {
     PetscCall(WorldCreate(options, 64, (PetscBool)k, &w[k]));
-    const PetscInt n = 2 * w[0].layout->M;
+    const PetscInt n = 2 * w[0].world.layout->M;
     if (!k) PetscCall(PetscMalloc4(n, &normal, n, &force, n, &U[0], n, &U[1]));
     Vectors(&w[k], normal, force);
     PetscCall(Velocity(&w[k], force, (PetscBool)k, U[k]));
   }
-  const PetscReal apart = Difference(2 * w[0].layout->M, U[1], U[0]);
+  const PetscReal apart = Difference(2 * w[0].world.layout->M, U[1], U[0]);
   CHECK(apart < 2e-3, "%s: velocities with and without D differ by %.1e", name, apart);
   PetscCall(PetscFree4(normal, force, U[0], U[1]));
   for (int k = 0; k < 2; k++) PetscCall(WorldDestroy(&w[k]));

@@ -3,7 +3,6 @@
 #include "numerics/packedmatrix.h"
 #include "precondition/sharedshapes.h"
 #include "layers/selflayer.h"
-#include "fluid/stokes/stokes.h"
 #include "facts.h"
 
 #define VESICLES 7
@@ -179,15 +178,12 @@ static PetscErrorCode CheckSolve(void) {
 
 /* r_V and r_s of V and sigma in a box with walls, where velocity comes from the grid and the near field. */
 static PetscErrorCode MultiplyAll(TestWorld *t, Vec V, Vec sigma, Vec U, Vec s) {
-  const PetscReal h2 = PetscSqr(t->fluid->grid->h);
   const PetscScalar *f;
   PetscScalar *u;
-  Vec F, r, w, p;
+  Vec F;
   Stokes stokes;
   PetscFunctionBeginUser;
   PetscCall(TestVecs(V, &F, NULL));
-  PetscCall(TestFieldVecs(t->fluid->grid->velocity, &r, &w, NULL));
-  PetscCall(TestFieldVecs(t->fluid->grid->da[FIELD_P], &p, NULL));
   PetscCall(StokesCreate(t->fluid, &stokes));
   PetscCall(VecGetArrayRead(V, &f));
   PetscCall(VecGetArray(F, &u));
@@ -197,15 +193,8 @@ static PetscErrorCode MultiplyAll(TestWorld *t, Vec V, Vec sigma, Vec U, Vec s) 
   MembraneStretchingTranspose(t->membrane, t->coupling->tau, 1, f, u);
   PetscCall(VecRestoreArrayRead(sigma, &f));
   PetscCall(VecRestoreArray(F, &u));
-  PetscCall(MarkersSpread(t->coupling->markers, 1 / h2, F, r));
-  PetscCall(StokesSolve(stokes, r, NULL, w, p));
-  PetscCall(MarkersInterpolate(t->coupling->markers, w, U));
+  PetscCall(TestWorldRespond(t, stokes, PETSC_TRUE, F, U));
   PetscCall(VecAXPY(U, 1, V));
-  PetscCall(VecGetArrayRead(F, &f));
-  PetscCall(VecGetArray(U, &u));
-  PetscCall(NearFieldApply(t->coupling->near, 1, f, u));
-  PetscCall(VecRestoreArray(U, &u));
-  PetscCall(VecRestoreArrayRead(F, &f));
   PetscCall(CouplingStretching(t->coupling, V, s));
   PetscCall(StokesDestroy(&stokes));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -15,7 +15,10 @@ static PetscErrorCode RunCreate(const char options[], TestWorld *r) {
                           "%s -limit_area_error 0 -limit_length_error 0 -limit_edge_ratio 0 -limit_crossing false",
                           options));
   PetscCall(TestScene(all, &r->scene));
-  PetscCall(TestWorldBuild(area_target, r));
+  const SceneCoupling *c = &r->scene->coupling;
+  const CouplingSetting setting = {
+      .kernel = c->kernel, .near = (NearFieldType)c->near_field, .area_target = area_target};
+  PetscCall(TestWorldBuildFor(&setting, r));
   PetscCall(TestWorldScheme(r));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

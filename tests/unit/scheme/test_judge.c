@@ -139,44 +139,34 @@ static PetscErrorCode CheckPolicies(void) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A film that has lost so much over what it may: above 1 a smaller step, below it growth no further than it bears. */
-static PetscErrorCode CheckFilms(void) {
+/* A film that has lost so much over what it may: above 1 a smaller step, below it growth no further than it bears.
+   Order 3: the error goes like dt^3, and steps grow by a level at most. */
+static PetscErrorCode CheckFilmsAndOrder(void) {
   static const struct {
-    PetscReal loss;
+    PetscInt order;
+    PetscReal error, loss;
     StepVerdict verdict;
     PetscInt next;
-  } cases[] = {{0, STEP_ACCEPT, 2},  {0.3, STEP_ACCEPT, 2},     {0.6, STEP_ACCEPT, 1},  {0.95, STEP_ACCEPT, -1},
-               {1, STEP_ACCEPT, -1}, {1.0001, STEP_REPEAT, -1}, {1.5, STEP_REPEAT, -2}, {2, STEP_REPEAT, -3}};
+  } cases[] = {
+      {0, SMALL, 0, STEP_ACCEPT, 2},      {0, SMALL, 0.3, STEP_ACCEPT, 2},   {0, SMALL, 0.6, STEP_ACCEPT, 1},
+      {0, SMALL, 0.95, STEP_ACCEPT, -1},  {0, SMALL, 1, STEP_ACCEPT, -1},    {0, SMALL, 1.0001, STEP_REPEAT, -1},
+      {0, SMALL, 1.5, STEP_REPEAT, -2},   {0, SMALL, 2, STEP_REPEAT, -3},    {3, SMALL, 0, STEP_ACCEPT, 1},
+      {3, 0.25 * TOL, 0, STEP_ACCEPT, 1}, {3, 0.5 * TOL, 0, STEP_ACCEPT, 0}, {3, 0.95 * TOL, 0, STEP_ACCEPT, -1},
+      {3, 1.5 * TOL, 0, STEP_REPEAT, -1}, {3, 8 * TOL, 0, STEP_REPEAT, -3}};
   const StepPolicy policy = Policy(1);
   PetscFunctionBeginUser;
   for (size_t k = 0; k < sizeof(cases) / sizeof(cases[0]); k++) {
-    const StepTrial trial = {.solved = PETSC_TRUE, .dt = 1, .error = SMALL, .ratio = 1, .loss = cases[k].loss};
+    const StepTrial trial = {.solved = PETSC_TRUE,
+                             .order = cases[k].order,
+                             .dt = 1,
+                             .error = cases[k].error,
+                             .ratio = 1,
+                             .loss = cases[k].loss};
     StepPlan plan = {.before = NONE};
     const StepVerdict verdict = StepJudge(&policy, &trial, &plan);
     CHECK(verdict == cases[k].verdict && plan.level == cases[k].next,
-          "a film's loss of %g of what is allowed: verdict %d, level %d (%d, %d)", trial.loss, verdict, (int)plan.level,
-          cases[k].verdict, (int)cases[k].next);
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Order 3: the error goes like dt^3, and steps grow by a level at most. */
-static PetscErrorCode CheckOrder(void) {
-  static const struct {
-    PetscReal error;
-    StepVerdict verdict;
-    PetscInt next;
-  } cases[] = {{SMALL, STEP_ACCEPT, 1},       {0.25 * TOL, STEP_ACCEPT, 1}, {0.5 * TOL, STEP_ACCEPT, 0},
-               {0.95 * TOL, STEP_ACCEPT, -1}, {1.5 * TOL, STEP_REPEAT, -1}, {8 * TOL, STEP_REPEAT, -3}};
-  const StepPolicy policy = Policy(1);
-  PetscFunctionBeginUser;
-  for (size_t k = 0; k < sizeof(cases) / sizeof(cases[0]); k++) {
-    const StepTrial trial = {.solved = PETSC_TRUE, .order = 3, .dt = 1, .error = cases[k].error, .ratio = 1};
-    StepPlan plan = {.before = NONE};
-    const StepVerdict verdict = StepJudge(&policy, &trial, &plan);
-    CHECK(verdict == cases[k].verdict && plan.level == cases[k].next,
-          "order 3, error %g: verdict %d, level %d (%d, %d)", trial.error, verdict, (int)plan.level, cases[k].verdict,
-          (int)cases[k].next);
+          "order %d, error %g, a film's loss of %g of what is allowed: verdict %d, level %d (%d, %d)", (int)trial.order,
+          trial.error, trial.loss, verdict, (int)plan.level, cases[k].verdict, (int)cases[k].next);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -343,8 +333,7 @@ PetscErrorCode Facts(void) {
     PetscCall(CheckSizes(bases[b]));
   }
   PetscCall(CheckPolicies());
-  PetscCall(CheckFilms());
-  PetscCall(CheckOrder());
+  PetscCall(CheckFilmsAndOrder());
   for (int k = 1; k < 20; k++) PetscCall(CheckEnd(0.2 + 0.037 * k));
   PetscCall(CheckFixed());
   PetscCall(CheckFinished());
