@@ -64,6 +64,16 @@ static inline PetscErrorCode TestVecs(Vec x, ...) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* TestUnit - x becomes the unit vector of entry k. Collective. */
+static inline PetscErrorCode TestUnit(PetscInt k, Vec x) {
+  PetscFunctionBeginUser;
+  PetscCall(VecSet(x, 0));
+  PetscCall(VecSetValue(x, k, 1, INSERT_VALUES));
+  PetscCall(VecAssemblyBegin(x));
+  PetscCall(VecAssemblyEnd(x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* CheckMain - main() of a test program. */
 static inline int CheckMain(int argc, char **argv, PetscErrorCode (*facts)(void)) {
   if (PetvesInitialize(&argc, &argv)) return 1;

@@ -30,9 +30,7 @@ static PetscErrorCode ColumnError(Layout l, PetscMPIInt root, Mat Chat, PetscInt
     Vec e, column;
     PetscCall(VecCreateSeq(PETSC_COMM_SELF, l->M, &e));
     PetscCall(VecCreateSeqWithArray(PETSC_COMM_SELF, 1, l->M, got, &column));
-    PetscCall(VecSetValue(e, k, 1, INSERT_VALUES));
-    PetscCall(VecAssemblyBegin(e));
-    PetscCall(VecAssemblyEnd(e));
+    PetscCall(TestUnit(k, e));
     PetscCall(MatMult(Chat, e, column));
     for (PetscInt r = 0; r < l->M; r++) *error = PetscMax(*error, PetscAbsReal(got[r] - all[r]));
   }
@@ -57,10 +55,7 @@ static PetscErrorCode ChatError(TestWorld *t, PetscReal *error) {
   PetscCall(TestVecs(d, &q, NULL));
   PetscCall(TestMarkerVecs(t->layout, 1, &e, &column, NULL));
   for (PetscInt k = 0; k < t->layout->M; k++) {
-    PetscCall(VecSet(e, 0));
-    PetscCall(VecSetValue(e, k, 1, INSERT_VALUES));
-    PetscCall(VecAssemblyBegin(e));
-    PetscCall(VecAssemblyEnd(e));
+    PetscCall(TestUnit(k, e));
     PetscCall(MatMult(t->coupling->S, e, w));
     PetscCall(MatMultTranspose(f->G, w, q));
     PetscCall(VecPointwiseMult(q, d, q));

@@ -197,10 +197,7 @@ static PetscErrorCode Matrix(Double *d, PetscBool single, PetscReal A[]) {
   const PetscInt n = 2 * d->world.layout->M;
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < n; k++) {
-    PetscCall(VecSet(d->U, 0));
-    PetscCall(VecSetValue(d->U, k, 1, INSERT_VALUES));
-    PetscCall(VecAssemblyBegin(d->U));
-    PetscCall(VecAssemblyEnd(d->U));
+    PetscCall(TestUnit(k, d->U));
     if (single)
       PetscCall(TestWorldRespond(&d->world, d->stokes, PETSC_TRUE, d->U, d->V));
     else

@@ -157,10 +157,7 @@ static PetscErrorCode MobilityError(Problem *q, PetscInt v, const PetscReal Mob[
   PetscCall(TestVecs(q->f, &r, NULL));
   for (PetscInt column = 0; column < n; column++) {
     PetscReal off;
-    PetscCall(VecSet(F, 0));
-    PetscCall(VecSetValue(F, first + column, 1, INSERT_VALUES));
-    PetscCall(VecAssemblyBegin(F));
-    PetscCall(VecAssemblyEnd(F));
+    PetscCall(TestUnit(first + column, F));
     PetscCall(MatMultTranspose(m->E, F, r));
     PetscCall(StokesProject(stokes, r, NULL, r, q->p)); /* the table knows no walls */
     PetscCall(MatMult(m->E, r, F));
