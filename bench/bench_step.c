@@ -11,9 +11,13 @@ static const char *const names[LISTS] = {"step", "fast", "rest", "nsolve", "coup
 static PetscErrorCode Create(TestWorld *w) {
   PetscFunctionBeginUser;
   PetscCall(SceneCreate(PETSC_COMM_WORLD, NULL, NULL, &w->scene));
-  PetscCall(TestWorldBuild(SceneHasAreaTarget(w->scene), w));
-  if (w->coupling->near && SceneHasBoxPart(w->scene))
-    PetscCall(NearFieldAddBoxPart(w->coupling->near, &w->scene->fluid));
+  const SceneCoupling *c = &w->scene->coupling;
+  const CouplingSetting setting = {.kernel = c->kernel,
+                                   .near = (NearFieldType)c->near_field,
+                                   .spec = &w->scene->fluid,
+                                   .box_part = SceneHasBoxPart(w->scene),
+                                   .area_target = SceneHasAreaTarget(w->scene)};
+  PetscCall(TestWorldBuildFor(&setting, w));
   PetscCall(TestWorldScheme(w));
   PetscCall(SceneCheckUnused(w->scene));
   PetscFunctionReturn(PETSC_SUCCESS);

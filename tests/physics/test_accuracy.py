@@ -1,12 +1,11 @@
 """What the near field makes of a coarse grid (docs/evidence.md): steady tank-treading, relaxation and conservation with all
 defaults on, and that ranks agree."""
 
-import json
 import math
 
 import numpy as np
 import pytest
-from harness import ROOT, run_petves
+from harness import REFERENCES, run_petves
 from petves.run import Run
 from studies.common.curves import last_markers, trigonometric
 from studies.common.paper import SHEAR
@@ -14,7 +13,6 @@ from restarts import last_state, same_state
 
 pytestmark = pytest.mark.xdist_group("accuracy")  # its tests share runs
 
-REFERENCES = json.loads((ROOT / "tests" / "support" / "references.json").read_text())
 BOX = {
     (v, chi): found for v, chi, *found in REFERENCES["tank_treading_box"]["V, chi, angle over pi, frequency over rate"]
 }

@@ -1,12 +1,10 @@
 """Viscosity contrast: angle and frequency of the boundary integral, tumbling, ranks, restarts, scaling."""
 
-import json
 import math
 
-import h5py
 import numpy as np
 import pytest
-from harness import ROOT, run_petves
+from harness import REFERENCES, run_petves
 
 from petves.measures import half_periods, turned_angle
 from petves.rheology import stresslets
@@ -16,7 +14,7 @@ QUIET = "-output_every 100"
 R0 = math.sqrt(1 / (0.7 * math.pi))  # of the unit area
 SHEAR = f"{QUIET} -domain_box -4,4,-4,4 -domain_cells 64,64 -flow_type shear -vesicle_area 1"
 SHEAR += f" -vesicle_reduced_area 0.7 -vesicle_bending {R0**3 / 10!r} -time_step 0.1"
-REFERENCES = json.loads((ROOT / "tests" / "support" / "references.json").read_text())["viscosity_ratio"]
+RATIOS = REFERENCES["viscosity_ratio"]
 SMALL = f"{QUIET} -domain_box -2,2,-2,2 -domain_cells 32,32 -flow_type shear -vesicle_area 0.5 -vesicle_markers 25"
 SMALL += " -vesicle_count 2 -vesicle_center -.6,.2,.6,-.2 -vesicle_angle 60 -vesicle_bending .03 -time_step .1"
 SMALL += " -vesicle_viscosity_ratio 5,.3 -time_end .3"
@@ -26,8 +24,7 @@ TIGHT = "-coupled_ksp_rtol 1e-12"
 
 
 def markers(run) -> np.ndarray:
-    with h5py.File(run.folder / "checkpoint.h5") as file:
-        return np.array([file["vesicle/markers"][k] for k in range(len(file["vesicle/markers"]))])
+    return run.saved("vesicle/markers")
 
 
 @pytest.mark.parametrize("ratio", ["2", "0.1"])
@@ -36,7 +33,7 @@ def test_steady_angle_and_frequency(tmp_path, ratio):
     for place, options, rel in (("box", "", 5e-5), ("unbounded", "-domain_bc_x free -domain_bc_y free", 2e-5)):
         scene = f"{SHEAR} -domain_cells 32,32 -vesicle_viscosity_ratio {ratio} -time_end 35 {options}"
         run = run_petves(tmp_path / place, scene)
-        reference = REFERENCES[place][ratio]
+        reference = RATIOS[place][ratio]
         assert run.series["inclination"][-1] / math.pi == pytest.approx(reference["angle"], rel=rel)
         assert run.series["frequency"][-1] == pytest.approx(reference["frequency"], rel=rel)
         assert run.series["coupled_its"][6:].mean() <= 5
@@ -58,7 +55,7 @@ def test_second_order_without_box_part(tmp_path):
     for cells in (32, 64):
         options = f"-domain_cells {cells},{cells} -coupling_box_part false -vesicle_viscosity_ratio 2 -time_end 30"
         run = run_petves(tmp_path / str(cells), f"{SHEAR} {options}")
-        error.append(run.series["inclination"][-1] / math.pi / REFERENCES["box"]["2"]["angle"] - 1)
+        error.append(run.series["inclination"][-1] / math.pi / RATIOS["box"]["2"]["angle"] - 1)
     assert 3.5 < error[0] / error[1] < 5 and abs(error[0]) < 1.2e-3
 
 
@@ -77,7 +74,7 @@ def test_tumbling_half_period(tmp_path):
     scene = f"{SHEAR} -domain_cells 32,32 -time_step .05 -vesicle_viscosity_ratio 10 -time_end 23"
     series = run_petves(tmp_path / "run", scene).series
     half = half_periods(series["time"], series["inclination"])
-    assert half == pytest.approx([REFERENCES["box"]["10"]["half_period"]], rel=3e-4)
+    assert half == pytest.approx([RATIOS["box"]["10"]["half_period"]], rel=3e-4)
     assert turned_angle(series["inclination"])[-1] < -1.4 * math.pi
 
 
@@ -114,15 +111,14 @@ def test_stress(tmp_path):
         assert run.series[f"{name}_wall"][1:] == pytest.approx(run.series[name][1:], rel=1e-9)
     total = stresslets(Run.read(run.folder), -1).sum(axis=0) / -16
     assert 1 + total[0, 1] == pytest.approx(run.series["viscosity"][-1], abs=2e-3)
-    assert json.loads((run.folder / "summary.json").read_text())["viscosity_ratio"] == [0.3, 5]
+    assert run.summary["viscosity_ratio"] == [0.3, 5]
 
 
 @pytest.mark.parametrize("box", ["", "-domain_bc_y periodic", "-flow_drive flux"], ids=["channel", "periodic", "flux"])
 def test_kinetic_energy_is_of_the_saved_velocity(tmp_path, box):
     """Measured in the solve of a step, whose velocity is made afterwards; 3 ranks, vesicles on a seam or near walls."""
     run = run_petves(tmp_path / "run", f"{SMALL} {NEAR} {PLAIN} -domain_bc_x periodic {box}", 3)
-    with h5py.File(run.folder / "checkpoint.h5") as file:
-        squares = sum((np.array(file[f"fluid/{name}"]) ** 2).sum() for name in "uv")
+    squares = sum((run.saved(f"fluid/{name}") ** 2).sum() for name in "uv")
     assert run.series["energy_kinetic"][-1] == pytest.approx(squares / 2 * 0.125**2, rel=1e-11)
 
 
@@ -160,6 +156,15 @@ def test_ranks_and_restart(tmp_path):
     assert np.array_equal(markers(rest), whole)
 
 
+def test_energy_of_the_saved_velocity(tmp_path):
+    """The kinetic energy of a step with dipoles is that of the velocity in its checkpoint."""
+    scene = f"{QUIET} {PLAIN} -domain_box -4,4,-4,4 -domain_cells 32,32 -flow_type shear -vesicle_area 1"
+    scene += " -vesicle_reduced_area .7 -vesicle_bending .03 -vesicle_viscosity_ratio 10 -time_step .05 -time_end .1"
+    run = run_petves(tmp_path / "run", scene)
+    squares = sum((run.saved(f"fluid/{name}") ** 2).sum() for name in "uv")
+    assert run.series["energy_kinetic"][-1] == pytest.approx(squares / 2 * 0.25**2, rel=1e-11)
+
+
 def first_velocity(folder, cells: int, ratio: float, options="") -> np.ndarray:
     """Of an ellipse .04 from the bottom of a channel of height 2, which shear takes along."""
     scene = f"{QUIET} {PLAIN} -domain_box -1,1,-1,1 -domain_cells {cells},{cells} -domain_bc_x periodic"
@@ -169,8 +174,7 @@ def first_velocity(folder, cells: int, ratio: float, options="") -> np.ndarray:
     scene += f" -vesicle_bending .02 -vesicle_viscosity_ratio {ratio} -vesicle_allow_close_markers {options}"
     run = run_petves(folder, f"{scene} -time_step 1e-6 -time_end 1e-6 -scheme_startup euler -output_every 1 {TIGHT}")
     assert abs(run.series["gap"][-1] - 0.04) < 1e-3
-    with h5py.File(run.folder / "run.h5") as file:
-        return file["vesicle/velocity"][-1]
+    return run.saved("vesicle/velocity", "run.h5")[-1]
 
 
 @pytest.mark.parametrize("ratio", [5, 0.2])

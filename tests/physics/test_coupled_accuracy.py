@@ -22,8 +22,7 @@ PROTOTYPE = {1: (2.6e-4, 1.3e-4, 6.7e-5, 3.4e-5), 2: (4.1e-5, 9.8e-6, 2.2e-6, 4.
 
 
 def markers(run) -> np.ndarray:
-    with h5py.File(run.folder / "checkpoint.h5") as file:
-        return file["vesicle/markers"][0]
+    return run.saved("vesicle/markers")[0]
 
 
 def rms(one, two) -> float:

@@ -1,15 +1,13 @@
 """Gravity: settling of the boundary integral, the drag of a rigid circle, the energy law, boxes without walls."""
 
-import json
 
-import h5py
 import numpy as np
 import pytest
-from harness import ROOT, run_petves
+from harness import REFERENCES, ROOT, Run, run_petves
 
 QUIET = "-output_overwrite"
 SETTLE = f"{QUIET} -options_file {ROOT / 'runs' / 'settling.opts'}"
-SINKS = json.loads((ROOT / "tests" / "support" / "references.json").read_text())["settling"]
+SINKS = REFERENCES["settling"]
 AREA = np.pi / 100
 CHANNEL = f"{QUIET} -domain_box 0,3,0,1 -domain_cells 96,32 -domain_bc_x periodic -fluid_inertia none"
 CHANNEL += f" -fluid_gravity 1,0 -vesicle_density_difference 1 -vesicle_area {AREA!r} -vesicle_center 1.5,.5"
@@ -72,8 +70,7 @@ def test_rigid_circles_do_not_feel_what_is_inside(tmp_path):
         for V in (0.99, 0.999)
     ]
     assert found[1] + (found[1] - found[0]) / 9 == pytest.approx(16.5328, rel=5e-3)
-    with h5py.File(tmp_path / "0.99" / "90" / "checkpoint.h5") as file:
-        u = file["fluid/u"][:]
+    u = Run(tmp_path / "0.99" / "90", 0, "", []).saved("fluid/u")
     assert abs(u[..., 0].mean()) < 1e-10 * np.abs(u).max()
     assert abs(u.mean()) > 1e-3 * np.abs(u).max()
 
@@ -92,8 +89,7 @@ def test_zero_flux(tmp_path):
     means = []
     for drive in ("flux", "pressure"):
         run = run_petves(tmp_path / drive, f"{CHANNEL} -vesicle_reduced_area .9 -flow_drive {drive}")
-        with h5py.File(run.folder / "checkpoint.h5") as file:
-            means.append(abs(file["fluid/u"][:].mean()) / run.series["velocity_x"][-1])
+        means.append(abs(run.saved("fluid/u").mean()) / run.series["velocity_x"][-1])
     assert means[0] < 1e-12 and means[1] > 0.1
 
 

@@ -1,7 +1,6 @@
 """-fluid_inertia: quasi-steady flow against unbounded Stokes flow, Galilean invariance of convective flow, the default
 model, its Reynolds number and its warning, the CFL number."""
 
-import json
 import re
 
 import h5py
@@ -21,15 +20,6 @@ CHANNEL += "-vesicle_semi_axes 0.3,0.45 -vesicle_center 1.25,0.1 -output_every 1
 
 def words(options: dict[str, str]) -> str:
     return " ".join(f"{name} {value}" for name, value in options.items())
-
-
-def summary(run) -> dict:
-    return json.loads((run.folder / "summary.json").read_text())
-
-
-def last_state(run) -> dict[str, np.ndarray]:
-    with h5py.File(run.folder / "checkpoint.h5") as file:
-        return {name: file[name][:] for name in ("fluid/u", "fluid/p", "vesicle/markers", "vesicle/tension")}
 
 
 @pytest.mark.parametrize("box", ["periodic", "walls"])
@@ -117,10 +107,10 @@ def test_ranks_agree_in_convective_flow(tmp_path):
     """1 and 3 ranks, to 1e-9 of the shape."""
     options = f"-domain_cells 48,48 -domain_bc_x periodic -flow_type shear -flow_rate 20 -vesicle_angle 30 {CORRECTED} "
     options += "-fluid_inertia convective -time_step 0.0005 -time_end 0.01 -coupled_ksp_rtol 1e-11"
-    base = last_state(run_petves(tmp_path / "base", options))["vesicle/markers"]
-    ranks = last_state(run_petves(tmp_path / "ranks", options, 3))["vesicle/markers"]
+    base = run_petves(tmp_path / "base", options).saved("vesicle/markers")
+    ranks = run_petves(tmp_path / "ranks", options, 3).saved("vesicle/markers")
     without = options.replace("convective", "unsteady")
-    unsteady = last_state(run_petves(tmp_path / "unsteady", without))["vesicle/markers"]
+    unsteady = run_petves(tmp_path / "unsteady", without).saved("vesicle/markers")
     assert np.abs(ranks - base).max() < 1e-9
     assert np.abs(unsteady - base).max() > 1e-5, "convection makes a difference here"
 
@@ -145,7 +135,7 @@ def test_default_model(name, tmp_path):
     if "shear" in name or speed is None:
         options = options.replace("-flow_half_width 1 ", "").replace("-flow_type poiseuille", "", 1)
     run = run_petves(tmp_path, options)
-    found = summary(run)
+    found = run.summary
     assert found["inertia"] == model and f"-fluid_inertia {model}" in (run.folder / "resolved.opts").read_text()
     assert said in run.stdout
     R0 = run.series["length"][0] / (2 * np.pi)
@@ -161,7 +151,7 @@ def test_default_model(name, tmp_path):
 def test_adaptive_steps_respect_the_cfl_limit(tmp_path):
     options = f"{CHANNEL} {CORRECTED} -flow_peak_velocity 2 -fluid_inertia convective -time_end 0.2 -time_step 0.1 "
     run = run_petves(tmp_path, options + "-time_adapt error -time_adapt_tol 1e-2 -time_cfl_limit 0.4")
-    assert 0.2 < summary(run)["cfl_max"] <= 0.4
+    assert 0.2 < run.summary["cfl_max"] <= 0.4
     assert run.series["dt"][1:].max() <= 0.4 * (2 / 48) / 1.9
 
 

@@ -9,13 +9,13 @@ import h5py
 import numpy as np
 import pytest
 from boundary_integral import finer, pressed, single_layer
-from harness import ROOT, run_petves
+from harness import REFERENCES, ROOT, run_petves
 from swinging_circle import swinging_torque
 
 import petves
 from petves.views.report import report
 
-EXACT = json.loads((ROOT / "tests" / "support" / "references.json").read_text())["obstacles"]
+EXACT = REFERENCES["obstacles"]
 PERIODIC = "-domain_bc_x periodic -domain_bc_y periodic"
 STILL = "-vesicle_shape none -coupled_ksp_rtol 1e-10 -time_step .01 -time_end .01"
 ARRAY = f"{STILL} {PERIODIC} -domain_box 0,1,0,1 -obstacle_shape posts -obstacle_center .5,.5 -flow_type uniform"

@@ -1,14 +1,11 @@
 """What a run by the paper's scheme must show: answers that do not depend on ranks or form, constraints, energy, solve counts, Table 7."""
 
-import json
-
 import numpy as np
 import pytest
-from harness import COLUMNS, PAPER, ROOT, SANITIZE, run_petves
+from harness import COLUMNS, PAPER, REFERENCES, SANITIZE, run_petves
 
 pytestmark = pytest.mark.xdist_group("runs")  # its tests share runs
 
-REFERENCES = json.loads((ROOT / "tests" / "support" / "references.json").read_text())
 TIGHT = f"{PAPER} -tension_ksp_rtol 1e-12 -bending_ksp_rtol 1e-12"
 SHEAR = f"{PAPER} -domain_cells 64,64 -flow_type shear -time_step 0.0078125"
 

@@ -19,8 +19,7 @@ def options(run) -> dict[str, str]:
 
 
 def markers(run) -> np.ndarray:
-    with h5py.File(run.folder / "run.h5") as file:
-        return file["vesicle/markers"][0]
+    return run.saved("vesicle/markers", "run.h5")[0]
 
 
 def spectral_measures(X: np.ndarray) -> tuple[float, float, complex]:

@@ -1,7 +1,6 @@
 """What is watched after every step: limits, finite values, contact. A stop leaves the state before, which a restart
 takes."""
 
-import json
 
 import h5py
 import numpy as np
@@ -20,7 +19,7 @@ def test_limit_stops_at_the_state_before(limit, column, tmp_path):
     the run that had that limit from the start."""
     value = float(limit.split()[1])
     run = run_petves(tmp_path / "run", f"{STRETCHED} -limit_{limit}", ranks=2, good=False)
-    series, summary = run.series, json.loads((run.folder / "summary.json").read_text())
+    series, summary = run.series, run.summary
     assert run.status == 2 and f"-limit_{column}" in summary["reason"] and "; try " in summary["reason"]
     assert 5 < len(series["step"]) < 80
     assert np.abs(series[column]).max() <= value
@@ -90,7 +89,7 @@ def test_markers_that_do_not_resolve_a_shape(tmp_path):
     run = run_petves(tmp_path / "run", f"{scene} 17", ranks=2)
     lines = [line for line in run.stdout.splitlines() if "petves: warning" in line]
     assert len(lines) == 1 and "17 markers do not resolve vesicle 2 after step 1," in lines[0], run.stdout
-    listed = json.loads((run.folder / "summary.json").read_text())["warnings"]
+    listed = run.summary["warnings"]
     assert [f"petves: warning: {text}" for text in listed] == lines
     wanted = lines[0].split("try -vesicle_markers ")[1]
     assert "petves: warning" not in run_petves(tmp_path / "more", f"{scene} {wanted}").stdout

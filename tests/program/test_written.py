@@ -1,6 +1,5 @@
 """How much a run writes: frames by default, their precision, and what the run says of it."""
 
-import json
 import re
 
 import h5py
@@ -29,15 +28,14 @@ def test_a_run_has_at_most_100_frames(end, every, count, tmp_path):
     assert f"-output_every {every:g}\n" in re.sub(
         r"(\.\d*?[1-9])0{5,}\d*", r"\1", (run.folder / "resolved.opts").read_text()
     )
-    with h5py.File(run.folder / "run.h5") as file:
-        times = file["time"][:]
+    times = run.saved("time", "run.h5")
     assert len(times) == count and times[-1] == pytest.approx(end, rel=1e-12)
-    assert json.loads((run.folder / "summary.json").read_text())["written"]["frames"] == count
+    assert run.summary["written"]["frames"] == count
 
 
 def test_what_was_written_is_said(tmp_path):
     run = run_petves(tmp_path / "run", f"{SMALL} -time_step 0.01 -time_end 0.03 -output_every 0.01 -checkpoint_every 1")
-    written = json.loads((run.folder / "summary.json").read_text())["written"]
+    written = run.summary["written"]
     sizes = {path.name: path.stat().st_size for path in run.folder.iterdir()}
     names = ("run.h5", "run.xmf", "series.csv", "checkpoint.h5", "checkpoint_1.h5")
     assert set(sizes) - set(names) <= {"resolved.opts", "summary.json"}

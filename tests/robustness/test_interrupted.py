@@ -53,7 +53,7 @@ def test_wall_limit_stops_in_time(tmp_path):
     run = run_petves(tmp_path / "run", f"{PAPER} {BASE} -domain_cells 96,96 -time_end 1000 -time_wall_limit 3", ranks=2)
     assert time.time() - begin < 8, "limit and start of mpirun on a busy machine"
     assert "-time_wall_limit" in run.stdout
-    assert json.loads((run.folder / "summary.json").read_text())["reason"] == "stopped"
+    assert run.summary["reason"] == "stopped"
     assert len(run.series["step"]) > 2 and (run.folder / "checkpoint.h5").exists()
 
 

@@ -1,6 +1,7 @@
 """What tests share: paths, the environment of runs, petves under mpirun, and what a run leaves."""
 
 import csv
+import json
 import os
 import re
 import signal
@@ -9,6 +10,7 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
+import h5py
 import numpy as np
 import pytest
 
@@ -18,6 +20,8 @@ PROGRAMS = Path(os.environ.get("PETVES_TESTS", str(ROOT / "build" / "tests")))
 LIBRARY = Path(PETVES).resolve().parent.parent / "lib" / "libpetves.so"
 SITE = PROGRAMS.parent / "site"  # what the tests need that Debian does not have: SITE_PACKAGES of the Makefile
 SANITIZE = bool(os.environ.get("SANITIZE"))
+#: Exact and published numbers.
+REFERENCES = json.loads((ROOT / "tests" / "support" / "references.json").read_text())
 
 #: What Open MPI needs as root and on few cores, and what the sanitizers need: MPI and PETSc leak by themselves.
 ENVIRONMENT = {
@@ -115,6 +119,15 @@ class Run:
     @property
     def series(self) -> dict[str, np.ndarray]:
         return read_series(self.folder / "series.csv")
+
+    @property
+    def summary(self) -> dict:
+        return json.loads((self.folder / "summary.json").read_text())
+
+    def saved(self, name: str, file: str = "checkpoint.h5") -> np.ndarray:
+        """A dataset of the checkpoint, or of another file."""
+        with h5py.File(self.folder / file) as opened:
+            return opened[name][:]
 
 
 def run_petves(folder: Path, options: str, ranks: int = 1, good: bool = True, timeout: float = 300) -> Run:

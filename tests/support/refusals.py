@@ -1,6 +1,5 @@
 """What a refused or failed run must leave: one line, or the last good state."""
 
-import json
 import re
 
 import h5py
@@ -18,11 +17,7 @@ def matches(pattern: str, line: str) -> bool:
 
 def stops_with(run, needles):
     """One line on standard error, with every needle; exit status 1; no step taken."""
-    assert run.status == 1, run.stdout
-    assert len(run.errors) == 1, "\n".join(run.errors)
-    assert run.errors[0].startswith("petves: error: ")
-    for needle in needles:
-        assert needle in run.errors[0]
+    one_line(run, *needles)
     assert not (run.folder / "series.csv").exists() or len(run.series["step"]) <= 1
     assert "step 1 " not in run.stdout
 
@@ -32,7 +27,7 @@ def leaves_files(run, reason):
     assert run.status == 2, run.stdout
     lines = [line for line in run.errors if line.startswith("petves: error: ")]
     assert len(lines) == 1 and len(run.errors) == 1, "\n".join(run.errors)
-    summary, series = json.loads((run.folder / "summary.json").read_text()), run.series
+    summary, series = run.summary, run.series
     assert summary["reason"] in lines[0]
     assert re.search(reason, summary["reason"]), summary["reason"]
     assert summary["totals"]["steps"] == series["step"][-1]
