@@ -10,9 +10,9 @@ import time
 from pathlib import Path
 
 import h5py
+import harness
 import pytest
 from harness import (
-    ENVIRONMENT,
     PETVES,
     SANITIZE,
     mpirun,
@@ -32,13 +32,9 @@ SCENE = "-domain_cells 24,24 -vesicle_semi_axes 0.3,0.5 -flow_type shear -time_s
 
 
 def start(folder: Path, options: str, ranks: int = 1, **how) -> subprocess.Popen:
-    """petves in the background, with a run that has no end unless the options say one."""
-    command = ["mpirun", "-n", str(ranks)] if ranks > 1 else []
-    command += [PETVES, "-output_dir", str(folder), *f"{SCENE} -time_end 1000 {options}".split()]
-    environment = {**os.environ, **ENVIRONMENT, **how.pop("environment", {})}
-    return subprocess.Popen(
-        command, env=environment, text=True, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, **how
-    )
+    """A run in the background that has no end unless the options say one."""
+    quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.PIPE}
+    return harness.start(folder, f"{SCENE} -time_end 1000 {options}", ranks, **quiet, **how)
 
 
 def wait_for(condition) -> None:

@@ -4,7 +4,6 @@ The suite tries each kind twice; `PYTHONPATH=python python3 tests/support/double
 """
 
 import json
-import os
 import random
 import subprocess
 import sys
@@ -13,8 +12,9 @@ import time
 from pathlib import Path
 
 import h5py
+import harness
 import numpy as np
-from harness import ENVIRONMENT, PETVES, read_series
+from harness import read_series
 
 SCENE = "-domain_cells 24,24 -vesicle_semi_axes 0.3,0.5 -flow_type shear -time_step 0.02 -output_every 0.1"
 STEPS = 300
@@ -23,13 +23,8 @@ END = f"-time_end {0.02 * STEPS} -checkpoint_every 10"
 
 def start(folder: Path, options: str) -> subprocess.Popen:
     """petves in the background."""
-    return subprocess.Popen(
-        [PETVES, "-output_dir", str(folder), *SCENE.split(), *END.split(), *options.split()],
-        env={**os.environ, **ENVIRONMENT},
-        text=True,
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.PIPE,
-    )
+    quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.PIPE}
+    return harness.start(folder, f"{SCENE} {END} {options}", **quiet)
 
 
 def begun(folder: Path) -> None:
