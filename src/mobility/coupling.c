@@ -310,14 +310,15 @@ PetscErrorCode CouplingAddPast(Coupling c, Vec uhat, Vec U) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode CouplingLayer(Coupling c, Vec sigma, Vec X, Layer *layer) {
+PetscErrorCode CouplingForces(Coupling c, Vec sigma, Vec X, Vec F) {
   const Membrane m = c->membrane;
   const PetscScalar *x, *s;
   PetscReal *tau, energy;
   PetscScalar *f;
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(2 * m->layout->n, &tau));
-  PetscCall(PetscCalloc1(2 * m->layout->n, &f));
+  PetscCall(VecSet(F, 0));
+  PetscCall(VecGetArray(F, &f));
   PetscCall(VecGetArrayRead(X, &x));
   PetscCall(VecGetArrayRead(sigma, &s));
   MembraneTangents(m, x, tau);
@@ -325,11 +326,10 @@ PetscErrorCode CouplingLayer(Coupling c, Vec sigma, Vec X, Layer *layer) {
   if (m->bending > 0) MembraneBending(m, -m->bending, x, f);
   MembraneGravity(m, 1, x, f);
   if (c->repulsion) PetscCall(RepulsionAt(c->repulsion, 0, 1, x, f, &energy));
-  PetscCall(LayerCreate(c->fluid->nu, m->layout, x, f, layer));
   PetscCall(VecRestoreArrayRead(sigma, &s));
   PetscCall(VecRestoreArrayRead(X, &x));
+  PetscCall(VecRestoreArray(F, &f));
   PetscCall(PetscFree(tau));
-  PetscCall(PetscFree(f));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

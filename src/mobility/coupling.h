@@ -4,7 +4,6 @@
 #pragma once
 #include "bodies/arearow.h"
 #include "mobility/doublelayer.h"
-#include "layers/layer.h"
 #include "mobility/nearfield.h"
 #include "bodies/repulsion.h"
 #include "fluid/stokes/fluid.h"
@@ -122,6 +121,6 @@ PETSC_EXTERN PetscErrorCode CouplingTread(Coupling coupling, PetscReal alpha, Ve
 /* CouplingStretching - d = Dm U/h^2. d and U are an edge vector and a marker vector. Not collective. */
 PETSC_EXTERN PetscErrorCode CouplingStretching(Coupling coupling, Vec U, Vec d);
 
-/* CouplingLayer - the single layer of all forces of membranes at X with tension sigma in unbounded fluid. Collective.
- */
-PETSC_EXTERN PetscErrorCode CouplingLayer(Coupling coupling, Vec sigma, Vec X, Layer *layer);
+/* CouplingForces - F = all forces times ds of membranes at X with tension sigma, as marker vectors of the membranes.
+   Collective. */
+PETSC_EXTERN PetscErrorCode CouplingForces(Coupling coupling, Vec sigma, Vec X, Vec F);

@@ -1,7 +1,6 @@
 #include "output/cells.h"
 #include "base/agree.h"
-#include "layers/doublecells.h"
-#include "layers/nearcells.h"
+#include "layers/layercells.h"
 
 /* A velocity component on a wall: the background's in the total form, else zero. */
 static PetscScalar CellWallValue(Scheme s, int c, PetscInt i, PetscInt j, PetscReal wall) {
@@ -55,12 +54,13 @@ static PetscErrorCode AddMembranes(Scheme s, PetscReal *const field[3]) {
   const State *q = &s->state;
   const NearField near = s->coupling->near;
   const DoubleLayer contrast = s->coupling->contrast;
-  Layer layer;
+  Vec F;
   PetscFunctionBeginUser;
   if (q->dt_last == 0 || !near) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(CouplingLayer(s->coupling, q->sigma, q->X, &layer));
-  PetscCall(NearCellsCorrect(&near->set, &near->lattice, layer, field));
-  PetscCall(LayerDestroy(&layer));
+  PetscCall(VecDuplicate(q->X, &F));
+  PetscCall(CouplingForces(s->coupling, q->sigma, q->X, F));
+  PetscCall(SingleCellsCorrect(&near->set, &near->lattice, F, q->X, field));
+  PetscCall(VecDestroy(&F));
   if (contrast) PetscCall(DoubleCellsCorrect(&near->set, contrast->lattice, contrast->ratio, q->U, q->X, field));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

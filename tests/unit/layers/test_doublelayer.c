@@ -3,7 +3,7 @@
 #include "facts.h"
 #include "mobility/contrast.h"
 #include "numerics/blas.h"
-#include "layers/doublecurve.h"
+#include "layers/curvelayer.h"
 
 #define SCENE                                                                                                          \
   "-delta_type cbs54 -coupling_near_field exact -coupling_box_part false -membrane_derivative spectral "               \
@@ -321,15 +321,15 @@ static PetscErrorCode CheckMatrices(void) {
 static PetscErrorCode CheckCurve(void) {
   const PetscReal radius[] = {0.3, 0.9, 0.9999, 1.0001, 1.1, 3};
   PetscReal X[64], constant[64], strain[64];
-  DoubleCurve curve[2];
+  CurveLayer curve[2];
   PetscFunctionBeginUser;
   for (int k = 0; k < 64; k++) {
     X[k] = k % 2 ? PetscSinReal(PETSC_PI * (k / 2) / 16) : PetscCosReal(PETSC_PI * (k / 2) / 16);
     constant[k] = k % 2 ? 2 : 1;
     strain[k] = k % 2 ? -X[k] : X[k];
   }
-  PetscCall(DoubleCurveCreate(32, 3, X, constant, &curve[0]));
-  PetscCall(DoubleCurveCreate(32, 3, X, strain, &curve[1]));
+  PetscCall(CurveLayerCreate(LAYER_DOUBLE, 32, 3, X, constant, &curve[0]));
+  PetscCall(CurveLayerCreate(LAYER_DOUBLE, 32, 3, X, strain, &curve[1]));
   for (int k = 0; k < 6; k++) {
     const PetscReal r = radius[k];
     PetscReal worst = 0;
@@ -337,16 +337,16 @@ static PetscErrorCode CheckCurve(void) {
       const PetscReal x[2] = {r * PetscCosReal(angle), r * PetscSinReal(angle)};
       PetscReal u[3] = {0}, s[3] = {0};
       PetscBool inside;
-      DoubleCurveAdd(curve[0], x, u, &u[2], &inside);
+      CurveLayerAdd(curve[0], x, u, &u[2], &inside);
       worst = PetscMax(worst, PetscAbsReal(u[0] + (r < 1)) + PetscAbsReal(u[1] + 2 * (r < 1)) + PetscAbsReal(u[2]));
-      DoubleCurveAdd(curve[1], x, s, &s[2], &inside);
+      CurveLayerAdd(curve[1], x, s, &s[2], &inside);
       worst = PetscMax(worst, PetscAbsReal(s[2] - (r < 1 ? 0 : 6 * PetscCosReal(2 * angle) / (r * r))));
       if (r < 1) worst = PetscMax(worst, PetscAbsReal(s[0] + 0.5 * x[0]) + PetscAbsReal(s[1] - 0.5 * x[1]));
       if (inside != (r < 1)) worst = PETSC_MAX_REAL;
     }
     CHECK(worst < 1e-7, "the double layer of a unit circle %g from its middle: off by %.1e", r, worst);
   }
-  for (int k = 0; k < 2; k++) PetscCall(DoubleCurveDestroy(&curve[k]));
+  for (int k = 0; k < 2; k++) PetscCall(CurveLayerDestroy(&curve[k]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

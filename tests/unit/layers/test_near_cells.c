@@ -3,7 +3,7 @@
 #include "facts.h"
 #include "base/lanes.h"
 #include "layers/latticegreen.h"
-#include "layers/nearcells.h"
+#include "layers/layercells.h"
 #include "fluid/stokes/stokes.h"
 
 #define EXACT "-coupling_near_field exact -membrane_derivative spectral -vesicle_allow_close_markers "
@@ -135,8 +135,7 @@ static PetscErrorCode CheckCircle(const char options[], PetscReal a0) {
   const PetscScalar *a;
   TestWorld w;
   Stokes stokes;
-  Layer layer;
-  Vec f, u, p, sigma;
+  Vec f, u, p, sigma, F;
   PetscFunctionBeginUser;
   PetscCall(TestWorldCreate(options, &w));
   if (a0 > 0) PetscCall(TestWorldPlace(a0, &w));
@@ -156,10 +155,11 @@ static PetscErrorCode CheckCircle(const char options[], PetscReal a0) {
   PetscCall(VecRestoreArrayRead(p, &a));
   PetscCall(FaceMeans(g, u, cells[1]));
   speed[0] = Largest(n, cells[1]);
-  PetscCall(CouplingLayer(w.coupling, sigma, w.X, &layer));
-  PetscCall(NearCellsCorrect(&w.coupling->near->set, &w.coupling->near->lattice, layer,
-                             (PetscReal *[]){cells[1], NULL, cells[0]}));
-  PetscCall(LayerDestroy(&layer));
+  PetscCall(VecDuplicate(w.X, &F));
+  PetscCall(CouplingForces(w.coupling, sigma, w.X, F));
+  PetscCall(SingleCellsCorrect(&w.coupling->near->set, &w.coupling->near->lattice, F, w.X,
+                               (PetscReal *[]){cells[1], NULL, cells[0]}));
+  PetscCall(VecDestroy(&F));
   PetscCall(JumpError(g, center, cells[0], &after));
   speed[1] = Largest(n, cells[1]);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, speed, 2, MPIU_REAL, MPI_MAX, g->comm));
