@@ -20,13 +20,19 @@ typedef struct {
   const BoxAxis *box; /* [2] with a box part: pairs are of nearest images and fade over a period (BoxImage); or NULL */
 } LayerSetting;
 
-/* StokesletFour - of four pairs: xx, yy, xy. Not collective. */
+/* StokesletFour - of four pairs: xx, yy, xy. StokesletOne - of one pair r apart, `more` being added to ln(r^2): what a
+   curve's quadrature has besides (SelfLogarithm). Not collective. */
 static inline void StokesletFour(const LayerSetting *set, Lanes x, Lanes y, Lanes S[3]) {
   const PetscReal factor = 1 / (4 * PETSC_PI * set->nu), over2 = 1 / PetscSqr(set->unit);
   const Lanes r2 = x * x + y * y, logarithm = -0.5 * LanesLog(over2 * r2);
   S[0] = factor * (logarithm + x * x / r2);
   S[1] = factor * (logarithm + y * y / r2);
   S[2] = factor * x * y / r2;
+}
+static inline void StokesletOne(const LayerSetting *set, const PetscReal r[2], PetscReal more, PetscReal S[3]) {
+  Lanes four[3];
+  StokesletFour(set, r[0] + (Lanes){0}, r[1] + (Lanes){0}, four);
+  for (int q = 0; q < 3; q++) S[q] = four[q][0] - (q < 2 ? more / (8 * PETSC_PI * set->nu) : 0);
 }
 
 /* StressletFour - of four pairs with a source of normal times length N: xx, yy, xy; zero at the source itself. Not

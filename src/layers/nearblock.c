@@ -34,25 +34,21 @@ static void Pair(SinglePairs f, const NearFar *far, PetscInt i, PetscInt j, cons
 }
 
 void NearLatticePair(SinglePairs f, PetscInt i, PetscInt j, const PetscReal d[2], PetscReal L[4]) {
-  Lanes S[3];
+  PetscReal S[3];
   if (d[0] == 0 && d[1] == 0) {
     LatticePair(f, i, j, d, L);
     return;
   }
-  StokesletFour(f->set, d[0] - (Lanes){0}, d[1] - (Lanes){0}, S);
-  Pair(f, &f->far[NEAR_ONE], i, j, d, (PetscReal[]){S[0][0], S[1][0], S[2][0]}, L);
+  StokesletOne(f->set, d, 0, S);
+  Pair(f, &f->far[NEAR_ONE], i, j, d, S, L);
 }
 
 /* The diagonal of S in a curve's quadrature, from the derivative T = dX/dk: xx, yy, xy. */
 static void SelfPart(SinglePairs f, PetscInt v, const PetscReal T[2], PetscReal S[3]) {
-  const PetscReal factor = 1 / (4 * PETSC_PI * f->set->nu);
-  const PetscReal t2 = T[0] * T[0] + T[1] * T[1], n = LayoutCount(f->set->bodies->layout, v);
-  const PetscReal part = f->set->bodies->kind[v].type == CURVE_OPEN ? 1 : n; /* of a turn: SinglePairsCreate */
-  const PetscReal logarithm = -0.5 *
-                              (f->logarithm[v][0] + PetscLogReal(t2 * PetscSqr(part / (2 * PETSC_PI * f->set->unit))));
-  S[0] = factor * (logarithm + T[0] * T[0] / t2);
-  S[1] = factor * (logarithm + T[1] * T[1] / t2);
-  S[2] = factor * T[0] * T[1] / t2;
+  const PetscReal n = LayoutCount(f->set->bodies->layout, v);
+  const PetscReal turn = f->set->bodies->kind[v].type == CURVE_OPEN ? 1 : n; /* SinglePairsCreate */
+  const PetscReal slope = turn / (2 * PETSC_PI);
+  StokesletOne(f->set, (PetscReal[]){slope * T[0], slope * T[1]}, f->logarithm[v][0], S);
 }
 
 /* Some pairs of a row: marker i with markers j .. j + n - 1; from the column's side where its vesicle is the first. All

@@ -9,10 +9,8 @@ void SelfLogarithm(PetscInt n, PetscReal own[]) {
   }
 }
 
-PetscErrorCode SelfLayer(Spectral spectral, PetscInt n, PetscReal nu, PetscReal unit, const PetscReal X[],
-                         PetscReal S[]) {
-  const PetscReal factor = 1 / (4 * PETSC_PI * nu);
-  PetscReal *own, *T;
+PetscErrorCode SelfLayer(const LayerSetting *set, Spectral spectral, PetscInt n, const PetscReal X[], PetscReal S[]) {
+  PetscReal *own, *T, pair[3];
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(n, &own));
   PetscCall(PetscCalloc1(2 * n, &T));
@@ -22,12 +20,11 @@ PetscErrorCode SelfLayer(Spectral spectral, PetscInt n, PetscReal nu, PetscReal 
     for (PetscInt i = 0; i < n; i++) { /* on the diagonal the derivative takes the place of the difference */
       const PetscReal d[2] = {i == j ? T[2 * i] : X[2 * i] - X[2 * j],
                               i == j ? T[2 * i + 1] : X[2 * i + 1] - X[2 * j + 1]};
-      const PetscReal r2 = d[0] * d[0] + d[1] * d[1],
-                      logarithm = -0.5 * (PetscLogReal(r2 / PetscSqr(unit)) + own[PetscAbsInt(i - j)]);
       PetscReal *at = S + 2 * j * 2 * n + 2 * i;
-      at[0] = factor * (logarithm + d[0] * d[0] / r2);
-      at[2 * n + 1] = factor * (logarithm + d[1] * d[1] / r2);
-      at[1] = at[2 * n] = factor * d[0] * d[1] / r2;
+      StokesletOne(set, d, own[PetscAbsInt(i - j)], pair);
+      at[0] = pair[0];
+      at[2 * n + 1] = pair[1];
+      at[1] = at[2 * n] = pair[2];
     }
   PetscCall(PetscFree(own));
   PetscCall(PetscFree(T));

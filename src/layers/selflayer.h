@@ -6,6 +6,7 @@
    trapezoidal rule takes r r^T/r^2 and ln(r^2) - ln(4 sin^2(t/2)), which are smooth, and Kress' weights take
    ln(4 sin^2(t/2)). Nothing crosses ranks. */
 #pragma once
+#include "layers/layersetting.h"
 #include "numerics/spectral.h"
 
 /* SelfLogarithm - own[n] by difference of two markers' numbers: Kress' weights of ln(4 sin^2(t/2)) less that logarithm,
@@ -13,6 +14,6 @@
 PETSC_EXTERN void SelfLogarithm(PetscInt n, PetscReal own[]);
 
 /* SelfLayer - S[2n][2n] of the curve through the markers X[2n], entries interlaced x, y: velocity per force times ds,
-   density 1 and viscosity nu; `unit`: the length whose logarithm is 0. Symmetric. Not collective. */
-PETSC_EXTERN PetscErrorCode SelfLayer(Spectral spectral, PetscInt n, PetscReal nu, PetscReal unit, const PetscReal X[],
+   density 1 and the viscosity and unit of length of the setting. Symmetric. Not collective. */
+PETSC_EXTERN PetscErrorCode SelfLayer(const LayerSetting *set, Spectral spectral, PetscInt n, const PetscReal X[],
                                       PetscReal S[]);

@@ -39,19 +39,21 @@ static void LatticeMean(const OffsetTable *lattice, const Kernel *kernel, PetscR
 
 /* R by distance: the mean over directions, fading smoothly in the last quarter. */
 static void TabulateCorrection(CoarseCorrection s, const OffsetTable *lattice, const Kernel *kernel) {
+  const LayerSetting cells = {.nu = 1, .unit = 1}; /* as the lattice's table */
   const PetscReal nu = s->near->set.nu;
   for (PetscInt k = 0; k < CORRECTION_POINTS; k++) {
     const PetscReal r = CELLS * PetscMax((PetscReal)k, 0.5) / (CORRECTION_POINTS - 1),
                     x = 4 * PetscMax(0, r / CELLS - 0.75);
-    const PetscReal fade = (1 - x) * (1 - x) * (1 + 2 * x), S = -PetscLogReal(r);
-    PetscReal sum[2] = {0, 0};
+    const PetscReal fade = (1 - x) * (1 - x) * (1 + 2 * x);
+    PetscReal sum[2] = {0, 0}, S[3];
+    StokesletOne(&cells, (PetscReal[]){r, 0}, 0, S);
     for (int a = 0; a < ANGLES; a++) {
       PetscReal mean[2];
       LatticeMean(lattice, kernel, r, 0.5 * PETSC_PI * (a + 0.5) / ANGLES, mean);
       for (int c = 0; c < 2; c++) sum[c] += mean[c] / ANGLES;
     }
-    s->along[k] = fade * ((S + 1) / (4 * PETSC_PI) - sum[0]) / nu;
-    s->across[k] = fade * (S / (4 * PETSC_PI) - sum[1]) / nu;
+    s->along[k] = fade * (S[0] - sum[0]) / nu;
+    s->across[k] = fade * (S[1] - sum[1]) / nu;
   }
 }
 

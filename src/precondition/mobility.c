@@ -100,9 +100,8 @@ static void BoxPair(NearField f, PetscInt i, PetscInt j, PetscReal value[4]) {
     NearLatticePair(f->pairs, i, j, d, L);
     NearImageAdd(f->pairs->image, NULL, i, j, d, L, C);
   } else {
-    Lanes S[3];
-    StokesletFour(&f->set, d[0] + (Lanes){0}, d[1] + (Lanes){0}, S);
-    for (int q = 0; q < 4; q++) L[q] = S[PetscMin(q, 2)][0];
+    StokesletOne(&f->set, d, 0, L);
+    L[3] = L[2];
   }
   NearImageAddBlake(f->pairs->image, i, j, d, -1, C);
   for (int q = 0; q < 4; q++) value[q] = h * h * fade * (L[q] - C[q]);

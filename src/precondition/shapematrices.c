@@ -10,7 +10,7 @@ static PetscErrorCode AssembleShape(SharedShapes s, const SharedShape *q, PetscR
   const PetscInt n = LayoutCount(c->membrane->layout, q->like);
   const PetscReal h2 = PetscSqr(c->fluid->grid->h);
   PetscFunctionBeginUser;
-  PetscCall(SelfLayer(c->membrane->spectral[q->like], n, c->fluid->nu, c->fluid->grid->h, q->X, M));
+  PetscCall(SelfLayer(&c->near->set, c->membrane->spectral[q->like], n, q->X, M));
   for (PetscInt k = 0; k < 4 * n * n; k++) M[k] *= h2;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
