@@ -80,18 +80,6 @@ PetscErrorCode PetvesReadOptions(MPI_Comm comm, PetscOptions options, const char
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode SetWeights(Scene scene, Membrane membrane) {
-  const PetscInt n = 2 * scene->shape.vesicles;
-  PetscReal *weight;
-  PetscFunctionBeginUser;
-  if (!SceneHasGravity(scene)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscMalloc1(n, &weight));
-  for (PetscInt k = 0; k < n; k++) weight[k] = SceneWeight(scene, k / 2, (int)(k % 2));
-  PetscCall(MembraneSetWeight(membrane, weight));
-  PetscCall(PetscFree(weight));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 static PetscErrorCode CreateCoupling(Scene scene, Simulation s) {
   const PetscInt vesicles = scene->shape.vesicles;
   CouplingSetting setting = {.kernel = scene->coupling.kernel,
@@ -100,7 +88,7 @@ static PetscErrorCode CreateCoupling(Scene scene, Simulation s) {
                              .box_part = SceneHasBoxPart(scene),
                              .lag = scene->fluid.inertia == INERTIA_UNSTEADY ? PETSC_TRUE : PETSC_FALSE,
                              .area_target = SceneHasAreaTarget(scene),
-                             .repulsion = scene->repulsion.stress > 0 && vesicles ? &scene->repulsion : NULL};
+                             .scene = scene};
   PetscReal *ratio;
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(vesicles, &ratio));
@@ -139,7 +127,6 @@ static PetscErrorCode Build(MPI_Comm comm, PetvesFlow flow, void *ctx, Simulatio
   PetscCall(ObstaclesCreate(scene, s->all, &s->obstacles));
   PetscCall(MembraneCreate(s->layout, scene->shape.X, scene->membrane.each, (DerivativeType)scene->membrane.derivative,
                            &s->membrane));
-  PetscCall(SetWeights(scene, s->membrane));
   PetscCall(CreateCoupling(scene, s));
   PetscCall(BaselinesRegister());
   PetscCall(SchemeCreate(scene, s->coupling, scene->shape.X, &s->scheme));

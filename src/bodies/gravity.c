@@ -1,54 +1,66 @@
-#include "bodies/membrane.h"
+#include "bodies/gravity.h"
 
-PetscErrorCode MembraneSetWeight(Membrane m, const PetscReal weight[]) {
+typedef struct {
+  Membrane membrane; /* borrowed */
+  PetscReal *weight; /* [2 vesicles] density difference over the outer density times gravity (length/time^2) */
+} Gravity;
+
+/* A constant pressure has no effect: with positions from the centroid numbers stay small. */
+static PetscErrorCode GravityKnown(void *context, PetscReal alpha, const PetscScalar X[], PetscScalar F[]) {
+  const Gravity *gravity = (const Gravity *)context;
+  const Membrane m = gravity->membrane;
+  PetscScalar *T = m->work.measures;
   PetscFunctionBeginUser;
-  PetscCall(PetscFree(m->weight));
-  PetscCall(PetscMalloc1(2 * m->layout->bodies, &m->weight));
-  PetscCall(PetscArraycpy(m->weight, weight, 2 * m->layout->bodies));
+  for (PetscInt v = m->layout->own; v < m->layout->end; v++) {
+    const PetscInt n = LayoutCount(m->layout, v), at = 2 * LayoutOffset(m->layout, v);
+    const PetscReal *g = gravity->weight + 2 * v, *x = X + at;
+    Measures measures;
+    MembraneMeasure(m, v, x, &measures);
+    PetscCall(PetscArrayzero(T, 2 * n));
+    SpectralDerivative(m->spectral[v], 1, 1, x, T);
+    for (PetscInt k = 0; k < 2 * n; k += 2) {
+      const PetscReal p = g[0] * (x[k] - measures.center[0]) + g[1] * (x[k + 1] - measures.center[1]);
+      F[at + k] -= alpha * p * T[k + 1];
+      F[at + k + 1] += alpha * p * T[k];
+    }
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A constant pressure has no effect: with positions from the centroid numbers stay small. */
-void MembraneVesicleGravity(Membrane m, PetscInt v, PetscReal alpha, const PetscScalar X[], PetscScalar F[]) {
-  const PetscInt n = LayoutCount(m->layout, v);
-  const PetscReal *g = m->weight + 2 * v;
-  PetscScalar *T = m->work.measures;
-  Measures measures;
-  MembraneMeasure(m, v, X, &measures);
-  (void)PetscArrayzero(T, 2 * n);
-  SpectralDerivative(m->spectral[v], 1, 1, X, T);
-  for (PetscInt k = 0; k < n; k++) {
-    const PetscReal p = g[0] * (X[2 * k] - measures.center[0]) + g[1] * (X[2 * k + 1] - measures.center[1]);
-    F[2 * k] += alpha * p * T[2 * k + 1];
-    F[2 * k + 1] -= alpha * p * T[2 * k];
+static PetscErrorCode GravityEnergy(void *context, PetscReal t, const PetscScalar X[], PetscReal E[]) {
+  const Gravity *gravity = (const Gravity *)context;
+  const Membrane m = gravity->membrane;
+  PetscFunctionBeginUser;
+  for (PetscInt v = m->layout->own; v < m->layout->end; v++) {
+    const PetscReal *g = gravity->weight + 2 * v;
+    Measures measures;
+    MembraneMeasure(m, v, X + 2 * LayoutOffset(m->layout, v), &measures);
+    E[v] -= measures.area * (g[0] * measures.center[0] + g[1] * measures.center[1]);
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-void MembraneGravity(Membrane m, PetscReal alpha, const PetscScalar X[], PetscScalar F[]) {
-  for (PetscInt v = m->layout->own; v < m->layout->end && m->weight; v++) {
-    const PetscInt at = 2 * LayoutOffset(m->layout, v);
-    MembraneVesicleGravity(m, v, alpha, X + at, F + at);
-  }
+static PetscErrorCode GravityDestroy(void *context) {
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(((Gravity *)context)->weight));
+  PetscCall(PetscFree(context));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscReal MembraneGravityEnergy(Membrane m, PetscInt v, const PetscScalar X[]) {
-  Measures measures;
-  if (!m->weight) return 0;
-  MembraneMeasure(m, v, X, &measures);
-  return -measures.area * (m->weight[2 * v] * measures.center[0] + m->weight[2 * v + 1] * measures.center[1]);
-}
-
-void MembraneCentroidVelocity(Membrane m, PetscInt v, const PetscScalar X[], const PetscScalar U[],
-                              PetscReal velocity[2]) {
-  const PetscInt n = LayoutCount(m->layout, v);
-  PetscScalar *T = m->work.measures;
-  Measures measures;
-  MembraneMeasure(m, v, X, &measures);
-  (void)PetscArrayzero(T, 2 * n);
-  SpectralDerivative(m->spectral[v], 1, 1, X, T);
-  velocity[0] = velocity[1] = 0;
-  for (PetscInt k = 0; k < n; k++) {
-    const PetscReal across = U[2 * k] * T[2 * k + 1] - U[2 * k + 1] * T[2 * k];
-    for (int c = 0; c < 2; c++) velocity[c] += (X[2 * k + c] - measures.center[c]) * across / measures.area;
-  }
+PetscErrorCode ForceCreate_Gravity(Bodies bodies, Grid grid, Scene scene, Force *force) {
+  const PetscInt vesicles = bodies->vesicles;
+  Gravity *gravity;
+  PetscFunctionBeginUser;
+  if (!scene || !SceneHasGravity(scene)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscNew(&gravity));
+  gravity->membrane = bodies->membrane;
+  PetscCall(PetscMalloc1(2 * vesicles, &gravity->weight));
+  for (PetscInt k = 0; k < 2 * vesicles; k++) gravity->weight[k] = SceneWeight(scene, k / 2, (int)(k % 2));
+  *force = (Force){.name = "gravity",
+                   .reach = FORCE_OUTSIDE,
+                   .context = gravity,
+                   .known = GravityKnown,
+                   .energy = GravityEnergy,
+                   .destroy = GravityDestroy};
+  PetscFunctionReturn(PETSC_SUCCESS);
 }

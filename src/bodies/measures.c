@@ -105,3 +105,18 @@ PetscReal MembraneNormalSpeed(Membrane m, PetscInt v, const PetscScalar X[], con
   }
   return largest;
 }
+
+void MembraneCentroidVelocity(Membrane m, PetscInt v, const PetscScalar X[], const PetscScalar U[],
+                              PetscReal velocity[2]) {
+  const PetscInt n = LayoutCount(m->layout, v);
+  PetscScalar *T = m->work.measures;
+  Measures measures;
+  MembraneMeasure(m, v, X, &measures);
+  (void)PetscArrayzero(T, 2 * n);
+  SpectralDerivative(m->spectral[v], 1, 1, X, T);
+  velocity[0] = velocity[1] = 0;
+  for (PetscInt k = 0; k < n; k++) {
+    const PetscReal across = U[2 * k] * T[2 * k + 1] - U[2 * k + 1] * T[2 * k];
+    for (int c = 0; c < 2; c++) velocity[c] += (X[2 * k + c] - measures.center[c]) * across / measures.area;
+  }
+}

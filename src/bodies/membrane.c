@@ -48,7 +48,6 @@ PetscErrorCode MembraneDestroy(Membrane *membrane) {
   if (!m) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt v = 0; v < m->layout->bodies; v++) PetscCall(SpectralDestroy(&m->spectral[v]));
   PetscCall(PetscFree6(m->ds, m->A0, m->L0, m->spectral, m->arc, m->part));
-  PetscCall(PetscFree(m->weight));
   PetscCall(PetscFree5(m->work.stretching, m->work.bending, m->work.measures, m->work.restore, m->work.treading));
   PetscCall(PetscFree(*membrane));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -1,8 +1,7 @@
-/* Membranes of vesicles: edges, forces of tension, bending and gravity, energies, measures, and corrections after a
-   step.
+/* Membranes of vesicles: edges, forces of a tension, measures, and corrections after a step.
 
    The markers X_k of a vesicle have edges e = D X, unit tangents tau = e/ds and the stretching rate Dm U = tau . D U.
-   Forces on markers are transposes of derivatives: Dm^T sigma of a tension, ds D4 X of bending. D is the difference of
+   Forces on markers are transposes of derivatives: Dm^T sigma of a tension. D is the difference of
    neighbours (edge k runs from marker k-1 to marker k) or the spectral derivative by the marker index.
 
    Marker vectors and edge vectors (a tension) are distributed as markers/layout.h says. Functions of "all own vesicles"
@@ -28,7 +27,6 @@ struct _p_Membrane {
   DerivativeType derivative;
   Spectral *spectral; /* [vesicles] */
   PetscReal *arc;     /* [vesicles] initial arc length, spectrally accurate */
-  PetscReal *weight;  /* [2 vesicles] density difference times gravity (length/time^2); NULL without gravity */
   MembraneWork work;
 };
 
@@ -72,20 +70,6 @@ PETSC_EXTERN void MembraneVesiclePull(Membrane membrane, PetscInt vesicle, Petsc
 PETSC_EXTERN void MembranePull(Membrane membrane, PetscReal alpha, const PetscReal tension[], const PetscScalar X[],
                                PetscScalar F[]);
 
-/* MembraneVesicleBending - minus the bending force of one vesicle, with D4 = (D+D-)(D+D-) of the fixed spacing ds:
-
-     F += alpha part ds D4 X.
-
-   alpha has the largest c_b as a factor. The matrix is symmetric. MembraneBending - F of all own vesicles. */
-PETSC_EXTERN void MembraneVesicleBending(Membrane membrane, PetscInt vesicle, PetscReal alpha, const PetscScalar X[],
-                                         PetscScalar F[]);
-PETSC_EXTERN void MembraneBending(Membrane membrane, PetscReal alpha, const PetscScalar X[], PetscScalar F[]);
-
-/* MembraneBendingEnergy - of one vesicle:
-
-     E_B = c_b/2 SUM |D+D- X|^2 ds      (37) */
-PETSC_EXTERN PetscReal MembraneBendingEnergy(Membrane membrane, PetscInt vesicle, const PetscScalar X[]);
-
 /* Measures of one vesicle. */
 typedef struct {
   PetscReal area;        /* of the polygon or of the spectral curve; positive, as markers run counter-clockwise */
@@ -109,22 +93,6 @@ PETSC_EXTERN PetscReal MembraneFrequency(Membrane membrane, PetscInt vesicle, co
    derivative of X, so that markers that pass along a curve at rest do not count as motion. */
 PETSC_EXTERN PetscReal MembraneNormalSpeed(Membrane membrane, PetscInt vesicle, const PetscScalar X[],
                                            const PetscScalar U[]);
-
-/* Gravity (docs/membrane.md, Gravity). With the hydrostatic pressure of each fluid taken off, the jump of these
-   pressures across the membrane is a normal force whose sum over the markers is weight times the area, without torque.
-   MembraneSetWeight - density difference over the outer density times gravity, weight[2 vesicles] (length/time^2).
-   MembraneVesicleGravity - the force of one vesicle, n outward:
-
-     F += alpha (weight.(X - centroid)) n ds.
-
-   MembraneGravity - F of all own vesicles; nothing without gravity. MembraneGravityEnergy - of one vesicle:
-
-     -weight . INT x dA. */
-PETSC_EXTERN PetscErrorCode MembraneSetWeight(Membrane membrane, const PetscReal weight[]);
-PETSC_EXTERN void MembraneVesicleGravity(Membrane membrane, PetscInt vesicle, PetscReal alpha, const PetscScalar X[],
-                                         PetscScalar F[]);
-PETSC_EXTERN void MembraneGravity(Membrane membrane, PetscReal alpha, const PetscScalar X[], PetscScalar F[]);
-PETSC_EXTERN PetscReal MembraneGravityEnergy(Membrane membrane, PetscInt vesicle, const PetscScalar X[]);
 
 /* MembraneCentroidVelocity - velocity of the centroid of one vesicle's area (length/time) when its markers move with U:
 

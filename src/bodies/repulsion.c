@@ -2,39 +2,14 @@
 
 #define EDGES 1.5 /* longest mean edges: the range where none is given */
 
-PetscErrorCode RepulsionCreate(Bodies bodies, Grid grid, const SceneRepulsion *law, Repulsion *out) {
-  Repulsion r;
-  PetscFunctionBeginUser;
-  PetscCall(PetscNew(&r));
-  *out = r;
-  r->membrane = bodies->membrane;
-  r->bodies = bodies;
-  r->grid = grid;
-  r->law = *law;
-  for (PetscInt v = 0; v < bodies->layout->bodies && law->range <= 0; v++)
-    r->law.range = PetscMax(r->law.range, EDGES * bodies->ds[v]);
-  if (law->band <= 0) r->law.band = r->law.range;
-  PetscCall(PetscMalloc1(2 * bodies->layout->M, &r->all));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode RepulsionDestroy(Repulsion *repulsion) {
-  PetscFunctionBeginUser;
-  if (!*repulsion) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscFree((*repulsion)->spring));
-  PetscCall(PetscFree((*repulsion)->all));
-  PetscCall(PetscFree(*repulsion));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* How far the law reaches. */
-static PetscReal Reach(const SceneRepulsion *law) {
+static PetscReal RepulsionReach(const SceneRepulsion *law) {
   return law->range + (law->adhesion > 0 ? law->band : 0);
 }
 
 /* The law on a length `size` of membrane, into a spring whose geometry is known; X[2M]. With P = p size the force is
    P + stiffness (distance - SUM weight normal.(x - X)) below D. */
-static void SetLaw(const SceneRepulsion *law, PetscReal size, const PetscReal X[], Spring *s) {
+static void SpringSetLaw(const SceneRepulsion *law, PetscReal size, const PetscReal X[], Spring *s) {
   PetscReal along = 0;
   const PetscReal x = (s->distance - law->range) / law->band;
   const PetscReal well = law->adhesion * size; /* depth of it */
@@ -52,7 +27,7 @@ static void SetLaw(const SceneRepulsion *law, PetscReal size, const PetscReal X[
 
 /* A marker and the edge nearest to it: half of what is between two membranes, as markers of both look for edges. What
    is of an obstacle stays where it is. */
-static void SetEdge(Repulsion r, const PetscReal X[], const CurveContact *c, Spring *s) {
+static void SpringSetEdge(Repulsion r, const PetscReal X[], const CurveContact *c, Spring *s) {
   const PetscInt marker[3] = {c->point, c->edge[0], c->edge[1]};
   const PetscReal weight[3] = {1, c->at - 1, -c->at};
   *s = (Spring){.normal = {c->normal[0], c->normal[1]}, .distance = c->distance};
@@ -61,11 +36,11 @@ static void SetEdge(Repulsion r, const PetscReal X[], const CurveContact *c, Spr
     s->marker[s->n] = marker[k];
     s->weight[s->n++] = weight[k];
   }
-  SetLaw(&r->law, 0.5 * r->bodies->ds[c->curve[0]], X, s);
+  SpringSetLaw(&r->law, 0.5 * r->bodies->ds[c->curve[0]], X, s);
 }
 
 /* Markers near walls; room for 4 a marker. */
-static PetscInt FindWalls(Repulsion r, const PetscReal X[], Spring spring[]) {
+static PetscInt FindWallSprings(Repulsion r, const PetscReal X[], Spring spring[]) {
   const Grid g = r->grid;
   const Layout l = r->membrane->layout;
   PetscInt count = 0;
@@ -75,16 +50,16 @@ static PetscInt FindWalls(Repulsion r, const PetscReal X[], Spring spring[]) {
         const int d = side / 2;
         const PetscReal sign = side % 2 ? -1 : 1;
         const PetscReal distance = sign * (X[2 * k + d] - (side % 2 ? g->hi[d] : g->lo[d]));
-        if (!g->wall[d] || g->free || distance >= Reach(&r->law)) continue;
+        if (!g->wall[d] || g->free || distance >= RepulsionReach(&r->law)) continue;
         spring[count] = (Spring){.n = 1, .marker = {k}, .weight = {1}, .distance = distance};
         spring[count].normal[d] = sign;
-        SetLaw(&r->law, r->membrane->ds[v], X, &spring[count++]);
+        SpringSetLaw(&r->law, r->membrane->ds[v], X, &spring[count++]);
       }
   return count;
 }
 
 /* The springs at the curves X[2(M + W)]; to be freed. */
-static PetscErrorCode Find(Repulsion r, const PetscReal X[], PetscInt *count, Spring **springs) {
+static PetscErrorCode FindSprings(Repulsion r, const PetscReal X[], PetscInt *count, Spring **springs) {
   const Grid g = r->grid;
   const Layout l = r->membrane->layout, all = r->bodies->layout;
   PetscReal period[2];
@@ -93,24 +68,25 @@ static PetscErrorCode Find(Repulsion r, const PetscReal X[], PetscInt *count, Sp
   PetscFunctionBeginUser;
   for (int d = 0; d < 2; d++) period[d] = g->wall[d] || g->free ? 0 : g->hi[d] - g->lo[d];
   const CurveSet set = {all->bodies, l->bodies, all->start, r->bodies->kind, X, period, PETSC_FALSE};
-  PetscCall(CurveContacts(&set, Reach(&r->law), &n, &contact));
+  PetscCall(CurveContacts(&set, RepulsionReach(&r->law), &n, &contact));
   PetscCall(PetscMalloc1(n + 4 * l->M, springs));
-  for (PetscInt k = 0; k < n; k++) SetEdge(r, X, &contact[k], &(*springs)[k]);
+  for (PetscInt k = 0; k < n; k++) SpringSetEdge(r, X, &contact[k], &(*springs)[k]);
   PetscCall(PetscFree(contact));
-  *count = n + FindWalls(r, X, *springs + n);
+  *count = n + FindWallSprings(r, X, *springs + n);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode RepulsionPlace(Repulsion r, PetscReal t, const PetscReal X[]) {
+static PetscErrorCode RepulsionPlace(void *context, PetscReal t, const PetscReal X[]) {
+  const Repulsion r = (Repulsion)context;
   PetscFunctionBeginUser;
   PetscCall(PetscFree(r->spring));
   PetscCall(BodiesSee(r->bodies, t, X, r->all));
-  PetscCall(Find(r, r->all, &r->count, &r->spring));
+  PetscCall(FindSprings(r, r->all, &r->count, &r->spring));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* y += force weight normal of the own markers. */
-static void Pull(const Spring *s, Layout l, PetscReal force, PetscScalar y[]) {
+static void SpringPull(const Spring *s, Layout l, PetscReal force, PetscScalar y[]) {
   for (PetscInt i = 0; i < s->n; i++) {
     const PetscInt own = s->marker[i] - l->first;
     if (own < 0 || own >= l->n) continue;
@@ -119,58 +95,116 @@ static void Pull(const Spring *s, Layout l, PetscReal force, PetscScalar y[]) {
 }
 
 /* SUM weight normal.x, x[2M]. */
-static PetscReal Stretch(const Spring *s, const PetscScalar x[]) {
+static PetscReal SpringStretch(const Spring *s, const PetscScalar x[]) {
   PetscReal along = 0;
   for (PetscInt i = 0; i < s->n; i++)
     for (int c = 0; c < 2; c++) along += s->weight[i] * s->normal[c] * x[2 * s->marker[i] + c];
   return along;
 }
 
-PetscErrorCode RepulsionStiffness(Repulsion r, PetscReal alpha, const PetscScalar x[], PetscScalar y[]) {
+static PetscErrorCode RepulsionRate(void *context, PetscReal alpha, const PetscScalar x[], PetscScalar y[]) {
+  const Repulsion r = (Repulsion)context;
   const Layout l = r->membrane->layout;
   PetscFunctionBeginUser;
   PetscCall(LayoutGather(l, 2, x, r->all));
   for (PetscInt k = 0; k < r->count; k++) {
     const Spring *s = &r->spring[k];
-    if (s->stiffness > 0) Pull(s, l, alpha * s->stiffness * Stretch(s, r->all), y);
+    if (s->stiffness > 0) SpringPull(s, l, alpha * s->stiffness * SpringStretch(s, r->all), y);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-void RepulsionPush(Repulsion r, PetscReal alpha, PetscScalar y[]) {
-  for (PetscInt k = 0; k < r->count; k++) Pull(&r->spring[k], r->membrane->layout, alpha * r->spring[k].push, y);
+static PetscErrorCode RepulsionKnown(void *context, PetscReal alpha, const PetscScalar X[], PetscScalar F[]) {
+  const Repulsion r = (Repulsion)context;
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < r->count; k++) SpringPull(&r->spring[k], r->membrane->layout, -alpha * r->spring[k].push, F);
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode RepulsionSeams(Repulsion r, const PetscReal X[], const PetscScalar x[], PetscReal *sum) {
+static PetscErrorCode RepulsionSeams(void *context, const PetscReal X[], const PetscScalar x[], PetscReal *sum) {
+  const Repulsion r = (Repulsion)context;
   PetscFunctionBeginUser;
-  *sum = 0;
   PetscCall(LayoutGather(r->membrane->layout, 2, x, r->all));
   for (PetscInt k = 0; k < r->count; k++) {
     const Spring *s = &r->spring[k];
     PetscReal apart = -s->distance * s->normal[0];
     if (s->n < 3) continue; /* of a wall or an obstacle */
     for (PetscInt i = 0; i < s->n; i++) apart += s->weight[i] * X[2 * s->marker[i]];
-    *sum += (s->push - s->stiffness * Stretch(s, r->all)) * s->normal[0] * apart;
+    *sum += (s->push - s->stiffness * SpringStretch(s, r->all)) * s->normal[0] * apart;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode RepulsionAt(Repulsion r, PetscReal t, PetscReal alpha, const PetscScalar x[], PetscScalar y[],
-                           PetscReal *energy) {
+/* What the law gives at time t at markers x[2n] (own part) whatever the springs: y += the force on the own markers, y
+   NULL: not wanted; E[vesicles] += the energy of the films of each own vesicle, half of that of a film between two
+   vesicles, E NULL: not wanted. Collective. */
+static PetscErrorCode RepulsionAt(Repulsion r, PetscReal t, const PetscScalar x[], PetscScalar y[], PetscReal E[]) {
   const Layout l = r->membrane->layout;
   Spring *spring;
   PetscInt count;
   PetscFunctionBeginUser;
-  *energy = 0;
   PetscCall(LayoutGather(l, 2, x, r->all));
   PetscCall(BodiesSee(r->bodies, t, r->all, r->all));
-  PetscCall(Find(r, r->all, &count, &spring));
+  PetscCall(FindSprings(r, r->all, &count, &spring));
   for (PetscInt k = 0; k < count; k++) {
     const Spring *s = &spring[k];
-    *energy += s->energy;
-    if (y) Pull(s, l, alpha * (s->push - s->stiffness * Stretch(s, r->all)), y);
+    const PetscInt v = LayoutBody(l, s->marker[0]);
+    if (E && v >= l->own && v < l->end) E[v] += s->energy;
+    if (y) SpringPull(s, l, s->push - s->stiffness * SpringStretch(s, r->all), y);
   }
   PetscCall(PetscFree(spring));
-  PetscCallMPI(MPI_Bcast(energy, 1, MPIU_REAL, 0, l->comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode RepulsionLaw(void *context, PetscReal t, const PetscScalar X[], PetscScalar F[]) {
+  PetscFunctionBeginUser;
+  PetscCall(RepulsionAt((Repulsion)context, t, X, F, NULL));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode RepulsionEnergy(void *context, PetscReal t, const PetscScalar X[], PetscReal E[]) {
+  PetscFunctionBeginUser;
+  PetscCall(RepulsionAt((Repulsion)context, t, X, NULL, E));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode RepulsionDestroy(void *context) {
+  const Repulsion r = (Repulsion)context;
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(r->spring));
+  PetscCall(PetscFree(r->all));
+  PetscCall(PetscFree(context));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode RepulsionCreate(Bodies bodies, Grid grid, const SceneRepulsion *law, Force *force) {
+  Repulsion r;
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&r));
+  r->membrane = bodies->membrane;
+  r->bodies = bodies;
+  r->grid = grid;
+  r->law = *law;
+  for (PetscInt v = 0; v < bodies->layout->bodies && law->range <= 0; v++)
+    r->law.range = PetscMax(r->law.range, EDGES * bodies->ds[v]);
+  if (law->band <= 0) r->law.band = r->law.range;
+  PetscCall(PetscMalloc1(2 * bodies->layout->M, &r->all));
+  *force = (Force){.name = "contact",
+                   .reach = FORCE_BETWEEN,
+                   .context = r,
+                   .place = RepulsionPlace,
+                   .rate = RepulsionRate,
+                   .known = RepulsionKnown,
+                   .law = RepulsionLaw,
+                   .energy = RepulsionEnergy,
+                   .seams = RepulsionSeams,
+                   .destroy = RepulsionDestroy};
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ForceCreate_Contact(Bodies bodies, Grid grid, Scene scene, Force *force) {
+  PetscFunctionBeginUser;
+  if (scene && scene->repulsion.stress > 0 && bodies->vesicles)
+    PetscCall(RepulsionCreate(bodies, grid, &scene->repulsion, force));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

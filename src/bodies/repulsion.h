@@ -10,8 +10,7 @@
    extrapolated ones. */
 #pragma once
 #include "curve/contacts.h"
-#include "fluid/grid/grid.h"
-#include "bodies/bodies.h"
+#include "bodies/force.h"
 
 /* A point of a membrane against an edge or a wall: the distance changes by SUM weight_i normal.(X_i - X*_i), and the
    force on X_i is (push - stiffness (the same sum of X_i instead of X_i - X*_i)) weight_i normal. */
@@ -26,7 +25,7 @@ typedef struct {
 
 typedef struct _p_Repulsion *Repulsion;
 struct _p_Repulsion {
-  Bodies bodies;      /* borrowed; of them */
+  Bodies bodies;      /* borrowed */
   Membrane membrane;  /* the vesicles */
   Grid grid;          /* borrowed; its walls and periods */
   SceneRepulsion law; /* K, D, W and B, all resolved */
@@ -35,28 +34,8 @@ struct _p_Repulsion {
   PetscScalar *all; /* [2(M + W)] work */
 };
 
-/* RepulsionCreate - between vesicles, and between vesicles and obstacles or walls. Not collective. */
-PETSC_EXTERN PetscErrorCode RepulsionCreate(Bodies bodies, Grid grid, const SceneRepulsion *law, Repulsion *repulsion);
-PETSC_EXTERN PetscErrorCode RepulsionDestroy(Repulsion *repulsion);
-
-/* RepulsionPlace - the springs at the markers X[2M] of all vesicles, obstacles where they are at time t. Not
+/* RepulsionCreate - between vesicles, and between vesicles and obstacles or walls, as the force "contact". Not
    collective. */
-PETSC_EXTERN PetscErrorCode RepulsionPlace(Repulsion repulsion, PetscReal t, const PetscReal X[]);
+PETSC_EXTERN PetscErrorCode RepulsionCreate(Bodies bodies, Grid grid, const SceneRepulsion *law, Force *force);
 
-/* RepulsionStiffness - y += alpha K_rep x, minus the force of the springs that x stretches; own parts x[2n], y[2n].
-   Collective. RepulsionPush - y += alpha (the force at x = 0) of the own markers. Not collective. */
-PETSC_EXTERN PetscErrorCode RepulsionStiffness(Repulsion repulsion, PetscReal alpha, const PetscScalar x[],
-                                               PetscScalar y[]);
-PETSC_EXTERN void RepulsionPush(Repulsion repulsion, PetscReal alpha, PetscScalar y[]);
-
-/* RepulsionSeams - SUM over springs of force_x times how far (length, along x) a seam moves the edge that pushes, at
-   markers x (own part) with the springs placed at X[2M]: what is too much in SUM force_x x over all markers.
-   Collective.
- */
-PETSC_EXTERN PetscErrorCode RepulsionSeams(Repulsion repulsion, const PetscReal X[], const PetscScalar x[],
-                                           PetscReal *sum);
-
-/* RepulsionAt - what the law gives at time t at markers x[2n] (own part) whatever the springs: y += alpha force of the
-   own markers, y NULL: not wanted; the energy, SUM over the films (length^4/time^2). Collective. */
-PETSC_EXTERN PetscErrorCode RepulsionAt(Repulsion repulsion, PetscReal t, PetscReal alpha, const PetscScalar x[],
-                                        PetscScalar y[], PetscReal *energy);
+PETSC_EXTERN PetscErrorCode ForceCreate_Contact(Bodies bodies, Grid grid, Scene scene, Force *force);

@@ -1,6 +1,5 @@
 #include "mobility/coupling.h"
-
-#define EXPLICIT 0.3 /* of Return, what may pull along the old edges: order 3 bears .52, order 2 .89 */
+#include "bodies/bending.h"
 
 /* The own part of `from`, the vesicles', to the beginning of that of `to`, all bodies', or back. */
 static PetscErrorCode CopyVesicles(Coupling c, Vec from, Vec to) {
@@ -48,7 +47,6 @@ PetscErrorCode CouplingPlace(Coupling c, PetscReal a0, PetscReal t, Vec X, const
   PetscFunctionBeginUser;
   message[0] = 0;
   for (PetscInt v = 0; v < c->membrane->layout->bodies; v++) c->treading[v] = treading ? treading[v] : 0;
-  PetscCall(PetscArrayzero(c->turning, c->membrane->layout->n));
   PetscCall(FluidSetTimeCoefficient(c->fluid, a0));
   if (!CouplingHasBodies(c)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(MarkersCheck(c->markers, c->membrane->layout, X, message));
@@ -60,36 +58,7 @@ PetscErrorCode CouplingPlace(Coupling c, PetscReal a0, PetscReal t, Vec X, const
   PetscCall(VecRestoreArrayRead(X, &x));
   if (c->near) PetscCall(NearFieldPlace(c->near));
   if (c->contrast) PetscCall(DoubleLayerPlace(c->contrast));
-  if (c->repulsion) PetscCall(RepulsionPlace(c->repulsion, t, c->markers->X));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* max over waves k of (sigma k/(4 nu a0))/(1 + c_b k^3/(4 nu a0)): how far a membrane under this tension comes back in
-   a step, over what bending lets it. */
-static PetscReal Return(Coupling c, PetscInt v, PetscReal sigma) {
-  const Membrane m = c->membrane;
-  const PetscReal slow = 4 * c->fluid->nu * c->fluid->a0, bending = m->bending * m->part[v];
-  PetscReal largest = 0;
-  for (PetscInt mode = 1; 2 * mode <= LayoutCount(m->layout, v); mode++) {
-    const PetscReal k = 2 * PETSC_PI * mode / m->L0[v];
-    largest = PetscMax(largest, sigma * k / (slow + bending * k * k * k));
-  }
-  return largest;
-}
-
-PetscErrorCode CouplingTurn(Coupling c, Vec expected) {
-  const Layout l = c->membrane->layout;
-  const PetscScalar *sigma;
-  PetscFunctionBeginUser;
-  PetscCall(VecGetArrayRead(expected, &sigma));
-  for (PetscInt v = l->own; v < l->end; v++) {
-    const PetscInt at = LayoutOffset(l, v), n = LayoutCount(l, v);
-    PetscReal most = 0;
-    for (PetscInt k = at; k < at + n; k++) most = PetscMax(most, sigma[k]);
-    const PetscReal part = 1 - EXPLICIT / PetscMax(EXPLICIT, Return(c, v, most));
-    for (PetscInt k = at; k < at + n; k++) c->turning[k] = part * PetscMax(0, sigma[k]);
-  }
-  PetscCall(VecRestoreArrayRead(expected, &sigma));
+  PetscCall(ForcesPlace(c->forces, t, c->markers->X));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -128,43 +97,19 @@ PetscErrorCode CouplingSpreadBending(Coupling c, PetscReal alpha, Vec X, Vec w) 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode CouplingElasticRate(Coupling c, PetscReal alpha, const PetscScalar V[], PetscScalar F[]) {
-  PetscFunctionBeginUser;
-  if (c->membrane->bending > 0) MembraneBending(c->membrane, alpha * c->membrane->bending, V, F);
-  MembranePull(c->membrane, alpha, c->turning, V, F);
-  if (c->repulsion) PetscCall(RepulsionStiffness(c->repulsion, alpha, V, F));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode CouplingElasticForce(Coupling c, Vec X, Vec F) {
-  const PetscScalar *x;
+PetscErrorCode CouplingKnownForce(Coupling c, Vec Y, Vec X, Vec F) {
+  const PetscScalar *x, *y;
   PetscScalar *f;
   PetscFunctionBeginUser;
   PetscCall(VecSet(F, 0));
+  PetscCall(VecGetArrayRead(Y, &y));
   PetscCall(VecGetArrayRead(X, &x));
   PetscCall(VecGetArray(F, &f));
-  PetscCall(CouplingElasticRate(c, 1, x, f));
-  MembraneStretchingTranspose(c->membrane, c->tau, -1, c->turning, f);
-  if (c->repulsion) RepulsionPush(c->repulsion, -1, f);
+  PetscCall(ForcesRate(c->forces, 1, y, f));
+  PetscCall(ForcesKnown(c->forces, 1, x, f));
   PetscCall(VecRestoreArray(F, &f));
   PetscCall(VecRestoreArrayRead(X, &x));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode CouplingKnownForce(Coupling c, Vec Y, Vec X, Vec F) {
-  const PetscScalar *x;
-  PetscScalar *f;
-  PetscFunctionBeginUser;
-  if (CouplingHasMembrane(c))
-    PetscCall(CouplingElasticForce(c, Y, F));
-  else
-    PetscCall(VecSet(F, 0));
-  if (!c->membrane->weight) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(VecGetArrayRead(X, &x));
-  PetscCall(VecGetArray(F, &f));
-  MembraneGravity(c->membrane, -1, x, f);
-  PetscCall(VecRestoreArray(F, &f));
-  PetscCall(VecRestoreArrayRead(X, &x));
+  PetscCall(VecRestoreArrayRead(Y, &y));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -172,7 +117,7 @@ PetscErrorCode CouplingSpreadForce(Coupling c, Vec F, Forcing *f) {
   const Grid g = c->fluid->grid;
   PetscFunctionBeginUser;
   PetscCall(ForcingSpread(f, c->markers, -1 / PetscSqr(g->h), F));
-  if (c->membrane->weight && !g->wall[0] && !g->wall[1]) PetscCall(ForcingRemoveMean(f, c->fluid));
+  if (ForcesReach(c->forces) == FORCE_OUTSIDE && !g->wall[0] && !g->wall[1]) PetscCall(ForcingRemoveMean(f, c->fluid));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -288,7 +233,6 @@ PetscErrorCode CouplingCreate(Fluid fluid, Membrane m, Obstacles obstacles, cons
   PetscCall(BodiesCreate(m, obstacles, &c->bodies));
   PetscCall(MarkersCreate(fluid->grid, c->bodies->layout, setting->kernel, setting->near == NEAR_EXACT, &c->markers));
   PetscCall(PetscMalloc1(2 * m->layout->n, &c->tau));
-  PetscCall(PetscCalloc1(m->layout->n, &c->turning));
   PetscCall(PetscCalloc1(m->layout->bodies, &c->treading));
   PetscCall(LayoutCreateVec(c->bodies->layout, 2, &c->force));
   PetscCall(VecDuplicate(c->force, &c->X));
@@ -297,7 +241,7 @@ PetscErrorCode CouplingCreate(Fluid fluid, Membrane m, Obstacles obstacles, cons
   PetscCall(CreateShell(c, 1, Mult_S, MultTranspose_S, &c->S));
   PetscCall(CreateShell(c, 2, Mult_B, MultTranspose_B, &c->B));
   PetscCall(CreateLayers(c, setting));
-  if (setting->repulsion) PetscCall(RepulsionCreate(c->bodies, fluid->grid, setting->repulsion, &c->repulsion));
+  PetscCall(ForcesCreate(c->bodies, fluid->grid, setting->scene, &c->forces));
   if (setting->area_target) PetscCall(AreaRowCreate(m, c->contrast ? c->contrast->ratio : NULL, &c->area));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -310,10 +254,10 @@ PetscErrorCode CouplingAddPast(Coupling c, Vec uhat, Vec U) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode CouplingForces(Coupling c, Vec sigma, Vec X, Vec F) {
+PetscErrorCode CouplingForces(Coupling c, PetscReal t, Vec sigma, Vec X, Vec F) {
   const Membrane m = c->membrane;
   const PetscScalar *x, *s;
-  PetscReal *tau, energy;
+  PetscReal *tau;
   PetscScalar *f;
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(2 * m->layout->n, &tau));
@@ -323,9 +267,7 @@ PetscErrorCode CouplingForces(Coupling c, Vec sigma, Vec X, Vec F) {
   PetscCall(VecGetArrayRead(sigma, &s));
   MembraneTangents(m, x, tau);
   MembraneStretchingTranspose(m, tau, -1, s, f);
-  if (m->bending > 0) MembraneBending(m, -m->bending, x, f);
-  MembraneGravity(m, 1, x, f);
-  if (c->repulsion) PetscCall(RepulsionAt(c->repulsion, 0, 1, x, f, &energy));
+  PetscCall(ForcesLaw(c->forces, FORCE_WITHIN, FORCE_OUTSIDE, t, x, f));
   PetscCall(VecRestoreArrayRead(sigma, &s));
   PetscCall(VecRestoreArrayRead(X, &x));
   PetscCall(VecRestoreArray(F, &f));
@@ -338,13 +280,12 @@ PetscErrorCode CouplingDestroy(Coupling *coupling) {
   PetscFunctionBeginUser;
   if (!c) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(AreaRowDestroy(&c->area));
-  PetscCall(RepulsionDestroy(&c->repulsion));
+  PetscCall(ForcesDestroy(&c->forces));
   PetscCall(DoubleLayerDestroy(&c->contrast));
   PetscCall(NearFieldDestroy(&c->near));
   PetscCall(MarkersDestroy(&c->markers));
   PetscCall(BodiesDestroy(&c->bodies));
   PetscCall(PetscFree(c->tau));
-  PetscCall(PetscFree(c->turning));
   PetscCall(PetscFree(c->treading));
   PetscCall(VecDestroy(&c->X));
   PetscCall(VecDestroy(&c->force));

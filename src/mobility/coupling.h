@@ -5,7 +5,7 @@
 #include "bodies/arearow.h"
 #include "mobility/doublelayer.h"
 #include "mobility/nearfield.h"
-#include "bodies/repulsion.h"
+#include "bodies/forcelist.h"
 #include "fluid/stokes/fluid.h"
 
 typedef struct _p_Coupling *Coupling;
@@ -16,10 +16,9 @@ struct _p_Coupling {
   Markers markers;      /* of all bodies */
   NearField near;       /* NULL without */
   DoubleLayer contrast; /* NULL where all viscosities are alike (contrast.h) */
-  Repulsion repulsion;  /* NULL without */
+  Forces forces;        /* on the membranes */
   AreaRow area;         /* NULL without area target */
   PetscReal *tau;       /* [2n] tangents of the own vesicles */
-  PetscReal *turning;   /* [n] tension whose pull turns with the edges (length^3/time^2), see CouplingTurn */
   PetscReal *treading;  /* [vesicles] speed of the labels in which the step is made (1/time) */
   PetscReal lag;        /* lag of the markers behind the grid's velocity (time); 0 without */
   Vec X;                /* markers of all bodies */
@@ -33,13 +32,13 @@ struct _p_Coupling {
 typedef struct {
   const char *kernel; /* name of the regularised delta function */
   NearFieldType near;
-  const FluidSpec *spec;           /* specification of the fluid, for box parts; borrowed */
-  PetscBool box_part;              /* near field and double layer have a box part */
-  PetscBool lag;                   /* in unsteady flow, markers move with the grid's velocity less the lag times its
-                                      rate of change (docs/nearfield.md, Unsteady flow) */
-  PetscBool area_target;           /* steps aim at the vesicles' initial areas */
-  const PetscReal *ratio;          /* [vesicles] viscosity inside over outside; needs the near field */
-  const SceneRepulsion *repulsion; /* force of short range between membranes */
+  const FluidSpec *spec;  /* specification of the fluid, for box parts; borrowed */
+  PetscBool box_part;     /* near field and double layer have a box part */
+  PetscBool lag;          /* in unsteady flow, markers move with the grid's velocity less the lag times its
+                             rate of change (docs/nearfield.md, Unsteady flow) */
+  PetscBool area_target;  /* steps aim at the vesicles' initial areas */
+  const PetscReal *ratio; /* [vesicles] viscosity inside over outside; needs the near field */
+  Scene scene;            /* gravity and repulsion; NULL: neither */
 } CouplingSetting;
 
 /* CouplingCreate - a coupling of a fluid, membranes and obstacles (NULL: none), not placed yet. Collective. */
@@ -52,16 +51,11 @@ PETSC_EXTERN PetscErrorCode CouplingDestroy(Coupling *coupling);
 PETSC_EXTERN PetscErrorCode CouplingAddPast(Coupling coupling, Vec uhat, Vec U);
 
 /* CouplingPlace - place everything that a solve stands on: the time coefficient a0 (1/time) in the fluid's H; E, S, B,
-   tangents, near field and repulsion at the markers X and at the obstacles of time t; the labels' speeds
+   tangents, near field and forces at the markers X and at the obstacles of time t; the labels' speeds
    treading[vesicles] (1/time; NULL: at rest). message[PETVES_MAX_MESSAGE] is empty, or says which marker is too near to
    a wall; it is the same on every rank. Collective. */
 PETSC_EXTERN PetscErrorCode CouplingPlace(Coupling coupling, PetscReal a0, PetscReal t, Vec X,
                                           const PetscReal treading[], char message[PETVES_MAX_MESSAGE]);
-
-/* CouplingTurn - until the next CouplingPlace, let the expected tension (edge vector), where it is positive, pull along
-   the new edges in place of those of the markers placed, as far as waves of the membrane would otherwise be unstable
-   (docs/membrane.md): K_sigma X - Dm^T sigma joins the elastic forces, K_sigma = MembranePull. Not collective. */
-PETSC_EXTERN PetscErrorCode CouplingTurn(Coupling coupling, Vec expected);
 
 /* CouplingPlaceMarkers - place the markers alone, for E at the vesicles' X. CouplingInterpolate - U = E w of the
    vesicles. Collective. */
@@ -97,20 +91,10 @@ static inline PetscReal CouplingGridPart(Coupling coupling, PetscReal alpha) {
 PETSC_EXTERN PetscErrorCode CouplingSpreadTension(Coupling coupling, PetscReal alpha, Vec sigma, Vec w);
 PETSC_EXTERN PetscErrorCode CouplingSpreadBending(Coupling coupling, PetscReal alpha, Vec X, Vec w);
 
-/* CouplingElasticForce - F = (c_b ds D4 + K_sigma + K_rep) X less the springs' push and the pull of the turning tension
-   along the old edges: minus the force of bending, turning and repulsion at the markers X (length^3/time^2).
-   Collective. */
-PETSC_EXTERN PetscErrorCode CouplingElasticForce(Coupling coupling, Vec X, Vec F);
-
-/* CouplingElasticRate - F += alpha (c_b ds D4 + K_sigma + K_rep) V, own parts V[2n], F[2n] of marker vectors.
- * Collective. */
-PETSC_EXTERN PetscErrorCode CouplingElasticRate(Coupling coupling, PetscReal alpha, const PetscScalar V[],
-                                                PetscScalar F[]);
-
-/* CouplingKnownForce - F = the elastic force of Y less gravity's on the markers X, a marker vector of all bodies: minus
-   the known part of the force. CouplingSpreadForce - f -= E^T F/h^2, less gravity's mean in a box that is periodic both
-   ways. CouplingNearField - u += alpha C F for the own velocities u[2n] of all bodies; nothing without near field or
-   with F NULL. Collective. */
+/* CouplingKnownForce - F = K Y + k, minus all forces but the tension's at the markers Y, linearised at the markers X
+   placed (bodies/force.h); F is zero behind the vesicles' part. CouplingSpreadForce - f -= E^T F/h^2, less the mean of
+   forces from outside in a box that is periodic both ways. CouplingNearField - u += alpha C F for the own velocities
+   u[2n] of all bodies; nothing without near field or with F NULL. Collective. */
 PETSC_EXTERN PetscErrorCode CouplingKnownForce(Coupling coupling, Vec Y, Vec X, Vec F);
 PETSC_EXTERN PetscErrorCode CouplingSpreadForce(Coupling coupling, Vec F, Forcing *f);
 PETSC_EXTERN PetscErrorCode CouplingNearField(Coupling coupling, PetscReal alpha, Vec F, PetscScalar u[]);
@@ -121,6 +105,6 @@ PETSC_EXTERN PetscErrorCode CouplingTread(Coupling coupling, PetscReal alpha, Ve
 /* CouplingStretching - d = Dm U/h^2. d and U are an edge vector and a marker vector. Not collective. */
 PETSC_EXTERN PetscErrorCode CouplingStretching(Coupling coupling, Vec U, Vec d);
 
-/* CouplingForces - F = all forces times ds of membranes at X with tension sigma, as marker vectors of the membranes.
-   Collective. */
-PETSC_EXTERN PetscErrorCode CouplingForces(Coupling coupling, Vec sigma, Vec X, Vec F);
+/* CouplingForces - F = all forces times ds of membranes at time t at X with tension sigma, as marker vectors of the
+   membranes. Collective. */
+PETSC_EXTERN PetscErrorCode CouplingForces(Coupling coupling, PetscReal t, Vec sigma, Vec X, Vec F);

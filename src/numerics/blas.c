@@ -79,6 +79,12 @@ PetscErrorCode DenseProduct(PetscBool transpose, PetscInt m, PetscInt n, PetscIn
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+void DenseAddCirculant(PetscInt n, const PetscReal first[], PetscInt lda, PetscReal A[]) {
+  for (PetscInt j = 0; j < n; j++)
+    for (PetscInt k = 0; k < n; k++)
+      for (int c = 0; c < 2; c++) A[(2 * j + c) * lda + 2 * k + c] += first[2 * (k < j ? k - j + n : k - j)];
+}
+
 PetscErrorCode DenseEigen(PetscInt n, PetscReal A[], PetscReal l[]) {
   PetscBLASInt size, room, integers, info, *iwork;
   PetscReal *work;

@@ -38,5 +38,9 @@ typedef struct {
 PETSC_EXTERN PetscErrorCode DenseProductWithin(PetscBool transpose, DenseView A, DenseView B, PetscReal beta,
                                                PetscReal C[], PetscInt apart);
 
+/* DenseAddCirculant - A[2n][2n], columns lda apart, += a circulant map of n points that treats both components alike,
+   by first[2n], what the map makes of a unit of the first component at point 0. Not collective. */
+PETSC_EXTERN void DenseAddCirculant(PetscInt n, const PetscReal first[], PetscInt lda, PetscReal A[]);
+
 /* DenseEigen - eigenvalues l[n], ascending, of the symmetric A (n x n), whose columns become the eigenvectors. */
 PETSC_EXTERN PetscErrorCode DenseEigen(PetscInt n, PetscReal A[], PetscReal l[]);

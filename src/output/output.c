@@ -56,7 +56,7 @@ PetscErrorCode OutputCreate(Scene scene, Scheme scheme, Output *out) {
   *out = o;
   o->scene = scene;
   o->scheme = scheme;
-  PetscCall(RecordCreate(scheme->membrane->layout->bodies, &scene->obstacles, &o->record));
+  PetscCall(RecordCreate(scheme->membrane->layout->bodies, &scene->obstacles, scheme->coupling->forces, &o->record));
   PetscCall(GatheredCreate(&scheme->state, &o->now));
   PetscCall(FolderOpen(scene->comm, scene->output.dir, &o->folder));
   if (*scene->output.restart) PetscCall(RestartRead(scheme, &o->record, &frames));

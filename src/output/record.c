@@ -59,19 +59,17 @@ static void ObstacleAddLoad(Grid g, PetscReal scale, const ObstacleLoad *from, c
   ObstacleLoadAdd(to, scale, from, d);
 }
 
-/* The force of gravity and contact on each vesicle, whose sum over a vesicle need not be zero, and its torque about the
-   centroid: load[vesicles], and the centroids place[2 vesicles]. */
+/* The forces of gravity and contact on each vesicle, whose sum over a vesicle need not be zero, and its torque about
+   the centroid: load[vesicles], and the centroids place[2 vesicles]. */
 static PetscErrorCode VesicleLoads(Scheme s, ObstacleLoad load[], PetscReal place[]) {
   const Membrane m = s->membrane;
   const Layout l = m->layout;
   const PetscScalar *X;
   PetscScalar *F;
-  PetscReal energy;
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(2 * l->n, &F));
   PetscCall(VecGetArrayRead(s->state.X, &X));
-  MembraneGravity(m, 1, X, F);
-  if (s->coupling->repulsion) PetscCall(RepulsionAt(s->coupling->repulsion, s->state.t, 1, X, F, &energy));
+  PetscCall(ForcesLaw(s->coupling->forces, FORCE_BETWEEN, FORCE_OUTSIDE, s->state.t, X, F));
   for (PetscInt v = l->own; v < l->end; v++) {
     const PetscInt at = LayoutOffset(l, v);
     Measures measures;
@@ -154,27 +152,44 @@ static int RecordRepeated(const Record *r) {
   return r->vesicles > 1 && r->vesicles <= RECORD_FEW ? n : 0;
 }
 
-static void RecordWriteHeader(Record *r, const SceneObstacles *obstacles) {
-  size_t used = 0;
+/* The column of a force's energy, of this name; OTHER_ENERGY where it comes behind all other columns, NO_ENERGY where
+   the force has none. */
+enum { NO_ENERGY = -2, OTHER_ENERGY = -1 };
+static int RecordEnergy(const Force *force, char name[RECORD_ENTRY]) {
+  (void)snprintf(name, RECORD_ENTRY, "energy_%s", force->name);
   for (int c = 0; c < COLUMN_COUNT; c++)
-    used += (size_t)snprintf(r->header + used, r->room - used, "%s%s", c ? "," : "", SeriesColumns[c]);
-  for (PetscInt v = 1; v <= r->vesicles; v++)
-    for (int c = 0; c < RecordRepeated(r); c++)
-      used += (size_t)snprintf(r->header + used, r->room - used, ",%s_%d", SeriesColumns[RecordVesicleColumns[c]],
-                               (int)v);
-  for (PetscInt k = 0; k < r->solids; k++) {
-    char name[RECORD_ENTRY];
-    ObstacleRowName(obstacles, k, name);
-    used += (size_t)snprintf(r->header + used, r->room - used, ",%s", name);
-  }
+    if (!strcmp(SeriesColumns[c], name)) return c;
+  return force->energy ? OTHER_ENERGY : NO_ENERGY;
 }
 
-PetscErrorCode RecordCreate(PetscInt vesicles, const SceneObstacles *obstacles, Record *r) {
+static void RecordAddName(Record *r, size_t *used, const char name[]) {
+  *used += (size_t)snprintf(r->header + *used, r->room - *used, "%s%s", *used ? "," : "", name);
+}
+
+static void RecordWriteHeader(Record *r, const SceneObstacles *obstacles) {
+  char name[RECORD_ENTRY];
+  size_t used = 0;
+  for (int c = 0; c < COLUMN_COUNT; c++) RecordAddName(r, &used, SeriesColumns[c]);
+  for (PetscInt v = 1; v <= r->vesicles; v++)
+    for (int c = 0; c < RecordRepeated(r); c++) {
+      (void)snprintf(name, RECORD_ENTRY, "%s_%d", SeriesColumns[RecordVesicleColumns[c]], (int)v);
+      RecordAddName(r, &used, name);
+    }
+  for (PetscInt k = 0; k < r->solids; k++) {
+    ObstacleRowName(obstacles, k, name);
+    RecordAddName(r, &used, name);
+  }
+  for (PetscInt k = 0; k < r->forces->n; k++)
+    if (RecordEnergy(&r->forces->force[k], name) == OTHER_ENERGY) RecordAddName(r, &used, name);
+}
+
+PetscErrorCode RecordCreate(PetscInt vesicles, const SceneObstacles *obstacles, Forces forces, Record *r) {
   PetscFunctionBeginUser;
   PetscCall(PetscMemzero(r, sizeof(*r)));
   r->vesicles = vesicles;
+  r->forces = forces;
   r->solids = ObstacleRowCount(obstacles);
-  r->room = (size_t)(COLUMN_COUNT + vesicles * RecordRepeated(r) + r->solids) * RECORD_ENTRY;
+  r->room = (size_t)(COLUMN_COUNT + vesicles * RecordRepeated(r) + r->solids + FORCES_MOST) * RECORD_ENTRY;
   PetscCall(PetscCalloc4(vesicles * COLUMN_COUNT, &r->each, r->solids, &r->solid, (PetscInt)r->room, &r->header,
                          (PetscInt)r->room, &r->text));
   RecordWriteHeader(r, obstacles);
@@ -191,7 +206,6 @@ PetscErrorCode RecordDestroy(Record *r) {
 static void RecordVesicle(Membrane m, PetscInt v, const PetscScalar X[], const PetscScalar U[], PetscReal row[]) {
   Measures measures;
   MembraneMeasure(m, v, X, &measures);
-  row[COLUMN_BENDING] = MembraneBendingEnergy(m, v, X);
   row[COLUMN_AREA] = measures.area;
   row[COLUMN_LENGTH] = measures.length;
   row[COLUMN_AREA_ERROR] = measures.area / m->A0[v] - 1;
@@ -203,7 +217,6 @@ static void RecordVesicle(Membrane m, PetscInt v, const PetscScalar X[], const P
   row[COLUMN_FREQUENCY] = MembraneFrequency(m, v, X, U);
   row[COLUMN_NORMAL_SPEED] = MembraneNormalSpeed(m, v, X, U);
   MembraneCentroidVelocity(m, v, X, U, &row[COLUMN_VELOCITY_X]);
-  row[COLUMN_GRAVITY] = MembraneGravityEnergy(m, v, X);
 }
 
 static PetscErrorCode RecordGaps(Record *r, Scheme s) {
@@ -213,6 +226,28 @@ static PetscErrorCode RecordGaps(Record *r, Scheme s) {
   PetscCall(FilmsGaps(s, &r->last[COLUMN_GAP], each));
   for (PetscInt v = 0; v < r->vesicles; v++) r->each[v * COLUMN_COUNT + COLUMN_GAP] = each[v];
   PetscCall(PetscFree(each));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The energies of the forces, at the vesicles that this rank owns; those without a column of vesicles as sums. */
+static PetscErrorCode RecordEnergies(Record *r, Scheme s, const PetscScalar X[]) {
+  const Layout l = s->membrane->layout;
+  PetscReal *E;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(l->bodies, &E));
+  for (PetscInt k = 0; k < r->forces->n; k++) {
+    const Force *force = &r->forces->force[k];
+    char name[RECORD_ENTRY];
+    const int column = RecordEnergy(force, name);
+    r->energy[k] = 0;
+    if (!force->energy) continue;
+    PetscCall(PetscArrayzero(E, l->bodies));
+    PetscCall(force->energy(force->context, s->state.t, X, E));
+    for (PetscInt v = l->own; v < l->end; v++) r->energy[k] += E[v];
+    for (PetscInt v = l->own; v < l->end && column >= 0; v++) r->each[v * COLUMN_COUNT + column] = E[v];
+  }
+  PetscCall(PetscFree(E));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, r->energy, (PetscMPIInt)r->forces->n, MPIU_REAL, MPI_SUM, l->comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -227,6 +262,7 @@ PetscErrorCode RecordMeasure(Record *r, Scheme s) {
   PetscCall(VecGetArrayRead(s->state.U, &U));
   for (PetscInt v = l->own; v < l->end; v++)
     RecordVesicle(s->membrane, v, X + 2 * LayoutOffset(l, v), U + 2 * LayoutOffset(l, v), r->each + v * COLUMN_COUNT);
+  PetscCall(RecordEnergies(r, s, X));
   PetscCall(VecRestoreArrayRead(s->state.U, &U));
   PetscCall(VecRestoreArrayRead(s->state.X, &X));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, r->each, size, MPIU_REAL, MPI_SUM, l->comm));
@@ -237,10 +273,10 @@ PetscErrorCode RecordMeasure(Record *r, Scheme s) {
 /* Add one vesicle to the columns of all vesicles: totals, worst values and means. Neither a total nor a worst value of
    angles means anything: the inclination and the frequency of the first vesicle stand for all. */
 static void RecordCombine(PetscInt vesicles, const PetscReal one[], PetscReal all[]) {
-  const int total[] = {COLUMN_BENDING, COLUMN_AREA, COLUMN_LENGTH, COLUMN_GRAVITY};
+  const int total[] = {COLUMN_BENDING, COLUMN_AREA, COLUMN_LENGTH, COLUMN_GRAVITY, COLUMN_CONTACT};
   const int worst[] = {COLUMN_AREA_ERROR, COLUMN_LENGTH_ERROR, COLUMN_EDGE_RATIO, COLUMN_NORMAL_SPEED};
   const int mean[] = {COLUMN_CENTER_X, COLUMN_CENTER_Y, COLUMN_VELOCITY_X, COLUMN_VELOCITY_Y};
-  for (int c = 0; c < 4; c++) all[total[c]] += one[total[c]];
+  for (int c = 0; c < 5; c++) all[total[c]] += one[total[c]];
   for (int c = 0; c < 4; c++)
     if (PetscAbsReal(one[worst[c]]) > PetscAbsReal(all[worst[c]])) all[worst[c]] = one[worst[c]];
   for (int c = 0; c < 4; c++) all[mean[c]] += one[mean[c]] / vesicles;
@@ -264,7 +300,6 @@ static PetscErrorCode RecordStep(Record *r, Scheme s) {
   row[COLUMN_NSOLVE] = report->solves;
   row[COLUMN_WALL] = report->seconds;
   row[COLUMN_AREA_SHIFT] = report->area_shift;
-  PetscCall(SchemeContactEnergy(s, &row[COLUMN_CONTACT]));
   for (int k = 0; k < 2; k++) {
     row[COLUMN_VISCOSITY_WALL + k] = report->stress.known ? report->stress.viscosity[k] : NAN;
     row[COLUMN_NORMAL_WALL + k] = report->stress.known ? report->stress.normal[k] : NAN;
@@ -301,6 +336,10 @@ PetscErrorCode RecordTake(Record *r, Scheme s) {
       RecordAddNumber(r, &used, r->each[v * COLUMN_COUNT + RecordVesicleColumns[c]]);
   PetscCall(ObstacleRowTake(s, r->solid));
   for (PetscInt k = 0; k < r->solids; k++) RecordAddNumber(r, &used, r->solid[k]);
+  for (PetscInt k = 0; k < r->forces->n; k++) {
+    char name[RECORD_ENTRY];
+    if (RecordEnergy(&r->forces->force[k], name) == OTHER_ENERGY) RecordAddNumber(r, &used, r->energy[k]);
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -52,18 +52,22 @@ PETSC_EXTERN const int RecordVesicleColumns[];
 
 typedef struct {
   PetscInt vesicles;            /* number of vesicles */
+  Forces forces;                /* borrowed */
   PetscInt solids;              /* columns of obstacles */
   PetscReal last[COLUMN_COUNT]; /* the last row, over all vesicles */
   PetscReal *each;              /* [vesicles][COLUMN_COUNT] the vesicles' own columns of the last row */
-  PetscReal *solid;             /* [solids] the obstacles' columns of the last row, which come last in series.csv */
-  char *header, *text;          /* names of the columns, and the last row, as lines of series.csv without line ends */
-  size_t room;                  /* characters that header and text have room for */
+  PetscReal *solid; /* [solids] the obstacles' columns of the last row, behind the vesicles' in series.csv */
+  PetscReal energy[FORCES_MOST]; /* of each force */
+  char *header, *text;           /* names of the columns, and the last row, as lines of series.csv without line ends */
+  size_t room;                   /* characters that header and text have room for */
   PetscInt solves, tension, bending, coupled; /* sums over the run */
   PetscReal cfl_max;                          /* largest of a step */
 } Record;
 
-/* RecordCreate - a row of zeros, with the header for the vesicles and obstacles. Not collective. */
-PETSC_EXTERN PetscErrorCode RecordCreate(PetscInt vesicles, const SceneObstacles *obstacles, Record *record);
+/* RecordCreate - a row of zeros, with the header for the vesicles, obstacles and forces. The energy of a force whose
+   name is none of RECORD_COLUMNS comes last, in a column of its own. Not collective. */
+PETSC_EXTERN PetscErrorCode RecordCreate(PetscInt vesicles, const SceneObstacles *obstacles, Forces forces,
+                                         Record *record);
 PETSC_EXTERN PetscErrorCode RecordDestroy(Record *record);
 
 /* RecordMeasure - the vesicles' own columns of the present state, into `each`, and the least gap of all. RecordTake -

@@ -1,10 +1,11 @@
 #include "precondition/denseblock.h"
 #include "numerics/blas.h"
 
-PetscErrorCode DenseBlockCreate(Membrane m, PetscReal h, PetscInt vesicle, PetscInt end, DenseBlock *q) {
+PetscErrorCode DenseBlockCreate(Membrane m, Forces forces, PetscReal h, PetscInt vesicle, PetscInt end, DenseBlock *q) {
   const Layout l = m->layout;
   PetscFunctionBeginUser;
   q->membrane = m;
+  q->forces = forces;
   q->h2 = h * h;
   q->vesicle = vesicle;
   q->end = end;
@@ -31,14 +32,6 @@ static void BlockStretching(const DenseBlock *q, const PetscReal U[], PetscReal 
   }
 }
 
-/* A circulant map of a vesicle's markers, equal for both components, by first[2n], what it makes of a unit at marker 0:
- * A[2n][2n] += it, columns lda apart. */
-static void AddCirculant(PetscInt n, const PetscReal first[], PetscInt lda, PetscReal A[]) {
-  for (PetscInt j = 0; j < n; j++)
-    for (PetscInt k = 0; k < n; k++)
-      for (int c = 0; c < 2; c++) A[(2 * j + c) * lda + 2 * k + c] += first[2 * (k < j ? k - j + n : k - j)];
-}
-
 /* D[n][2n] = Dm/h^2 of vesicle v: rows are contiguous. unit[2n] is 1 at marker 0, first[2n] is work. */
 static void StretchingMatrix(const DenseBlock *q, PetscInt v, const PetscReal unit[], PetscReal first[],
                              PetscReal D[]) {
@@ -52,29 +45,27 @@ static void StretchingMatrix(const DenseBlock *q, PetscInt v, const PetscReal un
         D[(k * n + j) * 2 + c] = tau[2 * k + c] * first[2 * (k < j ? k - j + n : k - j)] / q->h2;
 }
 
-/* Of vesicle v alone: K = M Dm^T/h^2, N = M D4 c_b ds/(h^2 a0), and without motion the labels' own one, (v/a0) d/dt. M
-   is symmetric. */
+/* Of vesicle v alone: q->K = M Dm^T/h^2, N = M K/(h^2 a0) of the forces' K, and without motion the labels' own one,
+   (v/a0) d/dt. M is symmetric. */
 static PetscErrorCode AssembleVesicle(DenseBlock *q, PetscReal a0, PetscInt v, PetscReal treading,
                                       const PetscReal Mob[]) {
   const Membrane m = q->membrane;
   const PetscInt rows = 2 * q->n, n = LayoutCount(m->layout, v), own = m->layout->start[v] - q->first;
   const DenseView M = {Mob + 2 * own * rows, rows, 2 * n, rows};
-  PetscReal *unit, *first, *D, *D4, *N = q->N + 2 * own * rows;
+  PetscReal *unit, *first, *D, *K, *N = q->N + 2 * own * rows;
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc4(2 * n, &unit, 2 * n, &first, 2 * n * n, &D, 4 * n * n, &D4));
+  PetscCall(PetscCalloc4(2 * n, &unit, 2 * n, &first, 2 * n * n, &D, 4 * n * n, &K));
   unit[0] = 1;
   StretchingMatrix(q, v, unit, first, D);
   PetscCall(DenseProductWithin(PETSC_FALSE, M, (DenseView){D, 2 * n, n, 2 * n}, 0, q->K + own * rows, rows));
-  PetscCall(PetscArrayzero(first, 2 * n));
-  MembraneVesicleBending(m, v, m->bending / (q->h2 * a0), unit, first);
-  AddCirculant(n, first, 2 * n, D4);
-  PetscCall(DenseProductWithin(PETSC_FALSE, M, (DenseView){D4, 2 * n, 2 * n, 2 * n}, 0, N, rows));
+  PetscCall(ForcesDense(q->forces, v, 1 / (q->h2 * a0), K));
+  PetscCall(DenseProductWithin(PETSC_FALSE, M, (DenseView){K, 2 * n, 2 * n, 2 * n}, 0, N, rows));
   if (treading != 0) {
     PetscCall(PetscArrayzero(first, 2 * n));
     MembraneLabelDerivative(m, v, treading / a0, unit, first);
-    AddCirculant(n, first, rows, N + 2 * own);
+    DenseAddCirculant(n, first, rows, N + 2 * own);
   }
-  PetscCall(PetscFree4(unit, first, D, D4));
+  PetscCall(PetscFree4(unit, first, D, K));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

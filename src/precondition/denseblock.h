@@ -1,16 +1,18 @@
 /* The dense problem of one or several vesicles inside the coupled preconditioner (docs/solver.md, Preconditioner).
 
-   M is the vesicles' mobility times h^2, v the speed of their labels and Dm the stretching of edges. With
-       N = I + (v/a0) d/dt + (c_b ds/(h^2 a0)) M D4,      C = Dm N^-1 M Dm^T/h^4,
+   M is the vesicles' mobility times h^2, v the speed of their labels, Dm the stretching of edges and K the part of the
+   forces' rate that a force has for one vesicle alone (ForcesDense). With
+       N = I + (v/a0) d/dt + M K/(h^2 a0),      C = Dm N^-1 M Dm^T/h^4,
    velocity and tension follow from right-hand sides U and r_s by the Schur complement C:
        U1 = N^-1 U,      sigma = C^-1 (Dm U1/h^2 - r_s),      U3 = U1 - N^-1 M Dm^T sigma/h^2.
    N and C are factored once for many solves. All is local to one rank. */
 #pragma once
-#include "bodies/membrane.h"
+#include "bodies/force.h"
 #include <petscblaslapack.h>
 
 typedef struct {
   Membrane membrane;     /* borrowed */
+  Forces forces;         /* borrowed */
   PetscReal h2;          /* h^2 of the grid's cells */
   PetscInt vesicle, end; /* its vesicles: vesicle .. end - 1 */
   PetscInt first, n;     /* its markers */
@@ -22,8 +24,8 @@ typedef struct {
 } DenseBlock;
 
 /* DenseBlockCreate - for vesicles vesicle .. end - 1 on a grid of cells h, tangents not set. Not collective. */
-PETSC_EXTERN PetscErrorCode DenseBlockCreate(Membrane membrane, PetscReal h, PetscInt vesicle, PetscInt end,
-                                             DenseBlock *block);
+PETSC_EXTERN PetscErrorCode DenseBlockCreate(Membrane membrane, Forces forces, PetscReal h, PetscInt vesicle,
+                                             PetscInt end, DenseBlock *block);
 PETSC_EXTERN PetscErrorCode DenseBlockDestroy(DenseBlock *block);
 
 /* DenseBlockFactor - N and C for M = Mob[2n][2n], symmetric, the block's tangents, a0 and its vesicles' label speeds

@@ -37,8 +37,8 @@ PetscErrorCode DenseBlocksCreate(Coupling coupling, DenseBlocks *out) {
   for (PetscInt k = 0; k < b->count; k++) {
     const PetscInt v = b->together ? 0 : l->own + k;
     BlockFrame *f = &b->frame[k];
-    PetscCall(DenseBlockCreate(coupling->membrane, coupling->fluid->grid->h, v, b->together ? l->bodies : v + 1,
-                               &b->block[k]));
+    PetscCall(DenseBlockCreate(coupling->membrane, coupling->forces, coupling->fluid->grid->h, v,
+                               b->together ? l->bodies : v + 1, &b->block[k]));
     f->turns = b->block[k].end - v == 1 && !(b->together && coupling->bodies->obstacles) ? PETSC_TRUE : PETSC_FALSE;
     const PetscInt n = f->turns ? b->block[k].n : 0;
     PetscCall(PetscMalloc3(2 * n, &f->X, 2 * n, &f->U, n, &f->sigma));

@@ -153,7 +153,7 @@ static PetscErrorCode SolveObstacles(Preconditioner p, PetscScalar V[], const Pe
   PetscFunctionBeginUser;
   if (ObstacleBlockCoupled(p->solid)) {
     PetscCall(PetscArrayzero(p->force, p->unknowns->velocity));
-    PetscCall(CouplingElasticRate(c, 1 / c->fluid->a0, V, p->force));
+    PetscCall(ForcesRate(c->forces, 1 / c->fluid->a0, V, p->force));
     MembraneStretchingTranspose(c->membrane, c->tau, 1, sigma, p->force);
   }
   PetscCall(ObstacleBlockEnd(p->solid, p->force, V + p->unknowns->velocity));

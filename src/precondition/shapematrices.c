@@ -3,6 +3,7 @@
 #include "precondition/denseblock.h"
 #include "layers/doubleblock.h"
 #include "layers/selflayer.h"
+#include "numerics/blas.h"
 
 /* M = h^2 S. */
 static PetscErrorCode AssembleShape(SharedShapes s, const SharedShape *q, PetscReal M[]) {
@@ -46,22 +47,24 @@ static PetscErrorCode FindShapeWeights(SharedShapes s, PetscInt n, PetscInt poin
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* F = Dm^T sigma + (c_b ds/a0) D4 V of an answer (V, sigma), and behind it J = (1 - ratio) (V + (treading/a0) dV/dt).
+/* F = Dm^T sigma + K V of an answer (V, sigma), K[2n][2n], and behind it J = (1 - ratio) (V + (treading/a0) dV/dt).
  */
-static void AnswerSources(SharedShapes s, const SharedShape *q, const PetscReal tau[], const PetscReal V[],
-                          PetscReal F[]) {
+static PetscErrorCode AnswerSources(SharedShapes s, const SharedShape *q, const PetscReal tau[], const PetscReal K[],
+                                    const PetscReal V[], PetscReal F[]) {
   const Membrane m = s->coupling->membrane;
   const PetscInt n = LayoutCount(m->layout, q->like);
   PetscReal *pull = s->X;
+  PetscFunctionBeginUser;
   for (PetscInt k = 0; k < 2 * n; k++) pull[k] = V[2 * n + k / 2] * tau[k];
   (void)PetscArrayzero(F, 2 * n);
   MembraneEdgesTranspose(m, q->like, 1, pull, F);
-  if (m->bending > 0) MembraneVesicleBending(m, q->like, m->bending / s->a0, V, F);
-  if (q->sources.rows == 2 * n) return;
+  PetscCall(DenseMultAdd(PETSC_FALSE, 2 * n, 2 * n, 1, K, V, F));
+  if (q->sources.rows == 2 * n) PetscFunctionReturn(PETSC_SUCCESS);
   PetscReal *J = F + 2 * n;
   (void)PetscArraycpy(J, V, 2 * n);
   MembraneLabelDerivative(m, q->like, q->treading / s->a0, V, J);
   for (PetscInt k = 0; k < 2 * n; k++) J[k] *= 1 - s->coupling->contrast->ratio[q->like];
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* The coarse parts of a shape: the points of the curve through its markers, weights, self. */
@@ -88,19 +91,22 @@ static PetscErrorCode MakeShapePoints(SharedShapes s, SharedShape *q) {
 static PetscErrorCode StoreShape(SharedShapes s, SharedShape *q, const PetscReal tau[], const PetscReal V[],
                                  const PetscReal sigma[]) {
   const PetscInt n = LayoutCount(s->coupling->membrane->layout, q->like), all = 3 * n;
-  PetscReal *answer, *F;
+  PetscReal *answer, *F, *K;
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(all, &answer, q->sources.rows, &F));
+  PetscCall(PetscCalloc1(4 * n * n, &K));
+  PetscCall(ForcesDense(s->coupling->forces, q->like, 1 / s->a0, K));
   PetscCall(PetscMalloc1(PackedMatrixSize(&q->inverse), &q->inverse.value));
   PetscCall(PetscMalloc1(PackedMatrixSize(&q->sources), &q->sources.value));
   for (PetscInt j = 0; j < all; j++) {
     PetscCall(PetscArraycpy(answer, V + j * 2 * n, 2 * n));
     PetscCall(PetscArraycpy(answer + 2 * n, sigma + j * n, n));
-    AnswerSources(s, q, tau, answer, F);
+    PetscCall(AnswerSources(s, q, tau, K, answer, F));
     PackedMatrixSetColumn(&q->inverse, j, answer);
     PackedMatrixSetColumn(&q->sources, j, F);
   }
   PetscCall(PetscFree2(answer, F));
+  PetscCall(PetscFree(K));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -112,7 +118,7 @@ PetscErrorCode SharedShapeMake(SharedShapes s, SharedShape *q, PetscBool *good) 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(4 * n * n, &M));
   PetscCall(PetscCalloc2(2 * n * all, &V, n * all, &sigma));
-  PetscCall(DenseBlockCreate(m, s->coupling->fluid->grid->h, q->like, q->like + 1, &block));
+  PetscCall(DenseBlockCreate(m, s->coupling->forces, s->coupling->fluid->grid->h, q->like, q->like + 1, &block));
   PetscCall(AssembleShape(s, q, M));
   PetscCall(ShapeMotion(s, q, &motion));
   MembraneVesicleTangents(m, q->like, q->X, block.tau);

@@ -2,16 +2,16 @@
 #include "mobility/contrast.h"
 #include "markers/streamresponse.h"
 
-/* F = Dm^T sigma + (1/a0) (c_b ds D4 + K_sigma + K_rep) V, minus h^2 times the force on the markers, and
+/* F = Dm^T sigma + (1/a0) K V of all forces (bodies/force.h), minus h^2 times the force on the markers, and
    that of obstacles. */
-static PetscErrorCode Force(Reduced s, const PetscScalar x[], Vec F) {
+static PetscErrorCode ReducedForce(Reduced s, const PetscScalar x[], Vec F) {
   const Coupling c = s->unknowns->coupling;
   const Membrane m = c->membrane;
   PetscScalar *f;
   PetscFunctionBeginUser;
   PetscCall(VecSet(F, 0));
   PetscCall(VecGetArray(F, &f));
-  PetscCall(CouplingElasticRate(c, 1 / c->fluid->a0, x, f));
+  PetscCall(ForcesRate(c->forces, 1 / c->fluid->a0, x, f));
   MembraneStretchingTranspose(m, c->tau, 1, x + UnknownsTension(s->unknowns), f);
   PetscCall(PetscArraycpy(f + s->unknowns->velocity, x + s->unknowns->velocity, s->unknowns->solid));
   PetscCall(VecRestoreArray(F, &f));
@@ -37,7 +37,7 @@ static PetscErrorCode AddForces(Reduced s, const PetscScalar x[], PetscBool whol
   const Coupling c = s->unknowns->coupling;
   PetscFunctionBeginUser;
   if (CouplingHasBodies(c)) {
-    PetscCall(Force(s, x, s->F));
+    PetscCall(ReducedForce(s, x, s->F));
     PetscCall(ForcingSpread(r, c->markers, -1 / PetscSqr(c->fluid->grid->h), s->F));
   }
   PetscCall(Motion(s, x, whole));
@@ -133,7 +133,7 @@ static PetscErrorCode SetDipoles(Reduced s, PetscBool own) {
 static PetscErrorCode Respond(Reduced s, const PetscScalar x[]) {
   const Coupling c = s->unknowns->coupling;
   PetscFunctionBeginUser;
-  PetscCall(Force(s, x, s->F));
+  PetscCall(ReducedForce(s, x, s->F));
   PetscCall(Motion(s, x, PETSC_FALSE));
   if (!s->stream) {
     PetscCall(VecSet(s->U, 0));
@@ -224,7 +224,7 @@ static PetscErrorCode Residual(Reduced s, PetscBool first, Vec added, Vec x, Vec
   PetscCall(VecGetArrayRead(x, &xa));
   if (q->past) PetscCall(Follow(s, first)); /* while F is that of `added` */
   if (!first && CouplingHasBodies(s->unknowns->coupling)) {
-    PetscCall(Force(s, xa, s->F));
+    PetscCall(ReducedForce(s, xa, s->F));
     PetscCall(Motion(s, xa, PETSC_TRUE));
   }
   if (!q->past) PetscCall(Follow(s, first));

@@ -1,13 +1,14 @@
 /* The coupled problem of one time step for velocity, pressure and tension together (docs/solver.md),
 
        H u + G p + E^T F/h^2 = f,   G^T u = 0                          the fluid
-       F = Dm^T sigma + (1/a0) (c_b ds D4 + K_rep) V                   minus h^2 times the force of a membrane
+       F = Dm^T sigma + (1/a0) K V                                      minus h^2 times the force of a membrane
        V + (v/a0) dV/dt - E u + C F = k                                vesicles' markers move with the fluid
        Dm V/h^2 = g                                                    inextensible edges
        E_w u - C F - beta N N^T F + k_w = 0                            no slip on obstacles, whose F is unknown
 
    V is the markers' velocity without the background's, seen from labels that turn at the speed v of their vesicle; C is
-   the near field of all bodies; K_rep are the springs of a repulsion; k is what C gives of the known forces.
+   the near field of all bodies; K is
+   what the elastic forces change by (bodies/force.h); k is what C gives of the known forces.
 
    A Stokes solve gives u and p for any force. So the unknowns are V, the obstacles' F and sigma, and a product with the
    operator costs one Stokes solve for the velocity at the markers alone (fluid/stokes/stream.h); u and p follow from

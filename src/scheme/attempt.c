@@ -1,5 +1,6 @@
 /* One unsplit step, backward Euler or BDF2 (docs/membrane.md, One step). */
 #include "base/agree.h"
+#include "bodies/turning.h"
 #include "mobility/contrast.h"
 #include "scheme/coupled.h"
 #include "scheme/stress.h"
@@ -54,7 +55,7 @@ static PetscErrorCode TurnTension(Scheme s, Coupled *d) {
   if (!count) PetscFunctionReturn(PETSC_SUCCESS);
   BDFExtrapolation(count, h->step, weight);
   PetscCall(HistoryEdges(h, s->membrane, count, weight, STATES(s, sigma), d->next.sigma));
-  PetscCall(CouplingTurn(s->coupling, d->next.sigma));
+  PetscCall(TurningExpect(s->coupling->forces, 4 * s->fluid->nu * s->fluid->a0, d->next.sigma));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -91,9 +92,8 @@ static PetscErrorCode Past(Scheme s, Coupled *d, const BDF *b) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* f = uhat - B Y - N(w*) and k = lag E uhat - (C c_b ds D4 + V d/dt) Y, with turning tension and a repulsion's
-   springs beside bending, Y = Xhat + u_inf/a0, V the labels' speed, and what holds obstacles in the flow. next.w is
-   used for w*. */
+/* f = uhat - E^T F/h^2 - N(w*) and k = lag E uhat - C F - V d/dt Y, F minus the known forces, Y = Xhat + u_inf/a0, V
+   the labels' speed, and what holds obstacles in the flow. next.w is used for w*. */
 static PetscErrorCode RightHandSides(Scheme s, Coupled *d, const BDF *b) {
   Forcing *f = &d->next.forcing;
   PetscFunctionBeginUser;
@@ -195,17 +195,14 @@ static PetscErrorCode MoveMarkers(Scheme s, Coupled *d, PetscReal a0) {
 
 /* What the forces of the step, which are spread at X*, and the jump do to a sheared channel. */
 static PetscErrorCode MeasureStress(Scheme s, Coupled *d) {
-  const PetscScalar *sigma, *x;
+  const PetscScalar *sigma;
   PetscScalar *F;
   PetscFunctionBeginUser;
   if (!StressApplies(s)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(CouplingElasticForce(s->coupling, d->next.X, d->Y));
+  PetscCall(CouplingKnownForce(s->coupling, d->next.X, d->Xstar, d->Y));
   PetscCall(VecGetArrayRead(d->next.sigma, &sigma));
   PetscCall(VecGetArray(d->Y, &F));
   MembraneStretchingTranspose(s->membrane, s->coupling->tau, 1, sigma, F);
-  PetscCall(VecGetArrayRead(d->Xstar, &x));
-  MembraneGravity(s->membrane, -1, x, F);
-  PetscCall(VecRestoreArrayRead(d->Xstar, &x));
   PetscCall(VecRestoreArray(d->Y, &F));
   PetscCall(VecRestoreArrayRead(d->next.sigma, &sigma));
   PetscCall(StressMeasure(s, d->next.w, d->next.p, d->Y, d->next.X, d->next.U));

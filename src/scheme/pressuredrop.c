@@ -17,10 +17,10 @@ static PetscReal GridProfile(Scheme s, PetscInt row) {
 typedef struct {
   PetscReal spread;  /* sum of the forces on the grid, which next to walls is less than that at the markers */
   PetscReal smeared; /* SUM F (b - E b) of obstacles in a channel */
-} Forces;
+} ForceSums;
 
 /* Add the obstacles' forces. */
-static PetscErrorCode AddObstacles(Scheme s, Forces *sum) {
+static PetscErrorCode AddObstacles(Scheme s, ForceSums *sum) {
   const Coupling c = s->coupling;
   const Grid g = s->fluid->grid;
   const Layout l = c->bodies->obstacles->layout;
@@ -42,26 +42,21 @@ static PetscErrorCode AddObstacles(Scheme s, Forces *sum) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The obstacles' forces, gravity's forces where there are walls, and the contact forces that solids give. */
-static PetscErrorCode OwnForces(Scheme s, Forces *sum) {
-  const Membrane m = s->membrane;
-  const Layout l = m->layout;
+/* The obstacles' forces, contact forces that solids give, and forces from outside where there are walls. */
+static PetscErrorCode OwnForces(Scheme s, ForceSums *sum) {
+  const ForceReach last = s->fluid->grid->wall[1] ? FORCE_OUTSIDE : FORCE_BETWEEN;
+  const PetscInt n = s->membrane->layout->n;
+  const PetscScalar *X;
+  PetscScalar *F;
   PetscFunctionBeginUser;
-  *sum = (Forces){0};
+  *sum = (ForceSums){0};
   PetscCall(AddObstacles(s, sum));
-  for (PetscInt v = l->own; v < l->end && m->weight && s->fluid->grid->wall[1]; v++)
-    sum->spread += m->weight[2 * v] * m->A0[v];
-  if (s->coupling->repulsion) {
-    const PetscScalar *X;
-    PetscScalar *y;
-    PetscReal energy;
-    PetscCall(PetscCalloc1(2 * l->n, &y));
-    PetscCall(VecGetArrayRead(s->state.X, &X));
-    PetscCall(RepulsionAt(s->coupling->repulsion, s->state.t, 1, X, y, &energy));
-    PetscCall(VecRestoreArrayRead(s->state.X, &X));
-    for (PetscInt k = 0; k < l->n; k++) sum->spread += y[2 * k];
-    PetscCall(PetscFree(y));
-  }
+  PetscCall(PetscCalloc1(2 * n, &F));
+  PetscCall(VecGetArrayRead(s->state.X, &X));
+  PetscCall(ForcesLaw(s->coupling->forces, FORCE_BETWEEN, last, s->state.t, X, F));
+  PetscCall(VecRestoreArrayRead(s->state.X, &X));
+  for (PetscInt k = 0; k < n; k++) sum->spread += F[2 * k];
+  PetscCall(PetscFree(F));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -118,7 +113,7 @@ PetscErrorCode DriveMeasure(Scheme s, Drive *drive) {
   const Grid g = s->fluid->grid;
   const PetscReal area = (g->hi[0] - g->lo[0]) * (g->hi[1] - g->lo[1]), faces = (PetscReal)g->n[0] * g->n[1];
   PetscReal sum[4], background[2], mean[2] = {0, 0}, gradient;
-  Forces forces;
+  ForceSums forces;
   Vec Hu;
   PetscFunctionBeginUser;
   *drive = (Drive){NAN, NAN};

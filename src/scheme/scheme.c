@@ -150,17 +150,6 @@ PetscErrorCode SchemeView(Scheme s, PetscViewer viewer) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SchemeContactEnergy(Scheme s, PetscReal *energy) {
-  const PetscScalar *x;
-  PetscFunctionBeginUser;
-  *energy = 0;
-  if (!s->coupling->repulsion) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(VecGetArrayRead(s->state.X, &x));
-  PetscCall(RepulsionAt(s->coupling->repulsion, s->state.t, 0, x, NULL, energy));
-  PetscCall(VecRestoreArrayRead(s->state.X, &x));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode SchemeKineticEnergy(Scheme s, PetscReal *energy) {
   PetscReal norm;
   PetscFunctionBeginUser;

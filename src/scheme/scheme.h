@@ -24,9 +24,5 @@ PETSC_EXTERN PetscErrorCode SchemeRecall(Scheme scheme, const PetscReal memory[]
 
 PETSC_EXTERN PetscErrorCode SchemeView(Scheme scheme, PetscViewer viewer);
 
-/* SchemeContactEnergy - of the repulsion and adhesion of membranes at the present state (length^4/time^2); 0 without.
-   Collective. */
-PETSC_EXTERN PetscErrorCode SchemeContactEnergy(Scheme scheme, PetscReal *energy);
-
 /* SchemeKineticEnergy - E_K = 1/2 SUM u^2 h^2 of the total velocity minus the background. Collective. */
 PETSC_EXTERN PetscErrorCode SchemeKineticEnergy(Scheme scheme, PetscReal *energy);

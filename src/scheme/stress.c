@@ -50,14 +50,13 @@ static PetscErrorCode WallStress(Scheme s, Vec w, Vec p, PetscReal *shear, Petsc
 static PetscErrorCode Stresslets(Scheme s, Vec F, Vec X, PetscReal sum[3]) {
   const Layout l = s->membrane->layout;
   const Grid g = s->fluid->grid;
-  const Repulsion r = s->coupling->repulsion;
   const PetscReal *at = s->coupling->markers->X + 2 * l->first, middle = 0.5 * (g->lo[1] + g->hi[1]);
   const PetscScalar *a, *x;
-  PetscReal seams = 0;
+  PetscReal seams;
   PetscFunctionBeginUser;
   sum[0] = sum[1] = sum[2] = 0;
   PetscCall(VecGetArrayRead(X, &x));
-  if (r) PetscCall(RepulsionSeams(r, s->coupling->markers->X, x, &seams));
+  PetscCall(ForcesSeams(s->coupling->forces, s->coupling->markers->X, x, &seams));
   PetscCall(VecRestoreArrayRead(X, &x));
   PetscCall(VecGetArrayRead(F, &a));
   for (PetscInt k = 0; k < l->n; k++) {

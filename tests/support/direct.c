@@ -1,4 +1,7 @@
 #include "direct.h"
+#include "bodies/bending.h"
+#include "bodies/repulsion.h"
+#include "bodies/turning.h"
 #include "mobility/contrast.h"
 
 PetscErrorCode DirectAdd(Direct *d, PetscInt row, PetscInt column, PetscReal value) {
@@ -94,6 +97,7 @@ static PetscErrorCode AddVesicle(Direct *d, PetscInt v) {
   const PetscInt first = m->layout->start[v], n = LayoutCount(m->layout, v), sigma = d->first[PART_SIGMA] + first;
   const PetscInt V = d->first[PART_V] + 2 * first, F = d->first[PART_F] + 2 * first, area = d->first[PART_AREA] + v;
   const PetscReal h2 = PetscSqr(d->grid->h), a0 = d->fluid->a0;
+  const Turning *turning = (const Turning *)ForcesFind(d->c->forces, "turning");
   PetscReal *unit, *stretching, *force, *turned;
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc4(2 * n, &unit, n, &stretching, 2 * n, &force, 2 * n, &turned));
@@ -107,7 +111,7 @@ static PetscErrorCode AddVesicle(Direct *d, PetscInt v) {
     PetscCall(DirectAdd(d, F + c, F + c, 1));
     PetscCall(PetscArrayzero(force, 2 * n));
     if (m->bending > 0) MembraneVesicleBending(m, v, -m->bending / (h2 * a0), unit, force);
-    MembraneVesiclePull(m, v, -1 / (h2 * a0), d->c->turning + first, unit, force);
+    MembraneVesiclePull(m, v, -1 / (h2 * a0), turning->tension + first, unit, force);
     PetscCall(PetscArraycpy(turned, unit, 2 * n));
     MembraneLabelDerivative(m, v, d->c->treading[v] / a0, unit, turned);
     for (PetscInt r = 0; r < 2 * n; r++) {
@@ -124,7 +128,7 @@ static PetscErrorCode AddVesicle(Direct *d, PetscInt v) {
 
 /* The springs of a repulsion: -(K_rep/(h^2 a0)) V in the rows of F. */
 static PetscErrorCode AddSprings(Direct *d) {
-  const Repulsion r = d->c->repulsion;
+  const Repulsion r = (Repulsion)ForcesFind(d->c->forces, "contact");
   const PetscReal scale = -1 / (PetscSqr(d->grid->h) * d->fluid->a0);
   PetscFunctionBeginUser;
   for (PetscInt q = 0; r && q < r->count; q++) {

@@ -1,5 +1,6 @@
 /* Membranes: initial shapes with equal edges, measures of exact shapes, bending and stretching operators. */
 #include "facts.h"
+#include "bodies/bending.h"
 
 /* Membrane of M markers on an ellipse, turned and moved. */
 static PetscErrorCode Ellipse(PetscInt M, PetscReal a, PetscReal b, PetscReal degrees, TestMembrane *m) {

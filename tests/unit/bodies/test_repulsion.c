@@ -1,6 +1,7 @@
 /* Repulsion and adhesion of membranes: the force is minus the slope of the energy, every force has its counterforce,
    and the springs of a step are the law where they were found. */
 #include "facts.h"
+#include "bodies/repulsion.h"
 
 /* Two vesicles, one of them near a wall and near an image of the other. */
 static const char scene[] =
@@ -19,18 +20,27 @@ static const Case cases[] = {{"repulsion", "-vesicle_center 0.8,1.5,2.05,1.6", {
                              {"at a wall", "-vesicle_center 0.8,0.65,2.1,1.6", {20, 0.25, 0, 0}, PETSC_TRUE},
                              {"adhesion", "-vesicle_center 0.8,1.5,2.05,1.6", {20, 0.13, 0.3, 0.3}, PETSC_FALSE}};
 
+/* The energy of both vesicles. */
+static PetscErrorCode FindEnergy(const Force *force, const PetscReal X[], PetscReal *energy) {
+  PetscReal E[2] = {0, 0};
+  PetscFunctionBeginUser;
+  PetscCall(force->energy(force->context, 0, X, E));
+  *energy = E[0] + E[1];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Largest difference of the force from the energy's slope, over the largest force. */
-static PetscErrorCode CheckSlope(const Case *c, Repulsion r, Layout l, PetscReal X[]) {
+static PetscErrorCode CheckSlope(const Case *c, const Force *r, Layout l, PetscReal X[]) {
   const PetscReal step = 1e-6;
-  PetscReal *F, energy, around[2], off = 0, largest = 0, sum[2] = {0, 0};
+  PetscReal *F, around[2], off = 0, largest = 0, sum[2] = {0, 0};
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(2 * l->M, &F));
-  PetscCall(RepulsionAt(r, 0, 1, X, F, &energy));
+  PetscCall(r->law(r->context, 0, X, F));
   for (PetscInt k = 0; k < 2 * l->M; k++) {
     const PetscReal x = X[k];
     for (int side = 0; side < 2; side++) {
       X[k] = x + (side ? step : -step);
-      PetscCall(RepulsionAt(r, 0, 0, X, NULL, &around[side]));
+      PetscCall(FindEnergy(r, X, &around[side]));
     }
     X[k] = x;
     off = PetscMax(off, PetscAbsReal(F[k] + (around[1] - around[0]) / (2 * step)));
@@ -46,29 +56,29 @@ static PetscErrorCode CheckSlope(const Case *c, Repulsion r, Layout l, PetscReal
 }
 
 /* At X*, push - K_rep X is the force; K_rep is symmetric and takes energy. */
-static PetscErrorCode CheckSprings(const Case *c, Repulsion r, Layout l, const PetscReal X[]) {
-  PetscReal *F, *x, *y, *Kx, *Ky, energy, off = 0, products[3] = {0, 0, 0};
+static PetscErrorCode CheckSprings(const Case *c, const Force *r, Layout l, const PetscReal X[]) {
+  PetscReal *F, *x, *y, *Kx, *Ky, off = 0, products[3] = {0, 0, 0};
   unsigned seed = 5;
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc5(2 * l->M, &F, 2 * l->M, &x, 2 * l->M, &y, 2 * l->M, &Kx, 2 * l->M, &Ky));
-  PetscCall(RepulsionPlace(r, 0, X));
-  PetscCall(RepulsionAt(r, 0, 1, X, F, &energy));
-  RepulsionPush(r, -1, F);
-  PetscCall(RepulsionStiffness(r, 1, X, F));
+  PetscCall(r->place(r->context, 0, X));
+  PetscCall(r->law(r->context, 0, X, F));
+  PetscCall(r->known(r->context, 1, X, F));
+  PetscCall(r->rate(r->context, 1, X, F));
   for (PetscInt k = 0; k < 2 * l->M; k++) {
     off = PetscMax(off, PetscAbsReal(F[k]));
     x[k] = TestRandom(&seed);
     y[k] = TestRandom(&seed);
   }
-  PetscCall(RepulsionStiffness(r, 1, x, Kx));
-  PetscCall(RepulsionStiffness(r, 1, y, Ky));
+  PetscCall(r->rate(r->context, 1, x, Kx));
+  PetscCall(r->rate(r->context, 1, y, Ky));
   for (PetscInt k = 0; k < 2 * l->M; k++) {
     products[0] += x[k] * Ky[k];
     products[1] += y[k] * Kx[k];
     products[2] += x[k] * Kx[k];
   }
-  CHECK(r->count > 0 && off < 1e-12, "%s: %d springs are the law where they were found, to %.1g", c->name,
-        (int)r->count, off);
+  CHECK(((Repulsion)r->context)->count > 0 && off < 1e-12, "%s: %d springs are the law where they were found, to %.1g",
+        c->name, (int)((Repulsion)r->context)->count, off);
   CHECK(PetscAbsReal(products[0] - products[1]) < 1e-12 && products[2] >= 0, "%s: K_rep is symmetric, x.K_rep x = %.3g",
         c->name, products[2]);
   PetscCall(PetscFree5(F, x, y, Kx, Ky));
@@ -78,19 +88,20 @@ static PetscErrorCode CheckSprings(const Case *c, Repulsion r, Layout l, const P
 /* With a range shorter than every film there is neither spring nor force nor energy. */
 static PetscErrorCode CheckRange(const Case *c, const TestMembrane *m, Bodies bodies, Grid grid, const PetscReal X[]) {
   SceneRepulsion law = c->law;
-  PetscReal *F, energy, largest = 0;
-  Repulsion r;
+  PetscReal *F, energy = 0, largest = 0;
+  Force r;
   PetscFunctionBeginUser;
   law.range = law.band = 1e-3;
   PetscCall(RepulsionCreate(bodies, grid, &law, &r));
   PetscCall(PetscCalloc1(2 * m->M, &F));
-  PetscCall(RepulsionPlace(r, 0, X));
-  PetscCall(RepulsionAt(r, 0, 1, X, F, &energy));
+  PetscCall(r.place(r.context, 0, X));
+  PetscCall(r.law(r.context, 0, X, F));
+  PetscCall(FindEnergy(&r, X, &energy));
   for (PetscInt k = 0; k < 2 * m->M; k++) largest = PetscMax(largest, PetscAbsReal(F[k]));
-  CHECK(r->count == 0 && energy == 0 && largest == 0, "%s: out of range there are %d springs and no force", c->name,
-        (int)r->count);
+  CHECK(((Repulsion)r.context)->count == 0 && energy == 0 && largest == 0,
+        "%s: out of range there are %d springs and no force", c->name, (int)((Repulsion)r.context)->count);
   PetscCall(PetscFree(F));
-  PetscCall(RepulsionDestroy(&r));
+  PetscCall(r.destroy(r.context));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -100,7 +111,7 @@ PetscErrorCode Facts(void) {
     char options[1024];
     TestMembrane m;
     Bodies bodies;
-    Repulsion r;
+    Force r;
     Grid grid;
     PetscReal *X;
     PetscCall(PetscSNPrintf(options, sizeof(options), "%s%s", scene, cases[k].centers));
@@ -110,11 +121,11 @@ PetscErrorCode Facts(void) {
     PetscCall(RepulsionCreate(bodies, grid, &cases[k].law, &r));
     PetscCall(PetscMalloc1(2 * m.M, &X));
     PetscCall(PetscArraycpy(X, m.scene->shape.X, 2 * m.M));
-    PetscCall(CheckSlope(&cases[k], r, m.layout, X));
-    PetscCall(CheckSprings(&cases[k], r, m.layout, X));
+    PetscCall(CheckSlope(&cases[k], &r, m.layout, X));
+    PetscCall(CheckSprings(&cases[k], &r, m.layout, X));
     PetscCall(CheckRange(&cases[k], &m, bodies, grid, X));
     PetscCall(PetscFree(X));
-    PetscCall(RepulsionDestroy(&r));
+    PetscCall(r.destroy(r.context));
     PetscCall(BodiesDestroy(&bodies));
     PetscCall(GridDestroy(&grid));
     PetscCall(TestMembraneDestroy(&m));

@@ -13,7 +13,7 @@ typedef struct {
   PetscScalar *velocity;
 } Arrays;
 
-static const PetscScalar *Force(void *ctx, Field f, PetscInt j, PetscScalar work[]) {
+static const PetscScalar *StreamForce(void *ctx, Field f, PetscInt j, PetscScalar work[]) {
   const Arrays *a = (const Arrays *)ctx;
   return f == FIELD_U ? RowAt(&a->u, j) : a->force + GridLocalU(a->grid) + j * a->grid->columns[f];
 }
@@ -29,7 +29,7 @@ static PetscErrorCode SolveRows(Fluid fluid, Stokes stokes, StreamRows rows, Vec
   Arrays a = {.grid = fluid->grid};
   PetscFunctionBeginUser;
   rows.ctx = &a;
-  rows.force = Force;
+  rows.force = StreamForce;
   rows.velocity = Velocity;
   PetscCall(VecGetArrayRead(r, &a.force));
   PetscCall(VecGetArray(u, &a.velocity));

@@ -1,5 +1,6 @@
 /* Derivatives along the membrane: spectral ones, edges with their exact transposes, bending, and the area target. */
 #include "facts.h"
+#include "bodies/bending.h"
 
 static PetscReal Dot(PetscInt n, const PetscReal a[], const PetscReal b[]) {
   PetscReal sum = 0;

@@ -63,7 +63,7 @@ static PetscErrorCode CheckRows(PetscInt vesicles) {
   const SceneObstacles none = {0};
   Record record;
   PetscFunctionBeginUser;
-  PetscCall(RecordCreate(vesicles, &none, &record));
+  PetscCall(RecordCreate(vesicles, &none, &(struct _p_Forces){0}, &record));
   CHECK(Count(record.header, ',') == columns - 1, "%d vesicles: %d columns", (int)vesicles, (int)columns);
   PetscCall(PetscSNPrintf(number, sizeof(number), "gap_%d", (int)vesicles));
   CHECK(!strcmp(strrchr(record.header, ',') + 1, own ? number : "normal_stress"), "%d vesicles: the last column",

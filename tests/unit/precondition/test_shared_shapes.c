@@ -4,6 +4,7 @@
 #include "precondition/sharedshapes.h"
 #include "layers/selflayer.h"
 #include "facts.h"
+#include "bodies/bending.h"
 
 #define VESICLES 7
 #define N 45 /* markers of a vesicle */
@@ -187,7 +188,7 @@ static PetscErrorCode MultiplyAll(TestWorld *t, Vec V, Vec sigma, Vec U, Vec s) 
   PetscCall(StokesCreate(t->fluid, &stokes));
   PetscCall(VecGetArrayRead(V, &f));
   PetscCall(VecGetArray(F, &u));
-  PetscCall(CouplingElasticRate(t->coupling, 1 / t->fluid->a0, f, u));
+  PetscCall(ForcesRate(t->coupling->forces, 1 / t->fluid->a0, f, u));
   PetscCall(VecRestoreArrayRead(V, &f));
   PetscCall(VecGetArrayRead(sigma, &f));
   MembraneStretchingTranspose(t->membrane, t->coupling->tau, 1, f, u);

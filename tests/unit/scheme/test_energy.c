@@ -2,6 +2,7 @@
    markers, 24 steps, c_b and dt over four decades: E_K + E_B never rises with backward Euler, nor the G-norm energy
    with BDF2 at constant steps. And the split scheme, which has no such law. */
 #include "facts.h"
+#include "bodies/bending.h"
 
 #define STEPS 24
 #define FEW_STEPS 3

@@ -1,0 +1,19 @@
+/* Bending (docs/membrane.md, Membrane). D4 = (D+D-)(D+D-) is of the fixed spacing ds, or the spectral derivative. */
+#pragma once
+#include "bodies/force.h"
+
+/* MembraneVesicleBending - minus the bending force of one vesicle, with D4 = (D+D-)(D+D-) of the fixed spacing ds:
+
+     F += alpha part ds D4 X.
+
+   alpha has the largest c_b as a factor. The matrix is symmetric. MembraneBending - F of all own vesicles. */
+PETSC_EXTERN void MembraneVesicleBending(Membrane membrane, PetscInt vesicle, PetscReal alpha, const PetscScalar X[],
+                                         PetscScalar F[]);
+PETSC_EXTERN void MembraneBending(Membrane membrane, PetscReal alpha, const PetscScalar X[], PetscScalar F[]);
+
+/* MembraneBendingEnergy - of one vesicle:
+
+     E_B = c_b/2 SUM |D+D- X|^2 ds      (37) */
+PETSC_EXTERN PetscReal MembraneBendingEnergy(Membrane membrane, PetscInt vesicle, const PetscScalar X[]);
+
+PETSC_EXTERN PetscErrorCode ForceCreate_Bending(Bodies bodies, Grid grid, Scene scene, Force *force);

@@ -1,0 +1,155 @@
+/* A force that the program does not have, a spring from every marker to a point, is added to the list of forces: step,
+   energy column, stress and preconditioner have it. */
+#include "facts.h"
+#include "output/record.h"
+
+/* Minus the force is k (X - P), its energy k/2 |X - P|^2. */
+typedef struct {
+  Layout layout;
+  PetscReal k, P[2];
+} PointSpring;
+
+static PetscErrorCode PointSpringRate(void *context, PetscReal alpha, const PetscScalar V[], PetscScalar F[]) {
+  const PointSpring *s = (const PointSpring *)context;
+  for (PetscInt k = 0; k < 2 * s->layout->n; k++) F[k] += alpha * s->k * V[k];
+  return PETSC_SUCCESS;
+}
+
+static PetscErrorCode PointSpringKnown(void *context, PetscReal alpha, const PetscScalar X[], PetscScalar F[]) {
+  const PointSpring *s = (const PointSpring *)context;
+  for (PetscInt k = 0; k < 2 * s->layout->n; k++) F[k] -= alpha * s->k * s->P[k % 2];
+  return PETSC_SUCCESS;
+}
+
+static PetscErrorCode PointSpringDense(void *context, PetscInt v, PetscReal alpha, PetscReal K[]) {
+  const PointSpring *s = (const PointSpring *)context;
+  const PetscInt n = 2 * LayoutCount(s->layout, v);
+  for (PetscInt k = 0; k < n; k++) K[k * n + k] += alpha * s->k;
+  return PETSC_SUCCESS;
+}
+
+static PetscErrorCode PointSpringEnergy(void *context, PetscReal t, const PetscScalar X[], PetscReal E[]) {
+  const PointSpring *s = (const PointSpring *)context;
+  for (PetscInt v = s->layout->own; v < s->layout->end; v++)
+    for (PetscInt k = 2 * LayoutOffset(s->layout, v), n = 2 * LayoutCount(s->layout, v); n--; k++)
+      E[v] += 0.5 * s->k * PetscSqr(X[k] - s->P[k % 2]);
+  return PETSC_SUCCESS;
+}
+
+#define CHANNEL                                                                                                        \
+  "-domain_box -2,2,-1,1 -domain_cells 64,32 -domain_bc_x periodic -flow_type shear -scheme_type coupled "             \
+  "-fluid_inertia none -coupling_near_field exact -vesicle_semi_axes 0.5,0.3 -vesicle_markers 32 "                     \
+  "-vesicle_center 0.1,0.2 "
+static const char shear[] = CHANNEL "-time_step 0.01 -coupled_ksp_rtol 1e-9 ";
+static const char large_steps[] = CHANNEL "-time_step 0.1 -coupled_ksp_rtol 1e-6 ";
+
+/* What a run of three steps shows. */
+typedef struct {
+  Record record;
+  PetscInt its; /* iterations of all steps */
+  PetscReal header_ends_with_spring, energy, center[2];
+} Shown;
+
+/* Three steps, with the spring where it is given: with or without its part of the preconditioner. */
+static PetscErrorCode Run(const char options[], PointSpring *spring, PetscBool dense, Shown *shown) {
+  const char *last;
+  TestWorld w;
+  PetscFunctionBeginUser;
+  PetscCall(TestScene(options, &w.scene));
+  PetscCall(TestWorldBuild(&w));
+  if (spring) {
+    const Force force = {.name = "spring",
+                         .reach = FORCE_OUTSIDE,
+                         .context = spring,
+                         .rate = PointSpringRate,
+                         .known = PointSpringKnown,
+                         .dense = dense ? PointSpringDense : NULL,
+                         .energy = PointSpringEnergy};
+    spring->layout = w.layout;
+    PetscCall(ForcesAdd(w.coupling->forces, &force));
+  }
+  PetscCall(TestWorldScheme(&w));
+  PetscCall(RecordCreate(w.layout->bodies, &w.scene->obstacles, w.coupling->forces, &shown->record));
+  shown->its = 0;
+  for (int k = 0; k < 3; k++) {
+    PetscCall(SchemeStep(w.scheme, PETSC_MAX_REAL));
+    PetscCheck(!*w.scheme->report.failure, w.scene->comm, PETSC_ERR_LIB, "%s", w.scheme->report.failure);
+    shown->its += w.scheme->report.coupled_its;
+  }
+  PetscCall(RecordTake(&shown->record, w.scheme));
+  last = strrchr(shown->record.header, ',');
+  shown->header_ends_with_spring = !strcmp(last, ",energy_spring");
+  shown->energy = strtod(strrchr(shown->record.text, ',') + 1, NULL);
+  for (int c = 0; c < 2; c++) shown->center[c] = shown->record.last[COLUMN_CENTER_X + c];
+  if (spring) { /* the energy by hand */
+    PetscReal energy = 0;
+    const PetscScalar *X;
+    PetscCall(VecGetArrayRead(w.scheme->state.X, &X));
+    for (PetscInt k = 0; k < 2 * w.layout->n; k++) energy += 0.5 * spring->k * PetscSqr(X[k] - spring->P[k % 2]);
+    PetscCall(VecRestoreArrayRead(w.scheme->state.X, &X));
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &energy, 1, MPIU_REAL, MPI_SUM, w.scene->comm));
+    CHECK(PetscAbsReal(shown->energy / energy - 1) < 1e-13, "the last column is the spring's energy, %.6g", energy);
+  }
+  PetscCall(TestWorldDestroy(&w));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Soft springs to points around the vesicle: it comes closer to the point by a way in proportion to the spring's
+   stiffness; both stresses of the channel have the spring, and agree. */
+static PetscErrorCode CheckSoft(const Shown *without, PetscReal x, PetscReal y) {
+  PointSpring soft = {.k = 0.05, .P = {x, y}}, softer = {.k = 0.025, .P = {x, y}};
+  const PetscReal *none = without->record.last, d[2] = {x - without->center[0], y - without->center[1]};
+  Shown one, half;
+  PetscFunctionBeginUser;
+  PetscCall(Run(shear, &soft, PETSC_TRUE, &one));
+  PetscCall(Run(shear, &softer, PETSC_TRUE, &half));
+  CHECK(one.header_ends_with_spring == 1, "to %g,%g: series.csv has the column energy_spring", x, y);
+  PetscReal along = 0, ratio = 0, way[2];
+  for (int c = 0; c < 2; c++) {
+    along += d[c] * (one.center[c] - without->center[c]);
+    ratio += d[c] * (half.center[c] - without->center[c]);
+    way[c] = one.center[c] - without->center[c];
+  }
+  CHECK(along > 1e-3 * (d[0] * d[0] + d[1] * d[1]), "to %g,%g: the spring moves the vesicle by %.3g,%.3g", x, y, way[0],
+        way[1]);
+  CHECK(PetscAbsReal(ratio / along - 0.5) < 0.05, "to %g,%g: half the spring moves it by %.3f of that", x, y,
+        ratio / along);
+  const PetscReal *row = one.record.last;
+  CHECK(PetscAbsReal(row[COLUMN_VISCOSITY] - row[COLUMN_VISCOSITY_WALL]) < 1e-6,
+        "to %g,%g: the stress from forces is that at the walls, %.6f and %.6f", x, y, row[COLUMN_VISCOSITY],
+        row[COLUMN_VISCOSITY_WALL]);
+  CHECK(PetscAbsReal(row[COLUMN_VISCOSITY] - none[COLUMN_VISCOSITY]) > 1e-3,
+        "to %g,%g: the spring adds %.4f to the viscosity", x, y, row[COLUMN_VISCOSITY] - none[COLUMN_VISCOSITY]);
+  PetscCall(RecordDestroy(&one.record));
+  PetscCall(RecordDestroy(&half.record));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A stiff spring is solved in fewer iterations because the preconditioner has it, and with the same result. */
+static PetscErrorCode CheckStiff(PetscReal k) {
+  PointSpring stiff = {.k = k, .P = {0.1, 0.1}};
+  Shown with, without;
+  PetscFunctionBeginUser;
+  PetscCall(Run(large_steps, &stiff, PETSC_TRUE, &with));
+  PetscCall(Run(large_steps, &stiff, PETSC_FALSE, &without));
+  CHECK(with.its < without.its, "k = %g: %d iterations, %d without the preconditioner's part", k, (int)with.its,
+        (int)without.its);
+  CHECK(PetscAbsReal(with.energy / without.energy - 1) < 1e-4, "k = %g: energy %.8g with and %.8g without", k,
+        with.energy, without.energy);
+  PetscCall(RecordDestroy(&with.record));
+  PetscCall(RecordDestroy(&without.record));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode Facts(void) {
+  Shown without;
+  PetscFunctionBeginUser;
+  PetscCall(Run(shear, NULL, PETSC_FALSE, &without));
+  CHECK(without.header_ends_with_spring == 0, "without the spring there is no column energy_spring");
+  PetscCall(CheckSoft(&without, 0.6, 0.2));
+  PetscCall(CheckSoft(&without, -0.5, -0.5));
+  PetscCall(CheckStiff(10));
+  PetscCall(CheckStiff(30));
+  PetscCall(RecordDestroy(&without.record));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
