@@ -108,11 +108,11 @@ static PetscErrorCode Destroy_Penalty(Scheme s) {
 }
 
 PetscErrorCode SchemeCreate_Penalty(Scheme s) {
-  const SchemeOps ops = {
-      .setup = SetUp_Penalty, .step = Step_Penalty, .view = View_Penalty, .destroy = Destroy_Penalty};
+  const SchemeOps ops = {.step = Step_Penalty, .view = View_Penalty, .destroy = Destroy_Penalty};
   Penalty *d;
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&d));
   SchemeImplement(s, &ops, d);
+  PetscCall(SetUp_Penalty(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

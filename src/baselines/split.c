@@ -175,15 +175,12 @@ static PetscErrorCode KSP_Split(Scheme s, const char prefix[], KSP *ksp) {
 }
 
 PetscErrorCode SchemeCreate_Split(Scheme s) {
-  const SchemeOps ops = {.setup = SetUp_Split,
-                         .step = Step_Split,
-                         .view = View_Split,
-                         .options = Options_Split,
-                         .ksp = KSP_Split,
-                         .destroy = Destroy_Split};
+  const SchemeOps ops = {
+      .step = Step_Split, .view = View_Split, .options = Options_Split, .ksp = KSP_Split, .destroy = Destroy_Split};
   Split *d;
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&d));
   SchemeImplement(s, &ops, d);
+  PetscCall(SetUp_Split(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,4 +1,5 @@
 #include "output/cells.h"
+#include "scheme/fields.h"
 #include "base/agree.h"
 #include "layers/layercells.h"
 

@@ -19,7 +19,7 @@ static PetscErrorCode ReducedForce(Reduced s, const PetscScalar x[], Vec F) {
 }
 
 /* The motion that x gives the markers, or (whole) all of it with what is known, in s->motion. */
-static PetscErrorCode Motion(Reduced s, const PetscScalar x[], PetscBool whole) {
+static PetscErrorCode ReducedMotion(Reduced s, const PetscScalar x[], PetscBool whole) {
   const PetscScalar *known = NULL;
   PetscScalar *G;
   PetscFunctionBeginUser;
@@ -33,14 +33,14 @@ static PetscErrorCode Motion(Reduced s, const PetscScalar x[], PetscBool whole) 
 }
 
 /* r += -E^T F/h^2 and the motion's dipoles; leaves F and the motion. */
-static PetscErrorCode AddForces(Reduced s, const PetscScalar x[], PetscBool whole, Forcing *r) {
+static PetscErrorCode ReducedAddForces(Reduced s, const PetscScalar x[], PetscBool whole, Forcing *r) {
   const Coupling c = s->unknowns->coupling;
   PetscFunctionBeginUser;
   if (CouplingHasBodies(c)) {
     PetscCall(ReducedForce(s, x, s->F));
     PetscCall(ForcingSpread(r, c->markers, -1 / PetscSqr(c->fluid->grid->h), s->F));
   }
-  PetscCall(Motion(s, x, whole));
+  PetscCall(ReducedMotion(s, x, whole));
   if (s->motion) PetscCall(ContrastSpread(c, s->motion, r));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -55,39 +55,46 @@ static PetscErrorCode Subtract(Vec known, PetscInt n, PetscScalar y[]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* y = (V + (treading/a0) dV/dt - U + C F - k, beta N N^T F - U + C F - k, Dm V/h^2 - g) of x, s->U holding U, s->F F,
-   and with viscosity contrast s->motion the G of B G, which stands in the place of the first two; where an area is
-   aimed at the first has its row; without k, g and the known force where `problem` is NULL. Rows are scaled.
-   Collective. */
-static PetscErrorCode Conditions(Reduced s, const CoupledProblem *problem, const PetscScalar x[], PetscScalar y[]) {
+/* The residual y of x in the equations of residual.h, scaled, where s->U has E u (1) and s->F has F (2) of x. With
+   problem NULL: what is linear in x, for a product with the operator. Collective. */
+static PetscErrorCode ReducedResidual(Reduced s, const CoupledProblem *problem, const PetscScalar x[],
+                                      PetscScalar y[]) {
   const Coupling c = s->unknowns->coupling;
   const Unknowns u = s->unknowns;
   const PetscInt n = u->velocity, tension = UnknownsTension(u);
-  const PetscReal h2 = PetscSqr(c->fluid->grid->h);
-  const PetscBool known = problem && problem->F ? PETSC_TRUE : PETSC_FALSE;
+  const Vec known = problem ? problem->F : NULL;
   const PetscScalar *U;
   PetscFunctionBeginUser;
   if (!CouplingHasBodies(c)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscArrayzero(y, tension));
+  /* (3) V + (v/a0) dV/dt; with viscosity contrast the motion's double layer stands in its place */
+  if (s->motion)
+    PetscCall(ContrastAdd(c, 1, s->motion, y));
+  else {
+    PetscCall(PetscArraycpy(y, x, n));
+    MembraneTread(c->membrane, c->treading, 1 / c->fluid->a0, x, y);
+  }
+  /* (3), (5) - E u + C F - k */
   PetscCall(VecGetArrayRead(s->U, &U));
-  for (PetscInt k = 0; k < tension; k++) y[k] = (k < n && !s->motion ? x[k] : 0) - U[k];
+  for (PetscInt k = 0; k < tension; k++) y[k] -= U[k];
   PetscCall(VecRestoreArrayRead(s->U, &U));
-  if (!s->motion) MembraneTread(c->membrane, c->treading, 1 / c->fluid->a0, x, y);
-  if (known) PetscCall(VecWAXPY(s->all, 1, s->F, problem->F));
+  if (known) PetscCall(VecWAXPY(s->all, 1, s->F, known));
   PetscCall(CouplingNearField(c, 1, known ? s->all : s->F, y));
-  if (s->motion) PetscCall(ContrastAdd(c, 1, s->motion, y));
-  if (c->bodies->obstacles) ObstaclesPressure(c->bodies->obstacles, x + n, y + n);
-  MembraneStretching(c->membrane, c->tau, x, y + tension);
-  for (PetscInt k = 0; k < u->tension; k++) y[tension + k] /= h2;
   if (problem) PetscCall(Subtract(problem->k, tension, y));
-  if (c->area) AreaRowReplace(c->area, problem ? PETSC_TRUE : PETSC_FALSE, x, y);
+  /* (5) beta N N^T F */
+  if (c->bodies->obstacles) ObstaclesPressure(c->bodies->obstacles, x + n, y + n);
+  /* (4) Dm V/h^2 - g */
+  MembraneStretching(c->membrane, c->tau, x, y + tension);
+  for (PetscInt k = 0; k < u->tension; k++) y[tension + k] /= PetscSqr(c->fluid->grid->h);
   if (problem) PetscCall(Subtract(problem->g, u->tension, y + tension));
+  if (c->area) AreaRowReplace(c->area, problem ? PETSC_TRUE : PETSC_FALSE, x, y); /* in (3) */
   UnknownsScale(u, PETSC_FALSE, y);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* In a box that is periodic both ways, and in a channel without flux, the solve leaves w without a mean, which dipoles
    have. */
-static PetscErrorCode AddMean(Reduced s, const PetscReal mean[2], Vec w) {
+static PetscErrorCode ReducedAddMean(Reduced s, const PetscReal mean[2], Vec w) {
   const Grid g = s->unknowns->coupling->fluid->grid;
   const PetscReal *profile = StokesProfile(s->stokes);
   PetscScalar *a;
@@ -107,12 +114,12 @@ static PetscErrorCode Solve(Reduced s, const Forcing *r, Vec w, Vec p) {
   PetscFunctionBeginUser;
   if (!s->stokes) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(StokesSolve(s->stokes, r->values, r->source, w, p));
-  PetscCall(AddMean(s, r->mean, w));
+  PetscCall(ReducedAddMean(s, r->mean, w));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* U = E u becomes what the markers have of it. */
-static PetscErrorCode TakePart(Reduced s) {
+static PetscErrorCode ReducedTakePart(Reduced s) {
   const Coupling c = s->unknowns->coupling;
   PetscFunctionBeginUser;
   if (c->lag > 0) PetscCall(VecScale(s->U, CouplingGridPart(c, c->fluid->alpha)));
@@ -120,7 +127,7 @@ static PetscErrorCode TakePart(Reduced s) {
 }
 
 /* The dipoles of the motion as rows, own: with their force. */
-static PetscErrorCode SetDipoles(Reduced s, PetscBool own) {
+static PetscErrorCode ReducedSetDipoles(Reduced s, PetscBool own) {
   const PetscScalar *G;
   PetscFunctionBeginUser;
   PetscCall(VecGetArrayRead(s->motion, &G));
@@ -130,19 +137,19 @@ static PetscErrorCode SetDipoles(Reduced s, PetscBool own) {
 }
 
 /* U of the forces of x alone, row by row; zero in unbounded fluid. */
-static PetscErrorCode Respond(Reduced s, const PetscScalar x[]) {
+static PetscErrorCode ReducedRespond(Reduced s, const PetscScalar x[]) {
   const Coupling c = s->unknowns->coupling;
   PetscFunctionBeginUser;
   PetscCall(ReducedForce(s, x, s->F));
-  PetscCall(Motion(s, x, PETSC_FALSE));
+  PetscCall(ReducedMotion(s, x, PETSC_FALSE));
   if (!s->stream) {
     PetscCall(VecSet(s->U, 0));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  if (s->motion) PetscCall(SetDipoles(s, PETSC_TRUE));
+  if (s->motion) PetscCall(ReducedSetDipoles(s, PETSC_TRUE));
   PetscCall(MarkersRespond(c->markers, s->stream, s->motion ? s->dipoles : NULL, -1 / PetscSqr(c->fluid->grid->h), s->F,
                            s->U));
-  PetscCall(TakePart(s));
+  PetscCall(ReducedTakePart(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -153,29 +160,29 @@ static PetscErrorCode Mult(Mat A, Vec x, Vec y) {
   PetscFunctionBeginUser;
   PetscCall(MatShellGetContext(A, &s));
   PetscCall(VecGetArrayRead(x, &xa));
-  if (CouplingHasBodies(s->unknowns->coupling)) PetscCall(Respond(s, xa));
+  if (CouplingHasBodies(s->unknowns->coupling)) PetscCall(ReducedRespond(s, xa));
   PetscCall(VecGetArray(y, &ya));
-  PetscCall(Conditions(s, NULL, xa, ya));
+  PetscCall(ReducedResidual(s, NULL, xa, ya));
   PetscCall(VecRestoreArray(y, &ya));
   PetscCall(VecRestoreArrayRead(x, &xa));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* U of problem->f, which has the dipoles' forces, row by row. */
-static PetscErrorCode FollowByRows(Reduced s) {
+static PetscErrorCode ReducedFollowByRows(Reduced s) {
   const CoupledProblem *q = s->problem;
   const Coupling c = s->unknowns->coupling;
   PetscFunctionBeginUser;
-  if (s->motion) PetscCall(SetDipoles(s, PETSC_FALSE));
+  if (s->motion) PetscCall(ReducedSetDipoles(s, PETSC_FALSE));
   PetscCall(MarkersFollow(c->markers, s->stream, s->motion ? s->dipoles : NULL, q->f, NULL, s->U,
                           q->w ? NULL : &s->measures));
-  PetscCall(TakePart(s));
+  PetscCall(ReducedTakePart(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* The flow and its U: of problem->f and of the states before (first), or with the forces F that have been added to f.
    What is measured is a sum then, too, but for the divergence, which it bounds. */
-static PetscErrorCode FollowFlow(Reduced s, PetscBool first) {
+static PetscErrorCode ReducedFollowFlow(Reduced s, PetscBool first) {
   const CoupledProblem *q = s->problem;
   const Coupling c = s->unknowns->coupling;
   StreamMeasures more;
@@ -185,7 +192,7 @@ static PetscErrorCode FollowFlow(Reduced s, PetscBool first) {
   else {
     const PetscReal alpha = -1 / PetscSqr(c->fluid->grid->h);
     PetscCall(MarkersAddFlow(c->markers, s->stream, alpha, s->F, s->U, q->past->made, &more));
-    PetscCall(TakePart(s));
+    PetscCall(ReducedTakePart(s));
     PetscCall(VecAXPY(s->sum, 1, s->U));
     s->measures.divergence += more.divergence;
     s->measures.slip += more.slip;
@@ -196,40 +203,40 @@ static PetscErrorCode FollowFlow(Reduced s, PetscBool first) {
 }
 
 /* U of problem->f, and w and p unless they are not wanted or (first) not yet and U can be had without. */
-static PetscErrorCode Follow(Reduced s, PetscBool first) {
+static PetscErrorCode ReducedFollow(Reduced s, PetscBool first) {
   const CoupledProblem *q = s->problem;
   const Coupling c = s->unknowns->coupling;
   const PetscBool bodies = CouplingHasBodies(c);
   PetscFunctionBeginUser;
   if ((first || !q->w) && s->stream) {
-    if (bodies) PetscCall(q->past ? FollowFlow(s, first) : FollowByRows(s));
+    if (bodies) PetscCall(q->past ? ReducedFollowFlow(s, first) : ReducedFollowByRows(s));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(Solve(s, q->f, q->w, q->p));
   if (bodies) PetscCall(MarkersInterpolate(c->markers, q->w, s->U));
-  PetscCall(TakePart(s));
+  PetscCall(ReducedTakePart(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* The forces of `added`, which is x itself (first) or a change of it, go into problem->f; minus the scaled residuals
    at x. */
-static PetscErrorCode Residual(Reduced s, PetscBool first, Vec added, Vec x, Vec residual) {
+static PetscErrorCode ReducedResidualAt(Reduced s, PetscBool first, Vec added, Vec x, Vec residual) {
   const CoupledProblem *q = s->problem;
   const PetscScalar *xa;
   PetscScalar *ra;
   PetscFunctionBeginUser;
   PetscCall(VecGetArrayRead(added, &xa));
-  PetscCall(AddForces(s, xa, first, q->f));
+  PetscCall(ReducedAddForces(s, xa, first, q->f));
   PetscCall(VecRestoreArrayRead(added, &xa));
   PetscCall(VecGetArrayRead(x, &xa));
-  if (q->past) PetscCall(Follow(s, first)); /* while F is that of `added` */
+  if (q->past) PetscCall(ReducedFollow(s, first)); /* while F is that of `added` */
   if (!first && CouplingHasBodies(s->unknowns->coupling)) {
     PetscCall(ReducedForce(s, xa, s->F));
-    PetscCall(Motion(s, xa, PETSC_TRUE));
+    PetscCall(ReducedMotion(s, xa, PETSC_TRUE));
   }
-  if (!q->past) PetscCall(Follow(s, first));
+  if (!q->past) PetscCall(ReducedFollow(s, first));
   PetscCall(VecGetArray(residual, &ra));
-  PetscCall(Conditions(s, q, xa, ra));
+  PetscCall(ReducedResidual(s, q, xa, ra));
   PetscCall(VecRestoreArray(residual, &ra));
   PetscCall(VecRestoreArrayRead(x, &xa));
   PetscCall(VecScale(residual, -1));
@@ -240,13 +247,13 @@ PetscErrorCode ReducedBegin(Reduced s, const CoupledProblem *problem, Vec x, Vec
   PetscFunctionBeginUser;
   s->problem = problem;
   s->measures = (StreamMeasures){0};
-  PetscCall(Residual(s, PETSC_TRUE, x, x, residual));
+  PetscCall(ReducedResidualAt(s, PETSC_TRUE, x, x, residual));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode ReducedUpdate(Reduced s, Vec added, Vec x, Vec residual) {
   PetscFunctionBeginUser;
-  PetscCall(Residual(s, PETSC_FALSE, added, x, residual));
+  PetscCall(ReducedResidualAt(s, PETSC_FALSE, added, x, residual));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -1,10 +1,10 @@
 /* The coupled problem of one time step for velocity, pressure and tension together (docs/solver.md),
 
-       H u + G p + E^T F/h^2 = f,   G^T u = 0                          the fluid
-       F = Dm^T sigma + (1/a0) K V                                      minus h^2 times the force of a membrane
-       V + (v/a0) dV/dt - E u + C F = k                                vesicles' markers move with the fluid
-       Dm V/h^2 = g                                                    inextensible edges
-       E_w u - C F - beta N N^T F + k_w = 0                            no slip on obstacles, whose F is unknown
+       (1)  H u + G p + E^T F/h^2 = f,   G^T u = 0              the fluid
+       (2)  F = Dm^T sigma + (1/a0) K V                         minus h^2 times the force of a membrane
+       (3)  V + (v/a0) dV/dt - E u + C F = k                    vesicles' markers move with the fluid
+       (4)  Dm V/h^2 = g                                        inextensible edges
+       (5)  E_w u - C F - beta N N^T F + k_w = 0                no slip on obstacles, whose F is unknown
 
    V is the markers' velocity without the background's, seen from labels that turn at the speed v of their vesicle; C is
    the near field of all bodies; K is

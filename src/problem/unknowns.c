@@ -37,39 +37,32 @@ PetscErrorCode UnknownsCreateVec(Unknowns u, Vec *x) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-#define PARTS 3
+/* Copy the parts into x, or (out) those of x out of it; a part that is NULL is left out. */
+static PetscErrorCode UnknownsCopy(Unknowns u, PetscBool out, Vec V, Vec solid, Vec sigma, Vec x) {
+  const Vec part[] = {V, solid, sigma};
+  const PetscInt n[] = {u->velocity, u->solid, u->tension};
+  PetscScalar *all, *one;
+  PetscFunctionBeginUser;
+  PetscCall(VecGetArray(x, &all));
+  for (PetscInt k = 0, at = 0; k < 3; at += n[k++]) {
+    if (!part[k]) continue;
+    PetscCall(VecGetArray(part[k], &one));
+    PetscCall(PetscArraycpy(out ? one : all + at, out ? all + at : one, n[k]));
+    PetscCall(VecRestoreArray(part[k], &one));
+  }
+  PetscCall(VecRestoreArray(x, &all));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
 
 PetscErrorCode UnknownsPack(Unknowns u, Vec V, Vec solid, Vec sigma, Vec x) {
-  const Vec part[PARTS] = {V, solid, sigma};
-  const PetscInt n[PARTS] = {u->velocity, u->solid, u->tension};
-  PetscScalar *to;
   PetscFunctionBeginUser;
-  PetscCall(VecGetArrayWrite(x, &to));
-  for (PetscInt k = 0, at = 0; k < PARTS; at += n[k++]) {
-    const PetscScalar *from;
-    if (!part[k]) continue;
-    PetscCall(VecGetArrayRead(part[k], &from));
-    PetscCall(PetscArraycpy(to + at, from, n[k]));
-    PetscCall(VecRestoreArrayRead(part[k], &from));
-  }
-  PetscCall(VecRestoreArrayWrite(x, &to));
+  PetscCall(UnknownsCopy(u, PETSC_FALSE, V, solid, sigma, x));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode UnknownsUnpack(Unknowns u, Vec x, Vec V, Vec solid, Vec sigma) {
-  const Vec part[PARTS] = {V, solid, sigma};
-  const PetscInt n[PARTS] = {u->velocity, u->solid, u->tension};
-  const PetscScalar *from;
   PetscFunctionBeginUser;
-  PetscCall(VecGetArrayRead(x, &from));
-  for (PetscInt k = 0, at = 0; k < PARTS; at += n[k++]) {
-    PetscScalar *to;
-    if (!part[k]) continue;
-    PetscCall(VecGetArrayWrite(part[k], &to));
-    PetscCall(PetscArraycpy(to, from + at, n[k]));
-    PetscCall(VecRestoreArrayWrite(part[k], &to));
-  }
-  PetscCall(VecRestoreArrayRead(x, &from));
+  PetscCall(UnknownsCopy(u, PETSC_TRUE, V, solid, sigma, x));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -242,13 +242,39 @@ static PetscErrorCode SetUpConvection(Scheme s, Coupled *d) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The states before the present one have the velocity where it is a history: in fluid with inertia, of the older one
+   for order 3. It is a flow where one is made, which convection needs on the grid as well. Of the next one both fields
+   are needed unless the state's own are made when they are asked for, from the forcing that each of the two has then,
+   and from the flow. */
+static PetscErrorCode CreateStates_Coupled(Scheme s) {
+  Coupled *d = (Coupled *)s->data;
+  const PetscBool later = ReducedNeedsNoPressure(d->solver->reduced);
+  const PetscBool contrast = s->coupling->contrast ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool grid = !s->fluid->steady && (!later || d->convection) ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionBeginUser;
+  if (later && !s->fluid->steady) PetscCall(StreamFlowsCreateVec(CoupledFlows(d), &s->state.flow));
+  for (int j = 0; j < SCHEME_PAST; j++) {
+    PetscCall(StateDuplicate(&s->state, &s->old[j]));
+    PetscCall(VecDestroy(&s->old[j].p));
+    if (!grid || j >= s->scene->scheme.order - 1) PetscCall(VecDestroy(&s->old[j].w));
+    if (j >= s->scene->scheme.order - 1) PetscCall(VecDestroy(&s->old[j].flow));
+  }
+  PetscCall(StateDuplicate(&s->state, &d->next));
+  PetscCall(ForcingCreate(s->fluid->grid, contrast, &d->next.forcing));
+  if (!later) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ForcingCreate(s->fluid->grid, contrast, &s->state.forcing));
+  PetscCall(VecDestroy(&d->next.p));
+  if (!grid) PetscCall(VecDestroy(&d->next.w));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode SetUp_Coupled(Scheme s) {
   Coupled *d = (Coupled *)s->data;
   State *q = &s->state;
   PetscFunctionBeginUser;
   PetscCall(CoupledSolverCreate(s->scene, s->coupling, &d->solver));
   PetscCall(SetUpConvection(s, d));
-  PetscCall(CoupledCreateStates(s));
+  PetscCall(CreateStates_Coupled(s));
   PetscCall(HistoryCreate(s, &d->history));
   PetscCall(VecDuplicate(q->X, &d->Xstar));
   PetscCall(VecDuplicate(q->X, &d->Xhat));
@@ -305,18 +331,12 @@ PetscErrorCode SchemeCreate_Coupled(Scheme s) {
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&d));
   s->data = d;
-  s->ops = (SchemeOps){.setup = SetUp_Coupled,
-                       .step = Step_Coupled,
+  s->ops = (SchemeOps){.step = Step_Coupled,
                        .undo = Undo_Coupled,
-                       .fields = CoupledFields,
-                       .velocity = CoupledVelocity,
-                       .flow = CoupledFlow,
-                       .square = CoupledSquare,
-                       .remember = CoupledRemember,
-                       .recall = CoupledRecall,
                        .view = View_Coupled,
                        .options = Options_Coupled,
                        .ksp = KSP_Coupled,
                        .destroy = Destroy_Coupled};
+  PetscCall(SetUp_Coupled(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

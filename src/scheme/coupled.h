@@ -43,17 +43,10 @@ PETSC_EXTERN PetscErrorCode CoupledFixedAttempt(Scheme scheme, PetscReal dt, Pet
    edges. Collective. */
 PETSC_EXTERN PetscErrorCode CoupledAdvance(Scheme scheme, PetscReal dt);
 
-/* CoupledRemember, CoupledRecall - remember and recall of SchemeOps. Collective. */
+/* CoupledRemember, CoupledRecall - what solvers keep from step to step, as
+   SchemeMemorySize numbers, the same on every rank, and made again from them. Collective. */
 PETSC_EXTERN PetscErrorCode CoupledRemember(Scheme scheme, PetscReal memory[]);
 PETSC_EXTERN PetscErrorCode CoupledRecall(Scheme scheme, const PetscReal memory[]);
-
-/* CoupledCreateStates - the vectors of the states before the present one and of the next one. CoupledFields,
-   CoupledVelocity, CoupledFlow, CoupledSquare - fields, velocity, flow and square of SchemeOps. Collective. */
-PETSC_EXTERN PetscErrorCode CoupledCreateStates(Scheme scheme);
-PETSC_EXTERN PetscErrorCode CoupledFields(Scheme scheme);
-PETSC_EXTERN PetscErrorCode CoupledVelocity(Scheme scheme, const State *state, Vec w);
-PETSC_EXTERN PetscErrorCode CoupledFlow(Scheme scheme, Vec w, Vec flow);
-PETSC_EXTERN PetscErrorCode CoupledSquare(Scheme scheme, PetscReal *square);
 
 /* SchemeCreate_Coupled - give a scheme the operations of the unsplit step. Collective. */
 PETSC_EXTERN PetscErrorCode SchemeCreate_Coupled(Scheme scheme);

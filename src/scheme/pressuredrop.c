@@ -1,4 +1,5 @@
 #include "scheme/pressuredrop.h"
+#include "scheme/fields.h"
 
 /* The profile b(y) of a channel's flow under a unit pressure gradient, y from its lower wall,
      b = (y (H - y)/2 + more)/nu.

@@ -1,6 +1,7 @@
 #include "scheme/scheme.h"
 #include "precondition/precondition.h"
 #include "scheme/coupled.h"
+#include "scheme/fields.h"
 #include "scheme/statechecks.h"
 
 static PetscFunctionList schemes;
@@ -73,7 +74,6 @@ PetscErrorCode SchemeCreate(Scene scene, Coupling coupling, const PetscReal X[],
   s->plan = (StepPlan){.level = StepFirstLevel(), .order = PetscMin(scene->scheme.order, 2), .guess = 2};
   PetscCall(CreateState(s, X));
   PetscCall(create(s));
-  PetscCall(s->ops.setup(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -131,16 +131,21 @@ PetscInt SchemeMemorySize(Scheme s) {
   return AGE_MEMORY + SharedShapesMemorySize(s->membrane->layout) + block;
 }
 
+/* Whether solvers have kept something: those of the scheme that goes on from several states, after a step. */
+static PetscBool SolversRemember(Scheme s) {
+  return s->old[0].X && s->state.dt_last > 0 ? PETSC_TRUE : PETSC_FALSE;
+}
+
 PetscErrorCode SchemeRemember(Scheme s, PetscReal memory[]) {
   PetscFunctionBeginUser;
   PetscCall(PetscArrayzero(memory, SchemeMemorySize(s)));
-  if (s->ops.remember && s->state.dt_last > 0) PetscCall(s->ops.remember(s, memory)); /* before a step: nothing */
+  if (SolversRemember(s)) PetscCall(CoupledRemember(s, memory));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode SchemeRecall(Scheme s, const PetscReal memory[]) {
   PetscFunctionBeginUser;
-  if (s->ops.recall && s->state.dt_last > 0) PetscCall(s->ops.recall(s, memory));
+  if (SolversRemember(s)) PetscCall(CoupledRecall(s, memory));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -154,7 +159,7 @@ PetscErrorCode SchemeKineticEnergy(Scheme s, PetscReal *energy) {
   PetscReal norm;
   PetscFunctionBeginUser;
   if (s->state.fields == FIELDS_WITHOUT_BOTH || s->state.flow) {
-    PetscCall(s->ops.square(s, &norm));
+    PetscCall(SchemeSquare(s, &norm));
     norm = PetscSqrtReal(norm);
   } else if (s->fluid->total) {
     Vec difference;

@@ -236,23 +236,3 @@ PetscErrorCode SchemeWarn(Scheme s, const char format[], ...) {
   if (s->warnings.n < SCHEME_WARNINGS) PetscCall(PetscStrallocpy(text, &s->warnings.text[s->warnings.n++]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
-
-PetscErrorCode SchemeVelocity(Scheme s) {
-  PetscFunctionBeginUser;
-  if (s->state.fields != FIELDS_WITHOUT_BOTH) PetscFunctionReturn(PETSC_SUCCESS);
-  if (s->state.flow) {
-    PetscCall(s->ops.velocity(s, &s->state, s->state.w));
-    s->state.fields = FIELDS_WITHOUT_P;
-  } else
-    PetscCall(SchemeFields(s));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode SchemeFields(Scheme s) {
-  PetscFunctionBeginUser;
-  if (s->state.flow) PetscCall(SchemeVelocity(s));
-  if (s->state.fields == FIELDS_MADE) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(s->ops.fields(s));
-  s->state.fields = FIELDS_MADE;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}

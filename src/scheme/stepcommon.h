@@ -55,23 +55,12 @@ typedef struct _p_Scheme *Scheme;
 
 /* What a scheme does. All operations are collective; an operation may be NULL where its comment says so. */
 typedef struct {
-  PetscErrorCode (*setup)(Scheme);
-  PetscErrorCode (*step)(Scheme, PetscReal most); /* advance the state by state.dt, which step-size control chooses up
-                                                     to `most`; or fill in report.failure and leave it */
+  /* advance the state by state.dt, which step-size control chooses up to `most`; or fill in report.failure and leave it
+   */
+  PetscErrorCode (*step)(Scheme, PetscReal most);
   /* put back the velocities and pressures of state and old that a step with a past has changed; NULL: they are copied
      before each step */
   PetscErrorCode (*undo)(Scheme);
-  /* make what the state has not of velocity and pressure, with a flow the pressure alone; NULL: steps make them */
-  PetscErrorCode (*fields)(Scheme);
-  /* w = the velocity of a state that has a flow; the flow of w; SUM u^2 over the faces of the state's velocity, which
-     is not made */
-  PetscErrorCode (*velocity)(Scheme, const State *, Vec w);
-  PetscErrorCode (*flow)(Scheme, Vec w, Vec flow);
-  PetscErrorCode (*square)(Scheme, PetscReal *square);
-  /* what solvers keep from step to step, as SchemeMemorySize numbers, the same on every rank, and made again from them;
-     NULL: they keep nothing */
-  PetscErrorCode (*remember)(Scheme, PetscReal memory[]);
-  PetscErrorCode (*recall)(Scheme, const PetscReal memory[]);
   PetscErrorCode (*view)(Scheme, PetscViewer);
   PetscErrorCode (*options)(Scheme, FILE *);                 /* write the solvers' settings in force as options */
   PetscErrorCode (*ksp)(Scheme, const char prefix[], KSP *); /* borrowed; NULL when there is none of this prefix */
@@ -155,12 +144,6 @@ PETSC_EXTERN PetscErrorCode SchemeNamePair(Scheme scheme, PetscInt v, PetscInt w
    curves by their markers, not polygons. Not collective. */
 PETSC_EXTERN void SchemePeriods(Scheme scheme, PetscReal period[2]);
 PETSC_EXTERN PetscBool SchemeIsSmooth(Scheme scheme);
-
-/* SchemeFields - make the velocity and the pressure of the state, w and p, where the step has not: it needs neither on
-   the grid where fluid/stokes/stream.h gives the velocity (docs/membrane.md, One step). SchemeVelocity - w alone, if
-   there is a cheaper way. To be called before they are read. Collective. */
-PETSC_EXTERN PetscErrorCode SchemeFields(Scheme scheme);
-PETSC_EXTERN PetscErrorCode SchemeVelocity(Scheme scheme);
 
 /* SchemeAdvise - step, time and what to try, behind what is wrong in report.failure. Not collective. */
 PETSC_EXTERN PetscErrorCode SchemeAdvise(Scheme scheme, const char advice[]);

@@ -2,6 +2,7 @@
    markers, 24 steps, c_b and dt over four decades: E_K + E_B never rises with backward Euler, nor the G-norm energy
    with BDF2 at constant steps. And the split scheme, which has no such law. */
 #include "facts.h"
+#include "scheme/fields.h"
 #include "bodies/bending.h"
 
 #define STEPS 24
@@ -55,7 +56,7 @@ static PetscErrorCode GNormEnergy(TestWorld *r, PetscReal *energy) {
   PetscCall(TestVecs(q->w, &w, NULL));
   PetscCall(TestVecs(q->X, &X, NULL));
   if (old->flow)
-    PetscCall(r->scheme->ops.velocity(r->scheme, old, w));
+    PetscCall(SchemeVelocityOf(r->scheme, old, w));
   else
     PetscCall(VecCopy(old->w, w));
   PetscCall(VecAXPBY(w, 2, -1, q->w));
