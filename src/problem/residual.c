@@ -109,8 +109,7 @@ static PetscErrorCode ReducedAddMean(Reduced s, const PetscReal mean[2], Vec w) 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* (w, p) = Stokes(r). */
-static PetscErrorCode Solve(Reduced s, const Forcing *r, Vec w, Vec p) {
+PetscErrorCode ReducedFields(Reduced s, const Forcing *r, Vec w, Vec p) {
   PetscFunctionBeginUser;
   if (!s->stokes) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(StokesSolve(s->stokes, r->values, r->source, w, p));
@@ -212,7 +211,7 @@ static PetscErrorCode ReducedFollow(Reduced s, PetscBool first) {
     if (bodies) PetscCall(q->past ? ReducedFollowFlow(s, first) : ReducedFollowByRows(s));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  PetscCall(Solve(s, q->f, q->w, q->p));
+  PetscCall(ReducedFields(s, q->f, q->w, q->p));
   if (bodies) PetscCall(MarkersInterpolate(c->markers, q->w, s->U));
   PetscCall(ReducedTakePart(s));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -260,12 +259,6 @@ PetscErrorCode ReducedUpdate(Reduced s, Vec added, Vec x, Vec residual) {
 PetscBool ReducedNeedsNoPressure(Reduced s) {
   const Coupling c = s->unknowns->coupling;
   return s->stream && CouplingHasBodies(c) ? PETSC_TRUE : PETSC_FALSE;
-}
-
-PetscErrorCode ReducedFields(Reduced s, const Forcing *f, Vec w, Vec p) {
-  PetscFunctionBeginUser;
-  PetscCall(Solve(s, f, w, p));
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode ReducedPressure(Reduced s, const Forcing *f, Vec w, Vec p) {

@@ -45,19 +45,6 @@ PetscErrorCode SchemeReturn(Scheme s, PetscBool advanced) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What to try goes behind what is wrong. */
-static PetscErrorCode Advise(Scheme s) {
-  char *text = s->report.failure;
-  const size_t used = strlen(text);
-  PetscFunctionBeginUser;
-  PetscCall(PetscSNPrintf(text + used, sizeof(s->report.failure) - used,
-                          " after step %" PetscInt_FMT
-                          ", time %g; try a larger -domain_box, or a smaller -time_step if it "
-                          "should not have come there",
-                          s->state.step, (double)s->state.t));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 void SchemePeriods(Scheme s, PetscReal period[2]) {
   const Grid g = s->fluid->grid;
   for (int d = 0; d < 2; d++) period[d] = g->wall[d] ? 0 : g->hi[d] - g->lo[d];
@@ -159,7 +146,8 @@ PetscErrorCode SchemePlace(Scheme s, PetscReal a0, Vec X, const PetscReal treadi
   if (!*placed) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(CouplingPlace(s->coupling, a0, t, X, treading, s->report.failure));
   *placed = *s->report.failure ? PETSC_FALSE : PETSC_TRUE;
-  if (!*placed) PetscCall(Advise(s));
+  if (!*placed)
+    PetscCall(SchemeAdvise(s, "a larger -domain_box, or a smaller -time_step if it should not have come there"));
   if (!*placed || !CouplingHasMembrane(s->coupling)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SchemeBackground(s, X, t));
   *placed = *s->report.failure ? PETSC_FALSE : PETSC_TRUE;
